@@ -1,0 +1,197 @@
+# hifdm: one library, one program. `make help` lists what can be made; everything made goes under build/.
+#
+# The targets people type (all, run, test, ...) only install what is missing and then call this Makefile again for the
+# files themselves, so that packages exist before pkg-config is asked about them, and builds use every core.
+
+# ---- The modules, in dependency order: a module may include only modules above it (`make lint` checks it) ------------
+# Sources are src/NAME.c; the header is include/hifdm/NAME.h if public, src/NAME.h if internal.
+MODULES := status arena sha256 text scene scene_import config config_table numbering model workspace band metrics \
+           formfind evaluate ga batch summary hdf5_io store store_read
+APP_MODULES := options print run plan export main
+
+# ---- What may be set on the command line -----------------------------------------------------------------------------
+VERSION := 0.1.0
+SOVERSION := 0
+BUILD ?= build
+PREFIX ?= /usr/local
+DESTDIR ?=
+CFLAGS ?= -O3 -g
+LDFLAGS ?=
+# `make WERROR=` lets a compiler newer than ours, with warnings of its own, still build it.
+WERROR ?= -Werror
+# For instance address,undefined or thread; see asan and tsan below.
+SANITIZE ?=
+# Other LAPACK and BLAS than the ones pkg-config knows as openblas, or as lapack and blas.
+LAPACK_LIBS ?=
+# For tests in Python. Debian's own, because that is the one its packages (h5py, yaml) are for.
+PYTHON ?= /usr/bin/python3
+CASE ?= configs/chen2022.yaml
+RESULT ?= results/$(basename $(notdir $(CASE))).h5
+TSAN_CASE ?= $(CASE)
+TSAN_ARGS ?= --set optimize.generations=5
+# Only the suites whose ROOM/NAME contains one of these words: `make test SUITE="unit verify/band"`.
+SUITE ?=
+# Calls that tests/support.c counts and can make fail; each needs a __wrap_ function there.
+TEST_WRAP := malloc calloc realloc aligned_alloc strdup strndup
+TEST_WRAP_EXTRA ?=
+
+# ---- Flags -----------------------------------------------------------------------------------------------------------
+# No fused multiply-adds and no -ffast-math: results are the same bits on every x86-64 machine. One set of position-
+# independent objects serves both libraries; -fno-semantic-interposition lets them be inlined as if they were not.
+LANGUAGE := -std=c11 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp
+CODEGEN := -fno-math-errno -ffp-contract=off -fPIC -fno-semantic-interposition
+WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Wvla $(WERROR)
+SANITIZER := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
+
+# pkg-config is asked once, when a recipe first needs it: $(eval) replaces the question by its answer.
+LAPACK_PC = $(if $(LAPACK_LIBS),,$(shell pkg-config --exists openblas && echo openblas || echo lapack blas))
+PKG = $(eval PKG := $(or $(shell pkg-config --cflags --libs $(LAPACK_PC) gsl hdf5 yaml-0.1),$(PKG_MISSING)))$(PKG)
+PKG_MISSING = $(error A library or pkg-config itself is missing, see above: run `make setup`)
+CHECK = $(eval CHECK := $(or $(shell pkg-config --cflags --libs check),$(error run `make test`)))$(CHECK)
+# -isystem: our warnings are about our code, not about the headers of HDF5.
+PKG_CFLAGS = $(patsubst -I%,-isystem %,$(filter -I% -D%,$(PKG)))
+PKG_LIBS = $(filter-out -I% -D%,$(PKG)) $(LAPACK_LIBS) -lm
+
+COMPILE = $(CC) $(CFLAGS) $(LANGUAGE) $(CODEGEN) $(SANITIZER) $(WARNINGS) -Iinclude $(PKG_CFLAGS)
+LINK = $(CC) $(CFLAGS) -fopenmp $(SANITIZER) $(LDFLAGS)
+
+# Build information, compiled into store.c alone because it is what stamps a result file.
+GIT_DESCRIBE = $(shell test -e .git && git describe --always --dirty --tags 2>/dev/null || echo unknown)
+COMPILER = $(shell $(CC) --version | head -n 1)
+c_string = '"$(subst \,,$(subst ",,$(subst ',,$(strip $(1)))))"'
+BUILD_INFO = $(eval BUILD_INFO := -DHF_VERSION=$(call c_string,$(VERSION)) \
+  -DHF_GIT_DESCRIBE=$(call c_string,$(GIT_DESCRIBE)) -DHF_COMPILER=$(call c_string,$(COMPILER)) \
+  -DHF_BUILD_FLAGS=$(call c_string,$(CFLAGS) $(LANGUAGE) $(CODEGEN) $(SANITIZER)))$(BUILD_INFO)
+
+# ---- Files -----------------------------------------------------------------------------------------------------------
+LIB_OBJ := $(MODULES:%=$(BUILD)/src/%.o)
+APP_OBJ := $(APP_MODULES:%=$(BUILD)/src/%.o)
+TEST_OBJ := $(patsubst %.c,$(BUILD)/%.o,tests/run_tests.c tests/support.c $(sort $(wildcard tests/*/test_*.c)))
+PROGRAM := $(BUILD)/hifdm
+STATIC := $(BUILD)/libhifdm.a
+SHARED := $(BUILD)/libhifdm.so
+SONAME := libhifdm.so.$(SOVERSION)
+RUNNER := $(BUILD)/tests/run_tests
+
+# ---- How things are said and called ----------------------------------------------------------------------------------
+# Short lines, nothing when all is up to date; V=1 shows the full commands.
+V ?=
+Q := $(if $(V),,@)
+say = @$(if $(V),:,printf '  %-5s %s\n') '$(1)' '$(2)'
+MAKEFLAGS += -r --no-print-directory
+# All cores, unless the caller of make said how many.
+SUB = +$(Q)$(MAKE) $(if $(V),,-s) $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc))
+quote = '$(subst ','\'',$(1))'
+# Rewrites the target only when the text differs, so that what depends on it is rebuilt only then.
+stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
+
+# ---- Targets to type -------------------------------------------------------------------------------------------------
+FRONT := all compile-all run test lint asan tsan install
+.PHONY: $(FRONT) setup clean help FORCE
+.DEFAULT_GOAL := all
+# `make run test` must not build twice at the same time in the same place.
+ifneq ($(filter $(FRONT) setup,$(MAKECMDGOALS)),)
+.NOTPARALLEL:
+endif
+
+all: ## the program and both libraries, under build/ (or BUILD=...)
+	$(SUB) $(PROGRAM) $(STATIC) $(SHARED)
+
+# For another compiler's opinion: `make compile-all BUILD=build/clang CC=clang`.
+compile-all: ## everything, the tests too, without running anything
+	$(SUB) $(PROGRAM) $(STATIC) $(SHARED) $(RUNNER)
+
+setup: ## install the packages that are missing
+	$(Q)tools/setup.sh
+
+run: setup ## set up, build, and run CASE (configs/chen2022.yaml) into results/
+	$(SUB) $(PROGRAM)
+	@mkdir -p $(dir $(RESULT))
+	$(PROGRAM) run $(CASE) -o $(RESULT) --force
+
+test: ## set up, build and run the tests; SUITE="unit verify/band" picks some
+	$(Q)tools/setup.sh --test
+	$(SUB) $(PROGRAM) $(RUNNER)
+	@mkdir -p $(BUILD)/tmp
+	$(Q)HIFDM=$(abspath $(PROGRAM)) HIFDM_SOURCE_DIR=$(CURDIR) PYTHON=$(PYTHON) \
+	    TMPDIR=$(abspath $(BUILD))/tmp CK_DEFAULT_TIMEOUT=$${CK_DEFAULT_TIMEOUT:-60} $(RUNNER) $(SUITE)
+
+lint: ## check the rules of the house
+	+$(Q)tools/lint.sh
+
+# -O1 for readable reports; no -Werror since instrumented code draws false warnings. Instrumented code is slow, hence
+# the multiplier, which the tests' own time limits follow too.
+asan: ## the tests under the address and undefined-behaviour sanitizers, in build/asan
+	+$(Q)ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1 \
+	    CK_TIMEOUT_MULTIPLIER=5 $(MAKE) BUILD=build/asan SANITIZE=address,undefined CFLAGS='-O1 -g' WERROR= test
+
+# clang, because gcc's OpenMP runtime hides its barriers from the thread sanitizer; OpenBLAS and HDF5 are not
+# instrumented, so what goes on inside them is ignored. setarch -R: clang 14 cannot place its shadow memory on kernels
+# that randomise addresses widely.
+tsan: ## a short run of TSAN_CASE on four threads under the thread sanitizer, in build/tsan
+	$(Q)tools/setup.sh --ci
+	$(SUB) BUILD=build/tsan CC=clang SANITIZE=thread CFLAGS='-O1 -g' WERROR= build/tsan/hifdm
+	OMP_NUM_THREADS=4 TSAN_OPTIONS=ignore_noninstrumented_modules=1 $(NO_ASLR) \
+	    build/tsan/hifdm run $(TSAN_CASE) $(TSAN_ARGS) -o build/tsan/out.h5 --force
+NO_ASLR = $(shell setarch -R true 2>/dev/null && echo setarch -R)
+
+install: all ## install under PREFIX (/usr/local), within DESTDIR if given
+	$(Q)install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin lib/pkgconfig include/hifdm)
+	$(Q)install -m 755 $(PROGRAM) $(DESTDIR)$(PREFIX)/bin/
+	$(Q)install -m 644 $(STATIC) $(DESTDIR)$(PREFIX)/lib/
+	$(Q)install -m 755 $(SHARED) $(DESTDIR)$(PREFIX)/lib/libhifdm.so.$(VERSION)
+	$(Q)ln -sf libhifdm.so.$(VERSION) $(DESTDIR)$(PREFIX)/lib/$(SONAME)
+	$(Q)ln -sf $(SONAME) $(DESTDIR)$(PREFIX)/lib/libhifdm.so
+	$(Q)install -m 644 include/hifdm/*.h $(DESTDIR)$(PREFIX)/include/hifdm/
+	$(Q)printf '%s\n' 'prefix=$(PREFIX)' 'Name: hifdm' 'Version: $(VERSION)' \
+	    'Description: Form finding of cable nets with force densities' 'Cflags: -I$${prefix}/include' \
+	    'Libs: -L$${prefix}/lib -lhifdm' 'Requires.private: $(LAPACK_PC) gsl hdf5 yaml-0.1' \
+	    'Libs.private: $(LAPACK_LIBS) -fopenmp -lm' >$(DESTDIR)$(PREFIX)/lib/pkgconfig/hifdm.pc
+
+clean: ## remove build/
+	rm -rf build $(BUILD)
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
+
+# The value of a variable, for tools/lint.sh.
+print-%:
+	@echo '$($*)'
+
+# ---- Files that are made ---------------------------------------------------------------------------------------------
+$(BUILD)/flags: FORCE
+	$(call stamp,$(COMPILE) $(LINK) $(PKG_LIBS))
+
+$(BUILD)/info: FORCE
+	$(call stamp,$(BUILD_INFO))
+
+$(BUILD)/src/store.o: $(BUILD)/info
+$(BUILD)/src/store.o: EXTRA = $(BUILD_INFO)
+$(BUILD)/tests/%.o: EXTRA = -Itests -Isrc $(filter-out -l%,$(CHECK))
+
+$(BUILD)/%.o: %.c $(BUILD)/flags
+	$(call say,CC,$<)
+	@mkdir -p $(@D)
+	$(Q)$(COMPILE) $(EXTRA) -MMD -MP -c $< -o $@
+
+# The Makefile is a prerequisite of what is linked because it holds the list of modules.
+$(STATIC): $(LIB_OBJ) Makefile
+	$(call say,AR,$@)
+	$(Q)rm -f $@ && $(AR) rcs $@ $(LIB_OBJ)
+
+$(SHARED): $(LIB_OBJ) Makefile
+	$(call say,LD,$@)
+	$(Q)$(LINK) -shared -Wl,-soname,$(SONAME) -Wl,-z,defs -o $@ $(LIB_OBJ) $(PKG_LIBS)
+	$(Q)ln -sf $(@F) $(@D)/$(SONAME)
+
+$(PROGRAM): $(APP_OBJ) $(STATIC)
+	$(call say,LD,$@)
+	$(Q)$(LINK) -o $@ $^ $(PKG_LIBS)
+
+$(RUNNER): $(TEST_OBJ) $(STATIC)
+	$(call say,LD,$@)
+	$(Q)$(LINK) $(patsubst %,-Wl$(comma)--wrap=%,$(TEST_WRAP) $(TEST_WRAP_EXTRA)) -o $@ $^ \
+	    $(filter-out -I%,$(CHECK)) $(PKG_LIBS)
+comma := ,
+
+-include $(LIB_OBJ:.o=.d) $(APP_OBJ:.o=.d) $(TEST_OBJ:.o=.d)

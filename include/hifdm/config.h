@@ -1,0 +1,110 @@
+/* config - case file (YAML) -> validated settings. One table (config_table.c) holds every key with its type, range,
+ * default, unit and help; the same table validates, prints `hifdm schema`, and is the only place of a default. */
+#ifndef HIFDM_CONFIG_H
+#define HIFDM_CONFIG_H
+
+#include <hifdm/scene.h>
+#include <hifdm/status.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM } hf_method;
+typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
+typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
+
+extern const char *const hf_method_word[3];
+extern const char *const hf_stop_rule_word[2];
+extern const char *const hf_rule_word[3];
+
+typedef struct {
+    int method;                /* hf_method */
+    double pretension_N;       /* Td */
+    int stop;                  /* hf_stop_rule */
+    double residual_tolerance; /* max nodal residual relative to the pretension */
+    double length_tolerance;   /* max |l/L*-1| of cables under the length law */
+    double rms_tolerance_m;    /* change of psi between iterations, the paper's rule */
+    int max_iterations;
+    double collapse_ratio; /* a cable of law tension shorter than this part of its theoretical length has collapsed */
+} hf_form_settings;
+
+typedef struct {
+    int rule; /* hf_rule: what a design (a set of boundary pretensions) means */
+    int population, generations;
+    double range_N;                      /* |dT| of Eq. 13 */
+    double min_tension_N, max_tension_N; /* bounds on T' */
+    double boundary_ratio_cap;           /* largest allowed boundary tension ratio of an individual */
+    uint64_t seed;
+    double crossover_high, crossover_low; /* Pc1, Pc2 */
+    double mutation_high, mutation_low;   /* Pm1, Pm2 */
+    int elites;
+    double stagnation_tolerance_m;
+    int stagnation_generations;
+} hf_optimize_settings;
+
+#define HF_PATH_SIZE 1024
+
+typedef struct {
+    char path[HF_PATH_SIZE]; /* of the case file */
+    char *text;              /* its content */
+    size_t text_length;
+    char *overrides; /* the --set arguments, a line each; "" when there are none */
+    char sha256[65]; /* of text and overrides */
+    char title[256];
+    int has_cylinder, has_import, has_optimize; /* which sections are there */
+    hf_cylinder cylinder;
+    char nodes_path[HF_PATH_SIZE], cables_path[HF_PATH_SIZE]; /* resolved against the folder of the case file */
+    hf_form_settings form;
+    hf_optimize_settings optimize;
+} hf_case;
+
+/* Read and validate. `overrides`: n "path=value" strings that win over the file. All faults in one go as
+ * file:line:col; HF_BAD_CASE then. Free with hf_case_free in any case. */
+hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
+                         hf_messages *messages);
+
+/* The scene that the case describes, checked (hf_scene_check). Free the scene in any case. */
+hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages);
+
+void hf_case_free(hf_case *settings);
+
+/* The table itself, for printing the reference. */
+typedef enum {
+    HF_FIELD_DOUBLE,
+    HF_FIELD_INT,
+    HF_FIELD_UINT64,
+    HF_FIELD_INT_PAIR,
+    HF_FIELD_WORD,
+    HF_FIELD_TEXT
+} hf_field_type;
+
+typedef struct {
+    const char *path; /* "form.pretension_N" */
+    hf_field_type type;
+    size_t offset;             /* in hf_case */
+    double min, max;           /* inclusive; min HF_ABOVE_ZERO: exclusive 0; text: max is the size of the buffer */
+    const char *default_value; /* as written in a case file; NULL = required when its section is there */
+    const char *unit;          /* "" = dimensionless */
+    const char *const *words;  /* of a WORD, NULL-terminated */
+    const char *help;
+} hf_field;
+
+typedef struct {
+    const char *path; /* "scene.import" */
+    size_t present_offset;
+    const char *help;
+} hf_section;
+
+#define HF_ABOVE_ZERO 1e-300 /* the min of a field that must be positive */
+
+extern const hf_field hf_field_table[];
+extern const int hf_n_field;
+extern const hf_section hf_section_table[];
+extern const int hf_n_section;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,66 @@
+/* formfind - force densities -> shape, tensions, residual: classical FDM (Eqs. 1-6), iterative FDM (Eq. 7), HIFDM
+ * (Eqs. 7 and 8). One iteration serves all three: the laws of the cables decide. */
+#ifndef HIFDM_FORMFIND_H
+#define HIFDM_FORMFIND_H
+
+#include <hifdm/workspace.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* X(name, value, word stored in files). Never renumber. */
+#define HF_STOP_REASON_LIST(X)                                                                                         \
+    X(NONE, 0, "none")                                                                                                 \
+    X(DIRECT, 1, "direct")                 /* no law changes a force density: one solve is the answer */               \
+    X(RESIDUAL, 2, "residual")             /* equilibrium and lengths within the tolerances */                         \
+    X(RMS_CHANGE, 3, "rms_change")         /* the paper's rule */                                                      \
+    X(MAX_ITERATIONS, 4, "max_iterations") /* not converged */                                                         \
+    X(ILL_POSED, 5, "ill_posed")           /* see the status */
+
+typedef enum {
+#define HF_STOP_REASON_ENUM(name, value, word) HF_STOPPED_##name = value,
+    HF_STOP_REASON_LIST(HF_STOP_REASON_ENUM)
+#undef HF_STOP_REASON_ENUM
+} hf_stop_reason;
+
+const char *hf_stop_reason_word(int reason);
+
+/* Plain values, no pointers. Under a status other than HF_OK and HF_NOT_CONVERGED the measures are NaN. */
+typedef struct {
+    hf_status status;
+    hf_stop_reason stop_reason;
+    int iterations;             /* linear solves */
+    int culprit;                /* cable (COLLAPSED, NOT_FINITE), row of D (SINGULAR), chain (STRAIGHT_CHAIN), or -1 */
+    double psi_m;               /* Eq. 10 */
+    double residual_N;          /* largest nodal force out of balance with every cable at the tension of its law */
+    double tension_error;       /* max |T/T*-1| over cables of law tension, 0 without one */
+    double length_error;        /* max |l/L*-1| over taut cables of law length, 0 without one */
+    double inner_tension_ratio; /* max T / min T; NaN without positive tensions */
+    double boundary_tension_ratio;
+    double shortest_length_ratio; /* min l / theoretical l over all cables */
+    int n_slack;
+    int n_loaded_chain; /* straight chains under lateral load: tensions there mean nothing */
+} hf_form_result;
+
+/* What each iteration looked like. Arrays of `capacity` >= max_iterations, owned by the caller. */
+typedef struct {
+    int capacity, n;
+    double *psi_m, *residual_N, *inner_tension_ratio, *boundary_tension_ratio, *length_error;
+} hf_history;
+
+/* Set laws, targets and first force densities of the workspace from the model. */
+void hf_form_prepare(const hf_model *model, hf_workspace *workspace);
+
+/* Iterate from the workspace's q_N_per_m under its law and target until `stop` (hf_stop_rule) or a bound holds.
+ * `settings` gives tolerances and bounds only. history may be NULL. Returns result->status; never allocates. */
+hf_status hf_form_find(const hf_model *model, const hf_form_settings *settings, int stop, hf_workspace *workspace,
+                       hf_history *history, hf_form_result *result);
+
+/* Is straight chain i under lateral load in the workspace's shape? For naming it. */
+int hf_form_chain_is_loaded(const hf_model *model, hf_workspace *workspace, int i_chain);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

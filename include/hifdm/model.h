@@ -1,0 +1,67 @@
+/* model - what all threads share and nobody changes: numbering, bandwidth, band maps, laws, targets, loads.
+ *
+ * Nodes are renumbered: "row" is a node's index in the model, free nodes first in band order (rows 0..n_free-1 are the
+ * rows of the force density matrix D), supports after them. Cables keep the order of the scene.
+ * The force density matrix is kept as LAPACK's lower band, column-major: D(i,j) at band[i-j + j*(half_bandwidth+1)]. */
+#ifndef HIFDM_MODEL_H
+#define HIFDM_MODEL_H
+
+#include <hifdm/config.h>
+#include <hifdm/scene.h>
+#include <hifdm/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct {
+    int n_node, n_free, n_cable, n_inner_node;
+    int half_bandwidth; /* of D: columns below the diagonal */
+    int n_band;         /* n_free * (half_bandwidth + 1); one spare place behind it takes what supports would add */
+    int has_strut;      /* some force density is negative: D may be indefinite */
+    double pretension_N;
+    double reference_N; /* what residuals are relative to: the pretension, or a pure FDM net's largest start tension */
+
+    int *row_of_node;                            /* [n_node] */
+    int *node_of_row;                            /* [n_node] */
+    int *end_row;                                /* [n_cable][2] */
+    int *diagonal_a, *diagonal_b, *off_diagonal; /* [n_cable] places in the band; n_band = not there */
+    int *inner_row;                              /* [n_inner_node] rows that psi counts */
+    double *position_m;                          /* [3][n_node] theoretical, component by component; supports: real */
+    double *load_N;                              /* [3][n_node], or NULL */
+    double *length_m;                            /* [n_cable] theoretical */
+    unsigned char *group;                        /* [n_cable] hf_group */
+    unsigned char *law;                          /* [n_cable] hf_law in force under the case's method */
+    double *target;                              /* [n_cable] T* (N), L* (m) or q (N/m) by law */
+    double *start_q_N_per_m;                     /* [n_cable] first force densities */
+
+    /* Boundary cables with a free end, whose pretensions a design sets; grouped into chains, joined at free nodes with
+     * just two boundary cables. Unequal changes inside a chain push its nodes along it; equal ones change its sag. */
+    int n_gene, n_gene_group;
+    int *gene_cable; /* [n_gene] */
+    int *gene_group; /* [n_gene] 0..n_gene_group-1 */
+
+    /* chains of length-controlled cables between two supports that are straight: sum L* does not exceed the distance */
+    int n_chain;
+    int *chain_start;  /* [n_chain + 1] into chain_cable */
+    int *chain_cable;  /* [chain_start[n_chain]] cables in order along the chain */
+    int *chain_of_row; /* [n_node] chain that passes through a free node, or -1 */
+
+    void *block;
+} hf_model;
+
+/* Build from a checked scene. HF_OK or HF_NO_MEMORY (with a message). Free with hf_model_free in any case. */
+hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages);
+
+/* Invariants of every index and band place; for asserts and tests. */
+int hf_model_is_valid(const hf_model *model);
+
+/* "cable-cable-cable" of a straight chain into `text`, cut with "..." when it does not fit. */
+void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_chain, char *text, size_t size);
+
+void hf_model_free(hf_model *model);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

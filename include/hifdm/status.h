@@ -1,0 +1,71 @@
+/* status - result codes with their texts and exit codes from one list, and the messages that travel upward.
+ *
+ * Three classes of trouble, kept apart: a programmer's error is an assert; a bad candidate is a status stored with that
+ * candidate (its numbers are NaN) and work goes on; a failed run is a status plus messages that go up to `main`, the
+ * only place that prints or exits. */
+#ifndef HIFDM_STATUS_H
+#define HIFDM_STATUS_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* X(name, value, exit code of the program, word stored in files, sentence for people).
+ * The values are stored in HDF5 files: never renumber them. */
+#define HF_STATUS_LIST(X)                                                                                              \
+    X(OK, 0, 0, "ok", "done")                                                                                          \
+    X(NOT_CONVERGED, 1, 3, "not_converged", "the iteration limit was reached before the stopping rule held")           \
+    X(SINGULAR, 2, 4, "singular", "the force density matrix is singular or not positive definite")                     \
+    X(STRAIGHT_CHAIN, 3, 4, "straight_chain", "a straight chain of length-controlled cables carries lateral load")     \
+    X(COLLAPSED, 4, 4, "collapsed", "nodes ran together: a cable shrank to a small part of its theoretical length")    \
+    X(NOT_FINITE, 5, 4, "not_finite", "a position or force density is no longer a finite number")                      \
+    X(RATIO_CAP, 6, 4, "ratio_cap", "the boundary tension ratio exceeds optimize.boundary_ratio_cap")                  \
+    X(NOT_EVALUATED, 7, 3, "not_evaluated", "not evaluated")                                                           \
+    X(BAD_USAGE, 20, 2, "bad_usage", "the command line is not understood")                                             \
+    X(BAD_CASE, 21, 2, "bad_case", "the case has errors")                                                              \
+    X(NO_MEMORY, 30, 5, "no_memory", "out of memory")                                                                  \
+    X(IO, 31, 5, "io", "input/output failed")                                                                          \
+    X(EXISTS, 32, 5, "exists", "the output file exists")
+
+typedef enum {
+#define HF_STATUS_ENUM(name, value, exit_code, word, text) HF_##name = value,
+    HF_STATUS_LIST(HF_STATUS_ENUM)
+#undef HF_STATUS_ENUM
+} hf_status;
+
+const char *hf_status_word(hf_status status); /* one token, as stored in files; "unknown" for a foreign value */
+const char *hf_status_text(hf_status status); /* a sentence */
+int hf_status_exit_code(hf_status status); /* 0 done, 2 usage or case, 3 not converged, 4 ill-posed, 5 input/output */
+
+/* Propagate: evaluate once, return it from the calling function unless it is HF_OK. */
+#define HF_TRY(expression)                                                                                             \
+    do {                                                                                                               \
+        hf_status hf_try_status_ = (expression);                                                                       \
+        if (hf_try_status_ != HF_OK) return hf_try_status_;                                                            \
+    } while (0)
+
+/* A growing list of lines for people. Zero-initialise; hf_messages_free when done. When memory runs out lines are
+ * lost, but the counts stay right. */
+typedef struct {
+    char *text; /* lines ending in '\n', or NULL while empty */
+    size_t length, capacity;
+    int n_error, n_warning;
+} hf_messages;
+
+#if defined(__GNUC__)
+#define HF_PRINTF(format_index, first) __attribute__((format(printf, format_index, first)))
+#else
+#define HF_PRINTF(format_index, first)
+#endif
+
+/* Append "error: ..." or "warning: ..."; hf_error returns `code`, so that a caller can `return hf_error(...)`. */
+hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...) HF_PRINTF(3, 4);
+void hf_warning(hf_messages *messages, const char *format, ...) HF_PRINTF(2, 3);
+void hf_messages_free(hf_messages *messages);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,97 @@
+/* store - a run in one HDF5 file: written next to its final name and renamed when complete, so that nothing
+ * half-written is ever visible; read back for `show` and `export`.
+ *
+ * Layout, with n nodes, m cables, i iterations, g generations, p individuals, k genes. Every data set has the
+ * attributes `units` ("" = dimensionless) and `description`. Role, group, law, status and the like are HDF5
+ * enumerations, texts variable-length UTF-8. Wall and processor times, threads and host are attributes only: the data
+ * sets of two runs of the same case are the same.
+ *   /            attributes: program ("hifdm"), format_version, version, git_describe, compiler, build_flags,
+ *                hdf5_version, gsl_version, lapack, rng, host, argv[], started_utc, finished_utc, title, seed, threads,
+ *                warnings, has_optimize, status (word of the form-finding's if not ok, else of the best individual's)
+ *   /case        text, overrides; attributes sha256, case_path
+ *   /scene/node  id [n], position_m [n][3], role [n]; load_N [n][3] if there are loads
+ *   /scene/cable id, group, law, target, length_m (theoretical) [m], end [m][2]; EA_N [m] if any is given
+ *   /form        position_m [n][3]; length_m, tension_N, q_N_per_m, law [m]
+ *                attributes: the members of hf_summary from `version` on and of hf_summary.form
+ *   /form/history  psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio, length_error [i]
+ *   /ga          design_N [g][p][k]; evaluated, status, psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio,
+ *                iterations, crossover_rate, mutation_rate [g][p]; parent [g][p][2];
+ *                best_individual, best_psi_m, mean_psi_m, worst_psi_m, n_infeasible [g];
+ *                gene_cable (index into /scene/cable), gene_group, lower_N, upper_N [k]
+ *                attributes: the members of hf_summary after has_optimize, those of hf_summary.best as best_...
+ *   /ga/best     as /form, and design_N [k] */
+#ifndef HIFDM_STORE_H
+#define HIFDM_STORE_H
+
+#include <hifdm/ga.h>
+#include <hifdm/model.h>
+#include <hifdm/summary.h>
+#include <hifdm/workspace.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct hf_store hf_store;
+
+/* Begin the file of a new run. Whether it can get the name `path` is looked at now: HF_EXISTS when that is taken and
+ * not `force`, HF_IO when it is a folder or its folder is not there or not writable, or when the file cannot be made,
+ * HF_NO_MEMORY. argv (argc may be 0) goes into the provenance; case and scene are written at once, nothing is borrowed.
+ * *store is NULL after a failure. */
+hf_status hf_store_create(const char *path, int force, const hf_case *settings, const hf_scene *scene, int argc,
+                          char *const *argv, hf_store **store, hf_messages *messages);
+
+/* The calls that write return HF_OK, HF_IO or HF_NO_MEMORY with a message. After a failure the store is of no use any
+ * more: later calls write nothing, return the same status, and only hf_store_finish says something once more. */
+
+/* Shape of the workspace in the order of the scene, with the history unless that is NULL. Once per store. */
+hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspace *workspace,
+                        const hf_history *history, hf_messages *messages);
+
+/* Append the generation that hf_ga_tell has just ranked. The first call also writes bounds and gene cables. */
+hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages);
+
+/* Shape of the workspace as that of the best individual, whose genes are design_N [model->n_gene]. Once per store. */
+hf_status hf_store_best(hf_store *store, const hf_model *model, const hf_workspace *workspace, const double *design_N,
+                        hf_messages *messages);
+
+/* Write the summary, close, and give the file its name. Frees the store in any case; after a failure nothing is left
+ * at `path` that was not there before. HF_EXISTS, HF_IO: when the file is whole but cannot get its name, it stays under
+ * its temporary one, which the message tells. */
+hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
+
+/* Throw the unfinished file away and free the store. store may be NULL. */
+void hf_store_abandon(hf_store *store);
+
+/* One stored shape, in the order of the scene. */
+typedef struct {
+    double *position_m;                       /* [n_node][3] */
+    double *length_m, *tension_N, *q_N_per_m; /* [n_cable] */
+    unsigned char *law;                       /* [n_cable] hf_law in force */
+    void *block;
+} hf_shape;
+
+/* Reading: HF_IO with one message when the file is not there, not ours, or damaged; HF_NO_MEMORY. The output is all
+ * zero after a failure. */
+
+/* Every member as it was given to hf_store_finish, bit by bit; those after has_optimize are 0 when that is 0. */
+hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messages *messages);
+
+/* The scene without its line numbers. Free it with hf_scene_free in any case. */
+hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages);
+
+/* of_best: the best individual's shape (HF_IO when the run had none), else the form-finding's. Its counts are those of
+ * the scene in the same file. Free it with hf_shape_free in any case. */
+hf_status hf_store_read_shape(const char *path, int of_best, hf_shape *shape, hf_messages *messages);
+void hf_shape_free(hf_shape *shape);
+
+/* "VERSION (git describe)" of this library. */
+const char *hf_store_version(void);
+
+/* Switch the error printing of HDF5 off; once, before the first call. */
+void hf_store_quiet(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,46 @@
+/* summary - what a finished run says about itself: printed by `run`, stored with the results, printed by `show`. */
+#ifndef HIFDM_SUMMARY_H
+#define HIFDM_SUMMARY_H
+
+#include <hifdm/ga.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define HF_WARNINGS_SIZE 4096
+
+typedef struct {
+    char version[64], title[256], case_path[HF_PATH_SIZE];
+    int threads;
+    uint64_t seed;
+    int n_node, n_free, n_cable, n_gene, half_bandwidth;
+    double pretension_N;
+    char warnings[HF_WARNINGS_SIZE]; /* lines "warning: ..." and "error: ..." */
+
+    hf_form_result form;
+    double form_wall_s;
+
+    int has_optimize;
+    hf_form_result best; /* of the best individual; status HF_NOT_EVALUATED when none was feasible */
+    int best_generation, best_individual;
+    int generations;
+    long evaluations, infeasible;
+    int optimize_stop;                      /* hf_ga_stop */
+    double optimize_wall_s, optimize_cpu_s; /* cpu_s: inside evaluations, over all threads */
+} hf_summary;
+
+/* One JSON object, grouped by stage; a stage that did not run is absent, NaN is null. `messages`: lines as hf_messages
+ * holds them, or NULL; `path`: of the result file, or NULL when none was written. Write errors stay with the stream. */
+void hf_summary_write_json(const hf_summary *summary, hf_status status, const char *messages, const char *path,
+                           FILE *file);
+
+/* Share of the threads' time that was spent inside evaluations, 0..1; NaN when nothing was timed. */
+double hf_summary_utilisation(const hf_summary *summary);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,45 @@
+/* workspace - all mutable scratch of one thread, allocated once from one field list. Contents are meaningless between
+ * calls, except that after hf_form_find they hold the last shape: position, force density, tension, length. */
+#ifndef HIFDM_WORKSPACE_H
+#define HIFDM_WORKSPACE_H
+
+#include <hifdm/model.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* X(type, name, number of items for a model m, unit, meaning). The solver of a net with struts needs a general band
+ * matrix and pivots; other nets have none. */
+#define HF_WORKSPACE_FIELDS(X)                                                                                         \
+    X(double, position_m, 3 * (size_t)m->n_node, "m", "[3][n_node] by row, supports included")                         \
+    X(double, band, (size_t)m->n_band + 1, "N/m", "lower band of D, then its Cholesky factor; one spare place")        \
+    X(double, q_N_per_m, m->n_cable, "N/m", "[n_cable] force densities")                                               \
+    X(double, length_m, m->n_cable, "m", "[n_cable] lengths of the last shape")                                        \
+    X(double, tension_N, m->n_cable, "N", "[n_cable] tensions q l of the last shape")                                  \
+    X(double, target, m->n_cable, "by law", "[n_cable] T*, L* or q")                                                   \
+    X(unsigned char, law, m->n_cable, "", "[n_cable] hf_law in force")                                                 \
+    X(double, force_N, 3 * (size_t)m->n_node, "N", "[3][n_node] nodal forces")                                         \
+    X(double, general_band, m->has_strut ? (size_t)m->n_free *(3 * (size_t)m->half_bandwidth + 1) : 0, "N/m",          \
+      "struts")                                                                                                        \
+    X(int, pivot, m->has_strut ? (size_t)m->n_free : 0, "", "struts")
+
+typedef struct {
+#define HF_WORKSPACE_MEMBER(type, name, count, unit, meaning) type *name;
+    HF_WORKSPACE_FIELDS(HF_WORKSPACE_MEMBER)
+#undef HF_WORKSPACE_MEMBER
+    void *block;
+} hf_workspace;
+
+/* HF_OK or HF_NO_MEMORY. Free in any case. */
+hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace);
+size_t hf_workspace_bytes(const hf_model *model);
+void hf_workspace_free(hf_workspace *workspace);
+
+/* Fill every floating-point field with NaN and every other with 0xff: a call that reads stale contents then shows. */
+void hf_workspace_poison(const hf_model *model, hf_workspace *workspace);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

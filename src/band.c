@@ -1,0 +1,72 @@
+#include "band.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* LAPACK (Fortran interface; the hidden string lengths of one-character arguments are never read) */
+void dpbtrf_(const char *uplo, const int *n, const int *kd, double *ab, const int *ldab, int *info);
+void dpbtrs_(const char *uplo, const int *n, const int *kd, const int *nrhs, const double *ab, const int *ldab,
+             double *b, const int *ldb, int *info);
+void dgbtrf_(const int *m, const int *n, const int *kl, const int *ku, double *ab, const int *ldab, int *ipiv,
+             int *info);
+void dgbtrs_(const char *trans, const int *n, const int *kl, const int *ku, const int *nrhs, const double *ab,
+             const int *ldab, const int *ipiv, double *b, const int *ldb, int *info);
+
+/* only OpenBLAS has these; another library leaves them at NULL */
+#pragma weak openblas_set_num_threads
+#pragma weak openblas_get_config
+#pragma weak openblas_get_corename
+void openblas_set_num_threads(int n);
+char *openblas_get_config(void);
+char *openblas_get_corename(void);
+
+static const int three = 3;
+
+hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row)
+{
+    int ldab = half_bandwidth + 1, info = 0;
+    *bad_row = -1;
+    dpbtrf_("L", &n, &half_bandwidth, band, &ldab, &info);
+    if (info != 0) {
+        *bad_row = info > 0 ? info - 1 : 0;
+        return HF_SINGULAR;
+    }
+    dpbtrs_("L", &n, &half_bandwidth, &three, band, &ldab, b, &ldb, &info);
+    return HF_OK;
+}
+
+hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band, double *general, int *pivot,
+                                   double *b, int ldb, int *bad_row)
+{
+    int k = half_bandwidth, ldab = 3 * k + 1, info = 0;
+    *bad_row = -1;
+    /* LAPACK's general band: entry (i,j) at general[2k + i - j + j*ldab]; the top k rows are room for pivoting */
+    memset(general, 0, (size_t)n * (size_t)ldab * sizeof *general);
+    for (int j = 0; j < n; j++)
+        for (int d = 0; d <= k && j + d < n; d++) {
+            double value = band[d + j * (k + 1)];
+            general[2 * k + d + j * ldab] = value;
+            general[2 * k - d + (j + d) * ldab] = value;
+        }
+    dgbtrf_(&n, &n, &k, &k, general, &ldab, pivot, &info);
+    if (info != 0) {
+        *bad_row = info > 0 ? info - 1 : 0;
+        return HF_SINGULAR;
+    }
+    dgbtrs_("N", &n, &k, &k, &three, general, &ldab, pivot, b, &ldb, &info);
+    return HF_OK;
+}
+
+void hf_band_single_threaded(void)
+{
+    if (openblas_set_num_threads) openblas_set_num_threads(1);
+}
+
+const char *hf_band_library(void)
+{
+    static char name[256];
+    if (!openblas_get_config) return "reference or unknown";
+    snprintf(name, sizeof name, "%s; core %s", openblas_get_config(),
+             openblas_get_corename ? openblas_get_corename() : "unknown");
+    return name;
+}

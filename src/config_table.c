@@ -1,0 +1,104 @@
+/* The table of config.h: every key of a case file. Nothing else knows a default. */
+#include <hifdm/config.h>
+
+#include <stddef.h>
+
+const char *const hf_method_word[3] = {"hifdm", "iterative_fdm", "fdm"};
+const char *const hf_stop_rule_word[2] = {"residual", "rms_change"};
+const char *const hf_rule_word[3] = {"force_density", "tension", "seeded"};
+
+/* NULL-terminated, in the order of the enums */
+static const char *const method_words[] = {"hifdm", "iterative_fdm", "fdm", NULL};
+static const char *const stop_words[] = {"residual", "rms_change", NULL};
+static const char *const rule_words[] = {"force_density", "tension", "seeded", NULL};
+static const char *const spacing_words[] = {"equal_arc", "equal_projected", NULL};
+static const char *const boundary_words[] = {"outer_edge", "module_edges", NULL};
+static const char *const supports_words[] = {"module_corners", "ribs", "perimeter", NULL};
+
+#define AT(member) offsetof(hf_case, member)
+#define BIG 1e300
+
+const hf_section hf_section_table[] = {
+    {"scene", SIZE_MAX, "The net: exactly one of the two sections below."},
+    {"scene.parabolic_cylinder", AT(has_cylinder), "A quad net over a parabolic cylinder."},
+    {"scene.import", AT(has_import), "Any net from two CSV files."},
+    {"form", SIZE_MAX, "Form-finding. May be left out: the defaults hold."},
+    {"optimize", AT(has_optimize), "Genetic algorithm on the boundary pretensions. Without this section none runs."},
+};
+const int hf_n_section = sizeof hf_section_table / sizeof *hf_section_table;
+
+const hf_field hf_field_table[] = {
+    {"title", HF_FIELD_TEXT, AT(title), 0, sizeof((hf_case *)0)->title, "", "", NULL, "one line for people"},
+
+    {"scene.parabolic_cylinder.aperture_m", HF_FIELD_DOUBLE, AT(cylinder.aperture_m), HF_ABOVE_ZERO, 1e4, NULL, "m",
+     NULL, "aperture along the directrix (x)"},
+    {"scene.parabolic_cylinder.length_m", HF_FIELD_DOUBLE, AT(cylinder.length_m), HF_ABOVE_ZERO, 1e4, NULL, "m", NULL,
+     "length along the generatrix (y)"},
+    {"scene.parabolic_cylinder.focal_length_m", HF_FIELD_DOUBLE, AT(cylinder.focal_length_m), HF_ABOVE_ZERO, 1e9, NULL,
+     "m", NULL, "focal length of z = x^2/(4f)"},
+    {"scene.parabolic_cylinder.modules", HF_FIELD_INT_PAIR, AT(cylinder.modules), 1, 2000, NULL, "", NULL,
+     "modules along the directrix and the generatrix"},
+    {"scene.parabolic_cylinder.cells_per_module", HF_FIELD_INT_PAIR, AT(cylinder.cells_per_module), 1, 2000, NULL, "",
+     NULL, "net cells per module, along the directrix and the generatrix"},
+    {"scene.parabolic_cylinder.spacing", HF_FIELD_WORD, AT(cylinder.spacing), 0, 0, "equal_arc", "", spacing_words,
+     "nodes along the directrix: equal arc length, or equal projected (x) spacing"},
+    {"scene.parabolic_cylinder.boundary", HF_FIELD_WORD, AT(cylinder.boundary), 0, 0, "outer_edge", "", boundary_words,
+     "which cables are boundary cables (law length); the others are inner (law tension)"},
+    {"scene.parabolic_cylinder.scallop", HF_FIELD_DOUBLE, AT(cylinder.scallop), 0, 0.4, "0", "", NULL,
+     "inward sag of a free outer edge between supports, relative to their distance"},
+    {"scene.parabolic_cylinder.supports", HF_FIELD_WORD, AT(cylinder.supports), 0, 0, "module_corners", "",
+     supports_words, "fixed nodes: all module corners, all nodes on ribs (y = module border), or the perimeter"},
+
+    {"scene.import.nodes", HF_FIELD_TEXT, AT(nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
+     "CSV id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]; path relative to the case file"},
+    {"scene.import.cables", HF_FIELD_TEXT, AT(cables_path), 1, HF_PATH_SIZE, NULL, "", NULL,
+     "CSV id,i,j,group,law,value[,EA_N]; path relative to the case file"},
+
+    {"form.method", HF_FIELD_WORD, AT(form.method), 0, 0, "hifdm", "", method_words,
+     "hifdm: every cable obeys its own law (Eqs. 7, 8); iterative_fdm: every cable is held at a tension (Eq. 7); fdm: "
+     "one solve with the starting force densities (Eqs. 5, 6)"},
+    {"form.pretension_N", HF_FIELD_DOUBLE, AT(form.pretension_N), HF_ABOVE_ZERO, 1e9, "10", "N", NULL,
+     "uniform tension Td of the inner cables"},
+    {"form.stop", HF_FIELD_WORD, AT(form.stop), 0, 0, "residual", "", stop_words,
+     "residual: equilibrium and lengths within the tolerances; rms_change: the paper's rule, psi changes by less than "
+     "rms_tolerance_m (stops early, for reproduction)"},
+    {"form.residual_tolerance", HF_FIELD_DOUBLE, AT(form.residual_tolerance), 1e-13, 1, "1e-7", "", NULL,
+     "largest nodal residual, relative to the pretension"},
+    {"form.length_tolerance", HF_FIELD_DOUBLE, AT(form.length_tolerance), 1e-13, 1, "1e-7", "", NULL,
+     "largest |l/L*-1| of a taut cable of law length"},
+    {"form.rms_tolerance_m", HF_FIELD_DOUBLE, AT(form.rms_tolerance_m), HF_ABOVE_ZERO, BIG, "1e-6", "m", NULL,
+     "change of psi between two iterations at which rms_change stops (0.001 mm in the paper)"},
+    {"form.max_iterations", HF_FIELD_INT, AT(form.max_iterations), 1, 10000000, "100000", "", NULL,
+     "bound on the iterations; reached: not converged"},
+    {"form.collapse_ratio", HF_FIELD_DOUBLE, AT(form.collapse_ratio), 1e-12, 0.5, "1e-3", "", NULL,
+     "a cable of law tension shorter than this part of its theoretical length has collapsed"},
+
+    {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", rule_words,
+     "what a design means: boundary held at q = T'/L* (always one answer), held at T', or Eq. 8 started from q = T'/L* "
+     "and stopped by rms_change (the paper's literal reading; its optimum depends on where it stops)"},
+    {"optimize.population", HF_FIELD_INT, AT(optimize.population), 2, 100000, "50", "", NULL, "individuals"},
+    {"optimize.generations", HF_FIELD_INT, AT(optimize.generations), 1, 1000000, "400", "", NULL,
+     "largest number of generations"},
+    {"optimize.range_N", HF_FIELD_DOUBLE, AT(optimize.range_N), HF_ABOVE_ZERO, 1e9, "1", "N", NULL,
+     "|dT| of Eq. 13: how far a boundary pretension may move from its value after form-finding"},
+    {"optimize.min_tension_N", HF_FIELD_DOUBLE, AT(optimize.min_tension_N), HF_ABOVE_ZERO, 1e9, "0.1", "N", NULL,
+     "lower bound on every boundary pretension (Eq. 12: above zero)"},
+    {"optimize.max_tension_N", HF_FIELD_DOUBLE, AT(optimize.max_tension_N), HF_ABOVE_ZERO, BIG, "1e6", "N", NULL,
+     "upper bound on every boundary pretension"},
+    {"optimize.boundary_ratio_cap", HF_FIELD_DOUBLE, AT(optimize.boundary_ratio_cap), 1, BIG, "10", "", NULL,
+     "an individual with a larger boundary tension ratio is infeasible"},
+    {"optimize.seed", HF_FIELD_UINT64, AT(optimize.seed), 0, 18446744073709551615.0, "1", "", NULL,
+     "the same seed gives the same run, whatever the number of threads"},
+    {"optimize.crossover_high", HF_FIELD_DOUBLE, AT(optimize.crossover_high), 0, 1, "0.9", "", NULL,
+     "Pc1 of the adaptive rates (Srinivas & Patnaik 1994)"},
+    {"optimize.crossover_low", HF_FIELD_DOUBLE, AT(optimize.crossover_low), 0, 1, "0.6", "", NULL, "Pc2"},
+    {"optimize.mutation_high", HF_FIELD_DOUBLE, AT(optimize.mutation_high), 0, 1, "0.1", "", NULL, "Pm1"},
+    {"optimize.mutation_low", HF_FIELD_DOUBLE, AT(optimize.mutation_low), 0, 1, "0.001", "", NULL, "Pm2"},
+    {"optimize.elites", HF_FIELD_INT, AT(optimize.elites), 1, 100000, "1", "", NULL,
+     "best individuals that live on unchanged (and are not evaluated again)"},
+    {"optimize.stagnation_tolerance_m", HF_FIELD_DOUBLE, AT(optimize.stagnation_tolerance_m), 0, BIG, "1e-6", "m", NULL,
+     "stop when the best psi gained less than this over the window below"},
+    {"optimize.stagnation_generations", HF_FIELD_INT, AT(optimize.stagnation_generations), 1, 1000000, "50", "", NULL,
+     "length of that window"},
+};
+const int hf_n_field = sizeof hf_field_table / sizeof *hf_field_table;

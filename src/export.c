@@ -1,0 +1,104 @@
+#include "export.h"
+
+#include <hifdm/store.h>
+
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define PATH_SIZE 1200
+
+/* An id as a CSV field: quoted when it holds a comma, a quote, blanks at its ends or a leading '#'. */
+static void write_id(const char *id, FILE *f)
+{
+    size_t n = strlen(id);
+    int plain = !strpbrk(id, ",\"") && id[0] != '#' && id[0] != ' ' && id[0] != '\t' && (n == 0 || id[n - 1] != ' ');
+    if (plain) {
+        fputs(id, f);
+        return;
+    }
+    fputc('"', f);
+    for (; *id; id++) {
+        if (*id == '"') fputc('"', f);
+        fputc(*id, f);
+    }
+    fputc('"', f);
+}
+
+static void write_nodes(const hf_scene *s, const hf_shape *shape, FILE *f)
+{
+    fputs("id,x_m,y_m,z_m,x0_m,y0_m,z0_m,role\n", f);
+    for (int i = 0; i < s->n_node; i++) {
+        const double *p = shape->position_m + 3 * (size_t)i, *p0 = s->position_m + 3 * (size_t)i;
+        write_id(s->node_id[i], f);
+        fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%s\n", p[0], p[1], p[2], p0[0], p0[1], p0[2],
+                hf_role_word[s->role[i]]);
+    }
+}
+
+static void write_cables(const hf_scene *s, const hf_shape *shape, FILE *f)
+{
+    fputs("id,i,j,group,law,length_m,tension_N,q_N_per_m\n", f);
+    for (int e = 0; e < s->n_cable; e++) {
+        write_id(s->cable_id[e], f);
+        fputc(',', f);
+        write_id(s->node_id[s->end[2 * e]], f);
+        fputc(',', f);
+        write_id(s->node_id[s->end[2 * e + 1]], f);
+        fprintf(f, ",%s,%s,%.17g,%.17g,%.17g\n", hf_group_word[s->group[e]], hf_law_word[shape->law[e]],
+                shape->length_m[e], shape->tension_N[e], shape->q_N_per_m[e]);
+    }
+}
+
+/* Written under a temporary name and renamed, so that no half-written file is ever seen. */
+static hf_status write_file(const char *folder, const char *name, int force, const hf_scene *scene,
+                            const hf_shape *shape, void (*write)(const hf_scene *, const hf_shape *, FILE *),
+                            hf_messages *messages)
+{
+    char path[PATH_SIZE], temporary[PATH_SIZE + 8];
+    if (snprintf(path, sizeof path, "%s/%s", folder, name) >= PATH_SIZE)
+        return hf_error(messages, HF_IO, "%s: the path is too long", folder);
+    snprintf(temporary, sizeof temporary, "%s.tmp", path);
+    if (!force && access(path, F_OK) == 0)
+        return hf_error(messages, HF_EXISTS, "%s exists; use --force to replace it", path);
+    FILE *f = fopen(temporary, "w");
+    if (!f) return hf_error(messages, HF_IO, "%s: cannot write: %s", temporary, strerror(errno));
+    write(scene, shape, f);
+    int failed = ferror(f) != 0;
+    failed |= fclose(f) != 0;
+    if (!failed && rename(temporary, path) == 0) return HF_OK;
+    hf_status status = hf_error(messages, HF_IO, "%s: cannot write: %s", path, strerror(errno));
+    unlink(temporary);
+    return status;
+}
+
+static hf_status export_shape(const hf_options *o, hf_scene *scene, hf_shape *shape, char *said, size_t size,
+                              hf_messages *messages)
+{
+    hf_summary summary;
+    HF_TRY(hf_store_read_summary(o->file, &summary, messages));
+    int has_best = summary.has_optimize && summary.best.status == HF_OK;
+    int of_best = o->stage ? !strcmp(o->stage, "optimize") : has_best;
+    if (of_best && !has_best)
+        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no optimised shape; use --stage form", o->file);
+    HF_TRY(hf_store_read_scene(o->file, scene, messages));
+    HF_TRY(hf_store_read_shape(o->file, of_best, shape, messages));
+    if (mkdir(o->csv, 0777) != 0 && errno != EEXIST)
+        return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", o->csv, strerror(errno));
+    HF_TRY(write_file(o->csv, "nodes.csv", o->force, scene, shape, write_nodes, messages));
+    HF_TRY(write_file(o->csv, "cables.csv", o->force, scene, shape, write_cables, messages));
+    snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s/nodes.csv and %s/cables.csv", o->file,
+             scene->n_node, scene->n_cable, of_best ? "optimised" : "form-finding", o->csv, o->csv);
+    return HF_OK;
+}
+
+hf_status hf_export(const hf_options *options, char *said, size_t size, hf_messages *messages)
+{
+    hf_scene scene = {0};
+    hf_shape shape = {0};
+    hf_status status = export_shape(options, &scene, &shape, said, size, messages);
+    hf_shape_free(&shape);
+    hf_scene_free(&scene);
+    return status;
+}

@@ -1,0 +1,344 @@
+/* Contents: one linear solve (Eqs. 1-6) - measuring cables - nodal residual - straight chains - updates (Eqs. 7, 8) -
+ * stopping - the iteration */
+#include <hifdm/formfind.h>
+
+#include "band.h"
+#include <hifdm/metrics.h>
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+/* Straight chains are looked at after this many iterations, and again each time that number has doubled. */
+#define FIRST_CHAIN_CHECK 64
+#define CHAIN_LOAD_SETTLED 0.01 /* relative change of the load between two looks that counts as settled */
+#define CHAIN_LOAD_NONE 1e-6    /* lateral load below this part of the reference tension is none */
+
+const char *hf_stop_reason_word(int reason)
+{
+    switch (reason) {
+#define WORD(name, value, word)                                                                                        \
+    case HF_STOPPED_##name:                                                                                            \
+        return word;
+        HF_STOP_REASON_LIST(WORD)
+#undef WORD
+    }
+    return "unknown";
+}
+
+void hf_form_prepare(const hf_model *model, hf_workspace *workspace)
+{
+    size_t n = (size_t)model->n_cable;
+    memcpy(workspace->law, model->law, n);
+    memcpy(workspace->target, model->target, n * sizeof(double));
+    memcpy(workspace->q_N_per_m, model->start_q_N_per_m, n * sizeof(double));
+}
+
+/* ---- one linear solve: D x_f = P - C_f' Q C_g x_g for x, y, z (Eqs. 2, 5) ---- */
+
+static void assemble_matrix(const hf_model *m, hf_workspace *w)
+{
+    memset(w->band, 0, ((size_t)m->n_band + 1) * sizeof(double));
+    for (int e = 0; e < m->n_cable; e++) {
+        double q = w->q_N_per_m[e];
+        w->band[m->diagonal_a[e]] += q; /* places of supports lead to the spare place behind the band */
+        w->band[m->diagonal_b[e]] += q;
+        w->band[m->off_diagonal[e]] -= q;
+    }
+}
+
+/* Right-hand sides into the free rows of position_m; the support rows keep the support positions. */
+static void assemble_loads(const hf_model *m, hf_workspace *w)
+{
+    for (int c = 0; c < 3; c++) {
+        double *x = w->position_m + (size_t)c * (size_t)m->n_node;
+        if (m->load_N)
+            memcpy(x, m->load_N + (size_t)c * (size_t)m->n_node, (size_t)m->n_free * sizeof(double));
+        else
+            memset(x, 0, (size_t)m->n_free * sizeof(double));
+    }
+    double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        int inside = a < b ? a : b, support = a < b ? b : a;
+        if (support < m->n_free || inside >= m->n_free) continue;
+        double q = w->q_N_per_m[e];
+        x[inside] += q * x[support];
+        y[inside] += q * y[support];
+        z[inside] += q * z[support];
+    }
+}
+
+static hf_status solve(const hf_model *m, hf_workspace *w, int *bad_row)
+{
+    assemble_matrix(m, w);
+    assemble_loads(m, w);
+    if (m->has_strut)
+        return hf_band_solve_indefinite(m->n_free, m->half_bandwidth, w->band, w->general_band, w->pivot, w->position_m,
+                                        m->n_node, bad_row);
+    return hf_band_solve(m->n_free, m->half_bandwidth, w->band, w->position_m, m->n_node, bad_row);
+}
+
+/* ---- measuring cables ---- */
+
+/* Lengths, tensions (Eqs. 4, 6), errors against the laws. length_gap is for stopping: beside the length error of taut
+ * cables it counts slack ones that are too long, and the pull that is left in those that are too short. */
+static void measure_cables(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r,
+                           double *length_gap)
+{
+    const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
+    double shortest = INFINITY;
+    r->tension_error = r->length_error = *length_gap = 0;
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        double dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a];
+        double length = sqrt(dx * dx + dy * dy + dz * dz), tension = w->q_N_per_m[e] * length;
+        double part = length / m->length_m[e];
+        w->length_m[e] = length;
+        w->tension_N[e] = tension;
+        if (!isfinite(tension)) {
+            r->status = HF_NOT_FINITE;
+            r->culprit = e;
+            return;
+        }
+        if (part < shortest) shortest = part;
+        if (w->law[e] == HF_LAW_TENSION) {
+            if (part < s->collapse_ratio) {
+                r->status = HF_COLLAPSED;
+                r->culprit = e;
+                return;
+            }
+            r->tension_error = fmax(r->tension_error, fabs(tension / w->target[e] - 1));
+        } else if (w->law[e] == HF_LAW_LENGTH) {
+            double strain = length / w->target[e] - 1, pull = fmin(tension / m->reference_N, 1);
+            double error = fabs(strain);
+            int is_taut = pull >= HF_SLACK_RATIO;
+            if (is_taut) r->length_error = fmax(r->length_error, error);
+            *length_gap = fmax(*length_gap, strain > 0 || is_taut ? error : error * pull);
+        }
+    }
+    r->shortest_length_ratio = shortest;
+}
+
+/* ---- nodal residual ---- */
+
+/* Force of every cable on its nodes, at the tension of its law (T* of law tension, q l of the others), plus loads.
+ * With `without_chains`, the straight chains that are under law length are left out. */
+static void nodal_forces(const hf_model *m, hf_workspace *w, int without_chains)
+{
+    const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
+    double *fx = w->force_N, *fy = fx + m->n_node, *fz = fy + m->n_node;
+    if (m->load_N)
+        memcpy(fx, m->load_N, 3 * (size_t)m->n_node * sizeof(double));
+    else
+        memset(fx, 0, 3 * (size_t)m->n_node * sizeof(double));
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        if (without_chains && w->law[e] == HF_LAW_LENGTH && (m->chain_of_row[a] >= 0 || m->chain_of_row[b] >= 0))
+            continue;
+        double q = w->law[e] == HF_LAW_TENSION ? w->target[e] / w->length_m[e] : w->q_N_per_m[e];
+        double dx = q * (x[b] - x[a]), dy = q * (y[b] - y[a]), dz = q * (z[b] - z[a]);
+        fx[a] += dx, fy[a] += dy, fz[a] += dz;
+        fx[b] -= dx, fy[b] -= dy, fz[b] -= dz;
+    }
+}
+
+static double largest_residual_N(const hf_model *m, hf_workspace *w)
+{
+    double largest = 0;
+    const double *fx = w->force_N, *fy = fx + m->n_node, *fz = fy + m->n_node;
+    nodal_forces(m, w, 0);
+    for (int i = 0; i < m->n_free; i++)
+        largest = fmax(largest, fx[i] * fx[i] + fy[i] * fy[i] + fz[i] * fz[i]);
+    return sqrt(largest);
+}
+
+/* ---- straight chains: a chain that cannot deflect cannot carry a lateral load at any finite tension ---- */
+
+/* Largest force across chain i, from the nodal forces without the chains, N. */
+static double lateral_load_N(const hf_model *m, const hf_workspace *w, int i_chain)
+{
+    const double *x = w->position_m, *f = w->force_N;
+    int first = m->chain_cable[m->chain_start[i_chain]], last = m->chain_cable[m->chain_start[i_chain + 1] - 1];
+    const int *ends = m->end_row + 2 * first;
+    int from = ends[0] >= m->n_free ? ends[0] : ends[1], row = from == ends[0] ? ends[1] : ends[0];
+    ends = m->end_row + 2 * last;
+    int to = ends[0] >= m->n_free ? ends[0] : ends[1];
+    double u[3], span = 0, largest = 0;
+    for (int c = 0; c < 3; c++) {
+        u[c] = x[c * m->n_node + to] - x[c * m->n_node + from];
+        span += u[c] * u[c];
+    }
+    for (int k = m->chain_start[i_chain]; k + 1 < m->chain_start[i_chain + 1]; k++) {
+        double along = 0, square = 0;
+        for (int c = 0; c < 3; c++)
+            along += f[c * m->n_node + row] * u[c] / span;
+        for (int c = 0; c < 3; c++) {
+            double across = f[c * m->n_node + row] - along * u[c];
+            square += across * across;
+        }
+        largest = fmax(largest, sqrt(square));
+        ends = m->end_row + 2 * m->chain_cable[k + 1];
+        row = ends[0] == row ? ends[1] : ends[0];
+    }
+    return largest;
+}
+
+static int chain_is_length_controlled(const hf_model *m, const hf_workspace *w, int i_chain)
+{
+    return w->law[m->chain_cable[m->chain_start[i_chain]]] == HF_LAW_LENGTH;
+}
+
+int hf_form_chain_is_loaded(const hf_model *m, hf_workspace *w, int i_chain)
+{
+    if (!chain_is_length_controlled(m, w, i_chain)) return 0;
+    nodal_forces(m, w, 1);
+    return lateral_load_N(m, w, i_chain) > CHAIN_LOAD_NONE * m->reference_N;
+}
+
+/* Sets n_loaded_chain and returns the largest lateral load on a straight chain; *worst is that chain or -1. */
+static double look_at_chains(const hf_model *m, hf_workspace *w, hf_form_result *r, int *worst)
+{
+    double largest = 0;
+    r->n_loaded_chain = 0;
+    *worst = -1;
+    if (m->n_chain) nodal_forces(m, w, 1);
+    for (int i = 0; i < m->n_chain; i++) {
+        if (!chain_is_length_controlled(m, w, i)) continue;
+        double load = lateral_load_N(m, w, i);
+        if (!(load > CHAIN_LOAD_NONE * m->reference_N)) continue;
+        r->n_loaded_chain++;
+        if (load > largest) {
+            largest = load;
+            *worst = i;
+        }
+    }
+    return largest;
+}
+
+/* ---- updates ---- */
+
+static int any_law_iterates(const hf_model *m, const hf_workspace *w)
+{
+    for (int e = 0; e < m->n_cable; e++)
+        if (w->law[e] != HF_LAW_FORCE_DENSITY) return 1;
+    return 0;
+}
+
+/* Eq. 7 scales q by the wanted over the present tension; with T = q l that is the wanted tension over l. */
+static void update_force_densities(const hf_model *m, hf_workspace *w)
+{
+    for (int e = 0; e < m->n_cable; e++) {
+        if (w->law[e] == HF_LAW_TENSION)
+            w->q_N_per_m[e] = w->target[e] / w->length_m[e]; // Eq. 7
+        else if (w->law[e] == HF_LAW_LENGTH)
+            w->q_N_per_m[e] *= w->length_m[e] / w->target[e]; // Eq. 8
+    }
+}
+
+/* ---- stopping ---- */
+
+typedef struct {
+    int stop, iterates;
+    double psi_before_m;      /* NaN at the first iteration */
+    double chain_load_before; /* NaN before the first look */
+    int next_chain_look;
+} progress;
+
+/* One more shape has been measured: decide whether it is the last. Sets status and stop reason. */
+static int is_last(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r, progress *p,
+                   double length_gap)
+{
+    if (!p->iterates) {
+        r->stop_reason = HF_STOPPED_DIRECT;
+        if (r->residual_N > s->residual_tolerance * m->reference_N) r->status = HF_NOT_CONVERGED;
+        return 1;
+    }
+    if (p->stop == HF_STOP_RMS_CHANGE) {
+        if (fabs(r->psi_m - p->psi_before_m) < s->rms_tolerance_m) r->stop_reason = HF_STOPPED_RMS_CHANGE;
+        p->psi_before_m = r->psi_m;
+    } else {
+        int worst, looks = m->n_chain && r->iterations == p->next_chain_look;
+        if (r->residual_N <= s->residual_tolerance * m->reference_N && length_gap <= s->length_tolerance)
+            r->stop_reason = HF_STOPPED_RESIDUAL;
+        if (looks && r->stop_reason == HF_STOPPED_NONE) {
+            double load = look_at_chains(m, w, r, &worst);
+            p->next_chain_look *= 2;
+            if (worst >= 0 && fabs(load - p->chain_load_before) < CHAIN_LOAD_SETTLED * load) return 1;
+            p->chain_load_before = load;
+        }
+    }
+    if (r->stop_reason != HF_STOPPED_NONE) return 1;
+    if (r->iterations < s->max_iterations) return 0;
+    r->stop_reason = HF_STOPPED_MAX_ITERATIONS;
+    r->status = HF_NOT_CONVERGED;
+    return 1;
+}
+
+/* Under `residual` the answer must be an equilibrium: with a loaded straight chain there is none, however small the
+ * numbers look. Under the paper's rule the result stands and n_loaded_chain warns. */
+static void judge_chains(const hf_model *m, hf_workspace *w, const progress *p, hf_form_result *r)
+{
+    int worst;
+    look_at_chains(m, w, r, &worst);
+    if (worst < 0 || p->stop == HF_STOP_RMS_CHANGE) return;
+    r->status = HF_STRAIGHT_CHAIN;
+    r->culprit = worst;
+}
+
+static void record(hf_history *h, const hf_model *m, const hf_workspace *w, const hf_form_result *r)
+{
+    if (h->n == h->capacity) return;
+    h->psi_m[h->n] = r->psi_m;
+    h->residual_N[h->n] = r->residual_N;
+    h->inner_tension_ratio[h->n] = hf_metrics_tension_ratio(m, w, HF_GROUP_INNER);
+    h->boundary_tension_ratio[h->n] = hf_metrics_tension_ratio(m, w, HF_GROUP_BOUNDARY);
+    h->length_error[h->n++] = r->length_error;
+}
+
+static hf_status finish(const hf_model *m, hf_workspace *w, hf_form_result *r)
+{
+    if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) {
+        r->stop_reason = HF_STOPPED_ILL_POSED;
+        r->psi_m = r->residual_N = r->tension_error = r->length_error = (double)NAN;
+        r->inner_tension_ratio = r->boundary_tension_ratio = r->shortest_length_ratio = (double)NAN;
+        r->n_slack = 0;
+        return r->status;
+    }
+    r->psi_m = hf_metrics_psi_m(m, w);
+    r->inner_tension_ratio = hf_metrics_tension_ratio(m, w, HF_GROUP_INNER);
+    r->boundary_tension_ratio = hf_metrics_tension_ratio(m, w, HF_GROUP_BOUNDARY);
+    r->n_slack = hf_metrics_slack_count(m, w);
+    return r->status;
+}
+
+/* ---- the iteration ---- */
+
+hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, hf_workspace *w, hf_history *history,
+                       hf_form_result *r)
+{
+    assert(m->n_free > 0 && s->max_iterations > 0);
+    progress p = {stop, any_law_iterates(m, w), (double)NAN, (double)NAN, FIRST_CHAIN_CHECK};
+    int need_psi = history || stop == HF_STOP_RMS_CHANGE,
+        need_residual = history || stop == HF_STOP_RESIDUAL || !p.iterates;
+    double length_gap;
+    *r = (hf_form_result){.status = HF_OK, .culprit = -1};
+    memcpy(w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double)); /* the support rows count */
+    for (;;) {
+        r->iterations++;
+        r->status = solve(m, w, &r->culprit);
+        if (r->status != HF_OK) break;
+        measure_cables(m, s, w, r, &length_gap);
+        if (r->status != HF_OK) break;
+        if (need_psi) r->psi_m = hf_metrics_psi_m(m, w);
+        if (need_residual) r->residual_N = largest_residual_N(m, w);
+        if (history) record(history, m, w, r);
+        if (is_last(m, s, w, r, &p, length_gap)) break;
+        update_force_densities(m, w);
+    }
+    if (r->status == HF_OK || r->status == HF_NOT_CONVERGED) {
+        if (!need_residual) r->residual_N = largest_residual_N(m, w);
+        judge_chains(m, w, &p, r);
+    }
+    return finish(m, w, r);
+}

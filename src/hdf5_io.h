@@ -1,0 +1,205 @@
+/* hdf5_io - what writing and reading of result files share: calls of HDF5 that stop at the first failure and say where
+ * it was, the types of stored values, and the tables of what is stored.
+ *
+ * Every call takes an hf_hdf5 and does nothing once its status is not HF_OK, so that a sequence of calls needs no check
+ * in between: look at io->status at the end. Ids are negative then, and closing them is harmless. */
+#ifndef HIFDM_HDF5_IO_H
+#define HIFDM_HDF5_IO_H
+
+#include <hifdm/status.h>
+#include <stddef.h>
+
+/* HDF5 1.12 and newer keep the calls of 1.10 under this. */
+#define H5_USE_110_API
+#include <hdf5.h>
+
+typedef struct {
+    const char *path; /* the file as messages call it; borrowed */
+    hf_messages *messages;
+    hf_status status; /* HF_OK, or of the first failure, which is in the messages */
+    hid_t file;
+} hf_hdf5;
+
+/* Types of stored values, with the C type they have in arrays and attributes here. Enumerations are one byte in the
+ * file and there carry their words, which h5dump and h5py show. */
+typedef enum {
+    HF_KIND_REAL,   /* double */
+    HF_KIND_INT,    /* int */
+    HF_KIND_LONG,   /* long */
+    HF_KIND_UINT64, /* uint64_t */
+    HF_KIND_TEXT,   /* const char *, NUL-terminated UTF-8 */
+    HF_KIND_FLAG,   /* this and all further ones: signed char; 0 or 1, a bool in h5py */
+    HF_KIND_ROLE,
+    HF_KIND_GROUP,
+    HF_KIND_LAW,
+    HF_KIND_STATUS,
+    HF_KIND_STOP_REASON,
+    HF_KIND_GA_STOP
+} hf_hdf5_kind;
+
+size_t hf_hdf5_kind_bytes(hf_hdf5_kind kind); /* of one value in memory */
+
+/* A data set: what it is called, how large it is, what is in it. */
+typedef struct {
+    const char *name; /* below the group it is given with, perhaps with '/' */
+    hf_hdf5_kind kind;
+    int rank; /* 0 = a scalar */
+    hsize_t dims[3];
+    const char *units, *description; /* kept as attributes; not needed for reading */
+} hf_hdf5_array;
+
+/* ---- Failures ----
+ * Record the failure of the HDF5 call just made on `name` (may be NULL) below `place` (an id, or negative): HF_IO and
+ * the message "path: cannot <verb> /place/name: <HDF5's or the system's reason>". Close nothing before. */
+void hf_hdf5_fail(hf_hdf5 *io, const char *verb, hid_t place, const char *name);
+
+/* Record that what is stored is not what this program writes: HF_IO, "path: is damaged: /place/name <what>". */
+void hf_hdf5_damaged(hf_hdf5 *io, hid_t place, const char *name, const char *what);
+
+/* ---- Files and groups ---- */
+
+/* Set io->file. A new file must not exist; its name may differ from io->path. Locks are taken where the file system has
+ * them, and their absence is no failure. */
+void hf_hdf5_create_file(hf_hdf5 *io, const char *name);
+void hf_hdf5_open_file(hf_hdf5 *io);  /* io->path, for reading */
+void hf_hdf5_close_file(hf_hdf5 *io); /* nothing but the file may be open; closes after a failure, too */
+
+void hf_hdf5_close(hf_hdf5 *io, hid_t id); /* of any kind, or negative; closes after a failure, too */
+
+hid_t hf_hdf5_make_group(hf_hdf5 *io, const char *path); /* or open it when it is there */
+hid_t hf_hdf5_open_group(hf_hdf5 *io, const char *path);
+int hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name); /* is there a link of this name? */
+
+/* ---- Data sets ---- */
+
+/* New data set with its attributes. chunk: NULL, or [rank] for one that grows along its first dimension. */
+hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, const hsize_t *chunk);
+void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, const void *values);
+
+/* Grow the data set by one along its first dimension and write there; array->dims[0] = 1. */
+void hf_hdf5_append(hf_hdf5 *io, hid_t data_set, const hf_hdf5_array *array, hsize_t row, const void *values);
+
+/* Read exactly array->dims values, refusing other dimensions, other types and foreign values of enumerations.
+ * Strings must be given back. */
+void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, void *values);
+void hf_hdf5_free_texts(hf_hdf5 *io, char **texts, hsize_t n);
+
+/* First dimension of a data set, from 1 to `max`. 0 after a failure. */
+int hf_hdf5_length(hf_hdf5 *io, hid_t group, const char *name, int max);
+
+/* ---- Attributes of the object `name` below `place` ("." is `place` itself) ----
+ * n values, 0 = a scalar. Text: values is a const char *const *. */
+void hf_hdf5_put(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hf_hdf5_kind kind, hsize_t n,
+                 const void *values);
+void hf_hdf5_put_text(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text);
+
+/* One value. A text is copied into the `size` bytes at `value`, refused when it does not fit. */
+void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hf_hdf5_kind kind, void *value,
+                 size_t size);
+
+/* ---- Tables: the same rows write and read, so that the two cannot diverge ---- */
+
+/* A member of a struct <-> an attribute. Enumerations are int or enum in the struct, texts are char[size]. */
+typedef struct {
+    const char *object, *name;
+    hf_hdf5_kind kind;
+    size_t offset, size;
+} hf_hdf5_member;
+
+void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const void *owner);
+void hf_hdf5_get_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, void *owner);
+
+/* A pointer in a struct <-> a data set [n_node or n_cable], or [...][columns] when columns > 1. Rows whose pointer is
+ * NULL are left out. */
+typedef struct {
+    const char *name;
+    hf_hdf5_kind kind;
+    int per_cable, columns;
+    const char *units, *description;
+    size_t offset;
+} hf_hdf5_column;
+
+void hf_hdf5_write_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table, int n, int n_node, int n_cable,
+                           const void *owner);
+void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table, int n, int n_node, int n_cable,
+                          void *owner);
+
+#define HF_HDF5_COUNT(table) ((int)(sizeof(table) / sizeof((table)[0])))
+
+/* ---- What is stored of an hf_scene (below /scene), an hf_shape (/form, /ga/best) and an hf_summary ---- */
+
+#define HF_PROGRAM "hifdm"  /* what says that a file is one of ours */
+#define HF_FORMAT_VERSION 1 /* of the files; a change that old programs would misread raises it */
+
+/* X(struct, name, member, kind, per_cable, columns, units, description) */
+#define HF_SCENE_COLUMNS(X)                                                                                            \
+    X(hf_scene, "node/position_m", position_m, REAL, 0, 3, "m", "theoretical position; of supports also the real one") \
+    X(hf_scene, "node/load_N", load_N, REAL, 0, 3, "N", "load")                                                        \
+    X(hf_scene, "node/role", role, ROLE, 0, 1, "", "support, inner (counted by psi) or edge")                          \
+    X(hf_scene, "cable/end", end, INT, 1, 2, "", "the two nodes, as indices from 0 into /scene/node")                  \
+    X(hf_scene, "cable/group", group, GROUP, 1, 1, "", "inner or boundary")                                            \
+    X(hf_scene, "cable/law", law, LAW, 1, 1, "", "what the scene asks of the cable")                                   \
+    X(hf_scene, "cable/target", target, REAL, 1, 1, "N, m or N/m",                                                     \
+      "tension, length or force density, by law; "                                                                     \
+      "NaN = the pretension of the case")                                                                              \
+    X(hf_scene, "cable/EA_N", EA_N, REAL, 1, 1, "N", "axial stiffness, NaN where not given")
+
+#define HF_SHAPE_COLUMNS(X)                                                                                            \
+    X(hf_shape, "position_m", position_m, REAL, 0, 3, "m", "position of each node of /scene/node")                     \
+    X(hf_shape, "length_m", length_m, REAL, 1, 1, "m", "length of each cable of /scene/cable")                         \
+    X(hf_shape, "tension_N", tension_N, REAL, 1, 1, "N", "tension, force density times length")                        \
+    X(hf_shape, "q_N_per_m", q_N_per_m, REAL, 1, 1, "N/m", "force density")                                            \
+    X(hf_shape, "law", law, LAW, 1, 1, "", "law in force, under the case's method or rule")
+
+#define HF_HDF5_COLUMN(type, name, member, kind, per_cable, columns, units, description)                               \
+    {name, HF_KIND_##kind, per_cable, columns, units, description, offsetof(type, member)},
+
+/* X(struct, object, attribute, member, kind) */
+#define HF_RESULT_MEMBERS(X, object, prefix, result)                                                                   \
+    X(hf_summary, object, prefix "status", result.status, STATUS)                                                      \
+    X(hf_summary, object, prefix "stop_reason", result.stop_reason, STOP_REASON)                                       \
+    X(hf_summary, object, prefix "iterations", result.iterations, INT)                                                 \
+    X(hf_summary, object, prefix "culprit", result.culprit, INT)                                                       \
+    X(hf_summary, object, prefix "psi_m", result.psi_m, REAL)                                                          \
+    X(hf_summary, object, prefix "residual_N", result.residual_N, REAL)                                                \
+    X(hf_summary, object, prefix "tension_error", result.tension_error, REAL)                                          \
+    X(hf_summary, object, prefix "length_error", result.length_error, REAL)                                            \
+    X(hf_summary, object, prefix "inner_tension_ratio", result.inner_tension_ratio, REAL)                              \
+    X(hf_summary, object, prefix "boundary_tension_ratio", result.boundary_tension_ratio, REAL)                        \
+    X(hf_summary, object, prefix "shortest_length_ratio", result.shortest_length_ratio, REAL)                          \
+    X(hf_summary, object, prefix "n_slack", result.n_slack, INT)                                                       \
+    X(hf_summary, object, prefix "n_loaded_chain", result.n_loaded_chain, INT)
+
+#define HF_SUMMARY_FORM_MEMBERS(X)                                                                                     \
+    X(hf_summary, "/", "title", title, TEXT)                                                                           \
+    X(hf_summary, "/", "threads", threads, INT)                                                                        \
+    X(hf_summary, "/", "seed", seed, UINT64)                                                                           \
+    X(hf_summary, "/", "warnings", warnings, TEXT)                                                                     \
+    X(hf_summary, "/", "has_optimize", has_optimize, FLAG)                                                             \
+    X(hf_summary, "/case", "case_path", case_path, TEXT)                                                               \
+    X(hf_summary, "/form", "version", version, TEXT)                                                                   \
+    X(hf_summary, "/form", "n_node", n_node, INT)                                                                      \
+    X(hf_summary, "/form", "n_free", n_free, INT)                                                                      \
+    X(hf_summary, "/form", "n_cable", n_cable, INT)                                                                    \
+    X(hf_summary, "/form", "n_gene", n_gene, INT)                                                                      \
+    X(hf_summary, "/form", "half_bandwidth", half_bandwidth, INT)                                                      \
+    X(hf_summary, "/form", "pretension_N", pretension_N, REAL)                                                         \
+    X(hf_summary, "/form", "form_wall_s", form_wall_s, REAL)                                                           \
+    HF_RESULT_MEMBERS(X, "/form", "", form)
+
+/* only when has_optimize */
+#define HF_SUMMARY_GA_MEMBERS(X)                                                                                       \
+    X(hf_summary, "/ga", "best_generation", best_generation, INT)                                                      \
+    X(hf_summary, "/ga", "best_individual", best_individual, INT)                                                      \
+    X(hf_summary, "/ga", "generations", generations, INT)                                                              \
+    X(hf_summary, "/ga", "evaluations", evaluations, LONG)                                                             \
+    X(hf_summary, "/ga", "infeasible", infeasible, LONG)                                                               \
+    X(hf_summary, "/ga", "optimize_stop", optimize_stop, GA_STOP)                                                      \
+    X(hf_summary, "/ga", "optimize_wall_s", optimize_wall_s, REAL)                                                     \
+    X(hf_summary, "/ga", "optimize_cpu_s", optimize_cpu_s, REAL)                                                       \
+    HF_RESULT_MEMBERS(X, "/ga", "best_", best)
+
+#define HF_HDF5_MEMBER(type, object, name, member, kind)                                                               \
+    {object, name, HF_KIND_##kind, offsetof(type, member), sizeof(((type *)0)->member)},
+
+#endif

@@ -1,0 +1,82 @@
+/* main - from the command line to an exit status; with print, plan and run the only printing part of the program. */
+#include "plan.h"
+#include "export.h"
+#include "options.h"
+#include "print.h"
+#include "run.h"
+#include <hifdm/store.h>
+
+#include <gsl/gsl_errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+static hf_status command_run(const hf_options *o, int argc, char **argv, hf_messages *messages)
+{
+    hf_summary summary;
+    char output[HF_OUTPUT_SIZE];
+    hf_status status = hf_run(o, argc, argv, &summary, output, messages);
+    const char *path = *output ? output : NULL;
+    if (o->json)
+        hf_summary_write_json(&summary, status, messages->text, path, stdout);
+    else if (path && !o->quiet)
+        hf_print_summary(&summary, path, stdout);
+    return status;
+}
+
+static hf_status command_show(const hf_options *o, hf_messages *messages)
+{
+    hf_summary summary;
+    HF_TRY(hf_store_read_summary(o->file, &summary, messages));
+    if (o->json) {
+        hf_summary_write_json(&summary, summary.form.status, summary.warnings, o->file, stdout);
+    } else {
+        hf_print_summary(&summary, o->file, stdout);
+        fputs(summary.warnings, stdout);
+    }
+    return HF_OK;
+}
+
+static hf_status dispatch(const hf_options *o, int argc, char **argv, hf_messages *messages)
+{
+    char said[4096];
+    switch (o->command) {
+    case HF_COMMAND_RUN:
+        return command_run(o, argc, argv, messages);
+    case HF_COMMAND_CHECK:
+        return hf_plan(o, stdout, messages);
+    case HF_COMMAND_SHOW:
+        return command_show(o, messages);
+    case HF_COMMAND_EXPORT:
+        HF_TRY(hf_export(o, said, sizeof said, messages));
+        printf("%s\n", said);
+        return HF_OK;
+    case HF_COMMAND_SCHEMA:
+        hf_print_schema(stdout);
+        return HF_OK;
+    case HF_COMMAND_HELP:
+        hf_options_help(stdout);
+        return HF_OK;
+    case HF_COMMAND_VERSION:
+        printf("hifdm %s\n", hf_store_version());
+        return HF_OK;
+    }
+    return HF_BAD_USAGE;
+}
+
+int main(int argc, char **argv)
+{
+    hf_options options;
+    hf_messages messages = {0};
+    gsl_set_error_handler_off();
+    hf_store_quiet();
+    hf_status status = hf_options_parse(argc, argv, &options, &messages);
+    if (status == HF_OK) status = dispatch(&options, argc, argv, &messages);
+    hf_options_free(&options);
+    if (messages.text) fputs(messages.text, stderr);
+    hf_messages_free(&messages);
+    if ((fflush(stdout) != 0 || ferror(stdout)) && status == HF_OK) {
+        fputs("error: cannot write to standard output\n", stderr);
+        status = HF_IO;
+    }
+    return hf_status_exit_code(status);
+}

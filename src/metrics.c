@@ -1,0 +1,43 @@
+#include <hifdm/metrics.h>
+
+#include <math.h>
+
+double hf_metrics_psi_m(const hf_model *m, const hf_workspace *w)
+{
+    double sum = 0;
+    const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
+    const double *x0 = m->position_m, *y0 = x0 + m->n_node, *z0 = y0 + m->n_node;
+    for (int k = 0; k < m->n_inner_node; k++) {
+        int row = m->inner_row[k];
+        double dx = x[row] - x0[row], dy = y[row] - y0[row], dz = z[row] - z0[row];
+        sum += dx * dx + dy * dy + dz * dz;
+    }
+    return sqrt(sum / m->n_inner_node);
+}
+
+double hf_metrics_tension_ratio(const hf_model *m, const hf_workspace *w, int group)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (int e = 0; e < m->n_cable; e++) {
+        if (m->group[e] != group) continue;
+        double tension = w->tension_N[e];
+        if (!(tension > 0)) return (double)NAN;
+        if (tension < low) low = tension;
+        if (tension > high) high = tension;
+    }
+    return high > 0 ? high / low : (double)NAN;
+}
+
+int hf_metrics_is_slack(const hf_model *m, const hf_workspace *w, int i_cable)
+{
+    /* a strut (q < 0) is not slack */
+    return fabs(w->tension_N[i_cable]) < HF_SLACK_RATIO * m->reference_N;
+}
+
+int hf_metrics_slack_count(const hf_model *m, const hf_workspace *w)
+{
+    int n = 0;
+    for (int e = 0; e < m->n_cable; e++)
+        n += hf_metrics_is_slack(m, w, e);
+    return n;
+}

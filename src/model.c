@@ -1,0 +1,285 @@
+/* Contents: layout - numbering and band places - laws and targets - straight chains - groups of
+ * genes - build - checks */
+#include <hifdm/model.h>
+
+#include "arena.h"
+#include "numbering.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A chain whose lengths exceed the distance of its supports by less than this part counts as straight: its sag would
+ * be below 2e-5 of its span, and the tension above 1e4 times its load. */
+#define STRAIGHT_EXCESS 1e-9
+
+/* ---- layout ---- */
+
+static void lay_out(hf_arena *a, const hf_scene *s, hf_model *m)
+{
+    size_t n = (size_t)m->n_node, e = (size_t)m->n_cable;
+    m->row_of_node = hf_arena_take(a, n, sizeof(int));
+    m->node_of_row = hf_arena_take(a, n, sizeof(int));
+    m->end_row = hf_arena_take(a, 2 * e, sizeof(int));
+    m->diagonal_a = hf_arena_take(a, e, sizeof(int));
+    m->diagonal_b = hf_arena_take(a, e, sizeof(int));
+    m->off_diagonal = hf_arena_take(a, e, sizeof(int));
+    m->inner_row = hf_arena_take(a, n, sizeof(int));
+    m->position_m = hf_arena_take(a, 3 * n, sizeof(double));
+    m->load_N = s->load_N ? hf_arena_take(a, 3 * n, sizeof(double)) : NULL;
+    m->length_m = hf_arena_take(a, e, sizeof(double));
+    m->group = hf_arena_take(a, e, 1);
+    m->law = hf_arena_take(a, e, 1);
+    m->target = hf_arena_take(a, e, sizeof(double));
+    m->start_q_N_per_m = hf_arena_take(a, e, sizeof(double));
+    m->gene_cable = hf_arena_take(a, e, sizeof(int));
+    m->gene_group = hf_arena_take(a, e, sizeof(int));
+    m->chain_start = hf_arena_take(a, e + 1, sizeof(int));
+    m->chain_cable = hf_arena_take(a, e, sizeof(int));
+    m->chain_of_row = hf_arena_take(a, n, sizeof(int));
+}
+
+/* ---- numbering and band places ---- */
+
+static void number_nodes(const hf_scene *s, hf_model *m)
+{
+    int n_support = 0;
+    for (int i = 0; i < m->n_node; i++)
+        if (s->role[i] == HF_ROLE_SUPPORT) m->node_of_row[m->n_free + n_support++] = i;
+    for (int row = 0; row < m->n_node; row++) {
+        int node = m->node_of_row[row];
+        m->row_of_node[node] = row;
+        for (int c = 0; c < 3; c++) {
+            m->position_m[c * m->n_node + row] = s->position_m[3 * (size_t)node + (size_t)c];
+            if (m->load_N) m->load_N[c * m->n_node + row] = s->load_N[3 * (size_t)node + (size_t)c];
+        }
+        if (s->role[node] == HF_ROLE_INNER) m->inner_row[m->n_inner_node++] = row;
+    }
+}
+
+static void place_cables(const hf_scene *s, hf_model *m)
+{
+    int column = m->half_bandwidth + 1;
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->row_of_node[s->end[2 * e]], b = m->row_of_node[s->end[2 * e + 1]];
+        int low = a < b ? a : b, high = a < b ? b : a;
+        m->end_row[2 * e] = a;
+        m->end_row[2 * e + 1] = b;
+        m->diagonal_a[e] = a < m->n_free ? a * column : m->n_band;
+        m->diagonal_b[e] = b < m->n_free ? b * column : m->n_band;
+        m->off_diagonal[e] = high < m->n_free ? high - low + low * column : m->n_band;
+    }
+}
+
+/* ---- laws and targets ---- */
+
+static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *m)
+{
+    double largest_q_tension = 0;
+    int only_force_density = 1;
+    for (int e = 0; e < m->n_cable; e++) {
+        int law = s->law[e];
+        double length = hf_scene_theoretical_length(s, e), target = s->target[e];
+        if (law == HF_LAW_TENSION && isnan(target)) target = form->pretension_N;
+        double tension = law == HF_LAW_TENSION ? target : form->pretension_N;
+        double q = law == HF_LAW_FORCE_DENSITY ? target : tension / length;
+        if (form->method == HF_METHOD_ITERATIVE_FDM) {
+            law = HF_LAW_TENSION;
+            target = tension;
+            q = tension / length;
+        } else if (form->method == HF_METHOD_FDM) {
+            law = HF_LAW_FORCE_DENSITY;
+            target = q;
+        }
+        m->length_m[e] = length;
+        m->group[e] = s->group[e];
+        m->law[e] = (unsigned char)law;
+        m->target[e] = target;
+        m->start_q_N_per_m[e] = q;
+        m->has_strut |= q < 0;
+        only_force_density &= law == HF_LAW_FORCE_DENSITY;
+        largest_q_tension = fmax(largest_q_tension, fabs(q) * length);
+        if (s->group[e] == HF_GROUP_BOUNDARY && (m->end_row[2 * e] < m->n_free || m->end_row[2 * e + 1] < m->n_free))
+            m->gene_cable[m->n_gene++] = e;
+    }
+    m->pretension_N = form->pretension_N;
+    m->reference_N = only_force_density ? largest_q_tension : form->pretension_N;
+}
+
+/* ---- straight chains ---- */
+
+typedef struct {
+    int *count; /* [n_node] cables of law length at a row */
+    int *cable; /* [n_node][2] two of them */
+} length_graph;
+
+static double distance(const hf_model *m, int row_a, int row_b)
+{
+    double d[3];
+    for (int c = 0; c < 3; c++)
+        d[c] = m->position_m[c * m->n_node + row_a] - m->position_m[c * m->n_node + row_b];
+    return hypot(hypot(d[0], d[1]), d[2]);
+}
+
+/* Follow the chain that leaves the support `from` by cable `first`; keep it when it is straight and ends at a support.
+ * A chain is met from both ends: only the end with the smaller cable index counts. */
+static void follow_chain(hf_model *m, const length_graph *g, int from, int first)
+{
+    int start = m->chain_start[m->n_chain], n = 0, row = from, e = first;
+    double sum = 0;
+    for (;;) {
+        row = m->end_row[2 * e] == row ? m->end_row[2 * e + 1] : m->end_row[2 * e];
+        m->chain_cable[start + n++] = e;
+        sum += m->target[e];
+        if (row >= m->n_free) break;
+        if (g->count[row] != 2 || n == m->n_cable - start) return;
+        e = g->cable[2 * row] == e ? g->cable[2 * row + 1] : g->cable[2 * row];
+    }
+    if (n < 2 || e < first || sum > distance(m, from, row) * (1 + STRAIGHT_EXCESS)) return;
+    int through = from;
+    for (int k = 0; k + 1 < n; k++) {
+        int *end = m->end_row + 2 * m->chain_cable[start + k];
+        through = end[0] == through ? end[1] : end[0];
+        m->chain_of_row[through] = m->n_chain;
+    }
+    m->chain_start[++m->n_chain] = start + n;
+}
+
+static hf_status find_straight_chains(hf_model *m)
+{
+    length_graph g = {.count = calloc((size_t)m->n_node * 3, sizeof(int))};
+    if (!g.count) return HF_NO_MEMORY;
+    g.cable = g.count + m->n_node;
+    for (int row = 0; row < m->n_node; row++)
+        m->chain_of_row[row] = -1;
+    for (int e = 0; e < m->n_cable; e++)
+        for (int k = 0; k < 2 && m->law[e] == HF_LAW_LENGTH; k++) {
+            int row = m->end_row[2 * e + k];
+            if (g.count[row] < 2) g.cable[2 * row + g.count[row]] = e;
+            g.count[row]++;
+        }
+    for (int e = 0; e < m->n_cable; e++)
+        for (int k = 0; k < 2 && m->law[e] == HF_LAW_LENGTH; k++)
+            if (m->end_row[2 * e + k] >= m->n_free && m->end_row[2 * e + 1 - k] < m->n_free)
+                follow_chain(m, &g, m->end_row[2 * e + k], e);
+    free(g.count);
+    return HF_OK;
+}
+
+/* ---- groups of genes ---- */
+
+/* Union-find with path halving. */
+static int find_root(int *parent, int i)
+{
+    while (parent[i] != i)
+        i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+static hf_status group_genes(hf_model *m)
+{
+    int *scratch = malloc(((size_t)m->n_node * 3 + (size_t)m->n_gene * 2) * sizeof *scratch);
+    if (!scratch) return HF_NO_MEMORY;
+    int *count = scratch, *gene_at = count + m->n_node, *parent = gene_at + 2 * m->n_node, *label = parent + m->n_gene;
+    memset(count, 0, (size_t)m->n_node * sizeof *count);
+    for (int k = 0; k < m->n_gene; k++) {
+        parent[k] = k;
+        label[k] = -1;
+        for (int end = 0; end < 2; end++) {
+            int row = m->end_row[2 * m->gene_cable[k] + end];
+            if (count[row] < 2) gene_at[2 * row + count[row]] = k;
+            count[row]++;
+        }
+    }
+    for (int row = 0; row < m->n_free; row++)
+        if (count[row] == 2) parent[find_root(parent, gene_at[2 * row])] = find_root(parent, gene_at[2 * row + 1]);
+    for (int k = 0; k < m->n_gene; k++) {
+        int root = find_root(parent, k);
+        if (label[root] < 0) label[root] = m->n_gene_group++;
+        m->gene_group[k] = label[root];
+    }
+    free(scratch);
+    return HF_OK;
+}
+
+void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_chain, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int k = model->chain_start[i_chain]; k < model->chain_start[i_chain + 1]; k++) {
+        const char *id = scene->cable_id[model->chain_cable[k]];
+        if (used + strlen(id) + 8 > size) {
+            snprintf(text + used, size - used, " ...");
+            return;
+        }
+        used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " + " : "", id);
+    }
+}
+
+/* ---- build ---- */
+
+static hf_status build(const hf_scene *scene, const hf_form_settings *form, const int *order, hf_model *m)
+{
+    hf_arena arena = {0};
+    lay_out(&arena, scene, m);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out(&arena, scene, m);
+    m->block = arena.block;
+    memcpy(m->node_of_row, order, (size_t)m->n_free * sizeof(int));
+    number_nodes(scene, m);
+    place_cables(scene, m);
+    set_laws(scene, form, m);
+    HF_TRY(group_genes(m));
+    return find_straight_chains(m);
+}
+
+hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages)
+{
+    *model = (hf_model){.n_node = scene->n_node, .n_cable = scene->n_cable};
+    for (int i = 0; i < scene->n_node; i++)
+        model->n_free += scene->role[i] != HF_ROLE_SUPPORT;
+    int *order = malloc((size_t)scene->n_node * sizeof *order);
+    hf_status status = order ? hf_numbering_find(scene, order, &model->half_bandwidth) : HF_NO_MEMORY;
+    double n_band = (double)model->n_free * (model->half_bandwidth + 1.0);
+    if (status == HF_OK && 3 * n_band > INT_MAX / 2) { /* 3: the general band of nets with struts */
+        free(order);
+        return hf_error(messages, HF_NO_MEMORY, "the band matrix of %d rows, half-bandwidth %d is too large",
+                        model->n_free, model->half_bandwidth);
+    }
+    model->n_band = (int)n_band;
+    if (status == HF_OK) status = build(scene, form, order, model);
+    free(order);
+    if (status != HF_OK) return hf_error(messages, status, "out of memory for a model of %d nodes", scene->n_node);
+    return HF_OK;
+}
+
+void hf_model_free(hf_model *model)
+{
+    free(model->block);
+    *model = (hf_model){0};
+}
+
+/* ---- checks ---- */
+
+int hf_model_is_valid(const hf_model *m)
+{
+    int column = m->half_bandwidth + 1;
+    if (m->n_free < 1 || m->n_free > m->n_node || m->n_band != m->n_free * column) return 0;
+    for (int row = 0; row < m->n_node; row++)
+        if (m->node_of_row[row] < 0 || m->node_of_row[row] >= m->n_node || m->row_of_node[m->node_of_row[row]] != row)
+            return 0;
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], low = a < b ? a : b, high = a < b ? b : a;
+        if (a == b || low < 0 || high >= m->n_node || !(m->length_m[e] > 0)) return 0;
+        if (m->diagonal_a[e] != (a < m->n_free ? a * column : m->n_band)) return 0;
+        if (m->diagonal_b[e] != (b < m->n_free ? b * column : m->n_band)) return 0;
+        if (high < m->n_free ? high - low > m->half_bandwidth || m->off_diagonal[e] != high - low + low * column
+                             : m->off_diagonal[e] != m->n_band)
+            return 0;
+    }
+    for (int k = 0; k < m->n_inner_node; k++)
+        if (m->inner_row[k] < 0 || m->inner_row[k] >= m->n_free) return 0;
+    return m->chain_start[0] == 0 && m->n_gene <= m->n_cable;
+}

@@ -1,0 +1,217 @@
+/* Contents: the tables - reading - help */
+#include "options.h"
+
+#include "text.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define BIT(command) (1u << (command))
+#define THREADS_MAX 4096
+
+typedef struct {
+    const char *name, *argument, *help;
+    hf_command command;
+} command_row;
+
+static const command_row command_table[] = {
+    {"run", "CASE", "run what the case file contains and store it in one HDF5 file", HF_COMMAND_RUN},
+    {"check", "CASE", "validate; print what will run, what is skipped, sizes, memory and expected time",
+     HF_COMMAND_CHECK},
+    {"show", "FILE", "print the summary of a result file", HF_COMMAND_SHOW},
+    {"export", "FILE", "write a result as CSV files", HF_COMMAND_EXPORT},
+    {"schema", NULL, "print every key of a case file: type, range, default, meaning", HF_COMMAND_SCHEMA},
+    {"help", NULL, "print this", HF_COMMAND_HELP},
+    {"version", NULL, "print the version", HF_COMMAND_VERSION},
+};
+enum { N_COMMAND = sizeof command_table / sizeof *command_table };
+
+typedef enum {
+    OPTION_OUTPUT,
+    OPTION_SET,
+    OPTION_THREADS,
+    OPTION_SEED,
+    OPTION_JSON,
+    OPTION_QUIET,
+    OPTION_FORCE,
+    OPTION_CSV,
+    OPTION_STAGE
+} option_id;
+
+typedef struct {
+    const char *name, *letter, *argument, *help;
+    unsigned commands; /* bits of the commands that take it */
+    option_id id;
+} option_row;
+
+static const option_row option_table[] = {
+    {"--output", "-o", "FILE", "result file (default: the case's name with .h5, in this folder)", BIT(HF_COMMAND_RUN),
+     OPTION_OUTPUT},
+    {"--force", NULL, NULL, "replace existing files", BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EXPORT), OPTION_FORCE},
+    {"--set", NULL, "KEY=VALUE", "override one key of the case, like form.pretension_N=12; may be repeated",
+     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_CHECK), OPTION_SET},
+    {"--threads", NULL, "N", "threads (default: one per core); the results do not depend on it",
+     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_CHECK), OPTION_THREADS},
+    {"--seed", NULL, "S", "seed of the genetic algorithm instead of optimize.seed", BIT(HF_COMMAND_RUN), OPTION_SEED},
+    {"--json", NULL, NULL, "one JSON object on standard output", BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_SHOW),
+     OPTION_JSON},
+    {"--quiet", NULL, NULL, "no progress and no summary; warnings and errors stay", BIT(HF_COMMAND_RUN), OPTION_QUIET},
+    {"--csv", NULL, "DIR", "write nodes.csv and cables.csv into DIR", BIT(HF_COMMAND_EXPORT), OPTION_CSV},
+    {"--stage", NULL, "STAGE", "form or optimize: which shape (default: the last stage that ran)",
+     BIT(HF_COMMAND_EXPORT), OPTION_STAGE},
+};
+enum { N_OPTION = sizeof option_table / sizeof *option_table };
+
+/* ---- reading ---- */
+
+static hf_status unknown(const char *kind, const char *word, const char *const *names, int n_name,
+                         hf_messages *messages)
+{
+    const char *near = hf_text_nearest(word, names, n_name);
+    if (near) return hf_error(messages, HF_BAD_USAGE, "unknown %s '%s'; did you mean '%s'?", kind, word, near);
+    return hf_error(messages, HF_BAD_USAGE, "unknown %s '%s'; 'hifdm help' lists them", kind, word);
+}
+
+static hf_status find_command(const char *word, const command_row **row, hf_messages *messages)
+{
+    const char *names[N_COMMAND];
+    for (int i = 0; i < N_COMMAND; i++) {
+        *row = &command_table[i];
+        names[i] = command_table[i].name;
+        int dashed = !strncmp(word, "--", 2) && !strcmp(word + 2, names[i]); /* --help, --version */
+        if (!strcmp(word, names[i]) || (dashed && !command_table[i].argument)) return HF_OK;
+        if (!strcmp(word, "-h") && command_table[i].command == HF_COMMAND_HELP) return HF_OK;
+    }
+    return unknown("command", word, names, N_COMMAND, messages);
+}
+
+static hf_status find_option(const char *word, hf_command command, const option_row **row, hf_messages *messages)
+{
+    const char *names[N_OPTION];
+    size_t length = strcspn(word, "=");
+    for (int i = 0; i < N_OPTION; i++) {
+        const option_row *o = &option_table[i];
+        names[i] = o->name;
+        int is_long = strlen(o->name) == length && !strncmp(word, o->name, length);
+        int is_short = o->letter && !strcmp(word, o->letter);
+        if (!is_long && !is_short) continue;
+        *row = o;
+        if (o->commands & BIT(command)) return HF_OK;
+        return hf_error(messages, HF_BAD_USAGE, "'%s' does not go with this command; 'hifdm help' says where it goes",
+                        word);
+    }
+    return unknown("option", word, names, N_OPTION, messages);
+}
+
+static hf_status apply(const option_row *row, const char *value, hf_options *o, hf_messages *messages)
+{
+    uint64_t number = 0;
+    int is_number = value && hf_text_uint64(value, &number);
+    switch (row->id) {
+    case OPTION_OUTPUT:
+        o->output = value;
+        break;
+    case OPTION_FORCE:
+        o->force = 1;
+        break;
+    case OPTION_SET:
+        o->set[o->n_set++] = value;
+        break;
+    case OPTION_THREADS:
+        if (!is_number || number < 1 || number > THREADS_MAX)
+            return hf_error(messages, HF_BAD_USAGE, "--threads must be from 1 to %d, not '%s'", THREADS_MAX, value);
+        o->threads = (int)number;
+        break;
+    case OPTION_SEED:
+        if (!is_number)
+            return hf_error(messages, HF_BAD_USAGE, "--seed must be a whole number from 0 to 2^64-1, not '%s'", value);
+        o->has_seed = 1;
+        o->seed = number;
+        break;
+    case OPTION_JSON:
+        o->json = 1;
+        break;
+    case OPTION_QUIET:
+        o->quiet = 1;
+        break;
+    case OPTION_CSV:
+        o->csv = value;
+        break;
+    case OPTION_STAGE:
+        if (strcmp(value, "form") && strcmp(value, "optimize"))
+            return hf_error(messages, HF_BAD_USAGE, "--stage must be form or optimize, not '%s'", value);
+        o->stage = value;
+        break;
+    }
+    return HF_OK;
+}
+
+static hf_status read_words(int argc, char *const *argv, const command_row *command, hf_options *o,
+                            hf_messages *messages)
+{
+    for (int i = 2; i < argc; i++) {
+        const option_row *row = NULL;
+        const char *value = NULL, *equals = strchr(argv[i], '=');
+        if (argv[i][0] != '-' || !argv[i][1]) {
+            if (!command->argument || o->file)
+                return hf_error(messages, HF_BAD_USAGE, "'%s' is one argument too many for 'hifdm %s'", argv[i],
+                                command->name);
+            o->file = argv[i];
+            continue;
+        }
+        HF_TRY(find_option(argv[i], o->command, &row, messages));
+        if (row->argument) {
+            int joined = equals && argv[i][1] == '-';
+            if (!joined && i + 1 == argc)
+                return hf_error(messages, HF_BAD_USAGE, "'%s' needs %s behind it", argv[i], row->argument);
+            value = joined ? equals + 1 : argv[++i];
+        } else if (equals) {
+            return hf_error(messages, HF_BAD_USAGE, "'%s' takes no value", row->name);
+        }
+        HF_TRY(apply(row, value, o, messages));
+    }
+    return HF_OK;
+}
+
+hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_messages *messages)
+{
+    const command_row *command;
+    *options = (hf_options){0};
+    if (argc < 2) return hf_error(messages, HF_BAD_USAGE, "a command is missing; 'hifdm help' lists them");
+    HF_TRY(find_command(argv[1], &command, messages));
+    options->command = command->command;
+    options->set = calloc((size_t)argc, sizeof *options->set);
+    if (!options->set) return hf_error(messages, HF_NO_MEMORY, "out of memory");
+    HF_TRY(read_words(argc, argv, command, options, messages));
+    if (command->argument && !options->file)
+        return hf_error(messages, HF_BAD_USAGE, "'hifdm %s' needs a %s", command->name, command->argument);
+    if (options->command == HF_COMMAND_EXPORT && !options->csv)
+        return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs --csv DIR");
+    return HF_OK;
+}
+
+void hf_options_free(hf_options *options)
+{
+    free(options->set);
+    *options = (hf_options){0};
+}
+
+/* ---- help ---- */
+
+void hf_options_help(FILE *file)
+{
+    fputs("hifdm - shape and pretension of the cable net of a large deployable mesh reflector\n\n", file);
+    for (int i = 0; i < N_COMMAND; i++) {
+        const command_row *c = &command_table[i];
+        fprintf(file, "  hifdm %-7s %-5s %s\n", c->name, c->argument ? c->argument : "", c->help);
+        for (int k = 0; k < N_OPTION; k++) {
+            const option_row *o = &option_table[k];
+            char name[64];
+            if (!(o->commands & BIT(c->command))) continue;
+            snprintf(name, sizeof name, "%s%s%s%s%s", o->letter ? o->letter : "", o->letter ? ", " : "", o->name,
+                     o->argument ? " " : "", o->argument ? o->argument : "");
+            fprintf(file, "      %-18s %s\n", name, o->help);
+        }
+    }
+    fputs("\nexit status: 0 done, 2 bad usage or case, 3 not converged, 4 ill-posed, 5 input/output\n", file);
+}

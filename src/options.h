@@ -1,0 +1,39 @@
+/* options - the command line, from one table that also prints the help. */
+#ifndef HIFDM_OPTIONS_H
+#define HIFDM_OPTIONS_H
+
+#include <hifdm/status.h>
+#include <stdint.h>
+#include <stdio.h>
+
+typedef enum {
+    HF_COMMAND_RUN,
+    HF_COMMAND_CHECK,
+    HF_COMMAND_SHOW,
+    HF_COMMAND_EXPORT,
+    HF_COMMAND_SCHEMA,
+    HF_COMMAND_HELP,
+    HF_COMMAND_VERSION
+} hf_command;
+
+typedef struct {
+    hf_command command;
+    const char *file;   /* the CASE or FILE, NULL for commands without one */
+    const char *output; /* -o */
+    const char *csv;    /* --csv */
+    const char *stage;  /* --stage */
+    const char **set;   /* [n_set] --set key=value, owned */
+    int n_set;
+    int threads; /* 0 = all cores */
+    int has_seed;
+    uint64_t seed;
+    int json, quiet, force;
+} hf_options;
+
+/* HF_BAD_USAGE with a message that says what to write instead. Free with hf_options_free in any case. */
+hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_messages *messages);
+
+void hf_options_help(FILE *file);
+void hf_options_free(hf_options *options);
+
+#endif

@@ -1,0 +1,172 @@
+/* Contents: units for people - summary - progress - schema */
+#include "print.h"
+
+#include <hifdm/config.h>
+
+#include <math.h>
+#include <string.h>
+
+/* ---- units for people ---- */
+
+void hf_print_duration(double seconds, char *text, size_t size)
+{
+    if (seconds < 1e-3)
+        snprintf(text, size, "%.0f us", seconds * 1e6);
+    else if (seconds < 1)
+        snprintf(text, size, "%.1f ms", seconds * 1e3);
+    else if (seconds < 60)
+        snprintf(text, size, "%.1f s", seconds);
+    else if (seconds < 3600)
+        snprintf(text, size, "%.0f min %.0f s", floor(seconds / 60), floor(fmod(seconds, 60)));
+    else
+        snprintf(text, size, "%.0f h %.0f min", floor(seconds / 3600), floor(fmod(seconds, 3600) / 60));
+}
+
+void hf_print_bytes(double bytes, char *text, size_t size)
+{
+    static const char *const unit[] = {"B", "kB", "MB", "GB", "TB"};
+    int i = 0;
+    for (; bytes >= 1000 && i < 4; i++)
+        bytes /= 1000;
+    snprintf(text, size, i ? "%.1f %s" : "%.0f %s", bytes, unit[i]);
+}
+
+/* "4.2315", or "-" where there is none */
+static const char *ratio(double value, char text[32])
+{
+    if (isfinite(value))
+        snprintf(text, 32, "%.4f", value);
+    else
+        strcpy(text, "-");
+    return text;
+}
+
+/* ---- summary ---- */
+
+static void print_result(const hf_form_result *r, FILE *f)
+{
+    char inner[32], boundary[32];
+    fprintf(f, "                tension ratio %s inside, %s on the boundary; largest nodal residual %.1e N\n",
+            ratio(r->inner_tension_ratio, inner), ratio(r->boundary_tension_ratio, boundary), r->residual_N);
+}
+
+static void print_optimize(const hf_summary *s, FILE *f)
+{
+    char wall[32];
+    hf_print_duration(s->optimize_wall_s, wall, sizeof wall);
+    if (s->best.status != HF_OK) {
+        fprintf(f, "  optimisation  no feasible design in %ld evaluations, %s\n", s->evaluations, wall);
+        return;
+    }
+    fprintf(f, "  optimisation  psi %.4f mm, %.2f %% below form-finding; best found in generation %d\n",
+            s->best.psi_m * 1e3, 100 * (1 - s->best.psi_m / s->form.psi_m), s->best_generation);
+    print_result(&s->best, f);
+    fprintf(f, "                %d generations, %ld evaluations (%ld infeasible), stopped by %s\n", s->generations,
+            s->evaluations, s->infeasible, hf_ga_stop_word[s->optimize_stop]);
+    fprintf(f, "                %s, %.0f evaluations/s; cpu_s / (wall_s * threads) = %.3f on %d thread%s\n", wall,
+            (double)s->evaluations / s->optimize_wall_s, hf_summary_utilisation(s), s->threads,
+            s->threads == 1 ? "" : "s");
+}
+
+void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
+{
+    char wall[32];
+    hf_print_duration(s->form_wall_s, wall, sizeof wall);
+    fprintf(f, "%s\n", *s->title ? s->title : s->case_path);
+    fprintf(f, "  net           %d nodes (%d free), %d cables (%d adjustable); half-bandwidth %d; pretension %g N\n",
+            s->n_node, s->n_free, s->n_cable, s->n_gene, s->half_bandwidth, s->pretension_N);
+    fprintf(f, "  form-finding  psi %.4f mm after %d iteration%s, stopped by %s, %s\n", s->form.psi_m * 1e3,
+            s->form.iterations, s->form.iterations == 1 ? "" : "s", hf_stop_reason_word((int)s->form.stop_reason),
+            wall);
+    print_result(&s->form, f);
+    if (s->has_optimize) print_optimize(s, f);
+    if (path) fprintf(f, "  results       %s\n", path);
+}
+
+/* ---- progress ---- */
+
+void hf_print_progress(const hf_ga *ga, double elapsed_s, FILE *f)
+{
+    static double last_s = -1;
+    int n = ga->settings->generations, done = ga->generation + 1;
+    char eta[32];
+    if (elapsed_s >= last_s && elapsed_s - last_s < 0.1 && ga->stop_reason == HF_GA_RUNNING) return;
+    last_s = elapsed_s;
+    hf_print_duration(elapsed_s * (n - done) / done, eta, sizeof eta);
+    fprintf(f, "\r\033[Kgeneration %d/%d  best psi %.4f mm  %.0f evaluations/s  at most %s left", done, n,
+            ga->best_psi_m[ga->generation] * 1e3, (double)ga->n_evaluation / elapsed_s, eta);
+    fflush(f);
+}
+
+void hf_print_progress_end(FILE *f)
+{
+    fputs("\r\033[K", f);
+    fflush(f);
+}
+
+/* ---- schema ---- */
+
+static void print_range(const hf_field *field, FILE *f)
+{
+    static const char *const type[] = {"number", "whole number", "whole number", "two whole numbers", "", "text"};
+    if (field->type == HF_FIELD_WORD) {
+        for (int k = 0; field->words[k]; k++)
+            fprintf(f, "%s%s", k ? " | " : "", field->words[k]);
+        return;
+    }
+    fprintf(f, "%s", type[field->type]);
+    if (field->type == HF_FIELD_TEXT) return;
+    if (field->min == HF_ABOVE_ZERO)
+        fprintf(f, " > 0");
+    else
+        fprintf(f, " >= %.10g", field->min);
+    if (field->max < 1e300) fprintf(f, ", <= %.10g", field->max);
+}
+
+static int depth_of(const char *path)
+{
+    int depth = 0;
+    for (; *path; path++)
+        depth += *path == '.';
+    return depth;
+}
+
+static const char *last_word(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot ? dot + 1 : path;
+}
+
+static int is_inside(const char *path, const char *section)
+{
+    size_t n = strlen(section);
+    return !strncmp(path, section, n) && path[n] == '.' && !strchr(path + n + 1, '.');
+}
+
+static void print_field(const hf_field *field, FILE *f)
+{
+    int indent = 2 * depth_of(field->path);
+    fprintf(f, "%*s# %s.\n%*s# ", indent, "", field->help, indent, "");
+    print_range(field, f);
+    if (*field->unit) fprintf(f, "; %s", field->unit);
+    if (!field->default_value)
+        fprintf(f, "; required\n%*s%s:\n", indent, "", last_word(field->path));
+    else
+        fprintf(f, "\n%*s%s: %s\n", indent, "", last_word(field->path),
+                *field->default_value ? field->default_value : "\"\"");
+}
+
+void hf_print_schema(FILE *f)
+{
+    const hf_field *field = hf_field_table;
+    const hf_section *section = hf_section_table;
+    fputs("# Every key of a hifdm case file, with its default. Units are the last part of a name.\n", f);
+    for (int i = 0; i < hf_n_field; i++)
+        if (!strchr(field[i].path, '.')) print_field(&field[i], f);
+    for (int s = 0; s < hf_n_section; s++) {
+        int indent = 2 * depth_of(section[s].path);
+        fprintf(f, "\n%*s# %s\n%*s%s:\n", indent, "", section[s].help, indent, "", last_word(section[s].path));
+        for (int i = 0; i < hf_n_field; i++)
+            if (is_inside(field[i].path, section[s].path)) print_field(&field[i], f);
+    }
+}

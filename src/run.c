@@ -1,0 +1,320 @@
+/* Contents: names for what went wrong - form-finding - optimisation - the whole run */
+#include "run.h"
+
+#include "print.h"
+#include <hifdm/batch.h>
+#include <hifdm/metrics.h>
+#include <hifdm/store.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#define NAMED_MAX 5         /* cables or chains that a message names */
+#define HISTORY_MAX 1000000 /* iterations whose history is kept */
+
+double hf_run_clock_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Everything a run owns. */
+typedef struct {
+    hf_case settings;
+    hf_scene scene;
+    hf_model model;
+    hf_workspace workspace;
+    hf_history history;
+    hf_store *store;
+    hf_evaluator evaluator;
+    double *start_q_N_per_m; /* [n_cable] of the found shape */
+    double *base_N;          /* [n_gene] boundary pretensions of the found shape */
+    hf_batch batch;
+    hf_ga ga;
+} run;
+
+static void run_free(run *r)
+{
+    hf_store_abandon(r->store); /* NULL once it is finished */
+    hf_ga_free(&r->ga);
+    hf_batch_free(&r->batch);
+    free(r->start_q_N_per_m);
+    free(r->base_N);
+    free(r->history.psi_m);
+    hf_workspace_free(&r->workspace);
+    hf_model_free(&r->model);
+    hf_scene_free(&r->scene);
+    hf_case_free(&r->settings);
+}
+
+/* ---- names for what went wrong ---- */
+
+typedef struct {
+    char text[1600];
+    size_t length;
+    int n;
+} name_list;
+
+static void add_name(name_list *list, const char *name)
+{
+    if (list->n++ >= NAMED_MAX || list->length >= sizeof list->text) return;
+    list->length += (size_t)snprintf(list->text + list->length, sizeof list->text - list->length, "%s%s",
+                                     list->n > 1 ? ", " : "", name);
+}
+
+static const char *close_names(name_list *list)
+{
+    if (list->n > NAMED_MAX && list->length < sizeof list->text)
+        snprintf(list->text + list->length, sizeof list->text - list->length, " and %d more", list->n - NAMED_MAX);
+    return list->text;
+}
+
+static void name_loaded_chains(const hf_scene *scene, const hf_model *m, hf_workspace *w, name_list *list)
+{
+    for (int i = 0; i < m->n_chain; i++) {
+        char name[256];
+        if (!hf_form_chain_is_loaded(m, w, i)) continue;
+        hf_model_chain_name(m, scene, i, name, sizeof name);
+        add_name(list, name);
+    }
+}
+
+static void warn(const hf_scene *scene, const hf_model *m, const hf_form_settings *form, hf_workspace *w,
+                 const hf_form_result *r, hf_messages *messages)
+{
+    name_list chains = {0}, slack = {0};
+    if (r->stop_reason == HF_STOPPED_RMS_CHANGE && r->residual_N > form->residual_tolerance * m->reference_N)
+        hf_warning(messages,
+                   "stop: rms_change ended before equilibrium: nodal residual %.2e N, cable lengths off by up to %.2e; "
+                   "stop: residual iterates until they vanish",
+                   r->residual_N, r->length_error);
+    if (r->n_loaded_chain) {
+        name_loaded_chains(scene, m, w, &chains);
+        hf_warning(
+            messages,
+            "%d straight chains of length-controlled cables carry lateral load, which no finite tension holds: the "
+            "boundary tensions depend on where the iteration stopped: %s",
+            r->n_loaded_chain, close_names(&chains));
+    }
+    for (int e = 0; r->n_slack && e < m->n_cable; e++)
+        if (hf_metrics_is_slack(m, w, e)) add_name(&slack, scene->cable_id[e]);
+    if (r->n_slack) hf_warning(messages, "%d slack cables: %s", r->n_slack, close_names(&slack));
+}
+
+hf_status hf_run_explain(const hf_scene *scene, const hf_model *m, const hf_form_settings *form, hf_workspace *w,
+                         const hf_form_result *r, hf_messages *messages)
+{
+    name_list chains = {0};
+    switch (r->status) {
+    case HF_OK:
+        warn(scene, m, form, w, r, messages);
+        return HF_OK;
+    case HF_NOT_CONVERGED:
+        warn(scene, m, form, w, r, messages);
+        return hf_error(
+            messages, r->status,
+            "form-finding did not converge in %d iterations: nodal residual %.2e N, cable lengths off by up to "
+            "%.2e; raise form.max_iterations or loosen the tolerances",
+            r->iterations, r->residual_N, r->length_error);
+    case HF_STRAIGHT_CHAIN:
+        name_loaded_chains(scene, m, w, &chains);
+        return hf_error(
+            messages, r->status,
+            "ill-posed: %d straight chains of length-controlled cables carry lateral load, which no finite "
+            "tension holds: %s. Give them slack (scene.parabolic_cylinder.scallop, longer L*), another law, or "
+            "support their nodes",
+            r->n_loaded_chain, close_names(&chains));
+    case HF_COLLAPSED:
+        return hf_error(
+            messages, r->status,
+            "ill-posed: the net collapses at cable '%s', whose length fell below %g of the theoretical one: its "
+            "tension cannot hold it apart",
+            scene->cable_id[r->culprit], form->collapse_ratio);
+    case HF_NOT_FINITE:
+        return hf_error(messages, r->status, "ill-posed: the tension of cable '%s' is no longer a finite number",
+                        scene->cable_id[r->culprit]);
+    default:
+        return hf_error(messages, r->status,
+                        "ill-posed: the force density matrix is singular or not positive definite at node '%s'",
+                        r->culprit >= 0 ? scene->node_id[m->node_of_row[r->culprit]] : "?");
+    }
+}
+
+/* ---- form-finding ---- */
+
+static hf_status create_history(const hf_form_settings *form, hf_history *h)
+{
+    h->capacity = form->max_iterations < HISTORY_MAX ? form->max_iterations : HISTORY_MAX;
+    size_t n = (size_t)h->capacity;
+    double *block = calloc(5 * n, sizeof *block);
+    if (!block) return HF_NO_MEMORY;
+    h->psi_m = block;
+    h->residual_N = block + n;
+    h->inner_tension_ratio = block + 2 * n;
+    h->boundary_tension_ratio = block + 3 * n;
+    h->length_error = block + 4 * n;
+    return HF_OK;
+}
+
+static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
+{
+    const hf_form_settings *form = &r->settings.form;
+    if (hf_workspace_create(&r->model, &r->workspace) != HF_OK || create_history(form, &r->history) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", r->model.n_node);
+    double start_s = hf_run_clock_s();
+    hf_form_prepare(&r->model, &r->workspace);
+    hf_form_find(&r->model, form, form->stop, &r->workspace, &r->history, &s->form);
+    s->form_wall_s = hf_run_clock_s() - start_s;
+    hf_status status = hf_run_explain(&r->scene, &r->model, form, &r->workspace, &s->form, messages);
+    if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
+    HF_TRY(hf_store_form(r->store, &r->model, &r->workspace, &r->history, messages));
+    return status;
+}
+
+/* ---- optimisation ---- */
+
+/* Workspaces, population and evaluator, all before the first generation. */
+static hf_status prepare_optimize(run *r, int threads, hf_messages *messages)
+{
+    const hf_model *m = &r->model;
+    size_t n_cable = (size_t)m->n_cable, n_gene = (size_t)m->n_gene;
+    r->start_q_N_per_m = malloc(n_cable * sizeof(double));
+    r->base_N = malloc((n_gene ? n_gene : 1) * sizeof(double));
+    if (!r->start_q_N_per_m || !r->base_N) return hf_error(messages, HF_NO_MEMORY, "out of memory");
+    memcpy(r->start_q_N_per_m, r->workspace.q_N_per_m, n_cable * sizeof(double));
+    for (int k = 0; k < m->n_gene; k++) {
+        r->base_N[k] = r->workspace.tension_N[m->gene_cable[k]];
+        if (!(r->base_N[k] > 0))
+            return hf_error(messages, HF_BAD_CASE, "optimize: boundary cable '%s' has no tension to start from",
+                            r->scene.cable_id[m->gene_cable[k]]);
+    }
+    r->evaluator = (hf_evaluator){m, &r->settings.form, r->start_q_N_per_m, r->settings.optimize.rule,
+                                  r->settings.optimize.boundary_ratio_cap};
+    if (hf_batch_create(&r->evaluator, threads, &r->batch) != HF_OK ||
+        hf_ga_create(&r->settings.optimize, m, r->base_N, &r->ga) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for %d individuals of %d genes on %d threads",
+                        r->settings.optimize.population, m->n_gene, r->batch.n_thread);
+    return HF_OK;
+}
+
+static void note_best(const hf_ga *ga, hf_summary *s)
+{
+    if (ga->best < 0 || (s->best.status == HF_OK && !(ga->result[ga->best].psi_m < s->best.psi_m))) return;
+    s->best = ga->result[ga->best];
+    s->best_generation = ga->generation;
+    s->best_individual = ga->best;
+}
+
+/* The shape of the best individual: elitism keeps it in the last generation, and its evaluation gives the same bits
+ * again. */
+static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
+{
+    const double *design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
+    hf_form_result again;
+    hf_evaluate(&r->evaluator, design, &r->workspace, &again);
+    warn(&r->scene, &r->model, &r->settings.form, &r->workspace, &s->best, messages);
+    return hf_store_best(r->store, &r->model, &r->workspace, design, messages);
+}
+
+static hf_status optimize(run *r, const hf_options *options, hf_summary *s, hf_messages *messages)
+{
+    int show_progress = !options->quiet && isatty(STDERR_FILENO);
+    hf_ga *ga = &r->ga;
+    HF_TRY(prepare_optimize(r, options->threads, messages));
+    double start_s = hf_run_clock_s();
+    s->has_optimize = 1;
+    s->best.status = HF_NOT_EVALUATED;
+    s->threads = r->batch.n_thread;
+    do {
+        hf_batch_run(&r->batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
+        hf_ga_tell(ga);
+        HF_TRY(hf_store_generation(r->store, &r->model, ga, messages));
+        note_best(ga, s);
+        if (show_progress) hf_print_progress(ga, hf_run_clock_s() - start_s, stderr);
+    } while (hf_ga_next(ga));
+    if (show_progress) hf_print_progress_end(stderr);
+    s->optimize_wall_s = hf_run_clock_s() - start_s;
+    s->optimize_cpu_s = r->batch.cpu_s;
+    s->generations = ga->generation + 1;
+    s->evaluations = ga->n_evaluation;
+    s->infeasible = ga->n_evaluation_infeasible;
+    s->optimize_stop = (int)ga->stop_reason;
+    if (ga->best >= 0) return store_best(r, s, messages);
+    hf_warning(messages, "optimize: no feasible design among %ld evaluations", s->evaluations);
+    return HF_OK;
+}
+
+/* ---- the whole run ---- */
+
+void hf_run_describe(const hf_case *settings, const hf_model *model, hf_summary *s)
+{
+    snprintf(s->title, sizeof s->title, "%s", settings->title);
+    snprintf(s->case_path, sizeof s->case_path, "%s", settings->path);
+    s->threads = 1;
+    s->seed = settings->optimize.seed;
+    s->n_node = model->n_node;
+    s->n_free = model->n_free;
+    s->n_cable = model->n_cable;
+    s->n_gene = model->n_gene;
+    s->half_bandwidth = model->half_bandwidth;
+    s->pretension_N = model->pretension_N;
+}
+
+/* -o, or the name of the case with .h5 in the current folder. */
+static void choose_output(const hf_options *o, char output[HF_OUTPUT_SIZE])
+{
+    const char *slash = strrchr(o->file, '/'), *name = slash ? slash + 1 : o->file, *dot = strrchr(name, '.');
+    int stem = dot && dot != name ? (int)(dot - name) : (int)strlen(name);
+    if (o->output)
+        snprintf(output, HF_OUTPUT_SIZE, "%s", o->output);
+    else
+        snprintf(output, HF_OUTPUT_SIZE, "%.*s.h5", stem, name);
+}
+
+/* The stages that the case asks for, in order. HF_NOT_CONVERGED: nothing follows on a shape that is not one. */
+static hf_status stages(run *r, const hf_options *options, hf_summary *s, hf_messages *messages)
+{
+    HF_TRY(find_form(r, s, messages));
+    if (r->settings.has_optimize && r->model.n_gene == 0)
+        hf_warning(messages, "optimize: skipped, no boundary cable has a free end");
+    else if (r->settings.has_optimize)
+        return optimize(r, options, s, messages);
+    return HF_OK;
+}
+
+static hf_status execute(run *r, const hf_options *options, int argc, char *const *argv, hf_summary *s, char *output,
+                         hf_messages *messages)
+{
+    HF_TRY(hf_config_load(options->file, options->set, options->n_set, &r->settings, messages));
+    if (options->has_seed) r->settings.optimize.seed = options->seed;
+    if (options->has_seed && !r->settings.has_optimize)
+        hf_warning(messages, "--seed has no effect: the case has no optimize section");
+    HF_TRY(hf_config_scene(&r->settings, &r->scene, messages));
+    HF_TRY(hf_model_build(&r->scene, &r->settings.form, &r->model, messages));
+    hf_run_describe(&r->settings, &r->model, s);
+    choose_output(options, output);
+    HF_TRY(hf_store_create(output, options->force, &r->settings, &r->scene, argc, argv, &r->store, messages));
+    hf_status status = stages(r, options, s, messages);
+    if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
+    snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
+    hf_status finish = hf_store_finish(r->store, s, messages);
+    r->store = NULL;
+    return finish != HF_OK ? finish : status;
+}
+
+hf_status hf_run(const hf_options *options, int argc, char *const *argv, hf_summary *summary,
+                 char output[HF_OUTPUT_SIZE], hf_messages *messages)
+{
+    run r = {0};
+    *summary = (hf_summary){.form.status = HF_NOT_EVALUATED, .threads = 1};
+    snprintf(summary->version, sizeof summary->version, "%s", hf_store_version());
+    output[0] = '\0';
+    hf_status status = execute(&r, options, argc, argv, summary, output, messages);
+    if (status != HF_OK && status != HF_NOT_CONVERGED) output[0] = '\0';
+    run_free(&r);
+    return status;
+}

@@ -1,0 +1,96 @@
+#include <hifdm/status.h>
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *hf_status_word(hf_status status)
+{
+    switch (status) {
+#define WORD(name, value, exit_code, word, text)                                                                       \
+    case HF_##name:                                                                                                    \
+        return word;
+        HF_STATUS_LIST(WORD)
+#undef WORD
+    }
+    return "unknown";
+}
+
+const char *hf_status_text(hf_status status)
+{
+    switch (status) {
+#define TEXT(name, value, exit_code, word, text)                                                                       \
+    case HF_##name:                                                                                                    \
+        return text;
+        HF_STATUS_LIST(TEXT)
+#undef TEXT
+    }
+    return "unknown status";
+}
+
+int hf_status_exit_code(hf_status status)
+{
+    switch (status) {
+#define EXIT(name, value, exit_code, word, text)                                                                       \
+    case HF_##name:                                                                                                    \
+        return exit_code;
+        HF_STATUS_LIST(EXIT)
+#undef EXIT
+    }
+    return 5;
+}
+
+/* Room for `extra` more bytes and the final NUL; 0 when memory ran out. */
+static int reserve(hf_messages *m, size_t extra)
+{
+    size_t need = m->length + extra + 1;
+    if (need <= m->capacity) return 1;
+    size_t capacity = m->capacity ? 2 * m->capacity : 256;
+    if (capacity < need) capacity = need;
+    char *text = realloc(m->text, capacity);
+    if (!text) return 0;
+    m->text = text;
+    m->capacity = capacity;
+    return 1;
+}
+
+static void append(hf_messages *m, const char *prefix, const char *format, va_list args)
+{
+    va_list count_args;
+    va_copy(count_args, args);
+    int n_body = vsnprintf(NULL, 0, format, count_args);
+    va_end(count_args);
+    size_t n_prefix = strlen(prefix);
+    if (n_body < 0 || !reserve(m, n_prefix + (size_t)n_body + 1)) return;
+    memcpy(m->text + m->length, prefix, n_prefix);
+    vsnprintf(m->text + m->length + n_prefix, (size_t)n_body + 1, format, args);
+    m->length += n_prefix + (size_t)n_body;
+    m->text[m->length++] = '\n';
+    m->text[m->length] = '\0';
+}
+
+hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    append(messages, "error: ", format, args);
+    va_end(args);
+    messages->n_error++;
+    return code;
+}
+
+void hf_warning(hf_messages *messages, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    append(messages, "warning: ", format, args);
+    va_end(args);
+    messages->n_warning++;
+}
+
+void hf_messages_free(hf_messages *messages)
+{
+    free(messages->text);
+    *messages = (hf_messages){0};
+}

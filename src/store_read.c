@@ -1,0 +1,195 @@
+/* Contents: opening a result file - summary - scene - shape */
+#include "store_read.h"
+
+#include "arena.h"
+#include "hdf5_io.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* More nodes or cables than any scene has; keeps a damaged file from asking for all memory. */
+#define COUNT_MAX 20000000
+
+/* ---- opening a result file ---- */
+
+/* Is an open file one of ours? Whatever another program's file holds instead of our mark is no reason to complain. */
+static int is_ours(const hf_hdf5 *io)
+{
+    char program[16] = "";
+    hf_messages unwanted = {0};
+    hf_hdf5 probe = {.path = io->path, .messages = &unwanted, .status = HF_OK, .file = io->file};
+    hf_hdf5_get(&probe, probe.file, "/", "program", HF_KIND_TEXT, program, sizeof program);
+    hf_messages_free(&unwanted);
+    return !strcmp(program, HF_PROGRAM);
+}
+
+/* A file of ours, open for reading; io->status says whether. The caller closes it in any case. */
+static hf_hdf5 open_result(const char *path, hf_messages *messages)
+{
+    hf_hdf5 io = {.path = path, .messages = messages, .status = HF_OK, .file = -1};
+    struct stat info;
+    int version = 0;
+    if (stat(path, &info) != 0) {
+        io.status = hf_error(messages, HF_IO, "%s: cannot open: %s", path, strerror(errno));
+    } else if (S_ISDIR(info.st_mode)) {
+        io.status = hf_error(messages, HF_IO, "%s: is a folder, not a result file", path);
+    } else if (!S_ISREG(info.st_mode) || H5Fis_hdf5(path) == 0) {
+        io.status = hf_error(messages, HF_IO, "%s: is not an HDF5 file, so no result of hifdm", path);
+    } else {
+        hf_hdf5_open_file(&io);
+    }
+    if (io.status != HF_OK) return io;
+    if (!is_ours(&io))
+        io.status = hf_error(messages, HF_IO, "%s: is an HDF5 file, but no result of hifdm or a damaged one", path);
+    hf_hdf5_get(&io, io.file, "/", "format_version", HF_KIND_INT, &version, sizeof version);
+    if (io.status == HF_OK && version != HF_FORMAT_VERSION)
+        io.status = hf_error(messages, HF_IO, "%s: is of format version %d, this program reads version %d", path,
+                             version, HF_FORMAT_VERSION);
+    return io;
+}
+
+/* ---- summary ---- */
+
+hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messages *messages)
+{
+    static const hf_hdf5_member form[] = {HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER)};
+    static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
+    hf_hdf5 io = open_result(path, messages);
+    *summary = (hf_summary){0};
+    hf_hdf5_get_members(&io, form, HF_HDF5_COUNT(form), summary);
+    if (summary->has_optimize) hf_hdf5_get_members(&io, ga, HF_HDF5_COUNT(ga), summary);
+    hf_hdf5_close_file(&io);
+    if (io.status != HF_OK) *summary = (hf_summary){0};
+    return io.status;
+}
+
+/* ---- scene ---- */
+
+/* The strings of one data set, moved into `text` when it is there; returns the bytes they take. */
+static size_t copy_ids(char *const *from, int n, const char **id, char *text)
+{
+    size_t used = 0;
+    for (int i = 0; i < n; i++) {
+        const char *string = from[i] ? from[i] : ""; /* HDF5 reads an empty string as NULL */
+        size_t size = strlen(string) + 1;
+        if (text) {
+            id[i] = text + used;
+            memcpy(text + used, string, size);
+        }
+        used += size;
+    }
+    return used;
+}
+
+/* Two passes as with any arena: sizes, then copies. */
+static hf_status keep_ids(char *const *node_id, char *const *cable_id, hf_scene *scene)
+{
+    size_t n_node_byte = copy_ids(node_id, scene->n_node, NULL, NULL);
+    hf_arena text = {0};
+    hf_arena_take(&text, n_node_byte + copy_ids(cable_id, scene->n_cable, NULL, NULL), 1);
+    HF_TRY(hf_arena_allocate(&text));
+    scene->text = text.block;
+    copy_ids(node_id, scene->n_node, scene->node_id, scene->text);
+    copy_ids(cable_id, scene->n_cable, scene->cable_id, (char *)scene->text + n_node_byte);
+    return HF_OK;
+}
+
+static void no_memory(hf_hdf5 *io)
+{
+    if (io->status == HF_OK) io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+}
+
+static void read_ids(hf_hdf5 *io, hid_t group, hf_scene *scene)
+{
+    hsize_t n = (hsize_t)scene->n_node, m = (hsize_t)scene->n_cable;
+    hf_arena pointers = {0};
+    hf_arena_take(&pointers, n + m, sizeof(char *));
+    if (hf_arena_allocate(&pointers) != HF_OK) {
+        no_memory(io);
+        return;
+    }
+    char **node_id = hf_arena_take(&pointers, n + m, sizeof(char *)), **cable_id = node_id + n;
+    hf_hdf5_read_array(io, group, &(hf_hdf5_array){.name = "node/id", .kind = HF_KIND_TEXT, .rank = 1, .dims = {n}},
+                       node_id);
+    hf_hdf5_read_array(io, group, &(hf_hdf5_array){.name = "cable/id", .kind = HF_KIND_TEXT, .rank = 1, .dims = {m}},
+                       cable_id);
+    if (io->status == HF_OK && keep_ids(node_id, cable_id, scene) != HF_OK) no_memory(io);
+    hf_hdf5_free_texts(io, node_id, n + m);
+    hf_arena_free(&pointers);
+}
+
+static void check_ends(hf_hdf5 *io, hid_t group, const hf_scene *scene)
+{
+    for (int i = 0; i < 2 * scene->n_cable && io->status == HF_OK; i++)
+        if (scene->end[i] < 0 || scene->end[i] >= scene->n_node)
+            hf_hdf5_damaged(io, group, "cable/end", "names a node that is not there");
+}
+
+hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages)
+{
+    static const hf_hdf5_column table[] = {HF_SCENE_COLUMNS(HF_HDF5_COLUMN)};
+    hf_hdf5 io = open_result(path, messages);
+    *scene = (hf_scene){0};
+    hid_t group = hf_hdf5_open_group(&io, "/scene");
+    int n_node = hf_hdf5_length(&io, group, "node/role", COUNT_MAX);
+    int n_cable = hf_hdf5_length(&io, group, "cable/law", COUNT_MAX);
+    int with_load = hf_hdf5_has(&io, group, "node/load_N"), with_EA = hf_hdf5_has(&io, group, "cable/EA_N");
+    if (io.status == HF_OK && hf_scene_allocate(scene, n_node, n_cable, with_load, with_EA, 0) != HF_OK) no_memory(&io);
+    hf_hdf5_read_columns(&io, group, table, HF_HDF5_COUNT(table), n_node, n_cable, scene);
+    if (io.status == HF_OK) read_ids(&io, group, scene);
+    check_ends(&io, group, scene);
+    hf_hdf5_close(&io, group);
+    hf_hdf5_close_file(&io);
+    if (io.status != HF_OK) hf_scene_free(scene);
+    return io.status;
+}
+
+/* ---- shape ---- */
+
+static void lay_out(hf_arena *arena, size_t n_node, size_t n_cable, hf_shape *shape)
+{
+    shape->position_m = hf_arena_take(arena, 3 * n_node, sizeof(double));
+    shape->length_m = hf_arena_take(arena, n_cable, sizeof(double));
+    shape->tension_N = hf_arena_take(arena, n_cable, sizeof(double));
+    shape->q_N_per_m = hf_arena_take(arena, n_cable, sizeof(double));
+    shape->law = hf_arena_take(arena, n_cable, 1);
+}
+
+static hf_status allocate_shape(int n_node, int n_cable, hf_shape *shape)
+{
+    hf_arena arena = {0};
+    lay_out(&arena, (size_t)n_node, (size_t)n_cable, shape);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out(&arena, (size_t)n_node, (size_t)n_cable, shape);
+    shape->block = arena.block;
+    return HF_OK;
+}
+
+hf_status hf_store_read_shape(const char *path, int of_best, hf_shape *shape, hf_messages *messages)
+{
+    static const hf_hdf5_column table[] = {HF_SHAPE_COLUMNS(HF_HDF5_COLUMN)};
+    hf_hdf5 io = open_result(path, messages);
+    *shape = (hf_shape){0};
+    if (of_best && io.status == HF_OK && !(hf_hdf5_has(&io, io.file, "/ga") && hf_hdf5_has(&io, io.file, "/ga/best")) &&
+        io.status == HF_OK)
+        io.status =
+            hf_error(messages, HF_IO,
+                     "%s: has no best individual: the run did not optimise, or no individual was feasible", path);
+    hid_t group = hf_hdf5_open_group(&io, of_best ? "/ga/best" : "/form");
+    int n_node = hf_hdf5_length(&io, io.file, "/scene/node/role", COUNT_MAX);
+    int n_cable = hf_hdf5_length(&io, io.file, "/scene/cable/law", COUNT_MAX);
+    if (io.status == HF_OK && allocate_shape(n_node, n_cable, shape) != HF_OK) no_memory(&io);
+    hf_hdf5_read_columns(&io, group, table, HF_HDF5_COUNT(table), n_node, n_cable, shape);
+    hf_hdf5_close(&io, group);
+    hf_hdf5_close_file(&io);
+    if (io.status != HF_OK) hf_shape_free(shape);
+    return io.status;
+}
+
+void hf_shape_free(hf_shape *shape)
+{
+    hf_arena_free(&(hf_arena){.block = shape->block});
+    *shape = (hf_shape){0};
+}

@@ -1,0 +1,124 @@
+#include <hifdm/summary.h>
+
+#include <math.h>
+#include <string.h>
+
+double hf_summary_utilisation(const hf_summary *s)
+{
+    double available_s = s->optimize_wall_s * s->threads;
+    return available_s > 0 ? s->optimize_cpu_s / available_s : (double)NAN;
+}
+
+static void write_string(const char *text, size_t length, FILE *f)
+{
+    fputc('"', f);
+    for (size_t i = 0; i < length; i++) {
+        unsigned char c = (unsigned char)text[i];
+        if (c == '"' || c == '\\')
+            fprintf(f, "\\%c", c);
+        else if (c < 0x20)
+            fprintf(f, "\\u%04x", c);
+        else
+            fputc(c, f);
+    }
+    fputc('"', f);
+}
+
+static void write_text(const char *key, const char *text, FILE *f)
+{
+    fprintf(f, "\"%s\": ", key);
+    write_string(text, strlen(text), f);
+}
+
+static void write_number(const char *key, double value, FILE *f)
+{
+    if (isfinite(value))
+        fprintf(f, "\"%s\": %.17g", key, value);
+    else
+        fprintf(f, "\"%s\": null", key);
+}
+
+/* Those lines that start with `prefix`, without it, as a list of strings. */
+static void write_lines(const char *key, const char *prefix, const char *lines, FILE *f)
+{
+    const char *comma = "";
+    fprintf(f, "\"%s\": [", key);
+    for (size_t length; lines && *lines; lines += length + (lines[length] != '\0')) {
+        size_t skip = strlen(prefix);
+        length = strcspn(lines, "\n");
+        if (length < skip || strncmp(lines, prefix, skip) != 0) continue;
+        fputs(comma, f);
+        write_string(lines + skip, length - skip, f);
+        comma = ", ";
+    }
+    fputc(']', f);
+}
+
+static void write_result(const hf_form_result *r, FILE *f)
+{
+    const struct {
+        const char *key;
+        double value;
+    } number[] = {
+        {"psi_m", r->psi_m},
+        {"inner_tension_ratio", r->inner_tension_ratio},
+        {"boundary_tension_ratio", r->boundary_tension_ratio},
+        {"residual_N", r->residual_N},
+        {"tension_error", r->tension_error},
+        {"length_error", r->length_error},
+        {"shortest_length_ratio", r->shortest_length_ratio},
+    };
+    write_text("status", hf_status_word(r->status), f);
+    for (size_t i = 0; i < sizeof number / sizeof *number; i++) {
+        fputs(", ", f);
+        write_number(number[i].key, number[i].value, f);
+    }
+    fprintf(f, ", \"iterations\": %d, \"slack_cables\": %d, \"loaded_straight_chains\": %d", r->iterations, r->n_slack,
+            r->n_loaded_chain);
+}
+
+static void write_optimize(const hf_summary *s, FILE *f)
+{
+    fputs(",\n \"optimize\": {", f);
+    write_result(&s->best, f);
+    fprintf(f, ", \"generations\": %d, \"evaluations\": %ld, \"infeasible\": %ld, ", s->generations, s->evaluations,
+            s->infeasible);
+    fprintf(f, "\"best_generation\": %d, \"best_individual\": %d, ", s->best_generation, s->best_individual);
+    write_number("wall_s", s->optimize_wall_s, f);
+    fputs(", ", f);
+    write_number("cpu_s", s->optimize_cpu_s, f);
+    fputs(", ", f);
+    write_text("stop_reason", hf_ga_stop_word[s->optimize_stop], f);
+    fputc('}', f);
+}
+
+void hf_summary_write_json(const hf_summary *s, hf_status status, const char *messages, const char *path, FILE *f)
+{
+    fputs("{", f);
+    write_text("status", hf_status_word(status), f);
+    if (s->form.status != HF_NOT_EVALUATED) {
+        fputs(",\n \"form\": {", f);
+        write_result(&s->form, f);
+        fputs(", ", f);
+        write_text("stop_reason", hf_stop_reason_word((int)s->form.stop_reason), f);
+        fputs(", ", f);
+        write_number("wall_s", s->form_wall_s, f);
+        fputc('}', f);
+    }
+    if (s->has_optimize) write_optimize(s, f);
+    fprintf(f, ",\n \"threads\": %d, \"seed\": %llu, ", s->threads, (unsigned long long)s->seed);
+    write_text("version", s->version, f);
+    fputs(",\n ", f);
+    write_text("case", s->case_path, f);
+    if (path) {
+        fputs(", ", f);
+        write_text("file", path, f);
+    }
+    fputs(",\n ", f);
+    write_lines("warnings", "warning: ", messages, f);
+    if (status != HF_OK) {
+        fputs(",\n ", f);
+        write_lines("errors", "error: ", messages, f);
+    }
+    fputs("}\n", f);
+}

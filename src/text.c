@@ -1,0 +1,123 @@
+#include "text.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <limits.h>
+#include <locale.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_t *length, hf_messages *messages)
+{
+    *text = NULL;
+    *length = 0;
+    FILE *file = fopen(path, "rb");
+    if (!file) return hf_error(messages, code, "%s: cannot open: %s", path, strerror(errno));
+    size_t capacity = 1 << 14;
+    char *buffer = malloc(capacity);
+    while (buffer) {
+        *length += fread(buffer + *length, 1, capacity - *length - 1, file);
+        if (*length < capacity - 1) break;
+        capacity *= 2;
+        char *bigger = realloc(buffer, capacity);
+        if (!bigger) free(buffer);
+        buffer = bigger;
+    }
+    int failed = ferror(file), why = errno;
+    fclose(file);
+    if (!buffer) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    if (failed) {
+        free(buffer);
+        return hf_error(messages, code, "%s: cannot read: %s", path, strerror(why));
+    }
+    buffer[*length] = '\0';
+    *text = buffer;
+    return HF_OK;
+}
+
+static const char *skip_digits(const char *p)
+{
+    while (isdigit((unsigned char)*p))
+        p++;
+    return p;
+}
+
+int hf_text_double(const char *text, double *value)
+{
+    const char *p = text, *whole, *fraction;
+    if (*p == '+' || *p == '-') p++;
+    whole = p;
+    p = skip_digits(p);
+    size_t n_digit = (size_t)(p - whole);
+    if (*p == '.') {
+        fraction = ++p;
+        p = skip_digits(p);
+        n_digit += (size_t)(p - fraction);
+    }
+    if (n_digit == 0) return 0;
+    if (*p == 'e' || *p == 'E') {
+        p++;
+        if (*p == '+' || *p == '-') p++;
+        if (!isdigit((unsigned char)*p)) return 0;
+        p = skip_digits(p);
+    }
+    if (*p) return 0;
+    /* an application that links the library may have set a locale with a decimal comma */
+    locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0), old = (locale_t)0;
+    if (c_locale) old = uselocale(c_locale);
+    *value = strtod(text, NULL);
+    if (c_locale) {
+        uselocale(old);
+        freelocale(c_locale);
+    }
+    return isfinite(*value);
+}
+
+int hf_text_uint64(const char *text, uint64_t *value)
+{
+    if (!isdigit((unsigned char)*text) || *skip_digits(text)) return 0;
+    errno = 0;
+    unsigned long long number = strtoull(text, NULL, 10);
+    *value = number;
+    return errno == 0;
+}
+
+#define NEAREST_MAX 63 /* words longer than this are never called a typing error */
+
+/* Levenshtein distance of two short words, ignoring case. */
+static int edit_distance(const char *a, const char *b)
+{
+    int row[NEAREST_MAX + 1], n_a = (int)strlen(a), n_b = (int)strlen(b);
+    if (n_a > NEAREST_MAX || n_b > NEAREST_MAX) return INT_MAX;
+    for (int j = 0; j <= n_b; j++)
+        row[j] = j;
+    for (int i = 1; i <= n_a; i++) {
+        int diagonal = row[0];
+        row[0] = i;
+        for (int j = 1; j <= n_b; j++) {
+            int differs = tolower((unsigned char)a[i - 1]) != tolower((unsigned char)b[j - 1]);
+            int best = diagonal + differs;
+            diagonal = row[j];
+            if (row[j] + 1 < best) best = row[j] + 1;
+            if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
+            row[j] = best;
+        }
+    }
+    return row[n_b];
+}
+
+const char *hf_text_nearest(const char *word, const char *const *candidates, int n_candidate)
+{
+    const char *nearest = NULL;
+    int limit = 1 + (int)strlen(word) / 3, best = limit + 1;
+    for (int i = 0; i < n_candidate; i++) {
+        int distance = edit_distance(word, candidates[i]);
+        if (distance < best) {
+            best = distance;
+            nearest = candidates[i];
+        }
+    }
+    return nearest;
+}

@@ -1,0 +1,19 @@
+/* text - reading files and strict, locale-independent numbers; shared by the case file and the CSV import. */
+#ifndef HIFDM_TEXT_H
+#define HIFDM_TEXT_H
+
+#include <hifdm/status.h>
+#include <stdint.h>
+
+/* Whole file as a NUL-terminated string (caller frees). `code` is the status given when it cannot be read. */
+hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_t *length, hf_messages *messages);
+
+/* The whole string must be one decimal number; 1 when it is, 0 otherwise. hf_text_double takes no nan, no inf and no
+ * hexadecimal, and refuses what overflows. */
+int hf_text_double(const char *text, double *value);
+int hf_text_uint64(const char *text, uint64_t *value);
+
+/* The candidate nearest to `word` by edit distance, or NULL when none is near enough to be a typing error. */
+const char *hf_text_nearest(const char *word, const char *const *candidates, int n_candidate);
+
+#endif

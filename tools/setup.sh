@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+# Installs what is missing to build hifdm: setup.sh [--test] [--ci]
+#   --test  also what the tests need     --ci  also clang, the sanitizers' libraries and the linters (includes --test)
+# Silent and quick when nothing is missing. Asks for what is needed (a compiler, a pkg-config name, a Python module)
+# rather than for packages, so that other providers do as well: reference LAPACK, modules from pip.
+set -eu
+
+with_test=no with_ci=no
+for option in "$@"; do
+    case $option in
+    --test) with_test=yes ;;
+    --ci) with_test=yes with_ci=yes ;;
+    *) echo "usage: tools/setup.sh [--test] [--ci]" >&2; exit 2 ;;
+    esac
+done
+
+has() { command -v "$1" >/dev/null 2>&1; }
+has_library() { pkg-config --exists "$@" 2>/dev/null; }
+has_openmp() { printf '#include <omp.h>\n#include <stdlib.h>\n' | "$@" -fopenmp -fsyntax-only -x c - 2>/dev/null; }
+# Debian's own Python, as in the Makefile: its packages are of no use to another python3 that comes first in PATH.
+has_module() {
+    "${PYTHON:-/usr/bin/python3}" -c \
+        'import sys, importlib.util as u; sys.exit(not u.find_spec(sys.argv[1]))' "$1" 2>/dev/null
+}
+
+# The Debian packages that would provide what is missing, on one line.
+missing_packages() {
+    local list="" cc=${CC:-cc}
+    need() { list="$list $*"; }
+
+    # libc6-dev is only recommended by gcc, and recommended packages are not installed below.
+    case $cc in
+    *clang*) has_openmp "$cc" || need clang libc6-dev libomp-dev ;;
+    *) has_openmp "$cc" || need gcc libc6-dev ;;
+    esac
+    has make || need make
+    has pkg-config || need pkg-config
+    [ -n "${LAPACK_LIBS:-}" ] || has_library openblas || has_library lapack blas || need libopenblas-dev
+    has_library gsl || need libgsl-dev
+    has_library hdf5 || need libhdf5-dev
+    has_library yaml-0.1 || need libyaml-dev
+
+    if [ $with_test = yes ]; then
+        has_library check || need check
+        has h5dump || need hdf5-tools
+        has_module h5py || need python3-h5py
+        has_module yaml || need python3-yaml
+    fi
+    if [ $with_ci = yes ]; then
+        has clang || need clang
+        has_openmp clang || need libomp-dev
+        # Its package carries clang's version in its name, which is known once clang is there: the second round below.
+        if has clang && ! ls "$(clang -print-resource-dir)"/lib/linux/libclang_rt.tsan-*.a >/dev/null 2>&1; then
+            need "libclang-rt-$(clang -dumpversion | cut -d. -f1)-dev"
+        fi
+        has cppcheck || need cppcheck
+        has clang-tidy || need clang-tidy
+        has clang-format || need clang-format
+    fi
+    echo $list
+}
+
+# Succeeds if we may run apt-get, and says how in $as_root.
+may_install() {
+    has apt-get || return 1
+    as_root=""
+    [ "$(id -u)" = 0 ] && return 0
+    as_root="sudo -n"
+    has sudo && sudo -n true 2>/dev/null
+}
+
+apt() {
+    $as_root env DEBIAN_FRONTEND=noninteractive \
+        apt-get -y -o DPkg::Lock::Timeout=120 "$@" </dev/null >>"$log" 2>&1
+}
+
+have_lists() { ls /var/lib/apt/lists/*_Packages* >/dev/null 2>&1; }
+
+install() {
+    have_lists || apt update
+    # A list may be older than the archive: the one failure that asking again can mend.
+    apt install --no-install-recommends "$@" || { apt update && apt install --no-install-recommends "$@"; }
+}
+
+missing=$(missing_packages)
+[ -n "$missing" ] || exit 0
+if ! may_install; then
+    echo "Some packages are missing. Install them and try again; on Debian or Ubuntu:" >&2
+    echo "    sudo apt-get install $missing" >&2
+    exit 1
+fi
+
+log=$(mktemp "${TMPDIR:-/tmp}/hifdm-setup-XXXXXX")
+for round in 1 2; do
+    echo "Installing $missing"
+    # Unquoted: one argument per package.
+    if ! install $missing; then
+        tail -n 20 "$log" >&2
+        echo "Could not install: $missing (log: $log)" >&2
+        exit 1
+    fi
+    missing=$(missing_packages)
+    [ -n "$missing" ] || { rm -f "$log"; exit 0; }
+done
+echo "Still missing after installing: $missing (log: $log)" >&2
+exit 1
