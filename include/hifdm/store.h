@@ -3,8 +3,9 @@
  *
  * Layout, with n nodes, m cables, i iterations, g generations, p individuals, k genes. Every data set has the
  * attributes `units` ("" = dimensionless) and `description`. Role, group, law, status and the like are HDF5
- * enumerations, texts variable-length UTF-8. Wall and processor times, threads and host are attributes only: the data
- * sets of two runs of the same case are the same.
+ * enumerations. Texts are UTF-8: of fixed length where they are read back (program, title, warnings, case_path, the
+ * version in /form, ids), because HDF5 1.10 crashes on damaged ones of variable length, which the others are. Times,
+ * threads and host are attributes only: the data sets of two runs of the same case are the same.
  *   /            attributes: program ("hifdm"), format_version, version, git_describe, compiler, build_flags,
  *                hdf5_version, gsl_version, lapack, rng, host, argv[], started_utc, finished_utc, title, seed, threads,
  *                warnings, has_optimize, status (word of the form-finding's if not ok, else of the best individual's)
@@ -88,7 +89,8 @@ void hf_shape_free(hf_shape *shape);
 /* "VERSION (git describe)" of this library. */
 const char *hf_store_version(void);
 
-/* Switch the error printing of HDF5 off; once, before the first call. */
+/* Switch off HDF5's error printing, and its work at the end of the program, which crashes when the disk was full. Once,
+ * before the first call of HDF5. */
 void hf_store_quiet(void);
 
 #ifdef __cplusplus
