@@ -515,6 +515,11 @@ hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_message
     return status;
 }
 
+const char *hf_store_temporary(const hf_store *store)
+{
+    return store->temporary;
+}
+
 void hf_store_abandon(hf_store *store)
 {
     if (!store) return;

@@ -61,6 +61,9 @@ hf_status hf_store_best(hf_store *store, const hf_model *model, const hf_workspa
  * its temporary one, which the message tells. */
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
 
+/* Where the file is until it is finished; valid as long as the store. A program that is told to stop removes it. */
+const char *hf_store_temporary(const hf_store *store);
+
 /* Throw the unfinished file away and free the store. store may be NULL. */
 void hf_store_abandon(hf_store *store);
 
