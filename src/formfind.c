@@ -12,6 +12,7 @@
 /* Straight chains are looked at after this many iterations, and again each time that number has doubled. */
 #define FIRST_CHAIN_CHECK 64
 #define CHAIN_LOAD_SETTLED 0.01 /* relative change of the load between two looks that counts as settled */
+#define BLOWN_UP 1e9            /* a cable this many times its theoretical length is no answer */
 #define CHAIN_LOAD_NONE 1e-6    /* lateral load below this part of the reference tension is none */
 
 const char *hf_stop_reason_word(int reason)
@@ -99,6 +100,11 @@ static void measure_cables(const hf_model *m, const hf_form_settings *s, hf_work
         if (!isfinite(tension)) {
             r->status = HF_NOT_FINITE;
             r->culprit = e;
+            return;
+        }
+        if (part > BLOWN_UP) { /* what rounding leaves of a singular matrix */
+            r->status = HF_SINGULAR;
+            r->culprit = a < b ? a : b;
             return;
         }
         if (part < shortest) shortest = part;

@@ -194,6 +194,13 @@ static hf_status prepare_optimize(run *r, int threads, hf_messages *messages)
         if (!(r->base_N[k] > 0))
             return hf_error(messages, HF_BAD_CASE, "optimize: boundary cable '%s' has no tension to start from",
                             r->scene.cable_id[m->gene_cable[k]]);
+        const hf_optimize_settings *o = &r->settings.optimize;
+        if (r->base_N[k] + o->range_N < o->min_tension_N || r->base_N[k] - o->range_N > o->max_tension_N)
+            return hf_error(
+                messages, HF_BAD_CASE,
+                "optimize: boundary cable '%s' has %g N after form-finding; range_N %g around that does not "
+                "reach min_tension_N %g .. max_tension_N %g",
+                r->scene.cable_id[m->gene_cable[k]], r->base_N[k], o->range_N, o->min_tension_N, o->max_tension_N);
     }
     r->evaluator = (hf_evaluator){m, &r->settings.form, r->start_q_N_per_m, r->settings.optimize.rule,
                                   r->settings.optimize.boundary_ratio_cap};
@@ -291,24 +298,50 @@ static hf_status spare_inputs(const hf_case *settings, const char *output, hf_me
 
 /* ---- being told to stop: the temporary file goes, and the signal does what it would have done ---- */
 
-static char unfinished[HF_OUTPUT_SIZE + 64]; /* "" when there is none */
+static char unfinished[HF_OUTPUT_SIZE + 64];       /* "" when there is none */
+static volatile sig_atomic_t creating, stopped_by; /* a signal while the file is being made waits until it is */
 static const int stop_signals[] = {SIGINT, SIGTERM, SIGHUP};
 
 static void remove_unfinished(int signal_number)
 {
+    if (creating) {
+        stopped_by = signal_number;
+        return;
+    }
     if (unfinished[0]) unlink(unfinished);
     signal(signal_number, SIG_DFL);
     raise(signal_number);
 }
 
-static void watch_signals(const hf_store *store)
+static void set_handlers(void (*handler)(int))
 {
-    snprintf(unfinished, sizeof unfinished, "%s", store ? hf_store_temporary(store) : "");
     for (size_t i = 0; i < sizeof stop_signals / sizeof *stop_signals; i++) {
         struct sigaction old;
         if (sigaction(stop_signals[i], NULL, &old) == 0 && old.sa_handler != SIG_IGN) /* nohup stays nohup */
-            signal(stop_signals[i], store ? remove_unfinished : SIG_DFL);
+            signal(stop_signals[i], handler);
     }
+}
+
+static hf_status create_store(run *r, const hf_options *options, int argc, char *const *argv, const char *output,
+                              hf_messages *messages)
+{
+    creating = 1;
+    set_handlers(remove_unfinished);
+    hf_status status =
+        hf_store_create(output, options->force, &r->settings, &r->scene, argc, argv, &r->store, messages);
+    snprintf(unfinished, sizeof unfinished, "%s", status == HF_OK ? hf_store_temporary(r->store) : "");
+    creating = 0;
+    if (stopped_by) remove_unfinished(stopped_by);
+    return status;
+}
+
+static hf_status finish_store(run *r, const hf_summary *s, hf_messages *messages)
+{
+    hf_status status = hf_store_finish(r->store, s, messages);
+    r->store = NULL;
+    set_handlers(SIG_DFL);
+    unfinished[0] = '\0';
+    return status;
 }
 
 /* The stages that the case asks for, in order. HF_NOT_CONVERGED: nothing follows on a shape that is not one. */
@@ -334,14 +367,11 @@ static hf_status execute(run *r, const hf_options *options, int argc, char *cons
     hf_run_describe(&r->settings, &r->model, s);
     HF_TRY(choose_output(options, output, messages));
     HF_TRY(spare_inputs(&r->settings, output, messages));
-    HF_TRY(hf_store_create(output, options->force, &r->settings, &r->scene, argc, argv, &r->store, messages));
-    watch_signals(r->store);
+    HF_TRY(create_store(r, options, argc, argv, output, messages));
     hf_status status = stages(r, options, s, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
-    watch_signals(NULL);
-    hf_status finish = hf_store_finish(r->store, s, messages);
-    r->store = NULL;
+    hf_status finish = finish_store(r, s, messages);
     return finish != HF_OK ? finish : status;
 }
 

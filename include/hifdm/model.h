@@ -20,7 +20,7 @@ typedef struct {
     int n_band;         /* n_free * (half_bandwidth + 1); one spare place behind it takes what supports would add */
     int has_strut;      /* some force density is negative: D may be indefinite */
     double pretension_N;
-    double reference_N; /* what residuals are relative to: the pretension, or a pure FDM net's largest start tension */
+    double reference_N; /* what residuals are relative to: the largest tension that a law gives, else the pretension */
 
     int *row_of_node;                            /* [n_node] */
     int *node_of_row;                            /* [n_node] */
