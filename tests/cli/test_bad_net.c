@@ -92,6 +92,33 @@ START_TEST(long_lists_of_faults_are_cut)
 }
 END_TEST
 
+/* Long ids are cut in messages, warnings in the file; a letter of two bytes is not, or the JSON object would be none.
+ * Of ids with and without a letter of one byte in front, one is cut in the middle wherever the limits are. */
+START_TEST(words_are_cut_between_letters)
+{
+    char id[1003] = "x", nodes[2048], cables[16384];
+    for (size_t i = 1; i + 2 < sizeof id; i += 2)
+        memcpy(id + i, "\xc3\xa9", 3);
+    for (int from = 0; from < 2; from++) {
+        snprintf(nodes, sizeof nodes, "%s%s,9,9,9,inner\n", NODES, id + from);
+        HIFDM(2, "run", net_with(nodes, CABLES), NOWHERE, "--json");
+        EXPECT(out_as("error.json"), "--", "len(a['errors']) == 1");
+
+        snprintf(cables, sizeof cables, "%s", CABLES); /* cables too long to carry anything: five are named as slack */
+        for (int i = 0; i < 6; i++)
+            snprintf(cables + strlen(cables), sizeof cables - strlen(cables), "%s%d,a,c,inner,length,5\n", id + from,
+                     i);
+        snprintf(nodes, sizeof nodes, "%.19s,%s%s", NODES, id + from,
+                 "\na,0,0,0,support,1\nb,2,0,0,support,1\n"
+                 "c,1,0.5,0.1,inner,1\nd,1,1.7,0,support,1\n");
+        HIFDM(0, "run", net_with(nodes, cables), "-o", temp("long.h5"), "--force", "--json");
+        EXPECT(out_as("run.json"), "--", "len(a['warnings']) == 2");
+        HIFDM(0, "show", temp("long.h5"), "--json");
+        EXPECT(out_as("show.json"), "--", "len(a['warnings']) >= 1");
+    }
+}
+END_TEST
+
 START_TEST(missing_files_of_a_net_are_told)
 {
     const char *path = net_with(NODES, CABLES);
@@ -125,6 +152,7 @@ Suite *suite_cli_bad_net(void)
     TCase *tcase = tcase_create("bad_net");
     tcase_add_loop_test(tcase, faults_are_told_with_file_line_and_id, 0, N_FAULTY);
     tcase_add_test(tcase, long_lists_of_faults_are_cut);
+    tcase_add_test(tcase, words_are_cut_between_letters);
     tcase_add_test(tcase, missing_files_of_a_net_are_told);
     tcase_add_test(tcase, other_ways_to_write_a_table_are_read);
     suite_add_tcase(suite, tcase);

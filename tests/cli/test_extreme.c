@@ -177,6 +177,18 @@ START_TEST(impossible_lengths_are_ill_posed)
 }
 END_TEST
 
+/* A node between two supports is in balance wherever it stands on their line, but its cables have the tension that was
+ * asked for only where the iteration ends. 1e-6: ten times the tolerance on forces. */
+START_TEST(tensions_are_those_asked_for)
+{
+    HIFDM(0, "run",
+          net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,2,0,0,support\nc,0.3,0.5,0,inner\n",
+                   "id,i,j,group,law,value\n1,a,c,inner,tension,10\n2,c,b,inner,tension,10\n"),
+          "-o", temp("t.h5"));
+    EXPECT(temp("t.h5"), "--", "np.allclose(a['form/tension_N'], 10, rtol=1e-6, atol=0)");
+}
+END_TEST
+
 /* ---- optimisation ---- */
 
 /* Genes stay within range_N of the found tensions; when the bounds leave nothing of that, it is told. */
@@ -214,6 +226,7 @@ Suite *suite_cli_extreme(void)
     tcase_add_test(tcase, cancelling_struts_are_singular);
     tcase_add_test(tcase, hand_case);
     tcase_add_test(tcase, impossible_lengths_are_ill_posed);
+    tcase_add_test(tcase, tensions_are_those_asked_for);
     tcase_add_test(tcase, bounds_that_exclude_the_range_are_told);
     tcase_add_loop_test(tcase, odd_optimisations_never_lose_against_their_base, 0,
                         sizeof small_gas / sizeof *small_gas);
