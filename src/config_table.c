@@ -3,12 +3,12 @@
 
 #include <stddef.h>
 
-const char *const hf_method_word[3] = {"hifdm", "iterative_fdm", "fdm"};
+const char *const hf_method_word[5] = {"hifdm", "iterative_fdm", "fdm", "newton", "auto"};
 const char *const hf_stop_rule_word[2] = {"residual", "rms_change"};
 const char *const hf_rule_word[3] = {"force_density", "tension", "seeded"};
 
 /* NULL-terminated, in the order of the enums */
-static const char *const method_words[] = {"hifdm", "iterative_fdm", "fdm", NULL};
+static const char *const method_words[] = {"hifdm", "iterative_fdm", "fdm", "newton", "auto", NULL};
 static const char *const stop_words[] = {"residual", "rms_change", NULL};
 static const char *const rule_words[] = {"force_density", "tension", "seeded", NULL};
 static const char *const spacing_words[] = {"equal_arc", "equal_projected", NULL};
@@ -54,9 +54,11 @@ const hf_field hf_field_table[] = {
     {"scene.import.cables", HF_FIELD_TEXT, AT(cables_path), 1, HF_PATH_SIZE, NULL, "", NULL,
      "CSV id,i,j,group,law,value[,EA_N]; path relative to the case file"},
 
-    {"form.method", HF_FIELD_WORD, AT(form.method), 0, 0, "hifdm", "", method_words,
-     "hifdm: every cable obeys its own law (Eqs. 7, 8); iterative_fdm: every cable is held at a tension (Eq. 7); fdm: "
-     "one solve with the starting force densities (Eqs. 5, 6)"},
+    {"form.method", HF_FIELD_WORD, AT(form.method), 0, 0, "auto", "", method_words,
+     "auto: newton where it applies, else hifdm; newton: every cable obeys its own law, by Newton on the energy; "
+     "hifdm: "
+     "the same by the paper's iteration (Eqs. 7, 8); iterative_fdm: every cable is held at a tension (Eq. 7); fdm: one "
+     "solve with the starting force densities (Eqs. 5, 6)"},
     {"form.pretension_N", HF_FIELD_DOUBLE, AT(form.pretension_N), HF_ABOVE_ZERO, 1e9, "10", "N", NULL,
      "uniform tension Td of the inner cables"},
     {"form.stop", HF_FIELD_WORD, AT(form.stop), 0, 0, "residual", "", stop_words,

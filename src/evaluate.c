@@ -1,6 +1,36 @@
 #include <hifdm/evaluate.h>
 
+#include "newton.h"
+
 #include <math.h>
+
+int hf_evaluate_method(const hf_model *m, const hf_form_settings *form, const char **why)
+{
+    const char *reason = "asked for";
+    int method = form->method == HF_METHOD_NEWTON ? HF_METHOD_NEWTON : HF_METHOD_HIFDM;
+    if (form->method == HF_METHOD_AUTO) {
+        method = m->has_newton && form->stop == HF_STOP_RESIDUAL ? HF_METHOD_NEWTON : HF_METHOD_HIFDM;
+        reason = method == HF_METHOD_NEWTON ? "every potential is convex: quadratic convergence"
+                                            : "stop: rms_change is a rule for it";
+    }
+    if (!m->has_newton && method == HF_METHOD_NEWTON) method = HF_METHOD_HIFDM;
+    if (!m->has_newton)
+        reason = m->has_strut ? "struts: the energy is not convex" : "force densities are given: one solve";
+    if (why) *why = reason;
+    return method;
+}
+
+hf_status hf_evaluate_form(const hf_model *m, const hf_form_settings *form, hf_workspace *w, hf_history *history,
+                           hf_form_result *result)
+{
+    hf_form_prepare(m, w);
+    if (hf_evaluate_method(m, form, NULL) == HF_METHOD_NEWTON)
+        hf_newton_find(m, form, w, history, result);
+    else
+        hf_form_find(m, form, form->stop, w, history, result);
+    if (m->has_newton) hf_newton_certify(m, w, result);
+    return result->status;
+}
 
 /* What the design means for boundary cable e (METHOD section 5). */
 static void apply_rule(const hf_evaluator *v, int e, double tension_N, hf_workspace *w)
@@ -33,7 +63,10 @@ hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspac
     for (int k = 0; k < m->n_gene; k++)
         apply_rule(v, m->gene_cable[k], design_N[k], w);
     int stop = v->rule == HF_RULE_SEEDED ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL;
-    hf_form_find(m, v->form, stop, w, NULL, result);
+    if (stop == HF_STOP_RESIDUAL && m->has_newton)
+        hf_newton_find(m, v->form, w, NULL, result);
+    else
+        hf_form_find(m, v->form, stop, w, NULL, result);
     if (result->status == HF_OK && result->boundary_tension_ratio > v->boundary_ratio_cap)
         result->status = HF_RATIO_CAP;
     if (result->status != HF_OK)

@@ -323,6 +323,7 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, h
         need_residual = history || stop == HF_STOP_RESIDUAL || !p.iterates;
     double length_gap;
     *r = (hf_form_result){.status = HF_OK, .culprit = -1};
+    r->position_error_m = r->condition = r->backward_error = (double)NAN;
     memcpy(w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double)); /* the support rows count */
     for (;;) {
         r->iterations++;
@@ -338,7 +339,7 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, h
     }
     if (r->status == HF_OK || r->status == HF_NOT_CONVERGED) {
         if (!need_residual) r->residual_N = largest_residual_N(m, w);
-        judge_chains(m, w, &p, r);
+        if (r->status == HF_OK || r->iterations >= FIRST_CHAIN_CHECK) judge_chains(m, w, &p, r);
     }
     return finish(m, w, r);
 }

@@ -167,6 +167,9 @@ void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table,
     X(hf_summary, object, prefix "inner_tension_ratio", result.inner_tension_ratio, REAL)                              \
     X(hf_summary, object, prefix "boundary_tension_ratio", result.boundary_tension_ratio, REAL)                        \
     X(hf_summary, object, prefix "shortest_length_ratio", result.shortest_length_ratio, REAL)                          \
+    X(hf_summary, object, prefix "position_error_m", result.position_error_m, REAL)                                    \
+    X(hf_summary, object, prefix "condition", result.condition, REAL)                                                  \
+    X(hf_summary, object, prefix "backward_error", result.backward_error, REAL)                                        \
     X(hf_summary, object, prefix "n_slack", result.n_slack, INT)                                                       \
     X(hf_summary, object, prefix "n_loaded_chain", result.n_loaded_chain, INT)
 

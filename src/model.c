@@ -104,6 +104,7 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
         if (s->group[e] == HF_GROUP_BOUNDARY && (m->end_row[2 * e] < m->n_free || m->end_row[2 * e + 1] < m->n_free))
             m->gene_cable[m->n_gene++] = e;
     }
+    m->has_newton = !only_force_density && !m->has_strut;
     m->pretension_N = form->pretension_N;
     m->reference_N = only_force_density ? largest_q_tension : form->pretension_N;
 }

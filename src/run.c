@@ -166,8 +166,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     if (hf_workspace_create(&r->model, &r->workspace) != HF_OK || create_history(form, &r->history) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", r->model.n_node);
     double start_s = hf_run_clock_s();
-    hf_form_prepare(&r->model, &r->workspace);
-    hf_form_find(&r->model, form, form->stop, &r->workspace, &r->history, &s->form);
+    hf_evaluate_form(&r->model, form, &r->workspace, &r->history, &s->form);
     s->form_wall_s = hf_run_clock_s() - start_s;
     hf_status status = hf_run_explain(&r->scene, &r->model, form, &r->workspace, &s->form, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;

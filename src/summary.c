@@ -67,6 +67,9 @@ static void write_result(const hf_form_result *r, FILE *f)
         {"tension_error", r->tension_error},
         {"length_error", r->length_error},
         {"shortest_length_ratio", r->shortest_length_ratio},
+        {"position_error_m", r->position_error_m},
+        {"condition", r->condition},
+        {"backward_error", r->backward_error},
     };
     write_text("status", hf_status_word(r->status), f);
     for (size_t i = 0; i < sizeof number / sizeof *number; i++) {

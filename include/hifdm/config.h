@@ -11,11 +11,11 @@
 extern "C" {
 #endif
 
-typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM } hf_method;
+typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHOD_NEWTON, HF_METHOD_AUTO } hf_method;
 typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
 
-extern const char *const hf_method_word[3];
+extern const char *const hf_method_word[5];
 extern const char *const hf_stop_rule_word[2];
 extern const char *const hf_rule_word[3];
 

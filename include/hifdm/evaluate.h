@@ -9,6 +9,14 @@
 extern "C" {
 #endif
 
+/* What form.method comes to in this net: HF_METHOD_NEWTON, or HF_METHOD_HIFDM for the paper's iteration (which serves
+ * iterative_fdm and fdm too: the laws of the model decide). *why (may be NULL): a reason for people. */
+int hf_evaluate_method(const hf_model *model, const hf_form_settings *form, const char **why);
+
+/* Form-finding as the case asks for it, with its certificate. Returns result->status; the shape stays in the workspace. */
+hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
+                           hf_history *history, hf_form_result *result);
+
 /* Constant during a run, shared by all threads. model, form and start_q are borrowed. */
 typedef struct {
     const hf_model *model;

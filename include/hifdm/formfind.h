@@ -39,6 +39,10 @@ typedef struct {
     double inner_tension_ratio; /* max T / min T; NaN without positive tensions */
     double boundary_tension_ratio;
     double shortest_length_ratio; /* min l / theoretical l over all cables */
+    double position_error_m;      /* estimate: largest move of a node in the Newton step that would follow */
+    double condition;             /* estimate for the Newton matrix; INFINITY when it is singular */
+    double backward_error;        /* residual_N over the largest sum of tensions at a node; the three are NaN unless
+                                       hf_newton_certify was asked */
     int n_slack;
     int n_loaded_chain; /* straight chains under lateral load: tensions there mean nothing */
 } hf_form_result;
