@@ -6,11 +6,13 @@
 const char *const hf_method_word[5] = {"hifdm", "iterative_fdm", "fdm", "newton", "auto"};
 const char *const hf_stop_rule_word[2] = {"residual", "rms_change"};
 const char *const hf_rule_word[3] = {"force_density", "tension", "seeded"};
+const char *const hf_solver_word[4] = {"auto", "chord", "newton", "fixed_point"};
 
 /* NULL-terminated, in the order of the enums */
 static const char *const method_words[] = {"hifdm", "iterative_fdm", "fdm", "newton", "auto", NULL};
 static const char *const stop_words[] = {"residual", "rms_change", NULL};
 static const char *const rule_words[] = {"force_density", "tension", "seeded", NULL};
+static const char *const solver_words[] = {"auto", "chord", "newton", "fixed_point", NULL};
 static const char *const spacing_words[] = {"equal_arc", "equal_projected", NULL};
 static const char *const boundary_words[] = {"outer_edge", "module_edges", NULL};
 static const char *const supports_words[] = {"module_corners", "ribs", "perimeter", NULL};
@@ -78,6 +80,9 @@ const hf_field hf_field_table[] = {
     {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", rule_words,
      "what a design means: boundary held at q = T'/L* (always one answer), held at T', or Eq. 8 started from q = T'/L* "
      "and stopped by rms_change (the paper's literal reading; its optimum depends on where it stops)"},
+    {"optimize.solver", HF_FIELD_WORD, AT(optimize.solver), 0, 0, "auto", "", solver_words,
+     "how an individual is solved: chord shares one factored Newton matrix, eight designs to a pass; newton: each its "
+     "own; fixed_point: the paper's iteration. auto: chord where it applies, else newton, else fixed_point"},
     {"optimize.population", HF_FIELD_INT, AT(optimize.population), 2, 100000, "50", "", NULL, "individuals"},
     {"optimize.generations", HF_FIELD_INT, AT(optimize.generations), 1, 1000000, "400", "", NULL,
      "largest number of generations"},

@@ -32,13 +32,15 @@ hf_status hf_evaluate_form(const hf_model *m, const hf_form_settings *form, hf_w
     return result->status;
 }
 
+double hf_evaluate_design_length_m(const hf_model *m, int i_cable)
+{
+    return m->law[i_cable] == HF_LAW_LENGTH ? m->target[i_cable] : m->length_m[i_cable];
+}
+
 /* What the design means for boundary cable e (METHOD section 5). */
 static void apply_rule(const hf_evaluator *v, int e, double tension_N, hf_workspace *w)
 {
-    /* L* is the prescribed length where there is one, else the theoretical length */
-    const hf_model *m = v->model;
-    double length_m = m->law[e] == HF_LAW_LENGTH ? m->target[e] : m->length_m[e];
-    w->q_N_per_m[e] = tension_N / length_m;
+    w->q_N_per_m[e] = tension_N / hf_evaluate_design_length_m(v->model, e);
     switch (v->rule) {
     case HF_RULE_FORCE_DENSITY:
         w->law[e] = HF_LAW_FORCE_DENSITY;
@@ -53,7 +55,7 @@ static void apply_rule(const hf_evaluator *v, int e, double tension_N, hf_worksp
     }
 }
 
-hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspace *w, hf_form_result *result)
+void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_workspace *w)
 {
     const hf_model *m = v->model;
     hf_form_prepare(m, w);
@@ -62,14 +64,25 @@ hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspac
         if (m->law[e] != HF_LAW_FORCE_DENSITY) w->q_N_per_m[e] = v->start_q_N_per_m[e];
     for (int k = 0; k < m->n_gene; k++)
         apply_rule(v, m->gene_cable[k], design_N[k], w);
-    int stop = v->rule == HF_RULE_SEEDED ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL;
-    if (stop == HF_STOP_RESIDUAL && m->has_newton)
-        hf_newton_find(m, v->form, w, NULL, result);
-    else
-        hf_form_find(m, v->form, stop, w, NULL, result);
+}
+
+hf_status hf_evaluate_judge(const hf_evaluator *v, hf_form_result *result)
+{
     if (result->status == HF_OK && result->boundary_tension_ratio > v->boundary_ratio_cap)
         result->status = HF_RATIO_CAP;
     if (result->status != HF_OK)
         result->psi_m = result->inner_tension_ratio = result->boundary_tension_ratio = (double)NAN;
     return result->status;
+}
+
+hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspace *w, hf_form_result *result)
+{
+    hf_evaluate_prepare(v, design_N, w);
+    if (v->rule == HF_RULE_SEEDED)
+        hf_form_find(v->model, v->form, HF_STOP_RMS_CHANGE, w, NULL, result);
+    else if (v->solver != HF_SOLVER_FIXED_POINT && v->model->has_newton)
+        hf_newton_find(v->model, v->form, w, NULL, result);
+    else
+        hf_form_find(v->model, v->form, HF_STOP_RESIDUAL, w, NULL, result);
+    return hf_evaluate_judge(v, result);
 }

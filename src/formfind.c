@@ -343,3 +343,23 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, h
     }
     return finish(m, w, r);
 }
+
+hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r)
+{
+    double length_gap;
+    *r = (hf_form_result){.status = HF_OK, .culprit = -1};
+    r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    for (int pass = 0; pass < 2; pass++) { /* the lengths give the force densities of law tension, these its tensions */
+        measure_cables(m, s, w, r, &length_gap);
+        if (r->status != HF_OK) return finish(m, w, r);
+        for (int e = 0; e < m->n_cable; e++)
+            if (w->law[e] == HF_LAW_TENSION) w->q_N_per_m[e] = w->target[e] / w->length_m[e];
+    }
+    r->residual_N = largest_residual_N(m, w);
+    r->stop_reason = HF_STOPPED_RESIDUAL;
+    if (!(r->residual_N <= s->residual_tolerance * m->reference_N && length_gap <= s->length_tolerance)) {
+        r->status = HF_NOT_CONVERGED;
+        r->stop_reason = HF_STOPPED_MAX_ITERATIONS;
+    }
+    return finish(m, w, r);
+}

@@ -67,7 +67,7 @@ static void print_optimize_time(plan *p, const hf_form_settings *form, int threa
     double *start = malloc((size_t)m->n_cable * sizeof *start), *base = malloc((size_t)m->n_gene * sizeof *base);
     if (start && base) {
         hf_form_result r;
-        hf_evaluator v = {m, form, start, o->rule, o->boundary_ratio_cap};
+        hf_evaluator v = {m, form, start, o->rule, o->solver, o->boundary_ratio_cap};
         memcpy(start, p->workspace.q_N_per_m, (size_t)m->n_cable * sizeof *start);
         for (int k = 0; k < m->n_gene; k++)
             base[k] = p->workspace.tension_N[m->gene_cable[k]];

@@ -191,12 +191,17 @@ static hf_status prepare_optimize(run *r, int threads, hf_messages *messages)
             return hf_error(messages, HF_BAD_CASE, "optimize: boundary cable '%s' has no tension to start from",
                             r->scene.cable_id[m->gene_cable[k]]);
     }
-    r->evaluator = (hf_evaluator){m, &r->settings.form, r->start_q_N_per_m, r->settings.optimize.rule,
+    r->evaluator = (hf_evaluator){m,
+                                  &r->settings.form,
+                                  r->start_q_N_per_m,
+                                  r->settings.optimize.rule,
+                                  r->settings.optimize.solver,
                                   r->settings.optimize.boundary_ratio_cap};
     if (hf_batch_create(&r->evaluator, threads, &r->batch) != HF_OK ||
         hf_ga_create(&r->settings.optimize, m, r->base_N, &r->ga) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for %d individuals of %d genes on %d threads",
                         r->settings.optimize.population, m->n_gene, r->batch.n_thread);
+    hf_batch_share(&r->batch, r->base_N);
     return HF_OK;
 }
 

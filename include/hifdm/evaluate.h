@@ -23,6 +23,7 @@ typedef struct {
     const hf_form_settings *form;
     const double *start_q_N_per_m; /* [n_cable] first force densities of the inner cables: those of the found shape */
     int rule;                      /* hf_rule */
+    int solver;                    /* hf_solver */
     double boundary_ratio_cap;
 } hf_evaluator;
 
@@ -30,6 +31,14 @@ typedef struct {
  * its status in the result and NaN measures; that is not an error of the run. Returns result->status. */
 hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace,
                       hf_form_result *result);
+
+/* The parts of hf_evaluate around the solver. prepare: laws, targets and first force densities of a design into the
+ * workspace. judge: caps, and NaN measures for what is infeasible; returns result->status. */
+void hf_evaluate_prepare(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace);
+hf_status hf_evaluate_judge(const hf_evaluator *evaluator, hf_form_result *result);
+
+/* L* of a boundary cable: the prescribed length where there is one, else the theoretical one, m. */
+double hf_evaluate_design_length_m(const hf_model *model, int i_cable);
 
 #ifdef __cplusplus
 }
