@@ -108,7 +108,7 @@ static void lay_out_lanes(hf_arena *a, const hf_chord *c, hf_chord_lanes *l)
 {
     const hf_model *m = c->evaluator->model;
     l->x_m = hf_arena_take(a, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
-    l->force_N = hf_arena_take(a, ((size_t)c->n_dof + 2 * (size_t)c->width + 4) * HF_LANES, sizeof(double));
+    l->force_N = hf_arena_take(a, ((size_t)c->n_dof + 2 * (size_t)c->width + 8) * HF_LANES, sizeof(double));
     l->gene = hf_arena_take(a, (size_t)m->n_gene * HF_LANES, sizeof(double));
 }
 

@@ -23,6 +23,9 @@ void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, 
             double load = m->load_N ? m->load_N[c * m->n_node + i] : 0;
             force[3 * i + c] = (lanes){0} + load;
         }
+    /* the rows behind: a lane that failed may have left NaNs there */
+    for (int i = chord->n_dof; i < chord->n_dof + chord->width + 8; i++)
+        force[i] = (lanes){0};
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], k = chord->gene_of_cable[e];
         lanes dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a], q;
@@ -50,54 +53,55 @@ void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, 
         residual_squared[k] = largest[k];
 }
 
-/* Four rows at a time: the rows share the loads of what is already solved. The packed rows hold `width` entries, zeros
- * first where the band is shorter, and the right-hand side has `width` zero rows in front and behind. */
+/* Both triangular solves take four rows at a time, which share the loads of what is already solved. A packed row (or
+ * column) holds `width` entries, zeros where the band is shorter; `width` zero rows stand before and behind the
+ * right-hand side, and up to three rows behind the last are worked on in vain, so no edge needs code of its own. */
+
+/* Row j + p holds the columns j + p - w .. j + p - 1; all four share j + 3 - w .. j - 1. */
 static void forward(const hf_chord *chord, lanes *f)
 {
     int w = chord->width;
     for (int j = 0; j < chord->n_dof; j += 4) {
-        int n_row = chord->n_dof - j < 4 ? chord->n_dof - j : 4;
         const double *r0 = chord->row + (size_t)j * (size_t)w, *r1 = r0 + w, *r2 = r1 + w, *r3 = r2 + w;
-        lanes s0 = f[j], s1 = f[j + 1], s2 = f[j + 2], s3 = f[j + 3];
-        /* row j + p holds the columns j + p - w .. j + p - 1; the shared ones are j + 3 - w .. j - 1 */
-        for (int p = 0; p < n_row; p++) {
-            const double *r = chord->row + (size_t)(j + p) * (size_t)w;
-            lanes *s = p == 0 ? &s0 : p == 1 ? &s1 : p == 2 ? &s2 : &s3;
-            for (int i = 0; i < 3 - p; i++)
-                *s -= r[i] * f[j + p - w + i];
-        }
-        for (int i = 0; i + 3 < w; i++) {
-            lanes y = f[j + 3 - w + i];
-            s0 -= r0[3 + i] * y;
-            s1 -= r1[2 + i] * y;
-            s2 -= r2[1 + i] * y;
-            s3 -= r3[i] * y;
-        }
         const double *d = chord->inverse_diagonal + j;
-        f[j] = s0 *= d[0];
-        if (n_row > 1) f[j + 1] = s1 = (s1 - r1[w - 1] * s0) * d[1];
-        if (n_row > 2) f[j + 2] = s2 = (s2 - r2[w - 2] * s0 - r2[w - 1] * s1) * d[2];
-        if (n_row > 3) f[j + 3] = (s3 - r3[w - 3] * s0 - r3[w - 2] * s1 - r3[w - 1] * s2) * d[3];
+        lanes *y = f + j;
+        lanes s0 = y[0] - r0[0] * y[-w] - r0[1] * y[1 - w] - r0[2] * y[2 - w];
+        lanes s1 = y[1] - r1[0] * y[1 - w] - r1[1] * y[2 - w], s2 = y[2] - r2[0] * y[2 - w], s3 = y[3];
+        for (int i = 0; i + 3 < w; i++) {
+            lanes solved = y[3 - w + i];
+            s0 -= r0[3 + i] * solved;
+            s1 -= r1[2 + i] * solved;
+            s2 -= r2[1 + i] * solved;
+            s3 -= r3[i] * solved;
+        }
+        y[0] = s0 *= d[0];
+        y[1] = s1 = (s1 - r1[w - 1] * s0) * d[1];
+        y[2] = s2 = (s2 - r2[w - 2] * s0 - r2[w - 1] * s1) * d[2];
+        y[3] = (s3 - r3[w - 3] * s0 - r3[w - 2] * s1 - r3[w - 1] * s2) * d[3];
     }
 }
 
-/* The same from below with the columns: column j holds the rows j + 1 .. j + w. */
+/* Column j + p holds the rows j + p + 1 .. j + p + w; all four share j + 4 .. j + w. */
 static void backward(const hf_chord *chord, lanes *f)
 {
     int w = chord->width;
-    for (int top = (chord->n_dof - 1) / 4 * 4; top >= 0; top -= 4) {
-        int n_row = chord->n_dof - top < 4 ? chord->n_dof - top : 4;
-        for (int p = n_row - 1; p >= 0; p--) {
-            /* two sums, even and odd entries, to keep the adders busy */
-            const double *c = chord->column + (size_t)(top + p) * (size_t)w;
-            const lanes *below = f + top + p + 1;
-            lanes even = f[top + p], odd = {0};
-            for (int i = 0; i < w; i += 2) {
-                even -= c[i] * below[i];
-                odd += c[i + 1] * below[i + 1];
-            }
-            f[top + p] = (even - odd) * chord->inverse_diagonal[top + p];
+    for (int j = (chord->n_dof - 1) / 4 * 4; j >= 0; j -= 4) {
+        const double *c0 = chord->column + (size_t)j * (size_t)w, *c1 = c0 + w, *c2 = c1 + w, *c3 = c2 + w;
+        const double *d = chord->inverse_diagonal + j;
+        lanes *y = f + j;
+        lanes s0 = y[0], s1 = y[1] - c1[w - 1] * y[w + 1], s2 = y[2] - c2[w - 2] * y[w + 1] - c2[w - 1] * y[w + 2];
+        lanes s3 = y[3] - c3[w - 3] * y[w + 1] - c3[w - 2] * y[w + 2] - c3[w - 1] * y[w + 3];
+        for (int i = 0; i + 3 < w; i++) {
+            lanes solved = y[4 + i];
+            s0 -= c0[3 + i] * solved;
+            s1 -= c1[2 + i] * solved;
+            s2 -= c2[1 + i] * solved;
+            s3 -= c3[i] * solved;
         }
+        y[3] = s3 *= d[3];
+        y[2] = s2 = (s2 - c2[0] * s3) * d[2];
+        y[1] = s1 = (s1 - c1[0] * s2 - c1[1] * s3) * d[1];
+        y[0] = (s0 - c0[0] * s1 - c0[1] * s2 - c0[2] * s3) * d[0];
     }
 }
 
