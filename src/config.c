@@ -277,6 +277,21 @@ static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
     }
 }
 
+/* Where the parser stopped. A byte that is no text at all has an offset only. */
+static yaml_mark_t problem_mark(const yaml_parser_t *parser, const char *text)
+{
+    yaml_mark_t mark = parser->problem_mark;
+    if (parser->error != YAML_READER_ERROR) return mark;
+    mark.line = mark.column = 0;
+    for (size_t i = 0; i < parser->problem_offset && text[i]; i++) {
+        mark.column++;
+        if (text[i] != '\n') continue;
+        mark.line++;
+        mark.column = 0;
+    }
+    return mark;
+}
+
 /* Parse `text` as one YAML document and give its root to `use`. */
 static void with_document(loader *l, const char *text, size_t length,
                           void (*use)(loader *, const yaml_node_t *, void *), void *context)
@@ -290,14 +305,13 @@ static void with_document(loader *l, const char *text, size_t length,
     }
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
     if (!yaml_parser_load(&parser, &document)) {
-        yaml_mark_t mark = parser.problem_mark;
-        complain(l, mark, "YAML", parser.problem ? parser.problem : "cannot be read", "");
+        complain(l, problem_mark(&parser, text), "YAML", parser.problem ? parser.problem : "cannot be read", "");
     } else {
         l->document = &document;
         use(l, yaml_document_get_root_node(&document), context);
         yaml_document_delete(&document);
         if (!yaml_parser_load(&parser, &next)) {
-            complain(l, parser.problem_mark, "YAML", parser.problem ? parser.problem : "cannot be read", "");
+            complain(l, problem_mark(&parser, text), "YAML", parser.problem ? parser.problem : "cannot be read", "");
         } else {
             if (yaml_document_get_root_node(&next))
                 complain(l, next.start_mark, "YAML", "a second document in this file", "; one case per file");

@@ -51,17 +51,22 @@ static void write_cables(const hf_scene *s, const hf_shape *shape, FILE *f)
     }
 }
 
-/* Written under a temporary name and renamed, so that no half-written file is ever seen. */
-static hf_status write_file(const char *folder, const char *name, int force, const hf_scene *scene,
-                            const hf_shape *shape, void (*write)(const hf_scene *, const hf_shape *, FILE *),
-                            hf_messages *messages)
+/* The path of one file; refused when it is there and not to be replaced. */
+static hf_status claim(const hf_options *o, const char *name, char path[PATH_SIZE], hf_messages *messages)
 {
-    char path[PATH_SIZE], temporary[PATH_SIZE + 8];
-    if (snprintf(path, sizeof path, "%s/%s", folder, name) >= PATH_SIZE)
-        return hf_error(messages, HF_IO, "%s: the path is too long", folder);
-    snprintf(temporary, sizeof temporary, "%s.tmp", path);
-    if (!force && access(path, F_OK) == 0)
+    if (snprintf(path, PATH_SIZE, "%s/%s", o->csv, name) >= PATH_SIZE)
+        return hf_error(messages, HF_IO, "%s: the path is too long", o->csv);
+    if (!o->force && access(path, F_OK) == 0)
         return hf_error(messages, HF_EXISTS, "%s exists; use --force to replace it", path);
+    return HF_OK;
+}
+
+/* Written under a temporary name and renamed, so that no half-written file is ever seen. */
+static hf_status write_file(const char *path, const hf_scene *scene, const hf_shape *shape,
+                            void (*write)(const hf_scene *, const hf_shape *, FILE *), hf_messages *messages)
+{
+    char temporary[PATH_SIZE + 8];
+    snprintf(temporary, sizeof temporary, "%s.tmp", path);
     FILE *f = fopen(temporary, "w");
     if (!f) return hf_error(messages, HF_IO, "%s: cannot write: %s", temporary, strerror(errno));
     write(scene, shape, f);
@@ -77,6 +82,7 @@ static hf_status export_shape(const hf_options *o, hf_scene *scene, hf_shape *sh
                               hf_messages *messages)
 {
     hf_summary summary;
+    char nodes[PATH_SIZE], cables[PATH_SIZE];
     HF_TRY(hf_store_read_summary(o->file, &summary, messages));
     int has_best = summary.has_optimize && summary.best.status == HF_OK;
     int of_best = o->stage ? !strcmp(o->stage, "optimize") : has_best;
@@ -86,10 +92,12 @@ static hf_status export_shape(const hf_options *o, hf_scene *scene, hf_shape *sh
     HF_TRY(hf_store_read_shape(o->file, of_best, shape, messages));
     if (mkdir(o->csv, 0777) != 0 && errno != EEXIST)
         return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", o->csv, strerror(errno));
-    HF_TRY(write_file(o->csv, "nodes.csv", o->force, scene, shape, write_nodes, messages));
-    HF_TRY(write_file(o->csv, "cables.csv", o->force, scene, shape, write_cables, messages));
-    snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s/nodes.csv and %s/cables.csv", o->file,
-             scene->n_node, scene->n_cable, of_best ? "optimised" : "form-finding", o->csv, o->csv);
+    HF_TRY(claim(o, "nodes.csv", nodes, messages)); /* both before either is written */
+    HF_TRY(claim(o, "cables.csv", cables, messages));
+    HF_TRY(write_file(nodes, scene, shape, write_nodes, messages));
+    HF_TRY(write_file(cables, scene, shape, write_cables, messages));
+    snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s and %s", o->file, scene->n_node,
+             scene->n_cable, of_best ? "optimised" : "form-finding", nodes, cables);
     return HF_OK;
 }
 

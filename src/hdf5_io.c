@@ -140,10 +140,21 @@ static hid_t make_enum(hf_hdf5_kind kind)
     return type;
 }
 
-/* The caller closes it. Negative after a failure of HDF5. */
-static hid_t make_type(hf_hdf5_kind kind)
+/* length: bytes of each string, or H5T_VARIABLE */
+static hid_t make_string(size_t length)
 {
-    hid_t type;
+    hid_t type = H5Tcopy(H5T_C_S1);
+    if (type >= 0 && (H5Tset_size(type, length) < 0 || H5Tset_cset(type, H5T_CSET_UTF8) < 0 ||
+                      (length != H5T_VARIABLE && H5Tset_strpad(type, H5T_STR_NULLPAD) < 0))) {
+        H5Tclose(type);
+        type = -1;
+    }
+    return type;
+}
+
+/* The caller closes it. Negative after a failure of HDF5. length: of HF_KIND_CHARS. */
+static hid_t make_type(hf_hdf5_kind kind, hsize_t length)
+{
     switch (kind) {
     case HF_KIND_REAL:
         return H5Tcopy(H5T_NATIVE_DOUBLE);
@@ -154,15 +165,17 @@ static hid_t make_type(hf_hdf5_kind kind)
     case HF_KIND_UINT64:
         return H5Tcopy(H5T_NATIVE_UINT64);
     case HF_KIND_TEXT:
-        type = H5Tcopy(H5T_C_S1);
-        if (type >= 0 && (H5Tset_size(type, H5T_VARIABLE) < 0 || H5Tset_cset(type, H5T_CSET_UTF8) < 0)) {
-            H5Tclose(type);
-            type = -1;
-        }
-        return type;
+        return make_string(H5T_VARIABLE);
+    case HF_KIND_CHARS:
+        return make_string((size_t)length);
     default:
         return make_enum(kind);
     }
+}
+
+static hid_t array_type(const hf_hdf5_array *a)
+{
+    return make_type(a->kind, a->kind == HF_KIND_CHARS ? a->dims[a->rank] : 0);
 }
 
 /* May values of this stored type be read as `kind`? Words are matched by HDF5 itself. */
@@ -170,7 +183,8 @@ static int is_of_kind(hid_t stored, hf_hdf5_kind kind)
 {
     H5T_class_t class = H5Tget_class(stored);
     if (is_enum(kind)) return class == H5T_ENUM;
-    if (kind == HF_KIND_TEXT) return class == H5T_STRING && H5Tis_variable_str(stored) > 0;
+    if (kind == HF_KIND_CHARS) return class == H5T_STRING && H5Tis_variable_str(stored) == 0;
+    assert(kind != HF_KIND_TEXT);
     return class == (kind == HF_KIND_REAL ? H5T_FLOAT : H5T_INTEGER);
 }
 
@@ -244,7 +258,7 @@ void hf_hdf5_create_file(hf_hdf5 *io, const char *name)
     hid_t properties = -1, access = -1;
     io->file = -1;
     if ((properties = make_properties(H5P_FILE_CREATE)) < 0 || (access = make_access()) < 0 ||
-        (io->file = H5Fcreate(name, H5F_ACC_EXCL, properties, access)) < 0)
+        (io->file = H5Fcreate(name, H5F_ACC_TRUNC, properties, access)) < 0)
         hf_hdf5_fail(io, "create", -1, name);
     hf_hdf5_close(io, access);
     hf_hdf5_close(io, properties);
@@ -311,7 +325,7 @@ hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const
 {
     hid_t type = -1, space = -1, properties = -1, data_set = -1;
     if (io->status != HF_OK) return -1;
-    if ((type = make_type(a->kind)) < 0 || (space = make_space(a, chunk != NULL)) < 0 ||
+    if ((type = array_type(a)) < 0 || (space = make_space(a, chunk != NULL)) < 0 ||
         (properties = make_properties(H5P_DATASET_CREATE)) < 0 ||
         (chunk && H5Pset_chunk(properties, a->rank, chunk) < 0) ||
         (data_set = H5Dcreate2(group, a->name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT)) < 0)
@@ -328,7 +342,7 @@ void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const
 {
     hid_t data_set = hf_hdf5_make_array(io, group, a, NULL), type = -1;
     if (io->status == HF_OK) {
-        type = make_type(a->kind);
+        type = array_type(a);
         if (type < 0 || H5Dwrite(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
             hf_hdf5_fail(io, "write", group, a->name);
     }
@@ -342,8 +356,7 @@ void hf_hdf5_append(hf_hdf5 *io, hid_t data_set, const hf_hdf5_array *a, hsize_t
     hsize_t extent[3] = {row + 1, a->dims[1], a->dims[2]}, start[3] = {row, 0, 0};
     if (io->status != HF_OK) return;
     assert(a->dims[0] == 1);
-    if (H5Dset_extent(data_set, extent) < 0 || (type = make_type(a->kind)) < 0 ||
-        (space = H5Dget_space(data_set)) < 0 ||
+    if (H5Dset_extent(data_set, extent) < 0 || (type = array_type(a)) < 0 || (space = H5Dget_space(data_set)) < 0 ||
         H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, a->dims, NULL) < 0 ||
         (slab = H5Screate_simple(a->rank, a->dims, NULL)) < 0 ||
         H5Dwrite(data_set, type, slab, space, H5P_DEFAULT, values) < 0)
@@ -384,22 +397,13 @@ void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, void *
         hsize_t n = 1;
         for (int i = 0; i < a->rank; i++)
             n *= a->dims[i];
-        if ((type = make_type(a->kind)) < 0 || H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
+        if ((type = array_type(a)) < 0 || H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
             hf_hdf5_fail(io, "read", group, a->name);
         else if (is_enum(a->kind) && !are_known(a->kind, values, n))
             hf_hdf5_damaged(io, group, a->name, "holds a value that has no word");
     }
     hf_hdf5_close(io, type);
     hf_hdf5_close(io, data_set);
-}
-
-void hf_hdf5_free_texts(hf_hdf5 *io, char **texts, hsize_t n)
-{
-    hid_t type = make_type(HF_KIND_TEXT), space = H5Screate_simple(1, &n, NULL);
-    if (type < 0 || space < 0 || H5Dvlen_reclaim(type, space, H5P_DEFAULT, texts) < 0)
-        hf_hdf5_fail(io, "read", -1, NULL);
-    hf_hdf5_close(io, space);
-    hf_hdf5_close(io, type);
 }
 
 int hf_hdf5_length(hf_hdf5 *io, hid_t group, const char *name, int max)
@@ -418,14 +422,29 @@ int hf_hdf5_length(hf_hdf5 *io, hid_t group, const char *name, int max)
     return io->status == HF_OK ? (int)dims[0] : 0;
 }
 
+size_t hf_hdf5_chars_length(hf_hdf5 *io, hid_t group, const char *name)
+{
+    hid_t data_set = -1, stored = -1;
+    size_t length = 0;
+    if (io->status != HF_OK) return 0;
+    if ((data_set = H5Dopen2(group, name, H5P_DEFAULT)) < 0 || (stored = H5Dget_type(data_set)) < 0 ||
+        (length = H5Tget_size(stored)) == 0)
+        hf_hdf5_fail(io, "read", group, name);
+    else if (!is_of_kind(stored, HF_KIND_CHARS))
+        hf_hdf5_damaged(io, group, name, "is of another type");
+    hf_hdf5_close(io, stored);
+    hf_hdf5_close(io, data_set);
+    return io->status == HF_OK ? length : 0;
+}
+
 /* ---- attributes ---- */
 
-void hf_hdf5_put(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hf_hdf5_kind kind, hsize_t n,
-                 const void *values)
+/* Takes over and closes the type, which is negative when it could not be made. */
+static void put_typed(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hid_t type, hsize_t n,
+                      const void *values)
 {
-    hid_t type = -1, space = -1, id = -1;
-    if (io->status != HF_OK) return;
-    if ((type = make_type(kind)) < 0 || (space = H5Screate_simple(n ? 1 : 0, n ? &n : NULL, NULL)) < 0 ||
+    hid_t space = -1, id = -1;
+    if (type < 0 || (space = H5Screate_simple(n ? 1 : 0, n ? &n : NULL, NULL)) < 0 ||
         (id = H5Acreate_by_name(place, name, attribute, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
         H5Awrite(id, type, values) < 0)
         fail_at(io, "write", place, name, attribute);
@@ -434,37 +453,41 @@ void hf_hdf5_put(hf_hdf5 *io, hid_t place, const char *name, const char *attribu
     hf_hdf5_close(io, type);
 }
 
+void hf_hdf5_put(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hf_hdf5_kind kind, hsize_t n,
+                 const void *values)
+{
+    if (io->status == HF_OK) put_typed(io, place, name, attribute, make_type(kind, 0), n, values);
+}
+
 void hf_hdf5_put_text(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text)
 {
     hf_hdf5_put(io, place, name, attribute, HF_KIND_TEXT, 0, &text);
 }
 
-static void copy_text(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, char *text, char *to,
-                      size_t size)
+void hf_hdf5_put_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text)
 {
-    const char *from = text ? text : ""; /* HDF5 reads an empty string as NULL */
-    if (strlen(from) < size)
-        memcpy(to, from, strlen(from) + 1);
-    else
-        damaged_at(io, place, name, attribute, "is too long");
-    hf_hdf5_free_texts(io, &text, 1);
+    size_t length = strlen(text) ? strlen(text) : 1; /* HDF5 has no type of no bytes; the NUL serves as padding */
+    if (io->status == HF_OK) put_typed(io, place, name, attribute, make_string(length), 0, text);
 }
 
 void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hf_hdf5_kind kind, void *value,
                  size_t size)
 {
     hid_t id = -1, stored = -1, space = -1, type = -1;
-    char *text = NULL;
+    size_t length = 0;
     if (io->status != HF_OK) return;
     if ((id = H5Aopen_by_name(place, name, attribute, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
-        (stored = H5Aget_type(id)) < 0 || (space = H5Aget_space(id)) < 0 || (type = make_type(kind)) < 0)
+        (stored = H5Aget_type(id)) < 0 || (space = H5Aget_space(id)) < 0 || (length = H5Tget_size(stored)) == 0 ||
+        (type = make_type(kind, length)) < 0)
         fail_at(io, "read", place, name, attribute);
     else if (H5Sget_simple_extent_npoints(space) != 1 || !is_of_kind(stored, kind))
         damaged_at(io, place, name, attribute, "is of another type");
-    else if (H5Aread(id, type, kind == HF_KIND_TEXT ? (void *)&text : value) < 0)
+    else if (kind == HF_KIND_CHARS && length >= size)
+        damaged_at(io, place, name, attribute, "is too long");
+    else if (H5Aread(id, type, value) < 0)
         fail_at(io, "read", place, name, attribute);
-    else if (kind == HF_KIND_TEXT)
-        copy_text(io, place, name, attribute, text, value, size);
+    else if (kind == HF_KIND_CHARS)
+        ((char *)value)[length] = '\0';
     else if (is_enum(kind) && !are_known(kind, value, 1))
         damaged_at(io, place, name, attribute, "holds a value that has no word");
     hf_hdf5_close(io, type);
@@ -479,8 +502,8 @@ void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const 
 {
     for (const hf_hdf5_member *m = table; m < table + n; m++) {
         const char *member = (const char *)owner + m->offset;
-        if (m->kind == HF_KIND_TEXT) {
-            hf_hdf5_put_text(io, io->file, m->object, m->name, member);
+        if (m->kind == HF_KIND_CHARS) {
+            hf_hdf5_put_chars(io, io->file, m->object, m->name, member);
         } else if (is_enum(m->kind)) {
             int value;
             assert(m->size == sizeof value);

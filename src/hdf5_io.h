@@ -27,7 +27,9 @@ typedef enum {
     HF_KIND_INT,    /* int */
     HF_KIND_LONG,   /* long */
     HF_KIND_UINT64, /* uint64_t */
-    HF_KIND_TEXT,   /* const char *, NUL-terminated UTF-8 */
+    HF_KIND_TEXT,   /* const char *: variable-length UTF-8, which h5py gives as str. Never read back here: HDF5 1.10
+                       crashes on the damaged ones */
+    HF_KIND_CHARS,  /* char[length], padded with NULs: fixed-length UTF-8 */
     HF_KIND_FLAG,   /* this and all further ones: signed char; 0 or 1, a bool in h5py */
     HF_KIND_ROLE,
     HF_KIND_GROUP,
@@ -37,14 +39,14 @@ typedef enum {
     HF_KIND_GA_STOP
 } hf_hdf5_kind;
 
-size_t hf_hdf5_kind_bytes(hf_hdf5_kind kind); /* of one value in memory */
+size_t hf_hdf5_kind_bytes(hf_hdf5_kind kind); /* of one value in memory; not for HF_KIND_CHARS */
 
 /* A data set: what it is called, how large it is, what is in it. */
 typedef struct {
     const char *name; /* below the group it is given with, perhaps with '/' */
     hf_hdf5_kind kind;
-    int rank; /* 0 = a scalar */
-    hsize_t dims[3];
+    int rank;                        /* 0 = a scalar */
+    hsize_t dims[3];                 /* of HF_KIND_CHARS dims[rank] is the length of each string */
     const char *units, *description; /* kept as attributes; not needed for reading */
 } hf_hdf5_array;
 
@@ -58,8 +60,8 @@ void hf_hdf5_damaged(hf_hdf5 *io, hid_t place, const char *name, const char *wha
 
 /* ---- Files and groups ---- */
 
-/* Set io->file. A new file must not exist; its name may differ from io->path. Locks are taken where the file system has
- * them, and their absence is no failure. */
+/* Set io->file. What is in the file `name` is lost. Locks are taken where the file system has them, and their absence
+ * is no failure. */
 void hf_hdf5_create_file(hf_hdf5 *io, const char *name);
 void hf_hdf5_open_file(hf_hdf5 *io);  /* io->path, for reading */
 void hf_hdf5_close_file(hf_hdf5 *io); /* nothing but the file may be open; closes after a failure, too */
@@ -79,27 +81,30 @@ void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, c
 /* Grow the data set by one along its first dimension and write there; array->dims[0] = 1. */
 void hf_hdf5_append(hf_hdf5 *io, hid_t data_set, const hf_hdf5_array *array, hsize_t row, const void *values);
 
-/* Read exactly array->dims values, refusing other dimensions, other types and foreign values of enumerations.
- * Strings must be given back. */
+/* Read exactly array->dims values, refusing other dimensions, other types and foreign values of enumerations. */
 void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, void *values);
-void hf_hdf5_free_texts(hf_hdf5 *io, char **texts, hsize_t n);
 
 /* First dimension of a data set, from 1 to `max`. 0 after a failure. */
 int hf_hdf5_length(hf_hdf5 *io, hid_t group, const char *name, int max);
 
-/* ---- Attributes of the object `name` below `place` ("." is `place` itself) ----
- * n values, 0 = a scalar. Text: values is a const char *const *. */
+/* Length of each string of a data set of HF_KIND_CHARS, at least 1. 0 after a failure. */
+size_t hf_hdf5_chars_length(hf_hdf5 *io, hid_t group, const char *name);
+
+/* ---- Attributes of the object `name` below `place` ("." is `place` itself) ---- */
+
+/* n values, 0 = a scalar; not for HF_KIND_CHARS. */
 void hf_hdf5_put(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hf_hdf5_kind kind, hsize_t n,
                  const void *values);
 void hf_hdf5_put_text(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text);
+void hf_hdf5_put_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text);
 
-/* One value. A text is copied into the `size` bytes at `value`, refused when it does not fit. */
+/* One value. HF_KIND_CHARS: a string into the `size` bytes at `value`, refused when it does not fit. */
 void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hf_hdf5_kind kind, void *value,
                  size_t size);
 
 /* ---- Tables: the same rows write and read, so that the two cannot diverge ---- */
 
-/* A member of a struct <-> an attribute. Enumerations are int or enum in the struct, texts are char[size]. */
+/* A member of a struct <-> an attribute. Enumerations are int or enum in the struct, strings char[size]. */
 typedef struct {
     const char *object, *name;
     hf_hdf5_kind kind;
@@ -174,13 +179,13 @@ void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table,
     X(hf_summary, object, prefix "n_loaded_chain", result.n_loaded_chain, INT)
 
 #define HF_SUMMARY_FORM_MEMBERS(X)                                                                                     \
-    X(hf_summary, "/", "title", title, TEXT)                                                                           \
+    X(hf_summary, "/", "title", title, CHARS)                                                                          \
     X(hf_summary, "/", "threads", threads, INT)                                                                        \
     X(hf_summary, "/", "seed", seed, UINT64)                                                                           \
-    X(hf_summary, "/", "warnings", warnings, TEXT)                                                                     \
+    X(hf_summary, "/", "warnings", warnings, CHARS)                                                                    \
     X(hf_summary, "/", "has_optimize", has_optimize, FLAG)                                                             \
-    X(hf_summary, "/case", "case_path", case_path, TEXT)                                                               \
-    X(hf_summary, "/form", "version", version, TEXT)                                                                   \
+    X(hf_summary, "/case", "case_path", case_path, CHARS)                                                              \
+    X(hf_summary, "/form", "version", version, CHARS)                                                                  \
     X(hf_summary, "/form", "n_node", n_node, INT)                                                                      \
     X(hf_summary, "/form", "n_free", n_free, INT)                                                                      \
     X(hf_summary, "/form", "n_cable", n_cable, INT)                                                                    \

@@ -1,5 +1,6 @@
 /* main - from the command line to an exit status; with print, plan and run the only printing part of the program. */
 #include "plan.h"
+#include "band.h"
 #include "export.h"
 #include "options.h"
 #include "print.h"
@@ -69,6 +70,7 @@ int main(int argc, char **argv)
     hf_messages messages = {0};
     gsl_set_error_handler_off();
     hf_store_quiet();
+    hf_band_single_threaded(); /* its own threads would change bits, and only get in the way of ours */
     hf_status status = hf_options_parse(argc, argv, &options, &messages);
     if (status == HF_OK) status = dispatch(&options, argc, argv, &messages);
     hf_options_free(&options);

@@ -39,11 +39,15 @@ static void print_plan(const plan *p, FILE *f)
     const hf_optimize_settings *o = &c->optimize;
     fprintf(f, "  will run      form-finding: %s, stop: %s, at most %d iterations\n", hf_method_word[c->form.method],
             hf_stop_rule_word[c->form.stop], c->form.max_iterations);
-    if (c->has_optimize)
+    int optimizes = c->has_optimize && p->model.n_gene > 0;
+    if (optimizes)
         fprintf(f,
                 "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
                 hf_rule_word[o->rule], p->model.n_gene, o->population, o->generations, (unsigned long long)o->seed);
-    fprintf(f, "  skipped       %s%s%s\n", c->has_optimize ? "" : "optimisation (no optimize section); ",
+    fprintf(f, "  skipped       %s%s%s\n",
+            optimizes         ? ""
+            : c->has_optimize ? "optimisation (no boundary cable has a free end); "
+                              : "optimisation (no optimize section); ",
             p->model.load_N ? "" : "loads (none given); ", p->model.has_strut ? "" : "general band matrix (no struts)");
 }
 

@@ -1,4 +1,5 @@
-/* Contents: names for what went wrong - form-finding - optimisation - the whole run */
+/* Contents: names for what went wrong - form-finding - optimisation - output and signals -
+ * the whole run */
 #include "run.h"
 
 #include "print.h"
@@ -7,8 +8,10 @@
 #include <hifdm/store.h>
 
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -269,14 +272,47 @@ void hf_run_describe(const hf_case *settings, const hf_model *model, hf_summary 
 }
 
 /* -o, or the name of the case with .h5 in the current folder. */
-static void choose_output(const hf_options *o, char output[HF_OUTPUT_SIZE])
+static hf_status choose_output(const hf_options *o, char output[HF_OUTPUT_SIZE], hf_messages *messages)
 {
     const char *slash = strrchr(o->file, '/'), *name = slash ? slash + 1 : o->file, *dot = strrchr(name, '.');
     int stem = dot && dot != name ? (int)(dot - name) : (int)strlen(name);
-    if (o->output)
-        snprintf(output, HF_OUTPUT_SIZE, "%s", o->output);
-    else
-        snprintf(output, HF_OUTPUT_SIZE, "%.*s.h5", stem, name);
+    int n = o->output ? snprintf(output, HF_OUTPUT_SIZE, "%s", o->output)
+                      : snprintf(output, HF_OUTPUT_SIZE, "%.*s.h5", stem, name);
+    if (n >= HF_OUTPUT_SIZE) return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
+    return HF_OK;
+}
+
+/* Not even --force lets a result replace what it is made from. */
+static hf_status spare_inputs(const hf_case *settings, const char *output, hf_messages *messages)
+{
+    const char *input[] = {settings->path, settings->nodes_path, settings->cables_path};
+    struct stat a, b;
+    for (int i = 0; i < (settings->has_import ? 3 : 1); i++)
+        if (stat(input[i], &a) == 0 && stat(output, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino)
+            return hf_error(messages, HF_EXISTS, "%s: is an input of this run; use -o to choose another name", output);
+    return HF_OK;
+}
+
+/* ---- being told to stop: the temporary file goes, and the signal does what it would have done ---- */
+
+static char unfinished[HF_OUTPUT_SIZE + 64]; /* "" when there is none */
+static const int stop_signals[] = {SIGINT, SIGTERM, SIGHUP};
+
+static void remove_unfinished(int signal_number)
+{
+    if (unfinished[0]) unlink(unfinished);
+    signal(signal_number, SIG_DFL);
+    raise(signal_number);
+}
+
+static void watch_signals(const hf_store *store)
+{
+    snprintf(unfinished, sizeof unfinished, "%s", store ? hf_store_temporary(store) : "");
+    for (size_t i = 0; i < sizeof stop_signals / sizeof *stop_signals; i++) {
+        struct sigaction old;
+        if (sigaction(stop_signals[i], NULL, &old) == 0 && old.sa_handler != SIG_IGN) /* nohup stays nohup */
+            signal(stop_signals[i], store ? remove_unfinished : SIG_DFL);
+    }
 }
 
 /* The stages that the case asks for, in order. HF_NOT_CONVERGED: nothing follows on a shape that is not one. */
@@ -300,11 +336,14 @@ static hf_status execute(run *r, const hf_options *options, int argc, char *cons
     HF_TRY(hf_config_scene(&r->settings, &r->scene, messages));
     HF_TRY(hf_model_build(&r->scene, &r->settings.form, &r->model, messages));
     hf_run_describe(&r->settings, &r->model, s);
-    choose_output(options, output);
+    HF_TRY(choose_output(options, output, messages));
+    HF_TRY(spare_inputs(&r->settings, output, messages));
     HF_TRY(hf_store_create(output, options->force, &r->settings, &r->scene, argc, argv, &r->store, messages));
+    watch_signals(r->store);
     hf_status status = stages(r, options, s, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
+    watch_signals(NULL);
     hf_status finish = hf_store_finish(r->store, s, messages);
     r->store = NULL;
     return finish != HF_OK ? finish : status;

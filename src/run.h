@@ -6,7 +6,7 @@
 #include <hifdm/model.h>
 #include <hifdm/summary.h>
 
-#define HF_OUTPUT_SIZE 1100
+#define HF_OUTPUT_SIZE 4096
 
 /* Run the case of the options and store it. `output` is the path of the result file, "" when none was written.
  * HF_OK, or the status of what went wrong with messages; HF_NOT_CONVERGED still writes the file. */

@@ -16,7 +16,7 @@
 typedef struct {
     const char *path;
     char *text;
-    int n_column, n_row, row_capacity;
+    int n_column, n_row, row_capacity, header_line;
     char *header[COLUMN_MAX];
     char **cell; /* [n_row][n_column] */
     int *line;   /* [n_row] line number in the file */
@@ -140,6 +140,10 @@ static hf_status table_read(table *t)
     if (!strncmp(rest, "\xEF\xBB\xBF", 3)) rest += 3; /* byte order mark of spreadsheet programs */
     for (int n_line = 1; (line = next_line(&rest)) != NULL; n_line++) {
         if (line[strspn(line, " \t")] == '\0' || *line == '#') continue;
+        if (!hf_text_is_utf8(line)) {
+            fault(t, n_line, NULL, "not UTF-8 text; save the file as UTF-8", "");
+            continue;
+        }
         int n = split(line, field);
         char counts[64];
         snprintf(counts, sizeof counts, "%d fields where the header has %d", n, t->n_column);
@@ -147,9 +151,10 @@ static hf_status table_read(table *t)
             fault(t, n_line, NULL, "a quoted field does not end on this line", "");
         else if (n > COLUMN_MAX)
             fault(t, n_line, NULL, "too many columns", "");
-        else if (t->n_column == 0)
+        else if (t->n_column == 0) {
             memcpy(t->header, field, (size_t)(t->n_column = n) * sizeof *field);
-        else if (n != t->n_column)
+            t->header_line = n_line;
+        } else if (n != t->n_column)
             fault(t, n_line, NULL, counts, "");
         else if (!add_row(t, field, n_line))
             return hf_error(t->messages, HF_NO_MEMORY, "%s: out of memory", t->path);
@@ -179,16 +184,16 @@ static hf_status find_columns(table *t, const char *const *names, int n_name, in
             k++;
         if (k == n_name) {
             const char *near = hf_text_nearest(t->header[c], names, n_name);
-            hf_warning(t->messages, "%s:%d: column '%s' is not used%s%s%s", t->path, 1, t->header[c],
+            hf_warning(t->messages, "%s:%d: column '%s' is not used%s%s%s", t->path, t->header_line, t->header[c],
                        near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         } else if (where[k] >= 0) {
-            fault(t, 1, NULL, "this column stands twice: ", names[k]);
+            fault(t, t->header_line, NULL, "this column stands twice: ", names[k]);
         } else {
             where[k] = c;
         }
     }
     for (int k = 0; k < n_required; k++)
-        if (where[k] < 0) fault(t, 1, NULL, "a column is missing: ", names[k]);
+        if (where[k] < 0) fault(t, t->header_line, NULL, "a column is missing: ", names[k]);
     return close_faults(t);
 }
 

@@ -53,6 +53,7 @@ const char *hf_store_version(void)
 
 void hf_store_quiet(void)
 {
+    H5dont_atexit();
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
@@ -115,11 +116,26 @@ static hf_store *new_store(const char *path, int force, hf_messages *messages)
     strcpy(s->path, path);
     s->force = force;
     s->io = (hf_hdf5){.path = s->path, .messages = messages, .status = HF_OK, .file = -1};
-    struct stat info;
-    snprintf(s->temporary, size, "%s.%ld.tmp", path, (long)getpid());
-    for (int i = 2; lstat(s->temporary, &info) == 0 && i < 1000; i++) /* a crashed run may have left one */
-        snprintf(s->temporary, size, "%s.%ld-%d.tmp", path, (long)getpid(), i);
     return s;
+}
+
+/* Take a temporary name that is nobody else's; a crashed run may have left the first one behind. */
+static void make_temporary(hf_store *s)
+{
+    int file = -1;
+    for (int i = 1; file < 0 && i < 1000; i++) {
+        sprintf(s->temporary, i == 1 ? "%s.%ld.tmp" : "%s.%ld-%d.tmp", s->path, (long)getpid(), i);
+        file = open(s->temporary, O_WRONLY | O_CREAT | O_EXCL, 0666);
+        if (file < 0 && errno != EEXIST) break;
+    }
+    if (file < 0) {
+        s->io.status =
+            hf_error(s->io.messages, HF_IO, "%s: cannot create %s: %s", s->path, s->temporary, strerror(errno));
+        return;
+    }
+    close(file);
+    hf_hdf5_create_file(&s->io, s->temporary);
+    if (s->io.status != HF_OK) unlink(s->temporary);
 }
 
 /* ---- provenance, case, scene ---- */
@@ -140,8 +156,7 @@ static void put_provenance(hf_store *s, int argc, char *const *argv)
     if (gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
     H5get_libversion(&major, &minor, &release);
     snprintf(hdf5, sizeof hdf5, "%u.%u.%u", major, minor, release);
-    const char *const table[][2] = {{"program", HF_PROGRAM},
-                                    {"version", HF_VERSION},
+    const char *const table[][2] = {{"version", HF_VERSION},
                                     {"git_describe", HF_GIT_DESCRIBE},
                                     {"compiler", HF_COMPILER},
                                     {"build_flags", HF_BUILD_FLAGS},
@@ -152,6 +167,7 @@ static void put_provenance(hf_store *s, int argc, char *const *argv)
                                     {"host", host}};
     for (int i = 0; i < HF_HDF5_COUNT(table); i++)
         hf_hdf5_put_text(&s->io, s->io.file, "/", table[i][0], table[i][1]);
+    hf_hdf5_put_chars(&s->io, s->io.file, "/", "program", HF_PROGRAM);
     hf_hdf5_put(&s->io, s->io.file, "/", "format_version", HF_KIND_INT, 0, &(int){HF_FORMAT_VERSION});
     if (argc > ARGUMENTS_MAX) argc = ARGUMENTS_MAX;
     if (argc > 0) hf_hdf5_put(&s->io, s->io.file, "/", "argv", HF_KIND_TEXT, (hsize_t)argc, argv);
@@ -170,19 +186,29 @@ static void write_case(hf_store *s, const hf_case *settings)
     hf_hdf5_close(&s->io, group);
 }
 
+static void write_ids(hf_store *s, hid_t group, const char *name, const char *const *id, int n, const char *description)
+{
+    size_t length = 1;
+    for (int i = 0; i < n; i++)
+        length = strlen(id[i]) > length ? strlen(id[i]) : length;
+    hf_hdf5_array array = {name, HF_KIND_CHARS, 1, {(hsize_t)n, length}, "", description};
+    char *chars = scratch(s, (size_t)n * length);
+    for (int i = 0; chars && i < n; i++)
+        memcpy(memset(chars + (size_t)i * length, 0, length), id[i], strlen(id[i]));
+    hf_hdf5_write_array(&s->io, group, &array, chars);
+}
+
 static void write_scene(hf_store *s, const hf_scene *scene)
 {
     static const hf_hdf5_column table[] = {HF_SCENE_COLUMNS(HF_HDF5_COLUMN)};
-    hsize_t n = (hsize_t)scene->n_node, m = (hsize_t)scene->n_cable;
-    hf_hdf5_array node_id = {"node/id", HF_KIND_TEXT, 1, {n}, "", "name of the node"};
-    hf_hdf5_array cable_id = {"cable/id", HF_KIND_TEXT, 1, {m}, "", "name of the cable"};
-    hf_hdf5_array length = {
-        "cable/length_m", HF_KIND_REAL, 1, {m}, "m", "theoretical: distance of the two nodes' positions"};
+    const hf_hdf5_array length = {
+        "cable/length_m",          HF_KIND_REAL, 1,
+        {(hsize_t)scene->n_cable}, "m",          "theoretical: distance of the two nodes' positions"};
     hid_t group = hf_hdf5_make_group(&s->io, "/scene");
     hf_hdf5_close(&s->io, hf_hdf5_make_group(&s->io, "/scene/node"));
     hf_hdf5_close(&s->io, hf_hdf5_make_group(&s->io, "/scene/cable"));
-    hf_hdf5_write_array(&s->io, group, &node_id, scene->node_id);
-    hf_hdf5_write_array(&s->io, group, &cable_id, scene->cable_id);
+    write_ids(s, group, "node/id", scene->node_id, scene->n_node, "name of the node");
+    write_ids(s, group, "cable/id", scene->cable_id, scene->n_cable, "name of the cable");
     hf_hdf5_write_columns(&s->io, group, table, HF_HDF5_COUNT(table), scene->n_node, scene->n_cable, scene);
     double *length_m = scratch(s, (size_t)scene->n_cable * sizeof *length_m);
     for (int e = 0; length_m && e < scene->n_cable; e++)
@@ -198,7 +224,7 @@ hf_status hf_store_create(const char *path, int force, const hf_case *settings, 
     HF_TRY(check_target(path, force, messages));
     hf_store *s = new_store(path, force, messages);
     if (!s) return HF_NO_MEMORY;
-    hf_hdf5_create_file(&s->io, s->temporary);
+    make_temporary(s);
     put_provenance(s, argc, argv);
     write_case(s, settings);
     write_scene(s, scene);
@@ -395,8 +421,8 @@ static void put_summary(hf_store *s, const hf_summary *summary)
     static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
     hf_status outcome = summary->form.status;
     if (outcome == HF_OK && summary->has_optimize) outcome = summary->best.status;
-    hf_hdf5_close(&s->io,
-                  hf_hdf5_make_group(&s->io, "/form")); /* there already, unless the run had no shape to store */
+    /* groups that are there already, unless the run had no shape or no generation to store */
+    hf_hdf5_close(&s->io, hf_hdf5_make_group(&s->io, "/form"));
     hf_hdf5_put_members(&s->io, form, HF_HDF5_COUNT(form), summary);
     if (summary->has_optimize) {
         hf_hdf5_close(&s->io, hf_hdf5_make_group(&s->io, "/ga"));
@@ -408,11 +434,20 @@ static void put_summary(hf_store *s, const hf_summary *summary)
 
 /* ---- the end ---- */
 
+/* HDF5 1.10 does not survive a close that cannot write what is left: the ids stay open and the program crashes at its
+ * end. So all is written before; and when the disk is full, the file stays open, for which hf_store_quiet has prepared,
+ * but empty. */
 static void close_everything(hf_store *s)
 {
+    if (s->io.file < 0) return;
+    if (H5Fflush(s->io.file, H5F_SCOPE_GLOBAL) < 0) {
+        hf_hdf5_fail(&s->io, "write", -1, NULL);
+        int ignored = truncate(s->temporary, 0);
+        (void)ignored;
+        return;
+    }
     for (int i = 0; i < s->n_ga_data_set; i++)
         hf_hdf5_close(&s->io, s->ga_data_set[i]);
-    s->n_ga_data_set = 0;
     hf_hdf5_close_file(&s->io);
 }
 
@@ -480,12 +515,20 @@ hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_message
     return status;
 }
 
+const char *hf_store_temporary(const hf_store *store)
+{
+    return store->temporary;
+}
+
 void hf_store_abandon(hf_store *store)
 {
     if (!store) return;
-    int is_made = store->io.file >= 0; /* else a file of that name is somebody else's */
-    store->io.status = HF_IO;          /* whatever fails from here on is nobody's concern */
-    close_everything(store);
-    if (is_made) unlink(store->temporary);
+    hf_messages unwanted = {0};
+    store->io.messages = &unwanted;
+    if (store->io.file >= 0) {
+        close_everything(store);
+        unlink(store->temporary);
+    }
+    hf_messages_free(&unwanted);
     free_store(store);
 }

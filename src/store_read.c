@@ -20,7 +20,7 @@ static int is_ours(const hf_hdf5 *io)
     char program[16] = "";
     hf_messages unwanted = {0};
     hf_hdf5 probe = {.path = io->path, .messages = &unwanted, .status = HF_OK, .file = io->file};
-    hf_hdf5_get(&probe, probe.file, "/", "program", HF_KIND_TEXT, program, sizeof program);
+    hf_hdf5_get(&probe, probe.file, "/", "program", HF_KIND_CHARS, program, sizeof program);
     hf_messages_free(&unwanted);
     return !strcmp(program, HF_PROGRAM);
 }
@@ -67,57 +67,56 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
 
 /* ---- scene ---- */
 
-/* The strings of one data set, moved into `text` when it is there; returns the bytes they take. */
-static size_t copy_ids(char *const *from, int n, const char **id, char *text)
-{
-    size_t used = 0;
-    for (int i = 0; i < n; i++) {
-        const char *string = from[i] ? from[i] : ""; /* HDF5 reads an empty string as NULL */
-        size_t size = strlen(string) + 1;
-        if (text) {
-            id[i] = text + used;
-            memcpy(text + used, string, size);
-        }
-        used += size;
-    }
-    return used;
-}
-
-/* Two passes as with any arena: sizes, then copies. */
-static hf_status keep_ids(char *const *node_id, char *const *cable_id, hf_scene *scene)
-{
-    size_t n_node_byte = copy_ids(node_id, scene->n_node, NULL, NULL);
-    hf_arena text = {0};
-    hf_arena_take(&text, n_node_byte + copy_ids(cable_id, scene->n_cable, NULL, NULL), 1);
-    HF_TRY(hf_arena_allocate(&text));
-    scene->text = text.block;
-    copy_ids(node_id, scene->n_node, scene->node_id, scene->text);
-    copy_ids(cable_id, scene->n_cable, scene->cable_id, (char *)scene->text + n_node_byte);
-    return HF_OK;
-}
-
 static void no_memory(hf_hdf5 *io)
 {
     if (io->status == HF_OK) io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
 }
 
+/* The n strings of a data set as they are stored, side by side; the caller frees the arena. */
+static char *read_chars(hf_hdf5 *io, hid_t group, const char *name, int n, size_t *length, hf_arena *arena)
+{
+    *length = hf_hdf5_chars_length(io, group, name);
+    hf_arena_take(arena, (size_t)n, *length);
+    if (io->status != HF_OK) return NULL;
+    if (hf_arena_allocate(arena) != HF_OK) {
+        no_memory(io);
+        return NULL;
+    }
+    hf_hdf5_array array = {.name = name, .kind = HF_KIND_CHARS, .rank = 1, .dims = {(hsize_t)n, *length}};
+    char *chars = hf_arena_take(arena, (size_t)n, *length);
+    hf_hdf5_read_array(io, group, &array, chars);
+    return chars;
+}
+
+/* Lay the strings out one after the other from `text` on, each with its NUL, and set the ids. */
+static void place_ids(const char *chars, size_t length, int n, const char **id, char *text)
+{
+    for (int i = 0; i < n; i++) {
+        const char *from = chars + (size_t)i * length, *end = memchr(from, '\0', length);
+        size_t used = end ? (size_t)(end - from) : length;
+        id[i] = memcpy(text, from, used);
+        text += used;
+        *text++ = '\0';
+    }
+}
+
 static void read_ids(hf_hdf5 *io, hid_t group, hf_scene *scene)
 {
-    hsize_t n = (hsize_t)scene->n_node, m = (hsize_t)scene->n_cable;
-    hf_arena pointers = {0};
-    hf_arena_take(&pointers, n + m, sizeof(char *));
-    if (hf_arena_allocate(&pointers) != HF_OK) {
-        no_memory(io);
-        return;
+    size_t n = (size_t)scene->n_node, m = (size_t)scene->n_cable, node_length, cable_length;
+    hf_arena node = {0}, cable = {0}, text = {0};
+    const char *node_chars = read_chars(io, group, "node/id", scene->n_node, &node_length, &node);
+    const char *cable_chars = read_chars(io, group, "cable/id", scene->n_cable, &cable_length, &cable);
+    hf_arena_take(&text, n, node_length + 1);
+    hf_arena_take(&text, m, cable_length + 1);
+    if (io->status == HF_OK && hf_arena_allocate(&text) != HF_OK) no_memory(io);
+    if (io->status == HF_OK) {
+        scene->text = text.block;
+        place_ids(node_chars, node_length, scene->n_node, scene->node_id, hf_arena_take(&text, n, node_length + 1));
+        place_ids(cable_chars, cable_length, scene->n_cable, scene->cable_id,
+                  hf_arena_take(&text, m, cable_length + 1));
     }
-    char **node_id = hf_arena_take(&pointers, n + m, sizeof(char *)), **cable_id = node_id + n;
-    hf_hdf5_read_array(io, group, &(hf_hdf5_array){.name = "node/id", .kind = HF_KIND_TEXT, .rank = 1, .dims = {n}},
-                       node_id);
-    hf_hdf5_read_array(io, group, &(hf_hdf5_array){.name = "cable/id", .kind = HF_KIND_TEXT, .rank = 1, .dims = {m}},
-                       cable_id);
-    if (io->status == HF_OK && keep_ids(node_id, cable_id, scene) != HF_OK) no_memory(io);
-    hf_hdf5_free_texts(io, node_id, n + m);
-    hf_arena_free(&pointers);
+    hf_arena_free(&node);
+    hf_arena_free(&cable);
 }
 
 static void check_ends(hf_hdf5 *io, hid_t group, const hf_scene *scene)

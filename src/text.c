@@ -84,6 +84,28 @@ int hf_text_uint64(const char *text, uint64_t *value)
     return errno == 0;
 }
 
+/* Bytes of the sequence that starts at p, 0 when it is none (overlong forms, surrogates, beyond U+10FFFF). */
+static int utf8_length(const unsigned char *p)
+{
+    if (p[0] < 0x80) return p[0] >= 0x20 || p[0] == '\t';
+    int n = p[0] >= 0xf0 ? 4 : p[0] >= 0xe0 ? 3 : 2;
+    if (p[0] < 0xc2 || p[0] > 0xf4) return 0;
+    for (int i = 1; i < n; i++)
+        if ((p[i] & 0xc0) != 0x80) return 0;
+    if ((p[0] == 0xe0 && p[1] < 0xa0) || (p[0] == 0xed && p[1] > 0x9f)) return 0;
+    return (p[0] == 0xf0 && p[1] < 0x90) || (p[0] == 0xf4 && p[1] > 0x8f) ? 0 : n;
+}
+
+int hf_text_is_utf8(const char *text)
+{
+    for (const unsigned char *p = (const unsigned char *)text; *p;) {
+        int n = utf8_length(p);
+        if (n == 0) return 0;
+        p += n;
+    }
+    return 1;
+}
+
 #define NEAREST_MAX 63 /* words longer than this are never called a typing error */
 
 /* Levenshtein distance of two short words, ignoring case. */

@@ -3,8 +3,9 @@
  *
  * Layout, with n nodes, m cables, i iterations, g generations, p individuals, k genes. Every data set has the
  * attributes `units` ("" = dimensionless) and `description`. Role, group, law, status and the like are HDF5
- * enumerations, texts variable-length UTF-8. Wall and processor times, threads and host are attributes only: the data
- * sets of two runs of the same case are the same.
+ * enumerations. Texts are UTF-8: of fixed length where they are read back (program, title, warnings, case_path, the
+ * version in /form, ids), because HDF5 1.10 crashes on damaged ones of variable length, which the others are. Times,
+ * threads and host are attributes only: the data sets of two runs of the same case are the same.
  *   /            attributes: program ("hifdm"), format_version, version, git_describe, compiler, build_flags,
  *                hdf5_version, gsl_version, lapack, rng, host, argv[], started_utc, finished_utc, title, seed, threads,
  *                warnings, has_optimize, status (word of the form-finding's if not ok, else of the best individual's)
@@ -60,6 +61,9 @@ hf_status hf_store_best(hf_store *store, const hf_model *model, const hf_workspa
  * its temporary one, which the message tells. */
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
 
+/* Where the file is until it is finished; valid as long as the store. A program that is told to stop removes it. */
+const char *hf_store_temporary(const hf_store *store);
+
 /* Throw the unfinished file away and free the store. store may be NULL. */
 void hf_store_abandon(hf_store *store);
 
@@ -88,7 +92,8 @@ void hf_shape_free(hf_shape *shape);
 /* "VERSION (git describe)" of this library. */
 const char *hf_store_version(void);
 
-/* Switch the error printing of HDF5 off; once, before the first call. */
+/* Switch off HDF5's error printing, and its work at the end of the program, which crashes when the disk was full. Once,
+ * before the first call of HDF5. */
 void hf_store_quiet(void);
 
 #ifdef __cplusplus
