@@ -116,6 +116,15 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
     batch->cpu_s += cpu_s;
 }
 
+hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result)
+{
+    queue work = {1, 0, NULL};
+    hf_workspace *workspace = &batch->workspace[0];
+    if (batch->chord) hf_chord_run(&batch->chord->shared, &batch->chord->lanes[0], workspace, take_next, &work, design_N, result);
+    else hf_evaluate(batch->evaluator, design_N, workspace, result);
+    return workspace;
+}
+
 void hf_batch_free(hf_batch *batch)
 {
     free_chord(batch);

@@ -287,12 +287,12 @@ static void write_design(hf_store *s, hid_t group, const hf_model *model, const 
     hf_hdf5_write_array(&s->io, group, &design, design_N);
 }
 
-hf_status hf_store_best(hf_store *store, const hf_model *model, const hf_workspace *workspace, const double *design_N,
-                        hf_messages *messages)
+hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
+                        const double *design_N, hf_messages *messages)
 {
     store->io.messages = messages;
-    hf_hdf5_close(&store->io, hf_hdf5_make_group(&store->io, "/ga"));
-    hid_t group = hf_hdf5_make_group(&store->io, "/ga/best");
+    if (stage == HF_STAGE_OPTIMIZE) hf_hdf5_close(&store->io, hf_hdf5_make_group(&store->io, "/ga"));
+    hid_t group = hf_hdf5_make_group(&store->io, hf_stage_group[stage]);
     write_shape(store, group, model, workspace);
     write_design(store, group, model, design_N);
     hf_hdf5_close(&store->io, group);

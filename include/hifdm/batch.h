@@ -30,6 +30,10 @@ int hf_batch_share(hf_batch *batch, const double *base_N);
 
 int hf_batch_default_threads(void); /* available cores */
 
+/* Evaluate one design in the calling thread, to the same bits as hf_batch_run; returns the workspace that holds its shape
+ * until the next call. */
+hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result);
+
 void hf_batch_free(hf_batch *batch);
 
 #ifdef __cplusplus

@@ -12,6 +12,7 @@ extern "C" {
 #endif
 
 typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHOD_NEWTON, HF_METHOD_AUTO } hf_method;
+typedef enum { HF_OPTIMIZE_GA, HF_OPTIMIZE_LM, HF_OPTIMIZE_GA_LM } hf_optimize_method;
 typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
 typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
@@ -20,6 +21,7 @@ extern const char *const hf_method_word[5];
 extern const char *const hf_stop_rule_word[2];
 extern const char *const hf_rule_word[3];
 extern const char *const hf_solver_word[4];
+extern const char *const hf_optimize_method_word[3];
 
 typedef struct {
     int method;                /* hf_method */
@@ -45,6 +47,7 @@ typedef struct {
     int elites;
     double stagnation_tolerance_m;
     int stagnation_generations;
+    int polish_iterations;
 } hf_optimize_settings;
 
 #define HF_PATH_SIZE 1024

@@ -1,0 +1,85 @@
+/* The reflector of the paper, configs/chen2022.yaml: at the paper's stop, and that converging it is refused.
+ *
+ * Source: Chen, Dong, Song, Chen, Li, Aerospace 2022, 9, 239: psi 6.6 mm, inner ratio 1.0011, boundary ratio 4.8445. The
+ * paper prints neither topology nor focal length; METHOD.md section 8 gives the figures of this stand-in, measured with an
+ * independent prototype: 6.60 mm, 1.0013, 4.23 in 67 iterations, and for 10x12 modules with f = 17.6 m 6.60 mm, 1.0026,
+ * 3.21 in 37. Held to half a unit of their last digit. */
+#include "nets.h"
+
+START_TEST(stand_in_at_the_papers_stop)
+{
+    struct net net;
+    OPEN_CASE(&net, "configs/chen2022.yaml");
+    ck_assert_int_eq(find_shape(&net), HF_OK);
+    ck_assert_int_eq(net.result.stop_reason, HF_STOPPED_RMS_CHANGE);
+    ck_assert_int_eq(net.result.iterations, 67);
+    ck_assert_double_eq_tol(1e3 * net.result.psi_m, 6.60, 0.5e-2);
+    ck_assert_double_eq_tol(net.result.inner_tension_ratio, 1.0013, 0.5e-4);
+    ck_assert_double_eq_tol(net.result.boundary_tension_ratio, 4.23, 0.5e-2);
+    ck_assert_int_eq(net.result.n_loaded_chain, 30); /* the figures come with a warning */
+    close_net(&net);
+}
+END_TEST
+
+/* The same figures to the digits of the program's own first measurement: any change of the numbers shows. Operations may
+ * be ordered otherwise by another LAPACK; 67 iterations amplify that to some 1e-12. */
+START_TEST(nothing_has_changed)
+{
+    struct net net;
+    OPEN_CASE(&net, "configs/chen2022.yaml");
+    ck_assert_int_eq(find_shape(&net), HF_OK);
+    ck_assert_double_eq_tol(1e3 * net.result.psi_m, 6.602655, 0.5e-6);
+    ck_assert_double_eq_tol(net.result.inner_tension_ratio, 1.001262, 0.5e-6);
+    ck_assert_double_eq_tol(net.result.boundary_tension_ratio, 4.231525, 0.5e-6);
+    close_net(&net);
+}
+END_TEST
+
+/* psi goes with 1/f^2, and f is printed to 0.05 m: 2 * 0.05/17.6 * 6.6 mm = 0.04 mm. */
+START_TEST(finer_net_with_its_own_focal_length)
+{
+    struct net net;
+    OPEN_CASE(&net, "configs/chen2022.yaml", "scene.parabolic_cylinder.modules=[10, 12]",
+              "scene.parabolic_cylinder.focal_length_m=17.6");
+    ck_assert_int_eq(find_shape(&net), HF_OK);
+    ck_assert_int_eq(net.result.iterations, 37);
+    ck_assert_double_eq_tol(1e3 * net.result.psi_m, 6.60, 4e-2);
+    ck_assert_double_eq_tol(net.result.inner_tension_ratio, 1.0026, 0.5e-4);
+    ck_assert_double_eq_tol(net.result.boundary_tension_ratio, 3.21, 0.5e-2);
+    close_net(&net);
+}
+END_TEST
+
+/* METHOD section 4: straight boundary chains under lateral load have no finite tension. The program must say so, name
+ * them all, and give no number. */
+START_TEST(converging_it_is_refused)
+{
+    struct net net;
+    OPEN_CASE(&net, "configs/chen2022.yaml", "form.stop=residual");
+    ck_assert_int_eq(find_shape(&net), HF_STRAIGHT_CHAIN);
+    ck_assert_int_eq(net.model.n_chain, 30);
+    ck_assert_int_eq(net.result.n_loaded_chain, 30);
+    ck_assert(net.result.culprit >= 0 && net.result.culprit < 30);
+    ck_assert_double_nan(net.result.psi_m);
+    for (int i = 0; i < 30; i++) {
+        char name[64];
+        int a, b, c;
+        ck_assert(hf_form_chain_is_loaded(&net.model, &net.work, i));
+        hf_model_chain_name(&net.model, &net.scene, i, name, sizeof name); /* n4_0-n4_1 + n4_1-n4_2: along y */
+        ck_assert_msg(sscanf(name, "n%d_%*d-n%d_%*d + n%d_", &a, &b, &c) == 3 && a == b && b == c, "%s", name);
+    }
+    close_net(&net);
+}
+END_TEST
+
+Suite *suite_verify_chen2022(void)
+{
+    Suite *suite = suite_create("verify/chen2022");
+    TCase *tests = tcase_create("chen2022");
+    suite_add_tcase(suite, tests);
+    tcase_add_test(tests, stand_in_at_the_papers_stop);
+    tcase_add_test(tests, nothing_has_changed);
+    tcase_add_test(tests, finer_net_with_its_own_focal_length);
+    tcase_add_test(tests, converging_it_is_refused);
+    return suite;
+}

@@ -1,0 +1,78 @@
+/* Two published force-density nets, from files through import and model to shape and forces.
+ *
+ * Source: arpastrana/jax_fdm (MIT), commit 71d4490, tests/data/reference/{stuttgart21,olympia}-{nodes,edges}.csv, results
+ * of "an independent structural-analysis solver". stuttgart21 is all in tension; olympia has struts (q < 0).
+ * The reference coordinates and forces carry 9 to 10 digits: 1e-8 relative to the net's size and to each force. */
+#include "nets.h"
+
+static const struct {
+    const char *name;
+    int n_node, n_cable, has_strut;
+} nets[] = {{"stuttgart21", 98, 168, 0}, {"olympia", 102, 166, 1}};
+
+/* One line "id,number,..." of the expected file that is not a comment; the number of values read. */
+static int next_line(FILE *file, char id[16], double value[3])
+{
+    char line[256];
+    do
+        if (!fgets(line, sizeof line, file)) return 0;
+    while (*line == '#');
+    return sscanf(line, "%15[^,],%lf,%lf,%lf", id, value, value + 1, value + 2) - 1;
+}
+
+static void open_reference(struct net *net, const char *name)
+{
+    char path[2][128], case_text[512];
+    snprintf(path[0], sizeof path[0], "tests/verify/data/%s_nodes.csv", name);
+    snprintf(path[1], sizeof path[1], "tests/verify/data/%s_cables.csv", name);
+    char nodes[1024], cables[1024];
+    snprintf(nodes, sizeof nodes, "scene.import.nodes=%s", source_path(path[0]));
+    snprintf(cables, sizeof cables, "scene.import.cables=%s", source_path(path[1]));
+    snprintf(case_text, sizeof case_text, "title: %s\nform: {method: fdm, residual_tolerance: 1e-12}\n", name);
+    write_file(temp_path("case.yaml"), case_text);
+    open_case_file(net, temp_path("case.yaml"), (const char *const[]){nodes, cables}, 2);
+}
+
+START_TEST(coordinates_and_forces)
+{
+    struct net net;
+    open_reference(&net, nets[_i].name);
+    ck_assert_int_eq(net.scene.n_node, nets[_i].n_node);
+    ck_assert_int_eq(net.scene.n_cable, nets[_i].n_cable);
+    ck_assert_int_eq(net.model.has_strut, nets[_i].has_strut);
+    ck_assert_msg(find_shape(&net) == HF_OK, "%s", hf_status_word(net.result.status));
+    ck_assert_int_eq(net.result.iterations, 1);
+
+    double size_m = 0, value[3];
+    for (int k = 0; k < 3 * net.scene.n_node; k++)
+        size_m = fmax(size_m, fabs(net.scene.position_m[k]));
+    char expected_path[128], id[16];
+    snprintf(expected_path, sizeof expected_path, "tests/verify/data/%s_expected.csv", nets[_i].name);
+    FILE *file = fopen(source_path(expected_path), "r");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_int_eq(next_line(file, id, value), 0); /* header */
+    for (int i = 0; i < net.scene.n_node; i++) {
+        ck_assert_int_eq(next_line(file, id, value), 3);
+        ck_assert_str_eq(id, net.scene.node_id[i]);
+        for (int c = 0; c < 3; c++)
+            ck_assert_double_eq_tol(found_m(&net, i, c), value[c], 1e-8 * size_m);
+    }
+    ck_assert_int_eq(next_line(file, id, value), 0);
+    for (int e = 0; e < net.scene.n_cable; e++) {
+        ck_assert_int_eq(next_line(file, id, value), 1);
+        ck_assert_str_eq(id, net.scene.cable_id[e]);
+        ck_assert_double_eq_tol(net.work.tension_N[e], value[0], 1e-8 * fabs(value[0]));
+    }
+    fclose(file);
+    close_net(&net);
+}
+END_TEST
+
+Suite *suite_verify_forcedensity(void)
+{
+    Suite *suite = suite_create("verify/forcedensity");
+    TCase *tests = tcase_create("forcedensity");
+    suite_add_tcase(suite, tests);
+    tcase_add_loop_test(tests, coordinates_and_forces, 0, 2);
+    return suite;
+}
