@@ -120,8 +120,10 @@ hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_
 {
     queue work = {1, 0, NULL};
     hf_workspace *workspace = &batch->workspace[0];
-    if (batch->chord) hf_chord_run(&batch->chord->shared, &batch->chord->lanes[0], workspace, take_next, &work, design_N, result);
-    else hf_evaluate(batch->evaluator, design_N, workspace, result);
+    if (batch->chord)
+        hf_chord_run(&batch->chord->shared, &batch->chord->lanes[0], workspace, take_next, &work, design_N, result);
+    else
+        hf_evaluate(batch->evaluator, design_N, workspace, result);
     return workspace;
 }
 

@@ -190,7 +190,7 @@ void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *wo
 {
     const kernels *k = choose_kernels();
     size_t n_gene = (size_t)chord->evaluator->model->n_gene;
-    double residual_squared[HF_LANES];
+    double residual_squared[HF_LANES], reference_N = chord->evaluator->model->reference_N;
     lives now;
     int n_busy = 0, more = 1;
     for (int lane = 0; lane < HF_LANES; lane++) {
@@ -213,7 +213,9 @@ void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *wo
         k->forces(chord, lanes, residual_squared);
         for (int lane = 0; lane < HF_LANES; lane++) {
             if (now.design[lane] < 0) continue;
-            if (!settle(chord, lanes, lane, &now, sqrt(residual_squared[lane]), workspace, design_N, result)) continue;
+            if (!settle(chord, lanes, lane, &now, reference_N * sqrt(residual_squared[lane]), workspace, design_N,
+                        result))
+                continue;
             now.design[lane] = -1;
             n_busy--;
         }

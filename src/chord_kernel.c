@@ -43,9 +43,10 @@ void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, 
         if (b < m->n_free) force[3 * b] -= dx, force[3 * b + 1] -= dy, force[3 * b + 2] -= dz;
     }
     lanes largest = {0};
+    const double scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
     for (int i = 0; i < m->n_free; i++) {
-        const lanes *f = force + 3 * i;
-        lanes square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+        lanes fx = scale * force[3 * i], fy = scale * force[3 * i + 1], fz = scale * force[3 * i + 2];
+        lanes square = fx * fx + fy * fy + fz * fz;
         for (int k = 0; k < HF_LANES; k++)
             largest[k] = square[k] <= largest[k] ? largest[k] : square[k]; /* keeps a NaN */
     }

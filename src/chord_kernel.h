@@ -14,7 +14,8 @@
     void hf_chord_solve_##isa(const hf_chord *chord, const hf_chord_lanes *l);                                         \
     void hf_chord_step_##isa(const hf_chord *chord, const hf_chord_lanes *l);
 
-/* forces: nodal forces of every lane into force_N, squares of the largest per lane. solve: force_N -> Newton step, in
+/* forces: nodal forces of every lane into force_N, squares of the largest over the reference
+ * tension per lane. solve: force_N -> Newton step, in
  * place. step: x_m += that. */
 HF_CHORD_KERNELS(portable)
 HF_CHORD_KERNELS(avx2)

@@ -80,7 +80,8 @@ const hf_field hf_field_table[] = {
      "a cable of law tension shorter than this part of its theoretical length has collapsed"},
 
     {"optimize.method", HF_FIELD_WORD, AT(optimize.method), 0, 0, "ga", "", optimize_words,
-     "genetic algorithm, Levenberg-Marquardt from the form-finding's tensions, or both. After the genetic algorithm the "
+     "genetic algorithm, Levenberg-Marquardt from the form-finding's tensions, or both. After the genetic algorithm "
+     "the "
      "optimum that Levenberg-Marquardt reaches from it is always reported; with ga+lm it is the result"},
     {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", rule_words,
      "what a design means: boundary held at q = T'/L* (always one answer), held at T', or Eq. 8 started from q = T'/L* "

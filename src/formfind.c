@@ -12,6 +12,7 @@
 /* Straight chains are looked at after this many iterations, and again each time that number has doubled. */
 #define FIRST_CHAIN_CHECK 64
 #define CHAIN_LOAD_SETTLED 0.01 /* relative change of the load between two looks that counts as settled */
+#define BLOWN_UP 1e9            /* a cable this many times its theoretical length is no answer */
 #define CHAIN_LOAD_NONE 1e-6    /* lateral load below this part of the reference tension is none */
 
 const char *hf_stop_reason_word(int reason)
@@ -101,6 +102,11 @@ static void measure_cables(const hf_model *m, const hf_form_settings *s, hf_work
             r->culprit = e;
             return;
         }
+        if (part > BLOWN_UP) { /* what rounding leaves of a singular matrix */
+            r->status = HF_SINGULAR;
+            r->culprit = a < b ? a : b;
+            return;
+        }
         if (part < shortest) shortest = part;
         if (w->law[e] == HF_LAW_TENSION) {
             if (part < s->collapse_ratio) {
@@ -145,12 +151,14 @@ static void nodal_forces(const hf_model *m, hf_workspace *w, int without_chains)
 
 static double largest_residual_N(const hf_model *m, hf_workspace *w)
 {
-    double largest = 0;
+    double largest = 0, scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
     const double *fx = w->force_N, *fy = fx + m->n_node, *fz = fy + m->n_node;
     nodal_forces(m, w, 0);
-    for (int i = 0; i < m->n_free; i++)
-        largest = fmax(largest, fx[i] * fx[i] + fy[i] * fy[i] + fz[i] * fz[i]);
-    return sqrt(largest);
+    for (int i = 0; i < m->n_free; i++) {
+        double x = scale * fx[i], y = scale * fy[i], z = scale * fz[i];
+        largest = fmax(largest, x * x + y * y + z * z);
+    }
+    return sqrt(largest) * m->reference_N;
 }
 
 /* ---- straight chains: a chain that cannot deflect cannot carry a lateral load at any finite tension ---- */

@@ -75,17 +75,28 @@ static void place_cables(const hf_scene *s, hf_model *m)
 
 /* ---- laws and targets ---- */
 
+/* The tension that a cable is given, N; 0 when its law gives none. */
+static double given_tension(const hf_scene *s, const hf_form_settings *form, int e)
+{
+    if (s->law[e] == HF_LAW_LENGTH) return 0;
+    if (s->law[e] == HF_LAW_FORCE_DENSITY) return fabs(s->target[e]) * hf_scene_theoretical_length(s, e);
+    return isnan(s->target[e]) ? form->pretension_N : s->target[e];
+}
+
 static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *m)
 {
-    double largest_q_tension = 0;
-    int only_force_density = 1;
+    m->pretension_N = form->pretension_N;
+    for (int e = 0; e < m->n_cable; e++)
+        m->reference_N = fmax(m->reference_N, given_tension(s, form, e));
+    if (!(m->reference_N > 0)) m->reference_N = form->pretension_N;
     for (int e = 0; e < m->n_cable; e++) {
         int law = s->law[e];
         double length = hf_scene_theoretical_length(s, e), target = s->target[e];
-        if (law == HF_LAW_TENSION && isnan(target)) target = form->pretension_N;
-        double tension = law == HF_LAW_TENSION ? target : form->pretension_N;
+        double tension = law == HF_LAW_LENGTH ? m->reference_N : given_tension(s, form, e);
         double q = law == HF_LAW_FORCE_DENSITY ? target : tension / length;
+        if (law == HF_LAW_TENSION) target = tension;
         if (form->method == HF_METHOD_ITERATIVE_FDM) {
+            if (law != HF_LAW_TENSION) tension = form->pretension_N;
             law = HF_LAW_TENSION;
             target = tension;
             q = tension / length;
@@ -99,14 +110,12 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
         m->target[e] = target;
         m->start_q_N_per_m[e] = q;
         m->has_strut |= q < 0;
-        only_force_density &= law == HF_LAW_FORCE_DENSITY;
-        largest_q_tension = fmax(largest_q_tension, fabs(q) * length);
         if (s->group[e] == HF_GROUP_BOUNDARY && (m->end_row[2 * e] < m->n_free || m->end_row[2 * e + 1] < m->n_free))
             m->gene_cable[m->n_gene++] = e;
     }
-    m->has_newton = !only_force_density && !m->has_strut;
-    m->pretension_N = form->pretension_N;
-    m->reference_N = only_force_density ? largest_q_tension : form->pretension_N;
+    for (int e = 0; e < m->n_cable; e++)
+        m->has_newton |= m->law[e] != HF_LAW_FORCE_DENSITY;
+    if (m->has_strut) m->has_newton = 0;
 }
 
 /* ---- straight chains ---- */

@@ -54,16 +54,17 @@ typedef struct {
 } imbalance;
 
 /* Nodal forces out of balance into force [3*row + c]: minus the gradient of Pi. */
-static imbalance measure(const hf_model *m, const hf_workspace *w, const double *x, const double *T, double *force)
+static imbalance measure(const hf_model *m, const hf_workspace *w, const double *position_m, const double *T,
+                         double *force)
 {
     imbalance result = {0};
-    double u[3], sum = 0, largest = 0;
+    double u[3], sum = 0, largest = 0, scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
     for (int i = 0; i < m->n_free; i++)
         for (int c = 0; c < 3; c++)
             force[3 * i + c] = m->load_N ? m->load_N[c * m->n_node + i] : 0;
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-        double length = direction(m, x, e, u), tension = law_tension(w, e, length, T[e]);
+        double length = direction(m, position_m, e, u), tension = law_tension(w, e, length, T[e]);
         for (int c = 0; c < 3; c++) {
             if (a < m->n_free) force[3 * a + c] += tension * u[c];
             if (b < m->n_free) force[3 * b + c] -= tension * u[c];
@@ -75,13 +76,13 @@ static imbalance measure(const hf_model *m, const hf_workspace *w, const double 
         result.merit += gap * gap;
     }
     for (int i = 0; i < m->n_free; i++) {
-        const double *f = force + 3 * i;
-        double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+        double x = scale * force[3 * i], y = scale * force[3 * i + 1], z = scale * force[3 * i + 2];
+        double square = x * x + y * y + z * z;
         largest = fmax(largest, square);
         sum += square;
     }
-    result.residual_N = sqrt(largest);
-    result.merit += sum / (m->reference_N * m->reference_N);
+    result.residual_N = sqrt(largest) * m->reference_N;
+    result.merit += sum;
     return result;
 }
 

@@ -3,6 +3,7 @@
 #include "run.h"
 
 #include "print.h"
+#include "polish.h"
 #include <hifdm/batch.h>
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
@@ -193,6 +194,13 @@ static hf_status prepare_optimize(run *r, int threads, hf_messages *messages)
         if (!(r->base_N[k] > 0))
             return hf_error(messages, HF_BAD_CASE, "optimize: boundary cable '%s' has no tension to start from",
                             r->scene.cable_id[m->gene_cable[k]]);
+        const hf_optimize_settings *o = &r->settings.optimize;
+        if (r->base_N[k] + o->range_N < o->min_tension_N || r->base_N[k] - o->range_N > o->max_tension_N)
+            return hf_error(
+                messages, HF_BAD_CASE,
+                "optimize: boundary cable '%s' has %g N after form-finding; range_N %g around that does not "
+                "reach min_tension_N %g .. max_tension_N %g",
+                r->scene.cable_id[m->gene_cable[k]], r->base_N[k], o->range_N, o->min_tension_N, o->max_tension_N);
     }
     r->evaluator = (hf_evaluator){m,
                                   &r->settings.form,
@@ -204,7 +212,6 @@ static hf_status prepare_optimize(run *r, int threads, hf_messages *messages)
         hf_ga_create(&r->settings.optimize, m, r->base_N, &r->ga) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for %d individuals of %d genes on %d threads",
                         r->settings.optimize.population, m->n_gene, r->batch.n_thread);
-    hf_batch_share(&r->batch, r->base_N);
     return HF_OK;
 }
 
@@ -216,26 +223,24 @@ static void note_best(const hf_ga *ga, hf_summary *s)
     s->best_individual = ga->best;
 }
 
-/* The shape of the best individual: elitism keeps it in the last generation, and its evaluation gives the same bits
- * again. */
+/* The shape of the best individual: elitism keeps it in the last generation, and it is evaluated to the same bits again. */
 static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
 {
     const double *design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
     hf_form_result again;
-    hf_evaluate(&r->evaluator, design, &r->workspace, &again);
-    warn(&r->scene, &r->model, &r->settings.form, &r->workspace, &s->best, messages);
-    return hf_store_best(r->store, &r->model, &r->workspace, design, messages);
+    hf_workspace *w = hf_batch_run_one(&r->batch, design, &again);
+    warn(&r->scene, &r->model, &r->settings.form, w, &s->best, messages);
+    return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->model, w, design, messages);
 }
 
-static hf_status optimize(run *r, const hf_options *options, hf_summary *s, hf_messages *messages)
+static hf_status evolve(run *r, const hf_options *options, hf_summary *s, hf_messages *messages)
 {
     int show_progress = !options->quiet && isatty(STDERR_FILENO);
     hf_ga *ga = &r->ga;
-    HF_TRY(prepare_optimize(r, options->threads, messages));
     double start_s = hf_run_clock_s();
     s->has_optimize = 1;
     s->best.status = HF_NOT_EVALUATED;
-    s->threads = r->batch.n_thread;
+    s->solver = hf_batch_share(&r->batch, r->base_N);
     do {
         hf_batch_run(&r->batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
         hf_ga_tell(ga);
@@ -252,6 +257,43 @@ static hf_status optimize(run *r, const hf_options *options, hf_summary *s, hf_m
     s->optimize_stop = (int)ga->stop_reason;
     if (ga->best >= 0) return store_best(r, s, messages);
     hf_warning(messages, "optimize: no feasible design among %ld evaluations", s->evaluations);
+    return HF_OK;
+}
+
+/* Levenberg-Marquardt from the best individual, or from the base design when there was no genetic algorithm. */
+static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &r->settings.optimize;
+    hf_polish_result outcome;
+    double *design = r->base_N, start_s = hf_run_clock_s();
+    if (s->has_optimize && r->ga.best >= 0) design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
+    hf_status status = hf_polish_run(&r->evaluator, r->ga.lower_N, r->ga.upper_N, o->polish_iterations, design,
+                                     &r->workspace, &outcome);
+    if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
+    if (status != HF_OK) {
+        hf_warning(messages, "optimize: Levenberg-Marquardt has no feasible design to start from: %s",
+                   hf_status_text(status));
+        return HF_OK;
+    }
+    hf_evaluate(&r->evaluator, design, &r->workspace, &s->polish);
+    s->has_polish = 1;
+    s->polish_is_result = o->method != HF_OPTIMIZE_GA;
+    s->polish_iterations = outcome.iterations;
+    s->polish_evaluations = outcome.evaluations;
+    s->polish_converged = outcome.converged;
+    s->polish_wall_s = hf_run_clock_s() - start_s;
+    return hf_store_best(r->store, HF_STAGE_POLISH, &r->model, &r->workspace, design, messages);
+}
+
+static hf_status optimize(run *r, const hf_options *options, hf_summary *s, hf_messages *messages)
+{
+    int method = r->settings.optimize.method;
+    HF_TRY(prepare_optimize(r, options->threads, messages));
+    s->threads = r->batch.n_thread;
+    if (method != HF_OPTIMIZE_LM) HF_TRY(evolve(r, options, s, messages));
+    if (hf_polish_applies(&r->evaluator)) return polish(r, s, messages);
+    if (method != HF_OPTIMIZE_GA)
+        hf_warning(messages, "optimize: Levenberg-Marquardt needs a net without struts and a rule other than seeded");
     return HF_OK;
 }
 
@@ -295,24 +337,50 @@ static hf_status spare_inputs(const hf_case *settings, const char *output, hf_me
 
 /* ---- being told to stop: the temporary file goes, and the signal does what it would have done ---- */
 
-static char unfinished[HF_OUTPUT_SIZE + 64]; /* "" when there is none */
+static char unfinished[HF_OUTPUT_SIZE + 64];       /* "" when there is none */
+static volatile sig_atomic_t creating, stopped_by; /* a signal while the file is being made waits until it is */
 static const int stop_signals[] = {SIGINT, SIGTERM, SIGHUP};
 
 static void remove_unfinished(int signal_number)
 {
+    if (creating) {
+        stopped_by = signal_number;
+        return;
+    }
     if (unfinished[0]) unlink(unfinished);
     signal(signal_number, SIG_DFL);
     raise(signal_number);
 }
 
-static void watch_signals(const hf_store *store)
+static void set_handlers(void (*handler)(int))
 {
-    snprintf(unfinished, sizeof unfinished, "%s", store ? hf_store_temporary(store) : "");
     for (size_t i = 0; i < sizeof stop_signals / sizeof *stop_signals; i++) {
         struct sigaction old;
         if (sigaction(stop_signals[i], NULL, &old) == 0 && old.sa_handler != SIG_IGN) /* nohup stays nohup */
-            signal(stop_signals[i], store ? remove_unfinished : SIG_DFL);
+            signal(stop_signals[i], handler);
     }
+}
+
+static hf_status create_store(run *r, const hf_options *options, int argc, char *const *argv, const char *output,
+                              hf_messages *messages)
+{
+    creating = 1;
+    set_handlers(remove_unfinished);
+    hf_status status =
+        hf_store_create(output, options->force, &r->settings, &r->scene, argc, argv, &r->store, messages);
+    snprintf(unfinished, sizeof unfinished, "%s", status == HF_OK ? hf_store_temporary(r->store) : "");
+    creating = 0;
+    if (stopped_by) remove_unfinished(stopped_by);
+    return status;
+}
+
+static hf_status finish_store(run *r, const hf_summary *s, hf_messages *messages)
+{
+    hf_status status = hf_store_finish(r->store, s, messages);
+    r->store = NULL;
+    set_handlers(SIG_DFL);
+    unfinished[0] = '\0';
+    return status;
 }
 
 /* The stages that the case asks for, in order. HF_NOT_CONVERGED: nothing follows on a shape that is not one. */
@@ -338,14 +406,11 @@ static hf_status execute(run *r, const hf_options *options, int argc, char *cons
     hf_run_describe(&r->settings, &r->model, s);
     HF_TRY(choose_output(options, output, messages));
     HF_TRY(spare_inputs(&r->settings, output, messages));
-    HF_TRY(hf_store_create(output, options->force, &r->settings, &r->scene, argc, argv, &r->store, messages));
-    watch_signals(r->store);
+    HF_TRY(create_store(r, options, argc, argv, output, messages));
     hf_status status = stages(r, options, s, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
-    watch_signals(NULL);
-    hf_status finish = hf_store_finish(r->store, s, messages);
-    r->store = NULL;
+    hf_status finish = finish_store(r, s, messages);
     return finish != HF_OK ? finish : status;
 }
 

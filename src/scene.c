@@ -269,6 +269,17 @@ static void fault(const hf_scene *s, int is_cable, int index, int *n_fault, cons
     hf_error(messages, HF_BAD_CASE, "%s %s", where, what);
 }
 
+static void check_nodes(const hf_scene *s, int *n_fault, hf_messages *messages)
+{
+    for (int i = 0; i < s->n_node; i++)
+        for (int c = 0; c < 3; c++) {
+            if (!isfinite(s->position_m[3 * i + c]))
+                fault(s, 0, i, n_fault, "has a position that is no number", messages);
+            if (s->load_N && !isfinite(s->load_N[3 * i + c]))
+                fault(s, 0, i, n_fault, "has a load that is no number", messages);
+        }
+}
+
 static void check_cables(const hf_scene *s, int *n_fault, hf_messages *messages)
 {
     for (int e = 0; e < s->n_cable; e++) {
@@ -319,7 +330,8 @@ hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages)
     if (n_inner == 0)
         return hf_error(messages, HF_BAD_CASE,
                         "scene: no node has the role 'inner': psi would count nothing; give inner nodes that role");
-    check_cables(scene, &n_fault, messages);
+    check_nodes(scene, &n_fault, messages);
+    if (n_fault == 0) check_cables(scene, &n_fault, messages);
     HF_TRY(check_anchored(scene, &n_fault, messages));
     if (n_fault > FAULT_MAX) hf_error(messages, HF_BAD_CASE, "scene: and %d more faults", n_fault - FAULT_MAX);
     return n_fault ? HF_BAD_CASE : HF_OK;

@@ -173,10 +173,12 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
     static const hf_hdf5_column table[] = {HF_SHAPE_COLUMNS(HF_HDF5_COLUMN)};
     hf_hdf5 io = open_result(path, messages);
     *shape = (hf_shape){0};
-    if (stage == HF_STAGE_OPTIMIZE && io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/ga")) stage = HF_STAGE_NONE;
-    if (io.status == HF_OK && (stage == HF_STAGE_NONE || !hf_hdf5_has(&io, io.file, hf_stage_group[stage])))
-        io.status = hf_error(messages, HF_IO, "%s: has no such shape: the stage did not run, or found no feasible design",
-                             path);
+    int is_there = stage != HF_STAGE_NONE && (stage != HF_STAGE_OPTIMIZE || hf_hdf5_has(&io, io.file, "/ga")) &&
+                   hf_hdf5_has(&io, io.file, hf_stage_group[stage]);
+    if (!is_there && io.status == HF_OK) /* a question that fails has said so itself */
+        io.status =
+            hf_error(messages, HF_IO, "%s: has no %s shape: that stage did not run, or found no feasible design", path,
+                     hf_stage_word[stage]);
     hid_t group = hf_hdf5_open_group(&io, hf_stage_group[stage]);
     int n_node = hf_hdf5_length(&io, io.file, "/scene/node/role", COUNT_MAX);
     int n_cable = hf_hdf5_length(&io, io.file, "/scene/cable/law", COUNT_MAX);

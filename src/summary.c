@@ -91,7 +91,21 @@ static void write_optimize(const hf_summary *s, FILE *f)
     fputs(", ", f);
     write_number("cpu_s", s->optimize_cpu_s, f);
     fputs(", ", f);
+    write_text("solver", hf_solver_word[s->solver], f);
+    fputs(", ", f);
     write_text("stop_reason", hf_ga_stop_word[s->optimize_stop], f);
+    fputc('}', f);
+}
+
+static void write_polish(const hf_summary *s, FILE *f)
+{
+    fputs(",\n \"polish\": {", f);
+    write_result(&s->polish, f);
+    fprintf(f, ", \"lm_iterations\": %d, \"evaluations\": %d, \"is_result\": %s, ", s->polish_iterations,
+            s->polish_evaluations, s->polish_is_result ? "true" : "false");
+    write_number("wall_s", s->polish_wall_s, f);
+    fputs(", ", f);
+    write_text("stop_reason", s->polish_converged ? "converged" : "max_iterations", f);
     fputc('}', f);
 }
 
@@ -109,6 +123,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
         fputc('}', f);
     }
     if (s->has_optimize) write_optimize(s, f);
+    if (s->has_polish) write_polish(s, f);
     fprintf(f, ",\n \"threads\": %d, \"seed\": %llu, ", s->threads, (unsigned long long)s->seed);
     write_text("version", s->version, f);
     fputs(",\n ", f);

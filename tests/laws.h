@@ -30,8 +30,8 @@ static inline void random_fdm_scene(struct rng *rng, hf_scene *scene)
     hand_scene(scene, n_node, node, n_cable, cable);
 }
 
-/* A quad net over a random saddle, its nodes shaken, perimeter fixed. Tensions 10 N +- 10 %, but nearly the same along a
- * line: the crossing cables take up differences by small kinks only, and no cable is pulled to nothing. */
+/* A quad net over a random saddle, its nodes shaken, perimeter fixed. Tensions 10 N +- 10 %, but nearly the same along
+ * a line: the crossing cables take up differences by small kinks only, and no cable is pulled to nothing. */
 static inline void random_tension_scene(struct rng *rng, hf_scene *scene)
 {
     enum { MAX_SIDE = 8 };

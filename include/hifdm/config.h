@@ -35,6 +35,7 @@ typedef struct {
 } hf_form_settings;
 
 typedef struct {
+    int method; /* hf_optimize_method */
     int rule;   /* hf_rule: what a design (a set of boundary pretensions) means */
     int solver; /* hf_solver of the individuals */
     int population, generations;

@@ -21,7 +21,7 @@ typedef struct {
     int has_strut;      /* some force density is negative: D may be indefinite */
     int has_newton;     /* workspaces hold a Newton matrix: some law iterates, and the energy is convex (no strut) */
     double pretension_N;
-    double reference_N; /* what residuals are relative to: the pretension, or a pure FDM net's largest start tension */
+    double reference_N; /* what residuals are relative to: the largest tension that a law gives, else the pretension */
 
     int *row_of_node;                            /* [n_node] */
     int *node_of_row;                            /* [n_node] */

@@ -58,7 +58,7 @@ typedef struct {
 } hf_cylinder;
 
 /* Quad net over the cylinder; node ids n<i>_<j>, cable ids <node>-<node>. Free it with hf_scene_free in any case.
- * HF_BAD_CASE when the net would be too large or has no free node, HF_NO_MEMORY. */
+ * HF_BAD_CASE when the net would be too large, HF_NO_MEMORY. */
 hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, hf_scene *scene, hf_messages *messages);
 
 /* Room for a scene of this size, all zero; with_* say which optional arrays exist. HF_OK or HF_NO_MEMORY. */

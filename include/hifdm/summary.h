@@ -25,7 +25,7 @@ typedef struct {
 
     int solver; /* hf_solver that the individuals were given */
 
-    int has_polish;      /* Levenberg-Marquardt ran */
+    int has_polish;       /* Levenberg-Marquardt ran */
     int polish_is_result; /* optimize.method asked for it: its design is the result, not only a yardstick */
     hf_form_result polish;
     int polish_iterations, polish_evaluations, polish_converged;

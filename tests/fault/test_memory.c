@@ -1,6 +1,9 @@
 /* Every allocation of every set-up function fails once: HF_NO_MEMORY with a message, nothing used, nothing leaked (the
- * sanitizers' run tells), and the same call works afterwards. libyaml allocates inside its own library, out of reach. */
+ * run under the sanitizers tells). What libyaml allocates inside its own library is out of reach. */
 #include "nets.h"
+
+#include <hifdm/batch.h>
+#include <hifdm/ga.h>
 
 /* What is under test, prepared before the failure and cleaned up after it, whether it succeeded or not. */
 struct subject {
@@ -9,6 +12,9 @@ struct subject {
     hf_scene scene;
     hf_model model;
     hf_workspace work;
+    hf_evaluator evaluator;
+    hf_batch batch;
+    hf_ga ga;
     hf_messages messages;
 };
 
@@ -35,14 +41,24 @@ static hf_status create_workspace(struct subject *s)
     return hf_workspace_create(&s->model, &s->work);
 }
 
+static hf_status create_batch(struct subject *s)
+{
+    s->evaluator = (hf_evaluator){&s->model, &s->settings.form, s->model.start_q_N_per_m, HF_RULE_FORCE_DENSITY, HF_SOLVER_AUTO, 10};
+    return hf_batch_create(&s->evaluator, 3, &s->batch);
+}
+
+static hf_status create_ga(struct subject *s)
+{
+    return hf_ga_create(&s->settings.optimize, &s->model, s->model.length_m, &s->ga); /* any numbers above zero */
+}
+
 static const struct stage {
     const char *name;
     action *act;
     int has_message; /* functions without a messages argument leave the words to their caller */
-} stages[] = {{"hf_config_load", load_case, 1},
-              {"hf_config_scene", make_scene, 1},
-              {"hf_model_build", build_model, 1},
-              {"hf_workspace_create", create_workspace, 0}};
+} stages[] = {{"hf_config_load", load_case, 1},     {"hf_config_scene", make_scene, 1},
+              {"hf_model_build", build_model, 1},   {"hf_workspace_create", create_workspace, 0},
+              {"hf_batch_create", create_batch, 0}, {"hf_ga_create", create_ga, 0}};
 enum { N_STAGE = sizeof stages / sizeof *stages };
 
 /* More rows and ids than the first capacities of the import (64 rows), so that its growth fails, too. */
@@ -73,6 +89,8 @@ static const char *write_cylinder_case(void)
 
 static void clean_up(struct subject *s)
 {
+    hf_ga_free(&s->ga);
+    hf_batch_free(&s->batch);
     hf_workspace_free(&s->work);
     hf_model_free(&s->model);
     hf_scene_free(&s->scene);

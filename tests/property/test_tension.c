@@ -1,7 +1,7 @@
 /* Laws of the tension law (Eq. 7, iterative FDM) on random quad nets with a fixed perimeter.
  *
- * Iterated to 1e-11 of 10 N. The softest mode of these nets, with tensions near 10 N and cables near 1 m, is stiffer than
- * 0.1 N/m, so positions are right to about 1e-9 m; two runs are compared to 1e-8 m (observed: some 1e-10).
+ * Iterated to 1e-11 of 10 N. The softest mode of these nets, with tensions near 10 N and cables near 1 m, is stiffer
+ * than 0.1 N/m, so positions are right to about 1e-9 m; two runs are compared to 1e-8 m (observed: some 1e-10).
  * HIFDM_TEST_SEED=... replays a run; the number after the test's name is the trial. */
 #include "laws.h"
 

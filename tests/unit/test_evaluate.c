@@ -21,7 +21,7 @@ static void open_run(struct run *r, int rule)
     memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
     for (int k = 0; k < m->n_gene; k++)
         r->design_N[k] = r->base_N[k] = r->net.work.tension_N[m->gene_cable[k]];
-    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, rule, 1e9};
+    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, rule, HF_SOLVER_AUTO, 1e9};
 }
 
 static void disturb(struct run *r, double range_N)
@@ -36,9 +36,9 @@ static hf_status evaluate(struct run *r, hf_form_result *result)
     return hf_evaluate(&r->evaluator, r->design_N, &r->net.work, result);
 }
 
-/* The converged HIFDM shape is the equilibrium of its own tensions, whatever holds them: q T/l is the same in all three.
- * Both were found to 1e-10 of the residual; what that means in position is its ratio to the net's stiffness: below
- * 1e-6 m of some 0.01 m is measured and held. */
+/* The converged HIFDM shape is the equilibrium of its own tensions, whatever holds them: q T/l is the same in all
+ * three. Both were found to 1e-10 of the residual; what that means in position is its ratio to the net's stiffness:
+ * below 1e-6 m of some 0.01 m is measured and held. */
 START_TEST(base_design_gives_back_the_found_shape)
 {
     struct run r;
@@ -68,6 +68,24 @@ START_TEST(force_density_rule_holds_q)
     for (int e = 0; e < m->n_cable; e++)
         if (m->group[e] == HF_GROUP_INNER) ck_assert_double_eq_tol(r.net.work.tension_N[e], 10, 1e-7);
     ck_assert_int_eq(result.stop_reason, HF_STOPPED_RESIDUAL);
+    close_net(&r.net);
+}
+END_TEST
+
+/* L* is what the cable was cut to, not the theoretical length, where the two differ. */
+START_TEST(prescribed_lengths_count)
+{
+    struct run r;
+    hf_form_result result;
+    open_run(&r, HF_RULE_FORCE_DENSITY);
+    const hf_model *m = &r.net.model;
+    for (int k = 0; k < m->n_gene; k++)
+        m->target[m->gene_cable[k]] *= 1.0625;
+    ck_assert_int_eq(evaluate(&r, &result), HF_OK);
+    for (int k = 0; k < m->n_gene; k++) {
+        int e = m->gene_cable[k];
+        ck_assert_double_eq(r.net.work.q_N_per_m[e], r.design_N[k] / (1.0625 * m->length_m[e]));
+    }
     close_net(&r.net);
 }
 END_TEST
@@ -217,6 +235,7 @@ Suite *suite_unit_evaluate(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, base_design_gives_back_the_found_shape, 0, 3);
     tcase_add_test(tests, force_density_rule_holds_q);
+    tcase_add_test(tests, prescribed_lengths_count);
     tcase_add_test(tests, tension_rule_holds_tensions);
     tcase_add_test(tests, seeded_rule_is_the_papers_iteration);
     tcase_add_test(tests, force_density_rule_does_not_depend_on_the_start);

@@ -1,4 +1,4 @@
-/* When form-finding stops and what it says then: rules, bounds, straight chains, history; no heap, no stale contents. */
+/* When form-finding stops and what it says then: rules, bounds, chains, history; no heap, no stale contents. */
 #include "nets.h"
 
 /* A small scalloped reflector: converges in some 300 iterations at the default tolerances. */
@@ -155,6 +155,23 @@ START_TEST(unloaded_straight_chain_is_fine)
 }
 END_TEST
 
+/* A pull along the chain is shared by its two links, at finite tensions: T0 - T1 = 2 N. */
+START_TEST(straight_chain_carries_loads_along_it)
+{
+    static const struct hand_node node[] = {
+        {{0, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{1, 0, 0}, HF_ROLE_INNER, {2, 0, 0}}, {{2, 0, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_LENGTH, 1},
+                                              {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_LENGTH, 1}};
+    struct net net;
+    OPEN_HAND(&net, node, cable, HF_METHOD_HIFDM);
+    ck_assert_int_eq(net.model.n_chain, 1);
+    ck_assert_int_eq(find_shape(&net), HF_OK);
+    ck_assert_int_eq(net.result.n_loaded_chain, 0);
+    ck_assert_double_eq_tol(net.work.tension_N[0] - net.work.tension_N[1], 2, 1e-9); /* 1e-11 of 10 N */
+    close_net(&net);
+}
+END_TEST
+
 /* Under the paper's rule the figures stand, with a count that says what they are worth. */
 START_TEST(rms_rule_counts_loaded_chains)
 {
@@ -231,6 +248,7 @@ Suite *suite_unit_formfind_stop(void)
     tcase_add_test(tests, history_keeps_within_its_capacity);
     tcase_add_test(tests, loaded_straight_chain_is_ill_posed);
     tcase_add_test(tests, unloaded_straight_chain_is_fine);
+    tcase_add_test(tests, straight_chain_carries_loads_along_it);
     tcase_add_test(tests, rms_rule_counts_loaded_chains);
     tcase_add_test(tests, nothing_is_allocated);
     tcase_add_test(tests, model_stays_as_it_was);

@@ -219,6 +219,43 @@ START_TEST(chains_of_the_papers_net)
 }
 END_TEST
 
+/* ---- groups of genes ---- */
+
+/* Boundary cables c0-c1-c2 in a row, then c3 and c4 from the last free node, where three of them meet. */
+START_TEST(genes_of_a_chain_are_one_group)
+{
+    static const struct hand_node row[] = {{{0, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{1, 0, 0}, HF_ROLE_EDGE, {0}},
+                                           {{2, 0, 0}, HF_ROLE_EDGE, {0}},    {{3, 0, 0}, HF_ROLE_INNER, {0}},
+                                           {{4, 1, 0}, HF_ROLE_SUPPORT, {0}}, {{4, -1, 0}, HF_ROLE_SUPPORT, {0}},
+                                           {{1, 5, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable link[] = {
+        {{1, 0}, HF_GROUP_BOUNDARY, HF_LAW_TENSION, 1}, {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_TENSION, 1},
+        {{3, 2}, HF_GROUP_BOUNDARY, HF_LAW_TENSION, 1}, {{3, 4}, HF_GROUP_BOUNDARY, HF_LAW_TENSION, 1},
+        {{5, 3}, HF_GROUP_BOUNDARY, HF_LAW_TENSION, 1}, {{1, 6}, HF_GROUP_INNER, HF_LAW_TENSION, 1}};
+    static const int group[] = {0, 0, 0, 1, 2};
+    struct net net;
+    OPEN_HAND(&net, row, link, HF_METHOD_HIFDM);
+    ck_assert_int_eq(net.model.n_gene, 5);
+    ck_assert_int_eq(net.model.n_gene_group, 3);
+    ck_assert_mem_eq(net.model.gene_group, group, sizeof group);
+    close_net(&net);
+}
+END_TEST
+
+START_TEST(groups_of_the_papers_net_are_module_edges)
+{
+    struct net net;
+    OPEN_CASE(&net, "configs/chen2022.yaml");
+    int n_gene_of[120] = {0};
+    ck_assert_int_eq(net.model.n_gene_group, 60);
+    for (int k = 0; k < net.model.n_gene; k++)
+        n_gene_of[net.model.gene_group[k]]++;
+    for (int j = 0; j < 60; j++)
+        ck_assert_int_eq(n_gene_of[j], 2);
+    close_net(&net);
+}
+END_TEST
+
 Suite *suite_unit_model(void)
 {
     Suite *suite = suite_create("unit/model");
@@ -232,5 +269,7 @@ Suite *suite_unit_model(void)
     tcase_add_test(tests, every_damage_is_noticed);
     tcase_add_test(tests, straight_chains_are_found);
     tcase_add_test(tests, chains_of_the_papers_net);
+    tcase_add_test(tests, genes_of_a_chain_are_one_group);
+    tcase_add_test(tests, groups_of_the_papers_net_are_module_edges);
     return suite;
 }

@@ -1,10 +1,13 @@
 /* The reflector of the paper, configs/chen2022.yaml: at the paper's stop, and that converging it is refused.
  *
- * Source: Chen, Dong, Song, Chen, Li, Aerospace 2022, 9, 239: psi 6.6 mm, inner ratio 1.0011, boundary ratio 4.8445. The
- * paper prints neither topology nor focal length; METHOD.md section 8 gives the figures of this stand-in, measured with an
- * independent prototype: 6.60 mm, 1.0013, 4.23 in 67 iterations, and for 10x12 modules with f = 17.6 m 6.60 mm, 1.0026,
- * 3.21 in 37. Held to half a unit of their last digit. */
+ * Source: Chen, Dong, Song, Chen, Li, Aerospace 2022, 9, 239: psi 6.6 mm, inner ratio 1.0011, boundary ratio 4.8445.
+ * The paper prints neither topology nor focal length; METHOD.md section 8 gives the figures of this stand-in, measured
+ * with an independent prototype: 6.60 mm, 1.0013, 4.23 in 67 iterations, and for 10x12 modules with f = 17.6 m 6.60
+ * mm, 1.0026, 3.21 in 37. Held to half a unit of their last digit. */
 #include "nets.h"
+
+#include <hifdm/batch.h>
+#include <hifdm/ga.h>
 
 START_TEST(stand_in_at_the_papers_stop)
 {
@@ -21,8 +24,8 @@ START_TEST(stand_in_at_the_papers_stop)
 }
 END_TEST
 
-/* The same figures to the digits of the program's own first measurement: any change of the numbers shows. Operations may
- * be ordered otherwise by another LAPACK; 67 iterations amplify that to some 1e-12. */
+/* The same figures to the digits of the program's own first measurement: any change of the numbers shows. Operations
+ * may be ordered otherwise by another LAPACK; 67 iterations amplify that to some 1e-12. */
 START_TEST(nothing_has_changed)
 {
     struct net net;
@@ -72,6 +75,39 @@ START_TEST(converging_it_is_refused)
 }
 END_TEST
 
+/* METHOD section 5: the local optimum within +-1 N is 6.34 mm, by Levenberg-Marquardt on the prototype. A short search
+ * comes near it (measured: 6.43 mm after these 60 generations; 6.36 mm after the paper's 50 x 400) and none gets
+ * below. */
+START_TEST(search_comes_near_the_optimum)
+{
+    struct net net;
+    hf_batch batch;
+    hf_ga ga;
+    OPEN_CASE(&net, "configs/chen2022.yaml", "optimize.population=16", "optimize.generations=60");
+    ck_assert_int_eq(find_shape(&net), HF_OK);
+    const hf_model *m = &net.model;
+    double start_q[220], base_N[120];
+    ck_assert(m->n_cable == 220 && m->n_gene == 120);
+    memcpy(start_q, net.work.q_N_per_m, sizeof start_q);
+    for (int k = 0; k < m->n_gene; k++)
+        base_N[k] = net.work.tension_N[m->gene_cable[k]];
+    const hf_optimize_settings *o = &net.settings.optimize;
+    hf_evaluator evaluator = {m, &net.form, start_q, o->rule, o->solver, o->boundary_ratio_cap};
+    ck_assert_int_eq(hf_batch_create(&evaluator, 2, &batch), HF_OK);
+    ck_assert_int_eq(hf_ga_create(o, m, base_N, &ga), HF_OK);
+    do {
+        hf_batch_run(&batch, ga.n_individual, ga.design_N, ga.pending, ga.result);
+        hf_ga_tell(&ga);
+    } while (hf_ga_next(&ga));
+    ck_assert_int_eq(ga.stop_reason, HF_GA_GENERATIONS);
+    ck_assert_double_ge(1e3 * ga.best_psi_m[ga.generation], 6.34 - 0.5e-2);
+    ck_assert_double_le(1e3 * ga.best_psi_m[ga.generation], 6.48);
+    hf_ga_free(&ga);
+    hf_batch_free(&batch);
+    close_net(&net);
+}
+END_TEST
+
 Suite *suite_verify_chen2022(void)
 {
     Suite *suite = suite_create("verify/chen2022");
@@ -81,5 +117,6 @@ Suite *suite_verify_chen2022(void)
     tcase_add_test(tests, nothing_has_changed);
     tcase_add_test(tests, finer_net_with_its_own_focal_length);
     tcase_add_test(tests, converging_it_is_refused);
+    tcase_add_test(tests, search_comes_near_the_optimum);
     return suite;
 }

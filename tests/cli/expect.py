@@ -1,0 +1,133 @@
+"""expect.py FILE... -- EXPRESSION...: every Python expression must hold of what the files hold.
+
+The files are a, b, c, ... in the order given: .json the object, .h5 an open h5py.File, .csv a list of rows as
+dictionaries, .yaml the document, anything else its bytes. What an expression may use besides is below. One that does
+not hold is printed with the values of its two sides, and the exit status is 1."""
+import ast
+import csv
+import hashlib
+import json
+import sys
+
+import numpy as np
+
+
+def load(path):
+    if path.endswith(".h5"):
+        import h5py
+
+        return h5py.File(path, "r")
+    if path.endswith(".csv"):
+        with open(path, newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+    if path.endswith(".yaml"):
+        import yaml
+
+        with open(path, encoding="utf-8") as file:
+            return yaml.safe_load(file)
+    with open(path, "rb") as file:
+        content = file.read()
+    return json.loads(content.decode("utf-8"), parse_constant=refuse) if path.endswith(".json") else content
+
+
+def refuse(word):
+    raise ValueError(f"{word} is no JSON")
+
+
+def data_sets(file):
+    """Path -> data set, of all of them."""
+    found = {}
+    file.visititems(lambda name, item: found.update({name: item}) if hasattr(item, "dtype") else None)
+    return found
+
+
+def contents(file):
+    """Path -> (type, shape, bytes) of all data sets: equal means the same bits; attributes do not count."""
+    return {name: (str(d.dtype), d.shape, d[()].tobytes() if d.dtype.kind != "O" else repr(d[()]))
+            for name, d in data_sets(file).items()}
+
+
+def differing(one, other):
+    x, y = contents(one), contents(other)
+    return sorted(name for name in x.keys() | y.keys() if x.get(name) != y.get(name))
+
+
+def column(rows, *names):
+    """Columns of a CSV file as numbers, one array row per line."""
+    values = np.array([[float(row[name]) for name in names] for row in rows])
+    return values[:, 0] if len(names) == 1 else values
+
+
+def text(value):
+    return value.decode("utf-8") if isinstance(value, bytes) else value
+
+
+def texts(data_set):
+    """Strings of a data set of whatever kind of strings and any shape."""
+    values = data_set[()]
+    return [text(t) for t in values.tolist()] if isinstance(values, np.ndarray) else text(values)
+
+
+def attribute(item, name):
+    return texts({(): item.attrs[name]})
+
+
+def psi_m(file, position_m):
+    """Eq. 10, computed here and not by the program."""
+    inner = file["scene/node/role"][:] == 1
+    gap = position_m[inner] - file["scene/node/position_m"][:][inner]
+    return float(np.sqrt((gap**2).sum(axis=1).mean()))
+
+
+def ratio(file, tension_N, group):
+    """Largest over smallest tension of group 0 (inner) or 1 (boundary)."""
+    mine = tension_N[file["scene/cable/group"][:] == group]
+    return float(mine.max() / mine.min())
+
+
+def residual_N(file):
+    """Largest force out of balance on a free node of /form, loads included."""
+    position_m, end = file["form/position_m"][:], file["scene/cable/end"][:]
+    pull_N = file["form/q_N_per_m"][:][:, None] * (position_m[end[:, 1]] - position_m[end[:, 0]])
+    force_N = file["scene/node/load_N"][:] if "scene/node/load_N" in file else np.zeros_like(position_m)
+    np.add.at(force_N, end[:, 0], pull_N)
+    np.subtract.at(force_N, end[:, 1], pull_N)
+    return float(np.linalg.norm(force_N[file["scene/node/role"][:] != 0], axis=1).max())
+
+
+def sha256(content):
+    return hashlib.sha256(content).hexdigest()
+
+
+def near(value, wanted, tolerance):
+    return abs(value - wanted) <= tolerance
+
+
+def short(value):
+    text = repr(value)
+    return text if len(text) < 500 else text[:500] + " ..."
+
+
+def explain(expression, names):
+    print("does not hold:", expression)
+    tree = ast.parse(expression, mode="eval").body
+    if isinstance(tree, ast.Compare):
+        sides = [tree.left, *tree.comparators]
+    else:
+        sides = tree.args if isinstance(tree, ast.Call) else []
+    for side in sides:
+        print("   ", ast.unparse(side), "=", short(eval(compile(ast.Expression(side), "", "eval"), names)))
+
+
+def main(words):
+    cut = words.index("--")
+    names = dict(globals(), **{chr(ord("a") + i): load(path) for i, path in enumerate(words[:cut])})
+    failed = False
+    for expression in words[cut + 1:]:
+        if not eval(expression, names):
+            explain(expression, names)
+            failed = True
+    return int(failed)
+
+
+sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,137 @@
+/* Case files with faults, as the program tells them: file, line, column and remedy, all of one run, exit code 2, and no
+ * result. tests/unit/test_config_faults.c goes through the faults one by one. */
+#include "cli.h"
+
+START_TEST(all_faults_of_a_file_are_told_in_one_run)
+{
+    const char *path = file_with("c.yaml", "title: x\n"
+                                           "scene:\n"
+                                           "  parabolic_cylinder:\n"
+                                           "    aperture_m: 10 m\n"
+                                           "    focal_length_m: -1\n"
+                                           "    modules: [5, 5.5]\n"
+                                           "    cells_per_module: 2\n"
+                                           "    boundry: outer_edge\n"
+                                           "form:\n"
+                                           "  stop: Residual\n"
+                                           "  pretension_N: 10\n"
+                                           "  pretension_N: 11\n"
+                                           "optimise: {}\n"
+                                           "pretension_N: 1\n"
+                                           "optimize: {population: 1, range_N: .nan, seed: 1e3}\n");
+    HIFDM(2, "run", path, "-o", temp("c.h5"));
+    static const char *const faults[] = {
+        ":4:17: scene.parabolic_cylinder.aperture_m: must be a number, not a text\n",
+        ":5:21: scene.parabolic_cylinder.focal_length_m: must be above 0 and at most 1000000000, not -1\n",
+        ":6:18: scene.parabolic_cylinder.modules: must be a whole number, not 5.5\n",
+        ":7:23: scene.parabolic_cylinder.cells_per_module: must be a list of two whole numbers, like [5, 5]\n",
+        ":8:5: boundry: unknown key; did you mean 'boundary'?\n",
+        ":10:9: form.stop: must be one of residual rms_change, not Residual\n",
+        ":12:3: pretension_N: this key stands here already, on line 11\n",
+        ":13:1: optimise: unknown key; did you mean 'optimize'?\n",
+        ":14:1: pretension_N: unknown key; did you mean 'form.pretension_N'?\n",
+        ":15:24: optimize.population: must be at least 2 and at most 100000, not 1\n",
+        ":15:36: optimize.range_N: must be a number, not a text\n",
+        ":15:48: optimize.seed: must be a whole number from 0 to 18446744073709551615\n",
+        ": scene.parabolic_cylinder.length_m: is missing and has no default\n",
+    };
+    const size_t n = sizeof faults / sizeof *faults;
+    for (size_t i = 0; i < n; i++)
+        ERRS("error: %s%s", path, faults[i]);
+    ck_assert_int_eq(count_of(said.err, "\n"), (int)n); /* nothing else */
+    ck_assert(!is_there(temp("c.h5")));
+    char *first = said.err;
+    said.err = NULL;
+    HIFDM(2, "check", path);
+    ck_assert_str_eq(said.err, first);
+    free(first);
+}
+END_TEST
+
+static const struct {
+    const char *text, *error; /* behind "error: PATH" */
+} unreadable[] = {
+    {"", ":1:1: case: the file is empty\n"},
+    {"# nothing\n", ":1:1: case: the file is empty\n"},
+    {"just words\n", ":1:1: case: must be key: value lines\n"},
+    {"- a\n- b\n", ":1:1: case: must be key: value lines\n"},
+    {"title: \"no end\nscene: {}\n", ":3:1: YAML: found unexpected end of stream\n"},
+    {"title: x\n\tscene: {}\n", ":2:1: YAML: found a tab character that violates indentation\n"},
+    {"title: {a: 1\n", ":2:1: YAML: did not find expected ',' or '}'\n"},
+    {SMALL_SCENE "---\n" SMALL_SCENE, ":3:1: YAML: a second document in this file; one case per file\n"},
+    {SMALL_SCENE "title: *nowhere\n", ":3:8: YAML: found undefined alias\n"},
+    {"title: x\n", ": scene: needs either parabolic_cylinder or import\n"},
+    /* the place of what no reader of YAML accepts: Latin-1, and a control character */
+    {SMALL_SCENE "title: \xfc"
+                 "ber\n",
+     ":3:8: YAML: invalid leading UTF-8 octet\n"},
+    {SMALL_SCENE "title: \x01\n", ":3:8: YAML: control characters are not allowed\n"},
+};
+enum { N_UNREADABLE = sizeof unreadable / sizeof *unreadable };
+
+START_TEST(what_is_no_case_is_told)
+{
+    const char *path = file_with("c.yaml", unreadable[_i].text);
+    HIFDM(2, "check", path);
+    ERRS("error: %s%s", path, unreadable[_i].error);
+    ck_assert_str_eq(said.out, "");
+}
+END_TEST
+
+START_TEST(what_is_no_file_is_told)
+{
+    HIFDM(2, "run", temp("missing.yaml"), NOWHERE);
+    ERRS("error: %s: cannot open: No such file or directory\n", temp("missing.yaml"));
+    HIFDM(2, "run", temp("."), NOWHERE);
+    ERR(": cannot read: Is a directory\n");
+    HIFDM(2, "run", "", NOWHERE);
+    ERR("error: ");
+    HIFDM(2, "check", hifdm_program()); /* binary */
+    ERR("YAML: control characters are not allowed\n");
+    SHELL(2, "\"$0\" check - </dev/null"); /* '-' is a file name like any other */
+    ERR("error: -: cannot open: No such file or directory\n");
+    SHELL(0, "cd \"$1\" && ls | grep -v '^command-' | wc -l | tr -d '\\n'", temp("."));
+    ck_assert_str_eq(said.out, "0");
+}
+END_TEST
+
+START_TEST(settings_that_contradict_each_other_are_told)
+{
+    const char *path = file_with("c.yaml", SMALL_SCENE "optimize:\n"
+                                                       "  population: 10\n"
+                                                       "  elites: 10\n"
+                                                       "  min_tension_N: 5\n"
+                                                       "  max_tension_N: 5\n"
+                                                       "  crossover_low: 0.95\n"
+                                                       "  mutation_low: 0.2\n");
+    HIFDM(2, "check", path);
+    ERRS("error: %s:5:11: optimize.elites: must be below optimize.population\n", path);
+    ERRS("error: %s:6:18: optimize.min_tension_N: must be below optimize.max_tension_N\n", path);
+    ERRS("error: %s:8:18: optimize.crossover_low: must not be above optimize.crossover_high\n", path);
+    ERRS("error: %s:9:17: optimize.mutation_low: must not be above optimize.mutation_high\n", path);
+    ck_assert_int_eq(count_of(said.err, "\n"), 4);
+}
+END_TEST
+
+/* Anchors that refer to themselves, and one used twice, end where the keys end. */
+START_TEST(aliases_do_not_lead_astray)
+{
+    HIFDM(2, "check", file_with("a.yaml", "scene: &s {parabolic_cylinder: *s}\n"));
+    ERR(":1:12: parabolic_cylinder: unknown key");
+    HIFDM(2, "check", file_with("b.yaml", "&r form: {}\nscene: &s {import: {nodes: n, cables: *s}}\n"));
+    ERR(":2:8: scene.import.cables: must be a text\n");
+}
+END_TEST
+
+Suite *suite_cli_bad_case(void)
+{
+    Suite *suite = suite_create("cli/bad_case");
+    TCase *tcase = tcase_create("bad_case");
+    tcase_add_test(tcase, all_faults_of_a_file_are_told_in_one_run);
+    tcase_add_loop_test(tcase, what_is_no_case_is_told, 0, N_UNREADABLE);
+    tcase_add_test(tcase, what_is_no_file_is_told);
+    tcase_add_test(tcase, settings_that_contradict_each_other_are_told);
+    tcase_add_test(tcase, aliases_do_not_lead_astray);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}

@@ -1,0 +1,132 @@
+/* Imported nets with faults: file, line and id, all of one run, exit code 2. */
+#include "cli.h"
+
+#define NODES                                                                                                          \
+    "id,x_m,y_m,z_m,role\n"                                                                                            \
+    "a,0,0,0,support\n"                                                                                                \
+    "b,2,0,0,support\n"                                                                                                \
+    "c,1,0.5,0.1,inner\n"                                                                                              \
+    "d,1,1.7,0,support\n"
+#define CABLES                                                                                                         \
+    "id,i,j,group,law,value\n"                                                                                         \
+    "ac,a,c,inner,tension,10\n"                                                                                        \
+    "bc,b,c,inner,tension,10\n"                                                                                        \
+    "cd,c,d,boundary,tension,12\n"
+
+static const struct {
+    const char *nodes, *cables, *error; /* what is said, with @ for the folder; ended by "\n" */
+} faulty[] = {
+    {"id,x_m,z_m,role\na,0,0,support\n", CABLES, "error: @nodes.csv:1: a column is missing: y_m\n"},
+    {NODES, "id,i,j,grp,law,value\nac,a,c,inner,tension,10\n",
+     "warning: @cables.csv:1: column 'grp' is not used\nerror: @cables.csv:1: a column is missing: group\n"},
+    {"# measured in May\n\nid,x,y_m,z_m,role\na,0,0,0,support\n", CABLES,
+     "warning: @nodes.csv:3: column 'x' is not used\n"
+     "error: @nodes.csv:3: a column is missing: x_m\n"},
+    {"id,x_m,y_m,z_m,role,x_m\na,0,0,0,support,1\n", CABLES, "error: @nodes.csv:1: this column stands twice: x_m\n"},
+    {NODES, CABLES "ce,c,e,inner,tension,10\n", "error: @cables.csv:5: 'ce': there is no node with the id e\n"},
+    {NODES "a,5,5,5,inner\n", CABLES "ac,a,d,inner,tension,1\n",
+     "error: @nodes.csv:6: 'a': this id was used before, on line 2\n"
+     "error: @cables.csv:5: 'ac': this id was used before, on line 2\n"},
+    {NODES ",5,5,5,inner\n", CABLES, "error: @nodes.csv:6: the id is empty\n"},
+    {NODES "e,nan,inf,1e999,inner\n", CABLES,
+     "error: @nodes.csv:6: 'e': x_m must be a finite number, not nan\n"
+     "error: @nodes.csv:6: 'e': y_m must be a finite number, not inf\n"
+     "error: @nodes.csv:6: 'e': z_m must be a finite number, not 1e999\n"},
+    {NODES "e,1,\"2,5\",0x1p3,Inner\n", CABLES,
+     "error: @nodes.csv:6: 'e': y_m must be a finite number, not 2,5\n"
+     "error: @nodes.csv:6: 'e': z_m must be a finite number, not 0x1p3\n"
+     "error: @nodes.csv:6: 'e': role must be one of support inner edge, not Inner\n"},
+    {NODES "e,1,2,0,inner,7\n", CABLES, "error: @nodes.csv:6: 6 fields where the header has 5\n"},
+    {NODES "\"e,1,2,0,inner\n", CABLES, "error: @nodes.csv:6: a quoted field does not end on this line\n"},
+    {NODES "c2,1,0.5,0.1,inner\n", CABLES "cc,c,c2,inner,tension,1\ndd,d,d,inner,tension,1\n",
+     "error: @cables.csv:5: cable 'cc' has zero length: its two nodes are at the same position\n"
+     "error: @cables.csv:6: cable 'dd' joins a node to itself\n"},
+    {NODES "e,9,9,9,inner\nf,9,8,9,edge\n", CABLES "ef,e,f,inner,tension,1\n",
+     "error: @nodes.csv:6: node 'e' has no path of cables to a support; connect it or remove it\n"
+     "error: @nodes.csv:7: node 'f' has no path of cables to a support; connect it or remove it\n"},
+    {NODES, CABLES "e,a,c,inner,tension,0\nf,a,c,inner,length,-1\ng,a,c,inner,force_density,\n",
+     "error: @cables.csv:5: 'e': value must be above zero for the law tension\n"
+     "error: @cables.csv:6: 'f': value must be above zero for the law length\n"
+     "error: @cables.csv:7: 'g': the law force_density needs a value in N/m\n"},
+    {NODES, CABLES "e,a,c,inner,elastic,1\n",
+     "error: @cables.csv:5: 'e': law must be one of tension length force_density, not elastic\n"},
+    {"", CABLES, "error: @nodes.csv:1: the file is empty: a header line is needed\n"},
+    {"id,x_m,y_m,z_m,role\n", "", /* the faults of both files */
+     "error: @nodes.csv:1: there is a header, but no rows\n"
+     "error: @cables.csv:1: the file is empty: a header line is needed\n"},
+    {"id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0,0,support\n", "id,i,j,group,law,value\nab,a,b,inner,tension,1\n",
+     "error: scene: every node is a support: there is nothing to find\n"},
+    /* as a spreadsheet in half of Europe saves it */
+    {"id;x_m;y_m;z_m;role\na;0;0;0;support\n", CABLES, "error: @nodes.csv:1: a column is missing: id\n"},
+    /* texts in a result file are UTF-8, and so is JSON; this is Latin-1 */
+    {NODES "caf\xe9,1,0.6,0.1,inner\n", CABLES "ce,c,caf\xe9,inner,tension,10\nde,d,caf\xe9,inner,tension,10\n",
+     "error: @nodes.csv:6: "},
+};
+enum { N_FAULTY = sizeof faulty / sizeof *faulty };
+
+/* Line by line, since the folder comes in between. */
+START_TEST(faults_are_told_with_file_line_and_id)
+{
+    const char *path = net_with(faulty[_i].nodes, faulty[_i].cables), *folder = temp("");
+    HIFDM(2, "run", path, "-o", temp("n.h5"));
+    for (const char *line = faulty[_i].error; *line; line += strcspn(line, "\n"), line += *line == '\n') {
+        int length = (int)strcspn(line, "\n"), head = (int)strcspn(line, "@\n");
+        if (line[head] == '@')
+            ERRS("%.*s%s%.*s", head, line, folder, length - head - 1, line + head + 1);
+        else
+            ERRS("%.*s\n", length, line);
+    }
+    ck_assert_int_ge(count_of(said.err, "\n"), count_of(faulty[_i].error, "\n"));
+    ck_assert(!is_there(temp("n.h5")));
+}
+END_TEST
+
+START_TEST(long_lists_of_faults_are_cut)
+{
+    char cables[4096] = CABLES;
+    for (int i = 0; i < 60; i++)
+        snprintf(cables + strlen(cables), sizeof cables - strlen(cables), "x%d,a,c,inner,tension,zero\n", i);
+    HIFDM(2, "check", net_with(NODES, cables));
+    ck_assert_int_eq(count_of(said.err, "value must be a finite number, not zero"), 20);
+    ERR("cables.csv: and 40 more faults\n");
+}
+END_TEST
+
+START_TEST(missing_files_of_a_net_are_told)
+{
+    const char *path = net_with(NODES, CABLES);
+    HIFDM(2, "check", path, "--set", "scene.import.nodes=/no/nodes.csv", "--set", "scene.import.cables=/no/cables.csv");
+    ERR("error: /no/nodes.csv: cannot open: No such file or directory\n");
+    ERR("error: /no/cables.csv: cannot open: No such file or directory\n");
+    HIFDM(0, "check", path); /* relative to the case file, wherever the program is started */
+}
+END_TEST
+
+/* What spreadsheets do to a file without breaking it. */
+START_TEST(other_ways_to_write_a_table_are_read)
+{
+    static const char nodes[] = "\xEF\xBB\xBFrole, z_m ,id,x_m,y_m,note\r\n"
+                                "\r\n"
+                                "support,0,a,0,0,\r\n"
+                                "# a comment\r\n"
+                                " support , +0.0 ,\"b\",2e0,0,\"a, note\"\r\n"
+                                "inner,.1,c,1.,0.5,\r\n"
+                                "support,0e5,d,1,17e-1,last";
+    HIFDM(0, "run", net_with(nodes, CABLES), "-o", temp("one.h5"));
+    ERR("nodes.csv:1: column 'note' is not used");
+    HIFDM(0, "run", net_with(NODES, CABLES), "-o", temp("two.h5"));
+    EXPECT(temp("one.h5"), temp("two.h5"), "--", "[n for n in differing(a, b) if not n.startswith('case/')] == []");
+}
+END_TEST
+
+Suite *suite_cli_bad_net(void)
+{
+    Suite *suite = suite_create("cli/bad_net");
+    TCase *tcase = tcase_create("bad_net");
+    tcase_add_loop_test(tcase, faults_are_told_with_file_line_and_id, 0, N_FAULTY);
+    tcase_add_test(tcase, long_lists_of_faults_are_cut);
+    tcase_add_test(tcase, missing_files_of_a_net_are_told);
+    tcase_add_test(tcase, other_ways_to_write_a_table_are_read);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}

@@ -1,0 +1,169 @@
+/* The commands that write nothing: `check`, `schema`, `help`, `version`, and `show` of what is no result. */
+#include "cli.h"
+
+START_TEST(check_tells_what_will_run)
+{
+    HIFDM(0, "check", CHEN, "--threads", "2");
+    ERR("warning: stop: rms_change ended before equilibrium"); /* what the run will warn of */
+    OUT("chen2022.yaml: valid\n");
+    OUT("121 nodes: 36 supports, 25 inner (psi counts these), 60 edge\n");
+    OUT("220 cables by law in force: 100 tension, 120 length, 0 force density\n");
+    OUT("85 unknowns, three right-hand sides; half-bandwidth 10; band Cholesky (dpbtrf)\n");
+    OUT("note          30 straight chains of length-controlled cables\n");
+    OUT("will run      form-finding: hifdm, solved by fixed point (asked for), stop: rms_change, at most 100000 iterations\n");
+    OUT("optimisation: rule force_density, 120 genes, 50 individuals, at most 400 generations, seed 2022\n");
+    OUT("skipped       loads (none given); general band matrix (no struts)\n");
+    OUT(" of workspaces (2 threads), ");
+    OUT(" of population\n");
+    OUT("expected time form-finding: ");
+    OUT("(67 iterations, stopped by rms_change)\n");
+    OUT(" for 20000 evaluations\n");
+    SHELL(0, "cd \"$1\" && \"$0\" check \"$2\" && ls -A", temp("."), REFLECTOR);
+    OUT("skipped       optimisation (no optimize section); loads (none given); general band matrix (no struts)\n");
+    OUT("0 B of population\n");
+    ck_assert_ptr_null(strstr(said.out, ".h5")); /* nothing was made */
+    ck_assert_str_eq(said.err, "");
+}
+END_TEST
+
+/* 24 x 24 cells on 6 x 6 modules: unknowns and bandwidth grow, and so do memory and time. */
+START_TEST(check_follows_the_size)
+{
+    HIFDM(0, "check", REFLECTOR, "--set", "scene.parabolic_cylinder.supports=perimeter", "--set",
+          "scene.parabolic_cylinder.modules=[6,8]", "--set", "scene.parabolic_cylinder.cells_per_module=[4,4]", "--set",
+          "form.method=iterative_fdm");
+    OUT("825 nodes: 112 supports, 713 inner"); /* 25 x 33, 23 x 31 of them free */
+    OUT("713 unknowns");
+    OUT("half-bandwidth 23"); /* no numbering of a 23 x 31 grid has less */
+    OUT("form-finding: iterative_fdm");
+}
+END_TEST
+
+START_TEST(check_of_an_ill_posed_case_says_so)
+{
+    HIFDM(4, "check", CHEN, "--set", "form.stop=residual");
+    ERR("error: ill-posed: 30 straight chains");
+    OUT("30 straight chains of length-controlled cables");
+}
+END_TEST
+
+START_TEST(check_tells_of_struts_and_loads)
+{
+    const char *net = net_with("id,x_m,y_m,z_m,role,Fz_N\na,0,0,0,support,\nb,2,0,0,support,\nc,1,0,0,inner,-1\n",
+                               "id,i,j,group,law,value\n1,a,c,inner,force_density,2\n2,c,b,inner,force_density,-1\n");
+    HIFDM(0, "check", net);
+    OUT("indefinite: band LU (dgbtrf)");
+    OUT("2 force density (with struts)");
+    ck_assert_ptr_null(strstr(said.out, "general band matrix (no struts)"));
+    ck_assert_ptr_null(strstr(said.out, "loads (none given)"));
+}
+END_TEST
+
+/* `run` skips the optimisation of a net without adjustable cables, so `check` must not announce it. */
+START_TEST(check_announces_no_ga_without_genes)
+{
+    HIFDM(0, "check", file_with("c.yaml", SMALL_SCENE SMALL_GA), "--set",
+          "scene.parabolic_cylinder.supports=perimeter");
+    ck_assert_msg(!strstr(said.out, "0 genes"), "%s", said.out);
+    HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE SMALL_GA), "-o", temp("c.h5"), "--set",
+          "scene.parabolic_cylinder.supports=perimeter");
+    ERR("warning: optimize: skipped, no boundary cable has a free end");
+}
+END_TEST
+
+/* The reference is a case file itself: YAML with every key. */
+START_TEST(schema_is_yaml_with_every_key)
+{
+    HIFDM(0, "schema");
+    const char *schema = file_with("schema.yaml", said.out);
+    EXPECT(
+        schema, "--", "list(a) == ['title', 'scene', 'form', 'optimize']",
+        "set(a['scene']) == {'parabolic_cylinder', 'import'}",
+        "set(a['scene']['parabolic_cylinder']) == {'aperture_m', 'length_m', 'focal_length_m', 'modules', "
+        "'cells_per_module', 'spacing', 'boundary', 'scallop', 'supports'}",
+        "set(a['scene']['import']) == {'nodes', 'cables'}",
+        "set(a['form']) == {'method', 'pretension_N', 'stop', 'residual_tolerance', 'length_tolerance', "
+        "'rms_tolerance_m', 'max_iterations', 'collapse_ratio'}",
+        "set(a['optimize']) == {'method', 'solver', 'polish_iterations', 'rule', 'population', 'generations', 'range_N', 'min_tension_N', 'max_tension_N', "
+        "'boundary_ratio_cap', 'seed', 'crossover_high', 'crossover_low', 'mutation_high', 'mutation_low', 'elites', "
+        "'stagnation_tolerance_m', 'stagnation_generations'}",
+        /* a default, or none where the key is required */
+        "[k for k, v in a['scene']['parabolic_cylinder'].items() if v is None] == ['aperture_m', 'length_m', "
+        "'focal_length_m', 'modules', 'cells_per_module']",
+        "None not in {**a['form'], **a['optimize']}.values()", "a['form']['pretension_N'] == 10");
+    OUT("# residual | rms_change\n");
+    OUT("# number > 0, <= 1000000000; N\n");
+}
+END_TEST
+
+/* With what is required filled in and one of the two scenes removed, the reference is a case that runs. */
+START_TEST(schema_with_its_gaps_filled_is_a_case)
+{
+    SHELL(0, "\"$0\" schema | sed -e '/^  import:/,/^    cables:/d' -e 's/aperture_m:/& 2/' -e 's/ length_m:/& 3/' "
+             "-e 's/focal_length_m:/& 2/' -e 's/modules:/& [2, 3]/' -e 's/cells_per_module:/& [2, 2]/' -e 's/scallop: "
+             "0/scallop: 0.1/'");
+    const char *path = file_with("filled.yaml", said.out);
+    HIFDM(0, "check", path);
+    OUT("optimisation: rule force_density");
+}
+END_TEST
+
+START_TEST(help_lists_every_command_and_exit_status)
+{
+    HIFDM(0, "help");
+    static const char *const parts[] = {"hifdm run ",    "hifdm check ", "hifdm show ", "hifdm export ",
+                                        "hifdm schema ", "-o, --output", "--force",     "--set KEY=VALUE",
+                                        "--threads N",   "--seed S",     "--json",      "--quiet",
+                                        "--csv DIR",     "--stage STAGE"};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+        OUT(parts[i]);
+    OUT("0 done, 2 bad usage or case, 3 not converged, 4 ill-posed, 5 input/output");
+    char *help = said.out;
+    said.out = NULL;
+    HIFDM(0, "--help");
+    ck_assert_str_eq(said.out, help);
+    HIFDM(0, "-h");
+    ck_assert_str_eq(said.out, help);
+    free(help);
+    HIFDM(0, "--version");
+    ck_assert_int_eq(strncmp(said.out, "hifdm 0.", 8), 0);
+}
+END_TEST
+
+START_TEST(show_refuses_what_is_no_result)
+{
+    HIFDM(5, "show", temp("missing.h5"));
+    ERR("missing.h5: cannot open: No such file or directory");
+    HIFDM(5, "show", REFLECTOR);
+    ERR("reflector.yaml: is not an HDF5 file, so no result of hifdm");
+    HIFDM(5, "show", temp("."));
+    ERR("is a folder, not a result file");
+    const char *const make_other[] = {python_program(), "-c", "import h5py, sys; h5py.File(sys.argv[1], 'w')['x'] = 1",
+                                      temp("other.h5"), NULL};
+    demand_exit(run_command(50.0, make_other), 0, "make an HDF5 file", __LINE__);
+    HIFDM(5, "show", temp("other.h5"));
+    ERR("other.h5: is an HDF5 file, but no result of hifdm");
+    HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", temp("whole.h5"));
+    SHELL(0, "head -c 5000 <\"$1\" >\"$2\"", temp("whole.h5"), temp("half.h5"));
+    HIFDM(5, "show", temp("half.h5"));
+    ERR("half.h5: cannot open: truncated file");
+    ck_assert_str_eq(said.out, "");
+}
+END_TEST
+
+Suite *suite_cli_check(void)
+{
+    Suite *suite = suite_create("cli/check");
+    TCase *tcase = tcase_create("check");
+    tcase_add_test(tcase, check_tells_what_will_run);
+    tcase_add_test(tcase, check_follows_the_size);
+    tcase_add_test(tcase, check_of_an_ill_posed_case_says_so);
+    tcase_add_test(tcase, check_tells_of_struts_and_loads);
+    tcase_add_test(tcase, check_announces_no_ga_without_genes);
+    tcase_add_test(tcase, schema_is_yaml_with_every_key);
+    tcase_add_test(tcase, schema_with_its_gaps_filled_is_a_case);
+    tcase_add_test(tcase, help_lists_every_command_and_exit_status);
+    tcase_add_test(tcase, show_refuses_what_is_no_result);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}

@@ -1,0 +1,154 @@
+/* `hifdm export`: the columns of the two CSV files, their numbers bit by bit, and the way back in. */
+#include "cli.h"
+
+#define NODES_HEADER "id,x_m,y_m,z_m,x0_m,y0_m,z0_m,role\n"
+#define CABLES_HEADER "id,i,j,group,law,length_m,tension_N,q_N_per_m\n"
+
+static const char *run_once(void)
+{
+    const char *out = temp("c.h5");
+    HIFDM(0, "run", CHEN, "-o", out, "--quiet", "--set", "optimize.generations=3");
+    return out;
+}
+
+static void demand_first_line(const char *path, const char *line)
+{
+    char *text = read_file(path, NULL);
+    ck_assert_msg(strncmp(text, line, strlen(line)) == 0, "%s: %.80s", path, text);
+    free(text);
+}
+
+static void demand_values_of(const char *out, const char *folder, const char *stage)
+{
+    const char *nodes = keep(formatted("%s/nodes.csv", folder)), *cables = keep(formatted("%s/cables.csv", folder));
+    demand_first_line(nodes, NODES_HEADER);
+    demand_first_line(cables, CABLES_HEADER);
+    EXPECT(out, nodes, cables, stage, "--", "len(b) == 121", "len(c) == 220",
+           "column(b, 'x_m', 'y_m', 'z_m').tobytes() == a[d.decode()]['position_m'][:].tobytes()",
+           "column(b, 'x0_m', 'y0_m', 'z0_m').tobytes() == a['scene/node/position_m'][:].tobytes()",
+           "all(column(c, n).tobytes() == a[d.decode()][n][:].tobytes() for n in ('length_m', 'tension_N', "
+           "'q_N_per_m'))",
+           "[r['id'] for r in b] == texts(a['scene/node/id'])", "[r['id'] for r in c] == texts(a['scene/cable/id'])",
+           "[(r['i'], r['j']) for r in c] == [(b[i]['id'], b[j]['id']) for i, j in a['scene/cable/end'][:]]",
+           "[['support', 'inner', 'edge'].index(r['role']) for r in b] == a['scene/node/role'][:].tolist()",
+           "[['inner', 'boundary'].index(r['group']) for r in c] == a['scene/cable/group'][:].tolist()",
+           "[['tension', 'length', 'force_density'].index(r['law']) for r in c] == a[d.decode()]['law'][:].tolist()");
+}
+
+/* Read back as double they are the stored numbers, which 17 significant digits guarantee and 16 do not. */
+START_TEST(csv_holds_the_stored_numbers)
+{
+    const char *out = run_once();
+    HIFDM(0, "export", out, "--csv", temp("best"));
+    OUT("121 nodes and 220 cables of the optimised shape in ");
+    demand_values_of(out, temp("best"), file_with("stage", "ga/best"));
+    HIFDM(0, "export", out, "--csv", temp("form"), "--stage", "form");
+    OUT("form-finding shape");
+    demand_values_of(out, temp("form"), file_with("stage", "form"));
+    HIFDM(0, "export", out, "--csv", temp("opt"), "--stage", "optimize");
+    SHELL(0, "diff -r \"$1\" \"$2\"", temp("best"), temp("opt"));
+    SHELL(1, "cmp -s \"$1\"/nodes.csv \"$2\"/nodes.csv", temp("best"), temp("form"));
+    SHELL(0, "ls -A \"$1\" | tr '\\n' ' '", temp("best"));
+    ck_assert_str_eq(said.out, "cables.csv nodes.csv "); /* and nothing temporary */
+}
+END_TEST
+
+/* The found shape is the classical one for its force densities, so a user who names these `value` and sets the law gets
+ * it again; 1e-11 m: roundings of positions of a few metres, times the condition of a band of 85 unknowns. */
+START_TEST(exported_shape_can_be_imported)
+{
+    const char *out = run_once(), *back = temp("back.h5"), *folder = temp("net");
+    HIFDM(0, "export", out, "--csv", folder, "--stage", "form");
+    SHELL(0, "cd \"$1\" && sed -i -E -e '1s/q_N_per_m/value/' -e 's/,(tension|length),/,force_density,/' cables.csv",
+          folder);
+    const char *path = file_with("back.yaml", "scene:\n  import: {nodes: net/nodes.csv, cables: net/cables.csv}\n");
+    HIFDM(0, "run", path, "-o", back, "--quiet");
+    ERR("nodes.csv:1: column 'x0_m' is not used");
+    ERR("cables.csv:1: column 'tension_N' is not used");
+    EXPECT(out, back, "--", "np.abs(a['form/position_m'][:] - b['form/position_m'][:]).max() < 1e-11",
+           "np.allclose(a['form/tension_N'], b['form/tension_N'], rtol=1e-10)",
+           "psi_m(b, b['form/position_m'][:]) < 1e-11", "(a['form/q_N_per_m'][:] == b['form/q_N_per_m'][:]).all()");
+}
+END_TEST
+
+/* Quotes, commas, blanks at the ends, a '#' in front, letters beyond ASCII. */
+START_TEST(odd_ids_survive_the_round_trip)
+{
+    static const char nodes[] = "id,x_m,y_m,z_m,role\n"
+                                "\"#1, \"\"west\"\"\",0,0,0,support\n"
+                                "\" b \",2,0,0,support\n"
+                                "Knoten-\xc3\xa9\xe4\xb8\xad,1,0.5,0.1,inner\n"
+                                "\"c,\",1,1.7,0,support\n";
+    static const char cables[] = "id,i,j,group,law,value\n"
+                                 "\"\"\"1\"\"\",\"#1, \"\"west\"\"\",Knoten-\xc3\xa9\xe4\xb8\xad,inner,tension,10\n"
+                                 "2;3,\" b \",Knoten-\xc3\xa9\xe4\xb8\xad,inner,tension,10\n"
+                                 "\" \",Knoten-\xc3\xa9\xe4\xb8\xad,\"c,\",boundary,tension,12\n";
+    HIFDM(0, "run", net_with(nodes, cables), "-o", temp("odd.h5"));
+    HIFDM(0, "export", temp("odd.h5"), "--csv", temp("odd"));
+    EXPECT(
+        temp("odd.h5"), temp("odd/nodes.csv"), temp("odd/cables.csv"), "--",
+        "[r['id'] for r in b] == texts(a['scene/node/id']) == ['#1, \"west\"', ' b ', 'Knoten-\\u00e9\\u4e2d', 'c,']",
+        "[r['id'] for r in c] == texts(a['scene/cable/id']) == ['\"1\"', '2;3', ' ']", "c[0]['i'] == '#1, \"west\"'");
+    SHELL(0, "cd \"$1\" && sed -i -e '1s/tension_N/value/' cables.csv", temp("odd"));
+    const char *path = file_with("again.yaml", "scene:\n  import: {nodes: odd/nodes.csv, cables: odd/cables.csv}\n");
+    HIFDM(0, "run", path, "-o", temp("again.h5"));
+    EXPECT(temp("odd.h5"), temp("again.h5"), "--", "texts(a['scene/node/id']) == texts(b['scene/node/id'])",
+           "(a['scene/cable/end'][:] == b['scene/cable/end'][:]).all()");
+}
+END_TEST
+
+START_TEST(existing_csv_is_not_replaced)
+{
+    const char *out = run_once(), *nodes = temp("mine/nodes.csv"), *cables = temp("mine/cables.csv");
+    HIFDM(0, "export", out, "--csv", temp("mine"));
+    write_file(nodes, "mine");
+    HIFDM(5, "export", out, "--csv", temp("mine"));
+    ERRS("error: %s exists; use --force to replace it", nodes);
+    ck_assert(file_is(nodes, "mine"));
+    HIFDM(0, "export", out, "--csv", temp("mine"), "--force");
+    demand_first_line(nodes, NODES_HEADER);
+    /* neither of the two is written when one cannot be: a new nodes.csv would not belong to the old cables.csv */
+    write_file(cables, "mine");
+    ck_assert_int_eq(unlink(nodes), 0);
+    HIFDM(5, "export", out, "--csv", temp("mine"));
+    ERRS("error: %s exists; use --force to replace it", cables);
+    ck_assert(file_is(cables, "mine"));
+    ck_assert(!is_there(nodes));
+}
+END_TEST
+
+START_TEST(what_cannot_be_exported_is_told)
+{
+    const char *form_only = temp("f.h5"), *csv = temp("csv");
+    HIFDM(0, "run", file_with("f.yaml", SMALL_SCENE), "-o", form_only, "--quiet");
+    HIFDM(2, "export", form_only, "--csv", csv, "--stage", "optimize");
+    ERR("this run has no optimised shape; use --stage form");
+    HIFDM(2, "export", form_only);
+    ERR("error: 'hifdm export' needs --csv DIR\n");
+    HIFDM(2, "export", form_only, "--csv", csv, "--stage", "best");
+    ERR("error: --stage must be form, optimize or polish, not 'best'\n");
+    HIFDM(5, "export", temp("missing.h5"), "--csv", csv);
+    ERR("missing.h5: cannot open: No such file or directory");
+    HIFDM(5, "export", REFLECTOR, "--csv", csv);
+    ERR("reflector.yaml: is not an HDF5 file");
+    ck_assert(!is_there(csv));
+    HIFDM(5, "export", form_only, "--csv", temp("no/such/folder"));
+    ERR("no/such/folder: cannot make this folder: No such file or directory");
+    HIFDM(5, "export", form_only, "--csv", form_only); /* below an ordinary file */
+    ERR("f.h5/nodes.csv");
+    ERR("Not a directory");
+}
+END_TEST
+
+Suite *suite_cli_export(void)
+{
+    Suite *suite = suite_create("cli/export");
+    TCase *tcase = tcase_create("export");
+    tcase_add_test(tcase, csv_holds_the_stored_numbers);
+    tcase_add_test(tcase, exported_shape_can_be_imported);
+    tcase_add_test(tcase, odd_ids_survive_the_round_trip);
+    tcase_add_test(tcase, existing_csv_is_not_replaced);
+    tcase_add_test(tcase, what_cannot_be_exported_is_told);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}

@@ -1,0 +1,197 @@
+/* Where the result may go and where not; whatever happens, what was there before is still there, byte by byte. */
+#include "cli.h"
+
+/* Exit code 5, the given words, and nothing new in the test's directory. */
+#define REFUSED(path, ...)                                                                                             \
+    do {                                                                                                               \
+        HIFDM(5, "run", file_with("c.yaml", SMALL_SCENE), "-o", path);                                                 \
+        ERRS(__VA_ARGS__);                                                                                             \
+        ck_assert_str_eq(said.out, "");                                                                                \
+    } while (0)
+
+/* Names in the test's directory that are neither a result nor made by these tests. */
+static void demand_no_leftovers(void)
+{
+    SHELL(0, "find \"$1\" -name '*tmp*'", temp(""));
+    ck_assert_str_eq(said.out, "");
+}
+
+START_TEST(existing_output_is_not_replaced)
+{
+    const char *path = temp("mine.h5");
+    write_file(path, "mine");
+    REFUSED(path, "error: %s: exists; use --force to replace it or -o to choose another name\n", path);
+    ck_assert(file_is(path, "mine"));
+    HIFDM(2, "run", file_with("bad.yaml", "scene: 1\n"), "-o", path, "--force");
+    ck_assert(file_is(path, "mine"));
+    HIFDM(4, "run", CHEN, "--set", "form.stop=residual", "-o", path, "--force"); /* after form-finding */
+    ck_assert(file_is(path, "mine"));
+    HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", path, "--force");
+    EXPECT(path, "--", "'form' in a");
+    demand_no_leftovers();
+}
+END_TEST
+
+/* Told before the work, not after: the run would take hours. */
+START_TEST(output_is_looked_at_before_the_work)
+{
+    const char *path = temp("mine.h5");
+    write_file(path, "mine");
+    const char *const argv[] = {hifdm_program(),
+                                "run",
+                                CHEN,
+                                "-o",
+                                path,
+                                "--set",
+                                "optimize.generations=1000000",
+                                "--set",
+                                "optimize.stagnation_generations=1000000",
+                                NULL};
+    demand_exit(run_command(10.0, argv), 5, "existing output", __LINE__);
+    ERR("exists; use --force");
+    ck_assert(file_is(path, "mine"));
+}
+END_TEST
+
+START_TEST(output_that_cannot_be_is_told)
+{
+    write_file(temp("file"), "mine");
+    REFUSED(temp("no/such/r.h5"), "error: %s: there is no folder %s;", temp("no/such/r.h5"), temp("no/such"));
+    REFUSED(temp("file/r.h5"), "error: %s: there is no folder %s;", temp("file/r.h5"), temp("file"));
+    REFUSED(temp("."), "error: %s: is a folder; use -o to choose a file name\n", temp("."));
+    REFUSED("/dev/full", "error: /dev/full: is not an ordinary file; use -o to choose a file name\n");
+    REFUSED("/dev/null", "error: /dev/null: is not an ordinary file; use -o to choose a file name\n");
+    REFUSED("/proc/hifdm.h5", "error: /proc/hifdm.h5: cannot "); /* nobody can make a file there, root included */
+    REFUSED("", "error: : ");
+    ck_assert(file_is(temp("file"), "mine"));
+    HIFDM(5, "run", file_with("c.yaml", SMALL_SCENE), "-o", temp("file/r.h5"), "--force");
+    HIFDM(5, "run", file_with("c.yaml", SMALL_SCENE), "-o", "/dev/full", "--force");
+    demand_no_leftovers();
+}
+END_TEST
+
+/* Root may write anywhere, so this can only be seen as somebody else. */
+START_TEST(read_only_folder_is_told)
+{
+    if (geteuid() == 0) return;
+    SHELL(0, "mkdir -m 555 \"$1\"", temp("locked"));
+    REFUSED(temp("locked/r.h5"), "cannot write into the folder %s: Permission denied", temp("locked"));
+}
+END_TEST
+
+/* To the last letter, or not at all. */
+START_TEST(long_names_are_not_cut)
+{
+    char folder[1200], name[1300];
+    int n = snprintf(folder, sizeof folder, "%s", temp("deep"));
+    SHELL(0, "mkdir -p \"$1\"", folder);
+    for (; n < 1100; n += 101) { /* a name may have 255 letters, a path 4096 */
+        snprintf(folder + n, sizeof folder - (size_t)n, "/%0100d", 0);
+        SHELL(0, "mkdir \"$1\"", folder);
+    }
+    snprintf(name, sizeof name, "%s/long-name.h5", folder);
+    struct command command = run_hifdm("run", file_with("c.yaml", SMALL_SCENE), "-o", name);
+    if (command.exit_code == 0)
+        ck_assert_msg(is_there(name), "%s", command.out);
+    else
+        ck_assert_int_eq(command.exit_code, 5);
+    free_command(&command);
+    SHELL(0, "find \"$1\" -type f ! -name long-name.h5", temp("deep"));
+    ck_assert_str_eq(said.out, "");
+}
+END_TEST
+
+/* Not even by force: a result never replaces what it is made of. */
+START_TEST(the_case_itself_is_not_replaced)
+{
+    static const char text[] = SMALL_SCENE;
+    const char *path = file_with("c.yaml", text);
+    HIFDM(5, "run", path, "-o", path);
+    ck_assert(file_is(path, text));
+    struct command command = run_hifdm("run", path, "-o", path, "--force");
+    ck_assert_int_ne(command.exit_code, 0);
+    free_command(&command);
+    ck_assert(file_is(path, text));
+}
+END_TEST
+
+/* ---- standard output that takes nothing: every command that prints says so by its exit code ---- */
+
+static const char *const printing[] = {
+    "run \"$1\" -o \"$2\"", "run \"$1\" -o \"$2\" --json", "check \"$1\"", "schema", "help", "version", "show \"$3\"",
+    "show \"$3\" --json",   "export \"$3\" --csv \"$4\""};
+enum { N_PRINTING = sizeof printing / sizeof *printing };
+
+START_TEST(full_or_closed_standard_output_is_an_error)
+{
+    const char *path = file_with("c.yaml", SMALL_SCENE), *done = temp("done.h5");
+    HIFDM(0, "run", path, "-o", done, "--quiet");
+    static const char *const to[] = {">/dev/full", ">&-"};
+    for (int i = 0; i < 2; i++) {
+        const char *script = keep(formatted("exec \"$0\" %s %s", printing[_i], to[i]));
+        SHELL(5, script, path, temp("new.h5"), done, temp("csv"));
+        ck_assert_str_eq(said.err, "error: cannot write to standard output\n");
+        if (is_there(temp("new.h5"))) EXPECT(temp("new.h5"), "--", "'form' in a"); /* the result is whole */
+        SHELL(0, "rm -rf \"$1\" \"$2\"", temp("new.h5"), temp("csv"));
+    }
+}
+END_TEST
+
+/* With its standard streams closed the program gets their numbers for its own files: words must not end up there. */
+START_TEST(closed_streams_do_not_spoil_the_result)
+{
+    const char *out = temp("o.h5"), *again = temp("p.h5");
+    SHELL(5, "exec \"$0\" run \"$1\" -o \"$2\" --set optimize.generations=3 <&- >&- 2>&-", CHEN, out);
+    HIFDM(0, "run", CHEN, "-o", again, "--set", "optimize.generations=3");
+    EXPECT(out, again, "--", "differing(a, b) == []");
+}
+END_TEST
+
+/* ---- a disk that is full: 5, words, no file; the limit on file size stands for it, its signal ignored ---- */
+
+static const char *const limits[] = {"1", "8", "16", "40", "100", "300"}; /* blocks of 512 or 1024 bytes */
+
+START_TEST(full_disk_leaves_nothing_and_does_not_crash)
+{
+    const char *path = temp("full.h5"), *script = "trap '' XFSZ; ulimit -f $3; exec \"$0\" run \"$1\" -o \"$2\" "
+                                                  "--set optimize.generations=25 2>&1 | tail -n 1; exit 0";
+    SHELL(0, script, CHEN, path, limits[_i]);
+    ck_assert_msg(strstr(said.out, "error: ") == said.out && strstr(said.out, "File too large"), "%s", said.out);
+    ck_assert(!is_there(path));
+    write_file(path, "mine");
+    SHELL(5,
+          "trap '' XFSZ; ulimit -f $3; exec \"$0\" run \"$1\" -o \"$2\" --force --set optimize.generations=25 "
+          ">/dev/null 2>/dev/null",
+          CHEN, path, limits[_i]);
+    ck_assert(file_is(path, "mine"));
+    demand_no_leftovers();
+}
+END_TEST
+
+START_TEST(full_disk_leaves_no_csv)
+{
+    HIFDM(0, "run", CHEN, "-o", temp("c.h5"), "--set", "optimize.generations=2");
+    SHELL(5, "trap '' XFSZ; ulimit -f 4; exec \"$0\" export \"$1\" --csv \"$2\" 2>/dev/null", temp("c.h5"),
+          temp("csv"));
+    SHELL(0, "ls -A \"$1\"", temp("csv"));
+    ck_assert_str_eq(said.out, "");
+}
+END_TEST
+
+Suite *suite_cli_output(void)
+{
+    Suite *suite = suite_create("cli/output");
+    TCase *tcase = tcase_create("output");
+    tcase_add_test(tcase, existing_output_is_not_replaced);
+    tcase_add_test(tcase, output_is_looked_at_before_the_work);
+    tcase_add_test(tcase, output_that_cannot_be_is_told);
+    tcase_add_test(tcase, read_only_folder_is_told);
+    tcase_add_test(tcase, long_names_are_not_cut);
+    tcase_add_test(tcase, the_case_itself_is_not_replaced);
+    tcase_add_loop_test(tcase, full_or_closed_standard_output_is_an_error, 0, N_PRINTING);
+    tcase_add_test(tcase, closed_streams_do_not_spoil_the_result);
+    tcase_add_loop_test(tcase, full_disk_leaves_nothing_and_does_not_crash, 0, sizeof limits / sizeof *limits);
+    tcase_add_test(tcase, full_disk_leaves_no_csv);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}

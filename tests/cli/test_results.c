@@ -1,0 +1,118 @@
+/* The HDF5 file of a run as h5py and h5dump see it: layout, units, provenance, and that its numbers belong together. */
+#include "cli.h"
+
+static const char *run_once(void)
+{
+    const char *out = temp("c.h5");
+    HIFDM(0, "run", CHEN, "-o", out, "--quiet", "--set", "optimize.generations=8");
+    return out;
+}
+
+START_TEST(every_data_set_has_units)
+{
+    EXPECT(run_once(), "--", "len(data_sets(a)) > 30",
+           "[n for n, d in data_sets(a).items() if not isinstance(text(d.attrs.get('units')), str)] == []",
+           /* and the unit that ends its name; names without one are dimensionless, texts, or as said in store.h */
+           "[n for n, d in data_sets(a).items() if n.endswith('_m') and not n.endswith('_per_m') and attribute(d, "
+           "'units') != 'm'] == []",
+           "[n for n, d in data_sets(a).items() if n.endswith('_N') and attribute(d, 'units') != 'N'] == []",
+           "[n for n, d in data_sets(a).items() if n.endswith('_N_per_m') and attribute(d, 'units') != 'N/m'] == []",
+           "[n for n, d in data_sets(a).items() if attribute(d, 'units') and '_' not in n] == ['scene/cable/target']");
+}
+END_TEST
+
+START_TEST(h5dump_reads_the_file)
+{
+    const char *const argv[] = {"h5dump", run_once(), NULL};
+    demand_exit(run_command(50.0, argv), 0, "h5dump", __LINE__);
+    ck_assert_str_eq(said.err, "");
+    OUT("DATASET \"best_psi_m\"");
+    OUT("\"straight_chain\""); /* the words of an enumeration */
+}
+END_TEST
+
+/* Of the case file alone; with --set, of the file followed by the settings, a line each. */
+START_TEST(the_case_is_kept_with_its_digest)
+{
+    const char *out = temp("r.h5");
+    HIFDM(0, "run", REFLECTOR, "-o", out, "--quiet");
+    SHELL(0, "sha256sum <\"$1\" | cut -d' ' -f1 | tr -d '\\n'", REFLECTOR);
+    char digest[65];
+    ck_assert_uint_eq(strlen(said.out), 64);
+    strcpy(digest, said.out);
+    EXPECT(out, REFLECTOR, "--", formatted("attribute(a['case'], 'sha256') == '%s'", digest),
+           "texts(a['case/text']) == open(sys.argv[2]).read()", "texts(a['case/overrides']) == ''",
+           "attribute(a['case'], 'case_path') == sys.argv[2]");
+    HIFDM(0, "run", REFLECTOR, "-o", out, "--quiet", "--force", "--set", "form.pretension_N=11");
+    EXPECT(out, "--",
+           "attribute(a['case'], 'sha256') == sha256((texts(a['case/text']) + texts(a['case/overrides'])).encode())",
+           formatted("attribute(a['case'], 'sha256') != '%s'", digest));
+}
+END_TEST
+
+START_TEST(provenance_is_in_the_root_attributes)
+{
+    EXPECT(run_once(), "--",
+           "{'program', 'format_version', 'version', 'git_describe', 'compiler', 'build_flags', 'hdf5_version', "
+           "'gsl_version', 'lapack', 'rng', 'host', 'argv', 'started_utc', 'finished_utc', 'title', 'seed', 'threads', "
+           "'warnings', 'has_optimize', 'status'} <= set(a.attrs)",
+           "attribute(a, 'status') == 'ok'", "a.attrs['seed'] == 2022",
+           "attribute(a, 'started_utc') <= attribute(a, 'finished_utc')", "attribute(a, 'argv')[1:2] == ['run']",
+           "attribute(a, 'argv')[-1] == 'optimize.generations=8'", "'straight chains' in attribute(a, 'warnings')");
+}
+END_TEST
+
+/* Recomputed here by Eqs. 4, 6 and 10 from the stored positions. 1e-12: a few roundings of numbers of size one. */
+START_TEST(stored_shapes_belong_to_their_numbers)
+{
+    EXPECT(
+        run_once(), "--", "near(psi_m(a, a['form/position_m'][:]), a['form'].attrs['psi_m'], 1e-12)",
+        "near(psi_m(a, a['ga/best/position_m'][:]), a['ga'].attrs['best_psi_m'], 1e-12)",
+        "a['form/history/psi_m'][-1] == a['form'].attrs['psi_m']",
+        "len(a['form/history/psi_m']) == a['form'].attrs['iterations'] == 67",
+        "near(ratio(a, a['form/tension_N'][:], 0), a['form'].attrs['inner_tension_ratio'], 1e-12)",
+        "near(ratio(a, a['form/tension_N'][:], 1), a['form'].attrs['boundary_tension_ratio'], 1e-12)",
+        "near(ratio(a, a['ga/best/tension_N'][:], 1), a['ga'].attrs['best_boundary_tension_ratio'], 1e-12)",
+        "np.allclose(a['form/tension_N'], a['form/q_N_per_m'][:] * a['form/length_m'][:], rtol=1e-14)",
+        "all(np.allclose(a[s + '/length_m'], np.linalg.norm(np.diff(a[s + '/position_m'][:][a['scene/cable/end'][:]],"
+        " axis=1)[:, 0], axis=1), rtol=1e-14) for s in ('form', 'ga/best'))",
+        "(a['form/position_m'][:] == a['scene/node/position_m'][:])[a['scene/node/role'][:] == 0].all()");
+}
+END_TEST
+
+START_TEST(every_generation_is_there)
+{
+    EXPECT(
+        run_once(), "--", "a['ga/psi_m'].shape == a['ga/status'].shape == a['ga/evaluated'].shape == (8, 50)",
+        "a['ga/design_N'].shape == (8, 50, 120)",
+        "a['ga/crossover_rate'].shape == a['ga/mutation_rate'].shape == (8, 50)",
+        "a['ga/evaluated'][:].sum() == a['ga'].attrs['evaluations']", "a['ga/evaluated'][0].all()",
+        "not np.isnan(a['ga/psi_m'][:][a['ga/status'][:] == 0]).any()",
+        "np.isnan(a['ga/psi_m'][:][a['ga/status'][:] != 0]).all()", "(a['ga/lower_N'][:] <= a['ga/design_N'][:]).all()",
+        "(a['ga/design_N'][:] <= a['ga/upper_N'][:]).all()",
+        /* individual 0 is the found shape's tensions, the best one what its generation says */
+        "(a['ga/design_N'][0, 0] == a['form/tension_N'][:][a['ga/gene_cable'][:]]).all()",
+        "a['ga/best_psi_m'][:].tolist() == np.nanmin(a['ga/psi_m'][:], axis=1).tolist()",
+        "a['ga/best_individual'][:].tolist() == np.nanargmin(a['ga/psi_m'][:], axis=1).tolist()",
+        "(a['ga/best/design_N'][:] == a['ga/design_N'][-1, a['ga/best_individual'][-1]]).all()",
+        "a['ga/psi_m'][a['ga'].attrs['best_generation'], a['ga'].attrs['best_individual']] == "
+        "a['ga'].attrs['best_psi_m'] == a['ga/best_psi_m'][-1]",
+        /* a child that was not evaluated is its parent: elite or unchanged */
+        "all((a['ga/design_N'][g, i] == a['ga/design_N'][g - 1, a['ga/parent'][g, i, 0]]).all() for g in range(1, 8) "
+        "for i in np.flatnonzero(a['ga/evaluated'][g] == 0))");
+}
+END_TEST
+
+Suite *suite_cli_results(void)
+{
+    Suite *suite = suite_create("cli/results");
+    TCase *tcase = tcase_create("results");
+    tcase_add_test(tcase, every_data_set_has_units);
+    tcase_add_test(tcase, h5dump_reads_the_file);
+    tcase_add_test(tcase, the_case_is_kept_with_its_digest);
+    tcase_add_test(tcase, provenance_is_in_the_root_attributes);
+    tcase_add_test(tcase, stored_shapes_belong_to_their_numbers);
+    tcase_add_test(tcase, every_generation_is_there);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}

@@ -1,0 +1,136 @@
+/* results - writing and reading result files in tests. Header only, as nets.h. */
+#ifndef HIFDM_TESTS_RESULTS_H
+#define HIFDM_TESTS_RESULTS_H
+
+#include "nets.h"
+
+#include <dirent.h>
+#include <hifdm/store.h>
+#include <sys/stat.h>
+
+#include "hdf5_io.h"
+
+#define N(table) ((int)(sizeof(table) / sizeof(table)[0]))
+
+/* Three nodes, two cables, one load: the least that makes a result file. */
+static inline void open_bow(struct net *net)
+{
+    static const struct hand_node node[] = {{{0, 0, 0}, HF_ROLE_SUPPORT, {0}},
+                                            {{1.25, 0.1, -0.3}, HF_ROLE_INNER, {0, 0, -2.385}},
+                                            {{2.75, 0, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_INNER, HF_LAW_TENSION, 10.7},
+                                              {{2, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 3.11}};
+    OPEN_HAND(net, node, cable, HF_METHOD_HIFDM);
+}
+
+static inline void quiet(void)
+{
+    hf_store_quiet();
+}
+
+static inline void no_id_is_open(void)
+{
+    ck_assert_int_eq(H5Fget_obj_count((hid_t)H5F_OBJ_ALL, H5F_OBJ_ALL), 0);
+}
+
+static inline const hf_case *any_case(void)
+{
+    static const hf_case any = {.text = "title: any\n", .overrides = "form.pretension_N=12\n", .sha256 = "abc"};
+    return &any;
+}
+
+/* A new, empty folder, for counting what is in it, and "<folder>/run.h5". */
+static inline const char *new_folder(const char **result)
+{
+    static int serial; /* tests share their temporary directory when they do not fork */
+    char file[64];
+    snprintf(file, sizeof file, "results-%d", serial++);
+    const char *folder = temp_path(file);
+    ck_assert_int_eq(mkdir(folder, 0700), 0);
+    snprintf(file, sizeof file, "results-%d/run.h5", serial - 1);
+    *result = temp_path(file);
+    return folder;
+}
+
+static inline int count_files(const char *folder)
+{
+    int n = 0;
+    DIR *directory = opendir(folder);
+    ck_assert_ptr_nonnull(directory);
+    while (readdir(directory))
+        n++;
+    closedir(directory);
+    return n - 2; /* . and .. */
+}
+
+static inline hf_store *begin(const char *path, int force, const hf_scene *scene)
+{
+    hf_messages messages = {0};
+    hf_store *store;
+    char *argv[] = {"hifdm", "run", "a b.yaml"};
+    ck_assert_msg(hf_store_create(path, force, any_case(), scene, 3, argv, &store, &messages) == HF_OK, "%s",
+                  messages.text);
+    return store;
+}
+
+static inline void end(hf_store *store, const hf_summary *summary)
+{
+    hf_messages messages = {0};
+    ck_assert_msg(hf_store_finish(store, summary, &messages) == HF_OK, "%s", messages.text);
+    ck_assert_ptr_null(messages.text);
+    no_id_is_open();
+}
+
+/* All four ways of reading; returns how many failed, each with HF_IO and exactly one message, and the last message. */
+static inline int read_all(const char *path, char *text, size_t size)
+{
+    hf_messages messages = {0};
+    hf_summary summary;
+    hf_scene scene;
+    hf_shape form, best;
+    hf_status status[4] = {hf_store_read_summary(path, &summary, &messages),
+                           hf_store_read_scene(path, &scene, &messages), hf_store_read_shape(path, HF_STAGE_FORM, &form, &messages),
+                           hf_store_read_shape(path, HF_STAGE_OPTIMIZE, &best, &messages)};
+    int n_failed = 0;
+    for (int i = 0; i < 4; i++) {
+        ck_assert_msg(status[i] == HF_OK || status[i] == HF_IO, "status %d", status[i]);
+        n_failed += status[i] != HF_OK;
+    }
+    ck_assert_int_eq(messages.n_error, n_failed);
+    snprintf(text, size, "%s", messages.text ? messages.text : "");
+    hf_scene_free(&scene);
+    hf_shape_free(&form);
+    hf_shape_free(&best);
+    hf_messages_free(&messages);
+    no_id_is_open();
+    return n_failed;
+}
+
+/* Python with h5py as `f`, opened from argv[1] in this mode; it must end well. */
+static inline void python(const char *mode, const char *path, const char *script)
+{
+    char text[4096];
+    int n = snprintf(text, sizeof text, "import sys, h5py, numpy as np\nf = h5py.File(sys.argv[1], '%s')\n%s\n", mode,
+                     script);
+    ck_assert(n > 0 && n < (int)sizeof text);
+    const char *const argv[] = {python_program(), "-c", text, path, NULL};
+    struct command command = run_command(30.0, argv);
+    ck_assert_msg(command.exit_code == 0, "%s", command.err);
+    free_command(&command);
+}
+
+/* A finished file with both shapes. */
+static inline void write_result(const char *path, struct net *net)
+{
+    hf_messages messages = {0};
+    hf_summary summary = {.has_optimize = 1};
+    hf_store *store = begin(path, 1, &net->scene);
+    double design_N[1000] = {0};
+    ck_assert_int_le(net->model.n_gene, 1000);
+    find_shape(net);
+    ck_assert_int_eq(hf_store_form(store, &net->model, &net->work, NULL, &messages), HF_OK);
+    ck_assert_int_eq(hf_store_best(store, HF_STAGE_OPTIMIZE, &net->model, &net->work, design_N, &messages), HF_OK);
+    end(store, &summary);
+}
+
+#endif

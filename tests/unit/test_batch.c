@@ -1,0 +1,162 @@
+/* Batches: only what is pending is evaluated, and the bits depend neither on threads nor on how designs are grouped. */
+#include "nets.h"
+
+#include <hifdm/batch.h>
+#include <unistd.h>
+
+enum { MAX_GENE = 200, MAX_CABLE = 400, N_DESIGN = 24 };
+
+struct run {
+    struct net net;
+    hf_evaluator evaluator;
+    double start_q[MAX_CABLE], design_N[N_DESIGN * MAX_GENE];
+};
+
+/* The small reflector and designs up to 0.5 N around its boundary pretensions. */
+static void open_run(struct run *r, int rule)
+{
+    OPEN_CASE(&r->net, SMALL_REFLECTOR);
+    const hf_model *m = &r->net.model;
+    struct rng rng = rng_start(1);
+    ck_assert(m->n_gene <= MAX_GENE && m->n_cable <= MAX_CABLE);
+    ck_assert_int_eq(find_shape(&r->net), HF_OK);
+    memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
+    for (int i = 0; i < N_DESIGN; i++)
+        for (int k = 0; k < m->n_gene; k++)
+            r->design_N[i * m->n_gene + k] = r->net.work.tension_N[m->gene_cable[k]] + rng_uniform(&rng, -0.5, 0.5);
+    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, rule, HF_SOLVER_AUTO, 1e9};
+}
+
+static void evaluate(struct run *r, int n_thread, int n_at_once, hf_form_result result[N_DESIGN])
+{
+    hf_batch batch;
+    memset(result, 0, N_DESIGN * sizeof *result); /* padding included: results are compared as bytes */
+    ck_assert_int_eq(hf_batch_create(&r->evaluator, n_thread, &batch), HF_OK);
+    for (int i = 0; i < batch.n_thread; i++)
+        hf_workspace_poison(&r->net.model, &batch.workspace[i]);
+    for (int i = 0; i < N_DESIGN; i += n_at_once)
+        hf_batch_run(&batch, n_at_once, r->design_N + i * r->net.model.n_gene, NULL, result + i);
+    ck_assert_double_gt(batch.cpu_s, 0);
+    hf_batch_free(&batch);
+}
+
+static void assert_same_results(const hf_form_result *a, const hf_form_result *b)
+{
+    for (int i = 0; i < N_DESIGN; i++) {
+        ck_assert_int_eq(a[i].status, b[i].status);
+        ck_assert_int_eq(a[i].iterations, b[i].iterations);
+        ck_assert_mem_eq(&a[i].psi_m, &b[i].psi_m, sizeof(double)); /* bits: NaN is equal to itself */
+        ck_assert_mem_eq(&a[i].residual_N, &b[i].residual_N, sizeof(double));
+        ck_assert_mem_eq(&a[i].boundary_tension_ratio, &b[i].boundary_tension_ratio, sizeof(double));
+    }
+}
+
+START_TEST(threads_and_grouping_do_not_change_a_bit)
+{
+    struct run r;
+    hf_form_result alone[N_DESIGN], other[N_DESIGN];
+    open_run(&r, _i);
+    evaluate(&r, 1, 1, alone);
+    for (int i = 0; i < N_DESIGN; i++) { /* the same as without a batch */
+        hf_form_result direct;
+        hf_evaluate(&r.evaluator, r.design_N + i * r.net.model.n_gene, &r.net.work, &direct);
+        ck_assert_mem_eq(&direct.psi_m, &alone[i].psi_m, sizeof(double));
+    }
+    static const int n_thread[] = {1, 2, 3, 7};
+    for (size_t k = 0; k < sizeof n_thread / sizeof *n_thread; k++) {
+        evaluate(&r, n_thread[k], N_DESIGN, other);
+        assert_same_results(alone, other);
+        evaluate(&r, n_thread[k], 4, other);
+        assert_same_results(alone, other);
+    }
+    close_net(&r.net);
+}
+END_TEST
+
+START_TEST(only_pending_designs_are_evaluated)
+{
+    struct run r;
+    hf_batch batch;
+    hf_form_result result[N_DESIGN];
+    unsigned char pending[N_DESIGN];
+    open_run(&r, HF_RULE_FORCE_DENSITY);
+    for (int i = 0; i < N_DESIGN; i++) {
+        result[i] = (hf_form_result){.status = HF_NOT_EVALUATED, .iterations = -7};
+        pending[i] = i % 3 == 0;
+    }
+    ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
+    hf_batch_run(&batch, N_DESIGN, r.design_N, pending, result);
+    for (int i = 0; i < N_DESIGN; i++) {
+        ck_assert_int_eq(result[i].status, pending[i] ? HF_OK : HF_NOT_EVALUATED);
+        ck_assert_int_eq(result[i].iterations == -7, !pending[i]);
+    }
+    hf_batch_free(&batch);
+    close_net(&r.net);
+}
+END_TEST
+
+/* A bad candidate among good ones: its own status, and no trace in the others. */
+START_TEST(one_failure_stays_alone)
+{
+    struct run r;
+    hf_form_result good[N_DESIGN], mixed[N_DESIGN];
+    open_run(&r, HF_RULE_TENSION);
+    for (int k = 0; k < N_DESIGN * r.net.model.n_gene; k++) /* nearly the found tensions: equilibrium exists */
+        r.design_N[k] = r.net.work.tension_N[r.net.model.gene_cable[k % r.net.model.n_gene]] + 1e-3 * (k % 7);
+    evaluate(&r, 2, N_DESIGN, good);
+    for (int i = 0; i < N_DESIGN; i++)
+        ck_assert_int_eq(good[i].status, HF_OK);
+    r.design_N[11 * r.net.model.n_gene] *= 50;
+    evaluate(&r, 2, N_DESIGN, mixed);
+    ck_assert_int_eq(mixed[11].status, HF_COLLAPSED);
+    mixed[11] = good[11];
+    assert_same_results(good, mixed);
+    close_net(&r.net);
+}
+END_TEST
+
+START_TEST(default_is_a_thread_per_core)
+{
+    struct run r;
+    hf_batch batch;
+    open_run(&r, HF_RULE_FORCE_DENSITY);
+    ck_assert_int_eq(hf_batch_create(&r.evaluator, 0, &batch), HF_OK);
+    ck_assert_int_eq(batch.n_thread, hf_batch_default_threads());
+    ck_assert_int_ge(batch.n_thread, 1);
+    ck_assert_int_le(batch.n_thread, (int)sysconf(_SC_NPROCESSORS_ONLN)); /* fewer where the process may not use all */
+    hf_batch_free(&batch);
+    ck_assert_int_eq(hf_batch_create(&r.evaluator, 3, &batch), HF_OK);
+    ck_assert_int_eq(batch.n_thread, 3);
+    hf_batch_free(&batch);
+    close_net(&r.net);
+}
+END_TEST
+
+/* No heap in our own code once the batch is made (what OpenMP does inside its library is not seen here). */
+START_TEST(nothing_is_allocated)
+{
+    struct run r;
+    hf_batch batch;
+    hf_form_result result[N_DESIGN];
+    open_run(&r, HF_RULE_FORCE_DENSITY);
+    ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
+    long before = allocation_count();
+    hf_batch_run(&batch, N_DESIGN, r.design_N, NULL, result);
+    ck_assert_int_eq(allocation_count(), before);
+    hf_batch_free(&batch);
+    close_net(&r.net);
+}
+END_TEST
+
+Suite *suite_unit_batch(void)
+{
+    Suite *suite = suite_create("unit/batch");
+    TCase *tests = tcase_create("batch");
+    suite_add_tcase(suite, tests);
+    tcase_add_loop_test(tests, threads_and_grouping_do_not_change_a_bit, 0, 3);
+    tcase_add_test(tests, only_pending_designs_are_evaluated);
+    tcase_add_test(tests, one_failure_stays_alone);
+    tcase_add_test(tests, default_is_a_thread_per_core);
+    tcase_add_test(tests, nothing_is_allocated);
+    return suite;
+}

@@ -1,0 +1,368 @@
+/* Result files: what is written comes back, in C and in Python. */
+#include "results.h"
+
+/* ---- round trips ---- */
+
+static void fill_text(struct rng *rng, char *text, size_t size)
+{
+    size_t length = (size_t)rng_int(rng, 0, (int)size - 1);
+    for (size_t i = 0; i < length; i++)
+        text[i] = (char)rng_int(rng, 1, 126);
+    text[length] = '\0';
+}
+
+/* Any bits, so also infinities, denormal numbers and NaN with a payload. */
+static void fill_result(struct rng *rng, hf_form_result *result)
+{
+    unsigned char *bytes = (unsigned char *)result;
+    for (size_t i = 0; i < sizeof *result; i++)
+        bytes[i] = (unsigned char)rng_next(rng);
+    result->status = rng_int(rng, 0, 1) ? HF_RATIO_CAP : HF_EXISTS;
+    result->stop_reason = HF_STOPPED_ILL_POSED;
+    result->psi_m = (double)NAN;
+}
+
+static void fill_summary(struct rng *rng, hf_summary *s)
+{
+    *s = (hf_summary){.threads = rng_int(rng, 1, 999),
+                      .seed = rng_next(rng),
+                      .n_node = rng_int(rng, 1, 1 << 30),
+                      .n_free = rng_int(rng, 1, 1 << 30),
+                      .n_cable = rng_int(rng, 1, 1 << 30),
+                      .n_gene = rng_int(rng, 1, 1 << 30),
+                      .half_bandwidth = rng_int(rng, 1, 1 << 30),
+                      .pretension_N = rng_uniform(rng, 0, 1),
+                      .form_wall_s = rng_uniform(rng, 0, 1),
+                      .has_optimize = 1,
+                      .best_generation = rng_int(rng, -1, 1 << 30),
+                      .best_individual = -1,
+                      .generations = rng_int(rng, 1, 1 << 30),
+                      .evaluations = (long)(rng_next(rng) >> 1),
+                      .infeasible = (long)(rng_next(rng) >> 1),
+                      .optimize_stop = HF_GA_ALL_INFEASIBLE,
+                      .optimize_wall_s = rng_uniform(rng, 0, 1),
+                      .optimize_cpu_s = -0.0};
+    fill_text(rng, s->version, sizeof s->version);
+    fill_text(rng, s->title, sizeof s->title);
+    fill_text(rng, s->case_path, sizeof s->case_path);
+    fill_text(rng, s->warnings, sizeof s->warnings);
+    fill_result(rng, &s->form);
+    fill_result(rng, &s->best);
+}
+
+/* Bits, not values: NaN differs from itself, and 0 equals -0. */
+static void same_summary(const hf_summary *a, const hf_summary *b)
+{
+#define MEMBER(name)                                                                                                   \
+    {                                                                                                                  \
+#name, offsetof(hf_summary, name), sizeof a->name                                                              \
+    }
+    static const struct {
+        const char *name;
+        size_t offset, size;
+    } members[] = {MEMBER(threads),
+                   MEMBER(seed),
+                   MEMBER(n_node),
+                   MEMBER(n_free),
+                   MEMBER(n_cable),
+                   MEMBER(n_gene),
+                   MEMBER(half_bandwidth),
+                   MEMBER(pretension_N),
+                   MEMBER(form),
+                   MEMBER(form_wall_s),
+                   MEMBER(has_optimize),
+                   MEMBER(best),
+                   MEMBER(best_generation),
+                   MEMBER(best_individual),
+                   MEMBER(generations),
+                   MEMBER(evaluations),
+                   MEMBER(infeasible),
+                   MEMBER(optimize_stop),
+                   MEMBER(optimize_wall_s),
+                   MEMBER(optimize_cpu_s)};
+#undef MEMBER
+    ck_assert_str_eq(a->version, b->version);
+    ck_assert_str_eq(a->title, b->title);
+    ck_assert_str_eq(a->case_path, b->case_path);
+    ck_assert_str_eq(a->warnings, b->warnings);
+    for (int i = 0; i < N(members); i++)
+        ck_assert_msg(
+            !memcmp((const char *)a + members[i].offset, (const char *)b + members[i].offset, members[i].size), "%s",
+            members[i].name);
+}
+
+START_TEST(summary_comes_back_bit_by_bit)
+{
+    struct rng rng = rng_start((uint64_t)_i);
+    struct net net;
+    hf_messages messages = {0};
+    hf_summary written, read;
+    open_bow(&net);
+    fill_summary(&rng, &written);
+    end(begin(temp_path("a.h5"), 1, &net.scene), &written);
+    memset(&read, 0xff, sizeof read);
+    ck_assert_int_eq(hf_store_read_summary(temp_path("a.h5"), &read, &messages), HF_OK);
+    same_summary(&written, &read);
+
+    /* without optimize only the members before has_optimize are there */
+    written.has_optimize = 0;
+    end(begin(temp_path("b.h5"), 1, &net.scene), &written);
+    ck_assert_int_eq(hf_store_read_summary(temp_path("b.h5"), &read, &messages), HF_OK);
+    memset(&written.best, 0, sizeof written.best);
+    written.best_generation = written.best_individual = written.generations = written.optimize_stop = 0;
+    written.evaluations = written.infeasible = 0;
+    written.optimize_wall_s = written.optimize_cpu_s = 0;
+    same_summary(&written, &read);
+    close_net(&net);
+}
+END_TEST
+
+/* Without and with all that a scene may have. */
+START_TEST(scene_comes_back)
+{
+    struct net net;
+    hf_messages messages = {0};
+    hf_scene with = {0}, read, *a, *b = &read;
+    open_bow(&net);
+    a = &net.scene;
+    if (_i) {
+        ck_assert_int_eq(hf_scene_allocate(&with, 3, 2, 1, 1, 1), HF_OK);
+        for (int i = 0; i < 9; i++)
+            with.load_N[i] = with.position_m[i] = 1.0 / (i - 3);
+        const char *id[5] = {"", "n", "a long name, with \xc3\xa9", "c \"1\"", "c2"};
+        memcpy(with.node_id, id, 3 * sizeof *id);
+        memcpy(with.cable_id, id + 3, 2 * sizeof *id);
+        memcpy(with.role, "\2\1\0", 3);
+        memcpy(with.end, (int[4]){0, 1, 2, 1}, 4 * sizeof(int));
+        with.target[0] = with.EA_N[1] = (double)NAN;
+        with.law[1] = HF_LAW_FORCE_DENSITY;
+        with.group[0] = HF_GROUP_BOUNDARY;
+        a = &with;
+    }
+    end(begin(temp_path("a.h5"), 1, a), &(hf_summary){0});
+    ck_assert_int_eq(hf_store_read_scene(temp_path("a.h5"), b, &messages), HF_OK);
+    ck_assert_int_eq(b->n_node, 3);
+    ck_assert_int_eq(b->n_cable, 2);
+    ck_assert_mem_eq(a->position_m, b->position_m, 9 * sizeof(double));
+    ck_assert_mem_eq(a->role, b->role, 3);
+    ck_assert_mem_eq(a->end, b->end, 4 * sizeof(int));
+    ck_assert_mem_eq(a->group, b->group, 2);
+    ck_assert_mem_eq(a->law, b->law, 2);
+    ck_assert_mem_eq(a->target, b->target, 2 * sizeof(double));
+    ck_assert_mem_eq(a->load_N, b->load_N, 9 * sizeof(double));
+    ck_assert_int_eq(a->EA_N != NULL, b->EA_N != NULL);
+    if (_i) ck_assert_mem_eq(a->EA_N, b->EA_N, 2 * sizeof(double));
+    for (int i = 0; i < 3; i++)
+        ck_assert_str_eq(a->node_id[i], b->node_id[i]);
+    for (int e = 0; e < 2; e++)
+        ck_assert_str_eq(a->cable_id[e], b->cable_id[e]);
+    ck_assert_ptr_null(b->node_line);
+    hf_scene_free(b);
+    hf_scene_free(&with);
+    close_net(&net);
+}
+END_TEST
+
+/* In the order of the scene, which is not that of the model. */
+START_TEST(shapes_come_back_in_the_order_of_the_scene)
+{
+    struct net net;
+    hf_messages messages = {0};
+    hf_shape shape;
+    double psi_m[2] = {2.385, 1.125}, other[8] = {0.5, 0.25, 7, 8, 9, 10, 11, 12};
+    hf_history history = {4, 2, psi_m, other, other + 2, other + 4, other + 6};
+    OPEN_CASE(&net, SMALL_REFLECTOR);
+    const hf_model *m = &net.model;
+    double *design_N = calloc((size_t)m->n_gene, sizeof *design_N);
+    hf_store *store = begin(temp_path("a.h5"), 1, &net.scene);
+    find_shape(&net);
+    ck_assert_int_eq(hf_store_form(store, m, &net.work, &history, &messages), HF_OK);
+    double first_m = found_m(&net, 12, 2);
+    net.work.q_N_per_m[3] *= 2; /* another shape */
+    hf_form_find(m, &net.form, net.form.stop, &net.work, NULL, &net.result);
+    net.work.law[2] = HF_LAW_FORCE_DENSITY;
+    ck_assert_int_eq(hf_store_best(store, HF_STAGE_OPTIMIZE, m, &net.work, design_N, &messages), HF_OK);
+    end(store, &(hf_summary){0});
+
+    ck_assert_int_eq(hf_store_read_shape(temp_path("a.h5"), HF_STAGE_FORM, &shape, &messages), HF_OK);
+    ck_assert_double_eq(shape.position_m[3 * 12 + 2], first_m);
+    hf_shape_free(&shape);
+    ck_assert_int_eq(hf_store_read_shape(temp_path("a.h5"), HF_STAGE_OPTIMIZE, &shape, &messages), HF_OK);
+    for (int i = 0; i < 3 * m->n_node; i++)
+        ck_assert_double_eq(shape.position_m[i], found_m(&net, i / 3, i % 3));
+    ck_assert_mem_eq(shape.length_m, net.work.length_m, (size_t)m->n_cable * sizeof(double));
+    ck_assert_mem_eq(shape.tension_N, net.work.tension_N, (size_t)m->n_cable * sizeof(double));
+    ck_assert_mem_eq(shape.q_N_per_m, net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
+    ck_assert_mem_eq(shape.law, net.work.law, (size_t)m->n_cable);
+    hf_shape_free(&shape);
+    ck_assert_ptr_null(shape.position_m);
+    python("r", temp_path("a.h5"),
+           "h = f['form/history']\n"
+           "assert list(h['psi_m']) == [2.385, 1.125] and list(h['length_error']) == [11, 12]\n"
+           "assert h5py.check_enum_dtype(f['form/law'].dtype) == {'tension': 0, 'length': 1, 'force_density': 2}");
+    free(design_N);
+    close_net(&net);
+}
+END_TEST
+
+START_TEST(a_run_without_a_best_says_so)
+{
+    struct net net;
+    hf_messages messages = {0};
+    hf_shape shape;
+    open_bow(&net);
+    end(begin(temp_path("a.h5"), 1, &net.scene), &(hf_summary){0});
+    ck_assert_int_eq(hf_store_read_shape(temp_path("a.h5"), HF_STAGE_OPTIMIZE, &shape, &messages), HF_IO);
+    ck_assert_ptr_nonnull(strstr(messages.text, "has no optimize shape"));
+    hf_messages_free(&messages);
+    close_net(&net);
+}
+END_TEST
+
+/* ---- generations, read by Python ---- */
+
+/* Sizes of a generation: usual; a row beyond one chunk; a single gene beyond one chunk; nothing to vary. */
+static const struct {
+    int n_individual, n_gene;
+} sizes[] = {{4, 3}, {3, 70000}, {2, 140000}, {2, 0}};
+
+/* An hf_ga whose every number tells where it belongs. */
+static void fill_generation(hf_ga *g, int generation)
+{
+    g->generation = generation;
+    for (int i = 0; i < g->n_individual; i++) {
+        for (int k = 0; k < g->n_gene; k++)
+            g->design_N[(size_t)i * (size_t)g->n_gene + (size_t)k] = generation * 1e7 + i * 1e6 + k;
+        g->result[i] = (hf_form_result){.status = i == 1 ? HF_RATIO_CAP : HF_OK,
+                                        .iterations = 10 * generation + i,
+                                        .psi_m = i == 1 ? (double)NAN : generation + 0.1 * i,
+                                        .residual_N = generation + 0.25 * i,
+                                        .inner_tension_ratio = 1 + i,
+                                        .boundary_tension_ratio = 5 + i};
+        g->pending[i] = (unsigned char)(i != 0);
+        g->crossover_rate[i] = 0.5 + i;
+        g->mutation_rate[i] = 0.25 + i;
+        g->parent[2 * i] = generation - 1;
+        g->parent[2 * i + 1] = i;
+    }
+    g->best = generation - 1;
+    g->best_psi_m[generation] = g->mean_psi_m = g->worst_psi_m = generation + 0.5;
+    g->n_infeasible = 1;
+}
+
+START_TEST(generations_are_appended)
+{
+    int p = sizes[_i].n_individual, k = sizes[_i].n_gene;
+    struct net net;
+    hf_messages messages = {0};
+    hf_ga ga;
+    hf_optimize_settings settings = {.population = p, .generations = 5, .range_N = 1, .max_tension_N = 1e6};
+    open_bow(&net);
+    double *base_N = malloc(((size_t)k + 1) * sizeof *base_N);
+    int *gene = malloc((2 * (size_t)k + 1) * sizeof *gene), *group = gene + k;
+    for (int i = 0; i < k; i++) {
+        base_N[i] = i + 1;
+        gene[i] = 2 * i;
+        group[i] = i / 2;
+    }
+    hf_model m = {.n_gene = k, .n_gene_group = k, .gene_cable = gene, .gene_group = group};
+    ck_assert_int_eq(hf_ga_create(&settings, &m, base_N, &ga), HF_OK);
+    hf_store *store = begin(temp_path("a.h5"), 1, &net.scene);
+    for (int g = 0; g < 5; g++) {
+        fill_generation(&ga, g);
+        ck_assert_msg(hf_store_generation(store, &m, &ga, &messages) == HF_OK, "%s", messages.text);
+    }
+    end(store, &(hf_summary){.has_optimize = 1, .best.status = HF_NOT_EVALUATED});
+    hf_ga_free(&ga);
+
+    char script[2048];
+    snprintf(
+        script, sizeof script,
+        "a = f['ga']; p = %d; k = %d; g = np.arange(5)[:, None]; i = np.arange(p)\n"
+        "assert a['design_N'].shape == (5, p, k) and a['design_N'].dtype == 'f8'\n"
+        "assert np.prod(a['design_N'].chunks) * 8 <= 1 << 20\n"
+        "assert (a['design_N'][:] == g[:, :, None] * 1e7 + i[:, None] * 1e6 + np.arange(k)).all()\n"
+        "psi = g + 0.1 * i; psi[:, 1] = np.nan\n"
+        "np.testing.assert_array_equal(a['psi_m'][:], psi)\n"
+        "np.testing.assert_array_equal(a['status'][:], 0 * g + (i == 1) * 6)\n"
+        "assert h5py.check_enum_dtype(a['status'].dtype)['ratio_cap'] == 6\n"
+        "assert (a['residual_N'][:] == g + 0.25 * i).all() and (a['iterations'][:] == 10 * g + i).all()\n"
+        "assert (a['inner_tension_ratio'][4] == 1 + i).all() and (a['boundary_tension_ratio'][4] == 5 + i).all()\n"
+        "assert a['evaluated'].dtype == bool and (a['evaluated'][:] == (i != 0)).all()\n"
+        "assert (a['crossover_rate'][3] == 0.5 + i).all() and (a['mutation_rate'][3] == 0.25 + i).all()\n"
+        "assert (a['parent'][:, :, 0] == g - 1).all() and (a['parent'][:, :, 1] == i).all()\n"
+        "for name in 'best', 'mean', 'worst': assert (a[name + '_psi_m'][:] == g[:, 0] + 0.5).all()\n"
+        "assert (a['best_individual'][:] == g[:, 0] - 1).all() and (a['n_infeasible'][:] == 1).all()\n"
+        "assert (a['gene_cable'][:] == 2 * np.arange(k)).all() and (a['gene_group'][:] == np.arange(k) // 2).all()\n"
+        "assert a['lower_N'].shape == (k,)\n"
+        "assert (a['upper_N'][:] == np.arange(k) + 2).all()\n"
+        "assert f.attrs['status'] == 'not_evaluated'\n",
+        p, k);
+    python("r", temp_path("a.h5"), script);
+    free(base_N);
+    free(gene);
+    close_net(&net);
+}
+END_TEST
+
+START_TEST(provenance_and_units_are_there)
+{
+    struct net net;
+    OPEN_CASE(&net, SMALL_REFLECTOR);
+    write_result(temp_path("a.h5"), &net);
+    python("r", temp_path("a.h5"),
+           "a = f.attrs\n"
+           "for name in ('version git_describe compiler build_flags hdf5_version gsl_version lapack host rng seed "
+           "threads '\n"
+           "             'started_utc finished_utc status warnings title').split(): assert name in a, name\n"
+           "assert a['program'] == b'hifdm' and a['format_version'] == 1\n"
+           "assert list(a['argv']) == ['hifdm', 'run', 'a b.yaml']\n"
+           "assert f['case/text'].asstr()[()] == 'title: any\\n' and f['case'].attrs['sha256'] == 'abc'\n"
+           "assert f['case/overrides'].asstr()[()] == 'form.pretension_N=12\\n'\n"
+           "assert f['scene/cable/id'].asstr()[0] == 'n0_0-n1_0'\n"
+           "n = []\n"
+           "def look(name, thing):\n"
+           "    if isinstance(thing, h5py.Dataset):\n"
+           "        n.append(name)\n"
+           "        assert not thing.id.get_create_plist().get_obj_track_times()\n"
+           "        unit = thing.attrs['units']; thing.attrs['description']\n"
+           "        suffix = {'m': '_m', 'N': '_N', 'N/m': '_N_per_m'}.get(unit, '')\n"
+           "        assert name.endswith(suffix), (name, unit)\n"
+           "f.visititems(look)\n"
+           "assert len(n) > 20");
+    close_net(&net);
+}
+END_TEST
+
+/* Two runs of one case differ in attributes only. */
+START_TEST(data_sets_depend_on_the_case_alone)
+{
+    struct net net;
+    OPEN_CASE(&net, SMALL_REFLECTOR);
+    write_result(temp_path("a.h5"), &net);
+    write_result(temp_path("b.h5"), &net);
+    for (int i = 0; i < 2; i++)
+        python("a", temp_path(i ? "a.h5" : "b.h5"), "for name in list(f.attrs): del f.attrs[name]");
+    const char *const argv[] = {"h5diff", temp_path("a.h5"), temp_path("b.h5"), NULL};
+    struct command command = run_command(30.0, argv);
+    ck_assert_msg(command.exit_code == 0, "%s%s", command.out, command.err);
+    free_command(&command);
+    close_net(&net);
+}
+END_TEST
+
+Suite *suite_unit_store(void)
+{
+    Suite *suite = suite_create("unit/store");
+    TCase *tests = tcase_create("store");
+    suite_add_tcase(suite, tests);
+    tcase_add_checked_fixture(tests, quiet, NULL);
+    tcase_add_loop_test(tests, summary_comes_back_bit_by_bit, 0, 5);
+    tcase_add_loop_test(tests, scene_comes_back, 0, 2);
+    tcase_add_test(tests, shapes_come_back_in_the_order_of_the_scene);
+    tcase_add_test(tests, a_run_without_a_best_says_so);
+    tcase_add_loop_test(tests, generations_are_appended, 0, N(sizes));
+    tcase_add_test(tests, provenance_and_units_are_there);
+    tcase_add_test(tests, data_sets_depend_on_the_case_alone);
+    return suite;
+}
