@@ -6,7 +6,7 @@
 # ---- The modules, in dependency order: a module may include only modules above it (`make lint` checks it) ------------
 # Sources are src/NAME.c; the header is include/hifdm/NAME.h if public, src/NAME.h if internal.
 MODULES := status arena sha256 text scene scene_import config config_table numbering model workspace band metrics \
-           formfind evaluate ga batch summary hdf5_io store store_read
+           formfind newton evaluate chord chord_kernel ga polish batch summary hdf5_io store store_read
 APP_MODULES := options print run plan export main
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
@@ -64,7 +64,11 @@ BUILD_INFO = $(eval BUILD_INFO := -DHF_VERSION=$(call c_string,$(VERSION)) \
   -DHF_BUILD_FLAGS=$(call c_string,$(CFLAGS) $(LANGUAGE) $(CODEGEN) $(SANITIZER)))$(BUILD_INFO)
 
 # ---- Files -----------------------------------------------------------------------------------------------------------
-LIB_OBJ := $(MODULES:%=$(BUILD)/src/%.o)
+# Kernels are compiled once per instruction set; the program chooses when it runs.
+ISAS := portable avx2 avx512
+KERNELS := $(filter %_kernel,$(MODULES))
+LIB_OBJ := $(patsubst %,$(BUILD)/src/%.o,$(filter-out $(KERNELS),$(MODULES)) \
+             $(foreach isa,$(ISAS),$(KERNELS:%=%_$(isa))))
 APP_OBJ := $(APP_MODULES:%=$(BUILD)/src/%.o)
 TEST_OBJ := $(patsubst %.c,$(BUILD)/%.o,tests/run_tests.c tests/support.c $(sort $(wildcard tests/*/test_*.c)))
 PROGRAM := $(BUILD)/hifdm
@@ -168,6 +172,18 @@ $(BUILD)/info: FORCE
 $(BUILD)/src/store.o: $(BUILD)/info
 $(BUILD)/src/store.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/tests/%.o: EXTRA = -Itests -Isrc $(filter-out -l%,$(CHECK))
+
+FLAGS_portable :=
+FLAGS_avx2 := -mavx2
+FLAGS_avx512 := -mavx512f -mprefer-vector-width=512
+define kernel_rule
+$(BUILD)/src/%_kernel_$(1).o: EXTRA = -DHF_ISA=$(1) $(FLAGS_$(1))
+$(BUILD)/src/%_kernel_$(1).o: src/%_kernel.c $(BUILD)/flags
+	$$(call say,CC,$$< ($(1)))
+	@mkdir -p $$(@D)
+	$$(Q)$$(COMPILE) $$(EXTRA) -MMD -MP -c $$< -o $$@
+endef
+$(foreach isa,$(ISAS),$(eval $(call kernel_rule,$(isa))))
 
 $(BUILD)/%.o: %.c $(BUILD)/flags
 	$(call say,CC,$<)

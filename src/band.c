@@ -1,5 +1,6 @@
 #include "band.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -7,6 +8,10 @@
 void dpbtrf_(const char *uplo, const int *n, const int *kd, double *ab, const int *ldab, int *info);
 void dpbtrs_(const char *uplo, const int *n, const int *kd, const int *nrhs, const double *ab, const int *ldab,
              double *b, const int *ldb, int *info);
+double dlansb_(const char *norm, const char *uplo, const int *n, const int *k, const double *ab, const int *ldab,
+               double *work);
+void dpbcon_(const char *uplo, const int *n, const int *kd, const double *ab, const int *ldab, const double *anorm,
+             double *rcond, double *work, int *iwork, int *info);
 void dgbtrf_(const int *m, const int *n, const int *kl, const int *ku, double *ab, const int *ldab, int *ipiv,
              int *info);
 void dgbtrs_(const char *trans, const int *n, const int *kl, const int *ku, const int *nrhs, const double *ab,
@@ -33,6 +38,33 @@ hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int 
     }
     dpbtrs_("L", &n, &half_bandwidth, &three, band, &ldab, b, &ldb, &info);
     return HF_OK;
+}
+
+int hf_band_factor(int n, int half_bandwidth, double *band)
+{
+    int ldab = half_bandwidth + 1, info = 0;
+    dpbtrf_("L", &n, &half_bandwidth, band, &ldab, &info);
+    return info;
+}
+
+void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb)
+{
+    int ldab = half_bandwidth + 1, info = 0;
+    dpbtrs_("L", &n, &half_bandwidth, &n_rhs, factor, &ldab, b, &ldb, &info);
+}
+
+double hf_band_norm(int n, int half_bandwidth, const double *band, double *work)
+{
+    int ldab = half_bandwidth + 1;
+    return dlansb_("1", "L", &n, &half_bandwidth, band, &ldab, work);
+}
+
+double hf_band_condition(int n, int half_bandwidth, const double *factor, double norm, double *work, int *integer_work)
+{
+    int ldab = half_bandwidth + 1, info = 0;
+    double reciprocal = 0;
+    dpbcon_("L", &n, &half_bandwidth, factor, &ldab, &norm, &reciprocal, work, integer_work, &info);
+    return reciprocal > 0 ? 1 / reciprocal : (double)INFINITY;
 }
 
 hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band, double *general, int *pivot,

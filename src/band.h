@@ -14,6 +14,15 @@ hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int 
 hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band, double *general, int *pivot,
                                    double *b, int ldb, int *bad_row);
 
+/* The parts of the same for the Newton matrix. hf_band_factor: 0, or 1 + the row where it broke. b: [n_rhs][ldb]. */
+int hf_band_factor(int n, int half_bandwidth, double *band);
+void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
+
+/* 1-norm of the matrix (before factoring; work: [n]) and LAPACK's estimate of its condition number in that norm (dpbcon;
+ * work: [3n], integer_work: [n]); INFINITY when it is singular to working precision. */
+double hf_band_norm(int n, int half_bandwidth, const double *band, double *work);
+double hf_band_condition(int n, int half_bandwidth, const double *factor, double norm, double *work, int *integer_work);
+
 /* One system per thread: keep a threaded BLAS from starting threads of its own. Call once, before any solve. */
 void hf_band_single_threaded(void);
 

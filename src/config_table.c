@@ -3,14 +3,18 @@
 
 #include <stddef.h>
 
-const char *const hf_method_word[3] = {"hifdm", "iterative_fdm", "fdm"};
+const char *const hf_method_word[5] = {"hifdm", "iterative_fdm", "fdm", "newton", "auto"};
 const char *const hf_stop_rule_word[2] = {"residual", "rms_change"};
 const char *const hf_rule_word[3] = {"force_density", "tension", "seeded"};
+const char *const hf_solver_word[4] = {"auto", "chord", "newton", "fixed_point"};
+const char *const hf_optimize_method_word[3] = {"ga", "lm", "ga+lm"};
 
 /* NULL-terminated, in the order of the enums */
-static const char *const method_words[] = {"hifdm", "iterative_fdm", "fdm", NULL};
+static const char *const method_words[] = {"hifdm", "iterative_fdm", "fdm", "newton", "auto", NULL};
 static const char *const stop_words[] = {"residual", "rms_change", NULL};
 static const char *const rule_words[] = {"force_density", "tension", "seeded", NULL};
+static const char *const solver_words[] = {"auto", "chord", "newton", "fixed_point", NULL};
+static const char *const optimize_words[] = {"ga", "lm", "ga+lm", NULL};
 static const char *const spacing_words[] = {"equal_arc", "equal_projected", NULL};
 static const char *const boundary_words[] = {"outer_edge", "module_edges", NULL};
 static const char *const supports_words[] = {"module_corners", "ribs", "perimeter", NULL};
@@ -23,7 +27,7 @@ const hf_section hf_section_table[] = {
     {"scene.parabolic_cylinder", AT(has_cylinder), "A quad net over a parabolic cylinder."},
     {"scene.import", AT(has_import), "Any net from two CSV files."},
     {"form", SIZE_MAX, "Form-finding. May be left out: the defaults hold."},
-    {"optimize", AT(has_optimize), "Genetic algorithm on the boundary pretensions. Without this section none runs."},
+    {"optimize", AT(has_optimize), "Optimisation of the boundary pretensions. Without this section none runs."},
 };
 const int hf_n_section = sizeof hf_section_table / sizeof *hf_section_table;
 
@@ -54,9 +58,11 @@ const hf_field hf_field_table[] = {
     {"scene.import.cables", HF_FIELD_TEXT, AT(cables_path), 1, HF_PATH_SIZE, NULL, "", NULL,
      "CSV id,i,j,group,law,value[,EA_N]; path relative to the case file"},
 
-    {"form.method", HF_FIELD_WORD, AT(form.method), 0, 0, "hifdm", "", method_words,
-     "hifdm: every cable obeys its own law (Eqs. 7, 8); iterative_fdm: every cable is held at a tension (Eq. 7); fdm: "
-     "one solve with the starting force densities (Eqs. 5, 6)"},
+    {"form.method", HF_FIELD_WORD, AT(form.method), 0, 0, "auto", "", method_words,
+     "auto: newton where it applies, else hifdm; newton: every cable obeys its own law, by Newton on the energy; "
+     "hifdm: "
+     "the same by the paper's iteration (Eqs. 7, 8); iterative_fdm: every cable is held at a tension (Eq. 7); fdm: one "
+     "solve with the starting force densities (Eqs. 5, 6)"},
     {"form.pretension_N", HF_FIELD_DOUBLE, AT(form.pretension_N), HF_ABOVE_ZERO, 1e9, "10", "N", NULL,
      "uniform tension Td of the inner cables"},
     {"form.stop", HF_FIELD_WORD, AT(form.stop), 0, 0, "residual", "", stop_words,
@@ -73,9 +79,16 @@ const hf_field hf_field_table[] = {
     {"form.collapse_ratio", HF_FIELD_DOUBLE, AT(form.collapse_ratio), 1e-12, 0.5, "1e-3", "", NULL,
      "a cable of law tension shorter than this part of its theoretical length has collapsed"},
 
+    {"optimize.method", HF_FIELD_WORD, AT(optimize.method), 0, 0, "ga", "", optimize_words,
+     "genetic algorithm, Levenberg-Marquardt from the form-finding's tensions, or both. After the genetic algorithm "
+     "the "
+     "optimum that Levenberg-Marquardt reaches from it is always reported; with ga+lm it is the result"},
     {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", rule_words,
      "what a design means: boundary held at q = T'/L* (always one answer), held at T', or Eq. 8 started from q = T'/L* "
      "and stopped by rms_change (the paper's literal reading; its optimum depends on where it stops)"},
+    {"optimize.solver", HF_FIELD_WORD, AT(optimize.solver), 0, 0, "auto", "", solver_words,
+     "how an individual is solved: chord shares one factored Newton matrix, eight designs to a pass; newton: each its "
+     "own; fixed_point: the paper's iteration. auto: chord where it applies, else newton, else fixed_point"},
     {"optimize.population", HF_FIELD_INT, AT(optimize.population), 2, 100000, "50", "", NULL, "individuals"},
     {"optimize.generations", HF_FIELD_INT, AT(optimize.generations), 1, 1000000, "400", "", NULL,
      "largest number of generations"},
@@ -100,5 +113,7 @@ const hf_field hf_field_table[] = {
      "stop when the best psi gained less than this over the window below"},
     {"optimize.stagnation_generations", HF_FIELD_INT, AT(optimize.stagnation_generations), 1, 1000000, "50", "", NULL,
      "length of that window"},
+    {"optimize.polish_iterations", HF_FIELD_INT, AT(optimize.polish_iterations), 1, 100000, "200", "", NULL,
+     "largest number of Levenberg-Marquardt iterations"},
 };
 const int hf_n_field = sizeof hf_field_table / sizeof *hf_field_table;

@@ -1,14 +1,46 @@
 #include <hifdm/evaluate.h>
 
+#include "newton.h"
+
 #include <math.h>
+
+int hf_evaluate_method(const hf_model *m, const hf_form_settings *form, const char **why)
+{
+    const char *reason = "asked for";
+    int method = form->method == HF_METHOD_NEWTON ? HF_METHOD_NEWTON : HF_METHOD_HIFDM;
+    if (form->method == HF_METHOD_AUTO) {
+        method = m->has_newton && form->stop == HF_STOP_RESIDUAL ? HF_METHOD_NEWTON : HF_METHOD_HIFDM;
+        reason = method == HF_METHOD_NEWTON ? "every potential is convex: quadratic convergence"
+                                            : "stop: rms_change is a rule for it";
+    }
+    if (!m->has_newton && method == HF_METHOD_NEWTON) method = HF_METHOD_HIFDM;
+    if (!m->has_newton)
+        reason = m->has_strut ? "struts: the energy is not convex" : "force densities are given: one solve";
+    if (why) *why = reason;
+    return method;
+}
+
+hf_status hf_evaluate_form(const hf_model *m, const hf_form_settings *form, hf_workspace *w, hf_history *history,
+                           hf_form_result *result)
+{
+    hf_form_prepare(m, w);
+    if (hf_evaluate_method(m, form, NULL) == HF_METHOD_NEWTON)
+        hf_newton_find(m, form, w, history, result);
+    else
+        hf_form_find(m, form, form->stop, w, history, result);
+    if (m->has_newton) hf_newton_certify(m, w, result);
+    return result->status;
+}
+
+double hf_evaluate_design_length_m(const hf_model *m, int i_cable)
+{
+    return m->law[i_cable] == HF_LAW_LENGTH ? m->target[i_cable] : m->length_m[i_cable];
+}
 
 /* What the design means for boundary cable e (METHOD section 5). */
 static void apply_rule(const hf_evaluator *v, int e, double tension_N, hf_workspace *w)
 {
-    /* L* is the prescribed length where there is one, else the theoretical length */
-    const hf_model *m = v->model;
-    double length_m = m->law[e] == HF_LAW_LENGTH ? m->target[e] : m->length_m[e];
-    w->q_N_per_m[e] = tension_N / length_m;
+    w->q_N_per_m[e] = tension_N / hf_evaluate_design_length_m(v->model, e);
     switch (v->rule) {
     case HF_RULE_FORCE_DENSITY:
         w->law[e] = HF_LAW_FORCE_DENSITY;
@@ -23,7 +55,7 @@ static void apply_rule(const hf_evaluator *v, int e, double tension_N, hf_worksp
     }
 }
 
-hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspace *w, hf_form_result *result)
+void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_workspace *w)
 {
     const hf_model *m = v->model;
     hf_form_prepare(m, w);
@@ -32,11 +64,25 @@ hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspac
         if (m->law[e] != HF_LAW_FORCE_DENSITY) w->q_N_per_m[e] = v->start_q_N_per_m[e];
     for (int k = 0; k < m->n_gene; k++)
         apply_rule(v, m->gene_cable[k], design_N[k], w);
-    int stop = v->rule == HF_RULE_SEEDED ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL;
-    hf_form_find(m, v->form, stop, w, NULL, result);
+}
+
+hf_status hf_evaluate_judge(const hf_evaluator *v, hf_form_result *result)
+{
     if (result->status == HF_OK && result->boundary_tension_ratio > v->boundary_ratio_cap)
         result->status = HF_RATIO_CAP;
     if (result->status != HF_OK)
         result->psi_m = result->inner_tension_ratio = result->boundary_tension_ratio = (double)NAN;
     return result->status;
+}
+
+hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspace *w, hf_form_result *result)
+{
+    hf_evaluate_prepare(v, design_N, w);
+    if (v->rule == HF_RULE_SEEDED)
+        hf_form_find(v->model, v->form, HF_STOP_RMS_CHANGE, w, NULL, result);
+    else if (v->solver != HF_SOLVER_FIXED_POINT && v->model->has_newton)
+        hf_newton_find(v->model, v->form, w, NULL, result);
+    else
+        hf_form_find(v->model, v->form, HF_STOP_RESIDUAL, w, NULL, result);
+    return hf_evaluate_judge(v, result);
 }

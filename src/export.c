@@ -78,18 +78,25 @@ static hf_status write_file(const char *path, const hf_scene *scene, const hf_sh
     return status;
 }
 
+static const char *const shape_word[3] = {"form-finding", "optimised", "polished"};
+
 static hf_status export_shape(const hf_options *o, hf_scene *scene, hf_shape *shape, char *said, size_t size,
                               hf_messages *messages)
 {
     hf_summary summary;
     char nodes[PATH_SIZE], cables[PATH_SIZE];
     HF_TRY(hf_store_read_summary(o->file, &summary, messages));
-    int has_best = summary.has_optimize && summary.best.status == HF_OK;
-    int of_best = o->stage ? !strcmp(o->stage, "optimize") : has_best;
-    if (of_best && !has_best)
-        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no optimised shape; use --stage form", o->file);
+    int has[3] = {1, summary.has_optimize && summary.best.status == HF_OK, summary.has_polish};
+    hf_stage stage = has[HF_STAGE_POLISH] && summary.polish_is_result ? HF_STAGE_POLISH
+                     : has[HF_STAGE_OPTIMIZE]                         ? HF_STAGE_OPTIMIZE
+                                                                      : HF_STAGE_FORM;
+    for (int i = 0; o->stage && i < HF_STAGE_NONE; i++)
+        if (!strcmp(o->stage, hf_stage_word[i])) stage = (hf_stage)i;
+    if (!has[stage])
+        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no %s shape; use --stage form", o->file,
+                        shape_word[stage]);
     HF_TRY(hf_store_read_scene(o->file, scene, messages));
-    HF_TRY(hf_store_read_shape(o->file, of_best, shape, messages));
+    HF_TRY(hf_store_read_shape(o->file, stage, shape, messages));
     if (mkdir(o->csv, 0777) != 0 && errno != EEXIST)
         return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", o->csv, strerror(errno));
     HF_TRY(claim(o, "nodes.csv", nodes, messages)); /* both before either is written */
@@ -97,7 +104,7 @@ static hf_status export_shape(const hf_options *o, hf_scene *scene, hf_shape *sh
     HF_TRY(write_file(nodes, scene, shape, write_nodes, messages));
     HF_TRY(write_file(cables, scene, shape, write_cables, messages));
     snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s and %s", o->file, scene->n_node,
-             scene->n_cable, of_best ? "optimised" : "form-finding", nodes, cables);
+             scene->n_cable, shape_word[stage], nodes, cables);
     return HF_OK;
 }
 

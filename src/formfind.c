@@ -151,12 +151,14 @@ static void nodal_forces(const hf_model *m, hf_workspace *w, int without_chains)
 
 static double largest_residual_N(const hf_model *m, hf_workspace *w)
 {
-    double largest = 0;
+    double largest = 0, scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
     const double *fx = w->force_N, *fy = fx + m->n_node, *fz = fy + m->n_node;
     nodal_forces(m, w, 0);
-    for (int i = 0; i < m->n_free; i++)
-        largest = fmax(largest, fx[i] * fx[i] + fy[i] * fy[i] + fz[i] * fz[i]);
-    return sqrt(largest);
+    for (int i = 0; i < m->n_free; i++) {
+        double x = scale * fx[i], y = scale * fy[i], z = scale * fz[i];
+        largest = fmax(largest, x * x + y * y + z * z);
+    }
+    return sqrt(largest) * m->reference_N;
 }
 
 /* ---- straight chains: a chain that cannot deflect cannot carry a lateral load at any finite tension ---- */
@@ -329,6 +331,7 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, h
         need_residual = history || stop == HF_STOP_RESIDUAL || !p.iterates;
     double length_gap;
     *r = (hf_form_result){.status = HF_OK, .culprit = -1};
+    r->position_error_m = r->condition = r->backward_error = (double)NAN;
     memcpy(w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double)); /* the support rows count */
     for (;;) {
         r->iterations++;
@@ -344,7 +347,27 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, h
     }
     if (r->status == HF_OK || r->status == HF_NOT_CONVERGED) {
         if (!need_residual) r->residual_N = largest_residual_N(m, w);
-        judge_chains(m, w, &p, r);
+        if (r->status == HF_OK || r->iterations >= FIRST_CHAIN_CHECK) judge_chains(m, w, &p, r);
+    }
+    return finish(m, w, r);
+}
+
+hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r)
+{
+    double length_gap;
+    *r = (hf_form_result){.status = HF_OK, .culprit = -1};
+    r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    for (int pass = 0; pass < 2; pass++) { /* the lengths give the force densities of law tension, these its tensions */
+        measure_cables(m, s, w, r, &length_gap);
+        if (r->status != HF_OK) return finish(m, w, r);
+        for (int e = 0; e < m->n_cable; e++)
+            if (w->law[e] == HF_LAW_TENSION) w->q_N_per_m[e] = w->target[e] / w->length_m[e];
+    }
+    r->residual_N = largest_residual_N(m, w);
+    r->stop_reason = HF_STOPPED_RESIDUAL;
+    if (!(r->residual_N <= s->residual_tolerance * m->reference_N && length_gap <= s->length_tolerance)) {
+        r->status = HF_NOT_CONVERGED;
+        r->stop_reason = HF_STOPPED_MAX_ITERATIONS;
     }
     return finish(m, w, r);
 }

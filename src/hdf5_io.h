@@ -172,6 +172,9 @@ void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table,
     X(hf_summary, object, prefix "inner_tension_ratio", result.inner_tension_ratio, REAL)                              \
     X(hf_summary, object, prefix "boundary_tension_ratio", result.boundary_tension_ratio, REAL)                        \
     X(hf_summary, object, prefix "shortest_length_ratio", result.shortest_length_ratio, REAL)                          \
+    X(hf_summary, object, prefix "position_error_m", result.position_error_m, REAL)                                    \
+    X(hf_summary, object, prefix "condition", result.condition, REAL)                                                  \
+    X(hf_summary, object, prefix "backward_error", result.backward_error, REAL)                                        \
     X(hf_summary, object, prefix "n_slack", result.n_slack, INT)                                                       \
     X(hf_summary, object, prefix "n_loaded_chain", result.n_loaded_chain, INT)
 
@@ -180,6 +183,7 @@ void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table,
     X(hf_summary, "/", "threads", threads, INT)                                                                        \
     X(hf_summary, "/", "seed", seed, UINT64)                                                                           \
     X(hf_summary, "/", "warnings", warnings, CHARS)                                                                    \
+    X(hf_summary, "/", "has_polish", has_polish, FLAG)                                                                 \
     X(hf_summary, "/", "has_optimize", has_optimize, FLAG)                                                             \
     X(hf_summary, "/case", "case_path", case_path, CHARS)                                                              \
     X(hf_summary, "/form", "version", version, CHARS)                                                                  \
@@ -192,8 +196,18 @@ void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table,
     X(hf_summary, "/form", "form_wall_s", form_wall_s, REAL)                                                           \
     HF_RESULT_MEMBERS(X, "/form", "", form)
 
+/* only when has_polish */
+#define HF_SUMMARY_POLISH_MEMBERS(X)                                                                                   \
+    X(hf_summary, "/polish", "polish_is_result", polish_is_result, FLAG)                                               \
+    X(hf_summary, "/polish", "polish_iterations", polish_iterations, INT)                                              \
+    X(hf_summary, "/polish", "polish_evaluations", polish_evaluations, INT)                                            \
+    X(hf_summary, "/polish", "polish_converged", polish_converged, FLAG)                                               \
+    X(hf_summary, "/polish", "polish_wall_s", polish_wall_s, REAL)                                                     \
+    HF_RESULT_MEMBERS(X, "/polish", "", polish)
+
 /* only when has_optimize */
 #define HF_SUMMARY_GA_MEMBERS(X)                                                                                       \
+    X(hf_summary, "/ga", "solver", solver, INT)                                                                        \
     X(hf_summary, "/ga", "best_generation", best_generation, INT)                                                      \
     X(hf_summary, "/ga", "best_individual", best_individual, INT)                                                      \
     X(hf_summary, "/ga", "generations", generations, INT)                                                              \

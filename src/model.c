@@ -113,6 +113,9 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
         if (s->group[e] == HF_GROUP_BOUNDARY && (m->end_row[2 * e] < m->n_free || m->end_row[2 * e + 1] < m->n_free))
             m->gene_cable[m->n_gene++] = e;
     }
+    for (int e = 0; e < m->n_cable; e++)
+        m->has_newton |= m->law[e] != HF_LAW_FORCE_DENSITY;
+    if (m->has_strut) m->has_newton = 0;
 }
 
 /* ---- straight chains ---- */

@@ -57,7 +57,7 @@ static const option_row option_table[] = {
      OPTION_JSON},
     {"--quiet", NULL, NULL, "no progress and no summary; warnings and errors stay", BIT(HF_COMMAND_RUN), OPTION_QUIET},
     {"--csv", NULL, "DIR", "write nodes.csv and cables.csv into DIR", BIT(HF_COMMAND_EXPORT), OPTION_CSV},
-    {"--stage", NULL, "STAGE", "form or optimize: which shape (default: the last stage that ran)",
+    {"--stage", NULL, "STAGE", "form, optimize or polish: which shape (default: the result of the run)",
      BIT(HF_COMMAND_EXPORT), OPTION_STAGE},
 };
 enum { N_OPTION = sizeof option_table / sizeof *option_table };
@@ -138,8 +138,8 @@ static hf_status apply(const option_row *row, const char *value, hf_options *o, 
         o->csv = value;
         break;
     case OPTION_STAGE:
-        if (strcmp(value, "form") && strcmp(value, "optimize"))
-            return hf_error(messages, HF_BAD_USAGE, "--stage must be form or optimize, not '%s'", value);
+        if (strcmp(value, "form") && strcmp(value, "optimize") && strcmp(value, "polish"))
+            return hf_error(messages, HF_BAD_USAGE, "--stage must be form, optimize or polish, not '%s'", value);
         o->stage = value;
         break;
     }

@@ -37,7 +37,10 @@ static void print_plan(const plan *p, FILE *f)
 {
     const hf_case *c = &p->settings;
     const hf_optimize_settings *o = &c->optimize;
-    fprintf(f, "  will run      form-finding: %s, stop: %s, at most %d iterations\n", hf_method_word[c->form.method],
+    const char *why;
+    int method = hf_evaluate_method(&p->model, &c->form, &why);
+    fprintf(f, "  will run      form-finding: %s, solved by %s (%s), stop: %s, at most %d iterations\n",
+            hf_method_word[c->form.method], method == HF_METHOD_NEWTON ? "newton" : "fixed point", why,
             hf_stop_rule_word[c->form.stop], c->form.max_iterations);
     int optimizes = c->has_optimize && p->model.n_gene > 0;
     if (optimizes)
@@ -71,7 +74,7 @@ static void print_optimize_time(plan *p, const hf_form_settings *form, int threa
     double *start = malloc((size_t)m->n_cable * sizeof *start), *base = malloc((size_t)m->n_gene * sizeof *base);
     if (start && base) {
         hf_form_result r;
-        hf_evaluator v = {m, form, start, o->rule, o->boundary_ratio_cap};
+        hf_evaluator v = {m, form, start, o->rule, o->solver, o->boundary_ratio_cap};
         memcpy(start, p->workspace.q_N_per_m, (size_t)m->n_cable * sizeof *start);
         for (int k = 0; k < m->n_gene; k++)
             base[k] = p->workspace.tension_N[m->gene_cable[k]];

@@ -61,11 +61,29 @@ static void print_optimize(const hf_summary *s, FILE *f)
     fprintf(f, "  optimisation  psi %.4f mm, %.2f %% below form-finding; best found in generation %d\n",
             s->best.psi_m * 1e3, 100 * (1 - s->best.psi_m / s->form.psi_m), s->best_generation);
     print_result(&s->best, f);
-    fprintf(f, "                %d generations, %ld evaluations (%ld infeasible), stopped by %s\n", s->generations,
-            s->evaluations, s->infeasible, hf_ga_stop_word[s->optimize_stop]);
+    fprintf(f, "                %d generations, %ld evaluations (%ld infeasible) by %s, stopped by %s\n",
+            s->generations, s->evaluations, s->infeasible, hf_solver_word[s->solver],
+            hf_ga_stop_word[s->optimize_stop]);
     fprintf(f, "                %s, %.0f evaluations/s; cpu_s / (wall_s * threads) = %.3f on %d thread%s\n", wall,
             (double)s->evaluations / s->optimize_wall_s, hf_summary_utilisation(s), s->threads,
             s->threads == 1 ? "" : "s");
+}
+
+static void print_polish(const hf_summary *s, FILE *f)
+{
+    char wall[32], boundary[32];
+    hf_print_duration(s->polish_wall_s, wall, sizeof wall);
+    fprintf(f, "  LM optimum    psi %.4f mm from there, %s; boundary ratio %s; %d iterations%s, %s\n",
+            s->polish.psi_m * 1e3, s->polish_is_result ? "the result" : "for comparison",
+            ratio(s->polish.boundary_tension_ratio, boundary), s->polish_iterations,
+            s->polish_converged ? "" : " (not converged)", wall);
+}
+
+static void print_certificate(const hf_form_result *r, FILE *f)
+{
+    if (isfinite(r->position_error_m) && isfinite(r->condition))
+        fprintf(f, "                estimated position error %.1e m; condition %.1e; backward error %.1e\n",
+                r->position_error_m, r->condition, r->backward_error);
 }
 
 void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
@@ -79,7 +97,9 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
             s->form.iterations, s->form.iterations == 1 ? "" : "s", hf_stop_reason_word((int)s->form.stop_reason),
             wall);
     print_result(&s->form, f);
+    print_certificate(&s->form, f);
     if (s->has_optimize) print_optimize(s, f);
+    if (s->has_polish) print_polish(s, f);
     if (path) fprintf(f, "  results       %s\n", path);
 }
 

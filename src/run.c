@@ -3,6 +3,7 @@
 #include "run.h"
 
 #include "print.h"
+#include "polish.h"
 #include <hifdm/batch.h>
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
@@ -169,8 +170,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     if (hf_workspace_create(&r->model, &r->workspace) != HF_OK || create_history(form, &r->history) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", r->model.n_node);
     double start_s = hf_run_clock_s();
-    hf_form_prepare(&r->model, &r->workspace);
-    hf_form_find(&r->model, form, form->stop, &r->workspace, &r->history, &s->form);
+    hf_evaluate_form(&r->model, form, &r->workspace, &r->history, &s->form);
     s->form_wall_s = hf_run_clock_s() - start_s;
     hf_status status = hf_run_explain(&r->scene, &r->model, form, &r->workspace, &s->form, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
@@ -202,7 +202,11 @@ static hf_status prepare_optimize(run *r, int threads, hf_messages *messages)
                 "reach min_tension_N %g .. max_tension_N %g",
                 r->scene.cable_id[m->gene_cable[k]], r->base_N[k], o->range_N, o->min_tension_N, o->max_tension_N);
     }
-    r->evaluator = (hf_evaluator){m, &r->settings.form, r->start_q_N_per_m, r->settings.optimize.rule,
+    r->evaluator = (hf_evaluator){m,
+                                  &r->settings.form,
+                                  r->start_q_N_per_m,
+                                  r->settings.optimize.rule,
+                                  r->settings.optimize.solver,
                                   r->settings.optimize.boundary_ratio_cap};
     if (hf_batch_create(&r->evaluator, threads, &r->batch) != HF_OK ||
         hf_ga_create(&r->settings.optimize, m, r->base_N, &r->ga) != HF_OK)
@@ -219,26 +223,24 @@ static void note_best(const hf_ga *ga, hf_summary *s)
     s->best_individual = ga->best;
 }
 
-/* The shape of the best individual: elitism keeps it in the last generation, and its evaluation gives the same bits
- * again. */
+/* The shape of the best individual: elitism keeps it in the last generation, and it is evaluated to the same bits again. */
 static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
 {
     const double *design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
     hf_form_result again;
-    hf_evaluate(&r->evaluator, design, &r->workspace, &again);
-    warn(&r->scene, &r->model, &r->settings.form, &r->workspace, &s->best, messages);
-    return hf_store_best(r->store, &r->model, &r->workspace, design, messages);
+    hf_workspace *w = hf_batch_run_one(&r->batch, design, &again);
+    warn(&r->scene, &r->model, &r->settings.form, w, &s->best, messages);
+    return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->model, w, design, messages);
 }
 
-static hf_status optimize(run *r, const hf_options *options, hf_summary *s, hf_messages *messages)
+static hf_status evolve(run *r, const hf_options *options, hf_summary *s, hf_messages *messages)
 {
     int show_progress = !options->quiet && isatty(STDERR_FILENO);
     hf_ga *ga = &r->ga;
-    HF_TRY(prepare_optimize(r, options->threads, messages));
     double start_s = hf_run_clock_s();
     s->has_optimize = 1;
     s->best.status = HF_NOT_EVALUATED;
-    s->threads = r->batch.n_thread;
+    s->solver = hf_batch_share(&r->batch, r->base_N);
     do {
         hf_batch_run(&r->batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
         hf_ga_tell(ga);
@@ -255,6 +257,43 @@ static hf_status optimize(run *r, const hf_options *options, hf_summary *s, hf_m
     s->optimize_stop = (int)ga->stop_reason;
     if (ga->best >= 0) return store_best(r, s, messages);
     hf_warning(messages, "optimize: no feasible design among %ld evaluations", s->evaluations);
+    return HF_OK;
+}
+
+/* Levenberg-Marquardt from the best individual, or from the base design when there was no genetic algorithm. */
+static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &r->settings.optimize;
+    hf_polish_result outcome;
+    double *design = r->base_N, start_s = hf_run_clock_s();
+    if (s->has_optimize && r->ga.best >= 0) design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
+    hf_status status = hf_polish_run(&r->evaluator, r->ga.lower_N, r->ga.upper_N, o->polish_iterations, design,
+                                     &r->workspace, &outcome);
+    if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
+    if (status != HF_OK) {
+        hf_warning(messages, "optimize: Levenberg-Marquardt has no feasible design to start from: %s",
+                   hf_status_text(status));
+        return HF_OK;
+    }
+    hf_evaluate(&r->evaluator, design, &r->workspace, &s->polish);
+    s->has_polish = 1;
+    s->polish_is_result = o->method != HF_OPTIMIZE_GA;
+    s->polish_iterations = outcome.iterations;
+    s->polish_evaluations = outcome.evaluations;
+    s->polish_converged = outcome.converged;
+    s->polish_wall_s = hf_run_clock_s() - start_s;
+    return hf_store_best(r->store, HF_STAGE_POLISH, &r->model, &r->workspace, design, messages);
+}
+
+static hf_status optimize(run *r, const hf_options *options, hf_summary *s, hf_messages *messages)
+{
+    int method = r->settings.optimize.method;
+    HF_TRY(prepare_optimize(r, options->threads, messages));
+    s->threads = r->batch.n_thread;
+    if (method != HF_OPTIMIZE_LM) HF_TRY(evolve(r, options, s, messages));
+    if (hf_polish_applies(&r->evaluator)) return polish(r, s, messages);
+    if (method != HF_OPTIMIZE_GA)
+        hf_warning(messages, "optimize: Levenberg-Marquardt needs a net without struts and a rule other than seeded");
     return HF_OK;
 }
 

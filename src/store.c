@@ -46,6 +46,9 @@ struct hf_store {
     size_t scratch_bytes;
 };
 
+const char *const hf_stage_word[4] = {"form", "optimize", "polish", "none"};
+const char *const hf_stage_group[4] = {"/form", "/ga/best", "/polish", "/"};
+
 const char *hf_store_version(void)
 {
     return HF_VERSION " (" HF_GIT_DESCRIBE ")";
@@ -287,12 +290,12 @@ static void write_design(hf_store *s, hid_t group, const hf_model *model, const 
     hf_hdf5_write_array(&s->io, group, &design, design_N);
 }
 
-hf_status hf_store_best(hf_store *store, const hf_model *model, const hf_workspace *workspace, const double *design_N,
-                        hf_messages *messages)
+hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
+                        const double *design_N, hf_messages *messages)
 {
     store->io.messages = messages;
-    hf_hdf5_close(&store->io, hf_hdf5_make_group(&store->io, "/ga"));
-    hid_t group = hf_hdf5_make_group(&store->io, "/ga/best");
+    if (stage == HF_STAGE_OPTIMIZE) hf_hdf5_close(&store->io, hf_hdf5_make_group(&store->io, "/ga"));
+    hid_t group = hf_hdf5_make_group(&store->io, hf_stage_group[stage]);
     write_shape(store, group, model, workspace);
     write_design(store, group, model, design_N);
     hf_hdf5_close(&store->io, group);
@@ -419,6 +422,7 @@ static void put_summary(hf_store *s, const hf_summary *summary)
 {
     static const hf_hdf5_member form[] = {HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER)};
     static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
+    static const hf_hdf5_member polish[] = {HF_SUMMARY_POLISH_MEMBERS(HF_HDF5_MEMBER)};
     hf_status outcome = summary->form.status;
     if (outcome == HF_OK && summary->has_optimize) outcome = summary->best.status;
     /* groups that are there already, unless the run had no shape or no generation to store */
@@ -427,6 +431,10 @@ static void put_summary(hf_store *s, const hf_summary *summary)
     if (summary->has_optimize) {
         hf_hdf5_close(&s->io, hf_hdf5_make_group(&s->io, "/ga"));
         hf_hdf5_put_members(&s->io, ga, HF_HDF5_COUNT(ga), summary);
+    }
+    if (summary->has_polish) {
+        hf_hdf5_close(&s->io, hf_hdf5_make_group(&s->io, "/polish"));
+        hf_hdf5_put_members(&s->io, polish, HF_HDF5_COUNT(polish), summary);
     }
     hf_hdf5_put_text(&s->io, s->io.file, "/", "status", hf_status_word(outcome));
     put_time(s, "finished_utc");

@@ -56,9 +56,11 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
 {
     static const hf_hdf5_member form[] = {HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER)};
     static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
+    static const hf_hdf5_member polish[] = {HF_SUMMARY_POLISH_MEMBERS(HF_HDF5_MEMBER)};
     hf_hdf5 io = open_result(path, messages);
     *summary = (hf_summary){0};
     hf_hdf5_get_members(&io, form, HF_HDF5_COUNT(form), summary);
+    if (summary->has_polish) hf_hdf5_get_members(&io, polish, HF_HDF5_COUNT(polish), summary);
     if (summary->has_optimize) hf_hdf5_get_members(&io, ga, HF_HDF5_COUNT(ga), summary);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) *summary = (hf_summary){0};
@@ -166,17 +168,18 @@ static hf_status allocate_shape(int n_node, int n_cable, hf_shape *shape)
     return HF_OK;
 }
 
-hf_status hf_store_read_shape(const char *path, int of_best, hf_shape *shape, hf_messages *messages)
+hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages)
 {
     static const hf_hdf5_column table[] = {HF_SHAPE_COLUMNS(HF_HDF5_COLUMN)};
     hf_hdf5 io = open_result(path, messages);
     *shape = (hf_shape){0};
-    if (of_best && io.status == HF_OK && !(hf_hdf5_has(&io, io.file, "/ga") && hf_hdf5_has(&io, io.file, "/ga/best")) &&
-        io.status == HF_OK)
+    int is_there = stage != HF_STAGE_NONE && (stage != HF_STAGE_OPTIMIZE || hf_hdf5_has(&io, io.file, "/ga")) &&
+                   hf_hdf5_has(&io, io.file, hf_stage_group[stage]);
+    if (!is_there && io.status == HF_OK) /* a question that fails has said so itself */
         io.status =
-            hf_error(messages, HF_IO,
-                     "%s: has no best individual: the run did not optimise, or no individual was feasible", path);
-    hid_t group = hf_hdf5_open_group(&io, of_best ? "/ga/best" : "/form");
+            hf_error(messages, HF_IO, "%s: has no %s shape: that stage did not run, or found no feasible design", path,
+                     hf_stage_word[stage]);
+    hid_t group = hf_hdf5_open_group(&io, hf_stage_group[stage]);
     int n_node = hf_hdf5_length(&io, io.file, "/scene/node/role", COUNT_MAX);
     int n_cable = hf_hdf5_length(&io, io.file, "/scene/cable/law", COUNT_MAX);
     if (io.status == HF_OK && allocate_shape(n_node, n_cable, shape) != HF_OK) no_memory(&io);

@@ -67,6 +67,9 @@ static void write_result(const hf_form_result *r, FILE *f)
         {"tension_error", r->tension_error},
         {"length_error", r->length_error},
         {"shortest_length_ratio", r->shortest_length_ratio},
+        {"position_error_m", r->position_error_m},
+        {"condition", r->condition},
+        {"backward_error", r->backward_error},
     };
     write_text("status", hf_status_word(r->status), f);
     for (size_t i = 0; i < sizeof number / sizeof *number; i++) {
@@ -88,7 +91,21 @@ static void write_optimize(const hf_summary *s, FILE *f)
     fputs(", ", f);
     write_number("cpu_s", s->optimize_cpu_s, f);
     fputs(", ", f);
+    write_text("solver", hf_solver_word[s->solver], f);
+    fputs(", ", f);
     write_text("stop_reason", hf_ga_stop_word[s->optimize_stop], f);
+    fputc('}', f);
+}
+
+static void write_polish(const hf_summary *s, FILE *f)
+{
+    fputs(",\n \"polish\": {", f);
+    write_result(&s->polish, f);
+    fprintf(f, ", \"lm_iterations\": %d, \"evaluations\": %d, \"is_result\": %s, ", s->polish_iterations,
+            s->polish_evaluations, s->polish_is_result ? "true" : "false");
+    write_number("wall_s", s->polish_wall_s, f);
+    fputs(", ", f);
+    write_text("stop_reason", s->polish_converged ? "converged" : "max_iterations", f);
     fputc('}', f);
 }
 
@@ -106,6 +123,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
         fputc('}', f);
     }
     if (s->has_optimize) write_optimize(s, f);
+    if (s->has_polish) write_polish(s, f);
     fprintf(f, ",\n \"threads\": %d, \"seed\": %llu, ", s->threads, (unsigned long long)s->seed);
     write_text("version", s->version, f);
     fputs(",\n ", f);

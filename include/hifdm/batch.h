@@ -11,8 +11,9 @@ extern "C" {
 typedef struct {
     const hf_evaluator *evaluator; /* borrowed */
     int n_thread;
-    hf_workspace *workspace; /* [n_thread], all allocated before the first evaluation */
-    double cpu_s;            /* processor time spent inside evaluations so far, over all threads */
+    hf_workspace *workspace;      /* [n_thread], all allocated before the first evaluation */
+    struct hf_batch_chord *chord; /* what hf_batch_share made, or NULL */
+    double cpu_s;                 /* processor time spent inside evaluations so far, over all threads */
 } hf_batch;
 
 /* n_thread 0: hf_batch_default_threads(). HF_OK or HF_NO_MEMORY. Free in any case. */
@@ -22,7 +23,16 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
  * Each design is one whole form-finding in one thread; the results do not depend on the number of threads. */
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result);
 
+/* Let the threads share one factored Newton matrix from the base design [n_gene] on, where the evaluator's solver allows
+ * it. Returns the hf_solver that will be used: an unsuitable base or net leaves each design to hf_evaluate. HF_NO_MEMORY
+ * counts as unsuitable. */
+int hf_batch_share(hf_batch *batch, const double *base_N);
+
 int hf_batch_default_threads(void); /* available cores */
+
+/* Evaluate one design in the calling thread, to the same bits as hf_batch_run; returns the workspace that holds its shape
+ * until the next call. */
+hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result);
 
 void hf_batch_free(hf_batch *batch);
 

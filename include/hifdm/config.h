@@ -11,13 +11,17 @@
 extern "C" {
 #endif
 
-typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM } hf_method;
+typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHOD_NEWTON, HF_METHOD_AUTO } hf_method;
+typedef enum { HF_OPTIMIZE_GA, HF_OPTIMIZE_LM, HF_OPTIMIZE_GA_LM } hf_optimize_method;
+typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
 typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
 
-extern const char *const hf_method_word[3];
+extern const char *const hf_method_word[5];
 extern const char *const hf_stop_rule_word[2];
 extern const char *const hf_rule_word[3];
+extern const char *const hf_solver_word[4];
+extern const char *const hf_optimize_method_word[3];
 
 typedef struct {
     int method;                /* hf_method */
@@ -31,7 +35,9 @@ typedef struct {
 } hf_form_settings;
 
 typedef struct {
-    int rule; /* hf_rule: what a design (a set of boundary pretensions) means */
+    int method; /* hf_optimize_method */
+    int rule;   /* hf_rule: what a design (a set of boundary pretensions) means */
+    int solver; /* hf_solver of the individuals */
     int population, generations;
     double range_N;                      /* |dT| of Eq. 13 */
     double min_tension_N, max_tension_N; /* bounds on T' */
@@ -42,6 +48,7 @@ typedef struct {
     int elites;
     double stagnation_tolerance_m;
     int stagnation_generations;
+    int polish_iterations;
 } hf_optimize_settings;
 
 #define HF_PATH_SIZE 1024

@@ -9,12 +9,21 @@
 extern "C" {
 #endif
 
+/* What form.method comes to in this net: HF_METHOD_NEWTON, or HF_METHOD_HIFDM for the paper's iteration (which serves
+ * iterative_fdm and fdm too: the laws of the model decide). *why (may be NULL): a reason for people. */
+int hf_evaluate_method(const hf_model *model, const hf_form_settings *form, const char **why);
+
+/* Form-finding as the case asks for it, with its certificate. Returns result->status; the shape stays in the workspace. */
+hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
+                           hf_history *history, hf_form_result *result);
+
 /* Constant during a run, shared by all threads. model, form and start_q are borrowed. */
 typedef struct {
     const hf_model *model;
     const hf_form_settings *form;
     const double *start_q_N_per_m; /* [n_cable] first force densities of the inner cables: those of the found shape */
     int rule;                      /* hf_rule */
+    int solver;                    /* hf_solver */
     double boundary_ratio_cap;
 } hf_evaluator;
 
@@ -22,6 +31,14 @@ typedef struct {
  * its status in the result and NaN measures; that is not an error of the run. Returns result->status. */
 hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace,
                       hf_form_result *result);
+
+/* The parts of hf_evaluate around the solver. prepare: laws, targets and first force densities of a design into the
+ * workspace. judge: caps, and NaN measures for what is infeasible; returns result->status. */
+void hf_evaluate_prepare(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace);
+hf_status hf_evaluate_judge(const hf_evaluator *evaluator, hf_form_result *result);
+
+/* L* of a boundary cable: the prescribed length where there is one, else the theoretical one, m. */
+double hf_evaluate_design_length_m(const hf_model *model, int i_cable);
 
 #ifdef __cplusplus
 }

@@ -39,6 +39,10 @@ typedef struct {
     double inner_tension_ratio; /* max T / min T; NaN without positive tensions */
     double boundary_tension_ratio;
     double shortest_length_ratio; /* min l / theoretical l over all cables */
+    double position_error_m;      /* estimate: largest move of a node in the Newton step that would follow */
+    double condition;             /* estimate for the Newton matrix; INFINITY when it is singular */
+    double backward_error;        /* residual_N over the largest sum of tensions at a node; the three are NaN unless
+                                       hf_newton_certify was asked */
     int n_slack;
     int n_loaded_chain; /* straight chains under lateral load: tensions there mean nothing */
 } hf_form_result;
@@ -56,6 +60,12 @@ void hf_form_prepare(const hf_model *model, hf_workspace *workspace);
  * `settings` gives tolerances and bounds only. history may be NULL. Returns result->status; never allocates. */
 hf_status hf_form_find(const hf_model *model, const hf_form_settings *settings, int stop, hf_workspace *workspace,
                        hf_history *history, hf_form_result *result);
+
+/* Measure the shape that the workspace holds (position_m, law, target; q_N_per_m for cables under law length): lengths,
+ * tensions by law, residual, all measures of the result. No solve: iterations is 0, the stopping reason RESIDUAL when the
+ * residual is within the tolerance, else the status is HF_NOT_CONVERGED. Returns result->status. */
+hf_status hf_form_measure(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
+                          hf_form_result *result);
 
 /* Is straight chain i under lateral load in the workspace's shape? For naming it. */
 int hf_form_chain_is_loaded(const hf_model *model, hf_workspace *workspace, int i_chain);

@@ -19,6 +19,7 @@ typedef struct {
     int half_bandwidth; /* of D: columns below the diagonal */
     int n_band;         /* n_free * (half_bandwidth + 1); one spare place behind it takes what supports would add */
     int has_strut;      /* some force density is negative: D may be indefinite */
+    int has_newton;     /* workspaces hold a Newton matrix: some law iterates, and the energy is convex (no strut) */
     double pretension_N;
     double reference_N; /* what residuals are relative to: the largest tension that a law gives, else the pretension */
 

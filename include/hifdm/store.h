@@ -20,7 +20,8 @@
  *                best_individual, best_psi_m, mean_psi_m, worst_psi_m, n_infeasible [g];
  *                gene_cable (index into /scene/cable), gene_group, lower_N, upper_N [k]
  *                attributes: the members of hf_summary after has_optimize, those of hf_summary.best as best_...
- *   /ga/best     as /form, and design_N [k] */
+ *   /ga/best     as /form, and design_N [k]
+ *   /polish      the same, of Levenberg-Marquardt; attributes: the members of hf_summary.polish and polish_... */
 #ifndef HIFDM_STORE_H
 #define HIFDM_STORE_H
 
@@ -34,6 +35,11 @@ extern "C" {
 #endif
 
 typedef struct hf_store hf_store;
+
+/* The stages that leave a shape. */
+typedef enum { HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, HF_STAGE_NONE } hf_stage;
+extern const char *const hf_stage_word[4];  /* "form", "optimize", "polish", "none" */
+extern const char *const hf_stage_group[4]; /* where a file keeps the shape: "/form", "/ga/best", "/polish", "/" */
 
 /* Begin the file of a new run. Whether it can get the name `path` is looked at now: HF_EXISTS when that is taken and
  * not `force`, HF_IO when it is a folder or its folder is not there or not writable, or when the file cannot be made,
@@ -52,9 +58,9 @@ hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspa
 /* Append the generation that hf_ga_tell has just ranked. The first call also writes bounds and gene cables. */
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages);
 
-/* Shape of the workspace as that of the best individual, whose genes are design_N [model->n_gene]. Once per store. */
-hf_status hf_store_best(hf_store *store, const hf_model *model, const hf_workspace *workspace, const double *design_N,
-                        hf_messages *messages);
+/* Shape of the workspace as the one that an optimisation stage found, with its design_N [model->n_gene]. Once per stage. */
+hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
+                        const double *design_N, hf_messages *messages);
 
 /* Write the summary, close, and give the file its name. Frees the store in any case; after a failure nothing is left
  * at `path` that was not there before. HF_EXISTS, HF_IO: when the file is whole but cannot get its name, it stays under
@@ -84,9 +90,8 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
 /* The scene without its line numbers. Free it with hf_scene_free in any case. */
 hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages);
 
-/* of_best: the best individual's shape (HF_IO when the run had none), else the form-finding's. Its counts are those of
- * the scene in the same file. Free it with hf_shape_free in any case. */
-hf_status hf_store_read_shape(const char *path, int of_best, hf_shape *shape, hf_messages *messages);
+/* The shape that a stage left; HF_IO when it left none. Its counts are those of hf_store_read_scene. */
+hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
 void hf_shape_free(hf_shape *shape);
 
 /* "VERSION (git describe)" of this library. */

@@ -23,6 +23,14 @@ typedef struct {
     hf_form_result form;
     double form_wall_s;
 
+    int solver; /* hf_solver that the individuals were given */
+
+    int has_polish;       /* Levenberg-Marquardt ran */
+    int polish_is_result; /* optimize.method asked for it: its design is the result, not only a yardstick */
+    hf_form_result polish;
+    int polish_iterations, polish_evaluations, polish_converged;
+    double polish_wall_s;
+
     int has_optimize;
     hf_form_result best; /* of the best individual; status HF_NOT_EVALUATED when none was feasible */
     int best_generation, best_individual;

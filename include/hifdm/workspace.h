@@ -11,6 +11,8 @@ extern "C" {
 
 /* X(type, name, number of items for a model m, unit, meaning). The solver of a net with struts needs a general band
  * matrix and pivots; other nets have none. */
+#define HF_NEWTON_DOFS(m) ((m)->has_newton ? 3 * (size_t)(m)->n_free : 0)
+
 #define HF_WORKSPACE_FIELDS(X)                                                                                         \
     X(double, position_m, 3 * (size_t)m->n_node, "m", "[3][n_node] by row, supports included")                         \
     X(double, band, (size_t)m->n_band + 1, "N/m", "lower band of D, then its Cholesky factor; one spare place")        \
@@ -22,6 +24,13 @@ extern "C" {
     X(double, force_N, 3 * (size_t)m->n_node, "N", "[3][n_node] nodal forces")                                         \
     X(double, general_band, m->has_strut ? (size_t)m->n_free *(3 * (size_t)m->half_bandwidth + 1) : 0, "N/m",          \
       "struts")                                                                                                        \
+    X(double, newton_band, HF_NEWTON_DOFS(m) * (3 * (size_t)m->half_bandwidth + 3), "N/m", "lower band, then factor")  \
+    X(double, newton_force_N, HF_NEWTON_DOFS(m), "N", "[3 n_free] by dof 3*row + c")                                   \
+    X(double, newton_step, HF_NEWTON_DOFS(m), "m", "[3 n_free] by dof")                                                \
+    X(double, newton_trial_m, m->has_newton ? 3 * (size_t)m->n_node : 0, "m", "[3][n_node] by row")                    \
+    X(double, newton_trial_tension_N, m->has_newton ? (size_t)m->n_cable : 0, "N", "[n_cable]")                        \
+    X(double, newton_work, 3 * HF_NEWTON_DOFS(m), "", "for the condition estimate")                                    \
+    X(int, newton_integer_work, HF_NEWTON_DOFS(m), "", "for the condition estimate")                                   \
     X(int, pivot, m->has_strut ? (size_t)m->n_free : 0, "", "struts")
 
 typedef struct {

@@ -126,7 +126,7 @@ START_TEST(what_cannot_be_exported_is_told)
     HIFDM(2, "export", form_only);
     ERR("error: 'hifdm export' needs --csv DIR\n");
     HIFDM(2, "export", form_only, "--csv", csv, "--stage", "best");
-    ERR("error: --stage must be form or optimize, not 'best'\n");
+    ERR("error: --stage must be form, optimize or polish, not 'best'\n");
     HIFDM(5, "export", temp("missing.h5"), "--csv", csv);
     ERR("missing.h5: cannot open: No such file or directory");
     HIFDM(5, "export", REFLECTOR, "--csv", csv);

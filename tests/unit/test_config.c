@@ -40,7 +40,7 @@ START_TEST(defaults_hold_where_nothing_is_said)
     ck_assert_int_eq(c.cylinder.modules[1], 3);
     ck_assert_int_eq(c.cylinder.cells_per_module[0], 4);
     ck_assert_int_eq(c.cylinder.supports, HF_SUPPORTS_MODULE_CORNERS);
-    ck_assert_int_eq(c.form.method, HF_METHOD_HIFDM);
+    ck_assert_int_eq(c.form.method, HF_METHOD_AUTO);
     ck_assert_int_eq(c.form.stop, HF_STOP_RESIDUAL); /* METHOD section 3 */
     ck_assert_double_eq(c.form.pretension_N, 10);
     ck_assert_int_eq(c.optimize.population, 50); /* METHOD section 5 */

@@ -164,7 +164,7 @@ static const struct {
     {"del f['scene/node/role']; f['scene'].create_dataset('node/role', (10**12,), 'i1', chunks=(10,))", 3, "too large"},
     {"d = f['form/tension_N'][:]; del f['form/tension_N']; f['form/tension_N'] = d[1:]", 1, "other dimensions"},
     {"d = f['form/tension_N'][:]; del f['form/tension_N']; f['form/tension_N'] = d.astype(int)", 1, "another type"},
-    {"del f['ga/best']", 1, "no best individual"},
+    {"del f['ga/best']", 1, "has no optimize shape"},
     {"del f['scene']", 3, "/scene"},
     {"del f['form']; f['form'] = 1", 2, "/form"},
 };
@@ -278,7 +278,7 @@ START_TEST(failed_allocations_are_told)
             if (later != HF_OK && later != status) status = HF_BAD_USAGE; /* a failure is not forgotten */
         }
         if (status == HF_OK) status = hf_store_read_scene(path, &scene, &messages);
-        if (status == HF_OK) status = hf_store_read_shape(path, 0, &shape, &messages);
+        if (status == HF_OK) status = hf_store_read_shape(path, HF_STAGE_FORM, &shape, &messages);
         int was_reached = end_allocation_failure();
         ck_assert_int_eq(status, was_reached ? HF_NO_MEMORY : HF_OK);
         ck_assert_int_eq(messages.n_error > 0, was_reached);

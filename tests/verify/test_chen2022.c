@@ -92,7 +92,7 @@ START_TEST(search_comes_near_the_optimum)
     for (int k = 0; k < m->n_gene; k++)
         base_N[k] = net.work.tension_N[m->gene_cable[k]];
     const hf_optimize_settings *o = &net.settings.optimize;
-    hf_evaluator evaluator = {m, &net.form, start_q, o->rule, o->boundary_ratio_cap};
+    hf_evaluator evaluator = {m, &net.form, start_q, o->rule, o->solver, o->boundary_ratio_cap};
     ck_assert_int_eq(hf_batch_create(&evaluator, 2, &batch), HF_OK);
     ck_assert_int_eq(hf_ga_create(o, m, base_N, &ga), HF_OK);
     do {

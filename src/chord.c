@@ -1,0 +1,226 @@
+/* Contents: choice of instruction set - shared matrix - lanes - one lane's life - the run */
+#include "chord.h"
+
+#include "arena.h"
+#include "chord_kernel.h"
+#include "newton.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ITERATIONS_MAX 60
+#define PATIENCE 3      /* steps before contraction is asked for */
+#define CONTRACTION 0.7 /* a residual must fall at least by this factor per step */
+
+/* ---- choice of instruction set ---- */
+
+typedef struct {
+    void (*forces)(const hf_chord *, const hf_chord_lanes *, double *);
+    void (*solve)(const hf_chord *, const hf_chord_lanes *);
+    void (*step)(const hf_chord *, const hf_chord_lanes *);
+} kernels;
+
+static const kernels *choose_kernels(void)
+{
+#define TABLE(isa)                                                                                                     \
+    {                                                                                                                  \
+        hf_chord_forces_##isa, hf_chord_solve_##isa, hf_chord_step_##isa                                               \
+    }
+    static const kernels portable = TABLE(portable), avx2 = TABLE(avx2), avx512 = TABLE(avx512);
+#undef TABLE
+    if (__builtin_cpu_supports("avx512f")) return &avx512;
+    return __builtin_cpu_supports("avx2") ? &avx2 : &portable;
+}
+
+/* ---- shared matrix ---- */
+
+int hf_chord_applies(const hf_evaluator *v)
+{
+    const hf_model *m = v->model;
+    if (!m->has_newton || v->rule == HF_RULE_SEEDED || m->n_gene == 0) return 0;
+    int n_length = 0;
+    for (int e = 0; e < m->n_cable; e++)
+        n_length += m->law[e] == HF_LAW_LENGTH;
+    for (int k = 0; k < m->n_gene; k++)
+        n_length -= m->law[m->gene_cable[k]] == HF_LAW_LENGTH;
+    for (int e = 0; e < m->n_cable; e++) /* between two supports it moves nothing */
+        if (m->law[e] == HF_LAW_LENGTH && m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free)
+            n_length--;
+    return n_length == 0;
+}
+
+static void lay_out(hf_arena *a, hf_chord *c)
+{
+    const hf_model *m = c->evaluator->model;
+    size_t n = (size_t)c->n_dof + 4, w = (size_t)c->width; /* rows are read four at a time */
+    c->row = hf_arena_take(a, n * w, sizeof(double));
+    c->column = hf_arena_take(a, n * w, sizeof(double));
+    c->inverse_diagonal = hf_arena_take(a, n, sizeof(double));
+    c->base_m = hf_arena_take(a, 3 * (size_t)m->n_node, sizeof(double));
+    c->gene_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
+}
+
+static void pack(const hf_workspace *w, hf_chord *c, int half_bandwidth)
+{
+    size_t ld = (size_t)half_bandwidth + 1, width = (size_t)c->width;
+    for (size_t j = 0; j < (size_t)c->n_dof; j++) {
+        c->inverse_diagonal[j] = 1 / w->newton_band[j * ld];
+        for (size_t d = 1; d < ld && j + d < (size_t)c->n_dof; d++) {
+            double value = w->newton_band[d + j * ld];
+            c->column[j * width + d - 1] = value;
+            c->row[(j + d) * width + width - d] = value;
+        }
+    }
+}
+
+hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_workspace *w, hf_chord *chord)
+{
+    const hf_model *m = v->model;
+    int half_bandwidth = 3 * m->half_bandwidth + 2;
+    hf_form_result base;
+    *chord = (hf_chord){.evaluator = v, .n_dof = 3 * m->n_free, .width = (half_bandwidth + 3) / 4 * 4};
+    HF_TRY(hf_evaluate(v, base_N, w, &base));
+    HF_TRY(hf_newton_factor(m, w, NULL));
+    hf_arena arena = {0};
+    lay_out(&arena, chord);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out(&arena, chord);
+    chord->block = arena.block;
+    pack(w, chord, half_bandwidth);
+    memcpy(chord->base_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    for (int e = 0; e < m->n_cable; e++)
+        chord->gene_of_cable[e] = -1;
+    for (int k = 0; k < m->n_gene; k++)
+        chord->gene_of_cable[m->gene_cable[k]] = k;
+    return HF_OK;
+}
+
+void hf_chord_free(hf_chord *chord)
+{
+    free(chord->block);
+    *chord = (hf_chord){0};
+}
+
+/* ---- lanes ---- */
+
+static void lay_out_lanes(hf_arena *a, const hf_chord *c, hf_chord_lanes *l)
+{
+    const hf_model *m = c->evaluator->model;
+    l->x_m = hf_arena_take(a, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
+    l->force_N = hf_arena_take(a, ((size_t)c->n_dof + 2 * (size_t)c->width + 8) * HF_LANES, sizeof(double));
+    l->gene = hf_arena_take(a, (size_t)m->n_gene * HF_LANES, sizeof(double));
+}
+
+hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes)
+{
+    *lanes = (hf_chord_lanes){0};
+    hf_arena arena = {0};
+    lay_out_lanes(&arena, chord, lanes);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out_lanes(&arena, chord, lanes);
+    lanes->block = arena.block;
+    return HF_OK;
+}
+
+void hf_chord_lanes_free(hf_chord_lanes *lanes)
+{
+    free(lanes->block);
+    *lanes = (hf_chord_lanes){0};
+}
+
+/* ---- one lane's life ---- */
+
+typedef struct {
+    int design[HF_LANES]; /* -1 = empty */
+    int steps[HF_LANES];
+    double residual_N[HF_LANES];
+} lives;
+
+static void load(const hf_chord *c, hf_chord_lanes *l, int lane, const double *design_N)
+{
+    const hf_model *m = c->evaluator->model;
+    for (int i = 0; i < 3 * m->n_node; i++)
+        l->x_m[(size_t)i * HF_LANES + (size_t)lane] = c->base_m[i];
+    for (int k = 0; k < m->n_gene; k++) {
+        double value = design_N[k];
+        if (c->evaluator->rule == HF_RULE_FORCE_DENSITY) value /= hf_evaluate_design_length_m(m, m->gene_cable[k]);
+        l->gene[(size_t)k * HF_LANES + (size_t)lane] = value;
+    }
+}
+
+/* The lane's shape into the workspace, and from there into a result, by the scalar code. */
+static void unload(const hf_chord *c, const hf_chord_lanes *l, int lane, hf_workspace *w, const double *design_N,
+                   int steps, hf_form_result *result)
+{
+    const hf_model *m = c->evaluator->model;
+    hf_evaluate_prepare(c->evaluator, design_N, w);
+    for (int i = 0; i < 3 * m->n_node; i++)
+        w->position_m[i] = l->x_m[(size_t)i * HF_LANES + (size_t)lane];
+    hf_form_measure(m, c->evaluator->form, w, result);
+    result->iterations = steps;
+    hf_evaluate_judge(c->evaluator, result);
+}
+
+/* ---- the run ---- */
+
+/* After the forces of a pass: converged, hopeless, or one more step? Returns 1 when the lane has become free. */
+static int settle(const hf_chord *c, hf_chord_lanes *l, int lane, lives *now, double residual_N, hf_workspace *w,
+                  const double *design_N, hf_form_result *result)
+{
+    const hf_model *m = c->evaluator->model;
+    const double *design = design_N + (size_t)now->design[lane] * (size_t)m->n_gene;
+    hf_form_result *r = result + now->design[lane];
+    if (residual_N <= c->evaluator->form->residual_tolerance * m->reference_N) {
+        unload(c, l, lane, w, design, now->steps[lane], r);
+        return 1;
+    }
+    int contracts = now->steps[lane] < PATIENCE || residual_N < CONTRACTION * now->residual_N[lane];
+    if (contracts && isfinite(residual_N) && now->steps[lane] < ITERATIONS_MAX) {
+        now->residual_N[lane] = residual_N;
+        now->steps[lane]++;
+        return 0;
+    }
+    hf_evaluate(c->evaluator, design, w, r);
+    return 1;
+}
+
+void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, int (*next)(void *context),
+                  void *context, const double *design_N, hf_form_result *result)
+{
+    const kernels *k = choose_kernels();
+    size_t n_gene = (size_t)chord->evaluator->model->n_gene;
+    double residual_squared[HF_LANES], reference_N = chord->evaluator->model->reference_N;
+    lives now;
+    int n_busy = 0, more = 1;
+    for (int lane = 0; lane < HF_LANES; lane++) {
+        now.design[lane] = -1;
+        load(chord, lanes, lane, design_N); /* an empty lane works on something harmless */
+    }
+    for (;;) {
+        for (int lane = 0; lane < HF_LANES && more; lane++) {
+            if (now.design[lane] >= 0) continue;
+            int i = next(context);
+            more = i >= 0;
+            if (!more) break;
+            now.design[lane] = i;
+            now.steps[lane] = 0;
+            now.residual_N[lane] = INFINITY;
+            load(chord, lanes, lane, design_N + (size_t)i * n_gene);
+            n_busy++;
+        }
+        if (n_busy == 0) return;
+        k->forces(chord, lanes, residual_squared);
+        for (int lane = 0; lane < HF_LANES; lane++) {
+            if (now.design[lane] < 0) continue;
+            if (!settle(chord, lanes, lane, &now, reference_N * sqrt(residual_squared[lane]), workspace, design_N,
+                        result))
+                continue;
+            now.design[lane] = -1;
+            n_busy--;
+        }
+        if (n_busy == 0 && !more) return;
+        k->solve(chord, lanes);
+        k->step(chord, lanes);
+    }
+}

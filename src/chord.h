@@ -1,0 +1,49 @@
+/* chord - a population near one shape: Newton steps with one matrix, factored once and shared read-only by all threads,
+ * eight designs to a triangular solve (one per SIMD lane).
+ *
+ * A design converges when its own nodal forces vanish; the shared matrix only decides how fast. Each result is measured
+ * again by the scalar code of formfind. A design that does not contract is evaluated by hf_evaluate on its own.
+ * Lanes never touch each other: a result does not depend on which designs share a pass, or on the thread. */
+#ifndef HIFDM_CHORD_H
+#define HIFDM_CHORD_H
+
+#include <hifdm/evaluate.h>
+
+#define HF_LANES 8
+
+/* Shared, constant. Arrays packed for the solve; see chord_kernel.h. */
+typedef struct hf_chord {
+    const hf_evaluator *evaluator;
+    int n_dof, width;         /* rows of the matrix; entries of a packed row, a multiple of 4 */
+    double *row, *column;     /* [n_dof][width] factor by rows (forward) and by columns (backward) */
+    double *inverse_diagonal; /* [n_dof] */
+    double *base_m;           /* [3][n_node] shape the lanes start from */
+    int *gene_of_cable;       /* [n_cable] or -1 */
+    void *block;
+} hf_chord;
+
+/* Scratch of one thread. */
+typedef struct {
+    double *x_m;     /* [3][n_node][HF_LANES] */
+    double *force_N; /* [n_pad + n_dof + n_pad][HF_LANES], zero rows around for the solve */
+    double *gene;    /* [n_gene][HF_LANES] q (N/m) or T (N) by rule */
+    void *block;
+} hf_chord_lanes;
+
+/* Can this rule be served? No cable may be left under law length, and the energy must be convex. */
+int hf_chord_applies(const hf_evaluator *evaluator);
+
+/* Factor at the base design. HF_OK; HF_NO_MEMORY; any other status: the base design has no shape, or no matrix, to share.
+ * workspace is scratch. Free in any case. */
+hf_status hf_chord_create(const hf_evaluator *evaluator, const double *base_N, hf_workspace *workspace,
+                          hf_chord *chord);
+void hf_chord_free(hf_chord *chord);
+
+hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes);
+void hf_chord_lanes_free(hf_chord_lanes *lanes);
+
+/* Evaluate the designs whose indices `next(context)` hands out, until it returns -1. design_N [][n_gene], result []. */
+void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, int (*next)(void *context),
+                  void *context, const double *design_N, hf_form_result *result);
+
+#endif

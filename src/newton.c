@@ -1,0 +1,282 @@
+/* Contents: forces - matrix - one step - Newton from a shape - the alternation - certificate */
+#include "newton.h"
+
+#include "band.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Stiffness of a length-controlled cable over its tension per length. The larger, the nearer to a hard constraint; the
+ * forces never contain it, so it costs no accuracy in the residual. */
+#define STIFFENING 1e6
+#define FIRST_BLOCK 30       /* fixed-point iterations before Newton is tried; doubled after each failure */
+#define STEPS_MAX 30         /* Newton steps per try */
+#define HALVINGS_MAX 6       /* of one step */
+#define TENSION_KEPT 0.1     /* a step leaves at least this part of a multiplier */
+#define DIAGONAL_GUARD 1e-14 /* Levenberg shift, relative to the largest diagonal, that is always there */
+#define SHIFT_FIRST 1e-10    /* the first one after a failed factorisation */
+
+static int dofs(const hf_model *m)
+{
+    return 3 * m->n_free;
+}
+
+static int half_bandwidth(const hf_model *m)
+{
+    return 3 * m->half_bandwidth + 2;
+}
+
+/* ---- forces ---- */
+
+/* Length and unit vector of cable e at the shape x [3][n_node]. */
+static double direction(const hf_model *m, const double *x, int e, double u[3])
+{
+    int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+    for (int c = 0; c < 3; c++)
+        u[c] = x[c * m->n_node + b] - x[c * m->n_node + a];
+    double length = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+    for (int c = 0; c < 3; c++)
+        u[c] /= length;
+    return length;
+}
+
+/* Tension by law; T is the present multiplier of a length-controlled cable. */
+static double law_tension(const hf_workspace *w, int e, double length, double T)
+{
+    if (w->law[e] == HF_LAW_TENSION) return w->target[e];
+    return w->law[e] == HF_LAW_FORCE_DENSITY ? w->target[e] * length : T;
+}
+
+typedef struct {
+    double residual_N; /* largest nodal force */
+    double length_gap; /* largest length error, weighted by the pull of a cable that is too short */
+    double merit;      /* what a step must lower: squares of forces over the reference tension, and of length errors */
+} imbalance;
+
+/* Nodal forces out of balance into force [3*row + c]: minus the gradient of Pi. */
+static imbalance measure(const hf_model *m, const hf_workspace *w, const double *position_m, const double *T,
+                         double *force)
+{
+    imbalance result = {0};
+    double u[3], sum = 0, largest = 0, scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
+    for (int i = 0; i < m->n_free; i++)
+        for (int c = 0; c < 3; c++)
+            force[3 * i + c] = m->load_N ? m->load_N[c * m->n_node + i] : 0;
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        double length = direction(m, position_m, e, u), tension = law_tension(w, e, length, T[e]);
+        for (int c = 0; c < 3; c++) {
+            if (a < m->n_free) force[3 * a + c] += tension * u[c];
+            if (b < m->n_free) force[3 * b + c] -= tension * u[c];
+        }
+        if (w->law[e] != HF_LAW_LENGTH) continue;
+        double gap = length / w->target[e] - 1;
+        if (gap < 0) gap *= fmin(1, tension / m->reference_N);
+        result.length_gap = fmax(result.length_gap, fabs(gap));
+        result.merit += gap * gap;
+    }
+    for (int i = 0; i < m->n_free; i++) {
+        double x = scale * force[3 * i], y = scale * force[3 * i + 1], z = scale * force[3 * i + 2];
+        double square = x * x + y * y + z * z;
+        largest = fmax(largest, square);
+        sum += square;
+    }
+    result.residual_N = sqrt(largest) * m->reference_N;
+    result.merit += sum;
+    return result;
+}
+
+/* ---- matrix ---- */
+
+static double axial_stiffness(const hf_workspace *w, int e, double T)
+{
+    if (w->law[e] == HF_LAW_FORCE_DENSITY) return w->target[e];
+    return w->law[e] == HF_LAW_LENGTH ? STIFFENING * T / w->target[e] : 0;
+}
+
+/* The matrix at position_m, tension_N into newton_band; returns the largest diagonal entry. */
+static double assemble(const hf_model *m, hf_workspace *w)
+{
+    int column = half_bandwidth(m) + 1;
+    double *band = w->newton_band, u[3], largest = 0;
+    memset(band, 0, (size_t)dofs(m) * (size_t)column * sizeof *band);
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], low = a < b ? a : b, high = a < b ? b : a;
+        double length = direction(m, w->position_m, e, u), tension = law_tension(w, e, length, w->tension_N[e]);
+        double across = tension / length, along = axial_stiffness(w, e, tension) - across;
+        if (low >= m->n_free) continue;
+        for (int c = 0; c < 3; c++)
+            for (int r = 0; r < 3; r++) {
+                double k = along * u[r] * u[c] + (r == c ? across : 0);
+                double *diagonal = band + (r - c) + (size_t)(3 * low + c) * (size_t)column;
+                if (r >= c) *diagonal += k;
+                if (high >= m->n_free) continue;
+                if (r >= c) diagonal[(size_t)(3 * (high - low)) * (size_t)column] += k;
+                diagonal[3 * (high - low)] -= k;
+            }
+    }
+    for (int i = 0; i < dofs(m); i++)
+        largest = fmax(largest, band[(size_t)i * (size_t)column]);
+    return largest;
+}
+
+static void shift_diagonal(const hf_model *m, hf_workspace *w, double shift)
+{
+    size_t column = (size_t)half_bandwidth(m) + 1;
+    for (size_t i = 0; i < (size_t)dofs(m); i++)
+        w->newton_band[i * column] += shift;
+}
+
+hf_status hf_newton_factor(const hf_model *m, hf_workspace *w, double *condition)
+{
+    int n = dofs(m), k = half_bandwidth(m);
+    double shift = DIAGONAL_GUARD;
+    for (;; shift = shift < SHIFT_FIRST ? SHIFT_FIRST : 100 * shift) {
+        double largest = assemble(m, w);
+        if (!(isfinite(largest) && largest > 0) || shift > 1) return HF_SINGULAR;
+        shift_diagonal(m, w, shift * largest);
+        double norm = condition ? hf_band_norm(n, k, w->newton_band, w->newton_work) : 0;
+        if (hf_band_factor(n, k, w->newton_band) != 0) continue;
+        if (condition)
+            *condition = hf_band_condition(n, k, w->newton_band, norm, w->newton_work, w->newton_integer_work);
+        if (condition && shift > DIAGONAL_GUARD) *condition = INFINITY;
+        return HF_OK;
+    }
+}
+
+/* ---- one step ---- */
+
+/* Right-hand side with the tension steps eliminated: force plus k (l - L*) u of every length-controlled cable. */
+static void right_hand_side(const hf_model *m, const hf_workspace *w, const double *force, double *rhs)
+{
+    double u[3];
+    memcpy(rhs, force, (size_t)dofs(m) * sizeof *rhs);
+    for (int e = 0; e < m->n_cable; e++) {
+        if (w->law[e] != HF_LAW_LENGTH) continue;
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        double length = direction(m, w->position_m, e, u);
+        double pull = axial_stiffness(w, e, w->tension_N[e]) * (length - w->target[e]);
+        for (int c = 0; c < 3; c++) {
+            if (a < m->n_free) rhs[3 * a + c] += pull * u[c];
+            if (b < m->n_free) rhs[3 * b + c] -= pull * u[c];
+        }
+    }
+}
+
+/* Shape and multipliers after `part` of the step, into newton_trial_m and newton_trial_tension_N. */
+static void try_step(const hf_model *m, hf_workspace *w, double part)
+{
+    const double *step = w->newton_step;
+    double u[3];
+    memcpy(w->newton_trial_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(w->newton_trial_tension_N, w->tension_N, (size_t)m->n_cable * sizeof(double));
+    for (int i = 0; i < m->n_free; i++)
+        for (int c = 0; c < 3; c++)
+            w->newton_trial_m[c * m->n_node + i] += part * step[3 * i + c];
+    for (int e = 0; e < m->n_cable; e++) {
+        if (w->law[e] != HF_LAW_LENGTH) continue;
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        double stretch = direction(m, w->position_m, e, u) - w->target[e], T = w->tension_N[e];
+        for (int c = 0; c < 3; c++) {
+            if (a < m->n_free) stretch -= u[c] * step[3 * a + c];
+            if (b < m->n_free) stretch += u[c] * step[3 * b + c];
+        }
+        w->newton_trial_tension_N[e] = fmax(T + part * axial_stiffness(w, e, T) * stretch, TENSION_KEPT * T);
+    }
+}
+
+/* ---- Newton from a shape ---- */
+
+static int is_balanced(const hf_model *m, const hf_form_settings *s, const imbalance *now)
+{
+    return now->residual_N <= s->residual_tolerance * m->reference_N && now->length_gap <= s->length_tolerance;
+}
+
+/* Newton steps from the workspace's shape and tensions while they help. On success q_N_per_m belongs to the new shape and
+ * 1 is returned; else q_N_per_m is as it was. *n_step counts. */
+static int newton_steps(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int *n_step)
+{
+    /* one more digit than asked for, so that the closing linear solve does not miss the tolerance by a hair */
+    hf_form_settings tight = *s;
+    tight.residual_tolerance = fmax(0.1 * s->residual_tolerance, 1e-13);
+    tight.length_tolerance = fmax(0.1 * s->length_tolerance, 1e-14);
+    imbalance now = measure(m, w, w->position_m, w->tension_N, w->newton_force_N), next = now;
+    double first_merit = now.merit, u[3];
+    for (int k = 0; k < STEPS_MAX && !is_balanced(m, &tight, &now); k++) {
+        if (hf_newton_factor(m, w, NULL) != HF_OK) break;
+        right_hand_side(m, w, w->newton_force_N, w->newton_step);
+        hf_band_back_solve(dofs(m), half_bandwidth(m), 1, w->newton_band, w->newton_step, dofs(m));
+        double part = 1;
+        int halvings = 0;
+        for (; halvings <= HALVINGS_MAX; halvings++, part /= 2) {
+            try_step(m, w, part);
+            next = measure(m, w, w->newton_trial_m, w->newton_trial_tension_N, w->newton_force_N);
+            if (next.merit < now.merit * (1 - 0.1 * part)) break; /* false for NaN */
+        }
+        ++*n_step;
+        if (halvings > HALVINGS_MAX) break; /* no progress: at the limit of rounding, or too far away */
+        memcpy(w->position_m, w->newton_trial_m, 3 * (size_t)m->n_node * sizeof(double));
+        memcpy(w->tension_N, w->newton_trial_tension_N, (size_t)m->n_cable * sizeof(double));
+        now = next;
+    }
+    if (!(now.merit < first_merit)) return 0;
+    for (int e = 0; e < m->n_cable; e++) {
+        double length = direction(m, w->position_m, e, u);
+        w->q_N_per_m[e] = law_tension(w, e, length, w->tension_N[e]) / length;
+    }
+    return 1;
+}
+
+/* ---- the alternation ---- */
+
+hf_status hf_newton_find(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
+                         hf_form_result *result)
+{
+    int n_done = 0, block = FIRST_BLOCK;
+    for (;;) {
+        hf_form_settings part = *s;
+        int left = s->max_iterations - n_done;
+        part.max_iterations = block < left ? block : left;
+        hf_form_find(m, &part, HF_STOP_RESIDUAL, w, history, result);
+        n_done += result->iterations;
+        if (result->status != HF_NOT_CONVERGED || n_done >= s->max_iterations) break;
+        int n_step = 0;
+        /* after a success a few linear solves measure the new shape; after a failure the fixed point goes on */
+        block = newton_steps(m, s, w, &n_step) ? FIRST_BLOCK : 2 * block;
+        n_done += n_step;
+    }
+    result->iterations = n_done;
+    return result->status;
+}
+
+/* ---- certificate ---- */
+
+/* Largest sum of tensions at one node: what a nodal residual is to be compared with. */
+static double largest_pull_N(const hf_model *m, const hf_workspace *w, double *pull)
+{
+    double largest = 0;
+    memset(pull, 0, (size_t)m->n_node * sizeof *pull);
+    for (int e = 0; e < m->n_cable; e++)
+        for (int k = 0; k < 2; k++)
+            pull[m->end_row[2 * e + k]] += fabs(w->tension_N[e]);
+    for (int i = 0; i < m->n_free; i++)
+        largest = fmax(largest, pull[i]);
+    return largest;
+}
+
+void hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
+{
+    r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) return;
+    r->backward_error = r->residual_N / largest_pull_N(m, w, w->newton_trial_m);
+    measure(m, w, w->position_m, w->tension_N, w->newton_force_N);
+    if (hf_newton_factor(m, w, &r->condition) != HF_OK) return;
+    right_hand_side(m, w, w->newton_force_N, w->newton_step);
+    hf_band_back_solve(dofs(m), half_bandwidth(m), 1, w->newton_band, w->newton_step, dofs(m));
+    double largest = 0;
+    for (int i = 0; i < m->n_free; i++) {
+        const double *d = w->newton_step + 3 * i;
+        largest = fmax(largest, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    }
+    r->position_error_m = sqrt(largest);
+}
