@@ -12,6 +12,9 @@
 #include <yaml.h>
 
 #define PATH_MAX_LENGTH 160 /* of a dotted key */
+#define CASE_MAX (1 << 20)  /* bytes of a case file */
+#define NESTING_MAX 100
+#define FAULT_MAX 100 /* faults that are spelled out */
 
 typedef struct {
     hf_case *c;
@@ -21,7 +24,7 @@ typedef struct {
     yaml_document_t *document;
     char *where_given; /* [n_field][64] "line:col", "--set" or "" */
     int walked;        /* the file was readable YAML: what is missing in it can be told */
-    int failed;
+    int failed, n_fault;
 } loader;
 
 #define WHERE_SIZE 64
@@ -31,6 +34,7 @@ typedef struct {
 static void complain(loader *l, yaml_mark_t mark, const char *path, const char *what, const char *detail)
 {
     l->failed = 1;
+    if (++l->n_fault > FAULT_MAX) return;
     if (l->is_override)
         hf_error(l->messages, HF_BAD_CASE, "--set %s: %s: %s%s", l->origin, path, what, detail);
     else
@@ -438,6 +442,20 @@ static void check_together(loader *l)
 
 /* ---- load ---- */
 
+/* The first line with more than NESTING_MAX brackets open at once, quoted ones included, or 0: libyaml takes minutes over
+ * thousands. */
+static int too_deep(const char *text)
+{
+    int depth = 0, line = 1;
+    for (; *text; text++) {
+        line += *text == '\n';
+        depth += *text == '[' || *text == '{';
+        depth -= depth > 0 && (*text == ']' || *text == '}');
+        if (depth > NESTING_MAX) return line;
+    }
+    return 0;
+}
+
 hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
                          hf_messages *messages)
 {
@@ -445,6 +463,11 @@ hf_status hf_config_load(const char *path, const char *const *overrides, int n_o
     if (snprintf(settings->path, sizeof settings->path, "%s", path) >= HF_PATH_SIZE)
         return hf_error(messages, HF_BAD_CASE, "%s: the path is too long", path);
     HF_TRY(hf_text_read_file(path, HF_BAD_CASE, &settings->text, &settings->text_length, messages));
+    if (settings->text_length > CASE_MAX)
+        return hf_error(messages, HF_BAD_CASE, "%s: longer than %d kB, so no case file", path, CASE_MAX >> 10);
+    if (too_deep(settings->text))
+        return hf_error(messages, HF_BAD_CASE, "%s:%d:1: YAML: more than %d brackets are open", path,
+                        too_deep(settings->text), NESTING_MAX);
     loader l = {.c = settings, .messages = messages, .origin = settings->path};
     l.where_given = calloc((size_t)hf_n_field, WHERE_SIZE);
     if (!l.where_given || seal(settings, overrides, n_override) != HF_OK) {
@@ -460,6 +483,7 @@ hf_status hf_config_load(const char *path, const char *const *overrides, int n_o
     for (int i = 0; i < n_override; i++)
         apply_override(&l, overrides[i]);
     check_together(&l);
+    if (l.n_fault > FAULT_MAX) hf_error(messages, HF_BAD_CASE, "%s: and %d more faults", path, l.n_fault - FAULT_MAX);
     free(l.where_given);
     return l.failed ? HF_BAD_CASE : HF_OK;
 }

@@ -13,6 +13,7 @@
 #define FIRST_CHAIN_CHECK 64
 #define CHAIN_LOAD_SETTLED 0.01 /* relative change of the load between two looks that counts as settled */
 #define BLOWN_UP 1e9            /* a cable this many times its theoretical length is no answer */
+#define GONE 1e-12              /* nor is one this short, whatever its law */
 #define CHAIN_LOAD_NONE 1e-6    /* lateral load below this part of the reference tension is none */
 
 const char *hf_stop_reason_word(int reason)
@@ -102,6 +103,11 @@ static void measure_cables(const hf_model *m, const hf_form_settings *s, hf_work
             r->culprit = e;
             return;
         }
+        if (part < (w->law[e] == HF_LAW_TENSION ? s->collapse_ratio : GONE) && w->law[e] != HF_LAW_LENGTH) {
+            r->status = HF_COLLAPSED;
+            r->culprit = e;
+            return;
+        }
         if (part > BLOWN_UP) { /* what rounding leaves of a singular matrix */
             r->status = HF_SINGULAR;
             r->culprit = a < b ? a : b;
@@ -109,11 +115,6 @@ static void measure_cables(const hf_model *m, const hf_form_settings *s, hf_work
         }
         if (part < shortest) shortest = part;
         if (w->law[e] == HF_LAW_TENSION) {
-            if (part < s->collapse_ratio) {
-                r->status = HF_COLLAPSED;
-                r->culprit = e;
-                return;
-            }
             r->tension_error = fmax(r->tension_error, fabs(tension / w->target[e] - 1));
         } else if (w->law[e] == HF_LAW_LENGTH) {
             double strain = length / w->target[e] - 1, pull = fmin(tension / m->reference_N, 1);
@@ -267,7 +268,9 @@ static int is_last(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         p->psi_before_m = r->psi_m;
     } else {
         int worst, looks = m->n_chain && r->iterations == p->next_chain_look;
-        if (r->residual_N <= s->residual_tolerance * m->reference_N && length_gap <= s->length_tolerance)
+        /* the forces balance at the tensions of the laws; the tensions of the last solve must be those, too */
+        if (r->residual_N <= s->residual_tolerance * m->reference_N && r->tension_error <= s->residual_tolerance &&
+            length_gap <= s->length_tolerance)
             r->stop_reason = HF_STOPPED_RESIDUAL;
         if (looks && r->stop_reason == HF_STOPPED_NONE) {
             double load = look_at_chains(m, w, r, &worst);

@@ -8,6 +8,7 @@
 #include <hifdm/store.h>
 
 #include <gsl/gsl_errno.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -68,6 +69,7 @@ int main(int argc, char **argv)
 {
     hf_options options;
     hf_messages messages = {0};
+    signal(SIGXFSZ, SIG_IGN); /* a file that may not grow is an error of writing, with words */
     gsl_set_error_handler_off();
     hf_store_quiet();
     hf_band_single_threaded(); /* its own threads would change bits, and only get in the way of ours */

@@ -56,12 +56,17 @@ static void print_plan(const plan *p, FILE *f)
 
 static void print_memory(const plan *p, int threads, FILE *f)
 {
-    char workspace[32], population[32];
+    char workspace[32], population[32], result[32];
     size_t n_individual = p->settings.has_optimize ? (size_t)p->settings.optimize.population : 0;
     hf_print_bytes((double)hf_workspace_bytes(&p->model) * (p->settings.has_optimize ? threads + 1 : 1), workspace,
                    sizeof workspace);
     hf_print_bytes((double)n_individual * 2 * ((double)p->model.n_gene * sizeof(double) + sizeof(hf_form_result)),
                    population, sizeof population);
+    if (n_individual && p->model.n_gene) {
+        hf_print_bytes((double)n_individual * (8.0 * p->model.n_gene + 70) * p->settings.optimize.generations, result,
+                       sizeof result);
+        fprintf(f, "  result file   at most %s of generations\n", result);
+    }
     fprintf(f, "  memory        %s of workspaces (%d thread%s), %s of population\n", workspace, threads,
             threads == 1 ? "" : "s", population);
 }

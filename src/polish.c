@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define START_INSIDE 0.9   /* of the half range: at a bound itself the change of variable has no slope */
+#define START_INSIDE 0.9    /* of the half range: at a bound itself the change of variable has no slope */
 #define STEP_TOLERANCE 1e-9 /* relative, of the variables */
 #define PSI_TOLERANCE 1e-14 /* relative change of psi^2 */
 #define INFEASIBLE 1e3      /* residual (m) of a design without a shape: any step to it is refused */

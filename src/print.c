@@ -58,8 +58,11 @@ static void print_optimize(const hf_summary *s, FILE *f)
         fprintf(f, "  optimisation  no feasible design in %ld evaluations, %s\n", s->evaluations, wall);
         return;
     }
-    fprintf(f, "  optimisation  psi %.4f mm, %.2f %% below form-finding; best found in generation %d\n",
-            s->best.psi_m * 1e3, 100 * (1 - s->best.psi_m / s->form.psi_m), s->best_generation);
+    fprintf(f, "  optimisation  psi %.4f mm", s->best.psi_m * 1e3);
+    if (isfinite(s->base_psi_m)) /* the same rule, so that only the tensions differ */
+        fprintf(f, ", %.2f %% below the %.4f mm of the form-finding's tensions",
+                100 * (1 - s->best.psi_m / s->base_psi_m), s->base_psi_m * 1e3);
+    fprintf(f, "; found in generation %d\n", s->best_generation);
     print_result(&s->best, f);
     fprintf(f, "                %d generations, %ld evaluations (%ld infeasible) by %s, stopped by %s\n",
             s->generations, s->evaluations, s->infeasible, hf_solver_word[s->solver],

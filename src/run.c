@@ -3,6 +3,7 @@
 #include "run.h"
 
 #include "print.h"
+#include "text.h"
 #include "polish.h"
 #include <hifdm/batch.h>
 #include <hifdm/metrics.h>
@@ -87,8 +88,8 @@ static void name_loaded_chains(const hf_scene *scene, const hf_model *m, hf_work
     }
 }
 
-static void warn(const hf_scene *scene, const hf_model *m, const hf_form_settings *form, hf_workspace *w,
-                 const hf_form_result *r, hf_messages *messages)
+static void warn(const char *stage, const hf_scene *scene, const hf_model *m, const hf_form_settings *form,
+                 hf_workspace *w, const hf_form_result *r, hf_messages *messages)
 {
     name_list chains = {0}, slack = {0};
     if (r->stop_reason == HF_STOPPED_RMS_CHANGE && r->residual_N > form->residual_tolerance * m->reference_N)
@@ -106,7 +107,7 @@ static void warn(const hf_scene *scene, const hf_model *m, const hf_form_setting
     }
     for (int e = 0; r->n_slack && e < m->n_cable; e++)
         if (hf_metrics_is_slack(m, w, e)) add_name(&slack, scene->cable_id[e]);
-    if (r->n_slack) hf_warning(messages, "%d slack cables: %s", r->n_slack, close_names(&slack));
+    if (r->n_slack) hf_warning(messages, "slack in the %s shape, %d: %s", stage, r->n_slack, close_names(&slack));
 }
 
 hf_status hf_run_explain(const hf_scene *scene, const hf_model *m, const hf_form_settings *form, hf_workspace *w,
@@ -115,10 +116,10 @@ hf_status hf_run_explain(const hf_scene *scene, const hf_model *m, const hf_form
     name_list chains = {0};
     switch (r->status) {
     case HF_OK:
-        warn(scene, m, form, w, r, messages);
+        warn("form-finding", scene, m, form, w, r, messages);
         return HF_OK;
     case HF_NOT_CONVERGED:
-        warn(scene, m, form, w, r, messages);
+        warn("form-finding", scene, m, form, w, r, messages);
         return hf_error(
             messages, r->status,
             "form-finding did not converge in %d iterations: nodal residual %.2e N, cable lengths off by up to "
@@ -229,7 +230,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     const double *design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
     hf_form_result again;
     hf_workspace *w = hf_batch_run_one(&r->batch, design, &again);
-    warn(&r->scene, &r->model, &r->settings.form, w, &s->best, messages);
+    warn("optimised", &r->scene, &r->model, &r->settings.form, w, &s->best, messages);
     return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->model, w, design, messages);
 }
 
@@ -238,17 +239,18 @@ static hf_status evolve(run *r, const hf_options *options, hf_summary *s, hf_mes
     int show_progress = !options->quiet && isatty(STDERR_FILENO);
     hf_ga *ga = &r->ga;
     double start_s = hf_run_clock_s();
-    s->has_optimize = 1;
-    s->best.status = HF_NOT_EVALUATED;
+    s->best.status = HF_NO_FEASIBLE;
     s->solver = hf_batch_share(&r->batch, r->base_N);
     do {
         hf_batch_run(&r->batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
         hf_ga_tell(ga);
         HF_TRY(hf_store_generation(r->store, &r->model, ga, messages));
+        if (ga->generation == 0) s->base_psi_m = ga->result[0].psi_m;
         note_best(ga, s);
         if (show_progress) hf_print_progress(ga, hf_run_clock_s() - start_s, stderr);
     } while (hf_ga_next(ga));
     if (show_progress) hf_print_progress_end(stderr);
+    s->has_optimize = 1; /* only now: a run that broke off has no such stage */
     s->optimize_wall_s = hf_run_clock_s() - start_s;
     s->optimize_cpu_s = r->batch.cpu_s;
     s->generations = ga->generation + 1;
@@ -256,8 +258,7 @@ static hf_status evolve(run *r, const hf_options *options, hf_summary *s, hf_mes
     s->infeasible = ga->n_evaluation_infeasible;
     s->optimize_stop = (int)ga->stop_reason;
     if (ga->best >= 0) return store_best(r, s, messages);
-    hf_warning(messages, "optimize: no feasible design among %ld evaluations", s->evaluations);
-    return HF_OK;
+    return hf_error(messages, HF_NO_FEASIBLE, "optimize: no feasible design among %ld evaluations", s->evaluations);
 }
 
 /* Levenberg-Marquardt from the best individual, or from the base design when there was no genetic algorithm. */
@@ -394,6 +395,12 @@ static hf_status stages(run *r, const hf_options *options, hf_summary *s, hf_mes
     return HF_OK;
 }
 
+/* The file of a run that did not reach its aim still says how far it came. */
+static int leaves_result(hf_status status)
+{
+    return status == HF_OK || status == HF_NOT_CONVERGED || status == HF_NO_FEASIBLE;
+}
+
 static hf_status execute(run *r, const hf_options *options, int argc, char *const *argv, hf_summary *s, char *output,
                          hf_messages *messages)
 {
@@ -408,8 +415,9 @@ static hf_status execute(run *r, const hf_options *options, int argc, char *cons
     HF_TRY(spare_inputs(&r->settings, output, messages));
     HF_TRY(create_store(r, options, argc, argv, output, messages));
     hf_status status = stages(r, options, s, messages);
-    if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
+    if (!leaves_result(status)) return status;
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
+    hf_text_trim_utf8(s->warnings);
     hf_status finish = finish_store(r, s, messages);
     return finish != HF_OK ? finish : status;
 }
@@ -422,7 +430,7 @@ hf_status hf_run(const hf_options *options, int argc, char *const *argv, hf_summ
     snprintf(summary->version, sizeof summary->version, "%s", hf_store_version());
     output[0] = '\0';
     hf_status status = execute(&r, options, argc, argv, summary, output, messages);
-    if (status != HF_OK && status != HF_NOT_CONVERGED) output[0] = '\0';
+    if (!leaves_result(status)) output[0] = '\0';
     run_free(&r);
     return status;
 }

@@ -9,7 +9,7 @@
 #define HF_OUTPUT_SIZE 4096
 
 /* Run the case of the options and store it. `output` is the path of the result file, "" when none was written.
- * HF_OK, or the status of what went wrong with messages; HF_NOT_CONVERGED still writes the file. */
+ * HF_OK, or the status of what went wrong with messages; HF_NOT_CONVERGED and HF_NO_FEASIBLE still write the file. */
 hf_status hf_run(const hf_options *options, int argc, char *const *argv, hf_summary *summary,
                  char output[HF_OUTPUT_SIZE], hf_messages *messages);
 

@@ -2,6 +2,7 @@
 #include <hifdm/scene.h>
 
 #include "arena.h"
+#include "text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -226,6 +227,14 @@ hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, hf_scene *sce
     if (nx * ny > NODE_MAX)
         return hf_error(messages, HF_BAD_CASE, "scene: %.0f x %.0f nodes are more than this program takes (%d)", nx, ny,
                         NODE_MAX);
+    double cell_x = cylinder->aperture_m / (nx - 1), cell_y = cylinder->length_m / (ny - 1);
+    double sag_x = cylinder->scallop * cell_y * cylinder->cells_per_module[1];
+    double sag_y = cylinder->scallop * cell_x * cylinder->cells_per_module[0];
+    if (cylinder->supports != HF_SUPPORTS_PERIMETER && (sag_x >= cell_x || sag_y >= cell_y))
+        return hf_error(messages, HF_BAD_CASE,
+                        "scene: scallop %g moves edge nodes by %.3g m, past the next nodes %.3g m inward; lower it",
+                        cylinder->scallop, sag_x / cell_x > sag_y / cell_y ? sag_x : sag_y,
+                        sag_x / cell_x > sag_y / cell_y ? cell_x : cell_y);
     grid g = {cylinder, scene, (int)nx, (int)ny};
     int n_cable = (g.nx - 1) * g.ny + g.nx * (g.ny - 1);
     hf_status status = hf_scene_allocate(scene, g.nx * g.ny, n_cable, 0, 0, 0);
@@ -266,6 +275,7 @@ static void fault(const hf_scene *s, int is_cable, int index, int *n_fault, cons
     char where[512];
     if (++*n_fault > FAULT_MAX) return;
     describe(s, is_cable, index, where, sizeof where);
+    hf_text_trim_utf8(where);
     hf_error(messages, HF_BAD_CASE, "%s %s", where, what);
 }
 

@@ -10,6 +10,7 @@
 
 #define FAULT_MAX 20 /* faults that are spelled out, per file */
 #define COLUMN_MAX 64
+#define ID_MAX 255
 
 /* ---- CSV table: the text is cut up in place, cells point into it ---- */
 
@@ -248,6 +249,7 @@ static named *index_ids(table *t, int column)
     for (int r = 0; r < t->n_row; r++) {
         index[r] = (named){cell(t, r, column), r};
         if (!*index[r].id) fault(t, t->line[r], NULL, "the id is empty", "");
+        if (strlen(index[r].id) > ID_MAX) fault(t, t->line[r], NULL, "the id is longer than 255 bytes", "");
     }
     qsort(index, (size_t)t->n_row, sizeof *index, compare_named);
     for (int r = 1; r < t->n_row; r++)

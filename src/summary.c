@@ -86,6 +86,8 @@ static void write_optimize(const hf_summary *s, FILE *f)
     write_result(&s->best, f);
     fprintf(f, ", \"generations\": %d, \"evaluations\": %ld, \"infeasible\": %ld, ", s->generations, s->evaluations,
             s->infeasible);
+    write_number("base_psi_m", s->base_psi_m, f);
+    fputs(", ", f);
     fprintf(f, "\"best_generation\": %d, \"best_individual\": %d, ", s->best_generation, s->best_individual);
     write_number("wall_s", s->optimize_wall_s, f);
     fputs(", ", f);

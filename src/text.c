@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define FILE_MAX (1 << 30) /* bytes: /dev/zero ends, too */
+
 hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_t *length, hf_messages *messages)
 {
     *text = NULL;
@@ -19,7 +21,7 @@ hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_
     char *buffer = malloc(capacity);
     while (buffer) {
         *length += fread(buffer + *length, 1, capacity - *length - 1, file);
-        if (*length < capacity - 1) break;
+        if (*length < capacity - 1 || *length > FILE_MAX) break;
         capacity *= 2;
         char *bigger = realloc(buffer, capacity);
         if (!bigger) free(buffer);
@@ -27,6 +29,10 @@ hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_
     }
     int failed = ferror(file), why = errno;
     fclose(file);
+    if (buffer && *length > FILE_MAX) {
+        free(buffer);
+        return hf_error(messages, code, "%s: longer than %d MB", path, FILE_MAX >> 20);
+    }
     if (!buffer) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     if (failed) {
         free(buffer);
@@ -104,6 +110,17 @@ int hf_text_is_utf8(const char *text)
         p += n;
     }
     return 1;
+}
+
+void hf_text_trim_utf8(char *text)
+{
+    size_t n = strlen(text), back = 0;
+    while (back < 4 && back < n && ((unsigned char)text[n - 1 - back] & 0xc0) == 0x80)
+        back++;
+    if (back == n) return;
+    unsigned char first = (unsigned char)text[n - 1 - back];
+    size_t whole = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : first >= 0xc0 ? 2 : 1;
+    if (whole > back + 1) text[n - 1 - back] = '\0';
 }
 
 #define NEAREST_MAX 63 /* words longer than this are never called a typing error */

@@ -16,6 +16,9 @@ int hf_text_uint64(const char *text, uint64_t *value);
 /* Well-formed UTF-8 without control characters other than tab? Results keep ids and titles as UTF-8. */
 int hf_text_is_utf8(const char *text);
 
+/* snprintf may have cut a text in the middle of a letter: take the rest of that letter away. */
+void hf_text_trim_utf8(char *text);
+
 /* The candidate nearest to `word` by edit distance, or NULL when none is near enough to be a typing error. */
 const char *hf_text_nearest(const char *word, const char *const *candidates, int n_candidate);
 

@@ -23,6 +23,7 @@ extern "C" {
     X(NOT_FINITE, 5, 4, "not_finite", "a position or force density is no longer a finite number")                      \
     X(RATIO_CAP, 6, 4, "ratio_cap", "the boundary tension ratio exceeds optimize.boundary_ratio_cap")                  \
     X(NOT_EVALUATED, 7, 3, "not_evaluated", "not evaluated")                                                           \
+    X(NO_FEASIBLE, 8, 3, "no_feasible", "no design met the constraints")                                               \
     X(BAD_USAGE, 20, 2, "bad_usage", "the command line is not understood")                                             \
     X(BAD_CASE, 21, 2, "bad_case", "the case has errors")                                                              \
     X(NO_MEMORY, 30, 5, "no_memory", "out of memory")                                                                  \

@@ -32,6 +32,8 @@ typedef struct {
     double polish_wall_s;
 
     int has_optimize;
+    double
+        base_psi_m; /* of individual 0 of generation 0, the form-finding's tensions under the rule; NaN if infeasible */
     hf_form_result best; /* of the best individual; status HF_NOT_EVALUATED when none was feasible */
     int best_generation, best_individual;
     int generations;

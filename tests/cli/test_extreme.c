@@ -28,8 +28,8 @@ START_TEST(huge_nets_are_refused_quickly)
         const char *modules = keep(formatted(CYLINDER "modules=%s", huge[_i].modules)),
                    *cells = keep(formatted(CYLINDER "cells_per_module=%s", huge[_i].cells));
         const char *const argv[] = {
-            hifdm_program(), commands[i],          REFLECTOR,          "--set", modules, "--set",
-            cells,           i == 0 ? "-o" : NULL, temp("nowhere.h5"), NULL};
+            hifdm_program(),      commands[i],          REFLECTOR,          "--set", modules, "--set", cells, "--set",
+            CYLINDER "scallop=0", i == 0 ? "-o" : NULL, temp("nowhere.h5"), NULL};
         struct command command = run_command(5.0, argv);
         ck_assert_msg(command.exit_code == 2 || command.exit_code == 5, "%d", command.exit_code);
         demand_part(command.err, huge[_i].error, __LINE__);
@@ -98,7 +98,7 @@ static const struct {
 } odd_cylinders[] = {
     {CYLINDER "focal_length_m=1e9", 0},
     {CYLINDER "focal_length_m=1e-3", 4},
-    {CYLINDER "aperture_m=1e-9", 4},
+    {CYLINDER "aperture_m=1e-9", 2},
     {CYLINDER "scallop=0.4", 0},
     {CYLINDER "scallop=0", 4},
     {CYLINDER "scallop=1e-12", 4},

@@ -6,6 +6,7 @@
 #include <float.h>
 #include <locale.h>
 #include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -134,10 +135,32 @@ START_TEST(files_that_cannot_be_read_are_named)
 }
 END_TEST
 
+START_TEST(a_cut_letter_is_taken_away_whole)
+{
+    static const struct {
+        const char *text, *trimmed;
+    } cases[] = {{"abc", "abc"},
+                 {"ab\xc3", "ab"},
+                 {"ab\xc3\xa9", "ab\xc3\xa9"},
+                 {"a\xe4\xb8", "a"},
+                 {"a\xe4\xb8\xad", "a\xe4\xb8\xad"},
+                 {"\xf0\x9f\x98", ""},
+                 {"", ""},
+                 {"x\xf0", "x"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[16];
+        snprintf(text, sizeof text, "%s", cases[i].text);
+        hf_text_trim_utf8(text);
+        ck_assert_str_eq(text, cases[i].trimmed);
+    }
+}
+END_TEST
+
 Suite *suite_unit_text(void)
 {
     Suite *suite = suite_create("unit/text");
     TCase *tests = tcase_create("text");
+    tcase_add_test(tests, a_cut_letter_is_taken_away_whole);
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, decimal_numbers_are_taken, 0, sizeof good_double / sizeof *good_double);
     tcase_add_loop_test(tests, everything_else_is_refused, 0, sizeof bad_double / sizeof *bad_double);
