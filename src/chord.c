@@ -74,12 +74,17 @@ static void pack(const hf_workspace *w, hf_chord *c, int half_bandwidth)
     }
 }
 
+static hf_chord dimensions(const hf_evaluator *v)
+{
+    int half_bandwidth = 3 * v->model->half_bandwidth + 2;
+    return (hf_chord){.evaluator = v, .n_dof = 3 * v->model->n_free, .width = (half_bandwidth + 3) / 4 * 4};
+}
+
 hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_workspace *w, hf_chord *chord)
 {
     const hf_model *m = v->model;
-    int half_bandwidth = 3 * m->half_bandwidth + 2;
     hf_form_result base;
-    *chord = (hf_chord){.evaluator = v, .n_dof = 3 * m->n_free, .width = (half_bandwidth + 3) / 4 * 4};
+    *chord = dimensions(v);
     HF_TRY(hf_evaluate(v, base_N, w, &base));
     HF_TRY(hf_newton_factor(m, w, NULL));
     hf_arena arena = {0};
@@ -87,7 +92,7 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_worksp
     HF_TRY(hf_arena_allocate(&arena));
     lay_out(&arena, chord);
     chord->block = arena.block;
-    pack(w, chord, half_bandwidth);
+    pack(w, chord, 3 * m->half_bandwidth + 2);
     memcpy(chord->base_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
     for (int e = 0; e < m->n_cable; e++)
         chord->gene_of_cable[e] = -1;
@@ -110,6 +115,17 @@ static void lay_out_lanes(hf_arena *a, const hf_chord *c, hf_chord_lanes *l)
     l->x_m = hf_arena_take(a, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
     l->force_N = hf_arena_take(a, ((size_t)c->n_dof + 2 * (size_t)c->width + 8) * HF_LANES, sizeof(double));
     l->gene = hf_arena_take(a, (size_t)m->n_gene * HF_LANES, sizeof(double));
+}
+
+size_t hf_chord_bytes(const hf_evaluator *evaluator, size_t *lanes_bytes)
+{
+    hf_chord chord = dimensions(evaluator);
+    hf_chord_lanes lanes;
+    hf_arena shared = {0}, own = {0};
+    lay_out(&shared, &chord);
+    lay_out_lanes(&own, &chord, &lanes);
+    *lanes_bytes = own.used;
+    return shared.used;
 }
 
 hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes)

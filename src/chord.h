@@ -39,6 +39,9 @@ hf_status hf_chord_create(const hf_evaluator *evaluator, const double *base_N, h
                           hf_chord *chord);
 void hf_chord_free(hf_chord *chord);
 
+/* Bytes that the shared matrix and the lanes of one thread would take for this evaluator. */
+size_t hf_chord_bytes(const hf_evaluator *evaluator, size_t *lanes_bytes);
+
 hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes);
 void hf_chord_lanes_free(hf_chord_lanes *lanes);
 

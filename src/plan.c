@@ -1,5 +1,6 @@
 #include "plan.h"
 
+#include "chord.h"
 #include "print.h"
 #include "run.h"
 #include <hifdm/batch.h>
@@ -14,6 +15,7 @@ typedef struct {
     hf_scene scene;
     hf_model model;
     hf_workspace workspace;
+    double *start_q_N_per_m; /* [n_cable] of the found shape */
 } plan;
 
 static void print_scene(const plan *p, FILE *f)
@@ -54,77 +56,89 @@ static void print_plan(const plan *p, FILE *f)
             p->model.load_N ? "" : "loads (none given); ", p->model.has_strut ? "" : "general band matrix (no struts)");
 }
 
-static void print_memory(const plan *p, int threads, FILE *f)
+static void print_allocation(const char *title, const char *what, double bytes, const char *without, FILE *f)
 {
-    char workspace[32], population[32], result[32];
-    size_t n_individual = p->settings.has_optimize ? (size_t)p->settings.optimize.population : 0;
-    hf_print_bytes((double)hf_workspace_bytes(&p->model) * (p->settings.has_optimize ? threads + 1 : 1), workspace,
-                   sizeof workspace);
-    hf_print_bytes((double)n_individual * 2 * ((double)p->model.n_gene * sizeof(double) + sizeof(hf_form_result)),
-                   population, sizeof population);
-    if (n_individual && p->model.n_gene) {
-        hf_print_bytes((double)n_individual * (8.0 * p->model.n_gene + 70) * p->settings.optimize.generations, result,
-                       sizeof result);
-        fprintf(f, "  result file   at most %s of generations\n", result);
-    }
-    fprintf(f, "  memory        %s of workspaces (%d thread%s), %s of population\n", workspace, threads,
-            threads == 1 ? "" : "s", population);
+    char text[32];
+    hf_print_bytes(bytes, text, sizeof text);
+    fprintf(f, "  %-13s %-38s %s\n", title, what, bytes > 0 ? text : without);
 }
 
-/* One evaluation of the base design, timed; its cost times the largest number of evaluations is the bound printed. */
-static void print_optimize_time(plan *p, const hf_form_settings *form, int threads, FILE *f)
+/* What a run would allocate, and what it would not. */
+static void print_memory(const plan *p, const hf_evaluator *v, int threads, FILE *f)
+{
+    const hf_model *m = &p->model;
+    hf_model without = *m;
+    without.has_newton = 0;
+    size_t lanes = 0, shared = v && hf_chord_applies(v) ? hf_chord_bytes(v, &lanes) : 0;
+    double workspaces = v ? threads + 1 : 1, bare = (double)hf_workspace_bytes(&without);
+    double population = v ? (double)p->settings.optimize.population : 0, genes = 8.0 * m->n_gene;
+    double newton = (double)hf_workspace_bytes(m) - bare;
+    print_allocation("memory", "workspaces", workspaces * bare, "none", f);
+    print_allocation("", "Newton matrices in them", workspaces * newton, "none (no law iterates, or struts)", f);
+    print_allocation("", "matrix shared by all threads", (double)shared, v ? "none" : "none (no optimisation)", f);
+    print_allocation("", "lanes of designs", (double)lanes * threads, v ? "none" : "none (no optimisation)", f);
+    print_allocation("", "population", 2 * population * (genes + (double)sizeof(hf_form_result)), "none", f);
+    if (v)
+        print_allocation("result file", "generations, at most",
+                         population * (genes + 70) * p->settings.optimize.generations, "", f);
+}
+
+/* A first generation is bred and evaluated in one thread, timed; the cost of one of its designs times the largest number
+ * of evaluations is what is printed. */
+static hf_status print_optimize_time(plan *p, const hf_evaluator *v, int threads, FILE *f)
 {
     const hf_model *m = &p->model;
     const hf_optimize_settings *o = &p->settings.optimize;
-    double *start = malloc((size_t)m->n_cable * sizeof *start), *base = malloc((size_t)m->n_gene * sizeof *base);
-    if (start && base) {
-        hf_form_result r;
-        hf_evaluator v = {m, form, start, o->rule, o->solver, o->boundary_ratio_cap};
-        memcpy(start, p->workspace.q_N_per_m, (size_t)m->n_cable * sizeof *start);
-        for (int k = 0; k < m->n_gene; k++)
-            base[k] = p->workspace.tension_N[m->gene_cable[k]];
-        double begin_s = hf_run_clock_s();
-        hf_evaluate(&v, base, &p->workspace, &r);
-        double evaluation_s = hf_run_clock_s() - begin_s, total = (double)o->population * o->generations;
+    hf_batch batch = {0};
+    hf_ga ga = {0};
+    double *base = malloc((size_t)m->n_gene * sizeof *base);
+    hf_status status = base ? hf_batch_create(v, 1, &batch) : HF_NO_MEMORY;
+    for (int k = 0; base && k < m->n_gene; k++)
+        base[k] = p->workspace.tension_N[m->gene_cable[k]];
+    if (status == HF_OK) status = hf_ga_create(o, m, base, &ga);
+    if (status == HF_OK) {
         char one[32], all[32];
-        hf_print_duration(evaluation_s, one, sizeof one);
-        hf_print_duration(evaluation_s * total / threads, all, sizeof all);
-        fprintf(f,
-                "                optimisation: %s for the first design (%d iterations, %s); about %s for %.0f "
-                "evaluations\n",
-                one, r.iterations, hf_status_word(r.status), all, total);
+        int solver = hf_batch_share(&batch, base);
+        double begin_s = hf_run_clock_s();
+        hf_batch_run(&batch, ga.n_individual, ga.design_N, ga.pending, ga.result);
+        double each_s = (hf_run_clock_s() - begin_s) / ga.n_individual;
+        hf_print_duration(each_s, one, sizeof one);
+        hf_print_duration(each_s * o->population * o->generations / threads, all, sizeof all);
+        fprintf(f, "                optimisation: %s for a design of the first generation by %s; at most about %s\n",
+                one, hf_solver_word[solver], all);
     }
-    free(start);
+    hf_ga_free(&ga);
+    hf_batch_free(&batch);
     free(base);
+    return status;
 }
 
-static hf_status print_time(plan *p, int threads, FILE *f, hf_messages *messages)
+/* Form-finding is tried: a few iterations tell what one costs, and as many as fit into TRIAL_S are then done. */
+static hf_status print_time(plan *p, const hf_evaluator *v, int threads, FILE *f, hf_messages *messages)
 {
     hf_form_settings form = p->settings.form;
     hf_form_result r;
     char text[32];
-    /* a few iterations give the time of one; as many as fit into TRIAL_S are then tried */
     form.max_iterations = form.max_iterations < 3 ? form.max_iterations : 3;
     double begin_s = hf_run_clock_s();
-    hf_form_prepare(&p->model, &p->workspace);
-    hf_form_find(&p->model, &form, form.stop, &p->workspace, NULL, &r);
+    hf_evaluate_form(&p->model, &form, &p->workspace, NULL, &r);
     double iteration_s = (hf_run_clock_s() - begin_s) / r.iterations, affordable = TRIAL_S / iteration_s;
     form.max_iterations =
         affordable < p->settings.form.max_iterations ? (int)affordable + 1 : p->settings.form.max_iterations;
     begin_s = hf_run_clock_s();
-    hf_form_prepare(&p->model, &p->workspace);
-    hf_form_find(&p->model, &form, form.stop, &p->workspace, NULL, &r);
-    double trial_s = hf_run_clock_s() - begin_s;
+    hf_evaluate_form(&p->model, &form, &p->workspace, NULL, &r);
+    hf_print_duration(hf_run_clock_s() - begin_s, text, sizeof text);
     if (r.status == HF_NOT_CONVERGED && form.max_iterations < p->settings.form.max_iterations) {
         hf_print_duration(iteration_s * p->settings.form.max_iterations, text, sizeof text);
         fprintf(f, "  expected time form-finding: not finished after %d iterations; at most %s\n", r.iterations, text);
         return HF_OK;
     }
-    hf_print_duration(trial_s, text, sizeof text);
     fprintf(f, "  expected time form-finding: %s (%d iterations, stopped by %s)\n", text, r.iterations,
             hf_stop_reason_word((int)r.stop_reason));
     HF_TRY(hf_run_explain(&p->scene, &p->model, &p->settings.form, &p->workspace, &r, messages));
-    if (p->settings.has_optimize && p->model.n_gene) print_optimize_time(p, &form, threads, f);
+    if (!v) return HF_OK;
+    memcpy(p->start_q_N_per_m, p->workspace.q_N_per_m, (size_t)p->model.n_cable * sizeof(double));
+    if (print_optimize_time(p, v, threads, f) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory");
     return HF_OK;
 }
 
@@ -133,20 +147,25 @@ static hf_status check(plan *p, const hf_options *options, FILE *f, hf_messages 
     HF_TRY(hf_config_load(options->file, options->set, options->n_set, &p->settings, messages));
     HF_TRY(hf_config_scene(&p->settings, &p->scene, messages));
     HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));
+    const hf_optimize_settings *o = &p->settings.optimize;
     int threads = options->threads ? options->threads : hf_batch_default_threads();
+    int optimizes = p->settings.has_optimize && p->model.n_gene > 0;
+    p->start_q_N_per_m = malloc((size_t)p->model.n_cable * sizeof(double));
+    hf_evaluator v = {&p->model, &p->settings.form, p->start_q_N_per_m, o->rule, o->solver, o->boundary_ratio_cap};
     fprintf(f, "%s: valid\n", options->file);
     print_scene(p, f);
     print_plan(p, f);
-    print_memory(p, threads, f);
-    if (hf_workspace_create(&p->model, &p->workspace) != HF_OK)
+    print_memory(p, optimizes ? &v : NULL, threads, f);
+    if (!p->start_q_N_per_m || hf_workspace_create(&p->model, &p->workspace) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", p->model.n_node);
-    return print_time(p, threads, f, messages);
+    return print_time(p, optimizes ? &v : NULL, threads, f, messages);
 }
 
 hf_status hf_plan(const hf_options *options, FILE *file, hf_messages *messages)
 {
     plan p = {0};
     hf_status status = check(&p, options, file, messages);
+    free(p.start_q_N_per_m);
     hf_workspace_free(&p.workspace);
     hf_model_free(&p.model);
     hf_scene_free(&p.scene);

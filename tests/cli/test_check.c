@@ -13,14 +13,15 @@ START_TEST(check_tells_what_will_run)
     OUT("will run      form-finding: hifdm, solved by fixed point (asked for), stop: rms_change, at most 100000 iterations\n");
     OUT("optimisation: rule force_density, 120 genes, 50 individuals, at most 400 generations, seed 2022\n");
     OUT("skipped       loads (none given); general band matrix (no struts)\n");
-    OUT(" of workspaces (2 threads), ");
-    OUT(" of population\n");
+    OUT("  memory        workspaces   ");
+    OUT("                matrix shared by all threads           ");
     OUT("expected time form-finding: ");
     OUT("(67 iterations, stopped by rms_change)\n");
-    OUT(" for 20000 evaluations\n");
+    OUT("optimisation: ");
+    OUT(" for a design of the first generation by chord; at most about ");
     SHELL(0, "cd \"$1\" && \"$0\" check \"$2\" && ls -A", temp("."), REFLECTOR);
     OUT("skipped       optimisation (no optimize section); loads (none given); general band matrix (no struts)\n");
-    OUT("0 B of population\n");
+    OUT("population                             none\n");
     ck_assert_ptr_null(strstr(said.out, ".h5")); /* nothing was made */
     ck_assert_str_eq(said.err, "");
 }
