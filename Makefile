@@ -6,7 +6,7 @@
 # ---- The modules, in dependency order: a module may include only modules above it (`make lint` checks it) ------------
 # Sources are src/NAME.c; the header is include/hifdm/NAME.h if public, src/NAME.h if internal.
 MODULES := status arena sha256 text scene scene_import config config_table numbering model workspace band metrics \
-           formfind newton evaluate chord chord_kernel ga polish batch summary hdf5_io store store_read
+           formfind newton evaluate chord_kernel chord ga polish batch summary hdf5_io store store_read
 APP_MODULES := options print run plan export main
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------

@@ -2,7 +2,6 @@
 #include "chord.h"
 
 #include "arena.h"
-#include "chord_kernel.h"
 #include "newton.h"
 
 #include <math.h>

@@ -7,34 +7,13 @@
 #ifndef HIFDM_CHORD_H
 #define HIFDM_CHORD_H
 
-#include <hifdm/evaluate.h>
-
-#define HF_LANES 8
-
-/* Shared, constant. Arrays packed for the solve; see chord_kernel.h. */
-typedef struct hf_chord {
-    const hf_evaluator *evaluator;
-    int n_dof, width;         /* rows of the matrix; entries of a packed row, a multiple of 4 */
-    double *row, *column;     /* [n_dof][width] factor by rows (forward) and by columns (backward) */
-    double *inverse_diagonal; /* [n_dof] */
-    double *base_m;           /* [3][n_node] shape the lanes start from */
-    int *gene_of_cable;       /* [n_cable] or -1 */
-    void *block;
-} hf_chord;
-
-/* Scratch of one thread. */
-typedef struct {
-    double *x_m;     /* [3][n_node][HF_LANES] */
-    double *force_N; /* [n_pad + n_dof + n_pad][HF_LANES], zero rows around for the solve */
-    double *gene;    /* [n_gene][HF_LANES] q (N/m) or T (N) by rule */
-    void *block;
-} hf_chord_lanes;
+#include "chord_kernel.h"
 
 /* Can this rule be served? No cable may be left under law length, and the energy must be convex. */
 int hf_chord_applies(const hf_evaluator *evaluator);
 
-/* Factor at the base design. HF_OK; HF_NO_MEMORY; any other status: the base design has no shape, or no matrix, to share.
- * workspace is scratch. Free in any case. */
+/* Factor at the base design. HF_OK; HF_NO_MEMORY; any other status: the base design has no shape, or no matrix, to
+ * share. workspace is scratch. Free in any case. */
 hf_status hf_chord_create(const hf_evaluator *evaluator, const double *base_N, hf_workspace *workspace,
                           hf_chord *chord);
 void hf_chord_free(hf_chord *chord);

@@ -1,5 +1,5 @@
-/* The two loops of chord that do all the work, over HF_LANES designs side by side. Multiplications and additions are never
- * fused and every lane keeps its own order of operations, so all instruction sets give the same bits. */
+/* The two loops of chord that do all the work, over HF_LANES designs side by side. Multiplications and additions are
+ * never fused and every lane keeps its own order of operations, so all instruction sets give the same bits. */
 #include "chord_kernel.h"
 
 typedef double lanes __attribute__((vector_size(HF_LANES * sizeof(double))));
@@ -17,26 +17,27 @@ void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, 
     const lanes *x = (const lanes *)(const void *)l->x_m, *y = x + m->n_node, *z = y + m->n_node;
     const lanes *gene = (const lanes *)(const void *)l->gene;
     lanes *force = (lanes *)(void *)l->force_N + chord->width;
+    const lanes zero = {0};
     int tension_rule = chord->evaluator->rule == HF_RULE_TENSION;
     for (int i = 0; i < m->n_free; i++)
         for (int c = 0; c < 3; c++) {
             double load = m->load_N ? m->load_N[c * m->n_node + i] : 0;
-            force[3 * i + c] = (lanes){0} + load;
+            force[3 * i + c] = zero + load;
         }
     /* the rows behind: a lane that failed may have left NaNs there */
     for (int i = chord->n_dof; i < chord->n_dof + chord->width + 8; i++)
-        force[i] = (lanes){0};
+        force[i] = zero;
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], k = chord->gene_of_cable[e];
-        lanes dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a], q;
-        if (k >= 0 && !tension_rule) {
+        lanes dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a], q = {0};
+        if (k >= 0)
             q = gene[k];
-        } else if (k < 0 && m->law[e] == HF_LAW_FORCE_DENSITY) {
-            q = (lanes){0} + m->target[e];
-        } else {
+        else
+            q += m->target[e];
+        if (k >= 0 ? tension_rule : m->law[e] == HF_LAW_TENSION) {
             lanes length = dx * dx + dy * dy + dz * dz;
             square_root(&length);
-            q = (k >= 0 ? gene[k] : (lanes){0} + m->target[e]) / length;
+            q /= length;
         }
         dx *= q, dy *= q, dz *= q;
         if (a < m->n_free) force[3 * a] += dx, force[3 * a + 1] += dy, force[3 * a + 2] += dz;

@@ -2,7 +2,28 @@
 #ifndef HIFDM_CHORD_KERNEL_H
 #define HIFDM_CHORD_KERNEL_H
 
-#include "chord.h"
+#include <hifdm/evaluate.h>
+
+#define HF_LANES 8
+
+/* Shared, constant. Arrays packed for the solve; see chord_kernel.h. */
+typedef struct hf_chord {
+    const hf_evaluator *evaluator;
+    int n_dof, width;         /* rows of the matrix; entries of a packed row, a multiple of 4 */
+    double *row, *column;     /* [n_dof][width] factor by rows (forward) and by columns (backward) */
+    double *inverse_diagonal; /* [n_dof] */
+    double *base_m;           /* [3][n_node] shape the lanes start from */
+    int *gene_of_cable;       /* [n_cable] or -1 */
+    void *block;
+} hf_chord;
+
+/* Scratch of one thread. */
+typedef struct {
+    double *x_m;     /* [3][n_node][HF_LANES] */
+    double *force_N; /* [n_pad + n_dof + n_pad][HF_LANES], zero rows around for the solve */
+    double *gene;    /* [n_gene][HF_LANES] q (N/m) or T (N) by rule */
+    void *block;
+} hf_chord_lanes;
 
 /* The Makefile compiles chord_kernel.c with -DHF_ISA=avx512 and so on; the names end in it. */
 #define HF_JOIN_(a, b) a##_##b

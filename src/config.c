@@ -442,8 +442,8 @@ static void check_together(loader *l)
 
 /* ---- load ---- */
 
-/* The first line with more than NESTING_MAX brackets open at once, quoted ones included, or 0: libyaml takes minutes over
- * thousands. */
+/* The first line with more than NESTING_MAX brackets open at once, quoted ones included, or 0: libyaml takes minutes
+ * over thousands. */
 static int too_deep(const char *text)
 {
     int depth = 0, line = 1;

@@ -192,8 +192,8 @@ static int is_balanced(const hf_model *m, const hf_form_settings *s, const imbal
     return now->residual_N <= s->residual_tolerance * m->reference_N && now->length_gap <= s->length_tolerance;
 }
 
-/* Newton steps from the workspace's shape and tensions while they help. On success q_N_per_m belongs to the new shape and
- * 1 is returned; else q_N_per_m is as it was. *n_step counts. */
+/* Newton steps from the workspace's shape and tensions while they help. On success q_N_per_m belongs to the new shape
+ * and 1 is returned; else q_N_per_m is as it was. *n_step counts. */
 static int newton_steps(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int *n_step)
 {
     /* one more digit than asked for, so that the closing linear solve does not miss the tolerance by a hair */

@@ -1,25 +1,25 @@
-/* newton - Newton's method on the convex energy Pi(x) = sum phi_e(l_e) - P.x of a tension net (METHOD sections 2, 3): the
- * accuracy reference, the error estimate of every other method, and the matrix that a population shares.
+/* newton - Newton's method on the convex energy Pi(x) = sum phi_e(l_e) - P.x of a tension net (METHOD sections 2, 3):
+ * the accuracy reference, the error estimate of every other method, and the matrix that a population shares.
  *
- * Unknowns: the 3 n_free coordinates, dof 3*row + component, and the tensions of the cables under law length. Per cable,
- * with unit vector u: force T u, stiffness (T/l)(I - uu') + k uu' with k = phi''(l). A cable under law length has
- * k = STIFFENING T/L*: its tension step dT = k (dl + l - L*) is eliminated, so that the matrix stays symmetric positive
- * definite. Eq. 8 is the same step with a stiffening of 1. Matrix: lower band, column-major, half-bandwidth 3b + 2. */
+ * Unknowns: the 3 n_free coordinates, dof 3*row + component, and the tensions of the cables under law length. Per
+ * cable, with unit vector u: force T u, stiffness (T/l)(I - uu') + k uu' with k = phi''(l). A cable under law length
+ * has k = STIFFENING T/L*: its tension step dT = k (dl + l - L*) is eliminated, so that the matrix stays symmetric
+ * positive definite. Eq. 8 is the same step with a stiffening of 1. Matrix: lower band, column-major, half-bandwidth
+ * 3b + 2. */
 #ifndef HIFDM_NEWTON_H
 #define HIFDM_NEWTON_H
 
 #include <hifdm/formfind.h>
 
-/* Sets law, target and first force densities as hf_form_prepare does, unless the caller has its own: start from the
- * workspace's q_N_per_m under its law and target. Fixed-point iterations of hf_form_find alternate with Newton steps; the
- * last word always has hf_form_find, which measures the shape by one more linear solve and judges it. Stops by residual;
- * result->iterations counts both kinds. history (may be NULL) holds the fixed-point iterations. Needs a workspace of a
- * model with has_newton. Returns result->status. */
+/* Start from the workspace's q_N_per_m under its law and target (hf_form_prepare, hf_evaluate_prepare). Fixed-point
+ * iterations of hf_form_find alternate with Newton steps; the last word always has hf_form_find, which measures the
+ * shape by one more linear solve and judges it. Stops by residual; result->iterations counts both kinds. history (may
+ * be NULL) holds the fixed-point iterations. Needs a workspace of a model with has_newton. Returns result->status. */
 hf_status hf_newton_find(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                          hf_history *history, hf_form_result *result);
 
-/* Factor the Newton matrix at the workspace's shape and tensions into newton_band. *condition (may be NULL): estimate of
- * its 1-norm condition number, INFINITY when a Levenberg shift was needed. HF_SINGULAR when no shift helps. */
+/* Factor the Newton matrix at the workspace's shape and tensions into newton_band. *condition (may be NULL): estimate
+ * of its 1-norm condition number, INFINITY when a Levenberg shift was needed. HF_SINGULAR when no shift helps. */
 hf_status hf_newton_factor(const hf_model *model, hf_workspace *workspace, double *condition);
 
 /* Fill position_error_m, condition and backward_error of a result whose shape the workspace holds. */

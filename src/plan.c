@@ -73,7 +73,9 @@ static void print_memory(const plan *p, const hf_evaluator *v, int threads, FILE
     double workspaces = v ? threads + 1 : 1, bare = (double)hf_workspace_bytes(&without);
     double population = v ? (double)p->settings.optimize.population : 0, genes = 8.0 * m->n_gene;
     double newton = (double)hf_workspace_bytes(m) - bare;
-    print_allocation("memory", "workspaces", workspaces * bare, "none", f);
+    char what[64];
+    snprintf(what, sizeof what, "workspaces (%d thread%s)", threads, threads == 1 ? "" : "s");
+    print_allocation("memory", what, workspaces * bare, "none", f);
     print_allocation("", "Newton matrices in them", workspaces * newton, "none (no law iterates, or struts)", f);
     print_allocation("", "matrix shared by all threads", (double)shared, v ? "none" : "none (no optimisation)", f);
     print_allocation("", "lanes of designs", (double)lanes * threads, v ? "none" : "none (no optimisation)", f);
@@ -83,8 +85,8 @@ static void print_memory(const plan *p, const hf_evaluator *v, int threads, FILE
                          population * (genes + 70) * p->settings.optimize.generations, "", f);
 }
 
-/* A first generation is bred and evaluated in one thread, timed; the cost of one of its designs times the largest number
- * of evaluations is what is printed. */
+/* A first generation is bred and evaluated in one thread, timed; the cost of one of its designs times the largest
+ * number of evaluations is what is printed. */
 static hf_status print_optimize_time(plan *p, const hf_evaluator *v, int threads, FILE *f)
 {
     const hf_model *m = &p->model;

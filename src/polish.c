@@ -69,7 +69,8 @@ static void to_variable(const problem *p, const double *design_N, gsl_vector *va
     }
 }
 
-/* ---- residuals: distances of the inner nodes over the root of their number, so that the sum of squares is psi^2 ---- */
+/* ---- residuals: distances of the inner nodes over the root of their number, so that the sum of squares is psi^2 ----
+ * */
 
 static int residuals(const gsl_vector *variable, void *context, gsl_vector *f)
 {

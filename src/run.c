@@ -224,7 +224,8 @@ static void note_best(const hf_ga *ga, hf_summary *s)
     s->best_individual = ga->best;
 }
 
-/* The shape of the best individual: elitism keeps it in the last generation, and it is evaluated to the same bits again. */
+/* The shape of the best individual: elitism keeps it in the last generation, and it is evaluated to the same bits
+ * again. */
 static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
 {
     const double *design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;

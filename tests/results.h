@@ -89,7 +89,8 @@ static inline int read_all(const char *path, char *text, size_t size)
     hf_scene scene;
     hf_shape form, best;
     hf_status status[4] = {hf_store_read_summary(path, &summary, &messages),
-                           hf_store_read_scene(path, &scene, &messages), hf_store_read_shape(path, HF_STAGE_FORM, &form, &messages),
+                           hf_store_read_scene(path, &scene, &messages),
+                           hf_store_read_shape(path, HF_STAGE_FORM, &form, &messages),
                            hf_store_read_shape(path, HF_STAGE_OPTIMIZE, &best, &messages)};
     int n_failed = 0;
     for (int i = 0; i < 4; i++) {

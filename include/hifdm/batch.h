@@ -23,15 +23,15 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
  * Each design is one whole form-finding in one thread; the results do not depend on the number of threads. */
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result);
 
-/* Let the threads share one factored Newton matrix from the base design [n_gene] on, where the evaluator's solver allows
- * it. Returns the hf_solver that will be used: an unsuitable base or net leaves each design to hf_evaluate. HF_NO_MEMORY
- * counts as unsuitable. */
+/* Let the threads share one factored Newton matrix from the base design [n_gene] on, where the evaluator's solver
+ * allows it. Returns the hf_solver that will be used: an unsuitable base or net leaves each design to hf_evaluate.
+ * HF_NO_MEMORY counts as unsuitable. */
 int hf_batch_share(hf_batch *batch, const double *base_N);
 
 int hf_batch_default_threads(void); /* available cores */
 
-/* Evaluate one design in the calling thread, to the same bits as hf_batch_run; returns the workspace that holds its shape
- * until the next call. */
+/* Evaluate one design in the calling thread, to the same bits as hf_batch_run; returns the workspace that holds its
+ * shape until the next call. */
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result);
 
 void hf_batch_free(hf_batch *batch);

@@ -13,7 +13,8 @@ extern "C" {
  * iterative_fdm and fdm too: the laws of the model decide). *why (may be NULL): a reason for people. */
 int hf_evaluate_method(const hf_model *model, const hf_form_settings *form, const char **why);
 
-/* Form-finding as the case asks for it, with its certificate. Returns result->status; the shape stays in the workspace. */
+/* Form-finding as the case asks for it, with its certificate. Returns result->status; the shape stays in the
+ * workspace. */
 hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
                            hf_history *history, hf_form_result *result);
 

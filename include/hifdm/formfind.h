@@ -62,8 +62,8 @@ hf_status hf_form_find(const hf_model *model, const hf_form_settings *settings, 
                        hf_history *history, hf_form_result *result);
 
 /* Measure the shape that the workspace holds (position_m, law, target; q_N_per_m for cables under law length): lengths,
- * tensions by law, residual, all measures of the result. No solve: iterations is 0, the stopping reason RESIDUAL when the
- * residual is within the tolerance, else the status is HF_NOT_CONVERGED. Returns result->status. */
+ * tensions by law, residual, all measures of the result. No solve: iterations is 0, the stopping reason RESIDUAL when
+ * the residual is within the tolerance, else the status is HF_NOT_CONVERGED. Returns result->status. */
 hf_status hf_form_measure(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                           hf_form_result *result);
 

@@ -58,7 +58,8 @@ hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspa
 /* Append the generation that hf_ga_tell has just ranked. The first call also writes bounds and gene cables. */
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages);
 
-/* Shape of the workspace as the one that an optimisation stage found, with its design_N [model->n_gene]. Once per stage. */
+/* Shape of the workspace as the one that an optimisation stage found, with its design_N [model->n_gene]. Once per
+ * stage. */
 hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
                         const double *design_N, hf_messages *messages);
 

@@ -10,10 +10,11 @@ START_TEST(check_tells_what_will_run)
     OUT("220 cables by law in force: 100 tension, 120 length, 0 force density\n");
     OUT("85 unknowns, three right-hand sides; half-bandwidth 10; band Cholesky (dpbtrf)\n");
     OUT("note          30 straight chains of length-controlled cables\n");
-    OUT("will run      form-finding: hifdm, solved by fixed point (asked for), stop: rms_change, at most 100000 iterations\n");
+    OUT("will run      form-finding: hifdm, solved by fixed point (asked for), stop: rms_change, at most 100000 "
+        "iterations\n");
     OUT("optimisation: rule force_density, 120 genes, 50 individuals, at most 400 generations, seed 2022\n");
     OUT("skipped       loads (none given); general band matrix (no struts)\n");
-    OUT("  memory        workspaces   ");
+    OUT("  memory        workspaces (2 threads)   ");
     OUT("                matrix shared by all threads           ");
     OUT("expected time form-finding: ");
     OUT("(67 iterations, stopped by rms_change)\n");
@@ -85,7 +86,8 @@ START_TEST(schema_is_yaml_with_every_key)
         "set(a['scene']['import']) == {'nodes', 'cables'}",
         "set(a['form']) == {'method', 'pretension_N', 'stop', 'residual_tolerance', 'length_tolerance', "
         "'rms_tolerance_m', 'max_iterations', 'collapse_ratio'}",
-        "set(a['optimize']) == {'method', 'solver', 'polish_iterations', 'rule', 'population', 'generations', 'range_N', 'min_tension_N', 'max_tension_N', "
+        "set(a['optimize']) == {'method', 'solver', 'polish_iterations', 'rule', 'population', 'generations', "
+        "'range_N', 'min_tension_N', 'max_tension_N', "
         "'boundary_ratio_cap', 'seed', 'crossover_high', 'crossover_low', 'mutation_high', 'mutation_low', 'elites', "
         "'stagnation_tolerance_m', 'stagnation_generations'}",
         /* a default, or none where the key is required */

@@ -43,7 +43,8 @@ static hf_status create_workspace(struct subject *s)
 
 static hf_status create_batch(struct subject *s)
 {
-    s->evaluator = (hf_evaluator){&s->model, &s->settings.form, s->model.start_q_N_per_m, HF_RULE_FORCE_DENSITY, HF_SOLVER_AUTO, 10};
+    s->evaluator = (hf_evaluator){
+        &s->model, &s->settings.form, s->model.start_q_N_per_m, HF_RULE_FORCE_DENSITY, HF_SOLVER_AUTO, 10};
     return hf_batch_create(&s->evaluator, 3, &s->batch);
 }
 
