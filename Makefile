@@ -6,7 +6,7 @@
 # ---- The modules, in dependency order: a module may include only modules above it (`make lint` checks it) ------------
 # Sources are src/NAME.c; the header is include/hifdm/NAME.h if public, src/NAME.h if internal.
 MODULES := status arena sha256 text scene scene_import config config_table numbering model workspace band metrics \
-           formfind newton evaluate chord_kernel chord ga polish batch summary hdf5_io store store_read
+           lane lane_kernel formfind newton evaluate chord_kernel chord ga swarm polish batch summary hdf5_io store store_read
 APP_MODULES := options print run plan export main
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
@@ -52,6 +52,10 @@ CHECK = $(eval CHECK := $(or $(shell pkg-config --cflags --libs check),$(error r
 PKG_CFLAGS = $(patsubst -I%,-isystem %,$(filter -I% -D%,$(PKG)))
 PKG_LIBS = $(filter-out -I% -D%,$(PKG)) $(LAPACK_LIBS) -lm
 
+# A peer of the benchmark, where its header is.
+CHOLMOD = $(eval CHOLMOD := $(shell $(CC) -E -include suitesparse/cholmod.h -x c /dev/null >/dev/null 2>&1 && \
+  echo -DHF_BENCH_CHOLMOD -lcholmod))$(CHOLMOD)
+
 COMPILE = $(CC) $(CFLAGS) $(LANGUAGE) $(CODEGEN) $(SANITIZER) $(WARNINGS) -Iinclude $(PKG_CFLAGS)
 LINK = $(CC) $(CFLAGS) -fopenmp $(SANITIZER) $(LDFLAGS)
 
@@ -76,6 +80,9 @@ STATIC := $(BUILD)/libhifdm.a
 SHARED := $(BUILD)/libhifdm.so
 SONAME := libhifdm.so.$(SOVERSION)
 RUNNER := $(BUILD)/tests/run_tests
+BENCH := $(BUILD)/bench/bench
+BENCH_OUT ?= results/bench
+BENCH_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/bench/*.c)))
 
 # ---- How things are said and called ----------------------------------------------------------------------------------
 # Short lines, nothing when all is up to date; V=1 shows the full commands.
@@ -90,7 +97,7 @@ quote = '$(subst ','\'',$(1))'
 stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
-FRONT := all compile-all run test lint asan tsan install
+FRONT := all compile-all run test stress bench lint asan tsan install
 .PHONY: $(FRONT) setup clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -119,6 +126,18 @@ test: ## set up, build and run the tests; SUITE="unit verify/band" picks some
 	@mkdir -p $(BUILD)/tmp
 	$(Q)HIFDM=$(abspath $(PROGRAM)) HIFDM_SOURCE_DIR=$(CURDIR) PYTHON=$(PYTHON) \
 	    TMPDIR=$(abspath $(BUILD))/tmp CK_DEFAULT_TIMEOUT=$${CK_DEFAULT_TIMEOUT:-60} $(RUNNER) $(SUITE)
+
+# Twenty times as many nets as `make test` tries.
+stress: ## the numerical-stability suite at full length
+	+$(Q)HIFDM_STRESS=1 CK_DEFAULT_TIMEOUT=1800 $(MAKE) test SUITE=stress
+
+# Peers that cannot be installed are left out of the tables. BENCH_OUT=... writes elsewhere.
+bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/ (about 4 minutes)
+	$(Q)tools/setup.sh --bench || tools/setup.sh
+	$(SUB) $(PROGRAM) $(BENCH)
+	@mkdir -p $(BENCH_OUT)
+	$(PYTHON) tools/bench/run.py --driver $(BENCH) --program $(PROGRAM) --work $(BUILD)/bench --out $(BENCH_OUT) \
+	    --flags $(call quote,$(COMPILER); $(CFLAGS) $(LANGUAGE) $(CODEGEN))
 
 lint: ## check the rules of the house
 	+$(Q)tools/lint.sh
@@ -210,4 +229,14 @@ $(RUNNER): $(TEST_OBJ) $(STATIC)
 	    $(filter-out -I%,$(CHECK)) $(PKG_LIBS)
 comma := ,
 
--include $(LIB_OBJ:.o=.d) $(APP_OBJ:.o=.d) $(TEST_OBJ:.o=.d)
+$(BUILD)/bench/peers: FORCE
+	$(call stamp,$(CHOLMOD))
+
+$(BENCH_OBJ): $(BUILD)/bench/peers
+$(BENCH_OBJ): EXTRA = -Isrc $(filter -D%,$(CHOLMOD))
+
+$(BENCH): $(BENCH_OBJ) $(STATIC)
+	$(call say,LD,$@)
+	$(Q)$(LINK) -o $@ $^ $(filter -l%,$(CHOLMOD)) $(PKG_LIBS)
+
+-include $(LIB_OBJ:.o=.d) $(APP_OBJ:.o=.d) $(TEST_OBJ:.o=.d) $(BENCH_OBJ:.o=.d)

@@ -2,6 +2,7 @@
 
 #include "band.h"
 #include "chord.h"
+#include "swarm.h"
 
 #include <omp.h>
 #include <stdlib.h>
@@ -32,46 +33,89 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
     return HF_OK;
 }
 
-/* ---- sharing one matrix ---- */
+/* ---- what designs are solved with ---- */
 
-struct hf_batch_chord {
-    hf_chord shared;
-    hf_chord_lanes *lanes; /* [n_thread] */
+struct hf_batch_engine {
+    int solver;               /* hf_solver: CHORD or FIXED_POINT; each design its own NEWTON needs no engine */
+    hf_chord shared;          /* CHORD */
+    hf_chord_lanes *chord;    /* [n_thread] */
+    hf_lane_plan plan;        /* FIXED_POINT */
+    hf_lane_workspace *lanes; /* [n_thread] */
 };
 
-static void free_chord(hf_batch *batch)
+static void free_engine(hf_batch *batch)
 {
-    if (!batch->chord) return;
-    for (int i = 0; batch->chord->lanes && i < batch->n_thread; i++)
-        hf_chord_lanes_free(&batch->chord->lanes[i]);
-    free(batch->chord->lanes);
-    hf_chord_free(&batch->chord->shared);
-    free(batch->chord);
-    batch->chord = NULL;
+    struct hf_batch_engine *e = batch->engine;
+    if (!e) return;
+    for (int i = 0; e->chord && i < batch->n_thread; i++)
+        hf_chord_lanes_free(&e->chord[i]);
+    for (int i = 0; e->lanes && i < batch->n_thread; i++)
+        hf_lane_workspace_free(&e->lanes[i]);
+    free(e->chord);
+    free(e->lanes);
+    hf_chord_free(&e->shared);
+    hf_lane_plan_free(&e->plan);
+    free(e);
+    batch->engine = NULL;
 }
 
-static hf_status create_chord(hf_batch *batch, const double *base_N)
+static hf_status create_chord(hf_batch *batch, struct hf_batch_engine *e, const double *base_N)
 {
-    batch->chord = calloc(1, sizeof *batch->chord);
-    if (!batch->chord) return HF_NO_MEMORY;
-    HF_TRY(hf_chord_create(batch->evaluator, base_N, &batch->workspace[0], &batch->chord->shared));
-    batch->chord->lanes = calloc((size_t)batch->n_thread, sizeof *batch->chord->lanes);
-    if (!batch->chord->lanes) return HF_NO_MEMORY;
+    HF_TRY(hf_chord_create(batch->evaluator, base_N, &batch->workspace[0], &e->shared));
+    e->chord = calloc((size_t)batch->n_thread, sizeof *e->chord);
+    if (!e->chord) return HF_NO_MEMORY;
     for (int i = 0; i < batch->n_thread; i++)
-        HF_TRY(hf_chord_lanes_create(&batch->chord->shared, &batch->chord->lanes[i]));
+        HF_TRY(hf_chord_lanes_create(&e->shared, &e->chord[i]));
     return HF_OK;
+}
+
+static hf_status create_lanes(hf_batch *batch, struct hf_batch_engine *e)
+{
+    HF_TRY(hf_lane_plan_create(batch->evaluator->model, hf_lane_best_isa(), &e->plan));
+    e->lanes = calloc((size_t)batch->n_thread, sizeof *e->lanes);
+    if (!e->lanes) return HF_NO_MEMORY;
+    for (int i = 0; i < batch->n_thread; i++)
+        HF_TRY(hf_lane_workspace_create(&e->plan, &e->lanes[i]));
+    return HF_OK;
+}
+
+/* Does the batch now have this engine? Out of memory, or an unsuitable base design, leave it without. */
+static int set_engine(hf_batch *batch, int solver, const double *base_N)
+{
+    struct hf_batch_engine *e = batch->engine = calloc(1, sizeof *e);
+    if (!e) return 0;
+    e->solver = solver;
+    hf_status status = solver == HF_SOLVER_CHORD ? create_chord(batch, e, base_N) : create_lanes(batch, e);
+    if (status != HF_OK) free_engine(batch);
+    return status == HF_OK;
 }
 
 int hf_batch_share(hf_batch *batch, const double *base_N)
 {
     const hf_evaluator *v = batch->evaluator;
-    int allowed = v->solver == HF_SOLVER_AUTO || v->solver == HF_SOLVER_CHORD;
-    if (allowed && hf_chord_applies(v)) {
-        if (create_chord(batch, base_N) == HF_OK) return HF_SOLVER_CHORD;
-        free_chord(batch);
-    }
-    int by_newton = v->solver != HF_SOLVER_FIXED_POINT && v->rule != HF_RULE_SEEDED && v->model->has_newton;
-    return by_newton ? HF_SOLVER_NEWTON : HF_SOLVER_FIXED_POINT;
+    int solver = v->solver;
+    if (solver != HF_SOLVER_FIXED_POINT && solver != HF_SOLVER_NEWTON && hf_chord_applies(v) &&
+        set_engine(batch, HF_SOLVER_CHORD, base_N))
+        return HF_SOLVER_CHORD;
+    if (solver != HF_SOLVER_FIXED_POINT && v->rule != HF_RULE_SEEDED && v->model->has_newton) return HF_SOLVER_NEWTON;
+    if (!v->model->has_strut) set_engine(batch, HF_SOLVER_FIXED_POINT, base_N);
+    return HF_SOLVER_FIXED_POINT;
+}
+
+/* One thread's share of the designs that `next` hands out. */
+static void work_off(hf_batch *batch, int thread, int (*next)(void *), void *context, const double *design_N,
+                     hf_form_result *result)
+{
+    const hf_evaluator *v = batch->evaluator;
+    const struct hf_batch_engine *e = batch->engine;
+    hf_workspace *w = &batch->workspace[thread];
+    if (e && e->solver == HF_SOLVER_CHORD)
+        hf_chord_run(&e->shared, &e->chord[thread], w, next, context, design_N, result);
+    else if (e)
+        hf_swarm_run(v, &e->plan, &e->lanes[thread], w, next, context, design_N, result);
+    else
+        for (int i = next(context); i >= 0; i = next(context))
+            hf_evaluate(v, design_N + (size_t)i * (size_t)v->model->n_gene, w, &result[i]);
 }
 
 /* ---- the parallel run ---- */
@@ -96,21 +140,13 @@ static int take_next(void *context)
 
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result)
 {
-    size_t n_gene = (size_t)batch->evaluator->model->n_gene;
     queue work = {n, 0, pending};
     double cpu_s = 0;
 #pragma omp parallel num_threads(batch->n_thread) reduction(+ : cpu_s)
     {
         int thread = omp_get_thread_num();
-        hf_workspace *workspace = &batch->workspace[thread];
         double start_s = thread_cpu_s();
-        if (batch->chord) {
-            hf_chord_run(&batch->chord->shared, &batch->chord->lanes[thread], workspace, take_next, &work, design_N,
-                         result);
-        } else {
-            for (int i = take_next(&work); i >= 0; i = take_next(&work))
-                hf_evaluate(batch->evaluator, design_N + (size_t)i * n_gene, workspace, &result[i]);
-        }
+        work_off(batch, thread, take_next, &work, design_N, result);
         cpu_s += thread_cpu_s() - start_s; /* without the wait for the other threads */
     }
     batch->cpu_s += cpu_s;
@@ -119,17 +155,13 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result)
 {
     queue work = {1, 0, NULL};
-    hf_workspace *workspace = &batch->workspace[0];
-    if (batch->chord)
-        hf_chord_run(&batch->chord->shared, &batch->chord->lanes[0], workspace, take_next, &work, design_N, result);
-    else
-        hf_evaluate(batch->evaluator, design_N, workspace, result);
-    return workspace;
+    work_off(batch, 0, take_next, &work, design_N, result);
+    return &batch->workspace[0];
 }
 
 void hf_batch_free(hf_batch *batch)
 {
-    free_chord(batch);
+    free_engine(batch);
     for (int i = 0; i < batch->n_thread; i++)
         hf_workspace_free(&batch->workspace[i]);
     free(batch->workspace);

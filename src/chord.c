@@ -28,8 +28,14 @@ static const kernels *choose_kernels(void)
     }
     static const kernels portable = TABLE(portable), avx2 = TABLE(avx2), avx512 = TABLE(avx512);
 #undef TABLE
-    if (__builtin_cpu_supports("avx512f")) return &avx512;
-    return __builtin_cpu_supports("avx2") ? &avx2 : &portable;
+    switch (hf_lane_best_isa()) {
+    case HF_LANE_AVX512:
+        return &avx512;
+    case HF_LANE_AVX2:
+        return &avx2;
+    default:
+        return &portable;
+    }
 }
 
 /* ---- shared matrix ---- */

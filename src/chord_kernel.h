@@ -2,9 +2,8 @@
 #ifndef HIFDM_CHORD_KERNEL_H
 #define HIFDM_CHORD_KERNEL_H
 
+#include "lane.h"
 #include <hifdm/evaluate.h>
-
-#define HF_LANES 8
 
 /* Shared, constant. Arrays packed for the solve; see chord_kernel.h. */
 typedef struct hf_chord {

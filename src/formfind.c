@@ -12,8 +12,6 @@
 /* Straight chains are looked at after this many iterations, and again each time that number has doubled. */
 #define FIRST_CHAIN_CHECK 64
 #define CHAIN_LOAD_SETTLED 0.01 /* relative change of the load between two looks that counts as settled */
-#define BLOWN_UP 1e9            /* a cable this many times its theoretical length is no answer */
-#define GONE 1e-12              /* nor is one this short, whatever its law */
 #define CHAIN_LOAD_NONE 1e-6    /* lateral load below this part of the reference tension is none */
 
 const char *hf_stop_reason_word(int reason)
@@ -103,12 +101,12 @@ static void measure_cables(const hf_model *m, const hf_form_settings *s, hf_work
             r->culprit = e;
             return;
         }
-        if (part < (w->law[e] == HF_LAW_TENSION ? s->collapse_ratio : GONE) && w->law[e] != HF_LAW_LENGTH) {
+        if (part < (w->law[e] == HF_LAW_TENSION ? s->collapse_ratio : HF_FORM_GONE) && w->law[e] != HF_LAW_LENGTH) {
             r->status = HF_COLLAPSED;
             r->culprit = e;
             return;
         }
-        if (part > BLOWN_UP) { /* what rounding leaves of a singular matrix */
+        if (part > HF_FORM_BLOWN_UP) { /* what rounding leaves of a singular matrix */
             r->status = HF_SINGULAR;
             r->culprit = a < b ? a : b;
             return;
@@ -373,4 +371,27 @@ hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_works
         r->stop_reason = HF_STOPPED_MAX_ITERATIONS;
     }
     return finish(m, w, r);
+}
+
+hf_status hf_form_accept(const hf_model *m, const hf_form_settings *s, hf_stop_reason reason, int iterations,
+                         hf_workspace *w, hf_form_result *r)
+{
+    double length_gap;
+    progress p = {.stop = reason == HF_STOPPED_RMS_CHANGE ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
+    *r = (hf_form_result){.status = HF_OK, .culprit = -1, .iterations = iterations, .stop_reason = reason};
+    r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    measure_cables(m, s, w, r, &length_gap);
+    if (r->status == HF_OK) {
+        if (reason == HF_STOPPED_MAX_ITERATIONS) r->status = HF_NOT_CONVERGED;
+        r->residual_N = largest_residual_N(m, w);
+        judge_chains(m, w, &p, r);
+    }
+    return finish(m, w, r);
+}
+
+void hf_form_refuse(hf_status status, int iterations, hf_form_result *r)
+{
+    *r = (hf_form_result){.status = status, .culprit = -1, .iterations = iterations};
+    r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    finish(NULL, NULL, r);
 }

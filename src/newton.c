@@ -236,7 +236,7 @@ hf_status hf_newton_find(const hf_model *m, const hf_form_settings *s, hf_worksp
     for (;;) {
         hf_form_settings part = *s;
         int left = s->max_iterations - n_done;
-        part.max_iterations = block < left ? block : left;
+        part.max_iterations = left < 1 ? 1 : block < left ? block : left; /* the shape of the last step is measured */
         hf_form_find(m, &part, HF_STOP_RESIDUAL, w, history, result);
         n_done += result->iterations;
         if (result->status != HF_NOT_CONVERGED || n_done >= s->max_iterations) break;

@@ -5,7 +5,7 @@ export LC_ALL=C.UTF-8
 cd "$(dirname "$0")/.."
 
 # ---- The rules' own lists: change them here when the house changes ---------------------------------------------------
-heap_files="status arena text scene scene_import config numbering model batch hdf5_io store store_read
+heap_files="status arena text scene scene_import config numbering model lane batch hdf5_io store store_read
             options plan run"                       # may call malloc and its kin: set-up, never the hot path
 print_files="summary options print plan export run main"   # may print (summary: to a stream it is given)
 openmp_files="batch"                                 # may mention OpenMP

@@ -86,8 +86,12 @@ START_TEST(what_is_no_file_is_told)
     ERR(": cannot read: Is a directory\n");
     HIFDM(2, "run", "", NOWHERE);
     ERR("error: ");
-    HIFDM(2, "check", hifdm_program()); /* binary */
+    HIFDM(2, "check", file_with("binary.yaml", "\x7f" "ELF\x01\x02"));
     ERR("YAML: control characters are not allowed\n");
+    SHELL(0, "head -c 2000000 /dev/zero | tr '\\0' x >\"$1\"; rm \"$2\"", temp("long.yaml"), temp("binary.yaml"));
+    HIFDM(2, "check", temp("long.yaml"));
+    ERR("longer than 1024 kB, so no case file\n");
+    SHELL(0, "rm \"$1\"", temp("long.yaml"));
     SHELL(2, "\"$0\" check - </dev/null"); /* '-' is a file name like any other */
     ERR("error: -: cannot open: No such file or directory\n");
     SHELL(0, "cd \"$1\" && ls | grep -v '^command-' | wc -l | tr -d '\\n'", temp("."));

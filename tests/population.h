@@ -1,0 +1,48 @@
+/* population - designs around the boundary tensions of a found shape, for tests of what evaluates many of them. */
+#ifndef HIFDM_TESTS_POPULATION_H
+#define HIFDM_TESTS_POPULATION_H
+
+#include "nets.h"
+
+#include <hifdm/evaluate.h>
+
+enum { MAX_GENE = 200, MAX_CABLE = 600, N_DESIGN = 29 }; /* no multiple of the lanes */
+#define TOLERANCE 1e-10
+
+struct run {
+    struct net net;
+    hf_evaluator evaluator;
+    double start_q[MAX_CABLE], base_N[MAX_GENE], design_N[N_DESIGN * MAX_GENE];
+};
+
+/* Designs around the tensions of net->scene's shape, by up to 0.5 N, or 0.01 N where tensions are to be held: their
+ * equilibrium must exist. */
+static inline void start_run(struct run *r, int rule)
+{
+    const hf_model *m = &r->net.model;
+    struct rng rng = rng_start(31);
+    double range_N = rule == HF_RULE_TENSION ? 0.01 : 0.5;
+    r->net.form.residual_tolerance = r->net.form.length_tolerance = TOLERANCE;
+    r->net.form.max_iterations = 100000;
+    ck_assert(m->n_gene > 0 && m->n_gene <= MAX_GENE && m->n_cable <= MAX_CABLE);
+    ck_assert_int_eq(find_shape(&r->net), HF_OK);
+    memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
+    for (int k = 0; k < m->n_gene; k++)
+        r->base_N[k] = r->net.work.tension_N[m->gene_cable[k]];
+    for (int i = 0; i < N_DESIGN * m->n_gene; i++)
+        r->design_N[i] = r->base_N[i % m->n_gene] + rng_uniform(&rng, -range_N, range_N);
+    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, rule, HF_SOLVER_CHORD, 1e9};
+}
+
+static inline void open_run(struct run *r, int rule)
+{
+    OPEN_CASE(&r->net, SMALL_REFLECTOR);
+    start_run(r, rule);
+}
+
+static inline double *design(struct run *r, int i)
+{
+    return r->design_N + i * r->net.model.n_gene;
+}
+
+#endif

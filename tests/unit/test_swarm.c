@@ -1,0 +1,101 @@
+/* The paper's iteration in lanes: the results of the scalar code, whatever shares a pass. */
+#include "nets.h"
+
+#include <hifdm/batch.h>
+
+enum { MAX_GENE = 200, MAX_CABLE = 400, N_DESIGN = 21 };
+
+struct run {
+    struct net net;
+    hf_evaluator evaluator;
+    double start_q[MAX_CABLE], design_N[N_DESIGN * MAX_GENE];
+};
+
+static void open_run(struct run *r, int rule, double range_N)
+{
+    OPEN_CASE(&r->net, SMALL_REFLECTOR);
+    const hf_model *m = &r->net.model;
+    struct rng rng = rng_start(7);
+    ck_assert(m->n_gene <= MAX_GENE && m->n_cable <= MAX_CABLE);
+    ck_assert_int_eq(find_shape(&r->net), HF_OK);
+    memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
+    for (int i = 0; i < N_DESIGN; i++)
+        for (int k = 0; k < m->n_gene; k++) {
+            double tension_N = r->net.work.tension_N[m->gene_cable[k]];
+            r->design_N[i * m->n_gene + k] = fmax(0.05, tension_N + rng_uniform(&rng, -range_N, range_N));
+        }
+    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, rule, HF_SOLVER_FIXED_POINT, 1e9};
+}
+
+static void evaluate(struct run *r, int n_thread, int backwards, hf_form_result result[N_DESIGN])
+{
+    hf_batch batch;
+    unsigned char pending[N_DESIGN];
+    ck_assert_int_eq(hf_batch_create(&r->evaluator, n_thread, &batch), HF_OK);
+    ck_assert_int_eq(hf_batch_share(&batch, r->design_N), HF_SOLVER_FIXED_POINT);
+    if (!backwards) hf_batch_run(&batch, N_DESIGN, r->design_N, NULL, result);
+    for (int i = N_DESIGN - 1; backwards && i >= 0; i--) { /* one by one, the last first */
+        memset(pending, 0, sizeof pending);
+        pending[i] = 1;
+        hf_batch_run(&batch, N_DESIGN, r->design_N, pending, result);
+    }
+    hf_batch_free(&batch);
+}
+
+/* Status and iterations are those of the scalar code; measures differ by roundoff, which some hundred iterations that
+ * contract do not let grow: 1e-9 of their size. */
+START_TEST(results_are_those_of_the_scalar_code)
+{
+    struct run r;
+    hf_form_result result[N_DESIGN], alone;
+    open_run(&r, _i % 3, _i < 3 ? 0.5 : 9); /* a wide range brings designs without a shape along */
+    r.net.form.residual_tolerance = 1e-7;
+    r.net.form.max_iterations = 3000;
+    evaluate(&r, 2, 0, result);
+    for (int i = 0; i < N_DESIGN; i++) {
+        hf_evaluate(&r.evaluator, r.design_N + i * r.net.model.n_gene, &r.net.work, &alone);
+        ck_assert_int_eq(result[i].status, alone.status);
+        ck_assert_int_eq(result[i].stop_reason, alone.stop_reason);
+        ck_assert_int_le(abs(result[i].iterations - alone.iterations), 1);
+        if (alone.status != HF_OK) {
+            ck_assert(isnan(result[i].psi_m));
+            continue;
+        }
+        if (result[i].iterations != alone.iterations) continue; /* roundoff at the threshold */
+        ck_assert_double_eq_tol(result[i].psi_m, alone.psi_m, 1e-9 * alone.psi_m);
+        ck_assert_double_eq_tol(result[i].boundary_tension_ratio, alone.boundary_tension_ratio, 1e-9);
+        ck_assert_double_eq_tol(result[i].residual_N, alone.residual_N, 1e-9);
+    }
+    close_net(&r.net);
+}
+END_TEST
+
+START_TEST(neighbours_and_threads_do_not_change_a_bit)
+{
+    struct run r;
+    hf_form_result result[N_DESIGN], other[N_DESIGN];
+    open_run(&r, _i, 0.5);
+    r.net.form.residual_tolerance = 1e-7;
+    evaluate(&r, 1, 0, result);
+    for (int k = 0; k < 3; k++) {
+        evaluate(&r, k == 0 ? 1 : k == 1 ? 2 : 5, k == 0, other);
+        for (int i = 0; i < N_DESIGN; i++) {
+            ck_assert_int_eq(result[i].status, other[i].status);
+            ck_assert_int_eq(result[i].iterations, other[i].iterations);
+            ck_assert_mem_eq(&result[i].psi_m, &other[i].psi_m, sizeof(double));
+            ck_assert_mem_eq(&result[i].residual_N, &other[i].residual_N, sizeof(double));
+        }
+    }
+    close_net(&r.net);
+}
+END_TEST
+
+Suite *suite_unit_swarm(void)
+{
+    Suite *suite = suite_create("unit/swarm");
+    TCase *tests = tcase_create("swarm");
+    tcase_add_loop_test(tests, results_are_those_of_the_scalar_code, 0, 6);
+    tcase_add_loop_test(tests, neighbours_and_threads_do_not_change_a_bit, 0, 3);
+    suite_add_tcase(suite, tests);
+    return suite;
+}
