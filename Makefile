@@ -6,7 +6,8 @@
 # ---- The modules, in dependency order: a module may include only modules above it (`make lint` checks it) ------------
 # Sources are src/NAME.c; the header is include/hifdm/NAME.h if public, src/NAME.h if internal.
 MODULES := status arena sha256 text scene scene_import config config_table numbering model workspace band metrics \
-           lane lane_kernel formfind newton evaluate chord_kernel chord ga swarm polish batch summary hdf5_io store store_read
+           lane lane_kernel formfind newton evaluate chord_kernel chord ga swarm polish batch summary hdf5_io store \
+           store_read
 APP_MODULES := options print run plan export main
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
@@ -82,6 +83,7 @@ SONAME := libhifdm.so.$(SOVERSION)
 RUNNER := $(BUILD)/tests/run_tests
 BENCH := $(BUILD)/bench/bench
 BENCH_OUT ?= results/bench
+BENCH_ROUNDS ?= 3
 BENCH_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/bench/*.c)))
 
 # ---- How things are said and called ----------------------------------------------------------------------------------
@@ -132,12 +134,12 @@ stress: ## the numerical-stability suite at full length
 	+$(Q)HIFDM_STRESS=1 CK_DEFAULT_TIMEOUT=1800 $(MAKE) test SUITE=stress
 
 # Peers that cannot be installed are left out of the tables. BENCH_OUT=... writes elsewhere.
-bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/ (about 4 minutes)
+bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/ (4 minutes)
 	$(Q)tools/setup.sh --bench || tools/setup.sh
 	$(SUB) $(PROGRAM) $(BENCH)
 	@mkdir -p $(BENCH_OUT)
 	$(PYTHON) tools/bench/run.py --driver $(BENCH) --program $(PROGRAM) --work $(BUILD)/bench --out $(BENCH_OUT) \
-	    --flags $(call quote,$(COMPILER); $(CFLAGS) $(LANGUAGE) $(CODEGEN))
+	    --rounds $(BENCH_ROUNDS) --flags $(call quote,$(COMPILER); $(CFLAGS) $(LANGUAGE) $(CODEGEN))
 
 lint: ## check the rules of the house
 	+$(Q)tools/lint.sh

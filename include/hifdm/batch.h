@@ -11,9 +11,9 @@ extern "C" {
 typedef struct {
     const hf_evaluator *evaluator; /* borrowed */
     int n_thread;
-    hf_workspace *workspace;      /* [n_thread], all allocated before the first evaluation */
-    struct hf_batch_chord *chord; /* what hf_batch_share made, or NULL */
-    double cpu_s;                 /* processor time spent inside evaluations so far, over all threads */
+    hf_workspace *workspace;        /* [n_thread], all allocated before the first evaluation */
+    struct hf_batch_engine *engine; /* what hf_batch_share made, or NULL */
+    double cpu_s;                   /* processor time spent inside evaluations so far, over all threads */
 } hf_batch;
 
 /* n_thread 0: hf_batch_default_threads(). HF_OK or HF_NO_MEMORY. Free in any case. */

@@ -67,6 +67,19 @@ hf_status hf_form_find(const hf_model *model, const hf_form_settings *settings, 
 hf_status hf_form_measure(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                           hf_form_result *result);
 
+/* A cable of law tension or force_density shorter than this part of its theoretical length is gone whatever
+ * collapse_ratio says; one this many times longer is what rounding leaves of a singular matrix. */
+#define HF_FORM_GONE 1e-12
+#define HF_FORM_BLOWN_UP 1e9
+
+/* The end of hf_form_find for an iteration done elsewhere: the workspace holds law, target, and positions that are the
+ * solution for q_N_per_m. Measures them and judges the chains. Returns result->status. */
+hf_status hf_form_accept(const hf_model *model, const hf_form_settings *settings, hf_stop_reason reason, int iterations,
+                         hf_workspace *workspace, hf_form_result *result);
+
+/* The result of a candidate without a shape: the status (an ill-posed one), NaN measures, no culprit. */
+void hf_form_refuse(hf_status status, int iterations, hf_form_result *result);
+
 /* Is straight chain i under lateral load in the workspace's shape? For naming it. */
 int hf_form_chain_is_loaded(const hf_model *model, hf_workspace *workspace, int i_chain);
 

@@ -86,7 +86,9 @@ START_TEST(what_is_no_file_is_told)
     ERR(": cannot read: Is a directory\n");
     HIFDM(2, "run", "", NOWHERE);
     ERR("error: ");
-    HIFDM(2, "check", file_with("binary.yaml", "\x7f" "ELF\x01\x02"));
+    HIFDM(2, "check",
+          file_with("binary.yaml", "\x7f"
+                                   "ELF\x01\x02"));
     ERR("YAML: control characters are not allowed\n");
     SHELL(0, "head -c 2000000 /dev/zero | tr '\\0' x >\"$1\"; rm \"$2\"", temp("long.yaml"), temp("binary.yaml"));
     HIFDM(2, "check", temp("long.yaml"));
