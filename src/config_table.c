@@ -8,6 +8,7 @@ const char *const hf_stop_rule_word[2] = {"residual", "rms_change"};
 const char *const hf_rule_word[3] = {"force_density", "tension", "seeded"};
 const char *const hf_solver_word[4] = {"auto", "chord", "newton", "fixed_point"};
 const char *const hf_optimize_method_word[3] = {"ga", "lm", "ga+lm"};
+const char *const hf_symmetry_word[5] = {"none", "x", "y", "xy", "auto"};
 
 /* NULL-terminated, in the order of the enums */
 static const char *const method_words[] = {"hifdm", "iterative_fdm", "fdm", "newton", "auto", NULL};
@@ -15,6 +16,7 @@ static const char *const stop_words[] = {"residual", "rms_change", NULL};
 static const char *const rule_words[] = {"force_density", "tension", "seeded", NULL};
 static const char *const solver_words[] = {"auto", "chord", "newton", "fixed_point", NULL};
 static const char *const optimize_words[] = {"ga", "lm", "ga+lm", NULL};
+static const char *const symmetry_words[] = {"none", "x", "y", "xy", "auto", NULL};
 static const char *const spacing_words[] = {"equal_arc", "equal_projected", NULL};
 static const char *const boundary_words[] = {"outer_edge", "module_edges", NULL};
 static const char *const supports_words[] = {"module_corners", "ribs", "perimeter", NULL};
@@ -86,6 +88,11 @@ const hf_field hf_field_table[] = {
     {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", rule_words,
      "what a design means: boundary held at q = T'/L* (always one answer), held at T', or Eq. 8 started from q = T'/L* "
      "and stopped by rms_change (the paper's literal reading; its optimum depends on where it stops)"},
+    {"optimize.symmetry", HF_FIELD_WORD, AT(optimize.symmetry), 0, 0, "none", "", symmetry_words,
+     "boundary cables that are mirror images of each other change by the same step, which makes fewer genes: mirrored "
+     "at "
+     "the middle of the net's extent along x, along y, both, or (auto) at whichever of the two planes the net is "
+     "symmetric about"},
     {"optimize.solver", HF_FIELD_WORD, AT(optimize.solver), 0, 0, "auto", "", solver_words,
      "how an individual is solved: chord shares one factored Newton matrix, eight designs to a pass; newton: each its "
      "own; fixed_point: the paper's iteration. auto: chord where it applies, else newton, else fixed_point"},

@@ -1,5 +1,6 @@
 #include "export.h"
 
+#include "csv.h"
 #include <hifdm/store.h>
 
 #include <errno.h>
@@ -9,43 +10,35 @@
 
 #define PATH_SIZE 1200
 
-/* An id as a CSV field: quoted when it holds a comma, a quote, blanks at its ends or a leading '#'. */
-static void write_id(const char *id, FILE *f)
-{
-    size_t n = strlen(id);
-    int plain = !strpbrk(id, ",\"") && id[0] != '#' && id[0] != ' ' && id[0] != '\t' && (n == 0 || id[n - 1] != ' ');
-    if (plain) {
-        fputs(id, f);
-        return;
-    }
-    fputc('"', f);
-    for (; *id; id++) {
-        if (*id == '"') fputc('"', f);
-        fputc(*id, f);
-    }
-    fputc('"', f);
-}
+typedef struct {
+    const hf_scene *scene;
+    const hf_shape *shape;
+} view;
 
-static void write_nodes(const hf_scene *s, const hf_shape *shape, FILE *f)
+static void write_nodes(const void *context, FILE *f)
 {
+    const hf_scene *s = ((const view *)context)->scene;
+    const hf_shape *shape = ((const view *)context)->shape;
     fputs("id,x_m,y_m,z_m,x0_m,y0_m,z0_m,role\n", f);
     for (int i = 0; i < s->n_node; i++) {
         const double *p = shape->position_m + 3 * (size_t)i, *p0 = s->position_m + 3 * (size_t)i;
-        write_id(s->node_id[i], f);
+        hf_csv_write_id(s->node_id[i], f);
         fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%s\n", p[0], p[1], p[2], p0[0], p0[1], p0[2],
                 hf_role_word[s->role[i]]);
     }
 }
 
-static void write_cables(const hf_scene *s, const hf_shape *shape, FILE *f)
+static void write_cables(const void *context, FILE *f)
 {
+    const hf_scene *s = ((const view *)context)->scene;
+    const hf_shape *shape = ((const view *)context)->shape;
     fputs("id,i,j,group,law,length_m,tension_N,q_N_per_m\n", f);
     for (int e = 0; e < s->n_cable; e++) {
-        write_id(s->cable_id[e], f);
+        hf_csv_write_id(s->cable_id[e], f);
         fputc(',', f);
-        write_id(s->node_id[s->end[2 * e]], f);
+        hf_csv_write_id(s->node_id[s->end[2 * e]], f);
         fputc(',', f);
-        write_id(s->node_id[s->end[2 * e + 1]], f);
+        hf_csv_write_id(s->node_id[s->end[2 * e + 1]], f);
         fprintf(f, ",%s,%s,%.17g,%.17g,%.17g\n", hf_group_word[s->group[e]], hf_law_word[shape->law[e]],
                 shape->length_m[e], shape->tension_N[e], shape->q_N_per_m[e]);
     }
@@ -56,20 +49,25 @@ static hf_status claim(const hf_options *o, const char *name, char path[PATH_SIZ
 {
     if (snprintf(path, PATH_SIZE, "%s/%s", o->csv, name) >= PATH_SIZE)
         return hf_error(messages, HF_IO, "%s: the path is too long", o->csv);
-    if (!o->force && access(path, F_OK) == 0)
+    return hf_export_claim(path, o->force, messages);
+}
+
+hf_status hf_export_claim(const char *path, int force, hf_messages *messages)
+{
+    if (!force && access(path, F_OK) == 0)
         return hf_error(messages, HF_EXISTS, "%s exists; use --force to replace it", path);
     return HF_OK;
 }
 
-/* Written under a temporary name and renamed, so that no half-written file is ever seen. */
-static hf_status write_file(const char *path, const hf_scene *scene, const hf_shape *shape,
-                            void (*write)(const hf_scene *, const hf_shape *, FILE *), hf_messages *messages)
+hf_status hf_export_file(const char *path, void (*write)(const void *context, FILE *file), const void *context,
+                         hf_messages *messages)
 {
     char temporary[PATH_SIZE + 8];
-    snprintf(temporary, sizeof temporary, "%s.tmp", path);
+    if (snprintf(temporary, sizeof temporary, "%s.tmp", path) >= (int)sizeof temporary)
+        return hf_error(messages, HF_IO, "%s: the path is too long", path);
     FILE *f = fopen(temporary, "w");
     if (!f) return hf_error(messages, HF_IO, "%s: cannot write: %s", temporary, strerror(errno));
-    write(scene, shape, f);
+    write(context, f);
     int failed = ferror(f) != 0;
     failed |= fclose(f) != 0;
     if (!failed && rename(temporary, path) == 0) return HF_OK;
@@ -101,8 +99,9 @@ static hf_status export_shape(const hf_options *o, hf_scene *scene, hf_shape *sh
         return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", o->csv, strerror(errno));
     HF_TRY(claim(o, "nodes.csv", nodes, messages)); /* both before either is written */
     HF_TRY(claim(o, "cables.csv", cables, messages));
-    HF_TRY(write_file(nodes, scene, shape, write_nodes, messages));
-    HF_TRY(write_file(cables, scene, shape, write_cables, messages));
+    const view both = {scene, shape};
+    HF_TRY(hf_export_file(nodes, write_nodes, &both, messages));
+    HF_TRY(hf_export_file(cables, write_cables, &both, messages));
     snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s and %s", o->file, scene->n_node,
              scene->n_cable, shape_word[stage], nodes, cables);
     return HF_OK;

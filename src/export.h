@@ -12,4 +12,11 @@
  * people on what was written. */
 hf_status hf_export(const hf_options *options, char *said, size_t size, hf_messages *messages);
 
+/* HF_EXISTS with a message when `path` is there and not `force`. */
+hf_status hf_export_claim(const char *path, int force, hf_messages *messages);
+
+/* Write a file under a temporary name and rename it, so that no half-written file is ever seen. HF_OK or HF_IO. */
+hf_status hf_export_file(const char *path, void (*write)(const void *context, FILE *file), const void *context,
+                         hf_messages *messages);
+
 #endif

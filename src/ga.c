@@ -1,7 +1,9 @@
-/* Contents: random numbers - memory - adaptive rates - selection - variation - ranking - the next generation */
+/* Contents: random numbers - memory - linked genes - the first generation - adaptive rates - selection - variation -
+ * ranking - the next generation */
 #include <hifdm/ga.h>
 
 #include "arena.h"
+#include "symmetry.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -50,6 +52,7 @@ static void lay_out(hf_arena *a, hf_ga *g)
     size_t n = (size_t)g->n_individual, k = (size_t)g->n_gene;
     g->lower_N = hf_arena_take(a, k, sizeof(double));
     g->upper_N = hf_arena_take(a, k, sizeof(double));
+    g->base_N = hf_arena_take(a, k, sizeof(double));
     g->design_N = hf_arena_take(a, n * k, sizeof(double));
     g->next_design_N = hf_arena_take(a, n * k, sizeof(double));
     g->result = hf_arena_take(a, n, sizeof(hf_form_result));
@@ -68,6 +71,44 @@ static double clamp(double value, double low, double high)
     return value < low ? low : value > high ? high : value;
 }
 
+/* ---- linked genes ---- */
+
+/* Does the gene decide on its own step? */
+static int leads(const hf_ga *g, int k)
+{
+    return !g->gene_leader || g->gene_leader[k] == k;
+}
+
+/* The bounds of a class are those of the step that all its genes can take. Where there is none each gene keeps its own,
+ * and clamps to them. */
+static void link_bounds(hf_ga *g)
+{
+    for (int leader = 0; g->gene_leader && leader < g->n_gene; leader++) {
+        double low = -INFINITY, high = INFINITY;
+        if (!leads(g, leader)) continue;
+        for (int k = leader; k < g->n_gene; k++) {
+            if (g->gene_leader[k] != leader) continue;
+            low = fmax(low, g->lower_N[k] - g->base_N[k]);
+            high = fmin(high, g->upper_N[k] - g->base_N[k]);
+        }
+        for (int k = leader; low < high && k < g->n_gene; k++) {
+            if (g->gene_leader[k] != leader) continue;
+            g->lower_N[k] = fmax(g->lower_N[k], g->base_N[k] + low);
+            g->upper_N[k] = fmin(g->upper_N[k], g->base_N[k] + high);
+        }
+    }
+}
+
+static void follow_leaders(const hf_ga *g, double *design_N)
+{
+    if (!g->gene_leader) return;
+    hf_symmetry_follow(g->n_gene, g->gene_leader, g->base_N, design_N);
+    for (int k = 0; k < g->n_gene; k++)
+        design_N[k] = clamp(design_N[k], g->lower_N[k], g->upper_N[k]);
+}
+
+/* ---- the first generation ---- */
+
 /* Eq. 13 around the base, with one random number per chain (see mutate). Individual 0 is the base itself, so that the
  * result is never worse than it. */
 static void first_generation(const double *base_N, hf_ga *g)
@@ -77,6 +118,7 @@ static void first_generation(const double *base_N, hf_ga *g)
         g->lower_N[k] = clamp(base_N[k] - s->range_N, s->min_tension_N, s->max_tension_N);
         g->upper_N[k] = clamp(base_N[k] + s->range_N, s->min_tension_N, s->max_tension_N);
     }
+    link_bounds(g);
     for (int i = 0; i < g->n_individual; i++) {
         stream random = stream_open(s->seed, 0, i);
         for (int j = 0; j < g->n_group; j++)
@@ -86,6 +128,7 @@ static void first_generation(const double *base_N, hf_ga *g)
             g->design_N[(size_t)i * (size_t)g->n_gene + (size_t)k] =
                 clamp(base_N[k] + step, g->lower_N[k], g->upper_N[k]);
         }
+        follow_leaders(g, g->design_N + (size_t)i * (size_t)g->n_gene);
         g->pending[i] = 1;
         g->crossover_rate[i] = g->mutation_rate[i] = (double)NAN;
         g->parent[2 * i] = g->parent[2 * i + 1] = -1;
@@ -97,11 +140,14 @@ hf_status hf_ga_create(const hf_optimize_settings *settings, const hf_model *mod
     *ga = (hf_ga){.settings = settings, .n_gene = model->n_gene, .n_individual = settings->population, .best = -1};
     ga->gene_group = model->gene_group;
     ga->n_group = model->n_gene_group;
+    ga->gene_leader = model->n_leader < model->n_gene ? model->gene_leader : NULL;
+    ga->n_leader = ga->gene_leader ? model->n_leader : model->n_gene;
     hf_arena arena = {0};
     lay_out(&arena, ga);
     HF_TRY(hf_arena_allocate(&arena));
     lay_out(&arena, ga);
     ga->block = arena.block;
+    memcpy(ga->base_N, base_N, (size_t)ga->n_gene * sizeof *base_N);
     first_generation(base_N, ga);
     return HF_OK;
 }
@@ -178,14 +224,16 @@ static double mutation_step(double rate, stream *random)
  * 240 um). Single genes still mutate, `rate` of them per individual. */
 static void mutate(const hf_ga *g, double rate, double *child, stream *random)
 {
-    double single = rate / g->n_gene;
+    double single = rate / g->n_leader;
     for (int j = 0; j < g->n_group; j++)
         g->group_draw[j] = mutation_step(rate, random);
     for (int k = 0; k < g->n_gene; k++) {
+        if (!leads(g, k)) continue;
         double step = g->group_draw[g->gene_group[k]] + mutation_step(single, random);
         child[k] = clamp(child[k] + step * (g->upper_N[k] - g->lower_N[k]), g->lower_N[k], g->upper_N[k]);
     }
 }
+
 /* One child from two parents of its own stream; a child equal to its first parent needs no evaluation. */
 static void breed(hf_ga *g, int i)
 {
@@ -203,6 +251,7 @@ static void breed(hf_ga *g, int i)
     else
         memcpy(child, mother, n * sizeof *child);
     mutate(g, pm, child, &random);
+    follow_leaders(g, child);
     g->pending[i] = memcmp(child, mother, n * sizeof *child) != 0;
     g->next_result[i] = g->result[a];
     g->crossover_rate[i] = pc;

@@ -209,6 +209,8 @@ void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table,
 #define HF_SUMMARY_GA_MEMBERS(X)                                                                                       \
     X(hf_summary, "/ga", "solver", solver, INT)                                                                        \
     X(hf_summary, "/ga", "base_psi_m", base_psi_m, REAL)                                                               \
+    X(hf_summary, "/ga", "n_leader", n_leader, INT)                                                                    \
+    X(hf_summary, "/ga", "planes", planes, INT)                                                                        \
     X(hf_summary, "/ga", "best_generation", best_generation, INT)                                                      \
     X(hf_summary, "/ga", "best_individual", best_individual, INT)                                                      \
     X(hf_summary, "/ga", "generations", generations, INT)                                                              \

@@ -1,6 +1,7 @@
 /* main - from the command line to an exit status; with print, plan and run the only printing part of the program. */
 #include "plan.h"
 #include "band.h"
+#include "designs.h"
 #include "export.h"
 #include "options.h"
 #include "print.h"
@@ -46,6 +47,8 @@ static hf_status dispatch(const hf_options *o, int argc, char **argv, hf_message
         return command_run(o, argc, argv, messages);
     case HF_COMMAND_CHECK:
         return hf_plan(o, stdout, messages);
+    case HF_COMMAND_EVALUATE:
+        return hf_designs(o, stdout, messages);
     case HF_COMMAND_SHOW:
         return command_show(o, messages);
     case HF_COMMAND_EXPORT:

@@ -36,6 +36,7 @@ static void lay_out(hf_arena *a, const hf_scene *s, hf_model *m)
     m->start_q_N_per_m = hf_arena_take(a, e, sizeof(double));
     m->gene_cable = hf_arena_take(a, e, sizeof(int));
     m->gene_group = hf_arena_take(a, e, sizeof(int));
+    m->gene_leader = hf_arena_take(a, e, sizeof(int));
     m->chain_start = hf_arena_take(a, e + 1, sizeof(int));
     m->chain_cable = hf_arena_take(a, e, sizeof(int));
     m->chain_of_row = hf_arena_take(a, n, sizeof(int));
@@ -209,7 +210,9 @@ static hf_status group_genes(hf_model *m)
         int root = find_root(parent, k);
         if (label[root] < 0) label[root] = m->n_gene_group++;
         m->gene_group[k] = label[root];
+        m->gene_leader[k] = k;
     }
+    m->n_leader = m->n_gene;
     free(scratch);
     return HF_OK;
 }
@@ -289,6 +292,8 @@ int hf_model_is_valid(const hf_model *m)
                              : m->off_diagonal[e] != m->n_band)
             return 0;
     }
+    for (int k = 0; k < m->n_gene; k++)
+        if (m->gene_leader[k] < 0 || m->gene_leader[k] > k) return 0;
     for (int k = 0; k < m->n_inner_node; k++)
         if (m->inner_row[k] < 0 || m->inner_row[k] >= m->n_free) return 0;
     return m->chain_start[0] == 0 && m->n_gene <= m->n_cable;

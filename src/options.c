@@ -18,6 +18,8 @@ static const command_row command_table[] = {
     {"run", "CASE", "run what the case file contains and store it in one HDF5 file", HF_COMMAND_RUN},
     {"check", "CASE", "validate; print what will run, what is skipped, sizes, memory and expected time",
      HF_COMMAND_CHECK},
+    {"evaluate", "CASE", "evaluate a table of designs (boundary pretensions), to a table on standard output or -o",
+     HF_COMMAND_EVALUATE},
     {"show", "FILE", "print the summary of a result file", HF_COMMAND_SHOW},
     {"export", "FILE", "write a result as CSV files", HF_COMMAND_EXPORT},
     {"schema", NULL, "print every key of a case file: type, range, default, meaning", HF_COMMAND_SCHEMA},
@@ -35,6 +37,8 @@ typedef enum {
     OPTION_QUIET,
     OPTION_FORCE,
     OPTION_CSV,
+    OPTION_DESIGNS,
+    OPTION_TEMPLATE,
     OPTION_STAGE
 } option_id;
 
@@ -47,15 +51,23 @@ typedef struct {
 static const option_row option_table[] = {
     {"--output", "-o", "FILE", "result file (default: the case's name with .h5, in this folder)", BIT(HF_COMMAND_RUN),
      OPTION_OUTPUT},
-    {"--force", NULL, NULL, "replace existing files", BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EXPORT), OPTION_FORCE},
+    {"--designs", NULL, "FILE", "CSV: a column for each adjustable cable by its id, optionally id; N; a design per row",
+     BIT(HF_COMMAND_EVALUATE), OPTION_DESIGNS},
+    {"--template", NULL, "FILE", "instead: write such a table, with the tensions after form-finding as its one row",
+     BIT(HF_COMMAND_EVALUATE), OPTION_TEMPLATE},
+    {"--output", "-o", "FILE", "CSV of the results (default: standard output)", BIT(HF_COMMAND_EVALUATE),
+     OPTION_OUTPUT},
+    {"--force", NULL, NULL, "replace existing files",
+     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EXPORT) | BIT(HF_COMMAND_EVALUATE), OPTION_FORCE},
     {"--set", NULL, "KEY=VALUE", "override one key of the case, like form.pretension_N=12; may be repeated",
-     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_CHECK), OPTION_SET},
+     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_CHECK) | BIT(HF_COMMAND_EVALUATE), OPTION_SET},
     {"--threads", NULL, "N", "threads (default: one per core); the results do not depend on it",
-     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_CHECK), OPTION_THREADS},
+     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_CHECK) | BIT(HF_COMMAND_EVALUATE), OPTION_THREADS},
     {"--seed", NULL, "S", "seed of the genetic algorithm instead of optimize.seed", BIT(HF_COMMAND_RUN), OPTION_SEED},
-    {"--json", NULL, NULL, "one JSON object on standard output", BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_SHOW),
-     OPTION_JSON},
-    {"--quiet", NULL, NULL, "no progress and no summary; warnings and errors stay", BIT(HF_COMMAND_RUN), OPTION_QUIET},
+    {"--json", NULL, NULL, "one JSON object on standard output",
+     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_SHOW) | BIT(HF_COMMAND_EVALUATE), OPTION_JSON},
+    {"--quiet", NULL, NULL, "no progress and no summary; warnings and errors stay",
+     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EVALUATE), OPTION_QUIET},
     {"--csv", NULL, "DIR", "write nodes.csv and cables.csv into DIR", BIT(HF_COMMAND_EXPORT), OPTION_CSV},
     {"--stage", NULL, "STAGE", "form, optimize or polish: which shape (default: the result of the run)",
      BIT(HF_COMMAND_EXPORT), OPTION_STAGE},
@@ -89,6 +101,7 @@ static hf_status find_option(const char *word, hf_command command, const option_
 {
     const char *names[N_OPTION];
     size_t length = strcspn(word, "=");
+    int elsewhere = 0;
     for (int i = 0; i < N_OPTION; i++) {
         const option_row *o = &option_table[i];
         names[i] = o->name;
@@ -97,9 +110,11 @@ static hf_status find_option(const char *word, hf_command command, const option_
         if (!is_long && !is_short) continue;
         *row = o;
         if (o->commands & BIT(command)) return HF_OK;
+        elsewhere = 1;
+    }
+    if (elsewhere)
         return hf_error(messages, HF_BAD_USAGE, "'%s' does not go with this command; 'hifdm help' says where it goes",
                         word);
-    }
     return unknown("option", word, names, N_OPTION, messages);
 }
 
@@ -136,6 +151,12 @@ static hf_status apply(const option_row *row, const char *value, hf_options *o, 
         break;
     case OPTION_CSV:
         o->csv = value;
+        break;
+    case OPTION_DESIGNS:
+        o->designs = value;
+        break;
+    case OPTION_TEMPLATE:
+        o->template_path = value;
         break;
     case OPTION_STAGE:
         if (strcmp(value, "form") && strcmp(value, "optimize") && strcmp(value, "polish"))
@@ -187,6 +208,13 @@ hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_
         return hf_error(messages, HF_BAD_USAGE, "'hifdm %s' needs a %s", command->name, command->argument);
     if (options->command == HF_COMMAND_EXPORT && !options->csv)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs --csv DIR");
+    if (options->command == HF_COMMAND_EVALUATE && !options->designs == !options->template_path)
+        return hf_error(messages, HF_BAD_USAGE, "'hifdm evaluate' needs either --designs FILE or --template FILE");
+    if (options->template_path && options->output)
+        return hf_error(messages, HF_BAD_USAGE, "'-o' does not go with --template");
+    if (options->designs && options->json && !options->output)
+        return hf_error(messages, HF_BAD_USAGE,
+                        "--json needs -o FILE here: without it the table takes standard output");
     return HF_OK;
 }
 
@@ -203,7 +231,7 @@ void hf_options_help(FILE *file)
     fputs("hifdm - shape and pretension of the cable net of a large deployable mesh reflector\n\n", file);
     for (int i = 0; i < N_COMMAND; i++) {
         const command_row *c = &command_table[i];
-        fprintf(file, "  hifdm %-7s %-5s %s\n", c->name, c->argument ? c->argument : "", c->help);
+        fprintf(file, "  hifdm %-8s %-5s %s\n", c->name, c->argument ? c->argument : "", c->help);
         for (int k = 0; k < N_OPTION; k++) {
             const option_row *o = &option_table[k];
             char name[64];

@@ -9,6 +9,7 @@
 typedef enum {
     HF_COMMAND_RUN,
     HF_COMMAND_CHECK,
+    HF_COMMAND_EVALUATE,
     HF_COMMAND_SHOW,
     HF_COMMAND_EXPORT,
     HF_COMMAND_SCHEMA,
@@ -18,11 +19,12 @@ typedef enum {
 
 typedef struct {
     hf_command command;
-    const char *file;   /* the CASE or FILE, NULL for commands without one */
-    const char *output; /* -o */
-    const char *csv;    /* --csv */
-    const char *stage;  /* --stage */
-    const char **set;   /* [n_set] --set key=value, owned */
+    const char *file;                    /* the CASE or FILE, NULL for commands without one */
+    const char *output;                  /* -o */
+    const char *csv;                     /* --csv */
+    const char *designs, *template_path; /* --designs, --template */
+    const char *stage;                   /* --stage */
+    const char **set;                    /* [n_set] --set key=value, owned */
     int n_set;
     int threads; /* 0 = all cores */
     int has_seed;

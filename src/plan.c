@@ -3,6 +3,7 @@
 #include "chord.h"
 #include "print.h"
 #include "run.h"
+#include "symmetry.h"
 #include <hifdm/batch.h>
 
 #include <stdlib.h>
@@ -16,6 +17,7 @@ typedef struct {
     hf_model model;
     hf_workspace workspace;
     double *start_q_N_per_m; /* [n_cable] of the found shape */
+    int planes;              /* of symmetry */
 } plan;
 
 static void print_scene(const plan *p, FILE *f)
@@ -49,6 +51,9 @@ static void print_plan(const plan *p, FILE *f)
         fprintf(f,
                 "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
                 hf_rule_word[o->rule], p->model.n_gene, o->population, o->generations, (unsigned long long)o->seed);
+    if (optimizes && o->symmetry != HF_SYMMETRY_NONE)
+        fprintf(f, "                symmetry: %s, %s; %d independent genes of %d\n", hf_symmetry_word[o->symmetry],
+                hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_gene);
     fprintf(f, "  skipped       %s%s%s\n",
             optimizes         ? ""
             : c->has_optimize ? "optimisation (no boundary cable has a free end); "
@@ -150,6 +155,8 @@ static hf_status check(plan *p, const hf_options *options, FILE *f, hf_messages 
     HF_TRY(hf_config_scene(&p->settings, &p->scene, messages));
     HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));
     const hf_optimize_settings *o = &p->settings.optimize;
+    if (p->settings.has_optimize)
+        HF_TRY(hf_symmetry_apply(&p->scene, p->settings.optimize.symmetry, &p->model, &p->planes, messages));
     int threads = options->threads ? options->threads : hf_batch_default_threads();
     int optimizes = p->settings.has_optimize && p->model.n_gene > 0;
     p->start_q_N_per_m = malloc((size_t)p->model.n_cable * sizeof(double));

@@ -4,6 +4,7 @@
 #include "arena.h"
 #include "band.h"
 #include "newton.h"
+#include "symmetry.h"
 #include <hifdm/metrics.h>
 
 #include <gsl/gsl_blas.h>
@@ -24,9 +25,12 @@ typedef struct {
     const hf_evaluator *v;
     const double *lower_N, *upper_N;
     hf_workspace *w;
-    double *design_N;    /* [n_gene] of the last evaluation */
-    double *best_N;      /* [n_gene] */
-    double *sensitivity; /* [n_gene][3 n_free] right-hand sides, then dx/dT */
+    const double *start_N; /* [n_gene]: linked genes share the step from here */
+    double *design_N;      /* [n_gene] of the last evaluation */
+    int *gene;             /* [n_leader] gene of each variable */
+    int *variable_of_gene; /* [n_gene] */
+    double *best_N;        /* [n_gene] */
+    double *sensitivity;   /* [n_leader][3 n_free] right-hand sides, then dx/dT */
     double best_psi_m;
     int evaluations;
 } problem;
@@ -42,30 +46,48 @@ static void lay_out(hf_arena *a, problem *p)
     size_t k = (size_t)m->n_gene;
     p->design_N = hf_arena_take(a, k, sizeof(double));
     p->best_N = hf_arena_take(a, k, sizeof(double));
-    p->sensitivity = hf_arena_take(a, k * 3 * (size_t)m->n_free, sizeof(double));
+    p->gene = hf_arena_take(a, k, sizeof(int));
+    p->variable_of_gene = hf_arena_take(a, k, sizeof(int));
+    p->sensitivity = hf_arena_take(a, (size_t)m->n_leader * 3 * (size_t)m->n_free, sizeof(double));
+}
+
+/* One variable for the genes that a symmetry links. */
+static void number_variables(problem *p)
+{
+    const hf_model *m = p->v->model;
+    int n = 0;
+    for (int k = 0; k < m->n_gene; k++) {
+        if (m->gene_leader[k] == k) p->gene[n++] = k;
+        p->variable_of_gene[k] = m->gene_leader[k] == k ? n - 1 : p->variable_of_gene[m->gene_leader[k]];
+    }
 }
 
 /* ---- bounds: T = middle + half sin(variable) ---- */
 
 static void to_design(const problem *p, const gsl_vector *variable)
 {
-    for (size_t k = 0; k < variable->size; k++) {
+    const hf_model *m = p->v->model;
+    for (size_t i = 0; i < variable->size; i++) {
+        int k = p->gene[i];
         double half = (p->upper_N[k] - p->lower_N[k]) / 2, middle = (p->upper_N[k] + p->lower_N[k]) / 2;
-        p->design_N[k] = middle + half * sin(gsl_vector_get(variable, k));
+        p->design_N[k] = middle + half * sin(gsl_vector_get(variable, i));
     }
+    if (m->n_leader < m->n_gene) hf_symmetry_follow(m->n_gene, m->gene_leader, p->start_N, p->design_N);
 }
 
-static double slope(const problem *p, const gsl_vector *variable, size_t k)
+static double slope(const problem *p, const gsl_vector *variable, size_t i)
 {
-    return (p->upper_N[k] - p->lower_N[k]) / 2 * cos(gsl_vector_get(variable, k));
+    int k = p->gene[i];
+    return (p->upper_N[k] - p->lower_N[k]) / 2 * cos(gsl_vector_get(variable, i));
 }
 
 static void to_variable(const problem *p, const double *design_N, gsl_vector *variable)
 {
-    for (size_t k = 0; k < variable->size; k++) {
+    for (size_t i = 0; i < variable->size; i++) {
+        int k = p->gene[i];
         double half = (p->upper_N[k] - p->lower_N[k]) / 2, middle = (p->upper_N[k] + p->lower_N[k]) / 2;
         double place = half > 0 ? (design_N[k] - middle) / half : 0;
-        gsl_vector_set(variable, k, asin(fmax(-START_INSIDE, fmin(START_INSIDE, place))));
+        gsl_vector_set(variable, i, asin(fmax(-START_INSIDE, fmin(START_INSIDE, place))));
     }
 }
 
@@ -99,18 +121,17 @@ static int residuals(const gsl_vector *variable, void *context, gsl_vector *f)
 
 /* ---- sensitivities ---- */
 
-/* -dg/dT of gene k at the workspace's shape: the change of the nodal forces for one newton of T'. */
-static void force_of_gene(const problem *p, int k, double *force)
+/* Add -dg/dT of gene k at the workspace's shape: the change of the nodal forces for one newton of T'. */
+static void add_force_of_gene(const problem *p, int k, double *force)
 {
     const hf_model *m = p->v->model;
     int e = m->gene_cable[k], a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
     double length = p->w->length_m[e];
     if (p->v->rule == HF_RULE_FORCE_DENSITY) length = hf_evaluate_design_length_m(m, e);
-    memset(force, 0, 3 * (size_t)m->n_free * sizeof(double));
     for (int c = 0; c < 3; c++) {
         double pull = (p->w->position_m[c * m->n_node + b] - p->w->position_m[c * m->n_node + a]) / length;
-        if (a < m->n_free) force[3 * a + c] = pull;
-        if (b < m->n_free) force[3 * b + c] = -pull;
+        if (a < m->n_free) force[3 * a + c] += pull;
+        if (b < m->n_free) force[3 * b + c] -= pull;
     }
 }
 
@@ -124,11 +145,13 @@ static int jacobian(const gsl_vector *variable, void *context, gsl_matrix *J)
     to_design(p, variable);
     if (hf_evaluate(p->v, p->design_N, p->w, &r) != HF_OK || hf_newton_factor(m, p->w, NULL) != HF_OK)
         return GSL_SUCCESS;
+    memset(p->sensitivity, 0, (size_t)m->n_leader * n_dof * sizeof(double));
     for (int k = 0; k < m->n_gene; k++)
-        force_of_gene(p, k, p->sensitivity + (size_t)k * n_dof);
-    hf_band_back_solve((int)n_dof, 3 * m->half_bandwidth + 2, m->n_gene, p->w->newton_band, p->sensitivity, (int)n_dof);
+        add_force_of_gene(p, k, p->sensitivity + (size_t)p->variable_of_gene[k] * n_dof);
+    hf_band_back_solve((int)n_dof, 3 * m->half_bandwidth + 2, m->n_leader, p->w->newton_band, p->sensitivity,
+                       (int)n_dof);
     double scale = 1 / sqrt(m->n_inner_node);
-    for (size_t k = 0; k < (size_t)m->n_gene; k++) {
+    for (size_t k = 0; k < variable->size; k++) {
         double weight = scale * slope(p, variable, k);
         const double *moved = p->sensitivity + k * n_dof;
         for (int i = 0; i < m->n_inner_node; i++)
@@ -143,7 +166,7 @@ static int jacobian(const gsl_vector *variable, void *context, gsl_matrix *J)
 static hf_status minimise(problem *p, int max_iterations, const double *start_N, hf_polish_result *result)
 {
     const hf_model *m = p->v->model;
-    size_t n_variable = (size_t)m->n_gene, n_row = 3 * (size_t)m->n_inner_node;
+    size_t n_variable = (size_t)m->n_leader, n_row = 3 * (size_t)m->n_inner_node;
     if (n_row < n_variable) n_row = n_variable;
     gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
     parameters.solver = gsl_multifit_nlinear_solver_qr;
@@ -173,7 +196,7 @@ hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower_N, co
                         double *design_N, hf_workspace *workspace, hf_polish_result *result)
 {
     size_t bytes = (size_t)evaluator->model->n_gene * sizeof(double);
-    problem p = {.v = evaluator, .lower_N = lower_N, .upper_N = upper_N, .w = workspace};
+    problem p = {.v = evaluator, .lower_N = lower_N, .upper_N = upper_N, .start_N = design_N, .w = workspace};
     hf_form_result start;
     *result = (hf_polish_result){0};
     HF_TRY(hf_evaluate(evaluator, design_N, workspace, &start));
@@ -181,6 +204,7 @@ hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower_N, co
     lay_out(&arena, &p);
     HF_TRY(hf_arena_allocate(&arena));
     lay_out(&arena, &p);
+    number_variables(&p);
     memcpy(p.best_N, design_N, bytes);
     p.best_psi_m = result->start_psi_m = start.psi_m;
     hf_status status = minimise(&p, max_iterations, design_N, result);

@@ -1,6 +1,6 @@
 /* polish - Levenberg-Marquardt on the boundary pretensions (gsl_multifit_nlinear) with exact sensitivities: the
  * yardstick for the genetic algorithm, and a finish for it. psi^2 is a sum of squares; its derivative is one solve per
- * gene with the factored Newton matrix, dx/dT_k = -H^-1 dg/dT_k (METHOD section 5). */
+ * gene, or class of linked genes, with the factored Newton matrix, dx/dT_k = -H^-1 dg/dT_k (METHOD section 5). */
 #ifndef HIFDM_POLISH_H
 #define HIFDM_POLISH_H
 
@@ -16,7 +16,8 @@ typedef struct {
 int hf_polish_applies(const hf_evaluator *evaluator);
 
 /* From the feasible design_N [n_gene] within [lower_N, upper_N], which the best design found replaces (never a worse
- * or an infeasible one). workspace is scratch. HF_OK, HF_NO_MEMORY, or the status of a start that is infeasible. */
+ * or an infeasible one). Genes linked by a symmetry keep their differences. workspace is scratch. HF_OK, HF_NO_MEMORY,
+ * or the status of a start that is infeasible. */
 hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower_N, const double *upper_N, int max_iterations,
                         double *design_N, hf_workspace *workspace, hf_polish_result *result);
 

@@ -1,6 +1,7 @@
 /* Contents: units for people - summary - progress - schema */
 #include "print.h"
 
+#include "symmetry.h"
 #include <hifdm/config.h>
 
 #include <math.h>
@@ -64,6 +65,9 @@ static void print_optimize(const hf_summary *s, FILE *f)
                 100 * (1 - s->best.psi_m / s->base_psi_m), s->base_psi_m * 1e3);
     fprintf(f, "; found in generation %d\n", s->best_generation);
     print_result(&s->best, f);
+    if (s->planes)
+        fprintf(f, "                symmetry: %s; %d independent genes of %d\n", hf_symmetry_planes_text(s->planes),
+                s->n_leader, s->n_gene);
     fprintf(f, "                %d generations, %ld evaluations (%ld infeasible) by %s, stopped by %s\n",
             s->generations, s->evaluations, s->infeasible, hf_solver_word[s->solver],
             hf_ga_stop_word[s->optimize_stop]);

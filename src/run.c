@@ -5,6 +5,7 @@
 #include "print.h"
 #include "text.h"
 #include "polish.h"
+#include "symmetry.h"
 #include <hifdm/batch.h>
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
@@ -203,6 +204,7 @@ static hf_status prepare_optimize(run *r, int threads, hf_messages *messages)
                 "reach min_tension_N %g .. max_tension_N %g",
                 r->scene.cable_id[m->gene_cable[k]], r->base_N[k], o->range_N, o->min_tension_N, o->max_tension_N);
     }
+    hf_symmetry_average(m, r->base_N);
     r->evaluator = (hf_evaluator){m,
                                   &r->settings.form,
                                   r->start_q_N_per_m,
@@ -311,6 +313,7 @@ void hf_run_describe(const hf_case *settings, const hf_model *model, hf_summary 
     s->n_free = model->n_free;
     s->n_cable = model->n_cable;
     s->n_gene = model->n_gene;
+    s->n_leader = model->n_leader;
     s->half_bandwidth = model->half_bandwidth;
     s->pretension_N = model->pretension_N;
 }
@@ -326,13 +329,13 @@ static hf_status choose_output(const hf_options *o, char output[HF_OUTPUT_SIZE],
     return HF_OK;
 }
 
-/* Not even --force lets a result replace what it is made from. */
-static hf_status spare_inputs(const hf_case *settings, const char *output, hf_messages *messages)
+hf_status hf_run_spare_inputs(const hf_case *settings, const char *table, const char *output, hf_messages *messages)
 {
-    const char *input[] = {settings->path, settings->nodes_path, settings->cables_path};
+    const char *input[] = {settings->path, table, settings->nodes_path, settings->cables_path};
     struct stat a, b;
-    for (int i = 0; i < (settings->has_import ? 3 : 1); i++)
-        if (stat(input[i], &a) == 0 && stat(output, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino)
+    for (int i = 0; i < (settings->has_import ? 4 : 2); i++)
+        if (input[i] && stat(input[i], &a) == 0 && stat(output, &b) == 0 && a.st_dev == b.st_dev &&
+            a.st_ino == b.st_ino)
             return hf_error(messages, HF_EXISTS, "%s: is an input of this run; use -o to choose another name", output);
     return HF_OK;
 }
@@ -411,9 +414,11 @@ static hf_status execute(run *r, const hf_options *options, int argc, char *cons
         hf_warning(messages, "--seed has no effect: the case has no optimize section");
     HF_TRY(hf_config_scene(&r->settings, &r->scene, messages));
     HF_TRY(hf_model_build(&r->scene, &r->settings.form, &r->model, messages));
+    if (r->settings.has_optimize)
+        HF_TRY(hf_symmetry_apply(&r->scene, r->settings.optimize.symmetry, &r->model, &s->planes, messages));
     hf_run_describe(&r->settings, &r->model, s);
     HF_TRY(choose_output(options, output, messages));
-    HF_TRY(spare_inputs(&r->settings, output, messages));
+    HF_TRY(hf_run_spare_inputs(&r->settings, NULL, output, messages));
     HF_TRY(create_store(r, options, argc, argv, output, messages));
     hf_status status = stages(r, options, s, messages);
     if (!leaves_result(status)) return status;

@@ -20,6 +20,9 @@ void hf_run_describe(const hf_case *settings, const hf_model *model, hf_summary 
 hf_status hf_run_explain(const hf_scene *scene, const hf_model *model, const hf_form_settings *form,
                          hf_workspace *workspace, const hf_form_result *result, hf_messages *messages);
 
+/* Not even --force lets a result replace what it is made from: the case, its net, a table (may be NULL). */
+hf_status hf_run_spare_inputs(const hf_case *settings, const char *table, const char *output, hf_messages *messages);
+
 double hf_run_clock_s(void);
 
 #endif

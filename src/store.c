@@ -362,11 +362,13 @@ static void start_generations(hf_store *s, const hf_model *model, const hf_ga *g
     const hsize_t k[3] = {(hsize_t)g->n_gene};
     const hf_hdf5_array cable = {"gene_cable", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/cable of each gene"};
     const hf_hdf5_array group_of = {"gene_group", HF_KIND_INT, 1, {k[0]}, "", "genes that were varied together"};
+    const hf_hdf5_array leader = {"gene_leader", HF_KIND_INT, 1, {k[0]}, "", "gene whose step each takes, by symmetry"};
     const hf_hdf5_array lower = {"lower_N", HF_KIND_REAL, 1, {k[0]}, "N", "least T' of each gene"};
     const hf_hdf5_array upper = {"upper_N", HF_KIND_REAL, 1, {k[0]}, "N", "largest T' of each gene"};
     hid_t group = hf_hdf5_make_group(&s->io, "/ga");
     hf_hdf5_write_array(&s->io, group, &cable, model->gene_cable);
     hf_hdf5_write_array(&s->io, group, &group_of, model->gene_group);
+    if (g->gene_leader) hf_hdf5_write_array(&s->io, group, &leader, g->gene_leader);
     hf_hdf5_write_array(&s->io, group, &lower, g->lower_N);
     hf_hdf5_write_array(&s->io, group, &upper, g->upper_N);
     for (int i = 0; i < n_row; i++) {

@@ -1,57 +1,13 @@
 #include <hifdm/summary.h>
 
+#include "json.h"
+
 #include <math.h>
-#include <string.h>
 
 double hf_summary_utilisation(const hf_summary *s)
 {
     double available_s = s->optimize_wall_s * s->threads;
     return available_s > 0 ? s->optimize_cpu_s / available_s : (double)NAN;
-}
-
-static void write_string(const char *text, size_t length, FILE *f)
-{
-    fputc('"', f);
-    for (size_t i = 0; i < length; i++) {
-        unsigned char c = (unsigned char)text[i];
-        if (c == '"' || c == '\\')
-            fprintf(f, "\\%c", c);
-        else if (c < 0x20)
-            fprintf(f, "\\u%04x", c);
-        else
-            fputc(c, f);
-    }
-    fputc('"', f);
-}
-
-static void write_text(const char *key, const char *text, FILE *f)
-{
-    fprintf(f, "\"%s\": ", key);
-    write_string(text, strlen(text), f);
-}
-
-static void write_number(const char *key, double value, FILE *f)
-{
-    if (isfinite(value))
-        fprintf(f, "\"%s\": %.17g", key, value);
-    else
-        fprintf(f, "\"%s\": null", key);
-}
-
-/* Those lines that start with `prefix`, without it, as a list of strings. */
-static void write_lines(const char *key, const char *prefix, const char *lines, FILE *f)
-{
-    const char *comma = "";
-    fprintf(f, "\"%s\": [", key);
-    for (size_t length; lines && *lines; lines += length + (lines[length] != '\0')) {
-        size_t skip = strlen(prefix);
-        length = strcspn(lines, "\n");
-        if (length < skip || strncmp(lines, prefix, skip) != 0) continue;
-        fputs(comma, f);
-        write_string(lines + skip, length - skip, f);
-        comma = ", ";
-    }
-    fputc(']', f);
 }
 
 static void write_result(const hf_form_result *r, FILE *f)
@@ -71,10 +27,10 @@ static void write_result(const hf_form_result *r, FILE *f)
         {"condition", r->condition},
         {"backward_error", r->backward_error},
     };
-    write_text("status", hf_status_word(r->status), f);
+    hf_json_text("status", hf_status_word(r->status), f);
     for (size_t i = 0; i < sizeof number / sizeof *number; i++) {
         fputs(", ", f);
-        write_number(number[i].key, number[i].value, f);
+        hf_json_number(number[i].key, number[i].value, f);
     }
     fprintf(f, ", \"iterations\": %d, \"slack_cables\": %d, \"loaded_straight_chains\": %d", r->iterations, r->n_slack,
             r->n_loaded_chain);
@@ -86,16 +42,17 @@ static void write_optimize(const hf_summary *s, FILE *f)
     write_result(&s->best, f);
     fprintf(f, ", \"generations\": %d, \"evaluations\": %ld, \"infeasible\": %ld, ", s->generations, s->evaluations,
             s->infeasible);
-    write_number("base_psi_m", s->base_psi_m, f);
+    hf_json_number("base_psi_m", s->base_psi_m, f);
     fputs(", ", f);
     fprintf(f, "\"best_generation\": %d, \"best_individual\": %d, ", s->best_generation, s->best_individual);
-    write_number("wall_s", s->optimize_wall_s, f);
+    hf_json_number("wall_s", s->optimize_wall_s, f);
     fputs(", ", f);
-    write_number("cpu_s", s->optimize_cpu_s, f);
+    hf_json_number("cpu_s", s->optimize_cpu_s, f);
     fputs(", ", f);
-    write_text("solver", hf_solver_word[s->solver], f);
+    fprintf(f, "\"independent_genes\": %d, ", s->n_leader);
+    hf_json_text("solver", hf_solver_word[s->solver], f);
     fputs(", ", f);
-    write_text("stop_reason", hf_ga_stop_word[s->optimize_stop], f);
+    hf_json_text("stop_reason", hf_ga_stop_word[s->optimize_stop], f);
     fputc('}', f);
 }
 
@@ -105,40 +62,40 @@ static void write_polish(const hf_summary *s, FILE *f)
     write_result(&s->polish, f);
     fprintf(f, ", \"lm_iterations\": %d, \"evaluations\": %d, \"is_result\": %s, ", s->polish_iterations,
             s->polish_evaluations, s->polish_is_result ? "true" : "false");
-    write_number("wall_s", s->polish_wall_s, f);
+    hf_json_number("wall_s", s->polish_wall_s, f);
     fputs(", ", f);
-    write_text("stop_reason", s->polish_converged ? "converged" : "max_iterations", f);
+    hf_json_text("stop_reason", s->polish_converged ? "converged" : "max_iterations", f);
     fputc('}', f);
 }
 
 void hf_summary_write_json(const hf_summary *s, hf_status status, const char *messages, const char *path, FILE *f)
 {
     fputs("{", f);
-    write_text("status", hf_status_word(status), f);
+    hf_json_text("status", hf_status_word(status), f);
     if (s->form.status != HF_NOT_EVALUATED) {
         fputs(",\n \"form\": {", f);
         write_result(&s->form, f);
         fputs(", ", f);
-        write_text("stop_reason", hf_stop_reason_word((int)s->form.stop_reason), f);
+        hf_json_text("stop_reason", hf_stop_reason_word((int)s->form.stop_reason), f);
         fputs(", ", f);
-        write_number("wall_s", s->form_wall_s, f);
+        hf_json_number("wall_s", s->form_wall_s, f);
         fputc('}', f);
     }
     if (s->has_optimize) write_optimize(s, f);
     if (s->has_polish) write_polish(s, f);
     fprintf(f, ",\n \"threads\": %d, \"seed\": %llu, ", s->threads, (unsigned long long)s->seed);
-    write_text("version", s->version, f);
+    hf_json_text("version", s->version, f);
     fputs(",\n ", f);
-    write_text("case", s->case_path, f);
+    hf_json_text("case", s->case_path, f);
     if (path) {
         fputs(", ", f);
-        write_text("file", path, f);
+        hf_json_text("file", path, f);
     }
     fputs(",\n ", f);
-    write_lines("warnings", "warning: ", messages, f);
+    hf_json_lines("warnings", "warning: ", messages, f);
     if (status != HF_OK) {
         fputs(",\n ", f);
-        write_lines("errors", "error: ", messages, f);
+        hf_json_lines("errors", "error: ", messages, f);
     }
     fputs("}\n", f);
 }

@@ -1,21 +1,24 @@
 #!/usr/bin/env bash
-# Installs what is missing to build hifdm: setup.sh [--test] [--ci]
+# Installs what is missing to build hifdm: setup.sh [--test] [--ci] [--bench]
 #   --test  also what the tests need     --ci  also clang, the sanitizers' libraries and the linters (includes --test)
+#   --bench also the peers of `make bench`
 # Silent and quick when nothing is missing. Asks for what is needed (a compiler, a pkg-config name, a Python module)
 # rather than for packages, so that other providers do as well: reference LAPACK, modules from pip.
 set -eu
 
-with_test=no with_ci=no
+with_test=no with_ci=no with_bench=no
 for option in "$@"; do
     case $option in
     --test) with_test=yes ;;
     --ci) with_test=yes with_ci=yes ;;
-    *) echo "usage: tools/setup.sh [--test] [--ci]" >&2; exit 2 ;;
+    --bench) with_bench=yes ;;
+    *) echo "usage: tools/setup.sh [--test] [--ci] [--bench]" >&2; exit 2 ;;
     esac
 done
 
 has() { command -v "$1" >/dev/null 2>&1; }
 has_library() { pkg-config --exists "$@" 2>/dev/null; }
+has_header() { "${CC:-cc}" -E -include "$1" -x c /dev/null >/dev/null 2>&1; }
 has_openmp() { printf '#include <omp.h>\n#include <stdlib.h>\n' | "$@" -fopenmp -fsyntax-only -x c - 2>/dev/null; }
 # Debian's own Python, as in the Makefile: its packages are of no use to another python3 that comes first in PATH.
 has_module() {
@@ -45,6 +48,10 @@ missing_packages() {
         has h5dump || need hdf5-tools
         has_module h5py || need python3-h5py
         has_module yaml || need python3-yaml
+    fi
+    if [ $with_bench = yes ]; then
+        has_header suitesparse/cholmod.h || need libsuitesparse-dev
+        has_module scipy || need python3-scipy
     fi
     if [ $with_ci = yes ]; then
         has clang || need clang

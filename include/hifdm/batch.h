@@ -1,4 +1,7 @@
-/* batch - designs -> results with all cores busy: the only user of OpenMP. */
+/* batch - designs -> results with all cores busy: the only user of OpenMP.
+ *
+ * For an optimiser of one's own: create, share the base design, run as often as there are designs, free; README has the
+ * whole of it. `hifdm evaluate` is the same for tables in CSV files. */
 #ifndef HIFDM_BATCH_H
 #define HIFDM_BATCH_H
 
@@ -20,7 +23,8 @@ typedef struct {
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch);
 
 /* Evaluate the designs with pending[i] != 0 (all when pending is NULL). design_N: [n][n_gene]; result: [n].
- * Each design is one whole form-finding in one thread; the results do not depend on the number of threads. */
+ * Each design is one whole form-finding in one thread; the results do not depend on the number of threads, nor on which
+ * other designs are evaluated beside it. A design that has no shape has its status in its result and NaN measures. */
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result);
 
 /* Let the threads share one factored Newton matrix from the base design [n_gene] on, where the evaluator's solver

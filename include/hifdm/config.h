@@ -16,12 +16,14 @@ typedef enum { HF_OPTIMIZE_GA, HF_OPTIMIZE_LM, HF_OPTIMIZE_GA_LM } hf_optimize_m
 typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
 typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
+typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
 extern const char *const hf_method_word[5];
 extern const char *const hf_stop_rule_word[2];
 extern const char *const hf_rule_word[3];
 extern const char *const hf_solver_word[4];
 extern const char *const hf_optimize_method_word[3];
+extern const char *const hf_symmetry_word[5];
 
 typedef struct {
     int method;                /* hf_method */
@@ -49,6 +51,7 @@ typedef struct {
     double stagnation_tolerance_m;
     int stagnation_generations;
     int polish_iterations;
+    int symmetry; /* hf_symmetry: mirror planes that link genes */
 } hf_optimize_settings;
 
 #define HF_PATH_SIZE 1024

@@ -39,15 +39,17 @@ typedef struct {
     long n_evaluation, n_evaluation_infeasible; /* so far */
     hf_ga_stop stop_reason;
 
-    const int *gene_group; /* borrowed from the model */
-    int n_group;
+    const int *gene_group;  /* borrowed from the model */
+    const int *gene_leader; /* the same; NULL when no genes are linked */
+    int n_group, n_leader;
+    double *base_N;                               /* [n_gene] */
     double *next_design_N, *fitness, *group_draw; /* scratch */
     hf_form_result *next_result;
     void *block;
 } hf_ga;
 
-/* model: borrowed for its genes and their groups. base_N: [n_gene] pretensions T after form-finding; bounds are
- * T -+ range_N within [min, max]_tension_N.
+/* model: borrowed for its genes, their groups and leaders. base_N: [n_gene] pretensions T after form-finding; bounds
+ * are T -+ range_N within [min, max]_tension_N. Genes with the same leader share the step from T, and the bounds on it.
  * HF_OK or HF_NO_MEMORY. Free in any case. */
 hf_status hf_ga_create(const hf_optimize_settings *settings, const hf_model *model, const double *base_N, hf_ga *ga);
 

@@ -42,6 +42,10 @@ typedef struct {
     int *gene_cable; /* [n_gene] */
     int *gene_group; /* [n_gene] 0..n_gene_group-1 */
 
+    /* Genes linked by a symmetry of the net (module symmetry) change by the same step as the first of their class. */
+    int n_leader;     /* classes: the independent genes; n_gene without a symmetry */
+    int *gene_leader; /* [n_gene] first gene of the class: the gene itself without a symmetry */
+
     /* chains of length-controlled cables between two supports that are straight: sum L* does not exceed the distance */
     int n_chain;
     int *chain_start;  /* [n_chain + 1] into chain_cable */

@@ -18,9 +18,9 @@
  *   /ga          design_N [g][p][k]; evaluated, status, psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio,
  *                iterations, crossover_rate, mutation_rate [g][p]; parent [g][p][2];
  *                best_individual, best_psi_m, mean_psi_m, worst_psi_m, n_infeasible [g];
- *                gene_cable (index into /scene/cable), gene_group, lower_N, upper_N [k]
- *                attributes: the members of hf_summary after has_optimize, those of hf_summary.best as best_...
- *   /ga/best     as /form, and design_N [k]
+ *                gene_cable (index into /scene/cable), gene_group, lower_N, upper_N [k]; gene_leader [k] under a
+ *                symmetry attributes: the members of hf_summary after has_optimize, those of hf_summary.best as
+ *   best_... /ga/best     as /form, and design_N [k]
  *   /polish      the same, of Levenberg-Marquardt; attributes: the members of hf_summary.polish and polish_... */
 #ifndef HIFDM_STORE_H
 #define HIFDM_STORE_H

@@ -34,7 +34,8 @@ typedef struct {
     int has_optimize;
     double
         base_psi_m; /* of individual 0 of generation 0, the form-finding's tensions under the rule; NaN if infeasible */
-    hf_form_result best; /* of the best individual; status HF_NOT_EVALUATED when none was feasible */
+    int n_leader, planes; /* independent genes; HF_PLANE_ bits of the symmetry (1 = x, 2 = y) that links the others */
+    hf_form_result best;  /* of the best individual; status HF_NOT_EVALUATED when none was feasible */
     int best_generation, best_individual;
     int generations;
     long evaluations, infeasible;

@@ -86,8 +86,8 @@ START_TEST(schema_is_yaml_with_every_key)
         "set(a['scene']['import']) == {'nodes', 'cables'}",
         "set(a['form']) == {'method', 'pretension_N', 'stop', 'residual_tolerance', 'length_tolerance', "
         "'rms_tolerance_m', 'max_iterations', 'collapse_ratio'}",
-        "set(a['optimize']) == {'method', 'solver', 'polish_iterations', 'rule', 'population', 'generations', "
-        "'range_N', 'min_tension_N', 'max_tension_N', "
+        "set(a['optimize']) == {'method', 'symmetry', 'solver', 'polish_iterations', 'rule', 'population', "
+        "'generations', 'range_N', 'min_tension_N', 'max_tension_N', "
         "'boundary_ratio_cap', 'seed', 'crossover_high', 'crossover_low', 'mutation_high', 'mutation_low', 'elites', "
         "'stagnation_tolerance_m', 'stagnation_generations'}",
         /* a default, or none where the key is required */
@@ -114,10 +114,10 @@ END_TEST
 START_TEST(help_lists_every_command_and_exit_status)
 {
     HIFDM(0, "help");
-    static const char *const parts[] = {"hifdm run ",    "hifdm check ", "hifdm show ", "hifdm export ",
-                                        "hifdm schema ", "-o, --output", "--force",     "--set KEY=VALUE",
-                                        "--threads N",   "--seed S",     "--json",      "--quiet",
-                                        "--csv DIR",     "--stage STAGE"};
+    static const char *const parts[] = {
+        "hifdm run ",     "hifdm check ",    "hifdm show ",  "hifdm export ", "hifdm schema ",   "hifdm evaluate ",
+        "--designs FILE", "--template FILE", "-o, --output", "--force",       "--set KEY=VALUE", "--threads N",
+        "--seed S",       "--json",          "--quiet",      "--csv DIR",     "--stage STAGE"};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         OUT(parts[i]);
     OUT("0 done, 2 bad usage or case, 3 not converged, 4 ill-posed, 5 input/output");

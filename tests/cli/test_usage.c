@@ -36,6 +36,14 @@ static const struct {
     {{"run", "CASE", "--seed", "1e3"}, "error: --seed must be a whole number from 0 to 2^64-1, not '1e3'\n"},
     {{"run", "CASE", "--seed", "18446744073709551616"},
      "error: --seed must be a whole number from 0 to 2^64-1, not '18446744073709551616'\n"},
+    {{"evaluate", "CASE"}, "error: 'hifdm evaluate' needs either --designs FILE or --template FILE\n"},
+    {{"evaluate", "CASE", "--designs=D", "--template=T"},
+     "error: 'hifdm evaluate' needs either --designs FILE or --template FILE\n"},
+    {{"evaluate", "CASE", "--template=T", "-o", "O"}, "error: '-o' does not go with --template\n"},
+    {{"evaluate", "CASE", "--designs=D", "--json"},
+     "error: --json needs -o FILE here: without it the table takes standard output\n"},
+    {{"evaluate", "CASE", "--seed", "1"},
+     "error: '--seed' does not go with this command; 'hifdm help' says where it goes\n"},
     {{"run", "CASE", "--json=yes"}, "error: '--json' takes no value\n"},
 };
 enum { N_WRONG = sizeof wrong / sizeof *wrong };

@@ -4,6 +4,7 @@
 
 #include <hifdm/batch.h>
 #include <hifdm/ga.h>
+#include <symmetry.h>
 
 /* What is under test, prepared before the failure and cleaned up after it, whether it succeeded or not. */
 struct subject {
@@ -36,6 +37,12 @@ static hf_status build_model(struct subject *s)
     return hf_model_build(&s->scene, &s->settings.form, &s->model, &s->messages);
 }
 
+static hf_status apply_symmetry(struct subject *s)
+{
+    int planes;
+    return hf_symmetry_apply(&s->scene, HF_SYMMETRY_AUTO, &s->model, &planes, &s->messages);
+}
+
 static hf_status create_workspace(struct subject *s)
 {
     return hf_workspace_create(&s->model, &s->work);
@@ -57,9 +64,13 @@ static const struct stage {
     const char *name;
     action *act;
     int has_message; /* functions without a messages argument leave the words to their caller */
-} stages[] = {{"hf_config_load", load_case, 1},     {"hf_config_scene", make_scene, 1},
-              {"hf_model_build", build_model, 1},   {"hf_workspace_create", create_workspace, 0},
-              {"hf_batch_create", create_batch, 0}, {"hf_ga_create", create_ga, 0}};
+} stages[] = {{"hf_config_load", load_case, 1},
+              {"hf_config_scene", make_scene, 1},
+              {"hf_model_build", build_model, 1},
+              {"hf_symmetry_apply", apply_symmetry, 1},
+              {"hf_workspace_create", create_workspace, 0},
+              {"hf_batch_create", create_batch, 0},
+              {"hf_ga_create", create_ga, 0}};
 enum { N_STAGE = sizeof stages / sizeof *stages };
 
 /* More rows and ids than the first capacities of the import (64 rows), so that its growth fails, too. */

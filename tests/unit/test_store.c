@@ -36,6 +36,8 @@ static void fill_summary(struct rng *rng, hf_summary *s)
                       .has_optimize = 1,
                       .best_generation = rng_int(rng, -1, 1 << 30),
                       .best_individual = -1,
+                      .n_leader = rng_int(rng, 1, 1 << 30),
+                      .planes = 3,
                       .generations = rng_int(rng, 1, 1 << 30),
                       .evaluations = (long)(rng_next(rng) >> 1),
                       .infeasible = (long)(rng_next(rng) >> 1),
@@ -75,6 +77,8 @@ static void same_summary(const hf_summary *a, const hf_summary *b)
                    MEMBER(best_generation),
                    MEMBER(best_individual),
                    MEMBER(generations),
+                   MEMBER(n_leader),
+                   MEMBER(planes),
                    MEMBER(evaluations),
                    MEMBER(infeasible),
                    MEMBER(optimize_stop),
@@ -110,7 +114,7 @@ START_TEST(summary_comes_back_bit_by_bit)
     ck_assert_int_eq(hf_store_read_summary(temp_path("b.h5"), &read, &messages), HF_OK);
     memset(&written.best, 0, sizeof written.best);
     written.best_generation = written.best_individual = written.generations = written.optimize_stop = 0;
-    written.evaluations = written.infeasible = 0;
+    written.evaluations = written.infeasible = written.n_leader = written.planes = 0;
     written.optimize_wall_s = written.optimize_cpu_s = 0;
     same_summary(&written, &read);
     close_net(&net);

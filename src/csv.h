@@ -1,0 +1,62 @@
+/* csv - tables in CSV files: a header line, rows of cells, faults with file, line and id. Quoted fields, LF or CRLF, a
+ * byte order mark, comment lines that start with '#' and empty lines are understood; a quoted field ends on its line.
+ * */
+#ifndef HIFDM_CSV_H
+#define HIFDM_CSV_H
+
+#include <hifdm/status.h>
+#include <stdio.h>
+
+#define HF_CSV_FAULT_MAX 20 /* faults that are spelled out, per file */
+
+/* The text is cut up in place, header and cells point into it. */
+typedef struct {
+    const char *path;      /* borrowed */
+    hf_messages *messages; /* borrowed */
+    int n_column, n_row, header_line;
+    char **header; /* [n_column] */
+    char **cell;   /* [n_row][n_column] */
+    int *line;     /* [n_row] line number in the file */
+    int n_fault;
+    char *text;
+    int row_capacity;
+} hf_csv;
+
+/* HF_OK; HF_BAD_CASE with all faults (no file, uneven rows, no rows, more than column_max columns); HF_NO_MEMORY. Free
+ * the table in any case. */
+hf_status hf_csv_read(const char *path, int column_max, hf_csv *table, hf_messages *messages);
+void hf_csv_free(hf_csv *table);
+
+char *hf_csv_cell(const hf_csv *table, int row, int column);
+
+/* One fault, at a line, about an id unless that is NULL. After HF_CSV_FAULT_MAX of a file they are only counted. */
+void hf_csv_fault(hf_csv *table, int line, const char *id, const char *what, const char *detail);
+
+/* HF_BAD_CASE when there were faults, and how many more than those spelled out. */
+hf_status hf_csv_close_faults(hf_csv *table);
+
+/* Where each known column stands (-1 = absent); the first n_required must be there. Unknown ones are warned about. */
+hf_status hf_csv_find_columns(hf_csv *table, const char *const *names, int n_name, int n_required, int *where);
+
+/* The cell as a finite number; NaN after a fault, which calls the column `name`. */
+double hf_csv_number(hf_csv *table, int row, int column, const char *id, const char *name);
+
+/* The cell as one of some words; 0 after a fault. */
+int hf_csv_word(hf_csv *table, int row, int column, const char *id, const char *const *words, int n_word);
+
+typedef struct {
+    const char *id;
+    int row;
+} hf_csv_named;
+
+/* Sorted ids of a table (caller frees), or NULL without memory; empty, duplicate and overlong (255 bytes) ids are
+ * faults. */
+hf_csv_named *hf_csv_index(hf_csv *table, int column);
+
+/* The row of an id, or -1. */
+int hf_csv_row_of(const hf_csv_named *index, int n_row, const char *id);
+
+/* An id as a CSV field: quoted when it holds a comma, a quote, blanks at its ends or a leading '#'. */
+void hf_csv_write_id(const char *id, FILE *file);
+
+#endif

@@ -1,0 +1,13 @@
+/* json - the pieces of a JSON object on a stream: "key": value, without commas between them. */
+#ifndef HIFDM_JSON_H
+#define HIFDM_JSON_H
+
+#include <stdio.h>
+
+void hf_json_text(const char *key, const char *text, FILE *file);
+void hf_json_number(const char *key, double value, FILE *file); /* null unless finite */
+
+/* Those lines of `lines` (may be NULL) that start with `prefix`, without it, as a list of strings. */
+void hf_json_lines(const char *key, const char *prefix, const char *lines, FILE *file);
+
+#endif
