@@ -1,0 +1,159 @@
+#!/usr/bin/env python3
+"""The force density method as a strong user of numpy and scipy writes it today: pattern fixed once, values by one
+sparse product, LAPACK's band solver or SuperLU. Called by run.py; prints samples as the C driver does. Reads
+FOLDER/NAME.net.
+
+    peers.py version | peers.py step FOLDER | peers.py single FOLDER NAME
+"""
+import os
+import sys
+import time
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+try:
+    import numpy as np
+    import scipy
+    import scipy.sparse as sp
+    from scipy.linalg import solveh_banded
+    from scipy.linalg.lapack import dpbsv
+    from scipy.sparse.linalg import splu
+except ImportError:
+    sys.exit(3)
+
+ENOUGH_S = 0.1
+WANTED_M = 1e-6
+TENSION, LENGTH, FORCE_DENSITY = range(3)
+
+
+class Net:
+    """A net as bench_write_net (step.c) wrote it: rows instead of nodes, free ones first."""
+
+    def __init__(self, path):
+        field = {}
+        with open(path) as file:
+            for line in file:
+                name, _, *values = line.split()
+                field[name] = np.array(values, dtype=float)
+        self.n_node, self.n, self.m, self.b = (int(v) for v in field["size"])
+        self.end = field["end_row"].astype(int).reshape(-1, 2)
+        self.x0 = field["position_m"].reshape(3, -1).T.copy()
+        load = field["load_N"]
+        self.load = load.reshape(3, -1)[:, : self.n].ravel() if load.size else np.zeros(3 * self.n)
+        self.q0, self.target, self.law = field["q"], field["target"], field["law"].astype(int)
+        self.reference = field["reference_m"].reshape(3, -1).T
+        self.patterns()
+
+    def patterns(self):
+        n, m = self.n, self.m
+        cable = np.arange(m)
+        a, b = self.end[:, 0], self.end[:, 1]
+        low, high = np.minimum(a, b), np.maximum(a, b)
+        inside, one_end = high < n, (low < n) & (high >= n)
+        row = np.concatenate([a[a < n], b[b < n], high[inside]])
+        column = np.concatenate([a[a < n], b[b < n], low[inside]])
+        who = np.concatenate([cable[a < n], cable[b < n], cable[inside]])
+        sign = np.concatenate([np.ones((a < n).sum() + (b < n).sum()), -np.ones(inside.sum())])
+        # lower band column by column, as LAPACK wants it, so that nothing is copied
+        self.band_of_q = sp.csr_matrix((sign, (row - column + column * (self.b + 1), who)), shape=((self.b + 1) * n, m))
+        # the full matrix for SuperLU, by columns
+        off = sign < 0
+        row, column = np.concatenate([row, column[off]]), np.concatenate([column, row[off]])
+        who, sign = np.concatenate([who, who[off]]), np.concatenate([sign, sign[off]])
+        place, inverse = np.unique(column * n + row, return_inverse=True)
+        self.sparse_of_q = sp.csr_matrix((sign, (inverse, who)), shape=(place.size, m))
+        pointer = np.searchsorted(place // n, np.arange(n + 1))
+        self.matrix = sp.csc_matrix((np.zeros(place.size), place % n, pointer), shape=(n, n))
+        # right-hand side: what supports pull at the free nodes
+        k = cable[one_end]
+        values, free = self.x0[high[k]], low[k]
+        where = (free[:, None] + np.arange(3) * n).ravel()
+        self.rhs_of_q = sp.csr_matrix((values.ravel(), (where, np.repeat(k, 3))), shape=(3 * n, m))
+        self.branch = sp.csr_matrix((np.tile([1.0, -1.0], m), (np.repeat(cable, 2), self.end[:, ::-1].ravel())),
+                                    shape=(m, self.n_node))
+        self.is_tension, self.is_length = self.law == TENSION, self.law == LENGTH
+
+    def rhs(self, q):
+        return (self.load + self.rhs_of_q @ q).reshape(3, -1).T
+
+    def band(self, q):
+        return (self.band_of_q @ q).reshape(-1, self.b + 1).T
+
+    def solveh_banded(self, q):
+        return solveh_banded(self.band(q), self.rhs(q), overwrite_ab=True, overwrite_b=True, lower=True,
+                             check_finite=False)
+
+    def dpbsv(self, q):
+        return dpbsv(self.band(q), self.rhs(q), lower=1, overwrite_ab=1, overwrite_b=1)[1]
+
+    def splu(self, q):
+        self.matrix.data = self.sparse_of_q @ q
+        return splu(self.matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
+                    options={"SymmetricMode": True}).solve(self.rhs(q))
+
+    def step(self, solve, q, x):
+        """Assembly, factor, three right-hand sides, lengths."""
+        x[: self.n] = solve(q)
+        d = self.branch @ x
+        return np.sqrt(np.einsum("ij,ij->i", d, d))
+
+    def update(self, q, length):
+        """Eqs. 7 and 8."""
+        return np.where(self.is_tension, self.target / length, np.where(self.is_length, q * length / self.target, q))
+
+    def iterate(self, solve, count, wanted_m=None):
+        """`count` iterations, or as many as bring the shape within wanted_m of the reference; how many."""
+        q, x = self.q0, self.x0.copy()
+        for k in range(1, count + 1):
+            length = self.step(solve, q, x)
+            if wanted_m and np.sqrt(((x - self.reference) ** 2).sum(axis=1)).max() <= wanted_m:
+                return k
+            q = self.update(q, length)
+        return count
+
+
+def emit(section, scene, method, parameter, quantity, value):
+    print(section, scene, method, f"{parameter:.9g}", quantity, f"{value:.9g}", sep="\t", flush=True)
+
+
+def timed(work):
+    start, n = time.perf_counter(), 0
+    while True:
+        work()
+        n += 1
+        passed = time.perf_counter() - start
+        if passed > ENOUGH_S:
+            return passed / n
+
+
+def step(folder):
+    net = Net(f"{folder}/step.net")
+    ways = {"scipy solveh_banded": net.solveh_banded, "scipy dpbsv": net.dpbsv, "scipy splu": net.splu}
+    first = None
+    for _ in range(5):
+        for name, solve in ways.items():
+            x = net.x0.copy()
+            emit("step", "21x25 perimeter", name, net.n, "time_s", timed(lambda: net.step(solve, net.q0, x)))
+            first = x.copy() if first is None else first
+            emit("step", "21x25 perimeter", name, net.n, "difference_m", abs(x - first).max())
+
+
+def single(folder, scene):
+    """The fixed point to the wanted error: counted first, then timed without looking at the error."""
+    net = Net(f"{folder}/{scene}.net")
+    count = net.iterate(net.solveh_banded, 200000, WANTED_M)
+    for name, solve in {"scipy fixed point, band": net.solveh_banded, "scipy fixed point, splu": net.splu}.items():
+        if "splu" in name and count * net.n > 1e6:
+            continue  # the slower of the two, and slow
+        start = time.perf_counter()
+        net.iterate(solve, count)
+        emit("single", scene, name, WANTED_M, "time_s", time.perf_counter() - start)
+        emit("single", scene, name, WANTED_M, "iterations", count)
+
+
+if __name__ == "__main__":
+    if sys.argv[1] == "version":
+        print("numpy", np.__version__, "scipy", scipy.__version__)
+    elif sys.argv[1] == "step":
+        step(sys.argv[2])
+    else:
+        single(sys.argv[2], sys.argv[3])

@@ -1,0 +1,282 @@
+/* Contents: references - one method at one tolerance - work-precision - one evaluation to a given error */
+#include "bench.h"
+
+#include "band.h"
+#include "chord.h"
+#include "newton.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ENOUGH_S 0.02
+#define TOLERANCE_LOOSEST 1e-1
+#define TOLERANCE_TIGHTEST 1e-9
+#define COLD_TIGHTEST 1e-7
+#define WANTED_M 1e-6
+#define COUNT_MAX 200000
+
+/* ---- references: the true shapes of the first designs ---- */
+
+/* How many designs the slow fixed point is given. */
+static int n_true(const bench_scene *b)
+{
+    if (b->model.n_gene == 0) return 1;
+    return b->model.n_free > 700 ? 1 : BENCH_TRUE;
+}
+
+static const double *design(const bench_scene *b, int i)
+{
+    return b->design_N + (size_t)i * (size_t)b->model.n_gene;
+}
+
+static size_t shape_size(const bench_scene *b)
+{
+    return 3 * (size_t)b->model.n_node;
+}
+
+static double *make_references(bench_scene *b)
+{
+    hf_form_result r;
+    double *all = bench_alloc(BENCH_TRUE * shape_size(b), sizeof *all), worst = 0;
+    b->form.residual_tolerance = 1e-9;
+    b->evaluator.solver = HF_SOLVER_NEWTON;
+    for (int i = 0; i < n_true(b); i++) {
+        if (hf_evaluate(&b->evaluator, design(b, i), &b->workspace, &r) != HF_OK)
+            bench_fail(b->name, hf_status_text(r.status));
+        worst = fmax(worst, bench_reference(&b->model, &b->workspace, all + (size_t)i * shape_size(b)));
+    }
+    bench_emit("precision", b->name, "reference", 0, "relative_residual", worst);
+    return all;
+}
+
+/* ---- one method at one tolerance ---- */
+
+typedef struct {
+    bench_scene *scene;
+    const double *reference_m;
+    hf_batch *batch;
+    const char *name;
+    void (*work)(void *context); /* all designs once */
+    int n;                       /* designs per call of work */
+    double error_m;              /* largest so far; NaN leaves it */
+    hf_form_result result[BENCH_POPULATION];
+} run;
+
+static void note_error(run *r, int i, const hf_workspace *w)
+{
+    const bench_scene *b = r->scene;
+    double error_m = bench_distance_m(&b->model, w->position_m, r->reference_m + (size_t)i * shape_size(b));
+    r->error_m = fmax(r->error_m, error_m);
+}
+
+static void one_by_one(run *r)
+{
+    for (int i = 0; i < r->n; i++) {
+        hf_evaluate(&r->scene->evaluator, design(r->scene, i), &r->scene->workspace, &r->result[i]);
+        note_error(r, i, &r->scene->workspace); /* some microseconds, beside milliseconds */
+    }
+}
+
+static void by_fixed_point(void *context)
+{
+    ((run *)context)->scene->evaluator.solver = HF_SOLVER_FIXED_POINT;
+    one_by_one(context);
+}
+
+/* From the theoretical shape, Td / l, where the paper starts. */
+static void by_cold_fixed_point(void *context)
+{
+    run *r = context;
+    bench_scene *b = r->scene;
+    b->evaluator.start_q_N_per_m = b->model.start_q_N_per_m;
+    by_fixed_point(r);
+    b->evaluator.start_q_N_per_m = b->start_q_N_per_m;
+}
+
+static void by_newton(void *context)
+{
+    ((run *)context)->scene->evaluator.solver = HF_SOLVER_NEWTON;
+    one_by_one(context);
+}
+
+static void by_paper_stop(void *context)
+{
+    run *r = context;
+    bench_scene *b = r->scene;
+    for (int i = 0; i < r->n; i++) {
+        hf_evaluate_prepare(&b->evaluator, design(b, i), &b->workspace);
+        hf_form_find(&b->model, &b->form, HF_STOP_RMS_CHANGE, &b->workspace, NULL, &r->result[i]);
+        note_error(r, i, &b->workspace);
+    }
+}
+
+static void by_chord(void *context)
+{
+    run *r = context;
+    hf_batch_run(r->batch, r->n, r->scene->design_N, NULL, r->result);
+}
+
+static double iterations(const run *r)
+{
+    double sum = 0;
+    for (int i = 0; i < r->n; i++)
+        sum += r->result[i].iterations;
+    return sum / r->n;
+}
+
+/* Time per design and true error at the residual tolerance (relative). Returns the error. */
+static double sample(run *r, const char *section, double tolerance)
+{
+    bench_scene *b = r->scene;
+    hf_form_result again;
+    b->form.residual_tolerance = tolerance;
+    r->error_m = 0;
+    double time_s = bench_time_s(r->work, r, ENOUGH_S) / r->n;
+    if (r->work == by_chord)
+        for (int i = 0; i < n_true(b); i++)
+            note_error(r, i, hf_batch_run_one(r->batch, design(b, i), &again)); /* the same bits as in the batch */
+    bench_emit(section, b->name, r->name, tolerance, "time_s", time_s);
+    bench_emit(section, b->name, r->name, tolerance, "error_m", r->error_m);
+    bench_emit(section, b->name, r->name, tolerance, "iterations", iterations(r));
+    return r->error_m;
+}
+
+static int share_matrix(bench_scene *b, hf_batch *batch)
+{
+    b->evaluator.solver = HF_SOLVER_AUTO;
+    b->form.residual_tolerance = TOLERANCE_TIGHTEST;
+    if (hf_batch_create(&b->evaluator, 1, batch) != HF_OK) bench_fail(b->name, "out of memory");
+    if (b->model.n_gene == 0) return 0;
+    double start_s = bench_clock_s();
+    int by = hf_batch_share(batch, b->base_N);
+    bench_emit("precision", b->name, "chord", 0, "setup_s", bench_clock_s() - start_s);
+    return by == HF_SOLVER_CHORD;
+}
+
+/* ---- work-precision ---- */
+
+void bench_precision(const char *name, const char *folder)
+{
+    bench_scene b;
+    hf_batch batch;
+    bench_scene_named(name, folder, &b);
+    double *reference_m = make_references(&b);
+    int has_chord = share_matrix(&b, &batch), n = n_true(&b);
+    run way[] = {{&b, reference_m, NULL, "fixed point", by_fixed_point, n, 0, {{0}}},
+                 {&b, reference_m, NULL, "fixed point, cold", by_cold_fixed_point, n, 0, {{0}}},
+                 {&b, reference_m, NULL, "newton", by_newton, n, 0, {{0}}},
+                 {&b, reference_m, &batch, "chord", by_chord, BENCH_POPULATION, 0, {{0}}}};
+    for (double tolerance = TOLERANCE_LOOSEST; tolerance > 0.9 * TOLERANCE_TIGHTEST; tolerance /= 10)
+        for (int i = 0; i < 3 + has_chord; i++)
+            /* the cold start only costs a longer way to the same line */
+            if (way[i].work != by_cold_fixed_point || tolerance > COLD_TIGHTEST)
+                sample(&way[i], "precision", tolerance);
+    run paper = {&b, reference_m, NULL, "paper's stop", by_paper_stop, n, 0, {{0}}};
+    sample(&paper, "precision", b.form.rms_tolerance_m);
+    hf_batch_free(&batch);
+    free(reference_m);
+    bench_scene_free(&b);
+}
+
+/* ---- one evaluation to a true error of WANTED_M ---- */
+
+/* Steps of the fixed point until the first design's true error is below WANTED_M. */
+static int count_fixed_point(bench_scene *b, const double *reference_m)
+{
+    const hf_model *m = &b->model;
+    hf_workspace *w = &b->workspace;
+    memcpy(w->position_m, m->position_m, shape_size(b) * sizeof(double));
+    hf_evaluate_prepare(&b->evaluator, b->design_N, w);
+    for (int k = 1; k < COUNT_MAX; k++) {
+        int bad_row;
+        bench_fdm_matrix(m, w);
+        bench_fdm_loads(m, w);
+        if (hf_band_solve(m->n_free, m->half_bandwidth, w->band, w->position_m, m->n_node, &bad_row) != HF_OK) return 0;
+        bench_fdm_measure(m, w);
+        if (bench_distance_m(m, w->position_m, reference_m) <= WANTED_M) return k;
+        bench_fdm_update(m, w);
+    }
+    return 0;
+}
+
+static void single_fixed_point(run *r)
+{
+    bench_scene *b = r->scene;
+    int k = count_fixed_point(b, r->reference_m), keep = b->form.max_iterations;
+    b->form.max_iterations = k;
+    b->form.residual_tolerance = 0; /* the count ends it */
+    r->n = 1;
+    r->error_m = 0;
+    bench_emit("single", b->name, "fixed point", WANTED_M, "time_s", bench_time_s(by_fixed_point, r, ENOUGH_S));
+    bench_emit("single", b->name, "fixed point", WANTED_M, "error_m", r->error_m);
+    bench_emit("single", b->name, "fixed point", WANTED_M, "iterations", k);
+    b->form.max_iterations = keep;
+}
+
+/* The loosest tolerance, by half decades, at which the error is small enough. */
+static void single_by_tolerance(run *r)
+{
+    bench_scene *b = r->scene;
+    hf_form_result again;
+    double tolerance = TOLERANCE_LOOSEST;
+    for (; tolerance > 1e-13; tolerance /= sqrt(10)) {
+        b->form.residual_tolerance = tolerance;
+        r->error_m = 0;
+        if (r->work != by_chord) r->work(r);
+        for (int i = 0; r->work == by_chord && i < n_true(b); i++)
+            note_error(r, i, hf_batch_run_one(r->batch, design(b, i), &again));
+        if (r->error_m <= WANTED_M) break;
+    }
+    double time_s = bench_time_s(r->work, r, ENOUGH_S) / r->n;
+    bench_emit("single", b->name, r->name, WANTED_M, "time_s", time_s);
+    bench_emit("single", b->name, r->name, WANTED_M, "error_m", r->error_m);
+    bench_emit("single", b->name, r->name, WANTED_M, "iterations", iterations(r));
+    bench_emit("single", b->name, r->name, WANTED_M, "tolerance", tolerance);
+}
+
+/* The case's own laws (law length on the boundary), from the theoretical shape, as `run` does it first. */
+static void single_form_finding(bench_scene *b)
+{
+    hf_form_settings s = b->settings.form;
+    hf_form_result r;
+    if (s.stop != HF_STOP_RESIDUAL) return;
+    for (int method = HF_METHOD_HIFDM;; method = HF_METHOD_NEWTON) {
+        const char *name = method == HF_METHOD_HIFDM ? "form-finding, fixed point" : "form-finding, newton";
+        double start_s = bench_clock_s();
+        hf_form_prepare(&b->model, &b->workspace);
+        if (method == HF_METHOD_HIFDM)
+            hf_form_find(&b->model, &s, HF_STOP_RESIDUAL, &b->workspace, NULL, &r);
+        else
+            hf_newton_find(&b->model, &s, &b->workspace, NULL, &r);
+        bench_emit("form", b->name, name, s.residual_tolerance, "time_s", bench_clock_s() - start_s);
+        if (b->model.has_newton) hf_newton_certify(&b->model, &b->workspace, &r);
+        bench_emit("form", b->name, name, s.residual_tolerance, "iterations", r.iterations);
+        bench_emit("form", b->name, name, s.residual_tolerance, "residual_N", r.residual_N);
+        bench_emit("form", b->name, name, s.residual_tolerance, "position_error_estimate_m", r.position_error_m);
+        if (method == HF_METHOD_NEWTON) return;
+    }
+}
+
+void bench_single(const char *name, const char *folder)
+{
+    bench_scene b;
+    hf_batch batch;
+    bench_scene_named(name, folder, &b);
+    single_form_finding(&b);
+    /* without genes the base shape itself is what is looked for: start from the theoretical one */
+    if (b.model.n_gene == 0) b.evaluator.start_q_N_per_m = b.model.start_q_N_per_m;
+    double *reference_m = make_references(&b);
+    int has_chord = share_matrix(&b, &batch);
+    hf_evaluate_prepare(&b.evaluator, b.design_N, &b.workspace);
+    bench_write_net(&b, &b.workspace, reference_m, folder, name);
+    run fixed = {&b, reference_m, NULL, "fixed point", by_fixed_point, 1, 0, {{0}}};
+    run newton = {&b, reference_m, NULL, "newton", by_newton, n_true(&b), 0, {{0}}};
+    run chord = {&b, reference_m, &batch, "chord", by_chord, BENCH_POPULATION, 0, {{0}}};
+    single_fixed_point(&fixed);
+    single_by_tolerance(&newton);
+    if (has_chord) single_by_tolerance(&chord);
+    hf_batch_free(&batch);
+    free(reference_m);
+    bench_scene_free(&b);
+}

@@ -1,0 +1,315 @@
+#!/usr/bin/env python3
+"""The whole benchmark: calls the C driver, the peers in Python and the program in interleaved rounds, takes medians,
+and writes tables (CSV) and figures (SVG). Times are compared within one run only; no time is asserted anywhere.
+
+    run.py --driver build/bench/bench --program build/hifdm --work build/bench --out results/bench --flags TEXT
+"""
+import argparse
+import json
+import math
+import os
+import statistics
+import subprocess
+import sys
+import time
+from collections import defaultdict
+from datetime import datetime, timezone
+
+import svg
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SCENES = ["chen2022", "21x25 f=15", "imported 31x37", "41x49 f=5"]
+KERNEL_NET = "21x25 perimeter"
+SCALES = {1: 3, 2: 3, 4: 3, 8: 2, 16: 1}  # nets of the cost growth: rounds, fewer for those that take seconds
+BIG = "scene.parabolic_cylinder.cells_per_module=[4,4]"
+# Name of a GA case: arguments of the program, rounds. The polish is not what is measured here, and takes long.
+GA_CASES = {
+    "chen2022": (["configs/chen2022.yaml"], 5),
+    "41x49 f=5": (["configs/reflector.yaml", "--set", BIG, "--set", "scene.parabolic_cylinder.focal_length_m=5",
+                   "--set", "form.method=auto"], 2),
+}
+GA_GENERATIONS = (400, 100)
+
+
+class Samples:
+    """Every sample of the run by (section, scene, method, parameter, quantity)."""
+
+    def __init__(self):
+        self.values = defaultdict(list)
+
+    def add(self, section, scene, method, parameter, quantity, value):
+        self.values[section, scene, method, float(parameter), quantity].append(float(value))
+
+    def read(self, output):
+        for row in output.splitlines():
+            self.add(*row.split("\t"))
+
+    def keys(self, section):
+        """(scene, method, parameter) of a section, in the order of arrival."""
+        return list(dict.fromkeys(k[1:4] for k in self.values if k[0] == section))
+
+    def get(self, section, scene, method, parameter, quantity):
+        found = [v for v in self.values.get((section, scene, method, float(parameter), quantity), []) if v == v]
+        return statistics.median(found) if found else None
+
+    def any(self, section, scene, method, quantity):
+        for key in self.keys(section):
+            if key[:2] == (scene, method) and self.get(section, *key, quantity) is not None:
+                return self.get(section, *key, quantity)
+        return None
+
+
+class Bench:
+    def __init__(self, arguments):
+        self.a, self.samples = arguments, Samples()
+        self.env = dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_WAIT_POLICY="passive")
+        self.start = time.monotonic()
+        peer = subprocess.run([sys.executable, f"{HERE}/peers.py", "version"], capture_output=True, text=True)
+        self.peer_version = peer.stdout.strip() if peer.returncode == 0 else None
+
+    def say(self, words):
+        print(f"  {time.monotonic() - self.start:5.0f} s  {words}", flush=True)
+
+    def call(self, command):
+        done = subprocess.run(command, env=self.env, stdout=subprocess.PIPE, text=True)
+        if done.returncode != 0:  # what was measured before stays; the gap shows in the tables
+            print(f"bench: failed ({done.returncode}): {' '.join(command)}", file=sys.stderr)
+        self.samples.read(done.stdout)
+
+    def driver(self, section, *what):
+        self.call([self.a.driver, section, self.a.work, *map(str, what)])
+
+    def peers(self, *what):
+        if self.peer_version:
+            self.call([sys.executable, f"{HERE}/peers.py", what[0], self.a.work, *what[1:]])
+
+    def program(self, name, threads, generations, policy="passive"):
+        """One run of the program with its GA; times, memory and bytes of the whole process."""
+        path = f"{self.a.work}/ga.h5"
+        command = [self.a.program, "run", *GA_CASES[name][0], "-o", path, "--force", "--json", "--quiet",
+                   "--threads", str(threads)]
+        for key, value in {"population": 50, "generations": generations, "stagnation_generations": 400,
+                           "polish_iterations": 1}.items():
+            command += ["--set", f"optimize.{key}={value}"]
+        command += ["--set", "form.residual_tolerance=1e-9"]  # 1e-8 N at a pretension of 10 N
+        start = time.monotonic()
+        child = subprocess.Popen(command, env=dict(self.env, OMP_WAIT_POLICY=policy), stdout=subprocess.PIPE,
+                                 stderr=subprocess.DEVNULL)
+        output = child.stdout.read()
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = status
+        wall_s = time.monotonic() - start
+        ga = json.loads(output)["optimize"]
+        row = {"process_wall_s": wall_s, "process_cpu_s": usage.ru_utime + usage.ru_stime,
+               "peak_MiB": usage.ru_maxrss / 1024, "file_MB": os.path.getsize(path) / 1e6,
+               "ga_wall_s": ga["wall_s"], "ga_cpu_s": ga["cpu_s"], "evaluations": ga["evaluations"],
+               "evaluations_per_s": ga["evaluations"] / ga["wall_s"],
+               "utilisation": ga["cpu_s"] / ga["wall_s"] / threads, "residual_N": ga["residual_N"]}
+        for quantity, value in row.items():
+            self.samples.add("ga", name, f"{threads} threads, {policy}", generations, quantity, value)
+
+    # ---- what is measured ----
+
+    def measure(self):
+        for r in range(self.a.rounds):
+            self.say(f"round {r + 1} of {self.a.rounds}: steps, phases, storing")
+            self.driver("step")
+            self.peers("step")
+            for scene in (KERNEL_NET, *SCENES):
+                self.driver("phases", scene)
+            for threads in (1, 2):
+                self.driver("population", "chen2022", threads)
+            self.say("work-precision, one evaluation")
+            for scene in SCENES:
+                if scene != SCENES[-1] or r == 0:  # the fixed point takes 20 s there
+                    self.driver("precision", scene)
+            for scene in (KERNEL_NET, *SCENES):
+                if scene != SCENES[-1] or r < 2:
+                    self.driver("single", scene)
+                    self.peers("single", scene)
+            self.say("cost growth")
+            for scale, rounds in SCALES.items():
+                if r < rounds:
+                    self.driver("growth", scale)
+        self.say("genetic algorithm by the program")
+        for name, (_, rounds) in GA_CASES.items():
+            for _ in range(min(rounds, 2 * self.a.rounds)):
+                for threads in (1, 2):
+                    self.program(name, threads, GA_GENERATIONS[0])
+            self.program(name, 2, GA_GENERATIONS[1])  # for its memory
+        self.program("chen2022", 2, GA_GENERATIONS[0], "active")  # what a user gets who sets nothing
+        for threads in (1, 2):
+            self.driver("population", SCENES[-1], threads)
+
+    def header(self):
+        about = subprocess.run([self.a.driver, "about"], capture_output=True, text=True).stdout.split("\n")
+        with open("/proc/cpuinfo") as file:
+            cpu = next((row.split(":")[1].strip() for row in file if row.startswith("model name")), "unknown")
+        return [f"date {datetime.now(timezone.utc):%Y-%m-%d %H:%M} UTC", f"cpu {cpu}, {os.cpu_count()} available",
+                f"build {self.a.flags}", *filter(None, about), f"python peers {self.peer_version or 'not there'}",
+                f"medians of interleaved samples; load average at the end {os.getloadavg()[0]:.2f}"]
+
+    # ---- what is written ----
+
+    def table(self, name, columns, rows):
+        with open(f"{self.a.out}/{name}.csv", "w") as file:
+            file.write("".join(f"# {row}\n" for row in self.head))
+            file.write(",".join(columns) + "\n")
+            for row in rows:
+                file.write(",".join("" if v is None else v if isinstance(v, str) else f"{v:.6g}" for v in row) + "\n")
+
+    def wide(self, name, section, quantities, labels=("scene", "method", "parameter")):
+        """One row per (scene, method, parameter), one column per quantity."""
+        rows = []
+        for key in self.samples.keys(section):
+            values = [self.samples.get(section, *key, q) for q in quantities]
+            if any(v is not None for v in values):
+                # commas part columns
+                rows.append([key[0].replace(",", ";"), key[1].replace(",", ";"), key[2], *values])
+        self.table(name, [*labels, *quantities], rows)
+
+    def write_precision(self):
+        self.wide("precision", "precision", ["time_s", "error_m", "iterations", "relative_residual", "setup_s"],
+                  ("scene", "method", "tolerance"))
+        panels = {}
+        for scene, method, parameter in self.samples.keys("precision"):
+            point = [self.samples.get("precision", scene, method, parameter, q) for q in ("time_s", "error_m")]
+            if None not in point:
+                panels.setdefault(scene, {}).setdefault(method, []).append(point)
+        svg.loglog(f"{self.a.out}/precision.svg", panels, "time per evaluation (s)", "true position error (m)",
+                   "\n".join(self.head))
+
+    def write_single(self):
+        rows = []
+        for scene, method, _ in self.samples.keys("single"):
+            value = {q: self.samples.any("single", scene, method, q) for q in ("time_s", "error_m", "iterations")}
+            ours = {m: self.samples.any("single", scene, m, "time_s") for m in ("newton", "chord")}
+            rows.append([scene, method.replace(",", ";"), value["time_s"], value["error_m"], value["iterations"],
+                         *(value["time_s"] / ours[m] if ours[m] else None for m in ours)])
+        columns = ["scene", "method", "time_s", "error_m", "iterations", "times_newton", "times_chord"]
+        self.table("single", columns, rows)
+        self.wide("form", "form", ["time_s", "iterations", "residual_N", "position_error_estimate_m"],
+                  ("scene", "method", "tolerance"))
+
+    def write_step(self):
+        base, rows = self.samples.any("step", KERNEL_NET, "dpbtrf", "time_s"), []
+        for scene, method, n_free in self.samples.keys("step"):
+            seconds = self.samples.get("step", scene, method, n_free, "time_s")
+            if seconds:
+                rows.append([method, n_free, 1e6 * seconds, seconds / base,
+                             self.samples.get("step", scene, method, n_free, "difference_m")])
+        self.table("step", ["method", "n_free", "time_us", "times_dpbtrf", "difference_m"], rows)
+
+    def write_growth(self):
+        self.wide("growth", "growth", ["n_free", "half_bandwidth", "time_s", "bytes", "iterations"],
+                  ("net", "method", "nodes"))
+        panels, rows = {}, []
+        for quantity, title in (("time_s", "time (s)"), ("bytes", "memory (bytes)")):
+            for net, method, nodes in self.samples.keys("growth"):
+                value = self.samples.get("growth", net, method, nodes, quantity)
+                if value:
+                    panels.setdefault(title, {}).setdefault(method, []).append((nodes, value))
+            for method, points in panels[title].items():
+                if len(points) >= 3:  # over all sizes, and over the upper three, where it has settled
+                    rows.append([method.replace(",", ";"), quantity, slope(points), slope(points[-3:])])
+        self.table("growth_exponents", ["method", "quantity", "exponent", "exponent_upper_three"], rows)
+        svg.loglog(f"{self.a.out}/growth.svg", panels, "nodes", "per solve or evaluation", "\n".join(self.head))
+
+    def write_phases(self):
+        bars, rows = {}, []
+        for key, values in self.samples.values.items():
+            section, scene, method, phase, quantity = key
+            if section != "phases" or quantity in ("share", "setup_s", "passes"):
+                continue
+            share = self.samples.get("phases", scene, method, phase, "share")
+            bars.setdefault(f"{scene}, {method}", {})[quantity.replace("assembly (forces)", "assembly")] = share
+            rows.append([scene, method, quantity, statistics.median(values), share])
+        self.table("phases", ["scene", "method", "phase", "time_s", "share"], rows)
+        svg.shares(f"{self.a.out}/phases.svg", bars, "\n".join(self.head))
+
+    def write_population(self):
+        self.wide("ga", "ga", ["ga_wall_s", "ga_cpu_s", "utilisation", "evaluations", "evaluations_per_s", "residual_N",
+                               "process_wall_s", "process_cpu_s", "peak_MiB", "file_MB"],
+                  ("scene", "threads", "generations"))
+        self.wide("storing", "storing", ["evaluations", "wall_s", "evaluate_s", "breed_s", "store_s",
+                                         "worst_residual_N"],
+                  ("scene", "mode", "threads"))
+
+    def write(self):
+        os.makedirs(self.a.out, exist_ok=True)
+        self.head = self.header()
+        for name in ("precision", "single", "step", "growth", "phases", "population"):
+            getattr(self, f"write_{name}")()
+        rows = list(summary(self.samples))
+        self.table("summary", ["figure", "wanted", "measured"], rows)
+        for figure, wanted, measured in rows:
+            print(f"  {figure:<66} {wanted:>10} {'-' if measured is None else f'{measured:.4g}':>10}")
+
+
+def slope(points):
+    """Least-squares exponent."""
+    x, y = [[math.log(p[i]) for p in points] for i in (0, 1)]
+    mx, my = statistics.mean(x), statistics.mean(y)
+    return sum((a - mx) * (b - my) for a, b in zip(x, y)) / sum((a - mx) ** 2 for a in x)
+
+
+def ratio(a, b):
+    return a / b if a and b else None
+
+
+def summary(s):
+    """Rows (figure, wanted, measured) against the numbers that the project set itself."""
+    def step(method):
+        return s.any("step", KERNEL_NET, method, "time_s")
+
+    nets = [key for key in s.keys("growth") if key[1] == "FDM step, band"]
+    faster = [n[2] for n in nets if (ratio(s.get("growth", *n, "time_s"),
+                                           s.get("growth", n[0], "FDM step, CHOLMOD", n[2], "time_s")) or 0) > 1]
+    yield ["FDM step: smallest net where CHOLMOD overtakes the band; nodes", "", min(faster, default=None)]
+    base = step("lanes") or step("dpbtrf")
+    name = "lanes" if step("lanes") else "dpbtrf (no lane path yet)"
+    for method, wanted in (("dpbtrf", "6"), ("CHOLMOD", "4"), ("scipy solveh_banded", "12"), ("scipy splu", "")):
+        yield [f"FDM step, 437 free: {method} / {name}", wanted, ratio(step(method), base)]
+    for scene in (KERNEL_NET, *SCENES):
+        for peer, wanted in (("fixed point", "300"), ("scipy fixed point, band", "1000")):
+            for method in ("newton", "chord"):
+                value = ratio(s.any("single", scene, peer, "time_s"), s.any("single", scene, method, "time_s"))
+                if value:
+                    yield [f"to 1e-6 m; {scene}: {peer.replace(',', ';')} / {method}", wanted, value]
+    for scene, memory in (("chen2022", "64"), ("41x49 f=5", "256")):
+        def ga(threads, quantity, generations=400, policy="passive"):
+            return s.get("ga", scene, f"{threads} threads, {policy}", generations, quantity)
+        limit = "2" if scene == "chen2022" else ""
+        yield [f"50x400 GA; {scene}: wall s on 2 threads", limit, ga(2, "ga_wall_s")]
+        active = ga(2, "ga_wall_s", 400, "active")
+        if active:
+            yield [f"50x400 GA; {scene}: the same with OMP_WAIT_POLICY=active", "", active]
+        yield [f"50x400 GA; {scene}: evaluations/s on 1 thread", "", ga(1, "evaluations_per_s")]
+        yield [f"50x400 GA; {scene}: evaluations/s on 2 threads", "", ga(2, "evaluations_per_s")]
+        yield [f"50x400 GA; {scene}: 1 thread / 2 threads", "1.9", ratio(ga(1, "ga_wall_s"), ga(2, "ga_wall_s"))]
+        yield [f"50x400 GA; {scene}: CPU utilisation on 2 threads", "0.95", ga(2, "utilisation")]
+        yield [f"50x400 GA; {scene}: largest residual of all individuals N", "1e-8",
+               s.get("storing", scene, "stored", 2, "worst_residual_N")]
+        yield [f"50x400 GA; {scene}: peak MiB", memory, ga(2, "peak_MiB")]
+        yield [f"50x100 GA; {scene}: peak MiB", memory, ga(2, "peak_MiB", 100)]
+        yield [f"50x400 GA; {scene}: file MB", "", ga(2, "file_MB")]
+        for threads in (1, 2):
+            share = ratio(s.get("storing", scene, "stored", threads, "store_s"),
+                          s.get("storing", scene, "not stored", threads, "wall_s"))
+            yield [f"storing / GA without storing; {scene}; {threads} threads", "0.05", share]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    for option in ("driver", "program", "work", "out"):
+        parser.add_argument(f"--{option}", required=True)
+    parser.add_argument("--flags", default="unknown")
+    parser.add_argument("--rounds", type=int, default=3)
+    bench = Bench(parser.parse_args())
+    bench.measure()
+    bench.write()
+    bench.say(f"done: {bench.a.out}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,203 @@
+/* Contents: the parts of one FDM step - ways to do a step - files for the peers in Python - the section */
+#include "bench.h"
+
+#include "band.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ENOUGH_S 0.05
+#define ITERATIONS 200 /* of hf_form_find, to spread what it does once over many */
+
+void dpbsv_(const char *uplo, const int *n, const int *kd, const int *nrhs, double *ab, const int *ldab, double *b,
+            const int *ldb, int *info);
+
+/* ---- the parts of one FDM step (Eqs. 2, 4-8), as in src/formfind.c, where they are static ---- */
+
+void bench_fdm_matrix(const hf_model *m, hf_workspace *w)
+{
+    memset(w->band, 0, ((size_t)m->n_band + 1) * sizeof(double));
+    for (int e = 0; e < m->n_cable; e++) {
+        double q = w->q_N_per_m[e];
+        w->band[m->diagonal_a[e]] += q;
+        w->band[m->diagonal_b[e]] += q;
+        w->band[m->off_diagonal[e]] -= q;
+    }
+}
+
+void bench_fdm_loads(const hf_model *m, hf_workspace *w)
+{
+    double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
+    for (int c = 0; c < 3; c++) {
+        double *out = w->position_m + (size_t)c * (size_t)m->n_node;
+        if (m->load_N)
+            memcpy(out, m->load_N + (size_t)c * (size_t)m->n_node, (size_t)m->n_free * sizeof(double));
+        else
+            memset(out, 0, (size_t)m->n_free * sizeof(double));
+    }
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], inside = a < b ? a : b, support = a < b ? b : a;
+        if (support < m->n_free || inside >= m->n_free) continue;
+        double q = w->q_N_per_m[e];
+        x[inside] += q * x[support];
+        y[inside] += q * y[support];
+        z[inside] += q * z[support];
+    }
+}
+
+void bench_fdm_measure(const hf_model *m, hf_workspace *w)
+{
+    const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        double dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a];
+        w->length_m[e] = sqrt(dx * dx + dy * dy + dz * dz);
+        w->tension_N[e] = w->q_N_per_m[e] * w->length_m[e];
+    }
+}
+
+void bench_fdm_update(const hf_model *m, hf_workspace *w)
+{
+    for (int e = 0; e < m->n_cable; e++) {
+        if (w->law[e] == HF_LAW_TENSION)
+            w->q_N_per_m[e] = w->target[e] / w->length_m[e]; // Eq. 7
+        else if (w->law[e] == HF_LAW_LENGTH)
+            w->q_N_per_m[e] *= w->length_m[e] / w->target[e]; // Eq. 8
+    }
+}
+
+/* ---- ways to do a step: assembly, factor, three right-hand sides, lengths and tensions, per individual ---- */
+
+typedef struct {
+    bench_scene *scene;
+    bench_cholmod *cholmod;
+    hf_form_settings settings;
+} step_context;
+
+static void step_dpbtrf(void *context)
+{
+    bench_scene *b = ((step_context *)context)->scene;
+    int bad_row;
+    bench_fdm_matrix(&b->model, &b->workspace);
+    bench_fdm_loads(&b->model, &b->workspace);
+    hf_band_solve(b->model.n_free, b->model.half_bandwidth, b->workspace.band, b->workspace.position_m, b->model.n_node,
+                  &bad_row);
+    bench_fdm_measure(&b->model, &b->workspace);
+}
+
+static void step_dpbsv(void *context)
+{
+    bench_scene *b = ((step_context *)context)->scene;
+    const hf_model *m = &b->model;
+    int three = 3, ldab = m->half_bandwidth + 1, info;
+    bench_fdm_matrix(m, &b->workspace);
+    bench_fdm_loads(m, &b->workspace);
+    dpbsv_("L", &m->n_free, &m->half_bandwidth, &three, b->workspace.band, &ldab, b->workspace.position_m, &m->n_node,
+           &info);
+    bench_fdm_measure(m, &b->workspace);
+}
+
+static void step_cholmod(void *context)
+{
+    step_context *c = context;
+    bench_cholmod_step(c->cholmod, &c->scene->model, &c->scene->workspace);
+    bench_fdm_measure(&c->scene->model, &c->scene->workspace);
+}
+
+/* The whole of hf_form_find: also the residual, the laws and the stopping rule of every iteration. */
+static void step_form_find(void *context)
+{
+    step_context *c = context;
+    hf_form_result r;
+    hf_form_prepare(&c->scene->model, &c->scene->workspace);
+    hf_form_find(&c->scene->model, &c->settings, HF_STOP_RESIDUAL, &c->scene->workspace, NULL, &r);
+}
+
+typedef struct {
+    const char *name;
+    void (*work)(void *context);
+    double individuals; /* that one call steps */
+} step_row;
+
+static const step_row step_table[] = {
+    {"dpbtrf", step_dpbtrf, 1},
+    {"dpbsv", step_dpbsv, 1},
+    {"CHOLMOD", step_cholmod, 1},
+    {"hf_form_find", step_form_find, ITERATIONS},
+    /* The SIMD lane path of the paper's iteration goes here, as {"lanes", step_lanes, HF_LANES}: run.py knows that name
+     * and then holds the peers against it. */
+};
+
+/* ---- files for the peers in Python ---- */
+
+static void write_doubles(FILE *file, const char *name, int n, const double *value)
+{
+    fprintf(file, "%s %d", name, n);
+    for (int i = 0; i < n; i++)
+        fprintf(file, " %.17g", value[i]);
+    fputc('\n', file);
+}
+
+static void write_ints(FILE *file, const char *name, int n, const int *value)
+{
+    fprintf(file, "%s %d", name, n);
+    for (int i = 0; i < n; i++)
+        fprintf(file, " %d", value[i]);
+    fputc('\n', file);
+}
+
+void bench_write_net(const bench_scene *b, const hf_workspace *w, const double *reference_m, const char *folder,
+                     const char *name)
+{
+    const hf_model *m = &b->model;
+    char path[HF_PATH_SIZE];
+    snprintf(path, sizeof path, "%s/%s.net", folder, name);
+    FILE *file = fopen(path, "w");
+    if (!file) bench_fail(path, "cannot be written");
+    int size[] = {m->n_node, m->n_free, m->n_cable, m->half_bandwidth};
+    write_ints(file, "size", 4, size);
+    write_ints(file, "end_row", 2 * m->n_cable, m->end_row);
+    write_doubles(file, "position_m", 3 * m->n_node, m->position_m);
+    write_doubles(file, "load_N", m->load_N ? 3 * m->n_node : 0, m->load_N);
+    write_doubles(file, "q", m->n_cable, w->q_N_per_m);
+    write_doubles(file, "target", m->n_cable, w->target);
+    fprintf(file, "law %d", m->n_cable);
+    for (int e = 0; e < m->n_cable; e++)
+        fprintf(file, " %d", w->law[e]);
+    fputc('\n', file);
+    write_doubles(file, "reference_m", 3 * m->n_node, reference_m ? reference_m : m->position_m);
+    fclose(file);
+}
+
+/* ---- the section ---- */
+
+void bench_step(const char *folder)
+{
+    bench_scene b;
+    bench_scene_named("21x25 perimeter", folder, &b);
+    hf_form_prepare(&b.model, &b.workspace);
+    bench_write_net(&b, &b.workspace, NULL, folder, "step");
+    step_context c = {&b, bench_cholmod_create(&b.model), b.form};
+    c.settings.residual_tolerance = 0; /* never reached */
+    c.settings.max_iterations = ITERATIONS;
+    double *first = bench_alloc(3 * (size_t)b.model.n_node, sizeof *first);
+    for (int round = 0; round < 5; round++)
+        for (size_t i = 0; i < sizeof step_table / sizeof *step_table; i++) {
+            const step_row *row = &step_table[i];
+            if (row->work == step_cholmod && !c.cholmod) continue;
+            hf_form_prepare(&b.model, &b.workspace);
+            memcpy(b.workspace.position_m, b.model.position_m, 3 * (size_t)b.model.n_node * sizeof(double));
+            bench_emit("step", b.name, row->name, b.model.n_free, "time_s",
+                       bench_time_s(row->work, &c, ENOUGH_S) / row->individuals);
+            if (i == 0) memcpy(first, b.workspace.position_m, 3 * (size_t)b.model.n_node * sizeof(double));
+            if (row->work != step_form_find) /* all ways give the same shape */
+                bench_emit("step", b.name, row->name, b.model.n_free, "difference_m",
+                           bench_distance_m(&b.model, first, b.workspace.position_m));
+        }
+    bench_emit("step", b.name, "net", b.model.n_free, "half_bandwidth", b.model.half_bandwidth);
+    bench_cholmod_free(c.cholmod);
+    free(first);
+    bench_scene_free(&b);
+}
