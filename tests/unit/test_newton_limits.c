@@ -121,7 +121,7 @@ START_TEST(iterations_are_bounded)
     ck_assert_int_eq(find(&net), HF_OK);
     int enough = net.result.iterations;
     double psi_m = net.result.psi_m;
-    ck_assert_int_gt(enough, 31); /* the fixed point alone does not do it */
+    ck_assert_int_gt(enough, 6); /* the first fixed-point iterations alone do not do it */
     for (int limit = 1; limit <= enough + 10; limit++) {
         net.form.max_iterations = limit;
         hf_status status = find(&net);

@@ -2,6 +2,7 @@
 #include "bench.h"
 
 #include "band.h"
+#include "lane.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -74,6 +75,9 @@ typedef struct {
     bench_scene *scene;
     bench_cholmod *cholmod;
     hf_form_settings settings;
+    hf_lane_plan plan;
+    hf_lane_workspace lanes;
+    hf_lane_measures measures;
 } step_context;
 
 static void step_dpbtrf(void *context)
@@ -106,6 +110,26 @@ static void step_cholmod(void *context)
     bench_fdm_measure(&c->scene->model, &c->scene->workspace);
 }
 
+/* Eight individuals; the force densities stay, as in the rows above. */
+static void step_lanes(void *context)
+{
+    step_context *c = context;
+    hf_lane_solve(&c->plan, &c->lanes);
+    hf_lane_measure(&c->plan, &c->lanes, &c->measures);
+}
+
+static void create_lanes(step_context *c)
+{
+    const hf_model *m = &c->scene->model;
+    if (hf_lane_plan_create(m, hf_lane_best_isa(), &c->plan) != HF_OK ||
+        hf_lane_workspace_create(&c->plan, &c->lanes) != HF_OK)
+        bench_fail("lanes", "out of memory");
+    memcpy(c->scene->workspace.position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    for (int lane = 0; lane < HF_LANES; lane++)
+        hf_lane_put(&c->plan, &c->scene->workspace, lane, &c->lanes);
+    memcpy(c->lanes.law, c->scene->workspace.law, (size_t)m->n_cable);
+}
+
 /* The whole of hf_form_find: also the residual, the laws and the stopping rule of every iteration. */
 static void step_form_find(void *context)
 {
@@ -122,12 +146,9 @@ typedef struct {
 } step_row;
 
 static const step_row step_table[] = {
-    {"dpbtrf", step_dpbtrf, 1},
-    {"dpbsv", step_dpbsv, 1},
-    {"CHOLMOD", step_cholmod, 1},
-    {"hf_form_find", step_form_find, ITERATIONS},
-    /* The SIMD lane path of the paper's iteration goes here, as {"lanes", step_lanes, HF_LANES}: run.py knows that name
-     * and then holds the peers against it. */
+    {"dpbtrf", step_dpbtrf, 1},      {"dpbsv", step_dpbsv, 1},
+    {"CHOLMOD", step_cholmod, 1},    {"hf_form_find", step_form_find, ITERATIONS},
+    {"lanes", step_lanes, HF_LANES},
 };
 
 /* ---- files for the peers in Python ---- */
@@ -179,7 +200,8 @@ void bench_step(const char *folder)
     bench_scene_named("21x25 perimeter", folder, &b);
     hf_form_prepare(&b.model, &b.workspace);
     bench_write_net(&b, &b.workspace, NULL, folder, "step");
-    step_context c = {&b, bench_cholmod_create(&b.model), b.form};
+    step_context c = {.scene = &b, .cholmod = bench_cholmod_create(&b.model), .settings = b.form};
+    create_lanes(&c);
     c.settings.residual_tolerance = 0; /* never reached */
     c.settings.max_iterations = ITERATIONS;
     double *first = bench_alloc(3 * (size_t)b.model.n_node, sizeof *first);
@@ -192,11 +214,14 @@ void bench_step(const char *folder)
             bench_emit("step", b.name, row->name, b.model.n_free, "time_s",
                        bench_time_s(row->work, &c, ENOUGH_S) / row->individuals);
             if (i == 0) memcpy(first, b.workspace.position_m, 3 * (size_t)b.model.n_node * sizeof(double));
+            if (row->work == step_lanes) hf_lane_get(&c.plan, &c.lanes, HF_LANES - 1, &b.workspace);
             if (row->work != step_form_find) /* all ways give the same shape */
                 bench_emit("step", b.name, row->name, b.model.n_free, "difference_m",
                            bench_distance_m(&b.model, first, b.workspace.position_m));
         }
     bench_emit("step", b.name, "net", b.model.n_free, "half_bandwidth", b.model.half_bandwidth);
+    hf_lane_workspace_free(&c.lanes);
+    hf_lane_plan_free(&c.plan);
     bench_cholmod_free(c.cholmod);
     free(first);
     bench_scene_free(&b);
