@@ -9,7 +9,7 @@
 /* Stiffness of a length-controlled cable over its tension per length. The larger, the nearer to a hard constraint; the
  * forces never contain it, so it costs no accuracy in the residual. */
 #define STIFFENING 1e6
-#define FIRST_BLOCK 6       /* fixed-point iterations before Newton is tried; doubled after each failure */
+#define FIRST_BLOCK 6        /* fixed-point iterations before Newton is tried; doubled after each failure */
 #define STEPS_MAX 30         /* Newton steps per try */
 #define HALVINGS_MAX 6       /* of one step */
 #define TENSION_KEPT 0.1     /* a step leaves at least this part of a multiplier */
