@@ -12,6 +12,8 @@
 #define FIRST_BLOCK 6        /* fixed-point iterations before Newton is tried; doubled after each failure */
 #define STEPS_MAX 30         /* Newton steps per try */
 #define HALVINGS_MAX 6       /* of one step */
+#define TRUSTED_MAX 6        /* steps per try that may raise the merit */
+#define TRUSTED_RISE 1e6     /* by no more than this factor */
 #define TENSION_KEPT 0.1     /* a step leaves at least this part of a multiplier */
 #define DIAGONAL_GUARD 1e-14 /* Levenberg shift, relative to the largest diagonal, that is always there */
 #define SHIFT_FIRST 1e-10    /* the first one after a failed factorisation */
@@ -202,6 +204,7 @@ static int newton_steps(const hf_model *m, const hf_form_settings *s, hf_workspa
     tight.length_tolerance = fmax(0.1 * s->length_tolerance, 1e-14);
     imbalance now = measure(m, w, w->position_m, w->tension_N, w->newton_force_N), next = now;
     double first_merit = now.merit, u[3];
+    int n_trusted = 0;
     for (int k = 0; k < STEPS_MAX && !is_balanced(m, &tight, &now); k++) {
         if (hf_newton_factor(m, w, NULL) != HF_OK) break;
         right_hand_side(m, w, w->newton_force_N, w->newton_step);
@@ -214,7 +217,13 @@ static int newton_steps(const hf_model *m, const hf_form_settings *s, hf_workspa
             if (next.merit < now.merit * (1 - 0.1 * part)) break; /* false for NaN */
         }
         ++*n_step;
-        if (halvings > HALVINGS_MAX) break; /* no progress: at the limit of rounding, or too far away */
+        if (halvings > HALVINGS_MAX) {
+            /* the merit need not fall on the way to tensions that are decades away: a few full steps on trust */
+            if (++n_trusted > TRUSTED_MAX || is_balanced(m, s, &now)) break;
+            try_step(m, w, 1);
+            next = measure(m, w, w->newton_trial_m, w->newton_trial_tension_N, w->newton_force_N);
+            if (!(next.merit < TRUSTED_RISE * now.merit)) break;
+        }
         memcpy(w->position_m, w->newton_trial_m, 3 * (size_t)m->n_node * sizeof(double));
         memcpy(w->tension_N, w->newton_trial_tension_N, (size_t)m->n_cable * sizeof(double));
         now = next;
