@@ -94,6 +94,7 @@ int hf_batch_share(hf_batch *batch, const double *base_N)
 {
     const hf_evaluator *v = batch->evaluator;
     int solver = v->solver;
+    free_engine(batch); /* of an earlier base */
     if (solver != HF_SOLVER_FIXED_POINT && solver != HF_SOLVER_NEWTON && hf_chord_applies(v) &&
         set_engine(batch, HF_SOLVER_CHORD, base_N))
         return HF_SOLVER_CHORD;
@@ -140,6 +141,7 @@ static int take_next(void *context)
 
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result)
 {
+    if (n <= 0) return;
     queue work = {n, 0, pending};
     double cpu_s = 0;
 #pragma omp parallel num_threads(batch->n_thread) reduction(+ : cpu_s)

@@ -54,18 +54,21 @@ static hf_status claim(const hf_options *o, const char *name, char path[PATH_SIZ
 
 hf_status hf_export_claim(const char *path, int force, hf_messages *messages)
 {
-    if (!force && access(path, F_OK) == 0)
-        return hf_error(messages, HF_EXISTS, "%s exists; use --force to replace it", path);
+    struct stat info;
+    if (lstat(path, &info) != 0) return HF_OK;
+    if (!force) return hf_error(messages, HF_EXISTS, "%s exists; use --force to replace it", path);
+    if (!S_ISREG(info.st_mode))
+        return hf_error(messages, HF_IO, "%s: is not an ordinary file; choose another name", path);
     return HF_OK;
 }
 
 hf_status hf_export_file(const char *path, void (*write)(const void *context, FILE *file), const void *context,
                          hf_messages *messages)
 {
-    char temporary[PATH_SIZE + 8];
-    if (snprintf(temporary, sizeof temporary, "%s.tmp", path) >= (int)sizeof temporary)
+    char temporary[PATH_SIZE + 32];
+    if (snprintf(temporary, sizeof temporary, "%s.%ld.tmp", path, (long)getpid()) >= (int)sizeof temporary)
         return hf_error(messages, HF_IO, "%s: the path is too long", path);
-    FILE *f = fopen(temporary, "w");
+    FILE *f = fopen(temporary, "wx"); /* nobody else's */
     if (!f) return hf_error(messages, HF_IO, "%s: cannot write: %s", temporary, strerror(errno));
     write(context, f);
     int failed = ferror(f) != 0;

@@ -195,8 +195,8 @@ static int is_balanced(const hf_model *m, const hf_form_settings *s, const imbal
 }
 
 /* Newton steps from the workspace's shape and tensions while they help. On success q_N_per_m belongs to the new shape
- * and 1 is returned; else q_N_per_m is as it was. *n_step counts. */
-static int newton_steps(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int *n_step)
+ * and 1 is returned; else q_N_per_m is as it was. *n_step counts, up to max_steps. */
+static int newton_steps(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int max_steps, int *n_step)
 {
     /* one more digit than asked for, so that the closing linear solve does not miss the tolerance by a hair */
     hf_form_settings tight = *s;
@@ -205,7 +205,7 @@ static int newton_steps(const hf_model *m, const hf_form_settings *s, hf_workspa
     imbalance now = measure(m, w, w->position_m, w->tension_N, w->newton_force_N), next = now;
     double first_merit = now.merit, u[3];
     int n_trusted = 0;
-    for (int k = 0; k < STEPS_MAX && !is_balanced(m, &tight, &now); k++) {
+    for (int k = 0; k < max_steps && !is_balanced(m, &tight, &now); k++) {
         if (hf_newton_factor(m, w, NULL) != HF_OK) break;
         right_hand_side(m, w, w->newton_force_N, w->newton_step);
         hf_band_back_solve(dofs(m), half_bandwidth(m), 1, w->newton_band, w->newton_step, dofs(m));
@@ -250,8 +250,9 @@ hf_status hf_newton_find(const hf_model *m, const hf_form_settings *s, hf_worksp
         n_done += result->iterations;
         if (result->status != HF_NOT_CONVERGED || n_done >= s->max_iterations) break;
         int n_step = 0;
+        left = s->max_iterations - n_done < STEPS_MAX ? s->max_iterations - n_done : STEPS_MAX;
         /* after a success a few linear solves measure the new shape; after a failure the fixed point goes on */
-        block = newton_steps(m, s, w, &n_step) ? FIRST_BLOCK : 2 * block;
+        block = newton_steps(m, s, w, left, &n_step) ? FIRST_BLOCK : 2 * block;
         n_done += n_step;
     }
     result->iterations = n_done;
@@ -285,7 +286,8 @@ void hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
     double largest = 0;
     for (int i = 0; i < m->n_free; i++) {
         const double *d = w->newton_step + 3 * i;
-        largest = fmax(largest, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        if (!(square <= largest)) largest = square; /* keeps a NaN */
     }
     r->position_error_m = sqrt(largest);
 }

@@ -241,5 +241,7 @@ void hf_options_help(FILE *file)
             fprintf(file, "      %-18s %s\n", name, o->help);
         }
     }
-    fputs("\nexit status: 0 done, 2 bad usage or case, 3 not converged, 4 ill-posed, 5 input/output\n", file);
+    fputs("\nexit status: 0 done, 2 bad usage or case, 3 not converged or no feasible design, 4 ill-posed, 5 "
+          "input/output\n",
+          file);
 }

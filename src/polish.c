@@ -181,9 +181,11 @@ static hf_status minimise(problem *p, int max_iterations, const double *start_N,
     }
     to_variable(p, start_N, variable);
     int info = 0;
+    gsl_error_handler_t *before = gsl_set_error_handler_off(); /* "no progress" is an answer here */
     gsl_multifit_nlinear_init(variable, &fdf, solver);
     int status = gsl_multifit_nlinear_driver((size_t)max_iterations, STEP_TOLERANCE, 0, PSI_TOLERANCE, NULL, NULL,
                                              &info, solver);
+    gsl_set_error_handler(before);
     result->iterations = (int)gsl_multifit_nlinear_niter(solver);
     /* GSL_ENOPROG: no step lowers psi any more, which is convergence to rounding */
     result->converged = status == GSL_SUCCESS || status == GSL_ENOPROG;

@@ -80,10 +80,10 @@ static void print_polish(const hf_summary *s, FILE *f)
 {
     char wall[32], boundary[32];
     hf_print_duration(s->polish_wall_s, wall, sizeof wall);
-    fprintf(f, "  LM optimum    psi %.4f mm from there, %s; boundary ratio %s; %d iterations%s, %s\n",
-            s->polish.psi_m * 1e3, s->polish_is_result ? "the result" : "for comparison",
-            ratio(s->polish.boundary_tension_ratio, boundary), s->polish_iterations,
-            s->polish_converged ? "" : " (not converged)", wall);
+    fprintf(f, "  LM optimum    psi %.4f mm from %s, %s; boundary ratio %s; %d iterations%s, %s\n",
+            s->polish.psi_m * 1e3, s->has_optimize ? "there" : "the form-finding's tensions",
+            s->polish_is_result ? "the result" : "for comparison", ratio(s->polish.boundary_tension_ratio, boundary),
+            s->polish_iterations, s->polish_converged ? "" : " (not converged)", wall);
 }
 
 static void print_certificate(const hf_form_result *r, FILE *f)

@@ -275,8 +275,10 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
                                      &r->workspace, &outcome);
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
     if (status != HF_OK) {
-        hf_warning(messages, "optimize: Levenberg-Marquardt has no feasible design to start from: %s",
-                   hf_status_text(status));
+        const char *why = hf_status_text(status);
+        if (o->method == HF_OPTIMIZE_LM)
+            return hf_error(messages, HF_NO_FEASIBLE, "optimize: Levenberg-Marquardt has no feasible start: %s", why);
+        hf_warning(messages, "optimize: Levenberg-Marquardt has no feasible start: %s", why);
         return HF_OK;
     }
     hf_evaluate(&r->evaluator, design, &r->workspace, &s->polish);
@@ -296,8 +298,9 @@ static hf_status optimize(run *r, const hf_options *options, hf_summary *s, hf_m
     s->threads = r->batch.n_thread;
     if (method != HF_OPTIMIZE_LM) HF_TRY(evolve(r, options, s, messages));
     if (hf_polish_applies(&r->evaluator)) return polish(r, s, messages);
-    if (method != HF_OPTIMIZE_GA)
-        hf_warning(messages, "optimize: Levenberg-Marquardt needs a net without struts and a rule other than seeded");
+    const char *needs = "optimize: Levenberg-Marquardt needs a net without struts and a rule other than seeded";
+    if (method == HF_OPTIMIZE_LM) return hf_error(messages, HF_BAD_CASE, "%s", needs);
+    if (method == HF_OPTIMIZE_GA_LM) hf_warning(messages, "%s", needs);
     return HF_OK;
 }
 

@@ -120,7 +120,7 @@ START_TEST(help_lists_every_command_and_exit_status)
         "--seed S",       "--json",          "--quiet",      "--csv DIR",     "--stage STAGE"};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         OUT(parts[i]);
-    OUT("0 done, 2 bad usage or case, 3 not converged, 4 ill-posed, 5 input/output");
+    OUT("0 done, 2 bad usage or case, 3 not converged or no feasible design, 4 ill-posed, 5");
     char *help = said.out;
     said.out = NULL;
     HIFDM(0, "--help");

@@ -90,12 +90,32 @@ START_TEST(neighbours_and_threads_do_not_change_a_bit)
 }
 END_TEST
 
+/* Another base, and no designs at all. */
+START_TEST(a_batch_may_share_again_and_be_empty)
+{
+    struct run r;
+    hf_batch batch;
+    hf_form_result result;
+    open_run(&r, HF_RULE_FORCE_DENSITY, 0.5);
+    r.evaluator.solver = HF_SOLVER_AUTO;
+    ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
+    ck_assert_int_eq(hf_batch_share(&batch, r.design_N), HF_SOLVER_CHORD);
+    ck_assert_int_eq(hf_batch_share(&batch, r.design_N + r.net.model.n_gene), HF_SOLVER_CHORD);
+    hf_batch_run(&batch, 0, NULL, NULL, NULL);
+    hf_batch_run(&batch, 1, r.design_N, NULL, &result);
+    ck_assert_int_eq(result.status, HF_OK);
+    hf_batch_free(&batch);
+    close_net(&r.net);
+}
+END_TEST
+
 Suite *suite_unit_swarm(void)
 {
     Suite *suite = suite_create("unit/swarm");
     TCase *tests = tcase_create("swarm");
     tcase_add_loop_test(tests, results_are_those_of_the_scalar_code, 0, 6);
     tcase_add_loop_test(tests, neighbours_and_threads_do_not_change_a_bit, 0, 3);
+    tcase_add_test(tests, a_batch_may_share_again_and_be_empty);
     suite_add_tcase(suite, tests);
     return suite;
 }
