@@ -47,15 +47,20 @@ static void print_plan(const plan *p, FILE *f)
             hf_method_word[c->form.method], method == HF_METHOD_NEWTON ? "newton" : "fixed point", why,
             hf_stop_rule_word[c->form.stop], c->form.max_iterations);
     int optimizes = c->has_optimize && p->model.n_gene > 0;
-    if (optimizes)
+    int evolves = optimizes && o->method != HF_OPTIMIZE_LM;
+    if (evolves)
         fprintf(f,
                 "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
                 hf_rule_word[o->rule], p->model.n_gene, o->population, o->generations, (unsigned long long)o->seed);
+    if (optimizes && o->rule != HF_RULE_SEEDED)
+        fprintf(f, "                Levenberg-Marquardt: rule %s, at most %d iterations, %s\n", hf_rule_word[o->rule],
+                o->polish_iterations, o->method == HF_OPTIMIZE_GA ? "for comparison" : "the result");
     if (optimizes && o->symmetry != HF_SYMMETRY_NONE)
         fprintf(f, "                symmetry: %s, %s; %d independent genes of %d\n", hf_symmetry_word[o->symmetry],
                 hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_gene);
     fprintf(f, "  skipped       %s%s%s\n",
-            optimizes         ? ""
+            evolves           ? ""
+            : optimizes       ? "genetic algorithm (method: lm); "
             : c->has_optimize ? "optimisation (no boundary cable has a free end); "
                               : "optimisation (no optimize section); ",
             p->model.load_N ? "" : "loads (none given); ", p->model.has_strut ? "" : "general band matrix (no struts)");
@@ -68,13 +73,18 @@ static void print_allocation(const char *title, const char *what, double bytes, 
     fprintf(f, "  %-13s %-38s %s\n", title, what, bytes > 0 ? text : without);
 }
 
+static int shares(const hf_evaluator *v)
+{
+    return (v->solver == HF_SOLVER_AUTO || v->solver == HF_SOLVER_CHORD) && hf_chord_applies(v);
+}
+
 /* What a run would allocate, and what it would not. */
 static void print_memory(const plan *p, const hf_evaluator *v, int threads, FILE *f)
 {
     const hf_model *m = &p->model;
     hf_model without = *m;
     without.has_newton = 0;
-    size_t lanes = 0, shared = v && hf_chord_applies(v) ? hf_chord_bytes(v, &lanes) : 0;
+    size_t lanes = 0, shared = v && shares(v) ? hf_chord_bytes(v, &lanes) : 0;
     double workspaces = v ? threads + 1 : 1, bare = (double)hf_workspace_bytes(&without);
     double population = v ? (double)p->settings.optimize.population : 0, genes = 8.0 * m->n_gene;
     double newton = (double)hf_workspace_bytes(m) - bare;
@@ -143,7 +153,7 @@ static hf_status print_time(plan *p, const hf_evaluator *v, int threads, FILE *f
     fprintf(f, "  expected time form-finding: %s (%d iterations, stopped by %s)\n", text, r.iterations,
             hf_stop_reason_word((int)r.stop_reason));
     HF_TRY(hf_run_explain(&p->scene, &p->model, &p->settings.form, &p->workspace, &r, messages));
-    if (!v) return HF_OK;
+    if (!v || p->settings.optimize.method == HF_OPTIMIZE_LM) return HF_OK;
     memcpy(p->start_q_N_per_m, p->workspace.q_N_per_m, (size_t)p->model.n_cable * sizeof(double));
     if (print_optimize_time(p, v, threads, f) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory");
     return HF_OK;
