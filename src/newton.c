@@ -165,6 +165,15 @@ static void right_hand_side(const hf_model *m, const hf_workspace *w, const doub
     }
 }
 
+/* The Newton step for the forces in newton_force_N, into newton_step; condition as in hf_newton_factor. */
+static hf_status find_step(const hf_model *m, hf_workspace *w, double *condition)
+{
+    HF_TRY(hf_newton_factor(m, w, condition));
+    right_hand_side(m, w, w->newton_force_N, w->newton_step);
+    hf_band_back_solve(dofs(m), half_bandwidth(m), 1, w->newton_band, w->newton_step, dofs(m));
+    return HF_OK;
+}
+
 /* Shape and multipliers after `part` of the step, into newton_trial_m and newton_trial_tension_N. */
 static void try_step(const hf_model *m, hf_workspace *w, double part)
 {
@@ -206,9 +215,7 @@ static int newton_steps(const hf_model *m, const hf_form_settings *s, hf_workspa
     double first_merit = now.merit, u[3];
     int n_trusted = 0;
     for (int k = 0; k < max_steps && !is_balanced(m, &tight, &now); k++) {
-        if (hf_newton_factor(m, w, NULL) != HF_OK) break;
-        right_hand_side(m, w, w->newton_force_N, w->newton_step);
-        hf_band_back_solve(dofs(m), half_bandwidth(m), 1, w->newton_band, w->newton_step, dofs(m));
+        if (find_step(m, w, NULL) != HF_OK) break;
         double part = 1;
         int halvings = 0;
         for (; halvings <= HALVINGS_MAX; halvings++, part /= 2) {
@@ -280,9 +287,7 @@ void hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
     if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) return;
     r->backward_error = r->residual_N / largest_pull_N(m, w, w->newton_trial_m);
     measure(m, w, w->position_m, w->tension_N, w->newton_force_N);
-    if (hf_newton_factor(m, w, &r->condition) != HF_OK) return;
-    right_hand_side(m, w, w->newton_force_N, w->newton_step);
-    hf_band_back_solve(dofs(m), half_bandwidth(m), 1, w->newton_band, w->newton_step, dofs(m));
+    if (find_step(m, w, &r->condition) != HF_OK) return;
     double largest = 0;
     for (int i = 0; i < m->n_free; i++) {
         const double *d = w->newton_step + 3 * i;
