@@ -63,6 +63,8 @@ static void lay_out(hf_arena *a, hf_chord *c)
     c->column = hf_arena_take(a, n * w, sizeof(double));
     c->inverse_diagonal = hf_arena_take(a, n, sizeof(double));
     c->base_m = hf_arena_take(a, 3 * (size_t)m->n_node, sizeof(double));
+    c->row_begin = hf_arena_take(a, n / 4, sizeof(int));
+    c->column_end = hf_arena_take(a, n / 4, sizeof(int));
     c->gene_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
 }
 
@@ -76,6 +78,28 @@ static void pack(const hf_workspace *w, hf_chord *c, int half_bandwidth)
             c->column[j * width + d - 1] = value;
             c->row[(j + d) * width + width - d] = value;
         }
+    }
+}
+
+/* Where four packed rows (or columns) at `block` have something at place i of the part that they share. */
+static int has_entry(const double *block, size_t width, int i)
+{
+    return block[i + 3] != 0 || block[width + (size_t)i + 2] != 0 || block[2 * width + (size_t)i + 1] != 0 ||
+           block[3 * width + (size_t)i] != 0;
+}
+
+static void find_skyline(hf_chord *c)
+{
+    size_t width = (size_t)c->width;
+    for (int b = 0; 4 * b < c->n_dof; b++) {
+        const double *row = c->row + 4 * (size_t)b * width, *column = c->column + 4 * (size_t)b * width;
+        int begin = 0, end = c->width - 3;
+        while (begin < c->width - 3 && !has_entry(row, width, begin))
+            begin++;
+        while (end > 0 && !has_entry(column, width, end - 1))
+            end--;
+        c->row_begin[b] = begin;
+        c->column_end[b] = end;
     }
 }
 
@@ -98,6 +122,7 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_worksp
     lay_out(&arena, chord);
     chord->block = arena.block;
     pack(w, chord, 3 * m->half_bandwidth + 2);
+    find_skyline(chord);
     memcpy(chord->base_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
     for (int e = 0; e < m->n_cable; e++)
         chord->gene_of_cable[e] = -1;

@@ -57,7 +57,8 @@ void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, 
 
 /* Both triangular solves take four rows at a time, which share the loads of what is already solved. A packed row (or
  * column) holds `width` entries, zeros where the band is shorter; `width` zero rows stand before and behind the
- * right-hand side, and up to three rows behind the last are worked on in vain, so no edge needs code of its own. */
+ * right-hand side, and up to three rows behind the last are worked on in vain, so no edge needs code of its own. What
+ * lies outside the skyline of a block of four is zero and left out. */
 
 /* Row j + p holds the columns j + p - w .. j + p - 1; all four share j + 3 - w .. j - 1. */
 static void forward(const hf_chord *chord, lanes *f)
@@ -69,7 +70,7 @@ static void forward(const hf_chord *chord, lanes *f)
         lanes *y = f + j;
         lanes s0 = y[0] - r0[0] * y[-w] - r0[1] * y[1 - w] - r0[2] * y[2 - w];
         lanes s1 = y[1] - r1[0] * y[1 - w] - r1[1] * y[2 - w], s2 = y[2] - r2[0] * y[2 - w], s3 = y[3];
-        for (int i = 0; i + 3 < w; i++) {
+        for (int i = chord->row_begin[j / 4]; i + 3 < w; i++) {
             lanes solved = y[3 - w + i];
             s0 -= r0[3 + i] * solved;
             s1 -= r1[2 + i] * solved;
@@ -93,7 +94,7 @@ static void backward(const hf_chord *chord, lanes *f)
         lanes *y = f + j;
         lanes s0 = y[0], s1 = y[1] - c1[w - 1] * y[w + 1], s2 = y[2] - c2[w - 2] * y[w + 1] - c2[w - 1] * y[w + 2];
         lanes s3 = y[3] - c3[w - 3] * y[w + 1] - c3[w - 2] * y[w + 2] - c3[w - 1] * y[w + 3];
-        for (int i = 0; i + 3 < w; i++) {
+        for (int i = 0; i < chord->column_end[j / 4]; i++) {
             lanes solved = y[4 + i];
             s0 -= c0[3 + i] * solved;
             s1 -= c1[2 + i] * solved;

@@ -11,8 +11,10 @@ typedef struct hf_chord {
     int n_dof, width;         /* rows of the matrix; entries of a packed row, a multiple of 4 */
     double *row, *column;     /* [n_dof][width] factor by rows (forward) and by columns (backward) */
     double *inverse_diagonal; /* [n_dof] */
-    double *base_m;           /* [3][n_node] shape the lanes start from */
-    int *gene_of_cable;       /* [n_cable] or -1 */
+    int *row_begin,
+        *column_end;    /* [n_dof / 4, rounded up] skyline: the part of a block's shared entries not all zero */
+    double *base_m;     /* [3][n_node] shape the lanes start from */
+    int *gene_of_cable; /* [n_cable] or -1 */
     void *block;
 } hf_chord;
 

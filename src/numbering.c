@@ -1,4 +1,4 @@
-/* Contents: adjacency of the free nodes - reverse Cuthill-McKee - sorting along an axis - choice */
+/* Contents: adjacency of the free nodes - Cuthill-McKee - sorting along an axis - choice */
 #include "numbering.h"
 
 #include "arena.h"
@@ -69,7 +69,7 @@ static int degree(const graph *g, int i)
     return g->start[i + 1] - g->start[i];
 }
 
-/* ---- reverse Cuthill-McKee ---- */
+/* ---- Cuthill-McKee ---- */
 
 /* Breadth-first from `root` over nodes not numbered yet, neighbours by rising degree; returns how many, listed in
  * `wave`; their levels are set. */
@@ -113,7 +113,7 @@ static int peripheral(graph *g, int root)
     }
 }
 
-static void reverse_cuthill_mckee(graph *g)
+static void cuthill_mckee(graph *g)
 {
     int n_done = 0;
     for (int i = 0; i < g->n; i++)
@@ -125,11 +125,6 @@ static void reverse_cuthill_mckee(graph *g)
             g->level[g->queue[k]] = -2;
             g->order[n_done++] = g->queue[k];
         }
-    }
-    for (int i = 0, j = g->n - 1; i < j; i++, j--) {
-        int swap = g->order[i];
-        g->order[i] = g->order[j];
-        g->order[j] = swap;
     }
 }
 
@@ -154,7 +149,7 @@ static hf_status sort_along(graph *g, int axis)
     if (!item) return HF_NO_MEMORY;
     for (int i = 0; i < g->n; i++) {
         const double *p = g->s->position_m + 3 * (size_t)g->node_of[i];
-        item[i] = (sort_item){{p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]}, i};
+        item[i] = (sort_item){{p[axis], p[axis == 0], p[axis == 2 ? 1 : 2]}, i};
     }
     qsort(item, (size_t)g->n, sizeof *item, compare_items);
     for (int i = 0; i < g->n; i++)
@@ -165,25 +160,43 @@ static hf_status sort_along(graph *g, int axis)
 
 /* ---- choice ---- */
 
-static int bandwidth(graph *g)
+/* Sum of the squared row widths of the lower triangle, which the work of a skyline factorisation grows with. */
+static double squared_widths(graph *g, int *half_bandwidth)
 {
-    int widest = 0;
+    double sum = 0;
+    *half_bandwidth = 0;
     for (int i = 0; i < g->n; i++)
         g->place[g->order[i]] = i;
-    for (int i = 0; i < g->n; i++)
-        for (int k = g->start[i]; k < g->start[i + 1]; k++) {
-            int width = abs(g->place[i] - g->place[g->neighbour[k]]);
-            if (width > widest) widest = width;
-        }
-    return widest;
+    for (int i = 0; i < g->n; i++) {
+        int width = 0;
+        for (int k = g->start[i]; k < g->start[i + 1]; k++)
+            if (g->place[i] - g->place[g->neighbour[k]] > width) width = g->place[i] - g->place[g->neighbour[k]];
+        sum += (double)width * width;
+        if (width > *half_bandwidth) *half_bandwidth = width;
+    }
+    return sum;
 }
 
-static void keep_if_better(graph *g, int *best_width)
+static void reverse(graph *g)
 {
-    int width = bandwidth(g);
-    if (*best_width >= 0 && width >= *best_width) return;
-    *best_width = width;
-    memcpy(g->best, g->order, (size_t)g->n * sizeof(int));
+    for (int i = 0, j = g->n - 1; i < j; i++, j--) {
+        int swap = g->order[i];
+        g->order[i] = g->order[j];
+        g->order[j] = swap;
+    }
+}
+
+/* The order under test and its reverse, whose rows have other widths. */
+static void keep_if_better(graph *g, double *best_sum, int *best_half_bandwidth)
+{
+    for (int pass = 0; pass < 2; pass++, reverse(g)) {
+        int half_bandwidth;
+        double sum = squared_widths(g, &half_bandwidth);
+        if (*best_sum >= 0 && sum >= *best_sum) continue;
+        *best_sum = sum;
+        *best_half_bandwidth = half_bandwidth;
+        memcpy(g->best, g->order, (size_t)g->n * sizeof(int));
+    }
 }
 
 hf_status hf_numbering_find(const hf_scene *scene, int *order, int *half_bandwidth)
@@ -194,13 +207,13 @@ hf_status hf_numbering_find(const hf_scene *scene, int *order, int *half_bandwid
     HF_TRY(hf_arena_allocate(&arena));
     lay_out(&arena, &g);
     build(&g);
-    *half_bandwidth = -1;
-    reverse_cuthill_mckee(&g);
-    keep_if_better(&g, half_bandwidth);
+    double best_sum = -1;
+    cuthill_mckee(&g);
+    keep_if_better(&g, &best_sum, half_bandwidth);
     hf_status status = HF_OK;
     for (int axis = 0; axis < 3 && status == HF_OK; axis++) {
         status = sort_along(&g, axis);
-        if (status == HF_OK) keep_if_better(&g, half_bandwidth);
+        if (status == HF_OK) keep_if_better(&g, &best_sum, half_bandwidth);
     }
     for (int i = 0; i < g.n; i++)
         order[i] = g.node_of[g.best[i]];
