@@ -1,10 +1,11 @@
 /* Contents: layout - numbering and band places - laws and targets - straight chains - groups of
- * genes - build - checks */
+ * genes - build - attachments - checks */
 #include <hifdm/model.h>
 
 #include "arena.h"
 #include "numbering.h"
 
+#include <assert.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -268,9 +269,81 @@ hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf
     return HF_OK;
 }
 
+/* ---- attachments ---- */
+
+#define SYMMETRY_TOLERANCE 1e-9 /* of the largest entry: rounding of solves with a condition of 1e6 */
+
+static hf_status check_attachments(const hf_model *m, int n, const int *node, hf_messages *messages)
+{
+    for (int i = 0; i < n; i++) {
+        if (node[i] < 0 || node[i] >= m->n_node || m->row_of_node[node[i]] < m->n_free)
+            return hf_error(messages, HF_BAD_CASE, "attachment %d of the truss: node %d is no support", i, node[i]);
+        for (int j = 0; j < i; j++)
+            if (node[j] == node[i])
+                return hf_error(messages, HF_BAD_CASE, "attachments %d and %d of the truss are the same node", j, i);
+    }
+    return HF_OK;
+}
+
+static hf_status check_flexibility(int n, const double *flexibility, hf_messages *messages)
+{
+    double largest = 0;
+    size_t dofs = 3 * (size_t)n;
+    for (size_t i = 0; i < dofs * dofs; i++) {
+        if (!isfinite(flexibility[i]))
+            return hf_error(messages, HF_BAD_CASE, "the flexibility of the truss at attachment %d is not finite",
+                            (int)(i / dofs / 3));
+        largest = fmax(largest, fabs(flexibility[i]));
+    }
+    for (size_t i = 0; i < dofs; i++) {
+        if (flexibility[i * dofs + i] < 0)
+            return hf_error(messages, HF_BAD_CASE, "the flexibility of the truss at attachment %d is negative: %g m/N",
+                            (int)(i / 3), flexibility[i * dofs + i]);
+        for (size_t j = 0; j < i; j++)
+            if (!(fabs(flexibility[i * dofs + j] - flexibility[j * dofs + i]) <= SYMMETRY_TOLERANCE * largest))
+                return hf_error(messages, HF_BAD_CASE,
+                                "the flexibility of the truss is not symmetric between attachments %d and %d",
+                                (int)(j / 3), (int)(i / 3));
+    }
+    return HF_OK;
+}
+
+static void lay_out_attachments(hf_arena *a, hf_model *m)
+{
+    size_t n = (size_t)m->n_attachment;
+    m->attachment_row = hf_arena_take(a, n, sizeof(int));
+    m->flexibility_m_per_N = hf_arena_take(a, 9 * n * n, sizeof(double));
+}
+
+hf_status hf_model_attach(hf_model *m, int n_attachment, const int *node, const double *flexibility_m_per_N,
+                          hf_messages *messages)
+{
+    assert(m->n_attachment == 0 && n_attachment > 0);
+    HF_TRY(check_attachments(m, n_attachment, node, messages));
+    HF_TRY(check_flexibility(n_attachment, flexibility_m_per_N, messages));
+    hf_model with = *m;
+    with.n_attachment = n_attachment;
+    hf_arena arena = {0};
+    lay_out_attachments(&arena, &with);
+    if (hf_arena_allocate(&arena) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for %d attachments", n_attachment);
+    lay_out_attachments(&arena, &with);
+    with.attachment_block = arena.block;
+    size_t dofs = 3 * (size_t)n_attachment;
+    for (int i = 0; i < n_attachment; i++)
+        with.attachment_row[i] = with.row_of_node[node[i]];
+    for (size_t i = 0; i < dofs; i++)
+        for (size_t j = 0; j < dofs; j++)
+            with.flexibility_m_per_N[i * dofs + j] =
+                (flexibility_m_per_N[i * dofs + j] + flexibility_m_per_N[j * dofs + i]) / 2;
+    *m = with;
+    return HF_OK;
+}
+
 void hf_model_free(hf_model *model)
 {
     free(model->block);
+    free(model->attachment_block);
     *model = (hf_model){0};
 }
 
@@ -296,5 +369,7 @@ int hf_model_is_valid(const hf_model *m)
         if (m->gene_leader[k] < 0 || m->gene_leader[k] > k) return 0;
     for (int k = 0; k < m->n_inner_node; k++)
         if (m->inner_row[k] < 0 || m->inner_row[k] >= m->n_free) return 0;
+    for (int i = 0; i < m->n_attachment; i++)
+        if (m->attachment_row[i] < m->n_free || m->attachment_row[i] >= m->n_node) return 0;
     return m->chain_start[0] == 0 && m->n_gene <= m->n_cable;
 }

@@ -52,11 +52,24 @@ typedef struct {
     int *chain_cable;  /* [chain_start[n_chain]] cables in order along the chain */
     int *chain_of_row; /* [n_node] chain that passes through a free node, or -1 */
 
-    void *block;
+    /* Supports on an elastic truss (hf_model_attach): the displacement of degree of freedom 3*i + c under the forces on
+     * the attachments, r = F f, Eq. 15 condensed. All zero without a truss. */
+    int n_attachment;
+    int *attachment_row;         /* [n_attachment] rows >= n_free, in the order of the flexibility */
+    double *flexibility_m_per_N; /* [3 n_attachment][3 n_attachment] symmetric; NULL without a truss */
+
+    void *block, *attachment_block;
 } hf_model;
 
 /* Build from a checked scene. HF_OK or HF_NO_MEMORY (with a message). Free with hf_model_free in any case. */
 hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages);
+
+/* Put supports on a truss: node[i], a support of the scene, is attachment i, and the flexibility [3a][3a] in m/N (copied)
+ * says how it gives way; all other supports stay fixed. HF_BAD_CASE, naming the attachment by its index, when a node is
+ * no support or comes twice, or when the matrix is not finite, not symmetric to 1e-9 of its largest entry (the copy is,
+ * exactly), or has a negative diagonal entry; HF_NO_MEMORY. Once per model, before workspaces are made for it. */
+hf_status hf_model_attach(hf_model *model, int n_attachment, const int *node, const double *flexibility_m_per_N,
+                          hf_messages *messages);
 
 /* Invariants of every index and band place; for asserts and tests. */
 int hf_model_is_valid(const hf_model *model);
