@@ -6,12 +6,14 @@
 #include <hifdm/metrics.h>
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 /* Straight chains are looked at after this many iterations, and again each time that number has doubled. */
 #define FIRST_CHAIN_CHECK 64
 #define CHAIN_LOAD_SETTLED 0.01 /* relative change of the load between two looks that counts as settled */
+#define ROUNDING_STEPS 32       /* roundings of the ends' coordinates that an imbalance may be worth */
 #define CHAIN_LOAD_NONE 1e-6    /* lateral load below this part of the reference tension is none */
 
 const char *hf_stop_reason_word(int reason)
@@ -158,6 +160,38 @@ static double largest_residual_N(const hf_model *m, hf_workspace *w)
         largest = fmax(largest, x * x + y * y + z * z);
     }
     return sqrt(largest) * m->reference_N;
+}
+
+/* Largest coordinate of the ends of cable e, m: what the rounding of its length is relative to. */
+static double largest_coordinate_m(const hf_model *m, const hf_workspace *w, int e)
+{
+    double largest = 0;
+    for (int c = 0; c < 3; c++)
+        for (int k = 0; k < 2; k++)
+            largest = fmax(largest, fabs(w->position_m[c * m->n_node + m->end_row[2 * e + k]]));
+    return largest;
+}
+
+/* The cable whose length, small against its coordinates, is rounded so coarsely that the tolerances cannot be met, or
+ * -1. force_N holds the nodal forces. */
+static int find_rounded_cable(const hf_model *m, const hf_form_settings *s, const hf_workspace *w)
+{
+    const double *f = w->force_N;
+    int worst_row = 0, culprit = -1;
+    double worst = -1, floor_N = 0, coarsest_N = 0;
+    for (int i = 0; i < m->n_free; i++) {
+        double force = hypot(hypot(f[i], f[m->n_node + i]), f[2 * m->n_node + i]);
+        if (force > worst) worst = force, worst_row = i;
+    }
+    for (int e = 0; e < m->n_cable; e++) {
+        double step_m = DBL_EPSILON * largest_coordinate_m(m, w, e), step_N = fabs(w->q_N_per_m[e]) * step_m;
+        double error = w->law[e] == HF_LAW_TENSION ? fabs(w->tension_N[e] / w->target[e] - 1) : 0;
+        if (error > s->residual_tolerance && error <= ROUNDING_STEPS * step_m / w->length_m[e]) return e;
+        if (m->end_row[2 * e] != worst_row && m->end_row[2 * e + 1] != worst_row) continue;
+        floor_N += step_N;
+        if (step_N > coarsest_N) coarsest_N = step_N, culprit = e;
+    }
+    return worst > s->residual_tolerance * m->reference_N && worst <= ROUNDING_STEPS * floor_N ? culprit : -1;
 }
 
 /* ---- straight chains: a chain that cannot deflect cannot carry a lateral load at any finite tension ---- */
@@ -348,6 +382,7 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, h
     }
     if (r->status == HF_OK || r->status == HF_NOT_CONVERGED) {
         if (!need_residual) r->residual_N = largest_residual_N(m, w);
+        if (r->status == HF_NOT_CONVERGED) r->culprit = find_rounded_cable(m, s, w);
         if (r->status == HF_OK || r->iterations >= FIRST_CHAIN_CHECK) judge_chains(m, w, &p, r);
     }
     return finish(m, w, r);

@@ -90,6 +90,10 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
     m->pretension_N = form->pretension_N;
     for (int e = 0; e < m->n_cable; e++)
         m->reference_N = fmax(m->reference_N, given_tension(s, form, e));
+    for (int i = 0; m->load_N && i < m->n_free; i++) {
+        const double *p = m->load_N + i;
+        m->reference_N = fmax(m->reference_N, hypot(hypot(p[0], p[m->n_node]), p[2 * m->n_node]));
+    }
     if (!(m->reference_N > 0)) m->reference_N = form->pretension_N;
     for (int e = 0; e < m->n_cable; e++) {
         int law = s->law[e];
@@ -120,7 +124,7 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
     if (m->has_strut) m->has_newton = 0;
 }
 
-/* ---- straight chains ---- */
+/* ---- chains of length-controlled cables ---- */
 
 typedef struct {
     int *count; /* [n_node] cables of law length at a row */
@@ -135,11 +139,11 @@ static double distance(const hf_model *m, int row_a, int row_b)
     return hypot(hypot(d[0], d[1]), d[2]);
 }
 
-/* Follow the chain that leaves the support `from` by cable `first`; keep it when it is straight and ends at a support.
- * A chain is met from both ends: only the end with the smaller cable index counts. */
-static void follow_chain(hf_model *m, const length_graph *g, int from, int first)
+/* Follow the chain that leaves the support `from` by cable `first`; keep it when it ends at a support and is straight,
+ * or not, as wanted. A chain is met from both ends: only the end with the smaller cable index counts. */
+static void follow_chain(hf_model *m, const length_graph *g, int from, int first, int want_straight)
 {
-    int start = m->chain_start[m->n_chain], n = 0, row = from, e = first;
+    int start = m->chain_start[m->n_any_chain], n = 0, row = from, e = first;
     double sum = 0;
     for (;;) {
         row = m->end_row[2 * e] == row ? m->end_row[2 * e + 1] : m->end_row[2 * e];
@@ -149,17 +153,18 @@ static void follow_chain(hf_model *m, const length_graph *g, int from, int first
         if (g->count[row] != 2 || n == m->n_cable - start) return;
         e = g->cable[2 * row] == e ? g->cable[2 * row + 1] : g->cable[2 * row];
     }
-    if (n < 2 || e < first || sum > distance(m, from, row) * (1 + STRAIGHT_EXCESS)) return;
+    int is_straight = sum <= distance(m, from, row) * (1 + STRAIGHT_EXCESS);
+    if (n < 2 || e < first || is_straight != want_straight) return;
     int through = from;
-    for (int k = 0; k + 1 < n; k++) {
+    for (int k = 0; is_straight && k + 1 < n; k++) {
         int *end = m->end_row + 2 * m->chain_cable[start + k];
         through = end[0] == through ? end[1] : end[0];
-        m->chain_of_row[through] = m->n_chain;
+        m->chain_of_row[through] = m->n_any_chain;
     }
-    m->chain_start[++m->n_chain] = start + n;
+    m->chain_start[++m->n_any_chain] = start + n;
 }
 
-static hf_status find_straight_chains(hf_model *m)
+static hf_status find_chains(hf_model *m)
 {
     length_graph g = {.count = calloc((size_t)m->n_node * 3, sizeof(int))};
     if (!g.count) return HF_NO_MEMORY;
@@ -172,10 +177,13 @@ static hf_status find_straight_chains(hf_model *m)
             if (g.count[row] < 2) g.cable[2 * row + g.count[row]] = e;
             g.count[row]++;
         }
-    for (int e = 0; e < m->n_cable; e++)
-        for (int k = 0; k < 2 && m->law[e] == HF_LAW_LENGTH; k++)
-            if (m->end_row[2 * e + k] >= m->n_free && m->end_row[2 * e + 1 - k] < m->n_free)
-                follow_chain(m, &g, m->end_row[2 * e + k], e);
+    for (int want_straight = 1; want_straight >= 0; want_straight--) {
+        for (int e = 0; e < m->n_cable; e++)
+            for (int k = 0; k < 2 && m->law[e] == HF_LAW_LENGTH; k++)
+                if (m->end_row[2 * e + k] >= m->n_free && m->end_row[2 * e + 1 - k] < m->n_free)
+                    follow_chain(m, &g, m->end_row[2 * e + k], e, want_straight);
+        if (want_straight) m->n_chain = m->n_any_chain;
+    }
     free(g.count);
     return HF_OK;
 }
@@ -246,7 +254,7 @@ static hf_status build(const hf_scene *scene, const hf_form_settings *form, cons
     place_cables(scene, m);
     set_laws(scene, form, m);
     HF_TRY(group_genes(m));
-    return find_straight_chains(m);
+    return find_chains(m);
 }
 
 hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages)

@@ -14,6 +14,9 @@
 #define HALVINGS_MAX 6       /* of one step */
 #define TRUSTED_MAX 6        /* steps per try that may raise the merit */
 #define TRUSTED_RISE 1e6     /* by no more than this factor */
+#define FAR_EXCESS 16.0      /* a chain's excess length this many times too large: its tension is not near yet */
+#define RESCALED_MAX 8       /* rounds of bringing it there */
+#define ROUNDED_MAX 3        /* tries against rounding */
 #define TENSION_KEPT 0.1     /* a step leaves at least this part of a multiplier */
 #define DIAGONAL_GUARD 1e-14 /* Levenberg shift, relative to the largest diagonal, that is always there */
 #define SHIFT_FIRST 1e-10    /* the first one after a failed factorisation */
@@ -245,10 +248,38 @@ static int newton_steps(const hf_model *m, const hf_form_settings *s, hf_workspa
 
 /* ---- the alternation ---- */
 
+/* The tension of a flat chain goes with the inverse root of its excess length, which lies decades away from where Eqs. 8
+ * or Newton's linear model would look: scale its force densities to the excess that L* prescribes. Returns how many
+ * chains were far from it. */
+static int rescale_flat_chains(const hf_model *m, hf_workspace *w)
+{
+    int n_scaled = 0;
+    for (int i = m->n_chain; i < m->n_any_chain; i++) {
+        int first = m->chain_start[i], last = m->chain_start[i + 1] - 1, is_length = 1;
+        double sum = 0, wanted = 0, u[3], *x = w->position_m;
+        for (int k = first; k <= last; k++) {
+            int e = m->chain_cable[k];
+            is_length &= w->law[e] == HF_LAW_LENGTH;
+            sum += direction(m, x, e, u);
+            wanted += w->target[e];
+        }
+        const int *a = m->end_row + 2 * m->chain_cable[first], *b = m->end_row + 2 * m->chain_cable[last];
+        int from = a[0] > a[1] ? a[0] : a[1], to = b[0] > b[1] ? b[0] : b[1]; /* the supports */
+        for (int c = 0; c < 3; c++)
+            u[c] = x[c * m->n_node + to] - x[c * m->n_node + from];
+        double span = hypot(hypot(u[0], u[1]), u[2]), excess = sum - span, wanted_excess = wanted - span;
+        if (!is_length || !(wanted_excess > 0 && excess > FAR_EXCESS * wanted_excess)) continue;
+        for (int k = first; k <= last; k++)
+            w->q_N_per_m[m->chain_cable[k]] *= sqrt(excess / wanted_excess);
+        n_scaled++;
+    }
+    return n_scaled;
+}
+
 hf_status hf_newton_find(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
                          hf_form_result *result)
 {
-    int n_done = 0, block = FIRST_BLOCK;
+    int n_done = 0, n_rescaled = 0, n_rounded = 0, block = FIRST_BLOCK;
     for (;;) {
         hf_form_settings part = *s;
         int left = s->max_iterations - n_done;
@@ -256,6 +287,11 @@ hf_status hf_newton_find(const hf_model *m, const hf_form_settings *s, hf_worksp
         hf_form_find(m, &part, HF_STOP_RESIDUAL, w, history, result);
         n_done += result->iterations;
         if (result->status != HF_NOT_CONVERGED || n_done >= s->max_iterations) break;
+        if (result->culprit >= 0 && n_rounded++ == ROUNDED_MAX) break;
+        if (n_rescaled < RESCALED_MAX && rescale_flat_chains(m, w)) {
+            n_rescaled++;
+            continue;
+        }
         int n_step = 0;
         left = s->max_iterations - n_done < STEPS_MAX ? s->max_iterations - n_done : STEPS_MAX;
         /* after a success a few linear solves measure the new shape; after a failure the fixed point goes on */

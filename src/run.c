@@ -121,6 +121,12 @@ hf_status hf_run_explain(const hf_scene *scene, const hf_model *m, const hf_form
         return HF_OK;
     case HF_NOT_CONVERGED:
         warn("form-finding", scene, m, form, w, r, messages);
+        if (r->culprit >= 0)
+            return hf_error(messages, r->status,
+                            "form-finding is as exact as double precision allows, nodal residual %.2e N: cable '%s' is "
+                            "%.2e m long, too short for coordinates of its size; move the origin near it, join its "
+                            "nodes or loosen the tolerances",
+                            r->residual_N, scene->cable_id[r->culprit], w->length_m[r->culprit]);
         return hf_error(
             messages, r->status,
             "form-finding did not converge in %d iterations: nodal residual %.2e N, cable lengths off by up to "

@@ -31,7 +31,8 @@ typedef struct {
     hf_status status;
     hf_stop_reason stop_reason;
     int iterations;             /* linear solves */
-    int culprit;                /* cable (COLLAPSED, NOT_FINITE), row of D (SINGULAR), chain (STRAIGHT_CHAIN), or -1 */
+    int culprit;                /* cable (COLLAPSED, NOT_FINITE; NOT_CONVERGED: the one whose rounding stands
+                                   in the way), row of D (SINGULAR), chain (STRAIGHT_CHAIN), or -1 */
     double psi_m;               /* Eq. 10 */
     double residual_N;          /* largest nodal force out of balance with every cable at the tension of its law */
     double tension_error;       /* max |T/T*-1| over cables of law tension, 0 without one */

@@ -21,7 +21,8 @@ typedef struct {
     int has_strut;      /* some force density is negative: D may be indefinite */
     int has_newton;     /* workspaces hold a Newton matrix: some law iterates, and the energy is convex (no strut) */
     double pretension_N;
-    double reference_N; /* what residuals are relative to: the largest tension that a law gives, else the pretension */
+    double
+        reference_N; /* what residuals are relative to: the largest force that a law or a load gives, else the pretension */
 
     int *row_of_node;                            /* [n_node] */
     int *node_of_row;                            /* [n_node] */
@@ -46,11 +47,13 @@ typedef struct {
     int n_leader;     /* classes: the independent genes; n_gene without a symmetry */
     int *gene_leader; /* [n_gene] first gene of the class: the gene itself without a symmetry */
 
-    /* chains of length-controlled cables between two supports that are straight: sum L* does not exceed the distance */
-    int n_chain;
-    int *chain_start;  /* [n_chain + 1] into chain_cable */
-    int *chain_cable;  /* [chain_start[n_chain]] cables in order along the chain */
-    int *chain_of_row; /* [n_node] chain that passes through a free node, or -1 */
+    /* Chains of length-controlled cables between two supports; first those that are straight: sum L* does not exceed
+     * the distance. */
+    int n_chain;       /* straight */
+    int n_any_chain;   /* straight or with a sag */
+    int *chain_start;  /* [n_any_chain + 1] into chain_cable */
+    int *chain_cable;  /* [chain_start[n_any_chain]] cables in order along the chain */
+    int *chain_of_row; /* [n_node] straight chain that passes through a free node, or -1 */
 
     /* Supports on an elastic truss (hf_model_attach): the displacement of degree of freedom 3*i + c under the forces on
      * the attachments, r = F f, Eq. 15 condensed. All zero without a truss. */

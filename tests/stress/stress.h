@@ -37,6 +37,7 @@ static inline int is_named(const struct net *net)
                                                                                      : net->model.n_cable);
     int is_ill_posed = r->status == HF_SINGULAR || r->status == HF_STRAIGHT_CHAIN || r->status == HF_COLLAPSED ||
                        r->status == HF_NOT_FINITE;
+    if (r->status == HF_NOT_CONVERGED) return has_name; /* rounding, at this cable */
     return has_name && is_ill_posed && isnan(r->psi_m) && isnan(r->position_error_m);
 }
 
@@ -67,11 +68,11 @@ static inline struct outcome try_scene(hf_scene *scene, double pretension_N)
         o.error_m = net.model.has_newton ? net.result.position_error_m : 0;
         int is_verified = o.residual <= STRESS_ROUNDED && v.length_gap <= STRESS_ROUNDED && v.least_tension_N >= 0;
         if (is_verified && isfinite(net.result.psi_m) && o.condition >= 1 && o.error_m >= 0) o.verdict = SOLVED;
+    } else if (is_named(&net)) {
+        o.verdict = NAMED;
     } else if (o.status == HF_NOT_CONVERGED) {
         o.verdict = NOT_CONVERGED;
         o.residual = net.result.residual_N / net.model.reference_N;
-    } else if (is_named(&net)) {
-        o.verdict = NAMED;
     }
     close_net(&net);
     return o;

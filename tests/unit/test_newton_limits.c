@@ -55,6 +55,47 @@ START_TEST(collapse_is_named)
 }
 END_TEST
 
+/* Edges with a sag of 1e-4 of their span carry tensions decades above the pretension; Eqs. 7 and 8 do not get there in
+ * 100000 iterations. */
+START_TEST(flat_edges_are_solved)
+{
+    struct net net;
+    OPEN_CASE(&net, SMALL_REFLECTOR, "form.method=newton", "form.residual_tolerance=1e-9",
+              "form.length_tolerance=1e-10", "scene.parabolic_cylinder.scallop=1e-4", "form.max_iterations=300");
+    ck_assert_int_eq(net.model.n_chain, 0);
+    ck_assert_int_gt(net.model.n_any_chain, 0);
+    ck_assert_int_eq(find(&net), HF_OK);
+    ck_assert_double_gt(net.result.boundary_tension_ratio, 10);
+    struct verified v = verify_shape(&net.model, &net.work, net.scene.law, net.scene.target);
+    ck_assert_double_le(v.residual_N, 1.01e-9 * net.model.reference_N);
+    ck_assert_double_le(v.length_gap, 1.01e-10);
+    close_net(&net);
+}
+END_TEST
+
+/* Two nodes 1e-10 m apart at coordinates of 1 m: the direction of their cable is rounded to 1e-6, and so are 10 N. */
+START_TEST(what_rounding_leaves_is_named)
+{
+    static const struct hand_node node[] = {
+        {{1, 1, 0.3}, HF_ROLE_INNER, {0}},      {{1 + 1e-10, 1, 0.3}, HF_ROLE_INNER, {0}},
+        {{0, 1, 0.1}, HF_ROLE_SUPPORT, {0}},    {{2, 1, 0}, HF_ROLE_SUPPORT, {0}},
+        {{1, 0, 0}, HF_ROLE_SUPPORT, {0}},      {{1, 2.3, 0}, HF_ROLE_SUPPORT, {0}},
+        {{1.1, -0.2, 0}, HF_ROLE_SUPPORT, {0}}, {{1, 2, 0.7}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {
+        {{0, 2}, HF_GROUP_INNER, HF_LAW_TENSION, 10},         {{1, 3}, HF_GROUP_INNER, HF_LAW_TENSION, 10},
+        {{0, 1}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 1e11}, {{0, 4}, HF_GROUP_INNER, HF_LAW_TENSION, 10},
+        {{0, 5}, HF_GROUP_INNER, HF_LAW_TENSION, 10},         {{1, 6}, HF_GROUP_INNER, HF_LAW_TENSION, 10},
+        {{1, 7}, HF_GROUP_INNER, HF_LAW_TENSION, 10}};
+    struct net net;
+    OPEN_HAND(&net, node, cable, HF_METHOD_NEWTON);
+    net.form.residual_tolerance = 1e-9;
+    ck_assert_int_eq(find(&net), HF_NOT_CONVERGED);
+    ck_assert_int_eq(net.result.culprit, 2);
+    ck_assert_int_le(net.result.iterations, 500); /* it gives up soon */
+    close_net(&net);
+}
+END_TEST
+
 static const struct hand_node chain_node[] = {{{0, 0, 0}, HF_ROLE_SUPPORT, {0}},
                                               {{1, 0.3, 0}, HF_ROLE_INNER, {0, 0, -1.25}},
                                               {{2, 0, 0.2}, HF_ROLE_SUPPORT, {0}},
@@ -183,6 +224,8 @@ Suite *suite_unit_newton_limits(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, straight_chain_is_named);
     tcase_add_test(tests, collapse_is_named);
+    tcase_add_test(tests, flat_edges_are_solved);
+    tcase_add_test(tests, what_rounding_leaves_is_named);
     tcase_add_loop_test(tests, not_for_newton, 0, 2);
     tcase_add_test(tests, strut_beside_a_tension_falls_back);
     tcase_add_test(tests, auto_picks_newton_for_the_residual_only);
