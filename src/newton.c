@@ -248,9 +248,9 @@ static int newton_steps(const hf_model *m, const hf_form_settings *s, hf_workspa
 
 /* ---- the alternation ---- */
 
-/* The tension of a flat chain goes with the inverse root of its excess length, which lies decades away from where Eqs. 8
- * or Newton's linear model would look: scale its force densities to the excess that L* prescribes. Returns how many
- * chains were far from it. */
+/* The tension of a flat chain goes with the inverse root of its excess length, which lies decades away from where
+ * Eq. 8 or Newton's linear model would look: scale its force densities to the excess that L* prescribes. Returns how
+ * many chains were far from it. */
 static int rescale_flat_chains(const hf_model *m, hf_workspace *w)
 {
     int n_scaled = 0;

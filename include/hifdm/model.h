@@ -21,8 +21,7 @@ typedef struct {
     int has_strut;      /* some force density is negative: D may be indefinite */
     int has_newton;     /* workspaces hold a Newton matrix: some law iterates, and the energy is convex (no strut) */
     double pretension_N;
-    double
-        reference_N; /* what residuals are relative to: the largest force that a law or a load gives, else the pretension */
+    double reference_N; /* what residuals are relative to: the largest tension of a law or load, else the pretension */
 
     int *row_of_node;                            /* [n_node] */
     int *node_of_row;                            /* [n_node] */
@@ -67,10 +66,11 @@ typedef struct {
 /* Build from a checked scene. HF_OK or HF_NO_MEMORY (with a message). Free with hf_model_free in any case. */
 hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages);
 
-/* Put supports on a truss: node[i], a support of the scene, is attachment i, and the flexibility [3a][3a] in m/N (copied)
- * says how it gives way; all other supports stay fixed. HF_BAD_CASE, naming the attachment by its index, when a node is
- * no support or comes twice, or when the matrix is not finite, not symmetric to 1e-9 of its largest entry (the copy is,
- * exactly), or has a negative diagonal entry; HF_NO_MEMORY. Once per model, before workspaces are made for it. */
+/* Put supports on a truss: node[i], a support of the scene, is attachment i, and the flexibility [3a][3a] in m/N
+ * (copied) says how it gives way; all other supports stay fixed. HF_BAD_CASE, naming the attachment by its index, when a
+ * node is no support or comes twice, or when the matrix is not finite, not symmetric to 1e-9 of its largest entry (the
+ * copy is, exactly), or has a negative diagonal entry; HF_NO_MEMORY. Once per model, before workspaces are made for
+ * it. */
 hf_status hf_model_attach(hf_model *model, int n_attachment, const int *node, const double *flexibility_m_per_N,
                           hf_messages *messages);
 
