@@ -8,7 +8,7 @@
 MODULES := status arena sha256 text csv scene scene_import config config_table numbering model symmetry workspace band \
            metrics lane lane_kernel formfind newton evaluate chord_kernel chord ga swarm polish batch json summary \
            hdf5_io store store_read
-APP_MODULES := options print run plan export designs main
+APP_MODULES := options print problem run progress signals plan export designs main
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
 VERSION := 0.1.0

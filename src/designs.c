@@ -6,7 +6,6 @@
 #include "json.h"
 #include "print.h"
 #include "run.h"
-#include "symmetry.h"
 #include <hifdm/batch.h>
 #include <hifdm/store.h>
 
@@ -19,16 +18,12 @@
 #define COLUMN_SPARE 64 /* columns that a table may have beyond one per cable */
 
 typedef struct {
-    hf_case settings;
-    hf_scene scene;
-    hf_model model;
-    hf_workspace workspace;
+    hf_problem problem;
     hf_evaluator evaluator;
     hf_batch batch;
     hf_csv table;
-    const char **name; /* [n_gene + 1] columns: the cable of each gene, then "id" */
-    int *where;        /* [n_gene + 1] column in the table */
-    double *start_q_N_per_m, *base_N;
+    const char **name;            /* [n_gene + 1] columns: the cable of each gene, then "id" */
+    int *where;                   /* [n_gene + 1] column in the table */
     double *design_N;             /* [n_row][n_gene] */
     hf_form_result *result;       /* [n_row] */
     int solver, n_feasible, best; /* best: row, or -1 */
@@ -41,48 +36,43 @@ static void job_free(job *j)
     hf_csv_free(&j->table);
     free(j->name);
     free(j->where);
-    free(j->start_q_N_per_m);
-    free(j->base_N);
     free(j->design_N);
     free(j->result);
-    hf_workspace_free(&j->workspace);
-    hf_model_free(&j->model);
-    hf_scene_free(&j->scene);
-    hf_case_free(&j->settings);
+    hf_problem_free(&j->problem);
 }
 
 static hf_status no_memory(const job *j, hf_messages *messages)
 {
     return hf_error(messages, HF_NO_MEMORY, "out of memory for %d designs of %d cables", j->table.n_row,
-                    j->model.n_gene);
+                    j->problem.model.n_gene);
 }
 
 /* ---- the table ---- */
 
 static hf_status name_columns(job *j, hf_messages *messages)
 {
-    size_t n = (size_t)j->model.n_gene + 1;
+    size_t n = (size_t)j->problem.model.n_gene + 1;
     j->name = calloc(n, sizeof *j->name);
     j->where = calloc(n, sizeof *j->where);
     if (!j->name || !j->where) return no_memory(j, messages);
-    for (int k = 0; k < j->model.n_gene; k++)
-        j->name[k] = j->scene.cable_id[j->model.gene_cable[k]];
-    j->name[j->model.n_gene] = "id";
+    for (int k = 0; k < j->problem.model.n_gene; k++)
+        j->name[k] = j->problem.scene.cable_id[j->problem.model.gene_cable[k]];
+    j->name[j->problem.model.n_gene] = "id";
     return HF_OK;
 }
 
 /* What the user calls a row, or NULL. */
 static const char *row_id(const job *j, int row)
 {
-    int column = j->where[j->model.n_gene];
+    int column = j->where[j->problem.model.n_gene];
     return column < 0 ? NULL : hf_csv_cell(&j->table, row, column);
 }
 
 static void read_row(job *j, int row)
 {
     hf_csv *t = &j->table;
-    double *design = j->design_N + (size_t)row * (size_t)j->model.n_gene;
-    for (int k = 0; k < j->model.n_gene; k++) {
+    double *design = j->design_N + (size_t)row * (size_t)j->problem.model.n_gene;
+    for (int k = 0; k < j->problem.model.n_gene; k++) {
         if (j->where[k] < 0) continue;
         design[k] = hf_csv_number(t, row, j->where[k], row_id(j, row), j->name[k]);
         if (design[k] > 0 || isnan(design[k])) continue;
@@ -94,9 +84,9 @@ static void read_row(job *j, int row)
 
 static hf_status read_table(job *j, const char *path, hf_messages *messages)
 {
-    int n_gene = j->model.n_gene;
+    int n_gene = j->problem.model.n_gene;
     hf_csv *t = &j->table;
-    hf_status status = hf_csv_read(path, j->scene.n_cable + COLUMN_SPARE, t, messages);
+    hf_status status = hf_csv_read(path, j->problem.scene.n_cable + COLUMN_SPARE, t, messages);
     /* with faults in some lines the others are still looked at, so that one run shows them all */
     if (status == HF_NO_MEMORY || t->n_row == 0 || t->n_fault > HF_CSV_FAULT_MAX) return status;
     status = hf_csv_find_columns(t, j->name, n_gene + 1, n_gene, j->where);
@@ -115,19 +105,12 @@ static hf_status read_table(job *j, const char *path, hf_messages *messages)
 /* The form-finding, from whose tensions and force densities designs are solved. */
 static hf_status find_base(job *j, hf_messages *messages)
 {
-    const hf_model *m = &j->model;
+    hf_problem *p = &j->problem;
     hf_form_result form;
-    j->start_q_N_per_m = malloc((size_t)m->n_cable * sizeof(double));
-    j->base_N = malloc((size_t)m->n_gene * sizeof(double));
-    if (!j->start_q_N_per_m || !j->base_N || hf_workspace_create(m, &j->workspace) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", m->n_node);
-    hf_evaluate_form(m, &j->settings.form, &j->workspace, NULL, &form);
-    HF_TRY(hf_run_explain(&j->scene, m, &j->settings.form, &j->workspace, &form, messages));
-    memcpy(j->start_q_N_per_m, j->workspace.q_N_per_m, (size_t)m->n_cable * sizeof(double));
-    for (int k = 0; k < m->n_gene; k++)
-        j->base_N[k] = j->workspace.tension_N[m->gene_cable[k]];
-    hf_symmetry_average(m, j->base_N);
-    return HF_OK;
+    HF_TRY(hf_problem_allocate(p, messages));
+    hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &form);
+    HF_TRY(hf_problem_explain(p, &form, messages));
+    return hf_problem_base(p, messages);
 }
 
 /* ---- evaluation ---- */
@@ -135,16 +118,13 @@ static hf_status find_base(job *j, hf_messages *messages)
 /* As `hifdm run` evaluates its individuals, to the same bits. The cap on the boundary ratio is the optimisation's. */
 static hf_status evaluate(job *j, int threads, hf_messages *messages)
 {
-    const hf_optimize_settings *o = &j->settings.optimize;
     int can_share = 1;
-    j->evaluator =
-        (hf_evaluator){&j->model, &j->settings.form, j->start_q_N_per_m,
-                       o->rule,   o->solver,         j->settings.has_optimize ? o->boundary_ratio_cap : INFINITY};
+    j->evaluator = hf_problem_evaluator(&j->problem);
     double start_s = hf_run_clock_s();
     if (hf_batch_create(&j->evaluator, threads, &j->batch) != HF_OK) return no_memory(j, messages);
-    for (int k = 0; k < j->model.n_gene; k++)
-        can_share &= j->base_N[k] > 0;
-    j->solver = can_share ? hf_batch_share(&j->batch, j->base_N) : HF_SOLVER_AUTO;
+    for (int k = 0; k < j->problem.model.n_gene; k++)
+        can_share &= j->problem.base_N[k] > 0;
+    j->solver = can_share ? hf_batch_share(&j->batch, j->problem.base_N) : HF_SOLVER_AUTO;
     hf_batch_run(&j->batch, j->table.n_row, j->design_N, NULL, j->result);
     j->wall_s = hf_run_clock_s() - start_s;
     for (int i = 0; i < j->table.n_row; i++) {
@@ -193,13 +173,13 @@ static void write_template(const void *context, FILE *f)
 {
     const job *j = context;
     fputs("id", f);
-    for (int k = 0; k < j->model.n_gene; k++) {
+    for (int k = 0; k < j->problem.model.n_gene; k++) {
         fputc(',', f);
         hf_csv_write_id(j->name[k], f);
     }
     fputs("\nbase", f);
-    for (int k = 0; k < j->model.n_gene; k++)
-        write_number(j->base_N[k], f);
+    for (int k = 0; k < j->problem.model.n_gene; k++)
+        write_number(j->problem.base_N[k], f);
     fputc('\n', f);
 }
 
@@ -233,7 +213,7 @@ static void print_json(const job *j, const char *path, hf_status status, const c
     fputs(",\n ", f);
     hf_json_text("version", hf_store_version(), f);
     fputs(", ", f);
-    hf_json_text("case", j->settings.path, f);
+    hf_json_text("case", j->problem.settings.path, f);
     if (status == HF_OK) {
         fputs(", ", f);
         hf_json_text("file", path, f);
@@ -254,7 +234,7 @@ static hf_status check_output(const job *j, const hf_options *o, const char *pat
 {
     char folder[HF_OUTPUT_SIZE];
     if (!path) return HF_OK;
-    HF_TRY(hf_run_spare_inputs(&j->settings, o->designs, path, messages));
+    HF_TRY(hf_run_spare_inputs(&j->problem.settings, o->designs, path, messages));
     HF_TRY(hf_export_claim(path, o->force, messages));
     const char *slash = strrchr(path, '/');
     snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
@@ -265,13 +245,8 @@ static hf_status check_output(const job *j, const hf_options *o, const char *pat
 
 static hf_status execute(job *j, const hf_options *o, const char *path, FILE *file, hf_messages *messages)
 {
-    int planes;
-    HF_TRY(hf_config_load(o->file, o->set, o->n_set, &j->settings, messages));
-    HF_TRY(hf_config_scene(&j->settings, &j->scene, messages));
-    HF_TRY(hf_model_build(&j->scene, &j->settings.form, &j->model, messages));
-    if (j->settings.has_optimize)
-        HF_TRY(hf_symmetry_apply(&j->scene, j->settings.optimize.symmetry, &j->model, &planes, messages));
-    if (j->model.n_gene == 0)
+    HF_TRY(hf_problem_load(o->file, o->set, o->n_set, &j->problem, messages));
+    if (j->problem.model.n_gene == 0)
         return hf_error(messages, HF_BAD_CASE, "%s: no boundary cable has a free end: there is nothing to set",
                         o->file);
     HF_TRY(check_output(j, o, path, messages));
@@ -295,7 +270,7 @@ hf_status hf_designs(const hf_options *options, FILE *file, hf_messages *message
     else if (status == HF_OK && path && !options->quiet && options->designs)
         print_summary(&j, path, file);
     else if (status == HF_OK && path && !options->quiet)
-        fprintf(file, "%d adjustable cables; their tensions after form-finding in %s\n", j.model.n_gene, path);
+        fprintf(file, "%d adjustable cables; their tensions after form-finding in %s\n", j.problem.model.n_gene, path);
     job_free(&j);
     return status;
 }

@@ -1,5 +1,5 @@
-/* Contents: failures - types - files and groups - making and writing data sets - reading data sets - attributes -
- * tables */
+/* Contents: one at a time - failures - types - files and groups - making and writing data sets - reading data sets -
+ * attributes - tables */
 #include "hdf5_io.h"
 
 #include <hifdm/formfind.h>
@@ -8,9 +8,25 @@
 
 #include <assert.h>
 #include <limits.h>
+#include <pthread.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+
+/* ---- one at a time ---- */
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+
+void hf_hdf5_lock(void)
+{
+    pthread_mutex_lock(&lock);
+}
+
+hf_status hf_hdf5_unlock(hf_status status)
+{
+    pthread_mutex_unlock(&lock);
+    return status;
+}
 
 /* ---- failures ---- */
 

@@ -1,11 +1,14 @@
-/* main - from the command line to an exit status; with print, plan and run the only printing part of the program. */
+/* main - from the command line to an exit status; with print, progress and plan the only printing part of the
+ * program. */
 #include "plan.h"
 #include "band.h"
 #include "designs.h"
 #include "export.h"
 #include "options.h"
 #include "print.h"
+#include "progress.h"
 #include "run.h"
+#include "signals.h"
 #include <hifdm/store.h>
 
 #include <gsl/gsl_errno.h>
@@ -17,7 +20,22 @@ static hf_status command_run(const hf_options *o, int argc, char **argv, hf_mess
 {
     hf_summary summary;
     char output[HF_OUTPUT_SIZE];
-    hf_status status = hf_run(o, argc, argv, &summary, output, messages);
+    hf_progress progress = hf_progress_on(stderr, o->quiet);
+    hf_run_request request = {.case_path = o->file,
+                              .set = o->set,
+                              .n_set = o->n_set,
+                              .output = o->output,
+                              .force = o->force,
+                              .threads = o->threads,
+                              .has_seed = o->has_seed,
+                              .seed = o->seed,
+                              .argc = argc,
+                              .argv = argv,
+                              .stop_requested = hf_signals_watch(),
+                              .observer = hf_progress_show,
+                              .observer_context = &progress};
+    hf_status status = hf_run_point(&request, &summary, output, messages);
+    hf_progress_end(&progress);
     const char *path = *output ? output : NULL;
     if (o->json)
         hf_summary_write_json(&summary, status, messages->text, path, stdout);

@@ -242,6 +242,6 @@ void hf_options_help(FILE *file)
         }
     }
     fputs("\nexit status: 0 done, 2 bad usage or case, 3 not converged or no feasible design, 4 ill-posed, 5 "
-          "input/output\n",
+          "input/output, 75 told to stop\n",
           file);
 }

@@ -6,21 +6,9 @@
 #include "symmetry.h"
 #include <hifdm/batch.h>
 
-#include <stdlib.h>
-#include <string.h>
-
 #define TRIAL_S 1.0 /* how long a form-finding is tried */
 
-typedef struct {
-    hf_case settings;
-    hf_scene scene;
-    hf_model model;
-    hf_workspace workspace;
-    double *start_q_N_per_m; /* [n_cable] of the found shape */
-    int planes;              /* of symmetry */
-} plan;
-
-static void print_scene(const plan *p, FILE *f)
+static void print_scene(const hf_problem *p, FILE *f)
 {
     const hf_model *m = &p->model;
     int count[3] = {0}, law[3] = {0};
@@ -37,7 +25,7 @@ static void print_scene(const plan *p, FILE *f)
     if (m->n_chain) fprintf(f, "  note          %d straight chains of length-controlled cables\n", m->n_chain);
 }
 
-static void print_plan(const plan *p, FILE *f)
+static void print_plan(const hf_problem *p, FILE *f)
 {
     const hf_case *c = &p->settings;
     const hf_optimize_settings *o = &c->optimize;
@@ -79,7 +67,7 @@ static int shares(const hf_evaluator *v)
 }
 
 /* What a run would allocate, and what it would not. */
-static void print_memory(const plan *p, const hf_evaluator *v, int threads, FILE *f)
+static void print_memory(const hf_problem *p, const hf_evaluator *v, int threads, FILE *f)
 {
     const hf_model *m = &p->model;
     hf_model without = *m;
@@ -102,20 +90,16 @@ static void print_memory(const plan *p, const hf_evaluator *v, int threads, FILE
 
 /* A first generation is bred and evaluated in one thread, timed; the cost of one of its designs times the largest
  * number of evaluations is what is printed. */
-static hf_status print_optimize_time(plan *p, const hf_evaluator *v, int threads, FILE *f)
+static hf_status print_optimize_time(const hf_problem *p, const hf_evaluator *v, int threads, FILE *f)
 {
-    const hf_model *m = &p->model;
     const hf_optimize_settings *o = &p->settings.optimize;
     hf_batch batch = {0};
     hf_ga ga = {0};
-    double *base = malloc((size_t)m->n_gene * sizeof *base);
-    hf_status status = base ? hf_batch_create(v, 1, &batch) : HF_NO_MEMORY;
-    for (int k = 0; base && k < m->n_gene; k++)
-        base[k] = p->workspace.tension_N[m->gene_cable[k]];
-    if (status == HF_OK) status = hf_ga_create(o, m, base, &ga);
+    hf_status status = hf_batch_create(v, 1, &batch);
+    if (status == HF_OK) status = hf_ga_create(o, &p->model, p->base_N, &ga);
     if (status == HF_OK) {
         char one[32], all[32];
-        int solver = hf_batch_share(&batch, base);
+        int solver = hf_batch_share(&batch, p->base_N);
         double begin_s = hf_run_clock_s();
         hf_batch_run(&batch, ga.n_individual, ga.design_N, ga.pending, ga.result);
         double each_s = (hf_run_clock_s() - begin_s) / ga.n_individual;
@@ -126,12 +110,11 @@ static hf_status print_optimize_time(plan *p, const hf_evaluator *v, int threads
     }
     hf_ga_free(&ga);
     hf_batch_free(&batch);
-    free(base);
     return status;
 }
 
 /* Form-finding is tried: a few iterations tell what one costs, and as many as fit into TRIAL_S are then done. */
-static hf_status print_time(plan *p, const hf_evaluator *v, int threads, FILE *f, hf_messages *messages)
+static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, FILE *f, hf_messages *messages)
 {
     hf_form_settings form = p->settings.form;
     hf_form_result r;
@@ -152,42 +135,32 @@ static hf_status print_time(plan *p, const hf_evaluator *v, int threads, FILE *f
     }
     fprintf(f, "  expected time form-finding: %s (%d iterations, stopped by %s)\n", text, r.iterations,
             hf_stop_reason_word((int)r.stop_reason));
-    HF_TRY(hf_run_explain(&p->scene, &p->model, &p->settings.form, &p->workspace, &r, messages));
-    if (!v || p->settings.optimize.method == HF_OPTIMIZE_LM) return HF_OK;
-    memcpy(p->start_q_N_per_m, p->workspace.q_N_per_m, (size_t)p->model.n_cable * sizeof(double));
+    HF_TRY(hf_problem_explain(p, &r, messages));
+    if (!v) return HF_OK;
+    HF_TRY(hf_problem_base(p, messages));
+    if (p->settings.optimize.method == HF_OPTIMIZE_LM) return HF_OK;
     if (print_optimize_time(p, v, threads, f) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory");
     return HF_OK;
 }
 
-static hf_status check(plan *p, const hf_options *options, FILE *f, hf_messages *messages)
+static hf_status check(hf_problem *p, const hf_options *options, FILE *f, hf_messages *messages)
 {
-    HF_TRY(hf_config_load(options->file, options->set, options->n_set, &p->settings, messages));
-    HF_TRY(hf_config_scene(&p->settings, &p->scene, messages));
-    HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));
-    const hf_optimize_settings *o = &p->settings.optimize;
-    if (p->settings.has_optimize)
-        HF_TRY(hf_symmetry_apply(&p->scene, p->settings.optimize.symmetry, &p->model, &p->planes, messages));
+    HF_TRY(hf_problem_load(options->file, options->set, options->n_set, p, messages));
+    HF_TRY(hf_problem_allocate(p, messages));
     int threads = options->threads ? options->threads : hf_batch_default_threads();
     int optimizes = p->settings.has_optimize && p->model.n_gene > 0;
-    p->start_q_N_per_m = malloc((size_t)p->model.n_cable * sizeof(double));
-    hf_evaluator v = {&p->model, &p->settings.form, p->start_q_N_per_m, o->rule, o->solver, o->boundary_ratio_cap};
+    hf_evaluator v = hf_problem_evaluator(p);
     fprintf(f, "%s: valid\n", options->file);
     print_scene(p, f);
     print_plan(p, f);
     print_memory(p, optimizes ? &v : NULL, threads, f);
-    if (!p->start_q_N_per_m || hf_workspace_create(&p->model, &p->workspace) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", p->model.n_node);
     return print_time(p, optimizes ? &v : NULL, threads, f, messages);
 }
 
 hf_status hf_plan(const hf_options *options, FILE *file, hf_messages *messages)
 {
-    plan p = {0};
+    hf_problem p = {0};
     hf_status status = check(&p, options, file, messages);
-    free(p.start_q_N_per_m);
-    hf_workspace_free(&p.workspace);
-    hf_model_free(&p.model);
-    hf_scene_free(&p.scene);
-    hf_case_free(&p.settings);
+    hf_problem_free(&p);
     return status;
 }

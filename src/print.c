@@ -1,4 +1,4 @@
-/* Contents: units for people - summary - progress - schema */
+/* Contents: units for people - summary - schema */
 #include "print.h"
 
 #include "symmetry.h"
@@ -108,27 +108,6 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
     if (s->has_optimize) print_optimize(s, f);
     if (s->has_polish) print_polish(s, f);
     if (path) fprintf(f, "  results       %s\n", path);
-}
-
-/* ---- progress ---- */
-
-void hf_print_progress(const hf_ga *ga, double elapsed_s, FILE *f)
-{
-    static double last_s = -1;
-    int n = ga->settings->generations, done = ga->generation + 1;
-    char eta[32];
-    if (elapsed_s >= last_s && elapsed_s - last_s < 0.1 && ga->stop_reason == HF_GA_RUNNING) return;
-    last_s = elapsed_s;
-    hf_print_duration(elapsed_s * (n - done) / done, eta, sizeof eta);
-    fprintf(f, "\r\033[Kgeneration %d/%d  best psi %.4f mm  %.0f evaluations/s  at most %s left", done, n,
-            ga->best_psi_m[ga->generation] * 1e3, (double)ga->n_evaluation / elapsed_s, eta);
-    fflush(f);
-}
-
-void hf_print_progress_end(FILE *f)
-{
-    fputs("\r\033[K", f);
-    fflush(f);
 }
 
 /* ---- schema ---- */

@@ -1,4 +1,4 @@
-/* print - what people read: summary, progress, schema. */
+/* print - what people read: summary, schema. */
 #ifndef HIFDM_PRINT_H
 #define HIFDM_PRINT_H
 
@@ -6,11 +6,6 @@
 
 /* The summary in a few lines. path: of the result file, or NULL. */
 void hf_print_summary(const hf_summary *summary, const char *path, FILE *file);
-
-/* One line that overwrites itself, at most some ten times a second; call for every generation with the time since the
- * start. hf_print_progress_end clears it. */
-void hf_print_progress(const hf_ga *ga, double elapsed_s, FILE *file);
-void hf_print_progress_end(FILE *file);
 
 /* The reference of the case file, as a commented YAML file. */
 void hf_print_schema(FILE *file);

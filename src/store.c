@@ -56,8 +56,10 @@ const char *hf_store_version(void)
 
 void hf_store_quiet(void)
 {
+    hf_hdf5_lock();
     H5dont_atexit();
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    hf_hdf5_unlock(HF_OK);
 }
 
 /* Space that lasts until the next call; NULL, with a message, when there is none or the store has failed already. */
@@ -227,11 +229,12 @@ hf_status hf_store_create(const char *path, int force, const hf_case *settings, 
     HF_TRY(check_target(path, force, messages));
     hf_store *s = new_store(path, force, messages);
     if (!s) return HF_NO_MEMORY;
+    hf_hdf5_lock();
     make_temporary(s);
     put_provenance(s, argc, argv);
     write_case(s, settings);
     write_scene(s, scene);
-    hf_status status = s->io.status;
+    hf_status status = hf_hdf5_unlock(s->io.status);
     if (status == HF_OK)
         *store = s;
     else
@@ -271,6 +274,7 @@ hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspa
         HISTORY(boundary_tension_ratio, "", "largest over smallest tension of the boundary cables"),
         HISTORY(length_error, "", "largest |l/L*-1| over taut cables of law length")};
 #undef HISTORY
+    hf_hdf5_lock();
     store->io.messages = messages;
     hid_t group = hf_hdf5_make_group(&store->io, "/form");
     write_shape(store, group, model, workspace);
@@ -280,7 +284,7 @@ hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspa
         hf_hdf5_write_columns(&store->io, group, table, HF_HDF5_COUNT(table), history->n, 0, history);
         hf_hdf5_close(&store->io, group);
     }
-    return store->io.status;
+    return hf_hdf5_unlock(store->io.status);
 }
 
 static void write_design(hf_store *s, hid_t group, const hf_model *model, const double *design_N)
@@ -293,13 +297,14 @@ static void write_design(hf_store *s, hid_t group, const hf_model *model, const 
 hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
                         const double *design_N, hf_messages *messages)
 {
+    hf_hdf5_lock();
     store->io.messages = messages;
     if (stage == HF_STAGE_OPTIMIZE) hf_hdf5_close(&store->io, hf_hdf5_make_group(&store->io, "/ga"));
     hid_t group = hf_hdf5_make_group(&store->io, hf_stage_group[stage]);
     write_shape(store, group, model, workspace);
     write_design(store, group, model, design_N);
     hf_hdf5_close(&store->io, group);
-    return store->io.status;
+    return hf_hdf5_unlock(store->io.status);
 }
 
 /* ---- generations ---- */
@@ -407,6 +412,7 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_g
 {
     ga_row row[GA_ROW_MAX];
     int n_row = list_rows(ga, row);
+    hf_hdf5_lock();
     store->io.messages = messages;
     if (store->io.status == HF_OK && !store->n_ga_data_set) start_generations(store, model, ga, row, n_row);
     assert(store->io.status != HF_OK || (ga->n_individual == store->n_individual && ga->n_gene == store->n_gene));
@@ -415,7 +421,7 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_g
         hf_hdf5_append(&store->io, store->ga_data_set[i], &row[i].array, (hsize_t)store->n_generation, values);
     }
     store->n_generation++;
-    return store->io.status;
+    return hf_hdf5_unlock(store->io.status);
 }
 
 /* ---- summary ---- */
@@ -509,6 +515,7 @@ static hf_status publish(hf_store *s)
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages)
 {
     hf_status status;
+    hf_hdf5_lock();
     store->io.messages = messages;
     if (store->io.status != HF_OK)
         hf_error(messages, store->io.status, "%s: is not written, since an earlier part of it could not be",
@@ -522,7 +529,7 @@ hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_message
     else
         status = publish(store);
     free_store(store);
-    return status;
+    return hf_hdf5_unlock(status);
 }
 
 const char *hf_store_temporary(const hf_store *store)
@@ -534,6 +541,7 @@ void hf_store_abandon(hf_store *store)
 {
     if (!store) return;
     hf_messages unwanted = {0};
+    hf_hdf5_lock();
     store->io.messages = &unwanted;
     if (store->io.file >= 0) {
         close_everything(store);
@@ -541,4 +549,5 @@ void hf_store_abandon(hf_store *store)
     }
     hf_messages_free(&unwanted);
     free_store(store);
+    hf_hdf5_unlock(HF_OK);
 }

@@ -57,6 +57,7 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     static const hf_hdf5_member form[] = {HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER)};
     static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
     static const hf_hdf5_member polish[] = {HF_SUMMARY_POLISH_MEMBERS(HF_HDF5_MEMBER)};
+    hf_hdf5_lock();
     hf_hdf5 io = open_result(path, messages);
     *summary = (hf_summary){0};
     hf_hdf5_get_members(&io, form, HF_HDF5_COUNT(form), summary);
@@ -64,7 +65,7 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     if (summary->has_optimize) hf_hdf5_get_members(&io, ga, HF_HDF5_COUNT(ga), summary);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) *summary = (hf_summary){0};
-    return io.status;
+    return hf_hdf5_unlock(io.status);
 }
 
 /* ---- scene ---- */
@@ -131,6 +132,7 @@ static void check_ends(hf_hdf5 *io, hid_t group, const hf_scene *scene)
 hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages)
 {
     static const hf_hdf5_column table[] = {HF_SCENE_COLUMNS(HF_HDF5_COLUMN)};
+    hf_hdf5_lock();
     hf_hdf5 io = open_result(path, messages);
     *scene = (hf_scene){0};
     hid_t group = hf_hdf5_open_group(&io, "/scene");
@@ -144,7 +146,7 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
     hf_hdf5_close(&io, group);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) hf_scene_free(scene);
-    return io.status;
+    return hf_hdf5_unlock(io.status);
 }
 
 /* ---- shape ---- */
@@ -171,6 +173,7 @@ static hf_status allocate_shape(int n_node, int n_cable, hf_shape *shape)
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages)
 {
     static const hf_hdf5_column table[] = {HF_SHAPE_COLUMNS(HF_HDF5_COLUMN)};
+    hf_hdf5_lock();
     hf_hdf5 io = open_result(path, messages);
     *shape = (hf_shape){0};
     int is_there = stage != HF_STAGE_NONE && (stage != HF_STAGE_OPTIMIZE || hf_hdf5_has(&io, io.file, "/ga")) &&
@@ -187,7 +190,7 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
     hf_hdf5_close(&io, group);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) hf_shape_free(shape);
-    return io.status;
+    return hf_hdf5_unlock(io.status);
 }
 
 void hf_shape_free(hf_shape *shape)

@@ -67,10 +67,10 @@ typedef struct {
 hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages);
 
 /* Put supports on a truss: node[i], a support of the scene, is attachment i, and the flexibility [3a][3a] in m/N
- * (copied) says how it gives way; all other supports stay fixed. HF_BAD_CASE, naming the attachment by its index, when a
- * node is no support or comes twice, or when the matrix is not finite, not symmetric to 1e-9 of its largest entry (the
- * copy is, exactly), or has a negative diagonal entry; HF_NO_MEMORY. Once per model, before workspaces are made for
- * it. */
+ * (copied) says how it gives way; all other supports stay fixed. HF_BAD_CASE, naming the attachment by its index, when
+ * a node is no support or comes twice, or when the matrix is not finite, not symmetric to 1e-9 of its largest entry
+ * (the copy is, exactly), or has a negative diagonal entry; HF_NO_MEMORY. Once per model, before workspaces are made
+ * for it. */
 hf_status hf_model_attach(hf_model *model, int n_attachment, const int *node, const double *flexibility_m_per_N,
                           hf_messages *messages);
 

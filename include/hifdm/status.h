@@ -28,7 +28,8 @@ extern "C" {
     X(BAD_CASE, 21, 2, "bad_case", "the case has errors")                                                              \
     X(NO_MEMORY, 30, 5, "no_memory", "out of memory")                                                                  \
     X(IO, 31, 5, "io", "input/output failed")                                                                          \
-    X(EXISTS, 32, 5, "exists", "the output file exists")
+    X(EXISTS, 32, 5, "exists", "the output file exists")                                                               \
+    X(INTERRUPTED, 33, 75, "interrupted", "told to stop before the end")
 
 typedef enum {
 #define HF_STATUS_ENUM(name, value, exit_code, word, text) HF_##name = value,
@@ -38,7 +39,8 @@ typedef enum {
 
 const char *hf_status_word(hf_status status); /* one token, as stored in files; "unknown" for a foreign value */
 const char *hf_status_text(hf_status status); /* a sentence */
-int hf_status_exit_code(hf_status status); /* 0 done, 2 usage or case, 3 not converged, 4 ill-posed, 5 input/output */
+/* 0 done, 2 usage or case, 3 not converged, 4 ill-posed, 5 input/output, 75 told to stop */
+int hf_status_exit_code(hf_status status);
 
 /* Propagate: evaluate once, return it from the calling function unless it is HF_OK. */
 #define HF_TRY(expression)                                                                                             \

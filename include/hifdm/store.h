@@ -36,6 +36,8 @@ extern "C" {
 
 typedef struct hf_store hf_store;
 
+/* Calls on different stores, and reading, may come from several threads at once; HDF5 lets one in at a time. */
+
 /* The stages that leave a shape. */
 typedef enum { HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, HF_STAGE_NONE } hf_stage;
 extern const char *const hf_stage_word[4];  /* "form", "optimize", "polish", "none" */

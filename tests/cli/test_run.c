@@ -85,6 +85,7 @@ START_TEST(not_converged_is_stored_and_told)
     const char *out = temp("c.h5");
     HIFDM(3, "run", CHEN, "-o", out, "--set", "form.max_iterations=7", "--json");
     ERR("error: form-finding did not converge in 7 iterations");
+    ERR("; furthest from its law is cable '");
     EXPECT(out_as("c.json"), out, "--", "a['status'] == 'not_converged'", "a['form']['status'] == 'not_converged'",
            "a['form']['iterations'] == 7", "a['form']['stop_reason'] == 'max_iterations'", "'optimize' not in a",
            "attribute(b, 'status') == 'not_converged'", "b['form/history/psi_m'].shape == (7,)", "'ga' not in b",
