@@ -16,6 +16,8 @@ void dgbtrf_(const int *m, const int *n, const int *kl, const int *ku, double *a
              int *info);
 void dgbtrs_(const char *trans, const int *n, const int *kl, const int *ku, const int *nrhs, const double *ab,
              const int *ldab, const int *ipiv, double *b, const int *ldb, int *info);
+void dsyrk_(const char *uplo, const char *trans, const int *n, const int *k, const double *alpha, const double *a,
+            const int *lda, const double *beta, double *c, const int *ldc);
 
 /* only OpenBLAS has these; another library leaves them at NULL */
 #pragma weak openblas_set_num_threads
@@ -38,6 +40,12 @@ hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int 
     }
     dpbtrs_("L", &n, &half_bandwidth, &three, band, &ldab, b, &ldb, &info);
     return HF_OK;
+}
+
+void hf_band_gram(int n, int n_column, const double *a, int lda, double *gram, int ldg)
+{
+    double one = 1, zero = 0;
+    dsyrk_("U", "T", &n, &n_column, &one, a, &lda, &zero, gram, &ldg); /* lower by rows is upper by columns */
 }
 
 int hf_band_factor(int n, int half_bandwidth, double *band)

@@ -9,15 +9,15 @@
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
-#include <gsl/gsl_multifit_nlinear.h>
+#include <gsl/gsl_multilarge_nlinear.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define START_INSIDE 0.9    /* of the half range: at a bound itself the change of variable has no slope */
-#define STEP_TOLERANCE 1e-9 /* relative, of the variables */
-#define PSI_TOLERANCE 1e-14 /* relative change of psi^2 */
-#define INFEASIBLE 1e3      /* residual (m) of a design without a shape: any step to it is refused */
+#define START_INSIDE 0.9   /* of the half range: at a bound itself the change of variable has no slope */
+#define STALL_ITERATIONS 5 /* an optimum is reached when psi has gained over these */
+#define STALL_GAIN 1e-7    /* less than this, relative */
+#define INFEASIBLE 1e3     /* residual (m) of a design without a shape: any step to it is refused */
 
 /* ---- the problem ---- */
 
@@ -29,10 +29,15 @@ typedef struct {
     double *design_N;      /* [n_gene] of the last evaluation */
     int *gene;             /* [n_leader] gene of each variable */
     int *variable_of_gene; /* [n_gene] */
+    double *trial_N;       /* [n_gene] */
     double *best_N;        /* [n_gene] */
-    double *sensitivity;   /* [n_leader][3 n_free] right-hand sides, then dx/dT */
+    double *sensitivity;   /* [n_leader][3 n_free] right-hand sides, then dx/dT, then the rows of J' */
     double best_psi_m;
     int evaluations;
+    int has_shape;    /* status and workspace belong to design_N */
+    int is_linear;    /* ... and so do the rows of J' */
+    hf_status status; /* of the last evaluation */
+    hf_form_result result;
 } problem;
 
 int hf_polish_applies(const hf_evaluator *v)
@@ -45,6 +50,7 @@ static void lay_out(hf_arena *a, problem *p)
     const hf_model *m = p->v->model;
     size_t k = (size_t)m->n_gene;
     p->design_N = hf_arena_take(a, k, sizeof(double));
+    p->trial_N = hf_arena_take(a, k, sizeof(double));
     p->best_N = hf_arena_take(a, k, sizeof(double));
     p->gene = hf_arena_take(a, k, sizeof(int));
     p->variable_of_gene = hf_arena_take(a, k, sizeof(int));
@@ -64,15 +70,15 @@ static void number_variables(problem *p)
 
 /* ---- bounds: T = middle + half sin(variable) ---- */
 
-static void to_design(const problem *p, const gsl_vector *variable)
+static void to_design(const problem *p, const gsl_vector *variable, double *design_N)
 {
     const hf_model *m = p->v->model;
     for (size_t i = 0; i < variable->size; i++) {
         int k = p->gene[i];
         double half = (p->upper_N[k] - p->lower_N[k]) / 2, middle = (p->upper_N[k] + p->lower_N[k]) / 2;
-        p->design_N[k] = middle + half * sin(gsl_vector_get(variable, i));
+        design_N[k] = middle + half * sin(gsl_vector_get(variable, i));
     }
-    if (m->n_leader < m->n_gene) hf_symmetry_follow(m->n_gene, m->gene_leader, p->start_N, p->design_N);
+    if (m->n_leader < m->n_gene) hf_symmetry_follow(m->n_gene, m->gene_leader, p->start_N, design_N);
 }
 
 static double slope(const problem *p, const gsl_vector *variable, size_t i)
@@ -91,24 +97,34 @@ static void to_variable(const problem *p, const double *design_N, gsl_vector *va
     }
 }
 
-/* ---- residuals: distances of the inner nodes over the root of their number, so that the sum of squares is psi^2 ----
- * */
+/* ---- residuals: distances of the inner nodes over the root of their number: their squares add up to psi^2 ---- */
+
+/* The shape of these variables into the workspace, unless it is there already. */
+static hf_status evaluate(problem *p, const gsl_vector *variable)
+{
+    size_t bytes = (size_t)p->v->model->n_gene * sizeof(double);
+    to_design(p, variable, p->trial_N);
+    if (p->has_shape && memcmp(p->trial_N, p->design_N, bytes) == 0) return p->status;
+    memcpy(p->design_N, p->trial_N, bytes);
+    p->evaluations++;
+    p->has_shape = 1;
+    p->is_linear = 0;
+    p->status = hf_evaluate(p->v, p->design_N, p->w, &p->result);
+    if (p->status == HF_OK && p->result.psi_m < p->best_psi_m) {
+        p->best_psi_m = p->result.psi_m;
+        memcpy(p->best_N, p->design_N, bytes);
+    }
+    return p->status;
+}
 
 static int residuals(const gsl_vector *variable, void *context, gsl_vector *f)
 {
     problem *p = context;
     const hf_model *m = p->v->model;
-    hf_form_result r;
-    to_design(p, variable);
-    p->evaluations++;
     gsl_vector_set_zero(f); /* rows beyond the inner nodes only satisfy GSL, which wants no fewer rows than variables */
-    if (hf_evaluate(p->v, p->design_N, p->w, &r) != HF_OK) {
+    if (evaluate(p, variable) != HF_OK) {
         gsl_vector_set(f, 0, INFEASIBLE);
         return GSL_SUCCESS;
-    }
-    if (r.psi_m < p->best_psi_m) {
-        p->best_psi_m = r.psi_m;
-        memcpy(p->best_N, p->design_N, (size_t)m->n_gene * sizeof(double));
     }
     double scale = 1 / sqrt(m->n_inner_node);
     for (int i = 0; i < m->n_inner_node; i++)
@@ -135,61 +151,89 @@ static void add_force_of_gene(const problem *p, int k, double *force)
     }
 }
 
-static int jacobian(const gsl_vector *variable, void *context, gsl_matrix *J)
+/* Columns of J at these variables into the rows of p->sensitivity, all zero where there is no shape. */
+static void linearise(problem *p, const gsl_vector *variable)
 {
-    problem *p = context;
     const hf_model *m = p->v->model;
     size_t n_dof = 3 * (size_t)m->n_free;
-    hf_form_result r;
-    gsl_matrix_set_zero(J);
-    to_design(p, variable);
-    if (hf_evaluate(p->v, p->design_N, p->w, &r) != HF_OK || hf_newton_factor(m, p->w, NULL) != HF_OK)
-        return GSL_SUCCESS;
+    hf_status status = evaluate(p, variable);
+    if (p->is_linear) return;
+    p->is_linear = 1;
     memset(p->sensitivity, 0, (size_t)m->n_leader * n_dof * sizeof(double));
+    if (status != HF_OK || hf_newton_factor(m, p->w, NULL) != HF_OK) return;
     for (int k = 0; k < m->n_gene; k++)
         add_force_of_gene(p, k, p->sensitivity + (size_t)p->variable_of_gene[k] * n_dof);
     hf_band_back_solve((int)n_dof, 3 * m->half_bandwidth + 2, m->n_leader, p->w->newton_band, p->sensitivity,
                        (int)n_dof);
     double scale = 1 / sqrt(m->n_inner_node);
     for (size_t k = 0; k < variable->size; k++) {
-        double weight = scale * slope(p, variable, k);
-        const double *moved = p->sensitivity + k * n_dof;
-        for (int i = 0; i < m->n_inner_node; i++)
+        double weight = scale * slope(p, variable, k), *moved = p->sensitivity + k * n_dof;
+        for (int i = 0; i < m->n_inner_node; i++) /* in place: inner_row rises */
             for (int c = 0; c < 3; c++)
-                gsl_matrix_set(J, (size_t)(3 * i + c), k, weight * moved[3 * m->inner_row[i] + c]);
+                moved[3 * i + c] = weight * moved[3 * m->inner_row[i] + c];
     }
+}
+
+/* v = J u or J' u, and J' J, as GSL asks for them. */
+static int linear_model(CBLAS_TRANSPOSE_t transpose, const gsl_vector *variable, const gsl_vector *u, void *context,
+                        gsl_vector *v, gsl_matrix *JTJ)
+{
+    problem *p = context;
+    size_t n_dof = 3 * (size_t)p->v->model->n_free, n_row = 3 * (size_t)p->v->model->n_inner_node;
+    int n_variable = (int)variable->size;
+    linearise(p, variable);
+    gsl_matrix_const_view Jt = gsl_matrix_const_view_array_with_tda(p->sensitivity, variable->size, n_row, n_dof);
+    if (transpose == CblasTrans) {
+        gsl_vector_const_view head = gsl_vector_const_subvector(u, 0, n_row);
+        gsl_blas_dgemv(CblasNoTrans, 1, &Jt.matrix, &head.vector, 0, v);
+    } else {
+        gsl_vector_set_zero(v);
+        gsl_vector_view head = gsl_vector_subvector(v, 0, n_row);
+        gsl_blas_dgemv(CblasTrans, 1, &Jt.matrix, u, 0, &head.vector);
+    }
+    if (JTJ) hf_band_gram(n_variable, (int)n_row, p->sensitivity, (int)n_dof, JTJ->data, (int)JTJ->tda);
     return GSL_SUCCESS;
 }
 
 /* ---- the run ---- */
+
+/* Iterate until psi stalls, no step lowers it any more, or the limit. */
+static void iterate(problem *p, int max_iterations, gsl_multilarge_nlinear_workspace *solver, hf_polish_result *result)
+{
+    double past_psi_m[STALL_ITERATIONS];
+    while (!result->converged && result->iterations < max_iterations) {
+        double *past_m = &past_psi_m[result->iterations % STALL_ITERATIONS];
+        int is_filled = result->iterations >= STALL_ITERATIONS;
+        if (is_filled && *past_m - p->best_psi_m <= STALL_GAIN * p->best_psi_m) result->converged = 1;
+        *past_m = p->best_psi_m;
+        if (result->converged) return;
+        result->iterations++;
+        /* GSL_ENOPROG: no step lowers psi any more, which is convergence to rounding */
+        if (gsl_multilarge_nlinear_iterate(solver) != GSL_SUCCESS) result->converged = 1;
+    }
+}
 
 static hf_status minimise(problem *p, int max_iterations, const double *start_N, hf_polish_result *result)
 {
     const hf_model *m = p->v->model;
     size_t n_variable = (size_t)m->n_leader, n_row = 3 * (size_t)m->n_inner_node;
     if (n_row < n_variable) n_row = n_variable;
-    gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
-    parameters.solver = gsl_multifit_nlinear_solver_qr;
-    gsl_multifit_nlinear_fdf fdf = {.f = residuals, .df = jacobian, .n = n_row, .p = n_variable, .params = p};
-    gsl_multifit_nlinear_workspace *solver =
-        gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, n_row, n_variable);
+    gsl_multilarge_nlinear_parameters parameters = gsl_multilarge_nlinear_default_parameters();
+    gsl_multilarge_nlinear_fdf fdf = {.f = residuals, .df = linear_model, .n = n_row, .p = n_variable, .params = p};
+    gsl_multilarge_nlinear_workspace *solver =
+        gsl_multilarge_nlinear_alloc(gsl_multilarge_nlinear_trust, &parameters, n_row, n_variable);
     gsl_vector *variable = gsl_vector_alloc(n_variable);
     if (!solver || !variable) {
-        gsl_multifit_nlinear_free(solver);
+        if (solver) gsl_multilarge_nlinear_free(solver);
         gsl_vector_free(variable);
         return HF_NO_MEMORY;
     }
     to_variable(p, start_N, variable);
-    int info = 0;
     gsl_error_handler_t *before = gsl_set_error_handler_off(); /* "no progress" is an answer here */
-    gsl_multifit_nlinear_init(variable, &fdf, solver);
-    int status = gsl_multifit_nlinear_driver((size_t)max_iterations, STEP_TOLERANCE, 0, PSI_TOLERANCE, NULL, NULL,
-                                             &info, solver);
+    gsl_multilarge_nlinear_init(variable, &fdf, solver);
+    iterate(p, max_iterations, solver, result);
     gsl_set_error_handler(before);
-    result->iterations = (int)gsl_multifit_nlinear_niter(solver);
-    /* GSL_ENOPROG: no step lowers psi any more, which is convergence to rounding */
-    result->converged = status == GSL_SUCCESS || status == GSL_ENOPROG;
-    gsl_multifit_nlinear_free(solver);
+    gsl_multilarge_nlinear_free(solver);
     gsl_vector_free(variable);
     return HF_OK;
 }
