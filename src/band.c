@@ -16,6 +16,8 @@ void dgbtrf_(const int *m, const int *n, const int *kl, const int *ku, double *a
              int *info);
 void dgbtrs_(const char *trans, const int *n, const int *kl, const int *ku, const int *nrhs, const double *ab,
              const int *ldab, const int *ipiv, double *b, const int *ldb, int *info);
+void dgbcon_(const char *norm, const int *n, const int *kl, const int *ku, const double *ab, const int *ldab,
+             const int *ipiv, const double *anorm, double *rcond, double *work, int *iwork, int *info);
 void dsyrk_(const char *uplo, const char *trans, const int *n, const int *k, const double *alpha, const double *a,
             const int *lda, const double *beta, double *c, const int *ldc);
 
@@ -95,6 +97,15 @@ hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band
     }
     dgbtrs_("N", &n, &k, &k, &three, general, &ldab, pivot, b, &ldb, &info);
     return HF_OK;
+}
+
+double hf_band_condition_indefinite(int n, int half_bandwidth, const double *general, const int *pivot, double norm,
+                                    double *work, int *integer_work)
+{
+    int k = half_bandwidth, ldab = 3 * k + 1, info = 0;
+    double reciprocal = 0;
+    dgbcon_("1", &n, &k, &k, general, &ldab, pivot, &norm, &reciprocal, work, integer_work, &info);
+    return reciprocal > 0 ? 1 / reciprocal : (double)INFINITY;
 }
 
 void hf_band_single_threaded(void)

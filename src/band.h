@@ -23,6 +23,10 @@ void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *fact
 double hf_band_norm(int n, int half_bandwidth, const double *band, double *work);
 double hf_band_condition(int n, int half_bandwidth, const double *factor, double norm, double *work, int *integer_work);
 
+/* The same from the LU that hf_band_solve_indefinite leaves (dgbcon). */
+double hf_band_condition_indefinite(int n, int half_bandwidth, const double *general, const int *pivot, double norm,
+                                    double *work, int *integer_work);
+
 /* Lower triangle, row by row, of A A' for the dense A [n][n_column] of row length lda: gram [n][ldg] (BLAS). */
 void hf_band_gram(int n, int n_column, const double *a, int lda, double *gram, int ldg);
 

@@ -1,5 +1,6 @@
 #include <hifdm/evaluate.h>
 
+#include "certificate.h"
 #include "newton.h"
 
 #include <math.h>
@@ -28,7 +29,7 @@ hf_status hf_evaluate_form(const hf_model *m, const hf_form_settings *form, hf_w
         hf_newton_find(m, form, w, history, result);
     else
         hf_form_find(m, form, form->stop, w, history, result);
-    if (m->has_newton) hf_newton_certify(m, w, result);
+    hf_certify(m, w, result);
     return result->status;
 }
 

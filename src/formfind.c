@@ -38,7 +38,7 @@ void hf_form_prepare(const hf_model *model, hf_workspace *workspace)
 
 /* ---- one linear solve: D x_f = P - C_f' Q C_g x_g for x, y, z (Eqs. 2, 5) ---- */
 
-static void assemble_matrix(const hf_model *m, hf_workspace *w)
+void hf_form_assemble(const hf_model *m, hf_workspace *w)
 {
     memset(w->band, 0, ((size_t)m->n_band + 1) * sizeof(double));
     for (int e = 0; e < m->n_cable; e++) {
@@ -73,7 +73,7 @@ static void assemble_loads(const hf_model *m, hf_workspace *w)
 
 static hf_status solve(const hf_model *m, hf_workspace *w, int *bad_row)
 {
-    assemble_matrix(m, w);
+    hf_form_assemble(m, w);
     assemble_loads(m, w);
     if (m->has_strut)
         return hf_band_solve_indefinite(m->n_free, m->half_bandwidth, w->band, w->general_band, w->pivot, w->position_m,
@@ -150,7 +150,7 @@ static void nodal_forces(const hf_model *m, hf_workspace *w, int without_chains)
     }
 }
 
-static double largest_residual_N(const hf_model *m, hf_workspace *w)
+double hf_form_residual_N(const hf_model *m, hf_workspace *w)
 {
     double largest = 0, scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
     const double *fx = w->force_N, *fy = fx + m->n_node, *fz = fy + m->n_node;
@@ -375,13 +375,13 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, h
         measure_cables(m, s, w, r, &length_gap);
         if (r->status != HF_OK) break;
         if (need_psi) r->psi_m = hf_metrics_psi_m(m, w);
-        if (need_residual) r->residual_N = largest_residual_N(m, w);
+        if (need_residual) r->residual_N = hf_form_residual_N(m, w);
         if (history) record(history, m, w, r);
         if (is_last(m, s, w, r, &p, length_gap)) break;
         update_force_densities(m, w);
     }
     if (r->status == HF_OK || r->status == HF_NOT_CONVERGED) {
-        if (!need_residual) r->residual_N = largest_residual_N(m, w);
+        if (!need_residual) r->residual_N = hf_form_residual_N(m, w);
         if (r->status == HF_NOT_CONVERGED) r->culprit = find_rounded_cable(m, s, w);
         if (r->status == HF_OK || r->iterations >= FIRST_CHAIN_CHECK) judge_chains(m, w, &p, r);
     }
@@ -399,7 +399,7 @@ hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_works
         for (int e = 0; e < m->n_cable; e++)
             if (w->law[e] == HF_LAW_TENSION) w->q_N_per_m[e] = w->target[e] / w->length_m[e];
     }
-    r->residual_N = largest_residual_N(m, w);
+    r->residual_N = hf_form_residual_N(m, w);
     r->stop_reason = HF_STOPPED_RESIDUAL;
     if (!(r->residual_N <= s->residual_tolerance * m->reference_N && length_gap <= s->length_tolerance)) {
         r->status = HF_NOT_CONVERGED;
@@ -418,7 +418,7 @@ hf_status hf_form_accept(const hf_model *m, const hf_form_settings *s, hf_stop_r
     measure_cables(m, s, w, r, &length_gap);
     if (r->status == HF_OK) {
         if (reason == HF_STOPPED_MAX_ITERATIONS) r->status = HF_NOT_CONVERGED;
-        r->residual_N = largest_residual_N(m, w);
+        r->residual_N = hf_form_residual_N(m, w);
         judge_chains(m, w, &p, r);
     }
     return finish(m, w, r);

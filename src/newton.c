@@ -304,24 +304,8 @@ hf_status hf_newton_find(const hf_model *m, const hf_form_settings *s, hf_worksp
 
 /* ---- certificate ---- */
 
-/* Largest sum of tensions at one node: what a nodal residual is to be compared with. */
-static double largest_pull_N(const hf_model *m, const hf_workspace *w, double *pull)
-{
-    double largest = 0;
-    memset(pull, 0, (size_t)m->n_node * sizeof *pull);
-    for (int e = 0; e < m->n_cable; e++)
-        for (int k = 0; k < 2; k++)
-            pull[m->end_row[2 * e + k]] += fabs(w->tension_N[e]);
-    for (int i = 0; i < m->n_free; i++)
-        largest = fmax(largest, pull[i]);
-    return largest;
-}
-
 void hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
-    r->position_error_m = r->condition = r->backward_error = (double)NAN;
-    if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) return;
-    r->backward_error = r->residual_N / largest_pull_N(m, w, w->newton_trial_m);
     measure(m, w, w->position_m, w->tension_N, w->newton_force_N);
     if (find_step(m, w, &r->condition) != HF_OK) return;
     double largest = 0;

@@ -22,7 +22,8 @@ hf_status hf_newton_find(const hf_model *model, const hf_form_settings *settings
  * of its 1-norm condition number, INFINITY when a Levenberg shift was needed. HF_SINGULAR when no shift helps. */
 hf_status hf_newton_factor(const hf_model *model, hf_workspace *workspace, double *condition);
 
-/* Fill position_error_m, condition and backward_error of a result whose shape the workspace holds. */
+/* Fill position_error_m (largest move of a node in the next step) and condition of a result whose shape the workspace
+ * holds; untouched when there is no step. */
 void hf_newton_certify(const hf_model *model, hf_workspace *workspace, hf_form_result *result);
 
 #endif

@@ -1,6 +1,8 @@
 #include "plan.h"
 
 #include "chord.h"
+#include "lane.h"
+#include "polish.h"
 #include "print.h"
 #include "run.h"
 #include "symmetry.h"
@@ -61,55 +63,94 @@ static void print_allocation(const char *title, const char *what, double bytes, 
     fprintf(f, "  %-13s %-38s %s\n", title, what, bytes > 0 ? text : without);
 }
 
-static int shares(const hf_evaluator *v)
+/* Bytes that a population's engine would share and give to each thread (batch decides alike). */
+static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lanes)
 {
-    return (v->solver == HF_SOLVER_AUTO || v->solver == HF_SOLVER_CHORD) && hf_chord_applies(v);
+    *shared = *lanes = 0;
+    if ((v->solver == HF_SOLVER_AUTO || v->solver == HF_SOLVER_CHORD) && hf_chord_applies(v)) {
+        *shared = hf_chord_bytes(v, lanes);
+    } else if (!v->model->has_strut && (v->solver == HF_SOLVER_FIXED_POINT || v->rule == HF_RULE_SEEDED)) {
+        hf_lane_plan plan;
+        HF_TRY(hf_lane_plan_create(v->model, hf_lane_best_isa(), &plan));
+        *lanes = hf_lane_workspace_bytes(&plan);
+        hf_lane_plan_free(&plan);
+    }
+    return HF_OK;
 }
 
 /* What a run would allocate, and what it would not. */
-static void print_memory(const hf_problem *p, const hf_evaluator *v, int threads, FILE *f)
+static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int threads, FILE *f)
 {
     const hf_model *m = &p->model;
     hf_model without = *m;
     without.has_newton = 0;
-    size_t lanes = 0, shared = v && shares(v) ? hf_chord_bytes(v, &lanes) : 0;
+    size_t lanes = 0, shared = 0;
+    int evolves = v && p->settings.optimize.method != HF_OPTIMIZE_LM;
+    if (evolves) HF_TRY(engine_bytes(v, &shared, &lanes));
     double workspaces = v ? threads + 1 : 1, bare = (double)hf_workspace_bytes(&without);
-    double population = v ? (double)p->settings.optimize.population : 0, genes = 8.0 * m->n_gene;
+    double population = evolves ? (double)p->settings.optimize.population : 0, genes = 8.0 * m->n_gene;
     double newton = (double)hf_workspace_bytes(m) - bare;
+    const char *without_ga = v ? "none (no genetic algorithm)" : "none (no optimisation)";
     char what[64];
     snprintf(what, sizeof what, "workspaces (%d thread%s)", threads, threads == 1 ? "" : "s");
     print_allocation("memory", what, workspaces * bare, "none", f);
     print_allocation("", "Newton matrices in them", workspaces * newton, "none (no law iterates, or struts)", f);
-    print_allocation("", "matrix shared by all threads", (double)shared, v ? "none" : "none (no optimisation)", f);
-    print_allocation("", "lanes of designs", (double)lanes * threads, v ? "none" : "none (no optimisation)", f);
+    print_allocation("", "matrix shared by all threads", (double)shared, evolves ? "none" : without_ga, f);
+    print_allocation("", "lanes of designs", (double)lanes * threads, evolves ? "none" : without_ga, f);
     print_allocation("", "population", 2 * population * (genes + (double)sizeof(hf_form_result)), "none", f);
-    if (v)
+    print_allocation("", "sensitivities of Levenberg-Marquardt",
+                     v && hf_polish_applies(v) ? 24.0 * m->n_leader * m->n_free : 0, "none", f);
+    if (evolves)
         print_allocation("result file", "generations, at most",
                          population * (genes + 70) * p->settings.optimize.generations, "", f);
+    return HF_OK;
 }
 
 /* A first generation is bred and evaluated in one thread, timed; the cost of one of its designs times the largest
  * number of evaluations is what is printed. */
-static hf_status print_optimize_time(const hf_problem *p, const hf_evaluator *v, int threads, FILE *f)
+static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int threads, const hf_ga *ga, FILE *f)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     hf_batch batch = {0};
-    hf_ga ga = {0};
     hf_status status = hf_batch_create(v, 1, &batch);
-    if (status == HF_OK) status = hf_ga_create(o, &p->model, p->base_N, &ga);
     if (status == HF_OK) {
         char one[32], all[32];
         int solver = hf_batch_share(&batch, p->base_N);
         double begin_s = hf_run_clock_s();
-        hf_batch_run(&batch, ga.n_individual, ga.design_N, ga.pending, ga.result);
-        double each_s = (hf_run_clock_s() - begin_s) / ga.n_individual;
+        hf_batch_run(&batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
+        double each_s = (hf_run_clock_s() - begin_s) / ga->n_individual;
         hf_print_duration(each_s, one, sizeof one);
         hf_print_duration(each_s * o->population * o->generations / threads, all, sizeof all);
         fprintf(f, "                optimisation: %s for a design of the first generation by %s; at most about %s\n",
                 one, hf_solver_word[solver], all);
     }
-    hf_ga_free(&ga);
     hf_batch_free(&batch);
+    return status;
+}
+
+/* Two iterations of Levenberg-Marquardt from the base design. */
+static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const hf_ga *ga, FILE *f)
+{
+    hf_polish_result r;
+    char one[32], all[32];
+    double begin_s = hf_run_clock_s();
+    hf_status status = hf_polish_run(v, ga->lower_N, ga->upper_N, 2, p->base_N, &p->workspace, &r);
+    if (status == HF_NO_MEMORY) return status;
+    if (status != HF_OK || r.iterations == 0) return HF_OK;
+    double each_s = (hf_run_clock_s() - begin_s) / r.iterations;
+    hf_print_duration(each_s, one, sizeof one);
+    hf_print_duration(each_s * p->settings.optimize.polish_iterations, all, sizeof all);
+    fprintf(f, "                Levenberg-Marquardt: %s an iteration; at most about %s, mostly far less\n", one, all);
+    return HF_OK;
+}
+
+static hf_status print_optimize_time(hf_problem *p, const hf_evaluator *v, int threads, FILE *f)
+{
+    hf_ga ga = {0};
+    hf_status status = hf_ga_create(&p->settings.optimize, &p->model, p->base_N, &ga);
+    if (status == HF_OK && p->settings.optimize.method != HF_OPTIMIZE_LM) status = print_ga_time(p, v, threads, &ga, f);
+    if (status == HF_OK && hf_polish_applies(v)) status = print_polish_time(p, v, &ga, f);
+    hf_ga_free(&ga);
     return status;
 }
 
@@ -138,7 +179,6 @@ static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, F
     HF_TRY(hf_problem_explain(p, &r, messages));
     if (!v) return HF_OK;
     HF_TRY(hf_problem_base(p, messages));
-    if (p->settings.optimize.method == HF_OPTIMIZE_LM) return HF_OK;
     if (print_optimize_time(p, v, threads, f) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory");
     return HF_OK;
 }
@@ -153,7 +193,8 @@ static hf_status check(hf_problem *p, const hf_options *options, FILE *f, hf_mes
     fprintf(f, "%s: valid\n", options->file);
     print_scene(p, f);
     print_plan(p, f);
-    print_memory(p, optimizes ? &v : NULL, threads, f);
+    if (print_memory(p, optimizes ? &v : NULL, threads, f) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory");
     return print_time(p, optimizes ? &v : NULL, threads, f, messages);
 }
 

@@ -41,9 +41,9 @@ typedef struct {
     double boundary_tension_ratio;
     double shortest_length_ratio; /* min l / theoretical l over all cables */
     double position_error_m;      /* estimate: largest move of a node in the Newton step that would follow */
-    double condition;             /* estimate for the Newton matrix; INFINITY when it is singular */
+    double condition;             /* estimate for the Newton matrix, or D where it has none; INFINITY: singular */
     double backward_error;        /* residual_N over the largest sum of tensions at a node; the three are NaN unless
-                                       hf_newton_certify was asked */
+                                       hf_certify was asked */
     int n_slack;
     int n_loaded_chain; /* straight chains under lateral load: tensions there mean nothing */
 } hf_form_result;
@@ -67,6 +67,12 @@ hf_status hf_form_find(const hf_model *model, const hf_form_settings *settings, 
  * the residual is within the tolerance, else the status is HF_NOT_CONVERGED. Returns result->status. */
 hf_status hf_form_measure(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                           hf_form_result *result);
+
+/* The force density matrix D of q_N_per_m (Eq. 2) into the workspace's band. */
+void hf_form_assemble(const hf_model *model, hf_workspace *workspace);
+
+/* Largest nodal force out of balance at the workspace's shape, N; leaves the nodal forces in force_N. */
+double hf_form_residual_N(const hf_model *model, hf_workspace *workspace);
 
 /* A cable of law tension or force_density shorter than this part of its theoretical length is gone whatever
  * collapse_ratio says; one this many times longer is what rounding leaves of a singular matrix. */

@@ -31,6 +31,8 @@ extern "C" {
     X(double, newton_trial_tension_N, m->has_newton ? (size_t)m->n_cable : 0, "N", "[n_cable]")                        \
     X(double, newton_work, 3 * HF_NEWTON_DOFS(m), "", "for the condition estimate")                                    \
     X(int, newton_integer_work, HF_NEWTON_DOFS(m), "", "for the condition estimate")                                   \
+    X(double, certificate_work, m->has_newton ? 0 : 3 * (size_t)m->n_node, "", "without a Newton matrix")              \
+    X(int, certificate_integer_work, m->has_newton ? 0 : (size_t)m->n_free, "", "the same")                            \
     X(int, pivot, m->has_strut ? (size_t)m->n_free : 0, "", "struts")
 
 typedef struct {

@@ -118,9 +118,32 @@ START_TEST(not_for_newton)
     ck_assert_int_eq(find(&net), HF_OK);
     ck_assert_int_eq(net.result.stop_reason, HF_STOPPED_DIRECT);
     ck_assert_int_eq(net.result.iterations, 1);
-    ck_assert_double_nan(net.result.condition);
+    ck_assert_double_eq_tol(net.result.condition, 1, 1e-15); /* one free node */
+    ck_assert_double_le(net.result.position_error_m, 1e-14);
     struct verified v = verify_shape(&net.model, &net.work, net.scene.law, net.scene.target);
     ck_assert_double_le(v.residual_N, 1e-13);
+    close_net(&net);
+}
+END_TEST
+
+/* Two free nodes in a row: D = [[a + b, -b], [-b, b + c]], condition in the 1-norm by hand; LAPACK's estimate is exact
+ * for two rows. The solution is exact to rounding, and says so. */
+START_TEST(linear_nets_are_certified)
+{
+    static const double q[2][3] = {{2, 3, 5}, {2, -1, 5}}, condition[2] = {121.0 / 31, 25.0 / 3};
+    static const struct hand_node node[] = {{{0, 0, 0}, HF_ROLE_SUPPORT, {0}},
+                                            {{1, 0.2, 0}, HF_ROLE_INNER, {0, 0, -1}},
+                                            {{2, 0, 0.1}, HF_ROLE_INNER, {0.3, 0, 0}},
+                                            {{3, 0, 0}, HF_ROLE_SUPPORT, {0}}};
+    const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, q[_i][0]},
+                                       {{1, 2}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, q[_i][1]},
+                                       {{2, 3}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, q[_i][2]}};
+    struct net net;
+    OPEN_HAND(&net, node, cable, HF_METHOD_FDM);
+    ck_assert_int_eq(find(&net), HF_OK);
+    ck_assert_double_eq_tol(net.result.condition, condition[_i], 1e-13);
+    ck_assert_double_le(net.result.position_error_m, 1e-14);
+    ck_assert_double_le(net.result.backward_error, 1e-15);
     close_net(&net);
 }
 END_TEST
@@ -227,6 +250,7 @@ Suite *suite_unit_newton_limits(void)
     tcase_add_test(tests, flat_edges_are_solved);
     tcase_add_test(tests, what_rounding_leaves_is_named);
     tcase_add_loop_test(tests, not_for_newton, 0, 2);
+    tcase_add_loop_test(tests, linear_nets_are_certified, 0, 2);
     tcase_add_test(tests, strut_beside_a_tension_falls_back);
     tcase_add_test(tests, auto_picks_newton_for_the_residual_only);
     tcase_add_test(tests, iterations_are_bounded);
