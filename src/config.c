@@ -491,7 +491,7 @@ hf_status hf_config_load(const char *path, const char *const *overrides, int n_o
 hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages)
 {
     if (settings->has_import)
-        HF_TRY(hf_scene_import(settings->nodes_path, settings->cables_path, scene, messages));
+        HF_TRY(hf_scene_import(settings->nodes_path, settings->cables_path, settings->cylinder.EA_N, scene, messages));
     else
         HF_TRY(hf_scene_parabolic_cylinder(&settings->cylinder, scene, messages));
     return hf_scene_check(scene, messages);
