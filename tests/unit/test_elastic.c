@@ -132,7 +132,7 @@ START_TEST(stiff_cables_keep_their_length)
         for (int c = 0; c < 3; c++)
             move_m = fmax(move_m, fabs(found_m(&net, 1, c) - found_m(&rigid, 1, c)));
         ck_assert_double_le(move_m, fmax(before_m / 80, 1e-10)); /* a hundredth, until the tolerance of 1e-11 */
-        for (int e = 0; e < 2; e++)                              /* the angles change by some 12 N / EA, and 1/sin^2 of them */
+        for (int e = 0; e < 2; e++) /* the angles change by some 12 N / EA, and 1/sin^2 of them */
             ck_assert_double_eq_tol(net.work.tension_N[e], rigid.work.tension_N[e], 1000 / EA + 1e-8);
         before_m = move_m;
         close_net(&net);

@@ -120,7 +120,9 @@ static const struct by_hand {
      5e6,
      {1, 0, -0.075},
      {34043, 34043},
-     5e-4, 0.007 * 34043, 0},
+     5e-4,
+     0.007 * 34043,
+     0},
 };
 enum { N_BY_HAND = sizeof by_hand / sizeof *by_hand };
 
