@@ -5,10 +5,15 @@
 
 # ---- The modules, in dependency order: a module may include only modules above it (`make lint` checks it) ------------
 # Sources are src/NAME.c; the header is include/hifdm/NAME.h if public, src/NAME.h if internal.
-MODULES := status arena sha256 text csv scene scene_import config config_table numbering model symmetry workspace band \
-           metrics lane lane_kernel formfind newton certificate evaluate chord_kernel chord ga swarm polish batch json \
-           summary hdf5_io store store_read
-APP_MODULES := options print problem run progress signals plan export designs main
+MODULES := status arena sha256 text csv \
+           scene scene_import config config_table \
+           numbering model symmetry workspace band \
+           metrics surface \
+           lane lane_kernel formfind newton certificate \
+           evaluate chord_kernel chord ga swarm polish batch \
+           json summary hdf5_io store store_read
+APP_MODULES := options print problem run progress signals \
+           plan export designs main
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
 VERSION := 0.1.0

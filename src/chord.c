@@ -40,19 +40,24 @@ static const kernels *choose_kernels(void)
 
 /* ---- shared matrix ---- */
 
+static int has_multiplier(const hf_model *m, int e)
+{
+    return m->law[e] == HF_LAW_LENGTH || m->law[e] == HF_LAW_ELASTIC;
+}
+
 int hf_chord_applies(const hf_evaluator *v)
 {
     const hf_model *m = v->model;
     if (!m->has_newton || v->rule == HF_RULE_SEEDED || m->n_gene == 0) return 0;
-    int n_length = 0;
+    int n_multiplier = 0;
     for (int e = 0; e < m->n_cable; e++)
-        n_length += m->law[e] == HF_LAW_LENGTH;
+        n_multiplier += has_multiplier(m, e);
     for (int k = 0; k < m->n_gene; k++)
-        n_length -= m->law[m->gene_cable[k]] == HF_LAW_LENGTH;
+        n_multiplier -= has_multiplier(m, m->gene_cable[k]);
     for (int e = 0; e < m->n_cable; e++) /* between two supports it moves nothing */
-        if (m->law[e] == HF_LAW_LENGTH && m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free)
-            n_length--;
-    return n_length == 0;
+        if (has_multiplier(m, e) && m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free)
+            n_multiplier--;
+    return n_multiplier == 0;
 }
 
 static void lay_out(hf_arena *a, hf_chord *c)

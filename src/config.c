@@ -174,6 +174,34 @@ static void set_pair(loader *l, const yaml_node_t *node, const hf_field *f, int 
         set_int(l, yaml_document_get_node(l->document, node->data.sequence.items.start[k]), f, to + k);
 }
 
+static void set_double(loader *l, const yaml_node_t *node, const hf_field *f, double *to)
+{
+    double value;
+    if (!is_plain(node) || !hf_text_double(scalar_text(node), &value))
+        complain(l, node->start_mark, f->path, "must be a number",
+                 node->type == YAML_SCALAR_NODE ? ", not a text" : "");
+    else if (value < f->min || value > f->max)
+        complain_range(l, node, f);
+    else
+        memcpy(to, &value, sizeof value);
+}
+
+/* A list of numbers, or one number. */
+static void set_list(loader *l, const yaml_node_t *node, const hf_field *f, hf_double_list *to)
+{
+    long n = node->type == YAML_SEQUENCE_NODE ? node->data.sequence.items.top - node->data.sequence.items.start : 1;
+    to->n = 0;
+    if (node->type == YAML_MAPPING_NODE || n > HF_LIST_MAX) {
+        complain(l, node->start_mark, f->path, "must be a list of at most 8 numbers, like [1e9, 2e9]", "");
+    } else if (node->type != YAML_SEQUENCE_NODE) {
+        set_double(l, node, f, &to->value[to->n++]);
+    } else {
+        for (; to->n < n; to->n++)
+            set_double(l, yaml_document_get_node(l->document, node->data.sequence.items.start[to->n]), f,
+                       &to->value[to->n]);
+    }
+}
+
 static void set_text(loader *l, const yaml_node_t *node, const hf_field *f, char *to)
 {
     size_t size = (size_t)f->max;
@@ -202,17 +230,12 @@ static void set_field(loader *l, const yaml_node_t *node, int i_field)
     else
         snprintf(where, WHERE_SIZE, "%zu:%zu", node->start_mark.line + 1, node->start_mark.column + 1);
     switch (f->type) {
-    case HF_FIELD_DOUBLE: {
-        double value;
-        if (!is_plain(node) || !hf_text_double(scalar_text(node), &value))
-            complain(l, node->start_mark, f->path, "must be a number",
-                     node->type == YAML_SCALAR_NODE ? ", not a text" : "");
-        else if (value < f->min || value > f->max)
-            complain_range(l, node, f);
-        else
-            memcpy(to, &value, sizeof value);
+    case HF_FIELD_DOUBLE:
+        set_double(l, node, f, (double *)(void *)to);
         break;
-    }
+    case HF_FIELD_DOUBLE_LIST:
+        set_list(l, node, f, (hf_double_list *)(void *)to);
+        break;
     case HF_FIELD_UINT64:
         if (!is_plain(node) || !hf_text_uint64(scalar_text(node), (uint64_t *)(void *)to))
             complain(l, node->start_mark, f->path, "must be a whole number from 0 to 18446744073709551615", "");
@@ -430,6 +453,8 @@ static void check_together(loader *l)
         if (!hf_field_table[i].default_value && section_present(c, hf_field_table[i].path) &&
             !l->where_given[(size_t)i * WHERE_SIZE])
             complain_about(l, hf_field_table[i].path, "is missing and has no default");
+    if (c->has_surface && c->has_import && !c->surface.focal_length_m && !l->failed)
+        complain_about(l, "surface.focal_length_m", "is missing: an imported net does not tell its surface");
     if (!c->has_optimize || l->failed) return; /* values that were refused are not compared */
     if (o->min_tension_N >= o->max_tension_N)
         complain_about(l, "optimize.min_tension_N", "must be below optimize.max_tension_N");
@@ -438,6 +463,15 @@ static void check_together(loader *l)
         complain_about(l, "optimize.crossover_low", "must not be above optimize.crossover_high");
     if (o->mutation_low > o->mutation_high)
         complain_about(l, "optimize.mutation_low", "must not be above optimize.mutation_high");
+}
+
+/* What a generated net knows of its surface itself. */
+static void complete_surface(hf_case *c)
+{
+    if (!c->has_surface || !c->has_cylinder) return;
+    double n_cell = (double)c->cylinder.modules[0] * c->cylinder.cells_per_module[0];
+    if (!c->surface.focal_length_m) c->surface.focal_length_m = c->cylinder.focal_length_m;
+    if (!c->surface.strip_width_m && n_cell > 0) c->surface.strip_width_m = c->cylinder.aperture_m / n_cell;
 }
 
 /* ---- load ---- */
@@ -483,6 +517,7 @@ hf_status hf_config_load(const char *path, const char *const *overrides, int n_o
     for (int i = 0; i < n_override; i++)
         apply_override(&l, overrides[i]);
     check_together(&l);
+    complete_surface(settings);
     if (l.n_fault > FAULT_MAX) hf_error(messages, HF_BAD_CASE, "%s: and %d more faults", path, l.n_fault - FAULT_MAX);
     free(l.where_given);
     return l.failed ? HF_BAD_CASE : HF_OK;
@@ -491,7 +526,7 @@ hf_status hf_config_load(const char *path, const char *const *overrides, int n_o
 hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages)
 {
     if (settings->has_import)
-        HF_TRY(hf_scene_import(settings->nodes_path, settings->cables_path, scene, messages));
+        HF_TRY(hf_scene_import(settings->nodes_path, settings->cables_path, settings->cylinder.EA_N, scene, messages));
     else
         HF_TRY(hf_scene_parabolic_cylinder(&settings->cylinder, scene, messages));
     return hf_scene_check(scene, messages);

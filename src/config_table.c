@@ -28,6 +28,7 @@ const hf_section hf_section_table[] = {
     {"scene", SIZE_MAX, "The net: exactly one of the two sections below."},
     {"scene.parabolic_cylinder", AT(has_cylinder), "A quad net over a parabolic cylinder."},
     {"scene.import", AT(has_import), "Any net from two CSV files."},
+    {"surface", AT(has_surface), "Measures of the reflecting surface. Without this section there are none."},
     {"form", SIZE_MAX, "Form-finding. May be left out: the defaults hold."},
     {"optimize", AT(has_optimize), "Optimisation of the boundary pretensions. Without this section none runs."},
 };
@@ -35,6 +36,11 @@ const int hf_n_section = sizeof hf_section_table / sizeof *hf_section_table;
 
 const hf_field hf_field_table[] = {
     {"title", HF_FIELD_TEXT, AT(title), 0, sizeof((hf_case *)0)->title, "", "", NULL, "one line for people"},
+
+    {"scene.EA_inner_N", HF_FIELD_DOUBLE, AT(cylinder.EA_N[0]), HF_ABOVE_ZERO, 1e15, "", "N", NULL,
+     "axial stiffness EA of the inner cables, where the net gives none: for cut lengths"},
+    {"scene.EA_boundary_N", HF_FIELD_DOUBLE, AT(cylinder.EA_N[1]), HF_ABOVE_ZERO, 1e15, "", "N", NULL,
+     "the same of the boundary cables"},
 
     {"scene.parabolic_cylinder.aperture_m", HF_FIELD_DOUBLE, AT(cylinder.aperture_m), HF_ABOVE_ZERO, 1e4, NULL, "m",
      NULL, "aperture along the directrix (x)"},
@@ -59,6 +65,13 @@ const hf_field hf_field_table[] = {
      "CSV id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]; path relative to the case file"},
     {"scene.import.cables", HF_FIELD_TEXT, AT(cables_path), 1, HF_PATH_SIZE, NULL, "", NULL,
      "CSV id,i,j,group,law,value[,EA_N]; path relative to the case file"},
+
+    {"surface.focal_length_m", HF_FIELD_DOUBLE, AT(surface.focal_length_m), HF_ABOVE_ZERO, 1e9, "", "m", NULL,
+     "of the wanted surface z = x^2/(4f) along y; default: that of parabolic_cylinder"},
+    {"surface.strip_width_m", HF_FIELD_DOUBLE, AT(surface.strip_width_m), HF_ABOVE_ZERO, 1e4, "", "m", NULL,
+     "width of the flat strips along y, for the faceting error; default: a cell of parabolic_cylinder"},
+    {"surface.frequencies_Hz", HF_FIELD_DOUBLE_LIST, AT(surface.frequencies_Hz), HF_ABOVE_ZERO, 1e15, "[]", "Hz", NULL,
+     "up to 8, at which the loss of gain is told (Ruze)"},
 
     {"form.method", HF_FIELD_WORD, AT(form.method), 0, 0, "auto", "", method_words,
      "auto: newton where it applies, else hifdm; newton: every cable obeys its own law, by Newton on the energy; "

@@ -116,8 +116,9 @@ static void measure_cables(const hf_model *m, const hf_form_settings *s, hf_work
         if (part < shortest) shortest = part;
         if (w->law[e] == HF_LAW_TENSION) {
             r->tension_error = fmax(r->tension_error, fabs(tension / w->target[e] - 1));
-        } else if (w->law[e] == HF_LAW_LENGTH) {
-            double strain = length / w->target[e] - 1, pull = fmin(tension / m->reference_N, 1);
+        } else if (w->law[e] != HF_LAW_FORCE_DENSITY) {
+            double strain = length / hf_workspace_wanted_length_m(m, w, e, tension) - 1;
+            double pull = fmin(tension / m->reference_N, 1);
             double error = fabs(strain);
             int is_taut = pull >= HF_SLACK_RATIO;
             if (is_taut) r->length_error = fmax(r->length_error, error);
@@ -274,6 +275,8 @@ static void update_force_densities(const hf_model *m, hf_workspace *w)
             w->q_N_per_m[e] = w->target[e] / w->length_m[e]; // Eq. 7
         else if (w->law[e] == HF_LAW_LENGTH)
             w->q_N_per_m[e] *= w->length_m[e] / w->target[e]; // Eq. 8
+        else if (w->law[e] == HF_LAW_ELASTIC)                 // Eq. 8, towards a length that grows with the tension
+            w->q_N_per_m[e] *= w->length_m[e] / hf_workspace_wanted_length_m(m, w, e, w->tension_N[e]);
     }
 }
 

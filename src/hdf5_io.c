@@ -108,7 +108,7 @@ static enum_entry enum_at(hf_hdf5_kind kind, int i)
     case HF_KIND_GROUP:
         return i < 2 ? (enum_entry){hf_group_word[i], i} : none;
     case HF_KIND_LAW:
-        return i < 3 ? (enum_entry){hf_law_word[i], i} : none;
+        return i < HF_N_LAW ? (enum_entry){hf_law_word[i], i} : none;
     case HF_KIND_GA_STOP:
         return i < 4 ? (enum_entry){hf_ga_stop_word[i], i} : none;
     case HF_KIND_STATUS:

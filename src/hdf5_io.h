@@ -151,7 +151,7 @@ void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table,
     X(hf_scene, "cable/group", group, GROUP, 1, 1, "", "inner or boundary")                                            \
     X(hf_scene, "cable/law", law, LAW, 1, 1, "", "what the scene asks of the cable")                                   \
     X(hf_scene, "cable/target", target, REAL, 1, 1, "N, m or N/m",                                                     \
-      "tension, length or force density, by law; "                                                                     \
+      "tension, length, force density or unstressed length, by law; "                                                  \
       "NaN = the pretension of the case")                                                                              \
     X(hf_scene, "cable/EA_N", EA_N, REAL, 1, 1, "N", "axial stiffness, NaN where not given")
 

@@ -18,7 +18,16 @@
 
 /* ---- layout ---- */
 
-static void lay_out(hf_arena *a, const hf_scene *s, hf_model *m)
+/* The methods iterative_fdm and fdm put other laws in its place. */
+static int has_elastic(const hf_scene *s, int method)
+{
+    if (method == HF_METHOD_ITERATIVE_FDM || method == HF_METHOD_FDM) return 0;
+    for (int e = 0; e < s->n_cable; e++)
+        if (s->law[e] == HF_LAW_ELASTIC) return 1;
+    return 0;
+}
+
+static void lay_out(hf_arena *a, const hf_scene *s, int method, hf_model *m)
 {
     size_t n = (size_t)m->n_node, e = (size_t)m->n_cable;
     m->row_of_node = hf_arena_take(a, n, sizeof(int));
@@ -34,6 +43,7 @@ static void lay_out(hf_arena *a, const hf_scene *s, hf_model *m)
     m->group = hf_arena_take(a, e, 1);
     m->law = hf_arena_take(a, e, 1);
     m->target = hf_arena_take(a, e, sizeof(double));
+    m->EA_N = has_elastic(s, method) ? hf_arena_take(a, e, sizeof(double)) : NULL;
     m->start_q_N_per_m = hf_arena_take(a, e, sizeof(double));
     m->gene_cable = hf_arena_take(a, e, sizeof(int));
     m->gene_group = hf_arena_take(a, e, sizeof(int));
@@ -77,10 +87,11 @@ static void place_cables(const hf_scene *s, hf_model *m)
 
 /* ---- laws and targets ---- */
 
-/* The tension that a cable is given, N; 0 when its law gives none. */
+/* The tension that a cable is given, N; 0 when its law gives none. What an elastic cable has in the theoretical shape
+ * is no scale for anything: it may be out by a thousand times. */
 static double given_tension(const hf_scene *s, const hf_form_settings *form, int e)
 {
-    if (s->law[e] == HF_LAW_LENGTH) return 0;
+    if (s->law[e] == HF_LAW_LENGTH || s->law[e] == HF_LAW_ELASTIC) return 0;
     if (s->law[e] == HF_LAW_FORCE_DENSITY) return fabs(s->target[e]) * hf_scene_theoretical_length(s, e);
     return isnan(s->target[e]) ? form->pretension_N : s->target[e];
 }
@@ -98,7 +109,8 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
     for (int e = 0; e < m->n_cable; e++) {
         int law = s->law[e];
         double length = hf_scene_theoretical_length(s, e), target = s->target[e];
-        double tension = law == HF_LAW_LENGTH ? m->reference_N : given_tension(s, form, e);
+        double given = given_tension(s, form, e), tension = given > 0 ? given : m->reference_N;
+        if (law == HF_LAW_ELASTIC && length > target) tension = s->EA_N[e] * (length / target - 1);
         double q = law == HF_LAW_FORCE_DENSITY ? target : tension / length;
         if (law == HF_LAW_TENSION) target = tension;
         if (form->method == HF_METHOD_ITERATIVE_FDM) {
@@ -110,6 +122,7 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
             law = HF_LAW_FORCE_DENSITY;
             target = q;
         }
+        if (m->EA_N) m->EA_N[e] = s->EA_N ? s->EA_N[e] : (double)NAN;
         m->length_m[e] = length;
         m->group[e] = s->group[e];
         m->law[e] = (unsigned char)law;
@@ -245,9 +258,9 @@ void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_cha
 static hf_status build(const hf_scene *scene, const hf_form_settings *form, const int *order, hf_model *m)
 {
     hf_arena arena = {0};
-    lay_out(&arena, scene, m);
+    lay_out(&arena, scene, form->method, m);
     HF_TRY(hf_arena_allocate(&arena));
-    lay_out(&arena, scene, m);
+    lay_out(&arena, scene, form->method, m);
     m->block = arena.block;
     memcpy(m->node_of_row, order, (size_t)m->n_free * sizeof(int));
     number_nodes(scene, m);

@@ -45,7 +45,12 @@ static double direction(const hf_model *m, const double *x, int e, double u[3])
     return length;
 }
 
-/* Tension by law; T is the present multiplier of a length-controlled cable. */
+static int has_multiplier(const hf_workspace *w, int e)
+{
+    return w->law[e] == HF_LAW_LENGTH || w->law[e] == HF_LAW_ELASTIC;
+}
+
+/* Tension by law; T is the present multiplier of a length-controlled or elastic cable. */
 static double law_tension(const hf_workspace *w, int e, double length, double T)
 {
     if (w->law[e] == HF_LAW_TENSION) return w->target[e];
@@ -74,8 +79,8 @@ static imbalance measure(const hf_model *m, const hf_workspace *w, const double 
             if (a < m->n_free) force[3 * a + c] += tension * u[c];
             if (b < m->n_free) force[3 * b + c] -= tension * u[c];
         }
-        if (w->law[e] != HF_LAW_LENGTH) continue;
-        double gap = length / w->target[e] - 1;
+        if (!has_multiplier(w, e)) continue;
+        double gap = length / hf_workspace_wanted_length_m(m, w, e, tension) - 1;
         if (gap < 0) gap *= fmin(1, tension / m->reference_N);
         result.length_gap = fmax(result.length_gap, fabs(gap));
         result.merit += gap * gap;
@@ -93,10 +98,27 @@ static imbalance measure(const hf_model *m, const hf_workspace *w, const double 
 
 /* ---- matrix ---- */
 
-static double axial_stiffness(const hf_workspace *w, int e, double T)
+/* phi'' of a cable of this length; for law length, of the stiff spring in its place. A slack elastic cable has none. */
+static double axial_stiffness(const hf_model *m, const hf_workspace *w, int e, double length, double T)
 {
-    if (w->law[e] == HF_LAW_FORCE_DENSITY) return w->target[e];
-    return w->law[e] == HF_LAW_LENGTH ? STIFFENING * T / w->target[e] : 0;
+    switch (w->law[e]) {
+    case HF_LAW_FORCE_DENSITY:
+        return w->target[e];
+    case HF_LAW_LENGTH:
+        return STIFFENING * T / w->target[e];
+    case HF_LAW_ELASTIC:
+        return length > w->target[e] ? m->EA_N[e] / w->target[e] : 0;
+    default:
+        return 0;
+    }
+}
+
+/* How much a multiplier T changes in `part` of a step, which takes the cable of this length `beyond` the wanted one. */
+static double tension_change(const hf_model *m, const hf_workspace *w, int e, double length, double T, double part,
+                             double beyond)
+{
+    double k = axial_stiffness(m, w, e, length, T);
+    return k > 0 ? part * k * beyond : -part * T;
 }
 
 /* The matrix at position_m, tension_N into newton_band; returns the largest diagonal entry. */
@@ -108,7 +130,7 @@ static double assemble(const hf_model *m, hf_workspace *w)
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], low = a < b ? a : b, high = a < b ? b : a;
         double length = direction(m, w->position_m, e, u), tension = law_tension(w, e, length, w->tension_N[e]);
-        double across = tension / length, along = axial_stiffness(w, e, tension) - across;
+        double across = tension / length, along = axial_stiffness(m, w, e, length, tension) - across;
         if (low >= m->n_free) continue;
         for (int c = 0; c < 3; c++)
             for (int r = 0; r < 3; r++) {
@@ -151,16 +173,17 @@ hf_status hf_newton_factor(const hf_model *m, hf_workspace *w, double *condition
 
 /* ---- one step ---- */
 
-/* Right-hand side with the tension steps eliminated: force plus k (l - L*) u of every length-controlled cable. */
+/* Right-hand side with the tension steps eliminated: force plus what every multiplier changes by at its length. */
 static void right_hand_side(const hf_model *m, const hf_workspace *w, const double *force, double *rhs)
 {
     double u[3];
     memcpy(rhs, force, (size_t)dofs(m) * sizeof *rhs);
     for (int e = 0; e < m->n_cable; e++) {
-        if (w->law[e] != HF_LAW_LENGTH) continue;
+        if (!has_multiplier(w, e)) continue;
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         double length = direction(m, w->position_m, e, u);
-        double pull = axial_stiffness(w, e, w->tension_N[e]) * (length - w->target[e]);
+        double T = w->tension_N[e], beyond = length - hf_workspace_wanted_length_m(m, w, e, T);
+        double pull = tension_change(m, w, e, length, T, 1, beyond);
         for (int c = 0; c < 3; c++) {
             if (a < m->n_free) rhs[3 * a + c] += pull * u[c];
             if (b < m->n_free) rhs[3 * b + c] -= pull * u[c];
@@ -188,14 +211,16 @@ static void try_step(const hf_model *m, hf_workspace *w, double part)
         for (int c = 0; c < 3; c++)
             w->newton_trial_m[c * m->n_node + i] += part * step[3 * i + c];
     for (int e = 0; e < m->n_cable; e++) {
-        if (w->law[e] != HF_LAW_LENGTH) continue;
+        if (!has_multiplier(w, e)) continue;
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-        double stretch = direction(m, w->position_m, e, u) - w->target[e], T = w->tension_N[e];
+        double length = direction(m, w->position_m, e, u), T = w->tension_N[e];
+        double beyond = length - hf_workspace_wanted_length_m(m, w, e, T);
         for (int c = 0; c < 3; c++) {
-            if (a < m->n_free) stretch -= u[c] * step[3 * a + c];
-            if (b < m->n_free) stretch += u[c] * step[3 * b + c];
+            if (a < m->n_free) beyond -= u[c] * step[3 * a + c];
+            if (b < m->n_free) beyond += u[c] * step[3 * b + c];
         }
-        w->newton_trial_tension_N[e] = fmax(T + part * axial_stiffness(w, e, T) * stretch, TENSION_KEPT * T);
+        double least = w->law[e] == HF_LAW_ELASTIC ? 0 : TENSION_KEPT * T; /* an elastic cable may go slack */
+        w->newton_trial_tension_N[e] = fmax(T + tension_change(m, w, e, length, T, part, beyond), least);
     }
 }
 

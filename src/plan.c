@@ -13,15 +13,17 @@
 static void print_scene(const hf_problem *p, FILE *f)
 {
     const hf_model *m = &p->model;
-    int count[3] = {0}, law[3] = {0};
+    int count[3] = {0}, law[HF_N_LAW] = {0};
     for (int i = 0; i < m->n_node; i++)
         count[p->scene.role[i]]++;
     for (int e = 0; e < m->n_cable; e++)
         law[m->law[e]]++;
     fprintf(f, "  scene         %d nodes: %d supports, %d inner (psi counts these), %d edge\n", m->n_node,
             count[HF_ROLE_SUPPORT], count[HF_ROLE_INNER], count[HF_ROLE_EDGE]);
-    fprintf(f, "                %d cables by law in force: %d tension, %d length, %d force density%s\n", m->n_cable,
+    fprintf(f, "                %d cables by law in force: %d tension, %d length, %d force density%s", m->n_cable,
             law[HF_LAW_TENSION], law[HF_LAW_LENGTH], law[HF_LAW_FORCE_DENSITY], m->has_strut ? " (with struts)" : "");
+    if (law[HF_LAW_ELASTIC]) fprintf(f, ", %d elastic", law[HF_LAW_ELASTIC]);
+    fputc('\n', f);
     fprintf(f, "  equations     %d unknowns, three right-hand sides; half-bandwidth %d; %s\n", m->n_free,
             m->half_bandwidth, m->has_strut ? "indefinite: band LU (dgbtrf)" : "band Cholesky (dpbtrf)");
     if (m->n_chain) fprintf(f, "  note          %d straight chains of length-controlled cables\n", m->n_chain);

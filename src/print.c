@@ -114,7 +114,8 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
 
 static void print_range(const hf_field *field, FILE *f)
 {
-    static const char *const type[] = {"number", "whole number", "whole number", "two whole numbers", "", "text"};
+    static const char *const type[] = {"number", "whole number", "whole number",   "two whole numbers",
+                                       "",       "text",         "list of numbers"};
     if (field->type == HF_FIELD_WORD) {
         for (int k = 0; field->words[k]; k++)
             fprintf(f, "%s%s", k ? " | " : "", field->words[k]);
@@ -157,6 +158,8 @@ static void print_field(const hf_field *field, FILE *f)
     if (*field->unit) fprintf(f, "; %s", field->unit);
     if (!field->default_value)
         fprintf(f, "; required\n%*s%s:\n", indent, "", last_word(field->path));
+    else if (!*field->default_value && field->type != HF_FIELD_TEXT)
+        fprintf(f, "; may be left out\n%*s# %s:\n", indent, "", last_word(field->path));
     else
         fprintf(f, "\n%*s%s: %s\n", indent, "", last_word(field->path),
                 *field->default_value ? field->default_value : "\"\"");

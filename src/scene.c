@@ -14,7 +14,7 @@
 
 const char *const hf_role_word[3] = {"support", "inner", "edge"};
 const char *const hf_group_word[2] = {"inner", "boundary"};
-const char *const hf_law_word[3] = {"tension", "length", "force_density"};
+const char *const hf_law_word[HF_N_LAW] = {"tension", "length", "force_density", "elastic"};
 
 /* ---- memory ---- */
 
@@ -159,6 +159,7 @@ static void add_cable(const grid *g, int *i_cable, int a, int b, int boundary)
     s->end[2 * e + 1] = b;
     s->group[e] = boundary ? HF_GROUP_BOUNDARY : HF_GROUP_INNER;
     s->law[e] = boundary ? HF_LAW_LENGTH : HF_LAW_TENSION;
+    if (s->EA_N) s->EA_N[e] = g->c->EA_N[s->group[e]] > 0 ? g->c->EA_N[s->group[e]] : (double)NAN;
 }
 
 static void connect(const grid *g)
@@ -237,7 +238,8 @@ hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, hf_scene *sce
                         sag_x / cell_x > sag_y / cell_y ? cell_x : cell_y);
     grid g = {cylinder, scene, (int)nx, (int)ny};
     int n_cable = (g.nx - 1) * g.ny + g.nx * (g.ny - 1);
-    hf_status status = hf_scene_allocate(scene, g.nx * g.ny, n_cable, 0, 0, 0);
+    int with_EA = cylinder->EA_N[0] > 0 || cylinder->EA_N[1] > 0;
+    hf_status status = hf_scene_allocate(scene, g.nx * g.ny, n_cable, 0, with_EA, 0);
     if (status == HF_OK) {
         place_nodes(&g);
         assign_roles(&g);
@@ -298,6 +300,10 @@ static void check_cables(const hf_scene *s, int *n_fault, hf_messages *messages)
             fault(s, 1, e, n_fault, "joins a node to itself", messages);
         else if (!(hf_scene_theoretical_length(s, e) > 0))
             fault(s, 1, e, n_fault, "has zero length: its two nodes are at the same position", messages);
+        if (s->law[e] == HF_LAW_ELASTIC && !(s->target[e] > 0))
+            fault(s, 1, e, n_fault, "has the law elastic, but no unstressed length above zero", messages);
+        if (s->law[e] == HF_LAW_ELASTIC && !(s->EA_N && s->EA_N[e] > 0))
+            fault(s, 1, e, n_fault, "has the law elastic, but no EA_N above zero", messages);
     }
 }
 

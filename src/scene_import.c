@@ -50,10 +50,26 @@ static void read_target(hf_csv *t, const int *where, int r, const char *id, hf_s
         s->target[r] = hf_scene_theoretical_length(s, r);
     } else if (s->law[r] == HF_LAW_FORCE_DENSITY) {
         hf_csv_fault(t, t->line[r], id, "the law force_density needs a value in N/m", "");
+    } else if (s->law[r] == HF_LAW_ELASTIC) {
+        hf_csv_fault(t, t->line[r], id, "the law elastic needs a value, the unstressed length in m", "");
     }
 }
 
-static void read_cables(hf_csv *t, const int *where, const hf_csv *nodes, const hf_csv_named *node_index, hf_scene *s)
+static void read_EA(hf_csv *t, const int *where, int r, const char *id, const double group_EA_N[2], hf_scene *s)
+{
+    int is_given = where[CABLE_EA] >= 0 && *hf_csv_cell(t, r, where[CABLE_EA]);
+    double EA_N = group_EA_N[s->group[r]] > 0 ? group_EA_N[s->group[r]] : (double)NAN;
+    if (is_given) {
+        EA_N = hf_csv_number(t, r, where[CABLE_EA], id, "EA_N");
+        if (EA_N <= 0) hf_csv_fault(t, t->line[r], id, "EA_N must be above zero", "");
+    } else if (isnan(EA_N) && s->law[r] == HF_LAW_ELASTIC) {
+        hf_csv_fault(t, t->line[r], id, "the law elastic needs an EA_N", "");
+    }
+    if (s->EA_N) s->EA_N[r] = EA_N;
+}
+
+static void read_cables(hf_csv *t, const int *where, const hf_csv *nodes, const hf_csv_named *node_index,
+                        const double group_EA_N[2], hf_scene *s)
 {
     for (int r = 0; r < t->n_row; r++) {
         const char *id = hf_csv_cell(t, r, where[CABLE_ID]);
@@ -66,13 +82,9 @@ static void read_cables(hf_csv *t, const int *where, const hf_csv *nodes, const 
             s->end[2 * r + k] = row < 0 ? 0 : row;
         }
         s->group[r] = (unsigned char)hf_csv_word(t, r, where[CABLE_GROUP], id, hf_group_word, 2);
-        s->law[r] = (unsigned char)hf_csv_word(t, r, where[CABLE_LAW], id, hf_law_word, 3);
+        s->law[r] = (unsigned char)hf_csv_word(t, r, where[CABLE_LAW], id, hf_law_word, HF_N_LAW);
         read_target(t, where, r, id, s);
-        if (!s->EA_N) continue;
-        s->EA_N[r] = NAN;
-        if (!*hf_csv_cell(t, r, where[CABLE_EA])) continue;
-        s->EA_N[r] = hf_csv_number(t, r, where[CABLE_EA], id, "EA_N");
-        if (s->EA_N[r] <= 0) hf_csv_fault(t, t->line[r], id, "EA_N must be above zero", "");
+        read_EA(t, where, r, id, group_EA_N, s);
     }
 }
 
@@ -97,8 +109,8 @@ static hf_status keep_ids(hf_scene *s)
     return HF_OK;
 }
 
-static hf_status build(hf_csv *nodes, hf_csv *cables, hf_csv_named **node_index, hf_csv_named **cable_index,
-                       hf_scene *s)
+static hf_status build(hf_csv *nodes, hf_csv *cables, const double group_EA_N[2], hf_csv_named **node_index,
+                       hf_csv_named **cable_index, hf_scene *s)
 {
     int node_where[N_NODE_COLUMN] = {0}, cable_where[N_CABLE_COLUMN] = {0};
     /* both files are looked at before giving up, so that one run shows the faults of both */
@@ -110,12 +122,13 @@ static hf_status build(hf_csv *nodes, hf_csv *cables, hf_csv_named **node_index,
     HF_TRY(node_status);
     HF_TRY(cable_status);
     int with_load = node_where[NODE_FX] >= 0 || node_where[NODE_FY] >= 0 || node_where[NODE_FZ] >= 0;
-    hf_status status = hf_scene_allocate(s, nodes->n_row, cables->n_row, with_load, cable_where[CABLE_EA] >= 0, 1);
+    int with_EA = cable_where[CABLE_EA] >= 0 || group_EA_N[0] > 0 || group_EA_N[1] > 0;
+    hf_status status = hf_scene_allocate(s, nodes->n_row, cables->n_row, with_load, with_EA, 1);
     if (status == HF_OK) *node_index = hf_csv_index(nodes, node_where[NODE_ID]);
     if (status == HF_OK) *cable_index = hf_csv_index(cables, cable_where[CABLE_ID]);
     if (!*node_index || !*cable_index) return hf_error(nodes->messages, HF_NO_MEMORY, "%s: out of memory", nodes->path);
     if (!read_nodes(nodes, node_where, s)) s->load_N = NULL; /* columns of zeros are no load */
-    read_cables(cables, cable_where, nodes, *node_index, s);
+    read_cables(cables, cable_where, nodes, *node_index, group_EA_N, s);
     node_status = hf_csv_close_faults(nodes);
     cable_status = hf_csv_close_faults(cables);
     HF_TRY(node_status);
@@ -126,12 +139,13 @@ static hf_status build(hf_csv *nodes, hf_csv *cables, hf_csv_named **node_index,
     return HF_OK;
 }
 
-hf_status hf_scene_import(const char *nodes_path, const char *cables_path, hf_scene *scene, hf_messages *messages)
+hf_status hf_scene_import(const char *nodes_path, const char *cables_path, const double group_EA_N[2], hf_scene *scene,
+                          hf_messages *messages)
 {
     *scene = (hf_scene){0};
     hf_csv nodes = {.path = nodes_path, .messages = messages}, cables = {.path = cables_path, .messages = messages};
     hf_csv_named *node_index = NULL, *cable_index = NULL;
-    hf_status status = build(&nodes, &cables, &node_index, &cable_index, scene);
+    hf_status status = build(&nodes, &cables, group_EA_N, &node_index, &cable_index, scene);
     free(node_index);
     free(cable_index);
     hf_csv_free(&nodes);

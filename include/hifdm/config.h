@@ -54,6 +54,20 @@ typedef struct {
     int symmetry; /* hf_symmetry: mirror planes that link genes */
 } hf_optimize_settings;
 
+#define HF_LIST_MAX 8
+
+typedef struct {
+    int n;
+    double value[HF_LIST_MAX];
+} hf_double_list;
+
+/* The reflecting surface: the parabolic cylinder z = x^2/(4f) along y. */
+typedef struct {
+    double focal_length_m; /* 0 when no measures of the surface are asked for */
+    double strip_width_m;  /* of flat strips along y that make it up; 0 = not known */
+    hf_double_list frequencies_Hz;
+} hf_surface_settings;
+
 #define HF_PATH_SIZE 1024
 
 typedef struct {
@@ -63,11 +77,12 @@ typedef struct {
     char *overrides; /* the --set arguments, a line each; "" when there are none */
     char sha256[65]; /* of text and overrides */
     char title[256];
-    int has_cylinder, has_import, has_optimize; /* which sections are there */
+    int has_cylinder, has_import, has_optimize, has_surface; /* which sections are there */
     hf_cylinder cylinder;
     char nodes_path[HF_PATH_SIZE], cables_path[HF_PATH_SIZE]; /* resolved against the folder of the case file */
     hf_form_settings form;
     hf_optimize_settings optimize;
+    hf_surface_settings surface; /* what is not given is that of the cylinder */
 } hf_case;
 
 /* Read and validate. `overrides`: n "path=value" strings that win over the file. All faults in one go as
@@ -87,7 +102,8 @@ typedef enum {
     HF_FIELD_UINT64,
     HF_FIELD_INT_PAIR,
     HF_FIELD_WORD,
-    HF_FIELD_TEXT
+    HF_FIELD_TEXT,
+    HF_FIELD_DOUBLE_LIST /* hf_double_list */
 } hf_field_type;
 
 typedef struct {
@@ -95,7 +111,7 @@ typedef struct {
     hf_field_type type;
     size_t offset;             /* in hf_case */
     double min, max;           /* inclusive; min HF_ABOVE_ZERO: exclusive 0; text: max is the size of the buffer */
-    const char *default_value; /* as written in a case file; NULL = required when its section is there */
+    const char *default_value; /* as written in a case file; NULL = required when its section is there; "" = nothing */
     const char *unit;          /* "" = dimensionless */
     const char *const *words;  /* of a WORD, NULL-terminated */
     const char *help;

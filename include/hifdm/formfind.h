@@ -36,7 +36,8 @@ typedef struct {
     double psi_m;               /* Eq. 10 */
     double residual_N;          /* largest nodal force out of balance with every cable at the tension of its law */
     double tension_error;       /* max |T/T*-1| over cables of law tension, 0 without one */
-    double length_error;        /* max |l/L*-1| over taut cables of law length, 0 without one */
+    double length_error;        /* max |l/L*-1| over taut cables of law length, or elastic with L* = l0 (1 + T/EA);
+                                   0 without one */
     double inner_tension_ratio; /* max T / min T; NaN without positive tensions */
     double boundary_tension_ratio;
     double shortest_length_ratio; /* min l / theoretical l over all cables */
@@ -62,7 +63,8 @@ void hf_form_prepare(const hf_model *model, hf_workspace *workspace);
 hf_status hf_form_find(const hf_model *model, const hf_form_settings *settings, int stop, hf_workspace *workspace,
                        hf_history *history, hf_form_result *result);
 
-/* Measure the shape that the workspace holds (position_m, law, target; q_N_per_m for cables under law length): lengths,
+/* Measure the shape that the workspace holds (position_m, law, target; q_N_per_m for cables under law length or
+ * elastic): lengths,
  * tensions by law, residual, all measures of the result. No solve: iterations is 0, the stopping reason RESIDUAL when
  * the residual is within the tolerance, else the status is HF_NOT_CONVERGED. Returns result->status. */
 hf_status hf_form_measure(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,

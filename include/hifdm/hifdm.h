@@ -14,6 +14,7 @@
 #include <hifdm/status.h>
 #include <hifdm/store.h>
 #include <hifdm/summary.h>
+#include <hifdm/surface.h>
 #include <hifdm/workspace.h>
 
 #endif

@@ -33,7 +33,8 @@ typedef struct {
     double *length_m;                            /* [n_cable] theoretical */
     unsigned char *group;                        /* [n_cable] hf_group */
     unsigned char *law;                          /* [n_cable] hf_law in force under the case's method */
-    double *target;                              /* [n_cable] T* (N), L* (m) or q (N/m) by law */
+    double *target;                              /* [n_cable] T* (N), L* (m), q (N/m) or l0 (m) by law */
+    double *EA_N;                                /* [n_cable]; NULL unless some cable is elastic under the method */
     double *start_q_N_per_m;                     /* [n_cable] first force densities */
 
     /* Boundary cables with a free end, whose pretensions a design sets; grouped into chains, joined at free nodes with

@@ -15,12 +15,14 @@ typedef enum { HF_ROLE_SUPPORT, HF_ROLE_INNER, HF_ROLE_EDGE } hf_role; /* psi co
 typedef enum { HF_GROUP_INNER, HF_GROUP_BOUNDARY } hf_group;
 
 /* One potential per cable; every analysis is a choice of laws (METHOD: Eqs. 5-8 of Chen et al. 2022).
- * tension: T = T*, Eq. 7.  length: l = L*, Eq. 8.  force_density: q held, Eq. 5. */
-typedef enum { HF_LAW_TENSION, HF_LAW_LENGTH, HF_LAW_FORCE_DENSITY } hf_law;
+ * tension: T = T*, Eq. 7.  length: l = L*, Eq. 8.  force_density: q held, Eq. 5.
+ * elastic: T = EA max(l/l0 - 1, 0), the cable as it was cut. */
+typedef enum { HF_LAW_TENSION, HF_LAW_LENGTH, HF_LAW_FORCE_DENSITY, HF_LAW_ELASTIC } hf_law;
+#define HF_N_LAW 4
 
-extern const char *const hf_role_word[3];  /* "support", "inner", "edge" */
-extern const char *const hf_group_word[2]; /* "inner", "boundary" */
-extern const char *const hf_law_word[3];   /* "tension", "length", "force_density" */
+extern const char *const hf_role_word[3];       /* "support", "inner", "edge" */
+extern const char *const hf_group_word[2];      /* "inner", "boundary" */
+extern const char *const hf_law_word[HF_N_LAW]; /* "tension", "length", "force_density", "elastic" */
 
 typedef struct {
     int n_node, n_cable;
@@ -30,7 +32,8 @@ typedef struct {
     int *end;              /* [n_cable][2] node indices */
     unsigned char *group;  /* [n_cable] hf_group */
     unsigned char *law;    /* [n_cable] hf_law */
-    double *target;        /* [n_cable] T* (N), L* (m) or q (N/m) by law; NaN in a tension law: the case's pretension */
+    double *target;        /* [n_cable] T* (N), L* (m), q (N/m) or l0 (m) by law; NaN in a tension law: the case's
+                                pretension */
     double *EA_N;          /* [n_cable] axial stiffness, NaN where not given; NULL when no cable has one */
     const char **node_id;  /* [n_node] */
     const char **cable_id; /* [n_cable] */
@@ -55,6 +58,7 @@ typedef struct {
     int boundary;            /* hf_boundary: which cables are boundary (law length) */
     double scallop;          /* sag of a free outer edge between two supports, relative to their distance */
     int supports;            /* hf_supports */
+    double EA_N[2];          /* by hf_group, 0 = not given */
 } hf_cylinder;
 
 /* Quad net over the cylinder; node ids n<i>_<j>, cable ids <node>-<node>. Free it with hf_scene_free in any case.

@@ -79,11 +79,11 @@ START_TEST(schema_is_yaml_with_every_key)
     HIFDM(0, "schema");
     const char *schema = file_with("schema.yaml", said.out);
     EXPECT(
-        schema, "--", "list(a) == ['title', 'scene', 'form', 'optimize']",
+        schema, "--", "list(a) == ['title', 'scene', 'surface', 'form', 'optimize']",
         "set(a['scene']) == {'parabolic_cylinder', 'import'}",
         "set(a['scene']['parabolic_cylinder']) == {'aperture_m', 'length_m', 'focal_length_m', 'modules', "
         "'cells_per_module', 'spacing', 'boundary', 'scallop', 'supports'}",
-        "set(a['scene']['import']) == {'nodes', 'cables'}",
+        "set(a['scene']['import']) == {'nodes', 'cables'}", "a['surface'] == {'frequencies_Hz': []}",
         "set(a['form']) == {'method', 'pretension_N', 'stop', 'residual_tolerance', 'length_tolerance', "
         "'rms_tolerance_m', 'max_iterations', 'collapse_ratio'}",
         "set(a['optimize']) == {'method', 'symmetry', 'solver', 'polish_iterations', 'rule', 'population', "
@@ -95,6 +95,8 @@ START_TEST(schema_is_yaml_with_every_key)
         "'focal_length_m', 'modules', 'cells_per_module']",
         "None not in {**a['form'], **a['optimize']}.values()", "a['form']['pretension_N'] == 10");
     OUT("# residual | rms_change\n");
+    OUT("  # EA_inner_N:\n");
+    OUT("  # strip_width_m:\n");
     OUT("# number > 0, <= 1000000000; N\n");
 }
 END_TEST

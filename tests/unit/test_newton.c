@@ -40,7 +40,7 @@ static void through_files(hf_scene *scene)
     }
     ck_assert_int_eq(fclose(nodes) | fclose(cables), 0);
     hf_scene_free(scene);
-    hf_status status = hf_scene_import(nodes_path, cables_path, scene, &messages);
+    hf_status status = hf_scene_import(nodes_path, cables_path, (const double[2]){0}, scene, &messages);
     ck_assert_msg(status == HF_OK, "%s", messages.text);
 }
 

@@ -15,7 +15,7 @@ static hf_status import(const char *nodes, const char *cables, hf_scene *scene, 
     const char *nodes_path = temp_path("nodes.csv"), *cables_path = temp_path("cables.csv");
     if (nodes) write_file(nodes_path, nodes);
     if (cables) write_file(cables_path, cables);
-    hf_status status = hf_scene_import(nodes_path, cables_path, scene, &messages);
+    hf_status status = hf_scene_import(nodes_path, cables_path, (const double[2]){0}, scene, &messages);
     if (status == HF_OK) status = hf_scene_check(scene, &messages);
     size_t folder = (size_t)(strrchr(nodes_path, '/') + 1 - nodes_path), n = 0;
     for (const char *p = messages.text ? messages.text : ""; *p && n + 1 < size;) {
@@ -176,8 +176,15 @@ static const struct {
      "error: nodes.csv:3: 'b': role must be one of support inner edge, not empty\n"},
     {NULL, CABLES "ab,a,b,middle,tension,1\nbc,b,c,boundary,length,\n",
      "error: cables.csv:2: 'ab': group must be one of inner boundary, not middle\n"},
+    {NULL, CABLES "ab,a,b,inner,rigid,1\nbc,b,c,boundary,length,\n",
+     "error: cables.csv:2: 'ab': law must be one of tension length force_density elastic, not rigid\n"},
     {NULL, CABLES "ab,a,b,inner,elastic,1\nbc,b,c,boundary,length,\n",
-     "error: cables.csv:2: 'ab': law must be one of tension length force_density, not elastic\n"},
+     "error: cables.csv:2: 'ab': the law elastic needs an EA_N\n"},
+    {NULL, "id,i,j,group,law,value,EA_N\nab,a,b,inner,elastic,1,\nbc,b,c,boundary,elastic,,5\n",
+     "error: cables.csv:2: 'ab': the law elastic needs an EA_N\n"
+     "error: cables.csv:3: 'bc': the law elastic needs a value, the unstressed length in m\n"},
+    {NULL, "id,i,j,group,law,value,EA_N\nab,a,b,inner,elastic,-1,5\nbc,b,c,boundary,length,,\n",
+     "error: cables.csv:2: 'ab': value must be above zero for the law elastic\n"},
     {NULL, CABLES "ab,a,x,inner,tension,1\nbc,b,c,boundary,length,\n",
      "error: cables.csv:2: 'ab': there is no node with the id x\n"},
     {NULL, CABLES "ab,,b,inner,tension,1\nbc,b,c,boundary,length,\n",

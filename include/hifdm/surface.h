@@ -1,0 +1,53 @@
+/* surface - how good a reflector a shape is (METHOD section 7): RMS along the normal and of the half path length, raw
+ * and after the best fit of the parabolic cylinder, loss of gain, faceting, percentiles. Computed once for a reported
+ * shape, for a case with a section `surface`.
+ *
+ * The wanted surface is z = x^2/(4f), its generatrix along y. With dz the height of an inner node above it, the error
+ * along the normal is dz / sqrt(1 + (x/2f)^2), that of the half path length dz / (1 + (x/2f)^2). */
+#ifndef HIFDM_SURFACE_H
+#define HIFDM_SURFACE_H
+
+#include <hifdm/workspace.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The parabolic cylinder with the least half-path RMS from a set of nodes: the wanted one with another focal length,
+ * turned about the centre of the nodes by Rx(a) Ry(b) Rz(c), then shifted. A shift along y changes nothing and is left
+ * out. In a shallow reflector a shift in x and a turn about y are nearly the same thing: what they do to the surface is
+ * exact all the same. */
+typedef struct {
+    double half_path_rms_m, normal_rms_m; /* what is left */
+    double focal_length_m;
+    double shift_x_m, shift_z_m;
+    double rotation_x_rad, rotation_y_rad, rotation_z_rad;
+    double center_m[3];
+    int iterations;
+} hf_surface_fit;
+
+/* Fit n nodes, position_m [3][n]. With fewer than six nodes there is more than one answer. HF_OK or HF_NO_MEMORY. */
+hf_status hf_surface_fit_nodes(double focal_length_m, int n, const double *position_m, hf_surface_fit *fit);
+
+typedef struct {
+    int is_measured;                      /* 0: nothing below means anything */
+    double z_rms_m;                       /* of the nodes' heights above their theoretical ones */
+    double normal_rms_m, half_path_rms_m; /* raw */
+    double faceting_rms_m; /* of flat strips instead of the curve between them, w^2/(24 sqrt(5) f); NaN: no width */
+    double deviation_p50_m, deviation_p90_m, deviation_p95_m, deviation_p99_m; /* distances that psi is made of */
+    double deviation_max_m;
+    hf_surface_fit fit;
+    double gain_loss_dB[HF_LIST_MAX], fit_gain_loss_dB[HF_LIST_MAX]; /* by frequency: Ruze, raw and after the fit */
+} hf_surface_measures;
+
+/* Of the inner nodes of the shape in the workspace. settings->focal_length_m > 0. HF_OK or HF_NO_MEMORY. */
+hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_model *model, const hf_workspace *workspace,
+                             hf_surface_measures *measures);
+
+/* Ruze: loss of gain (positive, dB) of a half-path RMS at a frequency. */
+double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

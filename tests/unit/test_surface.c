@@ -1,0 +1,225 @@
+/* Measures of the surface, each against its definition written out again, and the best fit against known motions. */
+#include "laws.h"
+
+#include <hifdm/surface.h>
+
+/* ---- the best fit ---- */
+
+/* Rx(a) Ry(b) Rz(c) p, by the textbook. */
+static void turn(const double angle[3], const double p[3], double to[3])
+{
+    double q[3] = {p[0], p[1], p[2]};
+    for (int k = 2; k >= 0; k--) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        double u = q[i], v = q[j], c = cos(angle[k]), s = sin(angle[k]);
+        q[i] = c * u - s * v;
+        q[j] = s * u + c * v;
+    }
+    memcpy(to, q, sizeof q);
+}
+
+/* A grid of the cylinder, aperture 10 m, length 12 m, of another focal length, turned about the origin and shifted. */
+enum { NX = 13, NY = 9, N_GRID = NX * NY };
+
+static void moved_grid(double focal_length_m, const double angle[3], const double shift[3], double *position_m)
+{
+    for (int k = 0; k < N_GRID; k++) {
+        double x = -5 + 10.0 * (k % NX) / (NX - 1), p[3] = {x, 12.0 * (k / NX) / (NY - 1), x * x / 4 / focal_length_m};
+        double q[3];
+        turn(angle, p, q);
+        for (int c = 0; c < 3; c++)
+            position_m[c * N_GRID + k] = q[c] + shift[c];
+    }
+}
+
+/* The fit turns about another centre, and knows no shift along the generatrix: where it puts a point of the wanted
+ * surface may differ from where the motion put it, but only along the moved generatrix g. */
+static double difference_from(const hf_surface_fit *fit, const double angle[3], const double shift[3])
+{
+    static const double corner[4][3] = {{0, 0, 0}, {5, 0, 0}, {0, 12, 0}, {0, 0, 3}}, y[3] = {0, 1, 0};
+    double turned[3] = {fit->rotation_x_rad, fit->rotation_y_rad, fit->rotation_z_rad}, g[3], most = 0;
+    turn(angle, y, g);
+    for (int k = 0; k < 4; k++) {
+        double from[3], a[3], b[3], along = 0;
+        for (int c = 0; c < 3; c++)
+            from[c] = corner[k][c] - fit->center_m[c];
+        turn(turned, from, a);
+        turn(angle, corner[k], b);
+        a[0] += fit->shift_x_m;
+        a[2] += fit->shift_z_m;
+        for (int c = 0; c < 3; c++) {
+            a[c] += fit->center_m[c] - b[c] - shift[c];
+            along += a[c] * g[c];
+        }
+        for (int c = 0; c < 3; c++)
+            most = fmax(most, fabs(a[c] - along * g[c]));
+    }
+    return most;
+}
+
+static const struct {
+    double focal_length_m, found_m, angle[3], shift[3], tolerance;
+} motions[] = {
+    {5, 5, {0}, {0}, 1e-12},
+    {5, 5.3, {0}, {0}, 1e-9},
+    {5, 4.9, {0.01, -0.02, 0.015}, {0.05, 0.3, -0.04}, 1e-9},
+    {7.2, 7.25, {-0.003, 0.001, 0.002}, {-0.01, 0.02, 0.03}, 1e-9},
+    /* shift and turn about y are the same to a part of x^2/(8 f^2), here 6e-4: the 1e-15 m of the coordinates of some
+     * metres, over 6e-4 x/(2f) = 2e-5, and as much again for the solution of a least-squares problem */
+    {70.6, 70, {0.001, 0.0005, 0.001}, {0.01, 0, 0.01}, 1e-9},
+};
+enum { N_MOTION = sizeof motions / sizeof *motions };
+
+START_TEST(known_motion_and_focal_length_are_recovered)
+{
+    double position_m[3 * N_GRID];
+    hf_surface_fit fit;
+    moved_grid(motions[_i].found_m, motions[_i].angle, motions[_i].shift, position_m);
+    ck_assert_int_eq(hf_surface_fit_nodes(motions[_i].focal_length_m, N_GRID, position_m, &fit), HF_OK);
+    ck_assert_double_eq_tol(fit.focal_length_m, motions[_i].found_m, motions[_i].tolerance * motions[_i].found_m);
+    ck_assert_double_lt(difference_from(&fit, motions[_i].angle, motions[_i].shift), motions[_i].tolerance);
+    ck_assert_double_lt(fit.half_path_rms_m, 1e-14); /* rounding of coordinates of a few metres */
+    ck_assert_double_lt(fit.normal_rms_m, 1e-14);
+    ck_assert_int_lt(fit.iterations, 60);
+}
+END_TEST
+
+/* With noise on top the answer is a minimum: no small change of any parameter lowers the half-path RMS. It is looked at
+ * through the public call: a fit that starts from another wanted focal length ends in the same place. */
+START_TEST(fit_of_a_rough_surface_is_a_minimum)
+{
+    double position_m[3 * N_GRID];
+    static const double angle[3] = {0.002, -0.004, 0.001}, shift[3] = {0.02, 0, 0.01};
+    struct rng rng = rng_start(400 + (uint64_t)_i);
+    hf_surface_fit one, other;
+    moved_grid(5.1, angle, shift, position_m);
+    for (int k = 0; k < N_GRID; k++)
+        position_m[2 * N_GRID + k] += rng_uniform(&rng, -0.003, 0.003);
+    ck_assert_int_eq(hf_surface_fit_nodes(5, N_GRID, position_m, &one), HF_OK);
+    ck_assert_int_eq(hf_surface_fit_nodes(5.4, N_GRID, position_m, &other), HF_OK);
+    ck_assert_double_eq_tol(one.focal_length_m, other.focal_length_m, 1e-7);
+    ck_assert_double_eq_tol(one.half_path_rms_m, other.half_path_rms_m, 1e-13);
+    ck_assert_double_gt(one.half_path_rms_m, 0.5 * 0.003 / sqrt(3)); /* that of the noise, less six of 117 parts */
+    ck_assert_double_lt(one.half_path_rms_m, 1.2 * 0.003 / sqrt(3));
+    ck_assert_double_gt(one.normal_rms_m, one.half_path_rms_m); /* its weights are the larger ones */
+}
+END_TEST
+
+START_TEST(few_nodes_are_no_fault)
+{
+    static const double position_m[] = {0, 1, 0, 1, 0, 0.3};
+    hf_surface_fit fit;
+    ck_assert_int_eq(hf_surface_fit_nodes(5, 2, position_m, &fit), HF_OK);
+    ck_assert_double_lt(fit.half_path_rms_m, 1e-9);
+    ck_assert_int_eq(hf_surface_fit_nodes(5, 1, position_m, &fit), HF_OK);
+    ck_assert(isfinite(fit.focal_length_m));
+}
+END_TEST
+
+/* ---- the measures ---- */
+
+static void open_reflector(struct net *net)
+{
+    OPEN_CASE(net, SMALL_REFLECTOR, "surface.frequencies_Hz=[1e9, 9.6e9]");
+    memcpy(net->work.position_m, net->model.position_m, 3 * (size_t)net->model.n_node * sizeof(double));
+}
+
+static hf_surface_measures measured(struct net *net)
+{
+    hf_surface_measures s;
+    ck_assert_int_eq(hf_surface_measure(&net->settings.surface, &net->model, &net->work, &s), HF_OK);
+    ck_assert(s.is_measured);
+    return s;
+}
+
+/* Nodes raised by amounts of their own. Sums of some tens of numbers in another order: 1e-13 of them; z of the fifth
+ * digit of x^2/(4f), whose rounding is 1e-16 m. */
+START_TEST(errors_are_those_of_their_definitions)
+{
+    struct net net;
+    open_reflector(&net);
+    const hf_model *m = &net.model;
+    const double f = net.settings.cylinder.focal_length_m;
+    struct rng rng = rng_start(410);
+    long double normal = 0, half_path = 0, up = 0;
+    int n = 0;
+    for (int row = 0; row < m->n_free; row++) {
+        double dz = rng_uniform(&rng, -0.02, 0.02), x = m->position_m[row];
+        net.work.position_m[2 * m->n_node + row] += dz;
+        if (net.scene.role[m->node_of_row[row]] != HF_ROLE_INNER) continue;
+        long double cosine = 1 / sqrtl(1 + (long double)x * x / (4 * f * f)); /* of the slope x/(2f) */
+        up += dz * dz;
+        normal += dz * cosine * dz * cosine;
+        half_path += dz * cosine * cosine * dz * cosine * cosine;
+        n++;
+    }
+    hf_surface_measures s = measured(&net);
+    ck_assert_double_eq_tol(s.z_rms_m, (double)sqrtl(up / n), 1e-15);
+    ck_assert_double_eq_tol(s.normal_rms_m, (double)sqrtl(normal / n), 1e-15);
+    ck_assert_double_eq_tol(s.half_path_rms_m, (double)sqrtl(half_path / n), 1e-15);
+    ck_assert_double_lt(s.fit.half_path_rms_m, s.half_path_rms_m);
+    for (int k = 0; k < 2; k++) {
+        double wave_m = 299792458 / net.settings.surface.frequencies_Hz.value[k];
+        double gain = exp(-pow(4 * acos(-1) * s.half_path_rms_m / wave_m, 2)); /* Ruze */
+        ck_assert_double_eq_tol(s.gain_loss_dB[k], -10 * log10(gain), 1e-12 * s.gain_loss_dB[k]);
+        ck_assert_double_lt(s.fit_gain_loss_dB[k], s.gain_loss_dB[k]);
+    }
+    close_net(&net);
+}
+END_TEST
+
+/* A shift along the generatrix is a deviation, but no error of the surface. Percentiles as numpy's. */
+START_TEST(drift_along_the_surface_is_no_error)
+{
+    struct net net;
+    open_reflector(&net);
+    const hf_model *m = &net.model;
+    int n = m->n_inner_node;
+    for (int k = 0; k < n; k++) /* 0, 1, 2, ... mm, not in order */
+        net.work.position_m[m->n_node + m->inner_row[k]] += 1e-3 * (7 * k % n);
+    ck_assert_int_ne(n % 7, 0);
+    hf_surface_measures s = measured(&net);
+    ck_assert_double_lt(s.normal_rms_m, 1e-15);
+    ck_assert_double_lt(s.half_path_rms_m, 1e-15);
+    ck_assert_double_eq_tol(s.deviation_p50_m, 0.50e-3 * (n - 1), 1e-14);
+    ck_assert_double_eq_tol(s.deviation_p90_m, 0.90e-3 * (n - 1), 1e-14);
+    ck_assert_double_eq_tol(s.deviation_p95_m, 0.95e-3 * (n - 1), 1e-14);
+    ck_assert_double_eq_tol(s.deviation_p99_m, 0.99e-3 * (n - 1), 1e-14);
+    ck_assert_double_eq_tol(s.deviation_max_m, 1e-3 * (n - 1), 1e-14);
+    close_net(&net);
+}
+END_TEST
+
+/* RMS about the mean of what lies between a parabola and its chords, by the trapezoidal rule with 1000 intervals:
+ * 1e-6 relative. The width is that of a cell. */
+START_TEST(faceting_is_the_rms_under_a_chord)
+{
+    struct net net;
+    open_reflector(&net);
+    double w = 0.5, f = net.settings.cylinder.focal_length_m, sum = 0, square = 0; /* 4 m in 4 x 2 cells */
+    for (int k = 0; k <= 1000; k++) {
+        double x = w * (k / 1000.0 - 0.5), gap = (w * w / 4 - x * x) / (4 * f), part = k % 1000 ? 1e-3 : 0.5e-3;
+        sum += part * gap;
+        square += part * gap * gap;
+    }
+    hf_surface_measures s = measured(&net);
+    ck_assert_double_eq_tol(s.faceting_rms_m, sqrt(square - sum * sum), 1e-5 * s.faceting_rms_m);
+    net.settings.surface.strip_width_m = 0;
+    ck_assert_double_nan(measured(&net).faceting_rms_m);
+    close_net(&net);
+}
+END_TEST
+
+Suite *suite_unit_surface(void)
+{
+    Suite *suite = suite_create("unit/surface");
+    TCase *tests = tcase_create("surface");
+    suite_add_tcase(suite, tests);
+    tcase_add_loop_test(tests, known_motion_and_focal_length_are_recovered, 0, N_MOTION);
+    tcase_add_loop_test(tests, fit_of_a_rough_surface_is_a_minimum, 0, 3);
+    tcase_add_test(tests, few_nodes_are_no_fault);
+    tcase_add_test(tests, errors_are_those_of_their_definitions);
+    tcase_add_test(tests, drift_along_the_surface_is_no_error);
+    tcase_add_test(tests, faceting_is_the_rms_under_a_chord);
+    return suite;
+}
