@@ -50,6 +50,24 @@ double bench_time_s(void (*work)(void *context), void *context, double enough_s)
     return passed_s / (double)n;
 }
 
+void bench_measure(const hf_model *m, const hf_form_settings *form, hf_workspace *w)
+{
+    hf_form_result r = {.status = HF_OK};
+    double length_gap;
+    hf_form_measure_cables(m, form, w, &r, &length_gap);
+    if (r.status != HF_OK) bench_fail("step", hf_status_text(r.status));
+}
+
+void bench_fdm_step(const hf_model *m, const hf_form_settings *form, hf_workspace *w)
+{
+    int bad_row;
+    hf_form_assemble(m, w);
+    hf_form_assemble_loads(m, w);
+    if (hf_band_solve(m->n_free, m->half_bandwidth, w->band, w->position_m, m->n_node, &bad_row) != HF_OK)
+        bench_fail("step", "singular");
+    bench_measure(m, form, w);
+}
+
 /* ---- arguments ---- */
 
 static void about(void)
@@ -69,6 +87,8 @@ int main(int argc, char **argv)
         bench_single(what, folder);
     else if (!strcmp(section, "step"))
         bench_step(folder);
+    else if (!strcmp(section, "peak"))
+        bench_peak();
     else if (!strcmp(section, "growth"))
         bench_growth(atoi(what));
     else if (!strcmp(section, "phases"))
@@ -76,6 +96,6 @@ int main(int argc, char **argv)
     else if (!strcmp(section, "population"))
         bench_population(what, folder, argc > 4 ? atoi(argv[4]) : 1);
     else
-        bench_fail("usage", "bench about|precision|single|step|growth|phases|population FOLDER [WHAT] [THREADS]");
+        bench_fail("usage", "bench about|precision|single|step|peak|growth|phases|population FOLDER [WHAT] [THREADS]");
     return 0;
 }

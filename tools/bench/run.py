@@ -115,6 +115,7 @@ class Bench:
             self.say(f"round {r + 1} of {self.a.rounds}: steps, phases, storing")
             self.driver("step")
             self.peers("step")
+            self.driver("peak")
             for scene in (KERNEL_NET, *SCENES):
                 self.driver("phases", scene)
             for threads in (1, 2):
@@ -200,6 +201,11 @@ class Bench:
                              self.samples.get("step", scene, method, n_free, "difference_m")])
         self.table("step", ["method", "n_free", "time_us", "times_dpbtrf", "difference_m"], rows)
 
+    def write_peak(self):
+        self.wide("peak", "peak", ["factor_us", "flops", "flops_of_band", "factor_GFs", "fma_peak_GFs", "apart_peak_GFs",
+                                   "share_of_fma_peak", "share_of_apart_peak"],
+                  ("net", "instruction_set", "half_bandwidth"))
+
     def write_growth(self):
         self.wide("growth", "growth", ["n_free", "half_bandwidth", "time_s", "bytes", "iterations"],
                   ("net", "method", "nodes"))
@@ -219,11 +225,11 @@ class Bench:
         bars, rows = {}, []
         for key, values in self.samples.values.items():
             section, scene, method, phase, quantity = key
-            if section != "phases" or quantity in ("share", "setup_s", "passes"):
+            if section != "phases" or quantity == "share":
                 continue
             share = self.samples.get("phases", scene, method, phase, "share")
-            bars.setdefault(f"{scene}, {method}", {})[quantity.replace("assembly (forces)", "assembly")] = share
-            rows.append([scene, method, quantity, statistics.median(values), share])
+            bars.setdefault(f"{scene}, {method}", {})[quantity] = share
+            rows.append([scene, method.replace(",", ";"), quantity, statistics.median(values), share])
         self.table("phases", ["scene", "method", "phase", "time_s", "share"], rows)
         svg.shares(f"{self.a.out}/phases.svg", bars, "\n".join(self.head))
 
@@ -238,7 +244,7 @@ class Bench:
     def write(self):
         os.makedirs(self.a.out, exist_ok=True)
         self.head = self.header()
-        for name in ("precision", "single", "step", "growth", "phases", "population"):
+        for name in ("precision", "single", "step", "peak", "growth", "phases", "population"):
             getattr(self, f"write_{name}")()
         rows = list(summary(self.samples))
         self.table("summary", ["figure", "wanted", "measured"], rows)
@@ -270,6 +276,11 @@ def summary(s):
     name = "lanes" if step("lanes") else "dpbtrf (no lane path yet)"
     for method, wanted in (("dpbtrf", "6"), ("CHOLMOD", "4"), ("scipy solveh_banded", "12"), ("scipy splu", "")):
         yield [f"FDM step, 437 free: {method} / {name}", wanted, ratio(step(method), base)]
+    for key in s.keys("peak"):
+        if key[2] in (21, 65) and s.get("peak", *key, "share_of_fma_peak"):
+            wanted = "0.5" if key[1] == "avx512" else ""
+            yield [f"factor of 8 in lanes / FMA peak of {key[1]}; half-bandwidth {key[2]:.0f}", wanted,
+                   s.get("peak", *key, "share_of_fma_peak")]
     for scene in (KERNEL_NET, *SCENES):
         for peer, wanted in (("fixed point", "300"), ("scipy fixed point, band", "1000")):
             for method in ("newton", "chord"):
