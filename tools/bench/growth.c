@@ -145,11 +145,12 @@ static void evaluations(net *n)
     free(design_N);
 }
 
-void bench_growth(int scale)
+void bench_growth(const char *scale, const char *folder)
 {
+    (void)folder;
     net n;
     hf_form_result r;
-    build(scale, &n);
+    build(atoi(scale), &n);
     one_solve(&n);
     n.settings.form.max_iterations = 2000; /* minutes on the largest net */
     double start_s = bench_clock_s();

@@ -1,6 +1,6 @@
 /* Share of time per phase. One design by the fixed point: a loop over the parts of hf_form_find. Many designs: the real
- * hf_swarm_run and hf_chord_run, with a clock in front of each of their kernels; "rest" is what they do around them: put
- * designs into lanes, take shapes out, measure these by the scalar code and judge them.
+ * hf_swarm_run and hf_chord_run, with a clock in front of each of their kernels; "rest" is what they do around them:
+ * put designs into lanes, take shapes out, measure these by the scalar code and judge them.
  *
  * Contents: what was spent - one design - eight to a pass, fixed point - eight to a pass, chord */
 #include "bench.h"

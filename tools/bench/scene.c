@@ -17,6 +17,7 @@ typedef struct {
 } scene_row;
 
 #define CYLINDER "scene.parabolic_cylinder."
+#define ONE_CELL CYLINDER "cells_per_module=[1,1]"
 #define PERIMETER CYLINDER "supports=perimeter", CYLINDER "scallop=0"
 
 static const scene_row scene_table[] = {
@@ -27,8 +28,8 @@ static const scene_row scene_table[] = {
     {"31x37", "configs/reflector.yaml", {CYLINDER "cells_per_module=[3,3]", NULL}},
     {"21x25 perimeter", "configs/reflector.yaml", {PERIMETER, NULL}},
     /* half-bandwidths 21 and 65 */
-    {"23x25 perimeter", "configs/reflector.yaml", {PERIMETER, CYLINDER "modules=[11,12]", NULL}},
-    {"67x69 perimeter", "configs/reflector.yaml", {PERIMETER, CYLINDER "modules=[33,34]", NULL}},
+    {"22x24 perimeter", "configs/reflector.yaml", {PERIMETER, ONE_CELL, CYLINDER "modules=[21,23]", NULL}},
+    {"66x68 perimeter", "configs/reflector.yaml", {PERIMETER, ONE_CELL, CYLINDER "modules=[65,67]", NULL}},
 };
 
 /* ---- small things ---- */

@@ -135,8 +135,9 @@ void bench_write_net(const bench_scene *b, const hf_workspace *w, const double *
 
 /* ---- the section ---- */
 
-void bench_step(const char *folder)
+void bench_step(const char *what, const char *folder)
 {
+    (void)what;
     bench_scene b;
     bench_scene_named("21x25 perimeter", folder, &b);
     hf_form_prepare(&b.model, &b.workspace);
