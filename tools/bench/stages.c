@@ -1,28 +1,27 @@
 /* A whole run, stage by stage, of a case that only needs the force density method, one that is form-found, and one that
- * is optimised as well: what takes how long, and how much memory each stage has allocated and keeps. What a case does
- * not need has no sample. The order of the calls is that of `hifdm run`.
- *
- * Contents: samples - cases - stages of the optimisation - the run */
+ * is optimised as well: what takes how long, and what memory each stage has allocated and keeps. The run is the
+ * program's own: the linker puts the functions below between it and the library (BENCH_WRAP in the Makefile). What a
+ * case does not need has no sample. */
 #include "bench.h"
 
 #include "polish.h"
+#include "run.h"
 #include "symmetry.h"
 
 #include <malloc.h>
+#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#define HISTORY_MAX 1000000 /* iterations whose history is kept */
+enum { READ, SCENE, MODEL, FORM, SETUP, EVALUATE, BREED, POLISH, STORE, N_STAGE };
+static const char *const stage_word[N_STAGE] = {"read case", "scene",          "model",          "form-finding",
+                                                "GA set-up", "GA evaluations", "GA bookkeeping", "Levenberg-Marquardt",
+                                                "storing"};
 
-/* ---- samples ---- */
+/* Globals, because the functions of the library have no context to pass them in. */
+static int watching, depth, n_call[N_STAGE];
+static double time_s[N_STAGE], kept_bytes[N_STAGE], since_s, bytes_before, bytes_at_most;
 
-enum { READ, SCENE, MODEL, HISTORY, FORM, SETUP, EVALUATE, BREED, POLISH, STORE, N_STAGE };
-static const char *const stage_word[N_STAGE] = {
-    "read case", "scene",          "model",          "room for the history", "form-finding",
-    "GA set-up", "GA evaluations", "GA bookkeeping", "Levenberg-Marquardt",  "storing"};
-
-/* Bytes in use on the heap; 0 where the C library does not tell. */
+/* Bytes in use on the heap, with what calloc has reserved and nobody touched; 0 where the C library does not tell. */
 static double heap_bytes(void)
 {
 #if defined __GLIBC__ && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 33)
@@ -33,167 +32,110 @@ static double heap_bytes(void)
 #endif
 }
 
-typedef struct {
-    hf_case settings;
-    hf_scene scene;
-    hf_model model;
-    hf_workspace workspace;
-    hf_history history;
-    double *start_q_N_per_m, *base_N;
-    hf_evaluator evaluator;
-    hf_batch batch;
-    hf_ga ga;
-    hf_store *store;
-    hf_summary summary;
-    hf_messages messages;
-    int ran[N_STAGE];
-    double time_s[N_STAGE], kept_bytes[N_STAGE];
-    double since_s, before_bytes;
-} run;
-
-/* What has passed since the last call belongs to this stage. */
-static void charge(run *r, int stage)
+static void enter(void)
 {
+    if (!watching || depth++ > 0) return;
+    bytes_before = heap_bytes();
+    since_s = bench_clock_s();
+}
+
+static void leave(int stage)
+{
+    if (!watching || --depth > 0) return;
+    time_s[stage] += bench_clock_s() - since_s;
     double bytes = heap_bytes();
-    r->time_s[stage] += bench_clock_s() - r->since_s;
-    r->kept_bytes[stage] += bytes - r->before_bytes;
-    r->ran[stage] = 1;
-    r->before_bytes = bytes;
-    r->since_s = bench_clock_s();
+    kept_bytes[stage] += bytes - bytes_before;
+    bytes_at_most = fmax(bytes_at_most, bytes);
+    n_call[stage]++;
 }
 
-static void need(run *r, hf_status status)
-{
-    if (status != HF_OK) bench_fail(r->settings.path, r->messages.text ? r->messages.text : hf_status_text(status));
-}
-
-/* ---- stages of the optimisation ---- */
-
-static void set_up(run *r)
-{
-    const hf_model *m = &r->model;
-    const hf_optimize_settings *o = &r->settings.optimize;
-    r->start_q_N_per_m = bench_alloc((size_t)m->n_cable, sizeof(double));
-    r->base_N = bench_alloc((size_t)m->n_gene, sizeof(double));
-    memcpy(r->start_q_N_per_m, r->workspace.q_N_per_m, (size_t)m->n_cable * sizeof(double));
-    for (int k = 0; k < m->n_gene; k++)
-        r->base_N[k] = r->workspace.tension_N[m->gene_cable[k]];
-    hf_symmetry_average(m, r->base_N);
-    r->evaluator = (hf_evaluator){m, &r->settings.form, r->start_q_N_per_m, o->rule, o->solver, o->boundary_ratio_cap};
-    need(r, hf_batch_create(&r->evaluator, 0, &r->batch));
-    need(r, hf_ga_create(o, m, r->base_N, &r->ga));
-    hf_batch_share(&r->batch, r->base_N);
-    charge(r, SETUP);
-}
-
-static void evolve(run *r)
-{
-    double spent_s[BENCH_N_PART] = {0};
-    bench_evolve(&r->model, &r->batch, r->store, &r->ga, spent_s);
-    if (r->ga.best < 0) bench_fail(r->settings.path, "no feasible design");
-    charge(r, EVALUATE); /* memory: evaluating and bookkeeping allocate nothing, what grows is the store's */
-    r->kept_bytes[STORE] += r->kept_bytes[EVALUATE];
-    r->kept_bytes[EVALUATE] = 0;
-    r->time_s[EVALUATE] = spent_s[BENCH_EVALUATE];
-    r->time_s[BREED] = spent_s[BENCH_BREED];
-    r->time_s[STORE] += spent_s[BENCH_STORE];
-    r->ran[BREED] = 1;
-}
-
-static void polish(run *r)
-{
-    hf_polish_result outcome;
-    hf_form_result again;
-    double *design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
-    hf_workspace *w = hf_batch_run_one(&r->batch, design, &again);
-    charge(r, EVALUATE);
-    need(r, hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->model, w, design, &r->messages));
-    charge(r, STORE);
-    if (!hf_polish_applies(&r->evaluator)) return;
-    need(r, hf_polish_run(&r->evaluator, r->ga.lower_N, r->ga.upper_N, r->settings.optimize.polish_iterations, design,
-                          &r->workspace, &outcome));
-    hf_evaluate(&r->evaluator, design, &r->workspace, &r->summary.polish);
-    charge(r, POLISH);
-    need(r, hf_store_best(r->store, HF_STAGE_POLISH, &r->model, &r->workspace, design, &r->messages));
-    charge(r, STORE);
-}
-
-/* ---- the run ---- */
-
-static void find_form(run *r)
-{
-    const hf_form_settings *form = &r->settings.form;
-    hf_history *h = &r->history;
-    h->capacity = form->max_iterations < HISTORY_MAX ? form->max_iterations : HISTORY_MAX;
-    size_t n = (size_t)h->capacity;
-    h->psi_m = bench_alloc(5 * n, sizeof(double));
-    h->residual_N = h->psi_m + n;
-    h->inner_tension_ratio = h->psi_m + 2 * n;
-    h->boundary_tension_ratio = h->psi_m + 3 * n;
-    h->length_error = h->psi_m + 4 * n;
-    charge(r, HISTORY);
-    need(r, hf_workspace_create(&r->model, &r->workspace));
-    need(r, hf_evaluate_form(&r->model, form, &r->workspace, h, &r->summary.form));
-    charge(r, FORM);
-}
-
-static void stages(run *r, const char *path, const char *const *overrides, int n_override, const char *output)
-{
-    r->since_s = bench_clock_s();
-    r->before_bytes = heap_bytes();
-    need(r, hf_config_load(path, overrides, n_override, &r->settings, &r->messages));
-    charge(r, READ);
-    need(r, hf_config_scene(&r->settings, &r->scene, &r->messages));
-    charge(r, SCENE);
-    need(r, hf_model_build(&r->scene, &r->settings.form, &r->model, &r->messages));
-    if (r->settings.has_optimize)
-        need(r,
-             hf_symmetry_apply(&r->scene, r->settings.optimize.symmetry, &r->model, &r->summary.planes, &r->messages));
-    charge(r, MODEL);
-    need(r, hf_store_create(output, 1, &r->settings, &r->scene, 0, NULL, &r->store, &r->messages));
-    charge(r, STORE);
-    find_form(r);
-    need(r, hf_store_form(r->store, &r->model, &r->workspace, &r->history, &r->messages));
-    charge(r, STORE);
-    if (r->settings.has_optimize) {
-        set_up(r);
-        evolve(r);
-        polish(r);
+#define WATCH(stage, type, name, parameters, arguments)                                                                \
+    __typeof__(name) __real_##name, __wrap_##name;                                                                     \
+    type __wrap_##name parameters                                                                                      \
+    {                                                                                                                  \
+        enter();                                                                                                       \
+        type returned = __real_##name arguments;                                                                       \
+        leave(stage);                                                                                                  \
+        return returned;                                                                                               \
     }
-    r->summary.has_optimize = r->settings.has_optimize;
-    need(r, hf_store_finish(r->store, &r->summary, &r->messages));
-    charge(r, STORE);
-}
+#define WATCH_VOID(stage, name, parameters, arguments)                                                                 \
+    __typeof__(name) __real_##name, __wrap_##name;                                                                     \
+    void __wrap_##name parameters                                                                                      \
+    {                                                                                                                  \
+        enter();                                                                                                       \
+        __real_##name arguments;                                                                                       \
+        leave(stage);                                                                                                  \
+    }
 
-static void release(run *r)
-{
-    hf_ga_free(&r->ga);
-    hf_batch_free(&r->batch);
-    free(r->start_q_N_per_m);
-    free(r->base_N);
-    free(r->history.psi_m);
-    hf_workspace_free(&r->workspace);
-    hf_model_free(&r->model);
-    hf_scene_free(&r->scene);
-    hf_case_free(&r->settings);
-    hf_messages_free(&r->messages);
-}
+WATCH(READ, hf_status, hf_config_load,
+      (const char *path, const char *const *set, int n_set, hf_case *settings, hf_messages *messages),
+      (path, set, n_set, settings, messages))
+WATCH(SCENE, hf_status, hf_config_scene, (const hf_case *settings, hf_scene *scene, hf_messages *messages),
+      (settings, scene, messages))
+WATCH(MODEL, hf_status, hf_model_build,
+      (const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages),
+      (scene, form, model, messages))
+WATCH(MODEL, hf_status, hf_symmetry_apply,
+      (const hf_scene *scene, int wanted, hf_model *model, int *planes, hf_messages *messages),
+      (scene, wanted, model, planes, messages))
+WATCH(FORM, hf_status, hf_workspace_create, (const hf_model *model, hf_workspace *workspace), (model, workspace))
+WATCH(FORM, hf_status, hf_evaluate_form,
+      (const hf_model *model, const hf_form_settings *form, hf_workspace *w, hf_history *history, hf_form_result *r),
+      (model, form, w, history, r))
+WATCH(SETUP, hf_status, hf_batch_create, (const hf_evaluator *evaluator, int n_thread, hf_batch *batch),
+      (evaluator, n_thread, batch))
+WATCH(SETUP, int, hf_batch_share, (hf_batch * batch, const double *base_N), (batch, base_N))
+WATCH(SETUP, hf_status, hf_ga_create,
+      (const hf_optimize_settings *settings, const hf_model *model, const double *base_N, hf_ga *ga),
+      (settings, model, base_N, ga))
+WATCH_VOID(EVALUATE, hf_batch_run,
+           (hf_batch * batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result),
+           (batch, n, design_N, pending, result))
+WATCH(EVALUATE, hf_workspace *, hf_batch_run_one, (hf_batch * batch, const double *design_N, hf_form_result *result),
+      (batch, design_N, result))
+WATCH_VOID(BREED, hf_ga_tell, (hf_ga * ga), (ga))
+WATCH(BREED, int, hf_ga_next, (hf_ga * ga), (ga))
+WATCH(POLISH, hf_status, hf_polish_run,
+      (const hf_evaluator *evaluator, const double *lower_N, const double *upper_N, int max_iterations,
+       double *design_N, hf_workspace *workspace, hf_polish_result *result),
+      (evaluator, lower_N, upper_N, max_iterations, design_N, workspace, result))
+WATCH(STORE, hf_status, hf_store_create,
+      (const char *path, int force, const hf_case *settings, const hf_scene *scene, int argc, char *const *argv,
+       hf_store **store, hf_messages *messages),
+      (path, force, settings, scene, argc, argv, store, messages))
+WATCH(STORE, hf_status, hf_store_form,
+      (hf_store * store, const hf_model *model, const hf_workspace *workspace, const hf_history *history,
+       hf_messages *messages),
+      (store, model, workspace, history, messages))
+WATCH(STORE, hf_status, hf_store_generation,
+      (hf_store * store, const hf_model *model, const hf_ga *ga, hf_messages *messages), (store, model, ga, messages))
+WATCH(STORE, hf_status, hf_store_best,
+      (hf_store * store, hf_stage stage, const hf_model *model, const hf_workspace *workspace, const double *design_N,
+       hf_messages *messages),
+      (store, stage, model, workspace, design_N, messages))
+WATCH(STORE, hf_status, hf_store_finish, (hf_store * store, const hf_summary *summary, hf_messages *messages),
+      (store, summary, messages))
 
 void bench_stages(const char *name, const char *folder, const char *path, const char *const *overrides, int n_override)
 {
-    static run r;
-    char output[HF_PATH_SIZE];
-    double total_s = 0;
+    char wanted[HF_PATH_SIZE], output[HF_OUTPUT_SIZE];
+    static hf_summary summary;
+    hf_messages messages = {0};
+    snprintf(wanted, sizeof wanted, "%s/stages.h5", folder);
+    hf_run_request request = {.case_path = path, .set = overrides, .n_set = n_override, .output = wanted, .force = 1};
     hf_store_quiet();
-    snprintf(output, sizeof output, "%s/stages.h5", folder);
-    stages(&r, path, overrides, n_override, output);
-    for (int i = 0; i < N_STAGE; i++)
-        total_s += r.time_s[i];
+    double bytes_at_first = heap_bytes(), start_s = bench_clock_s();
+    watching = 1;
+    hf_status status = hf_run_point(&request, &summary, output, &messages);
+    double total_s = bench_clock_s() - start_s;
+    watching = 0;
+    if (status != HF_OK) bench_fail(path, messages.text);
     for (int i = 0; i < N_STAGE; i++) {
-        if (!r.ran[i]) continue;
-        bench_emit("stages", name, stage_word[i], i, "time_s", r.time_s[i]);
-        bench_emit("stages", name, stage_word[i], i, "share", r.time_s[i] / total_s);
-        bench_emit("stages", name, stage_word[i], i, "kept_bytes", r.kept_bytes[i]);
+        if (n_call[i] == 0) continue;
+        bench_emit("stages", name, stage_word[i], i, "time_s", time_s[i]);
+        bench_emit("stages", name, stage_word[i], i, "kept_bytes", kept_bytes[i]);
     }
-    release(&r);
+    bench_emit("stages", name, "whole run", N_STAGE, "time_s", total_s);
+    bench_emit("stages", name, "whole run", N_STAGE, "kept_bytes", bytes_at_most - bytes_at_first);
+    hf_messages_free(&messages);
 }
