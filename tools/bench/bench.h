@@ -6,7 +6,6 @@
 
 #include <hifdm/batch.h>
 #include <hifdm/formfind.h>
-#include <hifdm/store.h>
 
 #define BENCH_POPULATION 50
 #define BENCH_TRUE 2 /* designs whose true position error is measured */
@@ -68,11 +67,6 @@ int bench_cholmod_step(bench_cholmod *peer, const hf_model *model, hf_workspace 
 double bench_cholmod_bytes(const bench_cholmod *peer); /* of the factor and the matrix */
 void bench_cholmod_free(bench_cholmod *peer);
 const char *bench_cholmod_version(void);
-
-/* The generations of a genetic algorithm, as `hifdm run` does them: ask, batch, tell, store (which may be NULL). Adds
- * to the time spent in each; returns the largest residual of all feasible individuals, N. */
-enum { BENCH_EVALUATE, BENCH_BREED, BENCH_STORE, BENCH_N_PART };
-double bench_evolve(const hf_model *model, hf_batch *batch, hf_store *store, hf_ga *ga, double spent_s[BENCH_N_PART]);
 
 /* The sections, a file each. One more (the frame of a truss, say) is a file like step.c, a row in main.c, a line in
  * `measure`, a write_... in run.py, and a row in results/bench/README.md. */

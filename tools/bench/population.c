@@ -2,6 +2,8 @@
  * storing costs, what a second thread is worth, and how busy both are. */
 #include "bench.h"
 
+#include <hifdm/store.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,23 +12,27 @@
 #define GENERATIONS 400
 #define RESIDUAL_N 1e-8 /* of every individual */
 
-double bench_evolve(const hf_model *m, hf_batch *batch, hf_store *store, hf_ga *ga, double spent_s[BENCH_N_PART])
+enum { EVALUATE, BREED, STORE, N_PART };
+
+/* The generations, as `hifdm run` does them: ask, batch, tell, store (NULL: without). Adds to the time spent in each;
+ * returns the largest residual of all feasible individuals, N. */
+static double evolve(const hf_model *m, hf_batch *batch, hf_store *store, hf_ga *ga, double spent_s[N_PART])
 {
     hf_messages messages = {0};
     double worst_N = 0, t = bench_clock_s(), now;
     int more;
     do {
         hf_batch_run(batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
-        spent_s[BENCH_EVALUATE] += (now = bench_clock_s()) - t, t = now;
+        spent_s[EVALUATE] += (now = bench_clock_s()) - t, t = now;
         hf_ga_tell(ga);
-        spent_s[BENCH_BREED] += (now = bench_clock_s()) - t, t = now;
+        spent_s[BREED] += (now = bench_clock_s()) - t, t = now;
         if (store && hf_store_generation(store, m, ga, &messages) != HF_OK) bench_fail("store", messages.text);
-        spent_s[BENCH_STORE] += (now = bench_clock_s()) - t, t = now;
+        spent_s[STORE] += (now = bench_clock_s()) - t, t = now;
         for (int i = 0; i < ga->n_individual; i++)
             if (ga->result[i].status == HF_OK) worst_N = fmax(worst_N, ga->result[i].residual_N);
         t = bench_clock_s(); /* looking at residuals is nothing that a run does */
         more = hf_ga_next(ga);
-        spent_s[BENCH_BREED] += (now = bench_clock_s()) - t, t = now;
+        spent_s[BREED] += (now = bench_clock_s()) - t, t = now;
     } while (more);
     hf_messages_free(&messages);
     return worst_N;
@@ -48,7 +54,7 @@ typedef struct {
     hf_batch batch;
     hf_ga ga;
     hf_store *store;
-    double spent_s[BENCH_N_PART], open_close_s;
+    double spent_s[N_PART], open_close_s;
 } population;
 
 static void open_store(population *p)
@@ -82,17 +88,17 @@ static void once(bench_scene *b, int threads, const char *path)
     hf_batch_share(&p.batch, b->base_N);
     double written = written_bytes();
     open_store(&p);
-    double worst_N = bench_evolve(&b->model, &p.batch, p.store, &p.ga, p.spent_s);
+    double worst_N = evolve(&b->model, &p.batch, p.store, &p.ga, p.spent_s);
     close_store(&p);
     written = written_bytes() - written;
-    double evaluate_s = p.spent_s[BENCH_EVALUATE];
-    double wall_s = evaluate_s + p.spent_s[BENCH_BREED] + p.spent_s[BENCH_STORE] + p.open_close_s;
+    double evaluate_s = p.spent_s[EVALUATE];
+    double wall_s = evaluate_s + p.spent_s[BREED] + p.spent_s[STORE] + p.open_close_s;
     bench_emit("population", name, mode, threads, "wall_s", wall_s);
     bench_emit("population", name, mode, threads, "evaluate_s", evaluate_s);
-    bench_emit("population", name, mode, threads, "breed_s", p.spent_s[BENCH_BREED]);
-    bench_emit("population", name, mode, threads, "store_s", p.spent_s[BENCH_STORE]);
+    bench_emit("population", name, mode, threads, "breed_s", p.spent_s[BREED]);
+    bench_emit("population", name, mode, threads, "store_s", p.spent_s[STORE]);
     bench_emit("population", name, mode, threads, "open_close_s", p.open_close_s);
-    bench_emit("population", name, mode, threads, "store_share", (p.spent_s[BENCH_STORE] + p.open_close_s) / wall_s);
+    bench_emit("population", name, mode, threads, "store_share", (p.spent_s[STORE] + p.open_close_s) / wall_s);
     bench_emit("population", name, mode, threads, "utilisation", p.batch.cpu_s / wall_s / threads);
     bench_emit("population", name, mode, threads, "waiting_share", 1 - p.batch.cpu_s / evaluate_s / threads);
     bench_emit("population", name, mode, threads, "evaluations", (double)p.ga.n_evaluation);

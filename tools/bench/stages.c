@@ -7,6 +7,7 @@
 #include "polish.h"
 #include "run.h"
 #include "symmetry.h"
+#include <hifdm/store.h>
 
 #include <malloc.h>
 #include <math.h>
