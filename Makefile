@@ -90,6 +90,11 @@ BENCH := $(BUILD)/bench/bench
 BENCH_OUT ?= results/bench
 BENCH_ROUNDS ?= 3
 BENCH_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/bench/*.c)))
+# The program's own run is benchmarked, with a clock around these calls: tools/bench/stages.c.
+BENCH_RUN := $(patsubst %,$(BUILD)/src/%.o,run problem)
+BENCH_WRAP := hf_config_load hf_config_scene hf_model_build hf_symmetry_apply hf_workspace_create hf_evaluate_form \
+              hf_batch_create hf_batch_share hf_ga_create hf_batch_run hf_batch_run_one hf_ga_tell hf_ga_next \
+              hf_polish_run hf_store_create hf_store_form hf_store_generation hf_store_best hf_store_finish
 
 # ---- How things are said and called ----------------------------------------------------------------------------------
 # Short lines, nothing when all is up to date; V=1 shows the full commands.
@@ -242,8 +247,8 @@ $(BUILD)/bench/peers: FORCE
 $(BENCH_OBJ): $(BUILD)/bench/peers
 $(BENCH_OBJ): EXTRA = -Isrc $(filter -D%,$(CHOLMOD))
 
-$(BENCH): $(BENCH_OBJ) $(STATIC)
+$(BENCH): $(BENCH_OBJ) $(BENCH_RUN) $(STATIC)
 	$(call say,LD,$@)
-	$(Q)$(LINK) -o $@ $^ $(filter -l%,$(CHOLMOD)) $(PKG_LIBS)
+	$(Q)$(LINK) $(patsubst %,-Wl$(comma)--wrap=%,$(BENCH_WRAP)) -o $@ $^ $(filter -l%,$(CHOLMOD)) $(PKG_LIBS)
 
 -include $(LIB_OBJ:.o=.d) $(APP_OBJ:.o=.d) $(TEST_OBJ:.o=.d) $(BENCH_OBJ:.o=.d)

@@ -14,19 +14,13 @@
 
 /* ---- choice of instruction set ---- */
 
-typedef struct {
-    void (*forces)(const hf_chord *, const hf_chord_lanes *, double *);
-    void (*solve)(const hf_chord *, const hf_chord_lanes *);
-    void (*step)(const hf_chord *, const hf_chord_lanes *);
-} kernels;
-
-static const kernels *choose_kernels(void)
+static const hf_chord_kernels *choose_kernels(void)
 {
 #define TABLE(isa)                                                                                                     \
     {                                                                                                                  \
         hf_chord_forces_##isa, hf_chord_solve_##isa, hf_chord_step_##isa                                               \
     }
-    static const kernels portable = TABLE(portable), avx2 = TABLE(avx2), avx512 = TABLE(avx512);
+    static const hf_chord_kernels portable = TABLE(portable), avx2 = TABLE(avx2), avx512 = TABLE(avx512);
 #undef TABLE
     switch (hf_lane_best_isa()) {
     case HF_LANE_AVX512:
@@ -126,6 +120,7 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_worksp
     HF_TRY(hf_arena_allocate(&arena));
     lay_out(&arena, chord);
     chord->block = arena.block;
+    chord->kernels = choose_kernels();
     pack(w, chord, 3 * m->half_bandwidth + 2);
     find_skyline(chord);
     memcpy(chord->base_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
@@ -239,7 +234,7 @@ static int settle(const hf_chord *c, hf_chord_lanes *l, int lane, lives *now, do
 void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, int (*next)(void *context),
                   void *context, const double *design_N, hf_form_result *result)
 {
-    const kernels *k = choose_kernels();
+    const hf_chord_kernels *k = chord->kernels;
     size_t n_gene = (size_t)chord->evaluator->model->n_gene;
     double residual_squared[HF_LANES], reference_N = chord->evaluator->model->reference_N;
     lives now;

@@ -5,9 +5,12 @@
 #include "lane.h"
 #include <hifdm/evaluate.h>
 
+typedef struct hf_chord_kernels hf_chord_kernels;
+
 /* Shared, constant. Arrays packed for the solve; see chord_kernel.h. */
 typedef struct hf_chord {
     const hf_evaluator *evaluator;
+    const hf_chord_kernels *kernels;
     int n_dof, width;         /* rows of the matrix; entries of a packed row, a multiple of 4 */
     double *row, *column;     /* [n_dof][width] factor by rows (forward) and by columns (backward) */
     double *inverse_diagonal; /* [n_dof] */
@@ -25,6 +28,13 @@ typedef struct {
     double *gene;    /* [n_gene][HF_LANES] q (N/m) or T (N) by rule */
     void *block;
 } hf_chord_lanes;
+
+/* Of one instruction set; what they do stands below. */
+struct hf_chord_kernels {
+    void (*forces)(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES]);
+    void (*solve)(const hf_chord *chord, const hf_chord_lanes *l);
+    void (*step)(const hf_chord *chord, const hf_chord_lanes *l);
+};
 
 /* The Makefile compiles chord_kernel.c with -DHF_ISA=avx512 and so on; the names end in it. */
 #define HF_JOIN_(a, b) a##_##b

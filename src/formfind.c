@@ -50,7 +50,7 @@ void hf_form_assemble(const hf_model *m, hf_workspace *w)
 }
 
 /* Right-hand sides into the free rows of position_m; the support rows keep the support positions. */
-static void assemble_loads(const hf_model *m, hf_workspace *w)
+void hf_form_assemble_loads(const hf_model *m, hf_workspace *w)
 {
     for (int c = 0; c < 3; c++) {
         double *x = w->position_m + (size_t)c * (size_t)m->n_node;
@@ -74,7 +74,7 @@ static void assemble_loads(const hf_model *m, hf_workspace *w)
 static hf_status solve(const hf_model *m, hf_workspace *w, int *bad_row)
 {
     hf_form_assemble(m, w);
-    assemble_loads(m, w);
+    hf_form_assemble_loads(m, w);
     if (m->has_strut)
         return hf_band_solve_indefinite(m->n_free, m->half_bandwidth, w->band, w->general_band, w->pivot, w->position_m,
                                         m->n_node, bad_row);
@@ -85,8 +85,8 @@ static hf_status solve(const hf_model *m, hf_workspace *w, int *bad_row)
 
 /* Lengths, tensions (Eqs. 4, 6), errors against the laws. length_gap is for stopping: beside the length error of taut
  * cables it counts slack ones that are too long, and the pull that is left in those that are too short. */
-static void measure_cables(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r,
-                           double *length_gap)
+void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r,
+                            double *length_gap)
 {
     const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
     double shortest = INFINITY;
@@ -268,7 +268,7 @@ static int any_law_iterates(const hf_model *m, const hf_workspace *w)
 }
 
 /* Eq. 7 scales q by the wanted over the present tension; with T = q l that is the wanted tension over l. */
-static void update_force_densities(const hf_model *m, hf_workspace *w)
+void hf_form_update(const hf_model *m, hf_workspace *w)
 {
     for (int e = 0; e < m->n_cable; e++) {
         if (w->law[e] == HF_LAW_TENSION)
@@ -375,13 +375,13 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, h
         r->iterations++;
         r->status = solve(m, w, &r->culprit);
         if (r->status != HF_OK) break;
-        measure_cables(m, s, w, r, &length_gap);
+        hf_form_measure_cables(m, s, w, r, &length_gap);
         if (r->status != HF_OK) break;
         if (need_psi) r->psi_m = hf_metrics_psi_m(m, w);
         if (need_residual) r->residual_N = hf_form_residual_N(m, w);
         if (history) record(history, m, w, r);
         if (is_last(m, s, w, r, &p, length_gap)) break;
-        update_force_densities(m, w);
+        hf_form_update(m, w);
     }
     if (r->status == HF_OK || r->status == HF_NOT_CONVERGED) {
         if (!need_residual) r->residual_N = hf_form_residual_N(m, w);
@@ -397,7 +397,7 @@ hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_works
     *r = (hf_form_result){.status = HF_OK, .culprit = -1};
     r->position_error_m = r->condition = r->backward_error = (double)NAN;
     for (int pass = 0; pass < 2; pass++) { /* the lengths give the force densities of law tension, these its tensions */
-        measure_cables(m, s, w, r, &length_gap);
+        hf_form_measure_cables(m, s, w, r, &length_gap);
         if (r->status != HF_OK) return finish(m, w, r);
         for (int e = 0; e < m->n_cable; e++)
             if (w->law[e] == HF_LAW_TENSION) w->q_N_per_m[e] = w->target[e] / w->length_m[e];
@@ -418,7 +418,7 @@ hf_status hf_form_accept(const hf_model *m, const hf_form_settings *s, hf_stop_r
     progress p = {.stop = reason == HF_STOPPED_RMS_CHANGE ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
     *r = (hf_form_result){.status = HF_OK, .culprit = -1, .iterations = iterations, .stop_reason = reason};
     r->position_error_m = r->condition = r->backward_error = (double)NAN;
-    measure_cables(m, s, w, r, &length_gap);
+    hf_form_measure_cables(m, s, w, r, &length_gap);
     if (r->status == HF_OK) {
         if (reason == HF_STOPPED_MAX_ITERATIONS) r->status = HF_NOT_CONVERGED;
         r->residual_N = hf_form_residual_N(m, w);

@@ -94,7 +94,10 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
     double newton = (double)hf_workspace_bytes(m) - bare;
     const char *without_ga = v ? "none (no genetic algorithm)" : "none (no optimisation)";
     char what[64];
-    snprintf(what, sizeof what, "workspaces (%d thread%s)", threads, threads == 1 ? "" : "s");
+    if (v)
+        snprintf(what, sizeof what, "workspaces (%d thread%s)", threads, threads == 1 ? "" : "s");
+    else
+        snprintf(what, sizeof what, "workspace");
     print_allocation("memory", what, workspaces * bare, "none", f);
     print_allocation("", "Newton matrices in them", workspaces * newton, "none (no law iterates, or struts)", f);
     print_allocation("", "matrix shared by all threads", (double)shared, evolves ? "none" : without_ga, f);

@@ -89,6 +89,16 @@ hf_status hf_form_accept(const hf_model *model, const hf_form_settings *settings
 /* The result of a candidate without a shape: the status (an ill-posed one), NaN measures, no culprit. */
 void hf_form_refuse(hf_status status, int iterations, hf_form_result *result);
 
+/* The other parts of an iteration of hf_form_find, for a linear solver of one's own and for timing. In order:
+ * hf_form_assemble; assemble_loads: the right-hand sides (Eq. 5) into the free rows of position_m, from the supports in
+ * its other rows; solve band * x = those rows, for x, y and z; measure_cables: lengths, tensions and the errors against
+ * the laws (result->status must be HF_OK before, and says afterwards whether this is a shape; *length_gap is the length
+ * error that stopping looks at); hf_form_residual_N; update: Eqs. 7 and 8. */
+void hf_form_assemble_loads(const hf_model *model, hf_workspace *workspace);
+void hf_form_measure_cables(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
+                            hf_form_result *result, double *length_gap);
+void hf_form_update(const hf_model *model, hf_workspace *workspace);
+
 /* Is straight chain i under lateral load in the workspace's shape? For naming it. */
 int hf_form_chain_is_loaded(const hf_model *model, hf_workspace *workspace, int i_chain);
 

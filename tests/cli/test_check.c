@@ -23,6 +23,7 @@ START_TEST(check_tells_what_will_run)
     SHELL(0, "cd \"$1\" && \"$0\" check \"$2\" && ls -A", temp("."), REFLECTOR);
     OUT("skipped       optimisation (no optimize section); loads (none given); general band matrix (no struts)\n");
     OUT("population                             none\n");
+    OUT("  memory        workspace                              ");
     ck_assert_ptr_null(strstr(said.out, ".h5")); /* nothing was made */
     ck_assert_str_eq(said.err, "");
 }

@@ -1,6 +1,8 @@
 /* Form-finding of nets small enough to solve by hand: FDM, Eq. 7, Eq. 8, and how each stop is told. */
 #include "nets.h"
 
+#include "band.h"
+
 /* Roundoff of one small solve with numbers of size 1. */
 #define ROUNDOFF 1e-14
 
@@ -225,6 +227,49 @@ START_TEST(overflow_is_told)
 }
 END_TEST
 
+/* Who calls the parts in the order of the header gets hf_form_find's shape, to the bit: Eqs. 7 and 8 in one net. */
+START_TEST(the_parts_are_the_iteration)
+{
+    static const struct hand_node node[] = {{{0, 0, 0}, HF_ROLE_SUPPORT, {0}},
+                                            {{4, 0, 0}, HF_ROLE_SUPPORT, {0}},
+                                            {{0, 3, 0}, HF_ROLE_SUPPORT, {0}},
+                                            {{1, 1, 0.5}, HF_ROLE_INNER, {0}},
+                                            {{2, 1, 0.1}, HF_ROLE_INNER, {0.3}}};
+    static const struct hand_cable cable[] = {{{0, 3}, HF_GROUP_INNER, HF_LAW_TENSION, 10},
+                                              {{3, 4}, HF_GROUP_INNER, HF_LAW_TENSION, 7},
+                                              {{4, 1}, HF_GROUP_BOUNDARY, HF_LAW_LENGTH, 2.3},
+                                              {{2, 3}, HF_GROUP_BOUNDARY, HF_LAW_LENGTH, 2.6},
+                                              {{4, 2}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 1.5}};
+    struct net net;
+    double whole_m[15], whole_q[5], length_gap;
+    OPEN_HAND(&net, node, cable, HF_METHOD_HIFDM);
+    net.form.max_iterations = 5;
+    ck_assert_int_eq(find_shape(&net), HF_NOT_CONVERGED);
+    memcpy(whole_m, net.work.position_m, sizeof whole_m);
+    memcpy(whole_q, net.work.q_N_per_m, sizeof whole_q);
+    hf_workspace_poison(&net.model, &net.work);
+    hf_form_prepare(&net.model, &net.work);
+    memcpy(net.work.position_m, net.model.position_m, sizeof whole_m);
+    for (int k = 1;; k++) {
+        hf_form_result now = {.status = HF_OK};
+        int bad_row;
+        hf_form_assemble(&net.model, &net.work);
+        hf_form_assemble_loads(&net.model, &net.work);
+        ck_assert_int_eq(hf_band_solve(net.model.n_free, net.model.half_bandwidth, net.work.band, net.work.position_m,
+                                       net.model.n_node, &bad_row),
+                         HF_OK);
+        hf_form_measure_cables(&net.model, &net.form, &net.work, &now, &length_gap);
+        ck_assert_int_eq(now.status, HF_OK);
+        if (k == net.form.max_iterations) break;
+        hf_form_update(&net.model, &net.work);
+    }
+    ck_assert_mem_eq(net.work.position_m, whole_m, sizeof whole_m);
+    ck_assert_mem_eq(net.work.q_N_per_m, whole_q, sizeof whole_q);
+    ck_assert_double_eq(hf_form_residual_N(&net.model, &net.work), net.result.residual_N);
+    close_net(&net);
+}
+END_TEST
+
 START_TEST(words_of_stop_reasons)
 {
     ck_assert_str_eq(hf_stop_reason_word(HF_STOPPED_DIRECT), "direct");
@@ -250,6 +295,7 @@ Suite *suite_unit_formfind(void)
     tcase_add_test(tests, collapse_names_its_cable);
     tcase_add_test(tests, singular_names_its_row);
     tcase_add_test(tests, overflow_is_told);
+    tcase_add_test(tests, the_parts_are_the_iteration);
     tcase_add_test(tests, words_of_stop_reasons);
     return suite;
 }

@@ -30,6 +30,8 @@ void bench_scene_open(const char *name, const char *path, const char *const *ove
                       bench_scene *scene);
 /* The scenes by name; see the table in scene.c. `folder`: where the imported net is written. */
 void bench_scene_named(const char *name, const char *folder, bench_scene *scene);
+/* Only case, scene, model and workspace: no shape, no designs. */
+void bench_scene_model(const char *name, bench_scene *scene);
 void bench_scene_free(bench_scene *scene);
 
 /* Shape of the prepared workspace's laws (no law length) by Newton in long double, from its position_m, into x_m
@@ -48,11 +50,10 @@ void bench_emit(const char *section, const char *scene, const char *method, doub
 /* Seconds per call of work(context): at least one call, and calls until `enough_s` have passed. */
 double bench_time_s(void (*work)(void *context), void *context, double enough_s);
 
-/* One step of the force density method in its parts, as src/formfind.c does it. */
-void bench_fdm_matrix(const hf_model *model, hf_workspace *workspace);
-void bench_fdm_loads(const hf_model *model, hf_workspace *workspace);
-void bench_fdm_measure(const hf_model *model, hf_workspace *workspace);
-void bench_fdm_update(const hf_model *model, hf_workspace *workspace); /* Eqs. 7, 8 */
+/* One step of the force density method by hf_form_find's own parts: assembly, factor, three right-hand sides, lengths
+ * and tensions. measure: its last part, for a shape that another solver left in the workspace. */
+void bench_fdm_step(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace);
+void bench_measure(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace);
 
 /* The net, a prepared workspace's laws and force densities and a shape to hold against, for peers.py. */
 void bench_write_net(const bench_scene *scene, const hf_workspace *workspace, const double *reference_m,
@@ -67,12 +68,15 @@ double bench_cholmod_bytes(const bench_cholmod *peer); /* of the factor and the 
 void bench_cholmod_free(bench_cholmod *peer);
 const char *bench_cholmod_version(void);
 
-/* The sections. */
+/* The sections, a file each. One more (the frame of a truss, say) is a file like step.c, a row in main.c, a line in
+ * `measure`, a write_... in run.py, and a row in results/bench/README.md. */
+void bench_step(const char *what, const char *folder);
+void bench_peak(const char *what, const char *folder);
+void bench_phases(const char *scene, const char *folder);
 void bench_precision(const char *scene, const char *folder);
 void bench_single(const char *scene, const char *folder);
-void bench_step(const char *folder);
-void bench_growth(int scale);
-void bench_phases(const char *scene, const char *folder);
-void bench_population(const char *scene, const char *folder, int threads);
+void bench_growth(const char *scale, const char *folder);
+void bench_population(const char *scene, const char *folder);
+void bench_stages(const char *name, const char *folder, const char *path, const char *const *overrides, int n_override);
 
 #endif

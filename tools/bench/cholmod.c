@@ -79,7 +79,7 @@ int bench_cholmod_step(bench_cholmod *p, const hf_model *m, hf_workspace *w)
 {
     size_t n = (size_t)m->n_free;
     fill_values(p, m, w->q_N_per_m);
-    bench_fdm_loads(m, w);
+    hf_form_assemble_loads(m, w);
     for (size_t c = 0; c < 3; c++)
         memcpy((double *)p->b->x + c * n, w->position_m + c * (size_t)m->n_node, n * sizeof(double));
     if (!cholmod_factorize(p->matrix, p->factor, &p->common) || p->common.status != CHOLMOD_OK) return 1;

@@ -53,19 +53,14 @@ static void build(int scale, net *n)
 static void solve_band(void *context)
 {
     net *n = context;
-    int bad_row;
-    bench_fdm_matrix(&n->model, &n->workspace);
-    bench_fdm_loads(&n->model, &n->workspace);
-    hf_band_solve(n->model.n_free, n->model.half_bandwidth, n->workspace.band, n->workspace.position_m, n->model.n_node,
-                  &bad_row);
-    bench_fdm_measure(&n->model, &n->workspace);
+    bench_fdm_step(&n->model, &n->settings.form, &n->workspace);
 }
 
 static void solve_cholmod(void *context)
 {
     net *n = context;
     bench_cholmod_step(n->cholmod, &n->model, &n->workspace);
-    bench_fdm_measure(&n->model, &n->workspace);
+    bench_measure(&n->model, &n->settings.form, &n->workspace);
 }
 
 static void newton_step(void *context)
@@ -150,11 +145,12 @@ static void evaluations(net *n)
     free(design_N);
 }
 
-void bench_growth(int scale)
+void bench_growth(const char *scale, const char *folder)
 {
+    (void)folder;
     net n;
     hf_form_result r;
-    build(scale, &n);
+    build(atoi(scale), &n);
     one_solve(&n);
     n.settings.form.max_iterations = 2000; /* minutes on the largest net */
     double start_s = bench_clock_s();

@@ -50,6 +50,24 @@ double bench_time_s(void (*work)(void *context), void *context, double enough_s)
     return passed_s / (double)n;
 }
 
+void bench_measure(const hf_model *m, const hf_form_settings *form, hf_workspace *w)
+{
+    hf_form_result r = {.status = HF_OK};
+    double length_gap;
+    hf_form_measure_cables(m, form, w, &r, &length_gap);
+    if (r.status != HF_OK) bench_fail("step", hf_status_text(r.status));
+}
+
+void bench_fdm_step(const hf_model *m, const hf_form_settings *form, hf_workspace *w)
+{
+    int bad_row;
+    hf_form_assemble(m, w);
+    hf_form_assemble_loads(m, w);
+    if (hf_band_solve(m->n_free, m->half_bandwidth, w->band, w->position_m, m->n_node, &bad_row) != HF_OK)
+        bench_fail("step", "singular");
+    bench_measure(m, form, w);
+}
+
 /* ---- arguments ---- */
 
 static void about(void)
@@ -57,25 +75,33 @@ static void about(void)
     printf("hifdm %s\nlapack %s\ncholmod %s\n", hf_store_version(), hf_band_library(), bench_cholmod_version());
 }
 
+/* Called as: bench NAME FOLDER WHAT [more]; what: a scene, a size. */
+typedef struct {
+    const char *name;
+    void (*run)(const char *what, const char *folder);
+} section;
+
+static const section section_table[] = {
+    {"step", bench_step},     {"peak", bench_peak},     {"phases", bench_phases},        {"precision", bench_precision},
+    {"single", bench_single}, {"growth", bench_growth}, {"population", bench_population}};
+
 int main(int argc, char **argv)
 {
-    const char *section = argc > 1 ? argv[1] : "", *folder = argc > 2 ? argv[2] : ".", *what = argc > 3 ? argv[3] : "";
+    const char *name = argc > 1 ? argv[1] : "", *folder = argc > 2 ? argv[2] : ".", *what = argc > 3 ? argv[3] : "";
     hf_band_single_threaded();
-    if (!strcmp(section, "about"))
+    if (!strcmp(name, "about")) {
         about();
-    else if (!strcmp(section, "precision"))
-        bench_precision(what, folder);
-    else if (!strcmp(section, "single"))
-        bench_single(what, folder);
-    else if (!strcmp(section, "step"))
-        bench_step(folder);
-    else if (!strcmp(section, "growth"))
-        bench_growth(atoi(what));
-    else if (!strcmp(section, "phases"))
-        bench_phases(what, folder);
-    else if (!strcmp(section, "population"))
-        bench_population(what, folder, argc > 4 ? atoi(argv[4]) : 1);
-    else
-        bench_fail("usage", "bench about|precision|single|step|growth|phases|population FOLDER [WHAT] [THREADS]");
-    return 0;
+        return 0;
+    }
+    if (!strcmp(name, "stages") && argc > 4) { /* WHAT, a case file and overrides of its keys */
+        bench_stages(what, folder, argv[4], (const char *const *)(argv + 5), argc - 5);
+        return 0;
+    }
+    for (size_t i = 0; i < sizeof section_table / sizeof *section_table; i++) {
+        if (strcmp(name, section_table[i].name)) continue;
+        section_table[i].run(what, folder);
+        return 0;
+    }
+    bench_fail("usage", "bench about | SECTION FOLDER [WHAT]; the sections are in tools/bench/main.c");
+    return 1;
 }

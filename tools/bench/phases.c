@@ -1,158 +1,208 @@
-/* Share of time per phase, by a loop of the driver's own around the library's parts: a fixed-point iteration, and a
- * chord evaluation, per individual of eight that start together (hf_chord_run also refills lanes one by one). */
+/* Share of time per phase. One design by the fixed point: a loop over the parts of hf_form_find. Many designs: the real
+ * hf_swarm_run and hf_chord_run, with a clock in front of each of their kernels; "rest" is what they do around them:
+ * put designs into lanes, take shapes out, measure these by the scalar code and judge them.
+ *
+ * Contents: what was spent - one design - eight to a pass, fixed point - eight to a pass, chord */
 #include "bench.h"
 
 #include "band.h"
 #include "chord.h"
-#include "chord_kernel.h"
-#include "newton.h"
+#include "swarm.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#define ENOUGH_S 0.3
+#define ENOUGH_S 0.2
+#define ITERATIONS 100 /* of each design by the fixed point */
 
-/* ---- fixed point ---- */
+/* ---- what was spent ---- */
 
-enum { ASSEMBLY, FACTOR, SOLVE, MEASURE, UPDATE, N_PHASE };
-static const char *const phase_word[N_PHASE] = {"assembly", "factor", "solve", "measure", "update"};
+enum { ASSEMBLY, FACTOR, SOLVE, MEASURE, RESIDUAL, UPDATE, REST, N_PHASE };
+static const char *const phase_word[N_PHASE] = {"assembly", "factor", "solve", "measure", "residual", "update", "rest"};
 
-static void fixed_point_step(bench_scene *b, double spent_s[N_PHASE])
+static double spent_s[N_PHASE]; /* a global, because kernels have no context to pass it in */
+
+static void charge(int phase, double *since_s)
+{
+    double now_s = bench_clock_s();
+    spent_s[phase] += now_s - *since_s;
+    *since_s = now_s;
+}
+
+static void emit(const char *name, const char *method, double n)
+{
+    double total_s = 0;
+    for (int i = 0; i < N_PHASE; i++)
+        total_s += spent_s[i];
+    for (int i = 0; i < N_PHASE; i++) {
+        if (spent_s[i] == 0) continue; /* there is no such phase */
+        bench_emit("phases", name, method, i, phase_word[i], spent_s[i] / n);
+        bench_emit("phases", name, method, i, "share", spent_s[i] / total_s);
+    }
+}
+
+/* ---- one design ---- */
+
+static void fixed_point_step(bench_scene *b)
 {
     const hf_model *m = &b->model;
     hf_workspace *w = &b->workspace;
-    double t[N_PHASE + 1];
-    t[0] = bench_clock_s();
-    bench_fdm_matrix(m, w);
-    bench_fdm_loads(m, w);
-    t[1] = bench_clock_s();
+    double t = bench_clock_s();
+    hf_form_assemble(m, w);
+    hf_form_assemble_loads(m, w);
+    charge(ASSEMBLY, &t);
     if (hf_band_factor(m->n_free, m->half_bandwidth, w->band) != 0) bench_fail(b->name, "singular");
-    t[2] = bench_clock_s();
+    charge(FACTOR, &t);
     hf_band_back_solve(m->n_free, m->half_bandwidth, 3, w->band, w->position_m, m->n_node);
-    t[3] = bench_clock_s();
-    bench_fdm_measure(m, w);
-    t[4] = bench_clock_s();
-    bench_fdm_update(m, w);
-    t[5] = bench_clock_s();
-    for (int i = 0; i < N_PHASE; i++)
-        spent_s[i] += t[i + 1] - t[i];
+    charge(SOLVE, &t);
+    bench_measure(m, &b->form, w);
+    charge(MEASURE, &t);
+    hf_form_residual_N(m, w);
+    charge(RESIDUAL, &t);
+    hf_form_update(m, w);
+    charge(UPDATE, &t);
 }
 
 static void fixed_point_phases(bench_scene *b)
 {
-    double spent_s[N_PHASE] = {0}, total_s = 0;
     int n = 0;
-    if (b->model.n_gene > 0)
-        hf_evaluate_prepare(&b->evaluator, b->design_N, &b->workspace);
-    else
-        hf_form_prepare(&b->model, &b->workspace);
+    memset(spent_s, 0, sizeof spent_s);
+    hf_evaluate_prepare(&b->evaluator, b->design_N, &b->workspace);
     memcpy(b->workspace.position_m, b->model.position_m, 3 * (size_t)b->model.n_node * sizeof(double));
     for (double start_s = bench_clock_s(); bench_clock_s() - start_s < ENOUGH_S; n++)
-        fixed_point_step(b, spent_s);
+        fixed_point_step(b);
+    emit(b->name, "fixed point iteration", n);
+}
+
+/* ---- populations, run over and over ---- */
+
+static int next_design(void *context)
+{
+    int *n_left = context;
+    return --*n_left;
+}
+
+typedef void run_population(bench_scene *b, int (*next)(void *context), void *context, hf_form_result *result);
+
+/* Time per iteration, or per evaluation. */
+static void population_phases(bench_scene *b, const char *method, run_population *run, int by_iteration)
+{
+    hf_form_result result[BENCH_POPULATION];
+    double n = 0, kernels_s = 0, start_s = bench_clock_s(), passed_s;
+    memset(spent_s, 0, sizeof spent_s);
+    do {
+        int n_left = BENCH_POPULATION;
+        run(b, next_design, &n_left, result);
+        for (int i = 0; i < BENCH_POPULATION; i++)
+            n += by_iteration ? result[i].iterations : 1;
+        passed_s = bench_clock_s() - start_s;
+    } while (passed_s < ENOUGH_S);
     for (int i = 0; i < N_PHASE; i++)
-        total_s += spent_s[i];
-    for (int i = 0; i < N_PHASE; i++) {
-        bench_emit("phases", b->name, "fixed point iteration", i, phase_word[i], spent_s[i] / n);
-        bench_emit("phases", b->name, "fixed point iteration", i, "share", spent_s[i] / total_s);
-    }
+        kernels_s += spent_s[i];
+    spent_s[REST] = passed_s - kernels_s;
+    emit(b->name, method, n);
 }
 
-/* ---- chord ---- */
+/* ---- eight to a pass, fixed point ---- */
 
-enum { LOAD, FORCES, TRIANGLES, STEP, CERTIFY, N_CHORD_PHASE };
-static const char *const chord_word[N_CHORD_PHASE] = {"load", "assembly (forces)", "solve", "step", "measure"};
+static const hf_lane_kernels *lane_kernels;
+static hf_lane_plan lane_plan;
+static hf_lane_workspace lane_workspace;
 
-typedef struct {
-    void (*forces)(const hf_chord *, const hf_chord_lanes *, double *);
-    void (*solve)(const hf_chord *, const hf_chord_lanes *);
-    void (*step)(const hf_chord *, const hf_chord_lanes *);
-} kernels;
-
-/* The same choice as in chord.c, where it is static. */
-static kernels choose(void)
+/* In three calls what the kernel `solve` interleaves: the same bits, a little slower. */
+static void timed_lane_solve(const hf_lane_plan *plan, hf_lane_workspace *w)
 {
-    if (__builtin_cpu_supports("avx512f"))
-        return (kernels){hf_chord_forces_avx512, hf_chord_solve_avx512, hf_chord_step_avx512};
-    if (__builtin_cpu_supports("avx2")) return (kernels){hf_chord_forces_avx2, hf_chord_solve_avx2, hf_chord_step_avx2};
-    return (kernels){hf_chord_forces_portable, hf_chord_solve_portable, hf_chord_step_portable};
+    double t = bench_clock_s();
+    lane_kernels->assemble(plan, w);
+    charge(ASSEMBLY, &t);
+    lane_kernels->factor(plan, w);
+    charge(FACTOR, &t);
+    lane_kernels->substitute(plan, w);
+    charge(SOLVE, &t);
 }
 
-static void load_lanes(const bench_scene *b, const hf_chord *c, hf_chord_lanes *l, int first)
+static void timed_lane_measure(const hf_lane_plan *plan, hf_lane_workspace *w, hf_lane_measures *measures)
 {
-    const hf_model *m = &b->model;
-    for (size_t lane = 0; lane < HF_LANES; lane++) {
-        const double *design = b->design_N + ((size_t)first + lane) * (size_t)m->n_gene;
-        for (size_t i = 0; i < 3 * (size_t)m->n_node; i++)
-            l->x_m[i * HF_LANES + lane] = c->base_m[i];
-        for (int k = 0; k < m->n_gene; k++)
-            l->gene[(size_t)k * HF_LANES + lane] = design[k] / hf_evaluate_design_length_m(m, m->gene_cable[k]);
-    }
+    double t = bench_clock_s();
+    lane_kernels->measure(plan, w, measures);
+    charge(MEASURE, &t);
 }
 
-static void certify_lanes(bench_scene *b, const hf_chord_lanes *l, int first)
+static void timed_lane_residual(const hf_lane_plan *plan, const hf_lane_workspace *w, hf_lane_measures *measures)
 {
-    const hf_model *m = &b->model;
-    hf_form_result r;
-    for (size_t lane = 0; lane < HF_LANES; lane++) {
-        hf_evaluate_prepare(&b->evaluator, b->design_N + ((size_t)first + lane) * (size_t)m->n_gene, &b->workspace);
-        for (size_t i = 0; i < 3 * (size_t)m->n_node; i++)
-            b->workspace.position_m[i] = l->x_m[i * HF_LANES + lane];
-        hf_form_measure(m, &b->form, &b->workspace, &r);
-        hf_evaluate_judge(&b->evaluator, &r);
-    }
+    double t = bench_clock_s();
+    lane_kernels->residual(plan, w, measures);
+    charge(RESIDUAL, &t);
 }
 
-/* Eight designs until the slowest has converged; returns the passes. */
-static int chord_pass(bench_scene *b, const hf_chord *c, hf_chord_lanes *l, int first, double spent_s[N_CHORD_PHASE])
+static void run_swarm(bench_scene *b, int (*next)(void *context), void *context, hf_form_result *result)
 {
-    kernels k = choose();
-    double square[HF_LANES], t = bench_clock_s(), now;
-    load_lanes(b, c, l, first);
-    spent_s[LOAD] += (now = bench_clock_s()) - t, t = now;
-    for (int n = 1; n < 60; n++) {
-        double worst = 0;
-        k.forces(c, l, square);
-        spent_s[FORCES] += (now = bench_clock_s()) - t, t = now;
-        for (int lane = 0; lane < HF_LANES; lane++)
-            worst = fmax(worst, square[lane]);
-        if (sqrt(worst) <= b->form.residual_tolerance) {
-            certify_lanes(b, l, first);
-            spent_s[CERTIFY] += bench_clock_s() - t;
-            return n;
-        }
-        k.solve(c, l);
-        spent_s[TRIANGLES] += (now = bench_clock_s()) - t, t = now;
-        k.step(c, l);
-        spent_s[STEP] += (now = bench_clock_s()) - t, t = now;
-    }
-    bench_fail(b->name, "the chord does not contract");
-    return 0;
+    hf_swarm_run(&b->evaluator, &lane_plan, &lane_workspace, &b->workspace, next, context, b->design_N, result);
+}
+
+static void swarm_phases(bench_scene *b)
+{
+    if (hf_lane_plan_create(&b->model, hf_lane_best_isa(), &lane_plan) != HF_OK ||
+        hf_lane_workspace_create(&lane_plan, &lane_workspace) != HF_OK)
+        bench_fail(b->name, "out of memory");
+    hf_lane_kernels timed = *lane_plan.kernels;
+    lane_kernels = lane_plan.kernels;
+    timed.solve = timed_lane_solve;
+    timed.measure = timed_lane_measure;
+    timed.residual = timed_lane_residual;
+    lane_plan.kernels = &timed;
+    b->form.residual_tolerance = 0; /* never reached: as many iterations for each design */
+    b->form.max_iterations = ITERATIONS;
+    population_phases(b, "fixed point iteration, lanes", run_swarm, 1);
+    b->form = b->settings.form;
+    hf_lane_workspace_free(&lane_workspace);
+    hf_lane_plan_free(&lane_plan);
+}
+
+/* ---- eight to a pass, chord ---- */
+
+static const hf_chord_kernels *chord_kernels;
+static hf_chord chord;
+static hf_chord_lanes chord_lanes;
+
+static void timed_chord_forces(const hf_chord *c, const hf_chord_lanes *l, double residual_squared[HF_LANES])
+{
+    double t = bench_clock_s();
+    chord_kernels->forces(c, l, residual_squared);
+    charge(RESIDUAL, &t);
+}
+
+static void timed_chord_solve(const hf_chord *c, const hf_chord_lanes *l)
+{
+    double t = bench_clock_s();
+    chord_kernels->solve(c, l);
+    charge(SOLVE, &t);
+}
+
+static void timed_chord_step(const hf_chord *c, const hf_chord_lanes *l)
+{
+    double t = bench_clock_s();
+    chord_kernels->step(c, l);
+    charge(UPDATE, &t);
+}
+
+static void run_chord(bench_scene *b, int (*next)(void *context), void *context, hf_form_result *result)
+{
+    hf_chord_run(&chord, &chord_lanes, &b->workspace, next, context, b->design_N, result);
 }
 
 static void chord_phases(bench_scene *b)
 {
-    double spent_s[N_CHORD_PHASE] = {0}, total_s = 0;
-    hf_chord chord;
-    hf_chord_lanes lanes;
-    int n = 0, n_pass = 0;
+    static const hf_chord_kernels timed = {timed_chord_forces, timed_chord_solve, timed_chord_step};
     if (!hf_chord_applies(&b->evaluator)) return;
     b->evaluator.solver = HF_SOLVER_NEWTON;
-    double start_s = bench_clock_s();
+    b->form.residual_tolerance = 1e-7;
     if (hf_chord_create(&b->evaluator, b->base_N, &b->workspace, &chord) != HF_OK ||
-        hf_chord_lanes_create(&chord, &lanes) != HF_OK)
+        hf_chord_lanes_create(&chord, &chord_lanes) != HF_OK)
         bench_fail(b->name, "no matrix to share");
-    bench_emit("phases", b->name, "chord evaluation", 0, "setup_s", bench_clock_s() - start_s);
-    for (start_s = bench_clock_s(); bench_clock_s() - start_s < ENOUGH_S; n++)
-        n_pass += chord_pass(b, &chord, &lanes, n * HF_LANES % (BENCH_POPULATION - HF_LANES), spent_s);
-    for (int i = 0; i < N_CHORD_PHASE; i++)
-        total_s += spent_s[i];
-    for (int i = 0; i < N_CHORD_PHASE; i++) {
-        bench_emit("phases", b->name, "chord evaluation", i, chord_word[i], spent_s[i] / n / HF_LANES);
-        bench_emit("phases", b->name, "chord evaluation", i, "share", spent_s[i] / total_s);
-    }
-    bench_emit("phases", b->name, "chord evaluation", 0, "passes", (double)n_pass / n);
-    hf_chord_lanes_free(&lanes);
+    chord_kernels = chord.kernels;
+    chord.kernels = &timed;
+    population_phases(b, "chord evaluation", run_chord, 0);
+    hf_chord_lanes_free(&chord_lanes);
     hf_chord_free(&chord);
 }
 
@@ -160,8 +210,8 @@ void bench_phases(const char *name, const char *folder)
 {
     bench_scene b;
     bench_scene_named(name, folder, &b);
-    b.form.residual_tolerance = 1e-7;
     fixed_point_phases(&b);
-    if (b.model.n_gene > 0) chord_phases(&b);
+    swarm_phases(&b);
+    chord_phases(&b);
     bench_scene_free(&b);
 }

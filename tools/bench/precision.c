@@ -189,13 +189,9 @@ static int count_fixed_point(bench_scene *b, const double *reference_m)
     memcpy(w->position_m, m->position_m, shape_size(b) * sizeof(double));
     hf_evaluate_prepare(&b->evaluator, b->design_N, w);
     for (int k = 1; k < COUNT_MAX; k++) {
-        int bad_row;
-        bench_fdm_matrix(m, w);
-        bench_fdm_loads(m, w);
-        if (hf_band_solve(m->n_free, m->half_bandwidth, w->band, w->position_m, m->n_node, &bad_row) != HF_OK) return 0;
-        bench_fdm_measure(m, w);
+        bench_fdm_step(m, &b->form, w);
         if (bench_distance_m(m, w->position_m, reference_m) <= WANTED_M) return k;
-        bench_fdm_update(m, w);
+        hf_form_update(m, w);
     }
     return 0;
 }

@@ -22,13 +22,19 @@ SCENES = ["chen2022", "21x25 f=15", "imported 31x37", "41x49 f=5"]
 KERNEL_NET = "21x25 perimeter"
 SCALES = {1: 3, 2: 3, 4: 3, 8: 2, 16: 1}  # nets of the cost growth: rounds, fewer for those that take seconds
 BIG = "scene.parabolic_cylinder.cells_per_module=[4,4]"
-# Name of a GA case: arguments of the program, rounds. The polish is not what is measured here, and takes long.
+# Arguments of the program. The polish is not what is measured here, and takes long.
 GA_CASES = {
-    "chen2022": (["configs/chen2022.yaml"], 5),
-    "41x49 f=5": (["configs/reflector.yaml", "--set", BIG, "--set", "scene.parabolic_cylinder.focal_length_m=5",
-                   "--set", "form.method=auto"], 2),
+    "chen2022": ["configs/chen2022.yaml"],
+    "41x49 f=5": ["configs/reflector.yaml", "--set", BIG, "--set", "scene.parabolic_cylinder.focal_length_m=5",
+                  "--set", "form.method=auto"],
 }
 GA_GENERATIONS = (400, 100)
+# What a scene does not need is skipped: a case file and overrides each.
+STAGE_CASES = {
+    "FDM only": ["configs/reflector.yaml", "form.method=fdm"],
+    "HIFDM": ["configs/reflector.yaml", "form.method=hifdm"],
+    "HIFDM + GA": ["configs/chen2022.yaml"],
+}
 
 
 class Samples:
@@ -51,6 +57,11 @@ class Samples:
     def get(self, section, scene, method, parameter, quantity):
         found = [v for v in self.values.get((section, scene, method, float(parameter), quantity), []) if v == v]
         return statistics.median(found) if found else None
+
+    def paired(self, section, scene, over, under):
+        """Median of ratios of samples taken one after the other; over, under: (method, parameter, quantity)."""
+        a, b = (self.values.get((section, scene, m, float(p), q), []) for m, p, q in (over, under))
+        return statistics.median([x / y for x, y in zip(a, b)]) if a and b else None
 
     def any(self, section, scene, method, quantity):
         for key in self.keys(section):
@@ -86,7 +97,7 @@ class Bench:
     def program(self, name, threads, generations, policy="passive"):
         """One run of the program with its GA; times, memory and bytes of the whole process."""
         path = f"{self.a.work}/ga.h5"
-        command = [self.a.program, "run", *GA_CASES[name][0], "-o", path, "--force", "--json", "--quiet",
+        command = [self.a.program, "run", *GA_CASES[name], "-o", path, "--force", "--json", "--quiet",
                    "--threads", str(threads)]
         for key, value in {"population": 50, "generations": generations, "stagnation_generations": 400,
                            "polish_iterations": 1}.items():
@@ -112,13 +123,14 @@ class Bench:
 
     def measure(self):
         for r in range(self.a.rounds):
-            self.say(f"round {r + 1} of {self.a.rounds}: steps, phases, storing")
+            self.say(f"round {r + 1} of {self.a.rounds}: steps, peak, phases, stages")
             self.driver("step")
             self.peers("step")
+            self.driver("peak")
             for scene in (KERNEL_NET, *SCENES):
                 self.driver("phases", scene)
-            for threads in (1, 2):
-                self.driver("population", "chen2022", threads)
+            for name, case in STAGE_CASES.items():
+                self.driver("stages", name, *case)
             self.say("work-precision, one evaluation")
             for scene in SCENES:
                 if scene != SCENES[-1] or r == 0:  # the fixed point takes 20 s there
@@ -131,15 +143,32 @@ class Bench:
             for scale, rounds in SCALES.items():
                 if r < rounds:
                     self.driver("growth", scale)
-        self.say("genetic algorithm by the program")
-        for name, (_, rounds) in GA_CASES.items():
-            for _ in range(min(rounds, 2 * self.a.rounds)):
-                for threads in (1, 2):
-                    self.program(name, threads, GA_GENERATIONS[0])
-            self.program(name, 2, GA_GENERATIONS[1])  # for its memory
-        self.program("chen2022", 2, GA_GENERATIONS[0], "active")  # what a user gets who sets nothing
-        for threads in (1, 2):
-            self.driver("population", SCENES[-1], threads)
+            self.say("populations")
+            for _ in range(3):
+                self.driver("population", "chen2022")
+                self.program("chen2022", 2, GA_GENERATIONS[0])
+                self.program("chen2022", 2, GA_GENERATIONS[0], "active")  # what a user gets who sets nothing
+            self.driver("population", SCENES[-1])
+        self.say("memory of the program")
+        for name in GA_CASES:
+            for generations in GA_GENERATIONS:
+                self.program(name, 2, generations)
+        self.checks = {name: self.check(*case) for name, case in STAGE_CASES.items()}
+
+    def check(self, path, *overrides):
+        """The rows of `hifdm check` that say what runs, what is skipped and who allocates what."""
+        command = [self.a.program, "check", path, "--threads", "2"]
+        for override in overrides:
+            command += ["--set", override]
+        done = subprocess.run(command, env=self.env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        rows, title = [], ""
+        for line in done.stdout.splitlines()[1:]:
+            title = line[2:15].strip() or title
+            if title in ("will run", "skipped"):
+                rows.append([title, line[16:].strip(), ""])
+            elif title in ("memory", "result file"):
+                rows.append([title, line[16:54].strip(), line[55:].strip()])
+        return rows
 
     def header(self):
         about = subprocess.run([self.a.driver, "about"], capture_output=True, text=True).stdout.split("\n")
@@ -200,6 +229,11 @@ class Bench:
                              self.samples.get("step", scene, method, n_free, "difference_m")])
         self.table("step", ["method", "n_free", "time_us", "times_dpbtrf", "difference_m"], rows)
 
+    def write_peak(self):
+        self.wide("peak", "peak", ["factor_us", "flops", "flops_of_band", "factor_GFs", "fma_peak_GFs",
+                                   "apart_peak_GFs", "share_of_fma_peak", "share_of_apart_peak"],
+                  ("net", "instruction_set", "half_bandwidth"))
+
     def write_growth(self):
         self.wide("growth", "growth", ["n_free", "half_bandwidth", "time_s", "bytes", "iterations"],
                   ("net", "method", "nodes"))
@@ -219,31 +253,48 @@ class Bench:
         bars, rows = {}, []
         for key, values in self.samples.values.items():
             section, scene, method, phase, quantity = key
-            if section != "phases" or quantity in ("share", "setup_s", "passes"):
+            if section != "phases" or quantity == "share":
                 continue
             share = self.samples.get("phases", scene, method, phase, "share")
-            bars.setdefault(f"{scene}, {method}", {})[quantity.replace("assembly (forces)", "assembly")] = share
-            rows.append([scene, method, quantity, statistics.median(values), share])
+            bars.setdefault(f"{scene}, {method}", {})[quantity] = share
+            rows.append([scene, method.replace(",", ";"), quantity, statistics.median(values), share])
         self.table("phases", ["scene", "method", "phase", "time_s", "share"], rows)
         svg.shares(f"{self.a.out}/phases.svg", bars, "\n".join(self.head))
+
+    def write_stages(self):
+        keys = self.samples.keys("stages")
+        rows = []
+        for stage, i in dict.fromkeys(k[1:] for k in sorted(keys, key=lambda k: k[2])):
+            row = [stage]
+            for case in STAGE_CASES:
+                time_s = self.samples.get("stages", case, stage, i, "time_s")
+                row += ["skipped" if time_s is None else time_s,
+                        self.samples.get("stages", case, stage, i, "kept_bytes")]
+            rows.append(row)
+        columns = [f"{case}: {quantity}" for case in STAGE_CASES for quantity in ("time_s", "kept_bytes")]
+        self.table("stages", ["stage", *columns], rows)
+        self.table("check", ["case", "row", "what", "how_much"],
+                   [[case, *(cell.replace(",", ";") for cell in row)]
+                    for case, check in self.checks.items() for row in check])
 
     def write_population(self):
         self.wide("ga", "ga", ["ga_wall_s", "ga_cpu_s", "utilisation", "evaluations", "evaluations_per_s", "residual_N",
                                "process_wall_s", "process_cpu_s", "peak_MiB", "file_MB"],
                   ("scene", "threads", "generations"))
-        self.wide("storing", "storing", ["evaluations", "wall_s", "evaluate_s", "breed_s", "store_s",
-                                         "worst_residual_N"],
+        self.wide("population", "population",
+                  ["wall_s", "evaluate_s", "breed_s", "store_s", "open_close_s", "store_share", "utilisation",
+                   "waiting_share", "evaluations", "evaluations_per_s", "worst_residual_N", "file_MB", "written_MB"],
                   ("scene", "mode", "threads"))
 
     def write(self):
         os.makedirs(self.a.out, exist_ok=True)
         self.head = self.header()
-        for name in ("precision", "single", "step", "growth", "phases", "population"):
+        for name in ("precision", "single", "step", "peak", "growth", "phases", "stages", "population"):
             getattr(self, f"write_{name}")()
         rows = list(summary(self.samples))
         self.table("summary", ["figure", "wanted", "measured"], rows)
         for figure, wanted, measured in rows:
-            print(f"  {figure:<66} {wanted:>10} {'-' if measured is None else f'{measured:.4g}':>10}")
+            print(f"  {figure:<76} {wanted:>10} {'-' if measured is None else f'{measured:.4g}':>10}")
 
 
 def slope(points):
@@ -270,6 +321,10 @@ def summary(s):
     name = "lanes" if step("lanes") else "dpbtrf (no lane path yet)"
     for method, wanted in (("dpbtrf", "6"), ("CHOLMOD", "4"), ("scipy solveh_banded", "12"), ("scipy splu", "")):
         yield [f"FDM step, 437 free: {method} / {name}", wanted, ratio(step(method), base)]
+    best = {key[0]: key for key in s.keys("peak")}  # the last instruction set is the one that the program picks
+    for net, isa, half_bandwidth in list(best.values())[1:]:
+        yield [f"lane factorisation / FMA peak ({isa}); half-bandwidth {half_bandwidth:.0f}", "0.5",
+               s.get("peak", net, isa, half_bandwidth, "share_of_fma_peak")]
     for scene in (KERNEL_NET, *SCENES):
         for peer, wanted in (("fixed point", "300"), ("scipy fixed point, band", "1000")):
             for method in ("newton", "chord"):
@@ -284,19 +339,27 @@ def summary(s):
         active = ga(2, "ga_wall_s", 400, "active")
         if active:
             yield [f"50x400 GA; {scene}: the same with OMP_WAIT_POLICY=active", "", active]
-        yield [f"50x400 GA; {scene}: evaluations/s on 1 thread", "", ga(1, "evaluations_per_s")]
-        yield [f"50x400 GA; {scene}: evaluations/s on 2 threads", "", ga(2, "evaluations_per_s")]
-        yield [f"50x400 GA; {scene}: 1 thread / 2 threads", "1.9", ratio(ga(1, "ga_wall_s"), ga(2, "ga_wall_s"))]
-        yield [f"50x400 GA; {scene}: CPU utilisation on 2 threads", "0.95", ga(2, "utilisation")]
+        def population(mode, threads, quantity):
+            return s.get("population", scene, mode, threads, quantity)
+        one, two, stored = ("not stored", 1, "wall_s"), ("not stored", 2, "wall_s"), ("stored", 2, "wall_s")
+        for threads in (1, 2):
+            yield [f"50x400 GA; {scene}: evaluations/s; threads {threads}; nothing stored", "",
+                   population("not stored", threads, "evaluations_per_s")]
+        yield [f"50x400 GA; {scene}: 1 thread / 2 threads; nothing stored", "1.9",
+               s.paired("population", scene, one, two)]
+        for mode in ("not stored", "stored"):
+            yield [f"50x400 GA; {scene}: CPU utilisation on 2 threads; {mode}",
+                   "" if scene == "chen2022" else "0.95", population(mode, 2, "utilisation")]
+        yield [f"50x400 GA; {scene}: share of the threads' time spent waiting in evaluations", "",
+               population("not stored", 2, "waiting_share")]
+        yield [f"50x400 GA; {scene}: share of the wall time spent storing", "0.05",
+               population("stored", 2, "store_share")]
+        yield [f"50x400 GA; {scene}: stored / not stored", "1.05", s.paired("population", scene, stored, two)]
+        yield [f"50x400 GA; {scene}: MB written", "", population("stored", 2, "written_MB")]
         yield [f"50x400 GA; {scene}: largest residual of all individuals N", "1e-8",
-               s.get("storing", scene, "stored", 2, "worst_residual_N")]
+               population("stored", 2, "worst_residual_N")]
         yield [f"50x400 GA; {scene}: peak MiB", memory, ga(2, "peak_MiB")]
         yield [f"50x100 GA; {scene}: peak MiB", memory, ga(2, "peak_MiB", 100)]
-        yield [f"50x400 GA; {scene}: file MB", "", ga(2, "file_MB")]
-        for threads in (1, 2):
-            share = ratio(s.get("storing", scene, "stored", threads, "store_s"),
-                          s.get("storing", scene, "not stored", threads, "wall_s"))
-            yield [f"storing / GA without storing; {scene}; {threads} threads", "0.05", share]
 
 
 def main():

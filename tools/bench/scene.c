@@ -17,6 +17,8 @@ typedef struct {
 } scene_row;
 
 #define CYLINDER "scene.parabolic_cylinder."
+#define ONE_CELL CYLINDER "cells_per_module=[1,1]"
+#define PERIMETER CYLINDER "supports=perimeter", CYLINDER "scallop=0"
 
 static const scene_row scene_table[] = {
     {"chen2022", "configs/chen2022.yaml", {NULL}},
@@ -24,7 +26,10 @@ static const scene_row scene_table[] = {
     {"41x49 f=5", "configs/reflector.yaml", {CYLINDER "focal_length_m=5", CYLINDER "cells_per_module=[4,4]", NULL}},
     /* the base of the imported net, and the net of the kernels: no free boundary cable, so no genes */
     {"31x37", "configs/reflector.yaml", {CYLINDER "cells_per_module=[3,3]", NULL}},
-    {"21x25 perimeter", "configs/reflector.yaml", {CYLINDER "supports=perimeter", CYLINDER "scallop=0", NULL}},
+    {"21x25 perimeter", "configs/reflector.yaml", {PERIMETER, NULL}},
+    /* half-bandwidths 21 and 65 */
+    {"22x24 perimeter", "configs/reflector.yaml", {PERIMETER, ONE_CELL, CYLINDER "modules=[21,23]", NULL}},
+    {"66x68 perimeter", "configs/reflector.yaml", {PERIMETER, ONE_CELL, CYLINDER "modules=[65,67]", NULL}},
 };
 
 /* ---- small things ---- */
@@ -67,7 +72,7 @@ static void draw_designs(bench_scene *b)
     free(change);
 }
 
-void bench_scene_open(const char *name, const char *path, const char *const *overrides, int n_override, bench_scene *b)
+static void build(const char *name, const char *path, const char *const *overrides, int n_override, bench_scene *b)
 {
     hf_messages messages = {0};
     *b = (bench_scene){.name = name};
@@ -77,6 +82,12 @@ void bench_scene_open(const char *name, const char *path, const char *const *ove
         bench_fail(path, messages.text);
     b->form = b->settings.form;
     if (hf_workspace_create(&b->model, &b->workspace) != HF_OK) bench_fail(name, "out of memory");
+    hf_messages_free(&messages);
+}
+
+void bench_scene_open(const char *name, const char *path, const char *const *overrides, int n_override, bench_scene *b)
+{
+    build(name, path, overrides, n_override, b);
     hf_form_settings quick = b->form; /* the same shape as by the paper's iteration, sooner */
     if (quick.stop == HF_STOP_RESIDUAL) quick.method = HF_METHOD_AUTO;
     hf_evaluate_form(&b->model, &quick, &b->workspace, NULL, &b->found);
@@ -94,7 +105,6 @@ void bench_scene_open(const char *name, const char *path, const char *const *ove
                                   .solver = HF_SOLVER_AUTO,
                                   .boundary_ratio_cap = 1e6};
     draw_designs(b);
-    hf_messages_free(&messages);
 }
 
 void bench_scene_free(bench_scene *b)
@@ -161,22 +171,33 @@ static void open_imported(const char *folder, bench_scene *b)
     bench_scene_open("imported 31x37", path, NULL, 0, b);
 }
 
+static const scene_row *find_row(const char *name, int *n_override)
+{
+    const scene_row *row = scene_table, *end = row + sizeof scene_table / sizeof *scene_table;
+    while (row < end && strcmp(name, row->name))
+        row++;
+    if (row == end) bench_fail(name, "no such scene");
+    for (*n_override = 0; row->overrides[*n_override];)
+        ++*n_override;
+    return row;
+}
+
 void bench_scene_named(const char *name, const char *folder, bench_scene *b)
 {
+    int n_override;
     if (!strcmp(name, "imported 31x37")) {
         open_imported(folder, b);
         return;
     }
-    for (size_t i = 0; i < sizeof scene_table / sizeof *scene_table; i++) {
-        const scene_row *row = &scene_table[i];
-        int n = 0;
-        if (strcmp(name, row->name)) continue;
-        while (row->overrides[n])
-            n++;
-        bench_scene_open(name, row->path, row->overrides, n, b);
-        return;
-    }
-    bench_fail(name, "no such scene");
+    const scene_row *row = find_row(name, &n_override);
+    bench_scene_open(name, row->path, row->overrides, n_override, b);
+}
+
+void bench_scene_model(const char *name, bench_scene *b)
+{
+    int n_override;
+    const scene_row *row = find_row(name, &n_override);
+    build(name, row->path, row->overrides, n_override, b);
 }
 
 /* ---- the reference shape: Newton whose residual is computed in long double ---- */

@@ -1,4 +1,4 @@
-/* Contents: the parts of one FDM step - ways to do a step - files for the peers in Python - the section */
+/* Contents: ways to do a step - files for the peers in Python - the section */
 #include "bench.h"
 
 #include "band.h"
@@ -15,60 +15,6 @@
 void dpbsv_(const char *uplo, const int *n, const int *kd, const int *nrhs, double *ab, const int *ldab, double *b,
             const int *ldb, int *info);
 
-/* ---- the parts of one FDM step (Eqs. 2, 4-8), as in src/formfind.c, where they are static ---- */
-
-void bench_fdm_matrix(const hf_model *m, hf_workspace *w)
-{
-    memset(w->band, 0, ((size_t)m->n_band + 1) * sizeof(double));
-    for (int e = 0; e < m->n_cable; e++) {
-        double q = w->q_N_per_m[e];
-        w->band[m->diagonal_a[e]] += q;
-        w->band[m->diagonal_b[e]] += q;
-        w->band[m->off_diagonal[e]] -= q;
-    }
-}
-
-void bench_fdm_loads(const hf_model *m, hf_workspace *w)
-{
-    double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
-    for (int c = 0; c < 3; c++) {
-        double *out = w->position_m + (size_t)c * (size_t)m->n_node;
-        if (m->load_N)
-            memcpy(out, m->load_N + (size_t)c * (size_t)m->n_node, (size_t)m->n_free * sizeof(double));
-        else
-            memset(out, 0, (size_t)m->n_free * sizeof(double));
-    }
-    for (int e = 0; e < m->n_cable; e++) {
-        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], inside = a < b ? a : b, support = a < b ? b : a;
-        if (support < m->n_free || inside >= m->n_free) continue;
-        double q = w->q_N_per_m[e];
-        x[inside] += q * x[support];
-        y[inside] += q * y[support];
-        z[inside] += q * z[support];
-    }
-}
-
-void bench_fdm_measure(const hf_model *m, hf_workspace *w)
-{
-    const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
-    for (int e = 0; e < m->n_cable; e++) {
-        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-        double dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a];
-        w->length_m[e] = sqrt(dx * dx + dy * dy + dz * dz);
-        w->tension_N[e] = w->q_N_per_m[e] * w->length_m[e];
-    }
-}
-
-void bench_fdm_update(const hf_model *m, hf_workspace *w)
-{
-    for (int e = 0; e < m->n_cable; e++) {
-        if (w->law[e] == HF_LAW_TENSION)
-            w->q_N_per_m[e] = w->target[e] / w->length_m[e]; // Eq. 7
-        else if (w->law[e] == HF_LAW_LENGTH)
-            w->q_N_per_m[e] *= w->length_m[e] / w->target[e]; // Eq. 8
-    }
-}
-
 /* ---- ways to do a step: assembly, factor, three right-hand sides, lengths and tensions, per individual ---- */
 
 typedef struct {
@@ -83,12 +29,7 @@ typedef struct {
 static void step_dpbtrf(void *context)
 {
     bench_scene *b = ((step_context *)context)->scene;
-    int bad_row;
-    bench_fdm_matrix(&b->model, &b->workspace);
-    bench_fdm_loads(&b->model, &b->workspace);
-    hf_band_solve(b->model.n_free, b->model.half_bandwidth, b->workspace.band, b->workspace.position_m, b->model.n_node,
-                  &bad_row);
-    bench_fdm_measure(&b->model, &b->workspace);
+    bench_fdm_step(&b->model, &b->form, &b->workspace);
 }
 
 static void step_dpbsv(void *context)
@@ -96,18 +37,18 @@ static void step_dpbsv(void *context)
     bench_scene *b = ((step_context *)context)->scene;
     const hf_model *m = &b->model;
     int three = 3, ldab = m->half_bandwidth + 1, info;
-    bench_fdm_matrix(m, &b->workspace);
-    bench_fdm_loads(m, &b->workspace);
+    hf_form_assemble(m, &b->workspace);
+    hf_form_assemble_loads(m, &b->workspace);
     dpbsv_("L", &m->n_free, &m->half_bandwidth, &three, b->workspace.band, &ldab, b->workspace.position_m, &m->n_node,
            &info);
-    bench_fdm_measure(m, &b->workspace);
+    bench_measure(m, &b->form, &b->workspace);
 }
 
 static void step_cholmod(void *context)
 {
     step_context *c = context;
     bench_cholmod_step(c->cholmod, &c->scene->model, &c->scene->workspace);
-    bench_fdm_measure(&c->scene->model, &c->scene->workspace);
+    bench_measure(&c->scene->model, &c->scene->form, &c->scene->workspace);
 }
 
 /* Eight individuals; the force densities stay, as in the rows above. */
@@ -194,8 +135,9 @@ void bench_write_net(const bench_scene *b, const hf_workspace *w, const double *
 
 /* ---- the section ---- */
 
-void bench_step(const char *folder)
+void bench_step(const char *what, const char *folder)
 {
+    (void)what;
     bench_scene b;
     bench_scene_named("21x25 perimeter", folder, &b);
     hf_form_prepare(&b.model, &b.workspace);

@@ -89,14 +89,14 @@ def loglog(path, panels, x_label, y_label, comment, columns=2):
 
 def shares(path, bars, comment):
     """bars: {label: {part: share}}; one horizontal bar each."""
-    body, names, width = [], [], 760
+    body, names, width = [], [], 800
     for bar in bars.values():
         names += [name for name in bar if name not in names]
     for i, (label, bar) in enumerate(bars.items()):
-        x, y = 270.0, 14 + 30 * i
-        body.append(text(262, y + 15, label, 12, "end"))
+        x, y = 310.0, 14 + 30 * i
+        body.append(text(302, y + 15, label, 12, "end"))
         for name, share in bar.items():  # medians need not add up to one
-            w = share / sum(bar.values()) * (width - 290)
+            w = share / sum(bar.values()) * (width - 330)
             colour = COLOURS[names.index(name) % len(COLOURS)]
             body.append(f'<rect x="{x:.1f}" y="{y}" width="{w:.1f}" height="20" fill="{colour}"/>')
             if share > 0.07:
