@@ -13,7 +13,7 @@ MODULES := status arena sha256 text csv \
            evaluate chord_kernel chord ga swarm polish batch \
            json summary hdf5_io store store_read
 APP_MODULES := options print problem run progress signals \
-           plan export designs main
+           plan export report designs main
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
 VERSION := 0.1.0
@@ -79,7 +79,10 @@ ISAS := portable avx2 avx512
 KERNELS := $(filter %_kernel,$(MODULES))
 LIB_OBJ := $(patsubst %,$(BUILD)/src/%.o,$(filter-out $(KERNELS),$(MODULES)) \
              $(foreach isa,$(ISAS),$(KERNELS:%=%_$(isa))))
-APP_OBJ := $(APP_MODULES:%=$(BUILD)/src/%.o)
+# The page of `hifdm report`: its parts in order, as three strings that report.h declares.
+PAGE := $(addprefix src/report/,head.html page.css body.html \
+          data.js scale.js chart.js net.js map.js sections.js main.js)
+APP_OBJ := $(APP_MODULES:%=$(BUILD)/src/%.o) $(BUILD)/report_page.o
 TEST_OBJ := $(patsubst %.c,$(BUILD)/%.o,tests/run_tests.c tests/support.c $(sort $(wildcard tests/*/test_*.c)))
 PROGRAM := $(BUILD)/hifdm
 STATIC := $(BUILD)/libhifdm.a
@@ -220,6 +223,22 @@ $(BUILD)/%.o: %.c $(BUILD)/flags
 	$(call say,CC,$<)
 	@mkdir -p $(@D)
 	$(Q)$(COMPILE) $(EXTRA) -MMD -MP -c $< -o $@
+
+# Bytes rather than a string: a string literal of this length is beyond what C promises.
+$(BUILD)/report_page.c: $(PAGE) Makefile
+	$(call say,PAGE,$@)
+	@mkdir -p $(@D)
+	$(Q){ echo '#include "report.h"'; \
+	  bytes() { echo "const char $$1[] = {"; shift; cat "$$@" | od -An -v -tx1 | \
+	      sed "s/[0-9a-f][0-9a-f]*/'\\\\x&',/g"; echo '0};'; }; \
+	  bytes hf_report_page_head $(wordlist 1,2,$(PAGE)); \
+	  bytes hf_report_page_body $(word 3,$(PAGE)); \
+	  bytes hf_report_page_script $(wordlist 4,99,$(PAGE)); } >$@.tmp
+	$(Q)mv $@.tmp $@
+
+$(BUILD)/report_page.o: $(BUILD)/report_page.c $(BUILD)/flags
+	$(call say,CC,$<)
+	$(Q)$(COMPILE) -Isrc -MMD -MP -c $< -o $@
 
 # The Makefile is a prerequisite of what is linked because it holds the list of modules.
 $(STATIC): $(LIB_OBJ) Makefile

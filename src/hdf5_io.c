@@ -512,6 +512,20 @@ void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribu
     hf_hdf5_close(io, id);
 }
 
+int hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute)
+{
+    hid_t id = -1, stored = -1;
+    int has = 0;
+    if (io->status != HF_OK || H5Aexists_by_name(place, name, attribute, H5P_DEFAULT) <= 0) return 0;
+    if ((id = H5Aopen_by_name(place, name, attribute, H5P_DEFAULT, H5P_DEFAULT)) < 0 || (stored = H5Aget_type(id)) < 0)
+        fail_at(io, "read", place, name, attribute);
+    else
+        has = is_of_kind(stored, HF_KIND_CHARS);
+    hf_hdf5_close(io, stored);
+    hf_hdf5_close(io, id);
+    return has;
+}
+
 /* ---- tables ---- */
 
 void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const void *owner)

@@ -108,6 +108,9 @@ void hf_hdf5_put_chars(hf_hdf5 *io, hid_t place, const char *name, const char *a
 void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hf_hdf5_kind kind, void *value,
                  size_t size);
 
+/* Is there such an attribute, and is it a text of fixed length? */
+int hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute);
+
 /* ---- Tables: the same rows write and read, so that the two cannot diverge ---- */
 
 /* A member of a struct <-> an attribute. Enumerations are int or enum in the struct, strings char[size]. */

@@ -10,7 +10,7 @@ static void write_string(const char *text, size_t length, FILE *f)
         unsigned char c = (unsigned char)text[i];
         if (c == '"' || c == '\\')
             fprintf(f, "\\%c", c);
-        else if (c < 0x20)
+        else if (c < 0x20 || c == '<')
             fprintf(f, "\\u%04x", c);
         else
             fputc(c, f);
@@ -21,6 +21,11 @@ static void write_string(const char *text, size_t length, FILE *f)
 void hf_json_text(const char *key, const char *text, FILE *f)
 {
     fprintf(f, "\"%s\": ", key);
+    write_string(text, strlen(text), f);
+}
+
+void hf_json_string(const char *text, FILE *f)
+{
     write_string(text, strlen(text), f);
 }
 

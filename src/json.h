@@ -4,6 +4,8 @@
 
 #include <stdio.h>
 
+/* A '<' in a text is written as \u003c, so that an object can stand in the script of an HTML page. */
+void hf_json_string(const char *text, FILE *file); /* without a key */
 void hf_json_text(const char *key, const char *text, FILE *file);
 void hf_json_number(const char *key, double value, FILE *file); /* null unless finite */
 

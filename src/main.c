@@ -7,6 +7,7 @@
 #include "options.h"
 #include "print.h"
 #include "progress.h"
+#include "report.h"
 #include "run.h"
 #include "signals.h"
 #include <hifdm/store.h>
@@ -69,6 +70,10 @@ static hf_status dispatch(const hf_options *o, int argc, char **argv, hf_message
         return hf_designs(o, stdout, messages);
     case HF_COMMAND_SHOW:
         return command_show(o, messages);
+    case HF_COMMAND_REPORT:
+        HF_TRY(hf_report(o, said, sizeof said, messages));
+        printf("%s\n", said);
+        return HF_OK;
     case HF_COMMAND_EXPORT:
         HF_TRY(hf_export(o, said, sizeof said, messages));
         printf("%s\n", said);

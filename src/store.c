@@ -151,7 +151,7 @@ static void put_time(hf_store *s, const char *attribute)
     time_t now = time(NULL);
     struct tm utc;
     if (gmtime_r(&now, &utc)) strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    hf_hdf5_put_text(&s->io, s->io.file, "/", attribute, text);
+    hf_hdf5_put_chars(&s->io, s->io.file, "/", attribute, text);
 }
 
 static void put_provenance(hf_store *s, int argc, char *const *argv)
@@ -171,7 +171,7 @@ static void put_provenance(hf_store *s, int argc, char *const *argv)
                                     {"rng", "splitmix64 keyed by (seed, generation, individual)"},
                                     {"host", host}};
     for (int i = 0; i < HF_HDF5_COUNT(table); i++)
-        hf_hdf5_put_text(&s->io, s->io.file, "/", table[i][0], table[i][1]);
+        hf_hdf5_put_chars(&s->io, s->io.file, "/", table[i][0], table[i][1]);
     hf_hdf5_put_chars(&s->io, s->io.file, "/", "program", HF_PROGRAM);
     hf_hdf5_put(&s->io, s->io.file, "/", "format_version", HF_KIND_INT, 0, &(int){HF_FORMAT_VERSION});
     if (argc > ARGUMENTS_MAX) argc = ARGUMENTS_MAX;
@@ -187,7 +187,7 @@ static void write_case(hf_store *s, const hf_case *settings)
     hid_t group = hf_hdf5_make_group(&s->io, "/case");
     hf_hdf5_write_array(&s->io, group, &text, &settings->text);
     hf_hdf5_write_array(&s->io, group, &set, &overrides);
-    hf_hdf5_put_text(&s->io, group, ".", "sha256", settings->sha256);
+    hf_hdf5_put_chars(&s->io, group, ".", "sha256", settings->sha256);
     hf_hdf5_close(&s->io, group);
 }
 

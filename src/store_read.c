@@ -1,4 +1,4 @@
-/* Contents: opening a result file - summary - scene - shape */
+/* Contents: opening a result file - summary - scene - shape - series - provenance */
 #include "store_read.h"
 
 #include "arena.h"
@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -197,4 +198,101 @@ void hf_shape_free(hf_shape *shape)
 {
     hf_arena_free(&(hf_arena){.block = shape->block});
     *shape = (hf_shape){0};
+}
+
+/* ---- series ---- */
+
+/* Is there a data set of this name? HDF5 asks for every group on the way first. */
+static int is_there(hf_hdf5 *io, const char *name)
+{
+    char part[256];
+    for (const char *slash = strchr(name + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        snprintf(part, sizeof part, "%.*s", (int)(slash - name), name);
+        if (!hf_hdf5_has(io, io->file, part)) return 0;
+    }
+    return hf_hdf5_has(io, io->file, name);
+}
+
+/* Rows and kind of a data set of numbers [n] or [n][columns]; n = 0 when it is empty or no such data set. */
+static int measure_series(hf_hdf5 *io, const char *name, int columns, hf_hdf5_kind *kind)
+{
+    hsize_t dims[H5S_MAX_RANK] = {0};
+    hid_t data_set = -1, space = -1, stored = -1;
+    int rank = -1, n = 0;
+    if (io->status != HF_OK) return 0;
+    if ((data_set = H5Dopen2(io->file, name, H5P_DEFAULT)) < 0 || (space = H5Dget_space(data_set)) < 0 ||
+        (rank = H5Sget_simple_extent_dims(space, dims, NULL)) < 0 || (stored = H5Dget_type(data_set)) < 0)
+        hf_hdf5_fail(io, "read", io->file, name);
+    else if (rank != (columns > 1 ? 2 : 1) || (columns > 1 && dims[1] != (hsize_t)columns) || dims[0] > COUNT_MAX)
+        hf_hdf5_damaged(io, io->file, name, "has other dimensions than a report reads");
+    else
+        n = (int)dims[0];
+    *kind = stored >= 0 && H5Tget_class(stored) == H5T_INTEGER ? HF_KIND_INT : HF_KIND_REAL;
+    hf_hdf5_close(io, stored);
+    hf_hdf5_close(io, space);
+    hf_hdf5_close(io, data_set);
+    return n;
+}
+
+static void read_series(hf_hdf5 *io, const char *name, int columns, hf_series *series)
+{
+    hf_hdf5_kind kind;
+    int n = measure_series(io, name, columns, &kind);
+    size_t count = (size_t)n * (size_t)columns;
+    hf_arena arena = {0};
+    if (n == 0) return;
+    hf_arena_take(&arena, count, sizeof(double));
+    if (hf_arena_allocate(&arena) != HF_OK) {
+        no_memory(io);
+        return;
+    }
+    *series = (hf_series){n, hf_arena_take(&arena, count, sizeof(double)), arena.block};
+    hf_hdf5_array array = {.name = name, .kind = kind, .rank = columns > 1 ? 2 : 1, .dims = {(hsize_t)n, 0, 0}};
+    array.dims[1] = (hsize_t)columns;
+    hf_hdf5_read_array(io, io->file, &array, series->value);
+    for (size_t i = count; kind == HF_KIND_INT && io->status == HF_OK && i-- > 0;) { /* in place, from the end */
+        int whole;
+        memcpy(&whole, (const char *)series->value + i * sizeof whole, sizeof whole);
+        series->value[i] = whole;
+    }
+}
+
+hf_status hf_store_read_series(const char *path, const char *name, int columns, hf_series *series,
+                               hf_messages *messages)
+{
+    hf_hdf5 io = open_result(path, messages);
+    *series = (hf_series){0};
+    if (is_there(&io, name)) read_series(&io, name, columns, series);
+    hf_hdf5_close_file(&io);
+    if (io.status != HF_OK) hf_series_free(series);
+    return io.status;
+}
+
+void hf_series_free(hf_series *series)
+{
+    hf_arena_free(&(hf_arena){.block = series->block});
+    *series = (hf_series){0};
+}
+
+/* ---- provenance ---- */
+
+hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf_messages *messages)
+{
+    static const char *const from[][2] = {{"/", "started_utc"},  {"/", "finished_utc"}, {"/", "host"},
+                                          {"/", "version"},      {"/", "git_describe"}, {"/", "compiler"},
+                                          {"/", "build_flags"},  {"/", "lapack"},       {"/", "gsl_version"},
+                                          {"/", "hdf5_version"}, {"/", "rng"},          {"/case", "sha256"}};
+    hf_hdf5 io = open_result(path, messages);
+    size_t used = 0;
+    *text = '\0';
+    for (int i = 0; i < HF_HDF5_COUNT(from); i++) {
+        char value[1024] = "";
+        if (!hf_hdf5_has_chars(&io, io.file, from[i][0], from[i][1])) continue;
+        hf_hdf5_get(&io, io.file, from[i][0], from[i][1], HF_KIND_CHARS, value, sizeof value);
+        int n = snprintf(text + used, size - used, "%s: %s\n", from[i][1], value);
+        if (n < 0 || (size_t)n >= size - used) break; /* cut at the end of the room */
+        used += (size_t)n;
+    }
+    hf_hdf5_close_file(&io);
+    return io.status;
 }

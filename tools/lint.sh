@@ -8,12 +8,13 @@ cd "$(dirname "$0")/.."
 heap_files="status arena text csv scene scene_import config numbering model lane batch hdf5_io store store_read
             options problem run designs"               # may call malloc and its kin: set-up, never the hot path
 # may print (csv, json, summary: to a stream they are given)
-print_files="csv json summary options print progress plan export designs main"
+print_files="csv json summary options print progress plan export report designs main"
 openmp_files="batch"                                 # may mention OpenMP
 top_level="Makefile README.md LICENSE src include configs tests results tools"   # and dot-files
 max_file=600 max_function=80 long_function=60                        # lines; between the last two it is a warning
 
 library=$(make -s print-MODULES)
+page=$(make -s print-PAGE)                           # parts of the page that `report` writes
 modules="$library $(make -s print-APP_MODULES)"
 
 work=$(mktemp -d)
@@ -33,7 +34,7 @@ source_files=$(files_under src include | grep '\.[ch]$' || true)
 [ -n "$source_files" ] || { echo "lint: no sources found (does git ls-files work here?)" >&2; exit 1; }
 c_files=$(files_under src include tests | grep '\.[ch]$')
 text_files=$(files_under src include tests tools configs .ci Makefile README.md |
-    grep -E '\.(c|h|sh|py|ya?ml|md)$|^\.ci/|^Makefile$')
+    grep -E '\.(c|h|sh|py|ya?ml|md|html|css|js|mjs)$|^\.ci/|^Makefile$')
 
 # ---- Modules: only the listed ones, one header each, includes only upward in the list --------------------------------
 seen=""
@@ -53,6 +54,7 @@ files_under src include | while read -r file; do
     name=$(basename "${file%.[ch]}")
     case $file in
     include/hifdm/hifdm.h) continue ;;
+    src/report/*) case " $page " in *" $file "*) continue ;; esac ;;
     src/*/* | include/hifdm/*/*) ;;
     src/*.c | src/*.h | include/hifdm/*.h) case " ${modules//$'\n'/ } " in *" $name "*) continue ;; esac ;;
     esac

@@ -3,7 +3,7 @@
  *
  * Layout, with n nodes, m cables, i iterations, g generations, p individuals, k genes. Every data set has the
  * attributes `units` ("" = dimensionless) and `description`. Role, group, law, status and the like are HDF5
- * enumerations. Texts are UTF-8: of fixed length where they are read back (program, title, warnings, case_path, the
+ * enumerations. Texts are UTF-8: of fixed length where they are read back (provenance, title, warnings, case_path, the
  * version in /form, ids), because HDF5 1.10 crashes on damaged ones of variable length, which the others are. Times,
  * threads and host are attributes only: the data sets of two runs of the same case are the same.
  *   /            attributes: program ("hifdm"), format_version, version, git_describe, compiler, build_flags,

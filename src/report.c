@@ -1,0 +1,298 @@
+/* Contents: numbers and texts - net and shapes - series - the page - reading */
+#include "report.h"
+
+#include "export.h"
+#include "json.h"
+#include "store_read.h"
+#include <hifdm/metrics.h>
+
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define PATH_SIZE 1200
+#define POINTS_MAX 1000 /* drawn of a series: no screen shows more */
+#define PROVENANCE_SIZE 8192
+
+/* The series of a page: where a file has them, what the page calls them. The first of a group sets its length. */
+static const struct {
+    const char *group, *path, *key;
+} series_table[] = {
+    {"history", "/form/history/psi_m", "psi_m"},
+    {"history", "/form/history/inner_tension_ratio", "inner_tension_ratio"},
+    {"history", "/form/history/boundary_tension_ratio", "boundary_tension_ratio"},
+    {"history", "/form/history/residual_N", "residual_N"},
+    {"ga", "/ga/best_psi_m", "best_psi_m"},
+    {"ga", "/ga/mean_psi_m", "mean_psi_m"},
+    {"ga", "/ga/worst_psi_m", "worst_psi_m"},
+    {"ga", "/ga/n_infeasible", "n_infeasible"},
+    {"coupling", "/coupling/history/step_m", "step_m"},
+    {"coupling", "/coupling/history/psi_m", "psi_m"},
+};
+enum { N_SERIES = sizeof series_table / sizeof *series_table };
+
+/* All that a page shows. */
+typedef struct {
+    const char *path;
+    hf_summary summary;
+    hf_scene scene;
+    int has_shape[HF_STAGE_NONE];
+    hf_shape shape[HF_STAGE_NONE];
+    hf_series series[N_SERIES];
+    hf_series truss_position_m, truss_end; /* [n][3], [m][2] */
+    char provenance[PROVENANCE_SIZE];
+} page;
+
+/* ---- numbers and texts ---- */
+
+static void write_number(double value, int digits, FILE *f)
+{
+    if (!isfinite(value))
+        fputs("null", f);
+    else
+        fprintf(f, "%.*g", digits, value + 0.0); /* no -0 */
+}
+
+/* ,"key":[...] of every stride-th value and the last */
+static void write_numbers(const char *key, const double *value, int n, int stride, int digits, FILE *f)
+{
+    fprintf(f, ",\"%s\":[", key);
+    for (int i = 0; i < n; i++) {
+        if (i % stride != 0 && i != n - 1) continue;
+        if (i) fputc(',', f);
+        write_number(value[i], digits, f);
+    }
+    fputc(']', f);
+}
+
+static void write_codes(const char *key, const unsigned char *value, int n, FILE *f)
+{
+    fprintf(f, ",\"%s\":\"", key);
+    for (int i = 0; i < n; i++)
+        fputc('0' + value[i], f);
+    fputc('"', f);
+}
+
+static void write_ids(const char *key, const char *const *id, int n, FILE *f)
+{
+    fprintf(f, ",\"%s\":[", key);
+    for (int i = 0; i < n; i++) {
+        if (i) fputc(',', f);
+        hf_json_string(id[i], f);
+    }
+    fputc(']', f);
+}
+
+static void write_words(const char *key, const char *const *word, int n, FILE *f)
+{
+    write_ids(key, word, n, f);
+}
+
+static void write_html(const char *text, FILE *f)
+{
+    for (; *text; text++) {
+        if (*text == '&' || *text == '<' || *text == '>')
+            fprintf(f, "&#%d;", *text);
+        else
+            fputc(*text, f);
+    }
+}
+
+/* ---- net and shapes ---- */
+
+static void write_net(const hf_scene *s, FILE *f)
+{
+    fprintf(f, ",\n\"net\":{\"n_node\":%d,\"n_cable\":%d", s->n_node, s->n_cable);
+    write_words("role_word", hf_role_word, 3, f);
+    write_words("group_word", hf_group_word, 2, f);
+    write_words("law_word", hf_law_word, 3, f);
+    write_ids("node_id", s->node_id, s->n_node, f);
+    write_numbers("position_m", s->position_m, 3 * s->n_node, 1, 8, f);
+    write_codes("role", s->role, s->n_node, f);
+    write_ids("cable_id", s->cable_id, s->n_cable, f);
+    fputs(",\"end\":[", f);
+    for (int i = 0; i < 2 * s->n_cable; i++)
+        fprintf(f, "%s%d", i ? "," : "", s->end[i]);
+    fputc(']', f);
+    write_codes("group", s->group, s->n_cable, f);
+    fputc('}', f);
+}
+
+/* As hf_model has it: what a cable is called slack against is the largest tension that a law gives. */
+static double reference_N(const page *p)
+{
+    double largest_N = 0;
+    for (int e = 0; e < p->scene.n_cable; e++) {
+        double target = p->scene.target[e], tension_N = 0;
+        if (p->scene.law[e] == HF_LAW_FORCE_DENSITY)
+            tension_N = fabs(target) * hf_scene_theoretical_length(&p->scene, e);
+        else if (p->scene.law[e] == HF_LAW_TENSION)
+            tension_N = isnan(target) ? p->summary.pretension_N : target;
+        largest_N = fmax(largest_N, tension_N);
+    }
+    return largest_N > 0 ? largest_N : p->summary.pretension_N;
+}
+
+/* Displacements rather than positions: six digits of these are nanometres, of those tenths of a millimetre. */
+static void write_shape(const page *p, hf_stage stage, FILE *f)
+{
+    const hf_shape *shape = &p->shape[stage];
+    fprintf(f, "{\"stage\":\"%s\",\"displacement_m\":[", hf_stage_word[stage]);
+    for (int i = 0; i < 3 * p->scene.n_node; i++) {
+        if (i) fputc(',', f);
+        write_number(shape->position_m[i] - p->scene.position_m[i], 6, f);
+    }
+    fputc(']', f);
+    write_numbers("length_m", shape->length_m, p->scene.n_cable, 1, 7, f);
+    write_numbers("tension_N", shape->tension_N, p->scene.n_cable, 1, 7, f);
+    write_codes("law", shape->law, p->scene.n_cable, f);
+    fputc('}', f);
+}
+
+static void write_shapes(const page *p, FILE *f)
+{
+    const char *comma = "";
+    fputs(",\n\"slack_below_N\":", f);
+    write_number(HF_SLACK_RATIO * reference_N(p), 17, f);
+    fputs(",\n\"shapes\":[", f);
+    for (int i = 0; i < HF_STAGE_NONE; i++) {
+        if (!p->has_shape[i]) continue;
+        fputs(comma, f);
+        write_shape(p, (hf_stage)i, f);
+        comma = ",\n";
+    }
+    fputc(']', f);
+}
+
+static void write_truss(const page *p, FILE *f)
+{
+    const hf_series *node = &p->truss_position_m, *end = &p->truss_end;
+    if (!node->n || !end->n) return;
+    fprintf(f, ",\n\"truss\":{\"n_node\":%d,\"n_member\":%d", node->n, end->n);
+    write_numbers("position_m", node->value, 3 * node->n, 1, 8, f);
+    write_numbers("end", end->value, 2 * end->n, 1, 9, f);
+    fputc('}', f);
+}
+
+/* ---- series ---- */
+
+static void write_series(const page *p, FILE *f)
+{
+    for (int i = 0, k; i < N_SERIES; i = k) {
+        int n = p->series[i].n, stride = (n + POINTS_MAX - 1) / POINTS_MAX;
+        if (n) fprintf(f, ",\n\"%s\":{\"n\":%d,\"stride\":%d", series_table[i].group, n, stride);
+        for (k = i; k < N_SERIES && series_table[k].group == series_table[i].group; k++)
+            if (n && p->series[k].n == n) write_numbers(series_table[k].key, p->series[k].value, n, stride, 9, f);
+        if (n) fputc('}', f);
+    }
+}
+
+/* ---- the page ---- */
+
+static void write_data(const page *p, FILE *f)
+{
+    const hf_summary *s = &p->summary;
+    fputc('{', f);
+    hf_json_text("title", *s->title ? s->title : s->case_path, f);
+    fputs(",\n", f);
+    hf_json_lines("provenance", "", p->provenance, f);
+    fputs(",\n\"summary\":", f);
+    hf_summary_write_json(s, s->form.status, s->warnings, p->path, f);
+    fprintf(f, ",\"seed\":\"%llu\"", (unsigned long long)s->seed); /* as a number it would lose its last digits */
+    fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, s->n_gene);
+    write_number(s->pretension_N, 17, f);
+    write_net(&p->scene, f);
+    write_shapes(p, f);
+    write_truss(p, f);
+    write_series(p, f);
+    fputs("}\n", f);
+}
+
+static void write_page(const void *context, FILE *f)
+{
+    const page *p = context;
+    fputs(hf_report_page_head, f);
+    fputs("</style>\n<title>", f);
+    write_html(*p->summary.title ? p->summary.title : p->summary.case_path, f);
+    fputs("</title>\n", f);
+    fputs(hf_report_page_body, f);
+    write_data(p, f);
+    fputs("</script>\n<script>\n", f);
+    fputs(hf_report_page_script, f);
+    fputs("</script>\n</body>\n</html>\n", f);
+}
+
+/* ---- reading ---- */
+
+static hf_status check_truss(const page *p, hf_messages *messages)
+{
+    for (int i = 0; i < 2 * p->truss_end.n; i++)
+        if (!(p->truss_end.value[i] >= 0 && p->truss_end.value[i] < p->truss_position_m.n))
+            return hf_error(messages, HF_IO, "%s: is damaged: /truss/end names a node that is not there", p->path);
+    return HF_OK;
+}
+
+static hf_status read_shapes(page *p, hf_messages *messages)
+{
+    hf_series there = {0};
+    HF_TRY(hf_store_read_series(p->path, "/form/tension_N", 1, &there, messages));
+    p->has_shape[HF_STAGE_FORM] = there.n > 0; /* a form-finding that broke down leaves none */
+    hf_series_free(&there);
+    p->has_shape[HF_STAGE_OPTIMIZE] = p->summary.has_optimize && p->summary.best.status == HF_OK;
+    p->has_shape[HF_STAGE_POLISH] = p->summary.has_polish;
+    for (int i = 0; i < HF_STAGE_NONE; i++)
+        if (p->has_shape[i]) HF_TRY(hf_store_read_shape(p->path, (hf_stage)i, &p->shape[i], messages));
+    return HF_OK;
+}
+
+static hf_status read_page(page *p, hf_messages *messages)
+{
+    HF_TRY(hf_store_read_summary(p->path, &p->summary, messages));
+    HF_TRY(hf_store_read_scene(p->path, &p->scene, messages));
+    HF_TRY(hf_store_read_provenance(p->path, p->provenance, sizeof p->provenance, messages));
+    HF_TRY(read_shapes(p, messages));
+    for (int i = 0; i < N_SERIES; i++)
+        HF_TRY(hf_store_read_series(p->path, series_table[i].path, 1, &p->series[i], messages));
+    HF_TRY(hf_store_read_series(p->path, "/truss/position_m", 3, &p->truss_position_m, messages));
+    HF_TRY(hf_store_read_series(p->path, "/truss/end", 2, &p->truss_end, messages));
+    return check_truss(p, messages);
+}
+
+static void free_page(page *p)
+{
+    hf_scene_free(&p->scene);
+    for (int i = 0; i < HF_STAGE_NONE; i++)
+        hf_shape_free(&p->shape[i]);
+    for (int i = 0; i < N_SERIES; i++)
+        hf_series_free(&p->series[i]);
+    hf_series_free(&p->truss_position_m);
+    hf_series_free(&p->truss_end);
+}
+
+/* -o, or the name of the file with .html in the current folder; never the file itself. */
+static hf_status choose_output(const hf_options *o, char output[PATH_SIZE], hf_messages *messages)
+{
+    const char *slash = strrchr(o->file, '/'), *name = slash ? slash + 1 : o->file, *dot = strrchr(name, '.');
+    int stem = dot && dot != name ? (int)(dot - name) : (int)strlen(name);
+    int n =
+        o->output ? snprintf(output, PATH_SIZE, "%s", o->output) : snprintf(output, PATH_SIZE, "%.*s.html", stem, name);
+    struct stat a, b;
+    if (n >= PATH_SIZE) return hf_error(messages, HF_IO, "%s: the path is too long", o->output ? o->output : name);
+    if (stat(o->file, &a) == 0 && stat(output, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino)
+        return hf_error(messages, HF_EXISTS, "%s: is the result itself; use -o to choose another name", output);
+    return hf_export_claim(output, o->force, messages);
+}
+
+hf_status hf_report(const hf_options *options, char *said, size_t size, hf_messages *messages)
+{
+    char output[PATH_SIZE];
+    struct stat info = {0};
+    page p = {.path = options->file};
+    hf_status status = read_page(&p, messages);
+    if (status == HF_OK) status = choose_output(options, output, messages);
+    if (status == HF_OK) status = hf_export_file(output, write_page, &p, messages);
+    if (status == HF_OK && stat(output, &info) == 0)
+        snprintf(said, size, "%s: report in %s (%.0f kB)", options->file, output, (double)info.st_size / 1000);
+    free_page(&p);
+    return status;
+}

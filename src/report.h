@@ -1,0 +1,15 @@
+/* report - a result file as one HTML page that needs neither network nor server nor WebGL. */
+#ifndef HIFDM_REPORT_H
+#define HIFDM_REPORT_H
+
+#include "options.h"
+
+/* options->file -> options->output, or the name of the file with .html in this folder. `said`: one line for people on
+ * what was written. HF_EXISTS unless options->force, HF_IO, HF_NO_MEMORY. The same file gives the same bytes. */
+hf_status hf_report(const hf_options *options, char *said, size_t size, hf_messages *messages);
+
+/* The page without its data, made of src/report/ by the Makefile: to the end of the style, from there to the data, the
+ * script. */
+extern const char hf_report_page_head[], hf_report_page_body[], hf_report_page_script[];
+
+#endif

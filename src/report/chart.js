@@ -1,0 +1,211 @@
+// Contents: tooltips - one chart
+
+// ---- tooltips: a heading, and rows of name, value and the name in the file ----
+
+function tipContent(heading, rows) {
+  return [
+    el("strong", {}, heading),
+    el(
+      "table",
+      {},
+      rows.map(([name, value, stored]) =>
+        el(
+          "tr",
+          {},
+          el("th", { scope: "row" }, name),
+          el("td", {}, value),
+          el("td", {}, stored ? el("code", {}, stored) : ""),
+        ),
+      ),
+    ),
+  ];
+}
+
+// Beside the point (x, y) of its parent, and inside of it.
+function placeTip(tip, x, y, content) {
+  tip.replaceChildren(...content);
+  tip.hidden = false;
+  const width = tip.parentElement.clientWidth,
+    height = tip.parentElement.clientHeight;
+  const right = x + 14 + tip.offsetWidth <= width,
+    below = y + 14 + tip.offsetHeight <= height;
+  tip.style.left = `${right ? x + 14 : Math.max(0, x - 14 - tip.offsetWidth)}px`;
+  tip.style.top = `${below ? y + 14 : Math.max(0, y - 14 - tip.offsetHeight)}px`;
+}
+
+// ---- one chart: series over x with a cursor that follows the pointer or the arrow keys ----
+// series: { name, stored, values, colour: "--one", dash, dots: marks instead of a line, free: may leave the picture }
+// x rises, counted: in whole numbers; log: "auto" = when the values span more than a factor of 20
+let clips = 0;
+
+function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "auto", counted = true, head }) {
+  const leading = series.filter((s) => !s.free).flatMap((s) => s.values),
+    positive = range(leading.filter((v) => v > 0));
+  const clip = `clip-${++clips}`;
+  if (log === "auto") log = !!positive && positive[1] > 20 * positive[0];
+  const margin = { left: 64, right: 14, top: 26, bottom: 42 },
+    height = 290;
+  const holder = el("div", { class: "stage chart-stage", style: "border:0;background:none;margin-top:.3rem" });
+  const picture = svg("svg", {
+    role: "img",
+    tabindex: 0,
+    "aria-label": `${title}: ${yLabel} against ${xLabel}. Left and right arrow keys read the values.`,
+  });
+  const tip = el("div", { class: "tip", role: "status", hidden: true });
+  let cursor = -1,
+    place;
+
+  function mark(s) {
+    return s.dots
+      ? { class: "dots", "stroke-width": s.values.length > 300 ? 3 : 5 }
+      : { class: "curve", "stroke-dasharray": s.dash };
+  }
+
+  function path(s, sx, sy, yAxis) {
+    let text = "",
+      on = false;
+    s.values.forEach((v, i) => {
+      const good = typeof v === "number" && yAxis.has(v);
+      if (good) text += `${on && !s.dots ? "L" : "M"}${sx(x[i]).toFixed(1)} ${sy(v).toFixed(1)}${s.dots ? "h0" : ""}`;
+      on = good;
+    });
+    return svg("path", { d: text, ...mark(s), style: `stroke:var(${s.colour})` });
+  }
+
+  function draw() {
+    const width = Math.max(holder.clientWidth, 260),
+      w = width - margin.left - margin.right;
+    const h = height - margin.top - margin.bottom;
+    const xAxis = { low: x[0], high: x[x.length - 1] },
+      yAxis = axis(leading, log);
+    if (xAxis.high === xAxis.low) {
+      xAxis.low -= 1;
+      xAxis.high += 1;
+    }
+    const sx = (v) => margin.left + (w * (v - xAxis.low)) / (xAxis.high - xAxis.low);
+    const sy = (v) => margin.top + h * (1 - yAxis.at(v));
+    place = { sx, sy, yAxis, bottom: margin.top + h };
+    picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    const xTicks = linearTicks(xAxis.low, xAxis.high, Math.max(4, w / 90)).filter(
+      (t) => !counted || Number.isInteger(t.at),
+    );
+    picture.replaceChildren();
+    fill(picture, {}, [
+      ...yAxis.ticks.flatMap((t) => [
+        svg("line", { class: "grid", x1: margin.left, x2: margin.left + w, y1: sy(t.at), y2: sy(t.at) }),
+        svg("text", { x: margin.left - 7, y: sy(t.at) + 4, "text-anchor": "end" }, t.text),
+      ]),
+      ...xTicks.flatMap((t) => [
+        svg("line", {
+          class: "frame",
+          x1: sx(t.at),
+          x2: sx(t.at),
+          y1: margin.top + h,
+          y2: margin.top + h + 4,
+        }),
+        svg("text", { x: sx(t.at), y: margin.top + h + 18, "text-anchor": "middle" }, t.text),
+      ]),
+      svg("line", {
+        class: "frame",
+        x1: margin.left,
+        x2: margin.left + w,
+        y1: margin.top + h,
+        y2: margin.top + h,
+      }),
+      svg("text", { class: "label", x: margin.left + w / 2, y: height - 4, "text-anchor": "middle" }, xLabel),
+      svg("text", { class: "label", x: 2, y: 13 }, yLabel),
+      svg("clipPath", { id: clip }, svg("rect", { x: margin.left - 4, y: margin.top, width: w + 8, height: h })),
+      svg(
+        "g",
+        { "clip-path": `url(#${clip})` },
+        series.map((s) => path(s, sx, sy, yAxis)),
+      ),
+      svg("g", { class: "at" }),
+    ]);
+    point(cursor);
+  }
+
+  function point(i) {
+    cursor = i;
+    const group = picture.querySelector(".at");
+    group.replaceChildren();
+    if (i < 0) {
+      tip.hidden = true;
+      return;
+    }
+    const px = place.sx(x[i]),
+      here = series.filter((s) => typeof s.values[i] === "number");
+    const shown = here.filter((s) => place.yAxis.has(s.values[i]) && place.yAxis.at(s.values[i]) <= 1);
+    fill(group, {}, [
+      svg("line", { class: "cursor", x1: px, x2: px, y1: margin.top, y2: place.bottom }),
+      ...shown.map((s) => svg("circle", { cx: px, cy: place.sy(s.values[i]), r: 4, style: `fill:var(${s.colour})` })),
+    ]);
+    placeTip(
+      tip,
+      px,
+      shown.length ? place.sy(shown[0].values[i]) : margin.top,
+      tipContent(
+        head(i),
+        here.map((s) => [s.name, `${fmt(s.values[i], 6)} ${unit}`, s.stored]),
+      ),
+    );
+  }
+
+  const nearest = (px) => {
+    let best = 0;
+    for (let i = 1; i < x.length; i++) if (Math.abs(place.sx(x[i]) - px) < Math.abs(place.sx(x[best]) - px)) best = i;
+    return best;
+  };
+  picture.addEventListener("pointermove", (event) =>
+    point(nearest(event.clientX - picture.getBoundingClientRect().left)),
+  );
+  picture.addEventListener("pointerleave", () => point(-1));
+  picture.addEventListener("blur", () => point(-1));
+  picture.addEventListener("keydown", (event) => {
+    const last = x.length - 1;
+    const to = {
+      ArrowLeft: Math.max(0, cursor - 1),
+      ArrowRight: Math.min(last, cursor + 1),
+      Home: 0,
+      End: last,
+      Escape: -1,
+    }[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    point(to);
+  });
+  new ResizeObserver(draw).observe(holder);
+  holder.append(picture, tip);
+
+  const legend =
+    series.length < 2
+      ? null
+      : el(
+          "div",
+          { class: "legend" },
+          series.map((s) =>
+            el(
+              "span",
+              {},
+              svg(
+                "svg",
+                { viewBox: "0 0 26 10", "aria-hidden": true },
+                svg("path", {
+                  d: s.dots ? "M13 5h0" : "M0 5H26",
+                  ...mark(s),
+                  style: `stroke:var(${s.colour})`,
+                }),
+              ),
+              s.name,
+            ),
+          ),
+        );
+  return el(
+    "figure",
+    { class: "chart" },
+    el("h3", {}, title),
+    legend,
+    holder,
+    caption ? el("figcaption", {}, caption) : null,
+  );
+}

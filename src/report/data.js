@@ -1,0 +1,108 @@
+// Contents: the data - elements - numbers for people - what is derived
+"use strict";
+
+const data = JSON.parse(document.getElementById("data").textContent);
+
+// ---- elements: texts only ever become text nodes, so nothing in a case can become markup ----
+
+function fill(node, attributes, children) {
+  for (const [name, value] of Object.entries(attributes || {}))
+    if (value !== undefined && value !== null && value !== false)
+      node.setAttribute(name, value === true ? "" : value);
+  for (const child of children.flat()) if (child !== undefined && child !== null) node.append(child);
+  return node;
+}
+const el = (tag, attributes, ...children) => fill(document.createElement(tag), attributes, children);
+const svg = (tag, attributes, ...children) =>
+  fill(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
+
+// ---- numbers for people ----
+
+const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
+const power = (exponent) => "10" + [...String(exponent)].map((c) => RAISED[c]).join("");
+const minus = (text) => text.replace(/^-/, "−");
+
+// A number with so many significant digits; tiny and huge ones as 1.2×10⁻⁷.
+function fmt(value, digits = 4) {
+  if (typeof value !== "number" || !Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e-3 && size < 1e6)
+    return minus(size >= 10 ** digits ? value.toFixed(0) : String(Number(value.toPrecision(digits))));
+  const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+  return minus(`${Number(mantissa)}×${power(Number(exponent))}`);
+}
+// Ratios of tensions: 1 is uniform, so decimals count.
+const fmtRatio = (value) => (typeof value === "number" && value < 1e4 ? value.toFixed(4) : fmt(value));
+const fmtCount = (value) => (typeof value === "number" ? value.toLocaleString("en").replace(/,/g, " ") : "–");
+
+function fmtDuration(s) {
+  if (typeof s !== "number") return "–";
+  if (s < 1) return `${fmt(s * 1e3, 3)} ms`;
+  if (s < 60) return `${fmt(s, 3)} s`;
+  return s < 3600
+    ? `${Math.floor(s / 60)} min ${Math.round(s % 60)} s`
+    : `${Math.floor(s / 3600)} h ${Math.round((s % 3600) / 60)} min`;
+}
+
+// "Figs. 6 and 13 of the paper"
+function figs(...numbers) {
+  const all = numbers.filter((k) => k),
+    last = all.pop();
+  return all.length ? `Figs. ${all.join(", ")} and ${last}` : `Fig. ${last}`;
+}
+
+const STOP = {
+  rms_change: "the change of ψ",
+  residual: "the residual",
+  max_iterations: "the limit of iterations",
+  generations: "the limit of generations",
+  stagnation: "stagnation",
+  all_infeasible: "a generation without a feasible design",
+};
+const stopText = (word) => STOP[word] || String(word).replace(/_/g, " ");
+
+// ---- what is derived ----
+
+const net = data.net;
+const stageName = { form: "found", optimize: "GA best", polish: "LM optimum" };
+const digit = (text, i) => text.charCodeAt(i) - 48;
+const roleOf = (i) => net.role_word[digit(net.role, i)];
+const groupOf = (e) => net.group_word[digit(net.group, e)];
+
+// Nodes in millimetres from theory: distance, and height along z with its sign.
+for (const shape of data.shapes) {
+  const d = shape.displacement_m,
+    n = net.n_node;
+  shape.name = stageName[shape.stage];
+  shape.distance_mm = new Float64Array(n);
+  shape.height_mm = new Float64Array(n);
+  for (let i = 0; i < n; i++) {
+    shape.distance_mm[i] = 1e3 * Math.hypot(d[3 * i], d[3 * i + 1], d[3 * i + 2]);
+    shape.height_mm[i] = 1e3 * d[3 * i + 2];
+  }
+  shape.isSlack = (e) => Math.abs(shape.tension_N[e]) < data.slack_below_N;
+}
+
+// The shape that is the run's result: as `hifdm export` chooses it.
+const summary = data.summary;
+const shapeOf = (stage) => data.shapes.find((shape) => shape.stage === stage);
+const resultShape =
+  (summary.polish && summary.polish.is_result && shapeOf("polish")) || shapeOf("optimize") || shapeOf("form");
+
+// Upper end of the colours: the inner nodes, which psi counts. A free edge drifts much farther and would hide them.
+function innerMost(values) {
+  const inner = range(Array.from(values, Math.abs).filter((_, i) => roleOf(i) === "inner"));
+  return inner && inner[1] > 0 ? inner[1] : (range(Array.from(values, Math.abs)) || [0, 1])[1] || 1;
+}
+
+function range(values) {
+  let low = Infinity,
+    high = -Infinity;
+  for (const v of values) {
+    if (typeof v !== "number" || !Number.isFinite(v)) continue;
+    if (v < low) low = v;
+    if (v > high) high = v;
+  }
+  return low <= high ? [low, high] : null;
+}

@@ -1,0 +1,262 @@
+// Contents: sections - head - net and map - the page
+
+const main = document.getElementById("main");
+
+function section(id, title, ...children) {
+  document.getElementById("contents").append(el("a", { href: `#${id}` }, title));
+  const heading = el("h2", { id: `${id}-title` }, title);
+  const node = el("section", { id, "aria-labelledby": `${id}-title` }, heading, ...children);
+  main.append(node);
+  return node;
+}
+
+// ---- head: title, warnings, the figures that matter ----
+
+function writeHead() {
+  document.getElementById("title").textContent = data.title;
+  const found =
+    `${fmtCount(net.n_node)} nodes (${fmtCount(data.n_free)} free), ${fmtCount(net.n_cable)} cables ` +
+    `(${fmtCount(data.n_gene)} adjustable), pretension ${fmt(data.pretension_N)} N`;
+  document.getElementById("subtitle").textContent = found;
+  document.getElementById("footer").textContent =
+    `Results of hifdm ${summary.version} in ${summary.file}. “Fig.” refers to Chen et al., Aerospace 2022, 9, 239.`;
+}
+
+function writeWarnings() {
+  const lines = [...(summary.errors || []), ...(summary.warnings || [])];
+  if (!lines.length) return;
+  const title = lines.length === 1 ? "One warning" : `${lines.length} warnings`;
+  main.append(
+    el(
+      "div",
+      { class: "warnings", role: "note", id: "warnings" },
+      el("h2", {}, summary.errors && summary.errors.length ? "This run has errors" : title),
+      el(
+        "ul",
+        {},
+        lines.map((t) => el("li", {}, t)),
+      ),
+    ),
+  );
+}
+
+const resultStage = resultShape && resultShape.stage;
+const resultNumbers = { form: summary.form, optimize: summary.optimize, polish: summary.polish }[resultStage];
+
+function writeFigures() {
+  if (!resultNumbers) return;
+  const figure = (name, value, unit) =>
+    el("div", {}, el("dt", {}, name), el("dd", {}, value, unit ? el("small", {}, unit) : null));
+  const base = summary.optimize && summary.optimize.base_psi_m,
+    list = [];
+  list.push(figure(`surface error ψ, ${resultShape.name}`, fmt(1e3 * resultNumbers.psi_m, 4), "mm"));
+  if (resultStage !== "form") {
+    list.push(figure("ψ after form-finding", fmt(1e3 * summary.form.psi_m, 4), "mm"));
+    if (base > 0)
+      list.push(figure("gain of the optimisation", (100 * (1 - resultNumbers.psi_m / base)).toFixed(2), "%"));
+  }
+  list.push(
+    figure("tension ratio, inner cables", fmtRatio(resultNumbers.inner_tension_ratio)),
+    figure("tension ratio, boundary cables", fmtRatio(resultNumbers.boundary_tension_ratio)),
+    figure("slack cables", fmtCount(resultNumbers.slack_cables)),
+  );
+  main.append(el("dl", { class: "figures" }, list));
+}
+
+// ---- net and map ----
+
+function choice(name, label, options, chosen, act) {
+  return el(
+    "fieldset",
+    {},
+    el("legend", {}, `${label} `),
+    options.map(([value, text]) => {
+      const input = el("input", { type: "radio", name, value, checked: value === chosen });
+      input.addEventListener("change", () => act(value));
+      return el("label", {}, input, text);
+    }),
+  );
+}
+function tick(label, checked, act) {
+  const input = el("input", { type: "checkbox", checked });
+  input.addEventListener("change", () => act(input.checked));
+  return el("label", {}, input, label);
+}
+function button(text, name, act) {
+  const node = el("button", { type: "button", "aria-label": name, title: name }, text);
+  node.addEventListener("click", act);
+  return node;
+}
+
+// 1, 2, 5, 10, ...; begins where the largest deviation is a twentieth of the net's size.
+const SCALES = Array.from({ length: 22 }, (_, k) => [1, 2, 5][k % 3] * 10 ** Math.floor(k / 3));
+function firstScale(radius) {
+  const largest = Math.max(0, ...data.shapes.map((s) => range(s.distance_mm)[1])) / 1e3;
+  const wanted = largest > 0 ? (0.1 * radius) / largest : 1;
+  return Math.max(0, SCALES.filter((s) => s <= wanted).length - 1);
+}
+
+function stage(kind, name, description) {
+  const canvas = el("canvas", {
+    id: `${kind}-canvas`,
+    tabindex: kind === "net" ? 0 : undefined,
+    role: "img",
+    "aria-label": name,
+    "aria-describedby": description,
+  });
+  const tip = el("div", { class: "tip", role: "status", hidden: true }),
+    bar = el("div", { class: "bar" });
+  return { canvas, tip, bar, node: el("div", { class: `stage ${kind}` }, canvas, tip) };
+}
+
+function writeNet() {
+  const parts = stage("net", "The net in space", "net-keys"),
+    shapes = data.shapes;
+  const output = el("output", {}),
+    slider = el("input", {
+      type: "range",
+      min: 0,
+      max: SCALES.length - 1,
+      step: 1,
+      "aria-label": "scale of the deformation",
+    });
+  const scaleLabel = (s) => {
+    output.textContent = `× ${fmtCount(s)}`;
+    const note = document.getElementById("scale-note");
+    if (note) note.textContent = s === 1 ? "true to scale" : `enlarged ${fmtCount(s)} times`;
+  };
+  const view = netView({ ...parts, scaleLabel });
+  const set = (values) => {
+    Object.assign(view.state, values);
+    view.redraw();
+  };
+  slider.value = firstScale(view.radius);
+  set({ scale: SCALES[slider.value] });
+  slider.addEventListener("input", () => set({ scale: SCALES[slider.value] }));
+  const options = [["theory", "theoretical"], ...shapes.map((s) => [s.stage, s.name])];
+  const colours = [
+    ["deviation", "deviation"],
+    ["tension", "tension"],
+    ["slack", "slack"],
+    ["plain", "none"],
+  ];
+  section(
+    "net",
+    "The net",
+    shapes.length ? null : el("p", {}, "Form-finding ended without a shape, so this is the theoretical one."),
+    el(
+      "div",
+      { class: "tools" },
+      shapes.length ? choice("shape", "Shape", options, resultStage, (v) => set({ shape: shapeOf(v) })) : null,
+      shapes.length ? choice("colour", "Colour", colours, "deviation", (v) => set({ colour: v })) : null,
+      shapes.length ? el("label", {}, el("span", { class: "muted" }, "Deformation"), slider, output) : null,
+      shapes.length ? tick("theoretical shape", true, (v) => set({ theory: v })) : null,
+      data.truss ? tick("truss", true, (v) => set({ truss: v })) : null,
+      el(
+        "span",
+        { class: "buttons" },
+        button("+", "Zoom in", () => view.zoom(1.25)),
+        button("−", "Zoom out", () => view.zoom(0.8)),
+        button("Oblique", "View from above at an angle", () => view.look(-35, 32)),
+        button("Top", "View along z", () => view.look(0, 90)),
+        button("Along y", "View along y", () => view.look(0, 0)),
+        button("Along x", "View along x", () => view.look(90, 0)),
+      ),
+    ),
+    el(
+      "figure",
+      {},
+      parts.node,
+      parts.bar,
+      el(
+        "figcaption",
+        {},
+        netCaption(),
+        el(
+          "span",
+          { class: "keys", id: "net-keys" },
+          " Drag or use the arrow keys to turn, with Shift to move, the wheel or + and − to zoom, 0 to start over; " +
+            "n and c step through nodes and cables, with Shift backwards.",
+        ),
+      ),
+    ),
+  );
+  report.net = view;
+}
+
+function netCaption() {
+  const figures = `${figs(2, 5, shapeOf("optimize") && 12, data.truss && 18)} of the paper.`;
+  if (!data.shapes.length) return `Squares are supports. ${figures}`;
+  return el(
+    "span",
+    {},
+    "Deformation from the theoretical shape (grey) ",
+    el("strong", { id: "scale-note" }),
+    `; squares are supports${data.truss ? ", the frame is the truss as designed" : ""}. The colours of the deviation ` +
+      `span the inner nodes, which ψ counts. ${figures}`,
+  );
+}
+
+function writeMap() {
+  if (!resultShape) return;
+  const parts = stage("map", "Deviation over the aperture", "map-caption"),
+    view = aperture(parts);
+  const set = (values) => {
+    Object.assign(view.state, values);
+    view.redraw();
+  };
+  section(
+    "map",
+    "Deviation over the aperture",
+    el(
+      "div",
+      { class: "tools" },
+      choice(
+        "map-shape",
+        "Shape",
+        data.shapes.map((s) => [s.stage, s.name]),
+        resultStage,
+        (v) => set({ shape: shapeOf(v) }),
+      ),
+      choice(
+        "quantity",
+        "Quantity",
+        [
+          ["distance", "distance"],
+          ["height", "height Δz"],
+        ],
+        "distance",
+        (v) => set({ quantity: v }),
+      ),
+    ),
+    el(
+      "figure",
+      {},
+      parts.node,
+      parts.bar,
+      el(
+        "figcaption",
+        { id: "map-caption" },
+        "The net seen along z, at its theoretical place; between the nodes the value is interpolated. Height is " +
+          "positive above the theoretical surface; distance, as in ψ, includes drift within the surface.",
+      ),
+    ),
+  );
+  report.map = view;
+}
+
+// ---- the page ----
+
+const report = {}; // the two pictures, for the console and the tests
+window.report = report;
+writeHead();
+writeWarnings();
+writeFigures();
+writeNet();
+writeMap();
+writeHistory();
+writeTensions();
+writeGa();
+writeCoupling();
+writeSummary();
+writeProvenance();

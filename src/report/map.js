@@ -1,0 +1,207 @@
+// Contents: faces of the net seen along z - the deviation map over the aperture
+
+// ---- faces: at every node the cables are sorted by direction; the next side of a face is the one before the way back.
+
+function findFaces() {
+  const p = net.position_m,
+    out = Array.from({ length: net.n_node }, () => []),
+    faces = [];
+  for (let e = 0; e < net.n_cable; e++) {
+    const a = net.end[2 * e],
+      b = net.end[2 * e + 1];
+    out[a].push({ to: b });
+    out[b].push({ to: a });
+  }
+  const angle = (a, b) => Math.atan2(p[3 * b + 1] - p[3 * a + 1], p[3 * b] - p[3 * a]);
+  out.forEach((list, a) => list.sort((s, t) => angle(a, s.to) - angle(a, t.to)));
+  for (let a = 0; a < net.n_node; a++)
+    for (const first of out[a]) {
+      const face = [];
+      for (let from = a, side = first; !side.done;) {
+        side.done = true;
+        face.push(from);
+        const list = out[side.to],
+          back = list.findIndex((s) => s.to === from);
+        from = side.to;
+        side = list[(back + list.length - 1) % list.length];
+      }
+      const area = face.reduce((sum, i, k) => {
+        const j = face[(k + 1) % face.length];
+        return sum + p[3 * i] * p[3 * j + 1] - p[3 * j] * p[3 * i + 1];
+      }, 0);
+      if (face.length > 2 && area > 0) faces.push(face);
+    }
+  return faces;
+}
+
+// ---- the map ----
+
+function aperture({ canvas, tip, bar }) {
+  const state = { shape: resultShape, quantity: "distance" };
+  const p = net.position_m,
+    n = net.n_node,
+    faces = findFaces(),
+    left = 58,
+    bottom = 44,
+    top = 30,
+    right = 14;
+  const spans = [0, 1].map((k) => range(p.filter((_, i) => i % 3 === k)));
+  const across = spans[1][1] - spans[1][0] > spans[0][1] - spans[0][0] ? 1 : 0,
+    up = 1 - across; // the longer one lies
+  const box = [spans[across], spans[up]];
+  const sx = new Float64Array(n),
+    sy = new Float64Array(n);
+  let queued = false;
+
+  const values = () => (state.quantity === "distance" ? state.shape.distance_mm : state.shape.height_mm);
+  const colours = () => (state.quantity === "distance" ? sequential : diverging);
+  function limits() {
+    const size = innerMost(values());
+    return state.quantity === "distance" ? [0, size] : [-size, size];
+  }
+
+  // The value at every pixel of a triangle is linear between those at its corners.
+  function triangle(image, ratio, table, limit, [a, b, c]) {
+    const [ax, ay, av] = a,
+      [bx, by, bv] = b,
+      [cx, cy, cv] = c,
+      { width, height, data: pixel } = image;
+    const det = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay);
+    if (!det) return;
+    const low = (v, u, w) => Math.floor(Math.min(u, v, w) * ratio),
+      high = (v, u, w) => Math.ceil(Math.max(u, v, w) * ratio);
+    for (let j = Math.max(0, low(ay, by, cy)); j <= Math.min(height - 1, high(ay, by, cy)); j++)
+      for (let i = Math.max(0, low(ax, bx, cx)); i <= Math.min(width - 1, high(ax, bx, cx)); i++) {
+        const x = (i + 0.5) / ratio - ax,
+          y = (j + 0.5) / ratio - ay;
+        const s = (x * (cy - ay) - y * (cx - ax)) / det,
+          t = (y * (bx - ax) - x * (by - ay)) / det;
+        if (s < -1e-9 || t < -1e-9 || s + t > 1 + 1e-9) continue;
+        const colour = table[levelOf(av + s * (bv - av) + t * (cv - av), limit)],
+          k = 4 * (j * width + i);
+        pixel[k] = colour[0];
+        pixel[k + 1] = colour[1];
+        pixel[k + 2] = colour[2];
+        pixel[k + 3] = 255;
+      }
+  }
+
+  function paintFaces(c, ratio) {
+    const image = c.createImageData(canvas.width, canvas.height),
+      v = values(),
+      table = levels(colours()),
+      limit = limits();
+    for (const face of faces) {
+      const middle = [0, 0, 0];
+      for (const i of face)
+        [sx[i], sy[i], v[i]].forEach((q, k) => {
+          middle[k] += q / face.length;
+        });
+      face.forEach((i, k) => {
+        const j = face[(k + 1) % face.length];
+        triangle(image, ratio, table, limit, [middle, [sx[i], sy[i], v[i]], [sx[j], sy[j], v[j]]]);
+      });
+    }
+    c.putImageData(image, 0, 0);
+  }
+
+  function paintNet(c) {
+    c.strokeStyle = css("--ink");
+    c.globalAlpha = 0.28;
+    c.lineWidth = 0.7;
+    c.beginPath();
+    for (let e = 0; e < net.n_cable; e++) {
+      c.moveTo(sx[net.end[2 * e]], sy[net.end[2 * e]]);
+      c.lineTo(sx[net.end[2 * e + 1]], sy[net.end[2 * e + 1]]);
+    }
+    c.stroke();
+    c.globalAlpha = 1;
+    c.fillStyle = css("--ink");
+    for (let i = 0; i < n; i++) if (digit(net.role, i) === 0) c.fillRect(sx[i] - 2.5, sy[i] - 2.5, 5, 5);
+  }
+
+  function paintAxes(c, width, height, toX, toY) {
+    c.fillStyle = c.strokeStyle = css("--soft");
+    c.font = "12px system-ui, sans-serif";
+    c.textAlign = "center";
+    for (const t of linearTicks(box[0][0], box[0][1], 6)) c.fillText(t.text, toX(t.at), height - bottom + 20);
+    c.textAlign = "right";
+    c.textBaseline = "middle";
+    for (const t of linearTicks(box[1][0], box[1][1], 6)) c.fillText(t.text, toX(box[0][0]) - 12, toY(t.at));
+    c.fillStyle = css("--ink");
+    c.textAlign = "center";
+    c.fillText("xy"[across] + " (m)", (toX(box[0][0]) + toX(box[0][1])) / 2, height - 10);
+    c.textAlign = "left";
+    c.fillText("xy"[up] + " (m)", Math.max(2, toX(box[0][0]) - 54), toY(box[1][1]) - 16);
+  }
+
+  function draw() {
+    queued = false;
+    const width = canvas.clientWidth,
+      height = canvas.clientHeight,
+      c = canvas.getContext("2d");
+    if (!width || !height) return;
+    const ratio = printing.matches ? 3 : Math.max(1, devicePixelRatio || 1);
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+    const span = box.map(([a, b]) => b - a || 1);
+    const fit = Math.min((width - left - right) / span[0], (height - top - bottom) / span[1]);
+    const x0 = left + (width - left - right - fit * span[0]) / 2,
+      y0 = height - bottom;
+    const toX = (x) => x0 + fit * (x - box[0][0]),
+      toY = (y) => y0 - fit * (y - box[1][0]);
+    for (let i = 0; i < n; i++) {
+      sx[i] = toX(p[3 * i + across]);
+      sy[i] = toY(p[3 * i + up]);
+    }
+    paintFaces(c, ratio);
+    c.setTransform(ratio, 0, 0, ratio, 0, 0);
+    paintNet(c);
+    paintAxes(c, width, height, toX, toY);
+    drawBar(
+      bar,
+      colours(),
+      limits(),
+      state.quantity === "distance" ? "distance to theory (mm)" : "height above theory, Δz (mm)",
+      range(values()),
+    );
+  }
+  const redraw = () => {
+    if (!queued) requestAnimationFrame(draw);
+    queued = true;
+  };
+
+  canvas.addEventListener("pointermove", (event) => {
+    const frame = canvas.getBoundingClientRect(),
+      x = event.clientX - frame.left,
+      y = event.clientY - frame.top;
+    let best = -1,
+      least = 24;
+    for (let i = 0; i < n; i++) {
+      const d = Math.hypot(sx[i] - x, sy[i] - y);
+      if (d < least) [least, best] = [d, i];
+    }
+    if (best < 0) {
+      tip.hidden = true;
+      return;
+    }
+    placeTip(
+      tip,
+      sx[best],
+      sy[best],
+      tipContent(`node ${net.node_id[best]}`, [
+        ["to theory", `${fmt(state.shape.distance_mm[best], 5)} mm`, ""],
+        ["height, Δz", `${fmt(state.shape.height_mm[best], 5)} mm`, ""],
+      ]),
+    );
+  });
+  canvas.addEventListener("pointerleave", () => {
+    tip.hidden = true;
+  });
+  new ResizeObserver(redraw).observe(canvas);
+  darkScheme.addEventListener("change", redraw);
+  printing.addEventListener("change", draw);
+  addEventListener("beforeprint", draw);
+  addEventListener("afterprint", redraw);
+  return { state, redraw };
+}

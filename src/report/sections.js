@@ -1,0 +1,331 @@
+// Contents: histories - tensions - tables
+
+// ---- histories ----
+
+const spaced = ({ n, stride }) => {
+  const at = [];
+  for (let i = 0; i < n; i++) if (i % stride === 0 || i === n - 1) at.push(i);
+  return at;
+};
+const scaled = (values, k) => values.map((v) => (typeof v === "number" ? v * k : null));
+const thinned = ({ stride }) => (stride > 1 ? ` One value in ${stride} is drawn.` : "");
+
+function writeHistory() {
+  const h = data.history;
+  if (!h) return;
+  const x = spaced(h).map((i) => i + 1),
+    xLabel = "iteration",
+    head = (i) => `iteration ${x[i]}`,
+    charts = [];
+  const add = (title, key, name, figures, options, k = 1) => {
+    if (!h[key] || !range(h[key])) return;
+    charts.push(
+      chart({
+        title,
+        xLabel,
+        x,
+        head,
+        ...options,
+        caption: figures + thinned(h),
+        series: [{ name, stored: key, values: scaled(h[key], k), colour: "--one", dots: x.length < 2 }],
+      }),
+    );
+  };
+  add(
+    "Surface error ψ",
+    "psi_m",
+    "ψ",
+    "RMS distance of the inner nodes to the theoretical shape; Fig. 9.",
+    { yLabel: "ψ (mm)", unit: "mm" },
+    1e3,
+  );
+  add(
+    "Tension ratio, inner cables",
+    "inner_tension_ratio",
+    "inner ratio",
+    "Largest over smallest tension; 1 is uniform. Figs. 3 and 8.",
+    { yLabel: "T max / T min" },
+  );
+  add(
+    "Tension ratio, boundary cables",
+    "boundary_tension_ratio",
+    "boundary ratio",
+    "Largest over smallest tension of the boundary cables.",
+    { yLabel: "T max / T min" },
+  );
+  add("Nodal force out of balance", "residual_N", "residual", "Largest residual of a free node; 0 is equilibrium.", {
+    yLabel: "residual (N)",
+    unit: "N",
+  });
+  if (charts.length)
+    section(
+      "form-finding",
+      "Form-finding",
+      el(
+        "p",
+        {},
+        `${fmtCount(h.n)} linear solves from the first guess to the ` +
+          `found shape, stopped by ${stopText(summary.form.stop_reason)}.`,
+      ),
+      el("div", { class: "charts" }, charts),
+    );
+}
+
+function writeGa() {
+  const g = data.ga;
+  if (!g || !range(g.best_psi_m)) return;
+  const x = spaced(g),
+    xLabel = "generation",
+    head = (i) => `generation ${x[i]}`,
+    o = summary.optimize;
+  const best = scaled(g.best_psi_m, 1e3);
+  const change = best.map((v, i) => (i && v !== null && best[i - 1] !== null ? Math.abs(v - best[i - 1]) : null));
+  section(
+    "ga",
+    "Genetic algorithm",
+    el(
+      "p",
+      {},
+      `${fmtCount(o.generations)} generations, ${fmtCount(o.evaluations)} ` +
+        `form-findings of which ${fmtCount(o.infeasible)} infeasible, in ${fmtDuration(o.wall_s)}; stopped by ` +
+        `${stopText(o.stop_reason)}. The best design is of generation ${fmtCount(o.best_generation)}.`,
+    ),
+    el(
+      "div",
+      { class: "charts" },
+      chart({
+        title: "Convergence",
+        xLabel,
+        yLabel: "ψ (mm)",
+        unit: "mm",
+        x,
+        head,
+        caption:
+          `Surface error of the feasible individuals; the worst may leave the picture. ${figs(10)}.` + thinned(g),
+        series: [
+          {
+            name: "worst",
+            stored: "worst_psi_m",
+            values: scaled(g.worst_psi_m, 1e3),
+            colour: "--two",
+            dots: true,
+            free: true,
+          },
+          {
+            name: "mean",
+            stored: "mean_psi_m",
+            values: scaled(g.mean_psi_m, 1e3),
+            colour: "--three",
+            dash: "7 3",
+          },
+          { name: "best", stored: "best_psi_m", values: best, colour: "--one" },
+        ],
+      }),
+      chart({
+        title: "Difference between generations",
+        xLabel,
+        yLabel: "change of the best ψ (mm)",
+        unit: "mm",
+        x,
+        head,
+        caption: "Generations that leave the best as it was have no mark; Fig. 11.",
+        series: [{ name: "change", values: change.map((v) => (v > 0 ? v : null)), colour: "--one", dots: true }],
+      }),
+    ),
+  );
+}
+
+function writeCoupling() {
+  const c = data.coupling;
+  if (!c || !c.step_m || !range(c.step_m)) return;
+  const x = spaced(c).map((i) => i + 1),
+    xLabel = "outer iteration",
+    head = (i) => `outer iteration ${x[i]}`;
+  const one = (title, key, yLabel, caption) =>
+    c[key] && range(c[key])
+      ? chart({
+          title,
+          xLabel,
+          yLabel,
+          unit: "mm",
+          x,
+          head,
+          caption,
+          series: [{ name: title, stored: key, values: scaled(c[key], 1e3), colour: "--one", dots: x.length < 2 }],
+        })
+      : null;
+  section(
+    "coupling",
+    "Coupling of net and truss",
+    el(
+      "div",
+      { class: "charts" },
+      one(
+        "Change of the elastic deformation",
+        "step_m",
+        "change (mm)",
+        "Largest change of a truss displacement between two outer iterations; Fig. 21.",
+      ),
+      one("Surface error ψ", "psi_m", "ψ (mm)", "Of the net on the deformed truss."),
+    ),
+  );
+}
+
+// ---- tensions ----
+
+function tensionChart(group, figures) {
+  const of = Array.from({ length: net.n_cable }, (_, e) => e).filter((e) => groupOf(e) === group);
+  if (!of.length) return null;
+  const colour = { form: "--one", optimize: "--two", polish: "--three" };
+  const shapes = data.shapes.filter((s) => s.stage !== "polish" || s === resultShape);
+  return chart({
+    title: `${group === "inner" ? "Inner" : "Boundary"} cables`,
+    xLabel: "cable number",
+    yLabel: "tension (N)",
+    unit: "N",
+    x: of.map((_, k) => k + 1),
+    head: (k) => `cable ${net.cable_id[of[k]]}`,
+    caption: figures,
+    series: shapes.map((s) => ({
+      name: s.name,
+      stored: "tension_N",
+      values: of.map((e) => s.tension_N[e]),
+      colour: colour[s.stage],
+      dots: true,
+    })),
+  });
+}
+
+function writeTensions() {
+  if (!data.shapes.length) return;
+  const best = !!shapeOf("optimize"),
+    own = (a, b, c) => figs(a, best && b, data.coupling && c);
+  section(
+    "tensions",
+    "Tensions",
+    el("p", {}, "One mark per cable, numbered in the order of the file within its group."),
+    el(
+      "div",
+      { class: "charts" },
+      tensionChart("inner", `Tension of the inner cables; ${own(6, 13, 19)}.`),
+      tensionChart("boundary", `Tension of the boundary cables; ${own(7, 14, 20)}.`),
+    ),
+  );
+}
+
+// ---- tables ----
+
+function table(headings, rows, caption) {
+  return el(
+    "div",
+    { class: "scroll", tabindex: 0, role: "region", "aria-label": caption },
+    el(
+      "table",
+      {},
+      el(
+        "thead",
+        {},
+        el(
+          "tr",
+          {},
+          headings.map(([text, kind]) => el("th", { scope: "col", class: kind }, text)),
+        ),
+      ),
+      el("tbody", {}, rows),
+    ),
+  );
+}
+
+function writeSummary() {
+  const stages = [
+    ["form", "Form-finding"],
+    ["optimize", "GA best"],
+    ["polish", "LM optimum"],
+  ].filter(([key]) => summary[key]);
+  if (!stages.length) return;
+  const word = (v) => v.replace(/_/g, " ");
+  const rows = [
+    ["surface error ψ", "mm", "psi_m", (v) => fmt(1e3 * v, 5)],
+    ["tension ratio, inner cables", "", "inner_tension_ratio", fmtRatio],
+    ["tension ratio, boundary cables", "", "boundary_tension_ratio", fmtRatio],
+    ["slack cables", "", "slack_cables", fmtCount],
+    ["largest nodal residual", "N", "residual_N", (v) => fmt(v, 3)],
+    ["largest error of a tension asked for", "relative", "tension_error", (v) => fmt(v, 3)],
+    ["largest error of a length asked for", "relative", "length_error", (v) => fmt(v, 3)],
+    ["shortest cable, of its theoretical length", "", "shortest_length_ratio", (v) => fmt(v, 4)],
+    ["straight chains under load", "", "loaded_straight_chains", fmtCount],
+    ["estimated position error", "mm", "position_error_m", (v) => fmt(1e3 * v, 3)],
+    ["condition of the Newton matrix", "", "condition", (v) => fmt(v, 3)],
+    ["backward error", "", "backward_error", (v) => fmt(v, 3)],
+    ["linear solves", "", "iterations", fmtCount],
+    ["generations", "", "generations", fmtCount],
+    ["evaluations", "", "evaluations", fmtCount],
+    ["status", "", "status", word],
+    ["stopped by", "", "stop_reason", stopText],
+    ["wall time", "", "wall_s", fmtDuration],
+  ];
+  const shown = rows.filter(([, , key]) =>
+    stages.some(([s]) => summary[s][key] !== undefined && summary[s][key] !== null),
+  );
+  section(
+    "summary",
+    "Summary",
+    table(
+      [["Quantity"], ...stages.map(([, name]) => [name, "number"]), ["Unit"], ["Name in the file", "names"]],
+      shown.map(([name, unit, key, format]) =>
+        el(
+          "tr",
+          {},
+          el("th", { scope: "row" }, name),
+          stages.map(([s]) =>
+            el(
+              "td",
+              { class: "number" },
+              typeof summary[s][key] === "number" || typeof summary[s][key] === "string"
+                ? format(summary[s][key])
+                : "–",
+            ),
+          ),
+          el("td", {}, unit),
+          el("td", { class: "names" }, el("code", {}, key)),
+        ),
+      ),
+      "Summary",
+    ),
+  );
+}
+
+const PROVENANCE = {
+  started_utc: "started (UTC)",
+  finished_utc: "finished (UTC)",
+  git_describe: "commit",
+  build_flags: "compiler flags",
+  lapack: "LAPACK",
+  gsl_version: "GSL",
+  hdf5_version: "HDF5",
+  rng: "random numbers",
+  sha256: "SHA-256 of the case",
+};
+
+function writeProvenance() {
+  const rows = [
+    ["result file", summary.file],
+    ["case", summary.case],
+    ["seed", data.seed],
+    ["threads", String(summary.threads)],
+    ...(data.provenance || []).map((line) => {
+      const at = line.indexOf(": ");
+      const key = line.slice(0, at);
+      return [PROVENANCE[key] || key.replace(/_/g, " "), line.slice(at + 2)];
+    }),
+  ];
+  section(
+    "provenance",
+    "Provenance",
+    table(
+      [["What"], ["Value"]],
+      rows.map(([name, value]) => el("tr", {}, el("th", { scope: "row" }, name), el("td", { class: "wrap" }, value))),
+      "Provenance",
+    ),
+  );
+}
