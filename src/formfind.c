@@ -103,7 +103,8 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
             r->culprit = e;
             return;
         }
-        if (part < (w->law[e] == HF_LAW_TENSION ? s->collapse_ratio : HF_FORM_GONE) && w->law[e] != HF_LAW_LENGTH) {
+        int may_vanish = w->law[e] == HF_LAW_LENGTH || w->law[e] == HF_LAW_ELASTIC; /* slack then */
+        if (part < (w->law[e] == HF_LAW_TENSION ? s->collapse_ratio : HF_FORM_GONE) && !may_vanish) {
             r->status = HF_COLLAPSED;
             r->culprit = e;
             return;

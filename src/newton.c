@@ -301,16 +301,28 @@ static int rescale_flat_chains(const hf_model *m, hf_workspace *w)
     return n_scaled;
 }
 
+/* First force densities unlike those of the case: the first shapes need not lie near the answer, and a cable that
+ * shrinks to nothing in one of them proves nothing. */
+static void start_elsewhere(const hf_model *m, hf_workspace *w)
+{
+    for (int e = 0; e < m->n_cable; e++)
+        if (w->law[e] != HF_LAW_FORCE_DENSITY) w->q_N_per_m[e] = m->start_q_N_per_m[e] * (1 + e % 3);
+}
+
 hf_status hf_newton_find(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
                          hf_form_result *result)
 {
-    int n_done = 0, n_rescaled = 0, n_rounded = 0, block = FIRST_BLOCK;
+    int n_done = 0, n_rescaled = 0, n_rounded = 0, n_restarted = 0, block = FIRST_BLOCK;
     for (;;) {
         hf_form_settings part = *s;
         int left = s->max_iterations - n_done;
         part.max_iterations = left < 1 ? 1 : block < left ? block : left; /* the shape of the last step is measured */
         hf_form_find(m, &part, HF_STOP_RESIDUAL, w, history, result);
         n_done += result->iterations;
+        if (result->status == HF_COLLAPSED && n_done <= FIRST_BLOCK && n_restarted++ == 0) {
+            start_elsewhere(m, w);
+            continue;
+        }
         if (result->status != HF_NOT_CONVERGED || n_done >= s->max_iterations) break;
         if (result->culprit >= 0 && n_rounded++ == ROUNDED_MAX) break;
         if (n_rescaled < RESCALED_MAX && rescale_flat_chains(m, w)) {
