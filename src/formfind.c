@@ -83,6 +83,17 @@ static hf_status solve(const hf_model *m, hf_workspace *w, int *bad_row)
 
 /* ---- measuring cables ---- */
 
+/* fmax and fmin without the call; a NaN in `next` leaves `now` as it is. */
+static inline double larger(double now, double next)
+{
+    return next > now ? next : now;
+}
+
+static inline double smaller(double now, double next)
+{
+    return next < now ? next : now;
+}
+
 /* Lengths, tensions (Eqs. 4, 6), errors against the laws. length_gap is for stopping: beside the length error of taut
  * cables it counts slack ones that are too long, and the pull that is left in those that are too short. */
 void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r,
@@ -116,14 +127,14 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
         }
         if (part < shortest) shortest = part;
         if (w->law[e] == HF_LAW_TENSION) {
-            r->tension_error = fmax(r->tension_error, fabs(tension / w->target[e] - 1));
+            r->tension_error = larger(r->tension_error, fabs(tension / w->target[e] - 1));
         } else if (w->law[e] != HF_LAW_FORCE_DENSITY) {
             double strain = length / hf_workspace_wanted_length_m(m, w, e, tension) - 1;
-            double pull = fmin(tension / m->reference_N, 1);
+            double pull = smaller(tension / m->reference_N, 1);
             double error = fabs(strain);
             int is_taut = pull >= HF_SLACK_RATIO;
-            if (is_taut) r->length_error = fmax(r->length_error, error);
-            *length_gap = fmax(*length_gap, strain > 0 || is_taut ? error : error * pull);
+            if (is_taut) r->length_error = larger(r->length_error, error);
+            *length_gap = larger(*length_gap, strain > 0 || is_taut ? error : error * pull);
         }
     }
     r->shortest_length_ratio = shortest;
@@ -159,7 +170,7 @@ double hf_form_residual_N(const hf_model *m, hf_workspace *w)
     nodal_forces(m, w, 0);
     for (int i = 0; i < m->n_free; i++) {
         double x = scale * fx[i], y = scale * fy[i], z = scale * fz[i];
-        largest = fmax(largest, x * x + y * y + z * z);
+        largest = larger(largest, x * x + y * y + z * z);
     }
     return sqrt(largest) * m->reference_N;
 }
@@ -170,7 +181,7 @@ static double largest_coordinate_m(const hf_model *m, const hf_workspace *w, int
     double largest = 0;
     for (int c = 0; c < 3; c++)
         for (int k = 0; k < 2; k++)
-            largest = fmax(largest, fabs(w->position_m[c * m->n_node + m->end_row[2 * e + k]]));
+            largest = larger(largest, fabs(w->position_m[c * m->n_node + m->end_row[2 * e + k]]));
     return largest;
 }
 
@@ -397,12 +408,15 @@ hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_works
     double length_gap;
     *r = (hf_form_result){.status = HF_OK, .culprit = -1};
     r->position_error_m = r->condition = r->backward_error = (double)NAN;
-    for (int pass = 0; pass < 2; pass++) { /* the lengths give the force densities of law tension, these its tensions */
-        hf_form_measure_cables(m, s, w, r, &length_gap);
-        if (r->status != HF_OK) return finish(m, w, r);
-        for (int e = 0; e < m->n_cable; e++)
-            if (w->law[e] == HF_LAW_TENSION) w->q_N_per_m[e] = w->target[e] / w->length_m[e];
+    const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
+    for (int e = 0; e < m->n_cable; e++) {
+        if (w->law[e] != HF_LAW_TENSION) continue;
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        double dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a], square = dx * dx + dy * dy + dz * dz;
+        w->q_N_per_m[e] = square > 0 ? w->target[e] / sqrt(square) : 0; /* of no length: found collapsed below */
     }
+    hf_form_measure_cables(m, s, w, r, &length_gap);
+    if (r->status != HF_OK) return finish(m, w, r);
     r->residual_N = hf_form_residual_N(m, w);
     r->stop_reason = HF_STOPPED_RESIDUAL;
     if (!(r->residual_N <= s->residual_tolerance * m->reference_N && length_gap <= s->length_tolerance)) {
