@@ -8,7 +8,7 @@
 
 /* Stiffness of a length-controlled cable over its tension per length. The larger, the nearer to a hard constraint; the
  * forces never contain it, so it costs no accuracy in the residual. */
-#define STIFFENING 1e6
+#define STIFFENING 1e7
 #define FIRST_BLOCK 6        /* fixed-point iterations before Newton is tried; doubled after each failure */
 #define STEPS_MAX 30         /* Newton steps per try */
 #define HALVINGS_MAX 6       /* of one step */
@@ -331,9 +331,14 @@ hf_status hf_newton_find(const hf_model *m, const hf_form_settings *s, hf_worksp
         }
         int n_step = 0;
         left = s->max_iterations - n_done < STEPS_MAX ? s->max_iterations - n_done : STEPS_MAX;
-        /* after a success a few linear solves measure the new shape; after a failure the fixed point goes on */
-        block = newton_steps(m, s, w, left, &n_step) ? FIRST_BLOCK : 2 * block;
+        int has_moved = newton_steps(m, s, w, left, &n_step);
         n_done += n_step;
+        /* a linear solve would round the shape anew, by the condition of D */
+        if (has_moved && hf_form_measure(m, s, w, result) == HF_OK) {
+            hf_form_accept(m, s, HF_STOPPED_RESIDUAL, n_done, w, result);
+            break;
+        }
+        block = has_moved ? FIRST_BLOCK : 2 * block; /* after a failure the fixed point goes on */
     }
     result->iterations = n_done;
     return result->status;
