@@ -62,12 +62,13 @@ static hf_status command_show(const hf_options *o, hf_messages *messages)
 
 static hf_status command_export(const hf_options *o, hf_messages *messages)
 {
-    hf_status (*const write[])(const hf_options *, char *, size_t, hf_messages *) = {hf_export, hf_vtk, hf_cutlist};
+    static hf_status (*const writer[])(const hf_options *, char *, size_t, hf_messages *) = {hf_export, hf_vtk,
+                                                                                             hf_cutlist};
     const char *const asked[] = {o->csv, o->vtk, o->cutlist};
     for (int i = 0; i < 3; i++) {
         char said[4096];
         if (!asked[i]) continue;
-        HF_TRY(write[i](o, said, sizeof said, messages));
+        HF_TRY(writer[i](o, said, sizeof said, messages));
         printf("%s\n", said);
     }
     return HF_OK;

@@ -1,12 +1,12 @@
 /* newton - Newton's method on the convex energy Pi(x) = sum phi_e(l_e) - P.x of a tension net (METHOD sections 2, 3):
  * the accuracy reference, the error estimate of every other method, and the matrix that a population shares.
  *
- * Unknowns: the 3 n_free coordinates, dof 3*row + component, and the tensions of cables under law length or elastic. Per
- * cable, with unit vector u: force T u, stiffness (T/l)(I - uu') + k uu' with k = phi''(l). A cable under law length
- * has k = STIFFENING T/L*: its tension step dT = k (dl + l - L*) is eliminated, so that the matrix stays symmetric
- * positive definite. Eq. 8 is the same step with a stiffening of 1. An elastic cable is treated alike, with k = EA/l0 and
- * L* = l0 (1 + T/EA) (mixed form: forces never contain EA times a length error); a slack one has k = 0. Matrix: lower band, column-major, half-bandwidth
- * 3b + 2. */
+ * Unknowns: the 3 n_free coordinates, dof 3*row + component, and the tensions of the cables under law length or
+ * elastic. Per cable, with unit vector u: force T u, stiffness (T/l)(I - uu') + k uu' with k = phi''(l). A cable under
+ * law length has k = STIFFENING T/L*: its tension step dT = k (dl + l - L*) is eliminated, so that the matrix stays
+ * symmetric positive definite. Eq. 8 is the same step with a stiffening of 1. An elastic cable is treated alike, with
+ * k = EA/l0 and L* = l0 (1 + T/EA), so that no force contains EA times an error of length; a slack one has k = 0.
+ * Matrix: lower band, column-major, half-bandwidth 3b + 2. */
 #ifndef HIFDM_NEWTON_H
 #define HIFDM_NEWTON_H
 

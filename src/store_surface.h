@@ -1,7 +1,7 @@
 /* store_surface - the measures of the surface in a result file, below /surface:
  *   /surface           attributes focal_length_m, strip_width_m; frequency_Hz [k]
- *   /surface/STAGE     form, optimize, polish, as far as they ran: attributes, the numbers of hf_surface_measures and of
- *                      its fit (fit_...); gain_loss_dB, fit_gain_loss_dB [k]
+ *   /surface/STAGE     form, optimize, polish, as far as they ran: attributes, the numbers of hf_surface_measures and
+ *                      of its fit (fit_...); gain_loss_dB, fit_gain_loss_dB [k]
  * Nothing when the case asks for none; no data sets when it names no frequencies. */
 #ifndef HIFDM_STORE_SURFACE_H
 #define HIFDM_STORE_SURFACE_H

@@ -59,7 +59,8 @@ END_TEST
 /* ---- cut list ---- */
 
 /* The net that is built from the cut lengths, hung into the theoretical positions, comes to the stored shape. 1e-9 m is
- * what an engineer could ask for; 17 digits of l0 of 1 m, at 47 kN and some 0.3 N/m of the softest motion, are 1e-11 m. */
+ * what an engineer could ask for; 17 digits of l0 of 1 m, at 47 kN and some 0.3 N/m of the softest motion, are
+ * 1e-11 m. */
 START_TEST(net_built_from_the_cut_list_has_the_found_shape)
 {
     static const char *const stage[] = {"form", "ga/best", "polish"}, *const word[] = {"form", "optimize", "polish"};
