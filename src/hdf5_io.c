@@ -180,8 +180,6 @@ static hid_t make_type(hf_hdf5_kind kind, hsize_t length)
         return H5Tcopy(H5T_NATIVE_LONG);
     case HF_KIND_UINT64:
         return H5Tcopy(H5T_NATIVE_UINT64);
-    case HF_KIND_BYTE:
-        return H5Tcopy(H5T_NATIVE_UCHAR);
     case HF_KIND_TEXT:
         return make_string(H5T_VARIABLE);
     case HF_KIND_CHARS:

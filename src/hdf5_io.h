@@ -30,7 +30,6 @@ typedef enum {
     HF_KIND_TEXT,   /* const char *: variable-length UTF-8, which h5py gives as str. Never read back here: HDF5 1.10
                        crashes on the damaged ones */
     HF_KIND_CHARS,  /* char[length], padded with NULs: fixed-length UTF-8 */
-    HF_KIND_BYTE,   /* unsigned char, a plain number */
     HF_KIND_FLAG,   /* this and all further ones: signed char; 0 or 1, a bool in h5py */
     HF_KIND_ROLE,
     HF_KIND_GROUP,

@@ -76,6 +76,7 @@ static hf_status command_export(const hf_options *o, hf_messages *messages)
 
 static hf_status dispatch(const hf_options *o, int argc, char **argv, hf_messages *messages)
 {
+    char said[4096];
     switch (o->command) {
     case HF_COMMAND_RUN:
         return command_run(o, argc, argv, messages);

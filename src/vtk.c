@@ -72,6 +72,19 @@ static void put_type(hf_hdf5 *io, hid_t group)
     hf_hdf5_close(io, type);
 }
 
+/* What each cell is, which the reader wants in bytes. */
+static void put_cell_types(hf_hdf5 *io, hid_t group, int n, const unsigned char *type)
+{
+    hid_t space = -1, data_set = -1;
+    if (io->status != HF_OK) return;
+    if ((space = H5Screate_simple(1, &(hsize_t){(hsize_t)n}, NULL)) < 0 ||
+        (data_set = H5Dcreate2(group, "Types", H5T_NATIVE_UCHAR, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
+        H5Dwrite(data_set, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, type) < 0)
+        hf_hdf5_fail(io, "write", group, "Types");
+    hf_hdf5_close(io, data_set);
+    hf_hdf5_close(io, space);
+}
+
 /* offset: [n_line + 1] scratch; type: [n_line] scratch */
 static void put_grid(hf_hdf5 *io, const grid *g, int *offset, unsigned char *type)
 {
@@ -88,7 +101,7 @@ static void put_grid(hf_hdf5 *io, const grid *g, int *offset, unsigned char *typ
     put(io, group, &(field){"Points", "m", HF_KIND_REAL, 3, g->position_m}, g->n_point);
     put(io, group, &(field){"Connectivity", "", HF_KIND_INT, 1, g->end}, 2 * g->n_line);
     put(io, group, &(field){"Offsets", "", HF_KIND_INT, 1, offset}, g->n_line + 1);
-    put(io, group, &(field){"Types", "", HF_KIND_BYTE, 1, type}, g->n_line);
+    put_cell_types(io, group, g->n_line, type);
     hf_hdf5_close(io, group);
     put_fields(io, "/VTKHDF/PointData", g->point, g->n_point_field, g->n_point);
     put_fields(io, "/VTKHDF/CellData", g->line, g->n_line_field, g->n_line);

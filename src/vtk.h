@@ -5,7 +5,8 @@
  * order of the scene. Point data: role, load_N; of a found shape displacement_m (from the theoretical shape) and its
  * size deviation_m; normal_error_m, when the case asks for measures of the surface. Cell data: group, law, length_m,
  * EA_N; of a found shape tension_N, q_N_per_m, slack, length_change_m (from the theoretical length). Words are numbers
- * here: role 0 support, 1 inner, 2 edge; group 0 inner, 1 boundary; law 0 tension, 1 length, 2 force_density, 3 elastic. */
+ * here: role 0 support, 1 inner, 2 edge; group 0 inner, 1 boundary; law 0 tension, 1 length, 2 force_density,
+ * 3 elastic. */
 #ifndef HIFDM_VTK_H
 #define HIFDM_VTK_H
 

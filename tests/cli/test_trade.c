@@ -200,6 +200,10 @@ START_TEST(surface_is_measured_for_every_shape)
                "near(b[d.decode()]['surface']['faceting_rms_m'], 1 / (24 * 5**.5 * 70.6), 1e-18)",
                "b[d.decode()]['surface']['fit_half_path_rms_m'] <= b[d.decode()]['surface']['half_path_rms_m']");
     }
+    HIFDM(0, "report", out, "-o", temp("c.html"));
+    char *page = read_file(temp("c.html"), NULL);
+    demand_part(page, "\"fit_half_path_rms_m\": ", __LINE__);
+    free(page);
     HIFDM(0, "show", out);
     OUT("surface: half-path RMS ");
     OUT("loss of gain at 1.2 GHz: ");
