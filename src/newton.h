@@ -23,6 +23,10 @@ hf_status hf_newton_find(const hf_model *model, const hf_form_settings *settings
  * of its 1-norm condition number, INFINITY when a Levenberg shift was needed. HF_SINGULAR when no shift helps. */
 hf_status hf_newton_factor(const hf_model *model, hf_workspace *workspace, double *condition);
 
+/* For a net with elastic cables: descend on its energy from the workspace's position_m to near the minimum, and set
+ * tension_N and q_N_per_m by the laws. Returns the number of steps, at most max_steps. */
+int hf_newton_descend(const hf_model *model, hf_workspace *workspace, int max_steps);
+
 /* Fill position_error_m (largest move of a node in the next step) and condition of a result whose shape the workspace
  * holds; untouched when there is no step. */
 void hf_newton_certify(const hf_model *model, hf_workspace *workspace, hf_form_result *result);
