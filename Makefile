@@ -9,11 +9,11 @@ MODULES := status arena sha256 text csv \
            scene scene_import config config_table \
            numbering model symmetry workspace band \
            metrics surface \
-           lane lane_kernel formfind newton certificate \
+           lane lane_kernel formfind newton newton_descent certificate \
            evaluate chord_kernel chord ga swarm polish batch \
-           json summary hdf5_io store store_read
+           json summary hdf5_io store_surface store store_read
 APP_MODULES := options print problem run progress signals \
-           plan export report designs main
+           plan export cutlist vtk report designs main
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
 VERSION := 0.1.0

@@ -453,7 +453,7 @@ static void check_together(loader *l)
         if (!hf_field_table[i].default_value && section_present(c, hf_field_table[i].path) &&
             !l->where_given[(size_t)i * WHERE_SIZE])
             complain_about(l, hf_field_table[i].path, "is missing and has no default");
-    if (c->has_surface && c->has_import && !c->surface.focal_length_m && !l->failed)
+    if (c->has_surface && c->has_import && c->surface.focal_length_m == 0 && !l->failed)
         complain_about(l, "surface.focal_length_m", "is missing: an imported net does not tell its surface");
     if (!c->has_optimize || l->failed) return; /* values that were refused are not compared */
     if (o->min_tension_N >= o->max_tension_N)
@@ -470,8 +470,8 @@ static void complete_surface(hf_case *c)
 {
     if (!c->has_surface || !c->has_cylinder) return;
     double n_cell = (double)c->cylinder.modules[0] * c->cylinder.cells_per_module[0];
-    if (!c->surface.focal_length_m) c->surface.focal_length_m = c->cylinder.focal_length_m;
-    if (!c->surface.strip_width_m && n_cell > 0) c->surface.strip_width_m = c->cylinder.aperture_m / n_cell;
+    if (c->surface.focal_length_m == 0) c->surface.focal_length_m = c->cylinder.focal_length_m;
+    if (c->surface.strip_width_m == 0 && n_cell > 0) c->surface.strip_width_m = c->cylinder.aperture_m / n_cell;
 }
 
 /* ---- load ---- */

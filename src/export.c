@@ -62,6 +62,12 @@ hf_status hf_export_claim(const char *path, int force, hf_messages *messages)
     return HF_OK;
 }
 
+hf_status hf_export_folder(const char *path, hf_messages *messages)
+{
+    if (mkdir(path, 0777) == 0 || errno == EEXIST) return HF_OK;
+    return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", path, strerror(errno));
+}
+
 hf_status hf_export_file(const char *path, void (*write)(const void *context, FILE *file), const void *context,
                          hf_messages *messages)
 {
@@ -81,32 +87,38 @@ hf_status hf_export_file(const char *path, void (*write)(const void *context, FI
 
 static const char *const shape_word[3] = {"form-finding", "optimised", "polished"};
 
+hf_status hf_export_read(const hf_options *o, hf_summary *summary, hf_scene *scene, hf_shape *shape, const char **word,
+                         hf_messages *messages)
+{
+    HF_TRY(hf_store_read_summary(o->file, summary, messages));
+    int has[3] = {1, summary->has_optimize && summary->best.status == HF_OK, summary->has_polish};
+    hf_stage stage = has[HF_STAGE_POLISH] && summary->polish_is_result ? HF_STAGE_POLISH
+                     : has[HF_STAGE_OPTIMIZE]                          ? HF_STAGE_OPTIMIZE
+                                                                       : HF_STAGE_FORM;
+    for (int i = 0; o->stage && i < HF_STAGE_NONE; i++)
+        if (!strcmp(o->stage, hf_stage_word[i])) stage = (hf_stage)i;
+    *word = shape_word[stage];
+    if (!has[stage])
+        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no %s shape; use --stage form", o->file, *word);
+    HF_TRY(hf_store_read_scene(o->file, scene, messages));
+    return hf_store_read_shape(o->file, stage, shape, messages);
+}
+
 static hf_status export_shape(const hf_options *o, hf_scene *scene, hf_shape *shape, char *said, size_t size,
                               hf_messages *messages)
 {
     hf_summary summary;
+    const char *word;
     char nodes[PATH_SIZE], cables[PATH_SIZE];
-    HF_TRY(hf_store_read_summary(o->file, &summary, messages));
-    int has[3] = {1, summary.has_optimize && summary.best.status == HF_OK, summary.has_polish};
-    hf_stage stage = has[HF_STAGE_POLISH] && summary.polish_is_result ? HF_STAGE_POLISH
-                     : has[HF_STAGE_OPTIMIZE]                         ? HF_STAGE_OPTIMIZE
-                                                                      : HF_STAGE_FORM;
-    for (int i = 0; o->stage && i < HF_STAGE_NONE; i++)
-        if (!strcmp(o->stage, hf_stage_word[i])) stage = (hf_stage)i;
-    if (!has[stage])
-        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no %s shape; use --stage form", o->file,
-                        shape_word[stage]);
-    HF_TRY(hf_store_read_scene(o->file, scene, messages));
-    HF_TRY(hf_store_read_shape(o->file, stage, shape, messages));
-    if (mkdir(o->csv, 0777) != 0 && errno != EEXIST)
-        return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", o->csv, strerror(errno));
+    HF_TRY(hf_export_read(o, &summary, scene, shape, &word, messages));
+    HF_TRY(hf_export_folder(o->csv, messages));
     HF_TRY(claim(o, "nodes.csv", nodes, messages)); /* both before either is written */
     HF_TRY(claim(o, "cables.csv", cables, messages));
     const view both = {scene, shape};
     HF_TRY(hf_export_file(nodes, write_nodes, &both, messages));
     HF_TRY(hf_export_file(cables, write_cables, &both, messages));
     snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s and %s", o->file, scene->n_node,
-             scene->n_cable, shape_word[stage], nodes, cables);
+             scene->n_cable, word, nodes, cables);
     return HF_OK;
 }
 

@@ -7,13 +7,22 @@
 #define HIFDM_EXPORT_H
 
 #include "options.h"
+#include <hifdm/store.h>
 
 /* Writes into options->csv (made if it is not there). Existing files stay unless options->force. `said`: one line for
  * people on what was written. */
 hf_status hf_export(const hf_options *options, char *said, size_t size, hf_messages *messages);
 
+/* One shape of a result file, as options->stage asks or the result of the run, with its summary and scene. `word`: what
+ * the shape is called, for people. Free scene and shape in any case. */
+hf_status hf_export_read(const hf_options *options, hf_summary *summary, hf_scene *scene, hf_shape *shape,
+                         const char **word, hf_messages *messages);
+
 /* HF_EXISTS with a message when `path` is there and not `force`. */
 hf_status hf_export_claim(const char *path, int force, hf_messages *messages);
+
+/* Make a folder unless it is there. HF_OK or HF_IO. */
+hf_status hf_export_folder(const char *path, hf_messages *messages);
 
 /* Write a file under a temporary name and rename it, so that no half-written file is ever seen. HF_OK or HF_IO. */
 hf_status hf_export_file(const char *path, void (*write)(const void *context, FILE *file), const void *context,

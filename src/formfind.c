@@ -34,6 +34,7 @@ void hf_form_prepare(const hf_model *model, hf_workspace *workspace)
     memcpy(workspace->law, model->law, n);
     memcpy(workspace->target, model->target, n * sizeof(double));
     memcpy(workspace->q_N_per_m, model->start_q_N_per_m, n * sizeof(double));
+    if (model->EA_N) memcpy(workspace->EA_N, model->EA_N, n * sizeof(double));
 }
 
 /* ---- one linear solve: D x_f = P - C_f' Q C_g x_g for x, y, z (Eqs. 2, 5) ---- */
@@ -129,7 +130,7 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
         if (w->law[e] == HF_LAW_TENSION) {
             r->tension_error = larger(r->tension_error, fabs(tension / w->target[e] - 1));
         } else if (w->law[e] != HF_LAW_FORCE_DENSITY) {
-            double strain = length / hf_workspace_wanted_length_m(m, w, e, tension) - 1;
+            double strain = length / hf_workspace_wanted_length_m(w, e, tension) - 1;
             double pull = smaller(tension / m->reference_N, 1);
             double error = fabs(strain);
             int is_taut = pull >= HF_SLACK_RATIO;
@@ -288,7 +289,7 @@ void hf_form_update(const hf_model *m, hf_workspace *w)
         else if (w->law[e] == HF_LAW_LENGTH)
             w->q_N_per_m[e] *= w->length_m[e] / w->target[e]; // Eq. 8
         else if (w->law[e] == HF_LAW_ELASTIC)                 // Eq. 8, towards a length that grows with the tension
-            w->q_N_per_m[e] *= w->length_m[e] / hf_workspace_wanted_length_m(m, w, e, w->tension_N[e]);
+            w->q_N_per_m[e] *= w->length_m[e] / hf_workspace_wanted_length_m(w, e, w->tension_N[e]);
     }
 }
 

@@ -2,6 +2,7 @@
  * program. */
 #include "plan.h"
 #include "band.h"
+#include "cutlist.h"
 #include "designs.h"
 #include "export.h"
 #include "options.h"
@@ -9,6 +10,7 @@
 #include "progress.h"
 #include "report.h"
 #include "run.h"
+#include "vtk.h"
 #include "signals.h"
 #include <hifdm/store.h>
 
@@ -58,6 +60,20 @@ static hf_status command_show(const hf_options *o, hf_messages *messages)
     return HF_OK;
 }
 
+static hf_status command_export(const hf_options *o, hf_messages *messages)
+{
+    static hf_status (*const writer[])(const hf_options *, char *, size_t, hf_messages *) = {hf_export, hf_vtk,
+                                                                                             hf_cutlist};
+    const char *const asked[] = {o->csv, o->vtk, o->cutlist};
+    for (int i = 0; i < 3; i++) {
+        char said[4096];
+        if (!asked[i]) continue;
+        HF_TRY(writer[i](o, said, sizeof said, messages));
+        printf("%s\n", said);
+    }
+    return HF_OK;
+}
+
 static hf_status dispatch(const hf_options *o, int argc, char **argv, hf_messages *messages)
 {
     char said[4096];
@@ -75,9 +91,7 @@ static hf_status dispatch(const hf_options *o, int argc, char **argv, hf_message
         printf("%s\n", said);
         return HF_OK;
     case HF_COMMAND_EXPORT:
-        HF_TRY(hf_export(o, said, sizeof said, messages));
-        printf("%s\n", said);
-        return HF_OK;
+        return command_export(o, messages);
     case HF_COMMAND_SCHEMA:
         hf_print_schema(stdout);
         return HF_OK;

@@ -89,27 +89,33 @@ static void place_cables(const hf_scene *s, hf_model *m)
 
 /* The tension that a cable is given, N; 0 when its law gives none. What an elastic cable has in the theoretical shape
  * is no scale for anything: it may be out by a thousand times. */
-static double given_tension(const hf_scene *s, const hf_form_settings *form, int e)
+static double given_tension(const hf_scene *s, double pretension_N, int e)
 {
     if (s->law[e] == HF_LAW_LENGTH || s->law[e] == HF_LAW_ELASTIC) return 0;
     if (s->law[e] == HF_LAW_FORCE_DENSITY) return fabs(s->target[e]) * hf_scene_theoretical_length(s, e);
-    return isnan(s->target[e]) ? form->pretension_N : s->target[e];
+    return isnan(s->target[e]) ? pretension_N : s->target[e];
+}
+
+double hf_model_reference_N(const hf_scene *scene, double pretension_N)
+{
+    double largest_N = 0;
+    for (int e = 0; e < scene->n_cable; e++)
+        largest_N = fmax(largest_N, given_tension(scene, pretension_N, e));
+    for (int i = 0; scene->load_N && i < scene->n_node; i++) {
+        const double *p = scene->load_N + 3 * (size_t)i;
+        if (scene->role[i] != HF_ROLE_SUPPORT) largest_N = fmax(largest_N, hypot(hypot(p[0], p[1]), p[2]));
+    }
+    return largest_N > 0 ? largest_N : pretension_N;
 }
 
 static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *m)
 {
     m->pretension_N = form->pretension_N;
-    for (int e = 0; e < m->n_cable; e++)
-        m->reference_N = fmax(m->reference_N, given_tension(s, form, e));
-    for (int i = 0; m->load_N && i < m->n_free; i++) {
-        const double *p = m->load_N + i;
-        m->reference_N = fmax(m->reference_N, hypot(hypot(p[0], p[m->n_node]), p[2 * m->n_node]));
-    }
-    if (!(m->reference_N > 0)) m->reference_N = form->pretension_N;
+    m->reference_N = hf_model_reference_N(s, form->pretension_N);
     for (int e = 0; e < m->n_cable; e++) {
         int law = s->law[e];
         double length = hf_scene_theoretical_length(s, e), target = s->target[e];
-        double given = given_tension(s, form, e), tension = given > 0 ? given : m->reference_N;
+        double given = given_tension(s, form->pretension_N, e), tension = given > 0 ? given : m->reference_N;
         if (law == HF_LAW_ELASTIC && length > target) tension = s->EA_N[e] * (length / target - 1);
         double q = law == HF_LAW_FORCE_DENSITY ? target : tension / length;
         if (law == HF_LAW_TENSION) target = tension;

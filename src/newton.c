@@ -11,6 +11,7 @@
 #define STIFFENING 1e7
 #define FIRST_BLOCK 6        /* fixed-point iterations before Newton is tried; doubled after each failure */
 #define STEPS_MAX 30         /* Newton steps per try */
+#define DESCENT_MAX 300      /* steps per try on the energy of elastic cables */
 #define HALVINGS_MAX 6       /* of one step */
 #define TRUSTED_MAX 6        /* steps per try that may raise the merit */
 #define TRUSTED_RISE 1e6     /* by no more than this factor */
@@ -80,7 +81,7 @@ static imbalance measure(const hf_model *m, const hf_workspace *w, const double 
             if (b < m->n_free) force[3 * b + c] -= tension * u[c];
         }
         if (!has_multiplier(w, e)) continue;
-        double gap = length / hf_workspace_wanted_length_m(m, w, e, tension) - 1;
+        double gap = length / hf_workspace_wanted_length_m(w, e, tension) - 1;
         if (gap < 0) gap *= fmin(1, tension / m->reference_N);
         result.length_gap = fmax(result.length_gap, fabs(gap));
         result.merit += gap * gap;
@@ -99,7 +100,7 @@ static imbalance measure(const hf_model *m, const hf_workspace *w, const double 
 /* ---- matrix ---- */
 
 /* phi'' of a cable of this length; for law length, of the stiff spring in its place. A slack elastic cable has none. */
-static double axial_stiffness(const hf_model *m, const hf_workspace *w, int e, double length, double T)
+static double axial_stiffness(const hf_workspace *w, int e, double length, double T)
 {
     switch (w->law[e]) {
     case HF_LAW_FORCE_DENSITY:
@@ -107,17 +108,16 @@ static double axial_stiffness(const hf_model *m, const hf_workspace *w, int e, d
     case HF_LAW_LENGTH:
         return STIFFENING * T / w->target[e];
     case HF_LAW_ELASTIC:
-        return length > w->target[e] ? m->EA_N[e] / w->target[e] : 0;
+        return length > w->target[e] ? w->EA_N[e] / w->target[e] : 0;
     default:
         return 0;
     }
 }
 
 /* How much a multiplier T changes in `part` of a step, which takes the cable of this length `beyond` the wanted one. */
-static double tension_change(const hf_model *m, const hf_workspace *w, int e, double length, double T, double part,
-                             double beyond)
+static double tension_change(const hf_workspace *w, int e, double length, double T, double part, double beyond)
 {
-    double k = axial_stiffness(m, w, e, length, T);
+    double k = axial_stiffness(w, e, length, T);
     return k > 0 ? part * k * beyond : -part * T;
 }
 
@@ -130,7 +130,7 @@ static double assemble(const hf_model *m, hf_workspace *w)
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], low = a < b ? a : b, high = a < b ? b : a;
         double length = direction(m, w->position_m, e, u), tension = law_tension(w, e, length, w->tension_N[e]);
-        double across = tension / length, along = axial_stiffness(m, w, e, length, tension) - across;
+        double across = tension / length, along = axial_stiffness(w, e, length, tension) - across;
         if (low >= m->n_free) continue;
         for (int c = 0; c < 3; c++)
             for (int r = 0; r < 3; r++) {
@@ -182,8 +182,8 @@ static void right_hand_side(const hf_model *m, const hf_workspace *w, const doub
         if (!has_multiplier(w, e)) continue;
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         double length = direction(m, w->position_m, e, u);
-        double T = w->tension_N[e], beyond = length - hf_workspace_wanted_length_m(m, w, e, T);
-        double pull = tension_change(m, w, e, length, T, 1, beyond);
+        double T = w->tension_N[e], beyond = length - hf_workspace_wanted_length_m(w, e, T);
+        double pull = tension_change(w, e, length, T, 1, beyond);
         for (int c = 0; c < 3; c++) {
             if (a < m->n_free) rhs[3 * a + c] += pull * u[c];
             if (b < m->n_free) rhs[3 * b + c] -= pull * u[c];
@@ -214,13 +214,13 @@ static void try_step(const hf_model *m, hf_workspace *w, double part)
         if (!has_multiplier(w, e)) continue;
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         double length = direction(m, w->position_m, e, u), T = w->tension_N[e];
-        double beyond = length - hf_workspace_wanted_length_m(m, w, e, T);
+        double beyond = length - hf_workspace_wanted_length_m(w, e, T);
         for (int c = 0; c < 3; c++) {
             if (a < m->n_free) beyond -= u[c] * step[3 * a + c];
             if (b < m->n_free) beyond += u[c] * step[3 * b + c];
         }
         double least = w->law[e] == HF_LAW_ELASTIC ? 0 : TENSION_KEPT * T; /* an elastic cable may go slack */
-        w->newton_trial_tension_N[e] = fmax(T + tension_change(m, w, e, length, T, part, beyond), least);
+        w->newton_trial_tension_N[e] = fmax(T + tension_change(w, e, length, T, part, beyond), least);
     }
 }
 
@@ -309,10 +309,21 @@ static void start_elsewhere(const hf_model *m, hf_workspace *w)
         if (w->law[e] != HF_LAW_FORCE_DENSITY) w->q_N_per_m[e] = m->start_q_N_per_m[e] * (1 + e % 3);
 }
 
+/* The fixed point knows little of elastic cables: the theoretical shape is the better start for them. */
+static int start_elastic(const hf_model *m, const hf_form_settings *s, hf_workspace *w)
+{
+    int most = s->max_iterations < DESCENT_MAX ? s->max_iterations : DESCENT_MAX, n_step = 0;
+    memcpy(w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    int n = hf_newton_descend(m, w, most);
+    newton_steps(m, s, w, STEPS_MAX, &n_step);
+    return n + n_step;
+}
+
 hf_status hf_newton_find(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
                          hf_form_result *result)
 {
     int n_done = 0, n_rescaled = 0, n_rounded = 0, n_restarted = 0, block = FIRST_BLOCK;
+    if (m->EA_N) n_done = start_elastic(m, s, w);
     for (;;) {
         hf_form_settings part = *s;
         int left = s->max_iterations - n_done;
@@ -330,6 +341,8 @@ hf_status hf_newton_find(const hf_model *m, const hf_form_settings *s, hf_worksp
             continue;
         }
         int n_step = 0;
+        left = s->max_iterations - n_done;
+        if (m->EA_N) n_done += hf_newton_descend(m, w, left < DESCENT_MAX ? left : DESCENT_MAX);
         left = s->max_iterations - n_done < STEPS_MAX ? s->max_iterations - n_done : STEPS_MAX;
         int has_moved = newton_steps(m, s, w, left, &n_step);
         n_done += n_step;

@@ -1,12 +1,12 @@
 /* newton - Newton's method on the convex energy Pi(x) = sum phi_e(l_e) - P.x of a tension net (METHOD sections 2, 3):
  * the accuracy reference, the error estimate of every other method, and the matrix that a population shares.
  *
- * Unknowns: the 3 n_free coordinates, dof 3*row + component, and the tensions of cables under law length or elastic. Per
- * cable, with unit vector u: force T u, stiffness (T/l)(I - uu') + k uu' with k = phi''(l). A cable under law length
- * has k = STIFFENING T/L*: its tension step dT = k (dl + l - L*) is eliminated, so that the matrix stays symmetric
- * positive definite. Eq. 8 is the same step with a stiffening of 1. An elastic cable is treated alike, with k = EA/l0 and
- * L* = l0 (1 + T/EA) (mixed form: forces never contain EA times a length error); a slack one has k = 0. Matrix: lower band, column-major, half-bandwidth
- * 3b + 2. */
+ * Unknowns: the 3 n_free coordinates, dof 3*row + component, and the tensions of the cables under law length or
+ * elastic. Per cable, with unit vector u: force T u, stiffness (T/l)(I - uu') + k uu' with k = phi''(l). A cable under
+ * law length has k = STIFFENING T/L*: its tension step dT = k (dl + l - L*) is eliminated, so that the matrix stays
+ * symmetric positive definite. Eq. 8 is the same step with a stiffening of 1. An elastic cable is treated alike, with
+ * k = EA/l0 and L* = l0 (1 + T/EA), so that no force contains EA times an error of length; a slack one has k = 0.
+ * Matrix: lower band, column-major, half-bandwidth 3b + 2. */
 #ifndef HIFDM_NEWTON_H
 #define HIFDM_NEWTON_H
 
@@ -22,6 +22,10 @@ hf_status hf_newton_find(const hf_model *model, const hf_form_settings *settings
 /* Factor the Newton matrix at the workspace's shape and tensions into newton_band. *condition (may be NULL): estimate
  * of its 1-norm condition number, INFINITY when a Levenberg shift was needed. HF_SINGULAR when no shift helps. */
 hf_status hf_newton_factor(const hf_model *model, hf_workspace *workspace, double *condition);
+
+/* For a net with elastic cables: descend on its energy from the workspace's position_m to near the minimum, and set
+ * tension_N and q_N_per_m by the laws. Returns the number of steps, at most max_steps. */
+int hf_newton_descend(const hf_model *model, hf_workspace *workspace, int max_steps);
 
 /* Fill position_error_m (largest move of a node in the next step) and condition of a result whose shape the workspace
  * holds; untouched when there is no step. */

@@ -23,7 +23,7 @@ static const command_row command_table[] = {
     {"show", "FILE", "print the summary of a result file", HF_COMMAND_SHOW},
     {"report", "FILE", "write a result as one HTML page to look at: net, histories, tensions, summary",
      HF_COMMAND_REPORT},
-    {"export", "FILE", "write a result as CSV files", HF_COMMAND_EXPORT},
+    {"export", "FILE", "write a result as CSV files, for ParaView, or as a cut list", HF_COMMAND_EXPORT},
     {"schema", NULL, "print every key of a case file: type, range, default, meaning", HF_COMMAND_SCHEMA},
     {"help", NULL, "print this", HF_COMMAND_HELP},
     {"version", NULL, "print the version", HF_COMMAND_VERSION},
@@ -39,6 +39,8 @@ typedef enum {
     OPTION_QUIET,
     OPTION_FORCE,
     OPTION_CSV,
+    OPTION_VTK,
+    OPTION_CUTLIST,
     OPTION_DESIGNS,
     OPTION_TEMPLATE,
     OPTION_STAGE
@@ -73,6 +75,10 @@ static const option_row option_table[] = {
     {"--quiet", NULL, NULL, "no progress and no summary; warnings and errors stay",
      BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EVALUATE), OPTION_QUIET},
     {"--csv", NULL, "DIR", "write nodes.csv and cables.csv into DIR", BIT(HF_COMMAND_EXPORT), OPTION_CSV},
+    {"--vtk", NULL, "DIR", "write every shape of the run into DIR, for ParaView (VTKHDF)", BIT(HF_COMMAND_EXPORT),
+     OPTION_VTK},
+    {"--cutlist", NULL, "FILE", "write unstressed lengths to FILE, the jig and totals beside it",
+     BIT(HF_COMMAND_EXPORT), OPTION_CUTLIST},
     {"--stage", NULL, "STAGE", "form, optimize or polish: which shape (default: the result of the run)",
      BIT(HF_COMMAND_EXPORT), OPTION_STAGE},
 };
@@ -156,6 +162,12 @@ static hf_status apply(const option_row *row, const char *value, hf_options *o, 
     case OPTION_CSV:
         o->csv = value;
         break;
+    case OPTION_VTK:
+        o->vtk = value;
+        break;
+    case OPTION_CUTLIST:
+        o->cutlist = value;
+        break;
     case OPTION_DESIGNS:
         o->designs = value;
         break;
@@ -210,8 +222,10 @@ hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_
     HF_TRY(read_words(argc, argv, command, options, messages));
     if (command->argument && !options->file)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm %s' needs a %s", command->name, command->argument);
-    if (options->command == HF_COMMAND_EXPORT && !options->csv)
-        return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs --csv DIR");
+    if (options->command == HF_COMMAND_EXPORT && !options->csv && !options->vtk && !options->cutlist)
+        return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs --csv DIR, --vtk DIR or --cutlist FILE");
+    if (options->stage && !options->csv && !options->cutlist)
+        return hf_error(messages, HF_BAD_USAGE, "--stage does not go with --vtk alone, which writes every shape");
     if (options->command == HF_COMMAND_EVALUATE && !options->designs == !options->template_path)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm evaluate' needs either --designs FILE or --template FILE");
     if (options->template_path && options->output)

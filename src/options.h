@@ -23,6 +23,7 @@ typedef struct {
     const char *file;                    /* the CASE or FILE, NULL for commands without one */
     const char *output;                  /* -o */
     const char *csv;                     /* --csv */
+    const char *vtk, *cutlist;           /* --vtk, --cutlist */
     const char *designs, *template_path; /* --designs, --template */
     const char *stage;                   /* --stage */
     const char **set;                    /* [n_set] --set key=value, owned */

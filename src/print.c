@@ -51,6 +51,24 @@ static void print_result(const hf_form_result *r, FILE *f)
             ratio(r->inner_tension_ratio, inner), ratio(r->boundary_tension_ratio, boundary), r->residual_N);
 }
 
+/* Of one stage, when the case asks for it. */
+static void print_surface(const hf_summary *s, int stage, FILE *f)
+{
+    const hf_surface_measures *m = &s->measures[stage];
+    if (!m->is_measured) return;
+    fprintf(f, "                surface: half-path RMS %.4f mm, best fit %.4f mm (f %.4f m); normal %.4f mm, %.4f mm\n",
+            m->half_path_rms_m * 1e3, m->fit.half_path_rms_m * 1e3, m->fit.focal_length_m, m->normal_rms_m * 1e3,
+            m->fit.normal_rms_m * 1e3);
+    fprintf(f, "                deviations 50/90/95/99 %%: %.3f/%.3f/%.3f/%.3f mm, largest %.3f mm",
+            m->deviation_p50_m * 1e3, m->deviation_p90_m * 1e3, m->deviation_p95_m * 1e3, m->deviation_p99_m * 1e3,
+            m->deviation_max_m * 1e3);
+    if (isfinite(m->faceting_rms_m)) fprintf(f, "; faceting %.4f mm", m->faceting_rms_m * 1e3);
+    fputc('\n', f);
+    for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
+        fprintf(f, "                loss of gain at %g GHz: %.3g dB, best fit %.3g dB\n",
+                s->surface.frequencies_Hz.value[k] / 1e9, m->gain_loss_dB[k], m->fit_gain_loss_dB[k]);
+}
+
 static void print_optimize(const hf_summary *s, FILE *f)
 {
     char wall[32];
@@ -65,6 +83,7 @@ static void print_optimize(const hf_summary *s, FILE *f)
                 100 * (1 - s->best.psi_m / s->base_psi_m), s->base_psi_m * 1e3);
     fprintf(f, "; found in generation %d\n", s->best_generation);
     print_result(&s->best, f);
+    print_surface(s, 1, f);
     if (s->planes)
         fprintf(f, "                symmetry: %s; %d independent genes of %d\n", hf_symmetry_planes_text(s->planes),
                 s->n_leader, s->n_gene);
@@ -84,6 +103,7 @@ static void print_polish(const hf_summary *s, FILE *f)
             s->polish.psi_m * 1e3, s->has_optimize ? "there" : "the form-finding's tensions",
             s->polish_is_result ? "the result" : "for comparison", ratio(s->polish.boundary_tension_ratio, boundary),
             s->polish_iterations, s->polish_converged ? "" : " (not converged)", wall);
+    print_surface(s, 2, f);
 }
 
 static void print_certificate(const hf_form_result *r, FILE *f)
@@ -105,6 +125,7 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
             wall);
     print_result(&s->form, f);
     print_certificate(&s->form, f);
+    print_surface(s, 0, f);
     if (s->has_optimize) print_optimize(s, f);
     if (s->has_polish) print_polish(s, f);
     if (path) fprintf(f, "  results       %s\n", path);

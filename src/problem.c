@@ -48,6 +48,7 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->half_bandwidth = model->half_bandwidth;
     s->planes = p->planes;
     s->pretension_N = model->pretension_N;
+    if (p->settings.has_surface) s->surface = p->settings.surface;
 }
 
 void hf_problem_free(hf_problem *p)

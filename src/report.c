@@ -105,7 +105,7 @@ static void write_net(const hf_scene *s, FILE *f)
     fprintf(f, ",\n\"net\":{\"n_node\":%d,\"n_cable\":%d", s->n_node, s->n_cable);
     write_words("role_word", hf_role_word, 3, f);
     write_words("group_word", hf_group_word, 2, f);
-    write_words("law_word", hf_law_word, 3, f);
+    write_words("law_word", hf_law_word, HF_N_LAW, f);
     write_ids("node_id", s->node_id, s->n_node, f);
     write_numbers("position_m", s->position_m, 3 * s->n_node, 1, 8, f);
     write_codes("role", s->role, s->n_node, f);
@@ -116,21 +116,6 @@ static void write_net(const hf_scene *s, FILE *f)
     fputc(']', f);
     write_codes("group", s->group, s->n_cable, f);
     fputc('}', f);
-}
-
-/* As hf_model has it: what a cable is called slack against is the largest tension that a law gives. */
-static double reference_N(const page *p)
-{
-    double largest_N = 0;
-    for (int e = 0; e < p->scene.n_cable; e++) {
-        double target = p->scene.target[e], tension_N = 0;
-        if (p->scene.law[e] == HF_LAW_FORCE_DENSITY)
-            tension_N = fabs(target) * hf_scene_theoretical_length(&p->scene, e);
-        else if (p->scene.law[e] == HF_LAW_TENSION)
-            tension_N = isnan(target) ? p->summary.pretension_N : target;
-        largest_N = fmax(largest_N, tension_N);
-    }
-    return largest_N > 0 ? largest_N : p->summary.pretension_N;
 }
 
 /* Displacements rather than positions: six digits of these are nanometres, of those tenths of a millimetre. */
@@ -153,7 +138,7 @@ static void write_shapes(const page *p, FILE *f)
 {
     const char *comma = "";
     fputs(",\n\"slack_below_N\":", f);
-    write_number(HF_SLACK_RATIO * reference_N(p), 17, f);
+    write_number(HF_SLACK_RATIO * hf_model_reference_N(&p->scene, p->summary.pretension_N), 17, f);
     fputs(",\n\"shapes\":[", f);
     for (int i = 0; i < HF_STAGE_NONE; i++) {
         if (!p->has_shape[i]) continue;

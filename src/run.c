@@ -51,6 +51,16 @@ static void observe(const run *r, hf_run_progress progress)
     if (r->request->observer) r->request->observer(r->request->observer_context, &progress);
 }
 
+/* For a case with a section `surface`: once for each shape that is reported. */
+static hf_status measure_surface(const run *r, hf_stage stage, const hf_workspace *w, hf_summary *s,
+                                 hf_messages *messages)
+{
+    const hf_problem *p = &r->problem;
+    if (!p->settings.has_surface) return HF_OK;
+    if (hf_surface_measure(&p->settings.surface, &p->model, w, &s->measures[stage]) == HF_OK) return HF_OK;
+    return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
+}
+
 /* ---- form-finding ---- */
 
 static hf_status create_history(const hf_form_settings *form, hf_history *h)
@@ -80,6 +90,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     s->form_wall_s = hf_run_clock_s() - start_s;
     hf_status status = hf_problem_explain(p, &s->form, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
+    HF_TRY(measure_surface(r, HF_STAGE_FORM, &p->workspace, s, messages));
     HF_TRY(hf_store_form(r->store, &p->model, &p->workspace, &r->history, messages));
     return status;
 }
@@ -115,6 +126,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     hf_form_result again;
     hf_workspace *w = hf_batch_run_one(&r->batch, design, &again);
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
+    HF_TRY(measure_surface(r, HF_STAGE_OPTIMIZE, w, s, messages));
     return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->problem.model, w, design, messages);
 }
 
@@ -181,6 +193,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     s->polish_evaluations = outcome.evaluations;
     s->polish_converged = outcome.converged;
     s->polish_wall_s = hf_run_clock_s() - start_s;
+    HF_TRY(measure_surface(r, HF_STAGE_POLISH, w, s, messages));
     return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);
 }
 

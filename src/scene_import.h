@@ -12,8 +12,8 @@
 
 #include <hifdm/scene.h>
 
-/* group_EA_N: by hf_group, of cables whose EA_N is empty; 0 = none. HF_BAD_CASE with every fault named by file, line and
- * id. Free the scene with hf_scene_free in any case. */
+/* group_EA_N: by hf_group, of cables whose EA_N is empty; 0 = none. HF_BAD_CASE with every fault named by file, line
+ * and id. Free the scene with hf_scene_free in any case. */
 hf_status hf_scene_import(const char *nodes_path, const char *cables_path, const double group_EA_N[2], hf_scene *scene,
                           hf_messages *messages);
 

@@ -3,6 +3,7 @@
 
 #include "band.h"
 #include "hdf5_io.h"
+#include "store_surface.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -521,6 +522,7 @@ hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_message
         hf_error(messages, store->io.status, "%s: is not written, since an earlier part of it could not be",
                  store->path);
     put_summary(store, summary);
+    hf_store_put_surface(&store->io, summary);
     close_everything(store);
     if (store->io.status == HF_OK) sync_to_disk(store);
     status = store->io.status;

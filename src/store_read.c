@@ -3,6 +3,7 @@
 
 #include "arena.h"
 #include "hdf5_io.h"
+#include "store_surface.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -64,6 +65,7 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     hf_hdf5_get_members(&io, form, HF_HDF5_COUNT(form), summary);
     if (summary->has_polish) hf_hdf5_get_members(&io, polish, HF_HDF5_COUNT(polish), summary);
     if (summary->has_optimize) hf_hdf5_get_members(&io, ga, HF_HDF5_COUNT(ga), summary);
+    hf_store_get_surface(&io, summary);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) *summary = (hf_summary){0};
     return hf_hdf5_unlock(io.status);

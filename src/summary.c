@@ -36,6 +36,53 @@ static void write_result(const hf_form_result *r, FILE *f)
             r->n_loaded_chain);
 }
 
+static void write_list(const char *key, int n, const double *value, FILE *f)
+{
+    fprintf(f, ", \"%s\": [", key);
+    for (int k = 0; k < n; k++)
+        fprintf(f, "%s%.17g", k ? ", " : "", value[k]);
+    fputc(']', f);
+}
+
+/* The member "surface" of a stage, behind its others; nothing when the case asks for none. */
+static void write_surface(const hf_summary *s, int stage, FILE *f)
+{
+    const hf_surface_measures *m = &s->measures[stage];
+    const hf_surface_fit *fit = &m->fit;
+    const struct {
+        const char *key;
+        double value;
+    } number[] = {
+        {"z_rms_m", m->z_rms_m},
+        {"normal_rms_m", m->normal_rms_m},
+        {"half_path_rms_m", m->half_path_rms_m},
+        {"fit_normal_rms_m", fit->normal_rms_m},
+        {"fit_half_path_rms_m", fit->half_path_rms_m},
+        {"fit_focal_length_m", fit->focal_length_m},
+        {"fit_shift_x_m", fit->shift_x_m},
+        {"fit_shift_z_m", fit->shift_z_m},
+        {"fit_rotation_x_rad", fit->rotation_x_rad},
+        {"fit_rotation_y_rad", fit->rotation_y_rad},
+        {"fit_rotation_z_rad", fit->rotation_z_rad},
+        {"faceting_rms_m", m->faceting_rms_m},
+        {"deviation_p50_m", m->deviation_p50_m},
+        {"deviation_p90_m", m->deviation_p90_m},
+        {"deviation_p95_m", m->deviation_p95_m},
+        {"deviation_p99_m", m->deviation_p99_m},
+        {"deviation_max_m", m->deviation_max_m},
+    };
+    if (!m->is_measured) return;
+    fputs(",\n  \"surface\": {", f);
+    for (size_t i = 0; i < sizeof number / sizeof *number; i++) {
+        if (i) fputs(", ", f);
+        hf_json_number(number[i].key, number[i].value, f);
+    }
+    write_list("frequency_Hz", s->surface.frequencies_Hz.n, s->surface.frequencies_Hz.value, f);
+    write_list("gain_loss_dB", s->surface.frequencies_Hz.n, m->gain_loss_dB, f);
+    write_list("fit_gain_loss_dB", s->surface.frequencies_Hz.n, m->fit_gain_loss_dB, f);
+    fputc('}', f);
+}
+
 static void write_optimize(const hf_summary *s, FILE *f)
 {
     fputs(",\n \"optimize\": {", f);
@@ -53,6 +100,7 @@ static void write_optimize(const hf_summary *s, FILE *f)
     hf_json_text("solver", hf_solver_word[s->solver], f);
     fputs(", ", f);
     hf_json_text("stop_reason", hf_ga_stop_word[s->optimize_stop], f);
+    write_surface(s, 1, f);
     fputc('}', f);
 }
 
@@ -65,6 +113,7 @@ static void write_polish(const hf_summary *s, FILE *f)
     hf_json_number("wall_s", s->polish_wall_s, f);
     fputs(", ", f);
     hf_json_text("stop_reason", s->polish_converged ? "converged" : "max_iterations", f);
+    write_surface(s, 2, f);
     fputc('}', f);
 }
 
@@ -79,6 +128,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
         hf_json_text("stop_reason", hf_stop_reason_word((int)s->form.stop_reason), f);
         fputs(", ", f);
         hf_json_number("wall_s", s->form_wall_s, f);
+        write_surface(s, 0, f);
         fputc('}', f);
     }
     if (s->has_optimize) write_optimize(s, f);

@@ -40,7 +40,7 @@ typedef struct {
     double center[3], size; /* size: shifts are in units of it */
 } fit_problem;
 
-/* Everything of one set of parameters: a node p is at turn (p - center - shift) + center in the frame of the surface. */
+/* Of one set of parameters: a node p is at turn (p - center - shift) + center in the frame of the surface. */
 typedef struct {
     double shift[3], curvature;
     double turn[3][3], slope[3][3][3]; /* and its derivatives by the three angles */

@@ -75,6 +75,9 @@ hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf
 hf_status hf_model_attach(hf_model *model, int n_attachment, const int *node, const double *flexibility_m_per_N,
                           hf_messages *messages);
 
+/* What residuals and slack are relative to, N: reference_N of a model of this scene. */
+double hf_model_reference_N(const hf_scene *scene, double pretension_N);
+
 /* Invariants of every index and band place; for asserts and tests. */
 int hf_model_is_valid(const hf_model *model);
 

@@ -21,7 +21,8 @@
  *                gene_cable (index into /scene/cable), gene_group, lower_N, upper_N [k]; gene_leader [k] under a
  *                symmetry attributes: the members of hf_summary after has_optimize, those of hf_summary.best as
  *   best_... /ga/best     as /form, and design_N [k]
- *   /polish      the same, of Levenberg-Marquardt; attributes: the members of hf_summary.polish and polish_... */
+ *   /polish      the same, of Levenberg-Marquardt; attributes: the members of hf_summary.polish and polish_...
+ *   /surface     measures of the surface by stage, see store_surface.h; only when the case asks for them */
 #ifndef HIFDM_STORE_H
 #define HIFDM_STORE_H
 

@@ -3,6 +3,7 @@
 #define HIFDM_SUMMARY_H
 
 #include <hifdm/ga.h>
+#include <hifdm/surface.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -19,6 +20,9 @@ typedef struct {
     int n_node, n_free, n_cable, n_gene, half_bandwidth;
     double pretension_N;
     char warnings[HF_WARNINGS_SIZE]; /* lines "warning: ..." and "error: ..." */
+
+    hf_surface_settings surface;     /* focal_length_m is 0 when the case has no such section */
+    hf_surface_measures measures[3]; /* of the shapes of form, optimize, polish (hf_stage) */
 
     hf_form_result form;
     double form_wall_s;

@@ -20,6 +20,7 @@ extern "C" {
     X(double, length_m, m->n_cable, "m", "[n_cable] lengths of the last shape")                                        \
     X(double, tension_N, m->n_cable, "N", "[n_cable] tensions q l of the last shape")                                  \
     X(double, target, m->n_cable, "by law", "[n_cable] T*, L*, q or l0")                                               \
+    X(double, EA_N, m->EA_N ? m->n_cable : 0, "N", "[n_cable] axial stiffness; nets with elastic cables")              \
     X(unsigned char, law, m->n_cable, "", "[n_cable] hf_law in force")                                                 \
     X(double, force_N, 3 * (size_t)m->n_node, "N", "[3][n_node] nodal forces")                                         \
     X(double, general_band, m->has_strut ? (size_t)m->n_free *(3 * (size_t)m->half_bandwidth + 1) : 0, "N/m",          \
@@ -44,11 +45,10 @@ typedef struct {
 
 /* Length that the law length or elastic asks of a cable under this tension: L*, or l0 (1 + T/EA). Stiff cables need no
  * care of their own in this form, and EA without bound is the law length. */
-static inline double hf_workspace_wanted_length_m(const hf_model *m, const hf_workspace *w, int i_cable,
-                                                  double tension_N)
+static inline double hf_workspace_wanted_length_m(const hf_workspace *w, int i_cable, double tension_N)
 {
     double target = w->target[i_cable];
-    return w->law[i_cable] == HF_LAW_ELASTIC ? target + target * tension_N / m->EA_N[i_cable] : target;
+    return w->law[i_cable] == HF_LAW_ELASTIC ? target + target * tension_N / w->EA_N[i_cable] : target;
 }
 
 /* HF_OK or HF_NO_MEMORY. Free in any case. */

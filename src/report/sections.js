@@ -244,8 +244,32 @@ function writeSummary() {
   ].filter(([key]) => summary[key]);
   if (!stages.length) return;
   const word = (v) => v.replace(/_/g, " ");
+  const mm = (v) => fmt(1e3 * v, 5);
+  const values = {};
+  for (const [stage] of stages) {
+    const surface = summary[stage].surface || {};
+    values[stage] = { ...summary[stage], ...surface };
+    for (const key of ["gain_loss_dB", "fit_gain_loss_dB"])
+      (surface[key] || []).forEach((v, k) => (values[stage][`${key}[${k}]`] = v));
+  }
+  const frequencies = (values[stages[0][0]].frequency_Hz || []).map((v) => `${fmt(v / 1e9, 4)} GHz`);
   const rows = [
-    ["surface error ψ", "mm", "psi_m", (v) => fmt(1e3 * v, 5)],
+    ["surface error ψ", "mm", "psi_m", mm],
+    ["half-path RMS", "mm", "half_path_rms_m", mm],
+    ["half-path RMS, best fit", "mm", "fit_half_path_rms_m", mm],
+    ["RMS along the normal", "mm", "normal_rms_m", mm],
+    ["RMS along the normal, best fit", "mm", "fit_normal_rms_m", mm],
+    ["focal length of the best fit", "m", "fit_focal_length_m", (v) => fmt(v, 6)],
+    ["faceting error", "mm", "faceting_rms_m", mm],
+    ["half of the deviations are below", "mm", "deviation_p50_m", mm],
+    ["90 % of them", "mm", "deviation_p90_m", mm],
+    ["95 % of them", "mm", "deviation_p95_m", mm],
+    ["99 % of them", "mm", "deviation_p99_m", mm],
+    ["largest deviation", "mm", "deviation_max_m", mm],
+    ...frequencies.flatMap((at, k) => [
+      [`loss of gain at ${at}`, "dB", `gain_loss_dB[${k}]`, (v) => fmt(v, 3)],
+      [`loss of gain at ${at}, best fit`, "dB", `fit_gain_loss_dB[${k}]`, (v) => fmt(v, 3)],
+    ]),
     ["tension ratio, inner cables", "", "inner_tension_ratio", fmtRatio],
     ["tension ratio, boundary cables", "", "boundary_tension_ratio", fmtRatio],
     ["slack cables", "", "slack_cables", fmtCount],
@@ -265,7 +289,7 @@ function writeSummary() {
     ["wall time", "", "wall_s", fmtDuration],
   ];
   const shown = rows.filter(([, , key]) =>
-    stages.some(([s]) => summary[s][key] !== undefined && summary[s][key] !== null),
+    stages.some(([s]) => values[s][key] !== undefined && values[s][key] !== null),
   );
   section(
     "summary",
@@ -281,8 +305,8 @@ function writeSummary() {
             el(
               "td",
               { class: "number" },
-              typeof summary[s][key] === "number" || typeof summary[s][key] === "string"
-                ? format(summary[s][key])
+              typeof values[s][key] === "number" || typeof values[s][key] === "string"
+                ? format(values[s][key])
                 : "–",
             ),
           ),

@@ -3,6 +3,7 @@
 
 #include "chord.h"
 #include "newton.h"
+#include "symmetry.h"
 #include <hifdm/batch.h>
 
 /* Every third cable of a random saddle net is elastic, cut to have the some 10 N of the others in the theoretical
@@ -185,6 +186,29 @@ START_TEST(fixed_point_agrees_with_newton)
 }
 END_TEST
 
+/* Mirror images are equally stiff. */
+START_TEST(stiffness_counts_for_symmetry)
+{
+    static const struct hand_node node[] = {
+        {{-1, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0, 0, 0.1}, HF_ROLE_INNER, {0}}, {{1, 0, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_ELASTIC, 0.9},
+                                              {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_ELASTIC, 0.9}};
+    for (int differ = 0; differ < 2; differ++) {
+        double EA[] = {500, differ ? 501 : 500};
+        int planes = -1;
+        hf_messages messages = {0};
+        struct net net = {.form = tight_form(HF_METHOD_AUTO)};
+        hand_scene(&net.scene, 3, node, 2, cable);
+        net.scene.EA_N = EA;
+        open_net(&net);
+        ck_assert_int_eq(hf_symmetry_apply(&net.scene, HF_SYMMETRY_AUTO, &net.model, &planes, &messages), HF_OK);
+        ck_assert_int_eq(planes & HF_PLANE_X, differ ? 0 : HF_PLANE_X);
+        ck_assert_int_eq(net.model.n_leader, differ ? 2 : 1);
+        close_net(&net);
+    }
+}
+END_TEST
+
 /* Chord and lanes do not know the law: a population falls back, and gets the same results as one by one. */
 START_TEST(populations_fall_back)
 {
@@ -233,6 +257,7 @@ Suite *suite_unit_elastic(void)
     tcase_add_test(tests, stiff_cables_keep_their_length);
     tcase_add_test(tests, slack_cables_are_legal_and_counted);
     tcase_add_loop_test(tests, fixed_point_agrees_with_newton, 0, 3);
+    tcase_add_test(tests, stiffness_counts_for_symmetry);
     tcase_add_loop_test(tests, populations_fall_back, 0, 3);
     return suite;
 }

@@ -121,6 +121,37 @@ START_TEST(summary_comes_back_bit_by_bit)
 }
 END_TEST
 
+/* Any bits, NaN included; a shape that was not measured comes back as nothing. */
+START_TEST(surface_comes_back_bit_by_bit)
+{
+    struct rng rng = rng_start(50 + (uint64_t)_i);
+    struct net net;
+    hf_messages messages = {0};
+    hf_summary read, written = {.surface = {7.2, 0.25, {_i, {0}}}};
+    open_bow(&net);
+    for (int k = 0; k < _i; k++)
+        written.surface.frequencies_Hz.value[k] = rng_uniform(&rng, 1e8, 1e11);
+    for (int stage = 0; stage < 3; stage++) {
+        hf_surface_measures *s = &written.measures[stage];
+        double *value = &s->z_rms_m; /* the first of many */
+        if (stage == 1 && _i == 2) continue;
+        s->is_measured = 1;
+        s->fit.iterations = rng_int(&rng, 0, 100);
+        for (size_t k = 0; (char *)(value + k) < (char *)&s->fit.iterations; k++)
+            value[k] = k == 3 ? (double)NAN : rng_uniform(&rng, -1, 1);
+        for (int k = 0; k < _i; k++) {
+            s->gain_loss_dB[k] = rng_uniform(&rng, 0, 1);
+            s->fit_gain_loss_dB[k] = rng_uniform(&rng, 0, 1);
+        }
+    }
+    end(begin(temp_path("a.h5"), 1, &net.scene), &written);
+    ck_assert_int_eq(hf_store_read_summary(temp_path("a.h5"), &read, &messages), HF_OK);
+    ck_assert_mem_eq(&read.surface, &written.surface, sizeof read.surface);
+    ck_assert_mem_eq(read.measures, written.measures, sizeof read.measures);
+    close_net(&net);
+}
+END_TEST
+
 /* Without and with all that a scene may have. */
 START_TEST(scene_comes_back)
 {
@@ -203,7 +234,8 @@ START_TEST(shapes_come_back_in_the_order_of_the_scene)
     python("r", temp_path("a.h5"),
            "h = f['form/history']\n"
            "assert list(h['psi_m']) == [2.385, 1.125] and list(h['length_error']) == [11, 12]\n"
-           "assert h5py.check_enum_dtype(f['form/law'].dtype) == {'tension': 0, 'length': 1, 'force_density': 2}");
+           "assert h5py.check_enum_dtype(f['form/law'].dtype) == {'tension': 0, 'length': 1, 'force_density': 2, "
+           "'elastic': 3}");
     free(design_N);
     close_net(&net);
 }
@@ -362,6 +394,7 @@ Suite *suite_unit_store(void)
     suite_add_tcase(suite, tests);
     tcase_add_checked_fixture(tests, quiet, NULL);
     tcase_add_loop_test(tests, summary_comes_back_bit_by_bit, 0, 5);
+    tcase_add_loop_test(tests, surface_comes_back_bit_by_bit, 0, 1 + HF_LIST_MAX);
     tcase_add_loop_test(tests, scene_comes_back, 0, 2);
     tcase_add_test(tests, shapes_come_back_in_the_order_of_the_scene);
     tcase_add_test(tests, a_run_without_a_best_says_so);

@@ -7,6 +7,8 @@
  * convergence is below that by a factor of 100. */
 #include "nets.h"
 
+#include <hifdm/surface.h>
+
 static const struct bay {
     const char *focal_length, *length, *cells;
     int ny;
@@ -33,6 +35,11 @@ START_TEST(bow_between_ribs)
     ck_assert_int_eq(find_shape(&net), HF_OK);
     ck_assert_int_eq(net.model.n_free, 39 * (bay->ny - 2));
     ck_assert_int_eq(net.model.n_inner_node, net.model.n_free);
+
+    hf_surface_measures surface;
+    net.settings.surface.focal_length_m = net.settings.cylinder.focal_length_m;
+    ck_assert_int_eq(hf_surface_measure(&net.settings.surface, &net.model, &net.work, &surface), HF_OK);
+    ck_assert_double_eq_tol(1e3 * surface.z_rms_m, bay->z_rms_mm, 0.5e-5);
 
     double sum = 0;
     for (int i = 0; i < net.scene.n_node; i++) {

@@ -1,0 +1,258 @@
+/* What other tools and the workshop take from a result: ParaView files, cut lists, measures of the surface. */
+#include "cli.h"
+
+#define FREQUENCIES "surface.frequencies_Hz=[1.2e9, 9.6e9]"
+
+static const char *run_chen(void)
+{
+    const char *out = temp("c.h5");
+    HIFDM(0, "run", CHEN, "-o", out, "--quiet", "--set", "optimize.generations=3", "--set", FREQUENCIES);
+    return out;
+}
+
+/* ---- ParaView ---- */
+
+static void demand_vtk(const char *result, const char *folder, const char *stages)
+{
+    const char *const argv[] = {python_program(), source_path("tests/cli/vtk_reads.py"), result, folder, NULL};
+    demand_exit(run_command(50.0, argv), 0, "vtk_reads.py", __LINE__);
+    OUT(stages);
+}
+
+START_TEST(paraview_files_hold_the_stored_numbers)
+{
+    const char *out = run_chen(), *folder = temp("vtk");
+    HIFDM(0, "export", out, "--vtk", folder);
+    OUT("for ParaView, in ");
+    OUT(": theoretical.hdf form.hdf optimize.hdf polish.hdf\n");
+    demand_vtk(out, folder, "form optimize polish theoretical");
+}
+END_TEST
+
+/* Loads, a slack cable, the law elastic, no optimisation; and nothing is replaced unasked. */
+START_TEST(paraview_files_of_an_imported_net)
+{
+    const char *path = net_with("id,x_m,y_m,z_m,role,Fz_N\na,0,0,0,support,\nb,1,0,0.1,inner,-3\nc,2,0,0,support,\n"
+                                "d,1,0,-5,support,\n",
+                                "id,i,j,group,law,value,EA_N\nab,a,b,inner,elastic,1.01,5000\n"
+                                "bc,b,c,inner,tension,10,\nbd,b,d,inner,elastic,7,5000\n");
+    const char *out = temp("net.h5"), *folder = temp("vtk"), *form = temp("vtk/form.hdf");
+    HIFDM(0, "run", path, "-o", out, "--quiet");
+    ERR("warning: slack in the form-finding shape, 1: bd\n");
+    HIFDM(0, "export", out, "--vtk", folder);
+    demand_vtk(out, folder, "form theoretical");
+    write_file(form, "mine");
+    HIFDM(5, "export", out, "--vtk", folder);
+    ERRS("error: %s exists; use --force to replace it", form);
+    ck_assert(file_is(form, "mine"));
+    HIFDM(0, "export", out, "--vtk", folder, "--force");
+    demand_vtk(out, folder, "form theoretical");
+    HIFDM(2, "export", out, "--vtk", folder, "--stage", "form");
+    ERR("error: --stage does not go with --vtk alone, which writes every shape\n");
+    HIFDM(5, "export", out, "--vtk", temp("no/such/folder"));
+    ERR("cannot make this folder");
+    HIFDM(5, "export", out, "--vtk", form); /* below an ordinary file */
+    ERR("Not a directory");
+}
+END_TEST
+
+/* ---- cut list ---- */
+
+/* The net that is built from the cut lengths, hung into the theoretical positions, comes to the stored shape. 1e-9 m is
+ * what an engineer could ask for; 17 digits of l0 of 1 m, at 47 kN and some 0.3 N/m of the softest motion, are
+ * 1e-11 m. */
+START_TEST(net_built_from_the_cut_list_has_the_found_shape)
+{
+    static const char *const stage[] = {"form", "ga/best", "polish"}, *const word[] = {"form", "optimize", "polish"};
+    const char *out = run_chen(), *built = temp("built.h5"), *cut = temp("cut.csv");
+    HIFDM(0, "export", out, "--cutlist", cut, "--csv", temp("net"), "--stage", word[_i], "--force");
+    OUT("cut lengths of 220 cables of the ");
+    SHELL(0, "cd \"$1\" && sed -e '1s/.*/id,found_x,found_y,found_z,x_m,y_m,z_m,role/' net/nodes.csv >start.csv",
+          temp("."));
+    const char *path =
+        file_with("built.yaml", "scene: {import: {nodes: start.csv, cables: cut.csv}}\n"
+                                "form: {method: newton, residual_tolerance: 1e-12, length_tolerance: 1e-12}\n");
+    HIFDM(0, "run", path, "-o", built, "--quiet");
+    EXPECT(out, built, file_with("stage", stage[_i]), "--",
+           "(b['scene/node/position_m'][:] == a['scene/node/position_m'][:]).all()", /* not the found shape itself */
+           "np.abs(a[c.decode()]['position_m'][:] - b['form/position_m'][:]).max() < 1e-9",
+           "np.abs(a[c.decode()]['tension_N'][:] - b['form/tension_N'][:]).max() < 1e-6",
+           "(b['form/law'][:] == 3).all()", "b['form'].attrs['length_error'] < 1e-12");
+    /* the two files together are a net as well */
+    path = file_with("jig.yaml", "scene: {import: {nodes: cut_nodes.csv, cables: cut.csv}}\n"
+                                 "form: {residual_tolerance: 1e-12, length_tolerance: 1e-12}\n");
+    HIFDM(0, "run", path, "-o", built, "--quiet", "--force");
+    EXPECT(out, built, file_with("stage", stage[_i]), "--",
+           "a[c.decode()]['position_m'][:].tobytes() == b['scene/node/position_m'][:].tobytes()",
+           "np.abs(a[c.decode()]['position_m'][:] - b['form/position_m'][:]).max() < 1e-9");
+}
+END_TEST
+
+START_TEST(cut_list_holds_what_it_says)
+{
+    const char *out = run_chen(), *cut = temp("cut.csv");
+    HIFDM(0, "export", out, "--cutlist", cut, "--stage", "form");
+    EXPECT(cut, temp("cut_nodes.csv"), temp("cut_totals.csv"), out, "--", "len(a) == 220", "len(b) == 121",
+           "list(a[0]) == ['id', 'i', 'j', 'group', 'tension_N', 'length_m', 'l0_m', 'elongation_m', 'EA_N', "
+           "'adjustment_m', 'law', 'value']",
+           "[r['id'] for r in a] == texts(d['scene/cable/id'])",
+           "column(a, 'tension_N').tobytes() == d['form/tension_N'][:].tobytes()",
+           "column(a, 'length_m').tobytes() == d['form/length_m'][:].tobytes()",
+           "column(b, 'x_m', 'y_m', 'z_m').tobytes() == d['form/position_m'][:].tobytes()",
+           "(column(a, 'EA_N') == 47000).all()",
+           "np.allclose(column(a, 'l0_m') * (1 + column(a, 'tension_N') / 47000), column(a, 'length_m'), rtol=4e-16)",
+           "np.allclose(column(a, 'elongation_m'), column(a, 'length_m') - column(a, 'l0_m'), atol=1e-15)",
+           "np.allclose(column(a, 'adjustment_m'), (column(a, 'length_m') - d['scene/cable/length_m'][:]) / "
+           "(1 + column(a, 'tension_N') / 47000), atol=1e-15)",
+           "(column(a, 'l0_m') == column(a, 'value')).all()", "{r['law'] for r in a} == {'elastic'}",
+           "[r['group'] for r in c] == ['inner', 'boundary', 'all']",
+           "[r['cables'] for r in c] == ['100', '120', '220']",
+           "near(sum(float(r['l0_m']) for r in a if r['group'] == 'inner'), float(c[0]['l0_m']), 1e-12)",
+           "near(sum(float(r['length_m']) for r in a), float(c[2]['length_m']), 1e-12)",
+           "min(float(r['adjustment_m']) for r in a) == float(c[2]['least_adjustment_m'])",
+           "max(float(r['tension_N']) for r in a if r['group'] == 'boundary') == float(c[1]['largest_tension_N'])");
+}
+END_TEST
+
+/* Of a cable that hangs loose the shape tells no length: its law does. */
+START_TEST(slack_cables_are_cut_as_their_law_says)
+{
+    const char *path = net_with("id,x_m,y_m,z_m,role,Fz_N\na,0,0,0,support,\nb,1,0,0.1,inner,-3\nc,2,0,0,support,\n"
+                                "d,1,0,-1,support,\ne,1,1,-1,support,\n",
+                                "id,i,j,group,law,value,EA_N\nab,a,b,inner,tension,10,5000\n"
+                                "bc,b,c,inner,tension,10,5000\nbd,b,d,inner,elastic,1.5,4000\n"
+                                "be,b,e,boundary,length,2.5,4000\n");
+    HIFDM(0, "run", path, "-o", temp("s.h5"), "--quiet");
+    HIFDM(0, "export", temp("s.h5"), "--cutlist", temp("s.csv"));
+    EXPECT(temp("s.csv"), temp("s_nodes.csv"), "--", "[float(r['l0_m']) for r in a[2:]] == [1.5, 2.5]",
+           "near(float(a[0]['l0_m']), float(a[0]['length_m']) / 1.002, 1e-9)", "float(b[1]['Fz_N']) == -3");
+}
+END_TEST
+
+START_TEST(cut_list_needs_EA)
+{
+    const char *out = temp("f.h5"), *cut = temp("cut.csv");
+    HIFDM(0, "run", file_with("f.yaml", SMALL_SCENE), "-o", out, "--quiet");
+    HIFDM(2, "export", out, "--cutlist", cut);
+    ERR("inner cables have no EA, which cut lengths need, like 'n");
+    ERR("give scene.EA_inner_N, or the column EA_N of an imported net, and run again\n");
+    ERR("boundary cables have no EA");
+    HIFDM(0, "run", temp("f.yaml"), "-o", out, "--quiet", "--force", "--set", "scene.EA_inner_N=5e4");
+    HIFDM(2, "export", out, "--cutlist", cut);
+    ERR("boundary cables have no EA");
+    ck_assert_ptr_null(strstr(said.err, "inner cables have no EA"));
+    ck_assert(!is_there(cut));
+    HIFDM(0, "run", temp("f.yaml"), "-o", out, "--quiet", "--force", "--set", "scene.EA_inner_N=5e4", "--set",
+          "scene.EA_boundary_N=6e4");
+    write_file(temp("cut_totals.csv"), "mine");
+    HIFDM(5, "export", out, "--cutlist", cut); /* none of the three unless all three */
+    ERR("cut_totals.csv exists; use --force to replace it");
+    ck_assert(!is_there(cut));
+    HIFDM(0, "export", out, "--cutlist", cut, "--force");
+    EXPECT(cut, "--", "{(r['group'], r['EA_N']) for r in a} == {('inner', '50000'), ('boundary', '60000')}");
+    HIFDM(2, "run", temp("f.yaml"), NOWHERE, "--set", "scene.EA_inner_N=0");
+    ERR("scene.EA_inner_N: must be above 0");
+    HIFDM(2, "run", temp("f.yaml"), NOWHERE, "--set", "scene.EA_inner_N=");
+    ERR("there is no value");
+}
+END_TEST
+
+/* An imported net takes what its file leaves open from the case. */
+START_TEST(case_completes_EA_of_an_imported_net)
+{
+    net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0,0.1,inner\nc,2,0,0,support\n",
+             "id,i,j,group,law,value,EA_N\nab,a,b,inner,elastic,0.99,7000\nbc,b,c,inner,elastic,0.99,\n");
+    HIFDM(2, "check", temp("net.yaml"));
+    ERR("cables.csv:3: 'bc': the law elastic needs an EA_N\n");
+    HIFDM(0, "check", temp("net.yaml"), "--set", "scene.EA_inner_N=8000");
+    OUT("0 force density, 2 elastic\n");
+    HIFDM(0, "run", temp("net.yaml"), "-o", temp("net.h5"), "--quiet", "--set", "scene.EA_inner_N=8000");
+    EXPECT(temp("net.h5"), "--", "a['scene/cable/EA_N'][:].tolist() == [7000, 8000]");
+}
+END_TEST
+
+/* ---- measures of the surface ---- */
+
+START_TEST(surface_is_measured_for_every_shape)
+{
+    const char *out = temp("c.h5");
+    HIFDM(0, "run", CHEN, "-o", out, "--json", "--set", "optimize.generations=3", "--set", FREQUENCIES);
+    const char *json = out_as("run.json");
+    HIFDM(0, "show", out, "--json");
+    const char *shown = out_as("show.json");
+    for (int i = 0; i < 3; i++) {
+        static const char *const stage[] = {"form", "optimize", "polish"};
+        static const char *const shape[] = {"form", "ga/best", "polish"};
+        EXPECT(out, json, shown, file_with("stage", stage[i]), file_with("shape", shape[i]), "--",
+               "b[d.decode()]['surface'] == c[d.decode()]['surface']",
+               "all(b[d.decode()]['surface'][k] == v for k, v in a['surface'][d.decode()].attrs.items() "
+               "if k in b[d.decode()]['surface'])",
+               "len(b[d.decode()]['surface']) == 20",
+               /* against numpy: the sums in another order */
+               "near(np.sqrt(np.mean([(p[2] - p[0]**2 / 282.4)**2 / (1 + (p[0] / 141.2)**2) for p in "
+               "a[e.decode()]['position_m'][:][a['scene/node/role'][:] == 1]])), b[d.decode()]['surface']"
+               "['normal_rms_m'], 1e-15)",
+               "near(np.percentile(np.linalg.norm((a[e.decode()]['position_m'][:] - a['scene/node/position_m'][:])"
+               "[a['scene/node/role'][:] == 1], axis=1), 95), b[d.decode()]['surface']['deviation_p95_m'], 1e-15)",
+               "b[d.decode()]['surface']['frequency_Hz'] == [1.2e9, 9.6e9] == a['surface/frequency_Hz'][:].tolist()",
+               "near(b[d.decode()]['surface']['gain_loss_dB'][1] / b[d.decode()]['surface']['gain_loss_dB'][0], 64, "
+               "1e-12)",
+               "near(b[d.decode()]['surface']['faceting_rms_m'], 1 / (24 * 5**.5 * 70.6), 1e-18)",
+               "b[d.decode()]['surface']['fit_half_path_rms_m'] <= b[d.decode()]['surface']['half_path_rms_m']");
+    }
+    HIFDM(0, "report", out, "-o", temp("c.html"));
+    char *page = read_file(temp("c.html"), NULL);
+    demand_part(page, "\"fit_half_path_rms_m\": ", __LINE__);
+    free(page);
+    HIFDM(0, "show", out);
+    OUT("surface: half-path RMS ");
+    OUT("loss of gain at 1.2 GHz: ");
+    ck_assert_int_eq(count_of(said.out, "deviations 50/90/95/99 %: "), 3);
+}
+END_TEST
+
+/* Nothing of it in a case that does not ask; what is asked for in vain or wrongly is told. */
+START_TEST(surface_is_measured_only_when_asked_for)
+{
+    const char *out = temp("s.h5"), *path = file_with("s.yaml", SMALL_SCENE);
+    HIFDM(0, "run", path, "-o", out, "--json");
+    ck_assert_ptr_null(strstr(said.out, "surface"));
+    EXPECT(out, "--", "'surface' not in a");
+    HIFDM(0, "run", file_with("e.yaml", SMALL_SCENE "surface: {}\n"), "-o", out, "--json", "--force");
+    EXPECT(out, out_as("e.json"), "--", "b['form']['surface']['frequency_Hz'] == []", "set(a['surface/form']) == set()",
+           "near(a['surface'].attrs['strip_width_m'], 0.5, 0)", "a['surface'].attrs['focal_length_m'] == 2");
+    net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0,0.1,inner\nc,2,0,0,support\n",
+             "id,i,j,group,law,value\nab,a,b,inner,tension,\nbc,b,c,inner,tension,\n");
+    HIFDM(2, "run", temp("net.yaml"), NOWHERE, "--set", "surface.frequencies_Hz=1e9");
+    ERR("surface.focal_length_m: is missing: an imported net does not tell its surface\n");
+    HIFDM(0, "run", temp("net.yaml"), "-o", out, "--json", "--force", "--set", "surface.frequencies_Hz=1e9", "--set",
+          "surface.focal_length_m=3");
+    EXPECT(out_as("n.json"), "--", "a['form']['surface']['faceting_rms_m'] is None",
+           "len(a['form']['surface']['gain_loss_dB']) == 1");
+    HIFDM(2, "run", path, NOWHERE, "--set", "surface.frequencies_Hz=[1,2,3,4,5,6,7,8,9]");
+    ERR("must be a list of at most 8 numbers, like [1e9, 2e9]");
+    HIFDM(2, "run", path, NOWHERE, "--set", "surface.frequencies_Hz=[1e9, -1]");
+    ERR("must be above 0");
+    HIFDM(2, "run", path, NOWHERE, "--set", "surface.frequencies_Hz={a: 1}");
+    ERR("must be a list of at most 8 numbers");
+    HIFDM(2, "run", path, NOWHERE, "--set", "surface.frequencies_Hz=[[1], 2]");
+    ERR("must be a number");
+}
+END_TEST
+
+Suite *suite_cli_trade(void)
+{
+    Suite *suite = suite_create("cli/trade");
+    TCase *tests = tcase_create("trade");
+    suite_add_tcase(suite, tests);
+    tcase_add_test(tests, paraview_files_hold_the_stored_numbers);
+    tcase_add_test(tests, paraview_files_of_an_imported_net);
+    tcase_add_loop_test(tests, net_built_from_the_cut_list_has_the_found_shape, 0, 3);
+    tcase_add_test(tests, cut_list_holds_what_it_says);
+    tcase_add_test(tests, slack_cables_are_cut_as_their_law_says);
+    tcase_add_test(tests, cut_list_needs_EA);
+    tcase_add_test(tests, case_completes_EA_of_an_imported_net);
+    tcase_add_test(tests, surface_is_measured_for_every_shape);
+    tcase_add_test(tests, surface_is_measured_only_when_asked_for);
+    return suite;
+}
