@@ -6,8 +6,8 @@
 # ---- The modules, in dependency order: a module may include only modules above it (`make lint` checks it) ------------
 # Sources are src/NAME.c; the header is include/hifdm/NAME.h if public, src/NAME.h if internal.
 MODULES := status arena sha256 text csv \
-           scene scene_import config config_table \
-           numbering model symmetry workspace band \
+           scene scene_import truss config config_table \
+           numbering model symmetry workspace band frame \
            metrics surface \
            lane lane_kernel formfind newton certificate \
            evaluate chord_kernel chord ga swarm polish batch \

@@ -1,0 +1,133 @@
+/* Contents: words - memory - measures - checks */
+#include <hifdm/truss.h>
+
+#include "arena.h"
+#include "text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define FAULT_MAX 20 /* faults that are spelled out */
+
+const char *const hf_dof_word[HF_TRUSS_DOF] = {"ux", "uy", "uz", "rx", "ry", "rz"};
+const char *const hf_joint_word[2] = {"rigid", "pinned"};
+const char *const hf_unit_word[4] = {"bud", "mbug", "abug", "other"};
+
+/* ---- memory ---- */
+
+static void lay_out(hf_arena *arena, hf_truss *t, int with_line)
+{
+    size_t n = (size_t)t->n_node, m = (size_t)t->n_member;
+    t->position_m = hf_arena_take(arena, 3 * n, sizeof(double));
+    t->fixed = hf_arena_take(arena, n, 1);
+    t->mass_kg = hf_arena_take(arena, n, sizeof(double));
+    t->end = hf_arena_take(arena, 2 * m, sizeof(int));
+    t->joint = hf_arena_take(arena, m, 1);
+    t->unit = hf_arena_take(arena, m, 1);
+#define TAKE(name, units, otherwise, description) t->name = hf_arena_take(arena, m, sizeof(double));
+    HF_MEMBER_NUMBERS(TAKE)
+#undef TAKE
+    t->node_id = hf_arena_take(arena, n, sizeof *t->node_id);
+    t->member_id = hf_arena_take(arena, m, sizeof *t->member_id);
+    t->node_line = with_line ? hf_arena_take(arena, n, sizeof(int)) : NULL;
+    t->member_line = with_line ? hf_arena_take(arena, m, sizeof(int)) : NULL;
+}
+
+hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, int with_line)
+{
+    *truss = (hf_truss){.n_node = n_node, .n_member = n_member};
+    hf_arena arena = {0};
+    lay_out(&arena, truss, with_line);
+    if (hf_arena_allocate(&arena) != HF_OK) {
+        *truss = (hf_truss){0};
+        return HF_NO_MEMORY;
+    }
+    lay_out(&arena, truss, with_line);
+    truss->block = arena.block;
+    return HF_OK;
+}
+
+void hf_truss_free(hf_truss *truss)
+{
+    free(truss->block);
+    free(truss->text);
+    *truss = (hf_truss){0};
+}
+
+/* ---- measures ---- */
+
+double hf_truss_member_length(const hf_truss *t, int i_member)
+{
+    const double *a = t->position_m + 3 * (size_t)t->end[2 * i_member];
+    const double *b = t->position_m + 3 * (size_t)t->end[2 * i_member + 1];
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+double hf_truss_mass(const hf_truss *t)
+{
+    double mass = 0;
+    for (int i = 0; i < t->n_node; i++)
+        mass += t->mass_kg[i];
+    for (int e = 0; e < t->n_member; e++)
+        mass += t->density_kg_per_m3[e] * t->A_m2[e] * hf_truss_member_length(t, e);
+    return mass;
+}
+
+/* ---- checks ---- */
+
+void hf_truss_describe(const hf_truss *t, int is_member, int index, char *text, size_t size)
+{
+    const int *line = is_member ? t->member_line : t->node_line;
+    const char *file = is_member ? t->members_file : t->nodes_file, *kind = is_member ? "member" : "node";
+    const char *id = is_member ? t->member_id[index] : t->node_id[index];
+    if (line && file)
+        snprintf(text, size, "%s:%d: %s '%s'", file, line[index], kind, id);
+    else
+        snprintf(text, size, "truss: %s '%s'", kind, id);
+    hf_text_trim_utf8(text);
+}
+
+static void fault(const hf_truss *t, int is_member, int index, int *n_fault, const char *what, hf_messages *messages)
+{
+    char where[512];
+    if (++*n_fault > FAULT_MAX) return;
+    hf_truss_describe(t, is_member, index, where, sizeof where);
+    hf_error(messages, HF_BAD_CASE, "%s %s", where, what);
+}
+
+static void check_member(const hf_truss *t, int e, int *n_fault, hf_messages *messages)
+{
+    int rigid = t->joint[e] == HF_JOINT_RIGID;
+    const double positive[] = {t->E_Pa[e],  t->A_m2[e], t->G_Pa[e],   t->Iy_m4[e],
+                               t->Iz_m4[e], t->J_m4[e], t->Asy_m2[e], t->Asz_m2[e]};
+    int all = 1;
+    for (size_t k = 0; k < (rigid ? sizeof positive / sizeof *positive : 2); k++)
+        all = all && positive[k] > 0 && (k > 5 || isfinite(positive[k]));
+    if (!all)
+        fault(t, 1, e, n_fault,
+              rigid ? "needs E, G, A, Iy, Iz, J and shear areas above zero" : "needs E and A above zero", messages);
+    if (!isfinite(t->roll_rad[e]) || !isfinite(t->expansion_per_K[e]) || !(t->density_kg_per_m3[e] >= 0) ||
+        !isfinite(t->density_kg_per_m3[e]))
+        fault(t, 1, e, n_fault, "needs a finite roll and expansion, and a density that is not below zero", messages);
+    if (t->end[2 * e] == t->end[2 * e + 1])
+        fault(t, 1, e, n_fault, "joins a node to itself", messages);
+    else if (!(hf_truss_member_length(t, e) > 0))
+        fault(t, 1, e, n_fault, "has zero length: its two nodes are at the same position", messages);
+}
+
+hf_status hf_truss_check(const hf_truss *t, hf_messages *messages)
+{
+    int n_fault = 0;
+    for (int i = 0; i < t->n_node; i++) {
+        const double *p = t->position_m + 3 * (size_t)i;
+        if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]))
+            fault(t, 0, i, &n_fault, "has a position that is no number", messages);
+        if (!(t->mass_kg[i] >= 0) || !isfinite(t->mass_kg[i]))
+            fault(t, 0, i, &n_fault, "has a mass that is no number or below zero", messages);
+    }
+    for (int e = 0; e < t->n_member && n_fault <= FAULT_MAX; e++)
+        check_member(t, e, &n_fault, messages);
+    if (n_fault > FAULT_MAX) hf_error(messages, HF_BAD_CASE, "truss: and more faults like these");
+    return n_fault ? HF_BAD_CASE : HF_OK;
+}
