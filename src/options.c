@@ -72,7 +72,8 @@ static const option_row option_table[] = {
      BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_SHOW) | BIT(HF_COMMAND_EVALUATE), OPTION_JSON},
     {"--quiet", NULL, NULL, "no progress and no summary; warnings and errors stay",
      BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EVALUATE), OPTION_QUIET},
-    {"--csv", NULL, "DIR", "write nodes.csv and cables.csv into DIR", BIT(HF_COMMAND_EXPORT), OPTION_CSV},
+    {"--csv", NULL, "DIR", "write nodes.csv and cables.csv, and truss_nodes.csv and members.csv of a truss, into DIR",
+     BIT(HF_COMMAND_EXPORT), OPTION_CSV},
     {"--stage", NULL, "STAGE", "form, optimize or polish: which shape (default: the result of the run)",
      BIT(HF_COMMAND_EXPORT), OPTION_STAGE},
 };

@@ -19,6 +19,7 @@ hf_status hf_problem_load(const char *path, const char *const *set, int n_set, h
     HF_TRY(hf_config_load(path, set, n_set, &p->settings, messages));
     HF_TRY(hf_config_scene(&p->settings, &p->scene, messages));
     HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));
+    if (p->settings.has_truss) HF_TRY(hf_carrier_build(&p->settings, &p->scene, &p->carrier, messages));
     if (!p->settings.has_optimize) return HF_OK;
     return hf_symmetry_apply(&p->scene, p->settings.optimize.symmetry, &p->model, &p->planes, messages);
 }
@@ -48,6 +49,10 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->half_bandwidth = model->half_bandwidth;
     s->planes = p->planes;
     s->pretension_N = model->pretension_N;
+    s->has_truss = settings->has_truss;
+    s->truss_mass_kg = p->carrier.mass_kg;
+    s->truss_nodes = p->carrier.truss.n_node;
+    s->truss_members = p->carrier.truss.n_member;
 }
 
 void hf_problem_free(hf_problem *p)
@@ -56,6 +61,7 @@ void hf_problem_free(hf_problem *p)
     free(p->base_N);
     hf_workspace_free(&p->workspace);
     hf_model_free(&p->model);
+    hf_carrier_free(&p->carrier);
     hf_scene_free(&p->scene);
     hf_case_free(&p->settings);
 }

@@ -211,10 +211,15 @@ static hf_status choose_output(const hf_run_request *o, char output[HF_OUTPUT_SI
 
 hf_status hf_run_spare_inputs(const hf_case *settings, const char *table, const char *output, hf_messages *messages)
 {
-    const char *input[] = {settings->path, table, settings->nodes_path, settings->cables_path};
+    const char *input[] = {settings->path,
+                           table,
+                           settings->nodes_path,
+                           settings->cables_path,
+                           settings->truss_nodes_path,
+                           settings->truss_members_path};
     struct stat a, b;
-    for (int i = 0; i < (settings->has_import ? 4 : 2); i++)
-        if (input[i] && stat(input[i], &a) == 0 && stat(output, &b) == 0 && a.st_dev == b.st_dev &&
+    for (size_t i = 0; i < sizeof input / sizeof *input; i++)
+        if (input[i] && *input[i] && stat(input[i], &a) == 0 && stat(output, &b) == 0 && a.st_dev == b.st_dev &&
             a.st_ino == b.st_ino)
             return hf_error(messages, HF_EXISTS, "%s: is an input of this run; use -o to choose another name", output);
     return HF_OK;
@@ -254,6 +259,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     if (status == HF_INTERRUPTED)
         hf_error(messages, status, "%s: told to stop before the end: nothing is written", output);
     if (!leaves_result(status)) return status;
+    if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, NULL, messages));
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
     hf_text_trim_utf8(s->warnings);
     hf_status finish = hf_store_finish(r->store, s, messages);

@@ -25,6 +25,7 @@
 #ifndef HIFDM_STORE_H
 #define HIFDM_STORE_H
 
+#include <hifdm/carrier.h>
 #include <hifdm/ga.h>
 #include <hifdm/model.h>
 #include <hifdm/summary.h>
@@ -96,6 +97,15 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
 /* The shape that a stage left; HF_IO when it left none. Its counts are those of hf_store_read_scene. */
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
 void hf_shape_free(hf_shape *shape);
+
+/* The truss below /truss: as described, what it is attached to, and, when `state` is not NULL, what the pull of the net
+ * does to it. Once, before hf_store_finish of a summary that has_truss. */
+hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_carrier_state *state,
+                         hf_messages *messages);
+
+/* The truss without its line numbers; state: all NULL when none was stored. HF_IO when there is no truss. Free both in
+ * any case. */
+hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_state *state, hf_messages *messages);
 
 /* "VERSION (git describe)" of this library. */
 const char *hf_store_version(void);

@@ -30,8 +30,8 @@ extern const char *const hf_unit_word[4];           /* "bud", "mbug", "abug", "o
  * shear area Asy), Iy in that of x and z (Asz). An infinite shear area is Euler and Bernoulli's beam. */
 #define HF_MEMBER_NUMBERS(X)                                                                                           \
     X(E_Pa, "Pa", NAN, "Young's modulus")                                                                              \
-    X(G_Pa, "Pa", NAN, "shear modulus")                                                                                \
     X(A_m2, "m2", NAN, "cross-section")                                                                                \
+    X(G_Pa, "Pa", NAN, "shear modulus")                                                                                \
     X(Iy_m4, "m4", NAN, "second moment of area for bending in the local x-z plane")                                    \
     X(Iz_m4, "m4", NAN, "second moment of area for bending in the local x-y plane")                                    \
     X(J_m4, "m4", NAN, "torsion constant")                                                                             \
@@ -57,6 +57,46 @@ typedef struct {
     const char *nodes_file, *members_file; /* names for messages, or NULL */
     void *block, *text;                    /* owned memory behind all of the above */
 } hf_truss;
+
+/* ---- the generated truss ---- */
+
+typedef enum { HF_DIAGONALS_NONE, HF_DIAGONALS_SINGLE, HF_DIAGONALS_CROSSED } hf_diagonals;
+typedef enum { HF_THEORY_EULER_BERNOULLI, HF_THEORY_TIMOSHENKO } hf_theory;
+typedef enum { HF_HELD_CENTRAL_MODULE, HF_HELD_CENTRAL_MODULE_REAR } hf_held;
+typedef enum { HF_HELD_ALL_DOFS, HF_HELD_TRANSLATIONS } hf_held_dofs;
+
+/* A basic unit: a planar truss one module long with chords, posts and diagonals of one round tube. */
+typedef struct {
+    double diameter_m, wall_m; /* of the tube, outside */
+    int panels;                /* along a module */
+    int diagonals;             /* hf_diagonals of a panel */
+} hf_truss_unit;
+
+typedef struct {
+    double depth_m;                /* of all units: the rear chords lie this far behind the surface, along its normal */
+    int main_every;                /* counted from both edges, every main_every-th generatrix line is MBUG, else ABUG */
+    hf_truss_unit bud, mbug, abug; /* BUD on the module borders along x, the others along y */
+    double E_Pa, G_Pa, density_kg_per_m3, expansion_per_K;
+    double hinge_mass_kg;     /* of each node */
+    int theory;               /* hf_theory; shear area of a thin round tube: half its cross-section */
+    int joints;               /* hf_joint of all members */
+    int supports;             /* hf_held: which nodes */
+    int support_dofs;         /* hf_held_dofs */
+    double match_tolerance_m; /* between a net support and its attachment */
+} hf_truss_settings;
+
+/* Basic sub-rings over the modules of the net: front nodes on the module corners, on the cylinder. Node ids f<i>_<j> in
+ * front and r<i>_<j> behind, f<i>.<k>_<j> or f<i>_<j>.<k> inside units of several panels; member ids <node>-<node>.
+ * Free the truss in any case. HF_BAD_CASE when it would be too large, HF_NO_MEMORY. */
+hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder *cylinder, hf_truss *truss,
+                            hf_messages *messages);
+
+/* ---- any truss ---- */
+
+/* Which truss node carries each support of the net: the nearest one, within the tolerance. scene_node, truss_node:
+ * room for scene->n_node; n_attachment of each are set. HF_BAD_CASE names every net support without one. */
+hf_status hf_truss_attach(const hf_truss *truss, const hf_scene *scene, double tolerance_m, int *n_attachment,
+                          int *scene_node, int *truss_node, hf_messages *messages);
 
 /* Room for a truss of this size, all zero. HF_OK or HF_NO_MEMORY. */
 hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, int with_line);
