@@ -78,6 +78,37 @@ hf_status hf_carrier_load(const hf_carrier *c, const double *force_N, hf_carrier
     return HF_OK;
 }
 
+hf_status hf_carrier_carry(const hf_carrier *c, const hf_model *m, const hf_workspace *w, hf_carrier_state *state)
+{
+    *state = (hf_carrier_state){0};
+    double *force = calloc(3 * (size_t)c->n_attachment, sizeof *force);
+    int *start = malloc((size_t)m->n_node * sizeof *start); /* of each row's force; -1 = no attachment */
+    if (!force || !start) {
+        free(force);
+        free(start);
+        return HF_NO_MEMORY;
+    }
+    for (int row = 0; row < m->n_node; row++)
+        start[row] = -1;
+    for (int k = 0; k < c->n_attachment; k++) {
+        int row = m->row_of_node[c->scene_node[k]];
+        start[row] = 3 * k;
+        for (int d = 0; m->load_N && d < 3; d++)
+            force[3 * k + d] = m->load_N[d * m->n_node + row];
+    }
+    for (int e = 0; e < m->n_cable; e++)
+        for (int end = 0; end < 2; end++) {
+            int here = m->end_row[2 * e + end], there = m->end_row[2 * e + 1 - end];
+            for (int d = 0; d < 3 && start[here] >= 0; d++)
+                force[start[here] + d] +=
+                    w->q_N_per_m[e] * (w->position_m[d * m->n_node + there] - w->position_m[d * m->n_node + here]);
+        }
+    hf_status status = hf_carrier_load(c, force, state);
+    free(force);
+    free(start);
+    return status;
+}
+
 void hf_carrier_state_free(hf_carrier_state *state)
 {
     free(state->block);

@@ -19,7 +19,11 @@ hf_status hf_problem_load(const char *path, const char *const *set, int n_set, h
     HF_TRY(hf_config_load(path, set, n_set, &p->settings, messages));
     HF_TRY(hf_config_scene(&p->settings, &p->scene, messages));
     HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));
-    if (p->settings.has_truss) HF_TRY(hf_carrier_build(&p->settings, &p->scene, &p->carrier, messages));
+    if (p->settings.has_truss) {
+        const hf_carrier *c = &p->carrier;
+        HF_TRY(hf_carrier_build(&p->settings, &p->scene, &p->carrier, messages));
+        HF_TRY(hf_model_attach(&p->model, c->n_attachment, c->scene_node, c->flexibility_m_per_N, messages));
+    }
     if (!p->settings.has_optimize) return HF_OK;
     return hf_symmetry_apply(&p->scene, p->settings.optimize.symmetry, &p->model, &p->planes, messages);
 }

@@ -25,6 +25,7 @@ double hf_run_clock_s(void)
 typedef struct {
     const hf_run_request *request;
     hf_problem problem;
+    hf_carrier_state truss; /* under the shape of the last stage whose shape is the result */
     hf_history history;
     hf_store *store;
     hf_evaluator evaluator;
@@ -38,6 +39,7 @@ static void run_free(run *r)
     hf_ga_free(&r->ga);
     hf_batch_free(&r->batch);
     free(r->history.psi_m);
+    hf_carrier_state_free(&r->truss);
     hf_problem_free(&r->problem);
 }
 
@@ -49,6 +51,16 @@ static int must_stop(const run *r)
 static void observe(const run *r, hf_run_progress progress)
 {
     if (r->request->observer) r->request->observer(r->request->observer_context, &progress);
+}
+
+/* What the net of this shape does to the truss, if there is one. */
+static hf_status load_truss(run *r, const hf_workspace *w, hf_messages *messages)
+{
+    const hf_problem *p = &r->problem;
+    if (!p->settings.has_truss) return HF_OK;
+    hf_carrier_state_free(&r->truss);
+    hf_status status = hf_carrier_carry(&p->carrier, &p->model, w, &r->truss);
+    return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the forces in the truss");
 }
 
 /* ---- form-finding ---- */
@@ -81,6 +93,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     hf_status status = hf_problem_explain(p, &s->form, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
     HF_TRY(hf_store_form(r->store, &p->model, &p->workspace, &r->history, messages));
+    HF_TRY(load_truss(r, &p->workspace, messages));
     return status;
 }
 
@@ -115,6 +128,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     hf_form_result again;
     hf_workspace *w = hf_batch_run_one(&r->batch, design, &again);
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
+    HF_TRY(load_truss(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->problem.model, w, design, messages);
 }
 
@@ -181,6 +195,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     s->polish_evaluations = outcome.evaluations;
     s->polish_converged = outcome.converged;
     s->polish_wall_s = hf_run_clock_s() - start_s;
+    if (s->polish_is_result) HF_TRY(load_truss(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);
 }
 
@@ -259,7 +274,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     if (status == HF_INTERRUPTED)
         hf_error(messages, status, "%s: told to stop before the end: nothing is written", output);
     if (!leaves_result(status)) return status;
-    if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, NULL, messages));
+    if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, &r->truss, messages));
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
     hf_text_trim_utf8(s->warnings);
     hf_status finish = hf_store_finish(r->store, s, messages);

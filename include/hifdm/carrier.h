@@ -4,6 +4,8 @@
 
 #include <hifdm/config.h>
 #include <hifdm/frame.h>
+#include <hifdm/model.h>
+#include <hifdm/workspace.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -35,6 +37,11 @@ typedef struct {
 
 /* force_N: [n_attachment][3]. HF_OK or HF_NO_MEMORY. Free the state in any case. */
 hf_status hf_carrier_load(const hf_carrier *carrier, const double *force_N, hf_carrier_state *state);
+
+/* The same under the pull of the net at the shape in the workspace, f = sum T u over the cables of each attachment, and
+ * the loads that stand there. */
+hf_status hf_carrier_carry(const hf_carrier *carrier, const hf_model *model, const hf_workspace *workspace,
+                           hf_carrier_state *state);
 void hf_carrier_state_free(hf_carrier_state *state);
 
 #ifdef __cplusplus

@@ -21,7 +21,11 @@
  *                gene_cable (index into /scene/cable), gene_group, lower_N, upper_N [k]; gene_leader [k] under a
  *                symmetry attributes: the members of hf_summary after has_optimize, those of hf_summary.best as
  *   best_... /ga/best     as /form, and design_N [k]
- *   /polish      the same, of Levenberg-Marquardt; attributes: the members of hf_summary.polish and polish_... */
+ *   /polish      the same, of Levenberg-Marquardt; attributes: the members of hf_summary.polish and polish_...
+ *   /truss       with a nodes, b members, c attachments; attributes mass_kg, n_node, n_member
+ *   /truss/node  id, mass_kg [a], position_m [a][3], fixed [a][6]; displacement, reaction [a][6]
+ *   /truss/member  id, joint, unit, E_Pa, A_m2, ..., expansion_per_K [b], end [b][2]; end_force [b][12]
+ *   /truss/attachment  net_node (index into /scene/node), truss_node (into /truss/node) [c] */
 #ifndef HIFDM_STORE_H
 #define HIFDM_STORE_H
 
