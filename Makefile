@@ -6,12 +6,12 @@
 # ---- The modules, in dependency order: a module may include only modules above it (`make lint` checks it) ------------
 # Sources are src/NAME.c; the header is include/hifdm/NAME.h if public, src/NAME.h if internal.
 MODULES := status arena sha256 text csv \
-           scene scene_import config config_table \
-           numbering model symmetry workspace band \
+           scene scene_import truss truss_import config config_table \
+           numbering model symmetry workspace band frame carrier \
            metrics surface \
            lane lane_kernel formfind newton newton_descent certificate \
            evaluate chord_kernel chord ga swarm polish batch \
-           json summary hdf5_io store_surface store store_read
+           json summary hdf5_io store_surface store store_read store_truss
 APP_MODULES := options print problem run progress signals \
            plan export cutlist vtk report designs main
 

@@ -432,6 +432,7 @@ static void put_summary(hf_store *s, const hf_summary *summary)
     static const hf_hdf5_member form[] = {HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER)};
     static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
     static const hf_hdf5_member polish[] = {HF_SUMMARY_POLISH_MEMBERS(HF_HDF5_MEMBER)};
+    static const hf_hdf5_member truss[] = {HF_SUMMARY_TRUSS_MEMBERS(HF_HDF5_MEMBER)};
     hf_status outcome = summary->form.status;
     if (outcome == HF_OK && summary->has_optimize) outcome = summary->best.status;
     /* groups that are there already, unless the run had no shape or no generation to store */
@@ -444,6 +445,10 @@ static void put_summary(hf_store *s, const hf_summary *summary)
     if (summary->has_polish) {
         hf_hdf5_close(&s->io, hf_hdf5_make_group(&s->io, "/polish"));
         hf_hdf5_put_members(&s->io, polish, HF_HDF5_COUNT(polish), summary);
+    }
+    if (summary->has_truss) {
+        hf_hdf5_close(&s->io, hf_hdf5_make_group(&s->io, "/truss"));
+        hf_hdf5_put_members(&s->io, truss, HF_HDF5_COUNT(truss), summary);
     }
     hf_hdf5_put_text(&s->io, s->io.file, "/", "status", hf_status_word(outcome));
     put_time(s, "finished_utc");
@@ -532,6 +537,12 @@ hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_message
         status = publish(store);
     free_store(store);
     return hf_hdf5_unlock(status);
+}
+
+hf_hdf5 *hf_store_io(hf_store *store, hf_messages *messages)
+{
+    store->io.messages = messages;
+    return &store->io;
 }
 
 const char *hf_store_temporary(const hf_store *store)
