@@ -23,6 +23,10 @@ hf_status hf_newton_find(const hf_model *model, const hf_form_settings *settings
  * of its 1-norm condition number, INFINITY when a Levenberg shift was needed. HF_SINGULAR when no shift helps. */
 hf_status hf_newton_factor(const hf_model *model, hf_workspace *workspace, double *condition);
 
+/* A tension below this part of the reference tension is what rounding leaves in a slack elastic cable: a node that only
+ * such cables hold is loose, and has no position. */
+#define HF_NEWTON_NOTHING 1e-12
+
 /* For a net with elastic cables: descend on its energy from the workspace's position_m to near the minimum, and set
  * tension_N and q_N_per_m by the laws. Returns the number of steps, at most max_steps. */
 int hf_newton_descend(const hf_model *model, hf_workspace *workspace, int max_steps);
