@@ -112,7 +112,7 @@ quote = '$(subst ','\'',$(1))'
 stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
-FRONT := all compile-all run test stress bench lint asan tsan install
+FRONT := all compile-all run test stress browser bench lint asan tsan install
 .PHONY: $(FRONT) setup clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -145,6 +145,10 @@ test: ## set up, build and run the tests; SUITE="unit verify/band" picks some
 # Twenty times as many nets as `make test` tries.
 stress: ## the numerical-stability suite at full length
 	+$(Q)HIFDM_STRESS=1 CK_DEFAULT_TIMEOUT=1800 $(MAKE) test SUITE=stress
+
+browser: ## open pages of hifdm report in headless Chromium; needs `tools/setup.sh --ci`
+	$(SUB) $(PROGRAM)
+	$(Q)HIFDM=$(abspath $(PROGRAM)) BUILD=$(BUILD) tests/browser/run.sh
 
 # Peers that cannot be installed are left out of the tables. BENCH_OUT=... writes elsewhere.
 bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/ (4 minutes)

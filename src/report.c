@@ -98,6 +98,13 @@ static void write_html(const char *text, FILE *f)
     }
 }
 
+/* What the page is headed: the title, or the name of the case file. */
+static const char *heading(const hf_summary *s)
+{
+    const char *slash = strrchr(s->case_path, '/');
+    return *s->title ? s->title : slash ? slash + 1 : s->case_path;
+}
+
 /* ---- net and shapes ---- */
 
 static void write_net(const hf_scene *s, FILE *f)
@@ -178,7 +185,7 @@ static void write_data(const page *p, FILE *f)
 {
     const hf_summary *s = &p->summary;
     fputc('{', f);
-    hf_json_text("title", *s->title ? s->title : s->case_path, f);
+    hf_json_text("title", heading(s), f);
     fputs(",\n", f);
     hf_json_lines("provenance", "", p->provenance, f);
     fputs(",\n\"summary\":", f);
@@ -198,7 +205,7 @@ static void write_page(const void *context, FILE *f)
     const page *p = context;
     fputs(hf_report_page_head, f);
     fputs("</style>\n<title>", f);
-    write_html(*p->summary.title ? p->summary.title : p->summary.case_path, f);
+    write_html(heading(&p->summary), f);
     fputs("</title>\n", f);
     fputs(hf_report_page_body, f);
     write_data(p, f);

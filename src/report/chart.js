@@ -42,6 +42,7 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
   const leading = series.filter((s) => !s.free).flatMap((s) => s.values),
     positive = range(leading.filter((v) => v > 0));
   const clip = `clip-${++clips}`;
+  if (!range(leading)) return null; // nothing to draw
   if (log === "auto") log = !!positive && positive[1] > 20 * positive[0];
   const margin = { left: 64, right: 14, top: 26, bottom: 42 },
     height = 290;
@@ -74,10 +75,11 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
 
   function draw() {
     const width = Math.max(holder.clientWidth, 260),
-      w = width - margin.left - margin.right;
-    const h = height - margin.top - margin.bottom;
-    const xAxis = { low: x[0], high: x[x.length - 1] },
       yAxis = axis(leading, log);
+    margin.left = 16 + 7 * Math.max(4, ...yAxis.ticks.map((t) => t.text.length));
+    const w = width - margin.left - margin.right;
+    const h = height - margin.top - margin.bottom;
+    const xAxis = { low: x[0], high: x[x.length - 1] };
     if (xAxis.high === xAxis.low) {
       xAxis.low -= 1;
       xAxis.high += 1;

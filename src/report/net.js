@@ -136,7 +136,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   }
 
   function drawNodes(c) {
-    const side = n > 1500 ? 2 : 3;
+    const side = n > 1000 ? 1.5 : 3;
     c.fillStyle = css("--ink");
     for (let i = 0; i < n; i++)
       if (digit(net.role, i) === 0) c.fillRect(px[i] - side, py[i] - side, 2 * side, 2 * side);
@@ -301,13 +301,15 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   // ---- pointer and keys ----
 
   const pointers = new Map();
-  let pinch = 0;
+  let pinch = 0,
+    dragged = false;
   const spread = () => {
     const [a, b] = [...pointers.values()];
     return Math.hypot(a.x - b.x, a.y - b.y);
   };
   canvas.addEventListener("pointerdown", (event) => {
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    dragged = false;
     canvas.setPointerCapture(event.pointerId);
     canvas.classList.add("dragging");
     if (pointers.size === 2) pinch = spread();
@@ -316,6 +318,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     const at = pointers.get(event.pointerId),
       frame = canvas.getBoundingClientRect();
     if (!at) return select(pick(event.clientX - frame.left, event.clientY - frame.top));
+    dragged = true;
     const dx = event.clientX - at.x,
       dy = event.clientY - at.y;
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
@@ -327,10 +330,14 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   });
   for (const name of ["pointerup", "pointercancel"])
     canvas.addEventListener(name, (event) => {
+      const frame = canvas.getBoundingClientRect();
       pointers.delete(event.pointerId);
       canvas.classList.remove("dragging");
+      if (!dragged) select(pick(event.clientX - frame.left, event.clientY - frame.top)); // a tap
     });
-  canvas.addEventListener("pointerleave", () => select(null));
+  canvas.addEventListener("pointerleave", (event) => {
+    if (event.pointerType !== "touch") select(null);
+  });
   canvas.addEventListener(
     "wheel",
     (event) => {

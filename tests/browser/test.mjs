@@ -1,0 +1,332 @@
+// Opens every page of pages.mjs in headless Chromium and looks at it as its readers would: is everything drawn, is what
+// is under the pointer the value in the file, do mouse and keyboard work, in the light, in the dark and on paper?
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { pages } from "./pages.mjs";
+
+const { HIFDM, CHROMIUM, WORK } = process.env;
+const { chromium } = createRequire(join(WORK, "package.json"))("playwright-core");
+const SIZE_MAX = 1e6; // bytes: the promise of the README
+const hifdm = (...words) => execFileSync(HIFDM, words, { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] });
+
+// ---- making a page and the numbers to hold it against ----
+
+function csv(path) {
+  const lines = readFileSync(path, "utf8").trimEnd().split("\n");
+  const cells = (line) =>
+    [...line.matchAll(/("((?:[^"]|"")*)"|[^,]*)(,|$)/g)].map((m) => (m[2] ?? m[1]).replace(/""/g, '"'));
+  const names = cells(lines[0]);
+  return lines.slice(1).map((line) => Object.fromEntries(cells(line).map((cell, k) => [names[k], cell])));
+}
+
+function build(page, folder) {
+  rmSync(folder, { recursive: true, force: true });
+  mkdirSync(folder, { recursive: true });
+  const result = join(folder, "result.h5"),
+    html = join(folder, "report.html");
+  for (const [name, text] of Object.entries(page.files || {})) writeFileSync(join(folder, name), text);
+  const source = page.source || join(folder, "case.yaml");
+  if (page.text) writeFileSync(source, page.text);
+  hifdm("run", source, "-o", result, "--quiet");
+  const start = performance.now();
+  hifdm("report", result, "-o", html);
+  const made_ms = performance.now() - start;
+  hifdm("export", result, "--csv", folder);
+  return {
+    result,
+    html,
+    made_ms,
+    nodes: csv(join(folder, "nodes.csv")),
+    cables: csv(join(folder, "cables.csv")),
+    summary: JSON.parse(hifdm("show", result, "--json")),
+  };
+}
+
+// ---- what a reader sees ----
+
+const same = (shown, value, digits) => {
+  const near = Math.abs(shown - value) <= 0.51 * 10 ** (Math.floor(Math.log10(Math.abs(value) || 1)) - digits + 1);
+  assert.ok(near || Math.abs(shown - value) < 1e-9, `${shown} is shown for ${value}`);
+};
+// "−1.2×10⁻⁷ N" -> -1.2e-7
+const number = (text) =>
+  parseFloat(
+    text
+      .replace("−", "-")
+      .replace(
+        /×10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)/,
+        (_, e) => "e" + [...e].map((c) => (c === "⁻" ? "-" : "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(c))).join(""),
+      ),
+  );
+
+const settle = (tab) =>
+  tab.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+// Colours of a canvas: how many there are, and a sum that tells two pictures apart.
+const picture = async (tab, canvas) => {
+  await settle(tab);
+  return tab.evaluate((id) => {
+    const node = document.getElementById(id),
+      copy = document.createElement("canvas");
+    const c = Object.assign(copy, { width: node.width, height: node.height }).getContext("2d", {
+      willReadFrequently: true,
+    });
+    c.drawImage(node, 0, 0);
+    const pixel = c.getImageData(0, 0, node.width, node.height).data;
+    const colours = new Set();
+    let sum = 0;
+    for (let k = 0; k < pixel.length; k += 4) {
+      const colour = (pixel[k] << 16) | (pixel[k + 1] << 8) | pixel[k + 2];
+      if (pixel[k + 3]) colours.add(colour);
+      sum = (Math.imul(sum, 31) + colour + pixel[k + 3]) | 0;
+    }
+    return { colours: colours.size, sum };
+  }, canvas);
+};
+const tip = async (tab, stage) => {
+  await settle(tab);
+  return tab.evaluate((name) => {
+    const node = document.querySelector(`.stage.${name} .tip`);
+    if (node.hidden) return null;
+    const rows = [...node.querySelectorAll("tr")].map((r) => [...r.children].map((c) => c.textContent));
+    return { heading: node.querySelector("strong").textContent, ...Object.fromEntries(rows) };
+  }, stage);
+};
+async function changes(tab, what, act) {
+  const before = await picture(tab, "net-canvas");
+  await act();
+  assert.notEqual((await picture(tab, "net-canvas")).sum, before.sum, `${what} leaves the picture as it was`);
+}
+
+// ---- the checks, one after the other on an open page ----
+
+async function checkText(tab, page, made) {
+  const title = page.title || made.summary.title;
+  if (page.title) assert.equal(await tab.locator("h1").textContent(), page.title);
+  if (title) assert.equal(await tab.title(), title.trim());
+  assert.deepEqual(await tab.locator("main section").evaluateAll((all) => all.map((s) => s.id)), page.sections);
+  assert.equal(await tab.evaluate("window.hit"), undefined, "a text of the case became markup");
+  assert.equal(await tab.locator("main img, main i, main b, main script").count(), 0);
+  const text = await tab.locator("body").innerText();
+  for (const word of ["NaN", "undefined", "null", "Infinity", "[object"])
+    assert.ok(!text.includes(word), `the page says ${word}`);
+  if (page.warnings !== undefined) assert.equal(await tab.locator("#warnings li").count(), page.warnings);
+  const cells = await tab.locator("#summary tr", { hasText: "psi_m" }).locator("td").allTextContents();
+  same(number(cells[0]), 1e3 * made.summary.form.psi_m, 5);
+  if (made.summary.optimize) same(number(cells[1]), 1e3 * made.summary.optimize.psi_m, 5);
+}
+
+async function checkCharts(tab) {
+  const charts = await tab
+    .locator(".chart")
+    .evaluateAll((all) =>
+      all.map((c) => ({
+        title: c.querySelector("h3").textContent,
+        markup: c.querySelector("svg[tabindex]").outerHTML,
+        ticks: c.querySelectorAll("svg[tabindex] text").length,
+        drawn: [...c.querySelectorAll("svg[tabindex] path")].map(
+          (p) => p.getTotalLength() + p.getAttribute("d").length,
+        ),
+      })),
+    );
+  assert.ok(charts.length >= 4, "too few charts");
+  for (const c of charts) {
+    assert.ok(!/NaN|undefined|Infinity/.test(c.markup), `${c.title}: holds no numbers`);
+    assert.ok(c.ticks >= 5, `${c.title}: ${c.ticks} labels`);
+    assert.ok(c.drawn.length && c.drawn.some((d) => d > 0), `${c.title}: is empty`);
+  }
+  const first = tab.locator(".chart svg[tabindex]").first(),
+    said = tab.locator(".chart .tip").first();
+  await first.focus();
+  await tab.keyboard.press("End");
+  assert.match(await said.innerText(), /iteration \d+\s+ψ\s+[\d.]+.* mm/);
+  await tab.keyboard.press("Escape");
+  assert.ok(await said.isHidden());
+}
+
+async function checkHover(tab, made) {
+  await tab.locator("#net-canvas").scrollIntoViewIfNeeded();
+  const box = await tab.locator("#net-canvas").boundingBox();
+  const at = (kind, i) => tab.evaluate(([k, e]) => report.net.screenOf(k, e), [kind, i]);
+  for (const part of [0.1, 0.37, 0.62, 0.98]) {
+    const e = Math.floor(part * made.cables.length),
+      cable = made.cables[e];
+    await tab.getByRole("button", { name: "View along z" }).click();
+    await settle(tab);
+    for (let k = 0; k < 4; k++) {
+      // nearer, so that no neighbour is close to the middle of the cable
+      const [x, y] = await at("cable", e);
+      await tab.mouse.move(box.x + x, box.y + y);
+      await tab.mouse.wheel(0, -500);
+      await settle(tab);
+    }
+    const [x, y] = await at("cable", e);
+    await tab.mouse.move(box.x + x + 1, box.y + y + 1);
+    const said = await tip(tab, "net");
+    assert.equal(said && said.heading, `cable ${cable.id}`);
+    same(number(said.tension), Number(cable.tension_N), 6);
+    same(number(said.length), Number(cable.length_m), 6);
+    same(number(said["force density"]), Number(cable.q_N_per_m), 5);
+    const i = made.nodes.findIndex((n) => n.id === cable.j),
+      node = made.nodes[i],
+      [nx, ny] = await at("node", i);
+    await tab.mouse.move(box.x + nx + 2, box.y + ny - 1);
+    const about = await tip(tab, "net");
+    if (nx < 0 || ny < 0 || nx > box.width || ny > box.height) continue; // out of the picture by now
+    assert.equal(about && about.heading, `node ${node.id}`);
+    const distance_m = Math.hypot(node.x_m - node.x0_m, node.y_m - node.y0_m, node.z_m - node.z0_m);
+    same(number(about["to theory"]), 1e3 * distance_m, 4);
+  }
+  await tab.mouse.move(box.x + 5, box.y + 5);
+  await tab.getByRole("button", { name: "View from above" }).click();
+  assert.equal(await tip(tab, "net"), null);
+}
+
+async function checkNet(tab, page, made) {
+  const canvas = tab.locator("#net-canvas");
+  await canvas.scrollIntoViewIfNeeded();
+  const box = await canvas.boundingBox();
+  assert.ok((await picture(tab, "net-canvas")).colours > 10, "the net is not drawn");
+  await changes(tab, "dragging", async () => {
+    await tab.mouse.move(box.x + 300, box.y + 200);
+    await tab.mouse.down();
+    await tab.mouse.move(box.x + 360, box.y + 230, { steps: 4 });
+    await tab.mouse.up();
+    await tab.mouse.move(box.x + 5, box.y + 5);
+  });
+  await tab.getByRole("button", { name: "View along x" }).focus();
+  await tab.keyboard.press("Tab"); // the picture comes after its tools
+  assert.equal(await tab.evaluate("document.activeElement.id"), "net-canvas");
+  assert.notEqual(await canvas.evaluate((c) => getComputedStyle(c).outlineStyle), "none", "no visible focus");
+  for (const key of ["ArrowLeft", "ArrowUp", "Shift+ArrowRight", "+", "-", "0"])
+    await changes(tab, key, () => tab.keyboard.press(key));
+  await tab.keyboard.press("n");
+  assert.equal((await tip(tab, "net")).heading, `node ${made.nodes[0].id}`);
+  await tab.keyboard.press("Shift+C");
+  assert.equal((await tip(tab, "net")).heading, `cable ${made.cables.at(-1).id}`);
+  await tab.keyboard.press("Escape");
+  assert.equal(await tip(tab, "net"), null);
+  for (const label of ["tension", "slack", "none", "theoretical", "found"])
+    await changes(tab, label, () => tab.locator("#net").getByLabel(label, { exact: true }).check());
+  await tab.locator("#net").getByLabel("slack").check();
+  await settle(tab);
+  if (page.slack !== undefined)
+    assert.match(await tab.locator("#net .bar").innerText(), new RegExp(`^${page.slack} of`));
+  await tab.locator("#net").getByLabel("deviation").check();
+  await changes(tab, "the scale", () => tab.getByLabel("scale of the deformation").press("ArrowRight"));
+  await tab.reload();
+}
+
+async function checkMap(tab, made) {
+  assert.ok((await picture(tab, "map-canvas")).colours > 30, "the map is not drawn");
+  const canvas = tab.locator("#map-canvas");
+  await canvas.scrollIntoViewIfNeeded();
+  const box = await canvas.boundingBox(),
+    before = await picture(tab, "map-canvas");
+  let said = null;
+  for (let k = 1; k < 60 && !said; k++) {
+    // somewhere on the way across there is a node
+    await tab.mouse.move(box.x + (box.width * k) / 60, box.y + box.height / 2);
+    said = await tip(tab, "map");
+  }
+  const node = made.nodes.find((n) => said && said.heading === `node ${n.id}`);
+  assert.ok(node, "no node on the map");
+  same(number(said["height, Δz"]), 1e3 * (node.z_m - node.z0_m), 4);
+  await tab.locator("#map").getByLabel("height").check();
+  assert.notEqual((await picture(tab, "map-canvas")).sum, before.sum);
+}
+
+async function checkRules(tab) {
+  assert.equal(await tab.locator("th:not([scope])").count(), 0, "a heading of a table without scope");
+  assert.equal(await tab.locator("button:not([type])").count(), 0);
+  assert.equal(await tab.locator("canvas:not([aria-label]), svg[role=img]:not([aria-label])").count(), 0);
+  assert.equal(
+    await tab
+      .locator("input")
+      .evaluateAll((all) => all.filter((i) => !i.labels.length && !i.getAttribute("aria-label")).length),
+    0,
+    "an input without a label",
+  );
+}
+
+const background = (tab) =>
+  tab.evaluate(
+    () =>
+      getComputedStyle(document.body)
+        .backgroundColor.match(/\d+/g)
+        .slice(0, 3)
+        .reduce((a, b) => a + Number(b), 0) / 3,
+  );
+
+async function checkMedia(tab, folder) {
+  const seen = {};
+  for (const [name, media] of [
+    ["light", { colorScheme: "light", media: "screen" }],
+    ["dark", { colorScheme: "dark", media: "screen" }],
+    ["print", { colorScheme: "dark", media: "print" }],
+  ]) {
+    await tab.emulateMedia(media);
+    seen[name] = {
+      paper: await background(tab),
+      net: await picture(tab, "net-canvas"),
+      map: await picture(tab, "map-canvas"),
+      tools: await tab.locator(".tools").first().isVisible(),
+    };
+    await tab.screenshot({ path: join(folder, `${name}.png`), fullPage: true });
+  }
+  assert.ok(seen.light.paper > 230 && seen.dark.paper < 50 && seen.print.paper > 250, "wrong colour of the paper");
+  for (const kind of ["net", "map"]) {
+    assert.notEqual(seen.light[kind].sum, seen.dark[kind].sum, `the ${kind} does not follow the dark scheme`);
+    assert.notEqual(seen.print[kind].sum, seen.dark[kind].sum, `the ${kind} is printed in the dark`);
+  }
+  assert.ok(seen.light.tools && !seen.print.tools, "controls on paper");
+  assert.ok((await tab.pdf({ format: "A4" })).length > 10000, "no paper");
+  await tab.emulateMedia({ colorScheme: "light", media: "screen" });
+  await tab.setViewportSize({ width: 360, height: 700 });
+  await settle(tab);
+  assert.ok((await tab.evaluate("document.documentElement.scrollWidth")) <= 360, "wider than a telephone");
+}
+
+// ---- all pages ----
+
+async function test(browser, page) {
+  const folder = join(WORK, page.name),
+    made = build(page, folder),
+    bytes = statSync(made.html).size;
+  assert.ok(bytes < SIZE_MAX, `${bytes} bytes`);
+  const url = pathToFileURL(made.html).href,
+    trouble = [];
+  const tab = await browser.newPage({ viewport: { width: 1200, height: 900 } });
+  tab.on("console", (message) => trouble.push(`console: ${message.text()}`));
+  tab.on("pageerror", (error) => trouble.push(`error: ${error.message}`));
+  tab.on("request", (request) => request.url() === url || trouble.push(`request: ${request.url()}`));
+  await tab.goto(url);
+  await checkText(tab, page, made);
+  await checkCharts(tab);
+  await checkNet(tab, page, made);
+  await checkHover(tab, made);
+  await checkMap(tab, made);
+  await checkRules(tab);
+  await checkMedia(tab, folder);
+  assert.deepEqual(trouble, []);
+  await tab.close();
+  return `${(bytes / 1e3).toFixed(0)} kB, written in ${made.made_ms.toFixed(0)} ms`;
+}
+
+const wanted = process.argv.slice(2),
+  browser = await chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox"] });
+let failed = 0;
+for (const page of pages.filter((p) => !wanted.length || wanted.includes(p.name))) {
+  try {
+    console.log(`${page.name}: ${await test(browser, page)}`);
+  } catch (error) {
+    failed++;
+    console.log(`${page.name}: FAILED: ${error.stack}`);
+  }
+}
+await browser.close();
+console.log(failed ? `${failed} pages failed` : "all pages are as they should be");
+process.exitCode = failed ? 1 : 0;
