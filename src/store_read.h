@@ -5,14 +5,15 @@
 #include "hdf5_io.h"
 #include <hifdm/store.h>
 
-/* A data set of numbers of any kind, one or `columns` per row. */
+/* A data set of numbers of any kind, enumerations too. */
 typedef struct {
-    int n;         /* rows; 0 = the file has none of this name, or an empty one */
+    int n; /* rows; 0 = the file has none of this name, or an empty one */
+    int columns;
     double *value; /* [n][columns] */
     void *block;
 } hf_series;
 
-/* name: from the root, like "/form/history/psi_m". HF_OK also when there is none; else as the calls of store.h. Free
+/* name: from the root, like "/form/history/psi_m"; columns 0 = as it has. HF_OK also when there is none; else as the calls of store.h. Free
  * with hf_series_free in any case. */
 hf_status hf_store_read_series(const char *path, const char *name, int columns, hf_series *series,
                                hf_messages *messages);
@@ -30,6 +31,17 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages);
 /* The n and m ids of two data sets, set in id_a and id_b, and the block that they point into (caller frees). */
 void hf_store_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, const char **id_a, const char *name_b,
                        int m, const char **id_b, void **text);
+
+void hf_store_no_memory(hf_hdf5 *io);
+
+/* More nodes or cables than any scene has; keeps a damaged file from asking for all memory. */
+#define HF_STORE_COUNT_MAX 20000000
+
+/* A file of ours, open for reading; its status says whether. The caller closes it in any case. */
+hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages);
+
+/* Is there something of this name? From the root; HDF5 has to be asked for every group on the way. */
+int hf_store_is_there(hf_hdf5 *io, const char *name);
 
 void hf_store_no_memory(hf_hdf5 *io);
 

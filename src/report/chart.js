@@ -34,9 +34,12 @@ function placeTip(tip, x, y, content) {
 }
 
 // ---- one chart: series over x with a cursor that follows the pointer or the arrow keys ----
-// series: { name, stored, values, colour: "--one", dash, dots: marks instead of a line, free: may leave the picture }
+// series: { name, stored, values, colour, dash, dots: marks instead of a line, free: may leave the picture }
+// colour: a variable of the page's style, or a function that returns red, green and blue
 // x rises, counted: in whole numbers; log: "auto" = when the values span more than a factor of 20
 let clips = 0;
+const paint = (colour) => (typeof colour === "function" ? rgb(colour()) : `var(${colour})`);
+const LINES_MAX = 12; // in a tooltip
 
 function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "auto", counted = true, head }) {
   const leading = series.filter((s) => !s.free).flatMap((s) => s.values),
@@ -70,7 +73,7 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
       if (good) text += `${on && !s.dots ? "L" : "M"}${sx(x[i]).toFixed(1)} ${sy(v).toFixed(1)}${s.dots ? "h0" : ""}`;
       on = good;
     });
-    return svg("path", { d: text, ...mark(s), style: `stroke:var(${s.colour})` });
+    return svg("path", { d: text, ...mark(s), style: `stroke:${paint(s.colour)}` });
   }
 
   function draw() {
@@ -140,7 +143,9 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
     const shown = here.filter((s) => place.yAxis.has(s.values[i]) && place.yAxis.at(s.values[i]) <= 1);
     fill(group, {}, [
       svg("line", { class: "cursor", x1: px, x2: px, y1: margin.top, y2: place.bottom }),
-      ...shown.map((s) => svg("circle", { cx: px, cy: place.sy(s.values[i]), r: 4, style: `fill:var(${s.colour})` })),
+      ...shown.map((s) =>
+        svg("circle", { cx: px, cy: place.sy(s.values[i]), r: 4, style: `fill:${paint(s.colour)}` }),
+      ),
     ]);
     placeTip(
       tip,
@@ -148,7 +153,7 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
       shown.length ? place.sy(shown[0].values[i]) : margin.top,
       tipContent(
         head(i),
-        here.map((s) => [s.name, `${fmt(s.values[i], 6)} ${unit}`, s.stored]),
+        here.slice(0, LINES_MAX).map((s) => [s.name, `${fmt(s.values[i], 6)} ${unit}`, s.stored]),
       ),
     );
   }
@@ -177,6 +182,8 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
     point(to);
   });
   new ResizeObserver(draw).observe(holder);
+  darkScheme.addEventListener("change", draw);
+  printing.addEventListener("change", draw);
   holder.append(picture, tip);
 
   const legend =
@@ -195,7 +202,7 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
                 svg("path", {
                   d: s.dots ? "M13 5h0" : "M0 5H26",
                   ...mark(s),
-                  style: `stroke:var(${s.colour})`,
+                  style: `stroke:${paint(s.colour)}`,
                 }),
               ),
               s.name,

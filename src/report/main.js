@@ -22,15 +22,13 @@ function writeHead() {
     `Results of hifdm ${summary.version} in ${summary.file}. “Fig.” refers to Chen et al., Aerospace 2022, 9, 239.`;
 }
 
-function writeWarnings() {
-  const lines = [...(summary.errors || []), ...(summary.warnings || [])];
+function writeWarnings(title, lines) {
   if (!lines.length) return;
-  const title = lines.length === 1 ? "One warning" : `${lines.length} warnings`;
   main.append(
     el(
       "div",
       { class: "warnings", role: "note", id: "warnings" },
-      el("h2", {}, summary.errors && summary.errors.length ? "This run has errors" : title),
+      el("h2", {}, title),
       el(
         "ul",
         {},
@@ -43,10 +41,11 @@ function writeWarnings() {
 const resultStage = resultShape && resultShape.stage;
 const resultNumbers = { form: summary.form, optimize: summary.optimize, polish: summary.polish }[resultStage];
 
+const figure = (name, value, unit) =>
+  el("div", {}, el("dt", {}, name), el("dd", {}, value, unit ? el("small", {}, unit) : null));
+
 function writeFigures() {
   if (!resultNumbers) return;
-  const figure = (name, value, unit) =>
-    el("div", {}, el("dt", {}, name), el("dd", {}, value, unit ? el("small", {}, unit) : null));
   const base = summary.optimize && summary.optimize.base_psi_m,
     list = [];
   list.push(figure(`surface error ψ, ${resultShape.name}`, fmt(1e3 * resultNumbers.psi_m, 4), "mm"));
@@ -249,14 +248,23 @@ function writeMap() {
 
 const report = {}; // the two pictures, for the console and the tests
 window.report = report;
-writeHead();
-writeWarnings();
-writeFigures();
-writeNet();
-writeMap();
-writeHistory();
-writeTensions();
-writeGa();
-writeCoupling();
-writeSummary();
-writeProvenance();
+if (data.study) {
+  writeStudy(data.study);
+} else {
+  writeHead();
+  const errors = summary.errors || [],
+    lines = [...errors, ...(summary.warnings || [])];
+  writeWarnings(
+    errors.length ? "This run failed" : lines.length === 1 ? "One warning" : `${lines.length} warnings`,
+    lines,
+  );
+  writeFigures();
+  writeNet();
+  writeMap();
+  writeHistory();
+  writeTensions();
+  writeGa();
+  writeCoupling();
+  writeSummary();
+  writeProvenance();
+}

@@ -120,18 +120,16 @@ async function checkText(tab, page, made) {
 }
 
 async function checkCharts(tab) {
-  const charts = await tab
-    .locator(".chart")
-    .evaluateAll((all) =>
-      all.map((c) => ({
-        title: c.querySelector("h3").textContent,
-        markup: c.querySelector("svg[tabindex]").outerHTML,
-        ticks: c.querySelectorAll("svg[tabindex] text").length,
-        drawn: [...c.querySelectorAll("svg[tabindex] path")].map(
-          (p) => p.getTotalLength() + p.getAttribute("d").length,
-        ),
-      })),
-    );
+  const charts = await tab.locator(".chart").evaluateAll((all) =>
+    all.map((c) => ({
+      title: c.querySelector("h3").textContent,
+      markup: c.querySelector("svg[tabindex]").outerHTML,
+      ticks: c.querySelectorAll("svg[tabindex] text").length,
+      drawn: [...c.querySelectorAll("svg[tabindex] path")].map(
+        (p) => p.getTotalLength() + p.getAttribute("d").length,
+      ),
+    })),
+  );
   assert.ok(charts.length >= 4, "too few charts");
   for (const c of charts) {
     assert.ok(!/NaN|undefined|Infinity/.test(c.markup), `${c.title}: holds no numbers`);
@@ -163,12 +161,16 @@ async function checkHover(tab, made) {
     return tip(tab, "net");
   }
   for (const part of [0.1, 0.37, 0.62, 0.98]) {
-    const e = Math.floor(part * made.cables.length), cable = made.cables[e], said = await hover("cable", e);
+    const e = Math.floor(part * made.cables.length),
+      cable = made.cables[e],
+      said = await hover("cable", e);
     assert.equal(said && said.heading, `cable ${cable.id}`);
     same(number(said.tension), Number(cable.tension_N), 6);
     same(number(said.length), Number(cable.length_m), 6);
     same(number(said["force density"]), Number(cable.q_N_per_m), 5);
-    const i = made.nodes.findIndex((n) => n.id === cable.j), node = made.nodes[i], about = await hover("node", i);
+    const i = made.nodes.findIndex((n) => n.id === cable.j),
+      node = made.nodes[i],
+      about = await hover("node", i);
     assert.equal(about && about.heading, `node ${node.id}`);
     const distance_m = Math.hypot(node.x_m - node.x0_m, node.y_m - node.y0_m, node.z_m - node.z0_m);
     same(number(about["to theory"]), 1e3 * distance_m, 5);

@@ -143,8 +143,8 @@ END_TEST
 
 static const char add_truss[] = "import h5py, numpy as np, sys\n"
                                 "f = h5py.File(sys.argv[1], 'r+')\n"
-                                "f['truss/position_m'] = np.arange(12.0).reshape(4, 3)\n"
-                                "f['truss/end'] = np.array([[0, 1], [1, 2], [2, 3]], dtype='i4')\n";
+                                "f['truss/node/position_m'] = np.arange(12.0).reshape(4, 3)\n"
+                                "f['truss/member/end'] = np.array([[0, 1], [1, 2], [2, 3]], dtype='i4')\n";
 
 START_TEST(truss_is_shown_when_there_is_one)
 {
@@ -155,13 +155,71 @@ START_TEST(truss_is_shown_when_there_is_one)
     EXPECT(data_of(temp("t.html"), "t.json"), "--",
            "a['truss'] == {'n_node': 4, 'n_member': 3, 'position_m': list(range(12)), 'end': [0, 1, 1, 2, 2, 3]}");
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
-          "import h5py, sys\nh5py.File(sys.argv[1], 'r+')['truss/end'][2, 1] = 4", out);
+          "import h5py, sys\nh5py.File(sys.argv[1], 'r+')['truss/member/end'][2, 1] = 4", out);
     HIFDM(5, "report", out, "-o", temp("t.html"), "--force");
-    ERR("t.h5: is damaged: /truss/end names a node that is not there");
+    ERR("t.h5: is damaged: /truss/member/end names a node that is not there");
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
-          "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); del f['truss/end']; f['truss/end'] = 'pinned'", out);
+          "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); del f['truss/member/end']; f['truss/member/end'] = "
+          "'pinned'",
+          out);
     HIFDM(5, "report", out, "-o", temp("t.html"), "--force");
-    ERR("t.h5: is damaged: /truss/end has other dimensions than a report reads");
+    ERR("t.h5: is damaged: /truss/member/end is of another type");
+}
+END_TEST
+
+/* A merged study as `hifdm merge` lays it out: three points, of which one failed and one is missing. */
+static const char make_study[] =
+    "import h5py, numpy as np, sys\n"
+    "f = h5py.File(sys.argv[1], 'w')\n"
+    "f.attrs.create('program', b'hifdm', dtype=h5py.string_dtype('utf-8', 5)); f.attrs['format_version'] = "
+    "np.int32(1)\n"
+    "text = lambda v: np.array([t.encode() for t in v], dtype=h5py.string_dtype('utf-8', max(map(len, v)) or 1))\n"
+    "f['points/id'] = text(['a1', 'b2', 'c3'])\n"
+    "f['points/reason'] = text(['', '</script><b>no', ''])\n"
+    "f['points/status'] = np.array([0, 1, 7], dtype=h5py.enum_dtype({'ok': 0, 'not_converged': 1, 'not_evaluated': 7}, "
+    "basetype='i1'))\n"
+    "f['points/input/form.pretension_N'] = [8.0, 10.0, 12.5]\n"
+    "f['points/input/form.method'] = text(['hifdm', 'newton', 'hifdm'])\n"
+    "f['points/input/scene.parabolic_cylinder.modules'] = np.array([[5, 5], [5, 6], [5, 7]], dtype='i4')\n"
+    "f['points/form/psi_m'] = [0.006, np.nan, np.nan]\n"
+    "f['points/form/n_slack'] = np.array([2, 0, 0], dtype='i4')\n"
+    "f['points/ga/best_psi_m'] = [0.005, np.nan, np.nan]\n"
+    "f['runs/a1'] = h5py.ExternalLink('s.d/a1.h5', '/')\n"
+    "f['runs/b2'] = h5py.ExternalLink('s.d/b2.h5', '/')\n";
+
+START_TEST(merged_study_is_a_page_of_points)
+{
+    const char *merged = temp("s.h5"), *page = temp("s.html");
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(), make_study, merged);
+    SHELL(0, "mkdir \"$1\" && touch \"$1/a1.h5\" \"$1/a1.html\"", temp("s.d"));
+    HIFDM(0, "report", merged, "-o", page);
+    demand_well_formed(page);
+    const char *data = data_of(page, "s.json");
+    EXPECT(
+        data, "--", "a['title'] == 's.h5' and a['study']['n'] == 3 and a['study']['id'] == ['a1', 'b2', 'c3']",
+        "a['study']['status'] == ['ok', 'not_converged', 'not_evaluated']",
+        "a['study']['reason'] == ['', '</script><b>no', '']",
+        "a['study']['file'] == ['s.d/a1.h5', '', ''] and a['study']['page'] == ['s.d/a1.html', '', '']",
+        "{i['name']: i.get('texts') or i['values'] for i in a['study']['input']} == {'form.method': ['hifdm', "
+        "'newton', 'hifdm'], 'form.pretension_N': [8, 10, 12.5], 'scene.parabolic_cylinder.modules': [5, 5, 5, 6, 5, "
+        "7]}",
+        "a['study']['output'] == [{'stage': 'form', 'psi_m': [0.006, None, None], 'n_slack': [2, 0, 0]}, {'stage': "
+        "'optimize', 'psi_m': [0.005, None, None]}]");
+    /* from another folder: absolute paths */
+    SHELL(0, "mkdir \"$1\"", temp("elsewhere"));
+    HIFDM(0, "report", merged, "-o", temp("elsewhere/s.html"));
+    EXPECT(data_of(temp("elsewhere/s.html"), "e.json"), "--",
+           "a['study']['file'][0].startswith('/') and a['study']['file'][0].endswith('/s.d/a1.h5')");
+    /* damaged: fewer names than points, an axis that is no number, a status without a word */
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
+          "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); f['points/input/x'] = h5py.SoftLink('/nowhere')",
+          merged);
+    HIFDM(5, "report", merged, "-o", page, "--force");
+    ERR("s.h5: ");
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
+          "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); del f['points/id'], f['points/input/x']", merged);
+    HIFDM(5, "report", merged, "-o", page, "--force");
+    ERR("s.h5: is damaged: /points/id does not name every point");
 }
 END_TEST
 
@@ -204,6 +262,7 @@ Suite *suite_cli_report(void)
     tcase_add_test(tcase, nothing_in_a_case_becomes_markup);
     tcase_add_test(tcase, missing_stages_are_absent);
     tcase_add_test(tcase, truss_is_shown_when_there_is_one);
+    tcase_add_test(tcase, merged_study_is_a_page_of_points);
     tcase_add_test(tcase, files_are_not_replaced_unasked);
     suite_add_tcase(suite, tcase);
     return suite;
