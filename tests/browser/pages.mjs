@@ -1,7 +1,8 @@
-// The pages that test.mjs opens, each of a case that is run.
+// The pages that test.mjs opens, each of a case that is run or of a study that is swept and merged.
 //   source: path of a case in the repository, or text: a case, with the files beside it
 //   sections: those it must have, in order; title: what must stand on it, to the letter
 //   warnings, slack: how many it must tell of
+//   study: how many points; needs: the command without which this page cannot be made yet
 
 const FORM = ["net", "map", "form-finding", "tensions", "summary", "provenance"];
 const GA = ["net", "map", "form-finding", "tensions", "ga", "summary", "provenance"];
@@ -50,5 +51,15 @@ export const pages = [
     name: "large", // 41x49 nodes
     text: cylinder([20, 24], "optimize: {rule: tension, population: 4, generations: 400, polish_iterations: 2}\n"),
     sections: GA,
+  },
+  {
+    name: "sweep",
+    needs: "sweep",
+    study: 64,
+    text:
+      "base: base.yaml\nsweep:\n  form.pretension_N: {from: 5, to: 40, n: 16, spacing: log}\n" +
+      "  scene.parabolic_cylinder.scallop: [0.05, 0.08, 0.11, 0.14]\n  files: all\n",
+    files: { "base.yaml": cylinder([4, 5]) },
+    sections: ["sweep", "points"],
   },
 ];

@@ -4,14 +4,17 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { pages } from "./pages.mjs";
 
 const { HIFDM, CHROMIUM, WORK } = process.env;
 const { chromium } = createRequire(join(WORK, "package.json"))("playwright-core");
 const SIZE_MAX = 1e6; // bytes: the promise of the README
-const hifdm = (...words) => execFileSync(HIFDM, words, { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] });
+const at =
+  (folder) =>
+  (...words) =>
+    execFileSync(HIFDM, words, { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] });
 
 // ---- making a page and the numbers to hold it against ----
 
@@ -26,20 +29,25 @@ function csv(path) {
 function build(page, folder) {
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
-  const result = join(folder, "result.h5"),
+  const hifdm = at(folder),
+    result = page.study ? "study.h5" : "result.h5",
     html = join(folder, "report.html");
   for (const [name, text] of Object.entries(page.files || {})) writeFileSync(join(folder, name), text);
-  const source = page.source || join(folder, "case.yaml");
-  if (page.text) writeFileSync(source, page.text);
-  hifdm("run", source, "-o", result, "--quiet");
+  const source = page.source ? resolve(page.source) : page.study ? "study.yaml" : "case.yaml";
+  if (page.text) writeFileSync(join(folder, source), page.text);
+  if (page.study) {
+    hifdm("sweep", source);
+    hifdm("merge", source);
+  } else {
+    hifdm("run", source, "-o", result, "--quiet");
+  }
   const start = performance.now();
   hifdm("report", result, "-o", html);
-  const made_ms = performance.now() - start;
-  hifdm("export", result, "--csv", folder);
+  const made = { html, hifdm, made_ms: performance.now() - start };
+  if (page.study) return made;
+  hifdm("export", result, "--csv", ".");
   return {
-    result,
-    html,
-    made_ms,
+    ...made,
     nodes: csv(join(folder, "nodes.csv")),
     cables: csv(join(folder, "cables.csv")),
     summary: JSON.parse(hifdm("show", result, "--json")),
@@ -103,10 +111,11 @@ async function changes(tab, what, act) {
 
 // ---- the checks, one after the other on an open page ----
 
-async function checkText(tab, page, made) {
-  const title = page.title || made.summary.title;
-  if (page.title) assert.equal(await tab.locator("h1").textContent(), page.title);
-  if (title) assert.equal(await tab.title(), title.trim());
+async function checkText(tab, page) {
+  if (page.title) {
+    assert.equal(await tab.locator("h1").textContent(), page.title);
+    assert.equal(await tab.title(), page.title);
+  }
   assert.deepEqual(await tab.locator("main section").evaluateAll((all) => all.map((s) => s.id)), page.sections);
   assert.equal(await tab.evaluate("window.hit"), undefined, "a text of the case became markup");
   assert.equal(await tab.locator("main img, main i, main b, main script").count(), 0);
@@ -114,12 +123,32 @@ async function checkText(tab, page, made) {
   for (const word of ["NaN", "undefined", "null", "Infinity", "[object"])
     assert.ok(!text.includes(word), `the page says ${word}`);
   if (page.warnings !== undefined) assert.equal(await tab.locator("#warnings li").count(), page.warnings);
+}
+
+async function checkSummary(tab, made) {
   const cells = await tab.locator("#summary tr", { hasText: "psi_m" }).locator("td").allTextContents();
   same(number(cells[0]), 1e3 * made.summary.form.psi_m, 5);
   if (made.summary.optimize) same(number(cells[1]), 1e3 * made.summary.optimize.psi_m, 5);
 }
 
-async function checkCharts(tab) {
+// Every point has a row, its name leads to its result, and the row says what the result says.
+async function checkPoints(tab, page, made, folder) {
+  const rows = tab.locator("#points tbody tr");
+  assert.equal(await rows.count(), page.study);
+  for (const i of [0, Math.floor(page.study / 2), page.study - 1]) {
+    const file = decodeURIComponent(await rows.nth(i).locator("a").getAttribute("href"));
+    const cells = await rows.nth(i).locator("td").allTextContents();
+    const summary = JSON.parse(at(folder)("show", file, "--json"));
+    assert.equal(cells[2], "done");
+    same(number(cells[3]), 1e3 * summary.form.psi_m, 5);
+    same(number(cells[5]), summary.form.boundary_tension_ratio, 5);
+  }
+  const before = await tab.locator("#sweep .chart").first().innerHTML();
+  await tab.locator("#sweep").getByLabel("scallop").check();
+  assert.notEqual(await tab.locator("#sweep .chart").first().innerHTML(), before, "another axis, the same curves");
+}
+
+async function checkCharts(tab, least, words) {
   const charts = await tab.locator(".chart").evaluateAll((all) =>
     all.map((c) => ({
       title: c.querySelector("h3").textContent,
@@ -130,7 +159,7 @@ async function checkCharts(tab) {
       ),
     })),
   );
-  assert.ok(charts.length >= 4, "too few charts");
+  assert.ok(charts.length >= least, "too few charts");
   for (const c of charts) {
     assert.ok(!/NaN|undefined|Infinity/.test(c.markup), `${c.title}: holds no numbers`);
     assert.ok(c.ticks >= 5, `${c.title}: ${c.ticks} labels`);
@@ -140,7 +169,7 @@ async function checkCharts(tab) {
     said = tab.locator(".chart .tip").first();
   await first.focus();
   await tab.keyboard.press("End");
-  assert.match(await said.innerText(), /iteration \d+\s+ψ\s+[\d.]+.* mm/);
+  assert.match(await said.innerText(), words);
   await tab.keyboard.press("Escape");
   assert.ok(await said.isHidden());
 }
@@ -256,7 +285,7 @@ const background = (tab) =>
         .reduce((a, b) => a + Number(b), 0) / 3,
   );
 
-async function checkMedia(tab, folder) {
+async function checkMedia(tab, folder, pictures) {
   const seen = {};
   for (const [name, media] of [
     ["light", { colorScheme: "light", media: "screen" }],
@@ -266,17 +295,16 @@ async function checkMedia(tab, folder) {
     await tab.emulateMedia(media);
     seen[name] = {
       paper: await background(tab),
-      net: await picture(tab, "net-canvas"),
-      map: await picture(tab, "map-canvas"),
+      sums: await Promise.all(pictures.map(async (name) => (await picture(tab, name)).sum)),
       tools: await tab.locator(".tools").first().isVisible(),
     };
     await tab.screenshot({ path: join(folder, `${name}.png`), fullPage: true });
   }
   assert.ok(seen.light.paper > 230 && seen.dark.paper < 50 && seen.print.paper > 250, "wrong colour of the paper");
-  for (const kind of ["net", "map"]) {
-    assert.notEqual(seen.light[kind].sum, seen.dark[kind].sum, `the ${kind} does not follow the dark scheme`);
-    assert.notEqual(seen.print[kind].sum, seen.dark[kind].sum, `the ${kind} is printed in the dark`);
-  }
+  pictures.forEach((name, k) => {
+    assert.notEqual(seen.light.sums[k], seen.dark.sums[k], `${name} does not follow the dark scheme`);
+    assert.notEqual(seen.print.sums[k], seen.dark.sums[k], `${name} is printed in the dark`);
+  });
   assert.ok(seen.light.tools && !seen.print.tools, "controls on paper");
   assert.ok((await tab.pdf({ format: "A4" })).length > 10000, "no paper");
   await tab.emulateMedia({ colorScheme: "light", media: "screen" });
@@ -299,13 +327,19 @@ async function test(browser, page) {
   tab.on("pageerror", (error) => trouble.push(`error: ${error.message}`));
   tab.on("request", (request) => request.url() === url || trouble.push(`request: ${request.url()}`));
   await tab.goto(url);
-  await checkText(tab, page, made);
-  await checkCharts(tab);
-  await checkNet(tab, page, made);
-  await checkHover(tab, made);
-  await checkMap(tab, made);
+  await checkText(tab, page);
+  if (page.study) {
+    await checkCharts(tab, 3, /pretension [\d.]+ N/);
+    await checkPoints(tab, page, made, folder);
+  } else {
+    await checkSummary(tab, made);
+    await checkCharts(tab, 4, /iteration \d+\s+ψ\s+[\d.]+.* mm/);
+    await checkNet(tab, page, made);
+    await checkHover(tab, made);
+    await checkMap(tab, made);
+  }
   await checkRules(tab);
-  await checkMedia(tab, folder);
+  await checkMedia(tab, folder, page.study ? [] : ["net-canvas", "map-canvas"]);
   assert.deepEqual(trouble, []);
   await tab.close();
   return `${(bytes / 1e3).toFixed(0)} kB, written in ${made.made_ms.toFixed(0)} ms`;
@@ -313,8 +347,13 @@ async function test(browser, page) {
 
 const wanted = process.argv.slice(2),
   browser = await chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox"] });
+const commands = at(WORK)("help");
 let failed = 0;
 for (const page of pages.filter((p) => !wanted.length || wanted.includes(p.name))) {
+  if (page.needs && !commands.includes(`hifdm ${page.needs} `)) {
+    console.log(`${page.name}: skipped, there is no hifdm ${page.needs}`);
+    continue;
+  }
   try {
     console.log(`${page.name}: ${await test(browser, page)}`);
   } catch (error) {
