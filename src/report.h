@@ -4,8 +4,9 @@
 
 #include "options.h"
 
-/* options->file, a result or a merged study -> options->output, or the name of the file with .html in this folder. `said`: one line for people on
- * what was written. HF_EXISTS unless options->force, HF_IO, HF_NO_MEMORY. The same file gives the same bytes. */
+/* options->file, a result or a merged study -> options->output, or the name of the file with .html in this folder.
+ * `said`: one line for people on what was written. HF_EXISTS unless options->force, HF_IO, HF_NO_MEMORY. The same file
+ * gives the same bytes. */
 hf_status hf_report(const hf_options *options, char *said, size_t size, hf_messages *messages);
 
 /* ---- between report and report_study ---- */

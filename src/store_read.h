@@ -13,8 +13,8 @@ typedef struct {
     void *block;
 } hf_series;
 
-/* name: from the root, like "/form/history/psi_m"; columns 0 = as it has. HF_OK also when there is none; else as the calls of store.h. Free
- * with hf_series_free in any case. */
+/* name: from the root, like "/form/history/psi_m"; columns 0 = as it has. HF_OK also when there is none; else as the
+ * calls of store.h. Free with hf_series_free in any case. */
 hf_status hf_store_read_series(const char *path, const char *name, int columns, hf_series *series,
                                hf_messages *messages);
 void hf_series_free(hf_series *series);

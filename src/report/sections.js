@@ -305,9 +305,7 @@ function writeSummary() {
             el(
               "td",
               { class: "number" },
-              typeof values[s][key] === "number" || typeof values[s][key] === "string"
-                ? format(values[s][key])
-                : "–",
+              typeof values[s][key] === "number" || typeof values[s][key] === "string" ? format(values[s][key]) : "–",
             ),
           ),
           el("td", {}, unit),
