@@ -22,6 +22,7 @@ void hf_series_free(hf_series *series);
 /* Where the file comes from, as lines "key: value" in the order of the file's root; those that a program before this
  * one did not write in a safe way are left out. */
 hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf_messages *messages);
+
 /* More nodes or members than any scene has; keeps a damaged file from asking for all memory. */
 #define HF_STORE_COUNT_MAX 20000000
 
@@ -34,15 +35,7 @@ void hf_store_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, cons
 
 void hf_store_no_memory(hf_hdf5 *io);
 
-/* More nodes or cables than any scene has; keeps a damaged file from asking for all memory. */
-#define HF_STORE_COUNT_MAX 20000000
-
-/* A file of ours, open for reading; its status says whether. The caller closes it in any case. */
-hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages);
-
 /* Is there something of this name? From the root; HDF5 has to be asked for every group on the way. */
 int hf_store_is_there(hf_hdf5 *io, const char *name);
-
-void hf_store_no_memory(hf_hdf5 *io);
 
 #endif
