@@ -28,6 +28,7 @@ static const struct {
     {"ga", "/ga/n_infeasible", "n_infeasible"},
     {"coupling", "/coupling/history/step_m", "step_m"},
     {"coupling", "/coupling/history/psi_m", "psi_m"},
+    {"coupling", "/coupling/history/max_displacement_m", "max_displacement_m"},
 };
 enum { N_SERIES = sizeof series_table / sizeof *series_table };
 
@@ -39,7 +40,7 @@ typedef struct {
     int has_shape[HF_STAGE_NONE];
     hf_shape shape[HF_STAGE_NONE];
     hf_series series[N_SERIES];
-    hf_series truss_position_m, truss_end; /* [n][3], [m][2] */
+    hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or none, [m][2] */
     char provenance[PROVENANCE_SIZE];
 } page;
 
@@ -128,6 +129,14 @@ static void write_truss(const page *p, FILE *f)
     fprintf(f, ",\n\"truss\":{\"n_node\":%d,\"n_member\":%d", node->n, end->n);
     hf_json_values("position_m", node->value, 3 * node->n, 1, 8, f);
     hf_json_values("end", end->value, 2 * end->n, 1, 9, f);
+    if (p->truss_displacement.n == node->n) {
+        fputs(",\"displacement_m\":[", f);
+        for (int i = 0; i < 3 * node->n; i++) {
+            if (i) fputc(',', f);
+            hf_json_value(p->truss_displacement.value[6 * (i / 3) + i % 3], 6, f); /* without the rotations */
+        }
+        fputc(']', f);
+    }
     fputc('}', f);
 }
 
@@ -218,6 +227,7 @@ static hf_status read_page(page *p, hf_messages *messages)
     for (int i = 0; i < N_SERIES; i++)
         HF_TRY(hf_store_read_series(p->path, series_table[i].path, 1, &p->series[i], messages));
     HF_TRY(hf_store_read_series(p->path, "/truss/node/position_m", 3, &p->truss_position_m, messages));
+    HF_TRY(hf_store_read_series(p->path, "/truss/node/displacement", 6, &p->truss_displacement, messages));
     HF_TRY(hf_store_read_series(p->path, "/truss/member/end", 2, &p->truss_end, messages));
     return check_truss(p, messages);
 }
@@ -230,6 +240,7 @@ static void free_page(page *p)
     for (int i = 0; i < N_SERIES; i++)
         hf_series_free(&p->series[i]);
     hf_series_free(&p->truss_position_m);
+    hf_series_free(&p->truss_displacement);
     hf_series_free(&p->truss_end);
 }
 

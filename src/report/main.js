@@ -17,7 +17,11 @@ function writeHead() {
   const found =
     `${fmtCount(net.n_node)} nodes (${fmtCount(data.n_free)} free), ${fmtCount(net.n_cable)} cables ` +
     `(${fmtCount(data.n_gene)} adjustable), pretension ${fmt(data.pretension_N)} N`;
-  document.getElementById("subtitle").textContent = found;
+  const truss = summary.truss
+    ? `; truss of ${fmtCount(summary.truss.nodes)} nodes, ${fmtCount(summary.truss.members)} members, ` +
+      `${fmt(summary.truss.mass_kg)} kg`
+    : "";
+  document.getElementById("subtitle").textContent = found + truss;
   document.getElementById("footer").textContent =
     `Results of hifdm ${summary.version} in ${summary.file}. “Fig.” refers to Chen et al., Aerospace 2022, 9, 239.`;
 }
@@ -183,6 +187,13 @@ function writeNet() {
   report.net = view;
 }
 
+function trussNote() {
+  if (!data.truss) return "";
+  return data.truss.displacement_m
+    ? ", the frame is the truss under the pull of the found net"
+    : ", the frame is the truss";
+}
+
 function netCaption() {
   const figures = `${figs(2, 5, shapeOf("optimize") && 12, data.truss && 18)} of the paper.`;
   if (!data.shapes.length) return `Squares are supports. ${figures}`;
@@ -191,7 +202,7 @@ function netCaption() {
     {},
     "Deformation from the theoretical shape (grey) ",
     el("strong", { id: "scale-note" }),
-    `; squares are supports${data.truss ? ", the frame is the truss as designed" : ""}. The colours of the deviation ` +
+    `; squares are supports${trussNote()}. The colours of the deviation ` +
       `span the inner nodes, which ψ counts. ${figures}`,
   );
 }

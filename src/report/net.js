@@ -93,16 +93,20 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   }
 
   function drawTruss(c, project) {
-    const p = truss.position_m;
+    const p = truss.position_m,
+      d = state.shape && truss.displacement_m,
+      s = state.scale;
+    const at = (i) => project(...[0, 1, 2].map((k) => p[3 * i + k] + (d ? s * d[3 * i + k] : 0)));
     c.strokeStyle = css("--four");
-    c.lineWidth = 1.4;
+    c.globalAlpha = 0.7;
+    c.lineWidth = 1.1;
     c.beginPath();
     for (let k = 0; k < truss.n_member; k++) {
-      const [i, j] = [truss.end[2 * k], truss.end[2 * k + 1]];
-      c.moveTo(...project(p[3 * i], p[3 * i + 1], p[3 * i + 2]));
-      c.lineTo(...project(p[3 * j], p[3 * j + 1], p[3 * j + 2]));
+      c.moveTo(...at(truss.end[2 * k]));
+      c.lineTo(...at(truss.end[2 * k + 1]));
     }
     c.stroke();
+    c.globalAlpha = 1;
   }
 
   function drawCables(c) {
