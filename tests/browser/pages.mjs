@@ -1,6 +1,7 @@
 // The pages that test.mjs opens, each of a case that is run or of a study that is swept and merged.
 //   source: path of a case in the repository, or text: a case, with the files beside it
-//   sections: those it must have, in order, without those that are there maybe; title: what must stand on it, to the letter
+//   sections: those it must have, in order, apart from those that are there maybe
+//   title: what must stand on it, to the letter
 //   warnings, slack: how many it must tell of
 //   study: how many points; needs: the command without which this page cannot be made yet
 
