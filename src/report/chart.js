@@ -39,7 +39,8 @@ function placeTip(tip, x, y, content) {
 // x rises, counted: in whole numbers; log: "auto" = when the values span more than a factor of 20
 let clips = 0;
 const paint = (colour) => (typeof colour === "function" ? rgb(colour()) : `var(${colour})`);
-const LINES_MAX = 12; // in a tooltip
+const LINES_MAX = 12, // in a tooltip
+  MARKED_MAX = 16; // points of a curve that are marked, too
 
 function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "auto", counted = true, head }) {
   const leading = series.filter((s) => !s.free).flatMap((s) => s.values),
@@ -73,7 +74,8 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
       if (good) text += `${on && !s.dots ? "L" : "M"}${sx(x[i]).toFixed(1)} ${sy(v).toFixed(1)}${s.dots ? "h0" : ""}`;
       on = good;
     });
-    return svg("path", { d: text, ...mark(s), style: `stroke:${paint(s.colour)}` });
+    const line = svg("path", { d: text, ...mark(s), style: `stroke:${paint(s.colour)}` });
+    return s.dots || x.length > MARKED_MAX ? line : [line, path({ ...s, dots: true }, sx, sy, yAxis)];
   }
 
   function draw() {
@@ -91,9 +93,9 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
     const sy = (v) => margin.top + h * (1 - yAxis.at(v));
     place = { sx, sy, yAxis, bottom: margin.top + h };
     picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    const xTicks = linearTicks(xAxis.low, xAxis.high, Math.max(4, w / 90)).filter(
-      (t) => !counted || Number.isInteger(t.at),
-    );
+    const xTicks = linearTicks(xAxis.low, xAxis.high, Math.max(4, w / 90))
+      .filter((t) => !counted || Number.isInteger(t.at))
+      .map((t) => ({ at: t.at, text: counted ? String(t.at) : t.text }));
     picture.replaceChildren();
     fill(picture, {}, [
       ...yAxis.ticks.flatMap((t) => [
@@ -123,7 +125,7 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
       svg(
         "g",
         { "clip-path": `url(#${clip})` },
-        series.map((s) => path(s, sx, sy, yAxis)),
+        series.flatMap((s) => path(s, sx, sy, yAxis)),
       ),
       svg("g", { class: "at" }),
     ]);

@@ -152,7 +152,7 @@ START_TEST(truss_is_shown_when_there_is_one)
            "a['truss']['end'] == b['truss/member/end'][:].ravel().tolist()",
            "np.allclose(a['truss']['displacement_m'], b['truss/node/displacement'][:, :3].ravel(), rtol=1e-5, atol=0)");
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
-          "import h5py, sys\nh5py.File(sys.argv[1], 'r+')['truss/member/end'][2, 1] = 4", out);
+          "import h5py, sys\nh5py.File(sys.argv[1], 'r+')['truss/member/end'][2, 1] = 132", out);
     HIFDM(5, "report", out, "-o", temp("t.html"), "--force");
     ERR("t.h5: is damaged: /truss/member/end names a node that is not there");
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
