@@ -9,9 +9,9 @@ MODULES := status arena sha256 text csv \
            scene scene_import truss truss_import config config_table \
            numbering model symmetry workspace band frame carrier \
            metrics surface \
-           lane lane_kernel formfind newton newton_descent certificate \
+           lane lane_kernel formfind newton newton_descent coupling certificate \
            evaluate chord_kernel chord ga swarm polish batch \
-           json summary hdf5_io store_surface store store_read store_truss store_table
+           json summary hdf5_io store_surface store_coupling store store_read store_truss store_table
 APP_MODULES := options print problem run progress signals \
            plan export cutlist vtk report report_study designs main
 

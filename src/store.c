@@ -3,6 +3,7 @@
 
 #include "band.h"
 #include "hdf5_io.h"
+#include "store_coupling.h"
 #include "store_surface.h"
 
 #include <assert.h>
@@ -285,6 +286,7 @@ hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspa
         hf_hdf5_write_columns(&store->io, group, table, HF_HDF5_COUNT(table), history->n, 0, history);
         hf_hdf5_close(&store->io, group);
     }
+    if (model->n_attachment) hf_store_write_coupling(&store->io, model, workspace, history ? &history->coupling : NULL);
     return hf_hdf5_unlock(store->io.status);
 }
 
@@ -450,6 +452,7 @@ static void put_summary(hf_store *s, const hf_summary *summary)
         hf_hdf5_close(&s->io, hf_hdf5_make_group(&s->io, "/truss"));
         hf_hdf5_put_members(&s->io, truss, HF_HDF5_COUNT(truss), summary);
     }
+    if (summary->has_coupling) hf_store_put_coupling(&s->io, summary);
     hf_hdf5_put_text(&s->io, s->io.file, "/", "status", hf_status_word(outcome));
     put_time(s, "finished_utc");
 }

@@ -3,6 +3,7 @@
 
 #include "arena.h"
 #include "hdf5_io.h"
+#include "store_coupling.h"
 #include "store_surface.h"
 
 #include <errno.h>
@@ -60,6 +61,8 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     hf_hdf5 io = hf_store_open_result(path, messages);
     *summary = (hf_summary){0};
     hf_hdf5_get_members(&io, form, HF_HDF5_COUNT(form), summary);
+    summary->has_coupling = io.status == HF_OK && hf_hdf5_has(&io, io.file, "coupling");
+    if (summary->has_coupling) hf_store_get_coupling(&io, summary);
     if (summary->has_polish) hf_hdf5_get_members(&io, polish, HF_HDF5_COUNT(polish), summary);
     if (summary->has_optimize) hf_hdf5_get_members(&io, ga, HF_HDF5_COUNT(ga), summary);
     hf_store_get_surface(&io, summary);
