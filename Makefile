@@ -11,7 +11,8 @@ MODULES := status arena sha256 text csv \
            metrics surface \
            lane lane_kernel formfind newton newton_descent certificate \
            evaluate chord_kernel chord ga swarm polish batch \
-           json summary hdf5_io store_surface store store_read
+           json summary hdf5_io hdf5_io_rows store_surface journal generations store_file store store_read \
+           compare
 APP_MODULES := options print problem run progress signals \
            plan export cutlist vtk report designs main
 
@@ -51,7 +52,7 @@ SANITIZER := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all -
 
 # pkg-config is asked once, when a recipe first needs it: $(eval) replaces the question by its answer.
 LAPACK_PC = $(if $(LAPACK_LIBS),,$(shell pkg-config --exists openblas && echo openblas || echo lapack blas))
-PKG = $(eval PKG := $(or $(shell pkg-config --cflags --libs $(LAPACK_PC) gsl hdf5 yaml-0.1),$(PKG_MISSING)))$(PKG)
+PKG = $(eval PKG := $(or $(shell pkg-config --cflags --libs $(LAPACK_PC) gsl hdf5 zlib yaml-0.1),$(PKG_MISSING)))$(PKG)
 PKG_MISSING = $(error A library or pkg-config itself is missing, see above: run `make setup`)
 CHECK = $(eval CHECK := $(or $(shell pkg-config --cflags --libs check),$(error run `make test`)))$(CHECK)
 # -isystem: our warnings are about our code, not about the headers of HDF5.
@@ -133,7 +134,7 @@ setup: ## install the packages that are missing
 run: setup ## set up, build, and run CASE (configs/chen2022.yaml) into results/
 	$(SUB) $(PROGRAM)
 	@mkdir -p $(dir $(RESULT))
-	OMP_WAIT_POLICY=passive $(PROGRAM) run $(CASE) -o $(RESULT) --force
+	OMP_WAIT_POLICY=passive $(PROGRAM) run $(CASE) -o $(RESULT) --restart
 
 test: ## set up, build and run the tests; SUITE="unit verify/band" picks some
 	$(Q)tools/setup.sh --test
@@ -183,7 +184,7 @@ install: all ## install under PREFIX (/usr/local), within DESTDIR if given
 	$(Q)install -m 644 include/hifdm/*.h $(DESTDIR)$(PREFIX)/include/hifdm/
 	$(Q)printf '%s\n' 'prefix=$(PREFIX)' 'Name: hifdm' 'Version: $(VERSION)' \
 	    'Description: Form finding of cable nets with force densities' 'Cflags: -I$${prefix}/include' \
-	    'Libs: -L$${prefix}/lib -lhifdm' 'Requires.private: $(LAPACK_PC) gsl hdf5 yaml-0.1' \
+	    'Libs: -L$${prefix}/lib -lhifdm' 'Requires.private: $(LAPACK_PC) gsl hdf5 zlib yaml-0.1' \
 	    'Libs.private: $(LAPACK_LIBS) -fopenmp -lm' >$(DESTDIR)$(PREFIX)/lib/pkgconfig/hifdm.pc
 
 clean: ## remove build/
