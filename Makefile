@@ -41,6 +41,9 @@ SUITE ?=
 # Calls that tests/support.c counts and can make fail; each needs a __wrap_ function there.
 TEST_WRAP := malloc calloc realloc aligned_alloc strdup strndup
 TEST_WRAP_EXTRA ?=
+# The same in tests/fault/test_store_calls.c.
+TEST_WRAP += open write writev pwrite read pread fsync fdatasync rename link unlink ftruncate lseek flock fstat stat \
+             access H5Fcreate H5Fopen H5Dcreate2 H5Dopen2 H5Dset_extent H5Dwrite H5Dread H5Awrite H5Aread
 
 # ---- Flags -----------------------------------------------------------------------------------------------------------
 # No fused multiply-adds and no -ffast-math: results are the same bits on every x86-64 machine. One set of position-

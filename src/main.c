@@ -24,7 +24,7 @@ static hf_status command_run(const hf_options *o, int argc, char **argv, hf_mess
 {
     hf_summary summary;
     char output[HF_OUTPUT_SIZE];
-    hf_progress progress = hf_progress_on(stderr, o->quiet);
+    hf_progress progress = hf_progress_on(stderr, o->quiet ? HF_PROGRESS_NONE : o->progress);
     hf_run_request request = {.case_path = o->file,
                               .set = o->set,
                               .n_set = o->n_set,

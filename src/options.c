@@ -9,6 +9,9 @@
 #define BIT(command) (1u << (command))
 #define THREADS_MAX 4096
 
+/* In the order of hf_progress_mode. */
+static const char *const progress_word[] = {"auto", "none", "line", "log", "jsonl", NULL};
+
 typedef struct {
     const char *name, *argument, *help;
     hf_command command;
@@ -49,7 +52,8 @@ typedef enum {
     OPTION_TEMPLATE,
     OPTION_STAGE,
     OPTION_RTOL,
-    OPTION_ATOL
+    OPTION_ATOL,
+    OPTION_PROGRESS
 } option_id;
 
 typedef struct {
@@ -80,6 +84,8 @@ static const option_row option_table[] = {
     {"--seed", NULL, "S", "seed of the genetic algorithm instead of optimize.seed", BIT(HF_COMMAND_RUN), OPTION_SEED},
     {"--json", NULL, NULL, "one JSON object on standard output",
      BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_SHOW) | BIT(HF_COMMAND_RECOVER) | BIT(HF_COMMAND_EVALUATE), OPTION_JSON},
+    {"--progress", NULL, "HOW", "auto, none, line (a terminal), log (a line in 30 s) or jsonl, on standard error",
+     BIT(HF_COMMAND_RUN), OPTION_PROGRESS},
     {"--quiet", NULL, NULL, "no progress and no summary; warnings and errors stay",
      BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EVALUATE), OPTION_QUIET},
     {"--rtol", NULL, "R", "numbers are equal when |a-b| <= atol + R |b| (default 0: to the bit)", BIT(HF_COMMAND_DIFF),
@@ -174,6 +180,13 @@ static hf_status apply(const option_row *row, const char *value, hf_options *o, 
     case OPTION_ATOL:
         if (!hf_text_double(value, row->id == OPTION_RTOL ? &o->rtol : &o->atol) || o->rtol < 0 || o->atol < 0)
             return hf_error(messages, HF_BAD_USAGE, "%s must be a number from 0 on, not '%s'", row->name, value);
+        break;
+    case OPTION_PROGRESS:
+        for (o->progress = 0; progress_word[o->progress] && strcmp(value, progress_word[o->progress]) != 0;)
+            o->progress++;
+        if (!progress_word[o->progress])
+            return hf_error(messages, HF_BAD_USAGE, "--progress must be auto, none, line, log or jsonl, not '%s'",
+                            value);
         break;
     case OPTION_CSV:
         o->csv = value;

@@ -35,6 +35,7 @@ typedef struct {
     int has_seed;
     uint64_t seed;
     double rtol, atol; /* of diff */
+    int progress;      /* hf_progress_mode */
     int json, quiet, force;
 } hf_options;
 

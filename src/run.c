@@ -148,6 +148,7 @@ static void observe_generation(const run *r, double elapsed_s)
                                  .generation = ga->generation + 1,
                                  .generations = ga->settings->generations,
                                  .first_generation = r->first_generation,
+                                 .is_last = ga->stop_reason != HF_GA_RUNNING,
                                  .evaluations = ga->n_evaluation - r->first_evaluation,
                                  .best_psi_m = ga->best_psi_m[ga->generation],
                                  .elapsed_s = elapsed_s});

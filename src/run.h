@@ -17,6 +17,7 @@ typedef struct {
     hf_run_phase phase;
     int generation, generations; /* finished, and at most */
     int first_generation;        /* that this process evaluates */
+    int is_last;                 /* no generation will follow */
     long evaluations;            /* of this process */
     double best_psi_m;           /* NaN while nothing is feasible */
     double elapsed_s;            /* in this phase and process */

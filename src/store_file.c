@@ -53,9 +53,18 @@ hf_status hf_store_file_begin(const char *path, hf_store_file *f, hf_messages *m
 
 /* ---- the temporary file ---- */
 
+/* What a killed run has left there may be a second name of the visible file (rename_to_new): it is never written into.
+ * 1 when the name is free. */
+static int free_temporary(hf_store_file *f)
+{
+    if (unlink(f->temporary) == 0 || errno == ENOENT) return 1;
+    f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot remove %s: %s", f->path, f->temporary, strerror(errno));
+    return 0;
+}
+
 void hf_store_file_create(hf_store_file *f)
 {
-    if (f->io.status != HF_OK) return;
+    if (f->io.status != HF_OK || !free_temporary(f)) return;
     f->has_temporary = 1;
     hf_hdf5_create_file(&f->io, f->temporary);
 }
@@ -75,12 +84,13 @@ static int copy_bytes(int from, int to, char *buffer)
 
 static void copy_visible(hf_store_file *f)
 {
+    if (!free_temporary(f)) return;
     char *buffer = malloc(COPY_BYTES);
     if (!buffer) {
         f->io.status = hf_error(f->io.messages, HF_NO_MEMORY, "%s: out of memory", f->path);
         return;
     }
-    int to = open(f->temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    int to = open(f->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     f->has_temporary |= to >= 0;
     int ok = to >= 0 && lseek(f->visible, 0, SEEK_SET) == 0 && copy_bytes(f->visible, to, buffer) == 0;
     int why = errno;
@@ -140,7 +150,7 @@ static void sync_to_disk(hf_store_file *f, const char *name)
 static int rename_to_new(const char *from, const char *to)
 {
     if (link(from, to) == 0) {
-        unlink(from); /* a second name that stays would do no harm */
+        unlink(from); /* free_temporary tries again */
         return 0;
     }
     if (errno == EEXIST) return -1;

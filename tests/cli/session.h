@@ -13,7 +13,7 @@
 
 extern char **environ;
 
-/* A genetic algorithm on SMALL_SCENE that does little else than store: some 20 us per generation for its evaluations. */
+/* A genetic algorithm on SMALL_SCENE that does little else than store: its evaluations take some 20 us a generation. */
 #define STORING_GA                                                                                                     \
     "optimize: {population: 20, generations: %d, seed: 7, stagnation_generations: 1000000, "                           \
     "polish_iterations: 3}\n"

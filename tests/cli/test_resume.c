@@ -76,7 +76,8 @@ START_TEST(a_torn_journal_gives_what_is_whole)
     for (int i = 0; i < 30 && n < n_file + 3; i++) { /* it may have been published a moment ago */
         pid_t child = start_program(argv);
         wait_for_generations(path);
-        sleep_s(0.02);
+        for (int k = 0; k < 1000 && generations_in_journal(path) < n_file + 10; k++)
+            sleep_s(0.002);
         kill(child, SIGKILL);
         end_of(child);
         n = generations_in_journal(path);
