@@ -146,9 +146,9 @@ test: ## set up, build and run the tests; SUITE="unit verify/band" picks some
 	$(Q)HIFDM=$(abspath $(PROGRAM)) HIFDM_SOURCE_DIR=$(CURDIR) PYTHON=$(PYTHON) \
 	    TMPDIR=$(abspath $(BUILD))/tmp CK_DEFAULT_TIMEOUT=$${CK_DEFAULT_TIMEOUT:-60} $(RUNNER) $(SUITE)
 
-# Twenty times as many nets as `make test` tries.
-stress: ## the numerical-stability suite at full length
-	+$(Q)HIFDM_STRESS=1 CK_DEFAULT_TIMEOUT=1800 $(MAKE) test SUITE=stress
+# Twenty times as many nets as `make test` tries, ten times as many kills.
+stress: ## the numerical-stability suite and the killed runs at full length
+	+$(Q)HIFDM_STRESS=1 CK_DEFAULT_TIMEOUT=1800 $(MAKE) test SUITE="stress cli/resume"
 
 # Peers that cannot be installed are left out of the tables. BENCH_OUT=... writes elsewhere.
 bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/ (4 minutes)

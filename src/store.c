@@ -498,7 +498,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, int finished)
         hf_hdf5_put_members(&s->f.io, polish, HF_HDF5_COUNT(polish), summary);
     }
     if (finished) hf_store_put_surface(&s->f.io, summary);
-    hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "status", finished ? hf_status_word(outcome) : "unfinished");
+    hf_hdf5_put_text(&s->f.io, s->f.io.file, "/", "status", finished ? hf_status_word(outcome) : "unfinished");
     put_time(s, finished ? "finished_utc" : "published_utc");
 }
 

@@ -9,7 +9,7 @@
  *   the case is read, the shape found         none, or old    empty or torn head  begins anew, or as if never started
  *   a record is being written                 g0 generations  g0.., torn tail     tail cut off, the others added
  *   .tmp is being made, written, synced       g0              g0..g1              .tmp is written anew
- *   between link(.tmp) and its unlink         0               empty               the second name goes, nothing is written
+ *   between link(.tmp) and its unlink        0               empty               .tmp is removed, never written into
  *   between rename(.tmp) and rotation         g1              g0..g1              what RESULT has is skipped
  *   between making .new and its rename        g1              g0..g1              the same; .new is made anew
  *   after the rename of .new                  g1              empty               goes on

@@ -1,7 +1,7 @@
 /* Every call of the system, and every kind of call of HDF5, that the store makes fails once: in a new run, and in one
- * that goes on after a kill. Then: HF_IO with words, or no harm at all; what was acknowledged is there; and the same run
- * can be taken to its end, to the same bits. The linker leads these calls of our own objects through here. What HDF5
- * asks of the system is out of reach: limits on file size stand for that (cli/resume, unit/store_faults). */
+ * that goes on after a kill. Then: HF_IO with words, or no harm at all; what was acknowledged is there; and the same
+ * run can be taken to its end, to the same bits. The linker leads these calls of our own objects through here. What
+ * HDF5 asks of the system is out of reach: limits on file size stand for that (cli/resume, unit/store_faults). */
 #include "results.h"
 
 #include "compare.h"

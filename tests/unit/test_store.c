@@ -353,7 +353,7 @@ START_TEST(provenance_and_units_are_there)
            "             'started_utc finished_utc status warnings title').split(): assert name in a, name\n"
            "assert a['program'] == b'hifdm' and a['format_version'] == 1\n"
            "assert list(a['argv']) == ['hifdm', 'run', 'a b.yaml']\n"
-           "assert f['case/text'].asstr()[()] == 'title: any\\n' and f['case'].attrs['sha256'] == 'abc'\n"
+           "assert f['case/text'].asstr()[()] == 'title: any\\n' and f['case'].attrs['sha256'] == b'abc'\n"
            "assert f['case/overrides'].asstr()[()] == 'form.pretension_N=12\\n'\n"
            "assert f['scene/cable/id'].asstr()[0] == 'n0_0-n1_0'\n"
            "n = []\n"
