@@ -145,6 +145,13 @@ static hf_status find_option(const char *word, hf_command command, const option_
     return unknown("option", word, names, N_OPTION, messages);
 }
 
+static hf_status read_progress(const char *value, int *mode, hf_messages *messages)
+{
+    for (*mode = 0; progress_word[*mode]; ++*mode)
+        if (!strcmp(value, progress_word[*mode])) return HF_OK;
+    return hf_error(messages, HF_BAD_USAGE, "--progress must be auto, none, line, log or jsonl, not '%s'", value);
+}
+
 static hf_status apply(const option_row *row, const char *value, hf_options *o, hf_messages *messages)
 {
     uint64_t number = 0;
@@ -182,12 +189,7 @@ static hf_status apply(const option_row *row, const char *value, hf_options *o, 
             return hf_error(messages, HF_BAD_USAGE, "%s must be a number from 0 on, not '%s'", row->name, value);
         break;
     case OPTION_PROGRESS:
-        for (o->progress = 0; progress_word[o->progress] && strcmp(value, progress_word[o->progress]) != 0;)
-            o->progress++;
-        if (!progress_word[o->progress])
-            return hf_error(messages, HF_BAD_USAGE, "--progress must be auto, none, line, log or jsonl, not '%s'",
-                            value);
-        break;
+        return read_progress(value, &o->progress, messages);
     case OPTION_CSV:
         o->csv = value;
         break;

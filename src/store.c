@@ -92,6 +92,19 @@ static void put_time(hf_store *s, const char *attribute)
     hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", attribute, text);
 }
 
+/* Which job of Slurm this is, so that logs can be found. */
+static void put_job(hf_store *s)
+{
+    static const char *const table[][2] = {{"slurm_job_id", "SLURM_JOB_ID"},
+                                           {"slurm_array_job_id", "SLURM_ARRAY_JOB_ID"},
+                                           {"slurm_array_task_id", "SLURM_ARRAY_TASK_ID"},
+                                           {"slurm_restart_count", "SLURM_RESTART_COUNT"}};
+    for (int i = 0; i < HF_HDF5_COUNT(table); i++) {
+        const char *value = getenv(table[i][1]);
+        if (value) hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", table[i][0], value);
+    }
+}
+
 static void put_provenance(hf_store *s, int argc, char *const *argv)
 {
     char host[256] = "", hdf5[32];
@@ -114,6 +127,7 @@ static void put_provenance(hf_store *s, int argc, char *const *argv)
     hf_hdf5_put(&s->f.io, s->f.io.file, "/", "format_version", HF_KIND_INT, 0, &(int){HF_FORMAT_VERSION});
     if (argc > ARGUMENTS_MAX) argc = ARGUMENTS_MAX;
     if (argc > 0) hf_hdf5_put(&s->f.io, s->f.io.file, "/", "argv", HF_KIND_TEXT, (hsize_t)argc, argv);
+    put_job(s);
     put_time(s, "started_utc");
 }
 
@@ -263,6 +277,7 @@ static void note_session(hf_store *s)
     hf_hdf5_put(&s->f.io, s->f.io.file, "/", "sessions", HF_KIND_INT, 0, &(int){n + 1});
     hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "resumed_host", host);
     hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "resumed_version", hf_store_version());
+    put_job(s);
     put_time(s, "resumed_utc");
 }
 

@@ -8,7 +8,10 @@
  * threads and host are attributes only: the data sets of two runs of the same case are the same.
  *   /            attributes: program ("hifdm"), format_version, version, git_describe, compiler, build_flags,
  *                hdf5_version, gsl_version, lapack, rng, host, argv[], started_utc, finished_utc, title, seed, threads,
- *                warnings, has_optimize, status (word of the form-finding's if not ok, else of the best individual's)
+ *                warnings, has_optimize, status (word of the form-finding's if not ok, else of the best individual's),
+ *                finished (FALSE: the run can go on), published_utc, identity (of the run, see hf_store_identify);
+ *                after a resumption sessions, resumed_utc, resumed_host, resumed_version (of the last); under Slurm
+ *                slurm_job_id, slurm_array_job_id, slurm_array_task_id, slurm_restart_count
  *   /case        text, overrides; attributes sha256, case_path
  *   /scene/node  id [n], position_m [n][3], role [n]; load_N [n][3] if there are loads
  *   /scene/cable id, group, law, target, length_m (theoretical) [m], end [m][2]; EA_N [m] if any is given
@@ -19,8 +22,9 @@
  *                iterations, crossover_rate, mutation_rate [g][p]; parent [g][p][2];
  *                best_individual, best_psi_m, mean_psi_m, worst_psi_m, n_infeasible [g];
  *                gene_cable (index into /scene/cable), gene_group, lower_N, upper_N [k]; gene_leader [k] under a
- *                symmetry attributes: the members of hf_summary after has_optimize, those of hf_summary.best as
- *   best_... /ga/best     as /form, and design_N [k]
+ *                symmetry; attributes: the members of hf_summary after has_optimize, those of hf_summary.best as
+ *                best_...; n_individual, n_variable, generations_limit, by which a run goes on
+ *   /ga/best     as /form, and design_N [k]
  *   /polish      the same, of Levenberg-Marquardt; attributes: the members of hf_summary.polish and polish_...
  *   /surface     measures of the surface by stage, see store_surface.h; only when the case asks for them */
 #ifndef HIFDM_STORE_H
