@@ -6,13 +6,13 @@
 # ---- The modules, in dependency order: a module may include only modules above it (`make lint` checks it) ------------
 # Sources are src/NAME.c; the header is include/hifdm/NAME.h if public, src/NAME.h if internal.
 MODULES := status arena sha256 text csv \
-           scene scene_import config config_table \
-           numbering model symmetry workspace band \
+           scene scene_import truss truss_import config config_table \
+           numbering model symmetry workspace band frame carrier \
            metrics surface \
            lane lane_kernel formfind newton newton_descent certificate \
            evaluate chord_kernel chord ga swarm polish batch \
            json summary hdf5_io hdf5_io_rows store_surface journal generations store_file store store_read \
-           compare
+           store_truss compare
 APP_MODULES := options print problem run progress signals \
            plan export cutlist vtk report designs main
 

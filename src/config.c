@@ -5,6 +5,7 @@
 #include "scene_import.h"
 #include "sha256.h"
 #include "text.h"
+#include "truss_import.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -440,6 +441,24 @@ static int section_present(const hf_case *c, const char *field_path)
     return *(const int *)(const void *)((const char *)c + hf_section_table[i].present_offset);
 }
 
+static void check_truss(loader *l)
+{
+    const hf_case *c = l->c;
+    const hf_truss_unit *unit[] = {&c->truss.bud, &c->truss.mbug, &c->truss.abug};
+    static const char *const wall[] = {"truss.bud.wall_m", "truss.mbug.wall_m", "truss.abug.wall_m"};
+    if (!c->has_truss_import && !c->has_cylinder)
+        complain_about(l, "truss", "needs scene.parabolic_cylinder to be generated over, or truss.import");
+    for (int i = 0; i < hf_n_field && c->has_truss_import; i++) {
+        const char *path = hf_field_table[i].path;
+        if (!strncmp(path, "truss.", 6) && strncmp(path, "truss.import.", 13) &&
+            strcmp(path, "truss.match_tolerance_m") && l->where_given[(size_t)i * WHERE_SIZE])
+            complain_about(l, path, "has no effect beside truss.import, which brings all members; remove it");
+    }
+    for (int k = 0; k < 3 && !c->has_truss_import; k++)
+        if (2 * unit[k]->wall_m > unit[k]->diameter_m)
+            complain_about(l, wall[k], "must not be more than half the diameter_m beside it");
+}
+
 static void check_together(loader *l)
 {
     const hf_case *c = l->c;
@@ -455,6 +474,8 @@ static void check_together(loader *l)
             complain_about(l, hf_field_table[i].path, "is missing and has no default");
     if (c->has_surface && c->has_import && c->surface.focal_length_m == 0 && !l->failed)
         complain_about(l, "surface.focal_length_m", "is missing: an imported net does not tell its surface");
+    l->c->has_truss |= c->has_truss_import;
+    if (c->has_truss && !l->failed) check_truss(l);
     if (!c->has_optimize || l->failed) return; /* values that were refused are not compared */
     if (o->min_tension_N >= o->max_tension_N)
         complain_about(l, "optimize.min_tension_N", "must be below optimize.max_tension_N");
@@ -548,6 +569,15 @@ hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages 
     else
         HF_TRY(hf_scene_parabolic_cylinder(&settings->cylinder, scene, messages));
     return hf_scene_check(scene, messages);
+}
+
+hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages *messages)
+{
+    if (settings->has_truss_import)
+        HF_TRY(hf_truss_import(settings->truss_nodes_path, settings->truss_members_path, truss, messages));
+    else
+        HF_TRY(hf_truss_generate(&settings->truss, &settings->cylinder, truss, messages));
+    return hf_truss_check(truss, messages);
 }
 
 void hf_case_free(hf_case *settings)

@@ -4,6 +4,7 @@
 #include <hifdm/store.h>
 
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -41,6 +42,66 @@ static void write_cables(const void *context, FILE *f)
         hf_csv_write_id(s->node_id[s->end[2 * e + 1]], f);
         fprintf(f, ",%s,%s,%.17g,%.17g,%.17g\n", hf_group_word[s->group[e]], hf_law_word[shape->law[e]],
                 shape->length_m[e], shape->tension_N[e], shape->q_N_per_m[e]);
+    }
+}
+
+typedef struct {
+    const hf_truss *truss;
+    const hf_carrier_state *state;
+} truss_view;
+
+static void write_fixed(unsigned char fixed, FILE *f)
+{
+    const char *gap = "";
+    if (fixed == 0x3f) fputs("all", f);
+    for (int k = 0; k < HF_TRUSS_DOF && fixed != 0x3f; k++) {
+        if (!(fixed >> k & 1)) continue;
+        fprintf(f, "%s%s", gap, hf_dof_word[k]);
+        gap = " ";
+    }
+}
+
+static void write_truss_nodes(const void *context, FILE *f)
+{
+    const hf_truss *t = ((const truss_view *)context)->truss;
+    const double *u = ((const truss_view *)context)->state->displacement;
+    fprintf(f, "id,x_m,y_m,z_m,fixed,mass_kg%s\n", u ? ",ux_m,uy_m,uz_m,rx_rad,ry_rad,rz_rad" : "");
+    for (int i = 0; i < t->n_node; i++) {
+        const double *p = t->position_m + 3 * (size_t)i;
+        hf_csv_write_id(t->node_id[i], f);
+        fprintf(f, ",%.17g,%.17g,%.17g,", p[0], p[1], p[2]);
+        write_fixed(t->fixed[i], f);
+        fprintf(f, ",%.17g", t->mass_kg[i]);
+        for (int c = 0; u && c < HF_TRUSS_DOF; c++)
+            fprintf(f, ",%.17g", u[HF_TRUSS_DOF * (size_t)i + (size_t)c]);
+        fputc('\n', f);
+    }
+}
+
+static void write_members(const void *context, FILE *f)
+{
+    const hf_truss *t = ((const truss_view *)context)->truss;
+    const double *end_force = ((const truss_view *)context)->state->end_force;
+#define COLUMN_NAME(name, units, otherwise, description) "," #name
+    fprintf(f, "id,i,j" HF_MEMBER_NUMBERS(COLUMN_NAME) ",joint,unit%s\n",
+            end_force ? ",Nx_i_N,Vy_i_N,Vz_i_N,Tx_i_Nm,My_i_Nm,Mz_i_Nm,Nx_j_N,Vy_j_N,Vz_j_N,Tx_j_Nm,My_j_Nm,Mz_j_Nm"
+                      : "");
+#undef COLUMN_NAME
+    for (int e = 0; e < t->n_member; e++) {
+#define VALUE(name, units, otherwise, description) t->name[e],
+        const double number[] = {HF_MEMBER_NUMBERS(VALUE)};
+#undef VALUE
+        hf_csv_write_id(t->member_id[e], f);
+        for (int k = 0; k < 2; k++) {
+            fputc(',', f);
+            hf_csv_write_id(t->node_id[t->end[2 * e + k]], f);
+        }
+        for (size_t k = 0; k < sizeof number / sizeof *number; k++)
+            fprintf(f, isfinite(number[k]) ? ",%.17g" : ",", number[k]); /* an infinite shear area is left out */
+        fprintf(f, ",%s,%s", hf_joint_word[t->joint[e]], hf_unit_word[t->unit[e]]);
+        for (size_t k = 0; end_force && k < 12; k++)
+            fprintf(f, ",%.17g", end_force[12 * (size_t)e + k]);
+        fputc('\n', f);
     }
 }
 
@@ -104,6 +165,22 @@ hf_status hf_export_read(const hf_options *o, hf_summary *summary, hf_scene *sce
     return hf_store_read_shape(o->file, stage, shape, messages);
 }
 
+static hf_status export_truss(const hf_options *o, hf_truss *truss, hf_carrier_state *state, char *said, size_t size,
+                              hf_messages *messages)
+{
+    char nodes[PATH_SIZE], members[PATH_SIZE];
+    const truss_view both = {truss, state};
+    HF_TRY(claim(o, "truss_nodes.csv", nodes, messages));
+    HF_TRY(claim(o, "members.csv", members, messages));
+    HF_TRY(hf_store_read_truss(o->file, truss, state, messages));
+    HF_TRY(hf_export_file(nodes, write_truss_nodes, &both, messages));
+    HF_TRY(hf_export_file(members, write_members, &both, messages));
+    size_t used = strlen(said);
+    snprintf(said + used, size - used, "; %d nodes and %d members of the truss in %s and %s", truss->n_node,
+             truss->n_member, nodes, members);
+    return HF_OK;
+}
+
 static hf_status export_shape(const hf_options *o, hf_scene *scene, hf_shape *shape, char *said, size_t size,
                               hf_messages *messages)
 {
@@ -119,7 +196,13 @@ static hf_status export_shape(const hf_options *o, hf_scene *scene, hf_shape *sh
     HF_TRY(hf_export_file(cables, write_cables, &both, messages));
     snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s and %s", o->file, scene->n_node,
              scene->n_cable, word, nodes, cables);
-    return HF_OK;
+    if (!summary.has_truss) return HF_OK;
+    hf_truss truss = {0};
+    hf_carrier_state state = {0};
+    hf_status status = export_truss(o, &truss, &state, said, size, messages);
+    hf_truss_free(&truss);
+    hf_carrier_state_free(&state);
+    return status;
 }
 
 hf_status hf_export(const hf_options *options, char *said, size_t size, hf_messages *messages)

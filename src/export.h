@@ -2,6 +2,8 @@
  *
  * nodes.csv : id,x_m,y_m,z_m,x0_m,y0_m,z0_m,role   (found and theoretical position)
  * cables.csv: id,i,j,group,law,length_m,tension_N,q_N_per_m
+ * With a truss also truss_nodes.csv and members.csv as truss_import reads them; displacements and end forces stand
+ * behind those columns when they are stored.
  * 17 significant digits: reading them back gives the same bits. */
 #ifndef HIFDM_EXPORT_H
 #define HIFDM_EXPORT_H

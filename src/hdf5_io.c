@@ -5,6 +5,7 @@
 #include <hifdm/formfind.h>
 #include <hifdm/ga.h>
 #include <hifdm/scene.h>
+#include <hifdm/truss.h>
 
 #include <assert.h>
 #include <limits.h>
@@ -99,25 +100,19 @@ static enum_entry enum_at(hf_hdf5_kind kind, int i)
     static const enum_entry status[] = {HF_STATUS_LIST(STATUS_ENTRY)}, stop[] = {HF_STOP_REASON_LIST(STOP_ENTRY)};
 #undef STATUS_ENTRY
 #undef STOP_ENTRY
-    const enum_entry none = {NULL, 0};
-    switch (kind) {
-    case HF_KIND_FLAG:
-        return i < 2 ? (enum_entry){flag_word[i], i} : none;
-    case HF_KIND_ROLE:
-        return i < 3 ? (enum_entry){hf_role_word[i], i} : none;
-    case HF_KIND_GROUP:
-        return i < 2 ? (enum_entry){hf_group_word[i], i} : none;
-    case HF_KIND_LAW:
-        return i < HF_N_LAW ? (enum_entry){hf_law_word[i], i} : none;
-    case HF_KIND_GA_STOP:
-        return i < 4 ? (enum_entry){hf_ga_stop_word[i], i} : none;
-    case HF_KIND_STATUS:
-        return i < HF_HDF5_COUNT(status) ? status[i] : none;
-    case HF_KIND_STOP_REASON:
-        return i < HF_HDF5_COUNT(stop) ? stop[i] : none;
-    default:
-        return none;
-    }
+    static const struct {
+        hf_hdf5_kind kind;
+        const char *const *word;
+        int n;
+    } list[] = {{HF_KIND_FLAG, flag_word, 2},          {HF_KIND_ROLE, hf_role_word, 3},
+                {HF_KIND_GROUP, hf_group_word, 2},     {HF_KIND_LAW, hf_law_word, HF_N_LAW},
+                {HF_KIND_GA_STOP, hf_ga_stop_word, 4}, {HF_KIND_JOINT, hf_joint_word, 2},
+                {HF_KIND_UNIT, hf_unit_word, 4}};
+    for (int k = 0; k < HF_HDF5_COUNT(list); k++)
+        if (list[k].kind == kind && i < list[k].n) return (enum_entry){list[k].word[i], i};
+    if (kind == HF_KIND_STATUS && i < HF_HDF5_COUNT(status)) return status[i];
+    if (kind == HF_KIND_STOP_REASON && i < HF_HDF5_COUNT(stop)) return stop[i];
+    return (enum_entry){NULL, 0};
 }
 
 static int is_enum(hf_hdf5_kind kind)

@@ -36,7 +36,9 @@ typedef enum {
     HF_KIND_LAW,
     HF_KIND_STATUS,
     HF_KIND_STOP_REASON,
-    HF_KIND_GA_STOP
+    HF_KIND_GA_STOP,
+    HF_KIND_JOINT,
+    HF_KIND_UNIT
 } hf_hdf5_kind;
 
 /* HDF5 as Debian builds it is not made for threads: every public call of store and store_read holds this one lock, so
@@ -236,6 +238,33 @@ void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table,
     X(hf_summary, "/ga", "optimize_wall_s", optimize_wall_s, REAL)                                                     \
     X(hf_summary, "/ga", "optimize_cpu_s", optimize_cpu_s, REAL)                                                       \
     HF_RESULT_MEMBERS(X, "/ga", "best_", best)
+
+/* only when has_truss: when there is a group /truss */
+#define HF_SUMMARY_TRUSS_MEMBERS(X)                                                                                    \
+    X(hf_summary, "/truss", "mass_kg", truss_mass_kg, REAL)                                                            \
+    X(hf_summary, "/truss", "n_node", truss_nodes, INT)                                                                \
+    X(hf_summary, "/truss", "n_member", truss_members, INT)
+
+/* What is stored of an hf_truss and of an hf_carrier_state, below /truss; per_cable = per member. */
+#define HF_TRUSS_NUMBER_COLUMN(name, units, otherwise, description)                                                    \
+    {"member/" #name, HF_KIND_REAL, 1, 1, units, description, offsetof(hf_truss, name)},
+#define HF_TRUSS_COLUMNS(X)                                                                                            \
+    X(hf_truss, "node/position_m", position_m, REAL, 0, 3, "m", "position without load")                               \
+    X(hf_truss, "node/mass_kg", mass_kg, REAL, 0, 1, "kg", "mass of the hinges")                                       \
+    X(hf_truss, "member/end", end, INT, 1, 2, "", "the two nodes, as indices from 0 into /truss/node")                 \
+    X(hf_truss, "member/joint", joint, JOINT, 1, 1, "", "rigid: clamped to its nodes; pinned: axial force alone")      \
+    X(hf_truss, "member/unit", unit, UNIT, 1, 1, "", "basic unit that the member belongs to")
+
+#define HF_TRUSS_STATE_COLUMNS(X)                                                                                      \
+    X(hf_carrier_state, "node/displacement", displacement, REAL, 0, 6, "m, rad",                                       \
+      "under the pull of the net: along x, y, z, about x, y, z")                                                       \
+    X(hf_carrier_state, "node/reaction", reaction, REAL, 0, 6, "N, N m", "of the supports on the truss")               \
+    X(hf_carrier_state, "member/end_force", end_force, REAL, 1, 12, "N, N m",                                          \
+      "local, of the nodes on the member: Nx (compression), Vy, Vz, Tx, My, Mz at the first end, then at the second")
+
+/* Of a store that is being written, for modules that add groups of their own. */
+struct hf_store;
+hf_hdf5 *hf_store_io(struct hf_store *store, hf_messages *messages);
 
 #define HF_HDF5_MEMBER(type, object, name, member, kind)                                                               \
     {object, name, HF_KIND_##kind, offsetof(type, member), sizeof(((type *)0)->member)},

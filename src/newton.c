@@ -266,7 +266,9 @@ static int newton_steps(const hf_model *m, const hf_form_settings *s, hf_workspa
     if (!(now.merit < first_merit)) return 0;
     for (int e = 0; e < m->n_cable; e++) {
         double length = direction(m, w->position_m, e, u);
-        w->q_N_per_m[e] = law_tension(w, e, length, w->tension_N[e]) / length;
+        double T = law_tension(w, e, length, w->tension_N[e]);
+        int is_nothing = w->law[e] == HF_LAW_ELASTIC && T < HF_NEWTON_NOTHING * m->reference_N;
+        w->q_N_per_m[e] = is_nothing ? 0 : T / length;
     }
     return 1;
 }

@@ -13,8 +13,8 @@
 #include <hifdm/formfind.h>
 
 /* Start from the workspace's q_N_per_m under its law and target (hf_form_prepare, hf_evaluate_prepare). Fixed-point
- * iterations of hf_form_find alternate with Newton steps; a shape that Newton has reached is measured as it is. Stops by
- * residual; result->iterations counts both kinds. history (may
+ * iterations of hf_form_find alternate with Newton steps; a shape that Newton has reached is measured as it is. Stops
+ * by residual; result->iterations counts both kinds. history (may
  * be NULL) holds the fixed-point iterations. Needs a workspace of a model with has_newton. Returns result->status. */
 hf_status hf_newton_find(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                          hf_history *history, hf_form_result *result);
@@ -22,6 +22,10 @@ hf_status hf_newton_find(const hf_model *model, const hf_form_settings *settings
 /* Factor the Newton matrix at the workspace's shape and tensions into newton_band. *condition (may be NULL): estimate
  * of its 1-norm condition number, INFINITY when a Levenberg shift was needed. HF_SINGULAR when no shift helps. */
 hf_status hf_newton_factor(const hf_model *model, hf_workspace *workspace, double *condition);
+
+/* A tension below this part of the reference tension is what rounding leaves in a slack elastic cable: a node that only
+ * such cables hold is loose, and has no position. */
+#define HF_NEWTON_NOTHING 1e-12
 
 /* For a net with elastic cables: descend on its energy from the workspace's position_m to near the minimum, and set
  * tension_N and q_N_per_m by the laws. Returns the number of steps, at most max_steps. */

@@ -86,7 +86,8 @@ static double pull(const hf_model *m, hf_workspace *w)
         else if (w->law[e] == HF_LAW_FORCE_DENSITY)
             T *= length;
         w->tension_N[e] = T;
-        w->q_N_per_m[e] = length > 0 ? T / length : 0; /* what has shrunk to nothing is slack */
+        int is_nothing = w->law[e] == HF_LAW_ELASTIC && T < HF_NEWTON_NOTHING * m->reference_N;
+        w->q_N_per_m[e] = is_nothing ? 0 : T / length;
         for (int c = 0; c < 3; c++) {
             if (a < m->n_free) force[3 * a + c] += w->q_N_per_m[e] * d[c];
             if (b < m->n_free) force[3 * b + c] -= w->q_N_per_m[e] * d[c];

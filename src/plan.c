@@ -29,6 +29,24 @@ static void print_scene(const hf_problem *p, FILE *f)
     if (m->n_chain) fprintf(f, "  note          %d straight chains of length-controlled cables\n", m->n_chain);
 }
 
+/* What the truss costs. It is built and condensed once more, for the time. */
+static hf_status print_truss(const hf_problem *p, FILE *f, hf_messages *messages)
+{
+    const hf_carrier *c = &p->carrier;
+    hf_carrier again;
+    char wall[32], matrix[32];
+    double begin_s = hf_run_clock_s();
+    hf_status status = hf_carrier_build(&p->settings, &p->scene, &again, messages);
+    hf_print_duration(hf_run_clock_s() - begin_s, wall, sizeof wall);
+    hf_carrier_free(&again);
+    hf_print_bytes((double)c->frame.n_dof * (c->frame.half_bandwidth + 1) * sizeof(double), matrix, sizeof matrix);
+    fprintf(f, "  truss         %d nodes, %d members; %.2f kg; %d attachments\n", c->truss.n_node, c->truss.n_member,
+            c->mass_kg, c->n_attachment);
+    fprintf(f, "                %d unknowns, half-bandwidth %d, %s; condition %.1e; built and condensed once in %s\n",
+            c->frame.n_dof, c->frame.half_bandwidth, matrix, c->frame.condition, wall);
+    return status;
+}
+
 static void print_plan(const hf_problem *p, FILE *f)
 {
     const hf_case *c = &p->settings;
@@ -50,12 +68,13 @@ static void print_plan(const hf_problem *p, FILE *f)
     if (optimizes && o->symmetry != HF_SYMMETRY_NONE)
         fprintf(f, "                symmetry: %s, %s; %d independent genes of %d\n", hf_symmetry_word[o->symmetry],
                 hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_gene);
-    fprintf(f, "  skipped       %s%s%s\n",
+    fprintf(f, "  skipped       %s%s%s%s\n",
             evolves           ? ""
             : optimizes       ? "genetic algorithm (method: lm); "
             : c->has_optimize ? "optimisation (no boundary cable has a free end); "
                               : "optimisation (no optimize section); ",
-            p->model.load_N ? "" : "loads (none given); ", p->model.has_strut ? "" : "general band matrix (no struts)");
+            c->has_truss ? "" : "truss (no truss section); ", p->model.load_N ? "" : "loads (none given); ",
+            p->model.has_strut ? "" : "general band matrix (no struts)");
 }
 
 static void print_allocation(const char *title, const char *what, double bytes, const char *without, FILE *f)
@@ -197,6 +216,7 @@ static hf_status check(hf_problem *p, const hf_options *options, FILE *f, hf_mes
     hf_evaluator v = hf_problem_evaluator(p);
     fprintf(f, "%s: valid\n", options->file);
     print_scene(p, f);
+    if (p->settings.has_truss) HF_TRY(print_truss(p, f, messages));
     print_plan(p, f);
     if (print_memory(p, optimizes ? &v : NULL, threads, f) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory");

@@ -19,6 +19,11 @@ hf_status hf_problem_load(const char *path, const char *const *set, int n_set, h
     HF_TRY(hf_config_load(path, set, n_set, &p->settings, messages));
     HF_TRY(hf_config_scene(&p->settings, &p->scene, messages));
     HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));
+    if (p->settings.has_truss) {
+        const hf_carrier *c = &p->carrier;
+        HF_TRY(hf_carrier_build(&p->settings, &p->scene, &p->carrier, messages));
+        HF_TRY(hf_model_attach(&p->model, c->n_attachment, c->scene_node, c->flexibility_m_per_N, messages));
+    }
     if (!p->settings.has_optimize) return HF_OK;
     return hf_symmetry_apply(&p->scene, p->settings.optimize.symmetry, &p->model, &p->planes, messages);
 }
@@ -49,6 +54,10 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->planes = p->planes;
     s->pretension_N = model->pretension_N;
     if (p->settings.has_surface) s->surface = p->settings.surface;
+    s->has_truss = settings->has_truss;
+    s->truss_mass_kg = p->carrier.mass_kg;
+    s->truss_nodes = p->carrier.truss.n_node;
+    s->truss_members = p->carrier.truss.n_member;
 }
 
 void hf_problem_free(hf_problem *p)
@@ -57,6 +66,7 @@ void hf_problem_free(hf_problem *p)
     free(p->base_N);
     hf_workspace_free(&p->workspace);
     hf_model_free(&p->model);
+    hf_carrier_free(&p->carrier);
     hf_scene_free(&p->scene);
     hf_case_free(&p->settings);
 }

@@ -3,12 +3,14 @@
 #ifndef HIFDM_PROBLEM_H
 #define HIFDM_PROBLEM_H
 
+#include <hifdm/carrier.h>
 #include <hifdm/evaluate.h>
 #include <hifdm/summary.h>
 
 typedef struct {
     hf_case settings;
     hf_scene scene;
+    hf_carrier carrier; /* all zero without a truss */
     hf_model model;
     int planes; /* of symmetry, HF_PLANE_ bits */
     hf_workspace workspace;
@@ -16,7 +18,8 @@ typedef struct {
     double *base_N;          /* [n_gene] boundary pretensions of the found shape, averaged over linked genes */
 } hf_problem;
 
-/* Case, scene, model, symmetry. HF_BAD_CASE with all faults, HF_NO_MEMORY. Free in any case. */
+/* Case, scene, truss, model, symmetry. HF_BAD_CASE with all faults, HF_MECHANISM, HF_NO_MEMORY. The problem must stay
+ * where it is. Free in any case. */
 hf_status hf_problem_load(const char *path, const char *const *set, int n_set, hf_problem *problem,
                           hf_messages *messages);
 

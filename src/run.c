@@ -25,6 +25,7 @@ double hf_run_clock_s(void)
 typedef struct {
     const hf_run_request *request;
     hf_problem problem;
+    hf_carrier_state truss; /* under the shape of the last stage whose shape is the result */
     hf_history history;
     hf_store *store;
     hf_evaluator evaluator;
@@ -40,6 +41,7 @@ static void run_free(run *r)
     hf_ga_free(&r->ga);
     hf_batch_free(&r->batch);
     free(r->history.psi_m);
+    hf_carrier_state_free(&r->truss);
     hf_problem_free(&r->problem);
 }
 
@@ -61,6 +63,16 @@ static hf_status measure_surface(const run *r, hf_stage stage, const hf_workspac
     if (!p->settings.has_surface) return HF_OK;
     if (hf_surface_measure(&p->settings.surface, &p->model, w, &s->measures[stage]) == HF_OK) return HF_OK;
     return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
+}
+
+/* What the net of this shape does to the truss, if there is one. */
+static hf_status load_truss(run *r, const hf_workspace *w, hf_messages *messages)
+{
+    const hf_problem *p = &r->problem;
+    if (!p->settings.has_truss) return HF_OK;
+    hf_carrier_state_free(&r->truss);
+    hf_status status = hf_carrier_carry(&p->carrier, &p->model, w, &r->truss);
+    return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the forces in the truss");
 }
 
 /* ---- form-finding ---- */
@@ -95,6 +107,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
     HF_TRY(measure_surface(r, HF_STAGE_FORM, &p->workspace, s, messages));
     HF_TRY(hf_store_form(r->store, &p->model, &p->workspace, &r->history, messages));
+    HF_TRY(load_truss(r, &p->workspace, messages));
     return status;
 }
 
@@ -138,6 +151,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     s->best = again; /* to the same bits, with what is not stored of an individual */
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
     HF_TRY(measure_surface(r, HF_STAGE_OPTIMIZE, w, s, messages));
+    HF_TRY(load_truss(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->problem.model, w, design, messages);
 }
 
@@ -237,6 +251,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     s->polish_converged = outcome.converged;
     s->polish_wall_s = hf_run_clock_s() - start_s;
     HF_TRY(measure_surface(r, HF_STAGE_POLISH, w, s, messages));
+    if (s->polish_is_result) HF_TRY(load_truss(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);
 }
 
@@ -267,10 +282,15 @@ static hf_status choose_output(const hf_run_request *o, char output[HF_OUTPUT_SI
 
 hf_status hf_run_spare_inputs(const hf_case *settings, const char *table, const char *output, hf_messages *messages)
 {
-    const char *input[] = {settings->path, table, settings->nodes_path, settings->cables_path};
+    const char *input[] = {settings->path,
+                           table,
+                           settings->nodes_path,
+                           settings->cables_path,
+                           settings->truss_nodes_path,
+                           settings->truss_members_path};
     struct stat a, b;
-    for (int i = 0; i < (settings->has_import ? 4 : 2); i++)
-        if (input[i] && stat(input[i], &a) == 0 && stat(output, &b) == 0 && a.st_dev == b.st_dev &&
+    for (size_t i = 0; i < sizeof input / sizeof *input; i++)
+        if (input[i] && *input[i] && stat(input[i], &a) == 0 && stat(output, &b) == 0 && a.st_dev == b.st_dev &&
             a.st_ino == b.st_ino)
             return hf_error(messages, HF_EXISTS, "%s: is an input of this run; use -o to choose another name", output);
     return HF_OK;
@@ -324,6 +344,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     if (status == HF_INTERRUPTED)
         hf_error(messages, status, "%s: told to stop; the same command goes on from there", output);
     if (!leaves_result(status)) return status;
+    if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, &r->truss, messages));
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
     hf_text_trim_utf8(s->warnings);
     s->finished = 1;

@@ -498,6 +498,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, int finished)
     static const hf_hdf5_member form[] = {HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER)};
     static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
     static const hf_hdf5_member polish[] = {HF_SUMMARY_POLISH_MEMBERS(HF_HDF5_MEMBER)};
+    static const hf_hdf5_member truss[] = {HF_SUMMARY_TRUSS_MEMBERS(HF_HDF5_MEMBER)};
     hf_status outcome = summary->form.status;
     if (outcome == HF_OK && summary->has_optimize) outcome = summary->best.status;
     /* groups that are there already, unless the run had no shape or no generation to store */
@@ -511,6 +512,10 @@ static void put_summary(hf_store *s, const hf_summary *summary, int finished)
     if (summary->has_polish) {
         hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/polish"));
         hf_hdf5_put_members(&s->f.io, polish, HF_HDF5_COUNT(polish), summary);
+    }
+    if (summary->has_truss) {
+        hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/truss"));
+        hf_hdf5_put_members(&s->f.io, truss, HF_HDF5_COUNT(truss), summary);
     }
     if (finished) hf_store_put_surface(&s->f.io, summary);
     hf_hdf5_put_text(&s->f.io, s->f.io.file, "/", "status", finished ? hf_status_word(outcome) : "unfinished");
@@ -563,6 +568,13 @@ hf_status hf_store_finish(hf_store *s, const hf_summary *summary, hf_messages *m
     if (status == HF_OK) hf_journal_forget(&s->f.journal);
     free_store(s);
     return hf_hdf5_unlock(status);
+}
+
+hf_hdf5 *hf_store_io(hf_store *store, hf_messages *messages)
+{
+    store->f.io.messages = messages;
+    hf_store_file_open(&store->f);
+    return &store->f.io;
 }
 
 void hf_store_abandon(hf_store *store)

@@ -15,9 +15,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* More nodes or cables than any scene has; keeps a damaged file from asking for all memory. */
-#define COUNT_MAX 20000000
-
 /* ---- opening a result file ---- */
 
 /* Is an open file one of ours? Whatever another program's file holds instead of our mark is no reason to complain. */
@@ -31,8 +28,7 @@ static int is_ours(const hf_hdf5 *io)
     return !strcmp(program, HF_PROGRAM);
 }
 
-/* A file of ours, open for reading; io->status says whether. The caller closes it in any case. */
-static hf_hdf5 open_result(const char *path, hf_messages *messages)
+hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
 {
     hf_hdf5 io = {.path = path, .messages = messages, .status = HF_OK, .file = -1};
     struct stat info;
@@ -57,11 +53,6 @@ static hf_hdf5 open_result(const char *path, hf_messages *messages)
 }
 
 /* ---- whose result is it? ---- */
-
-static void no_memory(hf_hdf5 *io)
-{
-    if (io->status == HF_OK) io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
-}
 
 /* Digests in a row; the ids of the scene, and what HF_SCENE_COLUMNS stores of it. */
 hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, char identity[65])
@@ -112,7 +103,7 @@ static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t
     hf_hdf5_get(io, io->file, "/", "seed", HF_KIND_UINT64, &seed, sizeof seed);
     hf_hdf5_read_text(io, io->file, "/case/text", &text);
     hf_hdf5_read_text(io, io->file, "/case/overrides", &overrides);
-    if (io->status == HF_OK && !(set = split_lines(overrides, &n_set))) no_memory(io);
+    if (io->status == HF_OK && !(set = split_lines(overrides, &n_set))) hf_store_no_memory(io);
     if (io->status == HF_OK && hf_config_parse(now->path, text, set, n_set, &then, &unwanted) == HF_OK) {
         then.optimize.seed = seed; /* as --seed may have set it */
         if (hf_config_differences(&then, now, words, size) == 0)
@@ -151,7 +142,7 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
     hf_messages unwanted = {0};
     HF_TRY(hf_store_identify(settings, scene, now));
     hf_hdf5_lock();
-    hf_hdf5 io = open_result(path, &unwanted);
+    hf_hdf5 io = hf_store_open_result(path, &unwanted);
     hf_hdf5_get(&io, io.file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     hf_hdf5_get(&io, io.file, "/", "identity", HF_KIND_CHARS, then, sizeof then);
     if (io.status == HF_OK && strcmp(now, then) != 0) tell_difference(&io, settings, words, sizeof words);
@@ -181,19 +172,27 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     static const hf_hdf5_member form[] = {HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER)};
     static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
     static const hf_hdf5_member polish[] = {HF_SUMMARY_POLISH_MEMBERS(HF_HDF5_MEMBER)};
+    static const hf_hdf5_member truss[] = {HF_SUMMARY_TRUSS_MEMBERS(HF_HDF5_MEMBER)};
     hf_hdf5_lock();
-    hf_hdf5 io = open_result(path, messages);
+    hf_hdf5 io = hf_store_open_result(path, messages);
     *summary = (hf_summary){0};
     hf_hdf5_get_members(&io, form, HF_HDF5_COUNT(form), summary);
     if (summary->has_polish) hf_hdf5_get_members(&io, polish, HF_HDF5_COUNT(polish), summary);
     if (summary->has_optimize) hf_hdf5_get_members(&io, ga, HF_HDF5_COUNT(ga), summary);
     hf_store_get_surface(&io, summary);
+    summary->has_truss = hf_hdf5_has(&io, io.file, "/truss");
+    if (summary->has_truss) hf_hdf5_get_members(&io, truss, HF_HDF5_COUNT(truss), summary);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) *summary = (hf_summary){0};
     return hf_hdf5_unlock(io.status);
 }
 
 /* ---- scene ---- */
+
+void hf_store_no_memory(hf_hdf5 *io)
+{
+    if (io->status == HF_OK) io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+}
 
 /* The n strings of a data set as they are stored, side by side; the caller frees the arena. */
 static char *read_chars(hf_hdf5 *io, hid_t group, const char *name, int n, size_t *length, hf_arena *arena)
@@ -202,7 +201,7 @@ static char *read_chars(hf_hdf5 *io, hid_t group, const char *name, int n, size_
     hf_arena_take(arena, (size_t)n, *length);
     if (io->status != HF_OK) return NULL;
     if (hf_arena_allocate(arena) != HF_OK) {
-        no_memory(io);
+        hf_store_no_memory(io);
         return NULL;
     }
     hf_hdf5_array array = {.name = name, .kind = HF_KIND_CHARS, .rank = 1, .dims = {(hsize_t)n, *length}};
@@ -223,23 +222,23 @@ static void place_ids(const char *chars, size_t length, int n, const char **id, 
     }
 }
 
-static void read_ids(hf_hdf5 *io, hid_t group, hf_scene *scene)
+void hf_store_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, const char **id_a, const char *name_b,
+                       int m, const char **id_b, void **text)
 {
-    size_t n = (size_t)scene->n_node, m = (size_t)scene->n_cable, node_length, cable_length;
-    hf_arena node = {0}, cable = {0}, text = {0};
-    const char *node_chars = read_chars(io, group, "node/id", scene->n_node, &node_length, &node);
-    const char *cable_chars = read_chars(io, group, "cable/id", scene->n_cable, &cable_length, &cable);
-    hf_arena_take(&text, n, node_length + 1);
-    hf_arena_take(&text, m, cable_length + 1);
-    if (io->status == HF_OK && hf_arena_allocate(&text) != HF_OK) no_memory(io);
+    size_t length_a, length_b;
+    hf_arena a = {0}, b = {0}, all = {0};
+    const char *chars_a = read_chars(io, group, name_a, n, &length_a, &a);
+    const char *chars_b = read_chars(io, group, name_b, m, &length_b, &b);
+    hf_arena_take(&all, (size_t)n, length_a + 1);
+    hf_arena_take(&all, (size_t)m, length_b + 1);
+    if (io->status == HF_OK && hf_arena_allocate(&all) != HF_OK) hf_store_no_memory(io);
     if (io->status == HF_OK) {
-        scene->text = text.block;
-        place_ids(node_chars, node_length, scene->n_node, scene->node_id, hf_arena_take(&text, n, node_length + 1));
-        place_ids(cable_chars, cable_length, scene->n_cable, scene->cable_id,
-                  hf_arena_take(&text, m, cable_length + 1));
+        *text = all.block;
+        place_ids(chars_a, length_a, n, id_a, hf_arena_take(&all, (size_t)n, length_a + 1));
+        place_ids(chars_b, length_b, m, id_b, hf_arena_take(&all, (size_t)m, length_b + 1));
     }
-    hf_arena_free(&node);
-    hf_arena_free(&cable);
+    hf_arena_free(&a);
+    hf_arena_free(&b);
 }
 
 static void check_ends(hf_hdf5 *io, hid_t group, const hf_scene *scene)
@@ -253,15 +252,18 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
 {
     static const hf_hdf5_column table[] = {HF_SCENE_COLUMNS(HF_HDF5_COLUMN)};
     hf_hdf5_lock();
-    hf_hdf5 io = open_result(path, messages);
+    hf_hdf5 io = hf_store_open_result(path, messages);
     *scene = (hf_scene){0};
     hid_t group = hf_hdf5_open_group(&io, "/scene");
-    int n_node = hf_hdf5_length(&io, group, "node/role", COUNT_MAX);
-    int n_cable = hf_hdf5_length(&io, group, "cable/law", COUNT_MAX);
+    int n_node = hf_hdf5_length(&io, group, "node/role", HF_STORE_COUNT_MAX);
+    int n_cable = hf_hdf5_length(&io, group, "cable/law", HF_STORE_COUNT_MAX);
     int with_load = hf_hdf5_has(&io, group, "node/load_N"), with_EA = hf_hdf5_has(&io, group, "cable/EA_N");
-    if (io.status == HF_OK && hf_scene_allocate(scene, n_node, n_cable, with_load, with_EA, 0) != HF_OK) no_memory(&io);
+    if (io.status == HF_OK && hf_scene_allocate(scene, n_node, n_cable, with_load, with_EA, 0) != HF_OK)
+        hf_store_no_memory(&io);
     hf_hdf5_read_columns(&io, group, table, HF_HDF5_COUNT(table), n_node, n_cable, scene);
-    if (io.status == HF_OK) read_ids(&io, group, scene);
+    if (io.status == HF_OK)
+        hf_store_read_ids(&io, group, "node/id", n_node, scene->node_id, "cable/id", n_cable, scene->cable_id,
+                          &scene->text);
     check_ends(&io, group, scene);
     hf_hdf5_close(&io, group);
     hf_hdf5_close_file(&io);
@@ -294,7 +296,7 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
 {
     static const hf_hdf5_column table[] = {HF_SHAPE_COLUMNS(HF_HDF5_COLUMN)};
     hf_hdf5_lock();
-    hf_hdf5 io = open_result(path, messages);
+    hf_hdf5 io = hf_store_open_result(path, messages);
     *shape = (hf_shape){0};
     int is_there = stage != HF_STAGE_NONE && (stage != HF_STAGE_OPTIMIZE || hf_hdf5_has(&io, io.file, "/ga")) &&
                    hf_hdf5_has(&io, io.file, hf_stage_group[stage]);
@@ -303,9 +305,9 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
             hf_error(messages, HF_IO, "%s: has no %s shape: that stage did not run, or found no feasible design", path,
                      hf_stage_word[stage]);
     hid_t group = hf_hdf5_open_group(&io, hf_stage_group[stage]);
-    int n_node = hf_hdf5_length(&io, io.file, "/scene/node/role", COUNT_MAX);
-    int n_cable = hf_hdf5_length(&io, io.file, "/scene/cable/law", COUNT_MAX);
-    if (io.status == HF_OK && allocate_shape(n_node, n_cable, shape) != HF_OK) no_memory(&io);
+    int n_node = hf_hdf5_length(&io, io.file, "/scene/node/role", HF_STORE_COUNT_MAX);
+    int n_cable = hf_hdf5_length(&io, io.file, "/scene/cable/law", HF_STORE_COUNT_MAX);
+    if (io.status == HF_OK && allocate_shape(n_node, n_cable, shape) != HF_OK) hf_store_no_memory(&io);
     hf_hdf5_read_columns(&io, group, table, HF_HDF5_COUNT(table), n_node, n_cable, shape);
     hf_hdf5_close(&io, group);
     hf_hdf5_close_file(&io);
@@ -342,7 +344,8 @@ static int measure_series(hf_hdf5 *io, const char *name, int columns, hf_hdf5_ki
     if ((data_set = H5Dopen2(io->file, name, H5P_DEFAULT)) < 0 || (space = H5Dget_space(data_set)) < 0 ||
         (rank = H5Sget_simple_extent_dims(space, dims, NULL)) < 0 || (stored = H5Dget_type(data_set)) < 0)
         hf_hdf5_fail(io, "read", io->file, name);
-    else if (rank != (columns > 1 ? 2 : 1) || (columns > 1 && dims[1] != (hsize_t)columns) || dims[0] > COUNT_MAX)
+    else if (rank != (columns > 1 ? 2 : 1) || (columns > 1 && dims[1] != (hsize_t)columns) ||
+             dims[0] > HF_STORE_COUNT_MAX)
         hf_hdf5_damaged(io, io->file, name, "has other dimensions than a report reads");
     else
         n = (int)dims[0];
@@ -362,7 +365,7 @@ static void read_series(hf_hdf5 *io, const char *name, int columns, hf_series *s
     if (n == 0) return;
     hf_arena_take(&arena, count, sizeof(double));
     if (hf_arena_allocate(&arena) != HF_OK) {
-        no_memory(io);
+        hf_store_no_memory(io);
         return;
     }
     *series = (hf_series){n, hf_arena_take(&arena, count, sizeof(double)), arena.block};
@@ -379,7 +382,7 @@ static void read_series(hf_hdf5 *io, const char *name, int columns, hf_series *s
 hf_status hf_store_read_series(const char *path, const char *name, int columns, hf_series *series,
                                hf_messages *messages)
 {
-    hf_hdf5 io = open_result(path, messages);
+    hf_hdf5 io = hf_store_open_result(path, messages);
     *series = (hf_series){0};
     if (is_there(&io, name)) read_series(&io, name, columns, series);
     hf_hdf5_close_file(&io);
@@ -401,7 +404,7 @@ hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf
                                           {"/", "version"},      {"/", "git_describe"}, {"/", "compiler"},
                                           {"/", "build_flags"},  {"/", "lapack"},       {"/", "gsl_version"},
                                           {"/", "hdf5_version"}, {"/", "rng"},          {"/case", "sha256"}};
-    hf_hdf5 io = open_result(path, messages);
+    hf_hdf5 io = hf_store_open_result(path, messages);
     size_t used = 0;
     *text = '\0';
     for (int i = 0; i < HF_HDF5_COUNT(from); i++) {

@@ -2,6 +2,7 @@
 #ifndef HIFDM_STORE_READ_H
 #define HIFDM_STORE_READ_H
 
+#include "hdf5_io.h"
 #include <hifdm/store.h>
 
 /* A data set of numbers of any kind, one or `columns` per row. */
@@ -20,5 +21,16 @@ void hf_series_free(hf_series *series);
 /* Where the file comes from, as lines "key: value" in the order of the file's root; those that a program before this
  * one did not write in a safe way are left out. */
 hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf_messages *messages);
+/* More nodes or members than any scene has; keeps a damaged file from asking for all memory. */
+#define HF_STORE_COUNT_MAX 20000000
+
+/* A file of ours, open for reading; its status says whether. The caller closes it in any case. */
+hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages);
+
+/* The n and m ids of two data sets, set in id_a and id_b, and the block that they point into (caller frees). */
+void hf_store_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, const char **id_a, const char *name_b,
+                       int m, const char **id_b, void **text);
+
+void hf_store_no_memory(hf_hdf5 *io);
 
 #endif

@@ -83,6 +83,13 @@ static void write_surface(const hf_summary *s, int stage, FILE *f)
     fputc('}', f);
 }
 
+static void write_truss(const hf_summary *s, FILE *f)
+{
+    fputs(",\n \"truss\": {", f);
+    hf_json_number("mass_kg", s->truss_mass_kg, f);
+    fprintf(f, ", \"nodes\": %d, \"members\": %d}", s->truss_nodes, s->truss_members);
+}
+
 static void write_optimize(const hf_summary *s, FILE *f)
 {
     fputs(",\n \"optimize\": {", f);
@@ -121,6 +128,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
 {
     fputs("{", f);
     hf_json_text("status", hf_status_word(status), f);
+    if (s->has_truss) write_truss(s, f);
     if (s->form.status != HF_NOT_EVALUATED) {
         fputs(",\n \"form\": {", f);
         write_result(&s->form, f);

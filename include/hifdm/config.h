@@ -5,6 +5,7 @@
 
 #include <hifdm/scene.h>
 #include <hifdm/status.h>
+#include <hifdm/truss.h>
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -83,6 +84,10 @@ typedef struct {
     hf_form_settings form;
     hf_optimize_settings optimize;
     hf_surface_settings surface; /* what is not given is that of the cylinder */
+
+    int has_truss, has_truss_import;
+    hf_truss_settings truss;
+    char truss_nodes_path[HF_PATH_SIZE], truss_members_path[HF_PATH_SIZE];
 } hf_case;
 
 /* Read and validate. `overrides`: n "path=value" strings that win over the file. All faults in one go as
@@ -100,6 +105,9 @@ int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t
 
 /* The scene that the case describes, checked (hf_scene_check). Free the scene in any case. */
 hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages);
+
+/* The truss of a case that has one, checked (hf_truss_check). Free the truss in any case. */
+hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages *messages);
 
 void hf_case_free(hf_case *settings);
 

@@ -4,9 +4,11 @@
 #define HIFDM_HIFDM_H
 
 #include <hifdm/batch.h>
+#include <hifdm/carrier.h>
 #include <hifdm/config.h>
 #include <hifdm/evaluate.h>
 #include <hifdm/formfind.h>
+#include <hifdm/frame.h>
 #include <hifdm/ga.h>
 #include <hifdm/metrics.h>
 #include <hifdm/model.h>
@@ -15,6 +17,7 @@
 #include <hifdm/store.h>
 #include <hifdm/summary.h>
 #include <hifdm/surface.h>
+#include <hifdm/truss.h>
 #include <hifdm/workspace.h>
 
 #endif

@@ -26,10 +26,15 @@
  *                best_...; n_individual, n_variable, generations_limit, by which a run goes on
  *   /ga/best     as /form, and design_N [k]
  *   /polish      the same, of Levenberg-Marquardt; attributes: the members of hf_summary.polish and polish_...
- *   /surface     measures of the surface by stage, see store_surface.h; only when the case asks for them */
+ *   /surface     measures of the surface by stage, see store_surface.h; only when the case asks for them
+ *   /truss       with a nodes, b members, c attachments; attributes mass_kg, n_node, n_member
+ *   /truss/node  id, mass_kg [a], position_m [a][3], fixed [a][6]; displacement, reaction [a][6]
+ *   /truss/member  id, joint, unit, E_Pa, A_m2, ..., expansion_per_K [b], end [b][2]; end_force [b][12]
+ *   /truss/attachment  net_node (index into /scene/node), truss_node (into /truss/node) [c] */
 #ifndef HIFDM_STORE_H
 #define HIFDM_STORE_H
 
+#include <hifdm/carrier.h>
 #include <hifdm/ga.h>
 #include <hifdm/model.h>
 #include <hifdm/summary.h>
@@ -133,6 +138,15 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
 /* The shape that a stage left; HF_IO when it left none. Its counts are those of hf_store_read_scene. */
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
 void hf_shape_free(hf_shape *shape);
+
+/* The truss below /truss: as described, what it is attached to, and, when `state` is not NULL, what the pull of the net
+ * does to it. Once, before hf_store_finish of a summary that has_truss. */
+hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_carrier_state *state,
+                         hf_messages *messages);
+
+/* The truss without its line numbers; state: all NULL when none was stored. HF_IO when there is no truss. Free both in
+ * any case. */
+hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_state *state, hf_messages *messages);
 
 /* "VERSION (git describe)" of this library. */
 const char *hf_store_version(void);

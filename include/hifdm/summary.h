@@ -36,6 +36,10 @@ typedef struct {
     int polish_iterations, polish_evaluations, polish_converged;
     double polish_wall_s;
 
+    int has_truss;
+    double truss_mass_kg;
+    int truss_nodes, truss_members;
+
     int has_optimize;
     double
         base_psi_m; /* of individual 0 of generation 0, the form-finding's tensions under the rule; NaN if infeasible */

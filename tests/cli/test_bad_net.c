@@ -48,8 +48,8 @@ static const struct {
      "error: @cables.csv:5: 'e': value must be above zero for the law tension\n"
      "error: @cables.csv:6: 'f': value must be above zero for the law length\n"
      "error: @cables.csv:7: 'g': the law force_density needs a value in N/m\n"},
-    {NODES, CABLES "e,a,c,inner,elastic,1\n",
-     "error: @cables.csv:5: 'e': law must be one of tension length force_density, not elastic\n"},
+    {NODES, CABLES "e,a,c,inner,rubber,1\n",
+     "error: @cables.csv:5: 'e': law must be one of tension length force_density elastic, not rubber\n"},
     {"", CABLES, "error: @nodes.csv:1: the file is empty: a header line is needed\n"},
     {"id,x_m,y_m,z_m,role\n", "", /* the faults of both files */
      "error: @nodes.csv:1: there is a header, but no rows\n"

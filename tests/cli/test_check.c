@@ -13,7 +13,7 @@ START_TEST(check_tells_what_will_run)
     OUT("will run      form-finding: hifdm, solved by fixed point (asked for), stop: rms_change, at most 100000 "
         "iterations\n");
     OUT("optimisation: rule force_density, 120 genes, 50 individuals, at most 400 generations, seed 2022\n");
-    OUT("skipped       loads (none given); general band matrix (no struts)\n");
+    OUT("skipped       truss (no truss section); loads (none given); general band matrix (no struts)\n");
     OUT("  memory        workspaces (2 threads)   ");
     OUT("                matrix shared by all threads           ");
     OUT("expected time form-finding: ");
@@ -21,7 +21,8 @@ START_TEST(check_tells_what_will_run)
     OUT("optimisation: ");
     OUT(" for a design of the first generation by chord; at most about ");
     SHELL(0, "cd \"$1\" && \"$0\" check \"$2\" && ls -A", temp("."), REFLECTOR);
-    OUT("skipped       optimisation (no optimize section); loads (none given); general band matrix (no struts)\n");
+    OUT("skipped       optimisation (no optimize section); truss (no truss section); loads (none given); general band "
+        "matrix (no struts)\n");
     OUT("population                             none\n");
     OUT("  memory        workspace                              ");
     ck_assert_ptr_null(strstr(said.out, ".h5")); /* nothing was made */
@@ -80,7 +81,7 @@ START_TEST(schema_is_yaml_with_every_key)
     HIFDM(0, "schema");
     const char *schema = file_with("schema.yaml", said.out);
     EXPECT(
-        schema, "--", "list(a) == ['title', 'scene', 'surface', 'form', 'optimize']",
+        schema, "--", "list(a) == ['title', 'scene', 'surface', 'form', 'optimize', 'truss']",
         "set(a['scene']) == {'parabolic_cylinder', 'import'}",
         "set(a['scene']['parabolic_cylinder']) == {'aperture_m', 'length_m', 'focal_length_m', 'modules', "
         "'cells_per_module', 'spacing', 'boundary', 'scallop', 'supports'}",
@@ -91,6 +92,11 @@ START_TEST(schema_is_yaml_with_every_key)
         "'generations', 'range_N', 'min_tension_N', 'max_tension_N', "
         "'boundary_ratio_cap', 'seed', 'crossover_high', 'crossover_low', 'mutation_high', 'mutation_low', 'elites', "
         "'stagnation_tolerance_m', 'stagnation_generations'}",
+        "set(a['truss']) == {'depth_m', 'main_every', 'E_Pa', 'G_Pa', 'density_kg_per_m3', 'expansion_per_K', "
+        "'hinge_mass_kg', 'theory', 'joints', 'supports', 'support_dofs', 'match_tolerance_m', 'bud', 'mbug', 'abug', "
+        "'import'}",
+        "all(set(a['truss'][u]) == {'diameter_m', 'wall_m', 'panels', 'diagonals'} for u in ('bud', 'mbug', 'abug'))",
+        "set(a['truss']['import']) == {'nodes', 'members'}",
         /* a default, or none where the key is required */
         "[k for k, v in a['scene']['parabolic_cylinder'].items() if v is None] == ['aperture_m', 'length_m', "
         "'focal_length_m', 'modules', 'cells_per_module']",

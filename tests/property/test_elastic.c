@@ -38,7 +38,8 @@ static int is_loose(const struct net *net, int row)
 {
     const hf_model *m = &net->model;
     for (int e = 0; e < m->n_cable; e++)
-        if ((m->end_row[2 * e] == row || m->end_row[2 * e + 1] == row) && net->work.q_N_per_m[e] > 0) return 0;
+        if ((m->end_row[2 * e] == row || m->end_row[2 * e + 1] == row) && net->work.q_N_per_m[e] > 1e-12)
+            return 0; /* N/m: of 10 N, nothing */
     return 1;
 }
 
@@ -96,7 +97,7 @@ START_TEST(nets_built_from_inexact_cuts)
     for (double EA_N = 1e2; EA_N < 2e9; EA_N *= 10)
         for (int k = 0; k < 5; k++)
             n_found += build_from_cuts(&net, &rng, EA_N, off[k]) == HF_OK;
-    ck_assert_int_ge(n_found, 30); /* of 40; the others have loose nodes */
+    ck_assert_int_gt(n_found, 20); /* of 40; the stiff ones that are badly cut have loose nodes */
     close_net(&net);
 }
 END_TEST

@@ -81,9 +81,14 @@ typedef struct {
     void (*run)(const char *what, const char *folder);
 } section;
 
-static const section section_table[] = {
-    {"step", bench_step},     {"peak", bench_peak},     {"phases", bench_phases},        {"precision", bench_precision},
-    {"single", bench_single}, {"growth", bench_growth}, {"population", bench_population}};
+static const section section_table[] = {{"step", bench_step},
+                                        {"peak", bench_peak},
+                                        {"phases", bench_phases},
+                                        {"precision", bench_precision},
+                                        {"single", bench_single},
+                                        {"growth", bench_growth},
+                                        {"population", bench_population},
+                                        {"frame", bench_frame}};
 
 int main(int argc, char **argv)
 {

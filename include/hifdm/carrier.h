@@ -1,0 +1,50 @@
+/* carrier - the truss of a case as the net sees it: built, factored, condensed to its attachments. Once per scene. */
+#ifndef HIFDM_CARRIER_H
+#define HIFDM_CARRIER_H
+
+#include <hifdm/config.h>
+#include <hifdm/frame.h>
+#include <hifdm/model.h>
+#include <hifdm/workspace.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Attachment k joins the net's support scene_node[k] to the truss node truss_node[k]. */
+typedef struct {
+    hf_truss truss;
+    hf_frame frame;
+    double mass_kg;
+    int n_attachment;
+    int *scene_node, *truss_node; /* [n_attachment] */
+    double *flexibility_m_per_N;  /* [3a][3a], dof 3*k+c; symmetric */
+    void *block;
+} hf_carrier;
+
+/* For a case with a truss section and the scene it describes, checked. HF_BAD_CASE, HF_MECHANISM or HF_NO_MEMORY with
+ * messages. The carrier must stay where it is (its frame points to its truss); free it in any case. */
+hf_status hf_carrier_build(const hf_case *settings, const hf_scene *scene, hf_carrier *carrier, hf_messages *messages);
+void hf_carrier_free(hf_carrier *carrier);
+
+/* What forces on the attachments do to the truss. */
+typedef struct {
+    double *displacement; /* [n_node][6] m, rad */
+    double *reaction;     /* [n_node][6] N, N m; 0 at free dofs */
+    double *end_force;    /* [n_member][12] N, N m, local, as hf_frame_member_forces */
+    void *block;
+} hf_carrier_state;
+
+/* force_N: [n_attachment][3]. HF_OK or HF_NO_MEMORY. Free the state in any case. */
+hf_status hf_carrier_load(const hf_carrier *carrier, const double *force_N, hf_carrier_state *state);
+
+/* The same under the pull of the net at the shape in the workspace, f = sum T u over the cables of each attachment, and
+ * the loads that stand there. */
+hf_status hf_carrier_carry(const hf_carrier *carrier, const hf_model *model, const hf_workspace *workspace,
+                           hf_carrier_state *state);
+void hf_carrier_state_free(hf_carrier_state *state);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

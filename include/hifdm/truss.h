@@ -1,0 +1,118 @@
+/* truss - the deployable truss that carries the net: nodes, straight members with their sections, supports.
+ *
+ * A truss is made by a generator or read from CSV files (truss_import), checked once, and never changed afterwards;
+ * hf_frame solves it. Dofs of a node: displacement along x, y, z (m), rotation about x, y, z (rad). */
+#ifndef HIFDM_TRUSS_H
+#define HIFDM_TRUSS_H
+
+#include <hifdm/scene.h>
+#include <hifdm/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define HF_TRUSS_DOF 6
+
+/* A rigid member is a beam clamped to its two nodes; a pinned one carries axial force alone. */
+typedef enum { HF_JOINT_RIGID, HF_JOINT_PINNED } hf_joint;
+
+/* Basic units of the deployable structure (Fig. 15): on the directrix, main and assistant on the generatrix. */
+typedef enum { HF_UNIT_BUD, HF_UNIT_MBUG, HF_UNIT_ABUG, HF_UNIT_OTHER } hf_unit;
+
+extern const char *const hf_dof_word[HF_TRUSS_DOF]; /* "ux".."rz" */
+extern const char *const hf_joint_word[2];          /* "rigid", "pinned" */
+extern const char *const hf_unit_word[4];           /* "bud", "mbug", "abug", "other" */
+
+/* Numbers of a member, X(name in struct and files, units, default when a file leaves it out, description). A default of
+ * NaN: must be given. Local axes: x from i to j; y horizontal, y = (-x_y, x_x, 0) normalised, or the global y of a
+ * vertical member; z = x cross y; roll turns y and z about x. Iz resists bending in the plane of x and y (with the
+ * shear area Asy), Iy in that of x and z (Asz). An infinite shear area is Euler and Bernoulli's beam. */
+#define HF_MEMBER_NUMBERS(X)                                                                                           \
+    X(E_Pa, "Pa", NAN, "Young's modulus")                                                                              \
+    X(A_m2, "m2", NAN, "cross-section")                                                                                \
+    X(G_Pa, "Pa", NAN, "shear modulus")                                                                                \
+    X(Iy_m4, "m4", NAN, "second moment of area for bending in the local x-z plane")                                    \
+    X(Iz_m4, "m4", NAN, "second moment of area for bending in the local x-y plane")                                    \
+    X(J_m4, "m4", NAN, "torsion constant")                                                                             \
+    X(Asy_m2, "m2", INFINITY, "shear area along local y; infinite: no shear deformation")                              \
+    X(Asz_m2, "m2", INFINITY, "shear area along local z; infinite: no shear deformation")                              \
+    X(roll_rad, "rad", 0, "turn of the local axes y and z about x")                                                    \
+    X(density_kg_per_m3, "kg/m3", 0, "density")                                                                        \
+    X(expansion_per_K, "1/K", 0, "coefficient of thermal expansion")
+
+typedef struct {
+    int n_node, n_member;
+    double *position_m;   /* [n_node][3] */
+    unsigned char *fixed; /* [n_node] bit k: dof k is held by a support */
+    double *mass_kg;      /* [n_node] of hinges */
+    int *end;             /* [n_member][2] node indices i, j */
+    unsigned char *joint; /* [n_member] hf_joint */
+    unsigned char *unit;  /* [n_member] hf_unit */
+#define HF_MEMBER_FIELD(name, units, otherwise, description) double *name; /* [n_member] */
+    HF_MEMBER_NUMBERS(HF_MEMBER_FIELD)
+#undef HF_MEMBER_FIELD
+    const char **node_id, **member_id;     /* [n_node], [n_member] */
+    int *node_line, *member_line;          /* lines in the files, or NULL for a generated truss */
+    const char *nodes_file, *members_file; /* names for messages, or NULL */
+    void *block, *text;                    /* owned memory behind all of the above */
+} hf_truss;
+
+/* ---- the generated truss ---- */
+
+typedef enum { HF_DIAGONALS_NONE, HF_DIAGONALS_SINGLE, HF_DIAGONALS_CROSSED } hf_diagonals;
+typedef enum { HF_THEORY_EULER_BERNOULLI, HF_THEORY_TIMOSHENKO } hf_theory;
+typedef enum { HF_HELD_CENTRAL_MODULE, HF_HELD_CENTRAL_MODULE_REAR } hf_held;
+typedef enum { HF_HELD_ALL_DOFS, HF_HELD_TRANSLATIONS } hf_held_dofs;
+
+/* A basic unit: a planar truss one module long with chords, posts and diagonals of one round tube. */
+typedef struct {
+    double diameter_m, wall_m; /* of the tube, outside */
+    int panels;                /* along a module */
+    int diagonals;             /* hf_diagonals of a panel */
+} hf_truss_unit;
+
+typedef struct {
+    double depth_m;                /* of all units: the rear chords lie this far behind the surface, along its normal */
+    int main_every;                /* counted from both edges, every main_every-th generatrix line is MBUG, else ABUG */
+    hf_truss_unit bud, mbug, abug; /* BUD on the module borders along x, the others along y */
+    double E_Pa, G_Pa, density_kg_per_m3, expansion_per_K;
+    double hinge_mass_kg;     /* of each node */
+    int theory;               /* hf_theory; shear area of a thin round tube: half its cross-section */
+    int joints;               /* hf_joint of all members */
+    int supports;             /* hf_held: which nodes */
+    int support_dofs;         /* hf_held_dofs */
+    double match_tolerance_m; /* between a net support and its attachment */
+} hf_truss_settings;
+
+/* Basic sub-rings over the modules of the net: front nodes on the module corners, on the cylinder. Node ids f<i>_<j> in
+ * front and r<i>_<j> behind, f<i>.<k>_<j> or f<i>_<j>.<k> inside units of several panels; member ids <node>-<node>.
+ * Free the truss in any case. HF_BAD_CASE when it would be too large, HF_NO_MEMORY. */
+hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder *cylinder, hf_truss *truss,
+                            hf_messages *messages);
+
+/* ---- any truss ---- */
+
+/* Which truss node carries each support of the net: the nearest one, within the tolerance. scene_node, truss_node:
+ * room for scene->n_node; n_attachment of each are set. HF_BAD_CASE names every net support without one. */
+hf_status hf_truss_attach(const hf_truss *truss, const hf_scene *scene, double tolerance_m, int *n_attachment,
+                          int *scene_node, int *truss_node, hf_messages *messages);
+
+/* Room for a truss of this size, all zero. HF_OK or HF_NO_MEMORY. */
+hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, int with_line);
+void hf_truss_free(hf_truss *truss);
+
+/* Everything that must hold whatever the truss came from: finite numbers, stiffness above zero, members with two
+ * different ends and a length. All faults in one go, each naming file, line and id. HF_OK, HF_BAD_CASE. */
+hf_status hf_truss_check(const hf_truss *truss, hf_messages *messages);
+
+/* "truss_nodes.csv:7: node 'a'" or "truss: node 'a'", for messages. */
+void hf_truss_describe(const hf_truss *truss, int is_member, int index, char *text, size_t size);
+
+double hf_truss_member_length(const hf_truss *truss, int i_member); /* m */
+double hf_truss_mass(const hf_truss *truss);                        /* kg: members and hinges */
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,116 @@
+#include <hifdm/carrier.h>
+
+#include "arena.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void lay_out(hf_arena *a, hf_carrier *c, size_t n_support)
+{
+    c->scene_node = hf_arena_take(a, n_support, sizeof(int));
+    c->truss_node = hf_arena_take(a, n_support, sizeof(int));
+    c->flexibility_m_per_N = hf_arena_take(a, 9 * n_support * n_support, sizeof(double));
+}
+
+static hf_status attach(const hf_case *settings, const hf_scene *scene, hf_carrier *c, hf_messages *messages)
+{
+    size_t n_support = 0;
+    hf_arena arena = {0};
+    for (int i = 0; i < scene->n_node; i++)
+        n_support += scene->role[i] == HF_ROLE_SUPPORT;
+    lay_out(&arena, c, n_support);
+    hf_status status = hf_arena_allocate(&arena);
+    if (status == HF_OK) {
+        lay_out(&arena, c, n_support);
+        c->block = arena.block;
+        HF_TRY(hf_truss_attach(&c->truss, scene, settings->truss.match_tolerance_m, &c->n_attachment, c->scene_node,
+                               c->truss_node, messages));
+        status = hf_frame_condense(&c->frame, c->n_attachment, c->truss_node, c->flexibility_m_per_N);
+    }
+    if (status == HF_OK) return HF_OK;
+    return hf_error(messages, status, "out of memory for a truss with %zu attachments", n_support);
+}
+
+hf_status hf_carrier_build(const hf_case *settings, const hf_scene *scene, hf_carrier *carrier, hf_messages *messages)
+{
+    *carrier = (hf_carrier){0};
+    HF_TRY(hf_config_truss(settings, &carrier->truss, messages));
+    carrier->mass_kg = hf_truss_mass(&carrier->truss);
+    HF_TRY(hf_frame_build(&carrier->truss, &carrier->frame, messages));
+    return attach(settings, scene, carrier, messages);
+}
+
+void hf_carrier_free(hf_carrier *carrier)
+{
+    free(carrier->block);
+    hf_frame_free(&carrier->frame);
+    hf_truss_free(&carrier->truss);
+    *carrier = (hf_carrier){0};
+}
+
+static void lay_out_state(hf_arena *a, const hf_carrier *c, hf_carrier_state *s, double **force, double **work)
+{
+    size_t n = HF_TRUSS_DOF * (size_t)c->truss.n_node;
+    s->displacement = hf_arena_take(a, n, sizeof(double));
+    s->reaction = hf_arena_take(a, n, sizeof(double));
+    s->end_force = hf_arena_take(a, 2 * HF_TRUSS_DOF * (size_t)c->truss.n_member, sizeof(double));
+    *force = hf_arena_take(a, n, sizeof(double));
+    *work = hf_arena_take(a, hf_frame_work_size(&c->frame, 1), sizeof(double));
+}
+
+hf_status hf_carrier_load(const hf_carrier *c, const double *force_N, hf_carrier_state *state)
+{
+    double *force, *work;
+    int bad_dof;
+    hf_arena arena = {0};
+    *state = (hf_carrier_state){0};
+    lay_out_state(&arena, c, state, &force, &work);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out_state(&arena, c, state, &force, &work);
+    state->block = arena.block;
+    for (int k = 0; k < c->n_attachment; k++)
+        for (int d = 0; d < 3; d++)
+            force[HF_TRUSS_DOF * c->truss_node[k] + d] += force_N[3 * k + d];
+    const hf_frame_load load = {.force = force};
+    HF_TRY(hf_frame_solve(&c->frame, 1, &load, work, state->displacement, &bad_dof)); /* forces alone: never refused */
+    hf_frame_reactions(&c->frame, &load, state->displacement, state->reaction, NULL);
+    hf_frame_member_forces(&c->frame, &load, state->displacement, state->end_force);
+    return HF_OK;
+}
+
+hf_status hf_carrier_carry(const hf_carrier *c, const hf_model *m, const hf_workspace *w, hf_carrier_state *state)
+{
+    *state = (hf_carrier_state){0};
+    double *force = calloc(3 * (size_t)c->n_attachment, sizeof *force);
+    int *start = malloc((size_t)m->n_node * sizeof *start); /* of each row's force; -1 = no attachment */
+    if (!force || !start) {
+        free(force);
+        free(start);
+        return HF_NO_MEMORY;
+    }
+    for (int row = 0; row < m->n_node; row++)
+        start[row] = -1;
+    for (int k = 0; k < c->n_attachment; k++) {
+        int row = m->row_of_node[c->scene_node[k]];
+        start[row] = 3 * k;
+        for (int d = 0; m->load_N && d < 3; d++)
+            force[3 * k + d] = m->load_N[d * m->n_node + row];
+    }
+    for (int e = 0; e < m->n_cable; e++)
+        for (int end = 0; end < 2; end++) {
+            int here = m->end_row[2 * e + end], there = m->end_row[2 * e + 1 - end];
+            for (int d = 0; d < 3 && start[here] >= 0; d++)
+                force[start[here] + d] +=
+                    w->q_N_per_m[e] * (w->position_m[d * m->n_node + there] - w->position_m[d * m->n_node + here]);
+        }
+    hf_status status = hf_carrier_load(c, force, state);
+    free(force);
+    free(start);
+    return status;
+}
+
+void hf_carrier_state_free(hf_carrier_state *state)
+{
+    free(state->block);
+    *state = (hf_carrier_state){0};
+}
