@@ -9,12 +9,12 @@ MODULES := status arena sha256 text csv \
            scene scene_import truss truss_import config config_table \
            numbering model symmetry workspace band frame carrier \
            metrics surface \
-           lane lane_kernel formfind newton newton_descent certificate \
+           lane lane_kernel formfind newton newton_descent coupling certificate \
            evaluate chord_kernel chord ga swarm polish batch \
-           json summary hdf5_io hdf5_io_rows store_surface journal generations store_file store store_read \
-           store_truss compare
+           json summary hdf5_io hdf5_io_rows store_surface store_coupling journal generations store_file store \
+           store_read store_truss store_table compare
 APP_MODULES := options print problem run progress signals \
-           plan export cutlist vtk report designs main
+           plan export cutlist vtk report report_study designs main
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
 VERSION := 0.1.0
@@ -85,7 +85,7 @@ LIB_OBJ := $(patsubst %,$(BUILD)/src/%.o,$(filter-out $(KERNELS),$(MODULES)) \
              $(foreach isa,$(ISAS),$(KERNELS:%=%_$(isa))))
 # The page of `hifdm report`: its parts in order, as three strings that report.h declares.
 PAGE := $(addprefix src/report/,head.html page.css body.html \
-          data.js scale.js chart.js net.js map.js sections.js main.js)
+          data.js scale.js chart.js net.js map.js sections.js study.js main.js)
 APP_OBJ := $(APP_MODULES:%=$(BUILD)/src/%.o) $(BUILD)/report_page.o
 TEST_OBJ := $(patsubst %.c,$(BUILD)/%.o,tests/run_tests.c tests/support.c $(sort $(wildcard tests/*/test_*.c)))
 PROGRAM := $(BUILD)/hifdm
@@ -116,7 +116,7 @@ quote = '$(subst ','\'',$(1))'
 stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
-FRONT := all compile-all run test stress bench lint asan tsan install
+FRONT := all compile-all run test stress browser bench lint asan tsan install
 .PHONY: $(FRONT) setup clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -149,6 +149,10 @@ test: ## set up, build and run the tests; SUITE="unit verify/band" picks some
 # Twenty times as many nets as `make test` tries, ten times as many kills.
 stress: ## the numerical-stability suite and the killed runs at full length
 	+$(Q)HIFDM_STRESS=1 CK_DEFAULT_TIMEOUT=1800 $(MAKE) test SUITE="stress cli/resume"
+
+browser: ## open pages of hifdm report in headless Chromium; needs `tools/setup.sh --ci`
+	$(SUB) $(PROGRAM)
+	$(Q)HIFDM=$(abspath $(PROGRAM)) BUILD=$(BUILD) tests/browser/run.sh
 
 # Peers that cannot be installed are left out of the tables. BENCH_OUT=... writes elsewhere.
 bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/ (4 minutes)

@@ -99,8 +99,9 @@ int hf_batch_share(hf_batch *batch, const double *base_N)
         set_engine(batch, HF_SOLVER_CHORD, base_N))
         return HF_SOLVER_CHORD;
     if (solver != HF_SOLVER_FIXED_POINT && v->rule != HF_RULE_SEEDED && v->model->has_newton) return HF_SOLVER_NEWTON;
-    /* the lanes know neither struts nor the law elastic: each design on its own */
-    if (!v->model->has_strut && !v->model->EA_N) set_engine(batch, HF_SOLVER_FIXED_POINT, base_N);
+    /* the lanes know neither struts, nor the law elastic, nor a truss: each on its own */
+    if (!v->model->has_strut && !v->model->EA_N && !v->model->n_attachment)
+        set_engine(batch, HF_SOLVER_FIXED_POINT, base_N);
     return HF_SOLVER_FIXED_POINT;
 }
 

@@ -2,6 +2,7 @@
 #include "chord.h"
 
 #include "arena.h"
+#include "coupling.h"
 #include "newton.h"
 
 #include <math.h>
@@ -10,6 +11,7 @@
 
 #define ITERATIONS_MAX 60
 #define PATIENCE 3      /* steps before contraction is asked for */
+#define MODES_LEFT 0.05 /* what may be left out of the inverse of the coupling (hf_schur_modes) */
 #define CONTRACTION 0.7 /* a residual must fall at least by this factor per step */
 
 /* ---- choice of instruction set ---- */
@@ -18,7 +20,7 @@ static const hf_chord_kernels *choose_kernels(void)
 {
 #define TABLE(isa)                                                                                                     \
     {                                                                                                                  \
-        hf_chord_forces_##isa, hf_chord_solve_##isa, hf_chord_step_##isa                                               \
+        hf_chord_forces_##isa, hf_chord_solve_##isa, hf_chord_step_##isa, hf_chord_couple_##isa, hf_chord_move_##isa   \
     }
     static const hf_chord_kernels portable = TABLE(portable), avx2 = TABLE(avx2), avx512 = TABLE(avx512);
 #undef TABLE
@@ -51,6 +53,10 @@ int hf_chord_applies(const hf_evaluator *v)
     for (int e = 0; e < m->n_cable; e++) /* between two supports it moves nothing */
         if (has_multiplier(m, e) && m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free)
             n_multiplier--;
+    for (int k = 0; k < m->n_tie; k++) { /* but on a truss it pulls */
+        int e = m->tie[k] / 2;
+        n_multiplier += has_multiplier(m, e) && m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free;
+    }
     return n_multiplier == 0;
 }
 
@@ -65,6 +71,13 @@ static void lay_out(hf_arena *a, hf_chord *c)
     c->row_begin = hf_arena_take(a, n / 4, sizeof(int));
     c->column_end = hf_arena_take(a, n / 4, sizeof(int));
     c->gene_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
+    if (c->n_pull == 0) return;
+    size_t n_pull = (size_t)c->n_pull;
+    c->pull_of_row = hf_arena_take(a, (size_t)m->n_node, sizeof(int));
+    c->flexibility = hf_arena_take(a, n_pull * (size_t)c->n_pull_pad, sizeof(double));
+    c->mode = hf_arena_take(a, 2 * n_pull * HF_CHORD_MODES_MAX, sizeof(double));
+    c->tie_block = hf_arena_take(a, 9 * (size_t)m->n_tie, sizeof(double));
+    c->base_displacement_m = hf_arena_take(a, n_pull, sizeof(double));
 }
 
 static void pack(const hf_workspace *w, hf_chord *c, int half_bandwidth)
@@ -104,8 +117,38 @@ static void find_skyline(hf_chord *c)
 
 static hf_chord dimensions(const hf_evaluator *v)
 {
-    int half_bandwidth = 3 * v->model->half_bandwidth + 2;
-    return (hf_chord){.evaluator = v, .n_dof = 3 * v->model->n_free, .width = (half_bandwidth + 3) / 4 * 4};
+    int half_bandwidth = 3 * v->model->half_bandwidth + 2, n_pull = 3 * v->model->n_attachment;
+    return (hf_chord){.evaluator = v,
+                      .n_dof = 3 * v->model->n_free,
+                      .width = (half_bandwidth + 3) / 4 * 4,
+                      .n_pull = n_pull,
+                      .n_pull_pad = (n_pull + HF_CHORD_ROWS - 1) / HF_CHORD_ROWS * HF_CHORD_ROWS};
+}
+
+/* What the lanes need of the truss, at the workspace's shape with its factored matrix. */
+static hf_status pack_truss(const hf_model *m, hf_workspace *w, hf_chord *c)
+{
+    size_t n = (size_t)c->n_pull;
+    hf_schur schur;
+    for (int row = 0; row < m->n_node; row++)
+        c->pull_of_row[row] = -1;
+    for (int i = 0; i < m->n_attachment; i++)
+        c->pull_of_row[m->attachment_row[i]] = 3 * i;
+    for (size_t i = 0; i < n; i++) /* the rows that fill up stay zero */
+        for (size_t j = 0; j < n; j++)
+            c->flexibility[(i / HF_CHORD_ROWS * n + j) * HF_CHORD_ROWS + i % HF_CHORD_ROWS] =
+                m->flexibility_m_per_N[i * n + j];
+    for (int k = 0; k < m->n_tie; k++) {
+        double block[3][3];
+        hf_newton_block(m, w, m->tie[k] / 2, block);
+        memcpy(c->tie_block + 9 * k, block, sizeof block);
+    }
+    memcpy(c->base_displacement_m, w->displacement_m, n * sizeof(double));
+    hf_status status = hf_schur_create(m, &schur);
+    if (status == HF_OK) status = hf_schur_factor(m, w, &schur);
+    if (status == HF_OK) c->n_mode = hf_schur_modes(&schur, MODES_LEFT, HF_CHORD_MODES_MAX, c->mode);
+    hf_schur_free(&schur);
+    return status;
 }
 
 hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_workspace *w, hf_chord *chord)
@@ -128,7 +171,7 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_worksp
         chord->gene_of_cable[e] = -1;
     for (int k = 0; k < m->n_gene; k++)
         chord->gene_of_cable[m->gene_cable[k]] = k;
-    return HF_OK;
+    return chord->n_pull ? pack_truss(m, w, chord) : HF_OK;
 }
 
 void hf_chord_free(hf_chord *chord)
@@ -145,6 +188,9 @@ static void lay_out_lanes(hf_arena *a, const hf_chord *c, hf_chord_lanes *l)
     l->x_m = hf_arena_take(a, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
     l->force_N = hf_arena_take(a, ((size_t)c->n_dof + 2 * (size_t)c->width + 8) * HF_LANES, sizeof(double));
     l->gene = hf_arena_take(a, (size_t)m->n_gene * HF_LANES, sizeof(double));
+    l->pull_N = hf_arena_take(a, (size_t)c->n_pull * HF_LANES, sizeof(double));
+    l->displacement_m = hf_arena_take(a, (size_t)c->n_pull_pad * HF_LANES, sizeof(double));
+    l->move_m = hf_arena_take(a, (size_t)c->n_pull_pad * HF_LANES, sizeof(double));
 }
 
 size_t hf_chord_bytes(const hf_evaluator *evaluator, size_t *lanes_bytes)
@@ -180,7 +226,7 @@ void hf_chord_lanes_free(hf_chord_lanes *lanes)
 typedef struct {
     int design[HF_LANES]; /* -1 = empty */
     int steps[HF_LANES];
-    double residual_N[HF_LANES];
+    double excess_N[HF_LANES];
 } lives;
 
 static void load(const hf_chord *c, hf_chord_lanes *l, int lane, const double *design_N)
@@ -188,6 +234,8 @@ static void load(const hf_chord *c, hf_chord_lanes *l, int lane, const double *d
     const hf_model *m = c->evaluator->model;
     for (int i = 0; i < 3 * m->n_node; i++)
         l->x_m[(size_t)i * HF_LANES + (size_t)lane] = c->base_m[i];
+    for (int i = 0; i < c->n_pull; i++)
+        l->displacement_m[(size_t)i * HF_LANES + (size_t)lane] = c->base_displacement_m[i];
     for (int k = 0; k < m->n_gene; k++) {
         double value = design_N[k];
         if (c->evaluator->rule == HF_RULE_FORCE_DENSITY) value /= hf_evaluate_design_length_m(m, m->gene_cable[k]);
@@ -195,35 +243,45 @@ static void load(const hf_chord *c, hf_chord_lanes *l, int lane, const double *d
     }
 }
 
+/* Where a lane stands. */
+typedef struct {
+    double residual_N; /* largest nodal force out of balance */
+    double gap_m;      /* largest |F f - r| of the truss; 0 without one */
+    double excess_N;   /* the larger of the residual and the gap in units of its tolerance */
+} standing;
+
 /* The lane's shape into the workspace, and from there into a result, by the scalar code. */
 static void unload(const hf_chord *c, const hf_chord_lanes *l, int lane, hf_workspace *w, const double *design_N,
-                   int steps, hf_form_result *result)
+                   int steps, double gap_m, hf_form_result *result)
 {
     const hf_model *m = c->evaluator->model;
     hf_evaluate_prepare(c->evaluator, design_N, w);
     for (int i = 0; i < 3 * m->n_node; i++)
         w->position_m[i] = l->x_m[(size_t)i * HF_LANES + (size_t)lane];
+    for (int i = 0; i < c->n_pull; i++)
+        w->displacement_m[i] = l->displacement_m[(size_t)i * HF_LANES + (size_t)lane];
     hf_form_measure(m, c->evaluator->form, w, result);
     result->iterations = steps;
+    if (c->n_pull) hf_coupling_accept(m, w, steps, gap_m, result);
     hf_evaluate_judge(c->evaluator, result);
 }
 
 /* ---- the run ---- */
 
 /* After the forces of a pass: converged, hopeless, or one more step? Returns 1 when the lane has become free. */
-static int settle(const hf_chord *c, hf_chord_lanes *l, int lane, lives *now, double residual_N, hf_workspace *w,
+static int settle(const hf_chord *c, hf_chord_lanes *l, int lane, lives *now, standing at, hf_workspace *w,
                   const double *design_N, hf_form_result *result)
 {
     const hf_model *m = c->evaluator->model;
     const double *design = design_N + (size_t)now->design[lane] * (size_t)m->n_gene;
     hf_form_result *r = result + now->design[lane];
-    if (residual_N <= c->evaluator->form->residual_tolerance * m->reference_N) {
-        unload(c, l, lane, w, design, now->steps[lane], r);
+    if (at.excess_N <= c->evaluator->form->residual_tolerance * m->reference_N) {
+        unload(c, l, lane, w, design, now->steps[lane], at.gap_m, r);
         return 1;
     }
-    int contracts = now->steps[lane] < PATIENCE || residual_N < CONTRACTION * now->residual_N[lane];
-    if (contracts && isfinite(residual_N) && now->steps[lane] < ITERATIONS_MAX) {
-        now->residual_N[lane] = residual_N;
+    int contracts = now->steps[lane] < PATIENCE || at.excess_N < CONTRACTION * now->excess_N[lane];
+    if (contracts && isfinite(at.excess_N) && now->steps[lane] < ITERATIONS_MAX) {
+        now->excess_N[lane] = at.excess_N;
         now->steps[lane]++;
         return 0;
     }
@@ -231,12 +289,32 @@ static int settle(const hf_chord *c, hf_chord_lanes *l, int lane, lives *now, do
     return 1;
 }
 
+/* Forces of net and truss in all lanes. */
+static void look(const hf_chord *c, const hf_chord_kernels *k, hf_chord_lanes *l, standing at[HF_LANES])
+{
+    double squared[HF_LANES], reference_N = c->evaluator->model->reference_N;
+    const hf_form_settings *form = c->evaluator->form;
+    k->forces(c, l, squared);
+    for (int lane = 0; lane < HF_LANES; lane++) {
+        double residual_N = reference_N * sqrt(squared[lane]);
+        at[lane] = (standing){residual_N, 0, residual_N};
+    }
+    if (c->n_pull == 0) return;
+    k->couple(c, l, squared);
+    double scale = form->residual_tolerance * reference_N / form->coupling.tof_m;
+    for (int lane = 0; lane < HF_LANES; lane++) {
+        at[lane].gap_m = sqrt(squared[lane]);
+        double gap_N = scale * at[lane].gap_m;
+        if (!(gap_N <= at[lane].excess_N)) at[lane].excess_N = gap_N; /* keeps a NaN */
+    }
+}
+
 void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, int (*next)(void *context),
                   void *context, const double *design_N, hf_form_result *result)
 {
     const hf_chord_kernels *k = chord->kernels;
     size_t n_gene = (size_t)chord->evaluator->model->n_gene;
-    double residual_squared[HF_LANES], reference_N = chord->evaluator->model->reference_N;
+    standing at[HF_LANES];
     lives now;
     int n_busy = 0, more = 1;
     for (int lane = 0; lane < HF_LANES; lane++) {
@@ -251,21 +329,20 @@ void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *wo
             if (!more) break;
             now.design[lane] = i;
             now.steps[lane] = 0;
-            now.residual_N[lane] = INFINITY;
+            now.excess_N[lane] = INFINITY;
             load(chord, lanes, lane, design_N + (size_t)i * n_gene);
             n_busy++;
         }
         if (n_busy == 0) return;
-        k->forces(chord, lanes, residual_squared);
+        look(chord, k, lanes, at);
         for (int lane = 0; lane < HF_LANES; lane++) {
             if (now.design[lane] < 0) continue;
-            if (!settle(chord, lanes, lane, &now, reference_N * sqrt(residual_squared[lane]), workspace, design_N,
-                        result))
-                continue;
+            if (!settle(chord, lanes, lane, &now, at[lane], workspace, design_N, result)) continue;
             now.design[lane] = -1;
             n_busy--;
         }
         if (n_busy == 0 && !more) return;
+        if (chord->n_pull) k->move(chord, lanes);
         k->solve(chord, lanes);
         k->step(chord, lanes);
     }

@@ -1,4 +1,4 @@
-/* The two loops of chord that do all the work, over HF_LANES designs side by side. Multiplications and additions are
+/* The loops of chord that do all the work, over HF_LANES designs side by side. Multiplications and additions are
  * never fused and every lane keeps its own order of operations, so all instruction sets give the same bits. */
 #include "chord_kernel.h"
 
@@ -11,12 +11,14 @@ static inline void square_root(lanes *value)
         (*value)[k] = __builtin_sqrt((*value)[k]);
 }
 
-void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES])
+/* with_truss is a constant where this is inlined */
+static inline __attribute__((always_inline)) void forces(const hf_chord *chord, const hf_chord_lanes *l, int with_truss,
+                                                         double residual_squared[HF_LANES])
 {
     const hf_model *m = chord->evaluator->model;
     const lanes *x = (const lanes *)(const void *)l->x_m, *y = x + m->n_node, *z = y + m->n_node;
     const lanes *gene = (const lanes *)(const void *)l->gene;
-    lanes *force = (lanes *)(void *)l->force_N + chord->width;
+    lanes *force = (lanes *)(void *)l->force_N + chord->width, *pull = (lanes *)(void *)l->pull_N;
     const lanes zero = {0};
     int tension_rule = chord->evaluator->rule == HF_RULE_TENSION;
     for (int i = 0; i < m->n_free; i++)
@@ -27,6 +29,11 @@ void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, 
     /* the rows behind: a lane that failed may have left NaNs there */
     for (int i = chord->n_dof; i < chord->n_dof + chord->width + 8; i++)
         force[i] = zero;
+    for (int i = 0; with_truss && i < m->n_attachment; i++)
+        for (int c = 0; c < 3; c++) {
+            double load = m->load_N ? m->load_N[c * m->n_node + m->attachment_row[i]] : 0;
+            pull[3 * i + c] = zero + load;
+        }
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], k = chord->gene_of_cable[e];
         lanes dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a], q = {0};
@@ -42,6 +49,10 @@ void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, 
         dx *= q, dy *= q, dz *= q;
         if (a < m->n_free) force[3 * a] += dx, force[3 * a + 1] += dy, force[3 * a + 2] += dz;
         if (b < m->n_free) force[3 * b] -= dx, force[3 * b + 1] -= dy, force[3 * b + 2] -= dz;
+        if (!with_truss) continue;
+        int at_a = chord->pull_of_row[a], at_b = chord->pull_of_row[b];
+        if (at_a >= 0) pull[at_a] += dx, pull[at_a + 1] += dy, pull[at_a + 2] += dz;
+        if (at_b >= 0) pull[at_b] -= dx, pull[at_b + 1] -= dy, pull[at_b + 2] -= dz;
     }
     lanes largest = {0};
     const double scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
@@ -54,6 +65,89 @@ void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, 
     for (int k = 0; k < HF_LANES; k++)
         residual_squared[k] = largest[k];
 }
+
+void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES])
+{
+    if (chord->n_pull)
+        forces(chord, l, 1, residual_squared);
+    else
+        forces(chord, l, 0, residual_squared);
+}
+
+/* ---- the truss ---- */
+
+/* F f - r, six rows at a time, which share the loads of f. */
+static void find_gap(const hf_chord *chord, const lanes *pull, const lanes *r, lanes *gap)
+{
+    const double *f = chord->flexibility;
+    const lanes zero = {0};
+    for (int i = 0; i < chord->n_pull_pad; i += HF_CHORD_ROWS) {
+        lanes s0 = zero, s1 = zero, s2 = zero, s3 = zero, s4 = zero, s5 = zero;
+        for (int j = 0; j < chord->n_pull; j++, f += HF_CHORD_ROWS) {
+            lanes p = pull[j];
+            s0 += f[0] * p;
+            s1 += f[1] * p;
+            s2 += f[2] * p;
+            s3 += f[3] * p;
+            s4 += f[4] * p;
+            s5 += f[5] * p;
+        }
+        gap[i] = s0 - r[i];
+        gap[i + 1] = s1 - r[i + 1];
+        gap[i + 2] = s2 - r[i + 2];
+        gap[i + 3] = s3 - r[i + 3];
+        gap[i + 4] = s4 - r[i + 4];
+        gap[i + 5] = s5 - r[i + 5];
+    }
+}
+
+void HF_KERNEL(hf_chord_couple)(const hf_chord *chord, const hf_chord_lanes *l, double gap_squared[HF_LANES])
+{
+    lanes *move = (lanes *)(void *)l->move_m, share[HF_CHORD_MODES_MAX], largest = {0};
+    find_gap(chord, (const lanes *)(const void *)l->pull_N, (const lanes *)(const void *)l->displacement_m, move);
+    for (int i = 0; i < chord->n_pull; i += 3) {
+        lanes square = move[i] * move[i] + move[i + 1] * move[i + 1] + move[i + 2] * move[i + 2];
+        for (int k = 0; k < HF_LANES; k++)
+            largest[k] = square[k] <= largest[k] ? largest[k] : square[k]; /* keeps a NaN */
+    }
+    for (int k = 0; k < HF_LANES; k++)
+        gap_squared[k] = largest[k];
+    const double *mode = chord->mode;
+    for (int k = 0; k < chord->n_mode; k++) {
+        const double *right = mode + (size_t)(2 * k + 1) * (size_t)chord->n_pull;
+        share[k] = (lanes){0};
+        for (int i = 0; i < chord->n_pull; i++)
+            share[k] += right[i] * move[i];
+    }
+    for (int k = 0; k < chord->n_mode; k++) {
+        const double *left = mode + (size_t)(2 * k) * (size_t)chord->n_pull;
+        for (int i = 0; i < chord->n_pull; i++)
+            move[i] += left[i] * share[k];
+    }
+}
+
+void HF_KERNEL(hf_chord_move)(const hf_chord *chord, const hf_chord_lanes *l)
+{
+    const hf_model *m = chord->evaluator->model;
+    lanes *x = (lanes *)(void *)l->x_m, *r = (lanes *)(void *)l->displacement_m;
+    lanes *force = (lanes *)(void *)l->force_N + chord->width;
+    const lanes *move = (const lanes *)(const void *)l->move_m;
+    for (int i = 0; i < m->n_attachment; i++)
+        for (int c = 0; c < 3; c++) {
+            r[3 * i + c] += move[3 * i + c];
+            x[c * m->n_node + m->attachment_row[i]] += move[3 * i + c];
+        }
+    for (int k = 0; k < m->n_tie; k++) {
+        int there = m->end_row[m->tie[k] ^ 1];
+        const lanes *d = move + 3 * m->tie_attachment[k];
+        const double *block = chord->tie_block + 9 * k;
+        if (there >= m->n_free) continue;
+        for (int c = 0; c < 3; c++)
+            force[3 * there + c] += block[3 * c] * d[0] + block[3 * c + 1] * d[1] + block[3 * c + 2] * d[2];
+    }
+}
+
+/* ---- the matrix ---- */
 
 /* Both triangular solves take four rows at a time, which share the loads of what is already solved. A packed row (or
  * column) holds `width` entries, zeros where the band is shorter; `width` zero rows stand before and behind the

@@ -10,6 +10,7 @@ const char *const hf_stop_rule_word[2] = {"residual", "rms_change"};
 const char *const hf_rule_word[3] = {"force_density", "tension", "seeded"};
 const char *const hf_solver_word[4] = {"auto", "chord", "newton", "fixed_point"};
 const char *const hf_optimize_method_word[3] = {"ga", "lm", "ga+lm"};
+const char *const hf_coupling_scheme_word[2] = {"accelerated", "plain"};
 const char *const hf_symmetry_word[5] = {"none", "x", "y", "xy", "auto"};
 
 /* NULL-terminated, in the order of the enums */
@@ -18,6 +19,7 @@ static const char *const stop_words[] = {"residual", "rms_change", NULL};
 static const char *const rule_words[] = {"force_density", "tension", "seeded", NULL};
 static const char *const solver_words[] = {"auto", "chord", "newton", "fixed_point", NULL};
 static const char *const optimize_words[] = {"ga", "lm", "ga+lm", NULL};
+static const char *const coupling_words[] = {"accelerated", "plain", NULL};
 static const char *const symmetry_words[] = {"none", "x", "y", "xy", "auto", NULL};
 static const char *const spacing_words[] = {"equal_arc", "equal_projected", NULL};
 static const char *const boundary_words[] = {"outer_edge", "module_edges", NULL};
@@ -37,6 +39,7 @@ const hf_section hf_section_table[] = {
     {"scene.import", AT(has_import), "Any net from two CSV files."},
     {"surface", AT(has_surface), "Measures of the reflecting surface. Without this section there are none."},
     {"form", SIZE_MAX, "Form-finding. May be left out: the defaults hold."},
+    {"coupling", SIZE_MAX, "Of the net with its truss (Fig. 17). Without a truss nothing of it is used."},
     {"optimize", AT(has_optimize), "Optimisation of the boundary pretensions. Without this section none runs."},
     {"truss", AT(has_truss),
      "The deployable truss that carries the net. Without this section the supports stand on rigid ground. The paper "
@@ -107,6 +110,14 @@ const hf_field hf_field_table[] = {
      "bound on the iterations; reached: not converged"},
     {"form.collapse_ratio", HF_FIELD_DOUBLE, AT(form.collapse_ratio), 1e-12, 0.5, "1e-3", "", NULL,
      "a cable of law tension shorter than this part of its theoretical length has collapsed"},
+
+    {"coupling.tof_m", HF_FIELD_DOUBLE, AT(form.coupling.tof_m), HF_ABOVE_ZERO, BIG, "1e-6", "m", NULL,
+     "net and truss are one when no attachment moves farther than this any more; the paper takes 1e-3"},
+    {"coupling.scheme", HF_FIELD_WORD, AT(form.coupling.scheme), 0, 0, "accelerated", "", coupling_words,
+     "accelerated: Anderson's method, which needs fewer form-findings and also holds for soft trusses; plain: the "
+     "paper's loop, displacements straight from the forces"},
+    {"coupling.max_iterations", HF_FIELD_INT, AT(form.coupling.max_iterations), 1, 1000000, "200", "", NULL,
+     "form-findings in this loop before it is given up"},
 
     {"optimize.method", HF_FIELD_WORD, AT(optimize.method), 0, 0, "ga", "", optimize_words,
      "genetic algorithm, Levenberg-Marquardt from the form-finding's tensions, or both. After the genetic algorithm "

@@ -1,6 +1,7 @@
 #include <hifdm/evaluate.h>
 
 #include "certificate.h"
+#include "coupling.h"
 #include "newton.h"
 
 #include <math.h>
@@ -21,15 +22,38 @@ int hf_evaluate_method(const hf_model *m, const hf_form_settings *form, const ch
     return method;
 }
 
+/* ---- one shape, alone or with a truss ---- */
+
+typedef struct {
+    const hf_model *m;
+    const hf_form_settings *form;
+    int by_newton, stop; /* stop: hf_stop_rule of the paper's iteration */
+} net_problem;
+
+static hf_status find_alone(const void *context, hf_workspace *w, hf_history *history, hf_form_result *result)
+{
+    const net_problem *p = context;
+    if (p->by_newton) return hf_newton_find(p->m, p->form, w, history, result);
+    return hf_form_find(p->m, p->form, p->stop, w, history, result);
+}
+
+/* From the workspace's first force densities. Where the paper's rule stops depends on the start, which all iterations
+ * of the coupling share then. */
+static hf_status find_net(const net_problem *p, hf_workspace *w, hf_history *history, hf_form_result *result)
+{
+    if (!p->m->n_attachment) return find_alone(p, w, history, result);
+    int start_counts = !p->by_newton && p->stop == HF_STOP_RMS_CHANGE;
+    return hf_coupling_find(p->m, &p->form->coupling, find_alone, p, start_counts, w, history, result);
+}
+
 hf_status hf_evaluate_form(const hf_model *m, const hf_form_settings *form, hf_workspace *w, hf_history *history,
                            hf_form_result *result)
 {
+    net_problem problem = {m, form, hf_evaluate_method(m, form, NULL) == HF_METHOD_NEWTON, form->stop};
     hf_form_prepare(m, w);
-    if (hf_evaluate_method(m, form, NULL) == HF_METHOD_NEWTON)
-        hf_newton_find(m, form, w, history, result);
-    else
-        hf_form_find(m, form, form->stop, w, history, result);
+    find_net(&problem, w, history, result);
     hf_certify(m, w, result);
+    if (m->n_attachment) hf_coupling_certify(m, w, result);
     return result->status;
 }
 
@@ -78,12 +102,10 @@ hf_status hf_evaluate_judge(const hf_evaluator *v, hf_form_result *result)
 
 hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspace *w, hf_form_result *result)
 {
+    int seeded = v->rule == HF_RULE_SEEDED;
+    net_problem problem = {v->model, v->form, !seeded && v->solver != HF_SOLVER_FIXED_POINT && v->model->has_newton,
+                           seeded ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
     hf_evaluate_prepare(v, design_N, w);
-    if (v->rule == HF_RULE_SEEDED)
-        hf_form_find(v->model, v->form, HF_STOP_RMS_CHANGE, w, NULL, result);
-    else if (v->solver != HF_SOLVER_FIXED_POINT && v->model->has_newton)
-        hf_newton_find(v->model, v->form, w, NULL, result);
-    else
-        hf_form_find(v->model, v->form, HF_STOP_RESIDUAL, w, NULL, result);
+    find_net(&problem, w, NULL, result);
     return hf_evaluate_judge(v, result);
 }

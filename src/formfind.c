@@ -28,6 +28,18 @@ const char *hf_stop_reason_word(int reason)
     return "unknown";
 }
 
+const char *hf_coupling_stop_word(int stop)
+{
+    switch (stop) {
+#define WORD(name, value, word)                                                                                        \
+    case HF_COUPLING_##name:                                                                                           \
+        return word;
+        HF_COUPLING_STOP_LIST(WORD)
+#undef WORD
+    }
+    return "unknown";
+}
+
 void hf_form_prepare(const hf_model *model, hf_workspace *workspace)
 {
     size_t n = (size_t)model->n_cable;
@@ -35,6 +47,15 @@ void hf_form_prepare(const hf_model *model, hf_workspace *workspace)
     memcpy(workspace->target, model->target, n * sizeof(double));
     memcpy(workspace->q_N_per_m, model->start_q_N_per_m, n * sizeof(double));
     if (model->EA_N) memcpy(workspace->EA_N, model->EA_N, n * sizeof(double));
+    memset(workspace->displacement_m, 0, 3 * (size_t)model->n_attachment * sizeof(double));
+}
+
+void hf_form_place_supports(const hf_model *m, hf_workspace *w)
+{
+    memcpy(w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    for (int i = 0; i < m->n_attachment; i++)
+        for (int c = 0; c < 3; c++)
+            w->position_m[c * m->n_node + m->attachment_row[i]] += w->displacement_m[3 * i + c];
 }
 
 /* ---- one linear solve: D x_f = P - C_f' Q C_g x_g for x, y, z (Eqs. 2, 5) ---- */
@@ -210,15 +231,23 @@ static int find_rounded_cable(const hf_model *m, const hf_form_settings *s, cons
 
 /* ---- straight chains: a chain that cannot deflect cannot carry a lateral load at any finite tension ---- */
 
+/* The supports at the ends of chain i. */
+static void chain_supports(const hf_model *m, int i_chain, int *from, int *to)
+{
+    const int *first = m->end_row + 2 * m->chain_cable[m->chain_start[i_chain]];
+    const int *last = m->end_row + 2 * m->chain_cable[m->chain_start[i_chain + 1] - 1];
+    *from = first[0] >= m->n_free ? first[0] : first[1];
+    *to = last[0] >= m->n_free ? last[0] : last[1];
+}
+
 /* Largest force across chain i, from the nodal forces without the chains, N. */
 static double lateral_load_N(const hf_model *m, const hf_workspace *w, int i_chain)
 {
     const double *x = w->position_m, *f = w->force_N;
-    int first = m->chain_cable[m->chain_start[i_chain]], last = m->chain_cable[m->chain_start[i_chain + 1] - 1];
-    const int *ends = m->end_row + 2 * first;
-    int from = ends[0] >= m->n_free ? ends[0] : ends[1], row = from == ends[0] ? ends[1] : ends[0];
-    ends = m->end_row + 2 * last;
-    int to = ends[0] >= m->n_free ? ends[0] : ends[1];
+    int from, to;
+    chain_supports(m, i_chain, &from, &to);
+    const int *ends = m->end_row + 2 * m->chain_cable[m->chain_start[i_chain]];
+    int row = from == ends[0] ? ends[1] : ends[0];
     double u[3], span = 0, largest = 0;
     for (int c = 0; c < 3; c++) {
         u[c] = x[c * m->n_node + to] - x[c * m->n_node + from];
@@ -239,14 +268,31 @@ static double lateral_load_N(const hf_model *m, const hf_workspace *w, int i_cha
     return largest;
 }
 
-static int chain_is_length_controlled(const hf_model *m, const hf_workspace *w, int i_chain)
+int hf_form_n_chain(const hf_model *m)
 {
-    return w->law[m->chain_cable[m->chain_start[i_chain]]] == HF_LAW_LENGTH;
+    return m->n_attachment ? m->n_any_chain : m->n_chain;
+}
+
+/* Is chain i length-controlled, and is it straight where its supports are now? */
+static int chain_is_straight(const hf_model *m, const hf_workspace *w, int i_chain)
+{
+    if (w->law[m->chain_cable[m->chain_start[i_chain]]] != HF_LAW_LENGTH) return 0;
+    if (!m->n_attachment) return 1;
+    int from, to;
+    double sum = 0, square = 0;
+    chain_supports(m, i_chain, &from, &to);
+    for (int k = m->chain_start[i_chain]; k < m->chain_start[i_chain + 1]; k++)
+        sum += w->target[m->chain_cable[k]];
+    for (int c = 0; c < 3; c++) {
+        double d = w->position_m[c * m->n_node + to] - w->position_m[c * m->n_node + from];
+        square += d * d;
+    }
+    return sum <= sqrt(square) * (1 + HF_STRAIGHT_EXCESS);
 }
 
 int hf_form_chain_is_loaded(const hf_model *m, hf_workspace *w, int i_chain)
 {
-    if (!chain_is_length_controlled(m, w, i_chain)) return 0;
+    if (!chain_is_straight(m, w, i_chain)) return 0;
     nodal_forces(m, w, 1);
     return lateral_load_N(m, w, i_chain) > CHAIN_LOAD_NONE * m->reference_N;
 }
@@ -257,9 +303,10 @@ static double look_at_chains(const hf_model *m, hf_workspace *w, hf_form_result 
     double largest = 0;
     r->n_loaded_chain = 0;
     *worst = -1;
-    if (m->n_chain) nodal_forces(m, w, 1);
-    for (int i = 0; i < m->n_chain; i++) {
-        if (!chain_is_length_controlled(m, w, i)) continue;
+    int n_chain = hf_form_n_chain(m);
+    if (n_chain) nodal_forces(m, w, 1);
+    for (int i = 0; i < n_chain; i++) {
+        if (!chain_is_straight(m, w, i)) continue;
         double load = lateral_load_N(m, w, i);
         if (!(load > CHAIN_LOAD_NONE * m->reference_N)) continue;
         r->n_loaded_chain++;
@@ -315,7 +362,7 @@ static int is_last(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         if (fabs(r->psi_m - p->psi_before_m) < s->rms_tolerance_m) r->stop_reason = HF_STOPPED_RMS_CHANGE;
         p->psi_before_m = r->psi_m;
     } else {
-        int worst, looks = m->n_chain && r->iterations == p->next_chain_look;
+        int worst, looks = hf_form_n_chain(m) && r->iterations == p->next_chain_look;
         /* the forces balance at the tensions of the laws; the tensions of the last solve must be those, too */
         if (r->residual_N <= s->residual_tolerance * m->reference_N && r->tension_error <= s->residual_tolerance &&
             length_gap <= s->length_tolerance)
@@ -383,7 +430,7 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, h
     double length_gap;
     *r = (hf_form_result){.status = HF_OK, .culprit = -1};
     r->position_error_m = r->condition = r->backward_error = (double)NAN;
-    memcpy(w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double)); /* the support rows count */
+    hf_form_place_supports(m, w);
     for (;;) {
         r->iterations++;
         r->status = w->stop && *w->stop ? HF_INTERRUPTED : solve(m, w, &r->culprit);

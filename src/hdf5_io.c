@@ -1,5 +1,4 @@
-/* Contents: one at a time - failures - types - files and groups - making and writing data sets - reading data sets -
- * attributes - tables */
+/* Contents: failures - types - files, groups - writing data sets - reading data sets - attributes - tables */
 #include "hdf5_io.h"
 
 #include <hifdm/formfind.h>
@@ -98,6 +97,7 @@ static enum_entry enum_at(hf_hdf5_kind kind, int i)
 #define STATUS_ENTRY(name, value, exit_code, word, text) {word, value},
 #define STOP_ENTRY(name, value, word) {word, value},
     static const enum_entry status[] = {HF_STATUS_LIST(STATUS_ENTRY)}, stop[] = {HF_STOP_REASON_LIST(STOP_ENTRY)};
+    static const enum_entry coupling[] = {HF_COUPLING_STOP_LIST(STOP_ENTRY)};
 #undef STATUS_ENTRY
 #undef STOP_ENTRY
     static const struct {
@@ -112,6 +112,7 @@ static enum_entry enum_at(hf_hdf5_kind kind, int i)
         if (list[k].kind == kind && i < list[k].n) return (enum_entry){list[k].word[i], i};
     if (kind == HF_KIND_STATUS && i < HF_HDF5_COUNT(status)) return status[i];
     if (kind == HF_KIND_STOP_REASON && i < HF_HDF5_COUNT(stop)) return stop[i];
+    if (kind == HF_KIND_COUPLING_STOP && i < HF_HDF5_COUNT(coupling)) return coupling[i];
     return (enum_entry){NULL, 0};
 }
 

@@ -38,7 +38,8 @@ typedef enum {
     HF_KIND_STOP_REASON,
     HF_KIND_GA_STOP,
     HF_KIND_JOINT,
-    HF_KIND_UNIT
+    HF_KIND_UNIT,
+    HF_KIND_COUPLING_STOP
 } hf_hdf5_kind;
 
 /* HDF5 as Debian builds it is not made for threads: every public call of store and store_read holds this one lock, so
@@ -194,6 +195,18 @@ void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table,
     X(hf_summary, object, prefix "backward_error", result.backward_error, REAL)                                        \
     X(hf_summary, object, prefix "n_slack", result.n_slack, INT)                                                       \
     X(hf_summary, object, prefix "n_loaded_chain", result.n_loaded_chain, INT)
+
+#define HF_COUPLING_MEMBERS(X, object, prefix, result)                                                                 \
+    X(hf_summary, object, prefix "stop_reason", result.coupling.stop_reason, COUPLING_STOP)                            \
+    X(hf_summary, object, prefix "iterations", result.coupling.iterations, INT)                                        \
+    X(hf_summary, object, prefix "step_m", result.coupling.step_m, REAL)                                               \
+    X(hf_summary, object, prefix "ratio", result.coupling.ratio, REAL)                                                 \
+    X(hf_summary, object, prefix "max_displacement_m", result.coupling.max_displacement_m, REAL)
+
+/* only when has_coupling; those of the optimised shapes stand beside their results */
+#define HF_SUMMARY_COUPLING_MEMBERS(X) HF_COUPLING_MEMBERS(X, "/coupling", "", form)
+#define HF_SUMMARY_COUPLING_GA_MEMBERS(X) HF_COUPLING_MEMBERS(X, "/ga", "best_coupling_", best)
+#define HF_SUMMARY_COUPLING_POLISH_MEMBERS(X) HF_COUPLING_MEMBERS(X, "/polish", "coupling_", polish)
 
 #define HF_SUMMARY_FORM_MEMBERS(X)                                                                                     \
     X(hf_summary, "/", "title", title, CHARS)                                                                          \

@@ -37,6 +37,35 @@ void hf_json_number(const char *key, double value, FILE *f)
         fprintf(f, "\"%s\": null", key);
 }
 
+void hf_json_value(double value, int digits, FILE *f)
+{
+    if (!isfinite(value))
+        fputs("null", f);
+    else
+        fprintf(f, "%.*g", digits, value + 0.0); /* no -0 */
+}
+
+void hf_json_strings(const char *key, const char *const *text, int n, FILE *f)
+{
+    fprintf(f, ",\"%s\":[", key);
+    for (int i = 0; i < n; i++) {
+        if (i) fputc(',', f);
+        hf_json_string(text[i], f);
+    }
+    fputc(']', f);
+}
+
+void hf_json_values(const char *key, const double *value, int n, int stride, int digits, FILE *f)
+{
+    fprintf(f, ",\"%s\":[", key);
+    for (int i = 0; i < n; i++) {
+        if (i % stride != 0 && i != n - 1) continue;
+        if (i) fputc(',', f);
+        hf_json_value(value[i], digits, f);
+    }
+    fputc(']', f);
+}
+
 void hf_json_lines(const char *key, const char *prefix, const char *lines, FILE *f)
 {
     const char *comma = "";

@@ -12,10 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A chain whose lengths exceed the distance of its supports by less than this part counts as straight: its sag would
- * be below 2e-5 of its span, and the tension above 1e4 times its load. */
-#define STRAIGHT_EXCESS 1e-9
-
 /* ---- layout ---- */
 
 /* The methods iterative_fdm and fdm put other laws in its place. */
@@ -164,6 +160,7 @@ static void follow_chain(hf_model *m, const length_graph *g, int from, int first
 {
     int start = m->chain_start[m->n_any_chain], n = 0, row = from, e = first;
     double sum = 0;
+    if (start == m->n_cable) return; /* every cable is in a chain already */
     for (;;) {
         row = m->end_row[2 * e] == row ? m->end_row[2 * e + 1] : m->end_row[2 * e];
         m->chain_cable[start + n++] = e;
@@ -172,7 +169,7 @@ static void follow_chain(hf_model *m, const length_graph *g, int from, int first
         if (g->count[row] != 2 || n == m->n_cable - start) return;
         e = g->cable[2 * row] == e ? g->cable[2 * row + 1] : g->cable[2 * row];
     }
-    int is_straight = sum <= distance(m, from, row) * (1 + STRAIGHT_EXCESS);
+    int is_straight = sum <= distance(m, from, row) * (1 + HF_STRAIGHT_EXCESS);
     if (n < 2 || e < first || is_straight != want_straight) return;
     int through = from;
     for (int k = 0; is_straight && k + 1 < n; k++) {
@@ -340,6 +337,74 @@ static void lay_out_attachments(hf_arena *a, hf_model *m)
     size_t n = (size_t)m->n_attachment;
     m->attachment_row = hf_arena_take(a, n, sizeof(int));
     m->flexibility_m_per_N = hf_arena_take(a, 9 * n * n, sizeof(double));
+    m->tie = hf_arena_take(a, (size_t)m->n_tie, sizeof(int));
+    m->tie_attachment = hf_arena_take(a, (size_t)m->n_tie, sizeof(int));
+}
+
+/* List the cable ends at attachments, or only count them while there is no list. attachment_of_row: [n_node], or -1. */
+static void find_ties(hf_model *m, const int *attachment_of_row)
+{
+    m->n_tie = 0;
+    for (int k = 0; k < 2 * m->n_cable; k++) {
+        int i = attachment_of_row[m->end_row[k]];
+        if (i < 0) continue;
+        if (m->tie) m->tie[m->n_tie] = k;
+        if (m->tie) m->tie_attachment[m->n_tie] = i;
+        m->n_tie++;
+    }
+}
+
+/* Between supports a length is the truss's business: the cable keeps its first tension. */
+static void hold_rods(hf_model *m)
+{
+    for (int k = 0; k < m->n_tie; k++) {
+        int e = m->tie[k] / 2;
+        if (m->law[e] != HF_LAW_LENGTH || m->end_row[2 * e] < m->n_free || m->end_row[2 * e + 1] < m->n_free) continue;
+        m->law[e] = HF_LAW_TENSION;
+        m->target[e] = m->start_q_N_per_m[e] * m->length_m[e];
+    }
+}
+
+/* Supports that move can straighten a chain, so that its nodes must be known, too. */
+static void mark_chains(hf_model *m)
+{
+    for (int i = m->n_chain; i < m->n_any_chain; i++)
+        for (int k = m->chain_start[i]; k < m->chain_start[i + 1]; k++)
+            for (int side = 0; side < 2; side++) {
+                int row = m->end_row[2 * m->chain_cable[k] + side];
+                if (row < m->n_free) m->chain_of_row[row] = i;
+            }
+}
+
+static hf_status attach(hf_model *m, int n, const int *node, const double *flexibility)
+{
+    size_t dofs = 3 * (size_t)n;
+    int *attachment_of_row = malloc((size_t)m->n_node * sizeof *attachment_of_row);
+    if (!attachment_of_row) return HF_NO_MEMORY;
+    for (int row = 0; row < m->n_node; row++)
+        attachment_of_row[row] = -1;
+    for (int i = 0; i < n; i++)
+        attachment_of_row[m->row_of_node[node[i]]] = i;
+    hf_arena arena = {0};
+    m->n_attachment = n;
+    find_ties(m, attachment_of_row);
+    lay_out_attachments(&arena, m);
+    m->tie = NULL;
+    hf_status status = hf_arena_allocate(&arena);
+    if (status == HF_OK) {
+        lay_out_attachments(&arena, m);
+        m->attachment_block = arena.block;
+        find_ties(m, attachment_of_row);
+        for (int i = 0; i < n; i++)
+            m->attachment_row[i] = m->row_of_node[node[i]];
+        for (size_t i = 0; i < dofs; i++)
+            for (size_t j = 0; j < dofs; j++)
+                m->flexibility_m_per_N[i * dofs + j] = (flexibility[i * dofs + j] + flexibility[j * dofs + i]) / 2;
+        hold_rods(m);
+        mark_chains(m);
+    }
+    free(attachment_of_row);
+    return status;
 }
 
 hf_status hf_model_attach(hf_model *m, int n_attachment, const int *node, const double *flexibility_m_per_N,
@@ -348,23 +413,8 @@ hf_status hf_model_attach(hf_model *m, int n_attachment, const int *node, const 
     assert(m->n_attachment == 0 && n_attachment > 0);
     HF_TRY(check_attachments(m, n_attachment, node, messages));
     HF_TRY(check_flexibility(n_attachment, flexibility_m_per_N, messages));
-    hf_model with = *m;
-    with.n_attachment = n_attachment;
-    hf_arena arena = {0};
-    lay_out_attachments(&arena, &with);
-    if (hf_arena_allocate(&arena) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for %d attachments", n_attachment);
-    lay_out_attachments(&arena, &with);
-    with.attachment_block = arena.block;
-    size_t dofs = 3 * (size_t)n_attachment;
-    for (int i = 0; i < n_attachment; i++)
-        with.attachment_row[i] = with.row_of_node[node[i]];
-    for (size_t i = 0; i < dofs; i++)
-        for (size_t j = 0; j < dofs; j++)
-            with.flexibility_m_per_N[i * dofs + j] =
-                (flexibility_m_per_N[i * dofs + j] + flexibility_m_per_N[j * dofs + i]) / 2;
-    *m = with;
-    return HF_OK;
+    if (attach(m, n_attachment, node, flexibility_m_per_N) == HF_OK) return HF_OK;
+    return hf_error(messages, HF_NO_MEMORY, "out of memory for %d attachments", n_attachment);
 }
 
 void hf_model_free(hf_model *model)
@@ -396,6 +446,8 @@ int hf_model_is_valid(const hf_model *m)
         if (m->gene_leader[k] < 0 || m->gene_leader[k] > k) return 0;
     for (int k = 0; k < m->n_inner_node; k++)
         if (m->inner_row[k] < 0 || m->inner_row[k] >= m->n_free) return 0;
+    for (int k = 0; k < m->n_tie; k++)
+        if (m->end_row[m->tie[k]] != m->attachment_row[m->tie_attachment[k]]) return 0;
     for (int i = 0; i < m->n_attachment; i++)
         if (m->attachment_row[i] < m->n_free || m->attachment_row[i] >= m->n_node) return 0;
     return m->chain_start[0] == 0 && m->n_gene <= m->n_cable;

@@ -121,6 +121,15 @@ static double tension_change(const hf_workspace *w, int e, double length, double
     return k > 0 ? part * k * beyond : -part * T;
 }
 
+void hf_newton_block(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
+{
+    double u[3], length = direction(m, w->position_m, e, u), tension = law_tension(w, e, length, w->tension_N[e]);
+    double across = tension / length, along = axial_stiffness(w, e, length, tension) - across;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            block[r][c] = along * u[r] * u[c] + (r == c ? across : 0);
+}
+
 /* The matrix at position_m, tension_N into newton_band; returns the largest diagonal entry. */
 static double assemble(const hf_model *m, hf_workspace *w)
 {
@@ -315,7 +324,7 @@ static void start_elsewhere(const hf_model *m, hf_workspace *w)
 static int start_elastic(const hf_model *m, const hf_form_settings *s, hf_workspace *w)
 {
     int most = s->max_iterations < DESCENT_MAX ? s->max_iterations : DESCENT_MAX, n_step = 0;
-    memcpy(w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    hf_form_place_supports(m, w);
     int n = hf_newton_descend(m, w, most);
     newton_steps(m, s, w, STEPS_MAX, &n_step);
     return n + n_step;

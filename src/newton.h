@@ -23,6 +23,10 @@ hf_status hf_newton_find(const hf_model *model, const hf_form_settings *settings
  * of its 1-norm condition number, INFINITY when a Levenberg shift was needed. HF_SINGULAR when no shift helps. */
 hf_status hf_newton_factor(const hf_model *model, hf_workspace *workspace, double *condition);
 
+/* Stiffness [3][3] of cable e between its ends at the workspace's shape and tensions: its part of the Newton matrix,
+ * which the coupling with a truss needs for the cables that end at attachments. */
+void hf_newton_block(const hf_model *model, const hf_workspace *workspace, int i_cable, double block[3][3]);
+
 /* A tension below this part of the reference tension is what rounding leaves in a slack elastic cable: a node that only
  * such cables hold is loose, and has no position. */
 #define HF_NEWTON_NOTHING 1e-12

@@ -3,6 +3,7 @@
 
 #include "arena.h"
 #include "band.h"
+#include "coupling.h"
 #include "newton.h"
 #include "symmetry.h"
 #include <hifdm/metrics.h>
@@ -32,6 +33,8 @@ typedef struct {
     double *trial_N;       /* [n_gene] */
     double *best_N;        /* [n_gene] */
     double *sensitivity;   /* [n_leader][3 n_free] right-hand sides, then dx/dT, then the rows of J' */
+    hf_schur schur;        /* with a truss, and what follows */
+    double *pull, *move_m; /* [n_leader][3 n_attachment] change of the pull on the truss; [3 n_attachment] its answer */
     double best_psi_m;
     int evaluations;
     int has_shape;    /* status and workspace belong to design_N */
@@ -55,6 +58,8 @@ static void lay_out(hf_arena *a, problem *p)
     p->gene = hf_arena_take(a, k, sizeof(int));
     p->variable_of_gene = hf_arena_take(a, k, sizeof(int));
     p->sensitivity = hf_arena_take(a, (size_t)m->n_leader * 3 * (size_t)m->n_free, sizeof(double));
+    p->pull = hf_arena_take(a, (size_t)m->n_leader * 3 * (size_t)m->n_attachment, sizeof(double));
+    p->move_m = hf_arena_take(a, 3 * (size_t)m->n_attachment, sizeof(double));
 }
 
 /* One variable for the genes that a symmetry links. */
@@ -137,8 +142,9 @@ static int residuals(const gsl_vector *variable, void *context, gsl_vector *f)
 
 /* ---- sensitivities ---- */
 
-/* Add -dg/dT of gene k at the workspace's shape: the change of the nodal forces for one newton of T'. */
-static void add_force_of_gene(const problem *p, int k, double *force)
+/* Add -dg/dT of gene k at the workspace's shape: the change of the nodal forces for one newton of T', and of the pull
+ * on the truss. */
+static void add_force_of_gene(const problem *p, int k, double *force, double *on_truss)
 {
     const hf_model *m = p->v->model;
     int e = m->gene_cable[k], a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
@@ -148,6 +154,25 @@ static void add_force_of_gene(const problem *p, int k, double *force)
         double pull = (p->w->position_m[c * m->n_node + b] - p->w->position_m[c * m->n_node + a]) / length;
         if (a < m->n_free) force[3 * a + c] += pull;
         if (b < m->n_free) force[3 * b + c] -= pull;
+        for (int t = 0; t < m->n_tie; t++)
+            if (m->tie[t] / 2 == e) on_truss[3 * m->tie_attachment[t] + c] += m->tie[t] % 2 ? -pull : pull;
+    }
+}
+
+/* Sensitivities at fixed supports -> those of net and truss together. */
+static void let_truss_answer(problem *p)
+{
+    const hf_model *m = p->v->model;
+    size_t n_dof = 3 * (size_t)m->n_free;
+    for (int k = 0; k < m->n_leader; k++) {
+        double *moved = p->sensitivity + (size_t)k * n_dof, *pull = p->pull + (size_t)(3 * k * m->n_attachment);
+        hf_coupling_pull(m, p->w, moved, pull);
+        hf_schur_displace(m, &p->schur, pull, p->move_m);
+        memset(p->schur.column, 0, n_dof * sizeof(double));
+        hf_coupling_push(m, p->w, p->move_m, p->schur.column);
+        hf_band_back_solve((int)n_dof, 3 * m->half_bandwidth + 2, 1, p->w->newton_band, p->schur.column, (int)n_dof);
+        for (size_t i = 0; i < n_dof; i++)
+            moved[i] += p->schur.column[i];
     }
 }
 
@@ -159,12 +184,16 @@ static void linearise(problem *p, const gsl_vector *variable)
     hf_status status = evaluate(p, variable);
     if (p->is_linear) return;
     p->is_linear = 1;
+    memset(p->pull, 0, 3 * (size_t)m->n_leader * (size_t)m->n_attachment * sizeof(double));
     memset(p->sensitivity, 0, (size_t)m->n_leader * n_dof * sizeof(double));
     if (status != HF_OK || hf_newton_factor(m, p->w, NULL) != HF_OK) return;
+    if (m->n_attachment && hf_schur_factor(m, p->w, &p->schur) != HF_OK) return;
     for (int k = 0; k < m->n_gene; k++)
-        add_force_of_gene(p, k, p->sensitivity + (size_t)p->variable_of_gene[k] * n_dof);
+        add_force_of_gene(p, k, p->sensitivity + (size_t)p->variable_of_gene[k] * n_dof,
+                          p->pull + (size_t)(3 * p->variable_of_gene[k] * m->n_attachment));
     hf_band_back_solve((int)n_dof, 3 * m->half_bandwidth + 2, m->n_leader, p->w->newton_band, p->sensitivity,
                        (int)n_dof);
+    if (m->n_attachment) let_truss_answer(p);
     double scale = 1 / sqrt(m->n_inner_node);
     for (size_t k = 0; k < variable->size; k++) {
         double weight = scale * slope(p, variable, k), *moved = p->sensitivity + k * n_dof;
@@ -253,10 +282,12 @@ hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower_N, co
     number_variables(&p);
     memcpy(p.best_N, design_N, bytes);
     p.best_psi_m = result->start_psi_m = start.psi_m;
-    hf_status status = minimise(&p, max_iterations, design_N, result);
+    hf_status status = evaluator->model->n_attachment ? hf_schur_create(evaluator->model, &p.schur) : HF_OK;
+    if (status == HF_OK) status = minimise(&p, max_iterations, design_N, result);
     result->psi_m = p.best_psi_m;
     result->evaluations = p.evaluations;
     memcpy(design_N, p.best_N, bytes);
+    hf_schur_free(&p.schur);
     hf_arena_free(&arena);
     return status;
 }

@@ -113,6 +113,15 @@ static void print_certificate(const hf_form_result *r, FILE *f)
                 r->position_error_m, r->condition, r->backward_error);
 }
 
+static void print_coupling(const hf_coupling_result *r, FILE *f)
+{
+    fprintf(f,
+            "  on its truss  attachments give way by up to %.4f mm; %d form-finding%s, the last step %.1e m, stopped "
+            "by %s\n",
+            r->max_displacement_m * 1e3, r->iterations, r->iterations == 1 ? "" : "s", r->step_m,
+            hf_coupling_stop_word((int)r->stop_reason));
+}
+
 void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
 {
     char wall[32];
@@ -129,6 +138,7 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
     print_result(&s->form, f);
     print_certificate(&s->form, f);
     print_surface(s, 0, f);
+    if (s->has_coupling) print_coupling(&s->form.coupling, f);
     if (s->has_optimize) print_optimize(s, f);
     if (s->has_polish) print_polish(s, f);
     if (path) fprintf(f, "  results       %s\n", path);

@@ -52,6 +52,7 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->n_leader = model->n_leader;
     s->half_bandwidth = model->half_bandwidth;
     s->planes = p->planes;
+    s->has_coupling = model->n_attachment > 0;
     s->pretension_N = model->pretension_N;
     if (p->settings.has_surface) s->surface = p->settings.surface;
     s->has_truss = settings->has_truss;
@@ -137,7 +138,7 @@ static const char *close_names(name_list *list)
 static void name_loaded_chains(const hf_problem *p, hf_workspace *w, name_list *list)
 {
     const hf_model *m = &p->model;
-    for (int i = 0; i < m->n_chain; i++) {
+    for (int i = 0; i < hf_form_n_chain(m); i++) {
         char name[256];
         if (!hf_form_chain_is_loaded(m, w, i)) continue;
         hf_model_chain_name(m, &p->scene, i, name, sizeof name);
@@ -187,6 +188,13 @@ static int furthest_off(const hf_problem *p)
 static hf_status explain_not_converged(const hf_problem *p, const hf_form_result *r, hf_messages *messages)
 {
     const hf_workspace *w = &p->workspace;
+    if (r->coupling.stop_reason == HF_COUPLING_MAX_ITERATIONS)
+        return hf_error(
+            messages, r->status,
+            "the net and its truss did not come to rest in %d form-findings: an attachment would still move "
+            "by %.2e m, %g times the step before; raise coupling.max_iterations or coupling.tof_m, or "
+            "tighten form.residual_tolerance, which limits the forces",
+            r->coupling.iterations, r->coupling.step_m, r->coupling.ratio);
     if (r->culprit >= 0)
         return hf_error(messages, r->status,
                         "form-finding is as exact as double precision allows, nodal residual %.2e N: cable '%s' is "
@@ -202,6 +210,18 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
                     w->length_m[e]);
 }
 
+/* The loop has run away, or the net has lost its shape on the way. */
+static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, hf_messages *messages)
+{
+    const hf_coupling_result *c = &r->coupling;
+    return hf_error(messages, r->status,
+                    "the truss is too soft for the pretension of its net: after %d form-findings an attachment would "
+                    "still move by %.2e m, %g times the step before; stiffen the truss, lower form.pretension_N%s",
+                    c->iterations, c->step_m, c->ratio,
+                    p->settings.form.coupling.scheme == HF_COUPLING_PLAIN ? ", or try coupling.scheme: accelerated"
+                                                                          : "");
+}
+
 hf_status hf_problem_explain(hf_problem *p, const hf_form_result *r, hf_messages *messages)
 {
     hf_workspace *w = &p->workspace;
@@ -215,6 +235,8 @@ hf_status hf_problem_explain(hf_problem *p, const hf_form_result *r, hf_messages
         return explain_not_converged(p, r, messages);
     case HF_INTERRUPTED:
         return r->status;
+    case HF_TRUSS_TOO_SOFT:
+        return explain_too_soft(p, r, messages);
     case HF_STRAIGHT_CHAIN:
         name_loaded_chains(p, w, &chains);
         return hf_error(

@@ -1,4 +1,4 @@
-/* Contents: numbers and texts - net and shapes - series - the page - reading */
+/* Contents: texts - net and shapes - series - the page - reading */
 #include "report.h"
 
 #include "export.h"
@@ -28,6 +28,7 @@ static const struct {
     {"ga", "/ga/n_infeasible", "n_infeasible"},
     {"coupling", "/coupling/history/step_m", "step_m"},
     {"coupling", "/coupling/history/psi_m", "psi_m"},
+    {"coupling", "/coupling/history/max_displacement_m", "max_displacement_m"},
 };
 enum { N_SERIES = sizeof series_table / sizeof *series_table };
 
@@ -39,31 +40,11 @@ typedef struct {
     int has_shape[HF_STAGE_NONE];
     hf_shape shape[HF_STAGE_NONE];
     hf_series series[N_SERIES];
-    hf_series truss_position_m, truss_end; /* [n][3], [m][2] */
+    hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or none, [m][2] */
     char provenance[PROVENANCE_SIZE];
 } page;
 
-/* ---- numbers and texts ---- */
-
-static void write_number(double value, int digits, FILE *f)
-{
-    if (!isfinite(value))
-        fputs("null", f);
-    else
-        fprintf(f, "%.*g", digits, value + 0.0); /* no -0 */
-}
-
-/* ,"key":[...] of every stride-th value and the last */
-static void write_numbers(const char *key, const double *value, int n, int stride, int digits, FILE *f)
-{
-    fprintf(f, ",\"%s\":[", key);
-    for (int i = 0; i < n; i++) {
-        if (i % stride != 0 && i != n - 1) continue;
-        if (i) fputc(',', f);
-        write_number(value[i], digits, f);
-    }
-    fputc(']', f);
-}
+/* ---- texts ---- */
 
 static void write_codes(const char *key, const unsigned char *value, int n, FILE *f)
 {
@@ -71,21 +52,6 @@ static void write_codes(const char *key, const unsigned char *value, int n, FILE
     for (int i = 0; i < n; i++)
         fputc('0' + value[i], f);
     fputc('"', f);
-}
-
-static void write_ids(const char *key, const char *const *id, int n, FILE *f)
-{
-    fprintf(f, ",\"%s\":[", key);
-    for (int i = 0; i < n; i++) {
-        if (i) fputc(',', f);
-        hf_json_string(id[i], f);
-    }
-    fputc(']', f);
-}
-
-static void write_words(const char *key, const char *const *word, int n, FILE *f)
-{
-    write_ids(key, word, n, f);
 }
 
 static void write_html(const char *text, FILE *f)
@@ -98,18 +64,25 @@ static void write_html(const char *text, FILE *f)
     }
 }
 
+/* What the page is headed: the title, or the name of the case file. */
+static const char *heading(const hf_summary *s)
+{
+    const char *slash = strrchr(s->case_path, '/');
+    return *s->title ? s->title : slash ? slash + 1 : s->case_path;
+}
+
 /* ---- net and shapes ---- */
 
 static void write_net(const hf_scene *s, FILE *f)
 {
     fprintf(f, ",\n\"net\":{\"n_node\":%d,\"n_cable\":%d", s->n_node, s->n_cable);
-    write_words("role_word", hf_role_word, 3, f);
-    write_words("group_word", hf_group_word, 2, f);
-    write_words("law_word", hf_law_word, HF_N_LAW, f);
-    write_ids("node_id", s->node_id, s->n_node, f);
-    write_numbers("position_m", s->position_m, 3 * s->n_node, 1, 8, f);
+    hf_json_strings("role_word", hf_role_word, 3, f);
+    hf_json_strings("group_word", hf_group_word, 2, f);
+    hf_json_strings("law_word", hf_law_word, HF_N_LAW, f);
+    hf_json_strings("node_id", s->node_id, s->n_node, f);
+    hf_json_values("position_m", s->position_m, 3 * s->n_node, 1, 8, f);
     write_codes("role", s->role, s->n_node, f);
-    write_ids("cable_id", s->cable_id, s->n_cable, f);
+    hf_json_strings("cable_id", s->cable_id, s->n_cable, f);
     fputs(",\"end\":[", f);
     for (int i = 0; i < 2 * s->n_cable; i++)
         fprintf(f, "%s%d", i ? "," : "", s->end[i]);
@@ -125,11 +98,11 @@ static void write_shape(const page *p, hf_stage stage, FILE *f)
     fprintf(f, "{\"stage\":\"%s\",\"displacement_m\":[", hf_stage_word[stage]);
     for (int i = 0; i < 3 * p->scene.n_node; i++) {
         if (i) fputc(',', f);
-        write_number(shape->position_m[i] - p->scene.position_m[i], 6, f);
+        hf_json_value(shape->position_m[i] - p->scene.position_m[i], 6, f);
     }
     fputc(']', f);
-    write_numbers("length_m", shape->length_m, p->scene.n_cable, 1, 7, f);
-    write_numbers("tension_N", shape->tension_N, p->scene.n_cable, 1, 7, f);
+    hf_json_values("length_m", shape->length_m, p->scene.n_cable, 1, 7, f);
+    hf_json_values("tension_N", shape->tension_N, p->scene.n_cable, 1, 7, f);
     write_codes("law", shape->law, p->scene.n_cable, f);
     fputc('}', f);
 }
@@ -138,7 +111,7 @@ static void write_shapes(const page *p, FILE *f)
 {
     const char *comma = "";
     fputs(",\n\"slack_below_N\":", f);
-    write_number(HF_SLACK_RATIO * hf_model_reference_N(&p->scene, p->summary.pretension_N), 17, f);
+    hf_json_value(HF_SLACK_RATIO * hf_model_reference_N(&p->scene, p->summary.pretension_N), 17, f);
     fputs(",\n\"shapes\":[", f);
     for (int i = 0; i < HF_STAGE_NONE; i++) {
         if (!p->has_shape[i]) continue;
@@ -154,8 +127,16 @@ static void write_truss(const page *p, FILE *f)
     const hf_series *node = &p->truss_position_m, *end = &p->truss_end;
     if (!node->n || !end->n) return;
     fprintf(f, ",\n\"truss\":{\"n_node\":%d,\"n_member\":%d", node->n, end->n);
-    write_numbers("position_m", node->value, 3 * node->n, 1, 8, f);
-    write_numbers("end", end->value, 2 * end->n, 1, 9, f);
+    hf_json_values("position_m", node->value, 3 * node->n, 1, 8, f);
+    hf_json_values("end", end->value, 2 * end->n, 1, 9, f);
+    if (p->truss_displacement.n == node->n) {
+        fputs(",\"displacement_m\":[", f);
+        for (int i = 0; i < 3 * node->n; i++) {
+            if (i) fputc(',', f);
+            hf_json_value(p->truss_displacement.value[6 * (i / 3) + i % 3], 6, f); /* without the rotations */
+        }
+        fputc(']', f);
+    }
     fputc('}', f);
 }
 
@@ -167,25 +148,26 @@ static void write_series(const page *p, FILE *f)
         int n = p->series[i].n, stride = (n + POINTS_MAX - 1) / POINTS_MAX;
         if (n) fprintf(f, ",\n\"%s\":{\"n\":%d,\"stride\":%d", series_table[i].group, n, stride);
         for (k = i; k < N_SERIES && series_table[k].group == series_table[i].group; k++)
-            if (n && p->series[k].n == n) write_numbers(series_table[k].key, p->series[k].value, n, stride, 9, f);
+            if (n && p->series[k].n == n) hf_json_values(series_table[k].key, p->series[k].value, n, stride, 9, f);
         if (n) fputc('}', f);
     }
 }
 
 /* ---- the page ---- */
 
-static void write_data(const page *p, FILE *f)
+static void write_data(const void *context, FILE *f)
 {
+    const page *p = context;
     const hf_summary *s = &p->summary;
     fputc('{', f);
-    hf_json_text("title", *s->title ? s->title : s->case_path, f);
+    hf_json_text("title", heading(s), f);
     fputs(",\n", f);
     hf_json_lines("provenance", "", p->provenance, f);
     fputs(",\n\"summary\":", f);
     hf_summary_write_json(s, s->form.status, s->warnings, p->path, f);
     fprintf(f, ",\"seed\":\"%llu\"", (unsigned long long)s->seed); /* as a number it would lose its last digits */
     fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, s->n_gene);
-    write_number(s->pretension_N, 17, f);
+    hf_json_value(s->pretension_N, 17, f);
     write_net(&p->scene, f);
     write_shapes(p, f);
     write_truss(p, f);
@@ -193,18 +175,23 @@ static void write_data(const page *p, FILE *f)
     fputs("}\n", f);
 }
 
-static void write_page(const void *context, FILE *f)
+void hf_report_write(const char *title, void (*write)(const void *context, FILE *file), const void *context, FILE *f)
 {
-    const page *p = context;
     fputs(hf_report_page_head, f);
     fputs("</style>\n<title>", f);
-    write_html(*p->summary.title ? p->summary.title : p->summary.case_path, f);
+    write_html(title, f);
     fputs("</title>\n", f);
     fputs(hf_report_page_body, f);
-    write_data(p, f);
+    write(context, f);
     fputs("</script>\n<script>\n", f);
     fputs(hf_report_page_script, f);
     fputs("</script>\n</body>\n</html>\n", f);
+}
+
+static void write_page(const void *context, FILE *f)
+{
+    const page *p = context;
+    hf_report_write(heading(&p->summary), write_data, p, f);
 }
 
 /* ---- reading ---- */
@@ -213,7 +200,8 @@ static hf_status check_truss(const page *p, hf_messages *messages)
 {
     for (int i = 0; i < 2 * p->truss_end.n; i++)
         if (!(p->truss_end.value[i] >= 0 && p->truss_end.value[i] < p->truss_position_m.n))
-            return hf_error(messages, HF_IO, "%s: is damaged: /truss/end names a node that is not there", p->path);
+            return hf_error(messages, HF_IO, "%s: is damaged: /truss/member/end names a node that is not there",
+                            p->path);
     return HF_OK;
 }
 
@@ -238,8 +226,9 @@ static hf_status read_page(page *p, hf_messages *messages)
     HF_TRY(read_shapes(p, messages));
     for (int i = 0; i < N_SERIES; i++)
         HF_TRY(hf_store_read_series(p->path, series_table[i].path, 1, &p->series[i], messages));
-    HF_TRY(hf_store_read_series(p->path, "/truss/position_m", 3, &p->truss_position_m, messages));
-    HF_TRY(hf_store_read_series(p->path, "/truss/end", 2, &p->truss_end, messages));
+    HF_TRY(hf_store_read_series(p->path, "/truss/node/position_m", 3, &p->truss_position_m, messages));
+    HF_TRY(hf_store_read_series(p->path, "/truss/node/displacement", 6, &p->truss_displacement, messages));
+    HF_TRY(hf_store_read_series(p->path, "/truss/member/end", 2, &p->truss_end, messages));
     return check_truss(p, messages);
 }
 
@@ -251,6 +240,7 @@ static void free_page(page *p)
     for (int i = 0; i < N_SERIES; i++)
         hf_series_free(&p->series[i]);
     hf_series_free(&p->truss_position_m);
+    hf_series_free(&p->truss_displacement);
     hf_series_free(&p->truss_end);
 }
 
@@ -268,16 +258,25 @@ static hf_status choose_output(const hf_options *o, char output[PATH_SIZE], hf_m
     return hf_export_claim(output, o->force, messages);
 }
 
+static hf_status report_result(const char *path, const char *output, hf_messages *messages)
+{
+    page p = {.path = path};
+    hf_status status = read_page(&p, messages);
+    if (status == HF_OK) status = hf_export_file(output, write_page, &p, messages);
+    free_page(&p);
+    return status;
+}
+
 hf_status hf_report(const hf_options *options, char *said, size_t size, hf_messages *messages)
 {
     char output[PATH_SIZE];
     struct stat info = {0};
-    page p = {.path = options->file};
-    hf_status status = read_page(&p, messages);
-    if (status == HF_OK) status = choose_output(options, output, messages);
-    if (status == HF_OK) status = hf_export_file(output, write_page, &p, messages);
-    if (status == HF_OK && stat(output, &info) == 0)
+    HF_TRY(choose_output(options, output, messages));
+    if (hf_report_is_study(options->file))
+        HF_TRY(hf_report_study(options->file, output, messages));
+    else
+        HF_TRY(report_result(options->file, output, messages));
+    if (stat(output, &info) == 0)
         snprintf(said, size, "%s: report in %s (%.0f kB)", options->file, output, (double)info.st_size / 1000);
-    free_page(&p);
-    return status;
+    return HF_OK;
 }

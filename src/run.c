@@ -77,17 +77,19 @@ static hf_status load_truss(run *r, const hf_workspace *w, hf_messages *messages
 
 /* ---- form-finding ---- */
 
-static hf_status create_history(const hf_form_settings *form, hf_history *h)
+static hf_status create_history(const hf_form_settings *form, int has_truss, hf_history *h)
 {
     h->capacity = form->max_iterations < HISTORY_MAX ? form->max_iterations : HISTORY_MAX;
-    size_t n = (size_t)h->capacity;
-    double *block = calloc(5 * n, sizeof *block);
+    size_t n = (size_t)h->capacity, n_coupling = has_truss ? (size_t)form->coupling.max_iterations : 0;
+    double *block = calloc(5 * n + 3 * n_coupling, sizeof *block);
     if (!block) return HF_NO_MEMORY;
     h->psi_m = block;
     h->residual_N = block + n;
     h->inner_tension_ratio = block + 2 * n;
     h->boundary_tension_ratio = block + 3 * n;
     h->length_error = block + 4 * n;
+    double *more = block + 5 * n;
+    h->coupling = (hf_coupling_history){(int)n_coupling, 0, more, more + n_coupling, more + 2 * n_coupling};
     return HF_OK;
 }
 
@@ -97,7 +99,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     const hf_form_settings *form = &p->settings.form;
     HF_TRY(hf_problem_allocate(p, messages));
     p->workspace.stop = r->request->stop_requested;
-    if (create_history(form, &r->history) != HF_OK)
+    if (create_history(form, p->model.n_attachment > 0, &r->history) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", p->model.n_node);
     observe(r, (hf_run_progress){.phase = HF_RUN_FORM});
     double start_s = hf_run_clock_s();

@@ -4,6 +4,7 @@
 #include "band.h"
 #include "generations.h"
 #include "store_file.h"
+#include "store_coupling.h"
 #include "store_surface.h"
 
 #include <assert.h>
@@ -404,6 +405,8 @@ hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspa
         hf_hdf5_write_columns(&store->f.io, group, table, HF_HDF5_COUNT(table), history->n, 0, history);
         hf_hdf5_close(&store->f.io, group);
     }
+    if (model->n_attachment)
+        hf_store_write_coupling(&store->f.io, model, workspace, history ? &history->coupling : NULL);
     return hf_hdf5_unlock(store->f.io.status);
 }
 
@@ -520,6 +523,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, int finished)
         hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/truss"));
         hf_hdf5_put_members(&s->f.io, truss, HF_HDF5_COUNT(truss), summary);
     }
+    if (summary->has_coupling) hf_store_put_coupling(&s->f.io, summary);
     if (finished) hf_store_put_surface(&s->f.io, summary);
     hf_hdf5_put_text(&s->f.io, s->f.io.file, "/", "status", finished ? hf_status_word(outcome) : "unfinished");
     put_time(s, finished ? "finished_utc" : "published_utc");

@@ -5,6 +5,7 @@
 #include "hdf5_io.h"
 #include "journal.h"
 #include "sha256.h"
+#include "store_coupling.h"
 #include "store_surface.h"
 
 #include <errno.h>
@@ -177,6 +178,8 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     hf_hdf5 io = hf_store_open_result(path, messages);
     *summary = (hf_summary){0};
     hf_hdf5_get_members(&io, form, HF_HDF5_COUNT(form), summary);
+    summary->has_coupling = io.status == HF_OK && hf_hdf5_has(&io, io.file, "coupling");
+    if (summary->has_coupling) hf_store_get_coupling(&io, summary);
     if (summary->has_polish) hf_hdf5_get_members(&io, polish, HF_HDF5_COUNT(polish), summary);
     if (summary->has_optimize) hf_hdf5_get_members(&io, ga, HF_HDF5_COUNT(ga), summary);
     hf_store_get_surface(&io, summary);
@@ -323,8 +326,7 @@ void hf_shape_free(hf_shape *shape)
 
 /* ---- series ---- */
 
-/* Is there a data set of this name? HDF5 asks for every group on the way first. */
-static int is_there(hf_hdf5 *io, const char *name)
+int hf_store_is_there(hf_hdf5 *io, const char *name)
 {
     char part[256];
     for (const char *slash = strchr(name + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
@@ -334,49 +336,47 @@ static int is_there(hf_hdf5 *io, const char *name)
     return hf_hdf5_has(io, io->file, name);
 }
 
-/* Rows and kind of a data set of numbers [n] or [n][columns]; n = 0 when it is empty or no such data set. */
-static int measure_series(hf_hdf5 *io, const char *name, int columns, hf_hdf5_kind *kind)
+/* n of a data set of numbers [n] or [n][columns]; 0 = as many columns as it has. Sets series->columns and the type to
+ * read as: HDF5 turns every kind of number into double, but no enumeration. */
+static int measure_series(hf_hdf5 *io, const char *name, hid_t data_set, int columns, hf_series *series, hid_t *type)
 {
     hsize_t dims[H5S_MAX_RANK] = {0};
-    hid_t data_set = -1, space = -1, stored = -1;
-    int rank = -1, n = 0;
-    if (io->status != HF_OK) return 0;
-    if ((data_set = H5Dopen2(io->file, name, H5P_DEFAULT)) < 0 || (space = H5Dget_space(data_set)) < 0 ||
-        (rank = H5Sget_simple_extent_dims(space, dims, NULL)) < 0 || (stored = H5Dget_type(data_set)) < 0)
+    hid_t space = H5Dget_space(data_set), stored = H5Dget_type(data_set);
+    int rank = space >= 0 ? H5Sget_simple_extent_dims(space, dims, NULL) : -1;
+    H5T_class_t class = stored >= 0 ? H5Tget_class(stored) : H5T_NO_CLASS;
+    series->columns = rank == 2 && dims[1] < INT_MAX ? (int)dims[1] : 1;
+    *type = class == H5T_ENUM ? H5T_NATIVE_SCHAR : H5T_NATIVE_DOUBLE;
+    if (rank < 0 || class == H5T_NO_CLASS)
         hf_hdf5_fail(io, "read", io->file, name);
-    else if (rank != (columns > 1 ? 2 : 1) || (columns > 1 && dims[1] != (hsize_t)columns) ||
-             dims[0] > HF_STORE_COUNT_MAX)
+    else if (class != H5T_INTEGER && class != H5T_FLOAT && (class != H5T_ENUM || H5Tget_size(stored) != 1))
+        hf_hdf5_damaged(io, io->file, name, "is of another type");
+    else if (rank < 1 || rank > 2 || (columns && columns != series->columns) || dims[0] > HF_STORE_COUNT_MAX)
         hf_hdf5_damaged(io, io->file, name, "has other dimensions than a report reads");
-    else
-        n = (int)dims[0];
-    *kind = stored >= 0 && H5Tget_class(stored) == H5T_INTEGER ? HF_KIND_INT : HF_KIND_REAL;
     hf_hdf5_close(io, stored);
     hf_hdf5_close(io, space);
-    hf_hdf5_close(io, data_set);
-    return n;
+    return io->status == HF_OK ? (int)dims[0] : 0;
 }
 
 static void read_series(hf_hdf5 *io, const char *name, int columns, hf_series *series)
 {
-    hf_hdf5_kind kind;
-    int n = measure_series(io, name, columns, &kind);
-    size_t count = (size_t)n * (size_t)columns;
+    hid_t data_set = H5Dopen2(io->file, name, H5P_DEFAULT), type = -1;
     hf_arena arena = {0};
-    if (n == 0) return;
-    hf_arena_take(&arena, count, sizeof(double));
-    if (hf_arena_allocate(&arena) != HF_OK) {
-        hf_store_no_memory(io);
+    if (data_set < 0) {
+        hf_hdf5_fail(io, "read", io->file, name);
         return;
     }
-    *series = (hf_series){n, hf_arena_take(&arena, count, sizeof(double)), arena.block};
-    hf_hdf5_array array = {.name = name, .kind = kind, .rank = columns > 1 ? 2 : 1, .dims = {(hsize_t)n, 0, 0}};
-    array.dims[1] = (hsize_t)columns;
-    hf_hdf5_read_array(io, io->file, &array, series->value);
-    for (size_t i = count; kind == HF_KIND_INT && io->status == HF_OK && i-- > 0;) { /* in place, from the end */
-        int whole;
-        memcpy(&whole, (const char *)series->value + i * sizeof whole, sizeof whole);
-        series->value[i] = whole;
+    int n = measure_series(io, name, data_set, columns, series, &type);
+    size_t count = (size_t)n * (size_t)series->columns;
+    hf_arena_take(&arena, count, sizeof(double));
+    if (n > 0 && hf_arena_allocate(&arena) != HF_OK) hf_store_no_memory(io);
+    if (n > 0 && io->status == HF_OK) {
+        *series = (hf_series){n, series->columns, hf_arena_take(&arena, count, sizeof(double)), arena.block};
+        if (H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, series->value) < 0)
+            hf_hdf5_fail(io, "read", io->file, name);
+        for (size_t i = type == H5T_NATIVE_SCHAR ? count : 0; i-- > 0;) /* in place, from the end */
+            series->value[i] = ((const signed char *)series->value)[i];
     }
+    hf_hdf5_close(io, data_set);
 }
 
 hf_status hf_store_read_series(const char *path, const char *name, int columns, hf_series *series,
@@ -384,7 +384,7 @@ hf_status hf_store_read_series(const char *path, const char *name, int columns, 
 {
     hf_hdf5 io = hf_store_open_result(path, messages);
     *series = (hf_series){0};
-    if (is_there(&io, name)) read_series(&io, name, columns, series);
+    if (hf_store_is_there(&io, name)) read_series(&io, name, columns, series);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) hf_series_free(series);
     return io.status;

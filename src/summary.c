@@ -32,6 +32,10 @@ static void write_result(const hf_form_result *r, FILE *f)
         fputs(", ", f);
         hf_json_number(number[i].key, number[i].value, f);
     }
+    if (r->coupling.iterations > 0) {
+        fputs(", ", f);
+        hf_json_number("max_displacement_m", r->coupling.max_displacement_m, f);
+    }
     fprintf(f, ", \"iterations\": %d, \"slack_cables\": %d, \"loaded_straight_chains\": %d", r->iterations, r->n_slack,
             r->n_loaded_chain);
 }
@@ -90,6 +94,19 @@ static void write_truss(const hf_summary *s, FILE *f)
     fprintf(f, ", \"nodes\": %d, \"members\": %d}", s->truss_nodes, s->truss_members);
 }
 
+static void write_coupling(const hf_coupling_result *r, FILE *f)
+{
+    fprintf(f, ",\n \"coupling\": {\"iterations\": %d, ", r->iterations);
+    hf_json_number("max_displacement_m", r->max_displacement_m, f);
+    fputs(", ", f);
+    hf_json_number("step_m", r->step_m, f);
+    fputs(", ", f);
+    hf_json_number("ratio", r->ratio, f);
+    fputs(", ", f);
+    hf_json_text("stop_reason", hf_coupling_stop_word((int)r->stop_reason), f);
+    fputc('}', f);
+}
+
 static void write_optimize(const hf_summary *s, FILE *f)
 {
     fputs(",\n \"optimize\": {", f);
@@ -139,6 +156,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
         write_surface(s, 0, f);
         fputc('}', f);
     }
+    if (s->has_coupling && s->form.coupling.iterations > 0) write_coupling(&s->form.coupling, f);
     if (s->has_optimize) write_optimize(s, f);
     if (s->has_polish) write_polish(s, f);
     fprintf(f, ",\n \"threads\": %d, \"seed\": %llu, ", s->threads, (unsigned long long)s->seed);

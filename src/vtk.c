@@ -1,4 +1,4 @@
-/* Contents: a grid of lines - its file - the shapes of a run */
+/* Contents: a grid of lines - its file - the shapes of a run - the truss - together */
 #include "vtk.h"
 
 #include "arena.h"
@@ -6,6 +6,7 @@
 #include "hdf5_io.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
+#include <hifdm/truss.h>
 
 #include <errno.h>
 #include <math.h>
@@ -207,22 +208,98 @@ static hf_status write_stage(const hf_options *o, int stage, const char *path, c
     return status;
 }
 
+/* ---- the truss ---- */
+
+typedef struct {
+    int *fixed, *unit, *joint, *offset;
+    unsigned char *type;
+    double *displacement_m, *rotation_rad, *axial_force_N;
+} truss_scratch;
+
+static void lay_out_truss(hf_arena *a, const hf_truss *truss, truss_scratch *t)
+{
+    size_t n = (size_t)truss->n_node, m = (size_t)truss->n_member;
+    t->fixed = hf_arena_take(a, n, sizeof(int));
+    t->unit = hf_arena_take(a, m, sizeof(int));
+    t->joint = hf_arena_take(a, m, sizeof(int));
+    t->offset = hf_arena_take(a, m + 1, sizeof(int));
+    t->type = hf_arena_take(a, m, 1);
+    t->displacement_m = hf_arena_take(a, 3 * n, sizeof(double));
+    t->rotation_rad = hf_arena_take(a, 3 * n, sizeof(double));
+    t->axial_force_N = hf_arena_take(a, m, sizeof(double));
+}
+
+static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *state, truss_scratch *t)
+{
+    grid g = {.n_point = truss->n_node, .n_line = truss->n_member, .position_m = truss->position_m, .end = truss->end};
+    int *n = &g.n_point_field, *m = &g.n_line_field, has_state = state->displacement && state->end_force;
+    for (int i = 0; i < truss->n_node; i++) {
+        t->fixed[i] = truss->fixed[i];
+        for (int c = 0; c < 3 && has_state; c++) {
+            t->displacement_m[3 * i + c] = state->displacement[HF_TRUSS_DOF * i + c];
+            t->rotation_rad[3 * i + c] = state->displacement[HF_TRUSS_DOF * i + 3 + c];
+        }
+    }
+    for (int e = 0; e < truss->n_member; e++) {
+        t->unit[e] = truss->unit[e];
+        t->joint[e] = truss->joint[e];
+        if (has_state) t->axial_force_N[e] = state->end_force[12 * (size_t)e + HF_TRUSS_DOF]; /* on end j */
+    }
+    add(g.point, n, "fixed", "", HF_KIND_INT, 1, t->fixed);
+    add(g.point, n, "mass_kg", "kg", HF_KIND_REAL, 1, truss->mass_kg);
+    add(g.line, m, "unit", "", HF_KIND_INT, 1, t->unit);
+    add(g.line, m, "joint", "", HF_KIND_INT, 1, t->joint);
+    if (!has_state) return g;
+    add(g.point, n, "displacement_m", "m", HF_KIND_REAL, 3, t->displacement_m);
+    add(g.point, n, "rotation_rad", "rad", HF_KIND_REAL, 3, t->rotation_rad);
+    add(g.line, m, "axial_force_N", "N", HF_KIND_REAL, 1, t->axial_force_N);
+    return g;
+}
+
+static hf_status write_truss(const hf_options *o, const char *path, hf_messages *messages)
+{
+    hf_truss truss = {0};
+    hf_carrier_state state = {0};
+    hf_arena arena = {0};
+    truss_scratch t;
+    hf_status status = hf_store_read_truss(o->file, &truss, &state, messages);
+    if (status == HF_OK) {
+        lay_out_truss(&arena, &truss, &t);
+        status = hf_arena_allocate(&arena);
+        if (status != HF_OK) hf_error(messages, status, "%s: out of memory", o->file);
+    }
+    if (status == HF_OK) {
+        lay_out_truss(&arena, &truss, &t);
+        const grid g = grid_of_truss(&truss, &state, &t);
+        status = write_grid(path, &g, t.offset, t.type, messages);
+    }
+    hf_arena_free(&arena);
+    hf_carrier_state_free(&state);
+    hf_truss_free(&truss);
+    return status;
+}
+
+/* ---- together ---- */
+
 static hf_status write_all(const hf_options *o, const hf_scene *scene, const hf_summary *summary, scratch *t,
                            char *said, size_t size, hf_messages *messages)
 {
-    static const char *const name[4] = {"form", "optimize", "polish", "theoretical"}; /* by hf_stage */
-    int has[4] = {1, summary->has_optimize && summary->best.status == HF_OK, summary->has_polish, 1};
-    char path[4][PATH_SIZE];
+    static const char *const name[5] = {"form", "optimize", "polish", "theoretical", "truss"}; /* by hf_stage */
+    int has[5] = {1, summary->has_optimize && summary->best.status == HF_OK, summary->has_polish, 1,
+                  summary->has_truss};
+    char path[5][PATH_SIZE];
     HF_TRY(hf_export_folder(o->vtk, messages));
-    for (int i = 0; i < 4; i++) { /* all before any is written */
+    for (int i = 0; i < 5; i++) { /* all before any is written */
         if (snprintf(path[i], PATH_SIZE, "%s/%s.hdf", o->vtk, name[i]) >= PATH_SIZE)
             return hf_error(messages, HF_IO, "%s: the path is too long", o->vtk);
         if (has[i]) HF_TRY(hf_export_claim(path[i], o->force, messages));
     }
     int used = snprintf(said, size, "%s: for ParaView, in %s:", o->file, o->vtk);
-    for (int i = 3, n = 0; n < 4; n++, i = (i + 1) % 4) {
+    static const int order[5] = {HF_STAGE_NONE, HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, 4};
+    for (int k = 0; k < 5; k++) {
+        int i = order[k];
         if (!has[i]) continue;
-        HF_TRY(write_stage(o, i, path[i], scene, summary, t, messages));
+        HF_TRY(i == 4 ? write_truss(o, path[i], messages) : write_stage(o, i, path[i], scene, summary, t, messages));
         if ((size_t)used < size) used += snprintf(said + used, size - (size_t)used, " %s.hdf", name[i]);
     }
     return HF_OK;

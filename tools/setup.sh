@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing to build hifdm: setup.sh [--test] [--ci] [--bench]
-#   --test  also what the tests need     --ci  also clang, sanitizers, linters and VTK (includes --test)
+#   --test  also what the tests need     --ci  also clang, sanitizers, linters, VTK and a browser (includes --test)
 #   --bench also the peers of `make bench`
 # Silent and quick when nothing is missing. Asks for what is needed (a compiler, a pkg-config name, a Python module)
 # rather than for packages, so that other providers do as well: reference LAPACK, modules from pip.
@@ -65,6 +65,9 @@ missing_packages() {
         has clang-tidy || need clang-tidy
         has clang-format || need clang-format
         has_module vtk || need python3-vtk9
+        has chromium || need chromium fonts-dejavu-core
+        has node || need nodejs
+        has npm || need npm
     fi
     echo $list
 }

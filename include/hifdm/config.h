@@ -17,6 +17,7 @@ typedef enum { HF_OPTIMIZE_GA, HF_OPTIMIZE_LM, HF_OPTIMIZE_GA_LM } hf_optimize_m
 typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
 typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
+typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN } hf_coupling_scheme;
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
 extern const char *const hf_method_word[5];
@@ -25,6 +26,14 @@ extern const char *const hf_rule_word[3];
 extern const char *const hf_solver_word[4];
 extern const char *const hf_optimize_method_word[3];
 extern const char *const hf_symmetry_word[5];
+extern const char *const hf_coupling_scheme_word[2];
+
+/* Of the net with an elastic truss; without attachments nothing looks at them. */
+typedef struct {
+    double tof_m; /* largest difference of an attachment's displacements in two iterations */
+    int scheme;   /* hf_coupling_scheme */
+    int max_iterations;
+} hf_coupling_settings;
 
 typedef struct {
     int method;                /* hf_method */
@@ -35,6 +44,7 @@ typedef struct {
     double rms_tolerance_m;    /* change of psi between iterations, the paper's rule */
     int max_iterations;
     double collapse_ratio; /* a cable of law tension shorter than this part of its theoretical length has collapsed */
+    hf_coupling_settings coupling;
 } hf_form_settings;
 
 typedef struct {

@@ -26,6 +26,31 @@ typedef enum {
 
 const char *hf_stop_reason_word(int reason);
 
+/* How the coupling of the net with an elastic truss ended. X(name, value, word stored in files). Never renumber. */
+#define HF_COUPLING_STOP_LIST(X)                                                                                       \
+    X(NONE, 0, "none")                     /* there is no truss */                                                     \
+    X(TOF, 1, "tof")                       /* no attachment moves farther than tof_m any more */                       \
+    X(MAX_ITERATIONS, 2, "max_iterations") /* not converged */                                                         \
+    X(DIVERGED, 3, "diverged")             /* the steps grow: the truss is too soft */                                 \
+    X(NET, 4, "net")                       /* the net has no shape, see the status */
+
+typedef enum {
+#define HF_COUPLING_STOP_ENUM(name, value, word) HF_COUPLING_##name = value,
+    HF_COUPLING_STOP_LIST(HF_COUPLING_STOP_ENUM)
+#undef HF_COUPLING_STOP_ENUM
+} hf_coupling_stop;
+
+const char *hf_coupling_stop_word(int stop);
+
+/* All zero without a truss. */
+typedef struct {
+    hf_coupling_stop stop_reason;
+    int iterations;            /* form-findings of the loop; passes of the population solver */
+    double step_m;             /* largest |F f - r| of an attachment: what the next iteration would move it */
+    double ratio;              /* of the last two steps; NaN before there are two */
+    double max_displacement_m; /* largest displacement of an attachment */
+} hf_coupling_result;
+
 /* Plain values, no pointers. Under a status other than HF_OK and HF_NOT_CONVERGED the measures are NaN. */
 typedef struct {
     hf_status status;
@@ -45,21 +70,33 @@ typedef struct {
     double condition;             /* estimate for the Newton matrix, or D where it has none; INFINITY: singular */
     double backward_error;        /* residual_N over the largest sum of tensions at a node; the three are NaN unless
                                        hf_certify was asked */
+    hf_coupling_result coupling;  /* of the net with its truss */
     int n_slack;
     int n_loaded_chain; /* straight chains under lateral load: tensions there mean nothing */
 } hf_form_result;
+
+/* The same of each iteration of the coupling. Arrays of `capacity`, owned by the caller; entries beyond are lost. */
+typedef struct {
+    int capacity, n;
+    double *step_m, *psi_m, *max_displacement_m;
+} hf_coupling_history;
 
 /* What each iteration looked like. Arrays of `capacity` >= max_iterations, owned by the caller. */
 typedef struct {
     int capacity, n;
     double *psi_m, *residual_N, *inner_tension_ratio, *boundary_tension_ratio, *length_error;
+    hf_coupling_history coupling;
 } hf_history;
 
-/* Set laws, targets and first force densities of the workspace from the model. */
+/* Set laws, targets and first force densities of the workspace from the model; no support is displaced. */
 void hf_form_prepare(const hf_model *model, hf_workspace *workspace);
 
-/* Iterate from the workspace's q_N_per_m under its law and target until `stop` (hf_stop_rule) or a bound holds.
- * `settings` gives tolerances and bounds only. history may be NULL. Returns result->status; never allocates. */
+/* Theoretical positions into position_m, but for the supports that displacement_m has moved. */
+void hf_form_place_supports(const hf_model *model, hf_workspace *workspace);
+
+/* Iterate from the workspace's q_N_per_m under its law and target, the attachments moved by displacement_m, until
+ * `stop` (hf_stop_rule) or a bound holds. `settings` gives tolerances and bounds only. history may be NULL. Returns
+ * result->status; never allocates. */
 hf_status hf_form_find(const hf_model *model, const hf_form_settings *settings, int stop, hf_workspace *workspace,
                        hf_history *history, hf_form_result *result);
 
@@ -99,7 +136,10 @@ void hf_form_measure_cables(const hf_model *model, const hf_form_settings *setti
                             hf_form_result *result, double *length_gap);
 void hf_form_update(const hf_model *model, hf_workspace *workspace);
 
-/* Is straight chain i under lateral load in the workspace's shape? For naming it. */
+/* Chains of the model that can be straight in a shape: on a truss all of them, because their supports move. */
+int hf_form_n_chain(const hf_model *model);
+
+/* Is chain i straight and under lateral load in the workspace's shape? For naming it. */
 int hf_form_chain_is_loaded(const hf_model *model, hf_workspace *workspace, int i_chain);
 
 #ifdef __cplusplus

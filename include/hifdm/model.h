@@ -14,6 +14,10 @@
 extern "C" {
 #endif
 
+/* A chain whose lengths exceed the distance of its supports by less than this part counts as straight: its sag would
+ * be below 2e-5 of its span, and the tension above 1e4 times its load. */
+#define HF_STRAIGHT_EXCESS 1e-9
+
 typedef struct {
     int n_node, n_free, n_cable, n_inner_node;
     int half_bandwidth; /* of D: columns below the diagonal */
@@ -57,9 +61,11 @@ typedef struct {
 
     /* Supports on an elastic truss (hf_model_attach): the displacement of degree of freedom 3*i + c under the forces on
      * the attachments, r = F f, Eq. 15 condensed. All zero without a truss. */
-    int n_attachment;
+    int n_attachment, n_tie;
     int *attachment_row;         /* [n_attachment] rows >= n_free, in the order of the flexibility */
     double *flexibility_m_per_N; /* [3 n_attachment][3 n_attachment] symmetric; NULL without a truss */
+    int *tie;                    /* [n_tie] cable ends at attachments: 2*cable + which end, by cable */
+    int *tie_attachment;         /* [n_tie] index of the attachment */
 
     void *block, *attachment_block;
 } hf_model;
@@ -68,10 +74,11 @@ typedef struct {
 hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages);
 
 /* Put supports on a truss: node[i], a support of the scene, is attachment i, and the flexibility [3a][3a] in m/N
- * (copied) says how it gives way; all other supports stay fixed. HF_BAD_CASE, naming the attachment by its index, when
- * a node is no support or comes twice, or when the matrix is not finite, not symmetric to 1e-9 of its largest entry
- * (the copy is, exactly), or has a negative diagonal entry; HF_NO_MEMORY. Once per model, before workspaces are made
- * for it. */
+ * (copied) says how it gives way; all other supports stay fixed. A cable of law length between an attachment and
+ * another support would be a rigid rod in the truss: it keeps its first tension instead. HF_BAD_CASE, naming the
+ * attachment by its index, when a node is no support or comes twice, or when the matrix is not finite, not symmetric to
+ * 1e-9 of its largest entry (the copy is, exactly), or has a negative diagonal entry; HF_NO_MEMORY. Once per model,
+ * before workspaces are made for it. */
 hf_status hf_model_attach(hf_model *model, int n_attachment, const int *node, const double *flexibility_m_per_N,
                           hf_messages *messages);
 

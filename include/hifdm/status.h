@@ -24,6 +24,7 @@ extern "C" {
     X(RATIO_CAP, 6, 4, "ratio_cap", "the boundary tension ratio exceeds optimize.boundary_ratio_cap")                  \
     X(NOT_EVALUATED, 7, 3, "not_evaluated", "not evaluated")                                                           \
     X(NO_FEASIBLE, 8, 3, "no_feasible", "no design met the constraints")                                               \
+    X(TRUSS_TOO_SOFT, 9, 4, "truss_too_soft", "the truss gives way to the pretension of its net without end")          \
     X(MECHANISM, 10, 4, "mechanism", "the truss is a mechanism, or not held by enough supports")                       \
     X(BAD_USAGE, 20, 2, "bad_usage", "the command line is not understood")                                             \
     X(BAD_CASE, 21, 2, "bad_case", "the case has errors")                                                              \

@@ -18,6 +18,9 @@
  *   /form        position_m [n][3]; length_m, tension_N, q_N_per_m, law [m]
  *                attributes: the members of hf_summary from `version` on and of hf_summary.form
  *   /form/history  psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio, length_error [i]
+ *   /coupling    with a truss, of the a attachments: node [a], displacement_m, force_N [a][3]; history/step_m, psi_m,
+ *                max_displacement_m [form-findings]; attributes: the members of hf_summary.form.coupling (those of best
+ *                and polish are best_coupling_... of /ga and coupling_... of /polish)
  *   /ga          design_N [g][p][k]; evaluated, status, psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio,
  *                iterations, crossover_rate, mutation_rate [g][p]; parent [g][p][2];
  *                best_individual, best_psi_m, mean_psi_m, worst_psi_m, n_infeasible [g];

@@ -27,6 +27,7 @@ typedef struct {
 
     hf_form_result form;
     double form_wall_s;
+    int has_coupling; /* the net stands on a truss: form.coupling and those of the other results */
 
     int solver; /* hf_solver that the individuals were given */
 

@@ -14,6 +14,10 @@ extern "C" {
  * matrix and pivots; other nets have none. */
 #define HF_NEWTON_DOFS(m) ((m)->has_newton ? 3 * (size_t)(m)->n_free : 0)
 
+/* Past displacements and steps that the accelerated coupling combines. */
+#define HF_COUPLING_DEPTH 8
+#define HF_COUPLING_ITEMS(m) (3 * (size_t)(m)->n_attachment * (2 * HF_COUPLING_DEPTH + 4))
+
 #define HF_WORKSPACE_FIELDS(X)                                                                                         \
     X(double, position_m, 3 * (size_t)m->n_node, "m", "[3][n_node] by row, supports included")                         \
     X(double, band, (size_t)m->n_band + 1, "N/m", "lower band of D, then its Cholesky factor; one spare place")        \
@@ -35,6 +39,11 @@ extern "C" {
     X(int, newton_integer_work, HF_NEWTON_DOFS(m), "", "for the condition estimate")                                   \
     X(double, certificate_work, m->has_newton ? 0 : 3 * (size_t)m->n_node, "", "without a Newton matrix")              \
     X(int, certificate_integer_work, m->has_newton ? 0 : (size_t)m->n_free, "", "the same")                            \
+    X(double, displacement_m, 3 * (size_t)m->n_attachment, "m", "[3 n_attachment] how far the truss has given way")    \
+    X(double, attachment_force_N, 3 * (size_t)m->n_attachment, "N", "[3 n_attachment] pull of the net on the truss")   \
+    X(double, coupling_work, HF_COUPLING_ITEMS(m), "", "history of the accelerated coupling")                          \
+    X(double, coupling_q_N_per_m, m->n_attachment ? (size_t)m->n_cable : 0, "N/m",                                     \
+      "[n_cable] where a net starts from")                                                                             \
     X(int, pivot, m->has_strut ? (size_t)m->n_free : 0, "", "struts")
 
 typedef struct {

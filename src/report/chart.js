@@ -34,14 +34,19 @@ function placeTip(tip, x, y, content) {
 }
 
 // ---- one chart: series over x with a cursor that follows the pointer or the arrow keys ----
-// series: { name, stored, values, colour: "--one", dash, dots: marks instead of a line, free: may leave the picture }
+// series: { name, stored, values, colour, dash, dots: marks instead of a line, free: may leave the picture }
+// colour: a variable of the page's style, or a function that returns red, green and blue
 // x rises, counted: in whole numbers; log: "auto" = when the values span more than a factor of 20
 let clips = 0;
+const paint = (colour) => (typeof colour === "function" ? rgb(colour()) : `var(${colour})`);
+const LINES_MAX = 12, // in a tooltip
+  MARKED_MAX = 16; // points of a curve that are marked, too
 
 function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "auto", counted = true, head }) {
   const leading = series.filter((s) => !s.free).flatMap((s) => s.values),
     positive = range(leading.filter((v) => v > 0));
   const clip = `clip-${++clips}`;
+  if (!range(leading)) return null; // nothing to draw
   if (log === "auto") log = !!positive && positive[1] > 20 * positive[0];
   const margin = { left: 64, right: 14, top: 26, bottom: 42 },
     height = 290;
@@ -69,15 +74,17 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
       if (good) text += `${on && !s.dots ? "L" : "M"}${sx(x[i]).toFixed(1)} ${sy(v).toFixed(1)}${s.dots ? "h0" : ""}`;
       on = good;
     });
-    return svg("path", { d: text, ...mark(s), style: `stroke:var(${s.colour})` });
+    const line = svg("path", { d: text, ...mark(s), style: `stroke:${paint(s.colour)}` });
+    return s.dots || x.length > MARKED_MAX ? line : [line, path({ ...s, dots: true }, sx, sy, yAxis)];
   }
 
   function draw() {
     const width = Math.max(holder.clientWidth, 260),
-      w = width - margin.left - margin.right;
-    const h = height - margin.top - margin.bottom;
-    const xAxis = { low: x[0], high: x[x.length - 1] },
       yAxis = axis(leading, log);
+    margin.left = 16 + 7 * Math.max(4, ...yAxis.ticks.map((t) => t.text.length));
+    const w = width - margin.left - margin.right;
+    const h = height - margin.top - margin.bottom;
+    const xAxis = { low: x[0], high: x[x.length - 1] };
     if (xAxis.high === xAxis.low) {
       xAxis.low -= 1;
       xAxis.high += 1;
@@ -86,9 +93,9 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
     const sy = (v) => margin.top + h * (1 - yAxis.at(v));
     place = { sx, sy, yAxis, bottom: margin.top + h };
     picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    const xTicks = linearTicks(xAxis.low, xAxis.high, Math.max(4, w / 90)).filter(
-      (t) => !counted || Number.isInteger(t.at),
-    );
+    const xTicks = linearTicks(xAxis.low, xAxis.high, Math.max(4, w / 90))
+      .filter((t) => !counted || Number.isInteger(t.at))
+      .map((t) => ({ at: t.at, text: counted ? String(t.at) : t.text }));
     picture.replaceChildren();
     fill(picture, {}, [
       ...yAxis.ticks.flatMap((t) => [
@@ -118,7 +125,7 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
       svg(
         "g",
         { "clip-path": `url(#${clip})` },
-        series.map((s) => path(s, sx, sy, yAxis)),
+        series.flatMap((s) => path(s, sx, sy, yAxis)),
       ),
       svg("g", { class: "at" }),
     ]);
@@ -138,7 +145,9 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
     const shown = here.filter((s) => place.yAxis.has(s.values[i]) && place.yAxis.at(s.values[i]) <= 1);
     fill(group, {}, [
       svg("line", { class: "cursor", x1: px, x2: px, y1: margin.top, y2: place.bottom }),
-      ...shown.map((s) => svg("circle", { cx: px, cy: place.sy(s.values[i]), r: 4, style: `fill:var(${s.colour})` })),
+      ...shown.map((s) =>
+        svg("circle", { cx: px, cy: place.sy(s.values[i]), r: 4, style: `fill:${paint(s.colour)}` }),
+      ),
     ]);
     placeTip(
       tip,
@@ -146,7 +155,7 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
       shown.length ? place.sy(shown[0].values[i]) : margin.top,
       tipContent(
         head(i),
-        here.map((s) => [s.name, `${fmt(s.values[i], 6)} ${unit}`, s.stored]),
+        here.slice(0, LINES_MAX).map((s) => [s.name, `${fmt(s.values[i], 6)} ${unit}`, s.stored]),
       ),
     );
   }
@@ -175,6 +184,8 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
     point(to);
   });
   new ResizeObserver(draw).observe(holder);
+  darkScheme.addEventListener("change", draw);
+  printing.addEventListener("change", draw);
   holder.append(picture, tip);
 
   const legend =
@@ -193,7 +204,7 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
                 svg("path", {
                   d: s.dots ? "M13 5h0" : "M0 5H26",
                   ...mark(s),
-                  style: `stroke:var(${s.colour})`,
+                  style: `stroke:${paint(s.colour)}`,
                 }),
               ),
               s.name,

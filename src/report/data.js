@@ -71,7 +71,7 @@ const roleOf = (i) => net.role_word[digit(net.role, i)];
 const groupOf = (e) => net.group_word[digit(net.group, e)];
 
 // Nodes in millimetres from theory: distance, and height along z with its sign.
-for (const shape of data.shapes) {
+for (const shape of data.shapes || []) {
   const d = shape.displacement_m,
     n = net.n_node;
   shape.name = stageName[shape.stage];
@@ -85,8 +85,8 @@ for (const shape of data.shapes) {
 }
 
 // The shape that is the run's result: as `hifdm export` chooses it.
-const summary = data.summary;
-const shapeOf = (stage) => data.shapes.find((shape) => shape.stage === stage);
+const summary = data.summary || {};
+const shapeOf = (stage) => (data.shapes || []).find((shape) => shape.stage === stage);
 const resultShape =
   (summary.polish && summary.polish.is_result && shapeOf("polish")) || shapeOf("optimize") || shapeOf("form");
 

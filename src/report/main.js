@@ -17,20 +17,22 @@ function writeHead() {
   const found =
     `${fmtCount(net.n_node)} nodes (${fmtCount(data.n_free)} free), ${fmtCount(net.n_cable)} cables ` +
     `(${fmtCount(data.n_gene)} adjustable), pretension ${fmt(data.pretension_N)} N`;
-  document.getElementById("subtitle").textContent = found;
+  const truss = summary.truss
+    ? `; truss of ${fmtCount(summary.truss.nodes)} nodes, ${fmtCount(summary.truss.members)} members, ` +
+      `${fmt(summary.truss.mass_kg)} kg`
+    : "";
+  document.getElementById("subtitle").textContent = found + truss;
   document.getElementById("footer").textContent =
     `Results of hifdm ${summary.version} in ${summary.file}. “Fig.” refers to Chen et al., Aerospace 2022, 9, 239.`;
 }
 
-function writeWarnings() {
-  const lines = [...(summary.errors || []), ...(summary.warnings || [])];
+function writeWarnings(title, lines) {
   if (!lines.length) return;
-  const title = lines.length === 1 ? "One warning" : `${lines.length} warnings`;
   main.append(
     el(
       "div",
       { class: "warnings", role: "note", id: "warnings" },
-      el("h2", {}, summary.errors && summary.errors.length ? "This run has errors" : title),
+      el("h2", {}, title),
       el(
         "ul",
         {},
@@ -43,10 +45,11 @@ function writeWarnings() {
 const resultStage = resultShape && resultShape.stage;
 const resultNumbers = { form: summary.form, optimize: summary.optimize, polish: summary.polish }[resultStage];
 
+const figure = (name, value, unit) =>
+  el("div", {}, el("dt", {}, name), el("dd", {}, value, unit ? el("small", {}, unit) : null));
+
 function writeFigures() {
   if (!resultNumbers) return;
-  const figure = (name, value, unit) =>
-    el("div", {}, el("dt", {}, name), el("dd", {}, value, unit ? el("small", {}, unit) : null));
   const base = summary.optimize && summary.optimize.base_psi_m,
     list = [];
   list.push(figure(`surface error ψ, ${resultShape.name}`, fmt(1e3 * resultNumbers.psi_m, 4), "mm"));
@@ -184,6 +187,13 @@ function writeNet() {
   report.net = view;
 }
 
+function trussNote() {
+  if (!data.truss) return "";
+  return data.truss.displacement_m
+    ? ", the frame is the truss under the pull of the found net"
+    : ", the frame is the truss";
+}
+
 function netCaption() {
   const figures = `${figs(2, 5, shapeOf("optimize") && 12, data.truss && 18)} of the paper.`;
   if (!data.shapes.length) return `Squares are supports. ${figures}`;
@@ -192,7 +202,7 @@ function netCaption() {
     {},
     "Deformation from the theoretical shape (grey) ",
     el("strong", { id: "scale-note" }),
-    `; squares are supports${data.truss ? ", the frame is the truss as designed" : ""}. The colours of the deviation ` +
+    `; squares are supports${trussNote()}. The colours of the deviation ` +
       `span the inner nodes, which ψ counts. ${figures}`,
   );
 }
@@ -249,14 +259,23 @@ function writeMap() {
 
 const report = {}; // the two pictures, for the console and the tests
 window.report = report;
-writeHead();
-writeWarnings();
-writeFigures();
-writeNet();
-writeMap();
-writeHistory();
-writeTensions();
-writeGa();
-writeCoupling();
-writeSummary();
-writeProvenance();
+if (data.study) {
+  writeStudy(data.study);
+} else {
+  writeHead();
+  const errors = summary.errors || [],
+    lines = [...errors, ...(summary.warnings || [])];
+  writeWarnings(
+    errors.length ? "This run failed" : lines.length === 1 ? "One warning" : `${lines.length} warnings`,
+    lines,
+  );
+  writeFigures();
+  writeNet();
+  writeMap();
+  writeHistory();
+  writeTensions();
+  writeGa();
+  writeCoupling();
+  writeSummary();
+  writeProvenance();
+}

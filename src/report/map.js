@@ -105,6 +105,19 @@ function aperture({ canvas, tip, bar }) {
     c.putImageData(image, 0, 0);
   }
 
+  // A net without meshes: a disc at every node.
+  function paintNodes(c) {
+    const table = levels(colours()),
+      limit = limits(),
+      v = values();
+    for (let i = 0; i < n; i++) {
+      c.fillStyle = rgb(table[levelOf(v[i], limit)]);
+      c.beginPath();
+      c.arc(sx[i], sy[i], 8, 0, 7);
+      c.fill();
+    }
+  }
+
   function paintNet(c) {
     c.strokeStyle = css("--ink");
     c.globalAlpha = 0.28;
@@ -116,8 +129,10 @@ function aperture({ canvas, tip, bar }) {
     }
     c.stroke();
     c.globalAlpha = 1;
+    const side = n > 1000 ? 1 : 2.5;
     c.fillStyle = css("--ink");
-    for (let i = 0; i < n; i++) if (digit(net.role, i) === 0) c.fillRect(sx[i] - 2.5, sy[i] - 2.5, 5, 5);
+    for (let i = 0; i < n; i++)
+      if (digit(net.role, i) === 0) c.fillRect(sx[i] - side, sy[i] - side, 2 * side, 2 * side);
   }
 
   function paintAxes(c, width, height, toX, toY) {
@@ -157,6 +172,7 @@ function aperture({ canvas, tip, bar }) {
     paintFaces(c, ratio);
     c.setTransform(ratio, 0, 0, ratio, 0, 0);
     paintNet(c);
+    if (!faces.length) paintNodes(c);
     paintAxes(c, width, height, toX, toY);
     drawBar(
       bar,

@@ -93,16 +93,20 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   }
 
   function drawTruss(c, project) {
-    const p = truss.position_m;
+    const p = truss.position_m,
+      d = state.shape && truss.displacement_m,
+      s = state.scale;
+    const at = (i) => project(...[0, 1, 2].map((k) => p[3 * i + k] + (d ? s * d[3 * i + k] : 0)));
     c.strokeStyle = css("--four");
-    c.lineWidth = 1.4;
+    c.globalAlpha = 0.7;
+    c.lineWidth = 1.1;
     c.beginPath();
     for (let k = 0; k < truss.n_member; k++) {
-      const [i, j] = [truss.end[2 * k], truss.end[2 * k + 1]];
-      c.moveTo(...project(p[3 * i], p[3 * i + 1], p[3 * i + 2]));
-      c.lineTo(...project(p[3 * j], p[3 * j + 1], p[3 * j + 2]));
+      c.moveTo(...at(truss.end[2 * k]));
+      c.lineTo(...at(truss.end[2 * k + 1]));
     }
     c.stroke();
+    c.globalAlpha = 1;
   }
 
   function drawCables(c) {
@@ -136,7 +140,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   }
 
   function drawNodes(c) {
-    const side = n > 1500 ? 2 : 3;
+    const side = n > 1000 ? 1.5 : 3;
     c.fillStyle = css("--ink");
     for (let i = 0; i < n; i++)
       if (digit(net.role, i) === 0) c.fillRect(px[i] - side, py[i] - side, 2 * side, 2 * side);
@@ -301,13 +305,15 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   // ---- pointer and keys ----
 
   const pointers = new Map();
-  let pinch = 0;
+  let pinch = 0,
+    dragged = false;
   const spread = () => {
     const [a, b] = [...pointers.values()];
     return Math.hypot(a.x - b.x, a.y - b.y);
   };
   canvas.addEventListener("pointerdown", (event) => {
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    dragged = false;
     canvas.setPointerCapture(event.pointerId);
     canvas.classList.add("dragging");
     if (pointers.size === 2) pinch = spread();
@@ -316,6 +322,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     const at = pointers.get(event.pointerId),
       frame = canvas.getBoundingClientRect();
     if (!at) return select(pick(event.clientX - frame.left, event.clientY - frame.top));
+    dragged = true;
     const dx = event.clientX - at.x,
       dy = event.clientY - at.y;
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
@@ -327,10 +334,14 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   });
   for (const name of ["pointerup", "pointercancel"])
     canvas.addEventListener(name, (event) => {
+      const frame = canvas.getBoundingClientRect();
       pointers.delete(event.pointerId);
       canvas.classList.remove("dragging");
+      if (!dragged) select(pick(event.clientX - frame.left, event.clientY - frame.top)); // a tap
     });
-  canvas.addEventListener("pointerleave", () => select(null));
+  canvas.addEventListener("pointerleave", (event) => {
+    if (event.pointerType !== "touch") select(null);
+  });
   canvas.addEventListener(
     "wheel",
     (event) => {

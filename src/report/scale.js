@@ -126,7 +126,8 @@ function axis(values, log) {
       has: (v) => v > 0,
     };
   }
-  const room = high > low ? 0.05 * (high - low) : Math.max(Math.abs(high) * 1e-3, 1e-12);
+  const size = Math.max(Math.abs(low), Math.abs(high)) || 1;
+  const room = high - low > 1e-6 * size ? 0.05 * (high - low) : 0.05 * size; // less is rounding
   low -= room;
   high += room;
   return { low, high, ticks: linearTicks(low, high, 5), at: (v) => (v - low) / (high - low), has: () => true };

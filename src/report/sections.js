@@ -136,27 +136,32 @@ function writeGa() {
 }
 
 function writeCoupling() {
-  const c = data.coupling;
-  if (!c || !c.step_m || !range(c.step_m)) return;
+  const c = data.coupling,
+    k = summary.coupling;
+  if (!c || !range(c.step_m || [])) return;
   const x = spaced(c).map((i) => i + 1),
     xLabel = "outer iteration",
     head = (i) => `outer iteration ${x[i]}`;
   const one = (title, key, yLabel, caption) =>
-    c[key] && range(c[key])
-      ? chart({
-          title,
-          xLabel,
-          yLabel,
-          unit: "mm",
-          x,
-          head,
-          caption,
-          series: [{ name: title, stored: key, values: scaled(c[key], 1e3), colour: "--one", dots: x.length < 2 }],
-        })
-      : null;
+    c[key] &&
+    chart({
+      title,
+      xLabel,
+      yLabel,
+      unit: "mm",
+      x,
+      head,
+      caption,
+      series: [{ name: title, stored: key, values: scaled(c[key], 1e3), colour: "--one", dots: x.length < 2 }],
+    });
+  const said =
+    k &&
+    `Net and truss settled on each other in ${fmtCount(k.iterations)} outer iterations; the truss gives way ` +
+      `by up to ${fmt(1e3 * k.max_displacement_m)} mm. Stopped by ${stopText(k.stop_reason)}.`;
   section(
     "coupling",
     "Coupling of net and truss",
+    said ? el("p", {}, said) : null,
     el(
       "div",
       { class: "charts" },
@@ -164,9 +169,20 @@ function writeCoupling() {
         "Change of the elastic deformation",
         "step_m",
         "change (mm)",
-        "Largest change of a truss displacement between two outer iterations; Fig. 21.",
+        "Largest change of a support's displacement in an outer iteration; Fig. 21.",
       ),
-      one("Surface error ψ", "psi_m", "ψ (mm)", "Of the net on the deformed truss."),
+      one(
+        "Largest displacement",
+        "max_displacement_m",
+        "displacement (mm)",
+        "Of the supports of the net on the truss.",
+      ),
+      one(
+        "Surface error ψ on the truss",
+        "psi_m",
+        "ψ (mm)",
+        "RMS distance of the inner nodes, as the truss gives way.",
+      ),
     ),
   );
 }
@@ -305,9 +321,7 @@ function writeSummary() {
             el(
               "td",
               { class: "number" },
-              typeof values[s][key] === "number" || typeof values[s][key] === "string"
-                ? format(values[s][key])
-                : "–",
+              typeof values[s][key] === "number" || typeof values[s][key] === "string" ? format(values[s][key]) : "–",
             ),
           ),
           el("td", {}, unit),

@@ -119,9 +119,16 @@ END_TEST
 
 /* ---- standard output that takes nothing: every command that prints says so by its exit code ---- */
 
-static const char *const printing[] = {
-    "run \"$1\" -o \"$2\"", "run \"$1\" -o \"$2\" --json", "check \"$1\"", "schema", "help", "version", "show \"$3\"",
-    "show \"$3\" --json",   "export \"$3\" --csv \"$4\""};
+static const char *const printing[] = {"run \"$1\" -o \"$2\"",
+                                       "run \"$1\" -o \"$2\" --json",
+                                       "check \"$1\"",
+                                       "schema",
+                                       "help",
+                                       "version",
+                                       "show \"$3\"",
+                                       "show \"$3\" --json",
+                                       "report \"$3\" --force -o \"$4.html\"",
+                                       "export \"$3\" --csv \"$4\""};
 enum { N_PRINTING = sizeof printing / sizeof *printing };
 
 START_TEST(full_or_closed_standard_output_is_an_error)

@@ -29,6 +29,17 @@ START_TEST(paraview_files_hold_the_stored_numbers)
 }
 END_TEST
 
+START_TEST(paraview_file_of_the_truss)
+{
+    const char *out = temp("t.h5"), *folder = temp("vtk");
+    HIFDM(0, "run", keep(source_path("configs/chen2022-truss.yaml")), "-o", out, "--quiet", "--set",
+          "optimize.generations=1");
+    HIFDM(0, "export", out, "--vtk", folder);
+    OUT(" polish.hdf truss.hdf\n");
+    demand_vtk(out, folder, "form optimize polish theoretical truss");
+}
+END_TEST
+
 /* Loads, a slack cable, the law elastic, no optimisation; and nothing is replaced unasked. */
 START_TEST(paraview_files_of_an_imported_net)
 {
@@ -246,6 +257,7 @@ Suite *suite_cli_trade(void)
     TCase *tests = tcase_create("trade");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, paraview_files_hold_the_stored_numbers);
+    tcase_add_test(tests, paraview_file_of_the_truss);
     tcase_add_test(tests, paraview_files_of_an_imported_net);
     tcase_add_loop_test(tests, net_built_from_the_cut_list_has_the_found_shape, 0, 3);
     tcase_add_test(tests, cut_list_holds_what_it_says);

@@ -1,5 +1,6 @@
 """vtk_reads.py RESULT FOLDER: VTK (python3-vtk9) reads every file of `hifdm export --vtk`, and point and cell data are
 the numbers of the result file, bit by bit. Without VTK h5py looks at the same files, which is no proof that VTK can."""
+import os
 import sys
 
 import h5py
@@ -86,6 +87,25 @@ def check(result, path, stage, read):
         assert abs(rms_m - result["surface"][group].attrs["normal_rms_m"]) <= 1e-12 * rms_m
 
 
+def check_truss(result, path, read):
+    points, ends, point, cell = read(path)
+    node, member = result["truss/node"], result["truss/member"]
+    same("points", points, node["position_m"][:])
+    same("ends", ends, member["end"][:])
+    same("mass_kg", point["mass_kg"], node["mass_kg"][:])
+    same("unit", cell["unit"], member["unit"][:])
+    same("joint", cell["joint"], member["joint"][:])
+    same("fixed", point["fixed"], (node["fixed"][:].astype(int) << np.arange(6)).sum(axis=1))
+    same("displacement_m", point["displacement_m"], node["displacement"][:, :3])
+    same("rotation_rad", point["rotation_rad"], node["displacement"][:, 3:])
+    same("axial_force_N", cell["axial_force_N"], member["end_force"][:, 6])
+    along = points[ends[:, 1]] - points[ends[:, 0]]
+    length = np.linalg.norm(along, axis=1)
+    longer = ((point["displacement_m"][ends[:, 1]] - point["displacement_m"][ends[:, 0]]) * along).sum(axis=1) / length
+    tension = member["E_Pa"][:] * member["A_m2"][:] * longer / length
+    assert np.allclose(cell["axial_force_N"], tension, rtol=0, atol=1e-6 * np.abs(tension).max())
+
+
 def main(result_path, folder):
     result = h5py.File(result_path, "r")
     stages = {"theoretical": None, "form": "form"}
@@ -93,11 +113,15 @@ def main(result_path, folder):
         stages["optimize"] = "ga/best"
     if "polish" in result:
         stages["polish"] = "polish"
-    import os
+    if "truss" in result:
+        stages["truss"] = "truss"
     assert sorted(os.listdir(folder)) == sorted(f"{name}.hdf" for name in stages), os.listdir(folder)
     for name, stage in stages.items():
         for read in [by_h5py] + ([by_vtk] if vtk else []):
-            check(result, f"{folder}/{name}.hdf", stage, read)
+            if name == "truss":
+                check_truss(result, f"{folder}/{name}.hdf", read)
+            else:
+                check(result, f"{folder}/{name}.hdf", stage, read)
     print(" ".join(sorted(stages)))
 
 

@@ -1,5 +1,6 @@
 /* The loops of chord: same bits for every instruction set, a triangular solve that is LAPACK's, and lanes that keep to
  * themselves. An instruction set that this machine lacks is named and skipped. */
+#include "flexible.h"
 #include "laws.h"
 
 #include "band.h"
@@ -14,10 +15,14 @@ enum { PORTABLE, AVX2, AVX512, N_ISA };
 static const struct {
     const char *name;
     forces_fn forces;
-    solve_fn solve, step;
-} isa[] = {{"portable", hf_chord_forces_portable, hf_chord_solve_portable, hf_chord_step_portable},
-           {"avx2", hf_chord_forces_avx2, hf_chord_solve_avx2, hf_chord_step_avx2},
-           {"avx512f", hf_chord_forces_avx512, hf_chord_solve_avx512, hf_chord_step_avx512}};
+    forces_fn couple;
+    solve_fn move, solve, step;
+} isa[] = {
+    {"portable", hf_chord_forces_portable, hf_chord_couple_portable, hf_chord_move_portable, hf_chord_solve_portable,
+     hf_chord_step_portable},
+    {"avx2", hf_chord_forces_avx2, hf_chord_couple_avx2, hf_chord_move_avx2, hf_chord_solve_avx2, hf_chord_step_avx2},
+    {"avx512f", hf_chord_forces_avx512, hf_chord_couple_avx512, hf_chord_move_avx512, hf_chord_solve_avx512,
+     hf_chord_step_avx512}};
 
 static int has_isa(int i)
 {
@@ -42,6 +47,8 @@ static void open_kernel(struct kernel_run *r, int trial, int rule)
     *r = (struct kernel_run){.net = {.form = tight_form(HF_METHOD_HIFDM)}};
     random_reflector_scene(&rng, &r->net.scene);
     open_net(&r->net);
+    if (trial % 2) attach_all(&r->net, &rng, 3e-5); /* the others stand on fixed supports */
+    r->net.form.coupling = (hf_coupling_settings){1e-9, HF_COUPLING_ACCELERATED, 200};
     const hf_model *m = &r->net.model;
     ck_assert(m->n_cable <= 600 && m->n_gene <= 100);
     ck_assert_int_eq(find_shape(&r->net), HF_OK);
@@ -62,6 +69,8 @@ static void fill_lanes(struct kernel_run *r, uint64_t stream)
         r->lanes.x_m[i] = r->chord.base_m[i / HF_LANES] + rng_uniform(&rng, -0.01, 0.01);
     for (int i = 0; i < r->net.model.n_gene * HF_LANES; i++)
         r->lanes.gene[i] = r->base_N[i / HF_LANES] * rng_uniform(&rng, 0.9, 1.1);
+    for (int i = 0; i < r->chord.n_pull * HF_LANES; i++)
+        r->lanes.displacement_m[i] = r->chord.base_displacement_m[i / HF_LANES] + rng_uniform(&rng, -1e-4, 1e-4);
 }
 
 static void close_kernel(struct kernel_run *r)
@@ -84,6 +93,13 @@ static void work(struct kernel_run *r, int i, double squared[HF_LANES])
 {
     for (int pass = 0; pass < 3; pass++) {
         isa[i].forces(&r->chord, &r->lanes, squared);
+        if (r->chord.n_pull) {
+            double gap[HF_LANES];
+            isa[i].couple(&r->chord, &r->lanes, gap);
+            isa[i].move(&r->chord, &r->lanes);
+            for (int k = 0; k < HF_LANES; k++)
+                squared[k] += gap[k];
+        }
         isa[i].solve(&r->chord, &r->lanes);
         isa[i].step(&r->chord, &r->lanes);
     }

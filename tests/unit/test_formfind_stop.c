@@ -50,7 +50,7 @@ struct record {
 
 static hf_history *open_record(struct record *r, int capacity)
 {
-    r->history = (hf_history){capacity, 0, r->psi_m, r->residual_N, r->inner, r->boundary, r->length_error};
+    r->history = (hf_history){capacity, 0, r->psi_m, r->residual_N, r->inner, r->boundary, r->length_error, {0}};
     return &r->history;
 }
 

@@ -1,4 +1,5 @@
 /* Result files: what is written comes back, in C and in Python. */
+#include "flexible.h"
 #include "results.h"
 
 /* ---- round trips ---- */
@@ -19,6 +20,7 @@ static void fill_result(struct rng *rng, hf_form_result *result)
         bytes[i] = (unsigned char)rng_next(rng);
     result->status = rng_int(rng, 0, 1) ? HF_RATIO_CAP : HF_EXISTS;
     result->stop_reason = HF_STOPPED_ILL_POSED;
+    result->coupling.stop_reason = HF_COUPLING_DIVERGED;
     result->psi_m = (double)NAN;
 }
 
@@ -34,6 +36,7 @@ static void fill_summary(struct rng *rng, hf_summary *s)
                       .pretension_N = rng_uniform(rng, 0, 1),
                       .form_wall_s = rng_uniform(rng, 0, 1),
                       .has_optimize = 1,
+                      .has_coupling = 1,
                       .best_generation = rng_int(rng, -1, 1 << 30),
                       .best_individual = -1,
                       .n_leader = rng_int(rng, 1, 1 << 30),
@@ -73,6 +76,7 @@ static void same_summary(const hf_summary *a, const hf_summary *b)
                    MEMBER(form),
                    MEMBER(form_wall_s),
                    MEMBER(has_optimize),
+                   MEMBER(has_coupling),
                    MEMBER(best),
                    MEMBER(best_generation),
                    MEMBER(best_individual),
@@ -117,6 +121,14 @@ START_TEST(summary_comes_back_bit_by_bit)
     written.evaluations = written.infeasible = written.n_leader = written.planes = 0;
     written.optimize_wall_s = written.optimize_cpu_s = 0;
     same_summary(&written, &read);
+
+    /* without a truss nothing of the coupling */
+    written.has_coupling = 0;
+    end(begin(temp_path("c.h5"), 1, &net.scene), &written);
+    ck_assert_int_eq(hf_store_read_summary(temp_path("c.h5"), &read, &messages), HF_OK);
+    memset(&written.form.coupling, 0, sizeof written.form.coupling);
+    same_summary(&written, &read);
+    python("r", temp_path("c.h5"), "assert 'coupling' not in f\n");
     close_net(&net);
 }
 END_TEST
@@ -205,7 +217,7 @@ START_TEST(shapes_come_back_in_the_order_of_the_scene)
     hf_messages messages = {0};
     hf_shape shape;
     double psi_m[2] = {2.385, 1.125}, other[8] = {0.5, 0.25, 7, 8, 9, 10, 11, 12};
-    hf_history history = {4, 2, psi_m, other, other + 2, other + 4, other + 6};
+    hf_history history = {4, 2, psi_m, other, other + 2, other + 4, other + 6, {0}};
     OPEN_CASE(&net, SMALL_REFLECTOR);
     const hf_model *m = &net.model;
     double *design_N = calloc((size_t)m->n_gene, sizeof *design_N);
@@ -237,6 +249,40 @@ START_TEST(shapes_come_back_in_the_order_of_the_scene)
            "assert h5py.check_enum_dtype(f['form/law'].dtype) == {'tension': 0, 'length': 1, 'force_density': 2, "
            "'elastic': 3}");
     free(design_N);
+    close_net(&net);
+}
+END_TEST
+
+/* Two cables between two supports on a truss. */
+START_TEST(coupling_is_stored_beside_the_shape)
+{
+    struct net net;
+    struct rng rng = rng_start(4);
+    hf_messages messages = {0};
+    double form[5][8] = {{0}}, coupling[3][2] = {{1e-3, 1e-7}, {0.5, 0.25}, {0, 2e-3}};
+    hf_history history = {8,       1,       form[0], form[1],
+                          form[2], form[3], form[4], {2, 2, coupling[0], coupling[1], coupling[2]}};
+    static const struct hand_node node[] = {
+        {{0, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{1, 0.5, 0}, HF_ROLE_INNER, {0}}, {{2, 1, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_INNER, HF_LAW_TENSION, 10},
+                                              {{2, 1}, HF_GROUP_INNER, HF_LAW_TENSION, 10}};
+    OPEN_HAND(&net, node, cable, HF_METHOD_HIFDM);
+    attach_all(&net, &rng, 1e-4);
+    ck_assert_int_eq(find_coupled(&net, HF_COUPLING_ACCELERATED, 1e-9), HF_OK);
+    hf_store *store = begin(temp_path("a.h5"), 1, &net.scene);
+    ck_assert_int_eq(hf_store_form(store, &net.model, &net.work, &history, &messages), HF_OK);
+    end(store, &(hf_summary){.has_coupling = 1, .form = net.result});
+    char script[800];
+    snprintf(script, sizeof script,
+             "c, n = f['coupling'], f['scene/node']\n"
+             "moved = f['form/position_m'][:] - n['position_m'][:]\n"
+             "import numpy as np\n"
+             "assert list(c['node']) == [0, 2] and np.abs(moved[c['node'][:]] - c['displacement_m'][:]).max() < 1e-15\n"
+             "assert np.abs(c['displacement_m'][:]).max() > 1e-4 and c['force_N'].attrs['units'] == 'N'\n"
+             "assert list(c['history/step_m']) == [1e-3, 1e-7] and list(c['history/psi_m']) == [0.5, 0.25]\n"
+             "assert c.attrs['iterations'] == %d and c.attrs['stop_reason'] == 1\n",
+             net.result.coupling.iterations);
+    python("r", temp_path("a.h5"), script);
     close_net(&net);
 }
 END_TEST
@@ -397,6 +443,7 @@ Suite *suite_unit_store(void)
     tcase_add_loop_test(tests, surface_comes_back_bit_by_bit, 0, 1 + HF_LIST_MAX);
     tcase_add_loop_test(tests, scene_comes_back, 0, 2);
     tcase_add_test(tests, shapes_come_back_in_the_order_of_the_scene);
+    tcase_add_test(tests, coupling_is_stored_beside_the_shape);
     tcase_add_test(tests, a_run_without_a_best_says_so);
     tcase_add_loop_test(tests, generations_are_appended, 0, N(sizes));
     tcase_add_test(tests, provenance_and_units_are_there);

@@ -69,7 +69,7 @@ START_TEST(iterations_to_a_micrometre)
     size_t n = (size_t)net.form.max_iterations;
     double *record = calloc(5 * n, sizeof *record);
     ck_assert_ptr_nonnull(record);
-    hf_history history = {(int)n, 0, record, record + n, record + 2 * n, record + 3 * n, record + 4 * n};
+    hf_history history = {(int)n, 0, record, record + n, record + 2 * n, record + 3 * n, record + 4 * n, {0}};
     hf_form_prepare(&net.model, &net.work);
     ck_assert_int_eq(hf_form_find(&net.model, &net.form, HF_STOP_RESIDUAL, &net.work, &history, &net.result), HF_OK);
     for (int i = 0; i < history.n; i++)

@@ -1,0 +1,67 @@
+// The pages that test.mjs opens, each of a case that is run or of a study that is swept and merged.
+//   source: path of a case in the repository, or text: a case, with the files beside it
+//   sections: those it must have, in order, apart from those that are there maybe
+//   title: what must stand on it, to the letter
+//   warnings, slack: how many it must tell of
+//   study: how many points; needs: the command without which this page cannot be made yet
+
+const FORM = ["net", "map", "form-finding", "tensions", "summary", "provenance"];
+const GA = ["net", "map", "form-finding", "tensions", "ga", "summary", "provenance"];
+
+const HOSTILE = `</script><img src=x onerror="window.hit=1"><!--<b>&amp;]]>'"`;
+
+const cylinder = (modules, more = "") =>
+  `scene:\n  parabolic_cylinder: {aperture_m: 10, length_m: 12, focal_length_m: 7.2, modules: [${modules}], ` +
+  `cells_per_module: [2, 2], boundary: outer_edge, scallop: 0.1}\nform: {method: auto}\n${more}`;
+
+// Cables whose names try to be markup; the last one is slack.
+const ODD_NODES = `id,x_m,y_m,z_m,role
+<script>window.hit=2</script>,0,0,0,support
+b&amp;,2,0,0,support
+"c""",2,2,0,support
+d',0,2,0,support
+"<i>e</i>",1,1,0.1,inner
+`;
+const ODD_CABLES = `id,i,j,group,law,value
+"<img src=x onerror=window.hit=3>",<script>window.hit=2</script>,"<i>e</i>",inner,tension,10
+k2,b&amp;,"<i>e</i>",inner,tension,10
+k3,"c""","<i>e</i>",inner,tension,10
+k4,d',"<i>e</i>",boundary,tension,0.001
+`;
+
+export const pages = [
+  { name: "chen2022", source: "configs/chen2022.yaml", sections: GA, warnings: 2 },
+  { name: "reflector", source: "configs/reflector.yaml", sections: FORM, warnings: 0 },
+  {
+    name: "reflector-ga",
+    text: cylinder(
+      [10, 12],
+      `optimize: {rule: tension, population: 10, generations: 5}\ntitle: ${JSON.stringify(HOSTILE)}\n`,
+    ),
+    title: HOSTILE,
+    sections: GA,
+  },
+  {
+    name: "imported",
+    text: "scene:\n  import: {nodes: odd-nodes.csv, cables: odd-cables.csv}\n",
+    files: { "odd-nodes.csv": ODD_NODES, "odd-cables.csv": ODD_CABLES },
+    sections: FORM,
+    slack: 1,
+  },
+  {
+    name: "large", // 41x49 nodes
+    text: cylinder([20, 24], "optimize: {rule: tension, population: 4, generations: 400, polish_iterations: 2}\n"),
+    sections: GA,
+  },
+  { name: "truss", source: "configs/chen2022-truss.yaml", sections: FORM, maybe: ["coupling", "ga"], truss: true },
+  {
+    name: "sweep",
+    needs: "sweep",
+    study: 64,
+    text:
+      "base: base.yaml\nsweep:\n  form.pretension_N: {from: 5, to: 40, n: 16, spacing: log}\n" +
+      "  scene.parabolic_cylinder.scallop: [0.05, 0.08, 0.11, 0.14]\n  files: all\n",
+    files: { "base.yaml": cylinder([4, 5]) },
+    sections: ["sweep", "points"],
+  },
+];

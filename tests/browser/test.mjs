@@ -1,0 +1,372 @@
+// Opens every page of pages.mjs in headless Chromium and looks at it as its readers would: is everything drawn, is what
+// is under the pointer the value in the file, do mouse and keyboard work, in the light, in the dark and on paper?
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+import { pages } from "./pages.mjs";
+
+const { HIFDM, CHROMIUM, WORK } = process.env;
+const { chromium } = createRequire(join(WORK, "package.json"))("playwright-core");
+const SIZE_MAX = 1e6; // bytes: the promise of the README
+const at =
+  (folder) =>
+  (...words) =>
+    execFileSync(HIFDM, words, { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] });
+
+// ---- making a page and the numbers to hold it against ----
+
+function csv(path) {
+  const lines = readFileSync(path, "utf8").trimEnd().split("\n");
+  const cells = (line) =>
+    [...line.matchAll(/("((?:[^"]|"")*)"|[^,]*)(,|$)/g)].map((m) => (m[2] ?? m[1]).replace(/""/g, '"'));
+  const names = cells(lines[0]);
+  return lines.slice(1).map((line) => Object.fromEntries(cells(line).map((cell, k) => [names[k], cell])));
+}
+
+function build(page, folder) {
+  rmSync(folder, { recursive: true, force: true });
+  mkdirSync(folder, { recursive: true });
+  const hifdm = at(folder),
+    result = page.study ? "study.h5" : "result.h5",
+    html = join(folder, "report.html");
+  for (const [name, text] of Object.entries(page.files || {})) writeFileSync(join(folder, name), text);
+  const source = page.source ? resolve(page.source) : page.study ? "study.yaml" : "case.yaml";
+  if (page.text) writeFileSync(join(folder, source), page.text);
+  if (page.study) {
+    hifdm("sweep", source);
+    hifdm("merge", source);
+  } else {
+    hifdm("run", source, "-o", result, "--quiet");
+  }
+  const start = performance.now();
+  hifdm("report", result, "-o", html);
+  const made = { html, hifdm, made_ms: performance.now() - start };
+  if (page.study) return made;
+  hifdm("export", result, "--csv", ".");
+  return {
+    ...made,
+    nodes: csv(join(folder, "nodes.csv")),
+    cables: csv(join(folder, "cables.csv")),
+    summary: JSON.parse(hifdm("show", result, "--json")),
+  };
+}
+
+// ---- what a reader sees ----
+
+const same = (shown, value, digits) => {
+  const near = Math.abs(shown - value) <= 0.51 * 10 ** (Math.floor(Math.log10(Math.abs(value) || 1)) - digits + 1);
+  assert.ok(near || Math.abs(shown - value) < 1e-9, `${shown} is shown for ${value}`);
+};
+// "−1.2×10⁻⁷ N" -> -1.2e-7
+const number = (text) =>
+  parseFloat(
+    text
+      .replace("−", "-")
+      .replace(
+        /×10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)/,
+        (_, e) => "e" + [...e].map((c) => (c === "⁻" ? "-" : "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(c))).join(""),
+      ),
+  );
+
+const settle = (tab) =>
+  tab.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+// Colours of a canvas: how many there are, and a sum that tells two pictures apart.
+const picture = async (tab, canvas) => {
+  await settle(tab);
+  return tab.evaluate((id) => {
+    const node = document.getElementById(id),
+      copy = document.createElement("canvas");
+    const c = Object.assign(copy, { width: node.width, height: node.height }).getContext("2d", {
+      willReadFrequently: true,
+    });
+    c.drawImage(node, 0, 0);
+    const pixel = c.getImageData(0, 0, node.width, node.height).data;
+    const colours = new Set();
+    let sum = 0;
+    for (let k = 0; k < pixel.length; k += 4) {
+      const colour = (pixel[k] << 16) | (pixel[k + 1] << 8) | pixel[k + 2];
+      if (pixel[k + 3]) colours.add(colour);
+      sum = (Math.imul(sum, 31) + colour + pixel[k + 3]) | 0;
+    }
+    return { colours: colours.size, sum };
+  }, canvas);
+};
+const tip = async (tab, stage) => {
+  await settle(tab);
+  return tab.evaluate((name) => {
+    const node = document.querySelector(`.stage.${name} .tip`);
+    if (node.hidden) return null;
+    const rows = [...node.querySelectorAll("tr")].map((r) => [...r.children].map((c) => c.textContent));
+    return { heading: node.querySelector("strong").textContent, ...Object.fromEntries(rows) };
+  }, stage);
+};
+async function changes(tab, what, act) {
+  const before = await picture(tab, "net-canvas");
+  await act();
+  assert.notEqual((await picture(tab, "net-canvas")).sum, before.sum, `${what} leaves the picture as it was`);
+}
+
+// ---- the checks, one after the other on an open page ----
+
+async function checkText(tab, page) {
+  if (page.title) {
+    assert.equal(await tab.locator("h1").textContent(), page.title);
+    assert.equal(await tab.title(), page.title);
+  }
+  const sections = await tab.locator("main section").evaluateAll((all) => all.map((s) => s.id));
+  assert.deepEqual(
+    sections.filter((id) => !(page.maybe || []).includes(id)),
+    page.sections,
+  );
+  assert.equal(await tab.evaluate("window.hit"), undefined, "a text of the case became markup");
+  assert.equal(await tab.locator("main img, main i, main b, main script").count(), 0);
+  const text = await tab.locator("body").innerText();
+  for (const word of ["NaN", "undefined", "null", "Infinity", "[object"])
+    assert.ok(!text.includes(word), `the page says ${word}`);
+  if (page.warnings !== undefined) assert.equal(await tab.locator("#warnings li").count(), page.warnings);
+}
+
+async function checkSummary(tab, made) {
+  const cells = await tab.locator("#summary tr", { hasText: "psi_m" }).locator("td").allTextContents();
+  same(number(cells[0]), 1e3 * made.summary.form.psi_m, 5);
+  if (made.summary.optimize) same(number(cells[1]), 1e3 * made.summary.optimize.psi_m, 5);
+}
+
+// Every point has a row, its name leads to its result, and the row says what the result says.
+async function checkPoints(tab, page, made, folder) {
+  const rows = tab.locator("#points tbody tr");
+  assert.equal(await rows.count(), page.study);
+  for (const i of [0, Math.floor(page.study / 2), page.study - 1]) {
+    const file = decodeURIComponent(await rows.nth(i).locator("a").getAttribute("href"));
+    const cells = await rows.nth(i).locator("td").allTextContents();
+    const summary = JSON.parse(at(folder)("show", file, "--json"));
+    assert.equal(cells[2], "done");
+    same(number(cells[3]), 1e3 * summary.form.psi_m, 5);
+    same(number(cells[5]), summary.form.boundary_tension_ratio, 5);
+  }
+  const before = await tab.locator("#sweep .chart").first().innerHTML();
+  await tab.locator("#sweep").getByLabel("scallop").check();
+  assert.notEqual(await tab.locator("#sweep .chart").first().innerHTML(), before, "another axis, the same curves");
+}
+
+async function checkCharts(tab, least, words) {
+  const charts = await tab.locator(".chart").evaluateAll((all) =>
+    all.map((c) => ({
+      title: c.querySelector("h3").textContent,
+      markup: c.querySelector("svg[tabindex]").outerHTML,
+      ticks: c.querySelectorAll("svg[tabindex] text").length,
+      drawn: [...c.querySelectorAll("svg[tabindex] path")].map(
+        (p) => p.getTotalLength() + p.getAttribute("d").length,
+      ),
+    })),
+  );
+  assert.ok(charts.length >= least, "too few charts");
+  for (const c of charts) {
+    assert.ok(!/NaN|undefined|Infinity/.test(c.markup), `${c.title}: holds no numbers`);
+    assert.ok(c.ticks >= 5, `${c.title}: ${c.ticks} labels`);
+    assert.ok(c.drawn.length && c.drawn.some((d) => d > 0), `${c.title}: is empty`);
+  }
+  const first = tab.locator(".chart svg[tabindex]").first(),
+    said = tab.locator(".chart .tip").first();
+  await first.focus();
+  await tab.keyboard.press("End");
+  assert.match(await said.innerText(), words);
+  await tab.keyboard.press("Escape");
+  assert.ok(await said.isHidden());
+}
+
+async function checkHover(tab, made) {
+  await tab.locator("#net-canvas").scrollIntoViewIfNeeded();
+  const box = await tab.locator("#net-canvas").boundingBox();
+  const at = (kind, i) => tab.evaluate(([k, e]) => report.net.screenOf(k, e), [kind, i]);
+  // The tooltip of a node or cable, seen from above and so near that nothing else is close.
+  async function hover(kind, i) {
+    await tab.getByRole("button", { name: "View along z" }).click();
+    for (let k = 0; k < 5; k++) {
+      await settle(tab);
+      const [x, y] = await at(kind, i);
+      await tab.mouse.move(box.x + x + 1, box.y + y + 1);
+      if (k < 4) await tab.mouse.wheel(0, -500);
+    }
+    return tip(tab, "net");
+  }
+  for (const part of [0.1, 0.37, 0.62, 0.98]) {
+    const e = Math.floor(part * made.cables.length),
+      cable = made.cables[e],
+      said = await hover("cable", e);
+    assert.equal(said && said.heading, `cable ${cable.id}`);
+    same(number(said.tension), Number(cable.tension_N), 6);
+    same(number(said.length), Number(cable.length_m), 6);
+    same(number(said["force density"]), Number(cable.q_N_per_m), 5);
+    const i = made.nodes.findIndex((n) => n.id === cable.j),
+      node = made.nodes[i],
+      about = await hover("node", i);
+    assert.equal(about && about.heading, `node ${node.id}`);
+    const distance_m = Math.hypot(node.x_m - node.x0_m, node.y_m - node.y0_m, node.z_m - node.z0_m);
+    same(number(about["to theory"]), 1e3 * distance_m, 5);
+  }
+  await tab.mouse.move(box.x - 5, box.y - 5);
+  await tab.getByRole("button", { name: "View from above" }).click();
+  assert.equal(await tip(tab, "net"), null);
+}
+
+async function checkNet(tab, page, made) {
+  const canvas = tab.locator("#net-canvas");
+  await canvas.scrollIntoViewIfNeeded();
+  const box = await canvas.boundingBox();
+  assert.ok((await picture(tab, "net-canvas")).colours > 10, "the net is not drawn");
+  await changes(tab, "dragging", async () => {
+    await tab.mouse.move(box.x + 300, box.y + 200);
+    await tab.mouse.down();
+    await tab.mouse.move(box.x + 360, box.y + 230, { steps: 4 });
+    await tab.mouse.up();
+    await tab.mouse.move(box.x + 5, box.y + 5);
+  });
+  await tab.getByRole("button", { name: "View along x" }).focus();
+  await tab.keyboard.press("Tab"); // the picture comes after its tools
+  assert.equal(await tab.evaluate("document.activeElement.id"), "net-canvas");
+  assert.notEqual(await canvas.evaluate((c) => getComputedStyle(c).outlineStyle), "none", "no visible focus");
+  for (const key of ["ArrowLeft", "ArrowUp", "Shift+ArrowRight", "+", "-", "0"])
+    await changes(tab, key, () => tab.keyboard.press(key));
+  await tab.keyboard.press("n");
+  assert.equal((await tip(tab, "net")).heading, `node ${made.nodes[0].id}`);
+  await tab.keyboard.press("Shift+C");
+  assert.equal((await tip(tab, "net")).heading, `cable ${made.cables.at(-1).id}`);
+  await tab.keyboard.press("Escape");
+  assert.equal(await tip(tab, "net"), null);
+  for (const label of ["tension", "slack", "none", "theoretical", "found"])
+    await changes(tab, label, () => tab.locator("#net").getByLabel(label, { exact: true }).check());
+  if (page.truss)
+    await changes(tab, "the truss", () => tab.locator("#net").getByLabel("truss", { exact: true }).uncheck());
+  await tab.locator("#net").getByLabel("slack").check();
+  await settle(tab);
+  if (page.slack !== undefined)
+    assert.match(await tab.locator("#net .bar").innerText(), new RegExp(`^${page.slack} of`));
+  await tab.locator("#net").getByLabel("deviation").check();
+  await changes(tab, "the scale", () => tab.getByLabel("scale of the deformation").press("ArrowRight"));
+  await tab.reload();
+}
+
+async function checkMap(tab, made) {
+  assert.ok((await picture(tab, "map-canvas")).colours > 30, "the map is not drawn");
+  const canvas = tab.locator("#map-canvas");
+  await canvas.scrollIntoViewIfNeeded();
+  const box = await canvas.boundingBox(),
+    before = await picture(tab, "map-canvas");
+  let said = null;
+  for (let k = 1; k < 60 && !said; k++) {
+    // somewhere on the way across there is a node
+    await tab.mouse.move(box.x + (box.width * k) / 60, box.y + box.height / 2);
+    said = await tip(tab, "map");
+  }
+  const node = made.nodes.find((n) => said && said.heading === `node ${n.id}`);
+  assert.ok(node, "no node on the map");
+  same(number(said["height, Δz"]), 1e3 * (node.z_m - node.z0_m), 4);
+  await tab.locator("#map").getByLabel("height").check();
+  assert.notEqual((await picture(tab, "map-canvas")).sum, before.sum);
+}
+
+async function checkRules(tab) {
+  assert.equal(await tab.locator("th:not([scope])").count(), 0, "a heading of a table without scope");
+  assert.equal(await tab.locator("button:not([type])").count(), 0);
+  assert.equal(await tab.locator("canvas:not([aria-label]), svg[role=img]:not([aria-label])").count(), 0);
+  assert.equal(
+    await tab
+      .locator("input")
+      .evaluateAll((all) => all.filter((i) => !i.labels.length && !i.getAttribute("aria-label")).length),
+    0,
+    "an input without a label",
+  );
+}
+
+const background = (tab) =>
+  tab.evaluate(
+    () =>
+      getComputedStyle(document.body)
+        .backgroundColor.match(/\d+/g)
+        .slice(0, 3)
+        .reduce((a, b) => a + Number(b), 0) / 3,
+  );
+
+async function checkMedia(tab, folder, pictures) {
+  const seen = {};
+  for (const [name, media] of [
+    ["light", { colorScheme: "light", media: "screen" }],
+    ["dark", { colorScheme: "dark", media: "screen" }],
+    ["print", { colorScheme: "dark", media: "print" }],
+  ]) {
+    await tab.emulateMedia(media);
+    seen[name] = {
+      paper: await background(tab),
+      sums: await Promise.all(pictures.map(async (name) => (await picture(tab, name)).sum)),
+      tools: await tab.locator(".tools").first().isVisible(),
+    };
+    await tab.screenshot({ path: join(folder, `${name}.png`), fullPage: true });
+  }
+  assert.ok(seen.light.paper > 230 && seen.dark.paper < 50 && seen.print.paper > 250, "wrong colour of the paper");
+  pictures.forEach((name, k) => {
+    assert.notEqual(seen.light.sums[k], seen.dark.sums[k], `${name} does not follow the dark scheme`);
+    assert.notEqual(seen.print.sums[k], seen.dark.sums[k], `${name} is printed in the dark`);
+  });
+  assert.ok(seen.light.tools && !seen.print.tools, "controls on paper");
+  assert.ok((await tab.pdf({ format: "A4" })).length > 10000, "no paper");
+  await tab.emulateMedia({ colorScheme: "light", media: "screen" });
+  await tab.setViewportSize({ width: 360, height: 700 });
+  await settle(tab);
+  assert.ok((await tab.evaluate("document.documentElement.scrollWidth")) <= 360, "wider than a telephone");
+}
+
+// ---- all pages ----
+
+async function test(browser, page) {
+  const folder = join(WORK, page.name),
+    made = build(page, folder),
+    bytes = statSync(made.html).size;
+  assert.ok(bytes < SIZE_MAX, `${bytes} bytes`);
+  const url = pathToFileURL(made.html).href,
+    trouble = [];
+  const tab = await browser.newPage({ viewport: { width: 1200, height: 900 } });
+  tab.on("console", (message) => trouble.push(`console: ${message.text()}`));
+  tab.on("pageerror", (error) => trouble.push(`error: ${error.message}`));
+  tab.on("request", (request) => request.url() === url || trouble.push(`request: ${request.url()}`));
+  await tab.goto(url);
+  await checkText(tab, page);
+  if (page.study) {
+    await checkCharts(tab, 3, /pretension [\d.]+ N/);
+    await checkPoints(tab, page, made, folder);
+  } else {
+    await checkSummary(tab, made);
+    await checkCharts(tab, 4, /iteration \d+\s+ψ\s+[\d.]+.* mm/);
+    await checkNet(tab, page, made);
+    await checkHover(tab, made);
+    await checkMap(tab, made);
+  }
+  await checkRules(tab);
+  await checkMedia(tab, folder, page.study ? [] : ["net-canvas", "map-canvas"]);
+  assert.deepEqual(trouble, []);
+  await tab.close();
+  return `${(bytes / 1e3).toFixed(0)} kB, written in ${made.made_ms.toFixed(0)} ms`;
+}
+
+const wanted = process.argv.slice(2),
+  browser = await chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox"] });
+const commands = at(WORK)("help");
+let failed = 0;
+for (const page of pages.filter((p) => !wanted.length || wanted.includes(p.name))) {
+  if (page.needs && !commands.includes(`hifdm ${page.needs} `)) {
+    console.log(`${page.name}: skipped, there is no hifdm ${page.needs}`);
+    continue;
+  }
+  try {
+    console.log(`${page.name}: ${await test(browser, page)}`);
+  } catch (error) {
+    failed++;
+    console.log(`${page.name}: FAILED: ${error.stack}`);
+  }
+}
+await browser.close();
+console.log(failed ? `${failed} pages failed` : "all pages are as they should be");
+process.exitCode = failed ? 1 : 0;

@@ -1,0 +1,266 @@
+/* `hifdm report`: one page that is whole, small, harmless, and holds the stored numbers. What it looks like is the
+ * matter of tests/browser. */
+#include "cli.h"
+
+#define HOSTILE "</script><img src=x onerror=alert(1)><!-- & \\\" ]]>"
+
+/* The JSON block of a page as a file for EXPECT. */
+static const char *data_of(const char *page, const char *name)
+{
+    static const char open_tag[] = "<script type=\"application/json\" id=\"data\">";
+    char *text = read_file(page, NULL), *start = strstr(text, open_tag);
+    ck_assert_ptr_nonnull(start);
+    start += strlen(open_tag);
+    char *end = strstr(start, "</script>");
+    ck_assert_ptr_nonnull(end);
+    *end = '\0';
+    const char *path = file_with(name, start);
+    free(text);
+    return path;
+}
+
+/* The tags that a browser's parser finds; <script> and <style> must open and close as often as they should. */
+static const char well_formed[] = "import sys\n"
+                                  "from html.parser import HTMLParser\n"
+                                  "class Page(HTMLParser):\n"
+                                  "    void, open, seen = {'meta'}, [], []\n"
+                                  "    def handle_starttag(self, tag, attributes):\n"
+                                  "        self.seen.append(tag)\n"
+                                  "        assert not any(n.startswith('on') or n in ('src', 'srcset') for n, _ in "
+                                  "attributes), attributes\n"
+                                  "        if tag not in self.void: self.open.append(tag)\n"
+                                  "    def handle_endtag(self, tag):\n"
+                                  "        assert self.open.pop() == tag, tag\n"
+                                  "page = Page()\n"
+                                  "text = open(sys.argv[1], encoding='utf-8').read()\n"
+                                  "page.feed(text); page.close()\n"
+                                  "assert not page.open, page.open\n"
+                                  "assert page.seen.count('script') == 2 and page.seen.count('style') == 1, page.seen\n"
+                                  "assert 'img' not in page.seen and text.startswith('<!doctype html>')\n"
+                                  "assert 'http://' not in text.replace('http://www.w3.org/2000/svg', '')\n"
+                                  "assert 'https://' not in text and '@import' not in text and 'url(' not in "
+                                  "text.replace('url(#', '')\n";
+
+static void demand_well_formed(const char *page)
+{
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(), well_formed, page);
+}
+
+/* Six digits of a displacement, seven of a tension and eight of a position are what the page keeps. */
+START_TEST(page_holds_the_stored_numbers)
+{
+    const char *out = temp("c.h5"), *page = temp("c.html");
+    HIFDM(0, "run", CHEN, "-o", out, "--quiet", "--set", "optimize.generations=4");
+    HIFDM(0, "report", out, "-o", page);
+    OUT("c.h5: report in ");
+    OUT(" kB)\n");
+    demand_well_formed(page);
+    EXPECT(data_of(page, "c.json"), out, "--", "[s['stage'] for s in a['shapes']] == ['form', 'optimize', 'polish']",
+           "a['net']['node_id'] == texts(b['scene/node/id']) and a['net']['cable_id'] == texts(b['scene/cable/id'])",
+           "a['net']['end'] == b['scene/cable/end'][:].ravel().tolist()",
+           "np.allclose(a['net']['position_m'], b['scene/node/position_m'][:].ravel(), rtol=1e-7)",
+           "all(np.allclose(s['displacement_m'], (b[g]['position_m'][:] - b['scene/node/position_m'][:]).ravel(), "
+           "rtol=1e-5, atol=0) for s, g in zip(a['shapes'], ('form', 'ga/best', 'polish')))",
+           "all(np.allclose(s[n], b[g][n][:], rtol=1e-6, atol=0) for s, g in zip(a['shapes'], ('form', 'ga/best', "
+           "'polish')) for n in ('tension_N', 'length_m'))",
+           "len(a['history']['psi_m']) == a['history']['n'] == 67 and a['history']['stride'] == 1",
+           "np.allclose(a['history']['psi_m'], b['form/history/psi_m'], rtol=1e-8)",
+           "np.allclose(a['ga']['best_psi_m'], b['ga/best_psi_m'], rtol=1e-8)",
+           "a['ga']['n_infeasible'] == b['ga/n_infeasible'][:].tolist()",
+           "a['summary']['form']['psi_m'] == b['form'].attrs['psi_m']", "a['seed'] == '2022'",
+           "len(a['summary']['warnings']) == 2",
+           "{'host', 'compiler', 'git_describe', 'started_utc', 'sha256'} <= {p.split(': ')[0] for p in "
+           "a['provenance']}",
+           "'truss' not in a and 'coupling' not in a");
+    SHELL(0, "test \"$(wc -c <\"$1\")\" -lt 1000000", page);
+}
+END_TEST
+
+/* Of a long history a thousand values at most, the first and the last among them. */
+START_TEST(long_histories_are_thinned)
+{
+    const char *out = temp("l.h5");
+    HIFDM(0, "run",
+          file_with("l.yaml", SMALL_SCENE "optimize: {population: 2, generations: 2501, stagnation_generations: 9999, "
+                                          "polish_iterations: 1}\n"),
+          "-o", out, "--quiet");
+    HIFDM(0, "report", out, "-o", temp("l.html"));
+    EXPECT(data_of(temp("l.html"), "l.json"), out, "--", "a['ga']['n'] == 2501 and a['ga']['stride'] == 3",
+           "len(a['ga']['best_psi_m']) == 835", "near(a['ga']['best_psi_m'][-1], b['ga/best_psi_m'][-1], 1e-8)",
+           "near(a['ga']['mean_psi_m'][1], b['ga/mean_psi_m'][3], 1e-8)");
+}
+END_TEST
+
+/* What a case says is text wherever it appears: title, ids, warnings. */
+START_TEST(nothing_in_a_case_becomes_markup)
+{
+    static const char nodes[] = "id,x_m,y_m,z_m,role\n"
+                                "</script><img src=a>,0,0,0,support\n"
+                                "</title><script>,2,0,0,support\n"
+                                "<!--,1,0.5,0.1,inner\n"
+                                "&lt;,1,1.7,0,support\n";
+    static const char cables[] = "id,i,j,group,law,value\n"
+                                 "</script ><img onerror=b>,</script><img src=a>,<!--,inner,tension,10\n"
+                                 "<script>,</title><script>,<!--,inner,tension,10\n"
+                                 "]]>,<!--,&lt;,inner,tension,0.0001\n";
+    const char *path = net_with(nodes, cables), *out = temp("h.h5"), *page = temp("h.html");
+    char *text = read_file(path, NULL);
+    path = file_with("hostile.yaml", formatted("title: \"" HOSTILE "\"\n%s", text));
+    free(text);
+    HIFDM(0, "run", path, "-o", out);
+    ERR("warning: "); /* a slack cable, named */
+    HIFDM(0, "report", out, "-o", page);
+    demand_well_formed(page);
+    EXPECT(data_of(page, "h.json"), out, "--",
+           "a['title'] == '</script><img src=x onerror=alert(1)><!-- & \"' + ' ]]>'",
+           "a['net']['node_id'] == texts(b['scene/node/id']) and '<!--' in a['net']['node_id']",
+           "a['net']['cable_id'] == texts(b['scene/cable/id'])");
+    text = read_file(page, NULL);
+    demand_part(text, "<title>&#60;/script&#62;&#60;img src=x onerror=alert(1)&#62;&#60;!-- &#38; ", __LINE__);
+    free(text);
+}
+END_TEST
+
+/* A stage that did not run is not on the page; neither is a shape that does not exist. */
+START_TEST(missing_stages_are_absent)
+{
+    const char *out = temp("f.h5");
+    HIFDM(0, "run", file_with("f.yaml", SMALL_SCENE), "-o", out, "--quiet");
+    HIFDM(0, "report", out, "-o", temp("f.html"));
+    EXPECT(data_of(temp("f.html"), "f.json"), "--", "[s['stage'] for s in a['shapes']] == ['form']", "'ga' not in a",
+           "'optimize' not in a['summary']", "a['title'] == 'f.yaml'");
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
+          "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); del f['form/tension_N'], f['form/history']", out);
+    HIFDM(0, "report", out, "-o", temp("s.html"));
+    demand_well_formed(temp("s.html"));
+    EXPECT(data_of(temp("s.html"), "s.json"), "--", "a['shapes'] == []", "'history' not in a");
+    HIFDM(3, "run", CHEN, "-o", temp("n.h5"), "--quiet", "--set", "form.max_iterations=3");
+    HIFDM(0, "report", temp("n.h5"), "-o", temp("n.html"));
+    EXPECT(data_of(temp("n.html"), "n.json"), "--", "[s['stage'] for s in a['shapes']] == ['form'] and 'ga' not in a",
+           "'did not converge in 3 iterations' in a['summary']['errors'][0]");
+}
+END_TEST
+
+START_TEST(truss_is_shown_when_there_is_one)
+{
+    const char *out = temp("t.h5");
+    HIFDM(0, "run", keep(source_path("configs/chen2022-truss.yaml")), "-o", out, "--quiet");
+    HIFDM(0, "report", out, "-o", temp("t.html"));
+    EXPECT(data_of(temp("t.html"), "t.json"), out, "--",
+           "a['truss']['n_node'] == 132 and a['truss']['n_member'] == 336",
+           "np.allclose(a['truss']['position_m'], b['truss/node/position_m'][:].ravel(), rtol=1e-7)",
+           "a['truss']['end'] == b['truss/member/end'][:].ravel().tolist()",
+           "np.allclose(a['truss']['displacement_m'], b['truss/node/displacement'][:, :3].ravel(), rtol=1e-5, atol=0)");
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
+          "import h5py, sys\nh5py.File(sys.argv[1], 'r+')['truss/member/end'][2, 1] = 132", out);
+    HIFDM(5, "report", out, "-o", temp("t.html"), "--force");
+    ERR("t.h5: is damaged: /truss/member/end names a node that is not there");
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
+          "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); del f['truss/member/end']; f['truss/member/end'] = "
+          "'pinned'",
+          out);
+    HIFDM(5, "report", out, "-o", temp("t.html"), "--force");
+    ERR("t.h5: is damaged: /truss/member/end is of another type");
+}
+END_TEST
+
+/* A merged study as `hifdm merge` lays it out: three points, of which one failed and one is missing. */
+static const char make_study[] =
+    "import h5py, numpy as np, sys\n"
+    "f = h5py.File(sys.argv[1], 'w')\n"
+    "f.attrs.create('program', b'hifdm', dtype=h5py.string_dtype('utf-8', 5)); f.attrs['format_version'] = "
+    "np.int32(1)\n"
+    "text = lambda v: np.array([t.encode() for t in v], dtype=h5py.string_dtype('utf-8', max(map(len, v)) or 1))\n"
+    "f['points/id'] = text(['a1', 'b2', 'c3'])\n"
+    "f['points/reason'] = text(['', '</script><b>no', ''])\n"
+    "f['points/status'] = np.array([0, 1, 7], dtype=h5py.enum_dtype({'ok': 0, 'not_converged': 1, 'not_evaluated': 7}, "
+    "basetype='i1'))\n"
+    "f['points/input/form.pretension_N'] = [8.0, 10.0, 12.5]\n"
+    "f['points/input/form.method'] = text(['hifdm', 'newton', 'hifdm'])\n"
+    "f['points/input/scene.parabolic_cylinder.modules'] = np.array([[5, 5], [5, 6], [5, 7]], dtype='i4')\n"
+    "f['points/form/psi_m'] = [0.006, np.nan, np.nan]\n"
+    "f['points/form/n_slack'] = np.array([2, 0, 0], dtype='i4')\n"
+    "f['points/ga/best_psi_m'] = [0.005, np.nan, np.nan]\n"
+    "f['runs/a1'] = h5py.ExternalLink('s.d/a1.h5', '/')\n"
+    "f['runs/b2'] = h5py.ExternalLink('s.d/b2.h5', '/')\n";
+
+START_TEST(merged_study_is_a_page_of_points)
+{
+    const char *merged = temp("s.h5"), *page = temp("s.html");
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(), make_study, merged);
+    SHELL(0, "mkdir \"$1\" && touch \"$1/a1.h5\" \"$1/a1.html\"", temp("s.d"));
+    HIFDM(0, "report", merged, "-o", page);
+    demand_well_formed(page);
+    const char *data = data_of(page, "s.json");
+    EXPECT(
+        data, "--", "a['title'] == 's.h5' and a['study']['n'] == 3 and a['study']['id'] == ['a1', 'b2', 'c3']",
+        "a['study']['status'] == ['ok', 'not_converged', 'not_evaluated']",
+        "a['study']['reason'] == ['', '</script><b>no', '']",
+        "a['study']['file'] == ['s.d/a1.h5', '', ''] and a['study']['page'] == ['s.d/a1.html', '', '']",
+        "{i['name']: i.get('texts') or i['values'] for i in a['study']['input']} == {'form.method': ['hifdm', "
+        "'newton', 'hifdm'], 'form.pretension_N': [8, 10, 12.5], 'scene.parabolic_cylinder.modules': [5, 5, 5, 6, 5, "
+        "7]}",
+        "a['study']['output'] == [{'stage': 'form', 'psi_m': [0.006, None, None], 'n_slack': [2, 0, 0]}, {'stage': "
+        "'optimize', 'psi_m': [0.005, None, None]}]");
+    /* from another folder: absolute paths */
+    SHELL(0, "mkdir \"$1\"", temp("elsewhere"));
+    HIFDM(0, "report", merged, "-o", temp("elsewhere/s.html"));
+    EXPECT(data_of(temp("elsewhere/s.html"), "e.json"), "--",
+           "a['study']['file'][0].startswith('/') and a['study']['file'][0].endswith('/s.d/a1.h5')");
+    /* damaged: fewer names than points, an axis that is no number, a status without a word */
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
+          "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); f['points/input/x'] = h5py.SoftLink('/nowhere')",
+          merged);
+    HIFDM(5, "report", merged, "-o", page, "--force");
+    ERR("s.h5: ");
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
+          "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); del f['points/id'], f['points/input/x']", merged);
+    HIFDM(5, "report", merged, "-o", page, "--force");
+    ERR("s.h5: is damaged: /points/id does not name every point");
+}
+END_TEST
+
+START_TEST(files_are_not_replaced_unasked)
+{
+    const char *out = temp("r.h5"), *page = temp("r.html");
+    HIFDM(0, "run", file_with("r.yaml", SMALL_SCENE), "-o", out, "--quiet");
+    write_file(page, "mine");
+    HIFDM(5, "report", out, "-o", page);
+    ERRS("error: %s exists; use --force to replace it", page);
+    ck_assert(file_is(page, "mine"));
+    HIFDM(0, "report", out, "-o", page, "--force");
+    SHELL(0, "cp \"$1\" \"$1.1\"", page);
+    HIFDM(0, "report", out, "-o", page, "--force");
+    SHELL(0, "cmp \"$1\" \"$1.1\"", page); /* the same file gives the same bytes */
+    HIFDM(5, "report", out, "-o", out, "--force");
+    ERR("r.h5: is the result itself; use -o to choose another name");
+    HIFDM(0, "show", out);
+    SHELL(0, "cd \"$(dirname \"$1\")\" && mkdir x && cd x && \"$0\" report ../r.h5 && ls -A", out);
+    OUT("report in r.html");
+    OUT("\nr.html\n"); /* the default name, in the current folder; nothing temporary */
+    HIFDM(5, "report", out, "-o", temp("no/such/folder.html"));
+    ERR("cannot write: No such file or directory");
+    HIFDM(5, "report", temp("missing.h5"));
+    ERR("missing.h5: cannot open: No such file or directory");
+    HIFDM(5, "report", CHEN, "-o", temp("y.html"));
+    ERR("chen2022.yaml: is not an HDF5 file");
+    HIFDM(2, "report");
+    ERR("'hifdm report' needs a FILE");
+    ck_assert(!is_there(temp("y.html")));
+}
+END_TEST
+
+Suite *suite_cli_report(void)
+{
+    Suite *suite = suite_create("cli/report");
+    TCase *tcase = tcase_create("report");
+    tcase_add_test(tcase, page_holds_the_stored_numbers);
+    tcase_add_test(tcase, long_histories_are_thinned);
+    tcase_add_test(tcase, nothing_in_a_case_becomes_markup);
+    tcase_add_test(tcase, missing_stages_are_absent);
+    tcase_add_test(tcase, truss_is_shown_when_there_is_one);
+    tcase_add_test(tcase, merged_study_is_a_page_of_points);
+    tcase_add_test(tcase, files_are_not_replaced_unasked);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}

@@ -1,0 +1,65 @@
+/* flexible - supports on an elastic foundation made up for tests: any symmetric positive definite matrix is the
+ * flexibility of some structure. Header only, as nets.h. */
+#ifndef HIFDM_TESTS_FLEXIBLE_H
+#define HIFDM_TESTS_FLEXIBLE_H
+
+#include "nets.h"
+
+#include <hifdm/evaluate.h>
+
+enum { MAX_ATTACHMENT = 160 };
+
+/* All supports of the net, as attachments: their number, their nodes in the scene. */
+static inline int list_supports(const struct net *net, int node[MAX_ATTACHMENT])
+{
+    int n = 0;
+    for (int i = 0; i < net->scene.n_node; i++) {
+        if (net->scene.role[i] != HF_ROLE_SUPPORT) continue;
+        ck_assert_int_lt(n, MAX_ATTACHMENT);
+        node[n++] = i;
+    }
+    return n;
+}
+
+/* Springs of about 1/scale each, and a few random modes in which all attachments move together, as a truss bends: of
+ * `scale` per newton at an attachment, too. [3n][3n], the caller frees it. */
+static inline double *random_flexibility(struct rng *rng, int n_attachment, double scale_m_per_N)
+{
+    enum { N_MODE = 6 };
+    int n = 3 * n_attachment;
+    double *mode = malloc(sizeof *mode * (size_t)(N_MODE * n)), *f = calloc((size_t)(n * n), sizeof *f);
+    ck_assert(mode && f);
+    for (int i = 0; i < N_MODE * n; i++)
+        mode[i] = rng_uniform(rng, -1, 1);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++)
+            for (int k = 0; k < N_MODE; k++)
+                f[i * n + j] += scale_m_per_N / N_MODE * mode[k * n + i] * mode[k * n + j];
+        f[i * n + i] += scale_m_per_N * rng_uniform(rng, 0.5, 1);
+    }
+    free(mode);
+    return f;
+}
+
+/* Put all supports of an open net on a random foundation; the workspace is made anew, because it grows. */
+static inline void attach_all(struct net *net, struct rng *rng, double scale_m_per_N)
+{
+    int node[MAX_ATTACHMENT], n = list_supports(net, node);
+    hf_messages messages = {0};
+    double *f = random_flexibility(rng, n, scale_m_per_N);
+    ck_assert_msg(hf_model_attach(&net->model, n, node, f, &messages) == HF_OK, "%s", messages.text);
+    ck_assert(hf_model_is_valid(&net->model));
+    free(f);
+    hf_workspace_free(&net->work);
+    ck_assert_int_eq(hf_workspace_create(&net->model, &net->work), HF_OK);
+    hf_workspace_poison(&net->model, &net->work);
+}
+
+/* The coupled shape of the net. */
+static inline hf_status find_coupled(struct net *net, int scheme, double tof_m)
+{
+    net->form.coupling = (hf_coupling_settings){tof_m, scheme, 500};
+    return hf_evaluate_form(&net->model, &net->form, &net->work, NULL, &net->result);
+}
+
+#endif
