@@ -11,7 +11,8 @@ MODULES := status arena sha256 text csv \
            metrics surface \
            lane lane_kernel formfind newton newton_descent coupling certificate \
            evaluate chord_kernel chord ga swarm polish batch \
-           json summary hdf5_io store_surface store_coupling store store_read store_truss store_table
+           json summary hdf5_io hdf5_io_rows store_surface store_coupling journal generations store_file store \
+           store_read store_truss store_table compare
 APP_MODULES := options print problem run progress signals \
            plan export cutlist vtk report report_study designs main
 
@@ -40,6 +41,9 @@ SUITE ?=
 # Calls that tests/support.c counts and can make fail; each needs a __wrap_ function there.
 TEST_WRAP := malloc calloc realloc aligned_alloc strdup strndup
 TEST_WRAP_EXTRA ?=
+# The same in tests/fault/test_store_calls.c.
+TEST_WRAP += open write writev pwrite read pread fsync fdatasync rename link unlink ftruncate lseek flock fstat stat \
+             access H5Fcreate H5Fopen H5Dcreate2 H5Dopen2 H5Dset_extent H5Dwrite H5Dread H5Awrite H5Aread
 
 # ---- Flags -----------------------------------------------------------------------------------------------------------
 # No fused multiply-adds and no -ffast-math: results are the same bits on every x86-64 machine. One set of position-
@@ -51,7 +55,7 @@ SANITIZER := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all -
 
 # pkg-config is asked once, when a recipe first needs it: $(eval) replaces the question by its answer.
 LAPACK_PC = $(if $(LAPACK_LIBS),,$(shell pkg-config --exists openblas && echo openblas || echo lapack blas))
-PKG = $(eval PKG := $(or $(shell pkg-config --cflags --libs $(LAPACK_PC) gsl hdf5 yaml-0.1),$(PKG_MISSING)))$(PKG)
+PKG = $(eval PKG := $(or $(shell pkg-config --cflags --libs $(LAPACK_PC) gsl hdf5 zlib yaml-0.1),$(PKG_MISSING)))$(PKG)
 PKG_MISSING = $(error A library or pkg-config itself is missing, see above: run `make setup`)
 CHECK = $(eval CHECK := $(or $(shell pkg-config --cflags --libs check),$(error run `make test`)))$(CHECK)
 # -isystem: our warnings are about our code, not about the headers of HDF5.
@@ -133,7 +137,7 @@ setup: ## install the packages that are missing
 run: setup ## set up, build, and run CASE (configs/chen2022.yaml) into results/
 	$(SUB) $(PROGRAM)
 	@mkdir -p $(dir $(RESULT))
-	OMP_WAIT_POLICY=passive $(PROGRAM) run $(CASE) -o $(RESULT) --force
+	OMP_WAIT_POLICY=passive $(PROGRAM) run $(CASE) -o $(RESULT) --restart
 
 test: ## set up, build and run the tests; SUITE="unit verify/band" picks some
 	$(Q)tools/setup.sh --test
@@ -142,9 +146,9 @@ test: ## set up, build and run the tests; SUITE="unit verify/band" picks some
 	$(Q)HIFDM=$(abspath $(PROGRAM)) HIFDM_SOURCE_DIR=$(CURDIR) PYTHON=$(PYTHON) \
 	    TMPDIR=$(abspath $(BUILD))/tmp CK_DEFAULT_TIMEOUT=$${CK_DEFAULT_TIMEOUT:-60} $(RUNNER) $(SUITE)
 
-# Twenty times as many nets as `make test` tries.
-stress: ## the numerical-stability suite at full length
-	+$(Q)HIFDM_STRESS=1 CK_DEFAULT_TIMEOUT=1800 $(MAKE) test SUITE=stress
+# Twenty times as many nets as `make test` tries, ten times as many kills.
+stress: ## the numerical-stability suite and the killed runs at full length
+	+$(Q)HIFDM_STRESS=1 CK_DEFAULT_TIMEOUT=1800 $(MAKE) test SUITE="stress cli/resume"
 
 browser: ## open pages of hifdm report in headless Chromium; needs `tools/setup.sh --ci`
 	$(SUB) $(PROGRAM)
@@ -187,7 +191,7 @@ install: all ## install under PREFIX (/usr/local), within DESTDIR if given
 	$(Q)install -m 644 include/hifdm/*.h $(DESTDIR)$(PREFIX)/include/hifdm/
 	$(Q)printf '%s\n' 'prefix=$(PREFIX)' 'Name: hifdm' 'Version: $(VERSION)' \
 	    'Description: Form finding of cable nets with force densities' 'Cflags: -I$${prefix}/include' \
-	    'Libs: -L$${prefix}/lib -lhifdm' 'Requires.private: $(LAPACK_PC) gsl hdf5 yaml-0.1' \
+	    'Libs: -L$${prefix}/lib -lhifdm' 'Requires.private: $(LAPACK_PC) gsl hdf5 zlib yaml-0.1' \
 	    'Libs.private: $(LAPACK_LIBS) -fopenmp -lm' >$(DESTDIR)$(PREFIX)/lib/pkgconfig/hifdm.pc
 
 clean: ## remove build/

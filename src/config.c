@@ -511,13 +511,10 @@ static int too_deep(const char *text)
     return 0;
 }
 
-hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
-                         hf_messages *messages)
+/* settings->text is there: everything else from it and the overrides. */
+static hf_status parse(hf_case *settings, const char *const *overrides, int n_override, hf_messages *messages)
 {
-    *settings = (hf_case){0};
-    if (snprintf(settings->path, sizeof settings->path, "%s", path) >= HF_PATH_SIZE)
-        return hf_error(messages, HF_BAD_CASE, "%s: the path is too long", path);
-    HF_TRY(hf_text_read_file(path, HF_BAD_CASE, &settings->text, &settings->text_length, messages));
+    const char *path = settings->path;
     if (settings->text_length > CASE_MAX)
         return hf_error(messages, HF_BAD_CASE, "%s: longer than %d kB, so no case file", path, CASE_MAX >> 10);
     if (too_deep(settings->text))
@@ -542,6 +539,27 @@ hf_status hf_config_load(const char *path, const char *const *overrides, int n_o
     if (l.n_fault > FAULT_MAX) hf_error(messages, HF_BAD_CASE, "%s: and %d more faults", path, l.n_fault - FAULT_MAX);
     free(l.where_given);
     return l.failed ? HF_BAD_CASE : HF_OK;
+}
+
+hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
+                         hf_messages *messages)
+{
+    *settings = (hf_case){0};
+    if (snprintf(settings->path, sizeof settings->path, "%s", path) >= HF_PATH_SIZE)
+        return hf_error(messages, HF_BAD_CASE, "%s: the path is too long", path);
+    HF_TRY(hf_text_read_file(path, HF_BAD_CASE, &settings->text, &settings->text_length, messages));
+    return parse(settings, overrides, n_override, messages);
+}
+
+hf_status hf_config_parse(const char *path, const char *text, const char *const *overrides, int n_override,
+                          hf_case *settings, hf_messages *messages)
+{
+    *settings = (hf_case){0};
+    snprintf(settings->path, sizeof settings->path, "%s", path);
+    settings->text = strdup(text);
+    if (!settings->text) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    settings->text_length = strlen(text);
+    return parse(settings, overrides, n_override, messages);
 }
 
 hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages)

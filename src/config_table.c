@@ -2,6 +2,8 @@
 #include <hifdm/config.h>
 
 #include <stddef.h>
+#include <stdio.h>
+#include <string.h>
 
 const char *const hf_method_word[5] = {"hifdm", "iterative_fdm", "fdm", "newton", "auto"};
 const char *const hf_stop_rule_word[2] = {"residual", "rms_change"};
@@ -219,3 +221,42 @@ const hf_field hf_field_table[] = {
      "joint: rigid or pinned; path relative to the case file"},
 };
 const int hf_n_field = sizeof hf_field_table / sizeof *hf_field_table;
+
+static int is_same(const hf_field *f, const char *a, const char *b)
+{
+    switch (f->type) {
+    case HF_FIELD_TEXT:
+        return !strcmp(a, b);
+    case HF_FIELD_DOUBLE:
+        return !memcmp(a, b, sizeof(double));
+    case HF_FIELD_UINT64:
+        return !memcmp(a, b, sizeof(uint64_t));
+    case HF_FIELD_INT_PAIR:
+        return !memcmp(a, b, 2 * sizeof(int));
+    default:
+        return !memcmp(a, b, sizeof(int));
+    }
+}
+
+static int add_key(const char *key, int n, char *text, size_t size)
+{
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, "%s%s", n ? ", " : "", key);
+    return n + 1;
+}
+
+int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t size)
+{
+    const char *p = (const char *)a, *q = (const char *)b;
+    int n = 0;
+    *text = '\0';
+    for (int i = 0; i < hf_n_section; i++) {
+        size_t at = hf_section_table[i].present_offset;
+        if (at != SIZE_MAX && memcmp(p + at, q + at, sizeof(int)) != 0)
+            n = add_key(hf_section_table[i].path, n, text, size);
+    }
+    for (int i = 0; i < hf_n_field; i++)
+        if (!is_same(&hf_field_table[i], p + hf_field_table[i].offset, q + hf_field_table[i].offset))
+            n = add_key(hf_field_table[i].path, n, text, size);
+    return n;
+}

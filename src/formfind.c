@@ -433,7 +433,7 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, h
     hf_form_place_supports(m, w);
     for (;;) {
         r->iterations++;
-        r->status = solve(m, w, &r->culprit);
+        r->status = w->stop && *w->stop ? HF_INTERRUPTED : solve(m, w, &r->culprit);
         if (r->status != HF_OK) break;
         hf_form_measure_cables(m, s, w, r, &length_gap);
         if (r->status != HF_OK) break;

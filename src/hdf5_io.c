@@ -185,7 +185,7 @@ static hid_t make_type(hf_hdf5_kind kind, hsize_t length)
     }
 }
 
-static hid_t array_type(const hf_hdf5_array *a)
+hid_t hf_hdf5_array_type(const hf_hdf5_array *a)
 {
     return make_type(a->kind, a->kind == HF_KIND_CHARS ? a->dims[a->rank] : 0);
 }
@@ -276,10 +276,10 @@ void hf_hdf5_create_file(hf_hdf5 *io, const char *name)
     hf_hdf5_close(io, properties);
 }
 
-void hf_hdf5_open_file(hf_hdf5 *io)
+void hf_hdf5_open_file(hf_hdf5 *io, const char *name, int to_write)
 {
     hid_t access = make_access();
-    io->file = access < 0 ? -1 : H5Fopen(io->path, H5F_ACC_RDONLY, access);
+    io->file = access < 0 ? -1 : H5Fopen(name, to_write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
     if (io->file < 0) hf_hdf5_fail(io, "open", -1, NULL);
     hf_hdf5_close(io, access);
 }
@@ -337,7 +337,7 @@ hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const
 {
     hid_t type = -1, space = -1, properties = -1, data_set = -1;
     if (io->status != HF_OK) return -1;
-    if ((type = array_type(a)) < 0 || (space = make_space(a, chunk != NULL)) < 0 ||
+    if ((type = hf_hdf5_array_type(a)) < 0 || (space = make_space(a, chunk != NULL)) < 0 ||
         (properties = make_properties(H5P_DATASET_CREATE)) < 0 ||
         (chunk && H5Pset_chunk(properties, a->rank, chunk) < 0) ||
         (data_set = H5Dcreate2(group, a->name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT)) < 0)
@@ -354,28 +354,12 @@ void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const
 {
     hid_t data_set = hf_hdf5_make_array(io, group, a, NULL), type = -1;
     if (io->status == HF_OK) {
-        type = array_type(a);
+        type = hf_hdf5_array_type(a);
         if (type < 0 || H5Dwrite(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
             hf_hdf5_fail(io, "write", group, a->name);
     }
     hf_hdf5_close(io, type);
     hf_hdf5_close(io, data_set);
-}
-
-void hf_hdf5_append(hf_hdf5 *io, hid_t data_set, const hf_hdf5_array *a, hsize_t row, const void *values)
-{
-    hid_t type = -1, space = -1, slab = -1;
-    hsize_t extent[3] = {row + 1, a->dims[1], a->dims[2]}, start[3] = {row, 0, 0};
-    if (io->status != HF_OK) return;
-    assert(a->dims[0] == 1);
-    if (H5Dset_extent(data_set, extent) < 0 || (type = array_type(a)) < 0 || (space = H5Dget_space(data_set)) < 0 ||
-        H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, a->dims, NULL) < 0 ||
-        (slab = H5Screate_simple(a->rank, a->dims, NULL)) < 0 ||
-        H5Dwrite(data_set, type, slab, space, H5P_DEFAULT, values) < 0)
-        hf_hdf5_fail(io, "write", data_set, NULL);
-    hf_hdf5_close(io, slab);
-    hf_hdf5_close(io, space);
-    hf_hdf5_close(io, type);
 }
 
 /* ---- reading data sets ---- */
@@ -409,7 +393,7 @@ void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, void *
         hsize_t n = 1;
         for (int i = 0; i < a->rank; i++)
             n *= a->dims[i];
-        if ((type = array_type(a)) < 0 || H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
+        if ((type = hf_hdf5_array_type(a)) < 0 || H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
             hf_hdf5_fail(io, "read", group, a->name);
         else if (is_enum(a->kind) && !are_known(a->kind, values, n))
             hf_hdf5_damaged(io, group, a->name, "holds a value that has no word");
@@ -456,7 +440,9 @@ static void put_typed(hf_hdf5 *io, hid_t place, const char *name, const char *at
                       const void *values)
 {
     hid_t space = -1, id = -1;
-    if (type < 0 || (space = H5Screate_simple(n ? 1 : 0, n ? &n : NULL, NULL)) < 0 ||
+    htri_t is_there = H5Aexists_by_name(place, name, attribute, H5P_DEFAULT);
+    if (type < 0 || is_there < 0 || (is_there && H5Adelete_by_name(place, name, attribute, H5P_DEFAULT) < 0) ||
+        (space = H5Screate_simple(n ? 1 : 0, n ? &n : NULL, NULL)) < 0 ||
         (id = H5Acreate_by_name(place, name, attribute, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
         H5Awrite(id, type, values) < 0)
         fail_at(io, "write", place, name, attribute);

@@ -72,7 +72,7 @@ void hf_hdf5_damaged(hf_hdf5 *io, hid_t place, const char *name, const char *wha
 /* Set io->file. What is in the file `name` is lost. Locks are taken where the file system has them, and their absence
  * is no failure. */
 void hf_hdf5_create_file(hf_hdf5 *io, const char *name);
-void hf_hdf5_open_file(hf_hdf5 *io);  /* io->path, for reading */
+void hf_hdf5_open_file(hf_hdf5 *io, const char *name, int to_write);
 void hf_hdf5_close_file(hf_hdf5 *io); /* nothing but the file may be open; closes after a failure, too */
 
 void hf_hdf5_close(hf_hdf5 *io, hid_t id); /* of any kind, or negative; closes after a failure, too */
@@ -87,8 +87,14 @@ int hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name); /* is there a link 
 hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, const hsize_t *chunk);
 void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, const void *values);
 
-/* Grow the data set by one along its first dimension and write there; array->dims[0] = 1. */
-void hf_hdf5_append(hf_hdf5 *io, hid_t data_set, const hf_hdf5_array *array, hsize_t row, const void *values);
+/* Rows [row, row + array->dims[0]) of a data set that grows, below `group`. Writing makes it larger when it must be. */
+void hf_hdf5_write_rows(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, hsize_t row, const void *values);
+void hf_hdf5_read_rows(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, hsize_t row, void *values);
+
+/* One string that the file keeps with a fixed length, as a new text, *text, which the caller frees. */
+void hf_hdf5_read_text(hf_hdf5 *io, hid_t group, const char *name, char **text);
+
+hid_t hf_hdf5_array_type(const hf_hdf5_array *array); /* the caller closes it; negative after a failure of HDF5 */
 
 /* Read exactly array->dims values, refusing other dimensions, other types and foreign values of enumerations. */
 void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, void *values);
@@ -101,7 +107,7 @@ size_t hf_hdf5_chars_length(hf_hdf5 *io, hid_t group, const char *name);
 
 /* ---- Attributes of the object `name` below `place` ("." is `place` itself) ---- */
 
-/* n values, 0 = a scalar; not for HF_KIND_CHARS. */
+/* n values, 0 = a scalar; not for HF_KIND_CHARS. Putting replaces what is there. */
 void hf_hdf5_put(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hf_hdf5_kind kind, hsize_t n,
                  const void *values);
 void hf_hdf5_put_text(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text);
@@ -207,6 +213,7 @@ void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table,
     X(hf_summary, "/", "threads", threads, INT)                                                                        \
     X(hf_summary, "/", "seed", seed, UINT64)                                                                           \
     X(hf_summary, "/", "warnings", warnings, CHARS)                                                                    \
+    X(hf_summary, "/", "finished", finished, FLAG)                                                                     \
     X(hf_summary, "/", "has_polish", has_polish, FLAG)                                                                 \
     X(hf_summary, "/", "has_optimize", has_optimize, FLAG)                                                             \
     X(hf_summary, "/case", "case_path", case_path, CHARS)                                                              \

@@ -2,6 +2,7 @@
  * program. */
 #include "plan.h"
 #include "band.h"
+#include "compare.h"
 #include "cutlist.h"
 #include "designs.h"
 #include "export.h"
@@ -23,12 +24,12 @@ static hf_status command_run(const hf_options *o, int argc, char **argv, hf_mess
 {
     hf_summary summary;
     char output[HF_OUTPUT_SIZE];
-    hf_progress progress = hf_progress_on(stderr, o->quiet);
+    hf_progress progress = hf_progress_on(stderr, o->quiet ? HF_PROGRESS_NONE : o->progress);
     hf_run_request request = {.case_path = o->file,
                               .set = o->set,
                               .n_set = o->n_set,
                               .output = o->output,
-                              .force = o->force,
+                              .restart = o->force,
                               .threads = o->threads,
                               .has_seed = o->has_seed,
                               .seed = o->seed,
@@ -74,6 +75,28 @@ static hf_status command_export(const hf_options *o, hf_messages *messages)
     return HF_OK;
 }
 
+static hf_status command_recover(const hf_options *o, hf_messages *messages)
+{
+    hf_summary summary;
+    HF_TRY(hf_store_recover(o->file, &summary, messages));
+    return command_show(o, messages);
+}
+
+static void tell_difference(void *context, const char *path, const char *how)
+{
+    fprintf(context, "%s%s\n", path, how);
+}
+
+static hf_status command_diff(const hf_options *o, hf_messages *messages)
+{
+    hf_comparison c = {.rtol = o->rtol, .atol = o->atol};
+    hf_status status = hf_compare_files(o->file, o->second, &c, tell_difference, stdout, messages);
+    if (status != HF_OK && status != HF_DIFFERENT) return status;
+    printf("%d data sets, %d differ; attributes (times, machine, provenance, summary) are not compared\n", c.n_data_set,
+           c.n_different);
+    return status;
+}
+
 static hf_status dispatch(const hf_options *o, int argc, char **argv, hf_messages *messages)
 {
     char said[4096];
@@ -86,6 +109,10 @@ static hf_status dispatch(const hf_options *o, int argc, char **argv, hf_message
         return hf_designs(o, stdout, messages);
     case HF_COMMAND_SHOW:
         return command_show(o, messages);
+    case HF_COMMAND_RECOVER:
+        return command_recover(o, messages);
+    case HF_COMMAND_DIFF:
+        return command_diff(o, messages);
     case HF_COMMAND_REPORT:
         HF_TRY(hf_report(o, said, sizeof said, messages));
         printf("%s\n", said);

@@ -9,6 +9,9 @@
 #define BIT(command) (1u << (command))
 #define THREADS_MAX 4096
 
+/* In the order of hf_progress_mode. */
+static const char *const progress_word[] = {"auto", "none", "line", "log", "jsonl", NULL};
+
 typedef struct {
     const char *name, *argument, *help;
     hf_command command;
@@ -21,6 +24,10 @@ static const command_row command_table[] = {
     {"evaluate", "CASE", "evaluate a table of designs (boundary pretensions), to a table on standard output or -o",
      HF_COMMAND_EVALUATE},
     {"show", "FILE", "print the summary of a result file", HF_COMMAND_SHOW},
+    {"recover", "FILE", "add the generations of FILE.journal to an unfinished result; `run` does that by itself",
+     HF_COMMAND_RECOVER},
+    {"diff", "A B", "compare two result files, data set by data set; times and provenance (attributes) do not count",
+     HF_COMMAND_DIFF},
     {"report", "FILE", "write a result as one HTML page to look at: net, histories, tensions, summary",
      HF_COMMAND_REPORT},
     {"export", "FILE", "write a result as CSV files, for ParaView, or as a cut list", HF_COMMAND_EXPORT},
@@ -43,7 +50,10 @@ typedef enum {
     OPTION_CUTLIST,
     OPTION_DESIGNS,
     OPTION_TEMPLATE,
-    OPTION_STAGE
+    OPTION_STAGE,
+    OPTION_RTOL,
+    OPTION_ATOL,
+    OPTION_PROGRESS
 } option_id;
 
 typedef struct {
@@ -63,7 +73,9 @@ static const option_row option_table[] = {
      OPTION_OUTPUT},
     {"--output", "-o", "FILE", "the page (default: the result's name with .html, in this folder)",
      BIT(HF_COMMAND_REPORT), OPTION_OUTPUT},
-    {"--force", NULL, NULL, "replace existing files",
+    {"--restart", NULL, NULL, "begin anew, whatever FILE holds; without it an unfinished result of this case goes on",
+     BIT(HF_COMMAND_RUN), OPTION_FORCE},
+    {"--force", NULL, NULL, "replace existing files (of run: the same as --restart)",
      BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EXPORT) | BIT(HF_COMMAND_EVALUATE) | BIT(HF_COMMAND_REPORT), OPTION_FORCE},
     {"--set", NULL, "KEY=VALUE", "override one key of the case, like form.pretension_N=12; may be repeated",
      BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_CHECK) | BIT(HF_COMMAND_EVALUATE), OPTION_SET},
@@ -71,9 +83,14 @@ static const option_row option_table[] = {
      BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_CHECK) | BIT(HF_COMMAND_EVALUATE), OPTION_THREADS},
     {"--seed", NULL, "S", "seed of the genetic algorithm instead of optimize.seed", BIT(HF_COMMAND_RUN), OPTION_SEED},
     {"--json", NULL, NULL, "one JSON object on standard output",
-     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_SHOW) | BIT(HF_COMMAND_EVALUATE), OPTION_JSON},
+     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_SHOW) | BIT(HF_COMMAND_RECOVER) | BIT(HF_COMMAND_EVALUATE), OPTION_JSON},
+    {"--progress", NULL, "HOW", "auto, none, line (a terminal), log (a line in 30 s) or jsonl, on standard error",
+     BIT(HF_COMMAND_RUN), OPTION_PROGRESS},
     {"--quiet", NULL, NULL, "no progress and no summary; warnings and errors stay",
      BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EVALUATE), OPTION_QUIET},
+    {"--rtol", NULL, "R", "numbers are equal when |a-b| <= atol + R |b| (default 0: to the bit)", BIT(HF_COMMAND_DIFF),
+     OPTION_RTOL},
+    {"--atol", NULL, "A", "see --rtol", BIT(HF_COMMAND_DIFF), OPTION_ATOL},
     {"--csv", NULL, "DIR", "write nodes.csv and cables.csv, and truss_nodes.csv and members.csv of a truss, into DIR",
      BIT(HF_COMMAND_EXPORT), OPTION_CSV},
     {"--vtk", NULL, "DIR", "write every shape of the run into DIR, for ParaView (VTKHDF)", BIT(HF_COMMAND_EXPORT),
@@ -129,6 +146,13 @@ static hf_status find_option(const char *word, hf_command command, const option_
     return unknown("option", word, names, N_OPTION, messages);
 }
 
+static hf_status read_progress(const char *value, int *mode, hf_messages *messages)
+{
+    for (*mode = 0; progress_word[*mode]; ++*mode)
+        if (!strcmp(value, progress_word[*mode])) return HF_OK;
+    return hf_error(messages, HF_BAD_USAGE, "--progress must be auto, none, line, log or jsonl, not '%s'", value);
+}
+
 static hf_status apply(const option_row *row, const char *value, hf_options *o, hf_messages *messages)
 {
     uint64_t number = 0;
@@ -160,6 +184,13 @@ static hf_status apply(const option_row *row, const char *value, hf_options *o, 
     case OPTION_QUIET:
         o->quiet = 1;
         break;
+    case OPTION_RTOL:
+    case OPTION_ATOL:
+        if (!hf_text_double(value, row->id == OPTION_RTOL ? &o->rtol : &o->atol) || o->rtol < 0 || o->atol < 0)
+            return hf_error(messages, HF_BAD_USAGE, "%s must be a number from 0 on, not '%s'", row->name, value);
+        break;
+    case OPTION_PROGRESS:
+        return read_progress(value, &o->progress, messages);
     case OPTION_CSV:
         o->csv = value;
         break;
@@ -191,6 +222,10 @@ static hf_status read_words(int argc, char *const *argv, const command_row *comm
         const option_row *row = NULL;
         const char *value = NULL, *equals = strchr(argv[i], '=');
         if (argv[i][0] != '-' || !argv[i][1]) {
+            if (o->file && command->command == HF_COMMAND_DIFF && !o->second) {
+                o->second = argv[i];
+                continue;
+            }
             if (!command->argument || o->file)
                 return hf_error(messages, HF_BAD_USAGE, "'%s' is one argument too many for 'hifdm %s'", argv[i],
                                 command->name);
@@ -223,6 +258,8 @@ hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_
     HF_TRY(read_words(argc, argv, command, options, messages));
     if (command->argument && !options->file)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm %s' needs a %s", command->name, command->argument);
+    if (options->command == HF_COMMAND_DIFF && !options->second)
+        return hf_error(messages, HF_BAD_USAGE, "'hifdm diff' needs a second file");
     if (options->command == HF_COMMAND_EXPORT && !options->csv && !options->vtk && !options->cutlist)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs --csv DIR, --vtk DIR or --cutlist FILE");
     if (options->stage && !options->csv && !options->cutlist)
@@ -260,7 +297,8 @@ void hf_options_help(FILE *file)
             fprintf(file, "      %-18s %s\n", name, o->help);
         }
     }
-    fputs("\nexit status: 0 done, 2 bad usage or case, 3 not converged or no feasible design, 4 ill-posed, 5 "
+    fputs("\nexit status: 0 done, 1 files differ, 2 bad usage or case, 3 not converged or no feasible design, 4 "
+          "ill-posed, 5 "
           "input/output, 75 told to stop\n",
           file);
 }

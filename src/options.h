@@ -12,6 +12,8 @@ typedef enum {
     HF_COMMAND_EVALUATE,
     HF_COMMAND_SHOW,
     HF_COMMAND_REPORT,
+    HF_COMMAND_RECOVER,
+    HF_COMMAND_DIFF,
     HF_COMMAND_EXPORT,
     HF_COMMAND_SCHEMA,
     HF_COMMAND_HELP,
@@ -21,6 +23,7 @@ typedef enum {
 typedef struct {
     hf_command command;
     const char *file;                    /* the CASE or FILE, NULL for commands without one */
+    const char *second;                  /* the other FILE of diff */
     const char *output;                  /* -o */
     const char *csv;                     /* --csv */
     const char *vtk, *cutlist;           /* --vtk, --cutlist */
@@ -31,6 +34,8 @@ typedef struct {
     int threads; /* 0 = all cores */
     int has_seed;
     uint64_t seed;
+    double rtol, atol; /* of diff */
+    int progress;      /* hf_progress_mode */
     int json, quiet, force;
 } hf_options;
 

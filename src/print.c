@@ -142,6 +142,9 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
     if (s->has_optimize) print_optimize(s, f);
     if (s->has_polish) print_polish(s, f);
     if (path) fprintf(f, "  results       %s\n", path);
+    if (path && !s->finished)
+        fprintf(f, "  unfinished    `hifdm run %s -o %s` goes on, with the same options as before\n", s->case_path,
+                path);
 }
 
 /* ---- schema ---- */

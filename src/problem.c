@@ -234,6 +234,8 @@ hf_status hf_problem_explain(hf_problem *p, const hf_form_result *r, hf_messages
     case HF_NOT_CONVERGED:
         hf_problem_warn(p, "form-finding", w, r, messages);
         return explain_not_converged(p, r, messages);
+    case HF_INTERRUPTED:
+        return r->status;
     case HF_TRUSS_TOO_SOFT:
         return explain_too_soft(p, r, messages);
     case HF_STRAIGHT_CHAIN:

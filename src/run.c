@@ -31,6 +31,8 @@ typedef struct {
     hf_evaluator evaluator;
     hf_batch batch;
     hf_ga ga;
+    int first_generation; /* of this session */
+    long first_evaluation;
 } run;
 
 static void run_free(run *r)
@@ -96,6 +98,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     hf_problem *p = &r->problem;
     const hf_form_settings *form = &p->settings.form;
     HF_TRY(hf_problem_allocate(p, messages));
+    p->workspace.stop = r->request->stop_requested;
     if (create_history(form, p->model.n_attachment > 0, &r->history) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", p->model.n_node);
     observe(r, (hf_run_progress){.phase = HF_RUN_FORM});
@@ -111,6 +114,13 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
 }
 
 /* ---- optimisation ---- */
+
+/* Told to stop: all that is done is published, and the same command goes on from there. */
+static hf_status stop_here(run *r, const hf_summary *s, hf_messages *messages)
+{
+    HF_TRY(hf_store_publish(r->store, s, 1, messages));
+    return HF_INTERRUPTED;
+}
 
 /* Workspaces, population and evaluator, all before the first generation. */
 static hf_status prepare_optimize(run *r, hf_messages *messages)
@@ -140,6 +150,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     const double *design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
     hf_form_result again;
     hf_workspace *w = hf_batch_run_one(&r->batch, design, &again);
+    s->best = again; /* to the same bits, with what is not stored of an individual */
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
     HF_TRY(measure_surface(r, HF_STAGE_OPTIMIZE, w, s, messages));
     HF_TRY(load_truss(r, w, messages));
@@ -152,33 +163,64 @@ static void observe_generation(const run *r, double elapsed_s)
     observe(r, (hf_run_progress){.phase = HF_RUN_EVOLVE,
                                  .generation = ga->generation + 1,
                                  .generations = ga->settings->generations,
-                                 .evaluations = ga->n_evaluation,
+                                 .first_generation = r->first_generation,
+                                 .is_last = ga->stop_reason != HF_GA_RUNNING,
+                                 .evaluations = ga->n_evaluation - r->first_evaluation,
                                  .best_psi_m = ga->best_psi_m[ga->generation],
                                  .elapsed_s = elapsed_s});
 }
 
-static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
+/* What the summary says of the generations so far; a file that is published in between has it, too. */
+static void sum_up(const run *r, double start_s, hf_summary *s)
 {
-    hf_ga *ga = &r->ga;
-    double start_s = hf_run_clock_s();
-    s->best.status = HF_NO_FEASIBLE;
-    s->solver = hf_batch_share(&r->batch, r->problem.base_N);
-    do {
-        if (must_stop(r)) return HF_INTERRUPTED;
-        hf_batch_run(&r->batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
-        hf_ga_tell(ga);
-        HF_TRY(hf_store_generation(r->store, &r->problem.model, ga, messages));
-        if (ga->generation == 0) s->base_psi_m = ga->result[0].psi_m;
-        note_best(ga, s);
-        observe_generation(r, hf_run_clock_s() - start_s);
-    } while (hf_ga_next(ga));
-    s->has_optimize = 1; /* only now: a run that broke off has no such stage */
+    const hf_ga *ga = &r->ga;
+    s->has_optimize = 1;
     s->optimize_wall_s = hf_run_clock_s() - start_s;
     s->optimize_cpu_s = r->batch.cpu_s;
     s->generations = ga->generation + 1;
     s->evaluations = ga->n_evaluation;
     s->infeasible = ga->n_evaluation_infeasible;
     s->optimize_stop = (int)ga->stop_reason;
+}
+
+/* The visible file begins with the first generation, so that the journal always has something to be added to. What an
+ * earlier session has stored is taken up. 0 when there is nothing left to evaluate. */
+static hf_status begin_generations(run *r, hf_summary *s, int *more, hf_messages *messages)
+{
+    hf_ga *ga = &r->ga;
+    *more = 1;
+    HF_TRY(hf_store_genes(r->store, &r->problem.model, ga, messages));
+    if (hf_store_generations(r->store) == 0) return hf_store_publish(r->store, s, 1, messages);
+    HF_TRY(hf_store_restore(r->store, ga, s, messages));
+    hf_ga_tell(ga);
+    if (ga->best >= 0) s->best = ga->result[ga->best];
+    *more = hf_ga_next(ga);
+    return HF_OK;
+}
+
+static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
+{
+    hf_ga *ga = &r->ga;
+    int more;
+    s->best.status = HF_NO_FEASIBLE;
+    s->solver = hf_batch_share(&r->batch, r->problem.base_N);
+    HF_TRY(begin_generations(r, s, &more, messages));
+    r->first_generation = more ? ga->generation : ga->generation + 1;
+    r->first_evaluation = ga->n_evaluation;
+    double start_s = hf_run_clock_s();
+    while (more) {
+        if (must_stop(r)) return stop_here(r, s, messages);
+        hf_batch_run(&r->batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
+        hf_ga_tell(ga);
+        HF_TRY(hf_store_generation(r->store, &r->problem.model, ga, messages));
+        if (ga->generation == 0) s->base_psi_m = ga->result[0].psi_m;
+        note_best(ga, s);
+        sum_up(r, start_s, s);
+        HF_TRY(hf_store_publish(r->store, s, 0, messages));
+        observe_generation(r, s->optimize_wall_s);
+        more = hf_ga_next(ga);
+    }
+    sum_up(r, start_s, s);
     if (ga->best >= 0) return store_best(r, s, messages);
     return hf_error(messages, HF_NO_FEASIBLE, "optimize: no feasible design among %ld evaluations", s->evaluations);
 }
@@ -194,6 +236,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});
     hf_status status =
         hf_polish_run(&r->evaluator, r->ga.lower_N, r->ga.upper_N, o->polish_iterations, design, w, &outcome);
+    if (must_stop(r)) return stop_here(r, s, messages);
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
     if (status != HF_OK) {
         const char *why = hf_status_text(status);
@@ -220,7 +263,7 @@ static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
     HF_TRY(prepare_optimize(r, messages));
     s->threads = r->batch.n_thread;
     if (method != HF_OPTIMIZE_LM) HF_TRY(evolve(r, s, messages));
-    if (must_stop(r)) return HF_INTERRUPTED;
+    if (must_stop(r)) return stop_here(r, s, messages);
     if (hf_polish_applies(&r->evaluator)) return polish(r, s, messages);
     if (method == HF_OPTIMIZE_GA_LM) hf_warning(messages, "%s", HF_PROBLEM_POLISH_NEEDS);
     return HF_OK;
@@ -273,6 +316,14 @@ static int leaves_result(hf_status status)
     return status == HF_OK || status == HF_NOT_CONVERGED || status == HF_NO_FEASIBLE;
 }
 
+/* Nothing to do: the summary is the stored one. */
+static hf_status repeat_finished(const char *output, hf_summary *s, hf_messages *messages)
+{
+    HF_TRY(hf_store_read_summary(output, s, messages));
+    hf_warning(messages, "%s: is the finished result of this case; --restart computes it again", output);
+    return HF_OK;
+}
+
 static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messages)
 {
     const hf_run_request *q = r->request;
@@ -284,14 +335,21 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     hf_problem_describe(&r->problem, s);
     HF_TRY(choose_output(q, output, messages));
     HF_TRY(hf_run_spare_inputs(settings, NULL, output, messages));
-    HF_TRY(hf_store_create(output, q->force, settings, &r->problem.scene, q->argc, q->argv, &r->store, messages));
+    hf_store_state state = HF_STORE_NOTHING;
+    if (!q->restart) HF_TRY(hf_store_look(output, settings, &r->problem.scene, &state, messages));
+    if (state == HF_STORE_FINISHED) return repeat_finished(output, s, messages);
+    if (state == HF_STORE_UNFINISHED)
+        HF_TRY(hf_store_resume(output, &r->store, messages));
+    else
+        HF_TRY(hf_store_create(output, q->restart, settings, &r->problem.scene, q->argc, q->argv, &r->store, messages));
     hf_status status = stages(r, s, messages);
     if (status == HF_INTERRUPTED)
-        hf_error(messages, status, "%s: told to stop before the end: nothing is written", output);
+        hf_error(messages, status, "%s: told to stop; the same command goes on from there", output);
     if (!leaves_result(status)) return status;
     if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, &r->truss, messages));
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
     hf_text_trim_utf8(s->warnings);
+    s->finished = 1;
     hf_status finish = hf_store_finish(r->store, s, messages);
     r->store = NULL;
     return finish != HF_OK ? finish : status;

@@ -1,6 +1,6 @@
-/* run - one run: case -> scene -> model -> form-finding -> (ask -> batch -> tell -> store)* -> file. Prints nothing,
- * has no state of its own: any number of runs may go on in one process, one after the other or in threads of their
- * own. */
+/* run - one run: case -> scene -> model -> form-finding -> (ask -> batch -> tell -> store)* -> file.
+ * Prints nothing and has no state of its own: any number of runs may go on in one process, one after the other or in
+ * threads of their own. */
 #ifndef HIFDM_RUN_H
 #define HIFDM_RUN_H
 
@@ -17,6 +17,7 @@ typedef struct {
     hf_run_phase phase;
     int generation, generations; /* finished, and at most */
     int first_generation;        /* that this process evaluates */
+    int is_last;                 /* no generation will follow */
     long evaluations;            /* of this process */
     double best_psi_m;           /* NaN while nothing is feasible */
     double elapsed_s;            /* in this phase and process */
@@ -31,7 +32,7 @@ typedef struct {
     const char *const *set; /* [n_set] overrides "key=value" */
     int n_set;
     const char *output; /* NULL: the name of the case with .h5, in the current folder */
-    int force;          /* replace an existing file */
+    int restart;        /* begin anew whatever is there; else an unfinished result of this case is gone on with */
     int threads;        /* 0: all cores */
     int has_seed;       /* `seed` instead of optimize.seed */
     uint64_t seed;
@@ -44,7 +45,7 @@ typedef struct {
 
 /* Run the case and store it. `output` is the path of the result file, "" when none was written. HF_OK, or the status of
  * what went wrong with messages: HF_NOT_CONVERGED and HF_NO_FEASIBLE still write the file; HF_INTERRUPTED when
- * *stop_requested was seen. */
+ * *stop_requested was seen: the same request goes on. A finished result of this case is not computed again: HF_OK. */
 hf_status hf_run_point(const hf_run_request *request, hf_summary *summary, char output[HF_OUTPUT_SIZE],
                        hf_messages *messages);
 

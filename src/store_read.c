@@ -1,16 +1,20 @@
-/* Contents: opening a result file - summary - scene - shape - series - provenance */
+/* Contents: opening a result file - whose result is it? - summary - scene - shape - series - provenance */
 #include "store_read.h"
 
 #include "arena.h"
 #include "hdf5_io.h"
+#include "journal.h"
+#include "sha256.h"
 #include "store_coupling.h"
 #include "store_surface.h"
 
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 /* ---- opening a result file ---- */
 
@@ -37,7 +41,7 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
     } else if (!S_ISREG(info.st_mode) || H5Fis_hdf5(path) == 0) {
         io.status = hf_error(messages, HF_IO, "%s: is not an HDF5 file, so no result of hifdm", path);
     } else {
-        hf_hdf5_open_file(&io);
+        hf_hdf5_open_file(&io, path, 0);
     }
     if (io.status != HF_OK) return io;
     if (!is_ours(&io))
@@ -47,6 +51,119 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
         io.status = hf_error(messages, HF_IO, "%s: is of format version %d, this program reads version %d", path,
                              version, HF_FORMAT_VERSION);
     return io;
+}
+
+/* ---- whose result is it? ---- */
+
+/* Digests in a row; the ids of the scene, and what HF_SCENE_COLUMNS stores of it. */
+hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, char identity[65])
+{
+    static const hf_hdf5_column table[] = {HF_SCENE_COLUMNS(HF_HDF5_COLUMN)};
+    char chain[64 * (HF_HDF5_COUNT(table) + 1) + 128], *at = chain;
+    for (int i = 0; i < HF_HDF5_COUNT(table); i++) {
+        const hf_hdf5_column *c = &table[i];
+        const void *values;
+        memcpy(&values, (const char *)scene + c->offset, sizeof values);
+        size_t n = (size_t)(c->per_cable ? scene->n_cable : scene->n_node) * (size_t)c->columns;
+        hf_sha256(values ? values : "", values ? n * hf_hdf5_kind_bytes(c->kind) : 0, at);
+        at += 64;
+    }
+    snprintf(at, sizeof chain - (size_t)(at - chain), "%s %llu", settings->sha256,
+             (unsigned long long)settings->optimize.seed);
+    hf_sha256(chain, strlen(chain), identity);
+    return HF_OK;
+}
+
+/* Split lines in place; the caller frees the list. NULL when memory ran out. */
+static const char **split_lines(char *text, int *n)
+{
+    size_t count = 1;
+    for (char *p = text; *p; p++)
+        count += *p == '\n';
+    const char **line = calloc(count, sizeof *line);
+    *n = 0;
+    for (char *p = text; line && *p;) {
+        char *end = strchr(p, '\n');
+        line[(*n)++] = p;
+        if (!end) break;
+        *end = '\0';
+        p = end + 1;
+    }
+    return line;
+}
+
+/* Which keys differ between the stored case and this one, in words. */
+static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t size)
+{
+    char *text = NULL, *overrides = NULL;
+    const char **set = NULL;
+    hf_case then = {0};
+    hf_messages unwanted = {0};
+    uint64_t seed = 0;
+    int n_set = 0;
+    hf_hdf5_get(io, io->file, "/", "seed", HF_KIND_UINT64, &seed, sizeof seed);
+    hf_hdf5_read_text(io, io->file, "/case/text", &text);
+    hf_hdf5_read_text(io, io->file, "/case/overrides", &overrides);
+    if (io->status == HF_OK && !(set = split_lines(overrides, &n_set))) hf_store_no_memory(io);
+    if (io->status == HF_OK && hf_config_parse(now->path, text, set, n_set, &then, &unwanted) == HF_OK) {
+        then.optimize.seed = seed; /* as --seed may have set it */
+        if (hf_config_differences(&then, now, words, size) == 0)
+            snprintf(words, size, "%s", "no key, but comments and layout of the case, or its tables of the net");
+    } else {
+        snprintf(words, size, "%s", "keys that this version does not know");
+    }
+    hf_messages_free(&unwanted);
+    hf_case_free(&then);
+    free(set);
+    free(text);
+    free(overrides);
+}
+
+/* A run that was killed after its result had got its name leaves a journal that nobody needs. */
+static void remove_journal(const char *path)
+{
+    char name[4096];
+    hf_journal journal;
+    hf_messages unwanted = {0};
+    snprintf(name, sizeof name, "%s.journal", path);
+    if (access(name, F_OK) != 0) return;
+    hf_status status = hf_journal_open(path, &journal, &unwanted);
+    hf_journal_close(&journal, status == HF_OK);
+    hf_messages_free(&unwanted);
+}
+
+hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, hf_store_state *state,
+                        hf_messages *messages)
+{
+    char now[65], then[65] = "", words[1024] = "";
+    signed char finished = 0;
+    struct stat info;
+    *state = HF_STORE_NOTHING;
+    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return HF_OK; /* hf_store_create says what is wrong */
+    hf_messages unwanted = {0};
+    HF_TRY(hf_store_identify(settings, scene, now));
+    hf_hdf5_lock();
+    hf_hdf5 io = hf_store_open_result(path, &unwanted);
+    hf_hdf5_get(&io, io.file, "/", "finished", HF_KIND_FLAG, &finished, 1);
+    hf_hdf5_get(&io, io.file, "/", "identity", HF_KIND_CHARS, then, sizeof then);
+    if (io.status == HF_OK && strcmp(now, then) != 0) tell_difference(&io, settings, words, sizeof words);
+    hf_hdf5_close_file(&io);
+    hf_messages_free(&unwanted);
+    hf_hdf5_unlock(HF_OK);
+    if (io.status != HF_OK)
+        return hf_error(messages, HF_EXISTS,
+                        "%s: exists and is no result of hifdm; use --restart to replace it or "
+                        "-o to choose another name",
+                        path);
+    if (*words)
+        return hf_error(
+            messages, HF_EXISTS,
+            "%s: exists and is the %s result of another case; what differs: %s. Use --restart to replace it "
+            "or -o to choose another name",
+            path, finished ? "finished" : "unfinished", words);
+    *state = finished ? HF_STORE_FINISHED : HF_STORE_UNFINISHED;
+    if (finished) remove_journal(path);
+    return HF_OK;
 }
 
 /* ---- summary ---- */

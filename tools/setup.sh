@@ -41,6 +41,7 @@ missing_packages() {
     [ -n "${LAPACK_LIBS:-}" ] || has_library openblas || has_library lapack blas || need libopenblas-dev
     has_library gsl || need libgsl-dev
     has_library hdf5 || need libhdf5-dev
+    has_library zlib || need zlib1g-dev
     has_library yaml-0.1 || need libyaml-dev
 
     if [ $with_test = yes ]; then

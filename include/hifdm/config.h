@@ -105,6 +105,14 @@ typedef struct {
 hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
                          hf_messages *messages);
 
+/* The same of the text of a case file; `path` says where it was, for messages and for the files it names. */
+hf_status hf_config_parse(const char *path, const char *text, const char *const *overrides, int n_override,
+                          hf_case *settings, hf_messages *messages);
+
+/* The keys in which two cases differ, "form.stop, optimize.seed", into text[size] (cut short when it is full). Returns
+ * how many there are. */
+int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t size);
+
 /* The scene that the case describes, checked (hf_scene_check). Free the scene in any case. */
 hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages);
 

@@ -31,6 +31,7 @@ extern "C" {
     X(NO_MEMORY, 30, 5, "no_memory", "out of memory")                                                                  \
     X(IO, 31, 5, "io", "input/output failed")                                                                          \
     X(EXISTS, 32, 5, "exists", "the output file exists")                                                               \
+    X(DIFFERENT, 34, 1, "different", "the files differ")                                                               \
     X(INTERRUPTED, 33, 75, "interrupted", "told to stop before the end")
 
 typedef enum {
@@ -41,7 +42,7 @@ typedef enum {
 
 const char *hf_status_word(hf_status status); /* one token, as stored in files; "unknown" for a foreign value */
 const char *hf_status_text(hf_status status); /* a sentence */
-/* 0 done, 2 usage or case, 3 not converged, 4 ill-posed, 5 input/output, 75 told to stop */
+/* 0 done, 1 two files differ, 2 usage or case, 3 not converged, 4 ill-posed, 5 input/output, 75 told to stop */
 int hf_status_exit_code(hf_status status);
 
 /* Propagate: evaluate once, return it from the calling function unless it is HF_OK. */

@@ -8,7 +8,10 @@
  * threads and host are attributes only: the data sets of two runs of the same case are the same.
  *   /            attributes: program ("hifdm"), format_version, version, git_describe, compiler, build_flags,
  *                hdf5_version, gsl_version, lapack, rng, host, argv[], started_utc, finished_utc, title, seed, threads,
- *                warnings, has_optimize, status (word of the form-finding's if not ok, else of the best individual's)
+ *                warnings, has_optimize, status (word of the form-finding's if not ok, else of the best individual's),
+ *                finished (FALSE: the run can go on), published_utc, identity (of the run, see hf_store_identify);
+ *                after a resumption sessions, resumed_utc, resumed_host, resumed_version (of the last); under Slurm
+ *                slurm_job_id, slurm_array_job_id, slurm_array_task_id, slurm_restart_count
  *   /case        text, overrides; attributes sha256, case_path
  *   /scene/node  id [n], position_m [n][3], role [n]; load_N [n][3] if there are loads
  *   /scene/cable id, group, law, target, length_m (theoretical) [m], end [m][2]; EA_N [m] if any is given
@@ -22,8 +25,9 @@
  *                iterations, crossover_rate, mutation_rate [g][p]; parent [g][p][2];
  *                best_individual, best_psi_m, mean_psi_m, worst_psi_m, n_infeasible [g];
  *                gene_cable (index into /scene/cable), gene_group, lower_N, upper_N [k]; gene_leader [k] under a
- *                symmetry attributes: the members of hf_summary after has_optimize, those of hf_summary.best as
- *   best_... /ga/best     as /form, and design_N [k]
+ *                symmetry; attributes: the members of hf_summary after has_optimize, those of hf_summary.best as
+ *                best_...; n_individual, n_variable, generations_limit, by which a run goes on
+ *   /ga/best     as /form, and design_N [k]
  *   /polish      the same, of Levenberg-Marquardt; attributes: the members of hf_summary.polish and polish_...
  *   /surface     measures of the surface by stage, see store_surface.h; only when the case asks for them
  *   /truss       with a nodes, b members, c attachments; attributes mass_kg, n_node, n_member
@@ -52,37 +56,69 @@ typedef enum { HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, HF_STAGE_NONE 
 extern const char *const hf_stage_word[4];  /* "form", "optimize", "polish", "none" */
 extern const char *const hf_stage_group[4]; /* where a file keeps the shape: "/form", "/ga/best", "/polish", "/" */
 
+/* What is known of a run is its identity: 64 hexadecimal digits of the case's text and overrides, the seed, and the
+ * scene. HF_OK or HF_NO_MEMORY. */
+hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, char identity[65]);
+
+typedef enum { HF_STORE_NOTHING, HF_STORE_UNFINISHED, HF_STORE_FINISHED } hf_store_state;
+
+/* What is at `path`: nothing, or a result of this case and scene. HF_EXISTS for anything else, with a message that says
+ * in which keys the cases differ; HF_IO, HF_NO_MEMORY. */
+hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, hf_store_state *state,
+                        hf_messages *messages);
+
 /* Begin the file of a new run. Whether it can get the name `path` is looked at now: HF_EXISTS when that is taken and
- * not `force`, HF_IO when it is a folder or its folder is not there or not writable, or when the file cannot be made,
- * HF_NO_MEMORY. argv (argc may be 0) goes into the provenance; case and scene are written at once, nothing is borrowed.
- * *store is NULL after a failure. */
-hf_status hf_store_create(const char *path, int force, const hf_case *settings, const hf_scene *scene, int argc,
+ * not `restart`, HF_IO when it is a folder or its folder is not there or not writable, when another process is writing
+ * it, or when the file cannot be made; HF_NO_MEMORY. argv (argc may be 0) goes into the provenance; case and scene are
+ * written at once, nothing is borrowed. *store is NULL after a failure. */
+hf_status hf_store_create(const char *path, int restart, const hf_case *settings, const hf_scene *scene, int argc,
                           char *const *argv, hf_store **store, hf_messages *messages);
+
+/* Go on with the unfinished file at `path`, after the generations of its journal were added. HF_EXISTS when it is
+ * finished, HF_IO, HF_NO_MEMORY. *store is NULL after a failure, and nothing has changed. */
+hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages);
+
+/* Add the generations of the journal to the unfinished file at `path` and no more; its summary then. As
+ * hf_store_resume. */
+hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages);
+int hf_store_is_resumed(const hf_store *store);
+int hf_store_generations(const hf_store *store); /* how many it holds */
 
 /* The calls that write return HF_OK, HF_IO or HF_NO_MEMORY with a message. After a failure the store is of no use any
  * more: later calls write nothing, return the same status, and only hf_store_finish says something once more. */
 
-/* Shape of the workspace in the order of the scene, with the history unless that is NULL. Once per store. */
+/* Shape of the workspace in the order of the scene, with the history unless that is NULL. Once per store. On a resumed
+ * one the shape is compared: a warning when this machine or build finds other bits. */
 hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspace *workspace,
                         const hf_history *history, hf_messages *messages);
 
-/* Append the generation that hf_ga_tell has just ranked. The first call also writes bounds and gene cables. */
+/* Bounds and gene cables of the genetic algorithm, once it is created. Nothing on a resumed store. */
+hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages);
+
+/* Append the generation that hf_ga_tell has just ranked. After HF_OK it outlives this process; after HF_IO all before
+ * it does, once hf_store_publish was called after hf_store_genes. */
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages);
+
+/* Put `ga`, just created, into the state before hf_ga_tell of the last generation that the store holds, and what was
+ * the best until then into the summary. The store is resumed and holds one. */
+hf_status hf_store_restore(hf_store *store, hf_ga *ga, hf_summary *summary, hf_messages *messages);
+
+/* Let everybody see what there is, marked as unfinished: at once, or when it takes less than 2 % of the time since it
+ * was done last. Call it after every generation. */
+hf_status hf_store_publish(hf_store *store, const hf_summary *summary, int at_once, hf_messages *messages);
 
 /* Shape of the workspace as the one that an optimisation stage found, with its design_N [model->n_gene]. Once per
  * stage. */
 hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
                         const double *design_N, hf_messages *messages);
 
-/* Write the summary, close, and give the file its name. Frees the store in any case; after a failure nothing is left
- * at `path` that was not there before. HF_EXISTS, HF_IO: when the file is whole but cannot get its name, it stays under
- * its temporary one, which the message tells. */
+/* Write the summary, close, and give the file its name. Frees the store in any case; after a failure what was published
+ * and the journal are as they were. When the file is whole but cannot get its name (HF_EXISTS, HF_IO) it stays under
+ * another, which the message tells. */
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
 
-/* Where the file is until it is finished; valid as long as the store. A program that is told to stop removes it. */
-const char *hf_store_temporary(const hf_store *store);
-
-/* Throw the unfinished file away and free the store. store may be NULL. */
+/* End without finishing and free the store: what was published stays, with the journal of what was not. store may be
+ * NULL. */
 void hf_store_abandon(hf_store *store);
 
 /* One stored shape, in the order of the scene. */

@@ -15,6 +15,7 @@ extern "C" {
 
 typedef struct {
     char version[64], title[256], case_path[HF_PATH_SIZE];
+    int finished; /* 0: of a run that can go on */
     int threads;
     uint64_t seed;
     int n_node, n_free, n_cable, n_gene, half_bandwidth;

@@ -4,6 +4,7 @@
 #define HIFDM_WORKSPACE_H
 
 #include <hifdm/model.h>
+#include <signal.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -50,6 +51,7 @@ typedef struct {
     HF_WORKSPACE_FIELDS(HF_WORKSPACE_MEMBER)
 #undef HF_WORKSPACE_MEMBER
     void *block;
+    const volatile sig_atomic_t *stop; /* when not NULL and not 0: hf_form_find gives up, HF_INTERRUPTED */
 } hf_workspace;
 
 /* Length that the law length or elastic asks of a cable under this tension: L*, or l0 (1 + T/EA). Stiff cables need no

@@ -21,7 +21,7 @@ static hf_status refuse(const char *path, int force, const hf_scene *scene, char
     return status;
 }
 
-START_TEST(existing_files_are_replaced_by_force_only)
+START_TEST(existing_files_are_replaced_by_restart_only)
 {
     struct net net;
     char text[1024];
@@ -30,7 +30,7 @@ START_TEST(existing_files_are_replaced_by_force_only)
     write_file(path, "precious");
     ck_assert_int_eq(refuse(path, 0, &net.scene, text, sizeof text), HF_EXISTS);
     ck_assert_ptr_nonnull(strstr(text, path));
-    ck_assert_ptr_nonnull(strstr(text, "--force"));
+    ck_assert_ptr_nonnull(strstr(text, "--restart"));
     hf_store_abandon(begin(path, 1, &net.scene));
     char *kept = read_file(path, NULL);
     ck_assert_str_eq(kept, "precious");
@@ -98,12 +98,17 @@ START_TEST(abandoned_files_leave_nothing)
     hf_messages messages = {0};
     const char *path, *folder = new_folder(&path);
     OPEN_CASE(&net, SMALL_REFLECTOR);
-    hf_store *store = begin(path, 0, &net.scene), *second = begin(path, 0, &net.scene);
-    ck_assert_int_eq(count_files(folder), 2); /* two at a time do not meet */
+    char text[1024];
+    hf_store *store = begin(path, 0, &net.scene), *second;
+    ck_assert_int_eq(count_files(folder), 2); /* the file under its temporary name, and the journal */
+    ck_assert_int_eq(hf_store_create(path, 1, any_case(), &net.scene, 0, NULL, &second, &messages), HF_IO);
+    ck_assert_ptr_null(second);
+    snprintf(text, sizeof text, "%s", messages.text);
+    ck_assert_msg(strstr(text, "another process is writing it") != NULL, "%s", text);
+    hf_messages_free(&messages);
     find_shape(&net);
     ck_assert_int_eq(hf_store_form(store, &net.model, &net.work, NULL, &messages), HF_OK);
     hf_store_abandon(store);
-    hf_store_abandon(second);
     hf_store_abandon(NULL);
     ck_assert_int_eq(count_files(folder), 0);
     no_id_is_open();
@@ -300,7 +305,7 @@ Suite *suite_unit_store_faults(void)
     TCase *tests = tcase_create("store_faults");
     suite_add_tcase(suite, tests);
     tcase_add_checked_fixture(tests, quiet, NULL);
-    tcase_add_test(tests, existing_files_are_replaced_by_force_only);
+    tcase_add_test(tests, existing_files_are_replaced_by_restart_only);
     tcase_add_test(tests, a_file_that_appears_meanwhile_is_kept);
     tcase_add_test(tests, names_that_cannot_be_are_told_at_once);
     tcase_add_test(tests, abandoned_files_leave_nothing);

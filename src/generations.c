@@ -1,0 +1,305 @@
+/* Contents: the list - memory - waiting - writing - putting back */
+#include "generations.h"
+
+#include "arena.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WAITING_BYTES (2 << 20) /* of all that wait; a generation larger than that waits alone */
+#define CHUNK_BYTES (256 << 10) /* of a data set: rows as far as they fit */
+#define CHUNK_MAX (1 << 20)     /* of a row larger than CHUNK_BYTES: what HDF5 caches of a data set */
+#define BLOCK 1024              /* generations that are counted at a time */
+
+/* ---- the list ---- */
+
+/* A data set and where its values of one generation are: item after item, `stride` bytes apart. */
+typedef struct {
+    hf_hdf5_array array;
+    const void *from;
+    size_t stride, item_bytes;
+} ga_row;
+
+enum { ROW_EVALUATED = 1, ROW_STATUS = 2, ROW_PSI = 3, ROW_BEST_INDIVIDUAL = 11, ROW_BEST_PSI = 12 };
+
+static int list_rows(const hf_ga *g, ga_row row[HF_GENERATIONS_PIECES])
+{
+    const hsize_t p = (hsize_t)g->n_individual, k = (hsize_t)g->n_gene;
+    const hf_form_result *r = g->result;
+#define ARRAY(member) g->member, sizeof *g->member, sizeof *g->member
+#define RESULT(member) &r->member, sizeof *r, sizeof r->member
+#define SINGLE(value) &(value), 0, sizeof(value)
+    const ga_row rows[] = {
+        {{"design_N", HF_KIND_REAL, 3, {1, p, k}, "N", "boundary pretension T' of each gene"}, ARRAY(design_N)},
+        {{"evaluated", HF_KIND_FLAG, 2, {1, p}, "", "FALSE = a copy whose result was known"}, ARRAY(pending)},
+        {{"status", HF_KIND_STATUS, 2, {1, p}, "", "ok = feasible; under any other psi is NaN"}, RESULT(status)},
+        {{"psi_m", HF_KIND_REAL, 2, {1, p}, "m", "RMS distance of the inner nodes"}, RESULT(psi_m)},
+        {{"residual_N", HF_KIND_REAL, 2, {1, p}, "N", "largest nodal force out of balance"}, RESULT(residual_N)},
+        {{"inner_tension_ratio", HF_KIND_REAL, 2, {1, p}, "", "largest over smallest"}, RESULT(inner_tension_ratio)},
+        {{"boundary_tension_ratio", HF_KIND_REAL, 2, {1, p}, "", "largest over smallest"},
+         RESULT(boundary_tension_ratio)},
+        {{"iterations", HF_KIND_INT, 2, {1, p}, "", "linear solves"}, RESULT(iterations)},
+        {{"crossover_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(crossover_rate)},
+        {{"mutation_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(mutation_rate)},
+        {{"parent", HF_KIND_INT, 3, {1, p, 2}, "", "individuals of the generation before, or -1"}, ARRAY(parent)},
+        {{"best_individual", HF_KIND_INT, 1, {1}, "", "-1 while none is feasible"}, SINGLE(g->best)},
+        {{"best_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the generation"}, SINGLE(g->best_psi_m[g->generation])},
+        {{"mean_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(g->mean_psi_m)},
+        {{"worst_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(g->worst_psi_m)},
+        {{"n_infeasible", HF_KIND_INT, 1, {1}, "", "individuals whose status is not ok"}, SINGLE(g->n_infeasible)}};
+#undef ARRAY
+#undef RESULT
+#undef SINGLE
+    _Static_assert(sizeof rows / sizeof rows[0] == HF_GENERATIONS_PIECES, "count them again");
+    memcpy(row, rows, sizeof rows);
+    assert(!strcmp(rows[ROW_PSI].array.name, "psi_m") && !strcmp(rows[ROW_BEST_PSI].array.name, "best_psi_m"));
+    return HF_HDF5_COUNT(rows);
+}
+
+/* The list without values. */
+static int list_arrays(const hf_generations *g, ga_row row[HF_GENERATIONS_PIECES])
+{
+    hf_form_result nothing = {0};
+    double none = 0;
+    return list_rows(
+        &(hf_ga){.n_individual = g->n_individual, .n_gene = g->n_gene, .result = &nothing, .best_psi_m = &none}, row);
+}
+
+/* ---- memory ---- */
+
+static void lay_out(hf_arena *arena, hf_generations *g)
+{
+    for (int i = 0; i < HF_GENERATIONS_PIECES; i++)
+        g->row[i] = hf_arena_take(arena, (size_t)g->capacity, g->row_bytes[i]);
+}
+
+hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_generations *g)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    hf_arena arena = {0};
+    *g = (hf_generations){.n_individual = n_individual, .n_gene = n_gene, .limit = limit};
+    int n = list_arrays(g, row);
+    for (int i = 0; i < n; i++) {
+        g->row_bytes[i] = hf_hdf5_kind_bytes(row[i].array.kind);
+        for (int d = 1; d < row[i].array.rank; d++)
+            g->row_bytes[i] *= (size_t)row[i].array.dims[d];
+        g->payload_bytes += g->row_bytes[i];
+    }
+    size_t fit = WAITING_BYTES / g->payload_bytes;
+    g->capacity = fit < 1 ? 1 : fit < (size_t)limit ? (int)fit : limit;
+    size_t chunk = g->row_bytes[0] ? CHUNK_BYTES / g->row_bytes[0] : 0; /* rows; whole chunks are written faster */
+    if (chunk > 1 && (size_t)g->capacity > chunk) g->capacity -= g->capacity % (int)chunk;
+    lay_out(&arena, g);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out(&arena, g);
+    g->block = arena.block;
+    return HF_OK;
+}
+
+void hf_generations_free(hf_generations *g)
+{
+    free(g->block);
+    *g = (hf_generations){0};
+}
+
+/* ---- waiting ---- */
+
+int hf_generations_are_full(const hf_generations *g)
+{
+    return g->n_waiting == g->capacity;
+}
+
+/* The values of one generation side by side, as HDF5 takes them; an enumeration is an int in memory, a byte there. */
+static void gather(const ga_row *row, size_t bytes, char *to)
+{
+    size_t each = hf_hdf5_kind_bytes(row->array.kind), n = bytes / each;
+    const char *from = row->from;
+    if (row->item_bytes == each && (row->stride == each || n == 1)) {
+        if (bytes) memcpy(to, from, bytes);
+        return;
+    }
+    for (size_t i = 0; i < n; i++, from += row->stride) {
+        int value;
+        if (row->item_bytes == each) {
+            memcpy(to + i * each, from, each);
+        } else {
+            memcpy(&value, from, sizeof value);
+            to[i] = (char)value;
+        }
+    }
+}
+
+static char *slot(const hf_generations *g, int i)
+{
+    return g->row[i] + (size_t)g->n_waiting * g->row_bytes[i];
+}
+
+void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    int n = list_rows(ga, row);
+    assert(g->n_waiting < g->capacity && ga->n_individual == g->n_individual && ga->n_gene == g->n_gene);
+    for (int i = 0; i < n; i++) {
+        gather(&row[i], g->row_bytes[i], slot(g, i));
+        if (piece) piece[i] = (struct iovec){slot(g, i), g->row_bytes[i]};
+    }
+    g->n_waiting++;
+}
+
+void hf_generations_add_payload(hf_generations *g, const void *payload)
+{
+    const char *from = payload;
+    assert(g->n_waiting < g->capacity);
+    for (int i = 0; i < HF_GENERATIONS_PIECES; from += g->row_bytes[i++])
+        if (g->row_bytes[i]) memcpy(slot(g, i), from, g->row_bytes[i]);
+    g->n_waiting++;
+}
+
+/* ---- writing ---- */
+
+/* As many rows as fit, but no more than are written at a time; a row larger than CHUNK_BYTES is cut along its other
+ * sides. */
+static void choose_chunk(const hf_hdf5_array *a, size_t row_bytes, hsize_t rows, hsize_t chunk[3])
+{
+    size_t fit = row_bytes ? CHUNK_BYTES / row_bytes : rows;
+    hsize_t left = CHUNK_MAX / hf_hdf5_kind_bytes(a->kind);
+    chunk[0] = fit < 1 ? 1 : fit < rows ? fit : rows;
+    for (int i = a->rank - 1; i > 0; i--) {
+        chunk[i] = a->dims[i] < 1 ? 1 : a->dims[i] < left ? a->dims[i] : left;
+        left = left / chunk[i] ? left / chunk[i] : 1;
+    }
+}
+
+void hf_generations_write(hf_hdf5 *io, hf_generations *g, int is_last)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    int n = list_arrays(g, row);
+    if (g->n_waiting == 0 || io->status != HF_OK) return;
+    hid_t group = hf_hdf5_make_group(io, "/ga");
+    int is_new = !hf_hdf5_has(io, group, row[0].array.name);
+    for (int i = 0; i < n; i++) {
+        hsize_t chunk[3];
+        choose_chunk(&row[i].array, g->row_bytes[i], (hsize_t)(is_last ? g->n_waiting : g->capacity), chunk);
+        if (is_new) hf_hdf5_close(io, hf_hdf5_make_array(io, group, &row[i].array, chunk));
+        row[i].array.dims[0] = (hsize_t)g->n_waiting;
+        hf_hdf5_write_rows(io, group, &row[i].array, (hsize_t)g->n_stored, g->row[i]);
+    }
+    hf_hdf5_close(io, group);
+    g->n_stored += g->n_waiting;
+    g->n_waiting = 0;
+}
+
+/* ---- putting back ---- */
+
+int hf_generations_count(hf_hdf5 *io, hf_generations *g)
+{
+    g->n_stored = 0;
+    if (hf_hdf5_has(io, io->file, "/ga") && hf_hdf5_has(io, io->file, "/ga/n_infeasible"))
+        g->n_stored = hf_hdf5_length(io, io->file, "/ga/n_infeasible", g->limit);
+    return g->n_stored;
+}
+
+/* Evaluations of the first n generations, from what was stored, a block of generations at a time. */
+static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g, int n, long *all, long *infeasible)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    size_t p = (size_t)g->n_individual;
+    list_arrays(g, row);
+    *all = *infeasible = 0;
+    char *block = malloc(2 * BLOCK * p);
+    if (!block) {
+        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+        return;
+    }
+    char *status = block + BLOCK * p;
+    for (int first = 0; io->status == HF_OK && first < n; first += BLOCK) {
+        int some = n - first < BLOCK ? n - first : BLOCK;
+        row[ROW_EVALUATED].array.dims[0] = row[ROW_STATUS].array.dims[0] = (hsize_t)some;
+        hf_hdf5_read_rows(io, group, &row[ROW_EVALUATED].array, (hsize_t)first, block);
+        hf_hdf5_read_rows(io, group, &row[ROW_STATUS].array, (hsize_t)first, status);
+        for (size_t i = 0; io->status == HF_OK && i < (size_t)some * p; i++) {
+            *all += block[i] != 0;
+            *infeasible += block[i] != 0 && status[i] != HF_OK;
+        }
+    }
+    free(block);
+}
+
+/* As the run has noted it: the first generation with the least psi. */
+static void note_best(hf_hdf5 *io, hid_t group, const ga_row *row, const double *best_psi_m, int n, hf_summary *s)
+{
+    int best = -1;
+    for (int i = 0; i < n; i++)
+        if (!isnan(best_psi_m[i]) && (best < 0 || best_psi_m[i] < best_psi_m[best])) best = i;
+    if (best < 0) return;
+    s->best.psi_m = best_psi_m[best];
+    s->best.status = HF_OK;
+    s->best_generation = best;
+    hf_hdf5_read_rows(io, group, &row[ROW_BEST_INDIVIDUAL].array, (hsize_t)best, &s->best_individual);
+}
+
+/* The values of one generation back to where they came from. */
+static void scatter(const ga_row *row, size_t bytes, const char *from)
+{
+    size_t each = hf_hdf5_kind_bytes(row->array.kind), n = bytes / each;
+    char *to = (char *)row->from;
+    for (size_t i = 0; i < n; i++, to += row->stride) {
+        int value = (signed char)from[i];
+        if (row->item_bytes == each)
+            memcpy(to, from + i * each, each);
+        else
+            memcpy(to, &value, sizeof value);
+    }
+}
+
+void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga, hf_summary *s)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    int last = g->n_stored - 1;
+    assert(g->n_waiting == 0 && last >= 0 && ga->n_individual == g->n_individual && ga->n_gene == g->n_gene);
+    size_t largest = g->row_bytes[0] + (size_t)ga->n_individual * 2 * sizeof(double) + sizeof(double);
+    char *values = malloc(largest);
+    if (!values) {
+        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+        return;
+    }
+    hid_t group = hf_hdf5_open_group(io, "/ga");
+    ga->generation = last;
+    int n = list_rows(ga, row);
+    for (int i = 0; i < n && io->status == HF_OK; i++) {
+        assert(g->row_bytes[i] <= largest);
+        hf_hdf5_read_rows(io, group, &row[i].array, (hsize_t)last, values);
+        if (io->status == HF_OK) scatter(&row[i], g->row_bytes[i], values);
+    }
+    free(values);
+    row[ROW_BEST_PSI].array.dims[0] = (hsize_t)g->n_stored;
+    hf_hdf5_read_rows(io, group, &row[ROW_BEST_PSI].array, 0, ga->best_psi_m);
+    count_evaluations(io, group, g, last, &ga->n_evaluation, &ga->n_evaluation_infeasible);
+    hf_hdf5_close(io, group);
+    hf_generations_sum_up(io, g, s);
+}
+
+void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    if (g->n_stored == 0 || io->status != HF_OK) return;
+    double *best_psi_m = malloc((size_t)g->n_stored * sizeof *best_psi_m);
+    if (!best_psi_m) {
+        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+        return;
+    }
+    hid_t group = hf_hdf5_open_group(io, "/ga");
+    list_arrays(g, row);
+    row[ROW_BEST_PSI].array.dims[0] = (hsize_t)g->n_stored;
+    hf_hdf5_read_rows(io, group, &row[ROW_BEST_PSI].array, 0, best_psi_m);
+    row[ROW_PSI].array.dims[1] = 1;
+    hf_hdf5_read_rows(io, group, &row[ROW_PSI].array, 0, &s->base_psi_m);
+    if (io->status == HF_OK) note_best(io, group, row, best_psi_m, g->n_stored, s);
+    count_evaluations(io, group, g, g->n_stored, &s->evaluations, &s->infeasible);
+    s->has_optimize = 1;
+    s->generations = g->n_stored;
+    free(best_psi_m);
+    hf_hdf5_close(io, group);
+}

@@ -1,0 +1,51 @@
+/* generations - the data sets of /ga that grow by a row per generation: one list says what they are, where a row comes
+ * from, and how a run is put back to where it was. The rows of a generation are the whole state of the genetic
+ * algorithm, because its random numbers depend on (seed, generation, individual) only. They wait in memory, bounded,
+ * until many can be written at once: HDF5 costs some microseconds per data set and call, whatever is written. */
+#ifndef HIFDM_GENERATIONS_H
+#define HIFDM_GENERATIONS_H
+
+#include "hdf5_io.h"
+
+#include <hifdm/ga.h>
+#include <hifdm/summary.h>
+#include <sys/uio.h>
+
+#define HF_GENERATIONS_PIECES 16 /* data sets, and pieces of a payload */
+
+typedef struct {
+    int n_individual, n_gene;
+    int limit;                               /* generations that there can be */
+    int n_stored;                            /* in the file */
+    int n_waiting, capacity;                 /* in memory */
+    size_t row_bytes[HF_GENERATIONS_PIECES]; /* of one generation */
+    size_t payload_bytes;                    /* their sum */
+    char *row[HF_GENERATIONS_PIECES];        /* [capacity] rows of each data set */
+    void *block;
+} hf_generations;
+
+/* HF_OK or HF_NO_MEMORY. Free in any case. */
+hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_generations *g);
+void hf_generations_free(hf_generations *g);
+
+int hf_generations_are_full(const hf_generations *g);
+
+/* Let a generation that hf_ga_tell has ranked wait, or one as it was put into a payload. Not when they are full.
+ * `piece` (may be NULL) is its payload [HF_GENERATIONS_PIECES]. */
+void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece);
+void hf_generations_add_payload(hf_generations *g, const void *payload);
+
+/* Write those that wait below /ga of the file, whose data sets the first call makes. is_last: no more will come. */
+void hf_generations_write(hf_hdf5 *io, hf_generations *g, int is_last);
+
+/* How many generations the file has; those that wait do not count. Sets n_stored. */
+int hf_generations_count(hf_hdf5 *io, hf_generations *g);
+
+/* What the generations of the file say in the summary: how many, evaluations, the best so far. None may wait. */
+void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *summary);
+
+/* Put `ga`, just created, into the state before hf_ga_tell of the last generation of the file, and sum up. HF_IO also
+ * for a file of other dimensions. */
+void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga, hf_summary *summary);
+
+#endif

@@ -1,0 +1,272 @@
+/* Overnight: a run that is killed at any instant, told to stop, or left without a disk goes on as if nothing had been.
+ * Whatever happens, the visible file opens, and a generation that was acknowledged is never lost. */
+#include "session.h"
+
+/* ---- kill -9 ---- */
+
+/* After a kill: h5dump opens the file, and file and journal together hold all that was acknowledged before. */
+static void look_at_remains(const char *path, int *acknowledged)
+{
+    int in_journal = generations_in_journal(path);
+    if (!is_there(path)) { /* killed before the first generation */
+        ck_assert_int_eq(in_journal + *acknowledged, 0);
+        return;
+    }
+    const char *const dump[] = {"h5dump", "-d", "/form/tension_N", path, NULL};
+    struct command command = run_command(50.0, dump);
+    ck_assert_msg(command.exit_code == 0, "h5dump cannot open what a kill left: %s", command.err);
+    free_command(&command);
+    int in_file = generations_in_file(path), now = in_journal > in_file ? in_journal : in_file;
+    ck_assert_msg(now >= *acknowledged, "%d generations were stored, %d are left", *acknowledged, now);
+    *acknowledged = now;
+}
+
+/* The journal alone brings back what was acknowledged: in a copy, without running. */
+static void recover_a_copy(const char *path, int acknowledged)
+{
+    const char *copy = temp_path("copy.h5");
+    SHELL(0, "rm -f \"$2\" \"$2.journal\"; cp \"$1\" \"$2\" && cp \"$1.journal\" \"$2.journal\"", path, copy);
+    HIFDM(0, "recover", copy);
+    ck_assert_int_eq(generations_in_file(copy), acknowledged);
+}
+
+/* Killed between its last rename and its end. */
+static bool is_finished(const char *path)
+{
+    HIFDM(0, "show", path);
+    return !strstr(said.out, "unfinished");
+}
+
+/* HIFDM_STRESS=1: 300 kills instead of 30. */
+START_TEST(killed_runs_go_on_to_the_same_bits)
+{
+    const char *value = getenv("HIFDM_STRESS");
+    int n_kill = value && *value && strcmp(value, "0") ? 300 : 30, n_resumed = 0, n_finished = 0, acknowledged = 0;
+    const char *c = storing_case("c.yaml", 5000), *path = temp("run.h5"), *whole = temp("whole.h5");
+    struct rng rng = rng_start(0);
+    HIFDM(0, "run", c, "-o", whole, "--quiet");
+    for (int kills = 0; kills < n_kill;) {
+        char threads[2] = {(char)('0' + rng_int(&rng, 1, 3)), '\0'}; /* another number each time */
+        const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--quiet", "--threads", threads, NULL};
+        n_resumed += acknowledged > 0;
+        pid_t child = start_program(argv);
+        sleep_s(rng_uniform(&rng, 0.002, 0.2));
+        kill(child, SIGKILL);
+        int code = end_of(child);
+        if (code == 128 + SIGKILL) {
+            kills++;
+            look_at_remains(path, &acknowledged);
+            if (kills % 7 == 0 && is_there(path) && !is_finished(path)) recover_a_copy(path, acknowledged);
+        } else {
+            char *err = read_file(temp_path("err"), NULL);
+            ck_assert_msg(code == 0, "exit code %d: %s", code, err);
+            free(err);
+            HIFDM(0, "diff", path, whole);
+            SHELL(0, "test ! -e \"$1.journal\" && rm \"$1\"", path);
+            acknowledged = 0;
+            n_finished++;
+        }
+    }
+    HIFDM(0, "run", c, "-o", path, "--quiet");
+    HIFDM(0, "diff", path, whole);
+    ck_assert_msg(n_resumed >= n_kill / 4, "only %d of %d kills left something to go on with", n_resumed, n_kill);
+    if (n_kill > 100) printf("%d kills, %d resumed, %d runs finished between\n", n_kill, n_resumed, n_finished);
+}
+END_TEST
+
+/* A torn or spoilt tail is cut off: the generations before it count. */
+START_TEST(a_torn_journal_gives_what_is_whole)
+{
+    const char *c = storing_case("c.yaml", 1000000), *path = temp("run.h5");
+    const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--quiet", NULL};
+    int n = 0, n_file = 0;
+    for (int i = 0; i < 30 && n < n_file + 3; i++) { /* it may have been published a moment ago */
+        pid_t child = start_program(argv);
+        wait_for_generations(path);
+        for (int k = 0; k < 1000 && generations_in_journal(path) < n_file + 10; k++)
+            sleep_s(0.002);
+        kill(child, SIGKILL);
+        end_of(child);
+        n = generations_in_journal(path);
+        n_file = generations_in_file(path);
+    }
+    ck_assert_int_ge(n, n_file + 3);
+    SHELL(0, "truncate -s -5 \"$1.journal\"", path);
+    recover_a_copy(path, n - 1);
+    SHELL(0,
+          "python3 -c 'import sys; f = open(sys.argv[1], \"r+b\"); f.seek(-5000, 2); f.write(b\"spoilt\")' "
+          "\"$1.journal\"",
+          path);
+    recover_a_copy(path, n - 2); /* the torn record and less than one before it: 4.6 kB each */
+    SHELL(0, "head -c 30 \"$1.journal\" >\"$1.t\" && mv \"$1.t\" \"$1.journal\"", path); /* not even a header */
+    HIFDM(0, "recover", path);
+    write_file(keep(formatted("%s.journal", path)), "somebody's diary");
+    HIFDM(5, "run", c, "-o", path);
+    ERR("is no journal of hifdm");
+    ck_assert(file_is(keep(formatted("%s.journal", path)), "somebody's diary"));
+}
+END_TEST
+
+/* ---- told to stop ---- */
+
+static const int stops[] = {SIGINT, SIGTERM, SIGUSR1, SIGHUP};
+
+START_TEST(stopped_runs_publish_and_go_on)
+{
+    const char *c = storing_case("c.yaml", 3000), *path = temp("run.h5"), *whole = temp("whole.h5");
+    const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--threads", "2", "--seed", "5", NULL};
+    pid_t child = start_program(argv);
+    wait_for_generations(path);
+    ck_assert_int_eq(kill(child, stops[_i]), 0);
+    ck_assert_int_eq(end_of(child), 75);
+    char *err = read_file(temp_path("err"), NULL);
+    ck_assert_msg(strstr(err, "told to stop; the same command goes on from there") != NULL, "%s", err);
+    free(err);
+    SHELL(0, "ls \"$1\"*", path);
+    ck_assert_str_eq(said.out, formatted("%s\n", path)); /* all of it is in the one file */
+    ck_assert_int_gt(generations_in_file(path), 0);
+    HIFDM(0, "show", path);
+    OUT("unfinished");
+    EXPECT(path, "--", "not a.attrs['finished'] and attribute(a, 'status') == 'unfinished'");
+    HIFDM(0, "run", c, "-o", path, "--seed", "5", "--threads", "1", "--quiet");
+    HIFDM(0, "run", c, "-o", whole, "--seed", "5", "--quiet");
+    HIFDM(0, "diff", path, whole);
+    EXPECT(path, whole, "--", "a.attrs['finished'] and attribute(a, 'status') == 'ok'", "a.attrs['sessions'] == 2",
+           "str({k: v for k, v in a['ga'].attrs.items() if k[-2:] != '_s'}) == "
+           "str({k: v for k, v in b['ga'].attrs.items() if k[-2:] != '_s'})");
+}
+END_TEST
+
+/* In a form-finding or a Levenberg-Marquardt that would take long. */
+START_TEST(stops_are_heard_between_generations_too)
+{
+    const char *path = temp("run.h5");
+    const char *const form[] = {hifdm_program(),
+                                "run",
+                                REFLECTOR,
+                                "-o",
+                                path,
+                                "--set",
+                                "form.method=hifdm",
+                                "--set",
+                                "form.max_iterations=10000000",
+                                "--set",
+                                "form.residual_tolerance=1e-13",
+                                "--set",
+                                "scene.parabolic_cylinder.cells_per_module=[6, 6]",
+                                NULL};
+    const char *const polish[] = {hifdm_program(),
+                                  "run",
+                                  REFLECTOR,
+                                  "-o",
+                                  path,
+                                  "--set",
+                                  "optimize.method=lm",
+                                  "--set",
+                                  "optimize.polish_iterations=100000",
+                                  "--set",
+                                  "scene.parabolic_cylinder.cells_per_module=[5, 5]",
+                                  NULL};
+    const char *const *const argv[] = {form, polish};
+    for (int i = 0; i < 2; i++) {
+        pid_t child = start_program(argv[i]);
+        sleep_s(0.6);
+        kill(child, SIGTERM);
+        int code = end_of(child);
+        ck_assert_msg(code == 75, "run %d: exit code %d", i, code);
+        SHELL(0, "rm -f \"$1\"; ls \"$1\".* 2>/dev/null; true", path);
+        ck_assert_str_eq(said.out, "");
+    }
+}
+END_TEST
+
+/* ---- who may go on, and with what ---- */
+
+START_TEST(another_case_is_told_key_by_key)
+{
+    const char *c = file_with("c.yaml", SMALL_SCENE SMALL_GA), *path = temp("run.h5");
+    HIFDM(0, "run", c, "-o", path, "--quiet");
+    HIFDM(0, "run", c, "-o", path);
+    ERR("is the finished result of this case; --restart computes it again");
+    OUT("optimisation");
+    HIFDM(5, "run", c, "-o", path, "--set", "form.pretension_N=11", "--set", "optimize.elites=3");
+    ERR("finished result of another case; what differs: form.pretension_N, optimize.elites. Use --restart");
+    HIFDM(5, "run", c, "-o", path, "--seed", "8");
+    ERR("what differs: optimize.seed.");
+    HIFDM(5, "run", file_with("c.yaml", "# a remark\n" SMALL_SCENE SMALL_GA), "-o", path);
+    ERR("no key, but comments and layout");
+    HIFDM(5, "run", file_with("c.yaml", SMALL_SCENE), "-o", path);
+    ERR("what differs: optimize,");
+    HIFDM(5, "recover", path);
+    ERR("is finished, there is nothing to go on with");
+    HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", path, "--restart", "--quiet");
+    EXPECT(path, "--", "'ga' not in a");
+}
+END_TEST
+
+START_TEST(a_second_process_is_refused)
+{
+    const char *c = storing_case("c.yaml", 1000000), *path = temp("run.h5");
+    const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--quiet", NULL};
+    pid_t child = start_program(argv);
+    wait_for_generations(path);
+    HIFDM(5, "run", c, "-o", path);
+    ERR("another process is writing it");
+    HIFDM(5, "run", c, "-o", path, "--restart");
+    HIFDM(5, "recover", path);
+    generations_in_file(path); /* reading is free */
+    kill(child, SIGINT);
+    ck_assert_int_eq(end_of(child), 75);
+}
+END_TEST
+
+/* ---- trouble with the folder ---- */
+
+START_TEST(a_vanished_folder_is_told)
+{
+    SHELL(0, "mkdir \"$1\"", temp("gone"));
+    const char *c = storing_case("c.yaml", 1000000), *path = temp("gone/run.h5");
+    const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--quiet", NULL};
+    pid_t child = start_program(argv);
+    wait_for_generations(path);
+    SHELL(0, "rm -r \"$1\"", temp("gone"));
+    ck_assert_int_eq(end_of(child), 5); /* at the next publication, or within HF_JOURNAL_SYNC_S */
+    char *err = read_file(temp_path("err"), NULL);
+    ck_assert_msg(strstr(err, path) != NULL, "%s", err);
+    free(err);
+}
+END_TEST
+
+/* A limit on file sizes stands for the full disk. What was acknowledged stays, and with room the run goes on. */
+START_TEST(a_full_disk_loses_nothing)
+{
+    static const char *const limits[] = {"150", "300", "1000", "3000"}; /* blocks of 512 or 1024 bytes */
+    const char *c = storing_case("c.yaml", 3000), *path = temp("run.h5"), *whole = temp("whole.h5");
+    SHELL(0,
+          "trap '' XFSZ; ulimit -f $3; \"$0\" run \"$1\" -o \"$2\" --quiet 2>\"$2.err\"; [ $? = 5 ] && grep -q 'File "
+          "too large' \"$2.err\" && rm \"$2.err\"",
+          c, path, limits[_i]);
+    int acknowledged = 0;
+    look_at_remains(path, &acknowledged);
+    if (is_there(path)) recover_a_copy(path, acknowledged);
+    HIFDM(0, "run", c, "-o", path, "--quiet");
+    HIFDM(0, "run", c, "-o", whole, "--quiet");
+    HIFDM(0, "diff", path, whole);
+}
+END_TEST
+
+Suite *suite_cli_resume(void)
+{
+    Suite *suite = suite_create("cli/resume");
+    TCase *tcase = tcase_create("resume");
+    tcase_add_test(tcase, killed_runs_go_on_to_the_same_bits);
+    tcase_add_test(tcase, a_torn_journal_gives_what_is_whole);
+    tcase_add_loop_test(tcase, stopped_runs_publish_and_go_on, 0, sizeof stops / sizeof *stops);
+    tcase_add_test(tcase, stops_are_heard_between_generations_too);
+    tcase_add_test(tcase, another_case_is_told_key_by_key);
+    tcase_add_test(tcase, a_second_process_is_refused);
+    tcase_add_test(tcase, a_vanished_folder_is_told);
+    tcase_add_loop_test(tcase, a_full_disk_loses_nothing, 0, 4);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}

@@ -1,0 +1,291 @@
+/* Every call of the system, and every kind of call of HDF5, that the store makes fails once: in a new run, and in one
+ * that goes on after a kill. Then: HF_IO with words, or no harm at all; what was acknowledged is there; and the same
+ * run can be taken to its end, to the same bits. The linker leads these calls of our own objects through here. What
+ * HDF5 asks of the system is out of reach: limits on file size stand for that (cli/resume, unit/store_faults). */
+#include "results.h"
+
+#include "compare.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <sys/file.h>
+#include <sys/uio.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* ---- calls that fail ---- */
+
+static const char *failing; /* name of the call, NULL: none */
+static long countdown;      /* the call that fails, 1 = the next */
+
+static int fails(const char *name)
+{
+    if (!failing || strcmp(name, failing) != 0 || --countdown != 0) return 0;
+    errno = EIO;
+    return 1;
+}
+
+#define WRAP(type, name, parameters, arguments)                                                                        \
+    type __real_##name parameters;                                                                                     \
+    type __wrap_##name parameters;                                                                                     \
+    type __wrap_##name parameters                                                                                      \
+    {                                                                                                                  \
+        return fails(#name) ? (type)-1 : __real_##name arguments;                                                      \
+    }
+
+WRAP(ssize_t, write, (int file, const void *from, size_t n), (file, from, n))
+WRAP(ssize_t, writev, (int file, const struct iovec *piece, int n), (file, piece, n))
+WRAP(ssize_t, pwrite, (int file, const void *from, size_t n, off_t at), (file, from, n, at))
+WRAP(ssize_t, read, (int file, void *to, size_t n), (file, to, n))
+WRAP(ssize_t, pread, (int file, void *to, size_t n, off_t at), (file, to, n, at))
+WRAP(int, fsync, (int file), (file))
+WRAP(int, fdatasync, (int file), (file))
+WRAP(int, rename, (const char *from, const char *to), (from, to))
+WRAP(int, link, (const char *from, const char *to), (from, to))
+WRAP(int, unlink, (const char *name), (name))
+WRAP(int, ftruncate, (int file, off_t size), (file, size))
+WRAP(off_t, lseek, (int file, off_t at, int whence), (file, at, whence))
+WRAP(int, flock, (int file, int how), (file, how))
+WRAP(int, fstat, (int file, struct stat *info), (file, info))
+WRAP(int, stat, (const char *name, struct stat *info), (name, info))
+WRAP(int, access, (const char *name, int mode), (name, mode))
+WRAP(hid_t, H5Fcreate, (const char *name, unsigned flags, hid_t make, hid_t access_), (name, flags, make, access_))
+WRAP(hid_t, H5Fopen, (const char *name, unsigned flags, hid_t access_), (name, flags, access_))
+WRAP(hid_t, H5Dcreate2, (hid_t g, const char *name, hid_t t, hid_t s, hid_t l, hid_t c, hid_t a),
+     (g, name, t, s, l, c, a))
+WRAP(hid_t, H5Dopen2, (hid_t g, const char *name, hid_t a), (g, name, a))
+WRAP(herr_t, H5Dset_extent, (hid_t d, const hsize_t *size), (d, size))
+WRAP(herr_t, H5Dwrite, (hid_t d, hid_t t, hid_t m, hid_t f, hid_t p, const void *from), (d, t, m, f, p, from))
+WRAP(herr_t, H5Dread, (hid_t d, hid_t t, hid_t m, hid_t f, hid_t p, void *to), (d, t, m, f, p, to))
+WRAP(herr_t, H5Awrite, (hid_t a, hid_t t, const void *from), (a, t, from))
+WRAP(herr_t, H5Aread, (hid_t a, hid_t t, void *to), (a, t, to))
+
+int __real_open(const char *name, int flags, ...);
+int __wrap_open(const char *name, int flags, ...);
+int __wrap_open(const char *name, int flags, ...)
+{
+    va_list list;
+    va_start(list, flags);
+    mode_t mode = flags & O_CREAT ? (mode_t)va_arg(list, unsigned) : 0;
+    va_end(list);
+    return fails("open") ? -1 : __real_open(name, flags, mode);
+}
+
+/* must_tell: a failure that the store cannot work around, wherever it is. */
+static const struct {
+    const char *name;
+    int must_tell;
+} calls[] = {{"open", 1},          {"write", 1},     {"writev", 1},  {"pwrite", 1},     {"read", 1},
+             {"pread", 1},         {"fsync", 1},     {"rename", 1},  {"link", 0},       {"unlink", 0},
+             {"ftruncate", 1},     {"lseek", 1},     {"flock", 1},   {"fstat", 0},      {"stat", 0},
+             {"access", 1},        {"H5Fcreate", 1}, {"H5Fopen", 1}, {"H5Dcreate2", 1}, {"H5Dopen2", 1},
+             {"H5Dset_extent", 1}, {"H5Dwrite", 1},  {"H5Dread", 1}, {"H5Awrite", 1},   {"H5Aread", 1}};
+
+/* ---- a run of six generations ---- */
+
+enum { N_GENERATION = 6, N_INDIVIDUAL = 5, N_GENE = 4, N_BEFORE_KILL = 4 };
+
+struct run {
+    struct net net;
+    hf_model model;
+    hf_optimize_settings settings;
+    hf_ga ga;
+    double base_N[N_GENE];
+    int gene[N_GENE];
+};
+
+static void open_run(struct run *r)
+{
+    memset(r, 0, sizeof *r);
+    open_bow(&r->net);
+    find_shape(&r->net);
+    r->settings = (hf_optimize_settings){
+        .population = N_INDIVIDUAL, .generations = N_GENERATION, .range_N = 1, .max_tension_N = 1e6, .elites = 1};
+    r->model = (hf_model){.n_gene = N_GENE, .n_gene_group = 1, .gene_cable = r->gene, .gene_group = r->gene};
+    ck_assert_int_eq(hf_ga_create(&r->settings, &r->model, r->base_N, &r->ga), HF_OK);
+}
+
+static void close_run(struct run *r)
+{
+    hf_ga_free(&r->ga);
+    close_net(&r->net);
+}
+
+static void fill(hf_ga *g, int generation)
+{
+    g->generation = generation;
+    for (int i = 0; i < N_INDIVIDUAL; i++) {
+        for (int k = 0; k < N_GENE; k++)
+            g->design_N[i * N_GENE + k] = 100 * generation + 10 * i + k;
+        g->result[i] = (hf_form_result){.status = HF_OK, .psi_m = 1 + i - 0.1 * generation, .iterations = generation};
+        g->pending[i] = (unsigned char)(i > 0 || generation == 0);
+    }
+    hf_ga_tell(g);
+}
+
+/* Store the generations from `first` on, publishing in the middle. *acknowledged: how many are stored for sure. */
+static hf_status store_some(hf_store *s, struct run *r, int first, int n, int *acknowledged, hf_messages *messages)
+{
+    for (int g = first; g < n; g++) {
+        fill(&r->ga, g);
+        HF_TRY(hf_store_generation(s, &r->model, &r->ga, messages));
+        *acknowledged = g + 1;
+        HF_TRY(hf_store_publish(s, &(hf_summary){.has_optimize = 1}, g % 3 == 1, messages));
+    }
+    return HF_OK;
+}
+
+static hf_status begin_new(const char *path, struct run *r, hf_store **s, hf_messages *messages)
+{
+    hf_messages *m = messages;
+    HF_TRY(hf_store_create(path, 0, any_case(), &r->net.scene, 0, NULL, s, m));
+    HF_TRY(hf_store_form(*s, &r->net.model, &r->net.work, NULL, m));
+    HF_TRY(hf_store_genes(*s, &r->model, &r->ga, m));
+    return hf_store_publish(*s, &(hf_summary){0}, 1, m);
+}
+
+/* Begin or go on, whatever is there, and take it to the end. */
+static hf_status run_it(const char *path, struct run *r, int *acknowledged, hf_messages *messages)
+{
+    hf_store *s = NULL;
+    hf_store_state state;
+    hf_status status = hf_store_look(path, any_case(), &r->net.scene, &state, messages);
+    if (status != HF_OK || state == HF_STORE_FINISHED) return status;
+    if (state == HF_STORE_UNFINISHED)
+        status = hf_store_resume(path, &s, messages);
+    else
+        status = begin_new(path, r, &s, messages);
+    int first = status == HF_OK ? hf_store_generations(s) : 0;
+    if (status == HF_OK && first > 0) {
+        hf_summary summary = {0};
+        status = hf_store_restore(s, &r->ga, &summary, messages);
+        ck_assert(status != HF_OK || r->ga.design_N[1] == 100 * (first - 1) + 1);
+    }
+    if (status == HF_OK) status = store_some(s, r, first, N_GENERATION, acknowledged, messages);
+    if (status == HF_OK) return hf_store_finish(s, &(hf_summary){.has_optimize = 1}, messages);
+    hf_store_abandon(s);
+    return status;
+}
+
+static void tell(void *context, const char *path, const char *how)
+{
+    (void)context;
+    printf("%s%s\n", path, how);
+}
+
+static void demand_whole(const char *path, const char *whole)
+{
+    hf_comparison c = {0};
+    hf_messages messages = {0};
+    ck_assert_int_eq(hf_compare_files(path, whole, &c, tell, NULL, &messages), HF_OK);
+    ck_assert_int_gt(c.n_data_set, 20);
+}
+
+/* A run that was killed after N_BEFORE_KILL generations. */
+static void leave_killed_run(const char *path)
+{
+    pid_t child = fork();
+    if (child == 0) {
+        struct run r;
+        hf_messages messages = {0};
+        hf_store *s;
+        int n;
+        open_run(&r);
+        if (begin_new(path, &r, &s, &messages) == HF_OK) store_some(s, &r, 0, N_BEFORE_KILL, &n, &messages);
+        _exit(9);
+    }
+    int state;
+    ck_assert_int_eq(waitpid(child, &state, 0), child);
+    ck_assert_int_eq(WEXITSTATUS(state), 9);
+}
+
+/* The n-th call of this name fails; 1 when there was one. */
+static int fail_once(int call, long n, int was_killed, const char *whole)
+{
+    struct run r;
+    hf_messages messages = {0};
+    int acknowledged = 0, again = 0;
+    const char *path, *folder = new_folder(&path);
+    if (was_killed) {
+        leave_killed_run(path);
+        acknowledged = N_BEFORE_KILL;
+    }
+    open_run(&r);
+    failing = calls[call].name;
+    countdown = n;
+    hf_status status = run_it(path, &r, &acknowledged, &messages);
+    failing = NULL;
+    int was_reached = countdown <= 0;
+    const char *said = messages.text ? messages.text : "";
+    /* HF_EXISTS: what cannot be read cannot be recognised as ours either */
+    ck_assert_msg(status == HF_OK || status == HF_IO || status == HF_EXISTS, "%s %ld: status %d %s", calls[call].name,
+                  n, status, said);
+    ck_assert_msg((status != HF_OK) == (messages.n_error > 0), "%s %ld: status %d, said: %s", calls[call].name, n,
+                  status, said);
+    ck_assert_msg(was_reached || status == HF_OK, "%s", said);
+    ck_assert_msg(!was_reached || !calls[call].must_tell || status != HF_OK, "call %ld of %s: nothing was said", n,
+                  calls[call].name);
+    hf_messages_free(&messages);
+    close_run(&r);
+
+    open_run(&r);
+    hf_store_state state; /* finished: the call that failed came behind the last rename */
+    ck_assert_int_eq(hf_store_look(path, any_case(), &r.net.scene, &state, &messages), HF_OK);
+    ck_assert(acknowledged == 0 || state != HF_STORE_NOTHING);
+    if (state == HF_STORE_UNFINISHED) {
+        hf_store *s;
+        ck_assert_msg(hf_store_resume(path, &s, &messages) == HF_OK, "%s %ld, then: %s", calls[call].name, n,
+                      messages.text);
+        ck_assert_int_ge(hf_store_generations(s), acknowledged);
+        hf_store_abandon(s);
+    }
+    ck_assert_msg(run_it(path, &r, &again, &messages) == HF_OK, "%s %ld, then: %s", calls[call].name, n, messages.text);
+    hf_messages_free(&messages);
+    demand_whole(path, whole);
+    int leaves_more = !strcmp(calls[call].name, "unlink") || !strcmp(calls[call].name, "rename") ||
+                      !strcmp(calls[call].name, "stat"); /* work that could not get its name, and is kept */
+    if (!leaves_more) ck_assert_int_eq(count_files(folder), 1);
+    close_run(&r);
+    return was_reached;
+}
+
+/* Ids that a failed call of HDF5 leaves open inside HDF5 are not ours; those of ours are all closed. */
+static void check_call(int call, int was_killed)
+{
+    struct run r;
+    hf_messages messages = {0};
+    int n = 0;
+    const char *whole;
+    new_folder(&whole);
+    whole = strdup(whole);
+    open_run(&r);
+    ck_assert_int_eq(run_it(whole, &r, &n, &messages), HF_OK);
+    close_run(&r);
+    for (n = 1; fail_once(call, n, was_killed, whole); n++)
+        no_id_is_open();
+    free((char *)whole);
+}
+
+START_TEST(a_new_run_survives_each_failing_call)
+{
+    check_call(_i, 0);
+}
+END_TEST
+
+START_TEST(a_resumed_run_survives_each_failing_call)
+{
+    check_call(_i, 1);
+}
+END_TEST
+
+Suite *suite_fault_store_calls(void)
+{
+    Suite *suite = suite_create("fault/store_calls");
+    TCase *tests = tcase_create("store_calls");
+    suite_add_tcase(suite, tests);
+    tcase_add_checked_fixture(tests, quiet, NULL);
+    tcase_add_loop_test(tests, a_new_run_survives_each_failing_call, 0, N(calls));
+    tcase_add_loop_test(tests, a_resumed_run_survives_each_failing_call, 0, N(calls));
+    return suite;
+}
