@@ -12,7 +12,8 @@ MODULES := status arena sha256 text csv \
            lane lane_kernel formfind newton newton_descent coupling certificate \
            evaluate chord_kernel chord ga swarm polish batch \
            json summary hdf5_io hdf5_io_rows store_surface store_coupling journal generations store_file store \
-           store_read store_truss store_table compare
+           store_read store_truss store_table compare \
+           study study_read
 APP_MODULES := options print problem run progress signals \
            plan export cutlist vtk report report_study designs main
 
