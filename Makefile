@@ -13,9 +13,9 @@ MODULES := status arena sha256 text csv \
            evaluate chord_kernel chord ga swarm polish batch \
            json summary hdf5_io hdf5_io_rows store_surface store_coupling journal generations store_file store \
            store_read store_truss store_table compare \
-           study study_read
+           study study_read ledger merge
 APP_MODULES := options print problem run progress signals \
-           plan export cutlist vtk report report_study designs main
+           plan export cutlist vtk report report_study designs sweep main
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
 VERSION := 0.1.0

@@ -20,7 +20,7 @@ int hf_batch_default_threads(void)
     return omp_get_num_procs();
 }
 
-/* A batch beside others has threads of its own only when those others leave some: then they bring the room they need. */
+/* A batch beside others has more than one thread only when those others leave some: these bring their room along. */
 static int n_room_at_once(const hf_batch *batch)
 {
     return omp_in_parallel() ? 1 : batch->n_thread;

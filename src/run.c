@@ -343,6 +343,9 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     const hf_run_request *q = r->request;
     hf_case *settings = &r->problem.settings;
     HF_TRY(hf_problem_load(q->case_path, q->set, q->n_set, &r->problem, messages));
+    if (settings->has_sweep && !q->of_sweep)
+        return hf_error(messages, HF_BAD_USAGE, "%s: has a sweep section; 'hifdm sweep %s' runs it", q->case_path,
+                        q->case_path);
     if (q->has_seed) settings->optimize.seed = q->seed;
     if (q->has_seed && !settings->has_optimize)
         hf_warning(messages, "--seed has no effect: the case has no optimize section");

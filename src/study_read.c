@@ -256,11 +256,14 @@ static void fill_range(reader *r, const range *from, const double *x, int stride
     char text[40];
     if (!reserve_values(r, axis, n)) return;
     axis->is_sampled = from->sample != SAMPLE_NONE;
-    for (int i = 0; i < n && !r->failed; i++) {
+    int failed_before = r->failed;
+    r->failed = 0;
+    for (int i = 0; i < n && !r->failed; i++) { /* one bad value of a range is enough */
         hf_study_range_value(&hf_field_table[axis->field], from->from, from->to, from->is_log,
                              x[(size_t)i * (size_t)stride], text);
         add_value(r, axis, text, from->mark);
     }
+    r->failed |= failed_before;
 }
 
 static void fill_even(reader *r, const range *from)
@@ -361,10 +364,10 @@ static void read_sweep(reader *r, const yaml_node_t *mapping)
             read_axis(r, key, value);
     }
     if (!s->n_axis && !r->failed) fault(r, mapping->start_mark, "", "has no axis");
-    for (int a = 0; a < s->n_axis && !r->failed; a++)
+    for (int a = 0; a < s->n_axis; a++)
         if (r->range[a].i_axis >= 0 && r->range[a].sample == SAMPLE_NONE) fill_even(r, &r->range[a]);
-    if (!r->failed) fill_sampled(r, SAMPLE_LATIN_HYPERCUBE);
-    if (!r->failed) fill_sampled(r, SAMPLE_SOBOL);
+    fill_sampled(r, SAMPLE_LATIN_HYPERCUBE);
+    fill_sampled(r, SAMPLE_SOBOL);
 }
 
 /* ---- the file ---- */
