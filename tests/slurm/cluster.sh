@@ -12,6 +12,8 @@ configure() {
     chmod 755 "$dir" "$dir/munge"
     dd if=/dev/urandom of="$dir/munge/key" bs=1 count=1024 status=none
     chmod 600 "$dir/munge/key"
+    local node="CPUs=$cpus Boards=1 SocketsPerBoard=1 CoresPerSocket=$cpus ThreadsPerCore=1 RealMemory=500"
+    local partition="Nodes=$host MaxTime=60 OverSubscribe=NO State=UP"
     cat >"$SLURM_CONF" <<CONF
 ClusterName=hifdmtest
 SlurmctldHost=$host(127.0.0.1)
@@ -43,9 +45,9 @@ KillWait=5
 MinJobAge=300
 ReturnToService=2
 SlurmctldParameters=preempt_send_user_signal
-NodeName=$host NodeAddr=127.0.0.1 CPUs=$cpus Boards=1 SocketsPerBoard=1 CoresPerSocket=$cpus ThreadsPerCore=1 RealMemory=500 State=UNKNOWN
-PartitionName=low Nodes=$host Default=YES PriorityTier=1 PreemptMode=REQUEUE GraceTime=10 MaxTime=60 OverSubscribe=NO State=UP
-PartitionName=high Nodes=$host Default=NO PriorityTier=10 PreemptMode=OFF MaxTime=60 OverSubscribe=NO State=UP
+NodeName=$host NodeAddr=127.0.0.1 $node State=UNKNOWN
+PartitionName=low $partition Default=YES PriorityTier=1 PreemptMode=REQUEUE GraceTime=10
+PartitionName=high $partition Default=NO PriorityTier=10 PreemptMode=OFF
 CONF
 }
 

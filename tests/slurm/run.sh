@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The job array for real: Slurm is started on this machine, an array is submitted, one task is killed with -9 and
-# requeued, one is cancelled, one is preempted, and in the end the merge equals that of the same sweep run here at once,
-# data set by data set. Then the same with GNU parallel. Needs root, slurm-wlm, munge and parallel (tools/setup.sh --ci).
+# requeued, one is preempted, one is cancelled, and in the end the merge equals that of the same sweep run at once, data
+# set by data set. Then the same with GNU parallel. Needs root, slurm-wlm, munge and parallel (tools/setup.sh --ci).
 set -eu
 cd "$(dirname "$0")/../.."
 hifdm=$(realpath "${HIFDM:-build/hifdm}") source=$PWD python=${PYTHON:-/usr/bin/python3}
@@ -74,7 +74,8 @@ export HIFDM=$work/hifdm-task
 equals_local() {
     "$hifdm" merge study.yaml --dir "$1.d" -o "$1.h5"
     "$python" "$source/tests/cli/expect.py" local.h5 "$1.h5" -- "differing(a, b) == []" "len(contents(a)) > 40" \
-        "len(a['runs']) == len(b['runs']) == 8" "[id for id in a['runs'] if differing(a['runs'][id], b['runs'][id])] == []"
+        "len(a['runs']) == len(b['runs']) == 8" \
+        "[id for id in a['runs'] if differing(a['runs'][id], b['runs'][id])] == []"
 }
 
 # ---- The array -------------------------------------------------------------------------------------------------------
