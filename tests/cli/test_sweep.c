@@ -210,6 +210,43 @@ START_TEST(a_stopped_sweep_goes_on)
 }
 END_TEST
 
+/* Killed again and again, each time a little later: what is missing in the end runs, to the same results. */
+START_TEST(a_killed_sweep_goes_on)
+{
+    file_with("base.yaml", SMALL_SCENE "optimize: {population: 60, generations: 300, stagnation_generations: 300, "
+                                       "polish_iterations: 1}\n");
+    const char *path = file_with("study.yaml", "base: base.yaml\nsweep:\n  optimize.seed: {from: 1, to: 6, n: 6}\n");
+    HIFDM(0, "sweep", path, "--dir", temp("whole.d"), "--quiet");
+    HIFDM(0, "merge", path, "--dir", temp("whole.d"), "-o", temp("whole.h5"));
+    SHELL(
+        0,
+        "for t in 0.03 0.05 0.08 0.11 0.14 0.17; do timeout -s KILL $t \"$0\" sweep \"$1\" --dir \"$2\" --quiet; done; "
+        "\"$0\" status \"$1\" --dir \"$2\"",
+        path, temp("s.d"));
+    OUT("running   0");
+    OUT("failed    0");
+    HIFDM(0, "sweep", path, "--dir", temp("s.d"));
+    HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", temp("s.h5"));
+    equal_merges(temp("whole.h5"), temp("s.h5"), 6);
+}
+END_TEST
+
+/* The row of a finished run was lost: it is read from the result file, which is not touched. */
+START_TEST(a_finished_result_is_not_run_again)
+{
+    const char *path = study(), *folder = temp("s.d");
+    HIFDM(0, "sweep", path, "--dir", folder, "--quiet");
+    HIFDM(0, "merge", path, "--dir", folder, "-o", temp("before.h5"));
+    SHELL(0, "cd \"$1\" && rm points-* && sha256sum *.h5 >sums", folder);
+    HIFDM(0, "status", path, "--dir", folder);
+    OUT("missing   4");
+    HIFDM(0, "sweep", path, "--dir", folder);
+    SHELL(0, "cd \"$1\" && sha256sum -c --quiet sums", folder);
+    HIFDM(0, "merge", path, "--dir", folder, "-o", temp("after.h5"));
+    equal_merges(temp("before.h5"), temp("after.h5"), 4);
+}
+END_TEST
+
 START_TEST(merge_replaces_only_merges)
 {
     const char *path = study(), *precious = file_with("precious.h5", "not a merge\n");
@@ -243,6 +280,8 @@ Suite *suite_cli_sweep(void)
     tcase_add_test(tcase, results_of_another_base_case_are_not_mixed_in);
     tcase_add_test(tcase, a_case_with_a_sweep_of_its_own);
     tcase_add_test(tcase, a_stopped_sweep_goes_on);
+    tcase_add_test(tcase, a_killed_sweep_goes_on);
+    tcase_add_test(tcase, a_finished_result_is_not_run_again);
     tcase_add_test(tcase, merge_replaces_only_merges);
     tcase_add_test(tcase, the_shipped_study_is_valid);
     suite_add_tcase(suite, tcase);
