@@ -247,15 +247,18 @@ static hf_status run_points(sweep *w, FILE *file)
                     w->n_failed ? "" : " earlier and are not run again without --retry failed");
 }
 
-static hf_status sweep_study(sweep *w, const char *folder, FILE *file)
+static hf_status sweep_study(sweep *w, const char *folder, int task, int tasks, FILE *file)
 {
     hf_points points;
-    int task, tasks;
-    HF_TRY(choose_task(w->options, &task, &tasks, w->messages));
-    hf_status status = hf_ledger_read(folder, w->study, &points, w->messages);
-    if (status == HF_OK) status = choose_points(w, &points, task, tasks);
-    hf_points_free(&points);
-    return status == HF_OK ? run_points(w, file) : status;
+    hf_status status = hf_ledger_open(folder, &w->ledger, w->messages);
+    if (status == HF_OK) {
+        status = hf_ledger_read(folder, w->study, &points, w->messages);
+        if (status == HF_OK) status = choose_points(w, &points, task, tasks);
+        hf_points_free(&points);
+    }
+    if (status == HF_OK) status = run_points(w, file);
+    hf_ledger_close(&w->ledger);
+    return status;
 }
 
 hf_status hf_sweep(const hf_options *o, int argc, char *const *argv, const volatile sig_atomic_t *stop_requested,
@@ -270,14 +273,12 @@ hf_status hf_sweep(const hf_options *o, int argc, char *const *argv, const volat
                .study = &study,
                .threads = o->threads ? o->threads : hf_batch_default_threads(),
                .messages = messages};
+    int task, tasks;
+    HF_TRY(choose_task(o, &task, &tasks, messages));
     HF_TRY(choose_name(o->folder, o->file, ".d", folder, messages));
     hf_status status = hf_study_read(o->file, &study, messages);
     pthread_mutex_init(&w.lock, NULL);
-    if (status == HF_OK) {
-        status = hf_ledger_open(folder, &w.ledger, messages);
-        if (status == HF_OK) status = sweep_study(&w, folder, file);
-        hf_ledger_close(&w.ledger);
-    }
+    if (status == HF_OK) status = sweep_study(&w, folder, task, tasks, file);
     pthread_mutex_destroy(&w.lock);
     free(w.todo);
     free(w.state);
