@@ -4,7 +4,9 @@
 #include "chord.h"
 #include "swarm.h"
 
+#include <errno.h>
 #include <omp.h>
+#include <semaphore.h>
 #include <stdlib.h>
 #include <time.h>
 
@@ -176,15 +178,45 @@ static int is_done(const queue *q)
     return done >= q->n;
 }
 
+/* ---- threads that batches share ----
+ *
+ * One thread more than may work, so that nothing stands still while one waits for the disk: who works holds one of
+ * n_thread places. */
+
+static _Thread_local sem_t *places; /* of the hf_batch_for that this thread works for, or NULL */
+
+static void take_place(sem_t *from)
+{
+    while (sem_wait(from) != 0 && errno == EINTR)
+        ;
+}
+
+void hf_batch_pause(void)
+{
+    if (places) sem_post(places);
+}
+
+void hf_batch_resume(void)
+{
+    if (places) take_place(places);
+}
+
+/* Helps with a batch if there are designs left, a place to work at, and memory. */
+static void help(hf_batch *batch, int room, sem_t *at, queue *work, const double *design_N, hf_form_result *result)
+{
+    if (is_done(work) || (at && sem_trywait(at) != 0)) return;
+    if (has_room(batch, room)) share_work(batch, room, work, design_N, result);
+    if (at) sem_post(at);
+}
+
 /* Beside other batches, in a thread of hf_batch_for: threads without work of their own may come and help. Whoever takes
  * one of these tasks, the thread itself or another, finds a room that is nobody else's. */
 static void run_beside_others(hf_batch *batch, queue *work, const double *design_N, hf_form_result *result)
 {
+    sem_t *at = places;
     for (int room = 1; room < batch->n_thread; room++) {
-#pragma omp task firstprivate(room, batch, work, design_N, result)
-        {
-            if (!is_done(work) && has_room(batch, room)) share_work(batch, room, work, design_N, result);
-        }
+#pragma omp task firstprivate(room, batch, at, work, design_N, result)
+        help(batch, room, at, work, design_N, result);
     }
     share_work(batch, 0, work, design_N, result);
 #pragma omp taskwait
@@ -205,12 +237,22 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
 void hf_batch_for(int n_thread, int n, void (*work)(void *context, int i), void *context)
 {
     queue items = {n, 0, NULL};
+    sem_t at;
     if (n_thread <= 0) n_thread = hf_batch_default_threads();
-#pragma omp parallel num_threads(n_thread)
+    sem_init(&at, 0, (unsigned)n_thread);
+#pragma omp parallel num_threads(n_thread + 1)
     {
-        for (int i = take_next(&items); i >= 0; i = take_next(&items))
-            work(context, i);
+        int i;
+        do {
+            take_place(&at);
+            places = &at;
+            i = take_next(&items);
+            if (i >= 0) work(context, i);
+            places = NULL;
+            sem_post(&at);
+        } while (i >= 0);
     } /* here threads that are through take the tasks of those that are not */
+    sem_destroy(&at);
 }
 
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result)

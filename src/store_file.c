@@ -1,6 +1,8 @@
 /* Contents: names and checks - the temporary file - publishing - the end */
 #include "store_file.h"
 
+#include <hifdm/batch.h>
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -220,7 +222,9 @@ void hf_store_file_publish(hf_store_file *f, int durable)
 {
     close_temporary(f);
     hf_hdf5_unlock(HF_OK); /* others need not wait for this file's way to the disk */
+    hf_batch_pause();
     name_temporary(f, durable);
+    hf_batch_resume();
     hf_hdf5_lock();
 }
 

@@ -37,6 +37,11 @@ int hf_batch_share(hf_batch *batch, const double *base_N);
  * that all are busy until the last i is done. */
 void hf_batch_for(int n_thread, int n, void (*work)(void *context, int i), void *context);
 
+/* Around waiting for the disk inside `work`: another i goes on meanwhile, so that n_thread threads work all the time.
+ * Elsewhere they do nothing. */
+void hf_batch_pause(void);
+void hf_batch_resume(void);
+
 int hf_batch_default_threads(void); /* available cores */
 
 /* Evaluate one design in the calling thread, to the same bits as hf_batch_run; returns the workspace that holds its

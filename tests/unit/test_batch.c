@@ -182,6 +182,43 @@ START_TEST(batches_that_share_threads_do_not_change_a_bit)
 }
 END_TEST
 
+/* Whoever waits gives its place to another, and gets one again: never more than n_thread work at a time. */
+struct places {
+    int working, most, n_call;
+};
+
+static void work_and_wait(void *context, int i)
+{
+    struct places *p = context;
+    volatile double sum = 0;
+    for (int round = 0; round < 3; round++) {
+        int now = __atomic_add_fetch(&p->working, 1, __ATOMIC_SEQ_CST),
+            most = __atomic_load_n(&p->most, __ATOMIC_SEQ_CST);
+        while (now > most && !__atomic_compare_exchange_n(&p->most, &most, now, 0, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+            ;
+        for (int k = 0; k < 2000 * (i % 5); k++)
+            sum = sum + k;
+        __atomic_sub_fetch(&p->working, 1, __ATOMIC_SEQ_CST);
+        hf_batch_pause();
+        sched_yield();
+        hf_batch_resume();
+    }
+    __atomic_add_fetch(&p->n_call, 1, __ATOMIC_SEQ_CST);
+}
+
+START_TEST(waiting_threads_give_their_place_to_others)
+{
+    for (int n_thread = 1; n_thread <= 3; n_thread++) {
+        struct places p = {0};
+        hf_batch_for(n_thread, 200, work_and_wait, &p);
+        ck_assert_int_eq(p.n_call, 200);
+        ck_assert_int_le(p.most, n_thread);
+    }
+    hf_batch_pause(); /* nothing outside */
+    hf_batch_resume();
+}
+END_TEST
+
 /* No heap in our own code once the batch is made (what OpenMP does inside its library is not seen here). */
 START_TEST(nothing_is_allocated)
 {
@@ -208,6 +245,7 @@ Suite *suite_unit_batch(void)
     tcase_add_test(tests, one_failure_stays_alone);
     tcase_add_test(tests, default_is_a_thread_per_core);
     tcase_add_test(tests, batches_that_share_threads_do_not_change_a_bit);
+    tcase_add_test(tests, waiting_threads_give_their_place_to_others);
     tcase_add_test(tests, nothing_is_allocated);
     return suite;
 }
