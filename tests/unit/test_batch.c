@@ -2,6 +2,8 @@
 #include "nets.h"
 
 #include <hifdm/batch.h>
+#include <sched.h>
+#include <string.h>
 #include <unistd.h>
 
 enum { MAX_GENE = 200, MAX_CABLE = 400, N_DESIGN = 24 };
