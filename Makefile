@@ -6,15 +6,16 @@
 # ---- The modules, in dependency order: a module may include only modules above it (`make lint` checks it) ------------
 # Sources are src/NAME.c; the header is include/hifdm/NAME.h if public, src/NAME.h if internal.
 MODULES := status arena sha256 text csv \
-           scene scene_import truss truss_import config config_table \
+           scene scene_import truss truss_import config config_table config_scene \
            numbering model symmetry workspace band frame carrier \
            metrics surface \
            lane lane_kernel formfind newton newton_descent coupling certificate \
            evaluate chord_kernel chord ga swarm polish batch \
            json summary hdf5_io hdf5_io_rows store_surface store_coupling journal generations store_file store \
-           store_read store_truss store_table compare
+           store_read store_truss store_table compare \
+           study study_read ledger merge
 APP_MODULES := options print problem run progress signals \
-           plan export cutlist vtk report report_study designs main
+           plan export cutlist vtk report report_study designs sweep main
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
 VERSION := 0.1.0

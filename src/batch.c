@@ -4,7 +4,9 @@
 #include "chord.h"
 #include "swarm.h"
 
+#include <errno.h>
 #include <omp.h>
+#include <semaphore.h>
 #include <stdlib.h>
 #include <time.h>
 
@@ -20,6 +22,12 @@ int hf_batch_default_threads(void)
     return omp_get_num_procs();
 }
 
+/* A batch beside others has more than one thread only when those others leave some: these bring their room along. */
+static int n_room_at_once(const hf_batch *batch)
+{
+    return omp_in_parallel() ? 1 : batch->n_thread;
+}
+
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch)
 {
     if (n_thread <= 0) n_thread = hf_batch_default_threads();
@@ -27,7 +35,7 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
     batch->workspace = calloc((size_t)n_thread, sizeof *batch->workspace);
     if (!batch->workspace) return HF_NO_MEMORY;
     batch->n_thread = n_thread;
-    for (int i = 0; i < n_thread; i++)
+    for (int i = 0; i < n_room_at_once(batch); i++)
         HF_TRY(hf_workspace_create(evaluator->model, &batch->workspace[i]));
     hf_band_single_threaded();
     return HF_OK;
@@ -64,7 +72,7 @@ static hf_status create_chord(hf_batch *batch, struct hf_batch_engine *e, const 
     HF_TRY(hf_chord_create(batch->evaluator, base_N, &batch->workspace[0], &e->shared));
     e->chord = calloc((size_t)batch->n_thread, sizeof *e->chord);
     if (!e->chord) return HF_NO_MEMORY;
-    for (int i = 0; i < batch->n_thread; i++)
+    for (int i = 0; i < n_room_at_once(batch); i++)
         HF_TRY(hf_chord_lanes_create(&e->shared, &e->chord[i]));
     return HF_OK;
 }
@@ -74,7 +82,7 @@ static hf_status create_lanes(hf_batch *batch, struct hf_batch_engine *e)
     HF_TRY(hf_lane_plan_create(batch->evaluator->model, hf_lane_best_isa(), &e->plan));
     e->lanes = calloc((size_t)batch->n_thread, sizeof *e->lanes);
     if (!e->lanes) return HF_NO_MEMORY;
-    for (int i = 0; i < batch->n_thread; i++)
+    for (int i = 0; i < n_room_at_once(batch); i++)
         HF_TRY(hf_lane_workspace_create(&e->plan, &e->lanes[i]));
     return HF_OK;
 }
@@ -105,17 +113,28 @@ int hf_batch_share(hf_batch *batch, const double *base_N)
     return HF_SOLVER_FIXED_POINT;
 }
 
+/* Is there room for a helper, or memory for one? Only one thread at a time has the number. */
+static int has_room(hf_batch *batch, int room)
+{
+    struct hf_batch_engine *e = batch->engine;
+    if (!batch->workspace[room].block && hf_workspace_create(batch->evaluator->model, &batch->workspace[room]) != HF_OK)
+        return 0;
+    if (e && e->chord && !e->chord[room].block) return hf_chord_lanes_create(&e->shared, &e->chord[room]) == HF_OK;
+    if (e && e->lanes && !e->lanes[room].block) return hf_lane_workspace_create(&e->plan, &e->lanes[room]) == HF_OK;
+    return 1;
+}
+
 /* One thread's share of the designs that `next` hands out. */
-static void work_off(hf_batch *batch, int thread, int (*next)(void *), void *context, const double *design_N,
+static void work_off(hf_batch *batch, int room, int (*next)(void *), void *context, const double *design_N,
                      hf_form_result *result)
 {
     const hf_evaluator *v = batch->evaluator;
     const struct hf_batch_engine *e = batch->engine;
-    hf_workspace *w = &batch->workspace[thread];
+    hf_workspace *w = &batch->workspace[room];
     if (e && e->solver == HF_SOLVER_CHORD)
-        hf_chord_run(&e->shared, &e->chord[thread], w, next, context, design_N, result);
+        hf_chord_run(&e->shared, &e->chord[room], w, next, context, design_N, result);
     else if (e)
-        hf_swarm_run(v, &e->plan, &e->lanes[thread], w, next, context, design_N, result);
+        hf_swarm_run(v, &e->plan, &e->lanes[room], w, next, context, design_N, result);
     else
         for (int i = next(context); i >= 0; i = next(context))
             hf_evaluate(v, design_N + (size_t)i * (size_t)v->model->n_gene, w, &result[i]);
@@ -141,19 +160,99 @@ static int take_next(void *context)
     }
 }
 
+/* The same with the time it takes, added up over all who work. */
+static void share_work(hf_batch *batch, int room, queue *work, const double *design_N, hf_form_result *result)
+{
+    double start_s = thread_cpu_s();
+    work_off(batch, room, take_next, work, design_N, result);
+    double cpu_s = thread_cpu_s() - start_s; /* without the wait for the other threads */
+#pragma omp atomic
+    batch->cpu_s += cpu_s;
+}
+
+static int is_done(const queue *q)
+{
+    int done;
+#pragma omp atomic read
+    done = q->done;
+    return done >= q->n;
+}
+
+/* ---- threads that batches share ----
+ *
+ * One thread more than may work, so that nothing stands still while one waits for the disk: who works holds one of
+ * n_thread places. */
+
+static _Thread_local sem_t *places; /* of the hf_batch_for that this thread works for, or NULL */
+
+static void take_place(sem_t *from)
+{
+    while (sem_wait(from) != 0 && errno == EINTR)
+        ;
+}
+
+void hf_batch_pause(void)
+{
+    if (places) sem_post(places);
+}
+
+void hf_batch_resume(void)
+{
+    if (places) take_place(places);
+}
+
+/* Helps with a batch if there are designs left, a place to work at, and memory. */
+static void help(hf_batch *batch, int room, sem_t *at, queue *work, const double *design_N, hf_form_result *result)
+{
+    if (is_done(work) || (at && sem_trywait(at) != 0)) return;
+    if (has_room(batch, room)) share_work(batch, room, work, design_N, result);
+    if (at) sem_post(at);
+}
+
+/* Beside other batches, in a thread of hf_batch_for: threads without work of their own may come and help. Whoever takes
+ * one of these tasks, the thread itself or another, finds a room that is nobody else's. */
+static void run_beside_others(hf_batch *batch, queue *work, const double *design_N, hf_form_result *result)
+{
+    sem_t *at = places;
+    for (int room = 1; room < batch->n_thread; room++) {
+#pragma omp task firstprivate(room, batch, at, work, design_N, result)
+        help(batch, room, at, work, design_N, result);
+    }
+    share_work(batch, 0, work, design_N, result);
+#pragma omp taskwait
+}
+
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result)
 {
     if (n <= 0) return;
     queue work = {n, 0, pending};
-    double cpu_s = 0;
-#pragma omp parallel num_threads(batch->n_thread) reduction(+ : cpu_s)
-    {
-        int thread = omp_get_thread_num();
-        double start_s = thread_cpu_s();
-        work_off(batch, thread, take_next, &work, design_N, result);
-        cpu_s += thread_cpu_s() - start_s; /* without the wait for the other threads */
+    if (omp_in_parallel()) {
+        run_beside_others(batch, &work, design_N, result);
+        return;
     }
-    batch->cpu_s += cpu_s;
+#pragma omp parallel num_threads(batch->n_thread)
+    share_work(batch, omp_get_thread_num(), &work, design_N, result);
+}
+
+void hf_batch_for(int n_thread, int n, void (*work)(void *context, int i), void *context)
+{
+    queue items = {n, 0, NULL};
+    sem_t at;
+    if (n_thread <= 0) n_thread = hf_batch_default_threads();
+    sem_init(&at, 0, (unsigned)n_thread);
+#pragma omp parallel num_threads(n_thread + 1)
+    {
+        int i;
+        do {
+            take_place(&at);
+            places = &at;
+            i = take_next(&items);
+            if (i >= 0) work(context, i);
+            places = NULL;
+            sem_post(&at);
+        } while (i >= 0);
+    } /* here threads that are through take the tasks of those that are not */
+    sem_destroy(&at);
 }
 
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result)

@@ -2,10 +2,8 @@
  * join several keys - load */
 #include <hifdm/config.h>
 
-#include "scene_import.h"
 #include "sha256.h"
 #include "text.h"
-#include "truss_import.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,14 +12,15 @@
 
 #define PATH_MAX_LENGTH 160 /* of a dotted key */
 #define CASE_MAX (1 << 20)  /* bytes of a case file */
-#define NESTING_MAX 100
-#define FAULT_MAX 100 /* faults that are spelled out */
+#define FAULT_MAX 100       /* faults that are spelled out */
 
 typedef struct {
     hf_case *c;
     hf_messages *messages;
     const char *origin; /* the case file, or the --set argument being applied */
     int is_override;
+    const char *place;  /* of a value that is only checked: stands for origin, line and column */
+    yaml_mark_t cut[2]; /* the sweep section, when there is one */
     yaml_document_t *document;
     char *where_given; /* [n_field][64] "line:col", "--set" or "" */
     int walked;        /* the file was readable YAML: what is missing in it can be told */
@@ -36,7 +35,9 @@ static void complain(loader *l, yaml_mark_t mark, const char *path, const char *
 {
     l->failed = 1;
     if (++l->n_fault > FAULT_MAX) return;
-    if (l->is_override)
+    if (l->place)
+        hf_error(l->messages, HF_BAD_CASE, "%s: %s: %s%s", l->place, path, what, detail);
+    else if (l->is_override)
         hf_error(l->messages, HF_BAD_CASE, "--set %s: %s: %s%s", l->origin, path, what, detail);
     else
         hf_error(l->messages, HF_BAD_CASE, "%s:%zu:%zu: %s: %s%s", l->origin, mark.line + 1, mark.column + 1, path,
@@ -93,7 +94,9 @@ static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, co
     for (int i = 0; i < hf_n_section && n < 128; i++)
         if (child_of(hf_section_table[i].path, prefix)) names[n++] = child_of(hf_section_table[i].path, prefix);
     near = hf_text_nearest(key, names, n);
-    if (near) {
+    if (!*prefix && !strcmp(key, "base")) {
+        snprintf(detail, sizeof detail, "; a file with a base is a study, for 'hifdm sweep'");
+    } else if (near) {
         snprintf(detail, sizeof detail, "; did you mean '%s'?", near);
     } else { /* the right key in the wrong section? */
         for (int i = 0; i < hf_n_field && !*detail; i++) {
@@ -268,6 +271,10 @@ static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, cons
         i_section = n < PATH_MAX_LENGTH ? find_section(path) : -1;
     if (i_field >= 0) {
         set_field(l, value, i_field);
+    } else if (!strcmp(path, "sweep") && !l->is_override) {
+        l->c->has_sweep = 1;
+        l->cut[0] = key_mark;
+        l->cut[1] = value->end_mark;
     } else if (i_section < 0) {
         complain_unknown(l, key_mark, prefix, key);
     } else if (value->type != YAML_MAPPING_NODE) {
@@ -369,6 +376,15 @@ static void use_default(loader *l, const yaml_node_t *root, void *context)
     set_field(l, root, *(const int *)context);
 }
 
+static void use_value(loader *l, const yaml_node_t *root, void *context)
+{
+    yaml_mark_t start = {0};
+    if (root)
+        use_default(l, root, context);
+    else
+        complain(l, start, hf_field_table[*(const int *)context].path, "has no value", "");
+}
+
 /* ---- overrides ---- */
 
 static void use_override(loader *l, const yaml_node_t *root, void *context)
@@ -402,6 +418,26 @@ static void apply_override(loader *l, const char *argument)
     with_document(l, equals + 1, strlen(equals + 1), use_override, path);
     l->is_override = 0;
     l->origin = l->c->path;
+}
+
+/* Cut the lines of the sweep section out of the text: what is stored and digested is the case of one point, which stays
+ * the same when axes grow. */
+static void cut_sweep(loader *l)
+{
+    hf_case *c = l->c;
+    size_t line = 0, last = l->cut[1].line + (l->cut[1].column > 0);
+    char *from = c->text, *to;
+    if (!c->has_sweep) return;
+    if (l->cut[0].column > 0) {
+        complain(l, l->cut[0], "sweep", "must stand on lines of its own", "");
+        return;
+    }
+    for (; line < l->cut[0].line && *from; from++)
+        line += *from == '\n';
+    for (to = from; line < last && *to; to++)
+        line += *to == '\n';
+    memmove(from, to, strlen(to) + 1);
+    c->text_length -= (size_t)(to - from);
 }
 
 /* The overrides as one text, and the digest over case text and overrides. */
@@ -497,35 +533,18 @@ static void complete_surface(hf_case *c)
 
 /* ---- load ---- */
 
-/* The first line with more than NESTING_MAX brackets open at once, quoted ones included, or 0: libyaml takes minutes
- * over thousands. */
-static int too_deep(const char *text)
-{
-    int depth = 0, line = 1;
-    for (; *text; text++) {
-        line += *text == '\n';
-        depth += *text == '[' || *text == '{';
-        depth -= depth > 0 && (*text == ']' || *text == '}');
-        if (depth > NESTING_MAX) return line;
-    }
-    return 0;
-}
-
 /* settings->text is there: everything else from it and the overrides. */
 static hf_status parse(hf_case *settings, const char *const *overrides, int n_override, hf_messages *messages)
 {
     const char *path = settings->path;
     if (settings->text_length > CASE_MAX)
         return hf_error(messages, HF_BAD_CASE, "%s: longer than %d kB, so no case file", path, CASE_MAX >> 10);
-    if (too_deep(settings->text))
+    if (hf_text_too_deep(settings->text))
         return hf_error(messages, HF_BAD_CASE, "%s:%d:1: YAML: more than %d brackets are open", path,
-                        too_deep(settings->text), NESTING_MAX);
+                        hf_text_too_deep(settings->text), HF_TEXT_NESTING_MAX);
     loader l = {.c = settings, .messages = messages, .origin = settings->path};
     l.where_given = calloc((size_t)hf_n_field, WHERE_SIZE);
-    if (!l.where_given || seal(settings, overrides, n_override) != HF_OK) {
-        free(l.where_given);
-        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
-    }
+    if (!l.where_given) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     for (int i = 0; i < hf_n_field; i++) {
         const char *text = hf_field_table[i].default_value;
         if (text && *text) with_document(&l, text, strlen(text), use_default, &i);
@@ -536,8 +555,11 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
         apply_override(&l, overrides[i]);
     check_together(&l);
     complete_surface(settings);
-    if (l.n_fault > FAULT_MAX) hf_error(messages, HF_BAD_CASE, "%s: and %d more faults", path, l.n_fault - FAULT_MAX);
+    cut_sweep(&l);
+    hf_status sealed = seal(settings, overrides, n_override);
     free(l.where_given);
+    if (sealed != HF_OK) return hf_error(messages, sealed, "%s: out of memory", path);
+    if (l.n_fault > FAULT_MAX) hf_error(messages, HF_BAD_CASE, "%s: and %d more faults", path, l.n_fault - FAULT_MAX);
     return l.failed ? HF_BAD_CASE : HF_OK;
 }
 
@@ -562,27 +584,17 @@ hf_status hf_config_parse(const char *path, const char *text, const char *const 
     return parse(settings, overrides, n_override, messages);
 }
 
-hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages)
+hf_status hf_config_check_value(int field, const char *value, const char *place, hf_messages *messages)
 {
-    if (settings->has_import)
-        HF_TRY(hf_scene_import(settings->nodes_path, settings->cables_path, settings->cylinder.EA_N, scene, messages));
+    hf_case *scratch = calloc(1, sizeof *scratch);
+    loader l = {.c = scratch, .messages = messages, .origin = place, .place = place};
+    l.where_given = calloc((size_t)hf_n_field, WHERE_SIZE);
+    if (scratch && l.where_given)
+        with_document(&l, value, strlen(value), use_value, &field);
     else
-        HF_TRY(hf_scene_parabolic_cylinder(&settings->cylinder, scene, messages));
-    return hf_scene_check(scene, messages);
-}
-
-hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages *messages)
-{
-    if (settings->has_truss_import)
-        HF_TRY(hf_truss_import(settings->truss_nodes_path, settings->truss_members_path, truss, messages));
-    else
-        HF_TRY(hf_truss_generate(&settings->truss, &settings->cylinder, truss, messages));
-    return hf_truss_check(truss, messages);
-}
-
-void hf_case_free(hf_case *settings)
-{
-    free(settings->text);
-    free(settings->overrides);
-    *settings = (hf_case){0};
+        hf_error(messages, HF_NO_MEMORY, "%s: out of memory", place);
+    hf_status status = !scratch || !l.where_given ? HF_NO_MEMORY : l.failed ? HF_BAD_CASE : HF_OK;
+    free(l.where_given);
+    free(scratch);
+    return status;
 }

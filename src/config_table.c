@@ -48,6 +48,8 @@ const hf_section hf_section_table[] = {
     {"truss.abug", AT(has_truss), "Assistant basic unit on the generatrix: the lines along y between the main ones."},
     {"truss.import", AT(has_truss_import), "Instead of the generated units: any truss from two CSV files."},
     {"coupling", SIZE_MAX, "Of the net with its truss (Fig. 17). Without a truss nothing of it is used."},
+    {"sweep", AT(has_sweep),
+     "Axes of a sweep, key: [values] or key: {from, to, n}: for `hifdm sweep`, which runs the case once per point."},
 };
 const int hf_n_section = sizeof hf_section_table / sizeof *hf_section_table;
 

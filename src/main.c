@@ -13,6 +13,7 @@
 #include "run.h"
 #include "vtk.h"
 #include "signals.h"
+#include "sweep.h"
 #include <hifdm/store.h>
 
 #include <gsl/gsl_errno.h>
@@ -107,6 +108,12 @@ static hf_status dispatch(const hf_options *o, int argc, char **argv, hf_message
         return hf_plan(o, stdout, messages);
     case HF_COMMAND_EVALUATE:
         return hf_designs(o, stdout, messages);
+    case HF_COMMAND_SWEEP:
+        return hf_sweep(o, argc, argv, hf_signals_watch(), stdout, messages);
+    case HF_COMMAND_STATUS:
+        return hf_sweep_status(o, stdout, messages);
+    case HF_COMMAND_MERGE:
+        return hf_sweep_merge(o, stdout, messages);
     case HF_COMMAND_SHOW:
         return command_show(o, messages);
     case HF_COMMAND_RECOVER:

@@ -1,13 +1,16 @@
 /* Contents: the tables - reading - help */
 #include "options.h"
 
+#include "ledger.h"
 #include "text.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #define BIT(command) (1u << (command))
+#define SWEEP_COMMANDS (BIT(HF_COMMAND_SWEEP) | BIT(HF_COMMAND_STATUS) | BIT(HF_COMMAND_MERGE))
 #define THREADS_MAX 4096
+#define TASKS_MAX 1000000
 
 /* In the order of hf_progress_mode. */
 static const char *const progress_word[] = {"auto", "none", "line", "log", "jsonl", NULL};
@@ -23,6 +26,11 @@ static const command_row command_table[] = {
      HF_COMMAND_CHECK},
     {"evaluate", "CASE", "evaluate a table of designs (boundary pretensions), to a table on standard output or -o",
      HF_COMMAND_EVALUATE},
+    {"sweep", "STUDY",
+     "run the points of a sweep that are missing, on all cores; each once, a failed one stops no other",
+     HF_COMMAND_SWEEP},
+    {"status", "STUDY", "count what is done, running, failed and missing, and say why", HF_COMMAND_STATUS},
+    {"merge", "STUDY", "one HDF5 file with a table of all points and links to their result files", HF_COMMAND_MERGE},
     {"show", "FILE", "print the summary of a result file", HF_COMMAND_SHOW},
     {"recover", "FILE", "add the generations of FILE.journal to an unfinished result; `run` does that by itself",
      HF_COMMAND_RECOVER},
@@ -53,7 +61,11 @@ typedef enum {
     OPTION_STAGE,
     OPTION_RTOL,
     OPTION_ATOL,
-    OPTION_PROGRESS
+    OPTION_PROGRESS,
+    OPTION_DIR,
+    OPTION_TASK,
+    OPTION_TASKS,
+    OPTION_RETRY
 } option_id;
 
 typedef struct {
@@ -71,23 +83,36 @@ static const option_row option_table[] = {
      BIT(HF_COMMAND_EVALUATE), OPTION_TEMPLATE},
     {"--output", "-o", "FILE", "CSV of the results (default: standard output)", BIT(HF_COMMAND_EVALUATE),
      OPTION_OUTPUT},
+    {"--output", "-o", "FILE", "merged file (default: the study's name with .h5, in this folder)",
+     BIT(HF_COMMAND_MERGE), OPTION_OUTPUT},
+    {"--dir", NULL, "DIR", "folder of the results (default: the study's name with .d, in this folder)", SWEEP_COMMANDS,
+     OPTION_DIR},
+    {"--task", NULL, "I", "with --tasks N: only every N-th point, from I = 0 on; default from Slurm's array",
+     BIT(HF_COMMAND_SWEEP), OPTION_TASK},
+    {"--tasks", NULL, "N", "number of tasks that share the points", BIT(HF_COMMAND_SWEEP), OPTION_TASKS},
+    {"--retry", NULL, "WHAT", "which points to run: missing (default), failed, outdated; with commas",
+     BIT(HF_COMMAND_SWEEP), OPTION_RETRY},
     {"--output", "-o", "FILE", "the page (default: the result's name with .html, in this folder)",
      BIT(HF_COMMAND_REPORT), OPTION_OUTPUT},
     {"--restart", NULL, NULL, "begin anew, whatever FILE holds; without it an unfinished result of this case goes on",
      BIT(HF_COMMAND_RUN), OPTION_FORCE},
     {"--force", NULL, NULL, "replace existing files (of run: the same as --restart)",
-     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EXPORT) | BIT(HF_COMMAND_EVALUATE) | BIT(HF_COMMAND_REPORT), OPTION_FORCE},
+     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EXPORT) | BIT(HF_COMMAND_EVALUATE) | BIT(HF_COMMAND_REPORT) |
+         BIT(HF_COMMAND_MERGE),
+     OPTION_FORCE},
     {"--set", NULL, "KEY=VALUE", "override one key of the case, like form.pretension_N=12; may be repeated",
      BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_CHECK) | BIT(HF_COMMAND_EVALUATE), OPTION_SET},
     {"--threads", NULL, "N", "threads (default: one per core); the results do not depend on it",
-     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_CHECK) | BIT(HF_COMMAND_EVALUATE), OPTION_THREADS},
+     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_CHECK) | BIT(HF_COMMAND_EVALUATE) | BIT(HF_COMMAND_SWEEP), OPTION_THREADS},
     {"--seed", NULL, "S", "seed of the genetic algorithm instead of optimize.seed", BIT(HF_COMMAND_RUN), OPTION_SEED},
     {"--json", NULL, NULL, "one JSON object on standard output",
-     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_SHOW) | BIT(HF_COMMAND_RECOVER) | BIT(HF_COMMAND_EVALUATE), OPTION_JSON},
+     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_SHOW) | BIT(HF_COMMAND_RECOVER) | BIT(HF_COMMAND_EVALUATE) |
+         BIT(HF_COMMAND_STATUS),
+     OPTION_JSON},
     {"--progress", NULL, "HOW", "auto, none, line (a terminal), log (a line in 30 s) or jsonl, on standard error",
      BIT(HF_COMMAND_RUN), OPTION_PROGRESS},
     {"--quiet", NULL, NULL, "no progress and no summary; warnings and errors stay",
-     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EVALUATE), OPTION_QUIET},
+     BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EVALUATE) | BIT(HF_COMMAND_SWEEP) | BIT(HF_COMMAND_MERGE), OPTION_QUIET},
     {"--rtol", NULL, "R", "numbers are equal when |a-b| <= atol + R |b| (default 0: to the bit)", BIT(HF_COMMAND_DIFF),
      OPTION_RTOL},
     {"--atol", NULL, "A", "see --rtol", BIT(HF_COMMAND_DIFF), OPTION_ATOL},
@@ -153,6 +178,24 @@ static hf_status read_progress(const char *value, int *mode, hf_messages *messag
     return hf_error(messages, HF_BAD_USAGE, "--progress must be auto, none, line, log or jsonl, not '%s'", value);
 }
 
+/* "failed,missing" -> bits; 0 when a word is unknown. */
+static unsigned read_states(const char *text)
+{
+    static const char *const word[] = {"missing", "failed", "outdated"};
+    static const unsigned bit[] = {1u << HF_POINT_MISSING, 1u << HF_POINT_FAILED, 1u << HF_POINT_OUTDATED};
+    unsigned states = 0;
+    for (const char *p = text;; p++) {
+        size_t n = strcspn(p, ",");
+        int k = 0;
+        while (k < 3 && (strlen(word[k]) != n || strncmp(word[k], p, n)))
+            k++;
+        if (k == 3) return 0;
+        states |= bit[k];
+        p += n;
+        if (!*p) return states;
+    }
+}
+
 static hf_status apply(const option_row *row, const char *value, hf_options *o, hf_messages *messages)
 {
     uint64_t number = 0;
@@ -211,6 +254,25 @@ static hf_status apply(const option_row *row, const char *value, hf_options *o, 
             return hf_error(messages, HF_BAD_USAGE, "--stage must be form, optimize or polish, not '%s'", value);
         o->stage = value;
         break;
+    case OPTION_DIR:
+        o->folder = value;
+        break;
+    case OPTION_TASK:
+        if (!is_number || number >= TASKS_MAX)
+            return hf_error(messages, HF_BAD_USAGE, "--task must be a whole number from 0 on, not '%s'", value);
+        o->task = (int)number;
+        break;
+    case OPTION_TASKS:
+        if (!is_number || number < 1 || number > TASKS_MAX)
+            return hf_error(messages, HF_BAD_USAGE, "--tasks must be from 1 to %d, not '%s'", TASKS_MAX, value);
+        o->tasks = (int)number;
+        break;
+    case OPTION_RETRY:
+        o->retry = read_states(value);
+        if (!o->retry)
+            return hf_error(messages, HF_BAD_USAGE,
+                            "--retry must be of missing, failed, outdated, with commas, not '%s'", value);
+        break;
     }
     return HF_OK;
 }
@@ -249,13 +311,17 @@ static hf_status read_words(int argc, char *const *argv, const command_row *comm
 hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_messages *messages)
 {
     const command_row *command;
-    *options = (hf_options){0};
+    *options = (hf_options){.task = -1};
     if (argc < 2) return hf_error(messages, HF_BAD_USAGE, "a command is missing; 'hifdm help' lists them");
     HF_TRY(find_command(argv[1], &command, messages));
     options->command = command->command;
     options->set = calloc((size_t)argc, sizeof *options->set);
     if (!options->set) return hf_error(messages, HF_NO_MEMORY, "out of memory");
     HF_TRY(read_words(argc, argv, command, options, messages));
+    uint64_t cpus;
+    const char *slurm = getenv("SLURM_CPUS_PER_TASK");
+    if (!options->threads && slurm && hf_text_uint64(slurm, &cpus) && cpus >= 1 && cpus <= THREADS_MAX)
+        options->threads = (int)cpus;
     if (command->argument && !options->file)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm %s' needs a %s", command->name, command->argument);
     if (options->command == HF_COMMAND_DIFF && !options->second)

@@ -10,6 +10,9 @@ typedef enum {
     HF_COMMAND_RUN,
     HF_COMMAND_CHECK,
     HF_COMMAND_EVALUATE,
+    HF_COMMAND_SWEEP,
+    HF_COMMAND_STATUS,
+    HF_COMMAND_MERGE,
     HF_COMMAND_SHOW,
     HF_COMMAND_REPORT,
     HF_COMMAND_RECOVER,
@@ -31,7 +34,10 @@ typedef struct {
     const char *stage;                   /* --stage */
     const char **set;                    /* [n_set] --set key=value, owned */
     int n_set;
-    int threads; /* 0 = all cores */
+    const char *folder; /* --dir */
+    unsigned retry;     /* --retry, bits 1 << hf_point_state; 0 = not given */
+    int task, tasks;    /* --task I --tasks N: -1, 0 = not given */
+    int threads;        /* 0 = all cores; SLURM_CPUS_PER_TASK where --threads is not given */
     int has_seed;
     uint64_t seed;
     double rtol, atol; /* of diff */

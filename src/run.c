@@ -324,26 +324,37 @@ static hf_status repeat_finished(const char *output, hf_summary *s, hf_messages 
     return HF_OK;
 }
 
+/* Unless *state is HF_STORE_FINISHED. */
+static hf_status open_store(run *r, char *output, hf_store_state *state, hf_messages *messages)
+{
+    const hf_run_request *q = r->request;
+    const hf_case *settings = &r->problem.settings;
+    const hf_scene *scene = &r->problem.scene;
+    HF_TRY(choose_output(q, output, messages));
+    HF_TRY(hf_run_spare_inputs(settings, NULL, output, messages));
+    if (!q->restart) HF_TRY(hf_store_look(output, settings, scene, state, messages));
+    if (*state == HF_STORE_FINISHED) return HF_OK;
+    if (*state == HF_STORE_UNFINISHED) return hf_store_resume(output, &r->store, messages);
+    return hf_store_create(output, q->restart, settings, scene, q->argc, q->argv, &r->store, messages);
+}
+
 static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messages)
 {
     const hf_run_request *q = r->request;
     hf_case *settings = &r->problem.settings;
     HF_TRY(hf_problem_load(q->case_path, q->set, q->n_set, &r->problem, messages));
+    if (settings->has_sweep && !q->of_sweep)
+        return hf_error(messages, HF_BAD_USAGE, "%s: has a sweep section; 'hifdm sweep %s' runs it", q->case_path,
+                        q->case_path);
     if (q->has_seed) settings->optimize.seed = q->seed;
     if (q->has_seed && !settings->has_optimize)
         hf_warning(messages, "--seed has no effect: the case has no optimize section");
     hf_problem_describe(&r->problem, s);
-    HF_TRY(choose_output(q, output, messages));
-    HF_TRY(hf_run_spare_inputs(settings, NULL, output, messages));
     hf_store_state state = HF_STORE_NOTHING;
-    if (!q->restart) HF_TRY(hf_store_look(output, settings, &r->problem.scene, &state, messages));
+    if (!q->no_file) HF_TRY(open_store(r, output, &state, messages));
     if (state == HF_STORE_FINISHED) return repeat_finished(output, s, messages);
-    if (state == HF_STORE_UNFINISHED)
-        HF_TRY(hf_store_resume(output, &r->store, messages));
-    else
-        HF_TRY(hf_store_create(output, q->restart, settings, &r->problem.scene, q->argc, q->argv, &r->store, messages));
     hf_status status = stages(r, s, messages);
-    if (status == HF_INTERRUPTED)
+    if (status == HF_INTERRUPTED && r->store)
         hf_error(messages, status, "%s: told to stop; the same command goes on from there", output);
     if (!leaves_result(status)) return status;
     if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, &r->truss, messages));

@@ -32,6 +32,8 @@ typedef struct {
     const char *const *set; /* [n_set] overrides "key=value" */
     int n_set;
     const char *output; /* NULL: the name of the case with .h5, in the current folder */
+    int no_file;        /* only the summary counts */
+    int of_sweep;       /* one point of the case's sweep section, which is refused otherwise */
     int restart;        /* begin anew whatever is there; else an unfinished result of this case is gone on with */
     int threads;        /* 0: all cores */
     int has_seed;       /* `seed` instead of optimize.seed */

@@ -1,6 +1,8 @@
 /* Contents: names and checks - the temporary file - publishing - the end */
 #include "store_file.h"
 
+#include <hifdm/batch.h>
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -195,10 +197,9 @@ static void keep_work(hf_store_file *f, int is_worth_keeping)
             hf_error(f->io.messages, HF_IO, "%s: cannot be given this name: %s%s%s", f->path, why, words, kept);
 }
 
-void hf_store_file_publish(hf_store_file *f, int durable)
+static void name_temporary(hf_store_file *f, int durable)
 {
     char folder[4096];
-    close_temporary(f);
     if (f->io.status == HF_OK && durable) sync_to_disk(f, f->temporary);
     if (f->io.status != HF_OK) return;
     int taken = -1;
@@ -215,6 +216,16 @@ void hf_store_file_publish(hf_store_file *f, int durable)
     hf_store_file_adopt(f);
     folder_of(f->path, folder, sizeof folder);
     if (f->io.status == HF_OK && durable) sync_to_disk(f, folder);
+}
+
+void hf_store_file_publish(hf_store_file *f, int durable)
+{
+    close_temporary(f);
+    hf_hdf5_unlock(HF_OK); /* others need not wait for this file's way to the disk */
+    hf_batch_pause();
+    name_temporary(f, durable);
+    hf_batch_resume();
+    hf_hdf5_lock();
 }
 
 /* ---- the end ---- */

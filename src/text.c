@@ -123,6 +123,18 @@ void hf_text_trim_utf8(char *text)
     if (whole > back + 1) text[n - 1 - back] = '\0';
 }
 
+int hf_text_too_deep(const char *text)
+{
+    int depth = 0, line = 1;
+    for (; *text; text++) {
+        line += *text == '\n';
+        depth += *text == '[' || *text == '{';
+        depth -= depth > 0 && (*text == ']' || *text == '}');
+        if (depth > HF_TEXT_NESTING_MAX) return line;
+    }
+    return 0;
+}
+
 #define NEAREST_MAX 63 /* words longer than this are never called a typing error */
 
 /* Levenshtein distance of two short words, ignoring case. */

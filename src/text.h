@@ -19,6 +19,11 @@ int hf_text_is_utf8(const char *text);
 /* snprintf may have cut a text in the middle of a letter: take the rest of that letter away. */
 void hf_text_trim_utf8(char *text);
 
+/* The first line of a YAML text with more than HF_TEXT_NESTING_MAX brackets open at once, quoted ones included, or 0:
+ * libyaml takes minutes over thousands. */
+#define HF_TEXT_NESTING_MAX 100
+int hf_text_too_deep(const char *text);
+
 /* The candidate nearest to `word` by edit distance, or NULL when none is near enough to be a typing error. */
 const char *hf_text_nearest(const char *word, const char *const *candidates, int n_candidate);
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing to build hifdm: setup.sh [--test] [--ci] [--bench]
-#   --test  also what the tests need     --ci  also clang, sanitizers, linters, VTK and a browser (includes --test)
+#   --test  also what the tests need     --ci  also clang, sanitizers, linters, VTK, a browser, Slurm (includes --test)
 #   --bench also the peers of `make bench`
 # Silent and quick when nothing is missing. Asks for what is needed (a compiler, a pkg-config name, a Python module)
 # rather than for packages, so that other providers do as well: reference LAPACK, modules from pip.
@@ -68,6 +68,9 @@ missing_packages() {
         has chromium || need chromium fonts-dejavu-core
         has node || need nodejs
         has npm || need npm
+        has sbatch && has slurmctld && has slurmd || need slurm-wlm
+        has munged || need munge
+        has parallel || need parallel
     fi
     echo $list
 }

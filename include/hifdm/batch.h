@@ -14,7 +14,7 @@ extern "C" {
 typedef struct {
     const hf_evaluator *evaluator; /* borrowed */
     int n_thread;
-    hf_workspace *workspace;        /* [n_thread], all allocated before the first evaluation */
+    hf_workspace *workspace;        /* [n_thread], allocated before the first evaluation; in hf_batch_for only one */
     struct hf_batch_engine *engine; /* what hf_batch_share made, or NULL */
     double cpu_s;                   /* processor time spent inside evaluations so far, over all threads */
 } hf_batch;
@@ -31,6 +31,16 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
  * allows it. Returns the hf_solver that will be used: an unsuitable base or net leaves each design to hf_evaluate.
  * HF_NO_MEMORY counts as unsuitable. */
 int hf_batch_share(hf_batch *batch, const double *base_N);
+
+/* work(context, i) for i = 0 ... n-1, handed out in this order to n_thread threads (0: the default). Batches that are
+ * created and run inside share these threads: one that finds no i left helps the hf_batch_run calls of the others, so
+ * that all are busy until the last i is done. */
+void hf_batch_for(int n_thread, int n, void (*work)(void *context, int i), void *context);
+
+/* Around waiting for the disk inside `work`: another i goes on meanwhile, so that n_thread threads work all the time.
+ * Elsewhere they do nothing. */
+void hf_batch_pause(void);
+void hf_batch_resume(void);
 
 int hf_batch_default_threads(void); /* available cores */
 

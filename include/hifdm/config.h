@@ -89,6 +89,7 @@ typedef struct {
     char sha256[65]; /* of text and overrides */
     char title[256];
     int has_cylinder, has_import, has_optimize, has_surface; /* which sections are there */
+    int has_sweep; /* axes of a sweep are read by study.h; they are cut out of `text`, which is one point's case */
     hf_cylinder cylinder;
     char nodes_path[HF_PATH_SIZE], cables_path[HF_PATH_SIZE]; /* resolved against the folder of the case file */
     hf_form_settings form;
@@ -120,6 +121,10 @@ hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages 
 hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages *messages);
 
 void hf_case_free(hf_case *settings);
+
+/* Would this value, as it stands in a case file, do for the key? HF_OK, or HF_BAD_CASE with "<place>: <key>:
+ * <why not>". field: index into hf_field_table. What joins several keys is for hf_config_load. */
+hf_status hf_config_check_value(int field, const char *value, const char *place, hf_messages *messages);
 
 /* The table itself, for printing the reference. */
 typedef enum {

@@ -26,6 +26,7 @@ extern "C" {
     X(NO_FEASIBLE, 8, 3, "no_feasible", "no design met the constraints")                                               \
     X(TRUSS_TOO_SOFT, 9, 4, "truss_too_soft", "the truss gives way to the pretension of its net without end")          \
     X(MECHANISM, 10, 4, "mechanism", "the truss is a mechanism, or not held by enough supports")                       \
+    X(POINTS_FAILED, 11, 3, "points_failed", "some points of the sweep failed")                                        \
     X(BAD_USAGE, 20, 2, "bad_usage", "the command line is not understood")                                             \
     X(BAD_CASE, 21, 2, "bad_case", "the case has errors")                                                              \
     X(NO_MEMORY, 30, 5, "no_memory", "out of memory")                                                                  \

@@ -85,7 +85,8 @@ int hf_store_is_resumed(const hf_store *store);
 int hf_store_generations(const hf_store *store); /* how many it holds */
 
 /* The calls that write return HF_OK, HF_IO or HF_NO_MEMORY with a message. After a failure the store is of no use any
- * more: later calls write nothing, return the same status, and only hf_store_finish says something once more. */
+ * more: later calls write nothing, return the same status, and only hf_store_finish says something once more. With a
+ * store of NULL they keep nothing, and return HF_OK. */
 
 /* Shape of the workspace in the order of the scene, with the history unless that is NULL. Once per store. On a resumed
  * one the shape is compared: a warning when this machine or build finds other bits. */

@@ -2,6 +2,8 @@
 #include "nets.h"
 
 #include <hifdm/batch.h>
+#include <sched.h>
+#include <string.h>
 #include <unistd.h>
 
 enum { MAX_GENE = 200, MAX_CABLE = 400, N_DESIGN = 24 };
@@ -132,6 +134,93 @@ START_TEST(default_is_a_thread_per_core)
 }
 END_TEST
 
+/* Batches inside hf_batch_for share its threads: every item once, and to the same bits as a batch of its own. */
+enum { N_ITEM = 7 };
+struct item_work {
+    struct run *run;
+    int n_thread, n_call[N_ITEM];
+    hf_status status[N_ITEM];
+    hf_form_result result[N_ITEM][N_DESIGN];
+};
+
+static void work_on_item(void *context, int i)
+{
+    struct item_work *w = context;
+    hf_batch batch;
+    w->n_call[i]++;
+    w->status[i] = hf_batch_create(&w->run->evaluator, w->n_thread, &batch);
+    if (w->status[i] == HF_OK) {
+        hf_batch_share(&batch, w->run->design_N);
+        hf_batch_run(&batch, i % 2 ? N_DESIGN : 5, w->run->design_N, NULL, w->result[i]);
+        hf_batch_run(&batch, N_DESIGN, w->run->design_N, NULL, w->result[i]); /* rooms are there now */
+    }
+    hf_batch_free(&batch);
+}
+
+START_TEST(batches_that_share_threads_do_not_change_a_bit)
+{
+    struct run r;
+    hf_batch batch;
+    hf_form_result alone[N_DESIGN];
+    static struct item_work w;
+    open_run(&r, HF_RULE_FORCE_DENSITY);
+    ck_assert_int_eq(hf_batch_create(&r.evaluator, 1, &batch), HF_OK);
+    hf_batch_share(&batch, r.design_N);
+    hf_batch_run(&batch, N_DESIGN, r.design_N, NULL, alone);
+    hf_batch_free(&batch);
+    for (int n_thread = 1; n_thread <= 4; n_thread++) {
+        memset(&w, 0, sizeof w);
+        w.run = &r;
+        w.n_thread = n_thread;
+        hf_batch_for(n_thread, n_thread == 4 ? 1 : N_ITEM, work_on_item,
+                     &w); /* of one item, three threads can only help */
+        for (int i = 0; i < (n_thread == 4 ? 1 : N_ITEM); i++) {
+            ck_assert_int_eq(w.n_call[i], 1);
+            ck_assert_int_eq(w.status[i], HF_OK);
+            assert_same_results(alone, w.result[i]);
+        }
+    }
+    close_net(&r.net);
+}
+END_TEST
+
+/* Whoever waits gives its place to another, and gets one again: never more than n_thread work at a time. */
+struct places {
+    int working, most, n_call;
+};
+
+static void work_and_wait(void *context, int i)
+{
+    struct places *p = context;
+    volatile double sum = 0;
+    for (int round = 0; round < 3; round++) {
+        int now = __atomic_add_fetch(&p->working, 1, __ATOMIC_SEQ_CST),
+            most = __atomic_load_n(&p->most, __ATOMIC_SEQ_CST);
+        while (now > most && !__atomic_compare_exchange_n(&p->most, &most, now, 0, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+            ;
+        for (int k = 0; k < 2000 * (i % 5); k++)
+            sum = sum + k;
+        __atomic_sub_fetch(&p->working, 1, __ATOMIC_SEQ_CST);
+        hf_batch_pause();
+        sched_yield();
+        hf_batch_resume();
+    }
+    __atomic_add_fetch(&p->n_call, 1, __ATOMIC_SEQ_CST);
+}
+
+START_TEST(waiting_threads_give_their_place_to_others)
+{
+    for (int n_thread = 1; n_thread <= 3; n_thread++) {
+        struct places p = {0};
+        hf_batch_for(n_thread, 200, work_and_wait, &p);
+        ck_assert_int_eq(p.n_call, 200);
+        ck_assert_int_le(p.most, n_thread);
+    }
+    hf_batch_pause(); /* nothing outside */
+    hf_batch_resume();
+}
+END_TEST
+
 /* No heap in our own code once the batch is made (what OpenMP does inside its library is not seen here). */
 START_TEST(nothing_is_allocated)
 {
@@ -157,6 +246,8 @@ Suite *suite_unit_batch(void)
     tcase_add_test(tests, only_pending_designs_are_evaluated);
     tcase_add_test(tests, one_failure_stays_alone);
     tcase_add_test(tests, default_is_a_thread_per_core);
+    tcase_add_test(tests, batches_that_share_threads_do_not_change_a_bit);
+    tcase_add_test(tests, waiting_threads_give_their_place_to_others);
     tcase_add_test(tests, nothing_is_allocated);
     return suite;
 }

@@ -1,0 +1,91 @@
+/* study - a sweep: the axes that a study file names over keys of a base case, and the points they make.
+ *
+ *     base: reflector.yaml              # relative to this file; without it, this file is the case itself
+ *     sweep:
+ *       form.pretension_N: [8, 10, 12]
+ *       scene.parabolic_cylinder.scallop: {from: 0.05, to: 0.15, n: 11, spacing: linear}   # or log
+ *       optimize.range_N: {from: 0.5, to: 2, sample: sobol}   # or latin_hypercube; all sampled axes are one axis of n
+ *       n: 64               # points along every range that has no n of its own
+ *       combine: product    # or zip: all axes side by side
+ *       seed: 1             # of the latin hypercube
+ *       files: auto         # a result file per point: auto = with an optimize section, all, none
+ *
+ * A point is named by what it sets, not by its number: its id is the beginning of the SHA-256 of its sorted lines
+ * "key=value". Points of an axis that grows keep their names, their files and their seeds. */
+#ifndef HIFDM_STUDY_H
+#define HIFDM_STUDY_H
+
+#include <hifdm/config.h>
+
+#define HF_STUDY_AXIS_MAX 32
+#define HF_STUDY_POINT_MAX 1000000
+#define HF_STUDY_ID_SIZE 13 /* 12 hexadecimal digits */
+#define HF_STUDY_FINGERPRINT_SIZE 17
+
+extern const char *const hf_study_files_word[3];
+typedef enum { HF_FILES_AUTO, HF_FILES_ALL, HF_FILES_NONE } hf_study_files;
+
+typedef struct {
+    int field; /* index into hf_field_table */
+    int line, column;
+    int is_sampled;
+    int n_value;
+    char **canonical; /* [n_value] "key=value", one way to write each value: 10, not 1e1 */
+    char **set;       /* [n_value] the same as an override of hf_config_load: paths lead from the current folder */
+} hf_study_axis;
+
+typedef struct {
+    char path[HF_PATH_SIZE]; /* of the study file */
+    char base[HF_PATH_SIZE]; /* of the case; the same in the one-file form */
+    int is_zip;
+    int files; /* hf_study_files */
+    int n_axis;
+    hf_study_axis axis[HF_STUDY_AXIS_MAX]; /* sorted by key */
+    int n_point;
+    int *value;                                  /* [n_point][n_axis] index of the value */
+    char (*id)[HF_STUDY_ID_SIZE];                /* [n_point] */
+    int has_optimize;                            /* the points have an optimize section */
+    int derives_seed;                            /* optimize.seed is no axis: every point has a seed of its own */
+    uint64_t seed;                               /* optimize.seed of the base case */
+    char fingerprint[HF_STUDY_FINGERPRINT_SIZE]; /* of the base case: results of another one are not of this study */
+} hf_study;
+
+/* The overrides of one point, valid as long as the study and this stay where they are. */
+typedef struct {
+    const char *set[HF_STUDY_AXIS_MAX + 1];
+    int n_set;
+    char seed[48];
+} hf_study_overrides;
+
+/* Read, and validate all values of all points against the table of config.h: HF_BAD_CASE with all faults, each with
+ * file, line, column and axis; HF_NO_MEMORY. Free in any case. */
+hf_status hf_study_read(const char *path, hf_study *study, hf_messages *messages);
+void hf_study_free(hf_study *study);
+
+/* What point i sets. optimize.seed is among it: that of the base case and the point's id decide it, so no two points
+ * share their random numbers unless optimize.seed is an axis. */
+void hf_study_point(const hf_study *study, int i, hf_study_overrides *overrides);
+
+/* "key=value, key=value" for people, cut off with "..." where it is too long. */
+void hf_study_point_text(const hf_study *study, int i, char *text, size_t size);
+
+/* Does the point get a result file? */
+int hf_study_has_files(const hf_study *study);
+
+/* ---- between study and study_read ---- */
+
+/* A value of an axis {from, to} at x in 0..1, linear or logarithmic; whole for whole-number keys. */
+void hf_study_range_value(const hf_field *field, double from, double to, int is_log, double x, char text[40]);
+
+/* n samples in n_axis dimensions, x[n][n_axis] in 0..1. Sobol's first points stay when n grows, those of a latin
+ * hypercube do not. HF_OK or HF_NO_MEMORY. n_axis <= 40. */
+hf_status hf_study_sobol(int n, int n_axis, double *x);
+hf_status hf_study_latin_hypercube(int n, int n_axis, uint64_t seed, double *x);
+
+/* Study files with axes filled in -> points with ids; checks them with the base case. */
+hf_status hf_study_make_points(hf_study *study, hf_messages *messages);
+
+/* "key=value" in the one way to write it; caller frees; NULL without memory. The value has been checked. */
+char *hf_study_canonical(const hf_field *field, const char *value);
+
+#endif

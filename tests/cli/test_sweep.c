@@ -1,0 +1,289 @@
+/* Sweeps as a user runs them: hifdm sweep, status, merge; shards, retries, interruptions. Files are read by h5py and
+ * h5dump. */
+#include "cli.h"
+
+/* Four points of a small genetic algorithm: milliseconds, but each with a result file. */
+static const char *study(void)
+{
+    file_with("base.yaml", SMALL_SCENE SMALL_GA);
+    return file_with("study.yaml",
+                     "base: base.yaml\nsweep:\n  form.pretension_N: [8, 12]\n  optimize.range_N: [0.5, 1]\n");
+}
+
+/* One of its two points does not converge. */
+static const char *study_with_failure(void)
+{
+    file_with("base.yaml", SMALL_SCENE "form: {method: hifdm, stop: residual}\n");
+    return file_with("study.yaml",
+                     "base: base.yaml\nsweep:\n  form.max_iterations: [2, 100000]\n  form.pretension_N: [8]\n");
+}
+
+/* The tables are equal, and the run behind every link; n links. */
+static void equal_merges(const char *one, const char *other, int n)
+{
+    EXPECT(one, other, "--", "differing(a, b) == []", keep(formatted("len(a['runs']) == len(b['runs']) == %d", n)),
+           "[i for i in a['runs'] if differing(a['runs'][i], b['runs'][i])] == []", "len(contents(a)) > 30");
+}
+
+START_TEST(sweep_status_and_merge)
+{
+    const char *path = study(), *folder = temp("s.d"), *merged = temp("s.h5");
+    HIFDM(0, "status", path, "--dir", folder);
+    OUT("missing   4");
+    HIFDM(0, "sweep", path, "--dir", folder);
+    OUT("4 points run in");
+    HIFDM(0, "status", path, "--dir", folder, "--json");
+    EXPECT(out_as("status.json"), "--",
+           "a == {'points': 4, 'missing': 0, 'running': 0, 'done': 4, 'failed': 0, "
+           "'outdated': 0, 'failures': []}");
+    HIFDM(0, "merge", path, "--dir", folder, "-o", merged);
+    EXPECT(merged, "--", "a['points/input/form.pretension_N'][:].tolist() == [8, 8, 12, 12]",
+           "a['points/input/optimize.range_N'][:].tolist() == [0.5, 1, 0.5, 1]",
+           "attribute(a['points/input/form.pretension_N'], 'units') == 'N'",
+           "a['points/status'][:].tolist() == [0] * 4", "a['points/form/pretension_N'][:].tolist() == [8, 8, 12, 12]",
+           "len(set(a['points/seed'][:])) == 4", "attribute(a['points/ga/best_psi_m'], 'units') == 'm'",
+           /* every row is what the run behind its link says */
+           "[a['runs'][i].attrs['seed'] for i in texts(a['points/id'])] == a['points/seed'][:].tolist()",
+           "[a['runs'][i]['ga'].attrs['best_psi_m'] for i in texts(a['points/id'])] == "
+           "a['points/ga/best_psi_m'][:].tolist()",
+           "[a['runs'].get(i, getlink=True).filename for i in a['runs']] == [f's.d/{i}.h5' for i in a['runs']]",
+           /* nothing of the moment is in a data set */
+           "[n for n in contents(a) if n.endswith('_s') or 'threads' in n] == []");
+    SHELL(0, "h5dump -d /points/form/psi_m \"$1\" && h5ls -r \"$1\"", merged);
+    OUT("External Link");
+    HIFDM(0, "sweep", path, "--dir", folder);
+    OUT("0 points run");
+}
+END_TEST
+
+/* A point of a sweep is the run that its overrides describe. */
+START_TEST(a_point_is_a_run)
+{
+    const char *path = study(), *merged = temp("s.h5"), *alone = temp("alone.h5");
+    HIFDM(0, "sweep", path, "--dir", temp("s.d"), "--quiet");
+    HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", merged, "--quiet");
+    SHELL(
+        0,
+        "seed=$(h5dump -d /points/seed \"$1\" | sed -n 's/ *(0): \\([0-9]*\\).*/\\1/p') && \"$0\" run \"$2\" -o \"$3\" "
+        "--quiet --set form.pretension_N=8 --set optimize.range_N=0.5 --set optimize.seed=$seed",
+        merged, temp("base.yaml"), alone);
+    EXPECT(merged, alone, "--",
+           "[n for n in differing(a['runs'][texts(a['points/id'])[0]], b) if n != 'case/overrides'] == []");
+}
+END_TEST
+
+START_TEST(shards_and_threads_make_the_same_whole)
+{
+    const char *path = study(), *whole = temp("whole.h5"), *shards = temp("shards.h5");
+    HIFDM(0, "sweep", path, "--dir", temp("whole.d"), "--threads", "1", "--quiet");
+    HIFDM(0, "merge", path, "--dir", temp("whole.d"), "-o", whole);
+    HIFDM(0, "sweep", path, "--dir", temp("s.d"), "--task", "2", "--tasks", "3", "--threads", "5", "--quiet");
+    HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", shards); /* while three are missing */
+    OUT("4 points, 1 of them done");
+    EXPECT(shards, "--", "a['points/status'][:].tolist() == [7, 7, 0, 7]", "len(a['runs']) == 1",
+           "np.isnan(a['points/ga/best_psi_m'][:]).tolist() == [True, True, False, True]");
+    SHELL(0,
+          "SLURM_ARRAY_TASK_ID=10 SLURM_ARRAY_TASK_COUNT=3 SLURM_ARRAY_TASK_MIN=10 SLURM_ARRAY_TASK_MAX=14 "
+          "SLURM_ARRAY_TASK_STEP=2 SLURM_CPUS_PER_TASK=3 exec \"$0\" sweep \"$1\" --dir \"$2\"",
+          path, temp("s.d"));
+    OUT("2 points run");
+    OUT("on 3 threads");
+    SHELL(0, "SLURM_ARRAY_TASK_ID=1 exec \"$0\" sweep \"$1\" --dir \"$2\" --tasks 3", path, temp("s.d"));
+    OUT("1 points run");
+    HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", shards); /* replaces the merge of before */
+    equal_merges(whole, shards, 4);
+}
+END_TEST
+
+START_TEST(tasks_that_would_leave_points_out_are_refused)
+{
+    const char *path = study();
+    HIFDM(2, "sweep", path, "--task", "3", "--tasks", "3");
+    ERR("task 3 of 3: they count from 0");
+    HIFDM(2, "sweep", path, "--task", "1");
+    HIFDM(2, "sweep", path, "--tasks", "2");
+    SHELL(2,
+          "SLURM_ARRAY_TASK_ID=5 SLURM_ARRAY_TASK_COUNT=2 SLURM_ARRAY_TASK_MIN=3 SLURM_ARRAY_TASK_MAX=5 "
+          "exec \"$0\" sweep \"$1\"",
+          path);
+    ERR("the Slurm array has gaps");
+    HIFDM(2, "sweep", path, "--retry", "everything");
+    ERR("must be of missing, failed, outdated");
+}
+END_TEST
+
+START_TEST(a_failed_point_stops_no_other)
+{
+    const char *path = study_with_failure(), *folder = temp("s.d"), *merged = temp("s.h5");
+    HIFDM(3, "sweep", path, "--dir", folder);
+    OUT("2 points run");
+    OUT("1 of them failed");
+    ERR("error: 1 points failed; 'hifdm status' says why");
+    HIFDM(0, "status", path, "--dir", folder);
+    OUT("failed    1");
+    OUT("form.max_iterations=2, form.pretension_N=8: form-finding did not converge in 2 iterations");
+    HIFDM(3, "sweep", path, "--dir", folder); /* still failed, and left alone */
+    OUT("0 points run");
+    HIFDM(3, "sweep", path, "--dir", folder, "--retry", "failed,missing");
+    OUT("1 points run");
+    HIFDM(0, "merge", path, "--dir", folder, "-o", merged);
+    EXPECT(merged, "--", "a['points/status'][:].tolist() == [1, 0]", "len(a['runs']) == 0",
+           "texts(a['points/reason'])[0].startswith('form-finding did not converge')",
+           "a['points/input/form.max_iterations'][:].tolist() == [2, 100000]");
+}
+END_TEST
+
+/* A folder stands where the result file of a point should: that point fails, and can be run again when it is gone. */
+START_TEST(what_failed_can_be_run_again)
+{
+    const char *path = study(), *folder = temp("s.d"), *merged = temp("s.h5"), *clean = temp("clean.h5");
+    HIFDM(0, "sweep", path, "--dir", temp("clean.d"), "--quiet");
+    HIFDM(0, "merge", path, "--dir", temp("clean.d"), "-o", clean);
+    SHELL(0, "id=$(basename $(ls \"$1\"/*.h5 | head -n 1)) && mkdir -p \"$2/$id\" && echo \"$2/$id\" >\"$3\"",
+          temp("clean.d"), folder, temp("blocked"));
+    HIFDM(3, "sweep", path, "--dir", folder);
+    OUT("4 points run");
+    HIFDM(0, "status", path, "--dir", folder);
+    OUT("is a folder");
+    SHELL(0, "rmdir $(cat \"$1\")", temp("blocked"));
+    HIFDM(0, "sweep", path, "--dir", folder, "--retry", "failed");
+    OUT("1 points run");
+    HIFDM(0, "merge", path, "--dir", folder, "-o", merged);
+    equal_merges(clean, merged, 4);
+}
+END_TEST
+
+START_TEST(results_of_another_base_case_are_not_mixed_in)
+{
+    const char *path = study(), *folder = temp("s.d");
+    HIFDM(0, "sweep", path, "--dir", folder, "--quiet");
+    file_with("base.yaml", SMALL_SCENE "form: {residual_tolerance: 1e-10}\n" SMALL_GA);
+    HIFDM(5, "sweep", path, "--dir", folder);
+    ERR("the base case has changed since 4 points were run");
+    HIFDM(0, "status", path, "--dir", folder);
+    OUT("outdated  4");
+    HIFDM(0, "sweep", path, "--dir", folder, "--retry", "outdated,missing");
+    OUT("4 points run");
+    HIFDM(0, "status", path, "--dir", folder);
+    OUT("done      4");
+}
+END_TEST
+
+START_TEST(a_case_with_a_sweep_of_its_own)
+{
+    const char *path = file_with("one.yaml", SMALL_SCENE "sweep:\n  form.pretension_N: [8, 9, 10]\n  files: all\n");
+    HIFDM(2, "run", path, NOWHERE);
+    ERR("has a sweep section; 'hifdm sweep");
+    HIFDM(0, "check", path);
+    HIFDM(0, "sweep", path, "--dir", temp("s.d"), "--quiet");
+    HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", temp("s.h5"));
+    EXPECT(temp("s.h5"), "--", "len(a['runs']) == 3", "a['points/form/pretension_N'][:].tolist() == [8, 9, 10]",
+           "'sweep' not in texts(a['runs'][texts(a['points/id'])[0]]['case/text'])");
+    /* another point more: the three are not run again */
+    file_with("one.yaml", SMALL_SCENE "sweep:\n  form.pretension_N: [7, 8, 9, 10]\n  files: all\n");
+    HIFDM(0, "sweep", path, "--dir", temp("s.d"));
+    OUT("1 points run");
+    HIFDM(2, "run", study(), NOWHERE);
+    ERR("a file with a base is a study, for 'hifdm sweep'");
+}
+END_TEST
+
+/* Told to stop in the middle: exit code 75, and the same command finishes, to the same results. */
+START_TEST(a_stopped_sweep_goes_on)
+{
+    file_with("base.yaml", SMALL_SCENE "optimize: {population: 100, generations: 1000, stagnation_generations: 1000, "
+                                       "polish_iterations: 1}\n");
+    const char *path = file_with("study.yaml", "base: base.yaml\nsweep:\n  optimize.seed: {from: 1, to: 6, n: 6}\n");
+    HIFDM(0, "sweep", path, "--dir", temp("whole.d"), "--quiet");
+    HIFDM(0, "merge", path, "--dir", temp("whole.d"), "-o", temp("whole.h5"));
+    SHELL(
+        75,
+        "\"$0\" sweep \"$1\" --dir \"$2\" --threads 1 & until ls \"$2\"/points-* >/dev/null 2>&1; do sleep 0.02; done; "
+        "kill -TERM $!; wait $!",
+        path, temp("s.d"));
+    ERR("points are left; the same command goes on");
+    HIFDM(0, "status", path, "--dir", temp("s.d"));
+    OUT("running   0");
+    HIFDM(0, "sweep", path, "--dir", temp("s.d"));
+    HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", temp("s.h5"));
+    equal_merges(temp("whole.h5"), temp("s.h5"), 6);
+}
+END_TEST
+
+/* Killed again and again, each time a little later: what is missing in the end runs, to the same results. */
+START_TEST(a_killed_sweep_goes_on)
+{
+    file_with("base.yaml", SMALL_SCENE "optimize: {population: 60, generations: 300, stagnation_generations: 300, "
+                                       "polish_iterations: 1}\n");
+    const char *path = file_with("study.yaml", "base: base.yaml\nsweep:\n  optimize.seed: {from: 1, to: 6, n: 6}\n");
+    HIFDM(0, "sweep", path, "--dir", temp("whole.d"), "--quiet");
+    HIFDM(0, "merge", path, "--dir", temp("whole.d"), "-o", temp("whole.h5"));
+    SHELL(
+        0,
+        "for t in 0.03 0.05 0.08 0.11 0.14 0.17; do timeout -s KILL $t \"$0\" sweep \"$1\" --dir \"$2\" --quiet; done; "
+        "\"$0\" status \"$1\" --dir \"$2\"",
+        path, temp("s.d"));
+    OUT("running   0");
+    OUT("failed    0");
+    HIFDM(0, "sweep", path, "--dir", temp("s.d"));
+    HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", temp("s.h5"));
+    equal_merges(temp("whole.h5"), temp("s.h5"), 6);
+}
+END_TEST
+
+/* The row of a finished run was lost: it is read from the result file, which is not touched. */
+START_TEST(a_finished_result_is_not_run_again)
+{
+    const char *path = study(), *folder = temp("s.d");
+    HIFDM(0, "sweep", path, "--dir", folder, "--quiet");
+    HIFDM(0, "merge", path, "--dir", folder, "-o", temp("before.h5"));
+    SHELL(0, "cd \"$1\" && rm points-* && sha256sum *.h5 >sums", folder);
+    HIFDM(0, "status", path, "--dir", folder);
+    OUT("missing   4");
+    HIFDM(0, "sweep", path, "--dir", folder);
+    SHELL(0, "cd \"$1\" && sha256sum -c --quiet sums", folder);
+    HIFDM(0, "merge", path, "--dir", folder, "-o", temp("after.h5"));
+    equal_merges(temp("before.h5"), temp("after.h5"), 4);
+}
+END_TEST
+
+START_TEST(merge_replaces_only_merges)
+{
+    const char *path = study(), *precious = file_with("precious.h5", "not a merge\n");
+    HIFDM(5, "merge", path, "--dir", temp("s.d"), "-o", precious);
+    ERR("exists and is no merge");
+    ck_assert(file_is(precious, "not a merge\n"));
+    HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", precious, "--force"); /* of four missing points */
+    EXPECT(precious, "--", "a['points/status'][:].tolist() == [7] * 4");
+    HIFDM(5, "merge", path, "--dir", temp("s.d"), "-o", temp("no/such/folder.h5"));
+}
+END_TEST
+
+/* The shipped study, its points cut short. */
+START_TEST(the_shipped_study_is_valid)
+{
+    HIFDM(0, "status", keep(source_path("configs/pretension-sweep.yaml")), "--dir", temp("s.d"));
+    OUT("64 points");
+}
+END_TEST
+
+Suite *suite_cli_sweep(void)
+{
+    Suite *suite = suite_create("cli/sweep");
+    TCase *tcase = tcase_create("sweep");
+    tcase_add_test(tcase, sweep_status_and_merge);
+    tcase_add_test(tcase, a_point_is_a_run);
+    tcase_add_test(tcase, shards_and_threads_make_the_same_whole);
+    tcase_add_test(tcase, tasks_that_would_leave_points_out_are_refused);
+    tcase_add_test(tcase, a_failed_point_stops_no_other);
+    tcase_add_test(tcase, what_failed_can_be_run_again);
+    tcase_add_test(tcase, results_of_another_base_case_are_not_mixed_in);
+    tcase_add_test(tcase, a_case_with_a_sweep_of_its_own);
+    tcase_add_test(tcase, a_stopped_sweep_goes_on);
+    tcase_add_test(tcase, a_killed_sweep_goes_on);
+    tcase_add_test(tcase, a_finished_result_is_not_run_again);
+    tcase_add_test(tcase, merge_replaces_only_merges);
+    tcase_add_test(tcase, the_shipped_study_is_valid);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}

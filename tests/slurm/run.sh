@@ -1,0 +1,131 @@
+#!/usr/bin/env bash
+# The job array for real: Slurm is started on this machine, an array is submitted, one task is killed with -9 and
+# requeued, one is preempted, one is cancelled, and in the end the merge equals that of the same sweep run at once, data
+# set by data set. Then the same with GNU parallel. Needs root, slurm-wlm, munge and parallel (tools/setup.sh --ci).
+set -eu
+cd "$(dirname "$0")/../.."
+hifdm=$(realpath "${HIFDM:-build/hifdm}") source=$PWD python=${PYTHON:-/usr/bin/python3}
+
+for program in sbatch slurmctld slurmd munged parallel; do
+    command -v $program >/dev/null ||
+        { echo "cannot test job arrays: no $program here; 'tools/setup.sh --ci' installs slurm-wlm, munge, parallel" >&2
+          exit 1; }
+done
+if [ "$(id -u)" != 0 ]; then
+    sudo -n true 2>/dev/null || { echo "cannot test job arrays: Slurm's daemons need root, or sudo" >&2; exit 1; }
+    exec sudo -n HIFDM="$hifdm" PYTHON="$python" "$0"
+fi
+
+work=$(mktemp -d "${TMPDIR:-/tmp}/hifdm-slurm-XXXXXX")
+clean_up() {
+    local code=$?
+    [ $code = 0 ] || tail -n 8 "$work"/*.log 2>/dev/null >&2 || true
+    "$source/tests/slurm/cluster.sh" "$work/cluster" down || true
+    rm -rf "$work"
+    exit $code
+}
+trap clean_up EXIT
+trap 'exit 130' INT TERM
+export SLURM_CONF=$work/cluster/slurm.conf OMP_WAIT_POLICY=passive
+
+fail() { echo "FAILED: $*" >&2; exit 1; }
+# within SECONDS COMMAND...: until it succeeds
+within() {
+    local end=$((SECONDS + $1)); shift
+    until "$@"; do
+        [ $SECONDS -lt $end ] || fail "waited too long for: $*"
+        sleep 0.1
+    done
+}
+count() { "$hifdm" status study.yaml --dir "$1" --json |
+    "$python" -c 'import json,sys; print(json.load(sys.stdin)[sys.argv[1]])' "$2"; }
+is_state() { scontrol -o show job "$1" 2>/dev/null | grep -q "JobState=$2"; }
+is_gone() { [ -z "$(squeue -h -j "$1" 2>/dev/null)" ]; }
+was_told_to_stop() { cat hifdm-sweep-*.log | grep -q 'told to stop'; }
+is_there() { [ -s "$1" ]; }
+
+# ---- The study: eight points of about a second -----------------------------------------------------------------------
+cd "$work"
+cp "$source/configs/chen2022.yaml" base.yaml
+cat >study.yaml <<'YAML'
+base: base.yaml
+sweep:
+  form.pretension_N: [6, 8, 10, 12]
+  optimize.seed: [1, 2]
+  optimize.population: [150]
+  optimize.generations: [300]
+  optimize.stagnation_generations: [300]
+  optimize.polish_iterations: [2]
+YAML
+# Says which process works for which task.
+cat >hifdm-task <<SH
+#!/bin/sh
+echo \$\$ >"$work/pid.\${SLURM_ARRAY_TASK_ID:-\$PARALLEL_SEQ}"
+exec "$hifdm" "\$@"
+SH
+chmod +x hifdm-task
+export HIFDM=$work/hifdm-task
+
+"$hifdm" sweep study.yaml --dir local.d --quiet
+"$hifdm" merge study.yaml --dir local.d -o local.h5
+[ "$(count local.d done)" = 8 ] || fail "the local sweep is not complete"
+
+# Everything equal to the local sweep: the tables, and the run of every point behind its link.
+equals_local() {
+    "$hifdm" merge study.yaml --dir "$1.d" -o "$1.h5"
+    "$python" "$source/tests/cli/expect.py" local.h5 "$1.h5" -- "differing(a, b) == []" "len(contents(a)) > 40" \
+        "len(a['runs']) == len(b['runs']) == 8" \
+        "[id for id in a['runs'] if differing(a['runs'][id], b['runs'][id])] == []"
+}
+
+# ---- The array -------------------------------------------------------------------------------------------------------
+"$source/tests/slurm/cluster.sh" "$work/cluster" up
+submit() { sbatch --parsable --array=0-3 --cpus-per-task=1 --time=10 "$source/tools/slurm/sweep.sbatch" \
+    study.yaml --dir array.d; }
+is_working() { [ -s pid.0 ] && [ "$(count array.d running)" -gt 0 ]; }
+
+job=$(submit)
+echo "array $job of 4 tasks"
+within 60 is_working
+kill -9 "$(cat pid.0)"
+within 60 is_state "${job}_0" FAILED
+echo "task 0 killed with -9: $(count array.d done) points done so far"
+scontrol requeue "${job}_0"
+scontrol update jobid="${job}_0" starttime=now
+scancel "${job}_3"
+echo "task 0 requeued, task 3 cancelled"
+
+# A job of a higher partition takes the whole node for a moment: whoever works is told to stop, and requeued.
+within 60 is_there pid.1
+high=$(sbatch --parsable --partition=high --cpus-per-task=2 --output=high.log --wrap='sleep 1')
+within 60 is_gone "$high"
+within 60 was_told_to_stop
+echo "preempted: $(cat hifdm-sweep-*.log | grep -c 'told to stop') tasks were told to stop and did"
+for task in 0 1 2; do # after preemption Slurm waits two minutes as well
+    scontrol update jobid="${job}_$task" starttime=now 2>/dev/null || true
+done
+within 180 is_gone "$job"
+missing=$(count array.d missing)
+restarts=$(grep -l 'restart [1-9]' hifdm-sweep-*.log | wc -l)
+echo "array over: $restarts tasks were started more than once, $missing points missing, $(count array.d failed) failed"
+[ "$restarts" -ge 2 ] || fail "task 0 and a preempted one should have been started again"
+[ "$missing" -gt 0 ] || fail "the cancelled task left nothing to do: this test tests nothing"
+
+job=$(submit)
+within 180 is_gone "$job"
+[ "$(count array.d done)" = 8 ] || { "$hifdm" status study.yaml --dir array.d; fail "points are missing"; }
+equals_local array || fail "the array's results differ from the local sweep's"
+echo "resubmitted: all 8 points done, equal to the local sweep"
+
+# ---- GNU parallel ----------------------------------------------------------------------------------------------------
+rm -f pid.*
+export JOBS=2 THREADS=1
+"$source/tools/slurm/sweep-parallel.sh" 3 study.yaml --dir twin.d --quiet >parallel.log 2>&1 &
+twin=$!
+within 60 is_there pid.2
+kill -9 "$(cat pid.2)"
+wait $twin && fail "GNU parallel did not notice that a task was killed"
+"$source/tools/slurm/sweep-parallel.sh" 3 study.yaml --dir twin.d --quiet >parallel.log 2>&1 ||
+    fail "GNU parallel did not finish the second time"
+equals_local twin || fail "GNU parallel's results differ from the local sweep's"
+echo "GNU parallel: one task killed, --resume-failed, equal to the local sweep"
