@@ -39,7 +39,6 @@ const hf_section hf_section_table[] = {
     {"scene.import", AT(has_import), "Any net from two CSV files."},
     {"surface", AT(has_surface), "Measures of the reflecting surface. Without this section there are none."},
     {"form", SIZE_MAX, "Form-finding. May be left out: the defaults hold."},
-    {"coupling", SIZE_MAX, "Of the net with its truss (Fig. 17). Without a truss nothing of it is used."},
     {"optimize", AT(has_optimize), "Optimisation of the boundary pretensions. Without this section none runs."},
     {"truss", AT(has_truss),
      "The deployable truss that carries the net. Without this section the supports stand on rigid ground. The paper "
@@ -48,6 +47,7 @@ const hf_section hf_section_table[] = {
     {"truss.mbug", AT(has_truss), "Main basic unit on the generatrix, along y."},
     {"truss.abug", AT(has_truss), "Assistant basic unit on the generatrix: the lines along y between the main ones."},
     {"truss.import", AT(has_truss_import), "Instead of the generated units: any truss from two CSV files."},
+    {"coupling", SIZE_MAX, "Of the net with its truss (Fig. 17). Without a truss nothing of it is used."},
 };
 const int hf_n_section = sizeof hf_section_table / sizeof *hf_section_table;
 

@@ -389,7 +389,6 @@ static hf_status attach(hf_model *m, int n, const int *node, const double *flexi
     m->n_attachment = n;
     find_ties(m, attachment_of_row);
     lay_out_attachments(&arena, m);
-    m->tie = NULL;
     hf_status status = hf_arena_allocate(&arena);
     if (status == HF_OK) {
         lay_out_attachments(&arena, m);
@@ -402,6 +401,8 @@ static hf_status attach(hf_model *m, int n, const int *node, const double *flexi
                 m->flexibility_m_per_N[i * dofs + j] = (flexibility[i * dofs + j] + flexibility[j * dofs + i]) / 2;
         hold_rods(m);
         mark_chains(m);
+    } else {
+        m->n_attachment = m->n_tie = 0;
     }
     free(attachment_of_row);
     return status;

@@ -56,6 +56,10 @@ static void print_plan(const hf_problem *p, FILE *f)
     fprintf(f, "  will run      form-finding: %s, solved by %s (%s), stop: %s, at most %d iterations\n",
             hf_method_word[c->form.method], method == HF_METHOD_NEWTON ? "newton" : "fixed point", why,
             hf_stop_rule_word[c->form.stop], c->form.max_iterations);
+    if (p->model.n_attachment)
+        fprintf(f, "                coupling with the truss: %s, tof %g m, at most %d form-findings\n",
+                hf_coupling_scheme_word[c->form.coupling.scheme], c->form.coupling.tof_m,
+                c->form.coupling.max_iterations);
     int optimizes = c->has_optimize && p->model.n_gene > 0;
     int evolves = optimizes && o->method != HF_OPTIMIZE_LM;
     if (evolves)

@@ -193,8 +193,9 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
             messages, r->status,
             "the net and its truss did not come to rest in %d form-findings: an attachment would still move "
             "by %.2e m, %g times the step before; raise coupling.max_iterations or coupling.tof_m, or "
-            "tighten form.residual_tolerance, which limits the forces",
-            r->coupling.iterations, r->coupling.step_m, r->coupling.ratio);
+            "tighten form.%s, which limits how well the forces are known",
+            r->coupling.iterations, r->coupling.step_m, r->coupling.ratio,
+            r->stop_reason == HF_STOPPED_RMS_CHANGE ? "rms_tolerance_m" : "residual_tolerance");
     if (r->culprit >= 0)
         return hf_error(messages, r->status,
                         "form-finding is as exact as double precision allows, nodal residual %.2e N: cable '%s' is "

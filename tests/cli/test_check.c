@@ -81,7 +81,7 @@ START_TEST(schema_is_yaml_with_every_key)
     HIFDM(0, "schema");
     const char *schema = file_with("schema.yaml", said.out);
     EXPECT(
-        schema, "--", "list(a) == ['title', 'scene', 'surface', 'form', 'optimize', 'truss']",
+        schema, "--", "list(a) == ['title', 'scene', 'surface', 'form', 'optimize', 'truss', 'coupling']",
         "set(a['scene']) == {'parabolic_cylinder', 'import'}",
         "set(a['scene']['parabolic_cylinder']) == {'aperture_m', 'length_m', 'focal_length_m', 'modules', "
         "'cells_per_module', 'spacing', 'boundary', 'scallop', 'supports'}",

@@ -62,6 +62,8 @@ START_TEST(limits_and_keys)
     HIFDM(3, "run", TRUSS, "-o", out, "--set", "truss.E_Pa=1e10", "--set", "coupling.max_iterations=2", "--set",
           "coupling.tof_m=1e-9");
     ERR("the net and its truss did not come to rest in 2 form-findings");
+    HIFDM(0, "check", TRUSS, "--set", "coupling.tof_m=1e-3");
+    OUT("coupling with the truss: accelerated, tof 0.001 m, at most 200 form-findings\n");
     HIFDM(2, "check", TRUSS, "--set", "coupling.tof_m=0");
     ERR("coupling.tof_m: must be above 0");
     HIFDM(2, "check", TRUSS, "--set", "coupling.scheme=fast");

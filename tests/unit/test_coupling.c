@@ -52,6 +52,35 @@ START_TEST(bad_attachments_are_refused)
 }
 END_TEST
 
+/* Whichever allocation fails: told, and the model is as it was. */
+START_TEST(attaching_without_memory)
+{
+    struct net net;
+    struct rng rng = {1};
+    OPEN_CASE(&net, SMALL_REFLECTOR);
+    int node[MAX_ATTACHMENT], n = list_supports(&net, node);
+    double *f = random_flexibility(&rng, n, 1e-5);
+    for (long i = 1;; i++) {
+        hf_messages messages = {0};
+        hf_model model = net.model;
+        fail_allocation_at(i);
+        hf_status status = hf_model_attach(&model, n, node, f, &messages);
+        int failed = end_allocation_failure();
+        hf_messages_free(&messages);
+        if (!failed) {
+            ck_assert_int_eq(status, HF_OK);
+            ck_assert_int_gt(i, 2);
+            net.model = model;
+            break;
+        }
+        ck_assert_int_eq(status, HF_NO_MEMORY);
+        ck_assert_mem_eq(&model, &net.model, sizeof model);
+    }
+    free(f);
+    close_net(&net);
+}
+END_TEST
+
 /* Workspaces grow with attachments only. */
 START_TEST(scenes_without_a_truss_carry_nothing)
 {
@@ -376,6 +405,7 @@ Suite *suite_unit_coupling(void)
     TCase *tests = tcase_create("coupling");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, bad_attachments_are_refused);
+    tcase_add_test(tests, attaching_without_memory);
     tcase_add_test(tests, scenes_without_a_truss_carry_nothing);
     tcase_add_test(tests, one_spring_by_hand);
     tcase_add_loop_test(tests, accelerated_is_the_plain_loop, 0, 3);

@@ -2,7 +2,9 @@
 #include "flexible.h"
 #include "population.h"
 
+#include "band.h"
 #include "coupling.h"
+#include "newton.h"
 #include "polish.h"
 #include <hifdm/batch.h>
 
@@ -126,6 +128,81 @@ START_TEST(strangers_are_evaluated_alone)
 }
 END_TEST
 
+/* dx/dT_k of net and truss by hf_schur, into [3 n_free] and [3 n_attachment], at the shape of the base design. */
+static void sensitivity(struct run *r, int k, hf_schur *schur, double *dx, double *dr)
+{
+    const hf_model *m = &r->net.model;
+    hf_workspace *w = &r->net.work;
+    hf_form_result at;
+    double *more = schur->column, pull[3 * MAX_ATTACHMENT] = {0};
+    int e = m->gene_cable[k], n = 3 * m->n_free, band = 3 * m->half_bandwidth + 2;
+    const int *end = m->end_row + 2 * e;
+    ck_assert_int_eq(hf_evaluate(&r->evaluator, r->base_N, w, &at), HF_OK);
+    ck_assert_int_eq(hf_newton_factor(m, w, NULL), HF_OK);
+    ck_assert_int_eq(hf_schur_factor(m, w, schur), HF_OK);
+    memset(dx, 0, (size_t)n * sizeof *dx);
+    for (int c = 0; c < 3; c++) {
+        double f = (w->position_m[c * m->n_node + end[1]] - w->position_m[c * m->n_node + end[0]]) /
+                   hf_evaluate_design_length_m(m, e);
+        for (int side = 0; side < 2; side++) {
+            if (end[side] < m->n_free) dx[3 * end[side] + c] += side ? -f : f;
+            for (int i = 0; i < m->n_attachment; i++)
+                if (m->attachment_row[i] == end[side]) pull[3 * i + c] += side ? -f : f;
+        }
+    }
+    hf_band_back_solve(n, band, 1, w->newton_band, dx, n);
+    hf_coupling_pull(m, w, dx, pull);
+    hf_schur_displace(m, schur, pull, dr);
+    memset(more, 0, (size_t)n * sizeof *more);
+    hf_coupling_push(m, w, dr, more);
+    hf_band_back_solve(n, band, 1, w->newton_band, more, n);
+    for (int i = 0; i < n; i++)
+        dx[i] += more[i];
+}
+
+/* Against central differences over 2e-3 N of shapes to 1e-11 N and 1e-13 m: 1e-6 of the largest, where the third
+ * derivative and the shapes' errors meet. Forgetting the truss would be off by per cents. */
+START_TEST(sensitivities_are_finite_differences)
+{
+    struct run r;
+    hf_schur schur;
+    double step_N = 1e-3, kept;
+    open_designs(&r, HF_RULE_FORCE_DENSITY, 1e-4);
+    r.net.form.coupling.tof_m = 1e-13;
+    r.net.form.residual_tolerance = 1e-12;
+    const hf_model *m = &r.net.model;
+    size_t n = 3 * (size_t)m->n_node;
+    double *dx = malloc(3 * n * sizeof *dx), *up = dx + n, *down = up + n, dr[3 * MAX_ATTACHMENT], largest_dx = 0;
+    ck_assert_ptr_nonnull(dx);
+    ck_assert_int_eq(hf_schur_create(m, &schur), HF_OK);
+    for (int k = 0; k < m->n_gene; k += 5) {
+        hf_form_result at;
+        sensitivity(&r, k, &schur, dx, dr);
+        kept = r.base_N[k];
+        for (int side = 0; side < 2; side++) {
+            r.base_N[k] = kept + (side ? -step_N : step_N);
+            ck_assert_int_eq(hf_evaluate(&r.evaluator, r.base_N, &r.net.work, &at), HF_OK);
+            memcpy(side ? down : up, r.net.work.position_m, n * sizeof *dx);
+        }
+        r.base_N[k] = kept;
+        for (int i = 0; i < 3 * m->n_free; i++)
+            largest_dx = fmax(largest_dx, fabs(dx[i]));
+        for (int i = 0; i < 3 * m->n_node; i++) {
+            int row = i % m->n_node, c = i / m->n_node;
+            double found = (up[i] - down[i]) / (2 * step_N);
+            if (row < m->n_free) ck_assert_double_eq_tol(found, dx[3 * row + c], 1e-6 * largest_dx);
+        }
+        for (int a = 0; a < 3 * m->n_attachment; a++) {
+            int i = a % 3 * m->n_node + m->attachment_row[a / 3];
+            ck_assert_double_eq_tol((up[i] - down[i]) / (2 * step_N), dr[a], 1e-6 * largest_dx);
+        }
+    }
+    hf_schur_free(&schur);
+    free(dx);
+    close_net(&r.net);
+}
+END_TEST
+
 /* Karush, Kuhn, Tucker by central differences of the coupled psi, as unit/polish has it for fixed supports: a
  * sensitivity that forgets the truss leaves some per cent of the start's slope; 1e-3 is asked for. */
 START_TEST(polished_design_has_no_coupled_slope_left)
@@ -182,6 +259,7 @@ Suite *suite_unit_coupling_designs(void)
     tcase_add_loop_test(tests, threads_and_grouping_do_not_change_a_bit, 0, 4);
     tcase_add_test(tests, a_rigid_truss_changes_no_bit_of_a_design);
     tcase_add_test(tests, strangers_are_evaluated_alone);
+    tcase_add_test(tests, sensitivities_are_finite_differences);
     tcase_add_loop_test(tests, polished_design_has_no_coupled_slope_left, 0, 2);
     return suite;
 }
