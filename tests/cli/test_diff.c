@@ -1,0 +1,54 @@
+/* `hifdm diff` says what differs and where; progress for programs. */
+#include "session.h"
+
+START_TEST(differences_are_named)
+{
+    const char *c = file_with("c.yaml", SMALL_SCENE SMALL_GA), *a = temp("a.h5"), *b = temp("b.h5");
+    HIFDM(0, "run", c, "-o", a, "--quiet", "--threads", "1");
+    HIFDM(0, "run", c, "-o", b, "--quiet", "--threads", "3");
+    HIFDM(0, "diff", a, b);
+    OUT(" data sets, 0 differ; attributes (times, machine, provenance, summary) are not compared\n");
+    SHELL(0,
+          "\"$1\" -c 'import h5py, sys; f = h5py.File(sys.argv[1], \"a\"); f[\"ga/psi_m\"][2, 4] *= 1 + 1e-9; "
+          "f[\"form/law\"][3] = 2; del f[\"polish/law\"]; f[\"more\"] = 1' \"$2\"",
+          python_program(), b);
+    HIFDM(1, "diff", a, b);
+    OUT("/ga/psi_m [2, 4]: 0.0");
+    OUT("/form/law [3]: ");
+    OUT(", force_density in ");
+    OUT(formatted("/polish/law is not in %s\n", b));
+    OUT(formatted("/more is not in %s\n", a));
+    OUT("4 differ;");
+    HIFDM(1, "diff", a, b, "--rtol", "1e-8");
+    OUT("3 differ;");
+    HIFDM(5, "diff", a, c);
+    HIFDM(2, "diff", a);
+    HIFDM(2, "diff", a, b, "--rtol", "-1");
+}
+END_TEST
+
+START_TEST(progress_for_programs)
+{
+    const char *c = file_with("c.yaml", SMALL_SCENE SMALL_GA);
+    HIFDM(0, "run", c, "-o", temp("a.h5"), "--progress", "jsonl");
+    ERR("{\"phase\": \"form\"}\n{\"phase\": \"optimize\", \"generation\": 1, \"generations\": 3,");
+    ERR("\"generation\": 3, \"generations\": 3, \"first_generation\": 0, \"evaluations\": ");
+    ERR("{\"phase\": \"polish\"}\n");
+    HIFDM(0, "run", c, "-o", temp("a.h5"), "--restart");
+    ck_assert_str_eq(said.err, ""); /* short runs are quiet where nobody watches */
+    HIFDM(0, "run", c, "-o", temp("a.h5"), "--restart", "--progress", "line");
+    ERR("\r\033[Kgeneration 1/3  best psi ");
+    HIFDM(2, "run", c, "-o", temp("a.h5"), "--progress", "loud");
+    ERR("--progress must be auto, none, line, log or jsonl, not 'loud'");
+}
+END_TEST
+
+Suite *suite_cli_diff(void)
+{
+    Suite *suite = suite_create("cli/diff");
+    TCase *tcase = tcase_create("diff");
+    tcase_add_test(tcase, differences_are_named);
+    tcase_add_test(tcase, progress_for_programs);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
