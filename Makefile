@@ -6,7 +6,7 @@
 # ---- The modules, in dependency order: a module may include only modules above it (`make lint` checks it) ------------
 # Sources are src/NAME.c; the header is include/hifdm/NAME.h if public, src/NAME.h if internal.
 MODULES := status arena sha256 text csv \
-           scene scene_import truss truss_import config config_table \
+           scene scene_import truss truss_import config config_table config_scene \
            numbering model symmetry workspace band frame carrier \
            metrics surface \
            lane lane_kernel formfind newton newton_descent coupling certificate \

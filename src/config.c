@@ -2,10 +2,8 @@
  * join several keys - load */
 #include <hifdm/config.h>
 
-#include "scene_import.h"
 #include "sha256.h"
 #include "text.h"
-#include "truss_import.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -375,16 +373,12 @@ static void use_root(loader *l, const yaml_node_t *root, void *context)
 
 static void use_default(loader *l, const yaml_node_t *root, void *context)
 {
-    set_field(l, root, *(const int *)context);
-}
-
-static void use_value(loader *l, const yaml_node_t *root, void *context)
-{
     yaml_mark_t start = {0};
+    int i_field = *(const int *)context;
     if (root)
-        use_default(l, root, context);
+        set_field(l, root, i_field);
     else
-        complain(l, start, hf_field_table[*(const int *)context].path, "has no value", "");
+        complain(l, start, hf_field_table[i_field].path, "has no value", "");
 }
 
 /* ---- overrides ---- */
@@ -594,36 +588,11 @@ hf_status hf_config_check_value(int field, const char *value, const char *place,
     loader l = {.c = scratch, .messages = messages, .origin = place, .place = place};
     l.where_given = calloc((size_t)hf_n_field, WHERE_SIZE);
     if (scratch && l.where_given)
-        with_document(&l, value, strlen(value), use_value, &field);
+        with_document(&l, value, strlen(value), use_default, &field);
     else
         hf_error(messages, HF_NO_MEMORY, "%s: out of memory", place);
     hf_status status = !scratch || !l.where_given ? HF_NO_MEMORY : l.failed ? HF_BAD_CASE : HF_OK;
     free(l.where_given);
     free(scratch);
     return status;
-}
-
-hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages)
-{
-    if (settings->has_import)
-        HF_TRY(hf_scene_import(settings->nodes_path, settings->cables_path, settings->cylinder.EA_N, scene, messages));
-    else
-        HF_TRY(hf_scene_parabolic_cylinder(&settings->cylinder, scene, messages));
-    return hf_scene_check(scene, messages);
-}
-
-hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages *messages)
-{
-    if (settings->has_truss_import)
-        HF_TRY(hf_truss_import(settings->truss_nodes_path, settings->truss_members_path, truss, messages));
-    else
-        HF_TRY(hf_truss_generate(&settings->truss, &settings->cylinder, truss, messages));
-    return hf_truss_check(truss, messages);
-}
-
-void hf_case_free(hf_case *settings)
-{
-    free(settings->text);
-    free(settings->overrides);
-    *settings = (hf_case){0};
 }
