@@ -373,16 +373,12 @@ static void use_root(loader *l, const yaml_node_t *root, void *context)
 
 static void use_default(loader *l, const yaml_node_t *root, void *context)
 {
-    set_field(l, root, *(const int *)context);
-}
-
-static void use_value(loader *l, const yaml_node_t *root, void *context)
-{
     yaml_mark_t start = {0};
+    int i_field = *(const int *)context;
     if (root)
-        use_default(l, root, context);
+        set_field(l, root, i_field);
     else
-        complain(l, start, hf_field_table[*(const int *)context].path, "has no value", "");
+        complain(l, start, hf_field_table[i_field].path, "has no value", "");
 }
 
 /* ---- overrides ---- */
@@ -590,7 +586,7 @@ hf_status hf_config_check_value(int field, const char *value, const char *place,
     loader l = {.c = scratch, .messages = messages, .origin = place, .place = place};
     l.where_given = calloc((size_t)hf_n_field, WHERE_SIZE);
     if (scratch && l.where_given)
-        with_document(&l, value, strlen(value), use_value, &field);
+        with_document(&l, value, strlen(value), use_default, &field);
     else
         hf_error(messages, HF_NO_MEMORY, "%s: out of memory", place);
     hf_status status = !scratch || !l.where_given ? HF_NO_MEMORY : l.failed ? HF_BAD_CASE : HF_OK;

@@ -1,4 +1,4 @@
-/* What a case describes, made: config.h. */
+/* What a case describes, made: the net and the truss; and its end. */
 #include <hifdm/config.h>
 
 #include "scene_import.h"

@@ -24,8 +24,12 @@ const char *const hf_point_state_word[HF_N_POINT_STATE] = {"missing", "running",
 
 /* ---- columns ---- */
 
-static const hf_hdf5_member member[] = {HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)
-                                            HF_SUMMARY_POLISH_MEMBERS(HF_HDF5_MEMBER)};
+/* By stage; the lines in the comments of hdf5_io.h say when each is there. */
+static const hf_hdf5_member member[] = {
+    HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)
+        HF_SUMMARY_POLISH_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_TRUSS_MEMBERS(HF_HDF5_MEMBER)
+            HF_SUMMARY_COUPLING_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_COUPLING_GA_MEMBERS(HF_HDF5_MEMBER)
+                HF_SUMMARY_COUPLING_POLISH_MEMBERS(HF_HDF5_MEMBER)};
 
 const hf_hdf5_member *hf_ledger_column(int i)
 {
@@ -52,6 +56,8 @@ int hf_ledger_is_circumstance(const hf_hdf5_member *column)
 static int applies(const hf_hdf5_member *column, const hf_summary *s)
 {
     if (s->form.status == HF_NOT_EVALUATED) return 0;
+    if (!strcmp(column->object, "/truss")) return s->has_truss;
+    if ((!strcmp(column->object, "/coupling") || strstr(column->name, "coupling_")) && !s->has_coupling) return 0;
     if (!strcmp(column->object, "/ga")) return s->has_optimize;
     if (!strcmp(column->object, "/polish")) return s->has_polish;
     return 1;

@@ -334,8 +334,7 @@ hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *m
 
 int hf_store_generations(const hf_store *store)
 {
-    if (!store) return 0;
-    return store->rows.n_stored + store->rows.n_waiting;
+    return store ? store->rows.n_stored + store->rows.n_waiting : 0;
 }
 
 int hf_store_is_resumed(const hf_store *store)

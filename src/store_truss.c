@@ -54,6 +54,7 @@ static void write_fixed(hf_hdf5 *io, hid_t group, const hf_truss *t)
 hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_carrier_state *state,
                          hf_messages *messages)
 {
+    if (!store) return HF_OK;
     static const hf_hdf5_column attachments[] = {
         {"attachment/net_node", HF_KIND_INT, 0, 1, "", "support of the net, as index from 0 into /scene/node",
          offsetof(hf_carrier, scene_node)},

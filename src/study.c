@@ -212,6 +212,30 @@ static void tell_faults(const hf_study *s, int i, const hf_messages *found, hf_m
     }
 }
 
+/* Of the base case and the tables that it imports (those of the first point, where an axis names tables). */
+static hf_status take_fingerprint(hf_study *s, const hf_case *c, hf_messages *messages)
+{
+    const char *table[] = {c->has_import ? c->nodes_path : NULL, c->has_import ? c->cables_path : NULL,
+                           c->has_truss_import ? c->truss_nodes_path : NULL,
+                           c->has_truss_import ? c->truss_members_path : NULL};
+    char digests[5 * 65], hex[65];
+    size_t used = 0;
+    hf_sha256(c->text, c->text_length, digests);
+    used += 64;
+    for (int i = 0; i < 4; i++) {
+        char *text;
+        size_t length;
+        if (!table[i]) continue;
+        HF_TRY(hf_text_read_file(table[i], HF_BAD_CASE, &text, &length, messages));
+        hf_sha256(text, length, digests + used);
+        used += 64;
+        free(text);
+    }
+    hf_sha256(digests, used, hex);
+    memcpy(s->fingerprint, hex, HF_STUDY_FINGERPRINT_SIZE - 1);
+    return HF_OK;
+}
+
 /* Each point as a case: keys that do not go together, and all faults of the base case. */
 static hf_status check_points(hf_study *s, hf_messages *messages)
 {
@@ -225,12 +249,10 @@ static hf_status check_points(hf_study *s, hf_messages *messages)
         hf_study_point(s, i, &o);
         hf_status status = hf_config_load(s->base, o.set, o.n_set, &c, &found);
         if (i == 0 && status == HF_OK) {
-            char hex[65];
             s->has_optimize = c.has_optimize;
             s->derives_seed = c.has_optimize && !has_seed_axis;
             s->seed = c.optimize.seed;
-            hf_sha256(c.text, c.text_length, hex);
-            memcpy(s->fingerprint, hex, HF_STUDY_FINGERPRINT_SIZE - 1);
+            status = take_fingerprint(s, &c, messages);
         }
         if (status != HF_OK && n_fault++ < JOINT_FAULT_MAX) tell_faults(s, i, &found, messages);
         hf_messages_free(&found);

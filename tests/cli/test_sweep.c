@@ -259,11 +259,17 @@ START_TEST(merge_replaces_only_merges)
 }
 END_TEST
 
-/* The shipped study, its points cut short. */
-START_TEST(the_shipped_study_is_valid)
+START_TEST(the_shipped_studies_are_valid)
 {
     HIFDM(0, "status", keep(source_path("configs/pretension-sweep.yaml")), "--dir", temp("s.d"));
     OUT("64 points");
+    /* the truss gives way: more displacement at each step, and a worse shape in the end */
+    const char *truss = keep(source_path("configs/pretension-truss.yaml"));
+    HIFDM(0, "sweep", truss, "--dir", temp("t.d"), "--quiet");
+    HIFDM(0, "merge", truss, "--dir", temp("t.d"), "-o", temp("t.h5"));
+    EXPECT(temp("t.h5"), "--", "(np.diff(a['points/coupling/max_displacement_m'][:]) > 0).all()",
+           "(np.diff(a['points/form/psi_m'][:]) > 0).all()", "(a['points/truss/mass_kg'][:] > 0).all()",
+           "len(a['runs']) == 0", "'points/ga' not in a");
 }
 END_TEST
 
@@ -283,7 +289,7 @@ Suite *suite_cli_sweep(void)
     tcase_add_test(tcase, a_killed_sweep_goes_on);
     tcase_add_test(tcase, a_finished_result_is_not_run_again);
     tcase_add_test(tcase, merge_replaces_only_merges);
-    tcase_add_test(tcase, the_shipped_study_is_valid);
+    tcase_add_test(tcase, the_shipped_studies_are_valid);
     suite_add_tcase(suite, tcase);
     return suite;
 }
