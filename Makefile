@@ -138,7 +138,7 @@ setup: ## install the packages that are missing
 run: setup ## set up, build, and run CASE (configs/chen2022.yaml) into results/
 	$(SUB) $(PROGRAM)
 	@mkdir -p $(dir $(RESULT))
-	OMP_WAIT_POLICY=passive $(PROGRAM) run $(CASE) -o $(RESULT) --restart
+	$(PROGRAM) run $(CASE) -o $(RESULT) --restart
 
 test: ## set up, build and run the tests; SUITE="unit verify/band" picks some
 	$(Q)tools/setup.sh --test

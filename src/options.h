@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 typedef enum {
-    HF_COMMAND_RUN,
+    HF_COMMAND_RUN, /* these four, to SWEEP, use threads */
     HF_COMMAND_CHECK,
     HF_COMMAND_EVALUATE,
     HF_COMMAND_SWEEP,
