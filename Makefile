@@ -94,6 +94,7 @@ STATIC := $(BUILD)/libhifdm.a
 SHARED := $(BUILD)/libhifdm.so
 SONAME := libhifdm.so.$(SOVERSION)
 RUNNER := $(BUILD)/tests/run_tests
+PAPER_OUT ?= results/chen2022
 BENCH := $(BUILD)/bench/bench
 BENCH_OUT ?= results/bench
 BENCH_ROUNDS ?= 3
@@ -117,7 +118,7 @@ quote = '$(subst ','\'',$(1))'
 stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
-FRONT := all compile-all run test stress browser bench lint asan tsan install
+FRONT := all compile-all run test stress browser paper paper-check bench lint asan tsan install
 .PHONY: $(FRONT) setup clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -154,6 +155,16 @@ stress: ## the numerical-stability suite and the killed runs at full length
 browser: ## open pages of hifdm report in headless Chromium; needs `tools/setup.sh --ci`
 	$(SUB) $(PROGRAM)
 	$(Q)HIFDM=$(abspath $(PROGRAM)) BUILD=$(BUILD) tests/browser/run.sh
+
+# PAPER_OUT=... is another folder to write to, or to compare with.
+paper: PAPER_DO := --out
+paper: ## the figures and numbers of Chen et al. 2022, ours next to theirs, in results/chen2022/
+paper-check: PAPER_DO := --check
+paper-check: ## hold the numbers in results/chen2022/ to what the program gives now
+paper paper-check:
+	$(Q)tools/setup.sh --test
+	$(SUB) $(PROGRAM)
+	$(PYTHON) tools/paper/paper.py --program $(PROGRAM) --work $(BUILD)/paper $(PAPER_DO) $(PAPER_OUT)
 
 # Peers that cannot be installed are left out of the tables. BENCH_OUT=... writes elsewhere.
 bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/ (4 minutes)

@@ -15,9 +15,10 @@ import time
 from collections import defaultdict
 from datetime import datetime, timezone
 
-import svg
-
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+import svg  # noqa: E402
+
 SCENES = ["chen2022", "21x25 f=15", "imported 31x37", "41x49 f=5"]
 KERNEL_NET = "21x25 perimeter"
 SCALES = {1: 3, 2: 3, 4: 3, 8: 2, 16: 1}  # nets of the cost growth: rounds, fewer for those that take seconds
