@@ -169,6 +169,19 @@ START_TEST(results_of_another_base_case_are_not_mixed_in)
 }
 END_TEST
 
+START_TEST(results_of_other_tables_are_not_mixed_in)
+{
+    static const char nodes[] = "id,x_m,y_m,z_m,role\na,0,0,0,support\nb,2,0,0,support\nc,1,0.5,0.1,inner\n"
+                                "d,1,1.7,0,support\n";
+    const char *path = file_with("study.yaml", "base: net.yaml\nsweep:\n  form.pretension_N: [10, 11]\n");
+    net_with(nodes, "id,i,j,group,law,value\n1,a,c,inner,tension,\n2,b,c,inner,tension,10\n3,c,d,inner,tension,12\n");
+    HIFDM(0, "sweep", path, "--dir", temp("s.d"), "--quiet");
+    net_with(nodes, "id,i,j,group,law,value\n1,a,c,inner,tension,\n2,b,c,inner,tension,11\n3,c,d,inner,tension,12\n");
+    HIFDM(0, "status", path, "--dir", temp("s.d"));
+    OUT("outdated  2");
+}
+END_TEST
+
 START_TEST(a_case_with_a_sweep_of_its_own)
 {
     const char *path = file_with("one.yaml", SMALL_SCENE "sweep:\n  form.pretension_N: [8, 9, 10]\n  files: all\n");
@@ -284,6 +297,7 @@ Suite *suite_cli_sweep(void)
     tcase_add_test(tcase, a_failed_point_stops_no_other);
     tcase_add_test(tcase, what_failed_can_be_run_again);
     tcase_add_test(tcase, results_of_another_base_case_are_not_mixed_in);
+    tcase_add_test(tcase, results_of_other_tables_are_not_mixed_in);
     tcase_add_test(tcase, a_case_with_a_sweep_of_its_own);
     tcase_add_test(tcase, a_stopped_sweep_goes_on);
     tcase_add_test(tcase, a_killed_sweep_goes_on);
