@@ -170,7 +170,7 @@ static void print_command(const hf_command_row *c, FILE *f)
 
 /* ---- manual page ---- */
 
-/* Text as troff takes it: no request at the start of a line, a '-' that can be copied. */
+/* Text as troff takes it: no request at the start of a line, a '-' that can be copied, lists that may be broken. */
 static void put_roff(const char *text, FILE *f)
 {
     int at_start = 1;
@@ -183,6 +183,9 @@ static void put_roff(const char *text, FILE *f)
             break;
         case '-':
             fputs("\\-", f);
+            break;
+        case ',':
+            fputs(p[1] == ' ' ? "," : ",\\:", f);
             break;
         case '\'':
             fputs("\\(aq", f);

@@ -19,6 +19,7 @@ typedef struct {
     hf_messages said; /* errors and warnings, in words */
     hf_case c;
     hf_scene scene;
+    hf_carrier carrier;
     hf_model m;
     hf_workspace w;
     hf_batch batch;
@@ -41,6 +42,11 @@ static hf_status search(const char *path, thing *t)
     HF_TRY(hf_config_load(path, NULL, 0, &t->c, &t->said));
     HF_TRY(hf_config_scene(&t->c, &t->scene, &t->said));
     HF_TRY(hf_model_build(&t->scene, &t->c.form, &t->m, &t->said));
+    if (t->c.has_truss) { /* that gives way under the net */
+        const hf_carrier *r = &t->carrier;
+        HF_TRY(hf_carrier_build(&t->c, &t->scene, &t->carrier, &t->said));
+        HF_TRY(hf_model_attach(&t->m, r->n_attachment, r->scene_node, r->flexibility_m_per_N, &t->said));
+    }
     HF_TRY(hf_workspace_create(&t->m, &t->w));
     HF_TRY(hf_evaluate_form(&t->m, &t->c.form, &t->w, NULL, &form)); /* t->w now holds the shape */
 
@@ -101,6 +107,7 @@ int main(int argc, char **argv)
     free(t.step);
     hf_workspace_free(&t.w);
     hf_model_free(&t.m);
+    hf_carrier_free(&t.carrier);
     hf_scene_free(&t.scene);
     hf_case_free(&t.c);
     hf_messages_free(&t.said);

@@ -87,6 +87,9 @@ START_TEST(own_optimiser_tells_what_is_wrong)
     ERR("wrong.yaml:2:1: from: unknown key; did you mean 'form'?");
     SHELL(0, "OMP_WAIT_POLICY=passive \"$1\" \"$2\" | tail -n 1", program, file_with("small.yaml", SMALL_SCENE));
     OUT("psi ");
+    SHELL(0, "OMP_WAIT_POLICY=passive \"$1\" \"$2\" | tail -n 1", program,
+          keep(source_path("configs/chen2022-truss.yaml")));
+    OUT("psi ");
 }
 END_TEST
 
