@@ -131,18 +131,75 @@ START_TEST(pieces_of_readme_in_python_run)
 }
 END_TEST
 
-/* README shows lines of the example that is built above. */
-START_TEST(piece_of_readme_in_c_is_that_of_the_example)
+/* README shows lines of the examples that are built above. */
+START_TEST(pieces_of_readme_in_c_are_those_of_the_examples)
 {
     static const char compare[] =
         "import re, sys\n"
-        "readme, example = (open(p).read() for p in sys.argv[1:3])\n"
-        "piece = [p for p in re.findall('(?:^    .*\\n)+', readme, flags=re.M) if 'hf_batch_run(' in p]\n"
-        "lines = {' '.join(line.split()) for line in example.splitlines()}\n"
-        "print(len(piece), [line for p in piece for line in p.splitlines() if ' '.join(line.split()) not in lines])\n";
-    SHELL(0, "\"$1\" \"$2\" \"$3\" \"$4\"", python_program(), file_with("compare.py", compare),
-          keep(source_path("README.md")), keep(source_path("tools/own_optimiser.c")));
-    ck_assert_str_eq(said.out, "1 []\n");
+        "readme, *examples = (open(p).read() for p in sys.argv[1:])\n"
+        "pieces = [p for p in re.findall('(?:^    .*\\n)+', readme, flags=re.M) if 'HF_TRY(' in p]\n"
+        "lines = {' '.join(line.split()) for example in examples for line in example.splitlines()}\n"
+        "print(len(pieces), [line for p in pieces for line in p.splitlines() if ' '.join(line.split()) not in "
+        "lines])\n";
+    SHELL(0, "\"$1\" \"$2\" \"$3\" \"$4\" \"$5\"", python_program(), file_with("compare.py", compare),
+          keep(source_path("README.md")), keep(source_path("tools/own_optimiser.c")),
+          keep(source_path("tools/read_example.c")));
+    ck_assert_str_eq(said.out, "2 []\n");
+}
+END_TEST
+
+/* Four meshes with edges that sag inward by 10 %. */
+static const char recipe_nodes[] =
+    "id,x_m,y_m,z_m,role\n"
+    "sw,-1,-1,0.1,support\nse,1,-1,0.1,support\nne,1,1,0.1,support\nnw,-1,1,0.1,support\n"
+    "s,0,-0.8,0,edge\ne,0.8,0,0.064,edge\nn,0,0.8,0,edge\nw,-0.8,0,0.064,edge\n"
+    "c,0,0,0,inner\n";
+static const char recipe_cables[] = "id,i,j,group,law,value,EA_N\n"
+                                    "1,sw,s,boundary,length,,1e5\n2,s,se,boundary,length,,1e5\n"
+                                    "3,se,e,boundary,length,,1e5\n4,e,ne,boundary,length,,1e5\n"
+                                    "5,ne,n,boundary,length,,1e5\n6,n,nw,boundary,length,,1e5\n"
+                                    "7,nw,w,boundary,length,,1e5\n8,w,sw,boundary,length,,1e5\n"
+                                    "9,s,c,inner,tension,,1e5\n10,c,n,inner,tension,,1e5\n"
+                                    "11,w,c,inner,tension,,1e5\n12,c,e,inner,tension,,1e5\n";
+
+/* The case file and the commands of the first recipe, with a net such as a user may have. */
+START_TEST(recipe_for_a_net_of_ones_own_works)
+{
+    static const char follow[] = "import re, subprocess, sys\n"
+                                 "pieces = re.findall('(?:^    .*\\n)+', open(sys.argv[1]).read(), flags=re.M)\n"
+                                 "case, = (p for p in pieces if 'import: {nodes' in p)\n"
+                                 "commands, = (p for p in pieces if 'hifdm check net.yaml' in p)\n"
+                                 "open('net.yaml', 'w').write(re.sub('^    ', '', case, flags=re.M))\n"
+                                 "sys.exit(subprocess.run(['sh', '-euc', commands]).returncode)\n";
+    const char *folder = temp("here");
+    SHELL(0, "mkdir -p \"$1\"", folder);
+    file_with("here/nodes.csv", recipe_nodes);
+    file_with("here/cables.csv", recipe_cables);
+    SHELL(0, "cd \"$1\" && PATH=$(dirname \"$0\"):$PATH OMP_WAIT_POLICY=passive \"$2\" \"$3\" \"$4\"", folder,
+          python_program(), file_with("follow.py", follow), keep(source_path("README.md")));
+    SHELL(0, "cd \"$1\" && wc -c net.h5 net.html net/nodes.csv net/optimize.hdf cut.csv", folder);
+    HIFDM(0, "show", keep(formatted("%s/net.h5", folder)));
+    OUT("9 nodes (5 free), 12 cables (8 adjustable)");
+}
+END_TEST
+
+/* The study of the second recipe, looked at but not run: 192 points of 400 generations are too many for a test. */
+START_TEST(recipe_for_a_sweep_names_a_study_that_can_run)
+{
+    static const char take[] = "import re, sys\n"
+                               "pieces = re.findall('(?:^    .*\\n)+', open(sys.argv[1]).read(), flags=re.M)\n"
+                               "study, = (p for p in pieces if p.startswith('    base: chen2022.yaml\\n    sweep:'))\n"
+                               "template, = re.findall(r'sbatch .* (\\S+) study.yaml', ''.join(pieces))\n"
+                               "open(sys.argv[2] + '/study.yaml', 'w').write(re.sub('^    ', '', study, flags=re.M))\n"
+                               "print(template)\n";
+    const char *folder = temp("here");
+    SHELL(0, "mkdir -p \"$1\" && cp \"$2\" \"$1/\"", folder, CHEN);
+    SHELL(0, "\"$1\" \"$2\" \"$3\" \"$4\"", python_program(), file_with("take.py", take),
+          keep(source_path("README.md")), folder);
+    ck_assert_str_eq(said.out, "tools/slurm/sweep.sbatch\n");
+    ck_assert(is_there(keep(source_path("tools/slurm/sweep.sbatch"))));
+    SHELL(0, "cd \"$1\" && \"$0\" status study.yaml", folder);
+    OUT("192 points");
 }
 END_TEST
 
@@ -155,7 +212,9 @@ Suite *suite_cli_examples(void)
     tcase_add_test(tcase, own_optimiser_tells_what_is_wrong);
     tcase_add_test(tcase, c_reads_a_result);
     tcase_add_test(tcase, pieces_of_readme_in_python_run);
-    tcase_add_test(tcase, piece_of_readme_in_c_is_that_of_the_example);
+    tcase_add_test(tcase, pieces_of_readme_in_c_are_those_of_the_examples);
+    tcase_add_test(tcase, recipe_for_a_net_of_ones_own_works);
+    tcase_add_test(tcase, recipe_for_a_sweep_names_a_study_that_can_run);
     suite_add_tcase(suite, tcase);
     return suite;
 }
