@@ -14,7 +14,7 @@ MODULES := status arena sha256 text csv \
            json summary hdf5_io hdf5_io_rows store_surface store_coupling journal generations store_file store \
            store_read store_truss store_table compare \
            study study_read ledger merge
-APP_MODULES := options print problem run progress signals \
+APP_MODULES := options help print problem run progress signals \
            plan export cutlist vtk report report_study designs sweep main
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
@@ -95,6 +95,7 @@ SHARED := $(BUILD)/libhifdm.so
 SONAME := libhifdm.so.$(SOVERSION)
 RUNNER := $(BUILD)/tests/run_tests
 PAPER_OUT ?= results/chen2022
+INSTALLED := $(BUILD)/prefix/lib/pkgconfig/hifdm.pc
 BENCH := $(BUILD)/bench/bench
 BENCH_OUT ?= results/bench
 BENCH_ROUNDS ?= 3
@@ -143,9 +144,10 @@ run: setup ## set up, build, and run CASE (configs/chen2022.yaml) into results/
 
 test: ## set up, build and run the tests; SUITE="unit verify/band" picks some
 	$(Q)tools/setup.sh --test
-	$(SUB) $(PROGRAM) $(RUNNER)
+	$(SUB) $(PROGRAM) $(RUNNER) $(INSTALLED)
 	@mkdir -p $(BUILD)/tmp
 	$(Q)HIFDM=$(abspath $(PROGRAM)) HIFDM_SOURCE_DIR=$(CURDIR) PYTHON=$(PYTHON) \
+	    HIFDM_PREFIX=$(abspath $(BUILD))/prefix HIFDM_CC=$(call quote,$(CC) $(SANITIZER)) \
 	    TMPDIR=$(abspath $(BUILD))/tmp CK_DEFAULT_TIMEOUT=$${CK_DEFAULT_TIMEOUT:-60} $(RUNNER) $(SUITE)
 
 # Twenty times as many nets as `make test` tries, ten times as many kills.
@@ -194,17 +196,24 @@ tsan: ## a short run of TSAN_CASE on four threads under the thread sanitizer, in
 NO_ASLR = $(shell setarch -R true 2>/dev/null && echo setarch -R)
 
 install: all ## install under PREFIX (/usr/local), within DESTDIR if given
-	$(Q)install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin lib/pkgconfig include/hifdm)
-	$(Q)install -m 755 $(PROGRAM) $(DESTDIR)$(PREFIX)/bin/
-	$(Q)install -m 644 $(STATIC) $(DESTDIR)$(PREFIX)/lib/
-	$(Q)install -m 755 $(SHARED) $(DESTDIR)$(PREFIX)/lib/libhifdm.so.$(VERSION)
-	$(Q)ln -sf libhifdm.so.$(VERSION) $(DESTDIR)$(PREFIX)/lib/$(SONAME)
-	$(Q)ln -sf $(SONAME) $(DESTDIR)$(PREFIX)/lib/libhifdm.so
-	$(Q)install -m 644 include/hifdm/*.h $(DESTDIR)$(PREFIX)/include/hifdm/
-	$(Q)printf '%s\n' 'prefix=$(PREFIX)' 'Name: hifdm' 'Version: $(VERSION)' \
-	    'Description: Form finding of cable nets with force densities' 'Cflags: -I$${prefix}/include' \
-	    'Libs: -L$${prefix}/lib -lhifdm' 'Requires.private: $(LAPACK_PC) gsl hdf5 zlib yaml-0.1' \
-	    'Libs.private: $(LAPACK_LIBS) -fopenmp -lm' >$(DESTDIR)$(PREFIX)/lib/pkgconfig/hifdm.pc
+	$(call install_files,$(DESTDIR)$(PREFIX),$(PREFIX))
+
+# What goes where: $(call install_files,FOLDER,PREFIX that the files will be found under).
+define install_files
+$(Q)install -d $(addprefix $(1)/,bin lib/pkgconfig include/hifdm share/man/man1 share/bash-completion/completions)
+$(Q)install -m 755 $(PROGRAM) $(1)/bin/
+$(Q)install -m 644 $(STATIC) $(1)/lib/
+$(Q)install -m 755 $(SHARED) $(1)/lib/libhifdm.so.$(VERSION)
+$(Q)ln -sf libhifdm.so.$(VERSION) $(1)/lib/$(SONAME)
+$(Q)ln -sf $(SONAME) $(1)/lib/libhifdm.so
+$(Q)install -m 644 include/hifdm/*.h $(1)/include/hifdm/
+$(Q)printf '%s\n' 'prefix=$(2)' 'Name: hifdm' 'Version: $(VERSION)' \
+    'Description: Form finding of cable nets with force densities' 'Cflags: -I$${prefix}/include' \
+    'Libs: -L$${prefix}/lib -lhifdm' 'Requires.private: $(LAPACK_PC) gsl hdf5 zlib yaml-0.1' \
+    'Libs.private: $(LAPACK_LIBS) -fopenmp -lm' >$(1)/lib/pkgconfig/hifdm.pc
+$(Q)$(PROGRAM) help --man >$(1)/share/man/man1/hifdm.1
+$(Q)$(PROGRAM) help --bash >$(1)/share/bash-completion/completions/hifdm
+endef
 
 clean: ## remove build/
 	rm -rf build $(BUILD)
@@ -279,6 +288,11 @@ $(RUNNER): $(TEST_OBJ) $(STATIC)
 	$(Q)$(LINK) $(patsubst %,-Wl$(comma)--wrap=%,$(TEST_WRAP) $(TEST_WRAP_EXTRA)) -o $@ $^ \
 	    $(filter-out -I%,$(CHECK)) $(PKG_LIBS)
 comma := ,
+
+# An installation for the tests of the examples, which are built as a user would build them.
+$(INSTALLED): $(PROGRAM) $(STATIC) $(SHARED) $(wildcard include/hifdm/*.h) Makefile
+	$(call say,INST,$(BUILD)/prefix)
+	$(call install_files,$(abspath $(BUILD))/prefix,$(abspath $(BUILD))/prefix)
 
 $(BUILD)/bench/peers: FORCE
 	$(call stamp,$(CHOLMOD))

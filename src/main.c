@@ -6,6 +6,7 @@
 #include "cutlist.h"
 #include "designs.h"
 #include "export.h"
+#include "help.h"
 #include "options.h"
 #include "print.h"
 #include "progress.h"
@@ -131,7 +132,7 @@ static hf_status dispatch(const hf_options *o, int argc, char **argv, hf_message
         hf_print_schema(stdout);
         return HF_OK;
     case HF_COMMAND_HELP:
-        hf_options_help(stdout);
+        hf_help(o, stdout);
         return HF_OK;
     case HF_COMMAND_VERSION:
         printf("hifdm %s\n", hf_store_version());

@@ -1,4 +1,4 @@
-/* Contents: the tables - reading - help */
+/* Contents: the tables - reading */
 #include "options.h"
 
 #include "ledger.h"
@@ -15,12 +15,7 @@
 /* In the order of hf_progress_mode. */
 static const char *const progress_word[] = {"auto", "none", "line", "log", "jsonl", NULL};
 
-typedef struct {
-    const char *name, *argument, *help;
-    hf_command command;
-} command_row;
-
-static const command_row command_table[] = {
+const hf_command_row hf_command_table[] = {
     {"run", "CASE", "run what the case file contains and store it in one HDF5 file", HF_COMMAND_RUN},
     {"check", "CASE", "validate; print what will run, what is skipped, sizes, memory and expected time",
      HF_COMMAND_CHECK},
@@ -40,10 +35,11 @@ static const command_row command_table[] = {
      HF_COMMAND_REPORT},
     {"export", "FILE", "write a result as CSV files, for ParaView, or as a cut list", HF_COMMAND_EXPORT},
     {"schema", NULL, "print every key of a case file: type, range, default, meaning", HF_COMMAND_SCHEMA},
-    {"help", NULL, "print this", HF_COMMAND_HELP},
+    {"help", "[COMMAND]", "tell what a command does, its options, and examples", HF_COMMAND_HELP},
     {"version", NULL, "print the version", HF_COMMAND_VERSION},
 };
-enum { N_COMMAND = sizeof command_table / sizeof *command_table };
+enum { N_COMMAND = sizeof hf_command_table / sizeof *hf_command_table };
+const int hf_n_command = N_COMMAND;
 
 typedef enum {
     OPTION_OUTPUT,
@@ -65,16 +61,13 @@ typedef enum {
     OPTION_DIR,
     OPTION_TASK,
     OPTION_TASKS,
-    OPTION_RETRY
+    OPTION_RETRY,
+    OPTION_MAN,
+    OPTION_BASH,
+    OPTION_HELP
 } option_id;
 
-typedef struct {
-    const char *name, *letter, *argument, *help;
-    unsigned commands; /* bits of the commands that take it */
-    option_id id;
-} option_row;
-
-static const option_row option_table[] = {
+const hf_option_row hf_option_table[] = {
     {"--output", "-o", "FILE", "result file (default: the case's name with .h5, in this folder)", BIT(HF_COMMAND_RUN),
      OPTION_OUTPUT},
     {"--designs", NULL, "FILE", "CSV: a column for each adjustable cable by its id, optionally id; N; a design per row",
@@ -90,7 +83,7 @@ static const option_row option_table[] = {
     {"--task", NULL, "I", "with --tasks N: only every N-th point, from I = 0 on; default from Slurm's array",
      BIT(HF_COMMAND_SWEEP), OPTION_TASK},
     {"--tasks", NULL, "N", "number of tasks that share the points", BIT(HF_COMMAND_SWEEP), OPTION_TASKS},
-    {"--retry", NULL, "WHAT", "which points to run: missing (default), failed, outdated; with commas",
+    {"--retry", NULL, "missing|failed|outdated", "which points to run (default: missing); several with commas",
      BIT(HF_COMMAND_SWEEP), OPTION_RETRY},
     {"--output", "-o", "FILE", "the page (default: the result's name with .html, in this folder)",
      BIT(HF_COMMAND_REPORT), OPTION_OUTPUT},
@@ -109,8 +102,9 @@ static const option_row option_table[] = {
      BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_SHOW) | BIT(HF_COMMAND_RECOVER) | BIT(HF_COMMAND_EVALUATE) |
          BIT(HF_COMMAND_STATUS),
      OPTION_JSON},
-    {"--progress", NULL, "HOW", "auto, none, line (a terminal), log (a line in 30 s) or jsonl, on standard error",
-     BIT(HF_COMMAND_RUN), OPTION_PROGRESS},
+    {"--progress", NULL, "auto|none|line|log|jsonl",
+     "on standard error: line for a terminal, log every 30 s, jsonl for programs", BIT(HF_COMMAND_RUN),
+     OPTION_PROGRESS},
     {"--quiet", NULL, NULL, "no progress and no summary; warnings and errors stay",
      BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EVALUATE) | BIT(HF_COMMAND_SWEEP) | BIT(HF_COMMAND_MERGE), OPTION_QUIET},
     {"--rtol", NULL, "R", "numbers are equal when |a-b| <= atol + R |b| (default 0: to the bit)", BIT(HF_COMMAND_DIFF),
@@ -122,53 +116,71 @@ static const option_row option_table[] = {
      OPTION_VTK},
     {"--cutlist", NULL, "FILE", "write unstressed lengths to FILE, the jig and totals beside it",
      BIT(HF_COMMAND_EXPORT), OPTION_CUTLIST},
-    {"--stage", NULL, "STAGE", "form, optimize or polish: which shape (default: the result of the run)",
-     BIT(HF_COMMAND_EXPORT), OPTION_STAGE},
+    {"--stage", NULL, "form|optimize|polish", "which shape (default: the result of the run)", BIT(HF_COMMAND_EXPORT),
+     OPTION_STAGE},
+    {"--man", NULL, NULL, "print the manual page, for man(1)", BIT(HF_COMMAND_HELP), OPTION_MAN},
+    {"--bash", NULL, NULL, "print the completion for bash", BIT(HF_COMMAND_HELP), OPTION_BASH},
+    {"--help", "-h", NULL, "print this", ~0u, OPTION_HELP},
 };
-enum { N_OPTION = sizeof option_table / sizeof *option_table };
+enum { N_OPTION = sizeof hf_option_table / sizeof *hf_option_table };
+const int hf_n_option = N_OPTION;
+
+int hf_option_goes_with(const hf_option_row *option, const hf_command_row *command)
+{
+    return (option->commands & BIT(command->command)) != 0;
+}
 
 /* ---- reading ---- */
 
-static hf_status unknown(const char *kind, const char *word, const char *const *names, int n_name,
+/* `where`: behind 'hifdm help', to have them listed. */
+static hf_status unknown(const char *kind, const char *word, const char *const *names, int n_name, const char *where,
                          hf_messages *messages)
 {
     const char *near = hf_text_nearest(word, names, n_name);
     if (near) return hf_error(messages, HF_BAD_USAGE, "unknown %s '%s'; did you mean '%s'?", kind, word, near);
-    return hf_error(messages, HF_BAD_USAGE, "unknown %s '%s'; 'hifdm help' lists them", kind, word);
+    return hf_error(messages, HF_BAD_USAGE, "unknown %s '%s'; 'hifdm help%s' lists them", kind, word, where);
 }
 
-static hf_status find_command(const char *word, const command_row **row, hf_messages *messages)
+static int needs_argument(const hf_command_row *command)
+{
+    return command->argument && *command->argument != '[';
+}
+
+static hf_status find_command(const char *word, const hf_command_row **row, hf_messages *messages)
 {
     const char *names[N_COMMAND];
     for (int i = 0; i < N_COMMAND; i++) {
-        *row = &command_table[i];
-        names[i] = command_table[i].name;
+        *row = &hf_command_table[i];
+        names[i] = hf_command_table[i].name;
         int dashed = !strncmp(word, "--", 2) && !strcmp(word + 2, names[i]); /* --help, --version */
-        if (!strcmp(word, names[i]) || (dashed && !command_table[i].argument)) return HF_OK;
-        if (!strcmp(word, "-h") && command_table[i].command == HF_COMMAND_HELP) return HF_OK;
+        if (!strcmp(word, names[i]) || (dashed && !needs_argument(*row))) return HF_OK;
+        if (!strcmp(word, "-h") && hf_command_table[i].command == HF_COMMAND_HELP) return HF_OK;
     }
-    return unknown("command", word, names, N_COMMAND, messages);
+    return unknown("command", word, names, N_COMMAND, "", messages);
 }
 
-static hf_status find_option(const char *word, hf_command command, const option_row **row, hf_messages *messages)
+static hf_status find_option(const char *word, const hf_command_row *command, const hf_option_row **row,
+                             hf_messages *messages)
 {
     const char *names[N_OPTION];
     size_t length = strcspn(word, "=");
     int elsewhere = 0;
     for (int i = 0; i < N_OPTION; i++) {
-        const option_row *o = &option_table[i];
+        const hf_option_row *o = &hf_option_table[i];
         names[i] = o->name;
         int is_long = strlen(o->name) == length && !strncmp(word, o->name, length);
         int is_short = o->letter && !strcmp(word, o->letter);
         if (!is_long && !is_short) continue;
         *row = o;
-        if (o->commands & BIT(command)) return HF_OK;
+        if (hf_option_goes_with(o, command)) return HF_OK;
         elsewhere = 1;
     }
     if (elsewhere)
-        return hf_error(messages, HF_BAD_USAGE, "'%s' does not go with this command; 'hifdm help' says where it goes",
-                        word);
-    return unknown("option", word, names, N_OPTION, messages);
+        return hf_error(messages, HF_BAD_USAGE, "'%s' does not go with this command; 'hifdm help %s' lists what does",
+                        word, command->name);
+    char where[32];
+    snprintf(where, sizeof where, " %s", command->name);
+    return unknown("option", word, names, N_OPTION, where, messages);
 }
 
 static hf_status read_progress(const char *value, int *mode, hf_messages *messages)
@@ -196,17 +208,55 @@ static unsigned read_states(const char *text)
     }
 }
 
-static hf_status apply(const option_row *row, const char *value, hf_options *o, hf_messages *messages)
+/* Where the value goes of an option whose value may be anything; NULL for the others. */
+static const char **text_of(int id, hf_options *o)
+{
+    switch (id) {
+    case OPTION_OUTPUT:
+        return &o->output;
+    case OPTION_CSV:
+        return &o->csv;
+    case OPTION_VTK:
+        return &o->vtk;
+    case OPTION_CUTLIST:
+        return &o->cutlist;
+    case OPTION_DESIGNS:
+        return &o->designs;
+    case OPTION_TEMPLATE:
+        return &o->template_path;
+    case OPTION_DIR:
+        return &o->folder;
+    default:
+        return NULL;
+    }
+}
+
+/* What an option without a value sets to 1; NULL for the others. */
+static int *flag_of(int id, hf_options *o)
+{
+    switch (id) {
+    case OPTION_FORCE:
+        return &o->force;
+    case OPTION_JSON:
+        return &o->json;
+    case OPTION_QUIET:
+        return &o->quiet;
+    case OPTION_HELP:
+        return &o->help;
+    default:
+        return NULL;
+    }
+}
+
+static hf_status apply(const hf_option_row *row, const char *value, hf_options *o, hf_messages *messages)
 {
     uint64_t number = 0;
     int is_number = value && hf_text_uint64(value, &number);
+    const char **text = text_of(row->id, o);
+    int *flag = flag_of(row->id, o);
+    if (text) *text = value;
+    if (flag) *flag = 1;
     switch (row->id) {
-    case OPTION_OUTPUT:
-        o->output = value;
-        break;
-    case OPTION_FORCE:
-        o->force = 1;
-        break;
     case OPTION_SET:
         o->set[o->n_set++] = value;
         break;
@@ -221,12 +271,6 @@ static hf_status apply(const option_row *row, const char *value, hf_options *o, 
         o->has_seed = 1;
         o->seed = number;
         break;
-    case OPTION_JSON:
-        o->json = 1;
-        break;
-    case OPTION_QUIET:
-        o->quiet = 1;
-        break;
     case OPTION_RTOL:
     case OPTION_ATOL:
         if (!hf_text_double(value, row->id == OPTION_RTOL ? &o->rtol : &o->atol) || o->rtol < 0 || o->atol < 0)
@@ -234,28 +278,10 @@ static hf_status apply(const option_row *row, const char *value, hf_options *o, 
         break;
     case OPTION_PROGRESS:
         return read_progress(value, &o->progress, messages);
-    case OPTION_CSV:
-        o->csv = value;
-        break;
-    case OPTION_VTK:
-        o->vtk = value;
-        break;
-    case OPTION_CUTLIST:
-        o->cutlist = value;
-        break;
-    case OPTION_DESIGNS:
-        o->designs = value;
-        break;
-    case OPTION_TEMPLATE:
-        o->template_path = value;
-        break;
     case OPTION_STAGE:
         if (strcmp(value, "form") && strcmp(value, "optimize") && strcmp(value, "polish"))
             return hf_error(messages, HF_BAD_USAGE, "--stage must be form, optimize or polish, not '%s'", value);
         o->stage = value;
-        break;
-    case OPTION_DIR:
-        o->folder = value;
         break;
     case OPTION_TASK:
         if (!is_number || number >= TASKS_MAX)
@@ -273,15 +299,21 @@ static hf_status apply(const option_row *row, const char *value, hf_options *o, 
             return hf_error(messages, HF_BAD_USAGE,
                             "--retry must be of missing, failed, outdated, with commas, not '%s'", value);
         break;
+    case OPTION_MAN:
+        o->help_as = HF_HELP_MAN;
+        break;
+    case OPTION_BASH:
+        o->help_as = HF_HELP_BASH;
+        break;
     }
     return HF_OK;
 }
 
-static hf_status read_words(int argc, char *const *argv, const command_row *command, hf_options *o,
+static hf_status read_words(int argc, char *const *argv, const hf_command_row *command, hf_options *o,
                             hf_messages *messages)
 {
     for (int i = 2; i < argc; i++) {
-        const option_row *row = NULL;
+        const hf_option_row *row = NULL;
         const char *value = NULL, *equals = strchr(argv[i], '=');
         if (argv[i][0] != '-' || !argv[i][1]) {
             if (o->file && command->command == HF_COMMAND_DIFF && !o->second) {
@@ -294,7 +326,7 @@ static hf_status read_words(int argc, char *const *argv, const command_row *comm
             o->file = argv[i];
             continue;
         }
-        HF_TRY(find_option(argv[i], o->command, &row, messages));
+        HF_TRY(find_option(argv[i], command, &row, messages));
         if (row->argument) {
             int joined = equals && argv[i][1] == '-';
             if (!joined && i + 1 == argc)
@@ -310,7 +342,7 @@ static hf_status read_words(int argc, char *const *argv, const command_row *comm
 
 hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_messages *messages)
 {
-    const command_row *command;
+    const hf_command_row *command;
     *options = (hf_options){.task = -1};
     if (argc < 2) return hf_error(messages, HF_BAD_USAGE, "a command is missing; 'hifdm help' lists them");
     HF_TRY(find_command(argv[1], &command, messages));
@@ -318,11 +350,18 @@ hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_
     options->set = calloc((size_t)argc, sizeof *options->set);
     if (!options->set) return hf_error(messages, HF_NO_MEMORY, "out of memory");
     HF_TRY(read_words(argc, argv, command, options, messages));
+    if (options->command == HF_COMMAND_HELP && options->file && !options->help)
+        HF_TRY(find_command(options->file, &options->topic, messages));
+    if (options->help) { /* hifdm COMMAND --help */
+        options->command = HF_COMMAND_HELP;
+        options->topic = command;
+    }
+    if (options->command == HF_COMMAND_HELP) return HF_OK;
     uint64_t cpus;
     const char *slurm = getenv("SLURM_CPUS_PER_TASK");
     if (!options->threads && slurm && hf_text_uint64(slurm, &cpus) && cpus >= 1 && cpus <= THREADS_MAX)
         options->threads = (int)cpus;
-    if (command->argument && !options->file)
+    if (needs_argument(command) && !options->file)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm %s' needs a %s", command->name, command->argument);
     if (options->command == HF_COMMAND_DIFF && !options->second)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm diff' needs a second file");
@@ -344,27 +383,4 @@ void hf_options_free(hf_options *options)
 {
     free(options->set);
     *options = (hf_options){0};
-}
-
-/* ---- help ---- */
-
-void hf_options_help(FILE *file)
-{
-    fputs("hifdm - shape and pretension of the cable net of a large deployable mesh reflector\n\n", file);
-    for (int i = 0; i < N_COMMAND; i++) {
-        const command_row *c = &command_table[i];
-        fprintf(file, "  hifdm %-8s %-5s %s\n", c->name, c->argument ? c->argument : "", c->help);
-        for (int k = 0; k < N_OPTION; k++) {
-            const option_row *o = &option_table[k];
-            char name[64];
-            if (!(o->commands & BIT(c->command))) continue;
-            snprintf(name, sizeof name, "%s%s%s%s%s", o->letter ? o->letter : "", o->letter ? ", " : "", o->name,
-                     o->argument ? " " : "", o->argument ? o->argument : "");
-            fprintf(file, "      %-18s %s\n", name, o->help);
-        }
-    }
-    fputs("\nexit status: 0 done, 1 files differ, 2 bad usage or case, 3 not converged or no feasible design, 4 "
-          "ill-posed, 5 "
-          "input/output, 75 told to stop\n",
-          file);
 }

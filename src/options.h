@@ -1,4 +1,4 @@
-/* options - the command line, from one table that also prints the help. */
+/* options - the command line, from two tables that module help prints, too. */
 #ifndef HIFDM_OPTIONS_H
 #define HIFDM_OPTIONS_H
 
@@ -24,6 +24,27 @@ typedef enum {
 } hf_command;
 
 typedef struct {
+    const char *name, *argument, *help; /* argument: CASE, [COMMAND] if it may be left out, NULL */
+    hf_command command;
+} hf_command_row;
+
+/* argument: N, FILE, DIR, KEY=VALUE, the words themselves as in form|optimize|polish, NULL. */
+typedef struct {
+    const char *name, *letter, *argument, *help;
+    unsigned commands; /* bits of the commands that take it */
+    int id;
+} hf_option_row;
+
+extern const hf_command_row hf_command_table[];
+extern const int hf_n_command;
+extern const hf_option_row hf_option_table[]; /* a name may come more than once, for different commands */
+extern const int hf_n_option;
+
+int hf_option_goes_with(const hf_option_row *option, const hf_command_row *command);
+
+typedef enum { HF_HELP_TEXT, HF_HELP_MAN, HF_HELP_BASH } hf_help_form;
+
+typedef struct {
     hf_command command;
     const char *file;                    /* the CASE or FILE, NULL for commands without one */
     const char *second;                  /* the other FILE of diff */
@@ -43,12 +64,14 @@ typedef struct {
     double rtol, atol; /* of diff */
     int progress;      /* hf_progress_mode */
     int json, quiet, force;
+    int help;                    /* --help */
+    const hf_command_row *topic; /* of help; NULL = all commands */
+    hf_help_form help_as;
 } hf_options;
 
 /* HF_BAD_USAGE with a message that says what to write instead. Free with hf_options_free in any case. */
 hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_messages *messages);
 
-void hf_options_help(FILE *file);
 void hf_options_free(hf_options *options);
 
 #endif

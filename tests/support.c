@@ -113,6 +113,18 @@ const char *python_program(void)
     return program ? program : "/usr/bin/python3";
 }
 
+const char *installed_prefix(void)
+{
+    const char *prefix = getenv("HIFDM_PREFIX");
+    return prefix ? prefix : source_path("build/prefix");
+}
+
+const char *c_compiler(void)
+{
+    const char *compiler = getenv("HIFDM_CC");
+    return compiler ? compiler : "cc";
+}
+
 static double now_s(void)
 {
     struct timespec time;

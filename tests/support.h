@@ -33,6 +33,9 @@ struct command {
 const char *hifdm_program(void);  /* $HIFDM, else build/hifdm */
 const char *python_program(void); /* $PYTHON, else /usr/bin/python3: has h5py and yaml */
 
+const char *installed_prefix(void); /* $HIFDM_PREFIX, else build/prefix: what `make install` makes */
+const char *c_compiler(void);       /* $HIFDM_CC, else cc: with the flags it needs to link our library */
+
 /* Runs argv (ended by NULL; argv[0] is looked up in PATH) without a standard input, and waits for it. After
  * timeout_s, times CK_TIMEOUT_MULTIPLIER as for check's own limits, it is killed. */
 struct command run_command(double timeout_s, const char *const argv[]);

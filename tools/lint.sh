@@ -10,7 +10,7 @@ heap_files="status arena text csv scene scene_import config numbering model lane
             generations store_file store store_read compare truss truss_import frame
             carrier store_truss store_coupling study study_read ledger merge sweep options problem run designs"
 # may print (csv, json, summary: to a stream they are given)
-print_files="csv json summary options print progress plan export cutlist report report_study designs sweep main"
+print_files="csv json summary help print progress plan export cutlist report report_study designs sweep main"
 openmp_files="batch"                                 # may mention OpenMP
 top_level="Makefile README.md LICENSE src include configs tests results tools"   # and dot-files
 max_file=600 max_function=80 long_function=60                        # lines; between the last two it is a warning

@@ -71,6 +71,8 @@ missing_packages() {
         has sbatch && has slurmctld && has slurmd || need slurm-wlm
         has munged || need munge
         has parallel || need parallel
+        has man || has mandoc || need mandoc
+        has_module matplotlib || need python3-matplotlib
     fi
     echo $list
 }

@@ -1,7 +1,7 @@
 /* batch - designs -> results with all cores busy: the only user of OpenMP.
  *
- * For an optimiser of one's own: create, share the base design, run as often as there are designs, free; README has the
- * whole of it. `hifdm evaluate` is the same for tables in CSV files. */
+ * For an optimiser of one's own: create, share the base design, run as often as there are designs, free; the whole of
+ * it is in tools/own_optimiser.c. `hifdm evaluate` is the same for tables in CSV files. */
 #ifndef HIFDM_BATCH_H
 #define HIFDM_BATCH_H
 
@@ -19,15 +19,17 @@ typedef struct {
     double cpu_s;                   /* processor time spent inside evaluations so far, over all threads */
 } hf_batch;
 
-/* n_thread 0: hf_batch_default_threads(). HF_OK or HF_NO_MEMORY. Free in any case. */
+/* n_thread 0: hf_batch_default_threads(). The evaluator is borrowed until hf_batch_free. HF_OK or HF_NO_MEMORY. Free in
+ * any case. */
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch);
 
-/* Evaluate the designs with pending[i] != 0 (all when pending is NULL). design_N: [n][n_gene]; result: [n].
+/* Evaluate the designs with pending[i] != 0 (all when pending is NULL). design_N: [n][n_gene] boundary pretensions > 0;
+ * result: [n].
  * Each design is one whole form-finding in one thread; the results do not depend on the number of threads, nor on which
  * other designs are evaluated beside it. A design that has no shape has its status in its result and NaN measures. */
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result);
 
-/* Let the threads share one factored Newton matrix from the base design [n_gene] on, where the evaluator's solver
+/* Let the threads share one factored Newton matrix from the base design [n_gene] > 0 on, where the evaluator's solver
  * allows it. Returns the hf_solver that will be used: an unsuitable base or net leaves each design to hf_evaluate.
  * HF_NO_MEMORY counts as unsuitable. */
 int hf_batch_share(hf_batch *batch, const double *base_N);
@@ -48,6 +50,7 @@ int hf_batch_default_threads(void); /* available cores */
  * shape until the next call. */
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result);
 
+/* Threads, engine and workspaces; not the evaluator. */
 void hf_batch_free(hf_batch *batch);
 
 #ifdef __cplusplus

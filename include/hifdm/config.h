@@ -12,6 +12,7 @@
 extern "C" {
 #endif
 
+/* Words of a case file; `hifdm schema` says what each means. */
 typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHOD_NEWTON, HF_METHOD_AUTO } hf_method;
 typedef enum { HF_OPTIMIZE_GA, HF_OPTIMIZE_LM, HF_OPTIMIZE_GA_LM } hf_optimize_method;
 typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
@@ -20,6 +21,7 @@ typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
 typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN } hf_coupling_scheme;
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
+/* By the enumerations above. */
 extern const char *const hf_method_word[5];
 extern const char *const hf_stop_rule_word[2];
 extern const char *const hf_rule_word[3];
@@ -42,33 +44,33 @@ typedef struct {
     double residual_tolerance; /* max nodal residual relative to the pretension */
     double length_tolerance;   /* max |l/L*-1| of cables under the length law */
     double rms_tolerance_m;    /* change of psi between iterations, the paper's rule */
-    int max_iterations;
+    int max_iterations;        /* bound on the linear solves */
     double collapse_ratio; /* a cable of law tension shorter than this part of its theoretical length has collapsed */
     hf_coupling_settings coupling;
 } hf_form_settings;
 
 typedef struct {
-    int method; /* hf_optimize_method */
-    int rule;   /* hf_rule: what a design (a set of boundary pretensions) means */
-    int solver; /* hf_solver of the individuals */
-    int population, generations;
+    int method;                          /* hf_optimize_method */
+    int rule;                            /* hf_rule: what a design (a set of boundary pretensions) means */
+    int solver;                          /* hf_solver of the individuals */
+    int population, generations;         /* individuals; largest number of generations */
     double range_N;                      /* |dT| of Eq. 13 */
     double min_tension_N, max_tension_N; /* bounds on T' */
     double boundary_ratio_cap;           /* largest allowed boundary tension ratio of an individual */
     uint64_t seed;
     double crossover_high, crossover_low; /* Pc1, Pc2 */
     double mutation_high, mutation_low;   /* Pm1, Pm2 */
-    int elites;
-    double stagnation_tolerance_m;
-    int stagnation_generations;
-    int polish_iterations;
-    int symmetry; /* hf_symmetry: mirror planes that link genes */
+    int elites;                           /* best individuals that live on unchanged */
+    double stagnation_tolerance_m;        /* stop when the best psi gained less than this ... */
+    int stagnation_generations;           /* ... in so many generations */
+    int polish_iterations;                /* bound on those of Levenberg-Marquardt */
+    int symmetry;                         /* hf_symmetry: mirror planes that link genes */
 } hf_optimize_settings;
 
 #define HF_LIST_MAX 8
 
 typedef struct {
-    int n;
+    int n; /* of `value` in use */
     double value[HF_LIST_MAX];
 } hf_double_list;
 
@@ -81,6 +83,7 @@ typedef struct {
 
 #define HF_PATH_SIZE 1024
 
+/* A case file, with every default filled in; those of sections that are not there, too. */
 typedef struct {
     char path[HF_PATH_SIZE]; /* of the case file */
     char *text;              /* its content */
@@ -96,13 +99,13 @@ typedef struct {
     hf_optimize_settings optimize;
     hf_surface_settings surface; /* what is not given is that of the cylinder */
 
-    int has_truss, has_truss_import;
+    int has_truss, has_truss_import; /* sections; the import's files as those of the net */
     hf_truss_settings truss;
     char truss_nodes_path[HF_PATH_SIZE], truss_members_path[HF_PATH_SIZE];
 } hf_case;
 
 /* Read and validate. `overrides`: n "path=value" strings that win over the file. All faults in one go as
- * file:line:col; HF_BAD_CASE then. Free with hf_case_free in any case. */
+ * file:line:col; HF_BAD_CASE then. HF_NO_MEMORY. Free with hf_case_free in any case. */
 hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
                          hf_messages *messages);
 
@@ -114,10 +117,11 @@ hf_status hf_config_parse(const char *path, const char *text, const char *const 
  * how many there are. */
 int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t size);
 
-/* The scene that the case describes, checked (hf_scene_check). Free the scene in any case. */
+/* The scene that the case describes, checked (hf_scene_check). HF_OK; HF_BAD_CASE, files that cannot be read included;
+ * HF_NO_MEMORY. Free the scene in any case. */
 hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages);
 
-/* The truss of a case that has one, checked (hf_truss_check). Free the truss in any case. */
+/* The truss of a case that has one, checked (hf_truss_check). Errors as hf_config_scene. Free the truss in any case. */
 hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages *messages);
 
 void hf_case_free(hf_case *settings);
@@ -149,14 +153,14 @@ typedef struct {
 } hf_field;
 
 typedef struct {
-    const char *path; /* "scene.import" */
-    size_t present_offset;
+    const char *path;      /* "scene.import" */
+    size_t present_offset; /* of the int in hf_case that is 1 when the section is there */
     const char *help;
 } hf_section;
 
 #define HF_ABOVE_ZERO 1e-300 /* the min of a field that must be positive */
 
-extern const hf_field hf_field_table[];
+extern const hf_field hf_field_table[]; /* [hf_n_field], by section */
 extern const int hf_n_field;
 extern const hf_section hf_section_table[];
 extern const int hf_n_section;

@@ -13,8 +13,8 @@ extern "C" {
  * iterative_fdm and fdm too: the laws of the model decide). *why (may be NULL): a reason for people. */
 int hf_evaluate_method(const hf_model *model, const hf_form_settings *form, const char **why);
 
-/* Form-finding as the case asks for it, with its certificate. Returns result->status; the shape stays in the
- * workspace. */
+/* Form-finding as the case asks for it, with its certificate. history: NULL, or where iterations are recorded. Returns
+ * result->status, HF_OK, HF_NOT_CONVERGED or an ill-posed one; the shape stays in the workspace. */
 hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
                            hf_history *history, hf_form_result *result);
 
@@ -25,7 +25,7 @@ typedef struct {
     const double *start_q_N_per_m; /* [n_cable] first force densities of the inner cables: those of the found shape */
     int rule;                      /* hf_rule */
     int solver;                    /* hf_solver */
-    double boundary_ratio_cap;
+    double boundary_ratio_cap;     /* a larger boundary tension ratio is HF_RATIO_CAP; INFINITY: no cap */
 } hf_evaluator;
 
 /* design_N: [model->n_gene] boundary pretensions T' > 0. The shape stays in the workspace. A candidate that fails has

@@ -24,7 +24,7 @@ typedef enum {
 #undef HF_STOP_REASON_ENUM
 } hf_stop_reason;
 
-const char *hf_stop_reason_word(int reason);
+const char *hf_stop_reason_word(int reason); /* "unknown" for a foreign value */
 
 /* How the coupling of the net with an elastic truss ended. X(name, value, word stored in files). Never renumber. */
 #define HF_COUPLING_STOP_LIST(X)                                                                                       \
@@ -40,7 +40,7 @@ typedef enum {
 #undef HF_COUPLING_STOP_ENUM
 } hf_coupling_stop;
 
-const char *hf_coupling_stop_word(int stop);
+const char *hf_coupling_stop_word(int stop); /* "unknown" for a foreign value */
 
 /* All zero without a truss. */
 typedef struct {
@@ -63,7 +63,7 @@ typedef struct {
     double tension_error;       /* max |T/T*-1| over cables of law tension, 0 without one */
     double length_error;        /* max |l/L*-1| over taut cables of law length, or elastic with L* = l0 (1 + T/EA);
                                    0 without one */
-    double inner_tension_ratio; /* max T / min T; NaN without positive tensions */
+    double inner_tension_ratio; /* max T / min T of the group; NaN when it is empty or a tension is not positive */
     double boundary_tension_ratio;
     double shortest_length_ratio; /* min l / theoretical l over all cables */
     double position_error_m;      /* estimate: largest move of a node in the Newton step that would follow */
@@ -71,8 +71,8 @@ typedef struct {
     double backward_error;        /* residual_N over the largest sum of tensions at a node; the three are NaN unless
                                        hf_certify was asked */
     hf_coupling_result coupling;  /* of the net with its truss */
-    int n_slack;
-    int n_loaded_chain; /* straight chains under lateral load: tensions there mean nothing */
+    int n_slack;                  /* cables under HF_SLACK_RATIO of the reference tension */
+    int n_loaded_chain;           /* straight chains under lateral load: tensions there mean nothing */
 } hf_form_result;
 
 /* The same of each iteration of the coupling. Arrays of `capacity`, owned by the caller; entries beyond are lost. */

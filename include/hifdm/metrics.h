@@ -17,6 +17,7 @@ double hf_metrics_psi_m(const hf_model *model, const hf_workspace *workspace);
 /* Largest over smallest tension of a group (hf_group). NaN when the group is empty or a tension is not positive. */
 double hf_metrics_tension_ratio(const hf_model *model, const hf_workspace *workspace, int group);
 
+/* One cable: 1 or 0; all of them: how many. */
 int hf_metrics_is_slack(const hf_model *model, const hf_workspace *workspace, int i_cable);
 int hf_metrics_slack_count(const hf_model *model, const hf_workspace *workspace);
 

@@ -19,11 +19,11 @@ extern "C" {
 #define HF_STRAIGHT_EXCESS 1e-9
 
 typedef struct {
-    int n_node, n_free, n_cable, n_inner_node;
-    int half_bandwidth; /* of D: columns below the diagonal */
-    int n_band;         /* n_free * (half_bandwidth + 1); one spare place behind it takes what supports would add */
-    int has_strut;      /* some force density is negative: D may be indefinite */
-    int has_newton;     /* workspaces hold a Newton matrix: some law iterates, and the energy is convex (no strut) */
+    int n_node, n_free, n_cable, n_inner_node; /* n_free: nodes that are no supports; n_inner_node: those psi counts */
+    int half_bandwidth;                        /* of D: columns below the diagonal */
+    int n_band;     /* n_free * (half_bandwidth + 1); one spare place behind it takes what supports would add */
+    int has_strut;  /* some force density is negative: D may be indefinite */
+    int has_newton; /* workspaces hold a Newton matrix: some law iterates, and the energy is convex (no strut) */
     double pretension_N;
     double reference_N; /* what residuals are relative to: the largest tension of a law or load, else the pretension */
 

@@ -72,7 +72,7 @@ hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, int with_l
  * cable of zero length, every free node joined to a support. All faults in one go, each naming file, line and id. */
 hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages);
 
-double hf_scene_theoretical_length(const hf_scene *scene, int i_cable); /* m */
+double hf_scene_theoretical_length(const hf_scene *scene, int i_cable); /* m, between theoretical positions */
 
 void hf_scene_free(hf_scene *scene);
 

@@ -70,7 +70,7 @@ typedef struct {
 /* Append "error: ..." or "warning: ..."; hf_error returns `code`, so that a caller can `return hf_error(...)`. */
 hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...) HF_PRINTF(3, 4);
 void hf_warning(hf_messages *messages, const char *format, ...) HF_PRINTF(2, 3);
-void hf_messages_free(hf_messages *messages);
+void hf_messages_free(hf_messages *messages); /* all lines; it can be used again */
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
-/* store - a run in one HDF5 file: written next to its final name and renamed when complete, so that nothing
- * half-written is ever visible; read back for `show` and `export`.
+/* store - a run in one HDF5 file: written next to its name and renamed into place, so that nothing half-written is ever
+ * visible, with a journal beside it of what is not in there yet; read back for `show`, `report` and `export`.
  *
  * Layout, with n nodes, m cables, i iterations, g generations, p individuals, k genes. Every data set has the
  * attributes `units` ("" = dimensionless) and `description`. Role, group, law, status and the like are HDF5
@@ -29,7 +29,9 @@
  *                best_...; n_individual, n_variable, generations_limit, by which a run goes on
  *   /ga/best     as /form, and design_N [k]
  *   /polish      the same, of Levenberg-Marquardt; attributes: the members of hf_summary.polish and polish_...
- *   /surface     measures of the surface by stage, see store_surface.h; only when the case asks for them
+ *   /surface     when the case asks for it: attributes focal_length_m, strip_width_m; frequency_Hz [f]
+ *   /surface/form, /surface/optimize, /surface/polish   attributes: the members of hf_surface_measures, those of its
+ *                fit as fit_...; gain_loss_dB, fit_gain_loss_dB [f]
  *   /truss       with a nodes, b members, c attachments; attributes mass_kg, n_node, n_member
  *   /truss/node  id, mass_kg [a], position_m [a][3], fixed [a][6]; displacement, reaction [a][6]
  *   /truss/member  id, joint, unit, E_Pa, A_m2, ..., expansion_per_K [b], end [b][2]; end_force [b][12]
@@ -81,7 +83,7 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
 /* Add the generations of the journal to the unfinished file at `path` and no more; its summary then. As
  * hf_store_resume. */
 hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages);
-int hf_store_is_resumed(const hf_store *store);
+int hf_store_is_resumed(const hf_store *store);  /* 1 after hf_store_resume */
 int hf_store_generations(const hf_store *store); /* how many it holds */
 
 /* The calls that write return HF_OK, HF_IO or HF_NO_MEMORY with a message. After a failure the store is of no use any

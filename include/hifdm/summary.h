@@ -15,9 +15,9 @@ extern "C" {
 
 typedef struct {
     char version[64], title[256], case_path[HF_PATH_SIZE];
-    int finished; /* 0: of a run that can go on */
-    int threads;
-    uint64_t seed;
+    int finished;  /* 0: of a run that can go on */
+    int threads;   /* that were used */
+    uint64_t seed; /* of the genetic algorithm */
     int n_node, n_free, n_cable, n_gene, half_bandwidth;
     double pretension_N;
     char warnings[HF_WARNINGS_SIZE]; /* lines "warning: ..." and "error: ..." */
@@ -26,29 +26,28 @@ typedef struct {
     hf_surface_measures measures[3]; /* of the shapes of form, optimize, polish (hf_stage) */
 
     hf_form_result form;
-    double form_wall_s;
-    int has_coupling; /* the net stands on a truss: form.coupling and those of the other results */
+    double form_wall_s; /* of the form-finding */
+    int has_coupling;   /* the net stands on a truss: form.coupling and those of the other results */
 
     int solver; /* hf_solver that the individuals were given */
 
     int has_polish;       /* Levenberg-Marquardt ran */
     int polish_is_result; /* optimize.method asked for it: its design is the result, not only a yardstick */
     hf_form_result polish;
-    int polish_iterations, polish_evaluations, polish_converged;
+    int polish_iterations, polish_evaluations, polish_converged; /* steps; form-findings; 1: to its tolerance */
     double polish_wall_s;
 
-    int has_truss;
-    double truss_mass_kg;
+    int has_truss;        /* the next three mean something */
+    double truss_mass_kg; /* members and hinges */
     int truss_nodes, truss_members;
 
-    int has_optimize;
-    double
-        base_psi_m; /* of individual 0 of generation 0, the form-finding's tensions under the rule; NaN if infeasible */
+    int has_optimize;     /* the genetic algorithm ran; what follows is about it */
+    double base_psi_m;    /* of individual 0 of generation 0, the tensions found under the rule; NaN if infeasible */
     int n_leader, planes; /* independent genes; HF_PLANE_ bits of the symmetry (1 = x, 2 = y) that links the others */
     hf_form_result best;  /* of the best individual; status HF_NOT_EVALUATED when none was feasible */
-    int best_generation, best_individual;
-    int generations;
-    long evaluations, infeasible;
+    int best_generation, best_individual;   /* where it was found, from 0 */
+    int generations;                        /* that were finished */
+    long evaluations, infeasible;           /* form-findings; those without a feasible shape among them */
     int optimize_stop;                      /* hf_ga_stop */
     double optimize_wall_s, optimize_cpu_s; /* cpu_s: inside evaluations, over all threads */
 } hf_summary;

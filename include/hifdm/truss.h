@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-#define HF_TRUSS_DOF 6
+#define HF_TRUSS_DOF 6 /* of a node */
 
 /* A rigid member is a beam clamped to its two nodes; a pinned one carries axial force alone. */
 typedef enum { HF_JOINT_RIGID, HF_JOINT_PINNED } hf_joint;

@@ -64,7 +64,7 @@ static inline double hf_workspace_wanted_length_m(const hf_workspace *w, int i_c
 
 /* HF_OK or HF_NO_MEMORY. Free in any case. */
 hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace);
-size_t hf_workspace_bytes(const hf_model *model);
+size_t hf_workspace_bytes(const hf_model *model); /* that hf_workspace_create will ask for */
 void hf_workspace_free(hf_workspace *workspace);
 
 /* Fill every floating-point field with NaN and every other with 0xff: a call that reads stale contents then shows. */

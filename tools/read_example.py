@@ -1,0 +1,77 @@
+"""read_example.py RESULT [-o PICTURE]: what a result file of hifdm holds, in words and in one picture.
+
+The net, coloured by how far its nodes are from where they should be, and psi by generation if there was a genetic
+algorithm. Needs h5py and matplotlib (Debian: python3-h5py python3-matplotlib). A place to start from."""
+import argparse
+import os
+
+import h5py
+import matplotlib
+import numpy as np
+
+matplotlib.use("Agg")  # no screen needed
+import matplotlib.pyplot as plt
+
+SHAPES = {"form": "form-finding", "ga/best": "genetic algorithm", "polish": "Levenberg-Marquardt"}
+
+
+def text(value):
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def print_summary(file):
+    print(text(file.attrs["title"]))
+    print(f"  {len(file['scene/node/id'])} nodes, {len(file['scene/cable/id'])} cables")
+    for path, name in SHAPES.items():
+        if path not in file:
+            continue
+        group, prefix = (file["ga"], "best_") if path == "ga/best" else (file[path], "")
+        tension = file[path]["tension_N"][:]
+        print(f"  {name}: psi {group.attrs[prefix + 'psi_m'] * 1e3:.4f} mm, cables from {tension.min():.3f} "
+              f"to {tension.max():.3f} N, residual {group.attrs[prefix + 'residual_N']:.1e} N")
+    if "ga/psi_m" in file:
+        psi = file["ga/psi_m"][:]  # [generation, individual], nan where infeasible
+        print(f"  {len(psi)} generations, best psi {np.nanmin(psi[0]) * 1e3:.4f} -> {np.nanmin(psi[-1]) * 1e3:.4f} mm")
+    print(text(file.attrs["warnings"]), end="")
+
+
+def draw_net(axes, file, path):
+    """Seen from above. Colours: the inner nodes, which are those that psi counts."""
+    theoretical, position = file["scene/node/position_m"][:], file[path]["position_m"][:]
+    roles = h5py.check_enum_dtype(file["scene/node/role"].dtype)  # word -> number
+    inner = file["scene/node/role"][:] == roles["inner"]
+    deviation_mm = np.linalg.norm(position - theoretical, axis=1) * 1e3
+    for i, j in file["scene/cable/end"][:]:
+        axes.plot(*position[[i, j], :2].T, color="0.6", linewidth=0.8, zorder=1)
+    dots = axes.scatter(*position[inner, :2].T, c=deviation_mm[inner], s=25, zorder=2)
+    axes.figure.colorbar(dots, ax=axes, label="deviation, mm")
+    axes.set(title=f"net after {SHAPES[path]}", xlabel="x, m", ylabel="y, m", aspect="equal")
+
+
+def draw_generations(axes, file):
+    for name in ("mean", "best"):
+        axes.plot(file[f"ga/{name}_psi_m"][:] * 1e3, label=name)
+    axes.set(title="genetic algorithm", xlabel="generation", ylabel="psi, mm")
+    axes.legend()
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Print and draw a result file of hifdm.")
+    parser.add_argument("result")
+    parser.add_argument("-o", "--output", help="the picture (default: the result's name with .png, in this folder)")
+    arguments = parser.parse_args()
+    picture = arguments.output or os.path.splitext(os.path.basename(arguments.result))[0] + ".png"
+    with h5py.File(arguments.result) as file:
+        print_summary(file)
+        figure = plt.figure(figsize=(12, 5))
+        has_ga = "ga/psi_m" in file
+        draw_net(figure.add_subplot(1, 1 + has_ga, 1), file, "ga/best" if "ga/best" in file else "form")
+        if has_ga:
+            draw_generations(figure.add_subplot(1, 2, 2), file)
+        figure.tight_layout()
+        figure.savefig(picture, dpi=120)
+    print(f"  picture: {picture}")
+
+
+if __name__ == "__main__":
+    main()
