@@ -29,7 +29,7 @@ typedef struct {
 } hf_evaluator;
 
 /* design_N: [model->n_gene] boundary pretensions T' > 0. The shape stays in the workspace. A candidate that fails has
- * its status in the result and NaN measures; that is not an error of the run. Returns result->status. */
+ * its status in the result and NaN for psi and ratios; that is not an error of the run. Returns result->status. */
 hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace,
                       hf_form_result *result);
 

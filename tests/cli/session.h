@@ -62,13 +62,15 @@ static inline void wait_for_generations(const char *path)
     ck_assert_msg(info.st_size >= 1000, "no generation was stored");
 }
 
-/* What the journal of `path` holds: one more than its last whole record's generation, 0 without a record. Reads the
- * format by itself: 72 bytes of header, then {"HFDJ", length, crc, generation}, where length counts from generation. */
-static inline int generations_in_journal(const char *path)
+/* What the journal of `path` holds: one more than its last whole record's generation, 0 without a record; *end (may be
+ * NULL) is where that record ends. Reads the format by itself: 72 bytes of header, then {"HFDJ", length, crc,
+ * generation}, where length counts from generation. */
+static inline int generations_in_journal(const char *path, size_t *end)
 {
     size_t size = 0, at = 72;
     int n = 0;
     const char *journal = formatted("%s.journal", path);
+    if (end) *end = 0;
     if (!is_there(journal)) return 0;
     char *bytes = read_file(journal, &size);
     while (at + 16 <= size) {
@@ -81,6 +83,7 @@ static inline int generations_in_journal(const char *path)
         at += 12 + length;
     }
     free(bytes);
+    if (end) *end = at;
     return n;
 }
 

@@ -7,7 +7,7 @@
 /* After a kill: h5dump opens the file, and file and journal together hold all that was acknowledged before. */
 static void look_at_remains(const char *path, int *acknowledged)
 {
-    int in_journal = generations_in_journal(path);
+    int in_journal = generations_in_journal(path, NULL);
     if (!is_there(path)) { /* killed before the first generation */
         ck_assert_int_eq(in_journal + *acknowledged, 0);
         return;
@@ -80,18 +80,19 @@ START_TEST(a_torn_journal_gives_what_is_whole)
     const char *c = storing_case("c.yaml", 1000000), *path = temp("run.h5");
     const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--quiet", NULL};
     int n = 0, n_file = 0;
+    size_t end = 0;
     for (int i = 0; i < 30 && n < n_file + 3; i++) { /* it may have been published a moment ago */
         pid_t child = start_program(argv);
         wait_for_generations(path);
-        for (int k = 0; k < 1000 && generations_in_journal(path) < n_file + 10; k++)
+        for (int k = 0; k < 1000 && generations_in_journal(path, NULL) < n_file + 10; k++)
             sleep_s(0.002);
         kill(child, SIGKILL);
         end_of(child);
-        n = generations_in_journal(path);
+        n = generations_in_journal(path, &end); /* a record may be torn behind it */
         n_file = generations_in_file(path);
     }
     ck_assert_int_ge(n, n_file + 3);
-    SHELL(0, "truncate -s -5 \"$1.journal\"", path);
+    ck_assert_int_eq(truncate(keep(formatted("%s.journal", path)), (off_t)end - 5), 0);
     recover_a_copy(path, n - 1);
     SHELL(0,
           "python3 -c 'import sys; f = open(sys.argv[1], \"r+b\"); f.seek(-5000, 2); f.write(b\"spoilt\")' "
