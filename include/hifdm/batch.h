@@ -26,7 +26,8 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
 /* Evaluate the designs with pending[i] != 0 (all when pending is NULL). design_N: [n][n_gene] boundary pretensions > 0;
  * result: [n].
  * Each design is one whole form-finding in one thread; the results do not depend on the number of threads, nor on which
- * other designs are evaluated beside it. A design that has no shape, or breaks a cap, has its status in its result and NaN for psi and ratios. */
+ * other designs are evaluated beside it. A design that has no shape, or breaks a cap, has its status in its result and
+ * NaN for psi and ratios. */
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result);
 
 /* Let the threads share one factored Newton matrix from the base design [n_gene] > 0 on, where the evaluator's solver
