@@ -181,8 +181,10 @@ lint: ## check the rules of the house
 
 # -O1 for readable reports; no -Werror since instrumented code draws false warnings. Instrumented code is slow, hence
 # the multiplier, which the tests' own time limits follow too.
+# A small quarantine: the runner forks each test, and what it holds on to is copied and searched for leaks each time.
 asan: ## the tests under the address and undefined-behaviour sanitizers, in build/asan
-	+$(Q)ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1 \
+	+$(Q)ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1:quarantine_size_mb=16 \
+	    UBSAN_OPTIONS=print_stacktrace=1 \
 	    CK_TIMEOUT_MULTIPLIER=5 $(MAKE) BUILD=build/asan SANITIZE=address,undefined CFLAGS='-O1 -g' WERROR= test
 
 # clang, because gcc's OpenMP runtime hides its barriers from the thread sanitizer; OpenBLAS and HDF5 are not
