@@ -98,19 +98,29 @@ static int set_engine(hf_batch *batch, int solver, const double *base_N)
     return status == HF_OK;
 }
 
+static int each_by_newton(const hf_evaluator *v)
+{
+    return v->solver != HF_SOLVER_FIXED_POINT && v->rule != HF_RULE_SEEDED && v->model->has_newton;
+}
+
+int hf_batch_solver(const hf_evaluator *v, int *has_lanes)
+{
+    int may_share = v->solver == HF_SOLVER_AUTO || v->solver == HF_SOLVER_CHORD;
+    *has_lanes = 1;
+    if (may_share && hf_chord_applies(v)) return HF_SOLVER_CHORD;
+    *has_lanes = 0;
+    if (each_by_newton(v)) return HF_SOLVER_NEWTON;
+    /* the lanes know neither struts, nor the law elastic, nor a truss: each on its own */
+    *has_lanes = !v->model->has_strut && !v->model->EA_N && !v->model->n_attachment;
+    return HF_SOLVER_FIXED_POINT;
+}
+
 int hf_batch_share(hf_batch *batch, const double *base_N)
 {
-    const hf_evaluator *v = batch->evaluator;
-    int solver = v->solver;
+    int has_lanes, solver = hf_batch_solver(batch->evaluator, &has_lanes);
     free_engine(batch); /* of an earlier base */
-    if (solver != HF_SOLVER_FIXED_POINT && solver != HF_SOLVER_NEWTON && hf_chord_applies(v) &&
-        set_engine(batch, HF_SOLVER_CHORD, base_N))
-        return HF_SOLVER_CHORD;
-    if (solver != HF_SOLVER_FIXED_POINT && v->rule != HF_RULE_SEEDED && v->model->has_newton) return HF_SOLVER_NEWTON;
-    /* the lanes know neither struts, nor the law elastic, nor a truss: each on its own */
-    if (!v->model->has_strut && !v->model->EA_N && !v->model->n_attachment)
-        set_engine(batch, HF_SOLVER_FIXED_POINT, base_N);
-    return HF_SOLVER_FIXED_POINT;
+    if (!has_lanes || set_engine(batch, solver, base_N) || solver == HF_SOLVER_FIXED_POINT) return solver;
+    return each_by_newton(batch->evaluator) ? HF_SOLVER_NEWTON : HF_SOLVER_FIXED_POINT;
 }
 
 /* Is there room for a helper, or memory for one? Only one thread at a time has the number. */

@@ -69,10 +69,13 @@ static void show(const side *s, const char *value, char *text, size_t size)
         snprintf(text, size, "%.17g", x);
     } else if (H5Tget_class(s->type) == H5T_ENUM && H5Tenum_nameof(s->type, value, text, size) >= 0) {
         return;
-    } else if (H5Tget_class(s->type) == H5T_INTEGER && H5Tget_sign(s->type) == H5T_SGN_2 && s->bytes <= sizeof n) {
+    } else if (H5Tget_class(s->type) == H5T_INTEGER && s->bytes <= sizeof n) {
         memcpy(&n, value, s->bytes); /* little-endian, sign below */
         int shift = 8 * (int)(sizeof n - s->bytes);
-        snprintf(text, size, "%lld", (long long)((unsigned long long)n << shift) >> shift);
+        if (H5Tget_sign(s->type) == H5T_SGN_2)
+            snprintf(text, size, "%lld", (long long)((unsigned long long)n << shift) >> shift);
+        else
+            snprintf(text, size, "%llu", (unsigned long long)n);
     } else if (H5Tget_class(s->type) == H5T_STRING) {
         snprintf(text, size, "'%.*s'", (int)(s->bytes < 60 ? s->bytes : 60), value);
     } else {

@@ -88,13 +88,14 @@ static void print_allocation(const char *title, const char *what, double bytes, 
     fprintf(f, "  %-13s %-38s %s\n", title, what, bytes > 0 ? text : without);
 }
 
-/* Bytes that a population's engine would share and give to each thread (batch decides alike). */
+/* Bytes that a population's engine would share and give to each thread. */
 static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lanes)
 {
+    int has_lanes, solver = hf_batch_solver(v, &has_lanes);
     *shared = *lanes = 0;
-    if ((v->solver == HF_SOLVER_AUTO || v->solver == HF_SOLVER_CHORD) && hf_chord_applies(v)) {
+    if (solver == HF_SOLVER_CHORD) {
         *shared = hf_chord_bytes(v, lanes);
-    } else if (!v->model->has_strut && (v->solver == HF_SOLVER_FIXED_POINT || v->rule == HF_RULE_SEEDED)) {
+    } else if (has_lanes) {
         hf_lane_plan plan;
         HF_TRY(hf_lane_plan_create(v->model, hf_lane_best_isa(), &plan));
         *lanes = hf_lane_workspace_bytes(&plan);

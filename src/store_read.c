@@ -382,12 +382,13 @@ static void read_series(hf_hdf5 *io, const char *name, int columns, hf_series *s
 hf_status hf_store_read_series(const char *path, const char *name, int columns, hf_series *series,
                                hf_messages *messages)
 {
+    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *series = (hf_series){0};
     if (hf_store_is_there(&io, name)) read_series(&io, name, columns, series);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) hf_series_free(series);
-    return io.status;
+    return hf_hdf5_unlock(io.status);
 }
 
 void hf_series_free(hf_series *series)
@@ -404,6 +405,7 @@ hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf
                                           {"/", "version"},      {"/", "git_describe"}, {"/", "compiler"},
                                           {"/", "build_flags"},  {"/", "lapack"},       {"/", "gsl_version"},
                                           {"/", "hdf5_version"}, {"/", "rng"},          {"/case", "sha256"}};
+    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     size_t used = 0;
     *text = '\0';
@@ -416,5 +418,5 @@ hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf
         used += (size_t)n;
     }
     hf_hdf5_close_file(&io);
-    return io.status;
+    return hf_hdf5_unlock(io.status);
 }

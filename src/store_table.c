@@ -33,7 +33,7 @@ static hf_status finish(hf_hdf5 *io, hf_texts *texts)
 {
     hf_hdf5_close_file(io);
     if (io->status != HF_OK) hf_texts_free(texts);
-    return io->status;
+    return hf_hdf5_unlock(io->status);
 }
 
 /* ---- texts ---- */
@@ -64,6 +64,7 @@ static void read_texts(hf_hdf5 *io, const char *name, hid_t data_set, hf_texts *
 
 hf_status hf_store_read_texts(const char *path, const char *name, hf_texts *texts, hf_messages *messages)
 {
+    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *texts = (hf_texts){0};
     if (hf_store_is_there(&io, name)) {
@@ -101,6 +102,7 @@ static void read_names(hf_hdf5 *io, const char *name, hid_t group, hf_texts *nam
 
 hf_status hf_store_read_names(const char *path, const char *group, hf_texts *names, hf_messages *messages)
 {
+    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *names = (hf_texts){0};
     if (hf_store_is_there(&io, group)) {
@@ -135,6 +137,7 @@ static void read_link(hf_hdf5 *io, hid_t group, const char *name, char *file)
 hf_status hf_store_read_links(const char *path, const char *group, const hf_texts *names, hf_texts *files,
                               hf_messages *messages)
 {
+    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *files = (hf_texts){0};
     if (names->n > 0 && hf_store_is_there(&io, group) && allocate(&io, names->n, FILE_MAX, files)) {

@@ -45,6 +45,10 @@ void hf_batch_for(int n_thread, int n, void (*work)(void *context, int i), void 
 void hf_batch_pause(void);
 void hf_batch_resume(void);
 
+/* The same without a base: what hf_batch_share makes unless the base or memory forbids it; *has_lanes: eight designs
+ * side by side, by chord or in lanes. */
+int hf_batch_solver(const hf_evaluator *evaluator, int *has_lanes);
+
 int hf_batch_default_threads(void); /* available cores */
 
 /* Evaluate one design in the calling thread, to the same bits as hf_batch_run; returns the workspace that holds its
