@@ -134,16 +134,15 @@ void hf_newton_block(const hf_model *m, const hf_workspace *w, int e, double blo
 static double assemble(const hf_model *m, hf_workspace *w)
 {
     int column = half_bandwidth(m) + 1;
-    double *band = w->newton_band, u[3], largest = 0;
+    double *band = w->newton_band, block[3][3], largest = 0;
     memset(band, 0, (size_t)dofs(m) * (size_t)column * sizeof *band);
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], low = a < b ? a : b, high = a < b ? b : a;
-        double length = direction(m, w->position_m, e, u), tension = law_tension(w, e, length, w->tension_N[e]);
-        double across = tension / length, along = axial_stiffness(w, e, length, tension) - across;
         if (low >= m->n_free) continue;
+        hf_newton_block(m, w, e, block);
         for (int c = 0; c < 3; c++)
             for (int r = 0; r < 3; r++) {
-                double k = along * u[r] * u[c] + (r == c ? across : 0);
+                double k = block[r][c];
                 double *diagonal = band + (r - c) + (size_t)(3 * low + c) * (size_t)column;
                 if (r >= c) *diagonal += k;
                 if (high >= m->n_free) continue;
