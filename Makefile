@@ -47,8 +47,9 @@ TEST_WRAP += open write writev pwrite read pread fsync fdatasync rename link unl
              access H5Fcreate H5Fopen H5Dcreate2 H5Dopen2 H5Dset_extent H5Dwrite H5Dread H5Awrite H5Aread
 
 # ---- Flags -----------------------------------------------------------------------------------------------------------
-# No fused multiply-adds and no -ffast-math: results are the same bits on every x86-64 machine. One set of position-
-# independent objects serves both libraries; -fno-semantic-interposition lets them be inlined as if they were not.
+# No fused multiply-adds and no -ffast-math: our code gives the same bits on every x86-64 machine (LAPACK may not). One
+# set of position-independent objects serves both libraries; -fno-semantic-interposition lets them be inlined as if they
+# were not.
 LANGUAGE := -std=c11 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp
 CODEGEN := -fno-math-errno -ffp-contract=off -fPIC -fno-semantic-interposition
 WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Wvla $(WERROR)

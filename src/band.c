@@ -1,8 +1,10 @@
+#define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
 #include "band.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
 
 /* LAPACK (Fortran interface; the hidden string lengths of one-character arguments are never read) */
 void dpbtrf_(const char *uplo, const int *n, const int *kd, double *ab, const int *ldab, int *info);
@@ -111,6 +113,16 @@ double hf_band_condition_indefinite(int n, int half_bandwidth, const double *gen
 void hf_band_single_threaded(void)
 {
     if (openblas_set_num_threads) openblas_set_num_threads(1);
+}
+
+int hf_band_has_room(int n_thread)
+{
+    if (!openblas_get_config) return 1;
+    size_t bytes = (size_t)n_thread * ((size_t)HF_BAND_ROOM_MB << 20);
+    void *room = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (room == MAP_FAILED) return 0;
+    munmap(room, bytes);
+    return 1;
 }
 
 const char *hf_band_library(void)

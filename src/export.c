@@ -152,7 +152,7 @@ hf_status hf_export_read(const hf_options *o, hf_summary *summary, hf_scene *sce
                          hf_messages *messages)
 {
     HF_TRY(hf_store_read_summary(o->file, summary, messages));
-    int has[3] = {1, summary->has_optimize && summary->best.status == HF_OK, summary->has_polish};
+    int has[3] = {1, hf_summary_has_best_shape(summary), summary->has_polish};
     hf_stage stage = has[HF_STAGE_POLISH] && summary->polish_is_result ? HF_STAGE_POLISH
                      : has[HF_STAGE_OPTIMIZE]                          ? HF_STAGE_OPTIMIZE
                                                                        : HF_STAGE_FORM;

@@ -15,6 +15,7 @@
 #include "vtk.h"
 #include "signals.h"
 #include "sweep.h"
+#include <hifdm/batch.h>
 #include <hifdm/store.h>
 
 #include <gsl/gsl_errno.h>
@@ -164,7 +165,15 @@ int main(int argc, char **argv)
     hf_store_quiet();
     hf_band_single_threaded(); /* its own threads would change bits, and only get in the way of ours */
     hf_status status = hf_options_parse(argc, argv, &options, &messages);
-    if (status == HF_OK && options.command <= HF_COMMAND_SWEEP) wait_without_spinning(argv); /* those with threads */
+    if (status == HF_OK && options.command <= HF_COMMAND_SWEEP) { /* those with threads */
+        int n_thread = options.threads > 0 ? options.threads : hf_batch_default_threads();
+        wait_without_spinning(argv);
+        if (!hf_band_has_room(n_thread))
+            status = hf_error(&messages, HF_NO_MEMORY,
+                              "LAPACK takes %d MB of address space for each of %d threads, more than there is (ulimit "
+                              "-v); raise it, or use fewer --threads",
+                              HF_BAND_ROOM_MB, n_thread);
+    }
     if (status == HF_OK) status = dispatch(&options, argc, argv, &messages);
     hf_options_free(&options);
     if (messages.text) fputs(messages.text, stderr);

@@ -256,8 +256,10 @@ hf_status hf_problem_explain(hf_problem *p, const hf_form_result *r, hf_messages
         return hf_error(messages, r->status, "ill-posed: the tension of cable '%s' is no longer a finite number",
                         p->scene.cable_id[r->culprit]);
     default:
-        return hf_error(messages, r->status,
-                        "ill-posed: the force density matrix is singular or not positive definite at node '%s'",
-                        r->culprit >= 0 ? p->scene.node_id[p->model.node_of_row[r->culprit]] : "?");
+        return hf_error(
+            messages, r->status,
+            "ill-posed: the force density matrix is singular or not positive definite at node '%s': its cables "
+            "are slack, or no match for its load, or lead to no support",
+            r->culprit >= 0 ? p->scene.node_id[p->model.node_of_row[r->culprit]] : "?");
     }
 }

@@ -211,7 +211,7 @@ static hf_status read_shapes(page *p, hf_messages *messages)
     HF_TRY(hf_store_read_series(p->path, "/form/tension_N", 1, &there, messages));
     p->has_shape[HF_STAGE_FORM] = there.n > 0; /* a form-finding that broke down leaves none */
     hf_series_free(&there);
-    p->has_shape[HF_STAGE_OPTIMIZE] = p->summary.has_optimize && p->summary.best.status == HF_OK;
+    p->has_shape[HF_STAGE_OPTIMIZE] = hf_summary_has_best_shape(&p->summary);
     p->has_shape[HF_STAGE_POLISH] = p->summary.has_polish;
     for (int i = 0; i < HF_STAGE_NONE; i++)
         if (p->has_shape[i]) HF_TRY(hf_store_read_shape(p->path, (hf_stage)i, &p->shape[i], messages));

@@ -4,6 +4,11 @@
 
 #include <math.h>
 
+int hf_summary_has_best_shape(const hf_summary *s)
+{
+    return s->has_optimize && s->best.status == HF_OK && s->finished;
+}
+
 double hf_summary_utilisation(const hf_summary *s)
 {
     double available_s = s->optimize_wall_s * s->threads;

@@ -57,6 +57,9 @@ typedef struct {
 void hf_summary_write_json(const hf_summary *summary, hf_status status, const char *messages, const char *path,
                            FILE *file);
 
+/* Does the file hold the shape of the best individual? It is stored when the genetic algorithm has ended. */
+int hf_summary_has_best_shape(const hf_summary *summary);
+
 /* Share of the threads' time that was spent inside evaluations, 0..1; NaN when nothing was timed. */
 double hf_summary_utilisation(const hf_summary *summary);
 
