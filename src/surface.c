@@ -187,7 +187,6 @@ hf_status hf_surface_fit_nodes(double focal_length_m, int n, const double *posit
     center(&p);
     gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
     gsl_multifit_nlinear_fdf fdf = {.f = residuals, .df = jacobian, .n = n_row, .p = N_PARAMETER, .params = &p};
-    gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* "no progress" is an answer here */
     gsl_multifit_nlinear_workspace *solver =
         gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, n_row, N_PARAMETER);
     double zero[N_PARAMETER] = {0};
@@ -196,7 +195,6 @@ hf_status hf_surface_fit_nodes(double focal_length_m, int n, const double *posit
         fit->iterations = iterate(solver);
         report(&p, gsl_multifit_nlinear_position(solver), fit);
     }
-    gsl_set_error_handler(handler);
     hf_status status = solver ? HF_OK : HF_NO_MEMORY;
     gsl_multifit_nlinear_free(solver);
     return status;
