@@ -24,10 +24,10 @@ typedef struct hf_chord {
 
     /* Net and truss together; all empty without attachments. n_pull is 3 n_attachment, filled up to n_pull_pad. */
     int n_pull, n_pull_pad, n_mode;
-    int *pull_of_row;            /* [n_node] 3 * attachment, or -1 */
-    double *flexibility;         /* [n_pull_pad / HF_CHORD_ROWS][n_pull][HF_CHORD_ROWS] rows of F side by side */
-    double *mode;                /* [n_mode][2][n_pull] (I + F S)^-1 = I + sum mode[0] mode[1]', where F S is large */
-    double *tie_block;           /* [n_tie][9] stiffness of the cables at attachments; zero where both ends are */
+    int *pull_of_row;    /* [n_node] 3 * attachment, or -1 */
+    double *flexibility; /* [n_pull_pad / HF_CHORD_ROWS][n_pull][HF_CHORD_ROWS] rows of F side by side */
+    double *mode;        /* [n_mode][2][n_pull] (I + F S)^-1 = I + sum mode[0] mode[1]', where F S is large */
+    double *tie_block; /* [n_tie][9] stiffness of the cables at attachments; read where the other end is a free node */
     double *base_displacement_m; /* [n_pull] */
     void *block;
 } hf_chord;

@@ -225,7 +225,11 @@ static void give_up(hf_status status, hf_coupling_stop reason, hf_form_result *r
 /* The net has no shape. When it had one before its supports moved, another place is tried, half the way back. */
 static int try_nearer(const hf_model *m, const accelerator *a, int *n_retreat, hf_workspace *w, hf_form_result *r)
 {
-    if (r->status == HF_NOT_CONVERGED || a->n_seen == 0) {
+    if (r->status == HF_NOT_CONVERGED) { /* a shape all the same, with forces of its own */
+        double before_m = r->coupling.step_m;
+        r->coupling.ratio = hf_coupling_measure(m, w, r) / before_m;
+    }
+    if (r->status == HF_NOT_CONVERGED || r->status == HF_INTERRUPTED || a->n_seen == 0) {
         give_up(r->status, HF_COUPLING_NET, r);
         return 0;
     }

@@ -19,7 +19,8 @@ typedef hf_status hf_net_solver(const void *context, hf_workspace *workspace, hf
 /* The coupled shape, starting from the workspace's displacement_m. `start_counts`: each form-finding starts from the
  * force densities of the first one, because its answer depends on them. result: of the last form-finding, iterations of
  * all; HF_TRUSS_TOO_SOFT when the loop diverges or the moved supports leave the net without a shape, HF_NOT_CONVERGED
- * after max_iterations. The displacements stay in the workspace and belong to its shape. Returns result->status. */
+ * after max_iterations or when the net itself is, HF_INTERRUPTED. The displacements stay in the workspace and belong to
+ * its shape. Returns result->status. */
 hf_status hf_coupling_find(const hf_model *model, const hf_coupling_settings *settings, hf_net_solver *solve,
                            const void *context, int start_counts, hf_workspace *workspace, hf_history *history,
                            hf_form_result *result);

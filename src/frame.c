@@ -264,7 +264,7 @@ static int scale_to_unit_diagonal(const hf_frame *f, double *scale, double *band
 /* ---- mechanisms ---- */
 
 /* The dof that moves most in the motion that costs least: inverse iteration on the matrix, shifted to be definite. -1
- * when even that cannot be factored. */
+ * when even that has no factor, or no finite one. */
 static int find_loosest_row(const hf_frame *f, double *work)
 {
     assemble(f, f->factor);
@@ -281,12 +281,14 @@ static int find_loosest_row(const hf_frame *f, double *work)
         for (int i = 1; i < f->n_dof; i++)
             if (fabs(work[i]) > fabs(work[loosest])) loosest = i;
         double most = fabs(work[loosest]);
+        if (!(most > 0 && isfinite(most))) return -1;
         for (int i = 0; i < f->n_dof; i++)
             work[i] /= most;
     }
     return loosest;
 }
 
+/* row < 0: it is not known what moves. */
 static hf_status refuse(const hf_frame *f, int row, hf_messages *messages)
 {
     static const char *const direction[] = {"move along x", "move along y", "move along z",
@@ -294,6 +296,10 @@ static hf_status refuse(const hf_frame *f, int row, hf_messages *messages)
     const hf_truss *t = f->truss;
     char where[512] = "truss";
     int dof = 0, n_support = 0;
+    if (row < 0)
+        return hf_error(messages, HF_MECHANISM,
+                        "truss: its stiffness matrix cannot be factored: the truss is a mechanism, not held by enough "
+                        "supports, or the stiffness of a member is out of all range");
     for (int k = 0; k < HF_TRUSS_DOF * t->n_node; k++)
         if (f->row_of_dof[k] == row) dof = k;
     for (int i = 0; i < t->n_node; i++)

@@ -14,8 +14,8 @@
 
 /* Start from the workspace's q_N_per_m under its law and target (hf_form_prepare, hf_evaluate_prepare). Fixed-point
  * iterations of hf_form_find alternate with Newton steps; a shape that Newton has reached is measured as it is. Stops
- * by residual; result->iterations counts both kinds. history (may
- * be NULL) holds the fixed-point iterations. Needs a workspace of a model with has_newton. Returns result->status. */
+ * by residual; result->iterations counts both kinds. history (may be NULL) holds the fixed-point iterations. Needs a
+ * workspace of a model with has_newton. Returns result->status. */
 hf_status hf_newton_find(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                          hf_history *history, hf_form_result *result);
 

@@ -258,10 +258,8 @@ static hf_status minimise(problem *p, int max_iterations, const double *start_N,
         return HF_NO_MEMORY;
     }
     to_variable(p, start_N, variable);
-    gsl_error_handler_t *before = gsl_set_error_handler_off(); /* "no progress" is an answer here */
     gsl_multilarge_nlinear_init(variable, &fdf, solver);
     iterate(p, max_iterations, solver, result);
-    gsl_set_error_handler(before);
     gsl_multilarge_nlinear_free(solver);
     gsl_vector_free(variable);
     return HF_OK;

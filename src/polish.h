@@ -17,7 +17,7 @@ int hf_polish_applies(const hf_evaluator *evaluator);
 
 /* From the feasible design_N [n_gene] within [lower_N, upper_N], which the best design found replaces (never a worse
  * or an infeasible one). Genes linked by a symmetry keep their differences. workspace is scratch. HF_OK, HF_NO_MEMORY,
- * or the status of a start that is infeasible. */
+ * or the status of a start that is infeasible. GSL's error handler must be off (hifdm.h). */
 hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower_N, const double *upper_N, int max_iterations,
                         double *design_N, hf_workspace *workspace, hf_polish_result *result);
 

@@ -56,17 +56,24 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
 {
     const hf_surface_measures *m = &s->measures[stage];
     if (!m->is_measured) return;
-    fprintf(f, "                surface: half-path RMS %.4f mm, best fit %.4f mm (f %.4f m); normal %.4f mm, %.4f mm\n",
-            m->half_path_rms_m * 1e3, m->fit.half_path_rms_m * 1e3, m->fit.focal_length_m, m->normal_rms_m * 1e3,
-            m->fit.normal_rms_m * 1e3);
+    fprintf(f, "                surface: half-path RMS %.4f mm, normal %.4f mm; ", m->half_path_rms_m * 1e3,
+            m->normal_rms_m * 1e3);
+    if (m->fit.converged)
+        fprintf(f, "best fit (f %.4f m) %.4f mm, %.4f mm\n", m->fit.focal_length_m, m->fit.half_path_rms_m * 1e3,
+                m->fit.normal_rms_m * 1e3);
+    else
+        fputs("best fit not converged\n", f);
     fprintf(f, "                deviations 50/90/95/99 %%: %.3f/%.3f/%.3f/%.3f mm, largest %.3f mm",
             m->deviation_p50_m * 1e3, m->deviation_p90_m * 1e3, m->deviation_p95_m * 1e3, m->deviation_p99_m * 1e3,
             m->deviation_max_m * 1e3);
     if (isfinite(m->faceting_rms_m)) fprintf(f, "; faceting %.4f mm", m->faceting_rms_m * 1e3);
     fputc('\n', f);
-    for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
-        fprintf(f, "                loss of gain at %g GHz: %.3g dB, best fit %.3g dB\n",
-                s->surface.frequencies_Hz.value[k] / 1e9, m->gain_loss_dB[k], m->fit_gain_loss_dB[k]);
+    for (int k = 0; k < s->surface.frequencies_Hz.n; k++) {
+        fprintf(f, "                loss of gain at %g GHz: %.3g dB", s->surface.frequencies_Hz.value[k] / 1e9,
+                m->gain_loss_dB[k]);
+        if (m->fit.converged) fprintf(f, ", best fit %.3g dB", m->fit_gain_loss_dB[k]);
+        fputc('\n', f);
+    }
 }
 
 static void print_optimize(const hf_summary *s, FILE *f)

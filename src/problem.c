@@ -185,16 +185,28 @@ static int furthest_off(const hf_problem *p)
     return worst;
 }
 
+#define MOVE_SIZE 96
+
+/* How far an attachment would still move, and how that compares with before, if that is known. */
+static const char *name_move(const hf_coupling_result *c, char text[MOVE_SIZE])
+{
+    if (!isfinite(c->step_m)) return "beyond all bounds";
+    int n = snprintf(text, MOVE_SIZE, "by %.2e m", c->step_m);
+    if (isfinite(c->ratio)) snprintf(text + n, MOVE_SIZE - (size_t)n, ", %g times the step before", c->ratio);
+    return text;
+}
+
 static hf_status explain_not_converged(const hf_problem *p, const hf_form_result *r, hf_messages *messages)
 {
     const hf_workspace *w = &p->workspace;
+    char move[MOVE_SIZE];
     if (r->coupling.stop_reason == HF_COUPLING_MAX_ITERATIONS)
         return hf_error(
             messages, r->status,
             "the net and its truss did not come to rest in %d form-findings: an attachment would still move "
-            "by %.2e m, %g times the step before; raise coupling.max_iterations or coupling.tof_m, or "
+            "%s; raise coupling.max_iterations or coupling.tof_m, or "
             "tighten form.%s, which limits how well the forces are known",
-            r->coupling.iterations, r->coupling.step_m, r->coupling.ratio,
+            r->coupling.iterations, name_move(&r->coupling, move),
             r->stop_reason == HF_STOPPED_RMS_CHANGE ? "rms_tolerance_m" : "residual_tolerance");
     if (r->culprit >= 0)
         return hf_error(messages, r->status,
@@ -215,10 +227,11 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
 static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, hf_messages *messages)
 {
     const hf_coupling_result *c = &r->coupling;
+    char move[MOVE_SIZE];
     return hf_error(messages, r->status,
                     "the truss is too soft for the pretension of its net: after %d form-findings an attachment would "
-                    "still move by %.2e m, %g times the step before; stiffen the truss, lower form.pretension_N%s",
-                    c->iterations, c->step_m, c->ratio,
+                    "still move %s; stiffen the truss, lower form.pretension_N%s",
+                    c->iterations, name_move(c, move),
                     p->settings.form.coupling.scheme == HF_COUPLING_PLAIN ? ", or try coupling.scheme: accelerated"
                                                                           : "");
 }

@@ -28,7 +28,7 @@ typedef struct {
     hf_texts id, reason, file, input_name;
     hf_series status;
     hf_series input[INPUTS_MAX];
-    hf_texts input_text[INPUTS_MAX]; /* of axes that are words */
+    hf_texts input_text[INPUTS_MAX]; /* of axes that are words, or seeds */
     hf_series output[N_STAGE][N_OUTPUT];
 } study_page;
 
@@ -97,7 +97,7 @@ static void write_inputs(const study_page *p, FILE *f)
         hf_json_text("name", hf_texts_at(&p->input_name, a), f);
         if (s->n == p->n) {
             fprintf(f, ",\"columns\":%d", s->columns);
-            hf_json_values("values", s->value, s->n * s->columns, 1, 9, f);
+            hf_json_values("values", s->value, s->n * s->columns, 1, 17, f);
         } else {
             write_texts("texts", &p->input_text[a], f);
         }

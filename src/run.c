@@ -61,8 +61,14 @@ static hf_status measure_surface(const run *r, hf_stage stage, const hf_workspac
 {
     const hf_problem *p = &r->problem;
     if (!p->settings.has_surface) return HF_OK;
-    if (hf_surface_measure(&p->settings.surface, &p->model, w, &s->measures[stage]) == HF_OK) return HF_OK;
-    return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
+    if (hf_surface_measure(&p->settings.surface, &p->model, w, &s->measures[stage]) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
+    const hf_surface_fit *fit = &s->measures[stage].fit;
+    if (!fit->converged)
+        hf_warning(messages,
+                   "surface: the best fit to the shape of stage %s did not converge in %d steps; it has no value",
+                   hf_stage_word[stage], fit->iterations);
+    return HF_OK;
 }
 
 /* What the net of this shape does to the truss, if there is one. */

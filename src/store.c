@@ -337,11 +337,6 @@ int hf_store_generations(const hf_store *store)
     return store ? store->rows.n_stored + store->rows.n_waiting : 0;
 }
 
-int hf_store_is_resumed(const hf_store *store)
-{
-    return store->is_resumed;
-}
-
 /* ---- shapes ---- */
 
 static void write_shape(hf_store *s, hid_t group, const hf_model *model, const hf_workspace *workspace)

@@ -26,11 +26,9 @@
     X("fit_center_z_m", fit.center_m[2])
 
 #define ROW(attribute, member) {NULL, attribute, HF_KIND_REAL, offsetof(hf_surface_measures, member), sizeof(double)},
-#define ITERATIONS                                                                                                     \
-    {                                                                                                                  \
-        NULL, "fit_iterations", HF_KIND_INT, offsetof(hf_surface_measures, fit.iterations), sizeof(int)                \
-    }
-static const hf_hdf5_member measures_table[] = {MEASURES(ROW) ITERATIONS};
+#define COUNT(attribute, member) {NULL, attribute, HF_KIND_INT, offsetof(hf_surface_measures, member), sizeof(int)},
+static const hf_hdf5_member measures_table[] = {MEASURES(ROW) COUNT("fit_iterations", fit.iterations)
+                                                    COUNT("fit_converged", fit.converged)};
 #define N_MEASURE HF_HDF5_COUNT(measures_table)
 
 static const hf_hdf5_member settings_table[] = {

@@ -2,6 +2,7 @@
 
 #include "arena.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -38,6 +39,23 @@ static hf_status finish(hf_hdf5 *io, hf_texts *texts)
 
 /* ---- texts ---- */
 
+#define DIGITS_SIZE 24 /* of 64 bits in decimal, and the NUL; a multiple of 8 */
+
+/* Decimal digits of n numbers that a double might not hold. */
+static void read_digits(hf_hdf5 *io, const char *name, hid_t data_set, int n, hf_texts *texts)
+{
+    if (!allocate(io, n, DIGITS_SIZE, texts)) return;
+    if (H5Dread(data_set, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts->text) < 0) {
+        hf_hdf5_fail(io, "read", io->file, name);
+        return;
+    }
+    for (int i = n; i-- > 0;) { /* in place, from the end */
+        uint64_t value;
+        memcpy(&value, texts->text + (size_t)i * sizeof value, sizeof value);
+        snprintf(texts->text + (size_t)i * DIGITS_SIZE, DIGITS_SIZE, "%" PRIu64, value);
+    }
+}
+
 static void read_texts(hf_hdf5 *io, const char *name, hid_t data_set, hf_texts *texts)
 {
     hsize_t n = 0;
@@ -45,11 +63,15 @@ static void read_texts(hf_hdf5 *io, const char *name, hid_t data_set, hf_texts *
     int rank = space >= 0 ? H5Sget_simple_extent_ndims(space) : -1;
     size_t length = stored >= 0 ? H5Tget_size(stored) : 0;
     int is_fixed = stored >= 0 && H5Tget_class(stored) == H5T_STRING && H5Tis_variable_str(stored) == 0;
+    int is_uint64 =
+        length == sizeof(uint64_t) && H5Tget_class(stored) == H5T_INTEGER && H5Tget_sign(stored) == H5T_SGN_NONE;
     if (rank < 0 || length == 0) {
         hf_hdf5_fail(io, "read", io->file, name);
-    } else if (rank == 1 && is_fixed && H5Sget_simple_extent_dims(space, &n, NULL) == 1 && n > 0) {
+    } else if (rank == 1 && (is_fixed || is_uint64) && H5Sget_simple_extent_dims(space, &n, NULL) == 1 && n > 0) {
         if (n > HF_STORE_COUNT_MAX)
             hf_hdf5_damaged(io, io->file, name, "is too large");
+        else if (is_uint64)
+            read_digits(io, name, data_set, (int)n, texts);
         else if (allocate(io, (int)n, length + 1, texts)) {
             type = H5Tcopy(H5T_C_S1); /* one byte longer than stored: room for the NUL */
             if (type < 0 || H5Tset_size(type, length + 1) < 0 || H5Tset_cset(type, H5Tget_cset(stored)) < 0 ||

@@ -48,8 +48,10 @@ static void write_result(const hf_form_result *r, FILE *f)
 static void write_list(const char *key, int n, const double *value, FILE *f)
 {
     fprintf(f, ", \"%s\": [", key);
-    for (int k = 0; k < n; k++)
-        fprintf(f, "%s%.17g", k ? ", " : "", value[k]);
+    for (int k = 0; k < n; k++) {
+        if (k) fputs(", ", f);
+        hf_json_value(value[k], 17, f);
+    }
     fputc(']', f);
 }
 
@@ -86,6 +88,7 @@ static void write_surface(const hf_summary *s, int stage, FILE *f)
         if (i) fputs(", ", f);
         hf_json_number(number[i].key, number[i].value, f);
     }
+    fprintf(f, ", \"fit_converged\": %s", fit->converged ? "true" : "false");
     write_list("frequency_Hz", s->surface.frequencies_Hz.n, s->surface.frequencies_Hz.value, f);
     write_list("gain_loss_dB", s->surface.frequencies_Hz.n, m->gain_loss_dB, f);
     write_list("fit_gain_loss_dB", s->surface.frequencies_Hz.n, m->fit_gain_loss_dB, f);

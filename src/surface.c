@@ -13,6 +13,7 @@
 #define PI 3.14159265358979323846
 #define FIT_STEPS_MAX 100
 #define FIT_STEP_LEAST 1e-14 /* of parameters of the order of one */
+#define SHIFT_X_MOST 0.1     /* in units of size; a larger one is a turn that the errors of the nodes mistake for it */
 
 /* ---- measures of one node ---- */
 
@@ -31,7 +32,7 @@ double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz)
 
 /* ---- the fitted surface ---- */
 
-enum { SHIFT_X, SHIFT_Z, TURN_X, TURN_Y, TURN_Z, CURVE, N_PARAMETER };
+enum { SHIFT_Z, TURN_X, TURN_Y, TURN_Z, CURVE, SHIFT_X, N_PARAMETER }; /* the last two may be left out, as zero */
 
 typedef struct {
     int n;
@@ -67,8 +68,10 @@ static void transposed(int k, double angle, int derivative, double to[3][3])
 
 static pose pose_of(const fit_problem *p, const gsl_vector *v)
 {
-    pose q = {.shift = {p->size * gsl_vector_get(v, SHIFT_X), 0, p->size * gsl_vector_get(v, SHIFT_Z)},
-              .curvature = p->curvature * (1 + gsl_vector_get(v, CURVE))};
+    double shift_x = v->size > SHIFT_X ? gsl_vector_get(v, SHIFT_X) : 0;
+    double curve = v->size > CURVE ? gsl_vector_get(v, CURVE) : 0;
+    pose q = {.shift = {p->size * shift_x, 0, p->size * gsl_vector_get(v, SHIFT_Z)},
+              .curvature = p->curvature * (1 + curve)};
     for (int d = -1; d < 3; d++) { /* (Rx Ry Rz)' = Rz' Ry' Rx' */
         double r[3][3][3], zy[3][3];
         for (int k = 0; k < 3; k++)
@@ -110,13 +113,13 @@ static int jacobian(const gsl_vector *v, void *context, gsl_matrix *J)
     gsl_matrix_set_zero(J);
     for (int i = 0; i < p->n; i++) {
         double x = local(p, &q, 0, i), s, u = height(q.curvature, x, local(p, &q, 2, i), &s), w = 1 / (1 + s * s);
-        double dx[N_PARAMETER] = {-p->size * q.turn[0][0], -p->size * q.turn[0][2]};
-        double dz[N_PARAMETER] = {-p->size * q.turn[2][0], -p->size * q.turn[2][2]};
+        double dx[N_PARAMETER] = {[SHIFT_X] = -p->size * q.turn[0][0], [SHIFT_Z] = -p->size * q.turn[0][2]};
+        double dz[N_PARAMETER] = {[SHIFT_X] = -p->size * q.turn[2][0], [SHIFT_Z] = -p->size * q.turn[2][2]};
         for (int k = 0; k < 3; k++) {
             dx[TURN_X + k] = apply(p, &q, q.slope[k], 0, i);
             dz[TURN_X + k] = apply(p, &q, q.slope[k], 2, i);
         }
-        for (int k = 0; k < N_PARAMETER; k++) { /* of u w, with u = z - c x^2, s = 2 c x */
+        for (int k = 0; k < (int)v->size; k++) { /* of u w, with u = z - c x^2, s = 2 c x */
             double dc = k == CURVE ? p->curvature : 0;
             double du = dz[k] - s * dx[k] - dc * x * x, ds = 2 * (q.curvature * dx[k] + dc * x);
             gsl_matrix_set(J, (size_t)i, (size_t)k, w * du - 2 * u * w * w * s * ds);
@@ -160,46 +163,71 @@ static void report(const fit_problem *p, const gsl_vector *v, hf_surface_fit *fi
     fit->rotation_x_rad = gsl_vector_get(v, TURN_X);
     fit->rotation_y_rad = gsl_vector_get(v, TURN_Y);
     fit->rotation_z_rad = gsl_vector_get(v, TURN_Z);
-    memcpy(fit->center_m, p->center, sizeof p->center);
 }
 
-/* Until the steps vanish or none lowers the sum of squares any more, which is rounding. */
-static int iterate(gsl_multifit_nlinear_workspace *solver)
+/* Until the steps vanish or none lowers the sum of squares any more, which is rounding. 0: neither has happened. */
+static int iterate(gsl_multifit_nlinear_workspace *solver, int *iterations)
 {
+    const gsl_vector *at = gsl_multifit_nlinear_position(solver);
     for (int n = 1; n <= FIT_STEPS_MAX; n++) {
         double before[N_PARAMETER], step = 0;
-        for (size_t k = 0; k < N_PARAMETER; k++)
-            before[k] = gsl_vector_get(gsl_multifit_nlinear_position(solver), k);
-        if (gsl_multifit_nlinear_iterate(solver) != GSL_SUCCESS) return n;
-        for (size_t k = 0; k < N_PARAMETER; k++)
-            step = fmax(step, fabs(gsl_vector_get(gsl_multifit_nlinear_position(solver), k) - before[k]));
-        if (step < FIT_STEP_LEAST) return n;
+        for (size_t k = 0; k < at->size; k++)
+            before[k] = gsl_vector_get(at, k);
+        ++*iterations;
+        int status = gsl_multifit_nlinear_iterate(solver);
+        if (status != GSL_SUCCESS) return status == GSL_ENOPROG;
+        for (size_t k = 0; k < at->size; k++)
+            step = fmax(step, fabs(gsl_vector_get(at, k) - before[k]));
+        if (step < FIT_STEP_LEAST) return 1;
     }
-    return FIT_STEPS_MAX;
+    return 0;
+}
+
+/* Fit the first n_parameter, starting from `parameter` and into it; fit->converged says whether that went well. */
+static hf_status fit_some(fit_problem *p, size_t n_parameter, double parameter[N_PARAMETER], hf_surface_fit *fit)
+{
+    size_t n_row = p->n < N_PARAMETER ? N_PARAMETER : (size_t)p->n;
+    gsl_multifit_nlinear_parameters settings = gsl_multifit_nlinear_default_parameters();
+    gsl_multifit_nlinear_fdf fdf = {.f = residuals, .df = jacobian, .n = n_row, .p = n_parameter, .params = p};
+    gsl_multifit_nlinear_workspace *solver =
+        gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &settings, n_row, n_parameter);
+    if (!solver) return HF_NO_MEMORY;
+    gsl_vector_view v = gsl_vector_view_array(parameter, n_parameter);
+    fit->converged = gsl_multifit_nlinear_init(&v.vector, &fdf, solver) == GSL_SUCCESS;
+    if (fit->converged) fit->converged = iterate(solver, &fit->iterations);
+    gsl_vector_memcpy(&v.vector, gsl_multifit_nlinear_position(solver));
+    report(p, &v.vector, fit);
+    fit->converged = fit->converged && isfinite(fit->half_path_rms_m);
+    gsl_multifit_nlinear_free(solver);
+    return HF_OK;
+}
+
+static void set_unknown(hf_surface_fit *fit)
+{
+    fit->half_path_rms_m = fit->normal_rms_m = fit->focal_length_m = (double)NAN;
+    fit->shift_x_m = fit->shift_z_m = (double)NAN;
+    fit->rotation_x_rad = fit->rotation_y_rad = fit->rotation_z_rad = (double)NAN;
 }
 
 hf_status hf_surface_fit_nodes(double focal_length_m, int n, const double *position_m, hf_surface_fit *fit)
 {
-    size_t n_row = n < N_PARAMETER ? N_PARAMETER : (size_t)n;
     fit_problem p = {.n = n, .x = position_m, .y = position_m + n, .z = position_m + 2 * (size_t)n};
+    double parameter[N_PARAMETER] = {0};
     p.curvature = 1 / (4 * focal_length_m);
     *fit = (hf_surface_fit){0};
     center(&p);
-    gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
-    gsl_multifit_nlinear_fdf fdf = {.f = residuals, .df = jacobian, .n = n_row, .p = N_PARAMETER, .params = &p};
-    gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* "no progress" is an answer here */
-    gsl_multifit_nlinear_workspace *solver =
-        gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, n_row, N_PARAMETER);
-    double zero[N_PARAMETER] = {0};
-    gsl_vector_view start = gsl_vector_view_array(zero, N_PARAMETER);
-    if (solver && gsl_multifit_nlinear_init(&start.vector, &fdf, solver) == GSL_SUCCESS) {
-        fit->iterations = iterate(solver);
-        report(&p, gsl_multifit_nlinear_position(solver), fit);
+    memcpy(fit->center_m, p.center, sizeof p.center);
+    /* rigid, with a focal length, with a shift along x: each from the one before, while the nodes tell them */
+    for (size_t n_parameter = CURVE; n_parameter <= N_PARAMETER; n_parameter++) {
+        hf_surface_fit next = *fit;
+        HF_TRY(fit_some(&p, n_parameter, parameter, &next));
+        int is_told = next.converged && fabs(next.shift_x_m) <= SHIFT_X_MOST * p.size;
+        if (is_told) *fit = next;
+        fit->iterations = next.iterations;
+        if (!is_told) break;
     }
-    gsl_set_error_handler(handler);
-    hf_status status = solver ? HF_OK : HF_NO_MEMORY;
-    gsl_multifit_nlinear_free(solver);
-    return status;
+    if (!fit->converged) set_unknown(fit);
+    return HF_OK;
 }
 
 /* ---- percentiles ---- */

@@ -137,6 +137,7 @@ only_in() {
         sed -E "s#^([^:]*:[0-9]+):.*#\1: $3 (allowed in: $1)#" | report || true
 }
 heap_files=$(echo $heap_files)
+only_in main '\bgsl_set_error_handler' 'setting the error handler of the whole program'
 only_in "$heap_files" '\b(malloc|calloc|realloc|aligned_alloc|posix_memalign|strdup|strndup)[[:blank:]]*\(' 'heap call'
 only_in "$print_files" '\b(v?f?printf|f?puts|f?putc|putchar|perror|exit|_Exit|abort)[[:blank:]]*\(' 'prints or exits'
 only_in "$openmp_files" '\bomp(\b|_)|\b_OPENMP\b' 'OpenMP'

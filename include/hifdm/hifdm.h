@@ -11,7 +11,9 @@
  *     is "borrowed" must stay as long as the thing that borrows it.
  * Threads. Nothing is kept outside the things, but by hf_batch_for while it runs. A scene, model, truss, frame, carrier
  *     or evaluator does not change once it is made, so threads share it; a workspace, batch, ga or store belongs to one
- *     thread at a time. */
+ *     thread at a time.
+ * GSL. Its error handler, one for the whole program, ends that by default where GSL only means "no progress": call
+ *     gsl_set_error_handler_off() (gsl/gsl_errno.h) before hf_surface_measure or hf_surface_fit_nodes. */
 #ifndef HIFDM_HIFDM_H
 #define HIFDM_HIFDM_H
 

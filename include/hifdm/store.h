@@ -83,7 +83,6 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
 /* Add the generations of the journal to the unfinished file at `path` and no more; its summary then. As
  * hf_store_resume. */
 hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages);
-int hf_store_is_resumed(const hf_store *store);  /* 1 after hf_store_resume */
 int hf_store_generations(const hf_store *store); /* how many it holds */
 
 /* The calls that write return HF_OK, HF_IO or HF_NO_MEMORY with a message. After a failure the store is of no use any

@@ -16,7 +16,9 @@ extern "C" {
 /* The parabolic cylinder with the least half-path RMS from a set of nodes: the wanted one with another focal length,
  * turned about the centre of the nodes by Rx(a) Ry(b) Rz(c), then shifted. A shift along y changes nothing and is left
  * out. In a shallow reflector a shift in x and a turn about y are nearly the same thing: what they do to the surface is
- * exact all the same. */
+ * exact all the same. shift_x_m is 0 where the nodes' errors leave no telling between the two: where the least RMS asks
+ * for a shift of more than a tenth of the net's half-width, or is not found. focal_length_m is the
+ * wanted one where the nodes do not tell it, as on two lines along y. */
 typedef struct {
     double half_path_rms_m, normal_rms_m; /* what is left */
     double focal_length_m;
@@ -24,9 +26,11 @@ typedef struct {
     double rotation_x_rad, rotation_y_rad, rotation_z_rad;
     double center_m[3];
     int iterations;
+    int converged; /* 0: all but center_m and iterations is NaN */
 } hf_surface_fit;
 
-/* Fit n nodes, position_m [3][n]. With fewer than six nodes there is more than one answer. HF_OK or HF_NO_MEMORY. */
+/* Fit n nodes, position_m [3][n]. With fewer than six nodes there is more than one answer. HF_OK or HF_NO_MEMORY. GSL's
+ * error handler must be off here and in hf_surface_measure (hifdm.h). */
 hf_status hf_surface_fit_nodes(double focal_length_m, int n, const double *position_m, hf_surface_fit *fit);
 
 typedef struct {

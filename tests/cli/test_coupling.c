@@ -52,6 +52,7 @@ START_TEST(a_truss_that_is_too_soft_is_named)
     ERR("try coupling.scheme: accelerated");
     HIFDM(4, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e5");
     ERR("error: the truss is too soft for the pretension of its net: after ");
+    ERR(" an attachment would still move beyond all bounds; stiffen the truss");
     ck_assert(!is_there(temp("nowhere.h5")));
 }
 END_TEST
@@ -62,6 +63,10 @@ START_TEST(limits_and_keys)
     HIFDM(3, "run", TRUSS, "-o", out, "--set", "truss.E_Pa=1e10", "--set", "coupling.max_iterations=2", "--set",
           "coupling.tof_m=1e-9");
     ERR("the net and its truss did not come to rest in 2 form-findings");
+    ERR(" times the step before; raise ");
+    HIFDM(3, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e10", "--set", "coupling.max_iterations=1", "--set",
+          "coupling.tof_m=1e-9");
+    ck_assert_msg(!strstr(said.err, "nan") && strstr(said.err, " m; raise "), "%s", said.err); /* no step before it */
     HIFDM(0, "check", TRUSS, "--set", "coupling.tof_m=1e-3");
     OUT("coupling with the truss: accelerated, tof 0.001 m, at most 200 form-findings\n");
     HIFDM(2, "check", TRUSS, "--set", "coupling.tof_m=0");

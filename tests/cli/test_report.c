@@ -175,7 +175,8 @@ static const char make_study[] =
     "f['points/reason'] = text(['', '</script><b>no', ''])\n"
     "f['points/status'] = np.array([0, 1, 7], dtype=h5py.enum_dtype({'ok': 0, 'not_converged': 1, 'not_evaluated': 7}, "
     "basetype='i1'))\n"
-    "f['points/input/form.pretension_N'] = [8.0, 10.0, 12.5]\n"
+    "f['points/input/form.pretension_N'] = [8.0, 10.000000000000002, 12.5]\n"
+    "f['points/input/optimize.seed'] = np.array([1, 2**53 + 1, 2**64 - 1], dtype='u8')\n"
     "f['points/input/form.method'] = text(['hifdm', 'newton', 'hifdm'])\n"
     "f['points/input/scene.parabolic_cylinder.modules'] = np.array([[5, 5], [5, 6], [5, 7]], dtype='i4')\n"
     "f['points/form/psi_m'] = [0.006, np.nan, np.nan]\n"
@@ -192,16 +193,16 @@ START_TEST(merged_study_is_a_page_of_points)
     HIFDM(0, "report", merged, "-o", page);
     demand_well_formed(page);
     const char *data = data_of(page, "s.json");
-    EXPECT(
-        data, "--", "a['title'] == 's.h5' and a['study']['n'] == 3 and a['study']['id'] == ['a1', 'b2', 'c3']",
-        "a['study']['status'] == ['ok', 'not_converged', 'not_evaluated']",
-        "a['study']['reason'] == ['', '</script><b>no', '']",
-        "a['study']['file'] == ['s.d/a1.h5', '', ''] and a['study']['page'] == ['s.d/a1.html', '', '']",
-        "{i['name']: i.get('texts') or i['values'] for i in a['study']['input']} == {'form.method': ['hifdm', "
-        "'newton', 'hifdm'], 'form.pretension_N': [8, 10, 12.5], 'scene.parabolic_cylinder.modules': [5, 5, 5, 6, 5, "
-        "7]}",
-        "a['study']['output'] == [{'stage': 'form', 'psi_m': [0.006, None, None], 'n_slack': [2, 0, 0]}, {'stage': "
-        "'optimize', 'psi_m': [0.005, None, None]}]");
+    EXPECT(data, "--", "a['title'] == 's.h5' and a['study']['n'] == 3 and a['study']['id'] == ['a1', 'b2', 'c3']",
+           "a['study']['status'] == ['ok', 'not_converged', 'not_evaluated']",
+           "a['study']['reason'] == ['', '</script><b>no', '']",
+           "a['study']['file'] == ['s.d/a1.h5', '', ''] and a['study']['page'] == ['s.d/a1.html', '', '']",
+           "{i['name']: i.get('texts') or i['values'] for i in a['study']['input']} == {'form.method': ['hifdm', "
+           "'newton', 'hifdm'], 'form.pretension_N': [8, 10.000000000000002, 12.5], 'optimize.seed': ['1', "
+           "'9007199254740993', "
+           "'18446744073709551615'], 'scene.parabolic_cylinder.modules': [5, 5, 5, 6, 5, 7]}",
+           "a['study']['output'] == [{'stage': 'form', 'psi_m': [0.006, None, None], 'n_slack': [2, 0, 0]}, {'stage': "
+           "'optimize', 'psi_m': [0.005, None, None]}]");
     /* from another folder: absolute paths */
     SHELL(0, "mkdir \"$1\"", temp("elsewhere"));
     HIFDM(0, "report", merged, "-o", temp("elsewhere/s.html"));

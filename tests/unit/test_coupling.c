@@ -399,6 +399,63 @@ START_TEST(ill_posed_nets_keep_their_name)
 }
 END_TEST
 
+/* Solves the net, but the form-finding number `at` ends with `status` (in a shape, as hf_form_find leaves it). */
+struct failing_solver {
+    const struct net *net;
+    int *calls;
+    int at;
+    hf_status status;
+};
+
+static hf_status solve_or_fail(const void *context, hf_workspace *w, hf_history *history, hf_form_result *r)
+{
+    const struct failing_solver *s = context;
+    hf_form_find(&s->net->model, &s->net->form, HF_STOP_RESIDUAL, w, history, r);
+    if (++*s->calls == s->at) r->status = s->status;
+    return r->status;
+}
+
+static void find_until(struct net *net, int at, hf_status status)
+{
+    int calls = 0;
+    const struct failing_solver solver = {net, &calls, at, status};
+    open_flexible(net, 1e-4);
+    net->form.coupling = (hf_coupling_settings){1e-9, HF_COUPLING_ACCELERATED, 100};
+    hf_form_prepare(&net->model, &net->work);
+    hf_coupling_find(&net->model, &net->form.coupling, solve_or_fail, &solver, 0, &net->work, NULL, &net->result);
+    ck_assert_int_eq(calls, at); /* and none after it */
+    ck_assert_int_eq(net->result.status, status);
+    ck_assert_int_eq(net->result.coupling.stop_reason, HF_COUPLING_NET);
+}
+
+/* A signal to stop is no fault of the truss, whenever it comes. */
+START_TEST(a_stop_is_a_stop)
+{
+    struct net net;
+    find_until(&net, _i, HF_INTERRUPTED);
+    close_net(&net);
+}
+END_TEST
+
+/* A net that ends before it has converged has a shape: forces and step are those of it, not of the shape before, whose
+ * forces differ in the third digit. The same sums: to the bit. */
+START_TEST(forces_of_a_net_that_did_not_converge_are_its_own)
+{
+    struct net net;
+    double said[3 * MAX_ATTACHMENT];
+    find_until(&net, _i, HF_NOT_CONVERGED);
+    size_t bytes = 3 * (size_t)net.model.n_attachment * sizeof(double);
+    memcpy(said, net.work.attachment_force_N, bytes);
+    double step_m = net.result.coupling.step_m;
+    hf_coupling_forces(&net.model, &net.work);
+    ck_assert_mem_eq(said, net.work.attachment_force_N, bytes);
+    ck_assert(isfinite(step_m) && step_m > 0);
+    ck_assert(isnan(net.result.coupling.ratio) == (_i == 1)); /* the first step has none before it */
+    ck_assert_double_eq(hf_coupling_measure(&net.model, &net.work, &net.result), step_m);
+    close_net(&net);
+}
+END_TEST
+
 Suite *suite_unit_coupling(void)
 {
     Suite *suite = suite_create("unit/coupling");
@@ -419,5 +476,7 @@ Suite *suite_unit_coupling(void)
     tcase_add_test(tests, growing_steps_have_a_ratio);
     tcase_add_test(tests, a_limit_is_a_limit);
     tcase_add_test(tests, ill_posed_nets_keep_their_name);
+    tcase_add_loop_test(tests, a_stop_is_a_stop, 1, 4);
+    tcase_add_loop_test(tests, forces_of_a_net_that_did_not_converge_are_its_own, 1, 4);
     return suite;
 }

@@ -173,6 +173,25 @@ static void make_portal(hf_truss *t)
         t->fixed[i] = 0x3f;
 }
 
+/* Members so soft that the scaled matrix overflows: no motion is known to be free, so no node is named as the loose
+ * one, least of all a supported one. */
+START_TEST(stiffness_out_of_range_names_no_node)
+{
+    hf_truss t;
+    hf_frame frame;
+    hf_messages messages = {0};
+    make_portal(&t);
+    for (int e = 0; e < 8; e++)
+        t.E_Pa[e] = t.G_Pa[e] = 1e-310;
+    ck_assert_int_eq(hf_frame_build(&t, &frame, &messages), HF_MECHANISM);
+    ck_assert_msg(!strstr(messages.text, "node") && strstr(messages.text, "truss: its stiffness matrix cannot be "),
+                  "%s", messages.text);
+    hf_frame_free(&frame);
+    hf_messages_free(&messages);
+    hf_truss_free(&t);
+}
+END_TEST
+
 START_TEST(floating_frame)
 {
     hf_truss t;
@@ -363,6 +382,7 @@ Suite *suite_unit_frame(void)
     tcase_add_test(tests, pinned_tripod);
     tcase_add_test(tests, moment_that_nothing_resists);
     tcase_add_test(tests, floating_frame);
+    tcase_add_test(tests, stiffness_out_of_range_names_no_node);
     tcase_add_test(tests, pinned_portal);
     tcase_add_test(tests, unbraced_node);
     tcase_add_test(tests, node_without_members);

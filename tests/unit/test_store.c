@@ -149,6 +149,7 @@ START_TEST(surface_comes_back_bit_by_bit)
         if (stage == 1 && _i == 2) continue;
         s->is_measured = 1;
         s->fit.iterations = rng_int(&rng, 0, 100);
+        s->fit.converged = stage == 0;
         for (size_t k = 0; (char *)(value + k) < (char *)&s->fit.iterations; k++)
             value[k] = k == 3 ? (double)NAN : rng_uniform(&rng, -1, 1);
         for (int k = 0; k < _i; k++) {

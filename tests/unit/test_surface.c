@@ -80,6 +80,7 @@ START_TEST(known_motion_and_focal_length_are_recovered)
     ck_assert_double_lt(difference_from(&fit, motions[_i].angle, motions[_i].shift), motions[_i].tolerance);
     ck_assert_double_lt(fit.half_path_rms_m, 1e-14); /* rounding of coordinates of a few metres */
     ck_assert_double_lt(fit.normal_rms_m, 1e-14);
+    ck_assert(fit.converged);
     ck_assert_int_lt(fit.iterations, 60);
 }
 END_TEST
@@ -113,6 +114,63 @@ START_TEST(few_nodes_are_no_fault)
     ck_assert_double_lt(fit.half_path_rms_m, 1e-9);
     ck_assert_int_eq(hf_surface_fit_nodes(5, 1, position_m, &fit), HF_OK);
     ck_assert(isfinite(fit.focal_length_m));
+    ck_assert(fit.converged);
+}
+END_TEST
+
+/* Eight nodes within +-1.2 m, off by up to 2 mm: they cannot tell a shift in x from a turn about y, and a fit that
+ * believes them goes metres away. Their heights are up to 72 mm, so that f is known to some 2 mm/72 mm; both starts end
+ * in one place, as above. */
+START_TEST(fit_of_few_rough_nodes_stays)
+{
+    enum { N = 8 };
+    double p[3 * N];
+    struct rng rng = rng_start(420 + (uint64_t)_i);
+    hf_surface_fit one, other;
+    for (int k = 0; k < N; k++) {
+        p[k] = -1.2 + 0.8 * (k % 4);
+        p[N + k] = k / 4 * 1.3;
+        p[2 * N + k] = p[k] * p[k] / 20 + rng_uniform(&rng, -0.002, 0.002);
+    }
+    ck_assert_int_eq(hf_surface_fit_nodes(5, N, p, &one), HF_OK);
+    ck_assert_int_eq(hf_surface_fit_nodes(5.4, N, p, &other), HF_OK);
+    ck_assert(one.converged && other.converged);
+    ck_assert_double_eq_tol(one.focal_length_m, 5, 0.5);
+    ck_assert_double_lt(fabs(one.shift_x_m), 0.13);
+    ck_assert_double_eq_tol(one.focal_length_m, other.focal_length_m, 1e-7);
+    ck_assert_double_eq_tol(one.half_path_rms_m, other.half_path_rms_m, 1e-13);
+}
+END_TEST
+
+/* Two lines along y, off by up to 5 mm: nothing tells a focal length from a shift along z. */
+START_TEST(fit_of_two_lines_keeps_the_focal_length)
+{
+    enum { N = 8 };
+    double p[3 * N];
+    hf_surface_fit fit;
+    for (int i = 0; i < 20; i++) {
+        struct rng rng = rng_start(430 + (uint64_t)i);
+        for (int k = 0; k < N; k++) {
+            p[k] = k % 2 ? 0.7 : -0.7;
+            p[N + k] = k / 2 * 0.8;
+            p[2 * N + k] = 0.05 + rng_uniform(&rng, -0.005, 0.005);
+        }
+        ck_assert_int_eq(hf_surface_fit_nodes(5, N, p, &fit), HF_OK);
+        ck_assert(fit.converged);
+        ck_assert_double_lt(fit.half_path_rms_m, 0.005);
+        ck_assert_double_eq_tol(fit.shift_z_m, 0.0255, 0.02); /* 0.05 - 0.7^2/20 */
+    }
+}
+END_TEST
+
+/* No number to fit: told as not converged, never as a perfect surface. */
+START_TEST(fit_without_an_answer_has_no_value)
+{
+    static const double position_m[] = {0, 1, 2, 0, 1, 0, NAN, 0.3, 0.2};
+    hf_surface_fit fit;
+    ck_assert_int_eq(hf_surface_fit_nodes(5, 3, position_m, &fit), HF_OK);
+    ck_assert(!fit.converged);
+    ck_assert(isnan(fit.half_path_rms_m) && isnan(fit.focal_length_m) && isnan(fit.rotation_z_rad));
 }
 END_TEST
 
@@ -218,6 +276,9 @@ Suite *suite_unit_surface(void)
     tcase_add_loop_test(tests, known_motion_and_focal_length_are_recovered, 0, N_MOTION);
     tcase_add_loop_test(tests, fit_of_a_rough_surface_is_a_minimum, 0, 3);
     tcase_add_test(tests, few_nodes_are_no_fault);
+    tcase_add_loop_test(tests, fit_of_few_rough_nodes_stays, 0, 8);
+    tcase_add_test(tests, fit_of_two_lines_keeps_the_focal_length);
+    tcase_add_test(tests, fit_without_an_answer_has_no_value);
     tcase_add_test(tests, errors_are_those_of_their_definitions);
     tcase_add_test(tests, drift_along_the_surface_is_no_error);
     tcase_add_test(tests, faceting_is_the_rms_under_a_chord);
