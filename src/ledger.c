@@ -234,15 +234,6 @@ static int split(char *line, char **field, int max)
     return n;
 }
 
-static hf_status status_of(const char *word)
-{
-#define IS(name, value, exit_code, text, sentence)                                                                     \
-    if (!strcmp(word, text)) return HF_##name;
-    HF_STATUS_LIST(IS)
-#undef IS
-    return HF_IO; /* of another version of this program */
-}
-
 /* A success counts more than a failure, what is of this base case more than what is not. */
 static void take_row(reading *r, char **field, char **number)
 {
@@ -254,7 +245,7 @@ static void take_row(reading *r, char **field, char **number)
         if (p->state == HF_POINT_MISSING) p->state = HF_POINT_OUTDATED;
         return;
     }
-    p->status = status_of(field[2]);
+    p->status = hf_status_of_word(field[2]);
     p->state = p->status == HF_OK ? HF_POINT_DONE : HF_POINT_FAILED;
     p->reason = field[3];
     p->field = number;

@@ -165,13 +165,6 @@ static int must_stop(const sweep *w)
     return *w->stop_requested || w->fatal != HF_OK;
 }
 
-/* A result that was finished earlier, by a process that did not live to say so, is read and not run again. */
-static hf_status outcome(const hf_summary *s)
-{
-    if (s->form.status != HF_OK || !s->has_optimize) return s->form.status;
-    return s->best.status;
-}
-
 static void run_point(void *context, int k)
 {
     sweep *w = context;
@@ -202,7 +195,6 @@ static void run_point(void *context, int k)
                               .argv = w->argv,
                               .stop_requested = w->stop_requested};
     hf_status status = hf_run_point(&request, &summary, output, &said);
-    if (status == HF_OK) status = outcome(&summary);
     if (status != HF_INTERRUPTED) finish_point(w, i, status, &said, &summary);
     hf_ledger_release(&w->ledger, id);
     hf_messages_free(&said);
