@@ -246,6 +246,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
         return HF_OK;
     }
     hf_evaluate(&r->evaluator, design, w, &s->polish);
+    if (must_stop(r)) return stop_here(r, s, messages); /* it may have been cut short */
     s->has_polish = 1;
     s->polish_is_result = o->method != HF_OPTIMIZE_GA;
     s->polish_iterations = outcome.iterations;
