@@ -147,6 +147,10 @@ void hf_hdf5_write_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table
 void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table, int n, int n_node, int n_cable,
                           void *owner);
 
+/* n >= 1 names as strings of one length. */
+void hf_hdf5_write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *const *id, int n,
+                       const char *description);
+
 #define HF_HDF5_COUNT(table) ((int)(sizeof(table) / sizeof((table)[0])))
 
 /* ---- What is stored of an hf_scene (below /scene), an hf_shape (/form, /ga/best) and an hf_summary ---- */

@@ -2,6 +2,7 @@
 #include "hdf5_io.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* The rows [row, row + dims[0]) of an open data set, as spaces of the file and of memory. 0, or -1. */
 static int select_rows(const hf_hdf5_array *a, hsize_t row, hid_t data_set, hid_t *space, hid_t *memory)
@@ -62,4 +63,19 @@ void hf_hdf5_read_text(hf_hdf5 *io, hid_t group, const char *name, char **text)
         io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
     else
         hf_hdf5_read_array(io, group, &array, *text);
+}
+
+void hf_hdf5_write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *const *id, int n,
+                       const char *description)
+{
+    size_t length = 1;
+    for (int i = 0; i < n; i++)
+        length = strlen(id[i]) > length ? strlen(id[i]) : length;
+    hf_hdf5_array array = {name, HF_KIND_CHARS, 1, {(hsize_t)n, length}, "", description};
+    char *chars = io->status == HF_OK ? calloc((size_t)n, length) : NULL;
+    if (!chars && io->status == HF_OK) io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+    for (int i = 0; chars && i < n; i++)
+        memcpy(chars + (size_t)i * length, id[i], strlen(id[i]));
+    if (chars) hf_hdf5_write_array(io, group, &array, chars);
+    free(chars);
 }

@@ -1,4 +1,4 @@
-/* Contents: columns - names - writing - reading files - reading locks - the whole */
+/* Contents: columns - names - writing - reading files - news of other processes - reading locks - the whole */
 #include "ledger.h"
 
 #include "text.h"
@@ -92,6 +92,26 @@ static struct flock lock_of(const char *id, short type)
 
 /* ---- writing ---- */
 
+/* How far each file has been read, and what was finished since. */
+struct hf_ledger_news {
+    struct {
+        char name[256];
+        off_t at;
+    } * file;
+    int n_file;
+    struct named_point *sorted; /* [n_point] by id */
+    unsigned char *is_finished; /* [n_point] */
+};
+
+static void free_news(struct hf_ledger_news *news)
+{
+    if (!news) return;
+    free(news->file);
+    free(news->sorted);
+    free(news->is_finished);
+    free(news);
+}
+
 hf_status hf_ledger_open(const char *folder, hf_ledger *l, hf_messages *messages)
 {
     char path[HF_PATH_SIZE + 32];
@@ -114,6 +134,7 @@ void hf_ledger_close(hf_ledger *l)
         close(l->rows);
     }
     if (l->claims >= 0) close(l->claims);
+    free_news(l->news);
     pthread_mutex_destroy(&l->lock);
 }
 
@@ -199,7 +220,7 @@ hf_status hf_ledger_write(hf_ledger *l, const hf_study *study, int point, hf_sta
 
 /* ---- reading files ---- */
 
-typedef struct {
+typedef struct named_point {
     const char *id;
     int point;
 } named_point;
@@ -214,6 +235,16 @@ static int by_id(const void *a, const void *b)
 {
     const named_point *x = a, *y = b;
     return strcmp(x->id, y->id);
+}
+
+/* The points by id; the caller frees them. NULL without memory. */
+static named_point *sort_points(const hf_study *study)
+{
+    named_point *sorted = malloc((size_t)study->n_point * sizeof *sorted);
+    for (int i = 0; sorted && i < study->n_point; i++)
+        sorted[i] = (named_point){study->id[i], i};
+    if (sorted) qsort(sorted, (size_t)study->n_point, sizeof *sorted, by_id);
+    return sorted;
 }
 
 static int find_point(const reading *r, const char *id)
@@ -234,15 +265,6 @@ static int split(char *line, char **field, int max)
     return n;
 }
 
-static hf_status status_of(const char *word)
-{
-#define IS(name, value, exit_code, text, sentence)                                                                     \
-    if (!strcmp(word, text)) return HF_##name;
-    HF_STATUS_LIST(IS)
-#undef IS
-    return HF_IO; /* of another version of this program */
-}
-
 /* A success counts more than a failure, what is of this base case more than what is not. */
 static void take_row(reading *r, char **field, char **number)
 {
@@ -254,7 +276,7 @@ static void take_row(reading *r, char **field, char **number)
         if (p->state == HF_POINT_MISSING) p->state = HF_POINT_OUTDATED;
         return;
     }
-    p->status = status_of(field[2]);
+    p->status = hf_status_of_word(field[2]);
     p->state = p->status == HF_OK ? HF_POINT_DONE : HF_POINT_FAILED;
     p->reason = field[3];
     p->field = number;
@@ -325,19 +347,116 @@ static hf_status read_file(reading *r, const char *folder, const char *name, hf_
     return more && read_rows(r, text) ? HF_OK : hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
 }
 
+static int is_rows(const struct dirent *entry)
+{
+    size_t n = strlen(entry->d_name);
+    return !strncmp(entry->d_name, "points-", 7) && n > 4 && !strcmp(entry->d_name + n - 4, ".tsv");
+}
+
+static int by_name(const struct dirent **a, const struct dirent **b)
+{
+    return strcmp((*a)->d_name, (*b)->d_name);
+}
+
+/* Sorted: of several rows of one point it is always the same that counts. */
 static hf_status read_files(reading *r, const char *folder, hf_messages *messages)
 {
-    DIR *list = opendir(folder);
+    struct dirent **entry;
     hf_status status = HF_OK;
-    if (!list && errno == ENOENT) return HF_OK;
-    if (!list) return hf_error(messages, HF_IO, "%s: cannot read this folder: %s", folder, strerror(errno));
-    for (struct dirent *entry = readdir(list); entry && status == HF_OK; entry = readdir(list)) {
-        size_t n = strlen(entry->d_name);
-        if (!strncmp(entry->d_name, "points-", 7) && n > 4 && !strcmp(entry->d_name + n - 4, ".tsv"))
-            status = read_file(r, folder, entry->d_name, messages);
+    int n = scandir(folder, &entry, is_rows, by_name);
+    if (n < 0 && errno == ENOENT) return HF_OK;
+    if (n < 0) return hf_error(messages, HF_IO, "%s: cannot read this folder: %s", folder, strerror(errno));
+    for (int i = 0; i < n; i++) {
+        if (status == HF_OK) status = read_file(r, folder, entry[i]->d_name, messages);
+        free(entry[i]);
     }
-    closedir(list);
+    free(entry);
     return status;
+}
+
+/* ---- news of other processes ---- */
+
+/* The file's place in the list, or -1 without memory. */
+static int place_of(struct hf_ledger_news *news, const char *name)
+{
+    for (int k = 0; k < news->n_file; k++)
+        if (!strcmp(news->file[k].name, name)) return k;
+    void *more = realloc(news->file, ((size_t)news->n_file + 1) * sizeof *news->file);
+    if (!more) return -1;
+    news->file = more;
+    news->file[news->n_file].at = 0;
+    snprintf(news->file[news->n_file].name, sizeof news->file->name, "%s", name);
+    return news->n_file++;
+}
+
+/* The whole lines of text[n], which ends with a NUL: how many bytes they have. */
+static off_t note_rows(struct hf_ledger_news *news, const hf_study *study, char *text)
+{
+    reading r = {study, NULL, news->sorted};
+    char *line = text, *end, *field[3];
+    for (; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+        *end = '\0';
+        int i = split(line, field, 3) == 3 && !strcmp(field[1], study->fingerprint) ? find_point(&r, field[0]) : -1;
+        if (i >= 0) news->is_finished[i] = 1;
+    }
+    return line - text;
+}
+
+/* What a file has more than before; `skip`: all of it is old. What cannot be read is no news. */
+static void read_news_of(hf_ledger *l, const hf_study *study, const char *name, int skip)
+{
+    char path[HF_PATH_SIZE + 300];
+    struct stat info;
+    int k = place_of(l->news, name);
+    snprintf(path, sizeof path, "%s/%s", l->folder, name);
+    int file = k >= 0 ? open(path, O_RDONLY | O_CLOEXEC) : -1;
+    if (file < 0) return;
+    off_t *at = &l->news->file[k].at;
+    if (fstat(file, &info) != 0) info.st_size = 0;
+    if (skip) *at = info.st_size;
+    if (!skip && info.st_size > *at) {
+        size_t size = (size_t)(info.st_size - *at);
+        char *text = malloc(size + 1);
+        ssize_t n = text ? pread(file, text, size, *at) : -1;
+        if (n > 0) text[n] = '\0';
+        if (n > 0) *at += note_rows(l->news, study, text);
+        free(text);
+    }
+    close(file);
+}
+
+static void read_news(hf_ledger *l, const hf_study *study, int skip)
+{
+    struct dirent **entry;
+    int n = scandir(l->folder, &entry, is_rows, by_name);
+    if (n < 0) return;
+    for (int i = 0; i < n; i++) {
+        read_news_of(l, study, entry[i]->d_name, skip);
+        free(entry[i]);
+    }
+    free(entry);
+}
+
+hf_status hf_ledger_watch(hf_ledger *l, const hf_study *study, hf_messages *messages)
+{
+    l->news = calloc(1, sizeof *l->news);
+    if (l->news) {
+        l->news->sorted = sort_points(study);
+        l->news->is_finished = calloc((size_t)study->n_point, 1);
+    }
+    if (!l->news || !l->news->sorted || !l->news->is_finished)
+        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for %d points", l->folder, study->n_point);
+    read_news(l, study, 1);
+    return HF_OK;
+}
+
+int hf_ledger_is_finished(hf_ledger *l, const hf_study *study, int point)
+{
+    pthread_mutex_lock(&l->lock);
+    read_news(l, study, 0);
+    int is_finished = l->news->is_finished[point];
+    pthread_mutex_unlock(&l->lock);
+    return is_finished;
 }
 
 /* ---- reading locks ---- */
@@ -375,16 +494,14 @@ hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *p
     size_t n = (size_t)study->n_point;
     *points = (hf_points){.n_point = study->n_point};
     points->point = calloc(n, sizeof *points->point);
-    reading r = {study, points, malloc(n * sizeof *r.sorted)};
+    reading r = {study, points, sort_points(study)};
     if (!points->point || !r.sorted) {
         free(r.sorted);
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for %d points", folder, study->n_point);
     }
     for (int i = 0; i < study->n_point; i++) {
         points->point[i] = (hf_point){HF_POINT_MISSING, HF_NOT_EVALUATED, "", NULL};
-        r.sorted[i] = (named_point){study->id[i], i};
     }
-    qsort(r.sorted, n, sizeof *r.sorted, by_id);
     hf_status status = read_files(&r, folder, messages);
     find_running(&r, folder);
     for (int i = 0; i < study->n_point; i++)

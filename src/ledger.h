@@ -30,6 +30,7 @@ typedef struct {
     int rows, claims; /* file descriptors, -1 */
     double synced_s;
     pthread_mutex_t lock;
+    struct hf_ledger_news *news; /* NULL before hf_ledger_watch */
 } hf_ledger;
 
 /* Makes the folder when it is not there. HF_OK or HF_IO. Close in any case. */
@@ -39,6 +40,12 @@ void hf_ledger_close(hf_ledger *ledger);
 /* The point is this process's from now on: 1. Or 0 when another process has it. */
 int hf_ledger_claim(hf_ledger *ledger, const char *id);
 void hf_ledger_release(hf_ledger *ledger, const char *id);
+
+/* From now on note what all processes finish. Call it before hf_ledger_read. HF_OK or HF_NO_MEMORY. */
+hf_status hf_ledger_watch(hf_ledger *ledger, const hf_study *study, hf_messages *messages);
+
+/* Has the point been finished since hf_ledger_watch, well or not? Ask when it is claimed. From any thread. */
+int hf_ledger_is_finished(hf_ledger *ledger, const hf_study *study, int point);
 
 /* A finished point, from any thread. reason: one line, "" when all went well. HF_OK or HF_IO. */
 hf_status hf_ledger_write(hf_ledger *ledger, const hf_study *study, int point, hf_status status, const char *reason,

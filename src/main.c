@@ -57,7 +57,8 @@ static hf_status command_show(const hf_options *o, hf_messages *messages)
     hf_summary summary;
     HF_TRY(hf_store_read_summary(o->file, &summary, messages));
     if (o->json) {
-        hf_summary_write_json(&summary, summary.form.status, summary.warnings, o->file, stdout);
+        hf_summary_write_json(&summary, summary.finished ? summary.status : summary.form.status, summary.warnings,
+                              o->file, stdout);
     } else {
         hf_print_summary(&summary, o->file, stdout);
         fputs(summary.warnings, stdout);

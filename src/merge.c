@@ -174,7 +174,7 @@ static void write_points(merger *m)
 /* The folder as seen from the folder of the output; the absolute path where the system gives none. */
 static void relative_folder(const char *output, const char *folder, char *to, size_t size)
 {
-    char here[PATH_MAX], there[PATH_MAX], parent[PATH_MAX];
+    char here[PATH_MAX + 1], there[PATH_MAX + 1], parent[PATH_MAX]; /* a slash is added */
     const char *slash = strrchr(output, '/');
     size_t used = 0, common = 0;
     snprintf(parent, sizeof parent, "%.*s", slash ? (int)(slash - output) + 1 : 1, slash ? output : ".");

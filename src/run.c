@@ -252,6 +252,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
         return HF_OK;
     }
     hf_evaluate(&r->evaluator, design, w, &s->polish);
+    if (must_stop(r)) return stop_here(r, s, messages); /* it may have been cut short */
     s->has_polish = 1;
     s->polish_is_result = o->method != HF_OPTIMIZE_GA;
     s->polish_iterations = outcome.iterations;
@@ -322,12 +323,14 @@ static int leaves_result(hf_status status)
     return status == HF_OK || status == HF_NOT_CONVERGED || status == HF_NO_FEASIBLE;
 }
 
-/* Nothing to do: the summary is the stored one. */
+/* Nothing to do: summary, status and the errors that explain it are the stored ones. */
 static hf_status repeat_finished(const char *output, hf_summary *s, hf_messages *messages)
 {
     HF_TRY(hf_store_read_summary(output, s, messages));
     hf_warning(messages, "%s: is the finished result of this case; --restart computes it again", output);
-    return HF_OK;
+    for (const char *line = s->warnings; *line; line += strcspn(line, "\n"), line += *line == '\n')
+        if (!strncmp(line, "error: ", 7)) hf_error(messages, s->status, "%.*s", (int)strcspn(line + 7, "\n"), line + 7);
+    return s->status;
 }
 
 /* Unless *state is HF_STORE_FINISHED. */
@@ -336,12 +339,13 @@ static hf_status open_store(run *r, char *output, hf_store_state *state, hf_mess
     const hf_run_request *q = r->request;
     const hf_case *settings = &r->problem.settings;
     const hf_scene *scene = &r->problem.scene;
+    const hf_truss *truss = settings->has_truss ? &r->problem.carrier.truss : NULL;
     HF_TRY(choose_output(q, output, messages));
     HF_TRY(hf_run_spare_inputs(settings, NULL, output, messages));
-    if (!q->restart) HF_TRY(hf_store_look(output, settings, scene, state, messages));
+    if (!q->restart) HF_TRY(hf_store_look(output, settings, scene, truss, state, messages));
     if (*state == HF_STORE_FINISHED) return HF_OK;
     if (*state == HF_STORE_UNFINISHED) return hf_store_resume(output, &r->store, messages);
-    return hf_store_create(output, q->restart, settings, scene, q->argc, q->argv, &r->store, messages);
+    return hf_store_create(output, q->restart, settings, scene, truss, q->argc, q->argv, &r->store, messages);
 }
 
 static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messages)
@@ -367,6 +371,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
     hf_text_trim_utf8(s->warnings);
     s->finished = 1;
+    s->status = status;
     hf_status finish = hf_store_finish(r->store, s, messages);
     r->store = NULL;
     return finish != HF_OK ? finish : status;

@@ -47,7 +47,8 @@ typedef struct {
 
 /* Run the case and store it. `output` is the path of the result file, "" when none was written. HF_OK, or the status of
  * what went wrong with messages: HF_NOT_CONVERGED and HF_NO_FEASIBLE still write the file; HF_INTERRUPTED when
- * *stop_requested was seen: the same request goes on. A finished result of this case is not computed again: HF_OK. */
+ * *stop_requested was seen: the same request goes on. A finished result of this case is not computed again:
+ * its status. */
 hf_status hf_run_point(const hf_run_request *request, hf_summary *summary, char output[HF_OUTPUT_SIZE],
                        hf_messages *messages);
 

@@ -17,6 +17,15 @@ const char *hf_status_word(hf_status status)
     return "unknown";
 }
 
+hf_status hf_status_of_word(const char *word)
+{
+#define IS(name, value, exit_code, text, sentence)                                                                     \
+    if (!strcmp(word, text)) return HF_##name;
+    HF_STATUS_LIST(IS)
+#undef IS
+    return HF_IO;
+}
+
 const char *hf_status_text(hf_status status)
 {
     switch (status) {

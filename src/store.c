@@ -9,6 +9,7 @@
 
 #include <assert.h>
 #include <gsl/gsl_version.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,6 +32,7 @@
 #define ARGUMENTS_MAX 4000 /* kept of the command line: an attribute holds 64 KiB */
 /* A publication is due when this many times as long as the last one took has passed: it takes 2 % of the time. */
 #define PUBLISH_RATIO 50
+#define SAME_SHAPE 1e-5 /* of the largest tension: a stopping rule may leave 1e-6 between two builds */
 #define PUBLISH_S 0.5 /* but not more often: most short runs are published twice, at their beginning and at their end */
 
 struct hf_store {
@@ -146,18 +148,6 @@ static void write_case(hf_store *s, const hf_case *settings)
     hf_hdf5_close(&s->f.io, group);
 }
 
-static void write_ids(hf_store *s, hid_t group, const char *name, const char *const *id, int n, const char *description)
-{
-    size_t length = 1;
-    for (int i = 0; i < n; i++)
-        length = strlen(id[i]) > length ? strlen(id[i]) : length;
-    hf_hdf5_array array = {name, HF_KIND_CHARS, 1, {(hsize_t)n, length}, "", description};
-    char *chars = scratch(s, (size_t)n * length);
-    for (int i = 0; chars && i < n; i++)
-        memcpy(memset(chars + (size_t)i * length, 0, length), id[i], strlen(id[i]));
-    hf_hdf5_write_array(&s->f.io, group, &array, chars);
-}
-
 static void write_scene(hf_store *s, const hf_scene *scene)
 {
     static const hf_hdf5_column table[] = {HF_SCENE_COLUMNS(HF_HDF5_COLUMN)};
@@ -167,8 +157,8 @@ static void write_scene(hf_store *s, const hf_scene *scene)
     hid_t group = hf_hdf5_make_group(&s->f.io, "/scene");
     hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/scene/node"));
     hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/scene/cable"));
-    write_ids(s, group, "node/id", scene->node_id, scene->n_node, "name of the node");
-    write_ids(s, group, "cable/id", scene->cable_id, scene->n_cable, "name of the cable");
+    hf_hdf5_write_ids(&s->f.io, group, "node/id", scene->node_id, scene->n_node, "name of the node");
+    hf_hdf5_write_ids(&s->f.io, group, "cable/id", scene->cable_id, scene->n_cable, "name of the cable");
     hf_hdf5_write_columns(&s->f.io, group, table, HF_HDF5_COUNT(table), scene->n_node, scene->n_cable, scene);
     double *length_m = scratch(s, (size_t)scene->n_cable * sizeof *length_m);
     for (int e = 0; length_m && e < scene->n_cable; e++)
@@ -211,8 +201,8 @@ static hf_status hand_over(hf_store *s, hf_store **store)
     return hf_hdf5_unlock(status);
 }
 
-hf_status hf_store_create(const char *path, int restart, const hf_case *settings, const hf_scene *scene, int argc,
-                          char *const *argv, hf_store **store, hf_messages *messages)
+hf_status hf_store_create(const char *path, int restart, const hf_case *settings, const hf_scene *scene,
+                          const hf_truss *truss, int argc, char *const *argv, hf_store **store, hf_messages *messages)
 {
     hf_status status;
     struct stat info;
@@ -225,7 +215,7 @@ hf_status hf_store_create(const char *path, int restart, const hf_case *settings
     if (!restart && lstat(path, &info) == 0)
         s->f.io.status =
             hf_error(messages, HF_EXISTS, "%s: exists; use --restart to replace it or -o to choose another name", path);
-    if (s->f.io.status == HF_OK && hf_store_identify(settings, scene, s->identity) != HF_OK)
+    if (s->f.io.status == HF_OK && hf_store_identify(settings, scene, truss, s->identity) != HF_OK)
         s->f.io.status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     if (s->f.io.status == HF_OK) {
         hf_store_file_create(&s->f);
@@ -363,7 +353,20 @@ static void compare_shape(hf_store *s, const hf_model *model, const hf_workspace
     double *stored = scratch(s, bytes);
     tension.dims[0] = (hsize_t)model->n_cable;
     if (stored) hf_hdf5_read_array(&s->f.io, s->f.io.file, &tension, stored);
-    if (s->f.io.status == HF_OK && memcmp(stored, workspace->tension_N, bytes) != 0)
+    if (s->f.io.status != HF_OK || memcmp(stored, workspace->tension_N, bytes) == 0) return;
+    double largest_N = 0, apart_N = 0;
+    for (int e = 0; e < model->n_cable; e++) {
+        double gap_N = fabs(stored[e] - workspace->tension_N[e]);
+        largest_N = fmax(largest_N, fabs(stored[e]));
+        apart_N = gap_N <= apart_N || isnan(apart_N) ? apart_N : gap_N;
+    }
+    if (!(apart_N <= SAME_SHAPE * largest_N))
+        s->f.io.status =
+            hf_error(s->f.io.messages, HF_EXISTS,
+                     "%s: this machine or build finds another shape (tensions differ by %.2g N); --restart "
+                     "begins anew",
+                     s->f.path, apart_N);
+    else
         hf_warning(s->f.io.messages,
                    "%s: this machine or build finds the shape with other last bits than the one that began it: the "
                    "result will not be that of an uninterrupted run to the bit",
@@ -503,8 +506,6 @@ static void put_summary(hf_store *s, const hf_summary *summary, int finished)
     static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
     static const hf_hdf5_member polish[] = {HF_SUMMARY_POLISH_MEMBERS(HF_HDF5_MEMBER)};
     static const hf_hdf5_member truss[] = {HF_SUMMARY_TRUSS_MEMBERS(HF_HDF5_MEMBER)};
-    hf_status outcome = summary->form.status;
-    if (outcome == HF_OK && summary->has_optimize) outcome = summary->best.status;
     /* groups that are there already, unless the run had no shape or no generation to store */
     hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/form"));
     state.finished = finished;
@@ -523,7 +524,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, int finished)
     }
     if (summary->has_coupling) hf_store_put_coupling(&s->f.io, summary);
     if (finished) hf_store_put_surface(&s->f.io, summary);
-    hf_hdf5_put_text(&s->f.io, s->f.io.file, "/", "status", finished ? hf_status_word(outcome) : "unfinished");
+    hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "status", finished ? hf_status_word(summary->status) : "unfinished");
     put_time(s, finished ? "finished_utc" : "published_utc");
 }
 

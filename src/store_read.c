@@ -55,23 +55,58 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
 
 /* ---- whose result is it? ---- */
 
-/* Digests in a row; the ids of the scene, and what HF_SCENE_COLUMNS stores of it. */
-hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, char identity[65])
+/* identity = digest of the identity so far and of these bytes */
+static void extend(char identity[65], const void *data, size_t bytes)
 {
-    static const hf_hdf5_column table[] = {HF_SCENE_COLUMNS(HF_HDF5_COLUMN)};
-    char chain[64 * (HF_HDF5_COUNT(table) + 1) + 128], *at = chain;
-    for (int i = 0; i < HF_HDF5_COUNT(table); i++) {
-        const hf_hdf5_column *c = &table[i];
+    char both[128], hex[65];
+    hf_sha256(bytes ? data : "", bytes, hex);
+    memcpy(both, identity, 64);
+    memcpy(both + 64, hex, 64);
+    hf_sha256(both, sizeof both, identity);
+}
+
+static void extend_columns(char identity[65], const hf_hdf5_column *table, int n, int n_node, int n_cable,
+                           const void *owner)
+{
+    for (int i = 0; i < n; i++) {
         const void *values;
-        memcpy(&values, (const char *)scene + c->offset, sizeof values);
-        size_t n = (size_t)(c->per_cable ? scene->n_cable : scene->n_node) * (size_t)c->columns;
-        hf_sha256(values ? values : "", values ? n * hf_hdf5_kind_bytes(c->kind) : 0, at);
-        at += 64;
+        memcpy(&values, (const char *)owner + table[i].offset, sizeof values);
+        size_t rows = (size_t)(table[i].per_cable ? n_cable : n_node);
+        extend(identity, values, values ? rows * (size_t)table[i].columns * hf_hdf5_kind_bytes(table[i].kind) : 0);
     }
-    snprintf(at, sizeof chain - (size_t)(at - chain), "%s %llu", settings->sha256,
-             (unsigned long long)settings->optimize.seed);
-    hf_sha256(chain, strlen(chain), identity);
+}
+
+/* With the NUL of each, so that "a", "bc" is not "ab", "c". */
+static hf_status extend_ids(char identity[65], int n, const char *const *id)
+{
+    size_t size = 1, used = 0;
+    for (int i = 0; i < n; i++)
+        size += strlen(id[i]) + 1;
+    char *text = malloc(size);
+    if (!text) return HF_NO_MEMORY;
+    for (int i = 0; i < n; i++)
+        used += strlen(strcpy(text + used, id[i])) + 1;
+    extend(identity, text, used);
+    free(text);
     return HF_OK;
+}
+
+hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, const hf_truss *truss, char identity[65])
+{
+    static const hf_hdf5_column net[] = {HF_SCENE_COLUMNS(HF_HDF5_COLUMN)};
+    static const hf_hdf5_column carrier[] = {HF_TRUSS_COLUMNS(HF_HDF5_COLUMN)
+                                                 HF_MEMBER_NUMBERS(HF_TRUSS_NUMBER_COLUMN)};
+    char words[128];
+    int n = snprintf(words, sizeof words, "%s %llu", settings->sha256, (unsigned long long)settings->optimize.seed);
+    hf_sha256(words, (size_t)n, identity);
+    extend_columns(identity, net, HF_HDF5_COUNT(net), scene->n_node, scene->n_cable, scene);
+    HF_TRY(extend_ids(identity, scene->n_node, scene->node_id));
+    HF_TRY(extend_ids(identity, scene->n_cable, scene->cable_id));
+    if (!truss) return HF_OK;
+    extend_columns(identity, carrier, HF_HDF5_COUNT(carrier), truss->n_node, truss->n_member, truss);
+    extend(identity, truss->fixed, (size_t)truss->n_node);
+    HF_TRY(extend_ids(identity, truss->n_node, truss->node_id));
+    return extend_ids(identity, truss->n_member, truss->member_id);
 }
 
 /* Split lines in place; the caller frees the list. NULL when memory ran out. */
@@ -108,7 +143,8 @@ static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t
     if (io->status == HF_OK && hf_config_parse(now->path, text, set, n_set, &then, &unwanted) == HF_OK) {
         then.optimize.seed = seed; /* as --seed may have set it */
         if (hf_config_differences(&then, now, words, size) == 0)
-            snprintf(words, size, "%s", "no key, but comments and layout of the case, or its tables of the net");
+            snprintf(words, size, "%s",
+                     "no key, but comments and layout of the case, or its tables of the net or of the truss");
     } else {
         snprintf(words, size, "%s", "keys that this version does not know");
     }
@@ -132,8 +168,8 @@ static void remove_journal(const char *path)
     hf_messages_free(&unwanted);
 }
 
-hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, hf_store_state *state,
-                        hf_messages *messages)
+hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
+                        hf_store_state *state, hf_messages *messages)
 {
     char now[65], then[65] = "", words[1024] = "";
     signed char finished = 0;
@@ -141,7 +177,7 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
     *state = HF_STORE_NOTHING;
     if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return HF_OK; /* hf_store_create says what is wrong */
     hf_messages unwanted = {0};
-    HF_TRY(hf_store_identify(settings, scene, now));
+    HF_TRY(hf_store_identify(settings, scene, truss, now));
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, &unwanted);
     hf_hdf5_get(&io, io.file, "/", "finished", HF_KIND_FLAG, &finished, 1);
@@ -168,6 +204,18 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
 
 /* ---- summary ---- */
 
+/* Of the run. Older files have it as a text of variable length, which is not read: there the stages say it. */
+static void get_status(hf_hdf5 *io, hf_summary *s)
+{
+    char word[32] = "";
+    s->status = s->form.status == HF_OK && s->has_optimize ? s->best.status : s->form.status;
+    if (hf_hdf5_has_chars(io, io->file, "/", "status")) {
+        hf_hdf5_get(io, io->file, "/", "status", HF_KIND_CHARS, word, sizeof word);
+        s->status = hf_status_of_word(word);
+    }
+    if (!s->finished) s->status = HF_NOT_EVALUATED;
+}
+
 hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messages *messages)
 {
     static const hf_hdf5_member form[] = {HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER)};
@@ -182,6 +230,7 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     if (summary->has_coupling) hf_store_get_coupling(&io, summary);
     if (summary->has_polish) hf_hdf5_get_members(&io, polish, HF_HDF5_COUNT(polish), summary);
     if (summary->has_optimize) hf_hdf5_get_members(&io, ga, HF_HDF5_COUNT(ga), summary);
+    get_status(&io, summary);
     hf_store_get_surface(&io, summary);
     summary->has_truss = hf_hdf5_has(&io, io.file, "/truss");
     if (summary->has_truss) hf_hdf5_get_members(&io, truss, HF_HDF5_COUNT(truss), summary);

@@ -26,20 +26,6 @@ static hf_hdf5_array fixed_array(int n_node)
 
 /* ---- writing ---- */
 
-static void write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *const *id, int n, const char *description)
-{
-    size_t length = 1;
-    for (int i = 0; i < n; i++)
-        length = strlen(id[i]) > length ? strlen(id[i]) : length;
-    hf_hdf5_array array = {name, HF_KIND_CHARS, 1, {(hsize_t)n, length}, "", description};
-    char *chars = n > 0 ? calloc((size_t)n, length) : NULL;
-    if (!chars) hf_store_no_memory(io);
-    for (int i = 0; chars && i < n; i++)
-        memcpy(chars + (size_t)i * length, id[i], strlen(id[i]));
-    if (chars) hf_hdf5_write_array(io, group, &array, chars);
-    free(chars);
-}
-
 static void write_fixed(hf_hdf5 *io, hid_t group, const hf_truss *t)
 {
     hf_hdf5_array array = fixed_array(t->n_node);
@@ -67,8 +53,8 @@ hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_ca
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/truss/node"));
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/truss/member"));
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/truss/attachment"));
-    write_ids(io, group, "node/id", t->node_id, t->n_node, "name of the node");
-    write_ids(io, group, "member/id", t->member_id, t->n_member, "name of the member");
+    hf_hdf5_write_ids(io, group, "node/id", t->node_id, t->n_node, "name of the node");
+    hf_hdf5_write_ids(io, group, "member/id", t->member_id, t->n_member, "name of the member");
     write_fixed(io, group, t);
     hf_hdf5_write_columns(io, group, truss_table, HF_HDF5_COUNT(truss_table), t->n_node, t->n_member, t);
     hf_hdf5_write_columns(io, group, attachments, HF_HDF5_COUNT(attachments), carrier->n_attachment, 0, carrier);

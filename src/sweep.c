@@ -49,8 +49,8 @@ typedef struct {
     int on_terminal;
     int n_done, n_failed, n_elsewhere;
     double start_s, said_s;
-    hf_status fatal; /* rows cannot be written: no point may begin */
     hf_messages *messages;
+    _Atomic hf_status fatal; /* rows cannot be written: no point may begin. Read without the lock */
 } sweep;
 
 static int environment_number(const char *name, int *value)
@@ -165,20 +165,15 @@ static int must_stop(const sweep *w)
     return *w->stop_requested || w->fatal != HF_OK;
 }
 
-/* A result that was finished earlier, by a process that did not live to say so, is read and not run again. */
-static hf_status outcome(const hf_summary *s)
-{
-    if (s->form.status != HF_OK || !s->has_optimize) return s->form.status;
-    return s->best.status;
-}
-
 static void run_point(void *context, int k)
 {
     sweep *w = context;
     int i = w->todo[k];
     const char *id = w->study->id[i];
     if (must_stop(w)) return;
-    if (!hf_ledger_claim(&w->ledger, id)) {
+    int is_ours = hf_ledger_claim(&w->ledger, id);
+    if (!is_ours || hf_ledger_is_finished(&w->ledger, w->study, i)) { /* since this sweep looked */
+        if (is_ours) hf_ledger_release(&w->ledger, id);
         pthread_mutex_lock(&w->lock);
         w->n_elsewhere++;
         pthread_mutex_unlock(&w->lock);
@@ -202,7 +197,6 @@ static void run_point(void *context, int k)
                               .argv = w->argv,
                               .stop_requested = w->stop_requested};
     hf_status status = hf_run_point(&request, &summary, output, &said);
-    if (status == HF_OK) status = outcome(&summary);
     if (status != HF_INTERRUPTED) finish_point(w, i, status, &said, &summary);
     hf_ledger_release(&w->ledger, id);
     hf_messages_free(&said);
@@ -236,7 +230,7 @@ static hf_status run_points(sweep *w, FILE *file)
     if (!quiet)
         fprintf(file, "%d points run in %s on %d threads, %d of them failed; results in %s\n", w->n_done + w->n_failed,
                 took, w->threads, w->n_failed, w->ledger.folder);
-    if (w->n_elsewhere) hf_warning(w->messages, "%d points are being run by another process", w->n_elsewhere);
+    if (w->n_elsewhere) hf_warning(w->messages, "%d points are run by another process", w->n_elsewhere);
     if (w->fatal != HF_OK) return w->fatal;
     if (left)
         return hf_error(w->messages, HF_INTERRUPTED, "told to stop: %d points are left; the same command goes on",
@@ -251,6 +245,7 @@ static hf_status sweep_study(sweep *w, const char *folder, int task, int tasks, 
 {
     hf_points points;
     hf_status status = hf_ledger_open(folder, &w->ledger, w->messages);
+    if (status == HF_OK) status = hf_ledger_watch(&w->ledger, w->study, w->messages);
     if (status == HF_OK) {
         status = hf_ledger_read(folder, w->study, &points, w->messages);
         if (status == HF_OK) status = choose_points(w, &points, task, tasks);

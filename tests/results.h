@@ -68,7 +68,7 @@ static inline hf_store *begin(const char *path, int force, const hf_scene *scene
     hf_messages messages = {0};
     hf_store *store;
     char *argv[] = {"hifdm", "run", "a b.yaml"};
-    ck_assert_msg(hf_store_create(path, force, any_case(), scene, 3, argv, &store, &messages) == HF_OK, "%s",
+    ck_assert_msg(hf_store_create(path, force, any_case(), scene, NULL, 3, argv, &store, &messages) == HF_OK, "%s",
                   messages.text);
     return store;
 }

@@ -41,8 +41,9 @@ typedef enum {
 #undef HF_STATUS_ENUM
 } hf_status;
 
-const char *hf_status_word(hf_status status); /* one token, as stored in files; "unknown" for a foreign value */
-const char *hf_status_text(hf_status status); /* a sentence */
+const char *hf_status_word(hf_status status);  /* one token, as stored in files; "unknown" for a foreign value */
+hf_status hf_status_of_word(const char *word); /* HF_IO for a foreign word: of another version of this program */
+const char *hf_status_text(hf_status status);  /* a sentence */
 /* 0 done, 1 two files differ, 2 usage or case, 3 not converged, 4 ill-posed, 5 input/output, 75 told to stop */
 int hf_status_exit_code(hf_status status);
 

@@ -8,7 +8,7 @@
  * threads and host are attributes only: the data sets of two runs of the same case are the same.
  *   /            attributes: program ("hifdm"), format_version, version, git_describe, compiler, build_flags,
  *                hdf5_version, gsl_version, lapack, rng, host, argv[], started_utc, finished_utc, title, seed, threads,
- *                warnings, has_optimize, status (word of the form-finding's if not ok, else of the best individual's),
+ *                warnings, has_optimize, status (word of the run's),
  *                finished (FALSE: the run can go on), published_utc, identity (of the run, see hf_store_identify);
  *                after a resumption sessions, resumed_utc, resumed_host, resumed_version (of the last); under Slurm
  *                slurm_job_id, slurm_array_job_id, slurm_array_task_id, slurm_restart_count
@@ -58,23 +58,23 @@ typedef enum { HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, HF_STAGE_NONE 
 extern const char *const hf_stage_word[4];  /* "form", "optimize", "polish", "none" */
 extern const char *const hf_stage_group[4]; /* where a file keeps the shape: "/form", "/ga/best", "/polish", "/" */
 
-/* What is known of a run is its identity: 64 hexadecimal digits of the case's text and overrides, the seed, and the
- * scene. HF_OK or HF_NO_MEMORY. */
-hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, char identity[65]);
+/* What is known of a run is its identity: 64 hexadecimal digits of the case's text and overrides, the seed, the scene
+ * and the truss (NULL: none), with their ids. HF_OK or HF_NO_MEMORY. */
+hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, const hf_truss *truss, char identity[65]);
 
 typedef enum { HF_STORE_NOTHING, HF_STORE_UNFINISHED, HF_STORE_FINISHED } hf_store_state;
 
-/* What is at `path`: nothing, or a result of this case and scene. HF_EXISTS for anything else, with a message that says
- * in which keys the cases differ; HF_IO, HF_NO_MEMORY. */
-hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, hf_store_state *state,
-                        hf_messages *messages);
+/* What is at `path`: nothing, or a result of this case, scene and truss. HF_EXISTS for anything else, with a message
+ * that says in which keys the cases differ; HF_IO, HF_NO_MEMORY. */
+hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
+                        hf_store_state *state, hf_messages *messages);
 
 /* Begin the file of a new run. Whether it can get the name `path` is looked at now: HF_EXISTS when that is taken and
  * not `restart`, HF_IO when it is a folder or its folder is not there or not writable, when another process is writing
  * it, or when the file cannot be made; HF_NO_MEMORY. argv (argc may be 0) goes into the provenance; case and scene are
  * written at once, nothing is borrowed. *store is NULL after a failure. */
-hf_status hf_store_create(const char *path, int restart, const hf_case *settings, const hf_scene *scene, int argc,
-                          char *const *argv, hf_store **store, hf_messages *messages);
+hf_status hf_store_create(const char *path, int restart, const hf_case *settings, const hf_scene *scene,
+                          const hf_truss *truss, int argc, char *const *argv, hf_store **store, hf_messages *messages);
 
 /* Go on with the unfinished file at `path`, after the generations of its journal were added. HF_EXISTS when it is
  * finished, HF_IO, HF_NO_MEMORY. *store is NULL after a failure, and nothing has changed. */
@@ -90,7 +90,7 @@ int hf_store_generations(const hf_store *store); /* how many it holds */
  * store of NULL they keep nothing, and return HF_OK. */
 
 /* Shape of the workspace in the order of the scene, with the history unless that is NULL. Once per store. On a resumed
- * one the shape is compared: a warning when this machine or build finds other bits. */
+ * one the shape is compared: a warning when this machine or build finds other bits, HF_EXISTS for another shape. */
 hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspace *workspace,
                         const hf_history *history, hf_messages *messages);
 

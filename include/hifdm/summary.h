@@ -15,9 +15,10 @@ extern "C" {
 
 typedef struct {
     char version[64], title[256], case_path[HF_PATH_SIZE];
-    int finished;  /* 0: of a run that can go on */
-    int threads;   /* that were used */
-    uint64_t seed; /* of the genetic algorithm */
+    int finished;     /* 0: of a run that can go on */
+    hf_status status; /* of the whole run; HF_NOT_EVALUATED unless finished */
+    int threads;      /* that were used */
+    uint64_t seed;    /* of the genetic algorithm */
     int n_node, n_free, n_cable, n_gene, half_bandwidth;
     double pretension_N;
     char warnings[HF_WARNINGS_SIZE]; /* lines "warning: ..." and "error: ..." */

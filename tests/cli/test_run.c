@@ -96,6 +96,25 @@ START_TEST(not_converged_is_stored_and_told)
 }
 END_TEST
 
+/* The same command says the same again, of a result that it does not compute again. */
+START_TEST(a_failed_run_fails_again)
+{
+    const char *c = temp("c.h5"), *r = temp("r.h5");
+    for (int i = 0; i < 2; i++) {
+        HIFDM(3, "run", CHEN, "-o", c, "--set", "form.max_iterations=7", "--json");
+        ERR("error: form-finding did not converge in 7 iterations");
+        EXPECT(out_as("c.json"), "--", "a['status'] == 'not_converged'", "len(a['errors']) == 1");
+        HIFDM(3, "run", REFLECTOR, "-o", r, "--set", "optimize.method=lm", "--set", "optimize.rule=tension", "--set",
+              "optimize.boundary_ratio_cap=1.0001", "--quiet");
+        ERR("error: optimize: Levenberg-Marquardt has no feasible start");
+        ck_assert_int_eq(strstr(said.err, "is the finished result of this case") != NULL, i);
+    }
+    EXPECT(r, c, "--", "attribute(a, 'status') == 'no_feasible'", "attribute(b, 'status') == 'not_converged'");
+    HIFDM(0, "show", r, "--json");
+    EXPECT(out_as("s.json"), "--", "a['status'] == 'no_feasible'");
+}
+END_TEST
+
 START_TEST(summary_says_what_json_says)
 {
     const char *out = temp("c.h5");
@@ -139,6 +158,7 @@ Suite *suite_cli_run(void)
     tcase_add_test(tcase, chen2022_to_equilibrium_is_ill_posed);
     tcase_add_test(tcase, reflector_converges);
     tcase_add_test(tcase, not_converged_is_stored_and_told);
+    tcase_add_test(tcase, a_failed_run_fails_again);
     tcase_add_test(tcase, summary_says_what_json_says);
     tcase_add_test(tcase, show_gives_the_numbers_of_the_run);
     suite_add_tcase(suite, tcase);

@@ -244,6 +244,21 @@ START_TEST(a_killed_sweep_goes_on)
 }
 END_TEST
 
+/* Two sweeps of the same points at once: no point is run twice. */
+START_TEST(two_sweeps_share_the_points)
+{
+    file_with("base.yaml", SMALL_SCENE);
+    const char *path = file_with("study.yaml", "base: base.yaml\nsweep:\n"
+                                               "  form.pretension_N: {from: 1, to: 5, n: 2000}\n");
+    SHELL(
+        0,
+        "\"$0\" sweep \"$1\" --dir \"$2\" --quiet --threads 2 & \"$0\" sweep \"$1\" --dir \"$2\" --quiet --threads 2; "
+        "wait; cat \"$2\"/points-*.tsv | grep -vc '^#'",
+        path, temp("s.d"));
+    ck_assert_str_eq(said.out, "2000\n");
+}
+END_TEST
+
 /* The row of a finished run was lost: it is read from the result file, which is not touched. */
 START_TEST(a_finished_result_is_not_run_again)
 {
@@ -301,6 +316,7 @@ Suite *suite_cli_sweep(void)
     tcase_add_test(tcase, a_case_with_a_sweep_of_its_own);
     tcase_add_test(tcase, a_stopped_sweep_goes_on);
     tcase_add_test(tcase, a_killed_sweep_goes_on);
+    tcase_add_test(tcase, two_sweeps_share_the_points);
     tcase_add_test(tcase, a_finished_result_is_not_run_again);
     tcase_add_test(tcase, merge_replaces_only_merges);
     tcase_add_test(tcase, the_shipped_studies_are_valid);

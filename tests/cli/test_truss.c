@@ -91,6 +91,31 @@ START_TEST(exported_truss_can_be_imported)
 }
 END_TEST
 
+/* A result of other truss tables is another case's: finished, or stopped on its way. */
+START_TEST(changed_truss_tables_are_another_case)
+{
+    static const char *const edits[] = {"s/,130000000000,/,120000000000,/", "2s/^[^,]*/renamed/"};
+    const char *path = file_with("c.yaml", SMALL_SCENE "truss: {mbug: {panels: 2}}\n"), *folder = temp("csv");
+    const char *out = temp("t.h5"), *part = temp("part.h5");
+    HIFDM(0, "run", path, "-o", temp("one.h5"), "--quiet");
+    HIFDM(0, "export", temp("one.h5"), "--csv", folder);
+    path = file_with("c.yaml", SMALL_SCENE "truss: {import: {nodes: csv/truss_nodes.csv, members: csv/members.csv}}\n"
+                                           "optimize: {population: 20, generations: 100000, seed: 7, "
+                                           "stagnation_generations: 100000, boundary_ratio_cap: 1000}\n");
+    HIFDM(0, "run", path, "-o", out, "--quiet", "--set", "optimize.generations=2");
+    HIFDM(0, "run", path, "-o", out, "--quiet", "--set", "optimize.generations=2");
+    SHELL(0, "timeout -s TERM 1 \"$0\" run \"$1\" -o \"$2\" --quiet; [ $? = 124 ]", path, part);
+    HIFDM(0, "show", part);
+    OUT("unfinished");
+    SHELL(0, "sed -i \"$2\" \"$1/members.csv\"", folder, edits[_i]);
+    HIFDM(5, "run", path, "-o", out, "--quiet", "--set", "optimize.generations=2");
+    ERR("finished result of another case");
+    ERR("tables of the net or of the truss");
+    HIFDM(5, "run", path, "-o", part, "--quiet");
+    ERR("unfinished result of another case");
+}
+END_TEST
+
 static const struct {
     int exit_code;
     const char *section, *says;
@@ -150,6 +175,7 @@ Suite *suite_cli_truss(void)
     tcase_add_test(tests, forces_in_the_truss);
     tcase_add_test(tests, a_case_without_a_truss_has_nothing_of_it);
     tcase_add_test(tests, exported_truss_can_be_imported);
+    tcase_add_loop_test(tests, changed_truss_tables_are_another_case, 0, 2);
     tcase_add_loop_test(tests, faults_of_the_section, 0, N_FAULTY);
     tcase_add_test(tests, imported_net);
     return suite;

@@ -139,7 +139,7 @@ static hf_status store_some(hf_store *s, struct run *r, int first, int n, int *a
 static hf_status begin_new(const char *path, struct run *r, hf_store **s, hf_messages *messages)
 {
     hf_messages *m = messages;
-    HF_TRY(hf_store_create(path, 0, any_case(), &r->net.scene, 0, NULL, s, m));
+    HF_TRY(hf_store_create(path, 0, any_case(), &r->net.scene, NULL, 0, NULL, s, m));
     HF_TRY(hf_store_form(*s, &r->net.model, &r->net.work, NULL, m));
     HF_TRY(hf_store_genes(*s, &r->model, &r->ga, m));
     return hf_store_publish(*s, &(hf_summary){0}, 1, m);
@@ -150,7 +150,7 @@ static hf_status run_it(const char *path, struct run *r, int *acknowledged, hf_m
 {
     hf_store *s = NULL;
     hf_store_state state;
-    hf_status status = hf_store_look(path, any_case(), &r->net.scene, &state, messages);
+    hf_status status = hf_store_look(path, any_case(), &r->net.scene, NULL, &state, messages);
     if (status != HF_OK || state == HF_STORE_FINISHED) return status;
     if (state == HF_STORE_UNFINISHED)
         status = hf_store_resume(path, &s, messages);
@@ -231,7 +231,7 @@ static int fail_once(int call, long n, int was_killed, const char *whole)
 
     open_run(&r);
     hf_store_state state; /* finished: the call that failed came behind the last rename */
-    ck_assert_int_eq(hf_store_look(path, any_case(), &r.net.scene, &state, &messages), HF_OK);
+    ck_assert_int_eq(hf_store_look(path, any_case(), &r.net.scene, NULL, &state, &messages), HF_OK);
     ck_assert(acknowledged == 0 || state != HF_STORE_NOTHING);
     if (state == HF_STORE_UNFINISHED) {
         hf_store *s;

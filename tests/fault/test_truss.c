@@ -103,7 +103,7 @@ START_TEST(storing_and_reading)
     long n;
     for (n = 1; failed; n++) {
         hf_store *store;
-        ck_assert_int_eq(hf_store_create(path, 1, &c, &scene, 0, NULL, &store, &messages), HF_OK);
+        ck_assert_int_eq(hf_store_create(path, 1, &c, &scene, &carrier.truss, 0, NULL, &store, &messages), HF_OK);
         fail_allocation_at(n);
         hf_status status = hf_store_truss(store, &carrier, &state, &messages);
         failed = end_allocation_failure();

@@ -97,6 +97,50 @@ START_TEST(a_success_counts_more_than_a_failure)
 }
 END_TEST
 
+/* Written in the order of their names and against it: the file system may list them in any. */
+START_TEST(the_same_row_counts_in_any_order_of_files)
+{
+    hf_study s;
+    char command[2600];
+    open_study(&s);
+    for (int k = 0; k < 12; k++) {
+        char reason[2] = {(char)('a' + (_i ? 11 - k : k)), '\0'};
+        write_point(&s, 0, HF_IO, reason, &(hf_summary){.n_node = k});
+        snprintf(command, sizeof command, "mv '%s'/points-*-*.tsv '%s/points-%s.tsv'", folder, folder, reason);
+        ck_assert_int_eq(system(command), 0);
+    }
+    hf_points points = read_points(&s);
+    ck_assert_str_eq(points.point[0].reason, "l");
+    hf_points_free(&points);
+    hf_study_free(&s);
+}
+END_TEST
+
+/* A process that began earlier hears of what another finishes: that alone, and not of another base case. */
+START_TEST(what_others_finish_is_noticed)
+{
+    hf_study s;
+    hf_ledger mine;
+    hf_messages m = {0};
+    hf_summary summary = {0};
+    open_study(&s);
+    write_point(&s, 0, HF_OK, "", &summary);
+    ck_assert_int_eq(hf_ledger_open(folder, &mine, &m), HF_OK);
+    ck_assert_int_eq(hf_ledger_watch(&mine, &s, &m), HF_OK);
+    ck_assert(!hf_ledger_is_finished(&mine, &s, 0)); /* before: --retry may ask for it */
+    ck_assert(!hf_ledger_is_finished(&mine, &s, 1));
+    write_point(&s, 1, HF_OK, "", &summary);
+    write_point(&s, 2, HF_COLLAPSED, "fell", &summary);
+    s.fingerprint[0] ^= 1;
+    write_point(&s, 3, HF_OK, "", &summary);
+    s.fingerprint[0] ^= 1;
+    for (int i = 0; i < 5; i++)
+        ck_assert_int_eq(hf_ledger_is_finished(&mine, &s, i), i == 1 || i == 2);
+    hf_ledger_close(&mine);
+    hf_study_free(&s);
+}
+END_TEST
+
 START_TEST(rows_of_another_base_case_are_outdated)
 {
     hf_study s;
@@ -194,6 +238,8 @@ Suite *suite_unit_ledger(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, numbers_come_back_bit_by_bit);
     tcase_add_test(tests, a_success_counts_more_than_a_failure);
+    tcase_add_loop_test(tests, the_same_row_counts_in_any_order_of_files, 0, 2);
+    tcase_add_test(tests, what_others_finish_is_noticed);
     tcase_add_test(tests, rows_of_another_base_case_are_outdated);
     tcase_add_test(tests, torn_rows_are_ignored);
     tcase_add_test(tests, a_point_runs_as_long_as_its_process_lives);

@@ -33,6 +33,8 @@ static void fill_summary(struct rng *rng, hf_summary *s)
                       .n_cable = rng_int(rng, 1, 1 << 30),
                       .n_gene = rng_int(rng, 1, 1 << 30),
                       .half_bandwidth = rng_int(rng, 1, 1 << 30),
+                      .finished = 1,
+                      .status = HF_NO_FEASIBLE,
                       .pretension_N = rng_uniform(rng, 0, 1),
                       .form_wall_s = rng_uniform(rng, 0, 1),
                       .has_optimize = 1,
@@ -66,6 +68,7 @@ static void same_summary(const hf_summary *a, const hf_summary *b)
         const char *name;
         size_t offset, size;
     } members[] = {MEMBER(threads),
+                   MEMBER(status),
                    MEMBER(seed),
                    MEMBER(n_node),
                    MEMBER(n_free),
@@ -355,7 +358,7 @@ START_TEST(generations_are_appended)
         fill_generation(&ga, g);
         ck_assert_msg(hf_store_generation(store, &m, &ga, &messages) == HF_OK, "%s", messages.text);
     }
-    end(store, &(hf_summary){.has_optimize = 1, .best.status = HF_NOT_EVALUATED});
+    end(store, &(hf_summary){.has_optimize = 1, .best.status = HF_NOT_EVALUATED, .status = HF_NO_FEASIBLE});
     hf_ga_free(&ga);
 
     char script[2048];
@@ -379,7 +382,7 @@ START_TEST(generations_are_appended)
         "assert (a['gene_cable'][:] == 2 * np.arange(k)).all() and (a['gene_group'][:] == np.arange(k) // 2).all()\n"
         "assert a['lower_N'].shape == (k,)\n"
         "assert (a['upper_N'][:] == np.arange(k) + 2).all()\n"
-        "assert f.attrs['status'] == 'not_evaluated'\n",
+        "assert f.attrs['status'] == b'no_feasible'\n",
         p, k);
     python("r", temp_path("a.h5"), script);
     free(base_N);
@@ -434,6 +437,32 @@ START_TEST(data_sets_depend_on_the_case_alone)
 }
 END_TEST
 
+/* What goes on with a result found the same shape: up to rounding with a warning, otherwise not at all. */
+START_TEST(another_shape_is_not_gone_on_with)
+{
+    static const struct {
+        double factor;
+        hf_status status;
+        int n_warning;
+    } table[] = {{1, HF_OK, 0}, {1 + 1e-12, HF_OK, 1}, {1.001, HF_EXISTS, 0}, {(double)NAN, HF_EXISTS, 0}};
+    struct net net;
+    hf_messages messages = {0};
+    OPEN_CASE(&net, SMALL_REFLECTOR);
+    find_shape(&net);
+    hf_store *store = begin(temp_path("a.h5"), 1, &net.scene);
+    ck_assert_int_eq(hf_store_form(store, &net.model, &net.work, NULL, &messages), HF_OK);
+    ck_assert_int_eq(hf_store_publish(store, &(hf_summary){0}, 1, &messages), HF_OK);
+    hf_store_abandon(store);
+    net.work.tension_N[3] *= table[_i].factor;
+    ck_assert_int_eq(hf_store_resume(temp_path("a.h5"), &store, &messages), HF_OK);
+    ck_assert_int_eq(hf_store_form(store, &net.model, &net.work, NULL, &messages), table[_i].status);
+    ck_assert_int_eq(messages.n_warning, table[_i].n_warning);
+    hf_store_abandon(store);
+    hf_messages_free(&messages);
+    close_net(&net);
+}
+END_TEST
+
 Suite *suite_unit_store(void)
 {
     Suite *suite = suite_create("unit/store");
@@ -447,6 +476,7 @@ Suite *suite_unit_store(void)
     tcase_add_test(tests, coupling_is_stored_beside_the_shape);
     tcase_add_test(tests, a_run_without_a_best_says_so);
     tcase_add_loop_test(tests, generations_are_appended, 0, N(sizes));
+    tcase_add_loop_test(tests, another_shape_is_not_gone_on_with, 0, 4);
     tcase_add_test(tests, provenance_and_units_are_there);
     tcase_add_test(tests, data_sets_depend_on_the_case_alone);
     return suite;

@@ -12,7 +12,7 @@ static hf_status refuse(const char *path, int force, const hf_scene *scene, char
 {
     hf_messages messages = {0};
     hf_store *store;
-    hf_status status = hf_store_create(path, force, any_case(), scene, 0, NULL, &store, &messages);
+    hf_status status = hf_store_create(path, force, any_case(), scene, NULL, 0, NULL, &store, &messages);
     ck_assert_ptr_null(store);
     ck_assert_int_eq(messages.n_error, 1);
     snprintf(text, size, "%s", messages.text);
@@ -101,7 +101,7 @@ START_TEST(abandoned_files_leave_nothing)
     char text[1024];
     hf_store *store = begin(path, 0, &net.scene), *second;
     ck_assert_int_eq(count_files(folder), 2); /* the file under its temporary name, and the journal */
-    ck_assert_int_eq(hf_store_create(path, 1, any_case(), &net.scene, 0, NULL, &second, &messages), HF_IO);
+    ck_assert_int_eq(hf_store_create(path, 1, any_case(), &net.scene, NULL, 0, NULL, &second, &messages), HF_IO);
     ck_assert_ptr_null(second);
     snprintf(text, sizeof text, "%s", messages.text);
     ck_assert_msg(strstr(text, "another process is writing it") != NULL, "%s", text);
@@ -246,7 +246,7 @@ START_TEST(a_full_disk_is_told)
     limit.rlim_cur = limits[_i];
     signal(SIGXFSZ, SIG_IGN);
     setrlimit(RLIMIT_FSIZE, &limit);
-    hf_status status = hf_store_create(path, 0, any_case(), &net.scene, 0, NULL, &store, &messages);
+    hf_status status = hf_store_create(path, 0, any_case(), &net.scene, NULL, 0, NULL, &store, &messages);
     if (status == HF_OK) {
         for (ga.generation = 0; ga.generation < 40; ga.generation++)
             hf_store_generation(store, &m, &ga, &messages);
@@ -276,7 +276,7 @@ START_TEST(failed_allocations_are_told)
         hf_scene scene = {0};
         hf_shape shape = {0};
         fail_allocation_at(n);
-        hf_status status = hf_store_create(path, 1, any_case(), &net.scene, 0, NULL, &store, &messages), later;
+        hf_status status = hf_store_create(path, 1, any_case(), &net.scene, NULL, 0, NULL, &store, &messages), later;
         if (status == HF_OK) {
             later = hf_store_form(store, &net.model, &net.work, NULL, &messages);
             status = hf_store_finish(store, &(hf_summary){0}, &messages);

@@ -61,7 +61,8 @@ static void open_store(population *p)
 {
     hf_messages messages = {0};
     double start_s = bench_clock_s();
-    if (p->path && hf_store_create(p->path, 1, &p->scene->settings, &p->scene->scene, 0, NULL, &p->store, &messages))
+    if (p->path &&
+        hf_store_create(p->path, 1, &p->scene->settings, &p->scene->scene, NULL, 0, NULL, &p->store, &messages))
         bench_fail(p->path, messages.text);
     p->open_close_s += bench_clock_s() - start_s;
     hf_messages_free(&messages);

@@ -101,9 +101,9 @@ WATCH(POLISH, hf_status, hf_polish_run,
        double *design_N, hf_workspace *workspace, hf_polish_result *result),
       (evaluator, lower_N, upper_N, max_iterations, design_N, workspace, result))
 WATCH(STORE, hf_status, hf_store_create,
-      (const char *path, int force, const hf_case *settings, const hf_scene *scene, int argc, char *const *argv,
-       hf_store **store, hf_messages *messages),
-      (path, force, settings, scene, argc, argv, store, messages))
+      (const char *path, int force, const hf_case *settings, const hf_scene *scene, const hf_truss *truss, int argc,
+       char *const *argv, hf_store **store, hf_messages *messages),
+      (path, force, settings, scene, truss, argc, argv, store, messages))
 WATCH(STORE, hf_status, hf_store_form,
       (hf_store * store, const hf_model *model, const hf_workspace *workspace, const hf_history *history,
        hf_messages *messages),
