@@ -33,8 +33,8 @@ void hf_band_gram(int n, int n_column, const double *a, int lda, double *gram, i
 /* One system per thread: keep a threaded BLAS from starting threads of its own. Call once, before any solve. */
 void hf_band_single_threaded(void);
 
-/* Is there address space for what LAPACK takes in n_thread threads? OpenBLAS wants HF_BAND_ROOM_MB for each, and when it
- * is refused (ulimit -v) tries again for ever. */
+/* Is there address space for what LAPACK takes in n_thread threads? OpenBLAS wants HF_BAND_ROOM_MB for each, and tries
+ * again for ever when it is refused (ulimit -v). */
 #define HF_BAND_ROOM_MB 128
 int hf_band_has_room(int n_thread);
 

@@ -285,8 +285,7 @@ static hf_status write_all(const hf_options *o, const hf_scene *scene, const hf_
                            char *said, size_t size, hf_messages *messages)
 {
     static const char *const name[5] = {"form", "optimize", "polish", "theoretical", "truss"}; /* by hf_stage */
-    int has[5] = {1, hf_summary_has_best_shape(summary), summary->has_polish, 1,
-                  summary->has_truss};
+    int has[5] = {1, hf_summary_has_best_shape(summary), summary->has_polish, 1, summary->has_truss};
     char path[5][PATH_SIZE];
     HF_TRY(hf_export_folder(o->vtk, messages));
     for (int i = 0; i < 5; i++) { /* all before any is written */
