@@ -80,9 +80,12 @@ static int print_number(const hf_hdf5_member *column, const hf_summary *s, char 
 
 /* ---- names ---- */
 
-void hf_ledger_file(const char *folder, const char *id, char path[HF_PATH_SIZE + 32])
+hf_ledger_content hf_ledger_file(const char *folder, const hf_study *study, int point, char path[HF_PATH_SIZE + 32])
 {
-    snprintf(path, HF_PATH_SIZE + 32, "%s/%s.h5", folder, id);
+    struct stat info;
+    snprintf(path, HF_PATH_SIZE + 32, "%s/%s-%.8s.h5", folder, study->id[point], study->fingerprint);
+    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return HF_LEDGER_NO_FILE;
+    return info.st_size > 0 ? HF_LEDGER_FILE : HF_LEDGER_EMPTY_FILE;
 }
 
 static struct flock lock_of(const char *id, short type)
@@ -489,6 +492,19 @@ static void find_running(reading *r, const char *folder)
 
 /* ---- the whole ---- */
 
+/* A row is not enough where a file is asked for: somebody may have removed it. */
+static void find_lost(reading *r, const char *folder)
+{
+    char path[HF_PATH_SIZE + 32];
+    if (!hf_study_has_files(r->study)) return;
+    for (int i = 0; i < r->study->n_point; i++) {
+        hf_point *p = &r->points->point[i];
+        if (p->state != HF_POINT_DONE || hf_ledger_file(folder, r->study, i, path) == HF_LEDGER_FILE) continue;
+        *p = (hf_point){HF_POINT_MISSING, HF_NOT_EVALUATED, "", NULL};
+        r->points->n_lost++;
+    }
+}
+
 hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *points, hf_messages *messages)
 {
     size_t n = (size_t)study->n_point;
@@ -504,6 +520,7 @@ hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *p
     }
     hf_status status = read_files(&r, folder, messages);
     find_running(&r, folder);
+    find_lost(&r, folder);
     for (int i = 0; i < study->n_point; i++)
         points->count[points->point[i].state]++;
     free(r.sorted);

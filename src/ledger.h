@@ -5,7 +5,8 @@
  *                         case, status, reason, every number of hf_summary. One write(2) each; a torn one is ignored.
  *   claims                no content: the process that runs a point holds a record lock on the byte that the point's id
  *                         names, and the system takes it away when the process ends, however it ends.
- *   ID.h5                 result files of points that have one. */
+ *   ID-FINGERPRINT.h5     result files of points that have one; of the fingerprint the first digits: runs of different
+ *                         base cases never share a file. */
 #ifndef HIFDM_LEDGER_H
 #define HIFDM_LEDGER_H
 
@@ -51,8 +52,9 @@ int hf_ledger_is_finished(hf_ledger *ledger, const hf_study *study, int point);
 hf_status hf_ledger_write(hf_ledger *ledger, const hf_study *study, int point, hf_status status, const char *reason,
                           const hf_summary *summary, hf_messages *messages);
 
-/* Path of the point's result file. */
-void hf_ledger_file(const char *folder, const char *id, char path[HF_PATH_SIZE + 32]);
+/* Path of the point's result file; what kind of file stands there. */
+typedef enum { HF_LEDGER_NO_FILE, HF_LEDGER_EMPTY_FILE, HF_LEDGER_FILE } hf_ledger_content;
+hf_ledger_content hf_ledger_file(const char *folder, const hf_study *study, int point, char path[HF_PATH_SIZE + 32]);
 
 /* ---- Reading ---- */
 
@@ -76,6 +78,7 @@ typedef struct {
 typedef struct {
     hf_point *point; /* [n_point] in the order of the study */
     int n_point, count[HF_N_POINT_STATE];
+    int n_lost;  /* of the missing ones: done, but the result file is not there */
     char **text; /* the files, which the points lead into */
     char ***fields;
     int n_text, n_field_block;

@@ -157,7 +157,8 @@ static void write_status(merger *m, hid_t group)
 static void write_points(merger *m)
 {
     hid_t group = hf_hdf5_make_group(&m->io, "/points");
-    write_texts(m, group, "id", id_of, 0, "names the point by what it sets; of its result file and its link in /runs");
+    write_texts(m, group, "id", id_of, 0,
+                "names the point by what it sets; its link in /runs, and how its result file begins");
     write_status(m, group);
     write_texts(m, group, "reason", reason_of, 0, "what went wrong, if anything");
     hid_t input = hf_hdf5_make_group(&m->io, "/points/input");
@@ -199,9 +200,8 @@ static void write_links(merger *m, const char *folder)
     relative_folder(m->io.path, folder, relative, sizeof relative);
     for (int i = 0; i < m->study->n_point && m->io.status == HF_OK; i++) {
         const char *id = m->study->id[i];
-        hf_ledger_file(folder, id, file);
-        if (access(file, F_OK) != 0) continue;
-        hf_ledger_file(*relative ? relative : ".", id, target);
+        if (hf_ledger_file(folder, m->study, i, file) != HF_LEDGER_FILE) continue;
+        snprintf(target, sizeof target, "%s%s", *relative ? relative : ".", strrchr(file, '/'));
         if (H5Lcreate_external(target, "/", group, id, H5P_DEFAULT, H5P_DEFAULT) < 0)
             hf_hdf5_fail(&m->io, "write", group, id);
     }

@@ -184,14 +184,14 @@ static void run_point(void *context, int k)
     hf_summary summary;
     hf_messages said = {0};
     hf_study_point(w->study, i, &overrides);
-    hf_ledger_file(w->ledger.folder, id, file);
+    int is_empty = hf_ledger_file(w->ledger.folder, w->study, i, file) == HF_LEDGER_EMPTY_FILE;
     hf_run_request request = {.case_path = w->study->base,
                               .set = overrides.set,
                               .n_set = overrides.n_set,
                               .output = file,
                               .of_sweep = 1,
                               .no_file = !hf_study_has_files(w->study),
-                              .restart = w->state[i] != HF_POINT_MISSING,
+                              .restart = w->state[i] == HF_POINT_FAILED || is_empty,
                               .threads = w->threads,
                               .argc = w->argc,
                               .argv = w->argv,
@@ -313,14 +313,16 @@ static void say_status(const hf_study *study, const char *folder, const hf_point
     int n_begun = 0;
     for (int i = 0; i < points->n_point; i++) {
         char path[HF_PATH_SIZE + 32];
-        hf_ledger_file(folder, study->id[i], path);
-        n_begun += points->point[i].state == HF_POINT_MISSING && access(path, F_OK) == 0;
+        n_begun +=
+            points->point[i].state == HF_POINT_MISSING && hf_ledger_file(folder, study, i, path) == HF_LEDGER_FILE;
     }
     fprintf(file, "%s: %d points, results in %s\n", study->path, points->n_point, folder);
     for (int k = 0; k < HF_N_POINT_STATE; k++)
         if (points->count[k] || k != HF_POINT_OUTDATED)
             fprintf(file, "  %-9s %d\n", hf_point_state_word[k], points->count[k]);
     if (n_begun) fprintf(file, "  of the missing ones, %d were begun and will go on\n", n_begun);
+    if (points->n_lost)
+        fprintf(file, "  of the missing ones, %d were done, but their files are gone\n", points->n_lost);
     if (points->count[HF_POINT_OUTDATED]) fprintf(file, "  outdated: of another version of %s\n", study->base);
     if (points->count[HF_POINT_FAILED]) fprintf(file, "failed:\n");
     say_failures(study, points, file);

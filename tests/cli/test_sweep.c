@@ -46,7 +46,8 @@ START_TEST(sweep_status_and_merge)
            "[a['runs'][i].attrs['seed'] for i in texts(a['points/id'])] == a['points/seed'][:].tolist()",
            "[a['runs'][i]['ga'].attrs['best_psi_m'] for i in texts(a['points/id'])] == "
            "a['points/ga/best_psi_m'][:].tolist()",
-           "[a['runs'].get(i, getlink=True).filename for i in a['runs']] == [f's.d/{i}.h5' for i in a['runs']]",
+           "[a['runs'].get(i, getlink=True).filename for i in a['runs']] == "
+           "[f\"s.d/{i}-{attribute(a, 'fingerprint')[:8]}.h5\" for i in a['runs']]",
            /* nothing of the moment is in a data set */
            "[n for n in contents(a) if n.endswith('_s') or 'threads' in n] == []");
     SHELL(0, "h5dump -d /points/form/psi_m \"$1\" && h5ls -r \"$1\"", merged);
