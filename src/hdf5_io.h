@@ -44,8 +44,10 @@ typedef enum {
 
 /* HDF5 as Debian builds it is not made for threads: every public call of store and store_read holds this one lock, so
  * that runs in threads of one process may each have a store. A pthread mutex and no OpenMP lock, because the threads
- * may be anybody's. hf_hdf5_unlock returns its argument. */
+ * may be anybody's. hf_hdf5_unlock returns its argument. hf_hdf5_quiet, under the lock: every thread that takes it from
+ * then on prints none of HDF5's errors. */
 void hf_hdf5_lock(void);
+void hf_hdf5_quiet(void);
 hf_status hf_hdf5_unlock(hf_status status);
 
 size_t hf_hdf5_kind_bytes(hf_hdf5_kind kind); /* of one value in memory; not for HF_KIND_CHARS */

@@ -59,29 +59,53 @@ static hf_status open_and_lock(hf_journal *j, hf_messages *messages)
     return hf_error(messages, HF_IO, "%s: %s changes all the time; is another process writing it?", j->result, j->path);
 }
 
-hf_status hf_journal_open(const char *result, hf_journal *j, hf_messages *messages)
+static hf_status look_at_head(hf_journal *j, int *is_journal, hf_messages *messages)
 {
     char magic[8];
     struct stat info;
-    size_t size = strlen(result) + 16;
-    *j = (hf_journal){.file = -1, .result = result, .path = malloc(size), .next = malloc(size)};
-    if (!j->path || !j->next) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", result);
-    snprintf(j->path, size, "%s.journal", result);
-    snprintf(j->next, size, "%s.journal.new", result);
-    HF_TRY(open_and_lock(j, messages));
     if (fstat(j->file, &info) != 0) return fail(j, "read", j->path, messages);
     j->is_new = info.st_size == 0;
     j->size = info.st_size;
     ssize_t n = pread(j->file, magic, sizeof magic, 0);
     if (n < 0) return fail(j, "read", j->path, messages);
-    if (memcmp(magic, MAGIC, (size_t)n) != 0) { /* a header may be torn */
-        close(j->file);
-        j->file = -1;
-        return hf_error(messages, HF_EXISTS,
-                        "%s: %s is no journal of hifdm, and in the way; use -o to choose another name", result,
-                        j->path);
-    }
+    *is_journal = memcmp(magic, MAGIC, (size_t)n) == 0; /* a header may be torn */
     return HF_OK;
+}
+
+hf_status hf_journal_open(const char *result, int replaces, hf_journal *j, hf_messages *messages)
+{
+    size_t size = strlen(result) + 16;
+    int is_journal;
+    *j = (hf_journal){.file = -1, .result = result, .path = malloc(size), .next = malloc(size)};
+    if (!j->path || !j->next) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", result);
+    snprintf(j->path, size, "%s.journal", result);
+    snprintf(j->next, size, "%s.journal.new", result);
+    HF_TRY(open_and_lock(j, messages));
+    HF_TRY(look_at_head(j, &is_journal, messages));
+    if (!is_journal && replaces) { /* the name only: a link may lead to what is somebody's */
+        if (unlink(j->path) != 0) return fail(j, "remove", j->path, messages);
+        hf_warning(messages, "%s: %s was no journal of hifdm; it is replaced", result, j->path);
+        close(j->file);
+        HF_TRY(open_and_lock(j, messages));
+        HF_TRY(look_at_head(j, &is_journal, messages));
+    }
+    if (is_journal) return HF_OK;
+    close(j->file);
+    j->file = -1;
+    return hf_error(messages, HF_EXISTS,
+                    "%s: %s is no journal of hifdm, and in the way; delete it, use --restart (of a sweep: --retry "
+                    "failed) to replace both or -o to choose another name",
+                    result, j->path);
+}
+
+int hf_journal_is_there(const char *result)
+{
+    char path[4096], magic[8];
+    snprintf(path, sizeof path, "%s.journal", result);
+    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    int is_there = file >= 0 && read(file, magic, sizeof magic) == sizeof magic && !memcmp(magic, MAGIC, sizeof magic);
+    if (file >= 0) close(file);
+    return is_there;
 }
 
 /* 0, or -1 and errno. */

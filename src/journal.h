@@ -31,8 +31,12 @@ typedef struct {
 } hf_journal;
 
 /* Make or open the journal of `result` and take its lock. HF_IO when another process holds it, or when it cannot be
- * made; HF_EXISTS when a file of that name is no journal; HF_NO_MEMORY. Close in any case. */
-hf_status hf_journal_open(const char *result, hf_journal *journal, hf_messages *messages);
+ * made; HF_EXISTS when a file of that name is no journal, unless `replaces`: then it is removed, with a warning.
+ * HF_NO_MEMORY. Close in any case. */
+hf_status hf_journal_open(const char *result, int replaces, hf_journal *journal, hf_messages *messages);
+
+/* Is there a journal of `result` that somebody has begun to write? Takes no lock. */
+int hf_journal_is_there(const char *result);
 
 /* Forget what is in it, and write for the run of this identity from now on. HF_OK or HF_IO. */
 hf_status hf_journal_restart(hf_journal *journal, const char *identity, hf_messages *messages);

@@ -1,6 +1,7 @@
 /* Contents: columns - names - writing - reading files - news of other processes - reading locks - the whole */
 #include "ledger.h"
 
+#include "journal.h"
 #include "text.h"
 
 #include <dirent.h>
@@ -232,6 +233,7 @@ typedef struct {
     const hf_study *study;
     hf_points *points;
     named_point *sorted; /* [n_point] by id */
+    hf_point *failure;   /* [n_point] of this base case; what counts when a success has lost its file */
 } reading;
 
 static int by_id(const void *a, const void *b)
@@ -274,15 +276,14 @@ static void take_row(reading *r, char **field, char **number)
     int i = find_point(r, field[0]);
     if (i < 0) return;
     hf_point *p = &r->points->point[i];
-    if (p->state == HF_POINT_DONE) return;
     if (strcmp(field[1], r->study->fingerprint)) {
         if (p->state == HF_POINT_MISSING) p->state = HF_POINT_OUTDATED;
         return;
     }
-    p->status = hf_status_of_word(field[2]);
-    p->state = p->status == HF_OK ? HF_POINT_DONE : HF_POINT_FAILED;
-    p->reason = field[3];
-    p->field = number;
+    hf_status status = hf_status_of_word(field[2]);
+    hf_point row = {status == HF_OK ? HF_POINT_DONE : HF_POINT_FAILED, status, field[3], number};
+    if (row.state == HF_POINT_FAILED) r->failure[i] = row;
+    if (p->state != HF_POINT_DONE) *p = row;
 }
 
 enum { FIELD_MAX = 512 };
@@ -395,7 +396,7 @@ static int place_of(struct hf_ledger_news *news, const char *name)
 /* The whole lines of text[n], which ends with a NUL: how many bytes they have. */
 static off_t note_rows(struct hf_ledger_news *news, const hf_study *study, char *text)
 {
-    reading r = {study, NULL, news->sorted};
+    reading r = {.study = study, .sorted = news->sorted};
     char *line = text, *end, *field[3];
     for (; (end = strchr(line, '\n')) != NULL; line = end + 1) {
         *end = '\0';
@@ -492,16 +493,17 @@ static void find_running(reading *r, const char *folder)
 
 /* ---- the whole ---- */
 
-/* A row is not enough where a file is asked for: somebody may have removed it. */
+/* A row is not enough where a file is asked for: somebody may have removed it, and its second run be half way. */
 static void find_lost(reading *r, const char *folder)
 {
     char path[HF_PATH_SIZE + 32];
     if (!hf_study_has_files(r->study)) return;
     for (int i = 0; i < r->study->n_point; i++) {
         hf_point *p = &r->points->point[i];
-        if (p->state != HF_POINT_DONE || hf_ledger_file(folder, r->study, i, path) == HF_LEDGER_FILE) continue;
-        *p = (hf_point){HF_POINT_MISSING, HF_NOT_EVALUATED, "", NULL};
-        r->points->n_lost++;
+        if (p->state != HF_POINT_DONE) continue;
+        if (hf_ledger_file(folder, r->study, i, path) == HF_LEDGER_FILE && !hf_journal_is_there(path)) continue;
+        *p = r->failure[i];
+        r->points->n_lost += p->state == HF_POINT_MISSING;
     }
 }
 
@@ -510,20 +512,21 @@ hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *p
     size_t n = (size_t)study->n_point;
     *points = (hf_points){.n_point = study->n_point};
     points->point = calloc(n, sizeof *points->point);
-    reading r = {study, points, sort_points(study)};
-    if (!points->point || !r.sorted) {
+    reading r = {study, points, sort_points(study), calloc(n, sizeof *r.failure)};
+    if (!points->point || !r.sorted || !r.failure) {
         free(r.sorted);
+        free(r.failure);
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for %d points", folder, study->n_point);
     }
-    for (int i = 0; i < study->n_point; i++) {
-        points->point[i] = (hf_point){HF_POINT_MISSING, HF_NOT_EVALUATED, "", NULL};
-    }
+    for (int i = 0; i < study->n_point; i++)
+        points->point[i] = r.failure[i] = (hf_point){HF_POINT_MISSING, HF_NOT_EVALUATED, "", NULL};
     hf_status status = read_files(&r, folder, messages);
     find_running(&r, folder);
     find_lost(&r, folder);
     for (int i = 0; i < study->n_point; i++)
         points->count[points->point[i].state]++;
     free(r.sorted);
+    free(r.failure);
     return status;
 }
 

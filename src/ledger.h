@@ -78,7 +78,7 @@ typedef struct {
 typedef struct {
     hf_point *point; /* [n_point] in the order of the study */
     int n_point, count[HF_N_POINT_STATE];
-    int n_lost;  /* of the missing ones: done, but the result file is not there */
+    int n_lost;  /* of the missing ones: done, but the result file is gone, or begun anew */
     char **text; /* the files, which the points lead into */
     char ***fields;
     int n_text, n_field_block;

@@ -87,7 +87,8 @@ const hf_option_row hf_option_table[] = {
      BIT(HF_COMMAND_SWEEP), OPTION_RETRY},
     {"--output", "-o", "FILE", "the page (default: the result's name with .html, in this folder)",
      BIT(HF_COMMAND_REPORT), OPTION_OUTPUT},
-    {"--restart", NULL, NULL, "begin anew, whatever FILE holds; without it an unfinished result of this case goes on",
+    {"--restart", NULL, NULL,
+     "begin anew, whatever FILE and its journal hold; without it an unfinished result of this case goes on",
      BIT(HF_COMMAND_RUN), OPTION_FORCE},
     {"--force", NULL, NULL, "replace existing files (of run: the same as --restart)",
      BIT(HF_COMMAND_RUN) | BIT(HF_COMMAND_EXPORT) | BIT(HF_COMMAND_EVALUATE) | BIT(HF_COMMAND_REPORT) |

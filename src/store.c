@@ -57,7 +57,7 @@ void hf_store_quiet(void)
 {
     hf_hdf5_lock();
     H5dont_atexit();
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    hf_hdf5_quiet();
     hf_hdf5_unlock(HF_OK);
 }
 
@@ -178,11 +178,11 @@ static void free_store(hf_store *s)
 }
 
 /* With the lock of the name; NULL and *status without. */
-static hf_store *new_store(const char *path, hf_status *status, hf_messages *messages)
+static hf_store *new_store(const char *path, int replaces, hf_status *status, hf_messages *messages)
 {
     hf_store *s = calloc(1, sizeof *s);
-    *status =
-        s ? hf_store_file_begin(path, &s->f, messages) : hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    *status = s ? hf_store_file_begin(path, replaces, &s->f, messages)
+                : hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     if (s && *status != HF_OK) {
         free_store(s);
         s = NULL;
@@ -207,14 +207,14 @@ hf_status hf_store_create(const char *path, int restart, const hf_case *settings
     hf_status status;
     struct stat info;
     *store = NULL;
-    hf_store *s = new_store(path, &status, messages);
+    hf_store *s = new_store(path, restart, &status, messages);
     if (!s) return status;
     hf_hdf5_lock();
     double begin_s = clock_s();
-    s->f.replaces = restart;
     if (!restart && lstat(path, &info) == 0)
-        s->f.io.status =
-            hf_error(messages, HF_EXISTS, "%s: exists; use --restart to replace it or -o to choose another name", path);
+        s->f.io.status = hf_error(
+            messages, HF_EXISTS,
+            "%s: exists; use --restart (of a sweep: --retry failed) to replace it or -o to choose another name", path);
     if (s->f.io.status == HF_OK && hf_store_identify(settings, scene, truss, s->identity) != HF_OK)
         s->f.io.status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     if (s->f.io.status == HF_OK) {
@@ -237,7 +237,7 @@ static hf_status take_record(void *context, int generation, const void *payload,
     if (generation > next || bytes != g->payload_bytes || generation >= g->limit)
         return hf_error(s->f.io.messages, HF_IO,
                         "%s: does not fit to %s, which goes on with generation %d of %zu bytes, not %d of %zu; was it "
-                        "copied or replaced? --restart begins anew",
+                        "copied or replaced? --restart (of a sweep: --retry failed) begins anew",
                         s->f.path, s->f.journal.path, generation, bytes, next, g->payload_bytes);
     if (hf_generations_are_full(g)) {
         hf_store_file_open(&s->f);
@@ -298,7 +298,7 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
 {
     hf_status status;
     *store = NULL;
-    hf_store *s = new_store(path, &status, messages);
+    hf_store *s = new_store(path, 0, &status, messages);
     if (!s) return status;
     hf_hdf5_lock();
     s->is_resumed = 1;
@@ -361,11 +361,11 @@ static void compare_shape(hf_store *s, const hf_model *model, const hf_workspace
         apart_N = gap_N <= apart_N || isnan(apart_N) ? apart_N : gap_N;
     }
     if (!(apart_N <= SAME_SHAPE * largest_N))
-        s->f.io.status =
-            hf_error(s->f.io.messages, HF_EXISTS,
-                     "%s: this machine or build finds another shape (tensions differ by %.2g N); --restart "
-                     "begins anew",
-                     s->f.path, apart_N);
+        s->f.io.status = hf_error(s->f.io.messages, HF_EXISTS,
+                                  "%s: this machine or build finds another shape (tensions differ by %.2g N); "
+                                  "--restart (of a sweep: --retry failed) "
+                                  "begins anew",
+                                  s->f.path, apart_N);
     else
         hf_warning(s->f.io.messages,
                    "%s: this machine or build finds the shape with other last bits than the one that began it: the "

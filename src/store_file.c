@@ -39,10 +39,10 @@ static hf_status check_target(const char *path, hf_messages *messages)
     return HF_OK;
 }
 
-hf_status hf_store_file_begin(const char *path, hf_store_file *f, hf_messages *messages)
+hf_status hf_store_file_begin(const char *path, int replaces, hf_store_file *f, hf_messages *messages)
 {
     size_t size = strlen(path) + 48;
-    *f = (hf_store_file){.journal.file = -1, .io.file = -1, .visible = -1};
+    *f = (hf_store_file){.journal.file = -1, .io.file = -1, .visible = -1, .replaces = replaces};
     HF_TRY(check_target(path, messages));
     f->path = malloc(size);
     f->temporary = malloc(size);
@@ -50,7 +50,7 @@ hf_status hf_store_file_begin(const char *path, hf_store_file *f, hf_messages *m
     snprintf(f->path, size, "%s", path);
     snprintf(f->temporary, size, "%s.journal.tmp", path);
     f->io = (hf_hdf5){.path = f->path, .messages = messages, .status = HF_OK, .file = -1};
-    return hf_journal_open(f->path, &f->journal, messages);
+    return hf_journal_open(f->path, replaces, &f->journal, messages);
 }
 
 /* ---- the temporary file ---- */

@@ -36,9 +36,9 @@ typedef struct {
     char *path, *temporary; /* owned */
 } hf_store_file;
 
-/* Look whether `path` can be written, take its lock. HF_IO, HF_EXISTS (a foreign journal), HF_NO_MEMORY. End in any
- * case. */
-hf_status hf_store_file_begin(const char *path, hf_store_file *file, hf_messages *messages);
+/* Look whether `path` can be written, take its lock. replaces: what has the names of result and journal may go. HF_IO,
+ * HF_EXISTS (a foreign journal), HF_NO_MEMORY. End in any case. */
+hf_status hf_store_file_begin(const char *path, int replaces, hf_store_file *file, hf_messages *messages);
 
 /* The calls from here on do nothing once io.status is not HF_OK. */
 

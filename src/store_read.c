@@ -163,7 +163,7 @@ static void remove_journal(const char *path)
     hf_messages unwanted = {0};
     snprintf(name, sizeof name, "%s.journal", path);
     if (access(name, F_OK) != 0) return;
-    hf_status status = hf_journal_open(path, &journal, &unwanted);
+    hf_status status = hf_journal_open(path, 0, &journal, &unwanted);
     hf_journal_close(&journal, status == HF_OK);
     hf_messages_free(&unwanted);
 }
@@ -187,16 +187,17 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
     hf_messages_free(&unwanted);
     hf_hdf5_unlock(HF_OK);
     if (io.status != HF_OK)
-        return hf_error(messages, HF_EXISTS,
-                        "%s: exists and is no result of hifdm; use --restart to replace it or "
-                        "-o to choose another name",
-                        path);
-    if (*words)
         return hf_error(
             messages, HF_EXISTS,
-            "%s: exists and is the %s result of another case; what differs: %s. Use --restart to replace it "
-            "or -o to choose another name",
-            path, finished ? "finished" : "unfinished", words);
+            "%s: exists and is no result of hifdm; use --restart (of a sweep: --retry failed) to replace it or "
+            "-o to choose another name",
+            path);
+    if (*words)
+        return hf_error(messages, HF_EXISTS,
+                        "%s: exists and is the %s result of another case; what differs: %s. Use --restart (of a sweep: "
+                        "--retry failed) to replace it "
+                        "or -o to choose another name",
+                        path, finished ? "finished" : "unfinished", words);
     *state = finished ? HF_STORE_FINISHED : HF_STORE_UNFINISHED;
     if (finished) remove_journal(path);
     return HF_OK;

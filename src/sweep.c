@@ -322,10 +322,12 @@ static void say_status(const hf_study *study, const char *folder, const hf_point
             fprintf(file, "  %-9s %d\n", hf_point_state_word[k], points->count[k]);
     if (n_begun) fprintf(file, "  of the missing ones, %d were begun and will go on\n", n_begun);
     if (points->n_lost)
-        fprintf(file, "  of the missing ones, %d were done, but their files are gone\n", points->n_lost);
+        fprintf(file, "  of the missing ones, %d were done, but their files are gone or unfinished\n", points->n_lost);
     if (points->count[HF_POINT_OUTDATED]) fprintf(file, "  outdated: of another version of %s\n", study->base);
     if (points->count[HF_POINT_FAILED]) fprintf(file, "failed:\n");
     say_failures(study, points, file);
+    if (points->count[HF_POINT_FAILED])
+        fprintf(file, "'hifdm sweep %s --retry failed' runs these anew and replaces their files\n", study->path);
 }
 
 /* What status and merge begin with. */

@@ -21,7 +21,8 @@ START_TEST(existing_output_is_not_replaced)
     const char *path = temp("mine.h5");
     write_file(path, "mine");
     REFUSED(path,
-            "error: %s: exists and is no result of hifdm; use --restart to replace it or -o to choose another name\n",
+            "error: %s: exists and is no result of hifdm; use --restart (of a sweep: --retry failed) to replace it or "
+            "-o to choose another name\n",
             path);
     ck_assert(file_is(path, "mine"));
     HIFDM(2, "run", file_with("bad.yaml", "scene: 1\n"), "-o", path, "--force");
@@ -50,7 +51,7 @@ START_TEST(output_is_looked_at_before_the_work)
                                 "optimize.stagnation_generations=1000000",
                                 NULL};
     demand_exit(run_command(10.0, argv), 5, "existing output", __LINE__);
-    ERR("use --restart to replace it");
+    ERR("use --restart (of a sweep: --retry failed) to replace it");
     ck_assert(file_is(path, "mine"));
 }
 END_TEST

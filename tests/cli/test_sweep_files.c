@@ -72,7 +72,7 @@ START_TEST(a_row_without_its_file_is_missing)
     SHELL(0, "cd \"$1\" && set -- *.h5 && rm $1 && : >$2", folder);
     HIFDM(0, "status", path, "--dir", folder);
     OUT("missing   2");
-    OUT("of the missing ones, 2 were done, but their files are gone");
+    OUT("of the missing ones, 2 were done, but their files are gone or unfinished");
     ck_assert_ptr_null(strstr(said.out, "begun"));
     HIFDM(0, "merge", path, "--dir", folder, "-o", merged);
     EXPECT(merged, "--", "len(a['runs']) == 2", "sorted(a['points/status'][:].tolist()) == [0, 0, 7, 7]",
@@ -89,6 +89,70 @@ START_TEST(a_row_without_its_file_is_missing)
 }
 END_TEST
 
+/* The second run of a point whose file was lost is killed: the row of the first does not make it done. */
+START_TEST(a_second_run_that_was_killed_goes_on)
+{
+    const char *folder = temp("s.d"), *path = begun_study(folder);
+    HIFDM(0, "sweep", path, "--dir", folder, "--quiet");
+    SHELL(0, "rm \"$1\"/*.h5", folder);
+    begun_study(folder);
+    HIFDM(0, "status", path, "--dir", folder);
+    OUT("missing   1");
+    OUT("1 were begun and will go on");
+    HIFDM(0, "sweep", path, "--dir", folder);
+    OUT("1 points run");
+    HIFDM(0, "merge", path, "--dir", folder, "-o", temp("s.h5"));
+    rows_are_of_their_files(temp("s.h5"), 1);
+}
+END_TEST
+
+/* What a failed point says to do in a sweep is what helps. */
+static void retry_helps(const char *path, const char *folder, const char *why)
+{
+    HIFDM(3, "sweep", path, "--dir", folder);
+    ck_assert_ptr_null(strstr(said.err, "HDF5-DIAG"));
+    HIFDM(0, "status", path, "--dir", folder);
+    OUT(why);
+    OUT("(of a sweep: --retry failed)");
+    OUT("--retry failed' runs these anew");
+    HIFDM(0, "sweep", path, "--dir", folder, "--retry", "failed");
+    OUT("1 points run");
+    HIFDM(0, "merge", path, "--dir", folder, "-o", temp("s.h5"));
+    rows_are_of_their_files(temp("s.h5"), 1);
+    SHELL(0, "! ls \"$1\"/*.journal", folder);
+}
+
+START_TEST(a_begun_point_with_a_foreign_journal)
+{
+    const char *folder = temp("s.d"), *path = begun_study(folder);
+    SHELL(0, "cd \"$1\" && j=$(echo *.journal) && rm $j && echo 'a diary' >../diary && ln -s ../diary $j", folder);
+    retry_helps(path, folder, "is no journal of hifdm, and in the way; delete it, use --restart");
+    ck_assert(file_is(temp("diary"), "a diary\n")); /* only its second name went */
+}
+END_TEST
+
+START_TEST(a_begun_point_with_a_cut_file)
+{
+    const char *folder = temp("s.d"), *path = begun_study(folder);
+    SHELL(0, "truncate -s 1000 \"$1\"/*.h5", folder);
+    retry_helps(path, folder, "is no result of hifdm; use --restart");
+}
+END_TEST
+
+START_TEST(a_foreign_journal_goes_with_restart_only)
+{
+    const char *c = file_with("c.yaml", SMALL_SCENE SMALL_GA), *path = temp("run.h5");
+    file_with("run.h5.journal", "a diary");
+    HIFDM(5, "run", c, "-o", path);
+    ERRS("error: %s: %s.journal is no journal of hifdm, and in the way; delete it, use --restart", path, path);
+    ck_assert(file_is(temp("run.h5.journal"), "a diary"));
+    HIFDM(0, "run", c, "-o", path, "--restart");
+    ERRS("warning: %s: %s.journal was no journal of hifdm; it is replaced", path, path);
+    ck_assert(!is_there(temp("run.h5.journal")));
+    EXPECT(path, "--", "a.attrs['finished'] == 1");
+}
+END_TEST
+
 Suite *suite_cli_sweep_files(void)
 {
     Suite *suite = suite_create("cli/sweep_files");
@@ -96,6 +160,10 @@ Suite *suite_cli_sweep_files(void)
     tcase_add_test(tcase, a_base_case_that_changes_back);
     tcase_add_test(tcase, a_base_case_that_changes_under_begun_points);
     tcase_add_test(tcase, a_row_without_its_file_is_missing);
+    tcase_add_test(tcase, a_second_run_that_was_killed_goes_on);
+    tcase_add_test(tcase, a_begun_point_with_a_foreign_journal);
+    tcase_add_test(tcase, a_begun_point_with_a_cut_file);
+    tcase_add_test(tcase, a_foreign_journal_goes_with_restart_only);
     suite_add_tcase(suite, tcase);
     return suite;
 }
