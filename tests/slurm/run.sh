@@ -52,7 +52,8 @@ base: base.yaml
 sweep:
   form.pretension_N: [6, 8, 10, 12]
   optimize.seed: [1, 2]
-  optimize.population: [150]
+  optimize.population: [50]
+  optimize.solver: [newton]
   optimize.generations: [300]
   optimize.stagnation_generations: [300]
   optimize.polish_iterations: [2]
