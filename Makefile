@@ -133,7 +133,7 @@ all: ## the program and both libraries, under build/ (or BUILD=...)
 
 # For another compiler's opinion: `make compile-all BUILD=build/clang CC=clang`.
 compile-all: ## everything, the tests too, without running anything
-	$(SUB) $(PROGRAM) $(STATIC) $(SHARED) $(RUNNER)
+	$(SUB) $(PROGRAM) $(STATIC) $(SHARED) $(RUNNER) $(BENCH)
 
 setup: ## install the packages that are missing
 	$(Q)tools/setup.sh
