@@ -161,14 +161,15 @@ int main(int argc, char **argv)
 {
     hf_options options;
     hf_messages messages = {0};
-    signal(SIGXFSZ, SIG_IGN); /* a file that may not grow is an error of writing, with words */
+    hf_status status = hf_options_parse(argc, argv, &options, &messages);
+    int uses_threads = status == HF_OK && options.command <= HF_COMMAND_SWEEP;
+    if (uses_threads) wait_without_spinning(argv); /* may begin anew, so before the libraries are set up */
+    signal(SIGXFSZ, SIG_IGN);                      /* a file that may not grow is an error of writing, with words */
     gsl_set_error_handler_off();
     hf_store_quiet();
     hf_band_single_threaded(); /* its own threads would change bits, and only get in the way of ours */
-    hf_status status = hf_options_parse(argc, argv, &options, &messages);
-    if (status == HF_OK && options.command <= HF_COMMAND_SWEEP) { /* those with threads */
+    if (uses_threads) {
         int n_thread = options.threads > 0 ? options.threads : hf_batch_default_threads();
-        wait_without_spinning(argv);
         if (!hf_band_has_room(n_thread))
             status = hf_error(&messages, HF_NO_MEMORY,
                               "LAPACK takes %d MB of address space for each of %d threads, more than there is (ulimit "
