@@ -244,6 +244,41 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
     share_work(batch, omp_get_thread_num(), &work, design_N, result);
 }
 
+/* One thread breeds and another runs `beside` at the same time; who is through first evaluates first. */
+static void breed_and_run(hf_batch *batch, hf_ga *ga, void (*beside)(void *), void *context)
+{
+    queue work = {0};
+    sem_t bred;
+    sem_init(&bred, 0, 0);
+#pragma omp parallel num_threads(batch->n_thread)
+    {
+        int thread = omp_get_thread_num(), n = omp_get_num_threads();
+        if (thread == 0) {
+            hf_ga_next(ga);
+            work = (queue){ga->n_individual, 0, ga->pending};
+            for (int i = 1; i < n; i++)
+                sem_post(&bred);
+        }
+        if (thread == (n > 1)) beside(context);
+        if (thread > 0) take_place(&bred);
+        share_work(batch, thread, &work, ga->design_N, ga->result);
+    }
+    sem_destroy(&bred);
+}
+
+int hf_batch_next(hf_batch *batch, hf_ga *ga, void (*beside)(void *context), void *context)
+{
+    int is_last = ga->stop_reason != HF_GA_RUNNING;
+    if (beside && !is_last && batch->n_thread > 1 && !omp_in_parallel()) {
+        breed_and_run(batch, ga, beside, context);
+        return 1;
+    }
+    if (beside) beside(context);
+    if (!hf_ga_next(ga)) return 0;
+    hf_batch_run(batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
+    return 1;
+}
+
 void hf_batch_for(int n_thread, int n, void (*work)(void *context, int i), void *context)
 {
     queue items = {n, 0, NULL};

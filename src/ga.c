@@ -58,9 +58,13 @@ static void lay_out(hf_arena *a, hf_ga *g)
     g->result = hf_arena_take(a, n, sizeof(hf_form_result));
     g->next_result = hf_arena_take(a, n, sizeof(hf_form_result));
     g->pending = hf_arena_take(a, n, 1);
+    g->next_pending = hf_arena_take(a, n, 1);
     g->crossover_rate = hf_arena_take(a, n, sizeof(double));
+    g->next_crossover_rate = hf_arena_take(a, n, sizeof(double));
     g->mutation_rate = hf_arena_take(a, n, sizeof(double));
+    g->next_mutation_rate = hf_arena_take(a, n, sizeof(double));
     g->parent = hf_arena_take(a, 2 * n, sizeof(int));
+    g->next_parent = hf_arena_take(a, 2 * n, sizeof(int));
     g->group_draw = hf_arena_take(a, (size_t)g->n_group, sizeof(double));
     g->fitness = hf_arena_take(a, n, sizeof(double));
     g->best_psi_m = hf_arena_take(a, (size_t)g->settings->generations, sizeof(double));
@@ -252,12 +256,12 @@ static void breed(hf_ga *g, int i)
         memcpy(child, mother, n * sizeof *child);
     mutate(g, pm, child, &random);
     follow_leaders(g, child);
-    g->pending[i] = memcmp(child, mother, n * sizeof *child) != 0;
+    g->next_pending[i] = memcmp(child, mother, n * sizeof *child) != 0;
     g->next_result[i] = g->result[a];
-    g->crossover_rate[i] = pc;
-    g->mutation_rate[i] = pm;
-    g->parent[2 * i] = a;
-    g->parent[2 * i + 1] = b;
+    g->next_crossover_rate[i] = pc;
+    g->next_mutation_rate[i] = pm;
+    g->next_parent[2 * i] = a;
+    g->next_parent[2 * i + 1] = b;
 }
 
 /* ---- ranking ---- */
@@ -319,17 +323,17 @@ static int next_elite(const hf_ga *g, const unsigned char *taken)
 static void keep_elites(hf_ga *g)
 {
     size_t n = (size_t)g->n_gene;
-    unsigned char *taken = g->pending; /* its old contents are told, the new ones come with breed() */
+    unsigned char *taken = g->next_pending; /* what is pending comes with breed() */
     memset(taken, 0, (size_t)g->n_individual);
     for (int e = 0; e < g->settings->elites; e++) {
         int i = next_elite(g, taken);
         taken[i] = 1;
         memcpy(g->next_design_N + (size_t)e * n, g->design_N + (size_t)i * n, n * sizeof(double));
         g->next_result[e] = g->result[i];
-        g->crossover_rate[e] = g->mutation_rate[e] = 0;
-        g->parent[2 * e] = g->parent[2 * e + 1] = i;
+        g->next_crossover_rate[e] = g->next_mutation_rate[e] = 0;
+        g->next_parent[2 * e] = g->next_parent[2 * e + 1] = i;
     }
-    memset(g->pending, 0, (size_t)g->n_individual);
+    memset(g->next_pending, 0, (size_t)g->n_individual);
 }
 
 int hf_ga_next(hf_ga *g)
@@ -339,12 +343,19 @@ int hf_ga_next(hf_ga *g)
     keep_elites(g);
     for (int i = g->settings->elites; i < g->n_individual; i++)
         breed(g, i);
-    double *design = g->design_N;
-    hf_form_result *result = g->result;
-    g->design_N = g->next_design_N;
-    g->result = g->next_result;
-    g->next_design_N = design;
-    g->next_result = result;
+#define EXCHANGE(type, member)                                                                                         \
+    do {                                                                                                               \
+        type *now = g->member;                                                                                         \
+        g->member = g->next_##member;                                                                                  \
+        g->next_##member = now;                                                                                        \
+    } while (0)
+    EXCHANGE(double, design_N);
+    EXCHANGE(double, crossover_rate);
+    EXCHANGE(double, mutation_rate);
+    EXCHANGE(hf_form_result, result);
+    EXCHANGE(unsigned char, pending);
+    EXCHANGE(int, parent);
+#undef EXCHANGE
     g->generation++;
     return 1;
 }

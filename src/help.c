@@ -290,8 +290,8 @@ static void print_man(FILE *f)
     for (int i = 0; i < N_EXIT; i++)
         fprintf(f, ".TP\n\\fB%s\\fR\n%s\n", exit_table[i].code, exit_table[i].meaning);
     fputs(".SH ENVIRONMENT\n.TP\n\\fBOMP_WAIT_POLICY\\fR\n", f);
-    put_roff("passive unless it is set: threads that spin while they wait for one that is not running lose more than "
-             "they gain.\n",
+    put_roff("passive, with GOMP_SPINCOUNT=2000, unless one of them is set: threads that spin for long while they wait "
+             "for one that is not running lose more than they gain.\n",
              f);
     fputs(".SH SEE ALSO\n", f);
     put_roff("Chen, Dong, Song, Chen, Li, Form-Finding Analysis of Mesh Reflector of Large Parabolic Cylindrical "

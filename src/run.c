@@ -163,19 +163,6 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->problem.model, w, design, messages);
 }
 
-static void observe_generation(const run *r, double elapsed_s)
-{
-    const hf_ga *ga = &r->ga;
-    observe(r, (hf_run_progress){.phase = HF_RUN_EVOLVE,
-                                 .generation = ga->generation + 1,
-                                 .generations = ga->settings->generations,
-                                 .first_generation = r->first_generation,
-                                 .is_last = ga->stop_reason != HF_GA_RUNNING,
-                                 .evaluations = ga->n_evaluation - r->first_evaluation,
-                                 .best_psi_m = ga->best_psi_m[ga->generation],
-                                 .elapsed_s = elapsed_s});
-}
-
 /* What the summary says of the generations so far; a file that is published in between has it, too. */
 static void sum_up(const run *r, double start_s, hf_summary *s)
 {
@@ -189,42 +176,83 @@ static void sum_up(const run *r, double start_s, hf_summary *s)
     s->optimize_stop = (int)ga->stop_reason;
 }
 
+/* A generation on its way into the store, while the next one is bred and evaluated. */
+typedef struct {
+    const run *r;
+    hf_ga ga; /* as it was told */
+    const hf_summary *summary;
+    hf_messages *messages;
+    hf_status status;
+} told;
+
+static void observe_generation(const told *t)
+{
+    const hf_ga *ga = &t->ga;
+    observe(t->r, (hf_run_progress){.phase = HF_RUN_EVOLVE,
+                                    .generation = ga->generation + 1,
+                                    .generations = ga->settings->generations,
+                                    .first_generation = t->r->first_generation,
+                                    .is_last = ga->stop_reason != HF_GA_RUNNING,
+                                    .evaluations = ga->n_evaluation - t->r->first_evaluation,
+                                    .best_psi_m = ga->best_psi_m[ga->generation],
+                                    .elapsed_s = t->summary->optimize_wall_s});
+}
+
+/* Nobody hears of a generation before it is safe. */
+static void keep(void *context)
+{
+    told *t = context;
+    t->status = hf_store_generation(t->r->store, &t->r->problem.model, &t->ga, t->messages);
+    if (t->status == HF_OK) t->status = hf_store_publish(t->r->store, t->summary, 0, t->messages);
+    if (t->status == HF_OK) observe_generation(t);
+}
+
 /* The visible file begins with the first generation, so that the journal always has something to be added to. What an
- * earlier session has stored is taken up. 0 when there is nothing left to evaluate. */
-static hf_status begin_generations(run *r, hf_summary *s, int *more, hf_messages *messages)
+ * earlier session has stored is taken up. */
+static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
 {
     hf_ga *ga = &r->ga;
-    *more = 1;
     HF_TRY(hf_store_genes(r->store, &r->problem.model, ga, messages));
     if (hf_store_generations(r->store) == 0) return hf_store_publish(r->store, s, 1, messages);
     HF_TRY(hf_store_restore(r->store, ga, s, messages));
     hf_ga_tell(ga);
     if (ga->best >= 0) s->best = ga->result[ga->best];
-    *more = hf_ga_next(ga);
+    r->first_generation = ga->generation + 1;
+    r->first_evaluation = ga->n_evaluation;
     return HF_OK;
+}
+
+/* The first generation of this session; 0 when there is none. */
+static int evaluate_first(run *r)
+{
+    hf_ga *ga = &r->ga;
+    if (r->first_generation > 0) return hf_batch_next(&r->batch, ga, NULL, NULL);
+    hf_batch_run(&r->batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
+    return 1;
 }
 
 static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
 {
     hf_ga *ga = &r->ga;
-    int more;
     s->best.status = HF_NO_FEASIBLE;
     s->solver = hf_batch_share(&r->batch, r->problem.base_N);
-    HF_TRY(begin_generations(r, s, &more, messages));
-    r->first_generation = more ? ga->generation : ga->generation + 1;
-    r->first_evaluation = ga->n_evaluation;
+    HF_TRY(begin_generations(r, s, messages));
+    if (must_stop(r)) return stop_here(r, s, messages);
     double start_s = hf_run_clock_s();
+    int more = evaluate_first(r);
     while (more) {
-        if (must_stop(r)) return stop_here(r, s, messages);
-        hf_batch_run(&r->batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
         hf_ga_tell(ga);
-        HF_TRY(hf_store_generation(r->store, &r->problem.model, ga, messages));
         if (ga->generation == 0) s->base_psi_m = ga->result[0].psi_m;
         note_best(ga, s);
         sum_up(r, start_s, s);
-        HF_TRY(hf_store_publish(r->store, s, 0, messages));
-        observe_generation(r, s->optimize_wall_s);
-        more = hf_ga_next(ga);
+        told now = {r, *ga, s, messages, HF_OK};
+        int stops = must_stop(r) && ga->stop_reason == HF_GA_RUNNING;
+        if (stops)
+            keep(&now);
+        else
+            more = hf_batch_next(&r->batch, ga, keep, &now);
+        HF_TRY(now.status);
+        if (stops) return stop_here(r, s, messages);
     }
     sum_up(r, start_s, s);
     if (ga->best >= 0) return store_best(r, s, messages);

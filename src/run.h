@@ -23,7 +23,8 @@ typedef struct {
     double elapsed_s;            /* in this phase and process */
 } hf_run_progress;
 
-/* Called in the thread of the run as each phase begins and after each generation. */
+/* Called as each phase begins and after each generation, once that is stored: by one thread at a time, but not always
+ * the same. */
 typedef void hf_run_observer(void *context, const hf_run_progress *progress);
 
 /* All borrowed until hf_run_point returns. Zero is a usable value of everything but case_path. */

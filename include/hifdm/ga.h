@@ -6,6 +6,9 @@
  *         hf_ga_tell(&ga);                   // ranks; ga.stop_reason says whether this was the last generation
  *     } while (hf_ga_next(&ga));             // breeds the next one
  *
+ * hf_batch_next does the first and the last step of the loop with all threads. A generation stays as it is while the
+ * next one is bred: a copy of the struct, made after hf_ga_tell, may be read until the hf_ga_next after that.
+ *
  * Selection: roulette on psi_worst - psi. Crossover and mutation: intermediate recombination and the multi-scale
  * mutation of the breeder GA (Muehlenbein & Schlierkamp-Voosen 1993), acting on the chains of boundary cables
  * (model->gene_group) and, rarely, on single cables. Rates: Srinivas & Patnaik (1994), minimising.
@@ -42,9 +45,13 @@ typedef struct {
     const int *gene_group;  /* borrowed from the model */
     const int *gene_leader; /* the same; NULL when no genes are linked */
     int n_group, n_leader;
-    double *base_N;                               /* [n_gene] */
-    double *next_design_N, *fitness, *group_draw; /* scratch */
+    double *base_N; /* [n_gene] */
+    /* of the generation that is being bred */
+    double *next_design_N, *next_crossover_rate, *next_mutation_rate;
     hf_form_result *next_result;
+    unsigned char *next_pending;
+    int *next_parent;
+    double *fitness, *group_draw; /* scratch */
     void *block;
 } hf_ga;
 

@@ -4,6 +4,7 @@
 #include <hifdm/batch.h>
 #include <sched.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { MAX_GENE = 200, MAX_CABLE = 400, N_DESIGN = 24 };
@@ -184,6 +185,77 @@ START_TEST(batches_that_share_threads_do_not_change_a_bit)
 }
 END_TEST
 
+/* Beside the breeding of the next generation, one that was told is read: it must not change meanwhile. */
+enum { N_INDIVIDUAL = 12, N_GENERATION = 6 };
+
+struct reader {
+    hf_ga ga;
+    double design_N[N_INDIVIDUAL * MAX_GENE], rate[N_INDIVIDUAL];
+    int parent[2 * N_INDIVIDUAL], n_call, is_same;
+};
+
+static void note(struct reader *r, const hf_ga *ga)
+{
+    r->ga = *ga;
+    r->is_same = 1;
+    memcpy(r->design_N, ga->design_N, N_INDIVIDUAL * (size_t)ga->n_gene * sizeof(double));
+    memcpy(r->rate, ga->mutation_rate, sizeof r->rate);
+    memcpy(r->parent, ga->parent, sizeof r->parent);
+}
+
+static void read_slowly(void *context)
+{
+    struct reader *r = context;
+    nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    r->n_call++;
+    r->is_same = memcmp(r->design_N, r->ga.design_N, N_INDIVIDUAL * (size_t)r->ga.n_gene * sizeof(double)) == 0 &&
+                 memcmp(r->rate, r->ga.mutation_rate, sizeof r->rate) == 0 &&
+                 memcmp(r->parent, r->ga.parent, sizeof r->parent) == 0;
+}
+
+START_TEST(a_generation_can_be_read_while_the_next_is_bred)
+{
+    struct run r;
+    double best_psi_m[2] = {0};
+    const hf_optimize_settings settings = {.seed = 5,
+                                           .population = N_INDIVIDUAL,
+                                           .generations = N_GENERATION,
+                                           .stagnation_generations = N_GENERATION,
+                                           .range_N = 1,
+                                           .max_tension_N = 1e6,
+                                           .crossover_high = 0.9,
+                                           .crossover_low = 0.6,
+                                           .mutation_high = 0.1,
+                                           .mutation_low = 0.01,
+                                           .elites = 1};
+    open_run(&r, HF_RULE_FORCE_DENSITY);
+    for (int n_thread = 0; n_thread <= 3; n_thread++) { /* 0: one, and nothing beside */
+        hf_batch batch;
+        hf_ga ga;
+        static struct reader reader;
+        reader.n_call = 0;
+        ck_assert_int_eq(hf_batch_create(&r.evaluator, n_thread ? n_thread : 1, &batch), HF_OK);
+        ck_assert_int_eq(hf_ga_create(&settings, &r.net.model, r.design_N, &ga), HF_OK);
+        hf_batch_share(&batch, r.design_N);
+        hf_batch_run(&batch, N_INDIVIDUAL, ga.design_N, ga.pending, ga.result);
+        do {
+            hf_ga_tell(&ga);
+            note(&reader, &ga);
+        } while (hf_batch_next(&batch, &ga, n_thread ? read_slowly : NULL, &reader) && reader.is_same);
+        ck_assert(reader.is_same);
+        ck_assert_int_eq(reader.n_call, n_thread ? N_GENERATION : 0);
+        ck_assert_int_eq(ga.generation, N_GENERATION - 1);
+        best_psi_m[n_thread > 0] = ga.result[ga.best].psi_m;
+        ck_assert_msg(n_thread == 0 || best_psi_m[0] == best_psi_m[1], "%d threads: %.17g, not %.17g", n_thread,
+                      best_psi_m[1], best_psi_m[0]);
+        ck_assert_double_lt(best_psi_m[0], ga.best_psi_m[0]); /* it has bred something */
+        hf_ga_free(&ga);
+        hf_batch_free(&batch);
+    }
+    close_net(&r.net);
+}
+END_TEST
+
 /* Whoever waits gives its place to another, and gets one again: never more than n_thread work at a time. */
 struct places {
     int working, most, n_call;
@@ -247,6 +319,7 @@ Suite *suite_unit_batch(void)
     tcase_add_test(tests, one_failure_stays_alone);
     tcase_add_test(tests, default_is_a_thread_per_core);
     tcase_add_test(tests, batches_that_share_threads_do_not_change_a_bit);
+    tcase_add_test(tests, a_generation_can_be_read_while_the_next_is_bred);
     tcase_add_test(tests, waiting_threads_give_their_place_to_others);
     tcase_add_test(tests, nothing_is_allocated);
     return suite;

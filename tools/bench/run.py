@@ -74,7 +74,8 @@ class Samples:
 class Bench:
     def __init__(self, arguments):
         self.a, self.samples = arguments, Samples()
-        self.env = dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_WAIT_POLICY="passive")
+        # as the program sets them for itself
+        self.env = dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_WAIT_POLICY="passive", GOMP_SPINCOUNT="2000")
         self.start = time.monotonic()
         peer = subprocess.run([sys.executable, f"{HERE}/peers.py", "version"], capture_output=True, text=True)
         self.peer_version = peer.stdout.strip() if peer.returncode == 0 else None
@@ -105,8 +106,10 @@ class Bench:
             command += ["--set", f"optimize.{key}={value}"]
         command += ["--set", "form.residual_tolerance=1e-9"]  # 1e-8 N at a pretension of 10 N
         start = time.monotonic()
-        child = subprocess.Popen(command, env=dict(self.env, OMP_WAIT_POLICY=policy), stdout=subprocess.PIPE,
-                                 stderr=subprocess.DEVNULL)
+        env = dict(self.env, OMP_WAIT_POLICY=policy)
+        if policy == "active":
+            del env["GOMP_SPINCOUNT"]
+        child = subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
         output = child.stdout.read()
         _, status, usage = os.wait4(child.pid, 0)
         child.returncode = status

@@ -10,6 +10,5 @@ set -eu
 [ $# -ge 2 ] || { echo "usage: sweep-parallel.sh TASKS STUDY [options]" >&2; exit 2; }
 tasks=$1 study=$2
 shift 2
-export OMP_WAIT_POLICY=passive
 seq 0 $((tasks - 1)) | parallel --jobs "${JOBS:-1}" --joblog "$(basename "${study%.*}").joblog" --resume-failed \
     "${HIFDM:-hifdm}" sweep "$study" --task {} --tasks "$tasks" ${THREADS:+--threads "$THREADS"} "$@"
