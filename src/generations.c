@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WAITING_BYTES (2 << 20) /* of all that wait; a generation larger than that waits alone */
-#define CHUNK_BYTES (256 << 10) /* of a data set: rows as far as they fit */
-#define CHUNK_MAX (1 << 20)     /* of a row larger than CHUNK_BYTES: what HDF5 caches of a data set */
-#define BLOCK 1024              /* generations that are counted at a time */
+#define WAITING_BYTES (512 << 10) /* of all that wait; a generation larger than that waits alone */
+#define CHUNK_BYTES (256 << 10)   /* of a data set: rows as far as they fit */
+#define CHUNK_MAX (1 << 20)       /* of a row larger than CHUNK_BYTES: what HDF5 caches of a data set */
+#define BLOCK 1024                /* generations that are counted at a time */
 
 /* ---- the list ---- */
 
@@ -22,7 +22,17 @@ typedef struct {
     size_t stride, item_bytes;
 } ga_row;
 
-enum { ROW_EVALUATED = 1, ROW_STATUS = 2, ROW_PSI = 3, ROW_BEST_INDIVIDUAL = 11, ROW_BEST_PSI = 12 };
+enum {
+    ROW_DESIGN,
+    ROW_EVALUATED,
+    ROW_STATUS,
+    ROW_PSI,
+    ROW_RESIDUAL,
+    ROW_INNER_RATIO,
+    ROW_BOUNDARY_RATIO,
+    ROW_BEST_INDIVIDUAL = 11,
+    ROW_BEST_PSI = 12
+};
 
 static int list_rows(const hf_ga *g, ga_row row[HF_GENERATIONS_PIECES])
 {
@@ -54,7 +64,9 @@ static int list_rows(const hf_ga *g, ga_row row[HF_GENERATIONS_PIECES])
 #undef SINGLE
     _Static_assert(sizeof rows / sizeof rows[0] == HF_GENERATIONS_PIECES, "count them again");
     memcpy(row, rows, sizeof rows);
-    assert(!strcmp(rows[ROW_PSI].array.name, "psi_m") && !strcmp(rows[ROW_BEST_PSI].array.name, "best_psi_m"));
+    assert(!strcmp(rows[ROW_DESIGN].array.name, "design_N") && !strcmp(rows[ROW_PSI].array.name, "psi_m") &&
+           !strcmp(rows[ROW_BOUNDARY_RATIO].array.name, "boundary_tension_ratio") &&
+           !strcmp(rows[ROW_BEST_PSI].array.name, "best_psi_m"));
     return HF_HDF5_COUNT(rows);
 }
 
@@ -85,7 +97,7 @@ hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_gene
         g->row_bytes[i] = hf_hdf5_kind_bytes(row[i].array.kind);
         for (int d = 1; d < row[i].array.rank; d++)
             g->row_bytes[i] *= (size_t)row[i].array.dims[d];
-        g->payload_bytes += g->row_bytes[i];
+        g->payload_bytes += i == ROW_DESIGN ? sizeof g->design_sum : g->row_bytes[i];
     }
     size_t fit = WAITING_BYTES / g->payload_bytes;
     g->capacity = fit < 1 ? 1 : fit < (size_t)limit ? (int)fit : limit;
@@ -136,6 +148,17 @@ static char *slot(const hf_generations *g, int i)
     return g->row[i] + (size_t)g->n_waiting * g->row_bytes[i];
 }
 
+/* Tells designs from others that differ in a bit somewhere. */
+static uint64_t sum_designs(const hf_ga *ga)
+{
+    uint64_t sum = 0, bits;
+    for (size_t i = 0; i < (size_t)ga->n_individual * (size_t)ga->n_gene; i++) {
+        memcpy(&bits, &ga->design_N[i], sizeof bits);
+        sum += bits;
+    }
+    return sum;
+}
+
 void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece)
 {
     ga_row row[HF_GENERATIONS_PIECES];
@@ -145,16 +168,39 @@ void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece)
         gather(&row[i], g->row_bytes[i], slot(g, i));
         if (piece) piece[i] = (struct iovec){slot(g, i), g->row_bytes[i]};
     }
+    if (piece) {
+        g->design_sum = sum_designs(ga);
+        piece[ROW_DESIGN] = (struct iovec){&g->design_sum, sizeof g->design_sum};
+    }
     g->n_waiting++;
 }
 
-void hf_generations_add_payload(hf_generations *g, const void *payload)
+/* The values of one generation back to where they came from. */
+static void scatter(const ga_row *row, size_t bytes, const char *from)
 {
+    size_t each = hf_hdf5_kind_bytes(row->array.kind), n = bytes / each;
+    char *to = (char *)row->from;
+    for (size_t i = 0; i < n; i++, to += row->stride) {
+        int value = (signed char)from[i];
+        if (row->item_bytes == each)
+            memcpy(to, from + i * each, each);
+        else
+            memcpy(to, &value, sizeof value);
+    }
+}
+
+int hf_generations_take_payload(const hf_generations *g, const void *payload, const hf_ga *ga)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    uint64_t sum;
+    int n = list_rows(ga, row);
     const char *from = payload;
-    assert(g->n_waiting < g->capacity);
-    for (int i = 0; i < HF_GENERATIONS_PIECES; from += g->row_bytes[i++])
-        if (g->row_bytes[i]) memcpy(slot(g, i), from, g->row_bytes[i]);
-    g->n_waiting++;
+    memcpy(&sum, from, sizeof sum);
+    if (sum != sum_designs(ga)) return 0;
+    from += sizeof sum;
+    for (int i = ROW_DESIGN + 1; i < n; from += g->row_bytes[i++])
+        scatter(&row[i], g->row_bytes[i], from);
+    return 1;
 }
 
 /* ---- writing ---- */
@@ -227,6 +273,20 @@ static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g,
     free(block);
 }
 
+/* What a row of reals, one per individual, says of the best. */
+static double of_best(hf_hdf5 *io, hid_t group, const ga_row *row, const hf_summary *s)
+{
+    size_t n = (size_t)row->array.dims[1];
+    double *values = malloc(n * sizeof *values), value = 0;
+    if (!values && io->status == HF_OK)
+        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+    hf_hdf5_read_rows(io, group, &row->array, (hsize_t)s->best_generation, values);
+    if (io->status == HF_OK && s->best_individual >= 0 && (size_t)s->best_individual < n)
+        value = values[s->best_individual];
+    free(values);
+    return value;
+}
+
 /* As the run has noted it: the first generation with the least psi. */
 static void note_best(hf_hdf5 *io, hid_t group, const ga_row *row, const double *best_psi_m, int n, hf_summary *s)
 {
@@ -238,23 +298,12 @@ static void note_best(hf_hdf5 *io, hid_t group, const ga_row *row, const double 
     s->best.status = HF_OK;
     s->best_generation = best;
     hf_hdf5_read_rows(io, group, &row[ROW_BEST_INDIVIDUAL].array, (hsize_t)best, &s->best_individual);
+    s->best.residual_N = of_best(io, group, &row[ROW_RESIDUAL], s);
+    s->best.inner_tension_ratio = of_best(io, group, &row[ROW_INNER_RATIO], s);
+    s->best.boundary_tension_ratio = of_best(io, group, &row[ROW_BOUNDARY_RATIO], s);
 }
 
-/* The values of one generation back to where they came from. */
-static void scatter(const ga_row *row, size_t bytes, const char *from)
-{
-    size_t each = hf_hdf5_kind_bytes(row->array.kind), n = bytes / each;
-    char *to = (char *)row->from;
-    for (size_t i = 0; i < n; i++, to += row->stride) {
-        int value = (signed char)from[i];
-        if (row->item_bytes == each)
-            memcpy(to, from + i * each, each);
-        else
-            memcpy(to, &value, sizeof value);
-    }
-}
-
-void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga, hf_summary *s)
+void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga)
 {
     ga_row row[HF_GENERATIONS_PIECES];
     int last = g->n_stored - 1;
@@ -278,7 +327,6 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga, hf_
     hf_hdf5_read_rows(io, group, &row[ROW_BEST_PSI].array, 0, ga->best_psi_m);
     count_evaluations(io, group, g, last, &ga->n_evaluation, &ga->n_evaluation_infeasible);
     hf_hdf5_close(io, group);
-    hf_generations_sum_up(io, g, s);
 }
 
 void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)

@@ -19,7 +19,8 @@ typedef struct {
     int n_stored;                            /* in the file */
     int n_waiting, capacity;                 /* in memory */
     size_t row_bytes[HF_GENERATIONS_PIECES]; /* of one generation */
-    size_t payload_bytes;                    /* their sum */
+    size_t payload_bytes;                    /* of what the journal keeps of one */
+    uint64_t design_sum;                     /* of the last one added */
     char *row[HF_GENERATIONS_PIECES];        /* [capacity] rows of each data set */
     void *block;
 } hf_generations;
@@ -30,10 +31,14 @@ void hf_generations_free(hf_generations *g);
 
 int hf_generations_are_full(const hf_generations *g);
 
-/* Let a generation that hf_ga_tell has ranked wait, or one as it was put into a payload. Not when they are full.
- * `piece` (may be NULL) is its payload [HF_GENERATIONS_PIECES]. */
+/* Let a generation that hf_ga_tell has ranked wait. Not when they are full. `piece` (may be NULL) is its payload
+ * [HF_GENERATIONS_PIECES], borrowed until the next is added: all of it but the designs, nine tenths of its bytes, which
+ * hf_ga_next breeds again from the generation before. Of these only the sum of their bits is there. */
 void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece);
-void hf_generations_add_payload(hf_generations *g, const void *payload);
+
+/* Results and all else from a payload into `ga`, whose designs were bred again. 0, and nothing is changed, when these
+ * have other bits than those that the results are of. */
+int hf_generations_take_payload(const hf_generations *g, const void *payload, const hf_ga *ga);
 
 /* Write those that wait below /ga of the file, whose data sets the first call makes. is_last: no more will come. */
 void hf_generations_write(hf_hdf5 *io, hf_generations *g, int is_last);
@@ -44,8 +49,8 @@ int hf_generations_count(hf_hdf5 *io, hf_generations *g);
 /* What the generations of the file say in the summary: how many, evaluations, the best so far. None may wait. */
 void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *summary);
 
-/* Put `ga`, just created, into the state before hf_ga_tell of the last generation of the file, and sum up. HF_IO also
- * for a file of other dimensions. */
-void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga, hf_summary *summary);
+/* Put `ga`, just created, into the state before hf_ga_tell of the last generation of the file. HF_IO also for a file of
+ * other dimensions. */
+void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga);
 
 #endif

@@ -12,7 +12,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#define MAGIC "hifdm-j1"
+#define MAGIC "hifdm-j2"
 #define RECORD_MAGIC 0x4a444648u /* "HFDJ" */
 #define HEADER_BYTES (8 + HF_JOURNAL_IDENTITY)
 #define PAYLOAD_MAX (1u << 31)
@@ -236,12 +236,13 @@ hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take
     int64_t at = HEADER_BYTES;
     while (status == HF_OK && (got = read_record(j, at, info.st_size, &head, &payload, &capacity)) == 1) {
         status = take(context, head.generation, payload, head.length - sizeof head.generation);
+        if (status != HF_OK) break;
         at += (int64_t)sizeof head + head.length - (int64_t)sizeof head.generation;
     }
     int why = errno;
     free(payload);
     errno = why;
-    if (status != HF_OK) return status;
+    if (status != HF_OK && status != HF_DIFFERENT) return status;
     if (got < 0 && errno == ENOMEM) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", j->result);
     if (got < 0) return fail(j, "read", j->path, messages);
     if (ftruncate(j->file, at) != 0 || lseek(j->file, at, SEEK_SET) < 0) return fail(j, "write", j->path, messages);

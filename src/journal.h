@@ -1,6 +1,6 @@
 /* journal - the generations that a result file does not hold yet, in `<result>.journal`: what kill -9 must not take.
  *
- * File: 8 bytes "hifdm-j1", 64 of the run's identity, then records: magic, length and CRC-32 of what follows,
+ * File: 8 bytes "hifdm-j2", 64 of the run's identity, then records: magic, length and CRC-32 of what follows,
  * generation, payload. A record is one writev(2), so that a process killed at any instant leaves whole records and at
  * most a torn last one, which the next run cuts off. It goes down to the disk every HF_JOURNAL_SYNC_S: a power cut
  * takes no more.
@@ -41,8 +41,9 @@ int hf_journal_is_there(const char *result);
 /* Forget what is in it, and write for the run of this identity from now on. HF_OK or HF_IO. */
 hf_status hf_journal_restart(hf_journal *journal, const char *identity, hf_messages *messages);
 
-/* Give each whole record to `take`, oldest first, until it returns something other than HF_OK; cut off a torn tail. A
- * journal of another identity, or without one, is restarted. HF_OK, HF_IO, HF_NO_MEMORY, or what `take` returned. */
+/* Give each whole record to `take`, oldest first, until it returns something other than HF_OK; cut off a torn tail, and
+ * from the record on of which `take` says HF_DIFFERENT: that is no failure. A journal of another identity, or without
+ * one, is restarted. HF_OK, HF_IO, HF_NO_MEMORY, or what `take` returned. */
 typedef hf_status hf_journal_take(void *context, int generation, const void *payload, size_t bytes);
 hf_status hf_journal_replay(hf_journal *journal, const char *identity, hf_journal_take *take, void *context,
                             hf_messages *messages);

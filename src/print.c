@@ -94,9 +94,13 @@ static void print_optimize(const hf_summary *s, FILE *f)
     if (s->planes)
         fprintf(f, "                symmetry: %s; %d independent genes of %d\n", hf_symmetry_planes_text(s->planes),
                 s->n_leader, s->n_gene);
-    fprintf(f, "                %d generations, %ld evaluations (%ld infeasible) by %s, stopped by %s\n",
-            s->generations, s->evaluations, s->infeasible, hf_solver_word[s->solver],
-            hf_ga_stop_word[s->optimize_stop]);
+    fprintf(f, "                %d generations, %ld evaluations (%ld infeasible)", s->generations, s->evaluations,
+            s->infeasible);
+    if (!s->finished) { /* what else there is was noted when the file was published last, perhaps before the first */
+        fputs(" so far\n", f);
+        return;
+    }
+    fprintf(f, " by %s, stopped by %s\n", hf_solver_word[s->solver], hf_ga_stop_word[s->optimize_stop]);
     fprintf(f, "                %s, %.0f evaluations/s; cpu_s / (wall_s * threads) = %.3f on %d thread%s\n", wall,
             (double)s->evaluations / s->optimize_wall_s, hf_summary_utilisation(s), s->threads,
             s->threads == 1 ? "" : "s");

@@ -133,6 +133,7 @@ static hf_status prepare_optimize(run *r, hf_messages *messages)
 {
     hf_problem *p = &r->problem;
     HF_TRY(hf_problem_base(p, messages));
+    HF_TRY(hf_store_base(r->store, p->model.n_gene, p->base_N, messages));
     r->evaluator = hf_problem_evaluator(p);
     if (hf_batch_create(&r->evaluator, r->request->threads, &r->batch) != HF_OK ||
         hf_ga_create(&p->settings.optimize, &p->model, p->base_N, &r->ga) != HF_OK)
@@ -213,8 +214,8 @@ static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
 {
     hf_ga *ga = &r->ga;
     HF_TRY(hf_store_genes(r->store, &r->problem.model, ga, messages));
-    if (hf_store_generations(r->store) == 0) return hf_store_publish(r->store, s, 1, messages);
     HF_TRY(hf_store_restore(r->store, ga, s, messages));
+    if (hf_store_generations(r->store) == 0) return hf_store_publish(r->store, s, 1, messages);
     hf_ga_tell(ga);
     if (ga->best >= 0) s->best = ga->result[ga->best];
     r->first_generation = ga->generation + 1;

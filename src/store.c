@@ -2,9 +2,8 @@
 #include <hifdm/store.h>
 
 #include "band.h"
-#include "generations.h"
-#include "store_file.h"
 #include "store_coupling.h"
+#include "store_open.h"
 #include "store_surface.h"
 
 #include <assert.h>
@@ -35,16 +34,6 @@
 #define SAME_SHAPE 1e-5 /* of the largest tension: a stopping rule may leave 1e-6 between two builds */
 #define PUBLISH_S 0.5 /* but not more often: most short runs are published twice, at their beginning and at their end */
 
-struct hf_store {
-    hf_store_file f;
-    hf_generations rows;
-    int is_resumed;
-    char identity[65];
-    double publish_s, published_at_s; /* how long the last publication took, and when it ended */
-    void *scratch;
-    size_t scratch_bytes;
-};
-
 const char *const hf_stage_word[4] = {"form", "optimize", "polish", "none"};
 const char *const hf_stage_group[4] = {"/form", "/ga/best", "/polish", "/"};
 
@@ -61,52 +50,7 @@ void hf_store_quiet(void)
     hf_hdf5_unlock(HF_OK);
 }
 
-/* Space that lasts until the next call; NULL, with a message, when there is none or the store has failed already. */
-static void *scratch(hf_store *s, size_t bytes)
-{
-    if (s->f.io.status != HF_OK) return NULL;
-    if (bytes > s->scratch_bytes) {
-        void *bigger = realloc(s->scratch, bytes);
-        if (!bigger) {
-            s->f.io.status = hf_error(s->f.io.messages, HF_NO_MEMORY, "%s: out of memory", s->f.path);
-            return NULL;
-        }
-        s->scratch = bigger;
-        s->scratch_bytes = bytes;
-    }
-    return s->scratch;
-}
-
-static double clock_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* ---- provenance, case, scene ---- */
-
-static void put_time(hf_store *s, const char *attribute)
-{
-    char text[32] = "";
-    time_t now = time(NULL);
-    struct tm utc;
-    if (gmtime_r(&now, &utc)) strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", attribute, text);
-}
-
-/* Which job of Slurm this is, so that logs can be found. */
-static void put_job(hf_store *s)
-{
-    static const char *const table[][2] = {{"slurm_job_id", "SLURM_JOB_ID"},
-                                           {"slurm_array_job_id", "SLURM_ARRAY_JOB_ID"},
-                                           {"slurm_array_task_id", "SLURM_ARRAY_TASK_ID"},
-                                           {"slurm_restart_count", "SLURM_RESTART_COUNT"}};
-    for (int i = 0; i < HF_HDF5_COUNT(table); i++) {
-        const char *value = getenv(table[i][1]);
-        if (value) hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", table[i][0], value);
-    }
-}
 
 static void put_provenance(hf_store *s, int argc, char *const *argv)
 {
@@ -130,8 +74,8 @@ static void put_provenance(hf_store *s, int argc, char *const *argv)
     hf_hdf5_put(&s->f.io, s->f.io.file, "/", "format_version", HF_KIND_INT, 0, &(int){HF_FORMAT_VERSION});
     if (argc > ARGUMENTS_MAX) argc = ARGUMENTS_MAX;
     if (argc > 0) hf_hdf5_put(&s->f.io, s->f.io.file, "/", "argv", HF_KIND_TEXT, (hsize_t)argc, argv);
-    put_job(s);
-    put_time(s, "started_utc");
+    hf_store_put_job(s);
+    hf_store_put_time(s, "started_utc");
 }
 
 static void write_case(hf_store *s, const hf_case *settings)
@@ -160,7 +104,7 @@ static void write_scene(hf_store *s, const hf_scene *scene)
     hf_hdf5_write_ids(&s->f.io, group, "node/id", scene->node_id, scene->n_node, "name of the node");
     hf_hdf5_write_ids(&s->f.io, group, "cable/id", scene->cable_id, scene->n_cable, "name of the cable");
     hf_hdf5_write_columns(&s->f.io, group, table, HF_HDF5_COUNT(table), scene->n_node, scene->n_cable, scene);
-    double *length_m = scratch(s, (size_t)scene->n_cable * sizeof *length_m);
+    double *length_m = hf_store_scratch(s, (size_t)scene->n_cable * sizeof *length_m);
     for (int e = 0; length_m && e < scene->n_cable; e++)
         length_m[e] = hf_scene_theoretical_length(scene, e);
     hf_hdf5_write_array(&s->f.io, group, &length, length_m);
@@ -169,48 +113,16 @@ static void write_scene(hf_store *s, const hf_scene *scene)
 
 /* ---- beginning ---- */
 
-static void free_store(hf_store *s)
-{
-    hf_store_file_end(&s->f);
-    hf_generations_free(&s->rows);
-    free(s->scratch);
-    free(s);
-}
-
-/* With the lock of the name; NULL and *status without. */
-static hf_store *new_store(const char *path, int replaces, hf_status *status, hf_messages *messages)
-{
-    hf_store *s = calloc(1, sizeof *s);
-    *status = s ? hf_store_file_begin(path, replaces, &s->f, messages)
-                : hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
-    if (s && *status != HF_OK) {
-        free_store(s);
-        s = NULL;
-    }
-    return s;
-}
-
-/* The end of hf_store_create and hf_store_resume. */
-static hf_status hand_over(hf_store *s, hf_store **store)
-{
-    hf_status status = s->f.io.status;
-    if (status == HF_OK)
-        *store = s;
-    else
-        free_store(s);
-    return hf_hdf5_unlock(status);
-}
-
 hf_status hf_store_create(const char *path, int restart, const hf_case *settings, const hf_scene *scene,
                           const hf_truss *truss, int argc, char *const *argv, hf_store **store, hf_messages *messages)
 {
     hf_status status;
     struct stat info;
     *store = NULL;
-    hf_store *s = new_store(path, restart, &status, messages);
+    hf_store *s = hf_store_new(path, restart, &status, messages);
     if (!s) return status;
     hf_hdf5_lock();
-    double begin_s = clock_s();
+    double begin_s = hf_store_clock_s();
     if (!restart && lstat(path, &info) == 0)
         s->f.io.status = hf_error(
             messages, HF_EXISTS,
@@ -224,107 +136,13 @@ hf_status hf_store_create(const char *path, int restart, const hf_case *settings
         write_case(s, settings);
         write_scene(s, scene);
     }
-    s->publish_s = clock_s() - begin_s;
-    return hand_over(s, store);
-}
-
-static hf_status take_record(void *context, int generation, const void *payload, size_t bytes)
-{
-    hf_store *s = context;
-    hf_generations *g = &s->rows;
-    int next = g->n_stored + g->n_waiting;
-    if (generation < next) return HF_OK; /* published before the journal could be rotated */
-    if (generation > next || bytes != g->payload_bytes || generation >= g->limit)
-        return hf_error(s->f.io.messages, HF_IO,
-                        "%s: does not fit to %s, which goes on with generation %d of %zu bytes, not %d of %zu; was it "
-                        "copied or replaced? --restart (of a sweep: --retry failed) begins anew",
-                        s->f.path, s->f.journal.path, generation, bytes, next, g->payload_bytes);
-    if (hf_generations_are_full(g)) {
-        hf_store_file_open(&s->f);
-        hf_generations_write(&s->f.io, g, 0);
-        if (s->f.io.status != HF_OK) return s->f.io.status;
-    }
-    hf_generations_add_payload(g, payload);
-    return HF_OK;
-}
-
-/* Population, genes and the most generations, from the file itself. */
-static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_gene, int *limit)
-{
-    hf_hdf5_get(io, io->file, "/ga", "n_individual", HF_KIND_INT, n_individual, sizeof *n_individual);
-    hf_hdf5_get(io, io->file, "/ga", "n_variable", HF_KIND_INT, n_gene, sizeof *n_gene);
-    hf_hdf5_get(io, io->file, "/ga", "generations_limit", HF_KIND_INT, limit, sizeof *limit);
-    if (io->status == HF_OK && (*n_individual < 1 || *n_gene < 0 || *limit < 1))
-        hf_hdf5_damaged(io, io->file, "/ga", "has impossible sizes");
-}
-
-static void note_session(hf_store *s)
-{
-    char host[256] = "";
-    int n = 1;
-    if (gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
-    if (H5Aexists(s->f.io.file, "sessions") > 0)
-        hf_hdf5_get(&s->f.io, s->f.io.file, "/", "sessions", HF_KIND_INT, &n, sizeof n);
-    hf_hdf5_put(&s->f.io, s->f.io.file, "/", "sessions", HF_KIND_INT, 0, &(int){n + 1});
-    hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "resumed_host", host);
-    hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "resumed_version", hf_store_version());
-    put_job(s);
-    put_time(s, "resumed_utc");
-}
-
-static void read_state(hf_store *s)
-{
-    hf_hdf5 *io = &s->f.io;
-    char identity[65] = "";
-    signed char finished = 0;
-    int n_individual = 1, n_gene = 0, limit = 1;
-    hf_hdf5_get(io, io->file, "/", "finished", HF_KIND_FLAG, &finished, 1);
-    hf_hdf5_get(io, io->file, "/", "identity", HF_KIND_CHARS, identity, sizeof identity);
-    if (io->status == HF_OK && finished)
-        io->status = hf_error(io->messages, HF_EXISTS, "%s: is finished, there is nothing to go on with", s->f.path);
-    if (!hf_hdf5_has(io, io->file, "/ga")) { /* stopped before, or without, a genetic algorithm */
-        if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, identity, io->messages);
-        return;
-    }
-    read_sizes(io, &n_individual, &n_gene, &limit);
-    if (io->status == HF_OK && hf_generations_create(n_individual, n_gene, limit, &s->rows) != HF_OK)
-        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", s->f.path);
-    if (io->status == HF_OK) hf_generations_count(io, &s->rows);
-    if (io->status == HF_OK) io->status = hf_journal_replay(&s->f.journal, identity, take_record, s, io->messages);
-    hf_generations_write(io, &s->rows, 0);
-}
-
-hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages)
-{
-    hf_status status;
-    *store = NULL;
-    hf_store *s = new_store(path, 0, &status, messages);
-    if (!s) return status;
-    hf_hdf5_lock();
-    s->is_resumed = 1;
-    hf_store_file_adopt(&s->f);
-    hf_store_file_open(&s->f);
-    read_state(s);
-    if (s->f.io.status == HF_OK) note_session(s);
-    return hand_over(s, store);
-}
-
-hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages)
-{
-    hf_store *s;
-    HF_TRY(hf_store_read_summary(path, summary, messages));
-    HF_TRY(hf_store_resume(path, &s, messages));
-    hf_hdf5_lock();
-    hf_generations_sum_up(&s->f.io, &s->rows, summary);
-    hf_hdf5_unlock(HF_OK);
-    hf_status status = hf_store_publish(s, summary, 1, messages);
-    hf_store_abandon(s);
-    return status;
+    s->publish_s = hf_store_clock_s() - begin_s;
+    return hf_store_hand_over(s, store);
 }
 
 int hf_store_generations(const hf_store *store)
 {
-    return store ? store->rows.n_stored + store->rows.n_waiting : 0;
+    return store ? store->rows.n_stored + store->rows.n_waiting + store->n_journal : 0;
 }
 
 /* ---- shapes ---- */
@@ -333,7 +151,7 @@ static void write_shape(hf_store *s, hid_t group, const hf_model *model, const h
 {
     static const hf_hdf5_column table[] = {HF_SHAPE_COLUMNS(HF_HDF5_COLUMN)};
     size_t n = (size_t)model->n_node;
-    hf_shape shape = {.position_m = scratch(s, 3 * n * sizeof(double)),
+    hf_shape shape = {.position_m = hf_store_scratch(s, 3 * n * sizeof(double)),
                       .length_m = workspace->length_m,
                       .tension_N = workspace->tension_N,
                       .q_N_per_m = workspace->q_N_per_m,
@@ -350,7 +168,7 @@ static void compare_shape(hf_store *s, const hf_model *model, const hf_workspace
 {
     hf_hdf5_array tension = {.name = "/form/tension_N", .kind = HF_KIND_REAL, .rank = 1};
     size_t bytes = (size_t)model->n_cable * sizeof(double);
-    double *stored = scratch(s, bytes);
+    double *stored = hf_store_scratch(s, bytes);
     tension.dims[0] = (hsize_t)model->n_cable;
     if (stored) hf_hdf5_read_array(&s->f.io, s->f.io.file, &tension, stored);
     if (s->f.io.status != HF_OK || memcmp(stored, workspace->tension_N, bytes) == 0) return;
@@ -442,6 +260,8 @@ hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_ga *g,
     const hf_hdf5_array cable = {"gene_cable", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/cable of each gene"};
     const hf_hdf5_array group_of = {"gene_group", HF_KIND_INT, 1, {k[0]}, "", "genes that were varied together"};
     const hf_hdf5_array leader = {"gene_leader", HF_KIND_INT, 1, {k[0]}, "", "gene whose step each takes, by symmetry"};
+    const hf_hdf5_array base = {"base_N", HF_KIND_REAL, 1,
+                                {k[0]},   "N",          "pretension T of each gene, after form-finding"};
     const hf_hdf5_array lower = {"lower_N", HF_KIND_REAL, 1, {k[0]}, "N", "least T' of each gene"};
     const hf_hdf5_array upper = {"upper_N", HF_KIND_REAL, 1, {k[0]}, "N", "largest T' of each gene"};
     hf_hdf5 *io = &store->f.io;
@@ -453,6 +273,7 @@ hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_ga *g,
     hf_hdf5_write_array(io, group, &cable, model->gene_cable);
     hf_hdf5_write_array(io, group, &group_of, model->gene_group);
     if (g->gene_leader) hf_hdf5_write_array(io, group, &leader, g->gene_leader);
+    hf_hdf5_write_array(io, group, &base, g->base_N);
     hf_hdf5_write_array(io, group, &lower, g->lower_N);
     hf_hdf5_write_array(io, group, &upper, g->upper_N);
     hf_hdf5_put(io, group, ".", "n_individual", HF_KIND_INT, 0, &g->n_individual);
@@ -476,9 +297,9 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_g
     HF_TRY(hf_store_genes(store, model, ga, messages));
     if (hf_generations_are_full(g)) {
         hf_hdf5_lock();
-        double begin_s = clock_s();
+        double begin_s = hf_store_clock_s();
         hf_store_file_open(&store->f);
-        store->publish_s += clock_s() - begin_s; /* the copy is what publishing costs, too */
+        store->publish_s += hf_store_clock_s() - begin_s; /* the copy is what publishing costs, too */
         hf_generations_write(&store->f.io, g, 0);
         HF_TRY(hf_hdf5_unlock(store->f.io.status));
     }
@@ -486,15 +307,6 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_g
     hf_generations_add(g, ga, piece);
     store->f.io.status = hf_journal_append(&store->f.journal, generation, piece, HF_GENERATIONS_PIECES, messages);
     return store->f.io.status;
-}
-
-hf_status hf_store_restore(hf_store *store, hf_ga *ga, hf_summary *summary, hf_messages *messages)
-{
-    hf_hdf5_lock();
-    store->f.io.messages = messages;
-    hf_store_file_open(&store->f);
-    hf_generations_restore(&store->f.io, &store->rows, ga, summary);
-    return hf_hdf5_unlock(store->f.io.status);
 }
 
 /* ---- summary ---- */
@@ -525,7 +337,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, int finished)
     if (summary->has_coupling) hf_store_put_coupling(&s->f.io, summary);
     if (finished) hf_store_put_surface(&s->f.io, summary);
     hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "status", finished ? hf_status_word(summary->status) : "unfinished");
-    put_time(s, finished ? "finished_utc" : "published_utc");
+    hf_store_put_time(s, finished ? "finished_utc" : "published_utc");
 }
 
 /* ---- publishing ---- */
@@ -543,7 +355,7 @@ static void publish(hf_store *s, const hf_summary *summary, int finished)
 hf_status hf_store_publish(hf_store *s, const hf_summary *summary, int at_once, hf_messages *messages)
 {
     if (!s) return HF_OK;
-    double now_s = clock_s();
+    double now_s = hf_store_clock_s();
     s->f.io.messages = messages;
     HF_TRY(s->f.io.status);
     double since_s = now_s - s->published_at_s;
@@ -551,12 +363,13 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, int at_once, 
         s->f.io.status = hf_journal_tend(&s->f.journal, now_s, messages);
         return s->f.io.status;
     }
+    assert(s->n_journal == 0); /* or they would be lost */
     hf_hdf5_lock();
     publish(s, summary, 0);
     hf_hdf5_unlock(HF_OK);
     if (s->f.io.status == HF_OK && !hf_journal_is_empty(&s->f.journal))
         s->f.io.status = hf_journal_rotate(&s->f.journal, messages);
-    s->published_at_s = clock_s();
+    s->published_at_s = hf_store_clock_s();
     s->publish_s = s->published_at_s - now_s;
     return s->f.io.status;
 }
@@ -575,7 +388,7 @@ hf_status hf_store_finish(hf_store *s, const hf_summary *summary, hf_messages *m
         publish(s, summary, 1);
     hf_status status = s->f.io.status;
     if (status == HF_OK) hf_journal_forget(&s->f.journal);
-    free_store(s);
+    hf_store_free(s);
     return hf_hdf5_unlock(status);
 }
 
@@ -590,6 +403,6 @@ void hf_store_abandon(hf_store *store)
 {
     if (!store) return;
     hf_hdf5_lock();
-    free_store(store);
+    hf_store_free(store);
     hf_hdf5_unlock(HF_OK);
 }

@@ -127,32 +127,43 @@ static const char **split_lines(char *text, int *n)
     return line;
 }
 
-/* Which keys differ between the stored case and this one, in words. */
-static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t size)
+/* Did the file's case make sense to this version? */
+static int read_case(hf_hdf5 *io, hf_case *then)
 {
     char *text = NULL, *overrides = NULL;
     const char **set = NULL;
-    hf_case then = {0};
     hf_messages unwanted = {0};
     uint64_t seed = 0;
-    int n_set = 0;
+    int n_set = 0, is_known = 0;
     hf_hdf5_get(io, io->file, "/", "seed", HF_KIND_UINT64, &seed, sizeof seed);
     hf_hdf5_read_text(io, io->file, "/case/text", &text);
     hf_hdf5_read_text(io, io->file, "/case/overrides", &overrides);
     if (io->status == HF_OK && !(set = split_lines(overrides, &n_set))) hf_store_no_memory(io);
-    if (io->status == HF_OK && hf_config_parse(now->path, text, set, n_set, &then, &unwanted) == HF_OK) {
-        then.optimize.seed = seed; /* as --seed may have set it */
-        if (hf_config_differences(&then, now, words, size) == 0)
-            snprintf(words, size, "%s",
-                     "no key, but comments and layout of the case, or its tables of the net or of the truss");
-    } else {
-        snprintf(words, size, "%s", "keys that this version does not know");
-    }
+    if (io->status == HF_OK) is_known = hf_config_parse(io->path, text, set, n_set, then, &unwanted) == HF_OK;
+    then->optimize.seed = seed; /* as --seed may have set it */
     hf_messages_free(&unwanted);
-    hf_case_free(&then);
     free(set);
     free(text);
     free(overrides);
+    return is_known;
+}
+
+void hf_store_read_case(hf_hdf5 *io, hf_case *settings)
+{
+    if (!read_case(io, settings) && io->status == HF_OK)
+        hf_hdf5_damaged(io, io->file, "/case", "has keys that this version does not know");
+}
+
+/* Which keys differ between the stored case and this one, in words. */
+static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t size)
+{
+    hf_case then = {0};
+    if (!read_case(io, &then))
+        snprintf(words, size, "%s", "keys that this version does not know");
+    else if (hf_config_differences(&then, now, words, size) == 0)
+        snprintf(words, size, "%s",
+                 "no key, but comments and layout of the case, or its tables of the net or of the truss");
+    hf_case_free(&then);
 }
 
 /* A run that was killed after its result had got its name leaves a journal that nobody needs. */

@@ -23,6 +23,9 @@ void hf_series_free(hf_series *series);
  * one did not write in a safe way are left out. */
 hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf_messages *messages);
 
+/* The case that the file was made from. Free it with hf_case_free in any case. */
+void hf_store_read_case(hf_hdf5 *io, hf_case *settings);
+
 /* More nodes or members than any scene has; keeps a damaged file from asking for all memory. */
 #define HF_STORE_COUNT_MAX 20000000
 

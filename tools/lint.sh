@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 # ---- The rules' own lists: change them here when the house changes ---------------------------------------------------
 # may call malloc and its kin: set-up, never the hot path
 heap_files="status arena text csv scene scene_import config numbering model lane batch hdf5_io hdf5_io_rows journal
-            generations store_file store store_read compare truss truss_import frame
+            generations store_file store_open store store_read store_resume compare truss truss_import frame
             carrier store_truss store_coupling study study_read ledger merge sweep options problem run designs"
 # may print (csv, json, summary: to a stream they are given)
 print_files="csv json summary help print progress plan export cutlist report report_study designs sweep main"

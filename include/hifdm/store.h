@@ -24,8 +24,8 @@
  *   /ga          design_N [g][p][k]; evaluated, status, psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio,
  *                iterations, crossover_rate, mutation_rate [g][p]; parent [g][p][2];
  *                best_individual, best_psi_m, mean_psi_m, worst_psi_m, n_infeasible [g];
- *                gene_cable (index into /scene/cable), gene_group, lower_N, upper_N [k]; gene_leader [k] under a
- *                symmetry; attributes: the members of hf_summary after has_optimize, those of hf_summary.best as
+ *                gene_cable (index into /scene/cable), gene_group, base_N, lower_N, upper_N [k]; gene_leader [k] under
+ *                a symmetry; attributes: the members of hf_summary after has_optimize, those of hf_summary.best as
  *                best_...; n_individual, n_variable, generations_limit, by which a run goes on
  *   /ga/best     as /form, and design_N [k]
  *   /polish      the same, of Levenberg-Marquardt; attributes: the members of hf_summary.polish and polish_...
@@ -76,14 +76,14 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
 hf_status hf_store_create(const char *path, int restart, const hf_case *settings, const hf_scene *scene,
                           const hf_truss *truss, int argc, char *const *argv, hf_store **store, hf_messages *messages);
 
-/* Go on with the unfinished file at `path`, after the generations of its journal were added. HF_EXISTS when it is
- * finished, HF_IO, HF_NO_MEMORY. *store is NULL after a failure, and nothing has changed. */
+/* Go on with the unfinished file at `path`. HF_EXISTS when it is finished, HF_IO, HF_NO_MEMORY. *store is NULL after a
+ * failure, and nothing has changed. */
 hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages);
 
 /* Add the generations of the journal to the unfinished file at `path` and no more; its summary then. As
  * hf_store_resume. */
 hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages);
-int hf_store_generations(const hf_store *store); /* how many it holds */
+int hf_store_generations(const hf_store *store); /* how many it holds, with those of the journal */
 
 /* The calls that write return HF_OK, HF_IO or HF_NO_MEMORY with a message. After a failure the store is of no use any
  * more: later calls write nothing, return the same status, and only hf_store_finish says something once more. With a
@@ -101,8 +101,13 @@ hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_ga *ga
  * it does, once hf_store_publish was called after hf_store_genes. */
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages);
 
-/* Put `ga`, just created, into the state before hf_ga_tell of the last generation that the store holds, and what was
- * the best until then into the summary. The store is resumed and holds one. */
+/* The pretensions base_N [n_gene] around which a resumed store's genetic algorithm was begun: on this machine they may
+ * have other last bits. Left as they are when the store has none. */
+hf_status hf_store_base(hf_store *store, int n_gene, double *base_N, hf_messages *messages);
+
+/* Put `ga`, just created from that base, into the state before hf_ga_tell of the last generation that the store holds,
+ * and what was the best until then into the summary. Of the generations in the journal the designs are bred again; a
+ * build that breeds others leaves these generations out, with a warning. Nothing when there are none. */
 hf_status hf_store_restore(hf_store *store, hf_ga *ga, hf_summary *summary, hf_messages *messages);
 
 /* Let everybody see what there is, marked as unfinished: at once, or when it takes less than 2 % of the time since it

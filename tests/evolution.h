@@ -1,0 +1,82 @@
+/* evolution - a small run of the genetic algorithm into a store, without a net behind its results. */
+#ifndef HIFDM_TESTS_EVOLUTION_H
+#define HIFDM_TESTS_EVOLUTION_H
+
+#include "results.h"
+
+#include <math.h>
+
+enum { N_GENERATION = 6, N_INDIVIDUAL = 5, N_GENE = 4 };
+
+struct run {
+    struct net net;
+    hf_model model;
+    hf_optimize_settings settings;
+    hf_ga ga;
+    double base_N[N_GENE];
+    int gene[N_GENE];
+};
+
+static inline void open_run(struct run *r)
+{
+    memset(r, 0, sizeof *r);
+    open_bow(&r->net);
+    find_shape(&r->net);
+    r->settings = (hf_optimize_settings){.population = N_INDIVIDUAL,
+                                         .generations = N_GENERATION,
+                                         .stagnation_generations = N_GENERATION,
+                                         .range_N = 1,
+                                         .min_tension_N = -1e6,
+                                         .max_tension_N = 1e6,
+                                         .crossover_high = 0.9,
+                                         .crossover_low = 0.5,
+                                         .mutation_high = 0.3,
+                                         .mutation_low = 0.1,
+                                         .elites = 1};
+    r->model = (hf_model){.n_gene = N_GENE, .n_gene_group = 1, .gene_cable = r->gene, .gene_group = r->gene};
+    ck_assert_int_eq(hf_ga_create(&r->settings, &r->model, r->base_N, &r->ga), HF_OK);
+}
+
+static inline void close_run(struct run *r)
+{
+    hf_ga_free(&r->ga);
+    close_net(&r->net);
+}
+
+/* Results that depend on the designs alone. */
+static inline void fill(hf_ga *g)
+{
+    for (int i = 0; i < N_INDIVIDUAL; i++) {
+        double psi_m = 0;
+        for (int k = 0; k < N_GENE; k++)
+            psi_m += fabs(g->design_N[i * N_GENE + k] - 0.1 * k);
+        if (g->pending[i])
+            g->result[i] = (hf_form_result){.status = HF_OK, .psi_m = psi_m, .iterations = g->generation};
+    }
+    hf_ga_tell(g);
+}
+
+/* Store the generations from `first` on, publishing in the middle. *acknowledged: how many are stored for sure. */
+static inline hf_status store_some(hf_store *s, struct run *r, int first, int n, int *acknowledged,
+                                   hf_messages *messages)
+{
+    for (int g = first; g < n; g++) {
+        if (g > 0) ck_assert(hf_ga_next(&r->ga));
+        fill(&r->ga);
+        HF_TRY(hf_store_generation(s, &r->model, &r->ga, messages));
+        *acknowledged = g + 1;
+        HF_TRY(hf_store_publish(s, &(hf_summary){.has_optimize = 1}, g % 3 == 1, messages));
+    }
+    return HF_OK;
+}
+
+static inline hf_status begin_new(const char *path, struct run *r, hf_store **s, hf_messages *messages)
+{
+    hf_messages *m = messages;
+    HF_TRY(hf_store_create(path, 0, any_case(), &r->net.scene, NULL, 0, NULL, s, m));
+    HF_TRY(hf_store_form(*s, &r->net.model, &r->net.work, NULL, m));
+    HF_TRY(hf_store_genes(*s, &r->model, &r->ga, m));
+    return hf_store_publish(*s, &(hf_summary){0}, 1, m);
+}
+
+#endif
