@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WAITING_BYTES (512 << 10) /* of all that wait; a generation larger than that waits alone */
+#define WAITING_BYTES (512 << 10) /* of all that wait but their designs; a generation larger than that waits alone */
 #define CHUNK_BYTES (256 << 10)   /* of a data set: rows as far as they fit */
 #define CHUNK_MAX (1 << 20)       /* of a row larger than CHUNK_BYTES: what HDF5 caches of a data set */
 #define BLOCK 1024                /* generations that are counted at a time */
@@ -84,7 +84,13 @@ static int list_arrays(const hf_generations *g, ga_row row[HF_GENERATIONS_PIECES
 static void lay_out(hf_arena *arena, hf_generations *g)
 {
     for (int i = 0; i < HF_GENERATIONS_PIECES; i++)
-        g->row[i] = hf_arena_take(arena, (size_t)g->capacity, g->row_bytes[i]);
+        g->row[i] = hf_arena_take(arena, (size_t)(i == ROW_DESIGN ? g->design_capacity : g->capacity), g->row_bytes[i]);
+}
+
+/* At least one, and no more than there can be. */
+static int how_many(size_t fit, int limit)
+{
+    return fit < 1 ? 1 : fit < (size_t)limit ? (int)fit : limit;
 }
 
 hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_generations *g)
@@ -99,10 +105,8 @@ hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_gene
             g->row_bytes[i] *= (size_t)row[i].array.dims[d];
         g->payload_bytes += i == ROW_DESIGN ? sizeof g->design_sum : g->row_bytes[i];
     }
-    size_t fit = WAITING_BYTES / g->payload_bytes;
-    g->capacity = fit < 1 ? 1 : fit < (size_t)limit ? (int)fit : limit;
-    size_t chunk = g->row_bytes[0] ? CHUNK_BYTES / g->row_bytes[0] : 0; /* rows; whole chunks are written faster */
-    if (chunk > 1 && (size_t)g->capacity > chunk) g->capacity -= g->capacity % (int)chunk;
+    g->capacity = how_many(WAITING_BYTES / g->payload_bytes, limit);
+    g->design_capacity = how_many(g->row_bytes[ROW_DESIGN] ? CHUNK_BYTES / g->row_bytes[ROW_DESIGN] : 1, g->capacity);
     lay_out(&arena, g);
     HF_TRY(hf_arena_allocate(&arena));
     lay_out(&arena, g);
@@ -120,7 +124,7 @@ void hf_generations_free(hf_generations *g)
 
 int hf_generations_are_full(const hf_generations *g)
 {
-    return g->n_waiting == g->capacity;
+    return g->n_waiting == g->capacity || g->n_design == g->design_capacity;
 }
 
 /* The values of one generation side by side, as HDF5 takes them; an enumeration is an int in memory, a byte there. */
@@ -145,7 +149,7 @@ static void gather(const ga_row *row, size_t bytes, char *to)
 
 static char *slot(const hf_generations *g, int i)
 {
-    return g->row[i] + (size_t)g->n_waiting * g->row_bytes[i];
+    return g->row[i] + (size_t)(i == ROW_DESIGN ? g->n_design : g->n_waiting) * g->row_bytes[i];
 }
 
 /* Tells designs from others that differ in a bit somewhere. */
@@ -173,6 +177,7 @@ void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece)
         piece[ROW_DESIGN] = (struct iovec){&g->design_sum, sizeof g->design_sum};
     }
     g->n_waiting++;
+    g->n_design++;
 }
 
 /* The values of one generation back to where they came from. */
@@ -218,23 +223,50 @@ static void choose_chunk(const hf_hdf5_array *a, size_t row_bytes, hsize_t rows,
     }
 }
 
-void hf_generations_write(hf_hdf5 *io, hf_generations *g, int is_last)
+static hid_t open_arrays(hf_hdf5 *io, const hf_generations *g, ga_row row[HF_GENERATIONS_PIECES])
 {
-    ga_row row[HF_GENERATIONS_PIECES];
     int n = list_arrays(g, row);
-    if (g->n_waiting == 0 || io->status != HF_OK) return;
     hid_t group = hf_hdf5_make_group(io, "/ga");
-    int is_new = !hf_hdf5_has(io, group, row[0].array.name);
+    if (g->n_stored > 0 || hf_hdf5_has(io, group, row[ROW_DESIGN].array.name)) return group;
     for (int i = 0; i < n; i++) {
         hsize_t chunk[3];
-        choose_chunk(&row[i].array, g->row_bytes[i], (hsize_t)(is_last ? g->n_waiting : g->capacity), chunk);
-        if (is_new) hf_hdf5_close(io, hf_hdf5_make_array(io, group, &row[i].array, chunk));
-        row[i].array.dims[0] = (hsize_t)g->n_waiting;
-        hf_hdf5_write_rows(io, group, &row[i].array, (hsize_t)g->n_stored, g->row[i]);
+        choose_chunk(&row[i].array, g->row_bytes[i], (hsize_t)g->capacity, chunk);
+        hf_hdf5_close(io, hf_hdf5_make_array(io, group, &row[i].array, chunk));
     }
+    return group;
+}
+
+static void write_row(hf_hdf5 *io, const hf_generations *g, hid_t group, ga_row *row, int i, int n)
+{
+    row[i].array.dims[0] = (hsize_t)n;
+    hf_hdf5_write_rows(io, group, &row[i].array, (hsize_t)(g->n_stored + g->n_waiting - n), g->row[i]);
+}
+
+void hf_generations_make_room(hf_hdf5 *io, hf_generations *g)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    if (io->status != HF_OK) return;
+    if (g->n_waiting == g->capacity) {
+        hf_generations_write(io, g);
+    } else if (g->n_design == g->design_capacity) {
+        hid_t group = open_arrays(io, g, row);
+        write_row(io, g, group, row, ROW_DESIGN, g->n_design);
+        hf_hdf5_close(io, group);
+        g->n_design = 0;
+    }
+}
+
+void hf_generations_write(hf_hdf5 *io, hf_generations *g)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    if (g->n_waiting == 0 || io->status != HF_OK) return;
+    hid_t group = open_arrays(io, g, row);
+    if (g->n_design) write_row(io, g, group, row, ROW_DESIGN, g->n_design);
+    for (int i = ROW_DESIGN + 1; i < HF_GENERATIONS_PIECES; i++)
+        write_row(io, g, group, row, i, g->n_waiting);
     hf_hdf5_close(io, group);
     g->n_stored += g->n_waiting;
-    g->n_waiting = 0;
+    g->n_waiting = g->n_design = 0;
 }
 
 /* ---- putting back ---- */

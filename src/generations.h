@@ -1,7 +1,8 @@
 /* generations - the data sets of /ga that grow by a row per generation: one list says what they are, where a row comes
  * from, and how a run is put back to where it was. The rows of a generation are the whole state of the genetic
  * algorithm, because its random numbers depend on (seed, generation, individual) only. They wait in memory, bounded,
- * until many can be written at once: HDF5 costs some microseconds per data set and call, whatever is written. */
+ * until many can be written together: HDF5 costs some microseconds per data set and call, whatever is written. The
+ * designs, nine tenths of the bytes, wait for a chunk to be full, all else for longer. */
 #ifndef HIFDM_GENERATIONS_H
 #define HIFDM_GENERATIONS_H
 
@@ -18,6 +19,7 @@ typedef struct {
     int limit;                               /* generations that there can be */
     int n_stored;                            /* in the file */
     int n_waiting, capacity;                 /* in memory */
+    int n_design, design_capacity;           /* those of them whose designs are in memory, too: the last ones */
     size_t row_bytes[HF_GENERATIONS_PIECES]; /* of one generation */
     size_t payload_bytes;                    /* of what the journal keeps of one */
     uint64_t design_sum;                     /* of the last one added */
@@ -29,6 +31,7 @@ typedef struct {
 hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_generations *g);
 void hf_generations_free(hf_generations *g);
 
+/* Must hf_generations_make_room be called before the next is added? */
 int hf_generations_are_full(const hf_generations *g);
 
 /* Let a generation that hf_ga_tell has ranked wait. Not when they are full. `piece` (may be NULL) is its payload
@@ -40,8 +43,9 @@ void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece)
  * have other bits than those that the results are of. */
 int hf_generations_take_payload(const hf_generations *g, const void *payload, const hf_ga *ga);
 
-/* Write those that wait below /ga of the file, whose data sets the first call makes. is_last: no more will come. */
-void hf_generations_write(hf_hdf5 *io, hf_generations *g, int is_last);
+/* Write what waits below /ga of the file, whose data sets the first call makes: all; or what has no room to wait. */
+void hf_generations_write(hf_hdf5 *io, hf_generations *g);
+void hf_generations_make_room(hf_hdf5 *io, hf_generations *g);
 
 /* How many generations the file has; those that wait do not count. Sets n_stored. */
 int hf_generations_count(hf_hdf5 *io, hf_generations *g);

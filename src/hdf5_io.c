@@ -348,7 +348,8 @@ hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const
     if (io->status != HF_OK) return -1;
     if ((type = hf_hdf5_array_type(a)) < 0 || (space = make_space(a, chunk != NULL)) < 0 ||
         (properties = make_properties(H5P_DATASET_CREATE)) < 0 ||
-        (chunk && H5Pset_chunk(properties, a->rank, chunk) < 0) ||
+        (chunk && (H5Pset_chunk(properties, a->rank, chunk) < 0 || /* what is in it is written before it can be read */
+                   H5Pset_fill_time(properties, H5D_FILL_TIME_NEVER) < 0)) ||
         (data_set = H5Dcreate2(group, a->name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT)) < 0)
         hf_hdf5_fail(io, "write", group, a->name);
     hf_hdf5_close(io, properties);

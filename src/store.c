@@ -295,15 +295,16 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_g
     store->f.io.messages = messages;
     HF_TRY(store->f.io.status);
     HF_TRY(hf_store_genes(store, model, ga, messages));
+    int generation = g->n_stored + g->n_waiting;
     if (hf_generations_are_full(g)) {
         hf_hdf5_lock();
         double begin_s = hf_store_clock_s();
         hf_store_file_open(&store->f);
         store->publish_s += hf_store_clock_s() - begin_s; /* the copy is what publishing costs, too */
-        hf_generations_write(&store->f.io, g, 0);
+        hf_generations_make_room(&store->f.io, g);
         HF_TRY(hf_hdf5_unlock(store->f.io.status));
+        hf_store_file_flow(&store->f);
     }
-    int generation = g->n_stored + g->n_waiting;
     hf_generations_add(g, ga, piece);
     store->f.io.status = hf_journal_append(&store->f.journal, generation, piece, HF_GENERATIONS_PIECES, messages);
     return store->f.io.status;
@@ -346,7 +347,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, int finished)
 static void publish(hf_store *s, const hf_summary *summary, int finished)
 {
     hf_store_file_open(&s->f);
-    hf_generations_write(&s->f.io, &s->rows, finished);
+    hf_generations_write(&s->f.io, &s->rows);
     put_summary(s, summary, finished);
     /* before the first generation nothing is lost that would not be made again */
     hf_store_file_publish(&s->f, finished || s->rows.n_stored > 0);

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #define COPY_BYTES (1 << 20)
+#define FLOW_BYTES (1 << 20)
 
 /* ---- names and checks ---- */
 
@@ -42,7 +43,7 @@ static hf_status check_target(const char *path, hf_messages *messages)
 hf_status hf_store_file_begin(const char *path, int replaces, hf_store_file *f, hf_messages *messages)
 {
     size_t size = strlen(path) + 48;
-    *f = (hf_store_file){.journal.file = -1, .io.file = -1, .visible = -1, .replaces = replaces};
+    *f = (hf_store_file){.journal.file = -1, .io.file = -1, .visible = -1, .flow = -1, .replaces = replaces};
     HF_TRY(check_target(path, messages));
     f->path = malloc(size);
     f->temporary = malloc(size);
@@ -110,6 +111,24 @@ void hf_store_file_open(hf_store_file *f)
     if (f->io.status == HF_OK) hf_hdf5_open_file(&f->io, f->temporary, 1);
 }
 
+static void stop_flow(hf_store_file *f)
+{
+    if (f->flow >= 0) close(f->flow);
+    f->flow = -1;
+    f->flowing = 0;
+}
+
+/* Advice: whether it is taken does not matter. */
+void hf_store_file_flow(hf_store_file *f)
+{
+    struct stat info;
+    if (f->io.file < 0 || f->io.status != HF_OK) return;
+    if (f->flow < 0) f->flow = open(f->temporary, O_RDONLY | O_CLOEXEC);
+    if (f->flow < 0 || fstat(f->flow, &info) != 0 || info.st_size - f->flowing < FLOW_BYTES) return;
+    (void)posix_fadvise(f->flow, f->flowing, info.st_size - f->flowing, POSIX_FADV_DONTNEED);
+    f->flowing = info.st_size;
+}
+
 void hf_store_file_adopt(hf_store_file *f)
 {
     if (f->io.status != HF_OK) return;
@@ -128,6 +147,7 @@ void hf_store_file_adopt(hf_store_file *f)
  * but empty. */
 static void close_temporary(hf_store_file *f)
 {
+    stop_flow(f);
     if (f->io.file < 0) return;
     if (H5Fflush(f->io.file, H5F_SCOPE_GLOBAL) < 0) {
         hf_hdf5_fail(&f->io, "write", -1, NULL);

@@ -33,6 +33,8 @@ typedef struct {
     struct stat ours;       /* that file, */
     int visible;            /* open, so that it can be copied when somebody has taken its name; or -1 */
     int has_temporary;      /* there is something under the temporary name */
+    int flow;               /* that, open; or -1 */
+    int64_t flowing;        /* bytes of it that are on their way to the disk */
     char *path, *temporary; /* owned */
 } hf_store_file;
 
@@ -45,6 +47,10 @@ hf_status hf_store_file_begin(const char *path, int replaces, hf_store_file *fil
 void hf_store_file_create(hf_store_file *file); /* a new temporary file */
 void hf_store_file_open(hf_store_file *file);   /* a copy of the visible one as the temporary file, unless it is open */
 void hf_store_file_adopt(hf_store_file *file);  /* the visible file is this run's */
+
+/* Let the system begin to bring to the disk what was written since the last call, if it is much: the way of the last
+ * bytes is short then. */
+void hf_store_file_flow(hf_store_file *file);
 
 /* Close the temporary file and give it the visible name; `durable`: after it went to the disk, as it holds work.
  * HF_EXISTS when somebody else has taken the name; the work is kept then, and after a rename that fails, under a name

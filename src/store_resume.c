@@ -119,7 +119,7 @@ static hf_status breed_record(void *context, int generation, const void *payload
     const hf_ga before = *b->ga;
     hf_status status;
     if (!is_news(s, generation, bytes, g->n_stored + g->n_waiting, &status)) return status;
-    if (hf_generations_are_full(g)) hf_generations_write(&s->f.io, g, 0);
+    if (hf_generations_are_full(g)) hf_generations_make_room(&s->f.io, g);
     HF_TRY(s->f.io.status);
     int goes_on = 1;
     if (generation > 0) {
@@ -142,7 +142,7 @@ static void breed_journal(hf_store *s, hf_ga *ga)
     if (io->status != HF_OK) return;
     io->status = hf_journal_replay(&s->f.journal, s->identity, breed_record, &b, io->messages);
     int first = s->rows.n_stored + s->rows.n_waiting;
-    hf_generations_write(io, &s->rows, 0);
+    hf_generations_write(io, &s->rows);
     if (io->status == HF_OK && b.n_taken < s->n_journal)
         hf_warning(io->messages,
                    "%s: this machine or build breeds other designs than the one that began it: generations %d to %d, "

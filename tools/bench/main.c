@@ -88,6 +88,7 @@ static const section section_table[] = {{"step", bench_step},
                                         {"single", bench_single},
                                         {"growth", bench_growth},
                                         {"population", bench_population},
+                                        {"whole", bench_whole},
                                         {"frame", bench_frame}};
 
 int main(int argc, char **argv)

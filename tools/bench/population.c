@@ -2,40 +2,47 @@
  * storing costs, what a second thread is worth, and how busy both are. */
 #include "bench.h"
 
+#include "run.h"
 #include <hifdm/store.h>
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #define GENERATIONS 400
 #define RESIDUAL_N 1e-8 /* of every individual */
 
-enum { EVALUATE, BREED, STORE, N_PART };
+/* A generation on its way into the store, as in `hifdm run`; and the largest residual of the feasible individuals. */
+typedef struct {
+    const hf_model *model;
+    hf_store *store; /* NULL: none */
+    hf_ga ga;
+    double worst_N;
+} told;
 
-/* The generations, as `hifdm run` does them: ask, batch, tell, store (NULL: without). Adds to the time spent in each;
- * returns the largest residual of all feasible individuals, N. */
-static double evolve(const hf_model *m, hf_batch *batch, hf_store *store, hf_ga *ga, double spent_s[N_PART])
+static void keep(void *context)
 {
+    told *t = context;
     hf_messages messages = {0};
-    double worst_N = 0, t = bench_clock_s(), now;
-    int more;
+    hf_summary summary = {.has_optimize = 1};
+    if (hf_store_generation(t->store, t->model, &t->ga, &messages) != HF_OK ||
+        hf_store_publish(t->store, &summary, 0, &messages) != HF_OK)
+        bench_fail("store", messages.text);
+    for (int i = 0; i < t->ga.n_individual; i++)
+        if (t->ga.result[i].status == HF_OK) t->worst_N = fmax(t->worst_N, t->ga.result[i].residual_N);
+}
+
+static double evolve(const hf_model *m, hf_batch *batch, hf_store *store, hf_ga *ga)
+{
+    told now = {m, store, *ga, 0};
+    hf_batch_run(batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
     do {
-        hf_batch_run(batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
-        spent_s[EVALUATE] += (now = bench_clock_s()) - t, t = now;
         hf_ga_tell(ga);
-        spent_s[BREED] += (now = bench_clock_s()) - t, t = now;
-        if (store && hf_store_generation(store, m, ga, &messages) != HF_OK) bench_fail("store", messages.text);
-        spent_s[STORE] += (now = bench_clock_s()) - t, t = now;
-        for (int i = 0; i < ga->n_individual; i++)
-            if (ga->result[i].status == HF_OK) worst_N = fmax(worst_N, ga->result[i].residual_N);
-        t = bench_clock_s(); /* looking at residuals is nothing that a run does */
-        more = hf_ga_next(ga);
-        spent_s[BREED] += (now = bench_clock_s()) - t, t = now;
-    } while (more);
-    hf_messages_free(&messages);
-    return worst_N;
+        now.ga = *ga;
+    } while (hf_batch_next(batch, ga, keep, &now));
+    return now.worst_N;
 }
 
 /* Bytes that this process has given to write(2) so far. */
@@ -54,17 +61,14 @@ typedef struct {
     hf_batch batch;
     hf_ga ga;
     hf_store *store;
-    double spent_s[N_PART], open_close_s;
 } population;
 
 static void open_store(population *p)
 {
     hf_messages messages = {0};
-    double start_s = bench_clock_s();
     if (p->path &&
         hf_store_create(p->path, 1, &p->scene->settings, &p->scene->scene, NULL, 0, NULL, &p->store, &messages))
         bench_fail(p->path, messages.text);
-    p->open_close_s += bench_clock_s() - start_s;
     hf_messages_free(&messages);
 }
 
@@ -72,9 +76,7 @@ static void close_store(population *p)
 {
     hf_messages messages = {0};
     hf_summary summary = {.form = p->scene->found, .threads = p->batch.n_thread, .has_optimize = 1};
-    double start_s = bench_clock_s();
     if (p->store && hf_store_finish(p->store, &summary, &messages) != HF_OK) bench_fail(p->path, messages.text);
-    p->open_close_s += bench_clock_s() - start_s;
     hf_messages_free(&messages);
 }
 
@@ -87,21 +89,14 @@ static void once(bench_scene *b, int threads, const char *path)
         hf_ga_create(&b->settings.optimize, &b->model, b->base_N, &p.ga) != HF_OK)
         bench_fail(name, "out of memory");
     hf_batch_share(&p.batch, b->base_N);
-    double written = written_bytes();
+    double written = written_bytes(), start_s = bench_clock_s();
     open_store(&p);
-    double worst_N = evolve(&b->model, &p.batch, p.store, &p.ga, p.spent_s);
+    double worst_N = evolve(&b->model, &p.batch, p.store, &p.ga);
     close_store(&p);
+    double wall_s = bench_clock_s() - start_s;
     written = written_bytes() - written;
-    double evaluate_s = p.spent_s[EVALUATE];
-    double wall_s = evaluate_s + p.spent_s[BREED] + p.spent_s[STORE] + p.open_close_s;
     bench_emit("population", name, mode, threads, "wall_s", wall_s);
-    bench_emit("population", name, mode, threads, "evaluate_s", evaluate_s);
-    bench_emit("population", name, mode, threads, "breed_s", p.spent_s[BREED]);
-    bench_emit("population", name, mode, threads, "store_s", p.spent_s[STORE]);
-    bench_emit("population", name, mode, threads, "open_close_s", p.open_close_s);
-    bench_emit("population", name, mode, threads, "store_share", (p.spent_s[STORE] + p.open_close_s) / wall_s);
     bench_emit("population", name, mode, threads, "utilisation", p.batch.cpu_s / wall_s / threads);
-    bench_emit("population", name, mode, threads, "waiting_share", 1 - p.batch.cpu_s / evaluate_s / threads);
     bench_emit("population", name, mode, threads, "evaluations", (double)p.ga.n_evaluation);
     bench_emit("population", name, mode, threads, "evaluations_per_s", (double)p.ga.n_evaluation / wall_s);
     bench_emit("population", name, mode, threads, "worst_residual_N", worst_N);
@@ -124,8 +119,32 @@ void bench_population(const char *name, const char *folder)
     b.form.residual_tolerance = RESIDUAL_N / b.model.reference_N;
     b.evaluator.boundary_ratio_cap = b.settings.optimize.boundary_ratio_cap;
     snprintf(path, sizeof path, "%s/population.h5", folder);
-    once(&b, 1, NULL);
-    once(&b, 2, NULL);
-    once(&b, 2, path);
+    for (int threads = 1; threads <= 2; threads++) {
+        once(&b, threads, NULL);
+        once(&b, threads, path);
+        unlink(path);
+    }
     bench_scene_free(&b);
+}
+
+/* The whole of `hifdm run` but its start, with and without a file. */
+void bench_whole(const char *path, const char *folder)
+{
+    char output[HF_OUTPUT_SIZE], wanted[HF_PATH_SIZE];
+    static hf_summary summary;
+    snprintf(wanted, sizeof wanted, "%s/whole.h5", folder);
+    hf_store_quiet();
+    for (int stores = 0; stores < 2; stores++) {
+        hf_messages messages = {0};
+        hf_run_request request = {.case_path = path, .output = wanted, .threads = 2, .no_file = !stores};
+        double start_s = bench_clock_s();
+        hf_status status = hf_run_point(&request, &summary, output, &messages);
+        double wall_s = bench_clock_s() - start_s;
+        if (status != HF_OK) bench_fail(path, messages.text);
+        bench_emit("whole", summary.title, stores ? "stored" : "not stored", 2, "wall_s", wall_s);
+        bench_emit("whole", summary.title, stores ? "stored" : "not stored", 2, "optimize_wall_s",
+                   summary.optimize_wall_s);
+        hf_messages_free(&messages);
+    }
+    unlink(wanted);
 }

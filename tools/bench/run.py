@@ -287,8 +287,8 @@ class Bench:
                                "process_wall_s", "process_cpu_s", "peak_MiB", "file_MB"],
                   ("scene", "threads", "generations"))
         self.wide("population", "population",
-                  ["wall_s", "evaluate_s", "breed_s", "store_s", "open_close_s", "store_share", "utilisation",
-                   "waiting_share", "evaluations", "evaluations_per_s", "worst_residual_N", "file_MB", "written_MB"],
+                  ["wall_s", "utilisation", "evaluations", "evaluations_per_s", "worst_residual_N", "file_MB",
+                   "written_MB"],
                   ("scene", "mode", "threads"))
 
     def write(self):
@@ -360,11 +360,10 @@ def summary(s):
         for mode in ("not stored", "stored"):
             yield [f"50x400 GA; {scene}: CPU utilisation on 2 threads; {mode}",
                    "" if scene == "chen2022" else "0.95", population(mode, 2, "utilisation")]
-        yield [f"50x400 GA; {scene}: share of the threads' time spent waiting in evaluations", "",
-               population("not stored", 2, "waiting_share")]
-        yield [f"50x400 GA; {scene}: share of the wall time spent storing", "0.05",
-               population("stored", 2, "store_share")]
-        yield [f"50x400 GA; {scene}: stored / not stored", "1.05", s.paired("population", scene, stored, two)]
+        yield [f"50x400 GA; {scene}: stored / not stored; threads 1", "1.05",
+               s.paired("population", scene, ("stored", 1, "wall_s"), one)]
+        yield [f"50x400 GA; {scene}: stored / not stored; threads 2", "1.05",
+               s.paired("population", scene, stored, two)]
         yield [f"50x400 GA; {scene}: MB written", "", population("stored", 2, "written_MB")]
         yield [f"50x400 GA; {scene}: largest residual of all individuals N", "1e-8",
                population("stored", 2, "worst_residual_N")]

@@ -1,7 +1,7 @@
 /* A whole run, stage by stage, of a case that only needs the force density method, one that is form-found, and one that
  * is optimised as well: what takes how long, and what memory each stage has allocated and keeps. The run is the
  * program's own: the linker puts the functions below between it and the library (BENCH_WRAP in the Makefile). What a
- * case does not need has no sample. */
+ * case does not need has no sample. On one thread, where the stages of a generation come one after the other. */
 #include "bench.h"
 
 #include "polish.h"
@@ -20,7 +20,10 @@ static const char *const stage_word[N_STAGE] = {"read case", "scene",          "
 
 /* Globals, because the functions of the library have no context to pass them in. */
 static int watching, depth, n_call[N_STAGE];
-static double time_s[N_STAGE], kept_bytes[N_STAGE], since_s, bytes_before, bytes_at_most;
+static double time_s[N_STAGE], kept_bytes[N_STAGE], bytes_at_most;
+static struct {
+    double since_s, bytes; /* when it began, less what those inside have taken */
+} call[8];
 
 /* Bytes in use on the heap, with what calloc has reserved and nobody touched; 0 where the C library does not tell. */
 static double heap_bytes(void)
@@ -35,19 +38,22 @@ static double heap_bytes(void)
 
 static void enter(void)
 {
-    if (!watching || depth++ > 0) return;
-    bytes_before = heap_bytes();
-    since_s = bench_clock_s();
+    if (!watching) return;
+    call[depth].bytes = heap_bytes();
+    call[depth++].since_s = bench_clock_s();
 }
 
 static void leave(int stage)
 {
-    if (!watching || --depth > 0) return;
-    time_s[stage] += bench_clock_s() - since_s;
-    double bytes = heap_bytes();
-    kept_bytes[stage] += bytes - bytes_before;
+    if (!watching) return;
+    double took_s = bench_clock_s() - call[--depth].since_s, bytes = heap_bytes(), kept = bytes - call[depth].bytes;
+    time_s[stage] += took_s;
+    kept_bytes[stage] += kept;
     bytes_at_most = fmax(bytes_at_most, bytes);
     n_call[stage]++;
+    if (depth == 0) return;
+    call[depth - 1].since_s += took_s;
+    call[depth - 1].bytes += kept;
 }
 
 #define WATCH(stage, type, name, parameters, arguments)                                                                \
@@ -92,6 +98,8 @@ WATCH(SETUP, hf_status, hf_ga_create,
 WATCH_VOID(EVALUATE, hf_batch_run,
            (hf_batch * batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result),
            (batch, n, design_N, pending, result))
+WATCH(EVALUATE, int, hf_batch_next, (hf_batch * batch, hf_ga *ga, void (*beside)(void *), void *context),
+      (batch, ga, beside, context))
 WATCH(EVALUATE, hf_workspace *, hf_batch_run_one, (hf_batch * batch, const double *design_N, hf_form_result *result),
       (batch, design_N, result))
 WATCH_VOID(BREED, hf_ga_tell, (hf_ga * ga), (ga))
@@ -110,6 +118,9 @@ WATCH(STORE, hf_status, hf_store_form,
       (store, model, workspace, history, messages))
 WATCH(STORE, hf_status, hf_store_generation,
       (hf_store * store, const hf_model *model, const hf_ga *ga, hf_messages *messages), (store, model, ga, messages))
+WATCH(STORE, hf_status, hf_store_publish,
+      (hf_store * store, const hf_summary *summary, int at_once, hf_messages *messages),
+      (store, summary, at_once, messages))
 WATCH(STORE, hf_status, hf_store_best,
       (hf_store * store, hf_stage stage, const hf_model *model, const hf_workspace *workspace, const double *design_N,
        hf_messages *messages),
@@ -123,7 +134,8 @@ void bench_stages(const char *name, const char *folder, const char *path, const 
     static hf_summary summary;
     hf_messages messages = {0};
     snprintf(wanted, sizeof wanted, "%s/stages.h5", folder);
-    hf_run_request request = {.case_path = path, .set = overrides, .n_set = n_override, .output = wanted, .restart = 1};
+    hf_run_request request = {
+        .case_path = path, .set = overrides, .n_set = n_override, .output = wanted, .restart = 1, .threads = 1};
     hf_store_quiet();
     double bytes_at_first = heap_bytes(), start_s = bench_clock_s();
     watching = 1;
