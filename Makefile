@@ -106,7 +106,7 @@ BENCH_RUN := $(patsubst %,$(BUILD)/src/%.o,run problem)
 BENCH_WRAP := hf_config_load hf_config_scene hf_model_build hf_symmetry_apply hf_workspace_create hf_evaluate_form \
               hf_batch_create hf_batch_share hf_ga_create hf_batch_run hf_batch_next hf_batch_run_one hf_ga_tell \
               hf_ga_next hf_polish_run hf_store_create hf_store_form hf_store_generation hf_store_publish \
-              hf_store_best hf_store_finish
+              hf_store_best hf_store_complete hf_store_settle
 
 # ---- How things are said and called ----------------------------------------------------------------------------------
 # Short lines, nothing when all is up to date; V=1 shows the full commands.

@@ -6,8 +6,10 @@
 
 #include <errno.h>
 #include <omp.h>
+#include <pthread.h>
 #include <semaphore.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 static double thread_cpu_s(void)
@@ -188,45 +190,21 @@ static int is_done(const queue *q)
     return done >= q->n;
 }
 
-/* ---- threads that batches share ----
- *
- * One thread more than may work, so that nothing stands still while one waits for the disk: who works holds one of
- * n_thread places. */
+/* ---- batches beside each other ---- */
 
-static _Thread_local sem_t *places; /* of the hf_batch_for that this thread works for, or NULL */
-
-static void take_place(sem_t *from)
+/* Helps with a batch if there are designs left, and memory. */
+static void help(hf_batch *batch, int room, queue *work, const double *design_N, hf_form_result *result)
 {
-    while (sem_wait(from) != 0 && errno == EINTR)
-        ;
+    if (!is_done(work) && has_room(batch, room)) share_work(batch, room, work, design_N, result);
 }
 
-void hf_batch_pause(void)
-{
-    if (places) sem_post(places);
-}
-
-void hf_batch_resume(void)
-{
-    if (places) take_place(places);
-}
-
-/* Helps with a batch if there are designs left, a place to work at, and memory. */
-static void help(hf_batch *batch, int room, sem_t *at, queue *work, const double *design_N, hf_form_result *result)
-{
-    if (is_done(work) || (at && sem_trywait(at) != 0)) return;
-    if (has_room(batch, room)) share_work(batch, room, work, design_N, result);
-    if (at) sem_post(at);
-}
-
-/* Beside other batches, in a thread of hf_batch_for: threads without work of their own may come and help. Whoever takes
- * one of these tasks, the thread itself or another, finds a room that is nobody else's. */
+/* In a thread of hf_batch_for: threads without work of their own may come and help. Whoever takes one of these tasks,
+ * the thread itself or another, finds a room that is nobody else's. */
 static void run_beside_others(hf_batch *batch, queue *work, const double *design_N, hf_form_result *result)
 {
-    sem_t *at = places;
     for (int room = 1; room < batch->n_thread; room++) {
-#pragma omp task firstprivate(room, batch, at, work, design_N, result)
-        help(batch, room, at, work, design_N, result);
+#pragma omp task firstprivate(room, batch, work, design_N, result)
+        help(batch, room, work, design_N, result);
     }
     share_work(batch, 0, work, design_N, result);
 #pragma omp taskwait
@@ -260,7 +238,8 @@ static void breed_and_run(hf_batch *batch, hf_ga *ga, void (*beside)(void *), vo
                 sem_post(&bred);
         }
         if (thread == (n > 1)) beside(context);
-        if (thread > 0) take_place(&bred);
+        while (thread > 0 && sem_wait(&bred) != 0 && errno == EINTR)
+            ;
         share_work(batch, thread, &work, ga->design_N, ga->result);
     }
     sem_destroy(&bred);
@@ -279,25 +258,89 @@ int hf_batch_next(hf_batch *batch, hf_ga *ga, void (*beside)(void *context), voi
     return 1;
 }
 
+/* ---- the rest of a piece of work, which waits for the disk ---- */
+
+#define LATER_MAX 64
+
+typedef struct {
+    pthread_mutex_t lock;
+    pthread_cond_t news;
+    int n, n_worker; /* that wait; threads that may bring more */
+    struct {
+        void (*work)(void *context);
+        void *context;
+    } item[LATER_MAX];
+} later_list;
+
+static _Thread_local later_list *later_of_this; /* of the hf_batch_for that this thread works for, or NULL */
+
+void hf_batch_later(void (*later)(void *context), void *context)
+{
+    later_list *l = later_of_this;
+    int is_taken = 0;
+    if (l) {
+        pthread_mutex_lock(&l->lock);
+        is_taken = l->n < LATER_MAX;
+        if (is_taken) {
+            l->item[l->n].work = later;
+            l->item[l->n++].context = context;
+            pthread_cond_signal(&l->news);
+        }
+        pthread_mutex_unlock(&l->lock);
+    }
+    if (!is_taken) later(context);
+}
+
+/* Until no worker is left and nothing waits. */
+static void do_later(later_list *l)
+{
+    pthread_mutex_lock(&l->lock);
+    for (;;) {
+        while (l->n == 0 && l->n_worker > 0)
+            pthread_cond_wait(&l->news, &l->lock);
+        if (l->n == 0) break;
+        void (*work)(void *) = l->item[0].work;
+        void *context = l->item[0].context;
+        memmove(l->item, l->item + 1, (size_t)--l->n * sizeof l->item[0]);
+        pthread_mutex_unlock(&l->lock);
+        work(context);
+        pthread_mutex_lock(&l->lock);
+    }
+    pthread_mutex_unlock(&l->lock);
+}
+
+static void work_on_all(queue *items, later_list *l, void (*work)(void *context, int i), void *context)
+{
+    later_of_this = l;
+    for (int i = take_next(items); i >= 0; i = take_next(items))
+        work(context, i);
+    later_of_this = NULL;
+    if (!l) return;
+    pthread_mutex_lock(&l->lock);
+    l->n_worker--;
+    pthread_cond_signal(&l->news);
+    pthread_mutex_unlock(&l->lock);
+}
+
 void hf_batch_for(int n_thread, int n, void (*work)(void *context, int i), void *context)
 {
     queue items = {n, 0, NULL};
-    sem_t at;
+    later_list later = {.lock = PTHREAD_MUTEX_INITIALIZER, .news = PTHREAD_COND_INITIALIZER};
     if (n_thread <= 0) n_thread = hf_batch_default_threads();
-    sem_init(&at, 0, (unsigned)n_thread);
 #pragma omp parallel num_threads(n_thread + 1)
     {
-        int i;
-        do {
-            take_place(&at);
-            places = &at;
-            i = take_next(&items);
-            if (i >= 0) work(context, i);
-            places = NULL;
-            sem_post(&at);
-        } while (i >= 0);
+        int n_worker = omp_get_num_threads() - 1; /* the last one waits for the disk */
+#pragma omp single
+        later.n_worker = n_worker;
+        if (n_worker == 0)
+            work_on_all(&items, NULL, work, context);
+        else if (omp_get_thread_num() < n_worker)
+            work_on_all(&items, &later, work, context);
+        else
+            do_later(&later);
     } /* here threads that are through take the tasks of those that are not */
-    sem_destroy(&at);
+    pthread_mutex_destroy(&later.lock);
+    pthread_cond_destroy(&later.news);
 }
 
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result)

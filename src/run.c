@@ -401,8 +401,13 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     hf_text_trim_utf8(s->warnings);
     s->finished = 1;
     s->status = status;
-    hf_status finish = hf_store_finish(r->store, s, messages);
+    hf_status finish = hf_store_complete(r->store, s, messages);
+    hf_store *store = r->store;
     r->store = NULL;
+    if (finish == HF_OK && q->unsettled)
+        *q->unsettled = store;
+    else
+        finish = hf_store_settle(store, messages);
     return finish != HF_OK ? finish : status;
 }
 

@@ -5,6 +5,7 @@
 #define HIFDM_RUN_H
 
 #include "problem.h"
+#include <hifdm/store.h>
 
 #include <signal.h>
 
@@ -42,7 +43,10 @@ typedef struct {
     int argc; /* for the provenance */
     char *const *argv;
     const volatile sig_atomic_t *stop_requested; /* polled between generations; NULL: never */
-    hf_run_observer *observer;                   /* NULL: none */
+    /* NULL: the result gets its name before the run comes back. Else *unsettled is its store when hf_store_settle is
+     * still to be called (NULL: not), and the caller does so in any thread. */
+    hf_store **unsettled;
+    hf_run_observer *observer; /* NULL: none */
     void *observer_context;
 } hf_run_request;
 

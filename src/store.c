@@ -343,14 +343,13 @@ static void put_summary(hf_store *s, const hf_summary *summary, int finished)
 
 /* ---- publishing ---- */
 
-/* What waits goes into the file, and the file takes the name. */
-static void publish(hf_store *s, const hf_summary *summary, int finished)
+/* What waits goes into the file, which is whole then. */
+static void complete(hf_store *s, const hf_summary *summary, int finished)
 {
     hf_store_file_open(&s->f);
     hf_generations_write(&s->f.io, &s->rows);
     put_summary(s, summary, finished);
-    /* before the first generation nothing is lost that would not be made again */
-    hf_store_file_publish(&s->f, finished || s->rows.n_stored > 0);
+    hf_store_file_close(&s->f);
 }
 
 hf_status hf_store_publish(hf_store *s, const hf_summary *summary, int at_once, hf_messages *messages)
@@ -366,8 +365,10 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, int at_once, 
     }
     assert(s->n_journal == 0); /* or they would be lost */
     hf_hdf5_lock();
-    publish(s, summary, 0);
-    hf_hdf5_unlock(HF_OK);
+    complete(s, summary, 0);
+    hf_hdf5_unlock(HF_OK); /* others need not wait for this file's way to the disk */
+    /* before the first generation nothing is lost that would not be made again */
+    hf_store_file_name(&s->f, s->rows.n_stored > 0);
     if (s->f.io.status == HF_OK && !hf_journal_is_empty(&s->f.journal))
         s->f.io.status = hf_journal_rotate(&s->f.journal, messages);
     s->published_at_s = hf_store_clock_s();
@@ -377,20 +378,33 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, int at_once, 
 
 /* ---- the end ---- */
 
-hf_status hf_store_finish(hf_store *s, const hf_summary *summary, hf_messages *messages)
+hf_status hf_store_complete(hf_store *s, const hf_summary *summary, hf_messages *messages)
 {
     if (!s) return HF_OK;
-    hf_hdf5_lock();
     s->f.io.messages = messages;
     if (s->f.io.status != HF_OK)
-        hf_error(messages, s->f.io.status, "%s: is not written to its end, since an earlier part of it could not be",
-                 s->f.path);
-    else
-        publish(s, summary, 1);
+        return hf_error(messages, s->f.io.status,
+                        "%s: is not written to its end, since an earlier part of it could not be", s->f.path);
+    hf_hdf5_lock();
+    complete(s, summary, 1);
+    return hf_hdf5_unlock(s->f.io.status);
+}
+
+hf_status hf_store_settle(hf_store *s, hf_messages *messages)
+{
+    if (!s) return HF_OK;
+    s->f.io.messages = messages;
+    hf_store_file_name(&s->f, 1);
     hf_status status = s->f.io.status;
     if (status == HF_OK) hf_journal_forget(&s->f.journal);
-    hf_store_free(s);
-    return hf_hdf5_unlock(status);
+    hf_store_abandon(s);
+    return status;
+}
+
+hf_status hf_store_finish(hf_store *s, const hf_summary *summary, hf_messages *messages)
+{
+    hf_store_complete(s, summary, messages);
+    return hf_store_settle(s, messages);
 }
 
 hf_hdf5 *hf_store_io(hf_store *store, hf_messages *messages)
@@ -403,7 +417,8 @@ hf_hdf5 *hf_store_io(hf_store *store, hf_messages *messages)
 void hf_store_abandon(hf_store *store)
 {
     if (!store) return;
-    hf_hdf5_lock();
+    int is_open = store->f.io.file >= 0;
+    if (is_open) hf_hdf5_lock();
     hf_store_free(store);
-    hf_hdf5_unlock(HF_OK);
+    if (is_open) hf_hdf5_unlock(HF_OK);
 }

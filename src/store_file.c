@@ -1,8 +1,6 @@
 /* Contents: names and checks - the temporary file - publishing - the end */
 #include "store_file.h"
 
-#include <hifdm/batch.h>
-
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -145,7 +143,7 @@ void hf_store_file_adopt(hf_store_file *f)
 /* HDF5 1.10 does not survive a close that cannot write what is left: the ids stay open and the program crashes at its
  * end. So all is written before; and when the disk is full, the file stays open, for which hf_store_quiet has prepared,
  * but empty. */
-static void close_temporary(hf_store_file *f)
+void hf_store_file_close(hf_store_file *f)
 {
     stop_flow(f);
     if (f->io.file < 0) return;
@@ -217,7 +215,7 @@ static void keep_work(hf_store_file *f, int is_worth_keeping)
             hf_error(f->io.messages, HF_IO, "%s: cannot be given this name: %s%s%s", f->path, why, words, kept);
 }
 
-static void name_temporary(hf_store_file *f, int durable)
+void hf_store_file_name(hf_store_file *f, int durable)
 {
     char folder[4096];
     if (f->io.status == HF_OK && durable) sync_to_disk(f, f->temporary);
@@ -238,23 +236,13 @@ static void name_temporary(hf_store_file *f, int durable)
     if (f->io.status == HF_OK && durable) sync_to_disk(f, folder);
 }
 
-void hf_store_file_publish(hf_store_file *f, int durable)
-{
-    close_temporary(f);
-    hf_hdf5_unlock(HF_OK); /* others need not wait for this file's way to the disk */
-    hf_batch_pause();
-    name_temporary(f, durable);
-    hf_batch_resume();
-    hf_hdf5_lock();
-}
-
 /* ---- the end ---- */
 
 void hf_store_file_end(hf_store_file *f)
 {
     hf_messages unwanted = {0};
     f->io.messages = &unwanted;
-    close_temporary(f);
+    hf_store_file_close(f);
     if (f->has_temporary) unlink(f->temporary); /* before the lock is given back */
     hf_journal_close(&f->journal, f->is_published ? hf_journal_is_empty(&f->journal) : f->journal.is_new);
     hf_messages_free(&unwanted);

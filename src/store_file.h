@@ -42,7 +42,8 @@ typedef struct {
  * HF_EXISTS (a foreign journal), HF_NO_MEMORY. End in any case. */
 hf_status hf_store_file_begin(const char *path, int replaces, hf_store_file *file, hf_messages *messages);
 
-/* The calls from here on do nothing once io.status is not HF_OK. */
+/* The calls from here on do nothing once io.status is not HF_OK. Create, open and close, and the end of an open file,
+ * need the lock of HDF5. */
 
 void hf_store_file_create(hf_store_file *file); /* a new temporary file */
 void hf_store_file_open(hf_store_file *file);   /* a copy of the visible one as the temporary file, unless it is open */
@@ -52,10 +53,11 @@ void hf_store_file_adopt(hf_store_file *file);  /* the visible file is this run'
  * bytes is short then. */
 void hf_store_file_flow(hf_store_file *file);
 
-/* Close the temporary file and give it the visible name; `durable`: after it went to the disk, as it holds work.
- * HF_EXISTS when somebody else has taken the name; the work is kept then, and after a rename that fails, under a name
- * that the message tells. */
-void hf_store_file_publish(hf_store_file *file, int durable);
+void hf_store_file_close(hf_store_file *file); /* the temporary file is whole */
+
+/* Give it the visible name; `durable`: after it went to the disk, as it holds work. HF_EXISTS when somebody else has
+ * taken the name; the work is kept then, and after a rename that fails, under a name that the message tells. */
+void hf_store_file_name(hf_store_file *file, int durable);
 
 /* Close and free everything, drop the temporary file, give the lock back. The journal stays when it holds what the
  * visible file does not, or was there before. */

@@ -165,6 +165,35 @@ static int must_stop(const sweep *w)
     return *w->stop_requested || w->fatal != HF_OK;
 }
 
+/* A point that was run, while its file is on its way to the disk. */
+typedef struct {
+    sweep *w;
+    int i;
+    hf_status status;
+    hf_store *store; /* NULL: none, or it has its name already */
+    hf_messages said;
+    hf_summary summary;
+} finished_point;
+
+static void settle_point(void *context)
+{
+    finished_point *p = context;
+    hf_status settled = hf_store_settle(p->store, &p->said);
+    if (settled != HF_OK) p->status = settled;
+    if (p->status != HF_INTERRUPTED) finish_point(p->w, p->i, p->status, &p->said, &p->summary);
+    hf_ledger_release(&p->w->ledger, p->w->study->id[p->i]);
+    hf_messages_free(&p->said);
+    free(p);
+}
+
+static void out_of_memory(sweep *w, const char *id)
+{
+    hf_ledger_release(&w->ledger, id);
+    pthread_mutex_lock(&w->lock);
+    w->fatal = hf_error(w->messages, HF_NO_MEMORY, "out of memory for a point");
+    pthread_mutex_unlock(&w->lock);
+}
+
 static void run_point(void *context, int k)
 {
     sweep *w = context;
@@ -181,8 +210,12 @@ static void run_point(void *context, int k)
     }
     char file[HF_PATH_SIZE + 32], output[HF_OUTPUT_SIZE];
     hf_study_overrides overrides;
-    hf_summary summary;
-    hf_messages said = {0};
+    finished_point *p = calloc(1, sizeof *p);
+    if (!p) {
+        out_of_memory(w, id);
+        return;
+    }
+    *p = (finished_point){.w = w, .i = i};
     hf_study_point(w->study, i, &overrides);
     int is_empty = hf_ledger_file(w->ledger.folder, w->study, i, file) == HF_LEDGER_EMPTY_FILE;
     hf_run_request request = {.case_path = w->study->base,
@@ -195,11 +228,13 @@ static void run_point(void *context, int k)
                               .threads = w->threads,
                               .argc = w->argc,
                               .argv = w->argv,
-                              .stop_requested = w->stop_requested};
-    hf_status status = hf_run_point(&request, &summary, output, &said);
-    if (status != HF_INTERRUPTED) finish_point(w, i, status, &said, &summary);
-    hf_ledger_release(&w->ledger, id);
-    hf_messages_free(&said);
+                              .stop_requested = w->stop_requested,
+                              .unsettled = &p->store};
+    p->status = hf_run_point(&request, &p->summary, output, &p->said);
+    if (p->store)
+        hf_batch_later(settle_point, p);
+    else
+        settle_point(p);
 }
 
 /* ---- sweep ---- */

@@ -46,10 +46,9 @@ int hf_batch_share(hf_batch *batch, const double *base_N);
  * that all are busy until the last i is done. */
 void hf_batch_for(int n_thread, int n, void (*work)(void *context, int i), void *context);
 
-/* Around waiting for the disk inside `work`: another i goes on meanwhile, so that n_thread threads work all the time.
- * Elsewhere they do nothing. */
-void hf_batch_pause(void);
-void hf_batch_resume(void);
+/* Inside `work`: later(context) once, in a thread of its own, so that n_thread threads work on while it waits for the
+ * disk. At once when too many wait already, or elsewhere. All have come back when hf_batch_for does. */
+void hf_batch_later(void (*later)(void *context), void *context);
 
 /* The same without a base: what hf_batch_share makes unless the base or memory forbids it; *has_lanes: eight designs
  * side by side, by chord or in lanes. */

@@ -124,6 +124,11 @@ hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, 
  * another, which the message tells. */
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
 
+/* The same in two parts. complete: up to closing it, which takes processor time. settle: the way to the disk and the
+ * name, which is waiting for the most part, perhaps in another thread; frees the store in any case. */
+hf_status hf_store_complete(hf_store *store, const hf_summary *summary, hf_messages *messages);
+hf_status hf_store_settle(hf_store *store, hf_messages *messages);
+
 /* End without finishing and free the store: what was published stays, with the journal of what was not. store may be
  * NULL. */
 void hf_store_abandon(hf_store *store);

@@ -2,7 +2,6 @@
 #include "nets.h"
 
 #include <hifdm/batch.h>
-#include <sched.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -256,40 +255,42 @@ START_TEST(a_generation_can_be_read_while_the_next_is_bred)
 }
 END_TEST
 
-/* Whoever waits gives its place to another, and gets one again: never more than n_thread work at a time. */
-struct places {
-    int working, most, n_call;
+/* What is left for later is done once, by the end; more than fit are done at once. */
+enum { N_LATER = 300 };
+
+struct later {
+    int n_done[N_LATER], is_slow;
 };
 
-static void work_and_wait(void *context, int i)
+static struct later_item {
+    struct later *l;
+    int i;
+} later_item[N_LATER];
+
+static void do_item(void *context)
 {
-    struct places *p = context;
-    volatile double sum = 0;
-    for (int round = 0; round < 3; round++) {
-        int now = __atomic_add_fetch(&p->working, 1, __ATOMIC_SEQ_CST),
-            most = __atomic_load_n(&p->most, __ATOMIC_SEQ_CST);
-        while (now > most && !__atomic_compare_exchange_n(&p->most, &most, now, 0, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
-            ;
-        for (int k = 0; k < 2000 * (i % 5); k++)
-            sum = sum + k;
-        __atomic_sub_fetch(&p->working, 1, __ATOMIC_SEQ_CST);
-        hf_batch_pause();
-        sched_yield();
-        hf_batch_resume();
-    }
-    __atomic_add_fetch(&p->n_call, 1, __ATOMIC_SEQ_CST);
+    struct later_item *item = context;
+    if (item->l->is_slow) nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
+    __atomic_add_fetch(&item->l->n_done[item->i], 1, __ATOMIC_SEQ_CST);
 }
 
-START_TEST(waiting_threads_give_their_place_to_others)
+static void leave_for_later(void *context, int i)
+{
+    later_item[i] = (struct later_item){context, i};
+    hf_batch_later(do_item, &later_item[i]);
+}
+
+START_TEST(what_is_left_for_later_is_done)
 {
     for (int n_thread = 1; n_thread <= 3; n_thread++) {
-        struct places p = {0};
-        hf_batch_for(n_thread, 200, work_and_wait, &p);
-        ck_assert_int_eq(p.n_call, 200);
-        ck_assert_int_le(p.most, n_thread);
+        static struct later l;
+        l = (struct later){.is_slow = _i};
+        hf_batch_for(n_thread, N_LATER, leave_for_later, &l);
+        for (int i = 0; i < N_LATER; i++)
+            ck_assert_int_eq(l.n_done[i], 1);
+        leave_for_later(&l, 0); /* outside: at once */
+        ck_assert_int_eq(l.n_done[0], 2);
     }
-    hf_batch_pause(); /* nothing outside */
-    hf_batch_resume();
 }
 END_TEST
 
@@ -320,7 +321,7 @@ Suite *suite_unit_batch(void)
     tcase_add_test(tests, default_is_a_thread_per_core);
     tcase_add_test(tests, batches_that_share_threads_do_not_change_a_bit);
     tcase_add_test(tests, a_generation_can_be_read_while_the_next_is_bred);
-    tcase_add_test(tests, waiting_threads_give_their_place_to_others);
+    tcase_add_loop_test(tests, what_is_left_for_later_is_done, 0, 2);
     tcase_add_test(tests, nothing_is_allocated);
     return suite;
 }

@@ -125,8 +125,9 @@ WATCH(STORE, hf_status, hf_store_best,
       (hf_store * store, hf_stage stage, const hf_model *model, const hf_workspace *workspace, const double *design_N,
        hf_messages *messages),
       (store, stage, model, workspace, design_N, messages))
-WATCH(STORE, hf_status, hf_store_finish, (hf_store * store, const hf_summary *summary, hf_messages *messages),
+WATCH(STORE, hf_status, hf_store_complete, (hf_store * store, const hf_summary *summary, hf_messages *messages),
       (store, summary, messages))
+WATCH(STORE, hf_status, hf_store_settle, (hf_store * store, hf_messages *messages), (store, messages))
 
 void bench_stages(const char *name, const char *folder, const char *path, const char *const *overrides, int n_override)
 {
