@@ -192,11 +192,13 @@ asan: ## the tests under the address and undefined-behaviour sanitizers, in buil
 # clang, because gcc's OpenMP runtime hides its barriers from the thread sanitizer; OpenBLAS and HDF5 are not
 # instrumented, so what goes on inside them is ignored. setarch -R: clang 14 cannot place its shadow memory on kernels
 # that randomise addresses widely.
-tsan: ## a short run of TSAN_CASE on four threads under the thread sanitizer, in build/tsan
+tsan: ## a short run of TSAN_CASE, and some points of a sweep, under the thread sanitizer, in build/tsan
 	$(Q)tools/setup.sh --ci
 	$(SUB) BUILD=build/tsan CC=clang SANITIZE=thread CFLAGS='-O1 -g' WERROR= build/tsan/hifdm
-	OMP_NUM_THREADS=4 TSAN_OPTIONS=ignore_noninstrumented_modules=1 $(NO_ASLR) \
-	    build/tsan/hifdm run $(TSAN_CASE) $(TSAN_ARGS) -o build/tsan/out.h5 --force
+	$(TSAN_RUN) run $(TSAN_CASE) $(TSAN_ARGS) -o build/tsan/out.h5 --force
+	@rm -rf build/tsan/sweep.d
+	$(TSAN_RUN) sweep configs/pretension-sweep.yaml --task 0 --tasks 16 --threads 3 --dir build/tsan/sweep.d
+TSAN_RUN = OMP_NUM_THREADS=4 TSAN_OPTIONS=ignore_noninstrumented_modules=1 $(NO_ASLR) build/tsan/hifdm
 NO_ASLR = $(shell setarch -R true 2>/dev/null && echo setarch -R)
 
 install: all ## install under PREFIX (/usr/local), within DESTDIR if given
