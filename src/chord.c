@@ -1,4 +1,4 @@
-/* Contents: choice of instruction set - shared matrix - lanes - one lane's life - the run */
+/* Contents: choice of instruction set - shared matrix - lanes - the matrix alone - one lane's life - the run */
 #include "chord.h"
 
 #include "arena.h"
@@ -80,9 +80,9 @@ static void lay_out(hf_arena *a, hf_chord *c)
     c->base_displacement_m = hf_arena_take(a, n_pull, sizeof(double));
 }
 
-static void pack(const hf_workspace *w, hf_chord *c, int half_bandwidth)
+static void pack(const hf_workspace *w, hf_chord *c)
 {
-    size_t ld = (size_t)half_bandwidth + 1, width = (size_t)c->width;
+    size_t ld = 3 * (size_t)c->evaluator->model->half_bandwidth + 3, width = (size_t)c->width;
     for (size_t j = 0; j < (size_t)c->n_dof; j++) {
         c->inverse_diagonal[j] = 1 / w->newton_band[j * ld];
         for (size_t d = 1; d < ld && j + d < (size_t)c->n_dof; d++) {
@@ -151,6 +151,17 @@ static hf_status pack_truss(const hf_model *m, hf_workspace *w, hf_chord *c)
     return status;
 }
 
+static hf_status allocate(hf_chord *chord)
+{
+    hf_arena arena = {0};
+    lay_out(&arena, chord);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out(&arena, chord);
+    chord->block = arena.block;
+    chord->kernels = choose_kernels();
+    return HF_OK;
+}
+
 hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_workspace *w, hf_chord *chord)
 {
     const hf_model *m = v->model;
@@ -158,13 +169,8 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_worksp
     *chord = dimensions(v);
     HF_TRY(hf_evaluate(v, base_N, w, &base));
     HF_TRY(hf_newton_factor(m, w, NULL));
-    hf_arena arena = {0};
-    lay_out(&arena, chord);
-    HF_TRY(hf_arena_allocate(&arena));
-    lay_out(&arena, chord);
-    chord->block = arena.block;
-    chord->kernels = choose_kernels();
-    pack(w, chord, 3 * m->half_bandwidth + 2);
+    HF_TRY(allocate(chord));
+    pack(w, chord);
     find_skyline(chord);
     memcpy(chord->base_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
     for (int e = 0; e < m->n_cable; e++)
@@ -219,6 +225,41 @@ void hf_chord_lanes_free(hf_chord_lanes *lanes)
 {
     free(lanes->block);
     *lanes = (hf_chord_lanes){0};
+}
+
+/* ---- the matrix alone ---- */
+
+hf_status hf_chord_create_matrix(const hf_evaluator *v, hf_chord *chord, hf_chord_lanes *lanes)
+{
+    *lanes = (hf_chord_lanes){0};
+    *chord = dimensions(v);
+    chord->n_pull = chord->n_pull_pad = 0;
+    HF_TRY(allocate(chord));
+    return hf_chord_lanes_create(chord, lanes);
+}
+
+void hf_chord_pack(const hf_workspace *w, hf_chord *chord)
+{
+    pack(w, chord);
+    find_skyline(chord);
+}
+
+void hf_chord_back_solve(const hf_chord *chord, const hf_chord_lanes *l, int n_rhs, double *b, size_t ldb)
+{
+    double *rows = l->force_N + (size_t)chord->width * HF_LANES;
+    size_t n = (size_t)chord->n_dof;
+    memset(rows, 0, (n + (size_t)chord->width + 8) * HF_LANES * sizeof *rows);
+    for (int first = 0; first < n_rhs; first += HF_LANES) {
+        int n_lane = n_rhs - first < HF_LANES ? n_rhs - first : HF_LANES;
+        double *column = b + (size_t)first * ldb;
+        for (int k = 0; k < n_lane; k++)
+            for (size_t i = 0; i < n; i++)
+                rows[i * HF_LANES + (size_t)k] = column[(size_t)k * ldb + i];
+        chord->kernels->solve(chord, l);
+        for (int k = 0; k < n_lane; k++)
+            for (size_t i = 0; i < n; i++)
+                column[(size_t)k * ldb + i] = rows[i * HF_LANES + (size_t)k];
+    }
 }
 
 /* ---- one lane's life ---- */

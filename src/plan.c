@@ -89,6 +89,16 @@ static void print_allocation(const char *title, const char *what, double bytes, 
 }
 
 /* Bytes that a population's engine would share and give to each thread. */
+/* Right-hand sides, twice with a truss, and the packed matrix. */
+static double polish_bytes(const hf_evaluator *v)
+{
+    const hf_model *m = v->model;
+    size_t lanes, matrix;
+    if (!hf_polish_applies(v)) return 0;
+    matrix = hf_chord_bytes(v, &lanes);
+    return 24.0 * m->n_leader * m->n_free * (m->n_attachment ? 2 : 1) + (double)(matrix + lanes);
+}
+
 static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lanes)
 {
     int has_lanes, solver = hf_batch_solver(v, &has_lanes);
@@ -127,8 +137,7 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
     print_allocation("", "matrix shared by all threads", (double)shared, evolves ? "none" : without_ga, f);
     print_allocation("", "lanes of designs", (double)lanes * threads, evolves ? "none" : without_ga, f);
     print_allocation("", "population", 2 * population * (genes + (double)sizeof(hf_form_result)), "none", f);
-    print_allocation("", "sensitivities of Levenberg-Marquardt",
-                     v && hf_polish_applies(v) ? 24.0 * m->n_leader * m->n_free : 0, "none", f);
+    print_allocation("", "sensitivities of Levenberg-Marquardt", v ? polish_bytes(v) : 0, "none", f);
     if (evolves)
         print_allocation("result file", "generations, at most",
                          population * (genes + 70) * p->settings.optimize.generations, "", f);

@@ -3,6 +3,7 @@
 
 #include "arena.h"
 #include "band.h"
+#include "chord.h"
 #include "coupling.h"
 #include "newton.h"
 #include "symmetry.h"
@@ -33,7 +34,10 @@ typedef struct {
     double *trial_N;       /* [n_gene] */
     double *best_N;        /* [n_gene] */
     double *sensitivity;   /* [n_leader][3 n_free] right-hand sides, then dx/dT, then the rows of J' */
+    hf_chord matrix;       /* of the net at supports that stay */
+    hf_chord_lanes lanes;
     hf_schur schur;        /* with a truss, and what follows */
+    double *answer;        /* [n_leader][3 n_free] of the truss, in the same way */
     double *pull, *move_m; /* [n_leader][3 n_attachment] change of the pull on the truss; [3 n_attachment] its answer */
     double best_psi_m;
     int evaluations;
@@ -58,6 +62,7 @@ static void lay_out(hf_arena *a, problem *p)
     p->gene = hf_arena_take(a, k, sizeof(int));
     p->variable_of_gene = hf_arena_take(a, k, sizeof(int));
     p->sensitivity = hf_arena_take(a, (size_t)m->n_leader * 3 * (size_t)m->n_free, sizeof(double));
+    p->answer = m->n_attachment ? hf_arena_take(a, (size_t)m->n_leader * 3 * (size_t)m->n_free, sizeof(double)) : NULL;
     p->pull = hf_arena_take(a, (size_t)m->n_leader * 3 * (size_t)m->n_attachment, sizeof(double));
     p->move_m = hf_arena_take(a, 3 * (size_t)m->n_attachment, sizeof(double));
 }
@@ -164,16 +169,16 @@ static void let_truss_answer(problem *p)
 {
     const hf_model *m = p->v->model;
     size_t n_dof = 3 * (size_t)m->n_free;
+    memset(p->answer, 0, (size_t)m->n_leader * n_dof * sizeof(double));
     for (int k = 0; k < m->n_leader; k++) {
-        double *moved = p->sensitivity + (size_t)k * n_dof, *pull = p->pull + (size_t)(3 * k * m->n_attachment);
-        hf_coupling_pull(m, p->w, moved, pull);
+        double *pull = p->pull + (size_t)(3 * k * m->n_attachment);
+        hf_coupling_pull(m, p->w, p->sensitivity + (size_t)k * n_dof, pull);
         hf_schur_displace(m, &p->schur, pull, p->move_m);
-        memset(p->schur.column, 0, n_dof * sizeof(double));
-        hf_coupling_push(m, p->w, p->move_m, p->schur.column);
-        hf_band_back_solve((int)n_dof, 3 * m->half_bandwidth + 2, 1, p->w->newton_band, p->schur.column, (int)n_dof);
-        for (size_t i = 0; i < n_dof; i++)
-            moved[i] += p->schur.column[i];
+        hf_coupling_push(m, p->w, p->move_m, p->answer + (size_t)k * n_dof);
     }
+    hf_chord_back_solve(&p->matrix, &p->lanes, m->n_leader, p->answer, n_dof);
+    for (size_t i = 0; i < (size_t)m->n_leader * n_dof; i++)
+        p->sensitivity[i] += p->answer[i];
 }
 
 /* Columns of J at these variables into the rows of p->sensitivity, all zero where there is no shape. */
@@ -191,8 +196,8 @@ static void linearise(problem *p, const gsl_vector *variable)
     for (int k = 0; k < m->n_gene; k++)
         add_force_of_gene(p, k, p->sensitivity + (size_t)p->variable_of_gene[k] * n_dof,
                           p->pull + (size_t)(3 * p->variable_of_gene[k] * m->n_attachment));
-    hf_band_back_solve((int)n_dof, 3 * m->half_bandwidth + 2, m->n_leader, p->w->newton_band, p->sensitivity,
-                       (int)n_dof);
+    hf_chord_pack(p->w, &p->matrix);
+    hf_chord_back_solve(&p->matrix, &p->lanes, m->n_leader, p->sensitivity, n_dof);
     if (m->n_attachment) let_truss_answer(p);
     double scale = 1 / sqrt(m->n_inner_node);
     for (size_t k = 0; k < variable->size; k++) {
@@ -281,10 +286,13 @@ hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower_N, co
     memcpy(p.best_N, design_N, bytes);
     p.best_psi_m = result->start_psi_m = start.psi_m;
     hf_status status = evaluator->model->n_attachment ? hf_schur_create(evaluator->model, &p.schur) : HF_OK;
+    if (status == HF_OK) status = hf_chord_create_matrix(evaluator, &p.matrix, &p.lanes);
     if (status == HF_OK) status = minimise(&p, max_iterations, design_N, result);
     result->psi_m = p.best_psi_m;
     result->evaluations = p.evaluations;
     memcpy(design_N, p.best_N, bytes);
+    hf_chord_lanes_free(&p.lanes);
+    hf_chord_free(&p.matrix);
     hf_schur_free(&p.schur);
     hf_arena_free(&arena);
     return status;

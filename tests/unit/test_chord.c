@@ -4,8 +4,13 @@
 #include "population.h"
 #include "verified.h"
 
+#include "band.h"
 #include "chord.h"
+#include "newton.h"
 #include <hifdm/batch.h>
+
+#include <math.h>
+#include <stdlib.h>
 
 /* All designs in batches of n_at_once. */
 static void evaluate(struct run *r, int n_thread, int n_at_once, hf_form_result result[N_DESIGN])
@@ -85,6 +90,43 @@ START_TEST(answers_are_newtons_on_random_nets)
     open_net(&r.net);
     start_run(&r, HF_RULE_FORCE_DENSITY);
     assert_answers(&r);
+    close_net(&r.net);
+}
+END_TEST
+
+/* Right-hand sides of somebody else's: as LAPACK solves them, up to rounding times the condition, 1e7 at most here. */
+START_TEST(many_right_hand_sides)
+{
+    struct run r;
+    struct rng rng = rng_start((uint64_t)_i);
+    hf_chord chord;
+    hf_chord_lanes lanes;
+    open_run(&r, HF_RULE_FORCE_DENSITY);
+    const hf_model *m = &r.net.model;
+    int n = 3 * m->n_free, n_rhs = 1 + 6 * _i; /* 1, 7, 13: less than a pass, and one and a part */
+    size_t ld = (size_t)n + 3;
+    double *b = malloc((size_t)n_rhs * ld * sizeof *b), *x = malloc((size_t)n_rhs * ld * sizeof *x), largest = 0;
+    for (size_t i = 0; i < (size_t)n_rhs * ld; i++)
+        b[i] = x[i] = rng_uniform(&rng, -1, 1);
+    ck_assert_int_eq(hf_evaluate(&r.evaluator, r.design_N, &r.net.work, &(hf_form_result){0}), HF_OK);
+    ck_assert_int_eq(hf_newton_factor(m, &r.net.work, NULL), HF_OK);
+    ck_assert_int_eq(hf_chord_create_matrix(&r.evaluator, &chord, &lanes), HF_OK);
+    hf_chord_pack(&r.net.work, &chord);
+    hf_chord_back_solve(&chord, &lanes, n_rhs, x, ld);
+    for (int k = 0; k < n_rhs; k++) {
+        double *want = b + (size_t)k * ld, *got = x + (size_t)k * ld;
+        ck_assert_mem_eq(want + n, got + n, 3 * sizeof(double)); /* what is behind a column is not touched */
+        hf_band_back_solve(n, 3 * m->half_bandwidth + 2, 1, r.net.work.newton_band, want, n);
+        for (int i = 0; i < n; i++)
+            largest = fmax(largest, fabs(want[i]));
+        for (int i = 0; i < n; i++)
+            ck_assert_double_eq_tol(got[i], want[i], 1e-9 * largest);
+    }
+    ck_assert_double_gt(largest, 0);
+    hf_chord_lanes_free(&lanes);
+    hf_chord_free(&chord);
+    free(b);
+    free(x);
     close_net(&r.net);
 }
 END_TEST
@@ -272,6 +314,7 @@ Suite *suite_unit_chord(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, answers_are_newtons, 0, 2);
     tcase_add_loop_test(tests, answers_are_newtons_on_random_nets, 0, 8);
+    tcase_add_loop_test(tests, many_right_hand_sides, 0, 3);
     tcase_add_loop_test(tests, threads_and_grouping_do_not_change_a_bit, 0, 2);
     tcase_add_loop_test(tests, order_does_not_change_a_bit, 0, 2);
     tcase_add_loop_test(tests, strangers_disturb_nobody, 0, 2);
