@@ -4,6 +4,7 @@
 #include "chord.h"
 #include "swarm.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <omp.h>
 #include <pthread.h>
@@ -227,7 +228,9 @@ static void breed_and_run(hf_batch *batch, hf_ga *ga, void (*beside)(void *), vo
 {
     queue work = {0};
     sem_t bred;
-    sem_init(&bred, 0, 0);
+    int failed = sem_init(&bred, 0, 0);
+    assert(!failed);
+    (void)failed;
 #pragma omp parallel num_threads(batch->n_thread)
     {
         int thread = omp_get_thread_num(), n = omp_get_num_threads();
@@ -238,8 +241,8 @@ static void breed_and_run(hf_batch *batch, hf_ga *ga, void (*beside)(void *), vo
                 sem_post(&bred);
         }
         if (thread == (n > 1)) beside(context);
-        while (thread > 0 && sem_wait(&bred) != 0 && errno == EINTR)
-            ;
+        while (thread > 0 && sem_wait(&bred) != 0)
+            assert(errno == EINTR);
         share_work(batch, thread, &work, ga->design_N, ga->result);
     }
     sem_destroy(&bred);
@@ -260,7 +263,7 @@ int hf_batch_next(hf_batch *batch, hf_ga *ga, void (*beside)(void *context), voi
 
 /* ---- the rest of a piece of work, which waits for the disk ---- */
 
-#define LATER_MAX 64
+#define LATER_MAX 8 /* each holds files open */
 
 typedef struct {
     pthread_mutex_t lock;
@@ -309,6 +312,7 @@ static void do_later(later_list *l)
     pthread_mutex_unlock(&l->lock);
 }
 
+/* l: NULL when nobody does what is left for later. */
 static void work_on_all(queue *items, later_list *l, void (*work)(void *context, int i), void *context)
 {
     later_of_this = l;
@@ -327,15 +331,12 @@ void hf_batch_for(int n_thread, int n, void (*work)(void *context, int i), void 
     queue items = {n, 0, NULL};
     later_list later = {.lock = PTHREAD_MUTEX_INITIALIZER, .news = PTHREAD_COND_INITIALIZER};
     if (n_thread <= 0) n_thread = hf_batch_default_threads();
+    later.n_worker = n_thread;
 #pragma omp parallel num_threads(n_thread + 1)
     {
-        int n_worker = omp_get_num_threads() - 1; /* the last one waits for the disk */
-#pragma omp single
-        later.n_worker = n_worker;
-        if (n_worker == 0)
-            work_on_all(&items, NULL, work, context);
-        else if (omp_get_thread_num() < n_worker)
-            work_on_all(&items, &later, work, context);
+        int has_waiter = omp_get_num_threads() > n_thread; /* fewer threads than asked for all work */
+        if (omp_get_thread_num() < n_thread)
+            work_on_all(&items, has_waiter ? &later : NULL, work, context);
         else
             do_later(&later);
     } /* here threads that are through take the tasks of those that are not */

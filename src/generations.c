@@ -103,7 +103,7 @@ hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_gene
         g->row_bytes[i] = hf_hdf5_kind_bytes(row[i].array.kind);
         for (int d = 1; d < row[i].array.rank; d++)
             g->row_bytes[i] *= (size_t)row[i].array.dims[d];
-        g->payload_bytes += i == ROW_DESIGN ? sizeof g->design_sum : g->row_bytes[i];
+        g->payload_bytes += i == ROW_DESIGN ? sizeof g->design_hash : g->row_bytes[i];
     }
     g->capacity = how_many(WAITING_BYTES / g->payload_bytes, limit);
     g->design_capacity = how_many(g->row_bytes[ROW_DESIGN] ? CHUNK_BYTES / g->row_bytes[ROW_DESIGN] : 1, g->capacity);
@@ -152,15 +152,21 @@ static char *slot(const hf_generations *g, int i)
     return g->row[i] + (size_t)(i == ROW_DESIGN ? g->n_design : g->n_waiting) * g->row_bytes[i];
 }
 
-/* Tells designs from others that differ in a bit somewhere. */
-static uint64_t sum_designs(const hf_ga *ga)
+/* Tells designs from others that differ in a bit or in their order: four chains of FNV-1a's kind, over words. */
+static uint64_t hash_designs(const hf_ga *ga)
 {
-    uint64_t sum = 0, bits;
+    enum { CHAINS = 4 };
+    const uint64_t factor = 0x9e3779b97f4a7c15u; /* odd: nothing is lost by it */
+    uint64_t chain[CHAINS] = {1, 2, 3, 4}, bits, all = 0;
     for (size_t i = 0; i < (size_t)ga->n_individual * (size_t)ga->n_gene; i++) {
+        uint64_t *h = &chain[i % CHAINS];
         memcpy(&bits, &ga->design_N[i], sizeof bits);
-        sum += bits;
+        *h = (*h ^ bits) * factor;
+        *h ^= *h >> 32;
     }
-    return sum;
+    for (int i = 0; i < CHAINS; i++)
+        all = (all ^ chain[i]) * factor, all ^= all >> 32;
+    return all;
 }
 
 void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece)
@@ -173,8 +179,8 @@ void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece)
         if (piece) piece[i] = (struct iovec){slot(g, i), g->row_bytes[i]};
     }
     if (piece) {
-        g->design_sum = sum_designs(ga);
-        piece[ROW_DESIGN] = (struct iovec){&g->design_sum, sizeof g->design_sum};
+        g->design_hash = hash_designs(ga);
+        piece[ROW_DESIGN] = (struct iovec){&g->design_hash, sizeof g->design_hash};
     }
     g->n_waiting++;
     g->n_design++;
@@ -194,15 +200,15 @@ static void scatter(const ga_row *row, size_t bytes, const char *from)
     }
 }
 
-int hf_generations_take_payload(const hf_generations *g, const void *payload, const hf_ga *ga)
+int hf_generations_take_payload(const hf_generations *g, const void *payload, hf_ga *ga)
 {
     ga_row row[HF_GENERATIONS_PIECES];
-    uint64_t sum;
+    uint64_t hash;
     int n = list_rows(ga, row);
     const char *from = payload;
-    memcpy(&sum, from, sizeof sum);
-    if (sum != sum_designs(ga)) return 0;
-    from += sizeof sum;
+    memcpy(&hash, from, sizeof hash);
+    if (hash != hash_designs(ga)) return 0;
+    from += sizeof hash;
     for (int i = ROW_DESIGN + 1; i < n; from += g->row_bytes[i++])
         scatter(&row[i], g->row_bytes[i], from);
     return 1;

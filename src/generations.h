@@ -22,7 +22,7 @@ typedef struct {
     int n_design, design_capacity;           /* those of them whose designs are in memory, too: the last ones */
     size_t row_bytes[HF_GENERATIONS_PIECES]; /* of one generation */
     size_t payload_bytes;                    /* of what the journal keeps of one */
-    uint64_t design_sum;                     /* of the last one added */
+    uint64_t design_hash;                    /* of the last one added */
     char *row[HF_GENERATIONS_PIECES];        /* [capacity] rows of each data set */
     void *block;
 } hf_generations;
@@ -36,12 +36,12 @@ int hf_generations_are_full(const hf_generations *g);
 
 /* Let a generation that hf_ga_tell has ranked wait. Not when they are full. `piece` (may be NULL) is its payload
  * [HF_GENERATIONS_PIECES], borrowed until the next is added: all of it but the designs, nine tenths of its bytes, which
- * hf_ga_next breeds again from the generation before. Of these only the sum of their bits is there. */
+ * hf_ga_next breeds again from the generation before. Of these only a hash is there. */
 void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece);
 
 /* Results and all else from a payload into `ga`, whose designs were bred again. 0, and nothing is changed, when these
  * have other bits than those that the results are of. */
-int hf_generations_take_payload(const hf_generations *g, const void *payload, const hf_ga *ga);
+int hf_generations_take_payload(const hf_generations *g, const void *payload, hf_ga *ga);
 
 /* Write what waits below /ga of the file, whose data sets the first call makes: all; or what has no room to wait. */
 void hf_generations_write(hf_hdf5 *io, hf_generations *g);

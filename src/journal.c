@@ -69,6 +69,7 @@ static hf_status look_at_head(hf_journal *j, int *is_journal, hf_messages *messa
     ssize_t n = pread(j->file, magic, sizeof magic, 0);
     if (n < 0) return fail(j, "read", j->path, messages);
     *is_journal = memcmp(magic, MAGIC, (size_t)n) == 0; /* a header may be torn */
+    j->is_other_version = !*is_journal && n == sizeof magic && memcmp(magic, MAGIC, sizeof magic - 1) == 0;
     return HF_OK;
 }
 
@@ -92,6 +93,11 @@ hf_status hf_journal_open(const char *result, int replaces, hf_journal *j, hf_me
     if (is_journal) return HF_OK;
     close(j->file);
     j->file = -1;
+    if (j->is_other_version)
+        return hf_error(messages, HF_EXISTS,
+                        "%s: %s is a journal of another version of hifdm; finish the run with that one, or begin anew "
+                        "with --restart (of a sweep: --retry failed)",
+                        result, j->path);
     return hf_error(messages, HF_EXISTS,
                     "%s: %s is no journal of hifdm, and in the way; delete it, use --restart (of a sweep: --retry "
                     "failed) to replace both or -o to choose another name",

@@ -415,6 +415,7 @@ hf_status hf_run_point(const hf_run_request *request, hf_summary *summary, char 
                        hf_messages *messages)
 {
     run r = {.request = request};
+    if (request->unsettled) *request->unsettled = NULL;
     *summary = (hf_summary){.form.status = HF_NOT_EVALUATED, .threads = 1};
     snprintf(summary->version, sizeof summary->version, "%s", hf_store_version());
     output[0] = '\0';

@@ -385,8 +385,14 @@ hf_status hf_store_complete(hf_store *s, const hf_summary *summary, hf_messages 
     if (s->f.io.status != HF_OK)
         return hf_error(messages, s->f.io.status,
                         "%s: is not written to its end, since an earlier part of it could not be", s->f.path);
+    if (s->n_journal > 0) /* the shape was found where it was begun */
+        return s->f.io.status = hf_error(messages, HF_EXISTS,
+                                         "%s: this machine or build does not come as far as the one that began it; its "
+                                         "generations are kept, --restart (of a sweep: --retry failed) begins anew",
+                                         s->f.path);
     hf_hdf5_lock();
     complete(s, summary, 1);
+    hf_generations_free(&s->rows); /* it may wait for long until it is settled */
     return hf_hdf5_unlock(s->f.io.status);
 }
 

@@ -127,8 +127,8 @@ static const char **split_lines(char *text, int *n)
     return line;
 }
 
-/* Did the file's case make sense to this version? */
-static int read_case(hf_hdf5 *io, hf_case *then)
+/* Did the file's case make sense to this version? path: where the files that it names are looked for. */
+static int read_case(hf_hdf5 *io, const char *path, hf_case *then)
 {
     char *text = NULL, *overrides = NULL;
     const char **set = NULL;
@@ -139,7 +139,7 @@ static int read_case(hf_hdf5 *io, hf_case *then)
     hf_hdf5_read_text(io, io->file, "/case/text", &text);
     hf_hdf5_read_text(io, io->file, "/case/overrides", &overrides);
     if (io->status == HF_OK && !(set = split_lines(overrides, &n_set))) hf_store_no_memory(io);
-    if (io->status == HF_OK) is_known = hf_config_parse(io->path, text, set, n_set, then, &unwanted) == HF_OK;
+    if (io->status == HF_OK) is_known = hf_config_parse(path, text, set, n_set, then, &unwanted) == HF_OK;
     then->optimize.seed = seed; /* as --seed may have set it */
     hf_messages_free(&unwanted);
     free(set);
@@ -150,7 +150,7 @@ static int read_case(hf_hdf5 *io, hf_case *then)
 
 void hf_store_read_case(hf_hdf5 *io, hf_case *settings)
 {
-    if (!read_case(io, settings) && io->status == HF_OK)
+    if (!read_case(io, io->path, settings) && io->status == HF_OK)
         hf_hdf5_damaged(io, io->file, "/case", "has keys that this version does not know");
 }
 
@@ -158,7 +158,7 @@ void hf_store_read_case(hf_hdf5 *io, hf_case *settings)
 static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t size)
 {
     hf_case then = {0};
-    if (!read_case(io, &then))
+    if (!read_case(io, now->path, &then))
         snprintf(words, size, "%s", "keys that this version does not know");
     else if (hf_config_differences(&then, now, words, size) == 0)
         snprintf(words, size, "%s",

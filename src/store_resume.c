@@ -98,7 +98,8 @@ hf_status hf_store_base(hf_store *store, int n_gene, double *base_N, hf_messages
     hf_hdf5_lock();
     store->f.io.messages = messages;
     hf_store_file_open(&store->f);
-    hf_hdf5_read_array(&store->f.io, store->f.io.file, &base, base_N);
+    if (hf_hdf5_has(&store->f.io, store->f.io.file, base.name)) /* not in files before 2026-11-21 */
+        hf_hdf5_read_array(&store->f.io, store->f.io.file, &base, base_N);
     return hf_hdf5_unlock(store->f.io.status);
 }
 
@@ -108,6 +109,7 @@ typedef struct {
     hf_store *store;
     hf_ga *ga; /* before hf_ga_tell of the last generation that was taken; just created when there is none */
     int n_taken;
+    int drops; /* what this build breeds otherwise; or it is an error */
 } breeding;
 
 /* The designs of a record are bred from the generation before it. */
@@ -128,17 +130,21 @@ static hf_status breed_record(void *context, int generation, const void *payload
     }
     if (!goes_on || !hf_generations_take_payload(g, payload, b->ga)) {
         *b->ga = before;
-        return HF_DIFFERENT;
+        if (b->drops) return HF_DIFFERENT;
+        return hf_error(s->f.io.messages, HF_EXISTS,
+                        "%s: this machine or build breeds other designs from generation %d on than the one that began "
+                        "it, which alone can recover %s; nothing was changed",
+                        s->f.path, generation + 1, s->f.journal.path);
     }
     hf_generations_add(g, b->ga, NULL);
     b->n_taken++;
     return HF_OK;
 }
 
-static void breed_journal(hf_store *s, hf_ga *ga)
+static void breed_journal(hf_store *s, hf_ga *ga, int drops)
 {
     hf_hdf5 *io = &s->f.io;
-    breeding b = {s, ga, 0};
+    breeding b = {s, ga, 0, drops};
     if (io->status != HF_OK) return;
     io->status = hf_journal_replay(&s->f.journal, s->identity, breed_record, &b, io->messages);
     int first = s->rows.n_stored + s->rows.n_waiting;
@@ -151,7 +157,7 @@ static void breed_journal(hf_store *s, hf_ga *ga)
     s->n_journal = 0;
 }
 
-hf_status hf_store_restore(hf_store *store, hf_ga *ga, hf_summary *summary, hf_messages *messages)
+static hf_status restore(hf_store *store, hf_ga *ga, int drops, hf_summary *summary, hf_messages *messages)
 {
     if (hf_store_generations(store) == 0) return HF_OK;
     hf_hdf5 *io = &store->f.io;
@@ -159,9 +165,14 @@ hf_status hf_store_restore(hf_store *store, hf_ga *ga, hf_summary *summary, hf_m
     io->messages = messages;
     hf_store_file_open(&store->f);
     if (store->rows.n_stored) hf_generations_restore(io, &store->rows, ga);
-    if (store->n_journal) breed_journal(store, ga);
+    if (store->n_journal) breed_journal(store, ga, drops);
     hf_generations_sum_up(io, &store->rows, summary);
     return hf_hdf5_unlock(io->status);
+}
+
+hf_status hf_store_restore(hf_store *store, hf_ga *ga, hf_summary *summary, hf_messages *messages)
+{
+    return restore(store, ga, 1, summary, messages);
 }
 
 /* ---- recovery ---- */
@@ -240,7 +251,7 @@ hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *m
     else
         hf_generations_sum_up(&s->f.io, &s->rows, summary);
     hf_status status = hf_hdf5_unlock(s->f.io.status);
-    if (status == HF_OK && s->n_journal) status = hf_store_restore(s, &a.ga, summary, messages);
+    if (status == HF_OK && s->n_journal) status = restore(s, &a.ga, 0, summary, messages);
     if (status == HF_OK) status = hf_store_publish(s, summary, 1, messages);
     close_stored_ga(&a);
     hf_store_abandon(s);

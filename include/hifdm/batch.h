@@ -41,6 +41,10 @@ int hf_batch_next(hf_batch *batch, hf_ga *ga, void (*beside)(void *context), voi
  * HF_NO_MEMORY counts as unsuitable. */
 int hf_batch_share(hf_batch *batch, const double *base_N);
 
+/* The same without a base: what hf_batch_share makes unless the base or memory forbids it; *has_lanes: eight designs
+ * side by side, by chord or in lanes. */
+int hf_batch_solver(const hf_evaluator *evaluator, int *has_lanes);
+
 /* work(context, i) for i = 0 ... n-1, handed out in this order to n_thread threads (0: the default). Batches that are
  * created and run inside share these threads: one that finds no i left helps the hf_batch_run calls of the others, so
  * that all are busy until the last i is done. */
@@ -49,10 +53,6 @@ void hf_batch_for(int n_thread, int n, void (*work)(void *context, int i), void 
 /* Inside `work`: later(context) once, in a thread of its own, so that n_thread threads work on while it waits for the
  * disk. At once when too many wait already, or elsewhere. All have come back when hf_batch_for does. */
 void hf_batch_later(void (*later)(void *context), void *context);
-
-/* The same without a base: what hf_batch_share makes unless the base or memory forbids it; *has_lanes: eight designs
- * side by side, by chord or in lanes. */
-int hf_batch_solver(const hf_evaluator *evaluator, int *has_lanes);
 
 int hf_batch_default_threads(void); /* available cores */
 

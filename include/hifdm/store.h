@@ -81,12 +81,12 @@ hf_status hf_store_create(const char *path, int restart, const hf_case *settings
 hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages);
 
 /* Add the generations of the journal to the unfinished file at `path` and no more; its summary then. As
- * hf_store_resume. */
+ * hf_store_resume; HF_EXISTS also when this build does not breed the designs that the journal's results are of. */
 hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages);
 int hf_store_generations(const hf_store *store); /* how many it holds, with those of the journal */
 
 /* The calls that write return HF_OK, HF_IO or HF_NO_MEMORY with a message. After a failure the store is of no use any
- * more: later calls write nothing, return the same status, and only hf_store_finish says something once more. With a
+ * more: later calls write nothing, return the same status, and only hf_store_complete says something once more. With a
  * store of NULL they keep nothing, and return HF_OK. */
 
 /* Shape of the workspace in the order of the scene, with the history unless that is NULL. Once per store. On a resumed
@@ -97,7 +97,8 @@ hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspa
 /* Bounds and gene cables of the genetic algorithm, once it is created. Nothing on a resumed store. */
 hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages);
 
-/* Append the generation that hf_ga_tell has just ranked. After HF_OK it outlives this process; after HF_IO all before
+/* Append the generation that hf_ga_tell has just ranked. After HF_OK it outlives this process, for the build that made
+ * it (see hf_store_restore); after HF_IO all before
  * it does, once hf_store_publish was called after hf_store_genes. */
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages);
 

@@ -224,6 +224,14 @@ START_TEST(another_case_is_told_key_by_key)
     ERR("is finished, there is nothing to go on with");
     HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", path, "--restart", "--quiet");
     EXPECT(path, "--", "'ga' not in a");
+    const char *net = net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,2,0,0,support\nc,1,1,0.5,inner\n"
+                               "d,1,-1,0.5,support\n",
+                               "id,i,j,group,law,value\nac,a,c,inner,tension,10\nbc,b,c,inner,tension,10\n"
+                               "dc,d,c,inner,tension,10\n");
+    SHELL(0, "mkdir \"$1\"", temp("elsewhere")); /* files that the case names are beside the case */
+    HIFDM(0, "run", net, "-o", temp("elsewhere/net.h5"), "--quiet");
+    HIFDM(5, "run", net, "-o", temp("elsewhere/net.h5"), "--set", "form.pretension_N=11");
+    ERR("what differs: form.pretension_N. Use");
 }
 END_TEST
 

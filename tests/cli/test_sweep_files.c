@@ -139,6 +139,29 @@ START_TEST(a_begun_point_with_a_cut_file)
 }
 END_TEST
 
+/* A point that is computed but whose file cannot get its name, in the thread that waits for the disk, has failed; the
+ * others have not. */
+START_TEST(a_name_that_is_taken_meanwhile)
+{
+    const char *folder = temp("s.d"), *path = temp("study.yaml");
+    file_with("base.yaml", SMALL_SCENE "optimize: {population: 20, generations: 20000, seed: 7, "
+                                       "stagnation_generations: 20000, polish_iterations: 1}\n");
+    file_with("study.yaml", "base: base.yaml\nsweep:\n  optimize.generations: [20000, 2, 3]\n");
+    SHELL(0,
+          "\"$0\" sweep \"$1\" --dir \"$2\" --quiet 2>/dev/null & until [ -s \"$(echo \"$2\"/*.journal)\" ]; do "
+          "sleep 0.002; done; for j in \"$2\"/*.journal; do f=${j%.journal}; until [ -s $f ]; do sleep 0.002; done; "
+          "echo mine >\"$2/x\"; mv \"$2/x\" $f; done; wait $!; [ $? = 3 ] && grep -q mine \"$f\"",
+          path, folder);
+    HIFDM(0, "status", path, "--dir", folder);
+    OUT("failed    1");
+    OUT("done      2");
+    OUT("was made, replaced or removed by someone else during the run; this run's result is ");
+    HIFDM(0, "sweep", path, "--dir", folder, "--retry", "failed");
+    HIFDM(0, "status", path, "--dir", folder);
+    OUT("done      3");
+}
+END_TEST
+
 START_TEST(a_foreign_journal_goes_with_restart_only)
 {
     const char *c = file_with("c.yaml", SMALL_SCENE SMALL_GA), *path = temp("run.h5");
@@ -163,6 +186,7 @@ Suite *suite_cli_sweep_files(void)
     tcase_add_test(tcase, a_second_run_that_was_killed_goes_on);
     tcase_add_test(tcase, a_begun_point_with_a_foreign_journal);
     tcase_add_test(tcase, a_begun_point_with_a_cut_file);
+    tcase_add_test(tcase, a_name_that_is_taken_meanwhile);
     tcase_add_test(tcase, a_foreign_journal_goes_with_restart_only);
     suite_add_tcase(suite, tcase);
     return suite;

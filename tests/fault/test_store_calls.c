@@ -101,8 +101,10 @@ static hf_status run_it(const char *path, struct run *r, int *acknowledged, hf_m
     if (status == HF_OK && first > 0) {
         hf_summary summary = {0};
         status = hf_store_restore(s, &r->ga, &summary, messages);
-        hf_ga_tell(&r->ga);
-        first = hf_store_generations(s);
+        if (status == HF_OK) {
+            ck_assert_int_eq(hf_store_generations(s), first); /* none is left out */
+            hf_ga_tell(&r->ga);
+        }
     }
     if (status == HF_OK) status = store_some(s, r, first, N_GENERATION, acknowledged, messages);
     if (status == HF_OK) return hf_store_finish(s, &(hf_summary){.has_optimize = 1}, messages);

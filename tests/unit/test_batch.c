@@ -2,6 +2,7 @@
 #include "nets.h"
 
 #include <hifdm/batch.h>
+#include <pthread.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -259,24 +260,26 @@ END_TEST
 enum { N_LATER = 300 };
 
 struct later {
-    int n_done[N_LATER], is_slow;
+    int n_done[N_LATER], is_slow, n_elsewhere; /* done by another thread than the one that left it */
 };
 
 static struct later_item {
     struct later *l;
     int i;
+    pthread_t from;
 } later_item[N_LATER];
 
 static void do_item(void *context)
 {
     struct later_item *item = context;
     if (item->l->is_slow) nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
+    if (!pthread_equal(item->from, pthread_self())) __atomic_add_fetch(&item->l->n_elsewhere, 1, __ATOMIC_SEQ_CST);
     __atomic_add_fetch(&item->l->n_done[item->i], 1, __ATOMIC_SEQ_CST);
 }
 
 static void leave_for_later(void *context, int i)
 {
-    later_item[i] = (struct later_item){context, i};
+    later_item[i] = (struct later_item){context, i, pthread_self()};
     hf_batch_later(do_item, &later_item[i]);
 }
 
@@ -288,6 +291,7 @@ START_TEST(what_is_left_for_later_is_done)
         hf_batch_for(n_thread, N_LATER, leave_for_later, &l);
         for (int i = 0; i < N_LATER; i++)
             ck_assert_int_eq(l.n_done[i], 1);
+        ck_assert_int_gt(l.n_elsewhere, 0);
         leave_for_later(&l, 0); /* outside: at once */
         ck_assert_int_eq(l.n_done[0], 2);
     }

@@ -1,6 +1,8 @@
 /* What a killed run leaves in its journal: results, from which the designs are bred again. */
 #include "evolution.h"
 
+#include "generations.h"
+
 /* Four generations, of which the visible file has the first two, and the journal the others. */
 static void leave_unfinished(const char *path)
 {
@@ -93,6 +95,42 @@ START_TEST(results_of_other_designs_are_left_out)
 }
 END_TEST
 
+/* Whatever differs in the designs is seen: a last bit, two that cancel in a sum, two individuals in another order. */
+START_TEST(other_designs_are_told_apart)
+{
+    struct run r;
+    hf_generations g;
+    struct iovec piece[HF_GENERATIONS_PIECES];
+    char payload[4096];
+    size_t used = 0;
+    open_run(&r);
+    fill(&r.ga);
+    ck_assert_int_eq(hf_generations_create(N_INDIVIDUAL, N_GENE, N_GENERATION, &g), HF_OK);
+    hf_generations_add(&g, &r.ga, piece);
+    for (int i = 0; i < HF_GENERATIONS_PIECES; used += piece[i++].iov_len)
+        memcpy(payload + used, piece[i].iov_base, piece[i].iov_len);
+    ck_assert_uint_eq(used, g.payload_bytes);
+    ck_assert(hf_generations_take_payload(&g, payload, &r.ga));
+    double *d = r.ga.design_N, one[N_GENE];
+    for (int k = 0; k < N_INDIVIDUAL * N_GENE; k++) {
+        int other = (k + 5) % (N_INDIVIDUAL * N_GENE);
+        double a = d[k], b = d[other];
+        d[k] = nextafter(a, 1e9);
+        ck_assert(!hf_generations_take_payload(&g, payload, &r.ga));
+        d[other] = nextafter(b, -1e9);
+        ck_assert(!hf_generations_take_payload(&g, payload, &r.ga));
+        d[k] = a;
+        d[other] = b;
+    }
+    memcpy(one, d + N_GENE, sizeof one);
+    memcpy(d + N_GENE, d + 2 * N_GENE, sizeof one);
+    memcpy(d + 2 * N_GENE, one, sizeof one);
+    ck_assert(!hf_generations_take_payload(&g, payload, &r.ga));
+    hf_generations_free(&g);
+    close_run(&r);
+}
+END_TEST
+
 Suite *suite_unit_store_resume(void)
 {
     Suite *suite = suite_create("unit/store_resume");
@@ -100,6 +138,7 @@ Suite *suite_unit_store_resume(void)
     suite_add_tcase(suite, tests);
     tcase_add_checked_fixture(tests, quiet, NULL);
     tcase_add_test(tests, designs_are_bred_again);
+    tcase_add_test(tests, other_designs_are_told_apart);
     tcase_add_test(tests, results_of_other_designs_are_left_out);
     return suite;
 }
