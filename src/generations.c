@@ -30,6 +30,7 @@ enum {
     ROW_RESIDUAL,
     ROW_INNER_RATIO,
     ROW_BOUNDARY_RATIO,
+    ROW_ITERATIONS,
     ROW_BEST_INDIVIDUAL = 11,
     ROW_BEST_PSI = 12
 };
@@ -311,34 +312,42 @@ static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g,
     free(block);
 }
 
-/* What a row of reals, one per individual, says of the best. */
-static double of_best(hf_hdf5 *io, hid_t group, const ga_row *row, const hf_summary *s)
+/* What a row, one value per individual, says of the best. */
+static void read_of_best(hf_hdf5 *io, hid_t group, const ga_row *row, const hf_summary *s, void *value)
 {
-    size_t n = (size_t)row->array.dims[1];
-    double *values = malloc(n * sizeof *values), value = 0;
+    size_t n = (size_t)row->array.dims[1], each = hf_hdf5_kind_bytes(row->array.kind);
+    char *values = malloc(n * each);
     if (!values && io->status == HF_OK)
         io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
     hf_hdf5_read_rows(io, group, &row->array, (hsize_t)s->best_generation, values);
     if (io->status == HF_OK && s->best_individual >= 0 && (size_t)s->best_individual < n)
-        value = values[s->best_individual];
+        memcpy(value, values + (size_t)s->best_individual * each, each);
     free(values);
-    return value;
 }
 
-/* As the run has noted it: the first generation with the least psi. */
+/* As the run has noted it: the first generation with the least psi. What is not stored of an individual is NaN. */
 static void note_best(hf_hdf5 *io, hid_t group, const ga_row *row, const double *best_psi_m, int n, hf_summary *s)
 {
+    const double unknown = (double)NAN;
     int best = -1;
     for (int i = 0; i < n; i++)
         if (!isnan(best_psi_m[i]) && (best < 0 || best_psi_m[i] < best_psi_m[best])) best = i;
     if (best < 0) return;
-    s->best.psi_m = best_psi_m[best];
-    s->best.status = HF_OK;
     s->best_generation = best;
+    s->best = (hf_form_result){.status = HF_OK,
+                               .culprit = -1,
+                               .psi_m = best_psi_m[best],
+                               .tension_error = unknown,
+                               .length_error = unknown,
+                               .shortest_length_ratio = unknown,
+                               .position_error_m = unknown,
+                               .condition = unknown,
+                               .backward_error = unknown};
     hf_hdf5_read_rows(io, group, &row[ROW_BEST_INDIVIDUAL].array, (hsize_t)best, &s->best_individual);
-    s->best.residual_N = of_best(io, group, &row[ROW_RESIDUAL], s);
-    s->best.inner_tension_ratio = of_best(io, group, &row[ROW_INNER_RATIO], s);
-    s->best.boundary_tension_ratio = of_best(io, group, &row[ROW_BOUNDARY_RATIO], s);
+    read_of_best(io, group, &row[ROW_RESIDUAL], s, &s->best.residual_N);
+    read_of_best(io, group, &row[ROW_INNER_RATIO], s, &s->best.inner_tension_ratio);
+    read_of_best(io, group, &row[ROW_BOUNDARY_RATIO], s, &s->best.boundary_tension_ratio);
+    read_of_best(io, group, &row[ROW_ITERATIONS], s, &s->best.iterations);
 }
 
 void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga)

@@ -31,7 +31,7 @@ typedef struct {
 hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_generations *g);
 void hf_generations_free(hf_generations *g);
 
-/* Must hf_generations_make_room be called before the next is added? */
+/* Must hf_generations_make_room be called before another is added? */
 int hf_generations_are_full(const hf_generations *g);
 
 /* Let a generation that hf_ga_tell has ranked wait. Not when they are full. `piece` (may be NULL) is its payload

@@ -280,7 +280,7 @@ void hf_hdf5_create_file(hf_hdf5 *io, const char *name)
     io->file = -1;
     if ((properties = make_properties(H5P_FILE_CREATE)) < 0 || (access = make_access()) < 0 ||
         (io->file = H5Fcreate(name, H5F_ACC_TRUNC, properties, access)) < 0)
-        hf_hdf5_fail(io, "create", -1, name);
+        hf_hdf5_fail(io, "create", -1, NULL);
     hf_hdf5_close(io, access);
     hf_hdf5_close(io, properties);
 }

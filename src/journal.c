@@ -201,16 +201,19 @@ static int read_whole(int file, void *to, size_t n, int64_t at)
     return 1;
 }
 
-/* The record at `at` into *payload, which grows: 1, 0 when there is no whole one, -1 and errno. */
+/* The record at `at` into *payload, which grows: 1, 0 when there is no whole one, -1 and errno. What is shorter than it
+ * says was being written when the process ended; anything else is damage. */
 static int read_record(const hf_journal *j, int64_t at, int64_t end, record_head *head, char **payload,
-                       size_t *capacity)
+                       size_t *capacity, int *is_damaged)
 {
     int got = read_whole(j->file, head, sizeof *head, at);
     if (got <= 0) return got;
     size_t bytes = head->length - sizeof head->generation;
     if (head->magic != RECORD_MAGIC || head->length < sizeof head->generation || head->length > PAYLOAD_MAX ||
-        at + (int64_t)sizeof *head + (int64_t)bytes > end)
+        at + (int64_t)sizeof *head + (int64_t)bytes > end) {
+        *is_damaged = at + (int64_t)sizeof *head + (int64_t)bytes <= end || head->magic != RECORD_MAGIC;
         return 0;
+    }
     if (bytes > *capacity || !*payload) {
         char *bigger = realloc(*payload, bytes + 1);
         if (!bigger) {
@@ -223,7 +226,8 @@ static int read_record(const hf_journal *j, int64_t at, int64_t end, record_head
     got = read_whole(j->file, *payload, bytes, at + (int64_t)sizeof *head);
     if (got <= 0) return got;
     uLong crc = crc32(0, (const Bytef *)&head->generation, sizeof head->generation);
-    return (uint32_t)crc32(crc, (const Bytef *)*payload, (uInt)bytes) == head->crc;
+    *is_damaged = (uint32_t)crc32(crc, (const Bytef *)*payload, (uInt)bytes) != head->crc;
+    return !*is_damaged;
 }
 
 hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take *take, void *context,
@@ -234,13 +238,18 @@ hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take
     record_head head;
     struct stat info;
     hf_status status = HF_OK;
-    int got = read_whole(j->file, header, sizeof header, 0);
+    int is_damaged = 0, got = read_whole(j->file, header, sizeof header, 0);
     if (got < 0 || fstat(j->file, &info) != 0) return fail(j, "read", j->path, messages);
-    if (!got || strncmp(header + 8, identity, HF_JOURNAL_IDENTITY) != 0)
-        return hf_journal_restart(j, identity, messages);
+    int is_ours = got && strncmp(header + 8, identity, HF_JOURNAL_IDENTITY) == 0;
+    if (!is_ours && info.st_size > HEADER_BYTES)
+        return hf_error(messages, HF_EXISTS,
+                        "%s: %s is of another case; delete it or put the right one there, or begin anew with --restart "
+                        "(of a sweep: --retry failed)",
+                        j->result, j->path);
+    if (!is_ours) return hf_journal_restart(j, identity, messages);
     snprintf(j->identity, sizeof j->identity, "%s", identity);
     int64_t at = HEADER_BYTES;
-    while (status == HF_OK && (got = read_record(j, at, info.st_size, &head, &payload, &capacity)) == 1) {
+    while (status == HF_OK && (got = read_record(j, at, info.st_size, &head, &payload, &capacity, &is_damaged)) == 1) {
         status = take(context, head.generation, payload, head.length - sizeof head.generation);
         if (status != HF_OK) break;
         at += (int64_t)sizeof head + head.length - (int64_t)sizeof head.generation;
@@ -251,6 +260,9 @@ hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take
     if (status != HF_OK && status != HF_DIFFERENT) return status;
     if (got < 0 && errno == ENOMEM) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", j->result);
     if (got < 0) return fail(j, "read", j->path, messages);
+    if (is_damaged)
+        hf_warning(messages, "%s: %s is damaged: its last %lld bytes count for nothing", j->result, j->path,
+                   (long long)(info.st_size - at));
     if (ftruncate(j->file, at) != 0 || lseek(j->file, at, SEEK_SET) < 0) return fail(j, "write", j->path, messages);
     j->size = at;
     return HF_OK;

@@ -43,8 +43,9 @@ int hf_journal_is_there(const char *result);
 hf_status hf_journal_restart(hf_journal *journal, const char *identity, hf_messages *messages);
 
 /* Give each whole record to `take`, oldest first, until it returns something other than HF_OK; cut off a torn tail, and
- * from the record on of which `take` says HF_DIFFERENT: that is no failure. A journal of another identity, or without
- * one, is restarted. HF_OK, HF_IO, HF_NO_MEMORY, or what `take` returned. */
+ * from the record on of which `take` says HF_DIFFERENT: that is no failure. What is damaged in another way
+ * goes with a warning. A journal of another identity, or without one, is restarted when it has no record; else
+ * HF_EXISTS. HF_OK, HF_IO, HF_NO_MEMORY, or what `take` returned. */
 typedef hf_status hf_journal_take(void *context, int generation, const void *payload, size_t bytes);
 hf_status hf_journal_replay(hf_journal *journal, const char *identity, hf_journal_take *take, void *context,
                             hf_messages *messages);

@@ -33,6 +33,7 @@ typedef struct {
     hf_ga ga;
     int first_generation; /* of this session */
     long first_evaluation;
+    double earlier_wall_s, earlier_cpu_s; /* of the genetic algorithm in other sessions, as far as it was published */
 } run;
 
 static void run_free(run *r)
@@ -169,8 +170,8 @@ static void sum_up(const run *r, double start_s, hf_summary *s)
 {
     const hf_ga *ga = &r->ga;
     s->has_optimize = 1;
-    s->optimize_wall_s = hf_run_clock_s() - start_s;
-    s->optimize_cpu_s = r->batch.cpu_s;
+    s->optimize_wall_s = r->earlier_wall_s + hf_run_clock_s() - start_s;
+    s->optimize_cpu_s = r->earlier_cpu_s + r->batch.cpu_s;
     s->generations = ga->generation + 1;
     s->evaluations = ga->n_evaluation;
     s->infeasible = ga->n_evaluation_infeasible;
@@ -196,7 +197,7 @@ static void observe_generation(const told *t)
                                     .is_last = ga->stop_reason != HF_GA_RUNNING,
                                     .evaluations = ga->n_evaluation - t->r->first_evaluation,
                                     .best_psi_m = ga->best_psi_m[ga->generation],
-                                    .elapsed_s = t->summary->optimize_wall_s});
+                                    .elapsed_s = t->summary->optimize_wall_s - t->r->earlier_wall_s});
 }
 
 /* Nobody hears of a generation before it is safe. */
@@ -217,7 +218,8 @@ static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
     HF_TRY(hf_store_restore(r->store, ga, s, messages));
     if (hf_store_generations(r->store) == 0) return hf_store_publish(r->store, s, 1, messages);
     hf_ga_tell(ga);
-    if (ga->best >= 0) s->best = ga->result[ga->best];
+    r->earlier_wall_s = s->optimize_wall_s;
+    r->earlier_cpu_s = s->optimize_cpu_s;
     r->first_generation = ga->generation + 1;
     r->first_evaluation = ga->n_evaluation;
     return HF_OK;

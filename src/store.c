@@ -296,18 +296,17 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_g
     HF_TRY(store->f.io.status);
     HF_TRY(hf_store_genes(store, model, ga, messages));
     int generation = g->n_stored + g->n_waiting;
-    if (hf_generations_are_full(g)) {
-        hf_hdf5_lock();
-        double begin_s = hf_store_clock_s();
-        hf_store_file_open(&store->f);
-        store->publish_s += hf_store_clock_s() - begin_s; /* the copy is what publishing costs, too */
-        hf_generations_make_room(&store->f.io, g);
-        HF_TRY(hf_hdf5_unlock(store->f.io.status));
-        hf_store_file_flow(&store->f);
-    }
     hf_generations_add(g, ga, piece);
     store->f.io.status = hf_journal_append(&store->f.journal, generation, piece, HF_GENERATIONS_PIECES, messages);
-    return store->f.io.status;
+    if (store->f.io.status != HF_OK || !hf_generations_are_full(g)) return store->f.io.status;
+    hf_hdf5_lock(); /* it is safe; now there is time to make room for the next */
+    double begin_s = hf_store_clock_s();
+    hf_store_file_open(&store->f);
+    store->publish_s += hf_store_clock_s() - begin_s; /* the copy is what publishing costs, too */
+    hf_generations_make_room(&store->f.io, g);
+    HF_TRY(hf_hdf5_unlock(store->f.io.status));
+    hf_store_file_flow(&store->f);
+    return HF_OK;
 }
 
 /* ---- summary ---- */
@@ -323,7 +322,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, int finished)
     hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/form"));
     state.finished = finished;
     hf_hdf5_put_members(&s->f.io, form, HF_HDF5_COUNT(form), &state);
-    if (summary->has_optimize) {
+    if (summary->has_optimize || s->rows.block) { /* before the first generation, too: what is known already */
         hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/ga"));
         hf_hdf5_put_members(&s->f.io, ga, HF_HDF5_COUNT(ga), summary);
     }

@@ -84,6 +84,7 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     if (!s) return status;
     hf_hdf5_lock();
     s->is_resumed = 1;
+    s->published_at_s = hf_store_clock_s(); /* what is there is visible */
     hf_store_file_adopt(&s->f);
     hf_store_file_open(&s->f);
     read_state(s);
@@ -121,8 +122,6 @@ static hf_status breed_record(void *context, int generation, const void *payload
     const hf_ga before = *b->ga;
     hf_status status;
     if (!is_news(s, generation, bytes, g->n_stored + g->n_waiting, &status)) return status;
-    if (hf_generations_are_full(g)) hf_generations_make_room(&s->f.io, g);
-    HF_TRY(s->f.io.status);
     int goes_on = 1;
     if (generation > 0) {
         hf_ga_tell(b->ga);
@@ -138,7 +137,8 @@ static hf_status breed_record(void *context, int generation, const void *payload
     }
     hf_generations_add(g, b->ga, NULL);
     b->n_taken++;
-    return HF_OK;
+    if (hf_generations_are_full(g)) hf_generations_make_room(&s->f.io, g);
+    return s->f.io.status;
 }
 
 static void breed_journal(hf_store *s, hf_ga *ga, int drops)
@@ -157,6 +157,15 @@ static void breed_journal(hf_store *s, hf_ga *ga, int drops)
     s->n_journal = 0;
 }
 
+/* What the genetic algorithm had noted when it was published last; files before 2026-11-21 had nothing before the first
+ * generation. */
+static void read_known(hf_hdf5 *io, hf_summary *summary)
+{
+    static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
+    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "solver", H5P_DEFAULT) > 0)
+        hf_hdf5_get_members(io, ga, HF_HDF5_COUNT(ga), summary);
+}
+
 static hf_status restore(hf_store *store, hf_ga *ga, int drops, hf_summary *summary, hf_messages *messages)
 {
     if (hf_store_generations(store) == 0) return HF_OK;
@@ -164,6 +173,7 @@ static hf_status restore(hf_store *store, hf_ga *ga, int drops, hf_summary *summ
     hf_hdf5_lock();
     io->messages = messages;
     hf_store_file_open(&store->f);
+    read_known(io, summary);
     if (store->rows.n_stored) hf_generations_restore(io, &store->rows, ga);
     if (store->n_journal) breed_journal(store, ga, drops);
     hf_generations_sum_up(io, &store->rows, summary);

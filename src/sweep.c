@@ -153,7 +153,8 @@ static void finish_point(sweep *w, int i, hf_status status, const hf_messages *s
     w->n_failed += status != HF_OK;
     if (written != HF_OK && w->fatal == HF_OK) {
         w->fatal = written;
-        hf_error(w->messages, written, "%s", trouble.text ? trouble.text + strlen("error: ") : "cannot write");
+        const char *words = trouble.text ? trouble.text + strlen("error: ") : "cannot write";
+        hf_error(w->messages, written, "%.*s", (int)strcspn(words, "\n"), words);
     }
     show_progress(w, hf_run_clock_s());
     pthread_mutex_unlock(&w->lock);
