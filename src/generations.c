@@ -9,6 +9,7 @@
 #include <string.h>
 
 #define WAITING_BYTES (512 << 10) /* of all that wait but their designs; a generation larger than that waits alone */
+#define DESIGN_CHUNKS 3           /* of designs may wait, so that a run seldom waits for HDF5 */
 #define CHUNK_BYTES (256 << 10)   /* of a data set: rows as far as they fit */
 #define CHUNK_MAX (1 << 20)       /* of a row larger than CHUNK_BYTES: what HDF5 caches of a data set */
 #define BLOCK 1024                /* generations that are counted at a time */
@@ -107,7 +108,8 @@ hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_gene
         g->payload_bytes += i == ROW_DESIGN ? sizeof g->design_hash : g->row_bytes[i];
     }
     g->capacity = how_many(WAITING_BYTES / g->payload_bytes, limit);
-    g->design_capacity = how_many(g->row_bytes[ROW_DESIGN] ? CHUNK_BYTES / g->row_bytes[ROW_DESIGN] : 1, g->capacity);
+    g->design_chunk = how_many(g->row_bytes[ROW_DESIGN] ? CHUNK_BYTES / g->row_bytes[ROW_DESIGN] : 1, g->capacity);
+    g->design_capacity = how_many((size_t)(DESIGN_CHUNKS * g->design_chunk), g->capacity);
     lay_out(&arena, g);
     HF_TRY(hf_arena_allocate(&arena));
     lay_out(&arena, g);
@@ -126,6 +128,11 @@ void hf_generations_free(hf_generations *g)
 int hf_generations_are_full(const hf_generations *g)
 {
     return g->n_waiting == g->capacity || g->n_design == g->design_capacity;
+}
+
+int hf_generations_are_due(const hf_generations *g)
+{
+    return g->n_waiting == g->capacity || g->n_design >= g->design_chunk;
 }
 
 /* The values of one generation side by side, as HDF5 takes them; an enumeration is an int in memory, a byte there. */
@@ -255,7 +262,7 @@ void hf_generations_make_room(hf_hdf5 *io, hf_generations *g)
     if (io->status != HF_OK) return;
     if (g->n_waiting == g->capacity) {
         hf_generations_write(io, g);
-    } else if (g->n_design == g->design_capacity) {
+    } else if (g->n_design >= g->design_chunk) {
         hid_t group = open_arrays(io, g, row);
         write_row(io, g, group, row, ROW_DESIGN, g->n_design);
         hf_hdf5_close(io, group);

@@ -20,6 +20,7 @@ typedef struct {
     int n_stored;                            /* in the file */
     int n_waiting, capacity;                 /* in memory */
     int n_design, design_capacity;           /* those of them whose designs are in memory, too: the last ones */
+    int design_chunk;                        /* that many at a time are written best */
     size_t row_bytes[HF_GENERATIONS_PIECES]; /* of one generation */
     size_t payload_bytes;                    /* of what the journal keeps of one */
     uint64_t design_hash;                    /* of the last one added */
@@ -31,8 +32,9 @@ typedef struct {
 hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_generations *g);
 void hf_generations_free(hf_generations *g);
 
-/* Must hf_generations_make_room be called before another is added? */
+/* Must hf_generations_make_room be called before another is added? Is there enough waiting to call it? */
 int hf_generations_are_full(const hf_generations *g);
+int hf_generations_are_due(const hf_generations *g);
 
 /* Let a generation that hf_ga_tell has ranked wait. Not when they are full. `piece` (may be NULL) is its payload
  * [HF_GENERATIONS_PIECES], borrowed until the next is added: all of it but the designs, nine tenths of its bytes, which

@@ -8,34 +8,9 @@
 
 #include <assert.h>
 #include <limits.h>
-#include <pthread.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-/* ---- one at a time ---- */
-
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-
-static int is_quiet; /* under the lock */
-
-void hf_hdf5_lock(void)
-{
-    pthread_mutex_lock(&lock);
-    if (is_quiet) H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 has an error stack per thread */
-}
-
-void hf_hdf5_quiet(void)
-{
-    is_quiet = 1;
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-}
-
-hf_status hf_hdf5_unlock(hf_status status)
-{
-    pthread_mutex_unlock(&lock);
-    return status;
-}
 
 /* ---- failures ---- */
 

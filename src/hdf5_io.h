@@ -47,6 +47,7 @@ typedef enum {
  * may be anybody's. hf_hdf5_unlock returns its argument. hf_hdf5_quiet, under the lock: every thread that takes it from
  * then on prints none of HDF5's errors. */
 void hf_hdf5_lock(void);
+int hf_hdf5_try_lock(void); /* 0: another thread has it */
 void hf_hdf5_quiet(void);
 hf_status hf_hdf5_unlock(hf_status status);
 

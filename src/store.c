@@ -298,8 +298,12 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_g
     int generation = g->n_stored + g->n_waiting;
     hf_generations_add(g, ga, piece);
     store->f.io.status = hf_journal_append(&store->f.journal, generation, piece, HF_GENERATIONS_PIECES, messages);
-    if (store->f.io.status != HF_OK || !hf_generations_are_full(g)) return store->f.io.status;
-    hf_hdf5_lock(); /* it is safe; now there is time to make room for the next */
+    if (store->f.io.status != HF_OK || !hf_generations_are_due(g)) return store->f.io.status;
+    /* it is safe; room for the next can be made when no other run is at it, unless it must */
+    if (hf_generations_are_full(g))
+        hf_hdf5_lock();
+    else if (!hf_hdf5_try_lock())
+        return HF_OK;
     double begin_s = hf_store_clock_s();
     hf_store_file_open(&store->f);
     store->publish_s += hf_store_clock_s() - begin_s; /* the copy is what publishing costs, too */
