@@ -11,7 +11,8 @@ MODULES := status arena sha256 text csv \
            metrics surface \
            lane lane_kernel formfind newton newton_descent coupling certificate \
            evaluate chord_kernel chord ga swarm polish batch \
-           json summary hdf5_io hdf5_io_lock hdf5_io_rows store_surface store_coupling journal generations store_file store_open \
+           json summary hdf5_io hdf5_io_lock hdf5_io_rows store_surface store_coupling journal generations \
+           store_file store_open \
            store store_read store_resume store_truss store_table compare \
            study study_read ledger merge
 APP_MODULES := options help print problem run progress signals \
