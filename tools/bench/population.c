@@ -20,7 +20,7 @@ typedef struct {
     const hf_model *model;
     hf_store *store; /* NULL: none */
     hf_ga ga;
-    double worst_N;
+    double worst_N, store_s;
 } told;
 
 static void keep(void *context)
@@ -28,21 +28,24 @@ static void keep(void *context)
     told *t = context;
     hf_messages messages = {0};
     hf_summary summary = {.has_optimize = 1};
+    double start_s = bench_clock_s();
     if (hf_store_generation(t->store, t->model, &t->ga, &messages) != HF_OK ||
         hf_store_publish(t->store, &summary, 0, &messages) != HF_OK)
         bench_fail("store", messages.text);
+    t->store_s += bench_clock_s() - start_s;
     for (int i = 0; i < t->ga.n_individual; i++)
         if (t->ga.result[i].status == HF_OK) t->worst_N = fmax(t->worst_N, t->ga.result[i].residual_N);
 }
 
-static double evolve(const hf_model *m, hf_batch *batch, hf_store *store, hf_ga *ga)
+static double evolve(const hf_model *m, hf_batch *batch, hf_store *store, hf_ga *ga, double *store_s)
 {
-    told now = {m, store, *ga, 0};
+    told now = {m, store, *ga, 0, 0};
     hf_batch_run(batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
     do {
         hf_ga_tell(ga);
         now.ga = *ga;
     } while (hf_batch_next(batch, ga, keep, &now));
+    *store_s = now.store_s;
     return now.worst_N;
 }
 
@@ -90,13 +93,18 @@ static void once(bench_scene *b, int threads, const char *path)
         hf_ga_create(&b->settings.optimize, &b->model, b->base_N, &p.ga) != HF_OK)
         bench_fail(name, "out of memory");
     hf_batch_share(&p.batch, b->base_N);
-    double written = written_bytes(), start_s = bench_clock_s();
+    double written = written_bytes(), start_s = bench_clock_s(), store_s;
     open_store(&p);
-    double worst_N = evolve(&b->model, &p.batch, p.store, &p.ga);
+    double open_s = bench_clock_s();
+    double worst_N = evolve(&b->model, &p.batch, p.store, &p.ga, &store_s);
+    double close_s = bench_clock_s();
     close_store(&p);
-    double wall_s = bench_clock_s() - start_s;
+    double end_s = bench_clock_s(), wall_s = end_s - start_s;
+    store_s += open_s - start_s + end_s - close_s;
     written = written_bytes() - written;
     bench_emit("population", name, mode, threads, "wall_s", wall_s);
+    bench_emit("population", name, mode, threads, "store_s", store_s);
+    bench_emit("population", name, mode, threads, "store_share", store_s / wall_s);
     bench_emit("population", name, mode, threads, "utilisation", p.batch.cpu_s / wall_s / threads);
     bench_emit("population", name, mode, threads, "evaluations", (double)p.ga.n_evaluation);
     bench_emit("population", name, mode, threads, "evaluations_per_s", (double)p.ga.n_evaluation / wall_s);

@@ -312,8 +312,8 @@ class Bench:
                                "process_wall_s", "process_cpu_s", "peak_MiB", "file_MB"],
                   ("scene", "threads", "generations"))
         self.wide("population", "population",
-                  ["wall_s", "utilisation", "evaluations", "evaluations_per_s", "worst_residual_N", "file_MB",
-                   "written_MB"],
+                  ["wall_s", "store_s", "store_share", "utilisation", "evaluations", "evaluations_per_s",
+                   "worst_residual_N", "file_MB", "written_MB"],
                   ("scene", "mode", "threads"))
 
     def write(self):
@@ -396,6 +396,8 @@ def summary(s):
         for mode in ("not stored", "stored"):
             yield [f"50x400 GA; {scene}: CPU utilisation on 2 threads; {mode}",
                    "" if scene == "chen2022" else "0.95", population(mode, 2, "utilisation")]
+        yield [f"50x400 GA; {scene}: share of the time spent storing; threads 1", "0.05",
+               population("stored", 1, "store_share")]
         yield [f"50x400 GA; {scene}: stored / not stored; threads 1", "1.05",
                s.paired("population", scene, ("stored", 1, "wall_s"), one)]
         yield [f"50x400 GA; {scene}: stored / not stored; threads 2", "1.05",
