@@ -99,7 +99,7 @@ hf_status hf_store_base(hf_store *store, int n_gene, double *base_N, hf_messages
     hf_hdf5_lock();
     store->f.io.messages = messages;
     hf_store_file_open(&store->f);
-    if (hf_hdf5_has(&store->f.io, store->f.io.file, base.name)) /* not in files before 2026-11-21 */
+    if (hf_hdf5_has(&store->f.io, store->f.io.file, base.name)) /* earlier builds had none */
         hf_hdf5_read_array(&store->f.io, store->f.io.file, &base, base_N);
     return hf_hdf5_unlock(store->f.io.status);
 }
@@ -157,7 +157,7 @@ static void breed_journal(hf_store *s, hf_ga *ga, int drops)
     s->n_journal = 0;
 }
 
-/* What the genetic algorithm had noted when it was published last; files before 2026-11-21 had nothing before the first
+/* What the genetic algorithm had noted when it was published last; files of earlier builds have nothing before the first
  * generation. */
 static void read_known(hf_hdf5 *io, hf_summary *summary)
 {
