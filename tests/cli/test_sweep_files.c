@@ -144,13 +144,13 @@ END_TEST
 START_TEST(a_name_that_is_taken_meanwhile)
 {
     const char *folder = temp("s.d"), *path = temp("study.yaml");
-    file_with("base.yaml", SMALL_SCENE "optimize: {population: 20, generations: 20000, seed: 7, "
-                                       "stagnation_generations: 20000, polish_iterations: 1}\n");
-    file_with("study.yaml", "base: base.yaml\nsweep:\n  optimize.generations: [20000, 2, 3]\n");
+    file_with("base.yaml", SMALL_SCENE "optimize: {population: 20, generations: 6000, seed: 7, "
+                                       "stagnation_generations: 6000, polish_iterations: 1}\n");
+    file_with("study.yaml", "base: base.yaml\nsweep:\n  optimize.generations: [6000, 5999, 5998]\n");
     SHELL(0,
-          "\"$0\" sweep \"$1\" --dir \"$2\" --quiet 2>/dev/null & until [ -s \"$(echo \"$2\"/*.journal)\" ]; do "
-          "sleep 0.002; done; for j in \"$2\"/*.journal; do f=${j%.journal}; until [ -s $f ]; do sleep 0.002; done; "
-          "echo mine >\"$2/x\"; mv \"$2/x\" $f; done; wait $!; [ $? = 3 ] && grep -q mine \"$f\"",
+          "\"$0\" sweep \"$1\" --dir \"$2\" --quiet 2>/dev/null & f=; until [ -n \"$f\" ] && [ -s \"$f\" ]; do "
+          "sleep 0.002; for j in \"$2\"/*.h5.journal; do f=${j%.journal}; break; done; done; "
+          "echo mine >\"$2/x\"; mv \"$2/x\" \"$f\"; wait $!; [ $? = 3 ] && grep -q mine \"$f\"",
           path, folder);
     HIFDM(0, "status", path, "--dir", folder);
     OUT("failed    1");
