@@ -157,8 +157,8 @@ static void breed_journal(hf_store *s, hf_ga *ga, int drops)
     s->n_journal = 0;
 }
 
-/* What the genetic algorithm had noted when it was published last; files of earlier builds have nothing before the first
- * generation. */
+/* What the genetic algorithm had noted when it was published last; files of earlier builds have nothing before the
+ * first generation. */
 static void read_known(hf_hdf5 *io, hf_summary *summary)
 {
     static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
