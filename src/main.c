@@ -144,8 +144,8 @@ static hf_status dispatch(const hf_options *o, int argc, char **argv, hf_message
 }
 
 /* A generation takes less than a millisecond. Threads that spin for long while they wait for one that does not run, as
- * OpenMP's do by default, made runs beside others 30 times slower on two cores; threads that sleep at once lose
- * 10 to 20 % of a run on an idle machine: they spin for some microseconds. OpenBLAS's own threads, which nobody uses here,
+ * OpenMP's do by default, made runs beside others 30 times slower on two cores; threads that sleep at once lose 10 to
+ * 20 % of a run on an idle machine: they spin for some microseconds. OpenBLAS's own threads, which nobody uses here,
  * spin while the program begins. Both libraries read their wishes before main does, so the program starts itself once
  * more with them. What the user has set stays; where it cannot be, the program goes on as it is. */
 static void wait_quietly(char **argv)
