@@ -80,7 +80,7 @@ static void lay_out(hf_arena *a, hf_chord *c)
     c->base_displacement_m = hf_arena_take(a, n_pull, sizeof(double));
 }
 
-static void pack(const hf_workspace *w, hf_chord *c)
+static void pack_factor(const hf_workspace *w, hf_chord *c)
 {
     size_t ld = 3 * (size_t)c->evaluator->model->half_bandwidth + 3, width = (size_t)c->width;
     for (size_t j = 0; j < (size_t)c->n_dof; j++) {
@@ -113,6 +113,12 @@ static void find_skyline(hf_chord *c)
         c->row_begin[b] = begin;
         c->column_end[b] = end;
     }
+}
+
+void hf_chord_pack(const hf_workspace *w, hf_chord *chord)
+{
+    pack_factor(w, chord);
+    find_skyline(chord);
 }
 
 static hf_chord dimensions(const hf_evaluator *v)
@@ -170,8 +176,7 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_worksp
     HF_TRY(hf_evaluate(v, base_N, w, &base));
     HF_TRY(hf_newton_factor(m, w, NULL));
     HF_TRY(allocate(chord));
-    pack(w, chord);
-    find_skyline(chord);
+    hf_chord_pack(w, chord);
     memcpy(chord->base_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
     for (int e = 0; e < m->n_cable; e++)
         chord->gene_of_cable[e] = -1;
@@ -236,12 +241,6 @@ hf_status hf_chord_create_matrix(const hf_evaluator *v, hf_chord *chord, hf_chor
     chord->n_pull = chord->n_pull_pad = 0;
     HF_TRY(allocate(chord));
     return hf_chord_lanes_create(chord, lanes);
-}
-
-void hf_chord_pack(const hf_workspace *w, hf_chord *chord)
-{
-    pack(w, chord);
-    find_skyline(chord);
 }
 
 void hf_chord_back_solve(const hf_chord *chord, const hf_chord_lanes *l, int n_rhs, double *b, size_t ldb)

@@ -302,7 +302,7 @@ static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g,
     *all = *infeasible = 0;
     char *block = malloc(2 * BLOCK * p);
     if (!block) {
-        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+        hf_hdf5_no_memory(io);
         return;
     }
     char *status = block + BLOCK * p;
@@ -324,8 +324,7 @@ static void read_of_best(hf_hdf5 *io, hid_t group, const ga_row *row, const hf_s
 {
     size_t n = (size_t)row->array.dims[1], each = hf_hdf5_kind_bytes(row->array.kind);
     char *values = malloc(n * each);
-    if (!values && io->status == HF_OK)
-        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+    if (!values) hf_hdf5_no_memory(io);
     hf_hdf5_read_rows(io, group, &row->array, (hsize_t)s->best_generation, values);
     if (io->status == HF_OK && s->best_individual >= 0 && (size_t)s->best_individual < n)
         memcpy(value, values + (size_t)s->best_individual * each, each);
@@ -365,7 +364,7 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga)
     size_t largest = g->row_bytes[0] + (size_t)ga->n_individual * 2 * sizeof(double) + sizeof(double);
     char *values = malloc(largest);
     if (!values) {
-        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+        hf_hdf5_no_memory(io);
         return;
     }
     hid_t group = hf_hdf5_open_group(io, "/ga");
@@ -389,7 +388,7 @@ void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
     if (g->n_stored == 0 || io->status != HF_OK) return;
     double *best_psi_m = malloc((size_t)g->n_stored * sizeof *best_psi_m);
     if (!best_psi_m) {
-        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+        hf_hdf5_no_memory(io);
         return;
     }
     hid_t group = hf_hdf5_open_group(io, "/ga");

@@ -24,7 +24,7 @@ typedef struct {
     size_t row_bytes[HF_GENERATIONS_PIECES]; /* of one generation */
     size_t payload_bytes;                    /* of what the journal keeps of one */
     uint64_t design_hash;                    /* of the last one added */
-    char *row[HF_GENERATIONS_PIECES];        /* [capacity] rows of each data set */
+    char *row[HF_GENERATIONS_PIECES];        /* [capacity] rows of each data set, [design_capacity] of designs */
     void *block;
 } hf_generations;
 

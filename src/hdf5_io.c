@@ -57,6 +57,11 @@ static void damaged_at(hf_hdf5 *io, hid_t place, const char *name, const char *a
     io->status = hf_error(io->messages, HF_IO, "%s: is damaged: %s %s", io->path, where, what);
 }
 
+void hf_hdf5_no_memory(hf_hdf5 *io)
+{
+    if (io->status == HF_OK) io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+}
+
 void hf_hdf5_fail(hf_hdf5 *io, const char *verb, hid_t place, const char *name)
 {
     fail_at(io, verb, place, name, NULL);

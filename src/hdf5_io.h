@@ -70,6 +70,8 @@ void hf_hdf5_fail(hf_hdf5 *io, const char *verb, hid_t place, const char *name);
 /* Record that what is stored is not what this program writes: HF_IO, "path: is damaged: /place/name <what>". */
 void hf_hdf5_damaged(hf_hdf5 *io, hid_t place, const char *name, const char *what);
 
+void hf_hdf5_no_memory(hf_hdf5 *io); /* HF_NO_MEMORY, unless something has failed before */
+
 /* ---- Files and groups ---- */
 
 /* Set io->file. What is in the file `name` is lost. Locks are taken where the file system has them, and their absence

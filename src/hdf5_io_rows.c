@@ -60,7 +60,7 @@ void hf_hdf5_read_text(hf_hdf5 *io, hid_t group, const char *name, char **text)
     if (io->status != HF_OK) return;
     *text = calloc(array.dims[0] + 1, 1);
     if (!*text)
-        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+        hf_hdf5_no_memory(io);
     else
         hf_hdf5_read_array(io, group, &array, *text);
 }
@@ -73,7 +73,7 @@ void hf_hdf5_write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *c
         length = strlen(id[i]) > length ? strlen(id[i]) : length;
     hf_hdf5_array array = {name, HF_KIND_CHARS, 1, {(hsize_t)n, length}, "", description};
     char *chars = io->status == HF_OK ? calloc((size_t)n, length) : NULL;
-    if (!chars && io->status == HF_OK) io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+    if (!chars) hf_hdf5_no_memory(io);
     for (int i = 0; chars && i < n; i++)
         memcpy(chars + (size_t)i * length, id[i], strlen(id[i]));
     if (chars) hf_hdf5_write_array(io, group, &array, chars);

@@ -59,7 +59,9 @@ static hf_status open_and_lock(hf_journal *j, hf_messages *messages)
     return hf_error(messages, HF_IO, "%s: %s changes all the time; is another process writing it?", j->result, j->path);
 }
 
-static hf_status look_at_head(hf_journal *j, int *is_journal, hf_messages *messages)
+typedef enum { JOURNAL, OTHER_VERSION, FOREIGN } content;
+
+static hf_status look_at_head(hf_journal *j, content *is, hf_messages *messages)
 {
     char magic[8];
     struct stat info;
@@ -68,32 +70,33 @@ static hf_status look_at_head(hf_journal *j, int *is_journal, hf_messages *messa
     j->size = info.st_size;
     ssize_t n = pread(j->file, magic, sizeof magic, 0);
     if (n < 0) return fail(j, "read", j->path, messages);
-    *is_journal = memcmp(magic, MAGIC, (size_t)n) == 0; /* a header may be torn */
-    j->is_other_version = !*is_journal && n == sizeof magic && memcmp(magic, MAGIC, sizeof magic - 1) == 0;
+    *is = FOREIGN;
+    if (n == sizeof magic && memcmp(magic, MAGIC, sizeof magic - 1) == 0) *is = OTHER_VERSION;
+    if (memcmp(magic, MAGIC, (size_t)n) == 0) *is = JOURNAL; /* a header may be torn */
     return HF_OK;
 }
 
 hf_status hf_journal_open(const char *result, int replaces, hf_journal *j, hf_messages *messages)
 {
     size_t size = strlen(result) + 16;
-    int is_journal;
+    content is;
     *j = (hf_journal){.file = -1, .result = result, .path = malloc(size), .next = malloc(size)};
     if (!j->path || !j->next) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", result);
     snprintf(j->path, size, "%s.journal", result);
     snprintf(j->next, size, "%s.journal.new", result);
     HF_TRY(open_and_lock(j, messages));
-    HF_TRY(look_at_head(j, &is_journal, messages));
-    if (!is_journal && replaces) { /* the name only: a link may lead to what is somebody's */
+    HF_TRY(look_at_head(j, &is, messages));
+    if (is != JOURNAL && replaces) { /* the name only: a link may lead to what is somebody's */
         if (unlink(j->path) != 0) return fail(j, "remove", j->path, messages);
         hf_warning(messages, "%s: %s was no journal of hifdm; it is replaced", result, j->path);
         close(j->file);
         HF_TRY(open_and_lock(j, messages));
-        HF_TRY(look_at_head(j, &is_journal, messages));
+        HF_TRY(look_at_head(j, &is, messages));
     }
-    if (is_journal) return HF_OK;
+    if (is == JOURNAL) return HF_OK;
     close(j->file);
     j->file = -1;
-    if (j->is_other_version)
+    if (is == OTHER_VERSION)
         return hf_error(messages, HF_EXISTS,
                         "%s: %s is a journal of another version of hifdm; finish the run with that one, or begin anew "
                         "with --restart (of a sweep: --retry failed)",
@@ -209,9 +212,9 @@ static int read_record(const hf_journal *j, int64_t at, int64_t end, record_head
     int got = read_whole(j->file, head, sizeof *head, at);
     if (got <= 0) return got;
     size_t bytes = head->length - sizeof head->generation;
-    if (head->magic != RECORD_MAGIC || head->length < sizeof head->generation || head->length > PAYLOAD_MAX ||
-        at + (int64_t)sizeof *head + (int64_t)bytes > end) {
-        *is_damaged = at + (int64_t)sizeof *head + (int64_t)bytes <= end || head->magic != RECORD_MAGIC;
+    int fits = at + (int64_t)sizeof *head + (int64_t)bytes <= end;
+    if (head->magic != RECORD_MAGIC || head->length < sizeof head->generation || head->length > PAYLOAD_MAX || !fits) {
+        *is_damaged = fits || head->magic != RECORD_MAGIC;
         return 0;
     }
     if (bytes > *capacity || !*payload) {

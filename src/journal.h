@@ -20,9 +20,8 @@
 #define HF_JOURNAL_IDENTITY 64
 
 typedef struct {
-    int file;   /* -1: closed */
-    int is_new; /* it was made, or emptied, by this process */
-    int is_other_version;
+    int file;           /* -1: closed */
+    int is_new;         /* it was made, or emptied, by this process */
     const char *result; /* as messages call the result; borrowed */
     char *path, *next;  /* owned */
     int64_t size;       /* up to the end of the last whole record */

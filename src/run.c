@@ -2,6 +2,7 @@
 #include "run.h"
 
 #include "polish.h"
+#include "store_open.h"
 #include "text.h"
 #include <hifdm/batch.h>
 #include <hifdm/store.h>
@@ -10,15 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 
 #define HISTORY_MAX 1000000 /* iterations whose history is kept */
 
 double hf_run_clock_s(void)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    return hf_store_clock_s();
 }
 
 /* Everything a run owns. */

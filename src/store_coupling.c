@@ -11,7 +11,7 @@ static void write_nodes(hf_hdf5 *io, hid_t group, const hf_model *m)
     const hf_hdf5_array array = {
         "node", HF_KIND_INT, 1, {(hsize_t)m->n_attachment}, "", "each attachment, as an index into /scene/node"};
     int *index = io->status == HF_OK ? malloc((size_t)m->n_attachment * sizeof *index) : NULL;
-    if (!index && io->status == HF_OK) io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+    if (!index) hf_hdf5_no_memory(io);
     if (!index) return;
     for (int i = 0; i < m->n_attachment; i++)
         index[i] = m->node_of_row[m->attachment_row[i]];

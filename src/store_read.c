@@ -138,7 +138,7 @@ static int read_case(hf_hdf5 *io, const char *path, hf_case *then)
     hf_hdf5_get(io, io->file, "/", "seed", HF_KIND_UINT64, &seed, sizeof seed);
     hf_hdf5_read_text(io, io->file, "/case/text", &text);
     hf_hdf5_read_text(io, io->file, "/case/overrides", &overrides);
-    if (io->status == HF_OK && !(set = split_lines(overrides, &n_set))) hf_store_no_memory(io);
+    if (io->status == HF_OK && !(set = split_lines(overrides, &n_set))) hf_hdf5_no_memory(io);
     if (io->status == HF_OK) is_known = hf_config_parse(path, text, set, n_set, then, &unwanted) == HF_OK;
     then->optimize.seed = seed; /* as --seed may have set it */
     hf_messages_free(&unwanted);
@@ -253,11 +253,6 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
 
 /* ---- scene ---- */
 
-void hf_store_no_memory(hf_hdf5 *io)
-{
-    if (io->status == HF_OK) io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
-}
-
 /* The n strings of a data set as they are stored, side by side; the caller frees the arena. */
 static char *read_chars(hf_hdf5 *io, hid_t group, const char *name, int n, size_t *length, hf_arena *arena)
 {
@@ -265,7 +260,7 @@ static char *read_chars(hf_hdf5 *io, hid_t group, const char *name, int n, size_
     hf_arena_take(arena, (size_t)n, *length);
     if (io->status != HF_OK) return NULL;
     if (hf_arena_allocate(arena) != HF_OK) {
-        hf_store_no_memory(io);
+        hf_hdf5_no_memory(io);
         return NULL;
     }
     hf_hdf5_array array = {.name = name, .kind = HF_KIND_CHARS, .rank = 1, .dims = {(hsize_t)n, *length}};
@@ -295,7 +290,7 @@ void hf_store_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, cons
     const char *chars_b = read_chars(io, group, name_b, m, &length_b, &b);
     hf_arena_take(&all, (size_t)n, length_a + 1);
     hf_arena_take(&all, (size_t)m, length_b + 1);
-    if (io->status == HF_OK && hf_arena_allocate(&all) != HF_OK) hf_store_no_memory(io);
+    if (io->status == HF_OK && hf_arena_allocate(&all) != HF_OK) hf_hdf5_no_memory(io);
     if (io->status == HF_OK) {
         *text = all.block;
         place_ids(chars_a, length_a, n, id_a, hf_arena_take(&all, (size_t)n, length_a + 1));
@@ -323,7 +318,7 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
     int n_cable = hf_hdf5_length(&io, group, "cable/law", HF_STORE_COUNT_MAX);
     int with_load = hf_hdf5_has(&io, group, "node/load_N"), with_EA = hf_hdf5_has(&io, group, "cable/EA_N");
     if (io.status == HF_OK && hf_scene_allocate(scene, n_node, n_cable, with_load, with_EA, 0) != HF_OK)
-        hf_store_no_memory(&io);
+        hf_hdf5_no_memory(&io);
     hf_hdf5_read_columns(&io, group, table, HF_HDF5_COUNT(table), n_node, n_cable, scene);
     if (io.status == HF_OK)
         hf_store_read_ids(&io, group, "node/id", n_node, scene->node_id, "cable/id", n_cable, scene->cable_id,
@@ -371,7 +366,7 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
     hid_t group = hf_hdf5_open_group(&io, hf_stage_group[stage]);
     int n_node = hf_hdf5_length(&io, io.file, "/scene/node/role", HF_STORE_COUNT_MAX);
     int n_cable = hf_hdf5_length(&io, io.file, "/scene/cable/law", HF_STORE_COUNT_MAX);
-    if (io.status == HF_OK && allocate_shape(n_node, n_cable, shape) != HF_OK) hf_store_no_memory(&io);
+    if (io.status == HF_OK && allocate_shape(n_node, n_cable, shape) != HF_OK) hf_hdf5_no_memory(&io);
     hf_hdf5_read_columns(&io, group, table, HF_HDF5_COUNT(table), n_node, n_cable, shape);
     hf_hdf5_close(&io, group);
     hf_hdf5_close_file(&io);
@@ -429,7 +424,7 @@ static void read_series(hf_hdf5 *io, const char *name, int columns, hf_series *s
     int n = measure_series(io, name, data_set, columns, series, &type);
     size_t count = (size_t)n * (size_t)series->columns;
     hf_arena_take(&arena, count, sizeof(double));
-    if (n > 0 && hf_arena_allocate(&arena) != HF_OK) hf_store_no_memory(io);
+    if (n > 0 && hf_arena_allocate(&arena) != HF_OK) hf_hdf5_no_memory(io);
     if (n > 0 && io->status == HF_OK) {
         *series = (hf_series){n, series->columns, hf_arena_take(&arena, count, sizeof(double)), arena.block};
         if (H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, series->value) < 0)

@@ -36,8 +36,6 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages);
 void hf_store_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, const char **id_a, const char *name_b,
                        int m, const char **id_b, void **text);
 
-void hf_store_no_memory(hf_hdf5 *io);
-
 /* Is there something of this name? From the root; HDF5 has to be asked for every group on the way. */
 int hf_store_is_there(hf_hdf5 *io, const char *name);
 

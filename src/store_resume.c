@@ -226,7 +226,7 @@ static void open_stored_ga(hf_store *s, stored_ga *a)
     a->leader = malloc(n * sizeof *a->leader);
     a->base_N = malloc(n * sizeof *a->base_N);
     if (!a->group || !a->leader || !a->base_N) {
-        hf_store_no_memory(io);
+        hf_hdf5_no_memory(io);
         return;
     }
     hf_store_read_case(io, &a->settings);
@@ -236,7 +236,7 @@ static void open_stored_ga(hf_store *s, stored_ga *a)
     const hf_optimize_settings *o = &a->settings.optimize;
     if (io->status == HF_OK && (o->population != s->rows.n_individual || o->generations != s->rows.limit))
         hf_hdf5_damaged(io, io->file, "/ga", "has other sizes than the case");
-    if (io->status == HF_OK && hf_ga_create(o, &a->model, a->base_N, &a->ga) != HF_OK) hf_store_no_memory(io);
+    if (io->status == HF_OK && hf_ga_create(o, &a->model, a->base_N, &a->ga) != HF_OK) hf_hdf5_no_memory(io);
 }
 
 static void close_stored_ga(stored_ga *a)

@@ -24,7 +24,7 @@ static int allocate(hf_hdf5 *io, int n, size_t length, hf_texts *texts)
 {
     hf_arena arena = {0};
     hf_arena_take(&arena, (size_t)n, length);
-    if (io->status == HF_OK && hf_arena_allocate(&arena) != HF_OK) hf_store_no_memory(io);
+    if (io->status == HF_OK && hf_arena_allocate(&arena) != HF_OK) hf_hdf5_no_memory(io);
     if (io->status != HF_OK) return 0;
     *texts = (hf_texts){n, length, hf_arena_take(&arena, (size_t)n, length), arena.block};
     return 1;

@@ -30,7 +30,7 @@ static void write_fixed(hf_hdf5 *io, hid_t group, const hf_truss *t)
 {
     hf_hdf5_array array = fixed_array(t->n_node);
     signed char *flag = malloc(HF_TRUSS_DOF * (size_t)t->n_node);
-    if (!flag) hf_store_no_memory(io);
+    if (!flag) hf_hdf5_no_memory(io);
     for (int k = 0; flag && k < HF_TRUSS_DOF * t->n_node; k++)
         flag[k] = (signed char)(t->fixed[k / HF_TRUSS_DOF] >> k % HF_TRUSS_DOF & 1);
     if (flag) hf_hdf5_write_array(io, group, &array, flag);
@@ -70,7 +70,7 @@ static void read_fixed(hf_hdf5 *io, hid_t group, hf_truss *t)
     hf_hdf5_array array = fixed_array(t->n_node);
     signed char *flag = io->status == HF_OK ? malloc(HF_TRUSS_DOF * (size_t)t->n_node) : NULL;
     if (!flag) {
-        hf_store_no_memory(io);
+        hf_hdf5_no_memory(io);
         return;
     }
     hf_hdf5_read_array(io, group, &array, flag);
@@ -93,7 +93,7 @@ static void read_state(hf_hdf5 *io, hid_t group, const hf_truss *t, hf_carrier_s
     lay_out_state(&arena, (size_t)t->n_node, (size_t)t->n_member, state);
     if (hf_arena_allocate(&arena) != HF_OK) {
         *state = (hf_carrier_state){0};
-        hf_store_no_memory(io);
+        hf_hdf5_no_memory(io);
         return;
     }
     lay_out_state(&arena, (size_t)t->n_node, (size_t)t->n_member, state);
@@ -106,7 +106,7 @@ static void read_truss(hf_hdf5 *io, hf_truss *t, hf_carrier_state *state)
     hid_t group = hf_hdf5_open_group(io, "/truss");
     int n_node = hf_hdf5_length(io, group, "node/mass_kg", HF_STORE_COUNT_MAX);
     int n_member = hf_hdf5_length(io, group, "member/joint", HF_STORE_COUNT_MAX);
-    if (io->status == HF_OK && hf_truss_allocate(t, n_node, n_member, 0) != HF_OK) hf_store_no_memory(io);
+    if (io->status == HF_OK && hf_truss_allocate(t, n_node, n_member, 0) != HF_OK) hf_hdf5_no_memory(io);
     hf_hdf5_read_columns(io, group, truss_table, HF_HDF5_COUNT(truss_table), n_node, n_member, t);
     if (io->status == HF_OK)
         hf_store_read_ids(io, group, "node/id", n_node, t->node_id, "member/id", n_member, t->member_id, &t->text);
