@@ -3,20 +3,9 @@
 # The targets people type (all, run, test, ...) only install what is missing and then call this Makefile again for the
 # files themselves, so that packages exist before pkg-config is asked about them, and builds use every core.
 
-# ---- The modules, in dependency order: a module may include only modules above it (`make lint` checks it) ------------
-# Sources are src/NAME.c; the header is include/hifdm/NAME.h if public, src/NAME.h if internal.
-MODULES := status arena sha256 text csv \
-           scene scene_import truss truss_import config config_table config_scene \
-           numbering model symmetry workspace band frame carrier \
-           metrics surface \
-           lane lane_kernel formfind newton newton_descent coupling certificate \
-           evaluate chord_kernel chord ga swarm polish batch \
-           json summary hdf5_io hdf5_io_lock hdf5_io_rows store_surface store_coupling journal generations \
-           store_file store_open \
-           store store_read store_resume store_truss store_table compare \
-           study study_read ledger merge
-APP_MODULES := options help print problem run progress signals \
-           plan export cutlist vtk report report_study designs sweep main
+# ---- The rooms: src/ROOM/*.c; what each may include stands in src/ARCHITECTURE.md (`make lint` checks it) ------------
+LIB_ROOMS := base linalg net truss solve search case store run
+APP_ROOMS := out app
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
 VERSION := 0.1.0
@@ -69,10 +58,10 @@ PKG_LIBS = $(filter-out -I% -D%,$(PKG)) $(LAPACK_LIBS) -lm
 CHOLMOD = $(eval CHOLMOD := $(shell $(CC) -E -include suitesparse/cholmod.h -x c /dev/null >/dev/null 2>&1 && \
   echo -DHF_BENCH_CHOLMOD -lcholmod))$(CHOLMOD)
 
-COMPILE = $(CC) $(CFLAGS) $(LANGUAGE) $(CODEGEN) $(SANITIZER) $(WARNINGS) -Iinclude $(PKG_CFLAGS)
+COMPILE = $(CC) $(CFLAGS) $(LANGUAGE) $(CODEGEN) $(SANITIZER) $(WARNINGS) -Iinclude -Isrc $(PKG_CFLAGS)
 LINK = $(CC) $(CFLAGS) -fopenmp $(SANITIZER) $(LDFLAGS)
 
-# Build information, compiled into store.c alone because it is what stamps a result file.
+# Build information, compiled into store/store.c alone because it is what stamps a result file.
 GIT_DESCRIBE = $(shell test -e .git && git describe --always --dirty --tags 2>/dev/null || echo unknown)
 COMPILER = $(shell $(CC) --version | head -n 1)
 c_string = '"$(subst \,,$(subst ",,$(subst ',,$(strip $(1)))))"'
@@ -83,14 +72,16 @@ BUILD_INFO = $(eval BUILD_INFO := -DHF_VERSION=$(call c_string,$(VERSION)) \
 # ---- Files -----------------------------------------------------------------------------------------------------------
 # Kernels are compiled once per instruction set; the program chooses when it runs.
 ISAS := portable avx2 avx512
-KERNELS := $(filter %_kernel,$(MODULES))
-LIB_OBJ := $(patsubst %,$(BUILD)/src/%.o,$(filter-out $(KERNELS),$(MODULES)) \
-             $(foreach isa,$(ISAS),$(KERNELS:%=%_$(isa))))
+KERNELS := $(wildcard src/*/*_kernel.c)
+sources = $(sort $(foreach room,$(1),$(wildcard src/$(room)/*.c)))
+LIB_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(KERNELS),$(call sources,$(LIB_ROOMS)))) \
+           $(foreach isa,$(ISAS),$(KERNELS:%.c=$(BUILD)/%_$(isa).o))
 # The page of `hifdm report`: its parts in order, as three strings that report.h declares.
-PAGE := $(addprefix src/report/,head.html page.css body.html \
+PAGE := $(addprefix src/out/report/,head.html page.css body.html \
           data.js scale.js chart.js net.js map.js sections.js study.js main.js)
-APP_OBJ := $(APP_MODULES:%=$(BUILD)/src/%.o) $(BUILD)/report_page.o
-TEST_OBJ := $(patsubst %.c,$(BUILD)/%.o,tests/run_tests.c tests/support.c $(sort $(wildcard tests/*/test_*.c)))
+APP_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(call sources,$(APP_ROOMS))) $(BUILD)/report_page.o
+TEST_OBJ := $(patsubst %.c,$(BUILD)/%.o,tests/run_tests.c tests/support.c \
+             $(sort $(wildcard tests/*/test_*.c tests/*/*/test_*.c)))
 PROGRAM := $(BUILD)/hifdm
 STATIC := $(BUILD)/libhifdm.a
 SHARED := $(BUILD)/libhifdm.so
@@ -102,8 +93,7 @@ BENCH := $(BUILD)/bench/bench
 BENCH_OUT ?= results/bench
 BENCH_ROUNDS ?= 3
 BENCH_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/bench/*.c)))
-# The program's own run is benchmarked, with a clock around these calls: tools/bench/stages.c.
-BENCH_RUN := $(patsubst %,$(BUILD)/src/%.o,run problem)
+# The run is benchmarked with a clock around these calls: tools/bench/stages.c.
 BENCH_WRAP := hf_config_load hf_config_scene hf_model_build hf_symmetry_apply hf_workspace_create hf_evaluate_form \
               hf_batch_create hf_batch_share hf_ga_create hf_batch_run hf_batch_next hf_batch_run_one hf_ga_tell \
               hf_ga_next hf_polish_run hf_store_create hf_store_form hf_store_generation hf_store_publish \
@@ -239,9 +229,9 @@ $(BUILD)/flags: FORCE
 $(BUILD)/info: FORCE
 	$(call stamp,$(BUILD_INFO))
 
-$(BUILD)/src/store.o: $(BUILD)/info
-$(BUILD)/src/store.o: EXTRA = $(BUILD_INFO)
-$(BUILD)/tests/%.o: EXTRA = -Itests -Isrc $(filter-out -l%,$(CHECK))
+$(BUILD)/src/store/store.o: $(BUILD)/info
+$(BUILD)/src/store/store.o: EXTRA = $(BUILD_INFO)
+$(BUILD)/tests/%.o: EXTRA = -Itests $(filter-out -l%,$(CHECK))
 
 FLAGS_portable :=
 FLAGS_avx2 := -mavx2
@@ -264,7 +254,7 @@ $(BUILD)/%.o: %.c $(BUILD)/flags
 $(BUILD)/report_page.c: $(PAGE) Makefile
 	$(call say,PAGE,$@)
 	@mkdir -p $(@D)
-	$(Q){ echo '#include "report.h"'; \
+	$(Q){ echo '#include "out/report.h"'; \
 	  bytes() { echo "const char $$1[] = {"; shift; cat "$$@" | od -An -v -tx1 | \
 	      sed "s/[0-9a-f][0-9a-f]*/'\\\\x&',/g"; echo '0};'; }; \
 	  bytes hf_report_page_head $(wordlist 1,2,$(PAGE)); \
@@ -274,9 +264,9 @@ $(BUILD)/report_page.c: $(PAGE) Makefile
 
 $(BUILD)/report_page.o: $(BUILD)/report_page.c $(BUILD)/flags
 	$(call say,CC,$<)
-	$(Q)$(COMPILE) -Isrc -MMD -MP -c $< -o $@
+	$(Q)$(COMPILE) -MMD -MP -c $< -o $@
 
-# The Makefile is a prerequisite of what is linked because it holds the list of modules.
+# The Makefile is a prerequisite of what is linked because it says what belongs to them.
 $(STATIC): $(LIB_OBJ) Makefile
 	$(call say,AR,$@)
 	$(Q)rm -f $@ && $(AR) rcs $@ $(LIB_OBJ)
@@ -305,9 +295,9 @@ $(BUILD)/bench/peers: FORCE
 	$(call stamp,$(CHOLMOD))
 
 $(BENCH_OBJ): $(BUILD)/bench/peers
-$(BENCH_OBJ): EXTRA = -Isrc $(filter -D%,$(CHOLMOD))
+$(BENCH_OBJ): EXTRA = $(filter -D%,$(CHOLMOD))
 
-$(BENCH): $(BENCH_OBJ) $(BENCH_RUN) $(STATIC)
+$(BENCH): $(BENCH_OBJ) $(STATIC)
 	$(call say,LD,$@)
 	$(Q)$(LINK) $(patsubst %,-Wl$(comma)--wrap=%,$(BENCH_WRAP)) -o $@ $^ $(filter -l%,$(CHOLMOD)) $(PKG_LIBS)
 

@@ -12,8 +12,10 @@ static const struct {
     const char *name;
     Suite *(*create)(void);
 } suites[] = {
-#define SUITE(room, name) {#room "/" #name, suite_##room##_##name},
+#define SUITE(kind, name) {#kind "/" #name, suite_##kind##_##name},
+#define MIRROR(kind, room, name) {#kind "/" #room "/" #name, suite_##kind##_##name},
 #include "suites.list.h"
+#undef MIRROR
 #undef SUITE
 };
 

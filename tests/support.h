@@ -10,8 +10,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define SUITE(room, name) Suite *suite_##room##_##name(void);
+#define SUITE(kind, name) Suite *suite_##kind##_##name(void);
+#define MIRROR(kind, room, name) SUITE(kind, name)
 #include "suites.list.h"
+#undef MIRROR
 #undef SUITE
 
 /* ---- Files ----

@@ -6,18 +6,22 @@ cd "$(dirname "$0")/.."
 
 # ---- The rules' own lists: change them here when the house changes ---------------------------------------------------
 # may call malloc and its kin: set-up, never the hot path
-heap_files="status arena text csv scene scene_import config numbering model lane batch hdf5_io hdf5_io_rows journal
-            generations store_file store_open store store_read store_resume compare truss truss_import frame
-            carrier store_truss store_coupling study study_read ledger merge sweep options problem run designs"
+heap_files="base/status base/arena base/text base/csv net/scene net/scene_import net/numbering net/model
+            truss/truss truss/truss_import truss/frame search/lane search/batch
+            case/config case/study case/study_read store/hdf5_io store/hdf5_io_rows store/journal store/generations
+            store/store_file store/store_open store/store store/store_read store/store_resume store/compare
+            store/store_truss store/store_coupling store/ledger store/merge run/problem run/run
+            app/cmd_sweep app/options app/cmd_evaluate"
 # may print (csv, json, summary: to a stream they are given)
-print_files="csv json summary help print progress plan export cutlist report report_study designs sweep main"
-openmp_files="batch"                                 # may mention OpenMP
-top_level="Makefile README.md LICENSE src include configs tests results tools"   # and dot-files
+print_files="base/csv base/json store/summary app/help out/print app/progress app/cmd_check out/export out/cutlist
+             out/report out/report_study app/cmd_evaluate app/cmd_sweep app/main"
+openmp_files="search/batch"                          # may mention OpenMP
+# and dot-files
+top_level="Makefile README.md CHANGELOG.md CITATION.cff LICENSE src include configs tests results tools"
 max_file=600 max_function=80 long_function=60                        # lines; between the last two it is a warning
 
-library=$(make -s print-MODULES)
+rooms="$(make -s print-LIB_ROOMS) $(make -s print-APP_ROOMS)"
 page=$(make -s print-PAGE)                           # parts of the page that `report` writes
-modules="$library $(make -s print-APP_MODULES)"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -38,44 +42,53 @@ c_files=$(files_under src include tests | grep '\.[ch]$')
 text_files=$(files_under src include tests tools configs .ci Makefile README.md |
     grep -E '\.(c|h|sh|py|ya?ml|md|html|css|js|mjs)$|^\.ci/|^Makefile$')
 
-# ---- Modules: only the listed ones, one header each, includes only upward in the list --------------------------------
-seen=""
-for module in $modules; do
-    [ -e src/$module.c ] || echo "src/$module.c:1: module listed in the Makefile has no source"
-    if [ -e src/$module.h ] && [ -e include/hifdm/$module.h ]; then
-        echo "src/$module.h:1: module has two headers, this one and include/hifdm/$module.h"
-    elif [ -e src/$module.h ] || [ -e include/hifdm/$module.h ] || [ $module = main ]; then
-        :
-    elif [[ " $seen " != *" ${module%_*} "* ]]; then   # X_part implements a part of X and shares its header
-        echo "src/$module.c:1: module has no header"
-    fi
-    seen="$seen $module"
-done | report
-
+# ---- Rooms: what stands in src/, and what each room may include -------------------------------------------------
+# A module is src/ROOM/NAME.c with one header, src/ROOM/NAME.h or include/hifdm/NAME.h; X_part.c implements a part of X
+# and may share its header.
 files_under src include | while read -r file; do
     name=$(basename "${file%.[ch]}")
+    room=$(basename "$(dirname "$file")")
     case $file in
-    include/hifdm/hifdm.h) continue ;;
-    src/report/*) case " $page " in *" $file "*) continue ;; esac ;;
-    src/*/* | include/hifdm/*/*) ;;
-    src/*.c | src/*.h | include/hifdm/*.h) case " ${modules//$'\n'/ } " in *" $name "*) continue ;; esac ;;
+    src/ARCHITECTURE.md | src/METHOD.md | include/hifdm/hifdm.h) ;;
+    src/out/report/*)
+        case " $page " in *" $file "*) ;; *) echo "$file:1: no part of the page (Makefile: PAGE)" ;; esac ;;
+    src/*/*/*) echo "$file:1: rooms have no rooms" ;;
+    src/*/*.c)
+        case " $rooms " in *" $room "*) ;; *) echo "$file:1: its room is not listed in the Makefile" ;; esac
+        [ ! -e "src/$room/$name.h" ] || [ ! -e "include/hifdm/$name.h" ] || echo "$file:1: module has two headers"
+        header=$name
+        while [ ! -e "src/$room/$header.h" ] && [ ! -e "include/hifdm/$header.h" ] && [[ $header == *_* ]]; do
+            header=${header%_*}
+        done
+        [ -e "src/$room/$header.h" ] || [ -e "include/hifdm/$header.h" ] || [ "$file" = src/app/main.c ] ||
+            echo "$file:1: module has no header"
+        ;;
+    src/*/*.h | include/hifdm/*.h)
+        [ -n "$(ls src/*/"$name".c src/*/"$name"_*.c 2>/dev/null)" ] || echo "$file:1: header without a source" ;;
+    *) echo "$file:1: not in a room" ;;
     esac
-    echo "$file:1: not a file of a module listed in the Makefile"
 done | report
 
-# hifdm.h includes everything, so it is for programs: the modules of the library name what they use.
-awk -v modules="$modules" -v library="$library" '
-    BEGIN { n = split(modules, list, /[ \n]+/); for (i = 1; i <= n; i++) rank[list[i]] = i
-            n_library = split(library, list, /[ \n]+/) }
-    FNR == 1 { self = FILENAME; sub(/.*\//, "", self); sub(/\.[ch]$/, "", self) }
-    self != "hifdm" && /^[ \t]*#[ \t]*include[ \t]*("|<hifdm\/)/ {
-        name = $0; sub(/^[^"<]*["<]/, "", name); sub(/[">].*/, "", name)
-        other = name; sub(/^hifdm\//, "", other); sub(/\.h$/, "", other)
-        if (other == self || (other == "hifdm" && rank[self] > n_library)) next
-        if (!(other in rank)) print FILENAME ":" FNR ": includes " name ", which is no header of a module"
-        else if (rank[other] > rank[self])
-            print FILENAME ":" FNR ": " self " includes " other ", which is below it in the list of modules"
-    }' $source_files | report
+# The may-use table is the one of src/ARCHITECTURE.md. hifdm.h includes everything, so it is for programs.
+for file in src/*/*.c; do echo "$(basename "${file%.c}") $(basename "$(dirname "$file")")"; done >"$work/room_of"
+awk -v rooms="$rooms" '
+    FILENAME == "src/ARCHITECTURE.md" {
+        if (!match($0, /^\| `[a-z]+` \|/)) next
+        split($0, cell, "|"); room = cell[2]; gsub(/[ `]/, "", room); may_use[room] = " " cell[4] " " room " "; next
+    }
+    FILENAME ~ /room_of$/ { room_of[$1] = $2; next }
+    FNR == 1 {
+        n = split(FILENAME, part, "/"); name = part[n]; sub(/\.[ch]$/, "", name)
+        self = FILENAME ~ /^src/ ? part[2] : room_of[name]
+        if (self == "") { head = name "_"; for (m in room_of) if (index(m, head) == 1) self = room_of[m] }
+        if (name != "hifdm" && !(self in may_use)) print FILENAME ":1: room `" self "` is not in src/ARCHITECTURE.md"
+    }
+    name != "hifdm" && /^[ \t]*#[ \t]*include[ \t]*("|<hifdm\/)/ {
+        other = $0; sub(/^[^"<]*["<]/, "", other); sub(/[">].*/, "", other)
+        if (other ~ /^hifdm\//) { module = other; gsub(/^hifdm\/|\.h$/, "", module); room = room_of[module] }
+        else { room = other; sub(/\/.*/, "", room) }
+        if (!index(may_use[self], " " room " ")) print FILENAME ":" FNR ": room " self " may not use " other
+    }' src/ARCHITECTURE.md "$work/room_of" $source_files | report
 
 # ---- Sizes -----------------------------------------------------------------------------------------------------------
 # A function is what stands between a { and a } in column 0; its lines are those in between.
@@ -131,13 +144,13 @@ awk -v sq="'" '
         print FILENAME ":" FNR ":" code
     }' $source_files >"$work/code"
 
-# only_in "MODULE..." PATTERN MESSAGE
+# only_in "ROOM/MODULE..." PATTERN MESSAGE
 only_in() {
-    grep -vE "^(src|include/hifdm)/(${1// /|})\.[ch]:" "$work/code" | grep -E "^[^:]*:[0-9]+:.*($2)" |
+    grep -vE "^src/(${1// /|})\.[ch]:" "$work/code" | grep -E "^[^:]*:[0-9]+:.*($2)" |
         sed -E "s#^([^:]*:[0-9]+):.*#\1: $3 (allowed in: $1)#" | report || true
 }
-heap_files=$(echo $heap_files)
-only_in main '\bgsl_set_error_handler' 'setting the error handler of the whole program'
+heap_files=$(echo $heap_files) print_files=$(echo $print_files)
+only_in app/main '\bgsl_set_error_handler' 'setting the error handler of the whole program'
 only_in "$heap_files" '\b(malloc|calloc|realloc|aligned_alloc|posix_memalign|strdup|strndup)[[:blank:]]*\(' 'heap call'
 only_in "$print_files" '\b(v?f?printf|f?puts|f?putc|putchar|perror|exit|_Exit|abort)[[:blank:]]*\(' 'prints or exits'
 only_in "$openmp_files" '\bomp(\b|_)|\b_OPENMP\b' 'OpenMP'

@@ -44,7 +44,7 @@ static hf_status search(const char *path, thing *t)
     HF_TRY(hf_model_build(&t->scene, &t->c.form, &t->m, &t->said));
     if (t->c.has_truss) { /* that gives way under the net */
         const hf_carrier *r = &t->carrier;
-        HF_TRY(hf_carrier_build(&t->c, &t->scene, &t->carrier, &t->said));
+        HF_TRY(hf_config_carrier(&t->c, &t->scene, &t->carrier, &t->said));
         HF_TRY(hf_model_attach(&t->m, r->n_attachment, r->scene_node, r->flexibility_m_per_N, &t->said));
     }
     HF_TRY(hf_workspace_create(&t->m, &t->w));

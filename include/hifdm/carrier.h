@@ -2,10 +2,7 @@
 #ifndef HIFDM_CARRIER_H
 #define HIFDM_CARRIER_H
 
-#include <hifdm/config.h>
 #include <hifdm/frame.h>
-#include <hifdm/model.h>
-#include <hifdm/workspace.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -22,9 +19,12 @@ typedef struct {
     void *block;
 } hf_carrier;
 
-/* For a case with a truss section and the scene it describes, checked. HF_BAD_CASE, HF_MECHANISM or HF_NO_MEMORY with
- * messages. The carrier must stay where it is (its frame points to its truss); free it in any case. */
-hf_status hf_carrier_build(const hf_case *settings, const hf_scene *scene, hf_carrier *carrier, hf_messages *messages);
+/* Of a checked truss and the checked scene that it carries; each support of the scene stands on the nearest truss node
+ * within the tolerance (hf_truss_attach). The carrier takes the truss over, whatever happens, and leaves *truss all
+ * zero. HF_BAD_CASE, HF_MECHANISM or HF_NO_MEMORY with messages. The carrier must stay where it is (its frame points to
+ * its truss); free it in any case. */
+hf_status hf_carrier_build(hf_truss *truss, double match_tolerance_m, const hf_scene *scene, hf_carrier *carrier,
+                           hf_messages *messages);
 void hf_carrier_free(hf_carrier *carrier);
 
 /* What forces on the attachments do to the truss. */
@@ -38,10 +38,6 @@ typedef struct {
 /* force_N: [n_attachment][3]. HF_OK or HF_NO_MEMORY. Free the state in any case. */
 hf_status hf_carrier_load(const hf_carrier *carrier, const double *force_N, hf_carrier_state *state);
 
-/* The same under the pull of the net at the shape in the workspace, f = sum T u over the cables of each attachment, and
- * the loads that stand there. */
-hf_status hf_carrier_carry(const hf_carrier *carrier, const hf_model *model, const hf_workspace *workspace,
-                           hf_carrier_state *state);
 void hf_carrier_state_free(hf_carrier_state *state);
 
 #ifdef __cplusplus

@@ -2,7 +2,6 @@
 #ifndef HIFDM_EVALUATE_H
 #define HIFDM_EVALUATE_H
 
-#include <hifdm/config.h>
 #include <hifdm/formfind.h>
 
 #ifdef __cplusplus

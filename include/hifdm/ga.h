@@ -16,8 +16,9 @@
 #ifndef HIFDM_GA_H
 #define HIFDM_GA_H
 
-#include <hifdm/config.h>
-#include <hifdm/formfind.h>
+#include <hifdm/model.h>
+#include <hifdm/result.h>
+#include <hifdm/settings.h>
 
 #ifdef __cplusplus
 extern "C" {

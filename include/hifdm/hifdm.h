@@ -1,5 +1,5 @@
-/* hifdm - everything the library offers. Reading order: scene, truss, config, model, frame, carrier, workspace,
- * formfind, evaluate, ga, batch, metrics, surface, store. For all of it:
+/* hifdm - everything the library offers. Reading order: scene, settings, truss, config, model, result, frame, carrier,
+ * workspace, formfind, evaluate, ga, batch, metrics, surface, store. For all of it:
  *
  * Units. SI; the unit is the last part of a name (psi_m, tension_N, q_N_per_m, wall_s). No unit: no dimension.
  * Shapes. [n_cable][2]: n_cable rows of 2 numbers, one row after the other. Indices count from 0, and -1 is none.
@@ -26,7 +26,9 @@
 #include <hifdm/ga.h>
 #include <hifdm/metrics.h>
 #include <hifdm/model.h>
+#include <hifdm/result.h>
 #include <hifdm/scene.h>
+#include <hifdm/settings.h>
 #include <hifdm/status.h>
 #include <hifdm/store.h>
 #include <hifdm/summary.h>

@@ -6,8 +6,8 @@
 #ifndef HIFDM_MODEL_H
 #define HIFDM_MODEL_H
 
-#include <hifdm/config.h>
 #include <hifdm/scene.h>
+#include <hifdm/settings.h>
 #include <hifdm/status.h>
 
 #ifdef __cplusplus

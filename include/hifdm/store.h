@@ -39,7 +39,7 @@
 #ifndef HIFDM_STORE_H
 #define HIFDM_STORE_H
 
-#include <hifdm/carrier.h>
+#include <hifdm/config.h>
 #include <hifdm/ga.h>
 #include <hifdm/model.h>
 #include <hifdm/summary.h>

@@ -4,7 +4,7 @@
 
 #include <hifdm/batch.h>
 #include <hifdm/ga.h>
-#include <symmetry.h>
+#include "net/symmetry.h"
 
 /* What is under test, prepared before the failure and cleaned up after it, whether it succeeded or not. */
 struct subject {

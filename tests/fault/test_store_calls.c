@@ -4,7 +4,7 @@
  * HDF5 asks of the system is out of reach: limits on file size stand for that (cli/resume, unit/store_faults). */
 #include "evolution.h"
 
-#include "compare.h"
+#include "store/compare.h"
 
 #include <errno.h>
 #include <fcntl.h>

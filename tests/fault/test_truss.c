@@ -40,7 +40,7 @@ START_TEST(building_a_carrier)
         hf_carrier carrier;
         hf_messages messages = {0};
         fail_allocation_at(n);
-        hf_status status = hf_carrier_build(&c, &scene, &carrier, &messages);
+        hf_status status = hf_config_carrier(&c, &scene, &carrier, &messages);
         bool failed = end_allocation_failure();
         char said[256];
         snprintf(said, sizeof said, "%s", messages.text ? messages.text : "");
@@ -70,7 +70,7 @@ START_TEST(loading_a_carrier)
     hf_messages messages = {0};
     static const double force[27];
     load(&c, &scene, 0);
-    ck_assert_int_eq(hf_carrier_build(&c, &scene, &carrier, &messages), HF_OK);
+    ck_assert_int_eq(hf_config_carrier(&c, &scene, &carrier, &messages), HF_OK);
     fail_allocation_at(1);
     hf_status status = hf_carrier_load(&carrier, force, &state);
     ck_assert(end_allocation_failure());
@@ -96,7 +96,7 @@ START_TEST(storing_and_reading)
     for (int k = 0; k < 27; k++)
         force[k] = 2.385 * k;
     hf_store_quiet();
-    ck_assert_int_eq(hf_carrier_build(&c, &scene, &carrier, &messages), HF_OK);
+    ck_assert_int_eq(hf_config_carrier(&c, &scene, &carrier, &messages), HF_OK);
     ck_assert_int_eq(hf_carrier_load(&carrier, force, &state), HF_OK);
     const char *path = temp_path("t.h5");
     bool failed = true;

@@ -5,6 +5,7 @@
 #define HIFDM_BENCH_H
 
 #include <hifdm/batch.h>
+#include <hifdm/config.h>
 #include <hifdm/formfind.h>
 
 #define BENCH_POPULATION 50

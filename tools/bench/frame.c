@@ -2,7 +2,7 @@
  * of the paper's case with its condensation. */
 #include "bench.h"
 
-#include <hifdm/carrier.h>
+#include <hifdm/config.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -103,7 +103,7 @@ static void work_carrier(void *context)
 {
     carrier_context *c = context;
     hf_carrier_free(&c->carrier);
-    if (hf_carrier_build(&c->settings, &c->scene, &c->carrier, &c->messages) != HF_OK)
+    if (hf_config_carrier(&c->settings, &c->scene, &c->carrier, &c->messages) != HF_OK)
         bench_fail("frame", c->messages.text);
 }
 

@@ -3,9 +3,9 @@
  * evaluation. */
 #include "bench.h"
 
-#include "band.h"
-#include "chord.h"
-#include "newton.h"
+#include "linalg/band.h"
+#include "search/chord.h"
+#include "solve/newton.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Contents: small things - arguments */
 #include "bench.h"
 
-#include "band.h"
+#include "linalg/band.h"
 #include <hifdm/store.h>
 
 #include <stdio.h>

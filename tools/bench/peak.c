@@ -5,7 +5,7 @@
  * Contents: peaks - operations of the factorisation - nets - the section */
 #include "bench.h"
 
-#include "lane.h"
+#include "search/lane.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -5,9 +5,9 @@
  * Contents: what was spent - one design - eight to a pass, fixed point - eight to a pass, chord */
 #include "bench.h"
 
-#include "band.h"
-#include "chord.h"
-#include "swarm.h"
+#include "linalg/band.h"
+#include "search/chord.h"
+#include "search/swarm.h"
 
 #include <string.h>
 

@@ -1,9 +1,9 @@
 /* Contents: references - one method at one tolerance - work-precision - one evaluation to a given error */
 #include "bench.h"
 
-#include "band.h"
-#include "chord.h"
-#include "newton.h"
+#include "linalg/band.h"
+#include "search/chord.h"
+#include "solve/newton.h"
 
 #include <math.h>
 #include <stdlib.h>

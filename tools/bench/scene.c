@@ -1,8 +1,8 @@
 /* Contents: the four scenes and the kernel net - opening one - an imported net - the reference shape */
 #include "bench.h"
 
-#include "band.h"
-#include "newton.h"
+#include "linalg/band.h"
+#include "solve/newton.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,9 +4,9 @@
  * case does not need has no sample. On one thread, where the stages of a generation come one after the other. */
 #include "bench.h"
 
-#include "polish.h"
-#include "run.h"
-#include "symmetry.h"
+#include "search/polish.h"
+#include "run/run.h"
+#include "net/symmetry.h"
 #include <hifdm/store.h>
 
 #include <malloc.h>

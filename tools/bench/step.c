@@ -1,8 +1,8 @@
 /* Contents: ways to do a step - files for the peers in Python - the section */
 #include "bench.h"
 
-#include "band.h"
-#include "lane.h"
+#include "linalg/band.h"
+#include "search/lane.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,0 +1,86 @@
+/* settings - what was asked of the engine: plain values, whoever filled them in. hf_config_load reads them from a case
+ * file, where `hifdm schema` says what each means; a program of one's own sets them itself. */
+#ifndef HIFDM_SETTINGS_H
+#define HIFDM_SETTINGS_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Words of a case file; `hifdm schema` says what each means. */
+typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHOD_NEWTON, HF_METHOD_AUTO } hf_method;
+typedef enum { HF_OPTIMIZE_GA, HF_OPTIMIZE_LM, HF_OPTIMIZE_GA_LM } hf_optimize_method;
+typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
+typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
+typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
+typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN } hf_coupling_scheme;
+typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
+
+/* By the enumerations above, ended by NULL. */
+extern const char *const hf_method_word[6];
+extern const char *const hf_stop_rule_word[3];
+extern const char *const hf_rule_word[4];
+extern const char *const hf_solver_word[5];
+extern const char *const hf_optimize_method_word[4];
+extern const char *const hf_symmetry_word[6];
+extern const char *const hf_coupling_scheme_word[3];
+
+/* Of the net with an elastic truss; without attachments nothing looks at them. */
+typedef struct {
+    double tof_m; /* largest difference of an attachment's displacements in two iterations */
+    int scheme;   /* hf_coupling_scheme */
+    int max_iterations;
+} hf_coupling_settings;
+
+typedef struct {
+    int method;                /* hf_method */
+    double pretension_N;       /* Td */
+    int stop;                  /* hf_stop_rule */
+    double residual_tolerance; /* max nodal residual relative to the pretension */
+    double length_tolerance;   /* max |l/L*-1| of cables under the length law */
+    double rms_tolerance_m;    /* change of psi between iterations, the paper's rule */
+    int max_iterations;        /* bound on the linear solves */
+    double collapse_ratio; /* a cable of law tension shorter than this part of its theoretical length has collapsed */
+    hf_coupling_settings coupling;
+} hf_form_settings;
+
+typedef struct {
+    int method;                          /* hf_optimize_method */
+    int rule;                            /* hf_rule: what a design (a set of boundary pretensions) means */
+    int solver;                          /* hf_solver of the individuals */
+    int population, generations;         /* individuals; largest number of generations */
+    double range_N;                      /* |dT| of Eq. 13 */
+    double min_tension_N, max_tension_N; /* bounds on T' */
+    double boundary_ratio_cap;           /* largest allowed boundary tension ratio of an individual */
+    uint64_t seed;
+    double crossover_high, crossover_low; /* Pc1, Pc2 */
+    double mutation_high, mutation_low;   /* Pm1, Pm2 */
+    int elites;                           /* best individuals that live on unchanged */
+    double stagnation_tolerance_m;        /* stop when the best psi gained less than this ... */
+    int stagnation_generations;           /* ... in so many generations */
+    int polish_iterations;                /* bound on those of Levenberg-Marquardt */
+    int symmetry;                         /* hf_symmetry: mirror planes that link genes */
+} hf_optimize_settings;
+
+#define HF_LIST_MAX 8
+
+typedef struct {
+    int n; /* of `value` in use */
+    double value[HF_LIST_MAX];
+} hf_double_list;
+
+/* The reflecting surface: the parabolic cylinder z = x^2/(4f) along y. */
+typedef struct {
+    double focal_length_m; /* 0 when no measures of the surface are asked for */
+    double strip_width_m;  /* of flat strips along y that make it up; 0 = not known */
+    hf_double_list frequencies_Hz;
+} hf_surface_settings;
+
+#define HF_PATH_SIZE 1024
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,246 @@
+#include "app/cmd_check.h"
+
+#include "search/chord.h"
+#include "search/lane.h"
+#include "search/polish.h"
+#include "out/print.h"
+#include "run/run.h"
+#include "net/symmetry.h"
+#include <hifdm/batch.h>
+
+#define TRIAL_S 1.0 /* how long a form-finding is tried */
+
+static void print_scene(const hf_problem *p, FILE *f)
+{
+    const hf_model *m = &p->model;
+    int count[3] = {0}, law[HF_N_LAW] = {0};
+    for (int i = 0; i < m->n_node; i++)
+        count[p->scene.role[i]]++;
+    for (int e = 0; e < m->n_cable; e++)
+        law[m->law[e]]++;
+    fprintf(f, "  scene         %d nodes: %d supports, %d inner (psi counts these), %d edge\n", m->n_node,
+            count[HF_ROLE_SUPPORT], count[HF_ROLE_INNER], count[HF_ROLE_EDGE]);
+    fprintf(f, "                %d cables by law in force: %d tension, %d length, %d force density%s", m->n_cable,
+            law[HF_LAW_TENSION], law[HF_LAW_LENGTH], law[HF_LAW_FORCE_DENSITY], m->has_strut ? " (with struts)" : "");
+    if (law[HF_LAW_ELASTIC]) fprintf(f, ", %d elastic", law[HF_LAW_ELASTIC]);
+    fputc('\n', f);
+    fprintf(f, "  equations     %d unknowns, three right-hand sides; half-bandwidth %d; %s\n", m->n_free,
+            m->half_bandwidth, m->has_strut ? "indefinite: band LU (dgbtrf)" : "band Cholesky (dpbtrf)");
+    if (m->n_chain) fprintf(f, "  note          %d straight chains of length-controlled cables\n", m->n_chain);
+}
+
+/* What the truss costs. It is built and condensed once more, for the time. */
+static hf_status print_truss(const hf_problem *p, FILE *f, hf_messages *messages)
+{
+    const hf_carrier *c = &p->carrier;
+    hf_carrier again;
+    char wall[32], matrix[32];
+    double begin_s = hf_run_clock_s();
+    hf_status status = hf_config_carrier(&p->settings, &p->scene, &again, messages);
+    hf_print_duration(hf_run_clock_s() - begin_s, wall, sizeof wall);
+    hf_carrier_free(&again);
+    hf_print_bytes((double)c->frame.n_dof * (c->frame.half_bandwidth + 1) * sizeof(double), matrix, sizeof matrix);
+    fprintf(f, "  truss         %d nodes, %d members; %.2f kg; %d attachments\n", c->truss.n_node, c->truss.n_member,
+            c->mass_kg, c->n_attachment);
+    fprintf(f, "                %d unknowns, half-bandwidth %d, %s; condition %.1e; built and condensed once in %s\n",
+            c->frame.n_dof, c->frame.half_bandwidth, matrix, c->frame.condition, wall);
+    return status;
+}
+
+static void print_plan(const hf_problem *p, FILE *f)
+{
+    const hf_case *c = &p->settings;
+    const hf_optimize_settings *o = &c->optimize;
+    const char *why;
+    int method = hf_evaluate_method(&p->model, &c->form, &why);
+    fprintf(f, "  will run      form-finding: %s, solved by %s (%s), stop: %s, at most %d iterations\n",
+            hf_method_word[c->form.method], method == HF_METHOD_NEWTON ? "newton" : "fixed point", why,
+            hf_stop_rule_word[c->form.stop], c->form.max_iterations);
+    if (p->model.n_attachment)
+        fprintf(f, "                coupling with the truss: %s, tof %g m, at most %d form-findings\n",
+                hf_coupling_scheme_word[c->form.coupling.scheme], c->form.coupling.tof_m,
+                c->form.coupling.max_iterations);
+    int optimizes = c->has_optimize && p->model.n_gene > 0;
+    int evolves = optimizes && o->method != HF_OPTIMIZE_LM;
+    if (evolves)
+        fprintf(f,
+                "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
+                hf_rule_word[o->rule], p->model.n_gene, o->population, o->generations, (unsigned long long)o->seed);
+    if (optimizes && o->rule != HF_RULE_SEEDED)
+        fprintf(f, "                Levenberg-Marquardt: rule %s, at most %d iterations, %s\n", hf_rule_word[o->rule],
+                o->polish_iterations, o->method == HF_OPTIMIZE_GA ? "for comparison" : "the result");
+    if (optimizes && o->symmetry != HF_SYMMETRY_NONE)
+        fprintf(f, "                symmetry: %s, %s; %d independent genes of %d\n", hf_symmetry_word[o->symmetry],
+                hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_gene);
+    fprintf(f, "  skipped       %s%s%s%s\n",
+            evolves           ? ""
+            : optimizes       ? "genetic algorithm (method: lm); "
+            : c->has_optimize ? "optimisation (no boundary cable has a free end); "
+                              : "optimisation (no optimize section); ",
+            c->has_truss ? "" : "truss (no truss section); ", p->model.load_N ? "" : "loads (none given); ",
+            p->model.has_strut ? "" : "general band matrix (no struts)");
+}
+
+static void print_allocation(const char *title, const char *what, double bytes, const char *without, FILE *f)
+{
+    char text[32];
+    hf_print_bytes(bytes, text, sizeof text);
+    fprintf(f, "  %-13s %-38s %s\n", title, what, bytes > 0 ? text : without);
+}
+
+/* Bytes that a population's engine would share and give to each thread. */
+/* Right-hand sides, twice with a truss, and the packed matrix. */
+static double polish_bytes(const hf_evaluator *v)
+{
+    const hf_model *m = v->model;
+    size_t lanes, matrix;
+    if (!hf_polish_applies(v)) return 0;
+    matrix = hf_chord_bytes(v, &lanes);
+    return 24.0 * m->n_leader * m->n_free * (m->n_attachment ? 2 : 1) + (double)(matrix + lanes);
+}
+
+static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lanes)
+{
+    int has_lanes, solver = hf_batch_solver(v, &has_lanes);
+    *shared = *lanes = 0;
+    if (solver == HF_SOLVER_CHORD) {
+        *shared = hf_chord_bytes(v, lanes);
+    } else if (has_lanes) {
+        hf_lane_plan plan;
+        HF_TRY(hf_lane_plan_create(v->model, hf_lane_best_isa(), &plan));
+        *lanes = hf_lane_workspace_bytes(&plan);
+        hf_lane_plan_free(&plan);
+    }
+    return HF_OK;
+}
+
+/* What a run would allocate, and what it would not. */
+static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int threads, FILE *f)
+{
+    const hf_model *m = &p->model;
+    hf_model without = *m;
+    without.has_newton = 0;
+    size_t lanes = 0, shared = 0;
+    int evolves = v && p->settings.optimize.method != HF_OPTIMIZE_LM;
+    if (evolves) HF_TRY(engine_bytes(v, &shared, &lanes));
+    double workspaces = v ? threads + 1 : 1, bare = (double)hf_workspace_bytes(&without);
+    double population = evolves ? (double)p->settings.optimize.population : 0, genes = 8.0 * m->n_gene;
+    double newton = (double)hf_workspace_bytes(m) - bare;
+    const char *without_ga = v ? "none (no genetic algorithm)" : "none (no optimisation)";
+    char what[64];
+    if (v)
+        snprintf(what, sizeof what, "workspaces (%d thread%s)", threads, threads == 1 ? "" : "s");
+    else
+        snprintf(what, sizeof what, "workspace");
+    print_allocation("memory", what, workspaces * bare, "none", f);
+    print_allocation("", "Newton matrices in them", workspaces * newton, "none (no law iterates, or struts)", f);
+    print_allocation("", "matrix shared by all threads", (double)shared, evolves ? "none" : without_ga, f);
+    print_allocation("", "lanes of designs", (double)lanes * threads, evolves ? "none" : without_ga, f);
+    print_allocation("", "population", 2 * population * (genes + (double)sizeof(hf_form_result)), "none", f);
+    print_allocation("", "sensitivities of Levenberg-Marquardt", v ? polish_bytes(v) : 0, "none", f);
+    if (evolves)
+        print_allocation("result file", "generations, at most",
+                         population * (genes + 70) * p->settings.optimize.generations, "", f);
+    return HF_OK;
+}
+
+/* A first generation is bred and evaluated in one thread, timed; the cost of one of its designs times the largest
+ * number of evaluations is what is printed. */
+static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int threads, const hf_ga *ga, FILE *f)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    hf_batch batch = {0};
+    hf_status status = hf_batch_create(v, 1, &batch);
+    if (status == HF_OK) {
+        char one[32], all[32];
+        int solver = hf_batch_share(&batch, p->base_N);
+        double begin_s = hf_run_clock_s();
+        hf_batch_run(&batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
+        double each_s = (hf_run_clock_s() - begin_s) / ga->n_individual;
+        hf_print_duration(each_s, one, sizeof one);
+        hf_print_duration(each_s * o->population * o->generations / threads, all, sizeof all);
+        fprintf(f, "                optimisation: %s for a design of the first generation by %s; at most about %s\n",
+                one, hf_solver_word[solver], all);
+    }
+    hf_batch_free(&batch);
+    return status;
+}
+
+/* Two iterations of Levenberg-Marquardt from the base design. */
+static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const hf_ga *ga, FILE *f)
+{
+    hf_polish_result r;
+    char one[32], all[32];
+    double begin_s = hf_run_clock_s();
+    hf_status status = hf_polish_run(v, ga->lower_N, ga->upper_N, 2, p->base_N, &p->workspace, &r);
+    if (status == HF_NO_MEMORY) return status;
+    if (status != HF_OK || r.iterations == 0) return HF_OK;
+    double each_s = (hf_run_clock_s() - begin_s) / r.iterations;
+    hf_print_duration(each_s, one, sizeof one);
+    hf_print_duration(each_s * p->settings.optimize.polish_iterations, all, sizeof all);
+    fprintf(f, "                Levenberg-Marquardt: %s an iteration; at most about %s, mostly far less\n", one, all);
+    return HF_OK;
+}
+
+static hf_status print_optimize_time(hf_problem *p, const hf_evaluator *v, int threads, FILE *f)
+{
+    hf_ga ga = {0};
+    hf_status status = hf_ga_create(&p->settings.optimize, &p->model, p->base_N, &ga);
+    if (status == HF_OK && p->settings.optimize.method != HF_OPTIMIZE_LM) status = print_ga_time(p, v, threads, &ga, f);
+    if (status == HF_OK && hf_polish_applies(v)) status = print_polish_time(p, v, &ga, f);
+    hf_ga_free(&ga);
+    return status;
+}
+
+/* Form-finding is tried: a few iterations tell what one costs, and as many as fit into TRIAL_S are then done. */
+static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, FILE *f, hf_messages *messages)
+{
+    hf_form_settings form = p->settings.form;
+    hf_form_result r;
+    char text[32];
+    form.max_iterations = form.max_iterations < 3 ? form.max_iterations : 3;
+    double begin_s = hf_run_clock_s();
+    hf_evaluate_form(&p->model, &form, &p->workspace, NULL, &r);
+    double iteration_s = (hf_run_clock_s() - begin_s) / r.iterations, affordable = TRIAL_S / iteration_s;
+    form.max_iterations =
+        affordable < p->settings.form.max_iterations ? (int)affordable + 1 : p->settings.form.max_iterations;
+    begin_s = hf_run_clock_s();
+    hf_evaluate_form(&p->model, &form, &p->workspace, NULL, &r);
+    hf_print_duration(hf_run_clock_s() - begin_s, text, sizeof text);
+    if (r.status == HF_NOT_CONVERGED && form.max_iterations < p->settings.form.max_iterations) {
+        hf_print_duration(iteration_s * p->settings.form.max_iterations, text, sizeof text);
+        fprintf(f, "  expected time form-finding: not finished after %d iterations; at most %s\n", r.iterations, text);
+        return HF_OK;
+    }
+    fprintf(f, "  expected time form-finding: %s (%d iterations, stopped by %s)\n", text, r.iterations,
+            hf_stop_reason_word((int)r.stop_reason));
+    HF_TRY(hf_problem_explain(p, &r, messages));
+    if (!v) return HF_OK;
+    HF_TRY(hf_problem_base(p, messages));
+    if (print_optimize_time(p, v, threads, f) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory");
+    return HF_OK;
+}
+
+static hf_status check(hf_problem *p, const hf_options *options, FILE *f, hf_messages *messages)
+{
+    HF_TRY(hf_problem_load(options->file, options->set, options->n_set, p, messages));
+    HF_TRY(hf_problem_allocate(p, messages));
+    int threads = options->threads ? options->threads : hf_batch_default_threads();
+    int optimizes = p->settings.has_optimize && p->model.n_gene > 0;
+    hf_evaluator v = hf_problem_evaluator(p);
+    fprintf(f, "%s: valid\n", options->file);
+    print_scene(p, f);
+    if (p->settings.has_truss) HF_TRY(print_truss(p, f, messages));
+    print_plan(p, f);
+    if (print_memory(p, optimizes ? &v : NULL, threads, f) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory");
+    return print_time(p, optimizes ? &v : NULL, threads, f, messages);
+}
+
+hf_status hf_cmd_check(const hf_options *options, FILE *file, hf_messages *messages)
+{
+    hf_problem p = {0};
+    hf_status status = check(&p, options, file, messages);
+    hf_problem_free(&p);
+    return status;
+}

@@ -1,0 +1,276 @@
+/* Contents: the table - the base design - evaluation - writing - together */
+#include "app/cmd_evaluate.h"
+
+#include "base/csv.h"
+#include "out/export.h"
+#include "base/json.h"
+#include "out/print.h"
+#include "run/run.h"
+#include <hifdm/batch.h>
+#include <hifdm/store.h>
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define COLUMN_SPARE 64 /* columns that a table may have beyond one per cable */
+
+typedef struct {
+    hf_problem problem;
+    hf_evaluator evaluator;
+    hf_batch batch;
+    hf_csv table;
+    const char **name;            /* [n_gene + 1] columns: the cable of each gene, then "id" */
+    int *where;                   /* [n_gene + 1] column in the table */
+    double *design_N;             /* [n_row][n_gene] */
+    hf_form_result *result;       /* [n_row] */
+    int solver, n_feasible, best; /* best: row, or -1 */
+    double wall_s;
+} job;
+
+static void job_free(job *j)
+{
+    hf_batch_free(&j->batch);
+    hf_csv_free(&j->table);
+    free(j->name);
+    free(j->where);
+    free(j->design_N);
+    free(j->result);
+    hf_problem_free(&j->problem);
+}
+
+static hf_status no_memory(const job *j, hf_messages *messages)
+{
+    return hf_error(messages, HF_NO_MEMORY, "out of memory for %d designs of %d cables", j->table.n_row,
+                    j->problem.model.n_gene);
+}
+
+/* ---- the table ---- */
+
+static hf_status name_columns(job *j, hf_messages *messages)
+{
+    size_t n = (size_t)j->problem.model.n_gene + 1;
+    j->name = calloc(n, sizeof *j->name);
+    j->where = calloc(n, sizeof *j->where);
+    if (!j->name || !j->where) return no_memory(j, messages);
+    for (int k = 0; k < j->problem.model.n_gene; k++)
+        j->name[k] = j->problem.scene.cable_id[j->problem.model.gene_cable[k]];
+    j->name[j->problem.model.n_gene] = "id";
+    return HF_OK;
+}
+
+/* What the user calls a row, or NULL. */
+static const char *row_id(const job *j, int row)
+{
+    int column = j->where[j->problem.model.n_gene];
+    return column < 0 ? NULL : hf_csv_cell(&j->table, row, column);
+}
+
+static void read_row(job *j, int row)
+{
+    hf_csv *t = &j->table;
+    double *design = j->design_N + (size_t)row * (size_t)j->problem.model.n_gene;
+    for (int k = 0; k < j->problem.model.n_gene; k++) {
+        if (j->where[k] < 0) continue;
+        design[k] = hf_csv_number(t, row, j->where[k], row_id(j, row), j->name[k]);
+        if (design[k] > 0 || isnan(design[k])) continue;
+        char what[512];
+        snprintf(what, sizeof what, "%s must be above zero, not ", j->name[k]);
+        hf_csv_fault(t, t->line[row], row_id(j, row), what, hf_csv_cell(t, row, j->where[k]));
+    }
+}
+
+static hf_status read_table(job *j, const char *path, hf_messages *messages)
+{
+    int n_gene = j->problem.model.n_gene;
+    hf_csv *t = &j->table;
+    hf_status status = hf_csv_read(path, j->problem.scene.n_cable + COLUMN_SPARE, t, messages);
+    /* with faults in some lines the others are still looked at, so that one run shows them all */
+    if (status == HF_NO_MEMORY || t->n_row == 0 || t->n_fault > HF_CSV_FAULT_MAX) return status;
+    status = hf_csv_find_columns(t, j->name, n_gene + 1, n_gene, j->where);
+    if (t->n_fault > HF_CSV_FAULT_MAX) return status;
+    size_t n = (size_t)t->n_row;
+    j->design_N = malloc(n * (size_t)n_gene * sizeof *j->design_N);
+    j->result = calloc(n, sizeof *j->result);
+    if (!j->design_N || !j->result) return no_memory(j, messages);
+    for (int row = 0; row < t->n_row; row++)
+        read_row(j, row);
+    return hf_csv_close_faults(t);
+}
+
+/* ---- the base design ---- */
+
+/* The form-finding, from whose tensions and force densities designs are solved. */
+static hf_status find_base(job *j, hf_messages *messages)
+{
+    hf_problem *p = &j->problem;
+    hf_form_result form;
+    HF_TRY(hf_problem_allocate(p, messages));
+    hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &form);
+    HF_TRY(hf_problem_explain(p, &form, messages));
+    return hf_problem_base(p, messages);
+}
+
+/* ---- evaluation ---- */
+
+/* As `hifdm run` evaluates its individuals, to the same bits. The cap on the boundary ratio is the optimisation's. */
+static hf_status evaluate(job *j, int threads, hf_messages *messages)
+{
+    int can_share = 1;
+    j->evaluator = hf_problem_evaluator(&j->problem);
+    double start_s = hf_run_clock_s();
+    if (hf_batch_create(&j->evaluator, threads, &j->batch) != HF_OK) return no_memory(j, messages);
+    for (int k = 0; k < j->problem.model.n_gene; k++)
+        can_share &= j->problem.base_N[k] > 0;
+    j->solver = can_share ? hf_batch_share(&j->batch, j->problem.base_N) : HF_SOLVER_AUTO;
+    hf_batch_run(&j->batch, j->table.n_row, j->design_N, NULL, j->result);
+    j->wall_s = hf_run_clock_s() - start_s;
+    for (int i = 0; i < j->table.n_row; i++) {
+        if (j->result[i].status != HF_OK) continue;
+        j->n_feasible++;
+        if (j->best < 0 || j->result[i].psi_m < j->result[j->best].psi_m) j->best = i;
+    }
+    return HF_OK;
+}
+
+/* ---- writing ---- */
+
+static void write_number(double value, FILE *f)
+{
+    if (isnan(value)) /* whose sign printf would show */
+        fputs(",nan", f);
+    else
+        fprintf(f, ",%.17g", value);
+}
+
+static void write_row_id(const job *j, int row, FILE *f)
+{
+    if (row_id(j, row))
+        hf_csv_write_id(row_id(j, row), f);
+    else
+        fprintf(f, "%d", row + 1);
+}
+
+static void write_results(const void *context, FILE *f)
+{
+    const job *j = context;
+    fputs("id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations\n", f);
+    for (int i = 0; i < j->table.n_row; i++) {
+        const hf_form_result *r = &j->result[i];
+        write_row_id(j, i, f);
+        fprintf(f, ",%s", hf_status_word(r->status));
+        write_number(r->psi_m, f);
+        write_number(r->residual_N, f);
+        write_number(r->inner_tension_ratio, f);
+        write_number(r->boundary_tension_ratio, f);
+        fprintf(f, ",%d\n", r->iterations);
+    }
+}
+
+static void write_template(const void *context, FILE *f)
+{
+    const job *j = context;
+    fputs("id", f);
+    for (int k = 0; k < j->problem.model.n_gene; k++) {
+        fputc(',', f);
+        hf_csv_write_id(j->name[k], f);
+    }
+    fputs("\nbase", f);
+    for (int k = 0; k < j->problem.model.n_gene; k++)
+        write_number(j->problem.base_N[k], f);
+    fputc('\n', f);
+}
+
+static void print_summary(const job *j, const char *path, FILE *f)
+{
+    char wall[32];
+    hf_print_duration(j->wall_s, wall, sizeof wall);
+    fprintf(f, "%d designs, %d feasible", j->table.n_row, j->n_feasible);
+    if (j->best >= 0) {
+        fprintf(f, "; best psi %.4f mm, ", j->result[j->best].psi_m * 1e3);
+        write_row_id(j, j->best, f);
+    }
+    fprintf(f, "; %s, %.0f evaluations/s by %s on %d thread%s; results in %s\n", wall, j->table.n_row / j->wall_s,
+            hf_solver_word[j->solver], j->batch.n_thread, j->batch.n_thread == 1 ? "" : "s", path);
+}
+
+static void print_json(const job *j, const char *path, hf_status status, const char *messages, FILE *f)
+{
+    fputs("{", f);
+    hf_json_text("status", hf_status_word(status), f);
+    if (status == HF_OK && j->result) {
+        fprintf(f, ",\n \"designs\": %d, \"feasible\": %d, ", j->table.n_row, j->n_feasible);
+        hf_json_number("best_psi_m", j->best < 0 ? (double)NAN : j->result[j->best].psi_m, f);
+        fprintf(f, ", \"best_row\": %d, \"threads\": %d, ", j->best + 1, j->batch.n_thread);
+        hf_json_text("solver", hf_solver_word[j->solver], f);
+        fputs(", ", f);
+        hf_json_number("wall_s", j->wall_s, f);
+        fputs(", ", f);
+        hf_json_number("cpu_s", j->batch.cpu_s, f);
+    }
+    fputs(",\n ", f);
+    hf_json_text("version", hf_store_version(), f);
+    fputs(", ", f);
+    hf_json_text("case", j->problem.settings.path, f);
+    if (status == HF_OK) {
+        fputs(", ", f);
+        hf_json_text("file", path, f);
+    }
+    fputs(",\n ", f);
+    hf_json_lines("warnings", "warning: ", messages, f);
+    if (status != HF_OK) {
+        fputs(",\n ", f);
+        hf_json_lines("errors", "error: ", messages, f);
+    }
+    fputs("}\n", f);
+}
+
+/* ---- together ---- */
+
+/* Told before the work: a name that is taken, is an input, or is in a folder that cannot be written. */
+static hf_status check_output(const job *j, const hf_options *o, const char *path, hf_messages *messages)
+{
+    char folder[HF_OUTPUT_SIZE];
+    if (!path) return HF_OK;
+    HF_TRY(hf_run_spare_inputs(&j->problem.settings, o->designs, path, messages));
+    HF_TRY(hf_export_claim(path, o->force, messages));
+    const char *slash = strrchr(path, '/');
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
+    if (access(folder, W_OK | X_OK) != 0)
+        return hf_error(messages, HF_IO, "%s: cannot write into the folder %s: %s", path, folder, strerror(errno));
+    return HF_OK;
+}
+
+static hf_status execute(job *j, const hf_options *o, const char *path, FILE *file, hf_messages *messages)
+{
+    HF_TRY(hf_problem_load(o->file, o->set, o->n_set, &j->problem, messages));
+    if (j->problem.model.n_gene == 0)
+        return hf_error(messages, HF_BAD_CASE, "%s: no boundary cable has a free end: there is nothing to set",
+                        o->file);
+    HF_TRY(check_output(j, o, path, messages));
+    HF_TRY(name_columns(j, messages));
+    if (o->designs) HF_TRY(read_table(j, o->designs, messages));
+    HF_TRY(find_base(j, messages));
+    if (o->template_path) return hf_export_file(path, write_template, j, messages);
+    HF_TRY(evaluate(j, o->threads, messages));
+    if (path) return hf_export_file(path, write_results, j, messages);
+    write_results(j, file);
+    return HF_OK;
+}
+
+hf_status hf_cmd_evaluate(const hf_options *options, FILE *file, hf_messages *messages)
+{
+    job j = {.best = -1};
+    const char *path = options->template_path ? options->template_path : options->output;
+    hf_status status = execute(&j, options, path, file, messages);
+    if (options->json)
+        print_json(&j, path, status, messages->text, file);
+    else if (status == HF_OK && path && !options->quiet && options->designs)
+        print_summary(&j, path, file);
+    else if (status == HF_OK && path && !options->quiet)
+        fprintf(file, "%d adjustable cables; their tensions after form-finding in %s\n", j.problem.model.n_gene, path);
+    job_free(&j);
+    return status;
+}

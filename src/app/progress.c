@@ -1,0 +1,81 @@
+#include "app/progress.h"
+
+#include "base/json.h"
+#include "out/print.h"
+
+#include <unistd.h>
+
+static const char *const phase_word[] = {"form", "optimize", "polish"};
+static const double interval_s[] = {0, 0, 0.1, HF_PROGRESS_LOG_S, 1};
+
+hf_progress hf_progress_on(FILE *file, int mode)
+{
+    if (mode == HF_PROGRESS_AUTO) mode = isatty(fileno(file)) ? HF_PROGRESS_LINE : HF_PROGRESS_LOG;
+    return (hf_progress){.file = file, .mode = mode};
+}
+
+/* Of the evaluations of this process. */
+static double rate_per_s(const hf_run_progress *now)
+{
+    return now->elapsed_s > 0 ? (double)now->evaluations / now->elapsed_s : 0;
+}
+
+/* At most: it may stagnate before. What an earlier process has done took none of this one's time. */
+static double left_s(const hf_run_progress *now)
+{
+    int done = now->generation - now->first_generation;
+    return done > 0 ? now->elapsed_s * (now->generations - now->generation) / done : 0;
+}
+
+static void show_line(hf_progress *p, const hf_run_progress *now)
+{
+    char left[32];
+    int is_line = p->mode == HF_PROGRESS_LINE;
+    hf_print_duration(left_s(now), left, sizeof left);
+    fprintf(p->file, "%sgeneration %d/%d  best psi %.4f mm  %.0f evaluations/s  at most %s left%s",
+            is_line ? "\r\033[K" : "", now->generation, now->generations, now->best_psi_m * 1e3, rate_per_s(now), left,
+            is_line ? "" : "\n");
+    p->is_shown = is_line;
+}
+
+static void show_json(const hf_progress *p, const hf_run_progress *now)
+{
+    fputs("{", p->file);
+    hf_json_text("phase", phase_word[now->phase], p->file);
+    if (now->generation > 0) {
+        fprintf(p->file, ", \"generation\": %d, \"generations\": %d, \"first_generation\": %d, \"evaluations\": %ld, ",
+                now->generation, now->generations, now->first_generation, now->evaluations);
+        hf_json_number("best_psi_m", now->best_psi_m, p->file);
+        fputs(", ", p->file);
+        hf_json_number("evaluations_per_s", rate_per_s(now), p->file);
+        fputs(", ", p->file);
+        hf_json_number("elapsed_s", now->elapsed_s, p->file);
+        fputs(", ", p->file);
+        hf_json_number("at_most_left_s", left_s(now), p->file);
+    }
+    fputs("}\n", p->file);
+}
+
+void hf_progress_show(void *progress, const hf_run_progress *now)
+{
+    hf_progress *p = progress;
+    int is_first = now->generation <= now->first_generation + 1;
+    int is_last = now->generation > 0 && now->is_last;
+    if (p->mode == HF_PROGRESS_NONE || (now->phase != HF_RUN_EVOLVE && p->mode != HF_PROGRESS_JSONL)) return;
+    if (is_first) p->last_s = p->mode == HF_PROGRESS_LOG ? 0 : -interval_s[p->mode];
+    if (now->elapsed_s - p->last_s < interval_s[p->mode] && !(is_last && p->mode == HF_PROGRESS_JSONL)) return;
+    p->last_s = now->elapsed_s;
+    if (p->mode == HF_PROGRESS_JSONL)
+        show_json(p, now);
+    else
+        show_line(p, now);
+    fflush(p->file);
+}
+
+void hf_progress_end(hf_progress *p)
+{
+    if (!p->is_shown) return;
+    fputs("\r\033[K", p->file);
+    fflush(p->file);
+    p->is_shown = 0;
+}

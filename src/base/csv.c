@@ -1,0 +1,282 @@
+/* Contents: faults - cutting lines - reading - columns and cells - ids - writing */
+#include "base/csv.h"
+
+#include "base/text.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ID_MAX 255
+
+void hf_csv_free(hf_csv *t)
+{
+    free(t->text);
+    free(t->header);
+    free(t->cell);
+    free(t->line);
+    *t = (hf_csv){0};
+}
+
+/* ---- faults ---- */
+
+void hf_csv_fault(hf_csv *t, int line, const char *id, const char *what, const char *detail)
+{
+    if (++t->n_fault > HF_CSV_FAULT_MAX) return;
+    if (id)
+        hf_error(t->messages, HF_BAD_CASE, "%s:%d: '%s': %s%s", t->path, line, id, what, detail);
+    else
+        hf_error(t->messages, HF_BAD_CASE, "%s:%d: %s%s", t->path, line, what, detail);
+}
+
+hf_status hf_csv_close_faults(hf_csv *t)
+{
+    if (t->n_fault > HF_CSV_FAULT_MAX)
+        hf_error(t->messages, HF_BAD_CASE, "%s: and %d more faults", t->path, t->n_fault - HF_CSV_FAULT_MAX);
+    return t->n_fault ? HF_BAD_CASE : HF_OK;
+}
+
+/* ---- cutting lines ---- */
+
+static char *trim(char *field)
+{
+    while (*field == ' ' || *field == '\t')
+        field++;
+    size_t n = strlen(field);
+    while (n && (field[n - 1] == ' ' || field[n - 1] == '\t'))
+        field[--n] = '\0';
+    return field;
+}
+
+/* Take a "quoted ""field""" apart in place; *p moves past its closing quote. NULL when it does not close. */
+static char *unquote(char **p)
+{
+    char *start = *p + 1, *to = start, *from = start;
+    for (; *from; from++) {
+        if (*from == '"') {
+            if (from[1] != '"') break;
+            from++;
+        }
+        *to++ = *from;
+    }
+    if (*from != '"') return NULL;
+    *to = '\0';
+    *p = from + 1;
+    while (**p == ' ' || **p == '\t')
+        ++*p;
+    return **p == '\0' || **p == ',' ? start : NULL;
+}
+
+/* Cut one line into at most column_max fields; -1 when quotes do not match, column_max + 1 when there are too many. */
+static int split(char *line, char **field, int column_max)
+{
+    int n = 0;
+    for (char *p = line;;) {
+        if (n == column_max) return column_max + 1;
+        while (*p == ' ' || *p == '\t')
+            p++;
+        char *start = p;
+        int quoted = *p == '"';
+        if (quoted) {
+            start = unquote(&p);
+            if (!start) return -1;
+        } else {
+            p += strcspn(p, ",");
+        }
+        int last = *p == '\0';
+        *p = '\0';
+        field[n++] = quoted ? start : trim(start);
+        if (last) return n;
+        p++;
+    }
+}
+
+/* Next line of the text, without its end (LF or CRLF); NULL after the last. */
+static char *next_line(char **rest)
+{
+    char *line = *rest;
+    if (!*line) return NULL;
+    char *end = strchr(line, '\n');
+    *rest = end ? end + 1 : line + strlen(line);
+    if (end) *end = '\0';
+    size_t n = strlen(line);
+    if (n && line[n - 1] == '\r') line[n - 1] = '\0';
+    return line;
+}
+
+/* ---- reading ---- */
+
+static int add_row(hf_csv *t, char **field, int line)
+{
+    if (t->n_row == t->row_capacity) {
+        int capacity = t->row_capacity ? 2 * t->row_capacity : 64;
+        char **cell = realloc(t->cell, (size_t)capacity * (size_t)t->n_column * sizeof *cell);
+        if (!cell) return 0;
+        t->cell = cell;
+        int *lines = realloc(t->line, (size_t)capacity * sizeof *lines);
+        if (!lines) return 0;
+        t->line = lines;
+        t->row_capacity = capacity;
+    }
+    memcpy(t->cell + (size_t)t->n_row * (size_t)t->n_column, field, (size_t)t->n_column * sizeof *field);
+    t->line[t->n_row++] = line;
+    return 1;
+}
+
+/* One line that is no comment. 0 without memory. */
+static int take_line(hf_csv *t, char *line, int n_line, char **field, int column_max)
+{
+    char counts[64];
+    if (!hf_text_is_utf8(line)) {
+        hf_csv_fault(t, n_line, NULL, "not UTF-8 text; save the file as UTF-8", "");
+        return 1;
+    }
+    int n = split(line, field, column_max);
+    snprintf(counts, sizeof counts, "%d fields where the header has %d", n, t->n_column);
+    if (n < 0)
+        hf_csv_fault(t, n_line, NULL, "a quoted field does not end on this line", "");
+    else if (n > column_max)
+        hf_csv_fault(t, n_line, NULL, "too many columns", "");
+    else if (t->n_column == 0) {
+        memcpy(t->header, field, (size_t)(t->n_column = n) * sizeof *field);
+        t->header_line = n_line;
+    } else if (n != t->n_column)
+        hf_csv_fault(t, n_line, NULL, counts, "");
+    else
+        return add_row(t, field, n_line);
+    return 1;
+}
+
+hf_status hf_csv_read(const char *path, int column_max, hf_csv *t, hf_messages *messages)
+{
+    size_t length;
+    *t = (hf_csv){.path = path, .messages = messages};
+    HF_TRY(hf_text_read_file(path, HF_BAD_CASE, &t->text, &length, messages));
+    if (strlen(t->text) != length) return hf_error(messages, HF_BAD_CASE, "%s: not a text file", path);
+    t->header = malloc(2 * (size_t)column_max * sizeof *t->header); /* and the fields of one line behind it */
+    if (!t->header) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    char *rest = t->text, *line, **field = t->header + column_max;
+    if (!strncmp(rest, "\xEF\xBB\xBF", 3)) rest += 3; /* byte order mark of spreadsheet programs */
+    for (int n_line = 1; (line = next_line(&rest)) != NULL; n_line++) {
+        if (line[strspn(line, " \t")] == '\0' || *line == '#') continue;
+        if (!take_line(t, line, n_line, field, column_max))
+            return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    }
+    if (t->n_column == 0)
+        hf_csv_fault(t, 1, NULL, "the file is empty: a header line is needed", "");
+    else if (t->n_row == 0 && t->n_fault == 0)
+        hf_csv_fault(t, 1, NULL, "there is a header, but no rows", "");
+    return hf_csv_close_faults(t);
+}
+
+char *hf_csv_cell(const hf_csv *t, int row, int column)
+{
+    return t->cell[(size_t)row * (size_t)t->n_column + (size_t)column];
+}
+
+/* ---- columns and cells ---- */
+
+hf_status hf_csv_find_columns(hf_csv *t, const char *const *names, int n_name, int n_required, int *where)
+{
+    for (int k = 0; k < n_name; k++)
+        where[k] = -1;
+    for (int c = 0; c < t->n_column; c++) {
+        int k = 0;
+        while (k < n_name && strcmp(names[k], t->header[c]))
+            k++;
+        if (k == n_name) {
+            const char *near = hf_text_nearest(t->header[c], names, n_name);
+            hf_warning(t->messages, "%s:%d: column '%s' is not used%s%s%s", t->path, t->header_line, t->header[c],
+                       near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+        } else if (where[k] >= 0) {
+            hf_csv_fault(t, t->header_line, NULL, "this column stands twice: ", names[k]);
+        } else {
+            where[k] = c;
+        }
+    }
+    for (int k = 0; k < n_required; k++)
+        if (where[k] < 0) hf_csv_fault(t, t->header_line, NULL, "a column is missing: ", names[k]);
+    return hf_csv_close_faults(t);
+}
+
+double hf_csv_number(hf_csv *t, int row, int column, const char *id, const char *name)
+{
+    double value = NAN;
+    const char *text = hf_csv_cell(t, row, column);
+    char what[512]; /* ids may be long */
+    snprintf(what, sizeof what, "%s must be a finite number, not ", name);
+    if (!hf_text_double(text, &value)) hf_csv_fault(t, t->line[row], id, what, *text ? text : "empty");
+    return value;
+}
+
+int hf_csv_word(hf_csv *t, int row, int column, const char *id, const char *const *words, int n_word)
+{
+    const char *text = hf_csv_cell(t, row, column);
+    for (int k = 0; k < n_word; k++)
+        if (!strcmp(words[k], text)) return k;
+    char what[160];
+    int n = snprintf(what, sizeof what, "%s must be one of", t->header[column]);
+    for (int k = 0; k < n_word; k++)
+        n += snprintf(what + n, sizeof what - (size_t)n, " %s", words[k]);
+    snprintf(what + n, sizeof what - (size_t)n, ", not ");
+    hf_csv_fault(t, t->line[row], id, what, *text ? text : "empty");
+    return 0;
+}
+
+/* ---- ids ---- */
+
+static int compare_named(const void *a, const void *b)
+{
+    const hf_csv_named *x = a, *y = b;
+    int order = strcmp(x->id, y->id);
+    return order ? order : (x->row > y->row) - (x->row < y->row);
+}
+
+static int compare_id(const void *key, const void *item)
+{
+    return strcmp(key, ((const hf_csv_named *)item)->id);
+}
+
+hf_csv_named *hf_csv_index(hf_csv *t, int column)
+{
+    hf_csv_named *index = malloc((size_t)t->n_row * sizeof *index);
+    if (!index) return NULL;
+    for (int r = 0; r < t->n_row; r++) {
+        index[r] = (hf_csv_named){hf_csv_cell(t, r, column), r};
+        if (!*index[r].id) hf_csv_fault(t, t->line[r], NULL, "the id is empty", "");
+        if (strlen(index[r].id) > ID_MAX) hf_csv_fault(t, t->line[r], NULL, "the id is longer than 255 bytes", "");
+    }
+    qsort(index, (size_t)t->n_row, sizeof *index, compare_named);
+    for (int r = 1; r < t->n_row; r++)
+        if (*index[r].id && !strcmp(index[r].id, index[r - 1].id)) {
+            char what[64];
+            snprintf(what, sizeof what, "this id was used before, on line %d", t->line[index[r - 1].row]);
+            hf_csv_fault(t, t->line[index[r].row], index[r].id, what, "");
+        }
+    return index;
+}
+
+int hf_csv_row_of(const hf_csv_named *index, int n_row, const char *id)
+{
+    const hf_csv_named *hit = bsearch(id, index, (size_t)n_row, sizeof *index, compare_id);
+    return hit ? hit->row : -1;
+}
+
+/* ---- writing ---- */
+
+void hf_csv_write_id(const char *id, FILE *f)
+{
+    size_t n = strlen(id);
+    int plain = !strpbrk(id, ",\"") && id[0] != '#' && id[0] != ' ' && id[0] != '\t' &&
+                (n == 0 || (id[n - 1] != ' ' && id[n - 1] != '\t'));
+    if (plain) {
+        fputs(id, f);
+        return;
+    }
+    fputc('"', f);
+    for (; *id; id++) {
+        if (*id == '"') fputc('"', f);
+        fputc(*id, f);
+    }
+    fputc('"', f);
+}

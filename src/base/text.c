@@ -1,0 +1,174 @@
+#include "base/text.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <limits.h>
+#include <locale.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FILE_MAX (1 << 30) /* bytes: /dev/zero ends, too */
+
+hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_t *length, hf_messages *messages)
+{
+    *text = NULL;
+    *length = 0;
+    FILE *file = fopen(path, "rb");
+    if (!file) return hf_error(messages, code, "%s: cannot open: %s", path, strerror(errno));
+    size_t capacity = 1 << 14;
+    char *buffer = malloc(capacity);
+    while (buffer) {
+        *length += fread(buffer + *length, 1, capacity - *length - 1, file);
+        if (*length < capacity - 1 || *length > FILE_MAX) break;
+        capacity *= 2;
+        char *bigger = realloc(buffer, capacity);
+        if (!bigger) free(buffer);
+        buffer = bigger;
+    }
+    int failed = ferror(file), why = errno;
+    fclose(file);
+    if (buffer && *length > FILE_MAX) {
+        free(buffer);
+        return hf_error(messages, code, "%s: longer than %d MB", path, FILE_MAX >> 20);
+    }
+    if (!buffer) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    if (failed) {
+        free(buffer);
+        return hf_error(messages, code, "%s: cannot read: %s", path, strerror(why));
+    }
+    buffer[*length] = '\0';
+    *text = buffer;
+    return HF_OK;
+}
+
+static const char *skip_digits(const char *p)
+{
+    while (isdigit((unsigned char)*p))
+        p++;
+    return p;
+}
+
+int hf_text_double(const char *text, double *value)
+{
+    const char *p = text, *whole, *fraction;
+    if (*p == '+' || *p == '-') p++;
+    whole = p;
+    p = skip_digits(p);
+    size_t n_digit = (size_t)(p - whole);
+    if (*p == '.') {
+        fraction = ++p;
+        p = skip_digits(p);
+        n_digit += (size_t)(p - fraction);
+    }
+    if (n_digit == 0) return 0;
+    if (*p == 'e' || *p == 'E') {
+        p++;
+        if (*p == '+' || *p == '-') p++;
+        if (!isdigit((unsigned char)*p)) return 0;
+        p = skip_digits(p);
+    }
+    if (*p) return 0;
+    /* an application that links the library may have set a locale with a decimal comma */
+    locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0), old = (locale_t)0;
+    if (c_locale) old = uselocale(c_locale);
+    *value = strtod(text, NULL);
+    if (c_locale) {
+        uselocale(old);
+        freelocale(c_locale);
+    }
+    return isfinite(*value);
+}
+
+int hf_text_uint64(const char *text, uint64_t *value)
+{
+    if (!isdigit((unsigned char)*text) || *skip_digits(text)) return 0;
+    errno = 0;
+    unsigned long long number = strtoull(text, NULL, 10);
+    *value = number;
+    return errno == 0;
+}
+
+/* Bytes of the sequence that starts at p, 0 when it is none (overlong forms, surrogates, beyond U+10FFFF). */
+static int utf8_length(const unsigned char *p)
+{
+    if (p[0] < 0x80) return p[0] >= 0x20 || p[0] == '\t';
+    int n = p[0] >= 0xf0 ? 4 : p[0] >= 0xe0 ? 3 : 2;
+    if (p[0] < 0xc2 || p[0] > 0xf4) return 0;
+    for (int i = 1; i < n; i++)
+        if ((p[i] & 0xc0) != 0x80) return 0;
+    if ((p[0] == 0xe0 && p[1] < 0xa0) || (p[0] == 0xed && p[1] > 0x9f)) return 0;
+    return (p[0] == 0xf0 && p[1] < 0x90) || (p[0] == 0xf4 && p[1] > 0x8f) ? 0 : n;
+}
+
+int hf_text_is_utf8(const char *text)
+{
+    for (const unsigned char *p = (const unsigned char *)text; *p;) {
+        int n = utf8_length(p);
+        if (n == 0) return 0;
+        p += n;
+    }
+    return 1;
+}
+
+void hf_text_trim_utf8(char *text)
+{
+    size_t n = strlen(text), back = 0;
+    while (back < 4 && back < n && ((unsigned char)text[n - 1 - back] & 0xc0) == 0x80)
+        back++;
+    if (back == n) return;
+    unsigned char first = (unsigned char)text[n - 1 - back];
+    size_t whole = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : first >= 0xc0 ? 2 : 1;
+    if (whole > back + 1) text[n - 1 - back] = '\0';
+}
+
+int hf_text_too_deep(const char *text)
+{
+    int depth = 0, line = 1;
+    for (; *text; text++) {
+        line += *text == '\n';
+        depth += *text == '[' || *text == '{';
+        depth -= depth > 0 && (*text == ']' || *text == '}');
+        if (depth > HF_TEXT_NESTING_MAX) return line;
+    }
+    return 0;
+}
+
+#define NEAREST_MAX 63 /* words longer than this are never called a typing error */
+
+/* Levenshtein distance of two short words, ignoring case. */
+static int edit_distance(const char *a, const char *b)
+{
+    int row[NEAREST_MAX + 1], n_a = (int)strlen(a), n_b = (int)strlen(b);
+    if (n_a > NEAREST_MAX || n_b > NEAREST_MAX) return INT_MAX;
+    for (int j = 0; j <= n_b; j++)
+        row[j] = j;
+    for (int i = 1; i <= n_a; i++) {
+        int diagonal = row[0];
+        row[0] = i;
+        for (int j = 1; j <= n_b; j++) {
+            int differs = tolower((unsigned char)a[i - 1]) != tolower((unsigned char)b[j - 1]);
+            int best = diagonal + differs;
+            diagonal = row[j];
+            if (row[j] + 1 < best) best = row[j] + 1;
+            if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
+            row[j] = best;
+        }
+    }
+    return row[n_b];
+}
+
+const char *hf_text_nearest(const char *word, const char *const *candidates, int n_candidate)
+{
+    const char *nearest = NULL;
+    int limit = 1 + (int)strlen(word) / 3, best = limit + 1;
+    for (int i = 0; i < n_candidate; i++) {
+        int distance = edit_distance(word, candidates[i]);
+        if (distance < best) {
+            best = distance;
+            nearest = candidates[i];
+        }
+    }
+    return nearest;
+}

@@ -1,0 +1,596 @@
+/* Contents: where a fault is - looking up keys - setting one value - walking the YAML tree - overrides - checks that
+ * join several keys - load */
+#include <hifdm/config.h>
+
+#include "base/sha256.h"
+#include "base/text.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <yaml.h>
+
+#define PATH_MAX_LENGTH 160 /* of a dotted key */
+#define CASE_MAX (1 << 20)  /* bytes of a case file */
+#define FAULT_MAX 100       /* faults that are spelled out */
+
+typedef struct {
+    hf_case *c;
+    hf_messages *messages;
+    const char *origin; /* the case file, or the --set argument being applied */
+    int is_override;
+    const char *place;  /* of a value that is only checked: stands for origin, line and column */
+    yaml_mark_t cut[2]; /* the sweep section, when there is one */
+    yaml_document_t *document;
+    char *where_given; /* [n_field][64] "line:col", "--set" or "" */
+    int walked;        /* the file was readable YAML: what is missing in it can be told */
+    int failed, n_fault;
+} loader;
+
+#define WHERE_SIZE 64
+
+/* ---- where a fault is ---- */
+
+static void complain(loader *l, yaml_mark_t mark, const char *path, const char *what, const char *detail)
+{
+    l->failed = 1;
+    if (++l->n_fault > FAULT_MAX) return;
+    if (l->place)
+        hf_error(l->messages, HF_BAD_CASE, "%s: %s: %s%s", l->place, path, what, detail);
+    else if (l->is_override)
+        hf_error(l->messages, HF_BAD_CASE, "--set %s: %s: %s%s", l->origin, path, what, detail);
+    else
+        hf_error(l->messages, HF_BAD_CASE, "%s:%zu:%zu: %s: %s%s", l->origin, mark.line + 1, mark.column + 1, path,
+                 what, detail);
+}
+
+/* A fault that several keys share, or of a key that is not there; with its place when it was given. */
+static void complain_about(loader *l, const char *path, const char *what)
+{
+    const char *where = "";
+    for (int i = 0; i < hf_n_field; i++)
+        if (!strcmp(hf_field_table[i].path, path)) where = l->where_given + (size_t)i * WHERE_SIZE;
+    l->failed = 1;
+    if (!strcmp(where, "--set"))
+        hf_error(l->messages, HF_BAD_CASE, "--set %s: %s", path, what);
+    else
+        hf_error(l->messages, HF_BAD_CASE, "%s:%s%s %s: %s", l->c->path, where, *where ? ":" : "", path, what);
+}
+
+/* ---- looking up keys ---- */
+
+static int find_field(const char *path)
+{
+    for (int i = 0; i < hf_n_field; i++)
+        if (!strcmp(hf_field_table[i].path, path)) return i;
+    return -1;
+}
+
+static int find_section(const char *path)
+{
+    for (int i = 0; i < hf_n_section; i++)
+        if (!strcmp(hf_section_table[i].path, path)) return i;
+    return -1;
+}
+
+/* The part of `path` below `prefix`, when `path` is a direct child of it; else NULL. */
+static const char *child_of(const char *path, const char *prefix)
+{
+    size_t n = strlen(prefix);
+    if (n) {
+        if (strncmp(path, prefix, n) || path[n] != '.') return NULL;
+        path += n + 1;
+    }
+    return strchr(path, '.') ? NULL : path;
+}
+
+static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, const char *key)
+{
+    const char *names[128], *near;
+    int n = 0;
+    char detail[2 * PATH_MAX_LENGTH] = "";
+    for (int i = 0; i < hf_n_field && n < 128; i++)
+        if (child_of(hf_field_table[i].path, prefix)) names[n++] = child_of(hf_field_table[i].path, prefix);
+    for (int i = 0; i < hf_n_section && n < 128; i++)
+        if (child_of(hf_section_table[i].path, prefix)) names[n++] = child_of(hf_section_table[i].path, prefix);
+    near = hf_text_nearest(key, names, n);
+    if (!*prefix && !strcmp(key, "base")) {
+        snprintf(detail, sizeof detail, "; a file with a base is a study, for 'hifdm sweep'");
+    } else if (near) {
+        snprintf(detail, sizeof detail, "; did you mean '%s'?", near);
+    } else { /* the right key in the wrong section? */
+        for (int i = 0; i < hf_n_field && !*detail; i++) {
+            const char *dot = strrchr(hf_field_table[i].path, '.');
+            if (dot && !strcmp(dot + 1, key))
+                snprintf(detail, sizeof detail, "; did you mean '%s'?", hf_field_table[i].path);
+        }
+    }
+    complain(l, mark, key, "unknown key", *detail ? detail : " (hifdm schema lists all keys)");
+}
+
+/* ---- setting one value ---- */
+
+static const char *scalar_text(const yaml_node_t *node)
+{
+    return (const char *)node->data.scalar.value;
+}
+
+static int is_plain(const yaml_node_t *node)
+{
+    return node->type == YAML_SCALAR_NODE && node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
+}
+
+static void complain_range(loader *l, const yaml_node_t *node, const hf_field *f)
+{
+    char what[160], low[48];
+    if (f->min == HF_ABOVE_ZERO)
+        snprintf(low, sizeof low, "must be above 0");
+    else
+        snprintf(low, sizeof low, "must be at least %.10g", f->min);
+    if (f->max >= 1e300)
+        snprintf(what, sizeof what, "%s, not ", low);
+    else
+        snprintf(what, sizeof what, "%s and at most %.10g, not ", low, f->max);
+    complain(l, node->start_mark, f->path, what, scalar_text(node));
+}
+
+static void set_word(loader *l, const yaml_node_t *node, const hf_field *f, int *to)
+{
+    char what[256] = "must be one of";
+    if (node->type == YAML_SCALAR_NODE)
+        for (int k = 0; f->words[k]; k++)
+            if (!strcmp(f->words[k], scalar_text(node))) {
+                *to = k;
+                return;
+            }
+    for (int k = 0; f->words[k]; k++) {
+        strcat(what, " ");
+        strcat(what, f->words[k]);
+    }
+    strcat(what, ", not ");
+    complain(l, node->start_mark, f->path, what,
+             node->type == YAML_SCALAR_NODE ? scalar_text(node) : "a list or section");
+}
+
+static void set_int(loader *l, const yaml_node_t *node, const hf_field *f, int *to)
+{
+    uint64_t value = 0;
+    double real = 0;
+    if (!is_plain(node))
+        complain(l, node->start_mark, f->path, "must be a whole number", "");
+    else if (!hf_text_uint64(scalar_text(node), &value) && !hf_text_double(scalar_text(node), &real))
+        complain(l, node->start_mark, f->path, "must be a whole number, not ", scalar_text(node));
+    else if (strpbrk(scalar_text(node), ".eE"))
+        complain(l, node->start_mark, f->path, "must be a whole number, not ", scalar_text(node));
+    else if (scalar_text(node)[0] == '-' || (double)value < f->min || (double)value > f->max)
+        complain_range(l, node, f);
+    else
+        *to = (int)value;
+}
+
+static void set_pair(loader *l, const yaml_node_t *node, const hf_field *f, int *to)
+{
+    if (node->type != YAML_SEQUENCE_NODE || node->data.sequence.items.top - node->data.sequence.items.start != 2) {
+        complain(l, node->start_mark, f->path, "must be a list of two whole numbers, like [5, 5]", "");
+        return;
+    }
+    for (int k = 0; k < 2; k++)
+        set_int(l, yaml_document_get_node(l->document, node->data.sequence.items.start[k]), f, to + k);
+}
+
+static void set_double(loader *l, const yaml_node_t *node, const hf_field *f, double *to)
+{
+    double value;
+    if (!is_plain(node) || !hf_text_double(scalar_text(node), &value))
+        complain(l, node->start_mark, f->path, "must be a number",
+                 node->type == YAML_SCALAR_NODE ? ", not a text" : "");
+    else if (value < f->min || value > f->max)
+        complain_range(l, node, f);
+    else
+        memcpy(to, &value, sizeof value);
+}
+
+/* A list of numbers, or one number. */
+static void set_list(loader *l, const yaml_node_t *node, const hf_field *f, hf_double_list *to)
+{
+    long n = node->type == YAML_SEQUENCE_NODE ? node->data.sequence.items.top - node->data.sequence.items.start : 1;
+    to->n = 0;
+    if (node->type == YAML_MAPPING_NODE || n > HF_LIST_MAX) {
+        complain(l, node->start_mark, f->path, "must be a list of at most 8 numbers, like [1e9, 2e9]", "");
+    } else if (node->type != YAML_SEQUENCE_NODE) {
+        set_double(l, node, f, &to->value[to->n++]);
+    } else {
+        for (; to->n < n; to->n++)
+            set_double(l, yaml_document_get_node(l->document, node->data.sequence.items.start[to->n]), f,
+                       &to->value[to->n]);
+    }
+}
+
+static void set_text(loader *l, const yaml_node_t *node, const hf_field *f, char *to)
+{
+    size_t size = (size_t)f->max;
+    int n;
+    if (node->type != YAML_SCALAR_NODE || (f->min > 0 && !*scalar_text(node))) {
+        complain(l, node->start_mark, f->path, "must be a text", "");
+        return;
+    }
+    /* paths in a case file are relative to that file, paths on the command line to the current folder */
+    const char *slash = strrchr(l->c->path, '/');
+    int is_path = size == HF_PATH_SIZE;
+    if (is_path && !l->is_override && slash && scalar_text(node)[0] != '/')
+        n = snprintf(to, size, "%.*s/%s", (int)(slash - l->c->path), l->c->path, scalar_text(node));
+    else
+        n = snprintf(to, size, "%s", scalar_text(node));
+    if (n < 0 || (size_t)n >= size) complain(l, node->start_mark, f->path, "is too long", "");
+}
+
+static void set_field(loader *l, const yaml_node_t *node, int i_field)
+{
+    const hf_field *f = &hf_field_table[i_field];
+    char *to = (char *)l->c + f->offset;
+    char *where = l->where_given + (size_t)i_field * WHERE_SIZE;
+    if (l->is_override)
+        snprintf(where, WHERE_SIZE, "--set");
+    else
+        snprintf(where, WHERE_SIZE, "%zu:%zu", node->start_mark.line + 1, node->start_mark.column + 1);
+    switch (f->type) {
+    case HF_FIELD_DOUBLE:
+        set_double(l, node, f, (double *)(void *)to);
+        break;
+    case HF_FIELD_DOUBLE_LIST:
+        set_list(l, node, f, (hf_double_list *)(void *)to);
+        break;
+    case HF_FIELD_UINT64:
+        if (!is_plain(node) || !hf_text_uint64(scalar_text(node), (uint64_t *)(void *)to))
+            complain(l, node->start_mark, f->path, "must be a whole number from 0 to 18446744073709551615", "");
+        break;
+    case HF_FIELD_INT:
+        set_int(l, node, f, (int *)(void *)to);
+        break;
+    case HF_FIELD_INT_PAIR:
+        set_pair(l, node, f, (int *)(void *)to);
+        break;
+    case HF_FIELD_WORD:
+        set_word(l, node, f, (int *)(void *)to);
+        break;
+    case HF_FIELD_TEXT:
+        set_text(l, node, f, to);
+        break;
+    }
+}
+
+/* ---- walking the YAML tree ---- */
+
+static void walk(loader *l, const yaml_node_t *mapping, const char *prefix);
+
+static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, const char *prefix, const char *key)
+{
+    char path[PATH_MAX_LENGTH];
+    int n = snprintf(path, sizeof path, "%s%s%s", prefix, *prefix ? "." : "", key);
+    int i_field = n < PATH_MAX_LENGTH ? find_field(path) : -1,
+        i_section = n < PATH_MAX_LENGTH ? find_section(path) : -1;
+    if (i_field >= 0) {
+        set_field(l, value, i_field);
+    } else if (!strcmp(path, "sweep") && !l->is_override) {
+        l->c->has_sweep = 1;
+        l->cut[0] = key_mark;
+        l->cut[1] = value->end_mark;
+    } else if (i_section < 0) {
+        complain_unknown(l, key_mark, prefix, key);
+    } else if (value->type != YAML_MAPPING_NODE) {
+        complain(l, key_mark, path, "must be a section of key: value lines", " ({} takes every default)");
+    } else {
+        walk(l, value, path);
+    }
+}
+
+static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
+{
+    int i_section = find_section(prefix);
+    if (i_section >= 0 && hf_section_table[i_section].present_offset != SIZE_MAX)
+        *(int *)(void *)((char *)l->c + hf_section_table[i_section].present_offset) = 1;
+    for (yaml_node_pair_t *p = mapping->data.mapping.pairs.start; p < mapping->data.mapping.pairs.top; p++) {
+        const yaml_node_t *key = yaml_document_get_node(l->document, p->key);
+        const yaml_node_t *value = yaml_document_get_node(l->document, p->value);
+        if (key->type != YAML_SCALAR_NODE) {
+            complain(l, key->start_mark, *prefix ? prefix : "case", "a key must be a plain word", "");
+            continue;
+        }
+        const char *word = scalar_text(key);
+        yaml_node_pair_t *earlier = mapping->data.mapping.pairs.start;
+        for (; earlier < p; earlier++) {
+            const yaml_node_t *other = yaml_document_get_node(l->document, earlier->key);
+            if (other->type == YAML_SCALAR_NODE && !strcmp(scalar_text(other), word)) break;
+        }
+        if (earlier < p) {
+            char line[48];
+            snprintf(line, sizeof line, "%zu", yaml_document_get_node(l->document, earlier->key)->start_mark.line + 1);
+            complain(l, key->start_mark, word, "this key stands here already, on line ", line);
+        } else {
+            take(l, value, key->start_mark, prefix, word);
+        }
+    }
+}
+
+/* Where the parser stopped. A byte that is no text at all has an offset only. */
+static yaml_mark_t problem_mark(const yaml_parser_t *parser, const char *text)
+{
+    yaml_mark_t mark = parser->problem_mark;
+    if (parser->error != YAML_READER_ERROR) return mark;
+    mark.line = mark.column = 0;
+    for (size_t i = 0; i < parser->problem_offset && text[i]; i++) {
+        mark.column++;
+        if (text[i] != '\n') continue;
+        mark.line++;
+        mark.column = 0;
+    }
+    return mark;
+}
+
+/* Parse `text` as one YAML document and give its root to `use`. */
+static void with_document(loader *l, const char *text, size_t length,
+                          void (*use)(loader *, const yaml_node_t *, void *), void *context)
+{
+    yaml_parser_t parser;
+    yaml_document_t document, next;
+    if (!yaml_parser_initialize(&parser)) {
+        l->failed = 1;
+        hf_error(l->messages, HF_NO_MEMORY, "%s: out of memory", l->origin);
+        return;
+    }
+    yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
+    if (!yaml_parser_load(&parser, &document)) {
+        complain(l, problem_mark(&parser, text), "YAML", parser.problem ? parser.problem : "cannot be read", "");
+    } else {
+        l->document = &document;
+        use(l, yaml_document_get_root_node(&document), context);
+        yaml_document_delete(&document);
+        if (!yaml_parser_load(&parser, &next)) {
+            complain(l, problem_mark(&parser, text), "YAML", parser.problem ? parser.problem : "cannot be read", "");
+        } else {
+            if (yaml_document_get_root_node(&next))
+                complain(l, next.start_mark, "YAML", "a second document in this file", "; one case per file");
+            yaml_document_delete(&next);
+        }
+    }
+    l->document = NULL;
+    yaml_parser_delete(&parser);
+}
+
+static void use_root(loader *l, const yaml_node_t *root, void *context)
+{
+    (void)context;
+    yaml_mark_t start = {0};
+    if (!root)
+        complain(l, start, "case", "the file is empty", "");
+    else if (root->type != YAML_MAPPING_NODE)
+        complain(l, root->start_mark, "case", "must be key: value lines", "");
+    else {
+        walk(l, root, "");
+        l->walked = 1;
+    }
+}
+
+static void use_default(loader *l, const yaml_node_t *root, void *context)
+{
+    yaml_mark_t start = {0};
+    int i_field = *(const int *)context;
+    if (root)
+        set_field(l, root, i_field);
+    else
+        complain(l, start, hf_field_table[i_field].path, "has no value", "");
+}
+
+/* ---- overrides ---- */
+
+static void use_override(loader *l, const yaml_node_t *root, void *context)
+{
+    char *path = context, *dot = strrchr(path, '.');
+    yaml_mark_t start = {0};
+    if (!root) {
+        complain(l, start, path, "there is no value after the '='", "");
+        return;
+    }
+    if (dot) *dot = '\0';
+    take(l, root, start, dot ? path : "", dot ? dot + 1 : path);
+    /* a key inside a section brings the section along */
+    for (int i = 0; dot && i < hf_n_section; i++)
+        if (!strcmp(hf_section_table[i].path, path) && hf_section_table[i].present_offset != SIZE_MAX)
+            *(int *)(void *)((char *)l->c + hf_section_table[i].present_offset) = 1;
+}
+
+static void apply_override(loader *l, const char *argument)
+{
+    char path[PATH_MAX_LENGTH];
+    const char *equals = strchr(argument, '=');
+    if (!equals || equals == argument || equals - argument >= PATH_MAX_LENGTH) {
+        l->failed = 1;
+        hf_error(l->messages, HF_BAD_CASE, "--set %s: must be key=value, like form.pretension_N=12", argument);
+        return;
+    }
+    snprintf(path, sizeof path, "%.*s", (int)(equals - argument), argument);
+    l->origin = argument;
+    l->is_override = 1;
+    with_document(l, equals + 1, strlen(equals + 1), use_override, path);
+    l->is_override = 0;
+    l->origin = l->c->path;
+}
+
+/* Cut the lines of the sweep section out of the text: what is stored and digested is the case of one point, which stays
+ * the same when axes grow. */
+static void cut_sweep(loader *l)
+{
+    hf_case *c = l->c;
+    size_t line = 0, last = l->cut[1].line + (l->cut[1].column > 0);
+    char *from = c->text, *to;
+    if (!c->has_sweep) return;
+    if (l->cut[0].column > 0) {
+        complain(l, l->cut[0], "sweep", "must stand on lines of its own", "");
+        return;
+    }
+    for (; line < l->cut[0].line && *from; from++)
+        line += *from == '\n';
+    for (to = from; line < last && *to; to++)
+        line += *to == '\n';
+    memmove(from, to, strlen(to) + 1);
+    c->text_length -= (size_t)(to - from);
+}
+
+/* The overrides as one text, and the digest over case text and overrides. */
+static hf_status seal(hf_case *c, const char *const *overrides, int n_override)
+{
+    size_t size = 1;
+    for (int i = 0; i < n_override; i++)
+        size += strlen(overrides[i]) + 1;
+    c->overrides = calloc(size, 1);
+    char *all = malloc(c->text_length + size);
+    if (!c->overrides || !all) {
+        free(all);
+        return HF_NO_MEMORY;
+    }
+    for (int i = 0; i < n_override; i++) {
+        strcat(c->overrides, overrides[i]);
+        strcat(c->overrides, "\n");
+    }
+    memcpy(all, c->text, c->text_length);
+    memcpy(all + c->text_length, c->overrides, size - 1);
+    hf_sha256(all, c->text_length + size - 1, c->sha256);
+    free(all);
+    return HF_OK;
+}
+
+/* ---- checks that join several keys ---- */
+
+static int section_present(const hf_case *c, const char *field_path)
+{
+    char section[PATH_MAX_LENGTH];
+    snprintf(section, sizeof section, "%s", field_path);
+    char *dot = strrchr(section, '.');
+    if (!dot) return 1;
+    *dot = '\0';
+    int i = find_section(section);
+    if (i < 0 || hf_section_table[i].present_offset == SIZE_MAX) return 1;
+    return *(const int *)(const void *)((const char *)c + hf_section_table[i].present_offset);
+}
+
+static void check_truss(loader *l)
+{
+    const hf_case *c = l->c;
+    const hf_truss_unit *unit[] = {&c->truss.bud, &c->truss.mbug, &c->truss.abug};
+    static const char *const wall[] = {"truss.bud.wall_m", "truss.mbug.wall_m", "truss.abug.wall_m"};
+    if (!c->has_truss_import && !c->has_cylinder)
+        complain_about(l, "truss", "needs scene.parabolic_cylinder to be generated over, or truss.import");
+    for (int i = 0; i < hf_n_field && c->has_truss_import; i++) {
+        const char *path = hf_field_table[i].path;
+        if (!strncmp(path, "truss.", 6) && strncmp(path, "truss.import.", 13) &&
+            strcmp(path, "truss.match_tolerance_m") && l->where_given[(size_t)i * WHERE_SIZE])
+            complain_about(l, path, "has no effect beside truss.import, which brings all members; remove it");
+    }
+    for (int k = 0; k < 3 && !c->has_truss_import; k++)
+        if (2 * unit[k]->wall_m > unit[k]->diameter_m)
+            complain_about(l, wall[k], "must not be more than half the diameter_m beside it");
+}
+
+static void check_together(loader *l)
+{
+    const hf_case *c = l->c;
+    const hf_optimize_settings *o = &c->optimize;
+    if (!l->walked) return;
+    if (c->has_cylinder + c->has_import != 1)
+        complain_about(l, "scene",
+                       c->has_cylinder ? "has both parabolic_cylinder and import; keep one"
+                                       : "needs either parabolic_cylinder or import");
+    for (int i = 0; i < hf_n_field; i++)
+        if (!hf_field_table[i].default_value && section_present(c, hf_field_table[i].path) &&
+            !l->where_given[(size_t)i * WHERE_SIZE])
+            complain_about(l, hf_field_table[i].path, "is missing and has no default");
+    if (c->has_surface && c->has_import && c->surface.focal_length_m == 0 && !l->failed)
+        complain_about(l, "surface.focal_length_m", "is missing: an imported net does not tell its surface");
+    l->c->has_truss |= c->has_truss_import;
+    if (c->has_truss && !l->failed) check_truss(l);
+    if (!c->has_optimize || l->failed) return; /* values that were refused are not compared */
+    if (o->min_tension_N >= o->max_tension_N)
+        complain_about(l, "optimize.min_tension_N", "must be below optimize.max_tension_N");
+    if (o->elites >= o->population) complain_about(l, "optimize.elites", "must be below optimize.population");
+    if (o->crossover_low > o->crossover_high)
+        complain_about(l, "optimize.crossover_low", "must not be above optimize.crossover_high");
+    if (o->mutation_low > o->mutation_high)
+        complain_about(l, "optimize.mutation_low", "must not be above optimize.mutation_high");
+}
+
+/* What a generated net knows of its surface itself. */
+static void complete_surface(hf_case *c)
+{
+    if (!c->has_surface || !c->has_cylinder) return;
+    double n_cell = (double)c->cylinder.modules[0] * c->cylinder.cells_per_module[0];
+    if (c->surface.focal_length_m == 0) c->surface.focal_length_m = c->cylinder.focal_length_m;
+    if (c->surface.strip_width_m == 0 && n_cell > 0) c->surface.strip_width_m = c->cylinder.aperture_m / n_cell;
+}
+
+/* ---- load ---- */
+
+/* settings->text is there: everything else from it and the overrides. */
+static hf_status parse(hf_case *settings, const char *const *overrides, int n_override, hf_messages *messages)
+{
+    const char *path = settings->path;
+    if (settings->text_length > CASE_MAX)
+        return hf_error(messages, HF_BAD_CASE, "%s: longer than %d kB, so no case file", path, CASE_MAX >> 10);
+    if (hf_text_too_deep(settings->text))
+        return hf_error(messages, HF_BAD_CASE, "%s:%d:1: YAML: more than %d brackets are open", path,
+                        hf_text_too_deep(settings->text), HF_TEXT_NESTING_MAX);
+    loader l = {.c = settings, .messages = messages, .origin = settings->path};
+    l.where_given = calloc((size_t)hf_n_field, WHERE_SIZE);
+    if (!l.where_given) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    for (int i = 0; i < hf_n_field; i++) {
+        const char *text = hf_field_table[i].default_value;
+        if (text && *text) with_document(&l, text, strlen(text), use_default, &i);
+    }
+    memset(l.where_given, 0, (size_t)hf_n_field * WHERE_SIZE);
+    with_document(&l, settings->text, settings->text_length, use_root, NULL);
+    for (int i = 0; i < n_override; i++)
+        apply_override(&l, overrides[i]);
+    check_together(&l);
+    complete_surface(settings);
+    cut_sweep(&l);
+    hf_status sealed = seal(settings, overrides, n_override);
+    free(l.where_given);
+    if (sealed != HF_OK) return hf_error(messages, sealed, "%s: out of memory", path);
+    if (l.n_fault > FAULT_MAX) hf_error(messages, HF_BAD_CASE, "%s: and %d more faults", path, l.n_fault - FAULT_MAX);
+    return l.failed ? HF_BAD_CASE : HF_OK;
+}
+
+hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
+                         hf_messages *messages)
+{
+    *settings = (hf_case){0};
+    if (snprintf(settings->path, sizeof settings->path, "%s", path) >= HF_PATH_SIZE)
+        return hf_error(messages, HF_BAD_CASE, "%s: the path is too long", path);
+    HF_TRY(hf_text_read_file(path, HF_BAD_CASE, &settings->text, &settings->text_length, messages));
+    return parse(settings, overrides, n_override, messages);
+}
+
+hf_status hf_config_parse(const char *path, const char *text, const char *const *overrides, int n_override,
+                          hf_case *settings, hf_messages *messages)
+{
+    *settings = (hf_case){0};
+    snprintf(settings->path, sizeof settings->path, "%s", path);
+    settings->text = strdup(text);
+    if (!settings->text) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    settings->text_length = strlen(text);
+    return parse(settings, overrides, n_override, messages);
+}
+
+hf_status hf_config_check_value(int field, const char *value, const char *place, hf_messages *messages)
+{
+    hf_case *scratch = calloc(1, sizeof *scratch);
+    loader l = {.c = scratch, .messages = messages, .origin = place, .place = place};
+    l.where_given = calloc((size_t)hf_n_field, WHERE_SIZE);
+    if (scratch && l.where_given)
+        with_document(&l, value, strlen(value), use_default, &field);
+    else
+        hf_error(messages, HF_NO_MEMORY, "%s: out of memory", place);
+    hf_status status = !scratch || !l.where_given ? HF_NO_MEMORY : l.failed ? HF_BAD_CASE : HF_OK;
+    free(l.where_given);
+    free(scratch);
+    return status;
+}

@@ -1,0 +1,249 @@
+/* The table of config.h: every key of a case file. Nothing else knows a default. */
+#include <hifdm/config.h>
+
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+/* NULL-terminated, in the order of the enums */
+static const char *const spacing_words[] = {"equal_arc", "equal_projected", NULL};
+static const char *const boundary_words[] = {"outer_edge", "module_edges", NULL};
+static const char *const supports_words[] = {"module_corners", "ribs", "perimeter", NULL};
+static const char *const diagonals_words[] = {"none", "single", "crossed", NULL};
+static const char *const theory_words[] = {"euler_bernoulli", "timoshenko", NULL};
+static const char *const joint_words[] = {"rigid", "pinned", NULL};
+static const char *const held_words[] = {"central_module", "central_module_rear", NULL};
+static const char *const held_dofs_words[] = {"all", "translations", NULL};
+
+#define AT(member) offsetof(hf_case, member)
+#define BIG 1e300
+
+const hf_section hf_section_table[] = {
+    {"scene", SIZE_MAX, "The net: exactly one of the two sections below."},
+    {"scene.parabolic_cylinder", AT(has_cylinder), "A quad net over a parabolic cylinder."},
+    {"scene.import", AT(has_import), "Any net from two CSV files."},
+    {"surface", AT(has_surface), "Measures of the reflecting surface. Without this section there are none."},
+    {"form", SIZE_MAX, "Form-finding. May be left out: the defaults hold."},
+    {"optimize", AT(has_optimize), "Optimisation of the boundary pretensions. Without this section none runs."},
+    {"truss", AT(has_truss),
+     "The deployable truss that carries the net. Without this section the supports stand on rigid ground. The paper "
+     "prints no dimensions: every default here is an assumption."},
+    {"truss.bud", AT(has_truss), "Basic unit on the directrix: planar trusses on the module borders along x."},
+    {"truss.mbug", AT(has_truss), "Main basic unit on the generatrix, along y."},
+    {"truss.abug", AT(has_truss), "Assistant basic unit on the generatrix: the lines along y between the main ones."},
+    {"truss.import", AT(has_truss_import), "Instead of the generated units: any truss from two CSV files."},
+    {"coupling", SIZE_MAX, "Of the net with its truss (Fig. 17). Without a truss nothing of it is used."},
+    {"sweep", AT(has_sweep),
+     "Axes of a sweep, key: [values] or key: {from, to, n}: for `hifdm sweep`, which runs the case once per point."},
+};
+const int hf_n_section = sizeof hf_section_table / sizeof *hf_section_table;
+
+const hf_field hf_field_table[] = {
+    {"title", HF_FIELD_TEXT, AT(title), 0, sizeof((hf_case *)0)->title, "", "", NULL, "one line for people"},
+
+    {"scene.EA_inner_N", HF_FIELD_DOUBLE, AT(cylinder.EA_N[0]), HF_ABOVE_ZERO, 1e15, "", "N", NULL,
+     "axial stiffness EA of the inner cables, where the net gives none: for cut lengths"},
+    {"scene.EA_boundary_N", HF_FIELD_DOUBLE, AT(cylinder.EA_N[1]), HF_ABOVE_ZERO, 1e15, "", "N", NULL,
+     "the same of the boundary cables"},
+
+    {"scene.parabolic_cylinder.aperture_m", HF_FIELD_DOUBLE, AT(cylinder.aperture_m), HF_ABOVE_ZERO, 1e4, NULL, "m",
+     NULL, "aperture along the directrix (x)"},
+    {"scene.parabolic_cylinder.length_m", HF_FIELD_DOUBLE, AT(cylinder.length_m), HF_ABOVE_ZERO, 1e4, NULL, "m", NULL,
+     "length along the generatrix (y)"},
+    {"scene.parabolic_cylinder.focal_length_m", HF_FIELD_DOUBLE, AT(cylinder.focal_length_m), HF_ABOVE_ZERO, 1e9, NULL,
+     "m", NULL, "focal length of z = x^2/(4f)"},
+    {"scene.parabolic_cylinder.modules", HF_FIELD_INT_PAIR, AT(cylinder.modules), 1, 2000, NULL, "", NULL,
+     "modules along the directrix and the generatrix"},
+    {"scene.parabolic_cylinder.cells_per_module", HF_FIELD_INT_PAIR, AT(cylinder.cells_per_module), 1, 2000, NULL, "",
+     NULL, "net cells per module, along the directrix and the generatrix"},
+    {"scene.parabolic_cylinder.spacing", HF_FIELD_WORD, AT(cylinder.spacing), 0, 0, "equal_arc", "", spacing_words,
+     "nodes along the directrix: equal arc length, or equal projected (x) spacing"},
+    {"scene.parabolic_cylinder.boundary", HF_FIELD_WORD, AT(cylinder.boundary), 0, 0, "outer_edge", "", boundary_words,
+     "which cables are boundary cables (law length); the others are inner (law tension)"},
+    {"scene.parabolic_cylinder.scallop", HF_FIELD_DOUBLE, AT(cylinder.scallop), 0, 0.4, "0", "", NULL,
+     "inward sag of a free outer edge between supports, relative to their distance"},
+    {"scene.parabolic_cylinder.supports", HF_FIELD_WORD, AT(cylinder.supports), 0, 0, "module_corners", "",
+     supports_words, "fixed nodes: all module corners, all nodes on ribs (y = module border), or the perimeter"},
+
+    {"scene.import.nodes", HF_FIELD_TEXT, AT(nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
+     "CSV id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]; path relative to the case file"},
+    {"scene.import.cables", HF_FIELD_TEXT, AT(cables_path), 1, HF_PATH_SIZE, NULL, "", NULL,
+     "CSV id,i,j,group,law,value[,EA_N]; path relative to the case file"},
+
+    {"surface.focal_length_m", HF_FIELD_DOUBLE, AT(surface.focal_length_m), HF_ABOVE_ZERO, 1e9, "", "m", NULL,
+     "of the wanted surface z = x^2/(4f) along y; default: that of parabolic_cylinder"},
+    {"surface.strip_width_m", HF_FIELD_DOUBLE, AT(surface.strip_width_m), HF_ABOVE_ZERO, 1e4, "", "m", NULL,
+     "width of the flat strips along y, for the faceting error; default: a cell of parabolic_cylinder"},
+    {"surface.frequencies_Hz", HF_FIELD_DOUBLE_LIST, AT(surface.frequencies_Hz), HF_ABOVE_ZERO, 1e15, "[]", "Hz", NULL,
+     "up to 8, at which the loss of gain is told (Ruze)"},
+
+    {"form.method", HF_FIELD_WORD, AT(form.method), 0, 0, "auto", "", hf_method_word,
+     "auto: newton where it applies, else hifdm; newton: every cable obeys its own law, by Newton on the energy; "
+     "hifdm: "
+     "the same by the paper's iteration (Eqs. 7, 8); iterative_fdm: every cable is held at a tension (Eq. 7); fdm: one "
+     "solve with the starting force densities (Eqs. 5, 6)"},
+    {"form.pretension_N", HF_FIELD_DOUBLE, AT(form.pretension_N), HF_ABOVE_ZERO, 1e9, "10", "N", NULL,
+     "uniform tension Td of the inner cables"},
+    {"form.stop", HF_FIELD_WORD, AT(form.stop), 0, 0, "residual", "", hf_stop_rule_word,
+     "residual: equilibrium and lengths within the tolerances; rms_change: the paper's rule, psi changes by less than "
+     "rms_tolerance_m (stops early, for reproduction)"},
+    {"form.residual_tolerance", HF_FIELD_DOUBLE, AT(form.residual_tolerance), 1e-13, 1, "1e-7", "", NULL,
+     "largest nodal residual, relative to the pretension"},
+    {"form.length_tolerance", HF_FIELD_DOUBLE, AT(form.length_tolerance), 1e-13, 1, "1e-7", "", NULL,
+     "largest |l/L*-1| of a taut cable of law length"},
+    {"form.rms_tolerance_m", HF_FIELD_DOUBLE, AT(form.rms_tolerance_m), HF_ABOVE_ZERO, BIG, "1e-6", "m", NULL,
+     "change of psi between two iterations at which rms_change stops (0.001 mm in the paper)"},
+    {"form.max_iterations", HF_FIELD_INT, AT(form.max_iterations), 1, 10000000, "100000", "", NULL,
+     "bound on the iterations; reached: not converged"},
+    {"form.collapse_ratio", HF_FIELD_DOUBLE, AT(form.collapse_ratio), 1e-12, 0.5, "1e-3", "", NULL,
+     "a cable of law tension shorter than this part of its theoretical length has collapsed"},
+
+    {"coupling.tof_m", HF_FIELD_DOUBLE, AT(form.coupling.tof_m), HF_ABOVE_ZERO, BIG, "1e-6", "m", NULL,
+     "net and truss are one when no attachment moves farther than this any more; the paper takes 1e-3"},
+    {"coupling.scheme", HF_FIELD_WORD, AT(form.coupling.scheme), 0, 0, "accelerated", "", hf_coupling_scheme_word,
+     "accelerated: Anderson's method, which needs fewer form-findings and also holds for soft trusses; plain: the "
+     "paper's loop, displacements straight from the forces"},
+    {"coupling.max_iterations", HF_FIELD_INT, AT(form.coupling.max_iterations), 1, 1000000, "200", "", NULL,
+     "form-findings in this loop before it is given up"},
+
+    {"optimize.method", HF_FIELD_WORD, AT(optimize.method), 0, 0, "ga", "", hf_optimize_method_word,
+     "genetic algorithm, Levenberg-Marquardt from the form-finding's tensions, or both. After the genetic algorithm "
+     "the "
+     "optimum that Levenberg-Marquardt reaches from it is always reported; with ga+lm it is the result"},
+    {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", hf_rule_word,
+     "what a design means: boundary held at q = T'/L* (always one answer), held at T', or Eq. 8 started from q = T'/L* "
+     "and stopped by rms_change (the paper's literal reading; its optimum depends on where it stops)"},
+    {"optimize.symmetry", HF_FIELD_WORD, AT(optimize.symmetry), 0, 0, "none", "", hf_symmetry_word,
+     "boundary cables that are mirror images of each other change by the same step, which makes fewer genes: mirrored "
+     "at "
+     "the middle of the net's extent along x, along y, both, or (auto) at whichever of the two planes the net is "
+     "symmetric about"},
+    {"optimize.solver", HF_FIELD_WORD, AT(optimize.solver), 0, 0, "auto", "", hf_solver_word,
+     "how an individual is solved: chord shares one factored Newton matrix, eight designs to a pass; newton: each its "
+     "own; fixed_point: the paper's iteration. auto: chord where it applies, else newton, else fixed_point"},
+    {"optimize.population", HF_FIELD_INT, AT(optimize.population), 2, 100000, "50", "", NULL, "individuals"},
+    {"optimize.generations", HF_FIELD_INT, AT(optimize.generations), 1, 1000000, "400", "", NULL,
+     "largest number of generations"},
+    {"optimize.range_N", HF_FIELD_DOUBLE, AT(optimize.range_N), HF_ABOVE_ZERO, 1e9, "1", "N", NULL,
+     "|dT| of Eq. 13: how far a boundary pretension may move from its value after form-finding"},
+    {"optimize.min_tension_N", HF_FIELD_DOUBLE, AT(optimize.min_tension_N), HF_ABOVE_ZERO, 1e9, "0.1", "N", NULL,
+     "lower bound on every boundary pretension (Eq. 12: above zero)"},
+    {"optimize.max_tension_N", HF_FIELD_DOUBLE, AT(optimize.max_tension_N), HF_ABOVE_ZERO, BIG, "1e6", "N", NULL,
+     "upper bound on every boundary pretension"},
+    {"optimize.boundary_ratio_cap", HF_FIELD_DOUBLE, AT(optimize.boundary_ratio_cap), 1, BIG, "10", "", NULL,
+     "an individual with a larger boundary tension ratio is infeasible"},
+    {"optimize.seed", HF_FIELD_UINT64, AT(optimize.seed), 0, 18446744073709551615.0, "1", "", NULL,
+     "the same seed gives the same run, whatever the number of threads"},
+    {"optimize.crossover_high", HF_FIELD_DOUBLE, AT(optimize.crossover_high), 0, 1, "0.9", "", NULL,
+     "Pc1 of the adaptive rates (Srinivas & Patnaik 1994)"},
+    {"optimize.crossover_low", HF_FIELD_DOUBLE, AT(optimize.crossover_low), 0, 1, "0.6", "", NULL, "Pc2"},
+    {"optimize.mutation_high", HF_FIELD_DOUBLE, AT(optimize.mutation_high), 0, 1, "0.1", "", NULL, "Pm1"},
+    {"optimize.mutation_low", HF_FIELD_DOUBLE, AT(optimize.mutation_low), 0, 1, "0.001", "", NULL, "Pm2"},
+    {"optimize.elites", HF_FIELD_INT, AT(optimize.elites), 1, 100000, "1", "", NULL,
+     "best individuals that live on unchanged (and are not evaluated again)"},
+    {"optimize.stagnation_tolerance_m", HF_FIELD_DOUBLE, AT(optimize.stagnation_tolerance_m), 0, BIG, "1e-6", "m", NULL,
+     "stop when the best psi gained less than this over the window below"},
+    {"optimize.stagnation_generations", HF_FIELD_INT, AT(optimize.stagnation_generations), 1, 1000000, "50", "", NULL,
+     "length of that window"},
+    {"optimize.polish_iterations", HF_FIELD_INT, AT(optimize.polish_iterations), 1, 100000, "200", "", NULL,
+     "largest number of Levenberg-Marquardt iterations"},
+
+    {"truss.depth_m", HF_FIELD_DOUBLE, AT(truss.depth_m), HF_ABOVE_ZERO, 1e3, "1", "m", NULL,
+     "distance of the rear chords from the front chords, along the normal of the surface"},
+    {"truss.main_every", HF_FIELD_INT, AT(truss.main_every), 1, 2000, "2", "", NULL,
+     "counted from both edges, every so many module borders along y carry main units (mbug), the others assistant "
+     "ones"},
+    {"truss.E_Pa", HF_FIELD_DOUBLE, AT(truss.E_Pa), HF_ABOVE_ZERO, 1e15, "130e9", "Pa", NULL,
+     "Young's modulus of the tubes"},
+    {"truss.G_Pa", HF_FIELD_DOUBLE, AT(truss.G_Pa), HF_ABOVE_ZERO, 1e15, "5e9", "Pa", NULL,
+     "shear modulus of the tubes; E/(2(1+nu)) for isotropic material"},
+    {"truss.density_kg_per_m3", HF_FIELD_DOUBLE, AT(truss.density_kg_per_m3), 0, 1e6, "1600", "kg/m3", NULL,
+     "density of the tubes"},
+    {"truss.expansion_per_K", HF_FIELD_DOUBLE, AT(truss.expansion_per_K), -1, 1, "0", "1/K", NULL,
+     "thermal expansion of the tubes"},
+    {"truss.hinge_mass_kg", HF_FIELD_DOUBLE, AT(truss.hinge_mass_kg), 0, 1e6, "1", "kg", NULL,
+     "mass of the hinges at each node"},
+    {"truss.theory", HF_FIELD_WORD, AT(truss.theory), 0, 0, "euler_bernoulli", "", theory_words,
+     "beams without shear deformation, or with a shear area of half the cross-section (thin round tube)"},
+    {"truss.joints", HF_FIELD_WORD, AT(truss.joints), 0, 0, "rigid", "", joint_words,
+     "members clamped to their nodes, or carrying axial force alone"},
+    {"truss.supports", HF_FIELD_WORD, AT(truss.supports), 0, 0, "central_module", "", held_words,
+     "nodes held by the spacecraft: all corners of the central module, or its rear ones"},
+    {"truss.support_dofs", HF_FIELD_WORD, AT(truss.support_dofs), 0, 0, "all", "", held_dofs_words,
+     "what is held there: displacements and rotations, or displacements only"},
+    {"truss.match_tolerance_m", HF_FIELD_DOUBLE, AT(truss.match_tolerance_m), 0, 1e3, "1e-6", "m", NULL,
+     "largest distance between a support of the net and the truss node that carries it"},
+
+    {"truss.bud.diameter_m", HF_FIELD_DOUBLE, AT(truss.bud.diameter_m), HF_ABOVE_ZERO, 10, "0.03", "m", NULL,
+     "outer diameter of its tubes"},
+    {"truss.bud.wall_m", HF_FIELD_DOUBLE, AT(truss.bud.wall_m), HF_ABOVE_ZERO, 5, "0.001", "m", NULL,
+     "wall thickness of its tubes"},
+    {"truss.bud.panels", HF_FIELD_INT, AT(truss.bud.panels), 1, 1000, "2", "", NULL, "panels along one module"},
+    {"truss.bud.diagonals", HF_FIELD_WORD, AT(truss.bud.diagonals), 0, 0, "single", "", diagonals_words,
+     "diagonals of each panel"},
+
+    {"truss.mbug.diameter_m", HF_FIELD_DOUBLE, AT(truss.mbug.diameter_m), HF_ABOVE_ZERO, 10, "0.03", "m", NULL,
+     "outer diameter of its tubes"},
+    {"truss.mbug.wall_m", HF_FIELD_DOUBLE, AT(truss.mbug.wall_m), HF_ABOVE_ZERO, 5, "0.001", "m", NULL,
+     "wall thickness of its tubes"},
+    {"truss.mbug.panels", HF_FIELD_INT, AT(truss.mbug.panels), 1, 1000, "1", "", NULL, "panels along one module"},
+    {"truss.mbug.diagonals", HF_FIELD_WORD, AT(truss.mbug.diagonals), 0, 0, "single", "", diagonals_words,
+     "diagonals of each panel"},
+
+    {"truss.abug.diameter_m", HF_FIELD_DOUBLE, AT(truss.abug.diameter_m), HF_ABOVE_ZERO, 10, "0.025", "m", NULL,
+     "outer diameter of its tubes"},
+    {"truss.abug.wall_m", HF_FIELD_DOUBLE, AT(truss.abug.wall_m), HF_ABOVE_ZERO, 5, "0.001", "m", NULL,
+     "wall thickness of its tubes"},
+    {"truss.abug.panels", HF_FIELD_INT, AT(truss.abug.panels), 1, 1000, "1", "", NULL, "panels along one module"},
+    {"truss.abug.diagonals", HF_FIELD_WORD, AT(truss.abug.diagonals), 0, 0, "single", "", diagonals_words,
+     "diagonals of each panel"},
+
+    {"truss.import.nodes", HF_FIELD_TEXT, AT(truss_nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
+     "CSV id,x_m,y_m,z_m,fixed[,mass_kg]; fixed: some of ux uy uz rx ry rz, or all, or empty; path relative to the "
+     "case "
+     "file"},
+    {"truss.import.members", HF_FIELD_TEXT, AT(truss_members_path), 1, HF_PATH_SIZE, NULL, "", NULL,
+     "CSV "
+     "id,i,j,E_Pa,A_m2[,G_Pa,Iy_m4,Iz_m4,J_m4,Asy_m2,Asz_m2,roll_rad,density_kg_per_m3,expansion_per_K,joint,unit]; "
+     "joint: rigid or pinned; path relative to the case file"},
+};
+const int hf_n_field = sizeof hf_field_table / sizeof *hf_field_table;
+
+static int is_same(const hf_field *f, const char *a, const char *b)
+{
+    switch (f->type) {
+    case HF_FIELD_TEXT:
+        return !strcmp(a, b);
+    case HF_FIELD_DOUBLE:
+        return !memcmp(a, b, sizeof(double));
+    case HF_FIELD_UINT64:
+        return !memcmp(a, b, sizeof(uint64_t));
+    case HF_FIELD_INT_PAIR:
+        return !memcmp(a, b, 2 * sizeof(int));
+    default:
+        return !memcmp(a, b, sizeof(int));
+    }
+}
+
+static int add_key(const char *key, int n, char *text, size_t size)
+{
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, "%s%s", n ? ", " : "", key);
+    return n + 1;
+}
+
+int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t size)
+{
+    const char *p = (const char *)a, *q = (const char *)b;
+    int n = 0;
+    *text = '\0';
+    for (int i = 0; i < hf_n_section; i++) {
+        size_t at = hf_section_table[i].present_offset;
+        if (at != SIZE_MAX && memcmp(p + at, q + at, sizeof(int)) != 0)
+            n = add_key(hf_section_table[i].path, n, text, size);
+    }
+    for (int i = 0; i < hf_n_field; i++)
+        if (!is_same(&hf_field_table[i], p + hf_field_table[i].offset, q + hf_field_table[i].offset))
+            n = add_key(hf_field_table[i].path, n, text, size);
+    return n;
+}

@@ -1,0 +1,320 @@
+/* Contents: values - samples - points - what a point sets */
+#include "case/study.h"
+
+#include "base/sha256.h"
+#include "base/text.h"
+
+#include <gsl/gsl_qrng.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const hf_study_files_word[3] = {"auto", "all", "none"};
+
+#define JOINT_FAULT_MAX 10 /* points that are spelled out */
+
+/* ---- values ---- */
+
+/* The shortest of the usual ways to write a number that reads back as the same. */
+static void shortest(double value, char text[40])
+{
+    for (int digits = 15; digits <= 17; digits++) {
+        double again = 0;
+        snprintf(text, 40, "%.*g", digits, value + 0.0); /* no -0 */
+        if (hf_text_double(text, &again) && again == value) return;
+    }
+}
+
+char *hf_study_canonical(const hf_field *field, const char *value)
+{
+    char number[40];
+    double real;
+    uint64_t whole;
+    if (field->type == HF_FIELD_DOUBLE && hf_text_double(value, &real)) {
+        shortest(real, number);
+        value = number;
+    } else if ((field->type == HF_FIELD_INT || field->type == HF_FIELD_UINT64) && hf_text_uint64(value, &whole)) {
+        snprintf(number, sizeof number, "%" PRIu64, whole);
+        value = number;
+    }
+    size_t size = strlen(field->path) + strlen(value) + 2;
+    char *text = malloc(size);
+    if (text) snprintf(text, size, "%s=%s", field->path, value);
+    return text;
+}
+
+void hf_study_range_value(const hf_field *field, double from, double to, int is_log, double x, char text[40])
+{
+    double value = is_log ? from * pow(to / from, x) : from + (to - from) * x;
+    if (x >= 1) value = to;
+    if (field->type == HF_FIELD_DOUBLE) {
+        /* 12 digits: what a user would write, and the same on a machine whose pow() differs in the last bit */
+        snprintf(text, 40, "%.12g", value);
+        if (hf_text_double(text, &value)) shortest(value, text);
+    } else {
+        snprintf(text, 40, "%.0f", floor(value + 0.5));
+    }
+}
+
+/* ---- samples ---- */
+
+hf_status hf_study_sobol(int n, int n_axis, double *x)
+{
+    gsl_qrng *q = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)n_axis);
+    if (!q) return HF_NO_MEMORY;
+    for (int i = 0; i < n; i++)
+        gsl_qrng_get(q, x + (size_t)i * (size_t)n_axis);
+    gsl_qrng_free(q);
+    return HF_OK;
+}
+
+/* SplitMix64 (Steele, Lea & Flood 2014). */
+static uint64_t next_random(uint64_t *state)
+{
+    uint64_t z = *state += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
+
+hf_status hf_study_latin_hypercube(int n, int n_axis, uint64_t seed, double *x)
+{
+    int *row = malloc((size_t)n * sizeof *row);
+    if (!row) return HF_NO_MEMORY;
+    for (int axis = 0; axis < n_axis; axis++) {
+        uint64_t state = seed ^ ((uint64_t)(unsigned)axis << 48);
+        for (int i = 0; i < n; i++) { /* Fisher-Yates; n is so far below 2^64 that the remainder is fair enough */
+            int k = (int)(next_random(&state) % ((uint64_t)i + 1));
+            row[i] = row[k];
+            row[k] = i;
+        }
+        for (int i = 0; i < n; i++)
+            x[(size_t)i * (size_t)n_axis + (size_t)axis] = (row[i] + (double)(next_random(&state) >> 11) * 0x1p-53) / n;
+    }
+    free(row);
+    return HF_OK;
+}
+
+/* ---- points ---- */
+
+static hf_status out_of_memory(const hf_study *s, hf_messages *messages)
+{
+    return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for the points of the sweep", s->path);
+}
+
+/* How many points; sampled axes count as one. */
+static hf_status count_points(hf_study *s, hf_messages *messages)
+{
+    double n = 1;
+    int n_sampled = 0;
+    for (int a = 0; a < s->n_axis; a++) {
+        const hf_study_axis *axis = &s->axis[a];
+        if (s->is_zip && axis->n_value != s->axis[0].n_value)
+            return hf_error(messages, HF_BAD_CASE,
+                            "%s:%d:%d: sweep.%s: has %d values where %s has %d; combine: zip needs as many on all axes",
+                            s->path, axis->line, axis->column, hf_field_table[axis->field].path, axis->n_value,
+                            hf_field_table[s->axis[0].field].path, s->axis[0].n_value);
+        if (s->is_zip)
+            n = axis->n_value;
+        else if (!axis->is_sampled || n_sampled++ == 0)
+            n *= axis->n_value;
+    }
+    if (n > HF_STUDY_POINT_MAX)
+        return hf_error(messages, HF_BAD_CASE, "%s: sweep: %.10g points, more than %d", s->path, n, HF_STUDY_POINT_MAX);
+    s->n_point = (int)n;
+    return HF_OK;
+}
+
+/* Point i: the last axis changes fastest. */
+static void place_point(const hf_study *s, int i, int *value)
+{
+    int rest = i, sampled = -1;
+    for (int a = s->n_axis - 1; a >= 0; a--) {
+        const hf_study_axis *axis = &s->axis[a];
+        if (s->is_zip) {
+            value[a] = i;
+        } else if (axis->is_sampled && sampled >= 0) {
+            value[a] = sampled;
+        } else {
+            value[a] = rest % axis->n_value;
+            rest /= axis->n_value;
+            if (axis->is_sampled) sampled = value[a];
+        }
+    }
+}
+
+/* Digest of the point's lines. Axes are sorted, so the lines are. */
+static int digest_point(const hf_study *s, const int *value, char hex[65])
+{
+    size_t size = 1, used = 0;
+    for (int a = 0; a < s->n_axis; a++)
+        size += strlen(s->axis[a].canonical[value[a]]) + 1;
+    char *text = malloc(size);
+    if (!text) return 0;
+    for (int a = 0; a < s->n_axis; a++)
+        used += (size_t)snprintf(text + used, size - used, "%s\n", s->axis[a].canonical[value[a]]);
+    hf_sha256(text, used, hex);
+    free(text);
+    return 1;
+}
+
+static int compare_ids(const void *a, const void *b)
+{
+    return memcmp(*(const char *const *)a, *(const char *const *)b, HF_STUDY_ID_SIZE);
+}
+
+/* Two points that set the same would share their results. */
+static hf_status refuse_twins(const hf_study *s, hf_messages *messages)
+{
+    const char **sorted = malloc((size_t)s->n_point * sizeof *sorted);
+    if (!sorted) return out_of_memory(s, messages);
+    hf_status status = HF_OK;
+    for (int i = 0; i < s->n_point; i++)
+        sorted[i] = s->id[i];
+    qsort(sorted, (size_t)s->n_point, sizeof *sorted, compare_ids);
+    for (int i = 1; i < s->n_point && status == HF_OK; i++) {
+        char text[512];
+        if (strcmp(sorted[i], sorted[i - 1])) continue;
+        hf_study_point_text(s, (int)((sorted[i] - s->id[0]) / HF_STUDY_ID_SIZE), text, sizeof text);
+        status = hf_error(messages, HF_BAD_CASE, "%s: sweep: two points are the same: %s", s->path, text);
+    }
+    free(sorted);
+    return status;
+}
+
+static hf_status name_points(hf_study *s, hf_messages *messages)
+{
+    size_t n = (size_t)s->n_point;
+    char hex[65];
+    s->value = malloc(n * (size_t)s->n_axis * sizeof *s->value);
+    s->id = calloc(n, sizeof *s->id);
+    if (!s->value || !s->id) return out_of_memory(s, messages);
+    for (int i = 0; i < s->n_point; i++) {
+        int *value = s->value + (size_t)i * (size_t)s->n_axis;
+        place_point(s, i, value);
+        if (!digest_point(s, value, hex)) return out_of_memory(s, messages);
+        memcpy(s->id[i], hex, HF_STUDY_ID_SIZE - 1);
+    }
+    return refuse_twins(s, messages);
+}
+
+/* The faults of one point, each line led by the point. */
+static void tell_faults(const hf_study *s, int i, const hf_messages *found, hf_messages *messages)
+{
+    char text[256];
+    hf_study_point_text(s, i, text, sizeof text);
+    for (const char *line = found->text; line && *line; line = strchr(line, '\n') + 1) {
+        int skip = strncmp(line, "error: ", 7) ? 0 : 7;
+        hf_error(messages, HF_BAD_CASE, "%s: sweep: point %s: %.*s", s->path, text, (int)strcspn(line, "\n") - skip,
+                 line + skip);
+    }
+}
+
+/* Of the base case and the tables that it imports (those of the first point, where an axis names tables). */
+static hf_status take_fingerprint(hf_study *s, const hf_case *c, hf_messages *messages)
+{
+    const char *table[] = {c->has_import ? c->nodes_path : NULL, c->has_import ? c->cables_path : NULL,
+                           c->has_truss_import ? c->truss_nodes_path : NULL,
+                           c->has_truss_import ? c->truss_members_path : NULL};
+    char digests[5 * 65], hex[65];
+    size_t used = 0;
+    hf_sha256(c->text, c->text_length, digests);
+    used += 64;
+    for (int i = 0; i < 4; i++) {
+        char *text;
+        size_t length;
+        if (!table[i]) continue;
+        HF_TRY(hf_text_read_file(table[i], HF_BAD_CASE, &text, &length, messages));
+        hf_sha256(text, length, digests + used);
+        used += 64;
+        free(text);
+    }
+    hf_sha256(digests, used, hex);
+    memcpy(s->fingerprint, hex, HF_STUDY_FINGERPRINT_SIZE - 1);
+    return HF_OK;
+}
+
+/* Each point as a case: keys that do not go together, and all faults of the base case. */
+static hf_status check_points(hf_study *s, hf_messages *messages)
+{
+    int n_fault = 0, has_seed_axis = 0;
+    for (int a = 0; a < s->n_axis; a++)
+        has_seed_axis |= !strcmp(hf_field_table[s->axis[a].field].path, "optimize.seed");
+    for (int i = 0; i < s->n_point; i++) {
+        hf_study_overrides o;
+        hf_messages found = {0};
+        hf_case c;
+        hf_study_point(s, i, &o);
+        hf_status status = hf_config_load(s->base, o.set, o.n_set, &c, &found);
+        if (i == 0 && status == HF_OK) {
+            s->has_optimize = c.has_optimize;
+            s->derives_seed = c.has_optimize && !has_seed_axis;
+            s->seed = c.optimize.seed;
+            status = take_fingerprint(s, &c, messages);
+        }
+        if (status != HF_OK && n_fault++ < JOINT_FAULT_MAX) tell_faults(s, i, &found, messages);
+        hf_messages_free(&found);
+        hf_case_free(&c);
+        if (status == HF_NO_MEMORY) return out_of_memory(s, messages);
+        if (i == 0 && status != HF_OK) return HF_BAD_CASE; /* most likely the base: no need to say it of every point */
+    }
+    if (n_fault > JOINT_FAULT_MAX)
+        hf_error(messages, HF_BAD_CASE, "%s: sweep: and %d more points with faults", s->path,
+                 n_fault - JOINT_FAULT_MAX);
+    return n_fault ? HF_BAD_CASE : HF_OK;
+}
+
+hf_status hf_study_make_points(hf_study *s, hf_messages *messages)
+{
+    HF_TRY(count_points(s, messages));
+    HF_TRY(name_points(s, messages));
+    return check_points(s, messages);
+}
+
+void hf_study_free(hf_study *s)
+{
+    for (int a = 0; a < s->n_axis; a++) {
+        for (int k = 0; k < s->axis[a].n_value; k++) {
+            free(s->axis[a].canonical[k]);
+            free(s->axis[a].set[k]);
+        }
+        free(s->axis[a].canonical);
+        free(s->axis[a].set);
+    }
+    free(s->value);
+    free(s->id);
+    *s = (hf_study){0};
+}
+
+/* ---- what a point sets ---- */
+
+void hf_study_point(const hf_study *s, int i, hf_study_overrides *o)
+{
+    const int *value = s->value + (size_t)i * (size_t)s->n_axis;
+    o->n_set = 0;
+    for (int a = 0; a < s->n_axis; a++)
+        o->set[o->n_set++] = s->axis[a].set[value[a]];
+    if (!s->derives_seed) return;
+    char text[64], hex[65];
+    int n = snprintf(text, sizeof text, "seed %" PRIu64 " of point %s", s->seed, s->id[i]);
+    hf_sha256(text, (size_t)n, hex);
+    hex[16] = '\0';
+    snprintf(o->seed, sizeof o->seed, "optimize.seed=%" PRIu64, (uint64_t)strtoull(hex, NULL, 16));
+    o->set[o->n_set++] = o->seed;
+}
+
+void hf_study_point_text(const hf_study *s, int i, char *text, size_t size)
+{
+    size_t used = 0;
+    for (int a = 0; a < s->n_axis && used < size; a++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", a ? ", " : "",
+                                 s->axis[a].canonical[s->value[(size_t)i * (size_t)s->n_axis + (size_t)a]]);
+    if (used >= size && size > 4) strcpy(text + size - 4, "...");
+}
+
+int hf_study_has_files(const hf_study *s)
+{
+    return s->files == HF_FILES_ALL || (s->files == HF_FILES_AUTO && s->has_optimize);
+}

@@ -1,0 +1,464 @@
+/* Contents: faults - axes given as lists - axes given as ranges - the sweep section - the file */
+#include "case/study.h"
+
+#include "base/text.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <yaml.h>
+
+#define STUDY_MAX (16 << 20) /* bytes of a study file */
+#define VALUE_SIZE 4200      /* of one value as text: a path, and every character of it escaped */
+
+typedef enum { SAMPLE_NONE, SAMPLE_LATIN_HYPERCUBE, SAMPLE_SOBOL } sampling;
+
+/* An axis {from, to, ...} until n is known. */
+typedef struct {
+    int i_axis; /* -1 = not a range */
+    double from, to;
+    int is_log, n;
+    sampling sample;
+    yaml_mark_t mark;
+} range;
+
+typedef struct {
+    hf_study *study;
+    hf_messages *messages;
+    yaml_document_t *document;
+    int failed, no_memory;
+    int n; /* common to ranges, 0 = not given */
+    uint64_t seed;
+    range range[HF_STUDY_AXIS_MAX]; /* of axis i */
+} reader;
+
+/* ---- faults ---- */
+
+static void fault(reader *r, yaml_mark_t mark, const char *key, const char *format, ...) HF_PRINTF(4, 5);
+static void fault(reader *r, yaml_mark_t mark, const char *key, const char *format, ...)
+{
+    char what[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    r->failed = 1;
+    hf_error(r->messages, HF_BAD_CASE, "%s:%zu:%zu: sweep%s%s: %s", r->study->path, mark.line + 1, mark.column + 1,
+             *key ? "." : "", key, what);
+}
+
+static const yaml_node_t *node_at(reader *r, int index)
+{
+    return yaml_document_get_node(r->document, index);
+}
+
+static const char *text_of(const yaml_node_t *node)
+{
+    return node->type == YAML_SCALAR_NODE ? (const char *)node->data.scalar.value : "";
+}
+
+static void fault_unknown(reader *r, yaml_mark_t mark, const char *key, const char *word, const char *const *names,
+                          int n_name)
+{
+    const char *near = hf_text_nearest(word, names, n_name);
+    if (near)
+        fault(r, mark, key, "unknown key '%s'; did you mean '%s'?", word, near);
+    else
+        fault(r, mark, key, "unknown key '%s'%s", word, *key ? "" : " (hifdm schema lists all keys)");
+}
+
+/* Is this key in the mapping before `pair`, too? Then that is a fault. */
+static int is_repeated(reader *r, const yaml_node_t *mapping, const yaml_node_pair_t *pair, const char *path)
+{
+    const yaml_node_t *key = node_at(r, pair->key);
+    for (const yaml_node_pair_t *p = mapping->data.mapping.pairs.start; p < pair; p++) {
+        const yaml_node_t *other = node_at(r, p->key);
+        if (strcmp(text_of(other), text_of(key))) continue;
+        fault(r, key->start_mark, path, "'%s' stands here already, on line %zu", text_of(key),
+              other->start_mark.line + 1);
+        return 1;
+    }
+    return 0;
+}
+
+static int read_number(reader *r, const yaml_node_t *node, const char *key, const char *name, double *value)
+{
+    if (hf_text_double(text_of(node), value)) return 1;
+    fault(r, node->start_mark, key, "%s must be a number, not '%s'", name, text_of(node));
+    return 0;
+}
+
+static void read_count(reader *r, const yaml_node_t *node, const char *key, int *n)
+{
+    uint64_t value = 0;
+    if (!hf_text_uint64(text_of(node), &value) || value < 1 || value > HF_STUDY_POINT_MAX)
+        fault(r, node->start_mark, key, "n must be a whole number from 1 to %d, not '%s'", HF_STUDY_POINT_MAX,
+              text_of(node));
+    else
+        *n = (int)value;
+}
+
+static void read_word(reader *r, const yaml_node_t *node, const char *key, const char *name, const char *const *words,
+                      int n_word, int *value)
+{
+    char list[200] = "";
+    for (int k = 0; k < n_word; k++) {
+        if (!strcmp(text_of(node), words[k])) {
+            *value = k;
+            return;
+        }
+        snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", k ? ", " : "", words[k]);
+    }
+    fault(r, node->start_mark, key, "%s must be one of %s, not '%s'", name, list, text_of(node));
+}
+
+/* ---- axes given as lists ---- */
+
+/* The value as YAML on one line; 0 when it is neither a scalar nor a list of scalars. */
+static int value_text(reader *r, const yaml_node_t *node, char *text)
+{
+    size_t used = 0;
+    if (node->type == YAML_SCALAR_NODE) return snprintf(text, VALUE_SIZE, "%s", text_of(node)) < VALUE_SIZE;
+    if (node->type != YAML_SEQUENCE_NODE) return 0;
+    for (const int *item = node->data.sequence.items.start; item < node->data.sequence.items.top; item++) {
+        if (node_at(r, *item)->type != YAML_SCALAR_NODE) return 0;
+        used += (size_t)snprintf(text + used, VALUE_SIZE - used, "%s%s", used ? "," : "[", text_of(node_at(r, *item)));
+        if (used + 2 >= VALUE_SIZE) return 0;
+    }
+    snprintf(text + used, VALUE_SIZE - used, "]");
+    return 1;
+}
+
+/* A text as a quoted YAML scalar; paths are relative to the study file. */
+static int quote(const reader *r, const hf_field *field, const char *value, char *text)
+{
+    const char *slash = strrchr(r->study->path, '/');
+    int is_path = field->max == HF_PATH_SIZE && *value != '/' && slash;
+    char whole[2 * HF_PATH_SIZE];
+    int n =
+        snprintf(whole, sizeof whole, "%.*s%s", is_path ? (int)(slash - r->study->path) + 1 : 0, r->study->path, value);
+    if (n >= (int)sizeof whole) return 0;
+    *text++ = '"';
+    for (const char *p = whole; *p; p++) {
+        if (*p == '"' || *p == '\\') *text++ = '\\';
+        *text++ = *p;
+    }
+    strcpy(text, "\"");
+    return 1;
+}
+
+static void add_value(reader *r, hf_study_axis *axis, const char *value, yaml_mark_t mark)
+{
+    const hf_field *field = &hf_field_table[axis->field];
+    char place[HF_PATH_SIZE + 128], text[VALUE_SIZE];
+    snprintf(place, sizeof place, "%s:%zu:%zu: sweep", r->study->path, mark.line + 1, mark.column + 1);
+    int fits = field->type != HF_FIELD_TEXT ? snprintf(text, sizeof text, "%s", value) : quote(r, field, value, text);
+    hf_status status = fits ? hf_config_check_value(axis->field, text, place, r->messages) : HF_BAD_CASE;
+    if (!fits) fault(r, mark, field->path, "is too long");
+    if (status != HF_OK) {
+        r->failed = 1;
+        return;
+    }
+    size_t size = strlen(field->path) + strlen(text) + 2;
+    char *set = malloc(size), *canonical = hf_study_canonical(field, value);
+    if (!set || !canonical) {
+        r->no_memory = 1;
+        free(set);
+        free(canonical);
+        return;
+    }
+    snprintf(set, size, "%s=%s", field->path, text);
+    axis->set[axis->n_value] = set;
+    axis->canonical[axis->n_value++] = canonical;
+}
+
+static int reserve_values(reader *r, hf_study_axis *axis, int n)
+{
+    axis->set = calloc((size_t)n, sizeof *axis->set);
+    axis->canonical = calloc((size_t)n, sizeof *axis->canonical);
+    if (axis->set && axis->canonical) return 1;
+    r->no_memory = 1;
+    return 0;
+}
+
+static void read_list(reader *r, hf_study_axis *axis, const yaml_node_t *list)
+{
+    const char *key = hf_field_table[axis->field].path;
+    long n = list->data.sequence.items.top - list->data.sequence.items.start;
+    char text[VALUE_SIZE];
+    if (n < 1 || n > HF_STUDY_POINT_MAX) {
+        fault(r, list->start_mark, key, "needs from 1 to %d values", HF_STUDY_POINT_MAX);
+        return;
+    }
+    if (!reserve_values(r, axis, (int)n)) return;
+    for (long i = 0; i < n; i++) {
+        const yaml_node_t *node = node_at(r, list->data.sequence.items.start[i]);
+        if (value_text(r, node, text))
+            add_value(r, axis, text, node->start_mark);
+        else
+            fault(r, node->start_mark, key, "a value must be one number, word or pair like [5, 5]");
+    }
+}
+
+/* ---- axes given as ranges ---- */
+
+static void read_range_key(reader *r, const char *path, const yaml_node_t *key, const yaml_node_t *value, range *to,
+                           int given[2])
+{
+    static const char *const names[] = {"from", "to", "n", "spacing", "sample"};
+    static const char *const spacings[] = {"linear", "log"};
+    static const char *const samplings[] = {"latin_hypercube", "sobol"};
+    const char *word = text_of(key);
+    int sample = -1;
+    if (!strcmp(word, "from"))
+        given[0] = read_number(r, value, path, word, &to->from);
+    else if (!strcmp(word, "to"))
+        given[1] = read_number(r, value, path, word, &to->to);
+    else if (!strcmp(word, "n"))
+        read_count(r, value, path, &to->n);
+    else if (!strcmp(word, "spacing"))
+        read_word(r, value, path, word, spacings, 2, &to->is_log);
+    else if (!strcmp(word, "sample"))
+        read_word(r, value, path, word, samplings, 2, &sample);
+    else
+        fault_unknown(r, key->start_mark, path, word, names, 5);
+    if (sample >= 0) to->sample = sample == 0 ? SAMPLE_LATIN_HYPERCUBE : SAMPLE_SOBOL;
+}
+
+static void read_range(reader *r, hf_study_axis *axis, const yaml_node_t *mapping, range *to)
+{
+    const hf_field *field = &hf_field_table[axis->field];
+    int given[2] = {0, 0}, failed_before = r->failed;
+    to->mark = mapping->start_mark;
+    if (field->type == HF_FIELD_WORD || field->type == HF_FIELD_TEXT || field->type == HF_FIELD_INT_PAIR) {
+        fault(r, to->mark, field->path, "is no number, so it needs a list of values");
+        return;
+    }
+    for (yaml_node_pair_t *p = mapping->data.mapping.pairs.start; p < mapping->data.mapping.pairs.top; p++)
+        if (!is_repeated(r, mapping, p, field->path))
+            read_range_key(r, field->path, node_at(r, p->key), node_at(r, p->value), to, given);
+    if (r->failed != failed_before) return;
+    if (!given[0] || !given[1])
+        fault(r, to->mark, field->path, "a range needs from and to");
+    else if (to->is_log && (to->from <= 0 || to->to <= 0))
+        fault(r, to->mark, field->path, "spacing: log needs from and to above 0");
+    else if (to->sample && to->n)
+        fault(r, to->mark, field->path, "sampled axes share the n of the sweep section");
+    else
+        to->i_axis = (int)(axis - r->study->axis);
+}
+
+/* The values of a range at x[0], x[stride], ... of 0..1. */
+static void fill_range(reader *r, const range *from, const double *x, int stride, int n)
+{
+    hf_study_axis *axis = &r->study->axis[from->i_axis];
+    char text[40];
+    if (!reserve_values(r, axis, n)) return;
+    axis->is_sampled = from->sample != SAMPLE_NONE;
+    int failed_before = r->failed;
+    r->failed = 0;
+    for (int i = 0; i < n && !r->failed; i++) { /* one bad value of a range is enough */
+        hf_study_range_value(&hf_field_table[axis->field], from->from, from->to, from->is_log,
+                             x[(size_t)i * (size_t)stride], text);
+        add_value(r, axis, text, from->mark);
+    }
+    r->failed |= failed_before;
+}
+
+static void fill_even(reader *r, const range *from)
+{
+    int n = from->n ? from->n : r->n;
+    double *x = n ? malloc((size_t)n * sizeof *x) : NULL;
+    if (!n) {
+        fault(r, from->mark, hf_field_table[r->study->axis[from->i_axis].field].path,
+              "needs n, here or for all ranges in the sweep section");
+        return;
+    }
+    for (int i = 0; x && i < n; i++)
+        x[i] = n > 1 ? i / (n - 1.0) : 0;
+    if (x)
+        fill_range(r, from, x, 1, n);
+    else
+        r->no_memory = 1;
+    free(x);
+}
+
+/* All sampled axes of one kind, as one joint axis. */
+static void fill_sampled(reader *r, sampling kind)
+{
+    const range *member[HF_STUDY_AXIS_MAX];
+    int n_member = 0;
+    for (int a = 0; a < r->study->n_axis; a++)
+        if (r->range[a].i_axis >= 0 && r->range[a].sample == kind) member[n_member++] = &r->range[a];
+    if (!n_member) return;
+    if (!r->n) {
+        fault(r, member[0]->mark, "", "sampled axes need n in the sweep section");
+        return;
+    }
+    double *x = malloc((size_t)r->n * (size_t)n_member * sizeof *x);
+    if (!x || (kind == SAMPLE_SOBOL ? hf_study_sobol(r->n, n_member, x)
+                                    : hf_study_latin_hypercube(r->n, n_member, r->seed, x)) != HF_OK)
+        r->no_memory = 1;
+    for (int k = 0; k < n_member && !r->no_memory; k++)
+        fill_range(r, member[k], x + k, n_member, r->n);
+    free(x);
+}
+
+/* ---- the sweep section ---- */
+
+static void read_axis(reader *r, const yaml_node_t *key, const yaml_node_t *value)
+{
+    static const char *const reserved[] = {"n", "combine", "seed", "files"};
+    const char *names[256];
+    hf_study *s = r->study;
+    int n = 0, field = -1;
+    for (int i = 0; i < hf_n_field && n < 250; i++) {
+        names[n++] = hf_field_table[i].path;
+        if (!strcmp(hf_field_table[i].path, text_of(key))) field = i;
+    }
+    for (int i = 0; i < 4; i++)
+        names[n++] = reserved[i];
+    if (field < 0) {
+        fault_unknown(r, key->start_mark, "", text_of(key), names, n);
+        return;
+    }
+    if (s->n_axis == HF_STUDY_AXIS_MAX) {
+        fault(r, key->start_mark, text_of(key), "more than %d axes", HF_STUDY_AXIS_MAX);
+        return;
+    }
+    hf_study_axis *axis = &s->axis[s->n_axis++];
+    *axis = (hf_study_axis){
+        .field = field, .line = (int)key->start_mark.line + 1, .column = (int)key->start_mark.column + 1};
+    if (value->type == YAML_SEQUENCE_NODE)
+        read_list(r, axis, value);
+    else if (value->type == YAML_MAPPING_NODE)
+        read_range(r, axis, value, &r->range[s->n_axis - 1]);
+    else
+        fault(r, value->start_mark, text_of(key), "must be a list of values, or {from, to, n}");
+}
+
+static void read_sweep(reader *r, const yaml_node_t *mapping)
+{
+    static const char *const combines[] = {"product", "zip"};
+    hf_study *s = r->study;
+    if (mapping->type != YAML_MAPPING_NODE) {
+        fault(r, mapping->start_mark, "", "must be a section of axes, like form.pretension_N: [8, 10, 12]");
+        return;
+    }
+    for (yaml_node_pair_t *p = mapping->data.mapping.pairs.start; p < mapping->data.mapping.pairs.top; p++) {
+        const yaml_node_t *key = node_at(r, p->key), *value = node_at(r, p->value);
+        const char *word = text_of(key);
+        if (is_repeated(r, mapping, p, "")) continue;
+        if (!strcmp(word, "n"))
+            read_count(r, value, "", &r->n);
+        else if (!strcmp(word, "combine"))
+            read_word(r, value, "", word, combines, 2, &s->is_zip);
+        else if (!strcmp(word, "files"))
+            read_word(r, value, "", word, hf_study_files_word, 3, &s->files);
+        else if (!strcmp(word, "seed")) {
+            if (!hf_text_uint64(text_of(value), &r->seed))
+                fault(r, value->start_mark, "", "seed must be a whole number from 0 to 2^64-1, not '%s'",
+                      text_of(value));
+        } else
+            read_axis(r, key, value);
+    }
+    if (!s->n_axis && !r->failed) fault(r, mapping->start_mark, "", "has no axis");
+    for (int a = 0; a < s->n_axis; a++)
+        if (r->range[a].i_axis >= 0 && r->range[a].sample == SAMPLE_NONE) fill_even(r, &r->range[a]);
+    fill_sampled(r, SAMPLE_LATIN_HYPERCUBE);
+    fill_sampled(r, SAMPLE_SOBOL);
+}
+
+/* ---- the file ---- */
+
+static void read_base(reader *r, const yaml_node_t *node)
+{
+    hf_study *s = r->study;
+    const char *name = text_of(node), *slash = strrchr(s->path, '/');
+    int n = slash && *name != '/' ? (int)(slash - s->path) + 1 : 0;
+    if (!*name)
+        fault(r, node->start_mark, "", "base must be the name of a case file");
+    else if (snprintf(s->base, sizeof s->base, "%.*s%s", n, s->path, name) >= HF_PATH_SIZE)
+        fault(r, node->start_mark, "", "base is too long");
+}
+
+static void read_root(reader *r, const yaml_node_t *root)
+{
+    static const char *const names[] = {"base", "sweep"};
+    const yaml_node_t *base = NULL, *sweep = NULL;
+    yaml_mark_t start = {0};
+    if (!root || root->type != YAML_MAPPING_NODE) {
+        fault(r, start, "", "the file must be key: value lines");
+        return;
+    }
+    for (yaml_node_pair_t *p = root->data.mapping.pairs.start; p < root->data.mapping.pairs.top; p++) {
+        if (!strcmp(text_of(node_at(r, p->key)), "base")) base = node_at(r, p->value);
+        if (!strcmp(text_of(node_at(r, p->key)), "sweep")) sweep = node_at(r, p->value);
+    }
+    for (yaml_node_pair_t *p = root->data.mapping.pairs.start; base && p < root->data.mapping.pairs.top; p++) {
+        const yaml_node_t *key = node_at(r, p->key);
+        if (is_repeated(r, root, p, "")) continue;
+        if (strcmp(text_of(key), "base") && strcmp(text_of(key), "sweep"))
+            fault_unknown(r, key->start_mark, "", text_of(key), names, 2);
+    }
+    snprintf(r->study->base, sizeof r->study->base, "%s", r->study->path);
+    if (base) read_base(r, base);
+    if (sweep)
+        read_sweep(r, sweep);
+    else
+        fault(r, start, "", "is missing: there is no section with axes in this file");
+}
+
+static int compare_axes(const void *a, const void *b)
+{
+    const hf_study_axis *x = a, *y = b;
+    return strcmp(hf_field_table[x->field].path, hf_field_table[y->field].path);
+}
+
+static void parse(reader *r, const char *text, size_t length)
+{
+    yaml_parser_t parser;
+    yaml_document_t document;
+    if (!yaml_parser_initialize(&parser)) {
+        r->no_memory = 1;
+        return;
+    }
+    yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
+    if (!yaml_parser_load(&parser, &document)) {
+        fault(r, parser.problem_mark, "", "YAML: %s", parser.problem ? parser.problem : "cannot be read");
+    } else {
+        r->document = &document;
+        read_root(r, yaml_document_get_root_node(&document));
+        yaml_document_delete(&document);
+    }
+    r->document = NULL;
+    yaml_parser_delete(&parser);
+}
+
+hf_status hf_study_read(const char *path, hf_study *study, hf_messages *messages)
+{
+    char *text;
+    size_t length;
+    *study = (hf_study){0};
+    if (snprintf(study->path, sizeof study->path, "%s", path) >= HF_PATH_SIZE)
+        return hf_error(messages, HF_BAD_CASE, "%s: the path is too long", path);
+    HF_TRY(hf_text_read_file(path, HF_BAD_CASE, &text, &length, messages));
+    reader r = {.study = study, .messages = messages, .seed = 1};
+    for (int a = 0; a < HF_STUDY_AXIS_MAX; a++)
+        r.range[a].i_axis = -1;
+    hf_status status = HF_OK;
+    if (length > STUDY_MAX)
+        status = hf_error(messages, HF_BAD_CASE, "%s: longer than %d MB, so no study", path, STUDY_MAX >> 20);
+    else if (hf_text_too_deep(text))
+        status =
+            hf_error(messages, HF_BAD_CASE, "%s:%d:1: YAML: too many brackets are open", path, hf_text_too_deep(text));
+    else
+        parse(&r, text, length);
+    free(text);
+    HF_TRY(status);
+    if (r.no_memory) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    if (r.failed) return HF_BAD_CASE;
+    qsort(study->axis, (size_t)study->n_axis, sizeof *study->axis, compare_axes);
+    return hf_study_make_points(study, messages);
+}

@@ -1,0 +1,135 @@
+#define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
+#include "linalg/band.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+
+/* LAPACK (Fortran interface; the hidden string lengths of one-character arguments are never read) */
+void dpbtrf_(const char *uplo, const int *n, const int *kd, double *ab, const int *ldab, int *info);
+void dpbtrs_(const char *uplo, const int *n, const int *kd, const int *nrhs, const double *ab, const int *ldab,
+             double *b, const int *ldb, int *info);
+double dlansb_(const char *norm, const char *uplo, const int *n, const int *k, const double *ab, const int *ldab,
+               double *work);
+void dpbcon_(const char *uplo, const int *n, const int *kd, const double *ab, const int *ldab, const double *anorm,
+             double *rcond, double *work, int *iwork, int *info);
+void dgbtrf_(const int *m, const int *n, const int *kl, const int *ku, double *ab, const int *ldab, int *ipiv,
+             int *info);
+void dgbtrs_(const char *trans, const int *n, const int *kl, const int *ku, const int *nrhs, const double *ab,
+             const int *ldab, const int *ipiv, double *b, const int *ldb, int *info);
+void dgbcon_(const char *norm, const int *n, const int *kl, const int *ku, const double *ab, const int *ldab,
+             const int *ipiv, const double *anorm, double *rcond, double *work, int *iwork, int *info);
+void dsyrk_(const char *uplo, const char *trans, const int *n, const int *k, const double *alpha, const double *a,
+            const int *lda, const double *beta, double *c, const int *ldc);
+
+/* only OpenBLAS has these; another library leaves them at NULL */
+#pragma weak openblas_set_num_threads
+#pragma weak openblas_get_config
+#pragma weak openblas_get_corename
+void openblas_set_num_threads(int n);
+char *openblas_get_config(void);
+char *openblas_get_corename(void);
+
+static const int three = 3;
+
+hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row)
+{
+    int ldab = half_bandwidth + 1, info = 0;
+    *bad_row = -1;
+    dpbtrf_("L", &n, &half_bandwidth, band, &ldab, &info);
+    if (info != 0) {
+        *bad_row = info > 0 ? info - 1 : 0;
+        return HF_SINGULAR;
+    }
+    dpbtrs_("L", &n, &half_bandwidth, &three, band, &ldab, b, &ldb, &info);
+    return HF_OK;
+}
+
+void hf_band_gram(int n, int n_column, const double *a, int lda, double *gram, int ldg)
+{
+    double one = 1, zero = 0;
+    dsyrk_("U", "T", &n, &n_column, &one, a, &lda, &zero, gram, &ldg); /* lower by rows is upper by columns */
+}
+
+int hf_band_factor(int n, int half_bandwidth, double *band)
+{
+    int ldab = half_bandwidth + 1, info = 0;
+    dpbtrf_("L", &n, &half_bandwidth, band, &ldab, &info);
+    return info;
+}
+
+void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb)
+{
+    int ldab = half_bandwidth + 1, info = 0;
+    dpbtrs_("L", &n, &half_bandwidth, &n_rhs, factor, &ldab, b, &ldb, &info);
+}
+
+double hf_band_norm(int n, int half_bandwidth, const double *band, double *work)
+{
+    int ldab = half_bandwidth + 1;
+    return dlansb_("1", "L", &n, &half_bandwidth, band, &ldab, work);
+}
+
+double hf_band_condition(int n, int half_bandwidth, const double *factor, double norm, double *work, int *integer_work)
+{
+    int ldab = half_bandwidth + 1, info = 0;
+    double reciprocal = 0;
+    dpbcon_("L", &n, &half_bandwidth, factor, &ldab, &norm, &reciprocal, work, integer_work, &info);
+    return reciprocal > 0 ? 1 / reciprocal : (double)INFINITY;
+}
+
+hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band, double *general, int *pivot,
+                                   double *b, int ldb, int *bad_row)
+{
+    int k = half_bandwidth, ldab = 3 * k + 1, info = 0;
+    *bad_row = -1;
+    /* LAPACK's general band: entry (i,j) at general[2k + i - j + j*ldab]; the top k rows are room for pivoting */
+    memset(general, 0, (size_t)n * (size_t)ldab * sizeof *general);
+    for (int j = 0; j < n; j++)
+        for (int d = 0; d <= k && j + d < n; d++) {
+            double value = band[d + j * (k + 1)];
+            general[2 * k + d + j * ldab] = value;
+            general[2 * k - d + (j + d) * ldab] = value;
+        }
+    dgbtrf_(&n, &n, &k, &k, general, &ldab, pivot, &info);
+    if (info != 0) {
+        *bad_row = info > 0 ? info - 1 : 0;
+        return HF_SINGULAR;
+    }
+    dgbtrs_("N", &n, &k, &k, &three, general, &ldab, pivot, b, &ldb, &info);
+    return HF_OK;
+}
+
+double hf_band_condition_indefinite(int n, int half_bandwidth, const double *general, const int *pivot, double norm,
+                                    double *work, int *integer_work)
+{
+    int k = half_bandwidth, ldab = 3 * k + 1, info = 0;
+    double reciprocal = 0;
+    dgbcon_("1", &n, &k, &k, general, &ldab, pivot, &norm, &reciprocal, work, integer_work, &info);
+    return reciprocal > 0 ? 1 / reciprocal : (double)INFINITY;
+}
+
+void hf_band_single_threaded(void)
+{
+    if (openblas_set_num_threads) openblas_set_num_threads(1);
+}
+
+int hf_band_has_room(int n_thread)
+{
+    if (!openblas_get_config) return 1;
+    size_t bytes = (size_t)n_thread * ((size_t)HF_BAND_ROOM_MB << 20);
+    void *room = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (room == MAP_FAILED) return 0;
+    munmap(room, bytes);
+    return 1;
+}
+
+const char *hf_band_library(void)
+{
+    static char name[256];
+    if (!openblas_get_config) return "reference or unknown";
+    snprintf(name, sizeof name, "%s; core %s", openblas_get_config(),
+             openblas_get_corename ? openblas_get_corename() : "unknown");
+    return name;
+}

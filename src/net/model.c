@@ -1,0 +1,455 @@
+/* Contents: layout - numbering and band places - laws and targets - straight chains - groups of
+ * genes - build - attachments - checks */
+#include <hifdm/model.h>
+
+#include "base/arena.h"
+#include "net/numbering.h"
+
+#include <assert.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- layout ---- */
+
+/* The methods iterative_fdm and fdm put other laws in its place. */
+static int has_elastic(const hf_scene *s, int method)
+{
+    if (method == HF_METHOD_ITERATIVE_FDM || method == HF_METHOD_FDM) return 0;
+    for (int e = 0; e < s->n_cable; e++)
+        if (s->law[e] == HF_LAW_ELASTIC) return 1;
+    return 0;
+}
+
+static void lay_out(hf_arena *a, const hf_scene *s, int method, hf_model *m)
+{
+    size_t n = (size_t)m->n_node, e = (size_t)m->n_cable;
+    m->row_of_node = hf_arena_take(a, n, sizeof(int));
+    m->node_of_row = hf_arena_take(a, n, sizeof(int));
+    m->end_row = hf_arena_take(a, 2 * e, sizeof(int));
+    m->diagonal_a = hf_arena_take(a, e, sizeof(int));
+    m->diagonal_b = hf_arena_take(a, e, sizeof(int));
+    m->off_diagonal = hf_arena_take(a, e, sizeof(int));
+    m->inner_row = hf_arena_take(a, n, sizeof(int));
+    m->position_m = hf_arena_take(a, 3 * n, sizeof(double));
+    m->load_N = s->load_N ? hf_arena_take(a, 3 * n, sizeof(double)) : NULL;
+    m->length_m = hf_arena_take(a, e, sizeof(double));
+    m->group = hf_arena_take(a, e, 1);
+    m->law = hf_arena_take(a, e, 1);
+    m->target = hf_arena_take(a, e, sizeof(double));
+    m->EA_N = has_elastic(s, method) ? hf_arena_take(a, e, sizeof(double)) : NULL;
+    m->start_q_N_per_m = hf_arena_take(a, e, sizeof(double));
+    m->gene_cable = hf_arena_take(a, e, sizeof(int));
+    m->gene_group = hf_arena_take(a, e, sizeof(int));
+    m->gene_leader = hf_arena_take(a, e, sizeof(int));
+    m->chain_start = hf_arena_take(a, e + 1, sizeof(int));
+    m->chain_cable = hf_arena_take(a, e, sizeof(int));
+    m->chain_of_row = hf_arena_take(a, n, sizeof(int));
+}
+
+/* ---- numbering and band places ---- */
+
+static void number_nodes(const hf_scene *s, hf_model *m)
+{
+    int n_support = 0;
+    for (int i = 0; i < m->n_node; i++)
+        if (s->role[i] == HF_ROLE_SUPPORT) m->node_of_row[m->n_free + n_support++] = i;
+    for (int row = 0; row < m->n_node; row++) {
+        int node = m->node_of_row[row];
+        m->row_of_node[node] = row;
+        for (int c = 0; c < 3; c++) {
+            m->position_m[c * m->n_node + row] = s->position_m[3 * (size_t)node + (size_t)c];
+            if (m->load_N) m->load_N[c * m->n_node + row] = s->load_N[3 * (size_t)node + (size_t)c];
+        }
+        if (s->role[node] == HF_ROLE_INNER) m->inner_row[m->n_inner_node++] = row;
+    }
+}
+
+static void place_cables(const hf_scene *s, hf_model *m)
+{
+    int column = m->half_bandwidth + 1;
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->row_of_node[s->end[2 * e]], b = m->row_of_node[s->end[2 * e + 1]];
+        int low = a < b ? a : b, high = a < b ? b : a;
+        m->end_row[2 * e] = a;
+        m->end_row[2 * e + 1] = b;
+        m->diagonal_a[e] = a < m->n_free ? a * column : m->n_band;
+        m->diagonal_b[e] = b < m->n_free ? b * column : m->n_band;
+        m->off_diagonal[e] = high < m->n_free ? high - low + low * column : m->n_band;
+    }
+}
+
+/* ---- laws and targets ---- */
+
+/* The tension that a cable is given, N; 0 when its law gives none. What an elastic cable has in the theoretical shape
+ * is no scale for anything: it may be out by a thousand times. */
+static double given_tension(const hf_scene *s, double pretension_N, int e)
+{
+    if (s->law[e] == HF_LAW_LENGTH || s->law[e] == HF_LAW_ELASTIC) return 0;
+    if (s->law[e] == HF_LAW_FORCE_DENSITY) return fabs(s->target[e]) * hf_scene_theoretical_length(s, e);
+    return isnan(s->target[e]) ? pretension_N : s->target[e];
+}
+
+double hf_model_reference_N(const hf_scene *scene, double pretension_N)
+{
+    double largest_N = 0;
+    for (int e = 0; e < scene->n_cable; e++)
+        largest_N = fmax(largest_N, given_tension(scene, pretension_N, e));
+    for (int i = 0; scene->load_N && i < scene->n_node; i++) {
+        const double *p = scene->load_N + 3 * (size_t)i;
+        if (scene->role[i] != HF_ROLE_SUPPORT) largest_N = fmax(largest_N, hypot(hypot(p[0], p[1]), p[2]));
+    }
+    return largest_N > 0 ? largest_N : pretension_N;
+}
+
+static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *m)
+{
+    m->pretension_N = form->pretension_N;
+    m->reference_N = hf_model_reference_N(s, form->pretension_N);
+    for (int e = 0; e < m->n_cable; e++) {
+        int law = s->law[e];
+        double length = hf_scene_theoretical_length(s, e), target = s->target[e];
+        double given = given_tension(s, form->pretension_N, e), tension = given > 0 ? given : m->reference_N;
+        if (law == HF_LAW_ELASTIC && length > target) tension = s->EA_N[e] * (length / target - 1);
+        double q = law == HF_LAW_FORCE_DENSITY ? target : tension / length;
+        if (law == HF_LAW_TENSION) target = tension;
+        if (form->method == HF_METHOD_ITERATIVE_FDM) {
+            if (law != HF_LAW_TENSION) tension = form->pretension_N;
+            law = HF_LAW_TENSION;
+            target = tension;
+            q = tension / length;
+        } else if (form->method == HF_METHOD_FDM) {
+            law = HF_LAW_FORCE_DENSITY;
+            target = q;
+        }
+        if (m->EA_N) m->EA_N[e] = s->EA_N ? s->EA_N[e] : (double)NAN;
+        m->length_m[e] = length;
+        m->group[e] = s->group[e];
+        m->law[e] = (unsigned char)law;
+        m->target[e] = target;
+        m->start_q_N_per_m[e] = q;
+        m->has_strut |= q < 0;
+        if (s->group[e] == HF_GROUP_BOUNDARY && (m->end_row[2 * e] < m->n_free || m->end_row[2 * e + 1] < m->n_free))
+            m->gene_cable[m->n_gene++] = e;
+    }
+    for (int e = 0; e < m->n_cable; e++)
+        m->has_newton |= m->law[e] != HF_LAW_FORCE_DENSITY;
+    if (m->has_strut) m->has_newton = 0;
+}
+
+/* ---- chains of length-controlled cables ---- */
+
+typedef struct {
+    int *count; /* [n_node] cables of law length at a row */
+    int *cable; /* [n_node][2] two of them */
+} length_graph;
+
+static double distance(const hf_model *m, int row_a, int row_b)
+{
+    double d[3];
+    for (int c = 0; c < 3; c++)
+        d[c] = m->position_m[c * m->n_node + row_a] - m->position_m[c * m->n_node + row_b];
+    return hypot(hypot(d[0], d[1]), d[2]);
+}
+
+/* Follow the chain that leaves the support `from` by cable `first`; keep it when it ends at a support and is straight,
+ * or not, as wanted. A chain is met from both ends: only the end with the smaller cable index counts. */
+static void follow_chain(hf_model *m, const length_graph *g, int from, int first, int want_straight)
+{
+    int start = m->chain_start[m->n_any_chain], n = 0, row = from, e = first;
+    double sum = 0;
+    if (start == m->n_cable) return; /* every cable is in a chain already */
+    for (;;) {
+        row = m->end_row[2 * e] == row ? m->end_row[2 * e + 1] : m->end_row[2 * e];
+        m->chain_cable[start + n++] = e;
+        sum += m->target[e];
+        if (row >= m->n_free) break;
+        if (g->count[row] != 2 || n == m->n_cable - start) return;
+        e = g->cable[2 * row] == e ? g->cable[2 * row + 1] : g->cable[2 * row];
+    }
+    int is_straight = sum <= distance(m, from, row) * (1 + HF_STRAIGHT_EXCESS);
+    if (n < 2 || e < first || is_straight != want_straight) return;
+    int through = from;
+    for (int k = 0; is_straight && k + 1 < n; k++) {
+        int *end = m->end_row + 2 * m->chain_cable[start + k];
+        through = end[0] == through ? end[1] : end[0];
+        m->chain_of_row[through] = m->n_any_chain;
+    }
+    m->chain_start[++m->n_any_chain] = start + n;
+}
+
+static hf_status find_chains(hf_model *m)
+{
+    length_graph g = {.count = calloc((size_t)m->n_node * 3, sizeof(int))};
+    if (!g.count) return HF_NO_MEMORY;
+    g.cable = g.count + m->n_node;
+    for (int row = 0; row < m->n_node; row++)
+        m->chain_of_row[row] = -1;
+    for (int e = 0; e < m->n_cable; e++)
+        for (int k = 0; k < 2 && m->law[e] == HF_LAW_LENGTH; k++) {
+            int row = m->end_row[2 * e + k];
+            if (g.count[row] < 2) g.cable[2 * row + g.count[row]] = e;
+            g.count[row]++;
+        }
+    for (int want_straight = 1; want_straight >= 0; want_straight--) {
+        for (int e = 0; e < m->n_cable; e++)
+            for (int k = 0; k < 2 && m->law[e] == HF_LAW_LENGTH; k++)
+                if (m->end_row[2 * e + k] >= m->n_free && m->end_row[2 * e + 1 - k] < m->n_free)
+                    follow_chain(m, &g, m->end_row[2 * e + k], e, want_straight);
+        if (want_straight) m->n_chain = m->n_any_chain;
+    }
+    free(g.count);
+    return HF_OK;
+}
+
+/* ---- groups of genes ---- */
+
+/* Union-find with path halving. */
+static int find_root(int *parent, int i)
+{
+    while (parent[i] != i)
+        i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+static hf_status group_genes(hf_model *m)
+{
+    int *scratch = malloc(((size_t)m->n_node * 3 + (size_t)m->n_gene * 2) * sizeof *scratch);
+    if (!scratch) return HF_NO_MEMORY;
+    int *count = scratch, *gene_at = count + m->n_node, *parent = gene_at + 2 * m->n_node, *label = parent + m->n_gene;
+    memset(count, 0, (size_t)m->n_node * sizeof *count);
+    for (int k = 0; k < m->n_gene; k++) {
+        parent[k] = k;
+        label[k] = -1;
+        for (int end = 0; end < 2; end++) {
+            int row = m->end_row[2 * m->gene_cable[k] + end];
+            if (count[row] < 2) gene_at[2 * row + count[row]] = k;
+            count[row]++;
+        }
+    }
+    for (int row = 0; row < m->n_free; row++)
+        if (count[row] == 2) parent[find_root(parent, gene_at[2 * row])] = find_root(parent, gene_at[2 * row + 1]);
+    for (int k = 0; k < m->n_gene; k++) {
+        int root = find_root(parent, k);
+        if (label[root] < 0) label[root] = m->n_gene_group++;
+        m->gene_group[k] = label[root];
+        m->gene_leader[k] = k;
+    }
+    m->n_leader = m->n_gene;
+    free(scratch);
+    return HF_OK;
+}
+
+void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_chain, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int k = model->chain_start[i_chain]; k < model->chain_start[i_chain + 1]; k++) {
+        const char *id = scene->cable_id[model->chain_cable[k]];
+        if (used + strlen(id) + 8 > size) {
+            snprintf(text + used, size - used, " ...");
+            return;
+        }
+        used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " + " : "", id);
+    }
+}
+
+/* ---- build ---- */
+
+static hf_status build(const hf_scene *scene, const hf_form_settings *form, const int *order, hf_model *m)
+{
+    hf_arena arena = {0};
+    lay_out(&arena, scene, form->method, m);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out(&arena, scene, form->method, m);
+    m->block = arena.block;
+    memcpy(m->node_of_row, order, (size_t)m->n_free * sizeof(int));
+    number_nodes(scene, m);
+    place_cables(scene, m);
+    set_laws(scene, form, m);
+    HF_TRY(group_genes(m));
+    return find_chains(m);
+}
+
+hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages)
+{
+    *model = (hf_model){.n_node = scene->n_node, .n_cable = scene->n_cable};
+    for (int i = 0; i < scene->n_node; i++)
+        model->n_free += scene->role[i] != HF_ROLE_SUPPORT;
+    int *order = malloc((size_t)scene->n_node * sizeof *order);
+    hf_status status = order ? hf_numbering_find(scene, order, &model->half_bandwidth) : HF_NO_MEMORY;
+    double n_band = (double)model->n_free * (model->half_bandwidth + 1.0);
+    if (status == HF_OK && 3 * n_band > INT_MAX / 2) { /* 3: the general band of nets with struts */
+        free(order);
+        return hf_error(messages, HF_NO_MEMORY, "the band matrix of %d rows, half-bandwidth %d is too large",
+                        model->n_free, model->half_bandwidth);
+    }
+    model->n_band = (int)n_band;
+    if (status == HF_OK) status = build(scene, form, order, model);
+    free(order);
+    if (status != HF_OK) return hf_error(messages, status, "out of memory for a model of %d nodes", scene->n_node);
+    return HF_OK;
+}
+
+/* ---- attachments ---- */
+
+#define SYMMETRY_TOLERANCE 1e-9 /* of the largest entry: rounding of solves with a condition of 1e6 */
+
+static hf_status check_attachments(const hf_model *m, int n, const int *node, hf_messages *messages)
+{
+    for (int i = 0; i < n; i++) {
+        if (node[i] < 0 || node[i] >= m->n_node || m->row_of_node[node[i]] < m->n_free)
+            return hf_error(messages, HF_BAD_CASE, "attachment %d of the truss: node %d is no support", i, node[i]);
+        for (int j = 0; j < i; j++)
+            if (node[j] == node[i])
+                return hf_error(messages, HF_BAD_CASE, "attachments %d and %d of the truss are the same node", j, i);
+    }
+    return HF_OK;
+}
+
+static hf_status check_flexibility(int n, const double *flexibility, hf_messages *messages)
+{
+    double largest = 0;
+    size_t dofs = 3 * (size_t)n;
+    for (size_t i = 0; i < dofs * dofs; i++) {
+        if (!isfinite(flexibility[i]))
+            return hf_error(messages, HF_BAD_CASE, "the flexibility of the truss at attachment %d is not finite",
+                            (int)(i / dofs / 3));
+        largest = fmax(largest, fabs(flexibility[i]));
+    }
+    for (size_t i = 0; i < dofs; i++) {
+        if (flexibility[i * dofs + i] < 0)
+            return hf_error(messages, HF_BAD_CASE, "the flexibility of the truss at attachment %d is negative: %g m/N",
+                            (int)(i / 3), flexibility[i * dofs + i]);
+        for (size_t j = 0; j < i; j++)
+            if (!(fabs(flexibility[i * dofs + j] - flexibility[j * dofs + i]) <= SYMMETRY_TOLERANCE * largest))
+                return hf_error(messages, HF_BAD_CASE,
+                                "the flexibility of the truss is not symmetric between attachments %d and %d",
+                                (int)(j / 3), (int)(i / 3));
+    }
+    return HF_OK;
+}
+
+static void lay_out_attachments(hf_arena *a, hf_model *m)
+{
+    size_t n = (size_t)m->n_attachment;
+    m->attachment_row = hf_arena_take(a, n, sizeof(int));
+    m->flexibility_m_per_N = hf_arena_take(a, 9 * n * n, sizeof(double));
+    m->tie = hf_arena_take(a, (size_t)m->n_tie, sizeof(int));
+    m->tie_attachment = hf_arena_take(a, (size_t)m->n_tie, sizeof(int));
+}
+
+/* List the cable ends at attachments, or only count them while there is no list. attachment_of_row: [n_node], or -1. */
+static void find_ties(hf_model *m, const int *attachment_of_row)
+{
+    m->n_tie = 0;
+    for (int k = 0; k < 2 * m->n_cable; k++) {
+        int i = attachment_of_row[m->end_row[k]];
+        if (i < 0) continue;
+        if (m->tie) m->tie[m->n_tie] = k;
+        if (m->tie) m->tie_attachment[m->n_tie] = i;
+        m->n_tie++;
+    }
+}
+
+/* Between supports a length is the truss's business: the cable keeps its first tension. */
+static void hold_rods(hf_model *m)
+{
+    for (int k = 0; k < m->n_tie; k++) {
+        int e = m->tie[k] / 2;
+        if (m->law[e] != HF_LAW_LENGTH || m->end_row[2 * e] < m->n_free || m->end_row[2 * e + 1] < m->n_free) continue;
+        m->law[e] = HF_LAW_TENSION;
+        m->target[e] = m->start_q_N_per_m[e] * m->length_m[e];
+    }
+}
+
+/* Supports that move can straighten a chain, so that its nodes must be known, too. */
+static void mark_chains(hf_model *m)
+{
+    for (int i = m->n_chain; i < m->n_any_chain; i++)
+        for (int k = m->chain_start[i]; k < m->chain_start[i + 1]; k++)
+            for (int side = 0; side < 2; side++) {
+                int row = m->end_row[2 * m->chain_cable[k] + side];
+                if (row < m->n_free) m->chain_of_row[row] = i;
+            }
+}
+
+static hf_status attach(hf_model *m, int n, const int *node, const double *flexibility)
+{
+    size_t dofs = 3 * (size_t)n;
+    int *attachment_of_row = malloc((size_t)m->n_node * sizeof *attachment_of_row);
+    if (!attachment_of_row) return HF_NO_MEMORY;
+    for (int row = 0; row < m->n_node; row++)
+        attachment_of_row[row] = -1;
+    for (int i = 0; i < n; i++)
+        attachment_of_row[m->row_of_node[node[i]]] = i;
+    hf_arena arena = {0};
+    m->n_attachment = n;
+    find_ties(m, attachment_of_row);
+    lay_out_attachments(&arena, m);
+    hf_status status = hf_arena_allocate(&arena);
+    if (status == HF_OK) {
+        lay_out_attachments(&arena, m);
+        m->attachment_block = arena.block;
+        find_ties(m, attachment_of_row);
+        for (int i = 0; i < n; i++)
+            m->attachment_row[i] = m->row_of_node[node[i]];
+        for (size_t i = 0; i < dofs; i++)
+            for (size_t j = 0; j < dofs; j++)
+                m->flexibility_m_per_N[i * dofs + j] = (flexibility[i * dofs + j] + flexibility[j * dofs + i]) / 2;
+        hold_rods(m);
+        mark_chains(m);
+    } else {
+        m->n_attachment = m->n_tie = 0;
+    }
+    free(attachment_of_row);
+    return status;
+}
+
+hf_status hf_model_attach(hf_model *m, int n_attachment, const int *node, const double *flexibility_m_per_N,
+                          hf_messages *messages)
+{
+    assert(m->n_attachment == 0 && n_attachment > 0);
+    HF_TRY(check_attachments(m, n_attachment, node, messages));
+    HF_TRY(check_flexibility(n_attachment, flexibility_m_per_N, messages));
+    if (attach(m, n_attachment, node, flexibility_m_per_N) == HF_OK) return HF_OK;
+    return hf_error(messages, HF_NO_MEMORY, "out of memory for %d attachments", n_attachment);
+}
+
+void hf_model_free(hf_model *model)
+{
+    free(model->block);
+    free(model->attachment_block);
+    *model = (hf_model){0};
+}
+
+/* ---- checks ---- */
+
+int hf_model_is_valid(const hf_model *m)
+{
+    int column = m->half_bandwidth + 1;
+    if (m->n_free < 1 || m->n_free > m->n_node || m->n_band != m->n_free * column) return 0;
+    for (int row = 0; row < m->n_node; row++)
+        if (m->node_of_row[row] < 0 || m->node_of_row[row] >= m->n_node || m->row_of_node[m->node_of_row[row]] != row)
+            return 0;
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], low = a < b ? a : b, high = a < b ? b : a;
+        if (a == b || low < 0 || high >= m->n_node || !(m->length_m[e] > 0)) return 0;
+        if (m->diagonal_a[e] != (a < m->n_free ? a * column : m->n_band)) return 0;
+        if (m->diagonal_b[e] != (b < m->n_free ? b * column : m->n_band)) return 0;
+        if (high < m->n_free ? high - low > m->half_bandwidth || m->off_diagonal[e] != high - low + low * column
+                             : m->off_diagonal[e] != m->n_band)
+            return 0;
+    }
+    for (int k = 0; k < m->n_gene; k++)
+        if (m->gene_leader[k] < 0 || m->gene_leader[k] > k) return 0;
+    for (int k = 0; k < m->n_inner_node; k++)
+        if (m->inner_row[k] < 0 || m->inner_row[k] >= m->n_free) return 0;
+    for (int k = 0; k < m->n_tie; k++)
+        if (m->end_row[m->tie[k]] != m->attachment_row[m->tie_attachment[k]]) return 0;
+    for (int i = 0; i < m->n_attachment; i++)
+        if (m->attachment_row[i] < m->n_free || m->attachment_row[i] >= m->n_node) return 0;
+    return m->chain_start[0] == 0 && m->n_gene <= m->n_cable;
+}

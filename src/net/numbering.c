@@ -1,0 +1,222 @@
+/* Contents: adjacency of the free nodes - Cuthill-McKee - sorting along an axis - choice */
+#include "net/numbering.h"
+
+#include "base/arena.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct {
+    const hf_scene *s;
+    int n;          /* free nodes */
+    int *free_of;   /* [n_node] index among the free nodes, -1 for a support */
+    int *node_of;   /* [n] */
+    int *start;     /* [n + 1] into neighbour */
+    int *neighbour; /* free neighbours, twice per cable between free nodes */
+    int *place;     /* [n] position in the order under test */
+    int *order;     /* [n] */
+    int *level;     /* [n] distance from the root of a search; -1 = not reached, -2 = numbered already */
+    int *queue;     /* [n] */
+    int *best;      /* [n] */
+    int *wave;      /* [n] nodes of the last search */
+} graph;
+
+static void lay_out(hf_arena *a, graph *g)
+{
+    size_t n = (size_t)g->s->n_node, m = (size_t)g->s->n_cable;
+    g->free_of = hf_arena_take(a, n, sizeof(int));
+    g->node_of = hf_arena_take(a, n, sizeof(int));
+    g->start = hf_arena_take(a, n + 1, sizeof(int));
+    g->neighbour = hf_arena_take(a, 2 * m, sizeof(int));
+    g->place = hf_arena_take(a, n, sizeof(int));
+    g->order = hf_arena_take(a, n, sizeof(int));
+    g->level = hf_arena_take(a, n, sizeof(int));
+    g->queue = hf_arena_take(a, n, sizeof(int));
+    g->best = hf_arena_take(a, n, sizeof(int));
+    g->wave = hf_arena_take(a, n, sizeof(int));
+}
+
+/* ---- adjacency of the free nodes ---- */
+
+static void build(graph *g)
+{
+    const hf_scene *s = g->s;
+    for (int i = 0; i < s->n_node; i++) {
+        g->free_of[i] = s->role[i] == HF_ROLE_SUPPORT ? -1 : g->n;
+        if (g->free_of[i] >= 0) g->node_of[g->n++] = i;
+    }
+    for (int pass = 0; pass < 2; pass++) {
+        for (int e = 0; e < s->n_cable; e++) {
+            int a = g->free_of[s->end[2 * e]], b = g->free_of[s->end[2 * e + 1]];
+            if (a < 0 || b < 0) continue;
+            if (pass == 0) {
+                g->start[a + 1]++;
+                g->start[b + 1]++;
+            } else {
+                g->neighbour[g->queue[a]++] = b;
+                g->neighbour[g->queue[b]++] = a;
+            }
+        }
+        if (pass == 1) break;
+        for (int i = 0; i < g->n; i++)
+            g->start[i + 1] += g->start[i];
+        memcpy(g->queue, g->start, (size_t)g->n * sizeof(int)); /* next free place of each node */
+    }
+}
+
+static int degree(const graph *g, int i)
+{
+    return g->start[i + 1] - g->start[i];
+}
+
+/* ---- Cuthill-McKee ---- */
+
+/* Breadth-first from `root` over nodes not numbered yet, neighbours by rising degree; returns how many, listed in
+ * `wave`; their levels are set. */
+static int search(graph *g, int root, int *wave)
+{
+    int n = 0;
+    g->level[root] = 0;
+    wave[n++] = root;
+    for (int i = 0; i < n; i++) {
+        int first = n, node = wave[i];
+        for (int k = g->start[node]; k < g->start[node + 1]; k++) {
+            int next = g->neighbour[k];
+            if (g->level[next] != -1) continue;
+            g->level[next] = g->level[node] + 1;
+            int at = n++; /* insertion by degree, stable */
+            for (; at > first && degree(g, wave[at - 1]) > degree(g, next); at--)
+                wave[at] = wave[at - 1];
+            wave[at] = next;
+        }
+    }
+    return n;
+}
+
+static void forget(graph *g, const int *wave, int n)
+{
+    for (int i = 0; i < n; i++)
+        g->level[wave[i]] = -1;
+}
+
+/* A node at the far end of the component of `root` (George & Liu 1979). */
+static int peripheral(graph *g, int root)
+{
+    for (int depth = -1;;) {
+        int n = search(g, root, g->wave), last = g->level[g->wave[n - 1]], far = g->wave[n - 1];
+        for (int i = n - 1; i >= 0 && g->level[g->wave[i]] == last; i--)
+            if (degree(g, g->wave[i]) < degree(g, far)) far = g->wave[i];
+        forget(g, g->wave, n);
+        if (last <= depth) return root;
+        depth = last;
+        root = far;
+    }
+}
+
+static void cuthill_mckee(graph *g)
+{
+    int n_done = 0;
+    for (int i = 0; i < g->n; i++)
+        g->level[i] = -1;
+    for (int i = 0; i < g->n; i++) {
+        if (g->level[i] != -1) continue;
+        int root = peripheral(g, i), n = search(g, root, g->queue);
+        for (int k = 0; k < n; k++) {
+            g->level[g->queue[k]] = -2;
+            g->order[n_done++] = g->queue[k];
+        }
+    }
+}
+
+/* ---- sorting along an axis ---- */
+
+typedef struct {
+    double key[3]; /* the axis first, then the two others to break ties */
+    int node;
+} sort_item;
+
+static int compare_items(const void *a, const void *b)
+{
+    const sort_item *x = a, *y = b;
+    for (int c = 0; c < 3; c++)
+        if (x->key[c] != y->key[c]) return x->key[c] < y->key[c] ? -1 : 1;
+    return (x->node > y->node) - (x->node < y->node);
+}
+
+static hf_status sort_along(graph *g, int axis)
+{
+    sort_item *item = malloc((size_t)g->n * sizeof *item);
+    if (!item) return HF_NO_MEMORY;
+    for (int i = 0; i < g->n; i++) {
+        const double *p = g->s->position_m + 3 * (size_t)g->node_of[i];
+        item[i] = (sort_item){{p[axis], p[axis == 0], p[axis == 2 ? 1 : 2]}, i};
+    }
+    qsort(item, (size_t)g->n, sizeof *item, compare_items);
+    for (int i = 0; i < g->n; i++)
+        g->order[i] = item[i].node;
+    free(item);
+    return HF_OK;
+}
+
+/* ---- choice ---- */
+
+/* Sum of the squared row widths of the lower triangle, which the work of a skyline factorisation grows with. */
+static double squared_widths(graph *g, int *half_bandwidth)
+{
+    double sum = 0;
+    *half_bandwidth = 0;
+    for (int i = 0; i < g->n; i++)
+        g->place[g->order[i]] = i;
+    for (int i = 0; i < g->n; i++) {
+        int width = 0;
+        for (int k = g->start[i]; k < g->start[i + 1]; k++)
+            if (g->place[i] - g->place[g->neighbour[k]] > width) width = g->place[i] - g->place[g->neighbour[k]];
+        sum += (double)width * width;
+        if (width > *half_bandwidth) *half_bandwidth = width;
+    }
+    return sum;
+}
+
+static void reverse(graph *g)
+{
+    for (int i = 0, j = g->n - 1; i < j; i++, j--) {
+        int swap = g->order[i];
+        g->order[i] = g->order[j];
+        g->order[j] = swap;
+    }
+}
+
+/* The order under test and its reverse, whose rows have other widths. */
+static void keep_if_better(graph *g, double *best_sum, int *best_half_bandwidth)
+{
+    for (int pass = 0; pass < 2; pass++, reverse(g)) {
+        int half_bandwidth;
+        double sum = squared_widths(g, &half_bandwidth);
+        if (*best_sum >= 0 && sum >= *best_sum) continue;
+        *best_sum = sum;
+        *best_half_bandwidth = half_bandwidth;
+        memcpy(g->best, g->order, (size_t)g->n * sizeof(int));
+    }
+}
+
+hf_status hf_numbering_find(const hf_scene *scene, int *order, int *half_bandwidth)
+{
+    graph g = {.s = scene};
+    hf_arena arena = {0};
+    lay_out(&arena, &g);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out(&arena, &g);
+    build(&g);
+    double best_sum = -1;
+    cuthill_mckee(&g);
+    keep_if_better(&g, &best_sum, half_bandwidth);
+    hf_status status = HF_OK;
+    for (int axis = 0; axis < 3 && status == HF_OK; axis++) {
+        status = sort_along(&g, axis);
+        if (status == HF_OK) keep_if_better(&g, &best_sum, half_bandwidth);
+    }
+    for (int i = 0; i < g.n; i++)
+        order[i] = g.node_of[g.best[i]];
+    hf_arena_free(&arena);
+    return status;
+}

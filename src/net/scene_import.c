@@ -1,0 +1,155 @@
+/* Contents: nodes - cables - together */
+#include "net/scene_import.h"
+
+#include "base/csv.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define COLUMN_MAX 64
+
+/* ---- nodes ---- */
+
+enum { NODE_ID, NODE_X, NODE_Y, NODE_Z, NODE_ROLE, NODE_FX, NODE_FY, NODE_FZ, N_NODE_COLUMN };
+static const char *const node_column[N_NODE_COLUMN] = {"id", "x_m", "y_m", "z_m", "role", "Fx_N", "Fy_N", "Fz_N"};
+
+static int read_nodes(hf_csv *t, const int *where, hf_scene *s)
+{
+    int any_load = 0;
+    for (int r = 0; r < t->n_row; r++) {
+        const char *id = hf_csv_cell(t, r, where[NODE_ID]);
+        for (int c = 0; c < 3; c++) {
+            s->position_m[3 * r + c] = hf_csv_number(t, r, where[NODE_X + c], id, node_column[NODE_X + c]);
+            if (where[NODE_FX + c] < 0 || !*hf_csv_cell(t, r, where[NODE_FX + c])) continue; /* empty = no load */
+            s->load_N[3 * r + c] = hf_csv_number(t, r, where[NODE_FX + c], id, node_column[NODE_FX + c]);
+            any_load |= s->load_N[3 * r + c] != 0;
+        }
+        s->role[r] = (unsigned char)hf_csv_word(t, r, where[NODE_ROLE], id, hf_role_word, 3);
+        s->node_id[r] = id;
+        s->node_line[r] = t->line[r];
+    }
+    return any_load;
+}
+
+/* ---- cables ---- */
+
+enum { CABLE_ID, CABLE_I, CABLE_J, CABLE_GROUP, CABLE_LAW, CABLE_VALUE, CABLE_EA, N_CABLE_COLUMN };
+static const char *const cable_column[N_CABLE_COLUMN] = {"id", "i", "j", "group", "law", "value", "EA_N"};
+
+static void read_target(hf_csv *t, const int *where, int r, const char *id, hf_scene *s)
+{
+    s->target[r] = NAN;
+    if (*hf_csv_cell(t, r, where[CABLE_VALUE])) {
+        s->target[r] = hf_csv_number(t, r, where[CABLE_VALUE], id, "value");
+        if (s->law[r] != HF_LAW_FORCE_DENSITY && s->target[r] <= 0)
+            hf_csv_fault(t, t->line[r], id, "value must be above zero for the law ", hf_law_word[s->law[r]]);
+        if (s->law[r] == HF_LAW_FORCE_DENSITY && s->target[r] == 0)
+            hf_csv_fault(t, t->line[r], id, "value must not be zero for the law force_density", "");
+    } else if (s->law[r] == HF_LAW_LENGTH) {
+        s->target[r] = hf_scene_theoretical_length(s, r);
+    } else if (s->law[r] == HF_LAW_FORCE_DENSITY) {
+        hf_csv_fault(t, t->line[r], id, "the law force_density needs a value in N/m", "");
+    } else if (s->law[r] == HF_LAW_ELASTIC) {
+        hf_csv_fault(t, t->line[r], id, "the law elastic needs a value, the unstressed length in m", "");
+    }
+}
+
+static void read_EA(hf_csv *t, const int *where, int r, const char *id, const double group_EA_N[2], hf_scene *s)
+{
+    int is_given = where[CABLE_EA] >= 0 && *hf_csv_cell(t, r, where[CABLE_EA]);
+    double EA_N = group_EA_N[s->group[r]] > 0 ? group_EA_N[s->group[r]] : (double)NAN;
+    if (is_given) {
+        EA_N = hf_csv_number(t, r, where[CABLE_EA], id, "EA_N");
+        if (EA_N <= 0) hf_csv_fault(t, t->line[r], id, "EA_N must be above zero", "");
+    } else if (isnan(EA_N) && s->law[r] == HF_LAW_ELASTIC) {
+        hf_csv_fault(t, t->line[r], id, "the law elastic needs an EA_N", "");
+    }
+    if (s->EA_N) s->EA_N[r] = EA_N;
+}
+
+static void read_cables(hf_csv *t, const int *where, const hf_csv *nodes, const hf_csv_named *node_index,
+                        const double group_EA_N[2], hf_scene *s)
+{
+    for (int r = 0; r < t->n_row; r++) {
+        const char *id = hf_csv_cell(t, r, where[CABLE_ID]);
+        s->cable_id[r] = id;
+        s->cable_line[r] = t->line[r];
+        for (int k = 0; k < 2; k++) {
+            const char *end = hf_csv_cell(t, r, where[CABLE_I + k]);
+            int row = hf_csv_row_of(node_index, nodes->n_row, end);
+            if (row < 0) hf_csv_fault(t, t->line[r], id, "there is no node with the id ", *end ? end : "(empty)");
+            s->end[2 * r + k] = row < 0 ? 0 : row;
+        }
+        s->group[r] = (unsigned char)hf_csv_word(t, r, where[CABLE_GROUP], id, hf_group_word, 2);
+        s->law[r] = (unsigned char)hf_csv_word(t, r, where[CABLE_LAW], id, hf_law_word, HF_N_LAW);
+        read_target(t, where, r, id, s);
+        read_EA(t, where, r, id, group_EA_N, s);
+    }
+}
+
+/* ---- together ---- */
+
+/* The ids still point into the two texts: move them to one block that the scene owns. */
+static hf_status keep_ids(hf_scene *s)
+{
+    size_t size = strlen(s->nodes_file) + strlen(s->cables_file) + 2;
+    for (int i = 0; i < s->n_node; i++)
+        size += strlen(s->node_id[i]) + 1;
+    for (int e = 0; e < s->n_cable; e++)
+        size += strlen(s->cable_id[e]) + 1;
+    char *text = s->text = malloc(size);
+    if (!text) return HF_NO_MEMORY;
+    const char **all[] = {&s->nodes_file, &s->cables_file};
+    for (int i = 0; i < 2 + s->n_node + s->n_cable; i++) {
+        const char **id = i < 2 ? all[i] : i < 2 + s->n_node ? &s->node_id[i - 2] : &s->cable_id[i - 2 - s->n_node];
+        *id = strcpy(text, *id);
+        text += strlen(text) + 1;
+    }
+    return HF_OK;
+}
+
+static hf_status build(hf_csv *nodes, hf_csv *cables, const double group_EA_N[2], hf_csv_named **node_index,
+                       hf_csv_named **cable_index, hf_scene *s)
+{
+    int node_where[N_NODE_COLUMN] = {0}, cable_where[N_CABLE_COLUMN] = {0};
+    /* both files are looked at before giving up, so that one run shows the faults of both */
+    hf_status node_status = hf_csv_read(nodes->path, COLUMN_MAX, nodes, nodes->messages);
+    hf_status cable_status = hf_csv_read(cables->path, COLUMN_MAX, cables, cables->messages);
+    if (node_status == HF_OK) node_status = hf_csv_find_columns(nodes, node_column, N_NODE_COLUMN, NODE_FX, node_where);
+    if (cable_status == HF_OK)
+        cable_status = hf_csv_find_columns(cables, cable_column, N_CABLE_COLUMN, CABLE_EA, cable_where);
+    HF_TRY(node_status);
+    HF_TRY(cable_status);
+    int with_load = node_where[NODE_FX] >= 0 || node_where[NODE_FY] >= 0 || node_where[NODE_FZ] >= 0;
+    int with_EA = cable_where[CABLE_EA] >= 0 || group_EA_N[0] > 0 || group_EA_N[1] > 0;
+    hf_status status = hf_scene_allocate(s, nodes->n_row, cables->n_row, with_load, with_EA, 1);
+    if (status == HF_OK) *node_index = hf_csv_index(nodes, node_where[NODE_ID]);
+    if (status == HF_OK) *cable_index = hf_csv_index(cables, cable_where[CABLE_ID]);
+    if (!*node_index || !*cable_index) return hf_error(nodes->messages, HF_NO_MEMORY, "%s: out of memory", nodes->path);
+    if (!read_nodes(nodes, node_where, s)) s->load_N = NULL; /* columns of zeros are no load */
+    read_cables(cables, cable_where, nodes, *node_index, group_EA_N, s);
+    node_status = hf_csv_close_faults(nodes);
+    cable_status = hf_csv_close_faults(cables);
+    HF_TRY(node_status);
+    HF_TRY(cable_status);
+    s->nodes_file = nodes->path;
+    s->cables_file = cables->path;
+    if (keep_ids(s) != HF_OK) return hf_error(nodes->messages, HF_NO_MEMORY, "%s: out of memory", nodes->path);
+    return HF_OK;
+}
+
+hf_status hf_scene_import(const char *nodes_path, const char *cables_path, const double group_EA_N[2], hf_scene *scene,
+                          hf_messages *messages)
+{
+    *scene = (hf_scene){0};
+    hf_csv nodes = {.path = nodes_path, .messages = messages}, cables = {.path = cables_path, .messages = messages};
+    hf_csv_named *node_index = NULL, *cable_index = NULL;
+    hf_status status = build(&nodes, &cables, group_EA_N, &node_index, &cable_index, scene);
+    free(node_index);
+    free(cable_index);
+    hf_csv_free(&nodes);
+    hf_csv_free(&cables);
+    if (status != HF_OK) hf_scene_free(scene); /* its ids would point into freed text */
+    return status;
+}

@@ -1,0 +1,322 @@
+/* Contents: mirror images of nodes - of cables - one plane - classes of genes - together - steps */
+#include "net/symmetry.h"
+
+#include "base/arena.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define TOLERANCE 1e-9      /* of positions, relative to the net's size; of loads and targets, relative to themselves */
+#define BASE_AGREEMENT 1e-6 /* base tensions closer than this, relative, are equal but for rounding and convergence */
+#define NAMED_MAX 5         /* cables that a message names */
+
+/* ---- mirror images of nodes ---- */
+
+typedef struct {
+    double at_m; /* along the axis of the sweep */
+    int node;
+} place;
+
+typedef struct {
+    int end[2]; /* nodes, the smaller first */
+    int kind;   /* of group and law */
+    int cable;
+    double target;
+} link;
+
+typedef struct {
+    const hf_scene *s;
+    const hf_model *m;
+    double low_m[3], high_m[3], size_m, load_N; /* extent; largest load component */
+    int sweep;                                  /* the axis along which nodes are sorted: the longest */
+    place *place;                               /* [n_node] sorted */
+    link *link;                                 /* [n_cable] sorted */
+    int *node_image, *cable_image;              /* [n_node], [n_cable] under the plane looked at; -1 = none */
+    int *gene_of_cable;                         /* [n_cable] or -1 */
+    int *parent;                                /* [n_gene] of the union-find over both planes */
+    int *group_parent, *group_label;            /* [n_gene_group] */
+} search;
+
+static void lay_out(hf_arena *a, search *q)
+{
+    size_t n = (size_t)q->s->n_node, e = (size_t)q->s->n_cable;
+    q->place = hf_arena_take(a, n, sizeof *q->place);
+    q->link = hf_arena_take(a, e, sizeof *q->link);
+    q->node_image = hf_arena_take(a, n, sizeof(int));
+    q->cable_image = hf_arena_take(a, e, sizeof(int));
+    q->gene_of_cable = hf_arena_take(a, e, sizeof(int));
+    q->parent = hf_arena_take(a, (size_t)q->m->n_gene, sizeof(int));
+    q->group_parent = hf_arena_take(a, (size_t)q->m->n_gene_group, sizeof(int));
+    q->group_label = hf_arena_take(a, (size_t)q->m->n_gene_group, sizeof(int));
+}
+
+static double coordinate(const search *q, int node, int c)
+{
+    return q->s->position_m[3 * (size_t)node + (size_t)c];
+}
+
+static int compare_places(const void *a, const void *b)
+{
+    const place *x = a, *y = b;
+    return x->at_m != y->at_m ? (x->at_m > y->at_m) - (x->at_m < y->at_m) : (x->node > y->node) - (x->node < y->node);
+}
+
+static void measure(search *q)
+{
+    for (int c = 0; c < 3; c++) {
+        q->low_m[c] = INFINITY;
+        q->high_m[c] = -INFINITY;
+        for (int i = 0; i < q->s->n_node; i++) {
+            q->low_m[c] = fmin(q->low_m[c], coordinate(q, i, c));
+            q->high_m[c] = fmax(q->high_m[c], coordinate(q, i, c));
+            if (q->s->load_N) q->load_N = fmax(q->load_N, fabs(q->s->load_N[3 * (size_t)i + (size_t)c]));
+        }
+        double extent = q->high_m[c] - q->low_m[c];
+        if (extent > q->size_m) q->sweep = c;
+        q->size_m = fmax(q->size_m, extent);
+    }
+}
+
+/* Is node j at `target`, of the role of node i and under its mirrored load? */
+static int is_node_image(const search *q, int axis, int i, int j, const double target[3])
+{
+    if (q->s->role[i] != q->s->role[j]) return 0;
+    for (int c = 0; c < 3; c++) {
+        if (fabs(coordinate(q, j, c) - target[c]) > TOLERANCE * q->size_m) return 0;
+        if (!q->s->load_N) continue;
+        double load = q->s->load_N[3 * (size_t)i + (size_t)c], other = q->s->load_N[3 * (size_t)j + (size_t)c];
+        if (fabs(other - (c == axis ? -load : load)) > TOLERANCE * q->load_N) return 0;
+    }
+    return 1;
+}
+
+static int find_node_image(const search *q, int axis, int i)
+{
+    double target[3], slack = TOLERANCE * q->size_m;
+    for (int c = 0; c < 3; c++)
+        target[c] = c == axis ? q->low_m[c] + q->high_m[c] - coordinate(q, i, c) : coordinate(q, i, c);
+    int from = 0, to = q->s->n_node;
+    while (from < to) { /* the first node not before the target */
+        int middle = from + (to - from) / 2;
+        if (q->place[middle].at_m < target[q->sweep] - slack)
+            from = middle + 1;
+        else
+            to = middle;
+    }
+    for (; from < q->s->n_node && q->place[from].at_m <= target[q->sweep] + slack; from++)
+        if (is_node_image(q, axis, i, q->place[from].node, target)) return q->place[from].node;
+    return -1;
+}
+
+/* ---- mirror images of cables ---- */
+
+static int compare_ends(const int a[2], const int b[2])
+{
+    int first = (a[0] > b[0]) - (a[0] < b[0]);
+    return first ? first : (a[1] > b[1]) - (a[1] < b[1]);
+}
+
+/* By ends, and cables that share both of them by what they are, so that equal ranks on both sides belong together. */
+static int compare_links(const void *a, const void *b)
+{
+    const link *x = a, *y = b;
+    int order = compare_ends(x->end, y->end);
+    if (!order) order = x->kind - y->kind;
+    if (!order) order = (x->target > y->target) - (x->target < y->target);
+    return order ? order : (x->cable > y->cable) - (x->cable < y->cable);
+}
+
+/* Lengths, and what is derived from them, carry the tolerance of the positions. */
+static int is_alike(const search *q, const link *a, const link *b)
+{
+    double tolerance = fmax(TOLERANCE, 4 * TOLERANCE * q->size_m / q->m->length_m[a->cable]);
+    if (a->kind != b->kind || !(fabs(a->target - b->target) <= tolerance * fabs(a->target))) return 0;
+    const double *EA_N = q->m->law[a->cable] == HF_LAW_ELASTIC ? q->m->EA_N : NULL;
+    return !EA_N || fabs(EA_N[a->cable] - EA_N[b->cable]) <= TOLERANCE * EA_N[a->cable];
+}
+
+/* The image of a cable has the same rank among the cables that join its two ends. */
+static int find_cable_image(const search *q, int here)
+{
+    const link *own = q->link + here;
+    int a = q->node_image[own->end[0]], b = q->node_image[own->end[1]], rank = 0, from = 0, to = q->s->n_cable;
+    if (a < 0 || b < 0) return -1;
+    const int wanted[2] = {a < b ? a : b, a < b ? b : a};
+    while (rank < here && !compare_ends(own->end, q->link[here - rank - 1].end))
+        rank++;
+    while (from < to) {
+        int middle = from + (to - from) / 2;
+        if (compare_ends(q->link[middle].end, wanted) < 0)
+            from = middle + 1;
+        else
+            to = middle;
+    }
+    const link *image = q->link + from + rank;
+    if (from + rank >= q->s->n_cable || compare_ends(image->end, wanted) || !is_alike(q, own, image)) return -1;
+    return image->cable;
+}
+
+/* ---- one plane ---- */
+
+/* All images under one plane; the number of cables without one. */
+static int reflect(search *q, int axis)
+{
+    int n_missing = 0;
+    for (int i = 0; i < q->s->n_node; i++)
+        q->node_image[i] = find_node_image(q, axis, i);
+    for (int k = 0; k < q->s->n_cable; k++)
+        q->cable_image[q->link[k].cable] = find_cable_image(q, k);
+    for (int e = 0; e < q->s->n_cable; e++) { /* two nodes at one place: no telling which is whose image */
+        int image = q->cable_image[e];
+        if (image < 0 || q->cable_image[image] != e) n_missing++;
+    }
+    return n_missing;
+}
+
+static hf_status refuse(const search *q, int axis, int n_missing, hf_messages *messages)
+{
+    char names[1024] = "", more[32] = "";
+    size_t used = 0;
+    for (int e = 0, n = 0; e < q->s->n_cable && n < NAMED_MAX && used < sizeof names; e++) {
+        int image = q->cable_image[e];
+        if (image >= 0 && q->cable_image[image] == e) continue;
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", n++ ? ", " : "", q->s->cable_id[e]);
+    }
+    if (n_missing > NAMED_MAX) snprintf(more, sizeof more, " and %d more", n_missing - NAMED_MAX);
+    return hf_error(messages, HF_BAD_CASE,
+                    "optimize.symmetry: the net is not symmetric about the plane %c = %.10g m: no mirror image (ends, "
+                    "roles, loads, group, law and target) have %d cables: %s%s",
+                    "xy"[axis], (q->low_m[axis] + q->high_m[axis]) / 2, n_missing, names, more);
+}
+
+/* ---- classes of genes ---- */
+
+/* The smallest member of a class, by union-find with path halving. */
+static int find_root(int *parent, int i)
+{
+    while (parent[i] != i)
+        i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+static void join(int *parent, int a, int b)
+{
+    a = find_root(parent, a);
+    b = find_root(parent, b);
+    if (a < b)
+        parent[b] = a;
+    else
+        parent[a] = b;
+}
+
+/* Chains whose genes belong together vary together; numbered again in the order of their genes. */
+static void merge_groups(const search *q, hf_model *m)
+{
+    int *group_parent = q->group_parent, *label = q->group_label;
+    for (int g = 0; g < m->n_gene_group; g++) {
+        group_parent[g] = g;
+        label[g] = -1;
+    }
+    for (int k = 0; k < m->n_gene; k++)
+        join(group_parent, m->gene_group[k], m->gene_group[m->gene_leader[k]]);
+    m->n_gene_group = 0;
+    for (int k = 0; k < m->n_gene; k++) {
+        int root = find_root(group_parent, m->gene_group[k]);
+        if (label[root] < 0) label[root] = m->n_gene_group++;
+        m->gene_group[k] = label[root];
+    }
+}
+
+/* ---- together ---- */
+
+static hf_status link_genes(search *q, int wanted, hf_model *m, int *planes, hf_messages *messages)
+{
+    for (int axis = 0; axis < 2; axis++) {
+        int by_name = wanted == HF_SYMMETRY_XY || wanted == (axis == 0 ? HF_SYMMETRY_X : HF_SYMMETRY_Y);
+        if (!by_name && wanted != HF_SYMMETRY_AUTO) continue;
+        int n_missing = reflect(q, axis);
+        if (n_missing && by_name) return refuse(q, axis, n_missing, messages);
+        if (n_missing) continue;
+        *planes |= axis == 0 ? HF_PLANE_X : HF_PLANE_Y;
+        for (int k = 0; k < m->n_gene; k++)
+            join(q->parent, k, q->gene_of_cable[q->cable_image[m->gene_cable[k]]]);
+    }
+    m->n_leader = 0;
+    for (int k = 0; k < m->n_gene; k++) {
+        m->gene_leader[k] = find_root(q->parent, k);
+        m->n_leader += m->gene_leader[k] == k;
+    }
+    if (*planes) merge_groups(q, m);
+    return HF_OK;
+}
+
+static void sort(search *q)
+{
+    const hf_model *m = q->m;
+    for (int i = 0; i < q->s->n_node; i++)
+        q->place[i] = (place){coordinate(q, i, q->sweep), i};
+    for (int e = 0; e < q->s->n_cable; e++) {
+        int a = q->s->end[2 * e], b = q->s->end[2 * e + 1];
+        q->link[e] = (link){{a < b ? a : b, a < b ? b : a}, m->group[e] << 8 | m->law[e], e, m->target[e]};
+        q->gene_of_cable[e] = -1;
+    }
+    for (int k = 0; k < m->n_gene; k++) {
+        q->parent[k] = k;
+        q->gene_of_cable[m->gene_cable[k]] = k;
+    }
+    qsort(q->place, (size_t)q->s->n_node, sizeof *q->place, compare_places);
+    qsort(q->link, (size_t)q->s->n_cable, sizeof *q->link, compare_links);
+}
+
+hf_status hf_symmetry_apply(const hf_scene *scene, int wanted, hf_model *model, int *planes, hf_messages *messages)
+{
+    search q = {.s = scene, .m = model};
+    hf_arena arena = {0};
+    *planes = 0;
+    if (wanted == HF_SYMMETRY_NONE) return HF_OK;
+    lay_out(&arena, &q);
+    if (hf_arena_allocate(&arena) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "optimize.symmetry: out of memory");
+    lay_out(&arena, &q);
+    measure(&q);
+    sort(&q);
+    hf_status status = link_genes(&q, wanted, model, planes, messages);
+    hf_arena_free(&arena);
+    return status;
+}
+
+const char *hf_symmetry_planes_text(int planes)
+{
+    static const char *const text[] = {"no plane", "plane x", "plane y", "planes x and y"};
+    return text[planes & (HF_PLANE_X | HF_PLANE_Y)];
+}
+
+/* ---- steps ---- */
+
+void hf_symmetry_average(const hf_model *m, double *base_N)
+{
+    for (int leader = 0; leader < m->n_gene && m->n_leader < m->n_gene; leader++) {
+        double low = base_N[leader], high = low, sum = 0;
+        int n = 0;
+        if (m->gene_leader[leader] != leader) continue;
+        for (int k = leader; k < m->n_gene; k++) {
+            if (m->gene_leader[k] != leader) continue;
+            low = fmin(low, base_N[k]);
+            high = fmax(high, base_N[k]);
+            sum += base_N[k];
+            n++;
+        }
+        if (!(high - low <= BASE_AGREEMENT * fabs(high))) continue;
+        for (int k = leader; k < m->n_gene; k++)
+            if (m->gene_leader[k] == leader) base_N[k] = sum / n;
+    }
+}
+
+void hf_symmetry_follow(int n_gene, const int *leader, const double *base_N, double *design_N)
+{
+    for (int k = 0; k < n_gene; k++)
+        if (base_N[k] == base_N[leader[k]]) /* to the bit */
+            design_N[k] = design_N[leader[k]];
+        else
+            design_N[k] = base_N[k] + (design_N[leader[k]] - base_N[leader[k]]);
+}

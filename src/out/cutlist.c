@@ -1,0 +1,152 @@
+#include "out/cutlist.h"
+
+#include "base/csv.h"
+#include "out/export.h"
+#include <hifdm/metrics.h>
+#include <hifdm/store.h>
+
+#include <math.h>
+#include <string.h>
+
+#define PATH_SIZE 1200
+
+typedef struct {
+    const hf_scene *scene;
+    const hf_shape *shape;
+    double reference_N;
+} view;
+
+typedef struct {
+    double tension_N, length_m, l0_m, adjustment_m;
+} cut;
+
+static cut cut_of(const view *v, int e)
+{
+    const hf_scene *s = v->scene;
+    int law = v->shape->law[e], keeps_length = law == s->law[e] && (law == HF_LAW_LENGTH || law == HF_LAW_ELASTIC);
+    cut c = {.tension_N = v->shape->tension_N[e], .length_m = v->shape->length_m[e]};
+    double stretch = 1 + c.tension_N / s->EA_N[e];
+    int is_slack = fabs(c.tension_N) < HF_SLACK_RATIO * v->reference_N;
+    c.l0_m = is_slack && keeps_length ? s->target[e] : c.length_m / stretch;
+    c.adjustment_m = c.l0_m - hf_scene_theoretical_length(s, e) / stretch;
+    return c;
+}
+
+static void write_cables(const void *context, FILE *f)
+{
+    const view *v = context;
+    const hf_scene *s = v->scene;
+    fputs("id,i,j,group,tension_N,length_m,l0_m,elongation_m,EA_N,adjustment_m,law,value\n", f);
+    for (int e = 0; e < s->n_cable; e++) {
+        cut c = cut_of(v, e);
+        hf_csv_write_id(s->cable_id[e], f);
+        for (int k = 0; k < 2; k++) {
+            fputc(',', f);
+            hf_csv_write_id(s->node_id[s->end[2 * e + k]], f);
+        }
+        fprintf(f, ",%s,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%s,%.17g\n", hf_group_word[s->group[e]], c.tension_N,
+                c.length_m, c.l0_m, c.length_m - c.l0_m, s->EA_N[e], c.adjustment_m, hf_law_word[HF_LAW_ELASTIC],
+                c.l0_m);
+    }
+}
+
+static void write_nodes(const void *context, FILE *f)
+{
+    const hf_scene *s = ((const view *)context)->scene;
+    fprintf(f, "id,x_m,y_m,z_m,role%s\n", s->load_N ? ",Fx_N,Fy_N,Fz_N" : "");
+    for (int i = 0; i < s->n_node; i++) {
+        const double *p = ((const view *)context)->shape->position_m + 3 * (size_t)i;
+        hf_csv_write_id(s->node_id[i], f);
+        fprintf(f, ",%.17g,%.17g,%.17g,%s", p[0], p[1], p[2], hf_role_word[s->role[i]]);
+        for (int c = 0; c < 3 && s->load_N; c++)
+            fprintf(f, ",%.17g", s->load_N[3 * (size_t)i + (size_t)c]);
+        fputc('\n', f);
+    }
+}
+
+/* Of one group, or of all (2). */
+static void write_total(const view *v, int group, FILE *f)
+{
+    int n = 0;
+    double l0_m = 0, length_m = 0, tension_N[2] = {INFINITY, -INFINITY}, adjustment_m[2] = {INFINITY, -INFINITY};
+    for (int e = 0; e < v->scene->n_cable; e++) {
+        if (group < 2 && v->scene->group[e] != group) continue;
+        cut c = cut_of(v, e);
+        n++;
+        l0_m += c.l0_m;
+        length_m += c.length_m;
+        tension_N[0] = fmin(tension_N[0], c.tension_N);
+        tension_N[1] = fmax(tension_N[1], c.tension_N);
+        adjustment_m[0] = fmin(adjustment_m[0], c.adjustment_m);
+        adjustment_m[1] = fmax(adjustment_m[1], c.adjustment_m);
+    }
+    if (n)
+        fprintf(f, "%s,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", group < 2 ? hf_group_word[group] : "all", n, l0_m,
+                length_m, tension_N[0], tension_N[1], adjustment_m[0], adjustment_m[1]);
+}
+
+static void write_totals(const void *context, FILE *f)
+{
+    fputs("group,cables,l0_m,length_m,least_tension_N,largest_tension_N,least_adjustment_m,largest_adjustment_m\n", f);
+    for (int group = 0; group < 3; group++)
+        write_total(context, group, f);
+}
+
+static hf_status demand_EA(const char *path, const hf_scene *s, hf_messages *messages)
+{
+    int n[2] = {0}, first[2] = {0};
+    for (int e = 0; e < s->n_cable; e++) {
+        if (s->EA_N && s->EA_N[e] > 0) continue;
+        if (n[s->group[e]]++ == 0) first[s->group[e]] = e;
+    }
+    for (int g = 0; g < 2; g++)
+        if (n[g])
+            hf_error(
+                messages, HF_BAD_CASE,
+                "%s: %d %s cables have no EA, which cut lengths need, like '%s': give scene.EA_%s_N, or the column "
+                "EA_N of an imported net, and run again",
+                path, n[g], hf_group_word[g], s->cable_id[first[g]], hf_group_word[g]);
+    return n[0] + n[1] ? HF_BAD_CASE : HF_OK;
+}
+
+/* NAME.csv -> NAME_nodes.csv, NAME_totals.csv */
+static hf_status name_files(const hf_export_request *o, char path[3][PATH_SIZE], hf_messages *messages)
+{
+    static const char *const part[3] = {"", "_nodes", "_totals"};
+    const char *slash = strrchr(o->output, '/'), *dot = strrchr(slash ? slash : o->output, '.');
+    int stem = (int)(dot ? (size_t)(dot - o->output) : strlen(o->output));
+    for (int i = 0; i < 3; i++) {
+        if (snprintf(path[i], PATH_SIZE, "%.*s%s%s", stem, o->output, part[i], o->output + stem) >= PATH_SIZE)
+            return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
+        HF_TRY(hf_export_claim(path[i], o->force, messages));
+    }
+    return HF_OK;
+}
+
+static hf_status write_all(const hf_export_request *o, hf_scene *scene, hf_shape *shape, char *said, size_t size,
+                           hf_messages *messages)
+{
+    hf_summary summary;
+    const char *word;
+    char path[3][PATH_SIZE];
+    HF_TRY(hf_export_read(o, &summary, scene, shape, &word, messages));
+    HF_TRY(demand_EA(o->file, scene, messages));
+    HF_TRY(name_files(o, path, messages)); /* all before any is written */
+    const view v = {scene, shape, hf_model_reference_N(scene, summary.pretension_N)};
+    HF_TRY(hf_export_file(path[0], write_cables, &v, messages));
+    HF_TRY(hf_export_file(path[1], write_nodes, &v, messages));
+    HF_TRY(hf_export_file(path[2], write_totals, &v, messages));
+    snprintf(said, size, "%s: cut lengths of %d cables of the %s shape in %s, the jig in %s, totals in %s", o->file,
+             scene->n_cable, word, path[0], path[1], path[2]);
+    return HF_OK;
+}
+
+hf_status hf_cutlist(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
+{
+    hf_scene scene = {0};
+    hf_shape shape = {0};
+    hf_status status = write_all(request, &scene, &shape, said, size, messages);
+    hf_shape_free(&shape);
+    hf_scene_free(&scene);
+    return status;
+}

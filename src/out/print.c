@@ -1,0 +1,229 @@
+/* Contents: units for people - summary - schema */
+#include "out/print.h"
+
+#include "net/symmetry.h"
+#include <hifdm/config.h>
+
+#include <math.h>
+#include <string.h>
+
+/* ---- units for people ---- */
+
+void hf_print_duration(double seconds, char *text, size_t size)
+{
+    if (seconds < 1e-3)
+        snprintf(text, size, "%.0f us", seconds * 1e6);
+    else if (seconds < 1)
+        snprintf(text, size, "%.1f ms", seconds * 1e3);
+    else if (seconds < 60)
+        snprintf(text, size, "%.1f s", seconds);
+    else if (seconds < 3600)
+        snprintf(text, size, "%.0f min %.0f s", floor(seconds / 60), floor(fmod(seconds, 60)));
+    else
+        snprintf(text, size, "%.0f h %.0f min", floor(seconds / 3600), floor(fmod(seconds, 3600) / 60));
+}
+
+void hf_print_bytes(double bytes, char *text, size_t size)
+{
+    static const char *const unit[] = {"B", "kB", "MB", "GB", "TB"};
+    int i = 0;
+    for (; bytes >= 1000 && i < 4; i++)
+        bytes /= 1000;
+    snprintf(text, size, i ? "%.1f %s" : "%.0f %s", bytes, unit[i]);
+}
+
+/* "4.2315", or "-" where there is none */
+static const char *ratio(double value, char text[32])
+{
+    if (isfinite(value))
+        snprintf(text, 32, "%.4f", value);
+    else
+        strcpy(text, "-");
+    return text;
+}
+
+/* ---- summary ---- */
+
+static void print_result(const hf_form_result *r, FILE *f)
+{
+    char inner[32], boundary[32];
+    fprintf(f, "                tension ratio %s inside, %s on the boundary; largest nodal residual %.1e N\n",
+            ratio(r->inner_tension_ratio, inner), ratio(r->boundary_tension_ratio, boundary), r->residual_N);
+}
+
+/* Of one stage, when the case asks for it. */
+static void print_surface(const hf_summary *s, int stage, FILE *f)
+{
+    const hf_surface_measures *m = &s->measures[stage];
+    if (!m->is_measured) return;
+    fprintf(f, "                surface: half-path RMS %.4f mm, normal %.4f mm; ", m->half_path_rms_m * 1e3,
+            m->normal_rms_m * 1e3);
+    if (m->fit.converged)
+        fprintf(f, "best fit (f %.4f m) %.4f mm, %.4f mm\n", m->fit.focal_length_m, m->fit.half_path_rms_m * 1e3,
+                m->fit.normal_rms_m * 1e3);
+    else
+        fputs("best fit not converged\n", f);
+    fprintf(f, "                deviations 50/90/95/99 %%: %.3f/%.3f/%.3f/%.3f mm, largest %.3f mm",
+            m->deviation_p50_m * 1e3, m->deviation_p90_m * 1e3, m->deviation_p95_m * 1e3, m->deviation_p99_m * 1e3,
+            m->deviation_max_m * 1e3);
+    if (isfinite(m->faceting_rms_m)) fprintf(f, "; faceting %.4f mm", m->faceting_rms_m * 1e3);
+    fputc('\n', f);
+    for (int k = 0; k < s->surface.frequencies_Hz.n; k++) {
+        fprintf(f, "                loss of gain at %g GHz: %.3g dB", s->surface.frequencies_Hz.value[k] / 1e9,
+                m->gain_loss_dB[k]);
+        if (m->fit.converged) fprintf(f, ", best fit %.3g dB", m->fit_gain_loss_dB[k]);
+        fputc('\n', f);
+    }
+}
+
+static void print_optimize(const hf_summary *s, FILE *f)
+{
+    char wall[32];
+    hf_print_duration(s->optimize_wall_s, wall, sizeof wall);
+    if (s->best.status != HF_OK) {
+        fprintf(f, "  optimisation  no feasible design in %ld evaluations, %s\n", s->evaluations, wall);
+        return;
+    }
+    fprintf(f, "  optimisation  psi %.4f mm", s->best.psi_m * 1e3);
+    if (isfinite(s->base_psi_m)) /* the same rule, so that only the tensions differ */
+        fprintf(f, ", %.2f %% below the %.4f mm of the form-finding's tensions",
+                100 * (1 - s->best.psi_m / s->base_psi_m), s->base_psi_m * 1e3);
+    fprintf(f, "; found in generation %d\n", s->best_generation);
+    print_result(&s->best, f);
+    print_surface(s, 1, f);
+    if (s->planes)
+        fprintf(f, "                symmetry: %s; %d independent genes of %d\n", hf_symmetry_planes_text(s->planes),
+                s->n_leader, s->n_gene);
+    fprintf(f, "                %d generations, %ld evaluations (%ld infeasible)", s->generations, s->evaluations,
+            s->infeasible);
+    if (!s->finished) { /* what else there is was noted when the file was published last, perhaps before the first */
+        fputs(" so far\n", f);
+        return;
+    }
+    fprintf(f, " by %s, stopped by %s\n", hf_solver_word[s->solver], hf_ga_stop_word[s->optimize_stop]);
+    fprintf(f, "                %s, %.0f evaluations/s; cpu_s / (wall_s * threads) = %.3f on %d thread%s\n", wall,
+            (double)s->evaluations / s->optimize_wall_s, hf_summary_utilisation(s), s->threads,
+            s->threads == 1 ? "" : "s");
+}
+
+static void print_polish(const hf_summary *s, FILE *f)
+{
+    char wall[32], boundary[32];
+    hf_print_duration(s->polish_wall_s, wall, sizeof wall);
+    fprintf(f, "  LM optimum    psi %.4f mm from %s, %s; boundary ratio %s; %d iterations%s, %s\n",
+            s->polish.psi_m * 1e3, s->has_optimize ? "there" : "the form-finding's tensions",
+            s->polish_is_result ? "the result" : "for comparison", ratio(s->polish.boundary_tension_ratio, boundary),
+            s->polish_iterations, s->polish_converged ? "" : " (not converged)", wall);
+    print_surface(s, 2, f);
+}
+
+static void print_certificate(const hf_form_result *r, FILE *f)
+{
+    if (isfinite(r->position_error_m) && isfinite(r->condition))
+        fprintf(f, "                estimated position error %.1e m; condition %.1e; backward error %.1e\n",
+                r->position_error_m, r->condition, r->backward_error);
+}
+
+static void print_coupling(const hf_coupling_result *r, FILE *f)
+{
+    fprintf(f,
+            "  on its truss  attachments give way by up to %.4f mm; %d form-finding%s, the last step %.1e m, stopped "
+            "by %s\n",
+            r->max_displacement_m * 1e3, r->iterations, r->iterations == 1 ? "" : "s", r->step_m,
+            hf_coupling_stop_word((int)r->stop_reason));
+}
+
+void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
+{
+    char wall[32];
+    hf_print_duration(s->form_wall_s, wall, sizeof wall);
+    fprintf(f, "%s\n", *s->title ? s->title : s->case_path);
+    fprintf(f, "  net           %d nodes (%d free), %d cables (%d adjustable); half-bandwidth %d; pretension %g N\n",
+            s->n_node, s->n_free, s->n_cable, s->n_gene, s->half_bandwidth, s->pretension_N);
+    if (s->has_truss)
+        fprintf(f, "  truss         %d nodes, %d members; %.2f kg\n", s->truss_nodes, s->truss_members,
+                s->truss_mass_kg);
+    fprintf(f, "  form-finding  psi %.4f mm after %d iteration%s, stopped by %s, %s\n", s->form.psi_m * 1e3,
+            s->form.iterations, s->form.iterations == 1 ? "" : "s", hf_stop_reason_word((int)s->form.stop_reason),
+            wall);
+    print_result(&s->form, f);
+    print_certificate(&s->form, f);
+    print_surface(s, 0, f);
+    if (s->has_coupling) print_coupling(&s->form.coupling, f);
+    if (s->has_optimize) print_optimize(s, f);
+    if (s->has_polish) print_polish(s, f);
+    if (path) fprintf(f, "  results       %s\n", path);
+    if (path && !s->finished)
+        fprintf(f, "  unfinished    `hifdm run %s -o %s` goes on, with the same options as before\n", s->case_path,
+                path);
+}
+
+/* ---- schema ---- */
+
+static void print_range(const hf_field *field, FILE *f)
+{
+    static const char *const type[] = {"number", "whole number", "whole number",   "two whole numbers",
+                                       "",       "text",         "list of numbers"};
+    if (field->type == HF_FIELD_WORD) {
+        for (int k = 0; field->words[k]; k++)
+            fprintf(f, "%s%s", k ? " | " : "", field->words[k]);
+        return;
+    }
+    fprintf(f, "%s", type[field->type]);
+    if (field->type == HF_FIELD_TEXT) return;
+    if (field->min == HF_ABOVE_ZERO)
+        fprintf(f, " > 0");
+    else
+        fprintf(f, " >= %.10g", field->min);
+    if (field->max < 1e300) fprintf(f, ", <= %.10g", field->max);
+}
+
+static int depth_of(const char *path)
+{
+    int depth = 0;
+    for (; *path; path++)
+        depth += *path == '.';
+    return depth;
+}
+
+static const char *last_word(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot ? dot + 1 : path;
+}
+
+static int is_inside(const char *path, const char *section)
+{
+    size_t n = strlen(section);
+    return !strncmp(path, section, n) && path[n] == '.' && !strchr(path + n + 1, '.');
+}
+
+static void print_field(const hf_field *field, FILE *f)
+{
+    int indent = 2 * depth_of(field->path);
+    fprintf(f, "%*s# %s.\n%*s# ", indent, "", field->help, indent, "");
+    print_range(field, f);
+    if (*field->unit) fprintf(f, "; %s", field->unit);
+    if (!field->default_value)
+        fprintf(f, "; required\n%*s%s:\n", indent, "", last_word(field->path));
+    else if (!*field->default_value && field->type != HF_FIELD_TEXT)
+        fprintf(f, "; may be left out\n%*s# %s:\n", indent, "", last_word(field->path));
+    else
+        fprintf(f, "\n%*s%s: %s\n", indent, "", last_word(field->path),
+                *field->default_value ? field->default_value : "\"\"");
+}
+
+void hf_print_schema(FILE *f)
+{
+    const hf_field *field = hf_field_table;
+    const hf_section *section = hf_section_table;
+    fputs("# Every key of a hifdm case file, with its default. Units are the last part of a name.\n", f);
+    for (int i = 0; i < hf_n_field; i++)
+        if (!strchr(field[i].path, '.')) print_field(&field[i], f);
+    for (int s = 0; s < hf_n_section; s++) {
+        int indent = 2 * depth_of(section[s].path);
+        fprintf(f, "\n%*s# %s\n%*s%s:\n", indent, "", section[s].help, indent, "", last_word(section[s].path));
+        for (int i = 0; i < hf_n_field; i++)
+            if (is_inside(field[i].path, section[s].path)) print_field(&field[i], f);
+    }
+}

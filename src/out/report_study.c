@@ -1,0 +1,218 @@
+/* A page of a merged study: what was set, what came out, and where the results are. */
+#include "out/report.h"
+
+#include "out/export.h"
+#include "base/json.h"
+#include "store/store_table.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define INPUTS_MAX 32 /* axes of a study */
+#define LINK_SIZE (PATH_MAX + 2)
+
+/* What is shown of every stage that any point has. */
+static const char *const stage_path[][2] = {
+    {"form", "/points/form/"}, {"optimize", "/points/ga/best_"}, {"polish", "/points/polish/"}};
+static const char *const output_name[] = {"psi_m", "inner_tension_ratio", "boundary_tension_ratio", "residual_N",
+                                          "n_slack"};
+enum { N_STAGE = 3, N_OUTPUT = sizeof output_name / sizeof *output_name };
+
+typedef struct {
+    const char *path;
+    char folder[LINK_SIZE], from_page[LINK_SIZE]; /* of the merged file, from here and from the page: "" or with '/' */
+    int n;                                        /* points */
+    hf_texts id, reason, file, input_name;
+    hf_series status;
+    hf_series input[INPUTS_MAX];
+    hf_texts input_text[INPUTS_MAX]; /* of axes that are words, or seeds */
+    hf_series output[N_STAGE][N_OUTPUT];
+} study_page;
+
+int hf_report_is_study(const char *path)
+{
+    hf_messages unwanted = {0};
+    hf_series status = {0};
+    hf_status found = hf_store_read_series(path, "/points/status", 1, &status, &unwanted);
+    int is_study = found == HF_OK && status.n > 0;
+    hf_series_free(&status);
+    hf_messages_free(&unwanted);
+    return is_study;
+}
+
+/* ---- writing ---- */
+
+/* ,"key":["...",...] */
+static void write_texts(const char *key, const hf_texts *texts, FILE *f)
+{
+    fprintf(f, ",\"%s\":[", key);
+    for (int i = 0; i < texts->n; i++) {
+        if (i) fputc(',', f);
+        hf_json_string(hf_texts_at(texts, i), f);
+    }
+    fputc(']', f);
+}
+
+static void write_status(const study_page *p, FILE *f)
+{
+    fputs(",\"status\":[", f);
+    for (int i = 0; i < p->n; i++) {
+        if (i) fputc(',', f);
+        hf_json_string(hf_status_word((hf_status)p->status.value[i]), f);
+    }
+    fputc(']', f);
+}
+
+/* Where a point's result is, and its own page where there is one beside it. */
+static void write_links(const study_page *p, FILE *f)
+{
+    char link[LINK_SIZE + 1100];
+    for (int is_page = 0; is_page < 2; is_page++) {
+        fprintf(f, ",\"%s\":[", is_page ? "page" : "file");
+        for (int i = 0; i < p->n; i++) {
+            const char *file = p->file.n ? hf_texts_at(&p->file, i) : "", *dot = strrchr(file, '.');
+            const char *ending = is_page ? ".html" : dot ? dot : "";
+            int is_absolute = *file == '/', stem = dot ? (int)(dot - file) : (int)strlen(file);
+            snprintf(link, sizeof link, "%s%.*s%s", is_absolute ? "" : p->folder, stem, file, ending);
+            int is_there = *file && access(link, R_OK) == 0;
+            snprintf(link, sizeof link, "%s%.*s%s", is_absolute ? "" : p->from_page, stem, file, ending);
+            if (i) fputc(',', f);
+            hf_json_string(is_there ? link : "", f);
+        }
+        fputc(']', f);
+    }
+}
+
+static void write_inputs(const study_page *p, FILE *f)
+{
+    const char *comma = "";
+    fputs(",\n\"input\":[", f);
+    for (int a = 0; a < p->input_name.n && a < INPUTS_MAX; a++) {
+        const hf_series *s = &p->input[a];
+        if (s->n != p->n && p->input_text[a].n != p->n) continue;
+        fprintf(f, "%s\n{", comma);
+        hf_json_text("name", hf_texts_at(&p->input_name, a), f);
+        if (s->n == p->n) {
+            fprintf(f, ",\"columns\":%d", s->columns);
+            hf_json_values("values", s->value, s->n * s->columns, 1, 17, f);
+        } else {
+            write_texts("texts", &p->input_text[a], f);
+        }
+        fputc('}', f);
+        comma = ",";
+    }
+    fputc(']', f);
+}
+
+static void write_outputs(const study_page *p, FILE *f)
+{
+    const char *comma = "";
+    fputs(",\n\"output\":[", f);
+    for (int s = 0; s < N_STAGE; s++) {
+        if (p->output[s][0].n != p->n) continue;
+        fprintf(f, "%s\n{\"stage\":\"%s\"", comma, stage_path[s][0]);
+        for (int k = 0; k < N_OUTPUT; k++)
+            if (p->output[s][k].n == p->n) hf_json_values(output_name[k], p->output[s][k].value, p->n, 1, 9, f);
+        fputc('}', f);
+        comma = ",";
+    }
+    fputc(']', f);
+}
+
+static void write_data(const void *context, FILE *f)
+{
+    const study_page *p = context;
+    const char *slash = strrchr(p->path, '/');
+    fputc('{', f);
+    hf_json_text("title", slash ? slash + 1 : p->path, f);
+    fputs(",\n\"study\":{", f);
+    hf_json_text("path", p->path, f);
+    fprintf(f, ",\"n\":%d", p->n);
+    write_texts("id", &p->id, f);
+    write_texts("reason", &p->reason, f);
+    write_status(p, f);
+    write_links(p, f);
+    write_inputs(p, f);
+    write_outputs(p, f);
+    fputs("}}\n", f);
+}
+
+static void write_page(const void *context, FILE *f)
+{
+    const study_page *p = context;
+    const char *slash = strrchr(p->path, '/');
+    hf_report_write(slash ? slash + 1 : p->path, write_data, p, f);
+}
+
+/* ---- reading ---- */
+
+static hf_status read_page(study_page *p, hf_messages *messages)
+{
+    char name[512];
+    HF_TRY(hf_store_read_series(p->path, "/points/status", 1, &p->status, messages));
+    HF_TRY(hf_store_read_texts(p->path, "/points/id", &p->id, messages));
+    HF_TRY(hf_store_read_texts(p->path, "/points/reason", &p->reason, messages));
+    p->n = p->status.n;
+    if (p->id.n != p->n)
+        return hf_error(messages, HF_IO, "%s: is damaged: /points/id does not name every point", p->path);
+    HF_TRY(hf_store_read_links(p->path, "/runs", &p->id, &p->file, messages));
+    HF_TRY(hf_store_read_names(p->path, "/points/input", &p->input_name, messages));
+    for (int a = 0; a < p->input_name.n && a < INPUTS_MAX; a++) {
+        snprintf(name, sizeof name, "/points/input/%s", hf_texts_at(&p->input_name, a));
+        HF_TRY(hf_store_read_texts(p->path, name, &p->input_text[a], messages));
+        if (!p->input_text[a].n) HF_TRY(hf_store_read_series(p->path, name, 0, &p->input[a], messages));
+    }
+    for (int s = 0; s < N_STAGE; s++)
+        for (int k = 0; k < N_OUTPUT; k++) {
+            snprintf(name, sizeof name, "%s%s", stage_path[s][1], output_name[k]);
+            HF_TRY(hf_store_read_series(p->path, name, 1, &p->output[s][k], messages));
+        }
+    return HF_OK;
+}
+
+static void free_page(study_page *p)
+{
+    hf_texts_free(&p->id);
+    hf_texts_free(&p->reason);
+    hf_texts_free(&p->file);
+    hf_texts_free(&p->input_name);
+    hf_series_free(&p->status);
+    for (int a = 0; a < INPUTS_MAX; a++) {
+        hf_series_free(&p->input[a]);
+        hf_texts_free(&p->input_text[a]);
+    }
+    for (int s = 0; s < N_STAGE; s++)
+        for (int k = 0; k < N_OUTPUT; k++)
+            hf_series_free(&p->output[s][k]);
+}
+
+/* The folder of a path, with its slash; "" when it is the current one. */
+static void folder_of(const char *path, char folder[LINK_SIZE])
+{
+    const char *slash = strrchr(path, '/');
+    snprintf(folder, LINK_SIZE, "%.*s", slash ? (int)(slash - path) + 1 : 0, path);
+}
+
+/* A page beside the merged file links to the results as the file does, one elsewhere by absolute paths. */
+static void find_folders(study_page *p, const char *output)
+{
+    char page_folder[LINK_SIZE], merge_real[PATH_MAX], page_real[PATH_MAX];
+    folder_of(p->path, p->folder);
+    folder_of(output, page_folder);
+    if (!realpath(*p->folder ? p->folder : ".", merge_real)) return;
+    if (realpath(*page_folder ? page_folder : ".", page_real) && !strcmp(merge_real, page_real)) return;
+    snprintf(p->from_page, sizeof p->from_page, "%s/", merge_real);
+}
+
+hf_status hf_report_study(const char *path, const char *output, hf_messages *messages)
+{
+    study_page p = {.path = path};
+    find_folders(&p, output);
+    hf_status status = read_page(&p, messages);
+    if (status == HF_OK) status = hf_export_file(output, write_page, &p, messages);
+    free_page(&p);
+    return status;
+}

@@ -1,0 +1,326 @@
+/* Contents: a grid of lines - its file - the shapes of a run - the truss - together */
+#include "out/vtk.h"
+
+#include "base/arena.h"
+#include "out/export.h"
+#include "store/hdf5_io.h"
+#include <hifdm/metrics.h>
+#include <hifdm/store.h>
+#include <hifdm/truss.h>
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define PATH_SIZE 1200
+#define LINE_CELL 3 /* VTK's number for a line */
+#define FIELDS_MAX 12
+
+/* ---- a grid of lines ---- */
+
+/* What is drawn; values are borrowed. */
+typedef struct {
+    const char *name, *units;
+    hf_hdf5_kind kind;
+    int columns;
+    const void *values;
+} field;
+
+typedef struct {
+    int n_point, n_line, n_point_field, n_line_field;
+    const double *position_m; /* [n_point][3] */
+    const int *end;           /* [n_line][2] */
+    field point[FIELDS_MAX], line[FIELDS_MAX];
+} grid;
+
+static void add(field *list, int *n, const char *name, const char *units, hf_hdf5_kind kind, int columns,
+                const void *values)
+{
+    if (values) list[(*n)++] = (field){name, units, kind, columns, values};
+}
+
+/* ---- its file ---- */
+
+static void put(hf_hdf5 *io, hid_t group, const field *f, int n)
+{
+    hf_hdf5_array array = {f->name, f->kind, f->columns > 1 ? 2 : 1, {(hsize_t)n, (hsize_t)f->columns}, f->units, ""};
+    hf_hdf5_write_array(io, group, &array, f->values);
+}
+
+static void put_fields(hf_hdf5 *io, const char *path, const field *list, int n_field, int n)
+{
+    hid_t group = hf_hdf5_make_group(io, path);
+    for (int i = 0; i < n_field; i++)
+        put(io, group, &list[i], n);
+    hf_hdf5_close(io, group);
+}
+
+/* The reader wants this one in ASCII. */
+static void put_type(hf_hdf5 *io, hid_t group)
+{
+    static const char word[] = "UnstructuredGrid";
+    hid_t type = -1, space = -1, attribute = -1;
+    if (io->status != HF_OK) return;
+    if ((type = H5Tcopy(H5T_C_S1)) < 0 || H5Tset_size(type, sizeof word - 1) < 0 ||
+        H5Tset_strpad(type, H5T_STR_NULLPAD) < 0 || (space = H5Screate(H5S_SCALAR)) < 0 ||
+        (attribute = H5Acreate2(group, "Type", type, space, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
+        H5Awrite(attribute, type, word) < 0)
+        hf_hdf5_fail(io, "write", group, "Type");
+    hf_hdf5_close(io, attribute);
+    hf_hdf5_close(io, space);
+    hf_hdf5_close(io, type);
+}
+
+/* What each cell is, which the reader wants in bytes. */
+static void put_cell_types(hf_hdf5 *io, hid_t group, int n, const unsigned char *type)
+{
+    hid_t space = -1, data_set = -1;
+    if (io->status != HF_OK) return;
+    if ((space = H5Screate_simple(1, &(hsize_t){(hsize_t)n}, NULL)) < 0 ||
+        (data_set = H5Dcreate2(group, "Types", H5T_NATIVE_UCHAR, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
+        H5Dwrite(data_set, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, type) < 0)
+        hf_hdf5_fail(io, "write", group, "Types");
+    hf_hdf5_close(io, data_set);
+    hf_hdf5_close(io, space);
+}
+
+/* offset: [n_line + 1] scratch; type: [n_line] scratch */
+static void put_grid(hf_hdf5 *io, const grid *g, int *offset, unsigned char *type)
+{
+    const long n_point = g->n_point, n_line = g->n_line, n_end = 2L * g->n_line, version[2] = {1, 0};
+    for (int e = 0; e <= g->n_line; e++)
+        offset[e] = 2 * e;
+    memset(type, LINE_CELL, (size_t)g->n_line);
+    hid_t group = hf_hdf5_make_group(io, "/VTKHDF");
+    hf_hdf5_put(io, group, ".", "Version", HF_KIND_LONG, 2, version);
+    put_type(io, group);
+    put(io, group, &(field){"NumberOfPoints", "", HF_KIND_LONG, 1, &n_point}, 1);
+    put(io, group, &(field){"NumberOfCells", "", HF_KIND_LONG, 1, &n_line}, 1);
+    put(io, group, &(field){"NumberOfConnectivityIds", "", HF_KIND_LONG, 1, &n_end}, 1);
+    put(io, group, &(field){"Points", "m", HF_KIND_REAL, 3, g->position_m}, g->n_point);
+    put(io, group, &(field){"Connectivity", "", HF_KIND_INT, 1, g->end}, 2 * g->n_line);
+    put(io, group, &(field){"Offsets", "", HF_KIND_INT, 1, offset}, g->n_line + 1);
+    put_cell_types(io, group, g->n_line, type);
+    hf_hdf5_close(io, group);
+    put_fields(io, "/VTKHDF/PointData", g->point, g->n_point_field, g->n_point);
+    put_fields(io, "/VTKHDF/CellData", g->line, g->n_line_field, g->n_line);
+}
+
+/* Written beside its name and renamed, so that no half-written file is ever seen. */
+static hf_status write_grid(const char *path, const grid *g, int *offset, unsigned char *type, hf_messages *messages)
+{
+    char temporary[PATH_SIZE + 32];
+    snprintf(temporary, sizeof temporary, "%s.%ld.tmp", path, (long)getpid());
+    hf_hdf5 io = {.path = path, .messages = messages, .status = HF_OK, .file = -1};
+    hf_hdf5_create_file(&io, temporary);
+    put_grid(&io, g, offset, type);
+    hf_hdf5_close_file(&io);
+    if (io.status == HF_OK && rename(temporary, path) != 0)
+        io.status = hf_error(messages, HF_IO, "%s: cannot write: %s", path, strerror(errno));
+    if (io.status != HF_OK) unlink(temporary);
+    return io.status;
+}
+
+/* ---- the shapes of a run ---- */
+
+/* What HDF5 files keep as bytes or not at all, by node or by cable. */
+typedef struct {
+    int *role, *group, *law, *slack, *offset;
+    unsigned char *type;
+    double *theoretical_m, *displacement_m, *deviation_m, *normal_error_m, *length_change_m;
+} scratch;
+
+static void lay_out(hf_arena *a, const hf_scene *s, scratch *t)
+{
+    size_t n = (size_t)s->n_node, m = (size_t)s->n_cable;
+    t->role = hf_arena_take(a, n, sizeof(int));
+    t->group = hf_arena_take(a, m, sizeof(int));
+    t->law = hf_arena_take(a, m, sizeof(int));
+    t->slack = hf_arena_take(a, m, sizeof(int));
+    t->offset = hf_arena_take(a, m + 1, sizeof(int));
+    t->type = hf_arena_take(a, m, 1);
+    t->theoretical_m = hf_arena_take(a, m, sizeof(double));
+    t->displacement_m = hf_arena_take(a, 3 * n, sizeof(double));
+    t->deviation_m = hf_arena_take(a, n, sizeof(double));
+    t->normal_error_m = hf_arena_take(a, n, sizeof(double));
+    t->length_change_m = hf_arena_take(a, m, sizeof(double));
+}
+
+static void fill(const hf_scene *s, const hf_shape *shape, const hf_summary *summary, scratch *t)
+{
+    double focal_m = summary->surface.focal_length_m, reference_N = hf_model_reference_N(s, summary->pretension_N);
+    const double *position_m = shape ? shape->position_m : s->position_m;
+    for (int i = 0; i < s->n_node; i++) {
+        const double *p = position_m + 3 * (size_t)i, *p0 = s->position_m + 3 * (size_t)i;
+        double *d = t->displacement_m + 3 * (size_t)i, slope = p[0] / (2 * focal_m);
+        for (int c = 0; c < 3; c++)
+            d[c] = p[c] - p0[c];
+        t->role[i] = s->role[i];
+        t->deviation_m[i] = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        t->normal_error_m[i] = (p[2] - p[0] * p[0] / (4 * focal_m)) / sqrt(1 + slope * slope);
+    }
+    for (int e = 0; e < s->n_cable; e++) {
+        t->group[e] = s->group[e];
+        t->law[e] = shape ? shape->law[e] : s->law[e];
+        t->theoretical_m[e] = hf_scene_theoretical_length(s, e);
+        if (!shape) continue;
+        t->length_change_m[e] = shape->length_m[e] - t->theoretical_m[e];
+        t->slack[e] = fabs(shape->tension_N[e]) < HF_SLACK_RATIO * reference_N;
+    }
+}
+
+/* shape NULL: the theoretical one. */
+static grid grid_of(const hf_scene *s, const hf_shape *shape, const hf_summary *summary, const scratch *t)
+{
+    grid g = {.n_point = s->n_node, .n_line = s->n_cable, .end = s->end};
+    int *n = &g.n_point_field, *m = &g.n_line_field;
+    g.position_m = shape ? shape->position_m : s->position_m;
+    add(g.point, n, "role", "", HF_KIND_INT, 1, t->role);
+    add(g.point, n, "load_N", "N", HF_KIND_REAL, 3, s->load_N);
+    if (summary->surface.focal_length_m > 0) add(g.point, n, "normal_error_m", "m", HF_KIND_REAL, 1, t->normal_error_m);
+    add(g.line, m, "group", "", HF_KIND_INT, 1, t->group);
+    add(g.line, m, "law", "", HF_KIND_INT, 1, t->law);
+    add(g.line, m, "length_m", "m", HF_KIND_REAL, 1, shape ? shape->length_m : t->theoretical_m);
+    add(g.line, m, "EA_N", "N", HF_KIND_REAL, 1, s->EA_N);
+    if (!shape) return g;
+    add(g.point, n, "displacement_m", "m", HF_KIND_REAL, 3, t->displacement_m);
+    add(g.point, n, "deviation_m", "m", HF_KIND_REAL, 1, t->deviation_m);
+    add(g.line, m, "tension_N", "N", HF_KIND_REAL, 1, shape->tension_N);
+    add(g.line, m, "q_N_per_m", "N/m", HF_KIND_REAL, 1, shape->q_N_per_m);
+    add(g.line, m, "length_change_m", "m", HF_KIND_REAL, 1, t->length_change_m);
+    add(g.line, m, "slack", "", HF_KIND_INT, 1, t->slack);
+    return g;
+}
+
+/* stage HF_STAGE_NONE: the theoretical shape. */
+static hf_status write_stage(const hf_export_request *o, int stage, const char *path, const hf_scene *scene,
+                             const hf_summary *summary, scratch *t, hf_messages *messages)
+{
+    hf_shape shape = {0};
+    const hf_shape *found = stage == HF_STAGE_NONE ? NULL : &shape;
+    if (found) HF_TRY(hf_store_read_shape(o->file, (hf_stage)stage, &shape, messages));
+    fill(scene, found, summary, t);
+    const grid g = grid_of(scene, found, summary, t);
+    hf_status status = write_grid(path, &g, t->offset, t->type, messages);
+    hf_shape_free(&shape);
+    return status;
+}
+
+/* ---- the truss ---- */
+
+typedef struct {
+    int *fixed, *unit, *joint, *offset;
+    unsigned char *type;
+    double *displacement_m, *rotation_rad, *axial_force_N;
+} truss_scratch;
+
+static void lay_out_truss(hf_arena *a, const hf_truss *truss, truss_scratch *t)
+{
+    size_t n = (size_t)truss->n_node, m = (size_t)truss->n_member;
+    t->fixed = hf_arena_take(a, n, sizeof(int));
+    t->unit = hf_arena_take(a, m, sizeof(int));
+    t->joint = hf_arena_take(a, m, sizeof(int));
+    t->offset = hf_arena_take(a, m + 1, sizeof(int));
+    t->type = hf_arena_take(a, m, 1);
+    t->displacement_m = hf_arena_take(a, 3 * n, sizeof(double));
+    t->rotation_rad = hf_arena_take(a, 3 * n, sizeof(double));
+    t->axial_force_N = hf_arena_take(a, m, sizeof(double));
+}
+
+static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *state, truss_scratch *t)
+{
+    grid g = {.n_point = truss->n_node, .n_line = truss->n_member, .position_m = truss->position_m, .end = truss->end};
+    int *n = &g.n_point_field, *m = &g.n_line_field, has_state = state->displacement && state->end_force;
+    for (int i = 0; i < truss->n_node; i++) {
+        t->fixed[i] = truss->fixed[i];
+        for (int c = 0; c < 3 && has_state; c++) {
+            t->displacement_m[3 * i + c] = state->displacement[HF_TRUSS_DOF * i + c];
+            t->rotation_rad[3 * i + c] = state->displacement[HF_TRUSS_DOF * i + 3 + c];
+        }
+    }
+    for (int e = 0; e < truss->n_member; e++) {
+        t->unit[e] = truss->unit[e];
+        t->joint[e] = truss->joint[e];
+        if (has_state) t->axial_force_N[e] = state->end_force[12 * (size_t)e + HF_TRUSS_DOF]; /* on end j */
+    }
+    add(g.point, n, "fixed", "", HF_KIND_INT, 1, t->fixed);
+    add(g.point, n, "mass_kg", "kg", HF_KIND_REAL, 1, truss->mass_kg);
+    add(g.line, m, "unit", "", HF_KIND_INT, 1, t->unit);
+    add(g.line, m, "joint", "", HF_KIND_INT, 1, t->joint);
+    if (!has_state) return g;
+    add(g.point, n, "displacement_m", "m", HF_KIND_REAL, 3, t->displacement_m);
+    add(g.point, n, "rotation_rad", "rad", HF_KIND_REAL, 3, t->rotation_rad);
+    add(g.line, m, "axial_force_N", "N", HF_KIND_REAL, 1, t->axial_force_N);
+    return g;
+}
+
+static hf_status write_truss(const hf_export_request *o, const char *path, hf_messages *messages)
+{
+    hf_truss truss = {0};
+    hf_carrier_state state = {0};
+    hf_arena arena = {0};
+    truss_scratch t;
+    hf_status status = hf_store_read_truss(o->file, &truss, &state, messages);
+    if (status == HF_OK) {
+        lay_out_truss(&arena, &truss, &t);
+        status = hf_arena_allocate(&arena);
+        if (status != HF_OK) hf_error(messages, status, "%s: out of memory", o->file);
+    }
+    if (status == HF_OK) {
+        lay_out_truss(&arena, &truss, &t);
+        const grid g = grid_of_truss(&truss, &state, &t);
+        status = write_grid(path, &g, t.offset, t.type, messages);
+    }
+    hf_arena_free(&arena);
+    hf_carrier_state_free(&state);
+    hf_truss_free(&truss);
+    return status;
+}
+
+/* ---- together ---- */
+
+static hf_status write_all(const hf_export_request *o, const hf_scene *scene, const hf_summary *summary, scratch *t,
+                           char *said, size_t size, hf_messages *messages)
+{
+    static const char *const name[5] = {"form", "optimize", "polish", "theoretical", "truss"}; /* by hf_stage */
+    int has[5] = {1, hf_summary_has_best_shape(summary), summary->has_polish, 1, summary->has_truss};
+    char path[5][PATH_SIZE];
+    HF_TRY(hf_export_folder(o->output, messages));
+    for (int i = 0; i < 5; i++) { /* all before any is written */
+        if (snprintf(path[i], PATH_SIZE, "%s/%s.hdf", o->output, name[i]) >= PATH_SIZE)
+            return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
+        if (has[i]) HF_TRY(hf_export_claim(path[i], o->force, messages));
+    }
+    int used = snprintf(said, size, "%s: for ParaView, in %s:", o->file, o->output);
+    static const int order[5] = {HF_STAGE_NONE, HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, 4};
+    for (int k = 0; k < 5; k++) {
+        int i = order[k];
+        if (!has[i]) continue;
+        HF_TRY(i == 4 ? write_truss(o, path[i], messages) : write_stage(o, i, path[i], scene, summary, t, messages));
+        if ((size_t)used < size) used += snprintf(said + used, size - (size_t)used, " %s.hdf", name[i]);
+    }
+    return HF_OK;
+}
+
+hf_status hf_vtk(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
+{
+    hf_scene scene = {0};
+    hf_summary summary;
+    scratch t;
+    hf_arena arena = {0};
+    HF_TRY(hf_store_read_summary(request->file, &summary, messages));
+    HF_TRY(hf_store_read_scene(request->file, &scene, messages));
+    lay_out(&arena, &scene, &t);
+    hf_status status = hf_arena_allocate(&arena);
+    if (status == HF_OK) {
+        lay_out(&arena, &scene, &t);
+        status = write_all(request, &scene, &summary, &t, said, size, messages);
+    } else {
+        hf_error(messages, status, "%s: out of memory", request->file);
+    }
+    hf_arena_free(&arena);
+    hf_scene_free(&scene);
+    return status;
+}

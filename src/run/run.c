@@ -1,0 +1,428 @@
+/* Contents: form-finding - optimisation - the whole run */
+#include "run/run.h"
+
+#include "search/polish.h"
+#include "store/store_open.h"
+#include "base/text.h"
+#include "solve/coupling.h"
+#include <hifdm/batch.h>
+#include <hifdm/store.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define HISTORY_MAX 1000000 /* iterations whose history is kept */
+
+double hf_run_clock_s(void)
+{
+    return hf_store_clock_s();
+}
+
+/* Everything a run owns. */
+typedef struct {
+    const hf_run_request *request;
+    hf_problem problem;
+    hf_carrier_state truss; /* under the shape of the last stage whose shape is the result */
+    hf_history history;
+    hf_store *store;
+    hf_evaluator evaluator;
+    hf_batch batch;
+    hf_ga ga;
+    int first_generation; /* of this session */
+    long first_evaluation;
+    double earlier_wall_s, earlier_cpu_s; /* of the genetic algorithm in other sessions, as far as it was published */
+} run;
+
+static void run_free(run *r)
+{
+    hf_store_abandon(r->store); /* NULL once it is finished */
+    hf_ga_free(&r->ga);
+    hf_batch_free(&r->batch);
+    free(r->history.psi_m);
+    hf_carrier_state_free(&r->truss);
+    hf_problem_free(&r->problem);
+}
+
+static int must_stop(const run *r)
+{
+    return r->request->stop_requested && *r->request->stop_requested;
+}
+
+static void observe(const run *r, hf_run_progress progress)
+{
+    if (r->request->observer) r->request->observer(r->request->observer_context, &progress);
+}
+
+/* For a case with a section `surface`: once for each shape that is reported. */
+static hf_status measure_surface(const run *r, hf_stage stage, const hf_workspace *w, hf_summary *s,
+                                 hf_messages *messages)
+{
+    const hf_problem *p = &r->problem;
+    if (!p->settings.has_surface) return HF_OK;
+    if (hf_surface_measure(&p->settings.surface, &p->model, w, &s->measures[stage]) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
+    const hf_surface_fit *fit = &s->measures[stage].fit;
+    if (!fit->converged)
+        hf_warning(messages,
+                   "surface: the best fit to the shape of stage %s did not converge in %d steps; it has no value",
+                   hf_stage_word[stage], fit->iterations);
+    return HF_OK;
+}
+
+/* What the net of this shape does to the truss, if there is one. */
+static hf_status load_truss(run *r, hf_workspace *w, hf_messages *messages)
+{
+    const hf_problem *p = &r->problem;
+    if (!p->settings.has_truss) return HF_OK;
+    hf_carrier_state_free(&r->truss);
+    hf_coupling_forces(&p->model, w);
+    hf_status status = hf_carrier_load(&p->carrier, w->attachment_force_N, &r->truss);
+    return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the forces in the truss");
+}
+
+/* ---- form-finding ---- */
+
+static hf_status create_history(const hf_form_settings *form, int has_truss, hf_history *h)
+{
+    h->capacity = form->max_iterations < HISTORY_MAX ? form->max_iterations : HISTORY_MAX;
+    size_t n = (size_t)h->capacity, n_coupling = has_truss ? (size_t)form->coupling.max_iterations : 0;
+    double *block = calloc(5 * n + 3 * n_coupling, sizeof *block);
+    if (!block) return HF_NO_MEMORY;
+    h->psi_m = block;
+    h->residual_N = block + n;
+    h->inner_tension_ratio = block + 2 * n;
+    h->boundary_tension_ratio = block + 3 * n;
+    h->length_error = block + 4 * n;
+    double *more = block + 5 * n;
+    h->coupling = (hf_coupling_history){(int)n_coupling, 0, more, more + n_coupling, more + 2 * n_coupling};
+    return HF_OK;
+}
+
+static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
+{
+    hf_problem *p = &r->problem;
+    const hf_form_settings *form = &p->settings.form;
+    HF_TRY(hf_problem_allocate(p, messages));
+    p->workspace.stop = r->request->stop_requested;
+    if (create_history(form, p->model.n_attachment > 0, &r->history) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", p->model.n_node);
+    observe(r, (hf_run_progress){.phase = HF_RUN_FORM});
+    double start_s = hf_run_clock_s();
+    hf_evaluate_form(&p->model, form, &p->workspace, &r->history, &s->form);
+    s->form_wall_s = hf_run_clock_s() - start_s;
+    hf_status status = hf_problem_explain(p, &s->form, messages);
+    if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
+    HF_TRY(measure_surface(r, HF_STAGE_FORM, &p->workspace, s, messages));
+    HF_TRY(hf_store_form(r->store, &p->model, &p->workspace, &r->history, messages));
+    HF_TRY(load_truss(r, &p->workspace, messages));
+    return status;
+}
+
+/* ---- optimisation ---- */
+
+/* Told to stop: all that is done is published, and the same command goes on from there. */
+static hf_status stop_here(run *r, const hf_summary *s, hf_messages *messages)
+{
+    HF_TRY(hf_store_publish(r->store, s, 1, messages));
+    return HF_INTERRUPTED;
+}
+
+/* Workspaces, population and evaluator, all before the first generation. */
+static hf_status prepare_optimize(run *r, hf_messages *messages)
+{
+    hf_problem *p = &r->problem;
+    HF_TRY(hf_problem_base(p, messages));
+    HF_TRY(hf_store_base(r->store, p->model.n_gene, p->base_N, messages));
+    r->evaluator = hf_problem_evaluator(p);
+    if (hf_batch_create(&r->evaluator, r->request->threads, &r->batch) != HF_OK ||
+        hf_ga_create(&p->settings.optimize, &p->model, p->base_N, &r->ga) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for %d individuals of %d genes on %d threads",
+                        p->settings.optimize.population, p->model.n_gene, r->batch.n_thread);
+    return HF_OK;
+}
+
+static void note_best(const hf_ga *ga, hf_summary *s)
+{
+    if (ga->best < 0 || (s->best.status == HF_OK && !(ga->result[ga->best].psi_m < s->best.psi_m))) return;
+    s->best = ga->result[ga->best];
+    s->best_generation = ga->generation;
+    s->best_individual = ga->best;
+}
+
+/* The shape of the best individual: elitism keeps it in the last generation, and it is evaluated to the same bits
+ * again. */
+static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
+{
+    const double *design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
+    hf_form_result again;
+    hf_workspace *w = hf_batch_run_one(&r->batch, design, &again);
+    s->best = again; /* to the same bits, with what is not stored of an individual */
+    hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
+    HF_TRY(measure_surface(r, HF_STAGE_OPTIMIZE, w, s, messages));
+    HF_TRY(load_truss(r, w, messages));
+    return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->problem.model, w, design, messages);
+}
+
+/* What the summary says of the generations so far; a file that is published in between has it, too. */
+static void sum_up(const run *r, double start_s, hf_summary *s)
+{
+    const hf_ga *ga = &r->ga;
+    s->has_optimize = 1;
+    s->optimize_wall_s = r->earlier_wall_s + hf_run_clock_s() - start_s;
+    s->optimize_cpu_s = r->earlier_cpu_s + r->batch.cpu_s;
+    s->generations = ga->generation + 1;
+    s->evaluations = ga->n_evaluation;
+    s->infeasible = ga->n_evaluation_infeasible;
+    s->optimize_stop = (int)ga->stop_reason;
+}
+
+/* A generation on its way into the store, while the next one is bred and evaluated. */
+typedef struct {
+    const run *r;
+    hf_ga ga; /* as it was told */
+    const hf_summary *summary;
+    hf_messages *messages;
+    hf_status status;
+} told;
+
+static void observe_generation(const told *t)
+{
+    const hf_ga *ga = &t->ga;
+    observe(t->r, (hf_run_progress){.phase = HF_RUN_EVOLVE,
+                                    .generation = ga->generation + 1,
+                                    .generations = ga->settings->generations,
+                                    .first_generation = t->r->first_generation,
+                                    .is_last = ga->stop_reason != HF_GA_RUNNING,
+                                    .evaluations = ga->n_evaluation - t->r->first_evaluation,
+                                    .best_psi_m = ga->best_psi_m[ga->generation],
+                                    .elapsed_s = t->summary->optimize_wall_s - t->r->earlier_wall_s});
+}
+
+/* Nobody hears of a generation before it is safe. */
+static void keep(void *context)
+{
+    told *t = context;
+    t->status = hf_store_generation(t->r->store, &t->r->problem.model, &t->ga, t->messages);
+    if (t->status == HF_OK) t->status = hf_store_publish(t->r->store, t->summary, 0, t->messages);
+    if (t->status == HF_OK) observe_generation(t);
+}
+
+/* The visible file begins with the first generation, so that the journal always has something to be added to. What an
+ * earlier session has stored is taken up. */
+static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
+{
+    hf_ga *ga = &r->ga;
+    HF_TRY(hf_store_genes(r->store, &r->problem.model, ga, messages));
+    HF_TRY(hf_store_restore(r->store, ga, s, messages));
+    if (hf_store_generations(r->store) == 0) return hf_store_publish(r->store, s, 1, messages);
+    hf_ga_tell(ga);
+    r->earlier_wall_s = s->optimize_wall_s;
+    r->earlier_cpu_s = s->optimize_cpu_s;
+    r->first_generation = ga->generation + 1;
+    r->first_evaluation = ga->n_evaluation;
+    return HF_OK;
+}
+
+/* The first generation of this session; 0 when there is none. */
+static int evaluate_first(run *r)
+{
+    hf_ga *ga = &r->ga;
+    if (r->first_generation > 0) return hf_batch_next(&r->batch, ga, NULL, NULL);
+    hf_batch_run(&r->batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
+    return 1;
+}
+
+static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
+{
+    hf_ga *ga = &r->ga;
+    s->best.status = HF_NO_FEASIBLE;
+    s->solver = hf_batch_share(&r->batch, r->problem.base_N);
+    HF_TRY(begin_generations(r, s, messages));
+    if (must_stop(r)) return stop_here(r, s, messages);
+    double start_s = hf_run_clock_s();
+    int more = evaluate_first(r);
+    while (more) {
+        hf_ga_tell(ga);
+        if (ga->generation == 0) s->base_psi_m = ga->result[0].psi_m;
+        note_best(ga, s);
+        sum_up(r, start_s, s);
+        told now = {r, *ga, s, messages, HF_OK};
+        int stops = must_stop(r) && ga->stop_reason == HF_GA_RUNNING;
+        if (stops)
+            keep(&now);
+        else
+            more = hf_batch_next(&r->batch, ga, keep, &now);
+        HF_TRY(now.status);
+        if (stops) return stop_here(r, s, messages);
+    }
+    sum_up(r, start_s, s);
+    if (ga->best >= 0) return store_best(r, s, messages);
+    return hf_error(messages, HF_NO_FEASIBLE, "optimize: no feasible design among %ld evaluations", s->evaluations);
+}
+
+/* Levenberg-Marquardt from the best individual, or from the base design when there was no genetic algorithm. */
+static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &r->problem.settings.optimize;
+    hf_workspace *w = &r->problem.workspace;
+    hf_polish_result outcome;
+    double *design = r->problem.base_N, start_s = hf_run_clock_s();
+    if (s->has_optimize && r->ga.best >= 0) design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
+    observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});
+    hf_status status =
+        hf_polish_run(&r->evaluator, r->ga.lower_N, r->ga.upper_N, o->polish_iterations, design, w, &outcome);
+    if (must_stop(r)) return stop_here(r, s, messages);
+    if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
+    if (status != HF_OK) {
+        const char *why = hf_status_text(status);
+        if (o->method == HF_OPTIMIZE_LM)
+            return hf_error(messages, HF_NO_FEASIBLE, "optimize: Levenberg-Marquardt has no feasible start: %s", why);
+        hf_warning(messages, "optimize: Levenberg-Marquardt has no feasible start: %s", why);
+        return HF_OK;
+    }
+    hf_evaluate(&r->evaluator, design, w, &s->polish);
+    if (must_stop(r)) return stop_here(r, s, messages); /* it may have been cut short */
+    s->has_polish = 1;
+    s->polish_is_result = o->method != HF_OPTIMIZE_GA;
+    s->polish_iterations = outcome.iterations;
+    s->polish_evaluations = outcome.evaluations;
+    s->polish_converged = outcome.converged;
+    s->polish_wall_s = hf_run_clock_s() - start_s;
+    HF_TRY(measure_surface(r, HF_STAGE_POLISH, w, s, messages));
+    if (s->polish_is_result) HF_TRY(load_truss(r, w, messages));
+    return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);
+}
+
+static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
+{
+    int method = r->problem.settings.optimize.method;
+    HF_TRY(prepare_optimize(r, messages));
+    s->threads = r->batch.n_thread;
+    if (method != HF_OPTIMIZE_LM) HF_TRY(evolve(r, s, messages));
+    if (must_stop(r)) return stop_here(r, s, messages);
+    if (hf_polish_applies(&r->evaluator)) return polish(r, s, messages);
+    if (method == HF_OPTIMIZE_GA_LM) hf_warning(messages, "%s", HF_PROBLEM_POLISH_NEEDS);
+    return HF_OK;
+}
+
+/* ---- the whole run ---- */
+
+/* -o, or the name of the case with .h5 in the current folder. */
+static hf_status choose_output(const hf_run_request *o, char output[HF_OUTPUT_SIZE], hf_messages *messages)
+{
+    const char *slash = strrchr(o->case_path, '/'), *name = slash ? slash + 1 : o->case_path, *dot = strrchr(name, '.');
+    int stem = dot && dot != name ? (int)(dot - name) : (int)strlen(name);
+    int n = o->output ? snprintf(output, HF_OUTPUT_SIZE, "%s", o->output)
+                      : snprintf(output, HF_OUTPUT_SIZE, "%.*s.h5", stem, name);
+    if (n >= HF_OUTPUT_SIZE) return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
+    return HF_OK;
+}
+
+hf_status hf_run_spare_inputs(const hf_case *settings, const char *table, const char *output, hf_messages *messages)
+{
+    const char *input[] = {settings->path,
+                           table,
+                           settings->nodes_path,
+                           settings->cables_path,
+                           settings->truss_nodes_path,
+                           settings->truss_members_path};
+    struct stat a, b;
+    for (size_t i = 0; i < sizeof input / sizeof *input; i++)
+        if (input[i] && *input[i] && stat(input[i], &a) == 0 && stat(output, &b) == 0 && a.st_dev == b.st_dev &&
+            a.st_ino == b.st_ino)
+            return hf_error(messages, HF_EXISTS, "%s: is an input of this run; use -o to choose another name", output);
+    return HF_OK;
+}
+
+/* The stages that the case asks for, in order. HF_NOT_CONVERGED: nothing follows on a shape that is not one. */
+static hf_status stages(run *r, hf_summary *s, hf_messages *messages)
+{
+    HF_TRY(find_form(r, s, messages));
+    if (must_stop(r)) return HF_INTERRUPTED;
+    if (r->problem.settings.has_optimize && r->problem.model.n_gene == 0)
+        hf_warning(messages, "optimize: skipped, no boundary cable has a free end");
+    else if (r->problem.settings.has_optimize)
+        return optimize(r, s, messages);
+    return HF_OK;
+}
+
+/* The file of a run that did not reach its aim still says how far it came. */
+static int leaves_result(hf_status status)
+{
+    return status == HF_OK || status == HF_NOT_CONVERGED || status == HF_NO_FEASIBLE;
+}
+
+/* Nothing to do: summary, status and the errors that explain it are the stored ones. */
+static hf_status repeat_finished(const char *output, hf_summary *s, hf_messages *messages)
+{
+    HF_TRY(hf_store_read_summary(output, s, messages));
+    hf_warning(messages, "%s: is the finished result of this case; --restart computes it again", output);
+    for (const char *line = s->warnings; *line; line += strcspn(line, "\n"), line += *line == '\n')
+        if (!strncmp(line, "error: ", 7)) hf_error(messages, s->status, "%.*s", (int)strcspn(line + 7, "\n"), line + 7);
+    return s->status;
+}
+
+/* Unless *state is HF_STORE_FINISHED. */
+static hf_status open_store(run *r, char *output, hf_store_state *state, hf_messages *messages)
+{
+    const hf_run_request *q = r->request;
+    const hf_case *settings = &r->problem.settings;
+    const hf_scene *scene = &r->problem.scene;
+    const hf_truss *truss = settings->has_truss ? &r->problem.carrier.truss : NULL;
+    HF_TRY(choose_output(q, output, messages));
+    HF_TRY(hf_run_spare_inputs(settings, NULL, output, messages));
+    if (!q->restart) HF_TRY(hf_store_look(output, settings, scene, truss, state, messages));
+    if (*state == HF_STORE_FINISHED) return HF_OK;
+    if (*state == HF_STORE_UNFINISHED) return hf_store_resume(output, &r->store, messages);
+    return hf_store_create(output, q->restart, settings, scene, truss, q->argc, q->argv, &r->store, messages);
+}
+
+static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messages)
+{
+    const hf_run_request *q = r->request;
+    hf_case *settings = &r->problem.settings;
+    HF_TRY(hf_problem_load(q->case_path, q->set, q->n_set, &r->problem, messages));
+    if (settings->has_sweep && !q->of_sweep)
+        return hf_error(messages, HF_BAD_USAGE, "%s: has a sweep section; 'hifdm sweep %s' runs it", q->case_path,
+                        q->case_path);
+    if (q->has_seed) settings->optimize.seed = q->seed;
+    if (q->has_seed && !settings->has_optimize)
+        hf_warning(messages, "--seed has no effect: the case has no optimize section");
+    hf_problem_describe(&r->problem, s);
+    hf_store_state state = HF_STORE_NOTHING;
+    if (!q->no_file) HF_TRY(open_store(r, output, &state, messages));
+    if (state == HF_STORE_FINISHED) return repeat_finished(output, s, messages);
+    hf_status status = stages(r, s, messages);
+    if (status == HF_INTERRUPTED && r->store)
+        hf_error(messages, status, "%s: told to stop; the same command goes on from there", output);
+    if (!leaves_result(status)) return status;
+    if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, &r->truss, messages));
+    snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
+    hf_text_trim_utf8(s->warnings);
+    s->finished = 1;
+    s->status = status;
+    hf_status finish = hf_store_complete(r->store, s, messages);
+    hf_store *store = r->store;
+    r->store = NULL;
+    if (finish == HF_OK && q->unsettled)
+        *q->unsettled = store;
+    else
+        finish = hf_store_settle(store, messages);
+    return finish != HF_OK ? finish : status;
+}
+
+hf_status hf_run_point(const hf_run_request *request, hf_summary *summary, char output[HF_OUTPUT_SIZE],
+                       hf_messages *messages)
+{
+    run r = {.request = request};
+    if (request->unsettled) *request->unsettled = NULL;
+    *summary = (hf_summary){.form.status = HF_NOT_EVALUATED, .threads = 1};
+    snprintf(summary->version, sizeof summary->version, "%s", hf_store_version());
+    output[0] = '\0';
+    hf_status status = execute(&r, summary, output, messages);
+    if (!leaves_result(status)) output[0] = '\0';
+    run_free(&r);
+    return status;
+}

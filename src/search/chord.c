@@ -1,0 +1,389 @@
+/* Contents: choice of instruction set - shared matrix - lanes - the matrix alone - one lane's life - the run */
+#include "search/chord.h"
+
+#include "base/arena.h"
+#include "solve/coupling.h"
+#include "solve/newton.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ITERATIONS_MAX 60
+#define PATIENCE 3      /* steps before contraction is asked for */
+#define MODES_LEFT 0.05 /* what may be left out of the inverse of the coupling (hf_schur_modes) */
+#define CONTRACTION 0.7 /* a residual must fall at least by this factor per step */
+
+/* ---- choice of instruction set ---- */
+
+static const hf_chord_kernels *choose_kernels(void)
+{
+#define TABLE(isa)                                                                                                     \
+    {                                                                                                                  \
+        hf_chord_forces_##isa, hf_chord_solve_##isa, hf_chord_step_##isa, hf_chord_couple_##isa, hf_chord_move_##isa   \
+    }
+    static const hf_chord_kernels portable = TABLE(portable), avx2 = TABLE(avx2), avx512 = TABLE(avx512);
+#undef TABLE
+    switch (hf_lane_best_isa()) {
+    case HF_LANE_AVX512:
+        return &avx512;
+    case HF_LANE_AVX2:
+        return &avx2;
+    default:
+        return &portable;
+    }
+}
+
+/* ---- shared matrix ---- */
+
+static int has_multiplier(const hf_model *m, int e)
+{
+    return m->law[e] == HF_LAW_LENGTH || m->law[e] == HF_LAW_ELASTIC;
+}
+
+int hf_chord_applies(const hf_evaluator *v)
+{
+    const hf_model *m = v->model;
+    if (!m->has_newton || v->rule == HF_RULE_SEEDED || m->n_gene == 0) return 0;
+    int n_multiplier = 0;
+    for (int e = 0; e < m->n_cable; e++)
+        n_multiplier += has_multiplier(m, e);
+    for (int k = 0; k < m->n_gene; k++)
+        n_multiplier -= has_multiplier(m, m->gene_cable[k]);
+    for (int e = 0; e < m->n_cable; e++) /* between two supports it moves nothing */
+        if (has_multiplier(m, e) && m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free)
+            n_multiplier--;
+    for (int k = 0; k < m->n_tie; k++) { /* but on a truss it pulls */
+        int e = m->tie[k] / 2;
+        n_multiplier += has_multiplier(m, e) && m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free;
+    }
+    return n_multiplier == 0;
+}
+
+static void lay_out(hf_arena *a, hf_chord *c)
+{
+    const hf_model *m = c->evaluator->model;
+    size_t n = (size_t)c->n_dof + 4, w = (size_t)c->width; /* rows are read four at a time */
+    c->row = hf_arena_take(a, n * w, sizeof(double));
+    c->column = hf_arena_take(a, n * w, sizeof(double));
+    c->inverse_diagonal = hf_arena_take(a, n, sizeof(double));
+    c->base_m = hf_arena_take(a, 3 * (size_t)m->n_node, sizeof(double));
+    c->row_begin = hf_arena_take(a, n / 4, sizeof(int));
+    c->column_end = hf_arena_take(a, n / 4, sizeof(int));
+    c->gene_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
+    if (c->n_pull == 0) return;
+    size_t n_pull = (size_t)c->n_pull;
+    c->pull_of_row = hf_arena_take(a, (size_t)m->n_node, sizeof(int));
+    c->flexibility = hf_arena_take(a, n_pull * (size_t)c->n_pull_pad, sizeof(double));
+    c->mode = hf_arena_take(a, 2 * n_pull * HF_CHORD_MODES_MAX, sizeof(double));
+    c->tie_block = hf_arena_take(a, 9 * (size_t)m->n_tie, sizeof(double));
+    c->base_displacement_m = hf_arena_take(a, n_pull, sizeof(double));
+}
+
+static void pack_factor(const hf_workspace *w, hf_chord *c)
+{
+    size_t ld = 3 * (size_t)c->evaluator->model->half_bandwidth + 3, width = (size_t)c->width;
+    for (size_t j = 0; j < (size_t)c->n_dof; j++) {
+        c->inverse_diagonal[j] = 1 / w->newton_band[j * ld];
+        for (size_t d = 1; d < ld && j + d < (size_t)c->n_dof; d++) {
+            double value = w->newton_band[d + j * ld];
+            c->column[j * width + d - 1] = value;
+            c->row[(j + d) * width + width - d] = value;
+        }
+    }
+}
+
+/* Where four packed rows (or columns) at `block` have something at place i of the part that they share. */
+static int has_entry(const double *block, size_t width, int i)
+{
+    return block[i + 3] != 0 || block[width + (size_t)i + 2] != 0 || block[2 * width + (size_t)i + 1] != 0 ||
+           block[3 * width + (size_t)i] != 0;
+}
+
+static void find_skyline(hf_chord *c)
+{
+    size_t width = (size_t)c->width;
+    for (int b = 0; 4 * b < c->n_dof; b++) {
+        const double *row = c->row + 4 * (size_t)b * width, *column = c->column + 4 * (size_t)b * width;
+        int begin = 0, end = c->width - 3;
+        while (begin < c->width - 3 && !has_entry(row, width, begin))
+            begin++;
+        while (end > 0 && !has_entry(column, width, end - 1))
+            end--;
+        c->row_begin[b] = begin;
+        c->column_end[b] = end;
+    }
+}
+
+void hf_chord_pack(const hf_workspace *w, hf_chord *chord)
+{
+    pack_factor(w, chord);
+    find_skyline(chord);
+}
+
+static hf_chord dimensions(const hf_evaluator *v)
+{
+    int half_bandwidth = 3 * v->model->half_bandwidth + 2, n_pull = 3 * v->model->n_attachment;
+    return (hf_chord){.evaluator = v,
+                      .n_dof = 3 * v->model->n_free,
+                      .width = (half_bandwidth + 3) / 4 * 4,
+                      .n_pull = n_pull,
+                      .n_pull_pad = (n_pull + HF_CHORD_ROWS - 1) / HF_CHORD_ROWS * HF_CHORD_ROWS};
+}
+
+/* What the lanes need of the truss, at the workspace's shape with its factored matrix. */
+static hf_status pack_truss(const hf_model *m, hf_workspace *w, hf_chord *c)
+{
+    size_t n = (size_t)c->n_pull;
+    hf_schur schur;
+    for (int row = 0; row < m->n_node; row++)
+        c->pull_of_row[row] = -1;
+    for (int i = 0; i < m->n_attachment; i++)
+        c->pull_of_row[m->attachment_row[i]] = 3 * i;
+    for (size_t i = 0; i < n; i++) /* the rows that fill up stay zero */
+        for (size_t j = 0; j < n; j++)
+            c->flexibility[(i / HF_CHORD_ROWS * n + j) * HF_CHORD_ROWS + i % HF_CHORD_ROWS] =
+                m->flexibility_m_per_N[i * n + j];
+    for (int k = 0; k < m->n_tie; k++) {
+        double block[3][3];
+        hf_newton_block(m, w, m->tie[k] / 2, block);
+        memcpy(c->tie_block + 9 * k, block, sizeof block);
+    }
+    memcpy(c->base_displacement_m, w->displacement_m, n * sizeof(double));
+    hf_status status = hf_schur_create(m, &schur);
+    if (status == HF_OK) status = hf_schur_factor(m, w, &schur);
+    if (status == HF_OK) c->n_mode = hf_schur_modes(&schur, MODES_LEFT, HF_CHORD_MODES_MAX, c->mode);
+    hf_schur_free(&schur);
+    return status;
+}
+
+static hf_status allocate(hf_chord *chord)
+{
+    hf_arena arena = {0};
+    lay_out(&arena, chord);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out(&arena, chord);
+    chord->block = arena.block;
+    chord->kernels = choose_kernels();
+    return HF_OK;
+}
+
+hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_workspace *w, hf_chord *chord)
+{
+    const hf_model *m = v->model;
+    hf_form_result base;
+    *chord = dimensions(v);
+    HF_TRY(hf_evaluate(v, base_N, w, &base));
+    HF_TRY(hf_newton_factor(m, w, NULL));
+    HF_TRY(allocate(chord));
+    hf_chord_pack(w, chord);
+    memcpy(chord->base_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    for (int e = 0; e < m->n_cable; e++)
+        chord->gene_of_cable[e] = -1;
+    for (int k = 0; k < m->n_gene; k++)
+        chord->gene_of_cable[m->gene_cable[k]] = k;
+    return chord->n_pull ? pack_truss(m, w, chord) : HF_OK;
+}
+
+void hf_chord_free(hf_chord *chord)
+{
+    free(chord->block);
+    *chord = (hf_chord){0};
+}
+
+/* ---- lanes ---- */
+
+static void lay_out_lanes(hf_arena *a, const hf_chord *c, hf_chord_lanes *l)
+{
+    const hf_model *m = c->evaluator->model;
+    l->x_m = hf_arena_take(a, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
+    l->force_N = hf_arena_take(a, ((size_t)c->n_dof + 2 * (size_t)c->width + 8) * HF_LANES, sizeof(double));
+    l->gene = hf_arena_take(a, (size_t)m->n_gene * HF_LANES, sizeof(double));
+    l->pull_N = hf_arena_take(a, (size_t)c->n_pull * HF_LANES, sizeof(double));
+    l->displacement_m = hf_arena_take(a, (size_t)c->n_pull_pad * HF_LANES, sizeof(double));
+    l->move_m = hf_arena_take(a, (size_t)c->n_pull_pad * HF_LANES, sizeof(double));
+}
+
+size_t hf_chord_bytes(const hf_evaluator *evaluator, size_t *lanes_bytes)
+{
+    hf_chord chord = dimensions(evaluator);
+    hf_chord_lanes lanes;
+    hf_arena shared = {0}, own = {0};
+    lay_out(&shared, &chord);
+    lay_out_lanes(&own, &chord, &lanes);
+    *lanes_bytes = own.used;
+    return shared.used;
+}
+
+hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes)
+{
+    *lanes = (hf_chord_lanes){0};
+    hf_arena arena = {0};
+    lay_out_lanes(&arena, chord, lanes);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out_lanes(&arena, chord, lanes);
+    lanes->block = arena.block;
+    return HF_OK;
+}
+
+void hf_chord_lanes_free(hf_chord_lanes *lanes)
+{
+    free(lanes->block);
+    *lanes = (hf_chord_lanes){0};
+}
+
+/* ---- the matrix alone ---- */
+
+hf_status hf_chord_create_matrix(const hf_evaluator *v, hf_chord *chord, hf_chord_lanes *lanes)
+{
+    *lanes = (hf_chord_lanes){0};
+    *chord = dimensions(v);
+    chord->n_pull = chord->n_pull_pad = 0;
+    HF_TRY(allocate(chord));
+    return hf_chord_lanes_create(chord, lanes);
+}
+
+void hf_chord_back_solve(const hf_chord *chord, const hf_chord_lanes *l, int n_rhs, double *b, size_t ldb)
+{
+    double *rows = l->force_N + (size_t)chord->width * HF_LANES;
+    size_t n = (size_t)chord->n_dof;
+    memset(rows, 0, (n + (size_t)chord->width + 8) * HF_LANES * sizeof *rows);
+    for (int first = 0; first < n_rhs; first += HF_LANES) {
+        int n_lane = n_rhs - first < HF_LANES ? n_rhs - first : HF_LANES;
+        double *column = b + (size_t)first * ldb;
+        for (int k = 0; k < n_lane; k++)
+            for (size_t i = 0; i < n; i++)
+                rows[i * HF_LANES + (size_t)k] = column[(size_t)k * ldb + i];
+        chord->kernels->solve(chord, l);
+        for (int k = 0; k < n_lane; k++)
+            for (size_t i = 0; i < n; i++)
+                column[(size_t)k * ldb + i] = rows[i * HF_LANES + (size_t)k];
+    }
+}
+
+/* ---- one lane's life ---- */
+
+typedef struct {
+    int design[HF_LANES]; /* -1 = empty */
+    int steps[HF_LANES];
+    double excess_N[HF_LANES];
+} lives;
+
+static void load(const hf_chord *c, hf_chord_lanes *l, int lane, const double *design_N)
+{
+    const hf_model *m = c->evaluator->model;
+    for (int i = 0; i < 3 * m->n_node; i++)
+        l->x_m[(size_t)i * HF_LANES + (size_t)lane] = c->base_m[i];
+    for (int i = 0; i < c->n_pull; i++)
+        l->displacement_m[(size_t)i * HF_LANES + (size_t)lane] = c->base_displacement_m[i];
+    for (int k = 0; k < m->n_gene; k++) {
+        double value = design_N[k];
+        if (c->evaluator->rule == HF_RULE_FORCE_DENSITY) value /= hf_evaluate_design_length_m(m, m->gene_cable[k]);
+        l->gene[(size_t)k * HF_LANES + (size_t)lane] = value;
+    }
+}
+
+/* Where a lane stands. */
+typedef struct {
+    double residual_N; /* largest nodal force out of balance */
+    double gap_m;      /* largest |F f - r| of the truss; 0 without one */
+    double excess_N;   /* the larger of the residual and the gap in units of its tolerance */
+} standing;
+
+/* The lane's shape into the workspace, and from there into a result, by the scalar code. */
+static void unload(const hf_chord *c, const hf_chord_lanes *l, int lane, hf_workspace *w, const double *design_N,
+                   int steps, double gap_m, hf_form_result *result)
+{
+    const hf_model *m = c->evaluator->model;
+    hf_evaluate_prepare(c->evaluator, design_N, w);
+    for (int i = 0; i < 3 * m->n_node; i++)
+        w->position_m[i] = l->x_m[(size_t)i * HF_LANES + (size_t)lane];
+    for (int i = 0; i < c->n_pull; i++)
+        w->displacement_m[i] = l->displacement_m[(size_t)i * HF_LANES + (size_t)lane];
+    hf_form_measure(m, c->evaluator->form, w, result);
+    result->iterations = steps;
+    if (c->n_pull) hf_coupling_accept(m, w, steps, gap_m, result);
+    hf_evaluate_judge(c->evaluator, result);
+}
+
+/* ---- the run ---- */
+
+/* After the forces of a pass: converged, hopeless, or one more step? Returns 1 when the lane has become free. */
+static int settle(const hf_chord *c, hf_chord_lanes *l, int lane, lives *now, standing at, hf_workspace *w,
+                  const double *design_N, hf_form_result *result)
+{
+    const hf_model *m = c->evaluator->model;
+    const double *design = design_N + (size_t)now->design[lane] * (size_t)m->n_gene;
+    hf_form_result *r = result + now->design[lane];
+    if (at.excess_N <= c->evaluator->form->residual_tolerance * m->reference_N) {
+        unload(c, l, lane, w, design, now->steps[lane], at.gap_m, r);
+        return 1;
+    }
+    int contracts = now->steps[lane] < PATIENCE || at.excess_N < CONTRACTION * now->excess_N[lane];
+    if (contracts && isfinite(at.excess_N) && now->steps[lane] < ITERATIONS_MAX) {
+        now->excess_N[lane] = at.excess_N;
+        now->steps[lane]++;
+        return 0;
+    }
+    hf_evaluate(c->evaluator, design, w, r);
+    return 1;
+}
+
+/* Forces of net and truss in all lanes. */
+static void look(const hf_chord *c, const hf_chord_kernels *k, hf_chord_lanes *l, standing at[HF_LANES])
+{
+    double squared[HF_LANES], reference_N = c->evaluator->model->reference_N;
+    const hf_form_settings *form = c->evaluator->form;
+    k->forces(c, l, squared);
+    for (int lane = 0; lane < HF_LANES; lane++) {
+        double residual_N = reference_N * sqrt(squared[lane]);
+        at[lane] = (standing){residual_N, 0, residual_N};
+    }
+    if (c->n_pull == 0) return;
+    k->couple(c, l, squared);
+    double scale = form->residual_tolerance * reference_N / form->coupling.tof_m;
+    for (int lane = 0; lane < HF_LANES; lane++) {
+        at[lane].gap_m = sqrt(squared[lane]);
+        double gap_N = scale * at[lane].gap_m;
+        if (!(gap_N <= at[lane].excess_N)) at[lane].excess_N = gap_N; /* keeps a NaN */
+    }
+}
+
+void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, int (*next)(void *context),
+                  void *context, const double *design_N, hf_form_result *result)
+{
+    const hf_chord_kernels *k = chord->kernels;
+    size_t n_gene = (size_t)chord->evaluator->model->n_gene;
+    standing at[HF_LANES];
+    lives now;
+    int n_busy = 0, more = 1;
+    for (int lane = 0; lane < HF_LANES; lane++) {
+        now.design[lane] = -1;
+        load(chord, lanes, lane, design_N); /* an empty lane works on something harmless */
+    }
+    for (;;) {
+        for (int lane = 0; lane < HF_LANES && more; lane++) {
+            if (now.design[lane] >= 0) continue;
+            int i = next(context);
+            more = i >= 0;
+            if (!more) break;
+            now.design[lane] = i;
+            now.steps[lane] = 0;
+            now.excess_N[lane] = INFINITY;
+            load(chord, lanes, lane, design_N + (size_t)i * n_gene);
+            n_busy++;
+        }
+        if (n_busy == 0) return;
+        look(chord, k, lanes, at);
+        for (int lane = 0; lane < HF_LANES; lane++) {
+            if (now.design[lane] < 0) continue;
+            if (!settle(chord, lanes, lane, &now, at[lane], workspace, design_N, result)) continue;
+            now.design[lane] = -1;
+            n_busy--;
+        }
+        if (n_busy == 0 && !more) return;
+        if (chord->n_pull) k->move(chord, lanes);
+        k->solve(chord, lanes);
+        k->step(chord, lanes);
+    }
+}

@@ -1,0 +1,518 @@
+/* The kernels of lane, compiled once for each instruction set: HF_ISA names the table at the end of the file.
+ *
+ * Contents: vectors - tiles - factor - substitution - assembly - solve - measures - table
+ *
+ * The factorisation is left-looking by tiles of 4 x 4 entries: a tile stays in registers (16 of AVX-512's 32) while the
+ * finished parts of its two block rows stream by, 8 loads for 16 multiplications and 16 subtractions. Both parts are
+ * contiguous, whatever the bandwidth. Each entry has one accumulator that runs over the columns in rising order, so how
+ * the entries are grouped (GROUP columns at a time) cannot change a bit.
+ *
+ * Why no fused multiply-adds: *measured* on one core of a Zen 5 EPYC (FMA peak 134 GF/s), factor of 8 x (n = 437,
+ * half-bandwidth 21), per individual, where LAPACK takes 73 us with its solve:
+ *
+ *                    fused                                                      not fused
+ *     AVX-512        2.3 us (88 GF/s)                                           2.6 us (78 GF/s)
+ *     AVX2           5.4 us                                                     5.9 us
+ *     any x86-64     205 us by C's fma(), 13000 us where that is software       12 us
+ *
+ * A whole iteration takes 8 % longer without, and is fast, and the same bits, on every processor. The price is that low
+ * because AMD's multiply and add in separate units. Intel's use one unit for both: expect the factor to take up to
+ * twice as long as it would fused (not measured). */
+#include "search/lane.h"
+
+#include <hifdm/metrics.h>
+
+#include <math.h>
+#include <string.h>
+
+/* ---- vectors: WIDTH lanes at a time, HF_LANES / WIDTH parts ---- */
+
+#if defined __AVX512F__
+#include <immintrin.h>
+enum { WIDTH = 8, GROUP = 4 };
+#elif defined __AVX2__
+#include <immintrin.h>
+enum { WIDTH = 4, GROUP = 2 };
+#else
+enum { WIDTH = 2, GROUP = 2 };
+#endif
+
+typedef double vec __attribute__((vector_size(WIDTH * sizeof(double)), may_alias));
+typedef long long mask __attribute__((vector_size(WIDTH * sizeof(double))));
+
+#define INLINE static inline __attribute__((always_inline))
+/* a loop of few and constantly many turns: unrolled, so that the arrays in it live in registers */
+#define foreach(i, count) _Pragma("GCC unroll 16") for (int i = 0; i < (count); i++)
+
+INLINE vec load(const double *p)
+{
+    return *(const vec *)p;
+}
+
+INLINE void store(double *p, vec a)
+{
+    *(vec *)p = a;
+}
+
+INLINE vec splat(double x)
+{
+    return x - (vec){0};
+}
+
+/* a > b ? yes : no; "no" where a or b is NaN */
+INLINE vec if_greater(vec a, vec b, vec yes, vec no)
+{
+    mask m = a > b;
+    return (vec)((m & (mask)yes) | (~m & (mask)no));
+}
+
+INLINE vec larger(vec a, vec b)
+{
+    return if_greater(a, b, a, b);
+}
+
+INLINE vec smaller(vec a, vec b)
+{
+    return if_greater(b, a, a, b);
+}
+
+INLINE vec magnitude(vec a)
+{
+    return larger(a, -a);
+}
+
+#if defined __AVX512F__
+INLINE vec root(vec a)
+{
+    return _mm512_sqrt_pd(a);
+}
+INLINE int all_positive(vec a)
+{
+    return _mm512_cmp_pd_mask(a, _mm512_setzero_pd(), _CMP_NGT_UQ) == 0;
+}
+#elif defined __AVX2__
+INLINE vec root(vec a)
+{
+    return _mm256_sqrt_pd(a);
+}
+INLINE int all_positive(vec a)
+{
+    return _mm256_movemask_pd(_mm256_cmp_pd(a, _mm256_setzero_pd(), _CMP_NGT_UQ)) == 0;
+}
+#else
+INLINE vec root(vec a)
+{
+    return (vec){sqrt(a[0]), sqrt(a[1])};
+}
+INLINE int all_positive(vec a)
+{
+    return a[0] > 0 && a[1] > 0;
+}
+#endif
+
+/* ---- tiles ---- */
+
+enum { BLOCK = HF_LANE_BLOCK, COLUMN = BLOCK * HF_LANES, TILE = BLOCK * COLUMN, POINT = 3 * HF_LANES };
+
+/* GROUP columns of n_row rows, with all columns before them done:
+ *     t(r,c) = (t(r,c) - sum over k of t(r,k) l(c,k)) / l(c,c), k rising
+ * `row` points to column k = first of the rows, whose columns are `stride` apart; `pivot_row` to the same of the rows
+ * of l; n_before columns further on lie the t(r,c) and the l(c,c). With is_empty the t(r,c) are taken as 0. */
+INLINE void eliminate(int n_row, double *row, int stride, const double *pivot_row, int n_before, int is_empty)
+{
+    vec t[BLOCK][GROUP];
+    double *target = row + n_before * stride;
+    foreach (c, GROUP)
+        foreach (r, BLOCK)
+            if (r < n_row) t[r][c] = is_empty ? splat(0) : load(target + c * stride + r * HF_LANES);
+    for (int k = 0; k < n_before; k++, row += stride, pivot_row += COLUMN) {
+        vec l[GROUP];
+        foreach (c, GROUP)
+            l[c] = load(pivot_row + c * HF_LANES);
+        foreach (r, BLOCK) {
+            if (r >= n_row) continue;
+            vec a = load(row + r * HF_LANES);
+            foreach (c, GROUP)
+                t[r][c] -= a * l[c];
+        }
+    }
+    foreach (c, GROUP) {
+        vec inverse = load(pivot_row + c * COLUMN + c * HF_LANES);
+        foreach (r, BLOCK) {
+            if (r >= n_row) continue;
+            t[r][c] *= inverse;
+            store(target + c * stride + r * HF_LANES, t[r][c]);
+        }
+        foreach (d, GROUP) {
+            if (d <= c) continue;
+            vec l = load(pivot_row + c * COLUMN + d * HF_LANES);
+            foreach (r, BLOCK)
+                if (r < n_row) t[r][d] -= t[r][c] * l;
+        }
+    }
+}
+
+/* The lower half of a tile on the diagonal, less what the n_before columns before it take. `row`: as above. */
+INLINE void reduce_diagonal(double *row, int n_before)
+{
+    vec t[BLOCK][BLOCK];
+    double *tile = row + n_before * COLUMN;
+    foreach (c, BLOCK)
+        foreach (r, BLOCK)
+            if (r >= c) t[r][c] = load(tile + c * COLUMN + r * HF_LANES);
+    for (; row != tile; row += COLUMN) {
+        vec a[BLOCK];
+        foreach (r, BLOCK)
+            a[r] = load(row + r * HF_LANES);
+        foreach (c, BLOCK)
+            foreach (r, BLOCK)
+                if (r >= c) t[r][c] -= a[r] * a[c];
+    }
+    foreach (c, BLOCK)
+        foreach (r, BLOCK)
+            if (r >= c) store(tile + c * COLUMN + r * HF_LANES, t[r][c]);
+}
+
+/* An infinite pivot has the reciprocal 0, which takes its row and column out: nothing can grow from there. */
+static __attribute__((noinline, cold)) vec mend_pivot(vec pivot, int i_row, int *bad_row)
+{
+    for (int k = 0; k < WIDTH; k++) {
+        if (pivot[k] > 0) continue;
+        if (bad_row[k] < 0) bad_row[k] = i_row;
+        pivot[k] = INFINITY;
+    }
+    return pivot;
+}
+
+/* Column c of a reduced tile: its pivot, the rest of the column, and what it takes from the columns after it. */
+INLINE void finish_column(int c, double *tile, int i_row, int *bad_row)
+{
+    double *column = tile + c * COLUMN;
+    vec l[BLOCK], pivot = load(column + c * HF_LANES);
+    if (!all_positive(pivot)) pivot = mend_pivot(pivot, i_row, bad_row);
+    vec inverse = 1 / root(pivot);
+    store(column + c * HF_LANES, inverse);
+    foreach (r, BLOCK) {
+        if (r <= c) continue;
+        l[r] = load(column + r * HF_LANES) * inverse;
+        store(column + r * HF_LANES, l[r]);
+        foreach (d, BLOCK) {
+            double *entry = tile + d * COLUMN + r * HF_LANES;
+            if (c < d && d <= r) store(entry, load(entry) - l[r] * l[d]);
+        }
+    }
+}
+
+/* ---- factor ---- */
+
+static double *tile_at(const hf_lane_plan *plan, const hf_lane_workspace *w, int i_block, int j_block)
+{
+    return w->matrix + (plan->tile_0[i_block] + (size_t)j_block) * TILE;
+}
+
+static int has_entry(const hf_lane_plan *plan, int i_block, int j_block)
+{
+    return plan->has_entry[plan->tile_0[i_block] + (size_t)j_block];
+}
+
+/* Columns *c and up of the diagonal tile of a block row, `count` of them at most; *c counts along. */
+static void finish_columns(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block, int p, int count, int *c)
+{
+    double *tile = tile_at(plan, w, i_block, i_block) + p;
+    for (; count > 0 && *c < BLOCK; count--, ++*c) {
+        int i_row = i_block * BLOCK + *c - plan->n_pad;
+        switch (*c) { /* for constants to unroll with */
+        case 0:
+            finish_column(0, tile, i_row, w->bad_row + p);
+            break;
+        case 1:
+            finish_column(1, tile, i_row, w->bad_row + p);
+            break;
+        case 2:
+            finish_column(2, tile, i_row, w->bad_row + p);
+            break;
+        default:
+            finish_column(3, tile, i_row, w->bad_row + p);
+        }
+    }
+}
+
+/* Finishes a block row up to its diagonal tile, which is reduced only. A pivot's root and division take as long as half
+ * a tile, and the next pivot waits for them: so the pivots of the block row before this one are found here, one before
+ * each tile that does not need them. */
+static void factor_block_row(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block, int p)
+{
+    int first = plan->first_column[i_block], c = i_block ? 0 : BLOCK;
+    double *row = tile_at(plan, w, i_block, 0) + p;
+    for (int j_block = first / BLOCK; j_block < i_block; j_block++) {
+        finish_columns(plan, w, i_block - 1, p, j_block < i_block - 1 ? 1 : BLOCK, &c);
+        const double *pivot_row = tile_at(plan, w, j_block, 0) + p;
+        int j = j_block * BLOCK, k = plan->first_column[j_block], is_empty = !has_entry(plan, i_block, j_block);
+        if (k < first) k = first < j ? first : j;
+        for (int g = 0; g < BLOCK; g += GROUP)
+            eliminate(BLOCK, row + k * COLUMN, COLUMN, pivot_row + k * COLUMN + g * HF_LANES, j + g - k, is_empty);
+    }
+    if (c < BLOCK) finish_columns(plan, w, i_block - 1, p, BLOCK, &c);
+    reduce_diagonal(row + first * COLUMN, i_block * BLOCK - first);
+}
+
+static void factor_last_tile(const hf_lane_plan *plan, hf_lane_workspace *w, int p)
+{
+    int c = 0;
+    finish_columns(plan, w, plan->n_block - 1, p, BLOCK, &c);
+}
+
+static void factor(const hf_lane_plan *plan, hf_lane_workspace *w)
+{
+    memset(w->bad_row, -1, HF_LANES * sizeof(int));
+    for (int i_block = 0; i_block < plan->n_block; i_block++)
+        for (int p = 0; p < HF_LANES; p += WIDTH)
+            factor_block_row(plan, w, i_block, p);
+    for (int p = 0; p < HF_LANES; p += WIDTH)
+        factor_last_tile(plan, w, p);
+}
+
+/* ---- substitution ---- */
+
+/* The right-hand sides are three more rows of the matrix. */
+static void substitute_forward(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block, int p)
+{
+    int first = plan->first_column[i_block], n_before = i_block * BLOCK - first;
+    const double *row = tile_at(plan, w, i_block, 0) + first * COLUMN + p;
+    for (int g = 0; g < BLOCK; g += GROUP)
+        eliminate(3, w->position_m + first * POINT + p, POINT, row + g * HF_LANES, n_before + g, 0);
+}
+
+/* The block row's unknowns, last first; then out with them from all rows before, nearest first. */
+static void substitute_back(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block, int p)
+{
+    const double *column = tile_at(plan, w, i_block, i_block) + p;
+    double *x = w->position_m + i_block * BLOCK * POINT + p;
+    vec t[BLOCK][3], l[BLOCK];
+    foreach (k, BLOCK) {
+        int r = BLOCK - 1 - k;
+        foreach (c, 3) {
+            t[r][c] = load(x + r * POINT + c * HF_LANES);
+            foreach (n, BLOCK) {
+                int s = BLOCK - 1 - n;
+                if (s > r) t[r][c] -= load(column + r * COLUMN + s * HF_LANES) * t[s][c];
+            }
+            t[r][c] *= load(column + r * COLUMN + r * HF_LANES);
+            store(x + r * POINT + c * HF_LANES, t[r][c]);
+        }
+    }
+    for (int j = i_block * BLOCK - 1; j >= plan->first_column[i_block]; j--) {
+        column -= COLUMN, x -= POINT;
+        foreach (r, BLOCK)
+            l[r] = load(column + r * HF_LANES);
+        foreach (c, 3) {
+            vec y = load(x + c * HF_LANES);
+            foreach (k, BLOCK)
+                y -= l[BLOCK - 1 - k] * t[BLOCK - 1 - k][c];
+            store(x + c * HF_LANES, y);
+        }
+    }
+}
+
+static void substitute_all_back(const hf_lane_plan *plan, hf_lane_workspace *w)
+{
+    for (int i_block = plan->n_block - 1; i_block >= 0; i_block--)
+        for (int p = 0; p < HF_LANES; p += WIDTH)
+            substitute_back(plan, w, i_block, p);
+}
+
+static void substitute(const hf_lane_plan *plan, hf_lane_workspace *w)
+{
+    for (int i_block = 0; i_block < plan->n_block; i_block++)
+        for (int p = 0; p < HF_LANES; p += WIDTH)
+            substitute_forward(plan, w, i_block, p);
+    substitute_all_back(plan, w);
+}
+
+/* ---- assembly ---- */
+
+/* By node, so that diagonal and right-hand sides add up in registers. */
+static void assemble_row(const hf_lane_plan *plan, hf_lane_workspace *w, int i_row, int p)
+{
+    const hf_model *m = plan->model;
+    int i = plan->n_pad + i_row, first_support = plan->n_pad + m->n_free;
+    vec diagonal = splat(0), b[3];
+    foreach (c, 3)
+        b[c] = splat(m->load_N ? m->load_N[c * m->n_node + i_row] : 0);
+    for (int k = plan->incidence_start[i_row]; k < plan->incidence_start[i_row + 1]; k++) {
+        int other = plan->incidence[k].other;
+        vec q = load(w->q_N_per_m + plan->incidence[k].i_cable * HF_LANES + p);
+        diagonal += q;
+        if (other < i) {
+            double *entry = w->matrix + hf_lane_place(plan, i, other) + p;
+            store(entry, load(entry) - q);
+        } else if (other >= first_support) {
+            foreach (c, 3)
+                b[c] += q * load(w->position_m + other * POINT + c * HF_LANES + p);
+        }
+    }
+    store(w->matrix + hf_lane_place(plan, i, i) + p, diagonal);
+    foreach (c, 3)
+        store(w->position_m + i * POINT + c * HF_LANES + p, b[c]);
+}
+
+static void assemble_dummy_row(const hf_lane_plan *plan, hf_lane_workspace *w, int i, int p)
+{
+    store(w->matrix + hf_lane_place(plan, i, i) + p, splat(1));
+    for (int c = 0; c < 3; c++)
+        store(w->position_m + i * POINT + c * HF_LANES + p, splat(0));
+}
+
+/* The tiles without entries need no zeros: `eliminate` does not read them. Unrolled, because gcc 12 makes memset of a
+ * plain loop, and rep stos of that, which takes three times as long. */
+static void clear_block_row(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block)
+{
+    for (int j_block = plan->first_column[i_block] / BLOCK; j_block <= i_block; j_block++) {
+        if (!has_entry(plan, i_block, j_block)) continue;
+        for (double *column = tile_at(plan, w, i_block, j_block), *end = column + TILE; column != end; column += COLUMN)
+            foreach (k, COLUMN / WIDTH)
+                store(column + k * WIDTH, splat(0));
+    }
+}
+
+static void assemble(const hf_lane_plan *plan, hf_lane_workspace *w)
+{
+    for (int i_block = 0; i_block < plan->n_block; i_block++) {
+        clear_block_row(plan, w, i_block);
+        for (int i = i_block * BLOCK; i < (i_block + 1) * BLOCK; i++)
+            for (int p = 0; p < HF_LANES; p += WIDTH) {
+                if (i < plan->n_pad)
+                    assemble_dummy_row(plan, w, i, p);
+                else
+                    assemble_row(plan, w, i - plan->n_pad, p);
+            }
+    }
+}
+
+/* ---- solve ---- */
+
+static void solve(const hf_lane_plan *plan, hf_lane_workspace *w)
+{
+    assemble(plan, w);
+    memset(w->bad_row, -1, HF_LANES * sizeof(int));
+    for (int i_block = 0; i_block < plan->n_block; i_block++)
+        for (int p = 0; p < HF_LANES; p += WIDTH) {
+            factor_block_row(plan, w, i_block, p);
+            if (i_block) substitute_forward(plan, w, i_block - 1, p); /* the row that has just got its pivots */
+        }
+    for (int p = 0; p < HF_LANES; p += WIDTH) {
+        factor_last_tile(plan, w, p);
+        substitute_forward(plan, w, plan->n_block - 1, p);
+    }
+    substitute_all_back(plan, w);
+}
+
+/* ---- measures ---- */
+
+static void measure_part(const hf_lane_plan *plan, hf_lane_workspace *w, hf_lane_measures *out, int p)
+{
+    const hf_model *m = plan->model;
+    const double *position = w->position_m + plan->n_pad * POINT + p;
+    vec tension_error = splat(0), length_error = splat(0), gap = splat(0), finite = splat(0);
+    vec shortest[3] = {splat(INFINITY), splat(INFINITY), splat(INFINITY)}, longest = splat(0);
+    for (int e = 0; e < m->n_cable; e++) {
+        const double *a = position + m->end_row[2 * e] * POINT, *b = position + m->end_row[2 * e + 1] * POINT;
+        vec dx = load(b) - load(a), dy = load(b + HF_LANES) - load(a + HF_LANES),
+            dz = load(b + 2 * HF_LANES) - load(a + 2 * HF_LANES);
+        vec q = load(w->q_N_per_m + e * HF_LANES + p), target = load(w->target + e * HF_LANES + p);
+        vec length = root(dx * dx + dy * dy + dz * dz), tension = q * length;
+        vec part = length * plan->inverse_length[e];
+        finite += tension - tension; /* NaN from infinity and NaN, else 0 */
+        longest = larger(part, longest);
+        if (w->law[e] == HF_LAW_TENSION) {
+            shortest[HF_LAW_TENSION] = smaller(part, shortest[HF_LAW_TENSION]);
+            tension_error = larger(magnitude(tension / target - 1), tension_error);
+            q = target / length; // Eq. 7
+        } else if (w->law[e] == HF_LAW_LENGTH) {
+            shortest[HF_LAW_LENGTH] = smaller(part, shortest[HF_LAW_LENGTH]);
+            vec ratio = length / target, strain = ratio - 1, error = magnitude(strain), none = splat(0);
+            vec pull = smaller(tension / m->reference_N, splat(1));
+            vec taut_error = if_greater(splat(HF_SLACK_RATIO), pull, none, error);
+            length_error = larger(taut_error, length_error);
+            vec weighed = if_greater(strain, none, error, if_greater(taut_error, none, error, error * pull));
+            gap = larger(weighed, gap);
+            q *= ratio; // Eq. 8
+        } else {
+            shortest[HF_LAW_FORCE_DENSITY] = smaller(part, shortest[HF_LAW_FORCE_DENSITY]);
+        }
+        store(w->length_m + e * HF_LANES + p, length);
+        store(w->next_q_N_per_m + e * HF_LANES + p, q);
+    }
+    store(out->tension_error + p, tension_error);
+    store(out->length_error + p, length_error);
+    store(out->length_gap + p, gap);
+    store(out->shortest_length_ratio + p, smaller(shortest[0], smaller(shortest[1], shortest[2])));
+    store(out->longest_length_ratio + p, longest);
+    foreach (k, 3)
+        store(out->shortest_of_law[k] + p, shortest[k]);
+    for (int l = 0; l < WIDTH; l++)
+        out->is_finite[p + l] = finite[l] == 0;
+}
+
+static void measure(const hf_lane_plan *plan, hf_lane_workspace *w, hf_lane_measures *out)
+{
+    for (int p = 0; p < HF_LANES; p += WIDTH)
+        measure_part(plan, w, out, p);
+}
+
+/* By node, so that forces need no array. */
+static void residual_part(const hf_lane_plan *plan, const hf_lane_workspace *w, hf_lane_measures *out, int p)
+{
+    const hf_model *m = plan->model;
+    const double *q_by_law[] = {w->q_N_per_m, w->next_q_N_per_m};
+    vec largest = splat(0), scale = splat(1 / m->reference_N); /* squares of tiny forces would vanish */
+    for (int i_row = 0; i_row < m->n_free; i_row++) {
+        const double *x = w->position_m + (plan->n_pad + i_row) * POINT + p;
+        vec f[3], x_i[3];
+        foreach (c, 3) {
+            f[c] = splat(m->load_N ? m->load_N[c * m->n_node + i_row] : 0);
+            x_i[c] = load(x + c * HF_LANES);
+        }
+        for (int k = plan->incidence_start[i_row]; k < plan->incidence_start[i_row + 1]; k++) {
+            int e = plan->incidence[k].i_cable;
+            const double *other = w->position_m + plan->incidence[k].other * POINT + p;
+            vec q = load(q_by_law[w->law[e] == HF_LAW_TENSION] + e * HF_LANES + p);
+            foreach (c, 3)
+                f[c] += q * (load(other + c * HF_LANES) - x_i[c]);
+        }
+        foreach (c, 3)
+            f[c] *= scale;
+        largest = larger(f[0] * f[0] + f[1] * f[1] + f[2] * f[2], largest);
+    }
+    store(out->residual_N + p, root(largest) * m->reference_N);
+}
+
+static void residual(const hf_lane_plan *plan, const hf_lane_workspace *w, hf_lane_measures *out)
+{
+    for (int p = 0; p < HF_LANES; p += WIDTH)
+        residual_part(plan, w, out, p);
+}
+
+static void psi(const hf_lane_plan *plan, const hf_lane_workspace *w, hf_lane_measures *out)
+{
+    const hf_model *m = plan->model;
+    for (int p = 0; p < HF_LANES; p += WIDTH) {
+        vec sum = splat(0);
+        for (int k = 0; k < m->n_inner_node; k++) {
+            int row = m->inner_row[k];
+            const double *x = w->position_m + (plan->n_pad + row) * POINT + p;
+            vec d[3];
+            foreach (c, 3)
+                d[c] = load(x + c * HF_LANES) - m->position_m[c * m->n_node + row];
+            sum += d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        }
+        store(out->psi_m + p, root(sum / (double)m->n_inner_node));
+    }
+}
+
+/* ---- table ---- */
+
+#define TABLE_NAME(isa) TABLE_NAME_(isa)
+#define TABLE_NAME_(isa) hf_lane_kernels_##isa
+
+const hf_lane_kernels TABLE_NAME(HF_ISA) = {assemble, factor, substitute, solve, measure, residual, psi};

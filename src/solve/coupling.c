@@ -1,0 +1,487 @@
+/* Contents: forces and displacements - Anderson's method - the loop - the Schur complement - certificate */
+#include "solve/coupling.h"
+
+#include "base/arena.h"
+#include "linalg/band.h"
+#include "solve/newton.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* LAPACK and BLAS (Fortran interface) */
+void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *pivot, int *info);
+void dgetrs_(const char *trans, const int *n, const int *n_rhs, const double *a, const int *lda, const int *pivot,
+             double *b, const int *ldb, int *info);
+void dgemm_(const char *trans_a, const char *trans_b, const int *m, const int *n, const int *k, const double *alpha,
+            const double *a, const int *lda, const double *b, const int *ldb, const double *beta, double *c,
+            const int *ldc);
+
+#define GROWTHS_MAX 3    /* growing steps in a row of the plain loop that count as divergence */
+#define PATIENCE 15      /* iterations of the accelerated one without a smaller step than ever */
+#define RETREATS_MAX 12  /* halvings of its steps when the net has no shape where they lead */
+#define STALLED 1e-2     /* of the first step: below that it is not the truss that keeps it from converging */
+#define GRAM_SHIFT 1e-14 /* of the least squares, relative: past steps grow parallel */
+
+static int dofs(const hf_model *m)
+{
+    return 3 * m->n_attachment;
+}
+
+/* ---- forces and displacements ---- */
+
+void hf_coupling_forces(const hf_model *m, hf_workspace *w)
+{
+    double *f = w->attachment_force_N;
+    for (int i = 0; i < m->n_attachment; i++)
+        for (int c = 0; c < 3; c++)
+            f[3 * i + c] = m->load_N ? m->load_N[c * m->n_node + m->attachment_row[i]] : 0;
+    for (int k = 0; k < m->n_tie; k++) {
+        int e = m->tie[k] / 2, here = m->end_row[m->tie[k]], there = m->end_row[m->tie[k] ^ 1];
+        double q = w->law[e] == HF_LAW_TENSION ? w->target[e] / w->length_m[e] : w->q_N_per_m[e];
+        for (int c = 0; c < 3; c++)
+            f[3 * m->tie_attachment[k] + c] +=
+                q * (w->position_m[c * m->n_node + there] - w->position_m[c * m->n_node + here]);
+    }
+}
+
+/* r = F f. By columns, which are rows: F is symmetric. */
+static void displace(const hf_model *m, const double *force, double *r)
+{
+    size_t n = (size_t)dofs(m);
+    memset(r, 0, n * sizeof *r);
+    for (size_t j = 0; j < n; j++) {
+        const double *column = m->flexibility_m_per_N + j * n;
+        for (size_t i = 0; i < n; i++)
+            r[i] += column[i] * force[j];
+    }
+}
+
+/* Largest length of the vectors a - b of the attachments; b may be NULL. Keeps a NaN. */
+static double largest_distance(int n_attachment, const double *a, const double *b)
+{
+    double largest = 0;
+    for (int i = 0; i < 3 * n_attachment; i += 3) {
+        double square = 0;
+        for (int c = i; c < i + 3; c++) {
+            double d = a[c] - (b ? b[c] : 0);
+            square += d * d;
+        }
+        if (!(square <= largest)) largest = square;
+    }
+    return sqrt(largest);
+}
+
+double hf_coupling_measure(const hf_model *m, hf_workspace *w, hf_form_result *result)
+{
+    double *next = w->coupling_work;
+    hf_coupling_forces(m, w);
+    displace(m, w->attachment_force_N, next);
+    result->coupling.step_m = largest_distance(m->n_attachment, next, w->displacement_m);
+    result->coupling.max_displacement_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
+    return result->coupling.step_m;
+}
+
+void hf_coupling_accept(const hf_model *m, const hf_workspace *w, int iterations, double step_m, hf_form_result *result)
+{
+    result->coupling = (hf_coupling_result){.stop_reason = HF_COUPLING_TOF, .iterations = iterations, .step_m = step_m};
+    result->coupling.ratio = (double)NAN;
+    result->coupling.max_displacement_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
+}
+
+/* ---- Anderson's method: of the past steps, the combination that would have been the smallest ---- */
+
+typedef struct {
+    size_t n;
+    int depth;                         /* differences to combine; 0: the plain loop */
+    int n_seen;                        /* iterations before this one, counted from the last restart */
+    double *next;                      /* [n] F f(r) */
+    double *step, *step_before;        /* [n] next - r, and that of the iteration before */
+    double *next_before;               /* [n] */
+    double *d_step[HF_COUPLING_DEPTH]; /* [n] differences of successive steps */
+    double *d_next[HF_COUPLING_DEPTH]; /* [n] the same of next */
+} accelerator;
+
+static accelerator lay_out_accelerator(const hf_model *m, int scheme, hf_workspace *w)
+{
+    accelerator a = {.n = (size_t)dofs(m), .depth = scheme == HF_COUPLING_PLAIN ? 0 : HF_COUPLING_DEPTH};
+    double *at = w->coupling_work;
+    double **field[] = {&a.next, &a.step, &a.step_before, &a.next_before};
+    for (int k = 0; k < 4; k++, at += a.n)
+        *field[k] = at;
+    for (int k = 0; k < HF_COUPLING_DEPTH; k++, at += 2 * a.n) {
+        a.d_step[k] = at;
+        a.d_next[k] = at + a.n;
+    }
+    return a;
+}
+
+static double dot(size_t n, const double *a, const double *b)
+{
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+/* Solve the n x n system of a positive definite matrix, in place, by Cholesky; 0 when it is not. */
+static int solve_gram(int n, double g[HF_COUPLING_DEPTH][HF_COUPLING_DEPTH], double b[HF_COUPLING_DEPTH])
+{
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j <= i; j++) {
+            double sum = g[i][j];
+            for (int k = 0; k < j; k++)
+                sum -= g[i][k] * g[j][k];
+            if (j < i)
+                g[i][j] = sum / g[j][j];
+            else if (sum > 0)
+                g[i][i] = sqrt(sum);
+            else
+                return 0;
+        }
+        for (int k = 0; k < i; k++)
+            b[i] -= g[i][k] * b[k];
+        b[i] /= g[i][i];
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        for (int k = i + 1; k < n; k++)
+            b[i] -= g[k][i] * b[k];
+        b[i] /= g[i][i];
+    }
+    return 1;
+}
+
+/* The next displacement r from a->next and a->step, which are taken into the history. */
+static void accelerate(accelerator *a, double *r)
+{
+    double gram[HF_COUPLING_DEPTH][HF_COUPLING_DEPTH], share[HF_COUPLING_DEPTH];
+    int n_kept = a->n_seen < a->depth ? a->n_seen : a->depth;
+    if (n_kept > 0) {
+        int last = (a->n_seen - 1) % a->depth;
+        for (size_t i = 0; i < a->n; i++) {
+            a->d_step[last][i] = a->step[i] - a->step_before[i];
+            a->d_next[last][i] = a->next[i] - a->next_before[i];
+        }
+    }
+    double largest = 0;
+    for (int i = 0; i < n_kept; i++) {
+        share[i] = dot(a->n, a->d_step[i], a->step);
+        for (int j = 0; j <= i; j++)
+            gram[i][j] = dot(a->n, a->d_step[i], a->d_step[j]);
+        largest = fmax(largest, gram[i][i]);
+    }
+    for (int i = 0; i < n_kept; i++)
+        gram[i][i] += GRAM_SHIFT * largest;
+    int solved = solve_gram(n_kept, gram, share);
+    memcpy(r, a->next, a->n * sizeof *r);
+    for (int k = 0; k < n_kept && solved; k++)
+        for (size_t i = 0; i < a->n; i++)
+            r[i] -= share[k] * a->d_next[k][i];
+    memcpy(a->step_before, a->step, a->n * sizeof *r);
+    memcpy(a->next_before, a->next, a->n * sizeof *r);
+    a->n_seen = solved ? a->n_seen + 1 : 1;
+}
+
+/* ---- the loop ---- */
+
+typedef struct {
+    double first_m, best_m, step_m, ratio; /* first, smallest and last step; last ratio of steps */
+    int n_growth, n_since_best;
+} progress;
+
+/* One more step: does the loop still get anywhere? */
+static int is_hopeless(progress *p, int scheme, double step_m)
+{
+    if (isnan(p->step_m)) p->first_m = step_m;
+    p->ratio = step_m / p->step_m; /* NaN after the first */
+    p->step_m = step_m;
+    p->n_growth = p->ratio >= 1 ? p->n_growth + 1 : 0;
+    p->n_since_best = step_m < p->best_m ? 0 : p->n_since_best + 1;
+    if (step_m < p->best_m) p->best_m = step_m;
+    if (!isfinite(step_m)) return 1;
+    return scheme == HF_COUPLING_PLAIN ? p->n_growth >= GROWTHS_MAX : p->n_since_best >= PATIENCE;
+}
+
+static void record(hf_history *history, const hf_form_result *r)
+{
+    hf_coupling_history *h = history ? &history->coupling : NULL;
+    if (!h || h->n == h->capacity) return;
+    h->step_m[h->n] = r->coupling.step_m;
+    h->psi_m[h->n] = r->psi_m;
+    h->max_displacement_m[h->n++] = r->coupling.max_displacement_m;
+}
+
+static void give_up(hf_status status, hf_coupling_stop reason, hf_form_result *r)
+{
+    hf_coupling_result kept = r->coupling;
+    int culprit = r->culprit;
+    if (status == HF_TRUSS_TOO_SOFT) hf_form_refuse(status, r->iterations, r);
+    r->culprit = culprit;
+    r->status = status;
+    r->coupling = kept;
+    r->coupling.stop_reason = reason;
+}
+
+/* The net has no shape. When it had one before its supports moved, another place is tried, half the way back. */
+static int try_nearer(const hf_model *m, const accelerator *a, int *n_retreat, hf_workspace *w, hf_form_result *r)
+{
+    if (r->status == HF_NOT_CONVERGED) { /* a shape all the same, with forces of its own */
+        double before_m = r->coupling.step_m;
+        r->coupling.ratio = hf_coupling_measure(m, w, r) / before_m;
+    }
+    if (r->status == HF_NOT_CONVERGED || r->status == HF_INTERRUPTED || a->n_seen == 0) {
+        give_up(r->status, HF_COUPLING_NET, r);
+        return 0;
+    }
+    if (a->depth == 0 || *n_retreat == RETREATS_MAX) {
+        give_up(HF_TRUSS_TOO_SOFT, HF_COUPLING_DIVERGED, r);
+        return 0;
+    }
+    ++*n_retreat;
+    for (size_t i = 0; i < a->n; i++)
+        w->displacement_m[i] = (w->displacement_m[i] + a->next_before[i] - a->step_before[i]) / 2;
+    memcpy(w->q_N_per_m, w->coupling_q_N_per_m, (size_t)m->n_cable * sizeof(double));
+    return 1;
+}
+
+/* The net has a shape: is the loop over? Sets status and reason then. */
+static int is_over(const hf_model *m, const hf_coupling_settings *s, accelerator *a, progress *p, hf_workspace *w,
+                   hf_form_result *r)
+{
+    double step_m = hf_coupling_measure(m, w, r);
+    int hopeless = is_hopeless(p, s->scheme, step_m);
+    r->coupling.ratio = p->ratio;
+    /* displacements are compared: that of the first form-finding has nothing to be compared with, unless it is none */
+    if (step_m <= s->tof_m && (a->n_seen > 0 || step_m == 0)) {
+        r->coupling.stop_reason = HF_COUPLING_TOF;
+        return 1;
+    }
+    /* what the net's own tolerance leaves of the forces can keep the steps from ever reaching tof_m */
+    int stalls = hopeless && p->best_m < STALLED * p->first_m;
+    if (hopeless && !stalls) {
+        give_up(HF_TRUSS_TOO_SOFT, HF_COUPLING_DIVERGED, r);
+        return 1;
+    }
+    if (stalls || r->coupling.iterations >= s->max_iterations) {
+        give_up(HF_NOT_CONVERGED, HF_COUPLING_MAX_ITERATIONS, r);
+        return 1;
+    }
+    for (size_t i = 0; i < a->n; i++)
+        a->step[i] = a->next[i] - w->displacement_m[i];
+    return 0;
+}
+
+hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_net_solver *solve, const void *context,
+                           int start_counts, hf_workspace *w, hf_history *history, hf_form_result *r)
+{
+    size_t q_bytes = (size_t)m->n_cable * sizeof(double);
+    accelerator a = lay_out_accelerator(m, s->scheme, w);
+    progress p = {.best_m = INFINITY, .step_m = (double)NAN};
+    int n_solve = 0, n_retreat = 0;
+    memcpy(w->coupling_q_N_per_m, w->q_N_per_m, q_bytes);
+    for (int i = 1;; i++) {
+        solve(context, w, history, r);
+        r->iterations = n_solve += r->iterations;
+        r->coupling = (hf_coupling_result){.iterations = i, .step_m = p.step_m, .ratio = p.ratio};
+        if (r->status != HF_OK) {
+            if (!try_nearer(m, &a, &n_retreat, w, r)) break;
+            continue;
+        }
+        int over = is_over(m, s, &a, &p, w, r);
+        record(history, r);
+        if (over) break;
+        if (start_counts)
+            memcpy(w->q_N_per_m, w->coupling_q_N_per_m, q_bytes);
+        else
+            memcpy(w->coupling_q_N_per_m, w->q_N_per_m, q_bytes);
+        accelerate(&a, w->displacement_m);
+    }
+    return r->status;
+}
+
+/* ---- the Schur complement ---- */
+
+static void lay_out_schur(hf_arena *arena, const hf_model *m, hf_schur *s)
+{
+    size_t n = (size_t)s->n;
+    s->stiffness = hf_arena_take(arena, n * n, sizeof(double));
+    s->flexed = hf_arena_take(arena, n * n, sizeof(double));
+    s->factor = hf_arena_take(arena, n * n, sizeof(double));
+    s->column = hf_arena_take(arena, 3 * (size_t)m->n_free + n, sizeof(double));
+    s->pivot = hf_arena_take(arena, n, sizeof(int));
+}
+
+hf_status hf_schur_create(const hf_model *m, hf_schur *schur)
+{
+    *schur = (hf_schur){.n = dofs(m)};
+    hf_arena arena = {0};
+    lay_out_schur(&arena, m, schur);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out_schur(&arena, m, schur);
+    schur->block = arena.block;
+    return HF_OK;
+}
+
+void hf_schur_free(hf_schur *schur)
+{
+    free(schur->block);
+    *schur = (hf_schur){0};
+}
+
+void hf_coupling_push(const hf_model *m, const hf_workspace *w, const double *displacement_m, double *force)
+{
+    double block[3][3];
+    for (int k = 0; k < m->n_tie; k++) {
+        int there = m->end_row[m->tie[k] ^ 1];
+        const double *r = displacement_m + 3 * m->tie_attachment[k];
+        if (there >= m->n_free) continue;
+        hf_newton_block(m, w, m->tie[k] / 2, block);
+        for (int c = 0; c < 3; c++)
+            force[3 * there + c] += block[c][0] * r[0] + block[c][1] * r[1] + block[c][2] * r[2];
+    }
+}
+
+void hf_coupling_pull(const hf_model *m, const hf_workspace *w, const double *step_m, double *pull)
+{
+    double block[3][3];
+    for (int k = 0; k < m->n_tie; k++) {
+        int there = m->end_row[m->tie[k] ^ 1];
+        const double *d = step_m + 3 * there;
+        if (there >= m->n_free) continue;
+        hf_newton_block(m, w, m->tie[k] / 2, block);
+        for (int c = 0; c < 3; c++)
+            pull[3 * m->tie_attachment[k] + c] += block[c][0] * d[0] + block[c][1] * d[1] + block[c][2] * d[2];
+    }
+}
+
+/* H_aa, of cables to free nodes, to fixed supports and between attachments. */
+static void add_attachment_stiffness(const hf_model *m, const hf_workspace *w, hf_schur *s)
+{
+    double block[3][3];
+    size_t n = (size_t)s->n;
+    for (int k = 0; k < m->n_tie; k++) {
+        int partner = k > 0 && m->tie[k - 1] == (m->tie[k] ^ 1) ? k - 1 : k + 1;
+        int is_pair = partner < m->n_tie && m->tie[partner] == (m->tie[k] ^ 1);
+        size_t here = 3 * (size_t)m->tie_attachment[k];
+        hf_newton_block(m, w, m->tie[k] / 2, block);
+        for (size_t r = 0; r < 3; r++)
+            for (size_t c = 0; c < 3; c++) {
+                s->stiffness[(here + r) * n + here + c] += block[r][c];
+                if (is_pair) s->stiffness[(here + r) * n + 3 * (size_t)m->tie_attachment[partner] + c] -= block[r][c];
+            }
+    }
+}
+
+hf_status hf_schur_factor(const hf_model *m, const hf_workspace *w, hf_schur *s)
+{
+    size_t n = (size_t)s->n, n_dof = 3 * (size_t)m->n_free;
+    double *unit = s->column + n_dof, one = 1, zero = 0;
+    int info = 0;
+    memset(s->stiffness, 0, n * n * sizeof(double));
+    memset(unit, 0, n * sizeof(double));
+    for (size_t j = 0; j < n; j++) { /* row j of - H_af H_ff^-1 H_fa */
+        memset(s->column, 0, n_dof * sizeof(double));
+        unit[j] = 1;
+        hf_coupling_push(m, w, unit, s->column);
+        unit[j] = 0;
+        hf_band_back_solve((int)n_dof, 3 * m->half_bandwidth + 2, 1, w->newton_band, s->column, (int)n_dof);
+        hf_coupling_pull(m, w, s->column, s->stiffness + j * n);
+        for (size_t i = 0; i < n; i++)
+            s->stiffness[j * n + i] = -s->stiffness[j * n + i];
+    }
+    add_attachment_stiffness(m, w, s);
+    dgemm_("N", "N", &s->n, &s->n, &s->n, &one, m->flexibility_m_per_N, &s->n, s->stiffness, &s->n, &zero, s->flexed,
+           &s->n);
+    memcpy(s->factor, s->flexed, n * n * sizeof(double));
+    for (size_t i = 0; i < n; i++)
+        s->factor[i * n + i] += 1;
+    dgetrf_(&s->n, &s->n, s->factor, &s->n, s->pivot, &info);
+    return info == 0 ? HF_OK : HF_SINGULAR;
+}
+
+void hf_schur_solve(const hf_schur *s, double *b)
+{
+    int one = 1, info = 0;
+    dgetrs_("N", &s->n, &one, s->factor, &s->n, s->pivot, b, &s->n, &info);
+}
+
+void hf_schur_displace(const hf_model *m, const hf_schur *s, const double *b, double *displacement_m)
+{
+    displace(m, b, displacement_m);
+    hf_schur_solve(s, displacement_m);
+}
+
+/* Of the columns of A = (I + F S)^-1 - I the longest becomes `left`; its part in all others is `right`, and is taken
+ * off them. */
+int hf_schur_modes(hf_schur *s, double tolerance, int max_mode, double *mode)
+{
+    size_t n = (size_t)s->n;
+    double *a = s->flexed;
+    int info = 0, n_mode = 0;
+    dgetrs_("N", &s->n, &s->n, s->factor, &s->n, s->pivot, a, &s->n, &info);
+    for (size_t i = 0; i < n * n; i++)
+        a[i] = -a[i];
+    for (; n_mode < max_mode; n_mode++, mode += 2 * n) {
+        double total = 0, longest = 0;
+        size_t pivot = 0;
+        for (size_t j = 0; j < n; j++) {
+            double square = dot(n, a + j * n, a + j * n);
+            total += square;
+            if (square > longest) longest = square, pivot = j;
+        }
+        if (!(sqrt(total) > tolerance)) break;
+        for (size_t i = 0; i < n; i++)
+            mode[i] = a[pivot * n + i] / sqrt(longest);
+        for (size_t j = 0; j < n; j++) {
+            double share = mode[n + j] = dot(n, mode, a + j * n);
+            for (size_t i = 0; i < n; i++)
+                a[j * n + i] -= share * mode[i];
+        }
+    }
+    return n_mode;
+}
+
+/* ---- certificate ---- */
+
+/* A cable under law length pulls as if it had its stiffness: what the Newton step puts right of its length. */
+static void add_length_errors(const hf_model *m, const hf_workspace *w, double *pull)
+{
+    double block[3][3], d[3];
+    for (int k = 0; k < m->n_tie; k++) {
+        int e = m->tie[k] / 2, here = m->end_row[m->tie[k]], there = m->end_row[m->tie[k] ^ 1];
+        if (w->law[e] != HF_LAW_LENGTH && w->law[e] != HF_LAW_ELASTIC) continue;
+        hf_newton_block(m, w, e, block);
+        for (int c = 0; c < 3; c++)
+            d[c] = (w->position_m[c * m->n_node + there] - w->position_m[c * m->n_node + here]) *
+                   (1 - hf_workspace_wanted_length_m(w, e, w->tension_N[e]) / w->length_m[e]);
+        for (int c = 0; c < 3; c++) /* along the cable the block has the axial stiffness alone */
+            pull[3 * m->tie_attachment[k] + c] += block[c][0] * d[0] + block[c][1] * d[1] + block[c][2] * d[2];
+    }
+}
+
+void hf_coupling_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
+{
+    size_t n = (size_t)dofs(m);
+    hf_schur schur;
+    int has_step = m->has_newton && isfinite(r->position_error_m);
+    r->position_error_m = (double)NAN;
+    if (!has_step) return;
+    if (hf_schur_create(m, &schur) == HF_OK && hf_schur_factor(m, w, &schur) == HF_OK) {
+        double *pull = w->coupling_work, *move = pull + n, *both = w->newton_step;
+        memcpy(pull, w->attachment_force_N, n * sizeof(double));
+        hf_coupling_pull(m, w, both, pull);
+        add_length_errors(m, w, pull);
+        displace(m, pull, move);
+        for (size_t i = 0; i < n; i++)
+            move[i] -= w->displacement_m[i];
+        hf_schur_solve(&schur, move);
+        memset(schur.column, 0, 3 * (size_t)m->n_free * sizeof(double));
+        hf_coupling_push(m, w, move, schur.column);
+        hf_band_back_solve(3 * m->n_free, 3 * m->half_bandwidth + 2, 1, w->newton_band, schur.column, 3 * m->n_free);
+        for (int i = 0; i < 3 * m->n_free; i++)
+            both[i] += schur.column[i];
+        r->position_error_m =
+            fmax(largest_distance(m->n_free, both, NULL), largest_distance(m->n_attachment, move, NULL));
+    }
+    hf_schur_free(&schur);
+}

@@ -1,0 +1,111 @@
+#include <hifdm/evaluate.h>
+
+#include "solve/certificate.h"
+#include "solve/coupling.h"
+#include "solve/newton.h"
+
+#include <math.h>
+
+int hf_evaluate_method(const hf_model *m, const hf_form_settings *form, const char **why)
+{
+    const char *reason = "asked for";
+    int method = form->method == HF_METHOD_NEWTON ? HF_METHOD_NEWTON : HF_METHOD_HIFDM;
+    if (form->method == HF_METHOD_AUTO) {
+        method = m->has_newton && form->stop == HF_STOP_RESIDUAL ? HF_METHOD_NEWTON : HF_METHOD_HIFDM;
+        reason = method == HF_METHOD_NEWTON ? "every potential is convex: quadratic convergence"
+                                            : "stop: rms_change is a rule for it";
+    }
+    if (!m->has_newton && method == HF_METHOD_NEWTON) method = HF_METHOD_HIFDM;
+    if (!m->has_newton)
+        reason = m->has_strut ? "struts: the energy is not convex" : "force densities are given: one solve";
+    if (why) *why = reason;
+    return method;
+}
+
+/* ---- one shape, alone or with a truss ---- */
+
+typedef struct {
+    const hf_model *m;
+    const hf_form_settings *form;
+    int by_newton, stop; /* stop: hf_stop_rule of the paper's iteration */
+} net_problem;
+
+static hf_status find_alone(const void *context, hf_workspace *w, hf_history *history, hf_form_result *result)
+{
+    const net_problem *p = context;
+    if (p->by_newton) return hf_newton_find(p->m, p->form, w, history, result);
+    return hf_form_find(p->m, p->form, p->stop, w, history, result);
+}
+
+/* From the workspace's first force densities. Where the paper's rule stops depends on the start, which all iterations
+ * of the coupling share then. */
+static hf_status find_net(const net_problem *p, hf_workspace *w, hf_history *history, hf_form_result *result)
+{
+    if (!p->m->n_attachment) return find_alone(p, w, history, result);
+    int start_counts = !p->by_newton && p->stop == HF_STOP_RMS_CHANGE;
+    return hf_coupling_find(p->m, &p->form->coupling, find_alone, p, start_counts, w, history, result);
+}
+
+hf_status hf_evaluate_form(const hf_model *m, const hf_form_settings *form, hf_workspace *w, hf_history *history,
+                           hf_form_result *result)
+{
+    net_problem problem = {m, form, hf_evaluate_method(m, form, NULL) == HF_METHOD_NEWTON, form->stop};
+    hf_form_prepare(m, w);
+    find_net(&problem, w, history, result);
+    hf_certify(m, w, result);
+    if (m->n_attachment) hf_coupling_certify(m, w, result);
+    return result->status;
+}
+
+double hf_evaluate_design_length_m(const hf_model *m, int i_cable)
+{
+    return m->law[i_cable] == HF_LAW_LENGTH ? m->target[i_cable] : m->length_m[i_cable];
+}
+
+/* What the design means for boundary cable e (METHOD section 5). */
+static void apply_rule(const hf_evaluator *v, int e, double tension_N, hf_workspace *w)
+{
+    w->q_N_per_m[e] = tension_N / hf_evaluate_design_length_m(v->model, e);
+    switch (v->rule) {
+    case HF_RULE_FORCE_DENSITY:
+        w->law[e] = HF_LAW_FORCE_DENSITY;
+        w->target[e] = w->q_N_per_m[e];
+        break;
+    case HF_RULE_TENSION:
+        w->law[e] = HF_LAW_TENSION;
+        w->target[e] = tension_N;
+        break;
+    default: /* seeded: the law of the case, started from here */
+        break;
+    }
+}
+
+void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_workspace *w)
+{
+    const hf_model *m = v->model;
+    hf_form_prepare(m, w);
+    /* a convex problem has one answer: starting near it is free. The seeded rule depends on its start: the paper's. */
+    for (int e = 0; e < m->n_cable && v->rule != HF_RULE_SEEDED; e++)
+        if (m->law[e] != HF_LAW_FORCE_DENSITY) w->q_N_per_m[e] = v->start_q_N_per_m[e];
+    for (int k = 0; k < m->n_gene; k++)
+        apply_rule(v, m->gene_cable[k], design_N[k], w);
+}
+
+hf_status hf_evaluate_judge(const hf_evaluator *v, hf_form_result *result)
+{
+    if (result->status == HF_OK && result->boundary_tension_ratio > v->boundary_ratio_cap)
+        result->status = HF_RATIO_CAP;
+    if (result->status != HF_OK)
+        result->psi_m = result->inner_tension_ratio = result->boundary_tension_ratio = (double)NAN;
+    return result->status;
+}
+
+hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspace *w, hf_form_result *result)
+{
+    int seeded = v->rule == HF_RULE_SEEDED;
+    net_problem problem = {v->model, v->form, !seeded && v->solver != HF_SOLVER_FIXED_POINT && v->model->has_newton,
+                           seeded ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
+    hf_evaluate_prepare(v, design_N, w);
+    find_net(&problem, w, NULL, result);
+    return hf_evaluate_judge(v, result);
+}

@@ -1,0 +1,474 @@
+/* Contents: one linear solve (Eqs. 1-6) - measuring cables - nodal residual - straight chains - updates (Eqs. 7, 8) -
+ * stopping - the iteration */
+#include <hifdm/formfind.h>
+
+#include "linalg/band.h"
+#include <hifdm/metrics.h>
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* Straight chains are looked at after this many iterations, and again each time that number has doubled. */
+#define FIRST_CHAIN_CHECK 64
+#define CHAIN_LOAD_SETTLED 0.01 /* relative change of the load between two looks that counts as settled */
+#define ROUNDING_STEPS 32       /* roundings of the ends' coordinates that an imbalance may be worth */
+#define CHAIN_LOAD_NONE 1e-6    /* lateral load below this part of the reference tension is none */
+
+void hf_form_prepare(const hf_model *model, hf_workspace *workspace)
+{
+    size_t n = (size_t)model->n_cable;
+    memcpy(workspace->law, model->law, n);
+    memcpy(workspace->target, model->target, n * sizeof(double));
+    memcpy(workspace->q_N_per_m, model->start_q_N_per_m, n * sizeof(double));
+    if (model->EA_N) memcpy(workspace->EA_N, model->EA_N, n * sizeof(double));
+    memset(workspace->displacement_m, 0, 3 * (size_t)model->n_attachment * sizeof(double));
+}
+
+void hf_form_place_supports(const hf_model *m, hf_workspace *w)
+{
+    memcpy(w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    for (int i = 0; i < m->n_attachment; i++)
+        for (int c = 0; c < 3; c++)
+            w->position_m[c * m->n_node + m->attachment_row[i]] += w->displacement_m[3 * i + c];
+}
+
+/* ---- one linear solve: D x_f = P - C_f' Q C_g x_g for x, y, z (Eqs. 2, 5) ---- */
+
+void hf_form_assemble(const hf_model *m, hf_workspace *w)
+{
+    memset(w->band, 0, ((size_t)m->n_band + 1) * sizeof(double));
+    for (int e = 0; e < m->n_cable; e++) {
+        double q = w->q_N_per_m[e];
+        w->band[m->diagonal_a[e]] += q; /* places of supports lead to the spare place behind the band */
+        w->band[m->diagonal_b[e]] += q;
+        w->band[m->off_diagonal[e]] -= q;
+    }
+}
+
+/* Right-hand sides into the free rows of position_m; the support rows keep the support positions. */
+void hf_form_assemble_loads(const hf_model *m, hf_workspace *w)
+{
+    for (int c = 0; c < 3; c++) {
+        double *x = w->position_m + (size_t)c * (size_t)m->n_node;
+        if (m->load_N)
+            memcpy(x, m->load_N + (size_t)c * (size_t)m->n_node, (size_t)m->n_free * sizeof(double));
+        else
+            memset(x, 0, (size_t)m->n_free * sizeof(double));
+    }
+    double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        int inside = a < b ? a : b, support = a < b ? b : a;
+        if (support < m->n_free || inside >= m->n_free) continue;
+        double q = w->q_N_per_m[e];
+        x[inside] += q * x[support];
+        y[inside] += q * y[support];
+        z[inside] += q * z[support];
+    }
+}
+
+static hf_status solve(const hf_model *m, hf_workspace *w, int *bad_row)
+{
+    hf_form_assemble(m, w);
+    hf_form_assemble_loads(m, w);
+    if (m->has_strut)
+        return hf_band_solve_indefinite(m->n_free, m->half_bandwidth, w->band, w->general_band, w->pivot, w->position_m,
+                                        m->n_node, bad_row);
+    return hf_band_solve(m->n_free, m->half_bandwidth, w->band, w->position_m, m->n_node, bad_row);
+}
+
+/* ---- measuring cables ---- */
+
+/* fmax and fmin without the call; a NaN in `next` leaves `now` as it is. */
+static inline double larger(double now, double next)
+{
+    return next > now ? next : now;
+}
+
+static inline double smaller(double now, double next)
+{
+    return next < now ? next : now;
+}
+
+/* Lengths, tensions (Eqs. 4, 6), errors against the laws. length_gap is for stopping: beside the length error of taut
+ * cables it counts slack ones that are too long, and the pull that is left in those that are too short. */
+void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r,
+                            double *length_gap)
+{
+    const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
+    double shortest = INFINITY;
+    r->tension_error = r->length_error = *length_gap = 0;
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        double dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a];
+        double length = sqrt(dx * dx + dy * dy + dz * dz), tension = w->q_N_per_m[e] * length;
+        double part = length / m->length_m[e];
+        w->length_m[e] = length;
+        w->tension_N[e] = tension;
+        if (!isfinite(tension)) {
+            r->status = HF_NOT_FINITE;
+            r->culprit = e;
+            return;
+        }
+        int may_vanish = w->law[e] == HF_LAW_LENGTH || w->law[e] == HF_LAW_ELASTIC; /* slack then */
+        if (part < (w->law[e] == HF_LAW_TENSION ? s->collapse_ratio : HF_FORM_GONE) && !may_vanish) {
+            r->status = HF_COLLAPSED;
+            r->culprit = e;
+            return;
+        }
+        if (part > HF_FORM_BLOWN_UP) { /* what rounding leaves of a singular matrix */
+            r->status = HF_SINGULAR;
+            r->culprit = a < b ? a : b;
+            return;
+        }
+        if (part < shortest) shortest = part;
+        if (w->law[e] == HF_LAW_TENSION) {
+            r->tension_error = larger(r->tension_error, fabs(tension / w->target[e] - 1));
+        } else if (w->law[e] != HF_LAW_FORCE_DENSITY) {
+            double strain = length / hf_workspace_wanted_length_m(w, e, tension) - 1;
+            double pull = smaller(tension / m->reference_N, 1);
+            double error = fabs(strain);
+            int is_taut = pull >= HF_SLACK_RATIO;
+            if (is_taut) r->length_error = larger(r->length_error, error);
+            *length_gap = larger(*length_gap, strain > 0 || is_taut ? error : error * pull);
+        }
+    }
+    r->shortest_length_ratio = shortest;
+}
+
+/* ---- nodal residual ---- */
+
+/* Force of every cable on its nodes, at the tension of its law (T* of law tension, q l of the others), plus loads.
+ * With `without_chains`, the straight chains that are under law length are left out. */
+static void nodal_forces(const hf_model *m, hf_workspace *w, int without_chains)
+{
+    const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
+    double *fx = w->force_N, *fy = fx + m->n_node, *fz = fy + m->n_node;
+    if (m->load_N)
+        memcpy(fx, m->load_N, 3 * (size_t)m->n_node * sizeof(double));
+    else
+        memset(fx, 0, 3 * (size_t)m->n_node * sizeof(double));
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        if (without_chains && w->law[e] == HF_LAW_LENGTH && (m->chain_of_row[a] >= 0 || m->chain_of_row[b] >= 0))
+            continue;
+        double q = w->law[e] == HF_LAW_TENSION ? w->target[e] / w->length_m[e] : w->q_N_per_m[e];
+        double dx = q * (x[b] - x[a]), dy = q * (y[b] - y[a]), dz = q * (z[b] - z[a]);
+        fx[a] += dx, fy[a] += dy, fz[a] += dz;
+        fx[b] -= dx, fy[b] -= dy, fz[b] -= dz;
+    }
+}
+
+double hf_form_residual_N(const hf_model *m, hf_workspace *w)
+{
+    double largest = 0, scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
+    const double *fx = w->force_N, *fy = fx + m->n_node, *fz = fy + m->n_node;
+    nodal_forces(m, w, 0);
+    for (int i = 0; i < m->n_free; i++) {
+        double x = scale * fx[i], y = scale * fy[i], z = scale * fz[i];
+        largest = larger(largest, x * x + y * y + z * z);
+    }
+    return sqrt(largest) * m->reference_N;
+}
+
+/* Largest coordinate of the ends of cable e, m: what the rounding of its length is relative to. */
+static double largest_coordinate_m(const hf_model *m, const hf_workspace *w, int e)
+{
+    double largest = 0;
+    for (int c = 0; c < 3; c++)
+        for (int k = 0; k < 2; k++)
+            largest = larger(largest, fabs(w->position_m[c * m->n_node + m->end_row[2 * e + k]]));
+    return largest;
+}
+
+/* The cable whose length, small against its coordinates, is rounded so coarsely that the tolerances cannot be met, or
+ * -1. force_N holds the nodal forces. */
+static int find_rounded_cable(const hf_model *m, const hf_form_settings *s, const hf_workspace *w)
+{
+    const double *f = w->force_N;
+    int worst_row = 0, culprit = -1;
+    double worst = -1, floor_N = 0, coarsest_N = 0;
+    for (int i = 0; i < m->n_free; i++) {
+        double force = hypot(hypot(f[i], f[m->n_node + i]), f[2 * m->n_node + i]);
+        if (force > worst) worst = force, worst_row = i;
+    }
+    for (int e = 0; e < m->n_cable; e++) {
+        double step_m = DBL_EPSILON * largest_coordinate_m(m, w, e), step_N = fabs(w->q_N_per_m[e]) * step_m;
+        double error = w->law[e] == HF_LAW_TENSION ? fabs(w->tension_N[e] / w->target[e] - 1) : 0;
+        if (error > s->residual_tolerance && error <= ROUNDING_STEPS * step_m / w->length_m[e]) return e;
+        if (m->end_row[2 * e] != worst_row && m->end_row[2 * e + 1] != worst_row) continue;
+        floor_N += step_N;
+        if (step_N > coarsest_N) coarsest_N = step_N, culprit = e;
+    }
+    return worst > s->residual_tolerance * m->reference_N && worst <= ROUNDING_STEPS * floor_N ? culprit : -1;
+}
+
+/* ---- straight chains: a chain that cannot deflect cannot carry a lateral load at any finite tension ---- */
+
+/* The supports at the ends of chain i. */
+static void chain_supports(const hf_model *m, int i_chain, int *from, int *to)
+{
+    const int *first = m->end_row + 2 * m->chain_cable[m->chain_start[i_chain]];
+    const int *last = m->end_row + 2 * m->chain_cable[m->chain_start[i_chain + 1] - 1];
+    *from = first[0] >= m->n_free ? first[0] : first[1];
+    *to = last[0] >= m->n_free ? last[0] : last[1];
+}
+
+/* Largest force across chain i, from the nodal forces without the chains, N. */
+static double lateral_load_N(const hf_model *m, const hf_workspace *w, int i_chain)
+{
+    const double *x = w->position_m, *f = w->force_N;
+    int from, to;
+    chain_supports(m, i_chain, &from, &to);
+    const int *ends = m->end_row + 2 * m->chain_cable[m->chain_start[i_chain]];
+    int row = from == ends[0] ? ends[1] : ends[0];
+    double u[3], span = 0, largest = 0;
+    for (int c = 0; c < 3; c++) {
+        u[c] = x[c * m->n_node + to] - x[c * m->n_node + from];
+        span += u[c] * u[c];
+    }
+    for (int k = m->chain_start[i_chain]; k + 1 < m->chain_start[i_chain + 1]; k++) {
+        double along = 0, square = 0;
+        for (int c = 0; c < 3; c++)
+            along += f[c * m->n_node + row] * u[c] / span;
+        for (int c = 0; c < 3; c++) {
+            double across = f[c * m->n_node + row] - along * u[c];
+            square += across * across;
+        }
+        largest = fmax(largest, sqrt(square));
+        ends = m->end_row + 2 * m->chain_cable[k + 1];
+        row = ends[0] == row ? ends[1] : ends[0];
+    }
+    return largest;
+}
+
+int hf_form_n_chain(const hf_model *m)
+{
+    return m->n_attachment ? m->n_any_chain : m->n_chain;
+}
+
+/* Is chain i length-controlled, and is it straight where its supports are now? */
+static int chain_is_straight(const hf_model *m, const hf_workspace *w, int i_chain)
+{
+    if (w->law[m->chain_cable[m->chain_start[i_chain]]] != HF_LAW_LENGTH) return 0;
+    if (!m->n_attachment) return 1;
+    int from, to;
+    double sum = 0, square = 0;
+    chain_supports(m, i_chain, &from, &to);
+    for (int k = m->chain_start[i_chain]; k < m->chain_start[i_chain + 1]; k++)
+        sum += w->target[m->chain_cable[k]];
+    for (int c = 0; c < 3; c++) {
+        double d = w->position_m[c * m->n_node + to] - w->position_m[c * m->n_node + from];
+        square += d * d;
+    }
+    return sum <= sqrt(square) * (1 + HF_STRAIGHT_EXCESS);
+}
+
+int hf_form_chain_is_loaded(const hf_model *m, hf_workspace *w, int i_chain)
+{
+    if (!chain_is_straight(m, w, i_chain)) return 0;
+    nodal_forces(m, w, 1);
+    return lateral_load_N(m, w, i_chain) > CHAIN_LOAD_NONE * m->reference_N;
+}
+
+/* Sets n_loaded_chain and returns the largest lateral load on a straight chain; *worst is that chain or -1. */
+static double look_at_chains(const hf_model *m, hf_workspace *w, hf_form_result *r, int *worst)
+{
+    double largest = 0;
+    r->n_loaded_chain = 0;
+    *worst = -1;
+    int n_chain = hf_form_n_chain(m);
+    if (n_chain) nodal_forces(m, w, 1);
+    for (int i = 0; i < n_chain; i++) {
+        if (!chain_is_straight(m, w, i)) continue;
+        double load = lateral_load_N(m, w, i);
+        if (!(load > CHAIN_LOAD_NONE * m->reference_N)) continue;
+        r->n_loaded_chain++;
+        if (load > largest) {
+            largest = load;
+            *worst = i;
+        }
+    }
+    return largest;
+}
+
+/* ---- updates ---- */
+
+static int any_law_iterates(const hf_model *m, const hf_workspace *w)
+{
+    for (int e = 0; e < m->n_cable; e++)
+        if (w->law[e] != HF_LAW_FORCE_DENSITY) return 1;
+    return 0;
+}
+
+/* Eq. 7 scales q by the wanted over the present tension; with T = q l that is the wanted tension over l. */
+void hf_form_update(const hf_model *m, hf_workspace *w)
+{
+    for (int e = 0; e < m->n_cable; e++) {
+        if (w->law[e] == HF_LAW_TENSION)
+            w->q_N_per_m[e] = w->target[e] / w->length_m[e]; // Eq. 7
+        else if (w->law[e] == HF_LAW_LENGTH)
+            w->q_N_per_m[e] *= w->length_m[e] / w->target[e]; // Eq. 8
+        else if (w->law[e] == HF_LAW_ELASTIC)                 // Eq. 8, towards a length that grows with the tension
+            w->q_N_per_m[e] *= w->length_m[e] / hf_workspace_wanted_length_m(w, e, w->tension_N[e]);
+    }
+}
+
+/* ---- stopping ---- */
+
+typedef struct {
+    int stop, iterates;
+    double psi_before_m;      /* NaN at the first iteration */
+    double chain_load_before; /* NaN before the first look */
+    int next_chain_look;
+} progress;
+
+/* One more shape has been measured: decide whether it is the last. Sets status and stop reason. */
+static int is_last(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r, progress *p,
+                   double length_gap)
+{
+    if (!p->iterates) {
+        r->stop_reason = HF_STOPPED_DIRECT;
+        if (r->residual_N > s->residual_tolerance * m->reference_N) r->status = HF_NOT_CONVERGED;
+        return 1;
+    }
+    if (p->stop == HF_STOP_RMS_CHANGE) {
+        if (fabs(r->psi_m - p->psi_before_m) < s->rms_tolerance_m) r->stop_reason = HF_STOPPED_RMS_CHANGE;
+        p->psi_before_m = r->psi_m;
+    } else {
+        int worst, looks = hf_form_n_chain(m) && r->iterations == p->next_chain_look;
+        /* the forces balance at the tensions of the laws; the tensions of the last solve must be those, too */
+        if (r->residual_N <= s->residual_tolerance * m->reference_N && r->tension_error <= s->residual_tolerance &&
+            length_gap <= s->length_tolerance)
+            r->stop_reason = HF_STOPPED_RESIDUAL;
+        if (looks && r->stop_reason == HF_STOPPED_NONE) {
+            double load = look_at_chains(m, w, r, &worst);
+            p->next_chain_look *= 2;
+            if (worst >= 0 && fabs(load - p->chain_load_before) < CHAIN_LOAD_SETTLED * load) return 1;
+            p->chain_load_before = load;
+        }
+    }
+    if (r->stop_reason != HF_STOPPED_NONE) return 1;
+    if (r->iterations < s->max_iterations) return 0;
+    r->stop_reason = HF_STOPPED_MAX_ITERATIONS;
+    r->status = HF_NOT_CONVERGED;
+    return 1;
+}
+
+/* Under `residual` the answer must be an equilibrium: with a loaded straight chain there is none, however small the
+ * numbers look. Under the paper's rule the result stands and n_loaded_chain warns. */
+static void judge_chains(const hf_model *m, hf_workspace *w, const progress *p, hf_form_result *r)
+{
+    int worst;
+    look_at_chains(m, w, r, &worst);
+    if (worst < 0 || p->stop == HF_STOP_RMS_CHANGE) return;
+    r->status = HF_STRAIGHT_CHAIN;
+    r->culprit = worst;
+}
+
+static void record(hf_history *h, const hf_model *m, const hf_workspace *w, const hf_form_result *r)
+{
+    if (h->n == h->capacity) return;
+    h->psi_m[h->n] = r->psi_m;
+    h->residual_N[h->n] = r->residual_N;
+    h->inner_tension_ratio[h->n] = hf_metrics_tension_ratio(m, w, HF_GROUP_INNER);
+    h->boundary_tension_ratio[h->n] = hf_metrics_tension_ratio(m, w, HF_GROUP_BOUNDARY);
+    h->length_error[h->n++] = r->length_error;
+}
+
+static hf_status finish(const hf_model *m, hf_workspace *w, hf_form_result *r)
+{
+    if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) {
+        r->stop_reason = HF_STOPPED_ILL_POSED;
+        r->psi_m = r->residual_N = r->tension_error = r->length_error = (double)NAN;
+        r->inner_tension_ratio = r->boundary_tension_ratio = r->shortest_length_ratio = (double)NAN;
+        r->n_slack = 0;
+        return r->status;
+    }
+    r->psi_m = hf_metrics_psi_m(m, w);
+    r->inner_tension_ratio = hf_metrics_tension_ratio(m, w, HF_GROUP_INNER);
+    r->boundary_tension_ratio = hf_metrics_tension_ratio(m, w, HF_GROUP_BOUNDARY);
+    r->n_slack = hf_metrics_slack_count(m, w);
+    return r->status;
+}
+
+/* ---- the iteration ---- */
+
+hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, hf_workspace *w, hf_history *history,
+                       hf_form_result *r)
+{
+    assert(m->n_free > 0 && s->max_iterations > 0);
+    progress p = {stop, any_law_iterates(m, w), (double)NAN, (double)NAN, FIRST_CHAIN_CHECK};
+    int need_psi = history || stop == HF_STOP_RMS_CHANGE,
+        need_residual = history || stop == HF_STOP_RESIDUAL || !p.iterates;
+    double length_gap;
+    *r = (hf_form_result){.status = HF_OK, .culprit = -1};
+    r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    hf_form_place_supports(m, w);
+    for (;;) {
+        r->iterations++;
+        r->status = w->stop && *w->stop ? HF_INTERRUPTED : solve(m, w, &r->culprit);
+        if (r->status != HF_OK) break;
+        hf_form_measure_cables(m, s, w, r, &length_gap);
+        if (r->status != HF_OK) break;
+        if (need_psi) r->psi_m = hf_metrics_psi_m(m, w);
+        if (need_residual) r->residual_N = hf_form_residual_N(m, w);
+        if (history) record(history, m, w, r);
+        if (is_last(m, s, w, r, &p, length_gap)) break;
+        hf_form_update(m, w);
+    }
+    if (r->status == HF_OK || r->status == HF_NOT_CONVERGED) {
+        if (!need_residual) r->residual_N = hf_form_residual_N(m, w);
+        if (r->status == HF_NOT_CONVERGED) r->culprit = find_rounded_cable(m, s, w);
+        if (r->status == HF_OK || r->iterations >= FIRST_CHAIN_CHECK) judge_chains(m, w, &p, r);
+    }
+    return finish(m, w, r);
+}
+
+hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r)
+{
+    double length_gap;
+    *r = (hf_form_result){.status = HF_OK, .culprit = -1};
+    r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
+    for (int e = 0; e < m->n_cable; e++) {
+        if (w->law[e] != HF_LAW_TENSION) continue;
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        double dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a], square = dx * dx + dy * dy + dz * dz;
+        w->q_N_per_m[e] = square > 0 ? w->target[e] / sqrt(square) : 0; /* of no length: found collapsed below */
+    }
+    hf_form_measure_cables(m, s, w, r, &length_gap);
+    if (r->status != HF_OK) return finish(m, w, r);
+    r->residual_N = hf_form_residual_N(m, w);
+    r->stop_reason = HF_STOPPED_RESIDUAL;
+    if (!(r->residual_N <= s->residual_tolerance * m->reference_N && length_gap <= s->length_tolerance)) {
+        r->status = HF_NOT_CONVERGED;
+        r->stop_reason = HF_STOPPED_MAX_ITERATIONS;
+    }
+    return finish(m, w, r);
+}
+
+hf_status hf_form_accept(const hf_model *m, const hf_form_settings *s, hf_stop_reason reason, int iterations,
+                         hf_workspace *w, hf_form_result *r)
+{
+    double length_gap;
+    progress p = {.stop = reason == HF_STOPPED_RMS_CHANGE ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
+    *r = (hf_form_result){.status = HF_OK, .culprit = -1, .iterations = iterations, .stop_reason = reason};
+    r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    hf_form_measure_cables(m, s, w, r, &length_gap);
+    if (r->status == HF_OK) {
+        if (reason == HF_STOPPED_MAX_ITERATIONS) r->status = HF_NOT_CONVERGED;
+        r->residual_N = hf_form_residual_N(m, w);
+        judge_chains(m, w, &p, r);
+    }
+    return finish(m, w, r);
+}
+
+void hf_form_refuse(hf_status status, int iterations, hf_form_result *r)
+{
+    *r = (hf_form_result){.status = status, .culprit = -1, .iterations = iterations};
+    r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    finish(NULL, NULL, r);
+}

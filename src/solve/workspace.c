@@ -1,0 +1,46 @@
+#include <hifdm/workspace.h>
+
+#include "base/arena.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void lay_out(hf_arena *arena, const hf_model *m, hf_workspace *w)
+{
+#define TAKE(type, name, count, unit, meaning) w->name = hf_arena_take(arena, (size_t)(count), sizeof(type));
+    HF_WORKSPACE_FIELDS(TAKE)
+#undef TAKE
+}
+
+size_t hf_workspace_bytes(const hf_model *model)
+{
+    hf_arena arena = {0};
+    hf_workspace workspace;
+    lay_out(&arena, model, &workspace);
+    return arena.used;
+}
+
+hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace)
+{
+    *workspace = (hf_workspace){0};
+    hf_arena arena = {.used = hf_workspace_bytes(model)};
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out(&arena, model, workspace);
+    workspace->block = arena.block;
+    return HF_OK;
+}
+
+void hf_workspace_free(hf_workspace *workspace)
+{
+    free(workspace->block);
+    *workspace = (hf_workspace){0};
+}
+
+void hf_workspace_poison(const hf_model *m, hf_workspace *workspace)
+{
+    hf_workspace *w = workspace;
+/* all bits set is a NaN in IEEE 754 and an index or law that no check accepts */
+#define POISON(type, name, count, unit, meaning) memset(w->name, 0xff, (size_t)(count) * sizeof(type));
+    HF_WORKSPACE_FIELDS(POISON)
+#undef POISON
+}

@@ -1,0 +1,275 @@
+/* Contents: one value - one data set - both files */
+#include "store/compare.h"
+
+#include "store/hdf5_io.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BLOCK_BYTES (1 << 20) /* read at a time: memory does not grow with the files */
+
+typedef struct {
+    hf_hdf5 a, b;
+    hf_comparison *c;
+    hf_compare_tell *tell;
+    void *context;
+} comparing;
+
+/* A data set of one file: what is read, and how a value looks in memory. */
+typedef struct {
+    hid_t id, space, type;
+    int rank;
+    hsize_t dims[H5S_MAX_RANK];
+    size_t bytes; /* of a value */
+    char *block;
+} side;
+
+/* ---- one value ---- */
+
+static int is_real(const side *s)
+{
+    return H5Tget_class(s->type) == H5T_FLOAT;
+}
+
+static int is_text(const side *s)
+{
+    return H5Tis_variable_str(s->type) > 0;
+}
+
+static int are_equal(const comparing *q, const side *a, const side *b, const char *x, const char *y)
+{
+    if (is_text(a)) {
+        const char *s, *t;
+        memcpy(&s, x, sizeof s);
+        memcpy(&t, y, sizeof t);
+        return !strcmp(s ? s : "", t ? t : "");
+    }
+    if (!memcmp(x, y, a->bytes)) return 1;
+    if (!is_real(a)) return 0;
+    double u, v;
+    memcpy(&u, x, sizeof u);
+    memcpy(&v, y, sizeof v);
+    if (isnan(u) && isnan(v)) return 1;
+    return (q->c->rtol > 0 || q->c->atol > 0) && b->bytes == sizeof v &&
+           fabs(u - v) <= q->c->atol + q->c->rtol * fabs(v);
+}
+
+static void show(const side *s, const char *value, char *text, size_t size)
+{
+    long long n = 0;
+    double x;
+    const char *p;
+    if (is_text(s)) {
+        memcpy(&p, value, sizeof p);
+        snprintf(text, size, "'%.60s'", p ? p : "");
+    } else if (is_real(s)) {
+        memcpy(&x, value, sizeof x);
+        snprintf(text, size, "%.17g", x);
+    } else if (H5Tget_class(s->type) == H5T_ENUM && H5Tenum_nameof(s->type, value, text, size) >= 0) {
+        return;
+    } else if (H5Tget_class(s->type) == H5T_INTEGER && s->bytes <= sizeof n) {
+        memcpy(&n, value, s->bytes); /* little-endian, sign below */
+        int shift = 8 * (int)(sizeof n - s->bytes);
+        if (H5Tget_sign(s->type) == H5T_SGN_2)
+            snprintf(text, size, "%lld", (long long)((unsigned long long)n << shift) >> shift);
+        else
+            snprintf(text, size, "%llu", (unsigned long long)n);
+    } else if (H5Tget_class(s->type) == H5T_STRING) {
+        snprintf(text, size, "'%.*s'", (int)(s->bytes < 60 ? s->bytes : 60), value);
+    } else {
+        snprintf(text, size, "another value");
+    }
+}
+
+/* ---- one data set ---- */
+
+static void close_side(hf_hdf5 *io, side *s)
+{
+    hf_hdf5_close(io, s->type);
+    hf_hdf5_close(io, s->space);
+    hf_hdf5_close(io, s->id);
+    free(s->block);
+}
+
+static void open_side(hf_hdf5 *io, const char *name, side *s)
+{
+    hid_t stored = -1;
+    *s = (side){-1, -1, -1, 0, {0}, 0, NULL};
+    if (io->status != HF_OK) return;
+    if ((s->id = H5Dopen2(io->file, name, H5P_DEFAULT)) < 0 || (s->space = H5Dget_space(s->id)) < 0 ||
+        (s->rank = H5Sget_simple_extent_dims(s->space, s->dims, NULL)) < 0 || (stored = H5Dget_type(s->id)) < 0)
+        hf_hdf5_fail(io, "read", -1, name);
+    else if (H5Tget_class(stored) == H5T_FLOAT)
+        s->type = H5Tcopy(H5T_NATIVE_DOUBLE);
+    else
+        s->type = H5Tget_native_type(stored, H5T_DIR_ASCEND);
+    if (io->status == HF_OK && (s->type < 0 || (s->bytes = H5Tget_size(s->type)) == 0))
+        hf_hdf5_fail(io, "read", -1, name);
+    hf_hdf5_close(io, stored);
+}
+
+/* `n` values from value number `first` on, as if the data set were one row: whole rows of the first dimension. */
+static hid_t read_rows(hf_hdf5 *io, const char *name, side *s, hsize_t row, hsize_t n_row)
+{
+    hsize_t start[H5S_MAX_RANK] = {row}, count[H5S_MAX_RANK];
+    hid_t memory = -1;
+    memcpy(count, s->dims, sizeof count);
+    if (s->rank > 0) count[0] = n_row;
+    if (io->status != HF_OK) return -1;
+    if ((memory = H5Screate_simple(s->rank, s->rank ? count : NULL, NULL)) < 0 ||
+        (s->rank && H5Sselect_hyperslab(s->space, H5S_SELECT_SET, start, NULL, count, NULL) < 0) ||
+        H5Dread(s->id, s->type, memory, s->rank ? s->space : H5S_ALL, H5P_DEFAULT, s->block) < 0)
+        hf_hdf5_fail(io, "read", -1, name);
+    return memory;
+}
+
+static void tell_value(comparing *q, const char *name, const side *a, const side *b, hsize_t row, hsize_t i)
+{
+    char where[256] = "", u[96], v[96], how[600];
+    hsize_t index[H5S_MAX_RANK], rest = i;
+    for (int d = a->rank - 1; d > 0; d--) {
+        index[d] = rest % a->dims[d];
+        rest /= a->dims[d];
+    }
+    index[0] = row + rest;
+    for (int d = 0; d < a->rank; d++)
+        snprintf(where + strlen(where), sizeof where - strlen(where), "%s%llu", d ? ", " : " [",
+                 (unsigned long long)index[d]);
+    show(a, a->block + i * a->bytes, u, sizeof u);
+    show(b, b->block + i * b->bytes, v, sizeof v);
+    snprintf(how, sizeof how, "%s%s: %s in %s, %s in %s", where, a->rank ? "]" : "", u, q->a.path, v, q->b.path);
+    q->tell(q->context, name, how);
+}
+
+/* 1 when a difference was told. */
+static int compare_values(comparing *q, const char *name, side *a, side *b)
+{
+    hsize_t per_row = 1, rows = a->rank ? a->dims[0] : 1;
+    for (int d = 1; d < a->rank; d++)
+        per_row *= a->dims[d];
+    if (per_row == 0 || rows == 0) return 0;
+    hsize_t fit = BLOCK_BYTES / (per_row * a->bytes), step = fit < 1 ? 1 : fit < rows ? fit : rows;
+    a->block = malloc(step * per_row * a->bytes);
+    b->block = malloc(step * per_row * b->bytes);
+    if (!a->block || !b->block) {
+        q->a.status = hf_error(q->a.messages, HF_NO_MEMORY, "%s: out of memory", q->a.path);
+        return 0;
+    }
+    for (hsize_t row = 0; row < rows; row += step) {
+        hsize_t n = rows - row < step ? rows - row : step, i = 0;
+        hid_t in_a = read_rows(&q->a, name, a, row, n), in_b = read_rows(&q->b, name, b, row, n);
+        int ok = q->a.status == HF_OK && q->b.status == HF_OK;
+        while (ok && i < n * per_row && are_equal(q, a, b, a->block + i * a->bytes, b->block + i * b->bytes))
+            i++;
+        int differs = ok && i < n * per_row;
+        if (differs) tell_value(q, name, a, b, row, i);
+        if (in_a >= 0 && is_text(a) && ok) H5Dvlen_reclaim(a->type, in_a, H5P_DEFAULT, a->block);
+        if (in_b >= 0 && is_text(b) && ok) H5Dvlen_reclaim(b->type, in_b, H5P_DEFAULT, b->block);
+        hf_hdf5_close(&q->a, in_a);
+        hf_hdf5_close(&q->b, in_b);
+        if (differs || !ok) return differs;
+    }
+    return 0;
+}
+
+static int compare_data_set(comparing *q, const char *name)
+{
+    side a, b;
+    int differs = 0;
+    open_side(&q->a, name, &a);
+    open_side(&q->b, name, &b);
+    if (q->a.status == HF_OK && q->b.status == HF_OK) {
+        differs = 1;
+        if (H5Tget_class(a.type) != H5Tget_class(b.type) || is_text(&a) != is_text(&b))
+            q->tell(q->context, name, " is of another type");
+        else if (a.rank != b.rank || memcmp(a.dims, b.dims, (size_t)a.rank * sizeof a.dims[0]) != 0)
+            q->tell(q->context, name, " has other dimensions");
+        else if (a.bytes != b.bytes)
+            q->tell(q->context, name, " has values of another length");
+        else
+            differs = compare_values(q, name, &a, &b);
+    }
+    close_side(&q->a, &a);
+    close_side(&q->b, &b);
+    return differs;
+}
+
+/* ---- both files ---- */
+
+static int is_data_set(hid_t file, const char *name)
+{
+    hid_t object = H5Oopen(file, name, H5P_DEFAULT);
+    int is = object >= 0 && H5Iget_type(object) == H5I_DATASET;
+    if (object >= 0) H5Oclose(object);
+    return is;
+}
+
+/* Is there a link of this path? Its groups may be missing, too. */
+static int has_path(hf_hdf5 *io, const char *path)
+{
+    char part[1024];
+    for (const char *slash = strchr(path, '/');; slash = strchr(slash + 1, '/')) {
+        snprintf(part, sizeof part, "%.*s", slash ? (int)(slash - path) : (int)strlen(path), path);
+        if (!hf_hdf5_has(io, io->file, part)) return 0;
+        if (!slash) return 1;
+    }
+}
+
+static herr_t visit_a(hid_t file, const char *name, const H5L_info_t *info, void *context)
+{
+    comparing *q = context;
+    char path[1100];
+    if (info->type != H5L_TYPE_HARD || !is_data_set(file, name)) return 0;
+    snprintf(path, sizeof path, "/%s", name);
+    q->c->n_data_set++;
+    if (has_path(&q->b, name) && is_data_set(q->b.file, name)) {
+        q->c->n_different += compare_data_set(q, path);
+    } else if (q->b.status == HF_OK) {
+        char how[600];
+        snprintf(how, sizeof how, " is not in %s", q->b.path);
+        q->tell(q->context, path, how);
+        q->c->n_different++;
+    }
+    return q->a.status == HF_OK && q->b.status == HF_OK ? 0 : 1;
+}
+
+static herr_t visit_b(hid_t file, const char *name, const H5L_info_t *info, void *context)
+{
+    comparing *q = context;
+    char path[1100], how[600];
+    if (info->type != H5L_TYPE_HARD || !is_data_set(file, name)) return 0;
+    if (has_path(&q->a, name) && is_data_set(q->a.file, name)) return 0;
+    snprintf(path, sizeof path, "/%s", name);
+    snprintf(how, sizeof how, " is not in %s", q->a.path);
+    q->tell(q->context, path, how);
+    q->c->n_data_set++;
+    q->c->n_different++;
+    return q->a.status == HF_OK ? 0 : 1;
+}
+
+hf_status hf_compare_files(const char *a, const char *b, hf_comparison *comparison, hf_compare_tell *tell,
+                           void *context, hf_messages *messages)
+{
+    comparing q = {{.path = a, .messages = messages, .status = HF_OK, .file = -1},
+                   {.path = b, .messages = messages, .status = HF_OK, .file = -1},
+                   comparison,
+                   tell,
+                   context};
+    comparison->n_data_set = comparison->n_different = 0;
+    hf_hdf5_lock();
+    hf_hdf5_open_file(&q.a, a, 0);
+    if (q.a.status == HF_OK) hf_hdf5_open_file(&q.b, b, 0);
+    if (q.a.status == HF_OK && q.b.status == HF_OK) {
+        if (H5Lvisit(q.a.file, H5_INDEX_NAME, H5_ITER_INC, visit_a, &q) < 0) hf_hdf5_fail(&q.a, "read", -1, "/");
+        if (q.a.status == HF_OK && q.b.status == HF_OK &&
+            H5Lvisit(q.b.file, H5_INDEX_NAME, H5_ITER_INC, visit_b, &q) < 0)
+            hf_hdf5_fail(&q.b, "read", -1, "/");
+    }
+    hf_status status = q.a.status != HF_OK ? q.a.status : q.b.status;
+    if (status == HF_OK && comparison->n_different) status = HF_DIFFERENT;
+    hf_hdf5_close_file(&q.a);
+    hf_hdf5_close_file(&q.b);
+    return hf_hdf5_unlock(status);
+}

@@ -1,0 +1,406 @@
+/* Contents: the list - memory - waiting - writing - putting back */
+#include "store/generations.h"
+
+#include "base/arena.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WAITING_BYTES (512 << 10) /* of all that wait but their designs; a generation larger than that waits alone */
+#define DESIGN_CHUNKS 3           /* of designs may wait, so that a run seldom waits for HDF5 */
+#define CHUNK_BYTES (256 << 10)   /* of a data set: rows as far as they fit */
+#define CHUNK_MAX (1 << 20)       /* of a row larger than CHUNK_BYTES: what HDF5 caches of a data set */
+#define BLOCK 1024                /* generations that are counted at a time */
+
+/* ---- the list ---- */
+
+/* A data set and where its values of one generation are: item after item, `stride` bytes apart. */
+typedef struct {
+    hf_hdf5_array array;
+    const void *from;
+    size_t stride, item_bytes;
+} ga_row;
+
+enum {
+    ROW_DESIGN,
+    ROW_EVALUATED,
+    ROW_STATUS,
+    ROW_PSI,
+    ROW_RESIDUAL,
+    ROW_INNER_RATIO,
+    ROW_BOUNDARY_RATIO,
+    ROW_ITERATIONS,
+    ROW_BEST_INDIVIDUAL = 11,
+    ROW_BEST_PSI = 12
+};
+
+static int list_rows(const hf_ga *g, ga_row row[HF_GENERATIONS_PIECES])
+{
+    const hsize_t p = (hsize_t)g->n_individual, k = (hsize_t)g->n_gene;
+    const hf_form_result *r = g->result;
+#define ARRAY(member) g->member, sizeof *g->member, sizeof *g->member
+#define RESULT(member) &r->member, sizeof *r, sizeof r->member
+#define SINGLE(value) &(value), 0, sizeof(value)
+    const ga_row rows[] = {
+        {{"design_N", HF_KIND_REAL, 3, {1, p, k}, "N", "boundary pretension T' of each gene"}, ARRAY(design_N)},
+        {{"evaluated", HF_KIND_FLAG, 2, {1, p}, "", "FALSE = a copy whose result was known"}, ARRAY(pending)},
+        {{"status", HF_KIND_STATUS, 2, {1, p}, "", "ok = feasible; under any other psi is NaN"}, RESULT(status)},
+        {{"psi_m", HF_KIND_REAL, 2, {1, p}, "m", "RMS distance of the inner nodes"}, RESULT(psi_m)},
+        {{"residual_N", HF_KIND_REAL, 2, {1, p}, "N", "largest nodal force out of balance"}, RESULT(residual_N)},
+        {{"inner_tension_ratio", HF_KIND_REAL, 2, {1, p}, "", "largest over smallest"}, RESULT(inner_tension_ratio)},
+        {{"boundary_tension_ratio", HF_KIND_REAL, 2, {1, p}, "", "largest over smallest"},
+         RESULT(boundary_tension_ratio)},
+        {{"iterations", HF_KIND_INT, 2, {1, p}, "", "linear solves"}, RESULT(iterations)},
+        {{"crossover_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(crossover_rate)},
+        {{"mutation_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(mutation_rate)},
+        {{"parent", HF_KIND_INT, 3, {1, p, 2}, "", "individuals of the generation before, or -1"}, ARRAY(parent)},
+        {{"best_individual", HF_KIND_INT, 1, {1}, "", "-1 while none is feasible"}, SINGLE(g->best)},
+        {{"best_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the generation"}, SINGLE(g->best_psi_m[g->generation])},
+        {{"mean_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(g->mean_psi_m)},
+        {{"worst_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(g->worst_psi_m)},
+        {{"n_infeasible", HF_KIND_INT, 1, {1}, "", "individuals whose status is not ok"}, SINGLE(g->n_infeasible)}};
+#undef ARRAY
+#undef RESULT
+#undef SINGLE
+    _Static_assert(sizeof rows / sizeof rows[0] == HF_GENERATIONS_PIECES, "count them again");
+    memcpy(row, rows, sizeof rows);
+    assert(!strcmp(rows[ROW_DESIGN].array.name, "design_N") && !strcmp(rows[ROW_PSI].array.name, "psi_m") &&
+           !strcmp(rows[ROW_BOUNDARY_RATIO].array.name, "boundary_tension_ratio") &&
+           !strcmp(rows[ROW_BEST_PSI].array.name, "best_psi_m"));
+    return HF_HDF5_COUNT(rows);
+}
+
+/* The list without values. */
+static int list_arrays(const hf_generations *g, ga_row row[HF_GENERATIONS_PIECES])
+{
+    hf_form_result nothing = {0};
+    double none = 0;
+    return list_rows(
+        &(hf_ga){.n_individual = g->n_individual, .n_gene = g->n_gene, .result = &nothing, .best_psi_m = &none}, row);
+}
+
+/* ---- memory ---- */
+
+static void lay_out(hf_arena *arena, hf_generations *g)
+{
+    for (int i = 0; i < HF_GENERATIONS_PIECES; i++)
+        g->row[i] = hf_arena_take(arena, (size_t)(i == ROW_DESIGN ? g->design_capacity : g->capacity), g->row_bytes[i]);
+}
+
+/* At least one, and no more than there can be. */
+static int how_many(size_t fit, int limit)
+{
+    return fit < 1 ? 1 : fit < (size_t)limit ? (int)fit : limit;
+}
+
+hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_generations *g)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    hf_arena arena = {0};
+    *g = (hf_generations){.n_individual = n_individual, .n_gene = n_gene, .limit = limit};
+    int n = list_arrays(g, row);
+    for (int i = 0; i < n; i++) {
+        g->row_bytes[i] = hf_hdf5_kind_bytes(row[i].array.kind);
+        for (int d = 1; d < row[i].array.rank; d++)
+            g->row_bytes[i] *= (size_t)row[i].array.dims[d];
+        g->payload_bytes += i == ROW_DESIGN ? sizeof g->design_hash : g->row_bytes[i];
+    }
+    g->capacity = how_many(WAITING_BYTES / g->payload_bytes, limit);
+    g->design_chunk = how_many(g->row_bytes[ROW_DESIGN] ? CHUNK_BYTES / g->row_bytes[ROW_DESIGN] : 1, g->capacity);
+    g->design_capacity = how_many((size_t)(DESIGN_CHUNKS * g->design_chunk), g->capacity);
+    lay_out(&arena, g);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out(&arena, g);
+    g->block = arena.block;
+    return HF_OK;
+}
+
+void hf_generations_free(hf_generations *g)
+{
+    free(g->block);
+    *g = (hf_generations){0};
+}
+
+/* ---- waiting ---- */
+
+int hf_generations_are_full(const hf_generations *g)
+{
+    return g->n_waiting == g->capacity || g->n_design == g->design_capacity;
+}
+
+int hf_generations_are_due(const hf_generations *g)
+{
+    return g->n_waiting == g->capacity || g->n_design >= g->design_chunk;
+}
+
+/* The values of one generation side by side, as HDF5 takes them; an enumeration is an int in memory, a byte there. */
+static void gather(const ga_row *row, size_t bytes, char *to)
+{
+    size_t each = hf_hdf5_kind_bytes(row->array.kind), n = bytes / each;
+    const char *from = row->from;
+    if (row->item_bytes == each && (row->stride == each || n == 1)) {
+        if (bytes) memcpy(to, from, bytes);
+        return;
+    }
+    for (size_t i = 0; i < n; i++, from += row->stride) {
+        int value;
+        if (row->item_bytes == each) {
+            memcpy(to + i * each, from, each);
+        } else {
+            memcpy(&value, from, sizeof value);
+            to[i] = (char)value;
+        }
+    }
+}
+
+static char *slot(const hf_generations *g, int i)
+{
+    return g->row[i] + (size_t)(i == ROW_DESIGN ? g->n_design : g->n_waiting) * g->row_bytes[i];
+}
+
+/* Tells designs from others that differ in a bit or in their order: four chains of FNV-1a's kind, over words. */
+static uint64_t hash_designs(const hf_ga *ga)
+{
+    enum { CHAINS = 4 };
+    const uint64_t factor = 0x9e3779b97f4a7c15u; /* odd: nothing is lost by it */
+    uint64_t chain[CHAINS] = {1, 2, 3, 4}, bits, all = 0;
+    for (size_t i = 0; i < (size_t)ga->n_individual * (size_t)ga->n_gene; i++) {
+        uint64_t *h = &chain[i % CHAINS];
+        memcpy(&bits, &ga->design_N[i], sizeof bits);
+        *h = (*h ^ bits) * factor;
+        *h ^= *h >> 32;
+    }
+    for (int i = 0; i < CHAINS; i++)
+        all = (all ^ chain[i]) * factor, all ^= all >> 32;
+    return all;
+}
+
+void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    int n = list_rows(ga, row);
+    assert(g->n_waiting < g->capacity && ga->n_individual == g->n_individual && ga->n_gene == g->n_gene);
+    for (int i = 0; i < n; i++) {
+        gather(&row[i], g->row_bytes[i], slot(g, i));
+        if (piece) piece[i] = (struct iovec){slot(g, i), g->row_bytes[i]};
+    }
+    if (piece) {
+        g->design_hash = hash_designs(ga);
+        piece[ROW_DESIGN] = (struct iovec){&g->design_hash, sizeof g->design_hash};
+    }
+    g->n_waiting++;
+    g->n_design++;
+}
+
+/* The values of one generation back to where they came from. */
+static void scatter(const ga_row *row, size_t bytes, const char *from)
+{
+    size_t each = hf_hdf5_kind_bytes(row->array.kind), n = bytes / each;
+    char *to = (char *)row->from;
+    for (size_t i = 0; i < n; i++, to += row->stride) {
+        int value = (signed char)from[i];
+        if (row->item_bytes == each)
+            memcpy(to, from + i * each, each);
+        else
+            memcpy(to, &value, sizeof value);
+    }
+}
+
+int hf_generations_take_payload(const hf_generations *g, const void *payload, hf_ga *ga)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    uint64_t hash;
+    int n = list_rows(ga, row);
+    const char *from = payload;
+    memcpy(&hash, from, sizeof hash);
+    if (hash != hash_designs(ga)) return 0;
+    from += sizeof hash;
+    for (int i = ROW_DESIGN + 1; i < n; from += g->row_bytes[i++])
+        scatter(&row[i], g->row_bytes[i], from);
+    return 1;
+}
+
+/* ---- writing ---- */
+
+/* As many rows as fit, but no more than are written at a time; a row larger than CHUNK_BYTES is cut along its other
+ * sides. */
+static void choose_chunk(const hf_hdf5_array *a, size_t row_bytes, hsize_t rows, hsize_t chunk[3])
+{
+    size_t fit = row_bytes ? CHUNK_BYTES / row_bytes : rows;
+    hsize_t left = CHUNK_MAX / hf_hdf5_kind_bytes(a->kind);
+    chunk[0] = fit < 1 ? 1 : fit < rows ? fit : rows;
+    for (int i = a->rank - 1; i > 0; i--) {
+        chunk[i] = a->dims[i] < 1 ? 1 : a->dims[i] < left ? a->dims[i] : left;
+        left = left / chunk[i] ? left / chunk[i] : 1;
+    }
+}
+
+static hid_t open_arrays(hf_hdf5 *io, const hf_generations *g, ga_row row[HF_GENERATIONS_PIECES])
+{
+    int n = list_arrays(g, row);
+    hid_t group = hf_hdf5_make_group(io, "/ga");
+    if (g->n_stored > 0 || hf_hdf5_has(io, group, row[ROW_DESIGN].array.name)) return group;
+    for (int i = 0; i < n; i++) {
+        hsize_t chunk[3];
+        choose_chunk(&row[i].array, g->row_bytes[i], (hsize_t)g->capacity, chunk);
+        hf_hdf5_close(io, hf_hdf5_make_array(io, group, &row[i].array, chunk));
+    }
+    return group;
+}
+
+static void write_row(hf_hdf5 *io, const hf_generations *g, hid_t group, ga_row *row, int i, int n)
+{
+    row[i].array.dims[0] = (hsize_t)n;
+    hf_hdf5_write_rows(io, group, &row[i].array, (hsize_t)(g->n_stored + g->n_waiting - n), g->row[i]);
+}
+
+void hf_generations_make_room(hf_hdf5 *io, hf_generations *g)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    if (io->status != HF_OK) return;
+    if (g->n_waiting == g->capacity) {
+        hf_generations_write(io, g);
+    } else if (g->n_design >= g->design_chunk) {
+        hid_t group = open_arrays(io, g, row);
+        write_row(io, g, group, row, ROW_DESIGN, g->n_design);
+        hf_hdf5_close(io, group);
+        g->n_design = 0;
+    }
+}
+
+void hf_generations_write(hf_hdf5 *io, hf_generations *g)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    if (g->n_waiting == 0 || io->status != HF_OK) return;
+    hid_t group = open_arrays(io, g, row);
+    if (g->n_design) write_row(io, g, group, row, ROW_DESIGN, g->n_design);
+    for (int i = ROW_DESIGN + 1; i < HF_GENERATIONS_PIECES; i++)
+        write_row(io, g, group, row, i, g->n_waiting);
+    hf_hdf5_close(io, group);
+    g->n_stored += g->n_waiting;
+    g->n_waiting = g->n_design = 0;
+}
+
+/* ---- putting back ---- */
+
+int hf_generations_count(hf_hdf5 *io, hf_generations *g)
+{
+    g->n_stored = 0;
+    if (hf_hdf5_has(io, io->file, "/ga") && hf_hdf5_has(io, io->file, "/ga/n_infeasible"))
+        g->n_stored = hf_hdf5_length(io, io->file, "/ga/n_infeasible", g->limit);
+    return g->n_stored;
+}
+
+/* Evaluations of the first n generations, from what was stored, a block of generations at a time. */
+static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g, int n, long *all, long *infeasible)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    size_t p = (size_t)g->n_individual;
+    list_arrays(g, row);
+    *all = *infeasible = 0;
+    char *block = malloc(2 * BLOCK * p);
+    if (!block) {
+        hf_hdf5_no_memory(io);
+        return;
+    }
+    char *status = block + BLOCK * p;
+    for (int first = 0; io->status == HF_OK && first < n; first += BLOCK) {
+        int some = n - first < BLOCK ? n - first : BLOCK;
+        row[ROW_EVALUATED].array.dims[0] = row[ROW_STATUS].array.dims[0] = (hsize_t)some;
+        hf_hdf5_read_rows(io, group, &row[ROW_EVALUATED].array, (hsize_t)first, block);
+        hf_hdf5_read_rows(io, group, &row[ROW_STATUS].array, (hsize_t)first, status);
+        for (size_t i = 0; io->status == HF_OK && i < (size_t)some * p; i++) {
+            *all += block[i] != 0;
+            *infeasible += block[i] != 0 && status[i] != HF_OK;
+        }
+    }
+    free(block);
+}
+
+/* What a row, one value per individual, says of the best. */
+static void read_of_best(hf_hdf5 *io, hid_t group, const ga_row *row, const hf_summary *s, void *value)
+{
+    size_t n = (size_t)row->array.dims[1], each = hf_hdf5_kind_bytes(row->array.kind);
+    char *values = malloc(n * each);
+    if (!values) hf_hdf5_no_memory(io);
+    hf_hdf5_read_rows(io, group, &row->array, (hsize_t)s->best_generation, values);
+    if (io->status == HF_OK && s->best_individual >= 0 && (size_t)s->best_individual < n)
+        memcpy(value, values + (size_t)s->best_individual * each, each);
+    free(values);
+}
+
+/* As the run has noted it: the first generation with the least psi. What is not stored of an individual is NaN. */
+static void note_best(hf_hdf5 *io, hid_t group, const ga_row *row, const double *best_psi_m, int n, hf_summary *s)
+{
+    const double unknown = (double)NAN;
+    int best = -1;
+    for (int i = 0; i < n; i++)
+        if (!isnan(best_psi_m[i]) && (best < 0 || best_psi_m[i] < best_psi_m[best])) best = i;
+    if (best < 0) return;
+    s->best_generation = best;
+    s->best = (hf_form_result){.status = HF_OK,
+                               .culprit = -1,
+                               .psi_m = best_psi_m[best],
+                               .tension_error = unknown,
+                               .length_error = unknown,
+                               .shortest_length_ratio = unknown,
+                               .position_error_m = unknown,
+                               .condition = unknown,
+                               .backward_error = unknown};
+    hf_hdf5_read_rows(io, group, &row[ROW_BEST_INDIVIDUAL].array, (hsize_t)best, &s->best_individual);
+    read_of_best(io, group, &row[ROW_RESIDUAL], s, &s->best.residual_N);
+    read_of_best(io, group, &row[ROW_INNER_RATIO], s, &s->best.inner_tension_ratio);
+    read_of_best(io, group, &row[ROW_BOUNDARY_RATIO], s, &s->best.boundary_tension_ratio);
+    read_of_best(io, group, &row[ROW_ITERATIONS], s, &s->best.iterations);
+}
+
+void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    int last = g->n_stored - 1;
+    assert(g->n_waiting == 0 && last >= 0 && ga->n_individual == g->n_individual && ga->n_gene == g->n_gene);
+    size_t largest = g->row_bytes[0] + (size_t)ga->n_individual * 2 * sizeof(double) + sizeof(double);
+    char *values = malloc(largest);
+    if (!values) {
+        hf_hdf5_no_memory(io);
+        return;
+    }
+    hid_t group = hf_hdf5_open_group(io, "/ga");
+    ga->generation = last;
+    int n = list_rows(ga, row);
+    for (int i = 0; i < n && io->status == HF_OK; i++) {
+        assert(g->row_bytes[i] <= largest);
+        hf_hdf5_read_rows(io, group, &row[i].array, (hsize_t)last, values);
+        if (io->status == HF_OK) scatter(&row[i], g->row_bytes[i], values);
+    }
+    free(values);
+    row[ROW_BEST_PSI].array.dims[0] = (hsize_t)g->n_stored;
+    hf_hdf5_read_rows(io, group, &row[ROW_BEST_PSI].array, 0, ga->best_psi_m);
+    count_evaluations(io, group, g, last, &ga->n_evaluation, &ga->n_evaluation_infeasible);
+    hf_hdf5_close(io, group);
+}
+
+void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    if (g->n_stored == 0 || io->status != HF_OK) return;
+    double *best_psi_m = malloc((size_t)g->n_stored * sizeof *best_psi_m);
+    if (!best_psi_m) {
+        hf_hdf5_no_memory(io);
+        return;
+    }
+    hid_t group = hf_hdf5_open_group(io, "/ga");
+    list_arrays(g, row);
+    row[ROW_BEST_PSI].array.dims[0] = (hsize_t)g->n_stored;
+    hf_hdf5_read_rows(io, group, &row[ROW_BEST_PSI].array, 0, best_psi_m);
+    row[ROW_PSI].array.dims[1] = 1;
+    hf_hdf5_read_rows(io, group, &row[ROW_PSI].array, 0, &s->base_psi_m);
+    if (io->status == HF_OK) note_best(io, group, row, best_psi_m, g->n_stored, s);
+    count_evaluations(io, group, g, g->n_stored, &s->evaluations, &s->infeasible);
+    s->has_optimize = 1;
+    s->generations = g->n_stored;
+    free(best_psi_m);
+    hf_hdf5_close(io, group);
+}

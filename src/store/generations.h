@@ -1,0 +1,62 @@
+/* generations - the data sets of /ga that grow by a row per generation: one list says what they are, where a row comes
+ * from, and how a run is put back to where it was. The rows of a generation are the whole state of the genetic
+ * algorithm, because its random numbers depend on (seed, generation, individual) only. They wait in memory, bounded,
+ * until many can be written together: HDF5 costs some microseconds per data set and call, whatever is written. The
+ * designs, nine tenths of the bytes, wait for a chunk to be full, all else for longer. */
+#ifndef HIFDM_GENERATIONS_H
+#define HIFDM_GENERATIONS_H
+
+#include "store/hdf5_io.h"
+
+#include <hifdm/ga.h>
+#include <hifdm/summary.h>
+#include <sys/uio.h>
+
+#define HF_GENERATIONS_PIECES 16 /* data sets, and pieces of a payload */
+
+typedef struct {
+    int n_individual, n_gene;
+    int limit;                               /* generations that there can be */
+    int n_stored;                            /* in the file */
+    int n_waiting, capacity;                 /* in memory */
+    int n_design, design_capacity;           /* those of them whose designs are in memory, too: the last ones */
+    int design_chunk;                        /* that many at a time are written best */
+    size_t row_bytes[HF_GENERATIONS_PIECES]; /* of one generation */
+    size_t payload_bytes;                    /* of what the journal keeps of one */
+    uint64_t design_hash;                    /* of the last one added */
+    char *row[HF_GENERATIONS_PIECES];        /* [capacity] rows of each data set, [design_capacity] of designs */
+    void *block;
+} hf_generations;
+
+/* HF_OK or HF_NO_MEMORY. Free in any case. */
+hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_generations *g);
+void hf_generations_free(hf_generations *g);
+
+/* Must hf_generations_make_room be called before another is added? Is there enough waiting to call it? */
+int hf_generations_are_full(const hf_generations *g);
+int hf_generations_are_due(const hf_generations *g);
+
+/* Let a generation that hf_ga_tell has ranked wait. Not when they are full. `piece` (may be NULL) is its payload
+ * [HF_GENERATIONS_PIECES], borrowed until the next is added: all of it but the designs, nine tenths of its bytes, which
+ * hf_ga_next breeds again from the generation before. Of these only a hash is there. */
+void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece);
+
+/* Results and all else from a payload into `ga`, whose designs were bred again. 0, and nothing is changed, when these
+ * have other bits than those that the results are of. */
+int hf_generations_take_payload(const hf_generations *g, const void *payload, hf_ga *ga);
+
+/* Write what waits below /ga of the file, whose data sets the first call makes: all; or what has no room to wait. */
+void hf_generations_write(hf_hdf5 *io, hf_generations *g);
+void hf_generations_make_room(hf_hdf5 *io, hf_generations *g);
+
+/* How many generations the file has; those that wait do not count. Sets n_stored. */
+int hf_generations_count(hf_hdf5 *io, hf_generations *g);
+
+/* What the generations of the file say in the summary: how many, evaluations, the best so far. None may wait. */
+void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *summary);
+
+/* Put `ga`, just created, into the state before hf_ga_tell of the last generation of the file. HF_IO also for a file of
+ * other dimensions. */
+void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga);
+
+#endif

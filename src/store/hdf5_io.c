@@ -1,0 +1,571 @@
+/* Contents: failures - types - files, groups - writing data sets - reading data sets - attributes - tables */
+#include "store/hdf5_io.h"
+
+#include <hifdm/formfind.h>
+#include <hifdm/ga.h>
+#include <hifdm/scene.h>
+#include <hifdm/truss.h>
+
+#include <assert.h>
+#include <limits.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- failures ---- */
+
+/* Keeps the first, innermost entry of HDF5's error stack; of an entry about a system call only the system's words. */
+static herr_t keep_reason(unsigned n, const H5E_error2_t *entry, void *context)
+{
+    static const char key[] = "error message = '";
+    char *reason = context;
+    (void)n;
+    const char *desc = entry->desc ? entry->desc : "", *from = strstr(desc, key);
+    if (from)
+        snprintf(reason, 256, "%.*s", (int)strcspn(from + sizeof key - 1, "'"), from + sizeof key - 1);
+    else
+        snprintf(reason, 256, "%s", desc);
+    return 1;
+}
+
+/* "/group/name", or "attribute a of /group/name". The name "." is the place itself. */
+static void full_name(hid_t place, const char *name, const char *attribute, char *text, size_t size)
+{
+    char group[256] = "";
+    if (place >= 0 && H5Iget_name(place, group, sizeof group) < 0) group[0] = '\0';
+    if (!name || !strcmp(name, ".")) name = "";
+    if (*name && !strcmp(group, "/")) group[0] = '\0';
+    snprintf(text, size, "%s%s%s%s%s%s", attribute ? "attribute " : "", attribute ? attribute : "",
+             attribute ? " of " : "", group, *name && *name != '/' ? "/" : "", name);
+}
+
+static void fail_at(hf_hdf5 *io, const char *verb, hid_t place, const char *name, const char *attribute)
+{
+    char reason[256] = "", where[800];
+    if (io->status != HF_OK) return;
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_reason, reason); /* before the next call empties it */
+    full_name(place, name, attribute, where, sizeof where);
+    io->status = hf_error(io->messages, HF_IO, "%s: cannot %s%s%s: %s", io->path, verb, *where ? " " : "", where,
+                          *reason ? reason : "HDF5 gives no reason");
+}
+
+static void damaged_at(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *what)
+{
+    char where[800];
+    if (io->status != HF_OK) return;
+    full_name(place, name, attribute, where, sizeof where);
+    io->status = hf_error(io->messages, HF_IO, "%s: is damaged: %s %s", io->path, where, what);
+}
+
+void hf_hdf5_no_memory(hf_hdf5 *io)
+{
+    if (io->status == HF_OK) io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
+}
+
+void hf_hdf5_fail(hf_hdf5 *io, const char *verb, hid_t place, const char *name)
+{
+    fail_at(io, verb, place, name, NULL);
+}
+
+void hf_hdf5_damaged(hf_hdf5 *io, hid_t place, const char *name, const char *what)
+{
+    damaged_at(io, place, name, NULL, what);
+}
+
+/* ---- types ---- */
+
+typedef struct {
+    const char *word;
+    int value;
+} enum_entry;
+
+/* The i-th word of an enumeration and its value; a NULL word behind the last. */
+static enum_entry enum_at(hf_hdf5_kind kind, int i)
+{
+    static const char *const flag_word[2] = {"FALSE", "TRUE"}; /* h5py's bool */
+#define STATUS_ENTRY(name, value, exit_code, word, text) {word, value},
+#define STOP_ENTRY(name, value, word) {word, value},
+    static const enum_entry status[] = {HF_STATUS_LIST(STATUS_ENTRY)}, stop[] = {HF_STOP_REASON_LIST(STOP_ENTRY)};
+    static const enum_entry coupling[] = {HF_COUPLING_STOP_LIST(STOP_ENTRY)};
+#undef STATUS_ENTRY
+#undef STOP_ENTRY
+    static const struct {
+        hf_hdf5_kind kind;
+        const char *const *word;
+        int n;
+    } list[] = {{HF_KIND_FLAG, flag_word, 2},          {HF_KIND_ROLE, hf_role_word, 3},
+                {HF_KIND_GROUP, hf_group_word, 2},     {HF_KIND_LAW, hf_law_word, HF_N_LAW},
+                {HF_KIND_GA_STOP, hf_ga_stop_word, 4}, {HF_KIND_JOINT, hf_joint_word, 2},
+                {HF_KIND_UNIT, hf_unit_word, 4}};
+    for (int k = 0; k < HF_HDF5_COUNT(list); k++)
+        if (list[k].kind == kind && i < list[k].n) return (enum_entry){list[k].word[i], i};
+    if (kind == HF_KIND_STATUS && i < HF_HDF5_COUNT(status)) return status[i];
+    if (kind == HF_KIND_STOP_REASON && i < HF_HDF5_COUNT(stop)) return stop[i];
+    if (kind == HF_KIND_COUPLING_STOP && i < HF_HDF5_COUNT(coupling)) return coupling[i];
+    return (enum_entry){NULL, 0};
+}
+
+static int is_enum(hf_hdf5_kind kind)
+{
+    return kind >= HF_KIND_FLAG;
+}
+
+size_t hf_hdf5_kind_bytes(hf_hdf5_kind kind)
+{
+    switch (kind) {
+    case HF_KIND_REAL:
+        return sizeof(double);
+    case HF_KIND_INT:
+        return sizeof(int);
+    case HF_KIND_LONG:
+        return sizeof(long);
+    case HF_KIND_UINT64:
+        return sizeof(uint64_t);
+    case HF_KIND_TEXT:
+        return sizeof(char *);
+    default:
+        return 1;
+    }
+}
+
+static hid_t make_enum(hf_hdf5_kind kind)
+{
+    hid_t type = H5Tenum_create(H5T_NATIVE_SCHAR);
+    for (int i = 0; type >= 0 && enum_at(kind, i).word; i++) {
+        signed char value = (signed char)enum_at(kind, i).value;
+        if (H5Tenum_insert(type, enum_at(kind, i).word, &value) < 0) {
+            H5Tclose(type);
+            type = -1;
+        }
+    }
+    return type;
+}
+
+/* length: bytes of each string, or H5T_VARIABLE */
+static hid_t make_string(size_t length)
+{
+    hid_t type = H5Tcopy(H5T_C_S1);
+    if (type >= 0 && (H5Tset_size(type, length) < 0 || H5Tset_cset(type, H5T_CSET_UTF8) < 0 ||
+                      (length != H5T_VARIABLE && H5Tset_strpad(type, H5T_STR_NULLPAD) < 0))) {
+        H5Tclose(type);
+        type = -1;
+    }
+    return type;
+}
+
+/* The caller closes it. Negative after a failure of HDF5. length: of HF_KIND_CHARS. */
+static hid_t make_type(hf_hdf5_kind kind, hsize_t length)
+{
+    switch (kind) {
+    case HF_KIND_REAL:
+        return H5Tcopy(H5T_NATIVE_DOUBLE);
+    case HF_KIND_INT:
+        return H5Tcopy(H5T_NATIVE_INT);
+    case HF_KIND_LONG:
+        return H5Tcopy(H5T_NATIVE_LONG);
+    case HF_KIND_UINT64:
+        return H5Tcopy(H5T_NATIVE_UINT64);
+    case HF_KIND_TEXT:
+        return make_string(H5T_VARIABLE);
+    case HF_KIND_CHARS:
+        return make_string((size_t)length);
+    default:
+        return make_enum(kind);
+    }
+}
+
+hid_t hf_hdf5_array_type(const hf_hdf5_array *a)
+{
+    return make_type(a->kind, a->kind == HF_KIND_CHARS ? a->dims[a->rank] : 0);
+}
+
+/* May values of this stored type be read as `kind`? Words are matched by HDF5 itself. */
+static int is_of_kind(hid_t stored, hf_hdf5_kind kind)
+{
+    H5T_class_t class = H5Tget_class(stored);
+    if (is_enum(kind)) return class == H5T_ENUM;
+    if (kind == HF_KIND_CHARS) return class == H5T_STRING && H5Tis_variable_str(stored) == 0;
+    assert(kind != HF_KIND_TEXT);
+    return class == (kind == HF_KIND_REAL ? H5T_FLOAT : H5T_INTEGER);
+}
+
+/* Does every value of an enumeration have a word? */
+static int are_known(hf_hdf5_kind kind, const void *values, hsize_t n)
+{
+    unsigned char known[UCHAR_MAX + 1] = {0};
+    const unsigned char *bytes = values;
+    for (int i = 0; enum_at(kind, i).word; i++)
+        known[(unsigned char)enum_at(kind, i).value] = 1;
+    for (hsize_t i = 0; i < n; i++)
+        if (!known[bytes[i]]) return 0;
+    return 1;
+}
+
+/* ---- files and groups ---- */
+
+static herr_t close_any(hid_t id)
+{
+    switch (H5Iget_type(id)) {
+    case H5I_FILE:
+        return H5Fclose(id);
+    case H5I_GROUP:
+        return H5Gclose(id);
+    case H5I_DATASET:
+        return H5Dclose(id);
+    case H5I_DATASPACE:
+        return H5Sclose(id);
+    case H5I_DATATYPE:
+        return H5Tclose(id);
+    case H5I_ATTR:
+        return H5Aclose(id);
+    default:
+        return H5Pclose(id);
+    }
+}
+
+void hf_hdf5_close(hf_hdf5 *io, hid_t id)
+{
+    if (id >= 0 && close_any(id) < 0) hf_hdf5_fail(io, "close", -1, NULL);
+}
+
+/* Properties of a new object without the time of its making: the same results are the same bytes. */
+static hid_t make_properties(hid_t class)
+{
+    hid_t properties = H5Pcreate(class);
+    if (properties >= 0 && H5Pset_obj_track_times(properties, 0) < 0) {
+        H5Pclose(properties);
+        properties = -1;
+    }
+    return properties;
+}
+
+/* The format of HDF5 1.8: its object headers have checksums, and everything in use today reads it. */
+static hid_t make_access(void)
+{
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    int ok = access >= 0 && H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18) >= 0;
+#if H5_VERSION_GE(1, 10, 7)
+    ok = ok && H5Pset_file_locking(access, 1, 1) >= 0;
+#endif
+    if (access >= 0 && !ok) {
+        H5Pclose(access);
+        access = -1;
+    }
+    return access;
+}
+
+void hf_hdf5_create_file(hf_hdf5 *io, const char *name)
+{
+    hid_t properties = -1, access = -1;
+    io->file = -1;
+    if ((properties = make_properties(H5P_FILE_CREATE)) < 0 || (access = make_access()) < 0 ||
+        (io->file = H5Fcreate(name, H5F_ACC_TRUNC, properties, access)) < 0)
+        hf_hdf5_fail(io, "create", -1, NULL);
+    hf_hdf5_close(io, access);
+    hf_hdf5_close(io, properties);
+}
+
+void hf_hdf5_open_file(hf_hdf5 *io, const char *name, int to_write)
+{
+    hid_t access = make_access();
+    io->file = access < 0 ? -1 : H5Fopen(name, to_write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
+    if (io->file < 0) hf_hdf5_fail(io, "open", -1, NULL);
+    hf_hdf5_close(io, access);
+}
+
+void hf_hdf5_close_file(hf_hdf5 *io)
+{
+    if (io->file < 0) return;
+    assert(io->status != HF_OK || H5Fget_obj_count(io->file, H5F_OBJ_ALL | H5F_OBJ_LOCAL) == 1);
+    hf_hdf5_close(io, io->file);
+    io->file = -1;
+}
+
+int hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name)
+{
+    if (io->status != HF_OK) return 0;
+    htri_t has = H5Lexists(place, name, H5P_DEFAULT);
+    if (has < 0) hf_hdf5_fail(io, "read", place, name);
+    return has > 0;
+}
+
+hid_t hf_hdf5_make_group(hf_hdf5 *io, const char *path)
+{
+    hid_t properties = -1, group = -1;
+    if (io->status == HF_OK && hf_hdf5_has(io, io->file, path)) return hf_hdf5_open_group(io, path);
+    if (io->status != HF_OK) return -1;
+    if ((properties = make_properties(H5P_GROUP_CREATE)) < 0 ||
+        (group = H5Gcreate2(io->file, path, H5P_DEFAULT, properties, H5P_DEFAULT)) < 0)
+        hf_hdf5_fail(io, "write", -1, path);
+    hf_hdf5_close(io, properties);
+    return group;
+}
+
+hid_t hf_hdf5_open_group(hf_hdf5 *io, const char *path)
+{
+    if (io->status != HF_OK) return -1;
+    hid_t group = H5Gopen2(io->file, path, H5P_DEFAULT);
+    if (group < 0) hf_hdf5_fail(io, "read", -1, path);
+    return group;
+}
+
+/* ---- making and writing data sets ---- */
+
+/* HDF5 wants every chunk within the largest dimensions, and none of nothing: a fixed dimension of 0 may become 1. */
+static hid_t make_space(const hf_hdf5_array *a, int grows)
+{
+    hsize_t dims[3], max[3];
+    for (int i = 0; i < a->rank; i++) {
+        dims[i] = grows && i == 0 ? 0 : a->dims[i];
+        max[i] = grows && i == 0 ? H5S_UNLIMITED : a->dims[i] ? a->dims[i] : 1;
+    }
+    return H5Screate_simple(a->rank, dims, grows ? max : NULL);
+}
+
+hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const hsize_t *chunk)
+{
+    hid_t type = -1, space = -1, properties = -1, data_set = -1;
+    if (io->status != HF_OK) return -1;
+    if ((type = hf_hdf5_array_type(a)) < 0 || (space = make_space(a, chunk != NULL)) < 0 ||
+        (properties = make_properties(H5P_DATASET_CREATE)) < 0 ||
+        (chunk && (H5Pset_chunk(properties, a->rank, chunk) < 0 || /* what is in it is written before it can be read */
+                   H5Pset_fill_time(properties, H5D_FILL_TIME_NEVER) < 0)) ||
+        (data_set = H5Dcreate2(group, a->name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT)) < 0)
+        hf_hdf5_fail(io, "write", group, a->name);
+    hf_hdf5_close(io, properties);
+    hf_hdf5_close(io, space);
+    hf_hdf5_close(io, type);
+    hf_hdf5_put_text(io, data_set, ".", "units", a->units);
+    hf_hdf5_put_text(io, data_set, ".", "description", a->description);
+    return data_set;
+}
+
+void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const void *values)
+{
+    hid_t data_set = hf_hdf5_make_array(io, group, a, NULL), type = -1;
+    if (io->status == HF_OK) {
+        type = hf_hdf5_array_type(a);
+        if (type < 0 || H5Dwrite(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
+            hf_hdf5_fail(io, "write", group, a->name);
+    }
+    hf_hdf5_close(io, type);
+    hf_hdf5_close(io, data_set);
+}
+
+/* ---- reading data sets ---- */
+
+/* Is the data set of the dimensions and the type that `a` asks for? */
+static void check_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, hid_t data_set)
+{
+    hid_t space = -1, stored = -1;
+    hsize_t dims[H5S_MAX_RANK];
+    int rank;
+    if ((space = H5Dget_space(data_set)) < 0 || (rank = H5Sget_simple_extent_dims(space, dims, NULL)) < 0 ||
+        (stored = H5Dget_type(data_set)) < 0)
+        hf_hdf5_fail(io, "read", group, a->name);
+    else if (rank != a->rank || memcmp(dims, a->dims, (size_t)rank * sizeof dims[0]) != 0)
+        hf_hdf5_damaged(io, group, a->name, "has other dimensions than the nodes and cables ask for");
+    else if (!is_of_kind(stored, a->kind))
+        hf_hdf5_damaged(io, group, a->name, "is of another type");
+    hf_hdf5_close(io, stored);
+    hf_hdf5_close(io, space);
+}
+
+void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, void *values)
+{
+    hid_t data_set = -1, type = -1;
+    if (io->status != HF_OK) return;
+    if ((data_set = H5Dopen2(group, a->name, H5P_DEFAULT)) < 0)
+        hf_hdf5_fail(io, "read", group, a->name);
+    else
+        check_array(io, group, a, data_set);
+    if (io->status == HF_OK) {
+        hsize_t n = 1;
+        for (int i = 0; i < a->rank; i++)
+            n *= a->dims[i];
+        if ((type = hf_hdf5_array_type(a)) < 0 || H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
+            hf_hdf5_fail(io, "read", group, a->name);
+        else if (is_enum(a->kind) && !are_known(a->kind, values, n))
+            hf_hdf5_damaged(io, group, a->name, "holds a value that has no word");
+    }
+    hf_hdf5_close(io, type);
+    hf_hdf5_close(io, data_set);
+}
+
+int hf_hdf5_length(hf_hdf5 *io, hid_t group, const char *name, int max)
+{
+    hid_t data_set = -1, space = -1;
+    hsize_t dims[H5S_MAX_RANK];
+    int rank = -1;
+    if (io->status != HF_OK) return 0;
+    if ((data_set = H5Dopen2(group, name, H5P_DEFAULT)) < 0 || (space = H5Dget_space(data_set)) < 0 ||
+        (rank = H5Sget_simple_extent_dims(space, dims, NULL)) < 0)
+        hf_hdf5_fail(io, "read", group, name);
+    else if (rank < 1 || dims[0] < 1 || dims[0] > (hsize_t)max)
+        hf_hdf5_damaged(io, group, name, "is empty or too large");
+    hf_hdf5_close(io, space);
+    hf_hdf5_close(io, data_set);
+    return io->status == HF_OK ? (int)dims[0] : 0;
+}
+
+size_t hf_hdf5_chars_length(hf_hdf5 *io, hid_t group, const char *name)
+{
+    hid_t data_set = -1, stored = -1;
+    size_t length = 0;
+    if (io->status != HF_OK) return 0;
+    if ((data_set = H5Dopen2(group, name, H5P_DEFAULT)) < 0 || (stored = H5Dget_type(data_set)) < 0 ||
+        (length = H5Tget_size(stored)) == 0)
+        hf_hdf5_fail(io, "read", group, name);
+    else if (!is_of_kind(stored, HF_KIND_CHARS))
+        hf_hdf5_damaged(io, group, name, "is of another type");
+    hf_hdf5_close(io, stored);
+    hf_hdf5_close(io, data_set);
+    return io->status == HF_OK ? length : 0;
+}
+
+/* ---- attributes ---- */
+
+/* Takes over and closes the type, which is negative when it could not be made. */
+static void put_typed(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hid_t type, hsize_t n,
+                      const void *values)
+{
+    hid_t space = -1, id = -1;
+    htri_t is_there = H5Aexists_by_name(place, name, attribute, H5P_DEFAULT);
+    if (type < 0 || is_there < 0 || (is_there && H5Adelete_by_name(place, name, attribute, H5P_DEFAULT) < 0) ||
+        (space = H5Screate_simple(n ? 1 : 0, n ? &n : NULL, NULL)) < 0 ||
+        (id = H5Acreate_by_name(place, name, attribute, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
+        H5Awrite(id, type, values) < 0)
+        fail_at(io, "write", place, name, attribute);
+    hf_hdf5_close(io, id);
+    hf_hdf5_close(io, space);
+    hf_hdf5_close(io, type);
+}
+
+void hf_hdf5_put(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hf_hdf5_kind kind, hsize_t n,
+                 const void *values)
+{
+    if (io->status == HF_OK) put_typed(io, place, name, attribute, make_type(kind, 0), n, values);
+}
+
+void hf_hdf5_put_text(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text)
+{
+    hf_hdf5_put(io, place, name, attribute, HF_KIND_TEXT, 0, &text);
+}
+
+void hf_hdf5_put_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text)
+{
+    size_t length = strlen(text) ? strlen(text) : 1; /* HDF5 has no type of no bytes; the NUL serves as padding */
+    if (io->status == HF_OK) put_typed(io, place, name, attribute, make_string(length), 0, text);
+}
+
+void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hf_hdf5_kind kind, void *value,
+                 size_t size)
+{
+    hid_t id = -1, stored = -1, space = -1, type = -1;
+    size_t length = 0;
+    if (io->status != HF_OK) return;
+    if ((id = H5Aopen_by_name(place, name, attribute, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
+        (stored = H5Aget_type(id)) < 0 || (space = H5Aget_space(id)) < 0 || (length = H5Tget_size(stored)) == 0 ||
+        (type = make_type(kind, length)) < 0)
+        fail_at(io, "read", place, name, attribute);
+    else if (H5Sget_simple_extent_npoints(space) != 1 || !is_of_kind(stored, kind))
+        damaged_at(io, place, name, attribute, "is of another type");
+    else if (kind == HF_KIND_CHARS && length >= size)
+        damaged_at(io, place, name, attribute, "is too long");
+    else if (H5Aread(id, type, value) < 0)
+        fail_at(io, "read", place, name, attribute);
+    else if (kind == HF_KIND_CHARS)
+        ((char *)value)[length] = '\0';
+    else if (is_enum(kind) && !are_known(kind, value, 1))
+        damaged_at(io, place, name, attribute, "holds a value that has no word");
+    hf_hdf5_close(io, type);
+    hf_hdf5_close(io, space);
+    hf_hdf5_close(io, stored);
+    hf_hdf5_close(io, id);
+}
+
+int hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute)
+{
+    hid_t id = -1, stored = -1;
+    int has = 0;
+    if (io->status != HF_OK || H5Aexists_by_name(place, name, attribute, H5P_DEFAULT) <= 0) return 0;
+    if ((id = H5Aopen_by_name(place, name, attribute, H5P_DEFAULT, H5P_DEFAULT)) < 0 || (stored = H5Aget_type(id)) < 0)
+        fail_at(io, "read", place, name, attribute);
+    else
+        has = is_of_kind(stored, HF_KIND_CHARS);
+    hf_hdf5_close(io, stored);
+    hf_hdf5_close(io, id);
+    return has;
+}
+
+/* ---- tables ---- */
+
+void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const void *owner)
+{
+    for (const hf_hdf5_member *m = table; m < table + n; m++) {
+        const char *member = (const char *)owner + m->offset;
+        if (m->kind == HF_KIND_CHARS) {
+            hf_hdf5_put_chars(io, io->file, m->object, m->name, member);
+        } else if (is_enum(m->kind)) {
+            int value;
+            assert(m->size == sizeof value);
+            memcpy(&value, member, sizeof value);
+            hf_hdf5_put(io, io->file, m->object, m->name, m->kind, 0, &(signed char){(signed char)value});
+        } else {
+            assert(m->size == hf_hdf5_kind_bytes(m->kind));
+            hf_hdf5_put(io, io->file, m->object, m->name, m->kind, 0, member);
+        }
+    }
+}
+
+void hf_hdf5_get_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, void *owner)
+{
+    for (const hf_hdf5_member *m = table; m < table + n; m++) {
+        char *member = (char *)owner + m->offset;
+        signed char byte = 0;
+        if (!is_enum(m->kind)) {
+            hf_hdf5_get(io, io->file, m->object, m->name, m->kind, member, m->size);
+        } else {
+            hf_hdf5_get(io, io->file, m->object, m->name, m->kind, &byte, 1);
+            memcpy(member, &(int){byte}, sizeof(int));
+        }
+    }
+}
+
+static hf_hdf5_array column_array(const hf_hdf5_column *c, int n_node, int n_cable)
+{
+    return (hf_hdf5_array){.name = c->name,
+                           .kind = c->kind,
+                           .rank = c->columns > 1 ? 2 : 1,
+                           .dims = {(hsize_t)(c->per_cable ? n_cable : n_node), (hsize_t)c->columns},
+                           .units = c->units,
+                           .description = c->description};
+}
+
+/* The pointer kept in column `c` of `owner`. */
+static void *column_values(const hf_hdf5_column *c, const void *owner)
+{
+    void *values;
+    memcpy(&values, (const char *)owner + c->offset, sizeof values);
+    return values;
+}
+
+void hf_hdf5_write_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table, int n, int n_node, int n_cable,
+                           const void *owner)
+{
+    for (const hf_hdf5_column *c = table; c < table + n; c++) {
+        hf_hdf5_array array = column_array(c, n_node, n_cable);
+        const void *values = column_values(c, owner);
+        if (values) hf_hdf5_write_array(io, group, &array, values);
+    }
+}
+
+void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table, int n, int n_node, int n_cable,
+                          void *owner)
+{
+    for (const hf_hdf5_column *c = table; c < table + n; c++) {
+        hf_hdf5_array array = column_array(c, n_node, n_cable);
+        void *values = column_values(c, owner);
+        if (values) hf_hdf5_read_array(io, group, &array, values);
+    }
+}

@@ -1,0 +1,38 @@
+/* One thread at a time in HDF5. */
+#include "store/hdf5_io.h"
+
+#include <pthread.h>
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+
+static int is_quiet; /* under the lock */
+
+static void silence(void)
+{
+    if (is_quiet) H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 has an error stack per thread */
+}
+
+void hf_hdf5_lock(void)
+{
+    pthread_mutex_lock(&lock);
+    silence();
+}
+
+int hf_hdf5_try_lock(void)
+{
+    if (pthread_mutex_trylock(&lock) != 0) return 0;
+    silence();
+    return 1;
+}
+
+void hf_hdf5_quiet(void)
+{
+    is_quiet = 1;
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
+hf_status hf_hdf5_unlock(hf_status status)
+{
+    pthread_mutex_unlock(&lock);
+    return status;
+}

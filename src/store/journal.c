@@ -1,0 +1,305 @@
+/* Contents: file and lock - records - replay - rotation and end */
+#define _DEFAULT_SOURCE /* flock */
+#include "store/journal.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#define MAGIC "hifdm-j2"
+#define RECORD_MAGIC 0x4a444648u /* "HFDJ" */
+#define HEADER_BYTES (8 + HF_JOURNAL_IDENTITY)
+#define PAYLOAD_MAX (1u << 31)
+#define OPEN_ATTEMPTS 5
+
+typedef struct {
+    uint32_t magic, length, crc; /* of generation and payload */
+    int32_t generation;
+} record_head;
+_Static_assert(sizeof(record_head) == 16, "records have no padding");
+
+/* ---- file and lock ---- */
+
+static hf_status fail(const hf_journal *j, const char *what, const char *path, hf_messages *messages)
+{
+    return hf_error(messages, HF_IO, "%s: cannot %s %s: %s", j->result, what, path, strerror(errno));
+}
+
+/* Is the open file still the one of this name? */
+static int has_name(int file, const char *path)
+{
+    struct stat a, b;
+    return fstat(file, &a) == 0 && stat(path, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+static hf_status open_and_lock(hf_journal *j, hf_messages *messages)
+{
+    for (int i = 0; i < OPEN_ATTEMPTS; i++) {
+        j->file = open(j->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        if (j->file < 0) return fail(j, "create", j->path, messages);
+        if (flock(j->file, LOCK_EX | LOCK_NB) != 0) {
+            int why = errno;
+            close(j->file);
+            j->file = -1;
+            errno = why;
+            if (why != EWOULDBLOCK) return fail(j, "lock", j->path, messages);
+            return hf_error(messages, HF_IO, "%s: another process is writing it (it holds the lock of %s)", j->result,
+                            j->path);
+        }
+        if (has_name(j->file, j->path)) return HF_OK;
+        close(j->file); /* its owner rotated or finished between open and lock */
+        j->file = -1;
+    }
+    return hf_error(messages, HF_IO, "%s: %s changes all the time; is another process writing it?", j->result, j->path);
+}
+
+typedef enum { JOURNAL, OTHER_VERSION, FOREIGN } content;
+
+static hf_status look_at_head(hf_journal *j, content *is, hf_messages *messages)
+{
+    char magic[8];
+    struct stat info;
+    if (fstat(j->file, &info) != 0) return fail(j, "read", j->path, messages);
+    j->is_new = info.st_size == 0;
+    j->size = info.st_size;
+    ssize_t n = pread(j->file, magic, sizeof magic, 0);
+    if (n < 0) return fail(j, "read", j->path, messages);
+    *is = FOREIGN;
+    if (n == sizeof magic && memcmp(magic, MAGIC, sizeof magic - 1) == 0) *is = OTHER_VERSION;
+    if (memcmp(magic, MAGIC, (size_t)n) == 0) *is = JOURNAL; /* a header may be torn */
+    return HF_OK;
+}
+
+hf_status hf_journal_open(const char *result, int replaces, hf_journal *j, hf_messages *messages)
+{
+    size_t size = strlen(result) + 16;
+    content is;
+    *j = (hf_journal){.file = -1, .result = result, .path = malloc(size), .next = malloc(size)};
+    if (!j->path || !j->next) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", result);
+    snprintf(j->path, size, "%s.journal", result);
+    snprintf(j->next, size, "%s.journal.new", result);
+    HF_TRY(open_and_lock(j, messages));
+    HF_TRY(look_at_head(j, &is, messages));
+    if (is != JOURNAL && replaces) { /* the name only: a link may lead to what is somebody's */
+        if (unlink(j->path) != 0) return fail(j, "remove", j->path, messages);
+        hf_warning(messages, "%s: %s was no journal of hifdm; it is replaced", result, j->path);
+        close(j->file);
+        HF_TRY(open_and_lock(j, messages));
+        HF_TRY(look_at_head(j, &is, messages));
+    }
+    if (is == JOURNAL) return HF_OK;
+    close(j->file);
+    j->file = -1;
+    if (is == OTHER_VERSION)
+        return hf_error(messages, HF_EXISTS,
+                        "%s: %s is a journal of another version of hifdm; finish the run with that one, or begin anew "
+                        "with --restart (of a sweep: --retry failed)",
+                        result, j->path);
+    return hf_error(messages, HF_EXISTS,
+                    "%s: %s is no journal of hifdm, and in the way; delete it, use --restart (of a sweep: --retry "
+                    "failed) to replace both or -o to choose another name",
+                    result, j->path);
+}
+
+int hf_journal_is_there(const char *result)
+{
+    char path[4096], magic[8];
+    snprintf(path, sizeof path, "%s.journal", result);
+    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    int is_there = file >= 0 && read(file, magic, sizeof magic) == sizeof magic && !memcmp(magic, MAGIC, sizeof magic);
+    if (file >= 0) close(file);
+    return is_there;
+}
+
+/* 0, or -1 and errno. */
+static int write_header(int file, const char *identity)
+{
+    char header[HEADER_BYTES] = {0};
+    memcpy(header, MAGIC, 8);
+    memcpy(header + 8, identity, strnlen(identity, HF_JOURNAL_IDENTITY));
+    ssize_t n = pwrite(file, header, sizeof header, 0);
+    if (n >= 0 && n < (ssize_t)sizeof header) errno = ENOSPC;
+    return n == (ssize_t)sizeof header && lseek(file, HEADER_BYTES, SEEK_SET) == HEADER_BYTES ? 0 : -1;
+}
+
+hf_status hf_journal_restart(hf_journal *j, const char *identity, hf_messages *messages)
+{
+    snprintf(j->identity, sizeof j->identity, "%s", identity);
+    if (ftruncate(j->file, 0) != 0 || write_header(j->file, identity) != 0) return fail(j, "write", j->path, messages);
+    j->size = HEADER_BYTES;
+    j->is_new = 1;
+    j->has_news = 0;
+    return HF_OK;
+}
+
+void hf_journal_forget(hf_journal *j)
+{
+    j->size = 0;
+}
+
+int hf_journal_is_empty(const hf_journal *j)
+{
+    return j->size <= HEADER_BYTES;
+}
+
+/* ---- records ---- */
+
+hf_status hf_journal_append(hf_journal *j, int generation, const struct iovec *piece, int n, hf_messages *messages)
+{
+    struct iovec part[HF_JOURNAL_PIECES + 1];
+    record_head head = {.magic = RECORD_MAGIC, .generation = generation};
+    size_t length = sizeof head.generation;
+    uLong crc = crc32(0, (const Bytef *)&head.generation, sizeof head.generation);
+    part[0] = (struct iovec){&head, sizeof head};
+    for (int i = 0; i < n; i++) {
+        part[i + 1] = piece[i];
+        length += piece[i].iov_len;
+        crc = crc32(crc, piece[i].iov_base, (uInt)piece[i].iov_len);
+    }
+    if (length > PAYLOAD_MAX) return hf_error(messages, HF_IO, "%s: a generation is larger than 2 GiB", j->result);
+    head.length = (uint32_t)length;
+    head.crc = (uint32_t)crc;
+    size_t whole = sizeof head - sizeof head.generation + length;
+    ssize_t done = writev(j->file, part, n + 1);
+    if (done == (ssize_t)whole) {
+        j->size += done;
+        j->has_news = 1;
+        return HF_OK;
+    }
+    if (done >= 0 && write(j->file, "", 1) >= 0) errno = ENOSPC; /* a short write: the next one says why */
+    hf_status status = fail(j, "write", j->path, messages);
+    if (ftruncate(j->file, j->size) == 0) lseek(j->file, j->size, SEEK_SET); /* else the CRC tells */
+    return status;
+}
+
+hf_status hf_journal_tend(hf_journal *j, double now_s, hf_messages *messages)
+{
+    if (j->synced_s == 0) j->synced_s = now_s; /* the first call starts the clock */
+    if (now_s - j->synced_s < HF_JOURNAL_SYNC_S) return HF_OK;
+    j->synced_s = now_s;
+    if (!has_name(j->file, j->path))
+        return hf_error(messages, HF_IO, "%s: %s was removed or replaced during the run", j->result, j->path);
+    if (j->has_news && fdatasync(j->file) != 0 && errno != EINVAL && errno != ENOSYS)
+        return fail(j, "write", j->path, messages);
+    j->has_news = 0;
+    return HF_OK;
+}
+
+/* ---- replay ---- */
+
+/* Read exactly n bytes: 1, 0 when there are fewer, or -1 and errno. */
+static int read_whole(int file, void *to, size_t n, int64_t at)
+{
+    for (size_t done = 0; done < n;) {
+        ssize_t got = pread(file, (char *)to + done, n - done, (off_t)at + (off_t)done);
+        if (got <= 0) return got == 0 ? 0 : -1;
+        done += (size_t)got;
+    }
+    return 1;
+}
+
+/* The record at `at` into *payload, which grows: 1, 0 when there is no whole one, -1 and errno. What is shorter than it
+ * says was being written when the process ended; anything else is damage. */
+static int read_record(const hf_journal *j, int64_t at, int64_t end, record_head *head, char **payload,
+                       size_t *capacity, int *is_damaged)
+{
+    int got = read_whole(j->file, head, sizeof *head, at);
+    if (got <= 0) return got;
+    size_t bytes = head->length - sizeof head->generation;
+    int fits = at + (int64_t)sizeof *head + (int64_t)bytes <= end;
+    if (head->magic != RECORD_MAGIC || head->length < sizeof head->generation || head->length > PAYLOAD_MAX || !fits) {
+        *is_damaged = fits || head->magic != RECORD_MAGIC;
+        return 0;
+    }
+    if (bytes > *capacity || !*payload) {
+        char *bigger = realloc(*payload, bytes + 1);
+        if (!bigger) {
+            errno = ENOMEM;
+            return -1;
+        }
+        *payload = bigger;
+        *capacity = bytes;
+    }
+    got = read_whole(j->file, *payload, bytes, at + (int64_t)sizeof *head);
+    if (got <= 0) return got;
+    uLong crc = crc32(0, (const Bytef *)&head->generation, sizeof head->generation);
+    *is_damaged = (uint32_t)crc32(crc, (const Bytef *)*payload, (uInt)bytes) != head->crc;
+    return !*is_damaged;
+}
+
+hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take *take, void *context,
+                            hf_messages *messages)
+{
+    char header[HEADER_BYTES], *payload = NULL;
+    size_t capacity = 0;
+    record_head head;
+    struct stat info;
+    hf_status status = HF_OK;
+    int is_damaged = 0, got = read_whole(j->file, header, sizeof header, 0);
+    if (got < 0 || fstat(j->file, &info) != 0) return fail(j, "read", j->path, messages);
+    int is_ours = got && strncmp(header + 8, identity, HF_JOURNAL_IDENTITY) == 0;
+    if (!is_ours && info.st_size > HEADER_BYTES)
+        return hf_error(messages, HF_EXISTS,
+                        "%s: %s is of another case; delete it or put the right one there, or begin anew with --restart "
+                        "(of a sweep: --retry failed)",
+                        j->result, j->path);
+    if (!is_ours) return hf_journal_restart(j, identity, messages);
+    snprintf(j->identity, sizeof j->identity, "%s", identity);
+    int64_t at = HEADER_BYTES;
+    while (status == HF_OK && (got = read_record(j, at, info.st_size, &head, &payload, &capacity, &is_damaged)) == 1) {
+        status = take(context, head.generation, payload, head.length - sizeof head.generation);
+        if (status != HF_OK) break;
+        at += (int64_t)sizeof head + head.length - (int64_t)sizeof head.generation;
+    }
+    int why = errno;
+    free(payload);
+    errno = why;
+    if (status != HF_OK && status != HF_DIFFERENT) return status;
+    if (got < 0 && errno == ENOMEM) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", j->result);
+    if (got < 0) return fail(j, "read", j->path, messages);
+    if (is_damaged)
+        hf_warning(messages, "%s: %s is damaged: its last %lld bytes count for nothing", j->result, j->path,
+                   (long long)(info.st_size - at));
+    if (ftruncate(j->file, at) != 0 || lseek(j->file, at, SEEK_SET) < 0) return fail(j, "write", j->path, messages);
+    j->size = at;
+    return HF_OK;
+}
+
+/* ---- rotation and end ---- */
+
+hf_status hf_journal_rotate(hf_journal *j, hf_messages *messages)
+{
+    int file = open(j->next, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (file < 0) return fail(j, "create", j->next, messages);
+    if (flock(file, LOCK_EX | LOCK_NB) != 0 || write_header(file, j->identity) != 0 || rename(j->next, j->path) != 0) {
+        hf_status status = fail(j, "write", j->next, messages);
+        close(file);
+        unlink(j->next);
+        return status;
+    }
+    close(j->file);
+    j->file = file;
+    j->size = HEADER_BYTES;
+    j->has_news = 0;
+    return HF_OK;
+}
+
+void hf_journal_close(hf_journal *j, int remove)
+{
+    if (j->file >= 0) {
+        if (remove) {
+            unlink(j->path);
+            unlink(j->next);
+        }
+        close(j->file);
+    }
+    free(j->path);
+    free(j->next);
+    *j = (hf_journal){.file = -1};
+}

@@ -1,0 +1,543 @@
+/* Contents: columns - names - writing - reading files - news of other processes - reading locks - the whole */
+#include "store/ledger.h"
+
+#include "store/journal.h"
+#include "base/text.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#define HEADER "#hifdm-points-1"
+#define SYNC_S 5.0      /* how much work a power cut may take */
+#define LINE_SIZE 16384 /* of one row, reason included */
+#define REASON_MAX 4000
+#define N_FIXED 4 /* fields before the numbers: id, fingerprint, status, reason */
+
+const char *const hf_point_state_word[HF_N_POINT_STATE] = {"missing", "running", "done", "failed", "outdated"};
+
+/* ---- columns ---- */
+
+/* By stage; the lines in the comments of hdf5_io.h say when each is there. */
+static const hf_hdf5_member member[] = {
+    HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)
+        HF_SUMMARY_POLISH_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_TRUSS_MEMBERS(HF_HDF5_MEMBER)
+            HF_SUMMARY_COUPLING_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_COUPLING_GA_MEMBERS(HF_HDF5_MEMBER)
+                HF_SUMMARY_COUPLING_POLISH_MEMBERS(HF_HDF5_MEMBER)};
+
+const hf_hdf5_member *hf_ledger_column(int i)
+{
+    for (int k = 0; k < HF_HDF5_COUNT(member); k++)
+        if (member[k].kind != HF_KIND_CHARS && i-- == 0) return &member[k];
+    return NULL;
+}
+
+int hf_ledger_n_column(void)
+{
+    int n = 0;
+    for (int k = 0; k < HF_HDF5_COUNT(member); k++)
+        n += member[k].kind != HF_KIND_CHARS;
+    return n;
+}
+
+int hf_ledger_is_circumstance(const hf_hdf5_member *column)
+{
+    size_t n = strlen(column->name);
+    return !strcmp(column->name, "threads") || (n > 2 && !strcmp(column->name + n - 2, "_s"));
+}
+
+/* Has the run come to the stage that this number is of? */
+static int applies(const hf_hdf5_member *column, const hf_summary *s)
+{
+    if (s->form.status == HF_NOT_EVALUATED) return 0;
+    if (!strcmp(column->object, "/truss")) return s->has_truss;
+    if ((!strcmp(column->object, "/coupling") || strstr(column->name, "coupling_")) && !s->has_coupling) return 0;
+    if (!strcmp(column->object, "/ga")) return s->has_optimize;
+    if (!strcmp(column->object, "/polish")) return s->has_polish;
+    return 1;
+}
+
+static int print_number(const hf_hdf5_member *column, const hf_summary *s, char *text, size_t size)
+{
+    const void *from = (const char *)s + column->offset;
+    switch (column->kind) {
+    case HF_KIND_REAL:
+        return snprintf(text, size, "%.17g", *(const double *)from);
+    case HF_KIND_LONG:
+        return snprintf(text, size, "%ld", *(const long *)from);
+    case HF_KIND_UINT64:
+        return snprintf(text, size, "%" PRIu64, *(const uint64_t *)from);
+    default: /* int, and enumerations, which are int in hf_summary */
+        return snprintf(text, size, "%d", *(const int *)from);
+    }
+}
+
+/* ---- names ---- */
+
+hf_ledger_content hf_ledger_file(const char *folder, const hf_study *study, int point, char path[HF_PATH_SIZE + 32])
+{
+    struct stat info;
+    snprintf(path, HF_PATH_SIZE + 32, "%s/%s-%.8s.h5", folder, study->id[point], study->fingerprint);
+    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return HF_LEDGER_NO_FILE;
+    return info.st_size > 0 ? HF_LEDGER_FILE : HF_LEDGER_EMPTY_FILE;
+}
+
+static struct flock lock_of(const char *id, short type)
+{
+    return (struct flock){.l_type = type, .l_whence = SEEK_SET, .l_start = (off_t)strtoull(id, NULL, 16), .l_len = 1};
+}
+
+/* ---- writing ---- */
+
+/* How far each file has been read, and what was finished since. */
+struct hf_ledger_news {
+    struct {
+        char name[256];
+        off_t at;
+    } * file;
+    int n_file;
+    struct named_point *sorted; /* [n_point] by id */
+    unsigned char *is_finished; /* [n_point] */
+};
+
+static void free_news(struct hf_ledger_news *news)
+{
+    if (!news) return;
+    free(news->file);
+    free(news->sorted);
+    free(news->is_finished);
+    free(news);
+}
+
+hf_status hf_ledger_open(const char *folder, hf_ledger *l, hf_messages *messages)
+{
+    char path[HF_PATH_SIZE + 32];
+    *l = (hf_ledger){.rows = -1, .claims = -1};
+    pthread_mutex_init(&l->lock, NULL);
+    if (snprintf(l->folder, sizeof l->folder, "%s", folder) >= (int)sizeof l->folder)
+        return hf_error(messages, HF_IO, "%s: the path is too long", folder);
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+        return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", folder, strerror(errno));
+    snprintf(path, sizeof path, "%s/claims", folder);
+    l->claims = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (l->claims < 0) return hf_error(messages, HF_IO, "%s: cannot open: %s", path, strerror(errno));
+    return HF_OK;
+}
+
+void hf_ledger_close(hf_ledger *l)
+{
+    if (l->rows >= 0) {
+        fdatasync(l->rows);
+        close(l->rows);
+    }
+    if (l->claims >= 0) close(l->claims);
+    free_news(l->news);
+    pthread_mutex_destroy(&l->lock);
+}
+
+int hf_ledger_claim(hf_ledger *l, const char *id)
+{
+    struct flock lock = lock_of(id, F_WRLCK);
+    /* on a file system without locks the shards are all that keeps processes apart */
+    return fcntl(l->claims, F_SETLK, &lock) == 0 || (errno != EACCES && errno != EAGAIN);
+}
+
+void hf_ledger_release(hf_ledger *l, const char *id)
+{
+    struct flock lock = lock_of(id, F_UNLCK);
+    fcntl(l->claims, F_SETLK, &lock);
+}
+
+/* One write, so that lines of threads and processes do not mix. */
+static hf_status write_line(hf_ledger *l, const char *line, size_t length, hf_messages *messages)
+{
+    ssize_t n = write(l->rows, line, length);
+    if (n == (ssize_t)length) return HF_OK;
+    return hf_error(messages, HF_IO, "%s: cannot write the result of a point: %s", l->folder,
+                    n < 0 ? strerror(errno) : "no space left");
+}
+
+/* A file that is this process's alone, with the names of the columns. */
+static hf_status start_rows(hf_ledger *l, hf_messages *messages)
+{
+    char host[64] = "host", path[HF_PATH_SIZE + 128], line[LINE_SIZE];
+    if (gethostname(host, sizeof host - 1) != 0) strcpy(host, "host");
+    host[sizeof host - 1] = '\0';
+    for (int k = 1; l->rows < 0 && k < 10000; k++) {
+        snprintf(path, sizeof path, k == 1 ? "%s/points-%s-%ld.tsv" : "%s/points-%s-%ld-%d.tsv", l->folder, host,
+                 (long)getpid(), k);
+        l->rows = open(path, O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
+        if (l->rows < 0 && errno != EEXIST) break;
+    }
+    if (l->rows < 0) return hf_error(messages, HF_IO, "%s: cannot create: %s", path, strerror(errno));
+    size_t used = (size_t)snprintf(line, sizeof line, HEADER "\tfingerprint\tstatus\treason");
+    for (int i = 0; i < hf_ledger_n_column(); i++)
+        used += (size_t)snprintf(line + used, sizeof line - used, "\t%s/%s", hf_ledger_column(i)->object,
+                                 hf_ledger_column(i)->name);
+    line[used++] = '\n';
+    return write_line(l, line, used, messages);
+}
+
+/* At most REASON_MAX bytes, without what separates fields and lines. */
+static size_t put_reason(const char *reason, char *to)
+{
+    size_t n = 0;
+    for (; n < REASON_MAX && reason[n]; n++)
+        to[n] = (unsigned char)reason[n] < ' ' ? ' ' : reason[n];
+    to[n] = '\0';
+    hf_text_trim_utf8(to);
+    return strlen(to);
+}
+
+hf_status hf_ledger_write(hf_ledger *l, const hf_study *study, int point, hf_status status, const char *reason,
+                          const hf_summary *s, hf_messages *messages)
+{
+    char line[LINE_SIZE];
+    struct timespec now;
+    size_t used = (size_t)snprintf(line, sizeof line, "%s\t%s\t%s\t", study->id[point], study->fingerprint,
+                                   hf_status_word(status));
+    used += put_reason(reason, line + used);
+    for (int i = 0; i < hf_ledger_n_column(); i++) {
+        const hf_hdf5_member *column = hf_ledger_column(i);
+        line[used++] = '\t';
+        if (applies(column, s)) used += (size_t)print_number(column, s, line + used, sizeof line - used);
+    }
+    line[used++] = '\n';
+    pthread_mutex_lock(&l->lock);
+    hf_status result = l->rows < 0 ? start_rows(l, messages) : HF_OK;
+    if (result == HF_OK) result = write_line(l, line, used, messages);
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    int is_due = (double)now.tv_sec - l->synced_s >= SYNC_S;
+    if (is_due) l->synced_s = (double)now.tv_sec;
+    pthread_mutex_unlock(&l->lock);
+    if (result == HF_OK && is_due && fdatasync(l->rows) != 0 && errno != EINVAL)
+        return hf_error(messages, HF_IO, "%s: cannot write to the disk: %s", l->folder, strerror(errno));
+    return result;
+}
+
+/* ---- reading files ---- */
+
+typedef struct named_point {
+    const char *id;
+    int point;
+} named_point;
+
+typedef struct {
+    const hf_study *study;
+    hf_points *points;
+    named_point *sorted; /* [n_point] by id */
+    hf_point *failure;   /* [n_point] of this base case; what counts when a success has lost its file */
+} reading;
+
+static int by_id(const void *a, const void *b)
+{
+    const named_point *x = a, *y = b;
+    return strcmp(x->id, y->id);
+}
+
+/* The points by id; the caller frees them. NULL without memory. */
+static named_point *sort_points(const hf_study *study)
+{
+    named_point *sorted = malloc((size_t)study->n_point * sizeof *sorted);
+    for (int i = 0; sorted && i < study->n_point; i++)
+        sorted[i] = (named_point){study->id[i], i};
+    if (sorted) qsort(sorted, (size_t)study->n_point, sizeof *sorted, by_id);
+    return sorted;
+}
+
+static int find_point(const reading *r, const char *id)
+{
+    named_point key = {id, -1}, *found = bsearch(&key, r->sorted, (size_t)r->study->n_point, sizeof key, by_id);
+    return found ? found->point : -1;
+}
+
+/* Cut a line up at its tabs: the number of fields, at most max. */
+static int split(char *line, char **field, int max)
+{
+    int n = 0;
+    for (char *p = line; p && n < max; n++) {
+        field[n] = p;
+        p = strchr(p, '\t');
+        if (p) *p++ = '\0';
+    }
+    return n;
+}
+
+/* A success counts more than a failure, what is of this base case more than what is not. */
+static void take_row(reading *r, char **field, char **number)
+{
+    int i = find_point(r, field[0]);
+    if (i < 0) return;
+    hf_point *p = &r->points->point[i];
+    if (strcmp(field[1], r->study->fingerprint)) {
+        if (p->state == HF_POINT_MISSING) p->state = HF_POINT_OUTDATED;
+        return;
+    }
+    hf_status status = hf_status_of_word(field[2]);
+    hf_point row = {status == HF_OK ? HF_POINT_DONE : HF_POINT_FAILED, status, field[3], number};
+    if (row.state == HF_POINT_FAILED) r->failure[i] = row;
+    if (p->state != HF_POINT_DONE) *p = row;
+}
+
+enum { FIELD_MAX = 512 };
+
+/* from[i]: the field of the file's rows that holds column i, or -1: files of other versions have other columns. */
+static int read_header(char *line, int *from, int n_column)
+{
+    char *name[FIELD_MAX];
+    int n = split(line, name, FIELD_MAX);
+    for (int i = 0; i < n_column; i++) {
+        char wanted[128];
+        const hf_hdf5_member *c = hf_ledger_column(i);
+        snprintf(wanted, sizeof wanted, "%s/%s", c->object, c->name);
+        from[i] = -1;
+        for (int k = N_FIXED; k < n; k++)
+            if (!strcmp(name[k], wanted)) from[i] = k;
+    }
+    return strcmp(name[0], HEADER) ? 0 : n;
+}
+
+/* The rows of one file: 0 without memory. */
+static int read_rows(reading *r, char *text)
+{
+    hf_points *points = r->points;
+    int n_column = hf_ledger_n_column(), from[FIELD_MAX], n_field = 0;
+    char *field[FIELD_MAX], *end;
+    long n_line = 0;
+    for (const char *p = text; (p = strchr(p, '\n')) != NULL; p++)
+        n_line++;
+    char **number = malloc(((size_t)n_line + 1) * (size_t)n_column * sizeof *number);
+    char ***more = realloc(points->fields, ((size_t)points->n_field_block + 1) * sizeof *more);
+    if (more) points->fields = more;
+    if (!number || !more) {
+        free(number);
+        return 0;
+    }
+    points->fields[points->n_field_block++] = number;
+    for (char *line = text; (end = strchr(line, '\n')) != NULL; line = end + 1, number += n_column) {
+        *end = '\0';
+        if (line == text) {
+            n_field = read_header(line, from, n_column);
+        } else if (split(line, field, FIELD_MAX) == n_field && n_field >= N_FIXED) {
+            for (int i = 0; i < n_column; i++)
+                number[i] = from[i] < 0 ? "" : field[from[i]];
+            take_row(r, field, number);
+        }
+    }
+    return 1;
+}
+
+static hf_status read_file(reading *r, const char *folder, const char *name, hf_messages *messages)
+{
+    hf_points *points = r->points;
+    char path[HF_PATH_SIZE + 300], *text;
+    size_t length;
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    HF_TRY(hf_text_read_file(path, HF_IO, &text, &length, messages));
+    char **more = realloc(points->text, ((size_t)points->n_text + 1) * sizeof *more);
+    if (more) {
+        points->text = more;
+        points->text[points->n_text++] = text;
+    } else {
+        free(text);
+    }
+    return more && read_rows(r, text) ? HF_OK : hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+}
+
+static int is_rows(const struct dirent *entry)
+{
+    size_t n = strlen(entry->d_name);
+    return !strncmp(entry->d_name, "points-", 7) && n > 4 && !strcmp(entry->d_name + n - 4, ".tsv");
+}
+
+static int by_name(const struct dirent **a, const struct dirent **b)
+{
+    return strcmp((*a)->d_name, (*b)->d_name);
+}
+
+/* Sorted: of several rows of one point it is always the same that counts. */
+static hf_status read_files(reading *r, const char *folder, hf_messages *messages)
+{
+    struct dirent **entry;
+    hf_status status = HF_OK;
+    int n = scandir(folder, &entry, is_rows, by_name);
+    if (n < 0 && errno == ENOENT) return HF_OK;
+    if (n < 0) return hf_error(messages, HF_IO, "%s: cannot read this folder: %s", folder, strerror(errno));
+    for (int i = 0; i < n; i++) {
+        if (status == HF_OK) status = read_file(r, folder, entry[i]->d_name, messages);
+        free(entry[i]);
+    }
+    free(entry);
+    return status;
+}
+
+/* ---- news of other processes ---- */
+
+/* The file's place in the list, or -1 without memory. */
+static int place_of(struct hf_ledger_news *news, const char *name)
+{
+    for (int k = 0; k < news->n_file; k++)
+        if (!strcmp(news->file[k].name, name)) return k;
+    void *more = realloc(news->file, ((size_t)news->n_file + 1) * sizeof *news->file);
+    if (!more) return -1;
+    news->file = more;
+    news->file[news->n_file].at = 0;
+    snprintf(news->file[news->n_file].name, sizeof news->file->name, "%s", name);
+    return news->n_file++;
+}
+
+/* The whole lines of text[n], which ends with a NUL: how many bytes they have. */
+static off_t note_rows(struct hf_ledger_news *news, const hf_study *study, char *text)
+{
+    reading r = {.study = study, .sorted = news->sorted};
+    char *line = text, *end, *field[3];
+    for (; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+        *end = '\0';
+        int i = split(line, field, 3) == 3 && !strcmp(field[1], study->fingerprint) ? find_point(&r, field[0]) : -1;
+        if (i >= 0) news->is_finished[i] = 1;
+    }
+    return line - text;
+}
+
+/* What a file has more than before; `skip`: all of it is old. What cannot be read is no news. */
+static void read_news_of(hf_ledger *l, const hf_study *study, const char *name, int skip)
+{
+    char path[HF_PATH_SIZE + 300];
+    struct stat info;
+    int k = place_of(l->news, name);
+    snprintf(path, sizeof path, "%s/%s", l->folder, name);
+    int file = k >= 0 ? open(path, O_RDONLY | O_CLOEXEC) : -1;
+    if (file < 0) return;
+    off_t *at = &l->news->file[k].at;
+    if (fstat(file, &info) != 0) info.st_size = 0;
+    if (skip) *at = info.st_size;
+    if (!skip && info.st_size > *at) {
+        size_t size = (size_t)(info.st_size - *at);
+        char *text = malloc(size + 1);
+        ssize_t n = text ? pread(file, text, size, *at) : -1;
+        if (n > 0) text[n] = '\0';
+        if (n > 0) *at += note_rows(l->news, study, text);
+        free(text);
+    }
+    close(file);
+}
+
+static void read_news(hf_ledger *l, const hf_study *study, int skip)
+{
+    struct dirent **entry;
+    int n = scandir(l->folder, &entry, is_rows, by_name);
+    if (n < 0) return;
+    for (int i = 0; i < n; i++) {
+        read_news_of(l, study, entry[i]->d_name, skip);
+        free(entry[i]);
+    }
+    free(entry);
+}
+
+hf_status hf_ledger_watch(hf_ledger *l, const hf_study *study, hf_messages *messages)
+{
+    l->news = calloc(1, sizeof *l->news);
+    if (l->news) {
+        l->news->sorted = sort_points(study);
+        l->news->is_finished = calloc((size_t)study->n_point, 1);
+    }
+    if (!l->news || !l->news->sorted || !l->news->is_finished)
+        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for %d points", l->folder, study->n_point);
+    read_news(l, study, 1);
+    return HF_OK;
+}
+
+int hf_ledger_is_finished(hf_ledger *l, const hf_study *study, int point)
+{
+    pthread_mutex_lock(&l->lock);
+    read_news(l, study, 0);
+    int is_finished = l->news->is_finished[point];
+    pthread_mutex_unlock(&l->lock);
+    return is_finished;
+}
+
+/* ---- reading locks ---- */
+
+/* The points whose bytes from..to-1 are locked. The system names any one lock of a range: then both sides of it. */
+static void find_locks(reading *r, int file, off_t from, off_t to)
+{
+    while (from < to) {
+        struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = from, .l_len = to - from};
+        char id[32];
+        if (fcntl(file, F_GETLK, &lock) != 0 || lock.l_type == F_UNLCK) return;
+        if (lock.l_start < from) lock.l_start = from; /* a foreign lock of several bytes */
+        snprintf(id, sizeof id, "%012llx", (unsigned long long)lock.l_start);
+        int i = find_point(r, id);
+        if (i >= 0) r->points->point[i] = (hf_point){HF_POINT_RUNNING, HF_NOT_EVALUATED, "", NULL};
+        find_locks(r, file, from, lock.l_start);
+        from = lock.l_start + 1;
+    }
+}
+
+static void find_running(reading *r, const char *folder)
+{
+    char path[HF_PATH_SIZE + 32];
+    snprintf(path, sizeof path, "%s/claims", folder);
+    int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0) return;
+    find_locks(r, file, 0, (off_t)1 << 48);
+    close(file);
+}
+
+/* ---- the whole ---- */
+
+/* A row is not enough where a file is asked for: somebody may have removed it, and its second run be half way. */
+static void find_lost(reading *r, const char *folder)
+{
+    char path[HF_PATH_SIZE + 32];
+    if (!hf_study_has_files(r->study)) return;
+    for (int i = 0; i < r->study->n_point; i++) {
+        hf_point *p = &r->points->point[i];
+        if (p->state != HF_POINT_DONE) continue;
+        if (hf_ledger_file(folder, r->study, i, path) == HF_LEDGER_FILE && !hf_journal_is_there(path)) continue;
+        *p = r->failure[i];
+        r->points->n_lost += p->state == HF_POINT_MISSING;
+    }
+}
+
+hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *points, hf_messages *messages)
+{
+    size_t n = (size_t)study->n_point;
+    *points = (hf_points){.n_point = study->n_point};
+    points->point = calloc(n, sizeof *points->point);
+    reading r = {study, points, sort_points(study), calloc(n, sizeof *r.failure)};
+    if (!points->point || !r.sorted || !r.failure) {
+        free(r.sorted);
+        free(r.failure);
+        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for %d points", folder, study->n_point);
+    }
+    for (int i = 0; i < study->n_point; i++)
+        points->point[i] = r.failure[i] = (hf_point){HF_POINT_MISSING, HF_NOT_EVALUATED, "", NULL};
+    hf_status status = read_files(&r, folder, messages);
+    find_running(&r, folder);
+    find_lost(&r, folder);
+    for (int i = 0; i < study->n_point; i++)
+        points->count[points->point[i].state]++;
+    free(r.sorted);
+    free(r.failure);
+    return status;
+}
+
+void hf_points_free(hf_points *points)
+{
+    for (int i = 0; i < points->n_text; i++)
+        free(points->text[i]);
+    for (int i = 0; i < points->n_field_block; i++)
+        free(points->fields[i]);
+    free(points->text);
+    free(points->fields);
+    free(points->point);
+    *points = (hf_points){0};
+}

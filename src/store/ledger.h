@@ -1,0 +1,92 @@
+/* ledger - what became of the points of a study: a folder that any number of processes, on any number of machines that
+ * share it, write into at the same time.
+ *
+ *   points-HOST-PID.tsv   a line per finished point, by the process that finished it: id, fingerprint of the base
+ *                         case, status, reason, every number of hf_summary. One write(2) each; a torn one is ignored.
+ *   claims                no content: the process that runs a point holds a record lock on the byte that the point's id
+ *                         names, and the system takes it away when the process ends, however it ends.
+ *   ID-FINGERPRINT.h5     result files of points that have one; of the fingerprint the first digits: runs of different
+ *                         base cases never share a file. */
+#ifndef HIFDM_LEDGER_H
+#define HIFDM_LEDGER_H
+
+#include "store/hdf5_io.h"
+#include "case/study.h"
+
+#include <hifdm/summary.h>
+#include <pthread.h>
+
+/* ---- The numbers of a point ---- */
+
+int hf_ledger_n_column(void);
+const hf_hdf5_member *hf_ledger_column(int i); /* a member of hf_summary, never of HF_KIND_CHARS */
+
+/* Does it depend on the machine and the moment, not on the point alone? Times and threads. */
+int hf_ledger_is_circumstance(const hf_hdf5_member *column);
+
+/* ---- Writing ---- */
+
+typedef struct {
+    char folder[HF_PATH_SIZE];
+    int rows, claims; /* file descriptors, -1 */
+    double synced_s;
+    pthread_mutex_t lock;
+    struct hf_ledger_news *news; /* NULL before hf_ledger_watch */
+} hf_ledger;
+
+/* Makes the folder when it is not there. HF_OK or HF_IO. Close in any case. */
+hf_status hf_ledger_open(const char *folder, hf_ledger *ledger, hf_messages *messages);
+void hf_ledger_close(hf_ledger *ledger);
+
+/* The point is this process's from now on: 1. Or 0 when another process has it. */
+int hf_ledger_claim(hf_ledger *ledger, const char *id);
+void hf_ledger_release(hf_ledger *ledger, const char *id);
+
+/* From now on note what all processes finish. Call it before hf_ledger_read. HF_OK or HF_NO_MEMORY. */
+hf_status hf_ledger_watch(hf_ledger *ledger, const hf_study *study, hf_messages *messages);
+
+/* Has the point been finished since hf_ledger_watch, well or not? Ask when it is claimed. From any thread. */
+int hf_ledger_is_finished(hf_ledger *ledger, const hf_study *study, int point);
+
+/* A finished point, from any thread. reason: one line, "" when all went well. HF_OK or HF_IO. */
+hf_status hf_ledger_write(hf_ledger *ledger, const hf_study *study, int point, hf_status status, const char *reason,
+                          const hf_summary *summary, hf_messages *messages);
+
+/* Path of the point's result file; what kind of file stands there. */
+typedef enum { HF_LEDGER_NO_FILE, HF_LEDGER_EMPTY_FILE, HF_LEDGER_FILE } hf_ledger_content;
+hf_ledger_content hf_ledger_file(const char *folder, const hf_study *study, int point, char path[HF_PATH_SIZE + 32]);
+
+/* ---- Reading ---- */
+
+typedef enum {
+    HF_POINT_MISSING,
+    HF_POINT_RUNNING, /* by a living process */
+    HF_POINT_DONE,
+    HF_POINT_FAILED,
+    HF_POINT_OUTDATED, /* finished, but of another base case */
+    HF_N_POINT_STATE
+} hf_point_state;
+extern const char *const hf_point_state_word[HF_N_POINT_STATE];
+
+typedef struct {
+    hf_point_state state;
+    hf_status status;   /* HF_NOT_EVALUATED unless done or failed */
+    const char *reason; /* "" unless failed */
+    char *const *field; /* [hf_ledger_n_column()] as text, "" = not applicable; NULL unless done or failed */
+} hf_point;
+
+typedef struct {
+    hf_point *point; /* [n_point] in the order of the study */
+    int n_point, count[HF_N_POINT_STATE];
+    int n_lost;  /* of the missing ones: done, but the result file is gone, or begun anew */
+    char **text; /* the files, which the points lead into */
+    char ***fields;
+    int n_text, n_field_block;
+} hf_points;
+
+/* What is known of the study's points; a folder that is not there means all are missing. HF_OK, HF_IO, HF_NO_MEMORY.
+ * Free in any case. */
+hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *points, hf_messages *messages);
+void hf_points_free(hf_points *points);
+
+#endif

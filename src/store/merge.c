@@ -1,0 +1,289 @@
+/* Contents: columns - inputs - outputs - links - the file */
+#include "store/merge.h"
+
+#include "base/text.h"
+#include <hifdm/store.h>
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct {
+    hf_hdf5 io;
+    const hf_study *study;
+    const hf_points *points;
+    void *room; /* for one column of any kind but texts: [n_point][2] of 8 bytes */
+} merger;
+
+/* ---- columns ---- */
+
+static void write_column(merger *m, hid_t group, const char *name, hf_hdf5_kind kind, int columns, const char *units,
+                         const char *description)
+{
+    hf_hdf5_array array = {name,  kind,       columns > 1 ? 2 : 1, {(hsize_t)m->points->n_point, (hsize_t)columns},
+                           units, description};
+    hf_hdf5_write_array(&m->io, group, &array, m->room);
+}
+
+/* Texts of fixed length, the longest of them. */
+static void write_texts(merger *m, hid_t group, const char *name, const char *(*text_of)(const merger *, int, int),
+                        int axis, const char *description)
+{
+    size_t length = 1, n = (size_t)m->points->n_point;
+    for (size_t i = 0; i < n; i++)
+        length = strlen(text_of(m, (int)i, axis)) > length ? strlen(text_of(m, (int)i, axis)) : length;
+    char *chars = calloc(n, length);
+    hf_hdf5_array array = {name, HF_KIND_CHARS, 1, {(hsize_t)n, length}, "", description};
+    if (!chars && m->io.status == HF_OK)
+        m->io.status = hf_error(m->io.messages, HF_NO_MEMORY, "%s: out of memory", m->io.path);
+    for (size_t i = 0; chars && i < n; i++)
+        memcpy(chars + i * length, text_of(m, (int)i, axis), strlen(text_of(m, (int)i, axis)));
+    if (chars) hf_hdf5_write_array(&m->io, group, &array, chars);
+    free(chars);
+}
+
+static const char *id_of(const merger *m, int i, int axis)
+{
+    (void)axis;
+    return m->study->id[i];
+}
+
+static const char *reason_of(const merger *m, int i, int axis)
+{
+    (void)axis;
+    return m->points->point[i].reason;
+}
+
+/* ---- inputs ---- */
+
+static const char *value_of(const merger *m, int i, int axis)
+{
+    const hf_study *s = m->study;
+    return strchr(s->axis[axis].canonical[s->value[(size_t)i * (size_t)s->n_axis + (size_t)axis]], '=') + 1;
+}
+
+static void write_axis(merger *m, hid_t group, int axis)
+{
+    const hf_field *f = &hf_field_table[m->study->axis[axis].field];
+    int n = m->points->n_point, columns = f->type == HF_FIELD_INT_PAIR ? 2 : 1;
+    if (f->type == HF_FIELD_WORD || f->type == HF_FIELD_TEXT) {
+        write_texts(m, group, f->path, value_of, axis, f->help);
+        return;
+    }
+    for (int i = 0; i < n; i++) {
+        const char *text = value_of(m, i, axis);
+        if (f->type == HF_FIELD_DOUBLE)
+            hf_text_double(text, (double *)m->room + i);
+        else if (f->type == HF_FIELD_UINT64)
+            hf_text_uint64(text, (uint64_t *)m->room + i);
+        else if (f->type == HF_FIELD_INT)
+            ((int *)m->room)[i] = atoi(text);
+        else
+            sscanf(text, "[%d ,%d", (int *)m->room + 2 * i, (int *)m->room + 2 * i + 1);
+    }
+    hf_hdf5_kind kind = f->type == HF_FIELD_DOUBLE   ? HF_KIND_REAL
+                        : f->type == HF_FIELD_UINT64 ? HF_KIND_UINT64
+                                                     : HF_KIND_INT;
+    write_column(m, group, f->path, kind, columns, f->unit, f->help);
+}
+
+/* ---- outputs ---- */
+
+static const char *unit_of(const char *name)
+{
+    static const char *const unit[][2] = {{"_N_per_m", "N/m"}, {"_kg", "kg"}, {"_N", "N"}, {"_m", "m"}};
+    size_t n = strlen(name);
+    for (int i = 0; i < HF_HDF5_COUNT(unit); i++)
+        if (n > strlen(unit[i][0]) && !strcmp(name + n - strlen(unit[i][0]), unit[i][0])) return unit[i][1];
+    return "";
+}
+
+static void set_number(void *room, int i, hf_hdf5_kind kind, const char *text)
+{
+    switch (kind) {
+    case HF_KIND_REAL:
+        ((double *)room)[i] = *text ? strtod(text, NULL) : (double)NAN;
+        break;
+    case HF_KIND_LONG:
+        ((long *)room)[i] = strtol(text, NULL, 10);
+        break;
+    case HF_KIND_UINT64:
+        ((uint64_t *)room)[i] = strtoull(text, NULL, 10);
+        break;
+    case HF_KIND_INT:
+        ((int *)room)[i] = atoi(text);
+        break;
+    case HF_KIND_STATUS:
+        ((signed char *)room)[i] = (signed char)(*text ? atoi(text) : HF_NOT_EVALUATED);
+        break;
+    default:
+        ((signed char *)room)[i] = (signed char)atoi(text);
+    }
+}
+
+/* A number of hf_summary over all points; left out where no point has it. */
+static void write_output(merger *m, hid_t group, int column)
+{
+    const hf_hdf5_member *c = hf_ledger_column(column);
+    char name[128], stage[96];
+    int n_given = 0;
+    if (hf_ledger_is_circumstance(c)) return;
+    for (int i = 0; i < m->points->n_point; i++) {
+        const hf_point *p = &m->points->point[i];
+        const char *text = p->field ? p->field[column] : "";
+        n_given += *text != '\0';
+        set_number(m->room, i, c->kind, text);
+    }
+    if (!n_given) return;
+    snprintf(name, sizeof name, "%s%s%s", c->object + 1, c->object[1] ? "/" : "", c->name);
+    snprintf(stage, sizeof stage, "/points%s", c->object);
+    if (c->object[1]) hf_hdf5_close(&m->io, hf_hdf5_make_group(&m->io, stage));
+    write_column(m, group, name, c->kind, 1, unit_of(c->name), "as in the runs");
+}
+
+static void write_status(merger *m, hid_t group)
+{
+    for (int i = 0; i < m->points->n_point; i++)
+        ((signed char *)m->room)[i] = (signed char)m->points->point[i].status;
+    write_column(m, group, "status", HF_KIND_STATUS, 1, "", "ok, what went wrong, or not_evaluated: not finished");
+}
+
+static void write_points(merger *m)
+{
+    hid_t group = hf_hdf5_make_group(&m->io, "/points");
+    write_texts(m, group, "id", id_of, 0,
+                "names the point by what it sets; its link in /runs, and how its result file begins");
+    write_status(m, group);
+    write_texts(m, group, "reason", reason_of, 0, "what went wrong, if anything");
+    hid_t input = hf_hdf5_make_group(&m->io, "/points/input");
+    for (int a = 0; a < m->study->n_axis; a++)
+        write_axis(m, input, a);
+    hf_hdf5_close(&m->io, input);
+    for (int i = 0; i < hf_ledger_n_column(); i++)
+        write_output(m, group, i);
+    hf_hdf5_close(&m->io, group);
+}
+
+/* ---- links ---- */
+
+/* The folder as seen from the folder of the output; the absolute path where the system gives none. */
+static void relative_folder(const char *output, const char *folder, char *to, size_t size)
+{
+    char here[PATH_MAX + 1], there[PATH_MAX + 1], parent[PATH_MAX]; /* a slash is added */
+    const char *slash = strrchr(output, '/');
+    size_t used = 0, common = 0;
+    snprintf(parent, sizeof parent, "%.*s", slash ? (int)(slash - output) + 1 : 1, slash ? output : ".");
+    snprintf(to, size, "%s", folder);
+    if (!realpath(parent, here) || !realpath(folder, there)) return;
+    strcat(strcmp(here, "/") ? here : strcpy(here, ""), "/");
+    strcat(there, "/");
+    for (size_t i = 0; here[i] && here[i] == there[i]; i++)
+        if (here[i] == '/') common = i + 1;
+    *to = '\0';
+    for (const char *p = here + common; *p && used + 4 < size; p++)
+        if (*p == '/') used += (size_t)snprintf(to + used, size - used, "../");
+    snprintf(to + used, size - used, "%s", there + common);
+    used = strlen(to);
+    if (used && to[used - 1] == '/') to[used - 1] = '\0';
+}
+
+static void write_links(merger *m, const char *folder)
+{
+    char relative[PATH_MAX], file[HF_PATH_SIZE + 32], target[PATH_MAX + 32];
+    hid_t group = hf_hdf5_make_group(&m->io, "/runs");
+    relative_folder(m->io.path, folder, relative, sizeof relative);
+    for (int i = 0; i < m->study->n_point && m->io.status == HF_OK; i++) {
+        const char *id = m->study->id[i];
+        if (hf_ledger_file(folder, m->study, i, file) != HF_LEDGER_FILE) continue;
+        snprintf(target, sizeof target, "%s%s", *relative ? relative : ".", strrchr(file, '/'));
+        if (H5Lcreate_external(target, "/", group, id, H5P_DEFAULT, H5P_DEFAULT) < 0)
+            hf_hdf5_fail(&m->io, "write", group, id);
+    }
+    hf_hdf5_close(&m->io, group);
+}
+
+/* ---- the file ---- */
+
+static void write_text_file(merger *m, hid_t group, const char *name, const char *path, const char *description)
+{
+    char *text;
+    size_t length;
+    hf_hdf5_array array = {name, HF_KIND_TEXT, 0, {0}, "", description};
+    if (m->io.status != HF_OK) return;
+    m->io.status = hf_text_read_file(path, HF_IO, &text, &length, m->io.messages);
+    hf_hdf5_write_array(&m->io, group, &array, &text);
+    free(text);
+}
+
+static void write_all(merger *m, const char *folder)
+{
+    const hf_study *s = m->study;
+    hf_hdf5_put_chars(&m->io, m->io.file, "/", "program", HF_PROGRAM);
+    hf_hdf5_put(&m->io, m->io.file, "/", "format_version", HF_KIND_INT, 0, &(int){HF_FORMAT_VERSION});
+    hf_hdf5_put_text(&m->io, m->io.file, "/", "version", hf_store_version());
+    hf_hdf5_put_text(&m->io, m->io.file, "/", "study", s->path);
+    hf_hdf5_put_text(&m->io, m->io.file, "/", "base", s->base);
+    hf_hdf5_put_text(&m->io, m->io.file, "/", "fingerprint", s->fingerprint);
+    hid_t group = hf_hdf5_make_group(&m->io, "/study");
+    write_text_file(m, group, "text", s->path, "the study file");
+    write_text_file(m, group, "base_text", s->base, "the base case");
+    hf_hdf5_close(&m->io, group);
+    write_points(m);
+    write_links(m, folder);
+    /* HDF5 1.10 does not survive a close that cannot write what is left */
+    if (H5Fflush(m->io.file, H5F_SCOPE_GLOBAL) < 0)
+        hf_hdf5_fail(&m->io, "write", -1, NULL);
+    else
+        hf_hdf5_close_file(&m->io);
+}
+
+/* May the file be replaced? 1 when it is not there, or a merge. */
+static int is_ours(const char *path)
+{
+    hf_messages unwanted = {0};
+    hf_hdf5 io = {.path = path, .messages = &unwanted, .status = HF_OK, .file = -1};
+    int ours = access(path, F_OK) != 0;
+    if (!ours) {
+        hf_hdf5_open_file(&io, path, 0);
+        ours = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/points") && hf_hdf5_has(&io, io.file, "/runs");
+        if (io.file >= 0) hf_hdf5_close_file(&io);
+    }
+    hf_messages_free(&unwanted);
+    return ours;
+}
+
+static hf_status publish(const char *temporary, const char *output, hf_messages *messages)
+{
+    int file = open(temporary, O_RDONLY | O_CLOEXEC), failed = file < 0 || (fsync(file) != 0 && errno != EINVAL);
+    if (file >= 0) close(file);
+    if (!failed && rename(temporary, output) == 0) return HF_OK;
+    return hf_error(messages, HF_IO, "%s: cannot write: %s", output, strerror(errno));
+}
+
+hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *points, const char *output, int force,
+                   hf_messages *messages)
+{
+    char temporary[HF_PATH_SIZE + 64];
+    merger m = {{.path = output, .messages = messages, .status = HF_OK, .file = -1}, study, points, NULL};
+    if (snprintf(temporary, sizeof temporary, "%s.%ld.tmp", output, (long)getpid()) >= (int)sizeof temporary)
+        return hf_error(messages, HF_IO, "%s: the path is too long", output);
+    m.room = calloc((size_t)study->n_point, 2 * sizeof(double));
+    if (!m.room) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", output);
+    hf_hdf5_lock();
+    if (!force && !is_ours(output)) {
+        m.io.status = hf_error(messages, HF_EXISTS, "%s: exists and is no merge; use --force or -o", output);
+    } else {
+        hf_hdf5_create_file(&m.io, temporary);
+        if (m.io.status == HF_OK) write_all(&m, folder);
+        if (m.io.status == HF_OK) m.io.status = publish(temporary, output, messages);
+        if (m.io.status != HF_OK) unlink(temporary);
+    }
+    free(m.room);
+    return hf_hdf5_unlock(m.io.status);
+}

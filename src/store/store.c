@@ -1,0 +1,433 @@
+/* Contents: names and checks before a run - provenance, case, scene - shapes - generations - summary - the end */
+#include <hifdm/store.h>
+
+#include "linalg/band.h"
+#include "store/store_coupling.h"
+#include "store/store_open.h"
+#include "store/store_surface.h"
+
+#include <assert.h>
+#include <gsl/gsl_version.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#ifndef HF_VERSION /* these four come from the Makefile */
+#define HF_VERSION "unknown"
+#endif
+#ifndef HF_GIT_DESCRIBE
+#define HF_GIT_DESCRIBE "unknown"
+#endif
+#ifndef HF_COMPILER
+#define HF_COMPILER "unknown"
+#endif
+#ifndef HF_BUILD_FLAGS
+#define HF_BUILD_FLAGS "unknown"
+#endif
+
+#define ARGUMENTS_MAX 4000 /* kept of the command line: an attribute holds 64 KiB */
+/* A publication is due when this many times as long as the last one took has passed: it takes 2 % of the time. */
+#define PUBLISH_RATIO 50
+#define SAME_SHAPE 1e-5 /* of the largest tension: a stopping rule may leave 1e-6 between two builds */
+#define PUBLISH_S 0.5 /* but not more often: most short runs are published twice, at their beginning and at their end */
+
+const char *const hf_stage_word[4] = {"form", "optimize", "polish", "none"};
+const char *const hf_stage_group[4] = {"/form", "/ga/best", "/polish", "/"};
+
+const char *hf_store_version(void)
+{
+    return HF_VERSION " (" HF_GIT_DESCRIBE ")";
+}
+
+void hf_store_quiet(void)
+{
+    hf_hdf5_lock();
+    H5dont_atexit();
+    hf_hdf5_quiet();
+    hf_hdf5_unlock(HF_OK);
+}
+
+/* ---- provenance, case, scene ---- */
+
+static void put_provenance(hf_store *s, int argc, char *const *argv)
+{
+    char host[256] = "", hdf5[32];
+    unsigned major = 0, minor = 0, release = 0;
+    if (gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
+    H5get_libversion(&major, &minor, &release);
+    snprintf(hdf5, sizeof hdf5, "%u.%u.%u", major, minor, release);
+    const char *const table[][2] = {{"version", HF_VERSION},
+                                    {"git_describe", HF_GIT_DESCRIBE},
+                                    {"compiler", HF_COMPILER},
+                                    {"build_flags", HF_BUILD_FLAGS},
+                                    {"hdf5_version", hdf5},
+                                    {"gsl_version", gsl_version},
+                                    {"lapack", hf_band_library()},
+                                    {"rng", "splitmix64 keyed by (seed, generation, individual)"},
+                                    {"host", host}};
+    for (int i = 0; i < HF_HDF5_COUNT(table); i++)
+        hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", table[i][0], table[i][1]);
+    hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "program", HF_PROGRAM);
+    hf_hdf5_put(&s->f.io, s->f.io.file, "/", "format_version", HF_KIND_INT, 0, &(int){HF_FORMAT_VERSION});
+    if (argc > ARGUMENTS_MAX) argc = ARGUMENTS_MAX;
+    if (argc > 0) hf_hdf5_put(&s->f.io, s->f.io.file, "/", "argv", HF_KIND_TEXT, (hsize_t)argc, argv);
+    hf_store_put_job(s);
+    hf_store_put_time(s, "started_utc");
+}
+
+static void write_case(hf_store *s, const hf_case *settings)
+{
+    const char *overrides = settings->overrides ? settings->overrides : "";
+    hf_hdf5_array text = {"text", HF_KIND_CHARS, 0, {strlen(settings->text)}, "", "the case file"};
+    hf_hdf5_array set = {"overrides", HF_KIND_CHARS, 0, {strlen(overrides)}, "", "the --set arguments, a line each"};
+    for (int i = 0; i < 2; i++) /* HDF5 has no type of no bytes; the NUL serves as padding */
+        if (!(i ? &set : &text)->dims[0]) (i ? &set : &text)->dims[0] = 1;
+    hid_t group = hf_hdf5_make_group(&s->f.io, "/case");
+    hf_hdf5_write_array(&s->f.io, group, &text, settings->text);
+    hf_hdf5_write_array(&s->f.io, group, &set, overrides);
+    hf_hdf5_put_chars(&s->f.io, group, ".", "sha256", settings->sha256);
+    hf_hdf5_close(&s->f.io, group);
+}
+
+static void write_scene(hf_store *s, const hf_scene *scene)
+{
+    static const hf_hdf5_column table[] = {HF_SCENE_COLUMNS(HF_HDF5_COLUMN)};
+    const hf_hdf5_array length = {
+        "cable/length_m",          HF_KIND_REAL, 1,
+        {(hsize_t)scene->n_cable}, "m",          "theoretical: distance of the two nodes' positions"};
+    hid_t group = hf_hdf5_make_group(&s->f.io, "/scene");
+    hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/scene/node"));
+    hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/scene/cable"));
+    hf_hdf5_write_ids(&s->f.io, group, "node/id", scene->node_id, scene->n_node, "name of the node");
+    hf_hdf5_write_ids(&s->f.io, group, "cable/id", scene->cable_id, scene->n_cable, "name of the cable");
+    hf_hdf5_write_columns(&s->f.io, group, table, HF_HDF5_COUNT(table), scene->n_node, scene->n_cable, scene);
+    double *length_m = hf_store_scratch(s, (size_t)scene->n_cable * sizeof *length_m);
+    for (int e = 0; length_m && e < scene->n_cable; e++)
+        length_m[e] = hf_scene_theoretical_length(scene, e);
+    hf_hdf5_write_array(&s->f.io, group, &length, length_m);
+    hf_hdf5_close(&s->f.io, group);
+}
+
+/* ---- beginning ---- */
+
+hf_status hf_store_create(const char *path, int restart, const hf_case *settings, const hf_scene *scene,
+                          const hf_truss *truss, int argc, char *const *argv, hf_store **store, hf_messages *messages)
+{
+    hf_status status;
+    struct stat info;
+    *store = NULL;
+    hf_store *s = hf_store_new(path, restart, &status, messages);
+    if (!s) return status;
+    hf_hdf5_lock();
+    double begin_s = hf_store_clock_s();
+    if (!restart && lstat(path, &info) == 0)
+        s->f.io.status = hf_error(
+            messages, HF_EXISTS,
+            "%s: exists; use --restart (of a sweep: --retry failed) to replace it or -o to choose another name", path);
+    if (s->f.io.status == HF_OK && hf_store_identify(settings, scene, truss, s->identity) != HF_OK)
+        s->f.io.status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    if (s->f.io.status == HF_OK) {
+        hf_store_file_create(&s->f);
+        put_provenance(s, argc, argv);
+        hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "identity", s->identity);
+        write_case(s, settings);
+        write_scene(s, scene);
+    }
+    s->publish_s = hf_store_clock_s() - begin_s;
+    return hf_store_hand_over(s, store);
+}
+
+int hf_store_generations(const hf_store *store)
+{
+    return store ? store->rows.n_stored + store->rows.n_waiting + store->n_journal : 0;
+}
+
+/* ---- shapes ---- */
+
+static void write_shape(hf_store *s, hid_t group, const hf_model *model, const hf_workspace *workspace)
+{
+    static const hf_hdf5_column table[] = {HF_SHAPE_COLUMNS(HF_HDF5_COLUMN)};
+    size_t n = (size_t)model->n_node;
+    hf_shape shape = {.position_m = hf_store_scratch(s, 3 * n * sizeof(double)),
+                      .length_m = workspace->length_m,
+                      .tension_N = workspace->tension_N,
+                      .q_N_per_m = workspace->q_N_per_m,
+                      .law = workspace->law};
+    if (!shape.position_m) return;
+    for (size_t row = 0; row < n; row++)
+        for (size_t c = 0; c < 3; c++)
+            shape.position_m[3 * (size_t)model->node_of_row[row] + c] = workspace->position_m[c * n + row];
+    hf_hdf5_write_columns(&s->f.io, group, table, HF_HDF5_COUNT(table), model->n_node, model->n_cable, &shape);
+}
+
+/* A session on another machine, or of another build, may find the shape with other bits. */
+static void compare_shape(hf_store *s, const hf_model *model, const hf_workspace *workspace)
+{
+    hf_hdf5_array tension = {.name = "/form/tension_N", .kind = HF_KIND_REAL, .rank = 1};
+    size_t bytes = (size_t)model->n_cable * sizeof(double);
+    double *stored = hf_store_scratch(s, bytes);
+    tension.dims[0] = (hsize_t)model->n_cable;
+    if (stored) hf_hdf5_read_array(&s->f.io, s->f.io.file, &tension, stored);
+    if (s->f.io.status != HF_OK || memcmp(stored, workspace->tension_N, bytes) == 0) return;
+    double largest_N = 0, apart_N = 0;
+    for (int e = 0; e < model->n_cable; e++) {
+        double gap_N = fabs(stored[e] - workspace->tension_N[e]);
+        largest_N = fmax(largest_N, fabs(stored[e]));
+        apart_N = gap_N <= apart_N || isnan(apart_N) ? apart_N : gap_N;
+    }
+    if (!(apart_N <= SAME_SHAPE * largest_N))
+        s->f.io.status = hf_error(s->f.io.messages, HF_EXISTS,
+                                  "%s: this machine or build finds another shape (tensions differ by %.2g N); "
+                                  "--restart (of a sweep: --retry failed) "
+                                  "begins anew",
+                                  s->f.path, apart_N);
+    else
+        hf_warning(s->f.io.messages,
+                   "%s: this machine or build finds the shape with other last bits than the one that began it: the "
+                   "result will not be that of an uninterrupted run to the bit",
+                   s->f.path);
+}
+
+hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspace *workspace,
+                        const hf_history *history, hf_messages *messages)
+{
+    if (!store) return HF_OK;
+#define HISTORY(member, units, description)                                                                            \
+    {                                                                                                                  \
+#member, HF_KIND_REAL, 0, 1, units, description, offsetof(hf_history, member)                                  \
+    }
+    static const hf_hdf5_column table[] = {
+        HISTORY(psi_m, "m", "RMS distance of the inner nodes to their theoretical positions, after each linear solve"),
+        HISTORY(residual_N, "N", "largest nodal force out of balance"),
+        HISTORY(inner_tension_ratio, "", "largest over smallest tension of the inner cables"),
+        HISTORY(boundary_tension_ratio, "", "largest over smallest tension of the boundary cables"),
+        HISTORY(length_error, "", "largest |l/L*-1| over taut cables of law length")};
+#undef HISTORY
+    hf_hdf5_lock();
+    store->f.io.messages = messages;
+    hf_store_file_open(&store->f);
+    if (store->is_resumed) {
+        compare_shape(store, model, workspace);
+        return hf_hdf5_unlock(store->f.io.status);
+    }
+    hid_t group = hf_hdf5_make_group(&store->f.io, "/form");
+    write_shape(store, group, model, workspace);
+    hf_hdf5_close(&store->f.io, group);
+    if (history) {
+        group = hf_hdf5_make_group(&store->f.io, "/form/history");
+        hf_hdf5_write_columns(&store->f.io, group, table, HF_HDF5_COUNT(table), history->n, 0, history);
+        hf_hdf5_close(&store->f.io, group);
+    }
+    if (model->n_attachment)
+        hf_store_write_coupling(&store->f.io, model, workspace, history ? &history->coupling : NULL);
+    return hf_hdf5_unlock(store->f.io.status);
+}
+
+static void write_design(hf_store *s, hid_t group, const hf_model *model, const double *design_N)
+{
+    hf_hdf5_array design = {
+        "design_N", HF_KIND_REAL, 1, {(hsize_t)model->n_gene}, "N", "boundary pretension T' of each gene"};
+    hf_hdf5_write_array(&s->f.io, group, &design, design_N);
+}
+
+hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
+                        const double *design_N, hf_messages *messages)
+{
+    if (!store) return HF_OK;
+    hf_hdf5_lock();
+    store->f.io.messages = messages;
+    hf_store_file_open(&store->f);
+    if (stage == HF_STAGE_OPTIMIZE) hf_hdf5_close(&store->f.io, hf_hdf5_make_group(&store->f.io, "/ga"));
+    if (hf_hdf5_has(&store->f.io, store->f.io.file, hf_stage_group[stage]) && /* of a session that was told to stop */
+        H5Ldelete(store->f.io.file, hf_stage_group[stage], H5P_DEFAULT) < 0)
+        hf_hdf5_fail(&store->f.io, "replace", store->f.io.file, hf_stage_group[stage]);
+    hid_t group = hf_hdf5_make_group(&store->f.io, hf_stage_group[stage]);
+    write_shape(store, group, model, workspace);
+    write_design(store, group, model, design_N);
+    hf_hdf5_close(&store->f.io, group);
+    return hf_hdf5_unlock(store->f.io.status);
+}
+
+/* ---- generations ---- */
+
+hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_ga *g, hf_messages *messages)
+{
+    if (!store) return HF_OK;
+    const hsize_t k[3] = {(hsize_t)g->n_gene};
+    const hf_hdf5_array cable = {"gene_cable", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/cable of each gene"};
+    const hf_hdf5_array group_of = {"gene_group", HF_KIND_INT, 1, {k[0]}, "", "genes that were varied together"};
+    const hf_hdf5_array leader = {"gene_leader", HF_KIND_INT, 1, {k[0]}, "", "gene whose step each takes, by symmetry"};
+    const hf_hdf5_array base = {"base_N", HF_KIND_REAL, 1,
+                                {k[0]},   "N",          "pretension T of each gene, after form-finding"};
+    const hf_hdf5_array lower = {"lower_N", HF_KIND_REAL, 1, {k[0]}, "N", "least T' of each gene"};
+    const hf_hdf5_array upper = {"upper_N", HF_KIND_REAL, 1, {k[0]}, "N", "largest T' of each gene"};
+    hf_hdf5 *io = &store->f.io;
+    if (store->rows.block) return store->f.io.status; /* another session has written them */
+    hf_hdf5_lock();
+    io->messages = messages;
+    hf_store_file_open(&store->f);
+    hid_t group = hf_hdf5_make_group(io, "/ga");
+    hf_hdf5_write_array(io, group, &cable, model->gene_cable);
+    hf_hdf5_write_array(io, group, &group_of, model->gene_group);
+    if (g->gene_leader) hf_hdf5_write_array(io, group, &leader, g->gene_leader);
+    hf_hdf5_write_array(io, group, &base, g->base_N);
+    hf_hdf5_write_array(io, group, &lower, g->lower_N);
+    hf_hdf5_write_array(io, group, &upper, g->upper_N);
+    hf_hdf5_put(io, group, ".", "n_individual", HF_KIND_INT, 0, &g->n_individual);
+    hf_hdf5_put(io, group, ".", "n_variable", HF_KIND_INT, 0, &g->n_gene);
+    hf_hdf5_put(io, group, ".", "generations_limit", HF_KIND_INT, 0, &g->settings->generations);
+    hf_hdf5_close(io, group);
+    if (io->status == HF_OK) io->status = hf_journal_restart(&store->f.journal, store->identity, messages);
+    if (io->status == HF_OK &&
+        hf_generations_create(g->n_individual, g->n_gene, g->settings->generations, &store->rows) != HF_OK)
+        io->status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", store->f.path);
+    return hf_hdf5_unlock(io->status);
+}
+
+hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages)
+{
+    if (!store) return HF_OK;
+    struct iovec piece[HF_GENERATIONS_PIECES];
+    hf_generations *g = &store->rows;
+    store->f.io.messages = messages;
+    HF_TRY(store->f.io.status);
+    HF_TRY(hf_store_genes(store, model, ga, messages));
+    int generation = g->n_stored + g->n_waiting;
+    hf_generations_add(g, ga, piece);
+    store->f.io.status = hf_journal_append(&store->f.journal, generation, piece, HF_GENERATIONS_PIECES, messages);
+    if (store->f.io.status != HF_OK || !hf_generations_are_due(g)) return store->f.io.status;
+    /* it is safe; room for the next can be made when no other run is at it, unless it must */
+    if (hf_generations_are_full(g))
+        hf_hdf5_lock();
+    else if (!hf_hdf5_try_lock())
+        return HF_OK;
+    double begin_s = hf_store_clock_s();
+    hf_store_file_open(&store->f);
+    store->publish_s += hf_store_clock_s() - begin_s; /* the copy is what publishing costs, too */
+    hf_generations_make_room(&store->f.io, g);
+    HF_TRY(hf_hdf5_unlock(store->f.io.status));
+    hf_store_file_flow(&store->f);
+    return HF_OK;
+}
+
+/* ---- summary ---- */
+
+static void put_summary(hf_store *s, const hf_summary *summary, int finished)
+{
+    hf_summary state = *summary;
+    static const hf_hdf5_member form[] = {HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER)};
+    static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
+    static const hf_hdf5_member polish[] = {HF_SUMMARY_POLISH_MEMBERS(HF_HDF5_MEMBER)};
+    static const hf_hdf5_member truss[] = {HF_SUMMARY_TRUSS_MEMBERS(HF_HDF5_MEMBER)};
+    /* groups that are there already, unless the run had no shape or no generation to store */
+    hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/form"));
+    state.finished = finished;
+    hf_hdf5_put_members(&s->f.io, form, HF_HDF5_COUNT(form), &state);
+    if (summary->has_optimize || s->rows.block) { /* before the first generation, too: what is known already */
+        hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/ga"));
+        hf_hdf5_put_members(&s->f.io, ga, HF_HDF5_COUNT(ga), summary);
+    }
+    if (summary->has_polish) {
+        hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/polish"));
+        hf_hdf5_put_members(&s->f.io, polish, HF_HDF5_COUNT(polish), summary);
+    }
+    if (summary->has_truss) {
+        hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/truss"));
+        hf_hdf5_put_members(&s->f.io, truss, HF_HDF5_COUNT(truss), summary);
+    }
+    if (summary->has_coupling) hf_store_put_coupling(&s->f.io, summary);
+    if (finished) hf_store_put_surface(&s->f.io, summary);
+    hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "status", finished ? hf_status_word(summary->status) : "unfinished");
+    hf_store_put_time(s, finished ? "finished_utc" : "published_utc");
+}
+
+/* ---- publishing ---- */
+
+/* What waits goes into the file, which is whole then. */
+static void complete(hf_store *s, const hf_summary *summary, int finished)
+{
+    hf_store_file_open(&s->f);
+    hf_generations_write(&s->f.io, &s->rows);
+    put_summary(s, summary, finished);
+    hf_store_file_close(&s->f);
+}
+
+hf_status hf_store_publish(hf_store *s, const hf_summary *summary, int at_once, hf_messages *messages)
+{
+    if (!s) return HF_OK;
+    double now_s = hf_store_clock_s();
+    s->f.io.messages = messages;
+    HF_TRY(s->f.io.status);
+    double since_s = now_s - s->published_at_s;
+    if (!at_once && (since_s < PUBLISH_S || since_s < PUBLISH_RATIO * s->publish_s)) {
+        s->f.io.status = hf_journal_tend(&s->f.journal, now_s, messages);
+        return s->f.io.status;
+    }
+    assert(s->n_journal == 0); /* or they would be lost */
+    hf_hdf5_lock();
+    complete(s, summary, 0);
+    hf_hdf5_unlock(HF_OK); /* others need not wait for this file's way to the disk */
+    /* before the first generation nothing is lost that would not be made again */
+    hf_store_file_name(&s->f, s->rows.n_stored > 0);
+    if (s->f.io.status == HF_OK && !hf_journal_is_empty(&s->f.journal))
+        s->f.io.status = hf_journal_rotate(&s->f.journal, messages);
+    s->published_at_s = hf_store_clock_s();
+    s->publish_s = s->published_at_s - now_s;
+    return s->f.io.status;
+}
+
+/* ---- the end ---- */
+
+hf_status hf_store_complete(hf_store *s, const hf_summary *summary, hf_messages *messages)
+{
+    if (!s) return HF_OK;
+    s->f.io.messages = messages;
+    if (s->f.io.status != HF_OK)
+        return hf_error(messages, s->f.io.status,
+                        "%s: is not written to its end, since an earlier part of it could not be", s->f.path);
+    if (s->n_journal > 0) /* the shape was found where it was begun */
+        return s->f.io.status = hf_error(messages, HF_EXISTS,
+                                         "%s: this machine or build does not come as far as the one that began it; its "
+                                         "generations are kept, --restart (of a sweep: --retry failed) begins anew",
+                                         s->f.path);
+    hf_hdf5_lock();
+    complete(s, summary, 1);
+    hf_generations_free(&s->rows); /* it may wait for long until it is settled */
+    return hf_hdf5_unlock(s->f.io.status);
+}
+
+hf_status hf_store_settle(hf_store *s, hf_messages *messages)
+{
+    if (!s) return HF_OK;
+    s->f.io.messages = messages;
+    hf_store_file_name(&s->f, 1);
+    hf_status status = s->f.io.status;
+    if (status == HF_OK) hf_journal_forget(&s->f.journal);
+    hf_store_abandon(s);
+    return status;
+}
+
+hf_status hf_store_finish(hf_store *s, const hf_summary *summary, hf_messages *messages)
+{
+    hf_store_complete(s, summary, messages);
+    return hf_store_settle(s, messages);
+}
+
+hf_hdf5 *hf_store_io(hf_store *store, hf_messages *messages)
+{
+    store->f.io.messages = messages;
+    hf_store_file_open(&store->f);
+    return &store->f.io;
+}
+
+void hf_store_abandon(hf_store *store)
+{
+    if (!store) return;
+    int is_open = store->f.io.file >= 0;
+    if (is_open) hf_hdf5_lock();
+    hf_store_free(store);
+    if (is_open) hf_hdf5_unlock(HF_OK);
+}

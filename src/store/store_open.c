@@ -1,0 +1,77 @@
+#include "store/store_open.h"
+
+#include <stdlib.h>
+#include <time.h>
+
+void hf_store_free(hf_store *s)
+{
+    hf_store_file_end(&s->f);
+    hf_generations_free(&s->rows);
+    free(s->scratch);
+    free(s);
+}
+
+hf_store *hf_store_new(const char *path, int replaces, hf_status *status, hf_messages *messages)
+{
+    hf_store *s = calloc(1, sizeof *s);
+    *status = s ? hf_store_file_begin(path, replaces, &s->f, messages)
+                : hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    if (s && *status != HF_OK) {
+        hf_store_free(s);
+        s = NULL;
+    }
+    return s;
+}
+
+hf_status hf_store_hand_over(hf_store *s, hf_store **store)
+{
+    hf_status status = s->f.io.status;
+    if (status == HF_OK)
+        *store = s;
+    else
+        hf_store_free(s);
+    return hf_hdf5_unlock(status);
+}
+
+void *hf_store_scratch(hf_store *s, size_t bytes)
+{
+    if (s->f.io.status != HF_OK) return NULL;
+    if (bytes > s->scratch_bytes) {
+        void *bigger = realloc(s->scratch, bytes);
+        if (!bigger) {
+            s->f.io.status = hf_error(s->f.io.messages, HF_NO_MEMORY, "%s: out of memory", s->f.path);
+            return NULL;
+        }
+        s->scratch = bigger;
+        s->scratch_bytes = bytes;
+    }
+    return s->scratch;
+}
+
+double hf_store_clock_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void hf_store_put_time(hf_store *s, const char *attribute)
+{
+    char text[32] = "";
+    time_t now = time(NULL);
+    struct tm utc;
+    if (gmtime_r(&now, &utc)) strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", attribute, text);
+}
+
+void hf_store_put_job(hf_store *s)
+{
+    static const char *const table[][2] = {{"slurm_job_id", "SLURM_JOB_ID"},
+                                           {"slurm_array_job_id", "SLURM_ARRAY_JOB_ID"},
+                                           {"slurm_array_task_id", "SLURM_ARRAY_TASK_ID"},
+                                           {"slurm_restart_count", "SLURM_RESTART_COUNT"}};
+    for (int i = 0; i < HF_HDF5_COUNT(table); i++) {
+        const char *value = getenv(table[i][1]);
+        if (value) hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", table[i][0], value);
+    }
+}

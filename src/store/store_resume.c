@@ -1,0 +1,269 @@
+/* Contents: what a session finds - breeding again - recovery */
+#include "store/store_open.h"
+#include "store/store_read.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+/* ---- what a session finds ---- */
+
+/* Is it a generation that the file does not have, and the one that follows? 0 when the file has it already; *status as
+ * the callers of hf_journal_replay return it. */
+static int is_news(hf_store *s, int generation, size_t bytes, int next, hf_status *status)
+{
+    const hf_generations *g = &s->rows;
+    *status = HF_OK;
+    if (generation < next) return 0; /* published before the journal could be rotated */
+    if (generation == next && bytes == g->payload_bytes && generation < g->limit) return 1;
+    *status = hf_error(s->f.io.messages, HF_IO,
+                       "%s: does not fit to %s, which goes on with generation %d of %zu bytes, not %d of %zu; was it "
+                       "copied or replaced? --restart (of a sweep: --retry failed) begins anew",
+                       s->f.path, s->f.journal.path, generation, bytes, next, g->payload_bytes);
+    return 0;
+}
+
+static hf_status count_record(void *context, int generation, const void *payload, size_t bytes)
+{
+    hf_store *s = context;
+    hf_status status;
+    (void)payload;
+    s->n_journal += is_news(s, generation, bytes, s->rows.n_stored + s->n_journal, &status);
+    return status;
+}
+
+/* Population, genes and the most generations, from the file itself. */
+static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_gene, int *limit)
+{
+    hf_hdf5_get(io, io->file, "/ga", "n_individual", HF_KIND_INT, n_individual, sizeof *n_individual);
+    hf_hdf5_get(io, io->file, "/ga", "n_variable", HF_KIND_INT, n_gene, sizeof *n_gene);
+    hf_hdf5_get(io, io->file, "/ga", "generations_limit", HF_KIND_INT, limit, sizeof *limit);
+    if (io->status == HF_OK && (*n_individual < 1 || *n_gene < 0 || *limit < 1))
+        hf_hdf5_damaged(io, io->file, "/ga", "has impossible sizes");
+}
+
+static void note_session(hf_store *s)
+{
+    char host[256] = "";
+    int n = 1;
+    if (gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
+    if (H5Aexists(s->f.io.file, "sessions") > 0)
+        hf_hdf5_get(&s->f.io, s->f.io.file, "/", "sessions", HF_KIND_INT, &n, sizeof n);
+    hf_hdf5_put(&s->f.io, s->f.io.file, "/", "sessions", HF_KIND_INT, 0, &(int){n + 1});
+    hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "resumed_host", host);
+    hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "resumed_version", hf_store_version());
+    hf_store_put_job(s);
+    hf_store_put_time(s, "resumed_utc");
+}
+
+static void read_state(hf_store *s)
+{
+    hf_hdf5 *io = &s->f.io;
+    signed char finished = 0;
+    int n_individual = 1, n_gene = 0, limit = 1;
+    hf_hdf5_get(io, io->file, "/", "finished", HF_KIND_FLAG, &finished, 1);
+    hf_hdf5_get(io, io->file, "/", "identity", HF_KIND_CHARS, s->identity, sizeof s->identity);
+    if (io->status == HF_OK && finished)
+        io->status = hf_error(io->messages, HF_EXISTS, "%s: is finished, there is nothing to go on with", s->f.path);
+    if (!hf_hdf5_has(io, io->file, "/ga")) { /* stopped before, or without, a genetic algorithm */
+        if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, io->messages);
+        return;
+    }
+    read_sizes(io, &n_individual, &n_gene, &limit);
+    if (io->status == HF_OK && hf_generations_create(n_individual, n_gene, limit, &s->rows) != HF_OK)
+        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", s->f.path);
+    if (io->status == HF_OK) hf_generations_count(io, &s->rows);
+    if (io->status == HF_OK) io->status = hf_journal_replay(&s->f.journal, s->identity, count_record, s, io->messages);
+}
+
+hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages)
+{
+    hf_status status;
+    *store = NULL;
+    hf_store *s = hf_store_new(path, 0, &status, messages);
+    if (!s) return status;
+    hf_hdf5_lock();
+    s->is_resumed = 1;
+    s->published_at_s = hf_store_clock_s(); /* what is there is visible */
+    hf_store_file_adopt(&s->f);
+    hf_store_file_open(&s->f);
+    read_state(s);
+    if (s->f.io.status == HF_OK) note_session(s);
+    return hf_store_hand_over(s, store);
+}
+
+hf_status hf_store_base(hf_store *store, int n_gene, double *base_N, hf_messages *messages)
+{
+    const hf_hdf5_array base = {.name = "/ga/base_N", .kind = HF_KIND_REAL, .rank = 1, .dims = {(hsize_t)n_gene}};
+    if (!store || !store->rows.block) return HF_OK;
+    hf_hdf5_lock();
+    store->f.io.messages = messages;
+    hf_store_file_open(&store->f);
+    if (hf_hdf5_has(&store->f.io, store->f.io.file, base.name)) /* earlier builds had none */
+        hf_hdf5_read_array(&store->f.io, store->f.io.file, &base, base_N);
+    return hf_hdf5_unlock(store->f.io.status);
+}
+
+/* ---- breeding again ---- */
+
+typedef struct {
+    hf_store *store;
+    hf_ga *ga; /* before hf_ga_tell of the last generation that was taken; just created when there is none */
+    int n_taken;
+    int drops; /* what this build breeds otherwise; or it is an error */
+} breeding;
+
+/* The designs of a record are bred from the generation before it. */
+static hf_status breed_record(void *context, int generation, const void *payload, size_t bytes)
+{
+    breeding *b = context;
+    hf_store *s = b->store;
+    hf_generations *g = &s->rows;
+    const hf_ga before = *b->ga;
+    hf_status status;
+    if (!is_news(s, generation, bytes, g->n_stored + g->n_waiting, &status)) return status;
+    int goes_on = 1;
+    if (generation > 0) {
+        hf_ga_tell(b->ga);
+        goes_on = hf_ga_next(b->ga);
+    }
+    if (!goes_on || !hf_generations_take_payload(g, payload, b->ga)) {
+        *b->ga = before;
+        if (b->drops) return HF_DIFFERENT;
+        return hf_error(s->f.io.messages, HF_EXISTS,
+                        "%s: this machine or build breeds other designs from generation %d on than the one that began "
+                        "it, which alone can recover %s; nothing was changed",
+                        s->f.path, generation + 1, s->f.journal.path);
+    }
+    hf_generations_add(g, b->ga, NULL);
+    b->n_taken++;
+    if (hf_generations_are_full(g)) hf_generations_make_room(&s->f.io, g);
+    return s->f.io.status;
+}
+
+static void breed_journal(hf_store *s, hf_ga *ga, int drops)
+{
+    hf_hdf5 *io = &s->f.io;
+    breeding b = {s, ga, 0, drops};
+    if (io->status != HF_OK) return;
+    io->status = hf_journal_replay(&s->f.journal, s->identity, breed_record, &b, io->messages);
+    int first = s->rows.n_stored + s->rows.n_waiting;
+    hf_generations_write(io, &s->rows);
+    if (io->status == HF_OK && b.n_taken < s->n_journal)
+        hf_warning(io->messages,
+                   "%s: this machine or build breeds other designs than the one that began it: generations %d to %d, "
+                   "which were not published, are evaluated again",
+                   s->f.path, first + 1, first + s->n_journal - b.n_taken);
+    s->n_journal = 0;
+}
+
+/* What the genetic algorithm had noted when it was published last; files of earlier builds have nothing before the
+ * first generation. */
+static void read_known(hf_hdf5 *io, hf_summary *summary)
+{
+    static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
+    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "solver", H5P_DEFAULT) > 0)
+        hf_hdf5_get_members(io, ga, HF_HDF5_COUNT(ga), summary);
+}
+
+static hf_status restore(hf_store *store, hf_ga *ga, int drops, hf_summary *summary, hf_messages *messages)
+{
+    if (hf_store_generations(store) == 0) return HF_OK;
+    hf_hdf5 *io = &store->f.io;
+    hf_hdf5_lock();
+    io->messages = messages;
+    hf_store_file_open(&store->f);
+    read_known(io, summary);
+    if (store->rows.n_stored) hf_generations_restore(io, &store->rows, ga);
+    if (store->n_journal) breed_journal(store, ga, drops);
+    hf_generations_sum_up(io, &store->rows, summary);
+    return hf_hdf5_unlock(io->status);
+}
+
+hf_status hf_store_restore(hf_store *store, hf_ga *ga, hf_summary *summary, hf_messages *messages)
+{
+    return restore(store, ga, 1, summary, messages);
+}
+
+/* ---- recovery ---- */
+
+/* The genetic algorithm of an unfinished file, from what the file itself says. Not more than hf_ga_create asks for. */
+typedef struct {
+    hf_case settings;
+    hf_model model;
+    int *group, *leader; /* [n_gene] */
+    double *base_N;      /* [n_gene] */
+    hf_ga ga;
+} stored_ga;
+
+static void read_genes(hf_hdf5 *io, stored_ga *a)
+{
+    hf_hdf5_array row = {.name = "gene_group", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)a->model.n_gene}};
+    hid_t group = hf_hdf5_open_group(io, "/ga");
+    hf_hdf5_read_array(io, group, &row, a->group);
+    row.name = "gene_leader";
+    int has_leader = hf_hdf5_has(io, group, row.name);
+    if (has_leader) hf_hdf5_read_array(io, group, &row, a->leader);
+    row.name = "base_N";
+    row.kind = HF_KIND_REAL;
+    hf_hdf5_read_array(io, group, &row, a->base_N);
+    hf_hdf5_close(io, group);
+    for (int k = 0; io->status == HF_OK && k < a->model.n_gene; k++) {
+        if (!has_leader) a->leader[k] = k;
+        if (a->group[k] < 0 || a->group[k] >= a->model.n_gene || a->leader[k] < 0 || a->leader[k] > k)
+            hf_hdf5_damaged(io, io->file, "/ga", "has impossible genes");
+        a->model.n_leader += a->leader[k] == k;
+        if (a->group[k] >= a->model.n_gene_group) a->model.n_gene_group = a->group[k] + 1;
+    }
+}
+
+static void open_stored_ga(hf_store *s, stored_ga *a)
+{
+    hf_hdf5 *io = &s->f.io;
+    size_t n = (size_t)s->rows.n_gene;
+    a->model.n_gene = s->rows.n_gene;
+    a->group = malloc(n * sizeof *a->group);
+    a->leader = malloc(n * sizeof *a->leader);
+    a->base_N = malloc(n * sizeof *a->base_N);
+    if (!a->group || !a->leader || !a->base_N) {
+        hf_hdf5_no_memory(io);
+        return;
+    }
+    hf_store_read_case(io, &a->settings);
+    read_genes(io, a);
+    a->model.gene_group = a->group;
+    a->model.gene_leader = a->leader;
+    const hf_optimize_settings *o = &a->settings.optimize;
+    if (io->status == HF_OK && (o->population != s->rows.n_individual || o->generations != s->rows.limit))
+        hf_hdf5_damaged(io, io->file, "/ga", "has other sizes than the case");
+    if (io->status == HF_OK && hf_ga_create(o, &a->model, a->base_N, &a->ga) != HF_OK) hf_hdf5_no_memory(io);
+}
+
+static void close_stored_ga(stored_ga *a)
+{
+    hf_ga_free(&a->ga);
+    hf_case_free(&a->settings);
+    free(a->group);
+    free(a->leader);
+    free(a->base_N);
+}
+
+hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages)
+{
+    hf_store *s;
+    stored_ga a = {0};
+    HF_TRY(hf_store_read_summary(path, summary, messages));
+    HF_TRY(hf_store_resume(path, &s, messages));
+    hf_hdf5_lock();
+    s->f.io.messages = messages;
+    if (s->n_journal)
+        open_stored_ga(s, &a);
+    else
+        hf_generations_sum_up(&s->f.io, &s->rows, summary);
+    hf_status status = hf_hdf5_unlock(s->f.io.status);
+    if (status == HF_OK && s->n_journal) status = restore(s, &a.ga, 0, summary, messages);
+    if (status == HF_OK) status = hf_store_publish(s, summary, 1, messages);
+    close_stored_ga(&a);
+    hf_store_abandon(s);
+    return status;
+}

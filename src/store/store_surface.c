@@ -1,0 +1,104 @@
+#include "store/store_surface.h"
+
+#include <string.h>
+
+/* X(attribute, member) of hf_surface_measures */
+#define MEASURES(X)                                                                                                    \
+    X("z_rms_m", z_rms_m)                                                                                              \
+    X("normal_rms_m", normal_rms_m)                                                                                    \
+    X("half_path_rms_m", half_path_rms_m)                                                                              \
+    X("faceting_rms_m", faceting_rms_m)                                                                                \
+    X("deviation_p50_m", deviation_p50_m)                                                                              \
+    X("deviation_p90_m", deviation_p90_m)                                                                              \
+    X("deviation_p95_m", deviation_p95_m)                                                                              \
+    X("deviation_p99_m", deviation_p99_m)                                                                              \
+    X("deviation_max_m", deviation_max_m)                                                                              \
+    X("fit_half_path_rms_m", fit.half_path_rms_m)                                                                      \
+    X("fit_normal_rms_m", fit.normal_rms_m)                                                                            \
+    X("fit_focal_length_m", fit.focal_length_m)                                                                        \
+    X("fit_shift_x_m", fit.shift_x_m)                                                                                  \
+    X("fit_shift_z_m", fit.shift_z_m)                                                                                  \
+    X("fit_rotation_x_rad", fit.rotation_x_rad)                                                                        \
+    X("fit_rotation_y_rad", fit.rotation_y_rad)                                                                        \
+    X("fit_rotation_z_rad", fit.rotation_z_rad)                                                                        \
+    X("fit_center_x_m", fit.center_m[0])                                                                               \
+    X("fit_center_y_m", fit.center_m[1])                                                                               \
+    X("fit_center_z_m", fit.center_m[2])
+
+#define ROW(attribute, member) {NULL, attribute, HF_KIND_REAL, offsetof(hf_surface_measures, member), sizeof(double)},
+#define COUNT(attribute, member) {NULL, attribute, HF_KIND_INT, offsetof(hf_surface_measures, member), sizeof(int)},
+static const hf_hdf5_member measures_table[] = {MEASURES(ROW) COUNT("fit_iterations", fit.iterations)
+                                                    COUNT("fit_converged", fit.converged)};
+#define N_MEASURE HF_HDF5_COUNT(measures_table)
+
+static const hf_hdf5_member settings_table[] = {
+    {"/surface", "focal_length_m", HF_KIND_REAL, offsetof(hf_surface_settings, focal_length_m), sizeof(double)},
+    {"/surface", "strip_width_m", HF_KIND_REAL, offsetof(hf_surface_settings, strip_width_m), sizeof(double)}};
+
+static const char *const stage_group[3] = {"/surface/form", "/surface/optimize", "/surface/polish"};
+
+static void table_of(int stage, hf_hdf5_member table[N_MEASURE])
+{
+    memcpy(table, measures_table, sizeof measures_table);
+    for (int i = 0; i < N_MEASURE; i++)
+        table[i].object = stage_group[stage];
+}
+
+static hf_hdf5_array losses(const char *name, int n, const char *description)
+{
+    return (hf_hdf5_array){name, HF_KIND_REAL, 1, {(hsize_t)n}, "dB", description};
+}
+
+static hf_hdf5_array frequency_array(int n)
+{
+    return (hf_hdf5_array){"frequency_Hz", HF_KIND_REAL, 1, {(hsize_t)n}, "Hz", "at which the loss of gain is told"};
+}
+
+#define RAW "gain_loss_dB", n, "loss of gain (Ruze) by frequency"
+#define FITTED "fit_gain_loss_dB", n, "the same after the best fit"
+
+void hf_store_put_surface(hf_hdf5 *io, const hf_summary *summary)
+{
+    int n = summary->surface.frequencies_Hz.n;
+    if (!(summary->surface.focal_length_m > 0)) return;
+    hf_hdf5_array frequency = frequency_array(n), raw = losses(RAW), fitted = losses(FITTED);
+    hid_t group = hf_hdf5_make_group(io, "/surface");
+    hf_hdf5_put_members(io, settings_table, HF_HDF5_COUNT(settings_table), &summary->surface);
+    if (n) hf_hdf5_write_array(io, group, &frequency, summary->surface.frequencies_Hz.value);
+    hf_hdf5_close(io, group);
+    for (int stage = 0; stage < 3; stage++) {
+        const hf_surface_measures *s = &summary->measures[stage];
+        hf_hdf5_member table[N_MEASURE];
+        if (!s->is_measured) continue;
+        table_of(stage, table);
+        group = hf_hdf5_make_group(io, stage_group[stage]);
+        hf_hdf5_put_members(io, table, N_MEASURE, s);
+        if (n) hf_hdf5_write_array(io, group, &raw, s->gain_loss_dB);
+        if (n) hf_hdf5_write_array(io, group, &fitted, s->fit_gain_loss_dB);
+        hf_hdf5_close(io, group);
+    }
+}
+
+void hf_store_get_surface(hf_hdf5 *io, hf_summary *summary)
+{
+    if (!hf_hdf5_has(io, io->file, "/surface")) return;
+    hid_t group = hf_hdf5_open_group(io, "/surface");
+    hf_hdf5_get_members(io, settings_table, HF_HDF5_COUNT(settings_table), &summary->surface);
+    int n = hf_hdf5_has(io, group, "frequency_Hz") ? hf_hdf5_length(io, group, "frequency_Hz", HF_LIST_MAX) : 0;
+    hf_hdf5_array frequency = frequency_array(n), raw = losses(RAW), fitted = losses(FITTED);
+    if (n) hf_hdf5_read_array(io, group, &frequency, summary->surface.frequencies_Hz.value);
+    summary->surface.frequencies_Hz.n = n;
+    hf_hdf5_close(io, group);
+    for (int stage = 0; stage < 3; stage++) {
+        hf_surface_measures *s = &summary->measures[stage];
+        hf_hdf5_member table[N_MEASURE];
+        if (!hf_hdf5_has(io, io->file, stage_group[stage])) continue;
+        table_of(stage, table);
+        s->is_measured = 1;
+        group = hf_hdf5_open_group(io, stage_group[stage]);
+        hf_hdf5_get_members(io, table, N_MEASURE, s);
+        if (n) hf_hdf5_read_array(io, group, &raw, s->gain_loss_dB);
+        if (n) hf_hdf5_read_array(io, group, &fitted, s->fit_gain_loss_dB);
+        hf_hdf5_close(io, group);
+    }
+}

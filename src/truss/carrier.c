@@ -1,0 +1,86 @@
+#include <hifdm/carrier.h>
+
+#include "base/arena.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void lay_out(hf_arena *a, hf_carrier *c, size_t n_support)
+{
+    c->scene_node = hf_arena_take(a, n_support, sizeof(int));
+    c->truss_node = hf_arena_take(a, n_support, sizeof(int));
+    c->flexibility_m_per_N = hf_arena_take(a, 9 * n_support * n_support, sizeof(double));
+}
+
+static hf_status attach(double tolerance_m, const hf_scene *scene, hf_carrier *c, hf_messages *messages)
+{
+    size_t n_support = 0;
+    hf_arena arena = {0};
+    for (int i = 0; i < scene->n_node; i++)
+        n_support += scene->role[i] == HF_ROLE_SUPPORT;
+    lay_out(&arena, c, n_support);
+    hf_status status = hf_arena_allocate(&arena);
+    if (status == HF_OK) {
+        lay_out(&arena, c, n_support);
+        c->block = arena.block;
+        HF_TRY(
+            hf_truss_attach(&c->truss, scene, tolerance_m, &c->n_attachment, c->scene_node, c->truss_node, messages));
+        status = hf_frame_condense(&c->frame, c->n_attachment, c->truss_node, c->flexibility_m_per_N);
+    }
+    if (status == HF_OK) return HF_OK;
+    return hf_error(messages, status, "out of memory for a truss with %zu attachments", n_support);
+}
+
+hf_status hf_carrier_build(hf_truss *truss, double match_tolerance_m, const hf_scene *scene, hf_carrier *carrier,
+                           hf_messages *messages)
+{
+    *carrier = (hf_carrier){.truss = *truss};
+    *truss = (hf_truss){0};
+    carrier->mass_kg = hf_truss_mass(&carrier->truss);
+    HF_TRY(hf_frame_build(&carrier->truss, &carrier->frame, messages));
+    return attach(match_tolerance_m, scene, carrier, messages);
+}
+
+void hf_carrier_free(hf_carrier *carrier)
+{
+    free(carrier->block);
+    hf_frame_free(&carrier->frame);
+    hf_truss_free(&carrier->truss);
+    *carrier = (hf_carrier){0};
+}
+
+static void lay_out_state(hf_arena *a, const hf_carrier *c, hf_carrier_state *s, double **force, double **work)
+{
+    size_t n = HF_TRUSS_DOF * (size_t)c->truss.n_node;
+    s->displacement = hf_arena_take(a, n, sizeof(double));
+    s->reaction = hf_arena_take(a, n, sizeof(double));
+    s->end_force = hf_arena_take(a, 2 * HF_TRUSS_DOF * (size_t)c->truss.n_member, sizeof(double));
+    *force = hf_arena_take(a, n, sizeof(double));
+    *work = hf_arena_take(a, hf_frame_work_size(&c->frame, 1), sizeof(double));
+}
+
+hf_status hf_carrier_load(const hf_carrier *c, const double *force_N, hf_carrier_state *state)
+{
+    double *force, *work;
+    int bad_dof;
+    hf_arena arena = {0};
+    *state = (hf_carrier_state){0};
+    lay_out_state(&arena, c, state, &force, &work);
+    HF_TRY(hf_arena_allocate(&arena));
+    lay_out_state(&arena, c, state, &force, &work);
+    state->block = arena.block;
+    for (int k = 0; k < c->n_attachment; k++)
+        for (int d = 0; d < 3; d++)
+            force[HF_TRUSS_DOF * c->truss_node[k] + d] += force_N[3 * k + d];
+    const hf_frame_load load = {.force = force};
+    HF_TRY(hf_frame_solve(&c->frame, 1, &load, work, state->displacement, &bad_dof)); /* forces alone: never refused */
+    hf_frame_reactions(&c->frame, &load, state->displacement, state->reaction, NULL);
+    hf_frame_member_forces(&c->frame, &load, state->displacement, state->end_force);
+    return HF_OK;
+}
+
+void hf_carrier_state_free(hf_carrier_state *state)
+{
+    free(state->block);
+    *state = (hf_carrier_state){0};
+}

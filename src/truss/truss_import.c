@@ -1,0 +1,168 @@
+/* Contents: nodes - members - together */
+#include "truss/truss_import.h"
+
+#include "base/csv.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define COLUMN_MAX 64
+
+/* ---- nodes ---- */
+
+enum { NODE_ID, NODE_X, NODE_Y, NODE_Z, NODE_FIXED, NODE_MASS, N_NODE_COLUMN };
+static const char *const node_column[N_NODE_COLUMN] = {"id", "x_m", "y_m", "z_m", "fixed", "mass_kg"};
+
+static int dof_bit(const char *word, size_t length)
+{
+    if (length == 3 && !strncmp(word, "all", 3)) return 0x3f;
+    for (int k = 0; k < HF_TRUSS_DOF; k++)
+        if (length == 2 && !strncmp(word, hf_dof_word[k], 2)) return 1 << k;
+    return 0;
+}
+
+static unsigned char read_fixed(hf_csv *t, int row, int column, const char *id)
+{
+    const char *word = hf_csv_cell(t, row, column);
+    int fixed = 0;
+    for (;;) {
+        word += strspn(word, " \t");
+        if (!*word) return (unsigned char)fixed;
+        size_t length = strcspn(word, " \t");
+        int bit = dof_bit(word, length);
+        if (!bit) {
+            hf_csv_fault(t, t->line[row], id, "fixed must be empty, all, or some of ux uy uz rx ry rz, not ", word);
+            return 0;
+        }
+        fixed |= bit;
+        word += length;
+    }
+}
+
+static void read_nodes(hf_csv *t, const int *where, hf_truss *s)
+{
+    for (int r = 0; r < t->n_row; r++) {
+        const char *id = hf_csv_cell(t, r, where[NODE_ID]);
+        for (int c = 0; c < 3; c++)
+            s->position_m[3 * r + c] = hf_csv_number(t, r, where[NODE_X + c], id, node_column[NODE_X + c]);
+        s->fixed[r] = read_fixed(t, r, where[NODE_FIXED], id);
+        if (where[NODE_MASS] >= 0 && *hf_csv_cell(t, r, where[NODE_MASS]))
+            s->mass_kg[r] = hf_csv_number(t, r, where[NODE_MASS], id, node_column[NODE_MASS]);
+        s->node_id[r] = id;
+        s->node_line[r] = t->line[r];
+    }
+}
+
+/* ---- members ---- */
+
+enum { MEMBER_ID, MEMBER_I, MEMBER_J, MEMBER_E, MEMBER_A, MEMBER_OPTIONAL };
+#define COLUMN_NAME(name, units, otherwise, description) #name,
+#define COUNT(name, units, otherwise, description) +1
+enum { N_NUMBER = 0 HF_MEMBER_NUMBERS(COUNT), MEMBER_JOINT = MEMBER_E + N_NUMBER, MEMBER_UNIT, N_MEMBER_COLUMN };
+static const char *const member_column[N_MEMBER_COLUMN] = {"id", "i", "j", HF_MEMBER_NUMBERS(COLUMN_NAME) "joint",
+                                                           "unit"};
+
+static int optional_word(hf_csv *t, int row, int column, const char *id, const char *const *words, int n, int otherwise)
+{
+    if (column < 0 || !*hf_csv_cell(t, row, column)) return otherwise;
+    return hf_csv_word(t, row, column, id, words, n);
+}
+
+static void read_numbers(hf_csv *t, const int *where, int r, const char *id, hf_truss *s)
+{
+#define FIELD(name, units, otherwise, description) {s->name + r, otherwise},
+    const struct {
+        double *value, otherwise;
+    } field[N_NUMBER] = {HF_MEMBER_NUMBERS(FIELD)};
+#undef FIELD
+    for (int k = 0; k < N_NUMBER; k++) {
+        int column = where[MEMBER_E + k], required = MEMBER_E + k < MEMBER_OPTIONAL;
+        *field[k].value = field[k].otherwise;
+        if (required || (column >= 0 && *hf_csv_cell(t, r, column)))
+            *field[k].value = hf_csv_number(t, r, column, id, member_column[MEMBER_E + k]);
+    }
+}
+
+static void read_members(hf_csv *t, const int *where, const hf_csv *nodes, const hf_csv_named *node_index, hf_truss *s)
+{
+    for (int r = 0; r < t->n_row; r++) {
+        const char *id = hf_csv_cell(t, r, where[MEMBER_ID]);
+        s->member_id[r] = id;
+        s->member_line[r] = t->line[r];
+        for (int k = 0; k < 2; k++) {
+            const char *end = hf_csv_cell(t, r, where[MEMBER_I + k]);
+            int row = hf_csv_row_of(node_index, nodes->n_row, end);
+            if (row < 0) hf_csv_fault(t, t->line[r], id, "there is no truss node with the id ", *end ? end : "(empty)");
+            s->end[2 * r + k] = row < 0 ? 0 : row;
+        }
+        read_numbers(t, where, r, id, s);
+        s->joint[r] = (unsigned char)optional_word(t, r, where[MEMBER_JOINT], id, hf_joint_word, 2, HF_JOINT_RIGID);
+        s->unit[r] = (unsigned char)optional_word(t, r, where[MEMBER_UNIT], id, hf_unit_word, 4, HF_UNIT_OTHER);
+    }
+}
+
+/* ---- together ---- */
+
+/* The ids still point into the two texts: move them to one block that the truss owns. */
+static hf_status keep_ids(hf_truss *s)
+{
+    size_t size = strlen(s->nodes_file) + strlen(s->members_file) + 2;
+    for (int i = 0; i < s->n_node; i++)
+        size += strlen(s->node_id[i]) + 1;
+    for (int e = 0; e < s->n_member; e++)
+        size += strlen(s->member_id[e]) + 1;
+    char *text = s->text = malloc(size);
+    if (!text) return HF_NO_MEMORY;
+    const char **all[] = {&s->nodes_file, &s->members_file};
+    for (int i = 0; i < 2 + s->n_node + s->n_member; i++) {
+        const char **id = i < 2 ? all[i] : i < 2 + s->n_node ? &s->node_id[i - 2] : &s->member_id[i - 2 - s->n_node];
+        *id = strcpy(text, *id);
+        text += strlen(text) + 1;
+    }
+    return HF_OK;
+}
+
+static hf_status build(hf_csv *nodes, hf_csv *members, hf_csv_named **node_index, hf_csv_named **member_index,
+                       hf_truss *s)
+{
+    int node_where[N_NODE_COLUMN] = {0}, member_where[N_MEMBER_COLUMN] = {0};
+    /* both files are looked at before giving up, so that one run shows the faults of both */
+    hf_status node_status = hf_csv_read(nodes->path, COLUMN_MAX, nodes, nodes->messages);
+    hf_status member_status = hf_csv_read(members->path, COLUMN_MAX, members, members->messages);
+    if (node_status == HF_OK)
+        node_status = hf_csv_find_columns(nodes, node_column, N_NODE_COLUMN, NODE_MASS, node_where);
+    if (member_status == HF_OK)
+        member_status = hf_csv_find_columns(members, member_column, N_MEMBER_COLUMN, MEMBER_OPTIONAL, member_where);
+    HF_TRY(node_status);
+    HF_TRY(member_status);
+    hf_status status = hf_truss_allocate(s, nodes->n_row, members->n_row, 1);
+    if (status == HF_OK) *node_index = hf_csv_index(nodes, node_where[NODE_ID]);
+    if (status == HF_OK) *member_index = hf_csv_index(members, member_where[MEMBER_ID]);
+    if (!*node_index || !*member_index)
+        return hf_error(nodes->messages, HF_NO_MEMORY, "%s: out of memory", nodes->path);
+    read_nodes(nodes, node_where, s);
+    read_members(members, member_where, nodes, *node_index, s);
+    node_status = hf_csv_close_faults(nodes);
+    member_status = hf_csv_close_faults(members);
+    HF_TRY(node_status);
+    HF_TRY(member_status);
+    s->nodes_file = nodes->path;
+    s->members_file = members->path;
+    if (keep_ids(s) != HF_OK) return hf_error(nodes->messages, HF_NO_MEMORY, "%s: out of memory", nodes->path);
+    return HF_OK;
+}
+
+hf_status hf_truss_import(const char *nodes_path, const char *members_path, hf_truss *truss, hf_messages *messages)
+{
+    *truss = (hf_truss){0};
+    hf_csv nodes = {.path = nodes_path, .messages = messages}, members = {.path = members_path, .messages = messages};
+    hf_csv_named *node_index = NULL, *member_index = NULL;
+    hf_status status = build(&nodes, &members, &node_index, &member_index, truss);
+    free(node_index);
+    free(member_index);
+    hf_csv_free(&nodes);
+    hf_csv_free(&members);
+    if (status != HF_OK) hf_truss_free(truss); /* its ids would point into freed text */
+    return status;
+}

@@ -1,0 +1,151 @@
+/* A search with linked genes: every design, the shape found and the polished optimum are symmetric. */
+#include "nets.h"
+
+#include <hifdm/batch.h>
+#include <hifdm/ga.h>
+#include "search/polish.h"
+#include "net/symmetry.h"
+
+enum { N_GENE = 120, N_CABLE = 220, N_GENERATION = 15 };
+
+struct search {
+    struct net net;
+    hf_evaluator evaluator;
+    hf_batch batch;
+    hf_ga ga;
+    double start_q[N_CABLE], base_N[N_GENE];
+};
+
+/* The tolerance is tight so that what is seen of the shape is symmetry and not where the solver stopped. */
+static void open_search(struct search *s)
+{
+    hf_messages messages = {0};
+    int planes;
+    OPEN_CASE(&s->net, "configs/chen2022.yaml", "optimize.symmetry=xy", "optimize.population=16",
+              "optimize.generations=15", "form.residual_tolerance=1e-12");
+    hf_model *m = &s->net.model;
+    ck_assert(m->n_gene == N_GENE && m->n_cable == N_CABLE);
+    ck_assert_int_eq(hf_symmetry_apply(&s->net.scene, s->net.settings.optimize.symmetry, m, &planes, &messages), HF_OK);
+    ck_assert_int_eq(m->n_leader, 30);
+    ck_assert_int_eq(find_shape(&s->net), HF_OK);
+    memcpy(s->start_q, s->net.work.q_N_per_m, sizeof s->start_q);
+    for (int k = 0; k < m->n_gene; k++)
+        s->base_N[k] = s->net.work.tension_N[m->gene_cable[k]];
+    hf_symmetry_average(m, s->base_N);
+    s->evaluator = (hf_evaluator){m, &s->net.form, s->start_q, HF_RULE_FORCE_DENSITY, HF_SOLVER_AUTO, 100};
+    ck_assert_int_eq(hf_batch_create(&s->evaluator, 2, &s->batch), HF_OK);
+    ck_assert_int_eq(hf_ga_create(&s->net.settings.optimize, m, s->base_N, &s->ga), HF_OK);
+}
+
+static void close_search(struct search *s)
+{
+    hf_ga_free(&s->ga);
+    hf_batch_free(&s->batch);
+    close_net(&s->net);
+}
+
+/* To the bit. */
+static void demand_symmetric_design(const struct search *s, const double *design_N)
+{
+    for (int k = 0; k < N_GENE; k++)
+        ck_assert_double_eq(design_N[k], design_N[s->net.model.gene_leader[k]]);
+}
+
+/* The generator numbers nodes j * 11 + i, so the mirror images are known. The largest difference of a position from
+ * that of its image, m. */
+static double asymmetry_m(const hf_model *m, const hf_workspace *w)
+{
+    double largest = 0;
+    for (int j = 0; j < 11; j++)
+        for (int i = 0; i < 11; i++) {
+            int row = m->row_of_node[j * 11 + i], by_x = m->row_of_node[j * 11 + 10 - i],
+                by_y = m->row_of_node[(10 - j) * 11 + i];
+            const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
+            double d[] = {x[row] + x[by_x], y[row] - y[by_x],      z[row] - z[by_x],
+                          x[row] - x[by_y], y[row] + y[by_y] - 12, z[row] - z[by_y]};
+            for (int c = 0; c < 6; c++)
+                largest = fmax(largest, fabs(d[c]));
+        }
+    return largest;
+}
+
+static void evolve(struct search *s)
+{
+    do {
+        hf_batch_run(&s->batch, s->ga.n_individual, s->ga.design_N, s->ga.pending, s->ga.result);
+        hf_ga_tell(&s->ga);
+        for (int i = 0; i < s->ga.n_individual; i++) {
+            const double *design = s->ga.design_N + i * N_GENE;
+            demand_symmetric_design(s, design);
+            for (int k = 0; k < N_GENE; k++)
+                ck_assert(design[k] >= s->ga.lower_N[k] && design[k] <= s->ga.upper_N[k]);
+        }
+    } while (hf_ga_next(&s->ga));
+}
+
+/* 1e-9 m: a residual of 1e-11 N on a net whose softest mode gives about 1 m/N (condition 5e6, stiffness 1e6 N/m). */
+START_TEST(what_a_symmetric_search_finds_is_symmetric)
+{
+    struct search s;
+    hf_form_result found;
+    hf_polish_result polished;
+    double design_N[N_GENE];
+    open_search(&s);
+    demand_symmetric_design(&s, s.base_N);
+    ck_assert_int_eq(hf_batch_share(&s.batch, s.base_N), HF_SOLVER_CHORD);
+    evolve(&s);
+    ck_assert_double_lt(s.ga.best_psi_m[s.ga.generation], s.ga.best_psi_m[0]); /* it moved */
+    memcpy(design_N, s.ga.design_N + s.ga.best * N_GENE, sizeof design_N);
+    ck_assert_int_eq(hf_evaluate(&s.evaluator, design_N, &s.net.work, &found), HF_OK);
+    ck_assert_double_lt(asymmetry_m(&s.net.model, &s.net.work), 1e-9);
+    ck_assert_int_eq(hf_polish_run(&s.evaluator, s.ga.lower_N, s.ga.upper_N, 20, design_N, &s.net.work, &polished),
+                     HF_OK);
+    ck_assert_double_lt(polished.psi_m, found.psi_m);
+    demand_symmetric_design(&s, design_N);
+    ck_assert_int_eq(hf_evaluate(&s.evaluator, design_N, &s.net.work, &found), HF_OK);
+    ck_assert_double_lt(asymmetry_m(&s.net.model, &s.net.work), 1e-9);
+    close_search(&s);
+}
+END_TEST
+
+/* The optimum of a symmetric, well-posed net is symmetric: with 22 variables Levenberg-Marquardt ends where it ends
+ * with all 88, only sooner. 1e-7: both stop at a relative change of psi^2 of 1e-14 or when no step helps any more. */
+START_TEST(polishing_linked_genes_reaches_the_free_optimum)
+{
+    double psi_m[2];
+    for (int linked = 0; linked < 2; linked++) {
+        struct net net;
+        hf_messages messages = {0};
+        hf_polish_result polished;
+        int planes;
+        double start_q[1000], design_N[200], lower_N[200], upper_N[200];
+        OPEN_CASE(&net, SMALL_REFLECTOR);
+        ck_assert(net.model.n_gene <= 200 && net.model.n_cable <= 1000);
+        int wanted = linked ? HF_SYMMETRY_XY : HF_SYMMETRY_NONE;
+        ck_assert_int_eq(hf_symmetry_apply(&net.scene, wanted, &net.model, &planes, &messages), HF_OK);
+        ck_assert_int_eq(find_shape(&net), HF_OK);
+        memcpy(start_q, net.work.q_N_per_m, (size_t)net.model.n_cable * sizeof(double));
+        for (int k = 0; k < net.model.n_gene; k++)
+            design_N[k] = net.work.tension_N[net.model.gene_cable[k]];
+        hf_symmetry_average(&net.model, design_N);
+        for (int k = 0; k < net.model.n_gene; k++)
+            lower_N[k] = design_N[k] - 1, upper_N[k] = design_N[k] + 1;
+        hf_evaluator v = {&net.model, &net.form, start_q, HF_RULE_FORCE_DENSITY, HF_SOLVER_NEWTON, 100};
+        ck_assert_int_eq(hf_polish_run(&v, lower_N, upper_N, 200, design_N, &net.work, &polished), HF_OK);
+        psi_m[linked] = polished.psi_m;
+        ck_assert_double_lt(polished.psi_m, polished.start_psi_m);
+        close_net(&net);
+    }
+    ck_assert_double_eq_tol(psi_m[1] / psi_m[0], 1, 1e-7);
+}
+END_TEST
+
+Suite *suite_property_symmetry(void)
+{
+    Suite *suite = suite_create("property/symmetry");
+    TCase *tests = tcase_create("symmetry");
+    suite_add_tcase(suite, tests);
+    tcase_add_test(tests, what_a_symmetric_search_finds_is_symmetric);
+    tcase_add_test(tests, polishing_linked_genes_reaches_the_free_optimum);
+    return suite;
+}

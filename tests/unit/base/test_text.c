@@ -1,0 +1,173 @@
+/* Strict numbers, whole files, nearest words. */
+#include "support.h"
+
+#include "base/text.h"
+
+#include <float.h>
+#include <locale.h>
+#include <stdlib.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* strtod rounds correctly, as the compiler does: exact. */
+static const struct {
+    const char *text;
+    double value;
+} good_double[] = {
+    {"2.385", 2.385},  {"-2.385", -2.385}, {"+7", 7},      {"0", 0},
+    {".5", 0.5},       {"5.", 5},          {"1e-6", 1e-6}, {"1E+3", 1000},
+    {"-1.25e2", -125}, {"00012", 12},      {"1e-400", 0},  {"1.7976931348623157e308", DBL_MAX},
+    {"0.1", 0.1},
+};
+
+START_TEST(decimal_numbers_are_taken)
+{
+    double value = -1;
+    ck_assert(hf_text_double(good_double[_i].text, &value));
+    ck_assert_double_eq(value, good_double[_i].value);
+}
+END_TEST
+
+static const char *const bad_double[] = {
+    "",     " ",   "1 ",   " 1",    "1,5",   "1e",     "1e+",   "e5", ".",     "+",        "--1",   "nan",       "inf",
+    "-inf", "NaN", "0x10", "0x1p3", "1e400", "-1e400", "1_000", "1f", "1.2.3", "infinity", "1e5.5", "\302\2401", "one",
+};
+
+START_TEST(everything_else_is_refused)
+{
+    double value;
+    ck_assert_msg(!hf_text_double(bad_double[_i], &value), "'%s'", bad_double[_i]);
+}
+END_TEST
+
+/* An application that links the library may have chosen such a locale; the test makes one, so that none need be
+ * installed. Where localedef is missing, nothing can be tested. */
+START_TEST(a_decimal_comma_changes_nothing)
+{
+    const char *source = temp_path("comma.src");
+    write_file(source, "LC_NUMERIC\ndecimal_point \",\"\nthousands_sep \"\"\ngrouping -1\nEND LC_NUMERIC\n");
+    const char *const argv[] = {
+        "sh", "-c", "localedef -c -i \"$0\" -f ANSI_X3.4-1968 \"$1\"", source, temp_path("comma"), NULL};
+    struct command command = run_command(20, argv);
+    free_command(&command);
+    char *folder = strdup(source);
+    ck_assert_ptr_nonnull(folder);
+    *strrchr(folder, '/') = '\0';
+    setenv("LOCPATH", folder, 1);
+    free(folder);
+    if (!setlocale(LC_ALL, "comma")) return;
+    double value = 0, other = 0, system = strtod("2.385", NULL);
+    int point = hf_text_double("2.385", &value), comma = hf_text_double("2,385", &other);
+    setlocale(LC_ALL, "C");
+    ck_assert_double_eq(system, 2); /* the locale was in force */
+    ck_assert(point && !comma);
+    ck_assert_double_eq(value, 2.385);
+}
+END_TEST
+
+START_TEST(whole_numbers)
+{
+    uint64_t value = 1;
+    ck_assert(hf_text_uint64("0", &value) && value == 0);
+    ck_assert(hf_text_uint64("2022", &value) && value == 2022);
+    ck_assert(hf_text_uint64("18446744073709551615", &value) && value == UINT64_MAX);
+    static const char *const bad[] = {"", "-1", "+1", "1.0", "1e3", "0x10", " 1", "1 ", "18446744073709551616", "x"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        ck_assert_msg(!hf_text_uint64(bad[i], &value), "'%s'", bad[i]);
+}
+END_TEST
+
+START_TEST(nearest_word_is_a_likely_typing_error)
+{
+    static const char *const words[] = {"pretension_N", "residual_tolerance", "length_tolerance", "method", "stop"};
+    ck_assert_str_eq(hf_text_nearest("pretention_N", words, 5), "pretension_N");
+    ck_assert_str_eq(hf_text_nearest("PRETENSION_n", words, 5), "pretension_N");
+    ck_assert_str_eq(hf_text_nearest("lenght_tolerance", words, 5), "length_tolerance");
+    ck_assert_str_eq(hf_text_nearest("metod", words, 5), "method");
+    ck_assert_str_eq(hf_text_nearest("sop", words, 5), "stop");
+    ck_assert_str_eq(hf_text_nearest("stopp", words, 5), "stop");
+    ck_assert_ptr_null(hf_text_nearest("colour", words, 5));
+    ck_assert_ptr_null(hf_text_nearest("", words, 5));
+    ck_assert_ptr_null(hf_text_nearest("stop", words, 0));
+    char longer[200]; /* longer than the table of the edit distance */
+    memset(longer, 'm', sizeof longer - 1);
+    longer[sizeof longer - 1] = '\0';
+    ck_assert_ptr_null(hf_text_nearest(longer, words, 5));
+}
+END_TEST
+
+/* Around the first buffer (16384 bytes) and its double. */
+START_TEST(files_of_any_length_are_whole)
+{
+    static const size_t lengths[] = {0, 1, 16382, 16383, 16384, 32767, 32768, 100000};
+    size_t n = lengths[_i], length;
+    char *text = malloc(n + 1), *back;
+    ck_assert_ptr_nonnull(text);
+    for (size_t i = 0; i < n; i++)
+        text[i] = (char)('a' + i % 23);
+    text[n] = '\0';
+    write_file(temp_path("a.txt"), text);
+    hf_messages m = {0};
+    ck_assert_int_eq(hf_text_read_file(temp_path("a.txt"), HF_IO, &back, &length, &m), HF_OK);
+    ck_assert_uint_eq(length, n);
+    ck_assert_str_eq(back, text);
+    ck_assert_ptr_null(m.text);
+    free(back);
+    free(text);
+}
+END_TEST
+
+START_TEST(files_that_cannot_be_read_are_named)
+{
+    char *text;
+    size_t length;
+    hf_messages m = {0};
+    ck_assert_int_eq(hf_text_read_file(temp_path("none.yaml"), HF_BAD_CASE, &text, &length, &m), HF_BAD_CASE);
+    ck_assert_ptr_null(text);
+    ck_assert_ptr_nonnull(strstr(m.text, "none.yaml: cannot open: No such file"));
+    hf_messages_free(&m);
+    temp_path("x"); /* the folder exists now */
+    ck_assert_int_eq(hf_text_read_file(temp_path("."), HF_IO, &text, &length, &m), HF_IO);
+    ck_assert_ptr_null(text);
+    ck_assert_ptr_nonnull(strstr(m.text, "cannot read: Is a directory"));
+    hf_messages_free(&m);
+}
+END_TEST
+
+START_TEST(a_cut_letter_is_taken_away_whole)
+{
+    static const struct {
+        const char *text, *trimmed;
+    } cases[] = {{"abc", "abc"},
+                 {"ab\xc3", "ab"},
+                 {"ab\xc3\xa9", "ab\xc3\xa9"},
+                 {"a\xe4\xb8", "a"},
+                 {"a\xe4\xb8\xad", "a\xe4\xb8\xad"},
+                 {"\xf0\x9f\x98", ""},
+                 {"", ""},
+                 {"x\xf0", "x"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[16];
+        snprintf(text, sizeof text, "%s", cases[i].text);
+        hf_text_trim_utf8(text);
+        ck_assert_str_eq(text, cases[i].trimmed);
+    }
+}
+END_TEST
+
+Suite *suite_unit_text(void)
+{
+    Suite *suite = suite_create("unit/text");
+    TCase *tests = tcase_create("text");
+    tcase_add_test(tests, a_cut_letter_is_taken_away_whole);
+    suite_add_tcase(suite, tests);
+    tcase_add_loop_test(tests, decimal_numbers_are_taken, 0, sizeof good_double / sizeof *good_double);
+    tcase_add_loop_test(tests, everything_else_is_refused, 0, sizeof bad_double / sizeof *bad_double);
+    tcase_add_test(tests, a_decimal_comma_changes_nothing);
+    tcase_add_test(tests, whole_numbers);
+    tcase_add_test(tests, nearest_word_is_a_likely_typing_error);
+    tcase_add_loop_test(tests, files_of_any_length_are_whole, 0, 8);
+    tcase_add_test(tests, files_that_cannot_be_read_are_named);
+    return suite;
+}

@@ -1,0 +1,204 @@
+/* The band solvers against each other, GSL's band Cholesky and plain dense elimination, over a grid of sizes. */
+#include "support.h"
+
+#include "linalg/band.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_N = 60, MAX_K = 20, LDB = MAX_N + 3 };
+
+struct band_system {
+    int n, k;
+    double band[MAX_N * (MAX_K + 1)]; /* lower band, column-major: D(i,j) at i-j + j*(k+1) */
+    double b[3 * LDB];                /* rows n.. of each column are a guard */
+};
+
+static const int sizes[] = {1, 2, 3, 7, 12, 31, 60}, widths[] = {0, 1, 2, 5, 11, 20};
+enum { N_SIZES = sizeof sizes / sizeof *sizes, N_WIDTHS = sizeof widths / sizeof *widths };
+
+/* Entries in (-1, 1); `dominance` added to a diagonal that exceeds the sum of its row makes it positive definite. */
+static struct band_system random_system(int n, int k, double dominance, uint64_t stream)
+{
+    struct rng rng = rng_start(stream);
+    struct band_system s = {.n = n, .k = k};
+    double row_sum[MAX_N] = {0};
+    for (int j = 0; j < n; j++)
+        for (int i = j; i <= j + k && i < n; i++) {
+            double value = s.band[i - j + j * (k + 1)] = rng_uniform(&rng, -1, 1);
+            if (i != j) row_sum[i] += fabs(value), row_sum[j] += fabs(value);
+        }
+    for (int j = 0; j < n && dominance > 0; j++)
+        s.band[j * (k + 1)] = row_sum[j] + dominance;
+    for (int i = 0; i < 3 * LDB; i++)
+        s.b[i] = i % LDB < n ? rng_uniform(&rng, -2.385, 2.385) : 77;
+    return s;
+}
+
+static double entry(const struct band_system *s, int i, int j)
+{
+    int low = i < j ? i : j, d = abs(i - j);
+    return d <= s->k ? s->band[d + low * (s->k + 1)] : 0;
+}
+
+/* Gauss with partial pivoting on the full matrix: as plain as can be. x: [3][LDB]. */
+static void solve_dense(const struct band_system *s, double *x)
+{
+    static double a[MAX_N][MAX_N];
+    int n = s->n;
+    memcpy(x, s->b, sizeof s->b);
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            a[i][j] = entry(s, i, j);
+    for (int p = 0; p < n; p++) {
+        int best = p;
+        for (int i = p + 1; i < n; i++)
+            if (fabs(a[i][p]) > fabs(a[best][p])) best = i;
+        for (int j = 0; j < n; j++) {
+            double swap = a[p][j];
+            a[p][j] = a[best][j], a[best][j] = swap;
+        }
+        for (int c = 0; c < 3; c++) {
+            double swap = x[c * LDB + p];
+            x[c * LDB + p] = x[c * LDB + best], x[c * LDB + best] = swap;
+        }
+        for (int i = p + 1; i < n; i++) {
+            double factor = a[i][p] / a[p][p];
+            for (int j = p; j < n; j++)
+                a[i][j] -= factor * a[p][j];
+            for (int c = 0; c < 3; c++)
+                x[c * LDB + i] -= factor * x[c * LDB + p];
+        }
+    }
+    for (int c = 0; c < 3; c++)
+        for (int i = n - 1; i >= 0; i--) {
+            for (int j = i + 1; j < n; j++)
+                x[c * LDB + i] -= a[i][j] * x[c * LDB + j];
+            x[c * LDB + i] /= a[i][i];
+        }
+}
+
+/* The layouts agree: GSL's row j holds column j of the lower band. */
+static void solve_gsl(const struct band_system *s, double *x)
+{
+    struct band_system copy = *s;
+    memcpy(x, s->b, sizeof s->b);
+    gsl_matrix_view a = gsl_matrix_view_array(copy.band, (size_t)s->n, (size_t)s->k + 1);
+    ck_assert_int_eq(gsl_linalg_cholesky_band_decomp(&a.matrix), GSL_SUCCESS);
+    for (int c = 0; c < 3; c++) {
+        gsl_vector_view v = gsl_vector_view_array(x + c * LDB, (size_t)s->n);
+        ck_assert_int_eq(gsl_linalg_cholesky_band_svx(&a.matrix, &v.vector), GSL_SUCCESS);
+    }
+}
+
+static void assert_same(const double *x, const double *y, double tolerance)
+{
+    for (int i = 0; i < 3 * LDB; i++)
+        ck_assert_double_eq_tol(x[i], y[i], tolerance);
+}
+
+/* Rows sum to at most 2*20 + 0.317 beside a dominance of 0.317: the condition number stays below 300 and |x| below
+ * 2.385/0.317, so roundoff below 300 * 8 * 60 * 1e-16 = 2e-11 even if all of it added up; measured 1e-14. */
+#define TOLERANCE 1e-12
+
+START_TEST(cholesky_lu_gsl_and_dense_agree)
+{
+    int n = sizes[_i % N_SIZES], k = widths[_i / N_SIZES];
+    struct band_system s = random_system(n, k, 0.317, (uint64_t)_i);
+    double cholesky[3 * LDB], lu[3 * LDB], other[3 * LDB], general[MAX_N * (3 * MAX_K + 1)];
+    int pivot[MAX_N], bad_row = 7;
+    memcpy(lu, s.b, sizeof lu);
+    ck_assert_int_eq(hf_band_solve_indefinite(n, k, s.band, general, pivot, lu, LDB, &bad_row), HF_OK);
+    ck_assert_int_eq(bad_row, -1);
+    solve_dense(&s, other);
+    assert_same(lu, other, TOLERANCE);
+    struct band_system copy = s;
+    memcpy(cholesky, s.b, sizeof cholesky);
+    bad_row = 7;
+    ck_assert_int_eq(hf_band_solve(n, k, copy.band, cholesky, LDB, &bad_row), HF_OK);
+    ck_assert_int_eq(bad_row, -1);
+    assert_same(cholesky, other, TOLERANCE); /* the guard rows, too */
+    if (k >= n) return;                      /* GSL wants no wider band than the matrix */
+    solve_gsl(&s, other);
+    assert_same(cholesky, other, TOLERANCE);
+}
+END_TEST
+
+/* A random matrix may be badly conditioned, so the solution proves little; the backward error of LU with pivoting is
+ * small whatever the condition: below n * growth * 1e-16 of |A| |x|, growth below 100 in practice. */
+START_TEST(indefinite_systems_are_solved)
+{
+    int n = sizes[_i % N_SIZES], k = widths[_i / N_SIZES];
+    struct band_system s = random_system(n, k, 0, 1000 + (uint64_t)_i);
+    double x[3 * LDB], general[MAX_N * (3 * MAX_K + 1)], size = 0;
+    int pivot[MAX_N], bad_row;
+    memcpy(x, s.b, sizeof x);
+    ck_assert_int_eq(hf_band_solve_indefinite(n, k, s.band, general, pivot, x, LDB, &bad_row), HF_OK);
+    for (int i = 0; i < 3 * LDB; i++)
+        if (i % LDB < n) size = fmax(size, fabs(x[i]));
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < n; i++) {
+            double rest = s.b[c * LDB + i];
+            for (int j = 0; j < n; j++)
+                rest -= entry(&s, i, j) * x[c * LDB + j];
+            ck_assert_double_le(fabs(rest), 1e-13 * (2 * k + 1) * size + 1e-15);
+        }
+}
+END_TEST
+
+/* Cholesky breaks at the first pivot that is not positive: the row that is named. */
+START_TEST(not_positive_definite_is_told_with_its_row)
+{
+    int n = 31, k = 5, bad_row = -1, row = _i;
+    struct band_system s = random_system(n, k, 0.317, 2000), copy;
+    static const double wrong[] = {0, -1e-3, -5};
+    for (size_t w = 0; w < sizeof wrong / sizeof *wrong; w++) {
+        copy = s;
+        for (int j = 0; j < n; j++) /* cut row and column off, so that only the diagonal decides */
+            for (int d = 0; d <= k; d++)
+                if (j == row || j + d == row) copy.band[d + j * (k + 1)] = 0;
+        copy.band[row * (k + 1)] = wrong[w];
+        ck_assert_int_eq(hf_band_solve(n, k, copy.band, copy.b, LDB, &bad_row), HF_SINGULAR);
+        ck_assert_int_eq(bad_row, row);
+        ck_assert_mem_eq(copy.b, s.b, sizeof s.b); /* untouched */
+    }
+}
+END_TEST
+
+START_TEST(singular_is_told_with_its_row_by_lu_too)
+{
+    int n = 31, k = 5, pivot[MAX_N], bad_row = -1, row = _i;
+    double general[MAX_N * (3 * MAX_K + 1)];
+    struct band_system s = random_system(n, k, 0.317, 3000);
+    for (int j = 0; j < n; j++)
+        for (int d = 0; d <= k; d++)
+            if (j == row || j + d == row) s.band[d + j * (k + 1)] = 0;
+    ck_assert_int_eq(hf_band_solve_indefinite(n, k, s.band, general, pivot, s.b, LDB, &bad_row), HF_SINGULAR);
+    ck_assert_int_eq(bad_row, row);
+    s.band[row * (k + 1)] = -0.5; /* negative is no trouble for LU */
+    ck_assert_int_eq(hf_band_solve_indefinite(n, k, s.band, general, pivot, s.b, LDB, &bad_row), HF_OK);
+}
+END_TEST
+
+START_TEST(library_has_a_name)
+{
+    hf_band_single_threaded();
+    ck_assert(strlen(hf_band_library()) > 0);
+}
+END_TEST
+
+Suite *suite_unit_band(void)
+{
+    Suite *suite = suite_create("unit/band");
+    TCase *tests = tcase_create("band");
+    suite_add_tcase(suite, tests);
+    tcase_add_loop_test(tests, cholesky_lu_gsl_and_dense_agree, 0, N_SIZES * N_WIDTHS);
+    tcase_add_loop_test(tests, indefinite_systems_are_solved, 0, N_SIZES * N_WIDTHS);
+    tcase_add_loop_test(tests, not_positive_definite_is_told_with_its_row, 0, 31);
+    tcase_add_loop_test(tests, singular_is_told_with_its_row_by_lu_too, 0, 31);
+    tcase_add_test(tests, library_has_a_name);
+    return suite;
+}

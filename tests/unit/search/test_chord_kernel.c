@@ -1,0 +1,218 @@
+/* The loops of chord: same bits for every instruction set, a triangular solve that is LAPACK's, and lanes that keep to
+ * themselves. An instruction set that this machine lacks is named and skipped. */
+#include "flexible.h"
+#include "laws.h"
+
+#include "linalg/band.h"
+#include "search/chord.h"
+#include "search/chord_kernel.h"
+#include "solve/newton.h"
+
+typedef void (*forces_fn)(const hf_chord *, const hf_chord_lanes *, double *);
+typedef void (*solve_fn)(const hf_chord *, const hf_chord_lanes *);
+
+enum { PORTABLE, AVX2, AVX512, N_ISA };
+static const struct {
+    const char *name;
+    forces_fn forces;
+    forces_fn couple;
+    solve_fn move, solve, step;
+} isa[] = {
+    {"portable", hf_chord_forces_portable, hf_chord_couple_portable, hf_chord_move_portable, hf_chord_solve_portable,
+     hf_chord_step_portable},
+    {"avx2", hf_chord_forces_avx2, hf_chord_couple_avx2, hf_chord_move_avx2, hf_chord_solve_avx2, hf_chord_step_avx2},
+    {"avx512f", hf_chord_forces_avx512, hf_chord_couple_avx512, hf_chord_move_avx512, hf_chord_solve_avx512,
+     hf_chord_step_avx512}};
+
+static int has_isa(int i)
+{
+    int has = i == PORTABLE || (i == AVX2 ? __builtin_cpu_supports("avx2") : __builtin_cpu_supports("avx512f"));
+    if (!has) printf("unit/chord_kernel: this machine has no %s, skipped\n", isa[i].name);
+    return has;
+}
+
+struct kernel_run {
+    struct net net;
+    hf_evaluator evaluator;
+    double start_q[600], base_N[100];
+    hf_chord chord;
+    hf_chord_lanes lanes;
+    size_t n_x, n_force; /* doubles */
+};
+
+/* A random reflector (loads and all laws for odd trials), lanes with shapes and genes of their own near the base. */
+static void open_kernel(struct kernel_run *r, int trial, int rule)
+{
+    struct rng rng = rng_start(60 + (uint64_t)trial);
+    *r = (struct kernel_run){.net = {.form = tight_form(HF_METHOD_HIFDM)}};
+    random_reflector_scene(&rng, &r->net.scene);
+    open_net(&r->net);
+    if (trial % 2) attach_all(&r->net, &rng, 3e-5); /* the others stand on fixed supports */
+    r->net.form.coupling = (hf_coupling_settings){1e-9, HF_COUPLING_ACCELERATED, 200};
+    const hf_model *m = &r->net.model;
+    ck_assert(m->n_cable <= 600 && m->n_gene <= 100);
+    ck_assert_int_eq(find_shape(&r->net), HF_OK);
+    memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
+    for (int k = 0; k < m->n_gene; k++)
+        r->base_N[k] = r->net.work.tension_N[m->gene_cable[k]];
+    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, rule, HF_SOLVER_CHORD, 1e9};
+    ck_assert_int_eq(hf_chord_create(&r->evaluator, r->base_N, &r->net.work, &r->chord), HF_OK);
+    ck_assert_int_eq(hf_chord_lanes_create(&r->chord, &r->lanes), HF_OK);
+    r->n_x = 3 * (size_t)m->n_node * HF_LANES;
+    r->n_force = ((size_t)r->chord.n_dof + 2 * (size_t)r->chord.width + 8) * HF_LANES;
+}
+
+static void fill_lanes(struct kernel_run *r, uint64_t stream)
+{
+    struct rng rng = rng_start(stream);
+    for (size_t i = 0; i < r->n_x; i++)
+        r->lanes.x_m[i] = r->chord.base_m[i / HF_LANES] + rng_uniform(&rng, -0.01, 0.01);
+    for (int i = 0; i < r->net.model.n_gene * HF_LANES; i++)
+        r->lanes.gene[i] = r->base_N[i / HF_LANES] * rng_uniform(&rng, 0.9, 1.1);
+    for (int i = 0; i < r->chord.n_pull * HF_LANES; i++)
+        r->lanes.displacement_m[i] = r->chord.base_displacement_m[i / HF_LANES] + rng_uniform(&rng, -1e-4, 1e-4);
+}
+
+static void close_kernel(struct kernel_run *r)
+{
+    hf_chord_lanes_free(&r->lanes);
+    hf_chord_free(&r->chord);
+    close_net(&r->net);
+}
+
+static double *copy(const double *a, size_t n)
+{
+    double *b = malloc(n * sizeof *b);
+    ck_assert_ptr_nonnull(b);
+    memcpy(b, a, n * sizeof *b);
+    return b;
+}
+
+/* Three passes, each from what the one before left. */
+static void work(struct kernel_run *r, int i, double squared[HF_LANES])
+{
+    for (int pass = 0; pass < 3; pass++) {
+        isa[i].forces(&r->chord, &r->lanes, squared);
+        if (r->chord.n_pull) {
+            double gap[HF_LANES];
+            isa[i].couple(&r->chord, &r->lanes, gap);
+            isa[i].move(&r->chord, &r->lanes);
+            for (int k = 0; k < HF_LANES; k++)
+                squared[k] += gap[k];
+        }
+        isa[i].solve(&r->chord, &r->lanes);
+        isa[i].step(&r->chord, &r->lanes);
+    }
+}
+
+START_TEST(instruction_sets_give_the_same_bits)
+{
+    double squared[HF_LANES], again[HF_LANES];
+    for (int rule = HF_RULE_FORCE_DENSITY; rule <= HF_RULE_TENSION; rule++) {
+        struct kernel_run r;
+        open_kernel(&r, _i, rule);
+        fill_lanes(&r, 1);
+        work(&r, PORTABLE, squared);
+        double *x = copy(r.lanes.x_m, r.n_x), *force = copy(r.lanes.force_N, r.n_force);
+        for (int i = AVX2; i < N_ISA; i++) {
+            if (!has_isa(i)) continue;
+            fill_lanes(&r, 1);
+            work(&r, i, again);
+            ck_assert_mem_eq(squared, again, sizeof squared);
+            ck_assert_mem_eq(x, r.lanes.x_m, r.n_x * sizeof *x);
+            ck_assert_mem_eq(force, r.lanes.force_N, r.n_force * sizeof *force);
+        }
+        free(x);
+        free(force);
+        close_kernel(&r);
+    }
+}
+END_TEST
+
+/* Both substitute with the same factor; orders of summation differ: rounding times the condition of the factor, some
+ * 1e-13 of the largest step (observed: 1e-15). */
+START_TEST(solve_is_lapacks)
+{
+    struct kernel_run r;
+    double squared[HF_LANES];
+    open_kernel(&r, _i, HF_RULE_FORCE_DENSITY);
+    int n = r.chord.n_dof, column = 3 * r.net.model.half_bandwidth + 3;
+    fill_lanes(&r, 2);
+    isa[PORTABLE].forces(&r.chord, &r.lanes, squared);
+    double *f = r.lanes.force_N + r.chord.width * HF_LANES, *expected = malloc((size_t)n * HF_LANES * sizeof *expected);
+    ck_assert_ptr_nonnull(expected);
+    for (int k = 0; k < n * HF_LANES; k++)
+        expected[k % HF_LANES * n + k / HF_LANES] = f[k];
+    /* the factor is still in the workspace that hf_chord_create had */
+    hf_band_back_solve(n, column - 1, HF_LANES, r.net.work.newton_band, expected, n);
+    isa[PORTABLE].solve(&r.chord, &r.lanes);
+    double most = largest(expected, n * HF_LANES);
+    for (int k = 0; k < n * HF_LANES; k++)
+        ck_assert_double_eq_tol(f[k], expected[k % HF_LANES * n + k / HF_LANES], 1e-12 * most);
+    free(expected);
+    close_kernel(&r);
+}
+END_TEST
+
+/* A lane full of NaNs, then the same lane with a sound design: nothing of the NaNs may be left, in no place that a
+ * later pass reads, and the lanes beside it never notice. */
+START_TEST(a_lane_recovers_from_NaN)
+{
+    struct kernel_run r;
+    double squared[HF_LANES], again[HF_LANES];
+    int bad = _i / 3 % HF_LANES;
+    if (!has_isa(_i % 3)) return;
+    open_kernel(&r, _i, HF_RULE_FORCE_DENSITY);
+    fill_lanes(&r, 3);
+    work(&r, _i % 3, squared);
+    double *x = copy(r.lanes.x_m, r.n_x);
+    fill_lanes(&r, 3);
+    for (size_t i = (size_t)bad; i < r.n_x; i += HF_LANES)
+        r.lanes.x_m[i] = (double)NAN;
+    work(&r, _i % 3, again);
+    ck_assert_double_nan(again[bad]);
+    for (size_t i = 0; i < r.n_x; i++)
+        if ((int)(i % HF_LANES) != bad) ck_assert_mem_eq(x + i, r.lanes.x_m + i, sizeof(double));
+    fill_lanes(&r, 3);
+    work(&r, _i % 3, again);
+    ck_assert_mem_eq(squared, again, sizeof squared);
+    ck_assert_mem_eq(x, r.lanes.x_m, r.n_x * sizeof *x);
+    free(x);
+    close_kernel(&r);
+}
+END_TEST
+
+/* The residual that a lane is judged by is the largest nodal force over the reference tension, squared. */
+START_TEST(residual_is_the_largest_force)
+{
+    struct kernel_run r;
+    double squared[HF_LANES];
+    open_kernel(&r, _i, HF_RULE_TENSION);
+    fill_lanes(&r, 4);
+    isa[PORTABLE].forces(&r.chord, &r.lanes, squared);
+    const double *f = r.lanes.force_N + r.chord.width * HF_LANES;
+    for (int lane = 0; lane < HF_LANES; lane++) {
+        double most = 0;
+        for (int i = 0; i < r.net.model.n_free; i++) {
+            const double *p = f + 3 * i * HF_LANES + lane;
+            most = fmax(most, p[0] * p[0] + p[HF_LANES] * p[HF_LANES] + p[2 * HF_LANES] * p[2 * HF_LANES]);
+        }
+        double reference = r.net.model.reference_N; /* three products and two sums: a few roundings */
+        ck_assert_double_eq_tol(squared[lane], most / (reference * reference), 1e-14 * squared[lane]);
+        ck_assert_double_gt(squared[lane], 0);
+    }
+    close_kernel(&r);
+}
+END_TEST
+
+Suite *suite_unit_chord_kernel(void)
+{
+    Suite *suite = suite_create("unit/chord_kernel");
+    TCase *tests = tcase_create("chord_kernel");
+    suite_add_tcase(suite, tests);
+    tcase_add_loop_test(tests, instruction_sets_give_the_same_bits, 0, 6);
+    tcase_add_loop_test(tests, solve_is_lapacks, 0, 6);
+    tcase_add_loop_test(tests, a_lane_recovers_from_NaN, 0, 9);
+    tcase_add_loop_test(tests, residual_is_the_largest_force, 0, 2);
+    return suite;
+}

@@ -1,0 +1,261 @@
+/* Levenberg-Marquardt on the boundary pretensions: known optima, optimality by finite differences, bounds and cap.
+ *
+ * chen2022 within +-1 N of its base: 6.345 mm; METHOD section 5 has 6.34 for the class. Free, from the base: 3.54
+ * mm. */
+#include "laws.h"
+#include "population.h"
+
+#include "search/polish.h"
+#include <hifdm/batch.h>
+#include <hifdm/ga.h>
+
+struct polish_run {
+    struct run r;
+    double lower_N[MAX_GENE], upper_N[MAX_GENE];
+};
+
+static void set_bounds(struct polish_run *p, double range_N)
+{
+    for (int k = 0; k < p->r.net.model.n_gene; k++) {
+        p->lower_N[k] = fmax(p->r.base_N[k] - range_N, 1e-3);
+        p->upper_N[k] = p->r.base_N[k] + range_N;
+    }
+}
+
+/* As `hifdm run configs/chen2022.yaml` starts, but each evaluation to 1e-10. */
+static void open_chen(struct polish_run *p, double range_N)
+{
+    OPEN_CASE(&p->r.net, "configs/chen2022.yaml");
+    start_run(&p->r, HF_RULE_FORCE_DENSITY);
+    p->r.evaluator.boundary_ratio_cap = p->r.net.settings.optimize.boundary_ratio_cap;
+    set_bounds(p, range_N);
+}
+
+static void open_small(struct polish_run *p, int rule, double range_N)
+{
+    open_run(&p->r, rule);
+    set_bounds(p, range_N);
+}
+
+static hf_status polish(struct polish_run *p, int max_iterations, double *design_N, hf_polish_result *result)
+{
+    return hf_polish_run(&p->r.evaluator, p->lower_N, p->upper_N, max_iterations, design_N, &p->r.net.work, result);
+}
+
+static double psi_of(struct polish_run *p, const double *design_N)
+{
+    hf_form_result result;
+    ck_assert_int_eq(hf_evaluate(&p->r.evaluator, design_N, &p->r.net.work, &result), HF_OK);
+    return result.psi_m;
+}
+
+static void assert_within_bounds(const struct polish_run *p, const double *design_N)
+{
+    for (int k = 0; k < p->r.net.model.n_gene; k++) {
+        ck_assert_double_ge(design_N[k], p->lower_N[k]);
+        ck_assert_double_le(design_N[k], p->upper_N[k]);
+    }
+}
+
+/* Known to a micrometre: the optimum is flat, so a descent that stops early or points astray ends above it. */
+START_TEST(reaches_the_known_optimum)
+{
+    struct polish_run p;
+    hf_polish_result result;
+    open_chen(&p, 1);
+    double *design_N = p.r.base_N, start_m = psi_of(&p, design_N);
+    ck_assert_int_eq(polish(&p, 200, design_N, &result), HF_OK);
+    ck_assert_double_eq_tol(1e3 * result.psi_m, 6.345, 1e-3);
+    ck_assert_double_eq_tol(result.start_psi_m, start_m, 1e-12);
+    ck_assert_double_eq_tol(psi_of(&p, design_N), result.psi_m, 1e-12);
+    ck_assert_int_eq(result.converged, 1);
+    ck_assert_int_le(result.iterations, 60); /* METHOD: some 20; without exact derivatives or scaling far more */
+    assert_within_bounds(&p, design_N);
+    /* once more for one step: it starts by leaving the bounds, which is uphill, and must not end there */
+    double optimum_m = result.psi_m;
+    ck_assert_int_eq(polish(&p, 1, design_N, &result), HF_OK);
+    ck_assert_double_le(result.psi_m, optimum_m);
+    ck_assert_double_le(psi_of(&p, design_N), optimum_m);
+    close_net(&p.r.net);
+}
+END_TEST
+
+/* The free optimum, 3.54 mm, has some tensions driven to infinity (METHOD section 5): with room for 1000 N, 500
+ * steps come within 0.05 mm of it (observed: 3.577), and nothing goes below. */
+START_TEST(approaches_the_free_optimum)
+{
+    struct polish_run p;
+    hf_polish_result result;
+    open_chen(&p, 1000);
+    p.r.evaluator.boundary_ratio_cap = 1e9;
+    ck_assert_int_eq(polish(&p, 500, p.r.base_N, &result), HF_OK);
+    ck_assert_double_ge(1e3 * result.psi_m, 3.535);
+    ck_assert_double_le(1e3 * result.psi_m, 3.59);
+    close_net(&p.r.net);
+}
+END_TEST
+
+/* Karush, Kuhn, Tucker by central differences of hf_evaluate: no slope where a pretension is free, downhill only out
+ * of the bounds elsewhere. A wrong sensitivity ends where its own zero is: slopes of the order of those at the
+ * start, 2e-4 m/N. Observed with the right ones: 1e-12 m/N, which is rounding of psi over 2e-5 N; 1e-4 of the start
+ * is asked for. */
+START_TEST(optimum_has_no_slope_left)
+{
+    struct polish_run p;
+    hf_polish_result result;
+    if (_i == HF_RULE_TENSION)
+        open_small(&p, _i, 0.02);
+    else
+        open_chen(&p, 1);
+    int n = p.r.net.model.n_gene, n_free = 0;
+    double slope[2][MAX_GENE], step = 1e-5, *design_N = p.r.base_N;
+    for (int when = 0; when < 2; when++) {
+        if (when) ck_assert_int_eq(polish(&p, 300, design_N, &result), HF_OK);
+        for (int k = 0; k < n; k++) {
+            double kept = design_N[k], up, down;
+            design_N[k] = kept + step;
+            up = psi_of(&p, design_N);
+            design_N[k] = kept - step;
+            down = psi_of(&p, design_N);
+            design_N[k] = kept;
+            slope[when][k] = (up - down) / (2 * step);
+        }
+    }
+    double scale = largest(slope[0], n);
+    for (int k = 0; k < n; k++) {
+        double half = (p.upper_N[k] - p.lower_N[k]) / 2, at = (design_N[k] - p.lower_N[k]) / half - 1;
+        if (fabs(at) < 0.999) {
+            n_free++;
+            ck_assert_msg(fabs(slope[1][k]) < 1e-4 * scale, "gene %d: %g m/N left of %g", k, slope[1][k], scale);
+        } else {
+            ck_assert_msg(slope[1][k] * at < 1e-4 * scale, "gene %d: %g m/N into the bound", k, slope[1][k]);
+        }
+    }
+    ck_assert_double_lt(result.psi_m, result.start_psi_m);
+    ck_assert_int_gt(n_free, 0);
+    close_net(&p.r.net);
+}
+END_TEST
+
+/* Whatever the limit and the start, an optimum included: psi never rises, and the bounds hold. */
+START_TEST(never_worse_than_its_start)
+{
+    struct polish_run p;
+    hf_polish_result result;
+    open_small(&p, HF_RULE_FORCE_DENSITY, 0.5);
+    for (int i = 0; i < 6; i++) {
+        double *design_N = design(&p.r, i), before_m = psi_of(&p, design_N);
+        for (int again = 0; again < 2; again++) {
+            ck_assert_int_eq(polish(&p, again ? 300 : 1 + i, design_N, &result), HF_OK);
+            ck_assert_double_eq(result.start_psi_m, before_m);
+            ck_assert_double_le(result.psi_m, before_m);
+            before_m = psi_of(&p, design_N);
+            ck_assert_double_eq(before_m, result.psi_m);
+            assert_within_bounds(&p, design_N);
+            ck_assert_int_gt(result.evaluations, 0);
+            if (!again) ck_assert_int_le(result.iterations, 1 + i);
+        }
+    }
+    close_net(&p.r.net);
+}
+END_TEST
+
+/* With room for 400 N the best designs have boundary ratios around 9; a cap of 5 stands in the way. */
+START_TEST(ratio_cap_is_kept)
+{
+    struct polish_run p;
+    hf_polish_result open, capped;
+    hf_form_result end;
+    double design_N[MAX_GENE];
+    open_chen(&p, 400);
+    for (int has_cap = 0; has_cap < 2; has_cap++) {
+        p.r.evaluator.boundary_ratio_cap = has_cap ? 5 : 1e9;
+        memcpy(design_N, p.r.base_N, sizeof design_N);
+        ck_assert_int_eq(polish(&p, 300, design_N, has_cap ? &capped : &open), HF_OK);
+        ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design_N, &p.r.net.work, &end), HF_OK);
+        if (has_cap)
+            ck_assert_double_le(end.boundary_tension_ratio, 5);
+        else
+            ck_assert_double_gt(end.boundary_tension_ratio, 5);
+    }
+    ck_assert_double_lt(capped.psi_m, capped.start_psi_m);
+    ck_assert_double_gt(capped.psi_m, open.psi_m);
+    close_net(&p.r.net);
+}
+END_TEST
+
+START_TEST(infeasible_start_is_told)
+{
+    struct polish_run p;
+    hf_polish_result result;
+    double kept[MAX_GENE];
+    open_small(&p, HF_RULE_TENSION, 1);
+    p.r.base_N[0] *= 50;
+    memcpy(kept, p.r.base_N, sizeof kept);
+    ck_assert_int_eq(polish(&p, 20, p.r.base_N, &result), HF_COLLAPSED);
+    ck_assert_mem_eq(kept, p.r.base_N, (size_t)p.r.net.model.n_gene * sizeof *kept); /* untouched */
+    ck_assert_int_eq(result.iterations, 0);
+    p.r.evaluator.boundary_ratio_cap = 1 + 1e-9;
+    ck_assert_int_eq(polish(&p, 20, design(&p.r, 0), &result), HF_RATIO_CAP);
+    close_net(&p.r.net);
+}
+END_TEST
+
+/* A short GA, then LM, ends where LM ends from the base: 1e-6 m, of an optimum 0.25 mm below the base. */
+START_TEST(after_the_ga_the_same_optimum)
+{
+    struct polish_run p;
+    hf_polish_result from_base, from_ga;
+    hf_ga ga;
+    hf_batch batch;
+    open_chen(&p, 1);
+    p.r.net.settings.optimize.generations = 30;
+    ck_assert_int_eq(hf_batch_create(&p.r.evaluator, 2, &batch), HF_OK);
+    ck_assert_int_eq(hf_ga_create(&p.r.net.settings.optimize, &p.r.net.model, p.r.base_N, &ga), HF_OK);
+    hf_batch_share(&batch, p.r.base_N);
+    do {
+        hf_batch_run(&batch, ga.n_individual, ga.design_N, ga.pending, ga.result);
+        hf_ga_tell(&ga);
+    } while (hf_ga_next(&ga));
+    double *best_N = ga.design_N + ga.best * ga.n_gene, best_m = ga.result[ga.best].psi_m;
+    ck_assert_int_eq(polish(&p, 200, best_N, &from_ga), HF_OK);
+    ck_assert_int_eq(polish(&p, 200, p.r.base_N, &from_base), HF_OK);
+    ck_assert_double_eq_tol(from_ga.psi_m, from_base.psi_m, 1e-6);
+    ck_assert_double_le(from_ga.psi_m, best_m);
+    hf_ga_free(&ga);
+    hf_batch_free(&batch);
+    close_net(&p.r.net);
+}
+END_TEST
+
+START_TEST(applies_to_convex_nets_and_rules_only)
+{
+    struct polish_run p;
+    open_small(&p, HF_RULE_FORCE_DENSITY, 1);
+    ck_assert(hf_polish_applies(&p.r.evaluator));
+    p.r.evaluator.rule = HF_RULE_SEEDED;
+    ck_assert(!hf_polish_applies(&p.r.evaluator));
+    p.r.evaluator.rule = HF_RULE_TENSION;
+    ck_assert(hf_polish_applies(&p.r.evaluator));
+    p.r.net.model.has_newton = 0;
+    ck_assert(!hf_polish_applies(&p.r.evaluator));
+    p.r.net.model.has_newton = 1;
+    close_net(&p.r.net);
+}
+END_TEST
+
+Suite *suite_unit_polish(void)
+{
+    Suite *suite = suite_create("unit/polish");
+    TCase *tests = tcase_create("polish");
+    suite_add_tcase(suite, tests);
+    tcase_add_test(tests, reaches_the_known_optimum);
+    tcase_add_test(tests, approaches_the_free_optimum);
+    tcase_add_loop_test(tests, optimum_has_no_slope_left, 0, 2);
+    tcase_add_test(tests, never_worse_than_its_start);
+    tcase_add_test(tests, ratio_cap_is_kept);
+    tcase_add_test(tests, infeasible_start_is_told);
+    tcase_add_test(tests, after_the_ga_the_same_optimum);
+    tcase_add_test(tests, applies_to_convex_nets_and_rules_only);
+    return suite;
+}

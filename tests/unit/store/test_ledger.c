@@ -1,0 +1,247 @@
+/* The ledger: rows of any number of processes, torn ones, locks that go with the process that holds them. */
+#include "store/ledger.h"
+
+#include "support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static char folder[1024];
+
+static void open_study(hf_study *study)
+{
+    hf_messages m = {0};
+    write_file(temp_path("base.yaml"), "scene:\n  parabolic_cylinder: {aperture_m: 2, length_m: 3, focal_length_m: 2, "
+                                       "modules: [2, 3], cells_per_module: [2, 2]}\n");
+    write_file(temp_path("study.yaml"), "base: base.yaml\nsweep:\n  form.pretension_N: {from: 1, to: 5, n: 5}\n");
+    snprintf(folder, sizeof folder, "%s", temp_path("study.d"));
+    ck_assert_msg(hf_study_read(temp_path("study.yaml"), study, &m) == HF_OK, "%s", m.text);
+}
+
+static hf_points read_points(const hf_study *s)
+{
+    hf_points points;
+    hf_messages m = {0};
+    ck_assert_msg(hf_ledger_read(folder, s, &points, &m) == HF_OK, "%s", m.text);
+    return points;
+}
+
+static int column_of(const char *object, const char *name)
+{
+    for (int i = 0; i < hf_ledger_n_column(); i++)
+        if (!strcmp(hf_ledger_column(i)->object, object) && !strcmp(hf_ledger_column(i)->name, name)) return i;
+    ck_abort_msg("no column %s/%s", object, name);
+    return -1;
+}
+
+/* Write point i with this status, as a process of its own would. */
+static void write_point(const hf_study *s, int i, hf_status status, const char *reason, const hf_summary *summary)
+{
+    hf_ledger ledger;
+    hf_messages m = {0};
+    ck_assert_int_eq(hf_ledger_open(folder, &ledger, &m), HF_OK);
+    ck_assert(hf_ledger_claim(&ledger, s->id[i]));
+    ck_assert_int_eq(hf_ledger_write(&ledger, s, i, status, reason, summary, &m), HF_OK);
+    hf_ledger_close(&ledger);
+}
+
+START_TEST(numbers_come_back_bit_by_bit)
+{
+    hf_study s;
+    hf_summary summary = {.seed = 18446744073709551615u, .has_optimize = 1, .evaluations = 5000000000};
+    open_study(&s);
+    hf_points points = read_points(&s); /* the folder is not there yet */
+    ck_assert_int_eq(points.count[HF_POINT_MISSING], 5);
+    hf_points_free(&points);
+    summary.form.psi_m = 0.1 + 0.2;
+    summary.form.residual_N = (double)NAN;
+    summary.best.psi_m = 5e-324;
+    write_point(&s, 2, HF_OK, "", &summary);
+    write_point(&s, 4, HF_COLLAPSED, "cable\t'a'\nfell", &summary);
+    points = read_points(&s);
+    ck_assert_int_eq(points.count[HF_POINT_MISSING], 3);
+    ck_assert_int_eq(points.count[HF_POINT_DONE], 1);
+    ck_assert_int_eq(points.count[HF_POINT_FAILED], 1);
+    const hf_point *p = &points.point[2];
+    ck_assert_double_eq(strtod(p->field[column_of("/form", "psi_m")], NULL), 0.1 + 0.2);
+    ck_assert(isnan(strtod(p->field[column_of("/form", "residual_N")], NULL)));
+    ck_assert_double_eq(strtod(p->field[column_of("/ga", "best_psi_m")], NULL), 5e-324);
+    ck_assert_str_eq(p->field[column_of("/", "seed")], "18446744073709551615");
+    ck_assert_str_eq(p->field[column_of("/ga", "evaluations")], "5000000000");
+    ck_assert_str_eq(p->field[column_of("/polish", "psi_m")], ""); /* there was no such stage */
+    ck_assert_int_eq(points.point[4].status, HF_COLLAPSED);
+    ck_assert_str_eq(points.point[4].reason, "cable 'a' fell");
+    hf_points_free(&points);
+    hf_study_free(&s);
+}
+END_TEST
+
+START_TEST(a_success_counts_more_than_a_failure)
+{
+    hf_study s;
+    hf_summary summary = {0};
+    open_study(&s);
+    write_point(&s, 0, HF_OK, "", &summary);
+    write_point(&s, 0, HF_IO, "disk full", &summary);
+    write_point(&s, 1, HF_IO, "disk full", &summary);
+    write_point(&s, 1, HF_OK, "", &summary);
+    hf_points points = read_points(&s);
+    ck_assert_int_eq(points.count[HF_POINT_DONE], 2);
+    ck_assert_str_eq(points.point[0].reason, "");
+    hf_points_free(&points);
+    hf_study_free(&s);
+}
+END_TEST
+
+/* Written in the order of their names and against it: the file system may list them in any. */
+START_TEST(the_same_row_counts_in_any_order_of_files)
+{
+    hf_study s;
+    char command[2600];
+    open_study(&s);
+    for (int k = 0; k < 12; k++) {
+        char reason[2] = {(char)('a' + (_i ? 11 - k : k)), '\0'};
+        write_point(&s, 0, HF_IO, reason, &(hf_summary){.n_node = k});
+        snprintf(command, sizeof command, "mv '%s'/points-*-*.tsv '%s/points-%s.tsv'", folder, folder, reason);
+        ck_assert_int_eq(system(command), 0);
+    }
+    hf_points points = read_points(&s);
+    ck_assert_str_eq(points.point[0].reason, "l");
+    hf_points_free(&points);
+    hf_study_free(&s);
+}
+END_TEST
+
+/* A process that began earlier hears of what another finishes: that alone, and not of another base case. */
+START_TEST(what_others_finish_is_noticed)
+{
+    hf_study s;
+    hf_ledger mine;
+    hf_messages m = {0};
+    hf_summary summary = {0};
+    open_study(&s);
+    write_point(&s, 0, HF_OK, "", &summary);
+    ck_assert_int_eq(hf_ledger_open(folder, &mine, &m), HF_OK);
+    ck_assert_int_eq(hf_ledger_watch(&mine, &s, &m), HF_OK);
+    ck_assert(!hf_ledger_is_finished(&mine, &s, 0)); /* before: --retry may ask for it */
+    ck_assert(!hf_ledger_is_finished(&mine, &s, 1));
+    write_point(&s, 1, HF_OK, "", &summary);
+    write_point(&s, 2, HF_COLLAPSED, "fell", &summary);
+    s.fingerprint[0] ^= 1;
+    write_point(&s, 3, HF_OK, "", &summary);
+    s.fingerprint[0] ^= 1;
+    for (int i = 0; i < 5; i++)
+        ck_assert_int_eq(hf_ledger_is_finished(&mine, &s, i), i == 1 || i == 2);
+    hf_ledger_close(&mine);
+    hf_study_free(&s);
+}
+END_TEST
+
+START_TEST(rows_of_another_base_case_are_outdated)
+{
+    hf_study s;
+    hf_summary summary = {0};
+    open_study(&s);
+    write_point(&s, 0, HF_OK, "", &summary);
+    write_point(&s, 1, HF_OK, "", &summary);
+    s.fingerprint[0] = s.fingerprint[0] == '0' ? '1' : '0';
+    write_point(&s, 1, HF_OK, "", &summary); /* has been run anew since */
+    hf_points points = read_points(&s);
+    ck_assert_int_eq(points.point[0].state, HF_POINT_OUTDATED);
+    ck_assert_int_eq(points.point[1].state, HF_POINT_DONE);
+    hf_points_free(&points);
+    hf_study_free(&s);
+}
+END_TEST
+
+/* A process was killed while it wrote: cut the file at every byte. Whole rows count, nothing else does. */
+START_TEST(torn_rows_are_ignored)
+{
+    hf_study s;
+    hf_summary summary = {0};
+    hf_ledger ledger;
+    hf_messages m = {0};
+    char path[1200], command[2600];
+    open_study(&s);
+    ck_assert_int_eq(hf_ledger_open(folder, &ledger, &m), HF_OK);
+    for (int i = 0; i < 2; i++)
+        ck_assert_int_eq(hf_ledger_write(&ledger, &s, i, HF_OK, "", &summary, &m), HF_OK);
+    hf_ledger_close(&ledger);
+    snprintf(path, sizeof path, "%s/points-x.tsv", folder);
+    snprintf(command, sizeof command, "mv '%s'/points-*-*.tsv '%s'", folder, path);
+    ck_assert_int_eq(system(command), 0);
+    size_t size;
+    char *text = read_file(path, &size);
+    size_t second = (size_t)(strchr(strchr(text, '\n') + 1, '\n') + 1 - text),
+           first = (size_t)(strchr(text, '\n') + 1 - text);
+    for (size_t cut = 0; cut <= size; cut += cut < first ? 97 : 1) {
+        char kept = text[cut];
+        text[cut] = '\0';
+        write_file(path, text);
+        text[cut] = kept;
+        hf_points points = read_points(&s);
+        ck_assert_int_eq(points.count[HF_POINT_DONE], cut < second ? 0 : cut < size ? 1 : 2);
+        hf_points_free(&points);
+    }
+    free(text);
+    hf_study_free(&s);
+}
+END_TEST
+
+/* A child holds two points; they run as long as it lives, and not a moment longer. */
+START_TEST(a_point_runs_as_long_as_its_process_lives)
+{
+    hf_study s;
+    hf_messages m = {0};
+    hf_ledger mine;
+    int ready[2], end[2];
+    char byte;
+    open_study(&s);
+    ck_assert_int_eq(hf_ledger_open(folder, &mine, &m), HF_OK);
+    ck_assert(pipe(ready) == 0 && pipe(end) == 0);
+    pid_t child = fork();
+    if (child == 0) {
+        hf_ledger theirs;
+        if (hf_ledger_open(folder, &theirs, &m) == HF_OK && hf_ledger_claim(&theirs, s.id[1]) &&
+            hf_ledger_claim(&theirs, s.id[3]) && write(ready[1], "x", 1) == 1 && read(end[0], &byte, 1) == 1)
+            kill(getpid(), SIGKILL);
+        _exit(1);
+    }
+    ck_assert_int_eq(read(ready[0], &byte, 1), 1);
+    hf_points points = read_points(&s);
+    ck_assert_int_eq(points.count[HF_POINT_RUNNING], 2);
+    ck_assert(points.point[1].state == HF_POINT_RUNNING && points.point[3].state == HF_POINT_RUNNING);
+    hf_points_free(&points);
+    ck_assert(!hf_ledger_claim(&mine, s.id[1]));
+    ck_assert(hf_ledger_claim(&mine, s.id[2]));
+    ck_assert_int_eq(write(end[1], "x", 1), 1);
+    int how;
+    ck_assert_int_eq(waitpid(child, &how, 0), child);
+    ck_assert(WIFSIGNALED(how) && WTERMSIG(how) == SIGKILL);
+    points = read_points(&s);
+    ck_assert_int_eq(points.count[HF_POINT_RUNNING], 0);
+    hf_points_free(&points);
+    ck_assert(hf_ledger_claim(&mine, s.id[1]));
+    hf_ledger_close(&mine);
+    hf_study_free(&s);
+}
+END_TEST
+
+Suite *suite_unit_ledger(void)
+{
+    Suite *suite = suite_create("unit/ledger");
+    TCase *tests = tcase_create("ledger");
+    suite_add_tcase(suite, tests);
+    tcase_add_test(tests, numbers_come_back_bit_by_bit);
+    tcase_add_test(tests, a_success_counts_more_than_a_failure);
+    tcase_add_loop_test(tests, the_same_row_counts_in_any_order_of_files, 0, 2);
+    tcase_add_test(tests, what_others_finish_is_noticed);
+    tcase_add_test(tests, rows_of_another_base_case_are_outdated);
+    tcase_add_test(tests, torn_rows_are_ignored);
+    tcase_add_test(tests, a_point_runs_as_long_as_its_process_lives);
+    return suite;
+}

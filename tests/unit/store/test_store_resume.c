@@ -1,0 +1,144 @@
+/* What a killed run leaves in its journal: results, from which the designs are bred again. */
+#include "evolution.h"
+
+#include "store/generations.h"
+
+/* Four generations, of which the visible file has the first two, and the journal the others. */
+static void leave_unfinished(const char *path)
+{
+    struct run r;
+    hf_messages messages = {0};
+    hf_store *s;
+    int n;
+    open_run(&r);
+    ck_assert_int_eq(begin_new(path, &r, &s, &messages), HF_OK);
+    ck_assert_int_eq(store_some(s, &r, 0, 4, &n, &messages), HF_OK);
+    hf_store_abandon(s);
+    close_run(&r);
+}
+
+static void resume(const char *path, struct run *r, hf_store **s, hf_messages *messages)
+{
+    hf_summary summary = {0};
+    ck_assert_int_eq(hf_store_resume(path, s, messages), HF_OK);
+    ck_assert_int_eq(hf_store_generations(*s), 4);
+    ck_assert_int_eq(hf_store_base(*s, N_GENE, r->base_N, messages), HF_OK);
+    hf_ga_free(&r->ga);
+    ck_assert_int_eq(hf_ga_create(&r->settings, &r->model, r->base_N, &r->ga), HF_OK);
+    ck_assert_int_eq(hf_store_restore(*s, &r->ga, &summary, messages), HF_OK);
+    ck_assert_int_eq(summary.generations, hf_store_generations(*s));
+}
+
+START_TEST(designs_are_bred_again)
+{
+    const char *path;
+    struct run r, whole;
+    hf_messages messages = {0};
+    hf_store *s;
+    new_folder(&path);
+    leave_unfinished(path);
+    open_run(&r);
+    for (int k = 0; k < N_GENE; k++)
+        r.base_N[k] = 1e-9; /* as another machine may find it; the file has the one it was begun with */
+    resume(path, &r, &s, &messages);
+    ck_assert_int_eq(messages.n_warning, 0);
+    ck_assert_int_eq(hf_store_generations(s), 4);
+    open_run(&whole);
+    for (int g = 0; g < 4; g++) {
+        if (g > 0) hf_ga_next(&whole.ga);
+        fill(&whole.ga);
+    }
+    hf_ga_tell(&r.ga);
+    ck_assert_int_eq(r.ga.generation, 3);
+    ck_assert_int_eq(r.ga.n_evaluation, whole.ga.n_evaluation);
+    ck_assert_mem_eq(r.ga.design_N, whole.ga.design_N, N_INDIVIDUAL * N_GENE * sizeof(double));
+    ck_assert_mem_eq(r.ga.best_psi_m, whole.ga.best_psi_m, 4 * sizeof(double));
+    for (int i = 0; i < N_INDIVIDUAL; i++)
+        ck_assert_mem_eq(&r.ga.result[i].psi_m, &whole.ga.result[i].psi_m, sizeof(double));
+    hf_store_abandon(s);
+    close_run(&r);
+    close_run(&whole);
+}
+END_TEST
+
+/* Results must never be taken for those of other designs: what a build that breeds otherwise (here: with another seed)
+ * finds in the journal is left out, and evaluated again. */
+START_TEST(results_of_other_designs_are_left_out)
+{
+    const char *path;
+    struct run r;
+    hf_messages messages = {0};
+    hf_store *s;
+    int n;
+    new_folder(&path);
+    leave_unfinished(path);
+    open_run(&r);
+    r.settings.seed = 99;
+    resume(path, &r, &s, &messages);
+    ck_assert_int_eq(messages.n_warning, 1);
+    ck_assert_msg(strstr(messages.text, "generations 3 to 4, which were not published, are evaluated again") != NULL,
+                  "%s", messages.text);
+    ck_assert_int_eq(hf_store_generations(s), 2);
+    ck_assert_int_eq(r.ga.generation, 1);
+    hf_messages_free(&messages);
+    hf_ga_tell(&r.ga);
+    ck_assert_int_eq(store_some(s, &r, 2, 4, &n, &messages), HF_OK);
+    hf_store_abandon(s);
+    close_run(&r);
+    open_run(&r); /* the journal holds the new ones now */
+    r.settings.seed = 99;
+    resume(path, &r, &s, &messages);
+    ck_assert_int_eq(messages.n_warning, 0);
+    ck_assert_int_eq(hf_store_generations(s), 4);
+    hf_store_abandon(s);
+    close_run(&r);
+}
+END_TEST
+
+/* Whatever differs in the designs is seen: a last bit, two that cancel in a sum, two individuals in another order. */
+START_TEST(other_designs_are_told_apart)
+{
+    struct run r;
+    hf_generations g;
+    struct iovec piece[HF_GENERATIONS_PIECES];
+    char payload[4096];
+    size_t used = 0;
+    open_run(&r);
+    fill(&r.ga);
+    ck_assert_int_eq(hf_generations_create(N_INDIVIDUAL, N_GENE, N_GENERATION, &g), HF_OK);
+    hf_generations_add(&g, &r.ga, piece);
+    for (int i = 0; i < HF_GENERATIONS_PIECES; used += piece[i++].iov_len)
+        memcpy(payload + used, piece[i].iov_base, piece[i].iov_len);
+    ck_assert_uint_eq(used, g.payload_bytes);
+    ck_assert(hf_generations_take_payload(&g, payload, &r.ga));
+    double *d = r.ga.design_N, one[N_GENE];
+    for (int k = 0; k < N_INDIVIDUAL * N_GENE; k++) {
+        int other = (k + 5) % (N_INDIVIDUAL * N_GENE);
+        double a = d[k], b = d[other];
+        d[k] = nextafter(a, 1e9);
+        ck_assert(!hf_generations_take_payload(&g, payload, &r.ga));
+        d[other] = nextafter(b, -1e9);
+        ck_assert(!hf_generations_take_payload(&g, payload, &r.ga));
+        d[k] = a;
+        d[other] = b;
+    }
+    memcpy(one, d + N_GENE, sizeof one);
+    memcpy(d + N_GENE, d + 2 * N_GENE, sizeof one);
+    memcpy(d + 2 * N_GENE, one, sizeof one);
+    ck_assert(!hf_generations_take_payload(&g, payload, &r.ga));
+    hf_generations_free(&g);
+    close_run(&r);
+}
+END_TEST
+
+Suite *suite_unit_store_resume(void)
+{
+    Suite *suite = suite_create("unit/store_resume");
+    TCase *tests = tcase_create("store_resume");
+    suite_add_tcase(suite, tests);
+    tcase_add_checked_fixture(tests, quiet, NULL);
+    tcase_add_test(tests, designs_are_bred_again);
+    tcase_add_test(tests, other_designs_are_told_apart);
+    tcase_add_test(tests, results_of_other_designs_are_left_out);
+    return suite;
+}
