@@ -1,6 +1,9 @@
 /* Contents: temporary directories, files, programs, failing allocations, random numbers. */
 #include "support.h"
 
+#include "base/clock.h"
+#include "base/random.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <ftw.h>
@@ -127,13 +130,6 @@ const char *c_compiler(void)
     return compiler ? compiler : "cc";
 }
 
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 static double timeout_multiplier(void)
 {
     const char *text = getenv("CK_TIMEOUT_MULTIPLIER");
@@ -145,13 +141,13 @@ static double timeout_multiplier(void)
 static int wait_for(pid_t child, double timeout_s, bool *timed_out)
 {
     const struct timespec pause = {.tv_nsec = 2000000};
-    double deadline_s = now_s() + timeout_s;
+    double deadline_s = hf_clock_s() + timeout_s;
     int state = 0;
     pid_t ended;
     *timed_out = false;
     while ((ended = waitpid(child, &state, *timed_out ? 0 : WNOHANG)) != child) {
         if (ended < 0 && errno != EINTR) ck_abort_msg("waitpid: %s", strerror(errno));
-        if (now_s() > deadline_s && !*timed_out) {
+        if (hf_clock_s() > deadline_s && !*timed_out) {
             kill(child, SIGKILL);
             *timed_out = true;
         } else if (ended == 0) {
@@ -246,13 +242,9 @@ uint64_t test_seed(void)
     return text && *text ? strtoull(text, NULL, 0) : 20220817;
 }
 
-/* splitmix64 (Vigna 2015): its output function also serves to scatter the streams. */
 uint64_t rng_next(struct rng *rng)
 {
-    uint64_t z = rng->state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
+    return hf_random_mix(rng->state += HF_RANDOM_STEP);
 }
 
 struct rng rng_start(uint64_t stream)

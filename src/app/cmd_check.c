@@ -1,5 +1,6 @@
 #include "app/cmd_check.h"
 
+#include "base/clock.h"
 #include "search/chord.h"
 #include "search/lane.h"
 #include "search/polish.h"
@@ -35,9 +36,9 @@ static hf_status print_truss(const hf_problem *p, FILE *f, hf_messages *messages
     const hf_carrier *c = &p->carrier;
     hf_carrier again;
     char wall[32], matrix[32];
-    double begin_s = hf_run_clock_s();
+    double begin_s = hf_clock_s();
     hf_status status = hf_config_carrier(&p->settings, &p->scene, &again, messages);
-    hf_print_duration(hf_run_clock_s() - begin_s, wall, sizeof wall);
+    hf_print_duration(hf_clock_s() - begin_s, wall, sizeof wall);
     hf_carrier_free(&again);
     hf_print_bytes((double)c->frame.n_dof * (c->frame.half_bandwidth + 1) * sizeof(double), matrix, sizeof matrix);
     fprintf(f, "  truss         %d nodes, %d members; %.2f kg; %d attachments\n", c->truss.n_node, c->truss.n_member,
@@ -154,9 +155,9 @@ static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int t
     if (status == HF_OK) {
         char one[32], all[32];
         int solver = hf_batch_share(&batch, p->base_N);
-        double begin_s = hf_run_clock_s();
+        double begin_s = hf_clock_s();
         hf_batch_run(&batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
-        double each_s = (hf_run_clock_s() - begin_s) / ga->n_individual;
+        double each_s = (hf_clock_s() - begin_s) / ga->n_individual;
         hf_print_duration(each_s, one, sizeof one);
         hf_print_duration(each_s * o->population * o->generations / threads, all, sizeof all);
         fprintf(f, "                optimisation: %s for a design of the first generation by %s; at most about %s\n",
@@ -171,11 +172,11 @@ static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const h
 {
     hf_polish_result r;
     char one[32], all[32];
-    double begin_s = hf_run_clock_s();
+    double begin_s = hf_clock_s();
     hf_status status = hf_polish_run(v, ga->lower_N, ga->upper_N, 2, p->base_N, &p->workspace, &r);
     if (status == HF_NO_MEMORY) return status;
     if (status != HF_OK || r.iterations == 0) return HF_OK;
-    double each_s = (hf_run_clock_s() - begin_s) / r.iterations;
+    double each_s = (hf_clock_s() - begin_s) / r.iterations;
     hf_print_duration(each_s, one, sizeof one);
     hf_print_duration(each_s * p->settings.optimize.polish_iterations, all, sizeof all);
     fprintf(f, "                Levenberg-Marquardt: %s an iteration; at most about %s, mostly far less\n", one, all);
@@ -199,14 +200,14 @@ static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, F
     hf_form_result r;
     char text[32];
     form.max_iterations = form.max_iterations < 3 ? form.max_iterations : 3;
-    double begin_s = hf_run_clock_s();
+    double begin_s = hf_clock_s();
     hf_evaluate_form(&p->model, &form, &p->workspace, NULL, &r);
-    double iteration_s = (hf_run_clock_s() - begin_s) / r.iterations, affordable = TRIAL_S / iteration_s;
+    double iteration_s = (hf_clock_s() - begin_s) / r.iterations, affordable = TRIAL_S / iteration_s;
     form.max_iterations =
         affordable < p->settings.form.max_iterations ? (int)affordable + 1 : p->settings.form.max_iterations;
-    begin_s = hf_run_clock_s();
+    begin_s = hf_clock_s();
     hf_evaluate_form(&p->model, &form, &p->workspace, NULL, &r);
-    hf_print_duration(hf_run_clock_s() - begin_s, text, sizeof text);
+    hf_print_duration(hf_clock_s() - begin_s, text, sizeof text);
     if (r.status == HF_NOT_CONVERGED && form.max_iterations < p->settings.form.max_iterations) {
         hf_print_duration(iteration_s * p->settings.form.max_iterations, text, sizeof text);
         fprintf(f, "  expected time form-finding: not finished after %d iterations; at most %s\n", r.iterations, text);

@@ -1,7 +1,9 @@
 /* Contents: the table - the base design - evaluation - writing - together */
 #include "app/cmd_evaluate.h"
 
+#include "base/clock.h"
 #include "base/csv.h"
+#include "base/path.h"
 #include "out/export.h"
 #include "base/json.h"
 #include "out/print.h"
@@ -120,13 +122,13 @@ static hf_status evaluate(job *j, int threads, hf_messages *messages)
 {
     int can_share = 1;
     j->evaluator = hf_problem_evaluator(&j->problem);
-    double start_s = hf_run_clock_s();
+    double start_s = hf_clock_s();
     if (hf_batch_create(&j->evaluator, threads, &j->batch) != HF_OK) return no_memory(j, messages);
     for (int k = 0; k < j->problem.model.n_gene; k++)
         can_share &= j->problem.base_N[k] > 0;
     j->solver = can_share ? hf_batch_share(&j->batch, j->problem.base_N) : HF_SOLVER_AUTO;
     hf_batch_run(&j->batch, j->table.n_row, j->design_N, NULL, j->result);
-    j->wall_s = hf_run_clock_s() - start_s;
+    j->wall_s = hf_clock_s() - start_s;
     for (int i = 0; i < j->table.n_row; i++) {
         if (j->result[i].status != HF_OK) continue;
         j->n_feasible++;
@@ -236,8 +238,7 @@ static hf_status check_output(const job *j, const hf_options *o, const char *pat
     if (!path) return HF_OK;
     HF_TRY(hf_run_spare_inputs(&j->problem.settings, o->designs, path, messages));
     HF_TRY(hf_export_claim(path, o->force, messages));
-    const char *slash = strrchr(path, '/');
-    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
+    hf_path_folder(path, folder, sizeof folder);
     if (access(folder, W_OK | X_OK) != 0)
         return hf_error(messages, HF_IO, "%s: cannot write into the folder %s: %s", path, folder, strerror(errno));
     return HF_OK;

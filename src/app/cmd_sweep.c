@@ -1,7 +1,9 @@
 /* Contents: names - which points - one point - progress - sweep - status - merge */
 #include "app/cmd_sweep.h"
 
+#include "base/clock.h"
 #include "base/json.h"
+#include "base/path.h"
 #include "store/merge.h"
 #include "out/print.h"
 #include "run/run.h"
@@ -23,12 +25,8 @@
 static hf_status choose_name(const char *given, const char *study, const char *ending, char name[HF_PATH_SIZE],
                              hf_messages *messages)
 {
-    const char *slash = strrchr(study, '/'), *stem = slash ? slash + 1 : study, *dot = strrchr(stem, '.');
-    int length = dot && dot != stem ? (int)(dot - stem) : (int)strlen(stem);
-    int n = given ? snprintf(name, HF_PATH_SIZE, "%s", given)
-                  : snprintf(name, HF_PATH_SIZE, "%.*s%s", length, stem, ending);
-    if (n >= HF_PATH_SIZE || n == 0) return hf_error(messages, HF_IO, "%s: no usable path", given ? given : study);
-    return HF_OK;
+    if (hf_path_choose(given, study, ending, name, HF_PATH_SIZE) && *name) return HF_OK;
+    return hf_error(messages, HF_IO, "%s: no usable path", given ? given : study);
 }
 
 /* ---- which points ---- */
@@ -156,7 +154,7 @@ static void finish_point(sweep *w, int i, hf_status status, const hf_messages *s
         const char *words = trouble.text ? trouble.text + strlen("error: ") : "cannot write";
         hf_error(w->messages, written, "%.*s", (int)strcspn(words, "\n"), words);
     }
-    show_progress(w, hf_run_clock_s());
+    show_progress(w, hf_clock_s());
     pthread_mutex_unlock(&w->lock);
     hf_messages_free(&trouble);
 }
@@ -256,13 +254,13 @@ static hf_status run_points(sweep *w, FILE *file)
 {
     int quiet = w->options->quiet;
     char took[32];
-    w->start_s = w->said_s = hf_run_clock_s();
+    w->start_s = w->said_s = hf_clock_s();
     w->on_terminal = isatty(STDERR_FILENO);
     w->progress = quiet ? NULL : stderr;
     hf_batch_for(w->threads, w->n_todo, run_point, w);
     if (w->progress && w->on_terminal) fputs("\r\033[K", w->progress);
     int left = w->n_todo - w->n_done - w->n_failed - w->n_elsewhere;
-    hf_print_duration(hf_run_clock_s() - w->start_s, took, sizeof took);
+    hf_print_duration(hf_clock_s() - w->start_s, took, sizeof took);
     if (!quiet)
         fprintf(file, "%d points run in %s on %d threads, %d of them failed; results in %s\n", w->n_done + w->n_failed,
                 took, w->threads, w->n_failed, w->ledger.folder);

@@ -2,6 +2,7 @@
  * join several keys - load */
 #include <hifdm/config.h>
 
+#include "base/path.h"
 #include "base/sha256.h"
 #include "base/text.h"
 
@@ -209,19 +210,13 @@ static void set_list(loader *l, const yaml_node_t *node, const hf_field *f, hf_d
 static void set_text(loader *l, const yaml_node_t *node, const hf_field *f, char *to)
 {
     size_t size = (size_t)f->max;
-    int n;
     if (node->type != YAML_SCALAR_NODE || (f->min > 0 && !*scalar_text(node))) {
         complain(l, node->start_mark, f->path, "must be a text", "");
         return;
     }
     /* paths in a case file are relative to that file, paths on the command line to the current folder */
-    const char *slash = strrchr(l->c->path, '/');
-    int is_path = size == HF_PATH_SIZE;
-    if (is_path && !l->is_override && slash && scalar_text(node)[0] != '/')
-        n = snprintf(to, size, "%.*s/%s", (int)(slash - l->c->path), l->c->path, scalar_text(node));
-    else
-        n = snprintf(to, size, "%s", scalar_text(node));
-    if (n < 0 || (size_t)n >= size) complain(l, node->start_mark, f->path, "is too long", "");
+    const char *beside = size == HF_PATH_SIZE && !l->is_override ? l->c->path : "";
+    if (!hf_path_beside(beside, scalar_text(node), to, size)) complain(l, node->start_mark, f->path, "is too long", "");
 }
 
 static void set_field(loader *l, const yaml_node_t *node, int i_field)

@@ -1,6 +1,7 @@
 /* Contents: values - samples - points - what a point sets */
 #include "case/study.h"
 
+#include "base/random.h"
 #include "base/sha256.h"
 #include "base/text.h"
 
@@ -70,28 +71,19 @@ hf_status hf_study_sobol(int n, int n_axis, double *x)
     return HF_OK;
 }
 
-/* SplitMix64 (Steele, Lea & Flood 2014). */
-static uint64_t next_random(uint64_t *state)
-{
-    uint64_t z = *state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-}
-
 hf_status hf_study_latin_hypercube(int n, int n_axis, uint64_t seed, double *x)
 {
     int *row = malloc((size_t)n * sizeof *row);
     if (!row) return HF_NO_MEMORY;
     for (int axis = 0; axis < n_axis; axis++) {
-        uint64_t state = seed ^ ((uint64_t)(unsigned)axis << 48);
+        hf_random random = {seed ^ ((uint64_t)(unsigned)axis << 48)};
         for (int i = 0; i < n; i++) { /* Fisher-Yates; n is so far below 2^64 that the remainder is fair enough */
-            int k = (int)(next_random(&state) % ((uint64_t)i + 1));
+            int k = (int)(hf_random_next(&random) % ((uint64_t)i + 1));
             row[i] = row[k];
             row[k] = i;
         }
         for (int i = 0; i < n; i++)
-            x[(size_t)i * (size_t)n_axis + (size_t)axis] = (row[i] + (double)(next_random(&state) >> 11) * 0x1p-53) / n;
+            x[(size_t)i * (size_t)n_axis + (size_t)axis] = (row[i] + hf_random_uniform(&random)) / n;
     }
     free(row);
     return HF_OK;

@@ -1,6 +1,7 @@
 /* Contents: faults - axes given as lists - axes given as ranges - the sweep section - the file */
 #include "case/study.h"
 
+#include "base/path.h"
 #include "base/text.h"
 
 #include <stdarg.h>
@@ -133,12 +134,9 @@ static int value_text(reader *r, const yaml_node_t *node, char *text)
 /* A text as a quoted YAML scalar; paths are relative to the study file. */
 static int quote(const reader *r, const hf_field *field, const char *value, char *text)
 {
-    const char *slash = strrchr(r->study->path, '/');
-    int is_path = field->max == HF_PATH_SIZE && *value != '/' && slash;
     char whole[2 * HF_PATH_SIZE];
-    int n =
-        snprintf(whole, sizeof whole, "%.*s%s", is_path ? (int)(slash - r->study->path) + 1 : 0, r->study->path, value);
-    if (n >= (int)sizeof whole) return 0;
+    const char *beside = field->max == HF_PATH_SIZE ? r->study->path : "";
+    if (!hf_path_beside(beside, value, whole, sizeof whole)) return 0;
     *text++ = '"';
     for (const char *p = whole; *p; p++) {
         if (*p == '"' || *p == '\\') *text++ = '\\';
@@ -375,11 +373,10 @@ static void read_sweep(reader *r, const yaml_node_t *mapping)
 static void read_base(reader *r, const yaml_node_t *node)
 {
     hf_study *s = r->study;
-    const char *name = text_of(node), *slash = strrchr(s->path, '/');
-    int n = slash && *name != '/' ? (int)(slash - s->path) + 1 : 0;
+    const char *name = text_of(node);
     if (!*name)
         fault(r, node->start_mark, "", "base must be the name of a case file");
-    else if (snprintf(s->base, sizeof s->base, "%.*s%s", n, s->path, name) >= HF_PATH_SIZE)
+    else if (!hf_path_beside(s->path, name, s->base, sizeof s->base))
         fault(r, node->start_mark, "", "base is too long");
 }
 

@@ -1,6 +1,7 @@
 #include "out/cutlist.h"
 
 #include "base/csv.h"
+#include "base/path.h"
 #include "out/export.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
@@ -113,10 +114,8 @@ static hf_status demand_EA(const char *path, const hf_scene *s, hf_messages *mes
 static hf_status name_files(const hf_export_request *o, char path[3][PATH_SIZE], hf_messages *messages)
 {
     static const char *const part[3] = {"", "_nodes", "_totals"};
-    const char *slash = strrchr(o->output, '/'), *dot = strrchr(slash ? slash : o->output, '.');
-    int stem = (int)(dot ? (size_t)(dot - o->output) : strlen(o->output));
     for (int i = 0; i < 3; i++) {
-        if (snprintf(path[i], PATH_SIZE, "%.*s%s%s", stem, o->output, part[i], o->output + stem) >= PATH_SIZE)
+        if (!hf_path_insert(o->output, part[i], path[i], PATH_SIZE))
             return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
         HF_TRY(hf_export_claim(path[i], o->force, messages));
     }

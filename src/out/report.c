@@ -3,6 +3,7 @@
 
 #include "out/export.h"
 #include "base/json.h"
+#include "base/path.h"
 #include "store/store_read.h"
 #include <hifdm/metrics.h>
 
@@ -67,8 +68,7 @@ static void write_html(const char *text, FILE *f)
 /* What the page is headed: the title, or the name of the case file. */
 static const char *heading(const hf_summary *s)
 {
-    const char *slash = strrchr(s->case_path, '/');
-    return *s->title ? s->title : slash ? slash + 1 : s->case_path;
+    return *s->title ? s->title : hf_path_name(s->case_path);
 }
 
 /* ---- net and shapes ---- */
@@ -247,13 +247,9 @@ static void free_page(page *p)
 /* -o, or the name of the file with .html in the current folder; never the file itself. */
 static hf_status choose_output(const hf_export_request *o, char output[PATH_SIZE], hf_messages *messages)
 {
-    const char *slash = strrchr(o->file, '/'), *name = slash ? slash + 1 : o->file, *dot = strrchr(name, '.');
-    int stem = dot && dot != name ? (int)(dot - name) : (int)strlen(name);
-    int n =
-        o->output ? snprintf(output, PATH_SIZE, "%s", o->output) : snprintf(output, PATH_SIZE, "%.*s.html", stem, name);
-    struct stat a, b;
-    if (n >= PATH_SIZE) return hf_error(messages, HF_IO, "%s: the path is too long", o->output ? o->output : name);
-    if (stat(o->file, &a) == 0 && stat(output, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino)
+    if (!hf_path_choose(o->output, o->file, ".html", output, PATH_SIZE))
+        return hf_error(messages, HF_IO, "%s: the path is too long", o->output ? o->output : hf_path_name(o->file));
+    if (hf_path_is_same(o->file, output))
         return hf_error(messages, HF_EXISTS, "%s: is the result itself; use -o to choose another name", output);
     return hf_export_claim(output, o->force, messages);
 }

@@ -3,6 +3,7 @@
 
 #include "out/export.h"
 #include "base/json.h"
+#include "base/path.h"
 #include "store/store_table.h"
 
 #include <limits.h>
@@ -73,9 +74,9 @@ static void write_links(const study_page *p, FILE *f)
     for (int is_page = 0; is_page < 2; is_page++) {
         fprintf(f, ",\"%s\":[", is_page ? "page" : "file");
         for (int i = 0; i < p->n; i++) {
-            const char *file = p->file.n ? hf_texts_at(&p->file, i) : "", *dot = strrchr(file, '.');
-            const char *ending = is_page ? ".html" : dot ? dot : "";
-            int is_absolute = *file == '/', stem = dot ? (int)(dot - file) : (int)strlen(file);
+            const char *file = p->file.n ? hf_texts_at(&p->file, i) : "", *its_own = hf_path_ending(file);
+            const char *ending = is_page ? ".html" : its_own;
+            int is_absolute = *file == '/', stem = (int)(its_own - file);
             snprintf(link, sizeof link, "%s%.*s%s", is_absolute ? "" : p->folder, stem, file, ending);
             int is_there = *file && access(link, R_OK) == 0;
             snprintf(link, sizeof link, "%s%.*s%s", is_absolute ? "" : p->from_page, stem, file, ending);
@@ -125,9 +126,8 @@ static void write_outputs(const study_page *p, FILE *f)
 static void write_data(const void *context, FILE *f)
 {
     const study_page *p = context;
-    const char *slash = strrchr(p->path, '/');
     fputc('{', f);
-    hf_json_text("title", slash ? slash + 1 : p->path, f);
+    hf_json_text("title", hf_path_name(p->path), f);
     fputs(",\n\"study\":{", f);
     hf_json_text("path", p->path, f);
     fprintf(f, ",\"n\":%d", p->n);
@@ -143,8 +143,7 @@ static void write_data(const void *context, FILE *f)
 static void write_page(const void *context, FILE *f)
 {
     const study_page *p = context;
-    const char *slash = strrchr(p->path, '/');
-    hf_report_write(slash ? slash + 1 : p->path, write_data, p, f);
+    hf_report_write(hf_path_name(p->path), write_data, p, f);
 }
 
 /* ---- reading ---- */
@@ -189,21 +188,15 @@ static void free_page(study_page *p)
             hf_series_free(&p->output[s][k]);
 }
 
-/* The folder of a path, with its slash; "" when it is the current one. */
-static void folder_of(const char *path, char folder[LINK_SIZE])
-{
-    const char *slash = strrchr(path, '/');
-    snprintf(folder, LINK_SIZE, "%.*s", slash ? (int)(slash - path) + 1 : 0, path);
-}
-
 /* A page beside the merged file links to the results as the file does, one elsewhere by absolute paths. */
 static void find_folders(study_page *p, const char *output)
 {
-    char page_folder[LINK_SIZE], merge_real[PATH_MAX], page_real[PATH_MAX];
-    folder_of(p->path, p->folder);
-    folder_of(output, page_folder);
-    if (!realpath(*p->folder ? p->folder : ".", merge_real)) return;
-    if (realpath(*page_folder ? page_folder : ".", page_real) && !strcmp(merge_real, page_real)) return;
+    char merge_folder[LINK_SIZE], page_folder[LINK_SIZE], merge_real[PATH_MAX], page_real[PATH_MAX];
+    snprintf(p->folder, sizeof p->folder, "%.*s", hf_path_prefix_length(p->path), p->path);
+    hf_path_folder(p->path, merge_folder, sizeof merge_folder);
+    hf_path_folder(output, page_folder, sizeof page_folder);
+    if (!realpath(merge_folder, merge_real)) return;
+    if (realpath(page_folder, page_real) && !strcmp(merge_real, page_real)) return;
     snprintf(p->from_page, sizeof p->from_page, "%s/", merge_real);
 }
 

@@ -1,6 +1,8 @@
 /* Contents: form-finding - optimisation - the whole run */
 #include "run/run.h"
 
+#include "base/clock.h"
+#include "base/path.h"
 #include "search/polish.h"
 #include "store/store_open.h"
 #include "base/text.h"
@@ -11,14 +13,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #define HISTORY_MAX 1000000 /* iterations whose history is kept */
-
-double hf_run_clock_s(void)
-{
-    return hf_store_clock_s();
-}
 
 /* Everything a run owns. */
 typedef struct {
@@ -109,9 +105,9 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     if (create_history(form, p->model.n_attachment > 0, &r->history) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", p->model.n_node);
     observe(r, (hf_run_progress){.phase = HF_RUN_FORM});
-    double start_s = hf_run_clock_s();
+    double start_s = hf_clock_s();
     hf_evaluate_form(&p->model, form, &p->workspace, &r->history, &s->form);
-    s->form_wall_s = hf_run_clock_s() - start_s;
+    s->form_wall_s = hf_clock_s() - start_s;
     hf_status status = hf_problem_explain(p, &s->form, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
     HF_TRY(measure_surface(r, HF_STAGE_FORM, &p->workspace, s, messages));
@@ -170,7 +166,7 @@ static void sum_up(const run *r, double start_s, hf_summary *s)
 {
     const hf_ga *ga = &r->ga;
     s->has_optimize = 1;
-    s->optimize_wall_s = r->earlier_wall_s + hf_run_clock_s() - start_s;
+    s->optimize_wall_s = r->earlier_wall_s + hf_clock_s() - start_s;
     s->optimize_cpu_s = r->earlier_cpu_s + r->batch.cpu_s;
     s->generations = ga->generation + 1;
     s->evaluations = ga->n_evaluation;
@@ -241,7 +237,7 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
     s->solver = hf_batch_share(&r->batch, r->problem.base_N);
     HF_TRY(begin_generations(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
-    double start_s = hf_run_clock_s();
+    double start_s = hf_clock_s();
     int more = evaluate_first(r);
     while (more) {
         hf_ga_tell(ga);
@@ -268,7 +264,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     const hf_optimize_settings *o = &r->problem.settings.optimize;
     hf_workspace *w = &r->problem.workspace;
     hf_polish_result outcome;
-    double *design = r->problem.base_N, start_s = hf_run_clock_s();
+    double *design = r->problem.base_N, start_s = hf_clock_s();
     if (s->has_optimize && r->ga.best >= 0) design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
     observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});
     hf_status status =
@@ -289,7 +285,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     s->polish_iterations = outcome.iterations;
     s->polish_evaluations = outcome.evaluations;
     s->polish_converged = outcome.converged;
-    s->polish_wall_s = hf_run_clock_s() - start_s;
+    s->polish_wall_s = hf_clock_s() - start_s;
     HF_TRY(measure_surface(r, HF_STAGE_POLISH, w, s, messages));
     if (s->polish_is_result) HF_TRY(load_truss(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);
@@ -312,12 +308,8 @@ static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
 /* -o, or the name of the case with .h5 in the current folder. */
 static hf_status choose_output(const hf_run_request *o, char output[HF_OUTPUT_SIZE], hf_messages *messages)
 {
-    const char *slash = strrchr(o->case_path, '/'), *name = slash ? slash + 1 : o->case_path, *dot = strrchr(name, '.');
-    int stem = dot && dot != name ? (int)(dot - name) : (int)strlen(name);
-    int n = o->output ? snprintf(output, HF_OUTPUT_SIZE, "%s", o->output)
-                      : snprintf(output, HF_OUTPUT_SIZE, "%.*s.h5", stem, name);
-    if (n >= HF_OUTPUT_SIZE) return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
-    return HF_OK;
+    if (hf_path_choose(o->output, o->case_path, ".h5", output, HF_OUTPUT_SIZE)) return HF_OK;
+    return hf_error(messages, HF_IO, "%s: the path is too long", o->output ? o->output : o->case_path);
 }
 
 hf_status hf_run_spare_inputs(const hf_case *settings, const char *table, const char *output, hf_messages *messages)
@@ -328,10 +320,8 @@ hf_status hf_run_spare_inputs(const hf_case *settings, const char *table, const 
                            settings->cables_path,
                            settings->truss_nodes_path,
                            settings->truss_members_path};
-    struct stat a, b;
     for (size_t i = 0; i < sizeof input / sizeof *input; i++)
-        if (input[i] && *input[i] && stat(input[i], &a) == 0 && stat(output, &b) == 0 && a.st_dev == b.st_dev &&
-            a.st_ino == b.st_ino)
+        if (input[i] && *input[i] && hf_path_is_same(input[i], output))
             return hf_error(messages, HF_EXISTS, "%s: is an input of this run; use -o to choose another name", output);
     return HF_OK;
 }

@@ -60,6 +60,4 @@ hf_status hf_run_point(const hf_run_request *request, hf_summary *summary, char 
 /* Not even --force lets a result replace what it is made from: the case, its net, a table (may be NULL). */
 hf_status hf_run_spare_inputs(const hf_case *settings, const char *table, const char *output, hf_messages *messages);
 
-double hf_run_clock_s(void);
-
 #endif

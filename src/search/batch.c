@@ -1,5 +1,6 @@
 #include <hifdm/batch.h>
 
+#include "base/clock.h"
 #include "linalg/band.h"
 #include "search/chord.h"
 #include "search/swarm.h"
@@ -11,14 +12,6 @@
 #include <semaphore.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-static double thread_cpu_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 int hf_batch_default_threads(void)
 {
@@ -176,9 +169,9 @@ static int take_next(void *context)
 /* The same with the time it takes, added up over all who work. */
 static void share_work(hf_batch *batch, int room, queue *work, const double *design_N, hf_form_result *result)
 {
-    double start_s = thread_cpu_s();
+    double start_s = hf_clock_thread_cpu_s();
     work_off(batch, room, take_next, work, design_N, result);
-    double cpu_s = thread_cpu_s() - start_s; /* without the wait for the other threads */
+    double cpu_s = hf_clock_thread_cpu_s() - start_s; /* without the wait for the other threads */
 #pragma omp atomic
     batch->cpu_s += cpu_s;
 }

@@ -3,6 +3,7 @@
 #include <hifdm/ga.h>
 
 #include "base/arena.h"
+#include "base/random.h"
 #include "net/symmetry.h"
 
 #include <math.h>
@@ -19,30 +20,12 @@
 
 const char *const hf_ga_stop_word[4] = {"running", "stagnation", "generations", "all_infeasible"};
 
-/* ---- random numbers: one stream per (seed, generation, individual), SplitMix64 (Steele, Lea & Flood 2014) ---- */
+/* ---- random numbers: one stream per (seed, generation, individual) ---- */
 
-typedef struct {
-    uint64_t state;
-} stream;
-
-static uint64_t mix(uint64_t z)
-{
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-}
-
-static stream stream_open(uint64_t seed, int generation, int individual)
+static hf_random stream_open(uint64_t seed, int generation, int individual)
 {
     uint64_t place = (uint64_t)(uint32_t)generation << 32 | (uint32_t)individual;
-    return (stream){mix(mix(seed + 0x9e3779b97f4a7c15u) ^ mix(place + 0x3c6ef372fe94f82au))};
-}
-
-/* Uniform in [0, 1). */
-static double uniform(stream *s)
-{
-    s->state += 0x9e3779b97f4a7c15u;
-    return (double)(mix(s->state) >> 11) * 0x1p-53;
+    return (hf_random){hf_random_mix(hf_random_mix(seed + HF_RANDOM_STEP) ^ hf_random_mix(place + 2 * HF_RANDOM_STEP))};
 }
 
 /* ---- memory ---- */
@@ -124,9 +107,9 @@ static void first_generation(const double *base_N, hf_ga *g)
     }
     link_bounds(g);
     for (int i = 0; i < g->n_individual; i++) {
-        stream random = stream_open(s->seed, 0, i);
+        hf_random random = stream_open(s->seed, 0, i);
         for (int j = 0; j < g->n_group; j++)
-            g->group_draw[j] = i == 0 ? 0 : 2 * uniform(&random) - 1;
+            g->group_draw[j] = i == 0 ? 0 : 2 * hf_random_uniform(&random) - 1;
         for (int k = 0; k < g->n_gene; k++) {
             double step = s->range_N * g->group_draw[g->gene_group[k]];
             g->design_N[(size_t)i * (size_t)g->n_gene + (size_t)k] =
@@ -187,12 +170,12 @@ static void set_fitness(hf_ga *g)
     }
 }
 
-static int spin_roulette(const hf_ga *g, stream *random)
+static int spin_roulette(const hf_ga *g, hf_random *random)
 {
     double total = 0;
     for (int i = 0; i < g->n_individual; i++)
         total += g->fitness[i];
-    double left = uniform(random) * total;
+    double left = hf_random_uniform(random) * total;
     int last = 0;
     for (int i = 0; i < g->n_individual; i++) {
         if (!(g->fitness[i] > 0)) continue;
@@ -205,10 +188,10 @@ static int spin_roulette(const hf_ga *g, stream *random)
 
 /* ---- variation ---- */
 
-static void recombine(const hf_ga *g, const double *a, const double *b, double *child, stream *random)
+static void recombine(const hf_ga *g, const double *a, const double *b, double *child, hf_random *random)
 {
     for (int j = 0; j < g->n_group; j++)
-        g->group_draw[j] = uniform(random) * (1 + 2 * RECOMBINATION_REACH) - RECOMBINATION_REACH;
+        g->group_draw[j] = hf_random_uniform(random) * (1 + 2 * RECOMBINATION_REACH) - RECOMBINATION_REACH;
     for (int k = 0; k < g->n_gene; k++) {
         double share = g->group_draw[g->gene_group[k]];
         child[k] = clamp(a[k] + share * (b[k] - a[k]), g->lower_N[k], g->upper_N[k]);
@@ -216,17 +199,17 @@ static void recombine(const hf_ga *g, const double *a, const double *b, double *
 }
 
 /* A step with a random sign and scale, relative to the range; 0 with probability 1 - rate. */
-static double mutation_step(double rate, stream *random)
+static double mutation_step(double rate, hf_random *random)
 {
-    if (uniform(random) >= rate) return 0;
-    double sign = uniform(random) < 0.5 ? -1 : 1;
-    return sign * exp2(-MUTATION_OCTAVES * uniform(random));
+    if (hf_random_uniform(random) >= rate) return 0;
+    double sign = hf_random_uniform(random) < 0.5 ? -1 : 1;
+    return sign * exp2(-MUTATION_OCTAVES * hf_random_uniform(random));
 }
 
 /* The cables of a chain move together: an unequal change drags the chain's nodes along it, which raises psi steeply, so
  * that independent steps on every gene are nearly always refused (measured: 400 generations then gain 1 um instead of
  * 240 um). Single genes still mutate, `rate` of them per individual. */
-static void mutate(const hf_ga *g, double rate, double *child, stream *random)
+static void mutate(const hf_ga *g, double rate, double *child, hf_random *random)
 {
     double single = rate / g->n_leader;
     for (int j = 0; j < g->n_group; j++)
@@ -243,14 +226,14 @@ static void breed(hf_ga *g, int i)
 {
     const hf_optimize_settings *s = g->settings;
     size_t n = (size_t)g->n_gene;
-    stream random = stream_open(s->seed, g->generation + 1, i);
+    hf_random random = stream_open(s->seed, g->generation + 1, i);
     int a = spin_roulette(g, &random), b = spin_roulette(g, &random);
     const double *mother = g->design_N + (size_t)a * n, *father = g->design_N + (size_t)b * n;
     double *child = g->next_design_N + (size_t)i * n;
     double psi = fmin(g->result[a].psi_m, g->result[b].psi_m); /* fmin ignores the NaN of an infeasible parent */
     double pc = g->best < 0 ? s->crossover_high : adaptive(g, s->crossover_high, s->crossover_low, psi);
     double pm = g->best < 0 ? s->mutation_high : adaptive(g, s->mutation_high, s->mutation_low, psi);
-    if (uniform(&random) < pc)
+    if (hf_random_uniform(&random) < pc)
         recombine(g, mother, father, child, &random);
     else
         memcpy(child, mother, n * sizeof *child);

@@ -2,6 +2,8 @@
 #define _DEFAULT_SOURCE /* flock */
 #include "store/journal.h"
 
+#include "base/path.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -31,13 +33,6 @@ static hf_status fail(const hf_journal *j, const char *what, const char *path, h
     return hf_error(messages, HF_IO, "%s: cannot %s %s: %s", j->result, what, path, strerror(errno));
 }
 
-/* Is the open file still the one of this name? */
-static int has_name(int file, const char *path)
-{
-    struct stat a, b;
-    return fstat(file, &a) == 0 && stat(path, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
-}
-
 static hf_status open_and_lock(hf_journal *j, hf_messages *messages)
 {
     for (int i = 0; i < OPEN_ATTEMPTS; i++) {
@@ -52,7 +47,7 @@ static hf_status open_and_lock(hf_journal *j, hf_messages *messages)
             return hf_error(messages, HF_IO, "%s: another process is writing it (it holds the lock of %s)", j->result,
                             j->path);
         }
-        if (has_name(j->file, j->path)) return HF_OK;
+        if (hf_path_leads_to(j->path, j->file)) return HF_OK;
         close(j->file); /* its owner rotated or finished between open and lock */
         j->file = -1;
     }
@@ -183,7 +178,7 @@ hf_status hf_journal_tend(hf_journal *j, double now_s, hf_messages *messages)
     if (j->synced_s == 0) j->synced_s = now_s; /* the first call starts the clock */
     if (now_s - j->synced_s < HF_JOURNAL_SYNC_S) return HF_OK;
     j->synced_s = now_s;
-    if (!has_name(j->file, j->path))
+    if (!hf_path_leads_to(j->path, j->file))
         return hf_error(messages, HF_IO, "%s: %s was removed or replaced during the run", j->result, j->path);
     if (j->has_news && fdatasync(j->file) != 0 && errno != EINVAL && errno != ENOSYS)
         return fail(j, "write", j->path, messages);

@@ -1,6 +1,7 @@
 /* Contents: columns - names - writing - reading files - news of other processes - reading locks - the whole */
 #include "store/ledger.h"
 
+#include "base/clock.h"
 #include "store/journal.h"
 #include "base/text.h"
 
@@ -12,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 #define HEADER "#hifdm-points-1"
@@ -200,7 +200,6 @@ hf_status hf_ledger_write(hf_ledger *l, const hf_study *study, int point, hf_sta
                           const hf_summary *s, hf_messages *messages)
 {
     char line[LINE_SIZE];
-    struct timespec now;
     size_t used = (size_t)snprintf(line, sizeof line, "%s\t%s\t%s\t", study->id[point], study->fingerprint,
                                    hf_status_word(status));
     used += put_reason(reason, line + used);
@@ -213,9 +212,9 @@ hf_status hf_ledger_write(hf_ledger *l, const hf_study *study, int point, hf_sta
     pthread_mutex_lock(&l->lock);
     hf_status result = l->rows < 0 ? start_rows(l, messages) : HF_OK;
     if (result == HF_OK) result = write_line(l, line, used, messages);
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    int is_due = (double)now.tv_sec - l->synced_s >= SYNC_S;
-    if (is_due) l->synced_s = (double)now.tv_sec;
+    double now_s = hf_clock_s();
+    int is_due = now_s - l->synced_s >= SYNC_S;
+    if (is_due) l->synced_s = now_s;
     pthread_mutex_unlock(&l->lock);
     if (result == HF_OK && is_due && fdatasync(l->rows) != 0 && errno != EINVAL)
         return hf_error(messages, HF_IO, "%s: cannot write to the disk: %s", l->folder, strerror(errno));

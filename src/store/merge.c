@@ -1,6 +1,7 @@
 /* Contents: columns - inputs - outputs - links - the file */
 #include "store/merge.h"
 
+#include "base/path.h"
 #include "base/text.h"
 #include <hifdm/store.h>
 
@@ -176,9 +177,8 @@ static void write_points(merger *m)
 static void relative_folder(const char *output, const char *folder, char *to, size_t size)
 {
     char here[PATH_MAX + 1], there[PATH_MAX + 1], parent[PATH_MAX]; /* a slash is added */
-    const char *slash = strrchr(output, '/');
     size_t used = 0, common = 0;
-    snprintf(parent, sizeof parent, "%.*s", slash ? (int)(slash - output) + 1 : 1, slash ? output : ".");
+    hf_path_folder(output, parent, sizeof parent);
     snprintf(to, size, "%s", folder);
     if (!realpath(parent, here) || !realpath(folder, there)) return;
     strcat(strcmp(here, "/") ? here : strcpy(here, ""), "/");
@@ -201,7 +201,7 @@ static void write_links(merger *m, const char *folder)
     for (int i = 0; i < m->study->n_point && m->io.status == HF_OK; i++) {
         const char *id = m->study->id[i];
         if (hf_ledger_file(folder, m->study, i, file) != HF_LEDGER_FILE) continue;
-        snprintf(target, sizeof target, "%s%s", *relative ? relative : ".", strrchr(file, '/'));
+        snprintf(target, sizeof target, "%s/%s", *relative ? relative : ".", hf_path_name(file));
         if (H5Lcreate_external(target, "/", group, id, H5P_DEFAULT, H5P_DEFAULT) < 0)
             hf_hdf5_fail(&m->io, "write", group, id);
     }

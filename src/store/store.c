@@ -1,6 +1,7 @@
 /* Contents: names and checks before a run - provenance, case, scene - shapes - generations - summary - the end */
 #include <hifdm/store.h>
 
+#include "base/clock.h"
 #include "linalg/band.h"
 #include "store/store_coupling.h"
 #include "store/store_open.h"
@@ -12,7 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #ifndef HF_VERSION /* these four come from the Makefile */
@@ -122,7 +122,7 @@ hf_status hf_store_create(const char *path, int restart, const hf_case *settings
     hf_store *s = hf_store_new(path, restart, &status, messages);
     if (!s) return status;
     hf_hdf5_lock();
-    double begin_s = hf_store_clock_s();
+    double begin_s = hf_clock_s();
     if (!restart && lstat(path, &info) == 0)
         s->f.io.status = hf_error(
             messages, HF_EXISTS,
@@ -136,7 +136,7 @@ hf_status hf_store_create(const char *path, int restart, const hf_case *settings
         write_case(s, settings);
         write_scene(s, scene);
     }
-    s->publish_s = hf_store_clock_s() - begin_s;
+    s->publish_s = hf_clock_s() - begin_s;
     return hf_store_hand_over(s, store);
 }
 
@@ -304,9 +304,9 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_g
         hf_hdf5_lock();
     else if (!hf_hdf5_try_lock())
         return HF_OK;
-    double begin_s = hf_store_clock_s();
+    double begin_s = hf_clock_s();
     hf_store_file_open(&store->f);
-    store->publish_s += hf_store_clock_s() - begin_s; /* the copy is what publishing costs, too */
+    store->publish_s += hf_clock_s() - begin_s; /* the copy is what publishing costs, too */
     hf_generations_make_room(&store->f.io, g);
     HF_TRY(hf_hdf5_unlock(store->f.io.status));
     hf_store_file_flow(&store->f);
@@ -358,7 +358,7 @@ static void complete(hf_store *s, const hf_summary *summary, int finished)
 hf_status hf_store_publish(hf_store *s, const hf_summary *summary, int at_once, hf_messages *messages)
 {
     if (!s) return HF_OK;
-    double now_s = hf_store_clock_s();
+    double now_s = hf_clock_s();
     s->f.io.messages = messages;
     HF_TRY(s->f.io.status);
     double since_s = now_s - s->published_at_s;
@@ -374,7 +374,7 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, int at_once, 
     hf_store_file_name(&s->f, s->rows.n_stored > 0);
     if (s->f.io.status == HF_OK && !hf_journal_is_empty(&s->f.journal))
         s->f.io.status = hf_journal_rotate(&s->f.journal, messages);
-    s->published_at_s = hf_store_clock_s();
+    s->published_at_s = hf_clock_s();
     s->publish_s = s->published_at_s - now_s;
     return s->f.io.status;
 }

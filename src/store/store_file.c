@@ -1,6 +1,8 @@
 /* Contents: names and checks - the temporary file - publishing - the end */
 #include "store/store_file.h"
 
+#include "base/path.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -13,13 +15,6 @@
 
 /* ---- names and checks ---- */
 
-static void folder_of(const char *path, char *folder, size_t size)
-{
-    const char *slash = strrchr(path, '/');
-    int n = slash == path ? 1 : slash ? (int)(slash - path) : 0; /* the root keeps its slash */
-    snprintf(folder, size, "%.*s", n ? n : 1, n ? path : ".");
-}
-
 /* Can the file be made under this name when the run is over? Told now rather than after hours of work. */
 static hf_status check_target(const char *path, hf_messages *messages)
 {
@@ -28,7 +23,7 @@ static hf_status check_target(const char *path, hf_messages *messages)
     if (lstat(path, &info) == 0 && stat(path, &info) == 0 && !S_ISREG(info.st_mode))
         return hf_error(messages, HF_IO, "%s: is %s; use -o to choose a file name", path,
                         S_ISDIR(info.st_mode) ? "a folder" : "not an ordinary file");
-    folder_of(path, folder, sizeof folder);
+    hf_path_folder(path, folder, sizeof folder);
     if (!*path || stat(folder, &info) != 0 || !S_ISDIR(info.st_mode))
         return hf_error(messages, HF_IO, "%s: there is no folder %s; make it or use -o to choose another name", path,
                         folder);
@@ -189,9 +184,8 @@ static int rename_to_new(const char *from, const char *to)
 static int is_ours(const hf_store_file *f)
 {
     struct stat now;
-    return stat(f->path, &now) == 0 && now.st_dev == f->ours.st_dev && now.st_ino == f->ours.st_ino &&
-           now.st_size == f->ours.st_size && now.st_mtim.tv_sec == f->ours.st_mtim.tv_sec &&
-           now.st_mtim.tv_nsec == f->ours.st_mtim.tv_nsec;
+    return stat(f->path, &now) == 0 && hf_path_is_same_inode(&now, &f->ours) && now.st_size == f->ours.st_size &&
+           now.st_mtim.tv_sec == f->ours.st_mtim.tv_sec && now.st_mtim.tv_nsec == f->ours.st_mtim.tv_nsec;
 }
 
 /* The work is whole, so it is kept when its name cannot be given to it: under a name that no later run takes. */
@@ -232,7 +226,7 @@ void hf_store_file_name(hf_store_file *f, int durable)
     }
     f->has_temporary = 0;
     hf_store_file_adopt(f);
-    folder_of(f->path, folder, sizeof folder);
+    hf_path_folder(f->path, folder, sizeof folder);
     if (f->io.status == HF_OK && durable) sync_to_disk(f, folder);
 }
 

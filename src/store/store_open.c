@@ -48,13 +48,6 @@ void *hf_store_scratch(hf_store *s, size_t bytes)
     return s->scratch;
 }
 
-double hf_store_clock_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 void hf_store_put_time(hf_store *s, const char *attribute)
 {
     char text[32] = "";

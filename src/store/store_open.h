@@ -29,8 +29,6 @@ void hf_store_free(hf_store *s);
 /* Space that lasts until the next call; NULL, with a message, when there is none or the store has failed already. */
 void *hf_store_scratch(hf_store *s, size_t bytes);
 
-double hf_store_clock_s(void);
-
 /* Attributes of the root: now in UTC; which job of Slurm this is, so that logs can be found. */
 void hf_store_put_time(hf_store *s, const char *attribute);
 void hf_store_put_job(hf_store *s);

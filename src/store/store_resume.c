@@ -2,6 +2,8 @@
 #include "store/store_open.h"
 #include "store/store_read.h"
 
+#include "base/clock.h"
+
 #include <assert.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -84,7 +86,7 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     if (!s) return status;
     hf_hdf5_lock();
     s->is_resumed = 1;
-    s->published_at_s = hf_store_clock_s(); /* what is there is visible */
+    s->published_at_s = hf_clock_s(); /* what is there is visible */
     hf_store_file_adopt(&s->f);
     hf_store_file_open(&s->f);
     read_state(s);

@@ -1,21 +1,19 @@
 /* Contents: small things - arguments */
 #include "bench.h"
 
+#include "base/clock.h"
 #include "linalg/band.h"
 #include <hifdm/store.h>
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /* ---- small things ---- */
 
 double bench_clock_s(void)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    return hf_clock_s();
 }
 
 void bench_fail(const char *what, const char *why)

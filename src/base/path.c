@@ -1,0 +1,69 @@
+#include "base/path.h"
+
+#include <stdio.h>
+#include <string.h>
+
+const char *hf_path_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+const char *hf_path_ending(const char *path)
+{
+    const char *name = hf_path_name(path), *dot = strrchr(name, '.');
+    return dot && dot != name ? dot : path + strlen(path);
+}
+
+int hf_path_prefix_length(const char *path)
+{
+    return (int)(hf_path_name(path) - path);
+}
+
+static bool fits(int n, size_t size)
+{
+    return n >= 0 && (size_t)n < size;
+}
+
+bool hf_path_folder(const char *path, char *folder, size_t size)
+{
+    int n = hf_path_prefix_length(path);
+    if (n > 1) n--; /* the root keeps its slash */
+    return fits(snprintf(folder, size, "%.*s", n ? n : 1, n ? path : "."), size);
+}
+
+bool hf_path_beside(const char *file, const char *name, char *path, size_t size)
+{
+    int n = *name == '/' ? 0 : hf_path_prefix_length(file);
+    return fits(snprintf(path, size, "%.*s%s", n, file, name), size);
+}
+
+bool hf_path_choose(const char *given, const char *source, const char *ending, char *path, size_t size)
+{
+    const char *name = hf_path_name(source);
+    if (given) return fits(snprintf(path, size, "%s", given), size);
+    return fits(snprintf(path, size, "%.*s%s", (int)(hf_path_ending(source) - name), name, ending), size);
+}
+
+bool hf_path_insert(const char *path, const char *part, char *longer, size_t size)
+{
+    const char *ending = hf_path_ending(path);
+    return fits(snprintf(longer, size, "%.*s%s%s", (int)(ending - path), path, part, ending), size);
+}
+
+bool hf_path_is_same_inode(const struct stat *a, const struct stat *b)
+{
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
+bool hf_path_is_same(const char *a, const char *b)
+{
+    struct stat of_a, of_b;
+    return stat(a, &of_a) == 0 && stat(b, &of_b) == 0 && hf_path_is_same_inode(&of_a, &of_b);
+}
+
+bool hf_path_leads_to(const char *path, int file)
+{
+    struct stat of_file, of_path;
+    return fstat(file, &of_file) == 0 && stat(path, &of_path) == 0 && hf_path_is_same_inode(&of_file, &of_path);
+}

@@ -1,0 +1,6 @@
+#include "base/random.h"
+
+/* The definitions for calls that the compiler does not inline. */
+extern inline uint64_t hf_random_mix(uint64_t z);
+extern inline uint64_t hf_random_next(hf_random *random);
+extern inline double hf_random_uniform(hf_random *random);

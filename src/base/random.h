@@ -1,0 +1,34 @@
+/* random - the one generator of pseudo-random numbers: SplitMix64 (Steele, Lea & Flood 2014). Results are stored by
+ * their seed, so none of its bits may ever change. */
+#ifndef HIFDM_RANDOM_H
+#define HIFDM_RANDOM_H
+
+#include <stdint.h>
+
+#define HF_RANDOM_STEP 0x9e3779b97f4a7c15u /* 2^64 over the golden ratio, made odd */
+
+/* A stream; any state is a valid start. */
+typedef struct {
+    uint64_t state;
+} hf_random;
+
+/* The output function: every bit of the result depends on every bit of z. Also scatters the starts of streams. */
+inline uint64_t hf_random_mix(uint64_t z)
+{
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
+
+inline uint64_t hf_random_next(hf_random *random)
+{
+    return hf_random_mix(random->state += HF_RANDOM_STEP);
+}
+
+/* Uniform in [0, 1): a multiple of 2^-53. */
+inline double hf_random_uniform(hf_random *random)
+{
+    return (double)(hf_random_next(random) >> 11) * 0x1p-53;
+}
+
+#endif
