@@ -123,6 +123,17 @@ search '^.{121}' 'more than 120 columns' $(echo "$text_files" | grep -v '\.md$')
 search '\b(TOD[O]|FIXM[E]|XX[X])\b' 'unfinished: say it in an issue' $text_files
 search '(^|[^[:alnum:]_.])/(wor[k]|hom[e]|roo[t]|User[s])/' 'path of one machine' $text_files
 
+# A comment that names a section or an equation of the method leads to one that is there: "METHOD section 7, M11".
+grep -HnoE 'METHOD(\.md)? section [0-9]+|METHOD[^:]*\bM[0-9]+\b' -- $c_files | while IFS= read -r found; do
+    place=$(echo "$found" | cut -d: -f1,2) words=$(echo "$found" | cut -d: -f3-)
+    for n in $(echo "$words" | grep -oE 'section [0-9]+' | cut -d' ' -f2); do
+        grep -q "^## $n\. " src/METHOD.md || echo "$place: src/METHOD.md has no section $n"
+    done
+    for n in $(echo "$words" | grep -oE '\bM[0-9]+\b'); do
+        grep -q "($n)" src/METHOD.md || echo "$place: src/METHOD.md has no equation $n"
+    done
+done | report
+
 # ---- Calls that belong to few modules --------------------------------------------------------------------------------
 # Looked for in the code without its comments and literals, laid out as file:line:code.
 awk -v sq="'" '

@@ -14,7 +14,7 @@ extern "C" {
 typedef enum { HF_ROLE_SUPPORT, HF_ROLE_INNER, HF_ROLE_EDGE } hf_role; /* psi counts the inner nodes */
 typedef enum { HF_GROUP_INNER, HF_GROUP_BOUNDARY } hf_group;
 
-/* One potential per cable; every analysis is a choice of laws (METHOD: Eqs. 5-8 of Chen et al. 2022).
+/* One potential per cable; every analysis is a choice of laws (METHOD section 2; Eqs. 5-8 of Chen et al. 2022).
  * tension: T = T*, Eq. 7.  length: l = L*, Eq. 8.  force_density: q held, Eq. 5.
  * elastic: T = EA max(l/l0 - 1, 0), the cable as it was cut. */
 typedef enum { HF_LAW_TENSION, HF_LAW_LENGTH, HF_LAW_FORCE_DENSITY, HF_LAW_ELASTIC } hf_law;

@@ -1,4 +1,4 @@
-/* surface - how good a reflector a shape is (METHOD section 7): RMS along the normal and of the half path length, raw
+/* surface - how good a reflector a shape is (METHOD section 9): RMS along the normal and of the half path length, raw
  * and after the best fit of the parabolic cylinder, loss of gain, faceting, percentiles. Computed once for a reported
  * shape, for a case with a section `surface`.
  *

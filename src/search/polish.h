@@ -1,6 +1,6 @@
 /* polish - Levenberg-Marquardt on the boundary pretensions (gsl_multilarge_nlinear) with exact sensitivities: the
  * yardstick for the genetic algorithm, and a finish for it. psi^2 is a sum of squares; its derivative is one solve per
- * gene, or class of linked genes, with the factored Newton matrix, dx/dT_k = -H^-1 dg/dT_k (METHOD section 5). */
+ * gene, or class of linked genes, with the factored Newton matrix, dx/dT_k = -H^-1 dg/dT_k (METHOD section 7, M11). */
 #ifndef HIFDM_POLISH_H
 #define HIFDM_POLISH_H
 

@@ -62,7 +62,7 @@ double hf_evaluate_design_length_m(const hf_model *m, int i_cable)
     return m->law[i_cable] == HF_LAW_LENGTH ? m->target[i_cable] : m->length_m[i_cable];
 }
 
-/* What the design means for boundary cable e (METHOD section 5). */
+/* What the design means for boundary cable e (METHOD section 7). */
 static void apply_rule(const hf_evaluator *v, int e, double tension_N, hf_workspace *w)
 {
     w->q_N_per_m[e] = tension_N / hf_evaluate_design_length_m(v->model, e);

@@ -1,4 +1,4 @@
-/* newton - Newton's method on the convex energy Pi(x) = sum phi_e(l_e) - P.x of a tension net (METHOD sections 2, 3):
+/* newton - Newton's method on the convex energy Pi(x) = sum phi_e(l_e) - P.x of a tension net (METHOD section 5):
  * the accuracy reference, the error estimate of every other method, and the matrix that a population shares.
  *
  * Unknowns: the 3 n_free coordinates, dof 3*row + component, and the tensions of the cables under law length or

@@ -1,7 +1,7 @@
 /* The reflector of the paper, configs/chen2022.yaml: at the paper's stop, and that converging it is refused.
  *
  * Source: Chen, Dong, Song, Chen, Li, Aerospace 2022, 9, 239: psi 6.6 mm, inner ratio 1.0011, boundary ratio 4.8445.
- * The paper prints neither topology nor focal length; METHOD.md section 8 gives the figures of this stand-in, measured
+ * The paper prints neither topology nor focal length; METHOD section 10 gives the figures of this stand-in, measured
  * with an independent prototype: 6.60 mm, 1.0013, 4.23 in 67 iterations, and for 10x12 modules with f = 17.6 m 6.60
  * mm, 1.0026, 3.21 in 37. Held to half a unit of their last digit. */
 #include "nets.h"
@@ -75,7 +75,7 @@ START_TEST(converging_it_is_refused)
 }
 END_TEST
 
-/* METHOD section 5: the local optimum within +-1 N is 6.34 mm, by Levenberg-Marquardt on the prototype. A short search
+/* METHOD section 10: the local optimum within +-1 N is 6.34 mm, by Levenberg-Marquardt on the prototype. A short search
  * comes near it (measured: 6.43 mm after these 60 generations; 6.36 mm after the paper's 50 x 400) and none gets
  * below. */
 START_TEST(search_comes_near_the_optimum)

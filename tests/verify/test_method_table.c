@@ -1,6 +1,6 @@
 /* HIFDM on three reflectors, at the paper's stop and converged.
  *
- * Source: METHOD.md section 3, measured with an independent numpy/scipy prototype: 12 m x 10 m, Td = 10 N, supports at
+ * Source: METHOD section 3, measured with an independent numpy/scipy prototype: 12 m x 10 m, Td = 10 N, supports at
  * the corners of 10 x 12 modules, outer edge of law length with a scallop of 0.1, psi over all nodes off the outer
  * edge. Each figure is held to half a unit of its last printed digit. */
 #include "nets.h"

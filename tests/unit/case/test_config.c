@@ -43,7 +43,7 @@ START_TEST(defaults_hold_where_nothing_is_said)
     ck_assert_int_eq(c.form.method, HF_METHOD_AUTO);
     ck_assert_int_eq(c.form.stop, HF_STOP_RESIDUAL); /* METHOD section 3 */
     ck_assert_double_eq(c.form.pretension_N, 10);
-    ck_assert_int_eq(c.optimize.population, 50); /* METHOD section 5 */
+    ck_assert_int_eq(c.optimize.population, 50); /* METHOD section 7 */
     ck_assert_int_eq(c.optimize.generations, 400);
     ck_assert_double_eq(c.optimize.crossover_high, 0.9);
     ck_assert_double_eq(c.optimize.crossover_low, 0.6);

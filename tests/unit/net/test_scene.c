@@ -180,7 +180,7 @@ START_TEST(ids_name_grid_places)
 }
 END_TEST
 
-/* METHOD section 3: a free edge node at fraction t between its supports is moved inward by 4 s span t (1-t). */
+/* METHOD section 3 (M4): a free edge node at fraction t between its supports is moved inward by 4 s span t (1-t). */
 START_TEST(scallop_follows_its_formula)
 {
     hf_cylinder c = plain;

@@ -13,7 +13,7 @@ static int group_of[N_GENE] = {0, 0, 1, 1, 2, 2};
 static const hf_model model = {.n_gene = N_GENE, .n_gene_group = N_GROUP, .gene_group = group_of};
 static const double base_N[N_GENE] = {10, 12, 14, 0.4, 20, 29.7};
 
-/* METHOD section 5; bounds that cut the ranges of the genes 3 (0.4 - 1 is below 0.1) and 5 (29.7 + 1 is above 30). */
+/* METHOD section 7; bounds that cut the ranges of the genes 3 (0.4 - 1 is below 0.1) and 5 (29.7 + 1 is above 30). */
 static const hf_optimize_settings plain = {.population = N,
                                            .generations = 60,
                                            .range_N = 1,
@@ -120,7 +120,7 @@ START_TEST(nothing_feasible_goes_on_looking)
 }
 END_TEST
 
-/* METHOD section 5, with psi' the better parent. A result of psi = mean - (mean - best) f has the rates high - (high -
+/* METHOD section 7, with psi' the better parent. A result of psi = mean - (mean - best) f has the rates high - (high -
  * low) f; those above the mean the high ones. (A printed variant has it the other way round: it disturbs the best
  * most.) */
 START_TEST(rates_follow_srinivas_and_patnaik)

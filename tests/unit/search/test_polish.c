@@ -1,7 +1,6 @@
 /* Levenberg-Marquardt on the boundary pretensions: known optima, optimality by finite differences, bounds and cap.
  *
- * chen2022 within +-1 N of its base: 6.345 mm; METHOD section 5 has 6.34 for the class. Free, from the base: 3.54
- * mm. */
+ * chen2022 within +-1 N of its base: 6.345 mm; free, from the base: 3.54 mm (METHOD section 10). */
 #include "laws.h"
 #include "population.h"
 
@@ -69,7 +68,7 @@ START_TEST(reaches_the_known_optimum)
     ck_assert_double_eq_tol(result.start_psi_m, start_m, 1e-12);
     ck_assert_double_eq_tol(psi_of(&p, design_N), result.psi_m, 1e-12);
     ck_assert_int_eq(result.converged, 1);
-    ck_assert_int_le(result.iterations, 60); /* METHOD: some 20; without exact derivatives or scaling far more */
+    ck_assert_int_le(result.iterations, 60); /* observed: 30; without exact derivatives or scaling far more */
     assert_within_bounds(&p, design_N);
     /* once more for one step: it starts by leaving the bounds, which is uphill, and must not end there */
     double optimum_m = result.psi_m;
@@ -80,7 +79,7 @@ START_TEST(reaches_the_known_optimum)
 }
 END_TEST
 
-/* The free optimum, 3.54 mm, has some tensions driven to infinity (METHOD section 5): with room for 1000 N, 500
+/* The free optimum, 3.54 mm, has some tensions driven to infinity (METHOD section 10): with room for 1000 N, 500
  * steps come within 0.05 mm of it (observed: 3.577), and nothing goes below. */
 START_TEST(approaches_the_free_optimum)
 {
