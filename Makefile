@@ -112,7 +112,7 @@ quote = '$(subst ','\'',$(1))'
 stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
-FRONT := all compile-all run test stress browser paper paper-check bench lint asan tsan install
+FRONT := all compile-all run test stress browser paper paper-check literal bench lint asan tsan install
 .PHONY: $(FRONT) setup clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -160,6 +160,12 @@ paper paper-check:
 	$(Q)tools/setup.sh --test
 	$(SUB) $(PROGRAM)
 	$(PYTHON) tools/paper/paper.py --program $(PROGRAM) --work $(BUILD)/paper $(PAPER_DO) $(PAPER_OUT)
+
+# LITERAL_ROUNDS=... interleaved runs of each.
+LITERAL_ROUNDS ?= 7
+literal: setup ## the paper's literal evaluation of an individual beside the default: psi and time on CASE
+	$(SUB) $(PROGRAM)
+	$(PYTHON) tools/literal.py --program $(PROGRAM) --case $(CASE) --work $(BUILD)/literal --rounds $(LITERAL_ROUNDS)
 
 # Peers that cannot be installed are left out of the tables. BENCH_OUT=... writes elsewhere.
 bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/ (4 minutes)
