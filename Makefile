@@ -112,7 +112,7 @@ quote = '$(subst ','\'',$(1))'
 stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
-FRONT := all compile-all run test stress browser paper paper-check literal bench lint asan tsan install
+FRONT := all compile-all run test stress browser paper paper-check literal bench api lint asan tsan install
 .PHONY: $(FRONT) setup clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -174,6 +174,14 @@ bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in res
 	@mkdir -p $(BENCH_OUT)
 	$(PYTHON) tools/bench/run.py --driver $(BENCH) --program $(PROGRAM) --work $(BUILD)/bench --out $(BENCH_OUT) \
 	    --rounds $(BENCH_ROUNDS) --flags $(call quote,$(COMPILER); $(CFLAGS) $(LANGUAGE) $(CODEGEN))
+
+# From the headers' own comments: tools/api/filter.awk. A warning of doxygen's is an error.
+api: ## the library's interface as pages, from the public headers: build/api/index.html
+	$(Q)tools/setup.sh --api
+	@rm -rf $(BUILD)/api && mkdir -p $(BUILD)/api
+	$(Q){ cat tools/api/Doxyfile; printf '%s\n' 'OUTPUT_DIRECTORY = "$(BUILD)/api"' 'PROJECT_NUMBER = $(VERSION)'; } | \
+	    doxygen -
+	@echo $(BUILD)/api/index.html
 
 lint: ## check the rules of the house
 	+$(Q)tools/lint.sh

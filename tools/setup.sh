@@ -1,18 +1,19 @@
 #!/usr/bin/env bash
-# Installs what is missing to build hifdm: setup.sh [--test] [--ci] [--bench]
+# Installs what is missing to build hifdm: setup.sh [--test] [--ci] [--bench] [--api]
 #   --test  also what the tests need     --ci  also clang, sanitizers, linters, VTK, a browser, Slurm (includes --test)
-#   --bench also the peers of `make bench`
+#   --bench also the peers of `make bench`     --api  also doxygen, for `make api`
 # Silent and quick when nothing is missing. Asks for what is needed (a compiler, a pkg-config name, a Python module)
 # rather than for packages, so that other providers do as well: reference LAPACK, modules from pip.
 set -eu
 
-with_test=no with_ci=no with_bench=no
+with_test=no with_ci=no with_bench=no with_api=no
 for option in "$@"; do
     case $option in
     --test) with_test=yes ;;
-    --ci) with_test=yes with_ci=yes ;;
+    --ci) with_test=yes with_ci=yes with_api=yes ;;
     --bench) with_bench=yes ;;
-    *) echo "usage: tools/setup.sh [--test] [--ci] [--bench]" >&2; exit 2 ;;
+    --api) with_api=yes ;;
+    *) echo "usage: tools/setup.sh [--test] [--ci] [--bench] [--api]" >&2; exit 2 ;;
     esac
 done
 
@@ -53,6 +54,9 @@ missing_packages() {
     if [ $with_bench = yes ]; then
         has_header suitesparse/cholmod.h || need libsuitesparse-dev
         has_module scipy || need python3-scipy
+    fi
+    if [ $with_api = yes ]; then
+        has doxygen || need doxygen
     fi
     if [ $with_ci = yes ]; then
         has clang || need clang
