@@ -18,6 +18,7 @@
 #define HIFDM_HIFDM_H
 
 #include <hifdm/batch.h>
+#include <hifdm/cable_law.h>
 #include <hifdm/carrier.h>
 #include <hifdm/config.h>
 #include <hifdm/evaluate.h>

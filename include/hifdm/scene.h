@@ -5,6 +5,7 @@
 #ifndef HIFDM_SCENE_H
 #define HIFDM_SCENE_H
 
+#include <hifdm/cable_law.h>
 #include <hifdm/status.h>
 
 #ifdef __cplusplus
@@ -14,15 +15,8 @@ extern "C" {
 typedef enum { HF_ROLE_SUPPORT, HF_ROLE_INNER, HF_ROLE_EDGE } hf_role; /* psi counts the inner nodes */
 typedef enum { HF_GROUP_INNER, HF_GROUP_BOUNDARY } hf_group;
 
-/* One potential per cable; every analysis is a choice of laws (METHOD section 2; Eqs. 5-8 of Chen et al. 2022).
- * tension: T = T*, Eq. 7.  length: l = L*, Eq. 8.  force_density: q held, Eq. 5.
- * elastic: T = EA max(l/l0 - 1, 0), the cable as it was cut. */
-typedef enum { HF_LAW_TENSION, HF_LAW_LENGTH, HF_LAW_FORCE_DENSITY, HF_LAW_ELASTIC } hf_law;
-#define HF_N_LAW 4
-
-extern const char *const hf_role_word[3];       /* "support", "inner", "edge" */
-extern const char *const hf_group_word[2];      /* "inner", "boundary" */
-extern const char *const hf_law_word[HF_N_LAW]; /* "tension", "length", "force_density", "elastic" */
+extern const char *const hf_role_word[3];  /* "support", "inner", "edge" */
+extern const char *const hf_group_word[2]; /* "inner", "boundary" */
 
 typedef struct {
     int n_node, n_cable;
@@ -31,7 +25,7 @@ typedef struct {
     unsigned char *role;   /* [n_node] hf_role */
     int *end;              /* [n_cable][2] node indices */
     unsigned char *group;  /* [n_cable] hf_group */
-    unsigned char *law;    /* [n_cable] hf_law */
+    unsigned char *law;    /* [n_cable] hf_law: cable_law.h has one potential per law */
     double *target;        /* [n_cable] T* (N), L* (m), q (N/m) or l0 (m) by law; NaN in a tension law: the case's
                                 pretension */
     double *EA_N;          /* [n_cable] axial stiffness, NaN where not given; NULL when no cable has one */

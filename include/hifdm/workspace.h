@@ -54,18 +54,31 @@ typedef struct {
     const volatile sig_atomic_t *stop; /* when not NULL and not 0: hf_form_find gives up, HF_INTERRUPTED */
 } hf_workspace;
 
-/* Length that the law length or elastic asks of a cable under this tension: L*, or l0 (1 + T/EA). Stiff cables need no
- * care of their own in this form, and EA without bound is the law length. */
-static inline double hf_workspace_wanted_length_m(const hf_workspace *w, int i_cable, double tension_N)
+/* A cable under the law in force. */
+static inline hf_law_cable hf_workspace_cable(const hf_model *model, const hf_workspace *workspace, int i_cable)
 {
-    double target = w->target[i_cable];
-    return w->law[i_cable] == HF_LAW_ELASTIC ? target + target * tension_N / w->EA_N[i_cable] : target;
+    hf_law_cable cable;
+    cable.law = (hf_law)workspace->law[i_cable];
+    cable.target = workspace->target[i_cable];
+    cable.EA_N = hf_law_has(cable.law, HF_LAW_NEEDS_EA) ? workspace->EA_N[i_cable] : (double)NAN;
+    cable.theoretical_m = model->length_m[i_cable];
+    return cable;
+}
+
+/* Force density of a cable in the workspace's shape with the tension that its law gives, if any. */
+static inline double hf_workspace_held_q_N_per_m(const hf_model *model, const hf_workspace *workspace, int i_cable)
+{
+    return hf_law_held_q_N_per_m(hf_workspace_cable(model, workspace, i_cable), workspace->length_m[i_cable],
+                                 workspace->q_N_per_m[i_cable]);
 }
 
 /* HF_OK or HF_NO_MEMORY. Free in any case. */
 hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace);
 size_t hf_workspace_bytes(const hf_model *model); /* that hf_workspace_create will ask for */
 void hf_workspace_free(hf_workspace *workspace);
+
+/* Does any law in force iterate? */
+bool hf_workspace_iterates(const hf_model *model, const hf_workspace *workspace);
 
 /* Fill every floating-point field with NaN and every other with 0xff: a call that reads stale contents then shows. */
 void hf_workspace_poison(const hf_model *model, hf_workspace *workspace);

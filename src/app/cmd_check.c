@@ -11,20 +11,32 @@
 
 #define TRIAL_S 1.0 /* how long a form-finding is tried */
 
+/* How many cables are under each law in force; laws after the paper's three only when some cable has them. */
+static void print_laws(const hf_model *m, FILE *f)
+{
+    int count[HF_N_LAW] = {0};
+    for (int e = 0; e < m->n_cable; e++)
+        count[m->law[e]]++;
+    fprintf(f, "                %d cables by law in force:", m->n_cable);
+    for (int law = 0; law < HF_N_LAW; law++) {
+        if (law > HF_LAW_FORCE_DENSITY && count[law] == 0) continue;
+        fprintf(f, "%s %d ", law ? "," : "", count[law]);
+        for (const char *c = hf_law_word[law]; *c; c++)
+            fputc(*c == '_' ? ' ' : *c, f);
+        if (law == HF_LAW_FORCE_DENSITY && m->has_strut) fputs(" (with struts)", f);
+    }
+    fputc('\n', f);
+}
+
 static void print_scene(const hf_problem *p, FILE *f)
 {
     const hf_model *m = &p->model;
-    int count[3] = {0}, law[HF_N_LAW] = {0};
+    int count[3] = {0};
     for (int i = 0; i < m->n_node; i++)
         count[p->scene.role[i]]++;
-    for (int e = 0; e < m->n_cable; e++)
-        law[m->law[e]]++;
     fprintf(f, "  scene         %d nodes: %d supports, %d inner (psi counts these), %d edge\n", m->n_node,
             count[HF_ROLE_SUPPORT], count[HF_ROLE_INNER], count[HF_ROLE_EDGE]);
-    fprintf(f, "                %d cables by law in force: %d tension, %d length, %d force density%s", m->n_cable,
-            law[HF_LAW_TENSION], law[HF_LAW_LENGTH], law[HF_LAW_FORCE_DENSITY], m->has_strut ? " (with struts)" : "");
-    if (law[HF_LAW_ELASTIC]) fprintf(f, ", %d elastic", law[HF_LAW_ELASTIC]);
-    fputc('\n', f);
+    print_laws(m, f);
     fprintf(f, "  equations     %d unknowns, three right-hand sides; half-bandwidth %d; %s\n", m->n_free,
             m->half_bandwidth, m->has_strut ? "indefinite: band LU (dgbtrf)" : "band Cholesky (dpbtrf)");
     if (m->n_chain) fprintf(f, "  note          %d straight chains of length-controlled cables\n", m->n_chain);

@@ -14,12 +14,12 @@
 
 /* ---- layout ---- */
 
-/* The methods iterative_fdm and fdm put other laws in its place. */
-static int has_elastic(const hf_scene *s, int method)
+/* Does a law in force need stiffnesses? The methods iterative_fdm and fdm put other laws in its place. */
+static bool needs_EA(const hf_scene *s, int method)
 {
     if (method == HF_METHOD_ITERATIVE_FDM || method == HF_METHOD_FDM) return 0;
     for (int e = 0; e < s->n_cable; e++)
-        if (s->law[e] == HF_LAW_ELASTIC) return 1;
+        if (hf_law_has(s->law[e], HF_LAW_NEEDS_EA)) return 1;
     return 0;
 }
 
@@ -39,7 +39,7 @@ static void lay_out(hf_arena *a, const hf_scene *s, int method, hf_model *m)
     m->group = hf_arena_take(a, e, 1);
     m->law = hf_arena_take(a, e, 1);
     m->target = hf_arena_take(a, e, sizeof(double));
-    m->EA_N = has_elastic(s, method) ? hf_arena_take(a, e, sizeof(double)) : NULL;
+    m->EA_N = needs_EA(s, method) ? hf_arena_take(a, e, sizeof(double)) : NULL;
     m->start_q_N_per_m = hf_arena_take(a, e, sizeof(double));
     m->gene_cable = hf_arena_take(a, e, sizeof(int));
     m->gene_group = hf_arena_take(a, e, sizeof(int));
@@ -83,12 +83,12 @@ static void place_cables(const hf_scene *s, hf_model *m)
 
 /* ---- laws and targets ---- */
 
-/* The tension that a cable is given, N; 0 when its law gives none. What an elastic cable has in the theoretical shape
- * is no scale for anything: it may be out by a thousand times. */
+/* The tension that a cable is given, N; 0 when its law gives none. The tension of an elastic cable in the theoretical
+ * shape does not count: it may be a thousand times the one in the found shape. */
 static double given_tension(const hf_scene *s, double pretension_N, int e)
 {
-    if (s->law[e] == HF_LAW_LENGTH || s->law[e] == HF_LAW_ELASTIC) return 0;
-    if (s->law[e] == HF_LAW_FORCE_DENSITY) return fabs(s->target[e]) * hf_scene_theoretical_length(s, e);
+    if (hf_law_has(s->law[e], HF_LAW_HAS_MULTIPLIER)) return 0;
+    if (!hf_law_has(s->law[e], HF_LAW_GIVES_TENSION)) return fabs(s->target[e]) * hf_scene_theoretical_length(s, e);
     return isnan(s->target[e]) ? pretension_N : s->target[e];
 }
 
@@ -112,7 +112,8 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
         int law = s->law[e];
         double length = hf_scene_theoretical_length(s, e), target = s->target[e];
         double given = given_tension(s, form->pretension_N, e), tension = given > 0 ? given : m->reference_N;
-        if (law == HF_LAW_ELASTIC && length > target) tension = s->EA_N[e] * (length / target - 1);
+        hf_law_cable cable = {(hf_law)law, target, s->EA_N ? s->EA_N[e] : (double)NAN, length};
+        tension = hf_law_first_tension_N(cable, tension);
         double q = law == HF_LAW_FORCE_DENSITY ? target : tension / length;
         if (law == HF_LAW_TENSION) target = tension;
         if (form->method == HF_METHOD_ITERATIVE_FDM) {
@@ -134,9 +135,12 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
         if (s->group[e] == HF_GROUP_BOUNDARY && (m->end_row[2 * e] < m->n_free || m->end_row[2 * e + 1] < m->n_free))
             m->gene_cable[m->n_gene++] = e;
     }
-    for (int e = 0; e < m->n_cable; e++)
-        m->has_newton |= m->law[e] != HF_LAW_FORCE_DENSITY;
-    if (m->has_strut) m->has_newton = 0;
+    bool iterates = false, is_convex = !m->has_strut;
+    for (int e = 0; e < m->n_cable; e++) {
+        iterates |= hf_law_has(m->law[e], HF_LAW_ITERATES);
+        is_convex &= hf_law_has(m->law[e], HF_LAW_IS_CONVEX);
+    }
+    m->has_newton = iterates && is_convex;
 }
 
 /* ---- chains of length-controlled cables ---- */
@@ -188,14 +192,14 @@ static hf_status find_chains(hf_model *m)
     for (int row = 0; row < m->n_node; row++)
         m->chain_of_row[row] = -1;
     for (int e = 0; e < m->n_cable; e++)
-        for (int k = 0; k < 2 && m->law[e] == HF_LAW_LENGTH; k++) {
+        for (int k = 0; k < 2 && hf_law_has(m->law[e], HF_LAW_IS_RIGID); k++) {
             int row = m->end_row[2 * e + k];
             if (g.count[row] < 2) g.cable[2 * row + g.count[row]] = e;
             g.count[row]++;
         }
     for (int want_straight = 1; want_straight >= 0; want_straight--) {
         for (int e = 0; e < m->n_cable; e++)
-            for (int k = 0; k < 2 && m->law[e] == HF_LAW_LENGTH; k++)
+            for (int k = 0; k < 2 && hf_law_has(m->law[e], HF_LAW_IS_RIGID); k++)
                 if (m->end_row[2 * e + k] >= m->n_free && m->end_row[2 * e + 1 - k] < m->n_free)
                     follow_chain(m, &g, m->end_row[2 * e + k], e, want_straight);
         if (want_straight) m->n_chain = m->n_any_chain;
@@ -359,7 +363,8 @@ static void hold_rods(hf_model *m)
 {
     for (int k = 0; k < m->n_tie; k++) {
         int e = m->tie[k] / 2;
-        if (m->law[e] != HF_LAW_LENGTH || m->end_row[2 * e] < m->n_free || m->end_row[2 * e + 1] < m->n_free) continue;
+        if (!hf_law_has(m->law[e], HF_LAW_IS_RIGID)) continue;
+        if (m->end_row[2 * e] < m->n_free || m->end_row[2 * e + 1] < m->n_free) continue;
         m->law[e] = HF_LAW_TENSION;
         m->target[e] = m->start_q_N_per_m[e] * m->length_m[e];
     }

@@ -14,7 +14,6 @@
 
 const char *const hf_role_word[3] = {"support", "inner", "edge"};
 const char *const hf_group_word[2] = {"inner", "boundary"};
-const char *const hf_law_word[HF_N_LAW] = {"tension", "length", "force_density", "elastic"};
 
 /* ---- memory ---- */
 
@@ -251,7 +250,7 @@ hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, hf_scene *sce
             scallop_edge(&g, 1, g.nx - 1, -1);
         }
         for (int e = 0; e < n_cable; e++)
-            scene->target[e] = scene->law[e] == HF_LAW_LENGTH ? hf_scene_theoretical_length(scene, e) : (double)NAN;
+            scene->target[e] = hf_law_default_target(scene->law[e], hf_scene_theoretical_length(scene, e));
         status = name_all(&g);
     }
     if (status != HF_OK) return hf_error(messages, status, "scene: out of memory for %d nodes", g.nx * g.ny);
@@ -292,6 +291,17 @@ static void check_nodes(const hf_scene *s, int *n_fault, hf_messages *messages)
         }
 }
 
+/* A cable whose law needs its stiffness. */
+static void check_elastic(const hf_scene *s, int e, int *n_fault, hf_messages *messages)
+{
+    char what[96];
+    const char *word = hf_law_word[s->law[e]];
+    snprintf(what, sizeof what, "has the law %s, but no %s above zero", word, hf_law_target_name[s->law[e]]);
+    if (!(s->target[e] > 0)) fault(s, 1, e, n_fault, what, messages);
+    snprintf(what, sizeof what, "has the law %s, but no EA_N above zero", word);
+    if (!(s->EA_N && s->EA_N[e] > 0)) fault(s, 1, e, n_fault, what, messages);
+}
+
 static void check_cables(const hf_scene *s, int *n_fault, hf_messages *messages)
 {
     for (int e = 0; e < s->n_cable; e++) {
@@ -300,10 +310,7 @@ static void check_cables(const hf_scene *s, int *n_fault, hf_messages *messages)
             fault(s, 1, e, n_fault, "joins a node to itself", messages);
         else if (!(hf_scene_theoretical_length(s, e) > 0))
             fault(s, 1, e, n_fault, "has zero length: its two nodes are at the same position", messages);
-        if (s->law[e] == HF_LAW_ELASTIC && !(s->target[e] > 0))
-            fault(s, 1, e, n_fault, "has the law elastic, but no unstressed length above zero", messages);
-        if (s->law[e] == HF_LAW_ELASTIC && !(s->EA_N && s->EA_N[e] > 0))
-            fault(s, 1, e, n_fault, "has the law elastic, but no EA_N above zero", messages);
+        if (hf_law_has(s->law[e], HF_LAW_NEEDS_EA)) check_elastic(s, e, n_fault, messages);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "base/csv.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,21 +38,28 @@ static int read_nodes(hf_csv *t, const int *where, hf_scene *s)
 enum { CABLE_ID, CABLE_I, CABLE_J, CABLE_GROUP, CABLE_LAW, CABLE_VALUE, CABLE_EA, N_CABLE_COLUMN };
 static const char *const cable_column[N_CABLE_COLUMN] = {"id", "i", "j", "group", "law", "value", "EA_N"};
 
+static void fault_of_law(hf_csv *t, int r, const char *id, const char *word, const char *what)
+{
+    char text[160];
+    snprintf(text, sizeof text, "the law %s%s", word, what);
+    hf_csv_fault(t, t->line[r], id, text, "");
+}
+
 static void read_target(hf_csv *t, const int *where, int r, const char *id, hf_scene *s)
 {
-    s->target[r] = NAN;
+    const char *word = hf_law_word[s->law[r]], *name = hf_law_target_name[s->law[r]];
+    s->target[r] = hf_law_default_target(s->law[r], hf_scene_theoretical_length(s, r));
     if (*hf_csv_cell(t, r, where[CABLE_VALUE])) {
+        int may_push = hf_law_has(s->law[r], HF_LAW_MAY_PUSH);
         s->target[r] = hf_csv_number(t, r, where[CABLE_VALUE], id, "value");
-        if (s->law[r] != HF_LAW_FORCE_DENSITY && s->target[r] <= 0)
-            hf_csv_fault(t, t->line[r], id, "value must be above zero for the law ", hf_law_word[s->law[r]]);
-        if (s->law[r] == HF_LAW_FORCE_DENSITY && s->target[r] == 0)
-            hf_csv_fault(t, t->line[r], id, "value must not be zero for the law force_density", "");
-    } else if (s->law[r] == HF_LAW_LENGTH) {
-        s->target[r] = hf_scene_theoretical_length(s, r);
-    } else if (s->law[r] == HF_LAW_FORCE_DENSITY) {
-        hf_csv_fault(t, t->line[r], id, "the law force_density needs a value in N/m", "");
-    } else if (s->law[r] == HF_LAW_ELASTIC) {
-        hf_csv_fault(t, t->line[r], id, "the law elastic needs a value, the unstressed length in m", "");
+        if (!may_push && s->target[r] <= 0)
+            hf_csv_fault(t, t->line[r], id, "value must be above zero for the law ", word);
+        if (may_push && s->target[r] == 0) hf_csv_fault(t, t->line[r], id, "value must not be zero for the law ", word);
+    } else if (name) {
+        char what[96];
+        snprintf(what, sizeof what, " needs a value%s%s in %s", *name ? ", the " : "", name,
+                 hf_law_target_unit[s->law[r]]);
+        fault_of_law(t, r, id, word, what);
     }
 }
 
@@ -62,8 +70,8 @@ static void read_EA(hf_csv *t, const int *where, int r, const char *id, const do
     if (is_given) {
         EA_N = hf_csv_number(t, r, where[CABLE_EA], id, "EA_N");
         if (EA_N <= 0) hf_csv_fault(t, t->line[r], id, "EA_N must be above zero", "");
-    } else if (isnan(EA_N) && s->law[r] == HF_LAW_ELASTIC) {
-        hf_csv_fault(t, t->line[r], id, "the law elastic needs an EA_N", "");
+    } else if (isnan(EA_N) && hf_law_has(s->law[r], HF_LAW_NEEDS_EA)) {
+        fault_of_law(t, r, id, hf_law_word[s->law[r]], " needs an EA_N");
     }
     if (s->EA_N) s->EA_N[r] = EA_N;
 }

@@ -132,7 +132,7 @@ static int is_alike(const search *q, const link *a, const link *b)
 {
     double tolerance = fmax(TOLERANCE, 4 * TOLERANCE * q->size_m / q->m->length_m[a->cable]);
     if (a->kind != b->kind || !(fabs(a->target - b->target) <= tolerance * fabs(a->target))) return 0;
-    const double *EA_N = q->m->law[a->cable] == HF_LAW_ELASTIC ? q->m->EA_N : NULL;
+    const double *EA_N = hf_law_has(q->m->law[a->cable], HF_LAW_NEEDS_EA) ? q->m->EA_N : NULL;
     return !EA_N || fabs(EA_N[a->cable] - EA_N[b->cable]) <= TOLERANCE * EA_N[a->cable];
 }
 

@@ -177,8 +177,9 @@ static int furthest_off(const hf_problem *p)
     double most = -1;
     for (int e = 0; e < p->model.n_cable; e++) {
         double off = 0;
-        if (w->law[e] == HF_LAW_TENSION) off = fabs(w->tension_N[e] / w->target[e] - 1);
-        if (w->law[e] == HF_LAW_LENGTH && !(w->length_m[e] < w->target[e] && hf_metrics_is_slack(&p->model, w, e)))
+        if (hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)) off = fabs(w->tension_N[e] / w->target[e] - 1);
+        if (hf_law_has(w->law[e], HF_LAW_IS_RIGID) &&
+            !(w->length_m[e] < w->target[e] && hf_metrics_is_slack(&p->model, w, e)))
             off = fabs(w->length_m[e] / w->target[e] - 1);
         if (off > most) most = off, worst = e;
     }

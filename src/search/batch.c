@@ -106,8 +106,10 @@ int hf_batch_solver(const hf_evaluator *v, int *has_lanes)
     if (may_share && hf_chord_applies(v)) return HF_SOLVER_CHORD;
     *has_lanes = 0;
     if (each_by_newton(v)) return HF_SOLVER_NEWTON;
-    /* the lanes know neither struts, nor the law elastic, nor a truss: each on its own */
-    *has_lanes = !v->model->has_strut && !v->model->EA_N && !v->model->n_attachment;
+    /* the lanes serve neither struts, nor every law, nor a truss: such nets are solved one by one */
+    *has_lanes = !v->model->has_strut && !v->model->n_attachment;
+    for (int e = 0; e < v->model->n_cable; e++)
+        *has_lanes &= hf_law_is_served(v->model->law[e], HF_LANE_LAWS);
     return HF_SOLVER_FIXED_POINT;
 }
 

@@ -36,28 +36,25 @@ static const hf_chord_kernels *choose_kernels(void)
 
 /* ---- shared matrix ---- */
 
-static int has_multiplier(const hf_model *m, int e)
+static bool is_between_supports(const hf_model *m, int e)
 {
-    return m->law[e] == HF_LAW_LENGTH || m->law[e] == HF_LAW_ELASTIC;
+    return m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free;
 }
 
 int hf_chord_applies(const hf_evaluator *v)
 {
     const hf_model *m = v->model;
     if (!m->has_newton || v->rule == HF_RULE_SEEDED || m->n_gene == 0) return 0;
-    int n_multiplier = 0;
+    int n_other = 0; /* cables whose laws the kernels do not serve */
     for (int e = 0; e < m->n_cable; e++)
-        n_multiplier += has_multiplier(m, e);
-    for (int k = 0; k < m->n_gene; k++)
-        n_multiplier -= has_multiplier(m, m->gene_cable[k]);
+        n_other += !hf_law_is_served(m->law[e], HF_CHORD_LAWS);
+    for (int k = 0; k < m->n_gene; k++) /* the rule replaces its law */
+        n_other -= !hf_law_is_served(m->law[m->gene_cable[k]], HF_CHORD_LAWS);
     for (int e = 0; e < m->n_cable; e++) /* between two supports it moves nothing */
-        if (has_multiplier(m, e) && m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free)
-            n_multiplier--;
-    for (int k = 0; k < m->n_tie; k++) { /* but on a truss it pulls */
-        int e = m->tie[k] / 2;
-        n_multiplier += has_multiplier(m, e) && m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free;
-    }
-    return n_multiplier == 0;
+        n_other -= !hf_law_is_served(m->law[e], HF_CHORD_LAWS) && is_between_supports(m, e);
+    for (int k = 0; k < m->n_tie; k++) /* but on a truss it pulls */
+        n_other += !hf_law_is_served(m->law[m->tie[k] / 2], HF_CHORD_LAWS) && is_between_supports(m, m->tie[k] / 2);
+    return n_other == 0;
 }
 
 static void lay_out(hf_arena *a, hf_chord *c)

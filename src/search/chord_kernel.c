@@ -41,7 +41,7 @@ static inline __attribute__((always_inline)) void forces(const hf_chord *chord, 
             q = gene[k];
         else
             q += m->target[e];
-        if (k >= 0 ? tension_rule : m->law[e] == HF_LAW_TENSION) {
+        if (k >= 0 ? tension_rule : hf_law_has(m->law[e], HF_LAW_GIVES_TENSION)) {
             lanes length = dx * dx + dy * dy + dz * dz;
             square_root(&length);
             q /= length;

@@ -10,7 +10,11 @@ typedef struct hf_chord_kernels hf_chord_kernels;
 #define HF_CHORD_ROWS 6 /* of the flexibility that are worked on at a time */
 #define HF_CHORD_MODES_MAX 48
 
-/* Shared, constant. Arrays packed for the solve; see chord_kernel.h. */
+/* Laws that the kernels serve: the target is the tension or the force density, with no unknown but the positions. */
+#define HF_CHORD_LAWS (HF_LAW_ITERATES | HF_LAW_IS_CONVEX | HF_LAW_GIVES_TENSION | HF_LAW_MAY_PUSH)
+
+/* What all threads share; constant after hf_chord_create. The factor is packed in the order in which
+ * hf_chord_solve reads it. */
 typedef struct hf_chord {
     const hf_evaluator *evaluator;
     const hf_chord_kernels *kernels;

@@ -28,6 +28,11 @@
 
 #include <stddef.h>
 
+/* Laws that the kernels serve: Eqs. 5, 7 and 8 towards a given force density, tension or length. */
+#define HF_LANE_LAWS                                                                                                   \
+    (HF_LAW_ITERATES | HF_LAW_IS_CONVEX | HF_LAW_GIVES_TENSION | HF_LAW_HAS_MULTIPLIER | HF_LAW_IS_RIGID |             \
+     HF_LAW_MAY_PUSH)
+
 #define HF_LANES 8
 #define HF_LANE_BLOCK 4
 

@@ -424,11 +424,11 @@ static void measure_part(const hf_lane_plan *plan, hf_lane_workspace *w, hf_lane
         vec part = length * plan->inverse_length[e];
         finite += tension - tension; /* NaN from infinity and NaN, else 0 */
         longest = larger(part, longest);
-        if (w->law[e] == HF_LAW_TENSION) {
+        if (hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)) {
             shortest[HF_LAW_TENSION] = smaller(part, shortest[HF_LAW_TENSION]);
             tension_error = larger(magnitude(tension / target - 1), tension_error);
             q = target / length; // Eq. 7
-        } else if (w->law[e] == HF_LAW_LENGTH) {
+        } else if (hf_law_has(w->law[e], HF_LAW_HAS_MULTIPLIER)) {
             shortest[HF_LAW_LENGTH] = smaller(part, shortest[HF_LAW_LENGTH]);
             vec ratio = length / target, strain = ratio - 1, error = magnitude(strain), none = splat(0);
             vec pull = smaller(tension / m->reference_N, splat(1));
@@ -476,7 +476,7 @@ static void residual_part(const hf_lane_plan *plan, const hf_lane_workspace *w, 
         for (int k = plan->incidence_start[i_row]; k < plan->incidence_start[i_row + 1]; k++) {
             int e = plan->incidence[k].i_cable;
             const double *other = w->position_m + plan->incidence[k].other * POINT + p;
-            vec q = load(q_by_law[w->law[e] == HF_LAW_TENSION] + e * HF_LANES + p);
+            vec q = load(q_by_law[hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)] + e * HF_LANES + p);
             foreach (c, 3)
                 f[c] += q * (load(other + c * HF_LANES) - x_i[c]);
         }

@@ -19,13 +19,6 @@ static double largest_pull_N(const hf_model *m, const hf_workspace *w, double *p
     return largest;
 }
 
-static int has_iterating_law(const hf_model *m, const hf_workspace *w)
-{
-    for (int e = 0; e < m->n_cable; e++)
-        if (w->law[e] != HF_LAW_FORCE_DENSITY) return 1;
-    return 0;
-}
-
 /* Assemble and factor D once more: its norm is wanted, and the first factor has taken its place. */
 static void certify_linear(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
@@ -47,7 +40,7 @@ static void certify_linear(const hf_model *m, hf_workspace *w, hf_form_result *r
     double largest = 0;
     for (int i = 0; i < n; i++)
         largest = fmax(largest, hypot(hypot(step[i], step[m->n_node + i]), step[2 * m->n_node + i]));
-    if (!has_iterating_law(m, w)) r->position_error_m = largest;
+    if (!hf_workspace_iterates(m, w)) r->position_error_m = largest;
     if (m->has_strut)
         r->condition =
             hf_band_condition_indefinite(n, k, w->general_band, w->pivot, norm, step, w->certificate_integer_work);

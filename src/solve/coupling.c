@@ -38,7 +38,7 @@ void hf_coupling_forces(const hf_model *m, hf_workspace *w)
             f[3 * i + c] = m->load_N ? m->load_N[c * m->n_node + m->attachment_row[i]] : 0;
     for (int k = 0; k < m->n_tie; k++) {
         int e = m->tie[k] / 2, here = m->end_row[m->tie[k]], there = m->end_row[m->tie[k] ^ 1];
-        double q = w->law[e] == HF_LAW_TENSION ? w->target[e] / w->length_m[e] : w->q_N_per_m[e];
+        double q = hf_workspace_held_q_N_per_m(m, w, e);
         for (int c = 0; c < 3; c++)
             f[3 * m->tie_attachment[k] + c] +=
                 q * (w->position_m[c * m->n_node + there] - w->position_m[c * m->n_node + here]);
@@ -449,11 +449,12 @@ static void add_length_errors(const hf_model *m, const hf_workspace *w, double *
     double block[3][3], d[3];
     for (int k = 0; k < m->n_tie; k++) {
         int e = m->tie[k] / 2, here = m->end_row[m->tie[k]], there = m->end_row[m->tie[k] ^ 1];
-        if (w->law[e] != HF_LAW_LENGTH && w->law[e] != HF_LAW_ELASTIC) continue;
+        if (!hf_law_has(w->law[e], HF_LAW_HAS_MULTIPLIER)) continue;
+        double wanted_m = hf_law_wanted_length_m(hf_workspace_cable(m, w, e), w->tension_N[e]);
         hf_newton_block(m, w, e, block);
         for (int c = 0; c < 3; c++)
             d[c] = (w->position_m[c * m->n_node + there] - w->position_m[c * m->n_node + here]) *
-                   (1 - hf_workspace_wanted_length_m(w, e, w->tension_N[e]) / w->length_m[e]);
+                   (1 - wanted_m / w->length_m[e]);
         for (int c = 0; c < 3; c++) /* along the cable the block has the axial stiffness alone */
             pull[3 * m->tie_attachment[k] + c] += block[c][0] * d[0] + block[c][1] * d[1] + block[c][2] * d[2];
     }

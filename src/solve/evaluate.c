@@ -59,7 +59,7 @@ hf_status hf_evaluate_form(const hf_model *m, const hf_form_settings *form, hf_w
 
 double hf_evaluate_design_length_m(const hf_model *m, int i_cable)
 {
-    return m->law[i_cable] == HF_LAW_LENGTH ? m->target[i_cable] : m->length_m[i_cable];
+    return hf_law_has(m->law[i_cable], HF_LAW_IS_RIGID) ? m->target[i_cable] : m->length_m[i_cable];
 }
 
 /* What the design means for boundary cable e (METHOD section 7). */
@@ -86,7 +86,7 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_works
     hf_form_prepare(m, w);
     /* a convex problem has one answer: starting near it is free. The seeded rule depends on its start: the paper's. */
     for (int e = 0; e < m->n_cable && v->rule != HF_RULE_SEEDED; e++)
-        if (m->law[e] != HF_LAW_FORCE_DENSITY) w->q_N_per_m[e] = v->start_q_N_per_m[e];
+        if (hf_law_has(m->law[e], HF_LAW_ITERATES)) w->q_N_per_m[e] = v->start_q_N_per_m[e];
     for (int k = 0; k < m->n_gene; k++)
         apply_rule(v, m->gene_cable[k], design_N[k], w);
 }

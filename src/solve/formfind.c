@@ -112,8 +112,10 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
             r->culprit = e;
             return;
         }
-        int may_vanish = w->law[e] == HF_LAW_LENGTH || w->law[e] == HF_LAW_ELASTIC; /* slack then */
-        if (part < (w->law[e] == HF_LAW_TENSION ? s->collapse_ratio : HF_FORM_GONE) && !may_vanish) {
+        hf_law_cable cable = hf_workspace_cable(m, w, e);
+        bool gives_tension = hf_law_has(cable.law, HF_LAW_GIVES_TENSION);
+        bool may_vanish = hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER); /* its tension is then zero */
+        if (part < (gives_tension ? s->collapse_ratio : HF_FORM_GONE) && !may_vanish) {
             r->status = HF_COLLAPSED;
             r->culprit = e;
             return;
@@ -124,10 +126,10 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
             return;
         }
         if (part < shortest) shortest = part;
-        if (w->law[e] == HF_LAW_TENSION) {
-            r->tension_error = larger(r->tension_error, fabs(tension / w->target[e] - 1));
-        } else if (w->law[e] != HF_LAW_FORCE_DENSITY) {
-            double strain = length / hf_workspace_wanted_length_m(w, e, tension) - 1;
+        if (gives_tension) {
+            r->tension_error = larger(r->tension_error, fabs(tension / cable.target - 1));
+        } else if (may_vanish) {
+            double strain = length / hf_law_wanted_length_m(cable, tension) - 1;
             double pull = smaller(tension / m->reference_N, 1);
             double error = fabs(strain);
             int is_taut = pull >= HF_SLACK_RATIO;
@@ -152,9 +154,10 @@ static void nodal_forces(const hf_model *m, hf_workspace *w, int without_chains)
         memset(fx, 0, 3 * (size_t)m->n_node * sizeof(double));
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-        if (without_chains && w->law[e] == HF_LAW_LENGTH && (m->chain_of_row[a] >= 0 || m->chain_of_row[b] >= 0))
+        if (without_chains && hf_law_has(w->law[e], HF_LAW_IS_RIGID) &&
+            (m->chain_of_row[a] >= 0 || m->chain_of_row[b] >= 0))
             continue;
-        double q = w->law[e] == HF_LAW_TENSION ? w->target[e] / w->length_m[e] : w->q_N_per_m[e];
+        double q = hf_workspace_held_q_N_per_m(m, w, e);
         double dx = q * (x[b] - x[a]), dy = q * (y[b] - y[a]), dz = q * (z[b] - z[a]);
         fx[a] += dx, fy[a] += dy, fz[a] += dz;
         fx[b] -= dx, fy[b] -= dy, fz[b] -= dz;
@@ -196,7 +199,7 @@ static int find_rounded_cable(const hf_model *m, const hf_form_settings *s, cons
     }
     for (int e = 0; e < m->n_cable; e++) {
         double step_m = DBL_EPSILON * largest_coordinate_m(m, w, e), step_N = fabs(w->q_N_per_m[e]) * step_m;
-        double error = w->law[e] == HF_LAW_TENSION ? fabs(w->tension_N[e] / w->target[e] - 1) : 0;
+        double error = hf_law_has(w->law[e], HF_LAW_GIVES_TENSION) ? fabs(w->tension_N[e] / w->target[e] - 1) : 0;
         if (error > s->residual_tolerance && error <= ROUNDING_STEPS * step_m / w->length_m[e]) return e;
         if (m->end_row[2 * e] != worst_row && m->end_row[2 * e + 1] != worst_row) continue;
         floor_N += step_N;
@@ -252,7 +255,7 @@ int hf_form_n_chain(const hf_model *m)
 /* Is chain i length-controlled, and is it straight where its supports are now? */
 static int chain_is_straight(const hf_model *m, const hf_workspace *w, int i_chain)
 {
-    if (w->law[m->chain_cable[m->chain_start[i_chain]]] != HF_LAW_LENGTH) return 0;
+    if (!hf_law_has(w->law[m->chain_cable[m->chain_start[i_chain]]], HF_LAW_IS_RIGID)) return 0;
     if (!m->n_attachment) return 1;
     int from, to;
     double sum = 0, square = 0;
@@ -296,24 +299,11 @@ static double look_at_chains(const hf_model *m, hf_workspace *w, hf_form_result 
 
 /* ---- updates ---- */
 
-static int any_law_iterates(const hf_model *m, const hf_workspace *w)
-{
-    for (int e = 0; e < m->n_cable; e++)
-        if (w->law[e] != HF_LAW_FORCE_DENSITY) return 1;
-    return 0;
-}
-
-/* Eq. 7 scales q by the wanted over the present tension; with T = q l that is the wanted tension over l. */
 void hf_form_update(const hf_model *m, hf_workspace *w)
 {
-    for (int e = 0; e < m->n_cable; e++) {
-        if (w->law[e] == HF_LAW_TENSION)
-            w->q_N_per_m[e] = w->target[e] / w->length_m[e]; // Eq. 7
-        else if (w->law[e] == HF_LAW_LENGTH)
-            w->q_N_per_m[e] *= w->length_m[e] / w->target[e]; // Eq. 8
-        else if (w->law[e] == HF_LAW_ELASTIC)                 // Eq. 8, towards a length that grows with the tension
-            w->q_N_per_m[e] *= w->length_m[e] / hf_workspace_wanted_length_m(w, e, w->tension_N[e]);
-    }
+    for (int e = 0; e < m->n_cable; e++)
+        w->q_N_per_m[e] =
+            hf_law_next_q_N_per_m(hf_workspace_cable(m, w, e), w->length_m[e], w->tension_N[e], w->q_N_per_m[e]);
 }
 
 /* ---- stopping ---- */
@@ -400,7 +390,7 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, h
                        hf_form_result *r)
 {
     assert(m->n_free > 0 && s->max_iterations > 0);
-    progress p = {stop, any_law_iterates(m, w), (double)NAN, (double)NAN, FIRST_CHAIN_CHECK};
+    progress p = {stop, hf_workspace_iterates(m, w), (double)NAN, (double)NAN, FIRST_CHAIN_CHECK};
     int need_psi = history || stop == HF_STOP_RMS_CHANGE,
         need_residual = history || stop == HF_STOP_RESIDUAL || !p.iterates;
     double length_gap;
@@ -434,7 +424,7 @@ hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_works
     r->position_error_m = r->condition = r->backward_error = (double)NAN;
     const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
     for (int e = 0; e < m->n_cable; e++) {
-        if (w->law[e] != HF_LAW_TENSION) continue;
+        if (!hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)) continue;
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         double dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a], square = dx * dx + dy * dy + dz * dz;
         w->q_N_per_m[e] = square > 0 ? w->target[e] / sqrt(square) : 0; /* of no length: found collapsed below */

@@ -46,16 +46,15 @@ static double direction(const hf_model *m, const double *x, int e, double u[3])
     return length;
 }
 
-static int has_multiplier(const hf_workspace *w, int e)
+static inline bool has_multiplier(hf_law_cable cable)
 {
-    return w->law[e] == HF_LAW_LENGTH || w->law[e] == HF_LAW_ELASTIC;
+    return hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER);
 }
 
-/* Tension by law; T is the present multiplier of a length-controlled or elastic cable. */
-static double law_tension(const hf_workspace *w, int e, double length, double T)
+/* The multiplier T where the law has one, else the tension that the law gives at this length. */
+static inline double present_tension(hf_law_cable cable, double length, double T)
 {
-    if (w->law[e] == HF_LAW_TENSION) return w->target[e];
-    return w->law[e] == HF_LAW_FORCE_DENSITY ? w->target[e] * length : T;
+    return has_multiplier(cable) ? T : hf_law_tension_N(cable, length);
 }
 
 typedef struct {
@@ -75,13 +74,14 @@ static imbalance measure(const hf_model *m, const hf_workspace *w, const double 
             force[3 * i + c] = m->load_N ? m->load_N[c * m->n_node + i] : 0;
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-        double length = direction(m, position_m, e, u), tension = law_tension(w, e, length, T[e]);
+        hf_law_cable cable = hf_workspace_cable(m, w, e);
+        double length = direction(m, position_m, e, u), tension = present_tension(cable, length, T[e]);
         for (int c = 0; c < 3; c++) {
             if (a < m->n_free) force[3 * a + c] += tension * u[c];
             if (b < m->n_free) force[3 * b + c] -= tension * u[c];
         }
-        if (!has_multiplier(w, e)) continue;
-        double gap = length / hf_workspace_wanted_length_m(w, e, tension) - 1;
+        if (!has_multiplier(cable)) continue;
+        double gap = length / hf_law_wanted_length_m(cable, tension) - 1;
         if (gap < 0) gap *= fmin(1, tension / m->reference_N);
         result.length_gap = fmax(result.length_gap, fabs(gap));
         result.merit += gap * gap;
@@ -99,32 +99,25 @@ static imbalance measure(const hf_model *m, const hf_workspace *w, const double 
 
 /* ---- matrix ---- */
 
-/* phi'' of a cable of this length; for law length, of the stiff spring in its place. A slack elastic cable has none. */
-static double axial_stiffness(const hf_workspace *w, int e, double length, double T)
+/* phi'' of a cable of this length; of a rigid one, of the stiff spring in its place. */
+static inline double axial_stiffness(hf_law_cable cable, double length, double T)
 {
-    switch (w->law[e]) {
-    case HF_LAW_FORCE_DENSITY:
-        return w->target[e];
-    case HF_LAW_LENGTH:
-        return STIFFENING * T / w->target[e];
-    case HF_LAW_ELASTIC:
-        return length > w->target[e] ? w->EA_N[e] / w->target[e] : 0;
-    default:
-        return 0;
-    }
+    if (hf_law_has(cable.law, HF_LAW_IS_RIGID)) return STIFFENING * T / hf_law_wanted_length_m(cable, T);
+    return hf_law_stiffness_N_per_m(cable, length);
 }
 
 /* How much a multiplier T changes in `part` of a step, which takes the cable of this length `beyond` the wanted one. */
-static double tension_change(const hf_workspace *w, int e, double length, double T, double part, double beyond)
+static double tension_change(hf_law_cable cable, double length, double T, double part, double beyond)
 {
-    double k = axial_stiffness(w, e, length, T);
+    double k = axial_stiffness(cable, length, T);
     return k > 0 ? part * k * beyond : -part * T;
 }
 
 void hf_newton_block(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
 {
-    double u[3], length = direction(m, w->position_m, e, u), tension = law_tension(w, e, length, w->tension_N[e]);
-    double across = tension / length, along = axial_stiffness(w, e, length, tension) - across;
+    hf_law_cable cable = hf_workspace_cable(m, w, e);
+    double u[3], length = direction(m, w->position_m, e, u), T = present_tension(cable, length, w->tension_N[e]);
+    double across = T / length, along = axial_stiffness(cable, length, T) - across;
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
             block[r][c] = along * u[r] * u[c] + (r == c ? across : 0);
@@ -187,11 +180,12 @@ static void right_hand_side(const hf_model *m, const hf_workspace *w, const doub
     double u[3];
     memcpy(rhs, force, (size_t)dofs(m) * sizeof *rhs);
     for (int e = 0; e < m->n_cable; e++) {
-        if (!has_multiplier(w, e)) continue;
+        hf_law_cable cable = hf_workspace_cable(m, w, e);
+        if (!has_multiplier(cable)) continue;
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         double length = direction(m, w->position_m, e, u);
-        double T = w->tension_N[e], beyond = length - hf_workspace_wanted_length_m(w, e, T);
-        double pull = tension_change(w, e, length, T, 1, beyond);
+        double T = w->tension_N[e], beyond = length - hf_law_wanted_length_m(cable, T);
+        double pull = tension_change(cable, length, T, 1, beyond);
         for (int c = 0; c < 3; c++) {
             if (a < m->n_free) rhs[3 * a + c] += pull * u[c];
             if (b < m->n_free) rhs[3 * b + c] -= pull * u[c];
@@ -219,16 +213,17 @@ static void try_step(const hf_model *m, hf_workspace *w, double part)
         for (int c = 0; c < 3; c++)
             w->newton_trial_m[c * m->n_node + i] += part * step[3 * i + c];
     for (int e = 0; e < m->n_cable; e++) {
-        if (!has_multiplier(w, e)) continue;
+        hf_law_cable cable = hf_workspace_cable(m, w, e);
+        if (!has_multiplier(cable)) continue;
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         double length = direction(m, w->position_m, e, u), T = w->tension_N[e];
-        double beyond = length - hf_workspace_wanted_length_m(w, e, T);
+        double beyond = length - hf_law_wanted_length_m(cable, T);
         for (int c = 0; c < 3; c++) {
             if (a < m->n_free) beyond -= u[c] * step[3 * a + c];
             if (b < m->n_free) beyond += u[c] * step[3 * b + c];
         }
-        double least = w->law[e] == HF_LAW_ELASTIC ? 0 : TENSION_KEPT * T; /* an elastic cable may go slack */
-        w->newton_trial_tension_N[e] = fmax(T + tension_change(w, e, length, T, part, beyond), least);
+        double least = hf_law_has(cable.law, HF_LAW_GOES_SLACK) ? 0 : TENSION_KEPT * T;
+        w->newton_trial_tension_N[e] = fmax(T + tension_change(cable, length, T, part, beyond), least);
     }
 }
 
@@ -273,9 +268,10 @@ static int newton_steps(const hf_model *m, const hf_form_settings *s, hf_workspa
     }
     if (!(now.merit < first_merit)) return 0;
     for (int e = 0; e < m->n_cable; e++) {
+        hf_law_cable cable = hf_workspace_cable(m, w, e);
         double length = direction(m, w->position_m, e, u);
-        double T = law_tension(w, e, length, w->tension_N[e]);
-        int is_nothing = w->law[e] == HF_LAW_ELASTIC && T < HF_NEWTON_NOTHING * m->reference_N;
+        double T = present_tension(cable, length, w->tension_N[e]);
+        bool is_nothing = hf_law_has(cable.law, HF_LAW_GOES_SLACK) && T < HF_NEWTON_NOTHING * m->reference_N;
         w->q_N_per_m[e] = is_nothing ? 0 : T / length;
     }
     return 1;
@@ -290,11 +286,11 @@ static int rescale_flat_chains(const hf_model *m, hf_workspace *w)
 {
     int n_scaled = 0;
     for (int i = m->n_chain; i < m->n_any_chain; i++) {
-        int first = m->chain_start[i], last = m->chain_start[i + 1] - 1, is_length = 1;
+        int first = m->chain_start[i], last = m->chain_start[i + 1] - 1, is_rigid = 1;
         double sum = 0, wanted = 0, u[3], *x = w->position_m;
         for (int k = first; k <= last; k++) {
             int e = m->chain_cable[k];
-            is_length &= w->law[e] == HF_LAW_LENGTH;
+            is_rigid &= hf_law_has(w->law[e], HF_LAW_IS_RIGID);
             sum += direction(m, x, e, u);
             wanted += w->target[e];
         }
@@ -303,7 +299,7 @@ static int rescale_flat_chains(const hf_model *m, hf_workspace *w)
         for (int c = 0; c < 3; c++)
             u[c] = x[c * m->n_node + to] - x[c * m->n_node + from];
         double span = hypot(hypot(u[0], u[1]), u[2]), excess = sum - span, wanted_excess = wanted - span;
-        if (!is_length || !(wanted_excess > 0 && excess > FAR_EXCESS * wanted_excess)) continue;
+        if (!is_rigid || !(wanted_excess > 0 && excess > FAR_EXCESS * wanted_excess)) continue;
         for (int k = first; k <= last; k++)
             w->q_N_per_m[m->chain_cable[k]] *= sqrt(excess / wanted_excess);
         n_scaled++;
@@ -316,7 +312,7 @@ static int rescale_flat_chains(const hf_model *m, hf_workspace *w)
 static void start_elsewhere(const hf_model *m, hf_workspace *w)
 {
     for (int e = 0; e < m->n_cable; e++)
-        if (w->law[e] != HF_LAW_FORCE_DENSITY) w->q_N_per_m[e] = m->start_q_N_per_m[e] * (1 + e % 3);
+        if (hf_law_has(w->law[e], HF_LAW_ITERATES)) w->q_N_per_m[e] = m->start_q_N_per_m[e] * (1 + e % 3);
 }
 
 /* The fixed point knows little of elastic cables: the theoretical shape is the better start for them. */

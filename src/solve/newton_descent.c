@@ -19,7 +19,7 @@
 static void soften(const hf_model *m, hf_workspace *w)
 {
     for (int e = 0; e < m->n_cable; e++) {
-        if (w->law[e] != HF_LAW_LENGTH) continue;
+        if (!hf_law_has(w->law[e], HF_LAW_IS_RIGID)) continue;
         w->law[e] = HF_LAW_ELASTIC;
         w->EA_N[e] = PENALTY * m->reference_N;
     }
@@ -28,7 +28,7 @@ static void soften(const hf_model *m, hf_workspace *w)
 static void harden(const hf_model *m, hf_workspace *w)
 {
     for (int e = 0; e < m->n_cable; e++)
-        if (m->law[e] == HF_LAW_LENGTH && w->law[e] == HF_LAW_ELASTIC) w->law[e] = HF_LAW_LENGTH;
+        if (hf_law_has(m->law[e], HF_LAW_IS_RIGID) && w->law[e] == HF_LAW_ELASTIC) w->law[e] = m->law[e];
 }
 
 static void vector(const hf_model *m, const double *x, int e, double d[3])
@@ -49,18 +49,12 @@ static double energy_change(const hf_model *m, const hf_workspace *w, const doub
     double sum = 0;
     *scale = 0;
     for (int e = 0; e < m->n_cable; e++) {
-        double a[3], b[3], square = 0, l0 = w->target[e];
+        double a[3], b[3], square = 0;
         vector(m, from, e, a);
         vector(m, to, e, b);
         for (int c = 0; c < 3; c++)
             square += (b[c] - a[c]) * (b[c] + a[c]);
-        double la = norm(a), lb = norm(b), longer = square / (la + lb), change;
-        if (w->law[e] == HF_LAW_ELASTIC) {
-            double over = fmax(la - l0, 0), beyond = fmax(lb - l0, 0);
-            change = w->EA_N[e] / (2 * l0) * (la > l0 && lb > l0 ? longer : beyond - over) * (over + beyond);
-        } else {
-            change = w->law[e] == HF_LAW_TENSION ? w->target[e] * longer : w->target[e] * square / 2;
-        }
+        double change = hf_law_energy_change_J(hf_workspace_cable(m, w, e), norm(a), norm(b), square);
         sum += change;
         *scale += fabs(change);
     }
@@ -80,13 +74,9 @@ static double pull(const hf_model *m, hf_workspace *w)
         double d[3];
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         vector(m, w->position_m, e, d);
-        double length = norm(d), T = w->target[e];
-        if (w->law[e] == HF_LAW_ELASTIC)
-            T = w->EA_N[e] * fmax(length / T - 1, 0);
-        else if (w->law[e] == HF_LAW_FORCE_DENSITY)
-            T *= length;
-        w->tension_N[e] = T;
-        int is_nothing = w->law[e] == HF_LAW_ELASTIC && T < HF_NEWTON_NOTHING * m->reference_N;
+        hf_law_cable cable = hf_workspace_cable(m, w, e);
+        double length = norm(d), T = w->tension_N[e] = hf_law_tension_N(cable, length);
+        bool is_nothing = hf_law_has(cable.law, HF_LAW_GOES_SLACK) && T < HF_NEWTON_NOTHING * m->reference_N;
         w->q_N_per_m[e] = is_nothing ? 0 : T / length;
         for (int c = 0; c < 3; c++) {
             if (a < m->n_free) force[3 * a + c] += w->q_N_per_m[e] * d[c];

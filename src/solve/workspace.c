@@ -36,6 +36,13 @@ void hf_workspace_free(hf_workspace *workspace)
     *workspace = (hf_workspace){0};
 }
 
+bool hf_workspace_iterates(const hf_model *m, const hf_workspace *w)
+{
+    for (int e = 0; e < m->n_cable; e++)
+        if (hf_law_has(w->law[e], HF_LAW_ITERATES)) return true;
+    return false;
+}
+
 void hf_workspace_poison(const hf_model *m, hf_workspace *workspace)
 {
     hf_workspace *w = workspace;

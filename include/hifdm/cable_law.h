@@ -1,0 +1,190 @@
+/* cable_law - the laws that a cable can obey, and everything that depends on which one it is (METHOD.md section 2).
+ * Stability: internal; may change in any version. The names and words of the laws are stable.
+ *
+ * A new law is one row of HF_LAW_LIST and one case in each of the functions below; the compiler names a case that is
+ * missing. Solvers ask for flags and call these functions, so they need no change. A kernel that computes laws by
+ * itself says with a set of flags which laws it serves (hf_law_is_served); nets with another law take another way.
+ *
+ * Lengths in m, tensions in N, force densities in N/m. The order of the floating-point operations is part of the
+ * results: stored data sets change by a bit when it does. */
+#ifndef HIFDM_CABLE_LAW_H
+#define HIFDM_CABLE_LAW_H
+
+#include <math.h>
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What solvers may assume of a law. */
+enum {
+    HF_LAW_ITERATES = 1,       /* its force density depends on the shape: one linear solve is not enough */
+    HF_LAW_IS_CONVEX = 2,      /* its potential is convex under tension */
+    HF_LAW_GIVES_TENSION = 4,  /* T is the target, whatever the length */
+    HF_LAW_HAS_MULTIPLIER = 8, /* T is an unknown of its own; the law says which length it wants at this T */
+    HF_LAW_IS_RIGID = 16,      /* with a multiplier: it wants the same length at every T, which has no potential */
+    HF_LAW_GOES_SLACK = 32,    /* with a multiplier: T may be zero, and the cable then bears nothing */
+    HF_LAW_NEEDS_EA = 64,      /* the axial stiffness of the cable counts */
+    HF_LAW_MAY_PUSH = 128      /* the target may be below zero: a strut */
+};
+
+/* X(name, word, target, unit of target, flags): one row per law. The word stands in files, in the order of the rows.
+ * `target` names what the value of a cable means, for messages; NULL: a cable need not give one.
+ *
+ * tension: T = T*, Eq. 7.  length: l = L*, Eq. 8.  force_density: q is held, Eq. 5.
+ * elastic: T = EA max(l/l0 - 1, 0), the cable as it was cut. */
+#define HF_LAW_LIST(X)                                                                                                 \
+    X(HF_LAW_TENSION, "tension", NULL, "N", HF_LAW_ITERATES | HF_LAW_IS_CONVEX | HF_LAW_GIVES_TENSION)                 \
+    X(HF_LAW_LENGTH, "length", NULL, "m",                                                                              \
+      HF_LAW_ITERATES | HF_LAW_IS_CONVEX | HF_LAW_HAS_MULTIPLIER | HF_LAW_IS_RIGID)                                    \
+    X(HF_LAW_FORCE_DENSITY, "force_density", "", "N/m", HF_LAW_IS_CONVEX | HF_LAW_MAY_PUSH)                            \
+    X(HF_LAW_ELASTIC, "elastic", "unstressed length", "m",                                                             \
+      HF_LAW_ITERATES | HF_LAW_IS_CONVEX | HF_LAW_HAS_MULTIPLIER | HF_LAW_GOES_SLACK | HF_LAW_NEEDS_EA)
+
+#define HF_LAW_NAME(name, word, target, unit, flags) name,
+typedef enum { HF_LAW_LIST(HF_LAW_NAME) } hf_law;
+#undef HF_LAW_NAME
+
+#define HF_LAW_ONE_MORE(name, word, target, unit, flags) +1
+enum { HF_N_LAW = HF_LAW_LIST(HF_LAW_ONE_MORE) };
+#undef HF_LAW_ONE_MORE
+
+extern const char *const hf_law_word[HF_N_LAW];        /* "tension", "length", "force_density", "elastic" */
+extern const char *const hf_law_target_name[HF_N_LAW]; /* NULL: the target may be left out */
+extern const char *const hf_law_target_unit[HF_N_LAW];
+
+/* A cable as its law sees it. */
+typedef struct {
+    hf_law law;
+    double target;        /* T* (N), L* (m), q (N/m) or l0 (m) by law */
+    double EA_N;          /* NaN when the law does not need it */
+    double theoretical_m; /* length between the theoretical positions of its ends */
+} hf_law_cable;
+
+/* Has the law any of these flags? */
+static inline bool hf_law_has(int law, unsigned flags)
+{
+#define HF_LAW_FLAGS(name, word, target, unit, flags) flags,
+    static const unsigned char flags_of[HF_N_LAW] = {HF_LAW_LIST(HF_LAW_FLAGS)};
+#undef HF_LAW_FLAGS
+    return (flags_of[law] & flags) != 0;
+}
+
+/* May a kernel that assumes `served`, a set of flags, work on this law? */
+static inline bool hf_law_is_served(int law, unsigned served)
+{
+    return !hf_law_has(law, ~served);
+}
+
+/* Target of a cable that gives none; NaN where the law has no such value, or the case's pretension is meant. */
+static inline double hf_law_default_target(hf_law law, double theoretical_m)
+{
+    switch (law) {
+    case HF_LAW_LENGTH:
+        return theoretical_m;
+    case HF_LAW_TENSION:
+    case HF_LAW_FORCE_DENSITY:
+    case HF_LAW_ELASTIC:
+        break;
+    }
+    return (double)NAN;
+}
+
+/* Length that a law with a multiplier wants at this tension; NaN without. Stiff cables need no care of their own in
+ * this form, and an elastic one with EA without bound is one of law length. */
+static inline double hf_law_wanted_length_m(hf_law_cable c, double tension_N)
+{
+    switch (c.law) {
+    case HF_LAW_LENGTH:
+        return c.target;
+    case HF_LAW_ELASTIC:
+        return c.target + c.target * tension_N / c.EA_N;
+    case HF_LAW_TENSION:
+    case HF_LAW_FORCE_DENSITY:
+        break;
+    }
+    return (double)NAN;
+}
+
+/* Tension of a cable of this length; NaN for a rigid law, which leaves it open. */
+static inline double hf_law_tension_N(hf_law_cable c, double length_m)
+{
+    switch (c.law) {
+    case HF_LAW_TENSION:
+        return c.target;
+    case HF_LAW_FORCE_DENSITY:
+        return c.target * length_m;
+    case HF_LAW_ELASTIC:
+        return c.EA_N * fmax(length_m / c.target - 1, 0);
+    case HF_LAW_LENGTH:
+        break;
+    }
+    return (double)NAN;
+}
+
+/* Stiffness along the cable, phi'' = dT/dl, N/m; infinite for a rigid law. */
+static inline double hf_law_stiffness_N_per_m(hf_law_cable c, double length_m)
+{
+    switch (c.law) {
+    case HF_LAW_FORCE_DENSITY:
+        return c.target;
+    case HF_LAW_ELASTIC:
+        return length_m > c.target ? c.EA_N / c.target : 0;
+    case HF_LAW_LENGTH:
+        return (double)INFINITY;
+    case HF_LAW_TENSION:
+        break;
+    }
+    return 0;
+}
+
+/* Change of the potential phi, J, from length `from_m` to `to_m`, whose squares differ by `square`; no digits are lost
+ * when they are nearly alike. NaN for a rigid law. */
+static inline double hf_law_energy_change_J(hf_law_cable c, double from_m, double to_m, double square)
+{
+    double longer = square / (from_m + to_m), l0 = c.target;
+    switch (c.law) {
+    case HF_LAW_TENSION:
+        return c.target * longer;
+    case HF_LAW_FORCE_DENSITY:
+        return c.target * square / 2;
+    case HF_LAW_ELASTIC: {
+        double over = fmax(from_m - l0, 0), beyond = fmax(to_m - l0, 0);
+        return c.EA_N / (2 * l0) * (from_m > l0 && to_m > l0 ? longer : beyond - over) * (over + beyond);
+    }
+    case HF_LAW_LENGTH:
+        break;
+    }
+    return (double)NAN;
+}
+
+/* ---- what follows from the flags ---- */
+
+/* Force density at this length with the tension that the law gives; q_N_per_m where it gives none. */
+static inline double hf_law_held_q_N_per_m(hf_law_cable c, double length_m, double q_N_per_m)
+{
+    return hf_law_has(c.law, HF_LAW_GIVES_TENSION) ? c.target / length_m : q_N_per_m;
+}
+
+/* Next force density of the fixed-point iteration. Eq. 7 scales q by the wanted over the present tension; with T = q l
+ * that is the wanted tension over l. Eq. 8 scales it by the present over the wanted length, which of an elastic cable
+ * grows with the tension. */
+static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, double tension_N, double q_N_per_m)
+{
+    if (hf_law_has(c.law, HF_LAW_GIVES_TENSION)) return c.target / length_m;
+    if (hf_law_has(c.law, HF_LAW_HAS_MULTIPLIER)) return q_N_per_m * (length_m / hf_law_wanted_length_m(c, tension_N));
+    return q_N_per_m;
+}
+
+/* Tension of the cable in the theoretical shape, where the law has one there; else `otherwise_N`. */
+static inline double hf_law_first_tension_N(hf_law_cable c, double otherwise_N)
+{
+    bool is_taut = hf_law_has(c.law, HF_LAW_GOES_SLACK) && c.theoretical_m > hf_law_wanted_length_m(c, 0);
+    return is_taut ? hf_law_tension_N(c, c.theoretical_m) : otherwise_N;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
