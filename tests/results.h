@@ -8,7 +8,7 @@
 #include <hifdm/store.h>
 #include <sys/stat.h>
 
-#include "store/hdf5_io.h"
+#include "store/hdf5.h"
 
 #define N(table) ((int)(sizeof(table) / sizeof(table)[0]))
 

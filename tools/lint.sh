@@ -8,9 +8,9 @@ cd "$(dirname "$0")/.."
 # may call malloc and its kin: set-up, never the hot path
 heap_files="base/status base/arena base/text base/csv net/scene net/scene_import net/numbering net/model
             truss/truss truss/truss_import truss/frame search/lane search/batch
-            case/config case/study case/study_read store/hdf5_io store/hdf5_io_rows store/journal store/generations
-            store/store_file store/store_open store/store store/store_read store/store_resume store/compare
-            store/store_truss store/store_coupling store/ledger store/merge run/problem run/run
+            case/config case/study case/study_read store/hdf5_rows store/journal store/generations
+            store/store_file store/store_internal store/store store/store_read store/store_resume store/compare
+            store/store_look store/layout_truss store/layout_coupling store/ledger store/merge run/problem run/run
             app/cmd_sweep app/options app/cmd_evaluate"
 # may print (csv, json, summary: to a stream they are given)
 print_files="base/csv base/json store/summary app/help out/print app/progress app/cmd_check out/export out/cutlist

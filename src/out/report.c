@@ -5,6 +5,7 @@
 #include "base/json.h"
 #include "base/path.h"
 #include "store/store_read.h"
+#include "store/store_series.h"
 #include <hifdm/metrics.h>
 
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "out/export.h"
 #include "base/json.h"
 #include "base/path.h"
-#include "store/store_table.h"
+#include "store/store_series.h"
 
 #include <limits.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 
 #include "base/arena.h"
 #include "out/export.h"
-#include "store/hdf5_io.h"
+#include "store/hdf5.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
 #include <hifdm/truss.h>
@@ -23,7 +23,7 @@
 /* What is drawn; values are borrowed. */
 typedef struct {
     const char *name, *units;
-    hf_hdf5_kind kind;
+    const hf_hdf5_kind *kind;
     int columns;
     const void *values;
 } field;
@@ -35,7 +35,7 @@ typedef struct {
     field point[FIELDS_MAX], line[FIELDS_MAX];
 } grid;
 
-static void add(field *list, int *n, const char *name, const char *units, hf_hdf5_kind kind, int columns,
+static void add(field *list, int *n, const char *name, const char *units, const hf_hdf5_kind *kind, int columns,
                 const void *values)
 {
     if (values) list[(*n)++] = (field){name, units, kind, columns, values};

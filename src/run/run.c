@@ -4,7 +4,7 @@
 #include "base/clock.h"
 #include "base/path.h"
 #include "search/polish.h"
-#include "store/store_open.h"
+#include "store/store_internal.h"
 #include "base/text.h"
 #include "solve/coupling.h"
 #include <hifdm/batch.h>

@@ -1,7 +1,7 @@
 /* Contents: one value - one data set - both files */
 #include "store/compare.h"
 
-#include "store/hdf5_io.h"
+#include "store/hdf5.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -206,17 +206,6 @@ static int is_data_set(hid_t file, const char *name)
     return is;
 }
 
-/* Is there a link of this path? Its groups may be missing, too. */
-static int has_path(hf_hdf5 *io, const char *path)
-{
-    char part[1024];
-    for (const char *slash = strchr(path, '/');; slash = strchr(slash + 1, '/')) {
-        snprintf(part, sizeof part, "%.*s", slash ? (int)(slash - path) : (int)strlen(path), path);
-        if (!hf_hdf5_has(io, io->file, part)) return 0;
-        if (!slash) return 1;
-    }
-}
-
 static herr_t visit_a(hid_t file, const char *name, const H5L_info_t *info, void *context)
 {
     comparing *q = context;
@@ -224,7 +213,7 @@ static herr_t visit_a(hid_t file, const char *name, const H5L_info_t *info, void
     if (info->type != H5L_TYPE_HARD || !is_data_set(file, name)) return 0;
     snprintf(path, sizeof path, "/%s", name);
     q->c->n_data_set++;
-    if (has_path(&q->b, name) && is_data_set(q->b.file, name)) {
+    if (hf_hdf5_has_path(&q->b, name) && is_data_set(q->b.file, name)) {
         q->c->n_different += compare_data_set(q, path);
     } else if (q->b.status == HF_OK) {
         char how[600];
@@ -240,7 +229,7 @@ static herr_t visit_b(hid_t file, const char *name, const H5L_info_t *info, void
     comparing *q = context;
     char path[1100], how[600];
     if (info->type != H5L_TYPE_HARD || !is_data_set(file, name)) return 0;
-    if (has_path(&q->a, name) && is_data_set(q->a.file, name)) return 0;
+    if (hf_hdf5_has_path(&q->a, name) && is_data_set(q->a.file, name)) return 0;
     snprintf(path, sizeof path, "/%s", name);
     snprintf(how, sizeof how, " is not in %s", q->a.path);
     q->tell(q->context, path, how);

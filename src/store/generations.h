@@ -6,7 +6,7 @@
 #ifndef HIFDM_GENERATIONS_H
 #define HIFDM_GENERATIONS_H
 
-#include "store/hdf5_io.h"
+#include "store/layout.h"
 
 #include <hifdm/ga.h>
 #include <hifdm/summary.h>

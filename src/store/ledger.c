@@ -25,25 +25,21 @@ const char *const hf_point_state_word[HF_N_POINT_STATE] = {"missing", "running",
 
 /* ---- columns ---- */
 
-/* By stage; the lines in the comments of hdf5_io.h say when each is there. */
-static const hf_hdf5_member member[] = {
-    HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)
-        HF_SUMMARY_POLISH_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_TRUSS_MEMBERS(HF_HDF5_MEMBER)
-            HF_SUMMARY_COUPLING_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_COUPLING_GA_MEMBERS(HF_HDF5_MEMBER)
-                HF_SUMMARY_COUPLING_POLISH_MEMBERS(HF_HDF5_MEMBER)};
-
 const hf_hdf5_member *hf_ledger_column(int i)
 {
-    for (int k = 0; k < HF_HDF5_COUNT(member); k++)
-        if (member[k].kind != HF_KIND_CHARS && i-- == 0) return &member[k];
+    for (int part = 0; part < HF_LAYOUT_N_PART; part++)
+        for (int k = 0; k < hf_layout_summary[part].n; k++)
+            if (hf_layout_summary[part].member[k].kind != HF_KIND_CHARS && i-- == 0)
+                return &hf_layout_summary[part].member[k];
     return NULL;
 }
 
 int hf_ledger_n_column(void)
 {
     int n = 0;
-    for (int k = 0; k < HF_HDF5_COUNT(member); k++)
-        n += member[k].kind != HF_KIND_CHARS;
+    for (int part = 0; part < HF_LAYOUT_N_PART; part++)
+        for (int k = 0; k < hf_layout_summary[part].n; k++)
+            n += hf_layout_summary[part].member[k].kind != HF_KIND_CHARS;
     return n;
 }
 
@@ -67,12 +63,12 @@ static int applies(const hf_hdf5_member *column, const hf_summary *s)
 static int print_number(const hf_hdf5_member *column, const hf_summary *s, char *text, size_t size)
 {
     const void *from = (const char *)s + column->offset;
-    switch (column->kind) {
-    case HF_KIND_REAL:
+    switch (column->kind->class) {
+    case HF_HDF5_REAL:
         return snprintf(text, size, "%.17g", *(const double *)from);
-    case HF_KIND_LONG:
+    case HF_HDF5_LONG:
         return snprintf(text, size, "%ld", *(const long *)from);
-    case HF_KIND_UINT64:
+    case HF_HDF5_UINT64:
         return snprintf(text, size, "%" PRIu64, *(const uint64_t *)from);
     default: /* int, and enumerations, which are int in hf_summary */
         return snprintf(text, size, "%d", *(const int *)from);

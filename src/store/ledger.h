@@ -10,7 +10,7 @@
 #ifndef HIFDM_LEDGER_H
 #define HIFDM_LEDGER_H
 
-#include "store/hdf5_io.h"
+#include "store/layout.h"
 #include "case/study.h"
 
 #include <hifdm/summary.h>

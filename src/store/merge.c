@@ -24,8 +24,8 @@ typedef struct {
 
 /* ---- columns ---- */
 
-static void write_column(merger *m, hid_t group, const char *name, hf_hdf5_kind kind, int columns, const char *units,
-                         const char *description)
+static void write_column(merger *m, hid_t group, const char *name, const hf_hdf5_kind *kind, int columns,
+                         const char *units, const char *description)
 {
     hf_hdf5_array array = {name,  kind,       columns > 1 ? 2 : 1, {(hsize_t)m->points->n_point, (hsize_t)columns},
                            units, description};
@@ -88,9 +88,9 @@ static void write_axis(merger *m, hid_t group, int axis)
         else
             sscanf(text, "[%d ,%d", (int *)m->room + 2 * i, (int *)m->room + 2 * i + 1);
     }
-    hf_hdf5_kind kind = f->type == HF_FIELD_DOUBLE   ? HF_KIND_REAL
-                        : f->type == HF_FIELD_UINT64 ? HF_KIND_UINT64
-                                                     : HF_KIND_INT;
+    const hf_hdf5_kind *kind = f->type == HF_FIELD_DOUBLE   ? HF_KIND_REAL
+                               : f->type == HF_FIELD_UINT64 ? HF_KIND_UINT64
+                                                            : HF_KIND_INT;
     write_column(m, group, f->path, kind, columns, f->unit, f->help);
 }
 
@@ -105,26 +105,23 @@ static const char *unit_of(const char *name)
     return "";
 }
 
-static void set_number(void *room, int i, hf_hdf5_kind kind, const char *text)
+static void set_number(void *room, int i, const hf_hdf5_kind *kind, const char *text)
 {
-    switch (kind) {
-    case HF_KIND_REAL:
+    switch (kind->class) {
+    case HF_HDF5_REAL:
         ((double *)room)[i] = *text ? strtod(text, NULL) : (double)NAN;
         break;
-    case HF_KIND_LONG:
+    case HF_HDF5_LONG:
         ((long *)room)[i] = strtol(text, NULL, 10);
         break;
-    case HF_KIND_UINT64:
+    case HF_HDF5_UINT64:
         ((uint64_t *)room)[i] = strtoull(text, NULL, 10);
         break;
-    case HF_KIND_INT:
+    case HF_HDF5_INT:
         ((int *)room)[i] = atoi(text);
         break;
-    case HF_KIND_STATUS:
-        ((signed char *)room)[i] = (signed char)(*text ? atoi(text) : HF_NOT_EVALUATED);
-        break;
     default:
-        ((signed char *)room)[i] = (signed char)atoi(text);
+        ((signed char *)room)[i] = (signed char)(!*text && kind == HF_KIND_STATUS ? (int)HF_NOT_EVALUATED : atoi(text));
     }
 }
 

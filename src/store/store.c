@@ -3,9 +3,7 @@
 
 #include "base/clock.h"
 #include "linalg/band.h"
-#include "store/store_coupling.h"
-#include "store/store_open.h"
-#include "store/store_surface.h"
+#include "store/store_internal.h"
 
 #include <assert.h>
 #include <gsl/gsl_version.h>
@@ -94,7 +92,6 @@ static void write_case(hf_store *s, const hf_case *settings)
 
 static void write_scene(hf_store *s, const hf_scene *scene)
 {
-    static const hf_hdf5_column table[] = {HF_SCENE_COLUMNS(HF_HDF5_COLUMN)};
     const hf_hdf5_array length = {
         "cable/length_m",          HF_KIND_REAL, 1,
         {(hsize_t)scene->n_cable}, "m",          "theoretical: distance of the two nodes' positions"};
@@ -103,7 +100,7 @@ static void write_scene(hf_store *s, const hf_scene *scene)
     hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/scene/cable"));
     hf_hdf5_write_ids(&s->f.io, group, "node/id", scene->node_id, scene->n_node, "name of the node");
     hf_hdf5_write_ids(&s->f.io, group, "cable/id", scene->cable_id, scene->n_cable, "name of the cable");
-    hf_hdf5_write_columns(&s->f.io, group, table, HF_HDF5_COUNT(table), scene->n_node, scene->n_cable, scene);
+    hf_layout_write_columns(&s->f.io, group, &hf_layout_scene, scene->n_node, scene->n_cable, scene);
     double *length_m = hf_store_scratch(s, (size_t)scene->n_cable * sizeof *length_m);
     for (int e = 0; length_m && e < scene->n_cable; e++)
         length_m[e] = hf_scene_theoretical_length(scene, e);
@@ -149,7 +146,6 @@ int hf_store_generations(const hf_store *store)
 
 static void write_shape(hf_store *s, hid_t group, const hf_model *model, const hf_workspace *workspace)
 {
-    static const hf_hdf5_column table[] = {HF_SHAPE_COLUMNS(HF_HDF5_COLUMN)};
     size_t n = (size_t)model->n_node;
     hf_shape shape = {.position_m = hf_store_scratch(s, 3 * n * sizeof(double)),
                       .length_m = workspace->length_m,
@@ -160,7 +156,7 @@ static void write_shape(hf_store *s, hid_t group, const hf_model *model, const h
     for (size_t row = 0; row < n; row++)
         for (size_t c = 0; c < 3; c++)
             shape.position_m[3 * (size_t)model->node_of_row[row] + c] = workspace->position_m[c * n + row];
-    hf_hdf5_write_columns(&s->f.io, group, table, HF_HDF5_COUNT(table), model->n_node, model->n_cable, &shape);
+    hf_layout_write_columns(&s->f.io, group, &hf_layout_shape, model->n_node, model->n_cable, &shape);
 }
 
 /* A session on another machine, or of another build, may find the shape with other bits. */
@@ -199,13 +195,14 @@ hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspa
     {                                                                                                                  \
 #member, HF_KIND_REAL, 0, 1, units, description, offsetof(hf_history, member)                                  \
     }
-    static const hf_hdf5_column table[] = {
+    static const hf_layout_column history_column[] = {
         HISTORY(psi_m, "m", "RMS distance of the inner nodes to their theoretical positions, after each linear solve"),
         HISTORY(residual_N, "N", "largest nodal force out of balance"),
         HISTORY(inner_tension_ratio, "", "largest over smallest tension of the inner cables"),
         HISTORY(boundary_tension_ratio, "", "largest over smallest tension of the boundary cables"),
         HISTORY(length_error, "", "largest |l/L*-1| over taut cables of law length")};
 #undef HISTORY
+    static const hf_layout_columns columns = {HF_LAYOUT_COLUMNS(history_column)};
     hf_hdf5_lock();
     store->f.io.messages = messages;
     hf_store_file_open(&store->f);
@@ -218,11 +215,11 @@ hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspa
     hf_hdf5_close(&store->f.io, group);
     if (history) {
         group = hf_hdf5_make_group(&store->f.io, "/form/history");
-        hf_hdf5_write_columns(&store->f.io, group, table, HF_HDF5_COUNT(table), history->n, 0, history);
+        hf_layout_write_columns(&store->f.io, group, &columns, history->n, 0, history);
         hf_hdf5_close(&store->f.io, group);
     }
     if (model->n_attachment)
-        hf_store_write_coupling(&store->f.io, model, workspace, history ? &history->coupling : NULL);
+        hf_layout_write_coupling(&store->f.io, model, workspace, history ? &history->coupling : NULL);
     return hf_hdf5_unlock(store->f.io.status);
 }
 
@@ -248,6 +245,17 @@ hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, 
     write_shape(store, group, model, workspace);
     write_design(store, group, model, design_N);
     hf_hdf5_close(&store->f.io, group);
+    return hf_hdf5_unlock(store->f.io.status);
+}
+
+hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_carrier_state *state,
+                         hf_messages *messages)
+{
+    if (!store) return HF_OK;
+    hf_hdf5_lock();
+    store->f.io.messages = messages;
+    hf_store_file_open(&store->f);
+    hf_layout_write_truss(&store->f.io, carrier, state);
     return hf_hdf5_unlock(store->f.io.status);
 }
 
@@ -318,28 +326,24 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_g
 static void put_summary(hf_store *s, const hf_summary *summary, int finished)
 {
     hf_summary state = *summary;
-    static const hf_hdf5_member form[] = {HF_SUMMARY_FORM_MEMBERS(HF_HDF5_MEMBER)};
-    static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
-    static const hf_hdf5_member polish[] = {HF_SUMMARY_POLISH_MEMBERS(HF_HDF5_MEMBER)};
-    static const hf_hdf5_member truss[] = {HF_SUMMARY_TRUSS_MEMBERS(HF_HDF5_MEMBER)};
     /* groups that are there already, unless the run had no shape or no generation to store */
     hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/form"));
     state.finished = finished;
-    hf_hdf5_put_members(&s->f.io, form, HF_HDF5_COUNT(form), &state);
+    hf_layout_put_summary(&s->f.io, HF_LAYOUT_FORM, &state);
     if (summary->has_optimize || s->rows.block) { /* before the first generation, too: what is known already */
         hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/ga"));
-        hf_hdf5_put_members(&s->f.io, ga, HF_HDF5_COUNT(ga), summary);
+        hf_layout_put_summary(&s->f.io, HF_LAYOUT_GA, summary);
     }
     if (summary->has_polish) {
         hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/polish"));
-        hf_hdf5_put_members(&s->f.io, polish, HF_HDF5_COUNT(polish), summary);
+        hf_layout_put_summary(&s->f.io, HF_LAYOUT_POLISH, summary);
     }
     if (summary->has_truss) {
         hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/truss"));
-        hf_hdf5_put_members(&s->f.io, truss, HF_HDF5_COUNT(truss), summary);
+        hf_layout_put_summary(&s->f.io, HF_LAYOUT_TRUSS, summary);
     }
-    if (summary->has_coupling) hf_store_put_coupling(&s->f.io, summary);
-    if (finished) hf_store_put_surface(&s->f.io, summary);
+    if (summary->has_coupling) hf_layout_put_coupling(&s->f.io, summary);
+    if (finished) hf_layout_put_surface(&s->f.io, summary);
     hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "status", finished ? hf_status_word(summary->status) : "unfinished");
     hf_store_put_time(s, finished ? "finished_utc" : "published_utc");
 }
@@ -414,13 +418,6 @@ hf_status hf_store_finish(hf_store *s, const hf_summary *summary, hf_messages *m
 {
     hf_store_complete(s, summary, messages);
     return hf_store_settle(s, messages);
-}
-
-hf_hdf5 *hf_store_io(hf_store *store, hf_messages *messages)
-{
-    store->f.io.messages = messages;
-    hf_store_file_open(&store->f);
-    return &store->f.io;
 }
 
 void hf_store_abandon(hf_store *store)

@@ -20,7 +20,7 @@
 #ifndef HIFDM_STORE_FILE_H
 #define HIFDM_STORE_FILE_H
 
-#include "store/hdf5_io.h"
+#include "store/hdf5.h"
 #include "store/journal.h"
 
 #include <sys/stat.h>

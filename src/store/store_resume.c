@@ -1,5 +1,5 @@
 /* Contents: what a session finds - breeding again - recovery */
-#include "store/store_open.h"
+#include "store/store_internal.h"
 #include "store/store_read.h"
 
 #include "base/clock.h"
@@ -163,9 +163,8 @@ static void breed_journal(hf_store *s, hf_ga *ga, int drops)
  * first generation. */
 static void read_known(hf_hdf5 *io, hf_summary *summary)
 {
-    static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_MEMBERS(HF_HDF5_MEMBER)};
     if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "solver", H5P_DEFAULT) > 0)
-        hf_hdf5_get_members(io, ga, HF_HDF5_COUNT(ga), summary);
+        hf_layout_get_summary(io, HF_LAYOUT_GA, summary);
 }
 
 static hf_status restore(hf_store *store, hf_ga *ga, int drops, hf_summary *summary, hf_messages *messages)

@@ -1,17 +1,9 @@
-/* Contents: writing - reading */
-#include "store/store_truss.h"
+/* The group /truss. Contents: writing - reading */
+#include "store/layout.h"
 
 #include "base/arena.h"
-#include "store/hdf5_io.h"
-#include "store/store_read.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-static const hf_hdf5_column truss_table[] = {HF_TRUSS_COLUMNS(HF_HDF5_COLUMN)
-                                                 HF_MEMBER_NUMBERS(HF_TRUSS_NUMBER_COLUMN)};
-static const hf_hdf5_column state_table[] = {HF_TRUSS_STATE_COLUMNS(HF_HDF5_COLUMN)};
 
 /* "node/fixed": a bit of each dof in memory, a flag of each in the file */
 static hf_hdf5_array fixed_array(int n_node)
@@ -37,18 +29,15 @@ static void write_fixed(hf_hdf5 *io, hid_t group, const hf_truss *t)
     free(flag);
 }
 
-hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_carrier_state *state,
-                         hf_messages *messages)
+void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carrier_state *state)
 {
-    if (!store) return HF_OK;
-    static const hf_hdf5_column attachments[] = {
+    static const hf_layout_column attachment_column[] = {
         {"attachment/net_node", HF_KIND_INT, 0, 1, "", "support of the net, as index from 0 into /scene/node",
          offsetof(hf_carrier, scene_node)},
         {"attachment/truss_node", HF_KIND_INT, 0, 1, "", "truss node that carries it, as index from 0 into /truss/node",
          offsetof(hf_carrier, truss_node)}};
+    static const hf_layout_columns attachment = {HF_LAYOUT_COLUMNS(attachment_column)};
     const hf_truss *t = &carrier->truss;
-    hf_hdf5_lock();
-    hf_hdf5 *io = hf_store_io(store, messages);
     hid_t group = hf_hdf5_make_group(io, "/truss");
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/truss/node"));
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/truss/member"));
@@ -56,11 +45,10 @@ hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_ca
     hf_hdf5_write_ids(io, group, "node/id", t->node_id, t->n_node, "name of the node");
     hf_hdf5_write_ids(io, group, "member/id", t->member_id, t->n_member, "name of the member");
     write_fixed(io, group, t);
-    hf_hdf5_write_columns(io, group, truss_table, HF_HDF5_COUNT(truss_table), t->n_node, t->n_member, t);
-    hf_hdf5_write_columns(io, group, attachments, HF_HDF5_COUNT(attachments), carrier->n_attachment, 0, carrier);
-    if (state) hf_hdf5_write_columns(io, group, state_table, HF_HDF5_COUNT(state_table), t->n_node, t->n_member, state);
+    hf_layout_write_columns(io, group, &hf_layout_truss, t->n_node, t->n_member, t);
+    hf_layout_write_columns(io, group, &attachment, carrier->n_attachment, 0, carrier);
+    if (state) hf_layout_write_columns(io, group, &hf_layout_truss_state, t->n_node, t->n_member, state);
     hf_hdf5_close(io, group);
-    return hf_hdf5_unlock(io->status);
 }
 
 /* ---- reading ---- */
@@ -98,39 +86,22 @@ static void read_state(hf_hdf5 *io, hid_t group, const hf_truss *t, hf_carrier_s
     }
     lay_out_state(&arena, (size_t)t->n_node, (size_t)t->n_member, state);
     state->block = arena.block;
-    hf_hdf5_read_columns(io, group, state_table, HF_HDF5_COUNT(state_table), t->n_node, t->n_member, state);
+    hf_layout_read_columns(io, group, &hf_layout_truss_state, t->n_node, t->n_member, state);
 }
 
-static void read_truss(hf_hdf5 *io, hf_truss *t, hf_carrier_state *state)
+void hf_layout_read_truss(hf_hdf5 *io, hf_truss *t, hf_carrier_state *state)
 {
     hid_t group = hf_hdf5_open_group(io, "/truss");
-    int n_node = hf_hdf5_length(io, group, "node/mass_kg", HF_STORE_COUNT_MAX);
-    int n_member = hf_hdf5_length(io, group, "member/joint", HF_STORE_COUNT_MAX);
+    int n_node = hf_hdf5_length(io, group, "node/mass_kg", HF_LAYOUT_COUNT_MAX);
+    int n_member = hf_hdf5_length(io, group, "member/joint", HF_LAYOUT_COUNT_MAX);
     if (io->status == HF_OK && hf_truss_allocate(t, n_node, n_member, 0) != HF_OK) hf_hdf5_no_memory(io);
-    hf_hdf5_read_columns(io, group, truss_table, HF_HDF5_COUNT(truss_table), n_node, n_member, t);
+    hf_layout_read_columns(io, group, &hf_layout_truss, n_node, n_member, t);
     if (io->status == HF_OK)
-        hf_store_read_ids(io, group, "node/id", n_node, t->node_id, "member/id", n_member, t->member_id, &t->text);
+        hf_hdf5_read_ids(io, group, "node/id", n_node, t->node_id, "member/id", n_member, t->member_id, &t->text);
     if (io->status == HF_OK) read_fixed(io, group, t);
     for (int k = 0; k < 2 * n_member && io->status == HF_OK; k++)
         if (t->end[k] < 0 || t->end[k] >= n_node)
             hf_hdf5_damaged(io, group, "member/end", "names a node that is not there");
     if (io->status == HF_OK) read_state(io, group, t, state);
     hf_hdf5_close(io, group);
-}
-
-hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_state *state, hf_messages *messages)
-{
-    *truss = (hf_truss){0};
-    *state = (hf_carrier_state){0};
-    hf_hdf5_lock();
-    hf_hdf5 io = hf_store_open_result(path, messages);
-    if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/truss") && io.status == HF_OK)
-        io.status = hf_error(messages, HF_IO, "%s: has no truss: its case has no truss section", path);
-    if (io.status == HF_OK) read_truss(&io, truss, state);
-    hf_hdf5_close_file(&io);
-    if (io.status != HF_OK) {
-        hf_truss_free(truss);
-        hf_carrier_state_free(state);
-    }
-    return hf_hdf5_unlock(io.status);
 }

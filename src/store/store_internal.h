@@ -1,6 +1,6 @@
-/* store_open - a store as its parts share it: made, handed over, and ended. */
-#ifndef HIFDM_STORE_OPEN_H
-#define HIFDM_STORE_OPEN_H
+/* store_internal - the struct of a store, which its parts share; how it is made, handed over and freed. */
+#ifndef HIFDM_STORE_INTERNAL_H
+#define HIFDM_STORE_INTERNAL_H
 
 #include "store/generations.h"
 #include "store/store_file.h"

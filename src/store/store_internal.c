@@ -1,4 +1,4 @@
-#include "store/store_open.h"
+#include "store/store_internal.h"
 
 #include <stdlib.h>
 #include <time.h>

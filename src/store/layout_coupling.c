@@ -1,10 +1,7 @@
-#include "store/store_coupling.h"
+/* The group /coupling. */
+#include "store/layout.h"
 
 #include <stdlib.h>
-
-static const hf_hdf5_member form[] = {HF_SUMMARY_COUPLING_MEMBERS(HF_HDF5_MEMBER)};
-static const hf_hdf5_member ga[] = {HF_SUMMARY_COUPLING_GA_MEMBERS(HF_HDF5_MEMBER)};
-static const hf_hdf5_member polish[] = {HF_SUMMARY_COUPLING_POLISH_MEMBERS(HF_HDF5_MEMBER)};
 
 static void write_nodes(hf_hdf5 *io, hid_t group, const hf_model *m)
 {
@@ -19,39 +16,41 @@ static void write_nodes(hf_hdf5 *io, hid_t group, const hf_model *m)
     free(index);
 }
 
-void hf_store_write_coupling(hf_hdf5 *io, const hf_model *m, const hf_workspace *w, const hf_coupling_history *h)
+void hf_layout_write_coupling(hf_hdf5 *io, const hf_model *m, const hf_workspace *w, const hf_coupling_history *h)
 {
-    static const hf_hdf5_column history[] = {
+    static const hf_layout_column history_column[] = {
         {"step_m", HF_KIND_REAL, 0, 1, "m", "largest move of an attachment by the next form-finding",
          offsetof(hf_coupling_history, step_m)},
         {"psi_m", HF_KIND_REAL, 0, 1, "m", "RMS distance of the inner nodes", offsetof(hf_coupling_history, psi_m)},
         {"max_displacement_m", HF_KIND_REAL, 0, 1, "m", "largest displacement of an attachment",
          offsetof(hf_coupling_history, max_displacement_m)}};
-    static const hf_hdf5_column attachment[] = {
+    static const hf_layout_column attachment_column[] = {
         {"displacement_m", HF_KIND_REAL, 0, 3, "m", "of each attachment", offsetof(hf_workspace, displacement_m)},
         {"force_N", HF_KIND_REAL, 0, 3, "N", "pull of the net and its loads on each attachment",
          offsetof(hf_workspace, attachment_force_N)}};
+    static const hf_layout_columns history = {HF_LAYOUT_COLUMNS(history_column)};
+    static const hf_layout_columns attachment = {HF_LAYOUT_COLUMNS(attachment_column)};
     hid_t group = hf_hdf5_make_group(io, "/coupling");
     write_nodes(io, group, m);
-    hf_hdf5_write_columns(io, group, attachment, HF_HDF5_COUNT(attachment), m->n_attachment, 0, w);
+    hf_layout_write_columns(io, group, &attachment, m->n_attachment, 0, w);
     hf_hdf5_close(io, group);
     if (!h) return;
     group = hf_hdf5_make_group(io, "/coupling/history");
-    hf_hdf5_write_columns(io, group, history, HF_HDF5_COUNT(history), h->n, 0, h);
+    hf_layout_write_columns(io, group, &history, h->n, 0, h);
     hf_hdf5_close(io, group);
 }
 
-void hf_store_put_coupling(hf_hdf5 *io, const hf_summary *summary)
+void hf_layout_put_coupling(hf_hdf5 *io, const hf_summary *summary)
 {
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/coupling"));
-    hf_hdf5_put_members(io, form, HF_HDF5_COUNT(form), summary);
-    if (summary->has_optimize) hf_hdf5_put_members(io, ga, HF_HDF5_COUNT(ga), summary);
-    if (summary->has_polish) hf_hdf5_put_members(io, polish, HF_HDF5_COUNT(polish), summary);
+    hf_layout_put_summary(io, HF_LAYOUT_COUPLING, summary);
+    if (summary->has_optimize) hf_layout_put_summary(io, HF_LAYOUT_COUPLING_GA, summary);
+    if (summary->has_polish) hf_layout_put_summary(io, HF_LAYOUT_COUPLING_POLISH, summary);
 }
 
-void hf_store_get_coupling(hf_hdf5 *io, hf_summary *summary)
+void hf_layout_get_coupling(hf_hdf5 *io, hf_summary *summary)
 {
-    hf_hdf5_get_members(io, form, HF_HDF5_COUNT(form), summary);
-    if (summary->has_optimize) hf_hdf5_get_members(io, ga, HF_HDF5_COUNT(ga), summary);
-    if (summary->has_polish) hf_hdf5_get_members(io, polish, HF_HDF5_COUNT(polish), summary);
+    hf_layout_get_summary(io, HF_LAYOUT_COUPLING, summary);
+    if (summary->has_optimize) hf_layout_get_summary(io, HF_LAYOUT_COUPLING_GA, summary);
+    if (summary->has_polish) hf_layout_get_summary(io, HF_LAYOUT_COUPLING_POLISH, summary);
 }

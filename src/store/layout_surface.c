@@ -1,4 +1,5 @@
-#include "store/store_surface.h"
+/* The group /surface. */
+#include "store/layout.h"
 
 #include <string.h>
 
@@ -57,7 +58,7 @@ static hf_hdf5_array frequency_array(int n)
 #define RAW "gain_loss_dB", n, "loss of gain (Ruze) by frequency"
 #define FITTED "fit_gain_loss_dB", n, "the same after the best fit"
 
-void hf_store_put_surface(hf_hdf5 *io, const hf_summary *summary)
+void hf_layout_put_surface(hf_hdf5 *io, const hf_summary *summary)
 {
     int n = summary->surface.frequencies_Hz.n;
     if (!(summary->surface.focal_length_m > 0)) return;
@@ -79,7 +80,7 @@ void hf_store_put_surface(hf_hdf5 *io, const hf_summary *summary)
     }
 }
 
-void hf_store_get_surface(hf_hdf5 *io, hf_summary *summary)
+void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary)
 {
     if (!hf_hdf5_has(io, io->file, "/surface")) return;
     hid_t group = hf_hdf5_open_group(io, "/surface");

@@ -1,12 +1,79 @@
-#include "store/store_table.h"
+/* Contents: numbers - texts - names - links */
+#include "store/store_series.h"
 
 #include "base/arena.h"
 
 #include <inttypes.h>
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
 #define FILE_MAX 1024 /* bytes of the name that a link leads to; of longer ones nothing is told */
+
+/* ---- numbers ---- */
+
+/* n of a data set of numbers [n] or [n][columns]; 0 = as many columns as it has. Sets series->columns and the type to
+ * read as: HDF5 turns every kind of number into double, but no enumeration. */
+static int measure_series(hf_hdf5 *io, const char *name, hid_t data_set, int columns, hf_series *series, hid_t *type)
+{
+    hsize_t dims[H5S_MAX_RANK] = {0};
+    hid_t space = H5Dget_space(data_set), stored = H5Dget_type(data_set);
+    int rank = space >= 0 ? H5Sget_simple_extent_dims(space, dims, NULL) : -1;
+    H5T_class_t class = stored >= 0 ? H5Tget_class(stored) : H5T_NO_CLASS;
+    series->columns = rank == 2 && dims[1] < INT_MAX ? (int)dims[1] : 1;
+    *type = class == H5T_ENUM ? H5T_NATIVE_SCHAR : H5T_NATIVE_DOUBLE;
+    if (rank < 0 || class == H5T_NO_CLASS)
+        hf_hdf5_fail(io, "read", io->file, name);
+    else if (class != H5T_INTEGER && class != H5T_FLOAT && (class != H5T_ENUM || H5Tget_size(stored) != 1))
+        hf_hdf5_damaged(io, io->file, name, "is of another type");
+    else if (rank < 1 || rank > 2 || (columns && columns != series->columns) || dims[0] > HF_LAYOUT_COUNT_MAX)
+        hf_hdf5_damaged(io, io->file, name, "has other dimensions than a report reads");
+    hf_hdf5_close(io, stored);
+    hf_hdf5_close(io, space);
+    return io->status == HF_OK ? (int)dims[0] : 0;
+}
+
+static void read_series(hf_hdf5 *io, const char *name, int columns, hf_series *series)
+{
+    hid_t data_set = H5Dopen2(io->file, name, H5P_DEFAULT), type = -1;
+    hf_arena arena = {0};
+    if (data_set < 0) {
+        hf_hdf5_fail(io, "read", io->file, name);
+        return;
+    }
+    int n = measure_series(io, name, data_set, columns, series, &type);
+    size_t count = (size_t)n * (size_t)series->columns;
+    hf_arena_take(&arena, count, sizeof(double));
+    if (n > 0 && hf_arena_allocate(&arena) != HF_OK) hf_hdf5_no_memory(io);
+    if (n > 0 && io->status == HF_OK) {
+        *series = (hf_series){n, series->columns, hf_arena_take(&arena, count, sizeof(double)), arena.block};
+        if (H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, series->value) < 0)
+            hf_hdf5_fail(io, "read", io->file, name);
+        for (size_t i = type == H5T_NATIVE_SCHAR ? count : 0; i-- > 0;) /* in place, from the end */
+            series->value[i] = ((const signed char *)series->value)[i];
+    }
+    hf_hdf5_close(io, data_set);
+}
+
+hf_status hf_store_read_series(const char *path, const char *name, int columns, hf_series *series,
+                               hf_messages *messages)
+{
+    hf_hdf5_lock();
+    hf_hdf5 io = hf_store_open_result(path, messages);
+    *series = (hf_series){0};
+    if (hf_hdf5_has_path(&io, name)) read_series(&io, name, columns, series);
+    hf_hdf5_close_file(&io);
+    if (io.status != HF_OK) hf_series_free(series);
+    return hf_hdf5_unlock(io.status);
+}
+
+void hf_series_free(hf_series *series)
+{
+    hf_arena_free(&(hf_arena){.block = series->block});
+    *series = (hf_series){0};
+}
+
+/* ---- texts ---- */
 
 const char *hf_texts_at(const hf_texts *texts, int i)
 {
@@ -37,8 +104,6 @@ static hf_status finish(hf_hdf5 *io, hf_texts *texts)
     return hf_hdf5_unlock(io->status);
 }
 
-/* ---- texts ---- */
-
 #define DIGITS_SIZE 24 /* of 64 bits in decimal, and the NUL; a multiple of 8 */
 
 /* Decimal digits of n numbers that a double might not hold. */
@@ -68,7 +133,7 @@ static void read_texts(hf_hdf5 *io, const char *name, hid_t data_set, hf_texts *
     if (rank < 0 || length == 0) {
         hf_hdf5_fail(io, "read", io->file, name);
     } else if (rank == 1 && (is_fixed || is_uint64) && H5Sget_simple_extent_dims(space, &n, NULL) == 1 && n > 0) {
-        if (n > HF_STORE_COUNT_MAX)
+        if (n > HF_LAYOUT_COUNT_MAX)
             hf_hdf5_damaged(io, io->file, name, "is too large");
         else if (is_uint64)
             read_digits(io, name, data_set, (int)n, texts);
@@ -89,7 +154,7 @@ hf_status hf_store_read_texts(const char *path, const char *name, hf_texts *text
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *texts = (hf_texts){0};
-    if (hf_store_is_there(&io, name)) {
+    if (hf_hdf5_has_path(&io, name)) {
         hid_t data_set = H5Dopen2(io.file, name, H5P_DEFAULT);
         if (data_set < 0)
             hf_hdf5_fail(&io, "read", io.file, name);
@@ -110,7 +175,7 @@ static void read_names(hf_hdf5 *io, const char *name, hid_t group, hf_texts *nam
         hf_hdf5_fail(io, "read", io->file, name);
         return;
     }
-    if (info.nlinks == 0 || info.nlinks > HF_STORE_COUNT_MAX) return;
+    if (info.nlinks == 0 || info.nlinks > HF_LAYOUT_COUNT_MAX) return;
     for (hsize_t i = 0; i < info.nlinks; i++) {
         ssize_t used = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, NULL, 0, H5P_DEFAULT);
         if (used < 0) hf_hdf5_fail(io, "read", io->file, name);
@@ -127,7 +192,7 @@ hf_status hf_store_read_names(const char *path, const char *group, hf_texts *nam
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *names = (hf_texts){0};
-    if (hf_store_is_there(&io, group)) {
+    if (hf_hdf5_has_path(&io, group)) {
         hid_t id = hf_hdf5_open_group(&io, group);
         if (io.status == HF_OK) read_names(&io, group, id, names);
         hf_hdf5_close(&io, id);
@@ -162,7 +227,7 @@ hf_status hf_store_read_links(const char *path, const char *group, const hf_text
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *files = (hf_texts){0};
-    if (names->n > 0 && hf_store_is_there(&io, group) && allocate(&io, names->n, FILE_MAX, files)) {
+    if (names->n > 0 && hf_hdf5_has_path(&io, group) && allocate(&io, names->n, FILE_MAX, files)) {
         hid_t id = hf_hdf5_open_group(&io, group);
         for (int i = 0; i < names->n && io.status == HF_OK; i++)
             read_link(&io, id, hf_texts_at(names, i), files->text + (size_t)i * files->length);

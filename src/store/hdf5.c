@@ -1,10 +1,5 @@
 /* Contents: failures - types - files, groups - writing data sets - reading data sets - attributes - tables */
-#include "store/hdf5_io.h"
-
-#include <hifdm/formfind.h>
-#include <hifdm/ga.h>
-#include <hifdm/scene.h>
-#include <hifdm/truss.h>
+#include "store/hdf5.h"
 
 #include <assert.h>
 #include <limits.h>
@@ -74,66 +69,47 @@ void hf_hdf5_damaged(hf_hdf5 *io, hid_t place, const char *name, const char *wha
 
 /* ---- types ---- */
 
-typedef struct {
-    const char *word;
-    int value;
-} enum_entry;
+const hf_hdf5_kind hf_hdf5_number[4] = {
+    {.class = HF_HDF5_REAL}, {.class = HF_HDF5_INT}, {.class = HF_HDF5_LONG}, {.class = HF_HDF5_UINT64}};
+const hf_hdf5_kind hf_hdf5_text = {.class = HF_HDF5_TEXT}, hf_hdf5_chars = {.class = HF_HDF5_CHARS};
+static const char *const flag_word[2] = {"FALSE", "TRUE"}; /* h5py's bool */
+const hf_hdf5_kind hf_hdf5_flag = {HF_HDF5_ENUM, 2, flag_word, NULL};
 
-/* The i-th word of an enumeration and its value; a NULL word behind the last. */
-static enum_entry enum_at(hf_hdf5_kind kind, int i)
+/* The value of the i-th word of an enumeration. */
+static signed char value_at(const hf_hdf5_kind *kind, int i)
 {
-    static const char *const flag_word[2] = {"FALSE", "TRUE"}; /* h5py's bool */
-#define STATUS_ENTRY(name, value, exit_code, word, text) {word, value},
-#define STOP_ENTRY(name, value, word) {word, value},
-    static const enum_entry status[] = {HF_STATUS_LIST(STATUS_ENTRY)}, stop[] = {HF_STOP_REASON_LIST(STOP_ENTRY)};
-    static const enum_entry coupling[] = {HF_COUPLING_STOP_LIST(STOP_ENTRY)};
-#undef STATUS_ENTRY
-#undef STOP_ENTRY
-    static const struct {
-        hf_hdf5_kind kind;
-        const char *const *word;
-        int n;
-    } list[] = {{HF_KIND_FLAG, flag_word, 2},          {HF_KIND_ROLE, hf_role_word, 3},
-                {HF_KIND_GROUP, hf_group_word, 2},     {HF_KIND_LAW, hf_law_word, HF_N_LAW},
-                {HF_KIND_GA_STOP, hf_ga_stop_word, 4}, {HF_KIND_JOINT, hf_joint_word, 2},
-                {HF_KIND_UNIT, hf_unit_word, 4}};
-    for (int k = 0; k < HF_HDF5_COUNT(list); k++)
-        if (list[k].kind == kind && i < list[k].n) return (enum_entry){list[k].word[i], i};
-    if (kind == HF_KIND_STATUS && i < HF_HDF5_COUNT(status)) return status[i];
-    if (kind == HF_KIND_STOP_REASON && i < HF_HDF5_COUNT(stop)) return stop[i];
-    if (kind == HF_KIND_COUPLING_STOP && i < HF_HDF5_COUNT(coupling)) return coupling[i];
-    return (enum_entry){NULL, 0};
+    return kind->value ? kind->value[i] : (signed char)i;
 }
 
-static int is_enum(hf_hdf5_kind kind)
+static int is_enum(const hf_hdf5_kind *kind)
 {
-    return kind >= HF_KIND_FLAG;
+    return kind->class == HF_HDF5_ENUM;
 }
 
-size_t hf_hdf5_kind_bytes(hf_hdf5_kind kind)
+size_t hf_hdf5_kind_bytes(const hf_hdf5_kind *kind)
 {
-    switch (kind) {
-    case HF_KIND_REAL:
+    switch (kind->class) {
+    case HF_HDF5_REAL:
         return sizeof(double);
-    case HF_KIND_INT:
+    case HF_HDF5_INT:
         return sizeof(int);
-    case HF_KIND_LONG:
+    case HF_HDF5_LONG:
         return sizeof(long);
-    case HF_KIND_UINT64:
+    case HF_HDF5_UINT64:
         return sizeof(uint64_t);
-    case HF_KIND_TEXT:
+    case HF_HDF5_TEXT:
         return sizeof(char *);
     default:
         return 1;
     }
 }
 
-static hid_t make_enum(hf_hdf5_kind kind)
+static hid_t make_enum(const hf_hdf5_kind *kind)
 {
     hid_t type = H5Tenum_create(H5T_NATIVE_SCHAR);
-    for (int i = 0; type >= 0 && enum_at(kind, i).word; i++) {
-        signed char value = (signed char)enum_at(kind, i).value;
-        if (H5Tenum_insert(type, enum_at(kind, i).word, &value) < 0) {
+    for (int i = 0; type >= 0 && i < kind->n_word; i++) {
+        signed char value = value_at(kind, i);
+        if (H5Tenum_insert(type, kind->word[i], &value) < 0) {
             H5Tclose(type);
             type = -1;
         }
@@ -154,20 +130,20 @@ static hid_t make_string(size_t length)
 }
 
 /* The caller closes it. Negative after a failure of HDF5. length: of HF_KIND_CHARS. */
-static hid_t make_type(hf_hdf5_kind kind, hsize_t length)
+static hid_t make_type(const hf_hdf5_kind *kind, hsize_t length)
 {
-    switch (kind) {
-    case HF_KIND_REAL:
+    switch (kind->class) {
+    case HF_HDF5_REAL:
         return H5Tcopy(H5T_NATIVE_DOUBLE);
-    case HF_KIND_INT:
+    case HF_HDF5_INT:
         return H5Tcopy(H5T_NATIVE_INT);
-    case HF_KIND_LONG:
+    case HF_HDF5_LONG:
         return H5Tcopy(H5T_NATIVE_LONG);
-    case HF_KIND_UINT64:
+    case HF_HDF5_UINT64:
         return H5Tcopy(H5T_NATIVE_UINT64);
-    case HF_KIND_TEXT:
+    case HF_HDF5_TEXT:
         return make_string(H5T_VARIABLE);
-    case HF_KIND_CHARS:
+    case HF_HDF5_CHARS:
         return make_string((size_t)length);
     default:
         return make_enum(kind);
@@ -180,7 +156,7 @@ hid_t hf_hdf5_array_type(const hf_hdf5_array *a)
 }
 
 /* May values of this stored type be read as `kind`? Words are matched by HDF5 itself. */
-static int is_of_kind(hid_t stored, hf_hdf5_kind kind)
+static int is_of_kind(hid_t stored, const hf_hdf5_kind *kind)
 {
     H5T_class_t class = H5Tget_class(stored);
     if (is_enum(kind)) return class == H5T_ENUM;
@@ -190,12 +166,12 @@ static int is_of_kind(hid_t stored, hf_hdf5_kind kind)
 }
 
 /* Does every value of an enumeration have a word? */
-static int are_known(hf_hdf5_kind kind, const void *values, hsize_t n)
+static int are_known(const hf_hdf5_kind *kind, const void *values, hsize_t n)
 {
     unsigned char known[UCHAR_MAX + 1] = {0};
     const unsigned char *bytes = values;
-    for (int i = 0; enum_at(kind, i).word; i++)
-        known[(unsigned char)enum_at(kind, i).value] = 1;
+    for (int i = 0; i < kind->n_word; i++)
+        known[(unsigned char)value_at(kind, i)] = 1;
     for (hsize_t i = 0; i < n; i++)
         if (!known[bytes[i]]) return 0;
     return 1;
@@ -287,6 +263,16 @@ int hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name)
     htri_t has = H5Lexists(place, name, H5P_DEFAULT);
     if (has < 0) hf_hdf5_fail(io, "read", place, name);
     return has > 0;
+}
+
+int hf_hdf5_has_path(hf_hdf5 *io, const char *path)
+{
+    char part[1024];
+    for (const char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        snprintf(part, sizeof part, "%.*s", (int)(slash - path), path);
+        if (!hf_hdf5_has(io, io->file, part)) return 0;
+    }
+    return hf_hdf5_has(io, io->file, path);
 }
 
 hid_t hf_hdf5_make_group(hf_hdf5 *io, const char *path)
@@ -441,7 +427,7 @@ static void put_typed(hf_hdf5 *io, hid_t place, const char *name, const char *at
     hf_hdf5_close(io, type);
 }
 
-void hf_hdf5_put(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hf_hdf5_kind kind, hsize_t n,
+void hf_hdf5_put(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const hf_hdf5_kind *kind, hsize_t n,
                  const void *values)
 {
     if (io->status == HF_OK) put_typed(io, place, name, attribute, make_type(kind, 0), n, values);
@@ -458,8 +444,8 @@ void hf_hdf5_put_chars(hf_hdf5 *io, hid_t place, const char *name, const char *a
     if (io->status == HF_OK) put_typed(io, place, name, attribute, make_string(length), 0, text);
 }
 
-void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hf_hdf5_kind kind, void *value,
-                 size_t size)
+void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const hf_hdf5_kind *kind,
+                 void *value, size_t size)
 {
     hid_t id = -1, stored = -1, space = -1, type = -1;
     size_t length = 0;
@@ -529,43 +515,5 @@ void hf_hdf5_get_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, void *
             hf_hdf5_get(io, io->file, m->object, m->name, m->kind, &byte, 1);
             memcpy(member, &(int){byte}, sizeof(int));
         }
-    }
-}
-
-static hf_hdf5_array column_array(const hf_hdf5_column *c, int n_node, int n_cable)
-{
-    return (hf_hdf5_array){.name = c->name,
-                           .kind = c->kind,
-                           .rank = c->columns > 1 ? 2 : 1,
-                           .dims = {(hsize_t)(c->per_cable ? n_cable : n_node), (hsize_t)c->columns},
-                           .units = c->units,
-                           .description = c->description};
-}
-
-/* The pointer kept in column `c` of `owner`. */
-static void *column_values(const hf_hdf5_column *c, const void *owner)
-{
-    void *values;
-    memcpy(&values, (const char *)owner + c->offset, sizeof values);
-    return values;
-}
-
-void hf_hdf5_write_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table, int n, int n_node, int n_cable,
-                           const void *owner)
-{
-    for (const hf_hdf5_column *c = table; c < table + n; c++) {
-        hf_hdf5_array array = column_array(c, n_node, n_cable);
-        const void *values = column_values(c, owner);
-        if (values) hf_hdf5_write_array(io, group, &array, values);
-    }
-}
-
-void hf_hdf5_read_columns(hf_hdf5 *io, hid_t group, const hf_hdf5_column *table, int n, int n_node, int n_cable,
-                          void *owner)
-{
-    for (const hf_hdf5_column *c = table; c < table + n; c++) {
-        hf_hdf5_array array = column_array(c, n_node, n_cable);
-        void *values = column_values(c, owner);
-        if (values) hf_hdf5_read_array(io, group, &array, values);
     }
 }

@@ -1,5 +1,7 @@
-/* Data sets that grow row by row, and texts that are read back. */
-#include "store/hdf5_io.h"
+/* Data sets that grow row by row, texts that are read back, and names. */
+#include "store/hdf5.h"
+
+#include "base/arena.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -78,4 +80,51 @@ void hf_hdf5_write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *c
         memcpy(chars + (size_t)i * length, id[i], strlen(id[i]));
     if (chars) hf_hdf5_write_array(io, group, &array, chars);
     free(chars);
+}
+
+/* The n strings of a data set as they are stored, side by side; the caller frees the arena. */
+static char *read_chars(hf_hdf5 *io, hid_t group, const char *name, int n, size_t *length, hf_arena *arena)
+{
+    *length = hf_hdf5_chars_length(io, group, name);
+    hf_arena_take(arena, (size_t)n, *length);
+    if (io->status != HF_OK) return NULL;
+    if (hf_arena_allocate(arena) != HF_OK) {
+        hf_hdf5_no_memory(io);
+        return NULL;
+    }
+    hf_hdf5_array array = {.name = name, .kind = HF_KIND_CHARS, .rank = 1, .dims = {(hsize_t)n, *length}};
+    char *chars = hf_arena_take(arena, (size_t)n, *length);
+    hf_hdf5_read_array(io, group, &array, chars);
+    return chars;
+}
+
+/* Lay the strings out one after the other from `text` on, each with its NUL, and set the ids. */
+static void place_ids(const char *chars, size_t length, int n, const char **id, char *text)
+{
+    for (int i = 0; i < n; i++) {
+        const char *from = chars + (size_t)i * length, *end = memchr(from, '\0', length);
+        size_t used = end ? (size_t)(end - from) : length;
+        id[i] = memcpy(text, from, used);
+        text += used;
+        *text++ = '\0';
+    }
+}
+
+void hf_hdf5_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, const char **id_a, const char *name_b, int m,
+                      const char **id_b, void **text)
+{
+    size_t length_a, length_b;
+    hf_arena a = {0}, b = {0}, all = {0};
+    const char *chars_a = read_chars(io, group, name_a, n, &length_a, &a);
+    const char *chars_b = read_chars(io, group, name_b, m, &length_b, &b);
+    hf_arena_take(&all, (size_t)n, length_a + 1);
+    hf_arena_take(&all, (size_t)m, length_b + 1);
+    if (io->status == HF_OK && hf_arena_allocate(&all) != HF_OK) hf_hdf5_no_memory(io);
+    if (io->status == HF_OK) {
+        *text = all.block;
+        place_ids(chars_a, length_a, n, id_a, hf_arena_take(&all, (size_t)n, length_a + 1));
+        place_ids(chars_b, length_b, m, id_b, hf_arena_take(&all, (size_t)m, length_b + 1));
+    }
+    hf_arena_free(&a);
+    hf_arena_free(&b);
 }

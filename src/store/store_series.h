@@ -1,8 +1,23 @@
-/* store_table - what a report reads of a merged study: texts, names, and where links lead. */
-#ifndef HIFDM_STORE_TABLE_H
-#define HIFDM_STORE_TABLE_H
+/* store_series - any data set of a result file or of a merged study by its name, as numbers or as texts; what a group
+ * holds and where its links lead. Reports read by this. */
+#ifndef HIFDM_STORE_SERIES_H
+#define HIFDM_STORE_SERIES_H
 
 #include "store/store_read.h"
+
+/* A data set of numbers of any kind, enumerations too. */
+typedef struct {
+    int n; /* rows; 0 = the file has none of this name, or an empty one */
+    int columns;
+    double *value; /* [n][columns] */
+    void *block;
+} hf_series;
+
+/* name: from the root, like "/form/history/psi_m"; columns 0 = as it has. HF_OK also when there is none; else as the
+ * calls of store.h. Free with hf_series_free in any case. */
+hf_status hf_store_read_series(const char *path, const char *name, int columns, hf_series *series,
+                               hf_messages *messages);
+void hf_series_free(hf_series *series);
 
 /* n texts of the same length, each ending in a NUL. */
 typedef struct {

@@ -1,5 +1,5 @@
 /* One thread at a time in HDF5. */
-#include "store/hdf5_io.h"
+#include "store/hdf5.h"
 
 #include <pthread.h>
 

@@ -1,0 +1,229 @@
+/* Contents: enumerations - columns - summary */
+#include "store/layout.h"
+
+#include <hifdm/formfind.h>
+#include <hifdm/ga.h>
+#include <hifdm/scene.h>
+#include <hifdm/store.h>
+
+#include <string.h>
+
+/* ---- enumerations ---- */
+
+#define STATUS_WORD(name, value, exit_code, word, text) word,
+#define STATUS_VALUE(name, value, exit_code, word, text) value,
+#define STOP_WORD(name, value, word) word,
+#define STOP_VALUE(name, value, word) value,
+static const char *const status_word[] = {HF_STATUS_LIST(STATUS_WORD)};
+static const signed char status_value[] = {HF_STATUS_LIST(STATUS_VALUE)};
+static const char *const stop_word[] = {HF_STOP_REASON_LIST(STOP_WORD)};
+static const signed char stop_value[] = {HF_STOP_REASON_LIST(STOP_VALUE)};
+static const char *const coupling_word[] = {HF_COUPLING_STOP_LIST(STOP_WORD)};
+static const signed char coupling_value[] = {HF_COUPLING_STOP_LIST(STOP_VALUE)};
+
+#define WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, NULL /* values 0, 1, 2, ... */
+#define VALUES(word, value) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, value
+const hf_hdf5_kind hf_layout_role = {WORDS(hf_role_word)};
+const hf_hdf5_kind hf_layout_group = {WORDS(hf_group_word)};
+const hf_hdf5_kind hf_layout_law = {WORDS(hf_law_word)};
+const hf_hdf5_kind hf_layout_ga_stop = {WORDS(hf_ga_stop_word)};
+const hf_hdf5_kind hf_layout_joint = {WORDS(hf_joint_word)};
+const hf_hdf5_kind hf_layout_unit = {WORDS(hf_unit_word)};
+const hf_hdf5_kind hf_layout_status = {VALUES(status_word, status_value)};
+const hf_hdf5_kind hf_layout_stop_reason = {VALUES(stop_word, stop_value)};
+const hf_hdf5_kind hf_layout_coupling_stop = {VALUES(coupling_word, coupling_value)};
+
+/* ---- columns ---- */
+
+/* X(struct, name, member, kind, per_cable, columns, units, description) */
+#define SCENE_COLUMNS(X)                                                                                               \
+    X(hf_scene, "node/position_m", position_m, REAL, 0, 3, "m", "theoretical position; of supports also the real one") \
+    X(hf_scene, "node/load_N", load_N, REAL, 0, 3, "N", "load")                                                        \
+    X(hf_scene, "node/role", role, ROLE, 0, 1, "", "support, inner (counted by psi) or edge")                          \
+    X(hf_scene, "cable/end", end, INT, 1, 2, "", "the two nodes, as indices from 0 into /scene/node")                  \
+    X(hf_scene, "cable/group", group, GROUP, 1, 1, "", "inner or boundary")                                            \
+    X(hf_scene, "cable/law", law, LAW, 1, 1, "", "what the scene asks of the cable")                                   \
+    X(hf_scene, "cable/target", target, REAL, 1, 1, "N, m or N/m",                                                     \
+      "tension, length, force density or unstressed length, by law; "                                                  \
+      "NaN = the pretension of the case")                                                                              \
+    X(hf_scene, "cable/EA_N", EA_N, REAL, 1, 1, "N", "axial stiffness, NaN where not given")
+
+#define SHAPE_COLUMNS(X)                                                                                               \
+    X(hf_shape, "position_m", position_m, REAL, 0, 3, "m", "position of each node of /scene/node")                     \
+    X(hf_shape, "length_m", length_m, REAL, 1, 1, "m", "length of each cable of /scene/cable")                         \
+    X(hf_shape, "tension_N", tension_N, REAL, 1, 1, "N", "tension, force density times length")                        \
+    X(hf_shape, "q_N_per_m", q_N_per_m, REAL, 1, 1, "N/m", "force density")                                            \
+    X(hf_shape, "law", law, LAW, 1, 1, "", "law in force, under the case's method or rule")
+
+/* What is stored of an hf_truss and of an hf_carrier_state, below /truss; per_cable = per member. */
+#define TRUSS_NUMBER_COLUMN(name, units, otherwise, description)                                                       \
+    {"member/" #name, HF_KIND_REAL, 1, 1, units, description, offsetof(hf_truss, name)},
+#define TRUSS_COLUMNS(X)                                                                                               \
+    X(hf_truss, "node/position_m", position_m, REAL, 0, 3, "m", "position without load")                               \
+    X(hf_truss, "node/mass_kg", mass_kg, REAL, 0, 1, "kg", "mass of the hinges")                                       \
+    X(hf_truss, "member/end", end, INT, 1, 2, "", "the two nodes, as indices from 0 into /truss/node")                 \
+    X(hf_truss, "member/joint", joint, JOINT, 1, 1, "", "rigid: clamped to its nodes; pinned: axial force alone")      \
+    X(hf_truss, "member/unit", unit, UNIT, 1, 1, "", "basic unit that the member belongs to")
+
+#define TRUSS_STATE_COLUMNS(X)                                                                                         \
+    X(hf_carrier_state, "node/displacement", displacement, REAL, 0, 6, "m, rad",                                       \
+      "under the pull of the net: along x, y, z, about x, y, z")                                                       \
+    X(hf_carrier_state, "node/reaction", reaction, REAL, 0, 6, "N, N m", "of the supports on the truss")               \
+    X(hf_carrier_state, "member/end_force", end_force, REAL, 1, 12, "N, N m",                                          \
+      "local, of the nodes on the member: Nx (compression), Vy, Vz, Tx, My, Mz at the first end, then at the second")
+
+static const hf_layout_column scene_column[] = {SCENE_COLUMNS(HF_LAYOUT_COLUMN)};
+static const hf_layout_column shape_column[] = {SHAPE_COLUMNS(HF_LAYOUT_COLUMN)};
+static const hf_layout_column truss_column[] = {TRUSS_COLUMNS(HF_LAYOUT_COLUMN) HF_MEMBER_NUMBERS(TRUSS_NUMBER_COLUMN)};
+static const hf_layout_column state_column[] = {TRUSS_STATE_COLUMNS(HF_LAYOUT_COLUMN)};
+const hf_layout_columns hf_layout_scene = {HF_LAYOUT_COLUMNS(scene_column)};
+const hf_layout_columns hf_layout_shape = {HF_LAYOUT_COLUMNS(shape_column)};
+const hf_layout_columns hf_layout_truss = {HF_LAYOUT_COLUMNS(truss_column)};
+const hf_layout_columns hf_layout_truss_state = {HF_LAYOUT_COLUMNS(state_column)};
+
+static hf_hdf5_array column_array(const hf_layout_column *c, int n_node, int n_cable)
+{
+    return (hf_hdf5_array){.name = c->name,
+                           .kind = c->kind,
+                           .rank = c->columns > 1 ? 2 : 1,
+                           .dims = {(hsize_t)(c->per_cable ? n_cable : n_node), (hsize_t)c->columns},
+                           .units = c->units,
+                           .description = c->description};
+}
+
+/* The pointer kept in column `c` of `owner`. */
+static void *column_values(const hf_layout_column *c, const void *owner)
+{
+    void *values;
+    memcpy(&values, (const char *)owner + c->offset, sizeof values);
+    return values;
+}
+
+void hf_layout_write_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *columns, int n_node, int n_cable,
+                             const void *owner)
+{
+    for (const hf_layout_column *c = columns->column; c < columns->column + columns->n; c++) {
+        hf_hdf5_array array = column_array(c, n_node, n_cable);
+        const void *values = column_values(c, owner);
+        if (values) hf_hdf5_write_array(io, group, &array, values);
+    }
+}
+
+void hf_layout_read_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *columns, int n_node, int n_cable,
+                            void *owner)
+{
+    for (const hf_layout_column *c = columns->column; c < columns->column + columns->n; c++) {
+        hf_hdf5_array array = column_array(c, n_node, n_cable);
+        void *values = column_values(c, owner);
+        if (values) hf_hdf5_read_array(io, group, &array, values);
+    }
+}
+
+/* ---- summary ---- */
+
+/* X(struct, object, attribute, member, kind) */
+#define RESULT_MEMBERS(X, object, prefix, result)                                                                      \
+    X(hf_summary, object, prefix "status", result.status, STATUS)                                                      \
+    X(hf_summary, object, prefix "stop_reason", result.stop_reason, STOP_REASON)                                       \
+    X(hf_summary, object, prefix "iterations", result.iterations, INT)                                                 \
+    X(hf_summary, object, prefix "culprit", result.culprit, INT)                                                       \
+    X(hf_summary, object, prefix "psi_m", result.psi_m, REAL)                                                          \
+    X(hf_summary, object, prefix "residual_N", result.residual_N, REAL)                                                \
+    X(hf_summary, object, prefix "tension_error", result.tension_error, REAL)                                          \
+    X(hf_summary, object, prefix "length_error", result.length_error, REAL)                                            \
+    X(hf_summary, object, prefix "inner_tension_ratio", result.inner_tension_ratio, REAL)                              \
+    X(hf_summary, object, prefix "boundary_tension_ratio", result.boundary_tension_ratio, REAL)                        \
+    X(hf_summary, object, prefix "shortest_length_ratio", result.shortest_length_ratio, REAL)                          \
+    X(hf_summary, object, prefix "position_error_m", result.position_error_m, REAL)                                    \
+    X(hf_summary, object, prefix "condition", result.condition, REAL)                                                  \
+    X(hf_summary, object, prefix "backward_error", result.backward_error, REAL)                                        \
+    X(hf_summary, object, prefix "n_slack", result.n_slack, INT)                                                       \
+    X(hf_summary, object, prefix "n_loaded_chain", result.n_loaded_chain, INT)
+
+#define COUPLING_OF(X, object, prefix, result)                                                                         \
+    X(hf_summary, object, prefix "stop_reason", result.coupling.stop_reason, COUPLING_STOP)                            \
+    X(hf_summary, object, prefix "iterations", result.coupling.iterations, INT)                                        \
+    X(hf_summary, object, prefix "step_m", result.coupling.step_m, REAL)                                               \
+    X(hf_summary, object, prefix "ratio", result.coupling.ratio, REAL)                                                 \
+    X(hf_summary, object, prefix "max_displacement_m", result.coupling.max_displacement_m, REAL)
+
+/* only when has_coupling; those of the optimised shapes stand beside their results */
+#define COUPLING_MEMBERS(X) COUPLING_OF(X, "/coupling", "", form)
+#define COUPLING_GA_MEMBERS(X) COUPLING_OF(X, "/ga", "best_coupling_", best)
+#define COUPLING_POLISH_MEMBERS(X) COUPLING_OF(X, "/polish", "coupling_", polish)
+
+#define FORM_MEMBERS(X)                                                                                                \
+    X(hf_summary, "/", "title", title, CHARS)                                                                          \
+    X(hf_summary, "/", "threads", threads, INT)                                                                        \
+    X(hf_summary, "/", "seed", seed, UINT64)                                                                           \
+    X(hf_summary, "/", "warnings", warnings, CHARS)                                                                    \
+    X(hf_summary, "/", "finished", finished, FLAG)                                                                     \
+    X(hf_summary, "/", "has_polish", has_polish, FLAG)                                                                 \
+    X(hf_summary, "/", "has_optimize", has_optimize, FLAG)                                                             \
+    X(hf_summary, "/case", "case_path", case_path, CHARS)                                                              \
+    X(hf_summary, "/form", "version", version, CHARS)                                                                  \
+    X(hf_summary, "/form", "n_node", n_node, INT)                                                                      \
+    X(hf_summary, "/form", "n_free", n_free, INT)                                                                      \
+    X(hf_summary, "/form", "n_cable", n_cable, INT)                                                                    \
+    X(hf_summary, "/form", "n_gene", n_gene, INT)                                                                      \
+    X(hf_summary, "/form", "half_bandwidth", half_bandwidth, INT)                                                      \
+    X(hf_summary, "/form", "pretension_N", pretension_N, REAL)                                                         \
+    X(hf_summary, "/form", "form_wall_s", form_wall_s, REAL)                                                           \
+    RESULT_MEMBERS(X, "/form", "", form)
+
+/* only when has_polish */
+#define POLISH_MEMBERS(X)                                                                                              \
+    X(hf_summary, "/polish", "polish_is_result", polish_is_result, FLAG)                                               \
+    X(hf_summary, "/polish", "polish_iterations", polish_iterations, INT)                                              \
+    X(hf_summary, "/polish", "polish_evaluations", polish_evaluations, INT)                                            \
+    X(hf_summary, "/polish", "polish_converged", polish_converged, FLAG)                                               \
+    X(hf_summary, "/polish", "polish_wall_s", polish_wall_s, REAL)                                                     \
+    RESULT_MEMBERS(X, "/polish", "", polish)
+
+/* only when has_optimize */
+#define GA_MEMBERS(X)                                                                                                  \
+    X(hf_summary, "/ga", "solver", solver, INT)                                                                        \
+    X(hf_summary, "/ga", "base_psi_m", base_psi_m, REAL)                                                               \
+    X(hf_summary, "/ga", "n_leader", n_leader, INT)                                                                    \
+    X(hf_summary, "/ga", "planes", planes, INT)                                                                        \
+    X(hf_summary, "/ga", "best_generation", best_generation, INT)                                                      \
+    X(hf_summary, "/ga", "best_individual", best_individual, INT)                                                      \
+    X(hf_summary, "/ga", "generations", generations, INT)                                                              \
+    X(hf_summary, "/ga", "evaluations", evaluations, LONG)                                                             \
+    X(hf_summary, "/ga", "infeasible", infeasible, LONG)                                                               \
+    X(hf_summary, "/ga", "optimize_stop", optimize_stop, GA_STOP)                                                      \
+    X(hf_summary, "/ga", "optimize_wall_s", optimize_wall_s, REAL)                                                     \
+    X(hf_summary, "/ga", "optimize_cpu_s", optimize_cpu_s, REAL)                                                       \
+    RESULT_MEMBERS(X, "/ga", "best_", best)
+
+/* only when has_truss: when there is a group /truss */
+#define TRUSS_MEMBERS(X)                                                                                               \
+    X(hf_summary, "/truss", "mass_kg", truss_mass_kg, REAL)                                                            \
+    X(hf_summary, "/truss", "n_node", truss_nodes, INT)                                                                \
+    X(hf_summary, "/truss", "n_member", truss_members, INT)
+
+static const hf_hdf5_member form[] = {FORM_MEMBERS(HF_HDF5_MEMBER)};
+static const hf_hdf5_member ga[] = {GA_MEMBERS(HF_HDF5_MEMBER)};
+static const hf_hdf5_member polish[] = {POLISH_MEMBERS(HF_HDF5_MEMBER)};
+static const hf_hdf5_member truss[] = {TRUSS_MEMBERS(HF_HDF5_MEMBER)};
+static const hf_hdf5_member coupling[] = {COUPLING_MEMBERS(HF_HDF5_MEMBER)};
+static const hf_hdf5_member coupling_ga[] = {COUPLING_GA_MEMBERS(HF_HDF5_MEMBER)};
+static const hf_hdf5_member coupling_polish[] = {COUPLING_POLISH_MEMBERS(HF_HDF5_MEMBER)};
+#define PART(table) table, HF_HDF5_COUNT(table)
+const hf_layout_members hf_layout_summary[HF_LAYOUT_N_PART] = {[HF_LAYOUT_FORM] = {PART(form)},
+                                                               [HF_LAYOUT_GA] = {PART(ga)},
+                                                               [HF_LAYOUT_POLISH] = {PART(polish)},
+                                                               [HF_LAYOUT_TRUSS] = {PART(truss)},
+                                                               [HF_LAYOUT_COUPLING] = {PART(coupling)},
+                                                               [HF_LAYOUT_COUPLING_GA] = {PART(coupling_ga)},
+                                                               [HF_LAYOUT_COUPLING_POLISH] = {PART(coupling_polish)}};
+
+void hf_layout_put_summary(hf_hdf5 *io, hf_layout_part part, const hf_summary *summary)
+{
+    hf_hdf5_put_members(io, hf_layout_summary[part].member, hf_layout_summary[part].n, summary);
+}
+
+void hf_layout_get_summary(hf_hdf5 *io, hf_layout_part part, hf_summary *summary)
+{
+    hf_hdf5_get_members(io, hf_layout_summary[part].member, hf_layout_summary[part].n, summary);
+}

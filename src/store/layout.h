@@ -1,0 +1,108 @@
+/* layout - what our result files contain: groups, names, types, units and descriptions, and how they follow from the
+ * structs of the program. <hifdm/store.h> shows the whole file for a reader; hdf5.h knows how to write any of it.
+ * A new data set per node or cable is a row of SCENE_COLUMNS or SHAPE_COLUMNS, a new attribute a row of a list of
+ * members, a new enumeration a kind. */
+#ifndef HIFDM_STORE_LAYOUT_H
+#define HIFDM_STORE_LAYOUT_H
+
+#include "store/hdf5.h"
+
+#include <hifdm/carrier.h>
+#include <hifdm/summary.h>
+#include <hifdm/workspace.h>
+
+#define HF_PROGRAM "hifdm"  /* attribute `program`: the file is one of ours */
+#define HF_FORMAT_VERSION 1 /* attribute `format_version`; a change that old programs would misread raises it */
+
+/* More nodes or members than any scene has; keeps a damaged file from asking for all memory. */
+#define HF_LAYOUT_COUNT_MAX 20000000
+
+/* ---- Enumerations: their words and values, as the engine declares them ---- */
+
+extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_layout_status, hf_layout_stop_reason,
+    hf_layout_ga_stop, hf_layout_joint, hf_layout_unit, hf_layout_coupling_stop;
+#define HF_KIND_ROLE (&hf_layout_role)
+#define HF_KIND_GROUP (&hf_layout_group)
+#define HF_KIND_LAW (&hf_layout_law)
+#define HF_KIND_STATUS (&hf_layout_status)
+#define HF_KIND_STOP_REASON (&hf_layout_stop_reason)
+#define HF_KIND_GA_STOP (&hf_layout_ga_stop)
+#define HF_KIND_JOINT (&hf_layout_joint)
+#define HF_KIND_UNIT (&hf_layout_unit)
+#define HF_KIND_COUPLING_STOP (&hf_layout_coupling_stop)
+
+/* ---- Columns: a pointer in a struct <-> a data set [n_node] or [n_cable], [...][columns] when columns > 1 ---- */
+
+typedef struct {
+    const char *name;
+    const hf_hdf5_kind *kind;
+    int per_cable, columns; /* per_cable: [n_cable], of a truss [n_member]; else [n_node] */
+    const char *units, *description;
+    size_t offset; /* of the pointer in its struct */
+} hf_layout_column;
+
+typedef struct {
+    const hf_layout_column *column;
+    int n;
+} hf_layout_columns;
+
+#define HF_LAYOUT_COLUMN(type, name, member, kind, per_cable, columns, units, description)                             \
+    {name, HF_KIND_##kind, per_cable, columns, units, description, offsetof(type, member)},
+#define HF_LAYOUT_COLUMNS(table) table, HF_HDF5_COUNT(table)
+
+extern const hf_layout_columns hf_layout_scene;       /* hf_scene below /scene */
+extern const hf_layout_columns hf_layout_shape;       /* hf_shape below /form, /ga/best and /polish */
+extern const hf_layout_columns hf_layout_truss;       /* hf_truss below /truss */
+extern const hf_layout_columns hf_layout_truss_state; /* hf_carrier_state below /truss */
+
+/* Columns whose pointer in `owner` is NULL are left out. */
+void hf_layout_write_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *columns, int n_node, int n_cable,
+                             const void *owner);
+void hf_layout_read_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *columns, int n_node, int n_cable,
+                            void *owner);
+
+/* ---- The summary: members of hf_summary <-> attributes of the groups of its stages ---- */
+
+typedef enum {
+    HF_LAYOUT_FORM,            /* always */
+    HF_LAYOUT_GA,              /* when has_optimize */
+    HF_LAYOUT_POLISH,          /* when has_polish */
+    HF_LAYOUT_TRUSS,           /* when has_truss: when there is a group /truss */
+    HF_LAYOUT_COUPLING,        /* this and the next two: when has_coupling */
+    HF_LAYOUT_COUPLING_GA,     /* and has_optimize; beside the results of that stage */
+    HF_LAYOUT_COUPLING_POLISH, /* and has_polish */
+    HF_LAYOUT_N_PART
+} hf_layout_part;
+
+typedef struct {
+    const hf_hdf5_member *member;
+    int n;
+} hf_layout_members;
+extern const hf_layout_members hf_layout_summary[HF_LAYOUT_N_PART];
+
+void hf_layout_put_summary(hf_hdf5 *io, hf_layout_part part, const hf_summary *summary);
+void hf_layout_get_summary(hf_hdf5 *io, hf_layout_part part, hf_summary *summary);
+
+/* ---- Groups with more than that, each in a file of its own; all do nothing after a failure ---- */
+
+/* layout_coupling: where the attachments are and went, what pulls them; how the loop got there unless history is NULL;
+ * the results of the coupling in a summary, as attributes of the groups of their shapes. */
+void hf_layout_write_coupling(hf_hdf5 *io, const hf_model *model, const hf_workspace *workspace,
+                              const hf_coupling_history *history);
+void hf_layout_put_coupling(hf_hdf5 *io, const hf_summary *summary);
+void hf_layout_get_coupling(hf_hdf5 *io, hf_summary *summary);
+
+/* layout_surface: the measures of the surface, below /surface:
+ *   /surface           attributes focal_length_m, strip_width_m; frequency_Hz [k]
+ *   /surface/STAGE     form, optimize, polish, as far as they ran: attributes, the numbers of hf_surface_measures and
+ *                      of its fit (fit_...); gain_loss_dB, fit_gain_loss_dB [k]
+ * Nothing when the case asks for none; no data sets when it names no frequencies. */
+void hf_layout_put_surface(hf_hdf5 *io, const hf_summary *summary);
+void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary);
+
+/* layout_truss: the truss as it was described, what carries the net, and, when `state` is not NULL, what the pull of
+ * the net does to it. Reading allocates: the caller frees both, after a failure, too. */
+void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carrier_state *state);
+void hf_layout_read_truss(hf_hdf5 *io, hf_truss *truss, hf_carrier_state *state);
+
+#endif

@@ -1,0 +1,175 @@
+/* What stands at a path: nothing, a result of this case, or anything else.
+ * Contents: identity - the stored case - look */
+#include "store/store_read.h"
+
+#include "base/sha256.h"
+#include "store/journal.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* ---- identity ---- */
+
+/* identity = digest of the identity so far and of these bytes */
+static void extend(char identity[65], const void *data, size_t bytes)
+{
+    char both[128], hex[65];
+    hf_sha256(bytes ? data : "", bytes, hex);
+    memcpy(both, identity, 64);
+    memcpy(both + 64, hex, 64);
+    hf_sha256(both, sizeof both, identity);
+}
+
+static void extend_columns(char identity[65], const hf_layout_columns *columns, int n_node, int n_cable,
+                           const void *owner)
+{
+    const hf_layout_column *table = columns->column;
+    for (int i = 0; i < columns->n; i++) {
+        const void *values;
+        memcpy(&values, (const char *)owner + table[i].offset, sizeof values);
+        size_t rows = (size_t)(table[i].per_cable ? n_cable : n_node);
+        extend(identity, values, values ? rows * (size_t)table[i].columns * hf_hdf5_kind_bytes(table[i].kind) : 0);
+    }
+}
+
+/* With the NUL of each, so that "a", "bc" is not "ab", "c". */
+static hf_status extend_ids(char identity[65], int n, const char *const *id)
+{
+    size_t size = 1, used = 0;
+    for (int i = 0; i < n; i++)
+        size += strlen(id[i]) + 1;
+    char *text = malloc(size);
+    if (!text) return HF_NO_MEMORY;
+    for (int i = 0; i < n; i++)
+        used += strlen(strcpy(text + used, id[i])) + 1;
+    extend(identity, text, used);
+    free(text);
+    return HF_OK;
+}
+
+hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, const hf_truss *truss, char identity[65])
+{
+    char words[128];
+    int n = snprintf(words, sizeof words, "%s %llu", settings->sha256, (unsigned long long)settings->optimize.seed);
+    hf_sha256(words, (size_t)n, identity);
+    extend_columns(identity, &hf_layout_scene, scene->n_node, scene->n_cable, scene);
+    HF_TRY(extend_ids(identity, scene->n_node, scene->node_id));
+    HF_TRY(extend_ids(identity, scene->n_cable, scene->cable_id));
+    if (!truss) return HF_OK;
+    extend_columns(identity, &hf_layout_truss, truss->n_node, truss->n_member, truss);
+    extend(identity, truss->fixed, (size_t)truss->n_node);
+    HF_TRY(extend_ids(identity, truss->n_node, truss->node_id));
+    return extend_ids(identity, truss->n_member, truss->member_id);
+}
+
+/* ---- the stored case ---- */
+
+/* Split lines in place; the caller frees the list. NULL when memory ran out. */
+static const char **split_lines(char *text, int *n)
+{
+    size_t count = 1;
+    for (char *p = text; *p; p++)
+        count += *p == '\n';
+    const char **line = calloc(count, sizeof *line);
+    *n = 0;
+    for (char *p = text; line && *p;) {
+        char *end = strchr(p, '\n');
+        line[(*n)++] = p;
+        if (!end) break;
+        *end = '\0';
+        p = end + 1;
+    }
+    return line;
+}
+
+/* Did the file's case make sense to this version? path: where the files that it names are looked for. */
+static int read_case(hf_hdf5 *io, const char *path, hf_case *then)
+{
+    char *text = NULL, *overrides = NULL;
+    const char **set = NULL;
+    hf_messages unwanted = {0};
+    uint64_t seed = 0;
+    int n_set = 0, is_known = 0;
+    hf_hdf5_get(io, io->file, "/", "seed", HF_KIND_UINT64, &seed, sizeof seed);
+    hf_hdf5_read_text(io, io->file, "/case/text", &text);
+    hf_hdf5_read_text(io, io->file, "/case/overrides", &overrides);
+    if (io->status == HF_OK && !(set = split_lines(overrides, &n_set))) hf_hdf5_no_memory(io);
+    if (io->status == HF_OK) is_known = hf_config_parse(path, text, set, n_set, then, &unwanted) == HF_OK;
+    then->optimize.seed = seed; /* as --seed may have set it */
+    hf_messages_free(&unwanted);
+    free(set);
+    free(text);
+    free(overrides);
+    return is_known;
+}
+
+void hf_store_read_case(hf_hdf5 *io, hf_case *settings)
+{
+    if (!read_case(io, io->path, settings) && io->status == HF_OK)
+        hf_hdf5_damaged(io, io->file, "/case", "has keys that this version does not know");
+}
+
+/* Which keys differ between the stored case and this one, in words. */
+static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t size)
+{
+    hf_case then = {0};
+    if (!read_case(io, now->path, &then))
+        snprintf(words, size, "%s", "keys that this version does not know");
+    else if (hf_config_differences(&then, now, words, size) == 0)
+        snprintf(words, size, "%s",
+                 "no key, but comments and layout of the case, or its tables of the net or of the truss");
+    hf_case_free(&then);
+}
+
+/* ---- look ---- */
+
+/* A run that was killed after its result had got its name leaves a journal that nobody needs. */
+static void remove_journal(const char *path)
+{
+    char name[4096];
+    hf_journal journal;
+    hf_messages unwanted = {0};
+    snprintf(name, sizeof name, "%s.journal", path);
+    if (access(name, F_OK) != 0) return;
+    hf_status status = hf_journal_open(path, 0, &journal, &unwanted);
+    hf_journal_close(&journal, status == HF_OK);
+    hf_messages_free(&unwanted);
+}
+
+hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
+                        hf_store_state *state, hf_messages *messages)
+{
+    char now[65], then[65] = "", words[1024] = "";
+    signed char finished = 0;
+    struct stat info;
+    *state = HF_STORE_NOTHING;
+    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return HF_OK; /* hf_store_create says what is wrong */
+    hf_messages unwanted = {0};
+    HF_TRY(hf_store_identify(settings, scene, truss, now));
+    hf_hdf5_lock();
+    hf_hdf5 io = hf_store_open_result(path, &unwanted);
+    hf_hdf5_get(&io, io.file, "/", "finished", HF_KIND_FLAG, &finished, 1);
+    hf_hdf5_get(&io, io.file, "/", "identity", HF_KIND_CHARS, then, sizeof then);
+    if (io.status == HF_OK && strcmp(now, then) != 0) tell_difference(&io, settings, words, sizeof words);
+    hf_hdf5_close_file(&io);
+    hf_messages_free(&unwanted);
+    hf_hdf5_unlock(HF_OK);
+    if (io.status != HF_OK)
+        return hf_error(
+            messages, HF_EXISTS,
+            "%s: exists and is no result of hifdm; use --restart (of a sweep: --retry failed) to replace it or "
+            "-o to choose another name",
+            path);
+    if (*words)
+        return hf_error(messages, HF_EXISTS,
+                        "%s: exists and is the %s result of another case; what differs: %s. Use --restart (of a sweep: "
+                        "--retry failed) to replace it "
+                        "or -o to choose another name",
+                        path, finished ? "finished" : "unfinished", words);
+    *state = finished ? HF_STORE_FINISHED : HF_STORE_UNFINISHED;
+    if (finished) remove_journal(path);
+    return HF_OK;
+}
