@@ -164,6 +164,7 @@ heap_files=$(echo $heap_files) print_files=$(echo $print_files)
 only_in app/main '\bgsl_set_error_handler' 'setting the error handler of the whole program'
 only_in "$heap_files" '\b(malloc|calloc|realloc|aligned_alloc|posix_memalign|strdup|strndup)[[:blank:]]*\(' 'heap call'
 only_in "$print_files" '\b(v?f?printf|f?puts|f?putc|putchar|perror|exit|_Exit|abort)[[:blank:]]*\(' 'prints or exits'
+only_in base/file_out '\b(rename|link|mkstemp|tmpfile|fsync)[[:blank:]]*\(' 'temporary file made by hand'
 only_in "$openmp_files" '\bomp(\b|_)|\b_OPENMP\b' 'OpenMP'
 
 # ---- Top level -------------------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/csv.h"
+#include "base/file_out.h"
 #include "base/path.h"
 #include "out/export.h"
 #include "base/json.h"
@@ -254,9 +255,9 @@ static hf_status execute(job *j, const hf_options *o, const char *path, FILE *fi
     HF_TRY(name_columns(j, messages));
     if (o->designs) HF_TRY(read_table(j, o->designs, messages));
     HF_TRY(find_base(j, messages));
-    if (o->template_path) return hf_export_file(path, write_template, j, messages);
+    if (o->template_path) return hf_file_out_write(path, write_template, j, messages);
     HF_TRY(evaluate(j, o->threads, messages));
-    if (path) return hf_export_file(path, write_results, j, messages);
+    if (path) return hf_file_out_write(path, write_results, j, messages);
     write_results(j, file);
     return HF_OK;
 }

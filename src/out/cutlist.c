@@ -1,6 +1,7 @@
 #include "out/cutlist.h"
 
 #include "base/csv.h"
+#include "base/file_out.h"
 #include "base/path.h"
 #include "out/export.h"
 #include <hifdm/metrics.h>
@@ -134,9 +135,9 @@ static hf_status write_all(const hf_export_request *o, hf_scene *scene, hf_shape
     HF_TRY(demand_EA(o->file, scene, messages));
     HF_TRY(name_files(o, path, messages)); /* all before any is written */
     const view v = {scene, shape, hf_model_reference_N(scene, summary.pretension_N)};
-    HF_TRY(hf_export_file(path[0], write_cables, &v, messages));
-    HF_TRY(hf_export_file(path[1], write_nodes, &v, messages));
-    HF_TRY(hf_export_file(path[2], write_totals, &v, messages));
+    HF_TRY(hf_file_out_write(path[0], write_cables, &v, messages));
+    HF_TRY(hf_file_out_write(path[1], write_nodes, &v, messages));
+    HF_TRY(hf_file_out_write(path[2], write_totals, &v, messages));
     snprintf(said, size, "%s: cut lengths of %d cables of the %s shape in %s, the jig in %s, totals in %s", o->file,
              scene->n_cable, word, path[0], path[1], path[2]);
     return HF_OK;

@@ -1,13 +1,13 @@
 #include "out/export.h"
 
 #include "base/csv.h"
+#include "base/file_out.h"
 #include <hifdm/store.h>
 
 #include <errno.h>
 #include <math.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #define PATH_SIZE 1200
 
@@ -129,23 +129,6 @@ hf_status hf_export_folder(const char *path, hf_messages *messages)
     return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", path, strerror(errno));
 }
 
-hf_status hf_export_file(const char *path, void (*write)(const void *context, FILE *file), const void *context,
-                         hf_messages *messages)
-{
-    char temporary[PATH_SIZE + 32];
-    if (snprintf(temporary, sizeof temporary, "%s.%ld.tmp", path, (long)getpid()) >= (int)sizeof temporary)
-        return hf_error(messages, HF_IO, "%s: the path is too long", path);
-    FILE *f = fopen(temporary, "wx"); /* nobody else's */
-    if (!f) return hf_error(messages, HF_IO, "%s: cannot write: %s", temporary, strerror(errno));
-    write(context, f);
-    int failed = ferror(f) != 0;
-    failed |= fclose(f) != 0;
-    if (!failed && rename(temporary, path) == 0) return HF_OK;
-    hf_status status = hf_error(messages, HF_IO, "%s: cannot write: %s", path, strerror(errno));
-    unlink(temporary);
-    return status;
-}
-
 static const char *const shape_word[3] = {"form-finding", "optimised", "polished"};
 
 hf_status hf_export_read(const hf_export_request *o, hf_summary *summary, hf_scene *scene, hf_shape *shape,
@@ -173,8 +156,8 @@ static hf_status export_truss(const hf_export_request *o, hf_truss *truss, hf_ca
     HF_TRY(claim(o, "truss_nodes.csv", nodes, messages));
     HF_TRY(claim(o, "members.csv", members, messages));
     HF_TRY(hf_store_read_truss(o->file, truss, state, messages));
-    HF_TRY(hf_export_file(nodes, write_truss_nodes, &both, messages));
-    HF_TRY(hf_export_file(members, write_members, &both, messages));
+    HF_TRY(hf_file_out_write(nodes, write_truss_nodes, &both, messages));
+    HF_TRY(hf_file_out_write(members, write_members, &both, messages));
     size_t used = strlen(said);
     snprintf(said + used, size - used, "; %d nodes and %d members of the truss in %s and %s", truss->n_node,
              truss->n_member, nodes, members);
@@ -192,8 +175,8 @@ static hf_status export_shape(const hf_export_request *o, hf_scene *scene, hf_sh
     HF_TRY(claim(o, "nodes.csv", nodes, messages)); /* both before either is written */
     HF_TRY(claim(o, "cables.csv", cables, messages));
     const view both = {scene, shape};
-    HF_TRY(hf_export_file(nodes, write_nodes, &both, messages));
-    HF_TRY(hf_export_file(cables, write_cables, &both, messages));
+    HF_TRY(hf_file_out_write(nodes, write_nodes, &both, messages));
+    HF_TRY(hf_file_out_write(cables, write_cables, &both, messages));
     snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s and %s", o->file, scene->n_node,
              scene->n_cable, word, nodes, cables);
     if (!summary.has_truss) return HF_OK;

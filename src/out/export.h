@@ -33,8 +33,4 @@ hf_status hf_export_claim(const char *path, int force, hf_messages *messages);
 /* Make a folder unless it is there. HF_OK or HF_IO. */
 hf_status hf_export_folder(const char *path, hf_messages *messages);
 
-/* Write a file under a temporary name and rename it, so that no half-written file is ever seen. HF_OK or HF_IO. */
-hf_status hf_export_file(const char *path, void (*write)(const void *context, FILE *file), const void *context,
-                         hf_messages *messages);
-
 #endif

@@ -3,6 +3,7 @@
 
 #include "out/export.h"
 #include "base/json.h"
+#include "base/file_out.h"
 #include "base/path.h"
 #include "store/store_read.h"
 #include "store/store_series.h"
@@ -259,7 +260,7 @@ static hf_status report_result(const char *path, const char *output, hf_messages
 {
     page p = {.path = path};
     hf_status status = read_page(&p, messages);
-    if (status == HF_OK) status = hf_export_file(output, write_page, &p, messages);
+    if (status == HF_OK) status = hf_file_out_write(output, write_page, &p, messages);
     free_page(&p);
     return status;
 }

@@ -3,6 +3,7 @@
 
 #include "out/export.h"
 #include "base/json.h"
+#include "base/file_out.h"
 #include "base/path.h"
 #include "store/store_series.h"
 
@@ -205,7 +206,7 @@ hf_status hf_report_study(const char *path, const char *output, hf_messages *mes
     study_page p = {.path = path};
     find_folders(&p, output);
     hf_status status = read_page(&p, messages);
-    if (status == HF_OK) status = hf_export_file(output, write_page, &p, messages);
+    if (status == HF_OK) status = hf_file_out_write(output, write_page, &p, messages);
     free_page(&p);
     return status;
 }

@@ -2,17 +2,16 @@
 #include "out/vtk.h"
 
 #include "base/arena.h"
+#include "base/file_out.h"
 #include "out/export.h"
 #include "store/hdf5.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
 #include <hifdm/truss.h>
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #define PATH_SIZE 1200
 #define LINE_CELL 3 /* VTK's number for a line */
@@ -108,18 +107,16 @@ static void put_grid(hf_hdf5 *io, const grid *g, int *offset, unsigned char *typ
     put_fields(io, "/VTKHDF/CellData", g->line, g->n_line_field, g->n_line);
 }
 
-/* Written beside its name and renamed, so that no half-written file is ever seen. */
 static hf_status write_grid(const char *path, const grid *g, int *offset, unsigned char *type, hf_messages *messages)
 {
-    char temporary[PATH_SIZE + 32];
-    snprintf(temporary, sizeof temporary, "%s.%ld.tmp", path, (long)getpid());
+    hf_file_out out;
+    HF_TRY(hf_file_out_begin(path, &out, messages));
     hf_hdf5 io = {.path = path, .messages = messages, .status = HF_OK, .file = -1};
-    hf_hdf5_create_file(&io, temporary);
+    hf_hdf5_create_file(&io, out.temporary);
     put_grid(&io, g, offset, type);
     hf_hdf5_close_file(&io);
-    if (io.status == HF_OK && rename(temporary, path) != 0)
-        io.status = hf_error(messages, HF_IO, "%s: cannot write: %s", path, strerror(errno));
-    if (io.status != HF_OK) unlink(temporary);
+    if (io.status == HF_OK) return hf_file_out_publish(&out, messages);
+    hf_file_out_drop(&out);
     return io.status;
 }
 

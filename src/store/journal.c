@@ -2,6 +2,7 @@
 #define _DEFAULT_SOURCE /* flock */
 #include "store/journal.h"
 
+#include "base/file_out.h"
 #include "base/path.h"
 
 #include <errno.h>
@@ -270,9 +271,10 @@ hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take
 
 hf_status hf_journal_rotate(hf_journal *j, hf_messages *messages)
 {
-    int file = open(j->next, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    int file = hf_file_out_clear(j->next) == 0 ? hf_file_out_create(j->next) : -1;
     if (file < 0) return fail(j, "create", j->next, messages);
-    if (flock(file, LOCK_EX | LOCK_NB) != 0 || write_header(file, j->identity) != 0 || rename(j->next, j->path) != 0) {
+    if (flock(file, LOCK_EX | LOCK_NB) != 0 || write_header(file, j->identity) != 0 ||
+        hf_file_out_replace(j->next, j->path) != 0) {
         hf_status status = fail(j, "write", j->next, messages);
         close(file);
         unlink(j->next);

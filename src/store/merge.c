@@ -1,12 +1,12 @@
 /* Contents: columns - inputs - outputs - links - the file */
 #include "store/merge.h"
 
+#include "base/file_out.h"
 #include "base/path.h"
 #include "base/text.h"
 #include <hifdm/store.h>
 
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <limits.h>
 #include <math.h>
@@ -255,31 +255,24 @@ static int is_ours(const char *path)
     return ours;
 }
 
-static hf_status publish(const char *temporary, const char *output, hf_messages *messages)
-{
-    int file = open(temporary, O_RDONLY | O_CLOEXEC), failed = file < 0 || (fsync(file) != 0 && errno != EINVAL);
-    if (file >= 0) close(file);
-    if (!failed && rename(temporary, output) == 0) return HF_OK;
-    return hf_error(messages, HF_IO, "%s: cannot write: %s", output, strerror(errno));
-}
-
 hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *points, const char *output, int force,
                    hf_messages *messages)
 {
-    char temporary[HF_PATH_SIZE + 64];
+    hf_file_out out;
     merger m = {{.path = output, .messages = messages, .status = HF_OK, .file = -1}, study, points, NULL};
-    if (snprintf(temporary, sizeof temporary, "%s.%ld.tmp", output, (long)getpid()) >= (int)sizeof temporary)
-        return hf_error(messages, HF_IO, "%s: the path is too long", output);
+    HF_TRY(hf_file_out_begin(output, &out, messages));
     m.room = calloc((size_t)study->n_point, 2 * sizeof(double));
     if (!m.room) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", output);
     hf_hdf5_lock();
     if (!force && !is_ours(output)) {
         m.io.status = hf_error(messages, HF_EXISTS, "%s: exists and is no merge; use --force or -o", output);
     } else {
-        hf_hdf5_create_file(&m.io, temporary);
+        hf_hdf5_create_file(&m.io, out.temporary);
         if (m.io.status == HF_OK) write_all(&m, folder);
-        if (m.io.status == HF_OK) m.io.status = publish(temporary, output, messages);
-        if (m.io.status != HF_OK) unlink(temporary);
+        if (m.io.status == HF_OK)
+            m.io.status = hf_file_out_publish(&out, messages);
+        else
+            hf_file_out_drop(&out);
     }
     free(m.room);
     return hf_hdf5_unlock(m.io.status);

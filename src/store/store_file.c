@@ -1,6 +1,7 @@
 /* Contents: names and checks - the temporary file - publishing - the end */
 #include "store/store_file.h"
 
+#include "base/file_out.h"
 #include "base/path.h"
 
 #include <errno.h>
@@ -49,11 +50,11 @@ hf_status hf_store_file_begin(const char *path, int replaces, hf_store_file *f, 
 
 /* ---- the temporary file ---- */
 
-/* What a killed run has left there may be a second name of the visible file (rename_to_new): it is never written into.
- * 1 when the name is free. */
+/* What a killed run has left there may be a second name of the visible file (hf_file_out_add), so it is never written
+ * into. 1 when the name is free. */
 static int free_temporary(hf_store_file *f)
 {
-    if (unlink(f->temporary) == 0 || errno == ENOENT) return 1;
+    if (hf_file_out_clear(f->temporary) == 0) return 1;
     f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot remove %s: %s", f->path, f->temporary, strerror(errno));
     return 0;
 }
@@ -86,7 +87,7 @@ static void copy_visible(hf_store_file *f)
         f->io.status = hf_error(f->io.messages, HF_NO_MEMORY, "%s: out of memory", f->path);
         return;
     }
-    int to = open(f->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    int to = hf_file_out_create(f->temporary);
     f->has_temporary |= to >= 0;
     int ok = to >= 0 && lseek(f->visible, 0, SEEK_SET) == 0 && copy_bytes(f->visible, to, buffer) == 0;
     int why = errno;
@@ -155,29 +156,8 @@ void hf_store_file_close(hf_store_file *f)
 /* Down to the disk before the name is given: after a power cut there is the old file or the new one, whole. */
 static void sync_to_disk(hf_store_file *f, const char *name)
 {
-    int file = open(name, O_RDONLY | O_CLOEXEC);
-    if (file < 0 || (fsync(file) != 0 && errno != EINVAL)) /* EINVAL: this file system has no such thing */
+    if (hf_file_out_sync(name) != 0)
         f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot write to the disk: %s", f->path, strerror(errno));
-    if (file >= 0) close(file);
-}
-
-/* Give the file its name without ever replacing another: 0, or -1 and errno. */
-static int rename_to_new(const char *from, const char *to)
-{
-    if (link(from, to) == 0) {
-        unlink(from); /* free_temporary tries again */
-        return 0;
-    }
-    if (errno == EEXIST) return -1;
-    /* a file system without links: take the name with an empty file, then replace that */
-    int file = open(to, O_WRONLY | O_CREAT | O_EXCL, 0600);
-    if (file < 0) return -1;
-    close(file);
-    if (rename(from, to) == 0) return 0;
-    int why = errno;
-    unlink(to);
-    errno = why;
-    return -1;
 }
 
 /* Is the visible file still the one that this run has put there? */
@@ -196,7 +176,7 @@ static void keep_work(hf_store_file *f, int is_worth_keeping)
     int is_taken = errno == EEXIST;
     if (is_worth_keeping) {
         snprintf(kept, sizeof kept, "%s.%ld.h5", f->path, (long)getpid());
-        if (rename_to_new(f->temporary, kept) != 0) snprintf(kept, sizeof kept, "%s", f->temporary);
+        if (hf_file_out_add(f->temporary, kept) != 0) snprintf(kept, sizeof kept, "%s", f->temporary);
         f->has_temporary = 0;
         words = "; this run's result is ";
     }
@@ -217,9 +197,9 @@ void hf_store_file_name(hf_store_file *f, int durable)
     int taken = -1;
     errno = EEXIST;
     if (f->is_published ? is_ours(f) : f->replaces)
-        taken = rename(f->temporary, f->path);
+        taken = hf_file_out_replace(f->temporary, f->path);
     else if (!f->is_published)
-        taken = rename_to_new(f->temporary, f->path);
+        taken = hf_file_out_add(f->temporary, f->path);
     if (taken != 0) {
         keep_work(f, durable);
         return;

@@ -4,6 +4,7 @@
  * HDF5 asks of the system is out of reach: limits on file size stand for that (cli/resume, unit/store_faults). */
 #include "evolution.h"
 
+#include "base/file_out.h"
 #include "store/compare.h"
 
 #include <errno.h>
@@ -223,6 +224,36 @@ START_TEST(a_resumed_run_survives_each_failing_call)
 }
 END_TEST
 
+/* ---- files of exporters ---- */
+
+static void put_text(const void *context, FILE *file)
+{
+    fputs(context, file);
+}
+
+/* Each call between a new file and its name, the fsync among them: the old file stays, and nothing lies beside it. */
+START_TEST(an_exported_file_survives_each_failing_call)
+{
+    static const char *const name[] = {"open", "open", "fsync", "rename"};
+    static const long n[] = {1, 2, 1, 1};
+    hf_messages messages = {0};
+    const char *path, *folder = new_folder(&path);
+    write_file(path, "old");
+    failing = name[_i];
+    countdown = n[_i];
+    hf_status status = hf_file_out_write(path, put_text, "new", &messages);
+    failing = NULL;
+    ck_assert_int_le(countdown, 0);
+    ck_assert_int_eq(status, HF_IO);
+    ck_assert_ptr_nonnull(strstr(messages.text, "cannot write"));
+    hf_messages_free(&messages);
+    char *text = read_file(path, NULL);
+    ck_assert_str_eq(text, "old");
+    free(text);
+    ck_assert_int_eq(count_files(folder), 1);
+}
+END_TEST
+
 Suite *suite_fault_store_calls(void)
 {
     Suite *suite = suite_create("fault/store_calls");
@@ -231,5 +262,6 @@ Suite *suite_fault_store_calls(void)
     tcase_add_checked_fixture(tests, quiet, NULL);
     tcase_add_loop_test(tests, a_new_run_survives_each_failing_call, 0, N(calls));
     tcase_add_loop_test(tests, a_resumed_run_survives_each_failing_call, 0, N(calls));
+    tcase_add_loop_test(tests, an_exported_file_survives_each_failing_call, 0, 4);
     return suite;
 }
