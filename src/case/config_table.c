@@ -211,7 +211,8 @@ const int hf_n_field = sizeof hf_field_table / sizeof *hf_field_table;
 
 static int is_same(const hf_field *f, const char *a, const char *b)
 {
-    switch (f->type) {
+    const hf_double_list *p = (const void *)a, *q = (const void *)b;
+    switch (f->type) { /* no default: the compiler names a type that is not compared */
     case HF_FIELD_TEXT:
         return !strcmp(a, b);
     case HF_FIELD_DOUBLE:
@@ -220,9 +221,13 @@ static int is_same(const hf_field *f, const char *a, const char *b)
         return !memcmp(a, b, sizeof(uint64_t));
     case HF_FIELD_INT_PAIR:
         return !memcmp(a, b, 2 * sizeof(int));
-    default:
+    case HF_FIELD_INT:
+    case HF_FIELD_WORD:
         return !memcmp(a, b, sizeof(int));
+    case HF_FIELD_DOUBLE_LIST:
+        return p->n == q->n && !memcmp(p->value, q->value, (size_t)p->n * sizeof *p->value);
     }
+    return 0;
 }
 
 static int add_key(const char *key, int n, char *text, size_t size)

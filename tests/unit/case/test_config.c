@@ -209,6 +209,64 @@ START_TEST(table_is_sound)
 }
 END_TEST
 
+/* Change the value at `to` in one of several ways; false when the type has no such way. */
+static bool change(const hf_field *field, int way, void *to)
+{
+    hf_double_list *list = to;
+    switch (field->type) {
+    case HF_FIELD_DOUBLE:
+        *(double *)to = way ? -*(double *)to - 1 : nextafter(*(double *)to, INFINITY);
+        return way < 2;
+    case HF_FIELD_INT:
+    case HF_FIELD_WORD:
+        *(int *)to ^= way ? 1 << 30 : 1;
+        return way < 2;
+    case HF_FIELD_UINT64:
+        *(uint64_t *)to ^= (uint64_t)1 << 63 * way;
+        return way < 2;
+    case HF_FIELD_INT_PAIR:
+        if (way < 2) ((int *)to)[way]++;
+        return way < 2;
+    case HF_FIELD_TEXT:
+        strcpy(to, way ? "b" : "");
+        return way < 2;
+    case HF_FIELD_DOUBLE_LIST:
+        if (way < list->n)
+            list->value[way] += 1;
+        else
+            list->n--;
+        return way <= HF_LIST_MAX;
+    }
+    return false;
+}
+
+START_TEST(a_difference_in_any_key_is_named)
+{
+    hf_case a, b;
+    char text[256], said[1000];
+    ck_assert_int_eq(load(CYLINDER, NULL, 0, &a, said, sizeof said), HF_OK);
+    for (int i = 0; i < hf_n_field; i++) {
+        const hf_field *field = &hf_field_table[i];
+        void *in_a = (char *)&a + field->offset, *in_b = (char *)&b + field->offset;
+        if (field->type == HF_FIELD_DOUBLE_LIST)
+            *(hf_double_list *)in_a = (hf_double_list){8, {1, 2, 3, 4, 5, 6, 7, 8}};
+        if (field->type == HF_FIELD_TEXT) strcpy(in_a, "a");
+        int way = 0;
+        for (b = a; change(field, way, in_b); b = a, way++) {
+            ck_assert_msg(hf_config_differences(&a, &b, text, sizeof text) == 1, "%s, change %d: '%s'", field->path,
+                          way, text);
+            ck_assert_str_eq(text, field->path);
+        }
+        ck_assert_int_ge(way, 2);
+        if (field->type != HF_FIELD_DOUBLE_LIST) continue;
+        ((hf_double_list *)in_a)->n = ((hf_double_list *)in_b)->n = 7; /* what stands behind the list is no value */
+        ((hf_double_list *)in_b)->value[7] = 9;
+        ck_assert_int_eq(hf_config_differences(&a, &b, text, sizeof text), 0);
+    }
+    hf_case_free(&a);
+}
+END_TEST
+
 Suite *suite_unit_config(void)
 {
     Suite *suite = suite_create("unit/config");
@@ -222,5 +280,6 @@ Suite *suite_unit_config(void)
     tcase_add_test(tests, anchors_work);
     tcase_add_test(tests, both_kinds_of_scene_are_made);
     tcase_add_test(tests, table_is_sound);
+    tcase_add_test(tests, a_difference_in_any_key_is_named);
     return suite;
 }
