@@ -39,8 +39,8 @@ source_files=$(files_under src include | grep '\.[ch]$' || true)
 # Without files the tools below would wait for standard input.
 [ -n "$source_files" ] || { echo "lint: no sources found (does git ls-files work here?)" >&2; exit 1; }
 c_files=$(files_under src include tests | grep '\.[ch]$')
-text_files=$(files_under src include tests tools configs .ci Makefile README.md |
-    grep -E '\.(c|h|sh|py|ya?ml|md|html|css|js|mjs)$|^\.ci/|^Makefile$')
+text_files=$(files_under src include tests tools configs .ci .github Makefile README.md CHANGELOG.md CITATION.cff |
+    grep -E '\.(c|h|sh|py|awk|ya?ml|md|cff|html|css|js|mjs)$|^\.ci/|^Makefile$')
 
 # ---- Rooms: what stands in src/, and what each room may include -------------------------------------------------
 # A module is src/ROOM/NAME.c with one header, src/ROOM/NAME.h or include/hifdm/NAME.h; X_part.c implements a part of X
@@ -49,7 +49,7 @@ files_under src include | while read -r file; do
     name=$(basename "${file%.[ch]}")
     room=$(basename "$(dirname "$file")")
     case $file in
-    src/ARCHITECTURE.md | src/METHOD.md | include/hifdm/hifdm.h) ;;
+    src/ARCHITECTURE.md | src/METHOD.md | src/MANUAL.md | include/hifdm/hifdm.h) ;;
     src/out/report/*)
         case " $page " in *" $file "*) ;; *) echo "$file:1: no part of the page (Makefile: PAGE)" ;; esac ;;
     src/*/*/*) echo "$file:1: rooms have no rooms" ;;

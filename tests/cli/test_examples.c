@@ -1,4 +1,5 @@
-/* What is there to be copied: the examples under tools/, built as a user builds them, and the pieces of README. */
+/* What is there to be copied: the examples under tools/, built as a user builds them, and the pieces of the README and
+ * the manual. */
 #include "cli.h"
 
 /* Two generations of the paper's case, which most of the examples name. */
@@ -109,14 +110,14 @@ START_TEST(c_reads_a_result)
 }
 END_TEST
 
-/* ---- README ---- */
+/* ---- README and manual ---- */
 
-/* Every indented piece of README that imports something is run twice, in a folder with the files that it names. */
+/* Every indented piece of them that imports something is run twice, in a folder with the files that it names. */
 START_TEST(pieces_of_readme_in_python_run)
 {
     static const char run_pieces[] =
         "import re, subprocess, sys\n"
-        "text = open(sys.argv[1]).read()\n"
+        "text = '\\n'.join(open(p).read() for p in sys.argv[1:])\n"
         "pieces = [re.sub('^    ', '', p, flags=re.M) for p in re.findall('(?:^    .*\\n)+', text, flags=re.M)]\n"
         "pieces = [p for p in pieces if re.search('^import ', p, flags=re.M)]\n"
         "for p in pieces * 2:\n"
@@ -125,25 +126,25 @@ START_TEST(pieces_of_readme_in_python_run)
     const char *folder = temp("here"), *out = chen_result(), *script = file_with("pieces.py", run_pieces);
     SHELL(0, "mkdir -p \"$1/results\" && cp \"$2\" \"$1/results/\" && cp \"$3\" \"$1/case.yaml\"", folder, out,
           REFLECTOR);
-    SHELL(0, "cd \"$1\" && PATH=$(dirname \"$0\"):$PATH OMP_WAIT_POLICY=passive \"$2\" \"$3\" \"$4\"", folder,
-          python_program(), script, keep(source_path("README.md")));
+    SHELL(0, "cd \"$1\" && PATH=$(dirname \"$0\"):$PATH OMP_WAIT_POLICY=passive \"$2\" \"$3\" \"$4\" \"$5\"", folder,
+          python_program(), script, keep(source_path("README.md")), keep(source_path("src/MANUAL.md")));
     OUT("\n2\n"); /* pieces */
 }
 END_TEST
 
-/* README shows lines of the examples that are built above. */
+/* They show lines of the examples that are built above. */
 START_TEST(pieces_of_readme_in_c_are_those_of_the_examples)
 {
     static const char compare[] =
         "import re, sys\n"
-        "readme, *examples = (open(p).read() for p in sys.argv[1:])\n"
-        "pieces = [p for p in re.findall('(?:^    .*\\n)+', readme, flags=re.M) if 'HF_TRY(' in p]\n"
+        "readme, manual, *examples = (open(p).read() for p in sys.argv[1:])\n"
+        "pieces = [p for p in re.findall('(?:^    .*\\n)+', readme + '\\n' + manual, flags=re.M) if 'HF_TRY(' in p]\n"
         "lines = {' '.join(line.split()) for example in examples for line in example.splitlines()}\n"
         "print(len(pieces), [line for p in pieces for line in p.splitlines() if ' '.join(line.split()) not in "
         "lines])\n";
-    SHELL(0, "\"$1\" \"$2\" \"$3\" \"$4\" \"$5\"", python_program(), file_with("compare.py", compare),
-          keep(source_path("README.md")), keep(source_path("tools/own_optimiser.c")),
-          keep(source_path("tools/read_example.c")));
+    SHELL(0, "\"$1\" \"$2\" \"$3\" \"$4\" \"$5\" \"$6\"", python_program(), file_with("compare.py", compare),
+          keep(source_path("README.md")), keep(source_path("src/MANUAL.md")),
+          keep(source_path("tools/own_optimiser.c")), keep(source_path("tools/read_example.c")));
     ck_assert_str_eq(said.out, "2 []\n");
 }
 END_TEST
