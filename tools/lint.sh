@@ -15,7 +15,7 @@ heap_files="base/status base/arena base/text base/csv net/scene net/scene_import
 # may print (csv, json, summary: to a stream they are given)
 print_files="base/csv base/json store/summary app/help out/print app/progress app/cmd_check out/export out/cutlist
              out/report out/report_study app/cmd_evaluate app/cmd_sweep app/main"
-openmp_files="search/batch"                          # may mention OpenMP
+openmp_files="search/parallel"                       # may mention OpenMP
 # and dot-files
 top_level="Makefile README.md CHANGELOG.md CITATION.cff LICENSE src include configs tests results tools"
 max_file=600 max_function=80 long_function=60                        # lines; between the last two it is a warning

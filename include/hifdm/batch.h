@@ -1,4 +1,4 @@
-/* batch - designs -> results with all cores busy: the only user of OpenMP.
+/* batch - designs -> results with all cores busy.
  *
  * For an optimiser of one's own: create, share the base design, run as often as there are designs, free; the whole of
  * it is in tools/own_optimiser.c. `hifdm evaluate` is the same for tables in CSV files. */
@@ -15,7 +15,7 @@ extern "C" {
 typedef struct {
     const hf_evaluator *evaluator; /* borrowed */
     int n_thread;
-    hf_workspace *workspace;        /* [n_thread], allocated before the first evaluation; in hf_batch_for only one */
+    hf_workspace *workspace;        /* [n_thread], made at the start; in a point of a sweep only the first */
     struct hf_batch_engine *engine; /* what hf_batch_share made, or NULL */
     double cpu_s;                   /* processor time spent inside evaluations so far, over all threads */
 } hf_batch;
@@ -44,15 +44,6 @@ int hf_batch_share(hf_batch *batch, const double *base_N);
 /* The same without a base: what hf_batch_share makes unless the base or memory forbids it; *has_lanes: eight designs
  * side by side, by chord or in lanes. */
 int hf_batch_solver(const hf_evaluator *evaluator, int *has_lanes);
-
-/* work(context, i) for i = 0 ... n-1, handed out in this order to n_thread threads (0: the default). Batches that are
- * created and run inside share these threads: one that finds no i left helps the hf_batch_run calls of the others, so
- * that all are busy until the last i is done. */
-void hf_batch_for(int n_thread, int n, void (*work)(void *context, int i), void *context);
-
-/* Inside `work`: later(context) once, in a thread of its own, so that n_thread threads work on while it waits for the
- * disk. At once when too many wait already, or elsewhere. All have come back when hf_batch_for does. */
-void hf_batch_later(void (*later)(void *context), void *context);
 
 int hf_batch_default_threads(void); /* available cores */
 

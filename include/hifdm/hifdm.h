@@ -9,7 +9,7 @@
  *     A design or shape that cannot be has its status in the result, and measures without a value are NaN.
  * Memory. hf_THING_free frees what the thing holds and leaves it all zero; one that is all zero already is fine. What
  *     is "borrowed" must stay as long as the thing that borrows it.
- * Threads. Nothing is kept outside the things, but by hf_batch_for while it runs. A scene, model, truss, frame, carrier
+ * Threads. Nothing is kept outside the things. A scene, model, truss, frame, carrier
  *     or evaluator does not change once it is made, so threads share it; a workspace, batch, ga or store belongs to one
  *     thread at a time.
  * GSL. Its error handler, one for the whole program, ends that by default where GSL only means "no progress": call

@@ -7,6 +7,8 @@
 #include "store/merge.h"
 #include "out/print.h"
 #include "run/run.h"
+#include "search/parallel.h"
+#include "base/later.h"
 #include "base/text.h"
 #include <hifdm/batch.h>
 #include <hifdm/store.h>
@@ -231,7 +233,7 @@ static void run_point(void *context, int k)
                               .unsettled = &p->store};
     p->status = hf_run_point(&request, &p->summary, output, &p->said);
     if (p->store)
-        hf_batch_later(settle_point, p);
+        hf_later_do(settle_point, p);
     else
         settle_point(p);
 }
@@ -257,7 +259,7 @@ static hf_status run_points(sweep *w, FILE *file)
     w->start_s = w->said_s = hf_clock_s();
     w->on_terminal = isatty(STDERR_FILENO);
     w->progress = quiet ? NULL : stderr;
-    hf_batch_for(w->threads, w->n_todo, run_point, w);
+    hf_parallel_for(w->threads, w->n_todo, run_point, w);
     if (w->progress && w->on_terminal) fputs("\r\033[K", w->progress);
     int left = w->n_todo - w->n_done - w->n_failed - w->n_elsewhere;
     hf_print_duration(hf_clock_s() - w->start_s, took, sizeof took);

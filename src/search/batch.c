@@ -3,25 +3,21 @@
 #include "base/clock.h"
 #include "linalg/band.h"
 #include "search/chord.h"
+#include "search/parallel.h"
 #include "search/swarm.h"
 
-#include <assert.h>
-#include <errno.h>
-#include <omp.h>
-#include <pthread.h>
-#include <semaphore.h>
 #include <stdlib.h>
-#include <string.h>
 
 int hf_batch_default_threads(void)
 {
-    return omp_get_num_procs();
+    return hf_parallel_cores();
 }
 
-/* A batch beside others has more than one thread only when those others leave some: these bring their room along. */
+/* Rooms that are furnished when the batch is made. A batch inside hf_parallel_for begins with one; threads that come to
+ * help furnish theirs. */
 static int n_room_at_once(const hf_batch *batch)
 {
-    return omp_in_parallel() ? 1 : batch->n_thread;
+    return hf_parallel_is_inside() ? 1 : batch->n_thread;
 }
 
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch)
@@ -121,7 +117,7 @@ int hf_batch_share(hf_batch *batch, const double *base_N)
     return each_by_newton(batch->evaluator) ? HF_SOLVER_NEWTON : HF_SOLVER_FIXED_POINT;
 }
 
-/* Is there room for a helper, or memory for one? Only one thread at a time has the number. */
+/* Furnish a room unless it is: false without the memory. Only one thread at a time has the room's number. */
 static int has_room(hf_batch *batch, int room)
 {
     struct hf_batch_engine *e = batch->engine;
@@ -150,104 +146,53 @@ static void work_off(hf_batch *batch, int room, int (*next)(void *), void *conte
 
 /* ---- the parallel run ---- */
 
+/* The designs of one call, shared by all who work on it. */
 typedef struct {
-    int n, done; /* designs; handed out so far */
-    const unsigned char *pending;
-} queue;
+    hf_batch *batch;
+    hf_parallel_queue queue;
+    const double *design_N;
+    hf_form_result *result;
+} batch_job;
 
-/* The next design that needs an evaluation, or -1; each is handed out once. */
-static int take_next(void *context)
+/* One thread's part. A room that hf_batch_create left empty is furnished when it is needed; without the memory for it
+ * the others do its part. */
+static void work_on_job(void *context, int room)
 {
-    queue *q = context;
-    for (;;) {
-        int i;
-#pragma omp atomic capture
-        i = q->done++;
-        if (i >= q->n) return -1;
-        if (!q->pending || q->pending[i]) return i;
-    }
-}
-
-/* The same with the time it takes, added up over all who work. */
-static void share_work(hf_batch *batch, int room, queue *work, const double *design_N, hf_form_result *result)
-{
+    batch_job *j = context;
+    if (hf_parallel_is_empty(&j->queue) || !has_room(j->batch, room)) return;
     double start_s = hf_clock_thread_cpu_s();
-    work_off(batch, room, take_next, work, design_N, result);
-    double cpu_s = hf_clock_thread_cpu_s() - start_s; /* without the wait for the other threads */
-#pragma omp atomic
-    batch->cpu_s += cpu_s;
-}
-
-static int is_done(const queue *q)
-{
-    int done;
-#pragma omp atomic read
-    done = q->done;
-    return done >= q->n;
-}
-
-/* ---- batches beside each other ---- */
-
-/* Helps with a batch if there are designs left, and memory. */
-static void help(hf_batch *batch, int room, queue *work, const double *design_N, hf_form_result *result)
-{
-    if (!is_done(work) && has_room(batch, room)) share_work(batch, room, work, design_N, result);
-}
-
-/* In a thread of hf_batch_for: threads without work of their own may come and help. Whoever takes one of these tasks,
- * the thread itself or another, finds a room that is nobody else's. */
-static void run_beside_others(hf_batch *batch, queue *work, const double *design_N, hf_form_result *result)
-{
-    for (int room = 1; room < batch->n_thread; room++) {
-#pragma omp task firstprivate(room, batch, work, design_N, result)
-        help(batch, room, work, design_N, result);
-    }
-    share_work(batch, 0, work, design_N, result);
-#pragma omp taskwait
+    work_off(j->batch, room, hf_parallel_take, &j->queue, j->design_N, j->result);
+    hf_parallel_add(&j->batch->cpu_s, hf_clock_thread_cpu_s() - start_s); /* without the wait for the other threads */
 }
 
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result)
 {
-    if (n <= 0) return;
-    queue work = {n, 0, pending};
-    if (omp_in_parallel()) {
-        run_beside_others(batch, &work, design_N, result);
-        return;
-    }
-#pragma omp parallel num_threads(batch->n_thread)
-    share_work(batch, omp_get_thread_num(), &work, design_N, result);
+    batch_job job = {batch, {n, 0, pending}, design_N, result};
+    if (n > 0) hf_parallel_run(batch->n_thread, work_on_job, &job);
 }
 
-/* One thread breeds and another runs `beside` at the same time; who is through first evaluates first. */
-static void breed_and_run(hf_batch *batch, hf_ga *ga, void (*beside)(void *), void *context)
+/* ---- the next generation ---- */
+
+typedef struct {
+    batch_job job; /* first, so that it has the address of the whole */
+    hf_ga *ga;
+} generation_job;
+
+static void breed_job(void *context)
 {
-    queue work = {0};
-    sem_t bred;
-    int failed = sem_init(&bred, 0, 0);
-    assert(!failed);
-    (void)failed;
-#pragma omp parallel num_threads(batch->n_thread)
-    {
-        int thread = omp_get_thread_num(), n = omp_get_num_threads();
-        if (thread == 0) {
-            hf_ga_next(ga);
-            work = (queue){ga->n_individual, 0, ga->pending};
-            for (int i = 1; i < n; i++)
-                sem_post(&bred);
-        }
-        if (thread == (n > 1)) beside(context);
-        while (thread > 0 && sem_wait(&bred) != 0)
-            assert(errno == EINTR);
-        share_work(batch, thread, &work, ga->design_N, ga->result);
-    }
-    sem_destroy(&bred);
+    generation_job *g = context;
+    hf_ga_next(g->ga);
+    g->job.queue = (hf_parallel_queue){g->ga->n_individual, 0, g->ga->pending};
+    g->job.design_N = g->ga->design_N;
+    g->job.result = g->ga->result;
 }
 
 int hf_batch_next(hf_batch *batch, hf_ga *ga, void (*beside)(void *context), void *context)
 {
     int is_last = ga->stop_reason != HF_GA_RUNNING;
-    if (beside && !is_last && batch->n_thread > 1 && !omp_in_parallel()) {
-        breed_and_run(batch, ga, beside, context);
+    if (beside && !is_last && batch->n_thread > 1 && !hf_parallel_is_inside()) {
+        generation_job g = {.job.batch = batch, .ga = ga};
+        hf_parallel_run_after(batch->n_thread, breed_job, work_on_job, &g, beside, context);
         return 1;
     }
     if (beside) beside(context);
@@ -256,93 +201,10 @@ int hf_batch_next(hf_batch *batch, hf_ga *ga, void (*beside)(void *context), voi
     return 1;
 }
 
-/* ---- the rest of a piece of work, which waits for the disk ---- */
-
-#define LATER_MAX 8 /* each holds files open */
-
-typedef struct {
-    pthread_mutex_t lock;
-    pthread_cond_t news;
-    int n, n_worker; /* that wait; threads that may bring more */
-    struct {
-        void (*work)(void *context);
-        void *context;
-    } item[LATER_MAX];
-} later_list;
-
-static _Thread_local later_list *later_of_this; /* of the hf_batch_for that this thread works for, or NULL */
-
-void hf_batch_later(void (*later)(void *context), void *context)
-{
-    later_list *l = later_of_this;
-    int is_taken = 0;
-    if (l) {
-        pthread_mutex_lock(&l->lock);
-        is_taken = l->n < LATER_MAX;
-        if (is_taken) {
-            l->item[l->n].work = later;
-            l->item[l->n++].context = context;
-            pthread_cond_signal(&l->news);
-        }
-        pthread_mutex_unlock(&l->lock);
-    }
-    if (!is_taken) later(context);
-}
-
-/* Until no worker is left and nothing waits. */
-static void do_later(later_list *l)
-{
-    pthread_mutex_lock(&l->lock);
-    for (;;) {
-        while (l->n == 0 && l->n_worker > 0)
-            pthread_cond_wait(&l->news, &l->lock);
-        if (l->n == 0) break;
-        void (*work)(void *) = l->item[0].work;
-        void *context = l->item[0].context;
-        memmove(l->item, l->item + 1, (size_t)--l->n * sizeof l->item[0]);
-        pthread_mutex_unlock(&l->lock);
-        work(context);
-        pthread_mutex_lock(&l->lock);
-    }
-    pthread_mutex_unlock(&l->lock);
-}
-
-/* l: NULL when nobody does what is left for later. */
-static void work_on_all(queue *items, later_list *l, void (*work)(void *context, int i), void *context)
-{
-    later_of_this = l;
-    for (int i = take_next(items); i >= 0; i = take_next(items))
-        work(context, i);
-    later_of_this = NULL;
-    if (!l) return;
-    pthread_mutex_lock(&l->lock);
-    l->n_worker--;
-    pthread_cond_signal(&l->news);
-    pthread_mutex_unlock(&l->lock);
-}
-
-void hf_batch_for(int n_thread, int n, void (*work)(void *context, int i), void *context)
-{
-    queue items = {n, 0, NULL};
-    later_list later = {.lock = PTHREAD_MUTEX_INITIALIZER, .news = PTHREAD_COND_INITIALIZER};
-    if (n_thread <= 0) n_thread = hf_batch_default_threads();
-    later.n_worker = n_thread;
-#pragma omp parallel num_threads(n_thread + 1)
-    {
-        int has_waiter = omp_get_num_threads() > n_thread; /* fewer threads than asked for all work */
-        if (omp_get_thread_num() < n_thread)
-            work_on_all(&items, has_waiter ? &later : NULL, work, context);
-        else
-            do_later(&later);
-    } /* here threads that are through take the tasks of those that are not */
-    pthread_mutex_destroy(&later.lock);
-    pthread_cond_destroy(&later.news);
-}
-
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result)
 {
-    queue work = {1, 0, NULL};
-    work_off(batch, 0, take_next, &work, design_N, result);
+    hf_parallel_queue one = {1, 0, NULL};
+    work_off(batch, 0, hf_parallel_take, &one, design_N, result);
     return &batch->workspace[0];
 }
 

@@ -1,8 +1,8 @@
 /* Batches: only what is pending is evaluated, and the bits depend neither on threads nor on how designs are grouped. */
 #include "nets.h"
 
+#include "search/parallel.h"
 #include <hifdm/batch.h>
-#include <pthread.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -135,7 +135,7 @@ START_TEST(default_is_a_thread_per_core)
 }
 END_TEST
 
-/* Batches inside hf_batch_for share its threads: every item once, and to the same bits as a batch of its own. */
+/* Batches inside hf_parallel_for share its threads: every item once, and to the same bits as a batch of its own. */
 enum { N_ITEM = 7 };
 struct item_work {
     struct run *run;
@@ -173,8 +173,8 @@ START_TEST(batches_that_share_threads_do_not_change_a_bit)
         memset(&w, 0, sizeof w);
         w.run = &r;
         w.n_thread = n_thread;
-        hf_batch_for(n_thread, n_thread == 4 ? 1 : N_ITEM, work_on_item,
-                     &w); /* of one item, three threads can only help */
+        hf_parallel_for(n_thread, n_thread == 4 ? 1 : N_ITEM, work_on_item,
+                        &w); /* of one item, three threads can only help */
         for (int i = 0; i < (n_thread == 4 ? 1 : N_ITEM); i++) {
             ck_assert_int_eq(w.n_call[i], 1);
             ck_assert_int_eq(w.status[i], HF_OK);
@@ -256,48 +256,6 @@ START_TEST(a_generation_can_be_read_while_the_next_is_bred)
 }
 END_TEST
 
-/* What is left for later is done once, by the end; more than fit are done at once. */
-enum { N_LATER = 300 };
-
-struct later {
-    int n_done[N_LATER], is_slow, n_elsewhere; /* done by another thread than the one that left it */
-};
-
-static struct later_item {
-    struct later *l;
-    int i;
-    pthread_t from;
-} later_item[N_LATER];
-
-static void do_item(void *context)
-{
-    struct later_item *item = context;
-    if (item->l->is_slow) nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
-    if (!pthread_equal(item->from, pthread_self())) __atomic_add_fetch(&item->l->n_elsewhere, 1, __ATOMIC_SEQ_CST);
-    __atomic_add_fetch(&item->l->n_done[item->i], 1, __ATOMIC_SEQ_CST);
-}
-
-static void leave_for_later(void *context, int i)
-{
-    later_item[i] = (struct later_item){context, i, pthread_self()};
-    hf_batch_later(do_item, &later_item[i]);
-}
-
-START_TEST(what_is_left_for_later_is_done)
-{
-    for (int n_thread = 1; n_thread <= 3; n_thread++) {
-        static struct later l;
-        l = (struct later){.is_slow = _i};
-        hf_batch_for(n_thread, N_LATER, leave_for_later, &l);
-        for (int i = 0; i < N_LATER; i++)
-            ck_assert_int_eq(l.n_done[i], 1);
-        ck_assert_int_gt(l.n_elsewhere, 0);
-        leave_for_later(&l, 0); /* outside: at once */
-        ck_assert_int_eq(l.n_done[0], 2);
-    }
-}
-END_TEST
-
 /* No heap in our own code once the batch is made (what OpenMP does inside its library is not seen here). */
 START_TEST(nothing_is_allocated)
 {
@@ -325,7 +283,6 @@ Suite *suite_unit_batch(void)
     tcase_add_test(tests, default_is_a_thread_per_core);
     tcase_add_test(tests, batches_that_share_threads_do_not_change_a_bit);
     tcase_add_test(tests, a_generation_can_be_read_while_the_next_is_bred);
-    tcase_add_loop_test(tests, what_is_left_for_later_is_done, 0, 2);
     tcase_add_test(tests, nothing_is_allocated);
     return suite;
 }

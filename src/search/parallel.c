@@ -1,0 +1,116 @@
+#include "search/parallel.h"
+
+#include "base/later.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <omp.h>
+#include <semaphore.h>
+#include <stddef.h>
+
+int hf_parallel_cores(void)
+{
+    return omp_get_num_procs();
+}
+
+bool hf_parallel_is_inside(void)
+{
+    return omp_in_parallel() != 0;
+}
+
+int hf_parallel_take(void *queue)
+{
+    hf_parallel_queue *q = queue;
+    for (;;) {
+        int i;
+#pragma omp atomic capture
+        i = q->n_taken++;
+        if (i >= q->n) return -1;
+        if (!q->wanted || q->wanted[i]) return i;
+    }
+}
+
+bool hf_parallel_is_empty(const hf_parallel_queue *queue)
+{
+    int n_taken;
+#pragma omp atomic read
+    n_taken = queue->n_taken;
+    return n_taken >= queue->n;
+}
+
+void hf_parallel_add(double *sum, double value)
+{
+#pragma omp atomic
+    *sum += value;
+}
+
+/* In a thread of hf_parallel_for. Each of the tasks has a room of its own, whichever thread takes it. */
+static void run_inside(int n_thread, void (*work)(void *context, int room), void *context)
+{
+    for (int room = 1; room < n_thread; room++) {
+#pragma omp task firstprivate(room, work, context)
+        work(context, room);
+    }
+    work(context, 0);
+#pragma omp taskwait
+}
+
+void hf_parallel_run(int n_thread, void (*work)(void *context, int room), void *context)
+{
+    if (hf_parallel_is_inside()) {
+        run_inside(n_thread, work, context);
+        return;
+    }
+#pragma omp parallel num_threads(n_thread)
+    work(context, omp_get_thread_num());
+}
+
+void hf_parallel_run_after(int n_thread, void (*first)(void *context), void (*work)(void *context, int room),
+                           void *context, void (*beside)(void *context), void *beside_context)
+{
+    sem_t is_ready;
+    int failed = sem_init(&is_ready, 0, 0);
+    assert(!failed && !hf_parallel_is_inside());
+    (void)failed;
+#pragma omp parallel num_threads(n_thread)
+    {
+        int room = omp_get_thread_num(), n = omp_get_num_threads();
+        if (room == 0) {
+            first(context);
+            for (int i = 1; i < n; i++)
+                sem_post(&is_ready);
+        }
+        if (room == (n > 1)) beside(beside_context);
+        while (room > 0 && sem_wait(&is_ready) != 0)
+            assert(errno == EINTR);
+        work(context, room);
+    }
+    sem_destroy(&is_ready);
+}
+
+/* later: NULL when no thread serves it. */
+static void work_on_items(hf_parallel_queue *items, hf_later_list *later, void (*work)(void *context, int i),
+                          void *context)
+{
+    if (later) hf_later_join(later);
+    for (int i = hf_parallel_take(items); i >= 0; i = hf_parallel_take(items))
+        work(context, i);
+    if (later) hf_later_leave(later);
+}
+
+void hf_parallel_for(int n_thread, int n, void (*work)(void *context, int i), void *context)
+{
+    hf_parallel_queue items = {n, 0, NULL};
+    hf_later_list later;
+    if (n_thread <= 0) n_thread = hf_parallel_cores();
+    hf_later_open(n_thread, &later);
+#pragma omp parallel num_threads(n_thread + 1)
+    {
+        bool has_server = omp_get_num_threads() > n_thread; /* with fewer threads than asked for all of them work */
+        if (omp_get_thread_num() < n_thread)
+            work_on_items(&items, has_server ? &later : NULL, work, context);
+        else
+            hf_later_serve(&later);
+    } /* at this barrier threads without an item take the tasks of hf_parallel_run */
+    hf_later_close(&later);
+}

@@ -1,0 +1,159 @@
+/* Loops over threads: every item and every room once, whatever the number of threads. */
+#include "support.h"
+
+#include "base/later.h"
+#include "search/parallel.h"
+
+#include <pthread.h>
+#include <string.h>
+#include <time.h>
+
+enum { N_ITEM = 300, MAX_THREAD = 4 };
+
+/* ---- numbers and rooms ---- */
+
+static struct counts {
+    hf_parallel_queue queue;
+    int n_taken[N_ITEM], n_room[MAX_THREAD], n_before, is_ready;
+    double sum;
+} counts;
+
+static void take_all(void *context, int room)
+{
+    struct counts *c = context;
+    __atomic_add_fetch(&c->n_room[room], 1, __ATOMIC_SEQ_CST);
+    if (!__atomic_load_n(&c->is_ready, __ATOMIC_SEQ_CST)) __atomic_add_fetch(&c->n_before, 1, __ATOMIC_SEQ_CST);
+    for (int i = hf_parallel_take(&c->queue); i >= 0; i = hf_parallel_take(&c->queue)) {
+        c->n_taken[i]++;
+        hf_parallel_add(&c->sum, i);
+    }
+}
+
+static void assert_all_taken(const struct counts *c, int n_thread)
+{
+    double sum = 0;
+    for (int i = 0; i < N_ITEM; i++) {
+        int wanted = !c->queue.wanted || c->queue.wanted[i];
+        ck_assert_int_eq(c->n_taken[i], wanted);
+        sum += wanted ? i : 0;
+    }
+    for (int room = 0; room < MAX_THREAD; room++)
+        ck_assert_int_eq(c->n_room[room], room < n_thread);
+    ck_assert_double_eq(c->sum, sum); /* whole numbers: exact in any order */
+    ck_assert(hf_parallel_is_empty(&c->queue));
+    ck_assert_int_eq(c->n_before, 0);
+}
+
+START_TEST(every_wanted_number_and_every_room_comes_once)
+{
+    unsigned char wanted[N_ITEM];
+    for (int i = 0; i < N_ITEM; i++)
+        wanted[i] = i % 3 != 1;
+    for (int n_thread = 1; n_thread <= MAX_THREAD; n_thread++) {
+        counts = (struct counts){.queue = {N_ITEM, 0, _i ? wanted : NULL}, .is_ready = 1};
+        ck_assert(!hf_parallel_is_empty(&counts.queue));
+        hf_parallel_run(n_thread, take_all, &counts);
+        assert_all_taken(&counts, n_thread);
+    }
+}
+END_TEST
+
+static void make_ready(void *context)
+{
+    struct counts *c = context;
+    nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL); /* time for others to begin too early */
+    c->queue = (hf_parallel_queue){N_ITEM, 0, NULL};
+    __atomic_store_n(&c->is_ready, 1, __ATOMIC_SEQ_CST);
+}
+
+static void count_call(void *context)
+{
+    (*(int *)context)++;
+}
+
+START_TEST(nobody_begins_before_the_first_step_is_done)
+{
+    for (int n_thread = 1; n_thread <= MAX_THREAD; n_thread++) {
+        int n_beside = 0;
+        counts = (struct counts){0};
+        hf_parallel_run_after(n_thread, make_ready, take_all, &counts, count_call, &n_beside);
+        assert_all_taken(&counts, n_thread);
+        ck_assert_int_eq(n_beside, 1);
+    }
+}
+END_TEST
+
+/* ---- runs inside a loop ---- */
+
+static struct counts inner[8];
+
+static void run_inner(void *context, int i)
+{
+    (void)context;
+    inner[i] = (struct counts){.queue = {N_ITEM, 0, NULL}, .is_ready = 1};
+    hf_parallel_run(MAX_THREAD, take_all, &inner[i]);
+}
+
+START_TEST(runs_inside_a_loop_have_every_room_once)
+{
+    for (int n_thread = 1; n_thread <= MAX_THREAD; n_thread++) {
+        hf_parallel_for(n_thread, 8, run_inner, NULL);
+        for (int i = 0; i < 8; i++)
+            assert_all_taken(&inner[i], MAX_THREAD);
+        ck_assert(!hf_parallel_is_inside());
+    }
+}
+END_TEST
+
+/* ---- what is left for later is done once, by the end; more than fit are done at once ---- */
+
+struct later {
+    int n_done[N_ITEM], is_slow, n_elsewhere; /* done by another thread than the one that left it */
+};
+
+static struct later_item {
+    struct later *l;
+    int i;
+    pthread_t from;
+} later_item[N_ITEM];
+
+static void do_item(void *context)
+{
+    struct later_item *item = context;
+    if (item->l->is_slow) nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
+    if (!pthread_equal(item->from, pthread_self())) __atomic_add_fetch(&item->l->n_elsewhere, 1, __ATOMIC_SEQ_CST);
+    __atomic_add_fetch(&item->l->n_done[item->i], 1, __ATOMIC_SEQ_CST);
+}
+
+static void leave_for_later(void *context, int i)
+{
+    later_item[i] = (struct later_item){context, i, pthread_self()};
+    hf_later_do(do_item, &later_item[i]);
+}
+
+START_TEST(what_is_left_for_later_is_done)
+{
+    for (int n_thread = 1; n_thread <= 3; n_thread++) {
+        static struct later l;
+        l = (struct later){.is_slow = _i};
+        hf_parallel_for(n_thread, N_ITEM, leave_for_later, &l);
+        for (int i = 0; i < N_ITEM; i++)
+            ck_assert_int_eq(l.n_done[i], 1);
+        ck_assert_int_gt(l.n_elsewhere, 0);
+        leave_for_later(&l, 0); /* outside: at once */
+        ck_assert_int_eq(l.n_done[0], 2);
+    }
+}
+END_TEST
+
+Suite *suite_unit_parallel(void)
+{
+    Suite *suite = suite_create("unit/parallel");
+    TCase *tests = tcase_create("parallel");
+    suite_add_tcase(suite, tests);
+    tcase_add_loop_test(tests, every_wanted_number_and_every_room_comes_once, 0, 2);
+    tcase_add_test(tests, nobody_begins_before_the_first_step_is_done);
+    tcase_add_test(tests, runs_inside_a_loop_have_every_room_once);
+    tcase_add_loop_test(tests, what_is_left_for_later_is_done, 0, 2);
+    return suite;
+}
