@@ -3,7 +3,7 @@
 
 #include "base/arena.h"
 #include "solve/coupling.h"
-#include "solve/newton.h"
+#include "solve/newton_matrix.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -143,7 +143,7 @@ static hf_status pack_truss(const hf_model *m, hf_workspace *w, hf_chord *c)
                 m->flexibility_m_per_N[i * n + j];
     for (int k = 0; k < m->n_tie; k++) {
         double block[3][3];
-        hf_newton_block(m, w, m->tie[k] / 2, block);
+        hf_newton_matrix_block(m, w, m->tie[k] / 2, block);
         memcpy(c->tie_block + 9 * k, block, sizeof block);
     }
     memcpy(c->base_displacement_m, w->displacement_m, n * sizeof(double));
@@ -171,7 +171,7 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_worksp
     hf_form_result base;
     *chord = dimensions(v);
     HF_TRY(hf_evaluate(v, base_N, w, &base));
-    HF_TRY(hf_newton_factor(m, w, NULL));
+    HF_TRY(hf_newton_matrix_factor(m, w, NULL));
     HF_TRY(allocate(chord));
     hf_chord_pack(w, chord);
     memcpy(chord->base_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));

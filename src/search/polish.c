@@ -5,7 +5,7 @@
 #include "linalg/band.h"
 #include "search/chord.h"
 #include "solve/coupling.h"
-#include "solve/newton.h"
+#include "solve/newton_matrix.h"
 #include "net/symmetry.h"
 #include <hifdm/metrics.h>
 
@@ -191,7 +191,7 @@ static void linearise(problem *p, const gsl_vector *variable)
     p->is_linear = 1;
     memset(p->pull, 0, 3 * (size_t)m->n_leader * (size_t)m->n_attachment * sizeof(double));
     memset(p->sensitivity, 0, (size_t)m->n_leader * n_dof * sizeof(double));
-    if (status != HF_OK || hf_newton_factor(m, p->w, NULL) != HF_OK) return;
+    if (status != HF_OK || hf_newton_matrix_factor(m, p->w, NULL) != HF_OK) return;
     if (m->n_attachment && hf_schur_factor(m, p->w, &p->schur) != HF_OK) return;
     for (int k = 0; k < m->n_gene; k++)
         add_force_of_gene(p, k, p->sensitivity + (size_t)p->variable_of_gene[k] * n_dof,

@@ -3,7 +3,7 @@
 
 #include "base/arena.h"
 #include "linalg/band.h"
-#include "solve/newton.h"
+#include "solve/newton_matrix.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -335,7 +335,7 @@ void hf_coupling_push(const hf_model *m, const hf_workspace *w, const double *di
         int there = m->end_row[m->tie[k] ^ 1];
         const double *r = displacement_m + 3 * m->tie_attachment[k];
         if (there >= m->n_free) continue;
-        hf_newton_block(m, w, m->tie[k] / 2, block);
+        hf_newton_matrix_block(m, w, m->tie[k] / 2, block);
         for (int c = 0; c < 3; c++)
             force[3 * there + c] += block[c][0] * r[0] + block[c][1] * r[1] + block[c][2] * r[2];
     }
@@ -348,7 +348,7 @@ void hf_coupling_pull(const hf_model *m, const hf_workspace *w, const double *st
         int there = m->end_row[m->tie[k] ^ 1];
         const double *d = step_m + 3 * there;
         if (there >= m->n_free) continue;
-        hf_newton_block(m, w, m->tie[k] / 2, block);
+        hf_newton_matrix_block(m, w, m->tie[k] / 2, block);
         for (int c = 0; c < 3; c++)
             pull[3 * m->tie_attachment[k] + c] += block[c][0] * d[0] + block[c][1] * d[1] + block[c][2] * d[2];
     }
@@ -363,7 +363,7 @@ static void add_attachment_stiffness(const hf_model *m, const hf_workspace *w, h
         int partner = k > 0 && m->tie[k - 1] == (m->tie[k] ^ 1) ? k - 1 : k + 1;
         int is_pair = partner < m->n_tie && m->tie[partner] == (m->tie[k] ^ 1);
         size_t here = 3 * (size_t)m->tie_attachment[k];
-        hf_newton_block(m, w, m->tie[k] / 2, block);
+        hf_newton_matrix_block(m, w, m->tie[k] / 2, block);
         for (size_t r = 0; r < 3; r++)
             for (size_t c = 0; c < 3; c++) {
                 s->stiffness[(here + r) * n + here + c] += block[r][c];
@@ -384,7 +384,7 @@ hf_status hf_schur_factor(const hf_model *m, const hf_workspace *w, hf_schur *s)
         unit[j] = 1;
         hf_coupling_push(m, w, unit, s->column);
         unit[j] = 0;
-        hf_band_back_solve((int)n_dof, 3 * m->half_bandwidth + 2, 1, w->newton_band, s->column, (int)n_dof);
+        hf_newton_matrix_solve(m, w, s->column);
         hf_coupling_pull(m, w, s->column, s->stiffness + j * n);
         for (size_t i = 0; i < n; i++)
             s->stiffness[j * n + i] = -s->stiffness[j * n + i];
@@ -451,7 +451,7 @@ static void add_length_errors(const hf_model *m, const hf_workspace *w, double *
         int e = m->tie[k] / 2, here = m->end_row[m->tie[k]], there = m->end_row[m->tie[k] ^ 1];
         if (!hf_law_has(w->law[e], HF_LAW_HAS_MULTIPLIER)) continue;
         double wanted_m = hf_law_wanted_length_m(hf_workspace_cable(m, w, e), w->tension_N[e]);
-        hf_newton_block(m, w, e, block);
+        hf_newton_matrix_block(m, w, e, block);
         for (int c = 0; c < 3; c++)
             d[c] = (w->position_m[c * m->n_node + there] - w->position_m[c * m->n_node + here]) *
                    (1 - wanted_m / w->length_m[e]);
@@ -478,7 +478,7 @@ void hf_coupling_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
         hf_schur_solve(&schur, move);
         memset(schur.column, 0, 3 * (size_t)m->n_free * sizeof(double));
         hf_coupling_push(m, w, move, schur.column);
-        hf_band_back_solve(3 * m->n_free, 3 * m->half_bandwidth + 2, 1, w->newton_band, schur.column, 3 * m->n_free);
+        hf_newton_matrix_solve(m, w, schur.column);
         for (int i = 0; i < 3 * m->n_free; i++)
             both[i] += schur.column[i];
         r->position_error_m =

@@ -2,7 +2,7 @@
 
 #include "solve/certificate.h"
 #include "solve/coupling.h"
-#include "solve/newton.h"
+#include "solve/equilibrium.h"
 
 #include <math.h>
 
@@ -33,7 +33,7 @@ typedef struct {
 static hf_status find_alone(const void *context, hf_workspace *w, hf_history *history, hf_form_result *result)
 {
     const net_problem *p = context;
-    if (p->by_newton) return hf_newton_find(p->m, p->form, w, history, result);
+    if (p->by_newton) return hf_equilibrium_find(p->m, p->form, w, history, result);
     return hf_form_find(p->m, p->form, p->stop, w, history, result);
 }
 

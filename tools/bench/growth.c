@@ -5,7 +5,8 @@
 
 #include "linalg/band.h"
 #include "search/chord.h"
-#include "solve/newton.h"
+#include "solve/equilibrium.h"
+#include "solve/newton_matrix.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -67,7 +68,7 @@ static void newton_step(void *context)
 {
     net *n = context;
     int n_dof = 3 * n->model.n_free, half_bandwidth = 3 * n->model.half_bandwidth + 2;
-    if (hf_newton_factor(&n->model, &n->workspace, NULL) != HF_OK) bench_fail(n->name, "singular Newton matrix");
+    if (hf_newton_matrix_factor(&n->model, &n->workspace, NULL) != HF_OK) bench_fail(n->name, "singular Newton matrix");
     memset(n->workspace.newton_step, 0, (size_t)n_dof * sizeof(double));
     hf_band_back_solve(n_dof, half_bandwidth, 1, n->workspace.newton_band, n->workspace.newton_step, n_dof);
 }
@@ -155,7 +156,7 @@ void bench_growth(const char *scale, const char *folder)
     n.settings.form.max_iterations = 2000; /* minutes on the largest net */
     double start_s = bench_clock_s();
     hf_form_prepare(&n.model, &n.workspace);
-    hf_newton_find(&n.model, &n.settings.form, &n.workspace, NULL, &r);
+    hf_equilibrium_find(&n.model, &n.settings.form, &n.workspace, NULL, &r);
     bench_emit("growth", n.name, "form-finding, newton", n.model.n_node, "time_s", bench_clock_s() - start_s);
     bench_emit("growth", n.name, "form-finding, newton", n.model.n_node, "iterations", r.iterations);
     bench_emit("growth", n.name, "form-finding, newton", n.model.n_node, "status", (double)r.status);

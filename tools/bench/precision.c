@@ -3,6 +3,7 @@
 
 #include "linalg/band.h"
 #include "search/chord.h"
+#include "solve/equilibrium.h"
 #include "solve/newton.h"
 
 #include <math.h>
@@ -244,7 +245,7 @@ static void single_form_finding(bench_scene *b)
         if (method == HF_METHOD_HIFDM)
             hf_form_find(&b->model, &s, HF_STOP_RESIDUAL, &b->workspace, NULL, &r);
         else
-            hf_newton_find(&b->model, &s, &b->workspace, NULL, &r);
+            hf_equilibrium_find(&b->model, &s, &b->workspace, NULL, &r);
         bench_emit("form", b->name, name, s.residual_tolerance, "time_s", bench_clock_s() - start_s);
         if (b->model.has_newton) hf_newton_certify(&b->model, &b->workspace, &r);
         bench_emit("form", b->name, name, s.residual_tolerance, "iterations", r.iterations);

@@ -2,7 +2,7 @@
 #include "bench.h"
 
 #include "linalg/band.h"
-#include "solve/newton.h"
+#include "solve/newton_matrix.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -242,7 +242,7 @@ double bench_reference(const hf_model *m, hf_workspace *w, double *x_m)
         long double residual = long_forces(m, w, x, force);
         if (!(residual < reached) && k > 5) break; /* rounding of the step is all that is left */
         reached = residual;
-        if (reached <= 1e-15L * m->reference_N || hf_newton_factor(m, w, NULL) != HF_OK) break;
+        if (reached <= 1e-15L * m->reference_N || hf_newton_matrix_factor(m, w, NULL) != HF_OK) break;
         for (int i = 0; i < n_dof; i++)
             w->newton_step[i] = (double)force[i];
         hf_band_back_solve(n_dof, 3 * m->half_bandwidth + 2, 1, w->newton_band, w->newton_step, n_dof);

@@ -6,7 +6,7 @@
 
 #include "linalg/band.h"
 #include "search/chord.h"
-#include "solve/newton.h"
+#include "solve/newton_matrix.h"
 #include <hifdm/batch.h>
 
 #include <math.h>
@@ -109,7 +109,7 @@ START_TEST(many_right_hand_sides)
     for (size_t i = 0; i < (size_t)n_rhs * ld; i++)
         b[i] = x[i] = rng_uniform(&rng, -1, 1);
     ck_assert_int_eq(hf_evaluate(&r.evaluator, r.design_N, &r.net.work, &(hf_form_result){0}), HF_OK);
-    ck_assert_int_eq(hf_newton_factor(m, &r.net.work, NULL), HF_OK);
+    ck_assert_int_eq(hf_newton_matrix_factor(m, &r.net.work, NULL), HF_OK);
     ck_assert_int_eq(hf_chord_create_matrix(&r.evaluator, &chord, &lanes), HF_OK);
     hf_chord_pack(&r.net.work, &chord);
     hf_chord_back_solve(&chord, &lanes, n_rhs, x, ld);

@@ -6,7 +6,6 @@
 #include "linalg/band.h"
 #include "search/chord.h"
 #include "search/chord_kernel.h"
-#include "solve/newton.h"
 
 typedef void (*forces_fn)(const hf_chord *, const hf_chord_lanes *, double *);
 typedef void (*solve_fn)(const hf_chord *, const hf_chord_lanes *);

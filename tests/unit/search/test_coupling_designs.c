@@ -4,7 +4,7 @@
 
 #include "linalg/band.h"
 #include "solve/coupling.h"
-#include "solve/newton.h"
+#include "solve/newton_matrix.h"
 #include "search/polish.h"
 #include <hifdm/batch.h>
 
@@ -138,7 +138,7 @@ static void sensitivity(struct run *r, int k, hf_schur *schur, double *dx, doubl
     int e = m->gene_cable[k], n = 3 * m->n_free, band = 3 * m->half_bandwidth + 2;
     const int *end = m->end_row + 2 * e;
     ck_assert_int_eq(hf_evaluate(&r->evaluator, r->base_N, w, &at), HF_OK);
-    ck_assert_int_eq(hf_newton_factor(m, w, NULL), HF_OK);
+    ck_assert_int_eq(hf_newton_matrix_factor(m, w, NULL), HF_OK);
     ck_assert_int_eq(hf_schur_factor(m, w, schur), HF_OK);
     memset(dx, 0, (size_t)n * sizeof *dx);
     for (int c = 0; c < 3; c++) {

@@ -2,7 +2,7 @@
 #include "laws.h"
 
 #include "search/chord.h"
-#include "solve/newton.h"
+#include "solve/newton_matrix.h"
 #include "net/symmetry.h"
 #include <hifdm/batch.h>
 
@@ -79,7 +79,7 @@ START_TEST(matrix_is_the_second_derivative_of_the_energy)
     struct net net;
     open_mixed(&net, _i, 2000, EA);
     ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &net.result), HF_OK);
-    ck_assert_int_eq(hf_newton_factor(&net.model, &net.work, NULL), HF_OK);
+    ck_assert_int_eq(hf_newton_matrix_factor(&net.model, &net.work, NULL), HF_OK);
     const hf_model *m = &net.model;
     int n = 3 * m->n_free, ld = 3 * m->half_bandwidth + 3;
     double h = 1e-4;

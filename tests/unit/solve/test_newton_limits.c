@@ -2,7 +2,6 @@
 #include "laws.h"
 #include "verified.h"
 
-#include "solve/newton.h"
 #include <hifdm/evaluate.h>
 
 static hf_status find(struct net *net)

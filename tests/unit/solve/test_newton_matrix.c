@@ -2,7 +2,7 @@
 #include "laws.h"
 
 #include "linalg/band.h"
-#include "solve/newton.h"
+#include "solve/newton_matrix.h"
 #include <hifdm/evaluate.h>
 
 /* L L' of the factor in newton_band, dense. */
@@ -62,7 +62,7 @@ START_TEST(matrix_is_the_derivative_of_the_forces)
     double *dense = malloc((size_t)n * (size_t)n * sizeof *dense), *up = malloc(3 * (size_t)m->n_node * sizeof *up);
     double *down = malloc(3 * (size_t)m->n_node * sizeof *down), step = 1e-5;
     ck_assert(dense && up && down);
-    ck_assert_int_eq(hf_newton_factor(m, &net.work, NULL), HF_OK);
+    ck_assert_int_eq(hf_newton_matrix_factor(m, &net.work, NULL), HF_OK);
     multiply_factor(m, &net.work, dense);
     for (int j = 0; j < n; j++) {
         double *x = net.work.position_m + j % 3 * m->n_node + j / 3, kept = *x;
@@ -92,7 +92,7 @@ START_TEST(condition_is_that_of_the_matrix)
     double *dense = malloc((size_t)n * (size_t)n * sizeof *dense), *column = malloc((size_t)n * sizeof *column);
     double estimate, norm = 0, inverse_norm = 0;
     ck_assert(dense && column);
-    ck_assert_int_eq(hf_newton_factor(m, &net.work, &estimate), HF_OK);
+    ck_assert_int_eq(hf_newton_matrix_factor(m, &net.work, &estimate), HF_OK);
     ck_assert_double_eq(estimate, net.result.condition);
     multiply_factor(m, &net.work, dense);
     for (int j = 0; j < n; j++) {

@@ -1,9 +1,7 @@
-/* Descent on the energy Pi of a net with elastic cables, from anywhere to near its minimum. Their tensions follow the
- * lengths: T = EA max(l/l0 - 1, 0), and stiff ones are then far from any balance until the shape is nearly right. Pi
- * is convex, so Newton's direction with a line search on Pi itself gets there, where one on the forces would not. */
-#include "solve/newton.h"
+#include "solve/descent.h"
 
-#include "linalg/band.h"
+#include "solve/newton.h"
+#include "solve/newton_matrix.h"
 
 #include <math.h>
 #include <string.h>
@@ -128,16 +126,16 @@ static int search(const hf_model *m, hf_workspace *w)
 /* Newton's direction into newton_step; that of the forces where every cable hangs loose and there is no matrix. */
 static void direct(const hf_model *m, hf_workspace *w)
 {
-    int n_dof = 3 * m->n_free, has_matrix = hf_newton_factor(m, w, NULL) == HF_OK;
+    int n_dof = 3 * m->n_free, has_matrix = hf_newton_matrix_factor(m, w, NULL) == HF_OK;
     memcpy(w->newton_step, w->newton_force_N, (size_t)n_dof * sizeof(double));
     if (has_matrix)
-        hf_band_back_solve(n_dof, 3 * m->half_bandwidth + 2, 1, w->newton_band, w->newton_step, n_dof);
+        hf_newton_matrix_solve(m, w, w->newton_step);
     else
         for (int k = 0; k < n_dof; k++)
             w->newton_step[k] *= longest_m(m) / m->reference_N;
 }
 
-int hf_newton_descend(const hf_model *m, hf_workspace *w, int max_steps)
+int hf_descent_run(const hf_model *m, hf_workspace *w, int max_steps)
 {
     int n = 0;
     soften(m, w);

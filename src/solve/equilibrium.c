@@ -1,0 +1,99 @@
+/* Contents: flat chains - starts - the alternation */
+#include "solve/equilibrium.h"
+
+#include "solve/descent.h"
+#include "solve/newton.h"
+#include "solve/newton_matrix.h"
+
+#include <math.h>
+
+#define FIRST_BLOCK 6   /* fixed-point iterations before Newton is tried; doubled after each failure */
+#define STEPS_MAX 30    /* Newton steps per try */
+#define DESCENT_MAX 300 /* steps per try on the energy of elastic cables */
+#define FAR_EXCESS 16.0 /* a chain's excess length this many times too large: its tension is not near yet */
+#define RESCALED_MAX 8  /* rounds of bringing it there */
+#define ROUNDED_MAX 3   /* tries against rounding */
+
+/* The tension of a flat chain goes with the inverse root of its excess length, which lies decades away from where
+ * Eq. 8 or Newton's linear model would look: scale its force densities to the excess that L* prescribes. Returns how
+ * many chains were far from it. */
+static int rescale_flat_chains(const hf_model *m, hf_workspace *w)
+{
+    int n_scaled = 0;
+    for (int i = m->n_chain; i < m->n_any_chain; i++) {
+        int first = m->chain_start[i], last = m->chain_start[i + 1] - 1, is_rigid = 1;
+        double sum = 0, wanted = 0, u[3], *x = w->position_m;
+        for (int k = first; k <= last; k++) {
+            int e = m->chain_cable[k];
+            is_rigid &= hf_law_has(w->law[e], HF_LAW_IS_RIGID);
+            sum += hf_newton_matrix_direction(m, x, e, u);
+            wanted += w->target[e];
+        }
+        const int *a = m->end_row + 2 * m->chain_cable[first], *b = m->end_row + 2 * m->chain_cable[last];
+        int from = a[0] > a[1] ? a[0] : a[1], to = b[0] > b[1] ? b[0] : b[1]; /* the supports */
+        for (int c = 0; c < 3; c++)
+            u[c] = x[c * m->n_node + to] - x[c * m->n_node + from];
+        double span = hypot(hypot(u[0], u[1]), u[2]), excess = sum - span, wanted_excess = wanted - span;
+        if (!is_rigid || !(wanted_excess > 0 && excess > FAR_EXCESS * wanted_excess)) continue;
+        for (int k = first; k <= last; k++)
+            w->q_N_per_m[m->chain_cable[k]] *= sqrt(excess / wanted_excess);
+        n_scaled++;
+    }
+    return n_scaled;
+}
+
+/* First force densities unlike those of the case: the first shapes need not lie near the answer, and a cable that
+ * shrinks to nothing in one of them proves nothing. */
+static void start_elsewhere(const hf_model *m, hf_workspace *w)
+{
+    for (int e = 0; e < m->n_cable; e++)
+        if (hf_law_has(w->law[e], HF_LAW_ITERATES)) w->q_N_per_m[e] = m->start_q_N_per_m[e] * (1 + e % 3);
+}
+
+/* The fixed point knows little of elastic cables: the theoretical shape is the better start for them. */
+static int start_elastic(const hf_model *m, const hf_form_settings *s, hf_workspace *w)
+{
+    int most = s->max_iterations < DESCENT_MAX ? s->max_iterations : DESCENT_MAX, n_step = 0;
+    hf_form_place_supports(m, w);
+    int n = hf_descent_run(m, w, most);
+    hf_newton_run(m, s, w, STEPS_MAX, &n_step);
+    return n + n_step;
+}
+
+hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
+                              hf_form_result *result)
+{
+    int n_done = 0, n_rescaled = 0, n_rounded = 0, n_restarted = 0, block = FIRST_BLOCK;
+    if (m->EA_N) n_done = start_elastic(m, s, w);
+    for (;;) {
+        hf_form_settings part = *s;
+        int left = s->max_iterations - n_done;
+        part.max_iterations = left < 1 ? 1 : block < left ? block : left; /* the shape of the last step is measured */
+        hf_form_find(m, &part, HF_STOP_RESIDUAL, w, history, result);
+        n_done += result->iterations;
+        if (result->status == HF_COLLAPSED && n_done <= FIRST_BLOCK && n_restarted++ == 0) {
+            start_elsewhere(m, w);
+            continue;
+        }
+        if (result->status != HF_NOT_CONVERGED || n_done >= s->max_iterations) break;
+        if (result->culprit >= 0 && n_rounded++ == ROUNDED_MAX) break;
+        if (n_rescaled < RESCALED_MAX && rescale_flat_chains(m, w)) {
+            n_rescaled++;
+            continue;
+        }
+        int n_step = 0;
+        left = s->max_iterations - n_done;
+        if (m->EA_N) n_done += hf_descent_run(m, w, left < DESCENT_MAX ? left : DESCENT_MAX);
+        left = s->max_iterations - n_done < STEPS_MAX ? s->max_iterations - n_done : STEPS_MAX;
+        int has_moved = hf_newton_run(m, s, w, left, &n_step);
+        n_done += n_step;
+        /* a linear solve would round the shape anew, by the condition of D */
+        if (has_moved && hf_form_measure(m, s, w, result) == HF_OK) {
+            hf_form_accept(m, s, HF_STOPPED_RESIDUAL, n_done, w, result);
+            break;
+        }
+        block = has_moved ? FIRST_BLOCK : 2 * block; /* after a failure the fixed point goes on */
+    }
+    result->iterations = n_done;
+    return result->status;
+}

@@ -1,0 +1,79 @@
+#include "solve/newton_matrix.h"
+
+#include "linalg/band.h"
+
+#include <string.h>
+
+#define DIAGONAL_GUARD 1e-14 /* Levenberg shift, relative to the largest diagonal, that is always there */
+#define SHIFT_FIRST 1e-10    /* the first one after a failed factorisation */
+
+static int half_bandwidth(const hf_model *m)
+{
+    return 3 * m->half_bandwidth + 2;
+}
+
+void hf_newton_matrix_block(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
+{
+    hf_law_cable cable = hf_workspace_cable(m, w, e);
+    double u[3], length = hf_newton_matrix_direction(m, w->position_m, e, u);
+    double T = hf_newton_matrix_tension_N(cable, length, w->tension_N[e]);
+    double across = T / length, along = hf_newton_matrix_stiffness(cable, length, T) - across;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            block[r][c] = along * u[r] * u[c] + (r == c ? across : 0);
+}
+
+/* The matrix at position_m, tension_N into newton_band; returns the largest diagonal entry. */
+static double assemble(const hf_model *m, hf_workspace *w)
+{
+    int column = half_bandwidth(m) + 1;
+    double *band = w->newton_band, block[3][3], largest = 0;
+    memset(band, 0, (size_t)hf_newton_matrix_dofs(m) * (size_t)column * sizeof *band);
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], low = a < b ? a : b, high = a < b ? b : a;
+        if (low >= m->n_free) continue;
+        hf_newton_matrix_block(m, w, e, block);
+        for (int c = 0; c < 3; c++)
+            for (int r = 0; r < 3; r++) {
+                double k = block[r][c];
+                double *diagonal = band + (r - c) + (size_t)(3 * low + c) * (size_t)column;
+                if (r >= c) *diagonal += k;
+                if (high >= m->n_free) continue;
+                if (r >= c) diagonal[(size_t)(3 * (high - low)) * (size_t)column] += k;
+                diagonal[3 * (high - low)] -= k;
+            }
+    }
+    for (int i = 0; i < hf_newton_matrix_dofs(m); i++)
+        largest = fmax(largest, band[(size_t)i * (size_t)column]);
+    return largest;
+}
+
+static void shift_diagonal(const hf_model *m, hf_workspace *w, double shift)
+{
+    size_t column = (size_t)half_bandwidth(m) + 1;
+    for (size_t i = 0; i < (size_t)hf_newton_matrix_dofs(m); i++)
+        w->newton_band[i * column] += shift;
+}
+
+hf_status hf_newton_matrix_factor(const hf_model *m, hf_workspace *w, double *condition)
+{
+    int n = hf_newton_matrix_dofs(m), k = half_bandwidth(m);
+    double shift = DIAGONAL_GUARD;
+    for (;; shift = shift < SHIFT_FIRST ? SHIFT_FIRST : 100 * shift) {
+        double largest = assemble(m, w);
+        if (!(isfinite(largest) && largest > 0) || shift > 1) return HF_SINGULAR;
+        shift_diagonal(m, w, shift * largest);
+        double norm = condition ? hf_band_norm(n, k, w->newton_band, w->newton_work) : 0;
+        if (hf_band_factor(n, k, w->newton_band) != 0) continue;
+        if (condition)
+            *condition = hf_band_condition(n, k, w->newton_band, norm, w->newton_work, w->newton_integer_work);
+        if (condition && shift > DIAGONAL_GUARD) *condition = INFINITY;
+        return HF_OK;
+    }
+}
+
+void hf_newton_matrix_solve(const hf_model *m, const hf_workspace *w, double *rhs)
+{
+    int n = hf_newton_matrix_dofs(m);
+    hf_band_back_solve(n, half_bandwidth(m), 1, w->newton_band, rhs, n);
+}

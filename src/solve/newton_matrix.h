@@ -1,0 +1,65 @@
+/* newton_matrix - the Hessian of the energy Pi(x) of a tension net, with the multipliers eliminated (METHOD section 5).
+ * Stability: internal; may change in any version.
+ *
+ * Unknowns: the 3 n_free coordinates, dof 3*row + component. A cable with unit vector u, tension T and length l adds
+ * the block (T/l)(I - uu') + k uu' between its ends, where k = phi''(l). A cable under law length has
+ * k = HF_NEWTON_STIFFENING T/L* instead: its tension step dT = k (dl + l - L*) is eliminated, so the matrix stays
+ * symmetric positive definite. Eq. 8 is the same step with a stiffening of 1. An elastic cable has k = EA/l0 and
+ * L* = l0 (1 + T/EA), so no force contains EA times an error of length; a slack one has k = 0.
+ * Storage: lower band, column-major, half-bandwidth 3b + 2, in the workspace's newton_band. */
+#ifndef HIFDM_NEWTON_MATRIX_H
+#define HIFDM_NEWTON_MATRIX_H
+
+#include <hifdm/workspace.h>
+
+#include <math.h>
+
+/* Stiffness of a length-controlled cable over its tension per length. The larger, the nearer to a hard constraint. The
+ * forces never contain it, so it costs no accuracy in the residual. */
+#define HF_NEWTON_STIFFENING 1e7
+
+/* Number of unknowns, 3 n_free. */
+static inline int hf_newton_matrix_dofs(const hf_model *model)
+{
+    return 3 * model->n_free;
+}
+
+/* Length of cable i_cable at the shape position_m [3][n_node], m, and its unit vector. */
+static inline double hf_newton_matrix_direction(const hf_model *model, const double *position_m, int i_cable,
+                                                double unit[3])
+{
+    int a = model->end_row[2 * i_cable], b = model->end_row[2 * i_cable + 1];
+    for (int c = 0; c < 3; c++)
+        unit[c] = position_m[c * model->n_node + b] - position_m[c * model->n_node + a];
+    double length = sqrt(unit[0] * unit[0] + unit[1] * unit[1] + unit[2] * unit[2]);
+    for (int c = 0; c < 3; c++)
+        unit[c] /= length;
+    return length;
+}
+
+/* The multiplier where the law has one, else the tension that the law gives at this length, N. */
+static inline double hf_newton_matrix_tension_N(hf_law_cable cable, double length_m, double multiplier_N)
+{
+    return hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER) ? multiplier_N : hf_law_tension_N(cable, length_m);
+}
+
+/* k = phi'' of a cable of this length; for a rigid law, of the stiff spring in its place, N/m. */
+static inline double hf_newton_matrix_stiffness(hf_law_cable cable, double length_m, double tension_N)
+{
+    if (hf_law_has(cable.law, HF_LAW_IS_RIGID))
+        return HF_NEWTON_STIFFENING * tension_N / hf_law_wanted_length_m(cable, tension_N);
+    return hf_law_stiffness_N_per_m(cable, length_m);
+}
+
+/* Stiffness [3][3] of cable i_cable between its ends at the workspace's shape and tensions: its part of the matrix,
+ * which the coupling with a truss needs for the cables that end at attachments. */
+void hf_newton_matrix_block(const hf_model *model, const hf_workspace *workspace, int i_cable, double block[3][3]);
+
+/* Factor the matrix at the workspace's shape and tensions into newton_band. *condition (may be NULL): estimate of its
+ * 1-norm condition number, INFINITY when a Levenberg shift was needed. HF_SINGULAR when no shift helps. */
+hf_status hf_newton_matrix_factor(const hf_model *model, hf_workspace *workspace, double *condition);
+
+/* rhs [3 n_free] -> solution, in place, with the factor in newton_band. */
+void hf_newton_matrix_solve(const hf_model *model, const hf_workspace *workspace, double *rhs);
+
+#endif
