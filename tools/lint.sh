@@ -10,7 +10,8 @@ heap_files="base/status base/arena base/text base/csv net/scene net/scene_import
             truss/truss truss/truss_import truss/frame search/lane search/batch
             case/config case/study case/study_read store/hdf5_rows store/journal store/generations
             store/store_file store/store_internal store/store store/store_read store/store_resume store/compare
-            store/store_look store/layout_truss store/layout_coupling store/ledger store/merge run/problem run/run
+            store/store_look store/layout_truss store/layout_coupling store/ledger store/merge run/problem
+            run/problem_parts run/run
             app/cmd_sweep app/options app/cmd_evaluate"
 # may print (csv, json, summary: to a stream they are given)
 print_files="base/csv base/json store/summary app/help out/print app/progress app/cmd_check out/export out/cutlist

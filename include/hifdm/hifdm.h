@@ -27,7 +27,9 @@
 #include <hifdm/ga.h>
 #include <hifdm/metrics.h>
 #include <hifdm/model.h>
+#include <hifdm/problem.h>
 #include <hifdm/result.h>
+#include <hifdm/run.h>
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
 #include <hifdm/status.h>

@@ -5,9 +5,10 @@
 #include "search/lane.h"
 #include "search/polish.h"
 #include "out/print.h"
-#include "run/run.h"
+#include "run/problem_parts.h"
 #include "net/symmetry.h"
 #include <hifdm/batch.h>
+#include <hifdm/run.h>
 
 #define TRIAL_S 1.0 /* how long a form-finding is tried */
 

@@ -8,8 +8,8 @@
 #include "out/export.h"
 #include "base/json.h"
 #include "out/print.h"
-#include "run/run.h"
-#include <hifdm/batch.h>
+#include "run/problem_parts.h"
+#include <hifdm/run.h>
 #include <hifdm/store.h>
 
 #include <errno.h>
@@ -22,20 +22,17 @@
 
 typedef struct {
     hf_problem problem;
-    hf_evaluator evaluator;
-    hf_batch batch;
     hf_csv table;
-    const char **name;            /* [n_gene + 1] columns: the cable of each gene, then "id" */
-    int *where;                   /* [n_gene + 1] column in the table */
-    double *design_N;             /* [n_row][n_gene] */
-    hf_form_result *result;       /* [n_row] */
-    int solver, n_feasible, best; /* best: row, or -1 */
+    const char **name;      /* [n_gene + 1] columns: the cable of each gene, then "id" */
+    int *where;             /* [n_gene + 1] column in the table */
+    double *design_N;       /* [n_row][n_gene] */
+    hf_form_result *result; /* [n_row] */
+    int n_feasible, best;   /* best: row, or -1 */
     double wall_s;
 } job;
 
 static void job_free(job *j)
 {
-    hf_batch_free(&j->batch);
     hf_csv_free(&j->table);
     free(j->name);
     free(j->where);
@@ -109,10 +106,9 @@ static hf_status read_table(job *j, const char *path, hf_messages *messages)
 static hf_status find_base(job *j, hf_messages *messages)
 {
     hf_problem *p = &j->problem;
-    hf_form_result form;
     HF_TRY(hf_problem_allocate(p, messages));
-    hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &form);
-    HF_TRY(hf_problem_explain(p, &form, messages));
+    hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
+    HF_TRY(hf_problem_explain(p, &p->form, messages));
     return hf_problem_base(p, messages);
 }
 
@@ -121,14 +117,10 @@ static hf_status find_base(job *j, hf_messages *messages)
 /* As `hifdm run` evaluates its individuals, to the same bits. The cap on the boundary ratio is the optimisation's. */
 static hf_status evaluate(job *j, int threads, hf_messages *messages)
 {
-    int can_share = 1;
-    j->evaluator = hf_problem_evaluator(&j->problem);
     double start_s = hf_clock_s();
-    if (hf_batch_create(&j->evaluator, threads, &j->batch) != HF_OK) return no_memory(j, messages);
-    for (int k = 0; k < j->problem.model.n_gene; k++)
-        can_share &= j->problem.base_N[k] > 0;
-    j->solver = can_share ? hf_batch_share(&j->batch, j->problem.base_N) : HF_SOLVER_AUTO;
-    hf_batch_run(&j->batch, j->table.n_row, j->design_N, NULL, j->result);
+    if (hf_problem_batch(&j->problem, threads) != HF_OK) return no_memory(j, messages);
+    hf_problem_share(&j->problem);
+    hf_batch_run(&j->problem.batch, j->table.n_row, j->design_N, NULL, j->result);
     j->wall_s = hf_clock_s() - start_s;
     for (int i = 0; i < j->table.n_row; i++) {
         if (j->result[i].status != HF_OK) continue;
@@ -196,7 +188,8 @@ static void print_summary(const job *j, const char *path, FILE *f)
         write_row_id(j, j->best, f);
     }
     fprintf(f, "; %s, %.0f evaluations/s by %s on %d thread%s; results in %s\n", wall, j->table.n_row / j->wall_s,
-            hf_solver_word[j->solver], j->batch.n_thread, j->batch.n_thread == 1 ? "" : "s", path);
+            hf_solver_word[j->problem.solver], j->problem.batch.n_thread, j->problem.batch.n_thread == 1 ? "" : "s",
+            path);
 }
 
 static void print_json(const job *j, const char *path, hf_status status, const char *messages, FILE *f)
@@ -206,12 +199,12 @@ static void print_json(const job *j, const char *path, hf_status status, const c
     if (status == HF_OK && j->result) {
         fprintf(f, ",\n \"designs\": %d, \"feasible\": %d, ", j->table.n_row, j->n_feasible);
         hf_json_number("best_psi_m", j->best < 0 ? (double)NAN : j->result[j->best].psi_m, f);
-        fprintf(f, ", \"best_row\": %d, \"threads\": %d, ", j->best + 1, j->batch.n_thread);
-        hf_json_text("solver", hf_solver_word[j->solver], f);
+        fprintf(f, ", \"best_row\": %d, \"threads\": %d, ", j->best + 1, j->problem.batch.n_thread);
+        hf_json_text("solver", hf_solver_word[j->problem.solver], f);
         fputs(", ", f);
         hf_json_number("wall_s", j->wall_s, f);
         fputs(", ", f);
-        hf_json_number("cpu_s", j->batch.cpu_s, f);
+        hf_json_number("cpu_s", j->problem.batch.cpu_s, f);
     }
     fputs(",\n ", f);
     hf_json_text("version", hf_store_version(), f);
@@ -237,7 +230,7 @@ static hf_status check_output(const job *j, const hf_options *o, const char *pat
 {
     char folder[HF_OUTPUT_SIZE];
     if (!path) return HF_OK;
-    HF_TRY(hf_run_spare_inputs(&j->problem.settings, o->designs, path, messages));
+    HF_TRY(hf_problem_spare_inputs(&j->problem, o->designs, path, messages));
     HF_TRY(hf_export_claim(path, o->force, messages));
     hf_path_folder(path, folder, sizeof folder);
     if (access(folder, W_OK | X_OK) != 0)

@@ -6,9 +6,9 @@
 #include "base/path.h"
 #include "store/merge.h"
 #include "out/print.h"
-#include "run/run.h"
 #include "search/parallel.h"
 #include "base/later.h"
+#include <hifdm/run.h>
 #include "base/text.h"
 #include <hifdm/batch.h>
 #include <hifdm/store.h>

@@ -11,7 +11,7 @@
 #include "out/print.h"
 #include "app/progress.h"
 #include "out/report.h"
-#include "run/run.h"
+#include <hifdm/run.h>
 #include "out/vtk.h"
 #include "base/signals.h"
 #include "app/cmd_sweep.h"

@@ -2,7 +2,7 @@
 #ifndef HIFDM_PROGRESS_H
 #define HIFDM_PROGRESS_H
 
-#include "run/run.h"
+#include <hifdm/run.h>
 
 #include <stdio.h>
 

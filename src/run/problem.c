@@ -1,68 +1,26 @@
-/* Contents: from the case to the model - the base design - names for what went wrong */
-#include "run/problem.h"
+#include <hifdm/problem.h>
 
-#include "search/polish.h"
-#include "net/symmetry.h"
-#include <hifdm/metrics.h>
+#include "run/problem_parts.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#define NAMED_MAX 5 /* cables or chains that a message names */
-
-/* ---- from the case to the model ---- */
-
-hf_status hf_problem_load(const char *path, const char *const *set, int n_set, hf_problem *p, hf_messages *messages)
+hf_status hf_problem_open(const char *path, const char *const *set, int n_set, int n_thread, hf_problem *p,
+                          hf_messages *messages)
 {
-    *p = (hf_problem){0};
-    HF_TRY(hf_config_load(path, set, n_set, &p->settings, messages));
-    HF_TRY(hf_config_scene(&p->settings, &p->scene, messages));
-    HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));
-    if (p->settings.has_truss) {
-        const hf_carrier *c = &p->carrier;
-        HF_TRY(hf_config_carrier(&p->settings, &p->scene, &p->carrier, messages));
-        HF_TRY(hf_model_attach(&p->model, c->n_attachment, c->scene_node, c->flexibility_m_per_N, messages));
-    }
-    if (!p->settings.has_optimize) return HF_OK;
-    return hf_symmetry_apply(&p->scene, p->settings.optimize.symmetry, &p->model, &p->planes, messages);
-}
-
-hf_status hf_problem_allocate(hf_problem *p, hf_messages *messages)
-{
-    p->start_q_N_per_m = malloc((size_t)p->model.n_cable * sizeof(double));
-    p->base_N = malloc(((size_t)p->model.n_gene + 1) * sizeof(double));
-    if (!p->start_q_N_per_m || !p->base_N || hf_workspace_create(&p->model, &p->workspace) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", p->model.n_node);
+    HF_TRY(hf_problem_load(path, set, n_set, p, messages));
+    HF_TRY(hf_problem_allocate(p, messages));
+    hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
+    HF_TRY(hf_problem_explain(p, &p->form, messages));
+    HF_TRY(hf_problem_base(p, messages));
+    if (hf_problem_batch(p, n_thread) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the batch of a net of %d nodes", p->model.n_node);
+    hf_problem_share(p);
     return HF_OK;
-}
-
-void hf_problem_describe(const hf_problem *p, hf_summary *s)
-{
-    const hf_case *settings = &p->settings;
-    const hf_model *model = &p->model;
-    snprintf(s->title, sizeof s->title, "%s", settings->title);
-    snprintf(s->case_path, sizeof s->case_path, "%s", settings->path);
-    s->threads = 1;
-    s->seed = settings->optimize.seed;
-    s->n_node = model->n_node;
-    s->n_free = model->n_free;
-    s->n_cable = model->n_cable;
-    s->n_gene = model->n_gene;
-    s->n_leader = model->n_leader;
-    s->half_bandwidth = model->half_bandwidth;
-    s->planes = p->planes;
-    s->has_coupling = model->n_attachment > 0;
-    s->pretension_N = model->pretension_N;
-    if (p->settings.has_surface) s->surface = p->settings.surface;
-    s->has_truss = settings->has_truss;
-    s->truss_mass_kg = p->carrier.mass_kg;
-    s->truss_nodes = p->carrier.truss.n_node;
-    s->truss_members = p->carrier.truss.n_member;
 }
 
 void hf_problem_free(hf_problem *p)
 {
+    hf_batch_free(&p->batch);
     free(p->start_q_N_per_m);
     free(p->base_N);
     hf_workspace_free(&p->workspace);
@@ -70,210 +28,5 @@ void hf_problem_free(hf_problem *p)
     hf_carrier_free(&p->carrier);
     hf_scene_free(&p->scene);
     hf_case_free(&p->settings);
-}
-
-/* ---- the base design ---- */
-
-hf_evaluator hf_problem_evaluator(const hf_problem *p)
-{
-    const hf_optimize_settings *o = &p->settings.optimize;
-    return (hf_evaluator){&p->model, &p->settings.form, p->start_q_N_per_m,
-                          o->rule,   o->solver,         p->settings.has_optimize ? o->boundary_ratio_cap : INFINITY};
-}
-
-static hf_status check_base(const hf_problem *p, hf_messages *messages)
-{
-    const hf_optimize_settings *o = &p->settings.optimize;
-    for (int k = 0; k < p->model.n_gene; k++) {
-        const char *id = p->scene.cable_id[p->model.gene_cable[k]];
-        double base_N = p->base_N[k];
-        if (!(base_N > 0))
-            return hf_error(messages, HF_BAD_CASE, "optimize: boundary cable '%s' has no tension to start from", id);
-        if (base_N + o->range_N < o->min_tension_N || base_N - o->range_N > o->max_tension_N)
-            return hf_error(
-                messages, HF_BAD_CASE,
-                "optimize: boundary cable '%s' has %g N after form-finding; range_N %g around that does not "
-                "reach min_tension_N %g .. max_tension_N %g",
-                id, base_N, o->range_N, o->min_tension_N, o->max_tension_N);
-    }
-    hf_evaluator v = hf_problem_evaluator(p);
-    if (o->method == HF_OPTIMIZE_LM && !hf_polish_applies(&v))
-        return hf_error(messages, HF_BAD_CASE, "%s", HF_PROBLEM_POLISH_NEEDS);
-    return HF_OK;
-}
-
-hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
-{
-    const hf_model *m = &p->model;
-    memcpy(p->start_q_N_per_m, p->workspace.q_N_per_m, (size_t)m->n_cable * sizeof(double));
-    for (int k = 0; k < m->n_gene; k++)
-        p->base_N[k] = p->workspace.tension_N[m->gene_cable[k]];
-    if (p->settings.has_optimize && m->n_gene > 0) HF_TRY(check_base(p, messages));
-    hf_symmetry_average(m, p->base_N);
-    return HF_OK;
-}
-
-/* ---- names for what went wrong ---- */
-
-typedef struct {
-    char text[1600];
-    size_t length;
-    int n;
-} name_list;
-
-static void add_name(name_list *list, const char *name)
-{
-    if (list->n++ >= NAMED_MAX || list->length >= sizeof list->text) return;
-    list->length += (size_t)snprintf(list->text + list->length, sizeof list->text - list->length, "%s%s",
-                                     list->n > 1 ? ", " : "", name);
-}
-
-static const char *close_names(name_list *list)
-{
-    if (list->n > NAMED_MAX && list->length < sizeof list->text)
-        snprintf(list->text + list->length, sizeof list->text - list->length, " and %d more", list->n - NAMED_MAX);
-    return list->text;
-}
-
-static void name_loaded_chains(const hf_problem *p, hf_workspace *w, name_list *list)
-{
-    const hf_model *m = &p->model;
-    for (int i = 0; i < hf_form_n_chain(m); i++) {
-        char name[256];
-        if (!hf_form_chain_is_loaded(m, w, i)) continue;
-        hf_model_chain_name(m, &p->scene, i, name, sizeof name);
-        add_name(list, name);
-    }
-}
-
-void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, const hf_form_result *r,
-                     hf_messages *messages)
-{
-    const hf_model *m = &p->model;
-    name_list chains = {0}, slack = {0};
-    if (r->stop_reason == HF_STOPPED_RMS_CHANGE && r->residual_N > p->settings.form.residual_tolerance * m->reference_N)
-        hf_warning(messages,
-                   "stop: rms_change ended before equilibrium: nodal residual %.2e N, cable lengths off by up to %.2e; "
-                   "stop: residual iterates until they vanish",
-                   r->residual_N, r->length_error);
-    if (r->n_loaded_chain) {
-        name_loaded_chains(p, w, &chains);
-        hf_warning(
-            messages,
-            "%d straight chains of length-controlled cables carry lateral load, which no finite tension holds: the "
-            "boundary tensions depend on where the iteration stopped: %s",
-            r->n_loaded_chain, close_names(&chains));
-    }
-    for (int e = 0; r->n_slack && e < m->n_cable; e++)
-        if (hf_metrics_is_slack(m, w, e)) add_name(&slack, p->scene.cable_id[e]);
-    if (r->n_slack) hf_warning(messages, "slack in the %s shape, %d: %s", stage, r->n_slack, close_names(&slack));
-}
-
-/* The cable that is furthest from its law. */
-static int furthest_off(const hf_problem *p)
-{
-    const hf_workspace *w = &p->workspace;
-    int worst = 0;
-    double most = -1;
-    for (int e = 0; e < p->model.n_cable; e++) {
-        double off = 0;
-        if (hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)) off = fabs(w->tension_N[e] / w->target[e] - 1);
-        if (hf_law_has(w->law[e], HF_LAW_IS_RIGID) &&
-            !(w->length_m[e] < w->target[e] && hf_metrics_is_slack(&p->model, w, e)))
-            off = fabs(w->length_m[e] / w->target[e] - 1);
-        if (off > most) most = off, worst = e;
-    }
-    return worst;
-}
-
-#define MOVE_SIZE 96
-
-/* How far an attachment would still move, and how that compares with before, if that is known. */
-static const char *name_move(const hf_coupling_result *c, char text[MOVE_SIZE])
-{
-    if (!isfinite(c->step_m)) return "beyond all bounds";
-    int n = snprintf(text, MOVE_SIZE, "by %.2e m", c->step_m);
-    if (isfinite(c->ratio)) snprintf(text + n, MOVE_SIZE - (size_t)n, ", %g times the step before", c->ratio);
-    return text;
-}
-
-static hf_status explain_not_converged(const hf_problem *p, const hf_form_result *r, hf_messages *messages)
-{
-    const hf_workspace *w = &p->workspace;
-    char move[MOVE_SIZE];
-    if (r->coupling.stop_reason == HF_COUPLING_MAX_ITERATIONS)
-        return hf_error(
-            messages, r->status,
-            "the net and its truss did not come to rest in %d form-findings: an attachment would still move "
-            "%s; raise coupling.max_iterations or coupling.tof_m, or "
-            "tighten form.%s, which limits how well the forces are known",
-            r->coupling.iterations, name_move(&r->coupling, move),
-            r->stop_reason == HF_STOPPED_RMS_CHANGE ? "rms_tolerance_m" : "residual_tolerance");
-    if (r->culprit >= 0)
-        return hf_error(messages, r->status,
-                        "form-finding is as exact as double precision allows, nodal residual %.2e N: cable '%s' is "
-                        "%.2e m long, too short for coordinates of its size; move the origin near it, join its nodes "
-                        "or loosen the tolerances",
-                        r->residual_N, p->scene.cable_id[r->culprit], w->length_m[r->culprit]);
-    int e = furthest_off(p);
-    return hf_error(messages, r->status,
-                    "form-finding did not converge in %d iterations: nodal residual %.2e N, cable lengths off by up to "
-                    "%.2e; furthest from its law is cable '%s', %g N and %g m long; raise form.max_iterations or "
-                    "loosen the tolerances",
-                    r->iterations, r->residual_N, r->length_error, p->scene.cable_id[e], w->tension_N[e],
-                    w->length_m[e]);
-}
-
-/* The loop has run away, or the net has lost its shape on the way. */
-static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, hf_messages *messages)
-{
-    const hf_coupling_result *c = &r->coupling;
-    char move[MOVE_SIZE];
-    return hf_error(messages, r->status,
-                    "the truss is too soft for the pretension of its net: after %d form-findings an attachment would "
-                    "still move %s; stiffen the truss, lower form.pretension_N%s",
-                    c->iterations, name_move(c, move),
-                    p->settings.form.coupling.scheme == HF_COUPLING_PLAIN ? ", or try coupling.scheme: accelerated"
-                                                                          : "");
-}
-
-hf_status hf_problem_explain(hf_problem *p, const hf_form_result *r, hf_messages *messages)
-{
-    hf_workspace *w = &p->workspace;
-    name_list chains = {0};
-    switch (r->status) {
-    case HF_OK:
-        hf_problem_warn(p, "form-finding", w, r, messages);
-        return HF_OK;
-    case HF_NOT_CONVERGED:
-        hf_problem_warn(p, "form-finding", w, r, messages);
-        return explain_not_converged(p, r, messages);
-    case HF_INTERRUPTED:
-        return r->status;
-    case HF_TRUSS_TOO_SOFT:
-        return explain_too_soft(p, r, messages);
-    case HF_STRAIGHT_CHAIN:
-        name_loaded_chains(p, w, &chains);
-        return hf_error(
-            messages, r->status,
-            "ill-posed: %d straight chains of length-controlled cables carry lateral load, which no finite "
-            "tension holds: %s. Give them slack (scene.parabolic_cylinder.scallop, longer L*), another law, or "
-            "support their nodes",
-            r->n_loaded_chain, close_names(&chains));
-    case HF_COLLAPSED:
-        return hf_error(
-            messages, r->status,
-            "ill-posed: the net collapses at cable '%s', whose length fell below %g of the theoretical one: its "
-            "tension cannot hold it apart",
-            p->scene.cable_id[r->culprit], p->settings.form.collapse_ratio);
-    case HF_NOT_FINITE:
-        return hf_error(messages, r->status, "ill-posed: the tension of cable '%s' is no longer a finite number",
-                        p->scene.cable_id[r->culprit]);
-    default:
-        return hf_error(
-            messages, r->status,
-            "ill-posed: the force density matrix is singular or not positive definite at node '%s': its cables "
-            "are slack, or no match for its load, or lead to no support",
-            r->culprit >= 0 ? p->scene.node_id[p->model.node_of_row[r->culprit]] : "?");
-    }
+    *p = (hf_problem){0};
 }

@@ -1,8 +1,9 @@
 /* Contents: form-finding - optimisation - the whole run */
-#include "run/run.h"
+#include <hifdm/run.h>
 
 #include "base/clock.h"
 #include "base/path.h"
+#include "run/problem_parts.h"
 #include "search/polish.h"
 #include "store/store_internal.h"
 #include "base/text.h"
@@ -23,8 +24,6 @@ typedef struct {
     hf_carrier_state truss; /* under the shape of the last stage whose shape is the result */
     hf_history history;
     hf_store *store;
-    hf_evaluator evaluator;
-    hf_batch batch;
     hf_ga ga;
     int first_generation; /* of this session */
     long first_evaluation;
@@ -35,7 +34,6 @@ static void run_free(run *r)
 {
     hf_store_abandon(r->store); /* NULL once it is finished */
     hf_ga_free(&r->ga);
-    hf_batch_free(&r->batch);
     free(r->history.psi_m);
     hf_carrier_state_free(&r->truss);
     hf_problem_free(&r->problem);
@@ -131,11 +129,10 @@ static hf_status prepare_optimize(run *r, hf_messages *messages)
     hf_problem *p = &r->problem;
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_store_base(r->store, p->model.n_gene, p->base_N, messages));
-    r->evaluator = hf_problem_evaluator(p);
-    if (hf_batch_create(&r->evaluator, r->request->threads, &r->batch) != HF_OK ||
+    if (hf_problem_batch(p, r->request->threads) != HF_OK ||
         hf_ga_create(&p->settings.optimize, &p->model, p->base_N, &r->ga) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for %d individuals of %d genes on %d threads",
-                        p->settings.optimize.population, p->model.n_gene, r->batch.n_thread);
+                        p->settings.optimize.population, p->model.n_gene, p->batch.n_thread);
     return HF_OK;
 }
 
@@ -153,7 +150,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
 {
     const double *design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
     hf_form_result again;
-    hf_workspace *w = hf_batch_run_one(&r->batch, design, &again);
+    hf_workspace *w = hf_batch_run_one(&r->problem.batch, design, &again);
     s->best = again; /* to the same bits, with what is not stored of an individual */
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
     HF_TRY(measure_surface(r, HF_STAGE_OPTIMIZE, w, s, messages));
@@ -167,7 +164,7 @@ static void sum_up(const run *r, double start_s, hf_summary *s)
     const hf_ga *ga = &r->ga;
     s->has_optimize = 1;
     s->optimize_wall_s = r->earlier_wall_s + hf_clock_s() - start_s;
-    s->optimize_cpu_s = r->earlier_cpu_s + r->batch.cpu_s;
+    s->optimize_cpu_s = r->earlier_cpu_s + r->problem.batch.cpu_s;
     s->generations = ga->generation + 1;
     s->evaluations = ga->n_evaluation;
     s->infeasible = ga->n_evaluation_infeasible;
@@ -225,8 +222,8 @@ static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
 static int evaluate_first(run *r)
 {
     hf_ga *ga = &r->ga;
-    if (r->first_generation > 0) return hf_batch_next(&r->batch, ga, NULL, NULL);
-    hf_batch_run(&r->batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
+    if (r->first_generation > 0) return hf_batch_next(&r->problem.batch, ga, NULL, NULL);
+    hf_batch_run(&r->problem.batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
     return 1;
 }
 
@@ -234,7 +231,8 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
 {
     hf_ga *ga = &r->ga;
     s->best.status = HF_NO_FEASIBLE;
-    s->solver = hf_batch_share(&r->batch, r->problem.base_N);
+    hf_problem_share(&r->problem);
+    s->solver = (int)r->problem.solver;
     HF_TRY(begin_generations(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
     double start_s = hf_clock_s();
@@ -249,7 +247,7 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
         if (stops)
             keep(&now);
         else
-            more = hf_batch_next(&r->batch, ga, keep, &now);
+            more = hf_batch_next(&r->problem.batch, ga, keep, &now);
         HF_TRY(now.status);
         if (stops) return stop_here(r, s, messages);
     }
@@ -268,7 +266,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     if (s->has_optimize && r->ga.best >= 0) design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
     observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});
     hf_status status =
-        hf_polish_run(&r->evaluator, r->ga.lower_N, r->ga.upper_N, o->polish_iterations, design, w, &outcome);
+        hf_polish_run(&r->problem.evaluator, r->ga.lower_N, r->ga.upper_N, o->polish_iterations, design, w, &outcome);
     if (must_stop(r)) return stop_here(r, s, messages);
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
     if (status != HF_OK) {
@@ -278,7 +276,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
         hf_warning(messages, "optimize: Levenberg-Marquardt has no feasible start: %s", why);
         return HF_OK;
     }
-    hf_evaluate(&r->evaluator, design, w, &s->polish);
+    hf_evaluate(&r->problem.evaluator, design, w, &s->polish);
     if (must_stop(r)) return stop_here(r, s, messages); /* it may have been cut short */
     s->has_polish = 1;
     s->polish_is_result = o->method != HF_OPTIMIZE_GA;
@@ -295,10 +293,10 @@ static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
 {
     int method = r->problem.settings.optimize.method;
     HF_TRY(prepare_optimize(r, messages));
-    s->threads = r->batch.n_thread;
+    s->threads = r->problem.batch.n_thread;
     if (method != HF_OPTIMIZE_LM) HF_TRY(evolve(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
-    if (hf_polish_applies(&r->evaluator)) return polish(r, s, messages);
+    if (hf_polish_applies(&r->problem.evaluator)) return polish(r, s, messages);
     if (method == HF_OPTIMIZE_GA_LM) hf_warning(messages, "%s", HF_PROBLEM_POLISH_NEEDS);
     return HF_OK;
 }
@@ -310,20 +308,6 @@ static hf_status choose_output(const hf_run_request *o, char output[HF_OUTPUT_SI
 {
     if (hf_path_choose(o->output, o->case_path, ".h5", output, HF_OUTPUT_SIZE)) return HF_OK;
     return hf_error(messages, HF_IO, "%s: the path is too long", o->output ? o->output : o->case_path);
-}
-
-hf_status hf_run_spare_inputs(const hf_case *settings, const char *table, const char *output, hf_messages *messages)
-{
-    const char *input[] = {settings->path,
-                           table,
-                           settings->nodes_path,
-                           settings->cables_path,
-                           settings->truss_nodes_path,
-                           settings->truss_members_path};
-    for (size_t i = 0; i < sizeof input / sizeof *input; i++)
-        if (input[i] && *input[i] && hf_path_is_same(input[i], output))
-            return hf_error(messages, HF_EXISTS, "%s: is an input of this run; use -o to choose another name", output);
-    return HF_OK;
 }
 
 /* The stages that the case asks for, in order. HF_NOT_CONVERGED: nothing follows on a shape that is not one. */
@@ -362,7 +346,7 @@ static hf_status open_store(run *r, char *output, hf_store_state *state, hf_mess
     const hf_scene *scene = &r->problem.scene;
     const hf_truss *truss = settings->has_truss ? &r->problem.carrier.truss : NULL;
     HF_TRY(choose_output(q, output, messages));
-    HF_TRY(hf_run_spare_inputs(settings, NULL, output, messages));
+    HF_TRY(hf_problem_spare_inputs(&r->problem, NULL, output, messages));
     if (!q->restart) HF_TRY(hf_store_look(output, settings, scene, truss, state, messages));
     if (*state == HF_STORE_FINISHED) return HF_OK;
     if (*state == HF_STORE_UNFINISHED) return hf_store_resume(output, &r->store, messages);

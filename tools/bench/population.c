@@ -2,7 +2,7 @@
  * storing costs, what a second thread is worth, and how busy both are. */
 #include "bench.h"
 
-#include "run/run.h"
+#include <hifdm/run.h>
 #include <hifdm/store.h>
 
 #include <fcntl.h>

@@ -5,7 +5,7 @@
 #include "bench.h"
 
 #include "search/polish.h"
-#include "run/run.h"
+#include <hifdm/run.h>
 #include "net/symmetry.h"
 #include <hifdm/store.h>
 

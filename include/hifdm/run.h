@@ -1,13 +1,20 @@
-/* run - one run: case -> scene -> model -> form-finding -> (ask -> batch -> tell -> store)* -> file.
- * Prints nothing and has no state of its own: any number of runs may go on in one process, one after the other or in
- * threads of their own. */
+/* run - one whole run as `hifdm run` does it: case -> scene -> model -> form-finding -> (ask -> batch -> tell ->
+ * store)* -> file.
+ * Stability: stable.
+ *
+ * A run prints nothing and keeps no state outside its arguments: any number of runs may go on in one process, one after
+ * the other or in threads of their own. */
 #ifndef HIFDM_RUN_H
 #define HIFDM_RUN_H
 
-#include "run/problem.h"
 #include <hifdm/store.h>
-
+#include <hifdm/summary.h>
 #include <signal.h>
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #define HF_OUTPUT_SIZE 4096
 
@@ -18,7 +25,7 @@ typedef struct {
     hf_run_phase phase;
     int generation, generations; /* finished, and at most */
     int first_generation;        /* that this process evaluates */
-    int is_last;                 /* no generation will follow */
+    bool is_last;                /* no generation will follow */
     long evaluations;            /* of this process */
     double best_psi_m;           /* NaN while nothing is feasible */
     double elapsed_s;            /* in this phase and process */
@@ -34,11 +41,11 @@ typedef struct {
     const char *const *set; /* [n_set] overrides "key=value" */
     int n_set;
     const char *output; /* NULL: the name of the case with .h5, in the current folder */
-    int no_file;        /* only the summary counts */
-    int of_sweep;       /* one point of the case's sweep section, which is refused otherwise */
-    int restart;        /* begin anew whatever is there; else an unfinished result of this case is gone on with */
+    bool no_file;       /* only the summary counts */
+    bool of_sweep;      /* one point of the case's sweep section, which is refused otherwise */
+    bool restart;       /* begin anew whatever is there; else an unfinished result of this case is gone on with */
     int threads;        /* 0: all cores */
-    int has_seed;       /* `seed` instead of optimize.seed */
+    bool has_seed;      /* `seed` instead of optimize.seed */
     uint64_t seed;
     int argc; /* for the provenance */
     char *const *argv;
@@ -57,7 +64,7 @@ typedef struct {
 hf_status hf_run_point(const hf_run_request *request, hf_summary *summary, char output[HF_OUTPUT_SIZE],
                        hf_messages *messages);
 
-/* Not even --force lets a result replace what it is made from: the case, its net, a table (may be NULL). */
-hf_status hf_run_spare_inputs(const hf_case *settings, const char *table, const char *output, hf_messages *messages);
-
+#ifdef __cplusplus
+}
+#endif
 #endif

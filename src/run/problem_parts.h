@@ -1,0 +1,49 @@
+/* problem_parts - the steps of hf_problem_open one by one, for `run`, `check` and `evaluate`, which store or print
+ * something in between. They all refuse the same cases with the same words. In the order of their use. */
+#ifndef HIFDM_PROBLEM_PARTS_H
+#define HIFDM_PROBLEM_PARTS_H
+
+#include <hifdm/problem.h>
+#include <hifdm/summary.h>
+
+/* Case, scene, truss, model, symmetry. HF_BAD_CASE with all faults, HF_MECHANISM, HF_NO_MEMORY. Free in any case. */
+hf_status hf_problem_load(const char *path, const char *const *set, int n_set, hf_problem *problem,
+                          hf_messages *messages);
+
+/* Fill in what case and model say. */
+void hf_problem_describe(const hf_problem *problem, hf_summary *summary);
+
+/* No result may replace what it is made from, whatever the user forces: the case, its net, its truss, a table of
+ * designs (may be NULL). HF_OK or HF_EXISTS. */
+hf_status hf_problem_spare_inputs(const hf_problem *problem, const char *table, const char *output,
+                                  hf_messages *messages);
+
+/* The workspace, and the arrays that hf_problem_base fills. HF_OK or HF_NO_MEMORY. */
+hf_status hf_problem_allocate(hf_problem *problem, hf_messages *messages);
+
+/* What the form-finding in the problem's workspace came to, in words: hf_problem_warn, or an error that names cables,
+ * nodes or chains. Returns result->status. */
+hf_status hf_problem_explain(hf_problem *problem, const hf_form_result *result, hf_messages *messages);
+
+/* Warnings about a shape that was found: no equilibrium yet, loaded straight chains, slack cables, all by name. */
+void hf_problem_warn(const hf_problem *problem, const char *stage, hf_workspace *workspace,
+                     const hf_form_result *result, hf_messages *messages);
+
+/* base_N and start_q_N_per_m from the shape in the workspace, and the evaluator. With an optimize section HF_BAD_CASE
+ * for a base that cannot be optimised: a cable without tension, bounds out of reach, a method that the net does not
+ * allow. */
+hf_status hf_problem_base(hf_problem *problem, hf_messages *messages);
+
+/* What optimize.method lm and ga+lm ask for. */
+#define HF_PROBLEM_POLISH_NEEDS "optimize: Levenberg-Marquardt needs a net without struts and a rule other than seeded"
+
+/* The evaluator; hf_problem_base sets problem->evaluator to it. It borrows the problem. */
+hf_evaluator hf_problem_evaluator(const hf_problem *problem);
+
+/* Create the batch of n_thread threads (0: all cores). HF_OK or HF_NO_MEMORY. */
+hf_status hf_problem_batch(hf_problem *problem, int n_thread);
+
+/* Make what the batch's threads share from base_N, if all of it is above 0, and set problem->solver. */
+void hf_problem_share(hf_problem *problem);
+
+#endif
