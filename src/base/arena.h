@@ -1,11 +1,11 @@
 /* arena - one zeroed, 64-byte aligned block per owner: the only heap call of everything on the hot path.
  *
- * Lay out twice with the same code: first on an arena without a block, which only counts, then on the real one.
+ * The same code lays the block out twice: first on an arena without a block, where it only counts, then on the real
+ * one.
  *
- *     hf_arena a = {0};
- *     lay_out(&a, object);              // pointers are meaningless, a.used is the size
- *     if (hf_arena_allocate(&a)) ...    // one block of a.used bytes
- *     lay_out(&a, object);              // pointers are real
+ *     hf_arena arena = {0};
+ *     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, object)));
+ *     object->block = arena.block; // the owner frees it
  */
 #ifndef HIFDM_ARENA_H
 #define HIFDM_ARENA_H
@@ -25,6 +25,11 @@ void *hf_arena_take(hf_arena *arena, size_t count, size_t item_bytes);
 
 /* Allocate the block that the counting pass asked for, and start over at its beginning. HF_OK or HF_NO_MEMORY. */
 hf_status hf_arena_allocate(hf_arena *arena);
+
+/* Evaluate `lay_out`, a call of hf_arena_take or of a function that calls it, to count; allocate; evaluate it again.
+ * HF_OK, or HF_NO_MEMORY: all pointers are NULL then. */
+#define HF_ARENA_MAKE(arena, lay_out)                                                                                  \
+    ((void)(lay_out), hf_arena_allocate(arena) != HF_OK ? HF_NO_MEMORY : ((void)(lay_out), HF_OK))
 
 void hf_arena_free(hf_arena *arena);
 

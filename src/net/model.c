@@ -265,9 +265,7 @@ void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_cha
 static hf_status build(const hf_scene *scene, const hf_form_settings *form, const int *order, hf_model *m)
 {
     hf_arena arena = {0};
-    lay_out(&arena, scene, form->method, m);
-    HF_TRY(hf_arena_allocate(&arena));
-    lay_out(&arena, scene, form->method, m);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, scene, form->method, m)));
     m->block = arena.block;
     memcpy(m->node_of_row, order, (size_t)m->n_free * sizeof(int));
     number_nodes(scene, m);
@@ -393,10 +391,8 @@ static hf_status attach(hf_model *m, int n, const int *node, const double *flexi
     hf_arena arena = {0};
     m->n_attachment = n;
     find_ties(m, attachment_of_row);
-    lay_out_attachments(&arena, m);
-    hf_status status = hf_arena_allocate(&arena);
+    hf_status status = HF_ARENA_MAKE(&arena, lay_out_attachments(&arena, m));
     if (status == HF_OK) {
-        lay_out_attachments(&arena, m);
         m->attachment_block = arena.block;
         find_ties(m, attachment_of_row);
         for (int i = 0; i < n; i++)

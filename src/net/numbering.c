@@ -203,9 +203,7 @@ hf_status hf_numbering_find(const hf_scene *scene, int *order, int *half_bandwid
 {
     graph g = {.s = scene};
     hf_arena arena = {0};
-    lay_out(&arena, &g);
-    HF_TRY(hf_arena_allocate(&arena));
-    lay_out(&arena, &g);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &g)));
     build(&g);
     double best_sum = -1;
     cuthill_mckee(&g);

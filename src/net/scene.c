@@ -38,12 +38,10 @@ hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, int with_l
 {
     *scene = (hf_scene){.n_node = n_node, .n_cable = n_cable};
     hf_arena arena = {0};
-    lay_out(&arena, scene, with_load, with_EA, with_line);
-    if (hf_arena_allocate(&arena) != HF_OK) {
+    if (HF_ARENA_MAKE(&arena, lay_out(&arena, scene, with_load, with_EA, with_line)) != HF_OK) {
         *scene = (hf_scene){0};
         return HF_NO_MEMORY;
     }
-    lay_out(&arena, scene, with_load, with_EA, with_line);
     scene->block = arena.block;
     return HF_OK;
 }

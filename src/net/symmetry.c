@@ -275,9 +275,8 @@ hf_status hf_symmetry_apply(const hf_scene *scene, int wanted, hf_model *model, 
     hf_arena arena = {0};
     *planes = 0;
     if (wanted == HF_SYMMETRY_NONE) return HF_OK;
-    lay_out(&arena, &q);
-    if (hf_arena_allocate(&arena) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "optimize.symmetry: out of memory");
-    lay_out(&arena, &q);
+    if (HF_ARENA_MAKE(&arena, lay_out(&arena, &q)) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "optimize.symmetry: out of memory");
     measure(&q);
     sort(&q);
     hf_status status = link_genes(&q, wanted, model, planes, messages);

@@ -261,12 +261,10 @@ static hf_status write_truss(const hf_export_request *o, const char *path, hf_me
     truss_scratch t;
     hf_status status = hf_store_read_truss(o->file, &truss, &state, messages);
     if (status == HF_OK) {
-        lay_out_truss(&arena, &truss, &t);
-        status = hf_arena_allocate(&arena);
+        status = HF_ARENA_MAKE(&arena, lay_out_truss(&arena, &truss, &t));
         if (status != HF_OK) hf_error(messages, status, "%s: out of memory", o->file);
     }
     if (status == HF_OK) {
-        lay_out_truss(&arena, &truss, &t);
         const grid g = grid_of_truss(&truss, &state, &t);
         status = write_grid(path, &g, t.offset, t.type, messages);
     }
@@ -309,10 +307,8 @@ hf_status hf_vtk(const hf_export_request *request, char *said, size_t size, hf_m
     hf_arena arena = {0};
     HF_TRY(hf_store_read_summary(request->file, &summary, messages));
     HF_TRY(hf_store_read_scene(request->file, &scene, messages));
-    lay_out(&arena, &scene, &t);
-    hf_status status = hf_arena_allocate(&arena);
+    hf_status status = HF_ARENA_MAKE(&arena, lay_out(&arena, &scene, &t));
     if (status == HF_OK) {
-        lay_out(&arena, &scene, &t);
         status = write_all(request, &scene, &summary, &t, said, size, messages);
     } else {
         hf_error(messages, status, "%s: out of memory", request->file);

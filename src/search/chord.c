@@ -157,9 +157,7 @@ static hf_status pack_truss(const hf_model *m, hf_workspace *w, hf_chord *c)
 static hf_status allocate(hf_chord *chord)
 {
     hf_arena arena = {0};
-    lay_out(&arena, chord);
-    HF_TRY(hf_arena_allocate(&arena));
-    lay_out(&arena, chord);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, chord)));
     chord->block = arena.block;
     chord->kernels = choose_kernels();
     return HF_OK;
@@ -216,9 +214,7 @@ hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes)
 {
     *lanes = (hf_chord_lanes){0};
     hf_arena arena = {0};
-    lay_out_lanes(&arena, chord, lanes);
-    HF_TRY(hf_arena_allocate(&arena));
-    lay_out_lanes(&arena, chord, lanes);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_lanes(&arena, chord, lanes)));
     lanes->block = arena.block;
     return HF_OK;
 }

@@ -130,9 +130,7 @@ hf_status hf_ga_create(const hf_optimize_settings *settings, const hf_model *mod
     ga->gene_leader = model->n_leader < model->n_gene ? model->gene_leader : NULL;
     ga->n_leader = ga->gene_leader ? model->n_leader : model->n_gene;
     hf_arena arena = {0};
-    lay_out(&arena, ga);
-    HF_TRY(hf_arena_allocate(&arena));
-    lay_out(&arena, ga);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, ga)));
     ga->block = arena.block;
     memcpy(ga->base_N, base_N, (size_t)ga->n_gene * sizeof *base_N);
     first_generation(base_N, ga);

@@ -124,10 +124,8 @@ hf_status hf_lane_plan_create(const hf_model *model, hf_lane_isa isa, hf_lane_pl
                            .n_pad = n_block * HF_LANE_BLOCK - model->n_free,
                            .n_block = n_block};
     hf_arena arena = {0};
-    lay_out(&arena, plan);
-    HF_TRY(hf_arena_allocate(&arena));
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, plan)));
     plan->block = arena.block;
-    lay_out(&arena, plan);
     list_incidences(plan);
     find_skyline(plan);
     for (int e = 0; e < model->n_cable; e++)
@@ -163,9 +161,8 @@ size_t hf_lane_workspace_bytes(const hf_lane_plan *plan)
 hf_status hf_lane_workspace_create(const hf_lane_plan *plan, hf_lane_workspace *workspace)
 {
     *workspace = (hf_lane_workspace){0};
-    hf_arena arena = {.used = hf_lane_workspace_bytes(plan)};
-    HF_TRY(hf_arena_allocate(&arena));
-    hf_lane_workspace_take(&arena, plan, workspace);
+    hf_arena arena = {0};
+    HF_TRY(HF_ARENA_MAKE(&arena, hf_lane_workspace_take(&arena, plan, workspace)));
     workspace->block = arena.block;
     return HF_OK;
 }

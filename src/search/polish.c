@@ -279,9 +279,7 @@ hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower_N, co
     *result = (hf_polish_result){0};
     HF_TRY(hf_evaluate(evaluator, design_N, workspace, &start));
     hf_arena arena = {0};
-    lay_out(&arena, &p);
-    HF_TRY(hf_arena_allocate(&arena));
-    lay_out(&arena, &p);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &p)));
     number_variables(&p);
     memcpy(p.best_N, design_N, bytes);
     p.best_psi_m = result->start_psi_m = start.psi_m;

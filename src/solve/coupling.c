@@ -315,9 +315,7 @@ hf_status hf_schur_create(const hf_model *m, hf_schur *schur)
 {
     *schur = (hf_schur){.n = dofs(m)};
     hf_arena arena = {0};
-    lay_out_schur(&arena, m, schur);
-    HF_TRY(hf_arena_allocate(&arena));
-    lay_out_schur(&arena, m, schur);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_schur(&arena, m, schur)));
     schur->block = arena.block;
     return HF_OK;
 }

@@ -280,9 +280,9 @@ hf_status hf_surface_measure(const hf_surface_settings *s, const hf_model *m, co
     size_t n = (size_t)m->n_inner_node;
     hf_arena arena = {0};
     *measures = (hf_surface_measures){0};
-    hf_arena_take(&arena, 4 * n, sizeof(double));
-    HF_TRY(hf_arena_allocate(&arena));
-    double *position_m = hf_arena_take(&arena, 4 * n, sizeof(double)), *deviation_m = position_m + 3 * n;
+    double *position_m;
+    HF_TRY(HF_ARENA_MAKE(&arena, position_m = hf_arena_take(&arena, 4 * n, sizeof(double))));
+    double *deviation_m = position_m + 3 * n;
     hf_surface_measures all = {.is_measured = 1};
     collect(s, m, w, position_m, deviation_m, &all);
     qsort(deviation_m, n, sizeof *deviation_m, compare);

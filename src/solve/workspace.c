@@ -23,9 +23,8 @@ size_t hf_workspace_bytes(const hf_model *model)
 hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace)
 {
     *workspace = (hf_workspace){0};
-    hf_arena arena = {.used = hf_workspace_bytes(model)};
-    HF_TRY(hf_arena_allocate(&arena));
-    lay_out(&arena, model, workspace);
+    hf_arena arena = {0};
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, model, workspace)));
     workspace->block = arena.block;
     return HF_OK;
 }

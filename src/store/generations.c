@@ -110,9 +110,7 @@ hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_gene
     g->capacity = how_many(WAITING_BYTES / g->payload_bytes, limit);
     g->design_chunk = how_many(g->row_bytes[ROW_DESIGN] ? CHUNK_BYTES / g->row_bytes[ROW_DESIGN] : 1, g->capacity);
     g->design_capacity = how_many((size_t)(DESIGN_CHUNKS * g->design_chunk), g->capacity);
-    lay_out(&arena, g);
-    HF_TRY(hf_arena_allocate(&arena));
-    lay_out(&arena, g);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, g)));
     g->block = arena.block;
     return HF_OK;
 }

@@ -86,14 +86,13 @@ void hf_hdf5_write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *c
 static char *read_chars(hf_hdf5 *io, hid_t group, const char *name, int n, size_t *length, hf_arena *arena)
 {
     *length = hf_hdf5_chars_length(io, group, name);
-    hf_arena_take(arena, (size_t)n, *length);
+    char *chars = NULL;
     if (io->status != HF_OK) return NULL;
-    if (hf_arena_allocate(arena) != HF_OK) {
+    if (HF_ARENA_MAKE(arena, chars = hf_arena_take(arena, (size_t)n, *length)) != HF_OK) {
         hf_hdf5_no_memory(io);
         return NULL;
     }
     hf_hdf5_array array = {.name = name, .kind = HF_KIND_CHARS, .rank = 1, .dims = {(hsize_t)n, *length}};
-    char *chars = hf_arena_take(arena, (size_t)n, *length);
     hf_hdf5_read_array(io, group, &array, chars);
     return chars;
 }
@@ -117,13 +116,14 @@ void hf_hdf5_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, const
     hf_arena a = {0}, b = {0}, all = {0};
     const char *chars_a = read_chars(io, group, name_a, n, &length_a, &a);
     const char *chars_b = read_chars(io, group, name_b, m, &length_b, &b);
-    hf_arena_take(&all, (size_t)n, length_a + 1);
-    hf_arena_take(&all, (size_t)m, length_b + 1);
-    if (io->status == HF_OK && hf_arena_allocate(&all) != HF_OK) hf_hdf5_no_memory(io);
+    char *text_a = NULL, *text_b = NULL;
+    if (io->status == HF_OK && HF_ARENA_MAKE(&all, (text_a = hf_arena_take(&all, (size_t)n, length_a + 1),
+                                                    text_b = hf_arena_take(&all, (size_t)m, length_b + 1))) != HF_OK)
+        hf_hdf5_no_memory(io);
     if (io->status == HF_OK) {
         *text = all.block;
-        place_ids(chars_a, length_a, n, id_a, hf_arena_take(&all, (size_t)n, length_a + 1));
-        place_ids(chars_b, length_b, m, id_b, hf_arena_take(&all, (size_t)m, length_b + 1));
+        place_ids(chars_a, length_a, n, id_a, text_a);
+        place_ids(chars_b, length_b, m, id_b, text_b);
     }
     hf_arena_free(&a);
     hf_arena_free(&b);

@@ -78,13 +78,11 @@ static void read_state(hf_hdf5 *io, hid_t group, const hf_truss *t, hf_carrier_s
 {
     hf_arena arena = {0};
     if (!hf_hdf5_has(io, group, "node/displacement")) return;
-    lay_out_state(&arena, (size_t)t->n_node, (size_t)t->n_member, state);
-    if (hf_arena_allocate(&arena) != HF_OK) {
+    if (HF_ARENA_MAKE(&arena, lay_out_state(&arena, (size_t)t->n_node, (size_t)t->n_member, state)) != HF_OK) {
         *state = (hf_carrier_state){0};
         hf_hdf5_no_memory(io);
         return;
     }
-    lay_out_state(&arena, (size_t)t->n_node, (size_t)t->n_member, state);
     state->block = arena.block;
     hf_layout_read_columns(io, group, &hf_layout_truss_state, t->n_node, t->n_member, state);
 }

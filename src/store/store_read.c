@@ -129,9 +129,7 @@ static void lay_out(hf_arena *arena, size_t n_node, size_t n_cable, hf_shape *sh
 static hf_status allocate_shape(int n_node, int n_cable, hf_shape *shape)
 {
     hf_arena arena = {0};
-    lay_out(&arena, (size_t)n_node, (size_t)n_cable, shape);
-    HF_TRY(hf_arena_allocate(&arena));
-    lay_out(&arena, (size_t)n_node, (size_t)n_cable, shape);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, (size_t)n_node, (size_t)n_cable, shape)));
     shape->block = arena.block;
     return HF_OK;
 }

@@ -43,10 +43,11 @@ static void read_series(hf_hdf5 *io, const char *name, int columns, hf_series *s
     }
     int n = measure_series(io, name, data_set, columns, series, &type);
     size_t count = (size_t)n * (size_t)series->columns;
-    hf_arena_take(&arena, count, sizeof(double));
-    if (n > 0 && hf_arena_allocate(&arena) != HF_OK) hf_hdf5_no_memory(io);
+    double *value = NULL;
+    if (n > 0 && HF_ARENA_MAKE(&arena, value = hf_arena_take(&arena, count, sizeof(double))) != HF_OK)
+        hf_hdf5_no_memory(io);
     if (n > 0 && io->status == HF_OK) {
-        *series = (hf_series){n, series->columns, hf_arena_take(&arena, count, sizeof(double)), arena.block};
+        *series = (hf_series){n, series->columns, value, arena.block};
         if (H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, series->value) < 0)
             hf_hdf5_fail(io, "read", io->file, name);
         for (size_t i = type == H5T_NATIVE_SCHAR ? count : 0; i-- > 0;) /* in place, from the end */
@@ -90,10 +91,11 @@ void hf_texts_free(hf_texts *texts)
 static int allocate(hf_hdf5 *io, int n, size_t length, hf_texts *texts)
 {
     hf_arena arena = {0};
-    hf_arena_take(&arena, (size_t)n, length);
-    if (io->status == HF_OK && hf_arena_allocate(&arena) != HF_OK) hf_hdf5_no_memory(io);
+    char *chars = NULL;
+    if (io->status == HF_OK && HF_ARENA_MAKE(&arena, chars = hf_arena_take(&arena, (size_t)n, length)) != HF_OK)
+        hf_hdf5_no_memory(io);
     if (io->status != HF_OK) return 0;
-    *texts = (hf_texts){n, length, hf_arena_take(&arena, (size_t)n, length), arena.block};
+    *texts = (hf_texts){n, length, chars, arena.block};
     return 1;
 }
 

@@ -18,10 +18,8 @@ static hf_status attach(double tolerance_m, const hf_scene *scene, hf_carrier *c
     hf_arena arena = {0};
     for (int i = 0; i < scene->n_node; i++)
         n_support += scene->role[i] == HF_ROLE_SUPPORT;
-    lay_out(&arena, c, n_support);
-    hf_status status = hf_arena_allocate(&arena);
+    hf_status status = HF_ARENA_MAKE(&arena, lay_out(&arena, c, n_support));
     if (status == HF_OK) {
-        lay_out(&arena, c, n_support);
         c->block = arena.block;
         HF_TRY(
             hf_truss_attach(&c->truss, scene, tolerance_m, &c->n_attachment, c->scene_node, c->truss_node, messages));
@@ -65,9 +63,7 @@ hf_status hf_carrier_load(const hf_carrier *c, const double *force_N, hf_carrier
     int bad_dof;
     hf_arena arena = {0};
     *state = (hf_carrier_state){0};
-    lay_out_state(&arena, c, state, &force, &work);
-    HF_TRY(hf_arena_allocate(&arena));
-    lay_out_state(&arena, c, state, &force, &work);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_state(&arena, c, state, &force, &work)));
     state->block = arena.block;
     for (int k = 0; k < c->n_attachment; k++)
         for (int d = 0; d < 3; d++)

@@ -356,10 +356,8 @@ static hf_status build(const hf_truss *truss, int *row_of_dof, int *order, hf_fr
         return hf_error(messages, HF_NO_MEMORY, "the stiffness matrix of %d rows, half-bandwidth %d is too large",
                         f->n_dof, f->half_bandwidth);
     hf_arena arena = {0};
-    lay_out(&arena, truss, f);
-    status = hf_arena_allocate(&arena);
+    status = HF_ARENA_MAKE(&arena, lay_out(&arena, truss, f));
     if (status != HF_OK) return hf_error(messages, status, "out of memory for a truss of %d nodes", truss->n_node);
-    lay_out(&arena, truss, f);
     f->block = arena.block;
     memcpy(f->row_of_dof, row_of_dof, HF_TRUSS_DOF * (size_t)truss->n_node * sizeof *row_of_dof);
     for (int e = 0; e < truss->n_member; e++) {

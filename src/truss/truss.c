@@ -42,12 +42,10 @@ hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, int with_
 {
     *truss = (hf_truss){.n_node = n_node, .n_member = n_member};
     hf_arena arena = {0};
-    lay_out(&arena, truss, with_line);
-    if (hf_arena_allocate(&arena) != HF_OK) {
+    if (HF_ARENA_MAKE(&arena, lay_out(&arena, truss, with_line)) != HF_OK) {
         *truss = (hf_truss){0};
         return HF_NO_MEMORY;
     }
-    lay_out(&arena, truss, with_line);
     truss->block = arena.block;
     return HF_OK;
 }

@@ -41,11 +41,10 @@ START_TEST(parts_are_aligned_zero_and_apart)
 {
     hf_arena arena = {0};
     struct layout l;
-    lay_out(&arena, &l);
-    ck_assert_int_eq(hf_arena_allocate(&arena), HF_OK);
+    ck_assert_int_eq(HF_ARENA_MAKE(&arena, lay_out(&arena, &l)), HF_OK);
+    ck_assert_uint_eq(arena.used, arena.size);
     for (size_t i = 0; i < arena.size; i++)
         ck_assert_int_eq(arena.block[i], 0);
-    lay_out(&arena, &l);
     ck_assert_uint_eq((uintptr_t)l.a % HF_ALIGNMENT, 0);
     ck_assert_uint_eq((uintptr_t)l.b % HF_ALIGNMENT, 0);
     ck_assert_uint_eq((uintptr_t)l.c % HF_ALIGNMENT, 0);
@@ -97,12 +96,13 @@ END_TEST
 START_TEST(failed_allocation_is_out_of_memory)
 {
     hf_arena arena = {0};
-    hf_arena_take(&arena, 100, 8);
+    double *part = (double *)&arena;
     fail_allocation_at(1);
-    hf_status status = hf_arena_allocate(&arena);
+    hf_status status = HF_ARENA_MAKE(&arena, part = hf_arena_take(&arena, 100, sizeof *part));
     ck_assert(end_allocation_failure());
     ck_assert_int_eq(status, HF_NO_MEMORY);
     ck_assert_ptr_null(arena.block);
+    ck_assert_ptr_null(part);
     hf_arena_free(&arena); /* harmless */
 }
 END_TEST
