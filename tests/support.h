@@ -53,10 +53,10 @@ void free_command(struct command *command);
  *
  *     for (long n = 1;; n++) {
  *         fail_allocation_at(n);
- *         enum hf_status status = hf_thing_create(&thing);
+ *         hf_status status = hf_workspace_create(&model, &workspace);
  *         if (!end_allocation_failure())
  *             break; ... status is OK: fewer than n allocations were made
- *         ck_assert_int_eq(status, HF_ERROR_MEMORY);
+ *         ck_assert_int_eq(status, HF_NO_MEMORY);
  *     } */
 void fail_allocation_at(long n);   /* the n-th from now (1 is the next) returns NULL, the others succeed */
 bool end_allocation_failure(void); /* back to normal; true if the n-th was reached */

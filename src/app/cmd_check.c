@@ -102,8 +102,7 @@ static void print_allocation(const char *title, const char *what, double bytes, 
     fprintf(f, "  %-13s %-38s %s\n", title, what, bytes > 0 ? text : without);
 }
 
-/* Bytes that a population's engine would share and give to each thread. */
-/* Right-hand sides, twice with a truss, and the packed matrix. */
+/* Bytes of Levenberg-Marquardt's sensitivities: right-hand sides, twice with a truss, and the packed matrix. */
 static double polish_bytes(const hf_evaluator *v)
 {
     const hf_model *m = v->model;
@@ -113,6 +112,7 @@ static double polish_bytes(const hf_evaluator *v)
     return 24.0 * m->n_leader * m->n_free * (m->n_attachment ? 2 : 1) + (double)(matrix + lanes);
 }
 
+/* Bytes of what a population's threads would share, and of the lanes of each thread. */
 static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lanes)
 {
     int has_lanes, solver = hf_batch_solver(v, &has_lanes);

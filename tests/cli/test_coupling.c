@@ -1,6 +1,10 @@
 /* The net on its truss as a user runs it: what is printed and stored, threads, and what goes wrong. */
 #include "cli.h"
 
+#include <hifdm/config.h>
+
+#include <hdf5.h>
+
 #define TRUSS keep(source_path("configs/chen2022-truss.yaml"))
 
 /* Supports of the stored shape are where the truss of the same file goes under their pull; 1e-6 m is tof_m. */
@@ -24,6 +28,77 @@ START_TEST(run_show_and_file)
         "b['coupling/displacement_m'][:]).max() < 1e-14",
         "abs(b['truss/node/displacement'][:][b['truss/attachment/truss_node'][:], :3] - "
         "b['coupling/displacement_m'][:]).max() < 1e-6");
+}
+END_TEST
+
+/* A data set of doubles, for the caller to free; *n numbers. */
+static double *read_doubles(hid_t file, const char *name, int *n)
+{
+    hid_t set = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(set);
+    *n = (int)H5Sget_simple_extent_npoints(space);
+    double *value = malloc((size_t)*n * sizeof *value);
+    ck_assert_ptr_nonnull(value);
+    ck_assert_int_ge(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, value), 0);
+    H5Sclose(space);
+    H5Dclose(set);
+    return value;
+}
+
+/* The pull that the file stores, solved once more by the frame of the same case. */
+static void load_stored_pull(const char *path, const char *const *overrides, int n_override, hid_t file)
+{
+    hf_messages messages = {0};
+    hf_case settings;
+    hf_scene scene;
+    hf_carrier carrier;
+    hf_carrier_state state;
+    ck_assert_int_eq(hf_config_load(path, overrides, n_override, &settings, &messages), HF_OK);
+    ck_assert_int_eq(hf_config_scene(&settings, &scene, &messages), HF_OK);
+    ck_assert_int_eq(hf_config_carrier(&settings, &scene, &carrier, &messages), HF_OK);
+    int n_force, n_stored;
+    double *force_N = read_doubles(file, "/coupling/force_N", &n_force), largest = 0;
+    double *stored = read_doubles(file, "/truss/node/displacement", &n_stored);
+    ck_assert_int_eq(n_force, 3 * carrier.n_attachment);
+    ck_assert_int_eq(n_stored, 6 * carrier.truss.n_node);
+    ck_assert_int_eq(hf_carrier_load(&carrier, force_N, &state), HF_OK);
+    for (int k = 0; k < n_stored; k++)
+        largest = fmax(largest, fabs(state.displacement[k]));
+    for (int k = 0; k < n_stored; k++)
+        ck_assert_double_eq_tol(stored[k], state.displacement[k], 1e-12 * largest);
+    free(stored);
+    free(force_N);
+    hf_carrier_state_free(&state);
+    hf_carrier_free(&carrier);
+    hf_scene_free(&scene);
+    hf_case_free(&settings);
+    hf_messages_free(&messages);
+}
+
+/* /truss held against /coupling, for a net in equilibrium: the pull is that of the cables of /form, /truss is what the
+ * frame does under it, and the attachments are there. Attachments are displaced by r when the pull f is found; F f - r
+ * is the last step, which is what tof_m bounds: 1e-11 m, where a pull 0.1 % too large moves them by 8e-7 m more. The
+ * tensions stored are those of the last solve, within residual_tolerance 1e-9 of the law's, of cables at 10 N. */
+START_TEST(the_stored_truss_stands_under_the_stored_pull)
+{
+    static const char *const set[] = {"truss.E_Pa=1e10", "form.stop=residual", "coupling.tof_m=1e-11",
+                                      "scene.parabolic_cylinder.boundary=outer_edge",
+                                      "scene.parabolic_cylinder.scallop=0.1"};
+    const char *out = temp("t.h5");
+    HIFDM(0, "run", TRUSS, "-o", out, "--set", set[0], "--set", set[1], "--set", set[2], "--set", set[3], "--set",
+          set[4]);
+    hid_t file = H5Fopen(out, H5F_ACC_RDONLY, H5P_DEFAULT);
+    ck_assert_int_ge(file, 0);
+    load_stored_pull(TRUSS, set, 5, file);
+    H5Fclose(file);
+    EXPECT(out, "--", "a['coupling'].attrs['step_m'] <= 1e-11",
+           "abs(a['truss/node/displacement'][:][a['truss/attachment/truss_node'][:], :3] - "
+           "a['coupling/displacement_m'][:]).max() <= 1e-11 < 1e-4 * a['coupling'].attrs['max_displacement_m']",
+           /* sum over the cables at each attachment of T times the unit vector away from it */
+           "abs(sum(np.where((a['scene/cable/end'][:, k] == a['coupling/node'][:][:, None])[:, :, None], "
+           "((1 - 2 * k) * a['form/tension_N'][:] / a['form/length_m'][:])[:, None] * "
+           "(a['form/position_m'][:][a['scene/cable/end'][:, 1]] - "
+           "a['form/position_m'][:][a['scene/cable/end'][:, 0]]), 0).sum(axis=1) for k in (0, 1)) - "
+           "a['coupling/force_N'][:]).max() < 1e-7");
 }
 END_TEST
 
@@ -85,6 +160,7 @@ Suite *suite_cli_coupling(void)
     TCase *tests = tcase_create("coupling");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, run_show_and_file);
+    tcase_add_test(tests, the_stored_truss_stands_under_the_stored_pull);
     tcase_add_test(tests, data_sets_do_not_depend_on_the_number_of_threads);
     tcase_add_test(tests, a_truss_that_is_too_soft_is_named);
     tcase_add_test(tests, limits_and_keys);
