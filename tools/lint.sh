@@ -14,8 +14,7 @@ heap_files="base/status base/arena base/text base/csv net/scene net/scene_import
             run/problem_parts run/run
             app/cmd_sweep app/options app/cmd_evaluate"
 # may print (csv, json, summary: to a stream they are given)
-print_files="base/csv base/json store/summary app/help out/print app/progress app/cmd_check out/export out/cutlist
-             out/report out/report_study app/cmd_evaluate app/cmd_sweep app/main"
+print_files="base/csv base/json store/summary out/[a-z_]* app/cmd_[a-z_]* app/progress app/main"
 openmp_files="search/parallel"                       # may mention OpenMP
 # and dot-files
 top_level="Makefile README.md CHANGELOG.md CITATION.cff LICENSE src include configs tests results tools"

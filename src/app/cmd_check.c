@@ -1,5 +1,7 @@
-#include "app/cmd_check.h"
+/* `hifdm check`: is a case valid, and what would a run of it do? The optimisation is not run. */
+#include "app/cmd.h"
 
+#include "app/options.h"
 #include "base/clock.h"
 #include "search/chord.h"
 #include "search/lane.h"
@@ -251,10 +253,22 @@ static hf_status check(hf_problem *p, const hf_options *options, FILE *f, hf_mes
     return print_time(p, optimizes ? &v : NULL, threads, f, messages);
 }
 
-hf_status hf_cmd_check(const hf_options *options, FILE *file, hf_messages *messages)
+/* HF_OK; HF_BAD_CASE with all faults; an ill-posed status when the trial finds the scene ill-posed. */
+static hf_status command_check(const hf_options *options, FILE *file, hf_messages *messages)
 {
     hf_problem p = {0};
     hf_status status = check(&p, options, file, messages);
     hf_problem_free(&p);
     return status;
 }
+
+const hf_command hf_cmd_check = {
+    .name = "check",
+    .argument = "CASE",
+    .help = "validate; print what will run, what is skipped, sizes, memory and expected time",
+    .about = "The form-finding is tried, the optimisation is not, and nothing is written. All errors of the case are "
+             "told in one go, with file, line and column.",
+    .examples = "hifdm check case.yaml --threads 64",
+    .uses_threads = true,
+    .run = command_check,
+};

@@ -1,6 +1,15 @@
-/* Contents: the table - the base design - evaluation - writing - together */
-#include "app/cmd_evaluate.h"
+/* `hifdm evaluate`: a table of designs, for optimisers and surveys of the user's own.
+ *
+ * in : a column for each boundary cable with a free end, named by its id, in any order; optionally `id`, which names
+ *      rows. One design per row: boundary pretensions in N.
+ * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations, a row for each design in the
+ *      same order, with 17 significant digits and nan where there is no value. Without an id column rows are numbered
+ *      from 1.
+ *
+ * Contents: the table - the base design - evaluation - writing - together */
+#include "app/cmd.h"
 
+#include "app/options.h"
 #include "base/clock.h"
 #include "base/csv.h"
 #include "base/file_out.h"
@@ -255,8 +264,24 @@ static hf_status execute(job *j, const hf_options *o, const char *path, FILE *fi
     return HF_OK;
 }
 
-hf_status hf_cmd_evaluate(const hf_options *options, FILE *file, hf_messages *messages)
+static hf_status check_options(const hf_options *o, hf_messages *messages)
 {
+    if (!o->designs == !o->template_path)
+        return hf_error(messages, HF_BAD_USAGE, "'hifdm evaluate' needs either --designs FILE or --template FILE");
+    if (o->template_path && o->output) return hf_error(messages, HF_BAD_USAGE, "'-o' does not go with --template");
+    if (o->designs && o->json && !o->output)
+        return hf_error(messages, HF_BAD_USAGE,
+                        "--json needs -o FILE here: without it the table takes standard output");
+    return HF_OK;
+}
+
+/* Evaluates options->designs into options->output, or into `file` without one; or writes options->template_path. A line
+ * for people or, with options->json, one object about it goes to `file`. HF_OK also when designs are infeasible;
+ * HF_BAD_CASE for a faulty case or table, HF_EXISTS, HF_IO, HF_NO_MEMORY, or the status of a form-finding that failed.
+ */
+static hf_status command_evaluate(const hf_options *options, FILE *file, hf_messages *messages)
+{
+    HF_TRY(check_options(options, messages));
     job j = {.best = -1};
     const char *path = options->template_path ? options->template_path : options->output;
     hf_status status = execute(&j, options, path, file, messages);
@@ -269,3 +294,16 @@ hf_status hf_cmd_evaluate(const hf_options *options, FILE *file, hf_messages *me
     job_free(&j);
     return status;
 }
+
+const hf_command hf_cmd_evaluate = {
+    .name = "evaluate",
+    .argument = "CASE",
+    .help = "evaluate a table of designs (boundary pretensions), to a table on standard output or -o",
+    .about = "For an optimiser of your own: a row of the table is a design, one pretension in N for each boundary "
+             "cable with a free end; a row of the answer is its psi, residual and tension ratios, to the same bits as "
+             "in hifdm run. All cores work.",
+    .examples = "hifdm evaluate case.yaml --template base.csv\n"
+                "hifdm evaluate case.yaml --designs designs.csv -o results.csv",
+    .uses_threads = true,
+    .run = command_evaluate,
+};

@@ -1,10 +1,10 @@
-/* Contents: names - which points - one point - progress - sweep - status - merge */
-#include "app/cmd_sweep.h"
+/* `hifdm sweep`: the points of a study that are missing, on all cores.
+ * Contents: which points - one point - sweep */
+#include "app/cmd.h"
 
+#include "app/study_files.h"
 #include "base/clock.h"
-#include "base/json.h"
-#include "base/path.h"
-#include "store/merge.h"
+#include "base/signals.h"
 #include "out/print.h"
 #include "search/parallel.h"
 #include "base/later.h"
@@ -17,26 +17,13 @@
 #include <string.h>
 #include <unistd.h>
 
-#define FAILURES_SHOWN 10
 #define REFRESH_S 0.1 /* of the line on a terminal */
 #define LOG_S 60.0    /* between lines in a log */
-
-/* ---- names ---- */
-
-/* --dir, -o, or the study's name with another ending, in the current folder. */
-static hf_status choose_name(const char *given, const char *study, const char *ending, char name[HF_PATH_SIZE],
-                             hf_messages *messages)
-{
-    if (hf_path_choose(given, study, ending, name, HF_PATH_SIZE) && *name) return HF_OK;
-    return hf_error(messages, HF_IO, "%s: no usable path", given ? given : study);
-}
 
 /* ---- which points ---- */
 
 typedef struct {
     const hf_options *options;
-    int argc;
-    char *const *argv;
     const volatile sig_atomic_t *stop_requested;
     const hf_study *study;
     hf_ledger ledger;
@@ -227,8 +214,8 @@ static void run_point(void *context, int k)
                               .no_file = !hf_study_has_files(w->study),
                               .restart = w->state[i] == HF_POINT_FAILED || is_empty,
                               .threads = w->threads,
-                              .argc = w->argc,
-                              .argv = w->argv,
+                              .argc = w->options->argc,
+                              .argv = w->options->argv,
                               .stop_requested = w->stop_requested,
                               .unsettled = &p->store};
     p->status = hf_run_point(&request, &p->summary, output, &p->said);
@@ -239,18 +226,6 @@ static void run_point(void *context, int k)
 }
 
 /* ---- sweep ---- */
-
-static void say_failures(const hf_study *study, const hf_points *points, FILE *file)
-{
-    int n = 0;
-    for (int i = 0; i < points->n_point; i++) {
-        char text[256];
-        if (points->point[i].state != HF_POINT_FAILED || n++ >= FAILURES_SHOWN) continue;
-        hf_study_point_text(study, i, text, sizeof text);
-        fprintf(file, "  %s  %s: %s\n", study->id[i], text, points->point[i].reason);
-    }
-    if (n > FAILURES_SHOWN) fprintf(file, "  and %d more\n", n - FAILURES_SHOWN);
-}
 
 static hf_status run_points(sweep *w, FILE *file)
 {
@@ -292,21 +267,18 @@ static hf_status sweep_study(sweep *w, const char *folder, int task, int tasks, 
     return status;
 }
 
-hf_status hf_cmd_sweep(const hf_options *o, int argc, char *const *argv, const volatile sig_atomic_t *stop_requested,
-                       FILE *file, hf_messages *messages)
+static hf_status command_sweep(const hf_options *o, FILE *file, hf_messages *messages)
 {
     char folder[HF_PATH_SIZE];
     hf_study study;
     sweep w = {.options = o,
-               .argc = argc,
-               .argv = argv,
-               .stop_requested = stop_requested,
+               .stop_requested = hf_signals_watch(),
                .study = &study,
                .threads = o->threads ? o->threads : hf_batch_default_threads(),
                .messages = messages};
     int task, tasks;
     HF_TRY(choose_task(o, &task, &tasks, messages));
-    HF_TRY(choose_name(o->folder, o->file, ".d", folder, messages));
+    HF_TRY(hf_study_files_name(o->folder, o->file, ".d", folder, messages));
     hf_status status = hf_study_read(o->file, &study, messages);
     pthread_mutex_init(&w.lock, NULL);
     if (status == HF_OK) status = sweep_study(&w, folder, task, tasks, file);
@@ -317,95 +289,15 @@ hf_status hf_cmd_sweep(const hf_options *o, int argc, char *const *argv, const v
     return status;
 }
 
-/* ---- status ---- */
-
-static void write_status_json(const hf_study *study, const hf_points *points, FILE *file)
-{
-    const char *separator = "";
-    fprintf(file, "{\"points\": %d", points->n_point);
-    for (int k = 0; k < HF_N_POINT_STATE; k++)
-        fprintf(file, ", \"%s\": %d", hf_point_state_word[k], points->count[k]);
-    fputs(",\n \"failures\": [", file);
-    for (int i = 0; i < points->n_point; i++) {
-        char text[1024];
-        if (points->point[i].state != HF_POINT_FAILED) continue;
-        hf_study_point_text(study, i, text, sizeof text);
-        fprintf(file, "%s\n  {", separator);
-        hf_json_text("id", study->id[i], file);
-        fputs(", ", file);
-        hf_json_text("point", text, file);
-        fputs(", ", file);
-        hf_json_text("status", hf_status_word(points->point[i].status), file);
-        fputs(", ", file);
-        hf_json_text("reason", points->point[i].reason, file);
-        fputc('}', file);
-        separator = ",";
-    }
-    fputs("]}\n", file);
-}
-
-static void say_status(const hf_study *study, const char *folder, const hf_points *points, FILE *file)
-{
-    int n_begun = 0;
-    for (int i = 0; i < points->n_point; i++) {
-        char path[HF_PATH_SIZE + 32];
-        n_begun +=
-            points->point[i].state == HF_POINT_MISSING && hf_ledger_file(folder, study, i, path) == HF_LEDGER_FILE;
-    }
-    fprintf(file, "%s: %d points, results in %s\n", study->path, points->n_point, folder);
-    for (int k = 0; k < HF_N_POINT_STATE; k++)
-        if (points->count[k] || k != HF_POINT_OUTDATED)
-            fprintf(file, "  %-9s %d\n", hf_point_state_word[k], points->count[k]);
-    if (n_begun) fprintf(file, "  of the missing ones, %d were begun and will go on\n", n_begun);
-    if (points->n_lost)
-        fprintf(file, "  of the missing ones, %d were done, but their files are gone or unfinished\n", points->n_lost);
-    if (points->count[HF_POINT_OUTDATED]) fprintf(file, "  outdated: of another version of %s\n", study->base);
-    if (points->count[HF_POINT_FAILED]) fprintf(file, "failed:\n");
-    say_failures(study, points, file);
-    if (points->count[HF_POINT_FAILED])
-        fprintf(file, "'hifdm sweep %s --retry failed' runs these anew and replaces their files\n", study->path);
-}
-
-/* What status and merge begin with. */
-static hf_status read_all(const hf_options *o, char folder[HF_PATH_SIZE], hf_study *study, hf_points *points,
-                          hf_messages *messages)
-{
-    *points = (hf_points){0};
-    *study = (hf_study){0};
-    HF_TRY(choose_name(o->folder, o->file, ".d", folder, messages));
-    HF_TRY(hf_study_read(o->file, study, messages));
-    return hf_ledger_read(folder, study, points, messages);
-}
-
-hf_status hf_cmd_status(const hf_options *o, FILE *file, hf_messages *messages)
-{
-    char folder[HF_PATH_SIZE];
-    hf_study study;
-    hf_points points;
-    hf_status status = read_all(o, folder, &study, &points, messages);
-    if (status == HF_OK && o->json)
-        write_status_json(&study, &points, file);
-    else if (status == HF_OK)
-        say_status(&study, folder, &points, file);
-    hf_points_free(&points);
-    hf_study_free(&study);
-    return status;
-}
-
-/* ---- merge ---- */
-
-hf_status hf_cmd_merge(const hf_options *o, FILE *file, hf_messages *messages)
-{
-    char folder[HF_PATH_SIZE], output[HF_PATH_SIZE];
-    hf_study study;
-    hf_points points;
-    hf_status status = read_all(o, folder, &study, &points, messages);
-    if (status == HF_OK) status = choose_name(o->output, o->file, ".h5", output, messages);
-    if (status == HF_OK) status = hf_merge(&study, folder, &points, output, o->force, messages);
-    if (status == HF_OK && !o->quiet)
-        fprintf(file, "%s: %d points, %d of them done, %d failed\n", output, points.n_point,
-                points.count[HF_POINT_DONE], points.count[HF_POINT_FAILED]);
-    hf_points_free(&points);
-    hf_study_free(&study);
-    return status;
-}
+const hf_command hf_cmd_sweep = {
+    .name = "sweep",
+    .argument = "STUDY",
+    .help = "run the points of a sweep that are missing, on all cores; each once, a failed one stops no other",
+    .about = "A study is a base case and axes over its keys. Points that are done are not run again, so the same "
+             "command goes on after whatever stopped it. In a Slurm array every task takes its share.",
+    .examples = "hifdm sweep study.yaml\n"
+                "hifdm sweep study.yaml --task 0 --tasks 8\n"
+                "hifdm sweep study.yaml --retry failed",
+    .uses_threads = true,
+    .run = command_sweep,
+};

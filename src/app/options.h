@@ -1,73 +1,60 @@
-/* options - the command line, from two tables that module help prints, too. */
+/* options - the command line. The table of options makes the reading, the help, the manual page and the completion. */
 #ifndef HIFDM_OPTIONS_H
 #define HIFDM_OPTIONS_H
 
-#include <hifdm/status.h>
+#include "app/cmd.h"
+#include "app/progress.h"
+#include "out/export.h"
 #include <stdint.h>
-#include <stdio.h>
-
-typedef enum {
-    HF_COMMAND_RUN, /* these four, to SWEEP, use threads */
-    HF_COMMAND_CHECK,
-    HF_COMMAND_EVALUATE,
-    HF_COMMAND_SWEEP,
-    HF_COMMAND_STATUS,
-    HF_COMMAND_MERGE,
-    HF_COMMAND_SHOW,
-    HF_COMMAND_REPORT,
-    HF_COMMAND_RECOVER,
-    HF_COMMAND_DIFF,
-    HF_COMMAND_EXPORT,
-    HF_COMMAND_SCHEMA,
-    HF_COMMAND_HELP,
-    HF_COMMAND_VERSION
-} hf_command;
-
-typedef struct {
-    const char *name, *argument, *help; /* argument: CASE, [COMMAND] if it may be left out, NULL */
-    hf_command command;
-} hf_command_row;
-
-/* argument: N, FILE, DIR, KEY=VALUE, the words themselves as in form|optimize|polish, NULL. */
-typedef struct {
-    const char *name, *letter, *argument, *help;
-    unsigned commands; /* bits of the commands that take it */
-    int id;
-} hf_option_row;
-
-extern const hf_command_row hf_command_table[];
-extern const int hf_n_command;
-extern const hf_option_row hf_option_table[]; /* a name may come more than once, for different commands */
-extern const int hf_n_option;
-
-int hf_option_goes_with(const hf_option_row *option, const hf_command_row *command);
 
 typedef enum { HF_HELP_TEXT, HF_HELP_MAN, HF_HELP_BASH } hf_help_form;
 
-typedef struct {
-    hf_command command;
-    const char *file;                    /* the CASE or FILE, NULL for commands without one */
-    const char *second;                  /* the other FILE of diff */
-    const char *output;                  /* -o */
-    const char *csv;                     /* --csv */
-    const char *vtk, *cutlist;           /* --vtk, --cutlist */
-    const char *designs, *template_path; /* --designs, --template */
-    const char *stage;                   /* --stage */
-    const char **set;                    /* [n_set] --set key=value, owned */
+struct hf_options {
+    const hf_command *command;
+    int argc; /* the whole command line, for the provenance of results */
+    char *const *argv;
+    const char *file;                     /* the CASE or FILE, NULL for commands without one */
+    const char *second;                   /* the other FILE of diff */
+    const char *output;                   /* -o */
+    const char *export_to[HF_N_EXPORTER]; /* where each exporter writes, NULL: not asked for */
+    const char *designs, *template_path;  /* --designs, --template */
+    const char *stage;                    /* --stage */
+    const char **set;                     /* [n_set] --set key=value, owned */
     int n_set;
     const char *folder; /* --dir */
     unsigned retry;     /* --retry, bits 1 << hf_point_state; 0 = not given */
     int task, tasks;    /* --task I --tasks N: -1, 0 = not given */
     int threads;        /* 0 = all cores; SLURM_CPUS_PER_TASK where --threads is not given */
-    int has_seed;
+    bool has_seed;
     uint64_t seed;
     double rtol, atol; /* of diff */
-    int progress;      /* hf_progress_mode */
-    int json, quiet, force;
-    int help;                    /* --help */
-    const hf_command_row *topic; /* of help; NULL = all commands */
+    hf_progress_mode progress;
+    bool json, quiet, force;
+    bool help;               /* --help */
+    const hf_command *topic; /* of help; NULL = all commands */
     hf_help_form help_as;
-} hf_options;
+};
+
+typedef struct hf_option hf_option;
+
+/* A row of the table. */
+struct hf_option {
+    const char *name, *letter; /* "--output", "-o" or NULL */
+    const char *argument; /* N, FILE, DIR, KEY=VALUE, the words themselves as in form|optimize|polish, NULL: none */
+    const char *help;
+    const char *commands; /* names of the commands that take it, separated by blanks; NULL: all */
+    hf_status (*read)(const hf_option *option, const char *value, hf_options *options, hf_messages *messages);
+    size_t offset;               /* in hf_options, for `read` */
+    const hf_exporter *exporter; /* of the option that asks for it, which names the option and its argument */
+};
+
+extern const int hf_n_option;
+
+/* Option i of 0..hf_n_option-1, in the order in which help prints them. A name may come more than once, for different
+ * commands. */
+hf_option hf_option_at(int i);
+
+bool hf_option_goes_with(const hf_option *option, const hf_command *command);
 
 /* HF_BAD_USAGE with a message that says what to write instead. Free with hf_options_free in any case. */
 hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_messages *messages);

@@ -5,22 +5,24 @@
 
 #include <unistd.h>
 
+const char *const hf_progress_word[6] = {"auto", "none", "line", "log", "jsonl", NULL};
 static const char *const phase_word[] = {"form", "optimize", "polish"};
-static const double interval_s[] = {0, 0, 0.1, HF_PROGRESS_LOG_S, 1};
+static const double interval_s[] = {0, 0, 0.1, HF_PROGRESS_LOG_S, 1}; /* by hf_progress_mode */
 
-hf_progress hf_progress_on(FILE *file, int mode)
+hf_progress hf_progress_on(FILE *file, hf_progress_mode mode)
 {
     if (mode == HF_PROGRESS_AUTO) mode = isatty(fileno(file)) ? HF_PROGRESS_LINE : HF_PROGRESS_LOG;
     return (hf_progress){.file = file, .mode = mode};
 }
 
-/* Of the evaluations of this process. */
+/* Evaluations of this process per second. */
 static double rate_per_s(const hf_run_progress *now)
 {
     return now->elapsed_s > 0 ? (double)now->evaluations / now->elapsed_s : 0;
 }
 
-/* At most: it may stagnate before. What an earlier process has done took none of this one's time. */
+/* An upper bound, since the optimisation may stagnate before its last generation. Generations of an earlier process are
+ * not counted: they took none of the elapsed time. */
 static double left_s(const hf_run_progress *now)
 {
     int done = now->generation - now->first_generation;
@@ -30,7 +32,7 @@ static double left_s(const hf_run_progress *now)
 static void show_line(hf_progress *p, const hf_run_progress *now)
 {
     char left[32];
-    int is_line = p->mode == HF_PROGRESS_LINE;
+    bool is_line = p->mode == HF_PROGRESS_LINE;
     hf_print_duration(left_s(now), left, sizeof left);
     fprintf(p->file, "%sgeneration %d/%d  best psi %.4f mm  %.0f evaluations/s  at most %s left%s",
             is_line ? "\r\033[K" : "", now->generation, now->generations, now->best_psi_m * 1e3, rate_per_s(now), left,
@@ -59,8 +61,8 @@ static void show_json(const hf_progress *p, const hf_run_progress *now)
 void hf_progress_show(void *progress, const hf_run_progress *now)
 {
     hf_progress *p = progress;
-    int is_first = now->generation <= now->first_generation + 1;
-    int is_last = now->generation > 0 && now->is_last;
+    bool is_first = now->generation <= now->first_generation + 1;
+    bool is_last = now->generation > 0 && now->is_last;
     if (p->mode == HF_PROGRESS_NONE || (now->phase != HF_RUN_EVOLVE && p->mode != HF_PROGRESS_JSONL)) return;
     if (is_first) p->last_s = p->mode == HF_PROGRESS_LOG ? 0 : -interval_s[p->mode];
     if (now->elapsed_s - p->last_s < interval_s[p->mode] && !(is_last && p->mode == HF_PROGRESS_JSONL)) return;
@@ -77,5 +79,5 @@ void hf_progress_end(hf_progress *p)
     if (!p->is_shown) return;
     fputs("\r\033[K", p->file);
     fflush(p->file);
-    p->is_shown = 0;
+    p->is_shown = false;
 }

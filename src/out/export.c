@@ -1,119 +1,17 @@
+/* What the exporters share, and their table. */
 #include "out/export.h"
 
-#include "base/csv.h"
-#include "base/file_out.h"
-#include <hifdm/store.h>
-
 #include <errno.h>
-#include <math.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #define PATH_SIZE 1200
 
-typedef struct {
-    const hf_scene *scene;
-    const hf_shape *shape;
-} view;
+#define ROW(name) &hf_exporter_##name,
+const hf_exporter *const hf_exporter_table[HF_N_EXPORTER] = {HF_EXPORTERS(ROW)};
+#undef ROW
 
-static void write_nodes(const void *context, FILE *f)
-{
-    const hf_scene *s = ((const view *)context)->scene;
-    const hf_shape *shape = ((const view *)context)->shape;
-    fputs("id,x_m,y_m,z_m,x0_m,y0_m,z0_m,role\n", f);
-    for (int i = 0; i < s->n_node; i++) {
-        const double *p = shape->position_m + 3 * (size_t)i, *p0 = s->position_m + 3 * (size_t)i;
-        hf_csv_write_id(s->node_id[i], f);
-        fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%s\n", p[0], p[1], p[2], p0[0], p0[1], p0[2],
-                hf_role_word[s->role[i]]);
-    }
-}
-
-static void write_cables(const void *context, FILE *f)
-{
-    const hf_scene *s = ((const view *)context)->scene;
-    const hf_shape *shape = ((const view *)context)->shape;
-    fputs("id,i,j,group,law,length_m,tension_N,q_N_per_m\n", f);
-    for (int e = 0; e < s->n_cable; e++) {
-        hf_csv_write_id(s->cable_id[e], f);
-        fputc(',', f);
-        hf_csv_write_id(s->node_id[s->end[2 * e]], f);
-        fputc(',', f);
-        hf_csv_write_id(s->node_id[s->end[2 * e + 1]], f);
-        fprintf(f, ",%s,%s,%.17g,%.17g,%.17g\n", hf_group_word[s->group[e]], hf_law_word[shape->law[e]],
-                shape->length_m[e], shape->tension_N[e], shape->q_N_per_m[e]);
-    }
-}
-
-typedef struct {
-    const hf_truss *truss;
-    const hf_carrier_state *state;
-} truss_view;
-
-static void write_fixed(unsigned char fixed, FILE *f)
-{
-    const char *gap = "";
-    if (fixed == 0x3f) fputs("all", f);
-    for (int k = 0; k < HF_TRUSS_DOF && fixed != 0x3f; k++) {
-        if (!(fixed >> k & 1)) continue;
-        fprintf(f, "%s%s", gap, hf_dof_word[k]);
-        gap = " ";
-    }
-}
-
-static void write_truss_nodes(const void *context, FILE *f)
-{
-    const hf_truss *t = ((const truss_view *)context)->truss;
-    const double *u = ((const truss_view *)context)->state->displacement;
-    fprintf(f, "id,x_m,y_m,z_m,fixed,mass_kg%s\n", u ? ",ux_m,uy_m,uz_m,rx_rad,ry_rad,rz_rad" : "");
-    for (int i = 0; i < t->n_node; i++) {
-        const double *p = t->position_m + 3 * (size_t)i;
-        hf_csv_write_id(t->node_id[i], f);
-        fprintf(f, ",%.17g,%.17g,%.17g,", p[0], p[1], p[2]);
-        write_fixed(t->fixed[i], f);
-        fprintf(f, ",%.17g", t->mass_kg[i]);
-        for (int c = 0; u && c < HF_TRUSS_DOF; c++)
-            fprintf(f, ",%.17g", u[HF_TRUSS_DOF * (size_t)i + (size_t)c]);
-        fputc('\n', f);
-    }
-}
-
-static void write_members(const void *context, FILE *f)
-{
-    const hf_truss *t = ((const truss_view *)context)->truss;
-    const double *end_force = ((const truss_view *)context)->state->end_force;
-#define COLUMN_NAME(name, units, otherwise, description) "," #name
-    fprintf(f, "id,i,j" HF_MEMBER_NUMBERS(COLUMN_NAME) ",joint,unit%s\n",
-            end_force ? ",Nx_i_N,Vy_i_N,Vz_i_N,Tx_i_Nm,My_i_Nm,Mz_i_Nm,Nx_j_N,Vy_j_N,Vz_j_N,Tx_j_Nm,My_j_Nm,Mz_j_Nm"
-                      : "");
-#undef COLUMN_NAME
-    for (int e = 0; e < t->n_member; e++) {
-#define VALUE(name, units, otherwise, description) t->name[e],
-        const double number[] = {HF_MEMBER_NUMBERS(VALUE)};
-#undef VALUE
-        hf_csv_write_id(t->member_id[e], f);
-        for (int k = 0; k < 2; k++) {
-            fputc(',', f);
-            hf_csv_write_id(t->node_id[t->end[2 * e + k]], f);
-        }
-        for (size_t k = 0; k < sizeof number / sizeof *number; k++)
-            fprintf(f, isfinite(number[k]) ? ",%.17g" : ",", number[k]); /* an infinite shear area is left out */
-        fprintf(f, ",%s,%s", hf_joint_word[t->joint[e]], hf_unit_word[t->unit[e]]);
-        for (size_t k = 0; end_force && k < 12; k++)
-            fprintf(f, ",%.17g", end_force[12 * (size_t)e + k]);
-        fputc('\n', f);
-    }
-}
-
-/* The path of one file; refused when it is there and not to be replaced. */
-static hf_status claim(const hf_export_request *o, const char *name, char path[PATH_SIZE], hf_messages *messages)
-{
-    if (snprintf(path, PATH_SIZE, "%s/%s", o->output, name) >= PATH_SIZE)
-        return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
-    return hf_export_claim(path, o->force, messages);
-}
-
-hf_status hf_export_claim(const char *path, int force, hf_messages *messages)
+hf_status hf_export_claim(const char *path, bool force, hf_messages *messages)
 {
     struct stat info;
     if (lstat(path, &info) != 0) return HF_OK;
@@ -135,7 +33,7 @@ hf_status hf_export_read(const hf_export_request *o, hf_summary *summary, hf_sce
                          const char **word, hf_messages *messages)
 {
     HF_TRY(hf_store_read_summary(o->file, summary, messages));
-    int has[3] = {1, hf_summary_has_best_shape(summary), summary->has_polish};
+    bool has[3] = {1, hf_summary_has_best_shape(summary), summary->has_polish};
     hf_stage stage = has[HF_STAGE_POLISH] && summary->polish_is_result ? HF_STAGE_POLISH
                      : has[HF_STAGE_OPTIMIZE]                          ? HF_STAGE_OPTIMIZE
                                                                        : HF_STAGE_FORM;
@@ -146,54 +44,4 @@ hf_status hf_export_read(const hf_export_request *o, hf_summary *summary, hf_sce
         return hf_error(messages, HF_BAD_USAGE, "%s: this run has no %s shape; use --stage form", o->file, *word);
     HF_TRY(hf_store_read_scene(o->file, scene, messages));
     return hf_store_read_shape(o->file, stage, shape, messages);
-}
-
-static hf_status export_truss(const hf_export_request *o, hf_truss *truss, hf_carrier_state *state, char *said,
-                              size_t size, hf_messages *messages)
-{
-    char nodes[PATH_SIZE], members[PATH_SIZE];
-    const truss_view both = {truss, state};
-    HF_TRY(claim(o, "truss_nodes.csv", nodes, messages));
-    HF_TRY(claim(o, "members.csv", members, messages));
-    HF_TRY(hf_store_read_truss(o->file, truss, state, messages));
-    HF_TRY(hf_file_out_write(nodes, write_truss_nodes, &both, messages));
-    HF_TRY(hf_file_out_write(members, write_members, &both, messages));
-    size_t used = strlen(said);
-    snprintf(said + used, size - used, "; %d nodes and %d members of the truss in %s and %s", truss->n_node,
-             truss->n_member, nodes, members);
-    return HF_OK;
-}
-
-static hf_status export_shape(const hf_export_request *o, hf_scene *scene, hf_shape *shape, char *said, size_t size,
-                              hf_messages *messages)
-{
-    hf_summary summary;
-    const char *word;
-    char nodes[PATH_SIZE], cables[PATH_SIZE];
-    HF_TRY(hf_export_read(o, &summary, scene, shape, &word, messages));
-    HF_TRY(hf_export_folder(o->output, messages));
-    HF_TRY(claim(o, "nodes.csv", nodes, messages)); /* both before either is written */
-    HF_TRY(claim(o, "cables.csv", cables, messages));
-    const view both = {scene, shape};
-    HF_TRY(hf_file_out_write(nodes, write_nodes, &both, messages));
-    HF_TRY(hf_file_out_write(cables, write_cables, &both, messages));
-    snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s and %s", o->file, scene->n_node,
-             scene->n_cable, word, nodes, cables);
-    if (!summary.has_truss) return HF_OK;
-    hf_truss truss = {0};
-    hf_carrier_state state = {0};
-    hf_status status = export_truss(o, &truss, &state, said, size, messages);
-    hf_truss_free(&truss);
-    hf_carrier_state_free(&state);
-    return status;
-}
-
-hf_status hf_export(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
-{
-    hf_scene scene = {0};
-    hf_shape shape = {0};
-    hf_status status = export_shape(request, &scene, &shape, said, size, messages);
-    hf_shape_free(&shape);
-    hf_scene_free(&scene);
-    return status;
 }

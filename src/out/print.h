@@ -1,4 +1,4 @@
-/* print - what people read: summary, schema. */
+/* print - what people read: the summary of a result, durations and sizes with units. */
 #ifndef HIFDM_PRINT_H
 #define HIFDM_PRINT_H
 
@@ -6,9 +6,6 @@
 
 /* The summary in a few lines. path: of the result file, or NULL. */
 void hf_print_summary(const hf_summary *summary, const char *path, FILE *file);
-
-/* The reference of the case file, as a commented YAML file. */
-void hf_print_schema(FILE *file);
 
 /* "85 us", "1.3 ms", "2.7 s", "4 min 10 s" */
 void hf_print_duration(double seconds, char *text, size_t size);

@@ -1,9 +1,22 @@
-#include "out/cutlist.h"
+/* What the workshop needs to make a net, from a stored shape. For --cutlist NAME.csv three CSV files:
+ *
+ * NAME.csv       : id,i,j,group,tension_N,length_m,l0_m,elongation_m,EA_N,adjustment_m,law,value
+ *                  l0_m          unstressed length, length_m / (1 + T/EA); a slack cable of law length or elastic has
+ *                                the length that its law gives
+ *                  elongation_m  length_m - l0_m
+ *                  adjustment_m  l0_m less the unstressed length, under the same tension, of a cable cut for the
+ *                                theoretical shape: what a turnbuckle must give (> 0) or take up (< 0) in a net that
+ *                                was cut from the drawing
+ *                  law, value    "elastic" and l0_m again: NAME.csv is also the cables.csv of the net as built
+ * NAME_nodes.csv : id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]    where the jig holds each node; also a nodes.csv
+ * NAME_totals.csv: group,cables,l0_m,length_m,least_tension_N,largest_tension_N,least_adjustment_m,
+ *                  largest_adjustment_m    by group, and for all
+ * 17 significant digits: the net that is built from them has the stored shape. */
+#include "out/export.h"
 
 #include "base/csv.h"
 #include "base/file_out.h"
 #include "base/path.h"
-#include "out/export.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
 
@@ -143,7 +156,8 @@ static hf_status write_all(const hf_export_request *o, hf_scene *scene, hf_shape
     return HF_OK;
 }
 
-hf_status hf_cutlist(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
+/* HF_BAD_CASE when cables have no EA, with their group. */
+static hf_status export_cutlist(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
 {
     hf_scene scene = {0};
     hf_shape shape = {0};
@@ -152,3 +166,11 @@ hf_status hf_cutlist(const hf_export_request *request, char *said, size_t size, 
     hf_scene_free(&scene);
     return status;
 }
+
+const hf_exporter hf_exporter_cutlist = {
+    .option = "--cutlist",
+    .argument = "FILE",
+    .help = "write unstressed lengths to FILE, the jig and totals beside it",
+    .takes_stage = true,
+    .write = export_cutlist,
+};

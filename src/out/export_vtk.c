@@ -1,9 +1,20 @@
-/* Contents: a grid of lines - its file - the shapes of a run - the truss - together */
-#include "out/vtk.h"
+/* The shapes of a run for ParaView: VTKHDF 1.0 files of an unstructured grid of lines, read by VTK 9.1, ParaView 5.11
+ * and newer. The folder of --vtk gets theoretical.hdf, form.hdf, and optimize.hdf and polish.hdf if the run has them.
+ *
+ * Points and cells are in the order of the scene. Point data: role, load_N; of a found shape displacement_m (from the
+ * theoretical shape) and its size deviation_m; normal_error_m, when the case asks for measures of the surface. Cell
+ * data: group, law, length_m, EA_N; of a found shape tension_N, q_N_per_m, slack, length_change_m (from the theoretical
+ * length). Words are numbers here: role 0 support, 1 inner, 2 edge; group 0 inner, 1 boundary; law 0 tension, 1 length,
+ * 2 force_density, 3 elastic.
+ *
+ * truss.hdf, of a run with one: points fixed (bit k: dof k is held), mass_kg, displacement_m, rotation_rad; cells unit,
+ * joint, axial_force_N (tension > 0).
+ *
+ * Contents: a grid of lines - its file - the shapes of a run - the truss - together */
+#include "out/export.h"
 
 #include "base/arena.h"
 #include "base/file_out.h"
-#include "out/export.h"
 #include "store/hdf5.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
@@ -299,7 +310,7 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
     return HF_OK;
 }
 
-hf_status hf_vtk(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
+static hf_status export_vtk(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
 {
     hf_scene scene = {0};
     hf_summary summary;
@@ -317,3 +328,11 @@ hf_status hf_vtk(const hf_export_request *request, char *said, size_t size, hf_m
     hf_scene_free(&scene);
     return status;
 }
+
+const hf_exporter hf_exporter_vtk = {
+    .option = "--vtk",
+    .argument = "DIR",
+    .help = "write every shape of the run into DIR, for ParaView (VTKHDF)",
+    .takes_stage = false,
+    .write = export_vtk,
+};

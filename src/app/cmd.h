@@ -1,0 +1,50 @@
+/* cmd - the commands of `hifdm`. The file cmd_NAME.c holds the command NAME: its row and what it does. A new command is
+ * such a file and its name in HF_COMMANDS; its options are rows in options.c. */
+#ifndef HIFDM_CMD_H
+#define HIFDM_CMD_H
+
+#include <hifdm/status.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+typedef struct hf_options hf_options;
+
+typedef struct {
+    const char *name;
+    const char *argument; /* "CASE"; "A B": two files; "[COMMAND]": may be left out; NULL: none */
+    const char *help;     /* one line */
+    const char *about;    /* what the options do not tell, a paragraph; NULL: nothing */
+    const char *examples; /* command lines, separated by '\n'; NULL: none */
+    bool uses_threads;    /* LAPACK and OpenMP are set up for options->threads before it runs */
+    /* Output for people or programs goes to `file`. The returned status becomes the exit status of the program. */
+    hf_status (*run)(const hf_options *options, FILE *file, hf_messages *messages);
+} hf_command;
+
+/* In the order in which help lists them. */
+#define HF_COMMANDS(X)                                                                                                 \
+    X(run)                                                                                                             \
+    X(check)                                                                                                           \
+    X(evaluate)                                                                                                        \
+    X(sweep)                                                                                                           \
+    X(status)                                                                                                          \
+    X(merge)                                                                                                           \
+    X(show)                                                                                                            \
+    X(recover)                                                                                                         \
+    X(diff)                                                                                                            \
+    X(report)                                                                                                          \
+    X(export)                                                                                                          \
+    X(schema)                                                                                                          \
+    X(help)                                                                                                            \
+    X(version)
+
+#define HF_COMMAND_ROW(name) extern const hf_command hf_cmd_##name;
+HF_COMMANDS(HF_COMMAND_ROW)
+#undef HF_COMMAND_ROW
+
+#define HF_COMMAND_COUNT(name) +1
+enum { HF_N_COMMAND = HF_COMMANDS(HF_COMMAND_COUNT) };
+#undef HF_COMMAND_COUNT
+
+extern const hf_command *const hf_command_table[HF_N_COMMAND];
+
+#endif

@@ -1,0 +1,31 @@
+/* `hifdm diff`: two result files, data set by data set. */
+#include "app/cmd.h"
+
+#include "app/options.h"
+#include "store/compare.h"
+
+static void tell_difference(void *context, const char *path, const char *how)
+{
+    fprintf(context, "%s%s\n", path, how);
+}
+
+static hf_status command_diff(const hf_options *o, FILE *file, hf_messages *messages)
+{
+    hf_comparison c = {.rtol = o->rtol, .atol = o->atol};
+    hf_status status = hf_compare_files(o->file, o->second, &c, tell_difference, file, messages);
+    if (status != HF_OK && status != HF_DIFFERENT) return status;
+    fprintf(file, "%d data sets, %d differ; attributes (times, machine, provenance, summary) are not compared\n",
+            c.n_data_set, c.n_different);
+    return status;
+}
+
+const hf_command hf_cmd_diff = {
+    .name = "diff",
+    .argument = "A B",
+    .help = "compare two result files, data set by data set; times and provenance (attributes) do not count",
+    .about = "Two runs of the same case and seed are equal to the bit, at any number of threads, with or without "
+             "interruptions. Exit status 1 and the first differences when the files differ.",
+    .examples = "hifdm diff monday.h5 tuesday.h5\n"
+                "hifdm diff mine.h5 yours.h5 --rtol 1e-9",
+    .run = command_diff,
+};

@@ -1,0 +1,62 @@
+/* `hifdm export`: a result in the formats of the table of exporters (out/export.h). */
+#include "app/cmd.h"
+
+#include "app/options.h"
+
+/* "--csv DIR, --vtk DIR or --cutlist FILE" */
+static void list_exporters(char *text, size_t size)
+{
+    size_t used = 0;
+    *text = '\0';
+    for (int i = 0; i < HF_N_EXPORTER && used < size; i++) {
+        const hf_exporter *e = hf_exporter_table[i];
+        const char *gap = i == 0 ? "" : i == HF_N_EXPORTER - 1 ? " or " : ", ";
+        used += (size_t)snprintf(text + used, size - used, "%s%s %s", gap, e->option, e->argument);
+    }
+}
+
+/* At least one format, and with --stage one that shows a single shape. */
+static hf_status check_request(const hf_options *o, hf_messages *messages)
+{
+    char list[512];
+    const hf_exporter *every_shape = NULL;
+    int n_asked = 0, n_one_shape = 0;
+    for (int i = 0; i < HF_N_EXPORTER; i++) {
+        if (!o->export_to[i]) continue;
+        n_asked++;
+        if (hf_exporter_table[i]->takes_stage)
+            n_one_shape++;
+        else
+            every_shape = hf_exporter_table[i];
+    }
+    list_exporters(list, sizeof list);
+    if (n_asked == 0) return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs %s", list);
+    if (o->stage && n_one_shape == 0)
+        return hf_error(messages, HF_BAD_USAGE, "--stage does not go with %s alone, which writes every shape",
+                        every_shape->option);
+    return HF_OK;
+}
+
+static hf_status command_export(const hf_options *o, FILE *file, hf_messages *messages)
+{
+    HF_TRY(check_request(o, messages));
+    for (int i = 0; i < HF_N_EXPORTER; i++) {
+        char said[HF_EXPORT_SAID_SIZE];
+        if (!o->export_to[i]) continue;
+        const hf_export_request request = {o->file, o->export_to[i], o->stage, o->force};
+        HF_TRY(hf_exporter_table[i]->write(&request, said, sizeof said, messages));
+        fprintf(file, "%s\n", said);
+    }
+    return HF_OK;
+}
+
+const hf_command hf_cmd_export = {
+    .name = "export",
+    .argument = "FILE",
+    .help = "write a result as CSV files, for ParaView, or as a cut list",
+    .about = "Numbers have 17 significant digits: read back they are the stored ones, bit by bit.",
+    .examples = "hifdm export chen2022.h5 --csv best\n"
+                "hifdm export chen2022.h5 --csv found --stage form\n"
+                "hifdm export chen2022.h5 --vtk shapes --cutlist cut.csv",
+    .run = command_export,
+};

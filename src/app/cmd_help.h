@@ -1,0 +1,29 @@
+/* cmd_help - what the forms of `hifdm help` share. All of them are made from the tables of commands, of options and of
+ * the keys of a case file. */
+#ifndef HIFDM_CMD_HELP_H
+#define HIFDM_CMD_HELP_H
+
+#include "app/options.h"
+
+#define HF_HELP_SUMMARY "shape and pretension of the cable net of a large deployable mesh reflector"
+#define HF_HELP_N_EXIT 7
+
+extern const struct hf_help_exit {
+    const char *code, *meaning;
+} hf_help_exit_table[HF_HELP_N_EXIT];
+
+/* The manual page, for man(1), and the completion for bash. Write errors stay with the stream. */
+void hf_help_man(FILE *file);
+void hf_help_bash(FILE *file);
+
+static inline const char *hf_help_space_before(const char *word)
+{
+    return word ? " " : "";
+}
+
+static inline const char *hf_help_or_nothing(const char *word)
+{
+    return word ? word : "";
+}
+
+#endif

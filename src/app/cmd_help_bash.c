@@ -1,0 +1,135 @@
+/* `hifdm help --bash`: the completion for bash. */
+#include "app/cmd_help.h"
+
+#include <hifdm/config.h>
+
+#include <string.h>
+
+static const char bash_head[] = "# Completion of hifdm for bash, made by `hifdm help --bash` from its tables.\n"
+                                "\n"
+                                "# Files that end in one of the arguments, and folders; without arguments all files.\n"
+                                "_hifdm_files()\n"
+                                "{\n"
+                                "    local end\n"
+                                "    compopt -o filenames 2>/dev/null\n"
+                                "    [ $# -gt 0 ] || mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n"
+                                "    [ $# -eq 0 ] || mapfile -t COMPREPLY < <(\n"
+                                "        for end; do compgen -f -X \"!*.$end\" -- \"$cur\"; done\n"
+                                "        compgen -d -- \"$cur\")\n"
+                                "}\n"
+                                "\n"
+                                "_hifdm()\n"
+                                "{\n"
+                                "    local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]}\n"
+                                "    local command=${COMP_WORDS[1]} words='' after_equals=''\n"
+                                "    COMPREPLY=()\n"
+                                "    if [ \"$COMP_CWORD\" = 1 ]; then\n"
+                                "        mapfile -t COMPREPLY < <(compgen -W '";
+
+/* Bash takes --name=value and KEY=VALUE apart at the '='. */
+static const char bash_equals[] = "' -- \"$cur\")\n"
+                                  "        return\n"
+                                  "    fi\n"
+                                  "    if [ \"$cur\" = = ]; then\n"
+                                  "        cur= after_equals=yes\n"
+                                  "    elif [ \"$prev\" = = ] && [ \"$COMP_CWORD\" -gt 2 ]; then\n"
+                                  "        prev=${COMP_WORDS[COMP_CWORD-2]} after_equals=yes\n"
+                                  "    fi\n"
+                                  "    case $command:$prev in\n";
+
+static const char bash_options[] = "    esac\n"
+                                   "    if [ -n \"$words$after_equals\" ]; then\n"
+                                   "        mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$cur\")\n"
+                                   "        return\n"
+                                   "    fi\n"
+                                   "    case $command:$cur in\n";
+
+static const char bash_tail[] = "    esac\n"
+                                "    [ -z \"$words\" ] || mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$cur\")\n"
+                                "}\n"
+                                "\n"
+                                "complete -F _hifdm hifdm\n";
+
+static void bash_commands(FILE *f)
+{
+    for (int i = 0; i < HF_N_COMMAND; i++)
+        fprintf(f, "%s%s", i ? " " : "", hf_command_table[i]->name);
+}
+
+/* What may stand behind an option; a number is nobody's to guess. */
+static void bash_value(const char *argument, FILE *f)
+{
+    if (!strcmp(argument, "FILE")) {
+        fputs("_hifdm_files; return", f);
+    } else if (!strcmp(argument, "DIR")) {
+        fputs("compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -d -- \"$cur\"); return", f);
+    } else if (!strcmp(argument, "KEY=VALUE")) {
+        fputs("compopt -o nospace 2>/dev/null; words='", f);
+        for (int i = 0; i < hf_n_field; i++)
+            fprintf(f, "%s%s=", i ? " " : "", hf_field_table[i].path);
+        fputs("'", f);
+    } else if (strchr(argument, '|')) {
+        fputs("words='", f);
+        for (const char *p = argument; *p; p++)
+            fputc(*p == '|' ? ' ' : *p, f);
+        fputs("'", f);
+    } else {
+        fputs("return", f);
+    }
+    fputs(" ;;\n", f);
+}
+
+static void bash_values(FILE *f)
+{
+    for (int i = 0; i < hf_n_option; i++) {
+        const hf_option o = hf_option_at(i);
+        int n = 0;
+        if (!o.argument) continue;
+        fputs("    ", f);
+        for (int k = 0; k < HF_N_COMMAND; k++) {
+            const hf_command *c = hf_command_table[k];
+            if (!hf_option_goes_with(&o, c)) continue;
+            fprintf(f, "%s%s:%s", n++ ? " | " : "", c->name, o.name);
+            if (o.letter) fprintf(f, " | %s:%s", c->name, o.letter);
+        }
+        fputs(") ", f);
+        bash_value(o.argument, f);
+    }
+    for (int i = 0; i < hf_n_field; i++) {
+        const hf_field *field = &hf_field_table[i];
+        if (!field->words) continue;
+        fprintf(f, "    *:%s) words='", field->path);
+        for (int k = 0; field->words[k]; k++)
+            fprintf(f, "%s%s", k ? " " : "", field->words[k]);
+        fputs("' ;;\n", f);
+    }
+}
+
+void hf_help_bash(FILE *f)
+{
+    fputs(bash_head, f);
+    bash_commands(f);
+    fputs(bash_equals, f);
+    bash_values(f);
+    fputs(bash_options, f);
+    for (int i = 0; i < HF_N_COMMAND; i++) {
+        const hf_command *c = hf_command_table[i];
+        fprintf(f, "    %s:-*) words='", c->name);
+        for (int k = 0, n = 0; k < hf_n_option; k++) {
+            const hf_option o = hf_option_at(k);
+            if (hf_option_goes_with(&o, c)) fprintf(f, "%s%s", n++ ? " " : "", o.name);
+        }
+        fputs("' ;;\n", f);
+        if (!c->argument) continue;
+        fprintf(f, "    %s:*) ", c->name);
+        if (!strcmp(c->argument, "[COMMAND]")) {
+            fputs("words='", f);
+            bash_commands(f);
+            fputs("' ;;\n", f);
+        } else {
+            int is_yaml = !strcmp(c->argument, "CASE") || !strcmp(c->argument, "STUDY");
+            fprintf(f, "_hifdm_files %s ;;\n", is_yaml ? "yaml yml" : "h5");
+        }
+    }
+    fputs(bash_tail, f);
+}

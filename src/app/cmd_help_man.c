@@ -1,0 +1,136 @@
+/* `hifdm help --man`: the manual page. */
+#include "app/cmd_help.h"
+
+#include <hifdm/config.h>
+#include <hifdm/store.h>
+
+/* Text as troff takes it: no request at the start of a line, a '-' that can be copied, lists that may be broken. */
+static void put_roff(const char *text, FILE *f)
+{
+    int at_start = 1;
+    for (const char *p = text; *p; p++) {
+        if (at_start && (*p == '.' || *p == '\'')) fputs("\\&", f);
+        at_start = *p == '\n';
+        switch (*p) {
+        case '\\':
+            fputs("\\e", f);
+            break;
+        case '-':
+            fputs("\\-", f);
+            break;
+        case ',':
+            fputs(p[1] == ' ' ? "," : ",\\:", f);
+            break;
+        case '\'':
+            fputs("\\(aq", f);
+            break;
+        case '^':
+            fputs("\\(ha", f);
+            break;
+        case '~':
+            fputs("\\(ti", f);
+            break;
+        case '`':
+            fputs("\\(ga", f);
+            break;
+        default:
+            fputc(*p, f);
+        }
+    }
+}
+
+/* "before", bold, "between", italic: a line of a page. */
+static void put_line(const char *before, const char *bold, const char *between, const char *italic, FILE *f)
+{
+    put_roff(before, f);
+    fputs("\\fB", f);
+    put_roff(bold, f);
+    fputs("\\fR", f);
+    put_roff(between, f);
+    fputs("\\fI", f);
+    put_roff(hf_help_or_nothing(italic), f);
+    fputs("\\fR\n", f);
+}
+
+static void put_paragraph(const char *request, const char *text, FILE *f)
+{
+    fputs(request, f);
+    put_roff(text, f);
+    fputc('\n', f);
+}
+
+static void man_command(const hf_command *c, FILE *f)
+{
+    fprintf(f, ".SS hifdm %s%s%s\n", c->name, hf_help_space_before(c->argument), hf_help_or_nothing(c->argument));
+    put_paragraph("", c->help, f);
+    if (c->about) put_paragraph(".PP\n", c->about, f);
+    for (int i = 0; i < hf_n_option; i++) {
+        const hf_option o = hf_option_at(i);
+        if (!hf_option_goes_with(&o, c) || !o.commands) continue;
+        fputs(".TP\n", f);
+        if (o.letter) {
+            fputs("\\fB", f);
+            put_roff(o.letter, f);
+            fputs("\\fR, ", f);
+        }
+        put_line("", o.name, hf_help_space_before(o.argument), o.argument, f);
+        put_paragraph("", o.help, f);
+    }
+    if (!c->examples) return;
+    put_paragraph(".PP\n.nf\n.RS\n", c->examples, f);
+    fputs(".RE\n.fi\n", f);
+}
+
+static void man_field(const hf_field *field, FILE *f)
+{
+    const char *value = field->default_value;
+    fputs(".TP\n", f);
+    put_line("", field->path, *field->unit ? ", " : "", field->unit, f);
+    put_roff(field->help, f);
+    fputs(".\n", f);
+    for (int i = 0; field->words && field->words[i]; i++)
+        put_line(i ? "| " : "", field->words[i], field->words[i + 1] ? "" : ".", NULL, f);
+    if (!value)
+        fputs("Required in its section.\n", f);
+    else if (*value)
+        put_line("Default: ", value, ".", NULL, f);
+}
+
+void hf_help_man(FILE *f)
+{
+    fprintf(f,
+            ".\\\" Made by `hifdm help --man` from its tables of commands, options and keys.\n"
+            ".TH HIFDM 1 \"\" \"hifdm %s\" \"User Commands\"\n.nh\n.ad l\n.SH NAME\nhifdm \\- " HF_HELP_SUMMARY
+            "\n.SH SYNOPSIS\n.nf\n",
+            hf_store_version());
+    for (int i = 0; i < HF_N_COMMAND; i++) {
+        const hf_command *c = hf_command_table[i];
+        fprintf(f, "\\fBhifdm %s\\fR%s\\fI%s\\fR [\\fIoption\\fR]...\n", c->name, hf_help_space_before(c->argument),
+                hf_help_or_nothing(c->argument));
+    }
+    fputs(".fi\n.SH DESCRIPTION\n", f);
+    put_roff("hifdm reads a case file, finds the shape of the net by the hybrid iterative force density method, "
+             "optimises the boundary tensions with a seeded genetic algorithm, and stores every generation in HDF5. "
+             "Options may stand anywhere behind the command; long ones may be joined to their value by an equals "
+             "sign. --help behind a command tells about it.\n",
+             f);
+    fputs(".SH COMMANDS\n", f);
+    for (int i = 0; i < HF_N_COMMAND; i++)
+        man_command(hf_command_table[i], f);
+    fputs(".SH CASE FILE\nYAML. Lengths are in metres, forces in newtons; the unit is the last part of a name.\n", f);
+    for (int i = 0; i < hf_n_field; i++)
+        man_field(&hf_field_table[i], f);
+    fputs(".SH EXIT STATUS\n", f);
+    for (int i = 0; i < HF_HELP_N_EXIT; i++)
+        fprintf(f, ".TP\n\\fB%s\\fR\n%s\n", hf_help_exit_table[i].code, hf_help_exit_table[i].meaning);
+    fputs(".SH ENVIRONMENT\n.TP\n\\fBOMP_WAIT_POLICY\\fR\n", f);
+    put_roff("passive, with GOMP_SPINCOUNT=2000, unless one of them is set: threads that spin for long while they wait "
+             "for one that is not running lose more than they gain.\n",
+             f);
+    fputs(".TP\n\\fBOPENBLAS_NUM_THREADS\\fR\n", f);
+    put_roff("1 unless it is set: nothing here uses the threads of the linear algebra.\n", f);
+    fputs(".SH SEE ALSO\n", f);
+    put_roff("Chen, Dong, Song, Chen, Li, Form-Finding Analysis of Mesh Reflector of Large Parabolic Cylindrical "
+             "Antenna, Aerospace 2022, 9, 239: the equations that are cited by number.\n",
+             f);
+}

@@ -1,0 +1,31 @@
+/* `hifdm merge`: the points of a study in one file. */
+#include "app/cmd.h"
+
+#include "app/study_files.h"
+#include "store/merge.h"
+
+static hf_status command_merge(const hf_options *o, FILE *file, hf_messages *messages)
+{
+    char folder[HF_PATH_SIZE], output[HF_PATH_SIZE];
+    hf_study study;
+    hf_points points;
+    hf_status status = hf_study_files_read(o, folder, &study, &points, messages);
+    if (status == HF_OK) status = hf_study_files_name(o->output, o->file, ".h5", output, messages);
+    if (status == HF_OK) status = hf_merge(&study, folder, &points, output, o->force, messages);
+    if (status == HF_OK && !o->quiet)
+        fprintf(file, "%s: %d points, %d of them done, %d failed\n", output, points.n_point,
+                points.count[HF_POINT_DONE], points.count[HF_POINT_FAILED]);
+    hf_points_free(&points);
+    hf_study_free(&study);
+    return status;
+}
+
+const hf_command hf_cmd_merge = {
+    .name = "merge",
+    .argument = "STUDY",
+    .help = "one HDF5 file with a table of all points and links to their result files",
+    .about = "At any time; points that are not there yet have the status not_evaluated.",
+    .examples = "hifdm merge study.yaml -o study.h5\n"
+                "hifdm report study.h5",
+    .run = command_merge,
+};

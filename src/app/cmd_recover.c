@@ -1,0 +1,21 @@
+/* `hifdm recover`: an unfinished result with the generations of its journal, without running on. */
+#include "app/cmd.h"
+
+#include "app/options.h"
+#include <hifdm/store.h>
+
+static hf_status command_recover(const hf_options *o, FILE *file, hf_messages *messages)
+{
+    hf_summary summary;
+    HF_TRY(hf_store_recover(o->file, &summary, messages));
+    return hf_cmd_show.run(o, file, messages);
+}
+
+const hf_command hf_cmd_recover = {
+    .name = "recover",
+    .argument = "FILE",
+    .help = "add the generations of FILE.journal to an unfinished result; `run` does that by itself",
+    .about = "For a result whose run was killed: as far as it came, without running on.",
+    .examples = "hifdm recover night.h5",
+    .run = command_recover,
+};

@@ -1,0 +1,23 @@
+/* `hifdm report`: a result or a merged study as one HTML page. */
+#include "app/cmd.h"
+
+#include "app/options.h"
+#include "out/report.h"
+
+static hf_status command_report(const hf_options *o, FILE *file, hf_messages *messages)
+{
+    const hf_export_request request = {.file = o->file, .output = o->output, .force = o->force};
+    char said[HF_EXPORT_SAID_SIZE];
+    HF_TRY(hf_report(&request, said, sizeof said, messages));
+    fprintf(file, "%s\n", said);
+    return HF_OK;
+}
+
+const hf_command hf_cmd_report = {
+    .name = "report",
+    .argument = "FILE",
+    .help = "write a result as one HTML page to look at: net, histories, tensions, summary",
+    .about = "The page is one file for any browser; it needs no network.",
+    .examples = "hifdm report chen2022.h5 -o chen2022.html",
+    .run = command_report,
+};

@@ -1,0 +1,49 @@
+/* `hifdm run`: one case, from its file to a result file. */
+#include "app/cmd.h"
+
+#include "app/options.h"
+#include "app/progress.h"
+#include "base/signals.h"
+#include "out/print.h"
+#include <hifdm/run.h>
+
+static hf_status command_run(const hf_options *o, FILE *file, hf_messages *messages)
+{
+    hf_summary summary;
+    char output[HF_OUTPUT_SIZE];
+    hf_progress progress = hf_progress_on(stderr, o->quiet ? HF_PROGRESS_NONE : o->progress);
+    hf_run_request request = {.case_path = o->file,
+                              .set = o->set,
+                              .n_set = o->n_set,
+                              .output = o->output,
+                              .restart = o->force,
+                              .threads = o->threads,
+                              .has_seed = o->has_seed,
+                              .seed = o->seed,
+                              .argc = o->argc,
+                              .argv = o->argv,
+                              .stop_requested = hf_signals_watch(),
+                              .observer = hf_progress_show,
+                              .observer_context = &progress};
+    hf_status status = hf_run_point(&request, &summary, output, messages);
+    hf_progress_end(&progress);
+    const char *path = *output ? output : NULL;
+    if (o->json)
+        hf_summary_write_json(&summary, status, messages->text, path, file);
+    else if (path && !o->quiet)
+        hf_print_summary(&summary, path, file);
+    return status;
+}
+
+const hf_command hf_cmd_run = {
+    .name = "run",
+    .argument = "CASE",
+    .help = "run what the case file contains and store it in one HDF5 file",
+    .about = "What the case file contains decides what runs: form-finding always, the genetic algorithm and "
+             "Levenberg-Marquardt with a section optimize. Every generation is stored. A run that was killed or told "
+             "to stop goes on when the same command is given again; a finished one is kept unless --restart is given.",
+    .examples = "hifdm run configs/chen2022.yaml\n"
+                "hifdm run case.yaml --set form.pretension_N=12 --seed 7 -o twelve.h5",
+    .uses_threads = true,
+    .run = command_run,
+};

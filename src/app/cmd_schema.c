@@ -1,0 +1,90 @@
+/* `hifdm schema`: the reference of the case file, as a commented YAML file. */
+#include "app/cmd.h"
+
+#include <hifdm/config.h>
+
+#include <string.h>
+
+static void print_range(const hf_field *field, FILE *f)
+{
+    static const char *const type[] = {"number", "whole number", "whole number",   "two whole numbers",
+                                       "",       "text",         "list of numbers"};
+    if (field->type == HF_FIELD_WORD) {
+        for (int k = 0; field->words[k]; k++)
+            fprintf(f, "%s%s", k ? " | " : "", field->words[k]);
+        return;
+    }
+    fprintf(f, "%s", type[field->type]);
+    if (field->type == HF_FIELD_TEXT) return;
+    if (field->min == HF_ABOVE_ZERO)
+        fprintf(f, " > 0");
+    else
+        fprintf(f, " >= %.10g", field->min);
+    if (field->max < 1e300) fprintf(f, ", <= %.10g", field->max);
+}
+
+static int depth_of(const char *path)
+{
+    int depth = 0;
+    for (; *path; path++)
+        depth += *path == '.';
+    return depth;
+}
+
+static const char *last_word(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot ? dot + 1 : path;
+}
+
+static int is_inside(const char *path, const char *section)
+{
+    size_t n = strlen(section);
+    return !strncmp(path, section, n) && path[n] == '.' && !strchr(path + n + 1, '.');
+}
+
+static void print_field(const hf_field *field, FILE *f)
+{
+    int indent = 2 * depth_of(field->path);
+    fprintf(f, "%*s# %s.\n%*s# ", indent, "", field->help, indent, "");
+    print_range(field, f);
+    if (*field->unit) fprintf(f, "; %s", field->unit);
+    if (!field->default_value)
+        fprintf(f, "; required\n%*s%s:\n", indent, "", last_word(field->path));
+    else if (!*field->default_value && field->type != HF_FIELD_TEXT)
+        fprintf(f, "; may be left out\n%*s# %s:\n", indent, "", last_word(field->path));
+    else
+        fprintf(f, "\n%*s%s: %s\n", indent, "", last_word(field->path),
+                *field->default_value ? field->default_value : "\"\"");
+}
+
+static void print_schema(FILE *f)
+{
+    const hf_field *field = hf_field_table;
+    const hf_section *section = hf_section_table;
+    fputs("# Every key of a hifdm case file, with its default. Units are the last part of a name.\n", f);
+    for (int i = 0; i < hf_n_field; i++)
+        if (!strchr(field[i].path, '.')) print_field(&field[i], f);
+    for (int s = 0; s < hf_n_section; s++) {
+        int indent = 2 * depth_of(section[s].path);
+        fprintf(f, "\n%*s# %s\n%*s%s:\n", indent, "", section[s].help, indent, "", last_word(section[s].path));
+        for (int i = 0; i < hf_n_field; i++)
+            if (is_inside(field[i].path, section[s].path)) print_field(&field[i], f);
+    }
+}
+
+static hf_status command_schema(const hf_options *o, FILE *file, hf_messages *messages)
+{
+    (void)o;
+    (void)messages;
+    print_schema(file);
+    return HF_OK;
+}
+
+const hf_command hf_cmd_schema = {
+    .name = "schema",
+    .help = "print every key of a case file: type, range, default, meaning",
+    .about = "The answer is itself a case file, with comments: every key at its default.",
+    .examples = "hifdm schema | less",
+    .run = command_schema,
+};

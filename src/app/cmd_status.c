@@ -1,0 +1,90 @@
+/* `hifdm status`: how many points of a study are in which state, and why some failed. */
+#include "app/cmd.h"
+
+#include "app/study_files.h"
+#include "base/json.h"
+
+#define FAILURES_SHOWN 10
+
+static void write_status_json(const hf_study *study, const hf_points *points, FILE *file)
+{
+    const char *separator = "";
+    fprintf(file, "{\"points\": %d", points->n_point);
+    for (int k = 0; k < HF_N_POINT_STATE; k++)
+        fprintf(file, ", \"%s\": %d", hf_point_state_word[k], points->count[k]);
+    fputs(",\n \"failures\": [", file);
+    for (int i = 0; i < points->n_point; i++) {
+        char text[1024];
+        if (points->point[i].state != HF_POINT_FAILED) continue;
+        hf_study_point_text(study, i, text, sizeof text);
+        fprintf(file, "%s\n  {", separator);
+        hf_json_text("id", study->id[i], file);
+        fputs(", ", file);
+        hf_json_text("point", text, file);
+        fputs(", ", file);
+        hf_json_text("status", hf_status_word(points->point[i].status), file);
+        fputs(", ", file);
+        hf_json_text("reason", points->point[i].reason, file);
+        fputc('}', file);
+        separator = ",";
+    }
+    fputs("]}\n", file);
+}
+
+static void say_failures(const hf_study *study, const hf_points *points, FILE *file)
+{
+    int n = 0;
+    for (int i = 0; i < points->n_point; i++) {
+        char text[256];
+        if (points->point[i].state != HF_POINT_FAILED || n++ >= FAILURES_SHOWN) continue;
+        hf_study_point_text(study, i, text, sizeof text);
+        fprintf(file, "  %s  %s: %s\n", study->id[i], text, points->point[i].reason);
+    }
+    if (n > FAILURES_SHOWN) fprintf(file, "  and %d more\n", n - FAILURES_SHOWN);
+}
+
+static void say_status(const hf_study *study, const char *folder, const hf_points *points, FILE *file)
+{
+    int n_begun = 0;
+    for (int i = 0; i < points->n_point; i++) {
+        char path[HF_PATH_SIZE + 32];
+        n_begun +=
+            points->point[i].state == HF_POINT_MISSING && hf_ledger_file(folder, study, i, path) == HF_LEDGER_FILE;
+    }
+    fprintf(file, "%s: %d points, results in %s\n", study->path, points->n_point, folder);
+    for (int k = 0; k < HF_N_POINT_STATE; k++)
+        if (points->count[k] || k != HF_POINT_OUTDATED)
+            fprintf(file, "  %-9s %d\n", hf_point_state_word[k], points->count[k]);
+    if (n_begun) fprintf(file, "  of the missing ones, %d were begun and will go on\n", n_begun);
+    if (points->n_lost)
+        fprintf(file, "  of the missing ones, %d were done, but their files are gone or unfinished\n", points->n_lost);
+    if (points->count[HF_POINT_OUTDATED]) fprintf(file, "  outdated: of another version of %s\n", study->base);
+    if (points->count[HF_POINT_FAILED]) fprintf(file, "failed:\n");
+    say_failures(study, points, file);
+    if (points->count[HF_POINT_FAILED])
+        fprintf(file, "'hifdm sweep %s --retry failed' runs these anew and replaces their files\n", study->path);
+}
+
+static hf_status command_status(const hf_options *o, FILE *file, hf_messages *messages)
+{
+    char folder[HF_PATH_SIZE];
+    hf_study study;
+    hf_points points;
+    hf_status status = hf_study_files_read(o, folder, &study, &points, messages);
+    if (status == HF_OK && o->json)
+        write_status_json(&study, &points, file);
+    else if (status == HF_OK)
+        say_status(&study, folder, &points, file);
+    hf_points_free(&points);
+    hf_study_free(&study);
+    return status;
+}
+
+const hf_command hf_cmd_status = {
+    .name = "status",
+    .argument = "STUDY",
+    .help = "count what is done, running, failed and missing, and say why",
+    .about = "At any time, from any machine that sees the folder of the results.",
+    .examples = "hifdm status study.yaml",
+    .run = command_status,
+};

@@ -1,0 +1,20 @@
+#include "app/study_files.h"
+
+#include "base/path.h"
+
+hf_status hf_study_files_name(const char *given, const char *study, const char *ending, char name[HF_PATH_SIZE],
+                              hf_messages *messages)
+{
+    if (hf_path_choose(given, study, ending, name, HF_PATH_SIZE) && *name) return HF_OK;
+    return hf_error(messages, HF_IO, "%s: no usable path", given ? given : study);
+}
+
+hf_status hf_study_files_read(const hf_options *o, char folder[HF_PATH_SIZE], hf_study *study, hf_points *points,
+                              hf_messages *messages)
+{
+    *points = (hf_points){0};
+    *study = (hf_study){0};
+    HF_TRY(hf_study_files_name(o->folder, o->file, ".d", folder, messages));
+    HF_TRY(hf_study_read(o->file, study, messages));
+    return hf_ledger_read(folder, study, points, messages);
+}
