@@ -1,8 +1,15 @@
-/* result - what comes of a form-finding: status, measures, why it stopped. Plain values, no pointers. */
+/* result - what a form-finding gives: status, measures, why it stopped. Plain values, no pointers.
+ * Stability: stable.
+ *
+ * HF_RESULT_LIST is the one list of the figures of a result. From it come the members of hf_form_result, the attributes
+ * of /form, best_... of /ga and those of /polish, the data sets of /ga with a value per individual, the columns of a
+ * sweep's ledger and of the merged study, the JSON objects of the stages (which the report shows), and the columns of
+ * `evaluate`. A new figure is a row here and the code that computes it. */
 #ifndef HIFDM_RESULT_H
 #define HIFDM_RESULT_H
 
 #include <hifdm/status.h>
+#include <stddef.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -41,46 +48,109 @@ typedef enum {
 
 const char *hf_coupling_stop_word(int stop); /* "unknown" for a foreign value */
 
+/* ---- The list: X(type, member, kind, json, individual, key, units, description) ----
+ *
+ * kind         of the stored value (REAL, INT, or an enumeration of the store's layout)
+ * json         place in the JSON object of a stage; equal places are in the order of the list; 0 = not there
+ * individual   place in a row that tells of one individual (data sets of /ga, columns of `evaluate`), likewise
+ * key          in JSON; the attribute has the name of the member
+ * description  of the data set, where there is one
+ *
+ * Attributes and columns of the ledger are in the order of the list. JSON has the figures of a coupling between places
+ * 4 and 5. Under a status other than HF_OK and HF_NOT_CONVERGED the REAL ones are NaN. In more detail:
+ *   culprit                 cable (COLLAPSED, NOT_FINITE; NOT_CONVERGED: the one whose rounding stands in the way), row
+ *                           of D (SINGULAR), chain (STRAIGHT_CHAIN)
+ *   psi_m                   Eq. 10
+ *   residual_N              with every cable at the tension of its law
+ *   length_error            for elastic cables L* = l0 (1 + T/EA); 0 without a cable of these laws
+ *   inner_tension_ratio     max T / min T of the group, as boundary_tension_ratio; NaN when the group is empty or a
+ *                           tension is not positive
+ *   position_error_m        this one, condition (INFINITY: singular) and backward_error are NaN unless hf_certify was
+ *                           called */
+#define HF_RESULT_LIST(X)                                                                                              \
+    X(hf_status, status, STATUS, 1, 1, "status", "", "ok = feasible; under any other psi is NaN")                      \
+    X(hf_stop_reason, stop_reason, STOP_REASON, 0, 0, "stop_reason", "", "why the iteration stopped")                  \
+    X(int, iterations, INT, 5, 2, "iterations", "", "linear solves")                                                   \
+    X(int, culprit, INT, 0, 0, "culprit", "", "what the status is about, see above, or -1")                            \
+    X(double, psi_m, REAL, 2, 1, "psi_m", "m", "RMS distance of the inner nodes")                                      \
+    X(double, residual_N, REAL, 4, 1, "residual_N", "N", "largest nodal force out of balance")                         \
+    X(double, tension_error, REAL, 4, 0, "tension_error", "", "max |T/T*-1| over cables of law tension; 0: none")      \
+    X(double, length_error, REAL, 4, 0, "length_error", "", "max |l/L*-1| over taut cables of law length or elastic")  \
+    X(double, inner_tension_ratio, REAL, 3, 1, "inner_tension_ratio", "", "largest over smallest")                     \
+    X(double, boundary_tension_ratio, REAL, 3, 1, "boundary_tension_ratio", "", "largest over smallest")               \
+    X(double, shortest_length_ratio, REAL, 4, 0, "shortest_length_ratio", "", "min l / theoretical l over all cables") \
+    X(double, position_error_m, REAL, 4, 0, "position_error_m", "m", "estimate: largest move in one more Newton step") \
+    X(double, condition, REAL, 4, 0, "condition", "", "estimate, of the Newton matrix, or D where there is none")      \
+    X(double, backward_error, REAL, 4, 0, "backward_error", "",                                                        \
+      "residual_N over the largest sum of tensions at a node")                                                         \
+    X(int, n_slack, INT, 5, 0, "slack_cables", "", "cables under HF_SLACK_RATIO of the reference tension")             \
+    X(int, n_loaded_chain, INT, 5, 0, "loaded_straight_chains", "",                                                    \
+      "chains under lateral load: their tensions mean nothing")
+
+/* The same of the coupling of the net with its truss. */
+#define HF_COUPLING_LIST(X)                                                                                            \
+    X(hf_coupling_stop, stop_reason, COUPLING_STOP, 4, 0, "stop_reason", "", "how the coupling ended")                 \
+    X(int, iterations, INT, 1, 0, "iterations", "", "form-findings of the loop; passes of the population solver")      \
+    X(double, step_m, REAL, 3, 0, "step_m", "m", "largest |F f - r| of an attachment: its move in the next iteration") \
+    X(double, ratio, REAL, 3, 0, "ratio", "", "of the last two steps; NaN before there are two")                       \
+    X(double, max_displacement_m, REAL, 2, 0, "max_displacement_m", "m", "largest displacement of an attachment")
+
+#define HF_RESULT_MEMBER(type, member, kind, json, individual, key, units, description) type member;
+
 /* All zero without a truss. */
 typedef struct {
-    hf_coupling_stop stop_reason;
-    int iterations;            /* form-findings of the loop; passes of the population solver */
-    double step_m;             /* largest |F f - r| of an attachment: what the next iteration would move it */
-    double ratio;              /* of the last two steps; NaN before there are two */
-    double max_displacement_m; /* largest displacement of an attachment */
+    HF_COUPLING_LIST(HF_RESULT_MEMBER)
 } hf_coupling_result;
 
-/* Plain values, no pointers. Under a status other than HF_OK and HF_NOT_CONVERGED the measures are NaN. */
 typedef struct {
-    hf_status status;
-    hf_stop_reason stop_reason;
-    int iterations;             /* linear solves */
-    int culprit;                /* cable (COLLAPSED, NOT_FINITE; NOT_CONVERGED: the one whose rounding stands
-                                   in the way), row of D (SINGULAR), chain (STRAIGHT_CHAIN), or -1 */
-    double psi_m;               /* Eq. 10 */
-    double residual_N;          /* largest nodal force out of balance with every cable at the tension of its law */
-    double tension_error;       /* max |T/T*-1| over cables of law tension, 0 without one */
-    double length_error;        /* max |l/L*-1| over taut cables of law length, or elastic with L* = l0 (1 + T/EA);
-                                   0 without one */
-    double inner_tension_ratio; /* max T / min T of the group; NaN when it is empty or a tension is not positive */
-    double boundary_tension_ratio;
-    double shortest_length_ratio; /* min l / theoretical l over all cables */
-    double position_error_m;      /* estimate: largest move of a node in the Newton step that would follow */
-    double condition;             /* estimate for the Newton matrix, or D where it has none; INFINITY: singular */
-    double backward_error;        /* residual_N over the largest sum of tensions at a node; the three are NaN unless
-                                       hf_certify was asked */
-    hf_coupling_result coupling;  /* of the net with its truss */
-    int n_slack;                  /* cables under HF_SLACK_RATIO of the reference tension */
-    int n_loaded_chain;           /* straight chains under lateral load: tensions there mean nothing */
+    HF_RESULT_LIST(HF_RESULT_MEMBER)
+    hf_coupling_result coupling;
 } hf_form_result;
 
-/* The same of each iteration of the coupling. Arrays of `capacity`, owned by the caller; entries beyond are lost. */
+/* Set every REAL member of HF_RESULT_LIST to NaN. */
+void hf_result_blank(hf_form_result *result);
+
+/* ---- The list at run time ---- */
+
+typedef enum {
+    HF_RESULT_REAL,
+    HF_RESULT_INT,
+    HF_RESULT_STATUS,
+    HF_RESULT_STOP_REASON,
+    HF_RESULT_COUPLING_STOP
+} hf_result_kind;
+
+typedef struct {
+    const char *name, *key, *units, *description;
+    hf_result_kind kind;
+    int json, individual;
+    size_t offset, size; /* in its struct */
+} hf_result_field;
+
+#define HF_RESULT_COUNT(type, member, kind, json, individual, key, units, description) +1
+#define HF_RESULT_COUNT_INDIVIDUAL(type, member, kind, json, individual, key, units, description) +(individual > 0)
+enum {
+    HF_RESULT_N = 0 HF_RESULT_LIST(HF_RESULT_COUNT),
+    HF_COUPLING_N = 0 HF_COUPLING_LIST(HF_RESULT_COUNT),
+    HF_RESULT_N_INDIVIDUAL = 0 HF_RESULT_LIST(HF_RESULT_COUNT_INDIVIDUAL)
+};
+enum { HF_RESULT_JSON_COUNTS = 5 }; /* the place from which on JSON has counts, behind the figures of a coupling */
+
+extern const hf_result_field hf_result_field_of[HF_RESULT_N];     /* of hf_form_result */
+extern const hf_result_field hf_coupling_field_of[HF_COUPLING_N]; /* of hf_coupling_result */
+
+/* The fields that tell of one individual, in their order. */
+void hf_result_list_individual(const hf_result_field *field[HF_RESULT_N_INDIVIDUAL]);
+
+/* ---- The way there ---- */
+
+/* What each iteration of the coupling looked like. Arrays of `capacity`, owned by the caller; more are not kept. */
 typedef struct {
     int capacity, n;
     double *step_m, *psi_m, *max_displacement_m;
 } hf_coupling_history;
 
-/* What each iteration looked like. Arrays of `capacity` >= max_iterations, owned by the caller. */
+/* What each iteration of the form-finding looked like. Arrays of `capacity` >= max_iterations, owned by the caller. */
 typedef struct {
     int capacity, n;
     double *psi_m, *residual_N, *inner_tension_ratio, *boundary_tension_ratio, *length_error;

@@ -157,19 +157,31 @@ static void write_row_id(const job *j, int row, FILE *f)
         fprintf(f, "%d", row + 1);
 }
 
+static void write_figure(const hf_result_field *field, const hf_form_result *r, FILE *f)
+{
+    const void *value = (const char *)r + field->offset;
+    if (field->kind == HF_RESULT_REAL)
+        write_number(*(const double *)value, f);
+    else if (field->kind == HF_RESULT_STATUS)
+        fprintf(f, ",%s", hf_status_word(*(const hf_status *)value));
+    else
+        fprintf(f, ",%d", *(const int *)value);
+}
+
 static void write_results(const void *context, FILE *f)
 {
     const job *j = context;
-    fputs("id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations\n", f);
+    const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
+    hf_result_list_individual(field);
+    fputs("id", f);
+    for (int k = 0; k < HF_RESULT_N_INDIVIDUAL; k++)
+        fprintf(f, ",%s", field[k]->name);
+    fputc('\n', f);
     for (int i = 0; i < j->table.n_row; i++) {
-        const hf_form_result *r = &j->result[i];
         write_row_id(j, i, f);
-        fprintf(f, ",%s", hf_status_word(r->status));
-        write_number(r->psi_m, f);
-        write_number(r->residual_N, f);
-        write_number(r->inner_tension_ratio, f);
-        write_number(r->boundary_tension_ratio, f);
-        fprintf(f, ",%d\n", r->iterations);
+        for (int k = 0; k < HF_RESULT_N_INDIVIDUAL; k++)
+            write_figure(field[k], &j->result[i], f);
+        fputc('\n', f);
     }
 }
 

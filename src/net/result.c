@@ -1,5 +1,8 @@
 #include <hifdm/result.h>
 
+#include <math.h>
+#include <string.h>
+
 const char *hf_stop_reason_word(int reason)
 {
     switch (reason) {
@@ -22,4 +25,30 @@ const char *hf_coupling_stop_word(int stop)
 #undef WORD
     }
     return "unknown";
+}
+
+/* ---- the list ---- */
+
+#define RESULT_FIELD(type, member, kind, json, individual, key, units, description)                                    \
+    {#member,     key, units, description, HF_RESULT_##kind, json, individual, offsetof(hf_form_result, member),       \
+     sizeof(type)},
+#define COUPLING_FIELD(type, member, kind, json, individual, key, units, description)                                  \
+    {#member,     key, units, description, HF_RESULT_##kind, json, individual, offsetof(hf_coupling_result, member),   \
+     sizeof(type)},
+const hf_result_field hf_result_field_of[HF_RESULT_N] = {HF_RESULT_LIST(RESULT_FIELD)};
+const hf_result_field hf_coupling_field_of[HF_COUPLING_N] = {HF_COUPLING_LIST(COUPLING_FIELD)};
+
+void hf_result_blank(hf_form_result *r)
+{
+    const double none = (double)NAN;
+    for (const hf_result_field *f = hf_result_field_of; f < hf_result_field_of + HF_RESULT_N; f++)
+        if (f->kind == HF_RESULT_REAL) memcpy((char *)r + f->offset, &none, sizeof none);
+}
+
+void hf_result_list_individual(const hf_result_field *field[HF_RESULT_N_INDIVIDUAL])
+{
+    int n = 0;
+    for (int place = 1; n < HF_RESULT_N_INDIVIDUAL; place++)
+        for (int i = 0; i < HF_RESULT_N; i++)
+            if (hf_result_field_of[i].individual == place) field[n++] = &hf_result_field_of[i];
 }

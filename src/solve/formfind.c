@@ -372,8 +372,7 @@ static hf_status finish(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
     if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) {
         r->stop_reason = HF_STOPPED_ILL_POSED;
-        r->psi_m = r->residual_N = r->tension_error = r->length_error = (double)NAN;
-        r->inner_tension_ratio = r->boundary_tension_ratio = r->shortest_length_ratio = (double)NAN;
+        hf_result_blank(r);
         r->n_slack = 0;
         return r->status;
     }

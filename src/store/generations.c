@@ -23,36 +23,29 @@ typedef struct {
     size_t stride, item_bytes;
 } ga_row;
 
+/* The figures of the individuals are those of <hifdm/result.h>, status first and psi_m behind it. */
 enum {
     ROW_DESIGN,
     ROW_EVALUATED,
-    ROW_STATUS,
+    ROW_RESULT,
+    ROW_STATUS = ROW_RESULT,
     ROW_PSI,
-    ROW_RESIDUAL,
-    ROW_INNER_RATIO,
-    ROW_BOUNDARY_RATIO,
-    ROW_ITERATIONS,
-    ROW_BEST_INDIVIDUAL = 11,
-    ROW_BEST_PSI = 12
+    ROW_BREEDING = ROW_RESULT + HF_RESULT_N_INDIVIDUAL,
+    ROW_BEST_INDIVIDUAL = ROW_BREEDING + 3,
+    ROW_BEST_PSI,
+    ROW_N = ROW_BEST_PSI + 4
 };
+_Static_assert(ROW_N == HF_GENERATIONS_PIECES, "count the rows again");
 
 static int list_rows(const hf_ga *g, ga_row row[HF_GENERATIONS_PIECES])
 {
     const hsize_t p = (hsize_t)g->n_individual, k = (hsize_t)g->n_gene;
-    const hf_form_result *r = g->result;
 #define ARRAY(member) g->member, sizeof *g->member, sizeof *g->member
-#define RESULT(member) &r->member, sizeof *r, sizeof r->member
 #define SINGLE(value) &(value), 0, sizeof(value)
-    const ga_row rows[] = {
+    const ga_row before[] = {
         {{"design_N", HF_KIND_REAL, 3, {1, p, k}, "N", "boundary pretension T' of each gene"}, ARRAY(design_N)},
-        {{"evaluated", HF_KIND_FLAG, 2, {1, p}, "", "FALSE = a copy whose result was known"}, ARRAY(pending)},
-        {{"status", HF_KIND_STATUS, 2, {1, p}, "", "ok = feasible; under any other psi is NaN"}, RESULT(status)},
-        {{"psi_m", HF_KIND_REAL, 2, {1, p}, "m", "RMS distance of the inner nodes"}, RESULT(psi_m)},
-        {{"residual_N", HF_KIND_REAL, 2, {1, p}, "N", "largest nodal force out of balance"}, RESULT(residual_N)},
-        {{"inner_tension_ratio", HF_KIND_REAL, 2, {1, p}, "", "largest over smallest"}, RESULT(inner_tension_ratio)},
-        {{"boundary_tension_ratio", HF_KIND_REAL, 2, {1, p}, "", "largest over smallest"},
-         RESULT(boundary_tension_ratio)},
-        {{"iterations", HF_KIND_INT, 2, {1, p}, "", "linear solves"}, RESULT(iterations)},
+        {{"evaluated", HF_KIND_FLAG, 2, {1, p}, "", "FALSE = a copy whose result was known"}, ARRAY(pending)}};
+    const ga_row behind[] = {
         {{"crossover_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(crossover_rate)},
         {{"mutation_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(mutation_rate)},
         {{"parent", HF_KIND_INT, 3, {1, p, 2}, "", "individuals of the generation before, or -1"}, ARRAY(parent)},
@@ -62,14 +55,24 @@ static int list_rows(const hf_ga *g, ga_row row[HF_GENERATIONS_PIECES])
         {{"worst_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(g->worst_psi_m)},
         {{"n_infeasible", HF_KIND_INT, 1, {1}, "", "individuals whose status is not ok"}, SINGLE(g->n_infeasible)}};
 #undef ARRAY
-#undef RESULT
 #undef SINGLE
-    _Static_assert(sizeof rows / sizeof rows[0] == HF_GENERATIONS_PIECES, "count them again");
-    memcpy(row, rows, sizeof rows);
-    assert(!strcmp(rows[ROW_DESIGN].array.name, "design_N") && !strcmp(rows[ROW_PSI].array.name, "psi_m") &&
-           !strcmp(rows[ROW_BOUNDARY_RATIO].array.name, "boundary_tension_ratio") &&
-           !strcmp(rows[ROW_BEST_PSI].array.name, "best_psi_m"));
-    return HF_HDF5_COUNT(rows);
+    _Static_assert(sizeof before == ROW_RESULT * sizeof row[0], "rows before the results");
+    _Static_assert(sizeof behind == (ROW_N - ROW_BREEDING) * sizeof row[0], "rows behind the results");
+    const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
+    hf_result_list_individual(field);
+    memcpy(row, before, sizeof before);
+    for (int i = 0; i < HF_RESULT_N_INDIVIDUAL; i++) {
+        const hf_result_field *f = field[i];
+        row[ROW_RESULT + i] = (ga_row){{f->name, hf_layout_kind_of(f->kind), 2, {1, p}, f->units, f->description},
+                                       (const char *)g->result + f->offset,
+                                       sizeof *g->result,
+                                       f->size};
+    }
+    memcpy(row + ROW_BREEDING, behind, sizeof behind);
+    assert(!strcmp(row[ROW_STATUS].array.name, "status") && !strcmp(row[ROW_PSI].array.name, "psi_m") &&
+           !strcmp(row[ROW_BEST_INDIVIDUAL].array.name, "best_individual") &&
+           !strcmp(row[ROW_BEST_PSI].array.name, "best_psi_m"));
+    return ROW_N;
 }
 
 /* The list without values. */
@@ -317,41 +320,34 @@ static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g,
     free(block);
 }
 
-/* What a row, one value per individual, says of the best. */
-static void read_of_best(hf_hdf5 *io, hid_t group, const ga_row *row, const hf_summary *s, void *value)
+/* What a row, one value per individual, says of the best; `field` of it. */
+static void read_of_best(hf_hdf5 *io, hid_t group, const ga_row *row, const hf_result_field *field, hf_summary *s)
 {
     size_t n = (size_t)row->array.dims[1], each = hf_hdf5_kind_bytes(row->array.kind);
-    char *values = malloc(n * each);
+    char *values = malloc(n * each), *to = (char *)&s->best + field->offset;
     if (!values) hf_hdf5_no_memory(io);
     hf_hdf5_read_rows(io, group, &row->array, (hsize_t)s->best_generation, values);
     if (io->status == HF_OK && s->best_individual >= 0 && (size_t)s->best_individual < n)
-        memcpy(value, values + (size_t)s->best_individual * each, each);
+        scatter(&(ga_row){row->array, to, 0, field->size}, each, values + (size_t)s->best_individual * each);
     free(values);
 }
 
 /* As the run has noted it: the first generation with the least psi. What is not stored of an individual is NaN. */
 static void note_best(hf_hdf5 *io, hid_t group, const ga_row *row, const double *best_psi_m, int n, hf_summary *s)
 {
-    const double unknown = (double)NAN;
+    const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
     int best = -1;
     for (int i = 0; i < n; i++)
         if (!isnan(best_psi_m[i]) && (best < 0 || best_psi_m[i] < best_psi_m[best])) best = i;
     if (best < 0) return;
     s->best_generation = best;
-    s->best = (hf_form_result){.status = HF_OK,
-                               .culprit = -1,
-                               .psi_m = best_psi_m[best],
-                               .tension_error = unknown,
-                               .length_error = unknown,
-                               .shortest_length_ratio = unknown,
-                               .position_error_m = unknown,
-                               .condition = unknown,
-                               .backward_error = unknown};
+    s->best = (hf_form_result){.status = HF_OK, .culprit = -1};
+    hf_result_blank(&s->best);
+    s->best.psi_m = best_psi_m[best];
     hf_hdf5_read_rows(io, group, &row[ROW_BEST_INDIVIDUAL].array, (hsize_t)best, &s->best_individual);
-    read_of_best(io, group, &row[ROW_RESIDUAL], s, &s->best.residual_N);
-    read_of_best(io, group, &row[ROW_INNER_RATIO], s, &s->best.inner_tension_ratio);
-    read_of_best(io, group, &row[ROW_BOUNDARY_RATIO], s, &s->best.boundary_tension_ratio);
-    read_of_best(io, group, &row[ROW_ITERATIONS], s, &s->best.iterations);
+    hf_result_list_individual(field);
+    for (int i = 0; i < HF_RESULT_N_INDIVIDUAL; i++)
+        read_of_best(io, group, &row[ROW_RESULT + i], field[i], s);
 }
 
 void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga)

@@ -12,7 +12,7 @@
 #include <hifdm/summary.h>
 #include <sys/uio.h>
 
-#define HF_GENERATIONS_PIECES 16 /* data sets, and pieces of a payload */
+#define HF_GENERATIONS_PIECES (10 + HF_RESULT_N_INDIVIDUAL) /* data sets, and pieces of a payload */
 
 typedef struct {
     int n_individual, n_gene;

@@ -33,6 +33,22 @@ const hf_hdf5_kind hf_layout_status = {VALUES(status_word, status_value)};
 const hf_hdf5_kind hf_layout_stop_reason = {VALUES(stop_word, stop_value)};
 const hf_hdf5_kind hf_layout_coupling_stop = {VALUES(coupling_word, coupling_value)};
 
+const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind)
+{
+    switch (kind) {
+    case HF_RESULT_REAL:
+        return HF_KIND_REAL;
+    case HF_RESULT_INT:
+        return HF_KIND_INT;
+    case HF_RESULT_STATUS:
+        return HF_KIND_STATUS;
+    case HF_RESULT_STOP_REASON:
+        return HF_KIND_STOP_REASON;
+    default:
+        return HF_KIND_COUPLING_STOP;
+    }
+}
+
 /* ---- columns ---- */
 
 /* X(struct, name, member, kind, per_cable, columns, units, description) */
@@ -121,37 +137,19 @@ void hf_layout_read_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *c
 
 /* ---- summary ---- */
 
-/* X(struct, object, attribute, member, kind) */
-#define RESULT_MEMBERS(X, object, prefix, result)                                                                      \
-    X(hf_summary, object, prefix "status", result.status, STATUS)                                                      \
-    X(hf_summary, object, prefix "stop_reason", result.stop_reason, STOP_REASON)                                       \
-    X(hf_summary, object, prefix "iterations", result.iterations, INT)                                                 \
-    X(hf_summary, object, prefix "culprit", result.culprit, INT)                                                       \
-    X(hf_summary, object, prefix "psi_m", result.psi_m, REAL)                                                          \
-    X(hf_summary, object, prefix "residual_N", result.residual_N, REAL)                                                \
-    X(hf_summary, object, prefix "tension_error", result.tension_error, REAL)                                          \
-    X(hf_summary, object, prefix "length_error", result.length_error, REAL)                                            \
-    X(hf_summary, object, prefix "inner_tension_ratio", result.inner_tension_ratio, REAL)                              \
-    X(hf_summary, object, prefix "boundary_tension_ratio", result.boundary_tension_ratio, REAL)                        \
-    X(hf_summary, object, prefix "shortest_length_ratio", result.shortest_length_ratio, REAL)                          \
-    X(hf_summary, object, prefix "position_error_m", result.position_error_m, REAL)                                    \
-    X(hf_summary, object, prefix "condition", result.condition, REAL)                                                  \
-    X(hf_summary, object, prefix "backward_error", result.backward_error, REAL)                                        \
-    X(hf_summary, object, prefix "n_slack", result.n_slack, INT)                                                       \
-    X(hf_summary, object, prefix "n_loaded_chain", result.n_loaded_chain, INT)
+/* The figures of the results, by stage: <hifdm/result.h> lists them. */
+#define FORM_FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/form", #member, form.member, kind)
+#define BEST_FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/ga", "best_" #member, best.member, kind)
+#define POLISH_FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/polish", #member, polish.member, kind)
+/* The figures of a coupling stand beside the results of their stage. */
+#define FORM_COUPLING(type, member, kind, ...)                                                                         \
+    HF_HDF5_MEMBER(hf_summary, "/coupling", #member, form.coupling.member, kind)
+#define BEST_COUPLING(type, member, kind, ...)                                                                         \
+    HF_HDF5_MEMBER(hf_summary, "/ga", "best_coupling_" #member, best.coupling.member, kind)
+#define POLISH_COUPLING(type, member, kind, ...)                                                                       \
+    HF_HDF5_MEMBER(hf_summary, "/polish", "coupling_" #member, polish.coupling.member, kind)
 
-#define COUPLING_OF(X, object, prefix, result)                                                                         \
-    X(hf_summary, object, prefix "stop_reason", result.coupling.stop_reason, COUPLING_STOP)                            \
-    X(hf_summary, object, prefix "iterations", result.coupling.iterations, INT)                                        \
-    X(hf_summary, object, prefix "step_m", result.coupling.step_m, REAL)                                               \
-    X(hf_summary, object, prefix "ratio", result.coupling.ratio, REAL)                                                 \
-    X(hf_summary, object, prefix "max_displacement_m", result.coupling.max_displacement_m, REAL)
-
-/* only when has_coupling; those of the optimised shapes stand beside their results */
-#define COUPLING_MEMBERS(X) COUPLING_OF(X, "/coupling", "", form)
-#define COUPLING_GA_MEMBERS(X) COUPLING_OF(X, "/ga", "best_coupling_", best)
-#define COUPLING_POLISH_MEMBERS(X) COUPLING_OF(X, "/polish", "coupling_", polish)
-
+/* The rest of the summary: X(struct, object, attribute, member, kind) */
 #define FORM_MEMBERS(X)                                                                                                \
     X(hf_summary, "/", "title", title, CHARS)                                                                          \
     X(hf_summary, "/", "threads", threads, INT)                                                                        \
@@ -168,8 +166,7 @@ void hf_layout_read_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *c
     X(hf_summary, "/form", "n_gene", n_gene, INT)                                                                      \
     X(hf_summary, "/form", "half_bandwidth", half_bandwidth, INT)                                                      \
     X(hf_summary, "/form", "pretension_N", pretension_N, REAL)                                                         \
-    X(hf_summary, "/form", "form_wall_s", form_wall_s, REAL)                                                           \
-    RESULT_MEMBERS(X, "/form", "", form)
+    X(hf_summary, "/form", "form_wall_s", form_wall_s, REAL)
 
 /* only when has_polish */
 #define POLISH_MEMBERS(X)                                                                                              \
@@ -177,8 +174,7 @@ void hf_layout_read_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *c
     X(hf_summary, "/polish", "polish_iterations", polish_iterations, INT)                                              \
     X(hf_summary, "/polish", "polish_evaluations", polish_evaluations, INT)                                            \
     X(hf_summary, "/polish", "polish_converged", polish_converged, FLAG)                                               \
-    X(hf_summary, "/polish", "polish_wall_s", polish_wall_s, REAL)                                                     \
-    RESULT_MEMBERS(X, "/polish", "", polish)
+    X(hf_summary, "/polish", "polish_wall_s", polish_wall_s, REAL)
 
 /* only when has_optimize */
 #define GA_MEMBERS(X)                                                                                                  \
@@ -193,8 +189,7 @@ void hf_layout_read_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *c
     X(hf_summary, "/ga", "infeasible", infeasible, LONG)                                                               \
     X(hf_summary, "/ga", "optimize_stop", optimize_stop, GA_STOP)                                                      \
     X(hf_summary, "/ga", "optimize_wall_s", optimize_wall_s, REAL)                                                     \
-    X(hf_summary, "/ga", "optimize_cpu_s", optimize_cpu_s, REAL)                                                       \
-    RESULT_MEMBERS(X, "/ga", "best_", best)
+    X(hf_summary, "/ga", "optimize_cpu_s", optimize_cpu_s, REAL)
 
 /* only when has_truss: when there is a group /truss */
 #define TRUSS_MEMBERS(X)                                                                                               \
@@ -202,13 +197,13 @@ void hf_layout_read_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *c
     X(hf_summary, "/truss", "n_node", truss_nodes, INT)                                                                \
     X(hf_summary, "/truss", "n_member", truss_members, INT)
 
-static const hf_hdf5_member form[] = {FORM_MEMBERS(HF_HDF5_MEMBER)};
-static const hf_hdf5_member ga[] = {GA_MEMBERS(HF_HDF5_MEMBER)};
-static const hf_hdf5_member polish[] = {POLISH_MEMBERS(HF_HDF5_MEMBER)};
+static const hf_hdf5_member form[] = {FORM_MEMBERS(HF_HDF5_MEMBER) HF_RESULT_LIST(FORM_FIGURE)};
+static const hf_hdf5_member ga[] = {GA_MEMBERS(HF_HDF5_MEMBER) HF_RESULT_LIST(BEST_FIGURE)};
+static const hf_hdf5_member polish[] = {POLISH_MEMBERS(HF_HDF5_MEMBER) HF_RESULT_LIST(POLISH_FIGURE)};
 static const hf_hdf5_member truss[] = {TRUSS_MEMBERS(HF_HDF5_MEMBER)};
-static const hf_hdf5_member coupling[] = {COUPLING_MEMBERS(HF_HDF5_MEMBER)};
-static const hf_hdf5_member coupling_ga[] = {COUPLING_GA_MEMBERS(HF_HDF5_MEMBER)};
-static const hf_hdf5_member coupling_polish[] = {COUPLING_POLISH_MEMBERS(HF_HDF5_MEMBER)};
+static const hf_hdf5_member coupling[] = {HF_COUPLING_LIST(FORM_COUPLING)};
+static const hf_hdf5_member coupling_ga[] = {HF_COUPLING_LIST(BEST_COUPLING)};
+static const hf_hdf5_member coupling_polish[] = {HF_COUPLING_LIST(POLISH_COUPLING)};
 #define PART(table) table, HF_HDF5_COUNT(table)
 const hf_layout_members hf_layout_summary[HF_LAYOUT_N_PART] = {[HF_LAYOUT_FORM] = {PART(form)},
                                                                [HF_LAYOUT_GA] = {PART(ga)},

@@ -31,6 +31,9 @@ extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_lay
 #define HF_KIND_UNIT (&hf_layout_unit)
 #define HF_KIND_COUPLING_STOP (&hf_layout_coupling_stop)
 
+/* Of the figures of a result. */
+const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind);
+
 /* ---- Columns: a pointer in a struct <-> a data set [n_node] or [n_cable], [...][columns] when columns > 1 ---- */
 
 typedef struct {

@@ -3,6 +3,7 @@
 #include "base/json.h"
 
 #include <math.h>
+#include <string.h>
 
 int hf_summary_has_best_shape(const hf_summary *s)
 {
@@ -15,34 +16,41 @@ double hf_summary_utilisation(const hf_summary *s)
     return available_s > 0 ? s->optimize_cpu_s / available_s : (double)NAN;
 }
 
+/* The members of an object at these places, in their order. The one at place 1 stands alone and opens the object. */
+static void write_fields(const hf_result_field *field, int n, int from, int to, const void *owner, FILE *f)
+{
+    for (int place = from; place <= to; place++)
+        for (int i = 0; i < n; i++) {
+            const void *value = (const char *)owner + field[i].offset;
+            int number;
+            if (field[i].json != place) continue;
+            if (place > 1) fputs(", ", f);
+            if (field[i].kind == HF_RESULT_REAL) {
+                hf_json_number(field[i].key, *(const double *)value, f);
+                continue;
+            }
+            memcpy(&number, value, sizeof number); /* enumerations have the size of an int */
+            if (field[i].kind == HF_RESULT_STATUS)
+                hf_json_text(field[i].key, hf_status_word((hf_status)number), f);
+            else if (field[i].kind == HF_RESULT_STOP_REASON)
+                hf_json_text(field[i].key, hf_stop_reason_word(number), f);
+            else if (field[i].kind == HF_RESULT_COUPLING_STOP)
+                hf_json_text(field[i].key, hf_coupling_stop_word(number), f);
+            else
+                fprintf(f, "\"%s\": %d", field[i].key, number);
+        }
+}
+
+enum { LAST_PLACE = 9 };
+
 static void write_result(const hf_form_result *r, FILE *f)
 {
-    const struct {
-        const char *key;
-        double value;
-    } number[] = {
-        {"psi_m", r->psi_m},
-        {"inner_tension_ratio", r->inner_tension_ratio},
-        {"boundary_tension_ratio", r->boundary_tension_ratio},
-        {"residual_N", r->residual_N},
-        {"tension_error", r->tension_error},
-        {"length_error", r->length_error},
-        {"shortest_length_ratio", r->shortest_length_ratio},
-        {"position_error_m", r->position_error_m},
-        {"condition", r->condition},
-        {"backward_error", r->backward_error},
-    };
-    hf_json_text("status", hf_status_word(r->status), f);
-    for (size_t i = 0; i < sizeof number / sizeof *number; i++) {
-        fputs(", ", f);
-        hf_json_number(number[i].key, number[i].value, f);
-    }
+    write_fields(hf_result_field_of, HF_RESULT_N, 1, HF_RESULT_JSON_COUNTS - 1, r, f);
     if (r->coupling.iterations > 0) {
         fputs(", ", f);
         hf_json_number("max_displacement_m", r->coupling.max_displacement_m, f);
     }
-    fprintf(f, ", \"iterations\": %d, \"slack_cables\": %d, \"loaded_straight_chains\": %d", r->iterations, r->n_slack,
-            r->n_loaded_chain);
+    write_fields(hf_result_field_of, HF_RESULT_N, HF_RESULT_JSON_COUNTS, LAST_PLACE, r, f);
 }
 
 static void write_list(const char *key, int n, const double *value, FILE *f)
@@ -104,14 +112,8 @@ static void write_truss(const hf_summary *s, FILE *f)
 
 static void write_coupling(const hf_coupling_result *r, FILE *f)
 {
-    fprintf(f, ",\n \"coupling\": {\"iterations\": %d, ", r->iterations);
-    hf_json_number("max_displacement_m", r->max_displacement_m, f);
-    fputs(", ", f);
-    hf_json_number("step_m", r->step_m, f);
-    fputs(", ", f);
-    hf_json_number("ratio", r->ratio, f);
-    fputs(", ", f);
-    hf_json_text("stop_reason", hf_coupling_stop_word((int)r->stop_reason), f);
+    fputs(",\n \"coupling\": {", f);
+    write_fields(hf_coupling_field_of, HF_COUPLING_N, 1, LAST_PLACE, r, f);
     fputc('}', f);
 }
 
