@@ -3,6 +3,8 @@
 #   a comment right above declarations  describes them all, up to the next blank line
 #   a comment behind a member           describes it, and each of `double *a, *b;`
 #   a comment with a blank line below   belongs to the file; /* ---- heading ---- */ stays a comment
+#   X(...) rows of a list               become the members that they make, where a struct or an enumeration of the same
+#                                       header takes the list; described by a comment behind the row, or its last text
 # Within a comment, three or more indented lines, or some after a blank line or a colon, stay as they are laid out.
 
 function escaped(s)
@@ -101,6 +103,96 @@ function put_code(i,    at, code, comment)
     return i
 }
 
+# ---- lists: #define LIST(X) X(...) X(...) and, inside a struct, #define MEMBER(type, name, ...) type name; ----
+
+# Macros of this header: parameters_of[name], body_of[name].
+function read_macros(    i, s, name, open)
+{
+    for (i = 1; i <= n_line; i++) {
+        if (line[i] !~ /^[ \t]*#[ \t]*define[ \t]+[A-Za-z_0-9]+\(/) continue
+        for (s = line[i]; s ~ /\\$/ && i < n_line; ) { sub(/[ \t]*\\$/, "", s); s = s " " line[++i] }
+        sub(/^[ \t]*#[ \t]*define[ \t]+/, "", s)
+        open = index(s, "(")
+        name = substr(s, 1, open - 1)
+        s = substr(s, open + 1)
+        parameters_of[name] = substr(s, 1, index(s, ")") - 1)
+        body_of[name] = substr(s, index(s, ")") + 1)
+        gsub(/^[ \t]+|[ \t]+$/, "", body_of[name])
+    }
+}
+
+# s, which begins behind a "(", up to its ")": argument[1..n_argument]; returns what stands behind it.
+function take_arguments(s,    k, c, deep, quoted, now)
+{
+    n_argument = 0
+    deep = quoted = 0
+    now = ""
+    for (k = 1; k <= length(s); k++) {
+        c = substr(s, k, 1)
+        if (c == "\"" && substr(s, k - 1, 1) != "\\") quoted = !quoted
+        if (!quoted && c == ")" && deep == 0) break
+        if (!quoted) deep += (c == "(") - (c == ")")
+        if (!quoted && deep == 0 && c == ",") { argument[++n_argument] = now; now = "" }
+        else now = now c
+    }
+    argument[++n_argument] = now
+    for (c = 1; c <= n_argument; c++) gsub(/^[ \t]+|[ \t]+$/, "", argument[c])
+    return substr(s, k + 1)
+}
+
+# The body of a macro with its arguments in place.
+function filled(macro,    n, parameter, k, rest, out, word)
+{
+    n = split(parameters_of[macro], parameter, /[ \t]*,[ \t]*/)
+    rest = body_of[macro]
+    out = ""
+    while (match(rest, /[A-Za-z_][A-Za-z_0-9]*/)) {
+        word = substr(rest, RSTART, RLENGTH)
+        for (k = 1; k <= n; k++) if (parameter[k] == word) { word = argument[k]; break }
+        out = out substr(rest, 1, RSTART - 1) word
+        rest = substr(rest, RSTART + RLENGTH)
+    }
+    out = out rest
+    gsub(/[ \t]*##[ \t]*/, "", out)
+    return out
+}
+
+function put_list(list, macro,    rest, comment, at)
+{
+    rest = body_of[list]
+    while ((at = index(rest, "X(")) > 0) {
+        rest = take_arguments(substr(rest, at + 2))
+        comment = ""
+        if (match(rest, /^[ \t]*\/\*/)) {
+            comment = substr(rest, RSTART + RLENGTH, index(rest, "*/") - RSTART - RLENGTH)
+            rest = substr(rest, index(rest, "*/") + 2)
+        } else if (argument[n_argument] ~ /^".*"$/) {
+            comment = argument[n_argument]
+            gsub(/^"|"$/, "", comment)
+        }
+        gsub(/^[ \t]+|[ \t]+$/, "", comment)
+        print filled(macro) (comment == "" ? "" : " /**< " escaped(comment) " */")
+    }
+}
+
+# A list taken inside a struct or an enumeration, or in one on this line?
+function put_if_list(s,    list, macro, before, after)
+{
+    if (!match(s, /HF_[A-Z_0-9]+\(HF_[A-Z_0-9]+\)/)) return 0
+    before = substr(s, 1, RSTART - 1)
+    after = substr(s, RSTART + RLENGTH)
+    list = substr(s, RSTART, RLENGTH - 1)
+    macro = list
+    sub(/\(.*/, "", list)
+    sub(/.*\(/, "", macro)
+    if (parameters_of[list] != "X" || !(macro in body_of) || body_of[macro] !~ /[;,]$/) return 0
+    if (!(depth > 0 && before after ~ /^[ \t]*$/) && before !~ /\{[ \t]*$/) return 0
+    if (before !~ /^[ \t]*$/) print before
+    put_list(list, macro)
+    if (after !~ /^[ \t]*$/) print after
+    return 1
+}
+
 function follow(s)
 {
     gsub(/\/\*.*/, "", s)
@@ -113,7 +205,7 @@ function follow(s)
 
 function put_chunk(i,    last)
 {
-    last = put_code(i)
+    last = put_if_list(line[i]) ? i : put_code(i)
     follow(line[i])
     return last
 }
@@ -123,6 +215,7 @@ function put_chunk(i,    last)
 END {
     name = FILENAME
     sub(/.*\//, "", name)
+    read_macros()
     for (i = 1; i <= n_line; i++) {
         if (line[i] !~ /^[ \t]*\/\*/) { i = put_chunk(i); continue }
         last = read_comment(i)
