@@ -76,10 +76,10 @@ KERNELS := $(wildcard src/*/*_kernel.c)
 sources = $(sort $(foreach room,$(1),$(wildcard src/$(room)/*.c)))
 LIB_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(KERNELS),$(call sources,$(LIB_ROOMS)))) \
            $(foreach isa,$(ISAS),$(KERNELS:%.c=$(BUILD)/%_$(isa).o))
-# The page of `hifdm report`: its parts in order, as three strings that report.h declares.
+# The page of `hifdm report`: its parts in order, as three strings that report_page.h declares.
 PAGE := $(addprefix src/out/report/,head.html page.css body.html \
           data.js scale.js chart.js net.js map.js sections.js study.js main.js)
-APP_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(call sources,$(APP_ROOMS))) $(BUILD)/report_page.o
+APP_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(call sources,$(APP_ROOMS))) $(BUILD)/report_page_text.o
 TEST_OBJ := $(patsubst %.c,$(BUILD)/%.o,tests/run_tests.c tests/support.c \
              $(sort $(wildcard tests/*/test_*.c tests/*/*/test_*.c)))
 PROGRAM := $(BUILD)/hifdm
@@ -265,10 +265,10 @@ $(BUILD)/%.o: %.c $(BUILD)/flags
 	$(Q)$(COMPILE) $(EXTRA) -MMD -MP -c $< -o $@
 
 # Bytes rather than a string: a string literal of this length is beyond what C promises.
-$(BUILD)/report_page.c: $(PAGE) Makefile
+$(BUILD)/report_page_text.c: $(PAGE) Makefile
 	$(call say,PAGE,$@)
 	@mkdir -p $(@D)
-	$(Q){ echo '#include "out/report.h"'; \
+	$(Q){ echo '#include "out/report_page.h"'; \
 	  bytes() { echo "const char $$1[] = {"; shift; cat "$$@" | od -An -v -tx1 | \
 	      sed "s/[0-9a-f][0-9a-f]*/'\\\\x&',/g"; echo '0};'; }; \
 	  bytes hf_report_page_head $(wordlist 1,2,$(PAGE)); \
@@ -276,7 +276,7 @@ $(BUILD)/report_page.c: $(PAGE) Makefile
 	  bytes hf_report_page_script $(wordlist 4,99,$(PAGE)); } >$@.tmp
 	$(Q)mv $@.tmp $@
 
-$(BUILD)/report_page.o: $(BUILD)/report_page.c $(BUILD)/flags
+$(BUILD)/report_page_text.o: $(BUILD)/report_page_text.c $(BUILD)/flags
 	$(call say,CC,$<)
 	$(Q)$(COMPILE) -MMD -MP -c $< -o $@
 

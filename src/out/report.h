@@ -9,17 +9,4 @@
  * gives the same bytes. */
 hf_status hf_report(const hf_export_request *request, char *said, size_t size, hf_messages *messages);
 
-/* ---- between report and report_study ---- */
-
-/* The whole page: write_data writes one JSON object. */
-void hf_report_write(const char *title, void (*write_data)(const void *context, FILE *file), const void *context,
-                     FILE *file);
-
-int hf_report_is_study(const char *path); /* a file with a table of points; says nothing about any other */
-hf_status hf_report_study(const char *path, const char *output, hf_messages *messages);
-
-/* The page without its data, made of src/report/ by the Makefile: to the end of the style, from there to the data, the
- * script. */
-extern const char hf_report_page_head[], hf_report_page_body[], hf_report_page_script[];
-
 #endif

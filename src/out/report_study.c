@@ -1,7 +1,7 @@
-/* A page of a merged study: what was set, what came out, and where the results are. */
-#include "out/report.h"
+/* The page of a merged study. Contents: writing - reading */
+#include "out/report_study.h"
 
-#include "out/export.h"
+#include "out/report_page.h"
 #include "base/json.h"
 #include "base/file_out.h"
 #include "base/path.h"
@@ -34,12 +34,12 @@ typedef struct {
     hf_series output[N_STAGE][N_OUTPUT];
 } study_page;
 
-int hf_report_is_study(const char *path)
+bool hf_report_is_study(const char *path)
 {
     hf_messages unwanted = {0};
     hf_series status = {0};
     hf_status found = hf_store_read_series(path, "/points/status", 1, &status, &unwanted);
-    int is_study = found == HF_OK && status.n > 0;
+    bool is_study = found == HF_OK && status.n > 0;
     hf_series_free(&status);
     hf_messages_free(&unwanted);
     return is_study;
@@ -144,7 +144,7 @@ static void write_data(const void *context, FILE *f)
 static void write_page(const void *context, FILE *f)
 {
     const study_page *p = context;
-    hf_report_write(hf_path_name(p->path), write_data, p, f);
+    hf_report_page_write(hf_path_name(p->path), write_data, p, f);
 }
 
 /* ---- reading ---- */

@@ -1,0 +1,231 @@
+/* The page of one result. Contents: texts - net and shapes - series - the page - reading */
+#include "out/report_result.h"
+
+#include "out/report_page.h"
+#include "base/json.h"
+#include "base/file_out.h"
+#include "base/path.h"
+#include "store/store_read.h"
+#include "store/store_series.h"
+#include <hifdm/metrics.h>
+
+#include <math.h>
+#include <string.h>
+
+#define POINTS_MAX 1000 /* drawn of a series: no screen shows more */
+#define PROVENANCE_SIZE 8192
+
+/* The series of a page: where a file has them, what the page calls them. The first of a group sets its length. */
+static const struct {
+    const char *group, *path, *key;
+} series_table[] = {
+    {"history", "/form/history/psi_m", "psi_m"},
+    {"history", "/form/history/inner_tension_ratio", "inner_tension_ratio"},
+    {"history", "/form/history/boundary_tension_ratio", "boundary_tension_ratio"},
+    {"history", "/form/history/residual_N", "residual_N"},
+    {"ga", "/ga/best_psi_m", "best_psi_m"},
+    {"ga", "/ga/mean_psi_m", "mean_psi_m"},
+    {"ga", "/ga/worst_psi_m", "worst_psi_m"},
+    {"ga", "/ga/n_infeasible", "n_infeasible"},
+    {"coupling", "/coupling/history/step_m", "step_m"},
+    {"coupling", "/coupling/history/psi_m", "psi_m"},
+    {"coupling", "/coupling/history/max_displacement_m", "max_displacement_m"},
+};
+enum { N_SERIES = sizeof series_table / sizeof *series_table };
+
+/* All that a page shows. */
+typedef struct {
+    const char *path;
+    hf_summary summary;
+    hf_scene scene;
+    int has_shape[HF_STAGE_NONE];
+    hf_shape shape[HF_STAGE_NONE];
+    hf_series series[N_SERIES];
+    hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or none, [m][2] */
+    char provenance[PROVENANCE_SIZE];
+} page;
+
+/* ---- texts ---- */
+
+static void write_codes(const char *key, const unsigned char *value, int n, FILE *f)
+{
+    fprintf(f, ",\"%s\":\"", key);
+    for (int i = 0; i < n; i++)
+        fputc('0' + value[i], f);
+    fputc('"', f);
+}
+
+/* What the page is headed: the title, or the name of the case file. */
+static const char *heading(const hf_summary *s)
+{
+    return *s->title ? s->title : hf_path_name(s->case_path);
+}
+
+/* ---- net and shapes ---- */
+
+static void write_net(const hf_scene *s, FILE *f)
+{
+    fprintf(f, ",\n\"net\":{\"n_node\":%d,\"n_cable\":%d", s->n_node, s->n_cable);
+    hf_json_strings("role_word", hf_role_word, 3, f);
+    hf_json_strings("group_word", hf_group_word, 2, f);
+    hf_json_strings("law_word", hf_law_word, HF_N_LAW, f);
+    hf_json_strings("node_id", s->node_id, s->n_node, f);
+    hf_json_values("position_m", s->position_m, 3 * s->n_node, 1, 8, f);
+    write_codes("role", s->role, s->n_node, f);
+    hf_json_strings("cable_id", s->cable_id, s->n_cable, f);
+    fputs(",\"end\":[", f);
+    for (int i = 0; i < 2 * s->n_cable; i++)
+        fprintf(f, "%s%d", i ? "," : "", s->end[i]);
+    fputc(']', f);
+    write_codes("group", s->group, s->n_cable, f);
+    fputc('}', f);
+}
+
+/* Displacements rather than positions: six digits of these are nanometres, of those tenths of a millimetre. */
+static void write_shape(const page *p, hf_stage stage, FILE *f)
+{
+    const hf_shape *shape = &p->shape[stage];
+    fprintf(f, "{\"stage\":\"%s\",\"displacement_m\":[", hf_stage_word[stage]);
+    for (int i = 0; i < 3 * p->scene.n_node; i++) {
+        if (i) fputc(',', f);
+        hf_json_value(shape->position_m[i] - p->scene.position_m[i], 6, f);
+    }
+    fputc(']', f);
+    hf_json_values("length_m", shape->length_m, p->scene.n_cable, 1, 7, f);
+    hf_json_values("tension_N", shape->tension_N, p->scene.n_cable, 1, 7, f);
+    write_codes("law", shape->law, p->scene.n_cable, f);
+    fputc('}', f);
+}
+
+static void write_shapes(const page *p, FILE *f)
+{
+    const char *comma = "";
+    fputs(",\n\"slack_below_N\":", f);
+    hf_json_value(HF_SLACK_RATIO * hf_model_reference_N(&p->scene, p->summary.pretension_N), 17, f);
+    fputs(",\n\"shapes\":[", f);
+    for (int i = 0; i < HF_STAGE_NONE; i++) {
+        if (!p->has_shape[i]) continue;
+        fputs(comma, f);
+        write_shape(p, (hf_stage)i, f);
+        comma = ",\n";
+    }
+    fputc(']', f);
+}
+
+static void write_truss(const page *p, FILE *f)
+{
+    const hf_series *node = &p->truss_position_m, *end = &p->truss_end;
+    if (!node->n || !end->n) return;
+    fprintf(f, ",\n\"truss\":{\"n_node\":%d,\"n_member\":%d", node->n, end->n);
+    hf_json_values("position_m", node->value, 3 * node->n, 1, 8, f);
+    hf_json_values("end", end->value, 2 * end->n, 1, 9, f);
+    if (p->truss_displacement.n == node->n) {
+        fputs(",\"displacement_m\":[", f);
+        for (int i = 0; i < 3 * node->n; i++) {
+            if (i) fputc(',', f);
+            hf_json_value(p->truss_displacement.value[6 * (i / 3) + i % 3], 6, f); /* without the rotations */
+        }
+        fputc(']', f);
+    }
+    fputc('}', f);
+}
+
+/* ---- series ---- */
+
+static void write_series(const page *p, FILE *f)
+{
+    for (int i = 0, k; i < N_SERIES; i = k) {
+        int n = p->series[i].n, stride = (n + POINTS_MAX - 1) / POINTS_MAX;
+        if (n) fprintf(f, ",\n\"%s\":{\"n\":%d,\"stride\":%d", series_table[i].group, n, stride);
+        for (k = i; k < N_SERIES && series_table[k].group == series_table[i].group; k++)
+            if (n && p->series[k].n == n) hf_json_values(series_table[k].key, p->series[k].value, n, stride, 9, f);
+        if (n) fputc('}', f);
+    }
+}
+
+/* ---- the page ---- */
+
+static void write_data(const void *context, FILE *f)
+{
+    const page *p = context;
+    const hf_summary *s = &p->summary;
+    fputc('{', f);
+    hf_json_text("title", heading(s), f);
+    fputs(",\n", f);
+    hf_json_lines("provenance", "", p->provenance, f);
+    fputs(",\n\"summary\":", f);
+    hf_summary_write_json(s, s->form.status, s->warnings, p->path, f);
+    fprintf(f, ",\"seed\":\"%llu\"", (unsigned long long)s->seed); /* as a number it would lose its last digits */
+    fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, s->n_gene);
+    hf_json_value(s->pretension_N, 17, f);
+    write_net(&p->scene, f);
+    write_shapes(p, f);
+    write_truss(p, f);
+    write_series(p, f);
+    fputs("}\n", f);
+}
+
+static void write_page(const void *context, FILE *f)
+{
+    const page *p = context;
+    hf_report_page_write(heading(&p->summary), write_data, p, f);
+}
+
+/* ---- reading ---- */
+
+static hf_status check_truss(const page *p, hf_messages *messages)
+{
+    for (int i = 0; i < 2 * p->truss_end.n; i++)
+        if (!(p->truss_end.value[i] >= 0 && p->truss_end.value[i] < p->truss_position_m.n))
+            return hf_error(messages, HF_IO, "%s: is damaged: /truss/member/end names a node that is not there",
+                            p->path);
+    return HF_OK;
+}
+
+static hf_status read_shapes(page *p, hf_messages *messages)
+{
+    hf_series there = {0};
+    HF_TRY(hf_store_read_series(p->path, "/form/tension_N", 1, &there, messages));
+    p->has_shape[HF_STAGE_FORM] = there.n > 0; /* a form-finding that broke down leaves none */
+    hf_series_free(&there);
+    p->has_shape[HF_STAGE_OPTIMIZE] = hf_summary_has_best_shape(&p->summary);
+    p->has_shape[HF_STAGE_POLISH] = p->summary.has_polish;
+    for (int i = 0; i < HF_STAGE_NONE; i++)
+        if (p->has_shape[i]) HF_TRY(hf_store_read_shape(p->path, (hf_stage)i, &p->shape[i], messages));
+    return HF_OK;
+}
+
+static hf_status read_page(page *p, hf_messages *messages)
+{
+    HF_TRY(hf_store_read_summary(p->path, &p->summary, messages));
+    HF_TRY(hf_store_read_scene(p->path, &p->scene, messages));
+    HF_TRY(hf_store_read_provenance(p->path, p->provenance, sizeof p->provenance, messages));
+    HF_TRY(read_shapes(p, messages));
+    for (int i = 0; i < N_SERIES; i++)
+        HF_TRY(hf_store_read_series(p->path, series_table[i].path, 1, &p->series[i], messages));
+    HF_TRY(hf_store_read_series(p->path, "/truss/node/position_m", 3, &p->truss_position_m, messages));
+    HF_TRY(hf_store_read_series(p->path, "/truss/node/displacement", 6, &p->truss_displacement, messages));
+    HF_TRY(hf_store_read_series(p->path, "/truss/member/end", 2, &p->truss_end, messages));
+    return check_truss(p, messages);
+}
+
+static void free_page(page *p)
+{
+    hf_scene_free(&p->scene);
+    for (int i = 0; i < HF_STAGE_NONE; i++)
+        hf_shape_free(&p->shape[i]);
+    for (int i = 0; i < N_SERIES; i++)
+        hf_series_free(&p->series[i]);
+    hf_series_free(&p->truss_position_m);
+    hf_series_free(&p->truss_displacement);
+    hf_series_free(&p->truss_end);
+}
+
+hf_status hf_report_result(const char *path, const char *output, hf_messages *messages)
+{
+    page p = {.path = path};
+    hf_status status = read_page(&p, messages);
+    if (status == HF_OK) status = hf_file_out_write(output, write_page, &p, messages);
+    free_page(&p);
+    return status;
+}
