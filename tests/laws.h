@@ -71,7 +71,7 @@ static inline void random_reflector_scene(struct rng *rng, hf_scene *scene)
                             .boundary = HF_BOUNDARY_OUTER_EDGE,
                             .scallop = rng_uniform(rng, 0.08, 0.12),
                             .supports = HF_SUPPORTS_MODULE_CORNERS};
-    ck_assert_msg(hf_scene_parabolic_cylinder(&cylinder, scene, &messages) == HF_OK, "%s", messages.text);
+    ck_assert_msg(hf_scene_parabolic_cylinder(&cylinder, NULL, scene, &messages) == HF_OK, "%s", messages.text);
 }
 
 /* ---- shapes and what changes a scene ---- */

@@ -4,6 +4,7 @@
 #define HIFDM_CONFIG_H
 
 #include <hifdm/carrier.h>
+#include <hifdm/generate.h>
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
 #include <hifdm/status.h>
@@ -21,13 +22,18 @@ typedef struct {
     char *overrides; /* the --set arguments, a line each; "" when there are none */
     char sha256[65]; /* of text and overrides */
     char title[256];
-    int has_cylinder, has_import, has_optimize, has_surface; /* which sections are there */
+    int has_import, has_optimize, has_surface; /* which sections are there */
     int has_sweep; /* axes of a sweep are read by study.h; they are cut out of `text`, which is one point's case */
-    hf_cylinder cylinder;
+#define HF_CASE_GENERATOR(section, type, KEYS, help)                                                                   \
+    int has_##section;                                                                                                 \
+    type section;
+    HF_GENERATORS(HF_CASE_GENERATOR)
+#undef HF_CASE_GENERATOR
+    double EA_N[2]; /* by hf_group, of cables to which the net gives none; 0 = not given */
     char nodes_path[HF_PATH_SIZE], cables_path[HF_PATH_SIZE]; /* resolved against the folder of the case file */
     hf_form_settings form;
     hf_optimize_settings optimize;
-    hf_surface_settings surface; /* what is not given is that of the cylinder */
+    hf_surface_settings surface; /* what is not given is that of a generated net */
 
     int has_truss, has_truss_import; /* sections; the import's files as those of the net */
     hf_truss_settings truss;

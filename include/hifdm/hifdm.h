@@ -25,6 +25,7 @@
 #include <hifdm/formfind.h>
 #include <hifdm/frame.h>
 #include <hifdm/ga.h>
+#include <hifdm/generate.h>
 #include <hifdm/metrics.h>
 #include <hifdm/model.h>
 #include <hifdm/problem.h>

@@ -5,7 +5,7 @@
 #ifndef HIFDM_TRUSS_H
 #define HIFDM_TRUSS_H
 
-#include <hifdm/scene.h>
+#include <hifdm/generate.h>
 #include <hifdm/status.h>
 
 #ifdef __cplusplus

@@ -5,6 +5,7 @@
 #include "base/path.h"
 #include "base/sha256.h"
 #include "base/text.h"
+#include "case/config_scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -473,7 +474,7 @@ static void check_truss(loader *l)
     const hf_case *c = l->c;
     const hf_truss_unit *unit[] = {&c->truss.bud, &c->truss.mbug, &c->truss.abug};
     static const char *const wall[] = {"truss.bud.wall_m", "truss.mbug.wall_m", "truss.abug.wall_m"};
-    if (!c->has_truss_import && !c->has_cylinder)
+    if (!c->has_truss_import && !c->has_parabolic_cylinder)
         complain_about(l, "truss", "needs scene.parabolic_cylinder to be generated over, or truss.import");
     for (int i = 0; i < hf_n_field && c->has_truss_import; i++) {
         const char *path = hf_field_table[i].path;
@@ -490,17 +491,18 @@ static void check_together(loader *l)
 {
     const hf_case *c = l->c;
     const hf_optimize_settings *o = &c->optimize;
+    char what[HF_CONFIG_WHAT_SIZE];
     if (!l->walked) return;
-    if (c->has_cylinder + c->has_import != 1)
-        complain_about(l, "scene",
-                       c->has_cylinder ? "has both parabolic_cylinder and import; keep one"
-                                       : "needs either parabolic_cylinder or import");
+    if (!hf_config_scene_is_one(c, what)) complain_about(l, "scene", what);
     for (int i = 0; i < hf_n_field; i++)
         if (!hf_field_table[i].default_value && section_present(c, hf_field_table[i].path) &&
             !l->where_given[(size_t)i * WHERE_SIZE])
             complain_about(l, hf_field_table[i].path, "is missing and has no default");
-    if (c->has_surface && c->has_import && c->surface.focal_length_m == 0 && !l->failed)
-        complain_about(l, "surface.focal_length_m", "is missing: an imported net does not tell its surface");
+    if (c->has_surface && c->surface.focal_length_m == 0 && hf_config_scene_surface(c).focal_length_m == 0 &&
+        !l->failed)
+        complain_about(l, "surface.focal_length_m",
+                       c->has_import ? "is missing: an imported net does not tell its surface"
+                                     : "is missing: this net does not tell its surface");
     l->c->has_truss |= c->has_truss_import;
     if (c->has_truss && !l->failed) check_truss(l);
     if (!c->has_optimize || l->failed) return; /* values that were refused are not compared */
@@ -513,13 +515,12 @@ static void check_together(loader *l)
         complain_about(l, "optimize.mutation_low", "must not be above optimize.mutation_high");
 }
 
-/* What a generated net knows of its surface itself. */
 static void complete_surface(hf_case *c)
 {
-    if (!c->has_surface || !c->has_cylinder) return;
-    double n_cell = (double)c->cylinder.modules[0] * c->cylinder.cells_per_module[0];
-    if (c->surface.focal_length_m == 0) c->surface.focal_length_m = c->cylinder.focal_length_m;
-    if (c->surface.strip_width_m == 0 && n_cell > 0) c->surface.strip_width_m = c->cylinder.aperture_m / n_cell;
+    if (!c->has_surface) return;
+    hf_surface_settings known = hf_config_scene_surface(c);
+    if (c->surface.focal_length_m == 0) c->surface.focal_length_m = known.focal_length_m;
+    if (c->surface.strip_width_m == 0) c->surface.strip_width_m = known.strip_width_m;
 }
 
 /* ---- load ---- */

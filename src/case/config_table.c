@@ -6,9 +6,6 @@
 #include <string.h>
 
 /* NULL-terminated, in the order of the enums */
-static const char *const spacing_words[] = {"equal_arc", "equal_projected", NULL};
-static const char *const boundary_words[] = {"outer_edge", "module_edges", NULL};
-static const char *const supports_words[] = {"module_corners", "ribs", "perimeter", NULL};
 static const char *const diagonals_words[] = {"none", "single", "crossed", NULL};
 static const char *const theory_words[] = {"euler_bernoulli", "timoshenko", NULL};
 static const char *const joint_words[] = {"rigid", "pinned", NULL};
@@ -19,9 +16,11 @@ static const char *const held_dofs_words[] = {"all", "translations", NULL};
 #define BIG 1e300
 
 const hf_section hf_section_table[] = {
-    {"scene", SIZE_MAX, "The net: exactly one of the two sections below."},
-    {"scene.parabolic_cylinder", AT(has_cylinder), "A quad net over a parabolic cylinder."},
-    {"scene.import", AT(has_import), "Any net from two CSV files."},
+    {"scene", SIZE_MAX, HF_GENERATORS_HELP},
+#define SECTION(section, type, KEYS, help) {"scene." #section, AT(has_##section), help},
+    HF_GENERATORS(SECTION)
+#undef SECTION
+        {"scene.import", AT(has_import), "Any net from two CSV files."},
     {"surface", AT(has_surface), "Measures of the reflecting surface. Without this section there are none."},
     {"form", SIZE_MAX, "Form-finding. May be left out: the defaults hold."},
     {"optimize", AT(has_optimize), "Optimisation of the boundary pretensions. Without this section none runs."},
@@ -41,32 +40,20 @@ const int hf_n_section = sizeof hf_section_table / sizeof *hf_section_table;
 const hf_field hf_field_table[] = {
     {"title", HF_FIELD_TEXT, AT(title), 0, sizeof((hf_case *)0)->title, "", "", NULL, "one line for people"},
 
-    {"scene.EA_inner_N", HF_FIELD_DOUBLE, AT(cylinder.EA_N[0]), HF_ABOVE_ZERO, 1e15, "", "N", NULL,
+    {"scene.EA_inner_N", HF_FIELD_DOUBLE, AT(EA_N[0]), HF_ABOVE_ZERO, 1e15, "", "N", NULL,
      "axial stiffness EA of the inner cables, where the net gives none: for cut lengths"},
-    {"scene.EA_boundary_N", HF_FIELD_DOUBLE, AT(cylinder.EA_N[1]), HF_ABOVE_ZERO, 1e15, "", "N", NULL,
+    {"scene.EA_boundary_N", HF_FIELD_DOUBLE, AT(EA_N[1]), HF_ABOVE_ZERO, 1e15, "", "N", NULL,
      "the same of the boundary cables"},
 
-    {"scene.parabolic_cylinder.aperture_m", HF_FIELD_DOUBLE, AT(cylinder.aperture_m), HF_ABOVE_ZERO, 1e4, NULL, "m",
-     NULL, "aperture along the directrix (x)"},
-    {"scene.parabolic_cylinder.length_m", HF_FIELD_DOUBLE, AT(cylinder.length_m), HF_ABOVE_ZERO, 1e4, NULL, "m", NULL,
-     "length along the generatrix (y)"},
-    {"scene.parabolic_cylinder.focal_length_m", HF_FIELD_DOUBLE, AT(cylinder.focal_length_m), HF_ABOVE_ZERO, 1e9, NULL,
-     "m", NULL, "focal length of z = x^2/(4f)"},
-    {"scene.parabolic_cylinder.modules", HF_FIELD_INT_PAIR, AT(cylinder.modules), 1, 2000, NULL, "", NULL,
-     "modules along the directrix and the generatrix"},
-    {"scene.parabolic_cylinder.cells_per_module", HF_FIELD_INT_PAIR, AT(cylinder.cells_per_module), 1, 2000, NULL, "",
-     NULL, "net cells per module, along the directrix and the generatrix"},
-    {"scene.parabolic_cylinder.spacing", HF_FIELD_WORD, AT(cylinder.spacing), 0, 0, "equal_arc", "", spacing_words,
-     "nodes along the directrix: equal arc length, or equal projected (x) spacing"},
-    {"scene.parabolic_cylinder.boundary", HF_FIELD_WORD, AT(cylinder.boundary), 0, 0, "outer_edge", "", boundary_words,
-     "which cables are boundary cables (law length); the others are inner (law tension)"},
-    {"scene.parabolic_cylinder.scallop", HF_FIELD_DOUBLE, AT(cylinder.scallop), 0, 0.4, "0", "", NULL,
-     "inward sag of a free outer edge between supports, relative to their distance"},
-    {"scene.parabolic_cylinder.supports", HF_FIELD_WORD, AT(cylinder.supports), 0, 0, "module_corners", "",
-     supports_words, "fixed nodes: all module corners, all nodes on ribs (y = module border), or the perimeter"},
+#define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
+    {"scene." #section "." #member, type, AT(section.member), min, max, default_value, unit, words, help},
+#define FIELDS(section, type, KEYS, help) KEYS(FIELD, section)
+    HF_GENERATORS(FIELDS)
+#undef FIELDS
+#undef FIELD
 
-    {"scene.import.nodes", HF_FIELD_TEXT, AT(nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
-     "CSV id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]; path relative to the case file"},
+        {"scene.import.nodes", HF_FIELD_TEXT, AT(nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
+         "CSV id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]; path relative to the case file"},
     {"scene.import.cables", HF_FIELD_TEXT, AT(cables_path), 1, HF_PATH_SIZE, NULL, "", NULL,
      "CSV id,i,j,group,law,value[,EA_N]; path relative to the case file"},
 

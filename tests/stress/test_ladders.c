@@ -73,7 +73,7 @@ static void cylinder(struct rng *rng, double scallop, hf_scene *s)
                      .spacing = rng_int(rng, 0, 1),
                      .scallop = scallop,
                      .supports = HF_SUPPORTS_MODULE_CORNERS};
-    ck_assert_msg(hf_scene_parabolic_cylinder(&c, s, &messages) == HF_OK, "%s", messages.text);
+    ck_assert_msg(hf_scene_parabolic_cylinder(&c, NULL, s, &messages) == HF_OK, "%s", messages.text);
 }
 
 static void nearly_straight(struct rng *rng, int rung, hf_scene *s)

@@ -59,7 +59,7 @@ static void straight_edges(struct rng *rng, hf_scene *s)
                             .cells_per_module = {2, 2},
                             .boundary = rng_int(rng, 0, 1),
                             .supports = HF_SUPPORTS_MODULE_CORNERS};
-    ck_assert_msg(hf_scene_parabolic_cylinder(&cylinder, s, &messages) == HF_OK, "%s", messages.text);
+    ck_assert_msg(hf_scene_parabolic_cylinder(&cylinder, NULL, s, &messages) == HF_OK, "%s", messages.text);
 }
 
 /* One cable of a quad net pulls more than all others at its node can balance. */

@@ -37,7 +37,7 @@ START_TEST(bow_between_ribs)
     ck_assert_int_eq(net.model.n_inner_node, net.model.n_free);
 
     hf_surface_measures surface;
-    net.settings.surface.focal_length_m = net.settings.cylinder.focal_length_m;
+    net.settings.surface.focal_length_m = net.settings.parabolic_cylinder.focal_length_m;
     ck_assert_int_eq(hf_surface_measure(&net.settings.surface, &net.model, &net.work, &surface), HF_OK);
     ck_assert_double_eq_tol(1e3 * surface.z_rms_m, bay->z_rms_mm, 0.5e-5);
 

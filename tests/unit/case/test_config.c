@@ -34,12 +34,12 @@ START_TEST(defaults_hold_where_nothing_is_said)
     hf_case c;
     ck_assert_int_eq(load(CYLINDER, NULL, 0, &c, said, sizeof said), HF_OK);
     ck_assert_str_eq(said, "");
-    ck_assert(c.has_cylinder && !c.has_import && !c.has_optimize);
-    ck_assert_double_eq(c.cylinder.aperture_m, 10);
-    ck_assert_int_eq(c.cylinder.modules[0], 2);
-    ck_assert_int_eq(c.cylinder.modules[1], 3);
-    ck_assert_int_eq(c.cylinder.cells_per_module[0], 4);
-    ck_assert_int_eq(c.cylinder.supports, HF_SUPPORTS_MODULE_CORNERS);
+    ck_assert(c.has_parabolic_cylinder && !c.has_import && !c.has_optimize);
+    ck_assert_double_eq(c.parabolic_cylinder.aperture_m, 10);
+    ck_assert_int_eq(c.parabolic_cylinder.modules[0], 2);
+    ck_assert_int_eq(c.parabolic_cylinder.modules[1], 3);
+    ck_assert_int_eq(c.parabolic_cylinder.cells_per_module[0], 4);
+    ck_assert_int_eq(c.parabolic_cylinder.supports, HF_SUPPORTS_MODULE_CORNERS);
     ck_assert_int_eq(c.form.method, HF_METHOD_AUTO);
     ck_assert_int_eq(c.form.stop, HF_STOP_RESIDUAL); /* METHOD section 3 */
     ck_assert_double_eq(c.form.pretension_N, 10);
@@ -104,8 +104,8 @@ START_TEST(overrides_win_and_change_the_digest)
     ck_assert_int_eq(load(NULL, set, 3, &c, said, sizeof said), HF_OK);
     ck_assert_double_eq(plain.form.pretension_N, 11);
     ck_assert_double_eq(c.form.pretension_N, 12);
-    ck_assert_int_eq(c.cylinder.modules[0], 5);
-    ck_assert_int_eq(c.cylinder.modules[1], 6);
+    ck_assert_int_eq(c.parabolic_cylinder.modules[0], 5);
+    ck_assert_int_eq(c.parabolic_cylinder.modules[1], 6);
     ck_assert(!plain.has_optimize && c.has_optimize); /* a key brings its section along */
     ck_assert(c.optimize.seed == 9);
     ck_assert_str_eq(c.overrides, "form.pretension_N=12\nscene.parabolic_cylinder.modules=[5, 6]\noptimize.seed=9\n");
@@ -134,7 +134,7 @@ START_TEST(paths_are_relative_to_the_case_file)
     hf_case c;
     ck_assert_int_eq(load("scene:\n  import: {nodes: n.csv, cables: /abs/c.csv}\n", NULL, 0, &c, said, sizeof said),
                      HF_OK);
-    ck_assert(c.has_import && !c.has_cylinder);
+    ck_assert(c.has_import && !c.has_parabolic_cylinder);
     ck_assert_str_eq(c.nodes_path, temp_path("n.csv"));
     ck_assert_str_eq(c.cables_path, "/abs/c.csv");
     hf_case_free(&c);
@@ -153,8 +153,8 @@ START_TEST(anchors_work)
                           " modules: &m [2, 3], cells_per_module: *m}\n",
                           NULL, 0, &c, said, sizeof said),
                      HF_OK);
-    ck_assert_double_eq(c.cylinder.length_m, 10);
-    ck_assert_int_eq(c.cylinder.cells_per_module[1], 3);
+    ck_assert_double_eq(c.parabolic_cylinder.length_m, 10);
+    ck_assert_int_eq(c.parabolic_cylinder.cells_per_module[1], 3);
     hf_case_free(&c);
 }
 END_TEST

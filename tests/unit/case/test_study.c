@@ -270,7 +270,7 @@ START_TEST(values_of_all_types_are_swept)
     hf_study_point(&s, 0, &o);
     ck_assert_msg(hf_config_load(s.base, o.set, o.n_set, &c, &m) == HF_OK, "%s", m.text);
     ck_assert_str_eq(c.title, "a \"b\" \\ c: # d");
-    ck_assert_int_eq(c.cylinder.cells_per_module[0], 1);
+    ck_assert_int_eq(c.parabolic_cylinder.cells_per_module[0], 1);
     ck_assert_int_eq(c.form.method, HF_METHOD_NEWTON);
     hf_case_free(&c);
     hf_study_free(&s);

@@ -95,7 +95,7 @@ START_TEST(grids_are_at_least_sorted)
     hf_scene s;
     int p = c[0] - 1 < c[1] - 1 ? c[0] - 1 : c[1] - 1, n = (c[0] - 1) * (c[1] - 1);
     double squares[2];
-    ck_assert_int_eq(hf_scene_parabolic_cylinder(&cylinder, &s, &messages), HF_OK);
+    ck_assert_int_eq(hf_scene_parabolic_cylinder(&cylinder, NULL, &s, &messages), HF_OK);
     number(&s, squares);
     ck_assert_double_le(squares[0], (n - p) * p * p + p - 1);
     hf_scene_free(&s);
@@ -132,7 +132,7 @@ START_TEST(a_reflector_has_narrow_rows)
     hf_messages messages = {0};
     hf_scene s;
     double squares[2];
-    ck_assert_int_eq(hf_scene_parabolic_cylinder(&cylinder, &s, &messages), HF_OK);
+    ck_assert_int_eq(hf_scene_parabolic_cylinder(&cylinder, NULL, &s, &messages), HF_OK);
     ck_assert_int_le(number(&s, squares), 49);
     ck_assert_double_le(squares[0], 0.8 * (41 * 49 - 11 * 13) * 41 * 41);
     hf_scene_free(&s);

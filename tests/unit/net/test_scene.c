@@ -19,7 +19,7 @@ static hf_scene generate(const hf_cylinder *cylinder)
 {
     hf_messages messages = {0};
     hf_scene scene;
-    ck_assert_msg(hf_scene_parabolic_cylinder(cylinder, &scene, &messages) == HF_OK, "%s", messages.text);
+    ck_assert_msg(hf_scene_parabolic_cylinder(cylinder, NULL, &scene, &messages) == HF_OK, "%s", messages.text);
     ck_assert_ptr_null(messages.text);
     return scene;
 }
@@ -212,7 +212,7 @@ START_TEST(too_many_nodes_are_refused)
     hf_cylinder c = plain;
     hf_scene s;
     c.modules[0] = c.modules[1] = c.cells_per_module[0] = c.cells_per_module[1] = 2000;
-    ck_assert_int_eq(hf_scene_parabolic_cylinder(&c, &s, &messages), HF_BAD_CASE);
+    ck_assert_int_eq(hf_scene_parabolic_cylinder(&c, NULL, &s, &messages), HF_BAD_CASE);
     ck_assert_ptr_nonnull(strstr(messages.text, "4000001 x 4000001 nodes"));
     hf_messages_free(&messages);
     hf_scene_free(&s);

@@ -13,7 +13,7 @@ static hf_scene generate(const hf_cylinder *cylinder)
 {
     hf_messages messages = {0};
     hf_scene scene;
-    ck_assert_msg(hf_scene_parabolic_cylinder(cylinder, &scene, &messages) == HF_OK, "%s", messages.text);
+    ck_assert_msg(hf_scene_parabolic_cylinder(cylinder, NULL, &scene, &messages) == HF_OK, "%s", messages.text);
     return scene;
 }
 

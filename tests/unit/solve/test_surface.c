@@ -197,7 +197,7 @@ START_TEST(errors_are_those_of_their_definitions)
     struct net net;
     open_reflector(&net);
     const hf_model *m = &net.model;
-    const double f = net.settings.cylinder.focal_length_m;
+    const double f = net.settings.parabolic_cylinder.focal_length_m;
     struct rng rng = rng_start(410);
     long double normal = 0, half_path = 0, up = 0;
     int n = 0;
@@ -254,7 +254,7 @@ START_TEST(faceting_is_the_rms_under_a_chord)
 {
     struct net net;
     open_reflector(&net);
-    double w = 0.5, f = net.settings.cylinder.focal_length_m, sum = 0, square = 0; /* 4 m in 4 x 2 cells */
+    double w = 0.5, f = net.settings.parabolic_cylinder.focal_length_m, sum = 0, square = 0; /* 4 m in 4 x 2 cells */
     for (int k = 0; k <= 1000; k++) {
         double x = w * (k / 1000.0 - 0.5), gap = (w * w / 4 - x * x) / (4 * f), part = k % 1000 ? 1e-3 : 0.5e-3;
         sum += part * gap;

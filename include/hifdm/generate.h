@@ -1,0 +1,79 @@
+/* generate - nets that are made from a few numbers of a case file, in the section scene.NAME.
+ * Stability: stable.
+ *
+ * A new generator NAME of settings hf_TYPE is a row of HF_GENERATORS with its settings and keys, here, and
+ * src/net/generate_NAME.c with
+ *
+ *   hf_scene_NAME         : const hf_TYPE *, const double EA_N[2], hf_scene *, hf_messages * -> hf_status
+ *   hf_scene_NAME_surface : const hf_TYPE *, hf_surface_settings *, which is all zero: what the net knows of the wanted
+ *                           surface (focal length, width of a strip); what it does not know stays 0
+ *
+ * The key table, the loading and checking of the section, the help and the making of the scene follow from the row. */
+#ifndef HIFDM_GENERATE_H
+#define HIFDM_GENERATE_H
+
+#include <hifdm/scene.h>
+#include <hifdm/settings.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* X(name of the section, type of the settings, keys, help). `hifdm schema` lists them in this order. */
+#define HF_GENERATORS(X) X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS, "A quad net over a parabolic cylinder.")
+/* Of the section scene: as many as there are generators, and import. */
+#define HF_GENERATORS_HELP "The net: exactly one of the two sections below."
+
+/* ---- parabolic_cylinder ---- */
+
+typedef enum { HF_SPACING_EQUAL_ARC, HF_SPACING_EQUAL_PROJECTED } hf_spacing;
+typedef enum { HF_BOUNDARY_OUTER_EDGE, HF_BOUNDARY_MODULE_EDGES } hf_boundary;
+typedef enum { HF_SUPPORTS_MODULE_CORNERS, HF_SUPPORTS_RIBS, HF_SUPPORTS_PERIMETER } hf_supports;
+
+/* Words of a case file by the enumerations above, ended by NULL. */
+extern const char *const hf_spacing_word[3];
+extern const char *const hf_boundary_word[3];
+extern const char *const hf_supports_word[4];
+
+/* A parabolic cylinder z = x^2/(4 f): x along the directrix, y along the generatrix, origin on the vertex line. */
+typedef struct {
+    double aperture_m; /* along the directrix (x), symmetric about x = 0 */
+    double length_m;   /* along the generatrix (y), from y = 0 */
+    double focal_length_m;
+    int modules[2];          /* along x, along y */
+    int cells_per_module[2]; /* along x, along y */
+    int spacing;             /* hf_spacing of the nodes along the directrix */
+    int boundary;            /* hf_boundary: which cables are boundary (law length) */
+    double scallop;          /* sag of a free outer edge between two supports, relative to their distance */
+    int supports;            /* hf_supports */
+} hf_cylinder;
+
+/* Keys of the section, as rows of hf_field_table (config.h): X(section, member, type, least, largest, default, unit,
+ * words, help). */
+#define HF_CYLINDER_KEYS(X, section)                                                                                   \
+    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "aperture along the directrix (x)")   \
+    X(section, length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "length along the generatrix (y)")      \
+    X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL, "focal length of z = x^2/(4f)")   \
+    X(section, modules, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL, "modules along the directrix and the generatrix")  \
+    X(section, cells_per_module, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL,                                           \
+      "net cells per module, along the directrix and the generatrix")                                                  \
+    X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_arc", "", hf_spacing_word,                                         \
+      "nodes along the directrix: equal arc length, or equal projected (x) spacing")                                   \
+    X(section, boundary, HF_FIELD_WORD, 0, 0, "outer_edge", "", hf_boundary_word,                                      \
+      "which cables are boundary cables (law length); the others are inner (law tension)")                             \
+    X(section, scallop, HF_FIELD_DOUBLE, 0, 0.4, "0", "", NULL,                                                        \
+      "inward sag of a free outer edge between supports, relative to their distance")                                  \
+    X(section, supports, HF_FIELD_WORD, 0, 0, "module_corners", "", hf_supports_word,                                  \
+      "fixed nodes: all module corners, all nodes on ribs (y = module border), or the perimeter")
+
+/* Quad net over the cylinder; node ids n<i>_<j>, cable ids <node>-<node>. EA_N: axial stiffness by hf_group, 0 = not
+ * given; NULL: none is given. Free the scene with hf_scene_free in any case. HF_BAD_CASE when the net would be too
+ * large, HF_NO_MEMORY. */
+hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double EA_N[2], hf_scene *scene,
+                                      hf_messages *messages);
+void hf_scene_parabolic_cylinder_surface(const hf_cylinder *cylinder, hf_surface_settings *surface);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
