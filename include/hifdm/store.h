@@ -1,5 +1,7 @@
-/* store - a run in one HDF5 file: written next to its name and renamed into place, so that nothing half-written is ever
- * visible, with a journal beside it of what is not in there yet; read back for `show`, `report` and `export`.
+/* store - one HDF5 file per run. The file is written under a temporary name and renamed when it is whole, so that the
+ * visible file is always complete; a journal beside it holds what the file does not hold yet. `show`, `report` and
+ * `export` read the file.
+ * Stability: stable.
  *
  * Layout, with n nodes, m cables, i iterations, g generations, p individuals, k genes. Every data set has the
  * attributes `units` ("" = dimensionless) and `description`. Role, group, law, status and the like are HDF5
@@ -16,7 +18,7 @@
  *   /scene/node  id [n], position_m [n][3], role [n]; load_N [n][3] if there are loads
  *   /scene/cable id, group, law, target, length_m (theoretical) [m], end [m][2]; EA_N [m] if any is given
  *   /form        position_m [n][3]; length_m, tension_N, q_N_per_m, law [m]
- *                attributes: the members of hf_summary from `version` on and of hf_summary.form
+ *                attributes: version, n_node, ..., form_wall_s of hf_summary, and the figures of hf_summary.form
  *   /form/history  psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio, length_error [i]
  *   /coupling    with a truss, of the a attachments: node [a], displacement_m, force_N [a][3]; history/step_m, psi_m,
  *                max_displacement_m [form-findings]; attributes: the members of hf_summary.form.coupling (those of best
@@ -51,15 +53,16 @@ extern "C" {
 
 typedef struct hf_store hf_store;
 
-/* Calls on different stores, and reading, may come from several threads at once; HDF5 lets one in at a time. */
+/* Several threads may call at once, each with its own store, and read at once; the calls wait for each other, because
+ * HDF5 works for one thread at a time. */
 
-/* The stages that leave a shape. */
+/* The stages of a run that produce a shape. */
 typedef enum { HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, HF_STAGE_NONE } hf_stage;
 extern const char *const hf_stage_word[4];  /* "form", "optimize", "polish", "none" */
 extern const char *const hf_stage_group[4]; /* where a file keeps the shape: "/form", "/ga/best", "/polish", "/" */
 
-/* What is known of a run is its identity: 64 hexadecimal digits of the case's text and overrides, the seed, the scene
- * and the truss (NULL: none), with their ids. HF_OK or HF_NO_MEMORY. */
+/* The identity of a run: 64 hexadecimal digits of a digest of the case's text and overrides, the seed, the scene and
+ * the truss (NULL: none), with their ids. HF_OK or HF_NO_MEMORY. */
 hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, const hf_truss *truss, char identity[65]);
 
 typedef enum { HF_STORE_NOTHING, HF_STORE_UNFINISHED, HF_STORE_FINISHED } hf_store_state;
@@ -69,8 +72,8 @@ typedef enum { HF_STORE_NOTHING, HF_STORE_UNFINISHED, HF_STORE_FINISHED } hf_sto
 hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
                         hf_store_state *state, hf_messages *messages);
 
-/* Begin the file of a new run. Whether it can get the name `path` is looked at now: HF_EXISTS when that is taken and
- * not `restart`, HF_IO when it is a folder or its folder is not there or not writable, when another process is writing
+/* Begin the file of a new run. The name `path` is checked now, not only at the end: HF_EXISTS when it is taken and
+ * `restart` is 0, HF_IO when it is a folder or its folder is not there or not writable, when another process is writing
  * it, or when the file cannot be made; HF_NO_MEMORY. argv (argc may be 0) goes into the provenance; case and scene are
  * written at once, nothing is borrowed. *store is NULL after a failure. */
 hf_status hf_store_create(const char *path, int restart, const hf_case *settings, const hf_scene *scene,
@@ -97,22 +100,22 @@ hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspa
 /* Bounds and gene cables of the genetic algorithm, once it is created. Nothing on a resumed store. */
 hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages);
 
-/* Append the generation that hf_ga_tell has just ranked. After HF_OK it outlives this process, for the build that made
- * it (see hf_store_restore); after HF_IO all before
- * it does, once hf_store_publish was called after hf_store_genes. */
+/* Append the generation that hf_ga_tell has just ranked. After HF_OK the generation survives the end of this process,
+ * for the build that made it (see hf_store_restore). After HF_IO all generations before it survive, provided that
+ * hf_store_publish was called after hf_store_genes. */
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages);
 
-/* The pretensions base_N [n_gene] around which a resumed store's genetic algorithm was begun: on this machine they may
- * have other last bits. Left as they are when the store has none. */
+/* Read the pretensions base_N [n_gene] from which the genetic algorithm of a resumed store started; those that this
+ * machine computes may differ in the last bits. base_N is unchanged when the store has none. */
 hf_status hf_store_base(hf_store *store, int n_gene, double *base_N, hf_messages *messages);
 
 /* Put `ga`, just created from that base, into the state before hf_ga_tell of the last generation that the store holds,
- * and what was the best until then into the summary. Of the generations in the journal the designs are bred again; a
- * build that breeds others leaves these generations out, with a warning. Nothing when there are none. */
+ * and the best found so far into the summary. The designs of the generations in the journal are bred again; when this
+ * build breeds other designs, these generations are left out, with a warning. Does nothing without generations. */
 hf_status hf_store_restore(hf_store *store, hf_ga *ga, hf_summary *summary, hf_messages *messages);
 
-/* Let everybody see what there is, marked as unfinished: at once, or when it takes less than 2 % of the time since it
- * was done last. Call it after every generation. */
+/* Give the visible name to a file with everything so far, marked as unfinished: at once, or only when that takes less
+ * than 2 % of the time since the last publication. Call it after every generation. */
 hf_status hf_store_publish(hf_store *store, const hf_summary *summary, int at_once, hf_messages *messages);
 
 /* Shape of the workspace as the one that an optimisation stage found, with its design_N [model->n_gene]. Once per
@@ -125,8 +128,9 @@ hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, 
  * another, which the message tells. */
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
 
-/* The same in two parts. complete: up to closing it, which takes processor time. settle: the way to the disk and the
- * name, which is waiting for the most part, perhaps in another thread; frees the store in any case. */
+/* The same in two parts. hf_store_complete writes and closes the file, which takes processor time. hf_store_settle
+ * brings it to the disk and renames it, which is mostly waiting and may be done by another thread; it frees the store
+ * in any case. */
 hf_status hf_store_complete(hf_store *store, const hf_summary *summary, hf_messages *messages);
 hf_status hf_store_settle(hf_store *store, hf_messages *messages);
 

@@ -1,4 +1,7 @@
-/* summary - what a finished run says about itself: printed by `run`, stored with the results, printed by `show`. */
+/* summary - the figures of a whole run: `run` prints them and stores them with the results, `show` prints them again.
+ * Stability: stable.
+ *
+ * The figures of a result (form, best, polish) are those of HF_RESULT_LIST in <hifdm/result.h>. */
 #ifndef HIFDM_SUMMARY_H
 #define HIFDM_SUMMARY_H
 
@@ -15,9 +18,9 @@ extern "C" {
 
 typedef struct {
     char version[64], title[256], case_path[HF_PATH_SIZE];
-    int finished;     /* 0: of a run that can go on */
+    int finished;     /* 0: the run can be resumed */
     hf_status status; /* of the whole run; HF_NOT_EVALUATED unless finished */
-    int threads;      /* that were used */
+    int threads;      /* number used */
     uint64_t seed;    /* of the genetic algorithm */
     int n_node, n_free, n_cable, n_gene, half_bandwidth;
     double pretension_N;
@@ -28,26 +31,26 @@ typedef struct {
 
     hf_form_result form;
     double form_wall_s; /* of the form-finding */
-    int has_coupling;   /* the net stands on a truss: form.coupling and those of the other results */
+    int has_coupling;   /* the net hangs in an elastic truss: the member `coupling` of the results means something */
 
-    int solver; /* hf_solver that the individuals were given */
+    int solver; /* hf_solver of the individuals */
 
     int has_polish;       /* Levenberg-Marquardt ran */
-    int polish_is_result; /* optimize.method asked for it: its design is the result, not only a yardstick */
+    int polish_is_result; /* optimize.method asks for it: its design is the result, not only a comparison */
     hf_form_result polish;
     int polish_iterations, polish_evaluations, polish_converged; /* steps; form-findings; 1: to its tolerance */
     double polish_wall_s;
 
-    int has_truss;        /* the next three mean something */
+    int has_truss;        /* the next three are set */
     double truss_mass_kg; /* members and hinges */
     int truss_nodes, truss_members;
 
-    int has_optimize;     /* the genetic algorithm ran; what follows is about it */
+    int has_optimize;     /* the genetic algorithm ran; all that follows is about it */
     double base_psi_m;    /* of individual 0 of generation 0, the tensions found under the rule; NaN if infeasible */
     int n_leader, planes; /* independent genes; HF_PLANE_ bits of the symmetry (1 = x, 2 = y) that links the others */
     hf_form_result best;  /* of the best individual; status HF_NOT_EVALUATED when none was feasible */
-    int best_generation, best_individual;   /* where it was found, from 0 */
-    int generations;                        /* that were finished */
+    int best_generation, best_individual;   /* where the best was found, counted from 0 */
+    int generations;                        /* number finished */
     long evaluations, infeasible;           /* form-findings; those without a feasible shape among them */
     int optimize_stop;                      /* hf_ga_stop */
     double optimize_wall_s, optimize_cpu_s; /* cpu_s: inside evaluations, over all threads */

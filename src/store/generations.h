@@ -1,8 +1,8 @@
-/* generations - the data sets of /ga that grow by a row per generation: one list says what they are, where a row comes
- * from, and how a run is put back to where it was. The rows of a generation are the whole state of the genetic
- * algorithm, because its random numbers depend on (seed, generation, individual) only. They wait in memory, bounded,
- * until many can be written together: HDF5 costs some microseconds per data set and call, whatever is written. The
- * designs, nine tenths of the bytes, wait for a chunk to be full, all else for longer. */
+/* generations - the data sets of /ga that grow by a row per generation. One list names them and says where the values
+ * of a row come from; writing and restoring both use it. The rows of a generation are the whole state of the genetic
+ * algorithm, because its random numbers depend on (seed, generation, individual) only. Rows wait in memory, bounded,
+ * until many can be written together, because every call of HDF5 costs some microseconds. The designs, nine tenths of
+ * the bytes, are written when a chunk of them is full, all other rows less often. */
 #ifndef HIFDM_GENERATIONS_H
 #define HIFDM_GENERATIONS_H
 

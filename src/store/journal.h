@@ -1,9 +1,9 @@
-/* journal - the generations that a result file does not hold yet, in `<result>.journal`: what kill -9 must not take.
+/* journal - the generations that a result file does not hold yet, in `<result>.journal`, so that kill -9 loses none.
  *
  * File: 8 bytes "hifdm-j2", 64 of the run's identity, then records: magic, length and CRC-32 of what follows,
  * generation, payload. A record is one writev(2), so that a process killed at any instant leaves whole records and at
- * most a torn last one, which the next run cuts off. It goes down to the disk every HF_JOURNAL_SYNC_S: a power cut
- * takes no more.
+ * most a torn last one, which the next run cuts off. The file is synced every HF_JOURNAL_SYNC_S, so that a power cut
+ * loses no more than that.
  *
  * The journal is also the lock of the result: flock(2) on it is held from before the result is looked at until after it
  * is finished. Its name changes hands by rename(2) only, so that whoever gets the lock of a file that has lost the name
@@ -54,10 +54,10 @@ hf_status hf_journal_replay(hf_journal *journal, const char *identity, hf_journa
 hf_status hf_journal_append(hf_journal *journal, int generation, const struct iovec *piece, int n,
                             hf_messages *messages);
 
-/* Now and then: send it to the disk when HF_JOURNAL_SYNC_S have passed, and see that it still has its name. */
+/* To be called regularly: syncs the file when HF_JOURNAL_SYNC_S have passed, and checks that it still has its name. */
 hf_status hf_journal_tend(hf_journal *journal, double now_s, hf_messages *messages);
 
-/* The result holds everything: a new, empty journal takes the name. */
+/* The result file holds all records now: a new, empty journal takes the name. */
 hf_status hf_journal_rotate(hf_journal *journal, hf_messages *messages);
 
 /* Does it hold any record? After hf_journal_forget, none that counts. */

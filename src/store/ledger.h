@@ -1,5 +1,5 @@
-/* ledger - what became of the points of a study: a folder that any number of processes, on any number of machines that
- * share it, write into at the same time.
+/* ledger - the state of the points of a study, in a folder into which any number of processes, on any number of
+ * machines that share it, write at the same time.
  *
  *   points-HOST-PID.tsv   a line per finished point, by the process that finished it: id, fingerprint of the base
  *                         case, status, reason, every number of hf_summary. One write(2) each; a torn one is ignored.
@@ -21,7 +21,7 @@
 int hf_ledger_n_column(void);
 const hf_hdf5_member *hf_ledger_column(int i); /* a member of hf_summary, never of HF_KIND_CHARS */
 
-/* Does it depend on the machine and the moment, not on the point alone? Times and threads. */
+/* Does the column depend on machine and moment, not on the point alone? Times and the number of threads do. */
 int hf_ledger_is_circumstance(const hf_hdf5_member *column);
 
 /* ---- Writing ---- */
@@ -38,11 +38,11 @@ typedef struct {
 hf_status hf_ledger_open(const char *folder, hf_ledger *ledger, hf_messages *messages);
 void hf_ledger_close(hf_ledger *ledger);
 
-/* The point is this process's from now on: 1. Or 0 when another process has it. */
+/* Claim the point for this process: 1, or 0 when another process has it. */
 int hf_ledger_claim(hf_ledger *ledger, const char *id);
 void hf_ledger_release(hf_ledger *ledger, const char *id);
 
-/* From now on note what all processes finish. Call it before hf_ledger_read. HF_OK or HF_NO_MEMORY. */
+/* Note from now on which points any process finishes. Call it before hf_ledger_read. HF_OK or HF_NO_MEMORY. */
 hf_status hf_ledger_watch(hf_ledger *ledger, const hf_study *study, hf_messages *messages);
 
 /* Has the point been finished since hf_ledger_watch, well or not? Ask when it is claimed. From any thread. */

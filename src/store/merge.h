@@ -1,4 +1,4 @@
-/* merge - all points of a study in one HDF5 file, finished or not. In the order of the study, with n points:
+/* merge - one HDF5 file with all points of a study, finished or not, in the order of the study. With n points:
  *   /                attributes: program, format_version, version, study, base, fingerprint
  *   /study           text, base_text
  *   /points          id, status (not_evaluated = not finished), reason [n]

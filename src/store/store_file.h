@@ -1,5 +1,4 @@
-/* store_file - the file of a store: under its temporary name while it is written, under the visible one when it is
- * whole.
+/* store_file - the file of a store: it has a temporary name while it is written and the visible name when it is whole.
  *
  * Names: RESULT is visible, closed and whole at any moment. RESULT.journal holds the lock and what RESULT does not hold
  * yet; RESULT.journal.tmp is being written, RESULT.journal.new takes the journal's place. All but RESULT belong to
