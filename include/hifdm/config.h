@@ -1,5 +1,8 @@
-/* config - case file (YAML) -> validated settings. One table (config_table.c) holds every key with its type, range,
- * default, unit and help; the same table validates, prints `hifdm schema`, and is the only place of a default. */
+/* config - case file (YAML) -> validated settings.
+ * Stability: stable.
+ *
+ * One table (src/case/config_table.c) holds every key with its type, range, default, unit and help. The loader
+ * validates by it, `hifdm schema` prints it, and no default stands anywhere else. */
 #ifndef HIFDM_CONFIG_H
 #define HIFDM_CONFIG_H
 
@@ -65,11 +68,8 @@ hf_status hf_config_carrier(const hf_case *settings, const hf_scene *scene, hf_c
 
 void hf_case_free(hf_case *settings);
 
-/* Would this value, as it stands in a case file, do for the key? HF_OK, or HF_BAD_CASE with "<place>: <key>:
- * <why not>". field: index into hf_field_table. What joins several keys is for hf_config_load. */
-hf_status hf_config_check_value(int field, const char *value, const char *place, hf_messages *messages);
+/* ---- The table of keys: internal; it may change in any version ---- */
 
-/* The table itself, for printing the reference. */
 typedef enum {
     HF_FIELD_DOUBLE,
     HF_FIELD_INT,
@@ -103,6 +103,10 @@ extern const hf_field hf_field_table[]; /* [hf_n_field], by section */
 extern const int hf_n_field;
 extern const hf_section hf_section_table[];
 extern const int hf_n_section;
+
+/* Is `value`, written as in a case file, valid for the key of hf_field_table[field]? HF_OK, or HF_BAD_CASE with
+ * "<place>: <key>: <why not>". Rules that join several keys are checked by hf_config_load alone. */
+hf_status hf_config_check_value(int field, const char *value, const char *place, hf_messages *messages);
 
 #ifdef __cplusplus
 }

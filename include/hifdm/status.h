@@ -1,8 +1,9 @@
-/* status - result codes with their texts and exit codes from one list, and the messages that travel upward.
+/* status - result codes with their texts and exit codes from one list, and messages for people.
+ * Stability: stable.
  *
- * Three classes of trouble, kept apart: a programmer's error is an assert; a bad candidate is a status stored with that
- * candidate (its numbers are NaN) and work goes on; a failed run is a status plus messages that go up to `main`, the
- * only place that prints or exits. */
+ * There are three classes of errors. A programmer's error is an assert. A bad candidate gets a status, its numbers are
+ * NaN, and the batch goes on. A failed run returns a status and messages to its caller; the library never prints and
+ * never exits. */
 #ifndef HIFDM_STATUS_H
 #define HIFDM_STATUS_H
 
@@ -41,21 +42,21 @@ typedef enum {
 #undef HF_STATUS_ENUM
 } hf_status;
 
-const char *hf_status_word(hf_status status);  /* one token, as stored in files; "unknown" for a foreign value */
-hf_status hf_status_of_word(const char *word); /* HF_IO for a foreign word: of another version of this program */
+const char *hf_status_word(hf_status status);  /* one token, as stored in files; "unknown" for a value not listed */
+hf_status hf_status_of_word(const char *word); /* HF_IO for a word not listed, as another version may store */
 const char *hf_status_text(hf_status status);  /* a sentence */
 /* 0 done, 1 two files differ, 2 usage or case, 3 not converged, 4 ill-posed, 5 input/output, 75 told to stop */
 int hf_status_exit_code(hf_status status);
 
-/* Propagate: evaluate once, return it from the calling function unless it is HF_OK. */
+/* Evaluate `expression` once; return its status from the calling function unless it is HF_OK. */
 #define HF_TRY(expression)                                                                                             \
     do {                                                                                                               \
         hf_status hf_try_status_ = (expression);                                                                       \
         if (hf_try_status_ != HF_OK) return hf_try_status_;                                                            \
     } while (0)
 
-/* A growing list of lines for people. Zero-initialise; hf_messages_free when done. When memory runs out lines are
- * lost, but the counts stay right. */
+/* A growing list of lines for people. Zero-initialise; call hf_messages_free when done. Lines are lost when memory runs
+ * out, the counts stay right. */
 typedef struct {
     char *text; /* lines ending in '\n', or NULL while empty */
     size_t length, capacity;

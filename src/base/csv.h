@@ -1,6 +1,7 @@
-/* csv - tables in CSV files: a header line, rows of cells, faults with file, line and id. Quoted fields, LF or CRLF, a
- * byte order mark, comment lines that start with '#' and empty lines are understood; a quoted field ends on its line.
- * */
+/* csv - tables in CSV files: a header line and rows of cells. Faults name file, line and id.
+ *
+ * Fields may be quoted and then end on the same line. Lines end with LF or CRLF. A byte order mark, empty lines and
+ * lines that start with '#' are skipped. */
 #ifndef HIFDM_CSV_H
 #define HIFDM_CSV_H
 
@@ -9,7 +10,7 @@
 
 #define HF_CSV_FAULT_MAX 20 /* faults that are spelled out, per file */
 
-/* The text is cut up in place, header and cells point into it. */
+/* Header and cells point into the text, which reading cuts up in place. */
 typedef struct {
     const char *path;      /* borrowed */
     hf_messages *messages; /* borrowed */
@@ -29,10 +30,10 @@ void hf_csv_free(hf_csv *table);
 
 char *hf_csv_cell(const hf_csv *table, int row, int column);
 
-/* One fault, at a line, about an id unless that is NULL. After HF_CSV_FAULT_MAX of a file they are only counted. */
+/* Report one fault at a line, about an id unless that is NULL. Beyond HF_CSV_FAULT_MAX of a file they are counted. */
 void hf_csv_fault(hf_csv *table, int line, const char *id, const char *what, const char *detail);
 
-/* HF_BAD_CASE when there were faults, and how many more than those spelled out. */
+/* HF_BAD_CASE when there were faults; a last message counts those that were not spelled out. */
 hf_status hf_csv_close_faults(hf_csv *table);
 
 /* Where each known column stands (-1 = absent); the first n_required must be there. Unknown ones are warned about. */

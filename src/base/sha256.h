@@ -1,4 +1,4 @@
-/* sha256 - the digest that ties a result file to its case (FIPS 180-4); no library of the agreed set has one. */
+/* sha256 - the digest (FIPS 180-4) that ties a result file to its case. None of the libraries we use offers one. */
 #ifndef HIFDM_SHA256_H
 #define HIFDM_SHA256_H
 

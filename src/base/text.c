@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FILE_MAX (1 << 30) /* bytes: /dev/zero ends, too */
+#define FILE_MAX (1 << 30) /* bytes; endless files like /dev/zero are refused */
 
 hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_t *length, hf_messages *messages)
 {
@@ -50,7 +50,7 @@ static const char *skip_digits(const char *p)
     return p;
 }
 
-int hf_text_double(const char *text, double *value)
+bool hf_text_double(const char *text, double *value)
 {
     const char *p = text, *whole, *fraction;
     if (*p == '+' || *p == '-') p++;
@@ -62,15 +62,15 @@ int hf_text_double(const char *text, double *value)
         p = skip_digits(p);
         n_digit += (size_t)(p - fraction);
     }
-    if (n_digit == 0) return 0;
+    if (n_digit == 0) return false;
     if (*p == 'e' || *p == 'E') {
         p++;
         if (*p == '+' || *p == '-') p++;
-        if (!isdigit((unsigned char)*p)) return 0;
+        if (!isdigit((unsigned char)*p)) return false;
         p = skip_digits(p);
     }
-    if (*p) return 0;
-    /* an application that links the library may have set a locale with a decimal comma */
+    if (*p) return false;
+    /* the program that uses the library may have set a locale with a decimal comma */
     locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0), old = (locale_t)0;
     if (c_locale) old = uselocale(c_locale);
     *value = strtod(text, NULL);
@@ -81,9 +81,9 @@ int hf_text_double(const char *text, double *value)
     return isfinite(*value);
 }
 
-int hf_text_uint64(const char *text, uint64_t *value)
+bool hf_text_uint64(const char *text, uint64_t *value)
 {
-    if (!isdigit((unsigned char)*text) || *skip_digits(text)) return 0;
+    if (!isdigit((unsigned char)*text) || *skip_digits(text)) return false;
     errno = 0;
     unsigned long long number = strtoull(text, NULL, 10);
     *value = number;
@@ -102,14 +102,14 @@ static int utf8_length(const unsigned char *p)
     return (p[0] == 0xf0 && p[1] < 0x90) || (p[0] == 0xf4 && p[1] > 0x8f) ? 0 : n;
 }
 
-int hf_text_is_utf8(const char *text)
+bool hf_text_is_utf8(const char *text)
 {
     for (const unsigned char *p = (const unsigned char *)text; *p;) {
         int n = utf8_length(p);
-        if (n == 0) return 0;
+        if (n == 0) return false;
         p += n;
     }
-    return 1;
+    return true;
 }
 
 void hf_text_trim_utf8(char *text)
@@ -135,7 +135,7 @@ int hf_text_too_deep(const char *text)
     return 0;
 }
 
-#define NEAREST_MAX 63 /* words longer than this are never called a typing error */
+#define NEAREST_MAX 63 /* bytes; for longer words no candidate is suggested */
 
 /* Levenshtein distance of two short words, ignoring case. */
 static int edit_distance(const char *a, const char *b)

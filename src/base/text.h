@@ -1,26 +1,28 @@
-/* text - reading files and strict, locale-independent numbers; shared by the case file and the CSV import. */
+/* text - files read whole, strict numbers that no locale changes, UTF-8, and the nearest word to a misspelt one. */
 #ifndef HIFDM_TEXT_H
 #define HIFDM_TEXT_H
 
 #include <hifdm/status.h>
+#include <stdbool.h>
 #include <stdint.h>
 
-/* Whole file as a NUL-terminated string (caller frees). `code` is the status given when it cannot be read. */
+/* The whole file as a NUL-terminated string that the caller frees. HF_OK, HF_NO_MEMORY, or `code` when it cannot be
+ * read. */
 hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_t *length, hf_messages *messages);
 
-/* The whole string must be one decimal number; 1 when it is, 0 otherwise. hf_text_double takes no nan, no inf and no
- * hexadecimal, and refuses what overflows. */
-int hf_text_double(const char *text, double *value);
-int hf_text_uint64(const char *text, uint64_t *value);
+/* True when the whole string is one decimal number, without sign for hf_text_uint64. nan, inf, hexadecimal numbers and
+ * numbers that overflow are refused. */
+bool hf_text_double(const char *text, double *value);
+bool hf_text_uint64(const char *text, uint64_t *value);
 
-/* Well-formed UTF-8 without control characters other than tab? Results keep ids and titles as UTF-8. */
-int hf_text_is_utf8(const char *text);
+/* Is the text well-formed UTF-8 without control characters other than tab? Results keep ids and titles as UTF-8. */
+bool hf_text_is_utf8(const char *text);
 
-/* snprintf may have cut a text in the middle of a letter: take the rest of that letter away. */
+/* Remove an incomplete UTF-8 sequence from the end of a text that snprintf has cut. */
 void hf_text_trim_utf8(char *text);
 
-/* The first line of a YAML text with more than HF_TEXT_NESTING_MAX brackets open at once, quoted ones included, or 0:
- * libyaml takes minutes over thousands. */
+/* The number of the first line of a YAML text that has more than HF_TEXT_NESTING_MAX brackets open at once, quoted ones
+ * included; 0 when there is none. libyaml takes minutes to read thousands of open brackets. */
 #define HF_TEXT_NESTING_MAX 100
 int hf_text_too_deep(const char *text);
 

@@ -46,12 +46,12 @@ char *hf_study_canonical(const hf_field *field, const char *value)
     return text;
 }
 
-void hf_study_range_value(const hf_field *field, double from, double to, int is_log, double x, char text[40])
+void hf_study_range_value(const hf_field *field, double from, double to, bool is_log, double x, char text[40])
 {
     double value = is_log ? from * pow(to / from, x) : from + (to - from) * x;
     if (x >= 1) value = to;
     if (field->type == HF_FIELD_DOUBLE) {
-        /* 12 digits: what a user would write, and the same on a machine whose pow() differs in the last bit */
+        /* 12 digits give what a user would write, on every machine although pow() may differ in the last bit */
         snprintf(text, 40, "%.12g", value);
         if (hf_text_double(text, &value)) shortest(value, text);
     } else {
@@ -157,7 +157,7 @@ static int compare_ids(const void *a, const void *b)
     return memcmp(*(const char *const *)a, *(const char *const *)b, HF_STUDY_ID_SIZE);
 }
 
-/* Two points that set the same would share their results. */
+/* Two points that set the same values would write the same result. */
 static hf_status refuse_twins(const hf_study *s, hf_messages *messages)
 {
     const char **sorted = malloc((size_t)s->n_point * sizeof *sorted);
@@ -192,7 +192,7 @@ static hf_status name_points(hf_study *s, hf_messages *messages)
     return refuse_twins(s, messages);
 }
 
-/* The faults of one point, each line led by the point. */
+/* Report the faults of one point; each message names the point. */
 static void tell_faults(const hf_study *s, int i, const hf_messages *found, hf_messages *messages)
 {
     char text[256];
@@ -204,7 +204,7 @@ static void tell_faults(const hf_study *s, int i, const hf_messages *found, hf_m
     }
 }
 
-/* Of the base case and the tables that it imports (those of the first point, where an axis names tables). */
+/* Digest of the base case and the tables that it imports (those of the first point, when an axis names tables). */
 static hf_status take_fingerprint(hf_study *s, const hf_case *c, hf_messages *messages)
 {
     const char *table[] = {c->has_import ? c->nodes_path : NULL, c->has_import ? c->cables_path : NULL,
@@ -228,10 +228,11 @@ static hf_status take_fingerprint(hf_study *s, const hf_case *c, hf_messages *me
     return HF_OK;
 }
 
-/* Each point as a case: keys that do not go together, and all faults of the base case. */
+/* Load each point as a case. This finds keys that do not go together, and all faults of the base case. */
 static hf_status check_points(hf_study *s, hf_messages *messages)
 {
-    int n_fault = 0, has_seed_axis = 0;
+    int n_fault = 0;
+    bool has_seed_axis = false;
     for (int a = 0; a < s->n_axis; a++)
         has_seed_axis |= !strcmp(hf_field_table[s->axis[a].field].path, "optimize.seed");
     for (int i = 0; i < s->n_point; i++) {
@@ -306,7 +307,7 @@ void hf_study_point_text(const hf_study *s, int i, char *text, size_t size)
     if (used >= size && size > 4) strcpy(text + size - 4, "...");
 }
 
-int hf_study_has_files(const hf_study *s)
+bool hf_study_has_files(const hf_study *s)
 {
     return s->files == HF_FILES_ALL || (s->files == HF_FILES_AUTO && s->has_optimize);
 }

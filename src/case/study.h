@@ -1,4 +1,4 @@
-/* study - a sweep: the axes that a study file names over keys of a base case, and the points they make.
+/* study - a sweep: the axes that a study file gives over keys of a base case, and the points that they span.
  *
  *     base: reflector.yaml              # relative to this file; without it, this file is the case itself
  *     sweep:
@@ -16,6 +16,7 @@
 #define HIFDM_STUDY_H
 
 #include <hifdm/config.h>
+#include <stdbool.h>
 
 #define HF_STUDY_AXIS_MAX 32
 #define HF_STUDY_POINT_MAX 1000000
@@ -28,7 +29,7 @@ typedef enum { HF_FILES_AUTO, HF_FILES_ALL, HF_FILES_NONE } hf_study_files;
 typedef struct {
     int field; /* index into hf_field_table */
     int line, column;
-    int is_sampled;
+    bool is_sampled;
     int n_value;
     char **canonical; /* [n_value] "key=value", one way to write each value: 10, not 1e1 */
     char **set;       /* [n_value] the same as an override of hf_config_load: paths lead from the current folder */
@@ -37,20 +38,21 @@ typedef struct {
 typedef struct {
     char path[HF_PATH_SIZE]; /* of the study file */
     char base[HF_PATH_SIZE]; /* of the case; the same in the one-file form */
-    int is_zip;
-    int files; /* hf_study_files */
+    bool is_zip;
+    hf_study_files files;
     int n_axis;
     hf_study_axis axis[HF_STUDY_AXIS_MAX]; /* sorted by key */
     int n_point;
-    int *value;                                  /* [n_point][n_axis] index of the value */
-    char (*id)[HF_STUDY_ID_SIZE];                /* [n_point] */
-    int has_optimize;                            /* the points have an optimize section */
-    int derives_seed;                            /* optimize.seed is no axis: every point has a seed of its own */
-    uint64_t seed;                               /* optimize.seed of the base case */
-    char fingerprint[HF_STUDY_FINGERPRINT_SIZE]; /* of the base case: results of another one are not of this study */
+    int *value;                   /* [n_point][n_axis] index of the value */
+    char (*id)[HF_STUDY_ID_SIZE]; /* [n_point] */
+    bool has_optimize;            /* the points have an optimize section */
+    bool derives_seed;            /* optimize.seed is no axis: every point has a seed of its own */
+    uint64_t seed;                /* optimize.seed of the base case */
+    char fingerprint
+        [HF_STUDY_FINGERPRINT_SIZE]; /* of the base case; results that carry another one belong to another study */
 } hf_study;
 
-/* The overrides of one point, valid as long as the study and this stay where they are. */
+/* The overrides of one point. They point into the study and into this struct: neither may move. */
 typedef struct {
     const char *set[HF_STUDY_AXIS_MAX + 1];
     int n_set;
@@ -62,30 +64,31 @@ typedef struct {
 hf_status hf_study_read(const char *path, hf_study *study, hf_messages *messages);
 void hf_study_free(hf_study *study);
 
-/* What point i sets. optimize.seed is among it: that of the base case and the point's id decide it, so no two points
- * share their random numbers unless optimize.seed is an axis. */
+/* What point i sets. Unless optimize.seed is an axis, it is set too, from the seed of the base case and the point's id,
+ * so that no two points share their random numbers. */
 void hf_study_point(const hf_study *study, int i, hf_study_overrides *overrides);
 
 /* "key=value, key=value" for people, cut off with "..." where it is too long. */
 void hf_study_point_text(const hf_study *study, int i, char *text, size_t size);
 
-/* Does the point get a result file? */
-int hf_study_has_files(const hf_study *study);
+/* Do the points get result files? */
+bool hf_study_has_files(const hf_study *study);
 
 /* ---- between study and study_read ---- */
 
 /* A value of an axis {from, to} at x in 0..1, linear or logarithmic; whole for whole-number keys. */
-void hf_study_range_value(const hf_field *field, double from, double to, int is_log, double x, char text[40]);
+void hf_study_range_value(const hf_field *field, double from, double to, bool is_log, double x, char text[40]);
 
 /* n samples in n_axis dimensions, x[n][n_axis] in 0..1. Sobol's first points stay when n grows, those of a latin
  * hypercube do not. HF_OK or HF_NO_MEMORY. n_axis <= 40. */
 hf_status hf_study_sobol(int n, int n_axis, double *x);
 hf_status hf_study_latin_hypercube(int n, int n_axis, uint64_t seed, double *x);
 
-/* Study files with axes filled in -> points with ids; checks them with the base case. */
+/* Make the points and their ids from the axes, and check each as a case. */
 hf_status hf_study_make_points(hf_study *study, hf_messages *messages);
 
-/* "key=value" in the one way to write it; caller frees; NULL without memory. The value has been checked. */
+/* "key=value" with the value in its canonical form; the caller frees it; NULL without memory. The value must be valid
+ * for the key. */
 char *hf_study_canonical(const hf_field *field, const char *value);
 
 #endif

@@ -19,7 +19,8 @@ typedef enum { SAMPLE_NONE, SAMPLE_LATIN_HYPERCUBE, SAMPLE_SOBOL } sampling;
 typedef struct {
     int i_axis; /* -1 = not a range */
     double from, to;
-    int is_log, n;
+    bool is_log;
+    int n;
     sampling sample;
     yaml_mark_t mark;
 } range;
@@ -28,7 +29,7 @@ typedef struct {
     hf_study *study;
     hf_messages *messages;
     yaml_document_t *document;
-    int failed, no_memory;
+    bool failed, no_memory;
     int n; /* common to ranges, 0 = not given */
     uint64_t seed;
     range range[HF_STUDY_AXIS_MAX]; /* of axis i */
@@ -44,7 +45,7 @@ static void fault(reader *r, yaml_mark_t mark, const char *key, const char *form
     va_start(arguments, format);
     vsnprintf(what, sizeof what, format, arguments);
     va_end(arguments);
-    r->failed = 1;
+    r->failed = true;
     hf_error(r->messages, HF_BAD_CASE, "%s:%zu:%zu: sweep%s%s: %s", r->study->path, mark.line + 1, mark.column + 1,
              *key ? "." : "", key, what);
 }
@@ -70,7 +71,7 @@ static void fault_unknown(reader *r, yaml_mark_t mark, const char *key, const ch
 }
 
 /* Is this key in the mapping before `pair`, too? Then that is a fault. */
-static int is_repeated(reader *r, const yaml_node_t *mapping, const yaml_node_pair_t *pair, const char *path)
+static bool is_repeated(reader *r, const yaml_node_t *mapping, const yaml_node_pair_t *pair, const char *path)
 {
     const yaml_node_t *key = node_at(r, pair->key);
     for (const yaml_node_pair_t *p = mapping->data.mapping.pairs.start; p < pair; p++) {
@@ -78,16 +79,16 @@ static int is_repeated(reader *r, const yaml_node_t *mapping, const yaml_node_pa
         if (strcmp(text_of(other), text_of(key))) continue;
         fault(r, key->start_mark, path, "'%s' stands here already, on line %zu", text_of(key),
               other->start_mark.line + 1);
-        return 1;
+        return true;
     }
-    return 0;
+    return false;
 }
 
-static int read_number(reader *r, const yaml_node_t *node, const char *key, const char *name, double *value)
+static bool read_number(reader *r, const yaml_node_t *node, const char *key, const char *name, double *value)
 {
-    if (hf_text_double(text_of(node), value)) return 1;
+    if (hf_text_double(text_of(node), value)) return true;
     fault(r, node->start_mark, key, "%s must be a number, not '%s'", name, text_of(node));
-    return 0;
+    return false;
 }
 
 static void read_count(reader *r, const yaml_node_t *node, const char *key, int *n)
@@ -100,50 +101,49 @@ static void read_count(reader *r, const yaml_node_t *node, const char *key, int 
         *n = (int)value;
 }
 
-static void read_word(reader *r, const yaml_node_t *node, const char *key, const char *name, const char *const *words,
-                      int n_word, int *value)
+/* The index of a word; 0 after a fault. */
+static int read_word(reader *r, const yaml_node_t *node, const char *key, const char *name, const char *const *words,
+                     int n_word)
 {
     char list[200] = "";
     for (int k = 0; k < n_word; k++) {
-        if (!strcmp(text_of(node), words[k])) {
-            *value = k;
-            return;
-        }
+        if (!strcmp(text_of(node), words[k])) return k;
         snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", k ? ", " : "", words[k]);
     }
     fault(r, node->start_mark, key, "%s must be one of %s, not '%s'", name, list, text_of(node));
+    return 0;
 }
 
 /* ---- axes given as lists ---- */
 
-/* The value as YAML on one line; 0 when it is neither a scalar nor a list of scalars. */
-static int value_text(reader *r, const yaml_node_t *node, char *text)
+/* The value as YAML on one line; false when it is neither a scalar nor a list of scalars. */
+static bool value_text(reader *r, const yaml_node_t *node, char *text)
 {
     size_t used = 0;
     if (node->type == YAML_SCALAR_NODE) return snprintf(text, VALUE_SIZE, "%s", text_of(node)) < VALUE_SIZE;
-    if (node->type != YAML_SEQUENCE_NODE) return 0;
+    if (node->type != YAML_SEQUENCE_NODE) return false;
     for (const int *item = node->data.sequence.items.start; item < node->data.sequence.items.top; item++) {
-        if (node_at(r, *item)->type != YAML_SCALAR_NODE) return 0;
+        if (node_at(r, *item)->type != YAML_SCALAR_NODE) return false;
         used += (size_t)snprintf(text + used, VALUE_SIZE - used, "%s%s", used ? "," : "[", text_of(node_at(r, *item)));
-        if (used + 2 >= VALUE_SIZE) return 0;
+        if (used + 2 >= VALUE_SIZE) return false;
     }
     snprintf(text + used, VALUE_SIZE - used, "]");
-    return 1;
+    return true;
 }
 
 /* A text as a quoted YAML scalar; paths are relative to the study file. */
-static int quote(const reader *r, const hf_field *field, const char *value, char *text)
+static bool quote(const reader *r, const hf_field *field, const char *value, char *text)
 {
     char whole[2 * HF_PATH_SIZE];
     const char *beside = field->max == HF_PATH_SIZE ? r->study->path : "";
-    if (!hf_path_beside(beside, value, whole, sizeof whole)) return 0;
+    if (!hf_path_beside(beside, value, whole, sizeof whole)) return false;
     *text++ = '"';
     for (const char *p = whole; *p; p++) {
         if (*p == '"' || *p == '\\') *text++ = '\\';
         *text++ = *p;
     }
     strcpy(text, "\"");
-    return 1;
+    return true;
 }
 
 static void add_value(reader *r, hf_study_axis *axis, const char *value, yaml_mark_t mark)
@@ -155,13 +155,13 @@ static void add_value(reader *r, hf_study_axis *axis, const char *value, yaml_ma
     hf_status status = fits ? hf_config_check_value(axis->field, text, place, r->messages) : HF_BAD_CASE;
     if (!fits) fault(r, mark, field->path, "is too long");
     if (status != HF_OK) {
-        r->failed = 1;
+        r->failed = true;
         return;
     }
     size_t size = strlen(field->path) + strlen(text) + 2;
     char *set = malloc(size), *canonical = hf_study_canonical(field, value);
     if (!set || !canonical) {
-        r->no_memory = 1;
+        r->no_memory = true;
         free(set);
         free(canonical);
         return;
@@ -171,13 +171,13 @@ static void add_value(reader *r, hf_study_axis *axis, const char *value, yaml_ma
     axis->canonical[axis->n_value++] = canonical;
 }
 
-static int reserve_values(reader *r, hf_study_axis *axis, int n)
+static bool reserve_values(reader *r, hf_study_axis *axis, int n)
 {
     axis->set = calloc((size_t)n, sizeof *axis->set);
     axis->canonical = calloc((size_t)n, sizeof *axis->canonical);
-    if (axis->set && axis->canonical) return 1;
-    r->no_memory = 1;
-    return 0;
+    if (axis->set && axis->canonical) return true;
+    r->no_memory = true;
+    return false;
 }
 
 static void read_list(reader *r, hf_study_axis *axis, const yaml_node_t *list)
@@ -202,13 +202,12 @@ static void read_list(reader *r, hf_study_axis *axis, const yaml_node_t *list)
 /* ---- axes given as ranges ---- */
 
 static void read_range_key(reader *r, const char *path, const yaml_node_t *key, const yaml_node_t *value, range *to,
-                           int given[2])
+                           bool given[2])
 {
     static const char *const names[] = {"from", "to", "n", "spacing", "sample"};
     static const char *const spacings[] = {"linear", "log"};
-    static const char *const samplings[] = {"latin_hypercube", "sobol"};
+    static const char *const samplings[] = {"latin_hypercube", "sobol"}; /* in the order of sampling */
     const char *word = text_of(key);
-    int sample = -1;
     if (!strcmp(word, "from"))
         given[0] = read_number(r, value, path, word, &to->from);
     else if (!strcmp(word, "to"))
@@ -216,18 +215,17 @@ static void read_range_key(reader *r, const char *path, const yaml_node_t *key, 
     else if (!strcmp(word, "n"))
         read_count(r, value, path, &to->n);
     else if (!strcmp(word, "spacing"))
-        read_word(r, value, path, word, spacings, 2, &to->is_log);
+        to->is_log = read_word(r, value, path, word, spacings, 2) == 1;
     else if (!strcmp(word, "sample"))
-        read_word(r, value, path, word, samplings, 2, &sample);
+        to->sample = SAMPLE_LATIN_HYPERCUBE + read_word(r, value, path, word, samplings, 2);
     else
         fault_unknown(r, key->start_mark, path, word, names, 5);
-    if (sample >= 0) to->sample = sample == 0 ? SAMPLE_LATIN_HYPERCUBE : SAMPLE_SOBOL;
 }
 
 static void read_range(reader *r, hf_study_axis *axis, const yaml_node_t *mapping, range *to)
 {
     const hf_field *field = &hf_field_table[axis->field];
-    int given[2] = {0, 0}, failed_before = r->failed;
+    bool given[2] = {false, false}, failed_before = r->failed;
     to->mark = mapping->start_mark;
     if (field->type == HF_FIELD_WORD || field->type == HF_FIELD_TEXT || field->type == HF_FIELD_INT_PAIR) {
         fault(r, to->mark, field->path, "is no number, so it needs a list of values");
@@ -254,8 +252,8 @@ static void fill_range(reader *r, const range *from, const double *x, int stride
     char text[40];
     if (!reserve_values(r, axis, n)) return;
     axis->is_sampled = from->sample != SAMPLE_NONE;
-    int failed_before = r->failed;
-    r->failed = 0;
+    bool failed_before = r->failed;
+    r->failed = false;
     for (int i = 0; i < n && !r->failed; i++) { /* one bad value of a range is enough */
         hf_study_range_value(&hf_field_table[axis->field], from->from, from->to, from->is_log,
                              x[(size_t)i * (size_t)stride], text);
@@ -278,7 +276,7 @@ static void fill_even(reader *r, const range *from)
     if (x)
         fill_range(r, from, x, 1, n);
     else
-        r->no_memory = 1;
+        r->no_memory = true;
     free(x);
 }
 
@@ -297,7 +295,7 @@ static void fill_sampled(reader *r, sampling kind)
     double *x = malloc((size_t)r->n * (size_t)n_member * sizeof *x);
     if (!x || (kind == SAMPLE_SOBOL ? hf_study_sobol(r->n, n_member, x)
                                     : hf_study_latin_hypercube(r->n, n_member, r->seed, x)) != HF_OK)
-        r->no_memory = 1;
+        r->no_memory = true;
     for (int k = 0; k < n_member && !r->no_memory; k++)
         fill_range(r, member[k], x + k, n_member, r->n);
     free(x);
@@ -351,9 +349,9 @@ static void read_sweep(reader *r, const yaml_node_t *mapping)
         if (!strcmp(word, "n"))
             read_count(r, value, "", &r->n);
         else if (!strcmp(word, "combine"))
-            read_word(r, value, "", word, combines, 2, &s->is_zip);
+            s->is_zip = read_word(r, value, "", word, combines, 2) == 1;
         else if (!strcmp(word, "files"))
-            read_word(r, value, "", word, hf_study_files_word, 3, &s->files);
+            s->files = (hf_study_files)read_word(r, value, "", word, hf_study_files_word, 3);
         else if (!strcmp(word, "seed")) {
             if (!hf_text_uint64(text_of(value), &r->seed))
                 fault(r, value->start_mark, "", "seed must be a whole number from 0 to 2^64-1, not '%s'",
@@ -418,7 +416,7 @@ static void parse(reader *r, const char *text, size_t length)
     yaml_parser_t parser;
     yaml_document_t document;
     if (!yaml_parser_initialize(&parser)) {
-        r->no_memory = 1;
+        r->no_memory = true;
         return;
     }
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
