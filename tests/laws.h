@@ -162,4 +162,14 @@ static inline void shuffle_scene(struct rng *rng, hf_scene *scene, int *to)
     *scene = s;
 }
 
+/* Solves net->scene as it is now, gives the shape (caller frees), and closes the net. */
+static inline double *shape_of(struct net *net)
+{
+    open_net(net);
+    ck_assert_msg(find_shape(net) == HF_OK, "%s", hf_status_word(net->result.status));
+    double *shape = copy_shape(net);
+    close_net(net);
+    return shape;
+}
+
 #endif

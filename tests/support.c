@@ -82,6 +82,19 @@ const char *temp_path(const char *name)
     return join(directory, name);
 }
 
+void copy_without_folder(const char *text, char *said, size_t size)
+{
+    const char *folder = temp_path("");
+    size_t length = strlen(folder), n = 0;
+    for (const char *p = text ? text : ""; *p && n + 1 < size;) {
+        if (!strncmp(p, folder, length))
+            p += length;
+        else
+            said[n++] = *p++;
+    }
+    said[n] = '\0';
+}
+
 char *read_file(const char *path, size_t *size)
 {
     FILE *file = fopen(path, "rb");

@@ -18,16 +18,6 @@ static struct net random_net(int trial)
     return net;
 }
 
-/* Solves net->scene as it is now, gives the shape, and closes the net. */
-static double *shape_of(struct net *net)
-{
-    open_net(net);
-    ck_assert_msg(find_shape(net) == HF_OK, "%s", hf_status_word(net->result.status));
-    double *shape = copy_shape(net);
-    close_net(net);
-    return shape;
-}
-
 static void assert_same_shape(const double *a, const double *b, int n_node)
 {
     double allowed = TOLERANCE * fmax(1, largest(a, 3 * n_node));

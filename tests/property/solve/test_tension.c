@@ -16,15 +16,6 @@ static struct net random_net(int trial)
     return net;
 }
 
-static double *shape_of(struct net *net)
-{
-    open_net(net);
-    ck_assert_msg(find_shape(net) == HF_OK, "%s", hf_status_word(net->result.status));
-    double *shape = copy_shape(net);
-    close_net(net);
-    return shape;
-}
-
 /* Pi = sum T* l - sum P.x, J (METHOD section 2). */
 static double potential_J(const hf_scene *s, const double *shape)
 {

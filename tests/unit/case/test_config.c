@@ -14,14 +14,7 @@ static hf_status load(const char *text, const char *const *overrides, int n_over
     const char *path = temp_path("case.yaml");
     if (text) write_file(path, text);
     hf_status status = hf_config_load(path, overrides, n_override, c, &messages);
-    size_t folder = (size_t)(strrchr(path, '/') + 1 - path), n = 0;
-    for (const char *p = messages.text ? messages.text : ""; *p && n + 1 < size;) {
-        if (!strncmp(p, path, folder))
-            p += folder;
-        else
-            said[n++] = *p++;
-    }
-    said[n] = '\0';
+    copy_without_folder(messages.text, said, size);
     hf_messages_free(&messages);
     return status;
 }

@@ -16,14 +16,7 @@ static const char *complaint(const char *text, const char *override)
     const char *path = temp_path("c.yaml");
     write_file(path, text);
     hf_status status = hf_config_load(path, &override, override != NULL, &c, &messages);
-    size_t folder = (size_t)(strrchr(path, '/') + 1 - path), n = 0;
-    for (const char *p = messages.text ? messages.text : ""; *p && n + 1 < sizeof said;) {
-        if (!strncmp(p, path, folder))
-            p += folder;
-        else
-            said[n++] = *p++;
-    }
-    said[n] = '\0';
+    copy_without_folder(messages.text, said, sizeof said);
     ck_assert_msg(status == HF_BAD_CASE, "not refused:\n%s", text);
     ck_assert_int_gt(messages.n_error, 0);
     hf_messages_free(&messages);

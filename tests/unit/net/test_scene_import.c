@@ -17,14 +17,7 @@ static hf_status import(const char *nodes, const char *cables, hf_scene *scene, 
     if (cables) write_file(cables_path, cables);
     hf_status status = hf_scene_import(nodes_path, cables_path, (const double[2]){0}, scene, &messages);
     if (status == HF_OK) status = hf_scene_check(scene, &messages);
-    size_t folder = (size_t)(strrchr(nodes_path, '/') + 1 - nodes_path), n = 0;
-    for (const char *p = messages.text ? messages.text : ""; *p && n + 1 < size;) {
-        if (!strncmp(p, nodes_path, folder))
-            p += folder;
-        else
-            said[n++] = *p++;
-    }
-    said[n] = '\0';
+    copy_without_folder(messages.text, said, size);
     hf_messages_free(&messages);
     return status;
 }

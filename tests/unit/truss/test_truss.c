@@ -262,14 +262,7 @@ static hf_status import(const char *nodes, const char *members, hf_truss *t, cha
     write_file(members_path, members);
     hf_status status = hf_truss_import(nodes_path, members_path, t, &messages);
     if (status == HF_OK) status = hf_truss_check(t, &messages);
-    size_t folder = (size_t)(strrchr(nodes_path, '/') + 1 - nodes_path), n = 0;
-    for (const char *p = messages.text ? messages.text : ""; *p && n + 1 < size;) {
-        if (!strncmp(p, nodes_path, folder))
-            p += folder;
-        else
-            said[n++] = *p++;
-    }
-    said[n] = '\0';
+    copy_without_folder(messages.text, said, size);
     hf_messages_free(&messages);
     return status;
 }
