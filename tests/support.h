@@ -24,7 +24,7 @@ const char *temp_path(const char *name);         /* in a directory that is this 
 char *read_file(const char *path, size_t *size); /* whole file and a final NUL; size may be NULL */
 void write_file(const char *path, const char *text);
 
-/* Copies `text` (may be NULL) into said[size], cut off where it is full, without the folder of this test's temp_path. */
+/* Copies `text` (may be NULL) into said[size], cut off where it is full, without the folder of temp_path. */
 void copy_without_folder(const char *text, char *said, size_t size);
 
 /* ---- Programs ---- */
