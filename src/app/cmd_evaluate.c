@@ -213,35 +213,34 @@ static void print_summary(const job *j, const char *path, FILE *f)
             path);
 }
 
-static void print_json(const job *j, const char *path, hf_status status, const char *messages, FILE *f)
+static void print_json(const job *from, const char *path, hf_status status, const char *messages, FILE *f)
 {
-    fputs("{", f);
-    hf_json_text("status", hf_status_word(status), f);
-    if (status == HF_OK && j->result) {
-        fprintf(f, ",\n \"designs\": %d, \"feasible\": %d, ", j->table.n_row, j->n_feasible);
-        hf_json_number("best_psi_m", j->best < 0 ? (double)NAN : j->result[j->best].psi_m, f);
-        fprintf(f, ", \"best_row\": %d, \"threads\": %d, ", j->best + 1, j->problem.batch.n_thread);
-        hf_json_text("solver", hf_solver_word[j->problem.solver], f);
-        fputs(", ", f);
-        hf_json_number("wall_s", j->wall_s, f);
-        fputs(", ", f);
-        hf_json_number("cpu_s", j->problem.batch.cpu_s, f);
+    hf_json j = {.file = f};
+    hf_json_open(&j, NULL, '{');
+    hf_json_text(&j, "status", hf_status_word(status));
+    if (status == HF_OK && from->result) {
+        hf_json_line(&j, " ");
+        hf_json_integer(&j, "designs", from->table.n_row);
+        hf_json_integer(&j, "feasible", from->n_feasible);
+        hf_json_number(&j, "best_psi_m", from->best < 0 ? (double)NAN : from->result[from->best].psi_m);
+        hf_json_integer(&j, "best_row", from->best + 1);
+        hf_json_integer(&j, "threads", from->problem.batch.n_thread);
+        hf_json_text(&j, "solver", hf_solver_word[from->problem.solver]);
+        hf_json_number(&j, "wall_s", from->wall_s);
+        hf_json_number(&j, "cpu_s", from->problem.batch.cpu_s);
     }
-    fputs(",\n ", f);
-    hf_json_text("version", hf_store_version(), f);
-    fputs(", ", f);
-    hf_json_text("case", j->problem.settings.path, f);
-    if (status == HF_OK) {
-        fputs(", ", f);
-        hf_json_text("file", path, f);
-    }
-    fputs(",\n ", f);
-    hf_json_lines("warnings", "warning: ", messages, f);
+    hf_json_line(&j, " ");
+    hf_json_text(&j, "version", hf_store_version());
+    hf_json_text(&j, "case", from->problem.settings.path);
+    if (status == HF_OK) hf_json_text(&j, "file", path);
+    hf_json_line(&j, " ");
+    hf_json_lines(&j, "warnings", "warning: ", messages);
     if (status != HF_OK) {
-        fputs(",\n ", f);
-        hf_json_lines("errors", "error: ", messages, f);
+        hf_json_line(&j, " ");
+        hf_json_lines(&j, "errors", "error: ", messages);
     }
-    fputs("}\n", f);
+    hf_json_close(&j, '}');
+    fputc('\n', f);
 }
 
 /* ---- together ---- */

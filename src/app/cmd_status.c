@@ -8,27 +8,28 @@
 
 static void write_status_json(const hf_study *study, const hf_points *points, FILE *file)
 {
-    const char *separator = "";
-    fprintf(file, "{\"points\": %d", points->n_point);
+    hf_json j = {.file = file};
+    hf_json_open(&j, NULL, '{');
+    hf_json_integer(&j, "points", points->n_point);
     for (int k = 0; k < HF_N_POINT_STATE; k++)
-        fprintf(file, ", \"%s\": %d", hf_point_state_word[k], points->count[k]);
-    fputs(",\n \"failures\": [", file);
+        hf_json_integer(&j, hf_point_state_word[k], points->count[k]);
+    hf_json_line(&j, " ");
+    hf_json_open(&j, "failures", '[');
     for (int i = 0; i < points->n_point; i++) {
         char text[1024];
         if (points->point[i].state != HF_POINT_FAILED) continue;
         hf_study_point_text(study, i, text, sizeof text);
-        fprintf(file, "%s\n  {", separator);
-        hf_json_text("id", study->id[i], file);
-        fputs(", ", file);
-        hf_json_text("point", text, file);
-        fputs(", ", file);
-        hf_json_text("status", hf_status_word(points->point[i].status), file);
-        fputs(", ", file);
-        hf_json_text("reason", points->point[i].reason, file);
-        fputc('}', file);
-        separator = ",";
+        hf_json_line(&j, "  ");
+        hf_json_open(&j, NULL, '{');
+        hf_json_text(&j, "id", study->id[i]);
+        hf_json_text(&j, "point", text);
+        hf_json_text(&j, "status", hf_status_word(points->point[i].status));
+        hf_json_text(&j, "reason", points->point[i].reason);
+        hf_json_close(&j, '}');
     }
-    fputs("]}\n", file);
+    hf_json_close(&j, ']');
+    hf_json_close(&j, '}');
+    fputc('\n', file);
 }
 
 static void say_failures(const hf_study *study, const hf_points *points, FILE *file)

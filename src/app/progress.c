@@ -42,20 +42,21 @@ static void show_line(hf_progress *p, const hf_run_progress *now)
 
 static void show_json(const hf_progress *p, const hf_run_progress *now)
 {
-    fputs("{", p->file);
-    hf_json_text("phase", phase_word[now->phase], p->file);
+    hf_json j = {.file = p->file};
+    hf_json_open(&j, NULL, '{');
+    hf_json_text(&j, "phase", phase_word[now->phase]);
     if (now->generation > 0) {
-        fprintf(p->file, ", \"generation\": %d, \"generations\": %d, \"first_generation\": %d, \"evaluations\": %ld, ",
-                now->generation, now->generations, now->first_generation, now->evaluations);
-        hf_json_number("best_psi_m", now->best_psi_m, p->file);
-        fputs(", ", p->file);
-        hf_json_number("evaluations_per_s", rate_per_s(now), p->file);
-        fputs(", ", p->file);
-        hf_json_number("elapsed_s", now->elapsed_s, p->file);
-        fputs(", ", p->file);
-        hf_json_number("at_most_left_s", left_s(now), p->file);
+        hf_json_integer(&j, "generation", now->generation);
+        hf_json_integer(&j, "generations", now->generations);
+        hf_json_integer(&j, "first_generation", now->first_generation);
+        hf_json_integer(&j, "evaluations", now->evaluations);
+        hf_json_number(&j, "best_psi_m", now->best_psi_m);
+        hf_json_number(&j, "evaluations_per_s", rate_per_s(now));
+        hf_json_number(&j, "elapsed_s", now->elapsed_s);
+        hf_json_number(&j, "at_most_left_s", left_s(now));
     }
-    fputs("}\n", p->file);
+    hf_json_close(&j, '}');
+    fputc('\n', p->file);
 }
 
 void hf_progress_show(void *progress, const hf_run_progress *now)

@@ -1,5 +1,7 @@
+/* Contents: the writer - compact lists */
 #include "base/json.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -18,23 +20,100 @@ static void write_string(const char *text, size_t length, FILE *f)
     fputc('"', f);
 }
 
-void hf_json_text(const char *key, const char *text, FILE *f)
+/* ---- the writer ---- */
+
+/* What stands before an item. */
+static void begin_item(hf_json *j, const char *key)
 {
-    fprintf(f, "\"%s\": ", key);
-    write_string(text, strlen(text), f);
+    if (j->is_due) fputc(',', j->file);
+    if (j->line)
+        fprintf(j->file, "\n%s", j->line);
+    else if (j->is_due)
+        fputc(' ', j->file);
+    j->line = NULL;
+    j->is_due = true;
+    if (key) fprintf(j->file, "\"%s\": ", key);
 }
+
+void hf_json_open(hf_json *j, const char *key, char bracket)
+{
+    begin_item(j, key);
+    fputc(bracket, j->file);
+    j->is_due = false;
+}
+
+void hf_json_close(hf_json *j, char bracket)
+{
+    fputc(bracket, j->file);
+    j->is_due = true;
+}
+
+void hf_json_line(hf_json *j, const char *indentation)
+{
+    j->line = indentation;
+}
+
+void hf_json_text(hf_json *j, const char *key, const char *text)
+{
+    begin_item(j, key);
+    hf_json_string(text, j->file);
+}
+
+void hf_json_number(hf_json *j, const char *key, double value)
+{
+    begin_item(j, key);
+    if (isfinite(value))
+        fprintf(j->file, "%.17g", value);
+    else
+        fputs("null", j->file);
+}
+
+void hf_json_integer(hf_json *j, const char *key, int64_t value)
+{
+    begin_item(j, key);
+    fprintf(j->file, "%" PRId64, value);
+}
+
+void hf_json_unsigned(hf_json *j, const char *key, uint64_t value)
+{
+    begin_item(j, key);
+    fprintf(j->file, "%" PRIu64, value);
+}
+
+void hf_json_bool(hf_json *j, const char *key, bool value)
+{
+    begin_item(j, key);
+    fputs(value ? "true" : "false", j->file);
+}
+
+void hf_json_list(hf_json *j, const char *key, const double *value, int n)
+{
+    hf_json_open(j, key, '[');
+    for (int i = 0; i < n; i++) {
+        begin_item(j, NULL);
+        hf_json_value(value[i], 17, j->file);
+    }
+    hf_json_close(j, ']');
+}
+
+void hf_json_lines(hf_json *j, const char *key, const char *prefix, const char *lines)
+{
+    hf_json_open(j, key, '[');
+    for (size_t length; lines && *lines; lines += length + (lines[length] != '\0')) {
+        size_t skip = strlen(prefix);
+        length = strcspn(lines, "\n");
+        if (length < skip || strncmp(lines, prefix, skip) != 0) continue;
+        begin_item(j, NULL);
+        write_string(lines + skip, length - skip, j->file);
+    }
+    hf_json_close(j, ']');
+}
+
+/* ---- compact lists ---- */
 
 void hf_json_string(const char *text, FILE *f)
 {
     write_string(text, strlen(text), f);
-}
-
-void hf_json_number(const char *key, double value, FILE *f)
-{
-    if (isfinite(value))
-        fprintf(f, "\"%s\": %.17g", key, value);
-    else
-        fprintf(f, "\"%s\": null", key);
 }
 
 void hf_json_value(double value, int digits, FILE *f)
@@ -62,21 +141,6 @@ void hf_json_values(const char *key, const double *value, int n, int stride, int
         if (i % stride != 0 && i != n - 1) continue;
         if (i) fputc(',', f);
         hf_json_value(value[i], digits, f);
-    }
-    fputc(']', f);
-}
-
-void hf_json_lines(const char *key, const char *prefix, const char *lines, FILE *f)
-{
-    const char *comma = "";
-    fprintf(f, "\"%s\": [", key);
-    for (size_t length; lines && *lines; lines += length + (lines[length] != '\0')) {
-        size_t skip = strlen(prefix);
-        length = strcspn(lines, "\n");
-        if (length < skip || strncmp(lines, prefix, skip) != 0) continue;
-        fputs(comma, f);
-        write_string(lines + skip, length - skip, f);
-        comma = ", ";
     }
     fputc(']', f);
 }

@@ -1,20 +1,44 @@
-/* json - the pieces of a JSON object on a stream: "key": value, without commas between them. */
+/* json - JSON on a stream. The writer knows whether a comma is due; the functions for the page of `hifdm report` write
+ * compact lists instead. */
 #ifndef HIFDM_JSON_H
 #define HIFDM_JSON_H
 
+#include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 
+/* Begin with {.file = ...}; the rest is the writer's own. */
+typedef struct {
+    FILE *file;
+    bool is_due;      /* a comma, before the next item */
+    const char *line; /* the indentation of a new line before the next item; NULL: no new line */
+} hf_json;
+
+/* key: NULL for what stands in a list or outermost. bracket: '{' or '[', then '}' or ']'. */
+void hf_json_open(hf_json *json, const char *key, char bracket);
+void hf_json_close(hf_json *json, char bracket);
+
+/* The next item begins a new line with this indentation, which is borrowed. */
+void hf_json_line(hf_json *json, const char *indentation);
+
+void hf_json_text(hf_json *json, const char *key, const char *text);
+void hf_json_number(hf_json *json, const char *key, double value); /* 17 digits; null unless finite */
+void hf_json_integer(hf_json *json, const char *key, int64_t value);
+void hf_json_unsigned(hf_json *json, const char *key, uint64_t value);
+void hf_json_bool(hf_json *json, const char *key, bool value);
+void hf_json_list(hf_json *json, const char *key, const double *value, int n); /* n numbers as hf_json_value has them */
+
+/* Those lines of `lines` (may be NULL) that start with `prefix`, without it, as a list of texts. */
+void hf_json_lines(hf_json *json, const char *key, const char *prefix, const char *lines);
+
+/* ---- without a writer: compact, for the page ---- */
+
 /* A '<' in a text is written as \u003c, so that an object can stand in the script of an HTML page. */
-void hf_json_string(const char *text, FILE *file);        /* without a key */
-void hf_json_value(double value, int digits, FILE *file); /* without a key; null unless finite */
-void hf_json_text(const char *key, const char *text, FILE *file);
-void hf_json_number(const char *key, double value, FILE *file); /* null unless finite */
+void hf_json_string(const char *text, FILE *file);
+void hf_json_value(double value, int digits, FILE *file); /* null unless finite */
 
 /* ,"key":[...] with the comma in front: n texts; of n numbers every stride-th and the last. */
 void hf_json_strings(const char *key, const char *const *text, int n, FILE *file);
 void hf_json_values(const char *key, const double *value, int n, int stride, int digits, FILE *file);
-
-/* Those lines of `lines` (may be NULL) that start with `prefix`, without it, as a list of strings. */
-void hf_json_lines(const char *key, const char *prefix, const char *lines, FILE *file);
 
 #endif

@@ -149,10 +149,11 @@ static void write_data(const void *context, FILE *f)
 {
     const page *p = context;
     const hf_summary *s = &p->summary;
-    fputc('{', f);
-    hf_json_text("title", heading(s), f);
-    fputs(",\n", f);
-    hf_json_lines("provenance", "", p->provenance, f);
+    hf_json j = {.file = f};
+    hf_json_open(&j, NULL, '{');
+    hf_json_text(&j, "title", heading(s));
+    hf_json_line(&j, "");
+    hf_json_lines(&j, "provenance", "", p->provenance);
     fputs(",\n\"summary\":", f);
     hf_summary_write_json(s, s->form.status, s->warnings, p->path, f);
     fprintf(f, ",\"seed\":\"%llu\"", (unsigned long long)s->seed); /* as a number it would lose its last digits */

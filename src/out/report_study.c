@@ -96,7 +96,7 @@ static void write_inputs(const study_page *p, FILE *f)
         const hf_series *s = &p->input[a];
         if (s->n != p->n && p->input_text[a].n != p->n) continue;
         fprintf(f, "%s\n{", comma);
-        hf_json_text("name", hf_texts_at(&p->input_name, a), f);
+        hf_json_text(&(hf_json){.file = f}, "name", hf_texts_at(&p->input_name, a));
         if (s->n == p->n) {
             fprintf(f, ",\"columns\":%d", s->columns);
             hf_json_values("values", s->value, s->n * s->columns, 1, 17, f);
@@ -128,9 +128,9 @@ static void write_data(const void *context, FILE *f)
 {
     const study_page *p = context;
     fputc('{', f);
-    hf_json_text("title", hf_path_name(p->path), f);
+    hf_json_text(&(hf_json){.file = f}, "title", hf_path_name(p->path));
     fputs(",\n\"study\":{", f);
-    hf_json_text("path", p->path, f);
+    hf_json_text(&(hf_json){.file = f}, "path", p->path);
     fprintf(f, ",\"n\":%d", p->n);
     write_texts("id", &p->id, f);
     write_texts("reason", &p->reason, f);

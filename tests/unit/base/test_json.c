@@ -1,0 +1,66 @@
+/* The JSON writer: commas where they are due, lines where they are asked for, texts that any reader takes. */
+#define _GNU_SOURCE /* open_memstream */
+#include "support.h"
+
+#include "base/json.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+START_TEST(commas_stand_between_items)
+{
+    char *text;
+    size_t size;
+    hf_json j = {.file = open_memstream(&text, &size)};
+    hf_json_open(&j, NULL, '{');
+    hf_json_text(&j, "a", "x");
+    hf_json_open(&j, "empty", '{');
+    hf_json_close(&j, '}');
+    hf_json_line(&j, " ");
+    hf_json_open(&j, "list", '[');
+    for (int i = 0; i < 2; i++) {
+        hf_json_line(&j, "  ");
+        hf_json_open(&j, NULL, '{');
+        hf_json_integer(&j, "i", -i);
+        hf_json_bool(&j, "is", i == 0);
+        hf_json_close(&j, '}');
+    }
+    hf_json_close(&j, ']');
+    hf_json_unsigned(&j, "seed", UINT64_MAX);
+    hf_json_number(&j, "number", 0.5);
+    hf_json_number(&j, "none", NAN);
+    hf_json_list(&j, "values", (const double[]){1, INFINITY, -0.0}, 3);
+    hf_json_list(&j, "no_values", NULL, 0);
+    hf_json_lines(&j, "errors", "error: ", "warning: a\nerror: b\nerror: c");
+    hf_json_lines(&j, "nothing", "error: ", NULL);
+    hf_json_close(&j, '}');
+    fclose(j.file);
+    ck_assert_str_eq(text,
+                     "{\"a\": \"x\", \"empty\": {},\n \"list\": [\n  {\"i\": 0, \"is\": true},\n  {\"i\": -1, \"is\": "
+                     "false}], \"seed\": 18446744073709551615, \"number\": 0.5, \"none\": null, \"values\": [1, null, "
+                     "0], \"no_values\": [], \"errors\": [\"b\", \"c\"], \"nothing\": []}");
+    free(text);
+}
+END_TEST
+
+START_TEST(texts_are_escaped)
+{
+    char *text;
+    size_t size;
+    hf_json j = {.file = open_memstream(&text, &size)};
+    hf_json_text(&j, "k", "a\"b\\c\n</script>\xc3\xa9");
+    fclose(j.file);
+    ck_assert_str_eq(text, "\"k\": \"a\\\"b\\\\c\\u000a\\u003c/script>\xc3\xa9\"");
+    free(text);
+}
+END_TEST
+
+Suite *suite_unit_json(void)
+{
+    Suite *suite = suite_create("unit/json");
+    TCase *tests = tcase_create("json");
+    suite_add_tcase(suite, tests);
+    tcase_add_test(tests, commas_stand_between_items);
+    tcase_add_test(tests, texts_are_escaped);
+    return suite;
+}
