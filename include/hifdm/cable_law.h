@@ -1,5 +1,6 @@
 /* cable_law - the laws that a cable can obey, and everything that depends on which one it is (METHOD.md section 2).
- * Stability: internal; may change in any version. The names and words of the laws are stable.
+ * Stability: internal; may change in any version.
+ * (The names and words of the laws are stable: files hold them.)
  *
  * A new law is one row of HF_LAW_LIST and one case in each of the functions below; the compiler names a case that is
  * missing. Solvers ask for flags and call these functions, so they need no change. A kernel that computes laws by

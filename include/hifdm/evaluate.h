@@ -1,4 +1,5 @@
-/* evaluate - one design (a boundary pretension for each gene) -> one plain result. */
+/* evaluate - one design (a boundary pretension for each gene) -> one plain result.
+ * Stability: stable. */
 #ifndef HIFDM_EVALUATE_H
 #define HIFDM_EVALUATE_H
 
@@ -8,9 +9,9 @@
 extern "C" {
 #endif
 
-/* What form.method comes to in this net: HF_METHOD_NEWTON, or HF_METHOD_HIFDM for the paper's iteration (which serves
- * iterative_fdm and fdm too: the laws of the model decide). *why (may be NULL): a reason for people. */
-int hf_evaluate_method(const hf_model *model, const hf_form_settings *form, const char **why);
+/* The method that form.method means in this net: HF_METHOD_NEWTON, or HF_METHOD_HIFDM for the paper's iteration (which
+ * serves iterative_fdm and fdm too: the laws of the model decide). *why (may be NULL): the reason in words. */
+hf_method hf_evaluate_method(const hf_model *model, const hf_form_settings *form, const char **why);
 
 /* Form-finding as the case asks for it, with its certificate. history: NULL, or where iterations are recorded. Returns
  * result->status, HF_OK, HF_NOT_CONVERGED or an ill-posed one; the shape stays in the workspace. */
@@ -22,9 +23,9 @@ typedef struct {
     const hf_model *model;
     const hf_form_settings *form;
     const double *start_q_N_per_m; /* [n_cable] first force densities of the inner cables: those of the found shape */
-    int rule;                      /* hf_rule */
-    int solver;                    /* hf_solver */
-    double boundary_ratio_cap;     /* a larger boundary tension ratio is HF_RATIO_CAP; INFINITY: no cap */
+    hf_rule rule;
+    hf_solver solver;
+    double boundary_ratio_cap; /* a larger boundary tension ratio is HF_RATIO_CAP; INFINITY: no cap */
 } hf_evaluator;
 
 /* design_N: [model->n_gene] boundary pretensions T' > 0. The shape stays in the workspace. A candidate that fails has
@@ -32,8 +33,8 @@ typedef struct {
 hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace,
                       hf_form_result *result);
 
-/* The parts of hf_evaluate around the solver. prepare: laws, targets and first force densities of a design into the
- * workspace. judge: caps, and NaN measures for what is infeasible; returns result->status. */
+/* The parts of hf_evaluate before and after the solver. prepare: laws, targets and first force densities of a design
+ * into the workspace. judge: the cap on the ratio, and NaN measures for an infeasible design; returns the status. */
 void hf_evaluate_prepare(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace);
 hf_status hf_evaluate_judge(const hf_evaluator *evaluator, hf_form_result *result);
 

@@ -1,6 +1,7 @@
 /* surface - how good a reflector a shape is (METHOD section 9): RMS along the normal and of the half path length, raw
  * and after the best fit of the parabolic cylinder, loss of gain, faceting, percentiles. Computed once for a reported
  * shape, for a case with a section `surface`.
+ * Stability: stable.
  *
  * The wanted surface is z = x^2/(4f), its generatrix along y. With dz the height of an inner node above it, the error
  * along the normal is dz / sqrt(1 + (x/2f)^2), that of the half path length dz / (1 + (x/2f)^2). */
@@ -15,10 +16,10 @@ extern "C" {
 
 /* The parabolic cylinder with the least half-path RMS from a set of nodes: the wanted one with another focal length,
  * turned about the centre of the nodes by Rx(a) Ry(b) Rz(c), then shifted. A shift along y changes nothing and is left
- * out. In a shallow reflector a shift in x and a turn about y are nearly the same thing: what they do to the surface is
- * exact all the same. shift_x_m is 0 where the nodes' errors leave no telling between the two: where the least RMS asks
- * for a shift of more than a tenth of the net's half-width, or is not found. focal_length_m is the
- * wanted one where the nodes do not tell it, as on two lines along y. */
+ * out. In a shallow reflector a shift in x and a turn about y are nearly the same motion: each alone is uncertain, the
+ * fitted surface is not. shift_x_m is 0 where the nodes do not determine it: where the least RMS needs a shift of more
+ * than a tenth of the net's half-width, or is not found. focal_length_m is the wanted one where the nodes do not
+ * determine it, as on two lines along y. */
 typedef struct {
     double half_path_rms_m, normal_rms_m; /* what is left */
     double focal_length_m;

@@ -1,5 +1,8 @@
-/* workspace - all mutable scratch of one thread, allocated once from one field list. Contents are meaningless between
- * calls, except that after hf_form_find they hold the last shape: position, force density, tension, length. */
+/* workspace - all mutable scratch of one thread, allocated once from one field list.
+ * Stability: stable.
+ *
+ * Contents are meaningless between calls, except that after hf_form_find and hf_evaluate they hold the last shape:
+ * position, force density, tension, length. Other fields may change in any version. */
 #ifndef HIFDM_WORKSPACE_H
 #define HIFDM_WORKSPACE_H
 

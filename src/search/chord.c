@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "solve/coupling.h"
+#include "solve/schur.h"
 #include "solve/newton_matrix.h"
 
 #include <math.h>

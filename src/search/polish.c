@@ -4,7 +4,7 @@
 #include "base/arena.h"
 #include "linalg/band.h"
 #include "search/chord.h"
-#include "solve/coupling.h"
+#include "solve/schur.h"
 #include "solve/newton_matrix.h"
 #include "net/symmetry.h"
 #include <hifdm/metrics.h>
@@ -172,9 +172,9 @@ static void let_truss_answer(problem *p)
     memset(p->answer, 0, (size_t)m->n_leader * n_dof * sizeof(double));
     for (int k = 0; k < m->n_leader; k++) {
         double *pull = p->pull + (size_t)(3 * k * m->n_attachment);
-        hf_coupling_pull(m, p->w, p->sensitivity + (size_t)k * n_dof, pull);
+        hf_schur_pull(m, p->w, p->sensitivity + (size_t)k * n_dof, pull);
         hf_schur_displace(m, &p->schur, pull, p->move_m);
-        hf_coupling_push(m, p->w, p->move_m, p->answer + (size_t)k * n_dof);
+        hf_schur_push(m, p->w, p->move_m, p->answer + (size_t)k * n_dof);
     }
     hf_chord_back_solve(&p->matrix, &p->lanes, m->n_leader, p->answer, n_dof);
     for (size_t i = 0; i < (size_t)m->n_leader * n_dof; i++)

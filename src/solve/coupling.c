@@ -1,26 +1,17 @@
-/* Contents: forces and displacements - Anderson's method - the loop - the Schur complement - certificate */
+/* Contents: forces and displacements - Anderson's method - the loop - certificate */
 #include "solve/coupling.h"
 
-#include "base/arena.h"
-#include "linalg/band.h"
 #include "solve/newton_matrix.h"
+#include "solve/schur.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* LAPACK and BLAS (Fortran interface) */
-void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *pivot, int *info);
-void dgetrs_(const char *trans, const int *n, const int *n_rhs, const double *a, const int *lda, const int *pivot,
-             double *b, const int *ldb, int *info);
-void dgemm_(const char *trans_a, const char *trans_b, const int *m, const int *n, const int *k, const double *alpha,
-            const double *a, const int *lda, const double *b, const int *ldb, const double *beta, double *c,
-            const int *ldc);
-
+/* The tests of the coupling pass with the first three between 1 and 10, 5 and 50, 1e-4 and 0.3. */
 #define GROWTHS_MAX 3    /* growing steps in a row of the plain loop that count as divergence */
-#define PATIENCE 15      /* iterations of the accelerated one without a smaller step than ever */
-#define RETREATS_MAX 12  /* halvings of its steps when the net has no shape where they lead */
-#define STALLED 1e-2     /* of the first step: below that it is not the truss that keeps it from converging */
+#define PATIENCE 15      /* iterations of the accelerated loop without a new smallest step */
+#define STALLED 1e-2     /* of the first step: a loop that came below it does not diverge for the truss's sake */
+#define RETREATS_MAX 12  /* halvings of a step when the net has no shape where it leads */
 #define GRAM_SHIFT 1e-14 /* of the least squares, relative: past steps grow parallel */
 
 static int dofs(const hf_model *m)
@@ -45,18 +36,6 @@ void hf_coupling_forces(const hf_model *m, hf_workspace *w)
     }
 }
 
-/* r = F f. By columns, which are rows: F is symmetric. */
-static void displace(const hf_model *m, const double *force, double *r)
-{
-    size_t n = (size_t)dofs(m);
-    memset(r, 0, n * sizeof *r);
-    for (size_t j = 0; j < n; j++) {
-        const double *column = m->flexibility_m_per_N + j * n;
-        for (size_t i = 0; i < n; i++)
-            r[i] += column[i] * force[j];
-    }
-}
-
 /* Largest length of the vectors a - b of the attachments; b may be NULL. Keeps a NaN. */
 static double largest_distance(int n_attachment, const double *a, const double *b)
 {
@@ -76,7 +55,7 @@ double hf_coupling_measure(const hf_model *m, hf_workspace *w, hf_form_result *r
 {
     double *next = w->coupling_work;
     hf_coupling_forces(m, w);
-    displace(m, w->attachment_force_N, next);
+    hf_schur_flex(m, w->attachment_force_N, next);
     result->coupling.step_m = largest_distance(m->n_attachment, next, w->displacement_m);
     result->coupling.max_displacement_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
     return result->coupling.step_m;
@@ -125,7 +104,7 @@ static double dot(size_t n, const double *a, const double *b)
 }
 
 /* Solve the n x n system of a positive definite matrix, in place, by Cholesky; 0 when it is not. */
-static int solve_gram(int n, double g[HF_COUPLING_DEPTH][HF_COUPLING_DEPTH], double b[HF_COUPLING_DEPTH])
+static bool solve_gram(int n, double g[HF_COUPLING_DEPTH][HF_COUPLING_DEPTH], double b[HF_COUPLING_DEPTH])
 {
     for (int i = 0; i < n; i++) {
         for (int j = 0; j <= i; j++) {
@@ -137,7 +116,7 @@ static int solve_gram(int n, double g[HF_COUPLING_DEPTH][HF_COUPLING_DEPTH], dou
             else if (sum > 0)
                 g[i][i] = sqrt(sum);
             else
-                return 0;
+                return false;
         }
         for (int k = 0; k < i; k++)
             b[i] -= g[i][k] * b[k];
@@ -190,7 +169,7 @@ typedef struct {
 } progress;
 
 /* One more step: does the loop still get anywhere? */
-static int is_hopeless(progress *p, int scheme, double step_m)
+static bool is_hopeless(progress *p, int scheme, double step_m)
 {
     if (isnan(p->step_m)) p->first_m = step_m;
     p->ratio = step_m / p->step_m; /* NaN after the first */
@@ -202,7 +181,7 @@ static int is_hopeless(progress *p, int scheme, double step_m)
     return scheme == HF_COUPLING_PLAIN ? p->n_growth >= GROWTHS_MAX : p->n_since_best >= PATIENCE;
 }
 
-static void record(hf_history *history, const hf_form_result *r)
+static void record_step(hf_history *history, const hf_form_result *r)
 {
     hf_coupling_history *h = history ? &history->coupling : NULL;
     if (!h || h->n == h->capacity) return;
@@ -223,7 +202,7 @@ static void give_up(hf_status status, hf_coupling_stop reason, hf_form_result *r
 }
 
 /* The net has no shape. When it had one before its supports moved, another place is tried, half the way back. */
-static int try_nearer(const hf_model *m, const accelerator *a, int *n_retreat, hf_workspace *w, hf_form_result *r)
+static bool try_nearer(const hf_model *m, const accelerator *a, int *n_retreat, hf_workspace *w, hf_form_result *r)
 {
     if (r->status == HF_NOT_CONVERGED) { /* a shape all the same, with forces of its own */
         double before_m = r->coupling.step_m;
@@ -245,8 +224,8 @@ static int try_nearer(const hf_model *m, const accelerator *a, int *n_retreat, h
 }
 
 /* The net has a shape: is the loop over? Sets status and reason then. */
-static int is_over(const hf_model *m, const hf_coupling_settings *s, accelerator *a, progress *p, hf_workspace *w,
-                   hf_form_result *r)
+static bool is_over(const hf_model *m, const hf_coupling_settings *s, accelerator *a, progress *p, hf_workspace *w,
+                    hf_form_result *r)
 {
     double step_m = hf_coupling_measure(m, w, r);
     int hopeless = is_hopeless(p, s->scheme, step_m);
@@ -272,7 +251,7 @@ static int is_over(const hf_model *m, const hf_coupling_settings *s, accelerator
 }
 
 hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_net_solver *solve, const void *context,
-                           int start_counts, hf_workspace *w, hf_history *history, hf_form_result *r)
+                           bool start_counts, hf_workspace *w, hf_history *history, hf_form_result *r)
 {
     size_t q_bytes = (size_t)m->n_cable * sizeof(double);
     accelerator a = lay_out_accelerator(m, s->scheme, w);
@@ -288,7 +267,7 @@ hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_
             continue;
         }
         int over = is_over(m, s, &a, &p, w, r);
-        record(history, r);
+        record_step(history, r);
         if (over) break;
         if (start_counts)
             memcpy(w->q_N_per_m, w->coupling_q_N_per_m, q_bytes);
@@ -297,146 +276,6 @@ hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_
         accelerate(&a, w->displacement_m);
     }
     return r->status;
-}
-
-/* ---- the Schur complement ---- */
-
-static void lay_out_schur(hf_arena *arena, const hf_model *m, hf_schur *s)
-{
-    size_t n = (size_t)s->n;
-    s->stiffness = hf_arena_take(arena, n * n, sizeof(double));
-    s->flexed = hf_arena_take(arena, n * n, sizeof(double));
-    s->factor = hf_arena_take(arena, n * n, sizeof(double));
-    s->column = hf_arena_take(arena, 3 * (size_t)m->n_free + n, sizeof(double));
-    s->pivot = hf_arena_take(arena, n, sizeof(int));
-}
-
-hf_status hf_schur_create(const hf_model *m, hf_schur *schur)
-{
-    *schur = (hf_schur){.n = dofs(m)};
-    hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_schur(&arena, m, schur)));
-    schur->block = arena.block;
-    return HF_OK;
-}
-
-void hf_schur_free(hf_schur *schur)
-{
-    free(schur->block);
-    *schur = (hf_schur){0};
-}
-
-void hf_coupling_push(const hf_model *m, const hf_workspace *w, const double *displacement_m, double *force)
-{
-    double block[3][3];
-    for (int k = 0; k < m->n_tie; k++) {
-        int there = m->end_row[m->tie[k] ^ 1];
-        const double *r = displacement_m + 3 * m->tie_attachment[k];
-        if (there >= m->n_free) continue;
-        hf_newton_matrix_block(m, w, m->tie[k] / 2, block);
-        for (int c = 0; c < 3; c++)
-            force[3 * there + c] += block[c][0] * r[0] + block[c][1] * r[1] + block[c][2] * r[2];
-    }
-}
-
-void hf_coupling_pull(const hf_model *m, const hf_workspace *w, const double *step_m, double *pull)
-{
-    double block[3][3];
-    for (int k = 0; k < m->n_tie; k++) {
-        int there = m->end_row[m->tie[k] ^ 1];
-        const double *d = step_m + 3 * there;
-        if (there >= m->n_free) continue;
-        hf_newton_matrix_block(m, w, m->tie[k] / 2, block);
-        for (int c = 0; c < 3; c++)
-            pull[3 * m->tie_attachment[k] + c] += block[c][0] * d[0] + block[c][1] * d[1] + block[c][2] * d[2];
-    }
-}
-
-/* H_aa, of cables to free nodes, to fixed supports and between attachments. */
-static void add_attachment_stiffness(const hf_model *m, const hf_workspace *w, hf_schur *s)
-{
-    double block[3][3];
-    size_t n = (size_t)s->n;
-    for (int k = 0; k < m->n_tie; k++) {
-        int partner = k > 0 && m->tie[k - 1] == (m->tie[k] ^ 1) ? k - 1 : k + 1;
-        int is_pair = partner < m->n_tie && m->tie[partner] == (m->tie[k] ^ 1);
-        size_t here = 3 * (size_t)m->tie_attachment[k];
-        hf_newton_matrix_block(m, w, m->tie[k] / 2, block);
-        for (size_t r = 0; r < 3; r++)
-            for (size_t c = 0; c < 3; c++) {
-                s->stiffness[(here + r) * n + here + c] += block[r][c];
-                if (is_pair) s->stiffness[(here + r) * n + 3 * (size_t)m->tie_attachment[partner] + c] -= block[r][c];
-            }
-    }
-}
-
-hf_status hf_schur_factor(const hf_model *m, const hf_workspace *w, hf_schur *s)
-{
-    size_t n = (size_t)s->n, n_dof = 3 * (size_t)m->n_free;
-    double *unit = s->column + n_dof, one = 1, zero = 0;
-    int info = 0;
-    memset(s->stiffness, 0, n * n * sizeof(double));
-    memset(unit, 0, n * sizeof(double));
-    for (size_t j = 0; j < n; j++) { /* row j of - H_af H_ff^-1 H_fa */
-        memset(s->column, 0, n_dof * sizeof(double));
-        unit[j] = 1;
-        hf_coupling_push(m, w, unit, s->column);
-        unit[j] = 0;
-        hf_newton_matrix_solve(m, w, s->column);
-        hf_coupling_pull(m, w, s->column, s->stiffness + j * n);
-        for (size_t i = 0; i < n; i++)
-            s->stiffness[j * n + i] = -s->stiffness[j * n + i];
-    }
-    add_attachment_stiffness(m, w, s);
-    dgemm_("N", "N", &s->n, &s->n, &s->n, &one, m->flexibility_m_per_N, &s->n, s->stiffness, &s->n, &zero, s->flexed,
-           &s->n);
-    memcpy(s->factor, s->flexed, n * n * sizeof(double));
-    for (size_t i = 0; i < n; i++)
-        s->factor[i * n + i] += 1;
-    dgetrf_(&s->n, &s->n, s->factor, &s->n, s->pivot, &info);
-    return info == 0 ? HF_OK : HF_SINGULAR;
-}
-
-void hf_schur_solve(const hf_schur *s, double *b)
-{
-    int one = 1, info = 0;
-    dgetrs_("N", &s->n, &one, s->factor, &s->n, s->pivot, b, &s->n, &info);
-}
-
-void hf_schur_displace(const hf_model *m, const hf_schur *s, const double *b, double *displacement_m)
-{
-    displace(m, b, displacement_m);
-    hf_schur_solve(s, displacement_m);
-}
-
-/* Of the columns of A = (I + F S)^-1 - I the longest becomes `left`; its part in all others is `right`, and is taken
- * off them. */
-int hf_schur_modes(hf_schur *s, double tolerance, int max_mode, double *mode)
-{
-    size_t n = (size_t)s->n;
-    double *a = s->flexed;
-    int info = 0, n_mode = 0;
-    dgetrs_("N", &s->n, &s->n, s->factor, &s->n, s->pivot, a, &s->n, &info);
-    for (size_t i = 0; i < n * n; i++)
-        a[i] = -a[i];
-    for (; n_mode < max_mode; n_mode++, mode += 2 * n) {
-        double total = 0, longest = 0;
-        size_t pivot = 0;
-        for (size_t j = 0; j < n; j++) {
-            double square = dot(n, a + j * n, a + j * n);
-            total += square;
-            if (square > longest) longest = square, pivot = j;
-        }
-        if (!(sqrt(total) > tolerance)) break;
-        for (size_t i = 0; i < n; i++)
-            mode[i] = a[pivot * n + i] / sqrt(longest);
-        for (size_t j = 0; j < n; j++) {
-            double share = mode[n + j] = dot(n, mode, a + j * n);
-            for (size_t i = 0; i < n; i++)
-                a[j * n + i] -= share * mode[i];
-        }
-    }
-    return n_mode;
 }
 
 /* ---- certificate ---- */
@@ -468,14 +307,14 @@ void hf_coupling_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
     if (hf_schur_create(m, &schur) == HF_OK && hf_schur_factor(m, w, &schur) == HF_OK) {
         double *pull = w->coupling_work, *move = pull + n, *both = w->newton_step;
         memcpy(pull, w->attachment_force_N, n * sizeof(double));
-        hf_coupling_pull(m, w, both, pull);
+        hf_schur_pull(m, w, both, pull);
         add_length_errors(m, w, pull);
-        displace(m, pull, move);
+        hf_schur_flex(m, pull, move);
         for (size_t i = 0; i < n; i++)
             move[i] -= w->displacement_m[i];
         hf_schur_solve(&schur, move);
         memset(schur.column, 0, 3 * (size_t)m->n_free * sizeof(double));
-        hf_coupling_push(m, w, move, schur.column);
+        hf_schur_push(m, w, move, schur.column);
         hf_newton_matrix_solve(m, w, schur.column);
         for (int i = 0; i < 3 * m->n_free; i++)
             both[i] += schur.column[i];

@@ -5,8 +5,8 @@
  * the largest eigenvalue of F S each time, or grows. accelerated: Anderson's method (1965) on the same loop, with a
  * depth of HF_COUPLING_DEPTH; it needs no matrix of the net, so it serves every law and stopping rule. For a convex net
  * f = F^-1 r is where Pi(x, r) + r' F^-1 r / 2 is least, which is convex, too: there is one answer.
- *
- * hf_schur is the exact derivative of the coupled net, for sensitivities, certificates and the population solver. */
+ * schur.h has the exact derivative of the coupled net.
+ * Stability: internal; may change in any version. */
 #ifndef HIFDM_COUPLING_H
 #define HIFDM_COUPLING_H
 
@@ -22,7 +22,7 @@ typedef hf_status hf_net_solver(const void *context, hf_workspace *workspace, hf
  * after max_iterations or when the net itself is, HF_INTERRUPTED. The displacements stay in the workspace and belong to
  * its shape. Returns result->status. */
 hf_status hf_coupling_find(const hf_model *model, const hf_coupling_settings *settings, hf_net_solver *solve,
-                           const void *context, int start_counts, hf_workspace *workspace, hf_history *history,
+                           const void *context, bool start_counts, hf_workspace *workspace, hf_history *history,
                            hf_form_result *result);
 
 /* Pull of the net on the attachments at the workspace's shape, and the loads that stand there, into
@@ -36,41 +36,6 @@ double hf_coupling_measure(const hf_model *model, hf_workspace *workspace, hf_fo
 /* The same where the step is known: a shape of the population solver, after so many passes. */
 void hf_coupling_accept(const hf_model *model, const hf_workspace *workspace, int iterations, double step_m,
                         hf_form_result *result);
-
-/* I + F S at a shape, factored: with r the displacements and H the Newton matrix in parts of free nodes (f) and
- * attachments (a), S = H_aa - H_af H_ff^-1 H_fa. */
-typedef struct {
-    int n;             /* 3 n_attachment */
-    double *stiffness; /* [n][n] S, symmetric */
-    double *flexed;    /* [n][n] F S, column-major */
-    double *factor;    /* [n][n] LU of I + F S, column-major */
-    double *column;    /* [3 n_free] scratch */
-    int *pivot;        /* [n] */
-    void *block;
-} hf_schur;
-
-/* HF_OK or HF_NO_MEMORY. Free in any case. */
-hf_status hf_schur_create(const hf_model *model, hf_schur *schur);
-void hf_schur_free(hf_schur *schur);
-
-/* Factor at the workspace's shape, whose Newton matrix stands factored in newton_band. HF_OK or HF_SINGULAR. */
-hf_status hf_schur_factor(const hf_model *model, const hf_workspace *workspace, hf_schur *schur);
-
-/* (I + F S)^-1 F b into displacement_m, both [n]: what the attachments do when the pull on them changes by b while they
- * stand still. */
-void hf_schur_displace(const hf_model *model, const hf_schur *schur, const double *b, double *displacement_m);
-
-/* b [n] -> (I + F S)^-1 b. */
-void hf_schur_solve(const hf_schur *schur, double *b);
-
-/* (I + F S)^-1 = I + sum of left right' over the modes in which F S is large: greedy, until what is left out has a
- * Frobenius norm below `tolerance`. mode: [max_mode][2][n], left first. Returns their number; uses `flexed` up. */
-int hf_schur_modes(hf_schur *schur, double tolerance, int max_mode, double *mode);
-
-/* force [3 n_free] += -H_fa r; pull [3 n_attachment] += -H_af x. The cables are those at the workspace's shape. */
-void hf_coupling_push(const hf_model *model, const hf_workspace *workspace, const double *displacement_m,
-                      double *force);
-void hf_coupling_pull(const hf_model *model, const hf_workspace *workspace, const double *step_m, double *pull);
 
 /* position_error_m of the coupled shape: the Newton step of net and truss together. newton_band holds the factor that
  * hf_newton_certify left. */

@@ -62,7 +62,7 @@ static double energy_change(const hf_model *m, const hf_workspace *w, const doub
 }
 
 /* Tensions by law into tension_N and q_N_per_m, the forces out of balance into newton_force_N; returns the largest. */
-static double pull(const hf_model *m, hf_workspace *w)
+static double apply_laws(const hf_model *m, hf_workspace *w)
 {
     double *force = w->newton_force_N, largest = 0;
     for (int i = 0; i < m->n_free; i++)
@@ -95,7 +95,7 @@ static double longest_m(const hf_model *m)
 }
 
 /* The step in newton_step, shortened so that no node jumps over the net; returns how much of it is left. */
-static double limit(const hf_model *m, const hf_workspace *w)
+static double limit_step(const hf_model *m, const hf_workspace *w)
 {
     double farthest = 0, most = FARTHEST * longest_m(m);
     for (int i = 0; i < m->n_free; i++)
@@ -104,12 +104,12 @@ static double limit(const hf_model *m, const hf_workspace *w)
 }
 
 /* Move along newton_step as far as Pi falls enough. Returns 0 when it does not. */
-static int search(const hf_model *m, hf_workspace *w)
+static int search_line(const hf_model *m, hf_workspace *w)
 {
     double promised = 0, scale, *to = w->newton_trial_m;
     for (int k = 0; k < 3 * m->n_free; k++)
         promised += w->newton_force_N[k] * w->newton_step[k];
-    double part = limit(m, w);
+    double part = limit_step(m, w);
     for (int n = 0; n < HALVINGS_MAX; n++, part /= 2) {
         memcpy(to, w->position_m, 3 * (size_t)m->n_node * sizeof *to);
         for (int i = 0; i < m->n_free; i++)
@@ -124,7 +124,7 @@ static int search(const hf_model *m, hf_workspace *w)
 }
 
 /* Newton's direction into newton_step; that of the forces where every cable hangs loose and there is no matrix. */
-static void direct(const hf_model *m, hf_workspace *w)
+static void find_direction(const hf_model *m, hf_workspace *w)
 {
     int n_dof = 3 * m->n_free, has_matrix = hf_newton_matrix_factor(m, w, NULL) == HF_OK;
     memcpy(w->newton_step, w->newton_force_N, (size_t)n_dof * sizeof(double));
@@ -139,12 +139,12 @@ int hf_descent_run(const hf_model *m, hf_workspace *w, int max_steps)
 {
     int n = 0;
     soften(m, w);
-    while (pull(m, w) > NEAR * m->reference_N && n < max_steps) {
-        direct(m, w);
+    while (apply_laws(m, w) > NEAR * m->reference_N && n < max_steps) {
+        find_direction(m, w);
         n++;
-        if (!search(m, w)) break;
+        if (!search_line(m, w)) break;
     }
-    pull(m, w);
+    apply_laws(m, w);
     harden(m, w);
     return n;
 }

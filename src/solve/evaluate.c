@@ -6,10 +6,10 @@
 
 #include <math.h>
 
-int hf_evaluate_method(const hf_model *m, const hf_form_settings *form, const char **why)
+hf_method hf_evaluate_method(const hf_model *m, const hf_form_settings *form, const char **why)
 {
     const char *reason = "asked for";
-    int method = form->method == HF_METHOD_NEWTON ? HF_METHOD_NEWTON : HF_METHOD_HIFDM;
+    hf_method method = form->method == HF_METHOD_NEWTON ? HF_METHOD_NEWTON : HF_METHOD_HIFDM;
     if (form->method == HF_METHOD_AUTO) {
         method = m->has_newton && form->stop == HF_STOP_RESIDUAL ? HF_METHOD_NEWTON : HF_METHOD_HIFDM;
         reason = method == HF_METHOD_NEWTON ? "every potential is convex: quadratic convergence"
@@ -27,7 +27,8 @@ int hf_evaluate_method(const hf_model *m, const hf_form_settings *form, const ch
 typedef struct {
     const hf_model *m;
     const hf_form_settings *form;
-    int by_newton, stop; /* stop: hf_stop_rule of the paper's iteration */
+    bool by_newton;
+    hf_stop_rule stop; /* of the paper's iteration */
 } net_problem;
 
 static hf_status find_alone(const void *context, hf_workspace *w, hf_history *history, hf_form_result *result)
@@ -42,7 +43,7 @@ static hf_status find_alone(const void *context, hf_workspace *w, hf_history *hi
 static hf_status find_net(const net_problem *p, hf_workspace *w, hf_history *history, hf_form_result *result)
 {
     if (!p->m->n_attachment) return find_alone(p, w, history, result);
-    int start_counts = !p->by_newton && p->stop == HF_STOP_RMS_CHANGE;
+    bool start_counts = !p->by_newton && p->stop == HF_STOP_RMS_CHANGE;
     return hf_coupling_find(p->m, &p->form->coupling, find_alone, p, start_counts, w, history, result);
 }
 
@@ -102,7 +103,7 @@ hf_status hf_evaluate_judge(const hf_evaluator *v, hf_form_result *result)
 
 hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspace *w, hf_form_result *result)
 {
-    int seeded = v->rule == HF_RULE_SEEDED;
+    bool seeded = v->rule == HF_RULE_SEEDED;
     net_problem problem = {v->model, v->form, !seeded && v->solver != HF_SOLVER_FIXED_POINT && v->model->has_newton,
                            seeded ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
     hf_evaluate_prepare(v, design_N, w);

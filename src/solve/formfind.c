@@ -12,9 +12,11 @@
 
 /* Straight chains are looked at after this many iterations, and again each time that number has doubled. */
 #define FIRST_CHAIN_CHECK 64
-#define CHAIN_LOAD_SETTLED 0.01 /* relative change of the load between two looks that counts as settled */
-#define ROUNDING_STEPS 32       /* roundings of the ends' coordinates that an imbalance may be worth */
-#define CHAIN_LOAD_NONE 1e-6    /* lateral load below this part of the reference tension is none */
+/* Relative change of the load between two looks that counts as settled. The tests of form-finding pass with 0.01 and 0.1;
+ * with 0.001 one of them fails (loaded_straight_chain_is_ill_posed). */
+#define CHAIN_LOAD_SETTLED 0.01
+#define ROUNDING_STEPS 32    /* roundings of the ends' coordinates that an imbalance may be worth */
+#define CHAIN_LOAD_NONE 1e-6 /* lateral load below this part of the reference tension is none */
 
 void hf_form_prepare(const hf_model *model, hf_workspace *workspace)
 {
@@ -69,7 +71,7 @@ void hf_form_assemble_loads(const hf_model *m, hf_workspace *w)
     }
 }
 
-static hf_status solve(const hf_model *m, hf_workspace *w, int *bad_row)
+static hf_status solve_positions(const hf_model *m, hf_workspace *w, int *bad_row)
 {
     hf_form_assemble(m, w);
     hf_form_assemble_loads(m, w);
@@ -144,7 +146,7 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
 
 /* Force of every cable on its nodes, at the tension of its law (T* of law tension, q l of the others), plus loads.
  * With `without_chains`, the straight chains that are under law length are left out. */
-static void nodal_forces(const hf_model *m, hf_workspace *w, int without_chains)
+static void nodal_forces(const hf_model *m, hf_workspace *w, bool without_chains)
 {
     const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
     double *fx = w->force_N, *fy = fx + m->n_node, *fz = fy + m->n_node;
@@ -168,7 +170,7 @@ double hf_form_residual_N(const hf_model *m, hf_workspace *w)
 {
     double largest = 0, scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
     const double *fx = w->force_N, *fy = fx + m->n_node, *fz = fy + m->n_node;
-    nodal_forces(m, w, 0);
+    nodal_forces(m, w, false);
     for (int i = 0; i < m->n_free; i++) {
         double x = scale * fx[i], y = scale * fy[i], z = scale * fz[i];
         largest = larger(largest, x * x + y * y + z * z);
@@ -253,7 +255,7 @@ int hf_form_n_chain(const hf_model *m)
 }
 
 /* Is chain i length-controlled, and is it straight where its supports are now? */
-static int chain_is_straight(const hf_model *m, const hf_workspace *w, int i_chain)
+static bool chain_is_straight(const hf_model *m, const hf_workspace *w, int i_chain)
 {
     if (!hf_law_has(w->law[m->chain_cable[m->chain_start[i_chain]]], HF_LAW_IS_RIGID)) return 0;
     if (!m->n_attachment) return 1;
@@ -269,10 +271,10 @@ static int chain_is_straight(const hf_model *m, const hf_workspace *w, int i_cha
     return sum <= sqrt(square) * (1 + HF_STRAIGHT_EXCESS);
 }
 
-int hf_form_chain_is_loaded(const hf_model *m, hf_workspace *w, int i_chain)
+bool hf_form_chain_is_loaded(const hf_model *m, hf_workspace *w, int i_chain)
 {
-    if (!chain_is_straight(m, w, i_chain)) return 0;
-    nodal_forces(m, w, 1);
+    if (!chain_is_straight(m, w, i_chain)) return false;
+    nodal_forces(m, w, true);
     return lateral_load_N(m, w, i_chain) > CHAIN_LOAD_NONE * m->reference_N;
 }
 
@@ -283,7 +285,7 @@ static double look_at_chains(const hf_model *m, hf_workspace *w, hf_form_result 
     r->n_loaded_chain = 0;
     *worst = -1;
     int n_chain = hf_form_n_chain(m);
-    if (n_chain) nodal_forces(m, w, 1);
+    if (n_chain) nodal_forces(m, w, true);
     for (int i = 0; i < n_chain; i++) {
         if (!chain_is_straight(m, w, i)) continue;
         double load = lateral_load_N(m, w, i);
@@ -309,15 +311,16 @@ void hf_form_update(const hf_model *m, hf_workspace *w)
 /* ---- stopping ---- */
 
 typedef struct {
-    int stop, iterates;
+    hf_stop_rule stop;
+    bool iterates;
     double psi_before_m;      /* NaN at the first iteration */
     double chain_load_before; /* NaN before the first look */
     int next_chain_look;
 } progress;
 
 /* One more shape has been measured: decide whether it is the last. Sets status and stop reason. */
-static int is_last(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r, progress *p,
-                   double length_gap)
+static bool is_last(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r, progress *p,
+                    double length_gap)
 {
     if (!p->iterates) {
         r->stop_reason = HF_STOPPED_DIRECT;
@@ -358,7 +361,7 @@ static void judge_chains(const hf_model *m, hf_workspace *w, const progress *p, 
     r->culprit = worst;
 }
 
-static void record(hf_history *h, const hf_model *m, const hf_workspace *w, const hf_form_result *r)
+static void record_iteration(hf_history *h, const hf_model *m, const hf_workspace *w, const hf_form_result *r)
 {
     if (h->n == h->capacity) return;
     h->psi_m[h->n] = r->psi_m;
@@ -368,7 +371,7 @@ static void record(hf_history *h, const hf_model *m, const hf_workspace *w, cons
     h->length_error[h->n++] = r->length_error;
 }
 
-static hf_status finish(const hf_model *m, hf_workspace *w, hf_form_result *r)
+static hf_status finish_result(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
     if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) {
         r->stop_reason = HF_STOPPED_ILL_POSED;
@@ -385,8 +388,8 @@ static hf_status finish(const hf_model *m, hf_workspace *w, hf_form_result *r)
 
 /* ---- the iteration ---- */
 
-hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, hf_workspace *w, hf_history *history,
-                       hf_form_result *r)
+hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, hf_stop_rule stop, hf_workspace *w,
+                       hf_history *history, hf_form_result *r)
 {
     assert(m->n_free > 0 && s->max_iterations > 0);
     progress p = {stop, hf_workspace_iterates(m, w), (double)NAN, (double)NAN, FIRST_CHAIN_CHECK};
@@ -398,13 +401,13 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, h
     hf_form_place_supports(m, w);
     for (;;) {
         r->iterations++;
-        r->status = w->stop && *w->stop ? HF_INTERRUPTED : solve(m, w, &r->culprit);
+        r->status = w->stop && *w->stop ? HF_INTERRUPTED : solve_positions(m, w, &r->culprit);
         if (r->status != HF_OK) break;
         hf_form_measure_cables(m, s, w, r, &length_gap);
         if (r->status != HF_OK) break;
         if (need_psi) r->psi_m = hf_metrics_psi_m(m, w);
         if (need_residual) r->residual_N = hf_form_residual_N(m, w);
-        if (history) record(history, m, w, r);
+        if (history) record_iteration(history, m, w, r);
         if (is_last(m, s, w, r, &p, length_gap)) break;
         hf_form_update(m, w);
     }
@@ -413,7 +416,7 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, int stop, h
         if (r->status == HF_NOT_CONVERGED) r->culprit = find_rounded_cable(m, s, w);
         if (r->status == HF_OK || r->iterations >= FIRST_CHAIN_CHECK) judge_chains(m, w, &p, r);
     }
-    return finish(m, w, r);
+    return finish_result(m, w, r);
 }
 
 hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r)
@@ -429,14 +432,14 @@ hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_works
         w->q_N_per_m[e] = square > 0 ? w->target[e] / sqrt(square) : 0; /* of no length: found collapsed below */
     }
     hf_form_measure_cables(m, s, w, r, &length_gap);
-    if (r->status != HF_OK) return finish(m, w, r);
+    if (r->status != HF_OK) return finish_result(m, w, r);
     r->residual_N = hf_form_residual_N(m, w);
     r->stop_reason = HF_STOPPED_RESIDUAL;
     if (!(r->residual_N <= s->residual_tolerance * m->reference_N && length_gap <= s->length_tolerance)) {
         r->status = HF_NOT_CONVERGED;
         r->stop_reason = HF_STOPPED_MAX_ITERATIONS;
     }
-    return finish(m, w, r);
+    return finish_result(m, w, r);
 }
 
 hf_status hf_form_accept(const hf_model *m, const hf_form_settings *s, hf_stop_reason reason, int iterations,
@@ -452,12 +455,12 @@ hf_status hf_form_accept(const hf_model *m, const hf_form_settings *s, hf_stop_r
         r->residual_N = hf_form_residual_N(m, w);
         judge_chains(m, w, &p, r);
     }
-    return finish(m, w, r);
+    return finish_result(m, w, r);
 }
 
 void hf_form_refuse(hf_status status, int iterations, hf_form_result *r)
 {
     *r = (hf_form_result){.status = status, .culprit = -1, .iterations = iterations};
     r->position_error_m = r->condition = r->backward_error = (double)NAN;
-    finish(NULL, NULL, r);
+    finish_result(NULL, NULL, r);
 }

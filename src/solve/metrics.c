@@ -15,7 +15,7 @@ double hf_metrics_psi_m(const hf_model *m, const hf_workspace *w)
     return sqrt(sum / m->n_inner_node);
 }
 
-double hf_metrics_tension_ratio(const hf_model *m, const hf_workspace *w, int group)
+double hf_metrics_tension_ratio(const hf_model *m, const hf_workspace *w, hf_group group)
 {
     double low = INFINITY, high = -INFINITY;
     for (int e = 0; e < m->n_cable; e++) {
@@ -28,7 +28,7 @@ double hf_metrics_tension_ratio(const hf_model *m, const hf_workspace *w, int gr
     return high > 0 ? high / low : (double)NAN;
 }
 
-int hf_metrics_is_slack(const hf_model *m, const hf_workspace *w, int i_cable)
+bool hf_metrics_is_slack(const hf_model *m, const hf_workspace *w, int i_cable)
 {
     /* a strut (q < 0) is not slack */
     return fabs(w->tension_N[i_cable]) < HF_SLACK_RATIO * m->reference_N;

@@ -6,9 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-#define HALVINGS_MAX 6   /* of one step */
-#define TRUSTED_MAX 6    /* steps per try that may raise the merit */
-#define TRUSTED_RISE 1e6 /* by no more than this factor */
+#define HALVINGS_MAX 6 /* of one step */
+/* Steps per try that may raise the merit, by no more than the factor. The tests of form-finding pass with 0 to 30 of them
+ * and with factors from 1e1 to 1e12. */
+#define TRUSTED_MAX 6
+#define TRUSTED_RISE 1e6
 #define TENSION_KEPT 0.1 /* a step leaves at least this part of a multiplier */
 
 /* ---- forces ---- */
@@ -20,8 +22,8 @@ typedef struct {
 } imbalance;
 
 /* Nodal forces out of balance into force [3*row + c]: minus the gradient of Pi. */
-static imbalance measure(const hf_model *m, const hf_workspace *w, const double *position_m, const double *T,
-                         double *force)
+static imbalance measure_imbalance(const hf_model *m, const hf_workspace *w, const double *position_m, const double *T,
+                                   double *force)
 {
     imbalance result = {0};
     double u[3], sum = 0, largest = 0, scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
@@ -129,7 +131,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
     hf_form_settings tight = *s;
     tight.residual_tolerance = fmax(0.1 * s->residual_tolerance, 1e-13);
     tight.length_tolerance = fmax(0.1 * s->length_tolerance, 1e-14);
-    imbalance now = measure(m, w, w->position_m, w->tension_N, w->newton_force_N), next = now;
+    imbalance now = measure_imbalance(m, w, w->position_m, w->tension_N, w->newton_force_N), next = now;
     double first_merit = now.merit, u[3];
     int n_trusted = 0;
     for (int k = 0; k < max_steps && !is_balanced(m, &tight, &now); k++) {
@@ -138,7 +140,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         int halvings = 0;
         for (; halvings <= HALVINGS_MAX; halvings++, part /= 2) {
             try_step(m, w, part);
-            next = measure(m, w, w->newton_trial_m, w->newton_trial_tension_N, w->newton_force_N);
+            next = measure_imbalance(m, w, w->newton_trial_m, w->newton_trial_tension_N, w->newton_force_N);
             if (next.merit < now.merit * (1 - 0.1 * part)) break; /* false for NaN */
         }
         ++*n_step;
@@ -146,7 +148,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
             /* the merit need not fall on the way to tensions that are decades away: a few full steps on trust */
             if (++n_trusted > TRUSTED_MAX || is_balanced(m, s, &now)) break;
             try_step(m, w, 1);
-            next = measure(m, w, w->newton_trial_m, w->newton_trial_tension_N, w->newton_force_N);
+            next = measure_imbalance(m, w, w->newton_trial_m, w->newton_trial_tension_N, w->newton_force_N);
             if (!(next.merit < TRUSTED_RISE * now.merit)) break;
         }
         memcpy(w->position_m, w->newton_trial_m, 3 * (size_t)m->n_node * sizeof(double));
@@ -168,7 +170,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
 
 void hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
-    measure(m, w, w->position_m, w->tension_N, w->newton_force_N);
+    measure_imbalance(m, w, w->position_m, w->tension_N, w->newton_force_N);
     if (find_step(m, w, &r->condition) != HF_OK) return;
     double largest = 0;
     for (int i = 0; i < m->n_free; i++) {

@@ -24,7 +24,7 @@ void hf_newton_matrix_block(const hf_model *m, const hf_workspace *w, int e, dou
 }
 
 /* The matrix at position_m, tension_N into newton_band; returns the largest diagonal entry. */
-static double assemble(const hf_model *m, hf_workspace *w)
+static double assemble_hessian(const hf_model *m, hf_workspace *w)
 {
     int column = half_bandwidth(m) + 1;
     double *band = w->newton_band, block[3][3], largest = 0;
@@ -60,7 +60,7 @@ hf_status hf_newton_matrix_factor(const hf_model *m, hf_workspace *w, double *co
     int n = hf_newton_matrix_dofs(m), k = half_bandwidth(m);
     double shift = DIAGONAL_GUARD;
     for (;; shift = shift < SHIFT_FIRST ? SHIFT_FIRST : 100 * shift) {
-        double largest = assemble(m, w);
+        double largest = assemble_hessian(m, w);
         if (!(isfinite(largest) && largest > 0) || shift > 1) return HF_SINGULAR;
         shift_diagonal(m, w, shift * largest);
         double norm = condition ? hf_band_norm(n, k, w->newton_band, w->newton_work) : 0;

@@ -4,6 +4,7 @@
 
 #include "linalg/band.h"
 #include "solve/coupling.h"
+#include "solve/schur.h"
 #include "solve/newton_matrix.h"
 #include "search/polish.h"
 #include <hifdm/batch.h>
@@ -151,10 +152,10 @@ static void sensitivity(struct run *r, int k, hf_schur *schur, double *dx, doubl
         }
     }
     hf_band_back_solve(n, band, 1, w->newton_band, dx, n);
-    hf_coupling_pull(m, w, dx, pull);
+    hf_schur_pull(m, w, dx, pull);
     hf_schur_displace(m, schur, pull, dr);
     memset(more, 0, (size_t)n * sizeof *more);
-    hf_coupling_push(m, w, dr, more);
+    hf_schur_push(m, w, dr, more);
     hf_band_back_solve(n, band, 1, w->newton_band, more, n);
     for (int i = 0; i < n; i++)
         dx[i] += more[i];
