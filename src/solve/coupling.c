@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* The tests of the coupling pass with the first three between 1 and 10, 5 and 50, 1e-4 and 0.3. */
+/* The tests of the coupling pass with 1 and 10, with 5 and 50, with 1e-4 and 0.3 for the first three. */
 #define GROWTHS_MAX 3    /* growing steps in a row of the plain loop that count as divergence */
 #define PATIENCE 15      /* iterations of the accelerated loop without a new smallest step */
 #define STALLED 1e-2     /* of the first step: a loop that came below it does not diverge for the truss's sake */

@@ -12,8 +12,8 @@
 
 /* Straight chains are looked at after this many iterations, and again each time that number has doubled. */
 #define FIRST_CHAIN_CHECK 64
-/* Relative change of the load between two looks that counts as settled. The tests of form-finding pass with 0.01 and 0.1;
- * with 0.001 one of them fails (loaded_straight_chain_is_ill_posed). */
+/* Relative change of the load between two looks that counts as settled. The tests of form-finding pass with 0.01 and
+ * 0.1; with 0.001 one of them fails (loaded_straight_chain_is_ill_posed). */
 #define CHAIN_LOAD_SETTLED 0.01
 #define ROUNDING_STEPS 32    /* roundings of the ends' coordinates that an imbalance may be worth */
 #define CHAIN_LOAD_NONE 1e-6 /* lateral load below this part of the reference tension is none */

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #define HALVINGS_MAX 6 /* of one step */
-/* Steps per try that may raise the merit, by no more than the factor. The tests of form-finding pass with 0 to 30 of them
- * and with factors from 1e1 to 1e12. */
+/* Steps per try that may raise the merit, by no more than the factor. The tests of form-finding pass with 0 and 30 of
+ * them, and with factors of 1e1 and 1e12. */
 #define TRUSTED_MAX 6
 #define TRUSTED_RISE 1e6
 #define TENSION_KEPT 0.1 /* a step leaves at least this part of a multiplier */
