@@ -1,4 +1,5 @@
-/* carrier - the truss of a case as the net sees it: built, factored, condensed to its attachments. Once per scene. */
+/* carrier - the truss of a case as the net sees it: factored once, and condensed to the supports of the net.
+ * Stability: stable. */
 #ifndef HIFDM_CARRIER_H
 #define HIFDM_CARRIER_H
 

@@ -25,10 +25,10 @@ typedef struct {
     char *overrides; /* the --set arguments, a line each; "" when there are none */
     char sha256[65]; /* of text and overrides */
     char title[256];
-    int has_import, has_optimize, has_surface; /* which sections are there */
-    int has_sweep; /* axes of a sweep are read by study.h; they are cut out of `text`, which is one point's case */
+    bool has_import, has_optimize, has_surface; /* which sections are there */
+    bool has_sweep; /* axes of a sweep are read by study.h; they are cut out of `text`, which is one point's case */
 #define HF_CASE_GENERATOR(section, type, KEYS, help)                                                                   \
-    int has_##section;                                                                                                 \
+    bool has_##section;                                                                                                \
     type section;
     HF_GENERATORS(HF_CASE_GENERATOR)
 #undef HF_CASE_GENERATOR
@@ -38,7 +38,7 @@ typedef struct {
     hf_optimize_settings optimize;
     hf_surface_settings surface; /* what is not given is that of a generated net */
 
-    int has_truss, has_truss_import; /* sections; the import's files as those of the net */
+    bool has_truss, has_truss_import; /* sections; the import's files as those of the net */
     hf_truss_settings truss;
     char truss_nodes_path[HF_PATH_SIZE], truss_members_path[HF_PATH_SIZE];
 } hf_case;
@@ -75,7 +75,7 @@ typedef enum {
     HF_FIELD_INT,
     HF_FIELD_UINT64,
     HF_FIELD_INT_PAIR,
-    HF_FIELD_WORD,
+    HF_FIELD_WORD, /* an enumeration: index into words */
     HF_FIELD_TEXT,
     HF_FIELD_DOUBLE_LIST /* hf_double_list */
 } hf_field_type;
@@ -93,7 +93,7 @@ typedef struct {
 
 typedef struct {
     const char *path;      /* "scene.import" */
-    size_t present_offset; /* of the int in hf_case that is 1 when the section is there */
+    size_t present_offset; /* of the bool in hf_case that is true when the section is there */
     const char *help;
 } hf_section;
 

@@ -1,5 +1,8 @@
-/* frame - linear statics of a truss: 12-dof spatial beams (Eqs. 14, 15 of Chen et al. 2022), Euler and Bernoulli's or
- * Timoshenko's, and pin-ended members. The stiffness matrix is assembled as LAPACK's lower band on a numbering with a
+/* frame - linear statics of a truss: displacements, reactions and member forces under load cases.
+ * Stability: stable.
+ *
+ * Members are 12-dof spatial beams (Eqs. 14, 15 of Chen et al. 2022), Euler and Bernoulli's or Timoshenko's, or carry
+ * axial force alone. The stiffness matrix is assembled as LAPACK's lower band on a numbering with a
  * small bandwidth, scaled to a unit diagonal, and factored once; every load case after that is two triangular solves.
  *
  * Vectors over the nodes are [n_node][6]: x, y, z components (m or N), then about x, y, z (rad or N m). */

@@ -1,4 +1,7 @@
-/* model - what all threads share and nobody changes: numbering, bandwidth, band maps, laws, targets, loads.
+/* model - a scene prepared for solving: numbering, bandwidth, band maps, laws, targets, loads.
+ * Stability: stable.
+ *
+ * A model does not change once it is built, so all threads share it.
  *
  * Nodes are renumbered: "row" is a node's index in the model, free nodes first in band order (rows 0..n_free-1 are the
  * rows of the force density matrix D), supports after them. Cables keep the order of the scene.
@@ -21,9 +24,9 @@ extern "C" {
 typedef struct {
     int n_node, n_free, n_cable, n_inner_node; /* n_free: nodes that are no supports; n_inner_node: those psi counts */
     int half_bandwidth;                        /* of D: columns below the diagonal */
-    int n_band;     /* n_free * (half_bandwidth + 1); one spare place behind it takes what supports would add */
-    int has_strut;  /* some force density is negative: D may be indefinite */
-    int has_newton; /* workspaces hold a Newton matrix: some law iterates, and the energy is convex (no strut) */
+    int n_band;      /* n_free * (half_bandwidth + 1); one spare place behind it takes what supports would add */
+    bool has_strut;  /* some force density is negative: D may be indefinite */
+    bool has_newton; /* workspaces hold a Newton matrix: some law iterates, and the energy is convex (no strut) */
     double pretension_N;
     double reference_N; /* what residuals are relative to: the largest tension of a law or load, else the pretension */
 
@@ -86,7 +89,7 @@ hf_status hf_model_attach(hf_model *model, int n_attachment, const int *node, co
 double hf_model_reference_N(const hf_scene *scene, double pretension_N);
 
 /* Invariants of every index and band place; for asserts and tests. */
-int hf_model_is_valid(const hf_model *model);
+bool hf_model_is_valid(const hf_model *model);
 
 /* "cable-cable-cable" of a straight chain into `text`, cut with "..." when it does not fit. */
 void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_chain, char *text, size_t size);

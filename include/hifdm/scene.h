@@ -1,4 +1,5 @@
 /* scene - what the user described: nodes, cables and the law each cable obeys, supports, loads.
+ * Stability: stable.
  *
  * A scene is made by a generator (generate.h) or read from CSV files (scene_import), checked once, and never changed
  * afterwards.
@@ -8,6 +9,7 @@
 
 #include <hifdm/cable_law.h>
 #include <hifdm/status.h>
+#include <stdbool.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -39,7 +41,7 @@ typedef struct {
 } hf_scene;
 
 /* Room for a scene of this size, all zero; with_* say which optional arrays exist. HF_OK or HF_NO_MEMORY. */
-hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, int with_load, int with_EA, int with_line);
+hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, bool with_load, bool with_EA, bool with_line);
 
 /* Everything that must hold whatever the scene came from: a free node, an inner node, distinct ends, finite numbers, no
  * cable of zero length, every free node joined to a support. All faults in one go, each naming file, line and id. */

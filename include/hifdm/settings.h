@@ -1,5 +1,8 @@
-/* settings - what was asked of the engine: plain values, whoever filled them in. hf_config_load reads them from a case
- * file, where `hifdm schema` says what each means; a program of one's own sets them itself. */
+/* settings - what is asked of the engine, as plain values.
+ * Stability: stable.
+ *
+ * hf_config_load fills them in from a case file; `hifdm schema` says what each means. A program may also set them
+ * itself. */
 #ifndef HIFDM_SETTINGS_H
 #define HIFDM_SETTINGS_H
 
@@ -9,7 +12,7 @@
 extern "C" {
 #endif
 
-/* Words of a case file; `hifdm schema` says what each means. */
+/* Choices of a case file; `hifdm schema` says what each means. */
 typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHOD_NEWTON, HF_METHOD_AUTO } hf_method;
 typedef enum { HF_OPTIMIZE_GA, HF_OPTIMIZE_LM, HF_OPTIMIZE_GA_LM } hf_optimize_method;
 typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
@@ -18,7 +21,7 @@ typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
 typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN } hf_coupling_scheme;
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
-/* By the enumerations above, ended by NULL. */
+/* Their words in a case file, indexed by the enumerations above; the last entry is NULL. */
 extern const char *const hf_method_word[6];
 extern const char *const hf_stop_rule_word[3];
 extern const char *const hf_rule_word[4];
@@ -27,17 +30,17 @@ extern const char *const hf_optimize_method_word[4];
 extern const char *const hf_symmetry_word[6];
 extern const char *const hf_coupling_scheme_word[3];
 
-/* Of the net with an elastic truss; without attachments nothing looks at them. */
+/* How a net is coupled with an elastic truss. Without a truss they are not used. */
 typedef struct {
     double tof_m; /* largest difference of an attachment's displacements in two iterations */
-    int scheme;   /* hf_coupling_scheme */
+    hf_coupling_scheme scheme;
     int max_iterations;
 } hf_coupling_settings;
 
 typedef struct {
-    int method;                /* hf_method */
-    double pretension_N;       /* Td */
-    int stop;                  /* hf_stop_rule */
+    hf_method method;
+    double pretension_N; /* Td */
+    hf_stop_rule stop;
     double residual_tolerance; /* max nodal residual relative to the pretension */
     double length_tolerance;   /* max |l/L*-1| of cables under the length law */
     double rms_tolerance_m;    /* change of psi between iterations, the paper's rule */
@@ -47,9 +50,9 @@ typedef struct {
 } hf_form_settings;
 
 typedef struct {
-    int method;                          /* hf_optimize_method */
-    int rule;                            /* hf_rule: what a design (a set of boundary pretensions) means */
-    int solver;                          /* hf_solver of the individuals */
+    hf_optimize_method method;
+    hf_rule rule;                        /* what a design (a set of boundary pretensions) means */
+    hf_solver solver;                    /* of the individuals */
     int population, generations;         /* individuals; largest number of generations */
     double range_N;                      /* |dT| of Eq. 13 */
     double min_tension_N, max_tension_N; /* bounds on T' */
@@ -61,7 +64,7 @@ typedef struct {
     double stagnation_tolerance_m;        /* stop when the best psi gained less than this ... */
     int stagnation_generations;           /* ... in so many generations */
     int polish_iterations;                /* bound on those of Levenberg-Marquardt */
-    int symmetry;                         /* hf_symmetry: mirror planes that link genes */
+    hf_symmetry symmetry;                 /* mirror planes that link genes */
 } hf_optimize_settings;
 
 #define HF_LIST_MAX 8

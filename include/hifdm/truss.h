@@ -1,4 +1,5 @@
 /* truss - the deployable truss that carries the net: nodes, straight members with their sections, supports.
+ * Stability: stable.
  *
  * A truss is made by a generator or read from CSV files (truss_import), checked once, and never changed afterwards;
  * hf_frame solves it. Dofs of a node: displacement along x, y, z (m), rotation about x, y, z (rad). */
@@ -69,7 +70,7 @@ typedef enum { HF_HELD_ALL_DOFS, HF_HELD_TRANSLATIONS } hf_held_dofs;
 typedef struct {
     double diameter_m, wall_m; /* of the tube, outside */
     int panels;                /* along a module */
-    int diagonals;             /* hf_diagonals of a panel */
+    hf_diagonals diagonals;    /* of a panel */
 } hf_truss_unit;
 
 typedef struct {
@@ -77,11 +78,11 @@ typedef struct {
     int main_every;                /* counted from both edges, every main_every-th generatrix line is MBUG, else ABUG */
     hf_truss_unit bud, mbug, abug; /* BUD on the module borders along x, the others along y */
     double E_Pa, G_Pa, density_kg_per_m3, expansion_per_K;
-    double hinge_mass_kg;     /* of each node */
-    int theory;               /* hf_theory; shear area of a thin round tube: half its cross-section */
-    int joints;               /* hf_joint of all members */
-    int supports;             /* hf_held: which nodes */
-    int support_dofs;         /* hf_held_dofs */
+    double hinge_mass_kg; /* of each node */
+    hf_theory theory;     /* shear area of a thin round tube: half its cross-section */
+    hf_joint joints;      /* of all members */
+    hf_held supports;     /* which nodes */
+    hf_held_dofs support_dofs;
     double match_tolerance_m; /* between a net support and its attachment */
 } hf_truss_settings;
 
@@ -99,7 +100,7 @@ hf_status hf_truss_attach(const hf_truss *truss, const hf_scene *scene, double t
                           int *scene_node, int *truss_node, hf_messages *messages);
 
 /* Room for a truss of this size, all zero. HF_OK or HF_NO_MEMORY. */
-hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, int with_line);
+hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, bool with_line);
 void hf_truss_free(hf_truss *truss);
 
 /* Everything that must hold whatever the truss came from: finite numbers, stiffness above zero, members with two
@@ -107,7 +108,7 @@ void hf_truss_free(hf_truss *truss);
 hf_status hf_truss_check(const hf_truss *truss, hf_messages *messages);
 
 /* "truss_nodes.csv:7: node 'a'" or "truss: node 'a'", for messages. */
-void hf_truss_describe(const hf_truss *truss, int is_member, int index, char *text, size_t size);
+void hf_truss_describe(const hf_truss *truss, bool is_member, int index, char *text, size_t size);
 
 double hf_truss_member_length(const hf_truss *truss, int i_member); /* m */
 double hf_truss_mass(const hf_truss *truss);                        /* kg: members and hinges */

@@ -135,7 +135,7 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
 {
     const hf_model *m = &p->model;
     hf_model without = *m;
-    without.has_newton = 0;
+    without.has_newton = false;
     size_t lanes = 0, shared = 0;
     int evolves = v && p->settings.optimize.method != HF_OPTIMIZE_LM;
     if (evolves) HF_TRY(engine_bytes(v, &shared, &lanes));

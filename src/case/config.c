@@ -136,13 +136,17 @@ static void complain_range(loader *l, const yaml_node_t *node, const hf_field *f
     complain(l, node->start_mark, f->path, what, scalar_text(node));
 }
 
-static void set_word(loader *l, const yaml_node_t *node, const hf_field *f, int *to)
+/* Every member of hf_case behind a WORD is of an enumeration type as wide as an int; values are not negative, so the
+ * int with the same bytes has the same value. */
+_Static_assert(sizeof(hf_method) == sizeof(int) && sizeof(hf_diagonals) == sizeof(int), "enumerations are int-sized");
+
+static void set_word(loader *l, const yaml_node_t *node, const hf_field *f, void *to)
 {
     char what[256] = "must be one of";
     if (node->type == YAML_SCALAR_NODE)
         for (int k = 0; f->words[k]; k++)
             if (!strcmp(f->words[k], scalar_text(node))) {
-                *to = k;
+                memcpy(to, &k, sizeof k);
                 return;
             }
     for (int k = 0; f->words[k]; k++) {
@@ -247,7 +251,7 @@ static void set_field(loader *l, const yaml_node_t *node, int i_field)
         set_pair(l, node, f, (int *)(void *)to);
         break;
     case HF_FIELD_WORD:
-        set_word(l, node, f, (int *)(void *)to);
+        set_word(l, node, f, to);
         break;
     case HF_FIELD_TEXT:
         set_text(l, node, f, to);
@@ -284,7 +288,7 @@ static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
 {
     int i_section = find_section(prefix);
     if (i_section >= 0 && hf_section_table[i_section].present_offset != SIZE_MAX)
-        *(int *)(void *)((char *)l->c + hf_section_table[i_section].present_offset) = 1;
+        *(bool *)((char *)l->c + hf_section_table[i_section].present_offset) = true;
     for (yaml_node_pair_t *p = mapping->data.mapping.pairs.start; p < mapping->data.mapping.pairs.top; p++) {
         const yaml_node_t *key = yaml_document_get_node(l->document, p->key);
         const yaml_node_t *value = yaml_document_get_node(l->document, p->value);
@@ -392,7 +396,7 @@ static void use_override(loader *l, const yaml_node_t *root, void *context)
     /* a key inside a section brings the section along */
     for (int i = 0; dot && i < hf_n_section; i++)
         if (!strcmp(hf_section_table[i].path, path) && hf_section_table[i].present_offset != SIZE_MAX)
-            *(int *)(void *)((char *)l->c + hf_section_table[i].present_offset) = 1;
+            *(bool *)((char *)l->c + hf_section_table[i].present_offset) = true;
 }
 
 static void apply_override(loader *l, const char *argument)
@@ -466,7 +470,7 @@ static int section_present(const hf_case *c, const char *field_path)
     *dot = '\0';
     int i = find_section(section);
     if (i < 0 || hf_section_table[i].present_offset == SIZE_MAX) return 1;
-    return *(const int *)(const void *)((const char *)c + hf_section_table[i].present_offset);
+    return *(const bool *)((const char *)c + hf_section_table[i].present_offset);
 }
 
 static void check_truss(loader *l)

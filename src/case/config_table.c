@@ -231,7 +231,7 @@ int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t
     *text = '\0';
     for (int i = 0; i < hf_n_section; i++) {
         size_t at = hf_section_table[i].present_offset;
-        if (at != SIZE_MAX && memcmp(p + at, q + at, sizeof(int)) != 0)
+        if (at != SIZE_MAX && memcmp(p + at, q + at, sizeof(bool)) != 0)
             n = add_key(hf_section_table[i].path, n, text, size);
     }
     for (int i = 0; i < hf_n_field; i++)

@@ -428,7 +428,7 @@ void hf_model_free(hf_model *model)
 
 /* ---- checks ---- */
 
-int hf_model_is_valid(const hf_model *m)
+bool hf_model_is_valid(const hf_model *m)
 {
     int column = m->half_bandwidth + 1;
     if (m->n_free < 1 || m->n_free > m->n_node || m->n_band != m->n_free * column) return 0;

@@ -33,7 +33,7 @@ static void lay_out(hf_arena *arena, hf_scene *s, int with_load, int with_EA, in
     s->cable_line = with_line ? hf_arena_take(arena, m, sizeof *s->cable_line) : NULL;
 }
 
-hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, int with_load, int with_EA, int with_line)
+hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, bool with_load, bool with_EA, bool with_line)
 {
     *scene = (hf_scene){.n_node = n_node, .n_cable = n_cable};
     hf_arena arena = {0};

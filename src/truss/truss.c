@@ -38,7 +38,7 @@ static void lay_out(hf_arena *arena, hf_truss *t, int with_line)
     t->member_line = with_line ? hf_arena_take(arena, m, sizeof(int)) : NULL;
 }
 
-hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, int with_line)
+hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, bool with_line)
 {
     *truss = (hf_truss){.n_node = n_node, .n_member = n_member};
     hf_arena arena = {0};
@@ -296,7 +296,7 @@ hf_status hf_truss_attach(const hf_truss *t, const hf_scene *scene, double toler
 
 /* ---- checks ---- */
 
-void hf_truss_describe(const hf_truss *t, int is_member, int index, char *text, size_t size)
+void hf_truss_describe(const hf_truss *t, bool is_member, int index, char *text, size_t size)
 {
     const int *line = is_member ? t->member_line : t->node_line;
     const char *file = is_member ? t->members_file : t->nodes_file, *kind = is_member ? "member" : "node";

@@ -110,6 +110,53 @@ START_TEST(c_reads_a_result)
 }
 END_TEST
 
+/* ---- C++ ---- */
+
+static const char cpp_program[] = "#include <hifdm/hifdm.h>\n"
+                                  "#include <cstdio>\n"
+                                  "int main(int, char **argv)\n"
+                                  "{\n"
+                                  "    hf_messages said = {};\n"
+                                  "    hf_problem p = {};\n"
+                                  "    hf_status status = hf_problem_open(argv[1], nullptr, 0, 0, &p, &said);\n"
+                                  "    std::printf(\"%d genes, psi %.4f mm\\n\", p.model.n_gene, p.form.psi_m * 1e3);\n"
+                                  "    if (p.settings.form.method != HF_METHOD_HIFDM) std::puts(\"another method\");\n"
+                                  "    hf_problem_free(&p);\n"
+                                  "    hf_messages_free(&said);\n"
+                                  "    return hf_status_exit_code(status);\n"
+                                  "}\n";
+
+#define BUILD_CPP                                                                                                      \
+    "PKG_CONFIG_PATH=\"$1/lib/pkgconfig\"; export PKG_CONFIG_PATH; $2 -std=c++11 -Wall -Wextra -Wpedantic -Werror "    \
+    "\"$3\" $(pkg-config --cflags --libs hifdm) -Wl,-rpath,\"$1/lib\" -o \"$4\""
+
+/* The C++ compiler that belongs to ours: gcc, clang or cc with the same flags. */
+START_TEST(the_library_serves_cpp)
+{
+    char compiler[512], *cc;
+    snprintf(compiler, sizeof compiler, "%s", c_compiler());
+    size_t word = strcspn(compiler, " ");
+    const char *flags = keep(compiler + word);
+    compiler[word] = '\0';
+    if ((cc = strstr(compiler, "gcc")))
+        memcpy(cc, "g++", 3);
+    else
+        strcpy(compiler, strstr(compiler, "clang") ? "clang++" : "c++");
+    const char *const argv[] = {compiler, "--version", NULL};
+    struct command there = run_command(50.0, argv);
+    int exit_code = there.exit_code;
+    free_command(&there);
+    if (exit_code != 0) return; /* no C++ here */
+    const char *program = temp("from_cpp");
+    SHELL(0, BUILD_CPP, keep(installed_prefix()), keep(formatted("%s%s", compiler, flags)),
+          file_with("from_cpp.cpp", cpp_program), program);
+    ck_assert_str_eq(said.err, "");
+    SHELL(0, "OMP_WAIT_POLICY=passive \"$1\" \"$2\"", program, CHEN);
+    EXPECT(file_with("said.txt", said.out), chen_result(), "--", "a.split()[0] == b'%d' % b['ga/gene_cable'].shape[0]",
+           "abs(float(a.split()[3]) - b['form'].attrs['psi_m'] * 1e3) < 6e-5", "b'another' not in a");
+}
+END_TEST
+
 /* ---- README and manual ---- */
 
 /* Every indented piece of them that imports something is run twice, in a folder with the files that it names. */
@@ -212,6 +259,7 @@ Suite *suite_cli_examples(void)
     tcase_add_test(tcase, own_optimiser_finds_a_better_net);
     tcase_add_test(tcase, own_optimiser_tells_what_is_wrong);
     tcase_add_test(tcase, c_reads_a_result);
+    tcase_add_test(tcase, the_library_serves_cpp);
     tcase_add_test(tcase, pieces_of_readme_in_python_run);
     tcase_add_test(tcase, pieces_of_readme_in_c_are_those_of_the_examples);
     tcase_add_test(tcase, recipe_for_a_net_of_ones_own_works);
