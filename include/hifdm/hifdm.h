@@ -20,7 +20,8 @@
  * Threads. Nothing is kept outside the things. A scene, model, truss, frame, carrier or evaluator does not change once
  *     it is made, so threads share it; a workspace, batch, problem, ga or store belongs to one thread at a time.
  * GSL. GSL has one error handler for the whole program, which by default ends it even where GSL only reports "no
- *     progress": call gsl_set_error_handler_off() (gsl/gsl_errno.h) before hf_surface_measure or hf_surface_fit_nodes. */
+ *     progress": call gsl_set_error_handler_off() (gsl/gsl_errno.h) before hf_surface_measure, hf_surface_fit_nodes,
+ *     or hf_run_point for a case with a surface section. */
 #ifndef HIFDM_HIFDM_H
 #define HIFDM_HIFDM_H
 

@@ -19,7 +19,7 @@ typedef struct {
     hf_scene scene;
     hf_carrier carrier; /* all zero without a truss */
     hf_model model;
-    int planes;              /* of symmetry, HF_PLANE_ bits */
+    int planes;              /* of symmetry that link genes: bit 1 = x, bit 2 = y */
     hf_workspace workspace;  /* holds the found shape until it is used for another */
     hf_form_result form;     /* of the form-finding */
     double *start_q_N_per_m; /* [n_cable] of the found shape */

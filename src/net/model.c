@@ -15,7 +15,7 @@
 /* ---- layout ---- */
 
 /* Does a law in force need stiffnesses? The methods iterative_fdm and fdm put other laws in its place. */
-static bool needs_EA(const hf_scene *s, int method)
+static bool needs_EA(const hf_scene *s, hf_method method)
 {
     if (method == HF_METHOD_ITERATIVE_FDM || method == HF_METHOD_FDM) return 0;
     for (int e = 0; e < s->n_cable; e++)
@@ -23,7 +23,7 @@ static bool needs_EA(const hf_scene *s, int method)
     return 0;
 }
 
-static void lay_out(hf_arena *a, const hf_scene *s, int method, hf_model *m)
+static void lay_out(hf_arena *a, const hf_scene *s, hf_method method, hf_model *m)
 {
     size_t n = (size_t)m->n_node, e = (size_t)m->n_cable;
     m->row_of_node = hf_arena_take(a, n, sizeof(int));
@@ -160,7 +160,7 @@ static double distance(const hf_model *m, int row_a, int row_b)
 
 /* Follow the chain that leaves the support `from` by cable `first`; keep it when it ends at a support and is straight,
  * or not, as wanted. A chain is met from both ends: only the end with the smaller cable index counts. */
-static void follow_chain(hf_model *m, const length_graph *g, int from, int first, int want_straight)
+static void follow_chain(hf_model *m, const length_graph *g, int from, int first, bool want_straight)
 {
     int start = m->chain_start[m->n_any_chain], n = 0, row = from, e = first;
     double sum = 0;
@@ -173,7 +173,7 @@ static void follow_chain(hf_model *m, const length_graph *g, int from, int first
         if (g->count[row] != 2 || n == m->n_cable - start) return;
         e = g->cable[2 * row] == e ? g->cable[2 * row + 1] : g->cable[2 * row];
     }
-    int is_straight = sum <= distance(m, from, row) * (1 + HF_STRAIGHT_EXCESS);
+    bool is_straight = sum <= distance(m, from, row) * (1 + HF_STRAIGHT_EXCESS);
     if (n < 2 || e < first || is_straight != want_straight) return;
     int through = from;
     for (int k = 0; is_straight && k + 1 < n; k++) {

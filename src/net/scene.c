@@ -16,7 +16,7 @@ const char *const hf_group_word[2] = {"inner", "boundary"};
 
 /* ---- memory ---- */
 
-static void lay_out(hf_arena *arena, hf_scene *s, int with_load, int with_EA, int with_line)
+static void lay_out(hf_arena *arena, hf_scene *s, bool with_load, bool with_EA, bool with_line)
 {
     size_t n = (size_t)s->n_node, m = (size_t)s->n_cable;
     s->position_m = hf_arena_take(arena, 3 * n, sizeof *s->position_m);
@@ -62,7 +62,7 @@ double hf_scene_theoretical_length(const hf_scene *scene, int i_cable)
 /* ---- checks ---- */
 
 /* "nodes.csv:7: node 'a'" or "scene: node 'a'" */
-static void describe(const hf_scene *s, int is_cable, int index, char *text, size_t size)
+static void describe(const hf_scene *s, bool is_cable, int index, char *text, size_t size)
 {
     const int *line = is_cable ? s->cable_line : s->node_line;
     const char *file = is_cable ? s->cables_file : s->nodes_file, *kind = is_cable ? "cable" : "node";
@@ -73,7 +73,7 @@ static void describe(const hf_scene *s, int is_cable, int index, char *text, siz
         snprintf(text, size, "scene: %s '%s'", kind, id);
 }
 
-static void fault(const hf_scene *s, int is_cable, int index, int *n_fault, const char *what, hf_messages *messages)
+static void fault(const hf_scene *s, bool is_cable, int index, int *n_fault, const char *what, hf_messages *messages)
 {
     char where[512];
     if (++*n_fault > FAULT_MAX) return;

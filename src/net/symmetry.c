@@ -79,7 +79,7 @@ static void measure(search *q)
 }
 
 /* Is node j at `target`, of the role of node i and under its mirrored load? */
-static int is_node_image(const search *q, int axis, int i, int j, const double target[3])
+static bool is_node_image(const search *q, int axis, int i, int j, const double target[3])
 {
     if (q->s->role[i] != q->s->role[j]) return 0;
     for (int c = 0; c < 3; c++) {
@@ -128,7 +128,7 @@ static int compare_links(const void *a, const void *b)
 }
 
 /* Lengths, and what is derived from them, carry the tolerance of the positions. */
-static int is_alike(const search *q, const link *a, const link *b)
+static bool is_alike(const search *q, const link *a, const link *b)
 {
     double tolerance = fmax(TOLERANCE, 4 * TOLERANCE * q->size_m / q->m->length_m[a->cable]);
     if (a->kind != b->kind || !(fabs(a->target - b->target) <= tolerance * fabs(a->target))) return 0;
@@ -230,10 +230,10 @@ static void merge_groups(const search *q, hf_model *m)
 
 /* ---- together ---- */
 
-static hf_status link_genes(search *q, int wanted, hf_model *m, int *planes, hf_messages *messages)
+static hf_status link_genes(search *q, hf_symmetry wanted, hf_model *m, int *planes, hf_messages *messages)
 {
     for (int axis = 0; axis < 2; axis++) {
-        int by_name = wanted == HF_SYMMETRY_XY || wanted == (axis == 0 ? HF_SYMMETRY_X : HF_SYMMETRY_Y);
+        bool by_name = wanted == HF_SYMMETRY_XY || wanted == (axis == 0 ? HF_SYMMETRY_X : HF_SYMMETRY_Y);
         if (!by_name && wanted != HF_SYMMETRY_AUTO) continue;
         int n_missing = reflect(q, axis);
         if (n_missing && by_name) return refuse(q, axis, n_missing, messages);
@@ -269,7 +269,8 @@ static void sort(search *q)
     qsort(q->link, (size_t)q->s->n_cable, sizeof *q->link, compare_links);
 }
 
-hf_status hf_symmetry_apply(const hf_scene *scene, int wanted, hf_model *model, int *planes, hf_messages *messages)
+hf_status hf_symmetry_apply(const hf_scene *scene, hf_symmetry wanted, hf_model *model, int *planes,
+                            hf_messages *messages)
 {
     search q = {.s = scene, .m = model};
     hf_arena arena = {0};

@@ -83,7 +83,7 @@ WATCH(MODEL, hf_status, hf_model_build,
       (const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages),
       (scene, form, model, messages))
 WATCH(MODEL, hf_status, hf_symmetry_apply,
-      (const hf_scene *scene, int wanted, hf_model *model, int *planes, hf_messages *messages),
+      (const hf_scene *scene, hf_symmetry wanted, hf_model *model, int *planes, hf_messages *messages),
       (scene, wanted, model, planes, messages))
 WATCH(FORM, hf_status, hf_workspace_create, (const hf_model *model, hf_workspace *workspace), (model, workspace))
 WATCH(FORM, hf_status, hf_evaluate_form,
