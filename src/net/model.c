@@ -297,7 +297,9 @@ hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf
 
 /* ---- attachments ---- */
 
-#define SYMMETRY_TOLERANCE 1e-9 /* of the largest entry: rounding of solves with a condition of 1e6 */
+/* Of the largest entry: rounding of solves with a condition of 1e6. From 1e-12 to 1e-6 no test of model, truss or
+ * coupling changes. */
+#define SYMMETRY_TOLERANCE 1e-9
 
 static hf_status check_attachments(const hf_model *m, int n, const int *node, hf_messages *messages)
 {

@@ -12,10 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CONDITION_MAX 1e13 /* of the scaled matrix: beyond it no digit of a displacement could be trusted */
-#define SHIFT 1e-11        /* makes the scaled matrix of a mechanism definite, well above rounding */
-#define POWER_STEPS 20     /* of inverse iteration, to see which node moves */
-#define CASES_AT_ONCE 64   /* of the condensation: bounds its memory */
+/* The ranges are those over which no test of this room and no frame of tests/verify changes. */
+#define CONDITION_MAX 1e13 /* of the scaled matrix: beyond it no digit of a displacement can be trusted; 1e11 to 1e15 */
+#define SHIFT 1e-11        /* makes the scaled matrix of a mechanism definite, well above rounding; 1e-13 to 1e-9 */
+#define POWER_STEPS 20     /* of inverse iteration, to see which node moves; 2 to 60 */
+#define CASES_AT_ONCE 64   /* of the condensation: bounds its memory; 1 to 512 */
 
 enum { N_DEFORMATION = 6 }; /* elongation, twist, end rotations about z at i, j, about y at i, j, against the chord */
 
