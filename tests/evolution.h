@@ -12,7 +12,7 @@ struct run {
     struct net net;
     hf_model model;
     hf_optimize_settings settings;
-    hf_ga ga;
+    hf_optimiser ga;
     double base_N[N_GENE];
     int gene[N_GENE];
 };
@@ -34,18 +34,19 @@ static inline void open_run(struct run *r)
                                          .mutation_low = 0.1,
                                          .elites = 1};
     r->model = (hf_model){.n_gene = N_GENE, .n_gene_group = 1, .gene_cable = r->gene, .gene_group = r->gene};
-    ck_assert_int_eq(hf_ga_create(&r->settings, &r->model, r->base_N, &r->ga), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &r->model, r->base_N, &r->ga), HF_OK);
 }
 
 static inline void close_run(struct run *r)
 {
-    hf_ga_free(&r->ga);
+    hf_optimiser_free(&r->ga);
     close_net(&r->net);
 }
 
 /* Results that depend on the designs alone. */
-static inline void fill(hf_ga *g)
+static inline void fill(hf_optimiser *o)
 {
+    hf_population *g = &o->population;
     for (int i = 0; i < N_INDIVIDUAL; i++) {
         double psi_m = 0;
         for (int k = 0; k < N_GENE; k++)
@@ -53,7 +54,7 @@ static inline void fill(hf_ga *g)
         if (g->pending[i])
             g->result[i] = (hf_form_result){.status = HF_OK, .psi_m = psi_m, .iterations = g->generation};
     }
-    hf_ga_tell(g);
+    hf_optimiser_tell(o);
 }
 
 /* Store the generations from `first` on, publishing in the middle. *acknowledged: how many are stored for sure. */
@@ -61,9 +62,9 @@ static inline hf_status store_some(hf_store *s, struct run *r, int first, int n,
                                    hf_messages *messages)
 {
     for (int g = first; g < n; g++) {
-        if (g > 0) ck_assert(hf_ga_next(&r->ga));
+        if (g > 0) ck_assert(hf_optimiser_next(&r->ga));
         fill(&r->ga);
-        HF_TRY(hf_store_generation(s, &r->model, &r->ga, messages));
+        HF_TRY(hf_store_generation(s, &r->model, &r->ga.population, messages));
         *acknowledged = g + 1;
         HF_TRY(hf_store_publish(s, &(hf_summary){.has_optimize = 1}, g % 3 == 1, messages));
     }
@@ -75,7 +76,7 @@ static inline hf_status begin_new(const char *path, struct run *r, hf_store **s,
     hf_messages *m = messages;
     HF_TRY(hf_store_create(path, 0, any_case(), &r->net.scene, NULL, 0, NULL, s, m));
     HF_TRY(hf_store_form(*s, &r->net.model, &r->net.work, NULL, m));
-    HF_TRY(hf_store_genes(*s, &r->model, &r->ga, m));
+    HF_TRY(hf_store_genes(*s, &r->model, &r->ga.population, m));
     return hf_store_publish(*s, &(hf_summary){0}, 1, m);
 }
 

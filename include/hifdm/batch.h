@@ -6,7 +6,7 @@
 #define HIFDM_BATCH_H
 
 #include <hifdm/evaluate.h>
-#include <hifdm/ga.h>
+#include <hifdm/optimiser.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -31,10 +31,11 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
  * NaN for psi and ratios. */
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result);
 
-/* Breed the next generation and evaluate what is pending in it: hf_ga_next and hf_batch_run. Meanwhile beside(context)
- * runs once (NULL: nothing), in another thread if there is one: it has come back when this does. What it reads
- * of the algorithm must be a copy of the struct made before. 0: no generation is left, `beside` alone has run. */
-int hf_batch_next(hf_batch *batch, hf_ga *ga, void (*beside)(void *context), void *context);
+/* Propose the next generation and evaluate what is pending in it: hf_optimiser_next and hf_batch_run. Meanwhile
+ * beside(context) runs once (NULL: nothing), in another thread if there is one, and has returned when this does. What
+ * it reads of the population must be a copy of the struct made before. 0: no generation is left, `beside` alone has
+ * run. */
+int hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
 
 /* Let the threads share one factored Newton matrix from the base design [n_gene] > 0 on, where the evaluator's solver
  * allows it. Returns the hf_solver that will be used: an unsuitable base or net leaves each design to hf_evaluate.

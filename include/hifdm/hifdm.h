@@ -2,8 +2,8 @@
  * Stability: stable.
  *
  * Start with problem (a case opened by one call), batch (designs -> results) and run (a whole run). Reading order of
- * the rest: scene, settings, truss, config, model, result, frame, carrier, workspace, formfind, evaluate, metrics,
- * surface, store. These rules hold in all of them:
+ * the rest: scene, settings, truss, config, model, result, frame, carrier, workspace, formfind, evaluate, population,
+ * optimiser, metrics, surface, store. These rules hold in all of them:
  *
  * Stability. The head of each header says one of two things. Stable: a program that uses it compiles with later
  *     versions and means the same, unless CHANGELOG.md names the change; structs may get members, so initialise them to
@@ -18,7 +18,8 @@
  * Memory. hf_THING_free frees what the thing holds and leaves it all zero; it may be called on a thing that is all
  *     zero. What is "borrowed" must outlive the thing that borrows it.
  * Threads. Nothing is kept outside the things. A scene, model, truss, frame, carrier or evaluator does not change once
- *     it is made, so threads share it; a workspace, batch, problem, ga or store belongs to one thread at a time.
+ *     it is made, so threads share it; a workspace, batch, problem, optimiser or store belongs to one thread at a
+ *     time.
  * GSL. GSL has one error handler for the whole program, which by default ends it even where GSL only reports "no
  *     progress": call gsl_set_error_handler_off() (gsl/gsl_errno.h) before hf_surface_measure, hf_surface_fit_nodes,
  *     or hf_run_point for a case with a surface section. */
@@ -32,10 +33,11 @@
 #include <hifdm/evaluate.h>
 #include <hifdm/formfind.h>
 #include <hifdm/frame.h>
-#include <hifdm/ga.h>
 #include <hifdm/generate.h>
 #include <hifdm/metrics.h>
 #include <hifdm/model.h>
+#include <hifdm/optimiser.h>
+#include <hifdm/population.h>
 #include <hifdm/problem.h>
 #include <hifdm/result.h>
 #include <hifdm/run.h>

@@ -14,7 +14,11 @@ extern "C" {
 
 /* Choices of a case file; `hifdm schema` says what each means. */
 typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHOD_NEWTON, HF_METHOD_AUTO } hf_method;
-typedef enum { HF_OPTIMIZE_GA, HF_OPTIMIZE_LM, HF_OPTIMIZE_GA_LM } hf_optimize_method;
+/* X(enumerator, word); what each is made of is a row of HF_OPTIMISER_LIST. */
+#define HF_OPTIMIZE_METHODS(X) X(GA, "ga") X(LM, "lm") X(GA_LM, "ga+lm")
+#define HF_OPTIMIZE_ENUMERATOR(name, word) HF_OPTIMIZE_##name,
+typedef enum { HF_OPTIMIZE_METHODS(HF_OPTIMIZE_ENUMERATOR) HF_OPTIMIZE_N_METHOD } hf_optimize_method;
+#undef HF_OPTIMIZE_ENUMERATOR
 typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
 typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
@@ -26,7 +30,7 @@ extern const char *const hf_method_word[6];
 extern const char *const hf_stop_rule_word[3];
 extern const char *const hf_rule_word[4];
 extern const char *const hf_solver_word[5];
-extern const char *const hf_optimize_method_word[4];
+extern const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1];
 extern const char *const hf_symmetry_word[6];
 extern const char *const hf_coupling_scheme_word[3];
 

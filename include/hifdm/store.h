@@ -42,7 +42,7 @@
 #define HIFDM_STORE_H
 
 #include <hifdm/config.h>
-#include <hifdm/ga.h>
+#include <hifdm/optimiser.h>
 #include <hifdm/model.h>
 #include <hifdm/summary.h>
 #include <hifdm/workspace.h>
@@ -97,22 +97,25 @@ int hf_store_generations(const hf_store *store); /* how many it holds, with thos
 hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspace *workspace,
                         const hf_history *history, hf_messages *messages);
 
-/* Bounds and gene cables of the genetic algorithm, once it is created. Nothing on a resumed store. */
-hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages);
+/* Base, bounds and gene cables of the population, once it is created. Nothing on a resumed store. */
+hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_population *population,
+                         hf_messages *messages);
 
-/* Append the generation that hf_ga_tell has just ranked. After HF_OK the generation survives the end of this process,
- * for the build that made it (see hf_store_restore). After HF_IO all generations before it survive, provided that
- * hf_store_publish was called after hf_store_genes. */
-hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages);
+/* Append the generation that hf_optimiser_tell has just ranked. After HF_OK it outlives this process, for the build
+ * that made it (see hf_store_restore); after HF_IO all before it does, once hf_store_publish was called after
+ * hf_store_genes. */
+hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_population *population,
+                              hf_messages *messages);
 
 /* Read the pretensions base_N [n_gene] from which the genetic algorithm of a resumed store started; those that this
  * machine computes may differ in the last bits. base_N is unchanged when the store has none. */
 hf_status hf_store_base(hf_store *store, int n_gene, double *base_N, hf_messages *messages);
 
-/* Put `ga`, just created from that base, into the state before hf_ga_tell of the last generation that the store holds,
- * and the best found so far into the summary. The designs of the generations in the journal are bred again; when this
- * build breeds other designs, these generations are left out, with a warning. Does nothing without generations. */
-hf_status hf_store_restore(hf_store *store, hf_ga *ga, hf_summary *summary, hf_messages *messages);
+/* Put the optimiser, just created from that base, into the state before hf_optimiser_tell of the last generation that
+ * the store holds, and what was the best until then into the summary. The designs of generations in the journal are
+ * proposed again; a build that proposes others leaves these generations out, with a warning. Nothing when there are
+ * none. */
+hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages);
 
 /* Give the visible name to a file with everything so far, marked as unfinished: at once, or only when that takes less
  * than 2 % of the time since the last publication. Call it after every generation. */

@@ -5,7 +5,7 @@
 #ifndef HIFDM_SUMMARY_H
 #define HIFDM_SUMMARY_H
 
-#include <hifdm/ga.h>
+#include <hifdm/population.h>
 #include <hifdm/surface.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -52,7 +52,7 @@ typedef struct {
     int best_generation, best_individual;   /* where the best was found, counted from 0 */
     int generations;                        /* number finished */
     long evaluations, infeasible;           /* form-findings; those without a feasible shape among them */
-    int optimize_stop;                      /* hf_ga_stop */
+    int optimize_stop;                      /* hf_population_stop */
     double optimize_wall_s, optimize_cpu_s; /* cpu_s: inside evaluations, over all threads */
 } hf_summary;
 

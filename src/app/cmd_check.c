@@ -77,14 +77,15 @@ static void print_plan(const hf_problem *p, FILE *f)
                 hf_coupling_scheme_word[c->form.coupling.scheme], c->form.coupling.tof_m,
                 c->form.coupling.max_iterations);
     int optimizes = c->has_optimize && p->model.n_gene > 0;
-    int evolves = optimizes && o->method != HF_OPTIMIZE_LM;
+    int evolves = optimizes && hf_optimiser_plan_of(o->method).kind;
     if (evolves)
         fprintf(f,
                 "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
                 hf_rule_word[o->rule], p->model.n_gene, o->population, o->generations, (unsigned long long)o->seed);
     if (optimizes && o->rule != HF_RULE_SEEDED)
         fprintf(f, "                Levenberg-Marquardt: rule %s, at most %d iterations, %s\n", hf_rule_word[o->rule],
-                o->polish_iterations, o->method == HF_OPTIMIZE_GA ? "for comparison" : "the result");
+                o->polish_iterations,
+                hf_optimiser_plan_of(o->method).ends_with_polish ? "the result" : "for comparison");
     if (optimizes && o->symmetry != HF_SYMMETRY_NONE)
         fprintf(f, "                symmetry: %s, %s; %d independent genes of %d\n", hf_symmetry_word[o->symmetry],
                 hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_gene);
@@ -137,7 +138,7 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
     hf_model without = *m;
     without.has_newton = false;
     size_t lanes = 0, shared = 0;
-    int evolves = v && p->settings.optimize.method != HF_OPTIMIZE_LM;
+    int evolves = v && hf_optimiser_plan_of(p->settings.optimize.method).kind;
     if (evolves) HF_TRY(engine_bytes(v, &shared, &lanes));
     double workspaces = v ? threads + 1 : 1, bare = (double)hf_workspace_bytes(&without);
     double population = evolves ? (double)p->settings.optimize.population : 0, genes = 8.0 * m->n_gene;
@@ -162,7 +163,8 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
 
 /* A first generation is bred and evaluated in one thread, timed; the cost of one of its designs times the largest
  * number of evaluations is what is printed. */
-static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int threads, const hf_ga *ga, FILE *f)
+static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int threads, const hf_population *ga,
+                               FILE *f)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     hf_batch batch = {0};
@@ -183,7 +185,7 @@ static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int t
 }
 
 /* Two iterations of Levenberg-Marquardt from the base design. */
-static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const hf_ga *ga, FILE *f)
+static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const hf_population *ga, FILE *f)
 {
     hf_polish_result r;
     char one[32], all[32];
@@ -200,11 +202,12 @@ static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const h
 
 static hf_status print_optimize_time(hf_problem *p, const hf_evaluator *v, int threads, FILE *f)
 {
-    hf_ga ga = {0};
-    hf_status status = hf_ga_create(&p->settings.optimize, &p->model, p->base_N, &ga);
-    if (status == HF_OK && p->settings.optimize.method != HF_OPTIMIZE_LM) status = print_ga_time(p, v, threads, &ga, f);
-    if (status == HF_OK && hf_polish_applies(v)) status = print_polish_time(p, v, &ga, f);
-    hf_ga_free(&ga);
+    const hf_optimiser_kind *kind = hf_optimiser_plan_of(p->settings.optimize.method).kind;
+    hf_optimiser o = {0};
+    hf_status status = hf_optimiser_create(kind, &p->settings.optimize, &p->model, p->base_N, &o);
+    if (status == HF_OK && kind) status = print_ga_time(p, v, threads, &o.population, f);
+    if (status == HF_OK && hf_polish_applies(v)) status = print_polish_time(p, v, &o.population, f);
+    hf_optimiser_free(&o);
     return status;
 }
 

@@ -6,6 +6,8 @@ const char *const hf_method_word[6] = {"hifdm", "iterative_fdm", "fdm", "newton"
 const char *const hf_stop_rule_word[3] = {"residual", "rms_change", NULL};
 const char *const hf_rule_word[4] = {"force_density", "tension", "seeded", NULL};
 const char *const hf_solver_word[5] = {"auto", "chord", "newton", "fixed_point", NULL};
-const char *const hf_optimize_method_word[4] = {"ga", "lm", "ga+lm", NULL};
+#define WORD(name, word) word,
+const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1] = {HF_OPTIMIZE_METHODS(WORD) NULL};
+#undef WORD
 const char *const hf_coupling_scheme_word[3] = {"accelerated", "plain", NULL};
 const char *const hf_symmetry_word[6] = {"none", "x", "y", "xy", "auto", NULL};

@@ -100,7 +100,7 @@ static void print_optimize(const hf_summary *s, FILE *f)
         fputs(" so far\n", f);
         return;
     }
-    fprintf(f, " by %s, stopped by %s\n", hf_solver_word[s->solver], hf_ga_stop_word[s->optimize_stop]);
+    fprintf(f, " by %s, stopped by %s\n", hf_solver_word[s->solver], hf_population_stop_word[s->optimize_stop]);
     fprintf(f, "                %s, %.0f evaluations/s; cpu_s / (wall_s * threads) = %.3f on %d thread%s\n", wall,
             (double)s->evaluations / s->optimize_wall_s, hf_summary_utilisation(s), s->threads,
             s->threads == 1 ? "" : "s");

@@ -4,6 +4,7 @@
 #include "base/path.h"
 #include "search/polish.h"
 #include "net/symmetry.h"
+#include <hifdm/optimiser.h>
 #include <hifdm/metrics.h>
 
 #include <math.h>
@@ -98,7 +99,7 @@ static hf_status check_base(const hf_problem *p, hf_messages *messages)
                 "reach min_tension_N %g .. max_tension_N %g",
                 id, base_N, o->range_N, o->min_tension_N, o->max_tension_N);
     }
-    if (o->method == HF_OPTIMIZE_LM && !hf_polish_applies(&p->evaluator))
+    if (!hf_optimiser_plan_of(o->method).kind && !hf_polish_applies(&p->evaluator))
         return hf_error(messages, HF_BAD_CASE, "%s", HF_PROBLEM_POLISH_NEEDS);
     return HF_OK;
 }

@@ -24,8 +24,9 @@ typedef struct {
     hf_carrier_state truss; /* under the shape of the last stage whose shape is the result */
     hf_history history;
     hf_store *store;
-    hf_ga ga;
-    int first_generation; /* of this session */
+    hf_optimiser optimiser;
+    hf_optimiser_plan plan; /* what optimize.method consists of */
+    int first_generation;   /* of this session */
     long first_evaluation;
     double earlier_wall_s, earlier_cpu_s; /* of the genetic algorithm in other sessions, as far as it was published */
 } run;
@@ -33,7 +34,7 @@ typedef struct {
 static void run_free(run *r)
 {
     hf_store_abandon(r->store); /* NULL once it is finished */
-    hf_ga_free(&r->ga);
+    hf_optimiser_free(&r->optimiser);
     free(r->history.psi_m);
     hf_carrier_state_free(&r->truss);
     hf_problem_free(&r->problem);
@@ -130,25 +131,31 @@ static hf_status prepare_optimize(run *r, hf_messages *messages)
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_store_base(r->store, p->model.n_gene, p->base_N, messages));
     if (hf_problem_batch(p, r->request->threads) != HF_OK ||
-        hf_ga_create(&p->settings.optimize, &p->model, p->base_N, &r->ga) != HF_OK)
+        hf_optimiser_create(r->plan.kind, &p->settings.optimize, &p->model, p->base_N, &r->optimiser) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for %d individuals of %d genes on %d threads",
                         p->settings.optimize.population, p->model.n_gene, p->batch.n_thread);
     return HF_OK;
 }
 
-static void note_best(const hf_ga *ga, hf_summary *s)
+static double *best_design(const hf_population *p)
 {
-    if (ga->best < 0 || (s->best.status == HF_OK && !(ga->result[ga->best].psi_m < s->best.psi_m))) return;
-    s->best = ga->result[ga->best];
-    s->best_generation = ga->generation;
-    s->best_individual = ga->best;
+    return p->design_N + (size_t)p->best * (size_t)p->n_gene;
+}
+
+static void note_best(const hf_population *p, hf_summary *s)
+{
+    if (p->best < 0) return;
+    if (s->best.status == HF_OK && !(p->result[p->best].psi_m < s->best.psi_m)) return;
+    s->best = p->result[p->best];
+    s->best_generation = p->generation;
+    s->best_individual = p->best;
 }
 
 /* The shape of the best individual: elitism keeps it in the last generation, and it is evaluated to the same bits
  * again. */
 static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
 {
-    const double *design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
+    const double *design = best_design(&r->optimiser.population);
     hf_form_result again;
     hf_workspace *w = hf_batch_run_one(&r->problem.batch, design, &again);
     s->best = again; /* to the same bits, with what is not stored of an individual */
@@ -161,20 +168,20 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
 /* What the summary says of the generations so far; a file that is published in between has it, too. */
 static void sum_up(const run *r, double start_s, hf_summary *s)
 {
-    const hf_ga *ga = &r->ga;
+    const hf_population *p = &r->optimiser.population;
     s->has_optimize = 1;
     s->optimize_wall_s = r->earlier_wall_s + hf_clock_s() - start_s;
     s->optimize_cpu_s = r->earlier_cpu_s + r->problem.batch.cpu_s;
-    s->generations = ga->generation + 1;
-    s->evaluations = ga->n_evaluation;
-    s->infeasible = ga->n_evaluation_infeasible;
-    s->optimize_stop = (int)ga->stop_reason;
+    s->generations = p->generation + 1;
+    s->evaluations = p->n_evaluation;
+    s->infeasible = p->n_evaluation_infeasible;
+    s->optimize_stop = (int)p->stop_reason;
 }
 
 /* A generation on its way into the store, while the next one is bred and evaluated. */
 typedef struct {
     const run *r;
-    hf_ga ga; /* as it was told */
+    hf_population population; /* as it was told */
     const hf_summary *summary;
     hf_messages *messages;
     hf_status status;
@@ -182,14 +189,14 @@ typedef struct {
 
 static void observe_generation(const told *t)
 {
-    const hf_ga *ga = &t->ga;
+    const hf_population *p = &t->population;
     observe(t->r, (hf_run_progress){.phase = HF_RUN_EVOLVE,
-                                    .generation = ga->generation + 1,
-                                    .generations = ga->settings->generations,
+                                    .generation = p->generation + 1,
+                                    .generations = p->generation_limit,
                                     .first_generation = t->r->first_generation,
-                                    .is_last = ga->stop_reason != HF_GA_RUNNING,
-                                    .evaluations = ga->n_evaluation - t->r->first_evaluation,
-                                    .best_psi_m = ga->best_psi_m[ga->generation],
+                                    .is_last = p->stop_reason != HF_POPULATION_RUNNING,
+                                    .evaluations = p->n_evaluation - t->r->first_evaluation,
+                                    .best_psi_m = p->best_psi_m[p->generation],
                                     .elapsed_s = t->summary->optimize_wall_s - t->r->earlier_wall_s});
 }
 
@@ -197,7 +204,7 @@ static void observe_generation(const told *t)
 static void keep(void *context)
 {
     told *t = context;
-    t->status = hf_store_generation(t->r->store, &t->r->problem.model, &t->ga, t->messages);
+    t->status = hf_store_generation(t->r->store, &t->r->problem.model, &t->population, t->messages);
     if (t->status == HF_OK) t->status = hf_store_publish(t->r->store, t->summary, 0, t->messages);
     if (t->status == HF_OK) observe_generation(t);
 }
@@ -206,30 +213,30 @@ static void keep(void *context)
  * earlier session has stored is taken up. */
 static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
 {
-    hf_ga *ga = &r->ga;
-    HF_TRY(hf_store_genes(r->store, &r->problem.model, ga, messages));
-    HF_TRY(hf_store_restore(r->store, ga, s, messages));
+    const hf_population *p = &r->optimiser.population;
+    HF_TRY(hf_store_genes(r->store, &r->problem.model, p, messages));
+    HF_TRY(hf_store_restore(r->store, &r->optimiser, s, messages));
     if (hf_store_generations(r->store) == 0) return hf_store_publish(r->store, s, 1, messages);
-    hf_ga_tell(ga);
+    hf_optimiser_tell(&r->optimiser);
     r->earlier_wall_s = s->optimize_wall_s;
     r->earlier_cpu_s = s->optimize_cpu_s;
-    r->first_generation = ga->generation + 1;
-    r->first_evaluation = ga->n_evaluation;
+    r->first_generation = p->generation + 1;
+    r->first_evaluation = p->n_evaluation;
     return HF_OK;
 }
 
 /* The first generation of this session; 0 when there is none. */
 static int evaluate_first(run *r)
 {
-    hf_ga *ga = &r->ga;
-    if (r->first_generation > 0) return hf_batch_next(&r->problem.batch, ga, NULL, NULL);
-    hf_batch_run(&r->problem.batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
+    const hf_population *p = &r->optimiser.population;
+    if (r->first_generation > 0) return hf_batch_next(&r->problem.batch, &r->optimiser, NULL, NULL);
+    hf_batch_run(&r->problem.batch, p->n_individual, p->design_N, p->pending, p->result);
     return 1;
 }
 
 static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
 {
-    hf_ga *ga = &r->ga;
+    const hf_population *p = &r->optimiser.population;
     s->best.status = HF_NO_FEASIBLE;
     hf_problem_share(&r->problem);
     s->solver = (int)r->problem.solver;
@@ -238,21 +245,21 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
     double start_s = hf_clock_s();
     int more = evaluate_first(r);
     while (more) {
-        hf_ga_tell(ga);
-        if (ga->generation == 0) s->base_psi_m = ga->result[0].psi_m;
-        note_best(ga, s);
+        hf_optimiser_tell(&r->optimiser);
+        if (p->generation == 0) s->base_psi_m = p->result[0].psi_m;
+        note_best(p, s);
         sum_up(r, start_s, s);
-        told now = {r, *ga, s, messages, HF_OK};
-        int stops = must_stop(r) && ga->stop_reason == HF_GA_RUNNING;
+        told now = {r, *p, s, messages, HF_OK};
+        int stops = must_stop(r) && p->stop_reason == HF_POPULATION_RUNNING;
         if (stops)
             keep(&now);
         else
-            more = hf_batch_next(&r->problem.batch, ga, keep, &now);
+            more = hf_batch_next(&r->problem.batch, &r->optimiser, keep, &now);
         HF_TRY(now.status);
         if (stops) return stop_here(r, s, messages);
     }
     sum_up(r, start_s, s);
-    if (ga->best >= 0) return store_best(r, s, messages);
+    if (p->best >= 0) return store_best(r, s, messages);
     return hf_error(messages, HF_NO_FEASIBLE, "optimize: no feasible design among %ld evaluations", s->evaluations);
 }
 
@@ -261,17 +268,18 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
 {
     const hf_optimize_settings *o = &r->problem.settings.optimize;
     hf_workspace *w = &r->problem.workspace;
+    const hf_population *p = &r->optimiser.population;
     hf_polish_result outcome;
     double *design = r->problem.base_N, start_s = hf_clock_s();
-    if (s->has_optimize && r->ga.best >= 0) design = r->ga.design_N + (size_t)r->ga.best * (size_t)r->ga.n_gene;
+    if (s->has_optimize && p->best >= 0) design = best_design(p);
     observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});
     hf_status status =
-        hf_polish_run(&r->problem.evaluator, r->ga.lower_N, r->ga.upper_N, o->polish_iterations, design, w, &outcome);
+        hf_polish_run(&r->problem.evaluator, p->lower_N, p->upper_N, o->polish_iterations, design, w, &outcome);
     if (must_stop(r)) return stop_here(r, s, messages);
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
     if (status != HF_OK) {
         const char *why = hf_status_text(status);
-        if (o->method == HF_OPTIMIZE_LM)
+        if (!r->plan.kind)
             return hf_error(messages, HF_NO_FEASIBLE, "optimize: Levenberg-Marquardt has no feasible start: %s", why);
         hf_warning(messages, "optimize: Levenberg-Marquardt has no feasible start: %s", why);
         return HF_OK;
@@ -279,7 +287,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     hf_evaluate(&r->problem.evaluator, design, w, &s->polish);
     if (must_stop(r)) return stop_here(r, s, messages); /* it may have been cut short */
     s->has_polish = 1;
-    s->polish_is_result = o->method != HF_OPTIMIZE_GA;
+    s->polish_is_result = r->plan.ends_with_polish;
     s->polish_iterations = outcome.iterations;
     s->polish_evaluations = outcome.evaluations;
     s->polish_converged = outcome.converged;
@@ -291,13 +299,13 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
 
 static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
 {
-    int method = r->problem.settings.optimize.method;
+    r->plan = hf_optimiser_plan_of(r->problem.settings.optimize.method);
     HF_TRY(prepare_optimize(r, messages));
     s->threads = r->problem.batch.n_thread;
-    if (method != HF_OPTIMIZE_LM) HF_TRY(evolve(r, s, messages));
+    if (r->plan.kind) HF_TRY(evolve(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
     if (hf_polish_applies(&r->problem.evaluator)) return polish(r, s, messages);
-    if (method == HF_OPTIMIZE_GA_LM) hf_warning(messages, "%s", HF_PROBLEM_POLISH_NEEDS);
+    if (r->plan.ends_with_polish) hf_warning(messages, "%s", HF_PROBLEM_POLISH_NEEDS);
     return HF_OK;
 }
 

@@ -175,29 +175,31 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
 
 typedef struct {
     batch_job job; /* first, so that it has the address of the whole */
-    hf_ga *ga;
+    hf_optimiser *optimiser;
 } generation_job;
 
-static void breed_job(void *context)
+static void propose_job(void *context)
 {
     generation_job *g = context;
-    hf_ga_next(g->ga);
-    g->job.queue = (hf_parallel_queue){g->ga->n_individual, 0, g->ga->pending};
-    g->job.design_N = g->ga->design_N;
-    g->job.result = g->ga->result;
+    const hf_population *p = &g->optimiser->population;
+    hf_optimiser_next(g->optimiser);
+    g->job.queue = (hf_parallel_queue){p->n_individual, 0, p->pending};
+    g->job.design_N = p->design_N;
+    g->job.result = p->result;
 }
 
-int hf_batch_next(hf_batch *batch, hf_ga *ga, void (*beside)(void *context), void *context)
+int hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context)
 {
-    int is_last = ga->stop_reason != HF_GA_RUNNING;
+    const hf_population *p = &optimiser->population;
+    bool is_last = p->stop_reason != HF_POPULATION_RUNNING;
     if (beside && !is_last && batch->n_thread > 1 && !hf_parallel_is_inside()) {
-        generation_job g = {.job.batch = batch, .ga = ga};
-        hf_parallel_run_after(batch->n_thread, breed_job, work_on_job, &g, beside, context);
+        generation_job g = {.job.batch = batch, .optimiser = optimiser};
+        hf_parallel_run_after(batch->n_thread, propose_job, work_on_job, &g, beside, context);
         return 1;
     }
     if (beside) beside(context);
-    if (!hf_ga_next(ga)) return 0;
-    hf_batch_run(batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
+    if (!hf_optimiser_next(optimiser)) return 0;
+    hf_batch_run(batch, p->n_individual, p->design_N, p->pending, p->result);
     return 1;
 }
 

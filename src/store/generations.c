@@ -37,7 +37,7 @@ enum {
 };
 _Static_assert(ROW_N == HF_GENERATIONS_PIECES, "count the rows again");
 
-static int list_rows(const hf_ga *g, ga_row row[HF_GENERATIONS_PIECES])
+static int list_rows(const hf_population *g, ga_row row[HF_GENERATIONS_PIECES])
 {
     const hsize_t p = (hsize_t)g->n_individual, k = (hsize_t)g->n_gene;
 #define ARRAY(member) g->member, sizeof *g->member, sizeof *g->member
@@ -81,7 +81,8 @@ static int list_arrays(const hf_generations *g, ga_row row[HF_GENERATIONS_PIECES
     hf_form_result nothing = {0};
     double none = 0;
     return list_rows(
-        &(hf_ga){.n_individual = g->n_individual, .n_gene = g->n_gene, .result = &nothing, .best_psi_m = &none}, row);
+        &(hf_population){.n_individual = g->n_individual, .n_gene = g->n_gene, .result = &nothing, .best_psi_m = &none},
+        row);
 }
 
 /* ---- memory ---- */
@@ -162,14 +163,14 @@ static char *slot(const hf_generations *g, int i)
 }
 
 /* Tells designs from others that differ in a bit or in their order: four chains of FNV-1a's kind, over words. */
-static uint64_t hash_designs(const hf_ga *ga)
+static uint64_t hash_designs(const hf_population *population)
 {
     enum { CHAINS = 4 };
     const uint64_t factor = 0x9e3779b97f4a7c15u; /* odd: nothing is lost by it */
     uint64_t chain[CHAINS] = {1, 2, 3, 4}, bits, all = 0;
-    for (size_t i = 0; i < (size_t)ga->n_individual * (size_t)ga->n_gene; i++) {
+    for (size_t i = 0; i < (size_t)population->n_individual * (size_t)population->n_gene; i++) {
         uint64_t *h = &chain[i % CHAINS];
-        memcpy(&bits, &ga->design_N[i], sizeof bits);
+        memcpy(&bits, &population->design_N[i], sizeof bits);
         *h = (*h ^ bits) * factor;
         *h ^= *h >> 32;
     }
@@ -178,17 +179,18 @@ static uint64_t hash_designs(const hf_ga *ga)
     return all;
 }
 
-void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece)
+void hf_generations_add(hf_generations *g, const hf_population *population, struct iovec *piece)
 {
     ga_row row[HF_GENERATIONS_PIECES];
-    int n = list_rows(ga, row);
-    assert(g->n_waiting < g->capacity && ga->n_individual == g->n_individual && ga->n_gene == g->n_gene);
+    int n = list_rows(population, row);
+    assert(g->n_waiting < g->capacity && population->n_individual == g->n_individual &&
+           population->n_gene == g->n_gene);
     for (int i = 0; i < n; i++) {
         gather(&row[i], g->row_bytes[i], slot(g, i));
         if (piece) piece[i] = (struct iovec){slot(g, i), g->row_bytes[i]};
     }
     if (piece) {
-        g->design_hash = hash_designs(ga);
+        g->design_hash = hash_designs(population);
         piece[ROW_DESIGN] = (struct iovec){&g->design_hash, sizeof g->design_hash};
     }
     g->n_waiting++;
@@ -209,14 +211,14 @@ static void scatter(const ga_row *row, size_t bytes, const char *from)
     }
 }
 
-int hf_generations_take_payload(const hf_generations *g, const void *payload, hf_ga *ga)
+int hf_generations_take_payload(const hf_generations *g, const void *payload, hf_population *population)
 {
     ga_row row[HF_GENERATIONS_PIECES];
     uint64_t hash;
-    int n = list_rows(ga, row);
+    int n = list_rows(population, row);
     const char *from = payload;
     memcpy(&hash, from, sizeof hash);
-    if (hash != hash_designs(ga)) return 0;
+    if (hash != hash_designs(population)) return 0;
     from += sizeof hash;
     for (int i = ROW_DESIGN + 1; i < n; from += g->row_bytes[i++])
         scatter(&row[i], g->row_bytes[i], from);
@@ -350,20 +352,21 @@ static void note_best(hf_hdf5 *io, hid_t group, const ga_row *row, const double 
         read_of_best(io, group, &row[ROW_RESULT + i], field[i], s);
 }
 
-void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga)
+void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population *population)
 {
     ga_row row[HF_GENERATIONS_PIECES];
     int last = g->n_stored - 1;
-    assert(g->n_waiting == 0 && last >= 0 && ga->n_individual == g->n_individual && ga->n_gene == g->n_gene);
-    size_t largest = g->row_bytes[0] + (size_t)ga->n_individual * 2 * sizeof(double) + sizeof(double);
+    assert(g->n_waiting == 0 && last >= 0 && population->n_individual == g->n_individual &&
+           population->n_gene == g->n_gene);
+    size_t largest = g->row_bytes[0] + (size_t)population->n_individual * 2 * sizeof(double) + sizeof(double);
     char *values = malloc(largest);
     if (!values) {
         hf_hdf5_no_memory(io);
         return;
     }
     hid_t group = hf_hdf5_open_group(io, "/ga");
-    ga->generation = last;
-    int n = list_rows(ga, row);
+    population->generation = last;
+    int n = list_rows(population, row);
     for (int i = 0; i < n && io->status == HF_OK; i++) {
         assert(g->row_bytes[i] <= largest);
         hf_hdf5_read_rows(io, group, &row[i].array, (hsize_t)last, values);
@@ -371,8 +374,8 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga)
     }
     free(values);
     row[ROW_BEST_PSI].array.dims[0] = (hsize_t)g->n_stored;
-    hf_hdf5_read_rows(io, group, &row[ROW_BEST_PSI].array, 0, ga->best_psi_m);
-    count_evaluations(io, group, g, last, &ga->n_evaluation, &ga->n_evaluation_infeasible);
+    hf_hdf5_read_rows(io, group, &row[ROW_BEST_PSI].array, 0, population->best_psi_m);
+    count_evaluations(io, group, g, last, &population->n_evaluation, &population->n_evaluation_infeasible);
     hf_hdf5_close(io, group);
 }
 

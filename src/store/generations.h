@@ -1,6 +1,6 @@
 /* generations - the data sets of /ga that grow by a row per generation. One list names them and says where the values
- * of a row come from; writing and restoring both use it. The rows of a generation are the whole state of the genetic
- * algorithm, because its random numbers depend on (seed, generation, individual) only. Rows wait in memory, bounded,
+ * of a row come from; writing and restoring both use it. The rows of a generation are all
+ * that an optimiser needs to propose the next one (hf_optimiser_kind). Rows wait in memory, bounded,
  * until many can be written together, because every call of HDF5 costs some microseconds. The designs, nine tenths of
  * the bytes, are written when a chunk of them is full, all other rows less often. */
 #ifndef HIFDM_GENERATIONS_H
@@ -8,7 +8,7 @@
 
 #include "store/layout.h"
 
-#include <hifdm/ga.h>
+#include <hifdm/population.h>
 #include <hifdm/summary.h>
 #include <sys/uio.h>
 
@@ -36,14 +36,14 @@ void hf_generations_free(hf_generations *g);
 int hf_generations_are_full(const hf_generations *g);
 int hf_generations_are_due(const hf_generations *g);
 
-/* Let a generation that hf_ga_tell has ranked wait. Not when they are full. `piece` (may be NULL) is its payload
+/* Let a generation that hf_optimiser_tell has ranked wait. Not when they are full. `piece` (may be NULL) is its payload
  * [HF_GENERATIONS_PIECES], borrowed until the next is added: all of it but the designs, nine tenths of its bytes, which
- * hf_ga_next breeds again from the generation before. Of these only a hash is there. */
-void hf_generations_add(hf_generations *g, const hf_ga *ga, struct iovec *piece);
+ * hf_optimiser_next proposes again from the generation before. Of these only a hash is there. */
+void hf_generations_add(hf_generations *g, const hf_population *population, struct iovec *piece);
 
-/* Results and all else from a payload into `ga`, whose designs were bred again. 0, and nothing is changed, when these
- * have other bits than those that the results are of. */
-int hf_generations_take_payload(const hf_generations *g, const void *payload, hf_ga *ga);
+/* Results and all else from a payload into `population`, whose designs were proposed again. 0, and nothing is changed,
+ * when these have other bits than those that the results are of. */
+int hf_generations_take_payload(const hf_generations *g, const void *payload, hf_population *population);
 
 /* Write what waits below /ga of the file, whose data sets the first call makes: all; or what has no room to wait. */
 void hf_generations_write(hf_hdf5 *io, hf_generations *g);
@@ -55,8 +55,8 @@ int hf_generations_count(hf_hdf5 *io, hf_generations *g);
 /* What the generations of the file say in the summary: how many, evaluations, the best so far. None may wait. */
 void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *summary);
 
-/* Put `ga`, just created, into the state before hf_ga_tell of the last generation of the file. HF_IO also for a file of
- * other dimensions. */
-void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_ga *ga);
+/* Put `population`, just created, into the state before hf_optimiser_tell of the last generation of the file. HF_IO
+ * also for a file of other dimensions. */
+void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population *population);
 
 #endif

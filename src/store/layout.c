@@ -2,7 +2,7 @@
 #include "store/layout.h"
 
 #include <hifdm/formfind.h>
-#include <hifdm/ga.h>
+#include <hifdm/population.h>
 #include <hifdm/scene.h>
 #include <hifdm/store.h>
 
@@ -26,7 +26,7 @@ static const signed char coupling_value[] = {HF_COUPLING_STOP_LIST(STOP_VALUE)};
 const hf_hdf5_kind hf_layout_role = {WORDS(hf_role_word)};
 const hf_hdf5_kind hf_layout_group = {WORDS(hf_group_word)};
 const hf_hdf5_kind hf_layout_law = {WORDS(hf_law_word)};
-const hf_hdf5_kind hf_layout_ga_stop = {WORDS(hf_ga_stop_word)};
+const hf_hdf5_kind hf_layout_ga_stop = {WORDS(hf_population_stop_word)};
 const hf_hdf5_kind hf_layout_joint = {WORDS(hf_joint_word)};
 const hf_hdf5_kind hf_layout_unit = {WORDS(hf_unit_word)};
 const hf_hdf5_kind hf_layout_status = {VALUES(status_word, status_value)};

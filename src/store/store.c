@@ -261,10 +261,10 @@ hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_ca
 
 /* ---- generations ---- */
 
-hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_ga *g, hf_messages *messages)
+hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_population *population, hf_messages *messages)
 {
     if (!store) return HF_OK;
-    const hsize_t k[3] = {(hsize_t)g->n_gene};
+    const hsize_t k[3] = {(hsize_t)population->n_gene};
     const hf_hdf5_array cable = {"gene_cable", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/cable of each gene"};
     const hf_hdf5_array group_of = {"gene_group", HF_KIND_INT, 1, {k[0]}, "", "genes that were varied together"};
     const hf_hdf5_array leader = {"gene_leader", HF_KIND_INT, 1, {k[0]}, "", "gene whose step each takes, by symmetry"};
@@ -280,31 +280,33 @@ hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_ga *g,
     hid_t group = hf_hdf5_make_group(io, "/ga");
     hf_hdf5_write_array(io, group, &cable, model->gene_cable);
     hf_hdf5_write_array(io, group, &group_of, model->gene_group);
-    if (g->gene_leader) hf_hdf5_write_array(io, group, &leader, g->gene_leader);
-    hf_hdf5_write_array(io, group, &base, g->base_N);
-    hf_hdf5_write_array(io, group, &lower, g->lower_N);
-    hf_hdf5_write_array(io, group, &upper, g->upper_N);
-    hf_hdf5_put(io, group, ".", "n_individual", HF_KIND_INT, 0, &g->n_individual);
-    hf_hdf5_put(io, group, ".", "n_variable", HF_KIND_INT, 0, &g->n_gene);
-    hf_hdf5_put(io, group, ".", "generations_limit", HF_KIND_INT, 0, &g->settings->generations);
+    if (model->gene_leader && model->n_leader < model->n_gene)
+        hf_hdf5_write_array(io, group, &leader, model->gene_leader);
+    hf_hdf5_write_array(io, group, &base, population->base_N);
+    hf_hdf5_write_array(io, group, &lower, population->lower_N);
+    hf_hdf5_write_array(io, group, &upper, population->upper_N);
+    hf_hdf5_put(io, group, ".", "n_individual", HF_KIND_INT, 0, &population->n_individual);
+    hf_hdf5_put(io, group, ".", "n_variable", HF_KIND_INT, 0, &population->n_gene);
+    hf_hdf5_put(io, group, ".", "generations_limit", HF_KIND_INT, 0, &population->generation_limit);
     hf_hdf5_close(io, group);
     if (io->status == HF_OK) io->status = hf_journal_restart(&store->f.journal, store->identity, messages);
-    if (io->status == HF_OK &&
-        hf_generations_create(g->n_individual, g->n_gene, g->settings->generations, &store->rows) != HF_OK)
+    if (io->status == HF_OK && hf_generations_create(population->n_individual, population->n_gene,
+                                                     population->generation_limit, &store->rows) != HF_OK)
         io->status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", store->f.path);
     return hf_hdf5_unlock(io->status);
 }
 
-hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_ga *ga, hf_messages *messages)
+hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_population *population,
+                              hf_messages *messages)
 {
     if (!store) return HF_OK;
     struct iovec piece[HF_GENERATIONS_PIECES];
     hf_generations *g = &store->rows;
     store->f.io.messages = messages;
     HF_TRY(store->f.io.status);
-    HF_TRY(hf_store_genes(store, model, ga, messages));
+    HF_TRY(hf_store_genes(store, model, population, messages));
     int generation = g->n_stored + g->n_waiting;
-    hf_generations_add(g, ga, piece);
+    hf_generations_add(g, population, piece);
     store->f.io.status = hf_journal_append(&store->f.journal, generation, piece, HF_GENERATIONS_PIECES, messages);
     if (store->f.io.status != HF_OK || !hf_generations_are_due(g)) return store->f.io.status;
     /* it is safe; room for the next can be made when no other run is at it, unless it must */

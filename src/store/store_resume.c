@@ -110,7 +110,7 @@ hf_status hf_store_base(hf_store *store, int n_gene, double *base_N, hf_messages
 
 typedef struct {
     hf_store *store;
-    hf_ga *ga; /* before hf_ga_tell of the last generation that was taken; just created when there is none */
+    hf_optimiser *optimiser; /* before hf_optimiser_tell of the last generation that was taken, or just created */
     int n_taken;
     int drops; /* what this build breeds otherwise; or it is an error */
 } breeding;
@@ -121,32 +121,33 @@ static hf_status breed_record(void *context, int generation, const void *payload
     breeding *b = context;
     hf_store *s = b->store;
     hf_generations *g = &s->rows;
-    const hf_ga before = *b->ga;
+    hf_optimiser *o = b->optimiser;
+    const hf_optimiser before = *o; /* both generations stay as they are, see hf_optimiser_kind */
     hf_status status;
     if (!is_news(s, generation, bytes, g->n_stored + g->n_waiting, &status)) return status;
     int goes_on = 1;
     if (generation > 0) {
-        hf_ga_tell(b->ga);
-        goes_on = hf_ga_next(b->ga);
+        hf_optimiser_tell(o);
+        goes_on = hf_optimiser_next(o);
     }
-    if (!goes_on || !hf_generations_take_payload(g, payload, b->ga)) {
-        *b->ga = before;
+    if (!goes_on || !hf_generations_take_payload(g, payload, &o->population)) {
+        *o = before;
         if (b->drops) return HF_DIFFERENT;
         return hf_error(s->f.io.messages, HF_EXISTS,
                         "%s: this machine or build breeds other designs from generation %d on than the one that began "
                         "it, which alone can recover %s; nothing was changed",
                         s->f.path, generation + 1, s->f.journal.path);
     }
-    hf_generations_add(g, b->ga, NULL);
+    hf_generations_add(g, &o->population, NULL);
     b->n_taken++;
     if (hf_generations_are_full(g)) hf_generations_make_room(&s->f.io, g);
     return s->f.io.status;
 }
 
-static void breed_journal(hf_store *s, hf_ga *ga, int drops)
+static void breed_journal(hf_store *s, hf_optimiser *optimiser, int drops)
 {
     hf_hdf5 *io = &s->f.io;
-    breeding b = {s, ga, 0, drops};
+    breeding b = {s, optimiser, 0, drops};
     if (io->status != HF_OK) return;
     io->status = hf_journal_replay(&s->f.journal, s->identity, breed_record, &b, io->messages);
     int first = s->rows.n_stored + s->rows.n_waiting;
@@ -167,7 +168,8 @@ static void read_known(hf_hdf5 *io, hf_summary *summary)
         hf_layout_get_summary(io, HF_LAYOUT_GA, summary);
 }
 
-static hf_status restore(hf_store *store, hf_ga *ga, int drops, hf_summary *summary, hf_messages *messages)
+static hf_status restore(hf_store *store, hf_optimiser *optimiser, int drops, hf_summary *summary,
+                         hf_messages *messages)
 {
     if (hf_store_generations(store) == 0) return HF_OK;
     hf_hdf5 *io = &store->f.io;
@@ -175,29 +177,29 @@ static hf_status restore(hf_store *store, hf_ga *ga, int drops, hf_summary *summ
     io->messages = messages;
     hf_store_file_open(&store->f);
     read_known(io, summary);
-    if (store->rows.n_stored) hf_generations_restore(io, &store->rows, ga);
-    if (store->n_journal) breed_journal(store, ga, drops);
+    if (store->rows.n_stored) hf_generations_restore(io, &store->rows, &optimiser->population);
+    if (store->n_journal) breed_journal(store, optimiser, drops);
     hf_generations_sum_up(io, &store->rows, summary);
     return hf_hdf5_unlock(io->status);
 }
 
-hf_status hf_store_restore(hf_store *store, hf_ga *ga, hf_summary *summary, hf_messages *messages)
+hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages)
 {
-    return restore(store, ga, 1, summary, messages);
+    return restore(store, optimiser, 1, summary, messages);
 }
 
 /* ---- recovery ---- */
 
-/* The genetic algorithm of an unfinished file, from what the file itself says. Not more than hf_ga_create asks for. */
+/* The optimiser of an unfinished file, from what the file itself says. The model has no more than its genes. */
 typedef struct {
     hf_case settings;
     hf_model model;
     int *group, *leader; /* [n_gene] */
     double *base_N;      /* [n_gene] */
-    hf_ga ga;
-} stored_ga;
+    hf_optimiser optimiser;
+} stored_search;
 
-static void read_genes(hf_hdf5 *io, stored_ga *a)
+static void read_genes(hf_hdf5 *io, stored_search *a)
 {
     hf_hdf5_array row = {.name = "gene_group", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)a->model.n_gene}};
     hid_t group = hf_hdf5_open_group(io, "/ga");
@@ -218,7 +220,7 @@ static void read_genes(hf_hdf5 *io, stored_ga *a)
     }
 }
 
-static void open_stored_ga(hf_store *s, stored_ga *a)
+static void open_stored_search(hf_store *s, stored_search *a)
 {
     hf_hdf5 *io = &s->f.io;
     size_t n = (size_t)s->rows.n_gene;
@@ -237,12 +239,15 @@ static void open_stored_ga(hf_store *s, stored_ga *a)
     const hf_optimize_settings *o = &a->settings.optimize;
     if (io->status == HF_OK && (o->population != s->rows.n_individual || o->generations != s->rows.limit))
         hf_hdf5_damaged(io, io->file, "/ga", "has other sizes than the case");
-    if (io->status == HF_OK && hf_ga_create(o, &a->model, a->base_N, &a->ga) != HF_OK) hf_hdf5_no_memory(io);
+    const hf_optimiser_kind *kind = hf_optimiser_plan_of(o->method).kind;
+    if (io->status == HF_OK && !kind) hf_hdf5_damaged(io, io->file, "/case", "has no generations");
+    if (io->status == HF_OK && hf_optimiser_create(kind, o, &a->model, a->base_N, &a->optimiser) != HF_OK)
+        hf_hdf5_no_memory(io);
 }
 
-static void close_stored_ga(stored_ga *a)
+static void close_stored_search(stored_search *a)
 {
-    hf_ga_free(&a->ga);
+    hf_optimiser_free(&a->optimiser);
     hf_case_free(&a->settings);
     free(a->group);
     free(a->leader);
@@ -252,19 +257,19 @@ static void close_stored_ga(stored_ga *a)
 hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages)
 {
     hf_store *s;
-    stored_ga a = {0};
+    stored_search a = {0};
     HF_TRY(hf_store_read_summary(path, summary, messages));
     HF_TRY(hf_store_resume(path, &s, messages));
     hf_hdf5_lock();
     s->f.io.messages = messages;
     if (s->n_journal)
-        open_stored_ga(s, &a);
+        open_stored_search(s, &a);
     else
         hf_generations_sum_up(&s->f.io, &s->rows, summary);
     hf_status status = hf_hdf5_unlock(s->f.io.status);
-    if (status == HF_OK && s->n_journal) status = restore(s, &a.ga, 0, summary, messages);
+    if (status == HF_OK && s->n_journal) status = restore(s, &a.optimiser, 0, summary, messages);
     if (status == HF_OK) status = hf_store_publish(s, summary, 1, messages);
-    close_stored_ga(&a);
+    close_stored_search(&a);
     hf_store_abandon(s);
     return status;
 }

@@ -121,7 +121,7 @@ static void write_optimize(const hf_summary *s, hf_json *j)
     hf_json_number(j, "cpu_s", s->optimize_cpu_s);
     hf_json_integer(j, "independent_genes", s->n_leader);
     hf_json_text(j, "solver", hf_solver_word[s->solver]);
-    hf_json_text(j, "stop_reason", hf_ga_stop_word[s->optimize_stop]);
+    hf_json_text(j, "stop_reason", hf_population_stop_word[s->optimize_stop]);
     write_surface(s, 1, j);
     hf_json_close(j, '}');
 }

@@ -3,7 +3,7 @@
 #include "nets.h"
 
 #include <hifdm/batch.h>
-#include <hifdm/ga.h>
+#include <hifdm/optimiser.h>
 #include "net/symmetry.h"
 
 /* What is under test, prepared before the failure and cleaned up after it, whether it succeeded or not. */
@@ -15,7 +15,7 @@ struct subject {
     hf_workspace work;
     hf_evaluator evaluator;
     hf_batch batch;
-    hf_ga ga;
+    hf_optimiser ga;
     hf_messages messages;
 };
 
@@ -57,7 +57,8 @@ static hf_status create_batch(struct subject *s)
 
 static hf_status create_ga(struct subject *s)
 {
-    return hf_ga_create(&s->settings.optimize, &s->model, s->model.length_m, &s->ga); /* any numbers above zero */
+    return hf_optimiser_create(&hf_optimiser_ga, &s->settings.optimize, &s->model, s->model.length_m,
+                               &s->ga); /* any numbers above zero */
 }
 
 static const struct stage {
@@ -70,7 +71,7 @@ static const struct stage {
               {"hf_symmetry_apply", apply_symmetry, 1},
               {"hf_workspace_create", create_workspace, 0},
               {"hf_batch_create", create_batch, 0},
-              {"hf_ga_create", create_ga, 0}};
+              {"hf_optimiser_create", create_ga, 0}};
 enum { N_STAGE = sizeof stages / sizeof *stages };
 
 /* More rows and ids than the first capacities of the import (64 rows), so that its growth fails, too. */
@@ -101,7 +102,7 @@ static const char *write_cylinder_case(void)
 
 static void clean_up(struct subject *s)
 {
-    hf_ga_free(&s->ga);
+    hf_optimiser_free(&s->ga);
     hf_batch_free(&s->batch);
     hf_workspace_free(&s->work);
     hf_model_free(&s->model);

@@ -104,7 +104,7 @@ static hf_status run_it(const char *path, struct run *r, int *acknowledged, hf_m
         status = hf_store_restore(s, &r->ga, &summary, messages);
         if (status == HF_OK) {
             ck_assert_int_eq(hf_store_generations(s), first); /* none is left out */
-            hf_ga_tell(&r->ga);
+            hf_optimiser_tell(&r->ga);
         }
     }
     if (status == HF_OK) status = store_some(s, r, first, N_GENERATION, acknowledged, messages);

@@ -7,7 +7,7 @@
 #include "nets.h"
 
 #include <hifdm/batch.h>
-#include <hifdm/ga.h>
+#include <hifdm/optimiser.h>
 
 START_TEST(stand_in_at_the_papers_stop)
 {
@@ -82,7 +82,7 @@ START_TEST(search_comes_near_the_optimum)
 {
     struct net net;
     hf_batch batch;
-    hf_ga ga;
+    hf_optimiser ga;
     OPEN_CASE(&net, "configs/chen2022.yaml", "optimize.population=16", "optimize.generations=60");
     ck_assert_int_eq(find_shape(&net), HF_OK);
     const hf_model *m = &net.model;
@@ -94,15 +94,16 @@ START_TEST(search_comes_near_the_optimum)
     const hf_optimize_settings *o = &net.settings.optimize;
     hf_evaluator evaluator = {m, &net.form, start_q, o->rule, o->solver, o->boundary_ratio_cap};
     ck_assert_int_eq(hf_batch_create(&evaluator, 2, &batch), HF_OK);
-    ck_assert_int_eq(hf_ga_create(o, m, base_N, &ga), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, o, m, base_N, &ga), HF_OK);
     do {
-        hf_batch_run(&batch, ga.n_individual, ga.design_N, ga.pending, ga.result);
-        hf_ga_tell(&ga);
-    } while (hf_ga_next(&ga));
-    ck_assert_int_eq(ga.stop_reason, HF_GA_GENERATIONS);
-    ck_assert_double_ge(1e3 * ga.best_psi_m[ga.generation], 6.34 - 0.5e-2);
-    ck_assert_double_le(1e3 * ga.best_psi_m[ga.generation], 6.48);
-    hf_ga_free(&ga);
+        hf_batch_run(&batch, ga.population.n_individual, ga.population.design_N, ga.population.pending,
+                     ga.population.result);
+        hf_optimiser_tell(&ga);
+    } while (hf_optimiser_next(&ga));
+    ck_assert_int_eq(ga.population.stop_reason, HF_POPULATION_GENERATIONS);
+    ck_assert_double_ge(1e3 * ga.population.best_psi_m[ga.population.generation], 6.34 - 0.5e-2);
+    ck_assert_double_le(1e3 * ga.population.best_psi_m[ga.population.generation], 6.48);
+    hf_optimiser_free(&ga);
     hf_batch_free(&batch);
     close_net(&net);
 }

@@ -19,7 +19,7 @@
 typedef struct {
     const hf_model *model;
     hf_store *store; /* NULL: none */
-    hf_ga ga;
+    hf_population ga;
     double worst_N, store_s;
 } told;
 
@@ -37,13 +37,14 @@ static void keep(void *context)
         if (t->ga.result[i].status == HF_OK) t->worst_N = fmax(t->worst_N, t->ga.result[i].residual_N);
 }
 
-static double evolve(const hf_model *m, hf_batch *batch, hf_store *store, hf_ga *ga, double *store_s)
+static double evolve(const hf_model *m, hf_batch *batch, hf_store *store, hf_optimiser *ga, double *store_s)
 {
-    told now = {m, store, *ga, 0, 0};
-    hf_batch_run(batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
+    told now = {m, store, ga->population, 0, 0};
+    hf_batch_run(batch, ga->population.n_individual, ga->population.design_N, ga->population.pending,
+                 ga->population.result);
     do {
-        hf_ga_tell(ga);
-        now.ga = *ga;
+        hf_optimiser_tell(ga);
+        now.ga = ga->population;
     } while (hf_batch_next(batch, ga, keep, &now));
     *store_s = now.store_s;
     return now.worst_N;
@@ -63,7 +64,7 @@ typedef struct {
     bench_scene *scene;
     const char *path; /* of the result file; NULL = none is written */
     hf_batch batch;
-    hf_ga ga;
+    hf_optimiser ga;
     hf_store *store;
 } population;
 
@@ -90,7 +91,7 @@ static void once(bench_scene *b, int threads, const char *path)
     const char *name = b->name, *mode = path ? "stored" : "not stored";
     struct stat file = {0};
     if (hf_batch_create(&b->evaluator, threads, &p.batch) != HF_OK ||
-        hf_ga_create(&b->settings.optimize, &b->model, b->base_N, &p.ga) != HF_OK)
+        hf_optimiser_create(&hf_optimiser_ga, &b->settings.optimize, &b->model, b->base_N, &p.ga) != HF_OK)
         bench_fail(name, "out of memory");
     hf_batch_share(&p.batch, b->base_N);
     double written = written_bytes(), start_s = bench_clock_s(), store_s;
@@ -106,14 +107,14 @@ static void once(bench_scene *b, int threads, const char *path)
     bench_emit("population", name, mode, threads, "store_s", store_s);
     bench_emit("population", name, mode, threads, "store_share", store_s / wall_s);
     bench_emit("population", name, mode, threads, "utilisation", p.batch.cpu_s / wall_s / threads);
-    bench_emit("population", name, mode, threads, "evaluations", (double)p.ga.n_evaluation);
-    bench_emit("population", name, mode, threads, "evaluations_per_s", (double)p.ga.n_evaluation / wall_s);
+    bench_emit("population", name, mode, threads, "evaluations", (double)p.ga.population.n_evaluation);
+    bench_emit("population", name, mode, threads, "evaluations_per_s", (double)p.ga.population.n_evaluation / wall_s);
     bench_emit("population", name, mode, threads, "worst_residual_N", worst_N);
     if (path && stat(path, &file) == 0) {
         bench_emit("population", name, mode, threads, "file_MB", 1e-6 * (double)file.st_size);
         bench_emit("population", name, mode, threads, "written_MB", 1e-6 * written);
     }
-    hf_ga_free(&p.ga);
+    hf_optimiser_free(&p.ga);
     hf_batch_free(&p.batch);
 }
 

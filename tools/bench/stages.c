@@ -92,18 +92,19 @@ WATCH(FORM, hf_status, hf_evaluate_form,
 WATCH(SETUP, hf_status, hf_batch_create, (const hf_evaluator *evaluator, int n_thread, hf_batch *batch),
       (evaluator, n_thread, batch))
 WATCH(SETUP, int, hf_batch_share, (hf_batch * batch, const double *base_N), (batch, base_N))
-WATCH(SETUP, hf_status, hf_ga_create,
-      (const hf_optimize_settings *settings, const hf_model *model, const double *base_N, hf_ga *ga),
-      (settings, model, base_N, ga))
+WATCH(SETUP, hf_status, hf_optimiser_create,
+      (const hf_optimiser_kind *kind, const hf_optimize_settings *settings, const hf_model *model, const double *base_N,
+       hf_optimiser *optimiser),
+      (kind, settings, model, base_N, optimiser))
 WATCH_VOID(EVALUATE, hf_batch_run,
            (hf_batch * batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result),
            (batch, n, design_N, pending, result))
-WATCH(EVALUATE, int, hf_batch_next, (hf_batch * batch, hf_ga *ga, void (*beside)(void *), void *context),
+WATCH(EVALUATE, int, hf_batch_next, (hf_batch * batch, hf_optimiser *ga, void (*beside)(void *), void *context),
       (batch, ga, beside, context))
 WATCH(EVALUATE, hf_workspace *, hf_batch_run_one, (hf_batch * batch, const double *design_N, hf_form_result *result),
       (batch, design_N, result))
-WATCH_VOID(BREED, hf_ga_tell, (hf_ga * ga), (ga))
-WATCH(BREED, int, hf_ga_next, (hf_ga * ga), (ga))
+WATCH_VOID(BREED, hf_optimiser_tell, (hf_optimiser * ga), (ga))
+WATCH(BREED, bool, hf_optimiser_next, (hf_optimiser * ga), (ga))
 WATCH(POLISH, hf_status, hf_polish_run,
       (const hf_evaluator *evaluator, const double *lower_N, const double *upper_N, int max_iterations,
        double *design_N, hf_workspace *workspace, hf_polish_result *result),
@@ -117,7 +118,8 @@ WATCH(STORE, hf_status, hf_store_form,
        hf_messages *messages),
       (store, model, workspace, history, messages))
 WATCH(STORE, hf_status, hf_store_generation,
-      (hf_store * store, const hf_model *model, const hf_ga *ga, hf_messages *messages), (store, model, ga, messages))
+      (hf_store * store, const hf_model *model, const hf_population *population, hf_messages *messages),
+      (store, model, population, messages))
 WATCH(STORE, hf_status, hf_store_publish,
       (hf_store * store, const hf_summary *summary, int at_once, hf_messages *messages),
       (store, summary, at_once, messages))

@@ -2,7 +2,7 @@
 #include "nets.h"
 
 #include <hifdm/batch.h>
-#include <hifdm/ga.h>
+#include <hifdm/optimiser.h>
 #include "search/polish.h"
 #include "net/symmetry.h"
 
@@ -12,7 +12,7 @@ struct search {
     struct net net;
     hf_evaluator evaluator;
     hf_batch batch;
-    hf_ga ga;
+    hf_optimiser ga;
     double start_q[N_CABLE], base_N[N_GENE];
 };
 
@@ -34,12 +34,12 @@ static void open_search(struct search *s)
     hf_symmetry_average(m, s->base_N);
     s->evaluator = (hf_evaluator){m, &s->net.form, s->start_q, HF_RULE_FORCE_DENSITY, HF_SOLVER_AUTO, 100};
     ck_assert_int_eq(hf_batch_create(&s->evaluator, 2, &s->batch), HF_OK);
-    ck_assert_int_eq(hf_ga_create(&s->net.settings.optimize, m, s->base_N, &s->ga), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &s->net.settings.optimize, m, s->base_N, &s->ga), HF_OK);
 }
 
 static void close_search(struct search *s)
 {
-    hf_ga_free(&s->ga);
+    hf_optimiser_free(&s->ga);
     hf_batch_free(&s->batch);
     close_net(&s->net);
 }
@@ -72,15 +72,16 @@ static double asymmetry_m(const hf_model *m, const hf_workspace *w)
 static void evolve(struct search *s)
 {
     do {
-        hf_batch_run(&s->batch, s->ga.n_individual, s->ga.design_N, s->ga.pending, s->ga.result);
-        hf_ga_tell(&s->ga);
-        for (int i = 0; i < s->ga.n_individual; i++) {
-            const double *design = s->ga.design_N + i * N_GENE;
+        hf_batch_run(&s->batch, s->ga.population.n_individual, s->ga.population.design_N, s->ga.population.pending,
+                     s->ga.population.result);
+        hf_optimiser_tell(&s->ga);
+        for (int i = 0; i < s->ga.population.n_individual; i++) {
+            const double *design = s->ga.population.design_N + i * N_GENE;
             demand_symmetric_design(s, design);
             for (int k = 0; k < N_GENE; k++)
-                ck_assert(design[k] >= s->ga.lower_N[k] && design[k] <= s->ga.upper_N[k]);
+                ck_assert(design[k] >= s->ga.population.lower_N[k] && design[k] <= s->ga.population.upper_N[k]);
         }
-    } while (hf_ga_next(&s->ga));
+    } while (hf_optimiser_next(&s->ga));
 }
 
 /* 1e-9 m: a residual of 1e-11 N on a net whose softest mode gives about 1 m/N (condition 5e6, stiffness 1e6 N/m). */
@@ -94,11 +95,13 @@ START_TEST(what_a_symmetric_search_finds_is_symmetric)
     demand_symmetric_design(&s, s.base_N);
     ck_assert_int_eq(hf_batch_share(&s.batch, s.base_N), HF_SOLVER_CHORD);
     evolve(&s);
-    ck_assert_double_lt(s.ga.best_psi_m[s.ga.generation], s.ga.best_psi_m[0]); /* it moved */
-    memcpy(design_N, s.ga.design_N + s.ga.best * N_GENE, sizeof design_N);
+    ck_assert_double_lt(s.ga.population.best_psi_m[s.ga.population.generation],
+                        s.ga.population.best_psi_m[0]); /* it moved */
+    memcpy(design_N, s.ga.population.design_N + s.ga.population.best * N_GENE, sizeof design_N);
     ck_assert_int_eq(hf_evaluate(&s.evaluator, design_N, &s.net.work, &found), HF_OK);
     ck_assert_double_lt(asymmetry_m(&s.net.model, &s.net.work), 1e-9);
-    ck_assert_int_eq(hf_polish_run(&s.evaluator, s.ga.lower_N, s.ga.upper_N, 20, design_N, &s.net.work, &polished),
+    ck_assert_int_eq(hf_polish_run(&s.evaluator, s.ga.population.lower_N, s.ga.population.upper_N, 20, design_N,
+                                   &s.net.work, &polished),
                      HF_OK);
     ck_assert_double_lt(polished.psi_m, found.psi_m);
     demand_symmetric_design(&s, design_N);

@@ -3,7 +3,7 @@
 #include "nets.h"
 
 #include <hifdm/batch.h>
-#include <hifdm/ga.h>
+#include <hifdm/optimiser.h>
 
 enum { MAX_GENE = 200, MAX_CABLE = 400, N_GENERATION = 12, MAX_POPULATION = 30 };
 
@@ -43,27 +43,28 @@ static struct trace run(struct search *s, int n_thread)
 {
     struct trace t = {0};
     hf_batch batch;
-    hf_ga ga;
+    hf_optimiser ga;
     ck_assert_int_eq(hf_batch_create(&s->evaluator, n_thread, &batch), HF_OK);
-    ck_assert_int_eq(hf_ga_create(&s->settings, &s->net.model, s->base_N, &ga), HF_OK);
-    for (int i = 0; i < ga.n_individual && i < MAX_POPULATION; i++)
-        t.first_design_N[i] = ga.design_N[i * ga.n_gene + 1];
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &s->settings, &s->net.model, s->base_N, &ga), HF_OK);
+    for (int i = 0; i < ga.population.n_individual && i < MAX_POPULATION; i++)
+        t.first_design_N[i] = ga.population.design_N[i * ga.population.n_gene + 1];
     do {
-        hf_batch_run(&batch, ga.n_individual, ga.design_N, ga.pending, ga.result);
-        hf_ga_tell(&ga);
-        t.best_psi_m[t.n] = ga.best_psi_m[ga.generation];
-        for (int k = 0; k < ga.n_individual * ga.n_gene; k++)
-            t.sum_N[t.n] += ga.design_N[k];
+        hf_batch_run(&batch, ga.population.n_individual, ga.population.design_N, ga.population.pending,
+                     ga.population.result);
+        hf_optimiser_tell(&ga);
+        t.best_psi_m[t.n] = ga.population.best_psi_m[ga.population.generation];
+        for (int k = 0; k < ga.population.n_individual * ga.population.n_gene; k++)
+            t.sum_N[t.n] += ga.population.design_N[k];
         t.n++;
-        for (int i = 0; i < ga.n_individual; i++) {
-            ck_assert(ga.result[i].status == HF_OK || ga.result[i].status == HF_RATIO_CAP);
-            if (ga.result[i].status != HF_OK) continue;
-            ck_assert_double_le(ga.result[i].boundary_tension_ratio, s->evaluator.boundary_ratio_cap);
+        for (int i = 0; i < ga.population.n_individual; i++) {
+            ck_assert(ga.population.result[i].status == HF_OK || ga.population.result[i].status == HF_RATIO_CAP);
+            if (ga.population.result[i].status != HF_OK) continue;
+            ck_assert_double_le(ga.population.result[i].boundary_tension_ratio, s->evaluator.boundary_ratio_cap);
         }
-    } while (hf_ga_next(&ga));
-    t.n_evaluation = ga.n_evaluation;
-    t.n_infeasible = ga.n_evaluation_infeasible;
-    hf_ga_free(&ga);
+    } while (hf_optimiser_next(&ga));
+    t.n_evaluation = ga.population.n_evaluation;
+    t.n_infeasible = ga.population.n_evaluation_infeasible;
+    hf_optimiser_free(&ga);
     hf_batch_free(&batch);
     return t;
 }

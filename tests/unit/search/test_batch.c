@@ -189,18 +189,18 @@ END_TEST
 enum { N_INDIVIDUAL = 12, N_GENERATION = 6 };
 
 struct reader {
-    hf_ga ga;
+    hf_optimiser ga;
     double design_N[N_INDIVIDUAL * MAX_GENE], rate[N_INDIVIDUAL];
     int parent[2 * N_INDIVIDUAL], n_call, is_same;
 };
 
-static void note(struct reader *r, const hf_ga *ga)
+static void note(struct reader *r, const hf_optimiser *ga)
 {
     r->ga = *ga;
     r->is_same = 1;
-    memcpy(r->design_N, ga->design_N, N_INDIVIDUAL * (size_t)ga->n_gene * sizeof(double));
-    memcpy(r->rate, ga->mutation_rate, sizeof r->rate);
-    memcpy(r->parent, ga->parent, sizeof r->parent);
+    memcpy(r->design_N, ga->population.design_N, N_INDIVIDUAL * (size_t)ga->population.n_gene * sizeof(double));
+    memcpy(r->rate, ga->population.mutation_rate, sizeof r->rate);
+    memcpy(r->parent, ga->population.parent, sizeof r->parent);
 }
 
 static void read_slowly(void *context)
@@ -208,9 +208,10 @@ static void read_slowly(void *context)
     struct reader *r = context;
     nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
     r->n_call++;
-    r->is_same = memcmp(r->design_N, r->ga.design_N, N_INDIVIDUAL * (size_t)r->ga.n_gene * sizeof(double)) == 0 &&
-                 memcmp(r->rate, r->ga.mutation_rate, sizeof r->rate) == 0 &&
-                 memcmp(r->parent, r->ga.parent, sizeof r->parent) == 0;
+    r->is_same = memcmp(r->design_N, r->ga.population.design_N,
+                        N_INDIVIDUAL * (size_t)r->ga.population.n_gene * sizeof(double)) == 0 &&
+                 memcmp(r->rate, r->ga.population.mutation_rate, sizeof r->rate) == 0 &&
+                 memcmp(r->parent, r->ga.population.parent, sizeof r->parent) == 0;
 }
 
 START_TEST(a_generation_can_be_read_while_the_next_is_bred)
@@ -231,25 +232,25 @@ START_TEST(a_generation_can_be_read_while_the_next_is_bred)
     open_run(&r, HF_RULE_FORCE_DENSITY);
     for (int n_thread = 0; n_thread <= 3; n_thread++) { /* 0: one, and nothing beside */
         hf_batch batch;
-        hf_ga ga;
+        hf_optimiser ga;
         static struct reader reader;
         reader.n_call = 0;
         ck_assert_int_eq(hf_batch_create(&r.evaluator, n_thread ? n_thread : 1, &batch), HF_OK);
-        ck_assert_int_eq(hf_ga_create(&settings, &r.net.model, r.design_N, &ga), HF_OK);
+        ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &settings, &r.net.model, r.design_N, &ga), HF_OK);
         hf_batch_share(&batch, r.design_N);
-        hf_batch_run(&batch, N_INDIVIDUAL, ga.design_N, ga.pending, ga.result);
+        hf_batch_run(&batch, N_INDIVIDUAL, ga.population.design_N, ga.population.pending, ga.population.result);
         do {
-            hf_ga_tell(&ga);
+            hf_optimiser_tell(&ga);
             note(&reader, &ga);
         } while (hf_batch_next(&batch, &ga, n_thread ? read_slowly : NULL, &reader) && reader.is_same);
         ck_assert(reader.is_same);
         ck_assert_int_eq(reader.n_call, n_thread ? N_GENERATION : 0);
-        ck_assert_int_eq(ga.generation, N_GENERATION - 1);
-        best_psi_m[n_thread > 0] = ga.result[ga.best].psi_m;
+        ck_assert_int_eq(ga.population.generation, N_GENERATION - 1);
+        best_psi_m[n_thread > 0] = ga.population.result[ga.population.best].psi_m;
         ck_assert_msg(n_thread == 0 || best_psi_m[0] == best_psi_m[1], "%d threads: %.17g, not %.17g", n_thread,
                       best_psi_m[1], best_psi_m[0]);
-        ck_assert_double_lt(best_psi_m[0], ga.best_psi_m[0]); /* it has bred something */
-        hf_ga_free(&ga);
+        ck_assert_double_lt(best_psi_m[0], ga.population.best_psi_m[0]); /* it has bred something */
+        hf_optimiser_free(&ga);
         hf_batch_free(&batch);
     }
     close_net(&r.net);

@@ -6,7 +6,7 @@
 
 #include "search/polish.h"
 #include <hifdm/batch.h>
-#include <hifdm/ga.h>
+#include <hifdm/optimiser.h>
 
 struct polish_run {
     struct run r;
@@ -205,23 +205,26 @@ START_TEST(after_the_ga_the_same_optimum)
 {
     struct polish_run p;
     hf_polish_result from_base, from_ga;
-    hf_ga ga;
+    hf_optimiser ga;
     hf_batch batch;
     open_chen(&p, 1);
     p.r.net.settings.optimize.generations = 30;
     ck_assert_int_eq(hf_batch_create(&p.r.evaluator, 2, &batch), HF_OK);
-    ck_assert_int_eq(hf_ga_create(&p.r.net.settings.optimize, &p.r.net.model, p.r.base_N, &ga), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &p.r.net.settings.optimize, &p.r.net.model, p.r.base_N, &ga),
+                     HF_OK);
     hf_batch_share(&batch, p.r.base_N);
     do {
-        hf_batch_run(&batch, ga.n_individual, ga.design_N, ga.pending, ga.result);
-        hf_ga_tell(&ga);
-    } while (hf_ga_next(&ga));
-    double *best_N = ga.design_N + ga.best * ga.n_gene, best_m = ga.result[ga.best].psi_m;
+        hf_batch_run(&batch, ga.population.n_individual, ga.population.design_N, ga.population.pending,
+                     ga.population.result);
+        hf_optimiser_tell(&ga);
+    } while (hf_optimiser_next(&ga));
+    double *best_N = ga.population.design_N + ga.population.best * ga.population.n_gene,
+           best_m = ga.population.result[ga.population.best].psi_m;
     ck_assert_int_eq(polish(&p, 200, best_N, &from_ga), HF_OK);
     ck_assert_int_eq(polish(&p, 200, p.r.base_N, &from_base), HF_OK);
     ck_assert_double_eq_tol(from_ga.psi_m, from_base.psi_m, 1e-6);
     ck_assert_double_le(from_ga.psi_m, best_m);
-    hf_ga_free(&ga);
+    hf_optimiser_free(&ga);
     hf_batch_free(&batch);
     close_net(&p.r.net);
 }

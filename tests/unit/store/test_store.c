@@ -46,7 +46,7 @@ static void fill_summary(struct rng *rng, hf_summary *s)
                       .generations = rng_int(rng, 1, 1 << 30),
                       .evaluations = (long)(rng_next(rng) >> 1),
                       .infeasible = (long)(rng_next(rng) >> 1),
-                      .optimize_stop = HF_GA_ALL_INFEASIBLE,
+                      .optimize_stop = HF_POPULATION_ALL_INFEASIBLE,
                       .optimize_wall_s = rng_uniform(rng, 0, 1),
                       .optimize_cpu_s = -0.0};
     fill_text(rng, s->version, sizeof s->version);
@@ -312,8 +312,8 @@ static const struct {
     int n_individual, n_gene;
 } sizes[] = {{4, 3}, {3, 70000}, {2, 140000}, {2, 0}};
 
-/* An hf_ga whose every number tells where it belongs. */
-static void fill_generation(hf_ga *g, int generation)
+/* An hf_optimiser whose every number tells where it belongs. */
+static void fill_generation(hf_population *g, int generation)
 {
     g->generation = generation;
     for (int i = 0; i < g->n_individual; i++) {
@@ -341,7 +341,7 @@ START_TEST(generations_are_appended)
     int p = sizes[_i].n_individual, k = sizes[_i].n_gene;
     struct net net;
     hf_messages messages = {0};
-    hf_ga ga;
+    hf_optimiser ga;
     hf_optimize_settings settings = {.population = p, .generations = 5, .range_N = 1, .max_tension_N = 1e6};
     open_bow(&net);
     double *base_N = malloc(((size_t)k + 1) * sizeof *base_N);
@@ -352,14 +352,14 @@ START_TEST(generations_are_appended)
         group[i] = i / 2;
     }
     hf_model m = {.n_gene = k, .n_gene_group = k, .gene_cable = gene, .gene_group = group};
-    ck_assert_int_eq(hf_ga_create(&settings, &m, base_N, &ga), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &settings, &m, base_N, &ga), HF_OK);
     hf_store *store = begin(temp_path("a.h5"), 1, &net.scene);
     for (int g = 0; g < 5; g++) {
-        fill_generation(&ga, g);
-        ck_assert_msg(hf_store_generation(store, &m, &ga, &messages) == HF_OK, "%s", messages.text);
+        fill_generation(&ga.population, g);
+        ck_assert_msg(hf_store_generation(store, &m, &ga.population, &messages) == HF_OK, "%s", messages.text);
     }
     end(store, &(hf_summary){.has_optimize = 1, .best.status = HF_NOT_EVALUATED, .status = HF_NO_FEASIBLE});
-    hf_ga_free(&ga);
+    hf_optimiser_free(&ga);
 
     char script[2048];
     snprintf(

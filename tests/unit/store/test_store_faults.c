@@ -238,8 +238,8 @@ START_TEST(a_full_disk_is_told)
     double base_N[40] = {0};
     int gene[40] = {0};
     hf_model m = {.n_gene = 40, .n_gene_group = 1, .gene_cable = gene, .gene_group = gene};
-    hf_ga ga;
-    ck_assert_int_eq(hf_ga_create(&settings, &m, base_N, &ga), HF_OK);
+    hf_optimiser ga;
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &settings, &m, base_N, &ga), HF_OK);
 
     getrlimit(RLIMIT_FSIZE, &before);
     limit = before;
@@ -248,8 +248,8 @@ START_TEST(a_full_disk_is_told)
     setrlimit(RLIMIT_FSIZE, &limit);
     hf_status status = hf_store_create(path, 0, any_case(), &net.scene, NULL, 0, NULL, &store, &messages);
     if (status == HF_OK) {
-        for (ga.generation = 0; ga.generation < 40; ga.generation++)
-            hf_store_generation(store, &m, &ga, &messages);
+        for (ga.population.generation = 0; ga.population.generation < 40; ga.population.generation++)
+            hf_store_generation(store, &m, &ga.population, &messages);
         status = hf_store_finish(store, &(hf_summary){0}, &messages);
     }
     setrlimit(RLIMIT_FSIZE, &before);
@@ -257,7 +257,7 @@ START_TEST(a_full_disk_is_told)
     ck_assert_int_eq(count_files(folder), 0);
     ck_assert_msg(strstr(messages.text, path) && strstr(messages.text, "File too large"), "%s", messages.text);
     hf_messages_free(&messages);
-    hf_ga_free(&ga);
+    hf_optimiser_free(&ga);
     close_net(&net);
 }
 END_TEST

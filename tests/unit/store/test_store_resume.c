@@ -23,8 +23,8 @@ static void resume(const char *path, struct run *r, hf_store **s, hf_messages *m
     ck_assert_int_eq(hf_store_resume(path, s, messages), HF_OK);
     ck_assert_int_eq(hf_store_generations(*s), 4);
     ck_assert_int_eq(hf_store_base(*s, N_GENE, r->base_N, messages), HF_OK);
-    hf_ga_free(&r->ga);
-    ck_assert_int_eq(hf_ga_create(&r->settings, &r->model, r->base_N, &r->ga), HF_OK);
+    hf_optimiser_free(&r->ga);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &r->model, r->base_N, &r->ga), HF_OK);
     ck_assert_int_eq(hf_store_restore(*s, &r->ga, &summary, messages), HF_OK);
     ck_assert_int_eq(summary.generations, hf_store_generations(*s));
 }
@@ -45,16 +45,16 @@ START_TEST(designs_are_bred_again)
     ck_assert_int_eq(hf_store_generations(s), 4);
     open_run(&whole);
     for (int g = 0; g < 4; g++) {
-        if (g > 0) hf_ga_next(&whole.ga);
+        if (g > 0) hf_optimiser_next(&whole.ga);
         fill(&whole.ga);
     }
-    hf_ga_tell(&r.ga);
-    ck_assert_int_eq(r.ga.generation, 3);
-    ck_assert_int_eq(r.ga.n_evaluation, whole.ga.n_evaluation);
-    ck_assert_mem_eq(r.ga.design_N, whole.ga.design_N, N_INDIVIDUAL * N_GENE * sizeof(double));
-    ck_assert_mem_eq(r.ga.best_psi_m, whole.ga.best_psi_m, 4 * sizeof(double));
+    hf_optimiser_tell(&r.ga);
+    ck_assert_int_eq(r.ga.population.generation, 3);
+    ck_assert_int_eq(r.ga.population.n_evaluation, whole.ga.population.n_evaluation);
+    ck_assert_mem_eq(r.ga.population.design_N, whole.ga.population.design_N, N_INDIVIDUAL * N_GENE * sizeof(double));
+    ck_assert_mem_eq(r.ga.population.best_psi_m, whole.ga.population.best_psi_m, 4 * sizeof(double));
     for (int i = 0; i < N_INDIVIDUAL; i++)
-        ck_assert_mem_eq(&r.ga.result[i].psi_m, &whole.ga.result[i].psi_m, sizeof(double));
+        ck_assert_mem_eq(&r.ga.population.result[i].psi_m, &whole.ga.population.result[i].psi_m, sizeof(double));
     hf_store_abandon(s);
     close_run(&r);
     close_run(&whole);
@@ -79,9 +79,9 @@ START_TEST(results_of_other_designs_are_left_out)
     ck_assert_msg(strstr(messages.text, "generations 3 to 4, which were not published, are evaluated again") != NULL,
                   "%s", messages.text);
     ck_assert_int_eq(hf_store_generations(s), 2);
-    ck_assert_int_eq(r.ga.generation, 1);
+    ck_assert_int_eq(r.ga.population.generation, 1);
     hf_messages_free(&messages);
-    hf_ga_tell(&r.ga);
+    hf_optimiser_tell(&r.ga);
     ck_assert_int_eq(store_some(s, &r, 2, 4, &n, &messages), HF_OK);
     hf_store_abandon(s);
     close_run(&r);
@@ -106,26 +106,26 @@ START_TEST(other_designs_are_told_apart)
     open_run(&r);
     fill(&r.ga);
     ck_assert_int_eq(hf_generations_create(N_INDIVIDUAL, N_GENE, N_GENERATION, &g), HF_OK);
-    hf_generations_add(&g, &r.ga, piece);
+    hf_generations_add(&g, &r.ga.population, piece);
     for (int i = 0; i < HF_GENERATIONS_PIECES; used += piece[i++].iov_len)
         memcpy(payload + used, piece[i].iov_base, piece[i].iov_len);
     ck_assert_uint_eq(used, g.payload_bytes);
-    ck_assert(hf_generations_take_payload(&g, payload, &r.ga));
-    double *d = r.ga.design_N, one[N_GENE];
+    ck_assert(hf_generations_take_payload(&g, payload, &r.ga.population));
+    double *d = r.ga.population.design_N, one[N_GENE];
     for (int k = 0; k < N_INDIVIDUAL * N_GENE; k++) {
         int other = (k + 5) % (N_INDIVIDUAL * N_GENE);
         double a = d[k], b = d[other];
         d[k] = nextafter(a, 1e9);
-        ck_assert(!hf_generations_take_payload(&g, payload, &r.ga));
+        ck_assert(!hf_generations_take_payload(&g, payload, &r.ga.population));
         d[other] = nextafter(b, -1e9);
-        ck_assert(!hf_generations_take_payload(&g, payload, &r.ga));
+        ck_assert(!hf_generations_take_payload(&g, payload, &r.ga.population));
         d[k] = a;
         d[other] = b;
     }
     memcpy(one, d + N_GENE, sizeof one);
     memcpy(d + N_GENE, d + 2 * N_GENE, sizeof one);
     memcpy(d + 2 * N_GENE, one, sizeof one);
-    ck_assert(!hf_generations_take_payload(&g, payload, &r.ga));
+    ck_assert(!hf_generations_take_payload(&g, payload, &r.ga.population));
     hf_generations_free(&g);
     close_run(&r);
 }

@@ -2,7 +2,7 @@
  * depend on. The "model" is no more than its genes and their groups. */
 #include "support.h"
 
-#include <hifdm/ga.h>
+#include <hifdm/optimiser.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,10 +28,10 @@ static const hf_optimize_settings plain = {.population = N,
                                            .stagnation_tolerance_m = 0,
                                            .stagnation_generations = 1000};
 
-static hf_ga create(const hf_optimize_settings *settings)
+static hf_optimiser create(const hf_optimize_settings *settings)
 {
-    hf_ga ga;
-    ck_assert_int_eq(hf_ga_create(settings, &model, base_N, &ga), HF_OK);
+    hf_optimiser ga;
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, settings, &model, base_N, &ga), HF_OK);
     return ga;
 }
 
@@ -47,25 +47,26 @@ static double distance_m(const double *design_N)
     return sqrt(sum);
 }
 
-static void evaluate_pending(hf_ga *ga)
+static void evaluate_pending(hf_optimiser *ga)
 {
-    for (int i = 0; i < ga->n_individual; i++)
-        if (ga->pending[i])
-            ga->result[i] = (hf_form_result){.status = HF_OK, .psi_m = distance_m(ga->design_N + i * N_GENE)};
+    for (int i = 0; i < ga->population.n_individual; i++)
+        if (ga->population.pending[i])
+            ga->population.result[i] =
+                (hf_form_result){.status = HF_OK, .psi_m = distance_m(ga->population.design_N + i * N_GENE)};
 }
 
 START_TEST(first_generation_surrounds_the_base)
 {
-    hf_ga ga = create(&plain);
+    hf_optimiser ga = create(&plain);
     double lowest[N_GENE], highest[N_GENE];
-    ck_assert_mem_eq(ga.design_N, base_N, sizeof base_N); /* individual 0 */
+    ck_assert_mem_eq(ga.population.design_N, base_N, sizeof base_N); /* individual 0 */
     for (int k = 0; k < N_GENE; k++)
         lowest[k] = INFINITY, highest[k] = -INFINITY;
     for (int i = 0; i < N; i++) {
-        const double *d = ga.design_N + i * N_GENE;
-        ck_assert_int_eq(ga.pending[i], 1);
-        ck_assert_double_nan(ga.crossover_rate[i]);
-        ck_assert_int_eq(ga.parent[2 * i], -1);
+        const double *d = ga.population.design_N + i * N_GENE;
+        ck_assert_int_eq(ga.population.pending[i], 1);
+        ck_assert_double_nan(ga.population.crossover_rate[i]);
+        ck_assert_int_eq(ga.population.parent[2 * i], -1);
         ck_assert_double_eq_tol(d[0] - base_N[0], d[1] - base_N[1], 1e-14); /* one number for the group (Eq. 13) */
         for (int k = 0; k < N_GENE; k++) {
             ck_assert(d[k] >= fmax(base_N[k] - 1, 0.1) && d[k] <= fmin(base_N[k] + 1, 30));
@@ -74,49 +75,49 @@ START_TEST(first_generation_surrounds_the_base)
     }
     for (int k = 0; k < 3; k++) /* 20 uniform numbers in (-1, 1): all on one side with probability 1e-6 */
         ck_assert(lowest[k] < base_N[k] - 0.3 && highest[k] > base_N[k] + 0.3);
-    hf_ga_free(&ga);
+    hf_optimiser_free(&ga);
 }
 END_TEST
 
 START_TEST(telling_finds_best_mean_and_worst)
 {
-    hf_ga ga = create(&plain);
+    hf_optimiser ga = create(&plain);
     for (int i = 0; i < N; i++)
-        ga.result[i] = (hf_form_result){.status = HF_COLLAPSED, .psi_m = (double)NAN};
-    ga.result[5] = (hf_form_result){.status = HF_OK, .psi_m = 3};
-    ga.result[7] = (hf_form_result){.status = HF_OK, .psi_m = 2};
-    ga.result[9] = (hf_form_result){.status = HF_OK, .psi_m = 2};
-    hf_ga_tell(&ga);
-    ck_assert_int_eq(ga.best, 7); /* of equals the first */
-    ck_assert_double_eq_tol(ga.mean_psi_m, 7.0 / 3, 1e-15);
-    ck_assert_double_eq(ga.worst_psi_m, 3);
-    ck_assert_double_eq(ga.best_psi_m[0], 2);
-    ck_assert_int_eq(ga.n_infeasible, N - 3);
-    ck_assert_int_eq((int)ga.n_evaluation, N);
-    ck_assert_int_eq((int)ga.n_evaluation_infeasible, N - 3);
-    ck_assert_int_eq(ga.stop_reason, HF_GA_RUNNING);
-    ck_assert_int_eq(hf_ga_next(&ga), 1);
+        ga.population.result[i] = (hf_form_result){.status = HF_COLLAPSED, .psi_m = (double)NAN};
+    ga.population.result[5] = (hf_form_result){.status = HF_OK, .psi_m = 3};
+    ga.population.result[7] = (hf_form_result){.status = HF_OK, .psi_m = 2};
+    ga.population.result[9] = (hf_form_result){.status = HF_OK, .psi_m = 2};
+    hf_optimiser_tell(&ga);
+    ck_assert_int_eq(ga.population.best, 7); /* of equals the first */
+    ck_assert_double_eq_tol(ga.population.mean_psi_m, 7.0 / 3, 1e-15);
+    ck_assert_double_eq(ga.population.worst_psi_m, 3);
+    ck_assert_double_eq(ga.population.best_psi_m[0], 2);
+    ck_assert_int_eq(ga.population.n_infeasible, N - 3);
+    ck_assert_int_eq((int)ga.population.n_evaluation, N);
+    ck_assert_int_eq((int)ga.population.n_evaluation_infeasible, N - 3);
+    ck_assert_int_eq(ga.population.stop_reason, HF_POPULATION_RUNNING);
+    ck_assert_int_eq(hf_optimiser_next(&ga), 1);
     for (int i = 2; i < N; i++) /* behind the elites: parents are feasible */
         for (int side = 0; side < 2; side++) {
-            int parent = ga.parent[2 * i + side];
+            int parent = ga.population.parent[2 * i + side];
             ck_assert(parent == 5 || parent == 7 || parent == 9);
         }
-    hf_ga_free(&ga);
+    hf_optimiser_free(&ga);
 }
 END_TEST
 
 START_TEST(nothing_feasible_goes_on_looking)
 {
-    hf_ga ga = create(&plain);
+    hf_optimiser ga = create(&plain);
     for (int i = 0; i < N; i++)
-        ga.result[i] = (hf_form_result){.status = HF_SINGULAR, .psi_m = (double)NAN};
-    hf_ga_tell(&ga);
-    ck_assert_int_eq(ga.best, -1);
-    ck_assert_double_nan(ga.best_psi_m[0]);
-    ck_assert_int_eq(hf_ga_next(&ga), 1);
+        ga.population.result[i] = (hf_form_result){.status = HF_SINGULAR, .psi_m = (double)NAN};
+    hf_optimiser_tell(&ga);
+    ck_assert_int_eq(ga.population.best, -1);
+    ck_assert_double_nan(ga.population.best_psi_m[0]);
+    ck_assert_int_eq(hf_optimiser_next(&ga), 1);
     for (int i = 2; i < N; i++)
-        ck_assert_double_eq(ga.mutation_rate[i], 0.1);
-    hf_ga_free(&ga);
+        ck_assert_double_eq(ga.population.mutation_rate[i], 0.1);
+    hf_optimiser_free(&ga);
 }
 END_TEST
 
@@ -125,62 +126,64 @@ END_TEST
  * most.) */
 START_TEST(rates_follow_srinivas_and_patnaik)
 {
-    hf_ga ga = create(&plain);
+    hf_optimiser ga = create(&plain);
     double psi[N];
     for (int i = 0; i < N; i++) {
         psi[i] = 1 + 0.1 * ((i * 7) % N);
-        ga.result[i] = (hf_form_result){.status = HF_OK, .psi_m = psi[i]};
+        ga.population.result[i] = (hf_form_result){.status = HF_OK, .psi_m = psi[i]};
     }
-    hf_ga_tell(&ga);
-    double mean = ga.mean_psi_m, best = 1;
+    hf_optimiser_tell(&ga);
+    double mean = ga.population.mean_psi_m, best = 1;
     int n_low = 0, n_between = 0, n_high = 0;
     ck_assert_double_eq_tol(mean, 1.95, 1e-14);
-    ck_assert_int_eq(hf_ga_next(&ga), 1);
+    ck_assert_int_eq(hf_optimiser_next(&ga), 1);
     for (int i = 2; i < N; i++) {
-        double better = fmin(psi[ga.parent[2 * i]], psi[ga.parent[2 * i + 1]]);
+        double better = fmin(psi[ga.population.parent[2 * i]], psi[ga.population.parent[2 * i + 1]]);
         double f = better <= mean ? (mean - better) / (mean - best) : 0;
-        ck_assert_double_eq_tol(ga.crossover_rate[i], 0.9 - 0.3 * f, 1e-14);
-        ck_assert_double_eq_tol(ga.mutation_rate[i], 0.1 - 0.099 * f, 1e-14);
+        ck_assert_double_eq_tol(ga.population.crossover_rate[i], 0.9 - 0.3 * f, 1e-14);
+        ck_assert_double_eq_tol(ga.population.mutation_rate[i], 0.1 - 0.099 * f, 1e-14);
         n_low += better == best, n_high += f == 0, n_between += f > 0 && better > best;
     }
     ck_assert(n_low + n_between > 0 && n_low + n_between + n_high == N - 2);
-    hf_ga_free(&ga);
+    hf_optimiser_free(&ga);
 }
 END_TEST
 
 /* 60 generations, each looked at in full. */
 START_TEST(every_generation_obeys_the_rules)
 {
-    hf_ga ga = create(&plain);
+    hf_optimiser ga = create(&plain);
     double *parents = malloc(N * N_GENE * sizeof *parents), best = INFINITY;
     hf_form_result told[N];
     ck_assert_ptr_nonnull(parents);
     for (;;) {
         evaluate_pending(&ga);
-        hf_ga_tell(&ga);
-        ck_assert_double_le(ga.best_psi_m[ga.generation], best); /* elites: never worse */
-        best = ga.best_psi_m[ga.generation];
-        memcpy(parents, ga.design_N, N * N_GENE * sizeof *parents);
-        memcpy(told, ga.result, sizeof told);
-        int best_parent = ga.best;
-        if (!hf_ga_next(&ga)) break;
-        ck_assert_int_eq(ga.parent[0], best_parent);
+        hf_optimiser_tell(&ga);
+        ck_assert_double_le(ga.population.best_psi_m[ga.population.generation], best); /* elites: never worse */
+        best = ga.population.best_psi_m[ga.population.generation];
+        memcpy(parents, ga.population.design_N, N * N_GENE * sizeof *parents);
+        memcpy(told, ga.population.result, sizeof told);
+        int best_parent = ga.population.best;
+        if (!hf_optimiser_next(&ga)) break;
+        ck_assert_int_eq(ga.population.parent[0], best_parent);
         for (int i = 0; i < N; i++) {
-            const double *child = ga.design_N + i * N_GENE, *mother = parents + ga.parent[2 * i] * N_GENE;
+            const double *child = ga.population.design_N + i * N_GENE,
+                         *mother = parents + ga.population.parent[2 * i] * N_GENE;
             int is_equal = !memcmp(child, mother, N_GENE * sizeof *child);
             if (i < plain.elites) ck_assert(is_equal);
-            ck_assert_int_eq(ga.pending[i], !is_equal);
-            if (is_equal) ck_assert_double_eq(ga.result[i].psi_m, told[ga.parent[2 * i]].psi_m);
+            ck_assert_int_eq(ga.population.pending[i], !is_equal);
+            if (is_equal) ck_assert_double_eq(ga.population.result[i].psi_m, told[ga.population.parent[2 * i]].psi_m);
             for (int k = 0; k < N_GENE; k++)
                 ck_assert(child[k] >= fmax(base_N[k] - 1, 0.1) && child[k] <= fmin(base_N[k] + 1, 30));
         }
-        ck_assert_double_le(told[ga.parent[0]].psi_m, told[ga.parent[2]].psi_m); /* elites in order */
+        ck_assert_double_le(told[ga.population.parent[0]].psi_m,
+                            told[ga.population.parent[2]].psi_m); /* elites in order */
     }
-    ck_assert_int_eq(ga.stop_reason, HF_GA_GENERATIONS);
-    ck_assert_int_eq(ga.generation, 59);
+    ck_assert_int_eq(ga.population.stop_reason, HF_POPULATION_GENERATIONS);
+    ck_assert_int_eq(ga.population.generation, 59);
     ck_assert_double_lt(best, 0.5 * distance_m(base_N)); /* it searches: measured 0.1 of the base's distance */
     free(parents);
-    hf_ga_free(&ga);
+    hf_optimiser_free(&ga);
 }
 END_TEST
 
@@ -192,15 +195,16 @@ START_TEST(better_individuals_have_more_children)
     for (uint64_t seed = 0; seed < 50; seed++) {
         hf_optimize_settings s = plain;
         s.seed = seed;
-        hf_ga ga = create(&s);
+        hf_optimiser ga = create(&s);
         for (int i = 0; i < N; i++)
-            ga.result[i] = (hf_form_result){.status = HF_OK, .psi_m = 2 + 0.1 * i};
-        hf_ga_tell(&ga);
-        hf_ga_next(&ga);
+            ga.population.result[i] = (hf_form_result){.status = HF_OK, .psi_m = 2 + 0.1 * i};
+        hf_optimiser_tell(&ga);
+        hf_optimiser_next(&ga);
         for (int k = 2 * plain.elites; k < 2 * N; k++) {
-            n_child[0] += ga.parent[k] == 0, n_child[1] += ga.parent[k] == N / 2, n_child[2] += ga.parent[k] == N - 1;
+            n_child[0] += ga.population.parent[k] == 0, n_child[1] += ga.population.parent[k] == N / 2,
+                n_child[2] += ga.population.parent[k] == N - 1;
         }
-        hf_ga_free(&ga);
+        hf_optimiser_free(&ga);
     }
     ck_assert(n_child[0] > n_child[1] && n_child[1] > n_child[2] && n_child[2] > 0);
 }
@@ -208,18 +212,18 @@ END_TEST
 
 /* ---- stopping ---- */
 
-static hf_ga_stop stop_after(const hf_optimize_settings *s, int feasible, int *generation)
+static hf_population_stop stop_after(const hf_optimize_settings *s, int feasible, int *generation)
 {
-    hf_ga ga = create(s);
+    hf_optimiser ga = create(s);
     do {
         for (int i = 0; i < N; i++)
-            ga.result[i] =
+            ga.population.result[i] =
                 (hf_form_result){.status = feasible ? HF_OK : HF_COLLAPSED, .psi_m = feasible ? 1 : (double)NAN};
-        hf_ga_tell(&ga);
-    } while (hf_ga_next(&ga));
-    *generation = ga.generation;
-    hf_ga_stop reason = ga.stop_reason;
-    hf_ga_free(&ga);
+        hf_optimiser_tell(&ga);
+    } while (hf_optimiser_next(&ga));
+    *generation = ga.population.generation;
+    hf_population_stop reason = ga.population.stop_reason;
+    hf_optimiser_free(&ga);
     return reason;
 }
 
@@ -227,23 +231,23 @@ START_TEST(search_ends_for_a_reason)
 {
     hf_optimize_settings s = plain;
     int generation;
-    ck_assert_int_eq(stop_after(&s, 0, &generation), HF_GA_ALL_INFEASIBLE);
+    ck_assert_int_eq(stop_after(&s, 0, &generation), HF_POPULATION_ALL_INFEASIBLE);
     ck_assert_int_eq(generation, 59);
     s.stagnation_generations = 7;
-    ck_assert_int_eq(stop_after(&s, 0, &generation), HF_GA_ALL_INFEASIBLE);
+    ck_assert_int_eq(stop_after(&s, 0, &generation), HF_POPULATION_ALL_INFEASIBLE);
     ck_assert_int_eq(generation, 7);
     s.stagnation_tolerance_m = 1e-9;
-    ck_assert_int_eq(stop_after(&s, 1, &generation), HF_GA_STAGNATION);
+    ck_assert_int_eq(stop_after(&s, 1, &generation), HF_POPULATION_STAGNATION);
     ck_assert_int_eq(generation, 7); /* a window of 7 needs 7 generations behind it */
     s.generations = 5;
-    ck_assert_int_eq(stop_after(&s, 1, &generation), HF_GA_GENERATIONS);
+    ck_assert_int_eq(stop_after(&s, 1, &generation), HF_POPULATION_GENERATIONS);
     ck_assert_int_eq(generation, 4);
 }
 END_TEST
 
-Suite *suite_unit_ga(void)
+Suite *suite_unit_optimiser_ga(void)
 {
-    Suite *suite = suite_create("unit/ga");
+    Suite *suite = suite_create("unit/optimiser_ga");
     TCase *tests = tcase_create("ga");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, first_generation_surrounds_the_base);

@@ -1,0 +1,55 @@
+#include <hifdm/optimiser.h>
+
+#include <assert.h>
+#include <stddef.h>
+
+/* ---- ask and tell ---- */
+
+hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *settings,
+                              const hf_model *model, const double *base_N, hf_optimiser *optimiser)
+{
+    hf_optimiser *o = optimiser;
+    *o = (hf_optimiser){.settings = settings};
+    HF_TRY(hf_population_create(settings, model, base_N, &o->population, &o->next));
+    if (!kind) return HF_OK;
+    o->kind = kind;
+    HF_TRY(kind->create(settings, model, &o->state));
+    kind->first(o->state, &o->population);
+    return HF_OK;
+}
+
+void hf_optimiser_tell(hf_optimiser *optimiser)
+{
+    hf_population_rank(optimiser->settings, &optimiser->population);
+}
+
+bool hf_optimiser_next(hf_optimiser *optimiser)
+{
+    assert(optimiser->kind);
+    if (optimiser->population.stop_reason != HF_POPULATION_RUNNING) return false;
+    optimiser->kind->next(optimiser->state, &optimiser->population, &optimiser->next);
+    hf_population_advance(&optimiser->population, &optimiser->next);
+    return true;
+}
+
+void hf_optimiser_free(hf_optimiser *optimiser)
+{
+    if (optimiser->kind) optimiser->kind->free(optimiser->state);
+    hf_population_free(&optimiser->population);
+    *optimiser = (hf_optimiser){0};
+}
+
+/* ---- the methods of a case ---- */
+
+const hf_optimiser_kind hf_optimiser_none = {0};
+
+hf_optimiser_plan hf_optimiser_plan_of(hf_optimize_method method)
+{
+#define ROW(name, optimiser, ends_with_polish) [HF_OPTIMIZE_##name] = {&hf_optimiser_##optimiser, ends_with_polish},
+    static const hf_optimiser_plan plan[] = {HF_OPTIMISER_LIST(ROW)};
+#undef ROW
+    hf_optimiser_plan it = plan[method];
+    assert(it.kind); /* every method has a row */
+    if (it.kind == &hf_optimiser_none) it.kind = NULL;
+    return it;
+}

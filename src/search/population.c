@@ -1,0 +1,169 @@
+/* Contents: memory - linked genes - two generations - ranking */
+#include <hifdm/population.h>
+
+#include "base/arena.h"
+#include "net/symmetry.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const hf_population_stop_word[4] = {"running", "stagnation", "generations", "all_infeasible"};
+
+/* ---- memory ---- */
+
+static void lay_out_generation(hf_arena *a, hf_population *p)
+{
+    size_t n = (size_t)p->n_individual, k = (size_t)p->n_gene;
+    p->design_N = hf_arena_take(a, n * k, sizeof(double));
+    p->result = hf_arena_take(a, n, sizeof(hf_form_result));
+    p->pending = hf_arena_take(a, n, 1);
+    p->crossover_rate = hf_arena_take(a, n, sizeof(double));
+    p->mutation_rate = hf_arena_take(a, n, sizeof(double));
+    p->parent = hf_arena_take(a, 2 * n, sizeof(int));
+}
+
+static void lay_out_both(hf_arena *a, hf_population *p, hf_population *next)
+{
+    size_t k = (size_t)p->n_gene;
+    p->base_N = hf_arena_take(a, k, sizeof(double));
+    p->lower_N = hf_arena_take(a, k, sizeof(double));
+    p->upper_N = hf_arena_take(a, k, sizeof(double));
+    p->best_psi_m = hf_arena_take(a, (size_t)p->generation_limit, sizeof(double));
+    *next = *p;
+    lay_out_generation(a, p);
+    lay_out_generation(a, next);
+}
+
+static double within(double value, double low, double high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+/* ---- linked genes ---- */
+
+static bool has_links(const hf_model *model)
+{
+    return model->n_leader < model->n_gene && model->gene_leader;
+}
+
+/* The bounds of a class are those of the step that all its genes can take. Where there is none each gene keeps its own,
+ * and hf_population_link clamps to them. */
+static void link_bounds(const hf_model *model, hf_population *p)
+{
+    const int *leader_of = model->gene_leader;
+    for (int leader = 0; leader < p->n_gene; leader++) {
+        double low = -INFINITY, high = INFINITY;
+        if (leader_of[leader] != leader) continue;
+        for (int k = leader; k < p->n_gene; k++) {
+            if (leader_of[k] != leader) continue;
+            low = fmax(low, p->lower_N[k] - p->base_N[k]);
+            high = fmin(high, p->upper_N[k] - p->base_N[k]);
+        }
+        for (int k = leader; low < high && k < p->n_gene; k++) {
+            if (leader_of[k] != leader) continue;
+            p->lower_N[k] = fmax(p->lower_N[k], p->base_N[k] + low);
+            p->upper_N[k] = fmin(p->upper_N[k], p->base_N[k] + high);
+        }
+    }
+}
+
+void hf_population_link(const hf_population *population, const hf_model *model, double *design_N)
+{
+    if (!has_links(model)) return;
+    hf_symmetry_follow(population->n_gene, model->gene_leader, population->base_N, design_N);
+    for (int k = 0; k < population->n_gene; k++)
+        design_N[k] = hf_population_clamp(population, k, design_N[k]);
+}
+
+/* ---- two generations ---- */
+
+hf_status hf_population_create(const hf_optimize_settings *settings, const hf_model *model, const double *base_N,
+                               hf_population *population, hf_population *next)
+{
+    hf_population *p = population;
+    hf_arena arena = {0};
+    *p = (hf_population){.n_gene = model->n_gene,
+                         .n_individual = settings->population,
+                         .generation_limit = settings->generations,
+                         .best = -1};
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_both(&arena, p, next)));
+    p->block = next->block = arena.block;
+    memcpy(p->base_N, base_N, (size_t)p->n_gene * sizeof *base_N);
+    for (int k = 0; k < p->n_gene; k++) {
+        p->lower_N[k] = within(base_N[k] - settings->range_N, settings->min_tension_N, settings->max_tension_N);
+        p->upper_N[k] = within(base_N[k] + settings->range_N, settings->min_tension_N, settings->max_tension_N);
+    }
+    if (has_links(model)) link_bounds(model, p);
+    return HF_OK;
+}
+
+void hf_population_free(hf_population *population)
+{
+    free(population->block);
+    *population = (hf_population){0};
+}
+
+void hf_population_advance(hf_population *population, hf_population *next)
+{
+#define EXCHANGE(type, member)                                                                                         \
+    do {                                                                                                               \
+        type *now = population->member;                                                                                \
+        population->member = next->member;                                                                             \
+        next->member = now;                                                                                            \
+    } while (0)
+    EXCHANGE(double, design_N);
+    EXCHANGE(double, crossover_rate);
+    EXCHANGE(double, mutation_rate);
+    EXCHANGE(hf_form_result, result);
+    EXCHANGE(unsigned char, pending);
+    EXCHANGE(int, parent);
+#undef EXCHANGE
+    population->generation++;
+}
+
+/* ---- ranking ---- */
+
+bool hf_population_is_better(const hf_population *population, int a, int b)
+{
+    const hf_form_result *r = population->result;
+    bool a_ok = r[a].status == HF_OK, b_ok = r[b].status == HF_OK;
+    if (!a_ok || !b_ok) return a_ok > b_ok || (a_ok == b_ok && a < b);
+    if (r[a].psi_m != r[b].psi_m) return r[a].psi_m < r[b].psi_m;
+    return a < b;
+}
+
+static hf_population_stop judge(const hf_optimize_settings *s, const hf_population *p)
+{
+    int window = s->stagnation_generations, now = p->generation;
+    if (now >= window) {
+        if (isnan(p->best_psi_m[now])) return HF_POPULATION_ALL_INFEASIBLE;
+        if (p->best_psi_m[now - window] - p->best_psi_m[now] < s->stagnation_tolerance_m)
+            return HF_POPULATION_STAGNATION;
+    }
+    if (now + 1 < p->generation_limit) return HF_POPULATION_RUNNING;
+    return isnan(p->best_psi_m[now]) ? HF_POPULATION_ALL_INFEASIBLE : HF_POPULATION_GENERATIONS;
+}
+
+void hf_population_rank(const hf_optimize_settings *settings, hf_population *population)
+{
+    hf_population *p = population;
+    double sum = 0;
+    p->n_infeasible = 0;
+    p->best = -1;
+    p->worst_psi_m = p->mean_psi_m = (double)NAN;
+    for (int i = 0; i < p->n_individual; i++) {
+        const hf_form_result *r = &p->result[i];
+        bool is_infeasible = r->status != HF_OK;
+        p->n_evaluation += p->pending[i];
+        p->n_evaluation_infeasible += p->pending[i] && is_infeasible;
+        p->n_infeasible += is_infeasible;
+        if (is_infeasible) continue;
+        sum += r->psi_m;
+        p->worst_psi_m = fmax(p->worst_psi_m, r->psi_m);
+        if (p->best < 0 || hf_population_is_better(p, i, p->best)) p->best = i;
+    }
+    if (p->best >= 0) p->mean_psi_m = sum / (p->n_individual - p->n_infeasible);
+    p->best_psi_m[p->generation] = p->best >= 0 ? p->result[p->best].psi_m : (double)NAN;
+    p->stop_reason = judge(settings, p);
+}
