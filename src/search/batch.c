@@ -129,7 +129,7 @@ static int has_room(hf_batch *batch, int room)
 }
 
 /* One thread's share of the designs that `next` hands out. */
-static void work_off(hf_batch *batch, int room, int (*next)(void *), void *context, const double *design_N,
+static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *context, const double *design_N,
                      hf_form_result *result)
 {
     const hf_evaluator *v = batch->evaluator;

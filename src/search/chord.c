@@ -1,4 +1,4 @@
-/* Contents: choice of instruction set - shared matrix - lanes - the matrix alone - one lane's life - the run */
+/* Contents: choice of instruction set - shared matrix - lanes - the matrix alone - the run */
 #include "search/chord.h"
 
 #include "base/arena.h"
@@ -255,17 +255,34 @@ void hf_chord_back_solve(const hf_chord *chord, const hf_chord_lanes *l, int n_r
     }
 }
 
-/* ---- one lane's life ---- */
+/* ---- the run ---- */
 
+/* Where a lane stands. */
 typedef struct {
-    int design[HF_LANES]; /* -1 = empty */
-    int steps[HF_LANES];
-    double excess_N[HF_LANES];
-} lives;
+    double residual_N; /* largest nodal force out of balance */
+    double gap_m;      /* largest |F f - r| of the truss; 0 without one */
+    double excess_N;   /* the larger of the residual and the gap in units of its tolerance */
+} standing;
 
-static void load(const hf_chord *c, hf_chord_lanes *l, int lane, const double *design_N)
+/* One run, and where its lanes are. */
+typedef struct {
+    const hf_chord *chord;
+    hf_chord_lanes *lanes;
+    hf_workspace *w;
+    const double *design_N;
+    hf_form_result *result;
+    int steps[HF_LANES];
+    double excess_before_N[HF_LANES];
+    standing at[HF_LANES];
+} chord_run;
+
+static void load(void *solver, int lane, int i_design)
 {
+    chord_run *s = solver;
+    const hf_chord *c = s->chord;
     const hf_model *m = c->evaluator->model;
+    const double *design_N = s->design_N + (size_t)i_design * (size_t)m->n_gene;
+    hf_chord_lanes *l = s->lanes;
     for (int i = 0; i < 3 * m->n_node; i++)
         l->x_m[(size_t)i * HF_LANES + (size_t)lane] = c->base_m[i];
     for (int i = 0; i < c->n_pull; i++)
@@ -275,109 +292,85 @@ static void load(const hf_chord *c, hf_chord_lanes *l, int lane, const double *d
         if (c->evaluator->rule == HF_RULE_FORCE_DENSITY) value /= hf_evaluate_design_length_m(m, m->gene_cable[k]);
         l->gene[(size_t)k * HF_LANES + (size_t)lane] = value;
     }
+    s->steps[lane] = 0;
+    s->excess_before_N[lane] = INFINITY;
 }
 
-/* Where a lane stands. */
-typedef struct {
-    double residual_N; /* largest nodal force out of balance */
-    double gap_m;      /* largest |F f - r| of the truss; 0 without one */
-    double excess_N;   /* the larger of the residual and the gap in units of its tolerance */
-} standing;
-
 /* The lane's shape into the workspace, and from there into a result, by the scalar code. */
-static void unload(const hf_chord *c, const hf_chord_lanes *l, int lane, hf_workspace *w, const double *design_N,
-                   int steps, double gap_m, hf_form_result *result)
+static void unload(const chord_run *s, int lane, const double *design_N, hf_form_result *result)
 {
+    const hf_chord *c = s->chord;
+    const hf_chord_lanes *l = s->lanes;
     const hf_model *m = c->evaluator->model;
+    hf_workspace *w = s->w;
     hf_evaluate_prepare(c->evaluator, design_N, w);
     for (int i = 0; i < 3 * m->n_node; i++)
         w->position_m[i] = l->x_m[(size_t)i * HF_LANES + (size_t)lane];
     for (int i = 0; i < c->n_pull; i++)
         w->displacement_m[i] = l->displacement_m[(size_t)i * HF_LANES + (size_t)lane];
     hf_form_measure(m, c->evaluator->form, w, result);
-    result->iterations = steps;
-    if (c->n_pull) hf_coupling_accept(m, w, steps, gap_m, result);
+    result->iterations = s->steps[lane];
+    if (c->n_pull) hf_coupling_accept(m, w, s->steps[lane], s->at[lane].gap_m, result);
     hf_evaluate_judge(c->evaluator, result);
 }
 
-/* ---- the run ---- */
-
-/* After the forces of a pass: converged, hopeless, or one more step? Returns 1 when the lane has become free. */
-static int settle(const hf_chord *c, hf_chord_lanes *l, int lane, lives *now, standing at, hf_workspace *w,
-                  const double *design_N, hf_form_result *result)
-{
-    const hf_model *m = c->evaluator->model;
-    const double *design = design_N + (size_t)now->design[lane] * (size_t)m->n_gene;
-    hf_form_result *r = result + now->design[lane];
-    if (at.excess_N <= c->evaluator->form->residual_tolerance * m->reference_N) {
-        unload(c, l, lane, w, design, now->steps[lane], at.gap_m, r);
-        return 1;
-    }
-    int contracts = now->steps[lane] < PATIENCE || at.excess_N < CONTRACTION * now->excess_N[lane];
-    if (contracts && isfinite(at.excess_N) && now->steps[lane] < ITERATIONS_MAX) {
-        now->excess_N[lane] = at.excess_N;
-        now->steps[lane]++;
-        return 0;
-    }
-    hf_evaluate(c->evaluator, design, w, r);
-    return 1;
-}
-
 /* Forces of net and truss in all lanes. */
-static void look(const hf_chord *c, const hf_chord_kernels *k, hf_chord_lanes *l, standing at[HF_LANES])
+static void look(void *solver)
 {
+    chord_run *s = solver;
+    const hf_chord *c = s->chord;
     double squared[HF_LANES], reference_N = c->evaluator->model->reference_N;
     const hf_form_settings *form = c->evaluator->form;
-    k->forces(c, l, squared);
+    c->kernels->forces(c, s->lanes, squared);
     for (int lane = 0; lane < HF_LANES; lane++) {
         double residual_N = reference_N * sqrt(squared[lane]);
-        at[lane] = (standing){residual_N, 0, residual_N};
+        s->at[lane] = (standing){residual_N, 0, residual_N};
     }
     if (c->n_pull == 0) return;
-    k->couple(c, l, squared);
+    c->kernels->couple(c, s->lanes, squared);
     double scale = form->residual_tolerance * reference_N / form->coupling.tof_m;
     for (int lane = 0; lane < HF_LANES; lane++) {
-        at[lane].gap_m = sqrt(squared[lane]);
-        double gap_N = scale * at[lane].gap_m;
-        if (!(gap_N <= at[lane].excess_N)) at[lane].excess_N = gap_N; /* keeps a NaN */
+        standing *at = &s->at[lane];
+        at->gap_m = sqrt(squared[lane]);
+        double gap_N = scale * at->gap_m;
+        if (!(gap_N <= at->excess_N)) at->excess_N = gap_N; /* keeps a NaN */
     }
 }
 
-void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, int (*next)(void *context),
+/* Converged, one more step, or, for a lane that does not contract, evaluated on its own? */
+static bool settle(void *solver, int lane, int i_design)
+{
+    chord_run *s = solver;
+    const hf_evaluator *v = s->chord->evaluator;
+    const double *design_N = s->design_N + (size_t)i_design * (size_t)v->model->n_gene;
+    double excess_N = s->at[lane].excess_N;
+    if (excess_N <= v->form->residual_tolerance * v->model->reference_N) {
+        unload(s, lane, design_N, s->result + i_design);
+        return true;
+    }
+    bool contracts = s->steps[lane] < PATIENCE || excess_N < CONTRACTION * s->excess_before_N[lane];
+    if (contracts && isfinite(excess_N) && s->steps[lane] < ITERATIONS_MAX) {
+        s->excess_before_N[lane] = excess_N;
+        s->steps[lane]++;
+        return false;
+    }
+    hf_evaluate(v, design_N, s->w, s->result + i_design);
+    return true;
+}
+
+static void step(void *solver)
+{
+    chord_run *s = solver;
+    const hf_chord_kernels *k = s->chord->kernels;
+    if (s->chord->n_pull) k->move(s->chord, s->lanes);
+    k->solve(s->chord, s->lanes);
+    k->step(s->chord, s->lanes);
+}
+
+void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, hf_lane_next *next,
                   void *context, const double *design_N, hf_form_result *result)
 {
-    const hf_chord_kernels *k = chord->kernels;
-    size_t n_gene = (size_t)chord->evaluator->model->n_gene;
-    standing at[HF_LANES];
-    lives now;
-    int n_busy = 0, more = 1;
-    for (int lane = 0; lane < HF_LANES; lane++) {
-        now.design[lane] = -1;
-        load(chord, lanes, lane, design_N); /* an empty lane works on something harmless */
-    }
-    for (;;) {
-        for (int lane = 0; lane < HF_LANES && more; lane++) {
-            if (now.design[lane] >= 0) continue;
-            int i = next(context);
-            more = i >= 0;
-            if (!more) break;
-            now.design[lane] = i;
-            now.steps[lane] = 0;
-            now.excess_N[lane] = INFINITY;
-            load(chord, lanes, lane, design_N + (size_t)i * n_gene);
-            n_busy++;
-        }
-        if (n_busy == 0) return;
-        look(chord, k, lanes, at);
-        for (int lane = 0; lane < HF_LANES; lane++) {
-            if (now.design[lane] < 0) continue;
-            if (!settle(chord, lanes, lane, &now, at[lane], workspace, design_N, result)) continue;
-            now.design[lane] = -1;
-            n_busy--;
-        }
-        if (n_busy == 0 && !more) return;
-        if (chord->n_pull) k->move(chord, lanes);
-        k->solve(chord, lanes);
-        k->step(chord, lanes);
-    }
+    static const hf_lane_solver work = {load, look, settle, step};
+    chord_run s = {.chord = chord, .lanes = lanes, .w = workspace, .design_N = design_N, .result = result};
+    hf_lane_schedule_run(&work, &s, next, context);
 }

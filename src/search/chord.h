@@ -8,6 +8,7 @@
 #define HIFDM_CHORD_H
 
 #include "search/chord_kernel.h"
+#include "search/lane_schedule.h"
 
 /* Can this rule be served? No cable may be left under law length, and the energy must be convex. */
 int hf_chord_applies(const hf_evaluator *evaluator);
@@ -35,7 +36,7 @@ void hf_chord_pack(const hf_workspace *workspace, hf_chord *chord);
 void hf_chord_back_solve(const hf_chord *chord, const hf_chord_lanes *lanes, int n_rhs, double *b, size_t ldb);
 
 /* Evaluate the designs whose indices `next(context)` hands out, until it returns -1. design_N [][n_gene], result []. */
-void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, int (*next)(void *context),
+void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, hf_lane_next *next,
                   void *context, const double *design_N, hf_form_result *result);
 
 #endif

@@ -11,21 +11,32 @@ typedef struct {
     hf_workspace *w;
     const double *design_N;
     hf_form_result *result;
-    int stop;             /* hf_stop_rule */
-    int design[HF_LANES]; /* -1 = empty */
+    hf_stop_rule stop;
     int iterations[HF_LANES];
     double psi_before_m[HF_LANES]; /* NaN at the first iteration */
+    hf_lane_measures now;
 } swarm;
 
-static void load(swarm *s, int lane, int i_design)
+static void load(void *solver, int lane, int i_design)
 {
+    swarm *s = solver;
     const hf_model *m = s->v->model;
     hf_evaluate_prepare(s->v, s->design_N + (size_t)i_design * (size_t)m->n_gene, s->w);
     memcpy(s->w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double)); /* the support rows count */
     hf_lane_put(s->plan, s->w, lane, s->lanes);
-    s->design[lane] = i_design;
     s->iterations[lane] = 0;
     s->psi_before_m[lane] = (double)NAN;
+}
+
+static void look(void *solver)
+{
+    swarm *s = solver;
+    hf_lane_solve(s->plan, s->lanes);
+    hf_lane_measure(s->plan, s->lanes, &s->now);
+    if (s->stop == HF_STOP_RMS_CHANGE)
+        hf_lane_psi(s->plan, s->lanes, &s->now);
+    else
+        hf_lane_residual(s->plan, s->lanes, &s->now);
 }
 
 /* HF_OK, or why there is no shape in this lane. */
@@ -53,58 +64,45 @@ static hf_stop_reason stop_reason(swarm *s, const hf_lane_measures *now, int lan
     return s->iterations[lane] < form->max_iterations ? HF_STOPPED_NONE : HF_STOPPED_MAX_ITERATIONS;
 }
 
-/* One more shape in this lane: store its result when it is the last. Returns 1 when the lane has become free. */
-static int settle(swarm *s, const hf_lane_measures *now, int lane)
+/* One more shape in this lane: store its result when it is the last. */
+static bool settle(void *solver, int lane, int i_design)
 {
-    hf_form_result *r = s->result + s->design[lane];
+    swarm *s = solver;
+    hf_form_result *r = s->result + i_design;
     s->iterations[lane]++;
-    hf_status status = health(s, now, lane);
-    hf_stop_reason reason = status == HF_OK ? stop_reason(s, now, lane) : HF_STOPPED_ILL_POSED;
-    if (reason == HF_STOPPED_NONE) return 0;
+    hf_status status = health(s, &s->now, lane);
+    hf_stop_reason reason = status == HF_OK ? stop_reason(s, &s->now, lane) : HF_STOPPED_ILL_POSED;
+    if (reason == HF_STOPPED_NONE) return false;
     if (status == HF_OK) {
-        const double *design_N = s->design_N + (size_t)s->design[lane] * (size_t)s->v->model->n_gene;
-        hf_evaluate_prepare(s->v, design_N, s->w);
+        hf_evaluate_prepare(s->v, s->design_N + (size_t)i_design * (size_t)s->v->model->n_gene, s->w);
         hf_lane_get(s->plan, s->lanes, lane, s->w);
         hf_form_accept(s->v->model, s->v->form, reason, s->iterations[lane], s->w, r);
     } else {
         hf_form_refuse(status, s->iterations[lane], r);
     }
     hf_evaluate_judge(s->v, r);
-    s->design[lane] = -1;
-    return 1;
+    return true;
+}
+
+static void step(void *solver)
+{
+    swarm *s = solver;
+    hf_lane_update(s->lanes);
 }
 
 void hf_swarm_run(const hf_evaluator *evaluator, const hf_lane_plan *plan, hf_lane_workspace *lanes,
-                  hf_workspace *workspace, int (*next)(void *context), void *context, const double *design_N,
+                  hf_workspace *workspace, hf_lane_next *next, void *context, const double *design_N,
                   hf_form_result *result)
 {
-    swarm s = {evaluator, plan, lanes, workspace, design_N, result, HF_STOP_RESIDUAL, {0}, {0}, {0}};
-    if (evaluator->rule == HF_RULE_SEEDED) s.stop = HF_STOP_RMS_CHANGE;
-    hf_lane_measures now;
-    int n_busy = 0, more = 1;
-    for (int lane = 0; lane < HF_LANES; lane++) {
-        load(&s, lane, 0); /* an empty lane works on something harmless */
-        s.design[lane] = -1;
-    }
+    static const hf_lane_solver work = {load, look, settle, step};
+    swarm s = {.v = evaluator,
+               .plan = plan,
+               .lanes = lanes,
+               .w = workspace,
+               .design_N = design_N,
+               .result = result,
+               .stop = evaluator->rule == HF_RULE_SEEDED ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
+    hf_evaluate_prepare(evaluator, design_N, workspace);
     memcpy(lanes->law, workspace->law, (size_t)evaluator->model->n_cable); /* the same for all designs */
-    for (;;) {
-        for (int lane = 0; lane < HF_LANES && more; lane++) {
-            if (s.design[lane] >= 0) continue;
-            int i = next(context);
-            more = i >= 0;
-            if (!more) break;
-            load(&s, lane, i);
-            n_busy++;
-        }
-        if (n_busy == 0) return;
-        hf_lane_solve(plan, lanes);
-        hf_lane_measure(plan, lanes, &now);
-        if (s.stop == HF_STOP_RMS_CHANGE)
-            hf_lane_psi(plan, lanes, &now);
-        else
-            hf_lane_residual(plan, lanes, &now);
-        for (int lane = 0; lane < HF_LANES; lane++)
-            if (s.design[lane] >= 0) n_busy -= settle(&s, &now, lane);
-        hf_lane_update(lanes);
-    }
+    hf_lane_schedule_run(&work, &s, next, context);
 }

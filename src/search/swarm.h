@@ -5,12 +5,13 @@
 #define HIFDM_SWARM_H
 
 #include "search/lane.h"
+#include "search/lane_schedule.h"
 #include <hifdm/evaluate.h>
 
 /* Evaluate the designs whose indices `next(context)` hands out, until it returns -1. design_N [][n_gene], result []. A
  * refused design has its status, but no culprit. */
 void hf_swarm_run(const hf_evaluator *evaluator, const hf_lane_plan *plan, hf_lane_workspace *lanes,
-                  hf_workspace *workspace, int (*next)(void *context), void *context, const double *design_N,
+                  hf_workspace *workspace, hf_lane_next *next, void *context, const double *design_N,
                   hf_form_result *result);
 
 #endif

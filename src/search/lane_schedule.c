@@ -1,0 +1,33 @@
+#include "search/lane_schedule.h"
+
+#include "search/lane.h"
+
+void hf_lane_schedule_run(const hf_lane_solver *work, void *solver, hf_lane_next *next, void *context)
+{
+    int design[HF_LANES], n_busy = 0; /* -1: the lane is free */
+    bool has_more = true;
+    for (int lane = 0; lane < HF_LANES; lane++) {
+        work->load(solver, lane, 0);
+        design[lane] = -1;
+    }
+    for (;;) {
+        for (int lane = 0; lane < HF_LANES && has_more; lane++) {
+            if (design[lane] >= 0) continue;
+            int i = next(context);
+            has_more = i >= 0;
+            if (!has_more) break;
+            work->load(solver, lane, i);
+            design[lane] = i;
+            n_busy++;
+        }
+        if (n_busy == 0) return;
+        work->look(solver);
+        for (int lane = 0; lane < HF_LANES; lane++) {
+            if (design[lane] < 0 || !work->settle(solver, lane, design[lane])) continue;
+            design[lane] = -1;
+            n_busy--;
+        }
+        if (n_busy == 0 && !has_more) return;
+        work->step(solver);
+    }
+}
