@@ -135,6 +135,22 @@ grep -HnoE 'METHOD(\.md)? section [0-9]+|METHOD[^:]*\bM[0-9]+\b' -- $c_files | w
     done
 done | report
 
+# What the documents name is there: hf_... and HF_... in a source, files such as search/batch.c, links to other files.
+# hf_module_verb, hf_noun and names with a part in capitals (hf_cmd_NAME) stand for many.
+documents="README.md src/ARCHITECTURE.md src/METHOD.md src/MANUAL.md .github/CONTRIBUTING.md"
+grep -ohE '\b(hf|HF)_[A-Za-z0-9_]+' $source_files | sort -u >"$work/names"
+grep -HnoE '\b(hf|HF)_[A-Za-z0-9_]+\b' -- $documents | grep -vE ':(hf_module_verb|hf_noun|hf_.*[A-Z].*)$' |
+    while IFS=: read -r file line name; do
+        grep -qxF -- "$name" "$work/names" || echo "$file:$line: there is no $name"
+    done | report
+grep -HnoE '`([a-z0-9_]+/)*[a-z0-9_]+\.(c|h|py|sh)`' -- $documents | tr -d '`' | while IFS=: read -r file line name; do
+    [ -n "$(ls -d "$name" "src/$name" "include/$name" src/*/"$name" include/hifdm/"$name" 2>/dev/null)" ] ||
+        echo "$file:$line: there is no file $name"
+done | report
+grep -HnoE '\]\([^)#:]+[)#]' -- $documents | sed -E 's/\]\(([^)#]+)[)#]$/\1/' | while IFS=: read -r file line name; do
+    [ -e "$(dirname "$file")/$name" ] || echo "$file:$line: a link to $name, which is not there"
+done | report
+
 # ---- Calls that belong to few modules --------------------------------------------------------------------------------
 # Looked for in the code without its comments and literals, laid out as file:line:code.
 awk -v sq="'" '
