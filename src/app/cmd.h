@@ -1,5 +1,5 @@
-/* cmd - the commands of `hifdm`. The file cmd_NAME.c holds the command NAME: its row and what it does. A new command is
- * such a file and its name in HF_COMMANDS; its options are rows in options.c. */
+/* cmd - the commands of `hifdm`. The file cmd_NAME.c holds the command NAME: its row and its function. A new command
+ * needs such a file and its name in HF_COMMANDS; its options are rows in options.c. */
 #ifndef HIFDM_CMD_H
 #define HIFDM_CMD_H
 
@@ -13,9 +13,9 @@ typedef struct {
     const char *name;
     const char *argument; /* "CASE"; "A B": two files; "[COMMAND]": may be left out; NULL: none */
     const char *help;     /* one line */
-    const char *about;    /* what the options do not tell, a paragraph; NULL: nothing */
+    const char *about;    /* a paragraph on what the help on options does not say; NULL: none */
     const char *examples; /* command lines, separated by '\n'; NULL: none */
-    bool uses_threads;    /* LAPACK and OpenMP are set up for options->threads before it runs */
+    bool uses_threads;    /* main sets up LAPACK and OpenMP for options->threads before it calls run */
     /* Output for people or programs goes to `file`. The returned status becomes the exit status of the program. */
     hf_status (*run)(const hf_options *options, FILE *file, hf_messages *messages);
 } hf_command;

@@ -1,4 +1,5 @@
-/* `hifdm check`: is a case valid, and what would a run of it do? The optimisation is not run. */
+/* `hifdm check` says whether a case is valid and what a run of it would do: which solvers would run, the memory they
+ * would take, and about how long. Only short trials are run, never the optimisation. */
 #include "app/cmd.h"
 
 #include "app/options.h"
@@ -12,9 +13,10 @@
 #include <hifdm/batch.h>
 #include <hifdm/run.h>
 
-#define TRIAL_S 1.0 /* how long a form-finding is tried */
+#define TRIAL_S 1.0 /* wall-clock time that the trial of form-finding may take, about */
 
-/* How many cables are under each law in force; laws after the paper's three only when some cable has them. */
+/* Prints how many cables obey each law. The paper's three laws are always named, the others only when a cable has them.
+ */
 static void print_laws(const hf_model *m, FILE *f)
 {
     int count[HF_N_LAW] = {0};
@@ -45,7 +47,7 @@ static void print_scene(const hf_problem *p, FILE *f)
     if (m->n_chain) fprintf(f, "  note          %d straight chains of length-controlled cables\n", m->n_chain);
 }
 
-/* What the truss costs. It is built and condensed once more, for the time. */
+/* Prints size and cost of the truss. The truss is built and condensed a second time to measure how long that takes. */
 static hf_status print_truss(const hf_problem *p, FILE *f, hf_messages *messages)
 {
     const hf_carrier *c = &p->carrier;
@@ -105,7 +107,8 @@ static void print_allocation(const char *title, const char *what, double bytes, 
     fprintf(f, "  %-13s %-38s %s\n", title, what, bytes > 0 ? text : without);
 }
 
-/* Bytes of Levenberg-Marquardt's sensitivities: right-hand sides, twice with a truss, and the packed matrix. */
+/* Bytes that Levenberg-Marquardt needs for its sensitivities: the right-hand sides (twice as many with a truss) and the
+ * packed matrix. 0 when it does not apply. */
 static double polish_bytes(const hf_evaluator *v)
 {
     const hf_model *m = v->model;
@@ -115,7 +118,7 @@ static double polish_bytes(const hf_evaluator *v)
     return 24.0 * m->n_leader * m->n_free * (m->n_attachment ? 2 : 1) + (double)(matrix + lanes);
 }
 
-/* Bytes of what a population's threads would share, and of the lanes of each thread. */
+/* Bytes that the evaluation of a population would need: `shared` once for all threads, `lanes` for each thread. */
 static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lanes)
 {
     int has_lanes, solver = hf_batch_solver(v, &has_lanes);
@@ -131,7 +134,7 @@ static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lan
     return HF_OK;
 }
 
-/* What a run would allocate, and what it would not. */
+/* Prints what a run would allocate. Items that it would not allocate are listed with the reason. */
 static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int threads, FILE *f)
 {
     const hf_model *m = &p->model;
@@ -161,8 +164,8 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
     return HF_OK;
 }
 
-/* A first generation is bred and evaluated in one thread, timed; the cost of one of its designs times the largest
- * number of evaluations is what is printed. */
+/* Evaluates the first generation in one thread and measures the time. The time printed for the whole optimisation is
+ * that of one design times the largest number of evaluations, divided by the number of threads. */
 static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int threads, const hf_population *ga,
                                FILE *f)
 {
@@ -184,7 +187,7 @@ static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int t
     return status;
 }
 
-/* Two iterations of Levenberg-Marquardt from the base design. */
+/* Runs two iterations of Levenberg-Marquardt from the base design and prints the time of one. */
 static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const hf_population *ga, FILE *f)
 {
     hf_polish_result r;
@@ -211,7 +214,7 @@ static hf_status print_optimize_time(hf_problem *p, const hf_evaluator *v, int t
     return status;
 }
 
-/* Form-finding is tried: a few iterations tell what one costs, and as many as fit into TRIAL_S are then done. */
+/* Tries the form-finding: three iterations measure what one costs, then as many are done as fit into TRIAL_S. */
 static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, FILE *f, hf_messages *messages)
 {
     hf_form_settings form = p->settings.form;
@@ -256,7 +259,7 @@ static hf_status check(hf_problem *p, const hf_options *options, FILE *f, hf_mes
     return print_time(p, optimizes ? &v : NULL, threads, f, messages);
 }
 
-/* HF_OK; HF_BAD_CASE with all faults; an ill-posed status when the trial finds the scene ill-posed. */
+/* Returns HF_OK, HF_BAD_CASE with all faults, or an ill-posed status when the trial finds the scene ill-posed. */
 static hf_status command_check(const hf_options *options, FILE *file, hf_messages *messages)
 {
     hf_problem p = {0};

@@ -1,4 +1,4 @@
-/* `hifdm diff`: two result files, data set by data set. */
+/* `hifdm diff` compares two result files, data set by data set. */
 #include "app/cmd.h"
 
 #include "app/options.h"

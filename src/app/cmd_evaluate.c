@@ -1,10 +1,10 @@
-/* `hifdm evaluate`: a table of designs, for optimisers and surveys of the user's own.
+/* `hifdm evaluate` evaluates a table of designs. It serves optimisers and parameter studies that the user wrote.
  *
- * in : a column for each boundary cable with a free end, named by its id, in any order; optionally `id`, which names
- *      rows. One design per row: boundary pretensions in N.
- * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations, a row for each design in the
- *      same order, with 17 significant digits and nan where there is no value. Without an id column rows are numbered
- *      from 1.
+ * in : one design per row. Each boundary cable with a free end has a column, named by the cable's id, with its
+ *      pretension in N; the columns may be in any order. An optional column `id` names the rows.
+ * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations. One row per design, in the
+ *      order of the input, with 17 significant digits; a missing value is nan. Without an id column the rows are
+ *      numbered from 1.
  *
  * Contents: the table - the base design - evaluation - writing - together */
 #include "app/cmd.h"
@@ -27,7 +27,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define COLUMN_SPARE 64 /* columns that a table may have beyond one per cable */
+#define COLUMN_SPARE 64 /* columns that a table may have besides one per gene; more are refused when it is read */
 
 typedef struct {
     hf_problem problem;
@@ -70,7 +70,7 @@ static hf_status name_columns(job *j, hf_messages *messages)
     return HF_OK;
 }
 
-/* What the user calls a row, or NULL. */
+/* The id that the user gave to a row, or NULL without an id column. */
 static const char *row_id(const job *j, int row)
 {
     int column = j->where[j->problem.model.n_gene];
@@ -96,7 +96,7 @@ static hf_status read_table(job *j, const char *path, hf_messages *messages)
     int n_gene = j->problem.model.n_gene;
     hf_csv *t = &j->table;
     hf_status status = hf_csv_read(path, j->problem.scene.n_cable + COLUMN_SPARE, t, messages);
-    /* with faults in some lines the others are still looked at, so that one run shows them all */
+    /* a fault in one line does not end the reading: one run reports the faults of all lines */
     if (status == HF_NO_MEMORY || t->n_row == 0 || t->n_fault > HF_CSV_FAULT_MAX) return status;
     status = hf_csv_find_columns(t, j->name, n_gene + 1, n_gene, j->where);
     if (t->n_fault > HF_CSV_FAULT_MAX) return status;
@@ -111,7 +111,7 @@ static hf_status read_table(job *j, const char *path, hf_messages *messages)
 
 /* ---- the base design ---- */
 
-/* The form-finding, from whose tensions and force densities designs are solved. */
+/* Runs the form-finding. The solve of each design starts from its tensions and force densities. */
 static hf_status find_base(job *j, hf_messages *messages)
 {
     hf_problem *p = &j->problem;
@@ -123,7 +123,8 @@ static hf_status find_base(job *j, hf_messages *messages)
 
 /* ---- evaluation ---- */
 
-/* As `hifdm run` evaluates its individuals, to the same bits. The cap on the boundary ratio is the optimisation's. */
+/* Evaluates the designs exactly as `hifdm run` evaluates its individuals: the results have the same bits. The cap on
+ * the boundary ratio is that of the section optimize. */
 static hf_status evaluate(job *j, int threads, hf_messages *messages)
 {
     double start_s = hf_clock_s();
@@ -143,7 +144,7 @@ static hf_status evaluate(job *j, int threads, hf_messages *messages)
 
 static void write_number(double value, FILE *f)
 {
-    if (isnan(value)) /* whose sign printf would show */
+    if (isnan(value)) /* printf would show the sign of a NaN */
         fputs(",nan", f);
     else
         fprintf(f, ",%.17g", value);
@@ -245,7 +246,8 @@ static void print_json(const job *from, const char *path, hf_status status, cons
 
 /* ---- together ---- */
 
-/* Told before the work: a name that is taken, is an input, or is in a folder that cannot be written. */
+/* Refuses an output name before the work begins: one that exists, that is an input, or whose folder cannot be written.
+ */
 static hf_status check_output(const job *j, const hf_options *o, const char *path, hf_messages *messages)
 {
     char folder[HF_OUTPUT_SIZE];
@@ -286,10 +288,10 @@ static hf_status check_options(const hf_options *o, hf_messages *messages)
     return HF_OK;
 }
 
-/* Evaluates options->designs into options->output, or into `file` without one; or writes options->template_path. A line
- * for people or, with options->json, one object about it goes to `file`. HF_OK also when designs are infeasible;
- * HF_BAD_CASE for a faulty case or table, HF_EXISTS, HF_IO, HF_NO_MEMORY, or the status of a form-finding that failed.
- */
+/* Evaluates options->designs and writes the table to options->output, or to `file` when no output is given; with
+ * options->template_path it writes an empty table instead. `file` also gets a line for people or, with options->json,
+ * one JSON object. HF_OK also when designs are infeasible; HF_BAD_CASE for a faulty case or table, HF_EXISTS, HF_IO,
+ * HF_NO_MEMORY, or the status of a form-finding that failed. */
 static hf_status command_evaluate(const hf_options *options, FILE *file, hf_messages *messages)
 {
     HF_TRY(check_options(options, messages));

@@ -1,4 +1,4 @@
-/* `hifdm export`: a result in the formats of the table of exporters (out/export.h). */
+/* `hifdm export` writes a result in the formats that the table of exporters lists (out/export.h). */
 #include "app/cmd.h"
 
 #include "app/options.h"
@@ -15,7 +15,7 @@ static void list_exporters(char *text, size_t size)
     }
 }
 
-/* At least one format, and with --stage one that shows a single shape. */
+/* Checks that at least one format is asked for, and with --stage at least one format that shows a single shape. */
 static hf_status check_request(const hf_options *o, hf_messages *messages)
 {
     char list[512];

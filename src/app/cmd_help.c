@@ -1,4 +1,4 @@
-/* `hifdm help`: the overview and the help on one command; dispatches to the other forms. */
+/* `hifdm help` prints the overview, or the help on one command; with --man or --bash it calls the other forms. */
 #include "app/cmd_help.h"
 
 #include <string.h>
@@ -15,7 +15,8 @@ const struct hf_help_exit hf_help_exit_table[HF_HELP_N_EXIT] = {
 
 #define WIDTH 100
 
-/* Words of `text` from `column` on, in lines up to WIDTH that begin at `indent`. */
+/* Prints the words of `text` in lines of at most WIDTH characters. The first line begins at `column`, the others at
+ * `indent`. */
 static void wrap(const char *text, int indent, int column, FILE *f)
 {
     for (const char *p = text; *p;) {

@@ -1,5 +1,5 @@
-/* cmd_help - what the forms of `hifdm help` share. All of them are made from the tables of commands, of options and of
- * the keys of a case file. */
+/* cmd_help - what the three forms of `hifdm help` share: text, manual page, completion. All three are made from the
+ * tables of commands, of options, and of the keys of a case file. */
 #ifndef HIFDM_CMD_HELP_H
 #define HIFDM_CMD_HELP_H
 
@@ -12,7 +12,7 @@ extern const struct hf_help_exit {
     const char *code, *meaning;
 } hf_help_exit_table[HF_HELP_N_EXIT];
 
-/* The manual page, for man(1), and the completion for bash. Write errors stay with the stream. */
+/* Write the manual page for man(1), and the completion script for bash. The caller checks the stream for errors. */
 void hf_help_man(FILE *file);
 void hf_help_bash(FILE *file);
 

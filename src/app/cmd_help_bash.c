@@ -1,4 +1,4 @@
-/* `hifdm help --bash`: the completion for bash. */
+/* `hifdm help --bash` prints the completion script for bash. */
 #include "app/cmd_help.h"
 
 #include <hifdm/config.h>
@@ -26,7 +26,7 @@ static const char bash_head[] = "# Completion of hifdm for bash, made by `hifdm 
                                 "    if [ \"$COMP_CWORD\" = 1 ]; then\n"
                                 "        mapfile -t COMPREPLY < <(compgen -W '";
 
-/* Bash takes --name=value and KEY=VALUE apart at the '='. */
+/* Bash splits --name=value and KEY=VALUE into words at the '='. The script has to put them together again. */
 static const char bash_equals[] = "' -- \"$cur\")\n"
                                   "        return\n"
                                   "    fi\n"
@@ -56,7 +56,7 @@ static void bash_commands(FILE *f)
         fprintf(f, "%s%s", i ? " " : "", hf_command_table[i]->name);
 }
 
-/* What may stand behind an option; a number is nobody's to guess. */
+/* Prints what may follow an option: files, folders or words. For a number nothing is proposed. */
 static void bash_value(const char *argument, FILE *f)
 {
     if (!strcmp(argument, "FILE")) {

@@ -1,10 +1,11 @@
-/* `hifdm help --man`: the manual page. */
+/* `hifdm help --man` prints the manual page, in the macros of man(7). */
 #include "app/cmd_help.h"
 
 #include <hifdm/config.h>
 #include <hifdm/store.h>
 
-/* Text as troff takes it: no request at the start of a line, a '-' that can be copied, lists that may be broken. */
+/* Writes text escaped for troff: no line begins with a request, '-' stays a plain hyphen that can be copied, and lists
+ * of words may be broken between lines. */
 static void put_roff(const char *text, FILE *f)
 {
     int at_start = 1;
@@ -39,7 +40,7 @@ static void put_roff(const char *text, FILE *f)
     }
 }
 
-/* "before", bold, "between", italic: a line of a page. */
+/* Writes one line of the page: `before`, a word in bold, `between`, a word in italics. */
 static void put_line(const char *before, const char *bold, const char *between, const char *italic, FILE *f)
 {
     put_roff(before, f);

@@ -1,4 +1,4 @@
-/* `hifdm merge`: the points of a study in one file. */
+/* `hifdm merge` collects the points of a study in one file. */
 #include "app/cmd.h"
 
 #include "app/study_files.h"

@@ -1,4 +1,5 @@
-/* `hifdm recover`: an unfinished result with the generations of its journal, without running on. */
+/* `hifdm recover` adds the generations in the journal of an unfinished result to the result file. It does not continue
+ * the run. */
 #include "app/cmd.h"
 
 #include "app/options.h"

@@ -1,4 +1,4 @@
-/* `hifdm report`: a result or a merged study as one HTML page. */
+/* `hifdm report` shows a result, or a merged study, as one HTML page. */
 #include "app/cmd.h"
 
 #include "app/options.h"

@@ -1,4 +1,4 @@
-/* `hifdm run`: one case, from its file to a result file. */
+/* `hifdm run` computes one case and writes its result file. */
 #include "app/cmd.h"
 
 #include "app/options.h"

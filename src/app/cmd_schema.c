@@ -1,4 +1,4 @@
-/* `hifdm schema`: the reference of the case file, as a commented YAML file. */
+/* `hifdm schema` prints the reference of the case file: a YAML file with every key and comments. */
 #include "app/cmd.h"
 
 #include <hifdm/config.h>

@@ -1,4 +1,4 @@
-/* `hifdm show`: the summary of a result file. */
+/* `hifdm show` prints the summary of a result file. */
 #include "app/cmd.h"
 
 #include "app/options.h"

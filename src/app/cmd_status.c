@@ -1,10 +1,10 @@
-/* `hifdm status`: how many points of a study are in which state, and why some failed. */
+/* `hifdm status` prints how many points of a study are in each state, and why points failed. */
 #include "app/cmd.h"
 
 #include "app/study_files.h"
 #include "base/json.h"
 
-#define FAILURES_SHOWN 10
+#define FAILURES_SHOWN 10 /* failed points that are named with their reasons; of the others the number is told */
 
 static void write_status_json(const hf_study *study, const hf_points *points, FILE *file)
 {

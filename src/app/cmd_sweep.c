@@ -1,4 +1,4 @@
-/* `hifdm sweep`: the points of a study that are missing, on all cores.
+/* `hifdm sweep` runs the missing points of a study, on all cores.
  * Contents: which points - one point - sweep */
 #include "app/cmd.h"
 
@@ -17,8 +17,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#define REFRESH_S 0.1 /* of the line on a terminal */
-#define LOG_S 60.0    /* between lines in a log */
+#define REFRESH_S 0.1 /* between two updates of the line on a terminal */
+#define LOG_S 60.0    /* between two lines in a log */
 
 /* ---- which points ---- */
 
@@ -31,13 +31,13 @@ typedef struct {
     int *todo;             /* [n_todo] points to run */
     int n_todo, threads;
     int n_failed_before;  /* points of this task that failed earlier and are left alone */
-    pthread_mutex_t lock; /* of all that follows */
+    pthread_mutex_t lock; /* protects all members below but fatal */
     FILE *progress;       /* NULL: say nothing */
-    int on_terminal;
+    bool on_terminal;
     int n_done, n_failed, n_elsewhere;
     double start_s, said_s;
     hf_messages *messages;
-    _Atomic hf_status fatal; /* rows cannot be written: no point may begin. Read without the lock */
+    _Atomic hf_status fatal; /* not HF_OK: rows cannot be written, so no point may begin; read without the lock */
 } sweep;
 
 static int environment_number(const char *name, int *value)
@@ -49,7 +49,8 @@ static int environment_number(const char *name, int *value)
     return 1;
 }
 
-/* --task and --tasks, or Slurm's array: its indices must be evenly spaced, or a part of the points had no task. */
+/* Which part of the points this process runs: by --task and --tasks, or by the index in a Slurm array. Indices of an
+ * array must be evenly spaced, else some points would belong to no task. */
 static hf_status choose_task(const hf_options *o, int *task, int *tasks, hf_messages *messages)
 {
     int id = 0, count = 1, low = 0, high = 0, step = 1;
@@ -102,7 +103,7 @@ static hf_status choose_points(sweep *w, const hf_points *points, int task, int 
 
 /* ---- one point ---- */
 
-/* The first error in one line, without "error: ". */
+/* Writes the first error message as one line, without "error: " in front. */
 static void first_error(const hf_messages *said, hf_status status, char reason[1024])
 {
     const char *from = said->text;
@@ -153,12 +154,12 @@ static int must_stop(const sweep *w)
     return *w->stop_requested || w->fatal != HF_OK;
 }
 
-/* A point that was run, while its file is on its way to the disk. */
+/* A point whose computation has ended and whose result file is being written to the disk. */
 typedef struct {
     sweep *w;
     int i;
     hf_status status;
-    hf_store *store; /* NULL: none, or it has its name already */
+    hf_store *store; /* NULL: there is no file, or it already has its final name */
     hf_messages said;
     hf_summary summary;
 } finished_point;
@@ -189,7 +190,7 @@ static void run_point(void *context, int k)
     const char *id = w->study->id[i];
     if (must_stop(w)) return;
     int is_ours = hf_ledger_claim(&w->ledger, id);
-    if (!is_ours || hf_ledger_is_finished(&w->ledger, w->study, i)) { /* since this sweep looked */
+    if (!is_ours || hf_ledger_is_finished(&w->ledger, w->study, i)) { /* another sweep has finished it meanwhile */
         if (is_ours) hf_ledger_release(&w->ledger, id);
         pthread_mutex_lock(&w->lock);
         w->n_elsewhere++;

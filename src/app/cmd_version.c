@@ -1,4 +1,4 @@
-/* `hifdm version`. */
+/* `hifdm version` prints the version of the program. */
 #include "app/cmd.h"
 
 #include <hifdm/store.h>

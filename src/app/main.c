@@ -1,4 +1,5 @@
-/* main - from the command line to an exit status. What a command does stands in its own file, cmd_NAME.c. */
+/* main - reads the command line, runs the command, and returns the exit status. The file cmd_NAME.c holds the command
+ * NAME. */
 #include "app/options.h"
 
 #include "linalg/band.h"
@@ -11,13 +12,14 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The OpenMP library and OpenBLAS read the environment before main begins, so the program starts itself once more with
- * what suits it. What the user has set stays; where the environment cannot be set, the program goes on as it is.
+/* Sets the environment for OpenMP and OpenBLAS and starts the program a second time, because both libraries read the
+ * environment before main begins. Variables that the user has set are kept; when a variable cannot be set, the program
+ * continues as it is.
  *
- * OpenMP: a generation takes less than a millisecond. The default, threads that spin for long while they wait for one
- * that does not run, made runs beside others 30 times slower on two cores; threads that sleep at once lose 10 to 20 %
- * of a run on an idle machine. Spinning for some microseconds avoids both.
- * OpenBLAS: its own threads are not used here, and spin while the program begins. */
+ * OpenMP: a generation takes less than a millisecond. By default waiting threads spin for long; when the machine also
+ * runs other programs, the thread they wait for may not be running, and runs were 30 times slower on two cores. Threads
+ * that sleep at once lose 10 to 20 % of a run on an idle machine. Spinning for some microseconds avoids both.
+ * OpenBLAS: its own threads are not used here, but would spin while the program starts. */
 static void wait_quietly(char **argv)
 {
     char path[HF_PATH_SIZE];

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define THREADS_MAX 4096
-#define TASKS_MAX 1000000
+#define THREADS_MAX 4096  /* of --threads; larger numbers are taken for a slip of the pen */
+#define TASKS_MAX 1000000 /* of --tasks */
 
 /* ---- reading a value: the functions of the table ---- */
 
@@ -103,7 +103,7 @@ static hf_status read_tasks(const hf_option *option, const char *value, hf_optio
     return HF_OK;
 }
 
-/* "failed,missing" -> bits; 0 when a word is unknown. */
+/* Turns a list of states, "failed,missing", into bits 1 << hf_point_state. 0 when a word is unknown. */
 static unsigned states_of(const char *text)
 {
     static const hf_point_state state[] = {HF_POINT_MISSING, HF_POINT_FAILED, HF_POINT_OUTDATED};
@@ -232,7 +232,7 @@ bool hf_option_goes_with(const hf_option *option, const hf_command *command)
 
 /* ---- reading a command line ---- */
 
-/* `where`: behind 'hifdm help', to have them listed. */
+/* `where`: what follows 'hifdm help' in the command that lists the known words. */
 static hf_status unknown(const char *kind, const char *word, const char *const *names, int n_name, const char *where,
                          hf_messages *messages)
 {
@@ -246,7 +246,7 @@ static bool needs_argument(const hf_command *command)
     return command->argument && *command->argument != '[';
 }
 
-/* "A B" */
+/* Commands with two arguments have "A B" in their row. */
 static bool takes_two(const hf_command *command)
 {
     return command->argument && strchr(command->argument, ' ');

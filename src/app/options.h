@@ -1,4 +1,5 @@
-/* options - the command line. The table of options makes the reading, the help, the manual page and the completion. */
+/* options - the options of the command line. One table of rows serves the reading of the command line, the help, the
+ * manual page and the completion for bash. */
 #ifndef HIFDM_OPTIONS_H
 #define HIFDM_OPTIONS_H
 
@@ -16,7 +17,7 @@ struct hf_options {
     const char *file;                     /* the CASE or FILE, NULL for commands without one */
     const char *second;                   /* the other FILE of diff */
     const char *output;                   /* -o */
-    const char *export_to[HF_N_EXPORTER]; /* where each exporter writes, NULL: not asked for */
+    const char *export_to[HF_N_EXPORTER]; /* file or folder by exporter; NULL: not asked for */
     const char *designs, *template_path;  /* --designs, --template */
     const char *stage;                    /* --stage */
     const char **set;                     /* [n_set] --set key=value, owned */
@@ -45,7 +46,7 @@ struct hf_option {
     const char *commands; /* names of the commands that take it, separated by blanks; NULL: all */
     hf_status (*read)(const hf_option *option, const char *value, hf_options *options, hf_messages *messages);
     size_t offset;               /* in hf_options, for `read` */
-    const hf_exporter *exporter; /* of the option that asks for it, which names the option and its argument */
+    const hf_exporter *exporter; /* NULL, or the exporter whose row gives name, argument and help */
 };
 
 extern const int hf_n_option;

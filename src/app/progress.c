@@ -7,7 +7,7 @@
 
 const char *const hf_progress_word[6] = {"auto", "none", "line", "log", "jsonl", NULL};
 static const char *const phase_word[] = {"form", "optimize", "polish"};
-static const double interval_s[] = {0, 0, 0.1, HF_PROGRESS_LOG_S, 1}; /* by hf_progress_mode */
+static const double interval_s[] = {0, 0, 0.1, HF_PROGRESS_LOG_S, 1}; /* between two lines, by hf_progress_mode */
 
 hf_progress hf_progress_on(FILE *file, hf_progress_mode mode)
 {
@@ -15,14 +15,14 @@ hf_progress hf_progress_on(FILE *file, hf_progress_mode mode)
     return (hf_progress){.file = file, .mode = mode};
 }
 
-/* Evaluations of this process per second. */
+/* Evaluations per second, counting only those of this process. */
 static double rate_per_s(const hf_run_progress *now)
 {
     return now->elapsed_s > 0 ? (double)now->evaluations / now->elapsed_s : 0;
 }
 
-/* An upper bound, since the optimisation may stagnate before its last generation. Generations of an earlier process are
- * not counted: they took none of the elapsed time. */
+/* An upper bound on the remaining time: the optimisation may stop before its last generation. Generations of an earlier
+ * process are not counted, because the elapsed time does not contain them. */
 static double left_s(const hf_run_progress *now)
 {
     int done = now->generation - now->first_generation;

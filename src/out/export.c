@@ -1,4 +1,4 @@
-/* What the exporters share, and their table. */
+/* The table of exporters, and the functions that they share. */
 #include "out/export.h"
 
 #include <errno.h>

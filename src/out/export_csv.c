@@ -1,10 +1,10 @@
-/* A stored shape as CSV files, in the folder of --csv (made if it is not there):
+/* Writes a stored shape as CSV files into the folder of --csv, which is made if it does not exist:
  *
  * nodes.csv : id,x_m,y_m,z_m,x0_m,y0_m,z0_m,role   (found and theoretical position)
  * cables.csv: id,i,j,group,law,length_m,tension_N,q_N_per_m
- * With a truss also truss_nodes.csv and members.csv as truss_import reads them; displacements and end forces stand
- * behind those columns when they are stored.
- * 17 significant digits: reading them back gives the same bits. */
+ * With a truss also truss_nodes.csv and members.csv, in the columns that truss_import reads; when the result has
+ * displacements and end forces, they follow in further columns.
+ * Numbers have 17 significant digits, so reading them back gives the same bits. */
 #include "out/export.h"
 
 #include "base/csv.h"
@@ -109,7 +109,7 @@ static void write_members(const void *context, FILE *f)
     }
 }
 
-/* `path`: the file `name` in the folder. HF_EXISTS when it is there and not to be replaced. */
+/* Sets `path` to the file `name` in the folder. HF_EXISTS when the file exists and must not be replaced. */
 static hf_status claim_in_folder(const hf_export_request *o, const char *name, char path[PATH_SIZE],
                                  hf_messages *messages)
 {
@@ -142,7 +142,7 @@ static hf_status export_shape(const hf_export_request *o, hf_scene *scene, hf_sh
     char nodes[PATH_SIZE], cables[PATH_SIZE];
     HF_TRY(hf_export_read(o, &summary, scene, shape, &word, messages));
     HF_TRY(hf_export_folder(o->output, messages));
-    HF_TRY(claim_in_folder(o, "nodes.csv", nodes, messages)); /* both before either is written */
+    HF_TRY(claim_in_folder(o, "nodes.csv", nodes, messages)); /* both names are checked before either file is written */
     HF_TRY(claim_in_folder(o, "cables.csv", cables, messages));
     const view both = {scene, shape};
     HF_TRY(hf_file_out_write(nodes, write_nodes, &both, messages));

@@ -1,17 +1,18 @@
-/* What the workshop needs to make a net, from a stored shape. For --cutlist NAME.csv three CSV files:
+/* Writes what a workshop needs to make the net of a stored shape. --cutlist NAME.csv gives three CSV files:
  *
  * NAME.csv       : id,i,j,group,tension_N,length_m,l0_m,elongation_m,EA_N,adjustment_m,law,value
  *                  l0_m          unstressed length, length_m / (1 + T/EA); a slack cable of law length or elastic has
  *                                the length that its law gives
  *                  elongation_m  length_m - l0_m
- *                  adjustment_m  l0_m less the unstressed length, under the same tension, of a cable cut for the
- *                                theoretical shape: what a turnbuckle must give (> 0) or take up (< 0) in a net that
- *                                was cut from the drawing
- *                  law, value    "elastic" and l0_m again: NAME.csv is also the cables.csv of the net as built
- * NAME_nodes.csv : id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]    where the jig holds each node; also a nodes.csv
+ *                  adjustment_m  l0_m minus the unstressed length of a cable that has the same tension in the
+ *                                theoretical shape: by how much a turnbuckle must lengthen (> 0) or shorten (< 0)
+ *                                the cable in a net that was cut from the drawing
+ *                  law, value    "elastic" and l0_m again, so that NAME.csv can be imported as cables.csv of the net
+ *                                as built
+ * NAME_nodes.csv : id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]    where the jig holds each node; can be imported as nodes.csv
  * NAME_totals.csv: group,cables,l0_m,length_m,least_tension_N,largest_tension_N,least_adjustment_m,
- *                  largest_adjustment_m    by group, and for all
- * 17 significant digits: the net that is built from them has the stored shape. */
+ *                  largest_adjustment_m    a row for each group, and one for all cables
+ * Numbers have 17 significant digits, so the net imported from these files has the stored shape. */
 #include "out/export.h"
 
 #include "base/csv.h"
@@ -81,7 +82,7 @@ static void write_nodes(const void *context, FILE *f)
     }
 }
 
-/* Of one group, or of all (2). */
+/* Totals of the cables of one group; group 2: of all cables. */
 static void write_total(const view *v, int group, FILE *f)
 {
     int n = 0;
@@ -126,7 +127,7 @@ static hf_status demand_EA(const char *path, const hf_scene *s, hf_messages *mes
     return n[0] + n[1] ? HF_BAD_CASE : HF_OK;
 }
 
-/* NAME.csv -> NAME_nodes.csv, NAME_totals.csv */
+/* Makes the three names: NAME.csv, NAME_nodes.csv, NAME_totals.csv. */
 static hf_status name_files(const hf_export_request *o, char path[3][PATH_SIZE], hf_messages *messages)
 {
     static const char *const part[3] = {"", "_nodes", "_totals"};
@@ -146,7 +147,7 @@ static hf_status write_all(const hf_export_request *o, hf_scene *scene, hf_shape
     char path[3][PATH_SIZE];
     HF_TRY(hf_export_read(o, &summary, scene, shape, &word, messages));
     HF_TRY(demand_EA(o->file, scene, messages));
-    HF_TRY(name_files(o, path, messages)); /* all before any is written */
+    HF_TRY(name_files(o, path, messages)); /* all names are checked before any file is written */
     const view v = {scene, shape, hf_model_reference_N(scene, summary.pretension_N)};
     HF_TRY(hf_file_out_write(path[0], write_cables, &v, messages));
     HF_TRY(hf_file_out_write(path[1], write_nodes, &v, messages));
@@ -156,7 +157,7 @@ static hf_status write_all(const hf_export_request *o, hf_scene *scene, hf_shape
     return HF_OK;
 }
 
-/* HF_BAD_CASE when cables have no EA, with their group. */
+/* Checks that every cable has an EA: HF_BAD_CASE with the group of the cables that have none. */
 static hf_status export_cutlist(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
 {
     hf_scene scene = {0};

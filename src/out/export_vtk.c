@@ -1,14 +1,15 @@
-/* The shapes of a run for ParaView: VTKHDF 1.0 files of an unstructured grid of lines, read by VTK 9.1, ParaView 5.11
- * and newer. The folder of --vtk gets theoretical.hdf, form.hdf, and optimize.hdf and polish.hdf if the run has them.
+/* Writes the shapes of a run for ParaView: VTKHDF 1.0 files, each an unstructured grid of lines, which VTK 9.1,
+ * ParaView 5.11 and newer versions read. The folder of --vtk gets theoretical.hdf, form.hdf, and if the run has these
+ * shapes optimize.hdf and polish.hdf.
  *
- * Points and cells are in the order of the scene. Point data: role, load_N; of a found shape displacement_m (from the
- * theoretical shape) and its size deviation_m; normal_error_m, when the case asks for measures of the surface. Cell
- * data: group, law, length_m, EA_N; of a found shape tension_N, q_N_per_m, slack, length_change_m (from the theoretical
- * length). Words are numbers here: role 0 support, 1 inner, 2 edge; group 0 inner, 1 boundary; law 0 tension, 1 length,
- * 2 force_density, 3 elastic.
+ * Points and cells are in the order of the scene. Point data: role, load_N; a found shape also has displacement_m (from
+ * the theoretical shape), its size deviation_m, and, when the case asks for measures of the surface, normal_error_m.
+ * Cell data: group, law, length_m, EA_N; a found shape also has tension_N, q_N_per_m, slack, length_change_m (from the
+ * theoretical length). Words are stored as numbers: role 0 support, 1 inner, 2 edge; group 0 inner, 1 boundary; law
+ * 0 tension, 1 length, 2 force_density, 3 elastic.
  *
- * truss.hdf, of a run with one: points fixed (bit k: dof k is held), mass_kg, displacement_m, rotation_rad; cells unit,
- * joint, axial_force_N (tension > 0).
+ * A run with a truss also gives truss.hdf. Point data: fixed (bit k: dof k is held), mass_kg, displacement_m,
+ * rotation_rad; cell data: unit, joint, axial_force_N (tension > 0).
  *
  * Contents: a grid of lines - its file - the shapes of a run - the truss - together */
 #include "out/export.h"
@@ -25,12 +26,12 @@
 #include <string.h>
 
 #define PATH_SIZE 1200
-#define LINE_CELL 3 /* VTK's number for a line */
-#define FIELDS_MAX 12
+#define LINE_CELL 3   /* VTK's number of the cell type line */
+#define FIELDS_MAX 12 /* point or cell fields of one file; there is room for all that are added below */
 
 /* ---- a grid of lines ---- */
 
-/* What is drawn; values are borrowed. */
+/* A data field of the grid; `values` stay the caller's. */
 typedef struct {
     const char *name, *units;
     const hf_hdf5_kind *kind;
@@ -67,7 +68,7 @@ static void put_fields(hf_hdf5 *io, const char *path, const field *list, int n_f
     hf_hdf5_close(io, group);
 }
 
-/* The reader wants this one in ASCII. */
+/* VTK's reader accepts this attribute only as an ASCII string. */
 static void put_type(hf_hdf5 *io, hid_t group)
 {
     static const char word[] = "UnstructuredGrid";
@@ -83,7 +84,7 @@ static void put_type(hf_hdf5 *io, hid_t group)
     hf_hdf5_close(io, type);
 }
 
-/* What each cell is, which the reader wants in bytes. */
+/* Writes the type of each cell; VTK's reader expects one byte for each. */
 static void put_cell_types(hf_hdf5 *io, hid_t group, int n, const unsigned char *type)
 {
     hid_t space = -1, data_set = -1;
@@ -133,7 +134,7 @@ static hf_status write_grid(const char *path, const grid *g, int *offset, unsign
 
 /* ---- the shapes of a run ---- */
 
-/* What HDF5 files keep as bytes or not at all, by node or by cable. */
+/* Values by node or by cable that a scene or shape holds as bytes or not at all, converted to what VTK reads. */
 typedef struct {
     int *role, *group, *law, *slack, *offset;
     unsigned char *type;
@@ -179,7 +180,7 @@ static void fill(const hf_scene *s, const hf_shape *shape, const hf_summary *sum
     }
 }
 
-/* shape NULL: the theoretical one. */
+/* When shape is NULL, the grid is that of the theoretical shape. */
 static grid grid_of(const hf_scene *s, const hf_shape *shape, const hf_summary *summary, const scratch *t)
 {
     grid g = {.n_point = s->n_node, .n_line = s->n_cable, .end = s->end};
@@ -202,7 +203,7 @@ static grid grid_of(const hf_scene *s, const hf_shape *shape, const hf_summary *
     return g;
 }
 
-/* stage HF_STAGE_NONE: the theoretical shape. */
+/* Stage HF_STAGE_NONE stands for the theoretical shape. */
 static hf_status write_stage(const hf_export_request *o, int stage, const char *path, const hf_scene *scene,
                              const hf_summary *summary, scratch *t, hf_messages *messages)
 {
@@ -251,7 +252,7 @@ static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *state, 
     for (int e = 0; e < truss->n_member; e++) {
         t->unit[e] = truss->unit[e];
         t->joint[e] = truss->joint[e];
-        if (has_state) t->axial_force_N[e] = state->end_force[12 * (size_t)e + HF_TRUSS_DOF]; /* on end j */
+        if (has_state) t->axial_force_N[e] = state->end_force[12 * (size_t)e + HF_TRUSS_DOF]; /* of end j, along x */
     }
     add(g.point, n, "fixed", "", HF_KIND_INT, 1, t->fixed);
     add(g.point, n, "mass_kg", "kg", HF_KIND_REAL, 1, truss->mass_kg);
@@ -294,7 +295,7 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
     int has[5] = {1, hf_summary_has_best_shape(summary), summary->has_polish, 1, summary->has_truss};
     char path[5][PATH_SIZE];
     HF_TRY(hf_export_folder(o->output, messages));
-    for (int i = 0; i < 5; i++) { /* all before any is written */
+    for (int i = 0; i < 5; i++) { /* all names are checked before any file is written */
         if (snprintf(path[i], PATH_SIZE, "%s/%s.hdf", o->output, name[i]) >= PATH_SIZE)
             return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
         if (has[i]) HF_TRY(hf_export_claim(path[i], o->force, messages));

@@ -32,7 +32,7 @@ void hf_print_bytes(double bytes, char *text, size_t size)
     snprintf(text, size, i ? "%.1f %s" : "%.0f %s", bytes, unit[i]);
 }
 
-/* "4.2315", or "-" where there is none */
+/* Writes a ratio as "4.2315", or "-" when it has no value. */
 static const char *ratio(double value, char text[32])
 {
     if (isfinite(value))
@@ -51,7 +51,7 @@ static void print_result(const hf_form_result *r, FILE *f)
             ratio(r->inner_tension_ratio, inner), ratio(r->boundary_tension_ratio, boundary), r->residual_N);
 }
 
-/* Of one stage, when the case asks for it. */
+/* Prints the measures of the surface of one stage, when the case asks for them. */
 static void print_surface(const hf_summary *s, int stage, FILE *f)
 {
     const hf_surface_measures *m = &s->measures[stage];
@@ -85,7 +85,7 @@ static void print_optimize(const hf_summary *s, FILE *f)
         return;
     }
     fprintf(f, "  optimisation  psi %.4f mm", s->best.psi_m * 1e3);
-    if (isfinite(s->base_psi_m)) /* the same rule, so that only the tensions differ */
+    if (isfinite(s->base_psi_m)) /* evaluated under the rule of the optimisation, so that only the tensions differ */
         fprintf(f, ", %.2f %% below the %.4f mm of the form-finding's tensions",
                 100 * (1 - s->best.psi_m / s->base_psi_m), s->base_psi_m * 1e3);
     fprintf(f, "; found in generation %d\n", s->best_generation);
@@ -96,7 +96,7 @@ static void print_optimize(const hf_summary *s, FILE *f)
                 s->n_leader, s->n_gene);
     fprintf(f, "                %d generations, %ld evaluations (%ld infeasible)", s->generations, s->evaluations,
             s->infeasible);
-    if (!s->finished) { /* what else there is was noted when the file was published last, perhaps before the first */
+    if (!s->finished) { /* everything else is as of the last publication, which may be before the first generation */
         fputs(" so far\n", f);
         return;
     }

@@ -1,4 +1,4 @@
-/* Chooses the name of the page, and the kind of page by the kind of file. */
+/* Chooses the name of the page, and by the kind of file which page is written. */
 #include "out/report.h"
 
 #include "base/path.h"
@@ -9,7 +9,8 @@
 
 #define PATH_SIZE 1200
 
-/* -o, or the name of the file with .html in the current folder; never the file itself. */
+/* Sets the name of the page: that of -o, or the name of the file with the ending .html in the current folder. A name
+ * that is the file itself is refused. */
 static hf_status choose_output(const hf_export_request *o, char output[PATH_SIZE], hf_messages *messages)
 {
     if (!hf_path_choose(o->output, o->file, ".html", output, PATH_SIZE))

@@ -12,10 +12,10 @@
 #include <math.h>
 #include <string.h>
 
-#define POINTS_MAX 1000 /* drawn of a series: no screen shows more */
+#define POINTS_MAX 1000 /* points of a series that the page keeps: about what a screen can show */
 #define PROVENANCE_SIZE 8192
 
-/* The series of a page: where a file has them, what the page calls them. The first of a group sets its length. */
+/* The series of a page: path in the file, group and key on the page. The first row of a group sets its length. */
 static const struct {
     const char *group, *path, *key;
 } series_table[] = {
@@ -33,7 +33,7 @@ static const struct {
 };
 enum { N_SERIES = sizeof series_table / sizeof *series_table };
 
-/* All that a page shows. */
+/* Everything that a page shows. */
 typedef struct {
     const char *path;
     hf_summary summary;
@@ -55,7 +55,7 @@ static void write_codes(const char *key, const unsigned char *value, int n, FILE
     fputc('"', f);
 }
 
-/* What the page is headed: the title, or the name of the case file. */
+/* The heading of the page: the title of the case or, without a title, the name of the case file. */
 static const char *heading(const hf_summary *s)
 {
     return *s->title ? s->title : hf_path_name(s->case_path);
@@ -81,7 +81,8 @@ static void write_net(const hf_scene *s, FILE *f)
     fputc('}', f);
 }
 
-/* Displacements rather than positions: six digits of these are nanometres, of those tenths of a millimetre. */
+/* Writes displacements, not positions: six digits of a displacement reach nanometres, six digits of a position only
+ * tenths of a millimetre. */
 static void write_shape(const page *p, hf_stage stage, FILE *f)
 {
     const hf_shape *shape = &p->shape[stage];
@@ -187,7 +188,7 @@ static hf_status read_shapes(page *p, hf_messages *messages)
 {
     hf_series there = {0};
     HF_TRY(hf_store_read_series(p->path, "/form/tension_N", 1, &there, messages));
-    p->has_shape[HF_STAGE_FORM] = there.n > 0; /* a form-finding that broke down leaves none */
+    p->has_shape[HF_STAGE_FORM] = there.n > 0; /* a form-finding that broke down stores no shape */
     hf_series_free(&there);
     p->has_shape[HF_STAGE_OPTIMIZE] = hf_summary_has_best_shape(&p->summary);
     p->has_shape[HF_STAGE_POLISH] = p->summary.has_polish;

@@ -13,10 +13,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#define INPUTS_MAX 32 /* axes of a study */
+#define INPUTS_MAX 32 /* axes of a study that the page shows */
 #define LINK_SIZE (PATH_MAX + 2)
 
-/* What is shown of every stage that any point has. */
+/* A stage is shown when any point has it. Each row: the name on the page, and where its data sets begin in the file. */
 static const char *const stage_path[][2] = {
     {"form", "/points/form/"}, {"optimize", "/points/ga/best_"}, {"polish", "/points/polish/"}};
 static const char *const output_name[] = {"psi_m", "inner_tension_ratio", "boundary_tension_ratio", "residual_N",
@@ -25,12 +25,12 @@ enum { N_STAGE = 3, N_OUTPUT = sizeof output_name / sizeof *output_name };
 
 typedef struct {
     const char *path;
-    char folder[LINK_SIZE], from_page[LINK_SIZE]; /* of the merged file, from here and from the page: "" or with '/' */
+    char folder[LINK_SIZE], from_page[LINK_SIZE]; /* paths to the merged file's folder: "" or ending in '/' */
     int n;                                        /* points */
     hf_texts id, reason, file, input_name;
     hf_series status;
     hf_series input[INPUTS_MAX];
-    hf_texts input_text[INPUTS_MAX]; /* of axes that are words, or seeds */
+    hf_texts input_text[INPUTS_MAX]; /* of axes whose values are words or seeds */
     hf_series output[N_STAGE][N_OUTPUT];
 } study_page;
 
@@ -68,7 +68,7 @@ static void write_status(const study_page *p, FILE *f)
     fputc(']', f);
 }
 
-/* Where a point's result is, and its own page where there is one beside it. */
+/* Writes links: to the result file of each point, and to the page of that result when one lies beside it. */
 static void write_links(const study_page *p, FILE *f)
 {
     char link[LINK_SIZE + 1100];
@@ -189,7 +189,8 @@ static void free_page(study_page *p)
             hf_series_free(&p->output[s][k]);
 }
 
-/* A page beside the merged file links to the results as the file does, one elsewhere by absolute paths. */
+/* A page in the folder of the merged file links to the results by the same relative paths as that file. A page in
+ * another folder links by absolute paths. */
 static void find_folders(study_page *p, const char *output)
 {
     char merge_folder[LINK_SIZE], page_folder[LINK_SIZE], merge_real[PATH_MAX], page_real[PATH_MAX];

@@ -1,11 +1,11 @@
-/* report_study - the page of a merged study: what was set at each point, what came out, and where its result is. */
+/* report_study - the page of a merged study: the inputs of each point, its figures, and a link to its result. */
 #ifndef HIFDM_REPORT_STUDY_H
 #define HIFDM_REPORT_STUDY_H
 
 #include <hifdm/status.h>
 #include <stdbool.h>
 
-/* Has the file a table of points? False for any other file, and for one that cannot be read. */
+/* True when the file has a table of points. False for any other file, also for one that cannot be read. */
 bool hf_report_is_study(const char *path);
 
 /* Writes the page of the merged study `path` to `output`. HF_OK, HF_IO or HF_NO_MEMORY with a message. */

@@ -1,4 +1,4 @@
-/* cli - what the tests of the program share: cases, running it, looking at its exit code, words and files. */
+/* cli - what the tests of the program share: making cases, running it, and checking its exit code, output and files. */
 #ifndef HIFDM_TESTS_CLI_H
 #define HIFDM_TESTS_CLI_H
 
@@ -12,7 +12,8 @@
 
 /* ---- cases ---- */
 
-/* Paths of support.h are overwritten by its 16th further call, each program run makes two: these stay. */
+/* Copies of paths that stay valid. Those of support.h are overwritten after 16 further calls, and each run of the
+ * program makes two calls. */
 static inline const char *keep(const char *path)
 {
     static char *kept[128];

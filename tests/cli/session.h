@@ -1,4 +1,4 @@
-/* session - programs that are still running when a test does something to them, and what they leave behind. */
+/* session - starts programs that a test kills, stops or disturbs while they run, and reads the files they leave. */
 #ifndef HIFDM_TESTS_SESSION_H
 #define HIFDM_TESTS_SESSION_H
 

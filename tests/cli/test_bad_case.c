@@ -1,5 +1,5 @@
-/* Case files with faults, as the program tells them: file, line, column and remedy, all of one run, exit code 2, and no
- * result. tests/unit/test_config_faults.c goes through the faults one by one. */
+/* What the program says of case files with faults: file, line, column and remedy of every fault in one run, exit code
+ * 2, and no result is made. tests/unit/case/test_config_faults.c tests the faults one by one. */
 #include "cli.h"
 
 START_TEST(all_faults_of_a_file_are_told_in_one_run)

@@ -1,4 +1,4 @@
-/* Imported nets with faults: file, line and id, all of one run, exit code 2. */
+/* What the program says of imported nets with faults: file, line and id of every fault in one run, exit code 2. */
 #include "cli.h"
 
 #define NODES                                                                                                          \

@@ -1,4 +1,4 @@
-/* The commands that write nothing: `check`, `schema`, `help`, `version`, and `show` of what is no result. */
+/* Commands that write no file: `check`, `schema`, `help`, `version`, and `show` of files that are no results. */
 #include "cli.h"
 
 START_TEST(check_tells_what_will_run)

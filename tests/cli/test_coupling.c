@@ -1,4 +1,4 @@
-/* The net on its truss as a user runs it: what is printed and stored, threads, and what goes wrong. */
+/* Runs of a net on its truss: what is printed and stored, that threads change nothing, and the messages of failures. */
 #include "cli.h"
 
 #include <hifdm/config.h>
@@ -119,7 +119,7 @@ START_TEST(data_sets_do_not_depend_on_the_number_of_threads)
 }
 END_TEST
 
-/* Tubes of jelly. */
+/* Tubes so soft that the coupling diverges. */
 START_TEST(a_truss_that_is_too_soft_is_named)
 {
     HIFDM(4, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e5", "--set", "coupling.scheme=plain");

@@ -1,4 +1,4 @@
-/* `hifdm evaluate`: tables of designs in and out, what is wrong with them, and that it gives what the GA gave. */
+/* `hifdm evaluate`: the tables that it reads and writes, faults in tables, and that it gives the GA's own figures. */
 #include "cli.h"
 
 #define HEADER "id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations\n"

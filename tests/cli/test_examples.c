@@ -1,5 +1,5 @@
-/* What is there to be copied: the examples under tools/, built as a user builds them, and the pieces of the README and
- * the manual. */
+/* Code that users may copy works: the examples under tools/, built as a user builds them, and the code in the README
+ * and the manual. */
 #include "cli.h"
 
 /* Two generations of the paper's case, which most of the examples name. */

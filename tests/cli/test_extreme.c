@@ -1,5 +1,5 @@
-/* Values at and beyond the edge: refused quickly, told as ill-posed, or answered rightly; never a crash, a hang, or a
- * plausible wrong number. */
+/* Values at and beyond the limits are refused quickly, reported as ill-posed, or answered correctly. They never cause a
+ * crash, a hang, or a plausible wrong number. */
 #include "cli.h"
 
 #define CYLINDER "scene.parabolic_cylinder."

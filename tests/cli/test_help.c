@@ -1,4 +1,4 @@
-/* `hifdm help`: what it says of each command, the manual page, the completion for bash. */
+/* `hifdm help`: the help on each command, the manual page, and the completion for bash. */
 #include "cli.h"
 
 #define PREFIX_FILE(name) keep(formatted("%s/" name, installed_prefix()))

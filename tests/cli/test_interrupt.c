@@ -1,7 +1,7 @@
-/* A run that somebody else overtakes: nobody's file is lost. */
+/* Somebody else writes the result file while a run goes on, or a restart does not get far: no file is lost. */
 #include "session.h"
 
-/* The name was taken from the run while it went on. Its work is kept, and the message says where. */
+/* Another file takes the name of the result while the run goes on. The result is kept, and the message says where. */
 START_TEST(a_file_made_meanwhile_is_not_replaced)
 {
     const char *path = temp("both.h5"), *c = storing_case("c.yaml", 10000);

@@ -1,4 +1,4 @@
-/* What the options of `hifdm run` do, and where the result goes without them. */
+/* What the options of `hifdm run` do, and where the result is written without them. */
 #include "cli.h"
 
 static const char small_case[] = "title: small\n" SMALL_SCENE SMALL_GA;

@@ -1,4 +1,5 @@
-/* Where the result may go and where not; whatever happens, what was there before is still there, byte by byte. */
+/* Where a result may be written and where not. Whatever happens, files that existed before are unchanged, byte by byte.
+ */
 #include "cli.h"
 
 /* Exit code 5, the given words, and nothing new in the test's directory. */

@@ -1,5 +1,5 @@
-/* `hifdm report`: one page that is whole, small, harmless, and holds the stored numbers. What it looks like is the
- * matter of tests/browser. */
+/* `hifdm report` writes one page that is complete, small, harmless, and holds the stored numbers. tests/browser tests
+ * what the page looks like. */
 #include "cli.h"
 
 #define HOSTILE "</script><img src=x onerror=alert(1)><!-- & \\\" ]]>"

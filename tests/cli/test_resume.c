@@ -1,5 +1,5 @@
-/* Overnight: a run that is killed at any instant, told to stop, or left without a disk goes on as if nothing had been.
- * Whatever happens, the visible file opens, and a generation that was acknowledged is never lost. */
+/* A run that was killed at any instant, told to stop, or had no room on the disk can be continued, with the same result
+ * as an undisturbed run. Whatever happens, the result file opens, and no generation that was acknowledged is lost. */
 #include "session.h"
 
 /* ---- kill -9 ---- */

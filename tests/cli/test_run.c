@@ -1,4 +1,4 @@
-/* `hifdm run` on the two cases that come with it: the figures they must show, JSON and summary. */
+/* `hifdm run` on the two cases that come with the program: their figures, the JSON object and the summary. */
 #include "cli.h"
 
 /* The whole GA of chen2022 takes seconds; what these tests ask of it shows after a few generations. */

@@ -1,5 +1,4 @@
-/* Sweeps as a user runs them: hifdm sweep, status, merge; shards, retries, interruptions. Files are read by h5py and
- * h5dump. */
+/* hifdm sweep, status and merge as a user runs them: shards, retries, interruptions. h5py and h5dump read the files. */
 #include "cli.h"
 
 /* Four points of a small genetic algorithm: milliseconds, but each with a result file. */

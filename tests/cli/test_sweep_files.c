@@ -1,4 +1,5 @@
-/* The result files of a sweep: base cases that change and change back, files that are removed, emptied or spoilt. */
+/* What happens to the result files of a sweep when the base case changes and changes back, and when files are removed,
+ * emptied or damaged. */
 #include "cli.h"
 
 #define SMALLER_GA "optimize: {population: 4, generations: 2, seed: 7}\n"

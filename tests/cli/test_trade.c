@@ -1,4 +1,5 @@
-/* What other tools and the workshop take from a result: ParaView files, cut lists, measures of the surface. */
+/* What `hifdm export` gives to other programs and to the workshop: ParaView files, cut lists; and the measures of the
+ * surface. */
 #include "cli.h"
 
 #define FREQUENCIES "surface.frequencies_Hz=[1.2e9, 9.6e9]"
