@@ -25,6 +25,13 @@ inline uint64_t hf_random_next(hf_random *random)
     return hf_random_mix(random->state += HF_RANDOM_STEP);
 }
 
+/* The stream of one individual of a generation: the same whatever was drawn before, and in which thread. */
+inline hf_random hf_random_stream(uint64_t seed, int generation, int individual)
+{
+    uint64_t place = (uint64_t)(uint32_t)generation << 32 | (uint32_t)individual;
+    return (hf_random){hf_random_mix(hf_random_mix(seed + HF_RANDOM_STEP) ^ hf_random_mix(place + 2 * HF_RANDOM_STEP))};
+}
+
 /* Uniform in [0, 1): a multiple of 2^-53. */
 inline double hf_random_uniform(hf_random *random)
 {

@@ -21,14 +21,6 @@
 /* Even the worst individual keeps this share of the best one's fitness. */
 #define FITNESS_FLOOR 0.02
 
-/* ---- random numbers: one stream per (seed, generation, individual) ---- */
-
-static hf_random stream_open(uint64_t seed, int generation, int individual)
-{
-    uint64_t place = (uint64_t)(uint32_t)generation << 32 | (uint32_t)individual;
-    return (hf_random){hf_random_mix(hf_random_mix(seed + HF_RANDOM_STEP) ^ hf_random_mix(place + 2 * HF_RANDOM_STEP))};
-}
-
 /* ---- state ---- */
 
 typedef struct {
@@ -77,7 +69,7 @@ static void first(void *state, hf_population *p)
     const hf_optimize_settings *s = g->settings;
     for (int i = 0; i < p->n_individual; i++) {
         double *design_N = p->design_N + (size_t)i * (size_t)p->n_gene;
-        hf_random random = stream_open(s->seed, 0, i);
+        hf_random random = hf_random_stream(s->seed, 0, i);
         for (int j = 0; j < g->model->n_gene_group; j++)
             g->group_draw[j] = i == 0 ? 0 : 2 * hf_random_uniform(&random) - 1;
         for (int k = 0; k < p->n_gene; k++) {
@@ -173,7 +165,7 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
 {
     const hf_optimize_settings *s = g->settings;
     size_t n = (size_t)now->n_gene;
-    hf_random random = stream_open(s->seed, now->generation + 1, i);
+    hf_random random = hf_random_stream(s->seed, now->generation + 1, i);
     int a = spin_roulette(g->fitness, now->n_individual, &random);
     int b = spin_roulette(g->fitness, now->n_individual, &random);
     const double *mother = now->design_N + (size_t)a * n, *father = now->design_N + (size_t)b * n;
