@@ -1,5 +1,5 @@
 /* What stands at a path: nothing, a result of this case, or anything else.
- * Contents: identity - the stored case - look */
+ * Contents: identity - look */
 #include "store/store_read.h"
 
 #include "base/sha256.h"
@@ -65,66 +65,19 @@ hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, cons
     return extend_ids(identity, truss->n_member, truss->member_id);
 }
 
-/* ---- the stored case ---- */
-
-/* Split lines in place; the caller frees the list. NULL when memory ran out. */
-static const char **split_lines(char *text, int *n)
-{
-    size_t count = 1;
-    for (char *p = text; *p; p++)
-        count += *p == '\n';
-    const char **line = calloc(count, sizeof *line);
-    *n = 0;
-    for (char *p = text; line && *p;) {
-        char *end = strchr(p, '\n');
-        line[(*n)++] = p;
-        if (!end) break;
-        *end = '\0';
-        p = end + 1;
-    }
-    return line;
-}
-
-/* Did the file's case make sense to this version? path: where the files that it names are looked for. */
-static int read_case(hf_hdf5 *io, const char *path, hf_case *then)
-{
-    char *text = NULL, *overrides = NULL;
-    const char **set = NULL;
-    hf_messages unwanted = {0};
-    uint64_t seed = 0;
-    int n_set = 0, is_known = 0;
-    hf_hdf5_get(io, io->file, "/", "seed", HF_KIND_UINT64, &seed, sizeof seed);
-    hf_hdf5_read_text(io, io->file, "/case/text", &text);
-    hf_hdf5_read_text(io, io->file, "/case/overrides", &overrides);
-    if (io->status == HF_OK && !(set = split_lines(overrides, &n_set))) hf_hdf5_no_memory(io);
-    if (io->status == HF_OK) is_known = hf_config_parse(path, text, set, n_set, then, &unwanted) == HF_OK;
-    then->optimize.seed = seed; /* as --seed may have set it */
-    hf_messages_free(&unwanted);
-    free(set);
-    free(text);
-    free(overrides);
-    return is_known;
-}
-
-void hf_store_read_case(hf_hdf5 *io, hf_case *settings)
-{
-    if (!read_case(io, io->path, settings) && io->status == HF_OK)
-        hf_hdf5_damaged(io, io->file, "/case", "has keys that this version does not know");
-}
+/* ---- look ---- */
 
 /* Which keys differ between the stored case and this one, in words. */
 static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t size)
 {
     hf_case then = {0};
-    if (!read_case(io, now->path, &then))
+    if (!hf_store_parse_case(io, now->path, &then))
         snprintf(words, size, "%s", "keys that this version does not know");
     else if (hf_config_differences(&then, now, words, size) == 0)
         snprintf(words, size, "%s",
                  "no key, but comments and layout of the case, or its tables of the net or of the truss");
     hf_case_free(&then);
 }
-
-/* ---- look ---- */
 
 /* A run that was killed after its result had got its name leaves a journal that nobody needs. */
 static void remove_journal(const char *path)

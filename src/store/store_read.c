@@ -1,18 +1,13 @@
-/* Contents: opening a result file - summary - scene - shape - truss - provenance */
+/* Contents: opening a result file - summary - scene - shape - truss - the stored case - provenance */
 #include "store/store_read.h"
 
 #include "base/arena.h"
-#include "store/layout.h"
-#include "store/journal.h"
-#include "base/sha256.h"
 
 #include <errno.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 /* ---- opening a result file ---- */
 
@@ -179,6 +174,53 @@ hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_stat
         hf_carrier_state_free(state);
     }
     return hf_hdf5_unlock(io.status);
+}
+
+/* ---- the stored case ---- */
+
+/* Split lines in place; the caller frees the list. NULL when memory ran out. */
+static const char **split_lines(char *text, int *n)
+{
+    size_t count = 1;
+    for (char *p = text; *p; p++)
+        count += *p == '\n';
+    const char **line = calloc(count, sizeof *line);
+    *n = 0;
+    for (char *p = text; line && *p;) {
+        char *end = strchr(p, '\n');
+        line[(*n)++] = p;
+        if (!end) break;
+        *end = '\0';
+        p = end + 1;
+    }
+    return line;
+}
+
+bool hf_store_parse_case(hf_hdf5 *io, const char *path, hf_case *settings)
+{
+    char *text = NULL, *overrides = NULL;
+    const char **set = NULL;
+    hf_messages unwanted = {0};
+    uint64_t seed = 0;
+    int n_set = 0;
+    bool is_known = false;
+    hf_hdf5_get(io, io->file, "/", "seed", HF_KIND_UINT64, &seed, sizeof seed);
+    hf_hdf5_read_text(io, io->file, "/case/text", &text);
+    hf_hdf5_read_text(io, io->file, "/case/overrides", &overrides);
+    if (io->status == HF_OK && !(set = split_lines(overrides, &n_set))) hf_hdf5_no_memory(io);
+    if (io->status == HF_OK) is_known = hf_config_parse(path, text, set, n_set, settings, &unwanted) == HF_OK;
+    settings->optimize.seed = seed; /* as --seed may have set it */
+    hf_messages_free(&unwanted);
+    free(set);
+    free(text);
+    free(overrides);
+    return is_known;
+}
+
+void hf_store_read_case(hf_hdf5 *io, hf_case *settings)
+{
+    if (!hf_store_parse_case(io, io->path, settings) && io->status == HF_OK)
+        hf_hdf5_damaged(io, io->file, "/case", "has keys that this version does not know");
 }
 
 /* ---- provenance ---- */

@@ -9,7 +9,11 @@
  * one did not write in a safe way are left out. */
 hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf_messages *messages);
 
-/* The case that the file was made from. Free it with hf_case_free in any case. */
+/* The case that the file was made from; false when this version does not know all its keys. path: of the case, beside
+ * which the files that it names are looked for. Free it with hf_case_free in any case. */
+bool hf_store_parse_case(hf_hdf5 *io, const char *path, hf_case *settings);
+
+/* The same, with the result's own path; keys that this version does not know are damage. */
 void hf_store_read_case(hf_hdf5 *io, hf_case *settings);
 
 /* A file of ours, open for reading; its status says whether. The caller closes it in any case. */
