@@ -109,7 +109,7 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_p
 
 /* Read the pretensions base_N [n_gene] from which the genetic algorithm of a resumed store started; those that this
  * machine computes may differ in the last bits. base_N is unchanged when the store has none. */
-hf_status hf_store_base(hf_store *store, int n_gene, double *base_N, hf_messages *messages);
+hf_status hf_store_restore_base(hf_store *store, int n_gene, double *base_N, hf_messages *messages);
 
 /* Put the optimiser, just created from that base, into the state before hf_optimiser_tell of the last generation that
  * the store holds, and what was the best until then into the summary. The designs of generations in the journal are

@@ -129,7 +129,7 @@ static hf_status prepare_optimize(run *r, hf_messages *messages)
 {
     hf_problem *p = &r->problem;
     HF_TRY(hf_problem_base(p, messages));
-    HF_TRY(hf_store_base(r->store, p->model.n_gene, p->base_N, messages));
+    HF_TRY(hf_store_restore_base(r->store, p->model.n_gene, p->base_N, messages));
     if (hf_problem_batch(p, r->request->threads) != HF_OK ||
         hf_optimiser_create(r->plan.kind, &p->settings.optimize, &p->model, p->base_N, &r->optimiser) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for %d individuals of %d genes on %d threads",

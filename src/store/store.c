@@ -377,7 +377,7 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, int at_once, 
     complete(s, summary, 0);
     hf_hdf5_unlock(HF_OK); /* others need not wait for this file's way to the disk */
     /* before the first generation nothing is lost that would not be made again */
-    hf_store_file_name(&s->f, s->rows.n_stored > 0);
+    hf_store_file_publish(&s->f, s->rows.n_stored > 0);
     if (s->f.io.status == HF_OK && !hf_journal_is_empty(&s->f.journal))
         s->f.io.status = hf_journal_rotate(&s->f.journal, messages);
     s->published_at_s = hf_clock_s();
@@ -409,7 +409,7 @@ hf_status hf_store_settle(hf_store *s, hf_messages *messages)
 {
     if (!s) return HF_OK;
     s->f.io.messages = messages;
-    hf_store_file_name(&s->f, 1);
+    hf_store_file_publish(&s->f, 1);
     hf_status status = s->f.io.status;
     if (status == HF_OK) hf_journal_forget(&s->f.journal);
     hf_store_abandon(s);

@@ -189,7 +189,7 @@ static void keep_work(hf_store_file *f, int is_worth_keeping)
             hf_error(f->io.messages, HF_IO, "%s: cannot be given this name: %s%s%s", f->path, why, words, kept);
 }
 
-void hf_store_file_name(hf_store_file *f, int durable)
+void hf_store_file_publish(hf_store_file *f, int durable)
 {
     char folder[4096];
     if (f->io.status == HF_OK && durable) sync_to_disk(f, f->temporary);

@@ -56,7 +56,7 @@ void hf_store_file_close(hf_store_file *file); /* the temporary file is whole */
 
 /* Give it the visible name; `durable`: after it went to the disk, as it holds work. HF_EXISTS when somebody else has
  * taken the name; the work is kept then, and after a rename that fails, under a name that the message tells. */
-void hf_store_file_name(hf_store_file *file, int durable);
+void hf_store_file_publish(hf_store_file *file, int durable);
 
 /* Close and free everything, drop the temporary file, give the lock back. The journal stays when it holds what the
  * visible file does not, or was there before. */

@@ -94,7 +94,7 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     return hf_store_hand_over(s, store);
 }
 
-hf_status hf_store_base(hf_store *store, int n_gene, double *base_N, hf_messages *messages)
+hf_status hf_store_restore_base(hf_store *store, int n_gene, double *base_N, hf_messages *messages)
 {
     const hf_hdf5_array base = {.name = "/ga/base_N", .kind = HF_KIND_REAL, .rank = 1, .dims = {(hsize_t)n_gene}};
     if (!store || !store->rows.block) return HF_OK;

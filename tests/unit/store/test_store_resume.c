@@ -22,7 +22,7 @@ static void resume(const char *path, struct run *r, hf_store **s, hf_messages *m
     hf_summary summary = {0};
     ck_assert_int_eq(hf_store_resume(path, s, messages), HF_OK);
     ck_assert_int_eq(hf_store_generations(*s), 4);
-    ck_assert_int_eq(hf_store_base(*s, N_GENE, r->base_N, messages), HF_OK);
+    ck_assert_int_eq(hf_store_restore_base(*s, N_GENE, r->base_N, messages), HF_OK);
     hf_optimiser_free(&r->ga);
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &r->model, r->base_N, &r->ga), HF_OK);
     ck_assert_int_eq(hf_store_restore(*s, &r->ga, &summary, messages), HF_OK);
