@@ -210,6 +210,31 @@ START_TEST(better_individuals_have_more_children)
 }
 END_TEST
 
+/* One best individual and one worst, the others infeasible: with a floor of 0.02 the fitnesses are 1.02 and 0.02. The
+ * worst is then 0.0192 of the parents: 138 of 7200 draws, with a standard deviation of 12. Floors of 0.0133 and 0.03
+ * would give 94 and 204. */
+START_TEST(worst_individual_keeps_its_floor)
+{
+    int n_worst = 0, n_draw = 0;
+    for (uint64_t seed = 0; seed < 200; seed++) {
+        hf_optimize_settings s = plain;
+        s.seed = seed;
+        hf_optimiser ga = create(&s);
+        for (int i = 0; i < N; i++)
+            ga.population.result[i] = (hf_form_result){.status = HF_COLLAPSED, .psi_m = (double)NAN};
+        ga.population.result[4] = (hf_form_result){.status = HF_OK, .psi_m = 1};
+        ga.population.result[11] = (hf_form_result){.status = HF_OK, .psi_m = 7};
+        hf_optimiser_tell(&ga);
+        ck_assert(hf_optimiser_next(&ga));
+        for (int k = 2 * s.elites; k < 2 * N; k++, n_draw++)
+            n_worst += ga.population.parent[k] == 11;
+        hf_optimiser_free(&ga);
+    }
+    ck_assert_int_eq(n_draw, 7200);
+    ck_assert(n_worst > 105 && n_worst < 172);
+}
+END_TEST
+
 /* ---- stopping ---- */
 
 static hf_population_stop stop_after(const hf_optimize_settings *s, int feasible, int *generation)
@@ -256,6 +281,7 @@ Suite *suite_unit_optimiser_ga(void)
     tcase_add_test(tests, rates_follow_srinivas_and_patnaik);
     tcase_add_test(tests, every_generation_obeys_the_rules);
     tcase_add_test(tests, better_individuals_have_more_children);
+    tcase_add_test(tests, worst_individual_keeps_its_floor);
     tcase_add_test(tests, search_ends_for_a_reason);
     return suite;
 }
