@@ -42,10 +42,10 @@ typedef struct {
     double focal_length_m;
     int modules[2];          /* along x, along y */
     int cells_per_module[2]; /* along x, along y */
-    int spacing;             /* hf_spacing of the nodes along the directrix */
-    int boundary;            /* hf_boundary: which cables are boundary (law length) */
+    hf_spacing spacing;      /* of the nodes along the directrix */
+    hf_boundary boundary;    /* which cables are boundary cables (law length) */
     double scallop;          /* sag of a free outer edge between two supports, relative to their distance */
-    int supports;            /* hf_supports */
+    hf_supports supports;    /* which nodes are fixed */
 } hf_cylinder;
 
 /* Keys of the section, as rows of hf_field_table (config.h): X(section, member, type, least, largest, default, unit,

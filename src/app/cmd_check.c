@@ -70,7 +70,7 @@ static void print_plan(const hf_problem *p, FILE *f)
     const hf_case *c = &p->settings;
     const hf_optimize_settings *o = &c->optimize;
     const char *why;
-    int method = hf_evaluate_method(&p->model, &c->form, &why);
+    hf_method method = hf_evaluate_method(&p->model, &c->form, &why);
     fprintf(f, "  will run      form-finding: %s, solved by %s (%s), stop: %s, at most %d iterations\n",
             hf_method_word[c->form.method], method == HF_METHOD_NEWTON ? "newton" : "fixed point", why,
             hf_stop_rule_word[c->form.stop], c->form.max_iterations);
@@ -78,8 +78,8 @@ static void print_plan(const hf_problem *p, FILE *f)
         fprintf(f, "                coupling with the truss: %s, tof %g m, at most %d form-findings\n",
                 hf_coupling_scheme_word[c->form.coupling.scheme], c->form.coupling.tof_m,
                 c->form.coupling.max_iterations);
-    int optimizes = c->has_optimize && p->model.n_gene > 0;
-    int evolves = optimizes && hf_optimiser_plan_of(o->method).kind;
+    bool optimizes = c->has_optimize && p->model.n_gene > 0;
+    bool evolves = optimizes && hf_optimiser_plan_of(o->method).kind;
     if (evolves)
         fprintf(f,
                 "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
@@ -141,7 +141,7 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
     hf_model without = *m;
     without.has_newton = false;
     size_t lanes = 0, shared = 0;
-    int evolves = v && hf_optimiser_plan_of(p->settings.optimize.method).kind;
+    bool evolves = v && hf_optimiser_plan_of(p->settings.optimize.method).kind;
     if (evolves) HF_TRY(engine_bytes(v, &shared, &lanes));
     double workspaces = v ? threads + 1 : 1, bare = (double)hf_workspace_bytes(&without);
     double population = evolves ? (double)p->settings.optimize.population : 0, genes = 8.0 * m->n_gene;
@@ -248,7 +248,7 @@ static hf_status check(hf_problem *p, const hf_options *options, FILE *f, hf_mes
     HF_TRY(hf_problem_load(options->file, options->set, options->n_set, p, messages));
     HF_TRY(hf_problem_allocate(p, messages));
     int threads = options->threads ? options->threads : hf_batch_default_threads();
-    int optimizes = p->settings.has_optimize && p->model.n_gene > 0;
+    bool optimizes = p->settings.has_optimize && p->model.n_gene > 0;
     hf_evaluator v = hf_problem_evaluator(p);
     fprintf(f, "%s: valid\n", options->file);
     print_scene(p, f);

@@ -127,7 +127,7 @@ void hf_help_bash(FILE *f)
             bash_commands(f);
             fputs("' ;;\n", f);
         } else {
-            int is_yaml = !strcmp(c->argument, "CASE") || !strcmp(c->argument, "STUDY");
+            bool is_yaml = !strcmp(c->argument, "CASE") || !strcmp(c->argument, "STUDY");
             fprintf(f, "_hifdm_files %s ;;\n", is_yaml ? "yaml yml" : "h5");
         }
     }

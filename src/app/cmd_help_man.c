@@ -8,7 +8,7 @@
  * of words may be broken between lines. */
 static void put_roff(const char *text, FILE *f)
 {
-    int at_start = 1;
+    bool at_start = true;
     for (const char *p = text; *p; p++) {
         if (at_start && (*p == '.' || *p == '\'')) fputs("\\&", f);
         at_start = *p == '\n';

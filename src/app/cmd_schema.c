@@ -37,7 +37,7 @@ static const char *last_word(const char *path)
     return dot ? dot + 1 : path;
 }
 
-static int is_inside(const char *path, const char *section)
+static bool is_inside(const char *path, const char *section)
 {
     size_t n = strlen(section);
     return !strncmp(path, section, n) && path[n] == '.' && !strchr(path + n + 1, '.');

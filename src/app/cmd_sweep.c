@@ -40,13 +40,14 @@ typedef struct {
     _Atomic hf_status fatal; /* not HF_OK: rows cannot be written, so no point may begin; read without the lock */
 } sweep;
 
-static int environment_number(const char *name, int *value)
+/* True when the variable is there and holds a number. */
+static bool environment_number(const char *name, int *value)
 {
     const char *text = getenv(name);
     uint64_t number;
-    if (!text || !hf_text_uint64(text, &number) || number > 100000000) return 0;
+    if (!text || !hf_text_uint64(text, &number) || number > 100000000) return false;
     *value = (int)number;
-    return 1;
+    return true;
 }
 
 /* Which part of the points this process runs: by --task and --tasks, or by the index in a Slurm array. Indices of an
@@ -54,7 +55,7 @@ static int environment_number(const char *name, int *value)
 static hf_status choose_task(const hf_options *o, int *task, int *tasks, hf_messages *messages)
 {
     int id = 0, count = 1, low = 0, high = 0, step = 1;
-    int in_array = environment_number("SLURM_ARRAY_TASK_ID", &id);
+    bool in_array = environment_number("SLURM_ARRAY_TASK_ID", &id);
     *task = o->task;
     *tasks = o->tasks;
     if (o->tasks && o->task < 0) {
@@ -149,7 +150,7 @@ static void finish_point(sweep *w, int i, hf_status status, const hf_messages *s
     hf_messages_free(&trouble);
 }
 
-static int must_stop(const sweep *w)
+static bool must_stop(const sweep *w)
 {
     return *w->stop_requested || w->fatal != HF_OK;
 }
@@ -189,7 +190,7 @@ static void run_point(void *context, int k)
     int i = w->todo[k];
     const char *id = w->study->id[i];
     if (must_stop(w)) return;
-    int is_ours = hf_ledger_claim(&w->ledger, id);
+    bool is_ours = hf_ledger_claim(&w->ledger, id);
     if (!is_ours || hf_ledger_is_finished(&w->ledger, w->study, i)) { /* another sweep has finished it meanwhile */
         if (is_ours) hf_ledger_release(&w->ledger, id);
         pthread_mutex_lock(&w->lock);
@@ -206,7 +207,7 @@ static void run_point(void *context, int k)
     }
     *p = (finished_point){.w = w, .i = i};
     hf_study_point(w->study, i, &overrides);
-    int is_empty = hf_ledger_file(w->ledger.folder, w->study, i, file) == HF_LEDGER_EMPTY_FILE;
+    bool is_empty = hf_ledger_file(w->ledger.folder, w->study, i, file) == HF_LEDGER_EMPTY_FILE;
     hf_run_request request = {.case_path = w->study->base,
                               .set = overrides.set,
                               .n_set = overrides.n_set,
@@ -230,7 +231,7 @@ static void run_point(void *context, int k)
 
 static hf_status run_points(sweep *w, FILE *file)
 {
-    int quiet = w->options->quiet;
+    bool quiet = w->options->quiet;
     char took[32];
     w->start_s = w->said_s = hf_clock_s();
     w->on_terminal = isatty(STDERR_FILENO);

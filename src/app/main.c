@@ -29,7 +29,7 @@ static void wait_quietly(char **argv)
     if (n <= 0) return;
     path[n] = '\0';
     if (strstr(path, "/ld-") || strstr(path, "/ld.so")) return; /* the dynamic linker, told to run this program */
-    int failed = setenv("OPENBLAS_NUM_THREADS", "1", 0);
+    bool failed = setenv("OPENBLAS_NUM_THREADS", "1", 0) != 0;
     if (!says_how) failed |= setenv("GOMP_SPINCOUNT", "2000", 1);
     if (!says_how) failed |= setenv("OMP_WAIT_POLICY", "passive", 1); /* of other OpenMP libraries */
     if (!failed) execv(path, argv);

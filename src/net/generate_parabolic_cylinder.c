@@ -1,7 +1,8 @@
-/* The quad net over a parabolic cylinder. */
+/* Makes the quad net over a parabolic cylinder. */
 #include <hifdm/generate.h>
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -65,10 +66,10 @@ static void place_nodes(const grid *g)
     }
 }
 
-static int is_support(const grid *g, int i, int j)
+static bool is_support(const grid *g, int i, int j)
 {
-    int on_rib = j % g->c->cells_per_module[1] == 0;
-    int on_perimeter = i == 0 || j == 0 || i == g->nx - 1 || j == g->ny - 1;
+    bool on_rib = j % g->c->cells_per_module[1] == 0;
+    bool on_perimeter = i == 0 || j == 0 || i == g->nx - 1 || j == g->ny - 1;
     switch (g->c->supports) {
     case HF_SUPPORTS_RIBS:
         return on_rib;
@@ -79,33 +80,38 @@ static int is_support(const grid *g, int i, int j)
     }
 }
 
-/* Is the grid line i = const (axis 0) or j = const (axis 1) made of boundary cables? */
-static int is_boundary_line(const grid *g, int axis, int index)
+/* True when the grid line i = const (axis 0) or j = const (axis 1) is made of boundary cables. */
+static bool is_boundary_line(const grid *g, int axis, int index)
 {
     int last = (axis == 0 ? g->nx : g->ny) - 1;
     if (g->c->boundary == HF_BOUNDARY_MODULE_EDGES) return index % g->c->cells_per_module[axis] == 0;
     return index == 0 || index == last;
 }
 
+static hf_group group_of_line(const grid *g, int axis, int index)
+{
+    return is_boundary_line(g, axis, index) ? HF_GROUP_BOUNDARY : HF_GROUP_INNER;
+}
+
 static void assign_roles(const grid *g)
 {
     for (int j = 0; j < g->ny; j++)
         for (int i = 0; i < g->nx; i++) {
-            int on_boundary = is_boundary_line(g, 0, i) || is_boundary_line(g, 1, j);
+            bool on_boundary = is_boundary_line(g, 0, i) || is_boundary_line(g, 1, j);
             g->s->role[at(g, i, j)] = (unsigned char)(is_support(g, i, j) ? HF_ROLE_SUPPORT
                                                       : on_boundary       ? HF_ROLE_EDGE
                                                                           : HF_ROLE_INNER);
         }
 }
 
-static void add_cable(const grid *g, int *i_cable, int a, int b, int boundary)
+static void add_cable(const grid *g, int *i_cable, int a, int b, hf_group group)
 {
     hf_scene *s = g->s;
     int e = (*i_cable)++;
     s->end[2 * e] = a;
     s->end[2 * e + 1] = b;
-    s->group[e] = boundary ? HF_GROUP_BOUNDARY : HF_GROUP_INNER;
-    s->law[e] = boundary ? HF_LAW_LENGTH : HF_LAW_TENSION;
+    s->group[e] = (unsigned char)group;
+    s->law[e] = group == HF_GROUP_BOUNDARY ? HF_LAW_LENGTH : HF_LAW_TENSION;
     if (s->EA_N) s->EA_N[e] = g->EA_N[s->group[e]] > 0 ? g->EA_N[s->group[e]] : (double)NAN;
 }
 
@@ -114,8 +120,8 @@ static void connect(const grid *g)
     int e = 0;
     for (int j = 0; j < g->ny; j++)
         for (int i = 0; i < g->nx; i++) {
-            if (i + 1 < g->nx) add_cable(g, &e, at(g, i, j), at(g, i + 1, j), is_boundary_line(g, 1, j));
-            if (j + 1 < g->ny) add_cable(g, &e, at(g, i, j), at(g, i, j + 1), is_boundary_line(g, 0, i));
+            if (i + 1 < g->nx) add_cable(g, &e, at(g, i, j), at(g, i + 1, j), group_of_line(g, 1, j));
+            if (j + 1 < g->ny) add_cable(g, &e, at(g, i, j), at(g, i, j + 1), group_of_line(g, 0, i));
         }
 }
 
@@ -125,7 +131,7 @@ static int on_line(const grid *g, int axis, int line, int k)
     return axis == 0 ? at(g, k, line) : at(g, line, k);
 }
 
-/* Move the free nodes of one outer edge inward by the parabola 4 s span t (1-t) between consecutive supports. A curved
+/* Moves the free nodes of one outer edge inward by the parabola 4 s span t (1-t) between consecutive supports. A curved
  * edge (axis 0, along x) moves in y, its span the chord; a straight edge moves in x and stays on the cylinder. */
 static void scallop_edge(const grid *g, int axis, int line, double inward)
 {
@@ -186,7 +192,7 @@ hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double 
                         sag_x / cell_x > sag_y / cell_y ? cell_x : cell_y);
     grid g = {cylinder, EA_N, scene, (int)nx, (int)ny};
     int n_cable = (g.nx - 1) * g.ny + g.nx * (g.ny - 1);
-    int with_EA = EA_N && (EA_N[0] > 0 || EA_N[1] > 0);
+    bool with_EA = EA_N && (EA_N[0] > 0 || EA_N[1] > 0);
     hf_status status = hf_scene_allocate(scene, g.nx * g.ny, n_cable, 0, with_EA, 0);
     if (status == HF_OK) {
         place_nodes(&g);

@@ -39,10 +39,11 @@ typedef struct {
 static cut cut_of(const view *v, int e)
 {
     const hf_scene *s = v->scene;
-    int law = v->shape->law[e], keeps_length = law == s->law[e] && hf_law_has(law, HF_LAW_HAS_MULTIPLIER);
+    hf_law law = v->shape->law[e];
+    bool keeps_length = law == s->law[e] && hf_law_has(law, HF_LAW_HAS_MULTIPLIER);
     cut c = {.tension_N = v->shape->tension_N[e], .length_m = v->shape->length_m[e]};
     double stretch = 1 + c.tension_N / s->EA_N[e];
-    int is_slack = fabs(c.tension_N) < HF_SLACK_RATIO * v->reference_N;
+    bool is_slack = fabs(c.tension_N) < HF_SLACK_RATIO * v->reference_N;
     double theoretical_m = hf_scene_theoretical_length(s, e);
     hf_law_cable cable = {law, s->target[e], s->EA_N[e], theoretical_m};
     c.l0_m = is_slack && keeps_length ? hf_law_wanted_length_m(cable, 0) : c.length_m / stretch;

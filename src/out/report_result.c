@@ -38,7 +38,7 @@ typedef struct {
     const char *path;
     hf_summary summary;
     hf_scene scene;
-    int has_shape[HF_STAGE_NONE];
+    bool has_shape[HF_STAGE_NONE];
     hf_shape shape[HF_STAGE_NONE];
     hf_series series[N_SERIES];
     hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or none, [m][2] */

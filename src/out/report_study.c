@@ -77,9 +77,10 @@ static void write_links(const study_page *p, FILE *f)
         for (int i = 0; i < p->n; i++) {
             const char *file = p->file.n ? hf_texts_at(&p->file, i) : "", *its_own = hf_path_ending(file);
             const char *ending = is_page ? ".html" : its_own;
-            int is_absolute = *file == '/', stem = (int)(its_own - file);
+            bool is_absolute = *file == '/';
+            int stem = (int)(its_own - file);
             snprintf(link, sizeof link, "%s%.*s%s", is_absolute ? "" : p->folder, stem, file, ending);
-            int is_there = *file && access(link, R_OK) == 0;
+            bool is_there = *file && access(link, R_OK) == 0;
             snprintf(link, sizeof link, "%s%.*s%s", is_absolute ? "" : p->from_page, stem, file, ending);
             if (i) fputc(',', f);
             hf_json_string(is_there ? link : "", f);
