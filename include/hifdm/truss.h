@@ -22,7 +22,7 @@ typedef enum { HF_JOINT_RIGID, HF_JOINT_PINNED } hf_joint;
 typedef enum { HF_UNIT_BUD, HF_UNIT_MBUG, HF_UNIT_ABUG, HF_UNIT_OTHER } hf_unit;
 
 extern const char *const hf_dof_word[HF_TRUSS_DOF]; /* "ux".."rz" */
-extern const char *const hf_joint_word[2];          /* "rigid", "pinned" */
+extern const char *const hf_joint_word[3];          /* "rigid", "pinned", NULL */
 extern const char *const hf_unit_word[4];           /* "bud", "mbug", "abug", "other" */
 
 /* Numbers of a member, X(name in struct and files, units, default when a file leaves it out, description). A default of
@@ -66,6 +66,12 @@ typedef enum { HF_THEORY_EULER_BERNOULLI, HF_THEORY_TIMOSHENKO } hf_theory;
 typedef enum { HF_HELD_CENTRAL_MODULE, HF_HELD_CENTRAL_MODULE_REAR } hf_held;
 typedef enum { HF_HELD_ALL_DOFS, HF_HELD_TRANSLATIONS } hf_held_dofs;
 
+/* Words of a case file by the enumerations above, ended by NULL. */
+extern const char *const hf_diagonals_word[4];
+extern const char *const hf_theory_word[3];
+extern const char *const hf_held_word[3];
+extern const char *const hf_held_dofs_word[3];
+
 /* A basic unit: a planar truss one module long with chords, posts and diagonals of one round tube. */
 typedef struct {
     double diameter_m, wall_m; /* of the tube, outside */
@@ -85,6 +91,35 @@ typedef struct {
     hf_held_dofs support_dofs;
     double match_tolerance_m; /* between a net support and its attachment */
 } hf_truss_settings;
+
+/* Keys of the section truss, and of each of its units with the defaults of diameter and number of panels, as rows of
+ * hf_field_table (config.h): X(section, member, type, least, largest, default, unit, words, help). */
+#define HF_TRUSS_KEYS(X, section)                                                                                      \
+    X(section, depth_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "1", "m", NULL,                                           \
+      "distance of the rear chords from the front chords, along the normal of the surface")                            \
+    X(section, main_every, HF_FIELD_INT, 1, 2000, "2", "", NULL,                                                       \
+      "counted from both edges, every so many module borders along y carry main units (mbug), the others "             \
+      "assistant ones")                                                                                                \
+    X(section, E_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "130e9", "Pa", NULL, "Young's modulus of the tubes")        \
+    X(section, G_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "5e9", "Pa", NULL,                                          \
+      "shear modulus of the tubes; E/(2(1+nu)) for isotropic material")                                                \
+    X(section, density_kg_per_m3, HF_FIELD_DOUBLE, 0, 1e6, "1600", "kg/m3", NULL, "density of the tubes")              \
+    X(section, expansion_per_K, HF_FIELD_DOUBLE, -1, 1, "0", "1/K", NULL, "thermal expansion of the tubes")            \
+    X(section, hinge_mass_kg, HF_FIELD_DOUBLE, 0, 1e6, "1", "kg", NULL, "mass of the hinges at each node")             \
+    X(section, theory, HF_FIELD_WORD, 0, 0, "euler_bernoulli", "", hf_theory_word,                                     \
+      "beams without shear deformation, or with a shear area of half the cross-section (thin round tube)")             \
+    X(section, joints, HF_FIELD_WORD, 0, 0, "rigid", "", hf_joint_word,                                                \
+      "members clamped to their nodes, or carrying axial force alone")                                                 \
+    X(section, supports, HF_FIELD_WORD, 0, 0, "central_module", "", hf_held_word,                                      \
+      "nodes held by the spacecraft: all corners of the central module, or its rear ones")                             \
+    X(section, support_dofs, HF_FIELD_WORD, 0, 0, "all", "", hf_held_dofs_word,                                        \
+      "what is held there: displacements and rotations, or displacements only")
+
+#define HF_TRUSS_UNIT_KEYS(X, section, diameter, panel_number)                                                         \
+    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL, "outer diameter of its tubes")     \
+    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "wall thickness of its tubes")           \
+    X(section, panels, HF_FIELD_INT, 1, 1000, panel_number, "", NULL, "panels along one module")                       \
+    X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word, "diagonals of each panel")
 
 /* Basic sub-rings over the modules of the net: front nodes on the module corners, on the cylinder. Node ids f<i>_<j> in
  * front and r<i>_<j> behind, f<i>.<k>_<j> or f<i>_<j>.<k> inside units of several panels; member ids <node>-<node>.

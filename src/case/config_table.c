@@ -1,16 +1,10 @@
-/* The table of config.h: every key of a case file. Nothing else knows a default. */
+/* The table of config.h: every key of a case file, with its default. The rows of generators are written beside their
+ * settings, in generate.h and truss.h. Nothing else knows a default. */
 #include <hifdm/config.h>
 
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
-
-/* NULL-terminated, in the order of the enums */
-static const char *const diagonals_words[] = {"none", "single", "crossed", NULL};
-static const char *const theory_words[] = {"euler_bernoulli", "timoshenko", NULL};
-static const char *const joint_words[] = {"rigid", "pinned", NULL};
-static const char *const held_words[] = {"central_module", "central_module_rear", NULL};
-static const char *const held_dofs_words[] = {"all", "translations", NULL};
 
 #define AT(member) offsetof(hf_case, member)
 #define BIG 1e300
@@ -135,60 +129,23 @@ const hf_field hf_field_table[] = {
     {"optimize.polish_iterations", HF_FIELD_INT, AT(optimize.polish_iterations), 1, 100000, "200", "", NULL,
      "largest number of Levenberg-Marquardt iterations"},
 
-    {"truss.depth_m", HF_FIELD_DOUBLE, AT(truss.depth_m), HF_ABOVE_ZERO, 1e3, "1", "m", NULL,
-     "distance of the rear chords from the front chords, along the normal of the surface"},
-    {"truss.main_every", HF_FIELD_INT, AT(truss.main_every), 1, 2000, "2", "", NULL,
-     "counted from both edges, every so many module borders along y carry main units (mbug), the others assistant "
-     "ones"},
-    {"truss.E_Pa", HF_FIELD_DOUBLE, AT(truss.E_Pa), HF_ABOVE_ZERO, 1e15, "130e9", "Pa", NULL,
-     "Young's modulus of the tubes"},
-    {"truss.G_Pa", HF_FIELD_DOUBLE, AT(truss.G_Pa), HF_ABOVE_ZERO, 1e15, "5e9", "Pa", NULL,
-     "shear modulus of the tubes; E/(2(1+nu)) for isotropic material"},
-    {"truss.density_kg_per_m3", HF_FIELD_DOUBLE, AT(truss.density_kg_per_m3), 0, 1e6, "1600", "kg/m3", NULL,
-     "density of the tubes"},
-    {"truss.expansion_per_K", HF_FIELD_DOUBLE, AT(truss.expansion_per_K), -1, 1, "0", "1/K", NULL,
-     "thermal expansion of the tubes"},
-    {"truss.hinge_mass_kg", HF_FIELD_DOUBLE, AT(truss.hinge_mass_kg), 0, 1e6, "1", "kg", NULL,
-     "mass of the hinges at each node"},
-    {"truss.theory", HF_FIELD_WORD, AT(truss.theory), 0, 0, "euler_bernoulli", "", theory_words,
-     "beams without shear deformation, or with a shear area of half the cross-section (thin round tube)"},
-    {"truss.joints", HF_FIELD_WORD, AT(truss.joints), 0, 0, "rigid", "", joint_words,
-     "members clamped to their nodes, or carrying axial force alone"},
-    {"truss.supports", HF_FIELD_WORD, AT(truss.supports), 0, 0, "central_module", "", held_words,
-     "nodes held by the spacecraft: all corners of the central module, or its rear ones"},
-    {"truss.support_dofs", HF_FIELD_WORD, AT(truss.support_dofs), 0, 0, "all", "", held_dofs_words,
-     "what is held there: displacements and rotations, or displacements only"},
-    {"truss.match_tolerance_m", HF_FIELD_DOUBLE, AT(truss.match_tolerance_m), 0, 1e3, "1e-6", "m", NULL,
-     "largest distance between a support of the net and the truss node that carries it"},
+#define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
+    {"truss." #member, type, AT(section.member), min, max, default_value, unit, words, help},
+    HF_TRUSS_KEYS(FIELD, truss)
+#undef FIELD
+        {"truss.match_tolerance_m", HF_FIELD_DOUBLE, AT(truss.match_tolerance_m), 0, 1e3, "1e-6", "m", NULL,
+         "largest distance between a support of the net and the truss node that carries it"},
 
-    {"truss.bud.diameter_m", HF_FIELD_DOUBLE, AT(truss.bud.diameter_m), HF_ABOVE_ZERO, 10, "0.03", "m", NULL,
-     "outer diameter of its tubes"},
-    {"truss.bud.wall_m", HF_FIELD_DOUBLE, AT(truss.bud.wall_m), HF_ABOVE_ZERO, 5, "0.001", "m", NULL,
-     "wall thickness of its tubes"},
-    {"truss.bud.panels", HF_FIELD_INT, AT(truss.bud.panels), 1, 1000, "2", "", NULL, "panels along one module"},
-    {"truss.bud.diagonals", HF_FIELD_WORD, AT(truss.bud.diagonals), 0, 0, "single", "", diagonals_words,
-     "diagonals of each panel"},
+#define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
+    {"truss." #section "." #member, type, AT(truss.section.member), min, max, default_value, unit, words, help},
+#define UNIT(section, diameter, panels) HF_TRUSS_UNIT_KEYS(FIELD, section, diameter, panels)
+    UNIT(bud, "0.03", "2") UNIT(mbug, "0.03", "1") UNIT(abug, "0.025", "1")
+#undef UNIT
+#undef FIELD
 
-    {"truss.mbug.diameter_m", HF_FIELD_DOUBLE, AT(truss.mbug.diameter_m), HF_ABOVE_ZERO, 10, "0.03", "m", NULL,
-     "outer diameter of its tubes"},
-    {"truss.mbug.wall_m", HF_FIELD_DOUBLE, AT(truss.mbug.wall_m), HF_ABOVE_ZERO, 5, "0.001", "m", NULL,
-     "wall thickness of its tubes"},
-    {"truss.mbug.panels", HF_FIELD_INT, AT(truss.mbug.panels), 1, 1000, "1", "", NULL, "panels along one module"},
-    {"truss.mbug.diagonals", HF_FIELD_WORD, AT(truss.mbug.diagonals), 0, 0, "single", "", diagonals_words,
-     "diagonals of each panel"},
-
-    {"truss.abug.diameter_m", HF_FIELD_DOUBLE, AT(truss.abug.diameter_m), HF_ABOVE_ZERO, 10, "0.025", "m", NULL,
-     "outer diameter of its tubes"},
-    {"truss.abug.wall_m", HF_FIELD_DOUBLE, AT(truss.abug.wall_m), HF_ABOVE_ZERO, 5, "0.001", "m", NULL,
-     "wall thickness of its tubes"},
-    {"truss.abug.panels", HF_FIELD_INT, AT(truss.abug.panels), 1, 1000, "1", "", NULL, "panels along one module"},
-    {"truss.abug.diagonals", HF_FIELD_WORD, AT(truss.abug.diagonals), 0, 0, "single", "", diagonals_words,
-     "diagonals of each panel"},
-
-    {"truss.import.nodes", HF_FIELD_TEXT, AT(truss_nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
-     "CSV id,x_m,y_m,z_m,fixed[,mass_kg]; fixed: some of ux uy uz rx ry rz, or all, or empty; path relative to the "
-     "case "
-     "file"},
+        {"truss.import.nodes", HF_FIELD_TEXT, AT(truss_nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
+         "CSV id,x_m,y_m,z_m,fixed[,mass_kg]; fixed: some of ux uy uz rx ry rz, or all, or empty; path relative to the "
+         "case file"},
     {"truss.import.members", HF_FIELD_TEXT, AT(truss_members_path), 1, HF_PATH_SIZE, NULL, "", NULL,
      "CSV "
      "id,i,j,E_Pa,A_m2[,G_Pa,Iy_m4,Iz_m4,J_m4,Asy_m2,Asz_m2,roll_rad,density_kg_per_m3,expansion_per_K,joint,unit]; "

@@ -21,13 +21,15 @@ static const signed char stop_value[] = {HF_STOP_REASON_LIST(STOP_VALUE)};
 static const char *const coupling_word[] = {HF_COUPLING_STOP_LIST(STOP_WORD)};
 static const signed char coupling_value[] = {HF_COUPLING_STOP_LIST(STOP_VALUE)};
 
-#define WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, NULL /* values 0, 1, 2, ... */
+/* Values 0, 1, 2, ... for the words; ENDED_WORDS: the list of words is ended by NULL. */
+#define WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, NULL
+#define ENDED_WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word) - 1, word, NULL
 #define VALUES(word, value) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, value
 const hf_hdf5_kind hf_layout_role = {WORDS(hf_role_word)};
 const hf_hdf5_kind hf_layout_group = {WORDS(hf_group_word)};
 const hf_hdf5_kind hf_layout_law = {WORDS(hf_law_word)};
 const hf_hdf5_kind hf_layout_ga_stop = {WORDS(hf_population_stop_word)};
-const hf_hdf5_kind hf_layout_joint = {WORDS(hf_joint_word)};
+const hf_hdf5_kind hf_layout_joint = {ENDED_WORDS(hf_joint_word)};
 const hf_hdf5_kind hf_layout_unit = {WORDS(hf_unit_word)};
 const hf_hdf5_kind hf_layout_status = {VALUES(status_word, status_value)};
 const hf_hdf5_kind hf_layout_stop_reason = {VALUES(stop_word, stop_value)};

@@ -1,0 +1,206 @@
+/* Makes the truss of basic sub-rings over the modules of a net on a parabolic cylinder (Fig. 15). */
+#include <hifdm/truss.h>
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define TRUSS_NODE_MAX 1000000 /* keeps every index well inside an int */
+#define ID_SIZE 40             /* f<i>.<k>_<j>, and room for two of them in a member's */
+
+static const double PI = 3.14159265358979323846;
+
+const char *const hf_diagonals_word[4] = {"none", "single", "crossed", NULL};
+const char *const hf_theory_word[3] = {"euler_bernoulli", "timoshenko", NULL};
+const char *const hf_held_word[3] = {"central_module", "central_module_rear", NULL};
+const char *const hf_held_dofs_word[3] = {"all", "translations", NULL};
+
+typedef struct {
+    const hf_truss_settings *set;
+    const hf_cylinder *c;
+    hf_truss *t;
+    hf_scene grid; /* front nodes of all ribs: modules[0]*panels+1 along x, modules[1]+1 along y */
+    int i_node, i_member;
+    char *text;
+} generator;
+
+static const hf_truss_unit *unit_of(const hf_truss_settings *set, hf_unit unit)
+{
+    return unit == HF_UNIT_BUD ? &set->bud : unit == HF_UNIT_MBUG ? &set->mbug : &set->abug;
+}
+
+/* Unit of the generatrix line i of n + 1: MBUG or ABUG. */
+static hf_unit line_unit(const hf_truss_settings *set, int i, int n)
+{
+    int from_edge = i < n - i ? i : n - i;
+    return from_edge % set->main_every == 0 ? HF_UNIT_MBUG : HF_UNIT_ABUG;
+}
+
+/* Index of the front node of module corner (i, j). Its rear node has the next index. */
+static int corner(const generator *g, int i, int j)
+{
+    return 2 * (j * (g->c->modules[0] + 1) + i);
+}
+
+static void add_node(generator *g, const double *front_m, const char *where)
+{
+    double slope = front_m[0] / (2 * g->c->focal_length_m), stretch = hypot(1, slope);
+    double normal[3] = {-slope / stretch, 0, 1 / stretch};
+    for (int side = 0; side < 2; side++) {
+        int i = g->i_node++;
+        for (int c = 0; c < 3; c++)
+            g->t->position_m[3 * i + c] = front_m[c] - side * g->set->depth_m * normal[c];
+        g->t->mass_kg[i] = g->set->hinge_mass_kg;
+        g->t->node_id[i] = g->text;
+        g->text += snprintf(g->text, ID_SIZE, "%c%s", side ? 'r' : 'f', where) + 1;
+    }
+}
+
+static void add_member(generator *g, int a, int b, hf_unit unit)
+{
+    hf_truss *t = g->t;
+    const hf_truss_unit *u = unit_of(g->set, unit);
+    int e = g->i_member++;
+    double outer = u->diameter_m / 2, inner = outer - u->wall_m;
+    t->end[2 * e] = a;
+    t->end[2 * e + 1] = b;
+    t->unit[e] = (unsigned char)unit;
+    t->joint[e] = (unsigned char)g->set->joints;
+    t->E_Pa[e] = g->set->E_Pa;
+    t->G_Pa[e] = g->set->G_Pa;
+    t->A_m2[e] = PI * (outer * outer - inner * inner);
+    t->Iy_m4[e] = t->Iz_m4[e] = PI / 4 * (pow(outer, 4) - pow(inner, 4));
+    t->J_m4[e] = 2 * t->Iy_m4[e];
+    t->Asy_m2[e] = t->Asz_m2[e] = g->set->theory == HF_THEORY_TIMOSHENKO ? t->A_m2[e] / 2 : (double)INFINITY;
+    t->density_kg_per_m3[e] = g->set->density_kg_per_m3;
+    t->expansion_per_K[e] = g->set->expansion_per_K;
+    t->member_id[e] = g->text;
+    g->text += snprintf(g->text, 2 * ID_SIZE, "%s-%s", t->node_id[a], t->node_id[b]) + 1;
+}
+
+/* Adds chords, inner posts and diagonals of one unit between the front nodes a and b. Its inner front nodes have the
+ * indices inside, inside + 2, ... i_panel: index of the unit's first panel along the whole line, by whose parity single
+ * diagonals rise or fall in turn. */
+static void add_unit(generator *g, hf_unit unit, int a, int b, int inside, int i_panel)
+{
+    int n = unit_of(g->set, unit)->panels;
+    hf_diagonals diagonals = unit_of(g->set, unit)->diagonals;
+    for (int k = 0; k < n; k++) {
+        int from = k ? inside + 2 * (k - 1) : a, to = k < n - 1 ? inside + 2 * k : b;
+        bool falls = (i_panel + k) % 2 == 0;
+        add_member(g, from, to, unit);
+        add_member(g, from + 1, to + 1, unit);
+        if (k) add_member(g, from, from + 1, unit);
+        if (diagonals == HF_DIAGONALS_CROSSED || (diagonals == HF_DIAGONALS_SINGLE && falls))
+            add_member(g, from, to + 1, unit);
+        if (diagonals == HF_DIAGONALS_CROSSED || (diagonals == HF_DIAGONALS_SINGLE && !falls))
+            add_member(g, from + 1, to, unit);
+    }
+}
+
+static const double *front_of(const generator *g, int i_module, int k, int j)
+{
+    int nx = g->c->modules[0] * g->set->bud.panels + 1;
+    return g->grid.position_m + 3 * (size_t)(j * nx + i_module * g->set->bud.panels + k);
+}
+
+static void add_corners(generator *g)
+{
+    char where[ID_SIZE];
+    for (int j = 0; j <= g->c->modules[1]; j++)
+        for (int i = 0; i <= g->c->modules[0]; i++) {
+            snprintf(where, sizeof where, "%d_%d", i, j);
+            add_node(g, front_of(g, i, 0, j), where);
+        }
+    for (int k = 0; k < g->i_node; k += 2)
+        add_member(g, k, k + 1, HF_UNIT_BUD);
+}
+
+static void add_ribs(generator *g)
+{
+    char where[ID_SIZE];
+    int n = g->set->bud.panels;
+    for (int j = 0; j <= g->c->modules[1]; j++)
+        for (int i = 0; i < g->c->modules[0]; i++) {
+            int inside = g->i_node;
+            for (int k = 1; k < n; k++) {
+                snprintf(where, sizeof where, "%d.%d_%d", i, k, j);
+                add_node(g, front_of(g, i, k, j), where);
+            }
+            add_unit(g, HF_UNIT_BUD, corner(g, i, j), corner(g, i + 1, j), inside, i * n);
+        }
+}
+
+static void add_lines(generator *g)
+{
+    char where[ID_SIZE];
+    for (int i = 0; i <= g->c->modules[0]; i++) {
+        hf_unit unit = line_unit(g->set, i, g->c->modules[0]);
+        int n = unit_of(g->set, unit)->panels;
+        for (int j = 0; j < g->c->modules[1]; j++) {
+            int inside = g->i_node;
+            const double *from = front_of(g, i, 0, j), *to = front_of(g, i, 0, j + 1);
+            for (int k = 1; k < n; k++) {
+                double position_m[3] = {from[0], from[1] + (to[1] - from[1]) * k / n, from[2]};
+                snprintf(where, sizeof where, "%d_%d.%d", i, j, k);
+                add_node(g, position_m, where);
+            }
+            add_unit(g, unit, corner(g, i, j), corner(g, i, j + 1), inside, j * n);
+        }
+    }
+}
+
+/* Holds the corners of the module in the middle. With an even number of modules there is none; then the corners on the
+ * line between the two middle ones are held. */
+static void hold(const generator *g)
+{
+    const int *m = g->c->modules;
+    for (int j = m[1] / 2; j <= (m[1] + 1) / 2; j++)
+        for (int i = m[0] / 2; i <= (m[0] + 1) / 2; i++)
+            for (int side = g->set->supports == HF_HELD_CENTRAL_MODULE_REAR; side < 2; side++)
+                g->t->fixed[corner(g, i, j) + side] = g->set->support_dofs == HF_HELD_ALL_DOFS ? 0x3f : 0x07;
+}
+
+/* Adds the nodes and members of n_unit units to the counts, without the corners and the posts there. */
+static void count_unit(const hf_truss_unit *u, double n_unit, double *n_node, double *n_member)
+{
+    *n_node += n_unit * 2 * (u->panels - 1);
+    *n_member += n_unit * (u->panels * (2.0 + u->diagonals) + u->panels - 1);
+}
+
+static hf_status generate(generator *g, hf_messages *messages)
+{
+    const int *m = g->c->modules;
+    double corners = (m[0] + 1.0) * (m[1] + 1.0), n_node = 2 * corners, n_member = corners;
+    count_unit(&g->set->bud, m[0] * (m[1] + 1.0), &n_node, &n_member);
+    for (int i = 0; i <= m[0]; i++)
+        count_unit(unit_of(g->set, line_unit(g->set, i, m[0])), m[1], &n_node, &n_member);
+    if (n_node > TRUSS_NODE_MAX)
+        return hf_error(messages, HF_BAD_CASE, "truss: %.0f nodes are more than this program takes (%d)", n_node,
+                        TRUSS_NODE_MAX);
+    hf_cylinder ribs = *g->c;
+    ribs.cells_per_module[0] = g->set->bud.panels;
+    ribs.cells_per_module[1] = 1;
+    ribs.scallop = 0;
+    HF_TRY(hf_scene_parabolic_cylinder(&ribs, NULL, &g->grid, messages));
+    hf_status status = hf_truss_allocate(g->t, (int)n_node, (int)n_member, 0);
+    g->text = status == HF_OK ? malloc(ID_SIZE * (size_t)(n_node + 2 * n_member)) : NULL;
+    g->t->text = g->text;
+    if (!g->text) return hf_error(messages, HF_NO_MEMORY, "truss: out of memory for %.0f nodes", n_node);
+    add_corners(g);
+    add_ribs(g);
+    add_lines(g);
+    hold(g);
+    return HF_OK;
+}
+
+hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder *cylinder, hf_truss *truss,
+                            hf_messages *messages)
+{
+    *truss = (hf_truss){0};
+    generator g = {.set = settings, .c = cylinder, .t = truss};
+    hf_status status = generate(&g, messages);
+    hf_scene_free(&g.grid);
+    return status;
+}
