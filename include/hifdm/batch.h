@@ -1,4 +1,5 @@
 /* batch - designs -> results with all cores busy.
+ * Stability: stable.
  *
  * For an optimiser of one's own: create, share the base design, run as often as there are designs, free; the whole of
  * it is in tools/own_optimiser.c. `hifdm evaluate` is the same for tables in CSV files. */
@@ -37,9 +38,9 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
  * run. */
 int hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
 
-/* Let the threads share one factored Newton matrix from the base design [n_gene] > 0 on, where the evaluator's solver
- * allows it. Returns the hf_solver that will be used: an unsuitable base or net leaves each design to hf_evaluate.
- * HF_NO_MEMORY counts as unsuitable. */
+/* Choose what designs are solved with from here on, and make it: one Newton matrix, factored at the base design
+ * [n_gene] > 0 and shared by all threads; lanes of the paper's iteration; or nothing, and each design is left to
+ * hf_evaluate. Returns the hf_solver that will be used. An unsuitable base, or no memory, leaves it at the last. */
 int hf_batch_share(hf_batch *batch, const double *base_N);
 
 /* The same without a base: what hf_batch_share makes unless the base or memory forbids it; *has_lanes: eight designs

@@ -1,4 +1,5 @@
-/* evaluate - one design (a boundary pretension for each gene) -> one plain result.
+/* evaluate - one form-finding by the method that fits, alone or on a truss -> one plain result: of the case itself
+ * (hf_evaluate_form), or of a design, which is a boundary pretension for each gene (hf_evaluate).
  * Stability: stable. */
 #ifndef HIFDM_EVALUATE_H
 #define HIFDM_EVALUATE_H

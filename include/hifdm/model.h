@@ -91,7 +91,7 @@ double hf_model_reference_N(const hf_scene *scene, double pretension_N);
 /* Invariants of every index and band place; for asserts and tests. */
 bool hf_model_is_valid(const hf_model *model);
 
-/* "cable-cable-cable" of a straight chain into `text`, cut with "..." when it does not fit. */
+/* "cable + cable + cable" of a chain into `text`, cut with " ..." when it does not fit. */
 void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_chain, char *text, size_t size);
 
 void hf_model_free(hf_model *model);

@@ -13,14 +13,14 @@
 extern "C" {
 #endif
 
-/* X(type, name, number of items for a model m, unit, meaning). The solver of a net with struts needs a general band
- * matrix and pivots; other nets have none. */
 #define HF_NEWTON_DOFS(m) ((m)->has_newton ? 3 * (size_t)(m)->n_free : 0)
 
 /* Past displacements and steps that the accelerated coupling combines. */
 #define HF_COUPLING_DEPTH 8
 #define HF_COUPLING_ITEMS(m) (3 * (size_t)(m)->n_attachment * (2 * HF_COUPLING_DEPTH + 4))
 
+/* X(type, name, number of items for a model m, unit, meaning). The solver of a net with struts needs a general band
+ * matrix and pivots; other nets have none. */
 #define HF_WORKSPACE_FIELDS(X)                                                                                         \
     X(double, position_m, 3 * (size_t)m->n_node, "m", "[3][n_node] by row, supports included")                         \
     X(double, band, (size_t)m->n_band + 1, "N/m", "lower band of D, then its Cholesky factor; one spare place")        \

@@ -1,3 +1,4 @@
+/* The words of the laws. What a law does is inline in the header. */
 #include <hifdm/cable_law.h>
 
 #include <stddef.h>

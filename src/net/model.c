@@ -1,4 +1,4 @@
-/* Contents: layout - numbering and band places - laws and targets - straight chains - groups of
+/* Contents: layout - numbering and band places - laws and targets - chains of length-controlled cables - groups of
  * genes - build - attachments - checks */
 #include <hifdm/model.h>
 
@@ -208,6 +208,20 @@ static hf_status find_chains(hf_model *m)
     return HF_OK;
 }
 
+void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_chain, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int k = model->chain_start[i_chain]; k < model->chain_start[i_chain + 1]; k++) {
+        const char *id = scene->cable_id[model->chain_cable[k]];
+        if (used + strlen(id) + 8 > size) {
+            snprintf(text + used, size - used, " ...");
+            return;
+        }
+        used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " + " : "", id);
+    }
+}
+
 /* ---- groups of genes ---- */
 
 /* Union-find with path halving. */
@@ -246,20 +260,6 @@ static hf_status group_genes(hf_model *m)
     return HF_OK;
 }
 
-void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_chain, char *text, size_t size)
-{
-    size_t used = 0;
-    text[0] = '\0';
-    for (int k = model->chain_start[i_chain]; k < model->chain_start[i_chain + 1]; k++) {
-        const char *id = scene->cable_id[model->chain_cable[k]];
-        if (used + strlen(id) + 8 > size) {
-            snprintf(text + used, size - used, " ...");
-            return;
-        }
-        used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " + " : "", id);
-    }
-}
-
 /* ---- build ---- */
 
 static hf_status build(const hf_scene *scene, const hf_form_settings *form, const int *order, hf_model *m)
@@ -293,6 +293,13 @@ hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf
     free(order);
     if (status != HF_OK) return hf_error(messages, status, "out of memory for a model of %d nodes", scene->n_node);
     return HF_OK;
+}
+
+void hf_model_free(hf_model *model)
+{
+    free(model->block);
+    free(model->attachment_block);
+    *model = (hf_model){0};
 }
 
 /* ---- attachments ---- */
@@ -419,13 +426,6 @@ hf_status hf_model_attach(hf_model *m, int n_attachment, const int *node, const 
     HF_TRY(check_flexibility(n_attachment, flexibility_m_per_N, messages));
     if (attach(m, n_attachment, node, flexibility_m_per_N) == HF_OK) return HF_OK;
     return hf_error(messages, HF_NO_MEMORY, "out of memory for %d attachments", n_attachment);
-}
-
-void hf_model_free(hf_model *model)
-{
-    free(model->block);
-    free(model->attachment_block);
-    *model = (hf_model){0};
 }
 
 /* ---- checks ---- */

@@ -15,6 +15,8 @@
 #define RESCALED_MAX 8 /* rounds of bringing it there */
 #define ROUNDED_MAX 3  /* tries against rounding */
 
+/* ---- flat chains ---- */
+
 /* The tension of a flat chain goes with the inverse root of its excess length, which lies decades away from where
  * Eq. 8 or Newton's linear model would look: scale its force densities to the excess that L* prescribes. Returns how
  * many chains were far from it. */
@@ -43,6 +45,8 @@ static int rescale_flat_chains(const hf_model *m, hf_workspace *w)
     return n_scaled;
 }
 
+/* ---- starts ---- */
+
 /* First force densities unlike those of the case: the first shapes need not lie near the answer, and a cable that
  * shrinks to nothing in one of them proves nothing. */
 static void start_elsewhere(const hf_model *m, hf_workspace *w)
@@ -60,6 +64,8 @@ static int start_elastic(const hf_model *m, const hf_form_settings *s, hf_worksp
     hf_newton_run(m, s, w, STEPS_MAX, &n_step);
     return n + n_step;
 }
+
+/* ---- the alternation ---- */
 
 hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
                               hf_form_result *result)

@@ -1,3 +1,4 @@
+/* Contents: choice of the method - one shape, alone or with a truss - one design */
 #include <hifdm/evaluate.h>
 
 #include "solve/certificate.h"
@@ -5,6 +6,8 @@
 #include "solve/equilibrium.h"
 
 #include <math.h>
+
+/* ---- choice of the method ---- */
 
 hf_method hf_evaluate_method(const hf_model *m, const hf_form_settings *form, const char **why)
 {
@@ -57,6 +60,8 @@ hf_status hf_evaluate_form(const hf_model *m, const hf_form_settings *form, hf_w
     if (m->n_attachment) hf_coupling_certify(m, w, result);
     return result->status;
 }
+
+/* ---- one design ---- */
 
 double hf_evaluate_design_length_m(const hf_model *m, int i_cable)
 {

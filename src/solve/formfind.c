@@ -1,5 +1,5 @@
-/* Contents: one linear solve (Eqs. 1-6) - measuring cables - nodal residual - straight chains - updates (Eqs. 7, 8) -
- * stopping - the iteration */
+/* Contents: starts - one linear solve (Eqs. 1-6) - measuring cables - nodal residual - straight chains -
+ * updates (Eqs. 7, 8) - stopping - the iteration - shapes from elsewhere */
 #include <hifdm/formfind.h>
 
 #include "linalg/band.h"
@@ -17,6 +17,8 @@
 #define CHAIN_LOAD_SETTLED 0.01
 #define ROUNDING_STEPS 32    /* roundings of the ends' coordinates that an imbalance may be worth */
 #define CHAIN_LOAD_NONE 1e-6 /* lateral load below this part of the reference tension is none */
+
+/* ---- starts ---- */
 
 void hf_form_prepare(const hf_model *model, hf_workspace *workspace)
 {
@@ -418,6 +420,8 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, hf_stop_rul
     }
     return finish_result(m, w, r);
 }
+
+/* ---- shapes from elsewhere: Newton, lanes ---- */
 
 hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r)
 {

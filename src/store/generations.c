@@ -37,10 +37,10 @@ enum {
 };
 _Static_assert(ROW_N == HF_GENERATIONS_PIECES, "count the rows again");
 
-static int list_rows(const hf_population *g, ga_row row[HF_GENERATIONS_PIECES])
+static int list_rows(const hf_population *now, ga_row row[HF_GENERATIONS_PIECES])
 {
-    const hsize_t p = (hsize_t)g->n_individual, k = (hsize_t)g->n_gene;
-#define ARRAY(member) g->member, sizeof *g->member, sizeof *g->member
+    const hsize_t p = (hsize_t)now->n_individual, k = (hsize_t)now->n_gene;
+#define ARRAY(member) now->member, sizeof *now->member, sizeof *now->member
 #define SINGLE(value) &(value), 0, sizeof(value)
     const ga_row before[] = {
         {{"design_N", HF_KIND_REAL, 3, {1, p, k}, "N", "boundary pretension T' of each gene"}, ARRAY(design_N)},
@@ -49,11 +49,11 @@ static int list_rows(const hf_population *g, ga_row row[HF_GENERATIONS_PIECES])
         {{"crossover_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(crossover_rate)},
         {{"mutation_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(mutation_rate)},
         {{"parent", HF_KIND_INT, 3, {1, p, 2}, "", "individuals of the generation before, or -1"}, ARRAY(parent)},
-        {{"best_individual", HF_KIND_INT, 1, {1}, "", "-1 while none is feasible"}, SINGLE(g->best)},
-        {{"best_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the generation"}, SINGLE(g->best_psi_m[g->generation])},
-        {{"mean_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(g->mean_psi_m)},
-        {{"worst_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(g->worst_psi_m)},
-        {{"n_infeasible", HF_KIND_INT, 1, {1}, "", "individuals whose status is not ok"}, SINGLE(g->n_infeasible)}};
+        {{"best_individual", HF_KIND_INT, 1, {1}, "", "-1 while none is feasible"}, SINGLE(now->best)},
+        {{"best_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the generation"}, SINGLE(now->best_psi_m[now->generation])},
+        {{"mean_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(now->mean_psi_m)},
+        {{"worst_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(now->worst_psi_m)},
+        {{"n_infeasible", HF_KIND_INT, 1, {1}, "", "individuals whose status is not ok"}, SINGLE(now->n_infeasible)}};
 #undef ARRAY
 #undef SINGLE
     _Static_assert(sizeof before == ROW_RESULT * sizeof row[0], "rows before the results");
@@ -64,8 +64,8 @@ static int list_rows(const hf_population *g, ga_row row[HF_GENERATIONS_PIECES])
     for (int i = 0; i < HF_RESULT_N_INDIVIDUAL; i++) {
         const hf_result_field *f = field[i];
         row[ROW_RESULT + i] = (ga_row){{f->name, hf_layout_kind_of(f->kind), 2, {1, p}, f->units, f->description},
-                                       (const char *)g->result + f->offset,
-                                       sizeof *g->result,
+                                       (const char *)now->result + f->offset,
+                                       sizeof *now->result,
                                        f->size};
     }
     memcpy(row + ROW_BREEDING, behind, sizeof behind);

@@ -1,8 +1,8 @@
 /* generations - the data sets of /ga that grow by a row per generation. One list names them and says where the values
- * of a row come from; writing and restoring both use it. The rows of a generation are all
- * that an optimiser needs to propose the next one (hf_optimiser_kind). Rows wait in memory, bounded,
- * until many can be written together, because every call of HDF5 costs some microseconds. The designs, nine tenths of
- * the bytes, are written when a chunk of them is full, all other rows less often. */
+ * of a row come from; writing and restoring both use it. The rows of a generation are all that an optimiser needs to
+ * propose the next one (hf_optimiser_kind). Rows wait in memory, bounded, until many can be written together, because
+ * every call of HDF5 costs some microseconds. The designs, nine tenths of the bytes, are written when a chunk of them
+ * is full, all other rows less often. */
 #ifndef HIFDM_GENERATIONS_H
 #define HIFDM_GENERATIONS_H
 

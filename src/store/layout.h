@@ -1,5 +1,7 @@
 /* layout - what our result files contain: groups, names, types, units and descriptions, and how they follow from the
  * structs of the program. <hifdm/store.h> shows the whole file for a reader; hdf5.h knows how to write any of it.
+ * Elsewhere are only the rows of generations (generations.c), genes, case and provenance (store.c), and the marks of a
+ * session (store_resume.c).
  * A new data set per node or cable is a row of SCENE_COLUMNS or SHAPE_COLUMNS, a new attribute a row of a list of
  * members, a new enumeration a kind. */
 #ifndef HIFDM_STORE_LAYOUT_H

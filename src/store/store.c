@@ -1,4 +1,4 @@
-/* Contents: names and checks before a run - provenance, case, scene - shapes - generations - summary - the end */
+/* Contents: provenance, case, scene - beginning - shapes - generations - summary - publishing - the end */
 #include <hifdm/store.h>
 
 #include "base/clock.h"
