@@ -22,7 +22,7 @@
  *     time.
  * GSL. GSL has one error handler for the whole program, which by default ends it even where GSL only reports "no
  *     progress": call gsl_set_error_handler_off() (gsl/gsl_errno.h) before hf_surface_measure, hf_surface_fit_nodes,
- *     or hf_run_point for a case with a surface section. */
+ *     or hf_run_case for a case with a surface section. */
 #ifndef HIFDM_HIFDM_H
 #define HIFDM_HIFDM_H
 

@@ -35,7 +35,7 @@ typedef struct {
  * the same. */
 typedef void hf_run_observer(void *context, const hf_run_progress *progress);
 
-/* All borrowed until hf_run_point returns. Zero is a usable value of everything but case_path. */
+/* All borrowed until hf_run_case returns. Zero is a usable value of everything but case_path. */
 typedef struct {
     const char *case_path;
     const char *const *set; /* [n_set] overrides "key=value" */
@@ -61,8 +61,8 @@ typedef struct {
  * what went wrong with messages: HF_NOT_CONVERGED and HF_NO_FEASIBLE still write the file; HF_INTERRUPTED when
  * *stop_requested was seen: the same request goes on. A finished result of this case is not computed again:
  * its status. */
-hf_status hf_run_point(const hf_run_request *request, hf_summary *summary, char output[HF_OUTPUT_SIZE],
-                       hf_messages *messages);
+hf_status hf_run_case(const hf_run_request *request, hf_summary *summary, char output[HF_OUTPUT_SIZE],
+                      hf_messages *messages);
 
 #ifdef __cplusplus
 }

@@ -25,7 +25,7 @@ static hf_status command_run(const hf_options *o, FILE *file, hf_messages *messa
                               .stop_requested = hf_signals_watch(),
                               .observer = hf_progress_show,
                               .observer_context = &progress};
-    hf_status status = hf_run_point(&request, &summary, output, messages);
+    hf_status status = hf_run_case(&request, &summary, output, messages);
     hf_progress_end(&progress);
     const char *path = *output ? output : NULL;
     if (o->json)

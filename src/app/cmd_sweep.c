@@ -220,7 +220,7 @@ static void run_point(void *context, int k)
                               .argv = w->options->argv,
                               .stop_requested = w->stop_requested,
                               .unsettled = &p->store};
-    p->status = hf_run_point(&request, &p->summary, output, &p->said);
+    p->status = hf_run_case(&request, &p->summary, output, &p->said);
     if (p->store)
         hf_later_do(settle_point, p);
     else

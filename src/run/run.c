@@ -395,8 +395,8 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     return finish != HF_OK ? finish : status;
 }
 
-hf_status hf_run_point(const hf_run_request *request, hf_summary *summary, char output[HF_OUTPUT_SIZE],
-                       hf_messages *messages)
+hf_status hf_run_case(const hf_run_request *request, hf_summary *summary, char output[HF_OUTPUT_SIZE],
+                      hf_messages *messages)
 {
     run r = {.request = request};
     if (request->unsettled) *request->unsettled = NULL;

@@ -166,7 +166,7 @@ void bench_whole(const char *path, const char *folder)
         hf_messages messages = {0};
         hf_run_request request = {.case_path = path, .output = wanted, .threads = 2, .no_file = !stores};
         double start_s = bench_clock_s();
-        hf_status status = hf_run_point(&request, &summary, output, &messages);
+        hf_status status = hf_run_case(&request, &summary, output, &messages);
         double wall_s = bench_clock_s() - start_s;
         if (status != HF_OK) bench_fail(path, messages.text);
         bench_emit("whole", path, stores ? "stored" : "not stored", 2, "wall_s", wall_s);

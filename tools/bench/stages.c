@@ -142,7 +142,7 @@ void bench_stages(const char *name, const char *folder, const char *path, const 
     hf_store_quiet();
     double bytes_at_first = heap_bytes(), start_s = bench_clock_s();
     watching = 1;
-    hf_status status = hf_run_point(&request, &summary, output, &messages);
+    hf_status status = hf_run_case(&request, &summary, output, &messages);
     double total_s = bench_clock_s() - start_s;
     watching = 0;
     if (status != HF_OK) bench_fail(path, messages.text);
