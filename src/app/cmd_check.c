@@ -4,12 +4,12 @@
 
 #include "app/options.h"
 #include "base/clock.h"
+#include "net/symmetry.h"
+#include "out/print.h"
+#include "run/problem_parts.h"
 #include "search/chord.h"
 #include "search/lane.h"
 #include "search/polish.h"
-#include "out/print.h"
-#include "run/problem_parts.h"
-#include "net/symmetry.h"
 #include <hifdm/batch.h>
 #include <hifdm/run.h>
 

@@ -13,9 +13,9 @@
 #include "base/clock.h"
 #include "base/csv.h"
 #include "base/file_out.h"
+#include "base/json.h"
 #include "base/path.h"
 #include "out/export.h"
-#include "base/json.h"
 #include "out/print.h"
 #include "run/problem_parts.h"
 #include <hifdm/run.h>

@@ -4,13 +4,13 @@
 
 #include "app/study_files.h"
 #include "base/clock.h"
+#include "base/later.h"
 #include "base/signals.h"
+#include "base/text.h"
 #include "out/print.h"
 #include "search/parallel.h"
-#include "base/later.h"
-#include <hifdm/run.h>
-#include "base/text.h"
 #include <hifdm/batch.h>
+#include <hifdm/run.h>
 #include <hifdm/store.h>
 
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 /* The page of one result. Contents: texts - net and shapes - series - the page - reading */
 #include "out/report_result.h"
 
-#include "out/report_page.h"
-#include "base/json.h"
 #include "base/file_out.h"
+#include "base/json.h"
 #include "base/path.h"
+#include "out/report_page.h"
 #include "store/store_read.h"
 #include "store/store_series.h"
 #include <hifdm/metrics.h>

@@ -1,10 +1,10 @@
 /* The page of a merged study. Contents: writing - reading */
 #include "out/report_study.h"
 
-#include "out/report_page.h"
-#include "base/json.h"
 #include "base/file_out.h"
+#include "base/json.h"
 #include "base/path.h"
+#include "out/report_page.h"
 #include "store/store_series.h"
 
 #include <limits.h>

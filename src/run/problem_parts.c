@@ -2,10 +2,10 @@
 #include "run/problem_parts.h"
 
 #include "base/path.h"
-#include "search/polish.h"
 #include "net/symmetry.h"
-#include <hifdm/optimiser.h>
+#include "search/polish.h"
 #include <hifdm/metrics.h>
+#include <hifdm/optimiser.h>
 
 #include <math.h>
 #include <stdlib.h>

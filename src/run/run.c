@@ -3,10 +3,9 @@
 
 #include "base/clock.h"
 #include "base/path.h"
+#include "base/text.h"
 #include "run/problem_parts.h"
 #include "search/polish.h"
-#include "store/store_internal.h"
-#include "base/text.h"
 #include "solve/coupling.h"
 #include <hifdm/batch.h>
 #include <hifdm/store.h>

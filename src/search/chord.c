@@ -3,8 +3,8 @@
 
 #include "base/arena.h"
 #include "solve/coupling.h"
-#include "solve/schur.h"
 #include "solve/newton_matrix.h"
+#include "solve/schur.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,10 +3,10 @@
 
 #include "base/arena.h"
 #include "linalg/band.h"
-#include "search/chord.h"
-#include "solve/schur.h"
-#include "solve/newton_matrix.h"
 #include "net/symmetry.h"
+#include "search/chord.h"
+#include "solve/newton_matrix.h"
+#include "solve/schur.h"
 #include <hifdm/metrics.h>
 
 #include <gsl/gsl_blas.h>

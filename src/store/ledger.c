@@ -2,8 +2,8 @@
 #include "store/ledger.h"
 
 #include "base/clock.h"
-#include "store/journal.h"
 #include "base/text.h"
+#include "store/journal.h"
 
 #include <dirent.h>
 #include <errno.h>
