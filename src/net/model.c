@@ -3,6 +3,7 @@
 #include <hifdm/model.h>
 
 #include "base/arena.h"
+#include "base/union_find.h"
 #include "net/numbering.h"
 
 #include <assert.h>
@@ -224,14 +225,6 @@ void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_cha
 
 /* ---- groups of genes ---- */
 
-/* Union-find with path halving. */
-static int find_root(int *parent, int i)
-{
-    while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
-    return i;
-}
-
 static hf_status group_genes(hf_model *m)
 {
     int *scratch = malloc(((size_t)m->n_node * 3 + (size_t)m->n_gene * 2) * sizeof *scratch);
@@ -248,9 +241,10 @@ static hf_status group_genes(hf_model *m)
         }
     }
     for (int row = 0; row < m->n_free; row++)
-        if (count[row] == 2) parent[find_root(parent, gene_at[2 * row])] = find_root(parent, gene_at[2 * row + 1]);
+        if (count[row] == 2)
+            parent[hf_union_find_root(parent, gene_at[2 * row])] = hf_union_find_root(parent, gene_at[2 * row + 1]);
     for (int k = 0; k < m->n_gene; k++) {
-        int root = find_root(parent, k);
+        int root = hf_union_find_root(parent, k);
         if (label[root] < 0) label[root] = m->n_gene_group++;
         m->gene_group[k] = label[root];
         m->gene_leader[k] = k;

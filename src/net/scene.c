@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "base/text.h"
+#include "base/union_find.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -87,21 +88,21 @@ static void check_nodes(const hf_scene *s, int *n_fault, hf_messages *messages)
     for (int i = 0; i < s->n_node; i++)
         for (int c = 0; c < 3; c++) {
             if (!isfinite(s->position_m[3 * i + c]))
-                fault(s, 0, i, n_fault, "has a position that is no number", messages);
+                fault(s, false, i, n_fault, "has a position that is no number", messages);
             if (s->load_N && !isfinite(s->load_N[3 * i + c]))
-                fault(s, 0, i, n_fault, "has a load that is no number", messages);
+                fault(s, false, i, n_fault, "has a load that is no number", messages);
         }
 }
 
-/* A cable whose law needs its stiffness. */
+/* A law that needs EA_N also needs a target above zero. */
 static void check_elastic(const hf_scene *s, int e, int *n_fault, hf_messages *messages)
 {
     char what[96];
     const char *word = hf_law_word[s->law[e]];
     snprintf(what, sizeof what, "has the law %s, but no %s above zero", word, hf_law_target_name[s->law[e]]);
-    if (!(s->target[e] > 0)) fault(s, 1, e, n_fault, what, messages);
+    if (!(s->target[e] > 0)) fault(s, true, e, n_fault, what, messages);
     snprintf(what, sizeof what, "has the law %s, but no EA_N above zero", word);
-    if (!(s->EA_N && s->EA_N[e] > 0)) fault(s, 1, e, n_fault, what, messages);
+    if (!(s->EA_N && s->EA_N[e] > 0)) fault(s, true, e, n_fault, what, messages);
 }
 
 static void check_cables(const hf_scene *s, int *n_fault, hf_messages *messages)
@@ -109,21 +110,14 @@ static void check_cables(const hf_scene *s, int *n_fault, hf_messages *messages)
     for (int e = 0; e < s->n_cable; e++) {
         int a = s->end[2 * e], b = s->end[2 * e + 1];
         if (a == b)
-            fault(s, 1, e, n_fault, "joins a node to itself", messages);
+            fault(s, true, e, n_fault, "joins a node to itself", messages);
         else if (!(hf_scene_theoretical_length(s, e) > 0))
-            fault(s, 1, e, n_fault, "has zero length: its two nodes are at the same position", messages);
+            fault(s, true, e, n_fault, "has zero length: its two nodes are at the same position", messages);
         if (hf_law_has(s->law[e], HF_LAW_NEEDS_EA)) check_elastic(s, e, n_fault, messages);
     }
 }
 
-/* Union-find with path halving: joins all nodes that cables connect. */
-static int find_root(int *parent, int i)
-{
-    while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
-    return i;
-}
-
+/* Every free node must be joined to a support: cables join nodes to classes, and a class needs a support. */
 static hf_status check_anchored(const hf_scene *s, int *n_fault, hf_messages *messages)
 {
     int *parent = malloc((size_t)s->n_node * 2 * sizeof *parent);
@@ -134,12 +128,12 @@ static hf_status check_anchored(const hf_scene *s, int *n_fault, hf_messages *me
         anchored[i] = 0;
     }
     for (int e = 0; e < s->n_cable; e++)
-        parent[find_root(parent, s->end[2 * e])] = find_root(parent, s->end[2 * e + 1]);
+        parent[hf_union_find_root(parent, s->end[2 * e])] = hf_union_find_root(parent, s->end[2 * e + 1]);
     for (int i = 0; i < s->n_node; i++)
-        if (s->role[i] == HF_ROLE_SUPPORT) anchored[find_root(parent, i)] = 1;
+        if (s->role[i] == HF_ROLE_SUPPORT) anchored[hf_union_find_root(parent, i)] = 1;
     for (int i = 0; i < s->n_node; i++)
-        if (!anchored[find_root(parent, i)])
-            fault(s, 0, i, n_fault, "has no path of cables to a support; connect it or remove it", messages);
+        if (!anchored[hf_union_find_root(parent, i)])
+            fault(s, false, i, n_fault, "has no path of cables to a support; connect it or remove it", messages);
     free(parent);
     return HF_OK;
 }

@@ -15,9 +15,10 @@
 enum { NODE_ID, NODE_X, NODE_Y, NODE_Z, NODE_ROLE, NODE_FX, NODE_FY, NODE_FZ, N_NODE_COLUMN };
 static const char *const node_column[N_NODE_COLUMN] = {"id", "x_m", "y_m", "z_m", "role", "Fx_N", "Fy_N", "Fz_N"};
 
-static int read_nodes(hf_csv *t, const int *where, hf_scene *s)
+/* True when some load is not zero. */
+static bool read_nodes(hf_csv *t, const int *where, hf_scene *s)
 {
-    int any_load = 0;
+    bool any_load = false;
     for (int r = 0; r < t->n_row; r++) {
         const char *id = hf_csv_cell(t, r, where[NODE_ID]);
         for (int c = 0; c < 3; c++) {
@@ -50,7 +51,7 @@ static void read_target(hf_csv *t, const int *where, int r, const char *id, hf_s
     const char *word = hf_law_word[s->law[r]], *name = hf_law_target_name[s->law[r]];
     s->target[r] = hf_law_default_target(s->law[r], hf_scene_theoretical_length(s, r));
     if (*hf_csv_cell(t, r, where[CABLE_VALUE])) {
-        int may_push = hf_law_has(s->law[r], HF_LAW_MAY_PUSH);
+        bool may_push = hf_law_has(s->law[r], HF_LAW_MAY_PUSH);
         s->target[r] = hf_csv_number(t, r, where[CABLE_VALUE], id, "value");
         if (!may_push && s->target[r] <= 0)
             hf_csv_fault(t, t->line[r], id, "value must be above zero for the law ", word);
@@ -65,7 +66,7 @@ static void read_target(hf_csv *t, const int *where, int r, const char *id, hf_s
 
 static void read_EA(hf_csv *t, const int *where, int r, const char *id, const double group_EA_N[2], hf_scene *s)
 {
-    int is_given = where[CABLE_EA] >= 0 && *hf_csv_cell(t, r, where[CABLE_EA]);
+    bool is_given = where[CABLE_EA] >= 0 && *hf_csv_cell(t, r, where[CABLE_EA]);
     double EA_N = group_EA_N[s->group[r]] > 0 ? group_EA_N[s->group[r]] : (double)NAN;
     if (is_given) {
         EA_N = hf_csv_number(t, r, where[CABLE_EA], id, "EA_N");
@@ -121,7 +122,7 @@ static hf_status build(hf_csv *nodes, hf_csv *cables, const double group_EA_N[2]
                        hf_csv_named **cable_index, hf_scene *s)
 {
     int node_where[N_NODE_COLUMN] = {0}, cable_where[N_CABLE_COLUMN] = {0};
-    /* both files are looked at before giving up, so that one run shows the faults of both */
+    /* read both files before returning, so that one run shows the faults of both */
     hf_status node_status = hf_csv_read(nodes->path, COLUMN_MAX, nodes, nodes->messages);
     hf_status cable_status = hf_csv_read(cables->path, COLUMN_MAX, cables, cables->messages);
     if (node_status == HF_OK) node_status = hf_csv_find_columns(nodes, node_column, N_NODE_COLUMN, NODE_FX, node_where);
@@ -129,9 +130,9 @@ static hf_status build(hf_csv *nodes, hf_csv *cables, const double group_EA_N[2]
         cable_status = hf_csv_find_columns(cables, cable_column, N_CABLE_COLUMN, CABLE_EA, cable_where);
     HF_TRY(node_status);
     HF_TRY(cable_status);
-    int with_load = node_where[NODE_FX] >= 0 || node_where[NODE_FY] >= 0 || node_where[NODE_FZ] >= 0;
-    int with_EA = cable_where[CABLE_EA] >= 0 || group_EA_N[0] > 0 || group_EA_N[1] > 0;
-    hf_status status = hf_scene_allocate(s, nodes->n_row, cables->n_row, with_load, with_EA, 1);
+    bool with_load = node_where[NODE_FX] >= 0 || node_where[NODE_FY] >= 0 || node_where[NODE_FZ] >= 0;
+    bool with_EA = cable_where[CABLE_EA] >= 0 || group_EA_N[0] > 0 || group_EA_N[1] > 0;
+    hf_status status = hf_scene_allocate(s, nodes->n_row, cables->n_row, with_load, with_EA, true);
     if (status == HF_OK) *node_index = hf_csv_index(nodes, node_where[NODE_ID]);
     if (status == HF_OK) *cable_index = hf_csv_index(cables, cable_where[CABLE_ID]);
     if (!*node_index || !*cable_index) return hf_error(nodes->messages, HF_NO_MEMORY, "%s: out of memory", nodes->path);

@@ -2,6 +2,7 @@
 #include "net/symmetry.h"
 
 #include "base/arena.h"
+#include "base/union_find.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -196,18 +197,11 @@ static hf_status refuse(const search *q, int axis, int n_missing, hf_messages *m
 
 /* ---- classes of genes ---- */
 
-/* The smallest member of a class, by union-find with path halving. */
-static int find_root(int *parent, int i)
-{
-    while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
-    return i;
-}
-
+/* Join the classes of a and b; the smaller root stays, so that a root is the smallest member of its class. */
 static void join(int *parent, int a, int b)
 {
-    a = find_root(parent, a);
-    b = find_root(parent, b);
+    a = hf_union_find_root(parent, a);
+    b = hf_union_find_root(parent, b);
     if (a < b)
         parent[b] = a;
     else
@@ -226,7 +220,7 @@ static void merge_groups(const search *q, hf_model *m)
         join(group_parent, m->gene_group[k], m->gene_group[m->gene_leader[k]]);
     m->n_gene_group = 0;
     for (int k = 0; k < m->n_gene; k++) {
-        int root = find_root(group_parent, m->gene_group[k]);
+        int root = hf_union_find_root(group_parent, m->gene_group[k]);
         if (label[root] < 0) label[root] = m->n_gene_group++;
         m->gene_group[k] = label[root];
     }
@@ -248,7 +242,7 @@ static hf_status link_genes(search *q, hf_symmetry wanted, hf_model *m, int *pla
     }
     m->n_leader = 0;
     for (int k = 0; k < m->n_gene; k++) {
-        m->gene_leader[k] = find_root(q->parent, k);
+        m->gene_leader[k] = hf_union_find_root(q->parent, k);
         m->n_leader += m->gene_leader[k] == k;
     }
     if (*planes) merge_groups(q, m);
