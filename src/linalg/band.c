@@ -23,7 +23,7 @@ void dgbcon_(const char *norm, const int *n, const int *kl, const int *ku, const
 void dsyrk_(const char *uplo, const char *trans, const int *n, const int *k, const double *alpha, const double *a,
             const int *lda, const double *beta, double *c, const int *ldc);
 
-/* only OpenBLAS has these; another library leaves them at NULL */
+/* only OpenBLAS defines these; with another library they are NULL */
 #pragma weak openblas_set_num_threads
 #pragma weak openblas_get_config
 #pragma weak openblas_get_corename
@@ -115,14 +115,14 @@ void hf_band_single_threaded(void)
     if (openblas_set_num_threads) openblas_set_num_threads(1);
 }
 
-int hf_band_has_room(int n_thread)
+bool hf_band_has_room(int n_thread)
 {
-    if (!openblas_get_config) return 1;
+    if (!openblas_get_config) return true;
     size_t bytes = (size_t)n_thread * ((size_t)HF_BAND_ROOM_MB << 20);
     void *room = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (room == MAP_FAILED) return 0;
+    if (room == MAP_FAILED) return false;
     munmap(room, bytes);
-    return 1;
+    return true;
 }
 
 const char *hf_band_library(void)

@@ -1,20 +1,24 @@
-/* band - solve D X = B for a symmetric band matrix and three right-hand sides, by LAPACK. */
+/* band - symmetric band matrices by LAPACK: solve D X = B for three or more right-hand sides, condition numbers.
+ *
+ * Positive definite matrices are factored by Cholesky, indefinite ones by LU with pivoting. */
 #ifndef HIFDM_BAND_H
 #define HIFDM_BAND_H
 
 #include <hifdm/status.h>
+#include <stdbool.h>
 
 /* Band Cholesky (dpbtrf, dpbtrs). band: lower band [n][half_bandwidth+1], replaced by its factor; b: [3][ldb], rows
  * 0..n-1 of each replaced by the solution. HF_SINGULAR when not positive definite (b is untouched then); *bad_row is
  * the row where it broke, -1 otherwise. */
 hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row);
 
-/* The same for an indefinite matrix (force densities below zero): LU with pivoting (dgbtrf, dgbtrs).
+/* hf_band_solve for an indefinite matrix (force densities below zero): LU with pivoting (dgbtrf, dgbtrs).
  * band is only read; general: [n][3*half_bandwidth+1] and pivot: [n] are scratch. */
 hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band, double *general, int *pivot,
                                    double *b, int ldb, int *bad_row);
 
-/* The parts of the same for the Newton matrix. hf_band_factor: 0, or 1 + the row where it broke. b: [n_rhs][ldb]. */
+/* The two parts of hf_band_solve: factor once, then solve for any number of right-hand sides. hf_band_factor: 0, or 1 +
+ * the row where it broke. b: [n_rhs][ldb], rows 0..n-1 of each replaced by the solution. */
 int hf_band_factor(int n, int half_bandwidth, double *band);
 void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
 
@@ -23,20 +27,21 @@ void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *fact
 double hf_band_norm(int n, int half_bandwidth, const double *band, double *work);
 double hf_band_condition(int n, int half_bandwidth, const double *factor, double norm, double *work, int *integer_work);
 
-/* The same from the LU that hf_band_solve_indefinite leaves (dgbcon). */
+/* hf_band_condition from the LU that hf_band_solve_indefinite leaves (dgbcon). */
 double hf_band_condition_indefinite(int n, int half_bandwidth, const double *general, const int *pivot, double norm,
                                     double *work, int *integer_work);
 
 /* Lower triangle, row by row, of A A' for the dense A [n][n_column] of row length lda: gram [n][ldg] (BLAS). */
 void hf_band_gram(int n, int n_column, const double *a, int lda, double *gram, int ldg);
 
-/* One system per thread: keep a threaded BLAS from starting threads of its own. Call once, before any solve. */
+/* Keep a threaded BLAS from starting threads: each thread of this program solves systems of its own. Call once, before
+ * any solve. */
 void hf_band_single_threaded(void);
 
-/* Is there address space for what LAPACK takes in n_thread threads? OpenBLAS wants HF_BAND_ROOM_MB for each, and tries
- * again for ever when it is refused (ulimit -v). */
+/* Is there address space for the buffers that LAPACK maps in n_thread threads? OpenBLAS maps HF_BAND_ROOM_MB for each,
+ * and repeats a refused request without end (ulimit -v). */
 #define HF_BAND_ROOM_MB 128
-int hf_band_has_room(int n_thread);
+bool hf_band_has_room(int n_thread);
 
 /* Name of the LAPACK in use, for the provenance, e.g. "OpenBLAS 0.3.21 ... Haswell"; "reference or unknown". */
 const char *hf_band_library(void);

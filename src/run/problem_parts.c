@@ -129,7 +129,7 @@ void hf_problem_share(hf_problem *p)
     while (n_taut < p->model.n_gene && p->base_N[n_taut] > 0)
         n_taut++;
     p->solver = HF_SOLVER_AUTO;
-    if (n_taut > 0 && n_taut == p->model.n_gene) p->solver = (hf_solver)hf_batch_share(&p->batch, p->base_N);
+    if (n_taut > 0 && n_taut == p->model.n_gene) p->solver = hf_batch_share(&p->batch, p->base_N);
 }
 
 /* ---- names for what went wrong ---- */
@@ -188,7 +188,7 @@ void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, co
     if (r->n_slack) hf_warning(messages, "slack in the %s shape, %d: %s", stage, r->n_slack, close_names(&slack));
 }
 
-/* The cable that is furthest from its law. */
+/* The cable with the largest relative deviation from its law. */
 static int furthest_off(const hf_problem *p)
 {
     const hf_workspace *w = &p->workspace;
@@ -207,7 +207,7 @@ static int furthest_off(const hf_problem *p)
 
 #define MOVE_SIZE 96
 
-/* How far an attachment would still move, and how that compares with before, if that is known. */
+/* How far an attachment would still move, and the ratio to the step before where it is known. */
 static const char *name_move(const hf_coupling_result *c, char text[MOVE_SIZE])
 {
     if (!isfinite(c->step_m)) return "beyond all bounds";
@@ -243,7 +243,7 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
                     w->length_m[e]);
 }
 
-/* The loop has run away, or the net has lost its shape on the way. */
+/* The loop of net and truss diverges, or the net lost its shape in one of its iterations. */
 static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, hf_messages *messages)
 {
     const hf_coupling_result *c = &r->coupling;

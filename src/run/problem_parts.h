@@ -1,5 +1,7 @@
-/* problem_parts - the steps of hf_problem_open one by one, for `run`, `check` and `evaluate`, which store or print
- * something in between. They all refuse the same cases with the same words. In the order of their use. */
+/* problem_parts - the steps of hf_problem_open one by one, in the order of their use.
+ *
+ * `run`, `check` and `evaluate` call them and store or print something in between. Since all share these steps, they
+ * refuse the same cases with the same words. */
 #ifndef HIFDM_PROBLEM_PARTS_H
 #define HIFDM_PROBLEM_PARTS_H
 
@@ -10,19 +12,19 @@
 hf_status hf_problem_load(const char *path, const char *const *set, int n_set, hf_problem *problem,
                           hf_messages *messages);
 
-/* Fill in what case and model say. */
+/* Fill in the members of the summary that case and model determine. */
 void hf_problem_describe(const hf_problem *problem, hf_summary *summary);
 
-/* No result may replace what it is made from, whatever the user forces: the case, its net, its truss, a table of
- * designs (may be NULL). HF_OK or HF_EXISTS. */
+/* HF_EXISTS when `output` is one of the inputs (the case, the files of its net and truss, a table of designs or NULL),
+ * which no option lets a result replace; else HF_OK. */
 hf_status hf_problem_spare_inputs(const hf_problem *problem, const char *table, const char *output,
                                   hf_messages *messages);
 
 /* The workspace, and the arrays that hf_problem_base fills. HF_OK or HF_NO_MEMORY. */
 hf_status hf_problem_allocate(hf_problem *problem, hf_messages *messages);
 
-/* What the form-finding in the problem's workspace came to, in words: hf_problem_warn, or an error that names cables,
- * nodes or chains. Returns result->status. */
+/* Explain the outcome of the form-finding in the problem's workspace: warnings by hf_problem_warn, or an error that
+ * names cables, nodes or chains. Returns result->status. */
 hf_status hf_problem_explain(hf_problem *problem, const hf_form_result *result, hf_messages *messages);
 
 /* Warnings about a shape that was found: no equilibrium yet, loaded straight chains, slack cables, all by name. */
@@ -34,7 +36,7 @@ void hf_problem_warn(const hf_problem *problem, const char *stage, hf_workspace 
  * allow. */
 hf_status hf_problem_base(hf_problem *problem, hf_messages *messages);
 
-/* What optimize.method lm and ga+lm ask for. */
+/* Message for a net that the methods lm and ga+lm cannot treat. */
 #define HF_PROBLEM_POLISH_NEEDS "optimize: Levenberg-Marquardt needs a net without struts and a rule other than seeded"
 
 /* The evaluator; hf_problem_base sets problem->evaluator to it. It borrows the problem. */
@@ -43,7 +45,8 @@ hf_evaluator hf_problem_evaluator(const hf_problem *problem);
 /* Create the batch of n_thread threads (0: all cores). HF_OK or HF_NO_MEMORY. */
 hf_status hf_problem_batch(hf_problem *problem, int n_thread);
 
-/* Make what the batch's threads share from base_N, if all of it is above 0, and set problem->solver. */
+/* Prepare the factorisation that the batch's threads share (hf_batch_share), if all of base_N is above 0, and set
+ * problem->solver. */
 void hf_problem_share(hf_problem *problem);
 
 #endif

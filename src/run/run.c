@@ -39,7 +39,7 @@ static void run_free(run *r)
     hf_problem_free(&r->problem);
 }
 
-static int must_stop(const run *r)
+static bool must_stop(const run *r)
 {
     return r->request->stop_requested && *r->request->stop_requested;
 }
@@ -65,7 +65,7 @@ static hf_status measure_surface(const run *r, hf_stage stage, const hf_workspac
     return HF_OK;
 }
 
-/* What the net of this shape does to the truss, if there is one. */
+/* Forces and displacements of the truss, if there is one, under the net of this shape. */
 static hf_status load_truss(run *r, hf_workspace *w, hf_messages *messages)
 {
     const hf_problem *p = &r->problem;
@@ -78,7 +78,7 @@ static hf_status load_truss(run *r, hf_workspace *w, hf_messages *messages)
 
 /* ---- form-finding ---- */
 
-static hf_status create_history(const hf_form_settings *form, int has_truss, hf_history *h)
+static hf_status create_history(const hf_form_settings *form, bool has_truss, hf_history *h)
 {
     h->capacity = form->max_iterations < HISTORY_MAX ? form->max_iterations : HISTORY_MAX;
     size_t n = (size_t)h->capacity, n_coupling = has_truss ? (size_t)form->coupling.max_iterations : 0;
@@ -116,14 +116,14 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
 
 /* ---- optimisation ---- */
 
-/* Told to stop: all that is done is published, and the same command goes on from there. */
+/* End a run that was told to stop: publish all finished generations, from which the same command goes on. */
 static hf_status stop_here(run *r, const hf_summary *s, hf_messages *messages)
 {
     HF_TRY(hf_store_publish(r->store, s, 1, messages));
     return HF_INTERRUPTED;
 }
 
-/* Workspaces, population and evaluator, all before the first generation. */
+/* Base design, batch and optimiser. Everything that the generations need is allocated here, before the first one. */
 static hf_status prepare_optimize(run *r, hf_messages *messages)
 {
     hf_problem *p = &r->problem;
@@ -150,21 +150,21 @@ static void note_best(const hf_population *p, hf_summary *s)
     s->best_individual = p->best;
 }
 
-/* The shape of the best individual: elitism keeps it in the last generation, and it is evaluated to the same bits
- * again. */
+/* Store the shape of the best individual. It is in the last generation (elitism) and is evaluated once more for its
+ * shape, which gives the same bits. */
 static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
 {
     const double *design = best_design(&r->optimiser.population);
     hf_form_result again;
     hf_workspace *w = hf_batch_run_one(&r->problem.batch, design, &again);
-    s->best = again; /* to the same bits, with what is not stored of an individual */
+    s->best = again; /* the same bits, and the figures that are not stored for each individual */
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
     HF_TRY(measure_surface(r, HF_STAGE_OPTIMIZE, w, s, messages));
     HF_TRY(load_truss(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->problem.model, w, design, messages);
 }
 
-/* What the summary says of the generations so far; a file that is published in between has it, too. */
+/* Write the state of the generations into the summary; files published between generations hold it as well. */
 static void sum_up(const run *r, double start_s, hf_summary *s)
 {
     const hf_population *p = &r->optimiser.population;
@@ -177,10 +177,10 @@ static void sum_up(const run *r, double start_s, hf_summary *s)
     s->optimize_stop = (int)p->stop_reason;
 }
 
-/* A generation on its way into the store, while the next one is bred and evaluated. */
+/* A generation that is being stored while the next one is bred and evaluated. */
 typedef struct {
     const run *r;
-    hf_population population; /* as it was told */
+    hf_population population; /* as hf_optimiser_tell left it */
     const hf_summary *summary;
     hf_messages *messages;
     hf_status status;
@@ -199,7 +199,7 @@ static void observe_generation(const told *t)
                                     .elapsed_s = t->summary->optimize_wall_s - t->r->earlier_wall_s});
 }
 
-/* Nobody hears of a generation before it is safe. */
+/* Store a generation, publish it when due, then notify the observer: only generations that are safe are reported. */
 static void keep(void *context)
 {
     told *t = context;
@@ -208,8 +208,8 @@ static void keep(void *context)
     if (t->status == HF_OK) observe_generation(t);
 }
 
-/* The visible file begins with the first generation, so that the journal always has something to be added to. What an
- * earlier session has stored is taken up. */
+/* Restore the generations of earlier sessions. Without any, publish a file without generations at once, since a journal
+ * is always read together with a published file. */
 static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
 {
     const hf_population *p = &r->optimiser.population;
@@ -224,13 +224,13 @@ static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
     return HF_OK;
 }
 
-/* The first generation of this session; 0 when there is none. */
-static int evaluate_first(run *r)
+/* Evaluate the first generation of this session; false when there is none. */
+static bool evaluate_first(run *r)
 {
     const hf_population *p = &r->optimiser.population;
     if (r->first_generation > 0) return hf_batch_next(&r->problem.batch, &r->optimiser, NULL, NULL);
     hf_batch_run(&r->problem.batch, p->n_individual, p->design_N, p->pending, p->result);
-    return 1;
+    return true;
 }
 
 static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
@@ -242,14 +242,14 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
     HF_TRY(begin_generations(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
     double start_s = hf_clock_s();
-    int more = evaluate_first(r);
+    bool more = evaluate_first(r);
     while (more) {
         hf_optimiser_tell(&r->optimiser);
         if (p->generation == 0) s->base_psi_m = p->result[0].psi_m;
         note_best(p, s);
         sum_up(r, start_s, s);
         told now = {r, *p, s, messages, HF_OK};
-        int stops = must_stop(r) && p->stop_reason == HF_POPULATION_RUNNING;
+        bool stops = must_stop(r) && p->stop_reason == HF_POPULATION_RUNNING;
         if (stops)
             keep(&now);
         else
@@ -284,7 +284,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
         return HF_OK;
     }
     hf_evaluate(&r->problem.evaluator, design, w, &s->polish);
-    if (must_stop(r)) return stop_here(r, s, messages); /* it may have been cut short */
+    if (must_stop(r)) return stop_here(r, s, messages); /* the evaluation may have been cut short */
     s->has_polish = 1;
     s->polish_is_result = r->plan.ends_with_polish;
     s->polish_iterations = outcome.iterations;
@@ -310,14 +310,14 @@ static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
 
 /* ---- the whole run ---- */
 
-/* -o, or the name of the case with .h5 in the current folder. */
+/* The path given by -o, or else the name of the case with .h5, in the current folder. */
 static hf_status choose_output(const hf_run_request *o, char output[HF_OUTPUT_SIZE], hf_messages *messages)
 {
     if (hf_path_choose(o->output, o->case_path, ".h5", output, HF_OUTPUT_SIZE)) return HF_OK;
     return hf_error(messages, HF_IO, "%s: the path is too long", o->output ? o->output : o->case_path);
 }
 
-/* The stages that the case asks for, in order. HF_NOT_CONVERGED: nothing follows on a shape that is not one. */
+/* The stages that the case asks for, in order. No stage follows a form-finding that fails or does not converge. */
 static hf_status stages(run *r, hf_summary *s, hf_messages *messages)
 {
     HF_TRY(find_form(r, s, messages));
@@ -329,13 +329,13 @@ static hf_status stages(run *r, hf_summary *s, hf_messages *messages)
     return HF_OK;
 }
 
-/* The file of a run that did not reach its aim still says how far it came. */
-static int leaves_result(hf_status status)
+/* A run that did not converge or found no feasible design still writes its file, which says how far it came. */
+static bool leaves_result(hf_status status)
 {
     return status == HF_OK || status == HF_NOT_CONVERGED || status == HF_NO_FEASIBLE;
 }
 
-/* Nothing to do: summary, status and the errors that explain it are the stored ones. */
+/* The result is finished already: return its stored summary and status, and the errors that explain the status. */
 static hf_status repeat_finished(const char *output, hf_summary *s, hf_messages *messages)
 {
     HF_TRY(hf_store_read_summary(output, s, messages));
@@ -345,7 +345,7 @@ static hf_status repeat_finished(const char *output, hf_summary *s, hf_messages 
     return s->status;
 }
 
-/* Unless *state is HF_STORE_FINISHED. */
+/* Set *state, and open the store unless the state is HF_STORE_FINISHED. */
 static hf_status open_store(run *r, char *output, hf_store_state *state, hf_messages *messages)
 {
     const hf_run_request *q = r->request;

@@ -91,7 +91,7 @@ static void deformation_matrix(const hf_frame *f, int e, double b[N_DEFORMATION]
     }
 }
 
-/* Forces that go with deformations: N, T, Mz at i and j, My at i and j. */
+/* Forces of deformations: N, T, Mz at i and j, My at i and j. */
 static void resist(const double *k, const double *deformation, double *q)
 {
     q[0] = k[0] * deformation[0];
@@ -102,7 +102,7 @@ static void resist(const double *k, const double *deformation, double *q)
     }
 }
 
-/* Elastic deformations of a member under a displacement of all nodes; those of its temperature are taken off. */
+/* Elastic deformations of a member under a displacement of all nodes: the whole ones less those of its temperature. */
 static void deform(const hf_frame *f, int e, const double *displacement, double rise_K, double *deformation)
 {
     const hf_truss *t = f->truss;
@@ -152,7 +152,7 @@ static void lay_out(hf_arena *a, const hf_truss *t, hf_frame *f)
 
 /* ---- dofs and numbering ---- */
 
-/* What stands for each dof before the rows are given out. */
+/* Mark each dof before rows are numbered: 0 (will get a row), HF_FRAME_FIXED or HF_FRAME_ABSENT. */
 static void classify_dofs(const hf_truss *t, int *row_of_dof)
 {
     for (int k = 0; k < HF_TRUSS_DOF * t->n_node; k++)
@@ -164,7 +164,8 @@ static void classify_dofs(const hf_truss *t, int *row_of_dof)
         if (t->fixed[k / HF_TRUSS_DOF] >> k % HF_TRUSS_DOF & 1) row_of_dof[k] = HF_FRAME_FIXED;
 }
 
-/* Nodes in an order with a small bandwidth; numbering sees the truss as a net whose wholly fixed nodes are supports. */
+/* Nodes in an order with a small bandwidth, by hf_numbering_find on a net with a cable for each member, whose supports
+ * are the nodes without any free dof. */
 static hf_status order_nodes(const hf_truss *t, const int *row_of_dof, int *order, int *n_ordered)
 {
     int unused;
@@ -185,6 +186,7 @@ static hf_status order_nodes(const hf_truss *t, const int *row_of_dof, int *orde
     return status;
 }
 
+/* Number the rows in this order; returns their number. */
 static int give_rows(const int *order, int n_ordered, int *row_of_dof)
 {
     int n = 0;
@@ -238,7 +240,7 @@ static void assemble(const hf_frame *f, double *band)
                 column[d] = b[d][j];
             resist(f->stiffness + N_DEFORMATION * (size_t)e, column, q);
             for (int i = 0; i < 12; i++) {
-                if (row[i] < row[j]) continue; /* the lower band; also what is fixed or absent */
+                if (row[i] < row[j]) continue; /* above the diagonal, or fixed, or absent */
                 double sum = 0;
                 for (int d = 0; d < n; d++)
                     sum += b[d][i] * q[d];
@@ -248,7 +250,7 @@ static void assemble(const hf_frame *f, double *band)
     }
 }
 
-/* Make the diagonal 1: displacements and rotations then weigh alike. The row without stiffness, or -1. */
+/* Make the diagonal 1, so that displacements and rotations weigh alike. Returns a row without stiffness, or -1. */
 static int scale_to_unit_diagonal(const hf_frame *f, double *scale, double *band)
 {
     size_t width = (size_t)f->half_bandwidth + 1;
@@ -264,15 +266,15 @@ static int scale_to_unit_diagonal(const hf_frame *f, double *scale, double *band
 
 /* ---- mechanisms ---- */
 
-/* The dof that moves most in the motion that costs least: inverse iteration on the matrix, shifted to be definite. -1
- * when even that has no factor, or no finite one. */
+/* The row that moves most in the motion with the least stiffness, by inverse iteration on the matrix, which is
+ * shifted to be definite. -1 when the shifted matrix has no finite factor. */
 static int find_loosest_row(const hf_frame *f, double *work)
 {
     assemble(f, f->factor);
     scale_to_unit_diagonal(f, f->scale, f->factor);
     for (int i = 0; i < f->n_dof; i++) {
         f->factor[(size_t)i * ((size_t)f->half_bandwidth + 1)] += SHIFT;
-        work[i] = 1 + 0.37 * (double)(i % 7) - 0.21 * (double)(i % 11); /* orthogonal to no motion in particular */
+        work[i] = 1 + 0.37 * (double)(i % 7) - 0.21 * (double)(i % 11); /* a start with a part of any motion */
     }
     if (hf_band_factor(f->n_dof, f->half_bandwidth, f->factor) != 0) return -1;
     int loosest = 0;
@@ -289,7 +291,7 @@ static int find_loosest_row(const hf_frame *f, double *work)
     return loosest;
 }
 
-/* row < 0: it is not known what moves. */
+/* The error for a truss that moves in this row; row < 0: which one is unknown. */
 static hf_status refuse(const hf_frame *f, int row, hf_messages *messages)
 {
     static const char *const direction[] = {"move along x", "move along y", "move along z",
@@ -327,7 +329,8 @@ static hf_status factor(hf_frame *f, hf_messages *messages)
         status = hf_error(messages, HF_NO_MEMORY, "out of memory for a truss of %d nodes", f->truss->n_node);
     } else {
         assemble(f, f->factor);
-        int loose = scale_to_unit_diagonal(f, f->scale, f->factor), singular = 0;
+        int loose = scale_to_unit_diagonal(f, f->scale, f->factor);
+        bool singular = false;
         if (loose < 0) {
             double norm = hf_band_norm(f->n_dof, f->half_bandwidth, f->factor, work);
             singular = hf_band_factor(f->n_dof, f->half_bandwidth, f->factor) != 0;
@@ -392,7 +395,7 @@ static double rise_of(const hf_frame_load *load, int e)
     return load->temperature_K ? load->temperature_K[e] : 0;
 }
 
-/* Take what the members do at their nodes under a displacement off a vector over the nodes. */
+/* Subtract from a vector over the nodes the forces that the members need at them under a displacement. */
 static void subtract_members(const hf_frame *f, const hf_frame_load *load, const double *displacement, double *force)
 {
     const hf_truss *t = f->truss;
@@ -410,7 +413,7 @@ static void subtract_members(const hf_frame *f, const hf_frame_load *load, const
     }
 }
 
-/* What is out of balance under a displacement, over all dofs. */
+/* Forces out of balance under a displacement, over all dofs: the load less the forces that the members need. */
 static void out_of_balance(const hf_frame *f, const hf_frame_load *load, const double *displacement, double *force)
 {
     size_t bytes = HF_TRUSS_DOF * (size_t)f->truss->n_node * sizeof *force;
@@ -421,7 +424,7 @@ static void out_of_balance(const hf_frame *f, const hf_frame_load *load, const d
     subtract_members(f, load, displacement, force);
 }
 
-/* The moment that nothing resists, or -1. */
+/* The dof of a moment that nothing resists, or -1. */
 static int find_bad_dof(const hf_frame *f, int n_case, const hf_frame_load *load)
 {
     for (int k = 0; k < n_case; k++)
@@ -446,7 +449,7 @@ hf_status hf_frame_solve(const hf_frame *f, int n_case, const hf_frame_load *loa
         for (size_t i = 0; i < n; i++)
             displacement[k * n + i] =
                 load[k].settlement && f->row_of_dof[i] == HF_FRAME_FIXED ? load[k].settlement[i] : 0;
-    /* from the state with supports settled and all else held, the free dofs move by what is out of balance */
+    /* with supports settled and all other dofs held, the free ones move under the forces out of balance */
     for (size_t k = 0; k < (size_t)n_case; k++) {
         out_of_balance(f, &load[k], displacement + k * n, force);
         for (size_t i = 0; i < n; i++)
@@ -468,7 +471,7 @@ void hf_frame_reactions(const hf_frame *f, const hf_frame_load *load, const doub
 {
     out_of_balance(f, load, displacement, reaction);
     for (int i = 0; i < HF_TRUSS_DOF * f->truss->n_node; i++) {
-        int fixed = f->row_of_dof[i] == HF_FRAME_FIXED;
+        bool fixed = f->row_of_dof[i] == HF_FRAME_FIXED;
         if (residual) residual[i] = fixed ? 0 : reaction[i];
         reaction[i] = fixed ? -reaction[i] : 0;
     }
@@ -499,7 +502,7 @@ double hf_frame_strain_energy(const hf_frame *f, const hf_frame_load *load, cons
 
 /* ---- condensation ---- */
 
-/* Columns first..first+n-1 of the flexibility, by as many right-hand sides. */
+/* Columns first..first+n-1 of the flexibility: one right-hand side, a unit force, for each. */
 static void condense_some(const hf_frame *f, int n_point, const int *node, int first, int n, double *work,
                           double *flexibility)
 {

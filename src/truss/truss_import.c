@@ -77,7 +77,8 @@ static void read_numbers(hf_csv *t, const int *where, int r, const char *id, hf_
     } field[N_NUMBER] = {HF_MEMBER_NUMBERS(FIELD)};
 #undef FIELD
     for (int k = 0; k < N_NUMBER; k++) {
-        int column = where[MEMBER_E + k], required = MEMBER_E + k < MEMBER_OPTIONAL;
+        int column = where[MEMBER_E + k];
+        bool required = MEMBER_E + k < MEMBER_OPTIONAL;
         *field[k].value = field[k].otherwise;
         if (required || (column >= 0 && *hf_csv_cell(t, r, column)))
             *field[k].value = hf_csv_number(t, r, column, id, member_column[MEMBER_E + k]);
@@ -127,7 +128,7 @@ static hf_status build(hf_csv *nodes, hf_csv *members, hf_csv_named **node_index
                        hf_truss *s)
 {
     int node_where[N_NODE_COLUMN] = {0}, member_where[N_MEMBER_COLUMN] = {0};
-    /* both files are looked at before giving up, so that one run shows the faults of both */
+    /* read both files before returning, so that one run shows the faults of both */
     hf_status node_status = hf_csv_read(nodes->path, COLUMN_MAX, nodes, nodes->messages);
     hf_status member_status = hf_csv_read(members->path, COLUMN_MAX, members, members->messages);
     if (node_status == HF_OK)
@@ -136,7 +137,7 @@ static hf_status build(hf_csv *nodes, hf_csv *members, hf_csv_named **node_index
         member_status = hf_csv_find_columns(members, member_column, N_MEMBER_COLUMN, MEMBER_OPTIONAL, member_where);
     HF_TRY(node_status);
     HF_TRY(member_status);
-    hf_status status = hf_truss_allocate(s, nodes->n_row, members->n_row, 1);
+    hf_status status = hf_truss_allocate(s, nodes->n_row, members->n_row, true);
     if (status == HF_OK) *node_index = hf_csv_index(nodes, node_where[NODE_ID]);
     if (status == HF_OK) *member_index = hf_csv_index(members, member_where[MEMBER_ID]);
     if (!*node_index || !*member_index)
