@@ -1,13 +1,14 @@
-/* batch - designs -> results with all cores busy.
+/* batch - evaluate many designs on all cores.
  * Stability: stable.
  *
- * For an optimiser of one's own: create, share the base design, run as often as there are designs, free; the whole of
- * it is in tools/own_optimiser.c. `hifdm evaluate` is the same for tables in CSV files. */
+ * A program with its own optimiser creates a batch, shares the base design, runs the batch for each set of designs, and
+ * frees it; tools/own_optimiser.c is such a program. `hifdm evaluate` does the same with tables in CSV files. */
 #ifndef HIFDM_BATCH_H
 #define HIFDM_BATCH_H
 
 #include <hifdm/evaluate.h>
 #include <hifdm/optimiser.h>
+#include <stdbool.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -34,18 +35,18 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
 
 /* Propose the next generation and evaluate what is pending in it: hf_optimiser_next and hf_batch_run. Meanwhile
  * beside(context) runs once (NULL: nothing), in another thread if there is one, and has returned when this does. What
- * it reads of the population must be a copy of the struct made before. 0: no generation is left, `beside` alone has
- * run. */
-int hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
+ * it reads of the population must be a copy of the struct made before. Returns false when no generation is left:
+ * then only `beside` has run. */
+bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
 
 /* Choose what designs are solved with from here on, and make it: one Newton matrix, factored at the base design
  * [n_gene] > 0 and shared by all threads; lanes of the paper's iteration; or nothing, and each design is left to
  * hf_evaluate. Returns the hf_solver that will be used. An unsuitable base, or no memory, leaves it at the last. */
-int hf_batch_share(hf_batch *batch, const double *base_N);
+hf_solver hf_batch_share(hf_batch *batch, const double *base_N);
 
-/* The same without a base: what hf_batch_share makes unless the base or memory forbids it; *has_lanes: eight designs
- * side by side, by chord or in lanes. */
-int hf_batch_solver(const hf_evaluator *evaluator, int *has_lanes);
+/* The solver that hf_batch_share returns unless the base or memory forbids it. *has_lanes: it works on eight designs at
+ * once, in the lanes of vector registers. */
+hf_solver hf_batch_solver(const hf_evaluator *evaluator, bool *has_lanes);
 
 int hf_batch_default_threads(void); /* available cores */
 

@@ -121,7 +121,8 @@ static double polish_bytes(const hf_evaluator *v)
 /* Bytes that the evaluation of a population would need: `shared` once for all threads, `lanes` for each thread. */
 static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lanes)
 {
-    int has_lanes, solver = hf_batch_solver(v, &has_lanes);
+    bool has_lanes;
+    hf_solver solver = hf_batch_solver(v, &has_lanes);
     *shared = *lanes = 0;
     if (solver == HF_SOLVER_CHORD) {
         *shared = hf_chord_bytes(v, lanes);
@@ -174,7 +175,7 @@ static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int t
     hf_status status = hf_batch_create(v, 1, &batch);
     if (status == HF_OK) {
         char one[32], all[32];
-        int solver = hf_batch_share(&batch, p->base_N);
+        hf_solver solver = hf_batch_share(&batch, p->base_N);
         double begin_s = hf_clock_s();
         hf_batch_run(&batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
         double each_s = (hf_clock_s() - begin_s) / ga->n_individual;

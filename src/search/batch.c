@@ -80,27 +80,27 @@ static hf_status create_lanes(hf_batch *batch, struct hf_batch_engine *e)
 }
 
 /* Does the batch now have this engine? Out of memory, or an unsuitable base design, leave it without. */
-static int set_engine(hf_batch *batch, int solver, const double *base_N)
+static bool set_engine(hf_batch *batch, hf_solver solver, const double *base_N)
 {
     struct hf_batch_engine *e = batch->engine = calloc(1, sizeof *e);
-    if (!e) return 0;
+    if (!e) return false;
     e->solver = solver;
     hf_status status = solver == HF_SOLVER_CHORD ? create_chord(batch, e, base_N) : create_lanes(batch, e);
     if (status != HF_OK) free_engine(batch);
     return status == HF_OK;
 }
 
-static int each_by_newton(const hf_evaluator *v)
+static bool each_by_newton(const hf_evaluator *v)
 {
     return v->solver != HF_SOLVER_FIXED_POINT && v->rule != HF_RULE_SEEDED && v->model->has_newton;
 }
 
-int hf_batch_solver(const hf_evaluator *v, int *has_lanes)
+hf_solver hf_batch_solver(const hf_evaluator *v, bool *has_lanes)
 {
-    int may_share = v->solver == HF_SOLVER_AUTO || v->solver == HF_SOLVER_CHORD;
-    *has_lanes = 1;
+    bool may_share = v->solver == HF_SOLVER_AUTO || v->solver == HF_SOLVER_CHORD;
+    *has_lanes = true;
     if (may_share && hf_chord_applies(v)) return HF_SOLVER_CHORD;
-    *has_lanes = 0;
+    *has_lanes = false;
     if (each_by_newton(v)) return HF_SOLVER_NEWTON;
     /* the lanes serve neither struts, nor every law, nor a truss: such nets are solved one by one */
     *has_lanes = !v->model->has_strut && !v->model->n_attachment;
@@ -109,23 +109,24 @@ int hf_batch_solver(const hf_evaluator *v, int *has_lanes)
     return HF_SOLVER_FIXED_POINT;
 }
 
-int hf_batch_share(hf_batch *batch, const double *base_N)
+hf_solver hf_batch_share(hf_batch *batch, const double *base_N)
 {
-    int has_lanes, solver = hf_batch_solver(batch->evaluator, &has_lanes);
+    bool has_lanes;
+    hf_solver solver = hf_batch_solver(batch->evaluator, &has_lanes);
     free_engine(batch); /* of an earlier base */
     if (!has_lanes || set_engine(batch, solver, base_N) || solver == HF_SOLVER_FIXED_POINT) return solver;
     return each_by_newton(batch->evaluator) ? HF_SOLVER_NEWTON : HF_SOLVER_FIXED_POINT;
 }
 
-/* Furnish a room unless it is: false without the memory. Only one thread at a time has the room's number. */
-static int has_room(hf_batch *batch, int room)
+/* Allocate what a room (thread number) lacks; false without the memory. Only one thread at a time has the number. */
+static bool has_room(hf_batch *batch, int room)
 {
     struct hf_batch_engine *e = batch->engine;
     if (!batch->workspace[room].block && hf_workspace_create(batch->evaluator->model, &batch->workspace[room]) != HF_OK)
-        return 0;
+        return false;
     if (e && e->chord && !e->chord[room].block) return hf_chord_lanes_create(&e->shared, &e->chord[room]) == HF_OK;
     if (e && e->lanes && !e->lanes[room].block) return hf_lane_workspace_create(&e->plan, &e->lanes[room]) == HF_OK;
-    return 1;
+    return true;
 }
 
 /* One thread's share of the designs that `next` hands out. */
@@ -188,19 +189,19 @@ static void propose_job(void *context)
     g->job.result = p->result;
 }
 
-int hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context)
+bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context)
 {
     const hf_population *p = &optimiser->population;
     bool is_last = p->stop_reason != HF_POPULATION_RUNNING;
     if (beside && !is_last && batch->n_thread > 1 && !hf_parallel_is_inside()) {
         generation_job g = {.job.batch = batch, .optimiser = optimiser};
         hf_parallel_run_after(batch->n_thread, propose_job, work_on_job, &g, beside, context);
-        return 1;
+        return true;
     }
     if (beside) beside(context);
-    if (!hf_optimiser_next(optimiser)) return 0;
+    if (!hf_optimiser_next(optimiser)) return false;
     hf_batch_run(batch, p->n_individual, p->design_N, p->pending, p->result);
-    return 1;
+    return true;
 }
 
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result)

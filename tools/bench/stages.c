@@ -91,7 +91,7 @@ WATCH(FORM, hf_status, hf_evaluate_form,
       (model, form, w, history, r))
 WATCH(SETUP, hf_status, hf_batch_create, (const hf_evaluator *evaluator, int n_thread, hf_batch *batch),
       (evaluator, n_thread, batch))
-WATCH(SETUP, int, hf_batch_share, (hf_batch * batch, const double *base_N), (batch, base_N))
+WATCH(SETUP, hf_solver, hf_batch_share, (hf_batch * batch, const double *base_N), (batch, base_N))
 WATCH(SETUP, hf_status, hf_optimiser_create,
       (const hf_optimiser_kind *kind, const hf_optimize_settings *settings, const hf_model *model, const double *base_N,
        hf_optimiser *optimiser),
@@ -99,7 +99,7 @@ WATCH(SETUP, hf_status, hf_optimiser_create,
 WATCH_VOID(EVALUATE, hf_batch_run,
            (hf_batch * batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result),
            (batch, n, design_N, pending, result))
-WATCH(EVALUATE, int, hf_batch_next, (hf_batch * batch, hf_optimiser *ga, void (*beside)(void *), void *context),
+WATCH(EVALUATE, bool, hf_batch_next, (hf_batch * batch, hf_optimiser *ga, void (*beside)(void *), void *context),
       (batch, ga, beside, context))
 WATCH(EVALUATE, hf_workspace *, hf_batch_run_one, (hf_batch * batch, const double *design_N, hf_form_result *result),
       (batch, design_N, result))
