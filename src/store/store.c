@@ -304,7 +304,7 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_p
     hf_generations *g = &store->rows;
     store->f.io.messages = messages;
     HF_TRY(store->f.io.status);
-    HF_TRY(hf_store_genes(store, model, population, messages));
+    HF_TRY(hf_store_genes(store, model, population, messages)); /* unless they are there, as in a run */
     int generation = g->n_stored + g->n_waiting;
     hf_generations_add(g, population, piece);
     store->f.io.status = hf_journal_append(&store->f.journal, generation, piece, HF_GENERATIONS_PIECES, messages);
@@ -412,7 +412,7 @@ hf_status hf_store_settle(hf_store *s, hf_messages *messages)
     hf_store_file_publish(&s->f, 1);
     hf_status status = s->f.io.status;
     if (status == HF_OK) hf_journal_forget(&s->f.journal);
-    hf_store_abandon(s);
+    hf_store_abandon(s); /* frees it; of a finished one nothing is left behind */
     return status;
 }
 

@@ -17,6 +17,16 @@ START_TEST(numbers_are_those_of_splitmix64)
 }
 END_TEST
 
+/* Journals and files hold designs that are bred again from these starts. */
+START_TEST(a_stream_is_named_by_seed_generation_and_individual)
+{
+    ck_assert_uint_eq(hf_random_stream(1, 0, 0).state, 5127574494469434565u);
+    ck_assert_uint_eq(hf_random_stream(1, 3, 7).state, 4209807263053981009u);
+    ck_assert_uint_ne(hf_random_stream(1, 7, 3).state, hf_random_stream(1, 3, 7).state);
+    ck_assert_uint_ne(hf_random_stream(2, 3, 7).state, hf_random_stream(1, 3, 7).state);
+}
+END_TEST
+
 START_TEST(uniform_numbers_have_53_bits_and_never_reach_one)
 {
     hf_random random = {1234567};
@@ -48,6 +58,7 @@ Suite *suite_unit_random(void)
     Suite *suite = suite_create("unit/random");
     TCase *tc = tcase_create("random");
     tcase_add_test(tc, numbers_are_those_of_splitmix64);
+    tcase_add_test(tc, a_stream_is_named_by_seed_generation_and_individual);
     tcase_add_test(tc, uniform_numbers_have_53_bits_and_never_reach_one);
     tcase_add_test(tc, clocks_run_forward);
     suite_add_tcase(suite, tc);
