@@ -1,5 +1,5 @@
-/* metrics - the quality of a shape: psi, tension ratios, slack (METHOD section 9). All read the shape that a workspace
- * holds.
+/* metrics - the quality of a shape: psi, tension ratios, slack (METHOD section 9). All functions read the shape in a
+ * workspace.
  * Stability: stable. */
 #ifndef HIFDM_METRICS_H
 #define HIFDM_METRICS_H
@@ -10,16 +10,16 @@
 extern "C" {
 #endif
 
-/* A cable whose tension is below this part of the reference tension is slack. */
+/* A cable is slack when its tension is below this fraction of the reference tension. */
 #define HF_SLACK_RATIO 1e-3
 
 /* RMS distance of the inner nodes to their theoretical positions, m (Eqs. 9, 10). */
 double hf_metrics_psi_m(const hf_model *model, const hf_workspace *workspace);
 
-/* Largest over smallest tension of a group. NaN when the group is empty or a tension is not positive. */
+/* Largest tension of a group divided by its smallest one. NaN when the group is empty or a tension is not positive. */
 double hf_metrics_tension_ratio(const hf_model *model, const hf_workspace *workspace, hf_group group);
 
-/* Is this cable slack? And how many cables are? */
+/* Whether cable i_cable is slack, and the number of slack cables. */
 bool hf_metrics_is_slack(const hf_model *model, const hf_workspace *workspace, int i_cable);
 int hf_metrics_slack_count(const hf_model *model, const hf_workspace *workspace);
 

@@ -1,10 +1,10 @@
-/* surface - how good a reflector a shape is (METHOD section 9): RMS along the normal and of the half path length, raw
- * and after the best fit of the parabolic cylinder, loss of gain, faceting, percentiles. Computed once for a reported
- * shape, for a case with a section `surface`.
+/* surface - the errors of a shape as a reflector (METHOD section 9): RMS along the normal and of the half path length,
+ * raw and after the best fit of the parabolic cylinder; loss of gain, faceting, percentiles. Computed once per reported
+ * shape, for cases with a section `surface`.
  * Stability: stable.
  *
- * The wanted surface is z = x^2/(4f), its generatrix along y. With dz the height of an inner node above it, the error
- * along the normal is dz / sqrt(1 + (x/2f)^2), that of the half path length dz / (1 + (x/2f)^2). */
+ * The wanted surface is z = x^2/(4f), with its generatrix along y. With dz the height of an inner node above it, the
+ * error along the normal is dz / sqrt(1 + (x/2f)^2), that of the half path length dz / (1 + (x/2f)^2). */
 #ifndef HIFDM_SURFACE_H
 #define HIFDM_SURFACE_H
 
@@ -16,40 +16,41 @@ extern "C" {
 
 /* The parabolic cylinder with the least half-path RMS from a set of nodes: the wanted one with another focal length,
  * turned about the centre of the nodes by Rx(a) Ry(b) Rz(c), then shifted. A shift along y changes nothing and is left
- * out. In a shallow reflector a shift in x and a turn about y are nearly the same motion: each alone is uncertain, the
- * fitted surface is not. shift_x_m is 0 where the nodes do not determine it: where the least RMS needs a shift of more
- * than a tenth of the net's half-width, or is not found. focal_length_m is the wanted one where the nodes do not
- * determine it, as on two lines along y. */
+ * out. In a shallow reflector a shift in x and a turn about y are nearly the same motion, so that each of the two is
+ * uncertain while the fitted surface is not.
+ * shift_x_m is 0 where the nodes do not determine it, that is where the least RMS needs a shift of more than a tenth of
+ * the net's half-width or is not found. focal_length_m is the wanted one where the nodes do not determine it, for
+ * example when they lie on two lines along y. */
 typedef struct {
-    double half_path_rms_m, normal_rms_m; /* what is left */
+    double half_path_rms_m, normal_rms_m; /* of the nodes' errors against the fitted surface */
     double focal_length_m;
     double shift_x_m, shift_z_m;
     double rotation_x_rad, rotation_y_rad, rotation_z_rad;
     double center_m[3];
     int iterations;
-    int converged; /* 0: all but center_m and iterations is NaN */
+    int converged; /* 1 or 0, an int because it is stored as one; 0: all but center_m and iterations is NaN */
 } hf_surface_fit;
 
-/* Fit n nodes, position_m [3][n]. With fewer than six nodes there is more than one answer. HF_OK or HF_NO_MEMORY. GSL's
+/* Fit n nodes, position_m [3][n]. With fewer than six nodes the answer is not unique. HF_OK or HF_NO_MEMORY. GSL's
  * error handler must be off here and in hf_surface_measure (hifdm.h). */
 hf_status hf_surface_fit_nodes(double focal_length_m, int n, const double *position_m, hf_surface_fit *fit);
 
 typedef struct {
-    int is_measured;                      /* 0: nothing below means anything */
+    bool is_measured;                     /* false: the other members have no meaning */
     double z_rms_m;                       /* of the nodes' heights above their theoretical ones */
     double normal_rms_m, half_path_rms_m; /* raw */
-    double faceting_rms_m; /* of flat strips instead of the curve between them, w^2/(24 sqrt(5) f); NaN: no width */
-    double deviation_p50_m, deviation_p90_m, deviation_p95_m, deviation_p99_m; /* distances that psi is made of */
+    double faceting_rms_m;                /* error of flat strips of width w, w^2/(24 sqrt(5) f); NaN without a width */
+    double deviation_p50_m, deviation_p90_m, deviation_p95_m, deviation_p99_m; /* of the distances in psi */
     double deviation_max_m;
     hf_surface_fit fit;
-    double gain_loss_dB[HF_LIST_MAX], fit_gain_loss_dB[HF_LIST_MAX]; /* by frequency: Ruze, raw and after the fit */
+    double gain_loss_dB[HF_LIST_MAX], fit_gain_loss_dB[HF_LIST_MAX]; /* by frequency, (M17) */
 } hf_surface_measures;
 
-/* Of the inner nodes of the shape in the workspace. settings->focal_length_m > 0. HF_OK or HF_NO_MEMORY. */
+/* Measure the inner nodes of the shape in the workspace. settings->focal_length_m > 0. HF_OK or HF_NO_MEMORY. */
 hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_model *model, const hf_workspace *workspace,
                              hf_surface_measures *measures);
 
-/* Ruze: loss of gain (positive, dB) of a half-path RMS at a frequency. */
+/* Loss of gain by a half-path RMS at a frequency, positive, dB: Ruze's formula (M17). */
 double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz);
 
 #ifdef __cplusplus

@@ -1,8 +1,8 @@
-/* workspace - all mutable scratch of one thread, allocated once from one field list.
+/* workspace - all memory that the solvers of one thread write to, allocated once, from one list of fields.
  * Stability: stable.
  *
- * Contents are meaningless between calls, except that after hf_form_find and hf_evaluate they hold the last shape:
- * position, force density, tension, length. Other fields may change in any version. */
+ * After hf_form_find and hf_evaluate the workspace holds the last shape: position, force density, tension, length. All
+ * other fields are scratch without meaning between calls, and may change in any version. */
 #ifndef HIFDM_WORKSPACE_H
 #define HIFDM_WORKSPACE_H
 
@@ -15,7 +15,7 @@ extern "C" {
 
 #define HF_NEWTON_DOFS(m) ((m)->has_newton ? 3 * (size_t)(m)->n_free : 0)
 
-/* Past displacements and steps that the accelerated coupling combines. */
+/* Number of past displacements and steps that the accelerated coupling combines, and the doubles that they take. */
 #define HF_COUPLING_DEPTH 8
 #define HF_COUPLING_ITEMS(m) (3 * (size_t)(m)->n_attachment * (2 * HF_COUPLING_DEPTH + 4))
 
@@ -42,11 +42,11 @@ extern "C" {
     X(int, newton_integer_work, HF_NEWTON_DOFS(m), "", "for the condition estimate")                                   \
     X(double, certificate_work, m->has_newton ? 0 : 3 * (size_t)m->n_node, "", "without a Newton matrix")              \
     X(int, certificate_integer_work, m->has_newton ? 0 : (size_t)m->n_free, "", "the same")                            \
-    X(double, displacement_m, 3 * (size_t)m->n_attachment, "m", "[3 n_attachment] how far the truss has given way")    \
+    X(double, displacement_m, 3 * (size_t)m->n_attachment, "m", "[3 n_attachment] displacements by the truss")         \
     X(double, attachment_force_N, 3 * (size_t)m->n_attachment, "N", "[3 n_attachment] pull of the net on the truss")   \
     X(double, coupling_work, HF_COUPLING_ITEMS(m), "", "history of the accelerated coupling")                          \
     X(double, coupling_q_N_per_m, m->n_attachment ? (size_t)m->n_cable : 0, "N/m",                                     \
-      "[n_cable] where a net starts from")                                                                             \
+      "[n_cable] from which the next form-finding starts")                                                             \
     X(int, pivot, m->has_strut ? (size_t)m->n_free : 0, "", "struts")
 
 typedef struct {
@@ -57,7 +57,7 @@ typedef struct {
     const volatile sig_atomic_t *stop; /* when not NULL and not 0: hf_form_find gives up, HF_INTERRUPTED */
 } hf_workspace;
 
-/* A cable under the law in force. */
+/* Cable i_cable with the law and the target that are in force in the workspace. */
 static inline hf_law_cable hf_workspace_cable(const hf_model *model, const hf_workspace *workspace, int i_cable)
 {
     hf_law_cable cable;
@@ -68,22 +68,23 @@ static inline hf_law_cable hf_workspace_cable(const hf_model *model, const hf_wo
     return cable;
 }
 
-/* Force density of a cable in the workspace's shape with the tension that its law gives, if any. */
+/* Force density of a cable in the workspace's shape, N/m: from the tension that its law gives, else its q_N_per_m. */
 static inline double hf_workspace_held_q_N_per_m(const hf_model *model, const hf_workspace *workspace, int i_cable)
 {
     return hf_law_held_q_N_per_m(hf_workspace_cable(model, workspace, i_cable), workspace->length_m[i_cable],
                                  workspace->q_N_per_m[i_cable]);
 }
 
-/* HF_OK or HF_NO_MEMORY. Free in any case. */
+/* HF_OK or HF_NO_MEMORY. The caller frees the workspace in either case. */
 hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace);
-size_t hf_workspace_bytes(const hf_model *model); /* that hf_workspace_create will ask for */
+size_t hf_workspace_bytes(const hf_model *model); /* that hf_workspace_create allocates */
 void hf_workspace_free(hf_workspace *workspace);
 
-/* Does any law in force iterate? */
+/* True when the law in force of at least one cable changes its force density between iterations (Eqs. 7, 8). */
 bool hf_workspace_iterates(const hf_model *model, const hf_workspace *workspace);
 
-/* Fill every floating-point field with NaN and every other with 0xff: a call that reads stale contents then shows. */
+/* For tests: fill every floating-point field with NaN and every other one with 0xff, so that a call that reads stale
+ * contents gives itself away by its result. */
 void hf_workspace_poison(const hf_model *model, hf_workspace *workspace);
 
 #ifdef __cplusplus

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Largest sum of tensions at one node: what a nodal residual is to be compared with. */
+/* Largest sum of tensions at one node, by which the nodal residual is divided for the backward error. */
 static double largest_pull_N(const hf_model *m, const hf_workspace *w, double *pull)
 {
     double largest = 0;
@@ -19,7 +19,7 @@ static double largest_pull_N(const hf_model *m, const hf_workspace *w, double *p
     return largest;
 }
 
-/* Assemble and factor D once more: its norm is wanted, and the first factor has taken its place. */
+/* Assembles and factors D again, because its norm is needed and the band holds the factor of the form-finding. */
 static void certify_linear(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
     int n = m->n_free, k = m->half_bandwidth, bad_row;

@@ -1,12 +1,15 @@
-/* certificate - what a found shape says about its own error: backward error, condition, position error. */
+/* certificate - error estimates for a shape that has been found: backward error, condition, position error (METHOD
+ * section 3).
+ * Stability: internal; may change in any version. */
 #ifndef HIFDM_CERTIFICATE_H
 #define HIFDM_CERTIFICATE_H
 
 #include <hifdm/formfind.h>
 
-/* Fill position_error_m, condition and backward_error of a result whose shape the workspace holds; NaN where there is
- * no shape. With a Newton matrix: hf_newton_certify. Without: condition of D; the position error is the move that D
- * makes of the nodal forces left, NaN when a law iterates (struts), for which D says nothing. */
+/* Set position_error_m, condition and backward_error of the result whose shape is in the workspace; NaN without a
+ * shape. Models with a Newton matrix: hf_newton_certify. Others: the condition is that of D, and the position error is
+ * the largest node of D^-1 times the remaining forces. The position error is NaN when a law iterates (nets with
+ * struts), because D is not the derivative of the forces then. */
 void hf_certify(const hf_model *model, hf_workspace *workspace, hf_form_result *result);
 
 #endif

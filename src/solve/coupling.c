@@ -7,12 +7,13 @@
 #include <math.h>
 #include <string.h>
 
-/* The tests of the coupling pass with 1 and 10, with 5 and 50, with 1e-4 and 0.3 for the first three. */
+/* Measured on the tests of the coupling, all of which pass with GROWTHS_MAX 1 and 10, PATIENCE 5 and 50, STALLED 1e-4
+ * and 0.3, RETREATS_MAX 4, and GRAM_SHIFT 1e-16 and 1e-11. */
 #define GROWTHS_MAX 3    /* growing steps in a row of the plain loop that count as divergence */
 #define PATIENCE 15      /* iterations of the accelerated loop without a new smallest step */
-#define STALLED 1e-2     /* of the first step: a loop that came below it does not diverge for the truss's sake */
-#define RETREATS_MAX 12  /* halvings of a step when the net has no shape where it leads */
-#define GRAM_SHIFT 1e-14 /* of the least squares, relative: past steps grow parallel */
+#define STALLED 1e-2     /* a loop that stops improving below this fraction of its first step stalls, else diverges */
+#define RETREATS_MAX 12  /* halvings of steps that lead where the net has no shape */
+#define GRAM_SHIFT 1e-14 /* relative shift of the least squares' diagonal: past steps become nearly parallel */
 
 static int dofs(const hf_model *m)
 {
@@ -51,24 +52,24 @@ static double largest_distance(int n_attachment, const double *a, const double *
     return sqrt(largest);
 }
 
-double hf_coupling_measure(const hf_model *m, hf_workspace *w, hf_form_result *result)
+double hf_coupling_measure(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
     double *next = w->coupling_work;
     hf_coupling_forces(m, w);
     hf_schur_flex(m, w->attachment_force_N, next);
-    result->coupling.step_m = largest_distance(m->n_attachment, next, w->displacement_m);
-    result->coupling.max_displacement_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
-    return result->coupling.step_m;
+    r->coupling.step_m = largest_distance(m->n_attachment, next, w->displacement_m);
+    r->coupling.max_displacement_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
+    return r->coupling.step_m;
 }
 
-void hf_coupling_accept(const hf_model *m, const hf_workspace *w, int iterations, double step_m, hf_form_result *result)
+void hf_coupling_accept(const hf_model *m, const hf_workspace *w, int iterations, double step_m, hf_form_result *r)
 {
-    result->coupling = (hf_coupling_result){.stop_reason = HF_COUPLING_TOF, .iterations = iterations, .step_m = step_m};
-    result->coupling.ratio = (double)NAN;
-    result->coupling.max_displacement_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
+    r->coupling = (hf_coupling_result){.stop_reason = HF_COUPLING_TOF, .iterations = iterations, .step_m = step_m};
+    r->coupling.ratio = (double)NAN;
+    r->coupling.max_displacement_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
 }
 
-/* ---- Anderson's method: of the past steps, the combination that would have been the smallest ---- */
+/* ---- Anderson's method: the combination of past displacements whose step would be the smallest ---- */
 
 typedef struct {
     size_t n;
@@ -81,7 +82,7 @@ typedef struct {
     double *d_next[HF_COUPLING_DEPTH]; /* [n] the same of next */
 } accelerator;
 
-static accelerator lay_out_accelerator(const hf_model *m, int scheme, hf_workspace *w)
+static accelerator lay_out_accelerator(const hf_model *m, hf_coupling_scheme scheme, hf_workspace *w)
 {
     accelerator a = {.n = (size_t)dofs(m), .depth = scheme == HF_COUPLING_PLAIN ? 0 : HF_COUPLING_DEPTH};
     double *at = w->coupling_work;
@@ -103,7 +104,7 @@ static double dot(size_t n, const double *a, const double *b)
     return sum;
 }
 
-/* Solve the n x n system of a positive definite matrix, in place, by Cholesky; 0 when it is not. */
+/* Solves the n x n system of the matrix g in place, by Cholesky. False when g is not positive definite. */
 static bool solve_gram(int n, double g[HF_COUPLING_DEPTH][HF_COUPLING_DEPTH], double b[HF_COUPLING_DEPTH])
 {
     for (int i = 0; i < n; i++) {
@@ -127,10 +128,10 @@ static bool solve_gram(int n, double g[HF_COUPLING_DEPTH][HF_COUPLING_DEPTH], do
             b[i] -= g[k][i] * b[k];
         b[i] /= g[i][i];
     }
-    return 1;
+    return true;
 }
 
-/* The next displacement r from a->next and a->step, which are taken into the history. */
+/* Sets r to the next displacement, from the history and a->next and a->step, which then join the history. */
 static void accelerate(accelerator *a, double *r)
 {
     double gram[HF_COUPLING_DEPTH][HF_COUPLING_DEPTH], share[HF_COUPLING_DEPTH];
@@ -151,7 +152,7 @@ static void accelerate(accelerator *a, double *r)
     }
     for (int i = 0; i < n_kept; i++)
         gram[i][i] += GRAM_SHIFT * largest;
-    int solved = solve_gram(n_kept, gram, share);
+    bool solved = solve_gram(n_kept, gram, share);
     memcpy(r, a->next, a->n * sizeof *r);
     for (int k = 0; k < n_kept && solved; k++)
         for (size_t i = 0; i < a->n; i++)
@@ -168,8 +169,8 @@ typedef struct {
     int n_growth, n_since_best;
 } progress;
 
-/* One more step: does the loop still get anywhere? */
-static bool is_hopeless(progress *p, int scheme, double step_m)
+/* Takes one more step into account. True when the loop no longer improves. */
+static bool is_hopeless(progress *p, hf_coupling_scheme scheme, double step_m)
 {
     if (isnan(p->step_m)) p->first_m = step_m;
     p->ratio = step_m / p->step_m; /* NaN after the first */
@@ -177,7 +178,7 @@ static bool is_hopeless(progress *p, int scheme, double step_m)
     p->n_growth = p->ratio >= 1 ? p->n_growth + 1 : 0;
     p->n_since_best = step_m < p->best_m ? 0 : p->n_since_best + 1;
     if (step_m < p->best_m) p->best_m = step_m;
-    if (!isfinite(step_m)) return 1;
+    if (!isfinite(step_m)) return true;
     return scheme == HF_COUPLING_PLAIN ? p->n_growth >= GROWTHS_MAX : p->n_since_best >= PATIENCE;
 }
 
@@ -201,53 +202,54 @@ static void give_up(hf_status status, hf_coupling_stop reason, hf_form_result *r
     r->coupling.stop_reason = reason;
 }
 
-/* The net has no shape. When it had one before its supports moved, another place is tried, half the way back. */
+/* For a net without a shape at its present supports. If it had one before, sets displacements half the way back and
+ * returns true; else sets the result and returns false. */
 static bool try_nearer(const hf_model *m, const accelerator *a, int *n_retreat, hf_workspace *w, hf_form_result *r)
 {
-    if (r->status == HF_NOT_CONVERGED) { /* a shape all the same, with forces of its own */
+    if (r->status == HF_NOT_CONVERGED) { /* there is a shape, so its coupling can be measured */
         double before_m = r->coupling.step_m;
         r->coupling.ratio = hf_coupling_measure(m, w, r) / before_m;
     }
     if (r->status == HF_NOT_CONVERGED || r->status == HF_INTERRUPTED || a->n_seen == 0) {
         give_up(r->status, HF_COUPLING_NET, r);
-        return 0;
+        return false;
     }
     if (a->depth == 0 || *n_retreat == RETREATS_MAX) {
         give_up(HF_TRUSS_TOO_SOFT, HF_COUPLING_DIVERGED, r);
-        return 0;
+        return false;
     }
     ++*n_retreat;
     for (size_t i = 0; i < a->n; i++)
         w->displacement_m[i] = (w->displacement_m[i] + a->next_before[i] - a->step_before[i]) / 2;
     memcpy(w->q_N_per_m, w->coupling_q_N_per_m, (size_t)m->n_cable * sizeof(double));
-    return 1;
+    return true;
 }
 
-/* The net has a shape: is the loop over? Sets status and reason then. */
+/* For a net with a shape: decides whether the loop ends here, and sets status and reason if so. */
 static bool is_over(const hf_model *m, const hf_coupling_settings *s, accelerator *a, progress *p, hf_workspace *w,
                     hf_form_result *r)
 {
     double step_m = hf_coupling_measure(m, w, r);
-    int hopeless = is_hopeless(p, s->scheme, step_m);
+    bool hopeless = is_hopeless(p, s->scheme, step_m);
     r->coupling.ratio = p->ratio;
-    /* displacements are compared: that of the first form-finding has nothing to be compared with, unless it is none */
+    /* the first step compares with the start, not with an iterate, so it ends the loop only when it is zero */
     if (step_m <= s->tof_m && (a->n_seen > 0 || step_m == 0)) {
         r->coupling.stop_reason = HF_COUPLING_TOF;
-        return 1;
+        return true;
     }
-    /* what the net's own tolerance leaves of the forces can keep the steps from ever reaching tof_m */
-    int stalls = hopeless && p->best_m < STALLED * p->first_m;
+    /* the net's own tolerance limits the accuracy of the forces, which can keep the steps above tof_m */
+    bool stalls = hopeless && p->best_m < STALLED * p->first_m;
     if (hopeless && !stalls) {
         give_up(HF_TRUSS_TOO_SOFT, HF_COUPLING_DIVERGED, r);
-        return 1;
+        return true;
     }
     if (stalls || r->coupling.iterations >= s->max_iterations) {
         give_up(HF_NOT_CONVERGED, HF_COUPLING_MAX_ITERATIONS, r);
-        return 1;
+        return true;
     }
     for (size_t i = 0; i < a->n; i++)
         a->step[i] = a->next[i] - w->displacement_m[i];
-    return 0;
+    return false;
 }
 
 hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_net_solver *solve, const void *context,
@@ -266,7 +268,7 @@ hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_
             if (!try_nearer(m, &a, &n_retreat, w, r)) break;
             continue;
         }
-        int over = is_over(m, s, &a, &p, w, r);
+        bool over = is_over(m, s, &a, &p, w, r);
         record_step(history, r);
         if (over) break;
         if (start_counts)
@@ -280,7 +282,8 @@ hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_
 
 /* ---- certificate ---- */
 
-/* A cable under law length pulls as if it had its stiffness: what the Newton step puts right of its length. */
+/* The Newton step changes the tensions of cables with a multiplier to correct their lengths. Adds these changes to
+ * `pull`. */
 static void add_length_errors(const hf_model *m, const hf_workspace *w, double *pull)
 {
     double block[3][3], d[3];
@@ -292,7 +295,7 @@ static void add_length_errors(const hf_model *m, const hf_workspace *w, double *
         for (int c = 0; c < 3; c++)
             d[c] = (w->position_m[c * m->n_node + there] - w->position_m[c * m->n_node + here]) *
                    (1 - wanted_m / w->length_m[e]);
-        for (int c = 0; c < 3; c++) /* along the cable the block has the axial stiffness alone */
+        for (int c = 0; c < 3; c++) /* d is along the cable, where the block has the axial stiffness alone */
             pull[3 * m->tie_attachment[k] + c] += block[c][0] * d[0] + block[c][1] * d[1] + block[c][2] * d[2];
     }
 }
@@ -301,7 +304,7 @@ void hf_coupling_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
     size_t n = (size_t)dofs(m);
     hf_schur schur;
-    int has_step = m->has_newton && isfinite(r->position_error_m);
+    bool has_step = m->has_newton && isfinite(r->position_error_m);
     r->position_error_m = (double)NAN;
     if (!has_step) return;
     if (hf_schur_create(m, &schur) == HF_OK && hf_schur_factor(m, w, &schur) == HF_OK) {

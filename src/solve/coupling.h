@@ -1,10 +1,12 @@
-/* coupling - the net and the elastic truss that it stands on (Fig. 17, Eqs. 14, 15): unknown displacements r of the
- * attachments, which the pull f of the net sets by the condensed flexibility, r = F f(r).
+/* coupling - a net on an elastic truss (Fig. 17 of the paper, Eqs. 14, 15; METHOD section 8). Unknown are the
+ * displacements r of the attachments. The pull f(r) of the net and the condensed flexibility F of the truss give
+ * r = F f(r).
  *
- * plain: the paper's loop, r <- F f(r). With S the net's stiffness condensed to the attachments its error shrinks by
- * the largest eigenvalue of F S each time, or grows. accelerated: Anderson's method (1965) on the same loop, with a
- * depth of HF_COUPLING_DEPTH; it needs no matrix of the net, so it serves every law and stopping rule. For a convex net
- * f = F^-1 r is where Pi(x, r) + r' F^-1 r / 2 is least, which is convex, too: there is one answer.
+ * plain: the paper's loop, r <- F f(r). With S the net's stiffness condensed to the attachments, every iteration
+ * multiplies the error by up to the largest eigenvalue of F S, which may be more than 1.
+ * accelerated: Anderson's method (1965) on the same loop, with a depth of HF_COUPLING_DEPTH. It needs no matrix of the
+ * net and so works with every law and stopping rule.
+ * For a convex net the answer is unique: it minimises Pi(x, r) + r' F^-1 r / 2, which is convex, too.
  * schur.h has the exact derivative of the coupled net.
  * Stability: internal; may change in any version. */
 #ifndef HIFDM_COUPLING_H
@@ -12,33 +14,33 @@
 
 #include <hifdm/formfind.h>
 
-/* Find the shape of the net from the workspace's q_N_per_m, with supports moved by its displacement_m. */
+/* A solver of the net: finds its shape from the workspace's q_N_per_m, with supports moved by displacement_m. */
 typedef hf_status hf_net_solver(const void *context, hf_workspace *workspace, hf_history *history,
                                 hf_form_result *result);
 
-/* The coupled shape, starting from the workspace's displacement_m. `start_counts`: each form-finding starts from the
- * force densities of the first one, because its answer depends on them. result: of the last form-finding, iterations of
- * all; HF_TRUSS_TOO_SOFT when the loop diverges or the moved supports leave the net without a shape, HF_NOT_CONVERGED
- * after max_iterations or when the net itself is, HF_INTERRUPTED. The displacements stay in the workspace and belong to
- * its shape. Returns result->status. */
+/* Find the coupled shape, starting from the workspace's displacement_m. With `start_counts` every form-finding starts
+ * from the force densities of the first one; the caller sets it when the answer of `solve` depends on them. The result
+ * is that of the last form-finding, with the iterations of all. Status: HF_TRUSS_TOO_SOFT when the loop diverges or the
+ * net has no shape at the moved supports; HF_NOT_CONVERGED after max_iterations or when a form-finding has not
+ * converged; HF_INTERRUPTED. The workspace ends with the displacements that belong to its shape. Returns
+ * result->status. */
 hf_status hf_coupling_find(const hf_model *model, const hf_coupling_settings *settings, hf_net_solver *solve,
                            const void *context, bool start_counts, hf_workspace *workspace, hf_history *history,
                            hf_form_result *result);
 
-/* Pull of the net on the attachments at the workspace's shape, and the loads that stand there, into
- * attachment_force_N. */
+/* Set attachment_force_N to the pull of the net on the attachments at the workspace's shape plus the loads on them. */
 void hf_coupling_forces(const hf_model *model, hf_workspace *workspace);
 
-/* Sets result->coupling for the shape in the workspace: forces, step |F f - r|, largest displacement. Returns the
- * step, m. */
+/* Set step |F f - r| and largest displacement of result->coupling for the shape in the workspace, and
+ * attachment_force_N. Returns the step, m. */
 double hf_coupling_measure(const hf_model *model, hf_workspace *workspace, hf_form_result *result);
 
-/* The same where the step is known: a shape of the population solver, after so many passes. */
+/* Set result->coupling for a shape of the population solver, which knows the step and the number of its passes. */
 void hf_coupling_accept(const hf_model *model, const hf_workspace *workspace, int iterations, double step_m,
                         hf_form_result *result);
 
-/* position_error_m of the coupled shape: the Newton step of net and truss together. newton_band holds the factor that
- * hf_newton_certify left. */
+/* Set position_error_m of the coupled shape to the largest move in the Newton step of net and truss together, or to
+ * NaN. newton_band must hold the factor of hf_newton_certify. */
 void hf_coupling_certify(const hf_model *model, hf_workspace *workspace, hf_form_result *result);
 
 #endif

@@ -6,14 +6,14 @@
 #include <math.h>
 #include <string.h>
 
-#define PENALTY 1e3     /* a cable under law length is one of EA = PENALTY reference_N here */
-#define SLOPE_KEPT 1e-4 /* part of the promised decrease of Pi that a step must bring */
-#define HALVINGS_MAX 30 /* of one step */
-#define NEAR 1e-3       /* imbalance over the reference tension that is left to the steps with multipliers */
-#define FARTHEST 0.5    /* move of a node in one step, relative to the longest cable */
-#define ROUNDING 1e-15  /* relative decrease of Pi that means nothing */
+#define PENALTY 1e3     /* EA of the elastic cable in place of one under law length, over reference_N */
+#define SLOPE_KEPT 1e-4 /* fraction of the decrease of Pi to first order that a step must reach (Armijo) */
+#define HALVINGS_MAX 30 /* lengths tried for one step, each half of the one before */
+#define NEAR 1e-3       /* imbalance over the reference tension at which hf_newton_run takes over */
+#define FARTHEST 0.5    /* largest move of a node in one step, over the length of the longest cable */
+#define ROUNDING 1e-15  /* a relative decrease of Pi up to this is rounding */
 
-/* Cables under law length are springs here, and no longer afterwards. */
+/* Replaces law length by law elastic for the descent; harden takes it back. */
 static void soften(const hf_model *m, hf_workspace *w)
 {
     for (int e = 0; e < m->n_cable; e++) {
@@ -40,7 +40,7 @@ static double norm(const double d[3])
     return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-/* Pi at `to` less Pi at `from`, by differences that lose no digits; *scale: the size of what is added up. */
+/* Pi at `to` minus Pi at `from`, from differences without cancellation. *scale: sum of the cables' absolute changes. */
 static double energy_change(const hf_model *m, const hf_workspace *w, const double *from, const double *to,
                             double *scale)
 {
@@ -61,7 +61,7 @@ static double energy_change(const hf_model *m, const hf_workspace *w, const doub
     return sum;
 }
 
-/* Tensions by law into tension_N and q_N_per_m, the forces out of balance into newton_force_N; returns the largest. */
+/* Sets tension_N and q_N_per_m by the laws and newton_force_N to the forces out of balance. Returns the largest one. */
 static double apply_laws(const hf_model *m, hf_workspace *w)
 {
     double *force = w->newton_force_N, largest = 0;
@@ -94,7 +94,7 @@ static double longest_m(const hf_model *m)
     return longest;
 }
 
-/* The step in newton_step, shortened so that no node jumps over the net; returns how much of it is left. */
+/* Fraction of newton_step that moves no node farther than FARTHEST allows. */
 static double limit_step(const hf_model *m, const hf_workspace *w)
 {
     double farthest = 0, most = FARTHEST * longest_m(m);
@@ -103,8 +103,9 @@ static double limit_step(const hf_model *m, const hf_workspace *w)
     return farthest > most ? most / farthest : 1;
 }
 
-/* Move along newton_step as far as Pi falls enough. Returns 0 when it does not. */
-static int search_line(const hf_model *m, hf_workspace *w)
+/* Moves along newton_step by the first of the halved steps that lowers Pi enough. False when none does, or when Pi
+ * fell by no more than rounding. */
+static bool search_line(const hf_model *m, hf_workspace *w)
 {
     double promised = 0, scale, *to = w->newton_trial_m;
     for (int k = 0; k < 3 * m->n_free; k++)
@@ -120,13 +121,14 @@ static int search_line(const hf_model *m, hf_workspace *w)
         memcpy(w->position_m, to, 3 * (size_t)m->n_node * sizeof *to);
         return -change > ROUNDING * scale;
     }
-    return 0;
+    return false;
 }
 
-/* Newton's direction into newton_step; that of the forces where every cable hangs loose and there is no matrix. */
+/* Newton's direction into newton_step. Without a matrix, because all cables are slack, the direction of the forces. */
 static void find_direction(const hf_model *m, hf_workspace *w)
 {
-    int n_dof = 3 * m->n_free, has_matrix = hf_newton_matrix_factor(m, w, NULL) == HF_OK;
+    int n_dof = 3 * m->n_free;
+    bool has_matrix = hf_newton_matrix_factor(m, w, NULL) == HF_OK;
     memcpy(w->newton_step, w->newton_force_N, (size_t)n_dof * sizeof(double));
     if (has_matrix)
         hf_newton_matrix_solve(m, w, w->newton_step);

@@ -7,28 +7,32 @@
 
 #include <math.h>
 
-#define FIRST_BLOCK 6   /* fixed-point iterations before Newton is tried; doubled after each failure */
+/* Iterations of hf_form_find before Newton is tried, doubled after each failure of Newton. The tests of form-finding
+ * pass with 2 and 20. */
+#define FIRST_BLOCK 6
 #define STEPS_MAX 30    /* Newton steps per try */
 #define DESCENT_MAX 300 /* steps per try on the energy of elastic cables */
-#define FAR_EXCESS                                                                                                     \
-    16.0 /* a flat chain's excess length so many times too large is rescaled; the tests pass with 4, too */
-#define RESCALED_MAX 8 /* rounds of bringing it there */
-#define ROUNDED_MAX 3  /* tries against rounding */
+/* A flat chain whose excess length is more than FAR_EXCESS times the wanted one is rescaled, in at most RESCALED_MAX
+ * rounds. The tests of form-finding, Newton and verification pass with a FAR_EXCESS of 4 and of 100. */
+#define FAR_EXCESS 16.0
+#define RESCALED_MAX 8
+#define ROUNDED_MAX 3 /* further tries after a shape whose residual is limited by rounding */
 
 /* ---- flat chains ---- */
 
-/* The tension of a flat chain goes with the inverse root of its excess length, which lies decades away from where
- * Eq. 8 or Newton's linear model would look: scale its force densities to the excess that L* prescribes. Returns how
- * many chains were far from it. */
+/* The tension of a flat chain is proportional to the inverse square root of its excess length (M5). It can be decades
+ * away from the present one, too far for Eq. 8 or Newton's linear model. This scales the chain's force densities to the
+ * excess that L* prescribes. Returns the number of chains scaled. */
 static int rescale_flat_chains(const hf_model *m, hf_workspace *w)
 {
     int n_scaled = 0;
     for (int i = m->n_chain; i < m->n_any_chain; i++) {
-        int first = m->chain_start[i], last = m->chain_start[i + 1] - 1, is_rigid = 1;
+        int first = m->chain_start[i], last = m->chain_start[i + 1] - 1;
+        bool is_rigid = true;
         double sum = 0, wanted = 0, u[3], *x = w->position_m;
         for (int k = first; k <= last; k++) {
             int e = m->chain_cable[k];
-            is_rigid &= hf_law_has(w->law[e], HF_LAW_IS_RIGID);
+            is_rigid = is_rigid && hf_law_has(w->law[e], HF_LAW_IS_RIGID);
             sum += hf_newton_matrix_direction(m, x, e, u);
             wanted += w->target[e];
         }
@@ -47,15 +51,16 @@ static int rescale_flat_chains(const hf_model *m, hf_workspace *w)
 
 /* ---- starts ---- */
 
-/* First force densities unlike those of the case: the first shapes need not lie near the answer, and a cable that
- * shrinks to nothing in one of them proves nothing. */
+/* Sets first force densities other than those of the case, for one more try. The first shapes can be far from the
+ * answer, so a cable that collapses in one of them does not prove that there is no answer. */
 static void start_elsewhere(const hf_model *m, hf_workspace *w)
 {
     for (int e = 0; e < m->n_cable; e++)
         if (hf_law_has(w->law[e], HF_LAW_ITERATES)) w->q_N_per_m[e] = m->start_q_N_per_m[e] * (1 + e % 3);
 }
 
-/* The fixed point knows little of elastic cables: the theoretical shape is the better start for them. */
+/* A start for nets with elastic cables: descent and Newton from the theoretical shape, which is a better start for them
+ * than iterations of hf_form_find. Returns the number of steps. */
 static int start_elastic(const hf_model *m, const hf_form_settings *s, hf_workspace *w)
 {
     int most = s->max_iterations < DESCENT_MAX ? s->max_iterations : DESCENT_MAX, n_step = 0;
@@ -75,7 +80,7 @@ hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_w
     for (;;) {
         hf_form_settings part = *s;
         int left = s->max_iterations - n_done;
-        part.max_iterations = left < 1 ? 1 : block < left ? block : left; /* the shape of the last step is measured */
+        part.max_iterations = left < 1 ? 1 : block < left ? block : left; /* at least one: it measures the shape */
         hf_form_find(m, &part, HF_STOP_RESIDUAL, w, history, result);
         n_done += result->iterations;
         if (result->status == HF_COLLAPSED && n_done <= FIRST_BLOCK && n_restarted++ == 0) {
@@ -92,14 +97,14 @@ hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_w
         left = s->max_iterations - n_done;
         if (m->EA_N) n_done += hf_descent_run(m, w, left < DESCENT_MAX ? left : DESCENT_MAX);
         left = s->max_iterations - n_done < STEPS_MAX ? s->max_iterations - n_done : STEPS_MAX;
-        int has_moved = hf_newton_run(m, s, w, left, &n_step);
+        bool has_moved = hf_newton_run(m, s, w, left, &n_step);
         n_done += n_step;
-        /* a linear solve would round the shape anew, by the condition of D */
+        /* the shape is not solved for again with D: that would add rounding errors in proportion to D's condition */
         if (has_moved && hf_form_measure(m, s, w, result) == HF_OK) {
             hf_form_accept(m, s, HF_STOPPED_RESIDUAL, n_done, w, result);
             break;
         }
-        block = has_moved ? FIRST_BLOCK : 2 * block; /* after a failure the fixed point goes on */
+        block = has_moved ? FIRST_BLOCK : 2 * block; /* after a failure hf_form_find goes on longer */
     }
     result->iterations = n_done;
     return result->status;

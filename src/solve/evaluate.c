@@ -41,8 +41,8 @@ static hf_status find_alone(const void *context, hf_workspace *w, hf_history *hi
     return hf_form_find(p->m, p->form, p->stop, w, history, result);
 }
 
-/* From the workspace's first force densities. Where the paper's rule stops depends on the start, which all iterations
- * of the coupling share then. */
+/* Finds the shape from the workspace's first force densities. Under the paper's rule the place of the stop depends on
+ * the start, so all iterations of the coupling then share one start. */
 static hf_status find_net(const net_problem *p, hf_workspace *w, hf_history *history, hf_form_result *result)
 {
     if (!p->m->n_attachment) return find_alone(p, w, history, result);
@@ -68,7 +68,7 @@ double hf_evaluate_design_length_m(const hf_model *m, int i_cable)
     return hf_law_has(m->law[i_cable], HF_LAW_IS_RIGID) ? m->target[i_cable] : m->length_m[i_cable];
 }
 
-/* What the design means for boundary cable e (METHOD section 7). */
+/* Sets law, target and first force density of boundary cable e from its design tension (METHOD section 7). */
 static void apply_rule(const hf_evaluator *v, int e, double tension_N, hf_workspace *w)
 {
     w->q_N_per_m[e] = tension_N / hf_evaluate_design_length_m(v->model, e);
@@ -81,7 +81,7 @@ static void apply_rule(const hf_evaluator *v, int e, double tension_N, hf_worksp
         w->law[e] = HF_LAW_TENSION;
         w->target[e] = tension_N;
         break;
-    default: /* seeded: the law of the case, started from here */
+    default: /* seeded: the law of the case, with the force density set above as its start */
         break;
     }
 }
@@ -90,7 +90,8 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_works
 {
     const hf_model *m = v->model;
     hf_form_prepare(m, w);
-    /* a convex problem has one answer: starting near it is free. The seeded rule depends on its start: the paper's. */
+    /* A convex problem has one answer, so a start near it changes nothing but the time. The answer under rule seeded
+     * depends on the start, so it keeps that of the model, as in the paper. */
     for (int e = 0; e < m->n_cable && v->rule != HF_RULE_SEEDED; e++)
         if (hf_law_has(m->law[e], HF_LAW_ITERATES)) w->q_N_per_m[e] = v->start_q_N_per_m[e];
     for (int k = 0; k < m->n_gene; k++)

@@ -10,24 +10,26 @@
 #include <math.h>
 #include <string.h>
 
-/* Straight chains are looked at after this many iterations, and again each time that number has doubled. */
+/* Straight chains are examined after this many iterations, and again each time the number of iterations has doubled. */
 #define FIRST_CHAIN_CHECK 64
-/* Relative change of the load between two looks that counts as settled. The tests of form-finding pass with 0.01 and
- * 0.1; with 0.001 one of them fails (loaded_straight_chain_is_ill_posed). */
+/* A load counts as settled when it changes by less than this, relatively, between two examinations. The tests of
+ * form-finding pass with 0.01 and 0.1; with 0.001 one of them fails (loaded_straight_chain_is_ill_posed). */
 #define CHAIN_LOAD_SETTLED 0.01
-#define ROUNDING_STEPS 32    /* roundings of the ends' coordinates that an imbalance may be worth */
-#define CHAIN_LOAD_NONE 1e-6 /* lateral load below this part of the reference tension is none */
+#define ROUNDING_STEPS 32 /* an imbalance of up to this many roundings of the ends' coordinates is rounding */
+/* A lateral load below this fraction of the reference tension counts as none. The tests of form-finding pass with 1e-8
+ * and 1e-4. */
+#define CHAIN_LOAD_NONE 1e-6
 
 /* ---- starts ---- */
 
-void hf_form_prepare(const hf_model *model, hf_workspace *workspace)
+void hf_form_prepare(const hf_model *m, hf_workspace *w)
 {
-    size_t n = (size_t)model->n_cable;
-    memcpy(workspace->law, model->law, n);
-    memcpy(workspace->target, model->target, n * sizeof(double));
-    memcpy(workspace->q_N_per_m, model->start_q_N_per_m, n * sizeof(double));
-    if (model->EA_N) memcpy(workspace->EA_N, model->EA_N, n * sizeof(double));
-    memset(workspace->displacement_m, 0, 3 * (size_t)model->n_attachment * sizeof(double));
+    size_t n = (size_t)m->n_cable;
+    memcpy(w->law, m->law, n);
+    memcpy(w->target, m->target, n * sizeof(double));
+    memcpy(w->q_N_per_m, m->start_q_N_per_m, n * sizeof(double));
+    if (m->EA_N) memcpy(w->EA_N, m->EA_N, n * sizeof(double));
+    memset(w->displacement_m, 0, 3 * (size_t)m->n_attachment * sizeof(double));
 }
 
 void hf_form_place_supports(const hf_model *m, hf_workspace *w)
@@ -45,13 +47,13 @@ void hf_form_assemble(const hf_model *m, hf_workspace *w)
     memset(w->band, 0, ((size_t)m->n_band + 1) * sizeof(double));
     for (int e = 0; e < m->n_cable; e++) {
         double q = w->q_N_per_m[e];
-        w->band[m->diagonal_a[e]] += q; /* places of supports lead to the spare place behind the band */
+        w->band[m->diagonal_a[e]] += q; /* the entry of a support is the spare place behind the band */
         w->band[m->diagonal_b[e]] += q;
         w->band[m->off_diagonal[e]] -= q;
     }
 }
 
-/* Right-hand sides into the free rows of position_m; the support rows keep the support positions. */
+/* Writes the right-hand sides into the free rows of position_m; the support rows keep the support positions. */
 void hf_form_assemble_loads(const hf_model *m, hf_workspace *w)
 {
     for (int c = 0; c < 3; c++) {
@@ -96,8 +98,9 @@ static inline double smaller(double now, double next)
     return next < now ? next : now;
 }
 
-/* Lengths, tensions (Eqs. 4, 6), errors against the laws. length_gap is for stopping: beside the length error of taut
- * cables it counts slack ones that are too long, and the pull that is left in those that are too short. */
+/* Lengths, tensions (Eqs. 4, 6) and errors against the laws. length_gap is the length error that the stopping rule
+ * reads. It covers taut cables, slack cables that are too long, and, weighted with the tension that is left in them,
+ * slack cables that are too short. */
 void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r,
                             double *length_gap)
 {
@@ -118,13 +121,13 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
         }
         hf_law_cable cable = hf_workspace_cable(m, w, e);
         bool gives_tension = hf_law_has(cable.law, HF_LAW_GIVES_TENSION);
-        bool may_vanish = hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER); /* its tension is then zero */
+        bool may_vanish = hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER); /* its tension may be zero */
         if (part < (gives_tension ? s->collapse_ratio : HF_FORM_GONE) && !may_vanish) {
             r->status = HF_COLLAPSED;
             r->culprit = e;
             return;
         }
-        if (part > HF_FORM_BLOWN_UP) { /* what rounding leaves of a singular matrix */
+        if (part > HF_FORM_BLOWN_UP) { /* D is singular but for rounding */
             r->status = HF_SINGULAR;
             r->culprit = a < b ? a : b;
             return;
@@ -136,7 +139,7 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
             double strain = length / hf_law_wanted_length_m(cable, tension) - 1;
             double pull = smaller(tension / m->reference_N, 1);
             double error = fabs(strain);
-            int is_taut = pull >= HF_SLACK_RATIO;
+            bool is_taut = pull >= HF_SLACK_RATIO;
             if (is_taut) r->length_error = larger(r->length_error, error);
             *length_gap = larger(*length_gap, strain > 0 || is_taut ? error : error * pull);
         }
@@ -146,8 +149,8 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
 
 /* ---- nodal residual ---- */
 
-/* Force of every cable on its nodes, at the tension of its law (T* of law tension, q l of the others), plus loads.
- * With `without_chains`, the straight chains that are under law length are left out. */
+/* Sums the forces of all cables on their nodes, at the tensions of their laws (T* of law tension, q l of the others),
+ * and the loads, into force_N. `without_chains` leaves out the straight chains under law length. */
 static void nodal_forces(const hf_model *m, hf_workspace *w, bool without_chains)
 {
     const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
@@ -180,7 +183,7 @@ double hf_form_residual_N(const hf_model *m, hf_workspace *w)
     return sqrt(largest) * m->reference_N;
 }
 
-/* Largest coordinate of the ends of cable e, m: what the rounding of its length is relative to. */
+/* Largest coordinate of the ends of cable e, m. The rounding of the cable's length is relative to it. */
 static double largest_coordinate_m(const hf_model *m, const hf_workspace *w, int e)
 {
     double largest = 0;
@@ -190,8 +193,8 @@ static double largest_coordinate_m(const hf_model *m, const hf_workspace *w, int
     return largest;
 }
 
-/* The cable whose length, small against its coordinates, is rounded so coarsely that the tolerances cannot be met, or
- * -1. force_N holds the nodal forces. */
+/* Returns the cable that is so short against its coordinates that the rounding of its length keeps the tolerances from
+ * being met, or -1. Reads the nodal forces in force_N. */
 static int find_rounded_cable(const hf_model *m, const hf_form_settings *s, const hf_workspace *w)
 {
     const double *f = w->force_N;
@@ -214,7 +217,7 @@ static int find_rounded_cable(const hf_model *m, const hf_form_settings *s, cons
 
 /* ---- straight chains: a chain that cannot deflect cannot carry a lateral load at any finite tension ---- */
 
-/* The supports at the ends of chain i. */
+/* Rows of the supports at the two ends of chain i_chain. */
 static void chain_supports(const hf_model *m, int i_chain, int *from, int *to)
 {
     const int *first = m->end_row + 2 * m->chain_cable[m->chain_start[i_chain]];
@@ -223,7 +226,7 @@ static void chain_supports(const hf_model *m, int i_chain, int *from, int *to)
     *to = last[0] >= m->n_free ? last[0] : last[1];
 }
 
-/* Largest force across chain i, from the nodal forces without the chains, N. */
+/* Largest force perpendicular to chain i_chain at one of its nodes, N. force_N holds the forces without the chains. */
 static double lateral_load_N(const hf_model *m, const hf_workspace *w, int i_chain)
 {
     const double *x = w->position_m, *f = w->force_N;
@@ -256,11 +259,11 @@ int hf_form_n_chain(const hf_model *m)
     return m->n_attachment ? m->n_any_chain : m->n_chain;
 }
 
-/* Is chain i length-controlled, and is it straight where its supports are now? */
+/* True when chain i_chain is under law length and straight at the present places of its supports. */
 static bool chain_is_straight(const hf_model *m, const hf_workspace *w, int i_chain)
 {
-    if (!hf_law_has(w->law[m->chain_cable[m->chain_start[i_chain]]], HF_LAW_IS_RIGID)) return 0;
-    if (!m->n_attachment) return 1;
+    if (!hf_law_has(w->law[m->chain_cable[m->chain_start[i_chain]]], HF_LAW_IS_RIGID)) return false;
+    if (!m->n_attachment) return true;
     int from, to;
     double sum = 0, square = 0;
     chain_supports(m, i_chain, &from, &to);
@@ -320,40 +323,42 @@ typedef struct {
     int next_chain_look;
 } progress;
 
-/* One more shape has been measured: decide whether it is the last. Sets status and stop reason. */
+/* Decides whether the shape just measured is the last one. Sets status and stop reason if so. */
 static bool is_last(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r, progress *p,
                     double length_gap)
 {
     if (!p->iterates) {
         r->stop_reason = HF_STOPPED_DIRECT;
         if (r->residual_N > s->residual_tolerance * m->reference_N) r->status = HF_NOT_CONVERGED;
-        return 1;
+        return true;
     }
     if (p->stop == HF_STOP_RMS_CHANGE) {
         if (fabs(r->psi_m - p->psi_before_m) < s->rms_tolerance_m) r->stop_reason = HF_STOPPED_RMS_CHANGE;
         p->psi_before_m = r->psi_m;
     } else {
-        int worst, looks = hf_form_n_chain(m) && r->iterations == p->next_chain_look;
-        /* the forces balance at the tensions of the laws; the tensions of the last solve must be those, too */
+        int worst;
+        bool looks = hf_form_n_chain(m) && r->iterations == p->next_chain_look;
+        /* the residual is taken at the tensions of the laws; those of the last solve must agree with them, too */
         if (r->residual_N <= s->residual_tolerance * m->reference_N && r->tension_error <= s->residual_tolerance &&
             length_gap <= s->length_tolerance)
             r->stop_reason = HF_STOPPED_RESIDUAL;
         if (looks && r->stop_reason == HF_STOPPED_NONE) {
             double load = look_at_chains(m, w, r, &worst);
             p->next_chain_look *= 2;
-            if (worst >= 0 && fabs(load - p->chain_load_before) < CHAIN_LOAD_SETTLED * load) return 1;
+            if (worst >= 0 && fabs(load - p->chain_load_before) < CHAIN_LOAD_SETTLED * load) return true;
             p->chain_load_before = load;
         }
     }
-    if (r->stop_reason != HF_STOPPED_NONE) return 1;
-    if (r->iterations < s->max_iterations) return 0;
+    if (r->stop_reason != HF_STOPPED_NONE) return true;
+    if (r->iterations < s->max_iterations) return false;
     r->stop_reason = HF_STOPPED_MAX_ITERATIONS;
     r->status = HF_NOT_CONVERGED;
-    return 1;
+    return true;
 }
 
-/* Under `residual` the answer must be an equilibrium: with a loaded straight chain there is none, however small the
- * numbers look. Under the paper's rule the result stands and n_loaded_chain warns. */
+/* Under the stopping rule `residual` the answer must be an equilibrium. A net with a loaded straight chain has none,
+ * even when its residual is small, and is refused. Under the paper's rule the result stands, and n_loaded_chain tells
+ * of the chains. */
 static void judge_chains(const hf_model *m, hf_workspace *w, const progress *p, hf_form_result *r)
 {
     int worst;
@@ -371,6 +376,13 @@ static void record_iteration(hf_history *h, const hf_model *m, const hf_workspac
     h->inner_tension_ratio[h->n] = hf_metrics_tension_ratio(m, w, HF_GROUP_INNER);
     h->boundary_tension_ratio[h->n] = hf_metrics_tension_ratio(m, w, HF_GROUP_BOUNDARY);
     h->length_error[h->n++] = r->length_error;
+}
+
+/* A result before its first iteration: status ok, no culprit, all measures unknown (NaN). */
+static void open_result(hf_form_result *r)
+{
+    *r = (hf_form_result){.status = HF_OK, .culprit = -1};
+    hf_result_blank(r);
 }
 
 static hf_status finish_result(const hf_model *m, hf_workspace *w, hf_form_result *r)
@@ -395,11 +407,10 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, hf_stop_rul
 {
     assert(m->n_free > 0 && s->max_iterations > 0);
     progress p = {stop, hf_workspace_iterates(m, w), (double)NAN, (double)NAN, FIRST_CHAIN_CHECK};
-    int need_psi = history || stop == HF_STOP_RMS_CHANGE,
-        need_residual = history || stop == HF_STOP_RESIDUAL || !p.iterates;
+    bool need_psi = history || stop == HF_STOP_RMS_CHANGE;
+    bool need_residual = history || stop == HF_STOP_RESIDUAL || !p.iterates;
     double length_gap;
-    *r = (hf_form_result){.status = HF_OK, .culprit = -1};
-    r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    open_result(r);
     hf_form_place_supports(m, w);
     for (;;) {
         r->iterations++;
@@ -426,14 +437,13 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, hf_stop_rul
 hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r)
 {
     double length_gap;
-    *r = (hf_form_result){.status = HF_OK, .culprit = -1};
-    r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    open_result(r);
     const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
     for (int e = 0; e < m->n_cable; e++) {
         if (!hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)) continue;
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         double dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a], square = dx * dx + dy * dy + dz * dz;
-        w->q_N_per_m[e] = square > 0 ? w->target[e] / sqrt(square) : 0; /* of no length: found collapsed below */
+        w->q_N_per_m[e] = square > 0 ? w->target[e] / sqrt(square) : 0; /* without length: refused as collapsed below */
     }
     hf_form_measure_cables(m, s, w, r, &length_gap);
     if (r->status != HF_OK) return finish_result(m, w, r);
@@ -451,8 +461,9 @@ hf_status hf_form_accept(const hf_model *m, const hf_form_settings *s, hf_stop_r
 {
     double length_gap;
     progress p = {.stop = reason == HF_STOPPED_RMS_CHANGE ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
-    *r = (hf_form_result){.status = HF_OK, .culprit = -1, .iterations = iterations, .stop_reason = reason};
-    r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    open_result(r);
+    r->iterations = iterations;
+    r->stop_reason = reason;
     hf_form_measure_cables(m, s, w, r, &length_gap);
     if (r->status == HF_OK) {
         if (reason == HF_STOPPED_MAX_ITERATIONS) r->status = HF_NOT_CONVERGED;
@@ -464,7 +475,8 @@ hf_status hf_form_accept(const hf_model *m, const hf_form_settings *s, hf_stop_r
 
 void hf_form_refuse(hf_status status, int iterations, hf_form_result *r)
 {
-    *r = (hf_form_result){.status = status, .culprit = -1, .iterations = iterations};
-    r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    open_result(r);
+    r->status = status;
+    r->iterations = iterations;
     finish_result(NULL, NULL, r);
 }

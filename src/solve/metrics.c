@@ -30,7 +30,7 @@ double hf_metrics_tension_ratio(const hf_model *m, const hf_workspace *w, hf_gro
 
 bool hf_metrics_is_slack(const hf_model *m, const hf_workspace *w, int i_cable)
 {
-    /* a strut (q < 0) is not slack */
+    /* by absolute value, because a strut has a negative tension and is not slack */
     return fabs(w->tension_N[i_cable]) < HF_SLACK_RATIO * m->reference_N;
 }
 

@@ -6,22 +6,23 @@
 #include <math.h>
 #include <string.h>
 
-#define HALVINGS_MAX 6 /* of one step */
-/* Steps per try that may raise the merit, by no more than the factor. The tests of form-finding pass with 0 and 30 of
- * them, and with factors of 1e1 and 1e12. */
+#define HALVINGS_MAX 6 /* of one step before it counts as failed */
+/* At most TRUSTED_MAX steps per run may raise the merit, each by less than the factor TRUSTED_RISE. The tests of
+ * form-finding pass with 0 and 30 such steps, and with factors of 1e1 and 1e12. */
 #define TRUSTED_MAX 6
 #define TRUSTED_RISE 1e6
-#define TENSION_KEPT 0.1 /* a step leaves at least this part of a multiplier */
+/* A step leaves at least this fraction of a multiplier. The tests of form-finding pass with 0.01 and 0.5. */
+#define TENSION_KEPT 0.1
 
 /* ---- forces ---- */
 
 typedef struct {
     double residual_N; /* largest nodal force */
-    double length_gap; /* largest length error, weighted by the pull of a cable that is too short */
-    double merit;      /* what a step must lower: squares of forces over the reference tension, and of length errors */
+    double length_gap; /* largest length error; that of a cable that is too short is weighted by its tension */
+    double merit;      /* sum of squared forces over the reference tension and squared length errors: steps lower it */
 } imbalance;
 
-/* Nodal forces out of balance into force [3*row + c]: minus the gradient of Pi. */
+/* Sets force [3*row + c] to the nodal forces out of balance, minus the gradient of Pi (M2). */
 static imbalance measure_imbalance(const hf_model *m, const hf_workspace *w, const double *position_m, const double *T,
                                    double *force)
 {
@@ -58,14 +59,14 @@ static imbalance measure_imbalance(const hf_model *m, const hf_workspace *w, con
 
 /* ---- one step ---- */
 
-/* How much a multiplier T changes in `part` of a step, which takes the cable of this length `beyond` the wanted one. */
+/* Change of the multiplier T in `part` of a step after which the cable is longer than wanted by `beyond`, m (M7). */
 static double tension_change(hf_law_cable cable, double length, double T, double part, double beyond)
 {
     double k = hf_newton_matrix_stiffness(cable, length, T);
     return k > 0 ? part * k * beyond : -part * T;
 }
 
-/* Right-hand side with the tension steps eliminated: force plus what every multiplier changes by at its length. */
+/* Right-hand side of (M8): the forces, plus the changes of the multipliers for the present errors of length. */
 static void right_hand_side(const hf_model *m, const hf_workspace *w, const double *force, double *rhs)
 {
     double u[3];
@@ -84,7 +85,7 @@ static void right_hand_side(const hf_model *m, const hf_workspace *w, const doub
     }
 }
 
-/* The Newton step for the forces in newton_force_N, into newton_step; condition as in hf_newton_matrix_factor. */
+/* Sets newton_step to the Newton step for the forces in newton_force_N. condition as in hf_newton_matrix_factor. */
 static hf_status find_step(const hf_model *m, hf_workspace *w, double *condition)
 {
     HF_TRY(hf_newton_matrix_factor(m, w, condition));
@@ -93,7 +94,7 @@ static hf_status find_step(const hf_model *m, hf_workspace *w, double *condition
     return HF_OK;
 }
 
-/* Shape and multipliers after `part` of the step, into newton_trial_m and newton_trial_tension_N. */
+/* Sets newton_trial_m and newton_trial_tension_N to shape and multipliers after `part` of the step. */
 static void try_step(const hf_model *m, hf_workspace *w, double part)
 {
     const double *step = w->newton_step;
@@ -120,14 +121,14 @@ static void try_step(const hf_model *m, hf_workspace *w, double part)
 
 /* ---- Newton from a shape ---- */
 
-static int is_balanced(const hf_model *m, const hf_form_settings *s, const imbalance *now)
+static bool is_balanced(const hf_model *m, const hf_form_settings *s, const imbalance *now)
 {
     return now->residual_N <= s->residual_tolerance * m->reference_N && now->length_gap <= s->length_tolerance;
 }
 
 bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int max_steps, int *n_step)
 {
-    /* one more digit than asked for, so that the closing linear solve does not miss the tolerance by a hair */
+    /* a tenth of the tolerances asked for, so that a later linear solve still meets them */
     hf_form_settings tight = *s;
     tight.residual_tolerance = fmax(0.1 * s->residual_tolerance, 1e-13);
     tight.length_tolerance = fmax(0.1 * s->length_tolerance, 1e-14);
@@ -145,7 +146,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         }
         ++*n_step;
         if (halvings > HALVINGS_MAX) {
-            /* the merit need not fall on the way to tensions that are decades away: a few full steps on trust */
+            /* the merit can rise on the way to tensions that are decades away: allow a few such full steps */
             if (++n_trusted > TRUSTED_MAX || is_balanced(m, s, &now)) break;
             try_step(m, w, 1);
             next = measure_imbalance(m, w, w->newton_trial_m, w->newton_trial_tension_N, w->newton_force_N);

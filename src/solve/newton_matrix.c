@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-#define DIAGONAL_GUARD 1e-14 /* Levenberg shift, relative to the largest diagonal, that is always there */
-#define SHIFT_FIRST 1e-10    /* the first one after a failed factorisation */
+#define DIAGONAL_GUARD 1e-14 /* Levenberg shift of every matrix, relative to the largest diagonal entry */
+#define SHIFT_FIRST 1e-10    /* shift after the first failed factorisation; a hundredfold after each further one */
 
 static int half_bandwidth(const hf_model *m)
 {
@@ -23,7 +23,7 @@ void hf_newton_matrix_block(const hf_model *m, const hf_workspace *w, int e, dou
             block[r][c] = along * u[r] * u[c] + (r == c ? across : 0);
 }
 
-/* The matrix at position_m, tension_N into newton_band; returns the largest diagonal entry. */
+/* Assembles the matrix at position_m and tension_N into newton_band. Returns the largest diagonal entry. */
 static double assemble_hessian(const hf_model *m, hf_workspace *w)
 {
     int column = half_bandwidth(m) + 1;

@@ -1,11 +1,11 @@
-/* newton_matrix - the Hessian of the energy Pi(x) of a tension net, with the multipliers eliminated (METHOD section 5).
+/* newton_matrix - the Hessian of the energy Pi(x) of a tension net with the multipliers eliminated (METHOD section 5).
  * Stability: internal; may change in any version.
  *
  * Unknowns: the 3 n_free coordinates, dof 3*row + component. A cable with unit vector u, tension T and length l adds
  * the block (T/l)(I - uu') + k uu' between its ends, where k = phi''(l). A cable under law length has
  * k = HF_NEWTON_STIFFENING T/L* instead: its tension step dT = k (dl + l - L*) is eliminated, so the matrix stays
  * symmetric positive definite. Eq. 8 is the same step with a stiffening of 1. An elastic cable has k = EA/l0 and
- * L* = l0 (1 + T/EA), so no force contains EA times an error of length; a slack one has k = 0.
+ * L* = l0 (1 + T/EA), so that no force contains EA times an error of length; a slack one has k = 0.
  * Storage: lower band, column-major, half-bandwidth 3b + 2, in the workspace's newton_band. */
 #ifndef HIFDM_NEWTON_MATRIX_H
 #define HIFDM_NEWTON_MATRIX_H
@@ -14,8 +14,8 @@
 
 #include <math.h>
 
-/* Stiffness of a length-controlled cable over its tension per length. The larger, the nearer to a hard constraint. The
- * forces never contain it, so it costs no accuracy in the residual. */
+/* Stiffness of a cable under law length, divided by its tension per length. The larger it is, the nearer a step comes
+ * to a hard constraint. The forces do not contain it, so it costs no accuracy in the residual. */
 #define HF_NEWTON_STIFFENING 1e7
 
 /* Number of unknowns, 3 n_free. */
@@ -37,13 +37,13 @@ static inline double hf_newton_matrix_direction(const hf_model *model, const dou
     return length;
 }
 
-/* The multiplier where the law has one, else the tension that the law gives at this length, N. */
+/* Tension, N: the multiplier where the law has one, else what the law gives at this length. */
 static inline double hf_newton_matrix_tension_N(hf_law_cable cable, double length_m, double multiplier_N)
 {
     return hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER) ? multiplier_N : hf_law_tension_N(cable, length_m);
 }
 
-/* k = phi'' of a cable of this length; for a rigid law, of the stiff spring in its place, N/m. */
+/* k = phi'' of a cable of this length, N/m; for a rigid law, k of the stiff spring in its place. */
 static inline double hf_newton_matrix_stiffness(hf_law_cable cable, double length_m, double tension_N)
 {
     if (hf_law_has(cable.law, HF_LAW_IS_RIGID))
@@ -51,15 +51,16 @@ static inline double hf_newton_matrix_stiffness(hf_law_cable cable, double lengt
     return hf_law_stiffness_N_per_m(cable, length_m);
 }
 
-/* Stiffness [3][3] of cable i_cable between its ends at the workspace's shape and tensions: its part of the matrix,
- * which the coupling with a truss needs for the cables that end at attachments. */
+/* Stiffness [3][3] of cable i_cable between its ends at the workspace's shape and tensions, N/m (M6). The coupling with
+ * a truss uses it for the cables that end at attachments. */
 void hf_newton_matrix_block(const hf_model *model, const hf_workspace *workspace, int i_cable, double block[3][3]);
 
 /* Factor the matrix at the workspace's shape and tensions into newton_band. *condition (may be NULL): estimate of its
- * 1-norm condition number, INFINITY when a Levenberg shift was needed. HF_SINGULAR when no shift helps. */
+ * 1-norm condition number, INFINITY when it took a Levenberg shift beyond the smallest. HF_SINGULAR when no shift
+ * helps. */
 hf_status hf_newton_matrix_factor(const hf_model *model, hf_workspace *workspace, double *condition);
 
-/* rhs [3 n_free] -> solution, in place, with the factor in newton_band. */
+/* Solve in place, rhs [3 n_free], with the factor in newton_band. */
 void hf_newton_matrix_solve(const hf_model *model, const hf_workspace *workspace, double *rhs);
 
 #endif

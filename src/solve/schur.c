@@ -15,7 +15,7 @@ void dgemm_(const char *trans_a, const char *trans_b, const int *m, const int *n
             const double *a, const int *lda, const double *b, const int *ldb, const double *beta, double *c,
             const int *ldc);
 
-/* By columns of F, which are its rows: it is symmetric. */
+/* Goes through F by columns. F is symmetric, so they are its rows. */
 void hf_schur_flex(const hf_model *m, const double *force, double *r)
 {
     size_t n = (size_t)(3 * m->n_attachment);
@@ -86,14 +86,14 @@ void hf_schur_pull(const hf_model *m, const hf_workspace *w, const double *step_
     }
 }
 
-/* H_aa, of cables to free nodes, to fixed supports and between attachments. */
+/* Adds H_aa to the stiffness: cables from attachments to free nodes, fixed supports and other attachments. */
 static void add_attachment_stiffness(const hf_model *m, const hf_workspace *w, hf_schur *s)
 {
     double block[3][3];
     size_t n = (size_t)s->n;
     for (int k = 0; k < m->n_tie; k++) {
         int partner = k > 0 && m->tie[k - 1] == (m->tie[k] ^ 1) ? k - 1 : k + 1;
-        int is_pair = partner < m->n_tie && m->tie[partner] == (m->tie[k] ^ 1);
+        bool is_pair = partner < m->n_tie && m->tie[partner] == (m->tie[k] ^ 1);
         size_t here = 3 * (size_t)m->tie_attachment[k];
         hf_newton_matrix_block(m, w, m->tie[k] / 2, block);
         for (size_t r = 0; r < 3; r++)
@@ -143,8 +143,8 @@ void hf_schur_displace(const hf_model *m, const hf_schur *s, const double *b, do
     hf_schur_solve(s, displacement_m);
 }
 
-/* Of the columns of A = (I + F S)^-1 - I the longest becomes `left`; its part in all others is `right`, and is taken
- * off them. */
+/* Cross approximation of A = (I + F S)^-1 - I. The longest column of A, scaled to length 1, is `left`; the products of
+ * all columns with it are `right`; left right' is subtracted from A before the next mode. */
 int hf_schur_modes(hf_schur *s, double tolerance, int max_mode, double *mode)
 {
     size_t n = (size_t)s->n;

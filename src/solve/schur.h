@@ -9,39 +9,41 @@
 
 #include <hifdm/workspace.h>
 
-/* r = F f: displacements [3 n_attachment], m, of the truss under forces on its attachments, N. */
+/* r = F f: displacements of the attachments under the forces on them; both [3 n_attachment], m and N. */
 void hf_schur_flex(const hf_model *model, const double *force_N, double *displacement_m);
 
-/* I + F S at a shape, factored. */
+/* The matrices at one shape, with I + F S factored. */
 typedef struct {
     int n;             /* 3 n_attachment */
     double *stiffness; /* [n][n] S, symmetric */
     double *flexed;    /* [n][n] F S, column-major */
     double *factor;    /* [n][n] LU of I + F S, column-major */
-    double *column;    /* [3 n_free] scratch */
+    double *column;    /* [3 n_free + n] scratch */
     int *pivot;        /* [n] */
     void *block;
 } hf_schur;
 
-/* HF_OK or HF_NO_MEMORY. Free in any case. */
+/* HF_OK or HF_NO_MEMORY. The caller frees it in either case. */
 hf_status hf_schur_create(const hf_model *model, hf_schur *schur);
 void hf_schur_free(hf_schur *schur);
 
-/* Factor at the workspace's shape, whose Newton matrix stands factored in newton_band. HF_OK or HF_SINGULAR. */
+/* Assemble and factor at the workspace's shape, whose Newton matrix must be factored in newton_band. HF_OK or
+ * HF_SINGULAR. */
 hf_status hf_schur_factor(const hf_model *model, const hf_workspace *workspace, hf_schur *schur);
 
-/* (I + F S)^-1 F b into displacement_m, both [n]: what the attachments do when the pull on them changes by b while they
- * stand still. */
+/* (I + F S)^-1 F b into displacement_m, both [n]: the move of the attachments when b, N, is added to the pull on them
+ * at their present places. */
 void hf_schur_displace(const hf_model *model, const hf_schur *schur, const double *b, double *displacement_m);
 
 /* b [n] -> (I + F S)^-1 b. */
 void hf_schur_solve(const hf_schur *schur, double *b);
 
-/* (I + F S)^-1 = I + sum of left right' over the modes in which F S is large: greedy, until what is left out has a
- * Frobenius norm below `tolerance`. mode: [max_mode][2][n], left first. Returns their number; uses `flexed` up. */
+/* (I + F S)^-1 = I + sum of left right' over the modes in which F S is large. Modes are taken greedily until the
+ * remainder has a Frobenius norm of at most `tolerance`, or max_mode are there. mode: [max_mode][2][n], left before
+ * right. Returns the number of modes. Overwrites `flexed`. */
 int hf_schur_modes(hf_schur *schur, double tolerance, int max_mode, double *mode);
 
-/* force [3 n_free] += -H_fa r; pull [3 n_attachment] += -H_af x. The cables are those at the workspace's shape. */
+/* force [3 n_free] += -H_fa r; pull [3 n_attachment] += -H_af x, with H at the workspace's shape. */
 void hf_schur_push(const hf_model *model, const hf_workspace *workspace, const double *displacement_m, double *force);
 void hf_schur_pull(const hf_model *model, const hf_workspace *workspace, const double *step_m, double *pull);
 

@@ -12,27 +12,27 @@ static void lay_out(hf_arena *arena, const hf_model *m, hf_workspace *w)
 #undef TAKE
 }
 
-size_t hf_workspace_bytes(const hf_model *model)
+size_t hf_workspace_bytes(const hf_model *m)
 {
     hf_arena arena = {0};
-    hf_workspace workspace;
-    lay_out(&arena, model, &workspace);
+    hf_workspace w;
+    lay_out(&arena, m, &w);
     return arena.used;
 }
 
-hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace)
+hf_status hf_workspace_create(const hf_model *m, hf_workspace *w)
 {
-    *workspace = (hf_workspace){0};
+    *w = (hf_workspace){0};
     hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, model, workspace)));
-    workspace->block = arena.block;
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, m, w)));
+    w->block = arena.block;
     return HF_OK;
 }
 
-void hf_workspace_free(hf_workspace *workspace)
+void hf_workspace_free(hf_workspace *w)
 {
-    free(workspace->block);
-    *workspace = (hf_workspace){0};
+    free(w->block);
+    *w = (hf_workspace){0};
 }
 
 bool hf_workspace_iterates(const hf_model *m, const hf_workspace *w)
@@ -42,10 +42,9 @@ bool hf_workspace_iterates(const hf_model *m, const hf_workspace *w)
     return false;
 }
 
-void hf_workspace_poison(const hf_model *m, hf_workspace *workspace)
+void hf_workspace_poison(const hf_model *m, hf_workspace *w)
 {
-    hf_workspace *w = workspace;
-/* all bits set is a NaN in IEEE 754 and an index or law that no check accepts */
+/* all bits set are a NaN in IEEE 754, and for integers an index or law that no check accepts */
 #define POISON(type, name, count, unit, meaning) memset(w->name, 0xff, (size_t)(count) * sizeof(type));
     HF_WORKSPACE_FIELDS(POISON)
 #undef POISON

@@ -1,6 +1,6 @@
-/* stress - nets that try the numbers. Every case ends in a solution that verifies, or in a refusal that names its
- * culprit; anything else is a failure: a plausible wrong number, a NaN under a good status, a refusal without a
- * name. Contents: verdict - tally - known solutions. */
+/* stress - common parts of the tests with numerically difficult nets. Every case must end in a solution that is
+ * verified or in a refusal that names its culprit. Failures are a wrong number under a good status, a NaN under a good
+ * status, and a refusal without a culprit. Contents: verdict - tally - known solutions. */
 #ifndef HIFDM_TESTS_STRESS_H
 #define HIFDM_TESTS_STRESS_H
 

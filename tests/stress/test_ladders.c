@@ -1,5 +1,5 @@
-/* Ladders: one difficulty each, from harmless to beyond double precision, a few random nets per rung. Every rung
- * ends in a verified solution or in a refusal that names its culprit. Never a wrong number.
+/* Ladders: each raises one difficulty step by step, from harmless to beyond double precision, with a few random nets
+ * per step. Every net must end in a verified solution or in a refusal that names its culprit.
  *
  * A short run in `make test`; `make stress` (HIFDM_STRESS=1) tries 20 times as many. HIFDM_TEST_SEED replays a run. */
 #include "stress.h"

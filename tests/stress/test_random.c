@@ -1,4 +1,4 @@
-/* Random nets by the thousand, seeded: well-posed ones must be solved, ill-posed ones must be named.
+/* Thousands of seeded random nets: well-posed ones must be solved, ill-posed ones refused with their culprit.
  *
  * A short run in `make test`; `make stress` (HIFDM_STRESS=1) tries 20 times as many. HIFDM_TEST_SEED replays a run. */
 #include "stress.h"

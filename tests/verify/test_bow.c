@@ -1,10 +1,10 @@
-/* How an untied net bows between ribs: uniform tension everywhere, the whole perimeter fixed, no load.
+/* The bow of a net without ties between ribs: uniform tension everywhere, the whole perimeter fixed, no load.
  *
  * Source: METHOD section 9, measured with an independent Newton solver to 1e-13 N. Nodes equally spaced in
- * projected x over 10 m and in y over s. Both z-rms and psi count the free nodes alone (39 x 7, 39 x 7, 39 x 3): those
- * of the fixed perimeter, whose deviation is zero, are left out of sum and count. The bow is that of the middle node.
- * Figures are held to half a unit of their last printed digit; iterated to 1e-11 N, where what is left of the slow
- * convergence is below that by a factor of 100. */
+ * projected x over 10 m and in y over s. Both z-rms and psi are over the free nodes alone (39 x 7, 39 x 7, 39 x 3);
+ * the fixed perimeter, whose deviation is zero, is left out of sum and count. The bow is that of the middle node. The
+ * figures are held to half a unit of their last printed digit. Iterations go on to 1e-11 N, where the remaining error
+ * of the slow convergence is a hundredth of that. */
 #include "nets.h"
 
 #include <hifdm/surface.h>

@@ -1,11 +1,11 @@
-/* Elastic cables against eight cable nets of others, solved as the program solves them (form.method: auto).
+/* Elastic cables: eight cable nets with reference results from other programs, solved with form.method: auto.
  *
- * Sources, on top of the data files or by name below: JonasFeron/Muscle (UCLouvain, Apache-2.0), commit 46d146a, whose
- * unit tests are analytical; and two nets of our own geometry, solved by that program's dynamic relaxation and
- * cross-checked with an independent Newton. T = EA (l - l0)/l0, no compression. In two of the nets the source holds the
- * middle node in y as well, which symmetry does here.
- * Three cases that come with these do not apply: tsgfem_half_tbar_slack and tsgfem_tower_50, _100 are tensegrities,
- * whose bars are in compression and elastic, and whose nodes are partly held. */
+ * Sources (named at the top of each data file or below): JonasFeron/Muscle (UCLouvain, Apache-2.0), commit 46d146a,
+ * whose unit tests are analytical; and two nets of our own geometry, solved by that program's dynamic relaxation and
+ * cross-checked with an independent Newton. T = EA (l - l0)/l0, no compression. In two of the nets the source fixes the
+ * middle node in y as well, where it is by symmetry here. Three cases of the same sources do not apply:
+ * tsgfem_half_tbar_slack and tsgfem_tower_50, _100 are tensegrities with elastic bars in compression and nodes fixed in
+ * some directions only. */
 #include "nets.h"
 
 #include <hifdm/evaluate.h>

@@ -1,8 +1,9 @@
-/* Two published force-density nets, from files through import and model to shape and forces.
+/* Two published force-density nets, read from files and imported; their shapes and forces are compared.
  *
  * Source: arpastrana/jax_fdm (MIT), commit 71d4490, tests/data/reference/{stuttgart21,olympia}-{nodes,edges}.csv,
  * results of "an independent structural-analysis solver". stuttgart21 is all in tension; olympia has struts (q < 0).
- * The reference coordinates and forces carry 9 to 10 digits: 1e-8 relative to the net's size and to each force. */
+ * The reference coordinates and forces have 9 to 10 digits, so the tolerance is 1e-8 of the net's size and of each
+ * force. */
 #include "nets.h"
 
 static const struct {

@@ -1,9 +1,10 @@
-/* Fourteen beam frames, each with and most without shear deformation, against figures of other programs.
+/* Fourteen beam frames, all with and most also without shear deformation, compared with results of other programs.
  *
  * Source: tests/verify/data/frames/NAME.txt, which says at its top where each comes from. Reference displacements are
- * from a double-precision Frame3DD; two further programs agree to 1e-12 mostly, on roll30 (random roll angles,
- * Iy != Iz) to 3e-10 and on exE to 7e-10. So displacements and rotations hold to 1e-9 of the largest of their kind, in
- * those two to 1e-8; forces and moments likewise. What is left at free nodes is this program's own rounding. */
+ * from a double-precision Frame3DD. Two further programs agree with it to 1e-12 in most frames, to 3e-10 on roll30
+ * (random roll angles, Iy != Iz) and to 7e-10 on exE. Displacements, rotations, forces and moments are therefore held
+ * to 1e-9 of the largest of their kind, in those two frames to 1e-8. Forces at free nodes differ from zero by this
+ * program's rounding only. */
 #include "support.h"
 
 #include <hifdm/frame.h>

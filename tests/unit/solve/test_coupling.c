@@ -11,7 +11,7 @@
 
 static void open_flexible(struct net *net, double scale_m_per_N)
 {
-    struct rng rng = {5}; /* always the same: how soft the truss is decides what happens */
+    struct rng rng = {5}; /* a fixed seed, because the outcome depends on how soft the truss is */
     OPEN_CASE(net, SMALL_REFLECTOR, TIGHT);
     attach_all(net, &rng, scale_m_per_N);
 }

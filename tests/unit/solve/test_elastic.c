@@ -1,4 +1,4 @@
-/* The law elastic: its potential, its derivative, its two limits, slack, and where it may be used. */
+/* The law elastic: potential, derivative, its two limits, slack cables, and where the law may be used. */
 #include "laws.h"
 
 #include "search/chord.h"
@@ -6,8 +6,8 @@
 #include "net/symmetry.h"
 #include <hifdm/batch.h>
 
-/* Every third cable of a random saddle net is elastic, cut to have the some 10 N of the others in the theoretical
- * shape; every fourth is a boundary cable. */
+/* A random saddle net. Every third cable is elastic, with an unstrained length that gives it about the 10 N of the
+ * others in the theoretical shape; every fourth is a boundary cable. */
 static void open_mixed(struct net *net, int trial, double EA_N, double *EA)
 {
     struct rng rng = rng_start(300 + (uint64_t)trial);

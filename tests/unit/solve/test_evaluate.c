@@ -1,4 +1,5 @@
-/* One design -> one result under the three rules, its bounds, and independence of what the workspace held before. */
+/* Evaluation of a design under the three rules: its bounds, and that the result does not depend on what the workspace
+ * held before. */
 #include "nets.h"
 
 #include <hifdm/evaluate.h>

@@ -1,4 +1,4 @@
-/* Form-finding of nets small enough to solve by hand: FDM, Eq. 7, Eq. 8, and how each stop is told. */
+/* Form-finding of nets small enough to solve by hand: FDM, Eq. 7, Eq. 8, and the reason reported for each stop. */
 #include "nets.h"
 
 #include "linalg/band.h"

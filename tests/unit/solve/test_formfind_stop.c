@@ -1,4 +1,5 @@
-/* When form-finding stops and what it says then: rules, bounds, chains, history; no heap, no stale contents. */
+/* When form-finding stops and what it reports then: rules, bounds, chains, history. Also: it does not allocate, and
+ * does not read what an earlier call left in the workspace. */
 #include "nets.h"
 
 /* A small scalloped reflector: converges in some 300 iterations at the default tolerances. */

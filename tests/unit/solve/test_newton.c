@@ -1,7 +1,7 @@
 /* Newton's method and its certificate. Contents: scenes - reaching the residual - against other methods - certificate.
  *
- * Asked for: 1e-9 of the pretension (10 N) and of the lengths; the sum worked out again may differ by rounding of some
- * 10 N, 1e-14 N, hence a thousandth more. */
+ * The tolerance is 1e-9 of the pretension (10 N) and of the lengths. The tests add up the forces again; the rounding of
+ * forces of 10 N can change the sum by 1e-14 N, so they allow a thousandth more. */
 #include "laws.h"
 #include "verified.h"
 

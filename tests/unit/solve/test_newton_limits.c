@@ -1,4 +1,5 @@
-/* What Newton refuses, what is not for it, its bounds, and that a used workspace changes no bit. */
+/* Limits of Newton's method: what it refuses, the nets that it is not used for, its bounds on steps. Also: the contents
+ * of a used workspace do not change a bit of the result. */
 #include "laws.h"
 #include "verified.h"
 

@@ -1,4 +1,4 @@
-/* The Newton matrix against finite differences of the forces, and its condition number against the inverse. */
+/* The Newton matrix compared with finite differences of the forces, its condition number with that from the inverse. */
 #include "laws.h"
 
 #include "linalg/band.h"

@@ -1,4 +1,4 @@
-/* Measures of the surface, each against its definition written out again, and the best fit against known motions. */
+/* Measures of the surface, each compared with its definition written out again; the best fit of known motions. */
 #include "laws.h"
 
 #include <hifdm/surface.h>
