@@ -17,13 +17,13 @@ extern "C" {
 typedef struct {
     const hf_evaluator *evaluator; /* borrowed */
     int n_thread;
-    hf_workspace *workspace;        /* [n_thread], made at the start; in a point of a sweep only the first */
+    hf_workspace *workspace;        /* [n_thread]; inside hf_parallel_for all but the first are made when needed */
     struct hf_batch_engine *engine; /* what hf_batch_share made, or NULL */
     double cpu_s;                   /* processor time spent inside evaluations so far, over all threads */
 } hf_batch;
 
-/* n_thread 0: hf_batch_default_threads(). The evaluator is borrowed until hf_batch_free. HF_OK or HF_NO_MEMORY. Free in
- * any case. */
+/* n_thread 0 means hf_batch_default_threads(). The evaluator is borrowed until hf_batch_free. Returns HF_OK or
+ * HF_NO_MEMORY; call hf_batch_free in either case. */
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch);
 
 /* Evaluate the designs with pending[i] != 0 (all when pending is NULL). design_N: [n][n_gene] boundary pretensions > 0;
@@ -34,9 +34,9 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result);
 
 /* Propose the next generation and evaluate what is pending in it: hf_optimiser_next and hf_batch_run. Meanwhile
- * beside(context) runs once (NULL: nothing), in another thread if there is one, and has returned when this does. What
- * it reads of the population must be a copy of the struct made before. Returns false when no generation is left:
- * then only `beside` has run. */
+ * beside(context) runs once (NULL: nothing runs), in another thread if there is one; it has returned when this function
+ * returns. `beside` may read the population only from a copy of the struct that was made before the call. Returns false
+ * when no generation is left; then only `beside` has run. */
 bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
 
 /* Choose what designs are solved with from here on, and make it: one Newton matrix, factored at the base design
@@ -50,11 +50,11 @@ hf_solver hf_batch_solver(const hf_evaluator *evaluator, bool *has_lanes);
 
 int hf_batch_default_threads(void); /* available cores */
 
-/* Evaluate one design in the calling thread, to the same bits as hf_batch_run; returns the workspace that holds its
- * shape until the next call. */
+/* Evaluate one design in the calling thread, with the same bits as hf_batch_run. Returns the workspace that holds its
+ * shape until the next call with this batch. */
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result);
 
-/* Threads, engine and workspaces; not the evaluator. */
+/* Frees the workspaces and what the threads share; the evaluator stays. */
 void hf_batch_free(hf_batch *batch);
 
 #ifdef __cplusplus

@@ -12,7 +12,7 @@
  * next one is proposed: a copy of the struct hf_population, made after hf_optimiser_tell, may be read until the
  * hf_optimiser_next after that.
  *
- * A new optimiser is one file src/search/optimiser_NAME.c, a row of HF_OPTIMISER_LIST and a word in settings.h. */
+ * A new optimiser needs a file src/search/optimiser_NAME.c, a row of HF_OPTIMISER_LIST and a word in settings.h. */
 #ifndef HIFDM_OPTIMISER_H
 #define HIFDM_OPTIMISER_H
 
@@ -22,48 +22,50 @@
 extern "C" {
 #endif
 
-/* What makes one optimiser different from another. A store keeps the population and nothing else, and a run that goes
- * on calls `next` again for generations whose results the journal has. So what `next` proposes depends only on the
- * settings, the model, the population as it was told (best_psi_m has the past) and random numbers by (seed, generation,
- * individual); `state` holds constants, and scratch whose contents mean nothing between calls. */
+/* The functions of one optimiser. A store keeps only the population, and a resumed run calls `next` again for the
+ * generations whose results are in the journal. Therefore `next` depends only on the settings, the model, the
+ * population after hf_optimiser_tell (best_psi_m holds the earlier generations) and random numbers by (seed,
+ * generation, individual). `state` holds constants, and scratch whose contents mean nothing between calls. */
 typedef struct {
-    hf_status (*create)(const hf_optimize_settings *settings, const hf_model *model, void **state); /* or NO_MEMORY */
-    void (*first)(void *state, hf_population *population); /* propose generation 0: all but the results */
+    /* Make the state. HF_OK or HF_NO_MEMORY. */
+    hf_status (*create)(const hf_optimize_settings *settings, const hf_model *model, void **state);
+    /* Propose generation 0: fill all arrays of the generation but the results. */
+    void (*first)(void *state, hf_population *population);
     /* Propose the generation after `now` in the arrays of `next`, with the results of those that are not pending. */
     void (*next)(void *state, const hf_population *now, hf_population *next);
-    void (*free)(void *state); /* NULL, too */
+    void (*free)(void *state); /* state may be NULL */
 } hf_optimiser_kind;
 
 typedef struct {
     hf_population population;
-    hf_population next; /* which `next` writes to; means nothing to others */
+    hf_population next; /* internal: the arrays that kind->next writes to */
     const hf_optimiser_kind *kind;
     const hf_optimize_settings *settings; /* borrowed */
     void *state;
 } hf_optimiser;
 
-/* Settings and model are borrowed; base_N: [n_gene] pretensions T after form-finding. kind NULL: a population with
- * bounds, which nobody fills. HF_OK or HF_NO_MEMORY. Free in any case. */
+/* Settings and model are borrowed until hf_optimiser_free. base_N: [n_gene] pretensions T after form-finding. With kind
+ * NULL the population has its bounds, but no designs. Returns HF_OK or HF_NO_MEMORY; call hf_optimiser_free in either
+ * case. */
 hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *settings,
                               const hf_model *model, const double *base_N, hf_optimiser *optimiser);
 
-/* Take the results of this generation in. */
+/* Rank the generation by the results that the caller has written into population.result. */
 void hf_optimiser_tell(hf_optimiser *optimiser);
 
-/* Propose the next generation; false when stop_reason says that there is none. */
+/* Propose the next generation. Returns false, and does nothing, when stop_reason says that there is none. */
 bool hf_optimiser_next(hf_optimiser *optimiser);
 
 void hf_optimiser_free(hf_optimiser *optimiser);
 
 /* ---- the methods of a case ---- */
 
-/* By hf_optimize_method: X(method, optimiser of its generations or `none`, is the design of Levenberg-Marquardt the
- * result, or only reported beside it?) */
+/* One row for each hf_optimize_method: X(method, optimiser of its generations or `none`, ends_with_polish). */
 #define HF_OPTIMISER_LIST(X) X(GA, ga, false) X(LM, none, true) X(GA_LM, ga, true)
 
 typedef struct {
     const hf_optimiser_kind *kind; /* NULL: no generations */
-    bool ends_with_polish;         /* Levenberg-Marquardt makes the result */
+    bool ends_with_polish;         /* the design of Levenberg-Marquardt is the result; else it is only reported */
 } hf_optimiser_plan;
 
 hf_optimiser_plan hf_optimiser_plan_of(hf_optimize_method method);

@@ -13,8 +13,8 @@ int hf_batch_default_threads(void)
     return hf_parallel_cores();
 }
 
-/* Rooms that are furnished when the batch is made. A batch inside hf_parallel_for begins with one; threads that come to
- * help furnish theirs. */
+/* The number of rooms (parallel.h) whose memory is allocated when the batch is made. A batch inside hf_parallel_for
+ * begins with one; has_room allocates the others when a thread comes to help. */
 static int n_room_at_once(const hf_batch *batch)
 {
     return hf_parallel_is_inside() ? 1 : batch->n_thread;
@@ -36,11 +36,11 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
 /* ---- what designs are solved with ---- */
 
 struct hf_batch_engine {
-    int solver;               /* hf_solver: CHORD or FIXED_POINT; each design its own NEWTON needs no engine */
-    hf_chord shared;          /* CHORD */
-    hf_chord_lanes *chord;    /* [n_thread] */
-    hf_lane_plan plan;        /* FIXED_POINT */
-    hf_lane_workspace *lanes; /* [n_thread] */
+    hf_solver solver;         /* CHORD or FIXED_POINT; Newton's method for each design needs no engine */
+    hf_chord shared;          /* of CHORD */
+    hf_chord_lanes *chord;    /* of CHORD: [n_thread] */
+    hf_lane_plan plan;        /* of FIXED_POINT */
+    hf_lane_workspace *lanes; /* of FIXED_POINT: [n_thread] */
 };
 
 static void free_engine(hf_batch *batch)
@@ -79,7 +79,8 @@ static hf_status create_lanes(hf_batch *batch, struct hf_batch_engine *e)
     return HF_OK;
 }
 
-/* Does the batch now have this engine? Out of memory, or an unsuitable base design, leave it without. */
+/* Make the engine of this solver. Returns false, and leaves the batch without an engine, when there is no memory or the
+ * base design is unsuitable. */
 static bool set_engine(hf_batch *batch, hf_solver solver, const double *base_N)
 {
     struct hf_batch_engine *e = batch->engine = calloc(1, sizeof *e);
@@ -102,10 +103,10 @@ hf_solver hf_batch_solver(const hf_evaluator *v, bool *has_lanes)
     if (may_share && hf_chord_applies(v)) return HF_SOLVER_CHORD;
     *has_lanes = false;
     if (each_by_newton(v)) return HF_SOLVER_NEWTON;
-    /* the lanes serve neither struts, nor every law, nor a truss: such nets are solved one by one */
+    /* the lanes serve neither struts, nor every law, nor a truss: designs of such nets are solved one by one */
     *has_lanes = !v->model->has_strut && !v->model->n_attachment;
-    for (int e = 0; e < v->model->n_cable; e++)
-        *has_lanes &= hf_law_is_served(v->model->law[e], HF_LANE_LAWS);
+    for (int e = 0; e < v->model->n_cable && *has_lanes; e++)
+        *has_lanes = hf_law_is_served(v->model->law[e], HF_LANE_LAWS);
     return HF_SOLVER_FIXED_POINT;
 }
 
@@ -118,7 +119,8 @@ hf_solver hf_batch_share(hf_batch *batch, const double *base_N)
     return each_by_newton(batch->evaluator) ? HF_SOLVER_NEWTON : HF_SOLVER_FIXED_POINT;
 }
 
-/* Allocate what a room (thread number) lacks; false without the memory. Only one thread at a time has the number. */
+/* Allocate the memory of a room unless it has been. Returns false when there is none. Only one thread at a time has the
+ * room's number, so nothing is locked. */
 static bool has_room(hf_batch *batch, int room)
 {
     struct hf_batch_engine *e = batch->engine;
@@ -129,7 +131,7 @@ static bool has_room(hf_batch *batch, int room)
     return true;
 }
 
-/* One thread's share of the designs that `next` hands out. */
+/* Evaluate designs that `next` hands out, in one thread, until none is left. */
 static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *context, const double *design_N,
                      hf_form_result *result)
 {
@@ -147,7 +149,7 @@ static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *contex
 
 /* ---- the parallel run ---- */
 
-/* The designs of one call, shared by all who work on it. */
+/* The designs of one call, shared by all its threads. */
 typedef struct {
     hf_batch *batch;
     hf_parallel_queue queue;
@@ -155,15 +157,15 @@ typedef struct {
     hf_form_result *result;
 } batch_job;
 
-/* One thread's part. A room that hf_batch_create left empty is furnished when it is needed; without the memory for it
- * the others do its part. */
+/* The work of one thread. When there is no memory for its room, it returns and the other threads do its work. */
 static void work_on_job(void *context, int room)
 {
     batch_job *j = context;
     if (hf_parallel_is_empty(&j->queue) || !has_room(j->batch, room)) return;
     double start_s = hf_clock_thread_cpu_s();
     work_off(j->batch, room, hf_parallel_take, &j->queue, j->design_N, j->result);
-    hf_parallel_add(&j->batch->cpu_s, hf_clock_thread_cpu_s() - start_s); /* without the wait for the other threads */
+    hf_parallel_add(&j->batch->cpu_s,
+                    hf_clock_thread_cpu_s() - start_s); /* the wait for other threads is not counted */
 }
 
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result)
@@ -175,7 +177,7 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
 /* ---- the next generation ---- */
 
 typedef struct {
-    batch_job job; /* first, so that it has the address of the whole */
+    batch_job job; /* first, so that its address is that of the struct: work_on_job gets it */
     hf_optimiser *optimiser;
 } generation_job;
 

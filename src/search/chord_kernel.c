@@ -1,5 +1,5 @@
-/* The loops of chord that do all the work, over HF_LANES designs side by side. Multiplications and additions are
- * never fused and every lane keeps its own order of operations, so all instruction sets give the same bits. */
+/* The inner loops of chord, over HF_LANES designs side by side. Multiplications and additions are never fused, and the
+ * order of the operations in a lane is always the same, so all instruction sets give the same bits. */
 #include "search/chord_kernel.h"
 
 typedef double lanes __attribute__((vector_size(HF_LANES * sizeof(double))));
@@ -26,7 +26,7 @@ static inline __attribute__((always_inline)) void forces(const hf_chord *chord, 
             double load = m->load_N ? m->load_N[c * m->n_node + i] : 0;
             force[3 * i + c] = zero + load;
         }
-    /* the rows behind: a lane that failed may have left NaNs there */
+    /* the rows after the last: a lane that failed may have left NaNs there */
     for (int i = chord->n_dof; i < chord->n_dof + chord->width + 8; i++)
         force[i] = zero;
     for (int i = 0; with_truss && i < m->n_attachment; i++)
@@ -76,7 +76,7 @@ void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, 
 
 /* ---- the truss ---- */
 
-/* F f - r, six rows at a time, which share the loads of f. */
+/* Compute F f - r for HF_CHORD_ROWS rows at a time, which share the loads of f. */
 static void find_gap(const hf_chord *chord, const lanes *pull, const lanes *r, lanes *gap)
 {
     const double *f = chord->flexibility;
@@ -150,9 +150,9 @@ void HF_KERNEL(hf_chord_move)(const hf_chord *chord, const hf_chord_lanes *l)
 /* ---- the matrix ---- */
 
 /* Both triangular solves take four rows at a time, which share the loads of what is already solved. A packed row (or
- * column) holds `width` entries, zeros where the band is shorter; `width` zero rows stand before and behind the
- * right-hand side, and up to three rows behind the last are worked on in vain, so no edge needs code of its own. What
- * lies outside the skyline of a block of four is zero and left out. */
+ * column) holds `width` entries, zeros where the band is shorter. `width` zero rows stand before and after the
+ * right-hand side, and up to three rows after the last are computed without being used, so no edge needs code of its
+ * own. Entries outside the skyline of a block of four are zero and are left out. */
 
 /* Row j + p holds the columns j + p - w .. j + p - 1; all four share j + 3 - w .. j - 1. */
 static void forward(const hf_chord *chord, lanes *f)

@@ -1,4 +1,4 @@
-/* chord_kernel - the loops of chord, compiled once per instruction set; chord picks at run time. */
+/* chord_kernel - the inner loops of chord, compiled once for each instruction set; chord.c chooses one at run time. */
 #ifndef HIFDM_CHORD_KERNEL_H
 #define HIFDM_CHORD_KERNEL_H
 
@@ -7,14 +7,14 @@
 
 typedef struct hf_chord_kernels hf_chord_kernels;
 
-#define HF_CHORD_ROWS 6 /* of the flexibility that are worked on at a time */
-#define HF_CHORD_MODES_MAX 48
+#define HF_CHORD_ROWS 6       /* rows of the flexibility that are worked on at a time */
+#define HF_CHORD_MODES_MAX 48 /* the largest n_mode */
 
 /* Laws that the kernels serve: the target is the tension or the force density, with no unknown but the positions. */
 #define HF_CHORD_LAWS (HF_LAW_ITERATES | HF_LAW_IS_CONVEX | HF_LAW_GIVES_TENSION | HF_LAW_MAY_PUSH)
 
-/* What all threads share; constant after hf_chord_create. The factor is packed in the order in which
- * hf_chord_solve reads it. */
+/* What all threads share; constant after hf_chord_create. The factor is packed in the order in which the kernel `solve`
+ * reads it. */
 typedef struct hf_chord {
     const hf_evaluator *evaluator;
     const hf_chord_kernels *kernels;
@@ -46,7 +46,7 @@ typedef struct {
     void *block;
 } hf_chord_lanes;
 
-/* Of one instruction set; what they do stands below. */
+/* The kernels of one instruction set; the comment below says what each does. */
 struct hf_chord_kernels {
     void (*forces)(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES]);
     void (*solve)(const hf_chord *chord, const hf_chord_lanes *l);
@@ -67,10 +67,13 @@ struct hf_chord_kernels {
     void hf_chord_solve_##isa(const hf_chord *chord, const hf_chord_lanes *l);                                         \
     void hf_chord_step_##isa(const hf_chord *chord, const hf_chord_lanes *l);
 
-/* forces: nodal forces of every lane into force_N, squares of the largest over the reference tension per lane; pull_N.
- * couple: gap F f - r of the truss, squares of the largest (m^2) per lane, and what r has to move for it into move_m.
- * move: displacement_m and the supports in x_m by that, and what it changes in force_N.
- * solve: force_N -> Newton step, in place. step: x_m += that. */
+/* forces: writes the nodal forces of every lane into force_N and the pull on the truss into pull_N; residual_squared is
+ *         per lane the square of the largest nodal force over the reference tension.
+ * couple: gap_squared is per lane the square (m^2) of the largest gap F f - r of the truss; writes into move_m the
+ *         change of r that closes the gap.
+ * move:   adds move_m to displacement_m and to the supports in x_m, and its effect to force_N.
+ * solve:  turns force_N into the Newton step, in place.
+ * step:   adds that step to x_m. */
 HF_CHORD_KERNELS(portable)
 HF_CHORD_KERNELS(avx2)
 HF_CHORD_KERNELS(avx512)

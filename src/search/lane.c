@@ -13,20 +13,20 @@ static const hf_lane_kernels *const kernels_of_isa[HF_LANE_N_ISA] = {&hf_lane_ke
 #define CPU_HAS(feature) (__builtin_cpu_supports(feature) != 0)
 #else
 static const hf_lane_kernels *const kernels_of_isa[HF_LANE_N_ISA] = {&hf_lane_kernels_portable};
-#define CPU_HAS(feature) 0
+#define CPU_HAS(feature) false
 #endif
 
-int hf_lane_has_isa(hf_lane_isa isa)
+bool hf_lane_has_isa(hf_lane_isa isa)
 {
     switch (isa) {
     case HF_LANE_PORTABLE:
-        return 1;
+        return true;
     case HF_LANE_AVX2:
         return CPU_HAS("avx2");
     case HF_LANE_AVX512:
         return CPU_HAS("avx512f");
     }
-    return 0;
+    return false;
 }
 
 hf_lane_isa hf_lane_best_isa(void)
@@ -63,7 +63,8 @@ static void lay_out(hf_arena *a, hf_lane_plan *p)
     p->inverse_length = hf_arena_take(a, n_cable, sizeof(double));
 }
 
-/* Counted, then filled in from incidence_start[row] on, which ends up where the next row starts. */
+/* The incidences are counted first. Then incidence_start[row] is the place of the row's next incidence; when all are
+ * filled in, it is where the next row starts. */
 static void list_incidences(hf_lane_plan *p)
 {
     const hf_model *m = p->model;
@@ -93,7 +94,7 @@ static int is_between_free_nodes(const hf_lane_plan *p, int e, int *low, int *hi
     return *high < p->n_pad + m->n_free;
 }
 
-/* The factor has entries in each row from the first of D on, so that is where its storage starts. */
+/* The factor may have an entry in every column of a row from the first entry of D on: storage starts there. */
 static void find_skyline(hf_lane_plan *p)
 {
     int low, high;

@@ -1,24 +1,24 @@
 /* lane - the form-finding iteration for eight individuals of one net at a time, one in each SIMD lane.
  *
- * The eight share the net, its numbering and the laws; each has force densities, targets and support positions of its
- * own. Every array below ends in [HF_LANES]: place k belongs to individual k, and no operation mixes lanes. Rubbish,
- * NaN or an indefinite matrix in one lane leaves the bits of the others alone. Lanes without an individual get a copy
- * of another one.
+ * The eight share the net, its numbering and the laws; each has its own force densities, targets and support positions.
+ * Every array below ends in [HF_LANES]: place k belongs to individual k, and no operation mixes lanes. Meaningless
+ * numbers, NaN or an indefinite matrix in one lane do not change a bit in the others. A lane without an individual
+ * holds a copy of another one.
  *
  * One iteration:    hf_lane_solve(plan, w);                  force densities -> positions (Eqs. 2, 5)
  *                   hf_lane_measure(plan, w, &measures);     lengths, errors, the next force densities (Eqs. 4, 7, 8)
  *                   hf_lane_residual(plan, w, &measures);
- *                   ... hf_lane_get whatever has ended ...
+ *                   ... hf_lane_get each individual that has ended ...
  *                   hf_lane_update(w);
- *                   ... hf_lane_put what takes its place ...
+ *                   ... hf_lane_put the individuals that take their lanes ...
  *
- * The same bits on every instruction set: always eight lanes, one order of operations, nothing but IEEE + - * / and
- * square root. There are no fused multiply-adds; lane_kernel.c has the figures behind that.
+ * All instruction sets give the same bits: there are always eight lanes, one order of operations, and only IEEE + - * /
+ * and square root. Multiply-adds are never fused; lane_kernel.c gives the measured price of this.
  *
- * A lane row is a model row plus n_pad: dummies in front make the free rows fill blocks of HF_LANE_BLOCK. The matrix is
- * stored as square tiles of a block by a block: those of one block row lie one behind the other, from the first with
- * an entry (skyline) to the one on the diagonal; inside a tile, columns lie one behind the other: see hf_lane_place.
- * Arrays are aligned to 64 bytes. */
+ * A lane row is a model row plus n_pad: n_pad dummy rows in front make the free rows fill blocks of HF_LANE_BLOCK. The
+ * matrix is stored as square tiles of HF_LANE_BLOCK by HF_LANE_BLOCK entries. The tiles of one block row are
+ * contiguous, from the first that has an entry (skyline) to the one on the diagonal; inside a tile the columns are
+ * contiguous: see hf_lane_place. Arrays are aligned to 64 bytes. */
 #ifndef HIFDM_LANE_H
 #define HIFDM_LANE_H
 
@@ -26,6 +26,7 @@
 
 #include <hifdm/workspace.h>
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Laws that the kernels serve: Eqs. 5, 7 and 8 towards a given force density, tension or length. */
@@ -48,7 +49,7 @@ typedef struct {
     int other; /* lane row at its other end */
 } hf_lane_incidence;
 
-/* What all threads share beside the model. */
+/* What all threads share besides the model. */
 typedef struct {
     const hf_model *model; /* not owned: must outlive the plan */
     const hf_lane_kernels *kernels;
@@ -56,7 +57,7 @@ typedef struct {
     int n_block;                  /* of rows: n_pad + n_free = n_block * HF_LANE_BLOCK */
     size_t n_tile;                /* stored, all together */
     int *first_column;            /* [n_block] lane column of the first entry in a block row */
-    size_t *tile_0;               /* [n_block] number that the tile in column 0 of a block row would have */
+    size_t *tile_0;               /* [n_block] number that the tile of a block row in tile column 0 would have */
     unsigned char *has_entry;     /* [n_tile] by number of the tile: has D an entry there? */
     int *incidence_start;         /* [n_free + 1] by model row */
     hf_lane_incidence *incidence; /* [incidence_start[n_free]], of each node by rising cable */
@@ -75,7 +76,7 @@ typedef struct {
     X(unsigned char, law, m->n_cable, "", "[n_cable] hf_law in force, for all lanes: set by the caller")               \
     X(int, bad_row, HF_LANES, "", "[8] model row of the first pivot that was not positive, or -1")
 
-/* All mutable scratch of one thread. Contents are meaningless but for what the caller has put in. */
+/* The scratch of one thread. Its contents mean nothing except what the caller has put in. */
 typedef struct {
 #define HF_LANE_MEMBER(type, name, count, unit, meaning) type *name;
     HF_LANE_FIELDS(HF_LANE_MEMBER)
@@ -83,7 +84,8 @@ typedef struct {
     void *block;
 } hf_lane_workspace;
 
-/* By lane; meanings as in hf_form_result. Without meaning in a lane that is not finite or has a bad_row. */
+/* The measures of each lane, with the meanings of hf_form_result. They mean nothing in a lane that is not finite or has
+ * a bad_row. */
 typedef struct {
     _Alignas(HF_ALIGNMENT) double tension_error[HF_LANES]; /* max |T/T*-1| over cables of law tension, 0 without one */
     double length_error[HF_LANES];                         /* max |l/L*-1| over taut cables of law length, or 0 */
@@ -98,30 +100,31 @@ typedef struct {
 
 /* ---- set-up ---- */
 
-int hf_lane_has_isa(hf_lane_isa isa); /* can this machine run it? */
-hf_lane_isa hf_lane_best_isa(void);   /* the fastest that it can */
+bool hf_lane_has_isa(hf_lane_isa isa); /* can this machine run it? */
+hf_lane_isa hf_lane_best_isa(void);    /* the fastest that this machine can run */
 const char *hf_lane_isa_name(hf_lane_isa isa);
 
-/* For a model without struts, with the kernels of an instruction set of this machine. HF_OK or HF_NO_MEMORY; free in
- * any case. */
+/* Make the plan of a model without struts, with the kernels of an instruction set that this machine has. Returns HF_OK
+ * or HF_NO_MEMORY; free in either case. */
 hf_status hf_lane_plan_create(const hf_model *model, hf_lane_isa isa, hf_lane_plan *plan);
 void hf_lane_plan_free(hf_lane_plan *plan);
 
-/* Lay the fields out in an arena of the caller's; or in a block of their own: HF_OK or HF_NO_MEMORY, free in any case.
- * One workspace serves all plans of the same model. */
+/* hf_lane_workspace_take lays the fields out in the caller's arena. hf_lane_workspace_create allocates a block for
+ * them: HF_OK or HF_NO_MEMORY; free in either case. One workspace serves all plans of the same model. */
 void hf_lane_workspace_take(hf_arena *arena, const hf_lane_plan *plan, hf_lane_workspace *workspace);
 size_t hf_lane_workspace_bytes(const hf_lane_plan *plan);
 hf_status hf_lane_workspace_create(const hf_lane_plan *plan, hf_lane_workspace *workspace);
 void hf_lane_workspace_free(hf_lane_workspace *workspace);
 
-/* One individual into a lane: force densities, targets and support positions. The laws are left to the caller. */
+/* Copy the force densities, targets and support positions of one individual into a lane. The caller sets the laws. */
 void hf_lane_put(const hf_lane_plan *plan, const hf_workspace *from, int lane, hf_lane_workspace *workspace);
 
-/* One shape out of a lane, after hf_lane_measure: positions, force densities, lengths and tensions. */
+/* Copy the shape of a lane into a workspace, after hf_lane_measure: positions, force densities, lengths and
+ * tensions. */
 void hf_lane_get(const hf_lane_plan *plan, const hf_lane_workspace *workspace, int lane, hf_workspace *to);
 
-/* Index into `matrix` of lane 0 of entry (i, j), lane rows both, first_column <= j <= i. A diagonal place of the factor
- * holds the reciprocal of the diagonal entry. */
+/* Index into `matrix` of lane 0 of entry (i, j); i and j are lane rows, first_column <= j <= i. A diagonal place of the
+ * factor holds the reciprocal of the diagonal entry. */
 static inline size_t hf_lane_place(const hf_lane_plan *plan, int i, int j)
 {
     size_t column = plan->tile_0[i / HF_LANE_BLOCK] * HF_LANE_BLOCK + (size_t)j;
@@ -140,33 +143,35 @@ struct hf_lane_kernels {
     void (*psi)(const hf_lane_plan *plan, const hf_lane_workspace *workspace, hf_lane_measures *measures);
 };
 
-/* By instruction set; other machines than x86-64 have the first only. */
+/* The kernels of each instruction set; machines other than x86-64 have only the first. */
 extern const hf_lane_kernels hf_lane_kernels_portable, hf_lane_kernels_avx2, hf_lane_kernels_avx512;
 
-/* D from the force densities into the tiles of `matrix` that have entries; right-hand sides (loads, and what the
- * supports pull) into the free rows of position_m. */
+/* Write D, from the force densities, into the tiles of `matrix` that have entries, and the right-hand sides (loads, and
+ * the pull of the supports) into the free rows of position_m. */
 void hf_lane_assemble(const hf_lane_plan *plan, hf_lane_workspace *workspace);
 
-/* D -> its Cholesky factor, in place. A pivot that is not positive sets bad_row; its row counts as if it were not
- * there, so that the lane's numbers stay tame. */
+/* Replace D by its Cholesky factor. A pivot that is not positive sets bad_row; its row and column are taken out, so
+ * that the numbers of the lane stay bounded. */
 void hf_lane_factor(const hf_lane_plan *plan, hf_lane_workspace *workspace);
 
-/* Right-hand sides in the free rows of position_m -> solutions. */
+/* Replace the right-hand sides in the free rows of position_m by the solutions. */
 void hf_lane_substitute(const hf_lane_plan *plan, hf_lane_workspace *workspace);
 
-/* All three, the forward substitution while the factor is in the cache: the same bits in less time. */
+/* Assemble, factor and substitute. The forward substitution is done while the factor is in the cache: the bits are
+ * those of the three calls, in less time. */
 void hf_lane_solve(const hf_lane_plan *plan, hf_lane_workspace *workspace);
 
-/* Lengths, errors against the laws, and the next force densities. Sets all measures but the two below. */
+/* Compute lengths, errors against the laws and the next force densities. Sets all measures but residual_N and psi_m. */
 void hf_lane_measure(const hf_lane_plan *plan, hf_lane_workspace *workspace, hf_lane_measures *measures);
 
-/* Largest force out of balance at a free node with every cable at the tension of its law; after hf_lane_measure. */
+/* Set residual_N: the largest force out of balance at a free node with every cable at the tension of its law. Call it
+ * after hf_lane_measure. */
 void hf_lane_residual(const hf_lane_plan *plan, const hf_lane_workspace *workspace, hf_lane_measures *measures);
 
-/* Eq. 10. */
+/* Set psi_m, the root mean square of Eq. 10. */
 void hf_lane_psi(const hf_lane_plan *plan, const hf_lane_workspace *workspace, hf_lane_measures *measures);
 
-/* The next force densities become the force densities. */
+/* Make the next force densities the present ones. */
 void hf_lane_update(hf_lane_workspace *workspace);
 
 #endif

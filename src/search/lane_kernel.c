@@ -15,8 +15,8 @@
  *     AVX2           5.4 us                                                     5.9 us
  *     any x86-64     205 us by C's fma(), 13000 us where that is software       12 us
  *
- * A whole iteration takes 8 % longer without, and is fast, and the same bits, on every processor. The price is that low
- * because AMD's multiply and add in separate units. Intel's use one unit for both: expect the factor to take up to
+ * Without fusing, a whole iteration takes 8 % longer, and it has the same bits on every processor. The price is that
+ * low because AMD's multiply and add in separate units. Intel's use one unit for both: expect the factor to take up to
  * twice as long as it would fused (not measured). */
 #include "search/lane.h"
 
@@ -41,7 +41,7 @@ typedef double vec __attribute__((vector_size(WIDTH * sizeof(double)), may_alias
 typedef long long mask __attribute__((vector_size(WIDTH * sizeof(double))));
 
 #define INLINE static inline __attribute__((always_inline))
-/* a loop of few and constantly many turns: unrolled, so that the arrays in it live in registers */
+/* a loop with a small constant count: it is unrolled, so that the arrays in it stay in registers */
 #define foreach(i, count) _Pragma("GCC unroll 16") for (int i = 0; i < (count); i++)
 
 INLINE vec load(const double *p)
@@ -114,7 +114,7 @@ INLINE int all_positive(vec a)
 
 enum { BLOCK = HF_LANE_BLOCK, COLUMN = BLOCK * HF_LANES, TILE = BLOCK * COLUMN, POINT = 3 * HF_LANES };
 
-/* GROUP columns of n_row rows, with all columns before them done:
+/* Eliminate in GROUP columns of n_row rows, when all columns before them are finished:
  *     t(r,c) = (t(r,c) - sum over k of t(r,k) l(c,k)) / l(c,c), k rising
  * `row` points to column k = first of the rows, whose columns are `stride` apart; `pivot_row` to the same of the rows
  * of l; n_before columns further on lie the t(r,c) and the l(c,c). With is_empty the t(r,c) are taken as 0. */
@@ -152,7 +152,8 @@ INLINE void eliminate(int n_row, double *row, int stride, const double *pivot_ro
     }
 }
 
-/* The lower half of a tile on the diagonal, less what the n_before columns before it take. `row`: as above. */
+/* Subtract the products of the n_before columns before it from the lower half of a tile on the diagonal. `row`: as
+ * above. */
 INLINE void reduce_diagonal(double *row, int n_before)
 {
     vec t[BLOCK][BLOCK];
@@ -173,7 +174,7 @@ INLINE void reduce_diagonal(double *row, int n_before)
             if (r >= c) store(tile + c * COLUMN + r * HF_LANES, t[r][c]);
 }
 
-/* An infinite pivot has the reciprocal 0, which takes its row and column out: nothing can grow from there. */
+/* The reciprocal of an infinite pivot is 0, which takes its row and column out, so that no number grows from there. */
 static __attribute__((noinline, cold)) vec mend_pivot(vec pivot, int i_row, int *bad_row)
 {
     for (int k = 0; k < WIDTH; k++) {
@@ -184,7 +185,8 @@ static __attribute__((noinline, cold)) vec mend_pivot(vec pivot, int i_row, int 
     return pivot;
 }
 
-/* Column c of a reduced tile: its pivot, the rest of the column, and what it takes from the columns after it. */
+/* Finish column c of a reduced tile: its pivot and the rest of the column; then subtract its products from the columns
+ * after it. */
 INLINE void finish_column(int c, double *tile, int i_row, int *bad_row)
 {
     double *column = tile + c * COLUMN;
@@ -215,13 +217,13 @@ static int has_entry(const hf_lane_plan *plan, int i_block, int j_block)
     return plan->has_entry[plan->tile_0[i_block] + (size_t)j_block];
 }
 
-/* Columns *c and up of the diagonal tile of a block row, `count` of them at most; *c counts along. */
+/* Finish at most `count` columns of the diagonal tile of a block row, from column *c on; *c becomes the next column. */
 static void finish_columns(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block, int p, int count, int *c)
 {
     double *tile = tile_at(plan, w, i_block, i_block) + p;
     for (; count > 0 && *c < BLOCK; count--, ++*c) {
         int i_row = i_block * BLOCK + *c - plan->n_pad;
-        switch (*c) { /* for constants to unroll with */
+        switch (*c) { /* constants, so that the loops unroll */
         case 0:
             finish_column(0, tile, i_row, w->bad_row + p);
             break;
@@ -237,9 +239,9 @@ static void finish_columns(const hf_lane_plan *plan, hf_lane_workspace *w, int i
     }
 }
 
-/* Finishes a block row up to its diagonal tile, which is reduced only. A pivot's root and division take as long as half
- * a tile, and the next pivot waits for them: so the pivots of the block row before this one are found here, one before
- * each tile that does not need them. */
+/* Finish a block row up to its diagonal tile, which is only reduced. The root and the division of a pivot take as long
+ * as half a tile, and the next pivot depends on them. Therefore the pivots of the block row before this one are found
+ * here, one before each tile that does not need them. */
 static void factor_block_row(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block, int p)
 {
     int first = plan->first_column[i_block], c = i_block ? 0 : BLOCK;
@@ -283,7 +285,8 @@ static void substitute_forward(const hf_lane_plan *plan, hf_lane_workspace *w, i
         eliminate(3, w->position_m + first * POINT + p, POINT, row + g * HF_LANES, n_before + g, 0);
 }
 
-/* The block row's unknowns, last first; then out with them from all rows before, nearest first. */
+/* Find the unknowns of the block row, the last one first; then subtract their part from all rows before it, the nearest
+ * row first. */
 static void substitute_back(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block, int p)
 {
     const double *column = tile_at(plan, w, i_block, i_block) + p;
@@ -331,7 +334,7 @@ static void substitute(const hf_lane_plan *plan, hf_lane_workspace *w)
 
 /* ---- assembly ---- */
 
-/* By node, so that diagonal and right-hand sides add up in registers. */
+/* The loop goes over the nodes, so that diagonal and right-hand sides are summed in registers. */
 static void assemble_row(const hf_lane_plan *plan, hf_lane_workspace *w, int i_row, int p)
 {
     const hf_model *m = plan->model;
@@ -363,8 +366,8 @@ static void assemble_dummy_row(const hf_lane_plan *plan, hf_lane_workspace *w, i
         store(w->position_m + i * POINT + c * HF_LANES + p, splat(0));
 }
 
-/* The tiles without entries need no zeros: `eliminate` does not read them. Unrolled, because gcc 12 makes memset of a
- * plain loop, and rep stos of that, which takes three times as long. */
+/* Tiles without entries need no zeros, because `eliminate` does not read them. The loop is unrolled, because gcc 12
+ * makes a memset of a plain loop and rep stos of the memset, which takes three times as long. */
 static void clear_block_row(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block)
 {
     for (int j_block = plan->first_column[i_block] / BLOCK; j_block <= i_block; j_block++) {
@@ -460,7 +463,7 @@ static void measure(const hf_lane_plan *plan, hf_lane_workspace *w, hf_lane_meas
         measure_part(plan, w, out, p);
 }
 
-/* By node, so that forces need no array. */
+/* The loop goes over the nodes, so that forces need no array. */
 static void residual_part(const hf_lane_plan *plan, const hf_lane_workspace *w, hf_lane_measures *out, int p)
 {
     const hf_model *m = plan->model;

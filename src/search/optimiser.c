@@ -1,3 +1,4 @@
+/* Contents: ask and tell - the methods of a case */
 #include <hifdm/optimiser.h>
 
 #include <assert.h>

@@ -44,7 +44,7 @@ void hf_parallel_add(double *sum, double value)
     *sum += value;
 }
 
-/* In a thread of hf_parallel_for. Each of the tasks has a room of its own, whichever thread takes it. */
+/* Called in a thread of hf_parallel_for. Each task has its own room, whichever thread takes it. */
 static void run_inside(int n_thread, void (*work)(void *context, int room), void *context)
 {
     for (int room = 1; room < n_thread; room++) {
@@ -88,7 +88,7 @@ void hf_parallel_run_after(int n_thread, void (*first)(void *context), void (*wo
     sem_destroy(&is_ready);
 }
 
-/* later: NULL when no thread serves it. */
+/* later is NULL when no thread serves it. */
 static void work_on_items(hf_parallel_queue *items, hf_later_list *later, void (*work)(void *context, int i),
                           void *context)
 {

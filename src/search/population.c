@@ -47,8 +47,8 @@ static bool has_links(const hf_model *model)
     return model->n_leader < model->n_gene && model->gene_leader;
 }
 
-/* The bounds of a class are those of the step that all its genes can take. Where there is none each gene keeps its own,
- * and hf_population_link clamps to them. */
+/* The bounds of a class of linked genes are those of the steps that all its genes can take. Where there is no such
+ * step, each gene keeps its own bounds, and hf_population_link clamps to them. */
 static void link_bounds(const hf_model *model, hf_population *p)
 {
     const int *leader_of = model->gene_leader;

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* One run, and where its lanes are. */
+/* One call of hf_swarm_run, with the state of its lanes. */
 typedef struct {
     const hf_evaluator *v;
     const hf_lane_plan *plan;
@@ -64,7 +64,7 @@ static hf_stop_reason stop_reason(swarm *s, const hf_lane_measures *now, int lan
     return s->iterations[lane] < form->max_iterations ? HF_STOPPED_NONE : HF_STOPPED_MAX_ITERATIONS;
 }
 
-/* One more shape in this lane: store its result when it is the last. */
+/* Count the iteration of this lane, and store the result when it was the last. */
 static bool settle(void *solver, int lane, int i_design)
 {
     swarm *s = solver;

@@ -1,6 +1,6 @@
-/* swarm - the paper's iteration for many designs, eight at a time in the SIMD lanes of `lane`: what hf_evaluate does
- * with the solver fixed_point, some fifteen times faster. A lane that has finished takes the next design. Lanes never
- * touch each other, so a result does not depend on which designs share a pass, or on the thread. */
+/* swarm - the paper's iteration for many designs, eight at a time in the SIMD lanes of `lane`. It does what hf_evaluate
+ * does with the solver fixed_point, some fifteen times faster. A lane that has finished takes the next design. No
+ * operation mixes lanes, so a result depends neither on the designs in the other lanes nor on the thread. */
 #ifndef HIFDM_SWARM_H
 #define HIFDM_SWARM_H
 
@@ -8,8 +8,8 @@
 #include "search/lane_schedule.h"
 #include <hifdm/evaluate.h>
 
-/* Evaluate the designs whose indices `next(context)` hands out, until it returns -1. design_N [][n_gene], result []. A
- * refused design has its status, but no culprit. */
+/* Evaluate the designs whose indices `next(context)` returns, until it returns -1: from design_N [][n_gene] into
+ * result []. The result of a design without a shape has its status, but does not name a cable or node. */
 void hf_swarm_run(const hf_evaluator *evaluator, const hf_lane_plan *plan, hf_lane_workspace *lanes,
                   hf_workspace *workspace, hf_lane_next *next, void *context, const double *design_N,
                   hf_form_result *result);
