@@ -239,7 +239,7 @@ static hf_status check_points(hf_study *s, hf_messages *messages)
         hf_study_overrides o;
         hf_messages found = {0};
         hf_case c;
-        hf_study_point(s, i, &o);
+        hf_study_point_overrides(s, i, &o);
         hf_status status = hf_config_load(s->base, o.set, o.n_set, &c, &found);
         if (i == 0 && status == HF_OK) {
             s->has_optimize = c.has_optimize;
@@ -283,7 +283,7 @@ void hf_study_free(hf_study *s)
 
 /* ---- what a point sets ---- */
 
-void hf_study_point(const hf_study *s, int i, hf_study_overrides *o)
+void hf_study_point_overrides(const hf_study *s, int i, hf_study_overrides *o)
 {
     const int *value = s->value + (size_t)i * (size_t)s->n_axis;
     o->n_set = 0;

@@ -66,7 +66,7 @@ void hf_study_free(hf_study *study);
 
 /* What point i sets. Unless optimize.seed is an axis, it is set too, from the seed of the base case and the point's id,
  * so that no two points share their random numbers. */
-void hf_study_point(const hf_study *study, int i, hf_study_overrides *overrides);
+void hf_study_point_overrides(const hf_study *study, int i, hf_study_overrides *overrides);
 
 /* "key=value, key=value" for people, cut off with "..." where it is too long. */
 void hf_study_point_text(const hf_study *study, int i, char *text, size_t size);

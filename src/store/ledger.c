@@ -1,4 +1,5 @@
-/* Contents: columns - names - writing - reading files - news of other processes - reading locks - the whole */
+/* Contents: columns - names - opening and writing - reading files - news of other processes - reading locks - the
+ * whole */
 #include "store/ledger.h"
 
 #include "base/clock.h"
@@ -90,7 +91,7 @@ static struct flock lock_of(const char *id, short type)
     return (struct flock){.l_type = type, .l_whence = SEEK_SET, .l_start = (off_t)strtoull(id, NULL, 16), .l_len = 1};
 }
 
-/* ---- writing ---- */
+/* ---- opening and writing ---- */
 
 /* How far each file has been read, and what was finished since. */
 struct hf_ledger_news {

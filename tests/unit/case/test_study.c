@@ -42,7 +42,7 @@ static const char *value_at(const hf_study *s, int i, const char *key)
     hf_study_overrides o;
     static char kept[4][128];
     static int n;
-    hf_study_point(s, i, &o);
+    hf_study_point_overrides(s, i, &o);
     for (int k = 0; k < o.n_set; k++)
         if (!strncmp(o.set[k], key, strlen(key)) && o.set[k][strlen(key)] == '=') {
             n = (n + 1) % 4;
@@ -267,7 +267,7 @@ START_TEST(values_of_all_types_are_swept)
     hf_study_overrides o;
     hf_case c;
     hf_messages m = {0};
-    hf_study_point(&s, 0, &o);
+    hf_study_point_overrides(&s, 0, &o);
     ck_assert_msg(hf_config_load(s.base, o.set, o.n_set, &c, &m) == HF_OK, "%s", m.text);
     ck_assert_str_eq(c.title, "a \"b\" \\ c: # d");
     ck_assert_int_eq(c.parabolic_cylinder.cells_per_module[0], 1);

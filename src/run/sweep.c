@@ -1,0 +1,209 @@
+/* Contents: which points - one point - all points */
+#include "run/sweep.h"
+
+#include "base/clock.h"
+#include "base/later.h"
+#include "base/text.h"
+#include "search/parallel.h"
+#include "store/ledger.h"
+#include <hifdm/run.h>
+#include <hifdm/store.h>
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- which points ---- */
+
+typedef struct {
+    const hf_sweep_request *request;
+    hf_ledger ledger;
+    hf_point_state *state; /* [n_point] before this sweep */
+    int *todo;             /* [count.n_todo] points to run */
+    double start_s;
+    pthread_mutex_t lock; /* protects count, messages and the observer */
+    hf_sweep_count count;
+    hf_messages *messages;
+    _Atomic hf_status fatal; /* not HF_OK: rows cannot be written, so no point may begin; read without the lock */
+} sweep;
+
+static hf_status choose_points(sweep *w, const hf_points *points)
+{
+    unsigned wanted = w->request->retry ? w->request->retry : 1u << HF_POINT_MISSING;
+    w->todo = malloc((size_t)points->n_point * sizeof *w->todo);
+    w->state = malloc((size_t)points->n_point * sizeof *w->state);
+    if (!w->todo || !w->state)
+        return hf_error(w->messages, HF_NO_MEMORY, "out of memory for %d points", points->n_point);
+    for (int i = 0; i < points->n_point; i++)
+        w->state[i] = points->point[i].state;
+    if (points->count[HF_POINT_OUTDATED] && !(wanted & 1u << HF_POINT_OUTDATED))
+        return hf_error(w->messages, HF_EXISTS,
+                        "%s: the base case has changed since %d points were run; --retry outdated,missing runs them "
+                        "anew, --dir chooses another folder",
+                        w->ledger.folder, points->count[HF_POINT_OUTDATED]);
+    for (int i = w->request->task; i < points->n_point; i += w->request->tasks)
+        if (wanted & 1u << points->point[i].state)
+            w->todo[w->count.n_todo++] = i;
+        else
+            w->count.n_failed_before += points->point[i].state == HF_POINT_FAILED;
+    return HF_OK;
+}
+
+/* ---- one point ---- */
+
+/* Writes the first error message as one line, without "error: " in front. */
+static void first_error(const hf_messages *said, hf_status status, char reason[1024])
+{
+    const char *from = said->text;
+    while (from && strncmp(from, "error: ", 7)) {
+        from = strchr(from, '\n');
+        if (from) from++;
+    }
+    if (from && *from)
+        snprintf(reason, 1024, "%.*s", (int)strcspn(from + 7, "\n"), from + 7);
+    else
+        snprintf(reason, 1024, "%s", hf_status_text(status));
+    hf_text_trim_utf8(reason);
+}
+
+static void finish_point(sweep *w, int i, hf_status status, const hf_messages *said, const hf_summary *summary)
+{
+    char reason[1024] = "";
+    hf_messages trouble = {0};
+    const hf_sweep_request *r = w->request;
+    if (status != HF_OK) first_error(said, status, reason);
+    hf_status written = hf_ledger_write(&w->ledger, w->request->study, i, status, reason, summary, &trouble);
+    pthread_mutex_lock(&w->lock);
+    w->count.n_done += status == HF_OK;
+    w->count.n_failed += status != HF_OK;
+    if (written != HF_OK && w->fatal == HF_OK) {
+        w->fatal = written;
+        const char *words = trouble.text ? trouble.text + strlen("error: ") : "cannot write";
+        hf_error(w->messages, written, "%.*s", (int)strcspn(words, "\n"), words);
+    }
+    w->count.wall_s = hf_clock_s() - w->start_s;
+    if (r->observer) r->observer(r->observer_context, &w->count);
+    pthread_mutex_unlock(&w->lock);
+    hf_messages_free(&trouble);
+}
+
+static bool must_stop(const sweep *w)
+{
+    return *w->request->stop_requested || w->fatal != HF_OK;
+}
+
+/* A point whose computation has ended and whose result file is being written to the disk. */
+typedef struct {
+    sweep *w;
+    int i;
+    hf_status status;
+    hf_store *store; /* NULL: there is no file, or it already has its final name */
+    hf_messages said;
+    hf_summary summary;
+} finished_point;
+
+static void settle_point(void *context)
+{
+    finished_point *p = context;
+    hf_status settled = hf_store_settle(p->store, &p->said);
+    if (settled != HF_OK) p->status = settled;
+    if (p->status != HF_INTERRUPTED) finish_point(p->w, p->i, p->status, &p->said, &p->summary);
+    hf_ledger_release(&p->w->ledger, p->w->request->study->id[p->i]);
+    hf_messages_free(&p->said);
+    free(p);
+}
+
+static void out_of_memory(sweep *w, const char *id)
+{
+    hf_ledger_release(&w->ledger, id);
+    pthread_mutex_lock(&w->lock);
+    w->fatal = hf_error(w->messages, HF_NO_MEMORY, "out of memory for a point");
+    pthread_mutex_unlock(&w->lock);
+}
+
+static void run_point(void *context, int k)
+{
+    sweep *w = context;
+    int i = w->todo[k];
+    const char *id = w->request->study->id[i];
+    if (must_stop(w)) return;
+    bool is_ours = hf_ledger_claim(&w->ledger, id);
+    if (!is_ours ||
+        hf_ledger_is_finished(&w->ledger, w->request->study, i)) { /* another sweep has finished it meanwhile */
+        if (is_ours) hf_ledger_release(&w->ledger, id);
+        pthread_mutex_lock(&w->lock);
+        w->count.n_elsewhere++;
+        pthread_mutex_unlock(&w->lock);
+        return;
+    }
+    char file[HF_PATH_SIZE + 32], output[HF_OUTPUT_SIZE];
+    hf_study_overrides overrides;
+    finished_point *p = calloc(1, sizeof *p);
+    if (!p) {
+        out_of_memory(w, id);
+        return;
+    }
+    *p = (finished_point){.w = w, .i = i};
+    hf_study_point_overrides(w->request->study, i, &overrides);
+    bool is_empty = hf_ledger_file(w->ledger.folder, w->request->study, i, file) == HF_LEDGER_EMPTY_FILE;
+    hf_run_request request = {.case_path = w->request->study->base,
+                              .set = overrides.set,
+                              .n_set = overrides.n_set,
+                              .output = file,
+                              .of_sweep = 1,
+                              .no_file = !hf_study_has_files(w->request->study),
+                              .restart = w->state[i] == HF_POINT_FAILED || is_empty,
+                              .threads = w->request->threads,
+                              .argc = w->request->argc,
+                              .argv = w->request->argv,
+                              .stop_requested = w->request->stop_requested,
+                              .unsettled = &p->store};
+    p->status = hf_run_case(&request, &p->summary, output, &p->said);
+    if (p->store)
+        hf_later_do(settle_point, p);
+    else
+        settle_point(p);
+}
+
+/* ---- all points ---- */
+
+static hf_status run_points(sweep *w)
+{
+    const hf_sweep_count *n = &w->count;
+    w->start_s = hf_clock_s();
+    hf_parallel_for(w->request->threads, n->n_todo, run_point, w);
+    w->count.wall_s = hf_clock_s() - w->start_s;
+    w->count.has_run = true;
+    int left = n->n_todo - n->n_done - n->n_failed - n->n_elsewhere;
+    if (n->n_elsewhere) hf_warning(w->messages, "%d points are run by another process", n->n_elsewhere);
+    if (w->fatal != HF_OK) return w->fatal;
+    if (left)
+        return hf_error(w->messages, HF_INTERRUPTED, "told to stop: %d points are left; the same command goes on",
+                        left);
+    int n_failed = n->n_failed + n->n_failed_before;
+    if (!n_failed) return HF_OK;
+    return hf_error(w->messages, HF_POINTS_FAILED, "%d points failed%s; 'hifdm status' says why", n_failed,
+                    n->n_failed ? "" : " earlier and are not run again without --retry failed");
+}
+
+hf_status hf_sweep_run(const hf_sweep_request *request, hf_sweep_count *count, hf_messages *messages)
+{
+    hf_points points;
+    sweep w = {.request = request, .messages = messages};
+    pthread_mutex_init(&w.lock, NULL);
+    hf_status status = hf_ledger_open(request->folder, &w.ledger, messages);
+    if (status == HF_OK) status = hf_ledger_watch(&w.ledger, request->study, messages);
+    if (status == HF_OK) {
+        status = hf_ledger_read(request->folder, request->study, &points, messages);
+        if (status == HF_OK) status = choose_points(&w, &points);
+        hf_points_free(&points);
+    }
+    if (status == HF_OK) status = run_points(&w);
+    hf_ledger_close(&w.ledger);
+    pthread_mutex_destroy(&w.lock);
+    free(w.todo);
+    free(w.state);
+    *count = w.count;
+    return status;
+}
