@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-/* A case file, with every default filled in; those of sections that are not there, too. */
+/* A case file with every default filled in, also in sections that the file does not have. */
 typedef struct {
     char path[HF_PATH_SIZE]; /* of the case file */
     char *text;              /* its content */
@@ -26,29 +26,29 @@ typedef struct {
     char sha256[65]; /* of text and overrides */
     char title[256];
     bool has_import, has_optimize, has_surface; /* which sections are there */
-    bool has_sweep; /* axes of a sweep are read by study.h; they are cut out of `text`, which is one point's case */
+    bool has_sweep;                             /* its lines are cut out of `text`; study.h reads the axes */
 #define HF_CASE_GENERATOR(section, type, KEYS, help)                                                                   \
     bool has_##section;                                                                                                \
     type section;
     HF_GENERATORS(HF_CASE_GENERATOR)
 #undef HF_CASE_GENERATOR
-    double EA_N[2]; /* by hf_group, of cables to which the net gives none; 0 = not given */
+    double EA_N[2]; /* by hf_group, of cables without a value in the net; 0 = not given */
     char nodes_path[HF_PATH_SIZE], cables_path[HF_PATH_SIZE]; /* resolved against the folder of the case file */
     hf_form_settings form;
     hf_optimize_settings optimize;
-    hf_surface_settings surface; /* what is not given is that of a generated net */
+    hf_surface_settings surface; /* a generated net supplies what is not given */
 
-    bool has_truss, has_truss_import; /* sections; the import's files as those of the net */
+    bool has_truss, has_truss_import; /* which sections are there */
     hf_truss_settings truss;
     char truss_nodes_path[HF_PATH_SIZE], truss_members_path[HF_PATH_SIZE];
 } hf_case;
 
-/* Read and validate. `overrides`: n "path=value" strings that win over the file. All faults in one go as
- * file:line:col; HF_BAD_CASE then. HF_NO_MEMORY. Free with hf_case_free in any case. */
+/* Read and validate. `overrides`: n "path=value" strings that override the file. HF_BAD_CASE with a message
+ * file:line:col for every fault; HF_NO_MEMORY. Free with hf_case_free in any case. */
 hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
                          hf_messages *messages);
 
-/* The same of the text of a case file; `path` says where it was, for messages and for the files it names. */
+/* The same from the text of a case file. `path` is used in messages and to resolve the files that the case names. */
 hf_status hf_config_parse(const char *path, const char *text, const char *const *overrides, int n_override,
                           hf_case *settings, hf_messages *messages);
 
@@ -63,7 +63,8 @@ hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages 
 /* The truss of a case that has one, checked (hf_truss_check). Errors as hf_config_scene. Free the truss in any case. */
 hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages *messages);
 
-/* That truss with the scene's supports on it (hf_carrier_build): HF_MECHANISM, too. Free the carrier in any case. */
+/* The truss of the case as carrier of the scene's supports (hf_carrier_build). Errors as hf_config_truss, and
+ * HF_MECHANISM. Free the carrier in any case. */
 hf_status hf_config_carrier(const hf_case *settings, const hf_scene *scene, hf_carrier *carrier, hf_messages *messages);
 
 void hf_case_free(hf_case *settings);

@@ -52,9 +52,9 @@ const char *hf_coupling_stop_word(int stop); /* "unknown" for a foreign value */
  *
  * kind         of the stored value (REAL, INT, or an enumeration of the store's layout)
  * json         place in the JSON object of a stage; equal places are in the order of the list; 0 = not there
- * individual   place in a row that tells of one individual (data sets of /ga, columns of `evaluate`), likewise
+ * individual   place among the figures of one individual (data sets of /ga, columns of `evaluate`), likewise
  * key          in JSON; the attribute has the name of the member
- * description  of the data set, where there is one
+ * description  attribute of the data set, where there is one
  *
  * Attributes and columns of the ledger are in the order of the list. JSON has the figures of a coupling between places
  * 4 and 5. Under a status other than HF_OK and HF_NOT_CONVERGED the REAL ones are NaN. In more detail:
@@ -87,7 +87,7 @@ const char *hf_coupling_stop_word(int stop); /* "unknown" for a foreign value */
     X(int, n_loaded_chain, INT, 5, 0, "loaded_straight_chains", "",                                                    \
       "chains under lateral load: their tensions mean nothing")
 
-/* The same of the coupling of the net with its truss. */
+/* The same list for the coupling of the net with its truss. */
 #define HF_COUPLING_LIST(X)                                                                                            \
     X(hf_coupling_stop, stop_reason, COUPLING_STOP, 4, 0, "stop_reason", "", "how the coupling ended")                 \
     X(int, iterations, INT, 1, 0, "iterations", "", "form-findings of the loop; passes of the population solver")      \
@@ -134,23 +134,24 @@ enum {
     HF_COUPLING_N = 0 HF_COUPLING_LIST(HF_RESULT_COUNT),
     HF_RESULT_N_INDIVIDUAL = 0 HF_RESULT_LIST(HF_RESULT_COUNT_INDIVIDUAL)
 };
-enum { HF_RESULT_JSON_COUNTS = 5 }; /* the place from which on JSON has counts, behind the figures of a coupling */
+enum { HF_RESULT_JSON_COUNTS = 5 }; /* first place of the counts in JSON, after the figures of a coupling */
 
 extern const hf_result_field hf_result_field_of[HF_RESULT_N];     /* of hf_form_result */
 extern const hf_result_field hf_coupling_field_of[HF_COUPLING_N]; /* of hf_coupling_result */
 
-/* The fields that tell of one individual, in their order. */
+/* The fields with a place among the figures of one individual, in that order. */
 void hf_result_list_individual(const hf_result_field *field[HF_RESULT_N_INDIVIDUAL]);
 
-/* ---- The way there ---- */
+/* ---- History of the iterations ---- */
 
-/* What each iteration of the coupling looked like. Arrays of `capacity`, owned by the caller; more are not kept. */
+/* Figures of each iteration of the coupling: arrays of `capacity`, owned by the caller. Iterations beyond the capacity
+ * are not kept. */
 typedef struct {
     int capacity, n;
     double *step_m, *psi_m, *max_displacement_m;
 } hf_coupling_history;
 
-/* What each iteration of the form-finding looked like. Arrays of `capacity` >= max_iterations, owned by the caller. */
+/* Figures of each iteration of the form-finding: arrays of `capacity` >= max_iterations, owned by the caller. */
 typedef struct {
     int capacity, n;
     double *psi_m, *residual_N, *inner_tension_ratio, *boundary_tension_ratio, *length_error;

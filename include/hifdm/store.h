@@ -73,37 +73,42 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
                         hf_store_state *state, hf_messages *messages);
 
 /* Begin the file of a new run. The name `path` is checked now, not only at the end: HF_EXISTS when it is taken and
- * `restart` is 0, HF_IO when it is a folder or its folder is not there or not writable, when another process is writing
- * it, or when the file cannot be made; HF_NO_MEMORY. argv (argc may be 0) goes into the provenance; case and scene are
- * written at once, nothing is borrowed. *store is NULL after a failure. */
-hf_status hf_store_create(const char *path, int restart, const hf_case *settings, const hf_scene *scene,
+ * `restart` is false; HF_IO when it is a folder, when its folder does not exist or is not writable, when another
+ * process is writing it, or when the file cannot be made; HF_NO_MEMORY. argv (argc may be 0) goes into the provenance.
+ * Case and scene are written at once, nothing is borrowed. *store is NULL after a failure. */
+hf_status hf_store_create(const char *path, bool restart, const hf_case *settings, const hf_scene *scene,
                           const hf_truss *truss, int argc, char *const *argv, hf_store **store, hf_messages *messages);
 
-/* Go on with the unfinished file at `path`. HF_EXISTS when it is finished, HF_IO, HF_NO_MEMORY. *store is NULL after a
+/* Continue the unfinished file at `path`. HF_EXISTS when it is finished, HF_IO, HF_NO_MEMORY. *store is NULL after a
  * failure, and nothing has changed. */
 hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages);
 
-/* Add the generations of the journal to the unfinished file at `path` and no more; its summary then. As
- * hf_store_resume; HF_EXISTS also when this build does not breed the designs that the journal's results are of. */
+/* Add the generations of the journal to the unfinished file at `path`, without computing more, and return its summary.
+ * Errors as hf_store_resume; HF_EXISTS also when this build does not breed the designs to which the journal's results
+ * belong. */
 hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages);
-int hf_store_generations(const hf_store *store); /* how many it holds, with those of the journal */
 
-/* The calls that write return HF_OK, HF_IO or HF_NO_MEMORY with a message. After a failure the store is of no use any
- * more: later calls write nothing, return the same status, and only hf_store_complete says something once more. With a
- * store of NULL they keep nothing, and return HF_OK. */
+/* How many generations the store holds, those in the journal included. */
+int hf_store_generations(const hf_store *store);
 
-/* Shape of the workspace in the order of the scene, with the history unless that is NULL. Once per store. On a resumed
- * one the shape is compared: a warning when this machine or build finds other bits, HF_EXISTS for another shape. */
+/* The calls that write return HF_OK, HF_IO or HF_NO_MEMORY with a message. After a failure the store cannot be
+ * used any more: later calls write nothing and return the same status without a message, except hf_store_complete,
+ * which adds one. With store == NULL they write nothing and return HF_OK. */
+
+/* Write the shape in the workspace in the order of the scene, and the history unless it is NULL. Call it once per
+ * store. A resumed store compares the shape with the stored one instead: a warning when the tensions differ in their
+ * last bits, HF_EXISTS when they differ by more than 1e-5 of the largest. */
 hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspace *workspace,
                         const hf_history *history, hf_messages *messages);
 
-/* Base, bounds and gene cables of the population, once it is created. Nothing on a resumed store. */
+/* Write base, bounds and gene cables of the population. Call it once the population is created; a resumed store has
+ * them already and writes nothing. */
 hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_population *population,
                          hf_messages *messages);
 
-/* Append the generation that hf_optimiser_tell has just ranked. After HF_OK it outlives this process, for the build
- * that made it (see hf_store_restore); after HF_IO all before it does, once hf_store_publish was called after
- * hf_store_genes. */
+/* Append the generation that hf_optimiser_tell has just ranked. After HF_OK it survives the end of this process, and
+ * the same build can restore it (see hf_store_restore). After HF_IO all generations before it survive, provided that
+ * hf_store_publish was called after hf_store_genes. */
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_population *population,
                               hf_messages *messages);
 
@@ -117,28 +122,28 @@ hf_status hf_store_restore_base(hf_store *store, int n_gene, double *base_N, hf_
  * none. */
 hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages);
 
-/* Give the visible name to a file with everything so far, marked as unfinished: at once, or only when that takes less
- * than 2 % of the time since the last publication. Call it after every generation. */
-hf_status hf_store_publish(hf_store *store, const hf_summary *summary, int at_once, hf_messages *messages);
+/* Publish everything so far: give the visible name to a file that is marked as unfinished. With at_once now, else only
+ * when the last publication took less than 2 % of the time since then. Call it after every generation. */
+hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_once, hf_messages *messages);
 
-/* Shape of the workspace as the one that an optimisation stage found, with its design_N [model->n_gene]. Once per
- * stage. */
+/* Write the shape in the workspace as the one that an optimisation stage found, with its design_N [model->n_gene]. Call
+ * it once per stage. */
 hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
                         const double *design_N, hf_messages *messages);
 
-/* Write the summary, close, and give the file its name. Frees the store in any case; after a failure what was published
- * and the journal are as they were. When the file is whole but cannot get its name (HF_EXISTS, HF_IO) it stays under
- * another, which the message tells. */
+/* Write the summary, close the file and give it its name. The store is freed in any case. A failure leaves the
+ * published file and the journal as they were. When the file is whole but cannot get its name (HF_EXISTS, HF_IO), it
+ * stays under another name, which the message gives. */
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
 
 /* The same in two parts. hf_store_complete writes and closes the file, which takes processor time. hf_store_settle
- * brings it to the disk and renames it, which is mostly waiting and may be done by another thread; it frees the store
- * in any case. */
+ * writes it through to the disk and renames it, which is mostly waiting and may be done by another thread; it frees the
+ * store in any case. */
 hf_status hf_store_complete(hf_store *store, const hf_summary *summary, hf_messages *messages);
 hf_status hf_store_settle(hf_store *store, hf_messages *messages);
 
-/* End without finishing and free the store: what was published stays, with the journal of what was not. store may be
- * NULL. */
+/* Free the store without finishing the file. The published file stays, and the journal with the generations that the
+ * file does not hold. store may be NULL. */
 void hf_store_abandon(hf_store *store);
 
 /* One stored shape, in the order of the scene. */
@@ -162,8 +167,8 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
 void hf_shape_free(hf_shape *shape);
 
-/* The truss below /truss: as described, what it is attached to, and, when `state` is not NULL, what the pull of the net
- * does to it. Once, before hf_store_finish of a summary that has_truss. */
+/* Write the group /truss: the truss as described, its attachments to the net and, when `state` is not NULL, its
+ * displacements and forces under the pull of the net. Once, before hf_store_finish of a summary that has_truss. */
 hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_carrier_state *state,
                          hf_messages *messages);
 
@@ -174,8 +179,8 @@ hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_stat
 /* "VERSION (git describe)" of this library. */
 const char *hf_store_version(void);
 
-/* Switch off HDF5's error printing, and its work at the end of the program, which crashes when the disk was full. Once,
- * before the first call of HDF5. */
+/* Switch off HDF5's error printing and its exit handler, which crashes when the disk was full. Call it once, before the
+ * first call of HDF5. */
 void hf_store_quiet(void);
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-/* summary - the figures of a whole run: `run` prints them and stores them with the results, `show` prints them again.
+/* summary - the figures of a whole run. `run` prints them and stores them with the results; `show` prints them again.
  * Stability: stable.
  *
  * The figures of a result (form, best, polish) are those of HF_RESULT_LIST in <hifdm/result.h>. */
@@ -7,6 +7,7 @@
 
 #include <hifdm/population.h>
 #include <hifdm/surface.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -18,7 +19,7 @@ extern "C" {
 
 typedef struct {
     char version[64], title[256], case_path[HF_PATH_SIZE];
-    int finished;     /* 0: the run can be resumed */
+    bool finished;    /* false: the run can be resumed */
     hf_status status; /* of the whole run; HF_NOT_EVALUATED unless finished */
     int threads;      /* number used */
     uint64_t seed;    /* of the genetic algorithm */
@@ -31,38 +32,40 @@ typedef struct {
 
     hf_form_result form;
     double form_wall_s; /* of the form-finding */
-    int has_coupling;   /* the net hangs in an elastic truss: the member `coupling` of the results means something */
+    bool has_coupling;  /* the net hangs in an elastic truss; else the member `coupling` of the results is all zero */
 
-    int solver; /* hf_solver of the individuals */
+    hf_solver solver; /* of the individuals */
 
-    int has_polish;       /* Levenberg-Marquardt ran */
-    int polish_is_result; /* optimize.method asks for it: its design is the result, not only a comparison */
+    bool has_polish;       /* Levenberg-Marquardt ran */
+    bool polish_is_result; /* optimize.method asks for it: its design is the result, not only a comparison */
     hf_form_result polish;
-    int polish_iterations, polish_evaluations, polish_converged; /* steps; form-findings; 1: to its tolerance */
+    int polish_iterations, polish_evaluations; /* steps; form-findings */
+    bool polish_converged;                     /* to its tolerance */
     double polish_wall_s;
 
-    int has_truss;        /* the next three are set */
+    bool has_truss;       /* the next three are set */
     double truss_mass_kg; /* members and hinges */
     int truss_nodes, truss_members;
 
-    int has_optimize;     /* the genetic algorithm ran; all that follows is about it */
+    bool has_optimize;    /* the genetic algorithm ran; all that follows is about it */
     double base_psi_m;    /* of individual 0 of generation 0, the tensions found under the rule; NaN if infeasible */
     int n_leader, planes; /* independent genes; HF_PLANE_ bits of the symmetry (1 = x, 2 = y) that links the others */
     hf_form_result best;  /* of the best individual; status HF_NOT_EVALUATED when none was feasible */
-    int best_generation, best_individual;   /* where the best was found, counted from 0 */
-    int generations;                        /* number finished */
-    long evaluations, infeasible;           /* form-findings; those without a feasible shape among them */
-    int optimize_stop;                      /* hf_population_stop */
+    int best_generation, best_individual; /* where the best was found, counted from 0 */
+    int generations;                      /* number finished */
+    long evaluations, infeasible;         /* form-findings; those without a feasible shape among them */
+    hf_population_stop optimize_stop;
     double optimize_wall_s, optimize_cpu_s; /* cpu_s: inside evaluations, over all threads */
 } hf_summary;
 
 /* One JSON object, grouped by stage; a stage that did not run is absent, NaN is null. `messages`: lines as hf_messages
- * holds them, or NULL; `path`: of the result file, or NULL when none was written. Write errors stay with the stream. */
+ * holds them, or NULL; `path`: of the result file, or NULL when none was written. Write errors can be read from the
+ * stream (ferror). */
 void hf_summary_write_json(const hf_summary *summary, hf_status status, const char *messages, const char *path,
                            FILE *file);
 
 /* Does the file hold the shape of the best individual? It is stored when the genetic algorithm has ended. */
-int hf_summary_has_best_shape(const hf_summary *summary);
+bool hf_summary_has_best_shape(const hf_summary *summary);
 
 /* Share of the threads' time that was spent inside evaluations, 0..1; NaN when nothing was timed. */
 double hf_summary_utilisation(const hf_summary *summary);

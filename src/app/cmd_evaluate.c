@@ -15,6 +15,7 @@
 #include "base/file_out.h"
 #include "base/json.h"
 #include "base/path.h"
+#include "base/text.h"
 #include "out/export.h"
 #include "out/print.h"
 #include "run/problem_parts.h"
@@ -97,9 +98,9 @@ static hf_status read_table(job *j, const char *path, hf_messages *messages)
     hf_csv *t = &j->table;
     hf_status status = hf_csv_read(path, j->problem.scene.n_cable + COLUMN_SPARE, t, messages);
     /* a fault in one line does not end the reading: one run reports the faults of all lines */
-    if (status == HF_NO_MEMORY || t->n_row == 0 || t->n_fault > HF_CSV_FAULT_MAX) return status;
+    if (status == HF_NO_MEMORY || t->n_row == 0 || t->n_fault > HF_FAULT_MAX) return status;
     status = hf_csv_find_columns(t, j->name, n_gene + 1, n_gene, j->where);
-    if (t->n_fault > HF_CSV_FAULT_MAX) return status;
+    if (t->n_fault > HF_FAULT_MAX) return status;
     size_t n = (size_t)t->n_row;
     j->design_N = malloc(n * (size_t)n_gene * sizeof *j->design_N);
     j->result = calloc(n, sizeof *j->result);

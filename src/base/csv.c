@@ -22,7 +22,7 @@ void hf_csv_free(hf_csv *t)
 
 void hf_csv_fault(hf_csv *t, int line, const char *id, const char *what, const char *detail)
 {
-    if (++t->n_fault > HF_CSV_FAULT_MAX) return;
+    if (++t->n_fault > HF_FAULT_MAX) return;
     if (id)
         hf_error(t->messages, HF_BAD_CASE, "%s:%d: '%s': %s%s", t->path, line, id, what, detail);
     else
@@ -31,8 +31,8 @@ void hf_csv_fault(hf_csv *t, int line, const char *id, const char *what, const c
 
 hf_status hf_csv_close_faults(hf_csv *t)
 {
-    if (t->n_fault > HF_CSV_FAULT_MAX)
-        hf_error(t->messages, HF_BAD_CASE, "%s: and %d more faults", t->path, t->n_fault - HF_CSV_FAULT_MAX);
+    if (t->n_fault > HF_FAULT_MAX)
+        hf_error(t->messages, HF_BAD_CASE, "%s: and %d more faults", t->path, t->n_fault - HF_FAULT_MAX);
     return t->n_fault ? HF_BAD_CASE : HF_OK;
 }
 
@@ -106,30 +106,30 @@ static char *next_line(char **rest)
 
 /* ---- reading ---- */
 
-static int add_row(hf_csv *t, char **field, int line)
+static bool add_row(hf_csv *t, char **field, int line)
 {
     if (t->n_row == t->row_capacity) {
         int capacity = t->row_capacity ? 2 * t->row_capacity : 64;
         char **cell = realloc(t->cell, (size_t)capacity * (size_t)t->n_column * sizeof *cell);
-        if (!cell) return 0;
+        if (!cell) return false;
         t->cell = cell;
         int *lines = realloc(t->line, (size_t)capacity * sizeof *lines);
-        if (!lines) return 0;
+        if (!lines) return false;
         t->line = lines;
         t->row_capacity = capacity;
     }
     memcpy(t->cell + (size_t)t->n_row * (size_t)t->n_column, field, (size_t)t->n_column * sizeof *field);
     t->line[t->n_row++] = line;
-    return 1;
+    return true;
 }
 
-/* One line that is no comment. 0 without memory. */
-static int take_line(hf_csv *t, char *line, int n_line, char **field, int column_max)
+/* Take one line that is not a comment. False without memory. */
+static bool take_line(hf_csv *t, char *line, int n_line, char **field, int column_max)
 {
     char counts[64];
     if (!hf_text_is_utf8(line)) {
         hf_csv_fault(t, n_line, NULL, "not UTF-8 text; save the file as UTF-8", "");
-        return 1;
+        return true;
     }
     int n = split(line, field, column_max);
     snprintf(counts, sizeof counts, "%d fields where the header has %d", n, t->n_column);
@@ -144,7 +144,7 @@ static int take_line(hf_csv *t, char *line, int n_line, char **field, int column
         hf_csv_fault(t, n_line, NULL, counts, "");
     else
         return add_row(t, field, n_line);
-    return 1;
+    return true;
 }
 
 hf_status hf_csv_read(const char *path, int column_max, hf_csv *t, hf_messages *messages)

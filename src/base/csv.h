@@ -6,9 +6,8 @@
 #define HIFDM_CSV_H
 
 #include <hifdm/status.h>
+#include <stdbool.h>
 #include <stdio.h>
-
-#define HF_CSV_FAULT_MAX 20 /* faults that are spelled out, per file */
 
 /* Header and cells point into the text, which reading cuts up in place. */
 typedef struct {
@@ -30,7 +29,7 @@ void hf_csv_free(hf_csv *table);
 
 char *hf_csv_cell(const hf_csv *table, int row, int column);
 
-/* Report one fault at a line, about an id unless that is NULL. Beyond HF_CSV_FAULT_MAX of a file they are counted. */
+/* Report one fault at a line, about an id unless that is NULL. Beyond HF_FAULT_MAX of a file they are counted. */
 void hf_csv_fault(hf_csv *table, int line, const char *id, const char *what, const char *detail);
 
 /* HF_BAD_CASE when there were faults; a last message counts those that were not spelled out. */

@@ -6,6 +6,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* How many faults of what the user wrote are spelled out; a last message counts the rest. */
+enum {
+    HF_FAULT_MAX = 20,       /* of one kind: in a table, a net or a truss */
+    HF_FAULT_MAX_CASE = 100, /* of a case file */
+    HF_FAULT_MAX_POINT = 10  /* points of a sweep, each with all its faults */
+};
+
 /* The whole file as a NUL-terminated string that the caller frees. HF_OK, HF_NO_MEMORY, or `code` when it cannot be
  * read. */
 hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_t *length, hf_messages *messages);

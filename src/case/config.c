@@ -14,19 +14,19 @@
 
 #define PATH_MAX_LENGTH 160 /* of a dotted key */
 #define CASE_MAX (1 << 20)  /* bytes of a case file */
-#define FAULT_MAX 100       /* faults that are spelled out */
 
 typedef struct {
     hf_case *c;
     hf_messages *messages;
     const char *origin; /* the case file, or the --set argument being applied */
-    int is_override;
-    const char *place;  /* of a value that is only checked: stands for origin, line and column */
+    bool is_override;
+    const char *place;  /* for a value that is only checked: printed instead of origin, line and column */
     yaml_mark_t cut[2]; /* the sweep section, when there is one */
     yaml_document_t *document;
     char *where_given; /* [n_field][64] "line:col", "--set" or "" */
-    int walked;        /* the file was readable YAML: what is missing in it can be told */
-    int failed, n_fault;
+    bool walked;       /* the file was readable YAML: keys that are missing can be reported */
+    bool failed;
+    int n_fault;
 } loader;
 
 #define WHERE_SIZE 64
@@ -35,8 +35,8 @@ typedef struct {
 
 static void complain(loader *l, yaml_mark_t mark, const char *path, const char *what, const char *detail)
 {
-    l->failed = 1;
-    if (++l->n_fault > FAULT_MAX) return;
+    l->failed = true;
+    if (++l->n_fault > HF_FAULT_MAX_CASE) return;
     if (l->place)
         hf_error(l->messages, HF_BAD_CASE, "%s: %s: %s%s", l->place, path, what, detail);
     else if (l->is_override)
@@ -46,13 +46,13 @@ static void complain(loader *l, yaml_mark_t mark, const char *path, const char *
                  what, detail);
 }
 
-/* A fault that several keys share, or of a key that is not there; with its place when it was given. */
+/* Report a fault of several keys, or of a missing key; with the place of the key if the file gives it. */
 static void complain_about(loader *l, const char *path, const char *what)
 {
     const char *where = "";
     for (int i = 0; i < hf_n_field; i++)
         if (!strcmp(hf_field_table[i].path, path)) where = l->where_given + (size_t)i * WHERE_SIZE;
-    l->failed = 1;
+    l->failed = true;
     if (!strcmp(where, "--set"))
         hf_error(l->messages, HF_BAD_CASE, "--set %s: %s", path, what);
     else
@@ -117,7 +117,7 @@ static const char *scalar_text(const yaml_node_t *node)
     return (const char *)node->data.scalar.value;
 }
 
-static int is_plain(const yaml_node_t *node)
+static bool is_plain(const yaml_node_t *node)
 {
     return node->type == YAML_SCALAR_NODE && node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
 }
@@ -312,7 +312,7 @@ static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
     }
 }
 
-/* Where the parser stopped. A byte that is no text at all has an offset only. */
+/* Where the parser stopped. For a byte that is not UTF-8 the parser gives only an offset. */
 static yaml_mark_t problem_mark(const yaml_parser_t *parser, const char *text)
 {
     yaml_mark_t mark = parser->problem_mark;
@@ -334,7 +334,7 @@ static void with_document(loader *l, const char *text, size_t length,
     yaml_parser_t parser;
     yaml_document_t document, next;
     if (!yaml_parser_initialize(&parser)) {
-        l->failed = 1;
+        l->failed = true;
         hf_error(l->messages, HF_NO_MEMORY, "%s: out of memory", l->origin);
         return;
     }
@@ -367,7 +367,7 @@ static void use_root(loader *l, const yaml_node_t *root, void *context)
         complain(l, root->start_mark, "case", "must be key: value lines", "");
     else {
         walk(l, root, "");
-        l->walked = 1;
+        l->walked = true;
     }
 }
 
@@ -393,7 +393,7 @@ static void use_override(loader *l, const yaml_node_t *root, void *context)
     }
     if (dot) *dot = '\0';
     take(l, root, start, dot ? path : "", dot ? dot + 1 : path);
-    /* a key inside a section brings the section along */
+    /* a key inside a section makes the section present */
     for (int i = 0; dot && i < hf_n_section; i++)
         if (!strcmp(hf_section_table[i].path, path) && hf_section_table[i].present_offset != SIZE_MAX)
             *(bool *)((char *)l->c + hf_section_table[i].present_offset) = true;
@@ -404,20 +404,20 @@ static void apply_override(loader *l, const char *argument)
     char path[PATH_MAX_LENGTH];
     const char *equals = strchr(argument, '=');
     if (!equals || equals == argument || equals - argument >= PATH_MAX_LENGTH) {
-        l->failed = 1;
+        l->failed = true;
         hf_error(l->messages, HF_BAD_CASE, "--set %s: must be key=value, like form.pretension_N=12", argument);
         return;
     }
     snprintf(path, sizeof path, "%.*s", (int)(equals - argument), argument);
     l->origin = argument;
-    l->is_override = 1;
+    l->is_override = true;
     with_document(l, equals + 1, strlen(equals + 1), use_override, path);
-    l->is_override = 0;
+    l->is_override = false;
     l->origin = l->c->path;
 }
 
-/* Cut the lines of the sweep section out of the text: what is stored and digested is the case of one point, which stays
- * the same when axes grow. */
+/* Cut the lines of the sweep section out of the text. The rest is the case of one point, which is stored and digested;
+ * it stays the same when axes grow. */
 static void cut_sweep(loader *l)
 {
     hf_case *c = l->c;
@@ -436,7 +436,7 @@ static void cut_sweep(loader *l)
     c->text_length -= (size_t)(to - from);
 }
 
-/* The overrides as one text, and the digest over case text and overrides. */
+/* Join the overrides to one text and digest case text and overrides. */
 static hf_status seal(hf_case *c, const char *const *overrides, int n_override)
 {
     size_t size = 1;
@@ -461,15 +461,15 @@ static hf_status seal(hf_case *c, const char *const *overrides, int n_override)
 
 /* ---- checks that join several keys ---- */
 
-static int section_present(const hf_case *c, const char *field_path)
+static bool section_present(const hf_case *c, const char *field_path)
 {
     char section[PATH_MAX_LENGTH];
     snprintf(section, sizeof section, "%s", field_path);
     char *dot = strrchr(section, '.');
-    if (!dot) return 1;
+    if (!dot) return true;
     *dot = '\0';
     int i = find_section(section);
-    if (i < 0 || hf_section_table[i].present_offset == SIZE_MAX) return 1;
+    if (i < 0 || hf_section_table[i].present_offset == SIZE_MAX) return true;
     return *(const bool *)((const char *)c + hf_section_table[i].present_offset);
 }
 
@@ -529,7 +529,7 @@ static void complete_surface(hf_case *c)
 
 /* ---- load ---- */
 
-/* settings->text is there: everything else from it and the overrides. */
+/* Set everything else from settings->text and the overrides. */
 static hf_status parse(hf_case *settings, const char *const *overrides, int n_override, hf_messages *messages)
 {
     const char *path = settings->path;
@@ -555,7 +555,8 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
     hf_status sealed = seal(settings, overrides, n_override);
     free(l.where_given);
     if (sealed != HF_OK) return hf_error(messages, sealed, "%s: out of memory", path);
-    if (l.n_fault > FAULT_MAX) hf_error(messages, HF_BAD_CASE, "%s: and %d more faults", path, l.n_fault - FAULT_MAX);
+    if (l.n_fault > HF_FAULT_MAX_CASE)
+        hf_error(messages, HF_BAD_CASE, "%s: and %d more faults", path, l.n_fault - HF_FAULT_MAX_CASE);
     return l.failed ? HF_BAD_CASE : HF_OK;
 }
 

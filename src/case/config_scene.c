@@ -1,4 +1,4 @@
-/* What a case describes, made: the net and the truss; and its end. */
+/* The net and the truss that a case describes; freeing a case. */
 #include "case/config_scene.h"
 
 #include "net/scene_import.h"
@@ -14,7 +14,7 @@ bool hf_config_scene_is_one(const hf_case *c, char what[HF_CONFIG_WHAT_SIZE])
     char present[256] = "", all[256] = "";
     const struct {
         const char *name;
-        int is_present;
+        bool is_present;
     } source[] = {
 #define SOURCE(section, type, KEYS, help) {#section, c->has_##section},
         HF_GENERATORS(SOURCE)

@@ -153,7 +153,7 @@ const hf_field hf_field_table[] = {
 };
 const int hf_n_field = sizeof hf_field_table / sizeof *hf_field_table;
 
-static int is_same(const hf_field *f, const char *a, const char *b)
+static bool is_same(const hf_field *f, const char *a, const char *b)
 {
     const hf_double_list *p = (const void *)a, *q = (const void *)b;
     switch (f->type) { /* no default: the compiler names a type that is not compared */
@@ -171,7 +171,7 @@ static int is_same(const hf_field *f, const char *a, const char *b)
     case HF_FIELD_DOUBLE_LIST:
         return p->n == q->n && !memcmp(p->value, q->value, (size_t)p->n * sizeof *p->value);
     }
-    return 0;
+    return false;
 }
 
 static int add_key(const char *key, int n, char *text, size_t size)

@@ -14,8 +14,6 @@
 
 const char *const hf_study_files_word[3] = {"auto", "all", "none"};
 
-#define JOINT_FAULT_MAX 10 /* points that are spelled out */
-
 /* ---- values ---- */
 
 /* The shortest of the usual ways to write a number that reads back as the same. */
@@ -23,7 +21,7 @@ static void shortest(double value, char text[40])
 {
     for (int digits = 15; digits <= 17; digits++) {
         double again = 0;
-        snprintf(text, 40, "%.*g", digits, value + 0.0); /* no -0 */
+        snprintf(text, 40, "%.*g", digits, value + 0.0); /* + 0.0 turns -0 into 0 */
         if (hf_text_double(text, &again) && again == value) return;
     }
 }
@@ -51,7 +49,7 @@ void hf_study_range_value(const hf_field *field, double from, double to, bool is
     double value = is_log ? from * pow(to / from, x) : from + (to - from) * x;
     if (x >= 1) value = to;
     if (field->type == HF_FIELD_DOUBLE) {
-        /* 12 digits give what a user would write, on every machine although pow() may differ in the last bit */
+        /* 12 digits are the same on every machine, although pow() may differ in the last bit */
         snprintf(text, 40, "%.12g", value);
         if (hf_text_double(text, &value)) shortest(value, text);
     } else {
@@ -96,7 +94,7 @@ static hf_status out_of_memory(const hf_study *s, hf_messages *messages)
     return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for the points of the sweep", s->path);
 }
 
-/* How many points; sampled axes count as one. */
+/* Count the points; all sampled axes count as one axis. */
 static hf_status count_points(hf_study *s, hf_messages *messages)
 {
     double n = 1;
@@ -138,18 +136,18 @@ static void place_point(const hf_study *s, int i, int *value)
 }
 
 /* Digest of the point's lines. Axes are sorted, so the lines are. */
-static int digest_point(const hf_study *s, const int *value, char hex[65])
+static bool digest_point(const hf_study *s, const int *value, char hex[65])
 {
     size_t size = 1, used = 0;
     for (int a = 0; a < s->n_axis; a++)
         size += strlen(s->axis[a].canonical[value[a]]) + 1;
     char *text = malloc(size);
-    if (!text) return 0;
+    if (!text) return false;
     for (int a = 0; a < s->n_axis; a++)
         used += (size_t)snprintf(text + used, size - used, "%s\n", s->axis[a].canonical[value[a]]);
     hf_sha256(text, used, hex);
     free(text);
-    return 1;
+    return true;
 }
 
 static int compare_ids(const void *a, const void *b)
@@ -228,7 +226,7 @@ static hf_status take_fingerprint(hf_study *s, const hf_case *c, hf_messages *me
     return HF_OK;
 }
 
-/* Load each point as a case. This finds keys that do not go together, and all faults of the base case. */
+/* Load each point as a case, which finds keys that exclude each other and all faults of the base case. */
 static hf_status check_points(hf_study *s, hf_messages *messages)
 {
     int n_fault = 0;
@@ -247,15 +245,16 @@ static hf_status check_points(hf_study *s, hf_messages *messages)
             s->seed = c.optimize.seed;
             status = take_fingerprint(s, &c, messages);
         }
-        if (status != HF_OK && n_fault++ < JOINT_FAULT_MAX) tell_faults(s, i, &found, messages);
+        if (status != HF_OK && n_fault++ < HF_FAULT_MAX_POINT) tell_faults(s, i, &found, messages);
         hf_messages_free(&found);
         hf_case_free(&c);
         if (status == HF_NO_MEMORY) return out_of_memory(s, messages);
-        if (i == 0 && status != HF_OK) return HF_BAD_CASE; /* most likely the base: no need to say it of every point */
+        if (i == 0 && status != HF_OK)
+            return HF_BAD_CASE; /* most likely a fault of the base case: do not repeat it for every point */
     }
-    if (n_fault > JOINT_FAULT_MAX)
+    if (n_fault > HF_FAULT_MAX_POINT)
         hf_error(messages, HF_BAD_CASE, "%s: sweep: and %d more points with faults", s->path,
-                 n_fault - JOINT_FAULT_MAX);
+                 n_fault - HF_FAULT_MAX_POINT);
     return n_fault ? HF_BAD_CASE : HF_OK;
 }
 

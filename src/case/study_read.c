@@ -70,7 +70,7 @@ static void fault_unknown(reader *r, yaml_mark_t mark, const char *key, const ch
         fault(r, mark, key, "unknown key '%s'%s", word, *key ? "" : " (hifdm schema lists all keys)");
 }
 
-/* Is this key in the mapping before `pair`, too? Then that is a fault. */
+/* Report a fault when this key is in the mapping before `pair`, too. */
 static bool is_repeated(reader *r, const yaml_node_t *mapping, const yaml_node_pair_t *pair, const char *path)
 {
     const yaml_node_t *key = node_at(r, pair->key);
@@ -151,7 +151,7 @@ static void add_value(reader *r, hf_study_axis *axis, const char *value, yaml_ma
     const hf_field *field = &hf_field_table[axis->field];
     char place[HF_PATH_SIZE + 128], text[VALUE_SIZE];
     snprintf(place, sizeof place, "%s:%zu:%zu: sweep", r->study->path, mark.line + 1, mark.column + 1);
-    int fits = field->type != HF_FIELD_TEXT ? snprintf(text, sizeof text, "%s", value) : quote(r, field, value, text);
+    bool fits = field->type != HF_FIELD_TEXT ? snprintf(text, sizeof text, "%s", value) : quote(r, field, value, text);
     hf_status status = fits ? hf_config_check_value(axis->field, text, place, r->messages) : HF_BAD_CASE;
     if (!fits) fault(r, mark, field->path, "is too long");
     if (status != HF_OK) {
@@ -254,7 +254,7 @@ static void fill_range(reader *r, const range *from, const double *x, int stride
     axis->is_sampled = from->sample != SAMPLE_NONE;
     bool failed_before = r->failed;
     r->failed = false;
-    for (int i = 0; i < n && !r->failed; i++) { /* one bad value of a range is enough */
+    for (int i = 0; i < n && !r->failed; i++) { /* report one bad value of a range, not all */
         hf_study_range_value(&hf_field_table[axis->field], from->from, from->to, from->is_log,
                              x[(size_t)i * (size_t)stride], text);
         add_value(r, axis, text, from->mark);

@@ -10,8 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FAULT_MAX 20 /* faults of one kind that are spelled out */
-
 const char *const hf_role_word[3] = {"support", "inner", "edge"};
 const char *const hf_group_word[2] = {"inner", "boundary"};
 
@@ -77,7 +75,7 @@ static void describe(const hf_scene *s, bool is_cable, int index, char *text, si
 static void fault(const hf_scene *s, bool is_cable, int index, int *n_fault, const char *what, hf_messages *messages)
 {
     char where[512];
-    if (++*n_fault > FAULT_MAX) return;
+    if (++*n_fault > HF_FAULT_MAX) return;
     describe(s, is_cable, index, where, sizeof where);
     hf_text_trim_utf8(where);
     hf_error(messages, HF_BAD_CASE, "%s %s", where, what);
@@ -152,6 +150,6 @@ hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages)
     check_nodes(scene, &n_fault, messages);
     if (n_fault == 0) check_cables(scene, &n_fault, messages);
     HF_TRY(check_anchored(scene, &n_fault, messages));
-    if (n_fault > FAULT_MAX) hf_error(messages, HF_BAD_CASE, "scene: and %d more faults", n_fault - FAULT_MAX);
+    if (n_fault > HF_FAULT_MAX) hf_error(messages, HF_BAD_CASE, "scene: and %d more faults", n_fault - HF_FAULT_MAX);
     return n_fault ? HF_BAD_CASE : HF_OK;
 }

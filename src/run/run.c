@@ -168,13 +168,13 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
 static void sum_up(const run *r, double start_s, hf_summary *s)
 {
     const hf_population *p = &r->optimiser.population;
-    s->has_optimize = 1;
+    s->has_optimize = true;
     s->optimize_wall_s = r->earlier_wall_s + hf_clock_s() - start_s;
     s->optimize_cpu_s = r->earlier_cpu_s + r->problem.batch.cpu_s;
     s->generations = p->generation + 1;
     s->evaluations = p->n_evaluation;
     s->infeasible = p->n_evaluation_infeasible;
-    s->optimize_stop = (int)p->stop_reason;
+    s->optimize_stop = p->stop_reason;
 }
 
 /* A generation that is being stored while the next one is bred and evaluated. */
@@ -238,7 +238,7 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
     const hf_population *p = &r->optimiser.population;
     s->best.status = HF_NO_FEASIBLE;
     hf_problem_share(&r->problem);
-    s->solver = (int)r->problem.solver;
+    s->solver = r->problem.solver;
     HF_TRY(begin_generations(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
     double start_s = hf_clock_s();
@@ -285,7 +285,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     }
     hf_evaluate(&r->problem.evaluator, design, w, &s->polish);
     if (must_stop(r)) return stop_here(r, s, messages); /* the evaluation may have been cut short */
-    s->has_polish = 1;
+    s->has_polish = true;
     s->polish_is_result = r->plan.ends_with_polish;
     s->polish_iterations = outcome.iterations;
     s->polish_evaluations = outcome.evaluations;
@@ -382,7 +382,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, &r->truss, messages));
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
     hf_text_trim_utf8(s->warnings);
-    s->finished = 1;
+    s->finished = true;
     s->status = status;
     hf_status finish = hf_store_complete(r->store, s, messages);
     hf_store *store = r->store;

@@ -28,17 +28,17 @@ typedef struct {
 
 /* ---- one value ---- */
 
-static int is_real(const side *s)
+static bool is_real(const side *s)
 {
     return H5Tget_class(s->type) == H5T_FLOAT;
 }
 
-static int is_text(const side *s)
+static bool is_text(const side *s)
 {
     return H5Tis_variable_str(s->type) > 0;
 }
 
-static int are_equal(const comparing *q, const side *a, const side *b, const char *x, const char *y)
+static bool are_equal(const comparing *q, const side *a, const side *b, const char *x, const char *y)
 {
     if (is_text(a)) {
         const char *s, *t;
@@ -46,12 +46,12 @@ static int are_equal(const comparing *q, const side *a, const side *b, const cha
         memcpy(&t, y, sizeof t);
         return !strcmp(s ? s : "", t ? t : "");
     }
-    if (!memcmp(x, y, a->bytes)) return 1;
-    if (!is_real(a)) return 0;
+    if (!memcmp(x, y, a->bytes)) return true;
+    if (!is_real(a)) return false;
     double u, v;
     memcpy(&u, x, sizeof u);
     memcpy(&v, y, sizeof v);
-    if (isnan(u) && isnan(v)) return 1;
+    if (isnan(u) && isnan(v)) return true;
     return (q->c->rtol > 0 || q->c->atol > 0) && b->bytes == sizeof v &&
            fabs(u - v) <= q->c->atol + q->c->rtol * fabs(v);
 }
@@ -110,7 +110,7 @@ static void open_side(hf_hdf5 *io, const char *name, side *s)
     hf_hdf5_close(io, stored);
 }
 
-/* `n` values from value number `first` on, as if the data set were one row: whole rows of the first dimension. */
+/* Read n_row rows of the first dimension, from `row` on, into the block. Returns the space of memory, or -1. */
 static hid_t read_rows(hf_hdf5 *io, const char *name, side *s, hsize_t row, hsize_t n_row)
 {
     hsize_t start[H5S_MAX_RANK] = {row}, count[H5S_MAX_RANK];
@@ -143,27 +143,27 @@ static void tell_value(comparing *q, const char *name, const side *a, const side
     q->tell(q->context, name, how);
 }
 
-/* 1 when a difference was told. */
-static int compare_values(comparing *q, const char *name, side *a, side *b)
+/* True when a difference was told. */
+static bool compare_values(comparing *q, const char *name, side *a, side *b)
 {
     hsize_t per_row = 1, rows = a->rank ? a->dims[0] : 1;
     for (int d = 1; d < a->rank; d++)
         per_row *= a->dims[d];
-    if (per_row == 0 || rows == 0) return 0;
+    if (per_row == 0 || rows == 0) return false;
     hsize_t fit = BLOCK_BYTES / (per_row * a->bytes), step = fit < 1 ? 1 : fit < rows ? fit : rows;
     a->block = malloc(step * per_row * a->bytes);
     b->block = malloc(step * per_row * b->bytes);
     if (!a->block || !b->block) {
         q->a.status = hf_error(q->a.messages, HF_NO_MEMORY, "%s: out of memory", q->a.path);
-        return 0;
+        return false;
     }
     for (hsize_t row = 0; row < rows; row += step) {
         hsize_t n = rows - row < step ? rows - row : step, i = 0;
         hid_t in_a = read_rows(&q->a, name, a, row, n), in_b = read_rows(&q->b, name, b, row, n);
-        int ok = q->a.status == HF_OK && q->b.status == HF_OK;
+        bool ok = q->a.status == HF_OK && q->b.status == HF_OK;
         while (ok && i < n * per_row && are_equal(q, a, b, a->block + i * a->bytes, b->block + i * b->bytes))
             i++;
-        int differs = ok && i < n * per_row;
+        bool differs = ok && i < n * per_row;
         if (differs) tell_value(q, name, a, b, row, i);
         if (in_a >= 0 && is_text(a) && ok) H5Dvlen_reclaim(a->type, in_a, H5P_DEFAULT, a->block);
         if (in_b >= 0 && is_text(b) && ok) H5Dvlen_reclaim(b->type, in_b, H5P_DEFAULT, b->block);
@@ -171,17 +171,17 @@ static int compare_values(comparing *q, const char *name, side *a, side *b)
         hf_hdf5_close(&q->b, in_b);
         if (differs || !ok) return differs;
     }
-    return 0;
+    return false;
 }
 
-static int compare_data_set(comparing *q, const char *name)
+static bool compare_data_set(comparing *q, const char *name)
 {
     side a, b;
-    int differs = 0;
+    bool differs = false;
     open_side(&q->a, name, &a);
     open_side(&q->b, name, &b);
     if (q->a.status == HF_OK && q->b.status == HF_OK) {
-        differs = 1;
+        differs = true;
         if (H5Tget_class(a.type) != H5Tget_class(b.type) || is_text(&a) != is_text(&b))
             q->tell(q->context, name, " is of another type");
         else if (a.rank != b.rank || memcmp(a.dims, b.dims, (size_t)a.rank * sizeof a.dims[0]) != 0)
@@ -198,10 +198,10 @@ static int compare_data_set(comparing *q, const char *name)
 
 /* ---- both files ---- */
 
-static int is_data_set(hid_t file, const char *name)
+static bool is_data_set(hid_t file, const char *name)
 {
     hid_t object = H5Oopen(file, name, H5P_DEFAULT);
-    int is = object >= 0 && H5Iget_type(object) == H5I_DATASET;
+    bool is = object >= 0 && H5Iget_type(object) == H5I_DATASET;
     if (object >= 0) H5Oclose(object);
     return is;
 }

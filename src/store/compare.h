@@ -1,4 +1,4 @@
-/* compare - two result files, data set by data set. Attributes are not looked at: they hold times, machine and
+/* compare - two result files, data set by data set. Attributes are not compared: they hold times, machine and
  * provenance, which differ between two runs of the same case, and a summary of what is in the data sets. */
 #ifndef HIFDM_COMPARE_H
 #define HIFDM_COMPARE_H
@@ -10,10 +10,10 @@ typedef struct {
     int n_data_set, n_different;
 } hf_comparison;
 
-/* Called for each data set that differs: its path, and in words where first and how, or that it is missing. */
+/* Called for each data set that differs, with its path and a text: the first difference, or that it is missing. */
 typedef void hf_compare_tell(void *context, const char *path, const char *how);
 
-/* HF_OK: all are equal, within the tolerances. HF_DIFFERENT; HF_IO when a file cannot be read, HF_NO_MEMORY. */
+/* HF_OK: all are equal within the tolerances; HF_DIFFERENT; HF_IO when a file cannot be read; HF_NO_MEMORY. */
 hf_status hf_compare_files(const char *a, const char *b, hf_comparison *comparison, hf_compare_tell *tell,
                            void *context, hf_messages *messages);
 

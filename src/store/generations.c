@@ -8,11 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WAITING_BYTES (512 << 10) /* of all that wait but their designs; a generation larger than that waits alone */
-#define DESIGN_CHUNKS 3           /* of designs may wait, so that a run seldom waits for HDF5 */
+#define WAITING_BYTES (512 << 10) /* of waiting rows without designs; a larger generation waits alone */
+#define DESIGN_CHUNKS 3           /* chunks of designs that may wait, so that a run seldom waits for HDF5 */
 #define CHUNK_BYTES (256 << 10)   /* of a data set: rows as far as they fit */
 #define CHUNK_MAX (1 << 20)       /* of a row larger than CHUNK_BYTES: what HDF5 caches of a data set */
-#define BLOCK 1024                /* generations that are counted at a time */
+#define BLOCK 1024                /* generations read at a time for the sums */
 
 /* ---- the list ---- */
 
@@ -75,7 +75,7 @@ static int list_rows(const hf_population *now, ga_row row[HF_GENERATIONS_PIECES]
     return ROW_N;
 }
 
-/* The list without values. */
+/* The list for its names and sizes alone: the values are not valid. */
 static int list_arrays(const hf_generations *g, ga_row row[HF_GENERATIONS_PIECES])
 {
     hf_form_result nothing = {0};
@@ -127,12 +127,12 @@ void hf_generations_free(hf_generations *g)
 
 /* ---- waiting ---- */
 
-int hf_generations_are_full(const hf_generations *g)
+bool hf_generations_are_full(const hf_generations *g)
 {
     return g->n_waiting == g->capacity || g->n_design == g->design_capacity;
 }
 
-int hf_generations_are_due(const hf_generations *g)
+bool hf_generations_are_due(const hf_generations *g)
 {
     return g->n_waiting == g->capacity || g->n_design >= g->design_chunk;
 }
@@ -162,11 +162,12 @@ static char *slot(const hf_generations *g, int i)
     return g->row[i] + (size_t)(i == ROW_DESIGN ? g->n_design : g->n_waiting) * g->row_bytes[i];
 }
 
-/* Tells designs from others that differ in a bit or in their order: four chains of FNV-1a's kind, over words. */
+/* Hash that differs for designs which differ in a bit or in their order: four interleaved chains like FNV-1a, of 8-byte
+ * words. */
 static uint64_t hash_designs(const hf_population *population)
 {
     enum { CHAINS = 4 };
-    const uint64_t factor = 0x9e3779b97f4a7c15u; /* odd: nothing is lost by it */
+    const uint64_t factor = 0x9e3779b97f4a7c15u; /* odd: multiplication by it is a bijection */
     uint64_t chain[CHAINS] = {1, 2, 3, 4}, bits, all = 0;
     for (size_t i = 0; i < (size_t)population->n_individual * (size_t)population->n_gene; i++) {
         uint64_t *h = &chain[i % CHAINS];
@@ -197,7 +198,7 @@ void hf_generations_add(hf_generations *g, const hf_population *population, stru
     g->n_design++;
 }
 
-/* The values of one generation back to where they came from. */
+/* Copy the values of one generation back into the population. */
 static void scatter(const ga_row *row, size_t bytes, const char *from)
 {
     size_t each = hf_hdf5_kind_bytes(row->array.kind), n = bytes / each;
@@ -211,18 +212,18 @@ static void scatter(const ga_row *row, size_t bytes, const char *from)
     }
 }
 
-int hf_generations_take_payload(const hf_generations *g, const void *payload, hf_population *population)
+bool hf_generations_take_payload(const hf_generations *g, const void *payload, hf_population *population)
 {
     ga_row row[HF_GENERATIONS_PIECES];
     uint64_t hash;
     int n = list_rows(population, row);
     const char *from = payload;
     memcpy(&hash, from, sizeof hash);
-    if (hash != hash_designs(population)) return 0;
+    if (hash != hash_designs(population)) return false;
     from += sizeof hash;
     for (int i = ROW_DESIGN + 1; i < n; from += g->row_bytes[i++])
         scatter(&row[i], g->row_bytes[i], from);
-    return 1;
+    return true;
 }
 
 /* ---- writing ---- */
@@ -322,7 +323,7 @@ static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g,
     free(block);
 }
 
-/* What a row, one value per individual, says of the best; `field` of it. */
+/* Read one figure of the best individual from the data set of its row. */
 static void read_of_best(hf_hdf5 *io, hid_t group, const ga_row *row, const hf_result_field *field, hf_summary *s)
 {
     size_t n = (size_t)row->array.dims[1], each = hf_hdf5_kind_bytes(row->array.kind);
@@ -334,7 +335,7 @@ static void read_of_best(hf_hdf5 *io, hid_t group, const ga_row *row, const hf_r
     free(values);
 }
 
-/* As the run has noted it: the first generation with the least psi. What is not stored of an individual is NaN. */
+/* The best as the run noted it: of the first generation with the least psi. Figures that are not stored are NaN. */
 static void note_best(hf_hdf5 *io, hid_t group, const ga_row *row, const double *best_psi_m, int n, hf_summary *s)
 {
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
@@ -396,7 +397,7 @@ void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
     hf_hdf5_read_rows(io, group, &row[ROW_PSI].array, 0, &s->base_psi_m);
     if (io->status == HF_OK) note_best(io, group, row, best_psi_m, g->n_stored, s);
     count_evaluations(io, group, g, g->n_stored, &s->evaluations, &s->infeasible);
-    s->has_optimize = 1;
+    s->has_optimize = true;
     s->generations = g->n_stored;
     free(best_psi_m);
     hf_hdf5_close(io, group);

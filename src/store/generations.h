@@ -1,6 +1,6 @@
 /* generations - the data sets of /ga that grow by a row per generation. One list names them and says where the values
  * of a row come from; writing and restoring both use it. The rows of a generation are all that an optimiser needs to
- * propose the next one (hf_optimiser_kind). Rows wait in memory, bounded, until many can be written together, because
+ * propose the next one (hf_optimiser_kind). Rows wait in memory, up to a bound, to be written together, because
  * every call of HDF5 costs some microseconds. The designs, nine tenths of the bytes, are written when a chunk of them
  * is full, all other rows less often. */
 #ifndef HIFDM_GENERATIONS_H
@@ -19,8 +19,8 @@ typedef struct {
     int limit;                               /* generations that there can be */
     int n_stored;                            /* in the file */
     int n_waiting, capacity;                 /* in memory */
-    int n_design, design_capacity;           /* those of them whose designs are in memory, too: the last ones */
-    int design_chunk;                        /* that many at a time are written best */
+    int n_design, design_capacity;           /* the last of these, whose designs are in memory, too */
+    int design_chunk;                        /* designs per chunk of the data set */
     size_t row_bytes[HF_GENERATIONS_PIECES]; /* of one generation */
     size_t payload_bytes;                    /* of what the journal keeps of one */
     uint64_t design_hash;                    /* of the last one added */
@@ -32,27 +32,30 @@ typedef struct {
 hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_generations *g);
 void hf_generations_free(hf_generations *g);
 
-/* Must hf_generations_make_room be called before another is added? Is there enough waiting to call it? */
-int hf_generations_are_full(const hf_generations *g);
-int hf_generations_are_due(const hf_generations *g);
+/* Full: hf_generations_make_room must be called before another is added. Due: enough waits for that call. */
+bool hf_generations_are_full(const hf_generations *g);
+bool hf_generations_are_due(const hf_generations *g);
 
-/* Let a generation that hf_optimiser_tell has ranked wait. Not when they are full. `piece` (may be NULL) is its payload
- * [HF_GENERATIONS_PIECES], borrowed until the next is added: all of it but the designs, nine tenths of its bytes, which
- * hf_optimiser_next proposes again from the generation before. Of these only a hash is there. */
+/* Add a generation that hf_optimiser_tell has ranked to those that wait, which must not be full. `piece` (may be NULL)
+ * is its payload [HF_GENERATIONS_PIECES], borrowed until the next is added: all of it but the designs, nine tenths of
+ * its bytes, which hf_optimiser_next proposes again from the generation before. Of the designs the payload has only a
+ * hash. */
 void hf_generations_add(hf_generations *g, const hf_population *population, struct iovec *piece);
 
-/* Results and all else from a payload into `population`, whose designs were proposed again. 0, and nothing is changed,
- * when these have other bits than those that the results are of. */
-int hf_generations_take_payload(const hf_generations *g, const void *payload, hf_population *population);
+/* Copy results and all else from a payload into `population`, whose designs were proposed again. False, and nothing is
+ * changed, when these have other bits than those that the results are of. */
+bool hf_generations_take_payload(const hf_generations *g, const void *payload, hf_population *population);
 
-/* Write what waits below /ga of the file, whose data sets the first call makes: all; or what has no room to wait. */
+/* Write waiting rows below /ga of the file: all of them, or those for which there is no more room. The first call makes
+ * the data sets. */
 void hf_generations_write(hf_hdf5 *io, hf_generations *g);
 void hf_generations_make_room(hf_hdf5 *io, hf_generations *g);
 
 /* How many generations the file has; those that wait do not count. Sets n_stored. */
 int hf_generations_count(hf_hdf5 *io, hf_generations *g);
 
-/* What the generations of the file say in the summary: how many, evaluations, the best so far. None may wait. */
+/* Set the members of the summary that follow from the generations of the file: their number, evaluations, the best so
+ * far. None may wait. */
 void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *summary);
 
 /* Put `population`, just created, into the state before hf_optimiser_tell of the last generation of the file. HF_IO

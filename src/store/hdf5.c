@@ -81,7 +81,7 @@ static signed char value_at(const hf_hdf5_kind *kind, int i)
     return kind->value ? kind->value[i] : (signed char)i;
 }
 
-static int is_enum(const hf_hdf5_kind *kind)
+static bool is_enum(const hf_hdf5_kind *kind)
 {
     return kind->class == HF_HDF5_ENUM;
 }
@@ -156,7 +156,7 @@ hid_t hf_hdf5_array_type(const hf_hdf5_array *a)
 }
 
 /* May values of this stored type be read as `kind`? Words are matched by HDF5 itself. */
-static int is_of_kind(hid_t stored, const hf_hdf5_kind *kind)
+static bool is_of_kind(hid_t stored, const hf_hdf5_kind *kind)
 {
     H5T_class_t class = H5Tget_class(stored);
     if (is_enum(kind)) return class == H5T_ENUM;
@@ -166,15 +166,15 @@ static int is_of_kind(hid_t stored, const hf_hdf5_kind *kind)
 }
 
 /* Does every value of an enumeration have a word? */
-static int are_known(const hf_hdf5_kind *kind, const void *values, hsize_t n)
+static bool are_known(const hf_hdf5_kind *kind, const void *values, hsize_t n)
 {
-    unsigned char known[UCHAR_MAX + 1] = {0};
+    bool known[UCHAR_MAX + 1] = {false};
     const unsigned char *bytes = values;
     for (int i = 0; i < kind->n_word; i++)
-        known[(unsigned char)value_at(kind, i)] = 1;
+        known[(unsigned char)value_at(kind, i)] = true;
     for (hsize_t i = 0; i < n; i++)
-        if (!known[bytes[i]]) return 0;
-    return 1;
+        if (!known[bytes[i]]) return false;
+    return true;
 }
 
 /* ---- files and groups ---- */
@@ -219,7 +219,7 @@ static hid_t make_properties(hid_t class)
 static hid_t make_access(void)
 {
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    int ok = access >= 0 && H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18) >= 0;
+    bool ok = access >= 0 && H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18) >= 0;
 #if H5_VERSION_GE(1, 10, 7)
     ok = ok && H5Pset_file_locking(access, 1, 1) >= 0;
 #endif
@@ -241,7 +241,7 @@ void hf_hdf5_create_file(hf_hdf5 *io, const char *name)
     hf_hdf5_close(io, properties);
 }
 
-void hf_hdf5_open_file(hf_hdf5 *io, const char *name, int to_write)
+void hf_hdf5_open_file(hf_hdf5 *io, const char *name, bool to_write)
 {
     hid_t access = make_access();
     io->file = access < 0 ? -1 : H5Fopen(name, to_write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
@@ -257,20 +257,20 @@ void hf_hdf5_close_file(hf_hdf5 *io)
     io->file = -1;
 }
 
-int hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name)
+bool hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name)
 {
-    if (io->status != HF_OK) return 0;
+    if (io->status != HF_OK) return false;
     htri_t has = H5Lexists(place, name, H5P_DEFAULT);
     if (has < 0) hf_hdf5_fail(io, "read", place, name);
     return has > 0;
 }
 
-int hf_hdf5_has_path(hf_hdf5 *io, const char *path)
+bool hf_hdf5_has_path(hf_hdf5 *io, const char *path)
 {
     char part[1024];
     for (const char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
         snprintf(part, sizeof part, "%.*s", (int)(slash - path), path);
-        if (!hf_hdf5_has(io, io->file, part)) return 0;
+        if (!hf_hdf5_has(io, io->file, part)) return false;
     }
     return hf_hdf5_has(io, io->file, path);
 }
@@ -298,7 +298,7 @@ hid_t hf_hdf5_open_group(hf_hdf5 *io, const char *path)
 /* ---- making and writing data sets ---- */
 
 /* HDF5 wants every chunk within the largest dimensions, and none of nothing: a fixed dimension of 0 may become 1. */
-static hid_t make_space(const hf_hdf5_array *a, int grows)
+static hid_t make_space(const hf_hdf5_array *a, bool grows)
 {
     hsize_t dims[3], max[3];
     for (int i = 0; i < a->rank; i++) {
@@ -411,7 +411,7 @@ size_t hf_hdf5_chars_length(hf_hdf5 *io, hid_t group, const char *name)
 
 /* ---- attributes ---- */
 
-/* Takes over and closes the type, which is negative when it could not be made. */
+/* Takes ownership of the type, which is negative when it could not be made. */
 static void put_typed(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hid_t type, hsize_t n,
                       const void *values)
 {
@@ -470,11 +470,11 @@ void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribu
     hf_hdf5_close(io, id);
 }
 
-int hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute)
+bool hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute)
 {
     hid_t id = -1, stored = -1;
-    int has = 0;
-    if (io->status != HF_OK || H5Aexists_by_name(place, name, attribute, H5P_DEFAULT) <= 0) return 0;
+    bool has = false;
+    if (io->status != HF_OK || H5Aexists_by_name(place, name, attribute, H5P_DEFAULT) <= 0) return false;
     if ((id = H5Aopen_by_name(place, name, attribute, H5P_DEFAULT, H5P_DEFAULT)) < 0 || (stored = H5Aget_type(id)) < 0)
         fail_at(io, "read", place, name, attribute);
     else
@@ -486,6 +486,16 @@ int hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *at
 
 /* ---- tables ---- */
 
+int hf_hdf5_enum_value(const hf_hdf5_member *m, const void *owner)
+{
+    const char *member = (const char *)owner + m->offset;
+    int value;
+    if (m->size == sizeof(bool)) return *(const bool *)member;
+    assert(m->size == sizeof value);
+    memcpy(&value, member, sizeof value);
+    return value;
+}
+
 void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const void *owner)
 {
     for (const hf_hdf5_member *m = table; m < table + n; m++) {
@@ -493,9 +503,7 @@ void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const 
         if (m->kind == HF_KIND_CHARS) {
             hf_hdf5_put_chars(io, io->file, m->object, m->name, member);
         } else if (is_enum(m->kind)) {
-            int value;
-            assert(m->size == sizeof value);
-            memcpy(&value, member, sizeof value);
+            int value = hf_hdf5_enum_value(m, owner);
             hf_hdf5_put(io, io->file, m->object, m->name, m->kind, 0, &(signed char){(signed char)value});
         } else {
             assert(m->size == hf_hdf5_kind_bytes(m->kind));
@@ -513,7 +521,10 @@ void hf_hdf5_get_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, void *
             hf_hdf5_get(io, io->file, m->object, m->name, m->kind, member, m->size);
         } else {
             hf_hdf5_get(io, io->file, m->object, m->name, m->kind, &byte, 1);
-            memcpy(member, &(int){byte}, sizeof(int));
+            if (m->size == sizeof(bool))
+                *(bool *)member = byte != 0;
+            else
+                memcpy(member, &(int){byte}, sizeof(int));
         }
     }
 }

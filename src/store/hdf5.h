@@ -1,13 +1,14 @@
-/* hdf5 - HDF5 as the store uses it: opening files, data sets, rows of them, attributes, the lock. It knows nothing of
- * nets and results; what our files contain is in layout.h.
+/* hdf5 - wrapper of HDF5 for the store: files, data sets, rows of data sets, attributes, the lock. Nothing here depends
+ * on nets or results; what our files contain is in layout.h.
  *
  * Every call takes an hf_hdf5, records the first failure with the place where it happened, and does nothing once the
- * status is not HF_OK. A sequence of calls needs no check in between: look at io->status at the end. Ids are negative
- * then, and closing them is harmless. */
+ * status is not HF_OK. A sequence of calls needs no check in between: check io->status at the end. After a failure ids
+ * are negative, and closing them has no effect. */
 #ifndef HIFDM_STORE_HDF5_H
 #define HIFDM_STORE_HDF5_H
 
 #include <hifdm/status.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 /* HDF5 1.12 and newer keep the calls of 1.10 under this. */
@@ -21,7 +22,7 @@ typedef struct {
     hid_t file;
 } hf_hdf5;
 
-/* How a stored value looks, with the C type it has in arrays and attributes here. */
+/* Kinds of stored values, with the C type of each in arrays and attributes. */
 typedef enum {
     HF_HDF5_REAL,   /* double */
     HF_HDF5_INT,    /* int */
@@ -50,18 +51,18 @@ extern const hf_hdf5_kind hf_hdf5_number[4], hf_hdf5_text, hf_hdf5_chars, hf_hdf
 #define HF_KIND_CHARS (&hf_hdf5_chars)
 #define HF_KIND_FLAG (&hf_hdf5_flag) /* enumeration of 0 and 1, a bool in h5py */
 
-/* HDF5 as Debian builds it is not made for threads: every public call of store and store_read holds this one lock, so
- * that runs in threads of one process may each have a store. A pthread mutex and no OpenMP lock, because the threads
- * may be anybody's. hf_hdf5_unlock returns its argument. hf_hdf5_quiet, under the lock: every thread that takes it from
- * then on prints none of HDF5's errors. */
+/* Debian builds HDF5 without thread safety. Every public call of store and store_read holds this one lock, so that
+ * several threads of a process may each have a store. It is a pthread mutex, not an OpenMP lock, because a caller may
+ * make its threads in any way. hf_hdf5_unlock returns its argument. After hf_hdf5_quiet, called under the lock, HDF5
+ * prints no errors in any thread that takes the lock. */
 void hf_hdf5_lock(void);
-int hf_hdf5_try_lock(void); /* 0: another thread has it */
+bool hf_hdf5_try_lock(void); /* false: another thread has it */
 void hf_hdf5_quiet(void);
 hf_status hf_hdf5_unlock(hf_status status);
 
 size_t hf_hdf5_kind_bytes(const hf_hdf5_kind *kind); /* of one value in memory; not for HF_KIND_CHARS */
 
-/* A data set: what it is called, how large it is, what is in it. */
+/* Description of a data set: name, size, kind of its values. */
 typedef struct {
     const char *name; /* below the group it is given with, perhaps with '/' */
     const hf_hdf5_kind *kind;
@@ -78,24 +79,24 @@ void hf_hdf5_fail(hf_hdf5 *io, const char *verb, hid_t place, const char *name);
 /* Record that what is stored is not what this program writes: HF_IO, "path: is damaged: /place/name <what>". */
 void hf_hdf5_damaged(hf_hdf5 *io, hid_t place, const char *name, const char *what);
 
-void hf_hdf5_no_memory(hf_hdf5 *io); /* HF_NO_MEMORY, unless something has failed before */
+void hf_hdf5_no_memory(hf_hdf5 *io); /* record HF_NO_MEMORY */
 
 /* ---- Files and groups ---- */
 
-/* Set io->file. What is in the file `name` is lost. Locks are taken where the file system has them, and their absence
- * is no failure. */
+/* Both set io->file. Creating truncates an existing file. HDF5 locks the file if the file system supports it; if not,
+ * that is no failure. */
 void hf_hdf5_create_file(hf_hdf5 *io, const char *name);
-void hf_hdf5_open_file(hf_hdf5 *io, const char *name, int to_write);
-void hf_hdf5_close_file(hf_hdf5 *io); /* nothing but the file may be open; closes after a failure, too */
+void hf_hdf5_open_file(hf_hdf5 *io, const char *name, bool to_write);
+void hf_hdf5_close_file(hf_hdf5 *io); /* no other id of the file may be open; also after a failure */
 
-void hf_hdf5_close(hf_hdf5 *io, hid_t id); /* of any kind, or negative; closes after a failure, too */
+void hf_hdf5_close(hf_hdf5 *io, hid_t id); /* of any kind, or negative; also after a failure */
 
 hid_t hf_hdf5_make_group(hf_hdf5 *io, const char *path); /* or open it when it is there */
 hid_t hf_hdf5_open_group(hf_hdf5 *io, const char *path);
-int hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name); /* is there a link of this name? */
+bool hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name); /* is there a link of this name? */
 
-/* The same from the root, over several groups: HDF5 has to be asked for every group on the way. */
-int hf_hdf5_has_path(hf_hdf5 *io, const char *path);
+/* The same for a path from the root: asks HDF5 for every group of the path in turn. */
+bool hf_hdf5_has_path(hf_hdf5 *io, const char *path);
 
 /* ---- Data sets ---- */
 
@@ -103,24 +104,24 @@ int hf_hdf5_has_path(hf_hdf5 *io, const char *path);
 hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, const hsize_t *chunk);
 void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, const void *values);
 
-/* Rows [row, row + array->dims[0]) of a data set that grows, below `group`. Writing makes it larger when it must be. */
+/* Rows [row, row + array->dims[0]) of a data set that grows, below `group`. Writing extends it as needed. */
 void hf_hdf5_write_rows(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, hsize_t row, const void *values);
 void hf_hdf5_read_rows(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, hsize_t row, void *values);
 
-/* One string that the file keeps with a fixed length, as a new text, *text, which the caller frees. */
+/* Read one string of fixed length into a new *text, which the caller frees. */
 void hf_hdf5_read_text(hf_hdf5 *io, hid_t group, const char *name, char **text);
 
-/* n >= 1 names as strings of one length. */
+/* Write n >= 1 names as strings of one length. */
 void hf_hdf5_write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *const *id, int n,
                        const char *description);
 
-/* The n and m ids of two data sets, set in id_a and id_b, and the block that they point into (caller frees). */
+/* Read the n and m ids of two data sets. id_a and id_b point into the block *text, which the caller frees. */
 void hf_hdf5_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, const char **id_a, const char *name_b, int m,
                       const char **id_b, void **text);
 
 hid_t hf_hdf5_array_type(const hf_hdf5_array *array); /* the caller closes it; negative after a failure of HDF5 */
 
-/* Read exactly array->dims values, refusing other dimensions, other types and foreign values of enumerations. */
+/* Read exactly array->dims values. Other dimensions, other types and unknown values of enumerations are failures. */
 void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, void *values);
 
 /* First dimension of a data set, from 1 to `max`. 0 after a failure. */
@@ -142,16 +143,18 @@ void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribu
                  void *value, size_t size);
 
 /* Is there such an attribute, and is it a text of fixed length? */
-int hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute);
+bool hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute);
 
-/* ---- Tables: the same rows write and read, so that the two cannot diverge ---- */
+/* ---- Tables: one list of members serves writing and reading ---- */
 
-/* A member of a struct <-> an attribute. Enumerations are int or enum in the struct, strings char[size]. */
+/* A member of a struct <-> an attribute. Enumerations are int, enum or bool in the struct, strings char[size]. */
 typedef struct {
     const char *object, *name;
     const hf_hdf5_kind *kind;
     size_t offset, size;
 } hf_hdf5_member;
+
+int hf_hdf5_enum_value(const hf_hdf5_member *member, const void *owner); /* of HF_HDF5_ENUM */
 
 void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const void *owner);
 void hf_hdf5_get_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, void *owner);

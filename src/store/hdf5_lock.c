@@ -5,7 +5,7 @@
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
-static int is_quiet; /* under the lock */
+static bool is_quiet; /* under the lock */
 
 static void silence(void)
 {
@@ -18,16 +18,16 @@ void hf_hdf5_lock(void)
     silence();
 }
 
-int hf_hdf5_try_lock(void)
+bool hf_hdf5_try_lock(void)
 {
-    if (pthread_mutex_trylock(&lock) != 0) return 0;
+    if (pthread_mutex_trylock(&lock) != 0) return false;
     silence();
-    return 1;
+    return true;
 }
 
 void hf_hdf5_quiet(void)
 {
-    is_quiet = 1;
+    is_quiet = true;
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 

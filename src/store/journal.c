@@ -49,7 +49,7 @@ static hf_status open_and_lock(hf_journal *j, hf_messages *messages)
                             j->path);
         }
         if (hf_path_leads_to(j->path, j->file)) return HF_OK;
-        close(j->file); /* its owner rotated or finished between open and lock */
+        close(j->file); /* the owner rotated or removed it between open and lock */
         j->file = -1;
     }
     return hf_error(messages, HF_IO, "%s: %s changes all the time; is another process writing it?", j->result, j->path);
@@ -72,7 +72,7 @@ static hf_status look_at_head(hf_journal *j, content *is, hf_messages *messages)
     return HF_OK;
 }
 
-hf_status hf_journal_open(const char *result, int replaces, hf_journal *j, hf_messages *messages)
+hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_messages *messages)
 {
     size_t size = strlen(result) + 16;
     content is;
@@ -82,7 +82,7 @@ hf_status hf_journal_open(const char *result, int replaces, hf_journal *j, hf_me
     snprintf(j->next, size, "%s.journal.new", result);
     HF_TRY(open_and_lock(j, messages));
     HF_TRY(look_at_head(j, &is, messages));
-    if (is != JOURNAL && replaces) { /* the name only: a link may lead to what is somebody's */
+    if (is != JOURNAL && replaces) { /* unlink, never truncate: the name may be a link to another file */
         if (unlink(j->path) != 0) return fail(j, "remove", j->path, messages);
         hf_warning(messages, "%s: %s was no journal of hifdm; it is replaced", result, j->path);
         close(j->file);
@@ -103,12 +103,12 @@ hf_status hf_journal_open(const char *result, int replaces, hf_journal *j, hf_me
                     result, j->path);
 }
 
-int hf_journal_is_there(const char *result)
+bool hf_journal_is_there(const char *result)
 {
     char path[4096], magic[8];
     snprintf(path, sizeof path, "%s.journal", result);
     int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    int is_there = file >= 0 && read(file, magic, sizeof magic) == sizeof magic && !memcmp(magic, MAGIC, sizeof magic);
+    bool is_there = file >= 0 && read(file, magic, sizeof magic) == sizeof magic && !memcmp(magic, MAGIC, sizeof magic);
     if (file >= 0) close(file);
     return is_there;
 }
@@ -129,8 +129,8 @@ hf_status hf_journal_restart(hf_journal *j, const char *identity, hf_messages *m
     snprintf(j->identity, sizeof j->identity, "%s", identity);
     if (ftruncate(j->file, 0) != 0 || write_header(j->file, identity) != 0) return fail(j, "write", j->path, messages);
     j->size = HEADER_BYTES;
-    j->is_new = 1;
-    j->has_news = 0;
+    j->is_new = true;
+    j->has_news = false;
     return HF_OK;
 }
 
@@ -139,7 +139,7 @@ void hf_journal_forget(hf_journal *j)
     j->size = 0;
 }
 
-int hf_journal_is_empty(const hf_journal *j)
+bool hf_journal_is_empty(const hf_journal *j)
 {
     return j->size <= HEADER_BYTES;
 }
@@ -165,12 +165,13 @@ hf_status hf_journal_append(hf_journal *j, int generation, const struct iovec *p
     ssize_t done = writev(j->file, part, n + 1);
     if (done == (ssize_t)whole) {
         j->size += done;
-        j->has_news = 1;
+        j->has_news = true;
         return HF_OK;
     }
-    if (done >= 0 && write(j->file, "", 1) >= 0) errno = ENOSPC; /* a short write: the next one says why */
+    if (done >= 0 && write(j->file, "", 1) >= 0)
+        errno = ENOSPC; /* after a short write the next one returns the reason */
     hf_status status = fail(j, "write", j->path, messages);
-    if (ftruncate(j->file, j->size) == 0) lseek(j->file, j->size, SEEK_SET); /* else the CRC tells */
+    if (ftruncate(j->file, j->size) == 0) lseek(j->file, j->size, SEEK_SET); /* if not, the CRC detects it */
     return status;
 }
 
@@ -183,7 +184,7 @@ hf_status hf_journal_tend(hf_journal *j, double now_s, hf_messages *messages)
         return hf_error(messages, HF_IO, "%s: %s was removed or replaced during the run", j->result, j->path);
     if (j->has_news && fdatasync(j->file) != 0 && errno != EINVAL && errno != ENOSYS)
         return fail(j, "write", j->path, messages);
-    j->has_news = 0;
+    j->has_news = false;
     return HF_OK;
 }
 
@@ -200,15 +201,15 @@ static int read_whole(int file, void *to, size_t n, int64_t at)
     return 1;
 }
 
-/* The record at `at` into *payload, which grows: 1, 0 when there is no whole one, -1 and errno. What is shorter than it
- * says was being written when the process ended; anything else is damage. */
+/* The record at `at` into *payload, which grows: 1; 0 when there is no whole one; -1 and errno. A record
+ * shorter than its head says was being written when the process ended; anything else is damage. */
 static int read_record(const hf_journal *j, int64_t at, int64_t end, record_head *head, char **payload,
-                       size_t *capacity, int *is_damaged)
+                       size_t *capacity, bool *is_damaged)
 {
     int got = read_whole(j->file, head, sizeof *head, at);
     if (got <= 0) return got;
     size_t bytes = head->length - sizeof head->generation;
-    int fits = at + (int64_t)sizeof *head + (int64_t)bytes <= end;
+    bool fits = at + (int64_t)sizeof *head + (int64_t)bytes <= end;
     if (head->magic != RECORD_MAGIC || head->length < sizeof head->generation || head->length > PAYLOAD_MAX || !fits) {
         *is_damaged = fits || head->magic != RECORD_MAGIC;
         return 0;
@@ -237,9 +238,10 @@ hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take
     record_head head;
     struct stat info;
     hf_status status = HF_OK;
-    int is_damaged = 0, got = read_whole(j->file, header, sizeof header, 0);
+    bool is_damaged = false;
+    int got = read_whole(j->file, header, sizeof header, 0);
     if (got < 0 || fstat(j->file, &info) != 0) return fail(j, "read", j->path, messages);
-    int is_ours = got && strncmp(header + 8, identity, HF_JOURNAL_IDENTITY) == 0;
+    bool is_ours = got && strncmp(header + 8, identity, HF_JOURNAL_IDENTITY) == 0;
     if (!is_ours && info.st_size > HEADER_BYTES)
         return hf_error(messages, HF_EXISTS,
                         "%s: %s is of another case; delete it or put the right one there, or begin anew with --restart "
@@ -283,11 +285,11 @@ hf_status hf_journal_rotate(hf_journal *j, hf_messages *messages)
     close(j->file);
     j->file = file;
     j->size = HEADER_BYTES;
-    j->has_news = 0;
+    j->has_news = false;
     return HF_OK;
 }
 
-void hf_journal_close(hf_journal *j, int remove)
+void hf_journal_close(hf_journal *j, bool remove)
 {
     if (j->file >= 0) {
         if (remove) {

@@ -73,7 +73,7 @@ const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind)
     X(hf_shape, "q_N_per_m", q_N_per_m, REAL, 1, 1, "N/m", "force density")                                            \
     X(hf_shape, "law", law, LAW, 1, 1, "", "law in force, under the case's method or rule")
 
-/* What is stored of an hf_truss and of an hf_carrier_state, below /truss; per_cable = per member. */
+/* Columns of hf_truss and of hf_carrier_state, below /truss; here per_cable means per member. */
 #define TRUSS_NUMBER_COLUMN(name, units, otherwise, description)                                                       \
     {"member/" #name, HF_KIND_REAL, 1, 1, units, description, offsetof(hf_truss, name)},
 #define TRUSS_COLUMNS(X)                                                                                               \

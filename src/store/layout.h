@@ -1,5 +1,5 @@
-/* layout - what our result files contain: groups, names, types, units and descriptions, and how they follow from the
- * structs of the program. <hifdm/store.h> shows the whole file for a reader; hdf5.h knows how to write any of it.
+/* layout - what our result files contain: groups, names, types, units and descriptions, and the struct members that
+ * they come from. <hifdm/store.h> describes the whole file for a reader; hdf5.h has the calls that write and read.
  * Elsewhere are only the rows of generations (generations.c), genes, case and provenance (store.c), and the marks of a
  * session (store_resume.c).
  * A new data set per node or cable is a row of SCENE_COLUMNS or SHAPE_COLUMNS, a new attribute a row of a list of
@@ -14,12 +14,12 @@
 #include <hifdm/workspace.h>
 
 #define HF_PROGRAM "hifdm"  /* attribute `program`: the file is one of ours */
-#define HF_FORMAT_VERSION 1 /* attribute `format_version`; a change that old programs would misread raises it */
+#define HF_FORMAT_VERSION 1 /* attribute `format_version`; raise it for a change that old programs would misread */
 
-/* More nodes or members than any scene has; keeps a damaged file from asking for all memory. */
+/* More nodes or members than any scene has. The limit keeps a damaged file from taking all memory. */
 #define HF_LAYOUT_COUNT_MAX 20000000
 
-/* ---- Enumerations: their words and values, as the engine declares them ---- */
+/* ---- Enumerations: words and values from the engine's own lists ---- */
 
 extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_layout_status, hf_layout_stop_reason,
     hf_layout_ga_stop, hf_layout_joint, hf_layout_unit, hf_layout_coupling_stop;
@@ -33,7 +33,7 @@ extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_lay
 #define HF_KIND_UNIT (&hf_layout_unit)
 #define HF_KIND_COUPLING_STOP (&hf_layout_coupling_stop)
 
-/* Of the figures of a result. */
+/* The stored kind of a figure of HF_RESULT_LIST. */
 const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind);
 
 /* ---- Columns: a pointer in a struct <-> a data set [n_node] or [n_cable], [...][columns] when columns > 1 ---- */
@@ -41,7 +41,8 @@ const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind);
 typedef struct {
     const char *name;
     const hf_hdf5_kind *kind;
-    int per_cable, columns; /* per_cable: [n_cable], of a truss [n_member]; else [n_node] */
+    bool per_cable; /* [n_cable], of a truss [n_member]; else [n_node] */
+    int columns;
     const char *units, *description;
     size_t offset; /* of the pointer in its struct */
 } hf_layout_column;
@@ -88,10 +89,10 @@ extern const hf_layout_members hf_layout_summary[HF_LAYOUT_N_PART];
 void hf_layout_put_summary(hf_hdf5 *io, hf_layout_part part, const hf_summary *summary);
 void hf_layout_get_summary(hf_hdf5 *io, hf_layout_part part, hf_summary *summary);
 
-/* ---- Groups with more than that, each in a file of its own; all do nothing after a failure ---- */
+/* ---- Groups that are not plain tables, each in a file of its own; the calls do nothing after a failure ---- */
 
-/* layout_coupling: where the attachments are and went, what pulls them; how the loop got there unless history is NULL;
- * the results of the coupling in a summary, as attributes of the groups of their shapes. */
+/* layout_coupling: node, displacement and force of each attachment, and the history of the loop unless it is NULL; the
+ * results of the coupling in a summary, as attributes of the groups of their stages. */
 void hf_layout_write_coupling(hf_hdf5 *io, const hf_model *model, const hf_workspace *workspace,
                               const hf_coupling_history *history);
 void hf_layout_put_coupling(hf_hdf5 *io, const hf_summary *summary);
@@ -105,8 +106,8 @@ void hf_layout_get_coupling(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_put_surface(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary);
 
-/* layout_truss: the truss as it was described, what carries the net, and, when `state` is not NULL, what the pull of
- * the net does to it. Reading allocates: the caller frees both, after a failure, too. */
+/* layout_truss: the truss as described, its attachments and, when `state` is not NULL, its displacements and forces
+ * under the pull of the net. Reading allocates: the caller frees both in any case. */
 void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carrier_state *state);
 void hf_layout_read_truss(hf_hdf5 *io, hf_truss *truss, hf_carrier_state *state);
 

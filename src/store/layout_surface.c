@@ -95,7 +95,7 @@ void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary)
         hf_hdf5_member table[N_MEASURE];
         if (!hf_hdf5_has(io, io->file, stage_group[stage])) continue;
         table_of(stage, table);
-        s->is_measured = 1;
+        s->is_measured = true;
         group = hf_hdf5_open_group(io, stage_group[stage]);
         hf_hdf5_get_members(io, table, N_MEASURE, s);
         if (n) hf_hdf5_read_array(io, group, &raw, s->gain_loss_dB);

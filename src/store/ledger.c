@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 #define HEADER "#hifdm-points-1"
-#define SYNC_S 5.0      /* how much work a power cut may take */
+#define SYNC_S 5.0      /* finished points of the last 5 s may be lost by a power cut */
 #define LINE_SIZE 16384 /* of one row, reason included */
 #define REASON_MAX 4000
 #define N_FIXED 4 /* fields before the numbers: id, fingerprint, status, reason */
@@ -44,21 +44,21 @@ int hf_ledger_n_column(void)
     return n;
 }
 
-int hf_ledger_is_circumstance(const hf_hdf5_member *column)
+bool hf_ledger_is_circumstance(const hf_hdf5_member *column)
 {
     size_t n = strlen(column->name);
     return !strcmp(column->name, "threads") || (n > 2 && !strcmp(column->name + n - 2, "_s"));
 }
 
-/* Has the run come to the stage that this number is of? */
-static int applies(const hf_hdf5_member *column, const hf_summary *s)
+/* Did the run reach the stage to which this number belongs? */
+static bool applies(const hf_hdf5_member *column, const hf_summary *s)
 {
-    if (s->form.status == HF_NOT_EVALUATED) return 0;
+    if (s->form.status == HF_NOT_EVALUATED) return false;
     if (!strcmp(column->object, "/truss")) return s->has_truss;
-    if ((!strcmp(column->object, "/coupling") || strstr(column->name, "coupling_")) && !s->has_coupling) return 0;
+    if ((!strcmp(column->object, "/coupling") || strstr(column->name, "coupling_")) && !s->has_coupling) return false;
     if (!strcmp(column->object, "/ga")) return s->has_optimize;
     if (!strcmp(column->object, "/polish")) return s->has_polish;
-    return 1;
+    return true;
 }
 
 static int print_number(const hf_hdf5_member *column, const hf_summary *s, char *text, size_t size)
@@ -71,7 +71,9 @@ static int print_number(const hf_hdf5_member *column, const hf_summary *s, char 
         return snprintf(text, size, "%ld", *(const long *)from);
     case HF_HDF5_UINT64:
         return snprintf(text, size, "%" PRIu64, *(const uint64_t *)from);
-    default: /* int, and enumerations, which are int in hf_summary */
+    case HF_HDF5_ENUM:
+        return snprintf(text, size, "%d", hf_hdf5_enum_value(column, s));
+    default:
         return snprintf(text, size, "%d", *(const int *)from);
     }
 }
@@ -93,7 +95,7 @@ static struct flock lock_of(const char *id, short type)
 
 /* ---- opening and writing ---- */
 
-/* How far each file has been read, and what was finished since. */
+/* How far each file has been read, and which points were finished since. */
 struct hf_ledger_news {
     struct {
         char name[256];
@@ -101,7 +103,7 @@ struct hf_ledger_news {
     } * file;
     int n_file;
     struct named_point *sorted; /* [n_point] by id */
-    unsigned char *is_finished; /* [n_point] */
+    bool *is_finished;          /* [n_point] */
 };
 
 static void free_news(struct hf_ledger_news *news)
@@ -139,10 +141,10 @@ void hf_ledger_close(hf_ledger *l)
     pthread_mutex_destroy(&l->lock);
 }
 
-int hf_ledger_claim(hf_ledger *l, const char *id)
+bool hf_ledger_claim(hf_ledger *l, const char *id)
 {
     struct flock lock = lock_of(id, F_WRLCK);
-    /* on a file system without locks the shards are all that keeps processes apart */
+    /* a file system without locks: only shards keep processes apart */
     return fcntl(l->claims, F_SETLK, &lock) == 0 || (errno != EACCES && errno != EAGAIN);
 }
 
@@ -161,7 +163,7 @@ static hf_status write_line(hf_ledger *l, const char *line, size_t length, hf_me
                     n < 0 ? strerror(errno) : "no space left");
 }
 
-/* A file that is this process's alone, with the names of the columns. */
+/* Make the points file of this process, with the names of the columns. */
 static hf_status start_rows(hf_ledger *l, hf_messages *messages)
 {
     char host[64] = "host", path[HF_PATH_SIZE + 128], line[LINE_SIZE];
@@ -182,7 +184,7 @@ static hf_status start_rows(hf_ledger *l, hf_messages *messages)
     return write_line(l, line, used, messages);
 }
 
-/* At most REASON_MAX bytes, without what separates fields and lines. */
+/* Copy at most REASON_MAX bytes, with tabs and newlines replaced by blanks. */
 static size_t put_reason(const char *reason, char *to)
 {
     size_t n = 0;
@@ -210,7 +212,7 @@ hf_status hf_ledger_write(hf_ledger *l, const hf_study *study, int point, hf_sta
     hf_status result = l->rows < 0 ? start_rows(l, messages) : HF_OK;
     if (result == HF_OK) result = write_line(l, line, used, messages);
     double now_s = hf_clock_s();
-    int is_due = now_s - l->synced_s >= SYNC_S;
+    bool is_due = now_s - l->synced_s >= SYNC_S;
     if (is_due) l->synced_s = now_s;
     pthread_mutex_unlock(&l->lock);
     if (result == HF_OK && is_due && fdatasync(l->rows) != 0 && errno != EINVAL)
@@ -266,7 +268,7 @@ static int split(char *line, char **field, int max)
     return n;
 }
 
-/* A success counts more than a failure, what is of this base case more than what is not. */
+/* A success overrides a failure; a row of this base case overrides one of another. */
 static void take_row(reading *r, char **field, char **number)
 {
     int i = find_point(r, field[0]);
@@ -300,8 +302,8 @@ static int read_header(char *line, int *from, int n_column)
     return strcmp(name[0], HEADER) ? 0 : n;
 }
 
-/* The rows of one file: 0 without memory. */
-static int read_rows(reading *r, char *text)
+/* Take the rows of one file. False without memory. */
+static bool read_rows(reading *r, char *text)
 {
     hf_points *points = r->points;
     int n_column = hf_ledger_n_column(), from[FIELD_MAX], n_field = 0;
@@ -314,7 +316,7 @@ static int read_rows(reading *r, char *text)
     if (more) points->fields = more;
     if (!number || !more) {
         free(number);
-        return 0;
+        return false;
     }
     points->fields[points->n_field_block++] = number;
     for (char *line = text; (end = strchr(line, '\n')) != NULL; line = end + 1, number += n_column) {
@@ -327,7 +329,7 @@ static int read_rows(reading *r, char *text)
             take_row(r, field, number);
         }
     }
-    return 1;
+    return true;
 }
 
 static hf_status read_file(reading *r, const char *folder, const char *name, hf_messages *messages)
@@ -358,7 +360,7 @@ static int by_name(const struct dirent **a, const struct dirent **b)
     return strcmp((*a)->d_name, (*b)->d_name);
 }
 
-/* Sorted: of several rows of one point it is always the same that counts. */
+/* In sorted order, so that of several rows of one point always the same counts. */
 static hf_status read_files(reading *r, const char *folder, hf_messages *messages)
 {
     struct dirent **entry;
@@ -389,7 +391,7 @@ static int place_of(struct hf_ledger_news *news, const char *name)
     return news->n_file++;
 }
 
-/* The whole lines of text[n], which ends with a NUL: how many bytes they have. */
+/* Note the whole lines of a text; returns their length in bytes. */
 static off_t note_rows(struct hf_ledger_news *news, const hf_study *study, char *text)
 {
     reading r = {.study = study, .sorted = news->sorted};
@@ -397,13 +399,13 @@ static off_t note_rows(struct hf_ledger_news *news, const hf_study *study, char 
     for (; (end = strchr(line, '\n')) != NULL; line = end + 1) {
         *end = '\0';
         int i = split(line, field, 3) == 3 && !strcmp(field[1], study->fingerprint) ? find_point(&r, field[0]) : -1;
-        if (i >= 0) news->is_finished[i] = 1;
+        if (i >= 0) news->is_finished[i] = true;
     }
     return line - text;
 }
 
-/* What a file has more than before; `skip`: all of it is old. What cannot be read is no news. */
-static void read_news_of(hf_ledger *l, const hf_study *study, const char *name, int skip)
+/* Note the rows that a file has more than before; with `skip` only its length. A file that cannot be read has none. */
+static void read_news_of(hf_ledger *l, const hf_study *study, const char *name, bool skip)
 {
     char path[HF_PATH_SIZE + 300];
     struct stat info;
@@ -425,7 +427,7 @@ static void read_news_of(hf_ledger *l, const hf_study *study, const char *name, 
     close(file);
 }
 
-static void read_news(hf_ledger *l, const hf_study *study, int skip)
+static void read_news(hf_ledger *l, const hf_study *study, bool skip)
 {
     struct dirent **entry;
     int n = scandir(l->folder, &entry, is_rows, by_name);
@@ -442,7 +444,7 @@ hf_status hf_ledger_watch(hf_ledger *l, const hf_study *study, hf_messages *mess
     l->news = calloc(1, sizeof *l->news);
     if (l->news) {
         l->news->sorted = sort_points(study);
-        l->news->is_finished = calloc((size_t)study->n_point, 1);
+        l->news->is_finished = calloc((size_t)study->n_point, sizeof(bool));
     }
     if (!l->news || !l->news->sorted || !l->news->is_finished)
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for %d points", l->folder, study->n_point);
@@ -450,18 +452,19 @@ hf_status hf_ledger_watch(hf_ledger *l, const hf_study *study, hf_messages *mess
     return HF_OK;
 }
 
-int hf_ledger_is_finished(hf_ledger *l, const hf_study *study, int point)
+bool hf_ledger_is_finished(hf_ledger *l, const hf_study *study, int point)
 {
     pthread_mutex_lock(&l->lock);
     read_news(l, study, 0);
-    int is_finished = l->news->is_finished[point];
+    bool is_finished = l->news->is_finished[point];
     pthread_mutex_unlock(&l->lock);
     return is_finished;
 }
 
 /* ---- reading locks ---- */
 
-/* The points whose bytes from..to-1 are locked. The system names any one lock of a range: then both sides of it. */
+/* Find the points whose bytes from..to-1 are locked. The system returns any one lock of a range; the parts before and
+ * after it are searched in turn. */
 static void find_locks(reading *r, int file, off_t from, off_t to)
 {
     while (from < to) {
@@ -489,7 +492,8 @@ static void find_running(reading *r, const char *folder)
 
 /* ---- the whole ---- */
 
-/* A row is not enough where a file is asked for: somebody may have removed it, and its second run be half way. */
+/* A point with a result file is done only if the file is there and whole: it may have been removed, and a second run of
+ * the point may be under way. */
 static void find_lost(reading *r, const char *folder)
 {
     char path[HF_PATH_SIZE + 32];

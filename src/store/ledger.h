@@ -2,9 +2,10 @@
  * machines that share it, write at the same time.
  *
  *   points-HOST-PID.tsv   a line per finished point, by the process that finished it: id, fingerprint of the base
- *                         case, status, reason, every number of hf_summary. One write(2) each; a torn one is ignored.
- *   claims                no content: the process that runs a point holds a record lock on the byte that the point's id
- *                         names, and the system takes it away when the process ends, however it ends.
+ *                         case, status, reason, every number of hf_summary. One write(2) each; an
+ *                         incomplete line is ignored.
+ *   claims                no content: the process that runs a point holds a record lock on the byte at the offset that
+ *                         the point's id gives as a number; the system releases it when the process ends.
  *   ID-FINGERPRINT.h5     result files of points that have one; of the fingerprint the first digits: runs of different
  *                         base cases never share a file. */
 #ifndef HIFDM_LEDGER_H
@@ -21,8 +22,8 @@
 int hf_ledger_n_column(void);
 const hf_hdf5_member *hf_ledger_column(int i); /* a member of hf_summary, never of HF_KIND_CHARS */
 
-/* Does the column depend on machine and moment, not on the point alone? Times and the number of threads do. */
-int hf_ledger_is_circumstance(const hf_hdf5_member *column);
+/* Does the column depend on the machine and its load? Times and the number of threads do. */
+bool hf_ledger_is_circumstance(const hf_hdf5_member *column);
 
 /* ---- Writing ---- */
 
@@ -38,21 +39,22 @@ typedef struct {
 hf_status hf_ledger_open(const char *folder, hf_ledger *ledger, hf_messages *messages);
 void hf_ledger_close(hf_ledger *ledger);
 
-/* Claim the point for this process: 1, or 0 when another process has it. */
-int hf_ledger_claim(hf_ledger *ledger, const char *id);
+/* Claim the point for this process. False when another process has it. */
+bool hf_ledger_claim(hf_ledger *ledger, const char *id);
 void hf_ledger_release(hf_ledger *ledger, const char *id);
 
-/* Note from now on which points any process finishes. Call it before hf_ledger_read. HF_OK or HF_NO_MEMORY. */
+/* Begin to watch which points any process finishes. Call it before hf_ledger_read. HF_OK or HF_NO_MEMORY. */
 hf_status hf_ledger_watch(hf_ledger *ledger, const hf_study *study, hf_messages *messages);
 
-/* Has the point been finished since hf_ledger_watch, well or not? Ask when it is claimed. From any thread. */
-int hf_ledger_is_finished(hf_ledger *ledger, const hf_study *study, int point);
+/* Has the point been finished since hf_ledger_watch, with success or not? Call it after claiming the point. From any
+ * thread. */
+bool hf_ledger_is_finished(hf_ledger *ledger, const hf_study *study, int point);
 
-/* A finished point, from any thread. reason: one line, "" when all went well. HF_OK or HF_IO. */
+/* A finished point, from any thread. reason: one line, "" after success. HF_OK or HF_IO. */
 hf_status hf_ledger_write(hf_ledger *ledger, const hf_study *study, int point, hf_status status, const char *reason,
                           const hf_summary *summary, hf_messages *messages);
 
-/* Path of the point's result file; what kind of file stands there. */
+/* Set the path of the point's result file; returns what is there. */
 typedef enum { HF_LEDGER_NO_FILE, HF_LEDGER_EMPTY_FILE, HF_LEDGER_FILE } hf_ledger_content;
 hf_ledger_content hf_ledger_file(const char *folder, const hf_study *study, int point, char path[HF_PATH_SIZE + 32]);
 
@@ -78,13 +80,13 @@ typedef struct {
 typedef struct {
     hf_point *point; /* [n_point] in the order of the study */
     int n_point, count[HF_N_POINT_STATE];
-    int n_lost;  /* of the missing ones: done, but the result file is gone, or begun anew */
-    char **text; /* the files, which the points lead into */
+    int n_lost;  /* of the missing ones: finished once, but the result file is gone or begun anew */
+    char **text; /* contents of the files; reasons and fields point into them */
     char ***fields;
     int n_text, n_field_block;
 } hf_points;
 
-/* What is known of the study's points; a folder that is not there means all are missing. HF_OK, HF_IO, HF_NO_MEMORY.
+/* Read the state of the study's points. Without the folder all are missing. HF_OK, HF_IO, HF_NO_MEMORY.
  * Free in any case. */
 hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *points, hf_messages *messages);
 void hf_points_free(hf_points *points);

@@ -19,7 +19,7 @@ typedef struct {
     hf_hdf5 io;
     const hf_study *study;
     const hf_points *points;
-    void *room; /* for one column of any kind but texts: [n_point][2] of 8 bytes */
+    void *room; /* one column of any kind but texts: [n_point][2] of 8 bytes */
 } merger;
 
 /* ---- columns ---- */
@@ -32,7 +32,7 @@ static void write_column(merger *m, hid_t group, const char *name, const hf_hdf5
     hf_hdf5_write_array(&m->io, group, &array, m->room);
 }
 
-/* Texts of fixed length, the longest of them. */
+/* Write texts with the length of the longest. */
 static void write_texts(merger *m, hid_t group, const char *name, const char *(*text_of)(const merger *, int, int),
                         int axis, const char *description)
 {
@@ -233,19 +233,19 @@ static void write_all(merger *m, const char *folder)
     hf_hdf5_close(&m->io, group);
     write_points(m);
     write_links(m, folder);
-    /* HDF5 1.10 does not survive a close that cannot write what is left */
+    /* HDF5 1.10 crashes in a close that cannot write: flush first, and leave the file open after a failure */
     if (H5Fflush(m->io.file, H5F_SCOPE_GLOBAL) < 0)
         hf_hdf5_fail(&m->io, "write", -1, NULL);
     else
         hf_hdf5_close_file(&m->io);
 }
 
-/* May the file be replaced? 1 when it is not there, or a merge. */
-static int is_ours(const char *path)
+/* May the file be replaced? True when it is not there or is a merge. */
+static bool is_ours(const char *path)
 {
     hf_messages unwanted = {0};
     hf_hdf5 io = {.path = path, .messages = &unwanted, .status = HF_OK, .file = -1};
-    int ours = access(path, F_OK) != 0;
+    bool ours = access(path, F_OK) != 0;
     if (!ours) {
         hf_hdf5_open_file(&io, path, 0);
         ours = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/points") && hf_hdf5_has(&io, io.file, "/runs");
@@ -255,7 +255,7 @@ static int is_ours(const char *path)
     return ours;
 }
 
-hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *points, const char *output, int force,
+hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *points, const char *output, bool force,
                    hf_messages *messages)
 {
     hf_file_out out;

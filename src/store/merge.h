@@ -3,8 +3,8 @@
  *   /study           text, base_text
  *   /points          id, status (not_evaluated = not finished), reason [n]
  *   /points/input    what each point sets, a data set per axis, named by its key: [n], pairs [n][2]
- *   /points/form, ga, polish   the numbers of hf_summary [n], as far as any point has them; NaN, 0 or not_evaluated
- *                    where a point has none. Times and threads stay with the runs.
+ *   /points/form, ga, polish   the numbers of hf_summary [n], those that any point has; NaN, 0 or not_evaluated
+ *                    where a point has none. Times and threads are not merged.
  *   /runs            an external link per result file, named by the point's id, with a path relative to this file
  * Data sets depend on study and base case alone: not on shards, order, threads or interruptions. */
 #ifndef HIFDM_MERGE_H
@@ -12,9 +12,9 @@
 
 #include "store/ledger.h"
 
-/* folder: of the ledger that `points` was read from. An earlier merge at `output` is replaced; for anything else there
- * `force` is needed: HF_EXISTS. HF_IO, HF_NO_MEMORY. */
-hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *points, const char *output, int force,
+/* folder: of the ledger that `points` was read from. An earlier merge at `output` is replaced; any other file only with
+ * `force`, else HF_EXISTS. HF_IO, HF_NO_MEMORY. */
+hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *points, const char *output, bool force,
                    hf_messages *messages);
 
 #endif

@@ -27,10 +27,14 @@
 #endif
 
 #define ARGUMENTS_MAX 4000 /* kept of the command line: an attribute holds 64 KiB */
-/* A publication is due when this many times as long as the last one took has passed: it takes 2 % of the time. */
+/* A publication is due when 50 times the time that the last one took has passed, so that publishing takes 2 % of the
+ * run, and at least 0.5 s, so that most short runs are published at their beginning and their end alone. No test of the
+ * store, of resuming or of interrupting changes for ratios from 5 to 500 and for times from 0.05 to 5 s. */
 #define PUBLISH_RATIO 50
-#define SAME_SHAPE 1e-5 /* of the largest tension: a stopping rule may leave 1e-6 between two builds */
-#define PUBLISH_S 0.5 /* but not more often: most short runs are published twice, at their beginning and at their end */
+#define PUBLISH_S 0.5
+/* Of the largest tension: a stopping rule may leave 1e-6 between two builds. From 1e-9 to 1e-4 no test of the store, of
+ * resuming or of interrupting changes; with 1e-2 one fails. */
+#define SAME_SHAPE 1e-5
 
 const char *const hf_stage_word[4] = {"form", "optimize", "polish", "none"};
 const char *const hf_stage_group[4] = {"/form", "/ga/best", "/polish", "/"};
@@ -110,7 +114,7 @@ static void write_scene(hf_store *s, const hf_scene *scene)
 
 /* ---- beginning ---- */
 
-hf_status hf_store_create(const char *path, int restart, const hf_case *settings, const hf_scene *scene,
+hf_status hf_store_create(const char *path, bool restart, const hf_case *settings, const hf_scene *scene,
                           const hf_truss *truss, int argc, char *const *argv, hf_store **store, hf_messages *messages)
 {
     hf_status status;
@@ -238,7 +242,8 @@ hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, 
     store->f.io.messages = messages;
     hf_store_file_open(&store->f);
     if (stage == HF_STAGE_OPTIMIZE) hf_hdf5_close(&store->f.io, hf_hdf5_make_group(&store->f.io, "/ga"));
-    if (hf_hdf5_has(&store->f.io, store->f.io.file, hf_stage_group[stage]) && /* of a session that was told to stop */
+    if (hf_hdf5_has(&store->f.io, store->f.io.file,
+                    hf_stage_group[stage]) && /* left by a session that was told to stop */
         H5Ldelete(store->f.io.file, hf_stage_group[stage], H5P_DEFAULT) < 0)
         hf_hdf5_fail(&store->f.io, "replace", store->f.io.file, hf_stage_group[stage]);
     hid_t group = hf_hdf5_make_group(&store->f.io, hf_stage_group[stage]);
@@ -309,7 +314,7 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_p
     hf_generations_add(g, population, piece);
     store->f.io.status = hf_journal_append(&store->f.journal, generation, piece, HF_GENERATIONS_PIECES, messages);
     if (store->f.io.status != HF_OK || !hf_generations_are_due(g)) return store->f.io.status;
-    /* it is safe; room for the next can be made when no other run is at it, unless it must */
+    /* The journal has it. Making room can wait while another run uses HDF5, unless there is none left. */
     if (hf_generations_are_full(g))
         hf_hdf5_lock();
     else if (!hf_hdf5_try_lock())
@@ -325,10 +330,10 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_p
 
 /* ---- summary ---- */
 
-static void put_summary(hf_store *s, const hf_summary *summary, int finished)
+static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
 {
     hf_summary state = *summary;
-    /* groups that are there already, unless the run had no shape or no generation to store */
+    /* these groups exist already, unless the run had no shape or no generation to store */
     hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/form"));
     state.finished = finished;
     hf_layout_put_summary(&s->f.io, HF_LAYOUT_FORM, &state);
@@ -352,8 +357,8 @@ static void put_summary(hf_store *s, const hf_summary *summary, int finished)
 
 /* ---- publishing ---- */
 
-/* What waits goes into the file, which is whole then. */
-static void complete(hf_store *s, const hf_summary *summary, int finished)
+/* Write the waiting generations and the summary and close the file. */
+static void complete(hf_store *s, const hf_summary *summary, bool finished)
 {
     hf_store_file_open(&s->f);
     hf_generations_write(&s->f.io, &s->rows);
@@ -361,7 +366,7 @@ static void complete(hf_store *s, const hf_summary *summary, int finished)
     hf_store_file_close(&s->f);
 }
 
-hf_status hf_store_publish(hf_store *s, const hf_summary *summary, int at_once, hf_messages *messages)
+hf_status hf_store_publish(hf_store *s, const hf_summary *summary, bool at_once, hf_messages *messages)
 {
     if (!s) return HF_OK;
     double now_s = hf_clock_s();
@@ -372,11 +377,11 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, int at_once, 
         s->f.io.status = hf_journal_tend(&s->f.journal, now_s, messages);
         return s->f.io.status;
     }
-    assert(s->n_journal == 0); /* or they would be lost */
+    assert(s->n_journal == 0); /* generations in the journal alone would be lost */
     hf_hdf5_lock();
-    complete(s, summary, 0);
-    hf_hdf5_unlock(HF_OK); /* others need not wait for this file's way to the disk */
-    /* before the first generation nothing is lost that would not be made again */
+    complete(s, summary, false);
+    hf_hdf5_unlock(HF_OK); /* other stores need not wait for the sync of this file */
+    /* without a sync before the first generation: a resumed run computes all of that again */
     hf_store_file_publish(&s->f, s->rows.n_stored > 0);
     if (s->f.io.status == HF_OK && !hf_journal_is_empty(&s->f.journal))
         s->f.io.status = hf_journal_rotate(&s->f.journal, messages);
@@ -394,14 +399,14 @@ hf_status hf_store_complete(hf_store *s, const hf_summary *summary, hf_messages 
     if (s->f.io.status != HF_OK)
         return hf_error(messages, s->f.io.status,
                         "%s: is not written to its end, since an earlier part of it could not be", s->f.path);
-    if (s->n_journal > 0) /* the shape was found where it was begun */
+    if (s->n_journal > 0) /* this session stopped before the generations of the journal were restored */
         return s->f.io.status = hf_error(messages, HF_EXISTS,
                                          "%s: this machine or build does not come as far as the one that began it; its "
                                          "generations are kept, --restart (of a sweep: --retry failed) begins anew",
                                          s->f.path);
     hf_hdf5_lock();
-    complete(s, summary, 1);
-    hf_generations_free(&s->rows); /* it may wait for long until it is settled */
+    complete(s, summary, true);
+    hf_generations_free(&s->rows); /* hf_store_settle may come much later */
     return hf_hdf5_unlock(s->f.io.status);
 }
 
@@ -409,7 +414,7 @@ hf_status hf_store_settle(hf_store *s, hf_messages *messages)
 {
     if (!s) return HF_OK;
     s->f.io.messages = messages;
-    hf_store_file_publish(&s->f, 1);
+    hf_store_file_publish(&s->f, true);
     hf_status status = s->f.io.status;
     if (status == HF_OK) hf_journal_forget(&s->f.journal);
     hf_store_abandon(s); /* frees it; of a finished one nothing is left behind */
@@ -425,7 +430,7 @@ hf_status hf_store_finish(hf_store *s, const hf_summary *summary, hf_messages *m
 void hf_store_abandon(hf_store *store)
 {
     if (!store) return;
-    int is_open = store->f.io.file >= 0;
+    bool is_open = store->f.io.file >= 0;
     if (is_open) hf_hdf5_lock();
     hf_store_free(store);
     if (is_open) hf_hdf5_unlock(HF_OK);

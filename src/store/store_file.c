@@ -16,7 +16,7 @@
 
 /* ---- names and checks ---- */
 
-/* Can the file be made under this name when the run is over? Told now rather than after hours of work. */
+/* Can the file be made under this name? Checked before the run rather than after hours of work. */
 static hf_status check_target(const char *path, hf_messages *messages)
 {
     char folder[4096];
@@ -34,7 +34,7 @@ static hf_status check_target(const char *path, hf_messages *messages)
     return HF_OK;
 }
 
-hf_status hf_store_file_begin(const char *path, int replaces, hf_store_file *f, hf_messages *messages)
+hf_status hf_store_file_begin(const char *path, bool replaces, hf_store_file *f, hf_messages *messages)
 {
     size_t size = strlen(path) + 48;
     *f = (hf_store_file){.journal.file = -1, .io.file = -1, .visible = -1, .flow = -1, .replaces = replaces};
@@ -50,19 +50,19 @@ hf_status hf_store_file_begin(const char *path, int replaces, hf_store_file *f, 
 
 /* ---- the temporary file ---- */
 
-/* What a killed run has left there may be a second name of the visible file (hf_file_out_add), so it is never written
- * into. 1 when the name is free. */
-static int free_temporary(hf_store_file *f)
+/* Remove the temporary file of a killed run. It may be a second name of the visible file (hf_file_out_add), so it is
+ * never written into. True when the name is free. */
+static bool free_temporary(hf_store_file *f)
 {
-    if (hf_file_out_clear(f->temporary) == 0) return 1;
+    if (hf_file_out_clear(f->temporary) == 0) return true;
     f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot remove %s: %s", f->path, f->temporary, strerror(errno));
-    return 0;
+    return false;
 }
 
 void hf_store_file_create(hf_store_file *f)
 {
     if (f->io.status != HF_OK || !free_temporary(f)) return;
-    f->has_temporary = 1;
+    f->has_temporary = true;
     hf_hdf5_create_file(&f->io, f->temporary);
 }
 
@@ -89,7 +89,7 @@ static void copy_visible(hf_store_file *f)
     }
     int to = hf_file_out_create(f->temporary);
     f->has_temporary |= to >= 0;
-    int ok = to >= 0 && lseek(f->visible, 0, SEEK_SET) == 0 && copy_bytes(f->visible, to, buffer) == 0;
+    bool ok = to >= 0 && lseek(f->visible, 0, SEEK_SET) == 0 && copy_bytes(f->visible, to, buffer) == 0;
     int why = errno;
     if (to >= 0) close(to);
     free(buffer);
@@ -112,7 +112,7 @@ static void stop_flow(hf_store_file *f)
     f->flowing = 0;
 }
 
-/* Advice: whether it is taken does not matter. */
+/* Only advice to the system: its failure does not matter. */
 void hf_store_file_flow(hf_store_file *f)
 {
     struct stat info;
@@ -129,7 +129,7 @@ void hf_store_file_adopt(hf_store_file *f)
     if (f->visible >= 0) close(f->visible);
     f->visible = open(f->path, O_RDONLY | O_CLOEXEC);
     if (f->visible >= 0 && fstat(f->visible, &f->ours) == 0)
-        f->is_published = 1;
+        f->is_published = true;
     else
         f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot open: %s", f->path, strerror(errno));
 }
@@ -153,31 +153,31 @@ void hf_store_file_close(hf_store_file *f)
     hf_hdf5_close_file(&f->io);
 }
 
-/* Down to the disk before the name is given: after a power cut there is the old file or the new one, whole. */
+/* Sync before the rename: after a power cut there is the old file or the new one, whole. */
 static void sync_to_disk(hf_store_file *f, const char *name)
 {
     if (hf_file_out_sync(name) != 0)
         f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot write to the disk: %s", f->path, strerror(errno));
 }
 
-/* Is the visible file still the one that this run has put there? */
-static int is_ours(const hf_store_file *f)
+/* Is the visible file still the one of this run? */
+static bool is_ours(const hf_store_file *f)
 {
     struct stat now;
     return stat(f->path, &now) == 0 && hf_path_is_same_inode(&now, &f->ours) && now.st_size == f->ours.st_size &&
            now.st_mtim.tv_sec == f->ours.st_mtim.tv_sec && now.st_mtim.tv_nsec == f->ours.st_mtim.tv_nsec;
 }
 
-/* The work is whole, so it is kept when its name cannot be given to it: under a name that no later run takes. */
-static void keep_work(hf_store_file *f, int is_worth_keeping)
+/* Keep a whole file that cannot get its name, under a name that no later run uses. */
+static void keep_work(hf_store_file *f, bool is_worth_keeping)
 {
     char kept[4096] = "";
     const char *words = "", *why = strerror(errno);
-    int is_taken = errno == EEXIST;
+    bool is_taken = errno == EEXIST;
     if (is_worth_keeping) {
         snprintf(kept, sizeof kept, "%s.%ld.h5", f->path, (long)getpid());
         if (hf_file_out_add(f->temporary, kept) != 0) snprintf(kept, sizeof kept, "%s", f->temporary);
-        f->has_temporary = 0;
+        f->has_temporary = false;
         words = "; this run's result is ";
     }
     if (is_taken)
@@ -189,7 +189,7 @@ static void keep_work(hf_store_file *f, int is_worth_keeping)
             hf_error(f->io.messages, HF_IO, "%s: cannot be given this name: %s%s%s", f->path, why, words, kept);
 }
 
-void hf_store_file_publish(hf_store_file *f, int durable)
+void hf_store_file_publish(hf_store_file *f, bool durable)
 {
     char folder[4096];
     if (f->io.status == HF_OK && durable) sync_to_disk(f, f->temporary);
@@ -204,7 +204,7 @@ void hf_store_file_publish(hf_store_file *f, int durable)
         keep_work(f, durable);
         return;
     }
-    f->has_temporary = 0;
+    f->has_temporary = false;
     hf_store_file_adopt(f);
     hf_path_folder(f->path, folder, sizeof folder);
     if (f->io.status == HF_OK && durable) sync_to_disk(f, folder);

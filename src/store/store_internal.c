@@ -11,7 +11,7 @@ void hf_store_free(hf_store *s)
     free(s);
 }
 
-hf_store *hf_store_new(const char *path, int replaces, hf_status *status, hf_messages *messages)
+hf_store *hf_store_new(const char *path, bool replaces, hf_status *status, hf_messages *messages)
 {
     hf_store *s = calloc(1, sizeof *s);
     *status = s ? hf_store_file_begin(path, replaces, &s->f, messages)

@@ -1,4 +1,4 @@
-/* What stands at a path: nothing, a result of this case, or anything else.
+/* What is at a path: nothing, a result of this case, or anything else.
  * Contents: identity - look */
 #include "store/store_read.h"
 
@@ -35,7 +35,7 @@ static void extend_columns(char identity[65], const hf_layout_columns *columns, 
     }
 }
 
-/* With the NUL of each, so that "a", "bc" is not "ab", "c". */
+/* Ids are digested with their NULs, so that "a", "bc" differs from "ab", "c". */
 static hf_status extend_ids(char identity[65], int n, const char *const *id)
 {
     size_t size = 1, used = 0;

@@ -11,8 +11,8 @@
 
 /* ---- opening a result file ---- */
 
-/* Is an open file one of ours? Whatever another program's file holds instead of our mark is no reason to complain. */
-static int is_ours(const hf_hdf5 *io)
+/* Is an open file one of ours? No message when the attribute `program` is missing or of another type. */
+static bool is_ours(const hf_hdf5 *io)
 {
     char program[16] = "";
     hf_messages unwanted = {0};
@@ -48,7 +48,8 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
 
 /* ---- summary ---- */
 
-/* Of the run. Older files have it as a text of variable length, which is not read: there the stages say it. */
+/* Status of the run. Older files have it as a text of variable length, which is not read: there it follows from the
+ * stages. */
 static void get_status(hf_hdf5 *io, hf_summary *s)
 {
     char word[32] = "";
@@ -134,9 +135,9 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *shape = (hf_shape){0};
-    int is_there = stage != HF_STAGE_NONE && (stage != HF_STAGE_OPTIMIZE || hf_hdf5_has(&io, io.file, "/ga")) &&
-                   hf_hdf5_has(&io, io.file, hf_stage_group[stage]);
-    if (!is_there && io.status == HF_OK) /* a question that fails has said so itself */
+    bool is_there = stage != HF_STAGE_NONE && (stage != HF_STAGE_OPTIMIZE || hf_hdf5_has(&io, io.file, "/ga")) &&
+                    hf_hdf5_has(&io, io.file, hf_stage_group[stage]);
+    if (!is_there && io.status == HF_OK) /* a failure of hf_hdf5_has has its message already */
         io.status =
             hf_error(messages, HF_IO, "%s: has no %s shape: that stage did not run, or found no feasible design", path,
                      hf_stage_word[stage]);

@@ -1,12 +1,12 @@
-/* store_read - opening a result file, and what the program reads besides what <hifdm/store.h> declares. */
+/* store_read - opening a result file, and what the program reads in addition to <hifdm/store.h>. */
 #ifndef HIFDM_STORE_READ_H
 #define HIFDM_STORE_READ_H
 
 #include "store/layout.h"
 #include <hifdm/store.h>
 
-/* Where the file comes from, as lines "key: value" in the order of the file's root; those that a program before this
- * one did not write in a safe way are left out. */
+/* The provenance of the file, as lines "key: value". Attributes of variable length, from older versions of the program,
+ * are left out. */
 hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf_messages *messages);
 
 /* The case that the file was made from; false when this version does not know all its keys. path: of the case, beside

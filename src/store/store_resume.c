@@ -1,4 +1,4 @@
-/* Contents: what a session finds - breeding again - recovery */
+/* Contents: state of the file - breeding again - recovery */
 #include "store/store_internal.h"
 #include "store/store_read.h"
 
@@ -8,21 +8,21 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* ---- what a session finds ---- */
+/* ---- state of the file ---- */
 
-/* Is it a generation that the file does not have, and the one that follows? 0 when the file has it already; *status as
- * the callers of hf_journal_replay return it. */
-static int is_news(hf_store *s, int generation, size_t bytes, int next, hf_status *status)
+/* Is this record the generation that follows those of the file? False when the file has it already, or with *status,
+ * which the hf_journal_take returns. */
+static bool is_news(hf_store *s, int generation, size_t bytes, int next, hf_status *status)
 {
     const hf_generations *g = &s->rows;
     *status = HF_OK;
-    if (generation < next) return 0; /* published before the journal could be rotated */
-    if (generation == next && bytes == g->payload_bytes && generation < g->limit) return 1;
+    if (generation < next) return false; /* published before the journal could be rotated */
+    if (generation == next && bytes == g->payload_bytes && generation < g->limit) return true;
     *status = hf_error(s->f.io.messages, HF_IO,
                        "%s: does not fit to %s, which goes on with generation %d of %zu bytes, not %d of %zu; was it "
                        "copied or replaced? --restart (of a sweep: --retry failed) begins anew",
                        s->f.path, s->f.journal.path, generation, bytes, next, g->payload_bytes);
-    return 0;
+    return false;
 }
 
 static hf_status count_record(void *context, int generation, const void *payload, size_t bytes)
@@ -34,7 +34,7 @@ static hf_status count_record(void *context, int generation, const void *payload
     return status;
 }
 
-/* Population, genes and the most generations, from the file itself. */
+/* Sizes of the population and limit of generations, read from the file. */
 static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_gene, int *limit)
 {
     hf_hdf5_get(io, io->file, "/ga", "n_individual", HF_KIND_INT, n_individual, sizeof *n_individual);
@@ -85,7 +85,7 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     hf_store *s = hf_store_new(path, 0, &status, messages);
     if (!s) return status;
     hf_hdf5_lock();
-    s->is_resumed = 1;
+    s->is_resumed = true;
     s->published_at_s = hf_clock_s(); /* what is there is visible */
     hf_store_file_adopt(&s->f);
     hf_store_file_open(&s->f);
@@ -112,7 +112,7 @@ typedef struct {
     hf_store *store;
     hf_optimiser *optimiser; /* before hf_optimiser_tell of the last generation that was taken, or just created */
     int n_taken;
-    int drops; /* what this build breeds otherwise; or it is an error */
+    bool drops; /* drop generations that this build breeds otherwise; else they are an error */
 } breeding;
 
 /* The designs of a record are bred from the generation before it. */
@@ -160,7 +160,7 @@ static void breed_journal(hf_store *s, hf_optimiser *optimiser, int drops)
     s->n_journal = 0;
 }
 
-/* What the genetic algorithm had noted when it was published last; files of earlier builds have nothing before the
+/* Read the summary of the genetic algorithm as it was published last. Files of earlier builds have none before the
  * first generation. */
 static void read_known(hf_hdf5 *io, hf_summary *summary)
 {
@@ -190,7 +190,7 @@ hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary 
 
 /* ---- recovery ---- */
 
-/* The optimiser of an unfinished file, from what the file itself says. The model has no more than its genes. */
+/* The optimiser of an unfinished file, made from the file alone: of the model only the genes are set. */
 typedef struct {
     hf_case settings;
     hf_model model;
@@ -205,7 +205,7 @@ static void read_genes(hf_hdf5 *io, stored_search *a)
     hid_t group = hf_hdf5_open_group(io, "/ga");
     hf_hdf5_read_array(io, group, &row, a->group);
     row.name = "gene_leader";
-    int has_leader = hf_hdf5_has(io, group, row.name);
+    bool has_leader = hf_hdf5_has(io, group, row.name);
     if (has_leader) hf_hdf5_read_array(io, group, &row, a->leader);
     row.name = "base_N";
     row.kind = HF_KIND_REAL;

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define FILE_MAX 1024 /* bytes of the name that a link leads to; of longer ones nothing is told */
+#define FILE_MAX 1024 /* bytes of the file name of a link; longer ones are given as "" */
 
 /* ---- numbers ---- */
 
@@ -87,16 +87,16 @@ void hf_texts_free(hf_texts *texts)
     *texts = (hf_texts){0};
 }
 
-/* All zero, so every text ends whatever is copied into length - 1 of its bytes. */
-static int allocate(hf_hdf5 *io, int n, size_t length, hf_texts *texts)
+/* All zero: a text always ends, whatever is copied into its first length - 1 bytes. */
+static bool allocate(hf_hdf5 *io, int n, size_t length, hf_texts *texts)
 {
     hf_arena arena = {0};
     char *chars = NULL;
     if (io->status == HF_OK && HF_ARENA_MAKE(&arena, chars = hf_arena_take(&arena, (size_t)n, length)) != HF_OK)
         hf_hdf5_no_memory(io);
-    if (io->status != HF_OK) return 0;
+    if (io->status != HF_OK) return false;
     *texts = (hf_texts){n, length, chars, arena.block};
-    return 1;
+    return true;
 }
 
 static hf_status finish(hf_hdf5 *io, hf_texts *texts)
@@ -129,8 +129,8 @@ static void read_texts(hf_hdf5 *io, const char *name, hid_t data_set, hf_texts *
     hid_t space = H5Dget_space(data_set), stored = H5Dget_type(data_set), type = -1;
     int rank = space >= 0 ? H5Sget_simple_extent_ndims(space) : -1;
     size_t length = stored >= 0 ? H5Tget_size(stored) : 0;
-    int is_fixed = stored >= 0 && H5Tget_class(stored) == H5T_STRING && H5Tis_variable_str(stored) == 0;
-    int is_uint64 =
+    bool is_fixed = stored >= 0 && H5Tget_class(stored) == H5T_STRING && H5Tis_variable_str(stored) == 0;
+    bool is_uint64 =
         length == sizeof(uint64_t) && H5Tget_class(stored) == H5T_INTEGER && H5Tget_sign(stored) == H5T_SGN_NONE;
     if (rank < 0 || length == 0) {
         hf_hdf5_fail(io, "read", io->file, name);

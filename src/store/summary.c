@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-int hf_summary_has_best_shape(const hf_summary *s)
+bool hf_summary_has_best_shape(const hf_summary *s)
 {
     return s->has_optimize && s->best.status == HF_OK && s->finished;
 }
@@ -16,7 +16,7 @@ double hf_summary_utilisation(const hf_summary *s)
     return available_s > 0 ? s->optimize_cpu_s / available_s : (double)NAN;
 }
 
-/* The members of an object at these places, in their order. */
+/* Write the members of an object with places from..to, in that order. */
 static void write_fields(const hf_result_field *field, int n, int from, int to, const void *owner, hf_json *j)
 {
     for (int place = from; place <= to; place++)
@@ -49,7 +49,7 @@ static void write_result(const hf_form_result *r, hf_json *j)
     write_fields(hf_result_field_of, HF_RESULT_N, HF_RESULT_JSON_COUNTS, LAST_PLACE, r, j);
 }
 
-/* The member "surface" of a stage, behind its others; nothing when the case asks for none. */
+/* The member "surface" of a stage, after its others; nothing when the surface was not measured. */
 static void write_surface(const hf_summary *s, int stage, hf_json *j)
 {
     const hf_surface_measures *m = &s->measures[stage];

@@ -8,8 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define FAULT_MAX 20 /* faults that are spelled out; of the others the number is told */
-
 const char *const hf_dof_word[HF_TRUSS_DOF] = {"ux", "uy", "uz", "rx", "ry", "rz"};
 const char *const hf_joint_word[3] = {"rigid", "pinned", NULL};
 const char *const hf_unit_word[4] = {"bud", "mbug", "abug", "other"};
@@ -92,7 +90,7 @@ hf_status hf_truss_attach(const hf_truss *t, const hf_scene *scene, double toler
             if (distance_m(p, t->position_m + 3 * (size_t)k) < distance_m(p, t->position_m + 3 * (size_t)nearest))
                 nearest = k;
         double gap = distance_m(p, t->position_m + 3 * (size_t)nearest);
-        if (!(gap <= tolerance_m) && ++n_fault <= FAULT_MAX)
+        if (!(gap <= tolerance_m) && ++n_fault <= HF_FAULT_MAX)
             hf_error(messages, HF_BAD_CASE,
                      "truss: net support '%s' has no attachment: the nearest truss node, '%s', is %.3g m away, and "
                      "truss.match_tolerance_m is %g m",
@@ -100,7 +98,7 @@ hf_status hf_truss_attach(const hf_truss *t, const hf_scene *scene, double toler
         scene_node[*n_attachment] = i;
         truss_node[(*n_attachment)++] = nearest;
     }
-    if (n_fault > FAULT_MAX) hf_error(messages, HF_BAD_CASE, "truss: and %d more supports", n_fault - FAULT_MAX);
+    if (n_fault > HF_FAULT_MAX) hf_error(messages, HF_BAD_CASE, "truss: and %d more supports", n_fault - HF_FAULT_MAX);
     return n_fault ? HF_BAD_CASE : HF_OK;
 }
 
@@ -121,7 +119,7 @@ void hf_truss_describe(const hf_truss *t, bool is_member, int index, char *text,
 static void fault(const hf_truss *t, int is_member, int index, int *n_fault, const char *what, hf_messages *messages)
 {
     char where[512];
-    if (++*n_fault > FAULT_MAX) return;
+    if (++*n_fault > HF_FAULT_MAX) return;
     hf_truss_describe(t, is_member, index, where, sizeof where);
     hf_error(messages, HF_BAD_CASE, "%s %s", where, what);
 }
@@ -156,8 +154,8 @@ hf_status hf_truss_check(const hf_truss *t, hf_messages *messages)
         if (!(t->mass_kg[i] >= 0) || !isfinite(t->mass_kg[i]))
             fault(t, 0, i, &n_fault, "has a mass that is no number or below zero", messages);
     }
-    for (int e = 0; e < t->n_member && n_fault <= FAULT_MAX; e++)
+    for (int e = 0; e < t->n_member && n_fault <= HF_FAULT_MAX; e++)
         check_member(t, e, &n_fault, messages);
-    if (n_fault > FAULT_MAX) hf_error(messages, HF_BAD_CASE, "truss: and more faults like these");
+    if (n_fault > HF_FAULT_MAX) hf_error(messages, HF_BAD_CASE, "truss: and more faults like these");
     return n_fault ? HF_BAD_CASE : HF_OK;
 }

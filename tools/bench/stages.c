@@ -110,7 +110,7 @@ WATCH(POLISH, hf_status, hf_polish_run,
        double *design_N, hf_workspace *workspace, hf_polish_result *result),
       (evaluator, lower_N, upper_N, max_iterations, design_N, workspace, result))
 WATCH(STORE, hf_status, hf_store_create,
-      (const char *path, int force, const hf_case *settings, const hf_scene *scene, const hf_truss *truss, int argc,
+      (const char *path, bool force, const hf_case *settings, const hf_scene *scene, const hf_truss *truss, int argc,
        char *const *argv, hf_store **store, hf_messages *messages),
       (path, force, settings, scene, truss, argc, argv, store, messages))
 WATCH(STORE, hf_status, hf_store_form,
@@ -121,7 +121,7 @@ WATCH(STORE, hf_status, hf_store_generation,
       (hf_store * store, const hf_model *model, const hf_population *population, hf_messages *messages),
       (store, model, population, messages))
 WATCH(STORE, hf_status, hf_store_publish,
-      (hf_store * store, const hf_summary *summary, int at_once, hf_messages *messages),
+      (hf_store * store, const hf_summary *summary, bool at_once, hf_messages *messages),
       (store, summary, at_once, messages))
 WATCH(STORE, hf_status, hf_store_best,
       (hf_store * store, hf_stage stage, const hf_model *model, const hf_workspace *workspace, const double *design_N,
