@@ -21,7 +21,7 @@ function tipContent(heading, rows) {
   ];
 }
 
-// Beside the point (x, y) of its parent, and inside of it.
+// Places the tooltip beside the point (x, y) of its parent, inside the parent.
 function placeTip(tip, x, y, content) {
   tip.replaceChildren(...content);
   tip.hidden = false;
@@ -34,13 +34,13 @@ function placeTip(tip, x, y, content) {
 }
 
 // ---- one chart: series over x with a cursor that follows the pointer or the arrow keys ----
-// series: { name, stored, values, colour, dash, dots: marks instead of a line, free: may leave the picture }
+// series: { name, stored, values, colour, dash, dots: marks instead of a line, free: may lie outside of the picture }
 // colour: a variable of the page's style, or a function that returns red, green and blue
-// x rises, counted: in whole numbers; log: "auto" = when the values span more than a factor of 20
+// x is in rising order; counted: x are whole numbers; log: "auto" = logarithmic when the values span a factor over 20
 let clips = 0;
 const paint = (colour) => (typeof colour === "function" ? rgb(colour()) : `var(${colour})`);
-const LINES_MAX = 12, // in a tooltip
-  MARKED_MAX = 16; // points of a curve that are marked, too
+const LINES_MAX = 12, // lines of a tooltip
+  MARKED_MAX = 16; // a curve with up to so many points gets marks besides its line
 
 function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "auto", counted = true, head }) {
   const leading = series.filter((s) => !s.free).flatMap((s) => s.values),

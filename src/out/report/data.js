@@ -32,7 +32,7 @@ function fmt(value, digits = 4) {
   const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
   return minus(`${Number(mantissa)}×${power(Number(exponent))}`);
 }
-// Ratios of tensions: 1 is uniform, so decimals count.
+// Ratios of tensions: 1 means uniform tensions, so a fixed number of decimals is shown, not of digits.
 const fmtRatio = (value) => (typeof value === "number" && value < 1e4 ? value.toFixed(4) : fmt(value));
 const fmtCount = (value) => (typeof value === "number" ? value.toLocaleString("en").replace(/,/g, " ") : "–");
 
@@ -45,7 +45,7 @@ function fmtDuration(s) {
     : `${Math.floor(s / 3600)} h ${Math.round((s % 3600) / 60)} min`;
 }
 
-// "Figs. 6 and 13 of the paper"
+// Writes references such as "Figs. 6 and 13 of the paper".
 function figs(...numbers) {
   const all = numbers.filter((k) => k),
     last = all.pop();
@@ -70,7 +70,7 @@ const digit = (text, i) => text.charCodeAt(i) - 48;
 const roleOf = (i) => net.role_word[digit(net.role, i)];
 const groupOf = (e) => net.group_word[digit(net.group, e)];
 
-// Nodes in millimetres from theory: distance, and height along z with its sign.
+// Distance of each node from its theoretical position, and its signed difference in z, in millimetres.
 for (const shape of data.shapes || []) {
   const d = shape.displacement_m,
     n = net.n_node;
@@ -84,13 +84,14 @@ for (const shape of data.shapes || []) {
   shape.isSlack = (e) => Math.abs(shape.tension_N[e]) < data.slack_below_N;
 }
 
-// The shape that is the run's result: as `hifdm export` chooses it.
+// The shape that is the run's result, chosen as `hifdm export` chooses it.
 const summary = data.summary || {};
 const shapeOf = (stage) => (data.shapes || []).find((shape) => shape.stage === stage);
 const resultShape =
   (summary.polish && summary.polish.is_result && shapeOf("polish")) || shapeOf("optimize") || shapeOf("form");
 
-// Upper end of the colours: the inner nodes, which psi counts. A free edge drifts much farther and would hide them.
+// Upper end of the colours: the largest deviation of the inner nodes, which psi counts. The nodes of a free edge move
+// much farther; a range with them would show all inner nodes in one colour.
 function innerMost(values) {
   const inner = range(Array.from(values, Math.abs).filter((_, i) => roleOf(i) === "inner"));
   return inner && inner[1] > 0 ? inner[1] : (range(Array.from(values, Math.abs)) || [0, 1])[1] || 1;

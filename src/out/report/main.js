@@ -91,7 +91,8 @@ function button(text, name, act) {
   return node;
 }
 
-// 1, 2, 5, 10, ...; begins where the largest deviation is a twentieth of the net's size.
+// The scale factors to choose from, 1, 2, 5, 10, ...; the first one draws the largest deviation as a twentieth of the
+// net's size.
 const SCALES = Array.from({ length: 22 }, (_, k) => [1, 2, 5][k % 3] * 10 ** Math.floor(k / 3));
 function firstScale(radius) {
   const largest = Math.max(0, ...data.shapes.map((s) => range(s.distance_mm)[1])) / 1e3;
@@ -257,7 +258,7 @@ function writeMap() {
 
 // ---- the page ----
 
-const report = {}; // the two pictures, for the console and the tests
+const report = {}; // gives the console and the tests access to the two pictures
 window.report = report;
 if (data.study) {
   writeStudy(data.study);

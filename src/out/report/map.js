@@ -1,6 +1,7 @@
 // Contents: faces of the net seen along z - the deviation map over the aperture
 
-// ---- faces: at every node the cables are sorted by direction; the next side of a face is the one before the way back.
+// ---- faces: at every node the cables are sorted by direction; the next side of a face is the one before the cable
+// by which the walk arrived.
 
 function findFaces() {
   const p = net.position_m,
@@ -47,7 +48,7 @@ function aperture({ canvas, tip, bar }) {
     right = 14;
   const spans = [0, 1].map((k) => range(p.filter((_, i) => i % 3 === k)));
   const across = spans[1][1] - spans[1][0] > spans[0][1] - spans[0][0] ? 1 : 0,
-    up = 1 - across; // the longer one lies
+    up = 1 - across; // the longer axis is drawn horizontally
   const box = [spans[across], spans[up]];
   const sx = new Float64Array(n),
     sy = new Float64Array(n);
@@ -105,7 +106,7 @@ function aperture({ canvas, tip, bar }) {
     c.putImageData(image, 0, 0);
   }
 
-  // A net without meshes: a disc at every node.
+  // A net without closed faces is shown by a disc at every node.
   function paintNodes(c) {
     const table = levels(colours()),
       limit = limits(),

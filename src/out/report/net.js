@@ -1,7 +1,7 @@
-// The net in space: turned by dragging or the arrow keys, drawn with the lines of one colour together.
+// Draws the net in space. Dragging or the arrow keys turn it. Lines of one colour are drawn in one call.
 
 function netView({ canvas, tip, bar, scaleLabel }) {
-  const view = { yaw: -35, pitch: 32, zoom: 1, panX: 0, panY: 0, fitted: true }; // fitted: as large as there is room
+  const view = { yaw: -35, pitch: 32, zoom: 1, panX: 0, panY: 0, fitted: true }; // fitted: the zoom follows the room
   const state = {
     shape: resultShape,
     colour: "deviation",
@@ -41,7 +41,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     };
   }
 
-  // The zoom at which net and truss as they are seen now fill the picture.
+  // The zoom at which net and truss, seen from the present direction, fill the picture.
   function fitZoom() {
     Object.assign(view, { zoom: 1, panX: 0, panY: 0 });
     const project = projection(),
@@ -72,7 +72,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     return project;
   }
 
-  // Value of a cable in the picture, and the range of all.
+  // The value that a cable's colour shows, and the range of these values.
   function valueOf(e) {
     const shape = state.shape;
     if (state.colour === "tension") return shape.tension_N[e];
@@ -337,7 +337,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
       const frame = canvas.getBoundingClientRect();
       pointers.delete(event.pointerId);
       canvas.classList.remove("dragging");
-      if (!dragged) select(pick(event.clientX - frame.left, event.clientY - frame.top)); // a tap
+      if (!dragged) select(pick(event.clientX - frame.left, event.clientY - frame.top)); // a tap or click
     });
   canvas.addEventListener("pointerleave", (event) => {
     if (event.pointerType !== "touch") select(null);
@@ -364,7 +364,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     view.panY += dy;
     redraw();
   }
-  // About a point of the picture, which stays where it is.
+  // Zooms about a point of the picture: that point stays where it is.
   function zoom(factor, x = width / 2, y = height / 2) {
     const before = view.zoom;
     view.fitted = false;

@@ -24,13 +24,14 @@ function oklch(lightness, chroma, hue) {
   });
 }
 
-// Lightness runs evenly away from the background, hue from yellow to blue, which all colour vision tells apart.
+// Lightness changes evenly away from the background, hue from yellow to blue: colours that people with any kind of
+// colour vision can tell apart.
 function sequential(t) {
   return isDark()
     ? oklch(0.42 + 0.48 * t, 0.11 + 0.02 * t, 265 - 165 * t)
     : oklch(0.83 - 0.52 * t, 0.13, 95 + 170 * t);
 }
-// t = 0.5 is zero: blue below, orange above, both away from the background.
+// For signed values: t = 0.5 is zero, blue lies below and orange above, both away from the background's lightness.
 function diverging(t) {
   const size = Math.abs(2 * t - 1),
     hue = t < 0.5 ? 255 : 55;
@@ -47,7 +48,8 @@ function levelOf(value, [low, high]) {
   return Math.max(0, Math.min(LEVELS - 1, Math.round(t * (LEVELS - 1))));
 }
 
-// The colour bar of a picture; values outside of it, from lowest to highest, have the colour of its ends.
+// The colour bar of a picture. Values outside its range, down to lowest and up to highest, take the colours of its
+// ends.
 function drawBar(bar, colours, [low, high], label, [lowest, highest] = [low, high]) {
   const canvas = el("canvas", { width: 256, height: 1, role: "img", "aria-label": `colour bar: ${label}` });
   const c = canvas.getContext("2d");
@@ -111,7 +113,7 @@ function logTicks(low, high) {
   return ticks;
 }
 
-// An axis over the values: `at` maps them to 0..1, ticks are within.
+// An axis over the values: `at` maps a value to 0..1; all ticks lie within that range.
 function axis(values, log) {
   let [low, high] = range(log ? values.filter((v) => v > 0) : values) || [0, 1];
   if (log && low > 0) {
@@ -127,7 +129,7 @@ function axis(values, log) {
     };
   }
   const size = Math.max(Math.abs(low), Math.abs(high)) || 1;
-  const room = high - low > 1e-6 * size ? 0.05 * (high - low) : 0.05 * size; // less is rounding
+  const room = high - low > 1e-6 * size ? 0.05 * (high - low) : 0.05 * size; // a smaller range is rounding
   low -= room;
   high += room;
   return { low, high, ticks: linearTicks(low, high, 5), at: (v) => (v - low) / (high - low), has: () => true };

@@ -3,7 +3,7 @@
 // ---- axes ----
 
 const UNITS = { N_per_m: "N/m", N: "N", m: "m", kg: "kg", Hz: "Hz" };
-// "form.pretension_N" -> pretension, N
+// Splits a key into name and unit: "form.pretension_N" gives "pretension" and "N".
 function axisName(key) {
   const last = key.split(".").pop(),
     unit = Object.keys(UNITS).find((u) => last.endsWith(`_${u}`));
@@ -39,9 +39,10 @@ const QUANTITIES = [
   { key: "inner_tension_ratio", title: "Tension ratio, inner cables", yLabel: "T max / T min", scale: 1 },
   { key: "boundary_tension_ratio", title: "Tension ratio, boundary cables", yLabel: "T max / T min", scale: 1 },
 ];
-const CURVES_MAX = 12; // more are marks without lines
+const CURVES_MAX = 12; // the points of more curves are drawn as marks, without lines
 
-// The points that agree in all axes but one, in the order of what they agree in.
+// Groups the points into curves: the points of a curve agree in all axes but one. Curves are in the order of the values
+// that their points share.
 function curves(study, axis, others) {
   const groups = new Map();
   for (let i = 0; i < study.n; i++) {
@@ -160,7 +161,7 @@ function writeCurves(study, axes) {
 const ROWS_MAX = 2000,
   TOLD_MAX = 5;
 
-// A link that cannot leave for anywhere but a file.
+// A link is made only to a file: any other scheme in the data stays text.
 const href = (path) => (path.startsWith("/") ? "" : "./") + path.split("/").map(encodeURIComponent).join("/");
 
 function pointCell(study, i) {
