@@ -46,6 +46,10 @@ hf_status hf_evaluate_judge(const hf_evaluator *evaluator, hf_form_result *resul
 /* L* (m) of a boundary cable: the prescribed length where there is one, else the theoretical length. */
 double hf_evaluate_design_length_m(const hf_model *model, int i_cable);
 
+/* What the rule makes of the design's tension (N) of a boundary cable: q (N/m) under the rule force_density, else the
+ * tension itself. */
+double hf_evaluate_design_target(const hf_evaluator *evaluator, int i_cable, double tension_N);
+
 #ifdef __cplusplus
 }
 #endif

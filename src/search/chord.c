@@ -290,11 +290,9 @@ static void load(void *solver, int lane, int i_design)
         l->x_m[(size_t)i * HF_LANES + (size_t)lane] = c->base_m[i];
     for (int i = 0; i < c->n_pull; i++)
         l->displacement_m[(size_t)i * HF_LANES + (size_t)lane] = c->base_displacement_m[i];
-    for (int k = 0; k < m->n_gene; k++) { /* the target that hf_evaluate_prepare gives the cable by the rule */
-        double value = design_N[k];
-        if (c->evaluator->rule == HF_RULE_FORCE_DENSITY) value /= hf_evaluate_design_length_m(m, m->gene_cable[k]);
-        l->gene[(size_t)k * HF_LANES + (size_t)lane] = value;
-    }
+    for (int k = 0; k < m->n_gene; k++)
+        l->gene[(size_t)k * HF_LANES + (size_t)lane] =
+            hf_evaluate_design_target(c->evaluator, m->gene_cable[k], design_N[k]);
     s->steps[lane] = 0;
     s->excess_before_N[lane] = INFINITY;
 }

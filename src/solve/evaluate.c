@@ -68,6 +68,12 @@ double hf_evaluate_design_length_m(const hf_model *m, int i_cable)
     return hf_law_has(m->law[i_cable], HF_LAW_IS_RIGID) ? m->target[i_cable] : m->length_m[i_cable];
 }
 
+double hf_evaluate_design_target(const hf_evaluator *v, int i_cable, double tension_N)
+{
+    if (v->rule != HF_RULE_FORCE_DENSITY) return tension_N;
+    return tension_N / hf_evaluate_design_length_m(v->model, i_cable);
+}
+
 /* Sets law, target and first force density of boundary cable e from its design tension (METHOD section 7). */
 static void apply_rule(const hf_evaluator *v, int e, double tension_N, hf_workspace *w)
 {
@@ -75,11 +81,11 @@ static void apply_rule(const hf_evaluator *v, int e, double tension_N, hf_worksp
     switch (v->rule) {
     case HF_RULE_FORCE_DENSITY:
         w->law[e] = HF_LAW_FORCE_DENSITY;
-        w->target[e] = w->q_N_per_m[e];
+        w->target[e] = hf_evaluate_design_target(v, e, tension_N);
         break;
     case HF_RULE_TENSION:
         w->law[e] = HF_LAW_TENSION;
-        w->target[e] = tension_N;
+        w->target[e] = hf_evaluate_design_target(v, e, tension_N);
         break;
     default: /* seeded: the law of the case, with the force density set above as its start */
         break;
