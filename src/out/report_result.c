@@ -131,6 +131,31 @@ static void write_truss(const page *p, FILE *f)
     fputc('}', f);
 }
 
+/* The figures of a result that JSON has, so that the page shows one even if it has no words of its own for it. */
+static void write_figures(FILE *f)
+{
+    static const struct {
+        const char *key, *units, *description;
+        int json; /* 0: not there */
+    } figure[] = {
+#define FIGURE(type, member, kind, json, individual, key, units, description) {key, units, description, json},
+        HF_RESULT_LIST(FIGURE)
+#undef FIGURE
+    };
+    hf_json j = {.file = f};
+    fputs(",\n", f);
+    hf_json_open(&j, "figures", '[');
+    for (size_t i = 0; i < sizeof figure / sizeof *figure; i++) {
+        if (!figure[i].json) continue;
+        hf_json_open(&j, NULL, '{');
+        hf_json_text(&j, "key", figure[i].key);
+        hf_json_text(&j, "units", figure[i].units);
+        hf_json_text(&j, "description", figure[i].description);
+        hf_json_close(&j, '}');
+    }
+    hf_json_close(&j, ']');
+}
+
 /* ---- series ---- */
 
 static void write_series(const page *p, FILE *f)
@@ -160,6 +185,7 @@ static void write_data(const void *context, FILE *f)
     fprintf(f, ",\"seed\":\"%llu\"", (unsigned long long)s->seed); /* as a number it would lose its last digits */
     fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, s->n_gene);
     hf_json_value(s->pretension_N, 17, f);
+    write_figures(f);
     write_net(&p->scene, f);
     write_shapes(p, f);
     write_truss(p, f);

@@ -319,6 +319,22 @@ async function checkMedia(tab, folder, pictures) {
   assert.ok((await tab.evaluate("document.documentElement.scrollWidth")) <= 360, "wider than a telephone");
 }
 
+// A figure of which the page knows nothing but its row in the list of figures is in the summary with the words of that
+// row; in a copy of the page, which is given one.
+async function checkUnknownFigure(browser, made, folder) {
+  const copy = join(folder, "figure.html"),
+    given = readFileSync(made.html, "utf8")
+      .replace('"figures": [', '"figures": [{"key":"made_up_N","units":"N","description":"a made-up force"}, ')
+      .replace('"form": {', '"form": {"made_up_N": 1.25, ');
+  writeFileSync(copy, given);
+  const tab = await browser.newPage();
+  await tab.goto(pathToFileURL(copy).href);
+  const cells = await tab.locator("#summary tr", { hasText: "a made-up force" }).locator("td").allTextContents();
+  assert.equal(number(cells[0]), 1.25);
+  assert.deepEqual(cells.slice(-2), ["N", "made_up_N"]);
+  await tab.close();
+}
+
 // ---- all pages ----
 
 async function test(browser, page) {
@@ -343,6 +359,7 @@ async function test(browser, page) {
     await checkNet(tab, page, made);
     await checkHover(tab, made);
     await checkMap(tab, made);
+    await checkUnknownFigure(browser, made, folder);
   }
   await checkRules(tab);
   await checkMedia(tab, folder, page.study ? [] : ["net-canvas", "map-canvas"]);

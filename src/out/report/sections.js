@@ -304,6 +304,10 @@ function writeSummary() {
     ["stopped by", "", "stop_reason", stopText],
     ["wall time", "", "wall_s", fmtDuration],
   ];
+  // Figures of the result without a row above get one with the words of the list they come from.
+  const named = new Set(rows.map(([, , key]) => key));
+  const others = (data.figures || []).filter(({ key }) => !named.has(key));
+  rows.push(...others.map(({ key, units, description }) => [description, units, key, (v) => fmt(v, 4)]));
   const shown = rows.filter(([, , key]) =>
     stages.some(([s]) => values[s][key] !== undefined && values[s][key] !== null),
   );
