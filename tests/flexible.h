@@ -58,7 +58,7 @@ static inline void attach_all(struct net *net, struct rng *rng, double scale_m_p
 /* The coupled shape of the net. */
 static inline hf_status find_coupled(struct net *net, int scheme, double tof_m)
 {
-    net->form.coupling = (hf_coupling_settings){tof_m, scheme, 500};
+    net->form.coupling = (hf_coupling_settings){tof_m, (hf_coupling_scheme)scheme, 500};
     return hf_evaluate_form(&net->model, &net->form, &net->work, NULL, &net->result);
 }
 

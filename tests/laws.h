@@ -67,7 +67,7 @@ static inline void random_reflector_scene(struct rng *rng, hf_scene *scene)
                             .focal_length_m = rng_uniform(rng, 3, 8),
                             .modules = {rng_int(rng, 2, 4), rng_int(rng, 2, 4)},
                             .cells_per_module = {2, 2},
-                            .spacing = rng_int(rng, 0, 1),
+                            .spacing = (hf_spacing)rng_int(rng, 0, 1),
                             .boundary = HF_BOUNDARY_OUTER_EDGE,
                             .scallop = rng_uniform(rng, 0.08, 0.12),
                             .supports = HF_SUPPORTS_MODULE_CORNERS};

@@ -27,7 +27,7 @@ struct net {
 /* Far tighter than a case file's defaults, so that what a test sees is the law and not where the iteration stopped. */
 static inline hf_form_settings tight_form(int method)
 {
-    return (hf_form_settings){.method = method,
+    return (hf_form_settings){.method = (hf_method)method,
                               .pretension_N = 10,
                               .stop = HF_STOP_RESIDUAL,
                               .residual_tolerance = 1e-11,

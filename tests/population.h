@@ -31,7 +31,7 @@ static inline void start_run(struct run *r, int rule)
         r->base_N[k] = r->net.work.tension_N[m->gene_cable[k]];
     for (int i = 0; i < N_DESIGN * m->n_gene; i++)
         r->design_N[i] = r->base_N[i % m->n_gene] + rng_uniform(&rng, -range_N, range_N);
-    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, rule, HF_SOLVER_CHORD, 1e9};
+    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_CHORD, 1e9};
 }
 
 static inline void open_run(struct run *r, int rule)

@@ -64,7 +64,7 @@ typedef struct {
 } hf_law_cable;
 
 /* Has the law any of these flags? */
-static inline bool hf_law_has(int law, unsigned flags)
+static inline bool hf_law_has(hf_law law, unsigned flags)
 {
 #define HF_LAW_FLAGS(name, word, target, unit, flags) flags,
     static const unsigned char flags_of[HF_N_LAW] = {HF_LAW_LIST(HF_LAW_FLAGS)};
@@ -73,7 +73,7 @@ static inline bool hf_law_has(int law, unsigned flags)
 }
 
 /* May a kernel that assumes `served`, a set of flags, work on this law? */
-static inline bool hf_law_is_served(int law, unsigned served)
+static inline bool hf_law_is_served(hf_law law, unsigned served)
 {
     return !hf_law_has(law, ~served);
 }

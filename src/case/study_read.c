@@ -217,7 +217,7 @@ static void read_range_key(reader *r, const char *path, const yaml_node_t *key, 
     else if (!strcmp(word, "spacing"))
         to->is_log = read_word(r, value, path, word, spacings, 2) == 1;
     else if (!strcmp(word, "sample"))
-        to->sample = SAMPLE_LATIN_HYPERCUBE + read_word(r, value, path, word, samplings, 2);
+        to->sample = (sampling)((int)SAMPLE_LATIN_HYPERCUBE + read_word(r, value, path, word, samplings, 2));
     else
         fault_unknown(r, key->start_mark, path, word, names, 5);
 }

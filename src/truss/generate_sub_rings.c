@@ -166,7 +166,7 @@ static void hold(const generator *g)
 static void count_unit(const hf_truss_unit *u, double n_unit, double *n_node, double *n_member)
 {
     *n_node += n_unit * 2 * (u->panels - 1);
-    *n_member += n_unit * (u->panels * (2.0 + u->diagonals) + u->panels - 1);
+    *n_member += n_unit * (u->panels * (2.0 + (int)u->diagonals) + u->panels - 1);
 }
 
 static hf_status generate(generator *g, hf_messages *messages)

@@ -70,7 +70,7 @@ static void cylinder(struct rng *rng, double scallop, hf_scene *s)
                      .focal_length_m = rng_uniform(rng, 3, 8),
                      .modules = {rng_int(rng, 2, 4), rng_int(rng, 2, 4)},
                      .cells_per_module = {2, 2},
-                     .spacing = rng_int(rng, 0, 1),
+                     .spacing = (hf_spacing)rng_int(rng, 0, 1),
                      .scallop = scallop,
                      .supports = HF_SUPPORTS_MODULE_CORNERS};
     ck_assert_msg(hf_scene_parabolic_cylinder(&c, NULL, s, &messages) == HF_OK, "%s", messages.text);

@@ -57,7 +57,7 @@ static void straight_edges(struct rng *rng, hf_scene *s)
                             .focal_length_m = rng_uniform(rng, 3, 8),
                             .modules = {rng_int(rng, 2, 4), rng_int(rng, 2, 4)},
                             .cells_per_module = {2, 2},
-                            .boundary = rng_int(rng, 0, 1),
+                            .boundary = (hf_boundary)rng_int(rng, 0, 1),
                             .supports = HF_SUPPORTS_MODULE_CORNERS};
     ck_assert_msg(hf_scene_parabolic_cylinder(&cylinder, NULL, s, &messages) == HF_OK, "%s", messages.text);
 }

@@ -150,7 +150,7 @@ static int share_matrix(bench_scene *b, hf_batch *batch)
     if (hf_batch_create(&b->evaluator, 1, batch) != HF_OK) bench_fail(b->name, "out of memory");
     if (b->model.n_gene == 0) return 0;
     double start_s = bench_clock_s();
-    int by = hf_batch_share(batch, b->base_N);
+    hf_solver by = hf_batch_share(batch, b->base_N);
     bench_emit("precision", b->name, "chord", 0, "setup_s", bench_clock_s() - start_s);
     return by == HF_SOLVER_CHORD;
 }

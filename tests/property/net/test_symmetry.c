@@ -125,7 +125,7 @@ START_TEST(polishing_linked_genes_reaches_the_free_optimum)
         OPEN_CASE(&net, SMALL_REFLECTOR);
         ck_assert(net.model.n_gene <= 200 && net.model.n_cable <= 1000);
         int wanted = linked ? HF_SYMMETRY_XY : HF_SYMMETRY_NONE;
-        ck_assert_int_eq(hf_symmetry_apply(&net.scene, wanted, &net.model, &planes, &messages), HF_OK);
+        ck_assert_int_eq(hf_symmetry_apply(&net.scene, (hf_symmetry)wanted, &net.model, &planes, &messages), HF_OK);
         ck_assert_int_eq(find_shape(&net), HF_OK);
         memcpy(start_q, net.work.q_N_per_m, (size_t)net.model.n_cable * sizeof(double));
         for (int k = 0; k < net.model.n_gene; k++)

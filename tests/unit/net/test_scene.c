@@ -47,7 +47,7 @@ static double arc_m(double x0, double x1, double focal)
 START_TEST(nodes_lie_on_the_cylinder)
 {
     hf_cylinder c = plain;
-    c.spacing = _i;
+    c.spacing = (hf_spacing)_i;
     hf_scene s = generate(&c);
     ck_assert_int_eq(s.n_node, NX * NY);
     for (int j = 0; j < NY; j++)
@@ -107,8 +107,8 @@ enum { N_COUNTS = sizeof counts / sizeof *counts };
 START_TEST(roles_and_groups_are_as_counted)
 {
     hf_cylinder c = plain;
-    c.supports = counts[_i].supports;
-    c.boundary = counts[_i].boundary;
+    c.supports = (hf_supports)counts[_i].supports;
+    c.boundary = (hf_boundary)counts[_i].boundary;
     hf_scene s = generate(&c);
     int n_role[3] = {0}, n_group[2] = {0};
     hf_messages messages = {0};
@@ -154,7 +154,7 @@ START_TEST(roles_are_in_the_right_places)
     c.boundary = HF_BOUNDARY_MODULE_EDGES;
     c.modules[1] = 2, c.cells_per_module[1] = 3;
     for (size_t k = 0; k < sizeof place / sizeof *place; k++) {
-        c.supports = place[k].supports;
+        c.supports = (hf_supports)place[k].supports;
         hf_scene s = generate(&c);
         ck_assert_int_eq(s.role[place[k].j * NX + place[k].i], place[k].role);
         hf_scene_free(&s);

@@ -27,7 +27,7 @@ static void open_run(struct run *r, int rule)
     for (int i = 0; i < N_DESIGN; i++)
         for (int k = 0; k < m->n_gene; k++)
             r->design_N[i * m->n_gene + k] = r->net.work.tension_N[m->gene_cable[k]] + rng_uniform(&rng, -0.5, 0.5);
-    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, rule, HF_SOLVER_AUTO, 1e9};
+    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_AUTO, 1e9};
 }
 
 static void evaluate(struct run *r, int n_thread, int n_at_once, hf_form_result result[N_DESIGN])

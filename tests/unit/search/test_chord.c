@@ -242,7 +242,7 @@ START_TEST(applies_where_it_can_serve)
     static const int solver[] = {HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT};
     static const int shared[] = {HF_SOLVER_CHORD, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT};
     for (int k = 0; k < 4; k++) {
-        r.evaluator.solver = solver[k];
+        r.evaluator.solver = (hf_solver)solver[k];
         ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
         ck_assert_int_eq(hf_batch_share(&batch, r.base_N), shared[k]);
         hf_batch_free(&batch);
@@ -274,7 +274,7 @@ START_TEST(nothing_to_share)
     r.base_N[0] /= 50;
     for (long n = 1;; n++) {
         fail_allocation_at(n);
-        int solver = hf_batch_share(&batch, r.base_N);
+        hf_solver solver = hf_batch_share(&batch, r.base_N);
         if (!end_allocation_failure()) {
             ck_assert_int_eq(solver, HF_SOLVER_CHORD);
             ck_assert_int_gt(n, 3);

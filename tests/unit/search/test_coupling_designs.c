@@ -60,7 +60,7 @@ START_TEST(threads_and_grouping_do_not_change_a_bit)
     open_designs(&r, _i == 3 ? HF_RULE_SEEDED : HF_RULE_FORCE_DENSITY, 1e-5);
     if (_i > 1) r.net.form.coupling.tof_m = 1e-7;
     if (_i > 1) r.net.form.residual_tolerance = 1e-6; /* these iterate by the paper's rate */
-    r.evaluator.solver = solver[_i];
+    r.evaluator.solver = (hf_solver)solver[_i];
     memset(result, 0, sizeof result);
     for (int k = 0; k < 3; k++) {
         hf_batch batch;

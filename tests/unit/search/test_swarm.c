@@ -24,7 +24,7 @@ static void open_run(struct run *r, int rule, double range_N)
             double tension_N = r->net.work.tension_N[m->gene_cable[k]];
             r->design_N[i * m->n_gene + k] = fmax(0.05, tension_N + rng_uniform(&rng, -range_N, range_N));
         }
-    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, rule, HF_SOLVER_FIXED_POINT, 1e9};
+    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_FIXED_POINT, 1e9};
 }
 
 static void evaluate(struct run *r, int n_thread, int backwards, hf_form_result result[N_DESIGN])

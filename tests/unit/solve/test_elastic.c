@@ -226,7 +226,7 @@ START_TEST(populations_fall_back)
         base[k] = net.work.tension_N[net.model.gene_cable[k % n_gene]] * (1 + 0.01 * (k / n_gene));
     static const int solver[] = {HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_FIXED_POINT};
     static const int used[] = {HF_SOLVER_NEWTON, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT};
-    hf_evaluator v = {&net.model, &net.form, start, HF_RULE_FORCE_DENSITY, solver[_i], 1e3};
+    hf_evaluator v = {&net.model, &net.form, start, HF_RULE_FORCE_DENSITY, (hf_solver)solver[_i], 1e3};
     ck_assert(!hf_chord_applies(&v));
     hf_batch batch;
     hf_form_result together[3], alone;

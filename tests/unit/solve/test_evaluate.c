@@ -22,7 +22,7 @@ static void open_run(struct run *r, int rule)
     memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
     for (int k = 0; k < m->n_gene; k++)
         r->design_N[k] = r->base_N[k] = r->net.work.tension_N[m->gene_cable[k]];
-    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, rule, HF_SOLVER_AUTO, 1e9};
+    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_AUTO, 1e9};
 }
 
 static void disturb(struct run *r, double range_N)

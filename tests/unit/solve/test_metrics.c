@@ -46,7 +46,7 @@ static double ratio(struct net *net, int group, double t0, double t1, double t2,
 {
     const double tension[] = {t0, t1, t2, t3};
     memcpy(net->work.tension_N, tension, sizeof tension);
-    return hf_metrics_tension_ratio(&net->model, &net->work, group);
+    return hf_metrics_tension_ratio(&net->model, &net->work, (hf_group)group);
 }
 
 START_TEST(ratio_is_largest_over_smallest_of_the_group)
