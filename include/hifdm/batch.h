@@ -17,7 +17,7 @@ extern "C" {
 typedef struct {
     const hf_evaluator *evaluator; /* borrowed */
     int n_thread;
-    hf_workspace *workspace;        /* [n_thread]; inside hf_parallel_for all but the first are made when needed */
+    hf_workspace *workspace;        /* [n_thread]; inside hf_parallel_for all but the first are created when needed */
     struct hf_batch_engine *engine; /* what hf_batch_share made, or NULL */
     double cpu_s;                   /* processor time spent inside evaluations so far, over all threads */
 } hf_batch;
@@ -39,13 +39,14 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
  * when no generation is left; then only `beside` has run. */
 bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
 
-/* Choose what designs are solved with from here on, and make it: one Newton matrix, factored at the base design
- * [n_gene] > 0 and shared by all threads; lanes of the paper's iteration; or nothing, and each design is left to
- * hf_evaluate. Returns the hf_solver that will be used. An unsuitable base, or no memory, leaves it at the last. */
+/* Choose the solver of all designs from now on, and prepare what the threads share: one Newton matrix, factored at the
+ * base design base_N [n_gene] > 0; or lanes of the paper's iteration; or nothing, when hf_evaluate solves each design
+ * by itself. Returns the hf_solver that will be used. When the base is unsuitable or memory runs out, nothing is
+ * shared. */
 hf_solver hf_batch_share(hf_batch *batch, const double *base_N);
 
-/* The solver that hf_batch_share returns unless the base or memory forbids it. *has_lanes: it works on eight designs at
- * once, in the lanes of vector registers. */
+/* The solver that hf_batch_share returns unless the base is unsuitable or memory runs out. *has_lanes is set to true
+ * when this solver works on eight designs at once, in the lanes of vector registers. */
 hf_solver hf_batch_solver(const hf_evaluator *evaluator, bool *has_lanes);
 
 int hf_batch_default_threads(void); /* available cores */
@@ -54,7 +55,7 @@ int hf_batch_default_threads(void); /* available cores */
  * shape until the next call with this batch. */
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result);
 
-/* Frees the workspaces and what the threads share; the evaluator stays. */
+/* Free the workspaces and what the threads share. The evaluator is not freed. */
 void hf_batch_free(hf_batch *batch);
 
 #ifdef __cplusplus

@@ -1,13 +1,14 @@
 /* cable_law - the laws that a cable can obey, and everything that depends on which one it is (METHOD.md section 2).
  * Stability: internal; may change in any version.
- * (The names and words of the laws are stable: files hold them.)
+ * (The names and words of the laws are stable, because files contain them.)
  *
  * A new law is one row of HF_LAW_LIST and one case in each of the functions below; the compiler names a case that is
- * missing. Solvers ask for flags and call these functions, so they need no change. A kernel that computes laws by
- * itself says with a set of flags which laws it serves (hf_law_is_served); nets with another law take another way.
+ * missing. Solvers test flags and call these functions, so they need no change. A kernel with its own formulas for the
+ * laws states as a set of flags which laws it can solve (hf_law_is_served); a net with any other law is solved by
+ * another method.
  *
- * Lengths in m, tensions in N, force densities in N/m. The order of the floating-point operations is part of the
- * results: stored data sets change by a bit when it does. */
+ * Lengths in m, tensions in N, force densities in N/m. The order of the floating-point operations must stay: stored
+ * data sets change in their last bits when the order changes. */
 #ifndef HIFDM_CABLE_LAW_H
 #define HIFDM_CABLE_LAW_H
 
@@ -20,21 +21,21 @@ extern "C" {
 
 /* What solvers may assume of a law. */
 enum {
-    HF_LAW_ITERATES = 1,       /* its force density depends on the shape: one linear solve is not enough */
-    HF_LAW_IS_CONVEX = 2,      /* its potential is convex under tension */
+    HF_LAW_ITERATES = 1,       /* the force density depends on the shape: one linear solve is not enough */
+    HF_LAW_IS_CONVEX = 2,      /* the potential is convex under tension */
     HF_LAW_GIVES_TENSION = 4,  /* T is the target, whatever the length */
-    HF_LAW_HAS_MULTIPLIER = 8, /* T is an unknown of its own; the law says which length it wants at this T */
-    HF_LAW_IS_RIGID = 16,      /* with a multiplier: it wants the same length at every T, which has no potential */
-    HF_LAW_GOES_SLACK = 32,    /* with a multiplier: T may be zero, and the cable then bears nothing */
-    HF_LAW_NEEDS_EA = 64,      /* the axial stiffness of the cable counts */
+    HF_LAW_HAS_MULTIPLIER = 8, /* T is an unknown of its own; the law gives the wanted length at this T */
+    HF_LAW_IS_RIGID = 16,      /* with a multiplier: the wanted length is the same at every T; no potential */
+    HF_LAW_GOES_SLACK = 32,    /* with a multiplier: T may be zero, and the cable then carries no force */
+    HF_LAW_NEEDS_EA = 64,      /* the law depends on the axial stiffness EA of the cable */
     HF_LAW_MAY_PUSH = 128      /* the target may be below zero: a strut */
 };
 
-/* X(name, word, target, unit of target, flags): one row per law. The word stands in files, in the order of the rows.
- * `target` names what the value of a cable means, for messages; NULL: a cable need not give one.
+/* X(name, word, target, unit of target, flags): one row per law. Files contain the words, in the order of the rows.
+ * `target` is the name that messages use for the value of a cable; NULL: a cable may leave its value out.
  *
  * tension: T = T*, Eq. 7.  length: l = L*, Eq. 8.  force_density: q is held, Eq. 5.
- * elastic: T = EA max(l/l0 - 1, 0), the cable as it was cut. */
+ * elastic: T = EA max(l/l0 - 1, 0), where l0 is the length to which the cable was cut. */
 #define HF_LAW_LIST(X)                                                                                                 \
     X(HF_LAW_TENSION, "tension", NULL, "N", HF_LAW_ITERATES | HF_LAW_IS_CONVEX | HF_LAW_GIVES_TENSION)                 \
     X(HF_LAW_LENGTH, "length", NULL, "m",                                                                              \
@@ -55,7 +56,7 @@ extern const char *const hf_law_word[HF_N_LAW];        /* "tension", "length", "
 extern const char *const hf_law_target_name[HF_N_LAW]; /* NULL: the target may be left out */
 extern const char *const hf_law_target_unit[HF_N_LAW];
 
-/* A cable as its law sees it. */
+/* The values of one cable on which its law depends. */
 typedef struct {
     hf_law law;
     double target;        /* T* (N), L* (m), q (N/m) or l0 (m) by law */
@@ -63,7 +64,7 @@ typedef struct {
     double theoretical_m; /* length between the theoretical positions of its ends */
 } hf_law_cable;
 
-/* Has the law any of these flags? */
+/* True when the law has any of these flags. */
 static inline bool hf_law_has(hf_law law, unsigned flags)
 {
 #define HF_LAW_FLAGS(name, word, target, unit, flags) flags,
@@ -72,13 +73,13 @@ static inline bool hf_law_has(hf_law law, unsigned flags)
     return (flags_of[law] & flags) != 0;
 }
 
-/* May a kernel that assumes `served`, a set of flags, work on this law? */
+/* True when a kernel made for laws with the flags `served` can solve this law, which then has no other flag. */
 static inline bool hf_law_is_served(hf_law law, unsigned served)
 {
     return !hf_law_has(law, ~served);
 }
 
-/* Target of a cable that gives none; NaN where the law has no such value, or the case's pretension is meant. */
+/* Target of a cable whose value is left out; NaN where the law has no default or its default is the pretension. */
 static inline double hf_law_default_target(hf_law law, double theoretical_m)
 {
     switch (law) {
@@ -92,8 +93,8 @@ static inline double hf_law_default_target(hf_law law, double theoretical_m)
     return (double)NAN;
 }
 
-/* Length that a law with a multiplier wants at this tension; NaN without. Stiff cables need no care of their own in
- * this form, and an elastic one with EA without bound is one of law length. */
+/* Length, m, that a law with a multiplier demands at this tension; NaN for other laws. This form needs no special case
+ * for stiff cables: in the limit of infinite EA the law elastic is the law length. */
 static inline double hf_law_wanted_length_m(hf_law_cable c, double tension_N)
 {
     switch (c.law) {
@@ -108,7 +109,7 @@ static inline double hf_law_wanted_length_m(hf_law_cable c, double tension_N)
     return (double)NAN;
 }
 
-/* Tension of a cable of this length; NaN for a rigid law, which leaves it open. */
+/* Tension of a cable of this length; NaN for a rigid law, under which the length does not determine the tension. */
 static inline double hf_law_tension_N(hf_law_cable c, double length_m)
 {
     switch (c.law) {
@@ -140,8 +141,8 @@ static inline double hf_law_stiffness_N_per_m(hf_law_cable c, double length_m)
     return 0;
 }
 
-/* Change of the potential phi, J, from length `from_m` to `to_m`, whose squares differ by `square`; no digits are lost
- * when they are nearly alike. NaN for a rigid law. */
+/* Change of the potential phi, J, from length `from_m` to `to_m`. `square` is to_m^2 - from_m^2, m^2; the caller gives
+ * it so that no digits are lost when the lengths are nearly equal. NaN for a rigid law. */
 static inline double hf_law_energy_change_J(hf_law_cable c, double from_m, double to_m, double square)
 {
     double longer = square / (from_m + to_m), l0 = c.target;
@@ -169,8 +170,8 @@ static inline double hf_law_held_q_N_per_m(hf_law_cable c, double length_m, doub
 }
 
 /* Next force density of the fixed-point iteration. Eq. 7 scales q by the wanted over the present tension; with T = q l
- * that is the wanted tension over l. Eq. 8 scales it by the present over the wanted length, which of an elastic cable
- * grows with the tension. */
+ * the result is the wanted tension over l. Eq. 8 scales q by the present over the wanted length; the wanted length of
+ * an elastic cable grows with the tension. */
 static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, double tension_N, double q_N_per_m)
 {
     if (hf_law_has(c.law, HF_LAW_GIVES_TENSION)) return c.target / length_m;
@@ -178,7 +179,7 @@ static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, doub
     return q_N_per_m;
 }
 
-/* Tension of the cable in the theoretical shape, where the law has one there; else `otherwise_N`. */
+/* Tension in the theoretical shape of a cable that can go slack and is taut there; `otherwise_N` for other cables. */
 static inline double hf_law_first_tension_N(hf_law_cable c, double otherwise_N)
 {
     bool is_taut = hf_law_has(c.law, HF_LAW_GOES_SLACK) && c.theoretical_m > hf_law_wanted_length_m(c, 0);

@@ -1,4 +1,4 @@
-/* carrier - the truss of a case as the net sees it: factored once, and condensed to the supports of the net.
+/* carrier - the truss of a case, with its stiffness matrix factored once and condensed to the supports of the net.
  * Stability: stable. */
 #ifndef HIFDM_CARRIER_H
 #define HIFDM_CARRIER_H
@@ -20,15 +20,15 @@ typedef struct {
     void *block;
 } hf_carrier;
 
-/* Of a checked truss and the checked scene that it carries; each support of the scene stands on the nearest truss node
- * within the tolerance (hf_truss_attach). The carrier takes the truss over, whatever happens, and leaves *truss all
- * zero. HF_BAD_CASE, HF_MECHANISM or HF_NO_MEMORY with messages. The carrier must stay where it is (its frame points to
- * its truss); free it in any case. */
+/* Build the carrier from a checked truss and the checked scene that it carries. Each support of the scene is attached
+ * to the nearest truss node within the tolerance (hf_truss_attach). The carrier takes ownership of the truss, also
+ * after a failure, and sets *truss to all zero. Returns HF_OK; HF_BAD_CASE, HF_MECHANISM or HF_NO_MEMORY with messages.
+ * The carrier must not be moved in memory, because its frame points to its truss. Free it in any case. */
 hf_status hf_carrier_build(hf_truss *truss, double match_tolerance_m, const hf_scene *scene, hf_carrier *carrier,
                            hf_messages *messages);
 void hf_carrier_free(hf_carrier *carrier);
 
-/* What forces on the attachments do to the truss. */
+/* Displacements and forces of the truss under forces on its attachments. */
 typedef struct {
     double *displacement; /* [n_node][6] m, rad */
     double *reaction;     /* [n_node][6] N, N m; 0 at free dofs */
@@ -36,7 +36,8 @@ typedef struct {
     void *block;
 } hf_carrier_state;
 
-/* force_N: [n_attachment][3]. HF_OK or HF_NO_MEMORY. Free the state in any case. */
+/* Solve the truss under force_N [n_attachment][3] on its attachments. Returns HF_OK or HF_NO_MEMORY. Free the state in
+ * any case. */
 hf_status hf_carrier_load(const hf_carrier *carrier, const double *force_N, hf_carrier_state *state);
 
 void hf_carrier_state_free(hf_carrier_state *state);

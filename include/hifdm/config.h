@@ -22,7 +22,7 @@ typedef struct {
     char path[HF_PATH_SIZE]; /* of the case file */
     char *text;              /* its content */
     size_t text_length;
-    char *overrides; /* the --set arguments, a line each; "" when there are none */
+    char *overrides; /* the --set arguments, one line each; "" when there are none */
     char sha256[65]; /* of text and overrides */
     char title[256];
     bool has_import, has_optimize, has_surface; /* which sections are there */
@@ -43,28 +43,30 @@ typedef struct {
     char truss_nodes_path[HF_PATH_SIZE], truss_members_path[HF_PATH_SIZE];
 } hf_case;
 
-/* Read and validate. `overrides`: n "path=value" strings that override the file. HF_BAD_CASE with a message
- * file:line:col for every fault; HF_NO_MEMORY. Free with hf_case_free in any case. */
+/* Read and validate a case file. `overrides`: n_override strings "path=value" that override the file. Returns HF_OK;
+ * HF_BAD_CASE with a message file:line:col for every fault; HF_NO_MEMORY. Free with hf_case_free in any case. */
 hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
                          hf_messages *messages);
 
-/* The same from the text of a case file. `path` is used in messages and to resolve the files that the case names. */
+/* hf_config_load from the text of a case file. `path` is used in messages and to resolve the files that the case
+ * names. */
 hf_status hf_config_parse(const char *path, const char *text, const char *const *overrides, int n_override,
                           hf_case *settings, hf_messages *messages);
 
-/* The keys in which two cases differ, "form.stop, optimize.seed", into text[size] (cut short when it is full). Returns
- * how many there are. */
+/* Write the keys in which two cases differ, such as "form.stop, optimize.seed", into text[size]; a list that does not
+ * fit is cut. Returns the number of these keys. */
 int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t size);
 
-/* The scene that the case describes, checked (hf_scene_check). HF_OK; HF_BAD_CASE, files that cannot be read included;
- * HF_NO_MEMORY. Free the scene in any case. */
+/* Make the scene that the case describes, and check it (hf_scene_check). Returns HF_OK; HF_BAD_CASE, also when a file
+ * cannot be read; HF_NO_MEMORY. Free the scene in any case. */
 hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages);
 
-/* The truss of a case that has one, checked (hf_truss_check). Errors as hf_config_scene. Free the truss in any case. */
+/* Make the truss of a case that has one, and check it (hf_truss_check). Errors as hf_config_scene. Free the truss in
+ * any case. */
 hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages *messages);
 
-/* The truss of the case as carrier of the scene's supports (hf_carrier_build). Errors as hf_config_truss, and
- * HF_MECHANISM. Free the carrier in any case. */
+/* Build the carrier of the scene's supports from the truss of the case (hf_carrier_build). Errors as hf_config_truss,
+ * and HF_MECHANISM. Free the carrier in any case. */
 hf_status hf_config_carrier(const hf_case *settings, const hf_scene *scene, hf_carrier *carrier, hf_messages *messages);
 
 void hf_case_free(hf_case *settings);
@@ -85,10 +87,10 @@ typedef struct {
     const char *path; /* "form.pretension_N" */
     hf_field_type type;
     size_t offset;             /* in hf_case */
-    double min, max;           /* inclusive; min HF_ABOVE_ZERO: exclusive 0; text: max is the size of the buffer */
+    double min, max;           /* inclusive; min HF_ABOVE_ZERO: above 0; text: max is the size of the buffer */
     const char *default_value; /* as written in a case file; NULL = required when its section is there; "" = nothing */
     const char *unit;          /* "" = dimensionless */
-    const char *const *words;  /* of a WORD, NULL-terminated */
+    const char *const *words;  /* of HF_FIELD_WORD, NULL-terminated */
     const char *help;
 } hf_field;
 
@@ -105,8 +107,8 @@ extern const int hf_n_field;
 extern const hf_section hf_section_table[];
 extern const int hf_n_section;
 
-/* Is `value`, written as in a case file, valid for the key of hf_field_table[field]? HF_OK, or HF_BAD_CASE with
- * "<place>: <key>: <why not>". Rules that join several keys are checked by hf_config_load alone. */
+/* Check `value`, written as in a case file, against the key hf_field_table[field]. Returns HF_OK; HF_BAD_CASE with the
+ * message "<place>: <key>: <why not>"; HF_NO_MEMORY. Only hf_config_load checks the rules that involve several keys. */
 hf_status hf_config_check_value(int field, const char *value, const char *place, hf_messages *messages);
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
-/* evaluate - one form-finding by the method that fits, alone or on a truss -> one plain result: of the case itself
- * (hf_evaluate_form), or of a design, which is a boundary pretension for each gene (hf_evaluate).
- * Stability: stable. */
+/* evaluate - one form-finding with the method that suits the net, with or without a truss, which gives one plain
+ * result. hf_evaluate_form evaluates the case itself, hf_evaluate a design, which is a boundary pretension for each
+ * gene. Stability: stable. */
 #ifndef HIFDM_EVALUATE_H
 #define HIFDM_EVALUATE_H
 
@@ -10,9 +10,9 @@
 extern "C" {
 #endif
 
-/* The method that form.method means in this net: HF_METHOD_NEWTON, or HF_METHOD_HIFDM for the paper's iteration, which
- * is also that of iterative_fdm and fdm (they differ in the laws of the model). *why is the reason in words; why may be
- * NULL. */
+/* The method that form.method selects for this net: HF_METHOD_NEWTON, or HF_METHOD_HIFDM for the paper's iteration. The
+ * methods iterative_fdm and fdm use this iteration, too; they differ in the laws of the model. *why is set to the
+ * reason in words; why may be NULL. */
 hf_method hf_evaluate_method(const hf_model *model, const hf_form_settings *form, const char **why);
 
 /* Form-finding as the case asks for it, with its certificate. history may be NULL; otherwise iterations are recorded
@@ -25,14 +25,14 @@ hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, 
 typedef struct {
     const hf_model *model;
     const hf_form_settings *form;
-    const double *start_q_N_per_m; /* [n_cable] force densities of the found shape: where the inner cables start */
+    const double *start_q_N_per_m; /* [n_cable] force densities of the found shape, from which the inner cables start */
     hf_rule rule;
     hf_solver solver;
-    double boundary_ratio_cap; /* a larger boundary tension ratio is HF_RATIO_CAP; INFINITY: no cap */
+    double boundary_ratio_cap; /* a larger boundary tension ratio gives HF_RATIO_CAP; INFINITY: no cap */
 } hf_evaluator;
 
 /* Evaluate design_N [model->n_gene], boundary pretensions T' > 0. The shape is left in the workspace. A design that
- * fails has its status in the result and NaN for psi and ratios; this is no error of the run. Returns
+ * fails has its status in the result and NaN for psi and ratios; the run itself does not fail. Returns
  * result->status. */
 hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace,
                       hf_form_result *result);
@@ -46,8 +46,8 @@ hf_status hf_evaluate_judge(const hf_evaluator *evaluator, hf_form_result *resul
 /* L* (m) of a boundary cable: the prescribed length where there is one, else the theoretical length. */
 double hf_evaluate_design_length_m(const hf_model *model, int i_cable);
 
-/* What the rule makes of the design's tension (N) of a boundary cable: q (N/m) under the rule force_density, else the
- * tension itself. */
+/* Target of a boundary cable to which the design gives the tension tension_N: q (N/m) under the rule force_density,
+ * else the tension itself (N). */
 double hf_evaluate_design_target(const hf_evaluator *evaluator, int i_cable, double tension_N);
 
 #ifdef __cplusplus

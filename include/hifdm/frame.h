@@ -33,40 +33,42 @@ typedef struct {
 #define HF_FRAME_FIXED -1  /* held by a support */
 #define HF_FRAME_ABSENT -2 /* a rotation that no beam resists: all members of the node are pinned. Given as 0. */
 
-/* One load case; NULL = none of it. */
+/* One load case; NULL: no load of this kind. */
 typedef struct {
     const double *force;         /* [n_node][6] N, N m */
-    const double *settlement;    /* [n_node][6] m, rad: displacements of supported dofs; others are not looked at */
+    const double *settlement;    /* [n_node][6] m, rad: displacements of supported dofs; other dofs are ignored */
     const double *temperature_K; /* [n_member] rise above the temperature without stress */
 } hf_frame_load;
 
-/* HF_OK; HF_MECHANISM with a message that names a node and dof that can move without force (a mechanism, or a truss
- * without enough supports); HF_NO_MEMORY. truss: checked. Free with hf_frame_free in any case. */
+/* Build the frame of a checked truss. Returns HF_OK; HF_MECHANISM with a message that names a node and dof that can
+ * move without force (a mechanism, or a truss without enough supports); HF_NO_MEMORY. Free with hf_frame_free in any
+ * case. */
 hf_status hf_frame_build(const hf_truss *truss, hf_frame *frame, hf_messages *messages);
 void hf_frame_free(hf_frame *frame);
 
-size_t hf_frame_work_size(const hf_frame *frame, int n_case); /* doubles that hf_frame_solve works in */
+size_t hf_frame_work_size(const hf_frame *frame, int n_case); /* doubles in `work` */
 
-/* n_case cases in one pass of the factor. work: [hf_frame_work_size]; displacement: [n_case][n_node][6], with
- * settlements in the supported dofs. HF_OK; HF_MECHANISM (displacement untouched) when a moment acts where nothing
- * resists rotation: *bad_dof = 6 * node + dof then, else -1. */
+/* Solve n_case load cases in one pass over the factor. work: [hf_frame_work_size]; displacement: [n_case][n_node][6],
+ * with settlements in the supported dofs. Returns HF_OK; HF_MECHANISM, with displacement untouched, when a moment acts
+ * where nothing resists rotation: *bad_dof is then 6 * node + dof, else -1. */
 hf_status hf_frame_solve(const hf_frame *frame, int n_case, const hf_frame_load *load, double *work,
                          double *displacement, int *bad_dof);
 
-/* From a displacement of the case. reaction: [n_node][6] forces of the supports on the truss, 0 at free dofs.
- * residual, or NULL: [n_node][6] what is out of balance at free dofs, 0 at supported ones. */
+/* Compute reactions from the displacement under this load case. reaction: [n_node][6] forces of the supports on the
+ * truss, 0 at free dofs. residual, or NULL: [n_node][6] forces out of balance at free dofs, 0 at supported ones. */
 void hf_frame_reactions(const hf_frame *frame, const hf_frame_load *load, const double *displacement, double *reaction,
                         double *residual);
 
-/* end_force: [n_member][12] local forces of the nodes on the member: Nx, Vy, Vz, Tx, My, Mz at i (Nx > 0: compression),
- * then at j. */
+/* Compute end_force [n_member][12], the local forces of the nodes on the member: Nx, Vy, Vz, Tx, My, Mz at i (Nx > 0:
+ * compression), then at j. */
 void hf_frame_member_forces(const hf_frame *frame, const hf_frame_load *load, const double *displacement,
                             double *end_force);
 
 double hf_frame_strain_energy(const hf_frame *frame, const hf_frame_load *load, const double *displacement); /* J */
 
-/* Flexibility of some nodes: flexibility_m_per_N[3a][3a], displacement of dof 3*i+c of the listed nodes under a unit
- * force on dof 3*k+d; symmetric to the last bit. node: [n_point]. HF_OK or HF_NO_MEMORY. */
+/* Compute the flexibility of the nodes listed in node [n_point]: flexibility_m_per_N [3 n_point][3 n_point] holds the
+ * displacement of dof 3*i+c under a unit force on dof 3*k+d, and is symmetric to the last bit. Returns HF_OK or
+ * HF_NO_MEMORY. */
 hf_status hf_frame_condense(const hf_frame *frame, int n_point, const int *node, double *flexibility_m_per_N);
 
 #ifdef __cplusplus

@@ -5,8 +5,8 @@
  * src/net/generate_NAME.c with
  *
  *   hf_scene_NAME         : const hf_TYPE *, const double EA_N[2], hf_scene *, hf_messages * -> hf_status
- *   hf_scene_NAME_surface : const hf_TYPE *, hf_surface_settings *, which is all zero: what the net knows of the wanted
- *                           surface (focal length, width of a strip); what it does not know stays 0
+ *   hf_scene_NAME_surface : const hf_TYPE *, hf_surface_settings * that is all zero: sets what the net determines of
+ *                           the wanted surface (focal length, width of a strip); the rest stays 0
  *
  * The key table, the loading and checking of the section, the help and the making of the scene follow from the row. */
 #ifndef HIFDM_GENERATE_H
@@ -21,7 +21,7 @@ extern "C" {
 
 /* X(name of the section, type of the settings, keys, help). `hifdm schema` lists them in this order. */
 #define HF_GENERATORS(X) X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS, "A quad net over a parabolic cylinder.")
-/* Of the section scene: as many as there are generators, and import. */
+/* Help of the section scene. Its number of subsections is the number of generators and one for import. */
 #define HF_GENERATORS_HELP "The net: exactly one of the two sections below."
 
 /* ---- parabolic_cylinder ---- */
@@ -30,7 +30,7 @@ typedef enum { HF_SPACING_EQUAL_ARC, HF_SPACING_EQUAL_PROJECTED } hf_spacing;
 typedef enum { HF_BOUNDARY_OUTER_EDGE, HF_BOUNDARY_MODULE_EDGES } hf_boundary;
 typedef enum { HF_SUPPORTS_MODULE_CORNERS, HF_SUPPORTS_RIBS, HF_SUPPORTS_PERIMETER } hf_supports;
 
-/* Words of a case file by the enumerations above, ended by NULL. */
+/* Words of a case file, indexed by the enumerations above; the last entry is NULL. */
 extern const char *const hf_spacing_word[3];
 extern const char *const hf_boundary_word[3];
 extern const char *const hf_supports_word[4];
@@ -66,9 +66,9 @@ typedef struct {
     X(section, supports, HF_FIELD_WORD, 0, 0, "module_corners", "", hf_supports_word,                                  \
       "fixed nodes: all module corners, all nodes on ribs (y = module border), or the perimeter")
 
-/* Quad net over the cylinder; node ids n<i>_<j>, cable ids <node>-<node>. EA_N: axial stiffness by hf_group, 0 = not
- * given; NULL: none is given. Free the scene with hf_scene_free in any case. HF_BAD_CASE when the net would be too
- * large, HF_NO_MEMORY. */
+/* Make the quad net over the cylinder; node ids n<i>_<j>, cable ids <node>-<node>. EA_N: axial stiffness by hf_group,
+ * 0 = not given; NULL: none is given. Free the scene with hf_scene_free in any case. Returns HF_OK; HF_BAD_CASE when
+ * the net would be too large; HF_NO_MEMORY. */
 hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double EA_N[2], hf_scene *scene,
                                       hf_messages *messages);
 void hf_scene_parabolic_cylinder_surface(const hf_cylinder *cylinder, hf_surface_settings *surface);

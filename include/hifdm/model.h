@@ -22,18 +22,18 @@ extern "C" {
 #define HF_STRAIGHT_EXCESS 1e-9
 
 typedef struct {
-    int n_node, n_free, n_cable, n_inner_node; /* n_free: nodes that are no supports; n_inner_node: those psi counts */
+    int n_node, n_free, n_cable, n_inner_node; /* n_free: nodes that are no supports; n_inner_node: those in psi */
     int half_bandwidth;                        /* of D: columns below the diagonal */
-    int n_band;      /* n_free * (half_bandwidth + 1); one spare place behind it takes what supports would add */
+    int n_band;      /* n_free * (half_bandwidth + 1); one spare place behind it takes the terms of supports */
     bool has_strut;  /* some force density is negative: D may be indefinite */
     bool has_newton; /* workspaces hold a Newton matrix: some law iterates, and the energy is convex (no strut) */
     double pretension_N;
-    double reference_N; /* what residuals are relative to: the largest tension of a law or load, else the pretension */
+    double reference_N; /* residuals are relative to it: the largest tension of a law or load, else the pretension */
 
     int *row_of_node;                            /* [n_node] */
     int *node_of_row;                            /* [n_node] */
     int *end_row;                                /* [n_cable][2] */
-    int *diagonal_a, *diagonal_b, *off_diagonal; /* [n_cable] places in the band; n_band = not there */
+    int *diagonal_a, *diagonal_b, *off_diagonal; /* [n_cable] places in the band; n_band: none */
     int *inner_row;                              /* [n_inner_node] rows that psi counts */
     double *position_m;                          /* [3][n_node] theoretical, component by component; supports: real */
     double *load_N;                              /* [3][n_node], or NULL */
@@ -44,18 +44,19 @@ typedef struct {
     double *EA_N;                                /* [n_cable]; NULL unless some cable is elastic under the method */
     double *start_q_N_per_m;                     /* [n_cable] first force densities */
 
-    /* Boundary cables with a free end, whose pretensions a design sets; grouped into chains, joined at free nodes with
-     * just two boundary cables. Unequal changes inside a chain push its nodes along it; equal ones change its sag. */
+    /* Genes: the boundary cables with a free end, whose pretensions a design sets. Genes that meet at a free node
+     * without a third one are in the same group, a chain. Unequal changes inside a chain push its nodes along it; equal
+     * changes change its sag. */
     int n_gene, n_gene_group;
     int *gene_cable; /* [n_gene] */
     int *gene_group; /* [n_gene] 0..n_gene_group-1 */
 
     /* Genes linked by a symmetry of the net (module symmetry) change by the same step as the first of their class. */
-    int n_leader;     /* classes: the independent genes; n_gene without a symmetry */
+    int n_leader;     /* number of classes, the independent genes; n_gene without a symmetry */
     int *gene_leader; /* [n_gene] first gene of the class: the gene itself without a symmetry */
 
-    /* Chains of length-controlled cables between two supports; first those that are straight: sum L* does not exceed
-     * the distance. */
+    /* Chains of length-controlled cables between two supports. Straight chains, whose sum of L* does not exceed the
+     * distance of the supports, come first. */
     int n_chain;       /* straight */
     int n_any_chain;   /* straight or with a sag */
     int *chain_start;  /* [n_any_chain + 1] into chain_cable */
@@ -76,22 +77,22 @@ typedef struct {
 /* Build from a checked scene. HF_OK or HF_NO_MEMORY (with a message). Free with hf_model_free in any case. */
 hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages);
 
-/* Put supports on a truss: node[i], a support of the scene, is attachment i, and the flexibility [3a][3a] in m/N
- * (copied) says how it gives way; all other supports stay fixed. A cable of law length between an attachment and
- * another support would be a rigid rod in the truss: it keeps its first tension instead. HF_BAD_CASE, naming the
- * attachment by its index, when a node is no support or comes twice, or when the matrix is not finite, not symmetric to
- * 1e-9 of its largest entry (the copy is, exactly), or has a negative diagonal entry; HF_NO_MEMORY. Once per model,
- * before workspaces are made for it. */
+/* Put supports on a truss: node[i], a support of the scene, becomes attachment i. Forces on the attachments displace
+ * them by the flexibility [3a][3a] in m/N (copied); all other supports stay fixed. A cable of law length between an
+ * attachment and another support would be a rigid rod in the truss: it keeps its first tension instead. Returns HF_OK;
+ * HF_BAD_CASE, naming the attachment by its index, when a node is no support or comes twice, or when the matrix is not
+ * finite, not symmetric to 1e-9 of its largest entry (the copy is, exactly), or has a negative diagonal entry;
+ * HF_NO_MEMORY. Call it once per model, before workspaces are created for it. */
 hf_status hf_model_attach(hf_model *model, int n_attachment, const int *node, const double *flexibility_m_per_N,
                           hf_messages *messages);
 
-/* What residuals and slack are relative to, N: reference_N of a model of this scene. */
+/* The force to which residuals and slack are relative, N: reference_N of a model of this scene. */
 double hf_model_reference_N(const hf_scene *scene, double pretension_N);
 
-/* Invariants of every index and band place; for asserts and tests. */
+/* True when every index and band place obeys its invariants; for asserts and tests. */
 bool hf_model_is_valid(const hf_model *model);
 
-/* "cable + cable + cable" of a chain into `text`, cut with " ..." when it does not fit. */
+/* Write the cables of a chain, "cable + cable + cable", into `text`; a text that does not fit ends with " ...". */
 void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_chain, char *text, size_t size);
 
 void hf_model_free(hf_model *model);

@@ -52,7 +52,7 @@ const char *hf_coupling_stop_word(int stop); /* "unknown" for a foreign value */
  *
  * kind         of the stored value (REAL, INT, or an enumeration of the store's layout)
  * json         place in the JSON object of a stage; equal places are in the order of the list; 0 = not there
- * individual   place among the figures of one individual (data sets of /ga, columns of `evaluate`), likewise
+ * individual   place among the figures of one individual (data sets of /ga, columns of `evaluate`); 0 = not there
  * key          in JSON; the attribute has the name of the member
  * description  attribute of the data set, where there is one
  *
@@ -134,7 +134,7 @@ enum {
     HF_COUPLING_N = 0 HF_COUPLING_LIST(HF_RESULT_COUNT),
     HF_RESULT_N_INDIVIDUAL = 0 HF_RESULT_LIST(HF_RESULT_COUNT_INDIVIDUAL)
 };
-enum { HF_RESULT_JSON_COUNTS = 5 }; /* first place of the counts in JSON, after the figures of a coupling */
+enum { HF_RESULT_JSON_COUNTS = 5 }; /* first JSON place of the counts, which follow the figures of a coupling */
 
 extern const hf_result_field hf_result_field_of[HF_RESULT_N];     /* of hf_form_result */
 extern const hf_result_field hf_coupling_field_of[HF_COUPLING_N]; /* of hf_coupling_result */

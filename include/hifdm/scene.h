@@ -40,11 +40,12 @@ typedef struct {
     void *block, *text;                   /* owned memory behind all of the above */
 } hf_scene;
 
-/* Room for a scene of this size, all zero; with_* say which optional arrays exist. HF_OK or HF_NO_MEMORY. */
+/* Allocate a scene of this size, all zero; with_* tell which optional arrays exist. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, bool with_load, bool with_EA, bool with_line);
 
-/* Everything that must hold whatever the scene came from: a free node, an inner node, distinct ends, finite numbers, no
- * cable of zero length, every free node joined to a support. All faults in one go, each naming file, line and id. */
+/* Check what must hold for every scene, generated or read: a free node, an inner node, distinct ends, finite numbers,
+ * no cable of zero length, every free node joined to a support. Reports all faults in one go, each with file, line and
+ * id. */
 hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages);
 
 double hf_scene_theoretical_length(const hf_scene *scene, int i_cable); /* m, between theoretical positions */

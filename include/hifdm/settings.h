@@ -1,4 +1,4 @@
-/* settings - what is asked of the engine, as plain values.
+/* settings - all settings of the engine, as plain values.
  * Stability: stable.
  *
  * hf_config_load fills them in from a case file; `hifdm schema` says what each means. A program may also set them
@@ -14,7 +14,7 @@ extern "C" {
 
 /* Choices of a case file; `hifdm schema` says what each means. */
 typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHOD_NEWTON, HF_METHOD_AUTO } hf_method;
-/* X(enumerator, word); what each is made of is a row of HF_OPTIMISER_LIST. */
+/* X(enumerator, word). HF_OPTIMISER_LIST has a row for each, with the optimiser that it uses. */
 #define HF_OPTIMIZE_METHODS(X) X(GA, "ga") X(LM, "lm") X(GA_LM, "ga+lm")
 #define HF_OPTIMIZE_ENUMERATOR(name, word) HF_OPTIMIZE_##name,
 typedef enum { HF_OPTIMIZE_METHODS(HF_OPTIMIZE_ENUMERATOR) HF_OPTIMIZE_N_METHOD } hf_optimize_method;
@@ -25,7 +25,7 @@ typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
 typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN } hf_coupling_scheme;
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
-/* Their words in a case file, indexed by the enumerations above; the last entry is NULL. */
+/* The words of these choices in a case file, indexed by the enumerations above; the last entry is NULL. */
 extern const char *const hf_method_word[6];
 extern const char *const hf_stop_rule_word[3];
 extern const char *const hf_rule_word[4];
@@ -34,7 +34,7 @@ extern const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1];
 extern const char *const hf_symmetry_word[6];
 extern const char *const hf_coupling_scheme_word[3];
 
-/* How a net is coupled with an elastic truss. Without a truss they are not used. */
+/* How a net is coupled with an elastic truss. They are not used without a truss. */
 typedef struct {
     double tof_m; /* largest difference of an attachment's displacements in two iterations */
     hf_coupling_scheme scheme;
@@ -64,24 +64,24 @@ typedef struct {
     uint64_t seed;
     double crossover_high, crossover_low; /* Pc1, Pc2 */
     double mutation_high, mutation_low;   /* Pm1, Pm2 */
-    int elites;                           /* best individuals that live on unchanged */
-    double stagnation_tolerance_m;        /* stop when the best psi gained less than this ... */
+    int elites;                           /* best individuals that are kept unchanged */
+    double stagnation_tolerance_m;        /* stop when the best psi improved by less than this ... */
     int stagnation_generations;           /* ... in so many generations */
-    int polish_iterations;                /* bound on those of Levenberg-Marquardt */
+    int polish_iterations;                /* bound on the iterations of Levenberg-Marquardt */
     hf_symmetry symmetry;                 /* mirror planes that link genes */
 } hf_optimize_settings;
 
 #define HF_LIST_MAX 8
 
 typedef struct {
-    int n; /* of `value` in use */
+    int n; /* number of values in use */
     double value[HF_LIST_MAX];
 } hf_double_list;
 
 /* The reflecting surface: the parabolic cylinder z = x^2/(4f) along y. */
 typedef struct {
     double focal_length_m; /* 0 when no measures of the surface are asked for */
-    double strip_width_m;  /* of flat strips along y that make it up; 0 = not known */
+    double strip_width_m;  /* of the flat strips along y of which it consists; 0 = not known */
     hf_double_list frequencies_Hz;
 } hf_surface_settings;
 

@@ -55,8 +55,8 @@ int hf_status_exit_code(hf_status status);
         if (hf_try_status_ != HF_OK) return hf_try_status_;                                                            \
     } while (0)
 
-/* A growing list of lines for people. Zero-initialise; call hf_messages_free when done. Lines are lost when memory runs
- * out, the counts stay right. */
+/* A growing list of lines for people. Zero-initialise; call hf_messages_free when done. When memory runs out,
+ * lines are lost, but the counts stay correct. */
 typedef struct {
     char *text; /* lines ending in '\n', or NULL while empty */
     size_t length, capacity;
@@ -72,7 +72,7 @@ typedef struct {
 /* Append "error: ..." or "warning: ..."; hf_error returns `code`, so that a caller can `return hf_error(...)`. */
 hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...) HF_PRINTF(3, 4);
 void hf_warning(hf_messages *messages, const char *format, ...) HF_PRINTF(2, 3);
-void hf_messages_free(hf_messages *messages); /* all lines; it can be used again */
+void hf_messages_free(hf_messages *messages); /* frees all lines; the list can be used again */
 
 #ifdef __cplusplus
 }

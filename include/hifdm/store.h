@@ -5,9 +5,9 @@
  *
  * Layout, with n nodes, m cables, i iterations, g generations, p individuals, k genes. Every data set has the
  * attributes `units` ("" = dimensionless) and `description`. Role, group, law, status and the like are HDF5
- * enumerations. Texts are UTF-8: of fixed length where they are read back (provenance, title, warnings, case_path, the
- * version in /form, ids), because HDF5 1.10 crashes on damaged ones of variable length, which the others are. Times,
- * threads and host are attributes only: the data sets of two runs of the same case are the same.
+ * enumerations. Texts are UTF-8. Those that are read back (provenance, title, warnings, case_path, the version in
+ * /form, ids) have a fixed length, because HDF5 1.10 crashes on damaged texts of variable length; the others have a
+ * variable length. Times, threads and host are attributes only: the data sets of two runs of the same case are equal.
  *   /            attributes: program ("hifdm"), format_version, version, git_describe, compiler, build_flags,
  *                hdf5_version, gsl_version, lapack, rng, host, argv[], started_utc, finished_utc, title, seed, threads,
  *                warnings, has_optimize, status (word of the run's),
@@ -53,8 +53,8 @@ extern "C" {
 
 typedef struct hf_store hf_store;
 
-/* Several threads may call at once, each with its own store, and read at once; the calls wait for each other, because
- * HDF5 works for one thread at a time. */
+/* Several threads may call these functions at once: those that write each with its own store, those that read freely.
+ * The calls wait for each other, because HDF5 works for one thread at a time. */
 
 /* The stages of a run that produce a shape. */
 typedef enum { HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, HF_STAGE_NONE } hf_stage;
@@ -67,8 +67,8 @@ hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, cons
 
 typedef enum { HF_STORE_NOTHING, HF_STORE_UNFINISHED, HF_STORE_FINISHED } hf_store_state;
 
-/* What is at `path`: nothing, or a result of this case, scene and truss. HF_EXISTS for anything else, with a message
- * that says in which keys the cases differ; HF_IO, HF_NO_MEMORY. */
+/* Find out what is at `path`: nothing, or a result of this case, scene and truss. HF_EXISTS for anything else, with a
+ * message that says in which keys the cases differ; HF_IO, HF_NO_MEMORY. */
 hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
                         hf_store_state *state, hf_messages *messages);
 
@@ -84,8 +84,8 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
 hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages);
 
 /* Add the generations of the journal to the unfinished file at `path`, without computing more, and return its summary.
- * Errors as hf_store_resume; HF_EXISTS also when this build does not breed the designs to which the journal's results
- * belong. */
+ * Errors as hf_store_resume; HF_EXISTS also when this build does not propose the designs to which the
+ * journal's results belong. */
 hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages);
 
 /* How many generations the store holds, those in the journal included. */
@@ -118,12 +118,13 @@ hf_status hf_store_restore_base(hf_store *store, int n_gene, double *base_N, hf_
 
 /* Put the optimiser, just created from that base, into the state before hf_optimiser_tell of the last generation that
  * the store holds, and what was the best until then into the summary. The designs of generations in the journal are
- * proposed again; a build that proposes others leaves these generations out, with a warning. Nothing when there are
- * none. */
+ * proposed again; a build that proposes others leaves these generations out, with a warning. Does nothing when
+ * the store holds no generation. */
 hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages);
 
-/* Publish everything so far: give the visible name to a file that is marked as unfinished. With at_once now, else only
- * when the last publication took less than 2 % of the time since then. Call it after every generation. */
+/* Publish everything so far: give the visible name to a file that is marked as unfinished. With at_once it is done now,
+ * otherwise only when the last publication took less than 2 % of the time since then. Call it after every
+ * generation. */
 hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_once, hf_messages *messages);
 
 /* Write the shape in the workspace as the one that an optimisation stage found, with its design_N [model->n_gene]. Call
@@ -136,9 +137,9 @@ hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, 
  * stays under another name, which the message gives. */
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
 
-/* The same in two parts. hf_store_complete writes and closes the file, which takes processor time. hf_store_settle
- * writes it through to the disk and renames it, which is mostly waiting and may be done by another thread; it frees the
- * store in any case. */
+/* hf_store_finish in two parts. hf_store_complete writes and closes the file, which takes processor time.
+ * hf_store_settle writes it through to the disk and renames it, which is mostly waiting and may be done by another
+ * thread; it frees the store in any case. */
 hf_status hf_store_complete(hf_store *store, const hf_summary *summary, hf_messages *messages);
 hf_status hf_store_settle(hf_store *store, hf_messages *messages);
 
@@ -154,26 +155,27 @@ typedef struct {
     void *block;
 } hf_shape;
 
-/* Reading: HF_IO with one message when the file is not there, not ours, or damaged; HF_NO_MEMORY. The output is all
- * zero after a failure. */
+/* The functions that read return HF_OK; HF_IO with one message when the file does not exist, is no file of hifdm, or is
+ * damaged; HF_NO_MEMORY. The output is all zero after a failure. */
 
-/* Every member as it was given to hf_store_finish, bit by bit; those after has_optimize are 0 when that is 0. */
+/* Read every member as it was given to hf_store_finish, bit by bit; those after has_optimize are 0 when it is false. */
 hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messages *messages);
 
-/* The scene without its line numbers. Free it with hf_scene_free in any case. */
+/* Read the scene, without its line numbers. Free it with hf_scene_free in any case. */
 hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages);
 
-/* The shape that a stage left; HF_IO when it left none. Its counts are those of hf_store_read_scene. */
+/* Read the shape that a stage found; HF_IO when there is none. Its counts are those of hf_store_read_scene. */
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
 void hf_shape_free(hf_shape *shape);
 
 /* Write the group /truss: the truss as described, its attachments to the net and, when `state` is not NULL, its
- * displacements and forces under the pull of the net. Once, before hf_store_finish of a summary that has_truss. */
+ * displacements and forces under the pull of the net. Call it once, before hf_store_finish of a summary that
+ * has_truss. */
 hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_carrier_state *state,
                          hf_messages *messages);
 
-/* The truss without its line numbers; state: all NULL when none was stored. HF_IO when there is no truss. Free both in
- * any case. */
+/* Read the truss, without its line numbers; state: all NULL when none was stored. HF_IO when there is no truss. Free
+ * both in any case. */
 hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_state *state, hf_messages *messages);
 
 /* "VERSION (git describe)" of this library. */

@@ -32,7 +32,7 @@ typedef struct {
 
     hf_form_result form;
     double form_wall_s; /* of the form-finding */
-    bool has_coupling;  /* the net hangs in an elastic truss; else the member `coupling` of the results is all zero */
+    bool has_coupling;  /* the net is attached to an elastic truss; else member `coupling` of the results is all zero */
 
     hf_solver solver; /* of the individuals */
 
@@ -64,7 +64,7 @@ typedef struct {
 void hf_summary_write_json(const hf_summary *summary, hf_status status, const char *messages, const char *path,
                            FILE *file);
 
-/* Does the file hold the shape of the best individual? It is stored when the genetic algorithm has ended. */
+/* True when the file holds the shape of the best individual, which is stored when the genetic algorithm has ended. */
 bool hf_summary_has_best_shape(const hf_summary *summary);
 
 /* Share of the threads' time that was spent inside evaluations, 0..1; NaN when nothing was timed. */

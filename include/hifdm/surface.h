@@ -16,10 +16,10 @@ extern "C" {
 
 /* The parabolic cylinder with the least half-path RMS from a set of nodes: the wanted one with another focal length,
  * turned about the centre of the nodes by Rx(a) Ry(b) Rz(c), then shifted. A shift along y changes nothing and is left
- * out. In a shallow reflector a shift in x and a turn about y are nearly the same motion, so that each of the two is
- * uncertain while the fitted surface is not.
- * shift_x_m is 0 where the nodes do not determine it, that is where the least RMS needs a shift of more than a tenth of
- * the net's half-width or is not found. focal_length_m is the wanted one where the nodes do not determine it, for
+ * out. In a shallow reflector a shift in x and a turn about y are nearly the same motion: each of the two
+ * numbers is uncertain, but the fitted surface is not.
+ * shift_x_m is 0 where the nodes do not determine it, which means that the least RMS needs a shift of more than a tenth
+ * of the net's half-width or is not found. focal_length_m is the wanted one where the nodes do not determine it, for
  * example when they lie on two lines along y. */
 typedef struct {
     double half_path_rms_m, normal_rms_m; /* of the nodes' errors against the fitted surface */
@@ -37,7 +37,7 @@ hf_status hf_surface_fit_nodes(double focal_length_m, int n, const double *posit
 
 typedef struct {
     bool is_measured;                     /* false: the other members have no meaning */
-    double z_rms_m;                       /* of the nodes' heights above their theoretical ones */
+    double z_rms_m;                       /* of the nodes' heights above their theoretical heights */
     double normal_rms_m, half_path_rms_m; /* raw */
     double faceting_rms_m;                /* error of flat strips of width w, w^2/(24 sqrt(5) f); NaN without a width */
     double deviation_p50_m, deviation_p90_m, deviation_p95_m, deviation_p99_m; /* of the distances in psi */

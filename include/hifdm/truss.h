@@ -25,10 +25,10 @@ extern const char *const hf_dof_word[HF_TRUSS_DOF]; /* "ux".."rz" */
 extern const char *const hf_joint_word[3];          /* "rigid", "pinned", NULL */
 extern const char *const hf_unit_word[4];           /* "bud", "mbug", "abug", "other" */
 
-/* Numbers of a member, X(name in struct and files, units, default when a file leaves it out, description). A default of
- * NaN: must be given. Local axes: x from i to j; y horizontal, y = (-x_y, x_x, 0) normalised, or the global y of a
- * vertical member; z = x cross y; roll turns y and z about x. Iz resists bending in the plane of x and y (with the
- * shear area Asy), Iy in that of x and z (Asz). An infinite shear area is Euler and Bernoulli's beam. */
+/* Numbers of a member, X(name in struct and files, units, default when a file leaves it out, description). A number
+ * whose default is NaN must be given. Local axes: x from i to j; y horizontal, y = (-x_y, x_x, 0) normalised, or the
+ * global y of a vertical member; z = x cross y; roll turns y and z about x. Iz resists bending in the plane of x and y
+ * (with the shear area Asy), Iy in that of x and z (Asz). An infinite shear area is Euler and Bernoulli's beam. */
 #define HF_MEMBER_NUMBERS(X)                                                                                           \
     X(E_Pa, "Pa", NAN, "Young's modulus")                                                                              \
     X(A_m2, "m2", NAN, "cross-section")                                                                                \
@@ -66,7 +66,7 @@ typedef enum { HF_THEORY_EULER_BERNOULLI, HF_THEORY_TIMOSHENKO } hf_theory;
 typedef enum { HF_HELD_CENTRAL_MODULE, HF_HELD_CENTRAL_MODULE_REAR } hf_held;
 typedef enum { HF_HELD_ALL_DOFS, HF_HELD_TRANSLATIONS } hf_held_dofs;
 
-/* Words of a case file by the enumerations above, ended by NULL. */
+/* Words of a case file, indexed by the enumerations above; the last entry is NULL. */
 extern const char *const hf_diagonals_word[4];
 extern const char *const hf_theory_word[3];
 extern const char *const hf_held_word[3];
@@ -121,28 +121,29 @@ typedef struct {
     X(section, panels, HF_FIELD_INT, 1, 1000, panel_number, "", NULL, "panels along one module")                       \
     X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word, "diagonals of each panel")
 
-/* Basic sub-rings over the modules of the net: front nodes on the module corners, on the cylinder. Node ids f<i>_<j> in
- * front and r<i>_<j> behind, f<i>.<k>_<j> or f<i>_<j>.<k> inside units of several panels; member ids <node>-<node>.
- * Free the truss in any case. HF_BAD_CASE when it would be too large, HF_NO_MEMORY. */
+/* Make the truss of basic sub-rings over the modules of the net, with front nodes on the module corners, on the
+ * cylinder. Node ids f<i>_<j> in front and r<i>_<j> behind, f<i>.<k>_<j> or f<i>_<j>.<k> inside units of several
+ * panels; member ids <node>-<node>. Free the truss in any case. Returns HF_OK; HF_BAD_CASE when it would be too large;
+ * HF_NO_MEMORY. */
 hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder *cylinder, hf_truss *truss,
                             hf_messages *messages);
 
 /* ---- any truss ---- */
 
-/* Which truss node carries each support of the net: the nearest one, within the tolerance. scene_node, truss_node:
- * room for scene->n_node; n_attachment of each are set. HF_BAD_CASE names every net support without one. */
+/* Find the truss node that carries each support of the net: the nearest one, within the tolerance. scene_node,
+ * truss_node: room for scene->n_node; n_attachment of each are set. HF_BAD_CASE names every net support without one. */
 hf_status hf_truss_attach(const hf_truss *truss, const hf_scene *scene, double tolerance_m, int *n_attachment,
                           int *scene_node, int *truss_node, hf_messages *messages);
 
-/* Room for a truss of this size, all zero. HF_OK or HF_NO_MEMORY. */
+/* Allocate a truss of this size, all zero. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, bool with_line);
 void hf_truss_free(hf_truss *truss);
 
-/* Everything that must hold whatever the truss came from: finite numbers, stiffness above zero, members with two
- * different ends and a length. All faults in one go, each naming file, line and id. HF_OK, HF_BAD_CASE. */
+/* Check what must hold for every truss, generated or read: finite numbers, stiffness above zero, members with two
+ * different ends and a length. Reports all faults in one go, each with file, line and id. HF_OK, HF_BAD_CASE. */
 hf_status hf_truss_check(const hf_truss *truss, hf_messages *messages);
 
-/* "truss_nodes.csv:7: node 'a'" or "truss: node 'a'", for messages. */
+/* Write "truss_nodes.csv:7: node 'a'" or "truss: node 'a'" into text[size], for messages. */
 void hf_truss_describe(const hf_truss *truss, bool is_member, int index, char *text, size_t size);
 
 double hf_truss_member_length(const hf_truss *truss, int i_member); /* m */

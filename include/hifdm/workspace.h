@@ -54,7 +54,7 @@ typedef struct {
     HF_WORKSPACE_FIELDS(HF_WORKSPACE_MEMBER)
 #undef HF_WORKSPACE_MEMBER
     void *block;
-    const volatile sig_atomic_t *stop; /* when not NULL and not 0: hf_form_find gives up, HF_INTERRUPTED */
+    const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 makes hf_form_find return HF_INTERRUPTED */
 } hf_workspace;
 
 /* Cable i_cable with the law and the target that are in force in the workspace. */
@@ -77,14 +77,14 @@ static inline double hf_workspace_held_q_N_per_m(const hf_model *model, const hf
 
 /* HF_OK or HF_NO_MEMORY. The caller frees the workspace in either case. */
 hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace);
-size_t hf_workspace_bytes(const hf_model *model); /* that hf_workspace_create allocates */
+size_t hf_workspace_bytes(const hf_model *model); /* memory that hf_workspace_create allocates */
 void hf_workspace_free(hf_workspace *workspace);
 
 /* True when the law in force of at least one cable changes its force density between iterations (Eqs. 7, 8). */
 bool hf_workspace_iterates(const hf_model *model, const hf_workspace *workspace);
 
-/* For tests: fill every floating-point field with NaN and every other one with 0xff, so that a call that reads stale
- * contents gives itself away by its result. */
+/* For tests: fill every floating-point field with NaN and every other one with 0xff, so that stale contents
+ * that a call reads show in its result. */
 void hf_workspace_poison(const hf_model *model, hf_workspace *workspace);
 
 #ifdef __cplusplus

@@ -20,7 +20,7 @@ typedef struct {
     hf_messages *messages;
     const char *origin; /* the case file, or the --set argument being applied */
     bool is_override;
-    const char *place;  /* for a value that is only checked: printed instead of origin, line and column */
+    const char *place;  /* of a value that is only checked: messages give it instead of origin, line and column */
     yaml_mark_t cut[2]; /* the sweep section, when there is one */
     yaml_document_t *document;
     char *where_given; /* [n_field][64] "line:col", "--set" or "" */
@@ -46,7 +46,7 @@ static void complain(loader *l, yaml_mark_t mark, const char *path, const char *
                  what, detail);
 }
 
-/* Report a fault of several keys, or of a missing key; with the place of the key if the file gives it. */
+/* Report a fault of several keys, or a missing key, with the place of the key when the file contains it. */
 static void complain_about(loader *l, const char *path, const char *what)
 {
     const char *where = "";
@@ -100,7 +100,7 @@ static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, co
         snprintf(detail, sizeof detail, "; a file with a base is a study, for 'hifdm sweep'");
     } else if (near) {
         snprintf(detail, sizeof detail, "; did you mean '%s'?", near);
-    } else { /* the right key in the wrong section? */
+    } else { /* look for the same key in another section */
         for (int i = 0; i < hf_n_field && !*detail; i++) {
             const char *dot = strrchr(hf_field_table[i].path, '.');
             if (dot && !strcmp(dot + 1, key))
@@ -136,8 +136,8 @@ static void complain_range(loader *l, const yaml_node_t *node, const hf_field *f
     complain(l, node->start_mark, f->path, what, scalar_text(node));
 }
 
-/* Every member of hf_case behind a WORD is of an enumeration type as wide as an int; values are not negative, so the
- * int with the same bytes has the same value. */
+/* Every member of hf_case that an HF_FIELD_WORD sets has an enumeration type as wide as an int; values are not
+ * negative, so the int with the same bytes has the same value. */
 _Static_assert(sizeof(hf_method) == sizeof(int) && sizeof(hf_diagonals) == sizeof(int), "enumerations are int-sized");
 
 static void set_word(loader *l, const yaml_node_t *node, const hf_field *f, void *to)
@@ -312,7 +312,7 @@ static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
     }
 }
 
-/* Where the parser stopped. For a byte that is not UTF-8 the parser gives only an offset. */
+/* The place where the parser stopped. For a byte that is not UTF-8 the parser gives only an offset. */
 static yaml_mark_t problem_mark(const yaml_parser_t *parser, const char *text)
 {
     yaml_mark_t mark = parser->problem_mark;
@@ -417,7 +417,7 @@ static void apply_override(loader *l, const char *argument)
 }
 
 /* Cut the lines of the sweep section out of the text. The rest is the case of one point, which is stored and digested;
- * it stays the same when axes grow. */
+ * it does not change when the sweep gets more points. */
 static void cut_sweep(loader *l)
 {
     hf_case *c = l->c;
@@ -529,7 +529,7 @@ static void complete_surface(hf_case *c)
 
 /* ---- load ---- */
 
-/* Set everything else from settings->text and the overrides. */
+/* Set all other members of settings from settings->text and the overrides. */
 static hf_status parse(hf_case *settings, const char *const *overrides, int n_override, hf_messages *messages)
 {
     const char *path = settings->path;

@@ -1,4 +1,4 @@
-/* The net and the truss that a case describes; freeing a case. */
+/* Makes the net and the truss that a case describes, and frees a case. */
 #include "case/config_scene.h"
 
 #include "net/scene_import.h"

@@ -1,5 +1,5 @@
 /* The table of config.h: every key of a case file, with its default. The rows of generators are written beside their
- * settings, in generate.h and truss.h. Nothing else knows a default. */
+ * settings, in generate.h and truss.h. No default stands anywhere else. */
 #include <hifdm/config.h>
 
 #include <stddef.h>
@@ -156,7 +156,7 @@ const int hf_n_field = sizeof hf_field_table / sizeof *hf_field_table;
 static bool is_same(const hf_field *f, const char *a, const char *b)
 {
     const hf_double_list *p = (const void *)a, *q = (const void *)b;
-    switch (f->type) { /* no default: the compiler names a type that is not compared */
+    switch (f->type) { /* no default label, so that the compiler reports a type that is not compared */
     case HF_FIELD_TEXT:
         return !strcmp(a, b);
     case HF_FIELD_DOUBLE:

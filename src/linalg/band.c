@@ -23,7 +23,7 @@ void dgbcon_(const char *norm, const int *n, const int *kl, const int *ku, const
 void dsyrk_(const char *uplo, const char *trans, const int *n, const int *k, const double *alpha, const double *a,
             const int *lda, const double *beta, double *c, const int *ldc);
 
-/* only OpenBLAS defines these; with another library they are NULL */
+/* Only OpenBLAS defines these; with another library they are NULL. */
 #pragma weak openblas_set_num_threads
 #pragma weak openblas_get_config
 #pragma weak openblas_get_corename
@@ -49,7 +49,7 @@ hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int 
 void hf_band_gram(int n, int n_column, const double *a, int lda, double *gram, int ldg)
 {
     double one = 1, zero = 0;
-    dsyrk_("U", "T", &n, &n_column, &one, a, &lda, &zero, gram, &ldg); /* lower by rows is upper by columns */
+    dsyrk_("U", "T", &n, &n_column, &one, a, &lda, &zero, gram, &ldg); /* lower triangle by rows = upper by columns */
 }
 
 int hf_band_factor(int n, int half_bandwidth, double *band)

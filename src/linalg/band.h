@@ -8,8 +8,8 @@
 #include <stdbool.h>
 
 /* Band Cholesky (dpbtrf, dpbtrs). band: lower band [n][half_bandwidth+1], replaced by its factor; b: [3][ldb], rows
- * 0..n-1 of each replaced by the solution. HF_SINGULAR when not positive definite (b is untouched then); *bad_row is
- * the row where it broke, -1 otherwise. */
+ * 0..n-1 of each replaced by the solution. HF_SINGULAR when the matrix is not positive definite: b is then untouched,
+ * and *bad_row is the row at which the factorisation failed; otherwise *bad_row is -1. */
 hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row);
 
 /* hf_band_solve for an indefinite matrix (force densities below zero): LU with pivoting (dgbtrf, dgbtrs).
@@ -17,8 +17,8 @@ hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int 
 hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band, double *general, int *pivot,
                                    double *b, int ldb, int *bad_row);
 
-/* The two parts of hf_band_solve: factor once, then solve for any number of right-hand sides. hf_band_factor: 0, or 1 +
- * the row where it broke. b: [n_rhs][ldb], rows 0..n-1 of each replaced by the solution. */
+/* The two parts of hf_band_solve: factor once, then solve for any number of right-hand sides. hf_band_factor returns 0,
+ * or 1 + the row at which the factorisation failed. b: [n_rhs][ldb], rows 0..n-1 of each replaced by the solution. */
 int hf_band_factor(int n, int half_bandwidth, double *band);
 void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
 
@@ -31,15 +31,16 @@ double hf_band_condition(int n, int half_bandwidth, const double *factor, double
 double hf_band_condition_indefinite(int n, int half_bandwidth, const double *general, const int *pivot, double norm,
                                     double *work, int *integer_work);
 
-/* Lower triangle, row by row, of A A' for the dense A [n][n_column] of row length lda: gram [n][ldg] (BLAS). */
+/* Compute the lower triangle, row by row, of A A' for the dense A [n][n_column] of row length lda: gram [n][ldg]
+ * (BLAS). */
 void hf_band_gram(int n, int n_column, const double *a, int lda, double *gram, int ldg);
 
 /* Keep a threaded BLAS from starting threads: each thread of this program solves systems of its own. Call once, before
  * any solve. */
 void hf_band_single_threaded(void);
 
-/* Is there address space for the buffers that LAPACK maps in n_thread threads? OpenBLAS maps HF_BAND_ROOM_MB for each,
- * and repeats a refused request without end (ulimit -v). */
+/* True when there is address space for the buffers that LAPACK maps in n_thread threads. OpenBLAS maps HF_BAND_ROOM_MB
+ * for each, and repeats a refused request without end (ulimit -v). */
 #define HF_BAND_ROOM_MB 128
 bool hf_band_has_room(int n_thread);
 

@@ -1,4 +1,4 @@
-/* The words of the laws. What a law does is inline in the header. */
+/* The words of the laws. The functions of the laws are inline in the header. */
 #include <hifdm/cable_law.h>
 
 #include <stddef.h>

@@ -19,7 +19,8 @@ static double arc_length(double x, double focal)
     return focal * (slope * sqrt(1 + slope * slope) + asinh(slope));
 }
 
-/* Inverse of arc_length: Newton on a convex increasing function, from above (x <= s), quadratic. */
+/* Inverse of arc_length by Newton's method. The function is convex and increasing, and the start s is not below the
+ * solution (x <= s); the iterates therefore decrease to the solution, and converge quadratically. */
 static double x_at_arc_length(double s, double focal)
 {
     double x = s;
@@ -53,7 +54,7 @@ static void place_nodes(const grid *g)
     double half = g->c->aperture_m / 2, focal = g->c->focal_length_m;
     double half_arc = arc_length(half, focal);
     for (int i = 0; i < g->nx; i++) {
-        double t = (2.0 * i - (g->nx - 1)) / (g->nx - 1); /* exactly antisymmetric */
+        double t = (2.0 * i - (g->nx - 1)) / (g->nx - 1); /* exactly antisymmetric in i */
         double x = t * half;
         if (g->c->spacing == HF_SPACING_EQUAL_ARC && i != 0 && i != g->nx - 1)
             x = copysign(x_at_arc_length(fabs(t) * half_arc, focal), t);
@@ -131,8 +132,9 @@ static int on_line(const grid *g, int axis, int line, int k)
     return axis == 0 ? at(g, k, line) : at(g, line, k);
 }
 
-/* Moves the free nodes of one outer edge inward by the parabola 4 s span t (1-t) between consecutive supports. A curved
- * edge (axis 0, along x) moves in y, its span the chord; a straight edge moves in x and stays on the cylinder. */
+/* Moves the free nodes of one outer edge inward by the parabola 4 s span t (1-t) between consecutive supports, where
+ * span is their distance. A curved edge (axis 0, along x) moves in y; a straight edge moves in x and stays on the
+ * cylinder. */
 static void scallop_edge(const grid *g, int axis, int line, double inward)
 {
     int n = axis == 0 ? g->nx : g->ny, from = 0;
@@ -152,7 +154,7 @@ static void scallop_edge(const grid *g, int axis, int line, double inward)
     }
 }
 
-/* Ids n<i>_<j> and <node>-<node>. */
+/* Writes the ids n<i>_<j> of nodes and <node>-<node> of cables. */
 static hf_status name_all(const grid *g)
 {
     hf_scene *s = g->s;

@@ -15,7 +15,7 @@
 
 /* ---- layout ---- */
 
-/* Does a law in force need stiffnesses? The methods iterative_fdm and fdm put other laws in its place. */
+/* True when a law in force needs the axial stiffness. The methods iterative_fdm and fdm replace every such law. */
 static bool needs_EA(const hf_scene *s, hf_method method)
 {
     if (method == HF_METHOD_ITERATIVE_FDM || method == HF_METHOD_FDM) return 0;
@@ -159,8 +159,9 @@ static double distance(const hf_model *m, int row_a, int row_b)
     return hypot(hypot(d[0], d[1]), d[2]);
 }
 
-/* Follow the chain that leaves the support `from` by cable `first`; keep it when it ends at a support and is straight,
- * or not, as wanted. A chain is met from both ends: only the end with the smaller cable index counts. */
+/* Follow the chain that leaves the support `from` by cable `first`; keep it when it ends at a support and is straight
+ * or has a sag, as want_straight says. Each chain is found from both its ends; it is kept only from the end with the
+ * smaller cable index. */
 static void follow_chain(hf_model *m, const length_graph *g, int from, int first, bool want_straight)
 {
     int start = m->chain_start[m->n_any_chain], n = 0, row = from, e = first;
@@ -298,8 +299,8 @@ void hf_model_free(hf_model *model)
 
 /* ---- attachments ---- */
 
-/* Of the largest entry: rounding of solves with a condition of 1e6. From 1e-12 to 1e-6 no test of model, truss or
- * coupling changes. */
+/* Relative to the largest entry; it allows for the rounding of solves with a condition number of 1e6. From 1e-12 to
+ * 1e-6 no test of model, truss or coupling changes. */
 #define SYMMETRY_TOLERANCE 1e-9
 
 static hf_status check_attachments(const hf_model *m, int n, const int *node, hf_messages *messages)
@@ -359,7 +360,8 @@ static void find_ties(hf_model *m, const int *attachment_of_row)
     }
 }
 
-/* Between supports a length is the truss's business: the cable keeps its first tension. */
+/* A cable with a rigid law between two supports would be a rigid rod in the truss: it keeps its first tension
+ * instead. */
 static void hold_rods(hf_model *m)
 {
     for (int k = 0; k < m->n_tie; k++) {
@@ -371,7 +373,7 @@ static void hold_rods(hf_model *m)
     }
 }
 
-/* Supports that move can straighten a chain, so that its nodes must be known, too. */
+/* Moving supports can straighten a chain with a sag, so chain_of_row must be set for the nodes of these chains, too. */
 static void mark_chains(hf_model *m)
 {
     for (int i = m->n_chain; i < m->n_any_chain; i++)

@@ -71,8 +71,8 @@ static int degree(const graph *g, int i)
 
 /* ---- Cuthill-McKee ---- */
 
-/* Breadth-first from `root` over nodes not numbered yet, neighbours by rising degree; returns how many, listed in
- * `wave`; their levels are set. */
+/* Search breadth-first from `root` over the nodes that are not numbered yet, neighbours by rising degree. Lists the
+ * nodes found in `wave`, sets their levels, and returns their number. */
 static int search(graph *g, int root, int *wave)
 {
     int n = 0;
@@ -99,7 +99,7 @@ static void forget(graph *g, const int *wave, int n)
         g->level[wave[i]] = -1;
 }
 
-/* A node at the far end of the component of `root` (George & Liu 1979). */
+/* Find a node at the far end of the component of `root` (George & Liu 1979). */
 static int peripheral(graph *g, int root)
 {
     for (int depth = -1;;) {
@@ -160,7 +160,7 @@ static hf_status sort_along(graph *g, int axis)
 
 /* ---- choice ---- */
 
-/* Sum of the squared row widths of the lower triangle, which the work of a skyline factorisation grows with. */
+/* Sum of the squared row widths of the lower triangle. The work of a skyline factorisation grows with this sum. */
 static double squared_widths(graph *g, int *half_bandwidth)
 {
     double sum = 0;
@@ -186,7 +186,7 @@ static void reverse(graph *g)
     }
 }
 
-/* The order under test and its reverse, whose rows have other widths. */
+/* Keep the order under test, or its reverse, whose rows have other widths, if it is better than the best so far. */
 static void keep_if_better(graph *g, double *best_sum, int *best_half_bandwidth)
 {
     for (int pass = 0; pass < 2; pass++, reverse(g)) {

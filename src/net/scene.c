@@ -115,7 +115,7 @@ static void check_cables(const hf_scene *s, int *n_fault, hf_messages *messages)
     }
 }
 
-/* Every free node must be joined to a support: cables join nodes to classes, and a class needs a support. */
+/* Every free node must be joined to a support: cables join nodes into classes, and each class needs a support. */
 static hf_status check_anchored(const hf_scene *s, int *n_fault, hf_messages *messages)
 {
     int *parent = malloc((size_t)s->n_node * 2 * sizeof *parent);

@@ -15,7 +15,7 @@
 enum { NODE_ID, NODE_X, NODE_Y, NODE_Z, NODE_ROLE, NODE_FX, NODE_FY, NODE_FZ, N_NODE_COLUMN };
 static const char *const node_column[N_NODE_COLUMN] = {"id", "x_m", "y_m", "z_m", "role", "Fx_N", "Fy_N", "Fz_N"};
 
-/* True when some load is not zero. */
+/* Returns true when some load is not zero. */
 static bool read_nodes(hf_csv *t, const int *where, hf_scene *s)
 {
     bool any_load = false;

@@ -4,16 +4,16 @@
  * cables.csv: id,i,j,group,law,value[,EA_N]          group: inner | boundary
  *                                                    law: tension | length | force_density | elastic
  *
- * The header decides the order of the columns; ids are any strings; fields may be quoted; empty lines and lines that
+ * The header line gives the order of the columns; ids are any strings; fields may be quoted; empty lines and lines that
  * start with '#' are skipped. value: N, m, N/m or m by law; empty = the case's pretension, or the theoretical
- * length; the law elastic needs one (l0), and an EA_N. */
+ * length; the law elastic needs a value (l0) and an EA_N. */
 #ifndef HIFDM_SCENE_IMPORT_H
 #define HIFDM_SCENE_IMPORT_H
 
 #include <hifdm/scene.h>
 
-/* group_EA_N: by hf_group, of cables whose EA_N is empty; 0 = none. HF_BAD_CASE with every fault named by file, line
- * and id. Free the scene with hf_scene_free in any case. */
+/* group_EA_N: by hf_group, for cables whose EA_N is empty; 0 = none. HF_BAD_CASE with a message for every fault that
+ * gives file, line and id. Free the scene with hf_scene_free in any case. */
 hf_status hf_scene_import(const char *nodes_path, const char *cables_path, const double group_EA_N[2], hf_scene *scene,
                           hf_messages *messages);
 

@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Of positions, relative to the net's size; of loads and targets, relative to themselves. From 1e-10 to 1e-8 no test of
- * this room changes; 1e-11 and 1e-7 each fail one. */
+/* Tolerance of positions, relative to the net's size, and of loads and targets, relative to their values. From 1e-10 to
+ * 1e-8 no test of this room changes; 1e-11 and 1e-7 each fail one. */
 #define TOLERANCE 1e-9
 /* Base tensions closer than this, relative, are equal but for rounding and convergence. From 1e-6 to 1e-2 no test of
  * this room changes; 1e-9 fails one. */
@@ -83,7 +83,7 @@ static void measure(search *q)
     }
 }
 
-/* Is node j at `target`, of the role of node i and under its mirrored load? */
+/* True when node j is at `target`, has the role of node i, and carries its mirrored load. */
 static bool is_node_image(const search *q, int axis, int i, int j, const double target[3])
 {
     if (q->s->role[i] != q->s->role[j]) return 0;
@@ -122,7 +122,8 @@ static int compare_ends(const int a[2], const int b[2])
     return first ? first : (a[1] > b[1]) - (a[1] < b[1]);
 }
 
-/* By ends, and cables that share both of them by what they are, so that equal ranks on both sides belong together. */
+/* Orders cables by their ends, and cables with the same two ends by kind and target, so that a cable and its image have
+ * the same rank among the cables that share their ends. */
 static int compare_links(const void *a, const void *b)
 {
     const link *x = a, *y = b;
@@ -132,7 +133,8 @@ static int compare_links(const void *a, const void *b)
     return order ? order : (x->cable > y->cable) - (x->cable < y->cable);
 }
 
-/* Lengths, and what is derived from them, carry the tolerance of the positions. */
+/* True when cables a and b agree in kind, target and EA. The tolerance of the target includes that of lengths, which
+ * follows from the tolerance of the positions. */
 static bool is_alike(const search *q, const link *a, const link *b)
 {
     double tolerance = fmax(TOLERANCE, 4 * TOLERANCE * q->size_m / q->m->length_m[a->cable]);
@@ -164,7 +166,7 @@ static int find_cable_image(const search *q, int here)
 
 /* ---- one plane ---- */
 
-/* All images under one plane; the number of cables without one. */
+/* Finds all images under one plane. Returns the number of cables without one. */
 static int reflect(search *q, int axis)
 {
     int n_missing = 0;
@@ -172,7 +174,7 @@ static int reflect(search *q, int axis)
         q->node_image[i] = find_node_image(q, axis, i);
     for (int k = 0; k < q->s->n_cable; k++)
         q->cable_image[q->link[k].cable] = find_cable_image(q, k);
-    for (int e = 0; e < q->s->n_cable; e++) { /* two nodes at one place: no telling which is whose image */
+    for (int e = 0; e < q->s->n_cable; e++) { /* with two nodes at one place, an image may not point back */
         int image = q->cable_image[e];
         if (image < 0 || q->cable_image[image] != e) n_missing++;
     }
@@ -208,7 +210,7 @@ static void join(int *parent, int a, int b)
         parent[a] = b;
 }
 
-/* Chains whose genes belong together vary together; numbered again in the order of their genes. */
+/* Merges the groups whose genes have the same leader, and numbers the groups again in the order of their genes. */
 static void merge_groups(const search *q, hf_model *m)
 {
     int *group_parent = q->group_parent, *label = q->group_label;
@@ -313,7 +315,7 @@ void hf_symmetry_average(const hf_model *m, double *base_N)
 void hf_symmetry_follow(int n_gene, const int *leader, const double *base_N, double *design_N)
 {
     for (int k = 0; k < n_gene; k++)
-        if (base_N[k] == base_N[leader[k]]) /* to the bit */
+        if (base_N[k] == base_N[leader[k]]) /* equal in every bit */
             design_N[k] = design_N[leader[k]];
         else
             design_N[k] = base_N[k] + (design_N[leader[k]] - base_N[leader[k]]);

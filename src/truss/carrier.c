@@ -69,7 +69,7 @@ hf_status hf_carrier_load(const hf_carrier *c, const double *force_N, hf_carrier
         for (int d = 0; d < 3; d++)
             force[HF_TRUSS_DOF * c->truss_node[k] + d] += force_N[3 * k + d];
     const hf_frame_load load = {.force = force};
-    HF_TRY(hf_frame_solve(&c->frame, 1, &load, work, state->displacement, &bad_dof)); /* forces alone: never refused */
+    HF_TRY(hf_frame_solve(&c->frame, 1, &load, work, state->displacement, &bad_dof)); /* no moments: no refusal */
     hf_frame_reactions(&c->frame, &load, state->displacement, state->reaction, NULL);
     hf_frame_member_forces(&c->frame, &load, state->displacement, state->end_force);
     return HF_OK;

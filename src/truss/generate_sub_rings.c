@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #define TRUSS_NODE_MAX 1000000 /* keeps every index well inside an int */
-#define ID_SIZE 40             /* f<i>.<k>_<j>, and room for two of them in a member's */
+#define ID_SIZE 40             /* of f<i>.<k>_<j>; a member's id has room for two of them */
 
 static const double PI = 3.14159265358979323846;
 
@@ -80,8 +80,8 @@ static void add_member(generator *g, int a, int b, hf_unit unit)
 }
 
 /* Adds chords, inner posts and diagonals of one unit between the front nodes a and b. Its inner front nodes have the
- * indices inside, inside + 2, ... i_panel: index of the unit's first panel along the whole line, by whose parity single
- * diagonals rise or fall in turn. */
+ * indices inside, inside + 2, ...; i_panel is the index of the unit's first panel along the whole line; single
+ * diagonals fall in panels of even index and rise in the others. */
 static void add_unit(generator *g, hf_unit unit, int a, int b, int inside, int i_panel)
 {
     int n = unit_of(g->set, unit)->panels;
@@ -162,7 +162,7 @@ static void hold(const generator *g)
                 g->t->fixed[corner(g, i, j) + side] = g->set->support_dofs == HF_HELD_ALL_DOFS ? 0x3f : 0x07;
 }
 
-/* Adds the nodes and members of n_unit units to the counts, without the corners and the posts there. */
+/* Adds the nodes and members of n_unit units to the counts; the corners and the posts there are not counted. */
 static void count_unit(const hf_truss_unit *u, double n_unit, double *n_node, double *n_member)
 {
     *n_node += n_unit * 2 * (u->panels - 1);

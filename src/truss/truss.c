@@ -1,4 +1,4 @@
-/* What holds for any truss. Contents: words - memory - measures - attachments - checks */
+/* Functions for any truss, generated or read. Contents: words - memory - measures - attachments - checks */
 #include <hifdm/truss.h>
 
 #include "base/arena.h"
