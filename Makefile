@@ -123,7 +123,7 @@ endif
 all: ## the program and both libraries, under build/ (or BUILD=...)
 	$(SUB) $(PROGRAM) $(STATIC) $(SHARED)
 
-# For another compiler's opinion: `make compile-all BUILD=build/clang CC=clang`.
+# To see another compiler's warnings: `make compile-all BUILD=build/clang CC=clang`.
 compile-all: ## everything, the tests too, without running anything
 	$(SUB) $(PROGRAM) $(STATIC) $(SHARED) $(RUNNER) $(BENCH)
 

@@ -21,8 +21,8 @@ static inline int list_supports(const struct net *net, int node[MAX_ATTACHMENT])
     return n;
 }
 
-/* Springs of about 1/scale each, and a few random modes in which all attachments move together, as a truss bends: of
- * `scale` per newton at an attachment, too. [3n][3n], the caller frees it. */
+/* A random flexibility: springs of stiffness about 1/scale at each attachment, and a few random modes in which all
+ * attachments move together, as in a bending truss, also by about `scale` per newton. [3n][3n], the caller frees it. */
 static inline double *random_flexibility(struct rng *rng, int n_attachment, double scale_m_per_N)
 {
     enum { N_MODE = 6 };
@@ -41,7 +41,7 @@ static inline double *random_flexibility(struct rng *rng, int n_attachment, doub
     return f;
 }
 
-/* Put all supports of an open net on a random foundation; the workspace is made anew, because it grows. */
+/* Puts all supports of an open net on a random foundation. The workspace is made again, because it becomes larger. */
 static inline void attach_all(struct net *net, struct rng *rng, double scale_m_per_N)
 {
     int node[MAX_ATTACHMENT], n = list_supports(net, node);

@@ -6,8 +6,8 @@
 
 /* ---- random nets ---- */
 
-/* Connected, in tension, under load, force densities over a decade: classical FDM with one answer. The first three
- * nodes are supports, so that nothing is left to chance about anchorage. */
+/* A random connected net under load, with positive force densities over a decade, so that classical FDM has exactly one
+ * answer. The first three nodes are always supports, so that every net is held. */
 static inline void random_fdm_scene(struct rng *rng, hf_scene *scene)
 {
     enum { MAX_NODE = 60, MAX_CABLE = 3 * MAX_NODE };
@@ -30,8 +30,9 @@ static inline void random_fdm_scene(struct rng *rng, hf_scene *scene)
     hand_scene(scene, n_node, node, n_cable, cable);
 }
 
-/* A quad net over a random saddle, its nodes shaken, perimeter fixed. Tensions 10 N +- 10 %, but nearly the same along
- * a line: the crossing cables take up differences by small kinks only, and no cable is pulled to nothing. */
+/* A quad net over a random saddle, its nodes moved at random, its perimeter fixed. Tensions are 10 N +- 10 %, but
+ * nearly the same along a line: small kinks at the crossing cables balance the differences, and no cable shrinks to
+ * nothing. */
 static inline void random_tension_scene(struct rng *rng, hf_scene *scene)
 {
     enum { MAX_SIDE = 8 };

@@ -24,7 +24,7 @@ struct net {
 
 /* ---- opening and closing ---- */
 
-/* Far tighter than a case file's defaults, so that what a test sees is the law and not where the iteration stopped. */
+/* Tolerances far below a case file's defaults, so that a test compares laws and not where the iteration stopped. */
 static inline hf_form_settings tight_form(int method)
 {
     return (hf_form_settings){.method = (hf_method)method,

@@ -15,8 +15,8 @@ struct run {
     double start_q[MAX_CABLE], base_N[MAX_GENE], design_N[N_DESIGN * MAX_GENE];
 };
 
-/* Designs around the tensions of net->scene's shape, by up to 0.5 N, or 0.01 N where tensions are to be held: their
- * equilibrium must exist. */
+/* Finds the shape of net->scene and draws designs around its boundary tensions: by up to 0.5 N, or by up to 0.01 N
+ * under the rule tension, where larger changes may have no equilibrium. */
 static inline void start_run(struct run *r, int rule)
 {
     const hf_model *m = &r->net.model;

@@ -73,7 +73,7 @@ const char *source_path(const char *relative)
 const char *temp_path(const char *name)
 {
     static char directory[PATH_MAX];
-    static pid_t owner; /* a fork must not take over its parent's directory */
+    static pid_t owner; /* a forked process must not use its parent's directory */
     if (owner != getpid()) {
         snprintf(directory, sizeof directory, "%s", join(run_directory, "XXXXXX"));
         if (!mkdtemp(directory)) ck_abort_msg("%s: %s", directory, strerror(errno));

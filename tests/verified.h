@@ -1,5 +1,5 @@
-/* verified - what a result claims, worked out once more from positions and laws alone, in long double and in an
- * order of its own, so that a mistake in the library's own measuring does not excuse itself. */
+/* verified - the measures of a result computed a second time, from positions and laws alone, in long double and in
+ * another order of sums, so that a mistake in how the library measures a result is found. */
 #ifndef HIFDM_TESTS_VERIFIED_H
 #define HIFDM_TESTS_VERIFIED_H
 

@@ -28,7 +28,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 findings=$work/findings
 report() { tee -a "$findings"; }
-# Tracked and new files alike, so that lint speaks before the commit does; in a tarball, whatever is there.
+# Tracked and new files alike, so that lint finds faults before they are committed; in a tarball, all files.
 files_under() {
     if [ -e .git ]; then
         git ls-files -co --exclude-standard -- "$@" | while read -r file; do [ ! -e "$file" ] || echo "$file"; done
@@ -112,7 +112,7 @@ grep -v ' warning: ' "$work/sizes" | report || true
 grep ' warning: ' "$work/sizes" || true
 
 # ---- Text ------------------------------------------------------------------------------------------------------------
-# search PATTERN MESSAGE FILE...; the brackets in the patterns below keep them from finding themselves.
+# search PATTERN MESSAGE FILE...; the brackets in the patterns below keep them from matching this file.
 search() {
     local pattern=$1 message=$2
     shift 2
@@ -124,7 +124,7 @@ search '^.{121}' 'more than 120 columns' $(echo "$text_files" | grep -v '\.md$')
 search '\b(TOD[O]|FIXM[E]|XX[X])\b' 'unfinished: say it in an issue' $text_files
 search '(^|[^[:alnum:]_.])/(wor[k]|hom[e]|roo[t]|User[s])/' 'path of one machine' $text_files
 
-# A comment that names a section or an equation of the method leads to one that is there: "METHOD section 7, M11".
+# A section or equation of the method that a comment names must exist in src/METHOD.md: "METHOD section 7, M11".
 grep -HnoE 'METHOD(\.md)? section [0-9]+|METHOD[^:]*\bM[0-9]+\b' -- $c_files | while IFS= read -r found; do
     place=$(echo "$found" | cut -d: -f1,2) words=$(echo "$found" | cut -d: -f3-)
     for n in $(echo "$words" | grep -oE 'section [0-9]+' | cut -d' ' -f2); do
@@ -193,7 +193,7 @@ fi
 # ---- Other programs, where installed ---------------------------------------------------------------------------------
 skipped=""
 if command -v cppcheck >/dev/null; then
-    # missingIncludeSystem: it need not see the headers of others. normalCheckLevel...: not a finding, but said as one.
+    # missingIncludeSystem: system headers are not checked. normalCheckLevel...: a note, printed like a finding.
     cppcheck --quiet --std=c11 --language=c -j "$(nproc)" --enable=warning,performance,portability --inline-suppr \
         --suppress=missingIncludeSystem --suppress=normalCheckLevelMaxBranches --suppress=unmatchedSuppression \
         -Iinclude -Isrc --template='{file}:{line}: cppcheck: {message} [{id}]' src 2>&1 | report

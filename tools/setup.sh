@@ -99,7 +99,7 @@ have_lists() { ls /var/lib/apt/lists/*_Packages* >/dev/null 2>&1; }
 
 install() {
     have_lists || apt update
-    # A list may be older than the archive: the one failure that asking again can mend.
+    # The package list may be older than the archive: the only failure that an update and a second try can repair.
     apt install --no-install-recommends "$@" || { apt update && apt install --no-install-recommends "$@"; }
 }
 

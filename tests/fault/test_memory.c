@@ -1,5 +1,6 @@
-/* Every allocation of every set-up function fails once: HF_NO_MEMORY with a message, nothing used, nothing leaked (the
- * run under the sanitizers tells). What libyaml allocates inside its own library is out of reach. */
+/* The tests make each allocation of each set-up function fail once. The function must return HF_NO_MEMORY with a
+ * message and leak nothing (the run under the sanitizers checks that). Allocations inside libyaml cannot be made to
+ * fail. */
 #include "nets.h"
 
 #include <hifdm/batch.h>
@@ -64,7 +65,7 @@ static hf_status create_ga(struct subject *s)
 static const struct stage {
     const char *name;
     action *act;
-    int has_message; /* functions without a messages argument leave the words to their caller */
+    int has_message; /* 0: the function has no messages argument, so it reports by its status alone */
 } stages[] = {{"hf_config_load", load_case, 1},
               {"hf_config_scene", make_scene, 1},
               {"hf_model_build", build_model, 1},
@@ -111,7 +112,7 @@ static void clean_up(struct subject *s)
     hf_messages_free(&s->messages);
 }
 
-/* The n-th allocation of one stage fails; how many allocations the stage makes. */
+/* Runs one stage again and again, with its first, second, ... allocation failing; returns how many it makes. */
 static long fail_each_in_turn(const struct stage *stage, const char *path)
 {
     for (long n = 1;; n++) {
@@ -147,7 +148,7 @@ START_TEST(set_up_of_an_imported_scene)
 }
 END_TEST
 
-/* A case with faults needs memory for its messages: what is lost are lines, never the verdict. */
+/* The messages about a faulty case need memory. Whichever allocation fails, the case is never accepted. */
 START_TEST(faulty_cases_stay_faulty)
 {
     static const char bad[] = "scene: {parabolic_cylinder: {aperture_m: x, nonsense: 1}}\nform: {stop: never}\n";

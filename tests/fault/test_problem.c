@@ -1,5 +1,6 @@
-/* Every allocation of hf_problem_open fails once: HF_NO_MEMORY with a message, or, where memory only makes the batch
- * faster, a batch that gives the same shapes; nothing leaked (the run under the sanitizers tells). */
+/* The test makes each allocation of hf_problem_open fail once. The call must return HF_NO_MEMORY with a message or,
+ * where the memory only makes the batch faster, a batch that gives the same shapes. It must leak nothing (the run under
+ * the sanitizers checks that). */
 #include "nets.h"
 
 #include <hifdm/problem.h>
@@ -21,7 +22,7 @@ START_TEST(opening_a_problem)
     const char *path = write_case(_i);
     double psi_m = NAN;
     long n, n_refused = 0;
-    for (n = 0;; n++) { /* 0: the whole of it, for comparison */
+    for (n = 0;; n++) { /* n = 0: no allocation fails; its psi is what the others are compared with */
         hf_problem p;
         hf_messages messages = {0};
         hf_form_result base = {.status = HF_NOT_EVALUATED};
@@ -34,7 +35,7 @@ START_TEST(opening_a_problem)
         int n_error = messages.n_error;
         hf_problem_free(&p);
         hf_messages_free(&messages);
-        if (status == HF_OK) { /* 1e-9: another solver stops at another place below the tolerances of the case */
+        if (status == HF_OK) { /* 1e-9 m: another solver stops elsewhere within the tolerances of the case */
             ck_assert_int_eq(base.status, HF_OK);
             if (n == 0) psi_m = base.psi_m;
             ck_assert_double_eq_tol(base.psi_m, psi_m, 1e-9);

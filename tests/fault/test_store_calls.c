@@ -1,7 +1,8 @@
-/* Every call of the system, and every kind of call of HDF5, that the store makes fails once: in a new run, and in one
- * that goes on after a kill. Then: HF_IO with words, or no harm at all; what was acknowledged is there; and the same
- * run can be taken to its end, to the same bits. The linker leads these calls of our own objects through here. What
- * HDF5 asks of the system is out of reach: limits on file size stand for that (cli/resume, unit/store_faults). */
+/* The tests make each system call, and each kind of HDF5 call, of the store fail once: in a new run, and in one that is
+ * resumed after a kill. The store must then either return HF_IO with a message or work around the failure. Acknowledged
+ * generations must still be stored, and the same run must reach its end with the same bits. The linker redirects these
+ * calls of our own objects to this file. System calls inside HDF5 cannot be made to fail here; limits on the file size
+ * stand in for them (cli/resume, unit/store_faults). */
 #include "evolution.h"
 
 #include "base/file_out.h"
@@ -73,7 +74,7 @@ int __wrap_open(const char *name, int flags, ...)
     return fails("open") ? -1 : __real_open(name, flags, mode);
 }
 
-/* must_tell: a failure that the store cannot work around, wherever it is. */
+/* must_tell: 1 when the store cannot work around a failure of this call and must report it. */
 static const struct {
     const char *name;
     int must_tell;
@@ -87,7 +88,7 @@ static const struct {
 
 enum { N_BEFORE_KILL = 4 };
 
-/* Begin or go on, whatever is there, and take it to the end. */
+/* Begins a new run, or resumes the unfinished one that is there, and takes it to its end. */
 static hf_status run_it(const char *path, struct run *r, int *acknowledged, hf_messages *messages)
 {
     hf_store *s = NULL;
@@ -103,7 +104,7 @@ static hf_status run_it(const char *path, struct run *r, int *acknowledged, hf_m
         hf_summary summary = {0};
         status = hf_store_restore(s, &r->ga, &summary, messages);
         if (status == HF_OK) {
-            ck_assert_int_eq(hf_store_generations(s), first); /* none is left out */
+            ck_assert_int_eq(hf_store_generations(s), first); /* every stored generation is restored */
             hf_optimiser_tell(&r->ga);
         }
     }
@@ -145,7 +146,7 @@ static void leave_killed_run(const char *path)
     ck_assert_int_eq(WEXITSTATUS(state), 9);
 }
 
-/* The n-th call of this name fails; 1 when there was one. */
+/* Makes the n-th call of this name fail; returns 1 when the run made that many. */
 static int fail_once(int call, long n, int was_killed, const char *whole)
 {
     struct run r;
@@ -163,7 +164,7 @@ static int fail_once(int call, long n, int was_killed, const char *whole)
     failing = NULL;
     int was_reached = countdown <= 0;
     const char *said = messages.text ? messages.text : "";
-    /* HF_EXISTS: what cannot be read cannot be recognised as ours either */
+    /* HF_EXISTS: a file that cannot be read is not recognised as a result file of ours */
     ck_assert_msg(status == HF_OK || status == HF_IO || status == HF_EXISTS, "%s %ld: status %d %s", calls[call].name,
                   n, status, said);
     ck_assert_msg((status != HF_OK) == (messages.n_error > 0), "%s %ld: status %d, said: %s", calls[call].name, n,
@@ -175,7 +176,7 @@ static int fail_once(int call, long n, int was_killed, const char *whole)
     close_run(&r);
 
     open_run(&r);
-    hf_store_state state; /* finished: the call that failed came behind the last rename */
+    hf_store_state state; /* it is finished when the call that failed came after the last rename */
     ck_assert_int_eq(hf_store_look(path, any_case(), &r.net.scene, NULL, &state, &messages), HF_OK);
     ck_assert(acknowledged == 0 || state != HF_STORE_NOTHING);
     if (state == HF_STORE_UNFINISHED) {
@@ -189,13 +190,13 @@ static int fail_once(int call, long n, int was_killed, const char *whole)
     hf_messages_free(&messages);
     demand_whole(path, whole);
     int leaves_more = !strcmp(calls[call].name, "unlink") || !strcmp(calls[call].name, "rename") ||
-                      !strcmp(calls[call].name, "stat"); /* work that could not get its name, and is kept */
+                      !strcmp(calls[call].name, "stat"); /* a file not renamed or removed is kept */
     if (!leaves_more) ck_assert_int_eq(count_files(folder), 1);
     close_run(&r);
     return was_reached;
 }
 
-/* Ids that a failed call of HDF5 leaves open inside HDF5 are not ours; those of ours are all closed. */
+/* All HDF5 ids that the store opened must be closed. Ids that a failed call leaves open inside HDF5 do not count. */
 static void check_call(int call, int was_killed)
 {
     struct run r;
@@ -231,7 +232,7 @@ static void put_text(const void *context, FILE *file)
     fputs(context, file);
 }
 
-/* Each call between a new file and its name, the fsync among them: the old file stays, and nothing lies beside it. */
+/* Makes each call fail by which a new file gets its name, fsync included: the old file must stay, alone. */
 START_TEST(an_exported_file_survives_each_failing_call)
 {
     static const char *const name[] = {"open", "open", "fsync", "rename"};

@@ -1,5 +1,5 @@
-/* Every allocation on the way from a case to a truss that carries its net fails once: HF_NO_MEMORY with a message,
- * nothing used, nothing leaked (the run under the sanitizers tells). */
+/* The tests make each allocation between a case and a truss that carries its net fail once. The call must return
+ * HF_NO_MEMORY with a message and leak nothing (the run under the sanitizers checks that). */
 #include "trusses.h"
 
 #include <hifdm/carrier.h>
@@ -82,7 +82,7 @@ START_TEST(loading_a_carrier)
 }
 END_TEST
 
-/* Written and read back, with one allocation of our own failing each time. */
+/* Writes a truss and reads it back, with another allocation of our own code failing each time. */
 START_TEST(storing_and_reading)
 {
     hf_case c;

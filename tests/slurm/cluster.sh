@@ -57,7 +57,7 @@ up() {
     munged --force --num-threads=2 --key-file="$dir/munge/key" --socket="$dir/munge/sock" \
         --pid-file="$dir/munge/pid" --log-file="$dir/log/munged.log" --seed-file="$dir/munge/seed"
     slurmctld -f "$SLURM_CONF"
-    # A machine with fewer cores than the test wants still runs it: they are slots, not cores.
+    # CPUs are slots here and not cores, so a machine with fewer cores than the test asks for runs it as well.
     slurmd -f "$SLURM_CONF" -N "$host"
     for _ in $(seq 300); do
         case $(sinfo -h -n "$host" -o %T 2>/dev/null | head -n 1) in idle | mixed | allocated) return 0 ;; esac

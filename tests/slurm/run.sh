@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The job array for real: Slurm is started on this machine, an array is submitted, one task is killed with -9 and
+# Tests the job array with a real Slurm on this machine: an array is submitted, one task is killed with -9 and
 # requeued, one is preempted, one is cancelled, and in the end the merge equals that of the same sweep run at once, data
 # set by data set. Then the same with GNU parallel. Needs root, slurm-wlm, munge and parallel (tools/setup.sh --ci).
 set -eu
@@ -58,7 +58,7 @@ sweep:
   optimize.stagnation_generations: [300]
   optimize.polish_iterations: [2]
 YAML
-# Says which process works for which task.
+# Records which process works for which task.
 cat >hifdm-task <<SH
 #!/bin/sh
 echo \$\$ >"$work/pid.\${SLURM_ARRAY_TASK_ID:-\$PARALLEL_SEQ}"
@@ -96,7 +96,7 @@ scontrol update jobid="${job}_0" starttime=now
 scancel "${job}_3"
 echo "task 0 requeued, task 3 cancelled"
 
-# A job of a higher partition takes the whole node for a moment: whoever works is told to stop, and requeued.
+# A job of a higher partition takes the whole node for a moment: the tasks that run are told to stop, and requeued.
 within 60 is_there pid.1
 high=$(sbatch --parsable --partition=high --cpus-per-task=2 --output=high.log --wrap='sleep 1')
 within 60 is_gone "$high"

@@ -74,7 +74,7 @@ static void overpowered(struct rng *rng, hf_scene *s)
     }
 }
 
-/* A free node loaded by more than all of its tensions together: it flies away. */
+/* A free node whose load exceeds the sum of its tensions has no equilibrium: it moves away without end. */
 static void overloaded(struct rng *rng, hf_scene *s)
 {
     random_tension_scene(rng, s);

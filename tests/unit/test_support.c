@@ -1,4 +1,4 @@
-/* The helpers themselves: a test that leans on a broken helper proves nothing. */
+/* Tests of the test helpers: a test that uses a broken helper proves nothing. */
 #include "support.h"
 
 #include <stdlib.h>

@@ -87,8 +87,8 @@ static double flops_per_s(peak_kernel *kernel, int width)
 
 /* ---- operations of the factorisation ---- */
 
-/* Of one lane, as lane_kernel.c does them: tiles from the skyline of the block row on, in the part that both block rows
- * of a product have. A multiplication, a subtraction, a root and a reciprocal count one each. */
+/* Operations in one lane, as lane_kernel.c does them: tiles from the skyline of the block row on, in the part that both
+ * block rows of a product have. A multiplication, a subtraction, a root and a reciprocal count one each. */
 static double flops_done(const hf_lane_plan *p)
 {
     double n = 0;
@@ -106,7 +106,7 @@ static double flops_done(const hf_lane_plan *p)
     return n;
 }
 
-/* Of a factorisation of the whole band, every entry of it, by rows: what dpbtrf is credited with. */
+/* Operations of a factorisation of the whole band with all its entries, by rows: those counted for dpbtrf. */
 static double flops_of_band(const hf_model *m)
 {
     double n = 0;

@@ -2,7 +2,7 @@
  * hf_swarm_run and hf_chord_run, with a clock in front of each of their kernels; "rest" is what they do around them:
  * put designs into lanes, take shapes out, measure these by the scalar code and judge them.
  *
- * Contents: what was spent - one design - eight to a pass, fixed point - eight to a pass, chord */
+ * Contents: time spent per phase - one design - eight to a pass, fixed point - eight to a pass, chord */
 #include "bench.h"
 
 #include "linalg/band.h"
@@ -14,7 +14,7 @@
 #define ENOUGH_S 0.2
 #define ITERATIONS 100 /* of each design by the fixed point */
 
-/* ---- what was spent ---- */
+/* ---- time spent per phase ---- */
 
 enum { ASSEMBLY, FACTOR, SOLVE, MEASURE, RESIDUAL, UPDATE, REST, N_PHASE };
 static const char *const phase_word[N_PHASE] = {"assembly", "factor", "solve", "measure", "residual", "update", "rest"};

@@ -118,7 +118,7 @@ static void once(bench_scene *b, int threads, const char *path)
     hf_batch_free(&p.batch);
 }
 
-/* The least that storing can cost: as many bytes into a file, and to the disk, with nothing around. */
+/* The least that storing can cost: writing as many bytes to a file and to the disk, and nothing else. */
 static void write_bare(const char *name, const char *path, double bytes)
 {
     static char piece[240000];

@@ -19,7 +19,7 @@
 
 /* ---- references: the true shapes of the first designs ---- */
 
-/* How many designs the slow fixed point is given. */
+/* Number of designs that the slow fixed point solves. */
 static int n_true(const bench_scene *b)
 {
     if (b->model.n_gene == 0) return 1;
@@ -261,7 +261,7 @@ void bench_single(const char *name, const char *folder)
     hf_batch batch;
     bench_scene_named(name, folder, &b);
     single_form_finding(&b);
-    /* without genes the base shape itself is what is looked for: start from the theoretical one */
+    /* without genes the base shape is the one to be found: start from the theoretical shape */
     if (b.model.n_gene == 0) b.evaluator.start_q_N_per_m = b.model.start_q_N_per_m;
     double *reference_m = make_references(&b);
     int has_chord = share_matrix(&b, &batch);

@@ -25,7 +25,7 @@ static struct {
     double since_s, bytes; /* when it began, less what those inside have taken */
 } call[8];
 
-/* Bytes in use on the heap, with what calloc has reserved and nobody touched; 0 where the C library does not tell. */
+/* Bytes in use on the heap, including untouched pages that calloc has reserved; 0 where the C library has no count. */
 static double heap_bytes(void)
 {
 #if defined __GLIBC__ && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 33)

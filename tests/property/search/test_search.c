@@ -1,5 +1,5 @@
-/* Laws of the whole search, GA and batch together, on 3 x 3 modules of the paper's net, where the boundary matters:
- * what a run depends on, what it respects, and that it gains. */
+/* Laws of the whole search, GA and batch together, on 3 x 3 modules of the paper's net, where the boundary tensions
+ * matter: on what a run depends, that it respects bounds and cap, and that psi falls. */
 #include "nets.h"
 
 #include <hifdm/batch.h>
@@ -17,7 +17,7 @@ struct search {
 
 struct trace {
     int n;
-    double best_psi_m[N_GENERATION], sum_N[N_GENERATION]; /* sum over all designs of the generation: sees every gene */
+    double best_psi_m[N_GENERATION], sum_N[N_GENERATION]; /* sum over all genes of the generation: changes with any */
     double first_design_N[MAX_POPULATION];                /* gene 1 of generation 0 */
     long n_evaluation, n_infeasible;
 };
@@ -126,7 +126,7 @@ START_TEST(search_starts_at_the_found_shape_and_gains)
     for (int i = 1; i < t.n; i++)
         ck_assert_double_le(t.best_psi_m[i], t.best_psi_m[i - 1]);
     ck_assert_double_lt(t.best_psi_m[t.n - 1], 0.998 * psi_m);
-    ck_assert(t.n_infeasible > 0 && t.n_infeasible < t.n_evaluation);    /* the cap was at work */
+    ck_assert(t.n_infeasible > 0 && t.n_infeasible < t.n_evaluation);    /* the cap excluded some designs */
     ck_assert_int_le((int)t.n_evaluation, 16 + (N_GENERATION - 1) * 15); /* the elite is not evaluated again */
     close_net(&s.net);
 }

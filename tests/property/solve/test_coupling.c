@@ -1,5 +1,5 @@
-/* Random nets on random elastic foundations: the plain loop, the accelerated one and the population solver end at the
- * same place; no motion of the whole changes it. */
+/* Random nets on random elastic foundations: the plain loop, the accelerated loop and the population solver find the
+ * same shape, and moving net, loads and foundation together as a rigid body moves the shape in the same way. */
 #include "flexible.h"
 #include "laws.h"
 #include "population.h"
@@ -41,7 +41,7 @@ START_TEST(plain_and_accelerated_agree)
 }
 END_TEST
 
-/* The designs of one population by chord, and each alone. */
+/* The designs of one population, solved together by chord and one at a time by hf_evaluate. */
 START_TEST(chord_agrees)
 {
     struct rng rng = rng_start(400 + (uint64_t)_i);

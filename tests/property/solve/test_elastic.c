@@ -1,12 +1,13 @@
-/* Nets as built: a reflector's net cut from elastic cables, each a bit too long or too short, from soft to all but
- * rigid. A shape that is found is in equilibrium under the tensions that its lengths give, as measured here; a net that
- * has none has a node whose cables all hang loose, and that node is named. */
+/* Nets as built: a reflector's net of elastic cables, from soft to nearly rigid, each cut a little too long or too
+ * short. A shape that is found must be in equilibrium under the tensions that follow from its lengths; the test
+ * measures this itself. A net without a shape has a node whose cables are all slack, and the result must name that
+ * node. */
 #include "laws.h"
 
 #include <hifdm/evaluate.h>
 
-/* Largest force out of balance with every cable at EA max(l/l0 - 1, 0), in long double. *rounding: what a rounding of
- * the coordinates is worth there. */
+/* Largest force out of balance when every cable pulls with EA max(l/l0 - 1, 0), in long double. *rounding: the largest
+ * force, N, that rounding of the coordinates causes in a cable. */
 static double imbalance_N(const struct net *net, double *rounding)
 {
     const hf_model *m = &net->model;
@@ -39,11 +40,11 @@ static int is_loose(const struct net *net, int row)
     const hf_model *m = &net->model;
     for (int e = 0; e < m->n_cable; e++)
         if ((m->end_row[2 * e] == row || m->end_row[2 * e + 1] == row) && net->work.q_N_per_m[e] > 1e-12)
-            return 0; /* N/m: of 10 N, nothing */
+            return 0; /* 1e-12 N/m is nothing beside tensions of 10 N */
     return 1;
 }
 
-/* Cut for the found shape, each length off by up to this part; hung into the theoretical one. */
+/* Cuts cables for the found shape with relative errors of up to `off`; the search starts from the theoretical shape. */
 static hf_status build_from_cuts(struct net *net, struct rng *rng, double EA_N, double off)
 {
     struct net built = {.form = net->form};
@@ -69,7 +70,7 @@ static hf_status build_from_cuts(struct net *net, struct rng *rng, double EA_N, 
         /* ten cables at most meet at a node; a length is right to 1e-10 */
         double allowed_N = 1e-10 * 10 * 10 + 10 * EA_N * 1e-10 + 10 * rounding;
         ck_assert_msg(out_N <= allowed_N, "EA %g off %g: %g N, not %g", EA_N, off, out_N, allowed_N);
-        if (off == 0) /* and has the shape that it was cut for */
+        if (off == 0) /* exact cuts give back the shape that they were made for */
             for (int k = 0; k < 3 * built.model.n_node; k++)
                 ck_assert_double_eq_tol(built.work.position_m[k], net->work.position_m[k], 1e-8);
     } else {

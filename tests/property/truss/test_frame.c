@@ -20,7 +20,7 @@ static void random_loads(struct loads *l, const hf_truss *t, struct rng *rng)
     l->rise = zeros((size_t)t->n_member);
     for (int k = 0; k < 6 * t->n_node; k++) {
         if (frame.row_of_dof[k] != HF_FRAME_ABSENT) l->force[k] = rng_uniform(rng, -500, 500);
-        l->settlement[k] = rng_uniform(rng, -1e-3, 1e-3); /* looked at where there is a support */
+        l->settlement[k] = rng_uniform(rng, -1e-3, 1e-3); /* used only where there is a support */
     }
     for (int e = 0; e < t->n_member; e++)
         l->rise[e] = rng_uniform(rng, -20, 20);
@@ -240,8 +240,8 @@ static void cross_product(const double *a, const double *b, double *c)
         c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-/* What turned the frame turns its motion. Local axes follow the world's vertical, so the roll of the turned member is
- * measured: the angle from its unrolled y to the turned y. */
+/* Turning the frame turns its motion in the same way. Local axes are defined by the world's vertical, so the roll of a
+ * turned member is computed: the angle from its y without roll to the turned y. */
 START_TEST(rotation_turns_everything)
 {
     struct rng rng = rng_start((uint64_t)_i);
@@ -327,7 +327,7 @@ START_TEST(stiff_in_shear_is_euler_bernoulli)
 }
 END_TEST
 
-/* Not held, or free to turn about one node: refused, whether rounding leaves the last pivot above or below zero. */
+/* A frame without supports, or free to turn about one node, is refused, whatever sign rounding gives its last pivot. */
 START_TEST(loose_frames_are_refused)
 {
     struct rng rng = rng_start((uint64_t)_i);

@@ -68,7 +68,7 @@ START_TEST(empty_arena_can_be_allocated)
 }
 END_TEST
 
-/* A size that no size_t holds must not come out as a small one, and must stay remembered. */
+/* A total beyond SIZE_MAX must not wrap around to a small size, and the overflow must stay recorded. */
 START_TEST(overflow_is_out_of_memory)
 {
     static const size_t count[] = {SIZE_MAX, SIZE_MAX / 8, SIZE_MAX / 8 + 1, SIZE_MAX / 8 - 7};

@@ -1,5 +1,5 @@
-/* What of the table reader the import (test_scene_import) does not use: wide tables, lookups, ids written and read
- * back. */
+/* The parts of the table reader that the tests of the import (test_scene_import) do not reach: wide tables, lookups,
+ * ids written and read back. */
 #include "support.h"
 
 #include "base/csv.h"

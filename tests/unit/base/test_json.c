@@ -1,4 +1,4 @@
-/* The JSON writer: commas where they are due, lines where they are asked for, texts that any reader takes. */
+/* The JSON writer: commas and line breaks in the right places, strings that every JSON reader accepts. */
 #define _GNU_SOURCE /* open_memstream */
 #include "support.h"
 

@@ -1,4 +1,4 @@
-/* Work for later: every item is done once, in order, in the serving thread; without one, at once. */
+/* Work for later: every item is done once, in order, by the serving thread, or at once when no thread serves. */
 #include "support.h"
 
 #include "base/later.h"
@@ -53,7 +53,7 @@ START_TEST(without_a_list_it_is_done_at_once)
 }
 END_TEST
 
-/* The server may hold the first item while HF_LATER_MAX others wait: no more fit, whether it has begun or not. */
+/* HF_LATER_MAX items can wait, and one more can be in the hands of the server; further items are done by the caller. */
 START_TEST(items_wait_in_order_until_no_more_fit)
 {
     hf_later_list list;

@@ -1,4 +1,5 @@
-/* Stored results are bred again from their seed: the numbers are those of the publication, for ever. The clocks. */
+/* Random numbers and clocks. Stored results are computed again from their seed, so the generator must keep giving the
+ * numbers of its published reference implementation. */
 #include "support.h"
 
 #include "base/clock.h"
@@ -17,7 +18,7 @@ START_TEST(numbers_are_those_of_splitmix64)
 }
 END_TEST
 
-/* Journals and files hold designs that are bred again from these starts. */
+/* Journals and result files rely on these starting states: their designs are computed again from them. */
 START_TEST(a_stream_is_named_by_seed_generation_and_individual)
 {
     ck_assert_uint_eq(hf_random_stream(1, 0, 0).state, 5127574494469434565u);

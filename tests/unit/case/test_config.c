@@ -178,7 +178,7 @@ START_TEST(both_kinds_of_scene_are_made)
 }
 END_TEST
 
-/* ---- what is refused: exact messages in test_config_faults.c; here that nothing crashes or passes ---- */
+/* ---- what is refused: test_config_faults.c has the exact messages; here nothing may crash or be accepted ---- */
 
 /* A default in the table must itself be a valid value: all are parsed by the same code, so a bad one shows in every
  * load. */
@@ -252,7 +252,7 @@ START_TEST(a_difference_in_any_key_is_named)
         }
         ck_assert_int_ge(way, 2);
         if (field->type != HF_FIELD_DOUBLE_LIST) continue;
-        ((hf_double_list *)in_a)->n = ((hf_double_list *)in_b)->n = 7; /* what stands behind the list is no value */
+        ((hf_double_list *)in_a)->n = ((hf_double_list *)in_b)->n = 7; /* entries beyond n do not count */
         ((hf_double_list *)in_b)->value[7] = 9;
         ck_assert_int_eq(hf_config_differences(&a, &b, text, sizeof text), 0);
     }

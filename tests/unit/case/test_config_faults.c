@@ -1,4 +1,4 @@
-/* Case files with faults: each is told with file:line:col, key and remedy; all of a file in one run. */
+/* Case files with faults: each message has file:line:col, key and remedy; one run reports all faults of a file. */
 #include "nets.h"
 
 #define CYLINDER                                                                                                       \
@@ -182,7 +182,7 @@ START_TEST(broken_yaml_is_told_where_it_breaks)
 }
 END_TEST
 
-/* The parser must neither crash nor hang on nesting far beyond any sense. */
+/* The parser must neither crash nor hang on absurdly deep nesting. */
 START_TEST(deep_nesting_is_refused)
 {
     enum { DEPTH = 20000 };

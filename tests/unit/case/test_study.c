@@ -1,4 +1,4 @@
-/* Studies: what axes mean, which points they make, and that a point keeps its name when axes grow. */
+/* Studies: what axes mean, which points they give, and that a point keeps its name when values are added to an axis. */
 #include "case/study.h"
 
 #include "support.h"

@@ -44,7 +44,7 @@ static double entry(const struct band_system *s, int i, int j)
     return d <= s->k ? s->band[d + low * (s->k + 1)] : 0;
 }
 
-/* Gauss with partial pivoting on the full matrix: as plain as can be. x: [3][LDB]. */
+/* Textbook Gaussian elimination with partial pivoting on the full matrix. x: [3][LDB]. */
 static void solve_dense(const struct band_system *s, double *x)
 {
     static double a[MAX_N][MAX_N];

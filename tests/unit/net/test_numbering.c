@@ -1,4 +1,4 @@
-/* The order of the free nodes: a permutation, its bandwidth true and small. */
+/* The order of the free nodes is a permutation; its bandwidth is reported correctly and is small. */
 #include "laws.h"
 
 #include "net/numbering.h"

@@ -1,4 +1,4 @@
-/* The list of a result's figures: what its rows promise to the places that read it. */
+/* The list of a result's figures: the properties of its rows on which the code that reads it relies. */
 #include "support.h"
 
 #include <hifdm/result.h>

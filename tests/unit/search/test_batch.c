@@ -135,7 +135,7 @@ START_TEST(default_is_a_thread_per_core)
 }
 END_TEST
 
-/* Batches inside hf_parallel_for share its threads: every item once, and to the same bits as a batch of its own. */
+/* Batches inside hf_parallel_for share its threads: every item runs once, with the bits of a batch outside of it. */
 enum { N_ITEM = 7 };
 struct item_work {
     struct run *run;
@@ -153,7 +153,7 @@ static void work_on_item(void *context, int i)
     if (w->status[i] == HF_OK) {
         hf_batch_share(&batch, w->run->design_N);
         hf_batch_run(&batch, i % 2 ? N_DESIGN : 5, w->run->design_N, NULL, w->result[i]);
-        hf_batch_run(&batch, N_DESIGN, w->run->design_N, NULL, w->result[i]); /* rooms are there now */
+        hf_batch_run(&batch, N_DESIGN, w->run->design_N, NULL, w->result[i]); /* reuses the first call's workspaces */
     }
     hf_batch_free(&batch);
 }
@@ -174,7 +174,7 @@ START_TEST(batches_that_share_threads_do_not_change_a_bit)
         w.run = &r;
         w.n_thread = n_thread;
         hf_parallel_for(n_thread, n_thread == 4 ? 1 : N_ITEM, work_on_item,
-                        &w); /* of one item, three threads can only help */
+                        &w); /* with 4 threads and one item, three threads have no item of their own */
         for (int i = 0; i < (n_thread == 4 ? 1 : N_ITEM); i++) {
             ck_assert_int_eq(w.n_call[i], 1);
             ck_assert_int_eq(w.status[i], HF_OK);
@@ -185,7 +185,7 @@ START_TEST(batches_that_share_threads_do_not_change_a_bit)
 }
 END_TEST
 
-/* Beside the breeding of the next generation, one that was told is read: it must not change meanwhile. */
+/* While the next generation is made, another thread reads the one that was told: its contents must not change. */
 enum { N_INDIVIDUAL = 12, N_GENERATION = 6 };
 
 struct reader {
@@ -249,7 +249,7 @@ START_TEST(a_generation_can_be_read_while_the_next_is_bred)
         best_psi_m[n_thread > 0] = ga.population.result[ga.population.best].psi_m;
         ck_assert_msg(n_thread == 0 || best_psi_m[0] == best_psi_m[1], "%d threads: %.17g, not %.17g", n_thread,
                       best_psi_m[1], best_psi_m[0]);
-        ck_assert_double_lt(best_psi_m[0], ga.population.best_psi_m[0]); /* it has bred something */
+        ck_assert_double_lt(best_psi_m[0], ga.population.best_psi_m[0]); /* the search has improved the best */
         hf_optimiser_free(&ga);
         hf_batch_free(&batch);
     }

@@ -94,7 +94,7 @@ START_TEST(answers_are_newtons_on_random_nets)
 }
 END_TEST
 
-/* Right-hand sides of somebody else's: as LAPACK solves them, up to rounding times the condition, 1e7 at most here. */
+/* The solve for any right-hand sides agrees with LAPACK to rounding times the condition number, 1e7 at most here. */
 START_TEST(many_right_hand_sides)
 {
     struct run r;
@@ -103,7 +103,7 @@ START_TEST(many_right_hand_sides)
     hf_chord_lanes lanes;
     open_run(&r, HF_RULE_FORCE_DENSITY);
     const hf_model *m = &r.net.model;
-    int n = 3 * m->n_free, n_rhs = 1 + 6 * _i; /* 1, 7, 13: less than a pass, and one and a part */
+    int n = 3 * m->n_free, n_rhs = 1 + 6 * _i; /* 1, 7, 13: less than one pass of 8, and more than one */
     size_t ld = (size_t)n + 3;
     double *b = malloc((size_t)n_rhs * ld * sizeof *b), *x = malloc((size_t)n_rhs * ld * sizeof *x), largest = 0;
     for (size_t i = 0; i < (size_t)n_rhs * ld; i++)
@@ -115,7 +115,7 @@ START_TEST(many_right_hand_sides)
     hf_chord_back_solve(&chord, &lanes, n_rhs, x, ld);
     for (int k = 0; k < n_rhs; k++) {
         double *want = b + (size_t)k * ld, *got = x + (size_t)k * ld;
-        ck_assert_mem_eq(want + n, got + n, 3 * sizeof(double)); /* what is behind a column is not touched */
+        ck_assert_mem_eq(want + n, got + n, 3 * sizeof(double)); /* the rows after the n of a column are not touched */
         hf_band_back_solve(n, 3 * m->half_bandwidth + 2, 1, r.net.work.newton_band, want, n);
         for (int i = 0; i < n; i++)
             largest = fmax(largest, fabs(want[i]));
@@ -170,8 +170,8 @@ END_TEST
 
 /* ---- designs that fail ---- */
 
-/* Far away, beyond any equilibrium, no number at all: each gets what hf_evaluate says of it alone, and no other design
- * changes a bit, not even those that take over the lane. */
+/* Designs far from the base, without an equilibrium, or with a NaN: each gets the result that hf_evaluate gives it
+ * alone. No bit of any other design changes, not even of those that are loaded into the same lane afterwards. */
 START_TEST(strangers_disturb_nobody)
 {
     static const struct {

@@ -1,5 +1,5 @@
-/* The loops of chord: same bits for every instruction set, a triangular solve that is LAPACK's, and lanes that keep to
- * themselves. An instruction set that this machine lacks is named and skipped. */
+/* The kernels of chord: they give the same bits on every instruction set, their triangular solve agrees with LAPACK's,
+ * and no lane changes another. An instruction set that this machine lacks is named and skipped. */
 #include "flexible.h"
 #include "laws.h"
 
@@ -153,8 +153,8 @@ START_TEST(solve_is_lapacks)
 }
 END_TEST
 
-/* A lane full of NaNs, then the same lane with a sound design: nothing of the NaNs may be left, in no place that a
- * later pass reads, and the lanes beside it never notice. */
+/* A lane is filled with NaNs and then gets a sound design: no NaN may remain where a later pass reads, and the results
+ * of the other lanes must not change. */
 START_TEST(a_lane_recovers_from_NaN)
 {
     struct kernel_run r;

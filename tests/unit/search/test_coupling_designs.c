@@ -36,7 +36,7 @@ START_TEST(chord_gives_what_evaluate_gives)
         ck_assert_int_eq(chord.coupling.stop_reason, HF_COUPLING_TOF);
         ck_assert_int_le(chord.iterations, 20);
         ck_assert_double_le(chord.residual_N, TOLERANCE * m->reference_N * 1.001);
-        hf_form_result again = chord; /* the gap of the truss by scalar code, at the shape that came back */
+        hf_form_result again = chord; /* scalar code measures the gap of the truss at the returned shape */
         ck_assert_double_le(hf_coupling_measure(m, w, &again), 1.01e-10);
         ck_assert_double_eq(again.coupling.max_displacement_m, chord.coupling.max_displacement_m);
         ck_assert_int_eq(hf_evaluate(&r.evaluator, design(&r, i), &r.net.work, &alone), HF_OK);
@@ -50,7 +50,7 @@ START_TEST(chord_gives_what_evaluate_gives)
 }
 END_TEST
 
-/* By any solver: chord, the lanes' fallback, the paper's rule. */
+/* Holds for every solver: chord, the lanes' fallback, the paper's rule. */
 START_TEST(threads_and_grouping_do_not_change_a_bit)
 {
     static const int solver[] = {HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT, HF_SOLVER_AUTO};
@@ -59,7 +59,7 @@ START_TEST(threads_and_grouping_do_not_change_a_bit)
     struct run r;
     open_designs(&r, _i == 3 ? HF_RULE_SEEDED : HF_RULE_FORCE_DENSITY, 1e-5);
     if (_i > 1) r.net.form.coupling.tof_m = 1e-7;
-    if (_i > 1) r.net.form.residual_tolerance = 1e-6; /* these iterate by the paper's rate */
+    if (_i > 1) r.net.form.residual_tolerance = 1e-6; /* these converge as slowly as the paper's iteration */
     r.evaluator.solver = (hf_solver)solver[_i];
     memset(result, 0, sizeof result);
     for (int k = 0; k < 3; k++) {

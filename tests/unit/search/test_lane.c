@@ -52,7 +52,7 @@ static void close_band_net(struct band_net *net)
     free(net->model.load_N);
 }
 
-/* Every field becomes NaN or another value that no kernel may read. */
+/* Fills the workspace with NaN and other values that no kernel may read. */
 static void poison(struct band_net *net)
 {
     memset(net->work.block, 0xff, hf_lane_workspace_bytes(&net->plan));
@@ -235,13 +235,13 @@ static void iterate(struct band_net *net, hf_lane_measures *measures)
     hf_lane_psi(&net->plan, &net->work, measures);
 }
 
-/* Takes the place of bits: any NaN is as good as another. */
+/* Equal bits, or both NaN. */
 static int is_same(double a, double b)
 {
     return memcmp(&a, &b, sizeof a) == 0 || (isnan(a) && isnan(b));
 }
 
-/* All that a step makes, in the lanes that `lanes` has bits of. */
+/* Compares all results of a step in the lanes whose bit is set in `lanes`. */
 static void assert_same_lanes(const struct band_net *a, const hf_lane_measures *a_measures, const struct band_net *b,
                               const hf_lane_measures *b_measures, unsigned lanes)
 {
@@ -267,7 +267,7 @@ static void assert_same_lanes(const struct band_net *a, const hf_lane_measures *
     }
 }
 
-/* One inner node, as far as psi goes: the first row, which is to be where the loads' array says. */
+/* Gives psi one inner node, the first row; the array of loads serves as its theoretical position. */
 static void add_psi(hf_model *m)
 {
     static int first_row = 0;
@@ -291,7 +291,7 @@ static void close_copy(struct band_net *copy)
     hf_lane_workspace_free(&copy->work);
 }
 
-/* Lane 2 is indefinite, lane 4 not finite: those, too, end alike everywhere. */
+/* Makes lane 2 indefinite and lane 4 not finite: these must also give equal results on every instruction set. */
 static void spoil(struct band_net *net)
 {
     const hf_model *m = &net->model;
@@ -448,7 +448,7 @@ static void compare_lane(struct net *net, const hf_lane_plan *plan, const hf_lan
 }
 
 /* Metres and N/m are of size 1 to 100 here and D is well conditioned: roundoff of a solve is some 1e-14, and an
- * iteration hands on what it got without enlarging it. Measured: 7e-15 after one iteration, 2e-14 after ten. */
+ * iteration does not amplify the errors of the one before. Measured: 7e-15 after one iteration, 2e-14 after ten. */
 #define STEP_TOLERANCE 1e-12
 
 static void compare_with_formfind(struct net *net, int isa)

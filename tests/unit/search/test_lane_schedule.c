@@ -36,7 +36,7 @@ static void load(void *solver, int lane, int i_design)
 static void look(void *solver)
 {
     struct counts *c = solver;
-    ck_assert_int_eq(c->n_look, c->n_step); /* by turns */
+    ck_assert_int_eq(c->n_look, c->n_step); /* looks and steps alternate */
     for (int lane = 0; lane < HF_LANES; lane++)
         ck_assert_int_ne(c->in_lane[lane], NONE); /* kernels need numbers in every lane */
     c->n_look++;
@@ -76,7 +76,7 @@ static struct counts run(int n_design, const int *rounds)
         ck_assert_int_eq(c.n_settled[i], i < n_design);
     ck_assert_int_eq(c.n_handed_out, n_design);
     ck_assert_int_eq(c.n_load, HF_LANES + n_design); /* each lane once with design 0 before the first */
-    ck_assert_int_eq(c.n_asked_after_the_end, 1);    /* nobody is asked again after -1 */
+    ck_assert_int_eq(c.n_asked_after_the_end, 1);    /* no further design is asked for after -1 */
     return c;
 }
 

@@ -97,7 +97,7 @@ START_TEST(telling_finds_best_mean_and_worst)
     ck_assert_int_eq((int)ga.population.n_evaluation_infeasible, N - 3);
     ck_assert_int_eq(ga.population.stop_reason, HF_POPULATION_RUNNING);
     ck_assert_int_eq(hf_optimiser_next(&ga), 1);
-    for (int i = 2; i < N; i++) /* behind the elites: parents are feasible */
+    for (int i = 2; i < N; i++) /* all after the elites have feasible parents */
         for (int side = 0; side < 2; side++) {
             int parent = ga.population.parent[2 * i + side];
             ck_assert(parent == 5 || parent == 7 || parent == 9);

@@ -1,4 +1,4 @@
-/* Loops over threads: every item and every room once, whatever the number of threads. */
+/* Loops over threads: every item is done once, and every room (index of a thread) is used once, for any n_thread. */
 #include "support.h"
 
 #include "base/later.h"
@@ -61,7 +61,7 @@ END_TEST
 static void make_ready(void *context)
 {
     struct counts *c = context;
-    nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL); /* time for others to begin too early */
+    nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL); /* gives others time to begin too early */
     c->queue = (hf_parallel_queue){N_ITEM, 0, NULL};
     __atomic_store_n(&c->is_ready, 1, __ATOMIC_SEQ_CST);
 }
@@ -105,7 +105,7 @@ START_TEST(runs_inside_a_loop_have_every_room_once)
 }
 END_TEST
 
-/* ---- what is left for later is done once, by the end; more than fit are done at once ---- */
+/* ---- work left for later is done once, before the loop ends, or at once when the list is full ---- */
 
 struct later {
     int n_done[N_ITEM], is_slow, n_elsewhere; /* done by another thread than the one that left it */
@@ -140,7 +140,7 @@ START_TEST(what_is_left_for_later_is_done)
         for (int i = 0; i < N_ITEM; i++)
             ck_assert_int_eq(l.n_done[i], 1);
         ck_assert_int_gt(l.n_elsewhere, 0);
-        leave_for_later(&l, 0); /* outside: at once */
+        leave_for_later(&l, 0); /* outside of a loop the work is done at once */
         ck_assert_int_eq(l.n_done[0], 2);
     }
 }

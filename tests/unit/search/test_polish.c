@@ -136,7 +136,7 @@ START_TEST(optimum_has_no_slope_left)
 }
 END_TEST
 
-/* Whatever the limit and the start, an optimum included: psi never rises, and the bounds hold. */
+/* For every iteration limit and every start, also at an optimum, psi does not rise and the bounds hold. */
 START_TEST(never_worse_than_its_start)
 {
     struct polish_run p;

@@ -47,7 +47,7 @@ START_TEST(bounds_are_the_range_within_the_limits)
 }
 END_TEST
 
-/* Gene 2 follows gene 0 and can only go down by 0.5 N: so can gene 0. Gene 1 is on its own. */
+/* Gene 2 is linked to gene 0 and can only go down by 0.5 N, so gene 0 can, too. Gene 1 is not linked. */
 START_TEST(linked_genes_share_step_and_bounds)
 {
     hf_population p, next;
@@ -63,7 +63,7 @@ START_TEST(linked_genes_share_step_and_bounds)
     ck_assert_double_eq(design_N[1], 19.5);
     ck_assert_double_eq(design_N[2], 2.25);
     hf_population_link(&p, &free_model, memcpy(design_N, (double[]){1, 2, 3}, sizeof design_N));
-    ck_assert_double_eq(design_N[2], 3); /* nobody to follow */
+    ck_assert_double_eq(design_N[2], 3); /* not linked in this model */
     hf_population_free(&p);
 }
 END_TEST
@@ -73,7 +73,7 @@ START_TEST(advancing_exchanges_the_generations)
     hf_population p, next;
     open_population(&free_model, &p, &next);
     hf_population before = p, after = next;
-    ck_assert_ptr_eq(p.best_psi_m, next.best_psi_m); /* the past is common */
+    ck_assert_ptr_eq(p.best_psi_m, next.best_psi_m); /* both generations share one history */
     hf_population_advance(&p, &next);
     ck_assert_int_eq(p.generation, 1);
     ck_assert(p.design_N == after.design_N && next.design_N == before.design_N);
@@ -106,7 +106,7 @@ START_TEST(ranking_counts_what_was_evaluated)
     ck_assert_double_eq_tol(p.mean_psi_m, 7.0 / 3, 1e-15);
     ck_assert_double_eq(p.worst_psi_m, 3);
     ck_assert_int_eq(p.n_infeasible, 1);
-    ck_assert_int_eq((int)p.n_evaluation, 3); /* the one that was known is none */
+    ck_assert_int_eq((int)p.n_evaluation, 3); /* the individual that was not pending does not count */
     ck_assert_int_eq((int)p.n_evaluation_infeasible, 1);
     static const int order[N] = {2, 3, 0, 1};
     for (int a = 0; a < N; a++)

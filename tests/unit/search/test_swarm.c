@@ -1,4 +1,4 @@
-/* The paper's iteration in lanes: the results of the scalar code, whatever shares a pass. */
+/* The paper's iteration in lanes gives the results of the scalar code, whichever designs share a pass. */
 #include "nets.h"
 
 #include <hifdm/batch.h>
@@ -42,13 +42,13 @@ static void evaluate(struct run *r, int n_thread, int backwards, hf_form_result 
     hf_batch_free(&batch);
 }
 
-/* Status and iterations are those of the scalar code; measures differ by roundoff, which some hundred iterations that
- * contract do not let grow: 1e-9 of their size. */
+/* Status and iterations are those of the scalar code. Measures differ by roundoff, which does not grow over some
+ * hundred iterations because they contract: 1e-9 of their size is allowed. */
 START_TEST(results_are_those_of_the_scalar_code)
 {
     struct run r;
     hf_form_result result[N_DESIGN], alone;
-    open_run(&r, _i % 3, _i < 3 ? 0.5 : 9); /* a wide range brings designs without a shape along */
+    open_run(&r, _i % 3, _i < 3 ? 0.5 : 9); /* the wide range includes designs without a shape */
     r.net.form.residual_tolerance = 1e-7;
     r.net.form.max_iterations = 3000;
     evaluate(&r, 2, 0, result);

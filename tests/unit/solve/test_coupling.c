@@ -200,7 +200,7 @@ START_TEST(a_rigid_truss_changes_no_bit)
 }
 END_TEST
 
-/* The paper's rule stops where its start leads it: both schemes restart it, so they agree as far as tof_m asks. */
+/* The shape by the paper's rule depends on its start. Both schemes restart it each time, so they agree to tof_m. */
 START_TEST(the_papers_rule_is_restarted)
 {
     struct net net;
@@ -214,7 +214,7 @@ START_TEST(the_papers_rule_is_restarted)
         psi_m[scheme] = net.result.psi_m;
     }
     ck_assert_double_eq_tol(psi_m[0], psi_m[1], 1e-6);
-    ck_assert_double_gt(fabs(psi_m[0] - 6.6027e-3), 1e-6); /* of the rigid one */
+    ck_assert_double_gt(fabs(psi_m[0] - 6.6027e-3), 1e-6); /* psi on fixed supports */
     close_net(&net);
 }
 END_TEST
@@ -235,7 +235,7 @@ START_TEST(history_tells_every_iteration)
     ck_assert_double_eq(psi_m[n - 1], net.result.psi_m);
     ck_assert_double_eq(step_m[n - 1] / step_m[n - 2], net.result.coupling.ratio);
     ck_assert_double_eq(max_m[0], 0);
-    ck_assert_double_eq_tol(max_m[1], step_m[0], 1e-15); /* the first step starts from rest */
+    ck_assert_double_eq_tol(max_m[1], step_m[0], 1e-15); /* before the first step no attachment has moved */
     close_net(&net);
 }
 END_TEST
@@ -265,7 +265,7 @@ static void reactions(const hf_model *m, const double *r, double *t)
     free(a);
 }
 
-/* What the net pulls is what the truss holds: 1e-9 of the sum of the pulls. */
+/* The forces of the net and the reactions of the truss agree to 1e-9 of the sum of the forces. */
 START_TEST(forces_balance)
 {
     struct net net;
@@ -279,7 +279,7 @@ START_TEST(forces_balance)
     ck_assert_double_gt(sum, 100);
     for (int k = 0; k < 3 * net.model.n_attachment; k++)
         ck_assert_double_eq_tol(net.work.attachment_force_N[k], t[k], 1e-9 * sum);
-    for (int i = 0; i < net.model.n_attachment; i++) /* and the net stands where the truss is */
+    for (int i = 0; i < net.model.n_attachment; i++) /* and the net ends where the truss has moved to */
         for (int c = 0; c < 3; c++) {
             int at = c * net.model.n_node + net.model.attachment_row[i];
             ck_assert_double_eq(net.work.position_m[at], net.model.position_m[at] + net.work.displacement_m[3 * i + c]);
@@ -337,8 +337,8 @@ END_TEST
 
 /* ---- soft trusses ---- */
 
-/* 1e-3 m/N in all directions, and the modes on top: where the plain loop leaps past its goal, the accelerated one still
- * finds it. At 1e-2 m/N the supports would have to move by more than the net is wide. */
+/* At 1e-3 m/N in all directions, and the modes in addition, the plain loop diverges and the accelerated one converges.
+ * At 1e-2 m/N the supports would have to move by more than the width of the net. */
 START_TEST(soft_trusses_are_named)
 {
     struct net net;
@@ -358,7 +358,7 @@ START_TEST(soft_trusses_are_named)
 }
 END_TEST
 
-/* Springs at the ends of a net of constant tensions, ever softer: steps that grow by a ratio above 1, and say so. */
+/* A net of constant tensions on springs so soft that the plain loop's steps grow: the reported ratio is at least 1. */
 START_TEST(growing_steps_have_a_ratio)
 {
     struct rng rng = {3};
@@ -386,7 +386,7 @@ START_TEST(a_limit_is_a_limit)
 }
 END_TEST
 
-/* A net without a shape of its own is not the truss's fault. */
+/* A net that has no shape even on fixed supports ends with the net's status, not as a truss that is too soft. */
 START_TEST(ill_posed_nets_keep_their_name)
 {
     struct net net;
@@ -423,12 +423,12 @@ static void find_until(struct net *net, int at, hf_status status)
     net->form.coupling = (hf_coupling_settings){1e-9, HF_COUPLING_ACCELERATED, 100};
     hf_form_prepare(&net->model, &net->work);
     hf_coupling_find(&net->model, &net->form.coupling, solve_or_fail, &solver, 0, &net->work, NULL, &net->result);
-    ck_assert_int_eq(calls, at); /* and none after it */
+    ck_assert_int_eq(calls, at); /* no form-finding follows the one that failed */
     ck_assert_int_eq(net->result.status, status);
     ck_assert_int_eq(net->result.coupling.stop_reason, HF_COUPLING_NET);
 }
 
-/* A signal to stop is no fault of the truss, whenever it comes. */
+/* An interruption at any form-finding ends as interrupted and is not reported as a truss that is too soft. */
 START_TEST(a_stop_is_a_stop)
 {
     struct net net;
@@ -437,8 +437,8 @@ START_TEST(a_stop_is_a_stop)
 }
 END_TEST
 
-/* A net that ends before it has converged has a shape: forces and step are those of it, not of the shape before, whose
- * forces differ in the third digit. The same sums: to the bit. */
+/* A net that stops before it has converged has a shape. Forces and step must be those of this shape, not of the one
+ * before, whose forces differ in the third digit. They are the same sums, so they agree to the bit. */
 START_TEST(forces_of_a_net_that_did_not_converge_are_its_own)
 {
     struct net net;

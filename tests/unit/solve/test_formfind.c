@@ -227,7 +227,7 @@ START_TEST(overflow_is_told)
 }
 END_TEST
 
-/* Who calls the parts in the order of the header gets hf_form_find's shape, to the bit: Eqs. 7 and 8 in one net. */
+/* Calling the parts in the order of the header gives hf_form_find's shape to the bit: Eqs. 7 and 8 in one net. */
 START_TEST(the_parts_are_the_iteration)
 {
     static const struct hand_node node[] = {{{0, 0, 0}, HF_ROLE_SUPPORT, {0}},

@@ -26,7 +26,7 @@ START_TEST(residual_rule_holds_both_tolerances)
     ck_assert_double_le(net.result.residual_N, 1e-7 * 10);
     ck_assert_double_le(net.result.length_error, 1e-7);
     ck_assert_double_le(net.result.tension_error,
-                        1e-6); /* follows from the residual; its factor is the net's business */
+                        1e-6); /* follows from the residual, by a factor that depends on the net */
     close_net(&net);
 }
 END_TEST
@@ -69,7 +69,7 @@ START_TEST(rms_rule_stops_at_the_first_small_change)
     ck_assert_int_gt(n, 3);
     for (int i = 1; i < n; i++)
         ck_assert_int_eq(fabs(r.psi_m[i] - r.psi_m[i - 1]) < 1e-7, i == n - 1);
-    ck_assert(isfinite(net.result.residual_N)); /* the evidence is there, though the rule does not look at it */
+    ck_assert(isfinite(net.result.residual_N)); /* the residual is reported, though the rule does not use it */
     close_net(&net);
 }
 END_TEST
@@ -86,7 +86,7 @@ START_TEST(history_ends_in_the_result)
     hf_form_find(&net.model, &net.form, net.form.stop, &net.work, open_record(&r, 400), &net.result);
     int last = r.history.n - 1;
     ck_assert_int_eq(r.history.n, net.result.iterations);
-    ck_assert_int_eq(net.result.iterations, plain.iterations); /* watching changes nothing */
+    ck_assert_int_eq(net.result.iterations, plain.iterations); /* recording the history changes nothing */
     ck_assert_double_eq(net.result.psi_m, plain.psi_m);
     ck_assert_double_eq(r.psi_m[last], plain.psi_m);
     ck_assert_double_eq(r.residual_N[last], plain.residual_N);

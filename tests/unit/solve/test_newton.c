@@ -118,8 +118,8 @@ END_TEST
 
 /* ---- against other methods ---- */
 
-/* Softness some 0.1 N/m at worst: 1e-8 N of residual are up to 1e-7 m. Both are run to 1e-11, 1e-10 N: 1e-9 m; the
- * slow iteration stops where it is 10 times farther off than its residual says, hence 1e-8 m (as in tests/property). */
+/* The softest mode has some 0.1 N/m: a residual of 1e-8 N is up to 1e-7 m. Both are run to 1e-11 of 10 N, 1e-10 N,
+ * which is 1e-9 m; the slow iteration stops 10 times farther off than that, hence 1e-8 m (as in tests/property). */
 START_TEST(agrees_with_the_fixed_point)
 {
     struct net net;
@@ -137,7 +137,7 @@ START_TEST(agrees_with_the_fixed_point)
 }
 END_TEST
 
-/* Quadratic: from 1e-6 to 1e-11 are five digits, one or two steps and a solve; a linear method would take hundreds. */
+/* Convergence is quadratic: five digits, 1e-6 to 1e-11, take one or two steps and a solve; linear takes hundreds. */
 START_TEST(last_digits_are_cheap)
 {
     struct net net;
@@ -147,7 +147,7 @@ START_TEST(last_digits_are_cheap)
     int before = net.result.iterations;
     net.form.residual_tolerance = net.form.length_tolerance = 1e-11;
     ck_assert_int_eq(find(&net), HF_OK);
-    if (before > 30) ck_assert_int_le(net.result.iterations - before, 3); /* else the fixed point had it first */
+    if (before > 30) ck_assert_int_le(net.result.iterations - before, 3); /* else the fixed point reached 1e-6 */
     close_net(&net);
 }
 END_TEST

@@ -118,8 +118,8 @@ START_TEST(few_nodes_are_no_fault)
 }
 END_TEST
 
-/* Eight nodes within +-1.2 m, off by up to 2 mm: they cannot tell a shift in x from a turn about y, and a fit that
- * believes them goes metres away. Their heights are up to 72 mm, so that f is known to some 2 mm/72 mm; both starts end
+/* Eight nodes within +-1.2 m, off by up to 2 mm: they do not determine a shift in x apart from a turn about y, and an
+ * unguarded fit ends metres away. Their heights are up to 72 mm, so that f is known to some 2 mm/72 mm; both starts end
  * in one place, as above. */
 START_TEST(fit_of_few_rough_nodes_stays)
 {
@@ -142,7 +142,7 @@ START_TEST(fit_of_few_rough_nodes_stays)
 }
 END_TEST
 
-/* Two lines along y, off by up to 5 mm: nothing tells a focal length from a shift along z. */
+/* Two lines along y, off by up to 5 mm, do not determine a focal length apart from a shift along z. */
 START_TEST(fit_of_two_lines_keeps_the_focal_length)
 {
     enum { N = 8 };

@@ -1,4 +1,4 @@
-/* The ledger: rows of any number of processes, torn ones, locks that go with the process that holds them. */
+/* The ledger: rows written by any number of processes, incomplete rows, locks that end with their process. */
 #include "store/ledger.h"
 
 #include "support.h"
@@ -116,7 +116,7 @@ START_TEST(the_same_row_counts_in_any_order_of_files)
 }
 END_TEST
 
-/* A process that began earlier hears of what another finishes: that alone, and not of another base case. */
+/* A process that began earlier sees the points that another one finishes, but none that belong to another base case. */
 START_TEST(what_others_finish_is_noticed)
 {
     hf_study s;
@@ -192,7 +192,7 @@ START_TEST(torn_rows_are_ignored)
 }
 END_TEST
 
-/* A child holds two points; they run as long as it lives, and not a moment longer. */
+/* A child process holds two points: they count as running while the child lives, and no longer. */
 START_TEST(a_point_runs_as_long_as_its_process_lives)
 {
     hf_study s;

@@ -312,7 +312,7 @@ static const struct {
     int n_individual, n_gene;
 } sizes[] = {{4, 3}, {3, 70000}, {2, 140000}, {2, 0}};
 
-/* An hf_optimiser whose every number tells where it belongs. */
+/* An hf_optimiser in which every number shows by its value at which place it belongs. */
 static void fill_generation(hf_population *g, int generation)
 {
     g->generation = generation;
@@ -437,7 +437,7 @@ START_TEST(data_sets_depend_on_the_case_alone)
 }
 END_TEST
 
-/* What goes on with a result found the same shape: up to rounding with a warning, otherwise not at all. */
+/* A resumed run must find the shape of the result: a difference by rounding gives a warning, a larger one a refusal. */
 START_TEST(another_shape_is_not_gone_on_with)
 {
     static const struct {

@@ -1,4 +1,4 @@
-/* Result files: names are never taken from others, damage is told, a full disk and failed allocations leave nothing. */
+/* Result files: no other file is overwritten, damage is reported, a full disk or failed allocation leaves nothing. */
 #include "results.h"
 
 #include <signal.h>
@@ -44,7 +44,7 @@ START_TEST(existing_files_are_replaced_by_restart_only)
 }
 END_TEST
 
-/* The result is whole and its making took long: it stays, under the name that the message gives. */
+/* The result is complete and took long to compute, so it is kept under the temporary name that the message gives. */
 START_TEST(a_file_that_appears_meanwhile_is_kept)
 {
     struct net net;
@@ -82,7 +82,7 @@ START_TEST(names_that_cannot_be_are_told_at_once)
             ck_assert_msg(strstr(text, bad[i]) && strstr(text, why[i]) && strstr(text, "-o"), "%s", text);
         }
     ck_assert_int_eq(chmod(folder, 0500), 0);
-    if (geteuid() != 0) { /* who is above such things */
+    if (geteuid() != 0) { /* root may write there all the same */
         ck_assert_int_eq(refuse(path, 0, &net.scene, text, sizeof text), HF_IO);
         ck_assert_ptr_nonnull(strstr(text, "Permission denied"));
     }
@@ -147,7 +147,7 @@ START_TEST(what_is_no_result_is_refused)
 }
 END_TEST
 
-/* What Python does to a good file; how many of the four ways of reading must refuse it then, and the word of why. */
+/* What Python does to a good file; how many of the four ways of reading must refuse it, and a word of their message. */
 static const struct {
     const char *deed;
     int n_refused;
@@ -197,7 +197,7 @@ static void allow_leaks(void)
     if (__lsan_disable) __lsan_disable();
 }
 
-/* Some flips only change a number, which nothing can tell; none may do worse than being refused. */
+/* A flipped bit may only change a number, which cannot be detected, or make the file refused; it must not crash. */
 START_TEST(flipped_bits_do_no_harm)
 {
     struct net net;
@@ -280,7 +280,7 @@ START_TEST(failed_allocations_are_told)
         if (status == HF_OK) {
             later = hf_store_form(store, &net.model, &net.work, NULL, &messages);
             status = hf_store_finish(store, &(hf_summary){0}, &messages);
-            if (later != HF_OK && later != status) status = HF_BAD_USAGE; /* a failure is not forgotten */
+            if (later != HF_OK && later != status) status = HF_BAD_USAGE; /* finish returns it, too */
         }
         if (status == HF_OK) status = hf_store_read_scene(path, &scene, &messages);
         if (status == HF_OK) status = hf_store_read_shape(path, HF_STAGE_FORM, &shape, &messages);

@@ -1,4 +1,4 @@
-/* What a killed run leaves in its journal: results, from which the designs are bred again. */
+/* A killed run leaves results in its journal; resuming computes their designs again from the seed. */
 #include "evolution.h"
 
 #include "store/generations.h"
@@ -39,7 +39,7 @@ START_TEST(designs_are_bred_again)
     leave_unfinished(path);
     open_run(&r);
     for (int k = 0; k < N_GENE; k++)
-        r.base_N[k] = 1e-9; /* as another machine may find it; the file has the one it was begun with */
+        r.base_N[k] = 1e-9; /* another machine may find another base; the one in the file must be used */
     resume(path, &r, &s, &messages);
     ck_assert_int_eq(messages.n_warning, 0);
     ck_assert_int_eq(hf_store_generations(s), 4);
@@ -61,8 +61,8 @@ START_TEST(designs_are_bred_again)
 }
 END_TEST
 
-/* Results must never be taken for those of other designs: what a build that breeds otherwise (here: with another seed)
- * finds in the journal is left out, and evaluated again. */
+/* Results must not be assigned to other designs. A build that makes other designs (here: with another seed) leaves out
+ * the results in the journal and evaluates the generations again. */
 START_TEST(results_of_other_designs_are_left_out)
 {
     const char *path;
@@ -95,7 +95,7 @@ START_TEST(results_of_other_designs_are_left_out)
 }
 END_TEST
 
-/* Whatever differs in the designs is seen: a last bit, two that cancel in a sum, two individuals in another order. */
+/* Every difference in the designs is detected: a last bit, two that cancel in a sum, two individuals exchanged. */
 START_TEST(other_designs_are_told_apart)
 {
     struct run r;

@@ -75,7 +75,7 @@ START_TEST(sub_rings)
 }
 END_TEST
 
-/* Mirrored at x = 0 the truss is itself. */
+/* The truss is symmetric about x = 0. */
 START_TEST(ribs_are_symmetric)
 {
     hf_truss t;
