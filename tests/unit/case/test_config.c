@@ -215,7 +215,7 @@ static bool change(const hf_field *field, int way, void *to)
         *(int *)to ^= way ? 1 << 30 : 1;
         return way < 2;
     case HF_FIELD_UINT64:
-        *(uint64_t *)to ^= (uint64_t)1 << 63 * way;
+        *(uint64_t *)to ^= way ? (uint64_t)1 << 63 : 1;
         return way < 2;
     case HF_FIELD_INT_PAIR:
         if (way < 2) ((int *)to)[way]++;
