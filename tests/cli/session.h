@@ -36,8 +36,16 @@ static inline pid_t start_program(const char *const argv[])
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, temp_path("out"), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, temp_path("err"), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawnattr_t heard; /* SIGHUP, which nohup before `make test` would have it ignore */
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGHUP);
+    posix_spawnattr_init(&heard);
+    posix_spawnattr_setsigdefault(&heard, &set);
+    posix_spawnattr_setflags(&heard, POSIX_SPAWN_SETSIGDEF);
     pid_t child;
-    ck_assert_int_eq(posix_spawn(&child, argv[0], &actions, NULL, (char *const *)argv, environ), 0);
+    ck_assert_int_eq(posix_spawn(&child, argv[0], &actions, &heard, (char *const *)argv, environ), 0);
+    posix_spawnattr_destroy(&heard);
     posix_spawn_file_actions_destroy(&actions);
     return child;
 }
