@@ -111,6 +111,7 @@ static void write_totals(const void *context, FILE *f)
         write_total(context, group, f);
 }
 
+/* Checks that every cable has an EA: HF_BAD_CASE with the group of the cables that have none. */
 static hf_status demand_EA(const char *path, const hf_scene *s, hf_messages *messages)
 {
     int n[2] = {0}, first[2] = {0};
@@ -158,7 +159,6 @@ static hf_status write_all(const hf_export_request *o, hf_scene *scene, hf_shape
     return HF_OK;
 }
 
-/* Checks that every cable has an EA: HF_BAD_CASE with the group of the cables that have none. */
 static hf_status export_cutlist(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
 {
     hf_scene scene = {0};
