@@ -8,8 +8,8 @@
 #include "out/print.h"
 #include "run/problem_parts.h"
 #include "search/chord.h"
-#include "search/lane.h"
 #include "search/polish.h"
+#include "search/swarm_lane.h"
 #include <hifdm/batch.h>
 #include <hifdm/run.h>
 
@@ -127,10 +127,10 @@ static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lan
     if (solver == HF_SOLVER_CHORD) {
         *shared = hf_chord_bytes(v, lanes);
     } else if (has_lanes) {
-        hf_lane_plan plan;
-        HF_TRY(hf_lane_plan_create(v->model, hf_lane_best_isa(), &plan));
-        *lanes = hf_lane_workspace_bytes(&plan);
-        hf_lane_plan_free(&plan);
+        hf_swarm_plan plan;
+        HF_TRY(hf_swarm_plan_create(v->model, hf_lane_best_isa(), &plan));
+        *lanes = hf_swarm_lanes_bytes(&plan);
+        hf_swarm_plan_free(&plan);
     }
     return HF_OK;
 }

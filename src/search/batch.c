@@ -36,11 +36,11 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
 /* ---- what designs are solved with ---- */
 
 struct hf_batch_engine {
-    hf_solver solver;         /* CHORD or FIXED_POINT; Newton's method for each design needs no engine */
-    hf_chord shared;          /* of CHORD */
-    hf_chord_lanes *chord;    /* of CHORD: [n_thread] */
-    hf_lane_plan plan;        /* of FIXED_POINT */
-    hf_lane_workspace *lanes; /* of FIXED_POINT: [n_thread] */
+    hf_solver solver;      /* CHORD or FIXED_POINT; Newton's method for each design needs no engine */
+    hf_chord shared;       /* of CHORD */
+    hf_chord_lanes *chord; /* of CHORD: [n_thread] */
+    hf_swarm_plan plan;    /* of FIXED_POINT */
+    hf_swarm_lanes *lanes; /* of FIXED_POINT: [n_thread] */
 };
 
 static void free_engine(hf_batch *batch)
@@ -50,11 +50,11 @@ static void free_engine(hf_batch *batch)
     for (int i = 0; e->chord && i < batch->n_thread; i++)
         hf_chord_lanes_free(&e->chord[i]);
     for (int i = 0; e->lanes && i < batch->n_thread; i++)
-        hf_lane_workspace_free(&e->lanes[i]);
+        hf_swarm_lanes_free(&e->lanes[i]);
     free(e->chord);
     free(e->lanes);
     hf_chord_free(&e->shared);
-    hf_lane_plan_free(&e->plan);
+    hf_swarm_plan_free(&e->plan);
     free(e);
     batch->engine = NULL;
 }
@@ -71,11 +71,11 @@ static hf_status create_chord(hf_batch *batch, struct hf_batch_engine *e, const 
 
 static hf_status create_lanes(hf_batch *batch, struct hf_batch_engine *e)
 {
-    HF_TRY(hf_lane_plan_create(batch->evaluator->model, hf_lane_best_isa(), &e->plan));
+    HF_TRY(hf_swarm_plan_create(batch->evaluator->model, hf_lane_best_isa(), &e->plan));
     e->lanes = calloc((size_t)batch->n_thread, sizeof *e->lanes);
     if (!e->lanes) return HF_NO_MEMORY;
     for (int i = 0; i < n_room_at_once(batch); i++)
-        HF_TRY(hf_lane_workspace_create(&e->plan, &e->lanes[i]));
+        HF_TRY(hf_swarm_lanes_create(&e->plan, &e->lanes[i]));
     return HF_OK;
 }
 
@@ -106,7 +106,7 @@ hf_solver hf_batch_solver(const hf_evaluator *v, bool *has_lanes)
     /* the lanes serve neither struts, nor every law, nor a truss: designs of such nets are solved one by one */
     *has_lanes = !v->model->has_strut && !v->model->n_attachment;
     for (int e = 0; e < v->model->n_cable && *has_lanes; e++)
-        *has_lanes = hf_law_is_served(v->model->law[e], HF_LANE_LAWS);
+        *has_lanes = hf_law_is_served(v->model->law[e], HF_SWARM_LAWS);
     return HF_SOLVER_FIXED_POINT;
 }
 
@@ -127,7 +127,7 @@ static bool has_room(hf_batch *batch, int room)
     if (!batch->workspace[room].block && hf_workspace_create(batch->evaluator->model, &batch->workspace[room]) != HF_OK)
         return false;
     if (e && e->chord && !e->chord[room].block) return hf_chord_lanes_create(&e->shared, &e->chord[room]) == HF_OK;
-    if (e && e->lanes && !e->lanes[room].block) return hf_lane_workspace_create(&e->plan, &e->lanes[room]) == HF_OK;
+    if (e && e->lanes && !e->lanes[room].block) return hf_swarm_lanes_create(&e->plan, &e->lanes[room]) == HF_OK;
     return true;
 }
 

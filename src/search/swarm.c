@@ -6,15 +6,15 @@
 /* One call of hf_swarm_run, with the state of its lanes. */
 typedef struct {
     const hf_evaluator *v;
-    const hf_lane_plan *plan;
-    hf_lane_workspace *lanes;
+    const hf_swarm_plan *plan;
+    hf_swarm_lanes *lanes;
     hf_workspace *w;
     const double *design_N;
     hf_form_result *result;
     hf_stop_rule stop;
     int iterations[HF_LANES];
     double psi_before_m[HF_LANES]; /* NaN at the first iteration */
-    hf_lane_measures now;
+    hf_swarm_measures now;
 } swarm;
 
 static void load(void *solver, int lane, int i_design)
@@ -23,7 +23,7 @@ static void load(void *solver, int lane, int i_design)
     const hf_model *m = s->v->model;
     hf_evaluate_prepare(s->v, s->design_N + (size_t)i_design * (size_t)m->n_gene, s->w);
     memcpy(s->w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double)); /* the support rows count */
-    hf_lane_put(s->plan, s->w, lane, s->lanes);
+    hf_swarm_put(s->plan, s->w, lane, s->lanes);
     s->iterations[lane] = 0;
     s->psi_before_m[lane] = (double)NAN;
 }
@@ -31,16 +31,16 @@ static void load(void *solver, int lane, int i_design)
 static void look(void *solver)
 {
     swarm *s = solver;
-    hf_lane_solve(s->plan, s->lanes);
-    hf_lane_measure(s->plan, s->lanes, &s->now);
+    hf_swarm_solve(s->plan, s->lanes);
+    hf_swarm_measure(s->plan, s->lanes, &s->now);
     if (s->stop == HF_STOP_RMS_CHANGE)
-        hf_lane_psi(s->plan, s->lanes, &s->now);
+        hf_swarm_psi(s->plan, s->lanes, &s->now);
     else
-        hf_lane_residual(s->plan, s->lanes, &s->now);
+        hf_swarm_residual(s->plan, s->lanes, &s->now);
 }
 
 /* HF_OK, or why there is no shape in this lane. */
-static hf_status health(const swarm *s, const hf_lane_measures *now, int lane)
+static hf_status health(const swarm *s, const hf_swarm_measures *now, int lane)
 {
     if (s->lanes->bad_row[lane] >= 0) return HF_SINGULAR;
     if (!now->is_finite[lane]) return HF_NOT_FINITE;
@@ -49,7 +49,7 @@ static hf_status health(const swarm *s, const hf_lane_measures *now, int lane)
     return now->longest_length_ratio[lane] > HF_FORM_BLOWN_UP ? HF_SINGULAR : HF_OK;
 }
 
-static hf_stop_reason stop_reason(swarm *s, const hf_lane_measures *now, int lane)
+static hf_stop_reason stop_reason(swarm *s, const hf_swarm_measures *now, int lane)
 {
     const hf_form_settings *form = s->v->form;
     if (s->stop == HF_STOP_RMS_CHANGE) {
@@ -75,7 +75,7 @@ static bool settle(void *solver, int lane, int i_design)
     if (reason == HF_STOPPED_NONE) return false;
     if (status == HF_OK) {
         hf_evaluate_prepare(s->v, s->design_N + (size_t)i_design * (size_t)s->v->model->n_gene, s->w);
-        hf_lane_get(s->plan, s->lanes, lane, s->w);
+        hf_swarm_get(s->plan, s->lanes, lane, s->w);
         hf_form_accept(s->v->model, s->v->form, reason, s->iterations[lane], s->w, r);
     } else {
         hf_form_refuse(status, s->iterations[lane], r);
@@ -87,10 +87,10 @@ static bool settle(void *solver, int lane, int i_design)
 static void step(void *solver)
 {
     swarm *s = solver;
-    hf_lane_update(s->lanes);
+    hf_swarm_update(s->lanes);
 }
 
-void hf_swarm_run(const hf_evaluator *evaluator, const hf_lane_plan *plan, hf_lane_workspace *lanes,
+void hf_swarm_run(const hf_evaluator *evaluator, const hf_swarm_plan *plan, hf_swarm_lanes *lanes,
                   hf_workspace *workspace, hf_lane_next *next, void *context, const double *design_N,
                   hf_form_result *result)
 {

@@ -4,13 +4,13 @@
 #ifndef HIFDM_SWARM_H
 #define HIFDM_SWARM_H
 
-#include "search/lane.h"
 #include "search/lane_schedule.h"
+#include "search/swarm_lane.h"
 #include <hifdm/evaluate.h>
 
 /* Evaluate the designs whose indices `next(context)` returns, until it returns -1: from design_N [][n_gene] into
  * result []. The result of a design without a shape has its status, but does not name a cable or node. */
-void hf_swarm_run(const hf_evaluator *evaluator, const hf_lane_plan *plan, hf_lane_workspace *lanes,
+void hf_swarm_run(const hf_evaluator *evaluator, const hf_swarm_plan *plan, hf_swarm_lanes *lanes,
                   hf_workspace *workspace, hf_lane_next *next, void *context, const double *design_N,
                   hf_form_result *result);
 

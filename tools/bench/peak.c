@@ -1,11 +1,11 @@
 /* How near the lane factorisation comes to what one core can do: its operations per second over the measured peak of
  * independent fused multiply-adds in the same instruction set, one measured right after the other. The kernel itself
- * multiplies and subtracts apart (lane_kernel.c says why), so the peak of that is measured as well.
+ * multiplies and subtracts apart (swarm_kernel.c says why), so the peak of that is measured as well.
  *
  * Contents: peaks - operations of the factorisation - nets - the section */
 #include "bench.h"
 
-#include "search/lane.h"
+#include "search/swarm_lane.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -87,21 +87,21 @@ static double flops_per_s(peak_kernel *kernel, int width)
 
 /* ---- operations of the factorisation ---- */
 
-/* Operations in one lane, as lane_kernel.c does them: tiles from the skyline of the block row on, in the part that both
- * block rows of a product have. A multiplication, a subtraction, a root and a reciprocal count one each. */
-static double flops_done(const hf_lane_plan *p)
+/* Operations in one lane, as swarm_kernel.c does them: tiles from the skyline of the block row on, in the part that
+ * both block rows of a product have. A multiplication, a subtraction, a root and a reciprocal count one each. */
+static double flops_done(const hf_swarm_plan *p)
 {
     double n = 0;
     for (int i = 0; i < p->n_block; i++) {
         int first = p->first_column[i];
-        for (int j = first / HF_LANE_BLOCK; j < i; j++) {
-            int column = j * HF_LANE_BLOCK, from = p->first_column[j];
+        for (int j = first / HF_SWARM_BLOCK; j < i; j++) {
+            int column = j * HF_SWARM_BLOCK, from = p->first_column[j];
             if (from < first) from = first < column ? first : column;
-            for (int c = 0; c < HF_LANE_BLOCK; c++) /* each of a column's entries: products with those before, scaled */
-                n += HF_LANE_BLOCK * (2.0 * (column + c - from) + 1);
+            for (int c = 0; c < HF_SWARM_BLOCK; c++) /* each entry of a column: products with those before, scaled */
+                n += HF_SWARM_BLOCK * (2.0 * (column + c - from) + 1);
         }
-        for (int c = 0; c < HF_LANE_BLOCK; c++) /* the lower half of the tile on the diagonal */
-            n += (HF_LANE_BLOCK - c) * (2.0 * (i * HF_LANE_BLOCK + c - first) + 1) + 1;
+        for (int c = 0; c < HF_SWARM_BLOCK; c++) /* the lower half of the tile on the diagonal */
+            n += (HF_SWARM_BLOCK - c) * (2.0 * (i * HF_SWARM_BLOCK + c - first) + 1) + 1;
     }
     return n;
 }
@@ -125,8 +125,8 @@ static const char *const net_table[] = {"21x25 perimeter", "22x24 perimeter", "6
 
 typedef struct {
     bench_scene scene;
-    hf_lane_plan plan;
-    hf_lane_workspace lanes;
+    hf_swarm_plan plan;
+    hf_swarm_lanes lanes;
 } net;
 
 static void open_net(const char *name, hf_lane_isa isa, net *n)
@@ -134,19 +134,19 @@ static void open_net(const char *name, hf_lane_isa isa, net *n)
     bench_scene_model(name, &n->scene);
     hf_workspace *w = &n->scene.workspace;
     const hf_model *m = &n->scene.model;
-    if (hf_lane_plan_create(m, isa, &n->plan) != HF_OK || hf_lane_workspace_create(&n->plan, &n->lanes) != HF_OK)
+    if (hf_swarm_plan_create(m, isa, &n->plan) != HF_OK || hf_swarm_lanes_create(&n->plan, &n->lanes) != HF_OK)
         bench_fail(name, "out of memory");
     hf_form_prepare(m, w);
     memcpy(w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double));
     for (int lane = 0; lane < HF_LANES; lane++)
-        hf_lane_put(&n->plan, w, lane, &n->lanes);
+        hf_swarm_put(&n->plan, w, lane, &n->lanes);
     memcpy(n->lanes.law, w->law, (size_t)m->n_cable);
 }
 
 static void close_net(net *n)
 {
-    hf_lane_workspace_free(&n->lanes);
-    hf_lane_plan_free(&n->plan);
+    hf_swarm_lanes_free(&n->lanes);
+    hf_swarm_plan_free(&n->plan);
     bench_scene_free(&n->scene);
 }
 
@@ -156,9 +156,9 @@ static double factor_s(net *n)
     double spent_s = 0;
     int count = 0;
     for (; spent_s < ENOUGH_FACTOR_S; count++) {
-        hf_lane_assemble(&n->plan, &n->lanes);
+        hf_swarm_assemble(&n->plan, &n->lanes);
         double start_s = bench_clock_s();
-        hf_lane_factor(&n->plan, &n->lanes);
+        hf_swarm_factor(&n->plan, &n->lanes);
         spent_s += bench_clock_s() - start_s;
     }
     return spent_s / count;

@@ -104,58 +104,58 @@ static void population_phases(bench_scene *b, const char *method, run_population
 
 /* ---- eight to a pass, fixed point ---- */
 
-static const hf_lane_kernels *lane_kernels;
-static hf_lane_plan lane_plan;
-static hf_lane_workspace lane_workspace;
+static const hf_swarm_kernels *swarm_kernels;
+static hf_swarm_plan swarm_plan;
+static hf_swarm_lanes swarm_lanes;
 
 /* In three calls what the kernel `solve` interleaves: the same bits, a little slower. */
-static void timed_lane_solve(const hf_lane_plan *plan, hf_lane_workspace *w)
+static void timed_swarm_solve(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 {
     double t = bench_clock_s();
-    lane_kernels->assemble(plan, w);
+    swarm_kernels->assemble(plan, w);
     charge(ASSEMBLY, &t);
-    lane_kernels->factor(plan, w);
+    swarm_kernels->factor(plan, w);
     charge(FACTOR, &t);
-    lane_kernels->substitute(plan, w);
+    swarm_kernels->substitute(plan, w);
     charge(SOLVE, &t);
 }
 
-static void timed_lane_measure(const hf_lane_plan *plan, hf_lane_workspace *w, hf_lane_measures *measures)
+static void timed_swarm_measure(const hf_swarm_plan *plan, hf_swarm_lanes *w, hf_swarm_measures *measures)
 {
     double t = bench_clock_s();
-    lane_kernels->measure(plan, w, measures);
+    swarm_kernels->measure(plan, w, measures);
     charge(MEASURE, &t);
 }
 
-static void timed_lane_residual(const hf_lane_plan *plan, const hf_lane_workspace *w, hf_lane_measures *measures)
+static void timed_swarm_residual(const hf_swarm_plan *plan, const hf_swarm_lanes *w, hf_swarm_measures *measures)
 {
     double t = bench_clock_s();
-    lane_kernels->residual(plan, w, measures);
+    swarm_kernels->residual(plan, w, measures);
     charge(RESIDUAL, &t);
 }
 
 static void run_swarm(bench_scene *b, int (*next)(void *context), void *context, hf_form_result *result)
 {
-    hf_swarm_run(&b->evaluator, &lane_plan, &lane_workspace, &b->workspace, next, context, b->design_N, result);
+    hf_swarm_run(&b->evaluator, &swarm_plan, &swarm_lanes, &b->workspace, next, context, b->design_N, result);
 }
 
 static void swarm_phases(bench_scene *b)
 {
-    if (hf_lane_plan_create(&b->model, hf_lane_best_isa(), &lane_plan) != HF_OK ||
-        hf_lane_workspace_create(&lane_plan, &lane_workspace) != HF_OK)
+    if (hf_swarm_plan_create(&b->model, hf_lane_best_isa(), &swarm_plan) != HF_OK ||
+        hf_swarm_lanes_create(&swarm_plan, &swarm_lanes) != HF_OK)
         bench_fail(b->name, "out of memory");
-    hf_lane_kernels timed = *lane_plan.kernels;
-    lane_kernels = lane_plan.kernels;
-    timed.solve = timed_lane_solve;
-    timed.measure = timed_lane_measure;
-    timed.residual = timed_lane_residual;
-    lane_plan.kernels = &timed;
+    hf_swarm_kernels timed = *swarm_plan.kernels;
+    swarm_kernels = swarm_plan.kernels;
+    timed.solve = timed_swarm_solve;
+    timed.measure = timed_swarm_measure;
+    timed.residual = timed_swarm_residual;
+    swarm_plan.kernels = &timed;
     b->form.residual_tolerance = 0; /* never reached: as many iterations for each design */
     b->form.max_iterations = ITERATIONS;
     population_phases(b, "fixed point iteration, lanes", run_swarm, 1);
     b->form = b->settings.form;
-    hf_lane_workspace_free(&lane_workspace);
-    hf_lane_plan_free(&lane_plan);
+    hf_swarm_lanes_free(&swarm_lanes);
+    hf_swarm_plan_free(&swarm_plan);
 }
 
 /* ---- eight to a pass, chord ---- */

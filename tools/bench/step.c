@@ -2,7 +2,7 @@
 #include "bench.h"
 
 #include "linalg/band.h"
-#include "search/lane.h"
+#include "search/swarm_lane.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -21,9 +21,9 @@ typedef struct {
     bench_scene *scene;
     bench_cholmod *cholmod;
     hf_form_settings settings;
-    hf_lane_plan plan;
-    hf_lane_workspace lanes;
-    hf_lane_measures measures;
+    hf_swarm_plan plan;
+    hf_swarm_lanes lanes;
+    hf_swarm_measures measures;
 } step_context;
 
 static void step_dpbtrf(void *context)
@@ -55,19 +55,19 @@ static void step_cholmod(void *context)
 static void step_lanes(void *context)
 {
     step_context *c = context;
-    hf_lane_solve(&c->plan, &c->lanes);
-    hf_lane_measure(&c->plan, &c->lanes, &c->measures);
+    hf_swarm_solve(&c->plan, &c->lanes);
+    hf_swarm_measure(&c->plan, &c->lanes, &c->measures);
 }
 
 static void create_lanes(step_context *c)
 {
     const hf_model *m = &c->scene->model;
-    if (hf_lane_plan_create(m, hf_lane_best_isa(), &c->plan) != HF_OK ||
-        hf_lane_workspace_create(&c->plan, &c->lanes) != HF_OK)
+    if (hf_swarm_plan_create(m, hf_lane_best_isa(), &c->plan) != HF_OK ||
+        hf_swarm_lanes_create(&c->plan, &c->lanes) != HF_OK)
         bench_fail("lanes", "out of memory");
     memcpy(c->scene->workspace.position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double));
     for (int lane = 0; lane < HF_LANES; lane++)
-        hf_lane_put(&c->plan, &c->scene->workspace, lane, &c->lanes);
+        hf_swarm_put(&c->plan, &c->scene->workspace, lane, &c->lanes);
     memcpy(c->lanes.law, c->scene->workspace.law, (size_t)m->n_cable);
 }
 
@@ -156,14 +156,14 @@ void bench_step(const char *what, const char *folder)
             bench_emit("step", b.name, row->name, b.model.n_free, "time_s",
                        bench_time_s(row->work, &c, ENOUGH_S) / row->individuals);
             if (i == 0) memcpy(first, b.workspace.position_m, 3 * (size_t)b.model.n_node * sizeof(double));
-            if (row->work == step_lanes) hf_lane_get(&c.plan, &c.lanes, HF_LANES - 1, &b.workspace);
+            if (row->work == step_lanes) hf_swarm_get(&c.plan, &c.lanes, HF_LANES - 1, &b.workspace);
             if (row->work != step_form_find) /* all ways give the same shape */
                 bench_emit("step", b.name, row->name, b.model.n_free, "difference_m",
                            bench_distance_m(&b.model, first, b.workspace.position_m));
         }
     bench_emit("step", b.name, "net", b.model.n_free, "half_bandwidth", b.model.half_bandwidth);
-    hf_lane_workspace_free(&c.lanes);
-    hf_lane_plan_free(&c.plan);
+    hf_swarm_lanes_free(&c.lanes);
+    hf_swarm_plan_free(&c.plan);
     bench_cholmod_free(c.cholmod);
     free(first);
     bench_scene_free(&b);

@@ -1,4 +1,4 @@
-/* The kernels of lane, compiled once for each instruction set: HF_ISA names the table at the end of the file.
+/* The kernels of swarm, compiled once for each instruction set: HF_ISA names the table at the end of the file.
  *
  * Contents: vectors - tiles - factor - substitution - assembly - solve - measures - table
  *
@@ -18,7 +18,7 @@
  * Without fusing, a whole iteration takes 8 % longer, and it has the same bits on every processor. The price is that
  * low because AMD's multiply and add in separate units. Intel's use one unit for both: expect the factor to take up to
  * twice as long as it would fused (not measured). */
-#include "search/lane.h"
+#include "search/swarm_kernel.h"
 
 #include <hifdm/metrics.h>
 
@@ -112,7 +112,7 @@ INLINE int all_positive(vec a)
 
 /* ---- tiles ---- */
 
-enum { BLOCK = HF_LANE_BLOCK, COLUMN = BLOCK * HF_LANES, TILE = BLOCK * COLUMN, POINT = 3 * HF_LANES };
+enum { BLOCK = HF_SWARM_BLOCK, COLUMN = BLOCK * HF_LANES, TILE = BLOCK * COLUMN, POINT = 3 * HF_LANES };
 
 /* Eliminate in GROUP columns of n_row rows, when all columns before them are finished:
  *     t(r,c) = (t(r,c) - sum over k of t(r,k) l(c,k)) / l(c,c), k rising
@@ -207,18 +207,18 @@ INLINE void finish_column(int c, double *tile, int i_row, int *bad_row)
 
 /* ---- factor ---- */
 
-static double *tile_at(const hf_lane_plan *plan, const hf_lane_workspace *w, int i_block, int j_block)
+static double *tile_at(const hf_swarm_plan *plan, const hf_swarm_lanes *w, int i_block, int j_block)
 {
     return w->matrix + (plan->tile_0[i_block] + (size_t)j_block) * TILE;
 }
 
-static int has_entry(const hf_lane_plan *plan, int i_block, int j_block)
+static int has_entry(const hf_swarm_plan *plan, int i_block, int j_block)
 {
     return plan->has_entry[plan->tile_0[i_block] + (size_t)j_block];
 }
 
 /* Finish at most `count` columns of the diagonal tile of a block row, from column *c on; *c becomes the next column. */
-static void finish_columns(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block, int p, int count, int *c)
+static void finish_columns(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block, int p, int count, int *c)
 {
     double *tile = tile_at(plan, w, i_block, i_block) + p;
     for (; count > 0 && *c < BLOCK; count--, ++*c) {
@@ -242,7 +242,7 @@ static void finish_columns(const hf_lane_plan *plan, hf_lane_workspace *w, int i
 /* Finish a block row up to its diagonal tile, which is only reduced. The root and the division of a pivot take as long
  * as half a tile, and the next pivot depends on them. Therefore the pivots of the block row before this one are found
  * here, one before each tile that does not need them. */
-static void factor_block_row(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block, int p)
+static void factor_block_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block, int p)
 {
     int first = plan->first_column[i_block], c = i_block ? 0 : BLOCK;
     double *row = tile_at(plan, w, i_block, 0) + p;
@@ -258,13 +258,13 @@ static void factor_block_row(const hf_lane_plan *plan, hf_lane_workspace *w, int
     reduce_diagonal(row + first * COLUMN, i_block * BLOCK - first);
 }
 
-static void factor_last_tile(const hf_lane_plan *plan, hf_lane_workspace *w, int p)
+static void factor_last_tile(const hf_swarm_plan *plan, hf_swarm_lanes *w, int p)
 {
     int c = 0;
     finish_columns(plan, w, plan->n_block - 1, p, BLOCK, &c);
 }
 
-static void factor(const hf_lane_plan *plan, hf_lane_workspace *w)
+static void factor(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 {
     memset(w->bad_row, -1, HF_LANES * sizeof(int));
     for (int i_block = 0; i_block < plan->n_block; i_block++)
@@ -277,7 +277,7 @@ static void factor(const hf_lane_plan *plan, hf_lane_workspace *w)
 /* ---- substitution ---- */
 
 /* The right-hand sides are three more rows of the matrix. */
-static void substitute_forward(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block, int p)
+static void substitute_forward(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block, int p)
 {
     int first = plan->first_column[i_block], n_before = i_block * BLOCK - first;
     const double *row = tile_at(plan, w, i_block, 0) + first * COLUMN + p;
@@ -287,7 +287,7 @@ static void substitute_forward(const hf_lane_plan *plan, hf_lane_workspace *w, i
 
 /* Find the unknowns of the block row, the last one first; then subtract their part from all rows before it, the nearest
  * row first. */
-static void substitute_back(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block, int p)
+static void substitute_back(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block, int p)
 {
     const double *column = tile_at(plan, w, i_block, i_block) + p;
     double *x = w->position_m + i_block * BLOCK * POINT + p;
@@ -317,14 +317,14 @@ static void substitute_back(const hf_lane_plan *plan, hf_lane_workspace *w, int 
     }
 }
 
-static void substitute_all_back(const hf_lane_plan *plan, hf_lane_workspace *w)
+static void substitute_all_back(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 {
     for (int i_block = plan->n_block - 1; i_block >= 0; i_block--)
         for (int p = 0; p < HF_LANES; p += WIDTH)
             substitute_back(plan, w, i_block, p);
 }
 
-static void substitute(const hf_lane_plan *plan, hf_lane_workspace *w)
+static void substitute(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 {
     for (int i_block = 0; i_block < plan->n_block; i_block++)
         for (int p = 0; p < HF_LANES; p += WIDTH)
@@ -335,7 +335,7 @@ static void substitute(const hf_lane_plan *plan, hf_lane_workspace *w)
 /* ---- assembly ---- */
 
 /* The loop goes over the nodes, so that diagonal and right-hand sides are summed in registers. */
-static void assemble_row(const hf_lane_plan *plan, hf_lane_workspace *w, int i_row, int p)
+static void assemble_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_row, int p)
 {
     const hf_model *m = plan->model;
     int i = plan->n_pad + i_row, first_support = plan->n_pad + m->n_free;
@@ -347,28 +347,28 @@ static void assemble_row(const hf_lane_plan *plan, hf_lane_workspace *w, int i_r
         vec q = load(w->q_N_per_m + plan->incidence[k].i_cable * HF_LANES + p);
         diagonal += q;
         if (other < i) {
-            double *entry = w->matrix + hf_lane_place(plan, i, other) + p;
+            double *entry = w->matrix + hf_swarm_place(plan, i, other) + p;
             store(entry, load(entry) - q);
         } else if (other >= first_support) {
             foreach (c, 3)
                 b[c] += q * load(w->position_m + other * POINT + c * HF_LANES + p);
         }
     }
-    store(w->matrix + hf_lane_place(plan, i, i) + p, diagonal);
+    store(w->matrix + hf_swarm_place(plan, i, i) + p, diagonal);
     foreach (c, 3)
         store(w->position_m + i * POINT + c * HF_LANES + p, b[c]);
 }
 
-static void assemble_dummy_row(const hf_lane_plan *plan, hf_lane_workspace *w, int i, int p)
+static void assemble_dummy_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i, int p)
 {
-    store(w->matrix + hf_lane_place(plan, i, i) + p, splat(1));
+    store(w->matrix + hf_swarm_place(plan, i, i) + p, splat(1));
     for (int c = 0; c < 3; c++)
         store(w->position_m + i * POINT + c * HF_LANES + p, splat(0));
 }
 
 /* Tiles without entries need no zeros, because `eliminate` does not read them. The loop is unrolled, because gcc 12
  * makes a memset of a plain loop and rep stos of the memset, which takes three times as long. */
-static void clear_block_row(const hf_lane_plan *plan, hf_lane_workspace *w, int i_block)
+static void clear_block_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block)
 {
     for (int j_block = plan->first_column[i_block] / BLOCK; j_block <= i_block; j_block++) {
         if (!has_entry(plan, i_block, j_block)) continue;
@@ -378,7 +378,7 @@ static void clear_block_row(const hf_lane_plan *plan, hf_lane_workspace *w, int 
     }
 }
 
-static void assemble(const hf_lane_plan *plan, hf_lane_workspace *w)
+static void assemble(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 {
     for (int i_block = 0; i_block < plan->n_block; i_block++) {
         clear_block_row(plan, w, i_block);
@@ -394,7 +394,7 @@ static void assemble(const hf_lane_plan *plan, hf_lane_workspace *w)
 
 /* ---- solve ---- */
 
-static void solve(const hf_lane_plan *plan, hf_lane_workspace *w)
+static void solve(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 {
     assemble(plan, w);
     memset(w->bad_row, -1, HF_LANES * sizeof(int));
@@ -412,7 +412,7 @@ static void solve(const hf_lane_plan *plan, hf_lane_workspace *w)
 
 /* ---- measures ---- */
 
-static void measure_part(const hf_lane_plan *plan, hf_lane_workspace *w, hf_lane_measures *out, int p)
+static void measure_part(const hf_swarm_plan *plan, hf_swarm_lanes *w, hf_swarm_measures *out, int p)
 {
     const hf_model *m = plan->model;
     const double *position = w->position_m + plan->n_pad * POINT + p;
@@ -457,14 +457,14 @@ static void measure_part(const hf_lane_plan *plan, hf_lane_workspace *w, hf_lane
         out->is_finite[p + l] = finite[l] == 0;
 }
 
-static void measure(const hf_lane_plan *plan, hf_lane_workspace *w, hf_lane_measures *out)
+static void measure(const hf_swarm_plan *plan, hf_swarm_lanes *w, hf_swarm_measures *out)
 {
     for (int p = 0; p < HF_LANES; p += WIDTH)
         measure_part(plan, w, out, p);
 }
 
 /* The loop goes over the nodes, so that forces need no array. */
-static void residual_part(const hf_lane_plan *plan, const hf_lane_workspace *w, hf_lane_measures *out, int p)
+static void residual_part(const hf_swarm_plan *plan, const hf_swarm_lanes *w, hf_swarm_measures *out, int p)
 {
     const hf_model *m = plan->model;
     const double *q_by_law[] = {w->q_N_per_m, w->next_q_N_per_m};
@@ -490,13 +490,13 @@ static void residual_part(const hf_lane_plan *plan, const hf_lane_workspace *w, 
     store(out->residual_N + p, root(largest) * m->reference_N);
 }
 
-static void residual(const hf_lane_plan *plan, const hf_lane_workspace *w, hf_lane_measures *out)
+static void residual(const hf_swarm_plan *plan, const hf_swarm_lanes *w, hf_swarm_measures *out)
 {
     for (int p = 0; p < HF_LANES; p += WIDTH)
         residual_part(plan, w, out, p);
 }
 
-static void psi(const hf_lane_plan *plan, const hf_lane_workspace *w, hf_lane_measures *out)
+static void psi(const hf_swarm_plan *plan, const hf_swarm_lanes *w, hf_swarm_measures *out)
 {
     const hf_model *m = plan->model;
     for (int p = 0; p < HF_LANES; p += WIDTH) {
@@ -516,6 +516,6 @@ static void psi(const hf_lane_plan *plan, const hf_lane_workspace *w, hf_lane_me
 /* ---- table ---- */
 
 #define TABLE_NAME(isa) TABLE_NAME_(isa)
-#define TABLE_NAME_(isa) hf_lane_kernels_##isa
+#define TABLE_NAME_(isa) hf_swarm_kernels_##isa
 
-const hf_lane_kernels TABLE_NAME(HF_ISA) = {assemble, factor, substitute, solve, measure, residual, psi};
+const hf_swarm_kernels TABLE_NAME(HF_ISA) = {assemble, factor, substitute, solve, measure, residual, psi};

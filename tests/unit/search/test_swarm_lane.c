@@ -1,11 +1,11 @@
-/* The lane kernels: against plain loops bit by bit, against LAPACK and the scalar iteration to roundoff, the same bits
- * on every instruction set of this machine, and no lane disturbed by another.
+/* The kernels of swarm: against plain loops bit by bit, against LAPACK and the scalar iteration to roundoff, the same
+ * bits on every instruction set of this machine, and no lane disturbed by another.
  *
  * Contents: nets with any matrix - solving - instruction sets - lanes apart - whole iterations. */
 #include "nets.h"
 
 #include "linalg/band.h"
-#include "search/lane.h"
+#include "search/swarm_lane.h"
 
 #define ROUNDOFF 1e-14 /* of a few operations on numbers of size 1 */
 
@@ -13,13 +13,13 @@
 
 struct band_net {
     hf_model model; /* what a plan looks at, and nothing else */
-    hf_lane_plan plan;
-    hf_lane_workspace work;
+    hf_swarm_plan plan;
+    hf_swarm_lanes work;
 };
 
 static void open_plan(struct band_net *net, hf_lane_isa isa)
 {
-    ck_assert_int_eq(hf_lane_plan_create(&net->model, isa, &net->plan), HF_OK);
+    ck_assert_int_eq(hf_swarm_plan_create(&net->model, isa, &net->plan), HF_OK);
 }
 
 /* Without the entries (i, j) that `is_left_out` wants out; it may be NULL. */
@@ -40,13 +40,13 @@ static void open_band_net(struct band_net *net, int n, int k, int (*is_left_out)
             m->length_m[m->n_cable++] = 1 + 0.01 * j;
         }
     open_plan(net, HF_LANE_PORTABLE);
-    ck_assert_int_eq(hf_lane_workspace_create(&net->plan, &net->work), HF_OK);
+    ck_assert_int_eq(hf_swarm_lanes_create(&net->plan, &net->work), HF_OK);
 }
 
 static void close_band_net(struct band_net *net)
 {
-    hf_lane_plan_free(&net->plan);
-    hf_lane_workspace_free(&net->work);
+    hf_swarm_plan_free(&net->plan);
+    hf_swarm_lanes_free(&net->work);
     free(net->model.end_row);
     free(net->model.length_m);
     free(net->model.load_N);
@@ -55,7 +55,7 @@ static void close_band_net(struct band_net *net)
 /* Fills the workspace with NaN and other values that no kernel may read. */
 static void poison(struct band_net *net)
 {
-    memset(net->work.block, 0xff, hf_lane_workspace_bytes(&net->plan));
+    memset(net->work.block, 0xff, hf_swarm_lanes_bytes(&net->plan));
 }
 
 /* Force densities, support positions and loads. Cables between nodes get q in (-1, 1), those to supports what makes
@@ -63,7 +63,7 @@ static void poison(struct band_net *net)
 static void fill(struct band_net *net, uint64_t stream)
 {
     const hf_model *m = &net->model;
-    hf_lane_workspace *w = &net->work;
+    hf_swarm_lanes *w = &net->work;
     struct rng rng = rng_start(stream);
     double *missing = calloc((size_t)m->n_free * HF_LANES, sizeof(double));
     ck_assert_ptr_nonnull(missing);
@@ -187,7 +187,7 @@ static void check_solutions(int n, int k, int (*left_out)(int i, int j), uint64_
     double *band = malloc((size_t)(n * (k + 1)) * sizeof(double)), *b = malloc(3 * (size_t)n * sizeof(double));
     ck_assert(band && b);
     fill(&net, stream);
-    hf_lane_solve(&net.plan, &net.work);
+    hf_swarm_solve(&net.plan, &net.work);
     for (int lane = 0; lane < HF_LANES; lane++) {
         int bad_row;
         ck_assert_int_eq(net.work.bad_row[lane], -1);
@@ -226,13 +226,13 @@ static int machine_has(hf_lane_isa isa)
     return 0;
 }
 
-static void iterate(struct band_net *net, hf_lane_measures *measures)
+static void iterate(struct band_net *net, hf_swarm_measures *measures)
 {
     memset(measures, 0, sizeof *measures); /* its padding is compared */
-    hf_lane_solve(&net->plan, &net->work);
-    hf_lane_measure(&net->plan, &net->work, measures);
-    hf_lane_residual(&net->plan, &net->work, measures);
-    hf_lane_psi(&net->plan, &net->work, measures);
+    hf_swarm_solve(&net->plan, &net->work);
+    hf_swarm_measure(&net->plan, &net->work, measures);
+    hf_swarm_residual(&net->plan, &net->work, measures);
+    hf_swarm_psi(&net->plan, &net->work, measures);
 }
 
 /* Equal bits, or both NaN. */
@@ -242,8 +242,8 @@ static int is_same(double a, double b)
 }
 
 /* Compares all results of a step in the lanes whose bit is set in `lanes`. */
-static void assert_same_lanes(const struct band_net *a, const hf_lane_measures *a_measures, const struct band_net *b,
-                              const hf_lane_measures *b_measures, unsigned lanes)
+static void assert_same_lanes(const struct band_net *a, const hf_swarm_measures *a_measures, const struct band_net *b,
+                              const hf_swarm_measures *b_measures, unsigned lanes)
 {
     const hf_model *m = &a->model;
     const struct {
@@ -253,7 +253,7 @@ static void assert_same_lanes(const struct band_net *a, const hf_lane_measures *
     } array[] = {{"position", a->work.position_m, b->work.position_m, 3 * (size_t)(a->plan.n_pad + m->n_node)},
                  {"length", a->work.length_m, b->work.length_m, (size_t)m->n_cable},
                  {"next q", a->work.next_q_N_per_m, b->work.next_q_N_per_m, (size_t)m->n_cable},
-                 {"factor", a->work.matrix, b->work.matrix, a->plan.n_tile * HF_LANE_BLOCK * HF_LANE_BLOCK},
+                 {"factor", a->work.matrix, b->work.matrix, a->plan.n_tile * HF_SWARM_BLOCK * HF_SWARM_BLOCK},
                  {"measure", a_measures->tension_error, b_measures->tension_error, 10}};
     for (size_t k = 0; k < sizeof array / sizeof *array; k++)
         for (size_t i = 0; i < array[k].count * HF_LANES; i++)
@@ -281,14 +281,14 @@ static void copy_band_net(struct band_net *copy, const struct band_net *net, hf_
 {
     *copy = *net;
     open_plan(copy, isa);
-    ck_assert_int_eq(hf_lane_workspace_create(&copy->plan, &copy->work), HF_OK);
-    memcpy(copy->work.block, net->work.block, hf_lane_workspace_bytes(&net->plan));
+    ck_assert_int_eq(hf_swarm_lanes_create(&copy->plan, &copy->work), HF_OK);
+    memcpy(copy->work.block, net->work.block, hf_swarm_lanes_bytes(&net->plan));
 }
 
 static void close_copy(struct band_net *copy)
 {
-    hf_lane_plan_free(&copy->plan);
-    hf_lane_workspace_free(&copy->work);
+    hf_swarm_plan_free(&copy->plan);
+    hf_swarm_lanes_free(&copy->work);
 }
 
 /* Makes lane 2 indefinite and lane 4 not finite: these must also give equal results on every instruction set. */
@@ -304,7 +304,7 @@ static void spoil(struct band_net *net)
 START_TEST(same_bits_on_every_instruction_set)
 {
     struct band_net net, other;
-    hf_lane_measures measures, other_measures;
+    hf_swarm_measures measures, other_measures;
     open_band_net(&net, sizes[_i % N_SIZES], widths[_i / N_SIZES], _i % 2 ? is_left_out : NULL);
     add_psi(&net.model);
     fill(&net, 2000 + (uint64_t)_i);
@@ -328,16 +328,16 @@ START_TEST(solve_is_assemble_factor_substitute)
 {
     if (!machine_has(isas[_i])) return;
     struct band_net net, other;
-    hf_lane_measures none = {0};
+    hf_swarm_measures none = {0};
     open_band_net(&net, 61, 13, is_left_out);
     fill(&net, 3000);
     memset(net.work.next_q_N_per_m, 0, (size_t)net.model.n_cable * HF_LANES * sizeof(double));
     memset(net.work.length_m, 0, (size_t)net.model.n_cable * HF_LANES * sizeof(double));
     copy_band_net(&other, &net, isas[_i]);
-    hf_lane_assemble(&other.plan, &other.work);
-    hf_lane_factor(&other.plan, &other.work);
-    hf_lane_substitute(&other.plan, &other.work);
-    hf_lane_solve(&net.plan, &net.work);
+    hf_swarm_assemble(&other.plan, &other.work);
+    hf_swarm_factor(&other.plan, &other.work);
+    hf_swarm_substitute(&other.plan, &other.work);
+    hf_swarm_solve(&net.plan, &net.work);
     assert_same_lanes(&net, &none, &other, &none, 0xff);
     close_copy(&other);
     close_band_net(&net);
@@ -350,7 +350,7 @@ START_TEST(a_bad_lane_disturbs_no_other)
 {
     if (!machine_has(isas[_i])) return;
     struct band_net good, bad;
-    hf_lane_measures good_measures, bad_measures;
+    hf_swarm_measures good_measures, bad_measures;
     open_band_net(&good, 61, 13, is_left_out);
     add_psi(&good.model);
     fill(&good, 4000);
@@ -384,7 +384,7 @@ START_TEST(the_first_bad_pivot_is_named)
         for (int l = 0; l < HF_LANES; l++)
             if (net.model.end_row[2 * e] + net.model.end_row[2 * e + 1] == 23 + 2 * (l + _i))
                 net.work.q_N_per_m[e * HF_LANES + l] -= 20;
-    hf_lane_solve(&net.plan, &net.work);
+    hf_swarm_solve(&net.plan, &net.work);
     for (int l = 0; l < HF_LANES; l++) {
         int bad_row;
         assemble_plainly(&net, l, band, b);
@@ -411,8 +411,8 @@ static void set_individual(struct net *net, int l)
 
 /* `steps` iterations of the scalar code, kept from stopping early; then the lane's. The paper's rule, because it lets a
  * straight chain pass. */
-static void compare_lane(struct net *net, const hf_lane_plan *plan, const hf_lane_workspace *w,
-                         const hf_lane_measures *measures, int lane, int steps, double tolerance)
+static void compare_lane(struct net *net, const hf_swarm_plan *plan, const hf_swarm_lanes *w,
+                         const hf_swarm_measures *measures, int lane, int steps, double tolerance)
 {
     const hf_model *m = &net->model;
     hf_workspace *scalar = &net->work, from_lane;
@@ -424,7 +424,7 @@ static void compare_lane(struct net *net, const hf_lane_plan *plan, const hf_lan
     ck_assert_int_eq(net->result.status, HF_NOT_CONVERGED);
     ck_assert_int_eq(net->result.iterations, steps);
     ck_assert_int_eq(hf_workspace_create(m, &from_lane), HF_OK);
-    hf_lane_get(plan, w, lane, &from_lane);
+    hf_swarm_get(plan, w, lane, &from_lane);
     for (int i = 0; i < 3 * m->n_node; i++)
         ck_assert_double_eq_tol(from_lane.position_m[i], scalar->position_m[i], tolerance);
     for (int e = 0; e < m->n_cable; e++) {
@@ -453,28 +453,28 @@ static void compare_lane(struct net *net, const hf_lane_plan *plan, const hf_lan
 
 static void compare_with_formfind(struct net *net, int isa)
 {
-    hf_lane_plan plan;
-    hf_lane_workspace w;
-    hf_lane_measures measures;
-    ck_assert_int_eq(hf_lane_plan_create(&net->model, isas[isa], &plan), HF_OK);
-    ck_assert_int_eq(hf_lane_workspace_create(&plan, &w), HF_OK);
-    memset(w.block, 0xff, hf_lane_workspace_bytes(&plan));
+    hf_swarm_plan plan;
+    hf_swarm_lanes w;
+    hf_swarm_measures measures;
+    ck_assert_int_eq(hf_swarm_plan_create(&net->model, isas[isa], &plan), HF_OK);
+    ck_assert_int_eq(hf_swarm_lanes_create(&plan, &w), HF_OK);
+    memset(w.block, 0xff, hf_swarm_lanes_bytes(&plan));
     for (int l = 0; l < HF_LANES; l++) {
         set_individual(net, l);
-        hf_lane_put(&plan, &net->work, l, &w);
+        hf_swarm_put(&plan, &net->work, l, &w);
     }
     memcpy(w.law, net->work.law, (size_t)net->model.n_cable);
     for (int step = 1; step <= 10; step++) {
-        hf_lane_solve(&plan, &w);
-        hf_lane_measure(&plan, &w, &measures);
-        hf_lane_residual(&plan, &w, &measures);
-        hf_lane_psi(&plan, &w, &measures);
+        hf_swarm_solve(&plan, &w);
+        hf_swarm_measure(&plan, &w, &measures);
+        hf_swarm_residual(&plan, &w, &measures);
+        hf_swarm_psi(&plan, &w, &measures);
         for (int l = 0; l < HF_LANES && (step == 1 || step == 10); l++)
             compare_lane(net, &plan, &w, &measures, l, step, STEP_TOLERANCE);
-        hf_lane_update(&w);
+        hf_swarm_update(&w);
     }
-    hf_lane_workspace_free(&w);
-    hf_lane_plan_free(&plan);
+    hf_swarm_lanes_free(&w);
+    hf_swarm_plan_free(&plan);
 }
 
 START_TEST(iterations_like_formfind_on_the_papers_net)
@@ -510,14 +510,14 @@ START_TEST(measures_by_hand)
     static const double q[HF_LANES] = {10, 1, 0.001, 0.001, 10, 10, 10, 10},
                         wanted_m[HF_LANES] = {0.8, 1.25, 1.25, 0.8, 1, 1, 1, 1};
     struct net net;
-    hf_lane_plan plan;
-    hf_lane_workspace w;
-    hf_lane_measures m;
+    hf_swarm_plan plan;
+    hf_swarm_lanes w;
+    hf_swarm_measures m;
     OPEN_HAND(&net, node, cable, HF_METHOD_HIFDM);
     double pull = 0.001 / net.model.reference_N; /* of a cable with q = 0.001 */
     ck_assert(pull < HF_SLACK_RATIO && 1000 * pull < 1 && 1000 * pull > HF_SLACK_RATIO);
-    ck_assert_int_eq(hf_lane_plan_create(&net.model, hf_lane_best_isa(), &plan), HF_OK);
-    ck_assert_int_eq(hf_lane_workspace_create(&plan, &w), HF_OK);
+    ck_assert_int_eq(hf_swarm_plan_create(&net.model, hf_lane_best_isa(), &plan), HF_OK);
+    ck_assert_int_eq(hf_swarm_lanes_create(&plan, &w), HF_OK);
     hf_form_prepare(&net.model, &net.work);
     memcpy(net.work.position_m, net.model.position_m, 12 * sizeof(double));
     memcpy(w.law, net.work.law, 3);
@@ -525,11 +525,11 @@ START_TEST(measures_by_hand)
         for (int e = 0; e < 3; e++)
             net.work.q_N_per_m[e] = q[l];
         net.work.target[1] = wanted_m[l];
-        hf_lane_put(&plan, &net.work, l, &w);
+        hf_swarm_put(&plan, &net.work, l, &w);
     }
-    hf_lane_solve(&plan, &w);
-    hf_lane_measure(&plan, &w, &m);
-    hf_lane_residual(&plan, &w, &m);
+    hf_swarm_solve(&plan, &w);
+    hf_swarm_measure(&plan, &w, &m);
+    hf_swarm_residual(&plan, &w, &m);
     ck_assert_double_eq_tol(m.tension_error[0], 0.25, ROUNDOFF); /* 10 N for 8 N */
     ck_assert_double_eq_tol(m.length_error[0], 0.25, ROUNDOFF);  /* 1 m for 0.8 m */
     ck_assert_double_eq_tol(m.length_gap[0], 0.25, ROUNDOFF);
@@ -553,18 +553,18 @@ START_TEST(measures_by_hand)
     w.q_N_per_m[4] = 1e300;
     int a = net.model.end_row[0], b = net.model.end_row[1], row = a < b ? a : b;
     w.position_m[(plan.n_pad + row) * 3 * HF_LANES + 4] = 1e10;
-    hf_lane_measure(&plan, &w, &m);
+    hf_swarm_measure(&plan, &w, &m);
     for (int l = 0; l < HF_LANES; l++)
         ck_assert_int_eq(m.is_finite[l], l != 4);
-    hf_lane_workspace_free(&w);
-    hf_lane_plan_free(&plan);
+    hf_swarm_lanes_free(&w);
+    hf_swarm_plan_free(&plan);
     close_net(&net);
 }
 END_TEST
 
-Suite *suite_unit_lane(void)
+Suite *suite_unit_swarm_lane(void)
 {
-    Suite *suite = suite_create("unit/lane");
+    Suite *suite = suite_create("unit/swarm_lane");
     TCase *solving = tcase_create("solving"), *isa = tcase_create("isa"), *apart = tcase_create("apart"),
           *whole = tcase_create("whole");
     tcase_add_loop_test(solving, full_bands_like_lapack_and_plain_loops, 0, N_GRID);

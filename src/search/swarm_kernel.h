@@ -1,0 +1,104 @@
+/* swarm_kernel - the inner loops of swarm and the arrays that they work on, compiled once for each instruction set.
+ *
+ * A lane row is a model row plus n_pad: n_pad dummy rows in front make the free rows fill blocks of HF_SWARM_BLOCK. The
+ * matrix is stored as square tiles of HF_SWARM_BLOCK by HF_SWARM_BLOCK entries. The tiles of one block row are
+ * contiguous, from the first that has an entry (skyline) to the one on the diagonal; inside a tile the columns are
+ * contiguous: see hf_swarm_place. Arrays are aligned to 64 bytes. */
+#ifndef HIFDM_SWARM_KERNEL_H
+#define HIFDM_SWARM_KERNEL_H
+
+#include "base/arena.h"
+#include "search/lane.h"
+
+#include <hifdm/workspace.h>
+
+#include <stddef.h>
+
+/* Laws that the kernels serve: Eqs. 5, 7 and 8 towards a given force density, tension or length. */
+#define HF_SWARM_LAWS                                                                                                  \
+    (HF_LAW_ITERATES | HF_LAW_IS_CONVEX | HF_LAW_GIVES_TENSION | HF_LAW_HAS_MULTIPLIER | HF_LAW_IS_RIGID |             \
+     HF_LAW_MAY_PUSH)
+
+#define HF_SWARM_BLOCK 4
+
+typedef struct hf_swarm_kernels hf_swarm_kernels;
+
+/* A cable seen from one of its nodes. */
+typedef struct {
+    int i_cable;
+    int other; /* lane row at its other end */
+} hf_swarm_incidence;
+
+/* What all threads share besides the model. */
+typedef struct {
+    const hf_model *model; /* not owned: must outlive the plan */
+    const hf_swarm_kernels *kernels;
+    int n_pad;                     /* dummy rows in front, 0..HF_SWARM_BLOCK-1 */
+    int n_block;                   /* of rows: n_pad + n_free = n_block * HF_SWARM_BLOCK */
+    size_t n_tile;                 /* stored, all together */
+    int *first_column;             /* [n_block] lane column of the first entry in a block row */
+    size_t *tile_0;                /* [n_block] number that the tile of a block row in tile column 0 would have */
+    unsigned char *has_entry;      /* [n_tile] by number of the tile: has D an entry there? */
+    int *incidence_start;          /* [n_free + 1] by model row */
+    hf_swarm_incidence *incidence; /* [incidence_start[n_free]], of each node by rising cable */
+    double *inverse_length;        /* [n_cable] 1 / theoretical length, 1/m */
+    void *block;
+} hf_swarm_plan;
+
+/* X(type, name, number of items for a plan p of a model m, unit, meaning) */
+#define HF_SWARM_FIELDS(X)                                                                                             \
+    X(double, matrix, p->n_tile *HF_SWARM_BLOCK *HF_SWARM_BLOCK *HF_LANES, "N/m",                                      \
+      "D, then its factor: hf_swarm_place")                                                                            \
+    X(double, position_m, ((size_t)p->n_pad + (size_t)m->n_node) * 3 * HF_LANES, "m", "[n_pad + n_node][3][8]")        \
+    X(double, q_N_per_m, (size_t)m->n_cable *HF_LANES, "N/m", "[n_cable][8] force densities of this shape")            \
+    X(double, next_q_N_per_m, (size_t)m->n_cable *HF_LANES, "N/m", "[n_cable][8] as the laws update them")             \
+    X(double, length_m, (size_t)m->n_cable *HF_LANES, "m", "[n_cable][8] lengths of this shape")                       \
+    X(double, target, (size_t)m->n_cable *HF_LANES, "by law", "[n_cable][8] T* (N), L* (m) or q (N/m)")                \
+    X(unsigned char, law, m->n_cable, "", "[n_cable] hf_law in force, for all lanes: set by the caller")               \
+    X(int, bad_row, HF_LANES, "", "[8] model row of the first pivot that was not positive, or -1")
+
+/* The scratch of one thread. Its contents mean nothing except what the caller has put in. */
+typedef struct {
+#define HF_SWARM_MEMBER(type, name, count, unit, meaning) type *name;
+    HF_SWARM_FIELDS(HF_SWARM_MEMBER)
+#undef HF_SWARM_MEMBER
+    void *block;
+} hf_swarm_lanes;
+
+/* The measures of each lane, with the meanings of hf_form_result. They mean nothing in a lane that is not finite or has
+ * a bad_row. */
+typedef struct {
+    _Alignas(HF_ALIGNMENT) double tension_error[HF_LANES]; /* max |T/T*-1| over cables of law tension, 0 without one */
+    double length_error[HF_LANES];                         /* max |l/L*-1| over taut cables of law length, or 0 */
+    double length_gap[HF_LANES];                           /* the same; a slack cable counts by its part of the pull */
+    double shortest_length_ratio[HF_LANES];                /* min l / theoretical l over all cables */
+    double longest_length_ratio[HF_LANES];                 /* max of the same */
+    double shortest_of_law[3][HF_LANES];                   /* the minimum by hf_law, infinite without one */
+    double residual_N[HF_LANES];                           /* set by hf_swarm_residual */
+    double psi_m[HF_LANES];                                /* set by hf_swarm_psi */
+    unsigned char is_finite[HF_LANES];                     /* every tension is a finite number */
+} hf_swarm_measures;
+
+/* Index into `matrix` of lane 0 of entry (i, j); i and j are lane rows, first_column <= j <= i. A diagonal place of the
+ * factor holds the reciprocal of the diagonal entry. */
+static inline size_t hf_swarm_place(const hf_swarm_plan *plan, int i, int j)
+{
+    size_t column = plan->tile_0[i / HF_SWARM_BLOCK] * HF_SWARM_BLOCK + (size_t)j;
+    return (column * HF_SWARM_BLOCK + (size_t)(i % HF_SWARM_BLOCK)) * HF_LANES;
+}
+
+/* The kernels of one instruction set; swarm_lane.h says what each does. */
+struct hf_swarm_kernels {
+    void (*assemble)(const hf_swarm_plan *plan, hf_swarm_lanes *lanes);
+    void (*factor)(const hf_swarm_plan *plan, hf_swarm_lanes *lanes);
+    void (*substitute)(const hf_swarm_plan *plan, hf_swarm_lanes *lanes);
+    void (*solve)(const hf_swarm_plan *plan, hf_swarm_lanes *lanes);
+    void (*measure)(const hf_swarm_plan *plan, hf_swarm_lanes *lanes, hf_swarm_measures *measures);
+    void (*residual)(const hf_swarm_plan *plan, const hf_swarm_lanes *lanes, hf_swarm_measures *measures);
+    void (*psi)(const hf_swarm_plan *plan, const hf_swarm_lanes *lanes, hf_swarm_measures *measures);
+};
+
+/* The kernels of each instruction set; machines other than x86-64 have only the first. */
+extern const hf_swarm_kernels hf_swarm_kernels_portable, hf_swarm_kernels_avx2, hf_swarm_kernels_avx512;
+
+#endif
