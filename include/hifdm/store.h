@@ -143,9 +143,9 @@ hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_message
 hf_status hf_store_complete(hf_store *store, const hf_summary *summary, hf_messages *messages);
 hf_status hf_store_settle(hf_store *store, hf_messages *messages);
 
-/* Free the store without finishing the file. The published file stays, and the journal with the generations that the
+/* Free the store, leaving on the disk what is there: the published file, and the journal with the generations that the
  * file does not hold. store may be NULL. */
-void hf_store_abandon(hf_store *store);
+void hf_store_end(hf_store *store);
 
 /* One stored shape, in the order of the scene. */
 typedef struct {

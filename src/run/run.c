@@ -32,7 +32,7 @@ typedef struct {
 
 static void run_free(run *r)
 {
-    hf_store_abandon(r->store); /* NULL once it is finished */
+    hf_store_end(r->store); /* NULL once it is finished */
     hf_optimiser_free(&r->optimiser);
     free(r->history.psi_m);
     hf_carrier_state_free(&r->truss);

@@ -417,7 +417,7 @@ hf_status hf_store_settle(hf_store *s, hf_messages *messages)
     hf_store_file_publish(&s->f, true);
     hf_status status = s->f.io.status;
     if (status == HF_OK) hf_journal_forget(&s->f.journal);
-    hf_store_abandon(s); /* frees it; of a finished one nothing is left behind */
+    hf_store_end(s);
     return status;
 }
 
@@ -427,7 +427,7 @@ hf_status hf_store_finish(hf_store *s, const hf_summary *summary, hf_messages *m
     return hf_store_settle(s, messages);
 }
 
-void hf_store_abandon(hf_store *store)
+void hf_store_end(hf_store *store)
 {
     if (!store) return;
     bool is_open = store->f.io.file >= 0;

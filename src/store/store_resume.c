@@ -270,6 +270,6 @@ hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *m
     if (status == HF_OK && s->n_journal) status = restore(s, &a.optimiser, 0, summary, messages);
     if (status == HF_OK) status = hf_store_publish(s, summary, 1, messages);
     close_stored_search(&a);
-    hf_store_abandon(s);
+    hf_store_end(s);
     return status;
 }

@@ -110,7 +110,7 @@ static hf_status run_it(const char *path, struct run *r, int *acknowledged, hf_m
     }
     if (status == HF_OK) status = store_some(s, r, first, N_GENERATION, acknowledged, messages);
     if (status == HF_OK) return hf_store_finish(s, &(hf_summary){.has_optimize = 1}, messages);
-    hf_store_abandon(s);
+    hf_store_end(s);
     return status;
 }
 
@@ -184,7 +184,7 @@ static int fail_once(int call, long n, int was_killed, const char *whole)
         ck_assert_msg(hf_store_resume(path, &s, &messages) == HF_OK, "%s %ld, then: %s", calls[call].name, n,
                       messages.text);
         ck_assert_int_ge(hf_store_generations(s), acknowledged);
-        hf_store_abandon(s);
+        hf_store_end(s);
     }
     ck_assert_msg(run_it(path, &r, &again, &messages) == HF_OK, "%s %ld, then: %s", calls[call].name, n, messages.text);
     hf_messages_free(&messages);

@@ -109,7 +109,7 @@ START_TEST(storing_and_reading)
         failed = end_allocation_failure();
         ck_assert_int_eq(status, failed ? HF_NO_MEMORY : HF_OK);
         if (failed)
-            hf_store_abandon(store);
+            hf_store_end(store);
         else
             ck_assert_int_eq(hf_store_finish(store, &summary, &messages), HF_OK);
     }

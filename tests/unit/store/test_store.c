@@ -452,12 +452,12 @@ START_TEST(another_shape_is_not_gone_on_with)
     hf_store *store = begin(temp_path("a.h5"), 1, &net.scene);
     ck_assert_int_eq(hf_store_form(store, &net.model, &net.work, NULL, &messages), HF_OK);
     ck_assert_int_eq(hf_store_publish(store, &(hf_summary){0}, 1, &messages), HF_OK);
-    hf_store_abandon(store);
+    hf_store_end(store);
     net.work.tension_N[3] *= table[_i].factor;
     ck_assert_int_eq(hf_store_resume(temp_path("a.h5"), &store, &messages), HF_OK);
     ck_assert_int_eq(hf_store_form(store, &net.model, &net.work, NULL, &messages), table[_i].status);
     ck_assert_int_eq(messages.n_warning, table[_i].n_warning);
-    hf_store_abandon(store);
+    hf_store_end(store);
     hf_messages_free(&messages);
     close_net(&net);
 }

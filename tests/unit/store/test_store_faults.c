@@ -31,7 +31,7 @@ START_TEST(existing_files_are_replaced_by_restart_only)
     ck_assert_int_eq(refuse(path, 0, &net.scene, text, sizeof text), HF_EXISTS);
     ck_assert_ptr_nonnull(strstr(text, path));
     ck_assert_ptr_nonnull(strstr(text, "--restart"));
-    hf_store_abandon(begin(path, 1, &net.scene));
+    hf_store_end(begin(path, 1, &net.scene));
     char *kept = read_file(path, NULL);
     ck_assert_str_eq(kept, "precious");
     free(kept);
@@ -108,8 +108,8 @@ START_TEST(abandoned_files_leave_nothing)
     hf_messages_free(&messages);
     find_shape(&net);
     ck_assert_int_eq(hf_store_form(store, &net.model, &net.work, NULL, &messages), HF_OK);
-    hf_store_abandon(store);
-    hf_store_abandon(NULL);
+    hf_store_end(store);
+    hf_store_end(NULL);
     ck_assert_int_eq(count_files(folder), 0);
     no_id_is_open();
     close_net(&net);

@@ -13,7 +13,7 @@ static void leave_unfinished(const char *path)
     open_run(&r);
     ck_assert_int_eq(begin_new(path, &r, &s, &messages), HF_OK);
     ck_assert_int_eq(store_some(s, &r, 0, 4, &n, &messages), HF_OK);
-    hf_store_abandon(s);
+    hf_store_end(s);
     close_run(&r);
 }
 
@@ -55,7 +55,7 @@ START_TEST(designs_are_bred_again)
     ck_assert_mem_eq(r.ga.population.best_psi_m, whole.ga.population.best_psi_m, 4 * sizeof(double));
     for (int i = 0; i < N_INDIVIDUAL; i++)
         ck_assert_mem_eq(&r.ga.population.result[i].psi_m, &whole.ga.population.result[i].psi_m, sizeof(double));
-    hf_store_abandon(s);
+    hf_store_end(s);
     close_run(&r);
     close_run(&whole);
 }
@@ -83,14 +83,14 @@ START_TEST(results_of_other_designs_are_left_out)
     hf_messages_free(&messages);
     hf_optimiser_tell(&r.ga);
     ck_assert_int_eq(store_some(s, &r, 2, 4, &n, &messages), HF_OK);
-    hf_store_abandon(s);
+    hf_store_end(s);
     close_run(&r);
     open_run(&r); /* the journal holds the new ones now */
     r.settings.seed = 99;
     resume(path, &r, &s, &messages);
     ck_assert_int_eq(messages.n_warning, 0);
     ck_assert_int_eq(hf_store_generations(s), 4);
-    hf_store_abandon(s);
+    hf_store_end(s);
     close_run(&r);
 }
 END_TEST
