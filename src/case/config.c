@@ -1,11 +1,10 @@
-/* Contents: where a fault is - looking up keys - setting one value - walking the YAML tree - overrides - checks that
- * join several keys - load */
+/* Contents: looking up keys - setting one value - walking the YAML tree - overrides - load */
 #include <hifdm/config.h>
 
 #include "base/path.h"
 #include "base/sha256.h"
 #include "base/text.h"
-#include "case/config_scene.h"
+#include "case/config_check.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,46 +16,15 @@
 
 typedef struct {
     hf_case *c;
-    hf_messages *messages;
-    const char *origin; /* the case file, or the --set argument being applied */
-    bool is_override;
-    const char *place;  /* of a value that is only checked: messages give it instead of origin, line and column */
+    hf_config_faults faults;
     yaml_mark_t cut[2]; /* the sweep section, when there is one */
     yaml_document_t *document;
-    char *where_given; /* [n_field][64] "line:col", "--set" or "" */
-    bool walked;       /* the file was readable YAML: keys that are missing can be reported */
-    bool failed;
-    int n_fault;
+    bool walked; /* the file was readable YAML: keys that are missing can be reported */
 } loader;
-
-#define WHERE_SIZE 64
-
-/* ---- where a fault is ---- */
 
 static void complain(loader *l, yaml_mark_t mark, const char *path, const char *what, const char *detail)
 {
-    l->failed = true;
-    if (++l->n_fault > HF_FAULT_MAX_CASE) return;
-    if (l->place)
-        hf_error(l->messages, HF_BAD_CASE, "%s: %s: %s%s", l->place, path, what, detail);
-    else if (l->is_override)
-        hf_error(l->messages, HF_BAD_CASE, "--set %s: %s: %s%s", l->origin, path, what, detail);
-    else
-        hf_error(l->messages, HF_BAD_CASE, "%s:%zu:%zu: %s: %s%s", l->origin, mark.line + 1, mark.column + 1, path,
-                 what, detail);
-}
-
-/* Report a fault of several keys, or a missing key, with the place of the key when the file contains it. */
-static void complain_about(loader *l, const char *path, const char *what)
-{
-    const char *where = "";
-    for (int i = 0; i < hf_n_field; i++)
-        if (!strcmp(hf_field_table[i].path, path)) where = l->where_given + (size_t)i * WHERE_SIZE;
-    l->failed = true;
-    if (!strcmp(where, "--set"))
-        hf_error(l->messages, HF_BAD_CASE, "--set %s: %s", path, what);
-    else
-        hf_error(l->messages, HF_BAD_CASE, "%s:%s%s %s: %s", l->c->path, where, *where ? ":" : "", path, what);
+    hf_config_fault_at(&l->faults, mark.line, mark.column, path, what, detail);
 }
 
 /* ---- looking up keys ---- */
@@ -220,7 +188,7 @@ static void set_text(loader *l, const yaml_node_t *node, const hf_field *f, char
         return;
     }
     /* paths in a case file are relative to that file, paths on the command line to the current folder */
-    const char *beside = size == HF_PATH_SIZE && !l->is_override ? l->c->path : "";
+    const char *beside = size == HF_PATH_SIZE && !l->faults.is_override ? l->c->path : "";
     if (!hf_path_beside(beside, scalar_text(node), to, size)) complain(l, node->start_mark, f->path, "is too long", "");
 }
 
@@ -228,11 +196,11 @@ static void set_field(loader *l, const yaml_node_t *node, int i_field)
 {
     const hf_field *f = &hf_field_table[i_field];
     char *to = (char *)l->c + f->offset;
-    char *where = l->where_given + (size_t)i_field * WHERE_SIZE;
-    if (l->is_override)
-        snprintf(where, WHERE_SIZE, "--set");
+    char *where = hf_config_where(&l->faults, i_field);
+    if (l->faults.is_override)
+        snprintf(where, HF_CONFIG_WHERE_SIZE, "--set");
     else
-        snprintf(where, WHERE_SIZE, "%zu:%zu", node->start_mark.line + 1, node->start_mark.column + 1);
+        snprintf(where, HF_CONFIG_WHERE_SIZE, "%zu:%zu", node->start_mark.line + 1, node->start_mark.column + 1);
     switch (f->type) {
     case HF_FIELD_DOUBLE:
         set_double(l, node, f, (double *)(void *)to);
@@ -271,7 +239,7 @@ static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, cons
         i_section = n < PATH_MAX_LENGTH ? find_section(path) : -1;
     if (i_field >= 0) {
         set_field(l, value, i_field);
-    } else if (!strcmp(path, "sweep") && !l->is_override) {
+    } else if (!strcmp(path, "sweep") && !l->faults.is_override) {
         l->c->has_sweep = 1;
         l->cut[0] = key_mark;
         l->cut[1] = value->end_mark;
@@ -334,8 +302,8 @@ static void with_document(loader *l, const char *text, size_t length,
     yaml_parser_t parser;
     yaml_document_t document, next;
     if (!yaml_parser_initialize(&parser)) {
-        l->failed = true;
-        hf_error(l->messages, HF_NO_MEMORY, "%s: out of memory", l->origin);
+        l->faults.failed = true;
+        hf_error(l->faults.messages, HF_NO_MEMORY, "%s: out of memory", l->faults.origin);
         return;
     }
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
@@ -404,16 +372,16 @@ static void apply_override(loader *l, const char *argument)
     char path[PATH_MAX_LENGTH];
     const char *equals = strchr(argument, '=');
     if (!equals || equals == argument || equals - argument >= PATH_MAX_LENGTH) {
-        l->failed = true;
-        hf_error(l->messages, HF_BAD_CASE, "--set %s: must be key=value, like form.pretension_N=12", argument);
+        l->faults.failed = true;
+        hf_error(l->faults.messages, HF_BAD_CASE, "--set %s: must be key=value, like form.pretension_N=12", argument);
         return;
     }
     snprintf(path, sizeof path, "%.*s", (int)(equals - argument), argument);
-    l->origin = argument;
-    l->is_override = true;
+    l->faults.origin = argument;
+    l->faults.is_override = true;
     with_document(l, equals + 1, strlen(equals + 1), use_override, path);
-    l->is_override = false;
-    l->origin = l->c->path;
+    l->faults.is_override = false;
+    l->faults.origin = l->c->path;
 }
 
 /* Cut the lines of the sweep section out of the text. The rest is the case of one point, which is stored and digested;
@@ -459,74 +427,6 @@ static hf_status seal(hf_case *c, const char *const *overrides, int n_override)
     return HF_OK;
 }
 
-/* ---- checks that join several keys ---- */
-
-static bool section_present(const hf_case *c, const char *field_path)
-{
-    char section[PATH_MAX_LENGTH];
-    snprintf(section, sizeof section, "%s", field_path);
-    char *dot = strrchr(section, '.');
-    if (!dot) return true;
-    *dot = '\0';
-    int i = find_section(section);
-    if (i < 0 || hf_section_table[i].present_offset == SIZE_MAX) return true;
-    return *(const bool *)((const char *)c + hf_section_table[i].present_offset);
-}
-
-static void check_truss(loader *l)
-{
-    const hf_case *c = l->c;
-    const hf_truss_unit *unit[] = {&c->truss.bud, &c->truss.mbug, &c->truss.abug};
-    static const char *const wall[] = {"truss.bud.wall_m", "truss.mbug.wall_m", "truss.abug.wall_m"};
-    if (!c->has_truss_import && !c->has_parabolic_cylinder)
-        complain_about(l, "truss", "needs scene.parabolic_cylinder to be generated over, or truss.import");
-    for (int i = 0; i < hf_n_field && c->has_truss_import; i++) {
-        const char *path = hf_field_table[i].path;
-        if (!strncmp(path, "truss.", 6) && strncmp(path, "truss.import.", 13) &&
-            strcmp(path, "truss.match_tolerance_m") && l->where_given[(size_t)i * WHERE_SIZE])
-            complain_about(l, path, "has no effect beside truss.import, which brings all members; remove it");
-    }
-    for (int k = 0; k < 3 && !c->has_truss_import; k++)
-        if (2 * unit[k]->wall_m > unit[k]->diameter_m)
-            complain_about(l, wall[k], "must not be more than half the diameter_m beside it");
-}
-
-static void check_together(loader *l)
-{
-    const hf_case *c = l->c;
-    const hf_optimize_settings *o = &c->optimize;
-    char what[HF_CONFIG_WHAT_SIZE];
-    if (!l->walked) return;
-    if (!hf_config_scene_is_one(c, what)) complain_about(l, "scene", what);
-    for (int i = 0; i < hf_n_field; i++)
-        if (!hf_field_table[i].default_value && section_present(c, hf_field_table[i].path) &&
-            !l->where_given[(size_t)i * WHERE_SIZE])
-            complain_about(l, hf_field_table[i].path, "is missing and has no default");
-    if (c->has_surface && c->surface.focal_length_m == 0 && hf_config_scene_surface(c).focal_length_m == 0 &&
-        !l->failed)
-        complain_about(l, "surface.focal_length_m",
-                       c->has_import ? "is missing: an imported net does not tell its surface"
-                                     : "is missing: this net does not tell its surface");
-    l->c->has_truss |= c->has_truss_import;
-    if (c->has_truss && !l->failed) check_truss(l);
-    if (!c->has_optimize || l->failed) return; /* values that were refused are not compared */
-    if (o->min_tension_N >= o->max_tension_N)
-        complain_about(l, "optimize.min_tension_N", "must be below optimize.max_tension_N");
-    if (o->elites >= o->population) complain_about(l, "optimize.elites", "must be below optimize.population");
-    if (o->crossover_low > o->crossover_high)
-        complain_about(l, "optimize.crossover_low", "must not be above optimize.crossover_high");
-    if (o->mutation_low > o->mutation_high)
-        complain_about(l, "optimize.mutation_low", "must not be above optimize.mutation_high");
-}
-
-static void complete_surface(hf_case *c)
-{
-    if (!c->has_surface) return;
-    hf_surface_settings known = hf_config_scene_surface(c);
-    if (c->surface.focal_length_m == 0) c->surface.focal_length_m = known.focal_length_m;
-    if (c->surface.strip_width_m == 0) c->surface.strip_width_m = known.strip_width_m;
-}
-
 /* ---- load ---- */
 
 /* Set all other members of settings from settings->text and the overrides. */
@@ -538,26 +438,26 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
     if (hf_text_too_deep(settings->text))
         return hf_error(messages, HF_BAD_CASE, "%s:%d:1: YAML: more than %d brackets are open", path,
                         hf_text_too_deep(settings->text), HF_TEXT_NESTING_MAX);
-    loader l = {.c = settings, .messages = messages, .origin = settings->path};
-    l.where_given = calloc((size_t)hf_n_field, WHERE_SIZE);
-    if (!l.where_given) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    loader l = {.c = settings, .faults = {.messages = messages, .path = path, .origin = path}};
+    l.faults.where_given = calloc((size_t)hf_n_field, HF_CONFIG_WHERE_SIZE);
+    if (!l.faults.where_given) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     for (int i = 0; i < hf_n_field; i++) {
         const char *text = hf_field_table[i].default_value;
         if (text && *text) with_document(&l, text, strlen(text), use_default, &i);
     }
-    memset(l.where_given, 0, (size_t)hf_n_field * WHERE_SIZE);
+    memset(l.faults.where_given, 0, (size_t)hf_n_field * HF_CONFIG_WHERE_SIZE);
     with_document(&l, settings->text, settings->text_length, use_root, NULL);
     for (int i = 0; i < n_override; i++)
         apply_override(&l, overrides[i]);
-    check_together(&l);
-    complete_surface(settings);
+    if (l.walked) hf_config_check(settings, &l.faults);
+    hf_config_complete(settings);
     cut_sweep(&l);
     hf_status sealed = seal(settings, overrides, n_override);
-    free(l.where_given);
+    free(l.faults.where_given);
     if (sealed != HF_OK) return hf_error(messages, sealed, "%s: out of memory", path);
-    if (l.n_fault > HF_FAULT_MAX_CASE)
-        hf_error(messages, HF_BAD_CASE, "%s: and %d more faults", path, l.n_fault - HF_FAULT_MAX_CASE);
-    return l.failed ? HF_BAD_CASE : HF_OK;
+    if (l.faults.n > HF_FAULT_MAX_CASE)
+        hf_error(messages, HF_BAD_CASE, "%s: and %d more faults", path, l.faults.n - HF_FAULT_MAX_CASE);
+    return l.faults.failed ? HF_BAD_CASE : HF_OK;
 }
 
 hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
@@ -584,14 +484,21 @@ hf_status hf_config_parse(const char *path, const char *text, const char *const 
 hf_status hf_config_check_value(int field, const char *value, const char *place, hf_messages *messages)
 {
     hf_case *scratch = calloc(1, sizeof *scratch);
-    loader l = {.c = scratch, .messages = messages, .origin = place, .place = place};
-    l.where_given = calloc((size_t)hf_n_field, WHERE_SIZE);
-    if (scratch && l.where_given)
+    loader l = {.c = scratch, .faults = {.messages = messages, .origin = place, .place = place}};
+    l.faults.where_given = calloc((size_t)hf_n_field, HF_CONFIG_WHERE_SIZE);
+    if (scratch && l.faults.where_given)
         with_document(&l, value, strlen(value), use_default, &field);
     else
         hf_error(messages, HF_NO_MEMORY, "%s: out of memory", place);
-    hf_status status = !scratch || !l.where_given ? HF_NO_MEMORY : l.failed ? HF_BAD_CASE : HF_OK;
-    free(l.where_given);
+    hf_status status = !scratch || !l.faults.where_given ? HF_NO_MEMORY : l.faults.failed ? HF_BAD_CASE : HF_OK;
+    free(l.faults.where_given);
     free(scratch);
     return status;
+}
+
+void hf_case_free(hf_case *settings)
+{
+    free(settings->text);
+    free(settings->overrides);
+    *settings = (hf_case){0};
 }

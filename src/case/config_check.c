@@ -1,0 +1,105 @@
+#include "case/config_check.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define WHAT_SIZE 512
+
+/* Does exactly one section make the net? If not, `what` says what is wrong with the section scene. */
+static bool one_section_makes_the_net(const hf_case *c, char what[WHAT_SIZE])
+{
+    int n_present = 0;
+    char present[256] = "", all[256] = "";
+    const struct {
+        const char *name;
+        bool is_present;
+    } source[] = {
+#define SOURCE(section, type, KEYS, help) {#section, c->has_##section},
+        HF_GENERATORS(SOURCE)
+#undef SOURCE
+            {"import", c->has_import}};
+    for (size_t i = 0; i < sizeof source / sizeof *source; i++) {
+        size_t n_all = strlen(all), n = strlen(present);
+        snprintf(all + n_all, sizeof all - n_all, "%s%s", i ? " or " : "", source[i].name);
+        if (source[i].is_present)
+            snprintf(present + n, sizeof present - n, "%s%s", n_present++ ? " and " : "", source[i].name);
+    }
+    if (n_present)
+        snprintf(what, WHAT_SIZE, "has both %s; keep one", present);
+    else
+        snprintf(what, WHAT_SIZE, "needs either %s", all);
+    return n_present == 1;
+}
+
+/* What a generated net knows of its surface; 0 where it does not. */
+static hf_surface_settings known_surface(const hf_case *c)
+{
+    hf_surface_settings known = {0};
+#define KNOW(section, type, KEYS, help)                                                                                \
+    if (c->has_##section) hf_scene_##section##_surface(&c->section, &known);
+    HF_GENERATORS(KNOW)
+#undef KNOW
+    return known;
+}
+
+/* Is the section of this key there? Sections that cannot be left out always are. */
+static bool has_section_of(const hf_case *c, const char *key)
+{
+    const char *dot = strrchr(key, '.');
+    for (int i = 0; dot && i < hf_n_section; i++) {
+        const hf_section *s = &hf_section_table[i];
+        if (s->present_offset != SIZE_MAX && strlen(s->path) == (size_t)(dot - key) &&
+            !strncmp(s->path, key, (size_t)(dot - key)))
+            return *(const bool *)((const char *)c + s->present_offset);
+    }
+    return true;
+}
+
+static void check_truss(const hf_case *c, hf_config_faults *f)
+{
+    const hf_truss_unit *unit[] = {&c->truss.bud, &c->truss.mbug, &c->truss.abug};
+    static const char *const wall[] = {"truss.bud.wall_m", "truss.mbug.wall_m", "truss.abug.wall_m"};
+    if (!c->has_truss_import && !c->has_parabolic_cylinder)
+        hf_config_fault_of(f, "truss", "needs scene.parabolic_cylinder to be generated over, or truss.import");
+    for (int i = 0; i < hf_n_field && c->has_truss_import; i++) {
+        const char *path = hf_field_table[i].path;
+        if (!strncmp(path, "truss.", 6) && strncmp(path, "truss.import.", 13) &&
+            strcmp(path, "truss.match_tolerance_m") && *hf_config_where(f, i))
+            hf_config_fault_of(f, path, "has no effect beside truss.import, which brings all members; remove it");
+    }
+    for (int k = 0; k < 3 && !c->has_truss_import; k++)
+        if (2 * unit[k]->wall_m > unit[k]->diameter_m)
+            hf_config_fault_of(f, wall[k], "must not be more than half the diameter_m beside it");
+}
+
+void hf_config_check(const hf_case *c, hf_config_faults *f)
+{
+    const hf_optimize_settings *o = &c->optimize;
+    char what[WHAT_SIZE];
+    if (!one_section_makes_the_net(c, what)) hf_config_fault_of(f, "scene", what);
+    for (int i = 0; i < hf_n_field; i++)
+        if (!hf_field_table[i].default_value && has_section_of(c, hf_field_table[i].path) && !*hf_config_where(f, i))
+            hf_config_fault_of(f, hf_field_table[i].path, "is missing and has no default");
+    if (c->has_surface && c->surface.focal_length_m == 0 && known_surface(c).focal_length_m == 0 && !f->failed)
+        hf_config_fault_of(f, "surface.focal_length_m",
+                           c->has_import ? "is missing: an imported net does not tell its surface"
+                                         : "is missing: this net does not tell its surface");
+    if ((c->has_truss || c->has_truss_import) && !f->failed) check_truss(c, f);
+    if (!c->has_optimize || f->failed) return; /* values that were refused are not compared */
+    if (o->min_tension_N >= o->max_tension_N)
+        hf_config_fault_of(f, "optimize.min_tension_N", "must be below optimize.max_tension_N");
+    if (o->elites >= o->population) hf_config_fault_of(f, "optimize.elites", "must be below optimize.population");
+    if (o->crossover_low > o->crossover_high)
+        hf_config_fault_of(f, "optimize.crossover_low", "must not be above optimize.crossover_high");
+    if (o->mutation_low > o->mutation_high)
+        hf_config_fault_of(f, "optimize.mutation_low", "must not be above optimize.mutation_high");
+}
+
+void hf_config_complete(hf_case *c)
+{
+    c->has_truss |= c->has_truss_import;
+    if (!c->has_surface) return;
+    hf_surface_settings known = known_surface(c);
+    if (c->surface.focal_length_m == 0) c->surface.focal_length_m = known.focal_length_m;
+    if (c->surface.strip_width_m == 0) c->surface.strip_width_m = known.strip_width_m;
+}

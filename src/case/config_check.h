@@ -1,0 +1,15 @@
+/* config_check - what joins several keys of a case: faults of keys that do not go together, and what one key gives to
+ * another. */
+#ifndef HIFDM_CONFIG_CHECK_H
+#define HIFDM_CONFIG_CHECK_H
+
+#include "case/config_fault.h"
+
+/* Report the keys that are missing and those that do not go together. */
+void hf_config_check(const hf_case *settings, hf_config_faults *faults);
+
+/* Set what follows from the sections that are there: whether there is a truss; of the surface, what the generator of
+ * the net knows and the case does not give. */
+void hf_config_complete(hf_case *settings);
+
+#endif
