@@ -21,7 +21,7 @@ typedef struct {
     hf_model model;
     int planes;              /* of symmetry that link genes: bit 1 = x, bit 2 = y */
     hf_workspace workspace;  /* holds the found shape until another is computed in it */
-    hf_form_result form;     /* of the form-finding; `hifdm run` keeps it in its summary instead */
+    hf_form_result form;     /* of the form-finding */
     double *start_q_N_per_m; /* [n_cable] of the found shape */
     double *base_N;          /* [n_gene] boundary pretensions of the found shape, averaged over linked genes */
     hf_evaluator evaluator;  /* of designs of this problem */

@@ -219,25 +219,25 @@ static hf_status print_optimize_time(hf_problem *p, const hf_evaluator *v, int t
 static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, FILE *f, hf_messages *messages)
 {
     hf_form_settings form = p->settings.form;
-    hf_form_result r;
+    hf_form_result *r = &p->form;
     char text[32];
     form.max_iterations = form.max_iterations < 3 ? form.max_iterations : 3;
     double begin_s = hf_clock_s();
-    hf_evaluate_form(&p->model, &form, &p->workspace, NULL, &r);
-    double iteration_s = (hf_clock_s() - begin_s) / r.iterations, affordable = TRIAL_S / iteration_s;
+    hf_evaluate_form(&p->model, &form, &p->workspace, NULL, r);
+    double iteration_s = (hf_clock_s() - begin_s) / r->iterations, affordable = TRIAL_S / iteration_s;
     form.max_iterations =
         affordable < p->settings.form.max_iterations ? (int)affordable + 1 : p->settings.form.max_iterations;
     begin_s = hf_clock_s();
-    hf_evaluate_form(&p->model, &form, &p->workspace, NULL, &r);
+    hf_evaluate_form(&p->model, &form, &p->workspace, NULL, r);
     hf_print_duration(hf_clock_s() - begin_s, text, sizeof text);
-    if (r.status == HF_NOT_CONVERGED && form.max_iterations < p->settings.form.max_iterations) {
+    if (r->status == HF_NOT_CONVERGED && form.max_iterations < p->settings.form.max_iterations) {
         hf_print_duration(iteration_s * p->settings.form.max_iterations, text, sizeof text);
-        fprintf(f, "  expected time form-finding: not finished after %d iterations; at most %s\n", r.iterations, text);
+        fprintf(f, "  expected time form-finding: not finished after %d iterations; at most %s\n", r->iterations, text);
         return HF_OK;
     }
-    fprintf(f, "  expected time form-finding: %s (%d iterations, stopped by %s)\n", text, r.iterations,
-            hf_stop_reason_word((int)r.stop_reason));
-    HF_TRY(hf_problem_explain(p, &r, messages));
+    fprintf(f, "  expected time form-finding: %s (%d iterations, stopped by %s)\n", text, r->iterations,
+            hf_stop_reason_word((int)r->stop_reason));
+    HF_TRY(hf_problem_explain(p, messages));
     if (!v) return HF_OK;
     HF_TRY(hf_problem_base(p, messages));
     if (print_optimize_time(p, v, threads, f) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory");

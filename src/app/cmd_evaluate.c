@@ -118,7 +118,7 @@ static hf_status find_base(job *j, hf_messages *messages)
     hf_problem *p = &j->problem;
     HF_TRY(hf_problem_allocate(p, messages));
     hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
-    HF_TRY(hf_problem_explain(p, &p->form, messages));
+    HF_TRY(hf_problem_explain(p, messages));
     return hf_problem_base(p, messages);
 }
 

@@ -256,8 +256,9 @@ static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, 
                                                                           : "");
 }
 
-hf_status hf_problem_explain(hf_problem *p, const hf_form_result *r, hf_messages *messages)
+hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
 {
+    const hf_form_result *r = &p->form;
     hf_workspace *w = &p->workspace;
     name_list chains = {0};
     switch (r->status) {

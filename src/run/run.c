@@ -104,9 +104,10 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", p->model.n_node);
     observe(r, (hf_run_progress){.phase = HF_RUN_FORM});
     double start_s = hf_clock_s();
-    hf_evaluate_form(&p->model, form, &p->workspace, &r->history, &s->form);
+    hf_evaluate_form(&p->model, form, &p->workspace, &r->history, &p->form);
     s->form_wall_s = hf_clock_s() - start_s;
-    hf_status status = hf_problem_explain(p, &s->form, messages);
+    s->form = p->form;
+    hf_status status = hf_problem_explain(p, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
     HF_TRY(measure_surface(r, HF_STAGE_FORM, &p->workspace, s, messages));
     HF_TRY(hf_store_form(r->store, &p->model, &p->workspace, &r->history, messages));
