@@ -117,7 +117,14 @@ typedef enum {
     HF_RESULT_INT,
     HF_RESULT_STATUS,
     HF_RESULT_STOP_REASON,
-    HF_RESULT_COUPLING_STOP
+    HF_RESULT_COUPLING_STOP,
+    /* only in the lists of <hifdm/summary.h> and <hifdm/surface.h> */
+    HF_RESULT_LONG,
+    HF_RESULT_FLAG,
+    HF_RESULT_TRUTH,
+    HF_RESULT_CONVERGED,
+    HF_RESULT_SOLVER,
+    HF_RESULT_GA_STOP
 } hf_result_kind;
 
 typedef struct {

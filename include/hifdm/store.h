@@ -18,7 +18,7 @@
  *   /scene/node  id [n], position_m [n][3], role [n]; load_N [n][3] if there are loads
  *   /scene/cable id, group, law, target, length_m (theoretical) [m], end [m][2]; EA_N [m] if any is given
  *   /form        position_m [n][3]; length_m, tension_N, q_N_per_m, law [m]
- *                attributes: version, n_node, ..., form_wall_s of hf_summary, and the figures of hf_summary.form
+ *                attributes: version, HF_SUMMARY_FORM_LIST, and the figures of hf_summary.form
  *   /form/history  psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio, length_error [i]
  *   /coupling    with a truss, of the a attachments: node [a], displacement_m, force_N [a][3]; history/step_m, psi_m,
  *                max_displacement_m [form-findings]; attributes: the members of hf_summary.form.coupling (those of best
@@ -27,13 +27,14 @@
  *                iterations, crossover_rate, mutation_rate [g][p]; parent [g][p][2];
  *                best_individual, best_psi_m, mean_psi_m, worst_psi_m, n_infeasible [g];
  *                gene_cable (index into /scene/cable), gene_group, base_N, lower_N, upper_N [k]; gene_leader [k] under
- *                a symmetry; attributes: the members of hf_summary after has_optimize, those of hf_summary.best as
- *                best_...; n_individual, n_variable, generations_limit, by which a run goes on
+ *                a symmetry; attributes: HF_SUMMARY_GA_LIST, the figures of hf_summary.best as best_...; n_individual,
+ *                n_variable, generations_limit, by which a run goes on
  *   /ga/best     as /form, and design_N [k]
- *   /polish      the same, of Levenberg-Marquardt; attributes: the members of hf_summary.polish and polish_...
+ *   /polish      the same, of Levenberg-Marquardt; attributes: HF_SUMMARY_POLISH_LIST, the figures of
+ *                hf_summary.polish
  *   /surface     when the case asks for it: attributes focal_length_m, strip_width_m; frequency_Hz [f]
- *   /surface/form, /surface/optimize, /surface/polish   attributes: the members of hf_surface_measures, those of its
- *                fit as fit_...; gain_loss_dB, fit_gain_loss_dB [f]
+ *   /surface/form, /surface/optimize, /surface/polish   attributes: HF_SURFACE_LIST, HF_SURFACE_FIT_LIST as fit_...;
+ *                gain_loss_dB, fit_gain_loss_dB [f]
  *   /truss       with a nodes, b members, c attachments; attributes mass_kg, n_node, n_member
  *   /truss/node  id, mass_kg [a], position_m [a][3], fixed [a][6]; displacement, reaction [a][6]
  *   /truss/member  id, joint, unit, E_Pa, A_m2, ..., expansion_per_K [b], end [b][2]; end_force [b][12]

@@ -17,45 +17,87 @@ extern "C" {
 
 #define HF_WARNINGS_SIZE 4096
 
+/* ---- The lists: X(type, member, kind, json, key, description) ----
+ *
+ * kind  of the stored value, see HF_RESULT_LIST; CONVERGED is a FLAG that JSON gives as a word
+ * json  place in the JSON object of the stage, after the figures of its result; equal places are in the order of the
+ *       list; 0 = not there
+ * key   in JSON; the attribute in HDF5 has the name of the member
+ *
+ * From them come the members of hf_summary, attributes in HDF5, columns of a sweep's ledger (both in the order of the
+ * list) and the JSON objects. A new figure of a run is a row here and the code that computes it. */
+
+/* Net and form-finding. */
+#define HF_SUMMARY_FORM_LIST(X)                                                                                        \
+    X(int, n_node, INT, 0, "", "nodes")                                                                                \
+    X(int, n_free, INT, 0, "", "nodes that are no supports")                                                           \
+    X(int, n_cable, INT, 0, "", "cables")                                                                              \
+    X(int, n_gene, INT, 0, "", "boundary cables whose pretension an optimisation may change")                          \
+    X(int, half_bandwidth, INT, 0, "", "of the force density matrix")                                                  \
+    X(double, pretension_N, REAL, 0, "", "of the case, N")                                                             \
+    X(double, form_wall_s, REAL, 1, "wall_s", "of the form-finding")
+
+/* The genetic algorithm. */
+#define HF_SUMMARY_GA_LIST(X)                                                                                          \
+    X(hf_solver, solver, SOLVER, 6, "solver", "of the individuals")                                                    \
+    X(double, base_psi_m, REAL, 2, "base_psi_m",                                                                       \
+      "of individual 0 of generation 0, the tensions found under the rule; NaN if infeasible")                         \
+    X(int, n_leader, INT, 5, "independent_genes", "independent genes")                                                 \
+    X(int, planes, INT, 0, "", "HF_PLANE_ bits of the symmetry (1 = x, 2 = y) that links the others")                  \
+    X(int, best_generation, INT, 3, "best_generation", "where the best was found, counted from 0")                     \
+    X(int, best_individual, INT, 3, "best_individual", "the same")                                                     \
+    X(int, generations, INT, 1, "generations", "number finished")                                                      \
+    X(long, evaluations, LONG, 1, "evaluations", "form-findings")                                                      \
+    X(long, infeasible, LONG, 1, "infeasible", "those without a feasible shape among them")                            \
+    X(hf_population_stop, optimize_stop, GA_STOP, 7, "stop_reason", "why it ended")                                    \
+    X(double, optimize_wall_s, REAL, 4, "wall_s", "wall-clock time")                                                   \
+    X(double, optimize_cpu_s, REAL, 4, "cpu_s", "inside evaluations, over all threads")
+
+/* Levenberg-Marquardt. */
+#define HF_SUMMARY_POLISH_LIST(X)                                                                                      \
+    X(bool, polish_is_result, FLAG, 2, "is_result", "its design is the result, not only a comparison")                 \
+    X(int, polish_iterations, INT, 1, "lm_iterations", "steps")                                                        \
+    X(int, polish_evaluations, INT, 1, "evaluations", "form-findings")                                                 \
+    X(bool, polish_converged, CONVERGED, 4, "stop_reason", "to its tolerance")                                         \
+    X(double, polish_wall_s, REAL, 3, "wall_s", "wall-clock time")
+
+/* The truss. */
+#define HF_SUMMARY_TRUSS_LIST(X)                                                                                       \
+    X(double, mass_kg, REAL, 1, "mass_kg", "members and hinges")                                                       \
+    X(int, n_node, INT, 1, "nodes", "nodes")                                                                           \
+    X(int, n_member, INT, 1, "members", "members")
+
+#define HF_SUMMARY_MEMBER(type, member, kind, json, key, description) type member;
+
+typedef struct {
+    HF_SUMMARY_TRUSS_LIST(HF_SUMMARY_MEMBER)
+} hf_truss_summary;
+
 typedef struct {
     char version[64], title[256], case_path[HF_PATH_SIZE];
-    bool finished;    /* false: the run can be resumed */
-    hf_status status; /* of the whole run; HF_NOT_EVALUATED unless finished */
-    int threads;      /* number used */
-    uint64_t seed;    /* of the genetic algorithm */
-    int n_node, n_free, n_cable, n_gene, half_bandwidth;
-    double pretension_N;
+    bool finished;                   /* false: the run can be resumed */
+    hf_status status;                /* of the whole run; HF_NOT_EVALUATED unless finished */
+    int threads;                     /* number used */
+    uint64_t seed;                   /* of the genetic algorithm */
     char warnings[HF_WARNINGS_SIZE]; /* lines "warning: ..." and "error: ..." */
 
     hf_surface_settings surface;     /* focal_length_m is 0 when the case has no such section */
     hf_surface_measures measures[3]; /* of the shapes of form, optimize, polish (hf_stage) */
 
+    HF_SUMMARY_FORM_LIST(HF_SUMMARY_MEMBER)
     hf_form_result form;
-    double form_wall_s; /* of the form-finding */
-    bool has_coupling;  /* the net is attached to an elastic truss; else member `coupling` of the results is all zero */
+    bool has_coupling; /* the net is attached to an elastic truss; else member `coupling` of the results is all zero */
 
-    hf_solver solver; /* of the individuals */
-
-    bool has_polish;       /* Levenberg-Marquardt ran */
-    bool polish_is_result; /* optimize.method asks for it: its design is the result, not only a comparison */
+    bool has_polish; /* Levenberg-Marquardt ran */
     hf_form_result polish;
-    int polish_iterations, polish_evaluations; /* steps; form-findings */
-    bool polish_converged;                     /* to its tolerance */
-    double polish_wall_s;
+    HF_SUMMARY_POLISH_LIST(HF_SUMMARY_MEMBER)
 
-    bool has_truss;       /* the next three are set */
-    double truss_mass_kg; /* members and hinges */
-    int truss_nodes, truss_members;
+    bool has_truss; /* `truss` is set */
+    hf_truss_summary truss;
 
-    bool has_optimize;    /* the genetic algorithm ran; all that follows is about it */
-    double base_psi_m;    /* of individual 0 of generation 0, the tensions found under the rule; NaN if infeasible */
-    int n_leader, planes; /* independent genes; HF_PLANE_ bits of the symmetry (1 = x, 2 = y) that links the others */
-    hf_form_result best;  /* of the best individual; status HF_NOT_EVALUATED when none was feasible */
-    int best_generation, best_individual; /* where the best was found, counted from 0 */
-    int generations;                      /* number finished */
-    long evaluations, infeasible;         /* form-findings; those without a feasible shape among them */
-    hf_population_stop optimize_stop;
-    double optimize_wall_s, optimize_cpu_s; /* cpu_s: inside evaluations, over all threads */
+    bool has_optimize;   /* the genetic algorithm ran; all that follows is about it */
+    hf_form_result best; /* of the best individual; status HF_NOT_EVALUATED when none was feasible */
+    HF_SUMMARY_GA_LIST(HF_SUMMARY_MEMBER)
 } hf_summary;
 
 /* One JSON object, grouped by stage; a stage that did not run is absent, NaN is null. `messages`: lines as hf_messages

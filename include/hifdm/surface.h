@@ -14,6 +14,42 @@
 extern "C" {
 #endif
 
+/* ---- The lists: X(type, member, kind, json, description) ----
+ *
+ * kind  of the stored value, see HF_RESULT_LIST; TRUTH is a bool stored as a number
+ * json  place in the JSON object `surface` of a stage, where the fit's figures are called fit_...; equal places are in
+ *       the order of the list, the measures before the fit; 0 = not there
+ *
+ * Attributes in HDF5 (/surface/STAGE; those of the fit are fit_...) are in the order of the lists. A new figure is a
+ * row here and the code that computes it. */
+#define HF_SURFACE_LIST(X)                                                                                             \
+    X(double, z_rms_m, REAL, 1, "of the nodes' heights above their theoretical heights")                               \
+    X(double, normal_rms_m, REAL, 1, "raw")                                                                            \
+    X(double, half_path_rms_m, REAL, 1, "raw")                                                                         \
+    X(double, faceting_rms_m, REAL, 4, "error of flat strips of width w, w^2/(24 sqrt(5) f); NaN without a width")     \
+    X(double, deviation_p50_m, REAL, 4, "of the distances in psi, as the next four: half of them are not above it")    \
+    X(double, deviation_p90_m, REAL, 4, "90 %")                                                                        \
+    X(double, deviation_p95_m, REAL, 4, "95 %")                                                                        \
+    X(double, deviation_p99_m, REAL, 4, "99 %")                                                                        \
+    X(double, deviation_max_m, REAL, 4, "the largest")
+
+#define HF_SURFACE_FIT_LIST(X)                                                                                         \
+    X(double, half_path_rms_m, REAL, 3, "of the nodes' errors against the fitted surface")                             \
+    X(double, normal_rms_m, REAL, 2, "the same along the normal")                                                      \
+    X(double, focal_length_m, REAL, 3, "of the fitted surface")                                                        \
+    X(double, shift_x_m, REAL, 3, "")                                                                                  \
+    X(double, shift_z_m, REAL, 3, "")                                                                                  \
+    X(double, rotation_x_rad, REAL, 3, "")                                                                             \
+    X(double, rotation_y_rad, REAL, 3, "")                                                                             \
+    X(double, rotation_z_rad, REAL, 3, "")                                                                             \
+    X(double, center_x_m, REAL, 0, "of the nodes")                                                                     \
+    X(double, center_y_m, REAL, 0, "of the nodes")                                                                     \
+    X(double, center_z_m, REAL, 0, "of the nodes")                                                                     \
+    X(int, iterations, INT, 0, "of the last fit")                                                                      \
+    X(bool, converged, TRUTH, 5, "false: all but the centre and iterations is NaN")
+
+#define HF_SURFACE_MEMBER(type, member, kind, json, description) type member;
+
 /* The parabolic cylinder with the least half-path RMS from a set of nodes: the wanted one with another focal length,
  * turned about the centre of the nodes by Rx(a) Ry(b) Rz(c), then shifted. A shift along y changes nothing and is left
  * out. In a shallow reflector a shift in x and a turn about y are nearly the same motion: each of the two
@@ -22,13 +58,7 @@ extern "C" {
  * of the net's half-width or is not found. focal_length_m is the wanted one where the nodes do not determine it, for
  * example when they lie on two lines along y. */
 typedef struct {
-    double half_path_rms_m, normal_rms_m; /* of the nodes' errors against the fitted surface */
-    double focal_length_m;
-    double shift_x_m, shift_z_m;
-    double rotation_x_rad, rotation_y_rad, rotation_z_rad;
-    double center_m[3];
-    int iterations;
-    int converged; /* 1 or 0, an int because it is stored as one; 0: all but center_m and iterations is NaN */
+    HF_SURFACE_FIT_LIST(HF_SURFACE_MEMBER)
 } hf_surface_fit;
 
 /* Fit n nodes, position_m [3][n]. With fewer than six nodes the answer is not unique. HF_OK or HF_NO_MEMORY. GSL's
@@ -36,12 +66,8 @@ typedef struct {
 hf_status hf_surface_fit_nodes(double focal_length_m, int n, const double *position_m, hf_surface_fit *fit);
 
 typedef struct {
-    bool is_measured;                     /* false: the other members have no meaning */
-    double z_rms_m;                       /* of the nodes' heights above their theoretical heights */
-    double normal_rms_m, half_path_rms_m; /* raw */
-    double faceting_rms_m;                /* error of flat strips of width w, w^2/(24 sqrt(5) f); NaN without a width */
-    double deviation_p50_m, deviation_p90_m, deviation_p95_m, deviation_p99_m; /* of the distances in psi */
-    double deviation_max_m;
+    bool is_measured; /* false: the other members have no meaning */
+    HF_SURFACE_LIST(HF_SURFACE_MEMBER)
     hf_surface_fit fit;
     double gain_loss_dB[HF_LIST_MAX], fit_gain_loss_dB[HF_LIST_MAX]; /* by frequency, (M17) */
 } hf_surface_measures;

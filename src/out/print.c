@@ -141,8 +141,8 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
     fprintf(f, "  net           %d nodes (%d free), %d cables (%d adjustable); half-bandwidth %d; pretension %g N\n",
             s->n_node, s->n_free, s->n_cable, s->n_gene, s->half_bandwidth, s->pretension_N);
     if (s->has_truss)
-        fprintf(f, "  truss         %d nodes, %d members; %.2f kg\n", s->truss_nodes, s->truss_members,
-                s->truss_mass_kg);
+        fprintf(f, "  truss         %d nodes, %d members; %.2f kg\n", s->truss.n_node, s->truss.n_member,
+                s->truss.mass_kg);
     fprintf(f, "  form-finding  psi %.4f mm after %d iteration%s, stopped by %s, %s\n", s->form.psi_m * 1e3,
             s->form.iterations, s->form.iterations == 1 ? "" : "s", hf_stop_reason_word((int)s->form.stop_reason),
             wall);

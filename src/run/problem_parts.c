@@ -58,9 +58,9 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->pretension_N = model->pretension_N;
     if (p->settings.has_surface) s->surface = p->settings.surface;
     s->has_truss = settings->has_truss;
-    s->truss_mass_kg = p->carrier.mass_kg;
-    s->truss_nodes = p->carrier.truss.n_node;
-    s->truss_members = p->carrier.truss.n_member;
+    s->truss.mass_kg = p->carrier.mass_kg;
+    s->truss.n_node = p->carrier.truss.n_node;
+    s->truss.n_member = p->carrier.truss.n_member;
 }
 
 hf_status hf_problem_spare_inputs(const hf_problem *p, const char *table, const char *output, hf_messages *messages)

@@ -223,7 +223,9 @@ hf_status hf_surface_fit_nodes(double focal_length_m, int n, const double *posit
     p.curvature = 1 / (4 * focal_length_m);
     *fit = (hf_surface_fit){0};
     center(&p);
-    memcpy(fit->center_m, p.center, sizeof p.center);
+    fit->center_x_m = p.center[0];
+    fit->center_y_m = p.center[1];
+    fit->center_z_m = p.center[2];
     /* first rigid, then with the focal length, then with the shift along x, each fit from the one before, as long as
      * the nodes determine the parameters */
     for (size_t n_parameter = CURVE; n_parameter <= N_PARAMETER; n_parameter++) {

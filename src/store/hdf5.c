@@ -486,7 +486,7 @@ bool hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *a
 
 /* ---- tables ---- */
 
-int hf_hdf5_enum_value(const hf_hdf5_member *m, const void *owner)
+int hf_hdf5_int_value(const hf_hdf5_member *m, const void *owner)
 {
     const char *member = (const char *)owner + m->offset;
     int value;
@@ -496,6 +496,15 @@ int hf_hdf5_enum_value(const hf_hdf5_member *m, const void *owner)
     return value;
 }
 
+static void set_int_value(const hf_hdf5_member *m, int value, void *owner)
+{
+    char *member = (char *)owner + m->offset;
+    if (m->size == sizeof(bool))
+        *(bool *)member = value != 0;
+    else
+        memcpy(member, &value, sizeof value);
+}
+
 void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const void *owner)
 {
     for (const hf_hdf5_member *m = table; m < table + n; m++) {
@@ -503,8 +512,11 @@ void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const 
         if (m->kind == HF_KIND_CHARS) {
             hf_hdf5_put_chars(io, io->file, m->object, m->name, member);
         } else if (is_enum(m->kind)) {
-            int value = hf_hdf5_enum_value(m, owner);
-            hf_hdf5_put(io, io->file, m->object, m->name, m->kind, 0, &(signed char){(signed char)value});
+            signed char value = (signed char)hf_hdf5_int_value(m, owner);
+            hf_hdf5_put(io, io->file, m->object, m->name, m->kind, 0, &value);
+        } else if (m->kind == HF_KIND_INT) {
+            int value = hf_hdf5_int_value(m, owner);
+            hf_hdf5_put(io, io->file, m->object, m->name, m->kind, 0, &value);
         } else {
             assert(m->size == hf_hdf5_kind_bytes(m->kind));
             hf_hdf5_put(io, io->file, m->object, m->name, m->kind, 0, member);
@@ -515,16 +527,16 @@ void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const 
 void hf_hdf5_get_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, void *owner)
 {
     for (const hf_hdf5_member *m = table; m < table + n; m++) {
-        char *member = (char *)owner + m->offset;
         signed char byte = 0;
-        if (!is_enum(m->kind)) {
-            hf_hdf5_get(io, io->file, m->object, m->name, m->kind, member, m->size);
-        } else {
+        int value = 0;
+        if (is_enum(m->kind)) {
             hf_hdf5_get(io, io->file, m->object, m->name, m->kind, &byte, 1);
-            if (m->size == sizeof(bool))
-                *(bool *)member = byte != 0;
-            else
-                memcpy(member, &(int){byte}, sizeof(int));
+            set_int_value(m, byte, owner);
+        } else if (m->kind == HF_KIND_INT) {
+            hf_hdf5_get(io, io->file, m->object, m->name, m->kind, &value, sizeof value);
+            set_int_value(m, value, owner);
+        } else {
+            hf_hdf5_get(io, io->file, m->object, m->name, m->kind, (char *)owner + m->offset, m->size);
         }
     }
 }

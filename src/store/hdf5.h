@@ -147,14 +147,15 @@ bool hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *a
 
 /* ---- Tables: one list of members serves writing and reading ---- */
 
-/* A member of a struct <-> an attribute. Enumerations are int, enum or bool in the struct, strings char[size]. */
+/* A member of a struct <-> an attribute. Enumerations and HF_HDF5_INT are int, enum or bool in the struct, strings
+ * char[size]. */
 typedef struct {
     const char *object, *name;
     const hf_hdf5_kind *kind;
     size_t offset, size;
 } hf_hdf5_member;
 
-int hf_hdf5_enum_value(const hf_hdf5_member *member, const void *owner); /* of HF_HDF5_ENUM */
+int hf_hdf5_int_value(const hf_hdf5_member *member, const void *owner); /* of HF_HDF5_ENUM and HF_HDF5_INT */
 
 void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const void *owner);
 void hf_hdf5_get_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, void *owner);

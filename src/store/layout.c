@@ -151,8 +151,8 @@ void hf_layout_read_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *c
 #define POLISH_COUPLING(type, member, kind, ...)                                                                       \
     HF_HDF5_MEMBER(hf_summary, "/polish", "coupling_" #member, polish.coupling.member, kind)
 
-/* The rest of the summary: X(struct, object, attribute, member, kind) */
-#define FORM_MEMBERS(X)                                                                                                \
+/* What the summary says of the run itself: X(struct, object, attribute, member, kind) */
+#define RUN_MEMBERS(X)                                                                                                 \
     X(hf_summary, "/", "title", title, CHARS)                                                                          \
     X(hf_summary, "/", "threads", threads, INT)                                                                        \
     X(hf_summary, "/", "seed", seed, UINT64)                                                                           \
@@ -161,48 +161,18 @@ void hf_layout_read_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *c
     X(hf_summary, "/", "has_polish", has_polish, FLAG)                                                                 \
     X(hf_summary, "/", "has_optimize", has_optimize, FLAG)                                                             \
     X(hf_summary, "/case", "case_path", case_path, CHARS)                                                              \
-    X(hf_summary, "/form", "version", version, CHARS)                                                                  \
-    X(hf_summary, "/form", "n_node", n_node, INT)                                                                      \
-    X(hf_summary, "/form", "n_free", n_free, INT)                                                                      \
-    X(hf_summary, "/form", "n_cable", n_cable, INT)                                                                    \
-    X(hf_summary, "/form", "n_gene", n_gene, INT)                                                                      \
-    X(hf_summary, "/form", "half_bandwidth", half_bandwidth, INT)                                                      \
-    X(hf_summary, "/form", "pretension_N", pretension_N, REAL)                                                         \
-    X(hf_summary, "/form", "form_wall_s", form_wall_s, REAL)
+    X(hf_summary, "/form", "version", version, CHARS)
 
-/* only when has_polish */
-#define POLISH_MEMBERS(X)                                                                                              \
-    X(hf_summary, "/polish", "polish_is_result", polish_is_result, FLAG)                                               \
-    X(hf_summary, "/polish", "polish_iterations", polish_iterations, INT)                                              \
-    X(hf_summary, "/polish", "polish_evaluations", polish_evaluations, INT)                                            \
-    X(hf_summary, "/polish", "polish_converged", polish_converged, FLAG)                                               \
-    X(hf_summary, "/polish", "polish_wall_s", polish_wall_s, REAL)
+#define FORM_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/form", #member, member, kind)
+#define GA_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/ga", #member, member, kind)
+#define POLISH_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/polish", #member, member, kind)
+#define TRUSS_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/truss", #member, truss.member, kind)
 
-/* only when has_optimize */
-#define GA_MEMBERS(X)                                                                                                  \
-    X(hf_summary, "/ga", "solver", solver, INT)                                                                        \
-    X(hf_summary, "/ga", "base_psi_m", base_psi_m, REAL)                                                               \
-    X(hf_summary, "/ga", "n_leader", n_leader, INT)                                                                    \
-    X(hf_summary, "/ga", "planes", planes, INT)                                                                        \
-    X(hf_summary, "/ga", "best_generation", best_generation, INT)                                                      \
-    X(hf_summary, "/ga", "best_individual", best_individual, INT)                                                      \
-    X(hf_summary, "/ga", "generations", generations, INT)                                                              \
-    X(hf_summary, "/ga", "evaluations", evaluations, LONG)                                                             \
-    X(hf_summary, "/ga", "infeasible", infeasible, LONG)                                                               \
-    X(hf_summary, "/ga", "optimize_stop", optimize_stop, GA_STOP)                                                      \
-    X(hf_summary, "/ga", "optimize_wall_s", optimize_wall_s, REAL)                                                     \
-    X(hf_summary, "/ga", "optimize_cpu_s", optimize_cpu_s, REAL)
-
-/* only when has_truss: when there is a group /truss */
-#define TRUSS_MEMBERS(X)                                                                                               \
-    X(hf_summary, "/truss", "mass_kg", truss_mass_kg, REAL)                                                            \
-    X(hf_summary, "/truss", "n_node", truss_nodes, INT)                                                                \
-    X(hf_summary, "/truss", "n_member", truss_members, INT)
-
-static const hf_hdf5_member form[] = {FORM_MEMBERS(HF_HDF5_MEMBER) HF_RESULT_LIST(FORM_FIGURE)};
-static const hf_hdf5_member ga[] = {GA_MEMBERS(HF_HDF5_MEMBER) HF_RESULT_LIST(BEST_FIGURE)};
-static const hf_hdf5_member polish[] = {POLISH_MEMBERS(HF_HDF5_MEMBER) HF_RESULT_LIST(POLISH_FIGURE)};
-static const hf_hdf5_member truss[] = {TRUSS_MEMBERS(HF_HDF5_MEMBER)};
+static const hf_hdf5_member form[] = {RUN_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_FORM_LIST(FORM_MEMBER)
+                                          HF_RESULT_LIST(FORM_FIGURE)};
+static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_LIST(GA_MEMBER) HF_RESULT_LIST(BEST_FIGURE)};
+static const hf_hdf5_member polish[] = {HF_SUMMARY_POLISH_LIST(POLISH_MEMBER) HF_RESULT_LIST(POLISH_FIGURE)};
+static const hf_hdf5_member truss[] = {HF_SUMMARY_TRUSS_LIST(TRUSS_MEMBER)};
 static const hf_hdf5_member coupling[] = {HF_COUPLING_LIST(FORM_COUPLING)};
 static const hf_hdf5_member coupling_ga[] = {HF_COUPLING_LIST(BEST_COUPLING)};
 static const hf_hdf5_member coupling_polish[] = {HF_COUPLING_LIST(POLISH_COUPLING)};

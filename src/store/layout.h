@@ -32,6 +32,9 @@ extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_lay
 #define HF_KIND_JOINT (&hf_layout_joint)
 #define HF_KIND_UNIT (&hf_layout_unit)
 #define HF_KIND_COUPLING_STOP (&hf_layout_coupling_stop)
+#define HF_KIND_SOLVER HF_KIND_INT     /* stored as its number */
+#define HF_KIND_CONVERGED HF_KIND_FLAG /* a word in JSON alone */
+#define HF_KIND_TRUTH HF_KIND_INT      /* a bool that was stored as a number before there were flags */
 
 /* The stored kind of a figure of HF_RESULT_LIST. */
 const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind);

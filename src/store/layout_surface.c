@@ -3,33 +3,10 @@
 
 #include <string.h>
 
-/* X(attribute, member) of hf_surface_measures */
-#define MEASURES(X)                                                                                                    \
-    X("z_rms_m", z_rms_m)                                                                                              \
-    X("normal_rms_m", normal_rms_m)                                                                                    \
-    X("half_path_rms_m", half_path_rms_m)                                                                              \
-    X("faceting_rms_m", faceting_rms_m)                                                                                \
-    X("deviation_p50_m", deviation_p50_m)                                                                              \
-    X("deviation_p90_m", deviation_p90_m)                                                                              \
-    X("deviation_p95_m", deviation_p95_m)                                                                              \
-    X("deviation_p99_m", deviation_p99_m)                                                                              \
-    X("deviation_max_m", deviation_max_m)                                                                              \
-    X("fit_half_path_rms_m", fit.half_path_rms_m)                                                                      \
-    X("fit_normal_rms_m", fit.normal_rms_m)                                                                            \
-    X("fit_focal_length_m", fit.focal_length_m)                                                                        \
-    X("fit_shift_x_m", fit.shift_x_m)                                                                                  \
-    X("fit_shift_z_m", fit.shift_z_m)                                                                                  \
-    X("fit_rotation_x_rad", fit.rotation_x_rad)                                                                        \
-    X("fit_rotation_y_rad", fit.rotation_y_rad)                                                                        \
-    X("fit_rotation_z_rad", fit.rotation_z_rad)                                                                        \
-    X("fit_center_x_m", fit.center_m[0])                                                                               \
-    X("fit_center_y_m", fit.center_m[1])                                                                               \
-    X("fit_center_z_m", fit.center_m[2])
-
-#define ROW(attribute, member) {NULL, attribute, HF_KIND_REAL, offsetof(hf_surface_measures, member), sizeof(double)},
-#define COUNT(attribute, member) {NULL, attribute, HF_KIND_INT, offsetof(hf_surface_measures, member), sizeof(int)},
-static const hf_hdf5_member measures_table[] = {MEASURES(ROW) COUNT("fit_iterations", fit.iterations)
-                                                    COUNT("fit_converged", fit.converged)};
+/* The object is set by stage. */
+#define MEASURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_surface_measures, NULL, #member, member, kind)
+#define FIT(type, member, kind, ...) HF_HDF5_MEMBER(hf_surface_measures, NULL, "fit_" #member, fit.member, kind)
+static const hf_hdf5_member measures_table[] = {HF_SURFACE_LIST(MEASURE) HF_SURFACE_FIT_LIST(FIT)};
 #define N_MEASURE HF_HDF5_COUNT(measures_table)
 
 static const hf_hdf5_member settings_table[] = {

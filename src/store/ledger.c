@@ -71,10 +71,8 @@ static int print_number(const hf_hdf5_member *column, const hf_summary *s, char 
         return snprintf(text, size, "%ld", *(const long *)from);
     case HF_HDF5_UINT64:
         return snprintf(text, size, "%" PRIu64, *(const uint64_t *)from);
-    case HF_HDF5_ENUM:
-        return snprintf(text, size, "%d", hf_hdf5_enum_value(column, s));
     default:
-        return snprintf(text, size, "%d", *(const int *)from);
+        return snprintf(text, size, "%d", hf_hdf5_int_value(column, s));
     }
 }
 

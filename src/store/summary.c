@@ -16,31 +16,76 @@ double hf_summary_utilisation(const hf_summary *s)
     return available_s > 0 ? s->optimize_cpu_s / available_s : (double)NAN;
 }
 
+/* ---- figures by the lists ---- */
+
+#define FIELD(type, member, kind, json, key, description)                                                              \
+    {#member, key, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_summary, member), sizeof(type)},
+#define TRUSS_FIELD(type, member, kind, json, key, description)                                                        \
+    {#member, key, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_truss_summary, member), sizeof(type)},
+#define MEASURE(type, member, kind, json, description)                                                                 \
+    {#member, #member, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_surface_measures, member), sizeof(type)},
+#define FIT(type, member, kind, json, description)                                                                     \
+    {#member,     "fit_" #member, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_surface_fit, member),        \
+     sizeof(type)},
+static const hf_result_field form_field[] = {HF_SUMMARY_FORM_LIST(FIELD)};
+static const hf_result_field ga_field[] = {HF_SUMMARY_GA_LIST(FIELD)};
+static const hf_result_field polish_field[] = {HF_SUMMARY_POLISH_LIST(FIELD)};
+static const hf_result_field truss_field[] = {HF_SUMMARY_TRUSS_LIST(TRUSS_FIELD)};
+static const hf_result_field measure_field[] = {HF_SURFACE_LIST(MEASURE)};
+static const hf_result_field fit_field[] = {HF_SURFACE_FIT_LIST(FIT)};
+#define ALL(table) table, (int)(sizeof(table) / sizeof(table)[0])
+
+static void write_field(const hf_result_field *field, const void *owner, hf_json *j)
+{
+    const void *value = (const char *)owner + field->offset;
+    int number = 0;
+    if (field->size == sizeof number) memcpy(&number, value, sizeof number); /* enumerations have the size of an int */
+    switch (field->kind) {
+    case HF_RESULT_REAL:
+        hf_json_number(j, field->key, *(const double *)value);
+        break;
+    case HF_RESULT_INT:
+        hf_json_integer(j, field->key, number);
+        break;
+    case HF_RESULT_LONG:
+        hf_json_integer(j, field->key, *(const long *)value);
+        break;
+    case HF_RESULT_FLAG:
+    case HF_RESULT_TRUTH:
+        hf_json_bool(j, field->key, *(const bool *)value);
+        break;
+    case HF_RESULT_CONVERGED:
+        hf_json_text(j, field->key, *(const bool *)value ? "converged" : "max_iterations");
+        break;
+    case HF_RESULT_STATUS:
+        hf_json_text(j, field->key, hf_status_word((hf_status)number));
+        break;
+    case HF_RESULT_STOP_REASON:
+        hf_json_text(j, field->key, hf_stop_reason_word(number));
+        break;
+    case HF_RESULT_COUPLING_STOP:
+        hf_json_text(j, field->key, hf_coupling_stop_word(number));
+        break;
+    case HF_RESULT_SOLVER:
+        hf_json_text(j, field->key, hf_solver_word[number]);
+        break;
+    case HF_RESULT_GA_STOP:
+        hf_json_text(j, field->key, hf_population_stop_word[number]);
+        break;
+    }
+}
+
 /* Write the members of an object with places from..to, in that order. */
 static void write_fields(const hf_result_field *field, int n, int from, int to, const void *owner, hf_json *j)
 {
     for (int place = from; place <= to; place++)
-        for (int i = 0; i < n; i++) {
-            const void *value = (const char *)owner + field[i].offset;
-            int number;
-            if (field[i].json != place) continue;
-            if (field[i].kind == HF_RESULT_REAL) {
-                hf_json_number(j, field[i].key, *(const double *)value);
-                continue;
-            }
-            memcpy(&number, value, sizeof number); /* enumerations have the size of an int */
-            if (field[i].kind == HF_RESULT_STATUS)
-                hf_json_text(j, field[i].key, hf_status_word((hf_status)number));
-            else if (field[i].kind == HF_RESULT_STOP_REASON)
-                hf_json_text(j, field[i].key, hf_stop_reason_word(number));
-            else if (field[i].kind == HF_RESULT_COUPLING_STOP)
-                hf_json_text(j, field[i].key, hf_coupling_stop_word(number));
-            else
-                hf_json_integer(j, field[i].key, number);
-        }
+        for (int i = 0; i < n; i++)
+            if (field[i].json == place) write_field(&field[i], owner, j);
 }
 
 enum { LAST_PLACE = 9 };
+
+/* ---- stages ---- */
 
 static void write_result(const hf_form_result *r, hf_json *j)
 {
@@ -53,89 +98,63 @@ static void write_result(const hf_form_result *r, hf_json *j)
 static void write_surface(const hf_summary *s, int stage, hf_json *j)
 {
     const hf_surface_measures *m = &s->measures[stage];
-    const hf_surface_fit *fit = &m->fit;
-    const struct {
-        const char *key;
-        double value;
-    } number[] = {
-        {"z_rms_m", m->z_rms_m},
-        {"normal_rms_m", m->normal_rms_m},
-        {"half_path_rms_m", m->half_path_rms_m},
-        {"fit_normal_rms_m", fit->normal_rms_m},
-        {"fit_half_path_rms_m", fit->half_path_rms_m},
-        {"fit_focal_length_m", fit->focal_length_m},
-        {"fit_shift_x_m", fit->shift_x_m},
-        {"fit_shift_z_m", fit->shift_z_m},
-        {"fit_rotation_x_rad", fit->rotation_x_rad},
-        {"fit_rotation_y_rad", fit->rotation_y_rad},
-        {"fit_rotation_z_rad", fit->rotation_z_rad},
-        {"faceting_rms_m", m->faceting_rms_m},
-        {"deviation_p50_m", m->deviation_p50_m},
-        {"deviation_p90_m", m->deviation_p90_m},
-        {"deviation_p95_m", m->deviation_p95_m},
-        {"deviation_p99_m", m->deviation_p99_m},
-        {"deviation_max_m", m->deviation_max_m},
-    };
     if (!m->is_measured) return;
     hf_json_line(j, "  ");
     hf_json_open(j, "surface", '{');
-    for (size_t i = 0; i < sizeof number / sizeof *number; i++)
-        hf_json_number(j, number[i].key, number[i].value);
-    hf_json_bool(j, "fit_converged", fit->converged);
+    for (int place = 1; place <= LAST_PLACE; place++) {
+        write_fields(ALL(measure_field), place, place, m, j);
+        write_fields(ALL(fit_field), place, place, &m->fit, j);
+    }
     hf_json_list(j, "frequency_Hz", s->surface.frequencies_Hz.value, s->surface.frequencies_Hz.n);
     hf_json_list(j, "gain_loss_dB", m->gain_loss_dB, s->surface.frequencies_Hz.n);
     hf_json_list(j, "fit_gain_loss_dB", m->fit_gain_loss_dB, s->surface.frequencies_Hz.n);
     hf_json_close(j, '}');
 }
 
-static void write_truss(const hf_summary *s, hf_json *j)
+static void open_stage(const char *key, hf_json *j)
 {
     hf_json_line(j, " ");
-    hf_json_open(j, "truss", '{');
-    hf_json_number(j, "mass_kg", s->truss_mass_kg);
-    hf_json_integer(j, "nodes", s->truss_nodes);
-    hf_json_integer(j, "members", s->truss_members);
+    hf_json_open(j, key, '{');
+}
+
+static void write_truss(const hf_summary *s, hf_json *j)
+{
+    open_stage("truss", j);
+    write_fields(ALL(truss_field), 1, LAST_PLACE, &s->truss, j);
+    hf_json_close(j, '}');
+}
+
+static void write_form(const hf_summary *s, hf_json *j)
+{
+    open_stage("form", j);
+    write_result(&s->form, j);
+    hf_json_text(j, "stop_reason", hf_stop_reason_word((int)s->form.stop_reason));
+    write_fields(ALL(form_field), 1, LAST_PLACE, s, j);
+    write_surface(s, 0, j);
     hf_json_close(j, '}');
 }
 
 static void write_coupling(const hf_coupling_result *r, hf_json *j)
 {
-    hf_json_line(j, " ");
-    hf_json_open(j, "coupling", '{');
+    open_stage("coupling", j);
     write_fields(hf_coupling_field_of, HF_COUPLING_N, 1, LAST_PLACE, r, j);
     hf_json_close(j, '}');
 }
 
 static void write_optimize(const hf_summary *s, hf_json *j)
 {
-    hf_json_line(j, " ");
-    hf_json_open(j, "optimize", '{');
+    open_stage("optimize", j);
     write_result(&s->best, j);
-    hf_json_integer(j, "generations", s->generations);
-    hf_json_integer(j, "evaluations", s->evaluations);
-    hf_json_integer(j, "infeasible", s->infeasible);
-    hf_json_number(j, "base_psi_m", s->base_psi_m);
-    hf_json_integer(j, "best_generation", s->best_generation);
-    hf_json_integer(j, "best_individual", s->best_individual);
-    hf_json_number(j, "wall_s", s->optimize_wall_s);
-    hf_json_number(j, "cpu_s", s->optimize_cpu_s);
-    hf_json_integer(j, "independent_genes", s->n_leader);
-    hf_json_text(j, "solver", hf_solver_word[s->solver]);
-    hf_json_text(j, "stop_reason", hf_population_stop_word[s->optimize_stop]);
+    write_fields(ALL(ga_field), 1, LAST_PLACE, s, j);
     write_surface(s, 1, j);
     hf_json_close(j, '}');
 }
 
 static void write_polish(const hf_summary *s, hf_json *j)
 {
-    hf_json_line(j, " ");
-    hf_json_open(j, "polish", '{');
+    open_stage("polish", j);
     write_result(&s->polish, j);
-    hf_json_integer(j, "lm_iterations", s->polish_iterations);
-    hf_json_integer(j, "evaluations", s->polish_evaluations);
-    hf_json_bool(j, "is_result", s->polish_is_result);
-    hf_json_number(j, "wall_s", s->polish_wall_s);
-    hf_json_text(j, "stop_reason", s->polish_converged ? "converged" : "max_iterations");
+    write_fields(ALL(polish_field), 1, LAST_PLACE, s, j);
     write_surface(s, 2, j);
     hf_json_close(j, '}');
 }
@@ -146,15 +165,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
     hf_json_open(j, NULL, '{');
     hf_json_text(j, "status", hf_status_word(status));
     if (s->has_truss) write_truss(s, j);
-    if (s->form.status != HF_NOT_EVALUATED) {
-        hf_json_line(j, " ");
-        hf_json_open(j, "form", '{');
-        write_result(&s->form, j);
-        hf_json_text(j, "stop_reason", hf_stop_reason_word((int)s->form.stop_reason));
-        hf_json_number(j, "wall_s", s->form_wall_s);
-        write_surface(s, 0, j);
-        hf_json_close(j, '}');
-    }
+    if (s->form.status != HF_NOT_EVALUATED) write_form(s, j);
     if (s->has_coupling && s->form.coupling.iterations > 0) write_coupling(&s->form.coupling, j);
     if (s->has_optimize) write_optimize(s, j);
     if (s->has_polish) write_polish(s, j);

@@ -38,17 +38,18 @@ static double difference_from(const hf_surface_fit *fit, const double angle[3], 
 {
     static const double corner[4][3] = {{0, 0, 0}, {5, 0, 0}, {0, 12, 0}, {0, 0, 3}}, y[3] = {0, 1, 0};
     double turned[3] = {fit->rotation_x_rad, fit->rotation_y_rad, fit->rotation_z_rad}, g[3], most = 0;
+    double center[3] = {fit->center_x_m, fit->center_y_m, fit->center_z_m};
     turn(angle, y, g);
     for (int k = 0; k < 4; k++) {
         double from[3], a[3], b[3], along = 0;
         for (int c = 0; c < 3; c++)
-            from[c] = corner[k][c] - fit->center_m[c];
+            from[c] = corner[k][c] - center[c];
         turn(turned, from, a);
         turn(angle, corner[k], b);
         a[0] += fit->shift_x_m;
         a[2] += fit->shift_z_m;
         for (int c = 0; c < 3; c++) {
-            a[c] += fit->center_m[c] - b[c] - shift[c];
+            a[c] += center[c] - b[c] - shift[c];
             along += a[c] * g[c];
         }
         for (int c = 0; c < 3; c++)
