@@ -85,6 +85,7 @@ typedef struct {
     hf_double_list frequencies_Hz;
 } hf_surface_settings;
 
+/* Room for the path of a case, a study or a table of a net or truss; a longer one is refused. */
 #define HF_PATH_SIZE 1024
 
 #ifdef __cplusplus

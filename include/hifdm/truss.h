@@ -7,6 +7,7 @@
 #define HIFDM_TRUSS_H
 
 #include <hifdm/generate.h>
+#include <hifdm/settings.h>
 #include <hifdm/status.h>
 
 #ifdef __cplusplus
@@ -143,7 +144,10 @@ void hf_truss_free(hf_truss *truss);
  * different ends and a length. Reports all faults in one go, each with file, line and id. HF_OK, HF_BAD_CASE. */
 hf_status hf_truss_check(const hf_truss *truss, hf_messages *messages);
 
-/* Write "truss_nodes.csv:7: node 'a'" or "truss: node 'a'" into text[size], for messages. */
+/* Room for a path of HF_PATH_SIZE bytes, a line and an id of 255 bytes, the most that a table may have. */
+#define HF_TRUSS_DESCRIPTION_SIZE (HF_PATH_SIZE + 300)
+
+/* Write "truss_nodes.csv:7: node 'a'" or "truss: node 'a'" into text[size], for messages; what has no room is cut. */
 void hf_truss_describe(const hf_truss *truss, bool is_member, int index, char *text, size_t size);
 
 double hf_truss_member_length(const hf_truss *truss, int i_member); /* m */

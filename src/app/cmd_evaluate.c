@@ -247,18 +247,13 @@ static void print_json(const job *from, const char *path, hf_status status, cons
 
 /* ---- together ---- */
 
-/* Refuses an output name before the work begins: one that exists, that is an input, or whose folder cannot be written.
- */
+/* Refuses an output name before the work begins: one that exists, that is an input, or that cannot be written. */
 static hf_status check_output(const job *j, const hf_options *o, const char *path, hf_messages *messages)
 {
-    char folder[HF_OUTPUT_SIZE];
     if (!path) return HF_OK;
     HF_TRY(hf_problem_spare_inputs(&j->problem, o->designs, path, messages));
     HF_TRY(hf_export_claim(path, o->force, messages));
-    hf_path_folder(path, folder, sizeof folder);
-    if (access(folder, W_OK | X_OK) != 0)
-        return hf_error(messages, HF_IO, "%s: cannot write into the folder %s: %s", path, folder, strerror(errno));
-    return HF_OK;
+    return hf_file_out_try(path, messages);
 }
 
 static hf_status execute(job *j, const hf_options *o, const char *path, FILE *file, hf_messages *messages)

@@ -13,7 +13,7 @@ const struct hf_help_exit hf_help_exit_table[HF_HELP_N_EXIT] = {
     {"75", "told to stop"},
 };
 
-#define WIDTH 100
+#define WIDTH 100 /* columns of the help; longer words stand alone on a line */
 
 /* Prints the words of `text` in lines of at most WIDTH characters. The first line begins at `column`, the others at
  * `indent`. */

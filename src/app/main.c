@@ -7,6 +7,7 @@
 #include <hifdm/store.h>
 
 #include <gsl/gsl_errno.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,11 +23,11 @@
  * OpenBLAS: its own threads are not used here, but would spin while the program starts. */
 static void wait_quietly(char **argv)
 {
-    char path[HF_PATH_SIZE];
+    char path[PATH_MAX];
     bool says_how = getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT");
     if (says_how && getenv("OPENBLAS_NUM_THREADS")) return;
     ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
-    if (n <= 0) return;
+    if (n <= 0 || n == sizeof path - 1) return; /* no path, or one that may be cut */
     path[n] = '\0';
     if (strstr(path, "/ld-") || strstr(path, "/ld.so")) return; /* the dynamic linker, told to run this program */
     bool failed = setenv("OPENBLAS_NUM_THREADS", "1", 0) != 0;

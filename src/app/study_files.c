@@ -5,8 +5,10 @@
 hf_status hf_study_files_name(const char *given, const char *study, const char *ending, char name[HF_PATH_SIZE],
                               hf_messages *messages)
 {
-    if (hf_path_choose(given, study, ending, name, HF_PATH_SIZE) && *name) return HF_OK;
-    return hf_error(messages, HF_IO, "%s: no usable path", given ? given : study);
+    if (!hf_path_choose(given, study, ending, name, HF_PATH_SIZE))
+        return hf_error(messages, HF_IO, "%s: the path is too long: here it may have %d bytes", given ? given : study,
+                        HF_PATH_SIZE - 1);
+    return *name ? HF_OK : hf_error(messages, HF_IO, "%s: an empty name of a file or folder was given", study);
 }
 
 hf_status hf_study_files_read(const hf_options *o, char folder[HF_PATH_SIZE], hf_study *study, hf_points *points,

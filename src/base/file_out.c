@@ -13,6 +13,17 @@ hf_status hf_file_out_begin(const char *path, hf_file_out *f, hf_messages *messa
     return hf_error(messages, HF_IO, "%s: the path is too long", path);
 }
 
+hf_status hf_file_out_try(const char *path, hf_messages *messages)
+{
+    hf_file_out f;
+    HF_TRY(hf_file_out_begin(path, &f, messages));
+    int file = hf_file_out_create(f.temporary);
+    if (file < 0) return hf_error(messages, HF_IO, "%s: cannot write: %s", f.temporary, strerror(errno));
+    close(file);
+    hf_file_out_drop(&f);
+    return HF_OK;
+}
+
 void hf_file_out_drop(const hf_file_out *f)
 {
     unlink(f->temporary);

@@ -6,9 +6,11 @@
 #define HIFDM_FILE_OUT_H
 
 #include <hifdm/status.h>
+
+#include <limits.h>
 #include <stdio.h>
 
-#define HF_FILE_OUT_SIZE 1280 /* of a temporary name */
+#define HF_FILE_OUT_SIZE (PATH_MAX + 32) /* of a temporary name; the system refuses a path of PATH_MAX bytes */
 
 typedef struct {
     const char *path;                 /* the visible name; borrowed */
@@ -17,6 +19,9 @@ typedef struct {
 
 /* Choose the temporary name. Nothing is made yet. HF_OK, or HF_IO when the path is too long. */
 hf_status hf_file_out_begin(const char *path, hf_file_out *file, hf_messages *messages);
+
+/* Can the file be made? For a look before long work: makes the temporary file and removes it. HF_OK or HF_IO. */
+hf_status hf_file_out_try(const char *path, hf_messages *messages);
 
 /* The temporary file is written and closed: give it the visible name, replacing what has it. HF_IO with a message and
  * the temporary file removed when that fails. */

@@ -303,7 +303,10 @@ void hf_study_point_text(const hf_study *s, int i, char *text, size_t size)
     for (int a = 0; a < s->n_axis && used < size; a++)
         used += (size_t)snprintf(text + used, size - used, "%s%s", a ? ", " : "",
                                  s->axis[a].canonical[s->value[(size_t)i * (size_t)s->n_axis + (size_t)a]]);
-    if (used >= size && size > 4) strcpy(text + size - 4, "...");
+    if (used < size || size <= 4) return;
+    text[size - 4] = '\0';
+    hf_text_trim_utf8(text);
+    strcat(text, "...");
 }
 
 bool hf_study_has_files(const hf_study *s)

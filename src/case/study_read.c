@@ -45,6 +45,7 @@ static void fault(reader *r, yaml_mark_t mark, const char *key, const char *form
     va_start(arguments, format);
     vsnprintf(what, sizeof what, format, arguments);
     va_end(arguments);
+    hf_text_trim_utf8(what);
     r->failed = true;
     hf_error(r->messages, HF_BAD_CASE, "%s:%zu:%zu: sweep%s%s: %s", r->study->path, mark.line + 1, mark.column + 1,
              *key ? "." : "", key, what);
@@ -151,7 +152,8 @@ static void add_value(reader *r, hf_study_axis *axis, const char *value, yaml_ma
     const hf_field *field = &hf_field_table[axis->field];
     char place[HF_PATH_SIZE + 128], text[VALUE_SIZE];
     snprintf(place, sizeof place, "%s:%zu:%zu: sweep", r->study->path, mark.line + 1, mark.column + 1);
-    bool fits = field->type != HF_FIELD_TEXT ? snprintf(text, sizeof text, "%s", value) : quote(r, field, value, text);
+    bool fits = field->type != HF_FIELD_TEXT ? snprintf(text, sizeof text, "%s", value) < VALUE_SIZE
+                                             : quote(r, field, value, text);
     hf_status status = fits ? hf_config_check_value(axis->field, text, place, r->messages) : HF_BAD_CASE;
     if (!fits) fault(r, mark, field->path, "is too long");
     if (status != HF_OK) {

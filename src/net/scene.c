@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "base/text.h"
 #include "base/union_find.h"
+#include <hifdm/settings.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -74,7 +75,7 @@ static void describe(const hf_scene *s, bool is_cable, int index, char *text, si
 
 static void fault(const hf_scene *s, bool is_cable, int index, int *n_fault, const char *what, hf_messages *messages)
 {
-    char where[512];
+    char where[HF_PATH_SIZE + 300]; /* a path, a line and an id of a table; a longer id is cut */
     if (++*n_fault > HF_FAULT_MAX) return;
     describe(s, is_cable, index, where, sizeof where);
     hf_text_trim_utf8(where);

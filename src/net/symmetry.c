@@ -14,7 +14,7 @@
 /* Base tensions closer than this, relative, are equal but for rounding and convergence. From 1e-6 to 1e-2 no test of
  * this room changes; 1e-9 fails one. */
 #define BASE_AGREEMENT 1e-6
-#define NAMED_MAX 5 /* cables that a message names */
+#define NAMED_MAX 5 /* cables that a message names; ids of tables have at most 255 bytes */
 
 /* ---- mirror images of nodes ---- */
 
@@ -183,7 +183,7 @@ static int reflect(search *q, int axis)
 
 static hf_status refuse(const search *q, int axis, int n_missing, hf_messages *messages)
 {
-    char names[1024] = "", more[32] = "";
+    char names[NAMED_MAX * 260] = "", more[32] = "";
     size_t used = 0;
     for (int e = 0, n = 0; e < q->s->n_cable && n < NAMED_MAX && used < sizeof names; e++) {
         int image = q->cable_image[e];

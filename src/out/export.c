@@ -5,8 +5,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#define PATH_SIZE 1200
-
 #define ROW(name) &hf_exporter_##name,
 const hf_exporter *const hf_exporter_table[HF_N_EXPORTER] = {HF_EXPORTERS(ROW)};
 #undef ROW

@@ -5,9 +5,12 @@
 #define HIFDM_EXPORT_H
 
 #include <hifdm/store.h>
+
+#include <limits.h>
 #include <stdbool.h>
 
-#define HF_EXPORT_SAID_SIZE 4096 /* room for the line in which an exporter says what it wrote */
+/* Room for the line in which an exporter says what it wrote: words, and at most five paths. */
+#define HF_EXPORT_SAID_SIZE (5 * PATH_MAX + 256)
 
 /* What to export, and where to. */
 typedef struct {

@@ -13,8 +13,6 @@
 #include <math.h>
 #include <string.h>
 
-#define PATH_SIZE 1200
-
 typedef struct {
     const hf_scene *scene;
     const hf_shape *shape;
@@ -110,10 +108,10 @@ static void write_members(const void *context, FILE *f)
 }
 
 /* Sets `path` to the file `name` in the folder. HF_EXISTS when the file exists and must not be replaced. */
-static hf_status claim_in_folder(const hf_export_request *o, const char *name, char path[PATH_SIZE],
+static hf_status claim_in_folder(const hf_export_request *o, const char *name, char path[PATH_MAX],
                                  hf_messages *messages)
 {
-    if (snprintf(path, PATH_SIZE, "%s/%s", o->output, name) >= PATH_SIZE)
+    if (snprintf(path, PATH_MAX, "%s/%s", o->output, name) >= PATH_MAX)
         return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
     return hf_export_claim(path, o->force, messages);
 }
@@ -121,7 +119,7 @@ static hf_status claim_in_folder(const hf_export_request *o, const char *name, c
 static hf_status export_truss(const hf_export_request *o, hf_truss *truss, hf_carrier_state *state, char *said,
                               size_t size, hf_messages *messages)
 {
-    char nodes[PATH_SIZE], members[PATH_SIZE];
+    char nodes[PATH_MAX], members[PATH_MAX];
     const truss_view both = {truss, state};
     HF_TRY(claim_in_folder(o, "truss_nodes.csv", nodes, messages));
     HF_TRY(claim_in_folder(o, "members.csv", members, messages));
@@ -139,11 +137,11 @@ static hf_status export_shape(const hf_export_request *o, hf_scene *scene, hf_sh
 {
     hf_summary summary;
     const char *word;
-    char nodes[PATH_SIZE], cables[PATH_SIZE];
+    char nodes[PATH_MAX], cables[PATH_MAX];
     HF_TRY(hf_export_read(o, &summary, scene, shape, &word, messages));
-    HF_TRY(hf_export_folder(o->output, messages));
-    HF_TRY(claim_in_folder(o, "nodes.csv", nodes, messages)); /* both names are checked before either file is written */
+    HF_TRY(claim_in_folder(o, "nodes.csv", nodes, messages)); /* both names are checked before anything is made */
     HF_TRY(claim_in_folder(o, "cables.csv", cables, messages));
+    HF_TRY(hf_export_folder(o->output, messages));
     const view both = {scene, shape};
     HF_TRY(hf_file_out_write(nodes, write_nodes, &both, messages));
     HF_TRY(hf_file_out_write(cables, write_cables, &both, messages));

@@ -24,8 +24,6 @@
 #include <math.h>
 #include <string.h>
 
-#define PATH_SIZE 1200
-
 typedef struct {
     const hf_scene *scene;
     const hf_shape *shape;
@@ -130,11 +128,11 @@ static hf_status demand_EA(const char *path, const hf_scene *s, hf_messages *mes
 }
 
 /* Makes the three names: NAME.csv, NAME_nodes.csv, NAME_totals.csv. */
-static hf_status name_files(const hf_export_request *o, char path[3][PATH_SIZE], hf_messages *messages)
+static hf_status name_files(const hf_export_request *o, char path[3][PATH_MAX], hf_messages *messages)
 {
     static const char *const part[3] = {"", "_nodes", "_totals"};
     for (int i = 0; i < 3; i++) {
-        if (!hf_path_insert(o->output, part[i], path[i], PATH_SIZE))
+        if (!hf_path_insert(o->output, part[i], path[i], PATH_MAX))
             return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
         HF_TRY(hf_export_claim(path[i], o->force, messages));
     }
@@ -146,7 +144,7 @@ static hf_status write_all(const hf_export_request *o, hf_scene *scene, hf_shape
 {
     hf_summary summary;
     const char *word;
-    char path[3][PATH_SIZE];
+    char path[3][PATH_MAX];
     HF_TRY(hf_export_read(o, &summary, scene, shape, &word, messages));
     HF_TRY(demand_EA(o->file, scene, messages));
     HF_TRY(name_files(o, path, messages)); /* all names are checked before any file is written */

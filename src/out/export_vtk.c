@@ -21,13 +21,13 @@
 #include <hifdm/store.h>
 #include <hifdm/truss.h>
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#define PATH_SIZE 1200
 #define LINE_CELL 3   /* VTK's number of the cell type line */
-#define FIELDS_MAX 12 /* point or cell fields of one file; there is room for all that are added below */
+#define FIELDS_MAX 12 /* point or cell fields of one file; add() demands that all have room */
 
 /* ---- a grid of lines ---- */
 
@@ -49,7 +49,9 @@ typedef struct {
 static void add(field *list, int *n, const char *name, const char *units, const hf_hdf5_kind *kind, int columns,
                 const void *values)
 {
-    if (values) list[(*n)++] = (field){name, units, kind, columns, values};
+    if (!values) return;
+    assert(*n < FIELDS_MAX);
+    list[(*n)++] = (field){name, units, kind, columns, values};
 }
 
 /* ---- its file ---- */
@@ -293,13 +295,13 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
 {
     static const char *const name[5] = {"form", "optimize", "polish", "theoretical", "truss"}; /* by hf_stage */
     int has[5] = {1, hf_summary_has_best_shape(summary), summary->has_polish, 1, summary->has_truss};
-    char path[5][PATH_SIZE];
-    HF_TRY(hf_export_folder(o->output, messages));
-    for (int i = 0; i < 5; i++) { /* all names are checked before any file is written */
-        if (snprintf(path[i], PATH_SIZE, "%s/%s.hdf", o->output, name[i]) >= PATH_SIZE)
+    char path[5][PATH_MAX];
+    for (int i = 0; i < 5; i++) { /* all names are checked before anything is made */
+        if (snprintf(path[i], PATH_MAX, "%s/%s.hdf", o->output, name[i]) >= PATH_MAX)
             return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
         if (has[i]) HF_TRY(hf_export_claim(path[i], o->force, messages));
     }
+    HF_TRY(hf_export_folder(o->output, messages));
     int used = snprintf(said, size, "%s: for ParaView, in %s:", o->file, o->output);
     static const int order[5] = {HF_STAGE_NONE, HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, 4};
     for (int k = 0; k < 5; k++) {

@@ -7,13 +7,11 @@
 
 #include <sys/stat.h>
 
-#define PATH_SIZE 1200
-
 /* Sets the name of the page: that of -o, or the name of the file with the ending .html in the current folder. A name
  * that is the file itself is refused. */
-static hf_status choose_output(const hf_export_request *o, char output[PATH_SIZE], hf_messages *messages)
+static hf_status choose_output(const hf_export_request *o, char output[PATH_MAX], hf_messages *messages)
 {
-    if (!hf_path_choose(o->output, o->file, ".html", output, PATH_SIZE))
+    if (!hf_path_choose(o->output, o->file, ".html", output, PATH_MAX))
         return hf_error(messages, HF_IO, "%s: the path is too long", o->output ? o->output : hf_path_name(o->file));
     if (hf_path_is_same(o->file, output))
         return hf_error(messages, HF_EXISTS, "%s: is the result itself; use -o to choose another name", output);
@@ -22,7 +20,7 @@ static hf_status choose_output(const hf_export_request *o, char output[PATH_SIZE
 
 hf_status hf_report(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
 {
-    char output[PATH_SIZE];
+    char output[PATH_MAX];
     struct stat info = {0};
     HF_TRY(choose_output(request, output, messages));
     if (hf_report_is_study(request->file))

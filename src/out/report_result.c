@@ -12,8 +12,8 @@
 #include <math.h>
 #include <string.h>
 
-#define POINTS_MAX 1000 /* points of a series that the page keeps: about what a screen can show */
-#define PROVENANCE_SIZE 8192
+#define POINTS_MAX 1000       /* points of a series that the page keeps: about what a screen can show */
+#define PROVENANCE_SIZE 16384 /* 500 bytes are usual; lines that have no room are left out */
 
 /* The series of a page: path in the file, group and key on the page. The first row of a group sets its length. */
 static const struct {

@@ -4,6 +4,7 @@
 #include "base/file_out.h"
 #include "base/json.h"
 #include "base/path.h"
+#include "case/study.h"
 #include "out/report_page.h"
 #include "store/store_series.h"
 
@@ -13,8 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define INPUTS_MAX 32 /* axes of a study that the page shows */
-#define LINK_SIZE (PATH_MAX + 2)
+#define LINK_SIZE (PATH_MAX + 2) /* of a path to a folder, with a slash; the system refuses longer ones */
 
 /* A stage is shown when any point has it. Each row: the name on the page, and where its data sets begin in the file. */
 static const char *const stage_path[][2] = {
@@ -29,8 +29,8 @@ typedef struct {
     int n;                                        /* points */
     hf_texts id, reason, file, input_name;
     hf_series status;
-    hf_series input[INPUTS_MAX];
-    hf_texts input_text[INPUTS_MAX]; /* of axes whose values are words or seeds */
+    hf_series input[HF_STUDY_AXIS_MAX];
+    hf_texts input_text[HF_STUDY_AXIS_MAX]; /* of axes whose values are words or seeds */
     hf_series output[N_STAGE][N_OUTPUT];
 } study_page;
 
@@ -93,7 +93,7 @@ static void write_inputs(const study_page *p, FILE *f)
 {
     const char *comma = "";
     fputs(",\n\"input\":[", f);
-    for (int a = 0; a < p->input_name.n && a < INPUTS_MAX; a++) {
+    for (int a = 0; a < p->input_name.n && a < HF_STUDY_AXIS_MAX; a++) {
         const hf_series *s = &p->input[a];
         if (s->n != p->n && p->input_text[a].n != p->n) continue;
         fprintf(f, "%s\n{", comma);
@@ -161,7 +161,7 @@ static hf_status read_page(study_page *p, hf_messages *messages)
         return hf_error(messages, HF_IO, "%s: is damaged: /points/id does not name every point", p->path);
     HF_TRY(hf_store_read_links(p->path, "/runs", &p->id, &p->file, messages));
     HF_TRY(hf_store_read_names(p->path, "/points/input", &p->input_name, messages));
-    for (int a = 0; a < p->input_name.n && a < INPUTS_MAX; a++) {
+    for (int a = 0; a < p->input_name.n && a < HF_STUDY_AXIS_MAX; a++) {
         snprintf(name, sizeof name, "/points/input/%s", hf_texts_at(&p->input_name, a));
         HF_TRY(hf_store_read_texts(p->path, name, &p->input_text[a], messages));
         if (!p->input_text[a].n) HF_TRY(hf_store_read_series(p->path, name, 0, &p->input[a], messages));
@@ -181,7 +181,7 @@ static void free_page(study_page *p)
     hf_texts_free(&p->file);
     hf_texts_free(&p->input_name);
     hf_series_free(&p->status);
-    for (int a = 0; a < INPUTS_MAX; a++) {
+    for (int a = 0; a < HF_STUDY_AXIS_MAX; a++) {
         hf_series_free(&p->input[a]);
         hf_texts_free(&p->input_text[a]);
     }

@@ -53,7 +53,7 @@ static hf_status choose_points(sweep *w, const hf_points *points)
 /* ---- one point ---- */
 
 /* Writes the first error message as one line, without "error: " in front. */
-static void first_error(const hf_messages *said, hf_status status, char reason[1024])
+static void first_error(const hf_messages *said, hf_status status, char reason[HF_LEDGER_REASON_MAX + 1])
 {
     const char *from = said->text;
     while (from && strncmp(from, "error: ", 7)) {
@@ -61,15 +61,15 @@ static void first_error(const hf_messages *said, hf_status status, char reason[1
         if (from) from++;
     }
     if (from && *from)
-        snprintf(reason, 1024, "%.*s", (int)strcspn(from + 7, "\n"), from + 7);
+        snprintf(reason, HF_LEDGER_REASON_MAX + 1, "%.*s", (int)strcspn(from + 7, "\n"), from + 7);
     else
-        snprintf(reason, 1024, "%s", hf_status_text(status));
+        snprintf(reason, HF_LEDGER_REASON_MAX + 1, "%s", hf_status_text(status));
     hf_text_trim_utf8(reason);
 }
 
 static void finish_point(sweep *w, int i, hf_status status, const hf_messages *said, const hf_summary *summary)
 {
-    char reason[1024] = "";
+    char reason[HF_LEDGER_REASON_MAX + 1] = "";
     hf_messages trouble = {0};
     const hf_sweep_request *r = w->request;
     if (status != HF_OK) first_error(said, status, reason);

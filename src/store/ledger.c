@@ -18,9 +18,8 @@
 
 #define HEADER "#hifdm-points-1"
 #define SYNC_S 5.0      /* finished points of the last 5 s may be lost by a power cut */
-#define LINE_SIZE 16384 /* of one row, reason included */
-#define REASON_MAX 4000
-#define N_FIXED 4 /* fields before the numbers: id, fingerprint, status, reason */
+#define LINE_SIZE 16384 /* of one row: the reason, and at most 25 bytes for each number */
+#define N_FIXED 4       /* fields before the numbers: id, fingerprint, status, reason */
 
 const char *const hf_point_state_word[HF_N_POINT_STATE] = {"missing", "running", "done", "failed", "outdated"};
 
@@ -182,11 +181,11 @@ static hf_status start_rows(hf_ledger *l, hf_messages *messages)
     return write_line(l, line, used, messages);
 }
 
-/* Copy at most REASON_MAX bytes, with tabs and newlines replaced by blanks. */
+/* Copy at most HF_LEDGER_REASON_MAX bytes, with tabs and newlines replaced by blanks. */
 static size_t put_reason(const char *reason, char *to)
 {
     size_t n = 0;
-    for (; n < REASON_MAX && reason[n]; n++)
+    for (; n < HF_LEDGER_REASON_MAX && reason[n]; n++)
         to[n] = (unsigned char)reason[n] < ' ' ? ' ' : reason[n];
     to[n] = '\0';
     hf_text_trim_utf8(to);
@@ -282,6 +281,7 @@ static void take_row(reading *r, char **field, char **number)
     if (p->state != HF_POINT_DONE) *p = row;
 }
 
+/* Fields of a row that are read: this version writes 99. */
 enum { FIELD_MAX = 512 };
 
 /* from[i]: the field of the file's rows that holds column i, or -1: files of other versions have other columns. */

@@ -50,7 +50,9 @@ hf_status hf_ledger_watch(hf_ledger *ledger, const hf_study *study, hf_messages 
  * thread. */
 bool hf_ledger_is_finished(hf_ledger *ledger, const hf_study *study, int point);
 
-/* A finished point, from any thread. reason: one line, "" after success. HF_OK or HF_IO. */
+/* A finished point, from any thread. reason: one line, "" after success; what is longer than HF_LEDGER_REASON_MAX bytes
+ * is cut. HF_OK or HF_IO. */
+#define HF_LEDGER_REASON_MAX 4000
 hf_status hf_ledger_write(hf_ledger *ledger, const hf_study *study, int point, hf_status status, const char *reason,
                           const hf_summary *summary, hf_messages *messages);
 

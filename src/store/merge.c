@@ -170,7 +170,7 @@ static void write_points(merger *m)
 
 /* ---- links ---- */
 
-/* The folder as seen from the folder of the output; the absolute path where the system gives none. */
+/* The folder as seen from the folder of the output; the absolute path where there is none. */
 static void relative_folder(const char *output, const char *folder, char *to, size_t size)
 {
     char here[PATH_MAX + 1], there[PATH_MAX + 1], parent[PATH_MAX]; /* a slash is added */
@@ -185,7 +185,10 @@ static void relative_folder(const char *output, const char *folder, char *to, si
     *to = '\0';
     for (const char *p = here + common; *p && used + 4 < size; p++)
         if (*p == '/') used += (size_t)snprintf(to + used, size - used, "../");
-    snprintf(to + used, size - used, "%s", there + common);
+    if (used + strlen(there + common) < size)
+        strcpy(to + used, there + common);
+    else
+        snprintf(to, size, "%s", there); /* longer than any path may be: the absolute one has room */
     used = strlen(to);
     if (used && to[used - 1] == '/') to[used - 1] = '\0';
 }

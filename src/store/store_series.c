@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define FILE_MAX 1024 /* bytes of the file name of a link; longer ones are given as "" */
+#define FILE_MAX 1024 /* of the file name of a link; longer ones are given as "", and a page shows no link */
 
 /* ---- numbers ---- */
 

@@ -297,7 +297,7 @@ static hf_status refuse(const hf_frame *f, int row, hf_messages *messages)
     static const char *const direction[] = {"move along x", "move along y", "move along z",
                                             "turn about x", "turn about y", "turn about z"};
     const hf_truss *t = f->truss;
-    char where[512] = "truss";
+    char where[HF_TRUSS_DESCRIPTION_SIZE] = "truss";
     int dof = 0, n_support = 0;
     if (row < 0)
         return hf_error(messages, HF_MECHANISM,

@@ -118,7 +118,7 @@ void hf_truss_describe(const hf_truss *t, bool is_member, int index, char *text,
 
 static void fault(const hf_truss *t, int is_member, int index, int *n_fault, const char *what, hf_messages *messages)
 {
-    char where[512];
+    char where[HF_TRUSS_DESCRIPTION_SIZE];
     if (++*n_fault > HF_FAULT_MAX) return;
     hf_truss_describe(t, is_member, index, where, sizeof where);
     hf_error(messages, HF_BAD_CASE, "%s %s", where, what);

@@ -81,6 +81,21 @@ START_TEST(faults_are_told_with_file_line_and_id)
 }
 END_TEST
 
+/* The path comes first in a message: were it cut, line and id would be missing. */
+START_TEST(long_paths_leave_room_for_line_and_id)
+{
+    char folder[900];
+    int n = snprintf(folder, sizeof folder, "%s", temp("deep"));
+    for (; n < 700; n += 101)
+        snprintf(folder + n, sizeof folder - (size_t)n, "/%0100d", 0);
+    const char *path = net_with(NODES "c2,1,0.5,0.1,inner\n", CABLES "cc,c,c2,inner,tension,1\n");
+    SHELL(0, "mkdir -p \"$1\" && mv \"$2\"/*.csv \"$2\"/net.yaml \"$1\"", folder, temp(""));
+    SHELL(2, "\"$0\" check \"$1\"/net.yaml", folder);
+    ERRS("error: %s/cables.csv:5: cable 'cc' has zero length", folder);
+    ck_assert(!is_there(path));
+}
+END_TEST
+
 START_TEST(long_lists_of_faults_are_cut)
 {
     char cables[4096] = CABLES;
@@ -152,6 +167,7 @@ Suite *suite_cli_bad_net(void)
     TCase *tcase = tcase_create("bad_net");
     tcase_add_loop_test(tcase, faults_are_told_with_file_line_and_id, 0, N_FAULTY);
     tcase_add_test(tcase, long_lists_of_faults_are_cut);
+    tcase_add_test(tcase, long_paths_leave_room_for_line_and_id);
     tcase_add_test(tcase, words_are_cut_between_letters);
     tcase_add_test(tcase, missing_files_of_a_net_are_told);
     tcase_add_test(tcase, other_ways_to_write_a_table_are_read);

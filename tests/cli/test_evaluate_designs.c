@@ -177,7 +177,7 @@ START_TEST(nothing_is_overwritten_unasked)
     HIFDM(5, "evaluate", net, "--designs", designs, "-o", designs, "--force");
     ERR("d.csv: is an input of this run");
     HIFDM(5, "evaluate", net, "--designs", designs, "-o", temp("no/o.csv"));
-    ERR("cannot write into the folder ");
+    ERR("cannot write: No such file or directory\n");
 }
 END_TEST
 

@@ -83,17 +83,22 @@ START_TEST(read_only_folder_is_told)
 }
 END_TEST
 
+/* Makes a folder whose path has more than 1100 bytes: a name may have 255, a path 4095. */
+static const char *deep_folder(void)
+{
+    char folder[1300];
+    int n = snprintf(folder, sizeof folder, "%s", temp("deep"));
+    for (; n < 1100; n += 101)
+        snprintf(folder + n, sizeof folder - (size_t)n, "/%0100d", 0);
+    SHELL(0, "mkdir -p \"$1\"", folder);
+    return keep(folder);
+}
+
 /* To the last letter, or not at all. */
 START_TEST(long_names_are_not_cut)
 {
-    char folder[1200], name[1300];
-    int n = snprintf(folder, sizeof folder, "%s", temp("deep"));
-    SHELL(0, "mkdir -p \"$1\"", folder);
-    for (; n < 1100; n += 101) { /* a name may have 255 letters, a path 4096 */
-        snprintf(folder + n, sizeof folder - (size_t)n, "/%0100d", 0);
-        SHELL(0, "mkdir \"$1\"", folder);
-    }
-    snprintf(name, sizeof name, "%s/long-name.h5", folder);
+    char name[1400];
+    snprintf(name, sizeof name, "%s/long-name.h5", deep_folder());
     struct command command = run_hifdm("run", file_with("c.yaml", SMALL_SCENE), "-o", name);
     if (command.exit_code == 0)
         ck_assert_msg(is_there(name), "%s", command.out);
@@ -102,6 +107,41 @@ START_TEST(long_names_are_not_cut)
     free_command(&command);
     SHELL(0, "find \"$1\" -type f ! -name long-name.h5", temp("deep"));
     ck_assert_str_eq(said.out, "");
+}
+END_TEST
+
+/* Every command that writes takes a path as long as the system does, and refuses a longer one before the work. */
+START_TEST(paths_are_as_long_as_the_system_has_them)
+{
+    static const char *const refused[] = {"run \"$1\" -o",       "evaluate \"$1\" --template",
+                                          "report \"$2\" -o",    "export \"$2\" --csv",
+                                          "export \"$2\" --vtk", "export \"$2\" --cutlist"};
+    const char *deep = deep_folder();
+    const char *c = file_with("c.yaml", SMALL_SCENE "  EA_inner_N: 47000\n  EA_boundary_N: 47000\n"),
+               *out = temp("r.h5");
+    HIFDM(0, "run", c, "-o", out);
+    SHELL(0,
+          "p=\"$3\"/$(printf '%0200d' 0) && mkdir \"$p\" && \"$0\" evaluate \"$1\" --template \"$p\"/t.csv && "
+          "\"$0\" report \"$2\" -o \"$p\"/r.html && "
+          "\"$0\" export \"$2\" --csv \"$p\"/csv --vtk \"$p\"/vtk --cutlist \"$p\"/c.csv && cd \"$p\" && ls . csv vtk",
+          c, out, deep);
+    OUT("/c_totals.csv\n"); /* the line that says so is not cut either */
+    OUT("\nc.csv\nc_nodes.csv\nc_totals.csv\ncsv\nr.html\nt.csv\nvtk\n");
+    OUT("csv:\ncables.csv\nnodes.csv\n");
+    OUT("vtk:\nform.hdf\ntheoretical.hdf\n");
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+        SHELL(5, formatted("cd \"$3\" && \"$0\" %s $(printf '%%05000d' 0)", refused[i]), c, out, deep);
+        ERR("0: the path is too long\n");
+    }
+    const char *study = file_with("s.yaml", "base: c.yaml\nsweep: {form.pretension_N: [9, 10]}\n");
+    HIFDM(5, "sweep", study, "--dir", deep);
+    ERR("0: the path is too long: here it may have 1023 bytes\n");
+    HIFDM(0, "sweep", study, "--dir", temp("s.d"));
+    HIFDM(5, "merge", study, "--dir", temp("s.d"), "-o", formatted("%s/m.h5", deep));
+    ERR("/m.h5: the path is too long: here it may have 1023 bytes\n");
+    SHELL(0, "ls \"$1\"", deep);
+    ck_assert_int_eq(count_of(said.out, "\n"), 1); /* the folder made above, and nothing else */
+    demand_no_leftovers();
 }
 END_TEST
 
@@ -199,6 +239,7 @@ Suite *suite_cli_output(void)
     tcase_add_test(tcase, output_that_cannot_be_is_told);
     tcase_add_test(tcase, read_only_folder_is_told);
     tcase_add_test(tcase, long_names_are_not_cut);
+    tcase_add_test(tcase, paths_are_as_long_as_the_system_has_them);
     tcase_add_test(tcase, the_case_itself_is_not_replaced);
     tcase_add_loop_test(tcase, full_or_closed_standard_output_is_an_error, 0, N_PRINTING);
     tcase_add_test(tcase, closed_streams_do_not_spoil_the_result);

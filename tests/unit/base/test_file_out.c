@@ -74,6 +74,24 @@ START_TEST(a_path_may_be_too_long)
 }
 END_TEST
 
+/* Looked at before the work: a folder that is not there, a name with no room for the ending of the temporary one. */
+START_TEST(a_file_that_cannot_be_is_told_before)
+{
+    hf_messages messages = {0};
+    char name[256];
+    memset(name, 'x', 255); /* the longest that file systems allow */
+    name[255] = '\0';
+    ck_assert_int_eq(hf_file_out_try(temp_path("no/such"), &messages), HF_IO);
+    ck_assert_int_eq(hf_file_out_try(temp_path(name), &messages), HF_IO);
+    ck_assert_ptr_nonnull(strstr(messages.text, "File name too long"));
+    hf_messages_free(&messages);
+    ck_assert_int_eq(hf_file_out_try(temp_path("good"), &messages), HF_OK);
+    ck_assert_int_eq(hf_file_out_try(temp_path("good"), &messages), HF_OK); /* the first one left nothing behind */
+    ck_assert_int_eq(access(temp_path("good"), F_OK), -1);
+    ck_assert_ptr_null(messages.text);
+}
+END_TEST
+
 START_TEST(adding_never_replaces)
 {
     const char *new = temp_path("new"), *path = temp_path("path");
@@ -101,6 +119,7 @@ Suite *suite_unit_file_out(void)
     tcase_add_test(tc, what_cannot_get_its_name_leaves_nothing);
     tcase_add_test(tc, a_taken_temporary_name_is_refused);
     tcase_add_test(tc, a_path_may_be_too_long);
+    tcase_add_test(tc, a_file_that_cannot_be_is_told_before);
     tcase_add_test(tc, adding_never_replaces);
     suite_add_tcase(suite, tc);
     return suite;
