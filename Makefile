@@ -35,6 +35,8 @@ TEST_WRAP_EXTRA ?=
 # The same in tests/fault/test_store_calls.c.
 TEST_WRAP += open write writev pwrite read pread fsync fdatasync rename link unlink ftruncate lseek flock fstat stat \
              access H5Fcreate H5Fopen H5Dcreate2 H5Dopen2 H5Dset_extent H5Dwrite H5Dread H5Awrite H5Aread
+# The same in tests/unit/base/test_file_out.c.
+TEST_WRAP += geteuid
 
 # ---- Flags -----------------------------------------------------------------------------------------------------------
 # No fused multiply-adds and no -ffast-math: our code gives the same bits on every x86-64 machine (LAPACK may not). One

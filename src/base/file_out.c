@@ -1,38 +1,288 @@
+/* Contents: names - locks and leftovers - temporary files - files with fixed names - a file from begin to end */
+#define _GNU_SOURCE /* F_OFD_SETLK */
 #include "base/file_out.h"
 
+#include "base/path.h"
+#include "base/text.h"
+
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
+#include <sys/random.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+#define MARK ".hifdm-"
+#define ENDING ".tmp"
+#define RANDOM_BYTES 16
+#define STEM_MAX 200 /* bytes of a name that its temporary names repeat: these fit into the 255 of a file system */
+#define LINKS_MAX 40 /* as Linux */
+#define ATTEMPTS 100
+
+/* ---- names ---- */
+
+static hf_status tell_too_long(const char *path, hf_messages *messages)
+{
+    return hf_error(messages, HF_IO, "%s: the path is too long", path);
+}
+
+/* HF_IO when the link at `path` is somebody else's. */
+static hf_status check_owner(const char *path, const struct stat *link, hf_messages *messages)
+{
+    if (link->st_uid == geteuid() || link->st_uid == 0) return HF_OK;
+    return hf_error(messages, HF_IO,
+                    "%s: is a symbolic link that somebody else made; name the file that it leads to, or choose another "
+                    "name",
+                    path);
+}
+
+hf_status hf_file_out_target(const char *path, char target[HF_FILE_OUT_SIZE], hf_messages *messages)
+{
+    char to[HF_FILE_OUT_SIZE], next[HF_FILE_OUT_SIZE];
+    struct stat info;
+    if (snprintf(target, HF_FILE_OUT_SIZE, "%s", path) >= HF_FILE_OUT_SIZE) return tell_too_long(path, messages);
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) return HF_OK;
+    for (int i = 0; lstat(target, &info) == 0 && S_ISLNK(info.st_mode); i++) {
+        HF_TRY(check_owner(target, &info, messages));
+        ssize_t n = readlink(target, to, sizeof to - 1);
+        if (i == LINKS_MAX) errno = ELOOP;
+        if (n < 0 || i == LINKS_MAX)
+            return hf_error(messages, HF_IO, "%s: cannot follow this link: %s", path, strerror(errno));
+        to[n] = '\0';
+        if (!hf_path_beside(target, to, next, sizeof next)) return tell_too_long(path, messages);
+        strcpy(target, next);
+    }
+    return HF_OK;
+}
+
+hf_status hf_file_out_folder(const char *path, hf_messages *messages)
+{
+    struct stat info;
+    if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode)) HF_TRY(check_owner(path, &info, messages));
+    if (mkdir(path, 0777) == 0 || errno == EEXIST) return HF_OK;
+    return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", path, strerror(errno));
+}
+
+/* What the temporary names of `path` begin with, without the folder. */
+static void begin_of_names(const char *path, char begin[STEM_MAX + 16])
+{
+    char stem[STEM_MAX + 1];
+    snprintf(stem, sizeof stem, "%s", hf_path_name(path));
+    hf_text_trim_utf8(stem);
+    snprintf(begin, STEM_MAX + 16, ".%s%s", stem, MARK);
+}
+
+/* 0, or -1 and errno. */
+static int choose_name(const char *path, char name[HF_FILE_OUT_SIZE])
+{
+    unsigned char bytes[RANDOM_BYTES];
+    char hex[2 * RANDOM_BYTES + 1], begin[STEM_MAX + 16];
+    if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes) return -1;
+    for (int i = 0; i < RANDOM_BYTES; i++)
+        snprintf(hex + 2 * i, 3, "%02x", (unsigned)bytes[i]);
+    begin_of_names(path, begin);
+    int n = snprintf(name, HF_FILE_OUT_SIZE, "%.*s%s%s%s", hf_path_prefix_length(path), path, begin, hex, ENDING);
+    if (n < HF_FILE_OUT_SIZE) return 0;
+    errno = ENAMETOOLONG;
+    return -1;
+}
+
+static bool is_temporary_name(const char *name, const char *begin)
+{
+    size_t n = strlen(begin);
+    return !strncmp(name, begin, n) && strspn(name + n, "0123456789abcdef") == (size_t)2 * RANDOM_BYTES &&
+           !strcmp(name + n + (size_t)2 * RANDOM_BYTES, ENDING);
+}
+
+/* ---- locks and leftovers ---- */
+
+typedef enum { LOCKED, HELD_BY_ANOTHER, WITHOUT_LOCKS } lock_answer;
+
+/* The lock belongs to the open file and ends with it, however the process ends. It is no flock(2), which HDF5 may take
+ * on the same file by a descriptor of its own. */
+static lock_answer lock_file(int file)
+{
+    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    if (fcntl(file, F_OFD_SETLK, &lock) == 0) return LOCKED;
+    return errno == EAGAIN || errno == EACCES ? HELD_BY_ANOTHER : WITHOUT_LOCKS;
+}
+
+static void remove_leftover(const char *name)
+{
+    struct stat info;
+    int file = open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return;
+    if (fstat(file, &info) == 0 && S_ISREG(info.st_mode) && lock_file(file) == LOCKED && hf_path_leads_to(name, file))
+        unlink(name); /* it may be a second name of the visible file (hf_file_out_add), so it is never written into */
+    close(file);
+}
+
+void hf_file_out_clean(const char *path)
+{
+    char folder[HF_FILE_OUT_SIZE], begin[STEM_MAX + 16], name[HF_FILE_OUT_SIZE];
+    if (!hf_path_folder(path, folder, sizeof folder)) return;
+    DIR *list = opendir(folder);
+    if (!list) return;
+    begin_of_names(path, begin);
+    for (const struct dirent *entry; (entry = readdir(list)) != NULL;)
+        if (is_temporary_name(entry->d_name, begin) && hf_path_beside(path, entry->d_name, name, sizeof name))
+            remove_leftover(name);
+    closedir(list);
+}
+
+/* ---- temporary files ---- */
+
+static int close_with(int file, int why)
+{
+    close(file);
+    errno = why;
+    return -1;
+}
+
+int hf_file_out_make(const char *path, hf_file_out *f)
+{
+    struct stat info;
+    f->file = -1;
+    *f->temporary = '\0';
+    if (path != f->path) snprintf(f->path, sizeof f->path, "%s", path);
+    for (int i = 0; i < ATTEMPTS; i++) {
+        if (choose_name(f->path, f->temporary) != 0) return -1;
+        f->file = hf_file_out_create(f->temporary);
+        if (f->file < 0 && errno != EEXIST) return -1;
+        if (f->file < 0) continue;
+        /* between the two calls above and below another process may have taken it for a leftover */
+        bool is_ours = lock_file(f->file) != HELD_BY_ANOTHER;
+        if (fstat(f->file, &info) != 0) break;
+        if (is_ours && info.st_nlink > 0) return 0;
+        hf_file_out_drop(f);
+        errno = EAGAIN;
+    }
+    int why = errno;
+    hf_file_out_drop(f);
+    errno = why;
+    return -1;
+}
+
+void hf_file_out_drop(hf_file_out *f)
+{
+    if (f->file < 0) return;
+    unlink(f->temporary);
+    close(f->file);
+    f->file = -1;
+}
+
+int hf_file_out_sync(int file)
+{
+    return fsync(file) == 0 || errno == EINVAL ? 0 : -1; /* EINVAL: this file system has no such thing */
+}
+
+int hf_file_out_sync_folder(const char *path)
+{
+    char folder[HF_FILE_OUT_SIZE];
+    hf_path_folder(path, folder, sizeof folder);
+    int file = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (file < 0 || hf_file_out_sync(file) != 0) return file < 0 ? -1 : close_with(file, errno);
+    close(file);
+    return 0;
+}
+
+static void end(hf_file_out *f)
+{
+    close(f->file);
+    f->file = -1;
+}
+
+int hf_file_out_replace(hf_file_out *f, const char *path)
+{
+    if (rename(f->temporary, path) != 0) return -1;
+    end(f);
+    return 0;
+}
+
+int hf_file_out_add(hf_file_out *f, const char *path)
+{
+    if (link(f->temporary, path) == 0) {
+        unlink(f->temporary); /* where that fails, hf_file_out_clean tries again */
+        end(f);
+        return 0;
+    }
+    if (errno == EEXIST) return -1;
+    /* a file system without links: take the name with an empty file, then replace that */
+    int file = hf_file_out_create(path);
+    if (file < 0) return -1;
+    close(file);
+    if (rename(f->temporary, path) == 0) {
+        end(f);
+        return 0;
+    }
+    int why = errno;
+    unlink(path);
+    errno = why;
+    return -1;
+}
+
+void hf_file_out_name(const hf_file_out *f, char name[HF_FILE_OUT_NAME_SIZE])
+{
+    snprintf(name, HF_FILE_OUT_NAME_SIZE, "/proc/self/fd/%d", f->file);
+    if (!hf_path_leads_to(name, f->file)) snprintf(name, HF_FILE_OUT_NAME_SIZE, "%s", f->temporary);
+}
+
+/* ---- files with fixed names ---- */
+
+int hf_file_out_create(const char *name)
+{
+    return open(name, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+}
+
+int hf_file_out_keep(const char *name, bool *was_there)
+{
+    struct stat info;
+    int file = -1;
+    for (int i = 0; i < ATTEMPTS && file < 0; i++) {
+        file = open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        *was_there = file >= 0;
+        if (file < 0 && errno == ENOENT) file = hf_file_out_create(name);
+        if (file < 0 && errno != EEXIST && errno != ENOENT) break; /* those: made or removed between the two calls */
+    }
+    if (file < 0) {
+        if (errno == ELOOP || errno == EISDIR || errno == ENXIO) errno = EEXIST; /* a link, a folder, a socket */
+        return -1;
+    }
+    if (fstat(file, &info) != 0) return close_with(file, errno);
+    if (!S_ISREG(info.st_mode) || info.st_nlink > 1) return close_with(file, EEXIST);
+    return file;
+}
+
+/* ---- a file from begin to end ---- */
+
+static hf_status fail(const char *path, hf_messages *messages)
+{
+    return hf_error(messages, HF_IO, "%s: cannot write: %s", path, strerror(errno));
+}
 
 hf_status hf_file_out_begin(const char *path, hf_file_out *f, hf_messages *messages)
 {
-    f->path = path;
-    if (snprintf(f->temporary, sizeof f->temporary, "%s.%ld.tmp", path, (long)getpid()) < (int)sizeof f->temporary)
-        return HF_OK;
-    return hf_error(messages, HF_IO, "%s: the path is too long", path);
+    struct stat info;
+    f->file = -1;
+    HF_TRY(hf_file_out_target(path, f->path, messages));
+    if (lstat(f->path, &info) != 0 && errno == ENAMETOOLONG) return fail(path, messages);
+    hf_file_out_clean(f->path);
+    return hf_file_out_make(f->path, f) == 0 ? HF_OK : fail(path, messages);
 }
 
 hf_status hf_file_out_try(const char *path, hf_messages *messages)
 {
     hf_file_out f;
     HF_TRY(hf_file_out_begin(path, &f, messages));
-    int file = hf_file_out_create(f.temporary);
-    if (file < 0) return hf_error(messages, HF_IO, "%s: cannot write: %s", f.temporary, strerror(errno));
-    close(file);
     hf_file_out_drop(&f);
     return HF_OK;
 }
 
-void hf_file_out_drop(const hf_file_out *f)
+hf_status hf_file_out_publish(hf_file_out *f, hf_messages *messages)
 {
-    unlink(f->temporary);
-}
-
-hf_status hf_file_out_publish(const hf_file_out *f, hf_messages *messages)
-{
-    if (hf_file_out_sync(f->temporary) == 0 && hf_file_out_replace(f->temporary, f->path) == 0) return HF_OK;
-    hf_status status = hf_error(messages, HF_IO, "%s: cannot write: %s", f->path, strerror(errno));
+    if (hf_file_out_sync(f->file) == 0 && hf_file_out_replace(f, f->path) == 0) return HF_OK;
+    hf_status status = fail(f->path, messages);
     hf_file_out_drop(f);
     return status;
 }
@@ -42,67 +292,18 @@ hf_status hf_file_out_write(const char *path, void (*write)(const void *context,
 {
     hf_file_out f;
     HF_TRY(hf_file_out_begin(path, &f, messages));
-    int file = hf_file_out_create(f.temporary);
-    FILE *stream = file >= 0 ? fdopen(file, "w") : NULL;
-    if (!stream) {
-        hf_status status = hf_error(messages, HF_IO, "%s: cannot write: %s", f.temporary, strerror(errno));
-        if (file >= 0) {
-            close(file);
-            hf_file_out_drop(&f);
-        }
-        return status;
+    int copy = fcntl(f.file, F_DUPFD_CLOEXEC, 0); /* that of the stream; the other keeps the lock */
+    FILE *stream = copy >= 0 ? fdopen(copy, "w") : NULL;
+    int failed = !stream;
+    if (stream) {
+        write(context, stream);
+        failed = ferror(stream) != 0;
+        failed |= fclose(stream) != 0;
+    } else if (copy >= 0) {
+        close(copy);
     }
-    write(context, stream);
-    int failed = ferror(stream) != 0;
-    failed |= fclose(stream) != 0;
     if (!failed) return hf_file_out_publish(&f, messages);
-    hf_status status = hf_error(messages, HF_IO, "%s: cannot write: %s", path, strerror(errno));
+    hf_status status = fail(path, messages);
     hf_file_out_drop(&f);
     return status;
-}
-
-/* ---- on names ---- */
-
-int hf_file_out_create(const char *name)
-{
-    return open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-}
-
-int hf_file_out_clear(const char *name)
-{
-    return unlink(name) == 0 || errno == ENOENT ? 0 : -1;
-}
-
-int hf_file_out_sync(const char *name)
-{
-    int file = open(name, O_RDONLY | O_CLOEXEC);
-    if (file < 0) return -1;
-    int failed = fsync(file) != 0 && errno != EINVAL; /* EINVAL: this file system has no such thing */
-    int why = errno;
-    close(file);
-    errno = why;
-    return failed ? -1 : 0;
-}
-
-int hf_file_out_replace(const char *temporary, const char *path)
-{
-    return rename(temporary, path);
-}
-
-int hf_file_out_add(const char *temporary, const char *path)
-{
-    if (link(temporary, path) == 0) {
-        unlink(temporary); /* where that fails, hf_file_out_clear tries again */
-        return 0;
-    }
-    if (errno == EEXIST) return -1;
-    /* a file system without links: take the name with an empty file, then replace that */
-    int file = open(path, O_WRONLY | O_CREAT | O_EXCL, 0600);
-    if (file < 0) return -1;
-    close(file);
-    if (rename(temporary, path) == 0) return 0;
-    int why = errno;
-    unlink(path);
-    errno = why;
-    return -1;
 }

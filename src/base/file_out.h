@@ -1,43 +1,77 @@
-/* file_out - the one way to make a file: write it under a temporary name, bring it to the disk, rename it. Nobody ever
- * sees a half-written file, and after a power cut there is the old file or the new one, whole.
+/* file_out - the one door by which this program makes files.
  *
- * The functions on names return 0, or -1 and errno, so that the caller says what it was doing. */
+ * A file is written under a temporary name, brought to the disk, and renamed: nobody ever sees a half-written file, and
+ * after a power cut there is the old file or the new one, whole. The temporary file of FOLDER/NAME is
+ * FOLDER/.NAME.hifdm-<32 random hexadecimal digits>.tmp: nobody can put a link or a file there beforehand, nobody else
+ * uses such names, and so what a killed process leaves can be told from what belongs to the user. While its process
+ * lives, the temporary file is locked (fcntl, F_OFD_SETLK), so that no other process takes it for such a leftover. On a
+ * file system without these locks leftovers stay.
+ *
+ * A symbolic link stands for the file that it leads to, if the user or root made it; links of others are refused, since
+ * in a shared folder they could lead to any file of the user. */
 #ifndef HIFDM_FILE_OUT_H
 #define HIFDM_FILE_OUT_H
 
 #include <hifdm/status.h>
-
 #include <limits.h>
+#include <stdbool.h>
 #include <stdio.h>
 
-#define HF_FILE_OUT_SIZE (PATH_MAX + 32) /* of a temporary name; the system refuses a path of PATH_MAX bytes */
+#define HF_FILE_OUT_SIZE PATH_MAX /* the system refuses longer ones */
 
 typedef struct {
-    const char *path;                 /* the visible name; borrowed */
-    char temporary[HF_FILE_OUT_SIZE]; /* beside it, this process's own: <path>.<process id>.tmp */
+    char path[HF_FILE_OUT_SIZE];      /* the visible name, links followed */
+    char temporary[HF_FILE_OUT_SIZE]; /* beside it */
+    int file;                         /* the temporary file, open to read and write, locked; -1: there is none */
 } hf_file_out;
 
-/* Choose the temporary name. Nothing is made yet. HF_OK, or HF_IO when the path is too long. */
+/* Make a temporary file for `path`, after removing what killed processes left there. HF_OK, or HF_IO with a message. */
 hf_status hf_file_out_begin(const char *path, hf_file_out *file, hf_messages *messages);
 
 /* Can the file be made? For a look before long work: makes the temporary file and removes it. HF_OK or HF_IO. */
 hf_status hf_file_out_try(const char *path, hf_messages *messages);
 
-/* The temporary file is written and closed: give it the visible name, replacing what has it. HF_IO with a message and
- * the temporary file removed when that fails. */
-hf_status hf_file_out_publish(const hf_file_out *file, hf_messages *messages);
-void hf_file_out_drop(const hf_file_out *file); /* remove the temporary file */
+/* The temporary file is written: give it the visible name, replacing what has it. HF_IO with a message and the
+ * temporary file removed when that fails. Closes it in any case. */
+hf_status hf_file_out_publish(hf_file_out *file, hf_messages *messages);
+void hf_file_out_drop(hf_file_out *file); /* close and remove the temporary file, if there is one */
 
 /* All of the above for a text: `write` puts it on the stream. HF_OK or HF_IO. */
 hf_status hf_file_out_write(const char *path, void (*write)(const void *context, FILE *file), const void *context,
                             hf_messages *messages);
 
-/* ---- on names, for files that live longer under their temporary name ---- */
+/* ---- the parts, for files that live longer under their temporary name ----
+ * Those that return an int return 0, or -1 and errno, so that the caller says what it was doing. */
 
-int hf_file_out_create(const char *name); /* a new file to write; nothing may have the name. Returns its descriptor */
-int hf_file_out_clear(const char *name);  /* remove what has the name, if anything has: it is never written into */
-int hf_file_out_sync(const char *name);   /* a file's content, or a folder's list of names, is on the disk */
-int hf_file_out_replace(const char *temporary, const char *path); /* rename(2) */
-int hf_file_out_add(const char *temporary, const char *path);     /* never replaces: EEXIST when the name is taken */
+/* The file that is meant by `path`: links are followed, also to where no file is yet. A path that leads to something
+ * else than an ordinary file stays as it is. HF_IO when it is too long, or a link that somebody else made. */
+hf_status hf_file_out_target(const char *path, char target[HF_FILE_OUT_SIZE], hf_messages *messages);
+
+/* Make a folder, unless it is there. HF_IO also when it is a link that somebody else made. */
+hf_status hf_file_out_folder(const char *path, hf_messages *messages);
+
+/* Remove the temporary files of `path` whose processes live no more. */
+void hf_file_out_clean(const char *path);
+
+int hf_file_out_make(const char *path, hf_file_out *file); /* a temporary file of `path`, whose links are followed */
+int hf_file_out_sync(int file);                            /* its content is on the disk */
+int hf_file_out_sync_folder(const char *path);             /* the name `path` is on the disk */
+
+/* Give the temporary file a name and close it; the second never replaces: EEXIST when the name is taken. */
+int hf_file_out_replace(hf_file_out *file, const char *path);
+int hf_file_out_add(hf_file_out *file, const char *path);
+
+/* A name under which a library opens the temporary file, and no other that has got its name meanwhile. */
+#define HF_FILE_OUT_NAME_SIZE (HF_FILE_OUT_SIZE + 32)
+void hf_file_out_name(const hf_file_out *file, char name[HF_FILE_OUT_NAME_SIZE]);
+
+/* ---- files whose name is fixed ----
+ * Both return a descriptor, or -1 and errno. */
+
+int hf_file_out_create(const char *name); /* a new file to write; EEXIST when anything has the name, a link included */
+
+/* A file that stays, such as a lock: opened to read and write, or made. EEXIST when the name is that of anything but an
+ * ordinary file with one name: through links one could be led to write into any file. */
+int hf_file_out_keep(const char *name, bool *was_there);
 
 #endif

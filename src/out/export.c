@@ -1,7 +1,8 @@
 /* The table of exporters, and the functions that they share. */
 #include "out/export.h"
 
-#include <errno.h>
+#include "base/file_out.h"
+
 #include <string.h>
 #include <sys/stat.h>
 
@@ -11,18 +12,14 @@ const hf_exporter *const hf_exporter_table[HF_N_EXPORTER] = {HF_EXPORTERS(ROW)};
 
 hf_status hf_export_claim(const char *path, bool force, hf_messages *messages)
 {
+    char target[HF_FILE_OUT_SIZE];
     struct stat info;
-    if (lstat(path, &info) != 0) return HF_OK;
+    HF_TRY(hf_file_out_target(path, target, messages));
+    if (lstat(target, &info) != 0) return HF_OK;
     if (!force) return hf_error(messages, HF_EXISTS, "%s exists; use --force to replace it", path);
     if (!S_ISREG(info.st_mode))
         return hf_error(messages, HF_IO, "%s: is not an ordinary file; choose another name", path);
     return HF_OK;
-}
-
-hf_status hf_export_folder(const char *path, hf_messages *messages)
-{
-    if (mkdir(path, 0777) == 0 || errno == EEXIST) return HF_OK;
-    return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", path, strerror(errno));
 }
 
 static const char *const shape_word[3] = {"form-finding", "optimised", "polished"};

@@ -55,7 +55,4 @@ hf_status hf_export_read(const hf_export_request *request, hf_summary *summary, 
  * an ordinary file. */
 hf_status hf_export_claim(const char *path, bool force, hf_messages *messages);
 
-/* Makes a folder unless it exists. HF_OK or HF_IO. */
-hf_status hf_export_folder(const char *path, hf_messages *messages);
-
 #endif

@@ -141,7 +141,7 @@ static hf_status export_shape(const hf_export_request *o, hf_scene *scene, hf_sh
     HF_TRY(hf_export_read(o, &summary, scene, shape, &word, messages));
     HF_TRY(claim_in_folder(o, "nodes.csv", nodes, messages)); /* both names are checked before anything is made */
     HF_TRY(claim_in_folder(o, "cables.csv", cables, messages));
-    HF_TRY(hf_export_folder(o->output, messages));
+    HF_TRY(hf_file_out_folder(o->output, messages));
     const view both = {scene, shape};
     HF_TRY(hf_file_out_write(nodes, write_nodes, &both, messages));
     HF_TRY(hf_file_out_write(cables, write_cables, &both, messages));

@@ -126,7 +126,7 @@ static hf_status write_grid(const char *path, const grid *g, int *offset, unsign
     hf_file_out out;
     HF_TRY(hf_file_out_begin(path, &out, messages));
     hf_hdf5 io = {.path = path, .messages = messages, .status = HF_OK, .file = -1};
-    hf_hdf5_create_file(&io, out.temporary);
+    hf_hdf5_create_file(&io, &out);
     put_grid(&io, g, offset, type);
     hf_hdf5_close_file(&io);
     if (io.status == HF_OK) return hf_file_out_publish(&out, messages);
@@ -301,7 +301,7 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
             return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
         if (has[i]) HF_TRY(hf_export_claim(path[i], o->force, messages));
     }
-    HF_TRY(hf_export_folder(o->output, messages));
+    HF_TRY(hf_file_out_folder(o->output, messages));
     int used = snprintf(said, size, "%s: for ParaView, in %s:", o->file, o->output);
     static const int order[5] = {HF_STAGE_NONE, HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, 4};
     for (int k = 0; k < 5; k++) {

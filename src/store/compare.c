@@ -248,8 +248,8 @@ hf_status hf_compare_files(const char *a, const char *b, hf_comparison *comparis
                    context};
     comparison->n_data_set = comparison->n_different = 0;
     hf_hdf5_lock();
-    hf_hdf5_open_file(&q.a, a, 0);
-    if (q.a.status == HF_OK) hf_hdf5_open_file(&q.b, b, 0);
+    hf_hdf5_open_file(&q.a, a);
+    if (q.a.status == HF_OK) hf_hdf5_open_file(&q.b, b);
     if (q.a.status == HF_OK && q.b.status == HF_OK) {
         if (H5Lvisit(q.a.file, H5_INDEX_NAME, H5_ITER_INC, visit_a, &q) < 0) hf_hdf5_fail(&q.a, "read", -1, "/");
         if (q.a.status == HF_OK && q.b.status == HF_OK &&

@@ -215,13 +215,14 @@ static hid_t make_properties(hid_t class)
     return properties;
 }
 
-/* The format of HDF5 1.8: its object headers have checksums, and everything in use today reads it. */
-static hid_t make_access(void)
+/* The format of HDF5 1.8: its object headers have checksums, and everything in use today reads it. Temporary files have
+ * a lock already (file_out), which that of HDF5 would meet on file systems that do not keep the two kinds apart. */
+static hid_t make_access(bool locks)
 {
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     bool ok = access >= 0 && H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18) >= 0;
 #if H5_VERSION_GE(1, 10, 7)
-    ok = ok && H5Pset_file_locking(access, 1, 1) >= 0;
+    ok = ok && H5Pset_file_locking(access, locks, 1) >= 0;
 #endif
     if (access >= 0 && !ok) {
         H5Pclose(access);
@@ -230,23 +231,37 @@ static hid_t make_access(void)
     return access;
 }
 
-void hf_hdf5_create_file(hf_hdf5 *io, const char *name)
+void hf_hdf5_create_file(hf_hdf5 *io, const hf_file_out *file)
 {
     hid_t properties = -1, access = -1;
+    char name[HF_FILE_OUT_NAME_SIZE];
     io->file = -1;
-    if ((properties = make_properties(H5P_FILE_CREATE)) < 0 || (access = make_access()) < 0 ||
+    hf_file_out_name(file, name);
+    if ((properties = make_properties(H5P_FILE_CREATE)) < 0 || (access = make_access(false)) < 0 ||
         (io->file = H5Fcreate(name, H5F_ACC_TRUNC, properties, access)) < 0)
         hf_hdf5_fail(io, "create", -1, NULL);
     hf_hdf5_close(io, access);
     hf_hdf5_close(io, properties);
 }
 
-void hf_hdf5_open_file(hf_hdf5 *io, const char *name, bool to_write)
+static void open_file(hf_hdf5 *io, const char *name, unsigned how, bool locks)
 {
-    hid_t access = make_access();
-    io->file = access < 0 ? -1 : H5Fopen(name, to_write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
+    hid_t access = make_access(locks);
+    io->file = access < 0 ? -1 : H5Fopen(name, how, access);
     if (io->file < 0) hf_hdf5_fail(io, "open", -1, NULL);
     hf_hdf5_close(io, access);
+}
+
+void hf_hdf5_open_file(hf_hdf5 *io, const char *name)
+{
+    open_file(io, name, H5F_ACC_RDONLY, true);
+}
+
+void hf_hdf5_open_to_write(hf_hdf5 *io, const hf_file_out *file)
+{
+    char name[HF_FILE_OUT_NAME_SIZE];
+    hf_file_out_name(file, name);
+    open_file(io, name, H5F_ACC_RDWR, false);
 }
 
 void hf_hdf5_close_file(hf_hdf5 *io)

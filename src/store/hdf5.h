@@ -7,6 +7,7 @@
 #ifndef HIFDM_STORE_HDF5_H
 #define HIFDM_STORE_HDF5_H
 
+#include "base/file_out.h"
 #include <hifdm/status.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -85,8 +86,9 @@ void hf_hdf5_no_memory(hf_hdf5 *io); /* record HF_NO_MEMORY */
 
 /* Both set io->file. Creating truncates an existing file. HDF5 locks the file if the file system supports it; if not,
  * that is no failure. */
-void hf_hdf5_create_file(hf_hdf5 *io, const char *name);
-void hf_hdf5_open_file(hf_hdf5 *io, const char *name, bool to_write);
+void hf_hdf5_create_file(hf_hdf5 *io, const hf_file_out *file);   /* in the temporary file */
+void hf_hdf5_open_to_write(hf_hdf5 *io, const hf_file_out *file); /* the temporary file holds one already */
+void hf_hdf5_open_file(hf_hdf5 *io, const char *name);            /* to read */
 void hf_hdf5_close_file(hf_hdf5 *io); /* no other id of the file may be open; also after a failure */
 
 void hf_hdf5_close(hf_hdf5 *io, hid_t id); /* of any kind, or negative; also after a failure */

@@ -34,10 +34,14 @@ static hf_status fail(const hf_journal *j, const char *what, const char *path, h
     return hf_error(messages, HF_IO, "%s: cannot %s %s: %s", j->result, what, path, strerror(errno));
 }
 
+/* HF_OK with j->file -1: the name is that of a link or something else that is no ordinary file. */
 static hf_status open_and_lock(hf_journal *j, hf_messages *messages)
 {
+    bool was_there;
     for (int i = 0; i < OPEN_ATTEMPTS; i++) {
-        j->file = open(j->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        j->file = hf_file_out_keep(j->path, &was_there);
+        j->was_there |= was_there;
+        if (j->file < 0 && errno == EEXIST) return HF_OK;
         if (j->file < 0) return fail(j, "create", j->path, messages);
         if (flock(j->file, LOCK_EX | LOCK_NB) != 0) {
             int why = errno;
@@ -61,12 +65,13 @@ static hf_status look_at_head(hf_journal *j, content *is, hf_messages *messages)
 {
     char magic[8];
     struct stat info;
+    *is = FOREIGN;
+    if (j->file < 0) return HF_OK;
     if (fstat(j->file, &info) != 0) return fail(j, "read", j->path, messages);
     j->is_new = info.st_size == 0;
     j->size = info.st_size;
     ssize_t n = pread(j->file, magic, sizeof magic, 0);
     if (n < 0) return fail(j, "read", j->path, messages);
-    *is = FOREIGN;
     if (n == sizeof magic && memcmp(magic, MAGIC, sizeof magic - 1) == 0) *is = OTHER_VERSION;
     if (memcmp(magic, MAGIC, (size_t)n) == 0) *is = JOURNAL; /* a header may be torn */
     return HF_OK;
@@ -76,21 +81,20 @@ hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_m
 {
     size_t size = strlen(result) + 16;
     content is;
-    *j = (hf_journal){.file = -1, .result = result, .path = malloc(size), .next = malloc(size)};
-    if (!j->path || !j->next) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", result);
+    *j = (hf_journal){.file = -1, .result = result, .path = malloc(size)};
+    if (!j->path) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", result);
     snprintf(j->path, size, "%s.journal", result);
-    snprintf(j->next, size, "%s.journal.new", result);
     HF_TRY(open_and_lock(j, messages));
     HF_TRY(look_at_head(j, &is, messages));
     if (is != JOURNAL && replaces) { /* unlink, never truncate: the name may be a link to another file */
         if (unlink(j->path) != 0) return fail(j, "remove", j->path, messages);
         hf_warning(messages, "%s: %s was no journal of hifdm; it is replaced", result, j->path);
-        close(j->file);
+        if (j->file >= 0) close(j->file);
         HF_TRY(open_and_lock(j, messages));
         HF_TRY(look_at_head(j, &is, messages));
     }
     if (is == JOURNAL) return HF_OK;
-    close(j->file);
+    if (j->file >= 0) close(j->file);
     j->file = -1;
     if (is == OTHER_VERSION)
         return hf_error(messages, HF_EXISTS,
@@ -105,9 +109,13 @@ hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_m
 
 bool hf_journal_is_there(const char *result)
 {
-    char path[4096], magic[8];
-    snprintf(path, sizeof path, "%s.journal", result);
-    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    char path[HF_FILE_OUT_SIZE + 16], magic[8];
+    hf_messages unwanted = {0};
+    hf_status status = hf_file_out_target(result, path, &unwanted);
+    hf_messages_free(&unwanted);
+    if (status != HF_OK) return false;
+    strcat(path, ".journal");
+    int file = open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
     bool is_there = file >= 0 && read(file, magic, sizeof magic) == sizeof magic && !memcmp(magic, MAGIC, sizeof magic);
     if (file >= 0) close(file);
     return is_there;
@@ -273,13 +281,14 @@ hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take
 
 hf_status hf_journal_rotate(hf_journal *j, hf_messages *messages)
 {
-    int file = hf_file_out_clear(j->next) == 0 ? hf_file_out_create(j->next) : -1;
-    if (file < 0) return fail(j, "create", j->next, messages);
-    if (flock(file, LOCK_EX | LOCK_NB) != 0 || write_header(file, j->identity) != 0 ||
-        hf_file_out_replace(j->next, j->path) != 0) {
-        hf_status status = fail(j, "write", j->next, messages);
-        close(file);
-        unlink(j->next);
+    hf_file_out next;
+    if (hf_file_out_make(j->result, &next) != 0) return fail(j, "create", next.temporary, messages);
+    int file = fcntl(next.file, F_DUPFD_CLOEXEC, 0); /* the other is closed as it gets its name */
+    if (file < 0 || flock(file, LOCK_EX | LOCK_NB) != 0 || write_header(file, j->identity) != 0 ||
+        hf_file_out_replace(&next, j->path) != 0) {
+        hf_status status = fail(j, "write", next.temporary, messages);
+        if (file >= 0) close(file);
+        hf_file_out_drop(&next);
         return status;
     }
     close(j->file);
@@ -292,13 +301,9 @@ hf_status hf_journal_rotate(hf_journal *j, hf_messages *messages)
 void hf_journal_close(hf_journal *j, bool remove)
 {
     if (j->file >= 0) {
-        if (remove) {
-            unlink(j->path);
-            unlink(j->next);
-        }
+        if (remove) unlink(j->path);
         close(j->file);
     }
     free(j->path);
-    free(j->next);
     *j = (hf_journal){.file = -1};
 }

@@ -24,20 +24,21 @@
 typedef struct {
     int file;           /* -1: closed */
     bool is_new;        /* made or emptied by this process */
+    bool was_there;     /* another process has left it, and may have left temporary files */
     const char *result; /* as messages call the result; borrowed */
-    char *path, *next;  /* owned */
+    char *path;         /* owned */
     int64_t size;       /* up to the end of the last whole record */
     double synced_s;    /* time of the last sync, or of the first hf_journal_tend */
     bool has_news;      /* something was appended since that sync */
     char identity[HF_JOURNAL_IDENTITY + 1];
 } hf_journal;
 
-/* Make or open the journal of `result` and take its lock. HF_IO when another process holds it, or when it cannot be
- * made; HF_EXISTS when a file of that name is no journal, unless `replaces`: then it is removed, with a warning.
- * HF_NO_MEMORY. Close in any case. */
+/* Make or open the journal of `result`, which is no link, and take its lock. HF_IO when another process holds it, or
+ * when it cannot be made; HF_EXISTS when what has that name is no journal, a link included, unless `replaces`: then it
+ * is removed, with a warning. HF_NO_MEMORY. Close in any case. */
 hf_status hf_journal_open(const char *result, bool replaces, hf_journal *journal, hf_messages *messages);
 
-/* Is there a journal of `result` with a header? Takes no lock. */
+/* Is there a journal of `result`, or of the file that it leads to, with a header? Takes no lock. */
 bool hf_journal_is_there(const char *result);
 
 /* Empty the journal; from now on it is that of the run of this identity. HF_OK or HF_IO. */

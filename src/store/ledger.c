@@ -3,6 +3,7 @@
 #include "store/ledger.h"
 
 #include "base/clock.h"
+#include "base/file_out.h"
 #include "base/text.h"
 #include "store/journal.h"
 
@@ -115,14 +116,17 @@ static void free_news(struct hf_ledger_news *news)
 hf_status hf_ledger_open(const char *folder, hf_ledger *l, hf_messages *messages)
 {
     char path[HF_PATH_SIZE + 32];
+    bool was_there;
     *l = (hf_ledger){.rows = -1, .claims = -1};
     pthread_mutex_init(&l->lock, NULL);
     if (snprintf(l->folder, sizeof l->folder, "%s", folder) >= (int)sizeof l->folder)
         return hf_error(messages, HF_IO, "%s: the path is too long", folder);
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-        return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", folder, strerror(errno));
+    HF_TRY(hf_file_out_folder(folder, messages));
     snprintf(path, sizeof path, "%s/claims", folder);
-    l->claims = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    l->claims = hf_file_out_keep(path, &was_there);
+    if (l->claims < 0 && errno == EEXIST)
+        return hf_error(messages, HF_IO, "%s: is a link, a folder or no ordinary file, and in the way; remove it",
+                        path);
     if (l->claims < 0) return hf_error(messages, HF_IO, "%s: cannot open: %s", path, strerror(errno));
     return HF_OK;
 }
@@ -169,10 +173,11 @@ static hf_status start_rows(hf_ledger *l, hf_messages *messages)
     for (int k = 1; l->rows < 0 && k < 10000; k++) {
         snprintf(path, sizeof path, k == 1 ? "%s/points-%s-%ld.tsv" : "%s/points-%s-%ld-%d.tsv", l->folder, host,
                  (long)getpid(), k);
-        l->rows = open(path, O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
+        l->rows = hf_file_out_create(path);
         if (l->rows < 0 && errno != EEXIST) break;
     }
-    if (l->rows < 0) return hf_error(messages, HF_IO, "%s: cannot create: %s", path, strerror(errno));
+    if (l->rows < 0 || fcntl(l->rows, F_SETFL, O_APPEND) != 0)
+        return hf_error(messages, HF_IO, "%s: cannot create: %s", path, strerror(errno));
     size_t used = (size_t)snprintf(line, sizeof line, HEADER "\tfingerprint\tstatus\treason");
     for (int i = 0; i < hf_ledger_n_column(); i++)
         used += (size_t)snprintf(line + used, sizeof line - used, "\t%s/%s", hf_ledger_column(i)->object,

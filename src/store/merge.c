@@ -250,7 +250,7 @@ static bool is_ours(const char *path)
     hf_hdf5 io = {.path = path, .messages = &unwanted, .status = HF_OK, .file = -1};
     bool ours = access(path, F_OK) != 0;
     if (!ours) {
-        hf_hdf5_open_file(&io, path, 0);
+        hf_hdf5_open_file(&io, path);
         ours = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/points") && hf_hdf5_has(&io, io.file, "/runs");
         if (io.file >= 0) hf_hdf5_close_file(&io);
     }
@@ -262,15 +262,17 @@ hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *p
                    hf_messages *messages)
 {
     hf_file_out out;
-    merger m = {{.path = output, .messages = messages, .status = HF_OK, .file = -1}, study, points, NULL};
-    HF_TRY(hf_file_out_begin(output, &out, messages));
+    merger m = {{.path = out.path, .messages = messages, .status = HF_OK, .file = -1}, study, points, NULL};
+    HF_TRY(hf_file_out_target(output, out.path, messages));
     m.room = calloc((size_t)study->n_point, 2 * sizeof(double));
     if (!m.room) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", output);
     hf_hdf5_lock();
-    if (!force && !is_ours(output)) {
+    if (!force && !is_ours(out.path))
         m.io.status = hf_error(messages, HF_EXISTS, "%s: exists and is no merge; use --force or -o", output);
-    } else {
-        hf_hdf5_create_file(&m.io, out.temporary);
+    else
+        m.io.status = hf_file_out_begin(output, &out, messages);
+    if (m.io.status == HF_OK) {
+        hf_hdf5_create_file(&m.io, &out);
         if (m.io.status == HF_OK) write_all(&m, folder);
         if (m.io.status == HF_OK)
             m.io.status = hf_file_out_publish(&out, messages);

@@ -183,12 +183,12 @@ static void compare_shape(hf_store *s, const hf_model *model, const hf_workspace
                                   "%s: this machine or build finds another shape (tensions differ by %.2g N); "
                                   "--restart (of a sweep: --retry failed) "
                                   "begins anew",
-                                  s->f.path, apart_N);
+                                  s->f.out.path, apart_N);
     else
         hf_warning(s->f.io.messages,
                    "%s: this machine or build finds the shape with other last bits than the one that began it: the "
                    "result will not be that of an uninterrupted run to the bit",
-                   s->f.path);
+                   s->f.out.path);
 }
 
 hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspace *workspace,
@@ -297,7 +297,7 @@ hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_popula
     if (io->status == HF_OK) io->status = hf_journal_restart(&store->f.journal, store->identity, messages);
     if (io->status == HF_OK && hf_generations_create(population->n_individual, population->n_gene,
                                                      population->generation_limit, &store->rows) != HF_OK)
-        io->status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", store->f.path);
+        io->status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", store->f.out.path);
     return hf_hdf5_unlock(io->status);
 }
 
@@ -398,12 +398,12 @@ hf_status hf_store_complete(hf_store *s, const hf_summary *summary, hf_messages 
     s->f.io.messages = messages;
     if (s->f.io.status != HF_OK)
         return hf_error(messages, s->f.io.status,
-                        "%s: is not written to its end, since an earlier part of it could not be", s->f.path);
+                        "%s: is not written to its end, since an earlier part of it could not be", s->f.out.path);
     if (s->n_journal > 0) /* this session stopped before the generations of the journal were restored */
         return s->f.io.status = hf_error(messages, HF_EXISTS,
                                          "%s: this machine or build does not come as far as the one that began it; its "
                                          "generations are kept, --restart (of a sweep: --retry failed) begins anew",
-                                         s->f.path);
+                                         s->f.out.path);
     hf_hdf5_lock();
     complete(s, summary, true);
     hf_generations_free(&s->rows); /* hf_store_settle may come much later */

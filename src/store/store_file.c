@@ -13,6 +13,7 @@
 
 #define COPY_BYTES (1 << 20)
 #define FLOW_BYTES (1 << 20)
+#define NAMES_MAX 100 /* of a result that cannot get its own */
 
 /* ---- names and checks ---- */
 
@@ -36,34 +37,30 @@ static hf_status check_target(const char *path, hf_messages *messages)
 
 hf_status hf_store_file_begin(const char *path, bool replaces, hf_store_file *f, hf_messages *messages)
 {
-    size_t size = strlen(path) + 48;
-    *f = (hf_store_file){.journal.file = -1, .io.file = -1, .visible = -1, .flow = -1, .replaces = replaces};
-    HF_TRY(check_target(path, messages));
-    f->path = malloc(size);
-    f->temporary = malloc(size);
-    if (!f->path || !f->temporary) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
-    snprintf(f->path, size, "%s", path);
-    snprintf(f->temporary, size, "%s.journal.tmp", path);
-    f->io = (hf_hdf5){.path = f->path, .messages = messages, .status = HF_OK, .file = -1};
-    return hf_journal_open(f->path, replaces, &f->journal, messages);
+    *f = (hf_store_file){.journal.file = -1, .io.file = -1, .visible = -1, .out.file = -1, .replaces = replaces};
+    HF_TRY(hf_file_out_target(path, f->out.path, messages));
+    f->io = (hf_hdf5){.path = f->out.path, .messages = messages, .status = HF_OK, .file = -1};
+    HF_TRY(check_target(f->out.path, messages));
+    HF_TRY(hf_journal_open(f->out.path, replaces, &f->journal, messages));
+    if (f->journal.was_there) hf_file_out_clean(f->out.path);
+    return HF_OK;
 }
 
 /* ---- the temporary file ---- */
 
-/* Remove the temporary file of a killed run. It may be a second name of the visible file (hf_file_out_add), so it is
- * never written into. True when the name is free. */
-static bool free_temporary(hf_store_file *f)
+static bool make_temporary(hf_store_file *f)
 {
-    if (hf_file_out_clear(f->temporary) == 0) return true;
-    f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot remove %s: %s", f->path, f->temporary, strerror(errno));
+    hf_file_out_drop(&f->out);
+    f->flowing = 0;
+    if (hf_file_out_make(f->out.path, &f->out) == 0) return true;
+    f->io.status =
+        hf_error(f->io.messages, HF_IO, "%s: cannot create %s: %s", f->out.path, f->out.temporary, strerror(errno));
     return false;
 }
 
 void hf_store_file_create(hf_store_file *f)
 {
-    if (f->io.status != HF_OK || !free_temporary(f)) return;
-    f->has_temporary = true;
-    hf_hdf5_create_file(&f->io, f->temporary);
+    if (f->io.status == HF_OK && make_temporary(f)) hf_hdf5_create_file(&f->io, &f->out);
 }
 
 /* 0, or -1 and errno. */
@@ -81,35 +78,25 @@ static int copy_bytes(int from, int to, char *buffer)
 
 static void copy_visible(hf_store_file *f)
 {
-    if (!free_temporary(f)) return;
+    if (!make_temporary(f)) return;
     char *buffer = malloc(COPY_BYTES);
     if (!buffer) {
-        f->io.status = hf_error(f->io.messages, HF_NO_MEMORY, "%s: out of memory", f->path);
+        f->io.status = hf_error(f->io.messages, HF_NO_MEMORY, "%s: out of memory", f->out.path);
         return;
     }
-    int to = hf_file_out_create(f->temporary);
-    f->has_temporary |= to >= 0;
-    bool ok = to >= 0 && lseek(f->visible, 0, SEEK_SET) == 0 && copy_bytes(f->visible, to, buffer) == 0;
+    bool ok = lseek(f->visible, 0, SEEK_SET) == 0 && copy_bytes(f->visible, f->out.file, buffer) == 0;
     int why = errno;
-    if (to >= 0) close(to);
     free(buffer);
     if (!ok)
-        f->io.status =
-            hf_error(f->io.messages, HF_IO, "%s: cannot copy it to %s: %s", f->path, f->temporary, strerror(why));
+        f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot copy it to %s: %s", f->out.path, f->out.temporary,
+                                strerror(why));
 }
 
 void hf_store_file_open(hf_store_file *f)
 {
     if (f->io.file >= 0 || f->io.status != HF_OK) return;
     copy_visible(f);
-    if (f->io.status == HF_OK) hf_hdf5_open_file(&f->io, f->temporary, 1);
-}
-
-static void stop_flow(hf_store_file *f)
-{
-    if (f->flow >= 0) close(f->flow);
-    f->flow = -1;
-    f->flowing = 0;
+    if (f->io.status == HF_OK) hf_hdf5_open_to_write(&f->io, &f->out);
 }
 
 /* Only advice to the system: its failure does not matter. */
@@ -117,9 +104,8 @@ void hf_store_file_flow(hf_store_file *f)
 {
     struct stat info;
     if (f->io.file < 0 || f->io.status != HF_OK) return;
-    if (f->flow < 0) f->flow = open(f->temporary, O_RDONLY | O_CLOEXEC);
-    if (f->flow < 0 || fstat(f->flow, &info) != 0 || info.st_size - f->flowing < FLOW_BYTES) return;
-    (void)posix_fadvise(f->flow, f->flowing, info.st_size - f->flowing, POSIX_FADV_DONTNEED);
+    if (fstat(f->out.file, &info) != 0 || info.st_size - f->flowing < FLOW_BYTES) return;
+    (void)posix_fadvise(f->out.file, f->flowing, info.st_size - f->flowing, POSIX_FADV_DONTNEED);
     f->flowing = info.st_size;
 }
 
@@ -127,11 +113,11 @@ void hf_store_file_adopt(hf_store_file *f)
 {
     if (f->io.status != HF_OK) return;
     if (f->visible >= 0) close(f->visible);
-    f->visible = open(f->path, O_RDONLY | O_CLOEXEC);
+    f->visible = open(f->out.path, O_RDONLY | O_CLOEXEC);
     if (f->visible >= 0 && fstat(f->visible, &f->ours) == 0)
         f->is_published = true;
     else
-        f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot open: %s", f->path, strerror(errno));
+        f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot open: %s", f->out.path, strerror(errno));
 }
 
 /* ---- publishing ---- */
@@ -141,11 +127,10 @@ void hf_store_file_adopt(hf_store_file *f)
  * but empty. */
 void hf_store_file_close(hf_store_file *f)
 {
-    stop_flow(f);
     if (f->io.file < 0) return;
     if (H5Fflush(f->io.file, H5F_SCOPE_GLOBAL) < 0) {
         hf_hdf5_fail(&f->io, "write", -1, NULL);
-        int ignored = truncate(f->temporary, 0);
+        int ignored = ftruncate(f->out.file, 0);
         (void)ignored;
         f->io.file = -1;
         return;
@@ -153,61 +138,64 @@ void hf_store_file_close(hf_store_file *f)
     hf_hdf5_close_file(&f->io);
 }
 
-/* Sync before the rename: after a power cut there is the old file or the new one, whole. */
-static void sync_to_disk(hf_store_file *f, const char *name)
+static void sync_failed(hf_store_file *f)
 {
-    if (hf_file_out_sync(name) != 0)
-        f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot write to the disk: %s", f->path, strerror(errno));
+    f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot write to the disk: %s", f->out.path, strerror(errno));
 }
 
 /* Is the visible file still the one of this run? */
 static bool is_ours(const hf_store_file *f)
 {
     struct stat now;
-    return stat(f->path, &now) == 0 && hf_path_is_same_inode(&now, &f->ours) && now.st_size == f->ours.st_size &&
+    return stat(f->out.path, &now) == 0 && hf_path_is_same_inode(&now, &f->ours) && now.st_size == f->ours.st_size &&
            now.st_mtim.tv_sec == f->ours.st_mtim.tv_sec && now.st_mtim.tv_nsec == f->ours.st_mtim.tv_nsec;
 }
 
 /* Keep a whole file that cannot get its name, under a name that no later run uses. */
 static void keep_work(hf_store_file *f, bool is_worth_keeping)
 {
-    char kept[4096] = "";
+    char kept[HF_FILE_OUT_SIZE + 64] = "";
     const char *words = "", *why = strerror(errno);
     bool is_taken = errno == EEXIST;
     if (is_worth_keeping) {
-        snprintf(kept, sizeof kept, "%s.%ld.h5", f->path, (long)getpid());
-        if (hf_file_out_add(f->temporary, kept) != 0) snprintf(kept, sizeof kept, "%s", f->temporary);
-        f->has_temporary = false;
+        int added = -1;
+        for (int k = 1; added != 0 && k <= NAMES_MAX && (k == 1 || errno == EEXIST); k++) {
+            snprintf(kept, sizeof kept, k == 1 ? "%s.%ld.h5" : "%s.%ld-%d.h5", f->out.path, (long)getpid(), k);
+            added = hf_file_out_add(&f->out, kept);
+        }
+        if (added != 0) {
+            snprintf(kept, sizeof kept, "%s", f->out.temporary);
+            close(f->out.file);
+            f->out.file = -1;
+        }
         words = "; this run's result is ";
     }
     if (is_taken)
         f->io.status =
             hf_error(f->io.messages, HF_EXISTS, "%s: was made, replaced or removed by someone else during the run%s%s",
-                     f->path, words, kept);
+                     f->out.path, words, kept);
     else
         f->io.status =
-            hf_error(f->io.messages, HF_IO, "%s: cannot be given this name: %s%s%s", f->path, why, words, kept);
+            hf_error(f->io.messages, HF_IO, "%s: cannot be given this name: %s%s%s", f->out.path, why, words, kept);
 }
 
+/* Sync before the rename: after a power cut there is the old file or the new one, whole. */
 void hf_store_file_publish(hf_store_file *f, bool durable)
 {
-    char folder[4096];
-    if (f->io.status == HF_OK && durable) sync_to_disk(f, f->temporary);
+    if (f->io.status == HF_OK && durable && hf_file_out_sync(f->out.file) != 0) sync_failed(f);
     if (f->io.status != HF_OK) return;
     int taken = -1;
     errno = EEXIST;
     if (f->is_published ? is_ours(f) : f->replaces)
-        taken = hf_file_out_replace(f->temporary, f->path);
+        taken = hf_file_out_replace(&f->out, f->out.path);
     else if (!f->is_published)
-        taken = hf_file_out_add(f->temporary, f->path);
+        taken = hf_file_out_add(&f->out, f->out.path);
     if (taken != 0) {
         keep_work(f, durable);
         return;
     }
-    f->has_temporary = false;
     hf_store_file_adopt(f);
-    hf_path_folder(f->path, folder, sizeof folder);
-    if (f->io.status == HF_OK && durable) sync_to_disk(f, folder);
+    if (f->io.status == HF_OK && durable && hf_file_out_sync_folder(f->out.path) != 0) sync_failed(f);
 }
 
 /* ---- the end ---- */
@@ -217,11 +205,9 @@ void hf_store_file_end(hf_store_file *f)
     hf_messages unwanted = {0};
     f->io.messages = &unwanted;
     hf_store_file_close(f);
-    if (f->has_temporary) unlink(f->temporary); /* before the lock is given back */
+    hf_file_out_drop(&f->out); /* before the lock is given back */
     hf_journal_close(&f->journal, f->is_published ? hf_journal_is_empty(&f->journal) : f->journal.is_new);
     hf_messages_free(&unwanted);
     if (f->visible >= 0) close(f->visible);
-    free(f->path);
-    free(f->temporary);
-    *f = (hf_store_file){.io.file = -1};
+    *f = (hf_store_file){.journal.file = -1, .io.file = -1, .visible = -1, .out.file = -1};
 }

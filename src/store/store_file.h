@@ -1,20 +1,22 @@
 /* store_file - the file of a store: it has a temporary name while it is written and the visible name when it is whole.
  *
- * Names: RESULT is visible, closed and whole at any moment. RESULT.journal holds the lock and what RESULT does not hold
- * yet; RESULT.journal.tmp is being written, RESULT.journal.new takes the journal's place. Only the process that has
- * the lock touches the others. What the next run finds after a kill at any instant:
+ * Names: RESULT is visible, closed and whole at any moment; of a path that is a link, it is the file that is meant
+ * (file_out). RESULT.journal holds the lock and what RESULT does not hold yet. `tmp` is the temporary file that is
+ * being written, `new` the one that takes the journal's place; file_out gives them their names. Only the process that
+ * has the lock touches them. The journal is made before them and removed after them, so a process that finds one looks
+ * for what a killed process left, and removes it. What the next run finds after a kill at any instant:
  *
  *   killed while                              RESULT          .journal            what happens then
  *   the case is read, the shape found         none, or old    empty or torn head  begins anew, or as if never started
  *   a record is being written                 g0 generations  g0.., torn tail     tail cut off, the others added
- *   .tmp is being made, written, synced       g0              g0..g1              .tmp is written anew
- *   between link(.tmp) and its unlink        0               empty               .tmp is removed, never written into
- *   between rename(.tmp) and rotation         g1              g0..g1              what RESULT has is skipped
- *   between making .new and its rename        g1              g0..g1              the same; .new is made anew
- *   after the rename of .new                  g1              empty               goes on
+ *   tmp is being made, written, synced        g0              g0..g1              tmp is removed, another one written
+ *   between link(tmp) and its unlink          0, or finished  empty               tmp is removed, never written into
+ *   between rename(tmp) and rotation          g1              g0..g1              what RESULT has is skipped
+ *   between making new and its rename         g1              g0..g1              the same; new is removed
+ *   after the rename of new                   g1              empty               goes on
  *   between the last rename and unlink        finished        g0..                says so, removes the journal
  *
- * Against power cuts .tmp is synced before its name changes, the folder before the journal is rotated, and the journal
+ * Against power cuts tmp is synced before its name changes, the folder before the journal is rotated, and the journal
  * every HF_JOURNAL_SYNC_S. */
 #ifndef HIFDM_STORE_FILE_H
 #define HIFDM_STORE_FILE_H
@@ -27,19 +29,16 @@
 typedef struct {
     hf_hdf5 io; /* of the temporary file; io.file is -1 while it is not open */
     hf_journal journal;
-    bool replaces;          /* a file of another run with this name may be replaced */
-    bool is_published;      /* this run's file has the name */
-    struct stat ours;       /* identity of that file */
-    int visible;            /* that file, open, so that it can be copied even if its name is taken; or -1 */
-    bool has_temporary;     /* there is a file under the temporary name */
-    int flow;               /* the temporary file, open; or -1 */
-    int64_t flowing;        /* bytes of it that the system was asked to write to the disk */
-    char *path, *temporary; /* owned */
+    bool replaces;     /* a file of another run with this name may be replaced */
+    bool is_published; /* this run's file has the name */
+    struct stat ours;  /* identity of that file */
+    int visible;       /* that file, open, so that it can be copied even if its name is taken; or -1 */
+    hf_file_out out;   /* out.path is RESULT, out.file the temporary file */
+    int64_t flowing;   /* bytes of it that the system was asked to write to the disk */
 } hf_store_file;
 
-/* Check that `path` can be written and take its lock. replaces: files with the names of result and journal may be
- * replaced. HF_IO,
- * HF_EXISTS (a foreign journal), HF_NO_MEMORY. End in any case. */
+/* Check that `path` can be written, take its lock, and remove what a killed process left. replaces: files with the
+ * names of result and journal may be replaced. HF_IO, HF_EXISTS (a foreign journal), HF_NO_MEMORY. End in any case. */
 hf_status hf_store_file_begin(const char *path, bool replaces, hf_store_file *file, hf_messages *messages);
 
 /* The calls from here on do nothing once io.status is not HF_OK. Create, open and close, and the end of an open file,

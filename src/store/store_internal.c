@@ -39,7 +39,7 @@ void *hf_store_scratch(hf_store *s, size_t bytes)
     if (bytes > s->scratch_bytes) {
         void *bigger = realloc(s->scratch, bytes);
         if (!bigger) {
-            s->f.io.status = hf_error(s->f.io.messages, HF_NO_MEMORY, "%s: out of memory", s->f.path);
+            s->f.io.status = hf_error(s->f.io.messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
             return NULL;
         }
         s->scratch = bigger;

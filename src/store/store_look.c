@@ -2,6 +2,7 @@
  * Contents: identity - look */
 #include "store/store_read.h"
 
+#include "base/file_out.h"
 #include "base/sha256.h"
 #include "store/journal.h"
 
@@ -79,16 +80,20 @@ static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t
     hf_case_free(&then);
 }
 
-/* A run that was killed after its result had got its name leaves a journal that nobody needs. */
+/* A run that was killed after its result had got its name leaves a journal that nobody needs, and perhaps the temporary
+ * name of the result. */
 static void remove_journal(const char *path)
 {
-    char name[4096];
+    char target[HF_FILE_OUT_SIZE], name[HF_FILE_OUT_SIZE + 16];
     hf_journal journal;
     hf_messages unwanted = {0};
-    snprintf(name, sizeof name, "%s.journal", path);
-    if (access(name, F_OK) != 0) return;
-    hf_status status = hf_journal_open(path, 0, &journal, &unwanted);
-    hf_journal_close(&journal, status == HF_OK);
+    hf_status status = hf_file_out_target(path, target, &unwanted);
+    snprintf(name, sizeof name, "%s.journal", target);
+    if (status == HF_OK && access(name, F_OK) == 0) {
+        status = hf_journal_open(target, 0, &journal, &unwanted);
+        if (status == HF_OK) hf_file_out_clean(target);
+        hf_journal_close(&journal, status == HF_OK);
+    }
     hf_messages_free(&unwanted);
 }
 

@@ -34,7 +34,7 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
     } else if (!S_ISREG(info.st_mode) || H5Fis_hdf5(path) == 0) {
         io.status = hf_error(messages, HF_IO, "%s: is not an HDF5 file, so no result of hifdm", path);
     } else {
-        hf_hdf5_open_file(&io, path, 0);
+        hf_hdf5_open_file(&io, path);
     }
     if (io.status != HF_OK) return io;
     if (!is_ours(&io))

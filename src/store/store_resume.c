@@ -21,7 +21,7 @@ static bool is_news(hf_store *s, int generation, size_t bytes, int next, hf_stat
     *status = hf_error(s->f.io.messages, HF_IO,
                        "%s: does not fit to %s, which goes on with generation %d of %zu bytes, not %d of %zu; was it "
                        "copied or replaced? --restart (of a sweep: --retry failed) begins anew",
-                       s->f.path, s->f.journal.path, generation, bytes, next, g->payload_bytes);
+                       s->f.out.path, s->f.journal.path, generation, bytes, next, g->payload_bytes);
     return false;
 }
 
@@ -66,14 +66,15 @@ static void read_state(hf_store *s)
     hf_hdf5_get(io, io->file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     hf_hdf5_get(io, io->file, "/", "identity", HF_KIND_CHARS, s->identity, sizeof s->identity);
     if (io->status == HF_OK && finished)
-        io->status = hf_error(io->messages, HF_EXISTS, "%s: is finished, there is nothing to go on with", s->f.path);
+        io->status =
+            hf_error(io->messages, HF_EXISTS, "%s: is finished, there is nothing to go on with", s->f.out.path);
     if (!hf_hdf5_has(io, io->file, "/ga")) { /* stopped before, or without, a genetic algorithm */
         if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, io->messages);
         return;
     }
     read_sizes(io, &n_individual, &n_gene, &limit);
     if (io->status == HF_OK && hf_generations_create(n_individual, n_gene, limit, &s->rows) != HF_OK)
-        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", s->f.path);
+        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
     if (io->status == HF_OK) hf_generations_count(io, &s->rows);
     if (io->status == HF_OK) io->status = hf_journal_replay(&s->f.journal, s->identity, count_record, s, io->messages);
 }
@@ -136,7 +137,7 @@ static hf_status breed_record(void *context, int generation, const void *payload
         return hf_error(s->f.io.messages, HF_EXISTS,
                         "%s: this machine or build breeds other designs from generation %d on than the one that began "
                         "it, which alone can recover %s; nothing was changed",
-                        s->f.path, generation + 1, s->f.journal.path);
+                        s->f.out.path, generation + 1, s->f.journal.path);
     }
     hf_generations_add(g, &o->population, NULL);
     b->n_taken++;
@@ -156,7 +157,7 @@ static void breed_journal(hf_store *s, hf_optimiser *optimiser, int drops)
         hf_warning(io->messages,
                    "%s: this machine or build breeds other designs than the one that began it: generations %d to %d, "
                    "which were not published, are evaluated again",
-                   s->f.path, first + 1, first + s->n_journal - b.n_taken);
+                   s->f.out.path, first + 1, first + s->n_journal - b.n_taken);
     s->n_journal = 0;
 }
 
