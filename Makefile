@@ -114,7 +114,7 @@ quote = '$(subst ','\'',$(1))'
 stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
-FRONT := all compile-all run test stress browser paper paper-check literal bench api lint asan tsan install
+FRONT := all compile-all run test stress test-under-load browser paper paper-check literal bench api lint asan tsan install
 .PHONY: $(FRONT) setup clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -143,11 +143,15 @@ test: ## set up, build and run the tests; SUITE="unit verify/band" picks some
 	@mkdir -p $(BUILD)/tmp
 	$(Q)HIFDM=$(abspath $(PROGRAM)) HIFDM_SOURCE_DIR=$(CURDIR) PYTHON=$(PYTHON) \
 	    HIFDM_PREFIX=$(abspath $(BUILD))/prefix HIFDM_CC=$(call quote,$(CC) $(SANITIZER)) \
-	    TMPDIR=$(abspath $(BUILD))/tmp CK_DEFAULT_TIMEOUT=$${CK_DEFAULT_TIMEOUT:-60} $(RUNNER) $(SUITE)
+	    TMPDIR=$(abspath $(BUILD))/tmp CK_DEFAULT_TIMEOUT=$${CK_DEFAULT_TIMEOUT:-300} $(RUNNER) $(SUITE)
 
 # Twenty times as many nets as `make test` tries, ten times as many kills.
 stress: ## the numerical-stability suite and the killed runs at full length
 	+$(Q)HIFDM_STRESS=1 CK_DEFAULT_TIMEOUT=1800 $(MAKE) test SUITE="stress cli/resume"
+
+# RUNS=20 times; CLONE=yes: and once in a fresh clone; SUITE=... as for test.
+test-under-load: ## the tests again and again beside a busy loop on every core
+	+$(Q)RUNS=$(RUNS) CLONE=$(CLONE) SUITE=$(call quote,$(SUITE)) BUILD=$(BUILD) tools/test_under_load.sh
 
 browser: ## open pages of hifdm report in headless Chromium; needs `tools/setup.sh --ci`
 	$(SUB) $(PROGRAM)

@@ -115,7 +115,7 @@ static inline void python(const char *mode, const char *path, const char *script
                      script);
     ck_assert(n > 0 && n < (int)sizeof text);
     const char *const argv[] = {python_program(), "-c", text, path, NULL};
-    struct command command = run_command(30.0, argv);
+    struct command command = run_command(HANG_S, argv);
     ck_assert_msg(command.exit_code == 0, "%s", command.err);
     free_command(&command);
 }

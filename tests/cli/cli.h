@@ -77,7 +77,7 @@ static inline void demand_exit(struct command command, int exit_code, const char
 /* SHELL(5, "exec \"$0\" schema >/dev/full"): with the program as $0 and further arguments as $1, $2, ... */
 #define SHELL(exit_code, ...) SHELL_(exit_code, __VA_ARGS__, NULL)
 #define SHELL_(code, script, ...)                                                                                      \
-    demand_exit(run_command(50.0, (const char *const[]){"sh", "-c", script, hifdm_program(), __VA_ARGS__, NULL}),      \
+    demand_exit(run_command(HANG_S, (const char *const[]){"sh", "-c", script, hifdm_program(), __VA_ARGS__, NULL}),    \
                 code, script, __LINE__)
 
 /* ---- what it said ---- */
@@ -137,7 +137,7 @@ static inline const char *out_as(const char *name)
 #define EXPECT(...)                                                                                                    \
     do {                                                                                                               \
         const char *const expect_argv_[] = {python_program(), source_path("tests/cli/expect.py"), __VA_ARGS__, NULL};  \
-        struct command expect_ = run_command(50.0, expect_argv_);                                                      \
+        struct command expect_ = run_command(HANG_S, expect_argv_);                                                    \
         ck_assert_msg(expect_.exit_code == 0, "%s%s", expect_.out, expect_.err);                                       \
         free_command(&expect_);                                                                                        \
     } while (0)

@@ -4,12 +4,16 @@
 
 #include "cli.h"
 
+#include <errno.h>
 #include <fcntl.h>
+#include <glob.h>
+#include <limits.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/inotify.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <time.h>
 
 extern char **environ;
 
@@ -23,19 +27,53 @@ static inline const char *storing_case(const char *name, int generations)
     return file_with(name, formatted(SMALL_SCENE STORING_GA, generations));
 }
 
-static inline void sleep_s(double seconds)
+/* ---- a program that a test kills, stops or disturbs ----
+ * No test waits by the clock: it waits for a mark that the program leaves in a folder, and for its end. */
+
+typedef struct {
+    pid_t id;
+    int changes;  /* inotify, of the folder */
+    int life;     /* hangs up when the program ends */
+    int err;      /* what a held program says; -1: it is not held */
+    int n_change; /* seen so far */
+    bool has_ended;
+    int state; /* of waitpid, once it has ended */
+} session;
+
+/* A full pipe: who writes into it waits until somebody has read. */
+static inline void make_full_pipe(int end[2])
 {
-    struct timespec t = {.tv_sec = (time_t)seconds, .tv_nsec = (long)(1e9 * (seconds - (double)(time_t)seconds))};
-    nanosleep(&t, NULL);
+    static const char zeros[4096];
+    ck_assert_int_eq(pipe(end), 0);
+    ck_assert_int_eq(fcntl(end[1], F_SETFL, O_NONBLOCK), 0);
+    for (size_t n = sizeof zeros; n > 0;)
+        if (write(end[1], zeros, n) < 0) n /= 2;
+    ck_assert_int_eq(fcntl(end[1], F_SETFL, 0), 0);
 }
 
-/* Start the program, its words in the files "out" and "err" of the test's directory. */
-static inline pid_t start_program(const char *const argv[])
+/* Start the program (argv[0], its full path), its words in the files "out" and "err" of the test's directory. Changes
+ * in `folder`, which exists, are what can be waited for. A held one stays in the first line that it writes to its
+ * standard error, until let_go: `run --progress line` after it has stored a generation. */
+static inline session start_session(const char *folder, bool is_held, const char *const argv[])
 {
+    session s = {.err = -1, .changes = inotify_init1(IN_CLOEXEC)};
+    int life[2], err[2];
+    ck_assert_int_ge(s.changes, 0);
+    ck_assert_int_ge(inotify_add_watch(s.changes, folder, IN_ALL_EVENTS & ~(IN_ACCESS | IN_CLOSE_NOWRITE | IN_OPEN)),
+                     0);
+    ck_assert_int_eq(pipe(life), 0);
+    if (is_held) make_full_pipe(err);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addclose(&actions, life[0]);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, temp_path("out"), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, temp_path("err"), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    if (is_held) {
+        posix_spawn_file_actions_adddup2(&actions, err[1], STDERR_FILENO);
+        posix_spawn_file_actions_addclose(&actions, err[0]);
+        posix_spawn_file_actions_addclose(&actions, err[1]);
+    } else {
+        posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, temp_path("err"), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    }
     posix_spawnattr_t heard; /* SIGHUP, which nohup before `make test` would have it ignore */
     sigset_t set;
     sigemptyset(&set);
@@ -43,31 +81,165 @@ static inline pid_t start_program(const char *const argv[])
     posix_spawnattr_init(&heard);
     posix_spawnattr_setsigdefault(&heard, &set);
     posix_spawnattr_setflags(&heard, POSIX_SPAWN_SETSIGDEF);
-    pid_t child;
-    ck_assert_int_eq(posix_spawn(&child, argv[0], &actions, &heard, (char *const *)argv, environ), 0);
+    ck_assert_int_eq(posix_spawn(&s.id, argv[0], &actions, &heard, (char *const *)argv, environ), 0);
     posix_spawnattr_destroy(&heard);
     posix_spawn_file_actions_destroy(&actions);
-    return child;
+    close(life[1]);
+    s.life = life[0];
+    if (is_held) {
+        close(err[1]);
+        s.err = err[0];
+    }
+    return s;
 }
 
-/* As a shell says it: 128 + number when killed. */
-static inline int end_of(pid_t child)
+static inline session start_program(const char *const argv[])
 {
-    int state;
-    ck_assert_int_eq(waitpid(child, &state, 0), child);
-    return WIFSIGNALED(state) ? 128 + WTERMSIG(state) : WEXITSTATUS(state);
+    return start_session(temp_path(""), false, argv);
+}
+
+/* `hifdm run` of a genetic algorithm, held after the first generation of this process. */
+static inline session start_held_run(const char *case_path, const char *path, const char *const more[])
+{
+    const char *argv[32] = {hifdm_program(), "run", case_path, "-o", path, "--progress", "line"};
+    for (int n = 7; more && *more; more++)
+        argv[n++] = *more;
+    return start_session(temp_path(""), true, argv);
+}
+
+/* `hifdm sweep` into this folder; `threads` may be NULL. */
+static inline session start_sweep(const char *study, const char *folder, const char *threads)
+{
+    const char *argv[] = {hifdm_program(), "sweep", study, "--dir", folder, "--quiet", threads ? "--threads" : NULL,
+                          threads,         NULL};
+    mkdir(folder, 0777);
+    return start_session(folder, false, argv);
+}
+
+/* Sleep until something has changed in the folder: the number of changes. 0 when the program has ended. */
+static inline int wait_for_change(session *s)
+{
+    struct pollfd on[] = {{.fd = s->changes, .events = POLLIN}, {.fd = s->life}};
+    char events[16384];
+    int n = 0, found;
+    while ((found = poll(on, 2, (int)(1e3 * HANG_S))) < 0)
+        ck_assert_int_eq(errno, EINTR);
+    ck_assert_msg(found > 0, "the program hangs");
+    if (!(on[0].revents & POLLIN)) return 0;
+    ssize_t size = read(s->changes, events, sizeof events);
+    for (ssize_t at = 0; at < size; n++) {
+        struct inotify_event event;
+        memcpy(&event, events + at, sizeof event);
+        at += (ssize_t)(sizeof event + event.len);
+    }
+    s->n_change += n;
+    return n;
+}
+
+/* Wait until is_so(path); false when the program ends before. */
+static inline bool wait_until(session *s, bool (*is_so)(const char *path), const char *path)
+{
+    while (!is_so(path))
+        if (!wait_for_change(s)) return is_so(path);
+    return true;
+}
+
+/* The same, and the program stands still (SIGSTOP) when it is so: SIGKILL ends it, SIGCONT lets it go on. */
+static inline bool freeze_when(session *s, bool (*is_so)(const char *path), const char *path)
+{
+    while (wait_until(s, is_so, path)) {
+        kill(s->id, SIGSTOP);
+        ck_assert_int_eq(waitpid(s->id, &s->state, WUNTRACED), s->id);
+        s->has_ended = !WIFSTOPPED(s->state);
+        if (s->has_ended) return false;
+        if (is_so(path)) return true;
+        kill(s->id, SIGCONT);
+        if (!wait_for_change(s)) return false;
+    }
+    return false;
+}
+
+/* Read all that a held program says from now on, until its end, into the file "err". */
+static inline void let_go(session *s)
+{
+    char part[4096];
+    ssize_t n;
+    int file = open(temp_path("err"), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    ck_assert_int_ge(file, 0);
+    while ((n = read(s->err, part, sizeof part)) > 0)
+        for (ssize_t i = 0; i < n; i++) /* without what filled the pipe */
+            if (part[i]) ck_assert_int_eq(write(file, part + i, 1), 1);
+    close(file);
+    close(s->err);
+    s->err = -1;
+}
+
+/* The exit code, as a shell says it: 128 + number when killed. */
+static inline int end_of(session *s)
+{
+    if (s->err >= 0) let_go(s);
+    if (!s->has_ended) ck_assert_int_eq(waitpid(s->id, &s->state, 0), s->id);
+    close(s->changes);
+    close(s->life);
+    s->has_ended = true;
+    return WIFSIGNALED(s->state) ? 128 + WTERMSIG(s->state) : WEXITSTATUS(s->state);
+}
+
+static inline int end_by(session *s, int number)
+{
+    kill(s->id, number);
+    kill(s->id, SIGCONT);
+    return end_of(s);
+}
+
+/* ---- marks ---- */
+
+static inline bool has_generations(const char *path)
+{
+    struct stat info;
+    return stat(formatted("%s.journal", path), &info) == 0 && info.st_size >= 1000;
+}
+
+/* The program's words in this file contain a part. */
+static inline bool says(const char *path, const char *part)
+{
+    char *text = read_file(path, NULL);
+    bool found = strstr(text, part) != NULL;
+    free(text);
+    return found;
+}
+
+/* The file in this folder whose name fits the pattern, the first of several; NULL: there is none. */
+static inline const char *file_like(const char *folder, const char *pattern)
+{
+    static char path[PATH_MAX];
+    glob_t found;
+    bool is_found = glob(formatted("%s/%s", folder, pattern), 0, NULL, &found) == 0;
+    if (is_found) snprintf(path, sizeof path, "%s", found.gl_pathv[0]);
+    globfree(&found);
+    return is_found ? path : NULL;
+}
+
+/* Of a point of the sweep in this folder: it is being computed. */
+static inline bool has_begun_point(const char *folder)
+{
+    char path[PATH_MAX];
+    const char *journal = file_like(folder, "*.h5.journal");
+    if (!journal) return false;
+    snprintf(path, sizeof path, "%.*s", (int)(strlen(journal) - strlen(".journal")), journal);
+    return is_there(path) && has_generations(path);
+}
+
+/* Of a run with --progress jsonl: form-finding has begun. */
+static inline bool says_form(const char *err)
+{
+    return says(err, "\"phase\": \"form\"");
 }
 
 /* Wait until the run has stored a generation in the journal of `path`. */
-static inline void wait_for_generations(const char *path)
+static inline void wait_for_generations(session *s, const char *path)
 {
-    struct stat info = {0};
-    const char *journal = keep(formatted("%s.journal", path));
-    for (int i = 0; i < 8000 && info.st_size < 1000; i++) {
-        sleep_s(0.003);
-        if (stat(journal, &info) != 0) info.st_size = 0;
-    }
-    ck_assert_msg(info.st_size >= 1000, "no generation was stored");
+    if (!wait_until(s, has_generations, path)) ck_abort_msg("no generation was stored: exit code %d", end_of(s));
 }
 
 /* What the journal of `path` holds: one more than its last whole record's generation, 0 without a record; *end (may be

@@ -152,7 +152,7 @@ START_TEST(show_refuses_what_is_no_result)
     ERR("is a folder, not a result file");
     const char *const make_other[] = {python_program(), "-c", "import h5py, sys; h5py.File(sys.argv[1], 'w')['x'] = 1",
                                       temp("other.h5"), NULL};
-    demand_exit(run_command(50.0, make_other), 0, "make an HDF5 file", __LINE__);
+    demand_exit(run_command(HANG_S, make_other), 0, "make an HDF5 file", __LINE__);
     HIFDM(5, "show", temp("other.h5"));
     ERR("other.h5: is an HDF5 file, but no result of hifdm");
     HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", temp("whole.h5"));

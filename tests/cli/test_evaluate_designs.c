@@ -20,7 +20,7 @@ static const char *designs_of(const char *result, int generation, const char *na
                                  "    out.writerow(['row %d' % i] + [repr(float(t)) for t in row])\n";
     const char *path = temp(name);
     const char *const argv[] = {python_program(), "-c", script, result, keep(formatted("%d", generation)), path, NULL};
-    demand_exit(run_command(50.0, argv), 0, "write the designs", __LINE__);
+    demand_exit(run_command(HANG_S, argv), 0, "write the designs", __LINE__);
     return path;
 }
 

@@ -21,7 +21,7 @@ static const char *chen_result(void)
 static bool has_matplotlib(void)
 {
     const char *const argv[] = {python_program(), "-c", "import matplotlib", NULL};
-    struct command command = run_command(50.0, argv);
+    struct command command = run_command(HANG_S, argv);
     int exit_code = command.exit_code;
     free_command(&command);
     return exit_code == 0;
@@ -143,7 +143,7 @@ START_TEST(the_library_serves_cpp)
     else
         strcpy(compiler, strstr(compiler, "clang") ? "clang++" : "c++");
     const char *const argv[] = {compiler, "--version", NULL};
-    struct command there = run_command(50.0, argv);
+    struct command there = run_command(HANG_S, argv);
     int exit_code = there.exit_code;
     free_command(&there);
     if (exit_code != 0) return; /* no C++ here */

@@ -109,7 +109,7 @@ START_TEST(bash_completes)
     const char *completer = PREFIX_FILE("share/bash-completion/completions/hifdm"), *folder = temp("there");
     SHELL(0, "mkdir -p \"$1\"", folder);
     const char *const argv[] = {"bash", "-c", script, completer, folder, completion[_i].words, NULL};
-    demand_exit(run_command(50.0, argv), 0, completion[_i].words, __LINE__);
+    demand_exit(run_command(HANG_S, argv), 0, completion[_i].words, __LINE__);
     const char *got = strcmp(said.out, " ") ? said.out : ""; /* printf prints one empty line for no argument */
     ck_assert_msg(!strcmp(got, completion[_i].completions), "%s: got '%s', not '%s'", completion[_i].words, got,
                   completion[_i].completions);

@@ -4,13 +4,12 @@
 /* Another file takes the name of the result while the run goes on. The result is kept, and the message says where. */
 START_TEST(a_file_made_meanwhile_is_not_replaced)
 {
-    const char *path = temp("both.h5"), *c = storing_case("c.yaml", 10000);
-    const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--quiet", NULL};
-    pid_t child = start_program(argv);
-    wait_for_generations(path);
+    const char *path = temp("both.h5"), *c = storing_case("c.yaml", 1000);
+    session s = start_held_run(c, path, NULL);
+    wait_for_generations(&s, path);
     write_file(temp("mine"), "mine");
     SHELL(0, "mv \"$1\" \"$2\"", temp("mine"), path);
-    ck_assert_int_eq(end_of(child), 5);
+    ck_assert_int_eq(end_of(&s), 5);
     ck_assert(file_is(path, "mine"));
     char *err = read_file(temp_path("err"), NULL), *where = strstr(err, "this run's result is ");
     ck_assert_msg(where != NULL, "%s", err);
@@ -41,11 +40,12 @@ START_TEST(a_restart_replaces_nothing_before_it_has_a_shape)
                                 "form.residual_tolerance=1e-13",
                                 "--set",
                                 "scene.parabolic_cylinder.cells_per_module=[6, 6]",
+                                "--progress",
+                                "jsonl",
                                 NULL};
-    pid_t child = start_program(argv);
-    sleep_s(0.3);
-    kill(child, SIGTERM);
-    ck_assert_int_eq(end_of(child), 75);
+    session s = start_program(argv);
+    ck_assert(wait_until(&s, says_form, temp("err")));
+    ck_assert_int_eq(end_by(&s, SIGTERM), 75);
     ck_assert(file_is(path, "mine"));
 }
 END_TEST

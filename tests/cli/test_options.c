@@ -98,12 +98,12 @@ START_TEST(progress_is_shown_on_a_terminal_only)
         "sys.exit(code)\n";
     const char *path = file_with("c.yaml", small_case), *out = temp("p.h5");
     const char *const loud[] = {python_program(), "-c", script, hifdm_program(), "run", path, "-o", out, NULL};
-    demand_exit(run_command(50.0, loud), 0, "run on a terminal", __LINE__);
+    demand_exit(run_command(HANG_S, loud), 0, "run on a terminal", __LINE__);
     OUT("generation ");
     OUT("best psi");
     const char *const quiet[] = {python_program(), "-c",      script, hifdm_program(), "run", path, "-o", out,
                                  "--force",        "--quiet", NULL};
-    demand_exit(run_command(50.0, quiet), 0, "run --quiet on a terminal", __LINE__);
+    demand_exit(run_command(HANG_S, quiet), 0, "run --quiet on a terminal", __LINE__);
     OUT("nothing");
     HIFDM(0, "run", path, "-o", out, "--force");
     ck_assert_str_eq(said.err, "");

@@ -51,7 +51,7 @@ START_TEST(output_is_looked_at_before_the_work)
                                 "--set",
                                 "optimize.stagnation_generations=1000000",
                                 NULL};
-    demand_exit(run_command(10.0, argv), 5, "existing output", __LINE__);
+    demand_exit(run_command(HANG_S, argv), 5, "existing output", __LINE__);
     ERR("use --restart (of a sweep: --retry failed) to replace it");
     ck_assert(file_is(path, "mine"));
 }

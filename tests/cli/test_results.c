@@ -24,7 +24,7 @@ END_TEST
 START_TEST(h5dump_reads_the_file)
 {
     const char *const argv[] = {"h5dump", run_once(), NULL};
-    demand_exit(run_command(50.0, argv), 0, "h5dump", __LINE__);
+    demand_exit(run_command(HANG_S, argv), 0, "h5dump", __LINE__);
     ck_assert_str_eq(said.err, "");
     OUT("DATASET \"best_psi_m\"");
     OUT("\"straight_chain\""); /* the words of an enumeration */

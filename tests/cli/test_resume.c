@@ -2,6 +2,8 @@
  * as an undisturbed run. Whatever happens, the result file opens, and no generation that was acknowledged is lost. */
 #include "session.h"
 
+#include <math.h>
+
 /* ---- kill -9 ---- */
 
 /* After a kill: h5dump opens the file, and file and journal together hold all that was acknowledged before. */
@@ -13,7 +15,7 @@ static void look_at_remains(const char *path, int *acknowledged)
         return;
     }
     const char *const dump[] = {"h5dump", "-d", "/form/tension_N", path, NULL};
-    struct command command = run_command(50.0, dump);
+    struct command command = run_command(HANG_S, dump);
     ck_assert_msg(command.exit_code == 0, "h5dump cannot open what a kill left: %s", command.err);
     free_command(&command);
     int in_file = generations_in_file(path), now = in_journal > in_file ? in_journal : in_file;
@@ -37,22 +39,25 @@ static bool is_finished(const char *path)
     return !strstr(said.out, "unfinished");
 }
 
-/* HIFDM_STRESS=1: 300 kills instead of 30. */
+/* Each time after a random number of changes in the folder, from the first file that is made to thousands of
+ * generations. HIFDM_STRESS=1: 300 kills instead of 30. */
 START_TEST(killed_runs_go_on_to_the_same_bits)
 {
     const char *value = getenv("HIFDM_STRESS");
     int n_kill = value && *value && strcmp(value, "0") ? 300 : 30, n_resumed = 0, n_finished = 0, acknowledged = 0;
     const char *c = storing_case("c.yaml", 5000), *path = temp("run.h5"), *whole = temp("whole.h5");
     struct rng rng = rng_start(0);
+    double most = 3000;
     HIFDM(0, "run", c, "-o", whole, "--quiet");
     for (int kills = 0; kills < n_kill;) {
         char threads[2] = {(char)('0' + rng_int(&rng, 1, 3)), '\0'}; /* another number each time */
         const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--quiet", "--threads", threads, NULL};
         n_resumed += acknowledged > 0;
-        pid_t child = start_program(argv);
-        sleep_s(rng_uniform(&rng, 0.002, 0.2));
-        kill(child, SIGKILL);
-        int code = end_of(child);
+        session s = start_program(argv);
+        int n_change = (int)exp(rng_uniform(&rng, 0, log(most)));
+        while (s.n_change < n_change && wait_for_change(&s)) {
+        }
+        int code = end_by(&s, SIGKILL);
         if (code == 128 + SIGKILL) {
             kills++;
             look_at_remains(path, &acknowledged);
@@ -65,6 +70,7 @@ START_TEST(killed_runs_go_on_to_the_same_bits)
             SHELL(0, "test ! -e \"$1.journal\" && rm \"$1\"", path);
             acknowledged = 0;
             n_finished++;
+            most = fmax(0.5 * most, 100); /* on a busy machine several changes are seen as one */
         }
     }
     HIFDM(0, "run", c, "-o", path, "--quiet");
@@ -74,24 +80,30 @@ START_TEST(killed_runs_go_on_to_the_same_bits)
 }
 END_TEST
 
+/* More than were there when the journal was begun. */
+static bool has_several_generations(const char *path)
+{
+    size_t end, first = 72 + 12;
+    if (!has_generations(path)) return false;
+    int n = generations_in_journal(path, &end);
+    char *bytes = read_file(formatted("%s.journal", path), NULL);
+    int32_t generation;
+    if (end > first) memcpy(&generation, bytes + first, sizeof generation);
+    free(bytes);
+    return end > first && n >= generation + 4;
+}
+
 /* A torn or spoilt tail is cut off: the generations before it count. */
 START_TEST(a_torn_journal_gives_what_is_whole)
 {
     const char *c = storing_case("c.yaml", 1000000), *path = temp("run.h5");
     const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--quiet", NULL};
-    int n = 0, n_file = 0;
     size_t end = 0;
-    for (int i = 0; i < 30 && n < n_file + 3; i++) { /* it may have been published a moment ago */
-        pid_t child = start_program(argv);
-        wait_for_generations(path);
-        for (int k = 0; k < 1000 && generations_in_journal(path, NULL) < n_file + 10; k++)
-            sleep_s(0.002);
-        kill(child, SIGKILL);
-        end_of(child);
-        n = generations_in_journal(path, &end); /* a record may be torn behind it */
-        n_file = generations_in_file(path);
-    }
-    ck_assert_int_ge(n, n_file + 3);
+    session s = start_program(argv);
+    ck_assert(freeze_when(&s, has_several_generations, path));
+    ck_assert_int_eq(end_by(&s, SIGKILL), 128 + SIGKILL);
+    int n = generations_in_journal(path, &end); /* a record may be torn behind it */
+    ck_assert_int_ge(n, generations_in_file(path) + 3);
     ck_assert_int_eq(truncate(keep(formatted("%s.journal", path)), (off_t)end - 5), 0);
     recover_a_copy(path, n - 1);
     ck_assert_int_eq(generations_in_journal(path, &end), n - 1);
@@ -120,15 +132,13 @@ END_TEST
 START_TEST(seed_and_symmetry_are_recovered)
 {
     const char *c = storing_case("c.yaml", 4000), *path = temp("run.h5"), *whole = temp("whole.h5");
-    const char *const argv[] = {hifdm_program(),          "run", c, "-o", path, "--quiet", "--seed", "11", "--set",
-                                "optimize.symmetry=auto", NULL};
+    const char *const more[] = {"--seed", "11", "--set", "optimize.symmetry=auto", NULL};
     HIFDM(0, "run", c, "-o", whole, "--quiet", "--seed", "11", "--set", "optimize.symmetry=auto");
     int n = 0;
-    for (int i = 0; i < 30 && (n == 0 || n <= generations_in_file(path)); i++) {
-        pid_t child = start_program(argv);
-        wait_for_generations(path);
-        kill(child, SIGKILL);
-        end_of(child);
+    for (int i = 0; i < 30 && (n == 0 || n <= generations_in_file(path)); i++) { /* unless it was just published */
+        session s = start_held_run(c, path, more);
+        wait_for_generations(&s, path);
+        end_by(&s, SIGKILL);
         n = generations_in_journal(path, NULL);
     }
     recover_a_copy(path, n);
@@ -152,16 +162,10 @@ static const int stops[] = {SIGINT, SIGTERM, SIGUSR1, SIGHUP};
 START_TEST(stopped_runs_publish_and_go_on)
 {
     const char *c = storing_case("c.yaml", 3000), *path = temp("run.h5"), *whole = temp("whole.h5");
-    const char *const argv[] = {hifdm_program(), "run", c,           "-o", path, "--threads", "2",
-                                "--seed",        "5",   "--restart", NULL};
-    int code = 0;
-    for (int i = 0; i < 50 && code == 0; i++) { /* on a busy machine a run may end before it hears the signal: anew */
-        pid_t child = start_program(argv);
-        wait_for_generations(path);
-        ck_assert_int_eq(kill(child, stops[_i]), 0);
-        code = end_of(child);
-    }
-    ck_assert_int_eq(code, 75);
+    const char *const more[] = {"--threads", "2", "--seed", "5", NULL};
+    session s = start_held_run(c, path, more);
+    wait_for_generations(&s, path);
+    ck_assert_int_eq(end_by(&s, stops[_i]), 75);
     char *err = read_file(temp_path("err"), NULL);
     ck_assert_msg(strstr(err, "told to stop; the same command goes on from there") != NULL, "%s", err);
     free(err);
@@ -180,6 +184,11 @@ START_TEST(stopped_runs_publish_and_go_on)
 }
 END_TEST
 
+static bool says_polish(const char *err)
+{
+    return says(err, "\"phase\": \"polish\"");
+}
+
 /* In a form-finding or a Levenberg-Marquardt that would take long. */
 START_TEST(stops_are_heard_between_generations_too)
 {
@@ -197,6 +206,8 @@ START_TEST(stops_are_heard_between_generations_too)
                                 "form.residual_tolerance=1e-13",
                                 "--set",
                                 "scene.parabolic_cylinder.cells_per_module=[6, 6]",
+                                "--progress",
+                                "jsonl",
                                 NULL};
     const char *const polish[] = {hifdm_program(),
                                   "run",
@@ -209,13 +220,15 @@ START_TEST(stops_are_heard_between_generations_too)
                                   "optimize.polish_iterations=100000",
                                   "--set",
                                   "scene.parabolic_cylinder.cells_per_module=[5, 5]",
+                                  "--progress",
+                                  "jsonl",
                                   NULL};
     const char *const *const argv[] = {form, polish};
+    bool (*const has_begun[])(const char *) = {says_form, says_polish};
     for (int i = 0; i < 2; i++) {
-        pid_t child = start_program(argv[i]);
-        sleep_s(0.6);
-        kill(child, SIGTERM);
-        int code = end_of(child);
+        session s = start_program(argv[i]);
+        ck_assert(wait_until(&s, has_begun[i], temp("err")));
+        int code = end_by(&s, SIGTERM);
         ck_assert_msg(code == 75, "run %d: exit code %d", i, code);
         SHELL(0, "rm -f \"$1\"; ls \"$1\".* 2>/dev/null; true", path);
         ck_assert_str_eq(said.out, "");
@@ -259,15 +272,14 @@ START_TEST(a_second_process_is_refused)
 {
     const char *c = storing_case("c.yaml", 1000000), *path = temp("run.h5");
     const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--quiet", NULL};
-    pid_t child = start_program(argv);
-    wait_for_generations(path);
+    session s = start_program(argv);
+    wait_for_generations(&s, path);
     HIFDM(5, "run", c, "-o", path);
     ERR("another process is writing it");
     HIFDM(5, "run", c, "-o", path, "--restart");
     HIFDM(5, "recover", path);
     generations_in_file(path); /* reading is free */
-    kill(child, SIGINT);
-    ck_assert_int_eq(end_of(child), 75);
+    ck_assert_int_eq(end_by(&s, SIGINT), 75);
 }
 END_TEST
 
@@ -278,10 +290,10 @@ START_TEST(a_vanished_folder_is_told)
     SHELL(0, "mkdir \"$1\"", temp("gone"));
     const char *c = storing_case("c.yaml", 1000000), *path = temp("gone/run.h5");
     const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--quiet", NULL};
-    pid_t child = start_program(argv);
-    wait_for_generations(path);
+    session s = start_session(temp("gone"), false, argv);
+    wait_for_generations(&s, path);
     SHELL(0, "rm -r \"$1\"", temp("gone"));
-    ck_assert_int_eq(end_of(child), 5); /* at the next publication, or within HF_JOURNAL_SYNC_S */
+    ck_assert_int_eq(end_of(&s), 5); /* at the next publication, or within HF_JOURNAL_SYNC_S */
     char *err = read_file(temp_path("err"), NULL);
     ck_assert_msg(strstr(err, path) != NULL, "%s", err);
     free(err);

@@ -1,6 +1,6 @@
 /* What happens to the result files of a sweep when the base case changes and changes back, and when files are removed,
  * emptied or damaged. */
-#include "cli.h"
+#include "session.h"
 
 #define SMALLER_GA "optimize: {population: 4, generations: 2, seed: 7}\n"
 
@@ -17,11 +17,13 @@ static const char *begun_study(const char *folder)
     file_with("base.yaml", SMALL_SCENE "optimize: {population: 20, generations: 30000, seed: 7, "
                                        "stagnation_generations: 30000, polish_iterations: 1}\n");
     const char *path = file_with("study.yaml", "base: base.yaml\nsweep:\n  optimize.seed: [1]\n");
-    SHELL(0,
-          "\"$0\" sweep \"$1\" --dir \"$2\" --quiet & until cat \"$2\"/*.h5 2>/dev/null | grep -q .; do sleep 0.01; "
-          "done; kill -KILL $!; wait $!; ls \"$2\"/*.h5.journal",
-          path, folder);
-    return path;
+    for (;;) { /* anew when the point was done first */
+        session s = start_sweep(path, folder, NULL);
+        bool has_begun = freeze_when(&s, has_begun_point, folder);
+        end_by(&s, SIGKILL);
+        if (has_begun) return path;
+        SHELL(0, "rm \"$1\"/*.h5", folder);
+    }
 }
 
 /* Each row is what the run behind its link says. */
@@ -148,11 +150,18 @@ START_TEST(a_name_that_is_taken_meanwhile)
     file_with("base.yaml", SMALL_SCENE "optimize: {population: 20, generations: 6000, seed: 7, "
                                        "stagnation_generations: 6000, polish_iterations: 1}\n");
     file_with("study.yaml", "base: base.yaml\nsweep:\n  optimize.generations: [6000, 5999, 5998]\n");
-    SHELL(0,
-          "\"$0\" sweep \"$1\" --dir \"$2\" --quiet 2>/dev/null & f=; until [ -n \"$f\" ] && [ -s \"$f\" ]; do "
-          "sleep 0.002; for j in \"$2\"/*.h5.journal; do f=${j%.journal}; break; done; done; "
-          "echo mine >\"$2/x\"; mv \"$2/x\" \"$f\"; wait $!; [ $? = 3 ] && grep -q mine \"$f\"",
-          path, folder);
+    for (;;) { /* anew when all were done first */
+        session s = start_sweep(path, folder, NULL);
+        if (freeze_when(&s, has_begun_point, folder)) {
+            const char *journal = keep(file_like(folder, "*.h5.journal"));
+            SHELL(0, "echo mine >\"$1/x\"; mv \"$1/x\" \"${2%.journal}\"", folder, journal);
+            ck_assert_int_eq(end_by(&s, SIGCONT), 3);
+            SHELL(0, "grep -q mine \"${1%.journal}\"", journal);
+            break;
+        }
+        ck_assert_int_eq(end_of(&s), 0);
+        SHELL(0, "rm -r \"$1\"", folder);
+    }
     HIFDM(0, "status", path, "--dir", folder);
     OUT("failed    1");
     OUT("done      2");

@@ -16,7 +16,7 @@ static const char *run_chen(void)
 static void demand_vtk(const char *result, const char *folder, const char *stages)
 {
     const char *const argv[] = {python_program(), source_path("tests/cli/vtk_reads.py"), result, folder, NULL};
-    demand_exit(run_command(50.0, argv), 0, "vtk_reads.py", __LINE__);
+    demand_exit(run_command(HANG_S, argv), 0, "vtk_reads.py", __LINE__);
     OUT(stages);
 }
 

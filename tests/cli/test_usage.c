@@ -58,7 +58,7 @@ START_TEST(wrong_command_lines_are_told)
     const char *argv[8] = {hifdm_program()};
     for (int k = 0; k < 6; k++)
         argv[k + 1] = wrong[_i].argv[k];
-    demand_exit(run_command(50.0, argv), 2, wrong[_i].error, __LINE__);
+    demand_exit(run_command(HANG_S, argv), 2, wrong[_i].error, __LINE__);
     ck_assert_str_eq(said.err, wrong[_i].error);
     ck_assert_str_eq(said.out, "");
 }

@@ -35,7 +35,7 @@ END_TEST
 START_TEST(commands_give_output_and_exit_code)
 {
     const char *const argv[] = {"sh", "-c", "echo to out; echo to err >&2; exit 7", NULL};
-    struct command command = run_command(10.0, argv);
+    struct command command = run_command(HANG_S, argv);
     ck_assert_int_eq(command.exit_code, 7);
     ck_assert(!command.timed_out);
     ck_assert_str_eq(command.out, "to out\n");

@@ -49,7 +49,7 @@ START_TEST(a_decimal_comma_changes_nothing)
     write_file(source, "LC_NUMERIC\ndecimal_point \",\"\nthousands_sep \"\"\ngrouping -1\nEND LC_NUMERIC\n");
     const char *const argv[] = {
         "sh", "-c", "localedef -c -i \"$0\" -f ANSI_X3.4-1968 \"$1\"", source, temp_path("comma"), NULL};
-    struct command command = run_command(20, argv);
+    struct command command = run_command(HANG_S, argv);
     free_command(&command);
     char *folder = strdup(source);
     ck_assert_ptr_nonnull(folder);

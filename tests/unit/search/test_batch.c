@@ -3,8 +3,8 @@
 
 #include "search/parallel.h"
 #include <hifdm/batch.h>
+#include <sched.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { MAX_GENE = 200, MAX_CABLE = 400, N_DESIGN = 24 };
@@ -188,8 +188,17 @@ END_TEST
 /* While the next generation is made, another thread reads the one that was told: its contents must not change. */
 enum { N_INDIVIDUAL = 12, N_GENERATION = 6 };
 
+static int n_bred; /* generations */
+
+static void breed_and_count(void *state, const hf_population *now, hf_population *next)
+{
+    hf_optimiser_ga.next(state, now, next);
+    __atomic_add_fetch(&n_bred, 1, __ATOMIC_SEQ_CST);
+}
+
 struct reader {
     hf_optimiser ga;
+    bool is_beside; /* breeding goes on in another thread */
     double design_N[N_INDIVIDUAL * MAX_GENE], rate[N_INDIVIDUAL];
     int parent[2 * N_INDIVIDUAL], n_call, is_same;
 };
@@ -203,10 +212,13 @@ static void note(struct reader *r, const hf_optimiser *ga)
     memcpy(r->parent, ga->population.parent, sizeof r->parent);
 }
 
-static void read_slowly(void *context)
+/* After the next generation is bred, where that does not wait for the reader. */
+static void read_late(void *context)
 {
     struct reader *r = context;
-    nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    while (r->is_beside && r->ga.population.stop_reason == HF_POPULATION_RUNNING &&
+           __atomic_load_n(&n_bred, __ATOMIC_SEQ_CST) <= r->ga.population.generation)
+        sched_yield();
     r->n_call++;
     r->is_same = memcmp(r->design_N, r->ga.population.design_N,
                         N_INDIVIDUAL * (size_t)r->ga.population.n_gene * sizeof(double)) == 0 &&
@@ -234,15 +246,19 @@ START_TEST(a_generation_can_be_read_while_the_next_is_bred)
         hf_batch batch;
         hf_optimiser ga;
         static struct reader reader;
+        hf_optimiser_kind counting = hf_optimiser_ga;
+        counting.next = breed_and_count;
+        n_bred = 0;
         reader.n_call = 0;
+        reader.is_beside = n_thread > 1;
         ck_assert_int_eq(hf_batch_create(&r.evaluator, n_thread ? n_thread : 1, &batch), HF_OK);
-        ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &settings, &r.net.model, r.design_N, &ga), HF_OK);
+        ck_assert_int_eq(hf_optimiser_create(&counting, &settings, &r.net.model, r.design_N, &ga), HF_OK);
         hf_batch_share(&batch, r.design_N);
         hf_batch_run(&batch, N_INDIVIDUAL, ga.population.design_N, ga.population.pending, ga.population.result);
         do {
             hf_optimiser_tell(&ga);
             note(&reader, &ga);
-        } while (hf_batch_next(&batch, &ga, n_thread ? read_slowly : NULL, &reader) && reader.is_same);
+        } while (hf_batch_next(&batch, &ga, n_thread ? read_late : NULL, &reader) && reader.is_same);
         ck_assert(reader.is_same);
         ck_assert_int_eq(reader.n_call, n_thread ? N_GENERATION : 0);
         ck_assert_int_eq(ga.population.generation, N_GENERATION - 1);

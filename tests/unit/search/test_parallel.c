@@ -5,8 +5,8 @@
 #include "search/parallel.h"
 
 #include <pthread.h>
+#include <sched.h>
 #include <string.h>
-#include <time.h>
 
 enum { N_ITEM = 300, MAX_THREAD = 4 };
 
@@ -61,7 +61,8 @@ END_TEST
 static void make_ready(void *context)
 {
     struct counts *c = context;
-    nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL); /* gives others time to begin too early */
+    for (int i = 0; i < 10000; i++) /* lets others begin too early */
+        sched_yield();
     c->queue = (hf_parallel_queue){N_ITEM, 0, NULL};
     __atomic_store_n(&c->is_ready, 1, __ATOMIC_SEQ_CST);
 }
@@ -108,7 +109,8 @@ END_TEST
 /* ---- work left for later is done once, before the loop ends, or at once when the list is full ---- */
 
 struct later {
-    int n_done[N_ITEM], is_slow, n_elsewhere; /* done by another thread than the one that left it */
+    int n_done[N_ITEM], n_elsewhere; /* done by another thread than the one that left it */
+    int n_here, waits_for_here;      /* the first one done elsewhere waits until the list is full: one is done here */
 };
 
 static struct later_item {
@@ -120,9 +122,12 @@ static struct later_item {
 static void do_item(void *context)
 {
     struct later_item *item = context;
-    if (item->l->is_slow) nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
-    if (!pthread_equal(item->from, pthread_self())) __atomic_add_fetch(&item->l->n_elsewhere, 1, __ATOMIC_SEQ_CST);
-    __atomic_add_fetch(&item->l->n_done[item->i], 1, __ATOMIC_SEQ_CST);
+    struct later *l = item->l;
+    bool is_here = pthread_equal(item->from, pthread_self());
+    __atomic_add_fetch(is_here ? &l->n_here : &l->n_elsewhere, 1, __ATOMIC_SEQ_CST);
+    while (!is_here && l->waits_for_here && !__atomic_load_n(&l->n_here, __ATOMIC_SEQ_CST))
+        sched_yield();
+    __atomic_add_fetch(&l->n_done[item->i], 1, __ATOMIC_SEQ_CST);
 }
 
 static void leave_for_later(void *context, int i)
@@ -135,11 +140,12 @@ START_TEST(what_is_left_for_later_is_done)
 {
     for (int n_thread = 1; n_thread <= 3; n_thread++) {
         static struct later l;
-        l = (struct later){.is_slow = _i};
+        l = (struct later){.waits_for_here = _i};
         hf_parallel_for(n_thread, N_ITEM, leave_for_later, &l);
         for (int i = 0; i < N_ITEM; i++)
             ck_assert_int_eq(l.n_done[i], 1);
         ck_assert_int_gt(l.n_elsewhere, 0);
+        ck_assert_int_ge(l.n_here, _i);
         leave_for_later(&l, 0); /* outside of a loop the work is done at once */
         ck_assert_int_eq(l.n_done[0], 2);
     }

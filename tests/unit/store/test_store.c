@@ -430,7 +430,7 @@ START_TEST(data_sets_depend_on_the_case_alone)
     for (int i = 0; i < 2; i++)
         python("a", temp_path(i ? "a.h5" : "b.h5"), "for name in list(f.attrs): del f.attrs[name]");
     const char *const argv[] = {"h5diff", temp_path("a.h5"), temp_path("b.h5"), NULL};
-    struct command command = run_command(30.0, argv);
+    struct command command = run_command(HANG_S, argv);
     ck_assert_msg(command.exit_code == 0, "%s%s", command.out, command.err);
     free_command(&command);
     close_net(&net);

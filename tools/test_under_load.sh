@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Runs `make test` RUNS times beside a busy loop on every core, then (CLONE=yes) once in a fresh clone of HEAD, and tells
+# each run's result and time: a test that races with the clock fails here. SUITE picks suites as for `make test`.
+set -eu
+cd "$(dirname "$0")/.."
+runs=${RUNS:-20} logs=${BUILD:-build}/test-under-load n_failed=0
+rm -rf "$logs"
+mkdir -p "$logs"
+
+# They end with this script, even when that is killed.
+busy() {
+    while kill -0 $$ 2>/dev/null; do
+        for ((i = 0; i < 100000; i++)); do :; done
+    done
+}
+loops=()
+for _ in $(seq "$(nproc)"); do
+    busy &
+    loops+=($!)
+done
+trap 'kill "${loops[@]}" 2>/dev/null || true' EXIT
+trap 'exit 130' INT TERM HUP
+
+try() {
+    local name=$1 start=$SECONDS result=passed
+    shift
+    "$@" >"$logs/$name.log" 2>&1 </dev/null || { result="FAILED, see $logs/$name.log"; n_failed=$((n_failed + 1)); }
+    echo "$name: $((SECONDS - start)) s, $(tail -n 1 "$logs/$name.log"): $result"
+}
+for run in $(seq "$runs"); do
+    try "run-$run" make test
+done
+if [ "${CLONE:-no}" = yes ]; then
+    git clone -q . "$logs/clone"
+    try clone env -u BUILD make -C "$logs/clone" test
+fi
+echo "$n_failed of $((runs + $([ "${CLONE:-no}" = yes ] && echo 1 || echo 0))) failed"
+[ "$n_failed" = 0 ]
