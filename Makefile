@@ -114,7 +114,8 @@ quote = '$(subst ','\'',$(1))'
 stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
-FRONT := all compile-all run test stress test-under-load browser paper paper-check literal bench api lint asan tsan install
+FRONT := all compile-all run test stress test-under-load browser paper paper-check literal bench api lint \
+         asan tsan install
 .PHONY: $(FRONT) setup clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -143,7 +144,8 @@ test: ## set up, build and run the tests; SUITE="unit verify/band" picks some
 	@mkdir -p $(BUILD)/tmp
 	$(Q)HIFDM=$(abspath $(PROGRAM)) HIFDM_SOURCE_DIR=$(CURDIR) PYTHON=$(PYTHON) \
 	    HIFDM_PREFIX=$(abspath $(BUILD))/prefix HIFDM_CC=$(call quote,$(CC) $(SANITIZER)) \
-	    TMPDIR=$(abspath $(BUILD))/tmp CK_DEFAULT_TIMEOUT=$${CK_DEFAULT_TIMEOUT:-300} $(RUNNER) $(SUITE)
+	    TMPDIR=$(abspath $(BUILD))/tmp HIFDM_TEST_JOBS=$${HIFDM_TEST_JOBS:-$$(nproc)} \
+	    CK_DEFAULT_TIMEOUT=$${CK_DEFAULT_TIMEOUT:-300} $(RUNNER) $(SUITE)
 
 # Twenty times as many nets as `make test` tries, ten times as many kills.
 stress: ## the numerical-stability suite and the killed runs at full length

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs `make test` RUNS times beside a busy loop on every core, then (CLONE=yes) once in a fresh clone of HEAD, and tells
-# each run's result and time: a test that races with the clock fails here. SUITE picks suites as for `make test`.
+# Runs `make test` RUNS times beside a busy loop on every core, then (CLONE=yes) once in a fresh clone of HEAD, and
+# tells each run's result and time: a test that races with the clock fails here. SUITE picks suites as for `make test`.
 set -eu
 cd "$(dirname "$0")/.."
 runs=${RUNS:-20} logs=${BUILD:-build}/test-under-load n_failed=0
@@ -18,13 +18,19 @@ for _ in $(seq "$(nproc)"); do
     busy &
     loops+=($!)
 done
-trap 'kill "${loops[@]}" 2>/dev/null || true' EXIT
+job=
+trap '[ -z "$job" ] || kill -- "-$job" 2>/dev/null; kill "${loops[@]}" 2>/dev/null || true' EXIT
 trap 'exit 130' INT TERM HUP
 
 try() {
     local name=$1 start=$SECONDS result=passed
     shift
-    "$@" >"$logs/$name.log" 2>&1 </dev/null || { result="FAILED, see $logs/$name.log"; n_failed=$((n_failed + 1)); }
+    set -m # a process group of its own, which the trap can end
+    "$@" >"$logs/$name.log" 2>&1 </dev/null &
+    job=$!
+    set +m
+    wait "$job" || { result="FAILED, see $logs/$name.log"; n_failed=$((n_failed + 1)); }
+    job=
     echo "$name: $((SECONDS - start)) s, $(tail -n 1 "$logs/$name.log"): $result"
 }
 for run in $(seq "$runs"); do
