@@ -114,7 +114,7 @@ quote = '$(subst ','\'',$(1))'
 stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
-FRONT := all compile-all run test stress test-under-load browser paper paper-check literal bench api lint \
+FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check literal bench api lint \
          asan tsan install
 .PHONY: $(FRONT) setup clean help FORCE
 .DEFAULT_GOAL := all
@@ -154,6 +154,11 @@ stress: ## the numerical-stability suite and the killed runs at full length
 # RUNS=20 times; CLONE=yes: and once in a fresh clone; SUITE=... as for test.
 test-under-load: ## the tests again and again beside a busy loop on every core
 	+$(Q)RUNS=$(RUNS) CLONE=$(CLONE) SUITE=$(call quote,$(SUITE)) BUILD=$(BUILD) tools/test_under_load.sh
+
+# Hours: MUTANTS="WORD..." picks some. The list is tests/mutants.txt.
+mutants: ## one fault in the sources at a time: which ones do the tests miss?
+	$(Q)tools/setup.sh --test
+	+$(Q)BUILD=$(BUILD) $(PYTHON) tools/mutants.py $(MUTANTS)
 
 browser: ## open pages of hifdm report in headless Chromium; needs `tools/setup.sh --ci`
 	$(SUB) $(PROGRAM)
@@ -238,7 +243,7 @@ clean: ## remove build/
 	rm -rf build $(BUILD)
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
 
 # The value of a variable, for tools/lint.sh.
 print-%:

@@ -1,0 +1,188 @@
+#!/usr/bin/env python3
+"""Do the tests notice? Makes the mutants of tests/mutants.txt one at a time and names those that `make test` misses.
+
+Each is one edit at one place of the sources, in clones of HEAD under build/mutants: the user's tree is not touched. The
+suites of the touched room run first, then the rest, up to the first that fails. The table is build/mutants/table.txt.
+
+    tools/mutants.py                   all of them, as many at a time as there are cores
+    tools/mutants.py WORD...           those whose name, file or suites contain a word
+    tools/mutants.py --list            names only; --check: does every edit still apply?
+"""
+
+import argparse
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parent.parent
+WORK = Path(os.environ.get("BUILD", "build"))
+WORK = (WORK if WORK.is_absolute() else TOP / WORK) / "mutants"
+TEST_S, SUITES_S = 120, 1800  # a test, and all of them: a mutant that hangs is noticed, too
+ENOUGH = 0.95
+
+
+class Mutant:
+    def __init__(self, name, path, suites, line):
+        self.name, self.path, self.suites, self.line = name, path, suites, line
+        self.old, self.new = [], []
+
+    def words(self):
+        room = self.path.split("/")[1]
+        return self.suites or [f"unit/{room}/", f"property/{room}/"]
+
+    def edited(self, text):
+        """The text with the old lines, which stand there once, replaced; indentation does not count."""
+        pattern = r"\n[ \t]*".join(re.escape(part) for part in self.old)
+        found = re.findall(pattern, text)
+        if len(found) != 1:
+            n = len(found)
+            sys.exit(f"tests/mutants.txt:{self.line}: {self.name}: its old text stands {n} times in {self.path}")
+        new = "\n".join(self.new)
+        return re.sub(pattern, lambda _: new, text)
+
+
+def read_mutants(path):
+    mutants = []
+    for n, line in enumerate(path.read_text().splitlines(), 1):
+        if not line.strip() or line.startswith("#"):
+            continue
+        if line[0] in "-+":
+            (mutants[-1].old if line[0] == "-" else mutants[-1].new).append(line[2:].strip())
+        else:
+            head, _, suites = line.partition(":")
+            name, file = head.split()
+            mutants.append(Mutant(name, file, suites.split(), n))
+    for m in mutants:
+        if not m.old or not m.new:
+            sys.exit(f"tests/mutants.txt:{m.line}: {m.name}: needs '- old' and '+ new'")
+        m.edited((TOP / m.path).read_text())
+    return mutants
+
+
+def run(tree, log, *command, limit_s=SUITES_S, **environment):
+    """True when it succeeds. A process group of its own, so that a hang leaves nothing behind."""
+    with open(log, "w") as file:
+        child = subprocess.Popen(command, cwd=tree, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT,
+                                 env={**os.environ, **environment}, start_new_session=True)
+        running.add(child.pid)
+        try:
+            return child.wait(limit_s) == 0
+        except subprocess.TimeoutExpired:
+            return False
+        finally:
+            end(child.pid)
+            child.wait()
+            running.discard(child.pid)
+
+
+running = set()
+
+
+def end(pid):
+    try:
+        os.killpg(pid, signal.SIGTERM)
+    except ProcessLookupError:
+        pass
+
+
+def test(tree, log, words):
+    return run(tree, log, "make", "-s", "test", f"SUITE={' '.join(words)}", BUILD="build", HIFDM_TEST_STOP="1",
+               HIFDM_TEST_JOBS="2", CK_DEFAULT_TIMEOUT=str(TEST_S))
+
+
+def who_failed(log):
+    """The test that noticed, as check names it."""
+    for line in log.read_text(errors="replace").splitlines():
+        found = re.search(r":[FE]:[^:]*:([^:]*):", line)
+        if found:
+            return found[1]
+    return "a run that did not end"
+
+
+def try_mutant(mutant, tree):
+    source, log = tree / mutant.path, tree.parent / f"{mutant.name}.log"
+    text = source.read_text()
+    source.write_text(mutant.edited(text))
+    try:
+        if not run(tree, log, "make", "-s", "compile-all", "-j1", "WERROR=", BUILD="build"):
+            return "does not compile", ""
+        for words in (mutant.words(), []):
+            if not test(tree, log, words):
+                return "caught", who_failed(log)
+        return "SURVIVED", ""
+    finally:
+        source.write_text(text)
+
+
+def make_tree(k):
+    tree = WORK / f"tree-{k}"
+    shutil.rmtree(tree, ignore_errors=True)
+    subprocess.run(["git", "clone", "-q", "--shared", TOP, tree], check=True)
+    if not run(tree, WORK / f"tree-{k}.log", "make", "-s", "compile-all", BUILD="build"):
+        sys.exit(f"HEAD does not compile: {WORK}/tree-{k}.log")
+    return tree
+
+
+def work_off(queue, results, lock, k):
+    tree = make_tree(k)
+    while True:
+        with lock:
+            if not queue:
+                return
+            mutant = queue.pop(0)
+        start = time.monotonic()
+        outcome, by = try_mutant(mutant, tree)
+        with lock:
+            line = f"{outcome:16} {time.monotonic() - start:5.0f} s  {mutant.name:40} {mutant.path:32} {by}"
+            results.append((outcome, mutant.name))
+            print(line, flush=True)
+            with open(WORK / "table.txt", "a") as table:
+                table.write(line + "\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("word", nargs="*")
+    parser.add_argument("--list", action="store_true")
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--no-base", action="store_true", help="do not ask whether HEAD itself passes")
+    o = parser.parse_args()
+    mutants = read_mutants(TOP / "tests/mutants.txt")
+    chosen = [m for m in mutants if not o.word or any(w in f"{m.name} {m.path} {m.suites}" for w in o.word)]
+    if o.list or o.check:
+        for m in chosen if o.list else []:
+            print(m.name, m.path)
+        print(f"{len(chosen)} mutants")
+        return
+    WORK.mkdir(parents=True, exist_ok=True)
+    (WORK / "table.txt").write_text("")
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    if not o.no_base and not test(make_tree(0), WORK / "base.log", []):
+        sys.exit(f"the tests fail without a mutant: {WORK}/base.log")
+    results, lock = [], threading.Lock()
+    threads = [threading.Thread(target=work_off, args=(chosen, results, lock, k), daemon=True) for k in range(o.jobs)]
+    try:
+        for t in threads:
+            t.start()
+        for t in threads:
+            t.join()
+    finally:
+        for pid in list(running):
+            end(pid)
+    caught = sum(outcome == "caught" for outcome, _ in results)
+    for outcome, name in results:
+        if outcome != "caught":
+            print(f"{outcome}: {name}")
+    print(f"{caught} of {len(results)} caught")
+    sys.exit(0 if results and caught >= ENOUGH * len(results) else 1)
+
+
+if __name__ == "__main__":
+    main()
