@@ -40,7 +40,9 @@ double hf_form_residual_N(const hf_model *model, hf_workspace *workspace);
 
 /* A cable of law force_density has collapsed when it is shorter than HF_FORM_GONE times its theoretical length (for a
  * cable of law tension the bound is collapse_ratio). A cable longer than HF_FORM_BLOWN_UP times its theoretical length
- * shows that the matrix was singular and was factored only because of rounding. */
+ * shows that the matrix was singular and was factored only because of rounding. The tests of solve and stress pass with
+ * HF_FORM_GONE from 1e-15 to 1e-6 and HF_FORM_BLOWN_UP from 1e6 to 1e12. Of their 1988 solves, three fewer end well
+ * with 1e-6, 17 fewer with 1e6, and six more with 1e12. */
 #define HF_FORM_GONE 1e-12
 #define HF_FORM_BLOWN_UP 1e9
 

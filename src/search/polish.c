@@ -22,7 +22,9 @@
 #define START_INSIDE 0.9   /* of the half range: at a bound itself the change of variable has no slope */
 #define STALL_ITERATIONS 5 /* an optimum is reached when psi has gained over these */
 #define STALL_GAIN 1e-7    /* less than this, relative */
-#define INFEASIBLE 1e3     /* residual (m) of a design without a shape: any step to it is refused */
+/* Residual (m) of a design without a shape: a step to it is refused when this is more than the residual before, which
+ * is less than the size of the net. test_polish passes from 1e-6 to 1e9. */
+#define INFEASIBLE 1e3
 
 /* ---- the problem ---- */
 

@@ -6,12 +6,13 @@
 #include <math.h>
 #include <string.h>
 
-#define PENALTY 1e3     /* EA of the elastic cable in place of one under law length, over reference_N */
-#define SLOPE_KEPT 1e-4 /* fraction of the decrease of Pi to first order that a step must reach (Armijo) */
-#define HALVINGS_MAX 30 /* lengths tried for one step, each half of the one before */
-#define NEAR 1e-3       /* imbalance over the reference tension at which hf_newton_run takes over */
-#define FARTHEST 0.5    /* largest move of a node in one step, over the length of the longest cable */
-#define ROUNDING 1e-15  /* a relative decrease of Pi up to this is rounding */
+/* Behind each: the range over which the tests of solve pass, the property tests on nets of elastic cables included. */
+#define PENALTY 1e3     /* EA of the elastic cable in place of one under law length, over reference_N; 10 to 1e6 */
+#define SLOPE_KEPT 1e-4 /* fraction of the decrease of Pi to first order that a step must reach (Armijo); 1e-6 to 0.1 */
+#define HALVINGS_MAX 30 /* lengths tried for one step, each half of the one before; 30 to 100, 10 fails */
+#define NEAR 1e-3       /* imbalance over the reference tension where hf_newton_run takes over; 1e-6 to 0.1, 1 fails */
+#define FARTHEST 0.5    /* largest move of a node in one step, over the longest cable; 0.005 to 50 */
+#define ROUNDING 1e-15  /* a relative decrease of Pi up to this is rounding; 0 to 1e-11: the same steps */
 
 /* Replaces law length by law elastic for the descent; harden takes it back. */
 static void soften(const hf_model *m, hf_workspace *w)

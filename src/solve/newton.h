@@ -20,7 +20,8 @@ bool hf_newton_run(const hf_model *model, const hf_form_settings *settings, hf_w
 void hf_newton_certify(const hf_model *model, hf_workspace *workspace, hf_form_result *result);
 
 /* A tension below this fraction of the reference tension, in an elastic cable, is rounding: the cable is slack, and its
- * force density is set to 0. A node held by such cables alone has no position. */
+ * force density is set to 0. A node held by such cables alone has no position. The tests of solve pass from 1e-14 to
+ * 1e-8; the larger, the more nets of stiff cables are refused for such a node. */
 #define HF_NEWTON_NOTHING 1e-12
 
 #endif

@@ -15,7 +15,8 @@
 #include <math.h>
 
 /* Stiffness of a cable under law length, divided by its tension per length. The larger it is, the nearer a step comes
- * to a hard constraint. The forces do not contain it, so it costs no accuracy in the residual. */
+ * to a hard constraint. The forces do not contain it, so it costs no accuracy in the residual. From 1e6 to 1e9 the
+ * tests of solve and stress pass; with 1e5 one fails (flat_edges_are_solved). */
 #define HF_NEWTON_STIFFENING 1e7
 
 /* Number of unknowns, 3 n_free. */

@@ -8,11 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WAITING_BYTES (512 << 10) /* of waiting rows without designs; a larger generation waits alone */
-#define DESIGN_CHUNKS 3           /* chunks of designs that may wait, so that a run seldom waits for HDF5 */
-#define CHUNK_BYTES (256 << 10)   /* of a data set: rows as far as they fit */
-#define CHUNK_MAX (1 << 20)       /* of a row larger than CHUNK_BYTES: what HDF5 caches of a data set */
-#define BLOCK 1024                /* generations read at a time for the sums */
+/* Memory, chunks and time depend on these, the values stored do not. The tests of the store pass within the ranges
+ * given; with a CHUNK_BYTES of 25 MiB or a CHUNK_MAX of 100 MiB one fails (generations_are_appended). */
+#define WAITING_BYTES (512 << 10) /* of waiting rows without designs; a larger generation waits alone; 1 to 50 MiB */
+#define DESIGN_CHUNKS 3           /* chunks of designs that may wait, so that a run seldom waits for HDF5; 1 to 300 */
+#define CHUNK_BYTES (256 << 10)   /* of a data set: rows as far as they fit; 1 to 256 KiB */
+#define CHUNK_MAX (1 << 20)       /* of a row larger than CHUNK_BYTES: what HDF5 caches of a data set; 1 KiB to 1 MiB */
+#define BLOCK 1024                /* generations read at a time for the sums; 1 to 102400 */
 
 /* ---- the list ---- */
 

@@ -19,6 +19,8 @@
 #define RECORD_MAGIC 0x4a444648u /* "HFDJ" */
 #define HEADER_BYTES (8 + HF_JOURNAL_IDENTITY)
 #define PAYLOAD_MAX (1u << 31)
+/* Each attempt fails only when another process removes the journal between opening and locking it. No test of the store
+ * or of interrupting changes with 1 and with 500. */
 #define OPEN_ATTEMPTS 5
 
 typedef struct {

@@ -115,6 +115,28 @@ START_TEST(condition_is_that_of_the_matrix)
 }
 END_TEST
 
+/* A cable that pushes with twice its tension makes the matrix indefinite, and a large shift definite again. Cables that
+ * all push leave no positive entry on the diagonal, which no shift helps. */
+START_TEST(an_indefinite_matrix_is_shifted)
+{
+    struct net net;
+    open_smooth(&net, _i);
+    const hf_model *m = &net.model;
+    double condition = 0;
+    int pushing = 0; /* a cable under law force_density between two free nodes */
+    while (m->end_row[2 * pushing] >= m->n_free || m->end_row[2 * pushing + 1] >= m->n_free)
+        pushing += 3;
+    ck_assert_int_lt(pushing, m->n_cable);
+    net.work.target[pushing] *= -2;
+    ck_assert_int_eq(hf_newton_matrix_factor(m, &net.work, &condition), HF_OK);
+    ck_assert(isinf(condition));
+    for (int e = 0; e < m->n_cable; e++)
+        net.work.target[e] = -fabs(net.work.target[e]);
+    ck_assert_int_eq(hf_newton_matrix_factor(m, &net.work, &condition), HF_SINGULAR);
+    close_net(&net);
+}
+END_TEST
+
 Suite *suite_unit_newton_matrix(void)
 {
     Suite *suite = suite_create("unit/newton_matrix");
@@ -122,5 +144,6 @@ Suite *suite_unit_newton_matrix(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, matrix_is_the_derivative_of_the_forces, 0, 5);
     tcase_add_loop_test(tests, condition_is_that_of_the_matrix, 0, 5);
+    tcase_add_loop_test(tests, an_indefinite_matrix_is_shifted, 0, 5);
     return suite;
 }
