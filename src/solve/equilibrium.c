@@ -18,8 +18,7 @@
 #define DESCENT_MAX 300
 /* A flat chain whose excess length is more than FAR_EXCESS times the wanted one is rescaled, in at most RESCALED_MAX
  * rounds. The tests of form-finding, Newton and verification pass with a FAR_EXCESS of 4 and of 100, and with a
- * RESCALED_MAX from 1 to 80; from 4 on they take the same steps. Without rescaling one fails (flat_edges_are_solved).
- * */
+ * RESCALED_MAX from 1 to 80; from 4 on they take the same steps. With 0 one fails (flat_edges_are_solved). */
 #define FAR_EXCESS 16.0
 #define RESCALED_MAX 8
 /* Further tries after a shape whose residual is limited by rounding. From 0 to 30 no net of the tests of solve and

@@ -12,8 +12,7 @@
 
 /* Straight chains are examined after this many iterations, and again each time the number of iterations has doubled.
  * From 1 to 512 no net of the tests of solve and stress is judged otherwise; with 2048 one of the coupling fails
- * (soft_trusses_are_named). The fewer, the sooner a net is refused; the more, the longer its loads have had to settle.
- * */
+ * (soft_trusses_are_named). The fewer, the sooner a net is refused; the more, the longer its loads may settle. */
 #define FIRST_CHAIN_CHECK 64
 /* A load counts as settled when it changes by less than this, relatively, between two examinations. The tests of
  * form-finding pass with 0.01 and 0.1; with 0.001 one of them fails (loaded_straight_chain_is_ill_posed). */

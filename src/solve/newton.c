@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Halvings of one step before it counts as failed. From 0 to 6 the tests of solve and stress pass; with 12 those of
- * stress fail: steps that hardly move take the place of the trusted ones below. */
+ * stress fail. */
 #define HALVINGS_MAX 6
 /* At most TRUSTED_MAX steps per run may raise the merit, each by less than the factor TRUSTED_RISE. The tests of
  * form-finding pass with 0 and 30 such steps, and with factors of 1e1 and 1e12. */
