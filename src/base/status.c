@@ -1,6 +1,7 @@
 #include <hifdm/status.h>
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,18 +51,18 @@ int hf_status_exit_code(hf_status status)
     return 5;
 }
 
-/* Room for `extra` more bytes and the final NUL; 0 when memory ran out. */
-static int reserve(hf_messages *m, size_t extra)
+/* Room for `extra` more bytes and the final NUL; false when memory ran out. */
+static bool reserve(hf_messages *m, size_t extra)
 {
     size_t need = m->length + extra + 1;
-    if (need <= m->capacity) return 1;
+    if (need <= m->capacity) return true;
     size_t capacity = m->capacity ? 2 * m->capacity : 256;
     if (capacity < need) capacity = need;
     char *text = realloc(m->text, capacity);
-    if (!text) return 0;
+    if (!text) return false;
     m->text = text;
     m->capacity = capacity;
-    return 1;
+    return true;
 }
 
 static void append(hf_messages *m, const char *prefix, const char *format, va_list args)

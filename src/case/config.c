@@ -240,7 +240,7 @@ static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, cons
     if (i_field >= 0) {
         set_field(l, value, i_field);
     } else if (!strcmp(path, "sweep") && !l->faults.is_override) {
-        l->c->has_sweep = 1;
+        l->c->has_sweep = true;
         l->cut[0] = key_mark;
         l->cut[1] = value->end_mark;
     } else if (i_section < 0) {

@@ -195,7 +195,7 @@ hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double 
     grid g = {cylinder, EA_N, scene, (int)nx, (int)ny};
     int n_cable = (g.nx - 1) * g.ny + g.nx * (g.ny - 1);
     bool with_EA = EA_N && (EA_N[0] > 0 || EA_N[1] > 0);
-    hf_status status = hf_scene_allocate(scene, g.nx * g.ny, n_cable, 0, with_EA, 0);
+    hf_status status = hf_scene_allocate(scene, g.nx * g.ny, n_cable, false, with_EA, false);
     if (status == HF_OK) {
         place_nodes(&g);
         assign_roles(&g);

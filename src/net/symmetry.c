@@ -86,14 +86,14 @@ static void measure(search *q)
 /* True when node j is at `target`, has the role of node i, and carries its mirrored load. */
 static bool is_node_image(const search *q, int axis, int i, int j, const double target[3])
 {
-    if (q->s->role[i] != q->s->role[j]) return 0;
+    if (q->s->role[i] != q->s->role[j]) return false;
     for (int c = 0; c < 3; c++) {
-        if (fabs(coordinate(q, j, c) - target[c]) > TOLERANCE * q->size_m) return 0;
+        if (fabs(coordinate(q, j, c) - target[c]) > TOLERANCE * q->size_m) return false;
         if (!q->s->load_N) continue;
         double load = q->s->load_N[3 * (size_t)i + (size_t)c], other = q->s->load_N[3 * (size_t)j + (size_t)c];
-        if (fabs(other - (c == axis ? -load : load)) > TOLERANCE * q->load_N) return 0;
+        if (fabs(other - (c == axis ? -load : load)) > TOLERANCE * q->load_N) return false;
     }
-    return 1;
+    return true;
 }
 
 static int find_node_image(const search *q, int axis, int i)
@@ -138,7 +138,7 @@ static int compare_links(const void *a, const void *b)
 static bool is_alike(const search *q, const link *a, const link *b)
 {
     double tolerance = fmax(TOLERANCE, 4 * TOLERANCE * q->size_m / q->m->length_m[a->cable]);
-    if (a->kind != b->kind || !(fabs(a->target - b->target) <= tolerance * fabs(a->target))) return 0;
+    if (a->kind != b->kind || !(fabs(a->target - b->target) <= tolerance * fabs(a->target))) return false;
     const double *EA_N = hf_law_has(q->m->law[a->cable], HF_LAW_NEEDS_EA) ? q->m->EA_N : NULL;
     return !EA_N || fabs(EA_N[a->cable] - EA_N[b->cable]) <= TOLERANCE * EA_N[a->cable];
 }

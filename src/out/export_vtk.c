@@ -294,7 +294,7 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
                            char *said, size_t size, hf_messages *messages)
 {
     static const char *const name[5] = {"form", "optimize", "polish", "theoretical", "truss"}; /* by hf_stage */
-    int has[5] = {1, hf_summary_has_best_shape(summary), summary->has_polish, 1, summary->has_truss};
+    bool has[5] = {true, hf_summary_has_best_shape(summary), summary->has_polish, true, summary->has_truss};
     char path[5][PATH_MAX];
     for (int i = 0; i < 5; i++) { /* all names are checked before anything is made */
         if (snprintf(path[i], PATH_MAX, "%s/%s.hdf", o->output, name[i]) >= PATH_MAX)

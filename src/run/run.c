@@ -120,7 +120,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
 /* End a run that was told to stop: publish all finished generations, from which the same command goes on. */
 static hf_status stop_here(run *r, const hf_summary *s, hf_messages *messages)
 {
-    HF_TRY(hf_store_publish(r->store, s, 1, messages));
+    HF_TRY(hf_store_publish(r->store, s, true, messages));
     return HF_INTERRUPTED;
 }
 
@@ -205,7 +205,7 @@ static void keep(void *context)
 {
     told *t = context;
     t->status = hf_store_generation(t->r->store, &t->r->problem.model, &t->population, t->messages);
-    if (t->status == HF_OK) t->status = hf_store_publish(t->r->store, t->summary, 0, t->messages);
+    if (t->status == HF_OK) t->status = hf_store_publish(t->r->store, t->summary, false, t->messages);
     if (t->status == HF_OK) observe_generation(t);
 }
 
@@ -216,7 +216,7 @@ static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
     const hf_population *p = &r->optimiser.population;
     HF_TRY(hf_store_genes(r->store, &r->problem.model, p, messages));
     HF_TRY(hf_store_restore(r->store, &r->optimiser, s, messages));
-    if (hf_store_generations(r->store) == 0) return hf_store_publish(r->store, s, 1, messages);
+    if (hf_store_generations(r->store) == 0) return hf_store_publish(r->store, s, true, messages);
     hf_optimiser_tell(&r->optimiser);
     r->earlier_wall_s = s->optimize_wall_s;
     r->earlier_cpu_s = s->optimize_cpu_s;

@@ -12,8 +12,8 @@ static inline void square_root(lanes *value)
 }
 
 /* with_truss is a constant where this is inlined */
-static inline __attribute__((always_inline)) void forces(const hf_chord *chord, const hf_chord_lanes *l, int with_truss,
-                                                         double residual_squared[HF_LANES])
+static inline __attribute__((always_inline)) void forces(const hf_chord *chord, const hf_chord_lanes *l,
+                                                         bool with_truss, double residual_squared[HF_LANES])
 {
     const hf_model *m = chord->evaluator->model;
     const lanes *x = (const lanes *)(const void *)l->x_m, *y = x + m->n_node, *z = y + m->n_node;
@@ -69,9 +69,9 @@ static inline __attribute__((always_inline)) void forces(const hf_chord *chord, 
 void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES])
 {
     if (chord->n_pull)
-        forces(chord, l, 1, residual_squared);
+        forces(chord, l, true, residual_squared);
     else
-        forces(chord, l, 0, residual_squared);
+        forces(chord, l, false, residual_squared);
 }
 
 /* ---- the truss ---- */

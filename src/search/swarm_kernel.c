@@ -86,7 +86,7 @@ INLINE vec root(vec a)
 {
     return _mm512_sqrt_pd(a);
 }
-INLINE int all_positive(vec a)
+INLINE bool all_positive(vec a)
 {
     return _mm512_cmp_pd_mask(a, _mm512_setzero_pd(), _CMP_NGT_UQ) == 0;
 }
@@ -95,7 +95,7 @@ INLINE vec root(vec a)
 {
     return _mm256_sqrt_pd(a);
 }
-INLINE int all_positive(vec a)
+INLINE bool all_positive(vec a)
 {
     return _mm256_movemask_pd(_mm256_cmp_pd(a, _mm256_setzero_pd(), _CMP_NGT_UQ)) == 0;
 }
@@ -104,7 +104,7 @@ INLINE vec root(vec a)
 {
     return (vec){sqrt(a[0]), sqrt(a[1])};
 }
-INLINE int all_positive(vec a)
+INLINE bool all_positive(vec a)
 {
     return a[0] > 0 && a[1] > 0;
 }
@@ -118,7 +118,7 @@ enum { BLOCK = HF_SWARM_BLOCK, COLUMN = BLOCK * HF_LANES, TILE = BLOCK * COLUMN,
  *     t(r,c) = (t(r,c) - sum over k of t(r,k) l(c,k)) / l(c,c), k rising
  * `row` points to column k = first of the rows, whose columns are `stride` apart; `pivot_row` to the same of the rows
  * of l; n_before columns further on lie the t(r,c) and the l(c,c). With is_empty the t(r,c) are taken as 0. */
-INLINE void eliminate(int n_row, double *row, int stride, const double *pivot_row, int n_before, int is_empty)
+INLINE void eliminate(int n_row, double *row, int stride, const double *pivot_row, int n_before, bool is_empty)
 {
     vec t[BLOCK][GROUP];
     double *target = row + n_before * stride;
@@ -212,7 +212,7 @@ static double *tile_at(const hf_swarm_plan *plan, const hf_swarm_lanes *w, int i
     return w->matrix + (plan->tile_0[i_block] + (size_t)j_block) * TILE;
 }
 
-static int has_entry(const hf_swarm_plan *plan, int i_block, int j_block)
+static bool tile_has_entry(const hf_swarm_plan *plan, int i_block, int j_block)
 {
     return plan->has_entry[plan->tile_0[i_block] + (size_t)j_block];
 }
@@ -249,7 +249,8 @@ static void factor_block_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i
     for (int j_block = first / BLOCK; j_block < i_block; j_block++) {
         finish_columns(plan, w, i_block - 1, p, j_block < i_block - 1 ? 1 : BLOCK, &c);
         const double *pivot_row = tile_at(plan, w, j_block, 0) + p;
-        int j = j_block * BLOCK, k = plan->first_column[j_block], is_empty = !has_entry(plan, i_block, j_block);
+        int j = j_block * BLOCK, k = plan->first_column[j_block];
+        bool is_empty = !tile_has_entry(plan, i_block, j_block);
         if (k < first) k = first < j ? first : j;
         for (int g = 0; g < BLOCK; g += GROUP)
             eliminate(BLOCK, row + k * COLUMN, COLUMN, pivot_row + k * COLUMN + g * HF_LANES, j + g - k, is_empty);
@@ -371,7 +372,7 @@ static void assemble_dummy_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int
 static void clear_block_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block)
 {
     for (int j_block = plan->first_column[i_block] / BLOCK; j_block <= i_block; j_block++) {
-        if (!has_entry(plan, i_block, j_block)) continue;
+        if (!tile_has_entry(plan, i_block, j_block)) continue;
         for (double *column = tile_at(plan, w, i_block, j_block), *end = column + TILE; column != end; column += COLUMN)
             foreach (k, COLUMN / WIDTH)
                 store(column + k * WIDTH, splat(0));

@@ -48,8 +48,8 @@ static void list_incidences(hf_swarm_plan *p)
     start[0] = 0;
 }
 
-/* Lane rows of cable e, the lower one first; 0 when one of its ends is a support. */
-static int is_between_free_nodes(const hf_swarm_plan *p, int e, int *low, int *high)
+/* Lane rows of cable e, the lower one first; false when one of its ends is a support. */
+static bool is_between_free_nodes(const hf_swarm_plan *p, int e, int *low, int *high)
 {
     const hf_model *m = p->model;
     int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];

@@ -92,7 +92,7 @@ void hf_layout_read_truss(hf_hdf5 *io, hf_truss *t, hf_carrier_state *state)
     hid_t group = hf_hdf5_open_group(io, "/truss");
     int n_node = hf_hdf5_length(io, group, "node/mass_kg", HF_LAYOUT_COUNT_MAX);
     int n_member = hf_hdf5_length(io, group, "member/joint", HF_LAYOUT_COUNT_MAX);
-    if (io->status == HF_OK && hf_truss_allocate(t, n_node, n_member, 0) != HF_OK) hf_hdf5_no_memory(io);
+    if (io->status == HF_OK && hf_truss_allocate(t, n_node, n_member, false) != HF_OK) hf_hdf5_no_memory(io);
     hf_layout_read_columns(io, group, &hf_layout_truss, n_node, n_member, t);
     if (io->status == HF_OK)
         hf_hdf5_read_ids(io, group, "node/id", n_node, t->node_id, "member/id", n_member, t->member_id, &t->text);

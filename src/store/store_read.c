@@ -97,8 +97,8 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
     hid_t group = hf_hdf5_open_group(&io, "/scene");
     int n_node = hf_hdf5_length(&io, group, "node/role", HF_LAYOUT_COUNT_MAX);
     int n_cable = hf_hdf5_length(&io, group, "cable/law", HF_LAYOUT_COUNT_MAX);
-    int with_load = hf_hdf5_has(&io, group, "node/load_N"), with_EA = hf_hdf5_has(&io, group, "cable/EA_N");
-    if (io.status == HF_OK && hf_scene_allocate(scene, n_node, n_cable, with_load, with_EA, 0) != HF_OK)
+    bool with_load = hf_hdf5_has(&io, group, "node/load_N"), with_EA = hf_hdf5_has(&io, group, "cable/EA_N");
+    if (io.status == HF_OK && hf_scene_allocate(scene, n_node, n_cable, with_load, with_EA, false) != HF_OK)
         hf_hdf5_no_memory(&io);
     hf_layout_read_columns(&io, group, &hf_layout_scene, n_node, n_cable, scene);
     if (io.status == HF_OK)

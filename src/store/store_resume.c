@@ -83,7 +83,7 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
 {
     hf_status status;
     *store = NULL;
-    hf_store *s = hf_store_new(path, 0, &status, messages);
+    hf_store *s = hf_store_new(path, false, &status, messages);
     if (!s) return status;
     hf_hdf5_lock();
     s->is_resumed = true;
@@ -269,7 +269,7 @@ hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *m
         hf_generations_sum_up(&s->f.io, &s->rows, summary);
     hf_status status = hf_hdf5_unlock(s->f.io.status);
     if (status == HF_OK && s->n_journal) status = restore(s, &a.optimiser, 0, summary, messages);
-    if (status == HF_OK) status = hf_store_publish(s, summary, 1, messages);
+    if (status == HF_OK) status = hf_store_publish(s, summary, true, messages);
     close_stored_search(&a);
     hf_store_end(s);
     return status;

@@ -307,7 +307,7 @@ static hf_status refuse(const hf_frame *f, int row, hf_messages *messages)
         if (f->row_of_dof[k] == row) dof = k;
     for (int i = 0; i < t->n_node; i++)
         n_support += t->fixed[i] != 0;
-    hf_truss_describe(t, 0, dof / HF_TRUSS_DOF, where, sizeof where);
+    hf_truss_describe(t, false, dof / HF_TRUSS_DOF, where, sizeof where);
     if (n_support == 0)
         return hf_error(messages, HF_MECHANISM, "%s can %s without force: no node of the truss is supported", where,
                         direction[dof % HF_TRUSS_DOF]);

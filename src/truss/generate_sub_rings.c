@@ -184,7 +184,7 @@ static hf_status generate(generator *g, hf_messages *messages)
     ribs.cells_per_module[1] = 1;
     ribs.scallop = 0;
     HF_TRY(hf_scene_parabolic_cylinder(&ribs, NULL, &g->grid, messages));
-    hf_status status = hf_truss_allocate(g->t, (int)n_node, (int)n_member, 0);
+    hf_status status = hf_truss_allocate(g->t, (int)n_node, (int)n_member, false);
     g->text = status == HF_OK ? malloc(ID_SIZE * (size_t)(n_node + 2 * n_member)) : NULL;
     g->t->text = g->text;
     if (!g->text) return hf_error(messages, HF_NO_MEMORY, "truss: out of memory for %.0f nodes", n_node);

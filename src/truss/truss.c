@@ -14,7 +14,7 @@ const char *const hf_unit_word[4] = {"bud", "mbug", "abug", "other"};
 
 /* ---- memory ---- */
 
-static void lay_out(hf_arena *arena, hf_truss *t, int with_line)
+static void lay_out(hf_arena *arena, hf_truss *t, bool with_line)
 {
     size_t n = (size_t)t->n_node, m = (size_t)t->n_member;
     t->position_m = hf_arena_take(arena, 3 * n, sizeof(double));
@@ -116,7 +116,7 @@ void hf_truss_describe(const hf_truss *t, bool is_member, int index, char *text,
     hf_text_trim_utf8(text);
 }
 
-static void fault(const hf_truss *t, int is_member, int index, int *n_fault, const char *what, hf_messages *messages)
+static void fault(const hf_truss *t, bool is_member, int index, int *n_fault, const char *what, hf_messages *messages)
 {
     char where[HF_TRUSS_DESCRIPTION_SIZE];
     if (++*n_fault > HF_FAULT_MAX) return;
@@ -133,15 +133,15 @@ static void check_member(const hf_truss *t, int e, int *n_fault, hf_messages *me
     for (size_t k = 0; k < (rigid ? sizeof positive / sizeof *positive : 2); k++)
         all = all && positive[k] > 0 && (k > 5 || isfinite(positive[k]));
     if (!all)
-        fault(t, 1, e, n_fault,
+        fault(t, true, e, n_fault,
               rigid ? "needs E, G, A, Iy, Iz, J and shear areas above zero" : "needs E and A above zero", messages);
     if (!isfinite(t->roll_rad[e]) || !isfinite(t->expansion_per_K[e]) || !(t->density_kg_per_m3[e] >= 0) ||
         !isfinite(t->density_kg_per_m3[e]))
-        fault(t, 1, e, n_fault, "needs a finite roll and expansion, and a density that is not below zero", messages);
+        fault(t, true, e, n_fault, "needs a finite roll and expansion, and a density that is not below zero", messages);
     if (t->end[2 * e] == t->end[2 * e + 1])
-        fault(t, 1, e, n_fault, "joins a node to itself", messages);
+        fault(t, true, e, n_fault, "joins a node to itself", messages);
     else if (!(hf_truss_member_length(t, e) > 0))
-        fault(t, 1, e, n_fault, "has zero length: its two nodes are at the same position", messages);
+        fault(t, true, e, n_fault, "has zero length: its two nodes are at the same position", messages);
 }
 
 hf_status hf_truss_check(const hf_truss *t, hf_messages *messages)
@@ -150,9 +150,9 @@ hf_status hf_truss_check(const hf_truss *t, hf_messages *messages)
     for (int i = 0; i < t->n_node; i++) {
         const double *p = t->position_m + 3 * (size_t)i;
         if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]))
-            fault(t, 0, i, &n_fault, "has a position that is no number", messages);
+            fault(t, false, i, &n_fault, "has a position that is no number", messages);
         if (!(t->mass_kg[i] >= 0) || !isfinite(t->mass_kg[i]))
-            fault(t, 0, i, &n_fault, "has a mass that is no number or below zero", messages);
+            fault(t, false, i, &n_fault, "has a mass that is no number or below zero", messages);
     }
     for (int e = 0; e < t->n_member && n_fault <= HF_FAULT_MAX; e++)
         check_member(t, e, &n_fault, messages);
