@@ -251,7 +251,7 @@ static hf_status check(hf_problem *p, const hf_options *options, FILE *f, hf_mes
     int threads = options->threads ? options->threads : hf_batch_default_threads();
     bool optimizes = p->settings.has_optimize && p->model.n_gene > 0;
     hf_evaluator v = hf_problem_evaluator(p);
-    fprintf(f, "%s: valid\n", options->file);
+    hf_print_line(f, "%s: valid", options->file);
     print_scene(p, f);
     if (p->settings.has_truss) HF_TRY(print_truss(p, f, messages));
     print_plan(p, f);

@@ -2,11 +2,12 @@
 #include "app/cmd.h"
 
 #include "app/options.h"
+#include "out/print.h"
 #include "store/compare.h"
 
 static void tell_difference(void *context, const char *path, const char *how)
 {
-    fprintf(context, "%s%s\n", path, how);
+    hf_print_line(context, "%s%s", path, how);
 }
 
 static hf_status command_diff(const hf_options *o, FILE *file, hf_messages *messages)

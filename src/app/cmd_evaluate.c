@@ -203,16 +203,16 @@ static void write_template(const void *context, FILE *f)
 
 static void print_summary(const job *j, const char *path, FILE *f)
 {
-    char wall[32];
+    char wall[32], best[400] = "", row[16]; /* a longer id is cut */
     hf_print_duration(j->wall_s, wall, sizeof wall);
-    fprintf(f, "%d designs, %d feasible", j->table.n_row, j->n_feasible);
-    if (j->best >= 0) {
-        fprintf(f, "; best psi %.4f mm, ", j->result[j->best].psi_m * 1e3);
-        write_row_id(j, j->best, f);
-    }
-    fprintf(f, "; %s, %.0f evaluations/s by %s on %d thread%s; results in %s\n", wall, j->table.n_row / j->wall_s,
-            hf_solver_word[j->problem.solver], j->problem.batch.n_thread, j->problem.batch.n_thread == 1 ? "" : "s",
-            path);
+    snprintf(row, sizeof row, "%d", j->best + 1);
+    if (j->best >= 0)
+        snprintf(best, sizeof best, "; best psi %.4f mm, %s", j->result[j->best].psi_m * 1e3,
+                 row_id(j, j->best) ? row_id(j, j->best) : row);
+    hf_print_line(f, "%d designs, %d feasible%s; %s, %.0f evaluations/s by %s on %d thread%s; results in %s",
+                  j->table.n_row, j->n_feasible, best, wall, j->table.n_row / j->wall_s,
+                  hf_solver_word[j->problem.solver], j->problem.batch.n_thread,
+                  j->problem.batch.n_thread == 1 ? "" : "s", path);
 }
 
 static void print_json(const job *from, const char *path, hf_status status, const char *messages, FILE *f)
@@ -299,7 +299,8 @@ static hf_status command_evaluate(const hf_options *options, FILE *file, hf_mess
     else if (status == HF_OK && path && !options->quiet && options->designs)
         print_summary(&j, path, file);
     else if (status == HF_OK && path && !options->quiet)
-        fprintf(file, "%d adjustable cables; their tensions after form-finding in %s\n", j.problem.model.n_gene, path);
+        hf_print_line(file, "%d adjustable cables; their tensions after form-finding in %s", j.problem.model.n_gene,
+                      path);
     job_free(&j);
     return status;
 }

@@ -2,6 +2,7 @@
 #include "app/cmd.h"
 
 #include "app/options.h"
+#include "out/print.h"
 
 /* "--csv DIR, --vtk DIR or --cutlist FILE" */
 static void list_exporters(char *text, size_t size)
@@ -45,7 +46,7 @@ static hf_status command_export(const hf_options *o, FILE *file, hf_messages *me
         if (!o->export_to[i]) continue;
         const hf_export_request request = {o->file, o->export_to[i], o->stage, o->force};
         HF_TRY(hf_exporter_table[i]->write(&request, said, sizeof said, messages));
-        fprintf(file, "%s\n", said);
+        hf_print_line(file, "%s", said);
     }
     return HF_OK;
 }

@@ -2,6 +2,7 @@
 #include "app/cmd.h"
 
 #include "app/study_files.h"
+#include "out/print.h"
 #include "store/merge.h"
 
 static hf_status command_merge(const hf_options *o, FILE *file, hf_messages *messages)
@@ -13,8 +14,8 @@ static hf_status command_merge(const hf_options *o, FILE *file, hf_messages *mes
     if (status == HF_OK) status = hf_study_files_name(o->output, o->file, ".h5", output, messages);
     if (status == HF_OK) status = hf_merge(&study, folder, &points, output, o->force, messages);
     if (status == HF_OK && !o->quiet)
-        fprintf(file, "%s: %d points, %d of them done, %d failed\n", output, points.n_point,
-                points.count[HF_POINT_DONE], points.count[HF_POINT_FAILED]);
+        hf_print_line(file, "%s: %d points, %d of them done, %d failed", output, points.n_point,
+                      points.count[HF_POINT_DONE], points.count[HF_POINT_FAILED]);
     hf_points_free(&points);
     hf_study_free(&study);
     return status;

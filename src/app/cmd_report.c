@@ -2,6 +2,7 @@
 #include "app/cmd.h"
 
 #include "app/options.h"
+#include "out/print.h"
 #include "out/report.h"
 
 static hf_status command_report(const hf_options *o, FILE *file, hf_messages *messages)
@@ -9,7 +10,7 @@ static hf_status command_report(const hf_options *o, FILE *file, hf_messages *me
     const hf_export_request request = {.file = o->file, .output = o->output, .force = o->force};
     char said[HF_EXPORT_SAID_SIZE];
     HF_TRY(hf_report(&request, said, sizeof said, messages));
-    fprintf(file, "%s\n", said);
+    hf_print_line(file, "%s", said);
     return HF_OK;
 }
 

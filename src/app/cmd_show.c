@@ -14,7 +14,7 @@ static hf_status command_show(const hf_options *o, FILE *file, hf_messages *mess
                               o->file, file);
     } else {
         hf_print_summary(&summary, o->file, file);
-        fputs(summary.warnings, file);
+        hf_print_lines(summary.warnings, file);
     }
     return HF_OK;
 }

@@ -3,6 +3,7 @@
 
 #include "app/study_files.h"
 #include "base/json.h"
+#include "out/print.h"
 
 #define FAILURES_SHOWN 10 /* failed points that are named with their reasons; of the others the number is told */
 
@@ -39,7 +40,7 @@ static void say_failures(const hf_study *study, const hf_points *points, FILE *f
         char text[256];
         if (points->point[i].state != HF_POINT_FAILED || n++ >= FAILURES_SHOWN) continue;
         hf_study_point_text(study, i, text, sizeof text);
-        fprintf(file, "  %s  %s: %s\n", study->id[i], text, points->point[i].reason);
+        hf_print_line(file, "  %s  %s: %s", study->id[i], text, points->point[i].reason);
     }
     if (n > FAILURES_SHOWN) fprintf(file, "  and %d more\n", n - FAILURES_SHOWN);
 }
@@ -52,18 +53,18 @@ static void say_status(const hf_study *study, const char *folder, const hf_point
         n_begun +=
             points->point[i].state == HF_POINT_MISSING && hf_ledger_file(folder, study, i, path) == HF_LEDGER_FILE;
     }
-    fprintf(file, "%s: %d points, results in %s\n", study->path, points->n_point, folder);
+    hf_print_line(file, "%s: %d points, results in %s", study->path, points->n_point, folder);
     for (int k = 0; k < HF_N_POINT_STATE; k++)
         if (points->count[k] || k != HF_POINT_OUTDATED)
             fprintf(file, "  %-9s %d\n", hf_point_state_word[k], points->count[k]);
     if (n_begun) fprintf(file, "  of the missing ones, %d were begun and will go on\n", n_begun);
     if (points->n_lost)
         fprintf(file, "  of the missing ones, %d were done, but their files are gone or unfinished\n", points->n_lost);
-    if (points->count[HF_POINT_OUTDATED]) fprintf(file, "  outdated: of another version of %s\n", study->base);
+    if (points->count[HF_POINT_OUTDATED]) hf_print_line(file, "  outdated: of another version of %s", study->base);
     if (points->count[HF_POINT_FAILED]) fprintf(file, "failed:\n");
     say_failures(study, points, file);
     if (points->count[HF_POINT_FAILED])
-        fprintf(file, "'hifdm sweep %s --retry failed' runs these anew and replaces their files\n", study->path);
+        hf_print_line(file, "'hifdm sweep %s --retry failed' runs these anew and replaces their files", study->path);
 }
 
 static hf_status command_status(const hf_options *o, FILE *file, hf_messages *messages)

@@ -93,8 +93,8 @@ static hf_status sweep_study(const hf_sweep_request *request, bool quiet, FILE *
     if (quiet || !n.has_run) return status;
     if (t.on_terminal) fputs("\r\033[K", stderr);
     hf_print_duration(n.wall_s, took, sizeof took);
-    fprintf(file, "%d points run in %s on %d threads, %d of them failed; results in %s\n", n.n_done + n.n_failed, took,
-            request->threads, n.n_failed, request->folder);
+    hf_print_line(file, "%d points run in %s on %d threads, %d of them failed; results in %s", n.n_done + n.n_failed,
+                  took, request->threads, n.n_failed, request->folder);
     return status;
 }
 

@@ -1,21 +1,29 @@
 /* Contents: the writer - compact lists */
 #include "base/json.h"
 
+#include "base/text.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
+/* Hidden characters are escaped although JSON asks for that below U+0020 alone: what is read is the same, and a
+ * terminal or the script of a page does not run them. JSON cannot say a byte that is not UTF-8: it becomes U+FFFD. */
 static void write_string(const char *text, size_t length, FILE *f)
 {
     fputc('"', f);
-    for (size_t i = 0; i < length; i++) {
-        unsigned char c = (unsigned char)text[i];
-        if (c == '"' || c == '\\')
-            fprintf(f, "\\%c", c);
-        else if (c < 0x20 || c == '<')
-            fprintf(f, "\\u%04x", c);
+    for (const char *end = text + length; text < end;) {
+        uint32_t code;
+        int n = hf_text_character(text, &code);
+        if (n == 0)
+            fputs("\\ufffd", f);
+        else if (code == '"' || code == '\\')
+            fprintf(f, "\\%c", *text);
+        else if (code == '<' || hf_text_is_hidden(code))
+            fprintf(f, "\\u%04x", (unsigned)code);
         else
-            fputc(c, f);
+            fwrite(text, 1, (size_t)n, f);
+        text += n ? n : 1;
     }
     fputc('"', f);
 }

@@ -33,7 +33,8 @@ void hf_json_lines(hf_json *json, const char *key, const char *prefix, const cha
 
 /* ---- without a writer: compact, for the page ---- */
 
-/* A '<' in a text is written as \u003c, so that an object can stand in the script of an HTML page. */
+/* A '<' in a text is written as \u003c, so that an object can stand in the script of an HTML page. A byte that is not
+ * UTF-8 is written as \ufffd. */
 void hf_json_string(const char *text, FILE *file);
 void hf_json_value(double value, int digits, FILE *file); /* null unless finite */
 

@@ -1,5 +1,7 @@
 #include <hifdm/status.h>
 
+#include "base/text.h"
+
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -65,6 +67,7 @@ static bool reserve(hf_messages *m, size_t extra)
     return true;
 }
 
+/* The body is escaped as a whole: whatever stands in a name or a file, a message is one line of visible characters. */
 static void append(hf_messages *m, const char *prefix, const char *format, va_list args)
 {
     va_list count_args;
@@ -73,9 +76,19 @@ static void append(hf_messages *m, const char *prefix, const char *format, va_li
     va_end(count_args);
     size_t n_prefix = strlen(prefix);
     if (n_body < 0 || !reserve(m, n_prefix + (size_t)n_body + 1)) return;
+    size_t begin = m->length + n_prefix;
+    vsnprintf(m->text + begin, (size_t)n_body + 1, format, args);
+    size_t n_shown = hf_text_escape(m->text + begin, NULL, 0);
+    if (n_shown != (size_t)n_body) { /* the body moves behind the room for what is shown of it */
+        if (!reserve(m, n_prefix + n_shown + 1 + (size_t)n_body)) {
+            m->text[m->length] = '\0';
+            return;
+        }
+        char *body = memmove(m->text + begin + n_shown + 1, m->text + begin, (size_t)n_body + 1);
+        hf_text_escape(body, m->text + begin, n_shown + 1);
+    }
     memcpy(m->text + m->length, prefix, n_prefix);
-    vsnprintf(m->text + m->length + n_prefix, (size_t)n_body + 1, format, args);
-    m->length += n_prefix + (size_t)n_body;
+    m->length = begin + n_shown;
     m->text[m->length++] = '\n';
     m->text[m->length] = '\0';
 }

@@ -90,26 +90,62 @@ bool hf_text_uint64(const char *text, uint64_t *value)
     return errno == 0;
 }
 
-/* Bytes of the sequence that starts at p, 0 when it is none (overlong forms, surrogates, beyond U+10FFFF). */
-static int utf8_length(const unsigned char *p)
+int hf_text_character(const char *text, uint32_t *code)
 {
-    if (p[0] < 0x80) return p[0] >= 0x20 || p[0] == '\t';
+    const unsigned char *p = (const unsigned char *)text;
+    if (p[0] < 0x80) {
+        *code = p[0];
+        return 1;
+    }
     int n = p[0] >= 0xf0 ? 4 : p[0] >= 0xe0 ? 3 : 2;
     if (p[0] < 0xc2 || p[0] > 0xf4) return 0;
-    for (int i = 1; i < n; i++)
+    *code = p[0] & (0xffu >> (n + 1));
+    for (int i = 1; i < n; i++) {
         if ((p[i] & 0xc0) != 0x80) return 0;
+        *code = *code << 6 | (p[i] & 0x3fu);
+    }
     if ((p[0] == 0xe0 && p[1] < 0xa0) || (p[0] == 0xed && p[1] > 0x9f)) return 0;
     return (p[0] == 0xf0 && p[1] < 0x90) || (p[0] == 0xf4 && p[1] > 0x8f) ? 0 : n;
 }
 
 bool hf_text_is_utf8(const char *text)
 {
-    for (const unsigned char *p = (const unsigned char *)text; *p;) {
-        int n = utf8_length(p);
-        if (n == 0) return false;
-        p += n;
+    while (*text) {
+        uint32_t code;
+        int n = hf_text_character(text, &code);
+        if (n == 0 || (code < 0x20 && code != '\t')) return false;
+        text += n;
     }
     return true;
+}
+
+bool hf_text_is_hidden(uint32_t code)
+{
+    return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x61c || code == 0x200e || code == 0x200f ||
+           (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+}
+
+size_t hf_text_escape(const char *text, char *escaped, size_t size)
+{
+    size_t used = 0;
+    if (size) *escaped = '\0';
+    while (*text) {
+        uint32_t code;
+        char shown[8];
+        int n = hf_text_character(text, &code), n_shown;
+        if (n == 0)
+            n_shown = snprintf(shown, sizeof shown, "\\x%02x", (unsigned char)*text);
+        else if (!hf_text_is_hidden(code))
+            n_shown = snprintf(shown, sizeof shown, "%.*s", n, text);
+        else if (code == '\n' || code == '\t' || code == '\r')
+            n_shown = snprintf(shown, sizeof shown, "\\%c", code == '\n' ? 'n' : code == '\t' ? 't' : 'r');
+        else
+            n_shown = snprintf(shown, sizeof shown, code < 0x80 ? "\\x%02x" : "\\u%04x", (unsigned)code);
+        if (used + (size_t)n_shown < size) memcpy(escaped + used, shown, (size_t)n_shown + 1);
+        used += (size_t)n_shown;
+        text += n ? n : 1;
+    }
+    return used;
 }
 
 void hf_text_trim_utf8(char *text)

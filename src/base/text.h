@@ -1,4 +1,5 @@
-/* text - files read whole, strict numbers that no locale changes, UTF-8, and the nearest word to a misspelt one. */
+/* text - files read whole, strict numbers that no locale changes, UTF-8, what people may be shown of foreign texts, and
+ * the nearest word to a misspelt one. */
 #ifndef HIFDM_TEXT_H
 #define HIFDM_TEXT_H
 
@@ -24,6 +25,19 @@ bool hf_text_uint64(const char *text, uint64_t *value);
 
 /* Is the text well-formed UTF-8 without control characters other than tab? Results keep ids and titles as UTF-8. */
 bool hf_text_is_utf8(const char *text);
+
+/* Bytes of the UTF-8 character at `text`, whose code point is set; 0 when there is none: a stray byte, an overlong
+ * form, a surrogate, beyond U+10FFFF. The final NUL is a character of one byte. */
+int hf_text_character(const char *text, uint32_t *code);
+
+/* Is it a character that commands a terminal or reorders a line instead of showing something? Control characters (C0,
+ * DEL, C1), line and paragraph separators, marks and overrides of the direction of writing. */
+bool hf_text_is_hidden(uint32_t code);
+
+/* What people are shown of a text that comes from a file, a name or the command line: hidden characters and bytes that
+ * are not UTF-8 as \n, \t, \r, \x1b, \u202e. A backslash stays as it is, so escaping twice changes nothing. Writes at
+ * most `size` bytes, whole characters and the final NUL; returns the length that there is without that limit. */
+size_t hf_text_escape(const char *text, char *escaped, size_t size);
 
 /* Remove an incomplete UTF-8 sequence from the end of a text that snprintf has cut. */
 void hf_text_trim_utf8(char *text);

@@ -1,11 +1,45 @@
-/* Contents: units for people - summary */
+/* Contents: lines - units for people - summary */
 #include "out/print.h"
 
+#include "base/text.h"
 #include "net/symmetry.h"
 #include <hifdm/config.h>
 
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
+
+#define LINE_SIZE 16384
+
+/* ---- lines ---- */
+
+static void print_escaped(const char *text, FILE *f)
+{
+    char shown[LINE_SIZE];
+    hf_text_escape(text, shown, sizeof shown);
+    fputs(shown, f);
+    fputc('\n', f);
+}
+
+void hf_print_line(FILE *f, const char *format, ...)
+{
+    char text[LINE_SIZE];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    print_escaped(text, f);
+}
+
+void hf_print_lines(const char *lines, FILE *f)
+{
+    char text[LINE_SIZE];
+    for (size_t n; *lines; lines += n + (lines[n] != '\0')) {
+        n = strcspn(lines, "\n");
+        snprintf(text, sizeof text, "%.*s", (int)n, lines);
+        print_escaped(text, f);
+    }
+}
 
 /* ---- units for people ---- */
 
@@ -137,7 +171,7 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
 {
     char wall[32];
     hf_print_duration(s->form_wall_s, wall, sizeof wall);
-    fprintf(f, "%s\n", *s->title ? s->title : s->case_path);
+    hf_print_line(f, "%s", *s->title ? s->title : s->case_path);
     fprintf(f, "  net           %d nodes (%d free), %d cables (%d adjustable); half-bandwidth %d; pretension %g N\n",
             s->n_node, s->n_free, s->n_cable, s->n_gene, s->half_bandwidth, s->pretension_N);
     if (s->has_truss)
@@ -152,8 +186,8 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
     if (s->has_coupling) print_coupling(&s->form.coupling, f);
     if (s->has_optimize) print_optimize(s, f);
     if (s->has_polish) print_polish(s, f);
-    if (path) fprintf(f, "  results       %s\n", path);
+    if (path) hf_print_line(f, "  results       %s", path);
     if (path && !s->finished)
-        fprintf(f, "  unfinished    `hifdm run %s -o %s` goes on, with the same options as before\n", s->case_path,
-                path);
+        hf_print_line(f, "  unfinished    `hifdm run %s -o %s` goes on, with the same options as before", s->case_path,
+                      path);
 }

@@ -1,8 +1,17 @@
-/* print - what people read: the summary of a result, durations and sizes with units. */
+/* print - what people read: lines, the summary of a result, durations and sizes with units. */
 #ifndef HIFDM_PRINT_H
 #define HIFDM_PRINT_H
 
+#include <hifdm/status.h>
 #include <hifdm/summary.h>
+#include <stdio.h>
+
+/* One line, which must not end in a newline of its own: the text is escaped (hf_text_escape) as a whole, because names
+ * and titles in it may hold anything. It is cut at some 16 kB. */
+void hf_print_line(FILE *file, const char *format, ...) HF_PRINTF(2, 3);
+
+/* Messages that a file holds, each of them escaped. */
+void hf_print_lines(const char *lines, FILE *file);
 
 /* The summary in a few lines. path: of the result file, or NULL. */
 void hf_print_summary(const hf_summary *summary, const char *path, FILE *file);

@@ -118,6 +118,32 @@ START_TEST(messages_of_any_length_are_whole)
 }
 END_TEST
 
+/* Whatever a name holds, a message is one line, and no terminal obeys it. */
+START_TEST(messages_show_what_names_hide)
+{
+    hf_messages m = {0};
+    hf_error(&m, HF_IO, "%s: no", "a\nerror: forged\x1b[2J\xe2\x80\xae\xff");
+    hf_warning(&m, "plain");
+    ck_assert_str_eq(m.text, "error: a\\nerror: forged\\x1b[2J\\u202e\\xff: no\nwarning: plain\n");
+    ck_assert_uint_eq(m.length, strlen(m.text));
+    hf_messages_free(&m);
+    char body[700]; /* grows to four times its length, in a list of any length */
+    for (size_t before = 0; before < 600; before += 37)
+        for (size_t n = 1; n < sizeof body; n += 61) {
+            memset(body, 'x', before);
+            body[before] = '\0';
+            hf_warning(&m, "%s", body);
+            memset(body, '\x1b', n);
+            body[n] = '\0';
+            hf_error(&m, HF_IO, "%s", body);
+            ck_assert_uint_eq(strlen(m.text), strlen("warning: \nerror: \n") + before + 4 * n);
+            ck_assert_uint_eq(m.length, strlen(m.text));
+            ck_assert_ptr_null(strchr(m.text, '\x1b'));
+            hf_messages_free(&m);
+        }
+}
+END_TEST
+
 START_TEST(without_memory_lines_are_lost_but_counted)
 {
     char body[400];
@@ -130,6 +156,12 @@ START_TEST(without_memory_lines_are_lost_but_counted)
     ck_assert(end_allocation_failure());
     ck_assert_int_eq(status, HF_IO);
     ck_assert_int_eq(m.n_error, 1);
+    ck_assert_str_eq(m.text, "warning: kept\n");
+    memset(body, '\x1b', 200); /* there is room for the body, but not for what is shown of it */
+    body[200] = '\0';
+    fail_allocation_at(1);
+    hf_error(&m, HF_IO, "%s", body);
+    ck_assert(end_allocation_failure());
     ck_assert_str_eq(m.text, "warning: kept\n");
     hf_error(&m, HF_IO, "again");
     ck_assert_str_eq(m.text, "warning: kept\nerror: again\n");
@@ -148,6 +180,7 @@ Suite *suite_unit_status(void)
     tcase_add_test(tests, try_returns_the_first_failure_and_evaluates_once);
     tcase_add_test(tests, messages_are_lines_in_order);
     tcase_add_test(tests, messages_of_any_length_are_whole);
+    tcase_add_test(tests, messages_show_what_names_hide);
     tcase_add_test(tests, without_memory_lines_are_lost_but_counted);
     return suite;
 }

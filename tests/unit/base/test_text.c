@@ -156,10 +156,67 @@ START_TEST(a_cut_letter_is_taken_away_whole)
 }
 END_TEST
 
+static const struct {
+    const char *text, *shown;
+} escape[] = {
+    {"", ""},
+    {"plain, \xc3\xa9 \xe4\xb8\xad \xf0\x9f\x98\x80 \\ 'q'", "plain, \xc3\xa9 \xe4\xb8\xad \xf0\x9f\x98\x80 \\ 'q'"},
+    {"\x1b[31mred\x07\x7f\x01", "\\x1b[31mred\\x07\\x7f\\x01"},
+    {"a\nb\tc\rd", "a\\nb\\tc\\rd"},
+    {"\xc2\x80\xc2\x9b\xc2\x9f\xc2\xa0", "\\u0080\\u009b\\u009f\xc2\xa0"},
+    {"\xe2\x80\xaa\xe2\x80\xae\xe2\x81\xa6\xe2\x81\xa9", "\\u202a\\u202e\\u2066\\u2069"},
+    {"\xe2\x80\x8e\xe2\x80\x8f\xd8\x9c\xe2\x80\xa8\xe2\x80\xa9", "\\u200e\\u200f\\u061c\\u2028\\u2029"},
+    {"\xe2\x80\x8d\xe2\x80\xaf\xe2\x81\xaa", "\xe2\x80\x8d\xe2\x80\xaf\xe2\x81\xaa"}, /* neighbours of those */
+    {"\xffz\xc3x\xc0\xaf\xed\xa0\x80", "\\xffz\\xc3x\\xc0\\xaf\\xed\\xa0\\x80"},
+    {"cut \xe2\x80", "cut \\xe2\\x80"},
+    {"\\x1b", "\\x1b"},
+};
+enum { N_ESCAPE = sizeof escape / sizeof *escape };
+
+START_TEST(hidden_characters_are_shown)
+{
+    char shown[100];
+    ck_assert_uint_eq(hf_text_escape(escape[_i].text, shown, sizeof shown), strlen(escape[_i].shown));
+    ck_assert_str_eq(shown, escape[_i].shown);
+    ck_assert_uint_eq(hf_text_escape(escape[_i].text, NULL, 0), strlen(shown));
+}
+END_TEST
+
+/* Bytes in which rare ones are frequent: what is shown is UTF-8 without hidden characters, stays as it is when escaped
+ * again, and is cut at whole characters where room ends. */
+START_TEST(whatever_is_escaped_can_be_shown)
+{
+    static const char *const part[] = {"\xe2\x80", "\xe2\x81", "\xc2", "\xd8\x9c", "\x1b", "\\", "a", "\xf0\x9f"};
+    for (uint64_t trial = 0; trial < 3000; trial++) {
+        struct rng rng = rng_start(trial);
+        char text[64] = "", shown[300], again[300], cut[300];
+        for (int n = rng_int(&rng, 0, 12); n > 0; n--) {
+            size_t used = strlen(text);
+            if (rng_int(&rng, 0, 1))
+                snprintf(text + used, sizeof text - used, "%s", part[rng_int(&rng, 0, 7)]);
+            else
+                snprintf(text + used, sizeof text - used, "%c", rng_int(&rng, 1, 255));
+        }
+        size_t length = hf_text_escape(text, shown, sizeof shown), room = (size_t)rng_int(&rng, 1, (int)length + 2);
+        ck_assert_uint_eq(strlen(shown), length);
+        uint32_t code;
+        for (const char *p = shown; *p; p += hf_text_character(p, &code))
+            ck_assert_msg(hf_text_character(p, &code) > 0 && !hf_text_is_hidden(code), "%d: %s", (int)trial, shown);
+        ck_assert_uint_eq(hf_text_escape(shown, again, sizeof again), length);
+        ck_assert_str_eq(again, shown);
+        ck_assert_uint_eq(hf_text_escape(text, cut, room), length);
+        ck_assert(strlen(cut) < room && !strncmp(cut, shown, strlen(cut)) && hf_text_is_utf8(cut));
+        ck_assert(strlen(cut) == length || strlen(cut) + 7 > room);
+    }
+}
+END_TEST
+
 Suite *suite_unit_text(void)
 {
     Suite *suite = suite_create("unit/text");
     TCase *tests = tcase_create("text");
+    tcase_add_loop_test(tests, hidden_characters_are_shown, 0, N_ESCAPE);
+    tcase_add_test(tests, whatever_is_escaped_can_be_shown);
     tcase_add_test(tests, a_cut_letter_is_taken_away_whole);
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, decimal_numbers_are_taken, 0, sizeof good_double / sizeof *good_double);
