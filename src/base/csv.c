@@ -1,4 +1,4 @@
-/* Contents: faults - cutting lines - reading - columns and cells - ids - writing */
+/* Contents: faults - cells that spreadsheets run - cutting lines - reading - columns and cells - ids - writing */
 #include "base/csv.h"
 
 #include "base/text.h"
@@ -34,6 +34,33 @@ hf_status hf_csv_close_faults(hf_csv *t)
     if (t->n_fault > HF_FAULT_MAX)
         hf_error(t->messages, HF_BAD_CASE, "%s: and %d more faults", t->path, t->n_fault - HF_FAULT_MAX);
     return t->n_fault ? HF_BAD_CASE : HF_OK;
+}
+
+/* ---- cells that spreadsheets run ----
+ * A cell that starts with = + - @, also as full-width letters, or with a tab or an end of line is a formula to them,
+ * and blanks in front may be dropped before they look. An apostrophe in front makes it a text. So that reading it
+ * back is exact, one apostrophe is put before or taken from all that is a formula behind any number of apostrophes. */
+
+static bool is_formula(const char *text)
+{
+    static const char *const wide[] = {"\xef\xbc\x9d", "\xef\xbc\x8b", "\xef\xbc\x8d", "\xef\xbc\xa0"};
+    if (*text && strchr("\t\r\n", *text)) return true;
+    text += strspn(text, " \t");
+    for (int k = 0; k < 4; k++)
+        if (!strncmp(text, wide[k], 3)) return true;
+    return *text && strchr("=+-@", *text);
+}
+
+static bool is_guarded(const char *text)
+{
+    return *text == '\'' && is_formula(text + strspn(text, "'"));
+}
+
+/* Numbers stay as they are: their signs do no harm. */
+static bool needs_guard(const char *text)
+{
+    double number;
+    return is_guarded(text) || (is_formula(text) && !hf_text_double(text, &number));
 }
 
 /* ---- cutting lines ---- */
@@ -85,7 +112,8 @@ static int split(char *line, char **field, int column_max)
         }
         int last = *p == '\0';
         *p = '\0';
-        field[n++] = quoted ? start : trim(start);
+        if (!quoted) start = trim(start);
+        field[n++] = start + is_guarded(start);
         if (last) return n;
         p++;
     }
@@ -267,13 +295,14 @@ int hf_csv_row_of(const hf_csv_named *index, int n_row, const char *id)
 void hf_csv_write_id(const char *id, FILE *f)
 {
     size_t n = strlen(id);
-    int plain = !strpbrk(id, ",\"") && id[0] != '#' && id[0] != ' ' && id[0] != '\t' &&
-                (n == 0 || (id[n - 1] != ' ' && id[n - 1] != '\t'));
+    const char *guard = needs_guard(id) ? "'" : "";
+    bool plain = !strpbrk(id, ",;\"\t\r\n") && id[0] != '#' && id[0] != ' ' &&
+                 (n == 0 || (id[n - 1] != ' ' && id[n - 1] != '\t'));
     if (plain) {
-        fputs(id, f);
+        fprintf(f, "%s%s", guard, id);
         return;
     }
-    fputc('"', f);
+    fprintf(f, "\"%s", guard);
     for (; *id; id++) {
         if (*id == '"') fputc('"', f);
         fputc(*id, f);

@@ -1,7 +1,10 @@
 /* csv - tables in CSV files: a header line and rows of cells. Faults name file, line and id.
  *
  * Fields may be quoted and then end on the same line. Lines end with LF or CRLF. A byte order mark, empty lines and
- * lines that start with '#' are skipped. */
+ * lines that start with '#' are skipped.
+ *
+ * Ids may be what a spreadsheet takes for a formula: =1+1, or -a. They are written with an apostrophe in front, which
+ * reading takes away: one of those in front of such a text. So every id that can be read is read back as it was. */
 #ifndef HIFDM_CSV_H
 #define HIFDM_CSV_H
 
@@ -56,7 +59,8 @@ hf_csv_named *hf_csv_index(hf_csv *table, int column);
 /* The row of an id, or -1. */
 int hf_csv_row_of(const hf_csv_named *index, int n_row, const char *id);
 
-/* An id as a CSV field: quoted when it holds a comma, a quote, blanks at its ends or a leading '#'. */
+/* An id as a CSV field: quoted when it holds a comma, semicolon, quote, tab or end of line, blanks at its ends or a
+ * leading '#'; with an apostrophe in front when a spreadsheet would run it. */
 void hf_csv_write_id(const char *id, FILE *file);
 
 #endif

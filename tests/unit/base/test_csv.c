@@ -3,6 +3,8 @@
 #include "support.h"
 
 #include "base/csv.h"
+#include "base/text.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,6 +58,95 @@ START_TEST(ids_are_found_and_survive_writing)
 }
 END_TEST
 
+/* ---- cells that spreadsheets run ---- */
+
+static const struct {
+    const char *id, *written;
+} guarded[] = {
+    {"=1+1", "'=1+1"},
+    {"-a", "'-a"},
+    {"+a", "'+a"},
+    {"@SUM(A1)", "'@SUM(A1)"},
+    {"=cmd|' /C calc'!A0", "'=cmd|' /C calc'!A0"},
+    {"=a,\"b\"", "\"'=a,\"\"b\"\"\""},
+    {"\xef\xbc\x9d\x31", "'\xef\xbc\x9d\x31"},
+    {"\xef\xbc\x8b\x31", "'\xef\xbc\x8b\x31"},
+    {"\xef\xbc\x8d\x31", "'\xef\xbc\x8d\x31"},
+    {"\xef\xbc\xa0\x31", "'\xef\xbc\xa0\x31"},
+    {" =1", "\"' =1\""},
+    {"\ta", "\"'\ta\""},
+    {"'=1", "''=1"},
+    {"''-", "'''-"},
+    {"'-1.5", "''-1.5"},
+    {"-1.5", "-1.5"}, /* numbers, and apostrophes in front of anything else */
+    {"+7e-3", "+7e-3"},
+    {"'a", "'a"},
+    {"''", "''"},
+    {"a=1", "a=1"},
+    {"a;=1", "\"a;=1\""},
+};
+enum { N_GUARDED = sizeof guarded / sizeof *guarded };
+
+/* Writes ids as the cells of one column and demands them back. Returns what stands in the file. */
+static char *round_trip(const char *const *id, int n)
+{
+    hf_messages messages = {0};
+    hf_csv table;
+    FILE *file = fopen(temp_path("ids.csv"), "w");
+    ck_assert_ptr_nonnull(file);
+    for (int i = -1; i < n; i++) {
+        hf_csv_write_id(i < 0 ? "=header" : id[i], file);
+        fputs(",2\n", file); /* so that no line is empty */
+    }
+    fclose(file);
+    ck_assert_msg(hf_csv_read(temp_path("ids.csv"), 2, &table, &messages) == HF_OK, "%s", messages.text);
+    ck_assert_str_eq(table.header[0], "=header");
+    ck_assert_int_eq(table.n_row, n);
+    for (int i = 0; i < n; i++)
+        ck_assert_msg(!strcmp(hf_csv_cell(&table, i, 0), id[i]), "seed %ju, %d: '%s' came back as '%s'",
+                      (uintmax_t)test_seed(), i, id[i], hf_csv_cell(&table, i, 0));
+    hf_csv_free(&table);
+    return read_file(temp_path("ids.csv"), NULL);
+}
+
+START_TEST(formulas_are_written_as_texts)
+{
+    char line[64], *text = round_trip(&guarded[_i].id, 1);
+    snprintf(line, sizeof line, "'=header,2\n%s,2\n", guarded[_i].written);
+    ck_assert_str_eq(text, line);
+    free(text);
+}
+END_TEST
+
+/* Ids of the bytes that matter here. No cell that is not a number begins with what a spreadsheet runs. */
+START_TEST(every_id_comes_back)
+{
+    static const char *const part[] = {
+        "'",    "=", "+", "-", "@", "\xef\xbc\x9d", "\xef\xbc\xa0", "1", ".", " ", "\t", "\"", ",",
+        "\"\"", "a", "#", ";", "e"};
+    enum { N = 4000, N_PART = sizeof part / sizeof *part };
+    static char text[N][32];
+    const char *id[N];
+    struct rng rng = rng_start(12);
+    for (int i = 0; i < N; i++) {
+        for (int k = rng_int(&rng, 0, 7); k > 0; k--)
+            strcat(text[i], part[rng_int(&rng, 0, N_PART - 1)]);
+        id[i] = text[i];
+    }
+    char *all = round_trip(id, N);
+    for (char *rest = all, *line; (line = strtok_r(rest, "\n", &rest));) {
+        char *cell = line + (*line == '"');
+        double number;
+        line[strcspn(line, ",")] = '\0';
+        ck_assert_msg(!strchr("=+-@\t\xef", *cell + !*cell) || hf_text_double(cell, &number), "seed %ju: %s",
+                      (uintmax_t)test_seed(), cell);
+        ck_assert_msg(*cell != ' ' || !strchr("=+-@\xef", cell[strspn(cell, " \t")]) || !cell[strspn(cell, " \t")],
+                      "seed %ju: %s", (uintmax_t)test_seed(), cell);
+    }
+    free(all);
+}
+END_TEST
+
 Suite *suite_unit_csv(void)
 {
     Suite *suite = suite_create("unit/csv");
@@ -63,5 +154,7 @@ Suite *suite_unit_csv(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, a_table_may_be_as_wide_as_asked);
     tcase_add_test(tests, ids_are_found_and_survive_writing);
+    tcase_add_loop_test(tests, formulas_are_written_as_texts, 0, N_GUARDED);
+    tcase_add_test(tests, every_id_comes_back);
     return suite;
 }
