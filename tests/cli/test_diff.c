@@ -27,6 +27,23 @@ START_TEST(differences_are_named)
 }
 END_TEST
 
+/* |a-b| <= R |b|: the second file is what the first is held against. */
+START_TEST(the_tolerance_is_relative_to_the_second_file)
+{
+    const char *c = file_with("c.yaml", SMALL_SCENE), *a = temp("a.h5"), *b = temp("b.h5");
+    HIFDM(0, "run", c, "-o", a, "--quiet");
+    SHELL(0,
+          "cp \"$2\" \"$3\" && \"$1\" -c 'import h5py, sys; h5py.File(sys.argv[1], \"a\")[\"form/tension_N\"][2] *= "
+          "1.25' "
+          "\"$3\"",
+          python_program(), a, b);
+    HIFDM(0, "diff", a, b, "--rtol", "0.22");
+    HIFDM(1, "diff", b, a, "--rtol", "0.22");
+    HIFDM(0, "diff", b, a, "--rtol", "0.26");
+    HIFDM(1, "diff", a, b, "--rtol", "0.19");
+}
+END_TEST
+
 START_TEST(progress_for_programs)
 {
     const char *c = file_with("c.yaml", SMALL_SCENE SMALL_GA);
@@ -48,6 +65,7 @@ Suite *suite_cli_diff(void)
     Suite *suite = suite_create("cli/diff");
     TCase *tcase = tcase_create("diff");
     tcase_add_test(tcase, differences_are_named);
+    tcase_add_test(tcase, the_tolerance_is_relative_to_the_second_file);
     tcase_add_test(tcase, progress_for_programs);
     suite_add_tcase(suite, tcase);
     return suite;

@@ -29,6 +29,7 @@ START_TEST(commas_stand_between_items)
     hf_json_unsigned(&j, "seed", UINT64_MAX);
     hf_json_number(&j, "number", 0.5);
     hf_json_number(&j, "none", NAN);
+    hf_json_number(&j, "endless", -INFINITY);
     hf_json_list(&j, "values", (const double[]){1, INFINITY, -0.0}, 3);
     hf_json_list(&j, "no_values", NULL, 0);
     hf_json_lines(&j, "errors", "error: ", "warning: a\nerror: b\nerror: c");
@@ -37,7 +38,8 @@ START_TEST(commas_stand_between_items)
     fclose(j.file);
     ck_assert_str_eq(text,
                      "{\"a\": \"x\", \"empty\": {},\n \"list\": [\n  {\"i\": 0, \"is\": true},\n  {\"i\": -1, \"is\": "
-                     "false}], \"seed\": 18446744073709551615, \"number\": 0.5, \"none\": null, \"values\": [1, null, "
+                     "false}], \"seed\": 18446744073709551615, \"number\": 0.5, \"none\": null, \"endless\": null, "
+                     "\"values\": [1, null, "
                      "0], \"no_values\": [], \"errors\": [\"b\", \"c\"], \"nothing\": []}");
     free(text);
 }

@@ -1,0 +1,111 @@
+/* The journal of a run, by itself: damage, and the lock that it is. */
+#include "support.h"
+
+#include "store/journal.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char *result_path(void)
+{
+    static char path[4096];
+    snprintf(path, sizeof path, "%s", temp_path("run.h5"));
+    return path;
+}
+
+static void append(hf_journal *j, int generation, char letter, hf_messages *m)
+{
+    char payload[1000];
+    memset(payload, letter, sizeof payload);
+    const struct iovec piece[] = {{payload, 400}, {payload + 400, 600}};
+    ck_assert_int_eq(hf_journal_append(j, generation, piece, 2, m), HF_OK);
+}
+
+static void open_new(hf_journal *j, hf_messages *m)
+{
+    ck_assert_int_eq(hf_journal_open(result_path(), false, j, m), HF_OK);
+    ck_assert_int_eq(hf_journal_restart(j, "this run", m), HF_OK);
+}
+
+static hf_status count(void *context, int generation, const void *payload, size_t bytes)
+{
+    int *n = context;
+    ck_assert_int_eq(generation, *n);
+    ck_assert_uint_eq(bytes, 1000);
+    for (size_t i = 0; i < bytes; i++)
+        ck_assert_int_eq(((const char *)payload)[i], 'a' + generation);
+    ++*n;
+    return HF_OK;
+}
+
+/* One bit of head or payload is another: the record and those after it count for nothing, and that is told. */
+START_TEST(a_spoilt_record_is_told)
+{
+    static const off_t at[] = {4, 8, 12, 16, 500, 1015}; /* length, CRC, generation, payload */
+    for (size_t k = 0; k < sizeof at / sizeof *at; k++) {
+        hf_journal j;
+        hf_messages m = {0};
+        int n = 0;
+        char byte;
+        open_new(&j, &m);
+        off_t second = (off_t)j.size + 1016;
+        for (int g = 0; g < 3; g++)
+            append(&j, g, (char)('a' + g), &m);
+        ck_assert_int_eq(j.size, second + 2 * 1016);
+        ck_assert_int_eq(pread(j.file, &byte, 1, second + at[k]), 1);
+        byte ^= 1;
+        ck_assert_int_eq(pwrite(j.file, &byte, 1, second + at[k]), 1);
+        ck_assert_int_eq(hf_journal_replay(&j, "this run", count, &n, &m), HF_OK);
+        ck_assert_int_eq(n, 1);
+        ck_assert_int_eq(m.n_warning, 1);
+        ck_assert_ptr_nonnull(strstr(m.text, "is damaged: its last 2032 bytes count for nothing"));
+        hf_journal_close(&j, true);
+        hf_messages_free(&m);
+    }
+}
+END_TEST
+
+static void demand_locked(void)
+{
+    hf_journal other;
+    hf_messages m = {0};
+    ck_assert_int_eq(hf_journal_open(result_path(), true, &other, &m), HF_IO);
+    ck_assert_ptr_nonnull(strstr(m.text, "another process is writing it"));
+    hf_journal_close(&other, false);
+    hf_messages_free(&m);
+}
+
+START_TEST(the_lock_is_kept_while_the_journal_is_rotated)
+{
+    hf_journal j;
+    hf_messages m = {0};
+    int n = 0;
+    open_new(&j, &m);
+    demand_locked();
+    for (int i = 0; i < 2; i++) {
+        append(&j, 0, 'a', &m);
+        ck_assert_int_eq(hf_journal_rotate(&j, &m), HF_OK);
+        ck_assert(hf_journal_is_empty(&j));
+        demand_locked();
+    }
+    append(&j, 0, 'a', &m);
+    hf_journal_close(&j, false);
+    ck_assert_int_eq(hf_journal_open(result_path(), false, &j, &m), HF_OK); /* the lock went with it */
+    ck_assert_int_eq(hf_journal_replay(&j, "this run", count, &n, &m), HF_OK);
+    ck_assert_int_eq(n, 1);
+    hf_journal_close(&j, true);
+    ck_assert_int_ne(access(temp_path("run.h5.journal"), F_OK), 0);
+    hf_messages_free(&m);
+}
+END_TEST
+
+Suite *suite_unit_journal(void)
+{
+    Suite *suite = suite_create("unit/journal");
+    TCase *tests = tcase_create("journal");
+    suite_add_tcase(suite, tests);
+    tcase_add_test(tests, a_spoilt_record_is_told);
+    tcase_add_test(tests, the_lock_is_kept_while_the_journal_is_rotated);
+    return suite;
+}
