@@ -50,12 +50,39 @@ START_TEST(a_restart_replaces_nothing_before_it_has_a_shape)
 }
 END_TEST
 
+/* Who asks twice does not wait for the end of a generation. */
+START_TEST(a_second_signal_ends_it_at_once)
+{
+    const char *path = temp("run.h5");
+    session s = start_held_run(storing_case("c.yaml", 1000), path, NULL);
+    wait_for_generations(&s, path);
+    kill(s.id, SIGINT); /* two different ones: of the same, the second may be lost */
+    int code = end_by(&s, SIGTERM);
+    ck_assert_msg(code == 128 + SIGINT || code == 128 + SIGTERM, "exit code %d", code);
+}
+END_TEST
+
+/* As nohup does it. */
+START_TEST(an_ignored_signal_stays_ignored)
+{
+    const char *path = temp("run.h5"), *c = storing_case("c.yaml", 100);
+    const char *const argv[] = {
+        "/bin/sh", "-c", "trap '' HUP; exec \"$0\" run \"$1\" -o \"$2\" --progress line", hifdm_program(), c,
+        path,      NULL};
+    session s = start_session(temp_path(""), true, argv);
+    wait_for_generations(&s, path);
+    ck_assert_int_eq(end_by(&s, SIGHUP), 0);
+}
+END_TEST
+
 Suite *suite_cli_interrupt(void)
 {
     Suite *suite = suite_create("cli/interrupt");
     TCase *tcase = tcase_create("interrupt");
     tcase_add_test(tcase, a_file_made_meanwhile_is_not_replaced);
     tcase_add_test(tcase, a_restart_replaces_nothing_before_it_has_a_shape);
+    tcase_add_test(tcase, a_second_signal_ends_it_at_once);
+    tcase_add_test(tcase, an_ignored_signal_stays_ignored);
     suite_add_tcase(suite, tcase);
     return suite;
 }
