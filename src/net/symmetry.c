@@ -269,10 +269,9 @@ static void sort(search *q)
     qsort(q->link, (size_t)q->s->n_cable, sizeof *q->link, compare_links);
 }
 
-hf_status hf_symmetry_apply(const hf_scene *scene, hf_symmetry wanted, hf_model *model, int *planes,
-                            hf_messages *messages)
+hf_status hf_symmetry_apply(const hf_scene *scene, hf_symmetry wanted, hf_model *m, int *planes, hf_messages *messages)
 {
-    search q = {.s = scene, .m = model};
+    search q = {.s = scene, .m = m};
     hf_arena arena = {0};
     *planes = 0;
     if (wanted == HF_SYMMETRY_NONE) return HF_OK;
@@ -280,7 +279,7 @@ hf_status hf_symmetry_apply(const hf_scene *scene, hf_symmetry wanted, hf_model 
         return hf_error(messages, HF_NO_MEMORY, "optimize.symmetry: out of memory");
     measure(&q);
     sort(&q);
-    hf_status status = link_genes(&q, wanted, model, planes, messages);
+    hf_status status = link_genes(&q, wanted, m, planes, messages);
     hf_arena_free(&arena);
     return status;
 }

@@ -78,10 +78,10 @@ static hf_status load_truss(run *r, hf_workspace *w, hf_messages *messages)
 
 /* ---- form-finding ---- */
 
-static hf_status create_history(const hf_form_settings *form, bool has_truss, hf_history *h)
+static hf_status create_history(const hf_form_settings *s, bool has_truss, hf_history *h)
 {
-    h->capacity = form->max_iterations < HISTORY_MAX ? form->max_iterations : HISTORY_MAX;
-    size_t n = (size_t)h->capacity, n_coupling = has_truss ? (size_t)form->coupling.max_iterations : 0;
+    h->capacity = s->max_iterations < HISTORY_MAX ? s->max_iterations : HISTORY_MAX;
+    size_t n = (size_t)h->capacity, n_coupling = has_truss ? (size_t)s->coupling.max_iterations : 0;
     double *block = calloc(5 * n + 3 * n_coupling, sizeof *block);
     if (!block) return HF_NO_MEMORY;
     h->psi_m = block;

@@ -133,18 +133,18 @@ static bool has_room(hf_batch *batch, int room)
 
 /* Evaluate designs that `next` hands out, in one thread, until none is left. */
 static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *context, const double *design_N,
-                     hf_form_result *result)
+                     hf_form_result *r)
 {
     const hf_evaluator *v = batch->evaluator;
     const struct hf_batch_engine *e = batch->engine;
     hf_workspace *w = &batch->workspace[room];
     if (e && e->solver == HF_SOLVER_CHORD)
-        hf_chord_run(&e->shared, &e->chord[room], w, next, context, design_N, result);
+        hf_chord_run(&e->shared, &e->chord[room], w, next, context, design_N, r);
     else if (e)
-        hf_swarm_run(v, &e->plan, &e->lanes[room], w, next, context, design_N, result);
+        hf_swarm_run(v, &e->plan, &e->lanes[room], w, next, context, design_N, r);
     else
         for (int i = next(context); i >= 0; i = next(context))
-            hf_evaluate(v, design_N + (size_t)i * (size_t)v->model->n_gene, w, &result[i]);
+            hf_evaluate(v, design_N + (size_t)i * (size_t)v->model->n_gene, w, &r[i]);
 }
 
 /* ---- the parallel run ---- */
@@ -168,9 +168,9 @@ static void work_on_job(void *context, int room)
                     hf_clock_thread_cpu_s() - start_s); /* the wait for other threads is not counted */
 }
 
-void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result)
+void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *r)
 {
-    batch_job job = {batch, {n, 0, pending}, design_N, result};
+    batch_job job = {batch, {n, 0, pending}, design_N, r};
     if (n > 0) hf_parallel_run(batch->n_thread, work_on_job, &job);
 }
 
@@ -206,10 +206,10 @@ bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void
     return true;
 }
 
-hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result)
+hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *r)
 {
     hf_parallel_queue one = {1, 0, NULL};
-    work_off(batch, 0, hf_parallel_take, &one, design_N, result);
+    work_off(batch, 0, hf_parallel_take, &one, design_N, r);
     return &batch->workspace[0];
 }
 

@@ -298,7 +298,7 @@ static void load(void *solver, int lane, int i_design)
 }
 
 /* Copy the lane's shape into the workspace and measure it there, by the scalar code, into the result. */
-static void unload(const chord_run *s, int lane, const double *design_N, hf_form_result *result)
+static void unload(const chord_run *s, int lane, const double *design_N, hf_form_result *r)
 {
     const hf_chord *c = s->chord;
     const hf_chord_lanes *l = s->lanes;
@@ -309,10 +309,10 @@ static void unload(const chord_run *s, int lane, const double *design_N, hf_form
         w->position_m[i] = l->x_m[(size_t)i * HF_LANES + (size_t)lane];
     for (int i = 0; i < c->n_pull; i++)
         w->displacement_m[i] = l->displacement_m[(size_t)i * HF_LANES + (size_t)lane];
-    hf_form_measure(m, c->evaluator->form, w, result);
-    result->iterations = s->steps[lane];
-    if (c->n_pull) hf_coupling_accept(m, w, s->steps[lane], s->at[lane].gap_m, result);
-    hf_evaluate_judge(c->evaluator, result);
+    hf_form_measure(m, c->evaluator->form, w, r);
+    r->iterations = s->steps[lane];
+    if (c->n_pull) hf_coupling_accept(m, w, s->steps[lane], s->at[lane].gap_m, r);
+    hf_evaluate_judge(c->evaluator, r);
 }
 
 /* Compute the forces of net and truss in all lanes, and from them `at`. */
@@ -369,10 +369,10 @@ static void step(void *solver)
     k->step(s->chord, s->lanes);
 }
 
-void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, hf_lane_next *next,
-                  void *context, const double *design_N, hf_form_result *result)
+void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *w, hf_lane_next *next, void *context,
+                  const double *design_N, hf_form_result *r)
 {
     static const hf_lane_solver work = {load, look, settle, step};
-    chord_run s = {.chord = chord, .lanes = lanes, .w = workspace, .design_N = design_N, .result = result};
+    chord_run s = {.chord = chord, .lanes = lanes, .w = w, .design_N = design_N, .result = r};
     hf_lane_schedule_run(&work, &s, next, context);
 }

@@ -6,15 +6,15 @@
 
 /* ---- ask and tell ---- */
 
-hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *settings,
-                              const hf_model *model, const double *base_N, hf_optimiser *optimiser)
+hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *s, const hf_model *m,
+                              const double *base_N, hf_optimiser *optimiser)
 {
     hf_optimiser *o = optimiser;
-    *o = (hf_optimiser){.settings = settings};
-    HF_TRY(hf_population_create(settings, model, base_N, &o->population, &o->next));
+    *o = (hf_optimiser){.settings = s};
+    HF_TRY(hf_population_create(s, m, base_N, &o->population, &o->next));
     if (!kind) return HF_OK;
     o->kind = kind;
-    HF_TRY(kind->create(settings, model, &o->state));
+    HF_TRY(kind->create(s, m, &o->state));
     kind->first(o->state, &o->population);
     return HF_OK;
 }

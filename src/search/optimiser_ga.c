@@ -42,12 +42,12 @@ static breeder *lay_out(hf_arena *a, breeder *g)
     return itself;
 }
 
-static hf_status create(const hf_optimize_settings *settings, const hf_model *model, void **state)
+static hf_status create(const hf_optimize_settings *s, const hf_model *m, void **state)
 {
-    breeder g = {.settings = settings, .model = model};
+    breeder g = {.settings = s, .model = m};
     hf_arena arena = {0};
-    g.gene_leader = model->n_leader < model->n_gene ? model->gene_leader : NULL;
-    g.n_leader = g.gene_leader ? model->n_leader : model->n_gene;
+    g.gene_leader = m->n_leader < m->n_gene ? m->gene_leader : NULL;
+    g.n_leader = g.gene_leader ? m->n_leader : m->n_gene;
     breeder *itself;
     HF_TRY(HF_ARENA_MAKE(&arena, itself = lay_out(&arena, &g)));
     *itself = g;

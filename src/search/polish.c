@@ -277,13 +277,13 @@ static hf_status minimise(problem *p, int max_iterations, const double *start_N,
 }
 
 hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower_N, const double *upper_N, int max_iterations,
-                        double *design_N, hf_workspace *workspace, hf_polish_result *result)
+                        double *design_N, hf_workspace *w, hf_polish_result *result)
 {
     size_t bytes = (size_t)evaluator->model->n_gene * sizeof(double);
-    problem p = {.v = evaluator, .lower_N = lower_N, .upper_N = upper_N, .start_N = design_N, .w = workspace};
+    problem p = {.v = evaluator, .lower_N = lower_N, .upper_N = upper_N, .start_N = design_N, .w = w};
     hf_form_result start;
     *result = (hf_polish_result){0};
-    HF_TRY(hf_evaluate(evaluator, design_N, workspace, &start));
+    HF_TRY(hf_evaluate(evaluator, design_N, w, &start));
     hf_arena arena = {0};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &p)));
     number_variables(&p);

@@ -42,16 +42,16 @@ static double within(double value, double low, double high)
 
 /* ---- linked genes ---- */
 
-static bool has_links(const hf_model *model)
+static bool has_links(const hf_model *m)
 {
-    return model->n_leader < model->n_gene && model->gene_leader;
+    return m->n_leader < m->n_gene && m->gene_leader;
 }
 
 /* The bounds of a class of linked genes are those of the steps that all its genes can take. Where there is no such
  * step, each gene keeps its own bounds, and hf_population_link clamps to them. */
-static void link_bounds(const hf_model *model, hf_population *p)
+static void link_bounds(const hf_model *m, hf_population *p)
 {
-    const int *leader_of = model->gene_leader;
+    const int *leader_of = m->gene_leader;
     for (int leader = 0; leader < p->n_gene; leader++) {
         double low = -INFINITY, high = INFINITY;
         if (leader_of[leader] != leader) continue;
@@ -68,33 +68,31 @@ static void link_bounds(const hf_model *model, hf_population *p)
     }
 }
 
-void hf_population_link(const hf_population *population, const hf_model *model, double *design_N)
+void hf_population_link(const hf_population *population, const hf_model *m, double *design_N)
 {
-    if (!has_links(model)) return;
-    hf_symmetry_follow(population->n_gene, model->gene_leader, population->base_N, design_N);
+    if (!has_links(m)) return;
+    hf_symmetry_follow(population->n_gene, m->gene_leader, population->base_N, design_N);
     for (int k = 0; k < population->n_gene; k++)
         design_N[k] = hf_population_clamp(population, k, design_N[k]);
 }
 
 /* ---- two generations ---- */
 
-hf_status hf_population_create(const hf_optimize_settings *settings, const hf_model *model, const double *base_N,
+hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m, const double *base_N,
                                hf_population *population, hf_population *next)
 {
     hf_population *p = population;
     hf_arena arena = {0};
-    *p = (hf_population){.n_gene = model->n_gene,
-                         .n_individual = settings->population,
-                         .generation_limit = settings->generations,
-                         .best = -1};
+    *p = (hf_population){
+        .n_gene = m->n_gene, .n_individual = s->population, .generation_limit = s->generations, .best = -1};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_both(&arena, p, next)));
     p->block = next->block = arena.block;
     memcpy(p->base_N, base_N, (size_t)p->n_gene * sizeof *base_N);
     for (int k = 0; k < p->n_gene; k++) {
-        p->lower_N[k] = within(base_N[k] - settings->range_N, settings->min_tension_N, settings->max_tension_N);
-        p->upper_N[k] = within(base_N[k] + settings->range_N, settings->min_tension_N, settings->max_tension_N);
+        p->lower_N[k] = within(base_N[k] - s->range_N, s->min_tension_N, s->max_tension_N);
+        p->upper_N[k] = within(base_N[k] + s->range_N, s->min_tension_N, s->max_tension_N);
     }
-    if (has_links(model)) link_bounds(model, p);
+    if (has_links(m)) link_bounds(m, p);
     return HF_OK;
 }
 
@@ -145,7 +143,7 @@ static hf_population_stop judge(const hf_optimize_settings *s, const hf_populati
     return isnan(p->best_psi_m[now]) ? HF_POPULATION_ALL_INFEASIBLE : HF_POPULATION_GENERATIONS;
 }
 
-void hf_population_rank(const hf_optimize_settings *settings, hf_population *population)
+void hf_population_rank(const hf_optimize_settings *s, hf_population *population)
 {
     hf_population *p = population;
     double sum = 0;
@@ -165,5 +163,5 @@ void hf_population_rank(const hf_optimize_settings *settings, hf_population *pop
     }
     if (p->best >= 0) p->mean_psi_m = sum / (p->n_individual - p->n_infeasible);
     p->best_psi_m[p->generation] = p->best >= 0 ? p->result[p->best].psi_m : (double)NAN;
-    p->stop_reason = judge(settings, p);
+    p->stop_reason = judge(s, p);
 }

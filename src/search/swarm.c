@@ -90,19 +90,18 @@ static void step(void *solver)
     hf_swarm_update(s->lanes);
 }
 
-void hf_swarm_run(const hf_evaluator *evaluator, const hf_swarm_plan *plan, hf_swarm_lanes *lanes,
-                  hf_workspace *workspace, hf_lane_next *next, void *context, const double *design_N,
-                  hf_form_result *result)
+void hf_swarm_run(const hf_evaluator *evaluator, const hf_swarm_plan *plan, hf_swarm_lanes *lanes, hf_workspace *w,
+                  hf_lane_next *next, void *context, const double *design_N, hf_form_result *r)
 {
     static const hf_lane_solver work = {load, look, settle, step};
     swarm s = {.v = evaluator,
                .plan = plan,
                .lanes = lanes,
-               .w = workspace,
+               .w = w,
                .design_N = design_N,
-               .result = result,
+               .result = r,
                .stop = evaluator->rule == HF_RULE_SEEDED ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
-    hf_evaluate_prepare(evaluator, design_N, workspace);
-    memcpy(lanes->law, workspace->law, (size_t)evaluator->model->n_cable); /* the same for all designs */
+    hf_evaluate_prepare(evaluator, design_N, w);
+    memcpy(lanes->law, w->law, (size_t)evaluator->model->n_cable); /* the same for all designs */
     hf_lane_schedule_run(&work, &s, next, context);
 }

@@ -80,21 +80,19 @@ static void find_skyline(hf_swarm_plan *p)
             p->has_entry[p->tile_0[high / HF_SWARM_BLOCK] + (size_t)(low / HF_SWARM_BLOCK)] = 1;
 }
 
-hf_status hf_swarm_plan_create(const hf_model *model, hf_lane_isa isa, hf_swarm_plan *plan)
+hf_status hf_swarm_plan_create(const hf_model *m, hf_lane_isa isa, hf_swarm_plan *plan)
 {
-    assert(model->n_free > 0 && !model->has_strut && hf_lane_has_isa(isa));
-    int n_block = (model->n_free + HF_SWARM_BLOCK - 1) / HF_SWARM_BLOCK;
-    *plan = (hf_swarm_plan){.model = model,
-                            .kernels = kernels_of_isa[isa],
-                            .n_pad = n_block * HF_SWARM_BLOCK - model->n_free,
-                            .n_block = n_block};
+    assert(m->n_free > 0 && !m->has_strut && hf_lane_has_isa(isa));
+    int n_block = (m->n_free + HF_SWARM_BLOCK - 1) / HF_SWARM_BLOCK;
+    *plan = (hf_swarm_plan){
+        .model = m, .kernels = kernels_of_isa[isa], .n_pad = n_block * HF_SWARM_BLOCK - m->n_free, .n_block = n_block};
     hf_arena arena = {0};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, plan)));
     plan->block = arena.block;
     list_incidences(plan);
     find_skyline(plan);
-    for (int e = 0; e < model->n_cable; e++)
-        plan->inverse_length[e] = 1 / model->length_m[e];
+    for (int e = 0; e < m->n_cable; e++)
+        plan->inverse_length[e] = 1 / m->length_m[e];
     return HF_OK;
 }
 
