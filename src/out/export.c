@@ -24,19 +24,32 @@ hf_status hf_export_claim(const char *path, bool force, hf_messages *messages)
 
 static const char *const shape_word[3] = {"form-finding", "optimised", "polished"};
 
-hf_status hf_export_read(const hf_export_request *o, hf_summary *summary, hf_scene *scene, hf_shape *shape,
-                         const char **word, hf_messages *messages)
+/* Reads the shape of o->stage or, when that is NULL, the result of the run, with its summary and scene. */
+static hf_status read_stored(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
 {
+    hf_summary *summary = &stored->summary;
     HF_TRY(hf_store_read_summary(o->file, summary, messages));
-    bool has[3] = {1, hf_summary_has_best_shape(summary), summary->has_polish};
+    bool has[3] = {true, hf_summary_has_best_shape(summary), summary->has_polish};
     hf_stage stage = has[HF_STAGE_POLISH] && summary->polish_is_result ? HF_STAGE_POLISH
                      : has[HF_STAGE_OPTIMIZE]                          ? HF_STAGE_OPTIMIZE
                                                                        : HF_STAGE_FORM;
     for (int i = 0; o->stage && i < HF_STAGE_NONE; i++)
         if (!strcmp(o->stage, hf_stage_word[i])) stage = (hf_stage)i;
-    *word = shape_word[stage];
+    stored->word = shape_word[stage];
     if (!has[stage])
-        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no %s shape; use --stage form", o->file, *word);
-    HF_TRY(hf_store_read_scene(o->file, scene, messages));
-    return hf_store_read_shape(o->file, stage, shape, messages);
+        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no %s shape; use --stage form", o->file,
+                        stored->word);
+    HF_TRY(hf_store_read_scene(o->file, &stored->scene, messages));
+    return hf_store_read_shape(o->file, stage, &stored->shape, messages);
+}
+
+hf_status hf_export_shape(const hf_export_request *o, hf_export_write_shape *write, char *said, size_t size,
+                          hf_messages *messages)
+{
+    hf_export_stored stored = {0};
+    hf_status status = read_stored(o, &stored, messages);
+    if (status == HF_OK) status = write(o, &stored, said, size, messages);
+    hf_shape_free(&stored.shape);
+    hf_scene_free(&stored.scene);
+    return status;
 }

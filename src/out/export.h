@@ -46,10 +46,21 @@ extern const hf_exporter *const hf_exporter_table[HF_N_EXPORTER];
 
 /* ---- what exporters share ---- */
 
-/* Reads one shape of a result file with its summary and scene: the shape of request->stage or, when that is NULL, the
- * result of the run. `word` becomes the name of the shape in messages. Free scene and shape in any case. */
-hf_status hf_export_read(const hf_export_request *request, hf_summary *summary, hf_scene *scene, hf_shape *shape,
-                         const char **word, hf_messages *messages);
+/* One shape of a result file. */
+typedef struct {
+    hf_summary summary;
+    hf_scene scene;
+    hf_shape shape;
+    const char *word; /* the name of the shape in messages */
+} hf_export_stored;
+
+typedef hf_status hf_export_write_shape(const hf_export_request *request, const hf_export_stored *stored, char *said,
+                                        size_t size, hf_messages *messages);
+
+/* For exporters that take a stage: reads the shape of request->stage or, when that is NULL, the result of the run, and
+ * calls `write` with it. */
+hf_status hf_export_shape(const hf_export_request *request, hf_export_write_shape *write, char *said, size_t size,
+                          hf_messages *messages);
 
 /* Checks that `path` may be written: HF_EXISTS with a message when it exists and `force` is false, HF_IO when it is not
  * an ordinary file. */

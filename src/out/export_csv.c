@@ -132,22 +132,20 @@ static hf_status export_truss(const hf_export_request *o, hf_truss *truss, hf_ca
     return HF_OK;
 }
 
-static hf_status export_shape(const hf_export_request *o, hf_scene *scene, hf_shape *shape, char *said, size_t size,
-                              hf_messages *messages)
+static hf_status write_csv(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
+                           hf_messages *messages)
 {
-    hf_summary summary;
-    const char *word;
+    const hf_scene *scene = &stored->scene;
     char nodes[PATH_MAX], cables[PATH_MAX];
-    HF_TRY(hf_export_read(o, &summary, scene, shape, &word, messages));
     HF_TRY(claim_in_folder(o, "nodes.csv", nodes, messages)); /* both names are checked before anything is made */
     HF_TRY(claim_in_folder(o, "cables.csv", cables, messages));
     HF_TRY(hf_file_out_folder(o->output, messages));
-    const view both = {scene, shape};
+    const view both = {scene, &stored->shape};
     HF_TRY(hf_file_out_write(nodes, write_nodes, &both, messages));
     HF_TRY(hf_file_out_write(cables, write_cables, &both, messages));
     snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s and %s", o->file, scene->n_node,
-             scene->n_cable, word, nodes, cables);
-    if (!summary.has_truss) return HF_OK;
+             scene->n_cable, stored->word, nodes, cables);
+    if (!stored->summary.has_truss) return HF_OK;
     hf_truss truss = {0};
     hf_carrier_state state = {0};
     hf_status status = export_truss(o, &truss, &state, said, size, messages);
@@ -158,12 +156,7 @@ static hf_status export_shape(const hf_export_request *o, hf_scene *scene, hf_sh
 
 static hf_status export_csv(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
 {
-    hf_scene scene = {0};
-    hf_shape shape = {0};
-    hf_status status = export_shape(request, &scene, &shape, said, size, messages);
-    hf_shape_free(&shape);
-    hf_scene_free(&scene);
-    return status;
+    return hf_export_shape(request, write_csv, said, size, messages);
 }
 
 const hf_exporter hf_exporter_csv = {

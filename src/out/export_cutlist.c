@@ -139,32 +139,25 @@ static hf_status name_files(const hf_export_request *o, char path[3][PATH_MAX], 
     return HF_OK;
 }
 
-static hf_status write_all(const hf_export_request *o, hf_scene *scene, hf_shape *shape, char *said, size_t size,
-                           hf_messages *messages)
+static hf_status write_cutlist(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
+                               hf_messages *messages)
 {
-    hf_summary summary;
-    const char *word;
+    const hf_scene *scene = &stored->scene;
     char path[3][PATH_MAX];
-    HF_TRY(hf_export_read(o, &summary, scene, shape, &word, messages));
     HF_TRY(demand_EA(o->file, scene, messages));
     HF_TRY(name_files(o, path, messages)); /* all names are checked before any file is written */
-    const view v = {scene, shape, hf_model_reference_N(scene, summary.pretension_N)};
+    const view v = {scene, &stored->shape, hf_model_reference_N(scene, stored->summary.pretension_N)};
     HF_TRY(hf_file_out_write(path[0], write_cables, &v, messages));
     HF_TRY(hf_file_out_write(path[1], write_nodes, &v, messages));
     HF_TRY(hf_file_out_write(path[2], write_totals, &v, messages));
     snprintf(said, size, "%s: cut lengths of %d cables of the %s shape in %s, the jig in %s, totals in %s", o->file,
-             scene->n_cable, word, path[0], path[1], path[2]);
+             scene->n_cable, stored->word, path[0], path[1], path[2]);
     return HF_OK;
 }
 
 static hf_status export_cutlist(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
 {
-    hf_scene scene = {0};
-    hf_shape shape = {0};
-    hf_status status = write_all(request, &scene, &shape, said, size, messages);
-    hf_shape_free(&shape);
-    hf_scene_free(&scene);
-    return status;
+    return hf_export_shape(request, write_cutlist, said, size, messages);
 }
 
 const hf_exporter hf_exporter_cutlist = {
