@@ -57,7 +57,8 @@ const char *hf_coupling_stop_word(int stop); /* "unknown" for a foreign value */
  * description  attribute of the data set, where there is one
  *
  * Attributes and columns of the ledger are in the order of the list. JSON has the figures of a coupling between places
- * 4 and 5. Under a status other than HF_OK and HF_NOT_CONVERGED the REAL ones are NaN. In more detail:
+ * 4 and 5. Under a status other than HF_OK, HF_NOT_CONVERGED and HF_RATIO_CAP the REAL ones are NaN. Of a design of
+ * hf_evaluate under any status but HF_OK psi_m and the two tension ratios are NaN. In more detail:
  *   culprit                 cable (COLLAPSED, NOT_FINITE; NOT_CONVERGED: the one whose rounding stands in the way), row
  *                           of D (SINGULAR), chain (STRAIGHT_CHAIN)
  *   psi_m                   Eq. 10
