@@ -19,7 +19,8 @@ typedef struct {
     hf_config_faults faults;
     yaml_mark_t cut[2]; /* the sweep section, when there is one */
     yaml_document_t *document;
-    bool walked; /* the file was readable YAML: keys that are missing can be reported */
+    bool walked;   /* the file was readable YAML: keys that are missing can be reported */
+    bool is_study; /* it has the key `base`, so it is no case, and none of a case's keys is missing */
 } loader;
 
 static void complain(loader *l, yaml_mark_t mark, const char *path, const char *what, const char *detail)
@@ -65,6 +66,7 @@ static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, co
         if (child_of(hf_section_table[i].path, prefix)) names[n++] = child_of(hf_section_table[i].path, prefix);
     near = hf_text_nearest(key, names, n);
     if (!*prefix && !strcmp(key, "base")) {
+        l->is_study = true;
         snprintf(detail, sizeof detail, "; a file with a base is a study, for 'hifdm sweep'");
     } else if (near) {
         snprintf(detail, sizeof detail, "; did you mean '%s'?", near);
@@ -449,7 +451,7 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
     with_document(&l, settings->text, settings->text_length, use_root, NULL);
     for (int i = 0; i < n_override; i++)
         apply_override(&l, overrides[i]);
-    if (l.walked) hf_config_check(settings, &l.faults);
+    if (l.walked && !l.is_study) hf_config_check(settings, &l.faults);
     hf_config_complete(settings);
     cut_sweep(&l);
     hf_status sealed = seal(settings, overrides, n_override);

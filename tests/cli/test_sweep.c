@@ -198,6 +198,7 @@ START_TEST(a_case_with_a_sweep_of_its_own)
     OUT("1 points run");
     HIFDM(2, "run", study(), NOWHERE);
     ERR("a file with a base is a study, for 'hifdm sweep'");
+    ck_assert_msg(!strstr(said.err, "needs either"), "%s", said.err); /* a study has no scene of its own */
 }
 END_TEST
 
