@@ -157,6 +157,9 @@ static hf_status read_page(study_page *p, hf_messages *messages)
     HF_TRY(hf_store_read_texts(p->path, "/points/id", &p->id, messages));
     HF_TRY(hf_store_read_texts(p->path, "/points/reason", &p->reason, messages));
     p->n = p->status.n;
+    for (int i = 0; i < p->n; i++)
+        if (!(p->status.value[i] >= 0 && p->status.value[i] <= SCHAR_MAX))
+            return hf_error(messages, HF_IO, "%s: is damaged: /points/status holds what is no status", p->path);
     if (p->id.n != p->n)
         return hf_error(messages, HF_IO, "%s: is damaged: /points/id does not name every point", p->path);
     HF_TRY(hf_store_read_links(p->path, "/runs", &p->id, &p->file, messages));

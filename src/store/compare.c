@@ -98,8 +98,10 @@ static void open_side(hf_hdf5 *io, const char *name, side *s)
     hid_t stored = -1;
     *s = (side){-1, -1, -1, 0, {0}, 0, NULL};
     if (io->status != HF_OK) return;
-    if ((s->id = H5Dopen2(io->file, name, H5P_DEFAULT)) < 0 || (s->space = H5Dget_space(s->id)) < 0 ||
-        (s->rank = H5Sget_simple_extent_dims(s->space, s->dims, NULL)) < 0 || (stored = H5Dget_type(s->id)) < 0)
+    s->id = hf_hdf5_open(io, io->file, name, H5I_DATASET);
+    if (io->status != HF_OK) return;
+    if ((s->space = H5Dget_space(s->id)) < 0 || (s->rank = H5Sget_simple_extent_dims(s->space, s->dims, NULL)) < 0 ||
+        (stored = H5Dget_type(s->id)) < 0)
         hf_hdf5_fail(io, "read", -1, name);
     else if (H5Tget_class(stored) == H5T_FLOAT)
         s->type = H5Tcopy(H5T_NATIVE_DOUBLE);
@@ -198,44 +200,45 @@ static bool compare_data_set(comparing *q, const char *name)
 
 /* ---- both files ---- */
 
-static bool is_data_set(hid_t file, const char *name)
+static bool has_data_set(hf_hdf5 *io, const char *path)
 {
-    hid_t object = H5Oopen(file, name, H5P_DEFAULT);
+    if (!hf_hdf5_has(io, io->file, path)) return false;
+    hid_t object = H5Oopen(io->file, path, H5P_DEFAULT);
     bool is = object >= 0 && H5Iget_type(object) == H5I_DATASET;
-    if (object >= 0) H5Oclose(object);
+    if (object < 0) hf_hdf5_fail(io, "read", io->file, path);
+    hf_hdf5_close(io, object);
     return is;
 }
 
-static herr_t visit_a(hid_t file, const char *name, const H5L_info_t *info, void *context)
+static void tell_absent(comparing *q, const char *path, const hf_hdf5 *io)
 {
-    comparing *q = context;
-    char path[1100];
-    if (info->type != H5L_TYPE_HARD || !is_data_set(file, name)) return 0;
-    snprintf(path, sizeof path, "/%s", name);
-    q->c->n_data_set++;
-    if (hf_hdf5_has_path(&q->b, name) && is_data_set(q->b.file, name)) {
-        q->c->n_different += compare_data_set(q, path);
-    } else if (q->b.status == HF_OK) {
-        char how[600];
-        snprintf(how, sizeof how, " is not in %s", q->b.path);
-        q->tell(q->context, path, how);
-        q->c->n_different++;
-    }
-    return q->a.status == HF_OK && q->b.status == HF_OK ? 0 : 1;
+    char how[600];
+    snprintf(how, sizeof how, " is not in %s", io->path);
+    q->tell(q->context, path, how);
+    q->c->n_different++;
 }
 
-static herr_t visit_b(hid_t file, const char *name, const H5L_info_t *info, void *context)
+static void visit_a(void *context, const char *path, hid_t object, H5I_type_t type)
 {
     comparing *q = context;
-    char path[1100], how[600];
-    if (info->type != H5L_TYPE_HARD || !is_data_set(file, name)) return 0;
-    if (hf_hdf5_has_path(&q->a, name) && is_data_set(q->a.file, name)) return 0;
-    snprintf(path, sizeof path, "/%s", name);
-    snprintf(how, sizeof how, " is not in %s", q->a.path);
-    q->tell(q->context, path, how);
+    (void)object;
+    if (type != H5I_DATASET) return;
     q->c->n_data_set++;
-    q->c->n_different++;
-    return q->a.status == HF_OK ? 0 : 1;
+    if (has_data_set(&q->b, path))
+        q->c->n_different += compare_data_set(q, path);
+    else if (q->b.status == HF_OK)
+        tell_absent(q, path, &q->b);
+    if (q->a.status == HF_OK) q->a.status = q->b.status; /* ends the walk */
+}
+
+static void visit_b(void *context, const char *path, hid_t object, H5I_type_t type)
+{
+    comparing *q = context;
+    (void)object;
+    if (type != H5I_DATASET || has_data_set(&q->a, path)) return;
+    q->c->n_data_set++;
+    tell_absent(q, path, &q->a);
+    if (q->b.status == HF_OK) q->b.status = q->a.status;
 }
 
 hf_status hf_compare_files(const char *a, const char *b, hf_comparison *comparison, hf_compare_tell *tell,
@@ -250,12 +253,8 @@ hf_status hf_compare_files(const char *a, const char *b, hf_comparison *comparis
     hf_hdf5_lock();
     hf_hdf5_open_file(&q.a, a);
     if (q.a.status == HF_OK) hf_hdf5_open_file(&q.b, b);
-    if (q.a.status == HF_OK && q.b.status == HF_OK) {
-        if (H5Lvisit(q.a.file, H5_INDEX_NAME, H5_ITER_INC, visit_a, &q) < 0) hf_hdf5_fail(&q.a, "read", -1, "/");
-        if (q.a.status == HF_OK && q.b.status == HF_OK &&
-            H5Lvisit(q.b.file, H5_INDEX_NAME, H5_ITER_INC, visit_b, &q) < 0)
-            hf_hdf5_fail(&q.b, "read", -1, "/");
-    }
+    if (q.b.status == HF_OK) hf_hdf5_walk(&q.a, visit_a, &q);
+    if (q.a.status == HF_OK) hf_hdf5_walk(&q.b, visit_b, &q);
     hf_status status = q.a.status != HF_OK ? q.a.status : q.b.status;
     if (status == HF_OK && comparison->n_different) status = HF_DIFFERENT;
     hf_hdf5_close_file(&q.a);

@@ -95,6 +95,12 @@ static void lay_out(hf_arena *arena, hf_generations *g)
         g->row[i] = hf_arena_take(arena, (size_t)(i == ROW_DESIGN ? g->design_capacity : g->capacity), g->row_bytes[i]);
 }
 
+bool hf_generations_are_of(const hf_generations *g, const hf_population *population)
+{
+    return g->n_individual == population->n_individual && g->n_gene == population->n_gene &&
+           g->limit == population->generation_limit;
+}
+
 /* At least one, and no more than there can be. */
 static int how_many(size_t fit, int limit)
 {
@@ -186,8 +192,7 @@ void hf_generations_add(hf_generations *g, const hf_population *population, stru
 {
     ga_row row[HF_GENERATIONS_PIECES];
     int n = list_rows(population, row);
-    assert(g->n_waiting < g->capacity && population->n_individual == g->n_individual &&
-           population->n_gene == g->n_gene);
+    assert(g->n_waiting < g->capacity && hf_generations_are_of(g, population));
     for (int i = 0; i < n; i++) {
         gather(&row[i], g->row_bytes[i], slot(g, i));
         if (piece) piece[i] = (struct iovec){slot(g, i), g->row_bytes[i]};
@@ -225,6 +230,45 @@ bool hf_generations_take_payload(const hf_generations *g, const void *payload, h
     from += sizeof hash;
     for (int i = ROW_DESIGN + 1; i < n; from += g->row_bytes[i++])
         scatter(&row[i], g->row_bytes[i], from);
+    return true;
+}
+
+/* Has every value of an enumeration a word? */
+static bool are_words(const ga_row *row, int n)
+{
+    if (row->array.kind->class != HF_HDF5_ENUM) return true;
+    const char *from = row->from;
+    for (int i = 0; i < n; i++, from += row->stride) {
+        int value = *(const signed char *)from;
+        if (row->item_bytes == sizeof value) memcpy(&value, from, sizeof value);
+        signed char stored = (signed char)value;
+        if (stored != value || !hf_hdf5_are_known(row->array.kind, &stored, 1)) return false;
+    }
+    return true;
+}
+
+/* On another machine the bounds may have other last bits. */
+static bool is_within(double value, double low, double high)
+{
+    double slack = 1e-6 * (fabs(low) + fabs(high));
+    return value >= low - slack && value <= high + slack;
+}
+
+bool hf_generations_are_sound(const hf_population *p)
+{
+    ga_row row[HF_GENERATIONS_PIECES];
+    list_rows(p, row);
+    for (int i = ROW_EVALUATED; i < ROW_BEST_INDIVIDUAL; i++)
+        if (!are_words(&row[i], p->n_individual)) return false;
+    for (int i = 0; i < p->n_individual; i++) {
+        const hf_form_result *r = &p->result[i];
+        if (r->status == HF_OK && !isfinite(r->psi_m)) return false;
+        for (int k = 0; k < 2; k++)
+            if (p->parent[2 * i + k] < -1 || p->parent[2 * i + k] >= p->n_individual) return false;
+        for (int k = 0; k < p->n_gene; k++)
+            if (!is_within(p->design_N[(size_t)i * (size_t)p->n_gene + (size_t)k], p->lower_N[k], p->upper_N[k]))
+                return false;
+    }
     return true;
 }
 
@@ -359,8 +403,7 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population 
 {
     ga_row row[HF_GENERATIONS_PIECES];
     int last = g->n_stored - 1;
-    assert(g->n_waiting == 0 && last >= 0 && population->n_individual == g->n_individual &&
-           population->n_gene == g->n_gene);
+    assert(g->n_waiting == 0 && last >= 0 && hf_generations_are_of(g, population));
     size_t largest = g->row_bytes[0] + (size_t)population->n_individual * 2 * sizeof(double) + sizeof(double);
     char *values = malloc(largest);
     if (!values) {
@@ -376,6 +419,8 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population 
         if (io->status == HF_OK) scatter(&row[i], g->row_bytes[i], values);
     }
     free(values);
+    if (io->status == HF_OK && !hf_generations_are_sound(population))
+        hf_hdf5_damaged(io, group, NULL, "has a last generation that no run stores");
     row[ROW_BEST_PSI].array.dims[0] = (hsize_t)g->n_stored;
     hf_hdf5_read_rows(io, group, &row[ROW_BEST_PSI].array, 0, population->best_psi_m);
     count_evaluations(io, group, g, last, &population->n_evaluation, &population->n_evaluation_infeasible);
@@ -386,17 +431,18 @@ void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
 {
     ga_row row[HF_GENERATIONS_PIECES];
     if (g->n_stored == 0 || io->status != HF_OK) return;
-    double *best_psi_m = malloc((size_t)g->n_stored * sizeof *best_psi_m);
+    int longer = g->n_stored > g->n_individual ? g->n_stored : g->n_individual;
+    double *best_psi_m = malloc((size_t)longer * sizeof *best_psi_m);
     if (!best_psi_m) {
         hf_hdf5_no_memory(io);
         return;
     }
     hid_t group = hf_hdf5_open_group(io, "/ga");
     list_arrays(g, row);
+    hf_hdf5_read_rows(io, group, &row[ROW_PSI].array, 0, best_psi_m); /* of the first generation */
+    if (io->status == HF_OK) s->base_psi_m = best_psi_m[0];
     row[ROW_BEST_PSI].array.dims[0] = (hsize_t)g->n_stored;
     hf_hdf5_read_rows(io, group, &row[ROW_BEST_PSI].array, 0, best_psi_m);
-    row[ROW_PSI].array.dims[1] = 1;
-    hf_hdf5_read_rows(io, group, &row[ROW_PSI].array, 0, &s->base_psi_m);
     if (io->status == HF_OK) note_best(io, group, row, best_psi_m, g->n_stored, s);
     count_evaluations(io, group, g, g->n_stored, &s->evaluations, &s->infeasible);
     s->has_optimize = true;

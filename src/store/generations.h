@@ -46,6 +46,13 @@ void hf_generations_add(hf_generations *g, const hf_population *population, stru
  * changed, when these have other bits than those that the results are of. */
 bool hf_generations_take_payload(const hf_generations *g, const void *payload, hf_population *population);
 
+/* Are the sizes and the limit those of this population? A file may say anything. */
+bool hf_generations_are_of(const hf_generations *g, const hf_population *population);
+
+/* Is the present generation, which was read from a file or a journal, one that a run stores: designs within the bounds,
+ * known words, parents that exist, a finite psi where the status is ok? */
+bool hf_generations_are_sound(const hf_population *population);
+
 /* Write waiting rows below /ga of the file: all of them, or those for which there is no more room. The first call makes
  * the data sets. */
 void hf_generations_write(hf_hdf5 *io, hf_generations *g);

@@ -52,6 +52,19 @@ static void damaged_at(hf_hdf5 *io, hid_t place, const char *name, const char *a
     io->status = hf_error(io->messages, HF_IO, "%s: is damaged: %s %s", io->path, where, what);
 }
 
+void hf_hdf5_missing(hf_hdf5 *io, hid_t place, const char *name, const char *attribute)
+{
+    char where[800];
+    if (*io->made_by == '\0') damaged_at(io, place, name, attribute, "is not there");
+    if (io->status != HF_OK) return;
+    full_name(place, name, attribute, where, sizeof where);
+    io->status =
+        hf_error(io->messages, HF_IO,
+                 "%s: was made by hifdm %s and has no %s, which this version needs: run its case again, or use "
+                 "that version for it",
+                 io->path, io->made_by, where);
+}
+
 void hf_hdf5_no_memory(hf_hdf5 *io)
 {
     if (io->status == HF_OK) io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
@@ -165,8 +178,7 @@ static bool is_of_kind(hid_t stored, const hf_hdf5_kind *kind)
     return class == (kind == HF_KIND_REAL ? H5T_FLOAT : H5T_INTEGER);
 }
 
-/* Does every value of an enumeration have a word? */
-static bool are_known(const hf_hdf5_kind *kind, const void *values, hsize_t n)
+bool hf_hdf5_are_known(const hf_hdf5_kind *kind, const void *values, hsize_t n)
 {
     bool known[UCHAR_MAX + 1] = {false};
     const unsigned char *bytes = values;
@@ -272,24 +284,6 @@ void hf_hdf5_close_file(hf_hdf5 *io)
     io->file = -1;
 }
 
-bool hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name)
-{
-    if (io->status != HF_OK) return false;
-    htri_t has = H5Lexists(place, name, H5P_DEFAULT);
-    if (has < 0) hf_hdf5_fail(io, "read", place, name);
-    return has > 0;
-}
-
-bool hf_hdf5_has_path(hf_hdf5 *io, const char *path)
-{
-    char part[1024];
-    for (const char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
-        snprintf(part, sizeof part, "%.*s", (int)(slash - path), path);
-        if (!hf_hdf5_has(io, io->file, part)) return false;
-    }
-    return hf_hdf5_has(io, io->file, path);
-}
-
 hid_t hf_hdf5_make_group(hf_hdf5 *io, const char *path)
 {
     hid_t properties = -1, group = -1;
@@ -304,10 +298,7 @@ hid_t hf_hdf5_make_group(hf_hdf5 *io, const char *path)
 
 hid_t hf_hdf5_open_group(hf_hdf5 *io, const char *path)
 {
-    if (io->status != HF_OK) return -1;
-    hid_t group = H5Gopen2(io->file, path, H5P_DEFAULT);
-    if (group < 0) hf_hdf5_fail(io, "read", -1, path);
-    return group;
+    return io->status == HF_OK ? hf_hdf5_open(io, io->file, path, H5I_GROUP) : -1;
 }
 
 /* ---- making and writing data sets ---- */
@@ -355,54 +346,59 @@ void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const
 
 /* ---- reading data sets ---- */
 
-/* Is the data set of the dimensions and the type that `a` asks for? */
-static void check_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, hid_t data_set)
+void hf_hdf5_check_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, hid_t data_set, hsize_t row, bool all)
 {
     hid_t space = -1, stored = -1;
     hsize_t dims[H5S_MAX_RANK];
-    int rank;
+    int rank = -1;
+    if (io->status != HF_OK) return;
     if ((space = H5Dget_space(data_set)) < 0 || (rank = H5Sget_simple_extent_dims(space, dims, NULL)) < 0 ||
         (stored = H5Dget_type(data_set)) < 0)
         hf_hdf5_fail(io, "read", group, a->name);
-    else if (rank != a->rank || memcmp(dims, a->dims, (size_t)rank * sizeof dims[0]) != 0)
-        hf_hdf5_damaged(io, group, a->name, "has other dimensions than the nodes and cables ask for");
-    else if (!is_of_kind(stored, a->kind))
-        hf_hdf5_damaged(io, group, a->name, "is of another type");
+    bool fits = io->status == HF_OK && rank == a->rank;
+    for (int i = 0; i < rank && fits; i++)
+        fits = i > 0 || all ? dims[i] == a->dims[i] : row <= dims[0] && a->dims[0] <= dims[0] - row;
+    if (io->status == HF_OK && !fits)
+        hf_hdf5_damaged(io, group, a->name, "has other dimensions than the rest of the file asks for");
+    if (io->status == HF_OK && !is_of_kind(stored, a->kind)) hf_hdf5_damaged(io, group, a->name, "is of another type");
     hf_hdf5_close(io, stored);
     hf_hdf5_close(io, space);
 }
 
+void hf_hdf5_check_values(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const void *values)
+{
+    hsize_t n = 1;
+    for (int i = 0; i < a->rank; i++)
+        n *= a->dims[i];
+    if (io->status == HF_OK && is_enum(a->kind) && !hf_hdf5_are_known(a->kind, values, n))
+        hf_hdf5_damaged(io, group, a->name, "holds a value that has no word");
+}
+
 void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, void *values)
 {
-    hid_t data_set = -1, type = -1;
+    hid_t type = -1;
     if (io->status != HF_OK) return;
-    if ((data_set = H5Dopen2(group, a->name, H5P_DEFAULT)) < 0)
+    hid_t data_set = hf_hdf5_open(io, group, a->name, H5I_DATASET);
+    hf_hdf5_check_array(io, group, a, data_set, 0, true);
+    if (io->status == HF_OK &&
+        ((type = hf_hdf5_array_type(a)) < 0 || H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0))
         hf_hdf5_fail(io, "read", group, a->name);
-    else
-        check_array(io, group, a, data_set);
-    if (io->status == HF_OK) {
-        hsize_t n = 1;
-        for (int i = 0; i < a->rank; i++)
-            n *= a->dims[i];
-        if ((type = hf_hdf5_array_type(a)) < 0 || H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
-            hf_hdf5_fail(io, "read", group, a->name);
-        else if (is_enum(a->kind) && !are_known(a->kind, values, n))
-            hf_hdf5_damaged(io, group, a->name, "holds a value that has no word");
-    }
+    hf_hdf5_check_values(io, group, a, values);
     hf_hdf5_close(io, type);
     hf_hdf5_close(io, data_set);
 }
 
 int hf_hdf5_length(hf_hdf5 *io, hid_t group, const char *name, int max)
 {
-    hid_t data_set = -1, space = -1;
-    hsize_t dims[H5S_MAX_RANK];
+    hid_t space = -1;
+    hsize_t dims[H5S_MAX_RANK] = {0};
     int rank = -1;
     if (io->status != HF_OK) return 0;
-    if ((data_set = H5Dopen2(group, name, H5P_DEFAULT)) < 0 || (space = H5Dget_space(data_set)) < 0 ||
-        (rank = H5Sget_simple_extent_dims(space, dims, NULL)) < 0)
+    hid_t data_set = hf_hdf5_open(io, group, name, H5I_DATASET);
+    if (io->status == HF_OK &&
+        ((space = H5Dget_space(data_set)) < 0 || (rank = H5Sget_simple_extent_dims(space, dims, NULL)) < 0))
         hf_hdf5_fail(io, "read", group, name);
-    else if (rank < 1 || dims[0] < 1 || dims[0] > (hsize_t)max)
+    else if (io->status == HF_OK && (rank < 1 || dims[0] < 1 || dims[0] > (hsize_t)max))
         hf_hdf5_damaged(io, group, name, "is empty or too large");
     hf_hdf5_close(io, space);
     hf_hdf5_close(io, data_set);
@@ -411,13 +407,13 @@ int hf_hdf5_length(hf_hdf5 *io, hid_t group, const char *name, int max)
 
 size_t hf_hdf5_chars_length(hf_hdf5 *io, hid_t group, const char *name)
 {
-    hid_t data_set = -1, stored = -1;
+    hid_t stored = -1;
     size_t length = 0;
     if (io->status != HF_OK) return 0;
-    if ((data_set = H5Dopen2(group, name, H5P_DEFAULT)) < 0 || (stored = H5Dget_type(data_set)) < 0 ||
-        (length = H5Tget_size(stored)) == 0)
+    hid_t data_set = hf_hdf5_open(io, group, name, H5I_DATASET);
+    if (io->status == HF_OK && ((stored = H5Dget_type(data_set)) < 0 || (length = H5Tget_size(stored)) == 0))
         hf_hdf5_fail(io, "read", group, name);
-    else if (!is_of_kind(stored, HF_KIND_CHARS))
+    else if (io->status == HF_OK && !is_of_kind(stored, HF_KIND_CHARS))
         hf_hdf5_damaged(io, group, name, "is of another type");
     hf_hdf5_close(io, stored);
     hf_hdf5_close(io, data_set);
@@ -459,12 +455,24 @@ void hf_hdf5_put_chars(hf_hdf5 *io, hid_t place, const char *name, const char *a
     if (io->status == HF_OK) put_typed(io, place, name, attribute, make_string(length), 0, text);
 }
 
+/* False also when the object itself is not there, and after a failure. */
+static bool has_attribute(hf_hdf5 *io, hid_t place, const char *name, const char *attribute)
+{
+    if (!hf_hdf5_has(io, place, name)) return false;
+    htri_t has = H5Aexists_by_name(place, name, attribute, H5P_DEFAULT);
+    if (has < 0) fail_at(io, "read", place, name, attribute);
+    return has > 0;
+}
+
 void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const hf_hdf5_kind *kind,
                  void *value, size_t size)
 {
     hid_t id = -1, stored = -1, space = -1, type = -1;
     size_t length = 0;
-    if (io->status != HF_OK) return;
+    if (!has_attribute(io, place, name, attribute)) {
+        hf_hdf5_missing(io, place, name, attribute);
+        return;
+    }
     if ((id = H5Aopen_by_name(place, name, attribute, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
         (stored = H5Aget_type(id)) < 0 || (space = H5Aget_space(id)) < 0 || (length = H5Tget_size(stored)) == 0 ||
         (type = make_type(kind, length)) < 0)
@@ -477,7 +485,7 @@ void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribu
         fail_at(io, "read", place, name, attribute);
     else if (kind == HF_KIND_CHARS)
         ((char *)value)[length] = '\0';
-    else if (is_enum(kind) && !are_known(kind, value, 1))
+    else if (is_enum(kind) && !hf_hdf5_are_known(kind, value, 1))
         damaged_at(io, place, name, attribute, "holds a value that has no word");
     hf_hdf5_close(io, type);
     hf_hdf5_close(io, space);
@@ -489,7 +497,7 @@ bool hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *a
 {
     hid_t id = -1, stored = -1;
     bool has = false;
-    if (io->status != HF_OK || H5Aexists_by_name(place, name, attribute, H5P_DEFAULT) <= 0) return false;
+    if (!has_attribute(io, place, name, attribute)) return false;
     if ((id = H5Aopen_by_name(place, name, attribute, H5P_DEFAULT, H5P_DEFAULT)) < 0 || (stored = H5Aget_type(id)) < 0)
         fail_at(io, "read", place, name, attribute);
     else

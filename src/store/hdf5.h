@@ -21,6 +21,7 @@ typedef struct {
     hf_messages *messages;
     hf_status status; /* HF_OK, or of the first failure, which is in the messages */
     hid_t file;
+    char made_by[132]; /* the version of hifdm that made the file; "" = this one, or unknown */
 } hf_hdf5;
 
 /* Kinds of stored values, with the C type of each in arrays and attributes. */
@@ -61,6 +62,8 @@ bool hf_hdf5_try_lock(void); /* false: another thread has it */
 void hf_hdf5_quiet(void);
 hf_status hf_hdf5_unlock(hf_status status);
 
+bool hf_hdf5_are_known(const hf_hdf5_kind *kind, const void *values, hsize_t n); /* has each a word? of HF_HDF5_ENUM */
+
 size_t hf_hdf5_kind_bytes(const hf_hdf5_kind *kind); /* of one value in memory; not for HF_KIND_CHARS */
 
 /* Description of a data set: name, size, kind of its values. */
@@ -80,6 +83,10 @@ void hf_hdf5_fail(hf_hdf5 *io, const char *verb, hid_t place, const char *name);
 /* Record that what is stored is not what this program writes: HF_IO, "path: is damaged: /place/name <what>". */
 void hf_hdf5_damaged(hf_hdf5 *io, hid_t place, const char *name, const char *what);
 
+/* Record that an object, or an attribute of it (may be NULL), is not there: the file is of another version
+ * (io->made_by), or damaged. */
+void hf_hdf5_missing(hf_hdf5 *io, hid_t place, const char *name, const char *attribute);
+
 void hf_hdf5_no_memory(hf_hdf5 *io); /* record HF_NO_MEMORY */
 
 /* ---- Files and groups ---- */
@@ -95,10 +102,20 @@ void hf_hdf5_close(hf_hdf5 *io, hid_t id); /* of any kind, or negative; also aft
 
 hid_t hf_hdf5_make_group(hf_hdf5 *io, const char *path); /* or open it when it is there */
 hid_t hf_hdf5_open_group(hf_hdf5 *io, const char *path);
-bool hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name); /* is there a link of this name? */
 
-/* The same for a path from the root: asks HDF5 for every group of the path in turn. */
-bool hf_hdf5_has_path(hf_hdf5 *io, const char *path);
+/* Is there an object of this name, below `place` or from the root? A link of the path that is no hard one makes the
+ * file a damaged one: HDF5 is never asked to follow it. */
+bool hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name);
+
+/* The one door to stored objects: opens a group (H5I_GROUP) or a data set (H5I_DATASET). What is not there, is another
+ * thing, or is a data set whose values are not all in this file makes the file a damaged one. */
+hid_t hf_hdf5_open(hf_hdf5 *io, hid_t place, const char *name, H5I_type_t wanted);
+
+/* Visits every object below the root in the order of names, group by group: its path from the root, the open object and
+ * its type; -1 and H5I_BADID for a link that is no hard one, which is not followed. The walk ends when io->status is
+ * not HF_OK any more. */
+typedef void hf_hdf5_visit(void *context, const char *path, hid_t object, H5I_type_t type);
+void hf_hdf5_walk(hf_hdf5 *io, hf_hdf5_visit *visit, void *context);
 
 /* ---- Data sets ---- */
 
@@ -125,6 +142,11 @@ hid_t hf_hdf5_array_type(const hf_hdf5_array *array); /* the caller closes it; n
 
 /* Read exactly array->dims values. Other dimensions, other types and unknown values of enumerations are failures. */
 void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, void *values);
+
+/* The two checks of that. The first is made before values are read: with `all` the dimensions must be array->dims, else
+ * rows [row, row + array->dims[0]) of them must be there. The second is about enumerations. */
+void hf_hdf5_check_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, hid_t data_set, hsize_t row, bool all);
+void hf_hdf5_check_values(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, const void *values);
 
 /* First dimension of a data set, from 1 to `max`. 0 after a failure. */
 int hf_hdf5_length(hf_hdf5 *io, hid_t group, const char *name, int max);

@@ -44,10 +44,13 @@ void hf_hdf5_read_rows(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, hsize_t
 {
     hid_t data_set = -1, type = -1, space = -1, memory = -1;
     if (io->status != HF_OK) return;
-    if ((data_set = H5Dopen2(group, a->name, H5P_DEFAULT)) < 0 || (type = hf_hdf5_array_type(a)) < 0 ||
-        select_rows(a, row, data_set, &space, &memory) < 0 ||
-        H5Dread(data_set, type, memory, space, H5P_DEFAULT, values) < 0)
+    data_set = hf_hdf5_open(io, group, a->name, H5I_DATASET);
+    hf_hdf5_check_array(io, group, a, data_set, row, false);
+    if (io->status == HF_OK &&
+        ((type = hf_hdf5_array_type(a)) < 0 || select_rows(a, row, data_set, &space, &memory) < 0 ||
+         H5Dread(data_set, type, memory, space, H5P_DEFAULT, values) < 0))
         hf_hdf5_fail(io, "read", group, a->name);
+    hf_hdf5_check_values(io, group, a, values);
     hf_hdf5_close(io, memory);
     hf_hdf5_close(io, space);
     hf_hdf5_close(io, type);

@@ -366,6 +366,16 @@ static void complete(hf_store *s, const hf_summary *summary, bool finished)
     hf_store_file_close(&s->f);
 }
 
+/* This session may have stopped before the generations of the journal were restored: they would be lost. */
+static hf_status demand_restored(hf_store *s, hf_messages *messages)
+{
+    if (s->n_journal == 0) return HF_OK;
+    return s->f.io.status = hf_error(messages, HF_EXISTS,
+                                     "%s: this machine or build does not come as far as the one that began it; its "
+                                     "generations are kept, --restart (of a sweep: --retry failed) begins anew",
+                                     s->f.out.path);
+}
+
 hf_status hf_store_publish(hf_store *s, const hf_summary *summary, bool at_once, hf_messages *messages)
 {
     if (!s) return HF_OK;
@@ -377,7 +387,7 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, bool at_once,
         s->f.io.status = hf_journal_tend(&s->f.journal, now_s, messages);
         return s->f.io.status;
     }
-    assert(s->n_journal == 0); /* generations in the journal alone would be lost */
+    HF_TRY(demand_restored(s, messages));
     hf_hdf5_lock();
     complete(s, summary, false);
     hf_hdf5_unlock(HF_OK); /* other stores need not wait for the sync of this file */
@@ -399,11 +409,7 @@ hf_status hf_store_complete(hf_store *s, const hf_summary *summary, hf_messages 
     if (s->f.io.status != HF_OK)
         return hf_error(messages, s->f.io.status,
                         "%s: is not written to its end, since an earlier part of it could not be", s->f.out.path);
-    if (s->n_journal > 0) /* this session stopped before the generations of the journal were restored */
-        return s->f.io.status = hf_error(messages, HF_EXISTS,
-                                         "%s: this machine or build does not come as far as the one that began it; its "
-                                         "generations are kept, --restart (of a sweep: --retry failed) begins anew",
-                                         s->f.out.path);
+    HF_TRY(demand_restored(s, messages));
     hf_hdf5_lock();
     complete(s, summary, true);
     hf_generations_free(&s->rows); /* hf_store_settle may come much later */

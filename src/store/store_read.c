@@ -22,6 +22,19 @@ static bool is_ours(const hf_hdf5 *io)
     return !strcmp(program, HF_PROGRAM);
 }
 
+/* Note which version made the file, if not this one. */
+static void note_version(hf_hdf5 *io)
+{
+    char version[64] = "", git[64] = "", both[132];
+    if (!hf_hdf5_has_chars(io, io->file, "/", "version") || !hf_hdf5_has_chars(io, io->file, "/", "git_describe"))
+        return;
+    hf_hdf5_get(io, io->file, "/", "version", HF_KIND_CHARS, version, sizeof version);
+    hf_hdf5_get(io, io->file, "/", "git_describe", HF_KIND_CHARS, git, sizeof git);
+    snprintf(both, sizeof both, "%s (%s)", version, git);
+    if (io->status == HF_OK && strcmp(both, hf_store_version()) != 0)
+        snprintf(io->made_by, sizeof io->made_by, "%s", both);
+}
+
 hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
 {
     hf_hdf5 io = {.path = path, .messages = messages, .status = HF_OK, .file = -1};
@@ -43,6 +56,7 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
     if (io.status == HF_OK && version != HF_FORMAT_VERSION)
         io.status = hf_error(messages, HF_IO, "%s: is of format version %d, this program reads version %d", path,
                              version, HF_FORMAT_VERSION);
+    note_version(&io);
     return io;
 }
 
@@ -73,6 +87,8 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     if (summary->has_optimize) hf_layout_get_summary(&io, HF_LAYOUT_GA, summary);
     get_status(&io, summary);
     hf_layout_get_surface(&io, summary);
+    if (io.status == HF_OK && ((int)summary->solver < 0 || summary->solver > HF_SOLVER_FIXED_POINT))
+        hf_hdf5_damaged(&io, io.file, "/ga", "names a solver that there is not");
     summary->has_truss = hf_hdf5_has(&io, io.file, "/truss");
     if (summary->has_truss) hf_layout_get_summary(&io, HF_LAYOUT_TRUSS, summary);
     hf_hdf5_close_file(&io);

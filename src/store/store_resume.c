@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 
-#include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -34,13 +34,19 @@ static hf_status count_record(void *context, int generation, const void *payload
     return status;
 }
 
+#define INDIVIDUALS_MAX 100000  /* as optimize.population and optimize.generations in the table of keys: the */
+#define GENERATIONS_MAX 1000000 /* limits keep a damaged file from taking all memory */
+
 /* Sizes of the population and limit of generations, read from the file. */
 static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_gene, int *limit)
 {
     hf_hdf5_get(io, io->file, "/ga", "n_individual", HF_KIND_INT, n_individual, sizeof *n_individual);
     hf_hdf5_get(io, io->file, "/ga", "n_variable", HF_KIND_INT, n_gene, sizeof *n_gene);
     hf_hdf5_get(io, io->file, "/ga", "generations_limit", HF_KIND_INT, limit, sizeof *limit);
-    if (io->status == HF_OK && (*n_individual < 1 || *n_gene < 0 || *limit < 1))
+    int n_stored =
+        io->status == HF_OK && *n_gene == 0 ? 0 : hf_hdf5_length(io, io->file, "/ga/gene_group", HF_LAYOUT_COUNT_MAX);
+    if (io->status == HF_OK && (*n_individual < 1 || *n_individual > INDIVIDUALS_MAX || *n_gene != n_stored ||
+                                *limit < 1 || *limit > GENERATIONS_MAX))
         hf_hdf5_damaged(io, io->file, "/ga", "has impossible sizes");
 }
 
@@ -49,7 +55,7 @@ static void note_session(hf_store *s)
     char host[256] = "";
     int n = 1;
     if (gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
-    if (H5Aexists(s->f.io.file, "sessions") > 0)
+    if (s->f.io.status == HF_OK && H5Aexists(s->f.io.file, "sessions") > 0)
         hf_hdf5_get(&s->f.io, s->f.io.file, "/", "sessions", HF_KIND_INT, &n, sizeof n);
     hf_hdf5_put(&s->f.io, s->f.io.file, "/", "sessions", HF_KIND_INT, 0, &(int){n + 1});
     hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "resumed_host", host);
@@ -58,11 +64,24 @@ static void note_session(hf_store *s)
     hf_store_put_time(s, "resumed_utc");
 }
 
+/* What is written later, by name, must go into this file and nowhere else: no links, no data sets with values in other
+ * files. */
+static void demand_plain(void *context, const char *path, hid_t object, H5I_type_t type)
+{
+    hf_hdf5 *io = context;
+    (void)object;
+    if (type == H5I_GROUP || type == H5I_DATASET)
+        hf_hdf5_close(io, hf_hdf5_open(io, io->file, path, type));
+    else
+        hf_hdf5_damaged(io, io->file, path, type == H5I_BADID ? "is a link to another place" : "is no data set");
+}
+
 static void read_state(hf_store *s)
 {
     hf_hdf5 *io = &s->f.io;
     signed char finished = 0;
     int n_individual = 1, n_gene = 0, limit = 1;
+    hf_hdf5_walk(io, demand_plain, io);
     hf_hdf5_get(io, io->file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     hf_hdf5_get(io, io->file, "/", "identity", HF_KIND_CHARS, s->identity, sizeof s->identity);
     if (io->status == HF_OK && finished)
@@ -95,6 +114,13 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     return hf_store_hand_over(s, store);
 }
 
+static void check_base(hf_hdf5 *io, int n_gene, const double *base_N)
+{
+    for (int k = 0; k < n_gene && io->status == HF_OK; k++)
+        if (!(base_N[k] >= 0 && isfinite(base_N[k])))
+            hf_hdf5_damaged(io, io->file, "/ga/base_N", "holds what is no pretension");
+}
+
 hf_status hf_store_restore_base(hf_store *store, int n_gene, double *base_N, hf_messages *messages)
 {
     const hf_hdf5_array base = {.name = "/ga/base_N", .kind = HF_KIND_REAL, .rank = 1, .dims = {(hsize_t)n_gene}};
@@ -102,8 +128,10 @@ hf_status hf_store_restore_base(hf_store *store, int n_gene, double *base_N, hf_
     hf_hdf5_lock();
     store->f.io.messages = messages;
     hf_store_file_open(&store->f);
-    if (hf_hdf5_has(&store->f.io, store->f.io.file, base.name)) /* earlier builds had none */
+    if (hf_hdf5_has(&store->f.io, store->f.io.file, base.name)) { /* earlier builds had none */
         hf_hdf5_read_array(&store->f.io, store->f.io.file, &base, base_N);
+        check_base(&store->f.io, n_gene, base_N);
+    }
     return hf_hdf5_unlock(store->f.io.status);
 }
 
@@ -139,6 +167,11 @@ static hf_status breed_record(void *context, int generation, const void *payload
                         "it, which alone can recover %s; nothing was changed",
                         s->f.out.path, generation + 1, s->f.journal.path);
     }
+    if (!hf_generations_are_sound(&o->population))
+        return hf_error(s->f.io.messages, HF_IO,
+                        "%s: %s is damaged: generation %d is none that a run stores; --restart (of a sweep: --retry "
+                        "failed) begins anew",
+                        s->f.out.path, s->f.journal.path, generation);
     hf_generations_add(g, &o->population, NULL);
     b->n_taken++;
     if (hf_generations_are_full(g)) hf_generations_make_room(&s->f.io, g);
@@ -177,8 +210,10 @@ static hf_status restore(hf_store *store, hf_optimiser *optimiser, int drops, hf
     hf_hdf5_lock();
     io->messages = messages;
     hf_store_file_open(&store->f);
+    if (!hf_generations_are_of(&store->rows, &optimiser->population))
+        hf_hdf5_damaged(io, io->file, "/ga", "has other sizes than the case");
     read_known(io, summary);
-    if (store->rows.n_stored) hf_generations_restore(io, &store->rows, &optimiser->population);
+    if (store->rows.n_stored && io->status == HF_OK) hf_generations_restore(io, &store->rows, &optimiser->population);
     if (store->n_journal) breed_journal(store, optimiser, drops);
     hf_generations_sum_up(io, &store->rows, summary);
     return hf_hdf5_unlock(io->status);
@@ -211,10 +246,12 @@ static void read_genes(hf_hdf5 *io, stored_search *a)
     row.name = "base_N";
     row.kind = HF_KIND_REAL;
     hf_hdf5_read_array(io, group, &row, a->base_N);
+    check_base(io, a->model.n_gene, a->base_N);
     hf_hdf5_close(io, group);
     for (int k = 0; io->status == HF_OK && k < a->model.n_gene; k++) {
         if (!has_leader) a->leader[k] = k;
-        if (a->group[k] < 0 || a->group[k] >= a->model.n_gene || a->leader[k] < 0 || a->leader[k] > k)
+        if (a->group[k] < 0 || a->group[k] >= a->model.n_gene || a->leader[k] < 0 || a->leader[k] > k ||
+            a->leader[a->leader[k]] != a->leader[k])
             hf_hdf5_damaged(io, io->file, "/ga", "has impossible genes");
         a->model.n_leader += a->leader[k] == k;
         if (a->group[k] >= a->model.n_gene_group) a->model.n_gene_group = a->group[k] + 1;

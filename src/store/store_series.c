@@ -8,7 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define FILE_MAX 1024 /* of the file name of a link; longer ones are given as "", and a page shows no link */
+#define NAMES_MAX 1000 /* in a group; a study has fewer axes than there are keys */
+#define FILE_MAX 1024  /* of the file name of a link; longer ones are given as "", and a page shows no link */
 
 /* ---- numbers ---- */
 
@@ -35,12 +36,9 @@ static int measure_series(hf_hdf5 *io, const char *name, hid_t data_set, int col
 
 static void read_series(hf_hdf5 *io, const char *name, int columns, hf_series *series)
 {
-    hid_t data_set = H5Dopen2(io->file, name, H5P_DEFAULT), type = -1;
+    hid_t data_set = hf_hdf5_open(io, io->file, name, H5I_DATASET), type = -1;
     hf_arena arena = {0};
-    if (data_set < 0) {
-        hf_hdf5_fail(io, "read", io->file, name);
-        return;
-    }
+    if (io->status != HF_OK) return;
     int n = measure_series(io, name, data_set, columns, series, &type);
     size_t count = (size_t)n * (size_t)series->columns;
     double *value = NULL;
@@ -62,7 +60,7 @@ hf_status hf_store_read_series(const char *path, const char *name, int columns, 
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *series = (hf_series){0};
-    if (hf_hdf5_has_path(&io, name)) read_series(&io, name, columns, series);
+    if (hf_hdf5_has(&io, io.file, name)) read_series(&io, name, columns, series);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) hf_series_free(series);
     return hf_hdf5_unlock(io.status);
@@ -156,12 +154,9 @@ hf_status hf_store_read_texts(const char *path, const char *name, hf_texts *text
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *texts = (hf_texts){0};
-    if (hf_hdf5_has_path(&io, name)) {
-        hid_t data_set = H5Dopen2(io.file, name, H5P_DEFAULT);
-        if (data_set < 0)
-            hf_hdf5_fail(&io, "read", io.file, name);
-        else
-            read_texts(&io, name, data_set, texts);
+    if (hf_hdf5_has(&io, io.file, name)) {
+        hid_t data_set = hf_hdf5_open(&io, io.file, name, H5I_DATASET);
+        if (io.status == HF_OK) read_texts(&io, name, data_set, texts);
         hf_hdf5_close(&io, data_set);
     }
     return finish(&io, texts);
@@ -177,10 +172,12 @@ static void read_names(hf_hdf5 *io, const char *name, hid_t group, hf_texts *nam
         hf_hdf5_fail(io, "read", io->file, name);
         return;
     }
-    if (info.nlinks == 0 || info.nlinks > HF_LAYOUT_COUNT_MAX) return;
-    for (hsize_t i = 0; i < info.nlinks; i++) {
+    if (info.nlinks == 0) return;
+    if (info.nlinks > NAMES_MAX) hf_hdf5_damaged(io, io->file, name, "holds too many names");
+    for (hsize_t i = 0; i < info.nlinks && io->status == HF_OK; i++) {
         ssize_t used = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, NULL, 0, H5P_DEFAULT);
         if (used < 0) hf_hdf5_fail(io, "read", io->file, name);
+        if (used >= FILE_MAX) hf_hdf5_damaged(io, io->file, name, "holds a name that is too long");
         if (used > 0 && (size_t)used > longest) longest = (size_t)used;
     }
     if (!allocate(io, (int)info.nlinks, longest + 1, names)) return;
@@ -194,7 +191,7 @@ hf_status hf_store_read_names(const char *path, const char *group, hf_texts *nam
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *names = (hf_texts){0};
-    if (hf_hdf5_has_path(&io, group)) {
+    if (hf_hdf5_has(&io, io.file, group)) {
         hid_t id = hf_hdf5_open_group(&io, group);
         if (io.status == HF_OK) read_names(&io, group, id, names);
         hf_hdf5_close(&io, id);
@@ -210,7 +207,7 @@ static void read_link(hf_hdf5 *io, hid_t group, const char *name, char *file)
     char value[2 * FILE_MAX];
     const char *target = NULL, *object = NULL;
     H5L_info_t info;
-    if (!*name || strchr(name, '/') || !hf_hdf5_has(io, group, name)) return;
+    if (!*name || strchr(name, '/') || H5Lexists(group, name, H5P_DEFAULT) <= 0) return;
     if (H5Lget_info(group, name, &info, H5P_DEFAULT) < 0) {
         hf_hdf5_fail(io, "read", group, name);
         return;
@@ -229,7 +226,7 @@ hf_status hf_store_read_links(const char *path, const char *group, const hf_text
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *files = (hf_texts){0};
-    if (names->n > 0 && hf_hdf5_has_path(&io, group) && allocate(&io, names->n, FILE_MAX, files)) {
+    if (names->n > 0 && hf_hdf5_has(&io, io.file, group) && allocate(&io, names->n, FILE_MAX, files)) {
         hid_t id = hf_hdf5_open_group(&io, group);
         for (int i = 0; i < names->n && io.status == HF_OK; i++)
             read_link(&io, id, hf_texts_at(names, i), files->text + (size_t)i * files->length);

@@ -131,6 +131,60 @@ START_TEST(other_designs_are_told_apart)
 }
 END_TEST
 
+/* What Python does to the unfinished file, or to its journal with a right checksum, and what is said then. */
+#define RECORD(deed)                                                                                                   \
+    "import struct, zlib; name = sys.argv[1] + '.journal'; data = bytearray(open(name, 'rb').read())\n"                \
+    "n, = struct.unpack_from('<I', data, 76)\n" deed                                                                   \
+    "\nstruct.pack_into('<I', data, 80, zlib.crc32(data[84:84 + n])); open(name, 'wb').write(data)"
+static const struct {
+    const char *deed, *why;
+} spoilt[] = {
+    {"f['ga'].attrs.modify('n_individual', f['ga'].attrs['n_individual'] + 1); import os; os.remove(f.filename + "
+     "'.journal')",
+     "other sizes than the case"},
+    {"f['ga'].attrs.modify('n_individual', 2**30)", "impossible sizes"},
+    {"f['ga'].attrs.modify('n_variable', 2**30)", "impossible sizes"},
+    {"f['ga'].attrs.modify('generations_limit', -1)", "impossible sizes"},
+    {"f['ga'].attrs.modify('generations_limit', f['ga'].attrs['generations_limit'] + 1)", "other sizes than the case"},
+    {"f['ga/design_N'][1, 0, 0] = np.nan", "a last generation that no run stores"},
+    {"f['ga/design_N'][1, 0, 0] = 1e9", "a last generation that no run stores"},
+    {"f['ga/psi_m'][1, 0] = np.inf", "a last generation that no run stores"},
+    {"f['ga/parent'][1, 0, 0] = 10**6", "a last generation that no run stores"},
+    {"f['ga/status'][1, 0] = 99", "/ga/status holds a value that has no word"},
+    {"f['ga/base_N'][0] = np.inf", "/ga/base_N holds what is no pretension"},
+    {"f['ga/mutation_rate'].resize(1, 0)", "/ga/mutation_rate has other dimensions"},
+    {"del f['ga/psi_m']; f['ga/psi_m'] = np.zeros((2, 3), int)", "/ga/psi_m "},
+    {"f.move('ga/psi_m', 'x'); f['ga/psi_m'] = h5py.SoftLink('/x')", "/ga/psi_m is a link to another place"},
+    {"f['ga/more'] = h5py.ExternalLink('/etc/passwd', '/')", "/ga/more is a link to another place"},
+    {"f['all'] = f['/']", "one object too many, or too deep"},
+    {RECORD("data[88 + 8] = 77"), "generation 2 is none that a run stores"}, /* `evaluated` of the first individual */
+    {RECORD("data[84:84 + n] = struct.pack('<i', 2) + bytes(20); n = 24; struct.pack_into('<I', data, 76, n)"),
+     "does not fit to"},
+    {RECORD("struct.pack_into('<i', data, 84, 2**31 - 1)"), "does not fit to"},
+};
+
+START_TEST(a_damaged_file_is_refused)
+{
+    const char *path;
+    struct run r;
+    hf_messages messages = {0};
+    hf_store *s = NULL;
+    hf_summary summary = {0};
+    new_folder(&path);
+    leave_unfinished(path);
+    python("a", path, spoilt[_i].deed);
+    open_run(&r);
+    hf_status status = hf_store_resume(path, &s, &messages);
+    if (status == HF_OK) status = hf_store_restore_base(s, N_GENE, r.base_N, &messages);
+    if (status == HF_OK) status = hf_store_restore(s, &r.ga, &summary, &messages);
+    ck_assert_int_eq(status, HF_IO);
+    ck_assert_msg(strstr(messages.text, path) && strstr(messages.text, spoilt[_i].why), "%s", messages.text);
+    if (s) hf_store_end(s);
+    hf_messages_free(&messages);
+    close_run(&r);
+}
+END_TEST
+
 Suite *suite_unit_store_resume(void)
 {
     Suite *suite = suite_create("unit/store_resume");
@@ -139,6 +193,7 @@ Suite *suite_unit_store_resume(void)
     tcase_add_checked_fixture(tests, quiet, NULL);
     tcase_add_test(tests, designs_are_bred_again);
     tcase_add_test(tests, other_designs_are_told_apart);
+    tcase_add_loop_test(tests, a_damaged_file_is_refused, 0, (int)(sizeof spoilt / sizeof spoilt[0]));
     tcase_add_test(tests, results_of_other_designs_are_left_out);
     return suite;
 }

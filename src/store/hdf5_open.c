@@ -1,0 +1,96 @@
+/* The door to what a file holds: links and objects are looked at before HDF5 follows or reads them.
+ * Contents: links - data sets - objects */
+#include "store/hdf5.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- links ---- */
+
+/* A link of another kind than a hard one may lead into another file, to a pipe that nobody writes into, or round in a
+ * circle. Only merges have such links, to the results of their points, which store_series reads and never follows. */
+static bool is_hard(hf_hdf5 *io, hid_t place, const char *name)
+{
+    H5L_info_t info;
+    if (H5Lget_info(place, name, &info, H5P_DEFAULT) < 0)
+        hf_hdf5_fail(io, "read", place, name);
+    else if (info.type != H5L_TYPE_HARD)
+        hf_hdf5_damaged(io, place, name, "is a link to another place");
+    return io->status == HF_OK;
+}
+
+bool hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name)
+{
+    char part[1024];
+    if (io->status != HF_OK) return false;
+    if (!strcmp(name, ".") || !strcmp(name, "/")) return true;
+    for (const char *end = name; *end;) {
+        end += *end == '/';
+        end += strcspn(end, "/");
+        if ((size_t)(end - name) >= sizeof part) return false;
+        snprintf(part, sizeof part, "%.*s", (int)(end - name), name);
+        htri_t has = H5Lexists(place, part, H5P_DEFAULT);
+        if (has < 0) hf_hdf5_fail(io, "read", place, part);
+        if (has <= 0 || !is_hard(io, place, part)) return false;
+    }
+    return true;
+}
+
+/* ---- data sets ---- */
+
+#define DEFLATE_MAX 1100 /* zlib packs at most 1032 bytes into one; the other filters of HDF5 pack less */
+
+/* Bytes of all values; SIZE_MAX for more than that. */
+static size_t size_of_values(hid_t space, hid_t type)
+{
+    hsize_t dims[H5S_MAX_RANK];
+    int rank = H5Sget_simple_extent_dims(space, dims, NULL);
+    size_t bytes = H5Tget_size(type);
+    if (H5Sget_simple_extent_type(space) == H5S_NULL) return 0;
+    for (int i = 0; i < rank; i++)
+        if (dims[i] == 0) return 0;
+    for (int i = 0; i < rank; i++)
+        bytes = dims[i] > SIZE_MAX / bytes ? SIZE_MAX : bytes * (size_t)dims[i];
+    return bytes;
+}
+
+/* The values must be in this file, and as many of them as the dimensions say: HDF5 fills in what was never written, for
+ * days if the dimensions are large. */
+static void check_storage(hf_hdf5 *io, hid_t place, const char *name, hid_t data_set)
+{
+    hid_t space = H5Dget_space(data_set), type = H5Dget_type(data_set), how = H5Dget_create_plist(data_set);
+    H5D_layout_t layout = how >= 0 ? H5Pget_layout(how) : H5D_LAYOUT_ERROR;
+    if (space < 0 || type < 0 || layout == H5D_LAYOUT_ERROR || H5Tget_size(type) == 0) {
+        hf_hdf5_fail(io, "read", place, name);
+    } else if (layout == H5D_VIRTUAL || H5Pget_external_count(how) != 0) {
+        hf_hdf5_damaged(io, place, name, "has its values in another file");
+    } else {
+        size_t bytes = size_of_values(space, type), pack = H5Pget_nfilters(how) > 0 ? DEFLATE_MAX : 1;
+        if (bytes > 0 && bytes / pack > H5Dget_storage_size(data_set))
+            hf_hdf5_damaged(io, place, name, "has larger dimensions than there are values");
+    }
+    hf_hdf5_close(io, how);
+    hf_hdf5_close(io, type);
+    hf_hdf5_close(io, space);
+}
+
+/* ---- objects ---- */
+
+hid_t hf_hdf5_open(hf_hdf5 *io, hid_t place, const char *name, H5I_type_t wanted)
+{
+    if (!hf_hdf5_has(io, place, name)) {
+        hf_hdf5_missing(io, place, name, NULL);
+        return -1;
+    }
+    hid_t id = H5Oopen(place, name, H5P_DEFAULT);
+    if (id < 0)
+        hf_hdf5_fail(io, "read", place, name);
+    else if (H5Iget_type(id) != wanted)
+        hf_hdf5_damaged(io, place, name, wanted == H5I_GROUP ? "is no group" : "is no data set");
+    else if (wanted == H5I_DATASET)
+        check_storage(io, place, name, id);
+    if (io->status == HF_OK) return id;
+    hf_hdf5_close(io, id);
+    return -1;
+}
