@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Tests the job array with a real Slurm on this machine: an array is submitted, one task is killed with -9 and
 # requeued, one is preempted, one is cancelled, and in the end the merge equals that of the same sweep run at once, data
-# set by data set. Then the same with GNU parallel. Needs root, slurm-wlm, munge and parallel (tools/setup.sh --ci).
+# set by data set. Then the same with GNU parallel, and both with names that a shell would run. Needs root, slurm-wlm,
+# munge and parallel (tools/setup.sh --ci).
 set -eu
 cd "$(dirname "$0")/../.."
 hifdm=$(realpath "${HIFDM:-build/hifdm}") source=$PWD python=${PYTHON:-/usr/bin/python3}
@@ -130,3 +131,48 @@ wait $twin && fail "GNU parallel did not notice that a task was killed"
     fail "GNU parallel did not finish the second time"
 equals_local twin || fail "GNU parallel's results differ from the local sweep's"
 echo "GNU parallel: one task killed, --resume-failed, equal to the local sweep"
+
+# ---- Names: of studies, folders and the program, that a shell or GNU parallel would run or take apart ----------------
+names=('blanks  in it' 'semi;touch PWNED;colon' '$(touch PWNED)' '`touch PWNED`' "it's" 'say "it"' 'back\slash\\' \
+    '-dash' '--dir' $'two\nlines' '{} {#} {1}' '{= system("touch PWNED"); =}' '&touch PWNED&' '|touch PWNED' \
+    '*' '~' 'a=b' ':::')
+export JOBS=1 THREADS=1 SBATCH_TIMELIMIT=10
+unset SLURM_ARRAY_TASK_ID
+
+# make_names FOLDER NAME: a study of two points and a program of this name, in a folder of this name
+make_names() {
+    mkdir -p "$1" && cd "$1"
+    printf 'scene: {parabolic_cylinder: {aperture_m: 2, length_m: 3, focal_length_m: 2, modules: [2, 3], %s}}\n' \
+        'cells_per_module: [2, 2], scallop: 0.1' >base.yaml
+    printf 'base: base.yaml\nsweep: {form.pretension_N: [8, 12]}\n' >"./$2.yaml"
+    ln -sf "$hifdm" "./$2"
+}
+# demand_names HOW NAME: both points are done in the folder that was asked for, and nothing else was run
+demand_names() {
+    "$hifdm" status "./$2.yaml" --dir "./$2.out" --json | grep -q '"done": 2' ||
+        fail "$1: the points of a study named $(printf %q "$2") are not done"
+    [ -z "$(find "$work" -name 'PWNED*')" ] || fail "$1: the name $(printf %q "$2") was run"
+}
+for i in "${!names[@]}"; do
+    name=${names[i]}
+    make_names "$work/twin.$i/$name" "$name"
+    HIFDM="$PWD/$name" "$source/tools/slurm/sweep-parallel.sh" 2 "$name.yaml" --dir "./$name.out" --quiet \
+        >twin.log 2>&1 || fail "GNU parallel, name $(printf %q "$name"): $(cat twin.log)"
+    demand_names "GNU parallel" "$name"
+done
+jobs=()
+for i in "${!names[@]}"; do
+    name=${names[i]}
+    make_names "$work/array.$i/$name" "$name"
+    program=$PWD/$name
+    cd "$work/array.$i" # Slurm itself cannot write the log of a job whose folder has a backslash in its name
+    jobs+=("$(HIFDM=$program sbatch --parsable --array=0-1 --cpus-per-task=1 "$source/tools/slurm/sweep.sbatch" \
+        "$name/$name.yaml" --dir "./$name/$name.out")")
+done
+for i in "${!names[@]}"; do
+    within 120 is_gone "${jobs[i]}"
+    cd "$work/array.$i/${names[i]}"
+    demand_names Slurm "${names[i]}"
+done
+cd "$work"
+echo "names: ${#names[@]} with GNU parallel and with Slurm, none was run"

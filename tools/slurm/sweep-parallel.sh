@@ -8,7 +8,16 @@
 # Several machines: PARALLEL='--sshloginfile nodes.txt --workdir .' in the environment.
 set -eu
 [ $# -ge 2 ] || { echo "usage: sweep-parallel.sh TASKS STUDY [options]" >&2; exit 2; }
-tasks=$1 study=$2
+tasks=$1 study=$2 program=${HIFDM:-hifdm} joblog=${2##*/}
 shift 2
-seq 0 $((tasks - 1)) | parallel --jobs "${JOBS:-1}" --joblog "$(basename "${study%.*}").joblog" --resume-failed \
-    "${HIFDM:-hifdm}" sweep "$study" --task {} --tasks "$tasks" ${THREADS:+--threads "$THREADS"} "$@"
+joblog=./${joblog%.*}.joblog
+case $program in -*) program=./$program ;; esac
+case $study in -*) study=./$study ;; esac
+
+# GNU parallel starts a shell. It quotes what it puts in the place of {}, but neither the command around it nor a word
+# at its beginning, and looks for {} and {= perl =} in that command; so all words of a task come as values, behind exec.
+words=("$program" sweep "$study" --tasks "$tasks" ${THREADS:+--threads "$THREADS"} "$@" --task)
+for ((task = 0; task < tasks; task++)); do
+    printf '%s\0' "${words[@]}" "$task"
+done | parallel --jobs "${JOBS:-1}" --joblog "$joblog" --resume-failed --null \
+    --max-replace-args $((${#words[@]} + 1)) exec '{}'
