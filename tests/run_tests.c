@@ -142,10 +142,12 @@ int main(int argc, char **argv)
         n_run += all[i].n_run;
         n_failed += all[i].n_failed;
     }
+    int n_skipped = tell_skipped();
     end_test_run();
 
     if (n_failed > 0) printf("random numbers of this run: HIFDM_TEST_SEED=%" PRIu64 "\n", test_seed());
     if (n_run == 0) printf("no test ran\n");
-    printf("%d passed, %d failed\n", n_run - n_failed, n_failed);
+    printf("%d passed, %d failed, ", n_run - n_failed, n_failed);
+    printf(n_skipped ? "%d skipped: see above\n" : "nothing skipped\n", n_skipped);
     return n_run > 0 && n_failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

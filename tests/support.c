@@ -1,4 +1,4 @@
-/* Contents: temporary directories, files, programs, failing allocations, random numbers. */
+/* Contents: temporary directories, skipped checks, files, programs, failing allocations, random numbers. */
 #include "support.h"
 
 #include "base/clock.h"
@@ -51,6 +51,49 @@ void end_test_run(void)
         printf("kept: %s\n", run_directory);
     else
         nftw(run_directory, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+}
+
+/* ---- What this machine lacks ----
+ * Tests are processes of their own, so they leave their lines in a file of the run. A test that is repeated leaves the
+ * same line again. */
+#define SKIPPED_MAX 256 /* different lines */
+
+void skip_for_machine(const char *check, const char *reason)
+{
+    char path[PATH_MAX + 16];
+    snprintf(path, sizeof path, "%s/skipped", run_directory);
+    FILE *file = fopen(path, "a");
+    if (!file) ck_abort_msg("%s: %s", path, strerror(errno));
+    fprintf(file, "%s: %s\n", check, reason);
+    fclose(file);
+}
+
+void skip_for_tool(const char *check, const char *reason)
+{
+    const char *no_skip = getenv("HIFDM_NO_SKIP");
+    if (no_skip && !strcmp(no_skip, "1")) ck_abort_msg("%s: %s, and HIFDM_NO_SKIP=1", check, reason);
+    skip_for_machine(check, reason);
+}
+
+int tell_skipped(void)
+{
+    char path[PATH_MAX + 16], line[SKIPPED_MAX][200];
+    const char *all = getenv("HIFDM_SKIPPED");
+    int n = 0;
+    snprintf(path, sizeof path, "%s/skipped", run_directory);
+    FILE *file = fopen(path, "r"), *list = all && *all ? fopen(all, "a") : NULL;
+    while (file && n < SKIPPED_MAX && fgets(line[n], sizeof line[n], file)) {
+        int k = 0;
+        while (strcmp(line[k], line[n]) != 0)
+            k++;
+        if (k < n) continue;
+        printf("skipped: %s", line[n]);
+        if (list) fputs(line[n], list);
+        n++;
+    }
+    if (file) fclose(file);
+    if (list) fclose(list);
+    return n;
 }
 
 /* ---- Files ---- */

@@ -52,6 +52,13 @@ void free_command(struct command *command);
 /* run_hifdm("check", case_file) */
 #define run_hifdm(...) run_command(HANG_S, (const char *const[]){hifdm_program(), __VA_ARGS__, NULL})
 
+/* ---- What this machine lacks ----
+ * A check that cannot be done here is skipped by one of these, never by a bare return: the runner names it at its end,
+ * and adds the line to the file HIFDM_SKIPPED, from which .ci/run makes its closing summary. */
+void skip_for_machine(const char *check,
+                      const char *reason);                 /* its processor, its user: nothing can be done about it */
+void skip_for_tool(const char *check, const char *reason); /* what can be installed: with HIFDM_NO_SKIP=1 it fails */
+
 /* ---- Failing allocations ----
  * The linker leads malloc, calloc, realloc, aligned_alloc, strdup and strndup of the library AND of the tests through
  * here; those inside shared libraries (HDF5, libyaml, GSL, OpenMP) are out of reach. check's assertions allocate too:
@@ -84,5 +91,6 @@ int rng_int(struct rng *rng, int low, int high);              /* in low..high, b
 /* ---- For run_tests.c ---- */
 void begin_test_run(void);
 void end_test_run(void);
+int tell_skipped(void); /* how many, before end_test_run; prints a line for each */
 
 #endif

@@ -210,7 +210,11 @@ else
     skipped="$skipped clang-format"
 fi
 
-[ -z "$skipped" ] || echo "not installed, so not run:$skipped"
+for program in $skipped; do
+    echo "skipped: lint: no $program"
+    [ -z "${HIFDM_SKIPPED:-}" ] || echo "lint: no $program" >>"$HIFDM_SKIPPED"
+    [ "${HIFDM_NO_SKIP:-}" != 1 ] || echo "tools/setup.sh:1: $program is missing, and HIFDM_NO_SKIP=1" | report
+done
 n_finding=$(cat "$findings" 2>/dev/null | wc -l)
 echo "lint: $n_finding findings in $(echo "$text_files" | wc -l) files"
 [ "$n_finding" = 0 ]

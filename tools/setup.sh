@@ -75,7 +75,9 @@ missing_packages() {
         has sbatch && has slurmctld && has slurmd || need slurm-wlm
         has munged || need munge
         has parallel || need parallel
-        has man || has mandoc || need mandoc
+        { has man && has groff; } || has mandoc || need mandoc
+        has localedef || need libc-bin
+        has g++ || need g++
         has_module matplotlib || need python3-matplotlib
     fi
     echo $list

@@ -3,7 +3,7 @@
 //   sections: those it must have, in order, apart from those that are there maybe
 //   title: what must stand on it, to the letter
 //   warnings, slack: how many it must tell of
-//   study: how many points; needs: the command without which this page cannot be made yet
+//   study: how many points
 
 const FORM = ["net", "map", "form-finding", "tensions", "summary", "provenance"];
 const GA = ["net", "map", "form-finding", "tensions", "ga", "summary", "provenance"];
@@ -56,7 +56,6 @@ export const pages = [
   { name: "truss", source: "configs/chen2022-truss.yaml", sections: FORM, maybe: ["coupling", "ga"], truss: true },
   {
     name: "sweep",
-    needs: "sweep",
     study: 64,
     text:
       "base: base.yaml\nsweep:\n  form.pretension_N: {from: 5, to: 40, n: 16, spacing: log}\n" +

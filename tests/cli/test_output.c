@@ -77,7 +77,10 @@ END_TEST
 /* Root may write anywhere, so this can only be seen as somebody else. */
 START_TEST(read_only_folder_is_told)
 {
-    if (geteuid() == 0) return;
+    if (geteuid() == 0) {
+        skip_for_machine("cli/output: a folder that is read-only", "root may write there");
+        return;
+    }
     SHELL(0, "mkdir -m 555 \"$1\"", temp("locked"));
     REFUSED(temp("locked/r.h5"), "cannot write into the folder %s: Permission denied", temp("locked"));
 }

@@ -56,7 +56,10 @@ START_TEST(a_decimal_comma_changes_nothing)
     *strrchr(folder, '/') = '\0';
     setenv("LOCPATH", folder, 1);
     free(folder);
-    if (!setlocale(LC_ALL, "comma")) return;
+    if (!setlocale(LC_ALL, "comma")) {
+        skip_for_tool("unit/text: a decimal comma", "no localedef");
+        return;
+    }
     double value = 0, other = 0, system = strtod("2.385", NULL);
     int point = hf_text_double("2.385", &value), comma = hf_text_double("2,385", &other);
     setlocale(LC_ALL, "C");

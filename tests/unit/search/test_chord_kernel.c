@@ -26,7 +26,9 @@ static const struct {
 static int has_isa(int i)
 {
     int has = i == PORTABLE || (i == AVX2 ? __builtin_cpu_supports("avx2") : __builtin_cpu_supports("avx512f"));
-    if (!has) printf("unit/chord_kernel: this machine has no %s, skipped\n", isa[i].name);
+    char reason[64];
+    snprintf(reason, sizeof reason, "no %s in this processor", isa[i].name);
+    if (!has) skip_for_machine("unit/chord_kernel", reason);
     return has;
 }
 

@@ -222,7 +222,9 @@ static const hf_lane_isa isas[HF_LANE_N_ISA] = {HF_LANE_PORTABLE, HF_LANE_AVX2, 
 static int machine_has(hf_lane_isa isa)
 {
     if (hf_lane_has_isa(isa)) return 1;
-    printf("SKIPPED: this machine has no %s\n", hf_lane_isa_name(isa));
+    char reason[64];
+    snprintf(reason, sizeof reason, "no %s in this processor", hf_lane_isa_name(isa));
+    skip_for_machine("unit/swarm_lane", reason);
     return 0;
 }
 
