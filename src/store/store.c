@@ -124,7 +124,7 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
     if (!s) return status;
     hf_hdf5_lock();
     double begin_s = hf_clock_s();
-    if (!restart && lstat(path, &info) == 0)
+    if (!restart && lstat(s->f.out.path, &info) == 0)
         s->f.io.status = hf_error(
             messages, HF_EXISTS,
             "%s: exists; use --restart (of a sweep: --retry failed) to replace it or -o to choose another name", path);

@@ -51,6 +51,10 @@ START_TEST(sweep_status_and_merge)
            "[n for n in contents(a) if n.endswith('_s') or 'threads' in n] == []");
     SHELL(0, "h5dump -d /points/form/psi_m \"$1\" && h5ls -r \"$1\"", merged);
     OUT("External Link");
+    SHELL(0, "cp \"$1\" \"$1.old\"", merged); /* a misspelt folder does not empty the table */
+    HIFDM(5, "merge", path, "--dir", temp("sd"), "-o", merged, "--force");
+    ERRS("error: %s: there is no such folder, so nothing to merge;", temp("sd"));
+    SHELL(0, "cmp \"$1\" \"$1.old\"", merged);
     HIFDM(0, "sweep", path, "--dir", folder);
     OUT("0 points run");
 }
@@ -304,6 +308,7 @@ END_TEST
 START_TEST(merge_replaces_only_merges)
 {
     const char *path = study(), *precious = file_with("precious.h5", "not a merge\n");
+    SHELL(0, "mkdir \"$1\"", temp("s.d"));
     HIFDM(5, "merge", path, "--dir", temp("s.d"), "-o", precious);
     ERR("exists and is no merge");
     ck_assert(file_is(precious, "not a merge\n"));

@@ -21,8 +21,21 @@
 static const char *failing; /* name of the call, NULL: none */
 static long countdown;      /* the call that fails, 1 = the next */
 
+/* The calls by which files are made, changed, named and removed. */
+static bool is_change(const char *name)
+{
+    static const char *const change[] = {"open",   "write", "writev", "pwrite",    "fsync", "fdatasync",
+                                         "rename", "link",  "unlink", "ftruncate", "flock", "H5Fcreate"};
+    for (size_t i = 0; i < sizeof change / sizeof *change; i++)
+        if (!strcmp(name, change[i])) return true;
+    return false;
+}
+
+static bool dies; /* instead: end this process at once before the next call by which a file changes */
+
 static int fails(const char *name)
 {
+    if (dies && is_change(name) && --countdown == 0) _exit(9);
     if (!failing || strcmp(name, failing) != 0 || --countdown != 0) return 0;
     errno = EIO;
     return 1;
@@ -225,6 +238,56 @@ START_TEST(a_resumed_run_survives_each_failing_call)
 }
 END_TEST
 
+/* A run that ends before its n-th change of a file, in a process of its own. False when it makes fewer. */
+static bool die_at(const char *path, long n)
+{
+    pid_t child = fork();
+    if (child == 0) {
+        struct run r;
+        hf_messages messages = {0};
+        int acknowledged = 0;
+        open_run(&r);
+        dies = true;
+        countdown = n;
+        hf_status status = run_it(path, &r, &acknowledged, &messages);
+        _exit(status == HF_OK ? 0 : 1);
+    }
+    int state;
+    ck_assert_int_eq(waitpid(child, &state, 0), child);
+    ck_assert(WEXITSTATUS(state) == 9 || WEXITSTATUS(state) == 0);
+    return WEXITSTATUS(state) == 9;
+}
+
+/* The table in store/store_file.h, one instant after the other, and each of the first ones once more in the run that
+ * goes on: the next run comes to the same result, and nothing else is left. */
+START_TEST(a_run_killed_before_each_change_leaves_nothing)
+{
+    struct run r;
+    hf_messages messages = {0};
+    int n = 0;
+    long n_death = 0;
+    const char *whole;
+    new_folder(&whole);
+    whole = strdup(whole);
+    open_run(&r);
+    ck_assert_int_eq(run_it(whole, &r, &n, &messages), HF_OK);
+    close_run(&r);
+    for (bool dying = true; dying; n_death++) {
+        const char *path, *folder = new_folder(&path);
+        dying = die_at(path, n_death + 1);
+        die_at(path, n_death / 2 + 1);
+        open_run(&r);
+        ck_assert_msg(run_it(path, &r, &n, &messages) == HF_OK, "%ld: %s", n_death, messages.text);
+        close_run(&r);
+        demand_whole(path, whole);
+        ck_assert_msg(count_files(folder) == 1, "%d files after death %ld", count_files(folder), n_death + 1);
+        hf_messages_free(&messages);
+    }
+    ck_assert_int_gt(n_death, 40);
+    free((char *)whole);
+}
+END_TEST
+
 /* ---- files of exporters ---- */
 
 static void put_text(const void *context, FILE *file)
@@ -262,6 +325,7 @@ Suite *suite_fault_store_calls(void)
     tcase_add_checked_fixture(tests, quiet, NULL);
     tcase_add_loop_test(tests, a_new_run_survives_each_failing_call, 0, N(calls));
     tcase_add_loop_test(tests, a_resumed_run_survives_each_failing_call, 0, N(calls));
+    tcase_add_test(tests, a_run_killed_before_each_change_leaves_nothing);
     tcase_add_loop_test(tests, an_exported_file_survives_each_failing_call, 0, 4);
     return suite;
 }
