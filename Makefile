@@ -114,7 +114,8 @@ quote = '$(subst ','\'',$(1))'
 stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
-FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check literal bench api lint \
+FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check literal \
+         fuzz-results bench api lint \
          asan tsan install
 .PHONY: $(FRONT) setup clean help FORCE
 .DEFAULT_GOAL := all
@@ -146,6 +147,14 @@ test: ## set up, build and run the tests; SUITE="unit verify/band" picks some
 	    HIFDM_PREFIX=$(abspath $(BUILD))/prefix HIFDM_CC=$(call quote,$(CC) $(SANITIZER)) \
 	    TMPDIR=$(abspath $(BUILD))/tmp HIFDM_TEST_JOBS=$${HIFDM_TEST_JOBS:-$$(nproc)} \
 	    CK_DEFAULT_TIMEOUT=$${CK_DEFAULT_TIMEOUT:-300} $(RUNNER) $(SUITE)
+
+# FUZZ_SEED=... does the same again; `python3 tests/fuzz/fuzz_results.py --only N` one of them.
+FUZZ_N ?= 5000
+FUZZ_SEED ?= $(shell date +%s)
+fuzz-results: ## FUZZ_N damaged result files against every command that reads one, with sanitizers
+	$(Q)tools/setup.sh --test
+	$(SUB) BUILD=build/asan SANITIZE=address,undefined CFLAGS='-O1 -g' WERROR= build/asan/hifdm
+	$(PYTHON) tests/fuzz/fuzz_results.py --program build/asan/hifdm --n $(FUZZ_N) --seed $(FUZZ_SEED)
 
 # Twenty times as many nets as `make test` tries, ten times as many kills.
 stress: ## the numerical-stability suite and the killed runs at full length

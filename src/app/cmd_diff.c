@@ -28,5 +28,6 @@ const hf_command hf_cmd_diff = {
              "interruptions. Exit status 1 and the first differences when the files differ.",
     .examples = "hifdm diff monday.h5 tuesday.h5\n"
                 "hifdm diff mine.h5 yours.h5 --rtol 1e-9",
+    .reads_results = true,
     .run = command_diff,
 };

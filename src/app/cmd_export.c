@@ -59,5 +59,6 @@ const hf_command hf_cmd_export = {
     .examples = "hifdm export chen2022.h5 --csv best\n"
                 "hifdm export chen2022.h5 --csv found --stage form\n"
                 "hifdm export chen2022.h5 --vtk shapes --cutlist cut.csv",
+    .reads_results = true,
     .run = command_export,
 };

@@ -34,5 +34,6 @@ const hf_command hf_cmd_merge = {
     .about = "At any time after the sweep began; points that are not there yet have the status not_evaluated.",
     .examples = "hifdm merge study.yaml -o study.h5\n"
                 "hifdm report study.h5",
+    .reads_results = true,
     .run = command_merge,
 };

@@ -18,5 +18,6 @@ const hf_command hf_cmd_recover = {
     .help = "add the generations of FILE.journal to an unfinished result; `run` does that by itself",
     .about = "For a result whose run was killed: as far as it came, without running on.",
     .examples = "hifdm recover night.h5",
+    .reads_results = true,
     .run = command_recover,
 };

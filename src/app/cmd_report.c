@@ -20,5 +20,6 @@ const hf_command hf_cmd_report = {
     .help = "write a result as one HTML page to look at: net, histories, tensions, summary",
     .about = "The page is one file for any browser; it needs no network.",
     .examples = "hifdm report chen2022.h5 -o chen2022.html",
+    .reads_results = true,
     .run = command_report,
 };

@@ -26,5 +26,6 @@ const hf_command hf_cmd_show = {
     .about = "The same lines that hifdm run printed when it was done, warnings last.",
     .examples = "hifdm show chen2022.h5\n"
                 "hifdm show chen2022.h5 --json",
+    .reads_results = true,
     .run = command_show,
 };

@@ -1,6 +1,7 @@
 /* main - reads the command line, runs the command, and returns the exit status. The file cmd_NAME.c holds the command
  * NAME. */
 #include "app/options.h"
+#include "app/reader.h"
 
 #include "linalg/band.h"
 #include <hifdm/batch.h>
@@ -46,12 +47,24 @@ static hf_status check_room(const hf_options *o, hf_messages *messages)
                     HF_BAND_ROOM_MB, n_thread);
 }
 
+static void print_messages(hf_messages *messages)
+{
+    if (messages->text) fputs(messages->text, stderr);
+    hf_messages_free(messages);
+}
+
 int main(int argc, char **argv)
 {
     hf_options options;
     hf_messages messages = {0};
     hf_status status = hf_options_parse(argc, argv, &options, &messages);
     bool uses_threads = status == HF_OK && options.command->uses_threads;
+    int exit_status;
+    if (status == HF_OK && options.command->reads_results && hf_reader_watch(&options, &exit_status, &messages)) {
+        print_messages(&messages);
+        hf_options_free(&options);
+        return exit_status;
+    }
     if (uses_threads) wait_quietly(argv); /* may start the program anew, so before the libraries are set up */
     signal(SIGXFSZ, SIG_IGN);             /* writing beyond the limit on file size then fails with an error */
     gsl_set_error_handler_off();
@@ -60,8 +73,7 @@ int main(int argc, char **argv)
     if (uses_threads) status = check_room(&options, &messages);
     if (status == HF_OK) status = options.command->run(&options, stdout, &messages);
     hf_options_free(&options);
-    if (messages.text) fputs(messages.text, stderr);
-    hf_messages_free(&messages);
+    print_messages(&messages);
     if ((fflush(stdout) != 0 || ferror(stdout)) && status == HF_OK) {
         fputs("error: cannot write to standard output\n", stderr);
         status = HF_IO;

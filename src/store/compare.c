@@ -117,6 +117,7 @@ static hid_t read_rows(hf_hdf5 *io, const char *name, side *s, hsize_t row, hsiz
 {
     hsize_t start[H5S_MAX_RANK] = {row}, count[H5S_MAX_RANK];
     hid_t memory = -1;
+    hf_hdf5_note(io);
     memcpy(count, s->dims, sizeof count);
     if (s->rank > 0) count[0] = n_row;
     if (io->status != HF_OK) return -1;

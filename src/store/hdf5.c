@@ -258,6 +258,7 @@ void hf_hdf5_create_file(hf_hdf5 *io, const hf_file_out *file)
 
 static void open_file(hf_hdf5 *io, const char *name, unsigned how, bool locks)
 {
+    hf_hdf5_note(io);
     hid_t access = make_access(locks);
     io->file = access < 0 ? -1 : H5Fopen(name, how, access);
     if (io->file < 0) hf_hdf5_fail(io, "open", -1, NULL);

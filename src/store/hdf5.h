@@ -66,6 +66,12 @@ bool hf_hdf5_are_known(const hf_hdf5_kind *kind, const void *values, hsize_t n);
 
 size_t hf_hdf5_kind_bytes(const hf_hdf5_kind *kind); /* of one value in memory; not for HF_KIND_CHARS */
 
+/* Where the path of the file that is being read is noted, for whoever has to tell after a crash: HF_HDF5_READING_SIZE
+ * bytes, or NULL. */
+#define HF_HDF5_READING_SIZE 4096
+extern char *hf_hdf5_reading;
+void hf_hdf5_note(const hf_hdf5 *io);
+
 /* Description of a data set: name, size, kind of its values. */
 typedef struct {
     const char *name; /* below the group it is given with, perhaps with '/' */

@@ -77,8 +77,16 @@ static void check_storage(hf_hdf5 *io, hid_t place, const char *name, hid_t data
 
 /* ---- objects ---- */
 
+char *hf_hdf5_reading;
+
+void hf_hdf5_note(const hf_hdf5 *io)
+{
+    if (hf_hdf5_reading) snprintf(hf_hdf5_reading, HF_HDF5_READING_SIZE, "%s", io->path);
+}
+
 hid_t hf_hdf5_open(hf_hdf5 *io, hid_t place, const char *name, H5I_type_t wanted)
 {
+    hf_hdf5_note(io);
     if (!hf_hdf5_has(io, place, name)) {
         hf_hdf5_missing(io, place, name, NULL);
         return -1;

@@ -2,8 +2,10 @@
  * Contents: identity - look */
 #include "store/store_read.h"
 
+#include "base/child.h"
 #include "base/file_out.h"
 #include "base/sha256.h"
+#include "store/compare.h"
 #include "store/journal.h"
 
 #include <stdio.h>
@@ -97,6 +99,44 @@ static void remove_journal(const char *path)
     hf_messages_free(&unwanted);
 }
 
+static void ignore_difference(void *context, const char *name, const char *how)
+{
+    (void)context;
+    (void)name;
+    (void)how;
+}
+
+/* Read all that a run will read, in a child: HDF5 crashes on some damaged files. Of a finished result a run reads the
+ * summary alone. */
+static void read_like_a_run(const char *path)
+{
+    hf_messages unwanted = {0};
+    hf_summary summary;
+    hf_comparison comparison = {0};
+    hf_hdf5_unlock(HF_OK); /* that of the parent's thread, which is the only one here */
+    hf_status status = hf_store_read_summary(path, &summary, &unwanted);
+    if (status == HF_OK && !summary.finished)
+        hf_compare_files(path, path, &comparison, ignore_difference, NULL, &unwanted);
+    _exit(0);
+}
+
+static hf_status survive(const char *path, hf_messages *messages)
+{
+    char words[128];
+    hf_hdf5_lock(); /* no other thread is within HDF5 */
+    pid_t child = hf_child_fork();
+    if (child == 0) read_like_a_run(path);
+    hf_hdf5_unlock(HF_OK);
+    if (child < 0) return HF_OK;
+    hf_child_end end = hf_child_wait(child);
+    if (!end.is_known || end.exit_status == 0) return HF_OK;
+    hf_child_describe(end, words, sizeof words);
+    return hf_error(messages, HF_EXISTS,
+                    "%s: exists and is damaged: reading it ended by %s; use --restart (of a sweep: --retry failed) to "
+                    "replace it or -o to choose another name",
+                    path, words);
+}
+
 hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
                         hf_store_state *state, hf_messages *messages)
 {
@@ -106,6 +146,7 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
     *state = HF_STORE_NOTHING;
     if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return HF_OK; /* hf_store_create says what is wrong */
     hf_messages unwanted = {0};
+    HF_TRY(survive(path, messages));
     HF_TRY(hf_store_identify(settings, scene, truss, now));
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, &unwanted);

@@ -1,0 +1,44 @@
+#define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
+#include "app/reader.h"
+
+#include "base/child.h"
+#include "store/hdf5.h"
+
+#include <signal.h>
+#include <sys/mman.h>
+
+/* A status of the manual, not one of a sanitizer or of abort handlers. */
+static bool is_ours(int exit_status)
+{
+#define IS(name, value, exit_code, word, text) exit_status == exit_code ||
+    return HF_STATUS_LIST(IS) false;
+#undef IS
+}
+
+/* Is it a signal by which somebody ends programs, rather than a fault? */
+static bool is_sent(int number)
+{
+    return number == SIGINT || number == SIGTERM || number == SIGHUP || number == SIGPIPE || number == SIGQUIT;
+}
+
+bool hf_reader_watch(const hf_options *options, int *exit_status, hf_messages *messages)
+{
+    char words[128];
+    char *reading = mmap(NULL, HF_HDF5_READING_SIZE, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (reading == MAP_FAILED) return false;
+    hf_hdf5_reading = reading;
+    pid_t child = hf_child_fork();
+    if (child <= 0) return false;
+    hf_child_end end = hf_child_wait(child);
+    if (is_sent(end.signal)) { /* this program ends by the same */
+        signal(end.signal, SIG_DFL);
+        raise(end.signal);
+    }
+    *exit_status = end.exit_status;
+    if (end.is_known && !end.signal && is_ours(end.exit_status)) return true;
+    hf_child_describe(end, words, sizeof words);
+    hf_status status =
+        hf_error(messages, HF_IO, "%s: is damaged: reading it ended by %s", *reading ? reading : options->file, words);
+    *exit_status = hf_status_exit_code(status);
+    return true;
+}

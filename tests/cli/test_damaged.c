@@ -1,0 +1,106 @@
+/* Damaged files: HDF5 crashes on some. What is made to crash here is a call of it, by a library that is loaded
+ * first. */
+#include "cli.h"
+
+/* H5Dread that aborts, or with HANG never returns, at call number AT. */
+static const char reader[] = "#define _GNU_SOURCE\n"
+                             "#include <dlfcn.h>\n#include <fcntl.h>\n#include <stdlib.h>\n#include <unistd.h>\n"
+                             "typedef int call(long, long, long, long, long, void *);\n"
+                             "int H5Dread(long a, long b, long c, long d, long e, void *f)\n{\n"
+                             "    static int n;\n"
+                             "    const char *mark = getenv(\"HANG\");\n"
+                             "    if (++n == atoi(getenv(\"AT\"))) {\n"
+                             "        if (!mark) abort();\n"
+                             "        open(mark, O_CREAT | O_WRONLY, 0600);\n"
+                             "        for (;;) pause();\n"
+                             "    }\n"
+                             "    return ((call *)dlsym(RTLD_NEXT, \"H5Dread\"))(a, b, c, d, e, f);\n}\n";
+
+/* The path of the library. A sanitizer that is not loaded first does not mind here. */
+static const char *make_library(void)
+{
+    const char *source = file_with("reader.c", reader), *library = temp("reader.so");
+    SHELL(0, "cc -shared -fPIC -o \"$2\" \"$1\" -ldl", source, library);
+    return library;
+}
+
+#define WITH_LIBRARY                                                                                                   \
+    "export ASAN_OPTIONS=\"$ASAN_OPTIONS:verify_asan_link_order=0:detect_leaks=0\" LD_PRELOAD=\"$1\" AT=\"$2\"; "
+
+static const char *unfinished(const char *path)
+{
+    SHELL(0, "\"$1\" -c 'import h5py, sys; f = h5py.File(sys.argv[1], \"a\"); f.attrs.modify(\"finished\", 0)' \"$2\"",
+          python_program(), path);
+    return path;
+}
+
+START_TEST(a_crash_of_hdf5_names_the_file)
+{
+    const char *library = make_library(), *c = file_with("c.yaml", SMALL_SCENE SMALL_GA);
+    const char *a = temp("a.h5"), *b = temp("b.h5");
+    HIFDM(0, "run", c, "-o", a, "--quiet");
+    HIFDM(0, "run", c, "-o", b, "--quiet");
+    SHELL(5, WITH_LIBRARY "exec \"$0\" diff \"$3\" \"$4\"", library, "1", a, b);
+    ERRS("error: %s: is damaged: reading it ended by signal 6 (Aborted)\n", a);
+    SHELL(5, WITH_LIBRARY "exec \"$0\" diff \"$3\" \"$4\"", library, "2", a, b);
+    ERRS("error: %s: is damaged: reading it ended by signal 6 (Aborted)\n", b);
+    SHELL(5, WITH_LIBRARY "exec \"$0\" report \"$3\" -o \"$4\"", library, "3", a, temp("page.html"));
+    ERRS("error: %s: is damaged: reading it ended by signal 6", a);
+    ck_assert(!is_there(temp("page.html")));
+    SHELL(5, WITH_LIBRARY "exec \"$0\" export \"$3\" --csv \"$4\"", library, "9", a, temp("csv"));
+    ERRS("error: %s: is damaged: reading it ended by signal 6", a);
+    SHELL(5, WITH_LIBRARY "exec \"$0\" run \"$4\" -o \"$3\"", library, "5", unfinished(a), c);
+    ERRS("error: %s: exists and is damaged: reading it ended by signal 6 (Aborted); use --restart", a);
+    HIFDM(0, "diff", b, b);
+    OUT(" 0 differ;");
+}
+END_TEST
+
+/* Both processes end; else this test would wait for the one that still holds the output. */
+START_TEST(a_signal_ends_the_reader)
+{
+    const char *library = make_library(), *c = file_with("c.yaml", SMALL_SCENE), *a = temp("a.h5");
+    HIFDM(0, "run", c, "-o", a, "--quiet");
+    SHELL(0,
+          WITH_LIBRARY "export HANG=\"$4\"; \"$0\" diff \"$3\" \"$3\" & unset LD_PRELOAD; "
+                       "while test ! -e \"$4\"; do sleep 0.01; done; kill $!; wait $!; echo $?",
+          library, "1", a, temp("mark"));
+    ck_assert_str_eq(said.out, "143\n");
+}
+END_TEST
+
+#define STUDY "base: c.yaml\nsweep:\n  form.pretension_N: [8, 9]\n"
+
+/* A merge is made of the ledger, so it does not notice; a sweep leaves the file alone and runs the other points. */
+START_TEST(a_damaged_point_stops_no_other)
+{
+    file_with("c.yaml", SMALL_SCENE SMALL_GA);
+    const char *study = file_with("s.yaml", STUDY), *folder = temp("s.d"), *merged = temp("m.h5");
+    HIFDM(0, "sweep", study, "--dir", folder, "--quiet");
+    SHELL(0, "cd \"$1\"; set -- *.h5; head -c 3000 \"$1\" >t && mv t \"$1\"; echo \"$1\"", folder);
+    said.out[strcspn(said.out, "\n")] = '\0';
+    const char *point = keep(formatted("%s/%s", folder, said.out));
+    HIFDM(0, "merge", study, "--dir", folder, "-o", merged);
+    OUT("2 points, 2 of them done, 0 failed");
+    HIFDM(5, "show", point);
+    ERR(point);
+    SHELL(0, "rm \"$1\"/points-*.tsv", folder);
+    HIFDM(3, "sweep", study, "--dir", folder, "--quiet");
+    HIFDM(0, "status", study, "--dir", folder);
+    OUT("done      1\n  failed    1\n");
+    OUT(formatted("%s: exists and is no result of hifdm; use --restart (of a sweep: --retry failed)", point));
+    HIFDM(0, "sweep", study, "--dir", folder, "--quiet", "--retry", "failed");
+    HIFDM(0, "show", point);
+}
+END_TEST
+
+Suite *suite_cli_damaged(void)
+{
+    Suite *suite = suite_create("cli/damaged");
+    TCase *tcase = tcase_create("damaged");
+    tcase_add_test(tcase, a_crash_of_hdf5_names_the_file);
+    tcase_add_test(tcase, a_signal_ends_the_reader);
+    tcase_add_test(tcase, a_damaged_point_stops_no_other);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
