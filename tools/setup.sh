@@ -50,6 +50,7 @@ missing_packages() {
         has h5dump || need hdf5-tools
         has_module h5py || need python3-h5py
         has_module yaml || need python3-yaml
+        has_module scipy || need python3-scipy
     fi
     if [ $with_bench = yes ]; then
         has_header suitesparse/cholmod.h || need libsuitesparse-dev

@@ -123,7 +123,7 @@ typedef enum {
     HF_RESULT_LONG,
     HF_RESULT_FLAG,
     HF_RESULT_TRUTH,
-    HF_RESULT_CONVERGED,
+    HF_RESULT_POLISH_STOP,
     HF_RESULT_SOLVER,
     HF_RESULT_GA_STOP
 } hf_result_kind;

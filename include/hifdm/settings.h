@@ -23,6 +23,7 @@ typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXE
 typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
 typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN } hf_coupling_scheme;
+typedef enum { HF_COMPARE_AUTO, HF_COMPARE_TRUE, HF_COMPARE_FALSE } hf_compare;
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
 /* The words of these choices in a case file, indexed by the enumerations above; the last entry is NULL. */
@@ -31,6 +32,7 @@ extern const char *const hf_stop_rule_word[3];
 extern const char *const hf_rule_word[4];
 extern const char *const hf_solver_word[5];
 extern const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1];
+extern const char *const hf_compare_word[4];
 extern const char *const hf_symmetry_word[6];
 extern const char *const hf_coupling_scheme_word[3];
 
@@ -68,6 +70,7 @@ typedef struct {
     double stagnation_tolerance_m;        /* stop when the best psi improved by less than this ... */
     int stagnation_generations;           /* ... in so many generations */
     int polish_iterations;                /* bound on the iterations of Levenberg-Marquardt */
+    hf_compare compare_lm;                /* Levenberg-Marquardt after method ga, for comparison */
     hf_symmetry symmetry;                 /* mirror planes that link genes */
 } hf_optimize_settings;
 

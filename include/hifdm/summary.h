@@ -5,7 +5,7 @@
 #ifndef HIFDM_SUMMARY_H
 #define HIFDM_SUMMARY_H
 
-#include <hifdm/population.h>
+#include <hifdm/optimiser.h>
 #include <hifdm/surface.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -19,7 +19,7 @@ extern "C" {
 
 /* ---- The lists: X(type, member, kind, json, key, description) ----
  *
- * kind  of the stored value, see HF_RESULT_LIST; CONVERGED is a FLAG that JSON gives as a word
+ * kind  of the stored value, see HF_RESULT_LIST
  * json  place in the JSON object of the stage, after the figures of its result; equal places are in the order of the
  *       list; 0 = not there
  * key   in JSON; the attribute in HDF5 has the name of the member
@@ -58,7 +58,10 @@ extern "C" {
     X(bool, polish_is_result, FLAG, 2, "is_result", "its design is the result, not only a comparison")                 \
     X(int, polish_iterations, INT, 1, "lm_iterations", "steps")                                                        \
     X(int, polish_evaluations, INT, 1, "evaluations", "form-findings")                                                 \
-    X(bool, polish_converged, CONVERGED, 4, "stop_reason", "to its tolerance")                                         \
+    X(hf_polish_stop, polish_stop, POLISH_STOP, 4, "stop_reason", "why it ended")                                      \
+    X(int, polish_n_at_lower, INT, 5, "at_lower_bound", "pretensions at their lower bounds")                           \
+    X(int, polish_n_at_upper, INT, 5, "at_upper_bound", "pretensions at their upper bounds")                           \
+    X(bool, polish_is_at_cap, FLAG, 5, "at_ratio_cap", "the cap on the boundary tension ratio holds it")               \
     X(double, polish_wall_s, REAL, 3, "wall_s", "wall-clock time")
 
 /* The truss. */

@@ -84,10 +84,13 @@ static void print_plan(const hf_problem *p, FILE *f)
         fprintf(f,
                 "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
                 hf_rule_word[o->rule], p->model.n_gene, o->population, o->generations, (unsigned long long)o->seed);
-    if (optimizes && o->rule != HF_RULE_SEEDED)
+    bool is_result = hf_optimiser_plan_of(o->method).ends_with_polish;
+    if (optimizes && o->rule != HF_RULE_SEEDED && (is_result || o->compare_lm != HF_COMPARE_FALSE))
         fprintf(f, "                Levenberg-Marquardt: rule %s, at most %d iterations, %s\n", hf_rule_word[o->rule],
                 o->polish_iterations,
-                hf_optimiser_plan_of(o->method).ends_with_polish ? "the result" : "for comparison");
+                is_result                          ? "the result"
+                : o->compare_lm == HF_COMPARE_AUTO ? "for comparison, where it is cheap"
+                                                   : "for comparison");
     if (optimizes && o->symmetry != HF_SYMMETRY_NONE)
         fprintf(f, "                symmetry: %s, %s; %d independent genes of %d\n", hf_symmetry_word[o->symmetry],
                 hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_gene);
@@ -107,15 +110,24 @@ static void print_allocation(const char *title, const char *what, double bytes, 
     fprintf(f, "  %-13s %-38s %s\n", title, what, bytes > 0 ? text : without);
 }
 
-/* Bytes that Levenberg-Marquardt needs for its sensitivities: the right-hand sides (twice as many with a truss) and the
- * packed matrix. 0 when it does not apply. */
-static double polish_bytes(const hf_evaluator *v)
+/* Does Levenberg-Marquardt run, or may it? */
+static bool polishes(const hf_problem *p, const hf_evaluator *v)
 {
-    const hf_model *m = v->model;
+    const hf_optimize_settings *o = &p->settings.optimize;
+    bool is_wanted = hf_optimiser_plan_of(o->method).ends_with_polish || o->compare_lm != HF_COMPARE_FALSE;
+    return v && is_wanted && hf_polish_applies(v);
+}
+
+/* Bytes that Levenberg-Marquardt needs: sensitivities (twice as many with a truss), their rows of inner nodes, matrices
+ * of its steps, and the packed Newton matrix. */
+static double polish_bytes(const hf_problem *p, const hf_evaluator *v)
+{
+    const hf_model *m = &p->model;
     size_t lanes, matrix;
-    if (!hf_polish_applies(v)) return 0;
+    if (!polishes(p, v)) return 0;
     matrix = hf_chord_bytes(v, &lanes);
-    return 24.0 * m->n_leader * m->n_free * (m->n_attachment ? 2 : 1) + (double)(matrix + lanes);
+    double n = m->n_leader, column = 3.0 * m->n_free * (m->n_attachment ? 2 : 1) + 3.0 * m->n_inner_node;
+    return 8 * n * (column + 4 * n) + (double)(matrix + lanes);
 }
 
 /* Bytes that the evaluation of a population would need: `shared` once for all threads, `lanes` for each thread. */
@@ -158,7 +170,7 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
     print_allocation("", "matrix shared by all threads", (double)shared, evolves ? "none" : without_ga, f);
     print_allocation("", "lanes of designs", (double)lanes * threads, evolves ? "none" : without_ga, f);
     print_allocation("", "population", 2 * population * (genes + (double)sizeof(hf_form_result)), "none", f);
-    print_allocation("", "sensitivities of Levenberg-Marquardt", v ? polish_bytes(v) : 0, "none", f);
+    print_allocation("", "sensitivities of Levenberg-Marquardt", polish_bytes(p, v), "none", f);
     if (evolves)
         print_allocation("result file", "generations, at most",
                          population * (genes + 70) * p->settings.optimize.generations, "", f);
@@ -210,7 +222,7 @@ static hf_status print_optimize_time(hf_problem *p, const hf_evaluator *v, int t
     hf_optimiser o = {0};
     hf_status status = hf_optimiser_create(kind, &p->settings.optimize, &p->model, p->base_N, &o);
     if (status == HF_OK && kind) status = print_ga_time(p, v, threads, &o.population, f);
-    if (status == HF_OK && hf_polish_applies(v)) status = print_polish_time(p, v, &o.population, f);
+    if (status == HF_OK && polishes(p, v)) status = print_polish_time(p, v, &o.population, f);
     hf_optimiser_free(&o);
     return status;
 }

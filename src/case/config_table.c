@@ -90,7 +90,10 @@ const hf_field hf_field_table[] = {
     {"optimize.method", HF_FIELD_WORD, AT(optimize.method), 0, 0, "ga", "", hf_optimize_method_word,
      "genetic algorithm, Levenberg-Marquardt from the form-finding's tensions, or both. After the genetic algorithm "
      "the "
-     "optimum that Levenberg-Marquardt reaches from it is always reported; with ga+lm it is the result"},
+     "optimum that Levenberg-Marquardt reaches from it is reported (compare_lm); with ga+lm it is the result"},
+    {"optimize.compare_lm", HF_FIELD_WORD, AT(optimize.compare_lm), 0, 0, "auto", "", hf_compare_word,
+     "the optimum that Levenberg-Marquardt reaches from the genetic algorithm's design, for comparison. auto: unless "
+     "it would cost noticeable time and more than a tenth of the genetic algorithm's"},
     {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", hf_rule_word,
      "what a design means: boundary held at q = T'/L* (always one answer), held at T', or Eq. 8 started from q = T'/L* "
      "and stopped by rms_change (the paper's literal reading; its optimum depends on where it stops)"},

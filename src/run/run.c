@@ -290,11 +290,22 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     s->polish_is_result = r->plan.ends_with_polish;
     s->polish_iterations = outcome.iterations;
     s->polish_evaluations = outcome.evaluations;
-    s->polish_converged = outcome.converged;
+    s->polish_stop = outcome.stop;
+    s->polish_n_at_lower = outcome.n_at_lower;
+    s->polish_n_at_upper = outcome.n_at_upper;
+    s->polish_is_at_cap = outcome.is_at_cap;
     s->polish_wall_s = hf_clock_s() - start_s;
     HF_TRY(measure_surface(r, HF_STAGE_POLISH, w, s, messages));
     if (s->polish_is_result) HF_TRY(load_truss(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);
+}
+
+/* As the result, or as the comparison that was asked for; unasked only where it is cheap. */
+static bool wants_polish(const run *r, const hf_summary *s)
+{
+    hf_compare compare = r->problem.settings.optimize.compare_lm;
+    if (r->plan.ends_with_polish || compare == HF_COMPARE_TRUE) return true;
+    return compare == HF_COMPARE_AUTO && hf_polish_is_cheap(&r->problem.evaluator, s->evaluations);
 }
 
 static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
@@ -304,7 +315,7 @@ static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
     s->threads = r->problem.batch.n_thread;
     if (r->plan.kind) HF_TRY(evolve(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
-    if (hf_polish_applies(&r->problem.evaluator)) return polish(r, s, messages);
+    if (hf_polish_applies(&r->problem.evaluator)) return wants_polish(r, s) ? polish(r, s, messages) : HF_OK;
     if (r->plan.ends_with_polish) hf_warning(messages, "%s", HF_PROBLEM_POLISH_NEEDS);
     return HF_OK;
 }

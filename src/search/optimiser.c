@@ -4,6 +4,8 @@
 #include <assert.h>
 #include <stddef.h>
 
+const char *const hf_polish_stop_word[3] = {"converged", "stalled", "max_iterations"};
+
 /* ---- ask and tell ---- */
 
 hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *s, const hf_model *m,

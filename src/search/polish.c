@@ -1,56 +1,71 @@
-/* Contents: the problem - bounds by a change of variable - residuals - sensitivities - the run */
+/* Contents: the problem - evaluation - limits - one step - the run */
 #include "search/polish.h"
 
 #include "base/arena.h"
 #include "linalg/band.h"
-#include "net/symmetry.h"
-#include "search/chord.h"
-#include "solve/newton_matrix.h"
-#include "solve/schur.h"
-#include <hifdm/metrics.h>
+#include "linalg/quadratic.h"
+#include "search/sensitivity.h"
 
-#include <gsl/gsl_blas.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_multilarge_nlinear.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* Measured with test_polish: it passes with START_INSIDE 0.999, STALL_ITERATIONS 15 and STALL_GAIN 1e-9. With
- * START_INSIDE 0.3 the run under a ratio cap fails; with STALL_ITERATIONS 2 or STALL_GAIN 1e-5 runs end where psi still
- * has a slope. */
-#define START_INSIDE 0.9   /* of the half range: at a bound itself the change of variable has no slope */
-#define STALL_ITERATIONS 5 /* an optimum is reached when psi has gained over these */
-#define STALL_GAIN 1e-7    /* less than this, relative */
-/* Residual (m) of a design without a shape: a step to it is refused when this is more than the residual before, which
- * is less than the size of the net. test_polish passes from 1e-6 to 1e9. */
-#define INFEASIBLE 1e3
+#define GAIN_CONVERGED 1e-12 /* converged: a step promises less than this part of psi^2 */
+#define DAMPING_FIRST 1e-3   /* relative to the squared columns of J */
+#define DAMPING_LEAST 1e-14
+#define DAMPING_MOST 1e12    /* with this much a step is too short to change psi */
+#define CORRECTIONS_MAX 4    /* of a step that breaks a limit on tensions, whose surface is curved */
+#define LIMIT_INSIDE 1e-9    /* relative part by which a step stays within the limits on tensions */
+#define LIMIT_ROUNDING 1e-12 /* a violation below this part of the tension counts as rounding */
+#define DENSITY_LEFT 1e-3    /* part of its first value below which no force density falls */
+
+/* For hf_polish_is_cheap: steps that were counted on the cases of configs and METHOD; operations in about 0.1 s. */
+#define STEPS_EXPECTED 8
+#define STEP_EVALUATIONS 2
+#define NEWTON_STEPS 5
+#define CHORD_STEPS 4
+#define UNNOTICED 2e8
 
 /* ---- the problem ---- */
 
+/* A cable whose tension is limited. */
 typedef struct {
-    const hf_evaluator *v;
+    int cable;
+    bool is_in_ratio;         /* the cap on the boundary tension ratio counts it */
+    double lower_N, upper_N;  /* infinite when only the cap limits it */
+    double tension_N, bend_N; /* at the best variables; beyond the linear model at the last trial */
+    double predicted_N;       /* by the linear model */
+} watched;
+
+/* Shapes of tensions T and of the force densities T/l are the same, but the shape is a far more even function of the
+ * force densities: single tensions in a chain drag its nodes along. So the variables always mean force densities, and
+ * under rule tension the bounds are limits on the tensions. */
+typedef struct {
+    hf_evaluator v; /* that of the caller, with rule force_density and without a cap */
     const double *lower_N, *upper_N;
+    double cap;
+    bool by_tension; /* the caller's rule is tension */
     hf_workspace *w;
-    const double *start_N; /* [n_gene]: linked genes share the step from here */
-    double *design_N;      /* [n_gene] of the last evaluation */
-    int *gene;             /* [n_leader] gene of each variable */
-    int *variable_of_gene; /* [n_gene] */
-    double *trial_N;       /* [n_gene] */
-    double *best_N;        /* [n_gene] */
-    double *sensitivity;   /* [n_leader][3 n_free] right-hand sides, then dx/dT, then the rows of J' */
-    hf_chord matrix;       /* of the net with fixed supports */
-    hf_chord_lanes lanes;
-    hf_schur schur; /* this and the next three only with a truss */
-    double *answer; /* [n_leader][3 n_free] what the moving truss adds to `sensitivity` */
-    double *pull,
-        *move_m; /* [n_leader][3 n_attachment] change of the pull on the truss; [3 n_attachment] how it moves */
-    double best_psi_m;
+    hf_sensitivity slopes;
+    hf_quadratic step;
+    int n;     /* variables: steps (N) from start_N, one for each class of linked genes */
+    int n_row; /* 3 n_inner_node */
+    int n_watched;
+    watched *watched; /* [n_watched] */
+    double *rate;     /* [n_watched][n] of tension_N per variable */
     int evaluations;
-    bool has_shape;   /* status and workspace belong to design_N */
-    bool is_linear;   /* ... and so do the rows of J' */
-    hf_status status; /* of the last evaluation */
-    hf_form_result result;
+    hf_form_result result; /* of the last evaluation */
+    double *start_N;       /* [n_gene] pretensions q L* */
+    double *low, *high;    /* [n] bounds of the variables */
+    double *unit_N;        /* [n] size of the tension: violations are relative to it */
+    double *at, *trial;    /* [n] the best variables; those of the last step */
+    double *design_N;      /* [n_gene] of the last evaluation, as pretensions q L* */
+    double *best_N;        /* [n_gene] the best design in the caller's meaning */
+    double *scale;         /* [n] largest norm of each column of J so far */
+    double *distance_m;    /* [n_row] residuals f; |f| = psi */
+    double *row;           /* [n][n_row] J' */
+    double *gram;          /* [n][n] J'J; lower triangle by rows, as `hessian` */
+    double *hessian;       /* [n][n] J'J, damped */
+    double *gradient;      /* [n] J'f */
 } problem;
 
 bool hf_polish_applies(const hf_evaluator *v)
@@ -58,246 +73,367 @@ bool hf_polish_applies(const hf_evaluator *v)
     return v->model->has_newton && v->rule != HF_RULE_SEEDED && v->model->n_gene > 0;
 }
 
+bool hf_polish_is_cheap(const hf_evaluator *v, long n_evaluation)
+{
+    const hf_model *m = v->model;
+    double n_dof = 3.0 * m->n_free, width = 3.0 * m->half_bandwidth + 3, n = m->n_leader;
+    double factor = n_dof * width * width, solve = 4 * n_dof * width, newton = NEWTON_STEPS * (factor + solve);
+    double evaluation = v->solver == HF_SOLVER_CHORD ? CHORD_STEPS * solve : newton;
+    double step = STEP_EVALUATIONS * newton + factor + n * solve + n * n * (3.0 * m->n_inner_node + 2 * n);
+    return STEPS_EXPECTED * step <= fmax(UNNOTICED, (double)n_evaluation * evaluation / 10);
+}
+
 static void lay_out(hf_arena *a, problem *p)
 {
-    const hf_model *m = p->v->model;
-    size_t k = (size_t)m->n_gene;
-    p->design_N = hf_arena_take(a, k, sizeof(double));
-    p->trial_N = hf_arena_take(a, k, sizeof(double));
-    p->best_N = hf_arena_take(a, k, sizeof(double));
-    p->gene = hf_arena_take(a, k, sizeof(int));
-    p->variable_of_gene = hf_arena_take(a, k, sizeof(int));
-    p->sensitivity = hf_arena_take(a, (size_t)m->n_leader * 3 * (size_t)m->n_free, sizeof(double));
-    p->answer = m->n_attachment ? hf_arena_take(a, (size_t)m->n_leader * 3 * (size_t)m->n_free, sizeof(double)) : NULL;
-    p->pull = hf_arena_take(a, (size_t)m->n_leader * 3 * (size_t)m->n_attachment, sizeof(double));
-    p->move_m = hf_arena_take(a, 3 * (size_t)m->n_attachment, sizeof(double));
+    const hf_model *m = p->v.model;
+    size_t n = (size_t)p->n, n_row = (size_t)p->n_row, n_gene = (size_t)m->n_gene;
+    p->watched = hf_arena_take(a, (size_t)p->n_watched, sizeof *p->watched);
+    p->rate = hf_arena_take(a, (size_t)p->n_watched * n, sizeof(double));
+    p->start_N = hf_arena_take(a, n_gene, sizeof(double));
+    p->low = hf_arena_take(a, n, sizeof(double));
+    p->high = hf_arena_take(a, n, sizeof(double));
+    p->unit_N = hf_arena_take(a, n, sizeof(double));
+    p->at = hf_arena_take(a, n, sizeof(double));
+    p->trial = hf_arena_take(a, n, sizeof(double));
+    p->design_N = hf_arena_take(a, n_gene, sizeof(double));
+    p->best_N = hf_arena_take(a, n_gene, sizeof(double));
+    p->scale = hf_arena_take(a, n, sizeof(double));
+    p->distance_m = hf_arena_take(a, n_row, sizeof(double));
+    p->row = hf_arena_take(a, n * n_row, sizeof(double));
+    p->gram = hf_arena_take(a, n * n, sizeof(double));
+    p->hessian = hf_arena_take(a, n * n, sizeof(double));
+    p->gradient = hf_arena_take(a, n, sizeof(double));
 }
 
-/* One variable for the genes that a symmetry links. */
-static void number_variables(problem *p)
+/* Does any limit concern the tension of cable e? *gene: the cable's, when its bounds do; else -1. */
+static bool is_watched(const problem *p, int e, const int *gene_of_cable, int *gene)
 {
-    const hf_model *m = p->v->model;
-    int n = 0;
+    *gene = p->by_tension ? gene_of_cable[e] : -1;
+    return *gene >= 0 || (isfinite(p->cap) && p->v.model->group[e] == HF_GROUP_BOUNDARY);
+}
+
+static void watch(problem *p)
+{
+    const hf_model *m = p->v.model;
+    int gene, i = 0;
+    for (int e = 0; e < m->n_cable; e++) {
+        if (!is_watched(p, e, p->slopes.gene_of_cable, &gene)) continue;
+        watched *t = &p->watched[i++];
+        *t = (watched){.cable = e, .lower_N = -INFINITY, .upper_N = INFINITY};
+        t->is_in_ratio = isfinite(p->cap) && m->group[e] == HF_GROUP_BOUNDARY;
+        if (gene < 0) continue;
+        t->lower_N = p->lower_N[gene];
+        t->upper_N = p->upper_N[gene];
+    }
+}
+
+/* Start at the design whose shape is in the workspace. */
+static void begin(problem *p, const double *design_N)
+{
+    const hf_model *m = p->v.model;
+    for (int i = 0; i < p->n; i++) {
+        p->low[i] = -INFINITY;
+        p->high[i] = INFINITY;
+    }
     for (int k = 0; k < m->n_gene; k++) {
-        if (m->gene_leader[k] == k) p->gene[n++] = k;
-        p->variable_of_gene[k] = m->gene_leader[k] == k ? n - 1 : p->variable_of_gene[m->gene_leader[k]];
+        int i = p->slopes.variable_of_gene[k], e = m->gene_cable[k];
+        double start = design_N[k], lower = p->lower_N[k], upper = p->upper_N[k];
+        if (p->by_tension) {
+            start = hf_evaluate_design_length_m(m, e) * p->w->tension_N[e] / p->w->length_m[e];
+            lower = DENSITY_LEFT * start;
+            upper = INFINITY;
+        }
+        p->start_N[k] = start;
+        p->low[i] = fmax(p->low[i], fmin(lower - start, 0));
+        p->high[i] = fmin(p->high[i], fmax(upper - start, 0));
+        p->unit_N[i] = fmax(p->unit_N[i], start);
     }
+    memcpy(p->best_N, design_N, (size_t)m->n_gene * sizeof(double));
+    memcpy(p->design_N, p->start_N, (size_t)m->n_gene * sizeof(double));
 }
 
-/* ---- bounds: T = middle + half sin(variable) ---- */
-
-static void to_design(const problem *p, const gsl_vector *variable, double *design_N)
+static hf_status create(problem *p, hf_arena *arena)
 {
-    const hf_model *m = p->v->model;
-    for (size_t i = 0; i < variable->size; i++) {
-        int k = p->gene[i];
-        double half = (p->upper_N[k] - p->lower_N[k]) / 2, middle = (p->upper_N[k] + p->lower_N[k]) / 2;
-        design_N[k] = middle + half * sin(gsl_vector_get(variable, i));
+    const hf_model *m = p->v.model;
+    int gene;
+    p->n = m->n_leader;
+    p->n_row = 3 * m->n_inner_node;
+    HF_TRY(hf_sensitivity_create(&p->v, &p->slopes));
+    for (int e = 0; e < m->n_cable; e++)
+        p->n_watched += is_watched(p, e, p->slopes.gene_of_cable, &gene);
+    HF_TRY(HF_ARENA_MAKE(arena, lay_out(arena, p)));
+    watch(p);
+    return hf_quadratic_create(p->n, &p->step);
+}
+
+/* ---- evaluation ---- */
+
+/* Find the shape of these variables in the workspace. */
+static hf_status evaluate(problem *p, const double *variable)
+{
+    const hf_model *m = p->v.model;
+    for (int k = 0; k < m->n_gene; k++) {
+        double T = p->start_N[k] + variable[p->slopes.variable_of_gene[k]];
+        p->design_N[k] = p->by_tension ? T : fmax(p->lower_N[k], fmin(p->upper_N[k], T));
     }
-    if (m->n_leader < m->n_gene) hf_symmetry_follow(m->n_gene, m->gene_leader, p->start_N, design_N);
-}
-
-static double slope(const problem *p, const gsl_vector *variable, size_t i)
-{
-    int k = p->gene[i];
-    return (p->upper_N[k] - p->lower_N[k]) / 2 * cos(gsl_vector_get(variable, i));
-}
-
-static void to_variable(const problem *p, const double *design_N, gsl_vector *variable)
-{
-    for (size_t i = 0; i < variable->size; i++) {
-        int k = p->gene[i];
-        double half = (p->upper_N[k] - p->lower_N[k]) / 2, middle = (p->upper_N[k] + p->lower_N[k]) / 2;
-        double place = half > 0 ? (design_N[k] - middle) / half : 0;
-        gsl_vector_set(variable, i, asin(fmax(-START_INSIDE, fmin(START_INSIDE, place))));
-    }
-}
-
-/* ---- residuals: distances of the inner nodes over the root of their number: their squares add up to psi^2 ---- */
-
-/* Find the shape of these variables in the workspace, unless it is there already. */
-static hf_status evaluate(problem *p, const gsl_vector *variable)
-{
-    size_t bytes = (size_t)p->v->model->n_gene * sizeof(double);
-    to_design(p, variable, p->trial_N);
-    if (p->has_shape && memcmp(p->trial_N, p->design_N, bytes) == 0) return p->status;
-    memcpy(p->design_N, p->trial_N, bytes);
     p->evaluations++;
-    p->has_shape = true;
-    p->is_linear = false;
-    p->status = hf_evaluate(p->v, p->design_N, p->w, &p->result);
-    if (p->status == HF_OK && p->result.psi_m < p->best_psi_m) {
-        p->best_psi_m = p->result.psi_m;
-        memcpy(p->best_N, p->design_N, bytes);
-    }
-    return p->status;
+    return hf_evaluate(&p->v, p->design_N, p->w, &p->result);
 }
 
-static int residuals(const gsl_vector *variable, void *context, gsl_vector *f)
+/* Does the shape in the workspace keep the limits on tensions? */
+static bool is_within_limits(const problem *p)
 {
-    problem *p = context;
-    const hf_model *m = p->v->model;
-    gsl_vector_set_zero(f); /* rows beyond the inner nodes only satisfy GSL, which wants no fewer rows than variables */
-    if (evaluate(p, variable) != HF_OK) {
-        gsl_vector_set(f, 0, INFEASIBLE);
-        return GSL_SUCCESS;
+    double least = INFINITY, largest = -INFINITY;
+    for (int i = 0; i < p->n_watched; i++) {
+        const watched *t = &p->watched[i];
+        double T = p->w->tension_N[t->cable];
+        if (T < t->lower_N || T > t->upper_N) return false;
+        if (t->is_in_ratio) {
+            least = fmin(least, T);
+            largest = fmax(largest, T);
+        }
     }
-    double scale = 1 / sqrt(m->n_inner_node);
+    return !(largest > p->cap * least);
+}
+
+/* Take the shape in the workspace as the best. */
+static void keep(problem *p)
+{
+    const hf_model *m = p->v.model;
+    memcpy(p->at, p->trial, (size_t)p->n * sizeof(double));
+    for (int k = 0; k < m->n_gene; k++)
+        p->best_N[k] = p->by_tension ? p->w->tension_N[m->gene_cable[k]] : p->design_N[k];
+}
+
+/* Write residuals, J', J'J, the gradient and the watched tensions with their rates at the workspace's shape. */
+static hf_status linearise(problem *p)
+{
+    const hf_model *m = p->v.model;
+    const hf_sensitivity *s = &p->slopes;
+    double part = 1 / sqrt(m->n_inner_node);
+    HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
     for (int i = 0; i < m->n_inner_node; i++)
         for (int c = 0; c < 3; c++) {
             int at = c * m->n_node + m->inner_row[i];
-            gsl_vector_set(f, (size_t)(3 * i + c), scale * (p->w->position_m[at] - m->position_m[at]));
+            p->distance_m[3 * i + c] = part * (p->w->position_m[at] - m->position_m[at]);
         }
-    return GSL_SUCCESS;
+    for (int k = 0; k < p->n; k++) {
+        double *row = p->row + (size_t)k * (size_t)p->n_row;
+        const double *move = s->move + (size_t)k * s->n_dof;
+        p->gradient[k] = 0;
+        for (int i = 0; i < p->n_row; i++) {
+            row[i] = part * move[3 * m->inner_row[i / 3] + i % 3];
+            p->gradient[k] += row[i] * p->distance_m[i];
+        }
+    }
+    hf_band_gram(p->n, p->n_row, p->row, p->n_row, p->gram, p->n);
+    for (int k = 0; k < p->n; k++)
+        p->scale[k] = fmax(p->scale[k], sqrt(p->gram[k * p->n + k]));
+    for (int i = 0; i < p->n_watched; i++) {
+        watched *t = &p->watched[i];
+        t->tension_N = p->w->tension_N[t->cable];
+        hf_sensitivity_tension(s, p->w, t->cable, p->rate + (size_t)i * (size_t)p->n);
+    }
+    return HF_OK;
 }
 
-/* ---- sensitivities ---- */
+/* ---- limits ---- */
 
-/* Add -dg/dT of gene k at the workspace's shape: the change of the nodal forces for one newton of T', and of the pull
- * on the truss. */
-static void add_force_of_gene(const problem *p, int k, double *force, double *on_truss)
+/* What holds a step: the kinds of its active limits. */
+enum { BOUND, CAP };
+
+/* Tensions that the linear model gives for the step x. *high, *low: the largest and the least of those in the ratio. */
+static void predict(problem *p, const double *x, const watched **high, const watched **low)
 {
-    const hf_model *m = p->v->model;
-    int e = m->gene_cable[k], a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-    double length = p->w->length_m[e];
-    if (p->v->rule == HF_RULE_FORCE_DENSITY) length = hf_evaluate_design_length_m(m, e);
-    for (int c = 0; c < 3; c++) {
-        double pull = (p->w->position_m[c * m->n_node + b] - p->w->position_m[c * m->n_node + a]) / length;
-        if (a < m->n_free) force[3 * a + c] += pull;
-        if (b < m->n_free) force[3 * b + c] -= pull;
-        for (int t = 0; t < m->n_tie; t++)
-            if (m->tie[t] / 2 == e) on_truss[3 * m->tie_attachment[t] + c] += m->tie[t] % 2 ? -pull : pull;
+    size_t n = (size_t)p->n;
+    *high = *low = NULL;
+    for (int i = 0; i < p->n_watched; i++) {
+        const double *rate = p->rate + (size_t)i * n;
+        watched *t = &p->watched[i];
+        t->predicted_N = t->tension_N + t->bend_N;
+        for (size_t j = 0; j < n; j++)
+            t->predicted_N += rate[j] * x[j];
+        if (!t->is_in_ratio) continue;
+        if (!*high || t->predicted_N > (*high)->predicted_N) *high = t;
+        if (!*low || t->predicted_N < (*low)->predicted_N) *low = t;
     }
 }
 
-/* Turn the sensitivities with fixed supports into those of net and truss together. */
-static void let_truss_answer(problem *p)
+static const double *rate_of(const problem *p, const watched *t)
 {
-    const hf_model *m = p->v->model;
-    size_t n_dof = 3 * (size_t)m->n_free;
-    memset(p->answer, 0, (size_t)m->n_leader * n_dof * sizeof(double));
-    for (int k = 0; k < m->n_leader; k++) {
-        double *pull = p->pull + (size_t)(3 * k * m->n_attachment);
-        hf_schur_pull(m, p->w, p->sensitivity + (size_t)k * n_dof, pull);
-        hf_schur_displace(m, &p->schur, pull, p->move_m);
-        hf_schur_push(m, p->w, p->move_m, p->answer + (size_t)k * n_dof);
-    }
-    hf_chord_back_solve(&p->matrix, &p->lanes, m->n_leader, p->answer, n_dof);
-    for (size_t i = 0; i < (size_t)m->n_leader * n_dof; i++)
-        p->sensitivity[i] += p->answer[i];
+    return p->rate + (size_t)(t - p->watched) * (size_t)p->n;
 }
 
-/* Write the columns of J at these variables into the rows of p->sensitivity; all are zero where there is no shape. */
-static void linearise(problem *p, const gsl_vector *variable)
-{
-    const hf_model *m = p->v->model;
-    size_t n_dof = 3 * (size_t)m->n_free;
-    hf_status status = evaluate(p, variable);
-    if (p->is_linear) return;
-    p->is_linear = true;
-    memset(p->pull, 0, 3 * (size_t)m->n_leader * (size_t)m->n_attachment * sizeof(double));
-    memset(p->sensitivity, 0, (size_t)m->n_leader * n_dof * sizeof(double));
-    if (status != HF_OK || hf_newton_matrix_factor(m, p->w, NULL) != HF_OK) return;
-    if (m->n_attachment && hf_schur_factor(m, p->w, &p->schur) != HF_OK) return;
-    for (int k = 0; k < m->n_gene; k++)
-        add_force_of_gene(p, k, p->sensitivity + (size_t)p->variable_of_gene[k] * n_dof,
-                          p->pull + (size_t)(3 * p->variable_of_gene[k] * m->n_attachment));
-    hf_chord_pack(p->w, &p->matrix);
-    hf_chord_back_solve(&p->matrix, &p->lanes, m->n_leader, p->sensitivity, n_dof);
-    if (m->n_attachment) let_truss_answer(p);
-    double scale = 1 / sqrt(m->n_inner_node);
-    for (size_t k = 0; k < variable->size; k++) {
-        double weight = scale * slope(p, variable, k), *moved = p->sensitivity + k * n_dof;
-        for (int i = 0; i < m->n_inner_node; i++) /* in place: inner_row rises */
-            for (int c = 0; c < 3; c++)
-                moved[3 * i + c] = weight * moved[3 * m->inner_row[i] + c];
-    }
-}
-
-/* Compute v = J u or J' u, and J' J where GSL asks for it. */
-static int linear_model(CBLAS_TRANSPOSE_t transpose, const gsl_vector *variable, const gsl_vector *u, void *context,
-                        gsl_vector *v, gsl_matrix *JTJ)
+/* The limit that the step x violates most; for hf_quadratic. */
+static bool worst_limit(void *context, const double *x, hf_quadratic_limit *limit)
 {
     problem *p = context;
-    size_t n_dof = 3 * (size_t)p->v->model->n_free, n_row = 3 * (size_t)p->v->model->n_inner_node;
-    int n_variable = (int)variable->size;
-    linearise(p, variable);
-    gsl_matrix_const_view Jt = gsl_matrix_const_view_array_with_tda(p->sensitivity, variable->size, n_row, n_dof);
-    if (transpose == CblasTrans) {
-        gsl_vector_const_view head = gsl_vector_const_subvector(u, 0, n_row);
-        gsl_blas_dgemv(CblasNoTrans, 1, &Jt.matrix, &head.vector, 0, v);
-    } else {
-        gsl_vector_set_zero(v);
-        gsl_vector_view head = gsl_vector_subvector(v, 0, n_row);
-        gsl_blas_dgemv(CblasTrans, 1, &Jt.matrix, u, 0, &head.vector);
+    double worst = LIMIT_ROUNDING, cap = p->cap * (1 - LIMIT_INSIDE), sign = 0;
+    const watched *high, *low, *held = NULL;
+    int variable = -1;
+    predict(p, x, &high, &low);
+    for (int i = 0; i < p->n; i++) {
+        double below = (p->low[i] - p->at[i] - x[i]) / p->unit_N[i],
+               above = (p->at[i] + x[i] - p->high[i]) / p->unit_N[i];
+        if (!(fmax(below, above) > worst)) continue;
+        worst = fmax(below, above);
+        sign = below > above ? 1 : -1;
+        variable = i;
     }
-    if (JTJ) hf_band_gram(n_variable, (int)n_row, p->sensitivity, (int)n_dof, JTJ->data, (int)JTJ->tda);
-    return GSL_SUCCESS;
+    for (int i = 0; i < p->n_watched; i++) {
+        const watched *t = &p->watched[i];
+        double size = LIMIT_INSIDE * fabs(t->tension_N);
+        double below = (t->lower_N + size - t->predicted_N) / fabs(t->tension_N);
+        double above = (t->predicted_N - t->upper_N + size) / fabs(t->tension_N);
+        if (!(fmax(below, above) > worst)) continue;
+        worst = fmax(below, above);
+        sign = below > above ? 1 : -1;
+        held = t;
+    }
+    limit->kind = BOUND;
+    if (high && high->predicted_N - cap * low->predicted_N > worst * fabs(high->predicted_N)) {
+        const double *up = rate_of(p, high), *down = rate_of(p, low);
+        for (int j = 0; j < p->n; j++)
+            limit->normal[j] = cap * down[j] - up[j];
+        limit->bound = high->tension_N + high->bend_N - cap * (low->tension_N + low->bend_N);
+        limit->kind = CAP;
+    } else if (held) {
+        double inside = LIMIT_INSIDE * fabs(held->tension_N), limit_N = sign > 0 ? held->lower_N : held->upper_N;
+        for (int j = 0; j < p->n; j++)
+            limit->normal[j] = sign * rate_of(p, held)[j];
+        limit->bound = sign * (limit_N - held->tension_N - held->bend_N) + inside;
+    } else if (variable >= 0) {
+        limit->normal[variable] = sign;
+        limit->bound = sign * ((sign > 0 ? p->low : p->high)[variable] - p->at[variable]);
+    }
+    return worst > LIMIT_ROUNDING || limit->kind == CAP;
+}
+
+/* ---- one step ---- */
+
+/* The least of the model |f + J x|^2/2 + damping |scale x|^2/2 within the limits, as `trial`. *gain: what the model
+ * promises of psi^2/2. */
+static hf_status solve_step(problem *p, double damping, double *gain)
+{
+    const double *x = p->step.x;
+    int n = p->n;
+    for (int r = 0; r < n; r++) {
+        memcpy(p->hessian + r * n, p->gram + r * n, (size_t)(r + 1) * sizeof(double));
+        p->hessian[r * n + r] += damping * p->scale[r] * p->scale[r];
+    }
+    HF_TRY(hf_quadratic_solve(&p->step, p->hessian, p->gradient, worst_limit, p));
+    *gain = 0;
+    for (int r = 0; r < n; r++) {
+        double sum = p->gram[r * n + r] * x[r] / 2 + p->gradient[r];
+        for (int c = 0; c < r; c++)
+            sum += p->gram[r * n + c] * x[c];
+        *gain -= sum * x[r];
+        p->trial[r] = fmax(p->low[r], fmin(p->high[r], p->at[r] + x[r]));
+    }
+    return HF_OK;
+}
+
+/* Evaluate the step. One that breaks a limit on tensions, because they are not linear in the variables, is solved again
+ * with what they really were. HF_RATIO_CAP: a limit is still broken. */
+static hf_status try_step(problem *p, double damping, double *gain)
+{
+    const watched *high, *low;
+    for (int i = 0; i < p->n_watched; i++)
+        p->watched[i].bend_N = 0;
+    for (int again = 0; again <= CORRECTIONS_MAX; again++) {
+        HF_TRY(solve_step(p, damping, gain));
+        HF_TRY(evaluate(p, p->trial));
+        if (is_within_limits(p)) return HF_OK;
+        predict(p, p->step.x, &high, &low);
+        for (int i = 0; i < p->n_watched; i++)
+            p->watched[i].bend_N += p->w->tension_N[p->watched[i].cable] - p->watched[i].predicted_N;
+    }
+    return HF_RATIO_CAP;
 }
 
 /* ---- the run ---- */
 
-/* Iterate until psi stalls, no step lowers it any more, or the iteration limit is reached. */
-static void iterate(problem *p, int max_iterations, gsl_multilarge_nlinear_workspace *solver, hf_polish_result *result)
+static void count_limits(const problem *p, hf_polish_result *r)
 {
-    double past_psi_m[STALL_ITERATIONS];
-    while (!result->converged && result->iterations < max_iterations) {
-        double *past_m = &past_psi_m[result->iterations % STALL_ITERATIONS];
-        bool is_filled = result->iterations >= STALL_ITERATIONS;
-        if (is_filled && *past_m - p->best_psi_m <= STALL_GAIN * p->best_psi_m) result->converged = true;
-        *past_m = p->best_psi_m;
-        if (result->converged) return;
-        result->iterations++;
-        /* GSL_ENOPROG: no step lowers psi any more, which is convergence to rounding */
-        if (gsl_multilarge_nlinear_iterate(solver) != GSL_SUCCESS) result->converged = true;
+    const hf_model *m = p->v.model;
+    for (int k = 0; k < m->n_gene; k++) {
+        double inside = p->by_tension ? 2 * LIMIT_INSIDE * p->best_N[k] : 0;
+        r->n_at_lower += p->best_N[k] <= p->lower_N[k] + inside;
+        r->n_at_upper += p->best_N[k] >= p->upper_N[k] - inside;
     }
+    for (int i = 0; i < p->step.n_active; i++)
+        r->is_at_cap |= p->step.active[i] == CAP;
 }
 
-static hf_status minimise(problem *p, int max_iterations, const double *start_N, hf_polish_result *result)
+/* Steps until one promises nothing more, none lowers psi any more, or the iteration limit is reached. The damping
+ * follows Nielsen (Madsen, Nielsen, Tingleff, Methods for non-linear least squares problems, DTU 2004). */
+static hf_status minimise(problem *p, int max_iterations, hf_polish_result *r)
 {
-    const hf_model *m = p->v->model;
-    size_t n_variable = (size_t)m->n_leader, n_row = 3 * (size_t)m->n_inner_node;
-    if (n_row < n_variable) n_row = n_variable;
-    gsl_multilarge_nlinear_parameters parameters = gsl_multilarge_nlinear_default_parameters();
-    gsl_multilarge_nlinear_fdf fdf = {.f = residuals, .df = linear_model, .n = n_row, .p = n_variable, .params = p};
-    gsl_multilarge_nlinear_workspace *solver =
-        gsl_multilarge_nlinear_alloc(gsl_multilarge_nlinear_trust, &parameters, n_row, n_variable);
-    gsl_vector *variable = gsl_vector_alloc(n_variable);
-    if (!solver || !variable) {
-        if (solver) gsl_multilarge_nlinear_free(solver);
-        gsl_vector_free(variable);
-        return HF_NO_MEMORY;
+    double damping = DAMPING_FIRST, growth = 2, gain = 0;
+    hf_status status = evaluate(p, p->at);
+    if (status == HF_OK) status = linearise(p);
+    while (status == HF_OK && r->stop == HF_POLISH_MAX_ITERATIONS && r->iterations < max_iterations) {
+        double before = r->psi_m * r->psi_m / 2;
+        r->iterations++;
+        status = try_step(p, damping, &gain);
+        if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+        double after = status == HF_OK ? p->result.psi_m * p->result.psi_m / 2 : (double)INFINITY;
+        if ((status == HF_OK || status == HF_RATIO_CAP) && gain <= GAIN_CONVERGED * before)
+            r->stop = HF_POLISH_CONVERGED;
+        status = HF_OK;
+        if (after < before) {
+            keep(p);
+            r->psi_m = p->result.psi_m;
+            damping = fmax(DAMPING_LEAST, damping * fmax(0.1, 1 - pow(2 * (before - after) / gain - 1, 3)));
+            growth = 2;
+            if (r->stop == HF_POLISH_MAX_ITERATIONS) status = linearise(p);
+        } else {
+            damping *= growth;
+            growth *= 2;
+            if (damping > DAMPING_MOST) r->stop = HF_POLISH_STALLED;
+        }
     }
-    to_variable(p, start_N, variable);
-    gsl_multilarge_nlinear_init(variable, &fdf, solver);
-    iterate(p, max_iterations, solver, result);
-    gsl_multilarge_nlinear_free(solver);
-    gsl_vector_free(variable);
+    if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+    if (status != HF_OK) r->stop = HF_POLISH_STALLED;
+    count_limits(p, r);
     return HF_OK;
+}
+
+/* The best design, in the caller's meaning, replaces design_N if its own evaluation is not worse than the start. */
+static void hand_over(const problem *p, const hf_evaluator *v, double *design_N, hf_polish_result *r)
+{
+    hf_form_result end;
+    if (hf_evaluate(v, p->best_N, p->w, &end) == HF_OK && end.psi_m <= r->start_psi_m) {
+        memcpy(design_N, p->best_N, (size_t)v->model->n_gene * sizeof(double));
+        r->psi_m = end.psi_m;
+    } else {
+        r->psi_m = r->start_psi_m;
+        r->stop = HF_POLISH_STALLED;
+    }
 }
 
 hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower_N, const double *upper_N, int max_iterations,
                         double *design_N, hf_workspace *w, hf_polish_result *result)
 {
-    size_t bytes = (size_t)evaluator->model->n_gene * sizeof(double);
-    problem p = {.v = evaluator, .lower_N = lower_N, .upper_N = upper_N, .start_N = design_N, .w = w};
+    problem p = {.v = *evaluator, .lower_N = lower_N, .upper_N = upper_N, .w = w};
     hf_form_result start;
-    *result = (hf_polish_result){0};
-    HF_TRY(hf_evaluate(evaluator, design_N, w, &start));
     hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &p)));
-    number_variables(&p);
-    memcpy(p.best_N, design_N, bytes);
-    p.best_psi_m = result->start_psi_m = start.psi_m;
-    hf_status status = evaluator->model->n_attachment ? hf_schur_create(evaluator->model, &p.schur) : HF_OK;
-    if (status == HF_OK) status = hf_chord_create_matrix(evaluator, &p.matrix, &p.lanes);
-    if (status == HF_OK) status = minimise(&p, max_iterations, design_N, result);
-    result->psi_m = p.best_psi_m;
-    result->evaluations = p.evaluations;
-    memcpy(design_N, p.best_N, bytes);
-    hf_chord_lanes_free(&p.lanes);
-    hf_chord_free(&p.matrix);
-    hf_schur_free(&p.schur);
+    *result = (hf_polish_result){.stop = HF_POLISH_MAX_ITERATIONS};
+    p.by_tension = evaluator->rule == HF_RULE_TENSION;
+    p.cap = evaluator->boundary_ratio_cap;
+    p.v.rule = HF_RULE_FORCE_DENSITY;
+    p.v.boundary_ratio_cap = INFINITY;
+    HF_TRY(hf_evaluate(evaluator, design_N, w, &start));
+    result->psi_m = result->start_psi_m = start.psi_m;
+    hf_status status = create(&p, &arena);
+    if (status == HF_OK) {
+        begin(&p, design_N);
+        status = minimise(&p, max_iterations, result);
+        result->evaluations = p.evaluations;
+        hand_over(&p, evaluator, design_N, result);
+    }
+    hf_quadratic_free(&p.step);
+    hf_sensitivity_free(&p.slopes);
     hf_arena_free(&arena);
     return status;
 }

@@ -29,6 +29,7 @@ const hf_hdf5_kind hf_layout_role = {WORDS(hf_role_word)};
 const hf_hdf5_kind hf_layout_group = {WORDS(hf_group_word)};
 const hf_hdf5_kind hf_layout_law = {WORDS(hf_law_word)};
 const hf_hdf5_kind hf_layout_ga_stop = {WORDS(hf_population_stop_word)};
+const hf_hdf5_kind hf_layout_polish_stop = {WORDS(hf_polish_stop_word)};
 const hf_hdf5_kind hf_layout_joint = {ENDED_WORDS(hf_joint_word)};
 const hf_hdf5_kind hf_layout_unit = {WORDS(hf_unit_word)};
 const hf_hdf5_kind hf_layout_status = {VALUES(status_word, status_value)};

@@ -22,19 +22,19 @@
 /* ---- Enumerations: words and values from the engine's own lists ---- */
 
 extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_layout_status, hf_layout_stop_reason,
-    hf_layout_ga_stop, hf_layout_joint, hf_layout_unit, hf_layout_coupling_stop;
+    hf_layout_ga_stop, hf_layout_polish_stop, hf_layout_joint, hf_layout_unit, hf_layout_coupling_stop;
 #define HF_KIND_ROLE (&hf_layout_role)
 #define HF_KIND_GROUP (&hf_layout_group)
 #define HF_KIND_LAW (&hf_layout_law)
 #define HF_KIND_STATUS (&hf_layout_status)
 #define HF_KIND_STOP_REASON (&hf_layout_stop_reason)
 #define HF_KIND_GA_STOP (&hf_layout_ga_stop)
+#define HF_KIND_POLISH_STOP (&hf_layout_polish_stop)
 #define HF_KIND_JOINT (&hf_layout_joint)
 #define HF_KIND_UNIT (&hf_layout_unit)
 #define HF_KIND_COUPLING_STOP (&hf_layout_coupling_stop)
-#define HF_KIND_SOLVER HF_KIND_INT     /* stored as its number */
-#define HF_KIND_CONVERGED HF_KIND_FLAG /* a word in JSON alone */
-#define HF_KIND_TRUTH HF_KIND_INT      /* a bool that was stored as a number before there were flags */
+#define HF_KIND_SOLVER HF_KIND_INT /* stored as its number */
+#define HF_KIND_TRUTH HF_KIND_INT  /* a bool that was stored as a number before there were flags */
 
 /* The stored kind of a figure of HF_RESULT_LIST. */
 const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind);

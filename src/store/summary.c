@@ -54,8 +54,8 @@ static void write_field(const hf_result_field *field, const void *owner, hf_json
     case HF_RESULT_TRUTH:
         hf_json_bool(j, field->key, *(const bool *)value);
         break;
-    case HF_RESULT_CONVERGED:
-        hf_json_text(j, field->key, *(const bool *)value ? "converged" : "max_iterations");
+    case HF_RESULT_POLISH_STOP:
+        hf_json_text(j, field->key, hf_polish_stop_word[number]);
         break;
     case HF_RESULT_STATUS:
         hf_json_text(j, field->key, hf_status_word((hf_status)number));

@@ -88,7 +88,8 @@ START_TEST(schema_is_yaml_with_every_key)
         "set(a['scene']['import']) == {'nodes', 'cables'}", "a['surface'] == {'frequencies_Hz': []}",
         "set(a['form']) == {'method', 'pretension_N', 'stop', 'residual_tolerance', 'length_tolerance', "
         "'rms_tolerance_m', 'max_iterations', 'collapse_ratio'}",
-        "set(a['optimize']) == {'method', 'symmetry', 'solver', 'polish_iterations', 'rule', 'population', "
+        "set(a['optimize']) == {'method', 'symmetry', 'solver', 'polish_iterations', 'compare_lm', 'rule', "
+        "'population', "
         "'generations', 'range_N', 'min_tension_N', 'max_tension_N', "
         "'boundary_ratio_cap', 'seed', 'crossover_high', 'crossover_low', 'mutation_high', 'mutation_low', 'elites', "
         "'stagnation_tolerance_m', 'stagnation_generations'}",

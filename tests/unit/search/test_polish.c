@@ -67,7 +67,7 @@ START_TEST(reaches_the_known_optimum)
     ck_assert_double_eq_tol(1e3 * result.psi_m, 6.345, 1e-3);
     ck_assert_double_eq_tol(result.start_psi_m, start_m, 1e-12);
     ck_assert_double_eq_tol(psi_of(&p, design_N), result.psi_m, 1e-12);
-    ck_assert_int_eq(result.converged, 1);
+    ck_assert_int_eq(result.stop, HF_POLISH_CONVERGED);
     ck_assert_int_le(result.iterations, 60); /* observed: 30; without exact derivatives or scaling far more */
     assert_within_bounds(&p, design_N);
     /* once more for one step: it starts by leaving the bounds, which is uphill, and must not end there */
@@ -159,7 +159,8 @@ START_TEST(never_worse_than_its_start)
 }
 END_TEST
 
-/* With room for 400 N the best designs have boundary ratios around 9; a cap of 5 stands in the way. */
+/* With room for 400 N the best designs have boundary ratios around 9; a cap of 5 stands in the way, and costs little:
+ * psi is flat there. */
 START_TEST(ratio_cap_is_kept)
 {
     struct polish_run p;
@@ -178,7 +179,7 @@ START_TEST(ratio_cap_is_kept)
             ck_assert_double_gt(end.boundary_tension_ratio, 5);
     }
     ck_assert_double_lt(capped.psi_m, capped.start_psi_m);
-    ck_assert_double_gt(capped.psi_m, open.psi_m);
+    ck_assert_double_ge(capped.psi_m, (1 - 1e-5) * open.psi_m);
     close_net(&p.r.net);
 }
 END_TEST

@@ -1,0 +1,184 @@
+#include "linalg/quadratic.h"
+
+#include "base/arena.h"
+
+#include <math.h>
+#include <string.h>
+
+void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info);
+void dtrtri_(const char *uplo, const char *diag, const int *n, double *a, const int *lda, int *info);
+
+/* A limit whose normal is this near to a combination of the active ones (as a part of its square) adds nothing: an
+ * active one must go first. */
+#define DEPENDENT 1e-20
+#define STEPS_PER_VARIABLE 50 /* of limits taken in or let go; far more than any programme needs that does not cycle */
+
+static void lay_out(hf_arena *a, hf_quadratic *q)
+{
+    size_t n = (size_t)q->n;
+    q->inverse = hf_arena_take(a, n * n, sizeof(double));
+    q->triangle = hf_arena_take(a, n * n, sizeof(double));
+    q->x = hf_arena_take(a, n, sizeof(double));
+    q->active = hf_arena_take(a, n, sizeof(int));
+    q->multiplier = hf_arena_take(a, n, sizeof(double));
+    q->scratch = hf_arena_take(a, 4 * n, sizeof(double));
+}
+
+hf_status hf_quadratic_create(int n, hf_quadratic *q)
+{
+    hf_arena arena = {0};
+    *q = (hf_quadratic){.n = n};
+    hf_status status = HF_ARENA_MAKE(&arena, lay_out(&arena, q));
+    q->block = arena.block;
+    return status;
+}
+
+void hf_quadratic_free(hf_quadratic *q)
+{
+    hf_arena arena = {.block = q->block};
+    hf_arena_free(&arena);
+    *q = (hf_quadratic){0};
+}
+
+static double inner_product(int n, const double *a, const double *b)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+/* J = L^-T for H = L L', column j at inverse + j n; x = -J J' g, the free minimum. */
+static hf_status begin(hf_quadratic *q, const double *hessian, const double *gradient)
+{
+    int n = q->n, info = 0;
+    double *J = q->inverse;
+    for (int r = 0; r < n; r++) /* L' is the upper triangle by columns = the lower one by rows */
+        for (int c = 0; c < n; c++)
+            J[r * n + c] = c <= r ? hessian[r * n + c] : 0;
+    dpotrf_("U", &n, J, &n, &info);
+    if (info == 0) dtrtri_("U", "N", &n, J, &n, &info);
+    if (info != 0) return HF_SINGULAR;
+    memset(q->x, 0, (size_t)n * sizeof(double));
+    for (int j = 0; j < n; j++) {
+        double share = inner_product(n, J + j * n, gradient);
+        for (int i = 0; i < n; i++)
+            q->x[i] -= share * J[j * n + i];
+    }
+    q->n_active = 0;
+    return HF_OK;
+}
+
+/* Turn columns a and b of J so that the pair (*f, *g), rows a and b of a column of R, becomes (length, 0). */
+static void rotate(double *f, double *g, double *cosine, double *sine)
+{
+    double length = sqrt(*f * *f + *g * *g);
+    *cosine = length > 0 ? *f / length : 1;
+    *sine = length > 0 ? *g / length : 0;
+    *f = length;
+    *g = 0;
+}
+
+static void turn_columns(hf_quadratic *q, int a, double cosine, double sine)
+{
+    double *u = q->inverse + a * q->n, *v = u + q->n;
+    for (int i = 0; i < q->n; i++) {
+        double old = u[i];
+        u[i] = cosine * old + sine * v[i];
+        v[i] = cosine * v[i] - sine * old;
+    }
+}
+
+/* Take in the limit whose normal is d = J' normal in terms of J. */
+static void take_in(hf_quadratic *q, double *d, int kind, double multiplier)
+{
+    int m = q->n_active, n = q->n;
+    double cosine, sine;
+    for (int i = n - 2; i >= m; i--) {
+        rotate(d + i, d + i + 1, &cosine, &sine);
+        turn_columns(q, i, cosine, sine);
+    }
+    memcpy(q->triangle + m * n, d, (size_t)(m + 1) * sizeof(double));
+    q->active[m] = kind;
+    q->multiplier[m] = multiplier;
+    q->n_active++;
+}
+
+/* Let the active limit k go: R without column k is made triangular again. */
+static void let_go(hf_quadratic *q, int k)
+{
+    int n = q->n;
+    double cosine, sine, *R = q->triangle;
+    q->n_active--;
+    for (int j = k; j < q->n_active; j++) {
+        memcpy(R + j * n, R + (j + 1) * n, (size_t)(j + 2) * sizeof(double));
+        q->active[j] = q->active[j + 1];
+        q->multiplier[j] = q->multiplier[j + 1];
+    }
+    for (int j = k; j < q->n_active; j++) {
+        rotate(R + j * n + j, R + j * n + j + 1, &cosine, &sine);
+        turn_columns(q, j, cosine, sine);
+        for (int c = j + 1; c < q->n_active; c++) {
+            double *f = R + c * n + j, old = f[0];
+            f[0] = cosine * old + sine * f[1];
+            f[1] = cosine * f[1] - sine * old;
+        }
+    }
+}
+
+/* Move until `limit` holds, letting active limits go whose multipliers would become negative. */
+static hf_status obey(hf_quadratic *q, const hf_quadratic_limit *limit, int *steps_left)
+{
+    int n = q->n;
+    double own = 0, *d = q->scratch, *z = d + n, *r = z + n;
+    while ((*steps_left)-- > 0) {
+        int m = q->n_active, blocking = -1;
+        double dual_step = INFINITY, free_square, whole;
+        for (int j = 0; j < n; j++)
+            d[j] = inner_product(n, q->inverse + j * n, limit->normal);
+        free_square = inner_product(n - m, d + m, d + m);
+        whole = inner_product(n, d, d);
+        memset(z, 0, (size_t)n * sizeof(double));
+        for (int j = m; j < n; j++)
+            for (int i = 0; i < n; i++)
+                z[i] += d[j] * q->inverse[j * n + i];
+        for (int i = m - 1; i >= 0; i--) {
+            double sum = d[i];
+            for (int j = i + 1; j < m; j++)
+                sum -= q->triangle[j * n + i] * r[j];
+            r[i] = sum / q->triangle[i * n + i];
+            if (r[i] > 0 && q->multiplier[i] / r[i] < dual_step) {
+                dual_step = q->multiplier[i] / r[i];
+                blocking = i;
+            }
+        }
+        double short_of = limit->bound - inner_product(n, limit->normal, q->x);
+        double full_step = free_square > DEPENDENT * whole ? fmax(short_of, 0) / free_square : INFINITY;
+        double step = fmin(dual_step, full_step);
+        if (!isfinite(step)) return HF_DIFFERENT;
+        for (int i = 0; i < n && isfinite(full_step); i++)
+            q->x[i] += step * z[i];
+        for (int i = 0; i < m; i++)
+            q->multiplier[i] -= step * r[i];
+        own += step;
+        if (full_step <= dual_step) {
+            take_in(q, d, limit->kind, own);
+            return HF_OK;
+        }
+        let_go(q, blocking);
+    }
+    return HF_DIFFERENT;
+}
+
+hf_status hf_quadratic_solve(hf_quadratic *q, const double *hessian, const double *gradient, hf_quadratic_worst *worst,
+                             void *context)
+{
+    int steps_left = STEPS_PER_VARIABLE * (q->n + 1);
+    hf_quadratic_limit limit = {.normal = q->scratch + 3 * q->n};
+    HF_TRY(begin(q, hessian, gradient));
+    for (;;) {
+        memset(limit.normal, 0, (size_t)q->n * sizeof(double));
+        if (!worst(context, q->x, &limit)) return HF_OK;
+        HF_TRY(obey(q, &limit, &steps_left));
+    }
+}

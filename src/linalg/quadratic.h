@@ -1,0 +1,42 @@
+/* quadratic - a strictly convex quadratic programme in a few hundred variables: the least of x'Hx/2 + g'x under linear
+ * limits a'x >= b, by the dual method of Goldfarb and Idnani (Math. Program. 27, 1983): it starts at the free minimum
+ * and takes in one violated limit after the other, so a caller names the worst limit instead of listing all. */
+#ifndef HIFDM_QUADRATIC_H
+#define HIFDM_QUADRATIC_H
+
+#include <hifdm/status.h>
+#include <stdbool.h>
+
+/* One limit, normal' x >= bound. `kind` is the caller's. */
+typedef struct {
+    double *normal; /* [n] */
+    double bound;
+    int kind;
+} hf_quadratic_limit;
+
+/* Write the limit that x violates most into *limit, whose `normal` is n zeros on entry; false when x violates none
+ * beyond rounding. */
+typedef bool hf_quadratic_worst(void *context, const double *x, hf_quadratic_limit *limit);
+
+typedef struct {
+    int n;
+    double *inverse;    /* [n][n] scratch: columns J, with J J' = H^-1 */
+    double *triangle;   /* [n][n] scratch: R, the active normals in terms of J */
+    double *x;          /* [n] the answer */
+    int n_active;       /* limits that hold with equality */
+    int *active;        /* [n] their kinds */
+    double *multiplier; /* [n] of the active limits, > 0 */
+    double *scratch;    /* [4 n] */
+    void *block;
+} hf_quadratic;
+
+/* HF_OK or HF_NO_MEMORY; free in either case. */
+hf_status hf_quadratic_create(int n, hf_quadratic *quadratic);
+void hf_quadratic_free(hf_quadratic *quadratic);
+
+/* hessian [n][n]: its lower triangle by rows is read. HF_OK; HF_SINGULAR when it is not positive definite; HF_DIFFERENT
+ * when no x obeys all limits. */
+hf_status hf_quadratic_solve(hf_quadratic *quadratic, const double *hessian, const double *gradient,
+                             hf_quadratic_worst *worst, void *context);
+
+#endif

@@ -1,0 +1,124 @@
+/* Levenberg-Marquardt within limits, as the program runs it.
+ *
+ * tests/verify/data/limits: `triangles_a`, `triangles_c`, nets of triangles with scalloped edges on ties, found by a
+ * search for the paper's figures; `loaded`, a 9 x 9 cylinder with loads. Their optima come from up to 24 starts of
+ * scipy's trust-region solver and of our own with exact derivatives; that of `loaded` has a boundary ratio of 1.1635,
+ * so every cap above that must lead to it. */
+#include "cli.h"
+
+#include <inttypes.h>
+
+static const char *net_of(const char *name, const char *form)
+{
+    const char *nodes = source_path(formatted("tests/verify/data/limits/%s_nodes.csv", name));
+    SHELL(0, "cp \"$1\" \"$2\"", keep(nodes), temp("nodes.csv"));
+    SHELL(0, "cp \"$1\" \"$2\"", keep(source_path(formatted("tests/verify/data/limits/%s_cables.csv", name))),
+          temp("cables.csv"));
+    return file_with("net.yaml", formatted("scene: {import: {nodes: nodes.csv, cables: cables.csv}}\n%s", form));
+}
+
+/* As the paper does it: the iteration to its own stop, which leaves the tensions from which the designs start. */
+#define PAPER                                                                                                          \
+    "form: {method: hifdm, pretension_N: 10, stop: rms_change, residual_tolerance: 1.0e-8, max_iterations: 1500}\n"    \
+    "optimize: {range_N: 1, boundary_ratio_cap: 6, generations: 400, stagnation_generations: 400, seed: 2022}\n"
+
+START_TEST(nets_of_triangles_reach_their_optima)
+{
+    static const struct {
+        const char *net, *method;
+        double psi_mm;
+    } of[] = {{"triangles_a", "lm", 4.0141387}, {"triangles_a", "ga", 4.0141387}, {"triangles_c", "ga", 3.8678978}};
+    const char *path = net_of(of[_i].net, PAPER), *out = temp("r.h5");
+    HIFDM(0, "run", path, "-o", out, "--set", keep(formatted("optimize.method=%s", of[_i].method)));
+    OUT("LM optimum");
+    OUT("held by ");
+    EXPECT(out, "--", formatted("abs(a['polish'].attrs['psi_m'] * 1e3 - %.7f) < 1e-7", of[_i].psi_mm),
+           "a['polish'].attrs['polish_iterations'] <= 60", "a['polish'].attrs['polish_stop'] == 0",
+           "a['polish'].attrs['polish_n_at_lower'] + a['polish'].attrs['polish_n_at_upper'] > 0");
+}
+END_TEST
+
+#define LOADED                                                                                                         \
+    "form: {pretension_N: 10, residual_tolerance: 1.0e-11, length_tolerance: 1.0e-11}\n"                               \
+    "optimize: {method: lm, range_N: 20}\n"
+
+START_TEST(a_cap_that_does_not_hold_the_optimum_does_not_move_it)
+{
+    static const char *const cap[] = {"1.2", "1.3", "1.5", "2"};
+    const char *path = net_of("loaded", LOADED), *out = temp("r.h5");
+    HIFDM(0, "run", path, "-o", out, "--set", keep(formatted("optimize.boundary_ratio_cap=%s", cap[_i])));
+    EXPECT(out, "--", "abs(a['polish'].attrs['psi_m'] * 1e3 - 132.52853) < 1e-5",
+           "abs(a['polish'].attrs['boundary_tension_ratio'] - 1.1635) < 1e-4", "a['polish'].attrs['polish_stop'] == 0",
+           "not a['polish'].attrs['polish_is_at_cap']");
+}
+END_TEST
+
+START_TEST(a_cap_that_holds_it_is_named_and_met)
+{
+    const char *path = net_of("loaded", LOADED), *out = temp("r.h5");
+    HIFDM(0, "run", path, "-o", out, "--set", "optimize.boundary_ratio_cap=1.1");
+    OUT("upper bounds and the cap on the boundary ratio\n");
+    EXPECT(out, "--", "a['polish'].attrs['psi_m'] * 1e3 > 132.52853", "a['polish'].attrs['polish_is_at_cap']",
+           "0 <= 1.1 - a['polish'].attrs['boundary_tension_ratio'] < 1e-8", "a['polish'].attrs['polish_stop'] == 0");
+}
+END_TEST
+
+/* Random nets by both rules, against SLSQP with equilibria and derivatives of its own. */
+START_TEST(scipy_gains_nothing_on_capped_nets)
+{
+    const char *const argv[] = {python_program(),
+                                keep(source_path("tests/verify/lm_slsqp.py")),
+                                hifdm_program(),
+                                temp("."),
+                                keep(formatted("%" PRIu64, test_seed())),
+                                "3",
+                                NULL};
+    demand_exit(run_command(200.0, argv), 0, "lm_slsqp.py", __LINE__);
+    OUT(" 3 nets, 0 wrong");
+}
+END_TEST
+
+START_TEST(the_comparison_can_be_switched_off)
+{
+    const char *path = file_with("c.yaml", SMALL_SCENE SMALL_GA), *out = temp("r.h5");
+    HIFDM(0, "run", path, "-o", out, "--set", "optimize.compare_lm=false");
+    EXPECT(out, "--", "'polish' not in a");
+    HIFDM(0, "check", path, "--set", "optimize.compare_lm=false");
+    ck_assert_ptr_null(strstr(said.out, "Levenberg-Marquardt: "));
+    HIFDM(0, "run", path, "-o", out, "--set", "optimize.compare_lm=false", "--set", "optimize.method=ga+lm",
+          "--restart"); /* the result is no comparison */
+    EXPECT(out, "--", "'polish' in a");
+    HIFDM(2, "run", path, "-o", out, "--set", "optimize.compare_lm=maybe");
+    ERR("optimize.compare_lm");
+}
+END_TEST
+
+/* 1764 nodes and six designs: twenty times the operations of the genetic algorithm, and seconds. */
+START_TEST(a_comparison_nobody_asked_for_must_be_cheap)
+{
+    const char *path = file_with("c.yaml", "scene: {parabolic_cylinder: {aperture_m: 10, length_m: 12, focal_length_m: "
+                                           "7.2, modules: [10, 12], cells_per_module: [4, 4], scallop: 0.1}}\n"
+                                           "optimize: {population: 3, generations: 2, elites: 1}\n"),
+               *out = temp("r.h5");
+    HIFDM(0, "run", path, "-o", out);
+    EXPECT(out, "--", "'polish' not in a");
+    HIFDM(0, "run", path, "-o", out, "--restart", "--set", "optimize.compare_lm=true", "--set",
+          "optimize.polish_iterations=1");
+    EXPECT(out, "--", "a['polish'].attrs['polish_stop'] == 2");
+}
+END_TEST
+
+Suite *suite_cli_limits(void)
+{
+    Suite *suite = suite_create("cli/limits");
+    TCase *tests = tcase_create("limits");
+    suite_add_tcase(suite, tests);
+    tcase_set_timeout(tests, 200);
+    tcase_add_loop_test(tests, nets_of_triangles_reach_their_optima, 0, 3);
+    tcase_add_loop_test(tests, a_cap_that_does_not_hold_the_optimum_does_not_move_it, 0, 4);
+    tcase_add_test(tests, a_cap_that_holds_it_is_named_and_met);
+    tcase_add_test(tests, scipy_gains_nothing_on_capped_nets);
+    tcase_add_test(tests, the_comparison_can_be_switched_off);
+    tcase_add_test(tests, a_comparison_nobody_asked_for_must_be_cheap);
+    return suite;
+}
