@@ -95,6 +95,10 @@ BENCH := $(BUILD)/bench/bench
 BENCH_OUT ?= results/bench
 BENCH_ROUNDS ?= 3
 BENCH_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/bench/*.c)))
+# Harnesses of tests/fuzz, each fuzz_NAME.c, and the calls that tests/fuzz/fuzz.c limits or shortens.
+FUZZERS := $(patsubst tests/fuzz/%.c,$(BUILD)/%,$(sort $(wildcard tests/fuzz/fuzz_*.c)))
+FUZZ_OBJ := $(FUZZERS:$(BUILD)/%=$(BUILD)/tests/fuzz/%.o) $(BUILD)/tests/fuzz/fuzz.o
+FUZZ_WRAP := hf_config_load hf_scene_parabolic_cylinder hf_truss_generate hf_text_uint64 hf_study_make_points
 # The run is benchmarked with a clock around these calls: tools/bench/stages.c.
 BENCH_WRAP := hf_config_load hf_config_scene hf_model_build hf_symmetry_apply hf_workspace_create hf_evaluate_form \
               hf_batch_create hf_batch_share hf_optimiser_create hf_batch_run hf_batch_next hf_batch_run_one \
@@ -114,10 +118,9 @@ quote = '$(subst ','\'',$(1))'
 stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
-FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check literal \
-         fuzz-results bench api lint \
-         asan tsan install
-.PHONY: $(FRONT) setup clean help FORCE
+FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check literal bench api lint \
+         asan tsan fuzz fuzz-results install
+.PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
 ifneq ($(filter $(FRONT) setup,$(MAKECMDGOALS)),)
@@ -228,6 +231,15 @@ tsan: ## a short run of TSAN_CASE, and some points of a sweep, under the thread 
 TSAN_RUN = OMP_NUM_THREADS=4 TSAN_OPTIONS=ignore_noninstrumented_modules=1 $(NO_ASLR) build/tsan/hifdm
 NO_ASLR = $(shell setarch -R true 2>/dev/null && echo setarch -R)
 
+# FUZZ="case net" picks harnesses; FUZZ_SECONDS=60 each, or FUZZ_RUNS=1000000; FUZZ_SEED=...; FUZZ_JOBS=2 at a time.
+# -O1: twice the inputs per second of -O0, and no longer to compile.
+fuzz: ## inputs that a fuzzer makes up, under the sanitizers, in build/fuzz; findings and how to repeat them are printed
+	$(Q)tools/setup.sh --ci
+	$(SUB) BUILD=build/fuzz CC=clang SANITIZE=address,undefined,fuzzer-no-link CFLAGS='-O1 -g' WERROR= fuzzers
+	$(Q)tests/fuzz/run.sh build/fuzz $(FUZZ)
+
+fuzzers: $(FUZZERS) $(PROGRAM)
+
 install: all ## install under PREFIX (/usr/local), within DESTDIR if given
 	$(call install_files,$(DESTDIR)$(PREFIX),$(PREFIX))
 
@@ -337,4 +349,8 @@ $(BENCH): $(BENCH_OBJ) $(STATIC)
 	$(call say,LD,$@)
 	$(Q)$(LINK) $(patsubst %,-Wl$(comma)--wrap=%,$(BENCH_WRAP)) -o $@ $^ $(filter -l%,$(CHOLMOD)) $(PKG_LIBS)
 
--include $(LIB_OBJ:.o=.d) $(APP_OBJ:.o=.d) $(TEST_OBJ:.o=.d) $(BENCH_OBJ:.o=.d)
+$(FUZZERS): $(BUILD)/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/fuzz/fuzz.o $(filter-out %/main.o,$(APP_OBJ)) $(STATIC)
+	$(call say,LD,$@)
+	$(Q)$(LINK) -fsanitize=fuzzer $(patsubst %,-Wl$(comma)--wrap=%,$(FUZZ_WRAP)) -o $@ $^ $(PKG_LIBS)
+
+-include $(LIB_OBJ:.o=.d) $(APP_OBJ:.o=.d) $(TEST_OBJ:.o=.d) $(BENCH_OBJ:.o=.d) $(FUZZ_OBJ:.o=.d)

@@ -63,7 +63,9 @@ missing_packages() {
         has clang || need clang
         has_openmp clang || need libomp-dev
         # Its package carries clang's version in its name, which is known once clang is there: the second round below.
-        if has clang && ! ls "$(clang -print-resource-dir)"/lib/linux/libclang_rt.tsan-*.a >/dev/null 2>&1; then
+        # Wanted are the thread sanitizer, the address sanitizer and the fuzzer.
+        if has clang && ! ls "$(clang -print-resource-dir)"/lib/linux/libclang_rt.{tsan,asan,fuzzer}-*.a \
+            >/dev/null 2>&1; then
             need "libclang-rt-$(clang -dumpversion | cut -d. -f1)-dev"
         fi
         has cppcheck || need cppcheck

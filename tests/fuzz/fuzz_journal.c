@@ -1,0 +1,177 @@
+/* The journal of a run. The first byte of the input says how the rest is meant: bit 0: edits to the journal of a real
+ * run, each two bytes of offset, one of length and that many bytes, else the journal itself; bit 1: the check sums are
+ * put right afterwards, so that damage reaches what lies behind them; bit 2: the end is cut off as well, at an offset
+ * given by two bytes. The records are taken as a store takes them, into an optimiser that breeds the designs again. */
+#include "fuzz/fuzz.h"
+
+#include "store/generations.h"
+#include "store/journal.h"
+#include <hifdm/optimiser.h>
+
+#include <fcntl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+enum { N_GENERATION = 4, N_INDIVIDUAL = 3, N_GENE = 2, HEADER_BYTES = 8 + HF_JOURNAL_IDENTITY, HEAD_BYTES = 16 };
+
+static int gene[N_GENE];
+static double base_N[N_GENE] = {10, 12};
+static const hf_model model = {.n_gene = N_GENE, .n_gene_group = 1, .gene_cable = gene, .gene_group = gene};
+static const hf_optimize_settings settings = {.population = N_INDIVIDUAL,
+                                              .generations = N_GENERATION + 2,
+                                              .stagnation_generations = N_GENERATION + 2,
+                                              .range_N = 1,
+                                              .min_tension_N = -1e6,
+                                              .max_tension_N = 1e6,
+                                              .crossover_high = 0.9,
+                                              .crossover_low = 0.5,
+                                              .mutation_high = 0.3,
+                                              .mutation_low = 0.1,
+                                              .elites = 1};
+
+typedef struct {
+    hf_optimiser optimiser;
+    hf_generations rows;
+    int n_taken;
+} run;
+
+static void open_run(run *r)
+{
+    *r = (run){0};
+    FUZZ_REQUIRE(hf_optimiser_create(&hf_optimiser_ga, &settings, &model, base_N, &r->optimiser) == HF_OK);
+    FUZZ_REQUIRE(hf_generations_create(N_INDIVIDUAL, N_GENE, settings.generations, &r->rows) == HF_OK);
+}
+
+static void close_run(run *r)
+{
+    hf_optimiser_free(&r->optimiser);
+    hf_generations_free(&r->rows);
+}
+
+static hf_journal open_journal(int file)
+{
+    return (hf_journal){.file = file, .result = "run.h5", .path = "run.h5.journal"};
+}
+
+/* ---- a real journal ---- */
+
+static uint8_t *real;
+static size_t real_size;
+
+static void make_real(int file)
+{
+    run r;
+    hf_messages messages = {0};
+    hf_journal journal = open_journal(file);
+    struct iovec piece[HF_GENERATIONS_PIECES];
+    open_run(&r);
+    FUZZ_REQUIRE(hf_journal_restart(&journal, "fuzz", &messages) == HF_OK);
+    for (int g = 0; g < N_GENERATION; g++) {
+        hf_population *p = &r.optimiser.population;
+        if (g > 0) FUZZ_REQUIRE(hf_optimiser_next(&r.optimiser));
+        for (int i = 0; i < N_INDIVIDUAL; i++)
+            p->result[i] =
+                (hf_form_result){.status = HF_OK, .psi_m = fabs(p->design_N[i * N_GENE] - 10), .iterations = g};
+        hf_optimiser_tell(&r.optimiser);
+        hf_generations_add(&r.rows, p, piece);
+        FUZZ_REQUIRE(hf_journal_append(&journal, g, piece, HF_GENERATIONS_PIECES, &messages) == HF_OK);
+    }
+    close_run(&r);
+    real_size = (size_t)journal.size;
+    real = malloc(real_size);
+    FUZZ_REQUIRE(real && pread(file, real, real_size, 0) == (ssize_t)real_size);
+}
+
+/* ---- damage ---- */
+
+static void repair(uint8_t *journal, size_t size)
+{
+    for (size_t at = HEADER_BYTES; at + HEAD_BYTES <= size;) {
+        uint32_t length, crc;
+        memcpy(&length, journal + at + 4, sizeof length);
+        if (length < 4 || length > size - at - 12) return;
+        crc = (uint32_t)crc32(0, journal + at + 12, length);
+        memcpy(journal + at + 8, &crc, sizeof crc);
+        at += 12 + length;
+    }
+}
+
+/* The journal that the input means, into the file. */
+static void write_journal(int file, const uint8_t *data, size_t size)
+{
+    int how = size ? data[0] : 0;
+    size_t at = size > 0, n = how & 1 ? real_size : size - at;
+    uint8_t *journal = malloc(n + 1);
+    FUZZ_REQUIRE(journal != NULL);
+    memcpy(journal, how & 1 ? real : data + at, n);
+    if ((how & 4) && (how & 1) && at + 2 <= size) {
+        n = (data[at] + 256u * data[at + 1]) % (n + 1);
+        at += 2;
+    }
+    for (; (how & 1) && n && at + 3 <= size;) {
+        size_t offset = (data[at] + 256u * data[at + 1]) % n, length = data[at + 2];
+        at += 3;
+        for (size_t k = 0; k < length && at < size; k++, at++)
+            if (offset + k < n) journal[offset + k] = data[at];
+    }
+    if (how & 2) repair(journal, n);
+    FUZZ_REQUIRE(ftruncate(file, 0) == 0 && pwrite(file, journal, n, 0) == (ssize_t)n);
+    free(journal);
+}
+
+/* ---- replay ---- */
+
+/* As a store does: a generation counts that follows the last one and belongs to the designs that are bred again. */
+static hf_status take(void *context, int generation, const void *payload, size_t bytes)
+{
+    run *r = context;
+    hf_optimiser *o = &r->optimiser;
+    if (generation != r->n_taken || bytes != r->rows.payload_bytes || generation >= r->rows.limit) return HF_DIFFERENT;
+    if (generation > 0) {
+        hf_optimiser_tell(o);
+        if (!hf_optimiser_next(o)) return HF_DIFFERENT;
+    }
+    if (!hf_generations_take_payload(&r->rows, payload, &o->population)) return HF_DIFFERENT;
+    hf_generations_add(&r->rows, &o->population, NULL);
+    r->n_taken++;
+    return HF_OK;
+}
+
+/* Returns how many generations were taken, and how many bytes count. */
+static int replay(int file, int64_t *bytes)
+{
+    run r;
+    hf_messages messages = {0};
+    hf_journal journal = open_journal(file);
+    struct stat info;
+    open_run(&r);
+    hf_status status = hf_journal_replay(&journal, "fuzz", take, &r, &messages);
+    if (status == HF_OK) FUZZ_REQUIRE(fstat(file, &info) == 0 && info.st_size == journal.size);
+    *bytes = journal.size;
+    close_run(&r);
+    fuzz_judge(status, &messages);
+    return r.n_taken;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static int file = -1;
+    int64_t bytes, again;
+    if (file < 0) {
+        char path[FUZZ_PATH_SIZE];
+        fuzz_path("journal", path);
+        file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+        FUZZ_REQUIRE(file >= 0);
+        make_real(file);
+    }
+    write_journal(file, data, size);
+    int n = replay(file, &bytes);
+    /* what was cut off stays away, and what was whole stays */
+    FUZZ_REQUIRE(replay(file, &again) == n && again == bytes);
+    return 0;
+}

@@ -1,0 +1,39 @@
+/* The tables of a net: nodes, a line "%%", cables. A net that was accepted is also solved for a few iterations. */
+#include "fuzz/fuzz.h"
+
+#include "run/problem_parts.h"
+#include <hifdm/evaluate.h>
+
+#include <math.h>
+
+static void solve(hf_problem *p, hf_messages *messages, hf_status *status)
+{
+    FUZZ_REQUIRE(hf_model_is_valid(&p->model));
+    *status = hf_problem_allocate(p, messages);
+    if (*status != HF_OK) return;
+    hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
+    FUZZ_REQUIRE(p->form.status != HF_OK || isfinite(p->form.psi_m));
+    *status = hf_problem_explain(p, messages);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static char path[FUZZ_PATH_SIZE];
+    if (!*path) {
+        fuzz_keeps_case = true;
+        fuzz_path("case.yaml", path);
+        fuzz_write_text("case.yaml", "scene: {import: {nodes: n.csv, cables: c.csv}}\n"
+                                     "form: {pretension_N: 10, max_iterations: 30}\n"
+                                     "optimize: {range_N: 2, symmetry: auto}\n");
+    }
+    hf_problem p;
+    hf_messages messages = {0};
+    size_t n_byte, second = fuzz_split(data, size, &n_byte);
+    fuzz_write("n.csv", data, n_byte);
+    fuzz_write("c.csv", data + second, size - second);
+    hf_status status = hf_problem_load(path, NULL, 0, &p, &messages);
+    if (status == HF_OK) solve(&p, &messages, &status);
+    hf_problem_free(&p);
+    fuzz_judge(status, &messages);
+    return 0;
+}
