@@ -2,7 +2,8 @@
 """Do the tests notice? Makes the mutants of tests/mutants.txt one at a time and names those that `make test` misses.
 
 Each is one edit at one place of the sources, in clones of HEAD under build/mutants: the user's tree is not touched. The
-suites of the touched room run first, then the rest, up to the first that fails. The table is build/mutants/table.txt.
+suites of the touched room run first, up to the first that fails; at the end those that lived through them meet all
+suites. The table is build/mutants/table.txt.
 
     tools/mutants.py                   all of them, as many at a time as there are cores
     tools/mutants.py WORD...           those whose name, file or suites contain a word
@@ -69,7 +70,8 @@ def run(tree, log, *command, limit_s=SUITES_S, **environment):
     """True when it succeeds. A process group of its own, so that a hang leaves nothing behind."""
     with open(log, "w") as file:
         child = subprocess.Popen(command, cwd=tree, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT,
-                                 env={**os.environ, **environment}, start_new_session=True)
+                                 env={**os.environ, "BUILD": "build", "WERROR": "", **environment},
+                                 start_new_session=True)
         running.add(child.pid)
         try:
             return child.wait(limit_s) == 0
@@ -92,7 +94,7 @@ def end(pid):
 
 
 def test(tree, log, words):
-    return run(tree, log, "make", "-s", "test", f"SUITE={' '.join(words)}", BUILD="build", HIFDM_TEST_STOP="1",
+    return run(tree, log, "make", "-s", "test", f"SUITE={' '.join(words)}", HIFDM_TEST_STOP="1",
                HIFDM_TEST_JOBS="2", CK_DEFAULT_TIMEOUT=str(TEST_S))
 
 
@@ -108,17 +110,14 @@ def who_failed(log):
     return "timed out", by
 
 
-def try_mutant(mutant, tree):
+def try_mutant(mutant, words, tree):
     source, log = tree / mutant.path, tree.parent / f"{mutant.name}.log"
     text = source.read_text()
     source.write_text(mutant.edited(text))
     try:
-        if not run(tree, log, "make", "-s", "compile-all", "-j1", "WERROR=", BUILD="build"):
+        if not run(tree, log, "make", "-s", "compile-all", "-j1"):
             return "does not compile", ""
-        for words in (mutant.words(), []):
-            if not test(tree, log, words):
-                return who_failed(log)
-        return "SURVIVED", ""
+        return ("lives so far" if words else "SURVIVED", "") if test(tree, log, words) else who_failed(log)
     finally:
         source.write_text(text)
 
@@ -127,7 +126,7 @@ def make_tree(k):
     tree = WORK / f"tree-{k}"
     shutil.rmtree(tree, ignore_errors=True)
     subprocess.run(["git", "clone", "-q", "--shared", TOP, tree], check=True)
-    if not run(tree, WORK / f"tree-{k}.log", "make", "-s", "compile-all", BUILD="build"):
+    if not run(tree, WORK / f"tree-{k}.log", "make", "-s", "compile-all"):
         sys.exit(f"HEAD does not compile: {WORK}/tree-{k}.log")
     return tree
 
@@ -138,10 +137,14 @@ def work_off(queue, results, lock, k):
         with lock:
             if not queue:
                 return
-            mutant = queue.pop(0)
+            mutant, words = queue.pop(0)
         start = time.monotonic()
-        outcome, by = try_mutant(mutant, tree)
+        outcome, by = try_mutant(mutant, words, tree)
         with lock:
+            if outcome == "lives so far":
+                queue.append((mutant, []))
+                print(f"{outcome:16} {time.monotonic() - start:5.0f} s  {mutant.name}", flush=True)
+                continue
             line = f"{outcome:16} {time.monotonic() - start:5.0f} s  {mutant.name:40} {mutant.path:32} {by}"
             results.append((outcome, mutant.name))
             print(line, flush=True)
@@ -169,8 +172,8 @@ def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     if not o.no_base and not test(make_tree(0), WORK / "base.log", []):
         sys.exit(f"the tests fail without a mutant: {WORK}/base.log")
-    results, lock = [], threading.Lock()
-    threads = [threading.Thread(target=work_off, args=(chosen, results, lock, k), daemon=True) for k in range(o.jobs)]
+    queue, results, lock = [(m, m.words()) for m in chosen], [], threading.Lock()
+    threads = [threading.Thread(target=work_off, args=(queue, results, lock, k), daemon=True) for k in range(o.jobs)]
     try:
         for t in threads:
             t.start()
