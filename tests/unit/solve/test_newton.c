@@ -6,6 +6,7 @@
 #include "verified.h"
 
 #include "net/scene_import.h"
+#include "solve/certificate.h"
 #include <hifdm/evaluate.h>
 
 #define TOLERANCE 1e-9
@@ -178,6 +179,30 @@ START_TEST(position_error_is_the_true_error)
 }
 END_TEST
 
+/* One node is moved by 0.1 um, along each axis: what is left of a Newton step is second order, and the classical shape
+ * is linear in its force densities. */
+START_TEST(a_known_move_is_the_position_error)
+{
+    static const int scene[] = {REFLECTOR, LOADED, SPATIAL, MIXED};
+    const double move_m = 1e-7;
+    struct net net;
+    if (_i < 4)
+        open_scene(&net, scene[_i]);
+    else
+        OPEN_CASE(&net, "configs/chen2022.yaml", "form.method=fdm");
+    net.form.residual_tolerance = net.form.length_tolerance = 1e-12;
+    ck_assert_int_eq(find(&net), HF_OK);
+    for (int c = 0; c < 3; c++) {
+        double *x = net.work.position_m + c * net.model.n_node + net.model.n_free / 2, before = *x;
+        *x += move_m;
+        hf_certify(&net.model, &net.work, &net.result);
+        ck_assert_double_eq_tol(net.result.position_error_m, move_m, 1e-2 * move_m);
+        *x = before;
+    }
+    close_net(&net);
+}
+END_TEST
+
 START_TEST(backward_error_is_residual_over_pull)
 {
     struct net net;
@@ -206,6 +231,7 @@ Suite *suite_unit_newton(void)
     tcase_add_loop_test(tests, agrees_with_the_fixed_point, LOADED - 1, N_SCENE);
     tcase_add_loop_test(tests, last_digits_are_cheap, 0, N_SCENE);
     tcase_add_loop_test(tests, position_error_is_the_true_error, 0, 5);
+    tcase_add_loop_test(tests, a_known_move_is_the_position_error, 0, 5);
     tcase_add_test(tests, backward_error_is_residual_over_pull);
     return suite;
 }
