@@ -123,6 +123,8 @@ START_TEST(cut_list_holds_what_it_says)
            "near(sum(float(r['l0_m']) for r in a if r['group'] == 'inner'), float(c[0]['l0_m']), 1e-12)",
            "near(sum(float(r['length_m']) for r in a), float(c[2]['length_m']), 1e-12)",
            "min(float(r['adjustment_m']) for r in a) == float(c[2]['least_adjustment_m'])",
+           "max(float(r['adjustment_m']) for r in a) == float(c[2]['largest_adjustment_m'])",
+           "min(float(r['tension_N']) for r in a if r['group'] == 'inner') == float(c[0]['least_tension_N'])",
            "max(float(r['tension_N']) for r in a if r['group'] == 'boundary') == float(c[1]['largest_tension_N'])");
 }
 END_TEST
