@@ -8,7 +8,7 @@
 const FORM = ["net", "map", "form-finding", "tensions", "summary", "provenance"];
 const GA = ["net", "map", "form-finding", "tensions", "ga", "summary", "provenance"];
 
-const HOSTILE = `</script><img src=x onerror="window.hit=1"><!--<b>&amp;]]>'"`;
+const HOSTILE = `</script><img src=x onerror="window.hit=1"><!--<b>&amp;]]>'"\u2028\u202e\u007f`;
 
 const cylinder = (modules, more = "") =>
   `scene:\n  parabolic_cylinder: {aperture_m: 10, length_m: 12, focal_length_m: 7.2, modules: [${modules}], ` +
@@ -21,6 +21,7 @@ b&amp;,2,0,0,support
 "c""",2,2,0,support
 d',0,2,0,support
 "<i>e</i>",1,1,0.1,inner
+${"long</script>".repeat(19)},3,0,0,support
 `;
 const ODD_CABLES = `id,i,j,group,law,value
 "<img src=x onerror=window.hit=3>",<script>window.hit=2</script>,"<i>e</i>",inner,tension,10
@@ -36,9 +37,10 @@ export const pages = [
     name: "reflector-ga",
     text: cylinder(
       [10, 12],
-      `optimize: {rule: tension, population: 10, generations: 5}\ntitle: ${JSON.stringify(HOSTILE)}\n`,
+      "optimize: {rule: tension, population: 10, generations: 5}\n" +
+        `title: ${JSON.stringify(HOSTILE).replace("\u007f", "\\x7f")}\n`,
     ),
-    title: HOSTILE,
+    title: HOSTILE.replace("\u2028\u202e\u007f", "\\u2028\\u202e\\x7f"),
     sections: GA,
   },
   {

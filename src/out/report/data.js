@@ -5,11 +5,22 @@ const data = JSON.parse(document.getElementById("data").textContent);
 
 // ---- elements: texts only ever become text nodes, so nothing in a case can become markup ----
 
+// Hidden characters as the program shows them elsewhere (hf_text_escape); texts are cut to what a page can hold.
+const TEXT_MAX = 2000;
+const clip = (text, most) => (text.length > most ? `${[...text.slice(0, most)].slice(0, -1).join("")}…` : text);
+const escaped = (text) =>
+  String(text).replace(
+    /[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]/g,
+    (c) => `\\${c < "\x80" ? "x" : "u"}${c.charCodeAt(0).toString(16).padStart(c < "\x80" ? 2 : 4, "0")}`,
+  );
+const shown = (text) => escaped(clip(String(text), TEXT_MAX));
+
 function fill(node, attributes, children) {
   for (const [name, value] of Object.entries(attributes || {}))
     if (value !== undefined && value !== null && value !== false)
-      node.setAttribute(name, value === true ? "" : value);
-  for (const child of children.flat()) if (child !== undefined && child !== null) node.append(child);
+      node.setAttribute(name, value === true ? "" : escaped(value));
+  for (const child of children.flat())
+    if (child !== undefined && child !== null) node.append(typeof child === "string" ? shown(child) : child);
   return node;
 }
 const el = (tag, attributes, ...children) => fill(document.createElement(tag), attributes, children);

@@ -13,7 +13,7 @@ function section(id, title, ...children) {
 // ---- head: title, warnings, the figures that matter ----
 
 function writeHead() {
-  document.getElementById("title").textContent = data.title;
+  document.getElementById("title").textContent = shown(data.title);
   const found =
     `${fmtCount(net.n_node)} nodes (${fmtCount(data.n_free)} free), ${fmtCount(net.n_cable)} cables ` +
     `(${fmtCount(data.n_gene)} adjustable), pretension ${fmt(data.pretension_N)} N`;
@@ -22,8 +22,9 @@ function writeHead() {
       `${fmt(summary.truss.mass_kg)} kg`
     : "";
   document.getElementById("subtitle").textContent = found + truss;
-  document.getElementById("footer").textContent =
-    `Results of hifdm ${summary.version} in ${summary.file}. “Fig.” refers to Chen et al., Aerospace 2022, 9, 239.`;
+  document.getElementById("footer").textContent = shown(
+    `Results of hifdm ${summary.version} in ${summary.file}. “Fig.” refers to Chen et al., Aerospace 2022, 9, 239.`,
+  );
 }
 
 function writeWarnings(title, lines) {

@@ -2,12 +2,13 @@
 
 // ---- axes ----
 
+const NAME_MAX = 60; // characters of the name or value of an axis
 const UNITS = { N_per_m: "N/m", N: "N", m: "m", kg: "kg", Hz: "Hz" };
 // Splits a key into name and unit: "form.pretension_N" gives "pretension" and "N".
 function axisName(key) {
   const last = key.split(".").pop(),
     unit = Object.keys(UNITS).find((u) => last.endsWith(`_${u}`));
-  const name = (unit ? last.slice(0, -unit.length - 1) : last).replace(/_/g, " ");
+  const name = clip((unit ? last.slice(0, -unit.length - 1) : last).replace(/_/g, " "), NAME_MAX);
   return { name, unit: unit ? UNITS[unit] : "", text: unit ? `${name} (${UNITS[unit]})` : name };
 }
 
@@ -16,7 +17,7 @@ function readAxes(study) {
     const columns = input.columns || 1;
     const label = (i) =>
       input.texts
-        ? input.texts[i]
+        ? clip(input.texts[i], NAME_MAX)
         : Array.from({ length: columns }, (_, k) => fmt(input.values[columns * i + k], 5)).join(" × ");
     const isNumber = !input.texts && columns === 1;
     const labels = new Set(Array.from({ length: study.n }, (_, i) => label(i)));
@@ -223,11 +224,13 @@ function writeStudy(study) {
   result.psi_m.forEach((v, i) => {
     if (study.status[i] === "ok" && typeof v === "number" && (best < 0 || v < result.psi_m[best])) best = i;
   });
-  document.getElementById("title").textContent = data.title;
-  document.getElementById("subtitle").textContent =
-    `Sweep of ${fmtCount(study.n)} points over ${axes.map((a) => a.name).join(", ")}`;
-  document.getElementById("footer").textContent =
-    `Merged study ${study.path}. “Fig.” refers to Chen et al., Aerospace 2022, 9, 239.`;
+  document.getElementById("title").textContent = shown(data.title);
+  document.getElementById("subtitle").textContent = shown(
+    `Sweep of ${fmtCount(study.n)} points over ${axes.map((a) => a.name).join(", ")}`,
+  );
+  document.getElementById("footer").textContent = shown(
+    `Merged study ${study.path}. “Fig.” refers to Chen et al., Aerospace 2022, 9, 239.`,
+  );
   const told = study.reason.map((reason, i) => (reason ? `point ${study.id[i]}: ${reason}` : "")).filter((t) => t);
   writeWarnings(
     failed === 1 ? "One point failed" : failed ? `${fmtCount(failed)} points failed` : "Points of note",
