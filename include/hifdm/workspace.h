@@ -19,6 +19,9 @@ extern "C" {
 #define HF_COUPLING_DEPTH 8
 #define HF_COUPLING_ITEMS(m) (3 * (size_t)(m)->n_attachment * (2 * HF_COUPLING_DEPTH + 4))
 
+/* Doubles per cable of the primal-dual path (src/solve/interior.c). */
+#define HF_INTERIOR_ITEMS 42
+
 /* X(type, name, number of items for a model m, unit, meaning). The solver of a net with struts needs a general band
  * matrix and pivots; other nets have none. */
 #define HF_WORKSPACE_FIELDS(X)                                                                                         \
@@ -40,6 +43,9 @@ extern "C" {
     X(double, newton_trial_tension_N, m->has_newton ? (size_t)m->n_cable : 0, "N", "[n_cable]")                        \
     X(double, newton_work, 3 * HF_NEWTON_DOFS(m), "", "for the condition estimate")                                    \
     X(int, newton_integer_work, HF_NEWTON_DOFS(m), "", "for the condition estimate")                                   \
+    X(double, interior_cable, m->has_newton ? HF_INTERIOR_ITEMS *(size_t)m->n_cable : 0, "",                           \
+      "state and step of each cable")                                                                                  \
+    X(double, interior_position_m, m->has_newton ? 3 * (size_t)m->n_node : 0, "m", "[3][n_node] point of the path")    \
     X(double, certificate_work, m->has_newton ? 0 : 3 * (size_t)m->n_node, "", "without a Newton matrix")              \
     X(int, certificate_integer_work, m->has_newton ? 0 : (size_t)m->n_free, "", "the same")                            \
     X(double, displacement_m, 3 * (size_t)m->n_attachment, "m", "[3 n_attachment] displacements by the truss")         \

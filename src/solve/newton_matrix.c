@@ -27,8 +27,8 @@ void hf_newton_matrix_block(const hf_model *m, const hf_workspace *w, int e, dou
             block[r][c] = along * u[r] * u[c] + (r == c ? across : 0);
 }
 
-/* Assembles the matrix at position_m and tension_N into newton_band. Returns the largest diagonal entry. */
-static double assemble_hessian(const hf_model *m, hf_workspace *w)
+/* Assembles the matrix of these blocks into newton_band. Returns the largest diagonal entry. */
+static double assemble_blocks(const hf_model *m, hf_workspace *w, hf_newton_block *block_of)
 {
     int column = half_bandwidth(m) + 1;
     double *band = w->newton_band, block[3][3], largest = 0;
@@ -36,7 +36,7 @@ static double assemble_hessian(const hf_model *m, hf_workspace *w)
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], low = a < b ? a : b, high = a < b ? b : a;
         if (low >= m->n_free) continue;
-        hf_newton_matrix_block(m, w, e, block);
+        block_of(m, w, e, block);
         for (int c = 0; c < 3; c++)
             for (int r = 0; r < 3; r++) {
                 double k = block[r][c];
@@ -59,12 +59,13 @@ static void shift_diagonal(const hf_model *m, hf_workspace *w, double shift)
         w->newton_band[i * column] += shift;
 }
 
-hf_status hf_newton_matrix_factor(const hf_model *m, hf_workspace *w, double *condition)
+hf_status hf_newton_matrix_factor_blocks(const hf_model *m, hf_workspace *w, hf_newton_block *block_of,
+                                         double *condition)
 {
     int n = hf_newton_matrix_dofs(m), k = half_bandwidth(m);
     double shift = DIAGONAL_GUARD;
     for (;; shift = shift < SHIFT_FIRST ? SHIFT_FIRST : 100 * shift) {
-        double largest = assemble_hessian(m, w);
+        double largest = assemble_blocks(m, w, block_of);
         if (!(isfinite(largest) && largest > 0) || shift > 1) return HF_SINGULAR;
         shift_diagonal(m, w, shift * largest);
         double norm = condition ? hf_band_norm(n, k, w->newton_band, w->newton_work) : 0;
@@ -74,6 +75,11 @@ hf_status hf_newton_matrix_factor(const hf_model *m, hf_workspace *w, double *co
         if (condition && shift > DIAGONAL_GUARD) *condition = INFINITY;
         return HF_OK;
     }
+}
+
+hf_status hf_newton_matrix_factor(const hf_model *m, hf_workspace *w, double *condition)
+{
+    return hf_newton_matrix_factor_blocks(m, w, hf_newton_matrix_block, condition);
 }
 
 void hf_newton_matrix_solve(const hf_model *m, const hf_workspace *w, double *rhs)

@@ -56,10 +56,17 @@ static inline double hf_newton_matrix_stiffness(hf_law_cable cable, double lengt
  * a truss uses it for the cables that end at attachments. */
 void hf_newton_matrix_block(const hf_model *model, const hf_workspace *workspace, int i_cable, double block[3][3]);
 
+/* Stiffness between the ends of a cable, for matrices of other blocks than the above. */
+typedef void hf_newton_block(const hf_model *model, const hf_workspace *workspace, int i_cable, double block[3][3]);
+
 /* Factor the matrix at the workspace's shape and tensions into newton_band. *condition (may be NULL): estimate of its
  * 1-norm condition number, INFINITY when it took a Levenberg shift beyond the smallest. HF_SINGULAR when no shift
  * helps. */
 hf_status hf_newton_matrix_factor(const hf_model *model, hf_workspace *workspace, double *condition);
+
+/* hf_newton_matrix_factor for the matrix of these blocks. Cables between two supports are not asked for. */
+hf_status hf_newton_matrix_factor_blocks(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
+                                         double *condition);
 
 /* Solve in place, rhs [3 n_free], with the factor in newton_band. */
 void hf_newton_matrix_solve(const hf_model *model, const hf_workspace *workspace, double *rhs);
