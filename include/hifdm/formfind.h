@@ -73,8 +73,13 @@ void hf_form_update(const hf_model *model, hf_workspace *workspace);
  * supports move. */
 int hf_form_n_chain(const hf_model *model);
 
-/* True when chain i is straight and under lateral load in the workspace's shape. For messages that name it. */
+/* True when chain i is straight and under lateral load, or too short, in the workspace's shape. For messages that name
+ * it. */
 bool hf_form_chain_is_loaded(const hf_model *model, hf_workspace *workspace, int i_chain);
+
+/* True when the lengths of chain i, which add up to *sum_m, are too short for the distance *span_m of its supports. */
+bool hf_form_chain_is_short(const hf_model *model, const hf_workspace *workspace, int i_chain, double *sum_m,
+                            double *span_m);
 
 #ifdef __cplusplus
 }

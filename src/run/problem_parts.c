@@ -256,11 +256,30 @@ static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, 
                                                                           : "");
 }
 
+static hf_status explain_chains(const hf_problem *p, hf_workspace *w, const hf_form_result *r, hf_messages *messages)
+{
+    name_list chains = {0};
+    char name[256];
+    double sum_m, span_m;
+    if (hf_form_chain_is_short(&p->model, w, r->culprit, &sum_m, &span_m)) {
+        hf_model_chain_name(&p->model, &p->scene, r->culprit, name, sizeof name);
+        return hf_error(messages, r->status,
+                        "ill-posed: the lengths of %s add up to %.10g m and do not span their supports, which are "
+                        "%.10g m apart: no shape has them. Give them longer L*, or another law",
+                        name, sum_m, span_m);
+    }
+    name_loaded_chains(p, w, &chains);
+    return hf_error(messages, r->status,
+                    "ill-posed: %d straight chains of length-controlled cables carry lateral load, which no finite "
+                    "tension holds: %s. Give them slack (scene.parabolic_cylinder.scallop, longer L*), another law, or "
+                    "support their nodes",
+                    r->n_loaded_chain, close_names(&chains));
+}
+
 hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
 {
     const hf_form_result *r = &p->form;
     hf_workspace *w = &p->workspace;
-    name_list chains = {0};
     switch (r->status) {
     case HF_OK:
         hf_problem_warn(p, "form-finding", w, r, messages);
@@ -273,13 +292,7 @@ hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
     case HF_TRUSS_TOO_SOFT:
         return explain_too_soft(p, r, messages);
     case HF_STRAIGHT_CHAIN:
-        name_loaded_chains(p, w, &chains);
-        return hf_error(
-            messages, r->status,
-            "ill-posed: %d straight chains of length-controlled cables carry lateral load, which no finite "
-            "tension holds: %s. Give them slack (scene.parabolic_cylinder.scallop, longer L*), another law, or "
-            "support their nodes",
-            r->n_loaded_chain, close_names(&chains));
+        return explain_chains(p, w, r, messages);
     case HF_COLLAPSED:
         return hf_error(
             messages, r->status,

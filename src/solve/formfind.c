@@ -263,28 +263,56 @@ int hf_form_n_chain(const hf_model *m)
     return m->n_attachment ? m->n_any_chain : m->n_chain;
 }
 
-/* True when chain i_chain is under law length and straight at the present places of its supports. */
-static bool chain_is_straight(const hf_model *m, const hf_workspace *w, int i_chain)
+/* Sum of the lengths of chain i_chain, and the square of the present distance of its supports. */
+static double chain_sum(const hf_model *m, const hf_workspace *w, int i_chain, double *square)
 {
-    if (!hf_law_has(w->law[m->chain_cable[m->chain_start[i_chain]]], HF_LAW_IS_RIGID)) return false;
-    if (!m->n_attachment) return true;
     int from, to;
-    double sum = 0, square = 0;
+    double sum = 0;
     chain_supports(m, i_chain, &from, &to);
     for (int k = m->chain_start[i_chain]; k < m->chain_start[i_chain + 1]; k++)
         sum += w->target[m->chain_cable[k]];
+    *square = 0;
     for (int c = 0; c < 3; c++) {
         double d = w->position_m[c * m->n_node + to] - w->position_m[c * m->n_node + from];
-        square += d * d;
+        *square += d * d;
     }
-    return sum <= sqrt(square) * (1 + HF_STRAIGHT_EXCESS);
+    return sum;
+}
+
+static bool chain_is_rigid(const hf_model *m, const hf_workspace *w, int i_chain)
+{
+    return hf_law_has(w->law[m->chain_cable[m->chain_start[i_chain]]], HF_LAW_IS_RIGID);
+}
+
+/* True when chain i_chain is under law length and straight at the present places of its supports. */
+static bool chain_is_straight(const hf_model *m, const hf_workspace *w, int i_chain)
+{
+    double square;
+    if (!chain_is_rigid(m, w, i_chain)) return false;
+    if (!m->n_attachment) return true;
+    return chain_sum(m, w, i_chain, &square) <= sqrt(square) * (1 + HF_STRAIGHT_EXCESS);
+}
+
+bool hf_form_chain_is_short(const hf_model *m, const hf_workspace *w, int i_chain, double *sum_m, double *span_m)
+{
+    double square;
+    *sum_m = chain_sum(m, w, i_chain, &square);
+    *span_m = sqrt(square);
+    return chain_is_rigid(m, w, i_chain) && *sum_m * (1 + HF_STRAIGHT_EXCESS) < *span_m;
+}
+
+/* The lateral load; INFINITY when the chain is too short for its supports, which no shape cures. */
+static double chain_burden_N(const hf_model *m, const hf_workspace *w, int i_chain)
+{
+    double sum, span;
+    return hf_form_chain_is_short(m, w, i_chain, &sum, &span) ? INFINITY : lateral_load_N(m, w, i_chain);
 }
 
 bool hf_form_chain_is_loaded(const hf_model *m, hf_workspace *w, int i_chain)
 {
     if (!chain_is_straight(m, w, i_chain)) return false;
     nodal_forces(m, w, true);
-    return lateral_load_N(m, w, i_chain) > CHAIN_LOAD_NONE * m->reference_N;
+    return chain_burden_N(m, w, i_chain) > CHAIN_LOAD_NONE * m->reference_N;
 }
 
 /* Sets n_loaded_chain and returns the largest lateral load on a straight chain; *worst is that chain or -1. */
@@ -297,7 +325,7 @@ static double look_at_chains(const hf_model *m, hf_workspace *w, hf_form_result 
     if (n_chain) nodal_forces(m, w, true);
     for (int i = 0; i < n_chain; i++) {
         if (!chain_is_straight(m, w, i)) continue;
-        double load = lateral_load_N(m, w, i);
+        double load = chain_burden_N(m, w, i);
         if (!(load > CHAIN_LOAD_NONE * m->reference_N)) continue;
         r->n_loaded_chain++;
         if (load > largest) {
@@ -349,6 +377,7 @@ static bool is_last(const hf_model *m, const hf_form_settings *s, hf_workspace *
         if (looks && r->stop_reason == HF_STOPPED_NONE) {
             double load = look_at_chains(m, w, r, &worst);
             p->next_chain_look *= 2;
+            if (isinf(load)) return true;
             if (worst >= 0 && fabs(load - p->chain_load_before) < CHAIN_LOAD_SETTLED * load) return true;
             p->chain_load_before = load;
         }

@@ -173,6 +173,26 @@ START_TEST(chain_beside_an_elastic_pair_is_named)
 }
 END_TEST
 
+/* Two cables of 0.9 m between supports 2 m apart, without load: no shape, whatever the tension. */
+START_TEST(chain_that_is_too_short_is_named)
+{
+    static const struct hand_node node[] = {
+        {{0, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{1, 0, 0}, HF_ROLE_INNER, {0}}, {{2, 0, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_INNER, HF_LAW_LENGTH, 0.9},
+                                              {{1, 2}, HF_GROUP_INNER, HF_LAW_LENGTH, 0.9}};
+    struct net net;
+    double sum_m, span_m;
+    OPEN_HAND(&net, node, cable, _i ? HF_METHOD_NEWTON : HF_METHOD_HIFDM);
+    ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &net.result), HF_STRAIGHT_CHAIN);
+    ck_assert_int_eq(net.result.culprit, 0);
+    ck_assert_int_le(net.result.iterations, 100);
+    ck_assert(hf_form_chain_is_short(&net.model, &net.work, 0, &sum_m, &span_m));
+    ck_assert_double_eq(sum_m, 1.8);
+    ck_assert_double_eq(span_m, 2);
+    close_net(&net);
+}
+END_TEST
+
 /* A load of 50 N on a node that is held by two cables of 10 N: it moves away without end. */
 START_TEST(node_that_is_not_held_is_named)
 {
@@ -249,6 +269,7 @@ Suite *suite_unit_interior(void)
     tcase_add_test(tests, shape_is_that_of_newton);
     tcase_add_loop_test(tests, shape_behind_a_narrow_place_is_found, 0, 4);
     tcase_add_test(tests, chain_beside_an_elastic_pair_is_named);
+    tcase_add_loop_test(tests, chain_that_is_too_short_is_named, 0, 2);
     tcase_add_test(tests, node_that_is_not_held_is_named);
     tcase_add_test(tests, collapse_takes_few_steps);
     tcase_add_test(tests, steps_are_bounded);
