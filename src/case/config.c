@@ -378,6 +378,11 @@ static void apply_override(loader *l, const char *argument)
         hf_error(l->faults.messages, HF_BAD_CASE, "--set %s: must be key=value, like form.pretension_N=12", argument);
         return;
     }
+    if (strchr(argument, '\n')) { /* a result keeps one override a line */
+        l->faults.failed = true;
+        hf_error(l->faults.messages, HF_BAD_CASE, "--set %s: must be on one line", argument);
+        return;
+    }
     snprintf(path, sizeof path, "%.*s", (int)(equals - argument), argument);
     l->faults.origin = argument;
     l->faults.is_override = true;

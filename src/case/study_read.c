@@ -154,8 +154,10 @@ static void add_value(reader *r, hf_study_axis *axis, const char *value, yaml_ma
     snprintf(place, sizeof place, "%s:%zu:%zu: sweep", r->study->path, mark.line + 1, mark.column + 1);
     bool fits = field->type != HF_FIELD_TEXT ? snprintf(text, sizeof text, "%s", value) < VALUE_SIZE
                                              : quote(r, field, value, text);
-    hf_status status = fits ? hf_config_check_value(axis->field, text, place, r->messages) : HF_BAD_CASE;
+    bool is_one_line = !strchr(value, '\n');
+    hf_status status = fits && is_one_line ? hf_config_check_value(axis->field, text, place, r->messages) : HF_BAD_CASE;
     if (!fits) fault(r, mark, field->path, "is too long");
+    if (!is_one_line) fault(r, mark, field->path, "a value must be on one line");
     if (status != HF_OK) {
         r->failed = true;
         return;

@@ -118,6 +118,7 @@ static const struct {
     {CYLINDER "optimize: {}\n", "optimize.mutation_low=0.5",
      "error: --set optimize.mutation_low: must not be above optimize.mutation_high\n"},
     {CYLINDER, "pretension", "error: --set pretension: must be key=value, like form.pretension_N=12\n"},
+    {CYLINDER, "title=\"a\nb\"", "error: --set title=\"a\\nb\": must be on one line\n"},
     {CYLINDER, "=5", "error: --set =5: must be key=value, like form.pretension_N=12\n"},
     {CYLINDER,
      "form.pretension_N=", "error: --set form.pretension_N=: form.pretension_N: there is no value after the '='\n"},

@@ -299,6 +299,7 @@ static const struct {
     {"  form.pretension_N: 12\n", "study.yaml:3:22: sweep.form.pretension_N: must be a list of values"},
     {"  form.pretension_N: []\n", "study.yaml:3:22: sweep.form.pretension_N: needs from 1 to"},
     {"  form.pretension_N: [[1, [2]]]\n", "a value must be one number, word or pair"},
+    {"  title: [\"a\\nb\"]\n", "study.yaml:3:11: sweep.title: a value must be on one line"},
     {"  form.pretension_N: [1]\n  form.pretension_N: [2]\n",
      "study.yaml:4:3: sweep: 'form.pretension_N' stands here already, on line 3"},
     {"  combine: zap\n  form.pretension_N: [1]\n", "combine must be one of product, zip, not 'zap'"},
