@@ -32,9 +32,9 @@ SUITE ?=
 # Calls that tests/support.c counts and can make fail; each needs a __wrap_ function there.
 TEST_WRAP := malloc calloc realloc aligned_alloc strdup strndup
 TEST_WRAP_EXTRA ?=
-# The same in tests/fault/test_store_calls.c.
-TEST_WRAP += open write writev pwrite read pread fsync fdatasync rename link unlink ftruncate lseek flock fstat stat \
-             access H5Fcreate H5Fopen H5Dcreate2 H5Dopen2 H5Dset_extent H5Dwrite H5Dread H5Awrite H5Aread
+# The same in tests/calls.c.
+TEST_WRAP += open close write writev pwrite read pread fsync fdatasync rename link unlink ftruncate lseek flock fcntl \
+             fstat stat access H5Fcreate H5Fopen H5Dcreate2 H5Dopen2 H5Dset_extent H5Dwrite H5Dread H5Awrite H5Aread
 # The same in tests/unit/base/test_file_out.c.
 TEST_WRAP += geteuid
 
@@ -82,7 +82,7 @@ LIB_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(KERNELS),$(call sources,$(
 PAGE := $(addprefix src/out/report/,head.html page.css body.html \
           data.js scale.js chart.js net.js map.js sections.js study.js main.js)
 APP_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(call sources,$(APP_ROOMS))) $(BUILD)/report_page_text.o
-TEST_OBJ := $(patsubst %.c,$(BUILD)/%.o,tests/run_tests.c tests/support.c \
+TEST_OBJ := $(patsubst %.c,$(BUILD)/%.o,tests/run_tests.c tests/support.c tests/calls.c \
              $(sort $(wildcard tests/*/test_*.c tests/*/*/test_*.c)))
 PROGRAM := $(BUILD)/hifdm
 STATIC := $(BUILD)/libhifdm.a

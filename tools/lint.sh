@@ -181,10 +181,12 @@ heap_files=$(echo $heap_files) print_files=$(echo $print_files)
 only_in app/main '\bgsl_set_error_handler' 'setting the error handler of the whole program'
 only_in "$heap_files" '\b(malloc|calloc|realloc|aligned_alloc|posix_memalign|strdup|strndup)[[:blank:]]*\(' 'heap call'
 only_in "$print_files" '\b(v?f?printf|f?puts|f?putc|putchar|perror|exit|_Exit|abort)[[:blank:]]*\(' 'prints or exits'
-file_calls='rename|renameat|link|linkat|mkstemp|mkdtemp|tmpfile|tempnam|creat|mkdir|truncate|fsync'
+file_calls='rename|renameat|link|linkat|mkstemp|mkdtemp|tmpfile|tempnam|creat|mkdir|truncate'
 only_in base/file_out "\b($file_calls)[[:blank:]]*\(|\bO_(CREAT|TRUNC|TMPFILE)\b" 'makes or names a file by hand'
 only_in store/hdf5 '\bH5Fcreate\b' 'HDF5 file that is not made by base/file_out'
 only_in base/text '\b(fopen|freopen)[[:blank:]]*\(' 'opens a file by fopen; files are made by base/file_out'
+only_in "base/file_io base/file_out base/text out/report_page out/export" \
+    '(^|[^>._[:alnum:]])(p?read|p?writev?|f(data)?sync|ftruncate|flock)[[:blank:]]*\(' 'a transfer by hand'
 only_in "$openmp_files" '\bomp(\b|_)|\b_OPENMP\b' 'OpenMP'
 
 # ---- Top level -------------------------------------------------------------------------------------------------------

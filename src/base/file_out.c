@@ -2,6 +2,7 @@
 #define _GNU_SOURCE /* F_OFD_SETLK */
 #include "base/file_out.h"
 
+#include "base/file_io.h"
 #include "base/path.h"
 #include "base/text.h"
 
@@ -111,7 +112,7 @@ static lock_answer lock_file(int file)
 static void remove_leftover(const char *name)
 {
     struct stat info;
-    int file = open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    int file = hf_file_io_open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return;
     if (fstat(file, &info) == 0 && S_ISREG(info.st_mode) && lock_file(file) == LOCKED && hf_path_leads_to(name, file))
         unlink(name); /* it may be a second name of the visible file (hf_file_out_add), so it is never written into */
@@ -174,48 +175,44 @@ void hf_file_out_drop(hf_file_out *f)
 
 int hf_file_out_sync(int file)
 {
-    return fsync(file) == 0 || errno == EINVAL ? 0 : -1; /* EINVAL: this file system has no such thing */
+    return hf_file_io_sync(file, false);
 }
 
 int hf_file_out_sync_folder(const char *path)
 {
     char folder[HF_FILE_OUT_SIZE];
     hf_path_folder(path, folder, sizeof folder);
-    int file = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    int file = hf_file_io_open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (file < 0 || hf_file_out_sync(file) != 0) return file < 0 ? -1 : close_with(file, errno);
     close(file);
     return 0;
 }
 
-static void end(hf_file_out *f)
+/* 0, or -1 and errno: the name is given, but not all of the content may be on the disk. */
+static int end(hf_file_out *f)
 {
-    close(f->file);
+    int file = f->file;
     f->file = -1;
+    return hf_file_io_close(file);
 }
 
 int hf_file_out_replace(hf_file_out *f, const char *path)
 {
-    if (rename(f->temporary, path) != 0) return -1;
-    end(f);
-    return 0;
+    return rename(f->temporary, path) == 0 ? end(f) : -1;
 }
 
 int hf_file_out_add(hf_file_out *f, const char *path)
 {
     if (link(f->temporary, path) == 0) {
         unlink(f->temporary); /* where that fails, hf_file_out_clean tries again */
-        end(f);
-        return 0;
+        return end(f);
     }
     if (errno == EEXIST) return -1;
     /* a file system without links: take the name with an empty file, then replace that */
     int file = hf_file_out_create(path);
     if (file < 0) return -1;
     close(file);
-    if (rename(f->temporary, path) == 0) {
-        end(f);
-        return 0;
-    }
+    if (rename(f->temporary, path) == 0) return end(f);
     int why = errno;
     unlink(path);
     errno = why;
@@ -232,7 +229,7 @@ void hf_file_out_name(const hf_file_out *f, char name[HF_FILE_OUT_NAME_SIZE])
 
 int hf_file_out_create(const char *name)
 {
-    return open(name, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    return hf_file_io_open(name, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC);
 }
 
 int hf_file_out_keep(const char *name, bool *was_there)
@@ -240,7 +237,7 @@ int hf_file_out_keep(const char *name, bool *was_there)
     struct stat info;
     int file = -1;
     for (int i = 0; i < ATTEMPTS && file < 0; i++) {
-        file = open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        file = hf_file_io_open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
         *was_there = file >= 0;
         if (file < 0 && errno == ENOENT) file = hf_file_out_create(name);
         if (file < 0 && errno != EEXIST && errno != ENOENT) break; /* those: made or removed between the two calls */

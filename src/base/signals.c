@@ -13,6 +13,11 @@ static void request(int number)
     requested = number;
 }
 
+const volatile sig_atomic_t *hf_signals_request(void)
+{
+    return &requested;
+}
+
 const volatile sig_atomic_t *hf_signals_watch(void)
 {
     static const int watched[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};

@@ -8,4 +8,7 @@
  * between steps. A second signal has its default effect. A signal that was ignored stays ignored. */
 const volatile sig_atomic_t *hf_signals_watch(void);
 
+/* The same flag; it stays 0 in a program that does not watch. */
+const volatile sig_atomic_t *hf_signals_request(void);
+
 #endif

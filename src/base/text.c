@@ -1,43 +1,60 @@
 #include "base/text.h"
 
+#include "base/file_io.h"
+
 #include <ctype.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #define FILE_MAX (1 << 30) /* bytes; endless files like /dev/zero are refused */
 
+/* Read to the end. The buffer grows; it is NULL without memory. Returns 0, or -1 and errno. A pipe that nobody writes
+ * to must not keep a program from hearing a request to stop. */
+static int read_to_end(int file, char **buffer, size_t *length)
+{
+    struct stat info;
+    size_t capacity = 1 << 14;
+    bool may_wait = fstat(file, &info) != 0 || !S_ISREG(info.st_mode);
+    *buffer = malloc(capacity);
+    while (*buffer) {
+        if (may_wait && hf_file_io_await(file) != 0) return -1;
+        ssize_t n = may_wait ? read(file, *buffer + *length, capacity - *length - 1)
+                             : hf_file_io_read(file, *buffer + *length, capacity - *length - 1);
+        if (n < 0 && may_wait && (errno == EAGAIN || errno == EINTR)) continue;
+        if (n <= 0) return (int)n;
+        *length += (size_t)n;
+        if (*length > FILE_MAX) return 0;
+        if (*length < capacity - 1) continue;
+        char *bigger = realloc(*buffer, capacity *= 2);
+        if (!bigger) free(*buffer);
+        *buffer = bigger;
+    }
+    return 0;
+}
+
 hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_t *length, hf_messages *messages)
 {
+    char *buffer;
     *text = NULL;
     *length = 0;
-    FILE *file = fopen(path, "rb");
-    if (!file) return hf_error(messages, code, "%s: cannot open: %s", path, strerror(errno));
-    size_t capacity = 1 << 14;
-    char *buffer = malloc(capacity);
-    while (buffer) {
-        *length += fread(buffer + *length, 1, capacity - *length - 1, file);
-        if (*length < capacity - 1 || *length > FILE_MAX) break;
-        capacity *= 2;
-        char *bigger = realloc(buffer, capacity);
-        if (!bigger) free(buffer);
-        buffer = bigger;
-    }
-    int failed = ferror(file), why = errno;
-    fclose(file);
-    if (buffer && *length > FILE_MAX) {
-        free(buffer);
-        return hf_error(messages, code, "%s: longer than %d MB", path, FILE_MAX >> 20);
-    }
+    int file = hf_file_io_open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* so that opening a pipe does not wait */
+    if (file < 0)
+        return hf_error(messages, hf_file_io_fault(errno, code), "%s: cannot open: %s", path, strerror(errno));
+    int failed = read_to_end(file, &buffer, length), why = errno;
+    close(file);
     if (!buffer) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
-    if (failed) {
-        free(buffer);
-        return hf_error(messages, code, "%s: cannot read: %s", path, strerror(why));
-    }
+    if (failed || *length > FILE_MAX) free(buffer);
+    if (failed && why == EINTR) return hf_error(messages, HF_INTERRUPTED, "%s: told to stop while reading it", path);
+    if (failed) return hf_error(messages, hf_file_io_fault(why, code), "%s: cannot read: %s", path, strerror(why));
+    if (*length > FILE_MAX) return hf_error(messages, code, "%s: longer than %d MB", path, FILE_MAX >> 20);
     buffer[*length] = '\0';
     *text = buffer;
     return HF_OK;

@@ -200,7 +200,8 @@ hf_status hf_sweep_run(const hf_sweep_request *request, hf_sweep_count *count, h
         hf_points_free(&points);
     }
     if (status == HF_OK) status = run_points(&w);
-    hf_ledger_close(&w.ledger);
+    hf_status closed = hf_ledger_close(&w.ledger, messages);
+    if (closed != HF_OK) status = closed;
     pthread_mutex_destroy(&w.lock);
     free(w.todo);
     free(w.state);

@@ -1,7 +1,7 @@
 /* Contents: file and lock - records - replay - rotation and end */
-#define _DEFAULT_SOURCE /* flock */
 #include "store/journal.h"
 
+#include "base/file_io.h"
 #include "base/file_out.h"
 #include "base/path.h"
 
@@ -10,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -45,20 +44,27 @@ static hf_status open_and_lock(hf_journal *j, hf_messages *messages)
         j->was_there |= was_there;
         if (j->file < 0 && errno == EEXIST) return HF_OK;
         if (j->file < 0) return fail(j, "create", j->path, messages);
-        if (flock(j->file, LOCK_EX | LOCK_NB) != 0) {
+        hf_lock lock = hf_file_io_lock(j->file);
+        if (lock == HF_LOCK_TAKEN || lock == HF_LOCK_FAILED) {
             int why = errno;
             close(j->file);
             j->file = -1;
             errno = why;
-            if (why != EWOULDBLOCK) return fail(j, "lock", j->path, messages);
-            return hf_error(messages, HF_IO, "%s: another process is writing it (it holds the lock of %s)", j->result,
-                            j->path);
+            if (lock == HF_LOCK_FAILED) return fail(j, "lock", j->path, messages);
+            return hf_error(messages, HF_EXISTS, "%s: another process is writing it (it holds the lock of %s)",
+                            j->result, j->path);
         }
+        if (lock == HF_LOCK_NONE && i == 0)
+            hf_warning(messages,
+                       "%s: this file system has no locks (%s): nothing keeps a second process from this result, so "
+                       "start none",
+                       j->result, strerror(errno));
         if (hf_path_leads_to(j->path, j->file)) return HF_OK;
         close(j->file); /* the owner rotated or removed it between open and lock */
         j->file = -1;
     }
-    return hf_error(messages, HF_IO, "%s: %s changes all the time; is another process writing it?", j->result, j->path);
+    return hf_error(messages, HF_EXISTS, "%s: %s changes all the time; is another process writing it?", j->result,
+                    j->path);
 }
 
 typedef enum { JOURNAL, OTHER_VERSION, FOREIGN } content;
@@ -72,7 +78,7 @@ static hf_status look_at_head(hf_journal *j, content *is, hf_messages *messages)
     if (fstat(j->file, &info) != 0) return fail(j, "read", j->path, messages);
     j->is_new = info.st_size == 0;
     j->size = info.st_size;
-    ssize_t n = pread(j->file, magic, sizeof magic, 0);
+    ssize_t n = hf_file_io_read_at(j->file, magic, sizeof magic, 0);
     if (n < 0) return fail(j, "read", j->path, messages);
     if (n == sizeof magic && memcmp(magic, MAGIC, sizeof magic - 1) == 0) *is = OTHER_VERSION;
     if (memcmp(magic, MAGIC, (size_t)n) == 0) *is = JOURNAL; /* a header may be torn */
@@ -117,8 +123,9 @@ bool hf_journal_is_there(const char *result)
     hf_messages_free(&unwanted);
     if (status != HF_OK) return false;
     strcat(path, ".journal");
-    int file = open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
-    bool is_there = file >= 0 && read(file, magic, sizeof magic) == sizeof magic && !memcmp(magic, MAGIC, sizeof magic);
+    int file = hf_file_io_open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+    bool is_there =
+        file >= 0 && hf_file_io_read(file, magic, sizeof magic) == sizeof magic && !memcmp(magic, MAGIC, sizeof magic);
     if (file >= 0) close(file);
     return is_there;
 }
@@ -129,15 +136,15 @@ static int write_header(int file, const char *identity)
     char header[HEADER_BYTES] = {0};
     memcpy(header, MAGIC, 8);
     memcpy(header + 8, identity, strnlen(identity, HF_JOURNAL_IDENTITY));
-    ssize_t n = pwrite(file, header, sizeof header, 0);
-    if (n >= 0 && n < (ssize_t)sizeof header) errno = ENOSPC;
-    return n == (ssize_t)sizeof header && lseek(file, HEADER_BYTES, SEEK_SET) == HEADER_BYTES ? 0 : -1;
+    if (hf_file_io_write_at(file, header, sizeof header, 0) != 0) return -1;
+    return lseek(file, HEADER_BYTES, SEEK_SET) == HEADER_BYTES ? 0 : -1;
 }
 
 hf_status hf_journal_restart(hf_journal *j, const char *identity, hf_messages *messages)
 {
     snprintf(j->identity, sizeof j->identity, "%s", identity);
-    if (ftruncate(j->file, 0) != 0 || write_header(j->file, identity) != 0) return fail(j, "write", j->path, messages);
+    if (hf_file_io_cut(j->file, 0) != 0 || write_header(j->file, identity) != 0)
+        return fail(j, "write", j->path, messages);
     j->size = HEADER_BYTES;
     j->is_new = true;
     j->has_news = false;
@@ -171,17 +178,13 @@ hf_status hf_journal_append(hf_journal *j, int generation, const struct iovec *p
     if (length > PAYLOAD_MAX) return hf_error(messages, HF_IO, "%s: a generation is larger than 2 GiB", j->result);
     head.length = (uint32_t)length;
     head.crc = (uint32_t)crc;
-    size_t whole = sizeof head - sizeof head.generation + length;
-    ssize_t done = writev(j->file, part, n + 1);
-    if (done == (ssize_t)whole) {
-        j->size += done;
+    if (hf_file_io_write_pieces(j->file, part, n + 1) == 0) {
+        j->size += (int64_t)(sizeof head - sizeof head.generation + length);
         j->has_news = true;
         return HF_OK;
     }
-    if (done >= 0 && write(j->file, "", 1) >= 0)
-        errno = ENOSPC; /* after a short write the next one returns the reason */
     hf_status status = fail(j, "write", j->path, messages);
-    if (ftruncate(j->file, j->size) == 0) lseek(j->file, j->size, SEEK_SET); /* if not, the CRC detects it */
+    if (hf_file_io_cut(j->file, j->size) == 0) lseek(j->file, j->size, SEEK_SET); /* if not, the CRC detects it */
     return status;
 }
 
@@ -192,8 +195,7 @@ hf_status hf_journal_tend(hf_journal *j, double now_s, hf_messages *messages)
     j->synced_s = now_s;
     if (!hf_path_leads_to(j->path, j->file))
         return hf_error(messages, HF_IO, "%s: %s was removed or replaced during the run", j->result, j->path);
-    if (j->has_news && fdatasync(j->file) != 0 && errno != EINVAL && errno != ENOSYS)
-        return fail(j, "write", j->path, messages);
+    if (j->has_news && hf_file_io_sync(j->file, true) != 0) return fail(j, "write", j->path, messages);
     j->has_news = false;
     return HF_OK;
 }
@@ -203,12 +205,8 @@ hf_status hf_journal_tend(hf_journal *j, double now_s, hf_messages *messages)
 /* Read exactly n bytes: 1, 0 when there are fewer, or -1 and errno. */
 static int read_whole(int file, void *to, size_t n, int64_t at)
 {
-    for (size_t done = 0; done < n;) {
-        ssize_t got = pread(file, (char *)to + done, n - done, (off_t)at + (off_t)done);
-        if (got <= 0) return got == 0 ? 0 : -1;
-        done += (size_t)got;
-    }
-    return 1;
+    ssize_t got = hf_file_io_read_at(file, to, n, (off_t)at);
+    return got < 0 ? -1 : (size_t)got == n;
 }
 
 /* The record at `at` into *payload, which grows: 1; 0 when there is no whole one; -1 and errno. A record
@@ -274,7 +272,8 @@ hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take
     if (is_damaged)
         hf_warning(messages, "%s: %s is damaged: its last %lld bytes count for nothing", j->result, j->path,
                    (long long)(info.st_size - at));
-    if (ftruncate(j->file, at) != 0 || lseek(j->file, at, SEEK_SET) < 0) return fail(j, "write", j->path, messages);
+    if (hf_file_io_cut(j->file, at) != 0 || lseek(j->file, at, SEEK_SET) < 0)
+        return fail(j, "write", j->path, messages);
     j->size = at;
     return HF_OK;
 }
@@ -286,7 +285,8 @@ hf_status hf_journal_rotate(hf_journal *j, hf_messages *messages)
     hf_file_out next;
     if (hf_file_out_make(j->result, &next) != 0) return fail(j, "create", next.temporary, messages);
     int file = fcntl(next.file, F_DUPFD_CLOEXEC, 0); /* the other is closed as it gets its name */
-    if (file < 0 || flock(file, LOCK_EX | LOCK_NB) != 0 || write_header(file, j->identity) != 0 ||
+    hf_lock lock = file < 0 ? HF_LOCK_FAILED : hf_file_io_lock(file);
+    if ((lock != HF_LOCK_OURS && lock != HF_LOCK_NONE) || write_header(file, j->identity) != 0 ||
         hf_file_out_replace(&next, j->path) != 0) {
         hf_status status = fail(j, "write", next.temporary, messages);
         if (file >= 0) close(file);

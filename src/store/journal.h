@@ -33,9 +33,10 @@ typedef struct {
     char identity[HF_JOURNAL_IDENTITY + 1];
 } hf_journal;
 
-/* Make or open the journal of `result`, which is no link, and take its lock. HF_IO when another process holds it, or
- * when it cannot be made; HF_EXISTS when what has that name is no journal, a link included, unless `replaces`: then it
- * is removed, with a warning. HF_NO_MEMORY. Close in any case. */
+/* Make or open the journal of `result`, which is no link, and take its lock. HF_IO when it cannot be made or locked;
+ * HF_EXISTS when another process holds the lock, or when what has that name is no journal, a link included, unless
+ * `replaces`: then it is removed, with a warning. On a file system without locks there is a warning instead.
+ * HF_NO_MEMORY. Close in any case. */
 hf_status hf_journal_open(const char *result, bool replaces, hf_journal *journal, hf_messages *messages);
 
 /* Is there a journal of `result`, or of the file that it leads to, with a header? Takes no lock. */

@@ -3,6 +3,7 @@
 #include "store/ledger.h"
 
 #include "base/clock.h"
+#include "base/file_io.h"
 #include "base/file_out.h"
 #include "base/text.h"
 #include "store/journal.h"
@@ -131,15 +132,23 @@ hf_status hf_ledger_open(const char *folder, hf_ledger *l, hf_messages *messages
     return HF_OK;
 }
 
-void hf_ledger_close(hf_ledger *l)
+hf_status hf_ledger_close(hf_ledger *l, hf_messages *messages)
 {
+    int failed = 0, why = 0;
     if (l->rows >= 0) {
-        fdatasync(l->rows);
-        close(l->rows);
+        failed = hf_file_io_sync(l->rows, true);
+        why = errno;
+        if (hf_file_io_close(l->rows) != 0 && !failed) {
+            failed = -1;
+            why = errno;
+        }
     }
     if (l->claims >= 0) close(l->claims);
     free_news(l->news);
     pthread_mutex_destroy(&l->lock);
+    if (!failed) return HF_OK;
+    return hf_error(messages, HF_IO, "%s: cannot write to the disk: %s; the last points may run again", l->folder,
+                    strerror(why));
 }
 
 bool hf_ledger_claim(hf_ledger *l, const char *id)
@@ -155,13 +164,20 @@ void hf_ledger_release(hf_ledger *l, const char *id)
     fcntl(l->claims, F_SETLK, &lock);
 }
 
-/* One write, so that lines of threads and processes do not mix. */
+/* One write, so that a process killed at any instant leaves at most one incomplete line. What of a line is there after
+ * a failure is cut off, since the next line must begin on one of its own. */
 static hf_status write_line(hf_ledger *l, const char *line, size_t length, hf_messages *messages)
 {
-    ssize_t n = write(l->rows, line, length);
-    if (n == (ssize_t)length) return HF_OK;
-    return hf_error(messages, HF_IO, "%s: cannot write the result of a point: %s", l->folder,
-                    n < 0 ? strerror(errno) : "no space left");
+    if (hf_file_io_write(l->rows, line, length) == 0) {
+        l->size += (int64_t)length;
+        return HF_OK;
+    }
+    hf_status status =
+        hf_error(messages, HF_IO, "%s: cannot write the result of a point: %s", l->folder, strerror(errno));
+    if (hf_file_io_cut(l->rows, l->size) == 0) return status;
+    close(l->rows); /* the next line begins another file */
+    l->rows = -1;
+    return status;
 }
 
 /* Make the points file of this process, with the names of the columns. */
@@ -178,12 +194,18 @@ static hf_status start_rows(hf_ledger *l, hf_messages *messages)
     }
     if (l->rows < 0 || fcntl(l->rows, F_SETFL, O_APPEND) != 0)
         return hf_error(messages, HF_IO, "%s: cannot create: %s", path, strerror(errno));
+    l->size = 0;
     size_t used = (size_t)snprintf(line, sizeof line, HEADER "\tfingerprint\tstatus\treason");
     for (int i = 0; i < hf_ledger_n_column(); i++)
         used += (size_t)snprintf(line + used, sizeof line - used, "\t%s/%s", hf_ledger_column(i)->object,
                                  hf_ledger_column(i)->name);
     line[used++] = '\n';
-    return write_line(l, line, used, messages);
+    hf_status status = write_line(l, line, used, messages);
+    if (status == HF_OK) return HF_OK;
+    unlink(path); /* without the names no line of it counts */
+    if (l->rows >= 0) close(l->rows);
+    l->rows = -1;
+    return status;
 }
 
 /* Copy at most HF_LEDGER_REASON_MAX bytes, with tabs and newlines replaced by blanks. */
@@ -213,11 +235,12 @@ hf_status hf_ledger_write(hf_ledger *l, const hf_study *study, int point, hf_sta
     pthread_mutex_lock(&l->lock);
     hf_status result = l->rows < 0 ? start_rows(l, messages) : HF_OK;
     if (result == HF_OK) result = write_line(l, line, used, messages);
+    int file = l->rows;
     double now_s = hf_clock_s();
     bool is_due = now_s - l->synced_s >= SYNC_S;
     if (is_due) l->synced_s = now_s;
     pthread_mutex_unlock(&l->lock);
-    if (result == HF_OK && is_due && fdatasync(l->rows) != 0 && errno != EINVAL)
+    if (result == HF_OK && is_due && hf_file_io_sync(file, true) != 0)
         return hf_error(messages, HF_IO, "%s: cannot write to the disk: %s", l->folder, strerror(errno));
     return result;
 }
@@ -414,7 +437,7 @@ static void read_news_of(hf_ledger *l, const hf_study *study, const char *name, 
     struct stat info;
     int k = place_of(l->news, name);
     snprintf(path, sizeof path, "%s/%s", l->folder, name);
-    int file = k >= 0 ? open(path, O_RDONLY | O_CLOEXEC) : -1;
+    int file = k >= 0 ? hf_file_io_open(path, O_RDONLY | O_CLOEXEC) : -1;
     if (file < 0) return;
     off_t *at = &l->news->file[k].at;
     if (fstat(file, &info) != 0) info.st_size = 0;
@@ -422,7 +445,7 @@ static void read_news_of(hf_ledger *l, const hf_study *study, const char *name, 
     if (!skip && info.st_size > *at) {
         size_t size = (size_t)(info.st_size - *at);
         char *text = malloc(size + 1);
-        ssize_t n = text ? pread(file, text, size, *at) : -1;
+        ssize_t n = text ? hf_file_io_read_at(file, text, size, *at) : -1;
         if (n > 0) text[n] = '\0';
         if (n > 0) *at += note_rows(l->news, study, text);
         free(text);
@@ -487,7 +510,7 @@ static void find_running(reading *r, const char *folder)
 {
     char path[HF_PATH_SIZE + 32];
     snprintf(path, sizeof path, "%s/claims", folder);
-    int file = open(path, O_RDONLY | O_CLOEXEC);
+    int file = hf_file_io_open(path, O_RDONLY | O_CLOEXEC);
     if (file < 0) return;
     find_locks(r, file, 0, (off_t)1 << 48);
     close(file);

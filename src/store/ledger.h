@@ -30,14 +30,15 @@ bool hf_ledger_is_circumstance(const hf_hdf5_member *column);
 typedef struct {
     char folder[HF_PATH_SIZE];
     int rows, claims; /* file descriptors, -1 */
+    int64_t size;     /* of the whole lines that this process has written into `rows` */
     double synced_s;
     pthread_mutex_t lock;
     struct hf_ledger_news *news; /* NULL before hf_ledger_watch */
 } hf_ledger;
 
-/* Makes the folder when it is not there. HF_OK or HF_IO. Close in any case. */
+/* Makes the folder when it is not there. HF_OK or HF_IO. Close in any case: HF_IO when rows may not be on the disk. */
 hf_status hf_ledger_open(const char *folder, hf_ledger *ledger, hf_messages *messages);
-void hf_ledger_close(hf_ledger *ledger);
+hf_status hf_ledger_close(hf_ledger *ledger, hf_messages *messages);
 
 /* Claim the point for this process. False when another process has it. */
 bool hf_ledger_claim(hf_ledger *ledger, const char *id);

@@ -1,6 +1,7 @@
 /* Contents: names and checks - the temporary file - publishing - the end */
 #include "store/store_file.h"
 
+#include "base/file_io.h"
 #include "base/file_out.h"
 #include "base/path.h"
 
@@ -69,13 +70,9 @@ void hf_store_file_create(hf_store_file *f)
 static int copy_bytes(int from, int to, char *buffer)
 {
     ssize_t n;
-    while ((n = read(from, buffer, COPY_BYTES)) > 0) {
-        ssize_t done = write(to, buffer, (size_t)n);
-        if (done == n) continue;
-        if (done >= 0) errno = ENOSPC;
-        return -1;
-    }
-    return n == 0 ? 0 : -1;
+    while ((n = hf_file_io_read(from, buffer, COPY_BYTES)) > 0)
+        if (hf_file_io_write(to, buffer, (size_t)n) != 0) return -1;
+    return (int)n;
 }
 
 static void copy_visible(hf_store_file *f)
@@ -115,7 +112,7 @@ void hf_store_file_adopt(hf_store_file *f)
 {
     if (f->io.status != HF_OK) return;
     if (f->visible >= 0) close(f->visible);
-    f->visible = open(f->out.path, O_RDONLY | O_CLOEXEC);
+    f->visible = hf_file_io_open(f->out.path, O_RDONLY | O_CLOEXEC);
     if (f->visible >= 0 && fstat(f->visible, &f->ours) == 0)
         f->is_published = true;
     else
@@ -132,7 +129,7 @@ void hf_store_file_close(hf_store_file *f)
     if (f->io.file < 0) return;
     if (H5Fflush(f->io.file, H5F_SCOPE_GLOBAL) < 0) {
         hf_hdf5_fail(&f->io, "write", -1, NULL);
-        int ignored = ftruncate(f->out.file, 0);
+        int ignored = hf_file_io_cut(f->out.file, 0);
         (void)ignored;
         f->io.file = -1;
         return;
@@ -193,7 +190,10 @@ void hf_store_file_publish(hf_store_file *f, bool durable)
     else if (!f->is_published)
         taken = hf_file_out_add(&f->out, f->out.path);
     if (taken != 0) {
-        keep_work(f, durable);
+        if (f->out.file < 0)
+            sync_failed(f); /* it has its name, but its close failed */
+        else
+            keep_work(f, durable);
         return;
     }
     hf_store_file_adopt(f);

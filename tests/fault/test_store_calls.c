@@ -1,101 +1,30 @@
 /* The tests make each system call, and each kind of HDF5 call, of the store fail once: in a new run, and in one that is
  * resumed after a kill. The store must then either return HF_IO with a message or work around the failure. Acknowledged
  * generations must still be stored, and the same run must reach its end with the same bits. The linker redirects these
- * calls of our own objects to this file. System calls inside HDF5 cannot be made to fail here; limits on the file size
+ * calls of our own objects to calls.c. System calls inside HDF5 cannot be made to fail here; limits on the file size
  * stand in for them (cli/resume, unit/store_faults). */
+#include "calls.h"
 #include "evolution.h"
 
 #include "base/file_out.h"
 #include "store/compare.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <stdarg.h>
-#include <sys/file.h>
-#include <sys/uio.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 /* ---- calls that fail ---- */
 
-static const char *failing; /* name of the call, NULL: none */
-static long countdown;      /* the call that fails, 1 = the next */
-
-/* The calls by which files are made, changed, named and removed. */
-static bool is_change(const char *name)
-{
-    static const char *const change[] = {"open",   "write", "writev", "pwrite",    "fsync", "fdatasync",
-                                         "rename", "link",  "unlink", "ftruncate", "flock", "H5Fcreate"};
-    for (size_t i = 0; i < sizeof change / sizeof *change; i++)
-        if (!strcmp(name, change[i])) return true;
-    return false;
-}
-
-static bool dies; /* instead: end this process at once before the next call by which a file changes */
-
-static int fails(const char *name)
-{
-    if (dies && is_change(name) && --countdown == 0) _exit(9);
-    if (!failing || strcmp(name, failing) != 0 || --countdown != 0) return 0;
-    errno = EIO;
-    return 1;
-}
-
-#define WRAP(type, name, parameters, arguments)                                                                        \
-    type __real_##name parameters;                                                                                     \
-    type __wrap_##name parameters;                                                                                     \
-    type __wrap_##name parameters                                                                                      \
-    {                                                                                                                  \
-        return fails(#name) ? (type)-1 : __real_##name arguments;                                                      \
-    }
-
-WRAP(ssize_t, write, (int file, const void *from, size_t n), (file, from, n))
-WRAP(ssize_t, writev, (int file, const struct iovec *piece, int n), (file, piece, n))
-WRAP(ssize_t, pwrite, (int file, const void *from, size_t n, off_t at), (file, from, n, at))
-WRAP(ssize_t, read, (int file, void *to, size_t n), (file, to, n))
-WRAP(ssize_t, pread, (int file, void *to, size_t n, off_t at), (file, to, n, at))
-WRAP(int, fsync, (int file), (file))
-WRAP(int, fdatasync, (int file), (file))
-WRAP(int, rename, (const char *from, const char *to), (from, to))
-WRAP(int, link, (const char *from, const char *to), (from, to))
-WRAP(int, unlink, (const char *name), (name))
-WRAP(int, ftruncate, (int file, off_t size), (file, size))
-WRAP(off_t, lseek, (int file, off_t at, int whence), (file, at, whence))
-WRAP(int, flock, (int file, int how), (file, how))
-WRAP(int, fstat, (int file, struct stat *info), (file, info))
-WRAP(int, stat, (const char *name, struct stat *info), (name, info))
-WRAP(int, access, (const char *name, int mode), (name, mode))
-WRAP(hid_t, H5Fcreate, (const char *name, unsigned flags, hid_t make, hid_t access_), (name, flags, make, access_))
-WRAP(hid_t, H5Fopen, (const char *name, unsigned flags, hid_t access_), (name, flags, access_))
-WRAP(hid_t, H5Dcreate2, (hid_t g, const char *name, hid_t t, hid_t s, hid_t l, hid_t c, hid_t a),
-     (g, name, t, s, l, c, a))
-WRAP(hid_t, H5Dopen2, (hid_t g, const char *name, hid_t a), (g, name, a))
-WRAP(herr_t, H5Dset_extent, (hid_t d, const hsize_t *size), (d, size))
-WRAP(herr_t, H5Dwrite, (hid_t d, hid_t t, hid_t m, hid_t f, hid_t p, const void *from), (d, t, m, f, p, from))
-WRAP(herr_t, H5Dread, (hid_t d, hid_t t, hid_t m, hid_t f, hid_t p, void *to), (d, t, m, f, p, to))
-WRAP(herr_t, H5Awrite, (hid_t a, hid_t t, const void *from), (a, t, from))
-WRAP(herr_t, H5Aread, (hid_t a, hid_t t, void *to), (a, t, to))
-
-int __real_open(const char *name, int flags, ...);
-int __wrap_open(const char *name, int flags, ...);
-int __wrap_open(const char *name, int flags, ...)
-{
-    va_list list;
-    va_start(list, flags);
-    mode_t mode = flags & O_CREAT ? (mode_t)va_arg(list, unsigned) : 0;
-    va_end(list);
-    return fails("open") ? -1 : __real_open(name, flags, mode);
-}
-
 /* must_tell: 1 when the store cannot work around a failure of this call and must report it. */
 static const struct {
     const char *name;
     int must_tell;
-} calls[] = {{"open", 1},          {"write", 1},     {"writev", 1},  {"pwrite", 1},     {"read", 1},
-             {"pread", 1},         {"fsync", 1},     {"rename", 1},  {"link", 0},       {"unlink", 0},
-             {"ftruncate", 1},     {"lseek", 1},     {"flock", 1},   {"fstat", 0},      {"stat", 0},
-             {"access", 1},        {"H5Fcreate", 1}, {"H5Fopen", 1}, {"H5Dcreate2", 1}, {"H5Dopen2", 1},
-             {"H5Dset_extent", 1}, {"H5Dwrite", 1},  {"H5Dread", 1}, {"H5Awrite", 1},   {"H5Aread", 1}};
+} calls[] = {{"open", 1},     {"write", 1},         {"writev", 1},    {"pwrite", 1},  {"read", 1},
+             {"pread", 1},    {"close", 0},         {"fsync", 1},     {"rename", 1},  {"link", 0},
+             {"unlink", 0},   {"ftruncate", 1},     {"lseek", 1},     {"flock", 1},   {"fstat", 0},
+             {"stat", 0},     {"access", 1},        {"H5Fcreate", 1}, {"H5Fopen", 1}, {"H5Dcreate2", 1},
+             {"H5Dopen2", 1}, {"H5Dset_extent", 1}, {"H5Dwrite", 1},  {"H5Dread", 1}, {"H5Awrite", 1},
+             {"H5Aread", 1}};
 
 /* ---- a run of six generations ---- */
 
@@ -171,11 +100,9 @@ static int fail_once(int call, long n, int was_killed, const char *whole)
         acknowledged = N_BEFORE_KILL;
     }
     open_run(&r);
-    failing = calls[call].name;
-    countdown = n;
+    fail_call_at(calls[call].name, n, EIO, false);
     hf_status status = run_it(path, &r, &acknowledged, &messages);
-    failing = NULL;
-    int was_reached = countdown <= 0;
+    bool was_reached = end_call_failure();
     const char *said = messages.text ? messages.text : "";
     /* HF_EXISTS: a file that cannot be read is not recognised as a result file of ours */
     ck_assert_msg(status == HF_OK || status == HF_IO || status == HF_EXISTS, "%s %ld: status %d %s", calls[call].name,
@@ -247,8 +174,7 @@ static bool die_at(const char *path, long n)
         hf_messages messages = {0};
         int acknowledged = 0;
         open_run(&r);
-        dies = true;
-        countdown = n;
+        die_before_change(n);
         hf_status status = run_it(path, &r, &acknowledged, &messages);
         _exit(status == HF_OK ? 0 : 1);
     }
@@ -288,6 +214,32 @@ START_TEST(a_run_killed_before_each_change_leaves_nothing)
 }
 END_TEST
 
+/* Calls that are interrupted, and transfers that end early, change nothing. */
+START_TEST(a_run_whose_calls_are_disturbed)
+{
+    struct run r;
+    hf_messages messages = {0};
+    int n = 0;
+    const char *whole = NULL, *path = NULL;
+    new_folder(&whole);
+    whole = strdup(whole);
+    open_run(&r);
+    ck_assert_int_eq(run_it(whole, &r, &n, &messages), HF_OK);
+    close_run(&r);
+    new_folder(&path);
+    if (_i) leave_killed_run(path);
+    open_run(&r);
+    disturb_calls(true);
+    hf_status status = run_it(path, &r, &n, &messages);
+    disturb_calls(false);
+    ck_assert_msg(status == HF_OK && messages.n_error == 0, "%s", messages.text ? messages.text : "");
+    close_run(&r);
+    demand_whole(path, whole);
+    hf_messages_free(&messages);
+    free((char *)whole);
+}
+END_TEST
+
 /* ---- files of exporters ---- */
 
 static void put_text(const void *context, FILE *file)
@@ -302,11 +254,9 @@ START_TEST(an_exported_file_survives_each_failing_call)
     hf_messages messages = {0};
     const char *path, *folder = new_folder(&path);
     write_file(path, "old");
-    failing = name[_i];
-    countdown = 1;
+    fail_call_at(name[_i], 1, EIO, false);
     hf_status status = hf_file_out_write(path, put_text, "new", &messages);
-    failing = NULL;
-    ck_assert_int_le(countdown, 0);
+    ck_assert(end_call_failure());
     ck_assert_int_eq(status, HF_IO);
     ck_assert_ptr_nonnull(strstr(messages.text, "cannot write"));
     hf_messages_free(&messages);
@@ -326,6 +276,7 @@ Suite *suite_fault_store_calls(void)
     tcase_add_loop_test(tests, a_new_run_survives_each_failing_call, 0, N(calls));
     tcase_add_loop_test(tests, a_resumed_run_survives_each_failing_call, 0, N(calls));
     tcase_add_test(tests, a_run_killed_before_each_change_leaves_nothing);
+    tcase_add_loop_test(tests, a_run_whose_calls_are_disturbed, 0, 2);
     tcase_add_loop_test(tests, an_exported_file_survives_each_failing_call, 0, 4);
     return suite;
 }

@@ -1,8 +1,10 @@
 /* The ledger: rows written by any number of processes, incomplete rows, locks that end with their process. */
 #include "store/ledger.h"
 
+#include "calls.h"
 #include "support.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -46,7 +48,7 @@ static void write_point(const hf_study *s, int i, hf_status status, const char *
     ck_assert_int_eq(hf_ledger_open(folder, &ledger, &m), HF_OK);
     ck_assert(hf_ledger_claim(&ledger, s->id[i]));
     ck_assert_int_eq(hf_ledger_write(&ledger, s, i, status, reason, summary, &m), HF_OK);
-    hf_ledger_close(&ledger);
+    hf_ledger_close(&ledger, &m);
 }
 
 START_TEST(numbers_come_back_bit_by_bit)
@@ -136,7 +138,7 @@ START_TEST(what_others_finish_is_noticed)
     s.fingerprint[0] ^= 1;
     for (int i = 0; i < 5; i++)
         ck_assert_int_eq(hf_ledger_is_finished(&mine, &s, i), i == 1 || i == 2);
-    hf_ledger_close(&mine);
+    hf_ledger_close(&mine, &m);
     hf_study_free(&s);
 }
 END_TEST
@@ -158,6 +160,65 @@ START_TEST(rows_of_another_base_case_are_outdated)
 }
 END_TEST
 
+/* The disk refuses a row in its middle: what follows begins on a line of its own, and what was written counts. */
+START_TEST(a_row_that_fails_takes_no_other_along)
+{
+    hf_study s;
+    hf_summary summary = {0};
+    open_study(&s);
+    for (long n = 1; n < 12; n++) {
+        hf_ledger ledger;
+        hf_messages m = {0};
+        int n_written = 0;
+        bool was_reached = false;
+        char command[2600];
+        snprintf(command, sizeof command, "rm -rf '%s'", folder);
+        ck_assert_int_eq(system(command), 0);
+        ck_assert_int_eq(hf_ledger_open(folder, &ledger, &m), HF_OK);
+        disturb_calls(true);
+        fail_call_at("write", n, EDQUOT, false);
+        if (_i) fail_call_at("ftruncate", 1, EIO, false);
+        for (int i = 0; i < 5; i++) {
+            hf_status status = hf_ledger_write(&ledger, &s, i, HF_OK, "", &summary, &m);
+            n_written += status == HF_OK;
+            if (status != HF_OK) was_reached = end_call_failure();
+        }
+        disturb_calls(false);
+        end_call_failure();
+        ck_assert(was_reached);
+        ck_assert_int_eq(n_written, 4);
+        ck_assert_int_eq(m.n_error, 1);
+        ck_assert_ptr_nonnull(strstr(m.text, strerror(EDQUOT)));
+        ck_assert_int_eq(hf_ledger_close(&ledger, &m), HF_OK);
+        hf_points points = read_points(&s);
+        ck_assert_int_eq(points.count[HF_POINT_DONE], 4);
+        hf_points_free(&points);
+        hf_messages_free(&m);
+    }
+    hf_study_free(&s);
+}
+END_TEST
+
+/* What a close or a sync says at the end is an error. */
+START_TEST(rows_that_do_not_reach_the_disk)
+{
+    static const char *const name[] = {"close", "fdatasync"};
+    hf_study s;
+    hf_summary summary = {0};
+    hf_ledger ledger;
+    hf_messages m = {0};
+    open_study(&s);
+    ck_assert_int_eq(hf_ledger_open(folder, &ledger, &m), HF_OK);
+    ck_assert_int_eq(hf_ledger_write(&ledger, &s, 0, HF_OK, "", &summary, &m), HF_OK);
+    fail_call_at(name[_i], 1, EIO, false);
+    ck_assert_int_eq(hf_ledger_close(&ledger, &m), HF_IO);
+    ck_assert(end_call_failure());
+    ck_assert_ptr_nonnull(strstr(m.text, "cannot write to the disk: Input/output error"));
+    hf_messages_free(&m);
+    hf_study_free(&s);
+}
+END_TEST
+
 /* A process was killed while it wrote: cut the file at every byte. Whole rows count, nothing else does. */
 START_TEST(torn_rows_are_ignored)
 {
@@ -170,7 +231,7 @@ START_TEST(torn_rows_are_ignored)
     ck_assert_int_eq(hf_ledger_open(folder, &ledger, &m), HF_OK);
     for (int i = 0; i < 2; i++)
         ck_assert_int_eq(hf_ledger_write(&ledger, &s, i, HF_OK, "", &summary, &m), HF_OK);
-    hf_ledger_close(&ledger);
+    hf_ledger_close(&ledger, &m);
     snprintf(path, sizeof path, "%s/points-x.tsv", folder);
     snprintf(command, sizeof command, "mv '%s'/points-*-*.tsv '%s'", folder, path);
     ck_assert_int_eq(system(command), 0);
@@ -226,7 +287,7 @@ START_TEST(a_point_runs_as_long_as_its_process_lives)
     ck_assert_int_eq(points.count[HF_POINT_RUNNING], 0);
     hf_points_free(&points);
     ck_assert(hf_ledger_claim(&mine, s.id[1]));
-    hf_ledger_close(&mine);
+    hf_ledger_close(&mine, &m);
     hf_study_free(&s);
 }
 END_TEST
@@ -241,6 +302,8 @@ Suite *suite_unit_ledger(void)
     tcase_add_loop_test(tests, the_same_row_counts_in_any_order_of_files, 0, 2);
     tcase_add_test(tests, what_others_finish_is_noticed);
     tcase_add_test(tests, rows_of_another_base_case_are_outdated);
+    tcase_add_loop_test(tests, a_row_that_fails_takes_no_other_along, 0, 2);
+    tcase_add_loop_test(tests, rows_that_do_not_reach_the_disk, 0, 2);
     tcase_add_test(tests, torn_rows_are_ignored);
     tcase_add_test(tests, a_point_runs_as_long_as_its_process_lives);
     return suite;

@@ -103,7 +103,7 @@ START_TEST(abandoned_files_leave_nothing)
     char text[1024];
     hf_store *store = begin(path, 0, &net.scene), *second;
     ck_assert_int_eq(count_files(folder), 2); /* the file under its temporary name, and the journal */
-    ck_assert_int_eq(hf_store_create(path, 1, any_case(), &net.scene, NULL, 0, NULL, &second, &messages), HF_IO);
+    ck_assert_int_eq(hf_store_create(path, 1, any_case(), &net.scene, NULL, 0, NULL, &second, &messages), HF_EXISTS);
     ck_assert_ptr_null(second);
     snprintf(text, sizeof text, "%s", messages.text);
     ck_assert_msg(strstr(text, "another process is writing it") != NULL, "%s", text);

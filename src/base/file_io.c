@@ -1,0 +1,196 @@
+#define _DEFAULT_SOURCE /* flock */
+#include "base/file_io.h"
+
+#include "base/signals.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#define AWAIT_MS 200 /* until a request to stop is seen that came just before poll(2) */
+
+/* Evaluates a system call again while a signal interrupts it. */
+#define UNINTERRUPTED(result, call)                                                                                    \
+    do                                                                                                                 \
+        (result) = (call);                                                                                             \
+    while ((result) < 0 && errno == EINTR)
+
+int hf_file_io_open(const char *name, int flags)
+{
+    int file;
+    UNINTERRUPTED(file, open(name, flags, 0666));
+    return file;
+}
+
+/* ---- whole transfers ---- */
+
+/* A call that writes nothing without a reason would be repeated for ever. */
+static bool is_stuck(ssize_t done)
+{
+    if (done == 0) errno = ENOSPC;
+    return done <= 0;
+}
+
+int hf_file_io_write(int file, const void *from, size_t n)
+{
+    for (size_t done = 0; done < n;) {
+        ssize_t now;
+        UNINTERRUPTED(now, write(file, (const char *)from + done, n - done));
+        if (is_stuck(now)) return -1;
+        done += (size_t)now;
+    }
+    return 0;
+}
+
+int hf_file_io_write_at(int file, const void *from, size_t n, off_t at)
+{
+    for (size_t done = 0; done < n;) {
+        ssize_t now;
+        UNINTERRUPTED(now, pwrite(file, (const char *)from + done, n - done, at + (off_t)done));
+        if (is_stuck(now)) return -1;
+        done += (size_t)now;
+    }
+    return 0;
+}
+
+int hf_file_io_write_pieces(int file, struct iovec *piece, int n)
+{
+    while (n > 0) {
+        if (piece->iov_len == 0) {
+            piece++, n--;
+            continue;
+        }
+        ssize_t now;
+        UNINTERRUPTED(now, writev(file, piece, n));
+        if (is_stuck(now)) return -1;
+        for (size_t left = (size_t)now; left > 0;) {
+            size_t taken = left < piece->iov_len ? left : piece->iov_len;
+            piece->iov_base = (char *)piece->iov_base + taken;
+            piece->iov_len -= taken;
+            left -= taken;
+            if (piece->iov_len == 0) piece++, n--;
+        }
+    }
+    return 0;
+}
+
+ssize_t hf_file_io_read(int file, void *to, size_t n)
+{
+    size_t done = 0;
+    while (done < n) {
+        ssize_t now;
+        UNINTERRUPTED(now, read(file, (char *)to + done, n - done));
+        if (now < 0) return -1;
+        if (now == 0) break;
+        done += (size_t)now;
+    }
+    return (ssize_t)done;
+}
+
+ssize_t hf_file_io_read_at(int file, void *to, size_t n, off_t at)
+{
+    size_t done = 0;
+    while (done < n) {
+        ssize_t now;
+        UNINTERRUPTED(now, pread(file, (char *)to + done, n - done, at + (off_t)done));
+        if (now < 0) return -1;
+        if (now == 0) break;
+        done += (size_t)now;
+    }
+    return (ssize_t)done;
+}
+
+int hf_file_io_cut(int file, off_t size)
+{
+    int result;
+    UNINTERRUPTED(result, ftruncate(file, size));
+    return result;
+}
+
+/* ---- the disk ---- */
+
+int hf_file_io_sync(int file, bool content_alone)
+{
+    int result;
+    UNINTERRUPTED(result, content_alone ? fdatasync(file) : fsync(file));
+    return result == 0 || errno == EINVAL || errno == ENOSYS || errno == ENOTSUP ? 0 : -1;
+}
+
+int hf_file_io_close(int file)
+{
+    return close(file) == 0 || errno == EINTR ? 0 : -1; /* Linux frees the descriptor before it can be interrupted */
+}
+
+/* ---- locks ---- */
+
+static hf_lock lock_of_result(int result)
+{
+    if (result == 0) return HF_LOCK_OURS;
+    if (errno == EWOULDBLOCK || errno == EACCES) return HF_LOCK_TAKEN;
+    return errno == ENOSYS || errno == EOPNOTSUPP || errno == EINVAL ? HF_LOCK_NONE : HF_LOCK_FAILED;
+}
+
+hf_lock hf_file_io_lock(int file)
+{
+    int result;
+    UNINTERRUPTED(result, flock(file, LOCK_EX | LOCK_NB));
+    return lock_of_result(result);
+}
+
+static int set_byte(int file, off_t at, short type)
+{
+    struct flock lock = {.l_type = type, .l_whence = SEEK_SET, .l_start = at, .l_len = 1};
+    int result;
+    UNINTERRUPTED(result, fcntl(file, F_SETLK, &lock));
+    return result;
+}
+
+hf_lock hf_file_io_lock_byte(int file, off_t at)
+{
+    return lock_of_result(set_byte(file, at, F_WRLCK));
+}
+
+void hf_file_io_unlock_byte(int file, off_t at)
+{
+    set_byte(file, at, F_UNLCK); /* what fails is given back when the process ends */
+}
+
+/* ---- waiting, and faults ---- */
+
+int hf_file_io_await(int file)
+{
+    struct pollfd one = {.fd = file, .events = POLLIN};
+    for (;;) {
+        if (*hf_signals_request()) {
+            errno = EINTR;
+            return -1;
+        }
+        int n = poll(&one, 1, AWAIT_MS);
+        if (n > 0) return 0;
+        if (n < 0 && errno != EINTR) return -1;
+    }
+}
+
+hf_status hf_file_io_fault(int why, hf_status otherwise)
+{
+    switch (why) {
+    case ENOENT:
+    case ENOTDIR:
+    case EISDIR:
+    case EACCES:
+    case EPERM:
+    case ELOOP:
+    case ENAMETOOLONG:
+    case ENXIO:
+    case ENODEV:
+        return otherwise;
+    case ENOMEM:
+        return HF_NO_MEMORY;
+    case EINTR:
+        return HF_INTERRUPTED;
+    default:
+        return HF_IO;
+    }
+}
