@@ -3,10 +3,12 @@
 #include "app/options.h"
 #include "app/reader.h"
 
+#include "base/file_io.h"
 #include "linalg/band.h"
 #include <hifdm/batch.h>
 #include <hifdm/store.h>
 
+#include <errno.h>
 #include <gsl/gsl_errno.h>
 #include <limits.h>
 #include <signal.h>
@@ -37,20 +39,45 @@ static void wait_quietly(char **argv)
     if (!failed) execv(path, argv);
 }
 
-static hf_status check_room(const hf_options *o, hf_messages *messages)
+/* The buffers of LAPACK are taken now, before anything else needs memory and before there are threads. */
+static hf_status take_room(const hf_options *o, hf_messages *messages)
 {
     int n_thread = o->threads > 0 ? o->threads : hf_batch_default_threads();
-    if (hf_band_has_room(n_thread)) return HF_OK;
+    if (hf_band_take_room(n_thread)) return HF_OK;
     return hf_error(messages, HF_NO_MEMORY,
                     "LAPACK takes %d MB of address space for each of %d threads, more than there is (ulimit -v); "
                     "raise it, or use fewer --threads",
                     HF_BAND_ROOM_MB, n_thread);
 }
 
-static void print_messages(hf_messages *messages)
+static bool is_ending;
+
+/* libgomp ends the program by exit(1) when it gets no memory or no thread. It has said so, but 1 means something else
+ * here. Nothing is lost by this more than by a kill. */
+static void keep_exit_status(void)
+{
+    static const char words[] = "error: a library gave up, see above; free memory or processes (ulimit -v, -u), or use "
+                                "fewer --threads; the same command goes on\n";
+    if (is_ending) return;
+    hf_file_io_write(STDERR_FILENO, words, sizeof words - 1);
+    _exit(hf_status_exit_code(HF_NO_MEMORY));
+}
+
+/* Messages need memory, too: a failure is never silent. */
+static void say(const hf_messages *messages, hf_status status)
 {
     if (messages->text) fputs(messages->text, stderr);
-    hf_messages_free(messages);
+    if (hf_status_exit_code(status) == hf_status_exit_code(HF_NO_MEMORY) &&
+        (!messages->text || !strstr(messages->text, "error: ")))
+        fprintf(stderr, "error: %s\n", hf_status_text(status));
+}
+
+/* 0, or -1: a file server may tell of a full disk as late as at the close. A closed standard output is no fault unless
+ * something was written to it. */
+static int close_output(void)
+{
+    if (fflush(stdout) != 0 || ferror(stdout)) return -1;
+    return fclose(stdout) != 0 && errno != EBADF ? -1 : 0;
 }
 
 int main(int argc, char **argv)
@@ -61,7 +88,8 @@ int main(int argc, char **argv)
     bool uses_threads = status == HF_OK && options.command->uses_threads;
     int exit_status;
     if (status == HF_OK && options.command->reads_results && hf_reader_watch(&options, &exit_status, &messages)) {
-        print_messages(&messages);
+        say(&messages, status);
+        hf_messages_free(&messages);
         hf_options_free(&options);
         return exit_status;
     }
@@ -69,12 +97,15 @@ int main(int argc, char **argv)
     signal(SIGXFSZ, SIG_IGN);             /* writing beyond the limit on file size then fails with an error */
     gsl_set_error_handler_off();
     hf_store_quiet();
+    atexit(keep_exit_status);  /* last, so that it is called first */
     hf_band_single_threaded(); /* threads of LAPACK's own would change bits and take cores from ours */
-    if (uses_threads) status = check_room(&options, &messages);
+    if (uses_threads) status = take_room(&options, &messages);
     if (status == HF_OK) status = options.command->run(&options, stdout, &messages);
     hf_options_free(&options);
-    print_messages(&messages);
-    if ((fflush(stdout) != 0 || ferror(stdout)) && status == HF_OK) {
+    say(&messages, status);
+    hf_messages_free(&messages);
+    is_ending = true;
+    if (close_output() != 0 && status == HF_OK) {
         fputs("error: cannot write to standard output\n", stderr);
         status = HF_IO;
     }

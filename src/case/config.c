@@ -21,6 +21,7 @@ typedef struct {
     yaml_document_t *document;
     bool walked;   /* the file was readable YAML: keys that are missing can be reported */
     bool is_study; /* it has the key `base`, so it is no case, and none of a case's keys is missing */
+    bool no_memory;
 } loader;
 
 static void complain(loader *l, yaml_mark_t mark, const char *path, const char *what, const char *detail)
@@ -304,19 +305,23 @@ static void with_document(loader *l, const char *text, size_t length,
     yaml_parser_t parser;
     yaml_document_t document, next;
     if (!yaml_parser_initialize(&parser)) {
-        l->faults.failed = true;
-        hf_error(l->faults.messages, HF_NO_MEMORY, "%s: out of memory", l->faults.origin);
+        l->no_memory = true;
         return;
     }
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
     if (!yaml_parser_load(&parser, &document)) {
-        complain(l, problem_mark(&parser, text), "YAML", parser.problem ? parser.problem : "cannot be read", "");
+        l->no_memory |= parser.error == YAML_MEMORY_ERROR;
+        if (!l->no_memory)
+            complain(l, problem_mark(&parser, text), "YAML", parser.problem ? parser.problem : "cannot be read", "");
     } else {
         l->document = &document;
         use(l, yaml_document_get_root_node(&document), context);
         yaml_document_delete(&document);
         if (!yaml_parser_load(&parser, &next)) {
-            complain(l, problem_mark(&parser, text), "YAML", parser.problem ? parser.problem : "cannot be read", "");
+            l->no_memory |= parser.error == YAML_MEMORY_ERROR;
+            if (!l->no_memory)
+                complain(l, problem_mark(&parser, text), "YAML", parser.problem ? parser.problem : "cannot be read",
+                         "");
         } else {
             if (yaml_document_get_root_node(&next))
                 complain(l, next.start_mark, "YAML", "a second document in this file", "; one case per file");
@@ -461,6 +466,7 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
     cut_sweep(&l);
     hf_status sealed = seal(settings, overrides, n_override);
     free(l.faults.where_given);
+    if (l.no_memory) sealed = HF_NO_MEMORY;
     if (sealed != HF_OK) return hf_error(messages, sealed, "%s: out of memory", path);
     if (l.faults.n > HF_FAULT_MAX_CASE)
         hf_error(messages, HF_BAD_CASE, "%s: and %d more faults", path, l.faults.n - HF_FAULT_MAX_CASE);
@@ -496,8 +502,9 @@ hf_status hf_config_check_value(int field, const char *value, const char *place,
     if (scratch && l.faults.where_given)
         with_document(&l, value, strlen(value), use_default, &field);
     else
-        hf_error(messages, HF_NO_MEMORY, "%s: out of memory", place);
-    hf_status status = !scratch || !l.faults.where_given ? HF_NO_MEMORY : l.faults.failed ? HF_BAD_CASE : HF_OK;
+        l.no_memory = true;
+    hf_status status = l.faults.failed ? HF_BAD_CASE : HF_OK;
+    if (l.no_memory) status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", place);
     free(l.faults.where_given);
     free(scratch);
     return status;

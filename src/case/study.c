@@ -249,6 +249,7 @@ static hf_status check_points(hf_study *s, hf_messages *messages)
         hf_messages_free(&found);
         hf_case_free(&c);
         if (status == HF_NO_MEMORY) return out_of_memory(s, messages);
+        if (status == HF_IO || status == HF_INTERRUPTED) return status;
         if (i == 0 && status != HF_OK)
             return HF_BAD_CASE; /* most likely a fault of the base case: do not repeat it for every point */
     }

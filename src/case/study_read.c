@@ -425,7 +425,9 @@ static void parse(reader *r, const char *text, size_t length)
     }
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
     if (!yaml_parser_load(&parser, &document)) {
-        fault(r, parser.problem_mark, "", "YAML: %s", parser.problem ? parser.problem : "cannot be read");
+        r->no_memory |= parser.error == YAML_MEMORY_ERROR;
+        if (!r->no_memory)
+            fault(r, parser.problem_mark, "", "YAML: %s", parser.problem ? parser.problem : "cannot be read");
     } else {
         r->document = &document;
         read_root(r, yaml_document_get_root_node(&document));

@@ -27,11 +27,17 @@ void dsyrk_(const char *uplo, const char *trans, const int *n, const int *k, con
 #pragma weak openblas_set_num_threads
 #pragma weak openblas_get_config
 #pragma weak openblas_get_corename
+#pragma weak blas_memory_alloc
+#pragma weak blas_memory_free
 void openblas_set_num_threads(int n);
 char *openblas_get_config(void);
 char *openblas_get_corename(void);
+void *blas_memory_alloc(int which);
+void blas_memory_free(void *buffer);
 
 static const int three = 3;
+
+#define ROOMS_MAX 64 /* threads; OpenBLAS has buffers for as many processors as it was built for */
 
 hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row)
 {
@@ -115,13 +121,20 @@ void hf_band_single_threaded(void)
     if (openblas_set_num_threads) openblas_set_num_threads(1);
 }
 
-bool hf_band_has_room(int n_thread)
+bool hf_band_take_room(int n_thread)
 {
+    void *buffer[ROOMS_MAX];
     if (!openblas_get_config) return true;
     size_t bytes = (size_t)n_thread * ((size_t)HF_BAND_ROOM_MB << 20);
     void *room = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (room == MAP_FAILED) return false;
     munmap(room, bytes);
+    if (!blas_memory_alloc || !blas_memory_free) return true;
+    if (n_thread > ROOMS_MAX) n_thread = ROOMS_MAX;
+    for (int i = 0; i < n_thread; i++)
+        buffer[i] = blas_memory_alloc(1);
+    for (int i = 0; i < n_thread; i++)
+        blas_memory_free(buffer[i]); /* it stays mapped, for the next thread that asks */
     return true;
 }
 

@@ -39,10 +39,11 @@ void hf_band_gram(int n, int n_column, const double *a, int lda, double *gram, i
  * any solve. */
 void hf_band_single_threaded(void);
 
-/* True when there is address space for the buffers that LAPACK maps in n_thread threads. OpenBLAS maps HF_BAND_ROOM_MB
- * for each, and repeats a refused request without end (ulimit -v). */
+/* Take the buffers that LAPACK maps in n_thread threads, before there are threads. False when there is no address space
+ * for them (ulimit -v). OpenBLAS maps HF_BAND_ROOM_MB for each as late as in its first solve, and repeats a refused
+ * request without end. */
 #define HF_BAND_ROOM_MB 128
-bool hf_band_has_room(int n_thread);
+bool hf_band_take_room(int n_thread);
 
 /* Name of the LAPACK in use, for the provenance, e.g. "OpenBLAS 0.3.21 ... Haswell"; "reference or unknown". */
 const char *hf_band_library(void);

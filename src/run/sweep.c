@@ -3,14 +3,17 @@
 
 #include "base/clock.h"
 #include "base/later.h"
+#include "base/path.h"
 #include "base/text.h"
 #include "search/parallel.h"
 #include "store/ledger.h"
 #include <hifdm/run.h>
 #include <hifdm/store.h>
 
+#include <errno.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,7 +28,8 @@ typedef struct {
     pthread_mutex_t lock; /* protects count, messages and the observer */
     hf_sweep_count count;
     hf_messages *messages;
-    _Atomic hf_status fatal; /* not HF_OK: rows cannot be written, so no point may begin; read without the lock */
+    bool is_without_locks;   /* and this was said */
+    _Atomic hf_status fatal; /* not HF_OK: the machine is sick, so no point may begin; read without the lock */
 } sweep;
 
 static hf_status choose_points(sweep *w, const hf_points *points)
@@ -67,11 +71,29 @@ static void first_error(const hf_messages *said, hf_status status, char reason[H
     hf_text_trim_utf8(reason);
 }
 
+/* Not the point's fault: it may go well another time. So the point does not count as failed, and no other begins. */
+static bool is_of_machine(hf_status status)
+{
+    return status == HF_IO || status == HF_NO_MEMORY;
+}
+
+static void stop_sweep(sweep *w, hf_status status, const char *id, const char *words)
+{
+    pthread_mutex_lock(&w->lock);
+    if (w->fatal == HF_OK) w->fatal = hf_error(w->messages, status, "point %s: %s", id, words);
+    pthread_mutex_unlock(&w->lock);
+}
+
 static void finish_point(sweep *w, int i, hf_status status, const hf_messages *said, const hf_summary *summary)
 {
     char reason[HF_LEDGER_REASON_MAX + 1] = "";
     hf_messages trouble = {0};
     const hf_sweep_request *r = w->request;
+    if (is_of_machine(status)) {
+        first_error(said, status, reason);
+        stop_sweep(w, status, r->study->id[i], reason);
+        return;
+    }
     if (status != HF_OK) first_error(said, status, reason);
     hf_status written = hf_ledger_write(&w->ledger, w->request->study, i, status, reason, summary, &trouble);
     pthread_mutex_lock(&w->lock);
@@ -114,12 +136,31 @@ static void settle_point(void *context)
     free(p);
 }
 
-static void out_of_memory(sweep *w, const char *id)
+/* Is the point ours to run? Where the file system has no locks, it is. */
+static bool claim(sweep *w, int i)
 {
-    hf_ledger_release(&w->ledger, id);
+    const char *id = w->request->study->id[i];
+    hf_lock lock = hf_ledger_claim(&w->ledger, id);
+    if (lock == HF_LOCK_FAILED) {
+        char words[256];
+        snprintf(words, sizeof words, "cannot lock it in %s/claims: %s", hf_path_name(w->ledger.folder),
+                 strerror(errno));
+        stop_sweep(w, HF_IO, id, words);
+        return false;
+    }
+    bool is_ours = lock != HF_LOCK_TAKEN, is_finished = false;
+    if (is_ours) is_finished = hf_ledger_is_finished(&w->ledger, w->request->study, i);
+    if (is_finished) hf_ledger_release(&w->ledger, id); /* another sweep has done it meanwhile */
     pthread_mutex_lock(&w->lock);
-    w->fatal = hf_error(w->messages, HF_NO_MEMORY, "out of memory for a point");
+    w->count.n_elsewhere += !is_ours || is_finished;
+    if (lock == HF_LOCK_NONE && !w->is_without_locks)
+        hf_warning(w->messages,
+                   "%s: this file system has no locks: 'hifdm status' cannot tell what is running, and only --task "
+                   "keeps several sweeps from the same points",
+                   w->ledger.folder);
+    w->is_without_locks |= lock == HF_LOCK_NONE;
     pthread_mutex_unlock(&w->lock);
+    return is_ours && !is_finished;
 }
 
 static void run_point(void *context, int k)
@@ -128,20 +169,13 @@ static void run_point(void *context, int k)
     int i = w->todo[k];
     const char *id = w->request->study->id[i];
     if (must_stop(w)) return;
-    bool is_ours = hf_ledger_claim(&w->ledger, id);
-    if (!is_ours ||
-        hf_ledger_is_finished(&w->ledger, w->request->study, i)) { /* another sweep has finished it meanwhile */
-        if (is_ours) hf_ledger_release(&w->ledger, id);
-        pthread_mutex_lock(&w->lock);
-        w->count.n_elsewhere++;
-        pthread_mutex_unlock(&w->lock);
-        return;
-    }
+    if (!claim(w, i)) return;
     char file[HF_PATH_SIZE + 32], output[HF_OUTPUT_SIZE];
     hf_study_overrides overrides;
     finished_point *p = calloc(1, sizeof *p);
     if (!p) {
-        out_of_memory(w, id);
+        hf_ledger_release(&w->ledger, id);
+        stop_sweep(w, HF_NO_MEMORY, id, hf_status_text(HF_NO_MEMORY));
         return;
     }
     *p = (finished_point){.w = w, .i = i};
@@ -177,7 +211,11 @@ static hf_status run_points(sweep *w)
     w->count.has_run = true;
     int left = n->n_todo - n->n_done - n->n_failed - n->n_elsewhere;
     if (n->n_elsewhere) hf_warning(w->messages, "%d points are run by another process", n->n_elsewhere);
-    if (w->fatal != HF_OK) return w->fatal;
+    if (w->fatal != HF_OK)
+        return hf_error(w->messages, w->fatal,
+                        "the sweep stops here: %d points are left, and none counts as failed for this; the same "
+                        "command goes on when the cause is gone",
+                        left);
     if (left)
         return hf_error(w->messages, HF_INTERRUPTED, "told to stop: %d points are left; the same command goes on",
                         left);

@@ -37,7 +37,8 @@ typedef struct {
 
 /* HF_OK; HF_POINTS_FAILED when some failed, which stops no other; HF_INTERRUPTED when *stop_requested was seen: runs
  * end after a generation, no point begins; HF_EXISTS when points of another base case are in the way; HF_IO or
- * HF_NO_MEMORY. */
+ * HF_NO_MEMORY when the machine is at fault (no memory, no descriptors, no room, a failing disk): points under way come
+ * to their end, no point begins, and none counts as failed for it. */
 hf_status hf_sweep_run(const hf_sweep_request *request, hf_sweep_count *count, hf_messages *messages);
 
 #endif

@@ -5,21 +5,32 @@
 #include <limits.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#define OPEN_BYTES (8 << 20) /* HDF5 1.10.8 takes less than 3 MB to open a file */
+
 /* ---- failures ---- */
+
+typedef struct {
+    char words[256]; /* "": HDF5 gives none */
+    bool is_of_system, is_no_memory;
+} hdf5_reason;
 
 /* Keeps the first, innermost entry of HDF5's error stack; of an entry about a system call only the system's words. */
 static herr_t keep_reason(unsigned n, const H5E_error2_t *entry, void *context)
 {
     static const char key[] = "error message = '";
-    char *reason = context;
+    hdf5_reason *reason = context;
     (void)n;
     const char *desc = entry->desc ? entry->desc : "", *from = strstr(desc, key);
     if (from)
-        snprintf(reason, 256, "%.*s", (int)strcspn(from + sizeof key - 1, "'"), from + sizeof key - 1);
+        snprintf(reason->words, sizeof reason->words, "%.*s", (int)strcspn(from + sizeof key - 1, "'"),
+                 from + sizeof key - 1);
     else
-        snprintf(reason, 256, "%s", desc);
+        snprintf(reason->words, sizeof reason->words, "%s", desc);
+    reason->is_of_system = from != NULL;
+    reason->is_no_memory = entry->min_num == H5E_NOSPACE;
     return 1;
 }
 
@@ -36,12 +47,14 @@ static void full_name(hid_t place, const char *name, const char *attribute, char
 
 static void fail_at(hf_hdf5 *io, const char *verb, hid_t place, const char *name, const char *attribute)
 {
-    char reason[256] = "", where[800];
+    char where[800];
+    hdf5_reason reason = {.words = ""};
     if (io->status != HF_OK) return;
-    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_reason, reason); /* before the next call empties it */
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_reason, &reason); /* before the next call empties it */
     full_name(place, name, attribute, where, sizeof where);
-    io->status = hf_error(io->messages, HF_IO, "%s: cannot %s%s%s: %s", io->path, verb, *where ? " " : "", where,
-                          *reason ? reason : "HDF5 gives no reason");
+    io->is_damaged = *reason.words && !reason.is_of_system && !reason.is_no_memory;
+    io->status = hf_error(io->messages, reason.is_no_memory ? HF_NO_MEMORY : HF_IO, "%s: cannot %s%s%s: %s", io->path,
+                          verb, *where ? " " : "", where, *reason.words ? reason.words : "HDF5 gives no reason");
 }
 
 static void damaged_at(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *what)
@@ -49,6 +62,7 @@ static void damaged_at(hf_hdf5 *io, hid_t place, const char *name, const char *a
     char where[800];
     if (io->status != HF_OK) return;
     full_name(place, name, attribute, where, sizeof where);
+    io->is_damaged = true;
     io->status = hf_error(io->messages, HF_IO, "%s: is damaged: %s %s", io->path, where, what);
 }
 
@@ -58,6 +72,7 @@ void hf_hdf5_missing(hf_hdf5 *io, hid_t place, const char *name, const char *att
     if (*io->made_by == '\0') damaged_at(io, place, name, attribute, "is not there");
     if (io->status != HF_OK) return;
     full_name(place, name, attribute, where, sizeof where);
+    io->is_damaged = true;
     io->status =
         hf_error(io->messages, HF_IO,
                  "%s: was made by hifdm %s and has no %s, which this version needs: run its case again, or use "
@@ -243,12 +258,23 @@ static hid_t make_access(bool locks)
     return access;
 }
 
+/* HDF5 1.10 crashes when it gets no memory for the caches of a file that it opens. Other threads may take what is found
+ * here, so that there is more of it than HDF5 needs. */
+static bool has_memory(hf_hdf5 *io)
+{
+    void *room = malloc(OPEN_BYTES);
+    free(room);
+    if (!room) hf_hdf5_no_memory(io);
+    return room != NULL;
+}
+
 void hf_hdf5_create_file(hf_hdf5 *io, const hf_file_out *file)
 {
     hid_t properties = -1, access = -1;
     char name[HF_FILE_OUT_NAME_SIZE];
     io->file = -1;
     hf_file_out_name(file, name);
+    if (!has_memory(io)) return;
     if ((properties = make_properties(H5P_FILE_CREATE)) < 0 || (access = make_access(false)) < 0 ||
         (io->file = H5Fcreate(name, H5F_ACC_TRUNC, properties, access)) < 0)
         hf_hdf5_fail(io, "create", -1, NULL);
@@ -259,6 +285,8 @@ void hf_hdf5_create_file(hf_hdf5 *io, const hf_file_out *file)
 static void open_file(hf_hdf5 *io, const char *name, unsigned how, bool locks)
 {
     hf_hdf5_note(io);
+    io->file = -1;
+    if (!has_memory(io)) return;
     hid_t access = make_access(locks);
     io->file = access < 0 ? -1 : H5Fopen(name, how, access);
     if (io->file < 0) hf_hdf5_fail(io, "open", -1, NULL);

@@ -20,6 +20,7 @@ typedef struct {
     const char *path; /* the file as messages call it; borrowed */
     hf_messages *messages;
     hf_status status; /* HF_OK, or of the first failure, which is in the messages */
+    bool is_damaged;  /* the failure is one of the file's content, and will be there again; else one of the machine */
     hid_t file;
     char made_by[132]; /* the version of hifdm that made the file; "" = this one, or unknown */
 } hf_hdf5;

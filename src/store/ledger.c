@@ -87,9 +87,9 @@ hf_ledger_content hf_ledger_file(const char *folder, const hf_study *study, int 
     return info.st_size > 0 ? HF_LEDGER_FILE : HF_LEDGER_EMPTY_FILE;
 }
 
-static struct flock lock_of(const char *id, short type)
+static off_t byte_of(const char *id)
 {
-    return (struct flock){.l_type = type, .l_whence = SEEK_SET, .l_start = (off_t)strtoull(id, NULL, 16), .l_len = 1};
+    return (off_t)strtoull(id, NULL, 16);
 }
 
 /* ---- opening and writing ---- */
@@ -151,17 +151,14 @@ hf_status hf_ledger_close(hf_ledger *l, hf_messages *messages)
                     strerror(why));
 }
 
-bool hf_ledger_claim(hf_ledger *l, const char *id)
+hf_lock hf_ledger_claim(hf_ledger *l, const char *id)
 {
-    struct flock lock = lock_of(id, F_WRLCK);
-    /* a file system without locks: only shards keep processes apart */
-    return fcntl(l->claims, F_SETLK, &lock) == 0 || (errno != EACCES && errno != EAGAIN);
+    return hf_file_io_lock_byte(l->claims, byte_of(id));
 }
 
 void hf_ledger_release(hf_ledger *l, const char *id)
 {
-    struct flock lock = lock_of(id, F_UNLCK);
-    fcntl(l->claims, F_SETLK, &lock);
+    hf_file_io_unlock_byte(l->claims, byte_of(id));
 }
 
 /* One write, so that a process killed at any instant leaves at most one incomplete line. What of a line is there after

@@ -11,6 +11,7 @@
 #ifndef HIFDM_LEDGER_H
 #define HIFDM_LEDGER_H
 
+#include "base/file_io.h"
 #include "store/layout.h"
 #include "case/study.h"
 
@@ -40,8 +41,8 @@ typedef struct {
 hf_status hf_ledger_open(const char *folder, hf_ledger *ledger, hf_messages *messages);
 hf_status hf_ledger_close(hf_ledger *ledger, hf_messages *messages);
 
-/* Claim the point for this process. False when another process has it. */
-bool hf_ledger_claim(hf_ledger *ledger, const char *id);
+/* Claim the point for this process. On a file system without locks only shards keep processes apart. */
+hf_lock hf_ledger_claim(hf_ledger *ledger, const char *id);
 void hf_ledger_release(hf_ledger *ledger, const char *id);
 
 /* Begin to watch which points any process finishes. Call it before hf_ledger_read. HF_OK or HF_NO_MEMORY. */

@@ -26,7 +26,7 @@ static hf_status check_target(const char *path, hf_messages *messages)
     char folder[4096];
     struct stat info;
     if (lstat(path, &info) == 0 && stat(path, &info) == 0 && !S_ISREG(info.st_mode))
-        return hf_error(messages, HF_IO, "%s: is %s; use -o to choose a file name", path,
+        return hf_error(messages, HF_EXISTS, "%s: is %s; use -o to choose a file name", path,
                         S_ISDIR(info.st_mode) ? "a folder" : "not an ordinary file");
     hf_path_folder(path, folder, sizeof folder);
     if (!*path || stat(folder, &info) != 0 || !S_ISDIR(info.st_mode))

@@ -3,11 +3,13 @@
 #include "store/store_read.h"
 
 #include "base/child.h"
+#include "base/file_io.h"
 #include "base/file_out.h"
 #include "base/sha256.h"
 #include "store/compare.h"
 #include "store/journal.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -144,18 +146,28 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
     signed char finished = 0;
     struct stat info;
     *state = HF_STORE_NOTHING;
-    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return HF_OK; /* hf_store_create says what is wrong */
-    hf_messages unwanted = {0};
+    int failed = stat(path, &info);
+    if (failed && hf_file_io_fault(errno, HF_OK) != HF_OK)
+        return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
+    if (failed || !S_ISREG(info.st_mode)) return HF_OK; /* hf_store_create says what is wrong */
+    hf_messages said = {0};
     HF_TRY(survive(path, messages));
-    HF_TRY(hf_store_identify(settings, scene, truss, now));
+    if (hf_store_identify(settings, scene, truss, now) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     hf_hdf5_lock();
-    hf_hdf5 io = hf_store_open_result(path, &unwanted);
+    hf_hdf5 io = hf_store_open_result(path, &said);
     hf_hdf5_get(&io, io.file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     hf_hdf5_get(&io, io.file, "/", "identity", HF_KIND_CHARS, then, sizeof then);
     if (io.status == HF_OK && strcmp(now, then) != 0) tell_difference(&io, settings, words, sizeof words);
     hf_hdf5_close_file(&io);
-    hf_messages_free(&unwanted);
     hf_hdf5_unlock(HF_OK);
+    if (io.status != HF_OK && !io.is_damaged && said.text) {
+        const char *why = said.text + strlen("error: "); /* the machine's fault, and not that of what is there */
+        hf_error(messages, io.status, "%.*s", (int)strcspn(why, "\n"), why);
+        hf_messages_free(&said);
+        return io.status;
+    }
+    hf_messages_free(&said);
     if (io.status != HF_OK)
         return hf_error(
             messages, HF_EXISTS,

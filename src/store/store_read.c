@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 
+#include "base/file_io.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,14 +12,16 @@
 
 /* ---- opening a result file ---- */
 
-/* Is an open file one of ours? No message when the attribute `program` is missing or of another type. */
-static bool is_ours(const hf_hdf5 *io)
+/* Is an open file one of ours? No message when the attribute `program` is missing or of another type. *could_read:
+ * false when the machine, not the file, is why it cannot be told. */
+static bool is_ours(const hf_hdf5 *io, bool *could_read)
 {
     char program[16] = "";
     hf_messages unwanted = {0};
     hf_hdf5 probe = {.path = io->path, .messages = &unwanted, .status = HF_OK, .file = io->file};
     hf_hdf5_get(&probe, probe.file, "/", "program", HF_KIND_CHARS, program, sizeof program);
     hf_messages_free(&unwanted);
+    *could_read = probe.status == HF_OK || probe.is_damaged;
     return !strcmp(program, HF_PROGRAM);
 }
 
@@ -41,21 +44,26 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
     struct stat info;
     int version = 0;
     if (stat(path, &info) != 0) {
+        io.is_damaged = hf_file_io_fault(errno, HF_OK) == HF_OK;
         io.status = hf_error(messages, HF_IO, "%s: cannot open: %s", path, strerror(errno));
     } else if (S_ISDIR(info.st_mode)) {
+        io.is_damaged = true;
         io.status = hf_error(messages, HF_IO, "%s: is a folder, not a result file", path);
     } else if (!S_ISREG(info.st_mode) || H5Fis_hdf5(path) == 0) {
+        io.is_damaged = true;
         io.status = hf_error(messages, HF_IO, "%s: is not an HDF5 file, so no result of hifdm", path);
     } else {
         hf_hdf5_open_file(&io, path);
     }
     if (io.status != HF_OK) return io;
-    if (!is_ours(&io))
+    if (!is_ours(&io, &io.is_damaged))
         io.status = hf_error(messages, HF_IO, "%s: is an HDF5 file, but no result of hifdm or a damaged one", path);
     hf_hdf5_get(&io, io.file, "/", "format_version", HF_KIND_INT, &version, sizeof version);
-    if (io.status == HF_OK && version != HF_FORMAT_VERSION)
+    if (io.status == HF_OK && version != HF_FORMAT_VERSION) {
+        io.is_damaged = true;
         io.status = hf_error(messages, HF_IO, "%s: is of format version %d, this program reads version %d", path,
                              version, HF_FORMAT_VERSION);
+    }
     note_version(&io);
     return io;
 }

@@ -18,7 +18,7 @@ static bool is_news(hf_store *s, int generation, size_t bytes, int next, hf_stat
     *status = HF_OK;
     if (generation < next) return false; /* published before the journal could be rotated */
     if (generation == next && bytes == g->payload_bytes && generation < g->limit) return true;
-    *status = hf_error(s->f.io.messages, HF_IO,
+    *status = hf_error(s->f.io.messages, HF_EXISTS,
                        "%s: does not fit to %s, which goes on with generation %d of %zu bytes, not %d of %zu; was it "
                        "copied or replaced? --restart (of a sweep: --retry failed) begins anew",
                        s->f.out.path, s->f.journal.path, generation, bytes, next, g->payload_bytes);
@@ -98,6 +98,13 @@ static void read_state(hf_store *s)
     if (io->status == HF_OK) io->status = hf_journal_replay(&s->f.journal, s->identity, count_record, s, io->messages);
 }
 
+/* What is damaged stands in the way, also of the next attempt. What the machine cannot do now it may do later. */
+static hf_status judge(hf_hdf5 *io)
+{
+    if (io->status == HF_IO && io->is_damaged) io->status = HF_EXISTS;
+    return io->status;
+}
+
 hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages)
 {
     hf_status status;
@@ -111,6 +118,7 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     hf_store_file_open(&s->f);
     read_state(s);
     if (s->f.io.status == HF_OK) note_session(s);
+    judge(&s->f.io);
     return hf_store_hand_over(s, store);
 }
 
@@ -132,7 +140,7 @@ hf_status hf_store_restore_base(hf_store *store, int n_gene, double *base_N, hf_
         hf_hdf5_read_array(&store->f.io, store->f.io.file, &base, base_N);
         check_base(&store->f.io, n_gene, base_N);
     }
-    return hf_hdf5_unlock(store->f.io.status);
+    return hf_hdf5_unlock(judge(&store->f.io));
 }
 
 /* ---- breeding again ---- */
@@ -168,7 +176,7 @@ static hf_status breed_record(void *context, int generation, const void *payload
                         s->f.out.path, generation + 1, s->f.journal.path);
     }
     if (!hf_generations_are_sound(&o->population))
-        return hf_error(s->f.io.messages, HF_IO,
+        return hf_error(s->f.io.messages, HF_EXISTS,
                         "%s: %s is damaged: generation %d is none that a run stores; --restart (of a sweep: --retry "
                         "failed) begins anew",
                         s->f.out.path, s->f.journal.path, generation);
@@ -216,7 +224,7 @@ static hf_status restore(hf_store *store, hf_optimiser *optimiser, int drops, hf
     if (store->rows.n_stored && io->status == HF_OK) hf_generations_restore(io, &store->rows, &optimiser->population);
     if (store->n_journal) breed_journal(store, optimiser, drops);
     hf_generations_sum_up(io, &store->rows, summary);
-    return hf_hdf5_unlock(io->status);
+    return hf_hdf5_unlock(judge(io));
 }
 
 hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages)

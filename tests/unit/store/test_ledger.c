@@ -46,7 +46,7 @@ static void write_point(const hf_study *s, int i, hf_status status, const char *
     hf_ledger ledger;
     hf_messages m = {0};
     ck_assert_int_eq(hf_ledger_open(folder, &ledger, &m), HF_OK);
-    ck_assert(hf_ledger_claim(&ledger, s->id[i]));
+    ck_assert_int_eq(hf_ledger_claim(&ledger, s->id[i]), HF_LOCK_OURS);
     ck_assert_int_eq(hf_ledger_write(&ledger, s, i, status, reason, summary, &m), HF_OK);
     hf_ledger_close(&ledger, &m);
 }
@@ -267,8 +267,9 @@ START_TEST(a_point_runs_as_long_as_its_process_lives)
     pid_t child = fork();
     if (child == 0) {
         hf_ledger theirs;
-        if (hf_ledger_open(folder, &theirs, &m) == HF_OK && hf_ledger_claim(&theirs, s.id[1]) &&
-            hf_ledger_claim(&theirs, s.id[3]) && write(ready[1], "x", 1) == 1 && read(end[0], &byte, 1) == 1)
+        if (hf_ledger_open(folder, &theirs, &m) == HF_OK && hf_ledger_claim(&theirs, s.id[1]) == HF_LOCK_OURS &&
+            hf_ledger_claim(&theirs, s.id[3]) == HF_LOCK_OURS && write(ready[1], "x", 1) == 1 &&
+            read(end[0], &byte, 1) == 1)
             kill(getpid(), SIGKILL);
         _exit(1);
     }
@@ -277,8 +278,8 @@ START_TEST(a_point_runs_as_long_as_its_process_lives)
     ck_assert_int_eq(points.count[HF_POINT_RUNNING], 2);
     ck_assert(points.point[1].state == HF_POINT_RUNNING && points.point[3].state == HF_POINT_RUNNING);
     hf_points_free(&points);
-    ck_assert(!hf_ledger_claim(&mine, s.id[1]));
-    ck_assert(hf_ledger_claim(&mine, s.id[2]));
+    ck_assert_int_eq(hf_ledger_claim(&mine, s.id[1]), HF_LOCK_TAKEN);
+    ck_assert_int_eq(hf_ledger_claim(&mine, s.id[2]), HF_LOCK_OURS);
     ck_assert_int_eq(write(end[1], "x", 1), 1);
     int how;
     ck_assert_int_eq(waitpid(child, &how, 0), child);
@@ -286,7 +287,7 @@ START_TEST(a_point_runs_as_long_as_its_process_lives)
     points = read_points(&s);
     ck_assert_int_eq(points.count[HF_POINT_RUNNING], 0);
     hf_points_free(&points);
-    ck_assert(hf_ledger_claim(&mine, s.id[1]));
+    ck_assert_int_eq(hf_ledger_claim(&mine, s.id[1]), HF_LOCK_OURS);
     hf_ledger_close(&mine, &m);
     hf_study_free(&s);
 }

@@ -177,7 +177,7 @@ START_TEST(a_damaged_file_is_refused)
     hf_status status = hf_store_resume(path, &s, &messages);
     if (status == HF_OK) status = hf_store_restore_base(s, N_GENE, r.base_N, &messages);
     if (status == HF_OK) status = hf_store_restore(s, &r.ga, &summary, &messages);
-    ck_assert_int_eq(status, HF_IO);
+    ck_assert_int_eq(status, HF_EXISTS); /* in the way, also of the next attempt */
     ck_assert_msg(strstr(messages.text, path) && strstr(messages.text, spoilt[_i].why), "%s", messages.text);
     if (s) hf_store_end(s);
     hf_messages_free(&messages);
