@@ -67,9 +67,22 @@ static bool is_change(const char *name)
     return false;
 }
 
+static const char *awaited; /* the name of a call; NULL: none */
+static void (*act_before)(void);
+
+void before_call(const char *name, void (*act)(void))
+{
+    act_before = act;
+    awaited = name;
+}
+
 static bool fails(const char *name)
 {
     if (atomic_load(&n_left) > 0 && is_change(name) && atomic_fetch_sub(&n_left, 1) == 1) _exit(9);
+    if (awaited && strcmp(name, awaited) == 0) {
+        awaited = NULL;
+        act_before();
+    }
     for (int i = 0; i < N_KIND; i++) {
         if (!failing[i].name || strcmp(name, failing[i].name) != 0) continue;
         long left = atomic_fetch_sub(&failing[i].countdown, 1) - 1;

@@ -14,6 +14,9 @@ bool end_call_failure(void); /* back to normal; true when the n-th of each kind 
  * removed. */
 void die_before_change(long n);
 
+/* Once, before the next call of this name, act() is called. */
+void before_call(const char *name, void (*act)(void));
+
 /* From now on, of the calls that may be interrupted or end early (open, read, write, ..., flock, fsync) one in three is
  * interrupted by a signal, and one in three transfers a single byte. */
 void disturb_calls(bool on);

@@ -240,6 +240,26 @@ START_TEST(a_run_whose_calls_are_disturbed)
 }
 END_TEST
 
+/* The file goes to the disk before it gets its name, and its name after: both must be heard. */
+START_TEST(a_finished_result_is_on_the_disk)
+{
+    struct run r;
+    hf_messages messages = {0};
+    hf_store *s;
+    int n;
+    const char *path;
+    new_folder(&path);
+    open_run(&r);
+    ck_assert_int_eq(begin_new(path, &r, &s, &messages), HF_OK);
+    ck_assert_int_eq(store_some(s, &r, 0, N_GENERATION, &n, &messages), HF_OK);
+    fail_call_at("fsync", 1 + _i, EIO, false);
+    ck_assert_int_eq(hf_store_finish(s, &(hf_summary){.has_optimize = 1}, &messages), HF_IO);
+    ck_assert(end_call_failure());
+    close_run(&r);
+    hf_messages_free(&messages);
+}
+END_TEST
+
 /* ---- files of exporters ---- */
 
 static void put_text(const void *context, FILE *file)
@@ -277,6 +297,7 @@ Suite *suite_fault_store_calls(void)
     tcase_add_loop_test(tests, a_resumed_run_survives_each_failing_call, 0, N(calls));
     tcase_add_test(tests, a_run_killed_before_each_change_leaves_nothing);
     tcase_add_loop_test(tests, a_run_whose_calls_are_disturbed, 0, 2);
+    tcase_add_loop_test(tests, a_finished_result_is_on_the_disk, 0, 2);
     tcase_add_loop_test(tests, an_exported_file_survives_each_failing_call, 0, 4);
     return suite;
 }

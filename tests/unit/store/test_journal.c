@@ -1,8 +1,11 @@
 /* The journal of a run, by itself: damage, and the lock that it is. */
+#include "calls.h"
 #include "support.h"
 
+#include "base/path.h"
 #include "store/journal.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -100,6 +103,48 @@ START_TEST(the_lock_is_kept_while_the_journal_is_rotated)
 }
 END_TEST
 
+/* The lock of a file that has lost its name to another one is not the lock of the result. */
+static void move_another_there(void)
+{
+    write_file(temp_path("another"), "");
+    ck_assert_int_eq(rename(temp_path("another"), temp_path("run.h5.journal")), 0);
+}
+
+START_TEST(a_name_that_moves_before_the_lock_is_opened_again)
+{
+    hf_journal j;
+    hf_messages m = {0};
+    before_call("flock", move_another_there);
+    ck_assert_int_eq(hf_journal_open(result_path(), false, &j, &m), HF_OK);
+    ck_assert(hf_path_leads_to(j.path, j.file));
+    demand_locked();
+    hf_journal_close(&j, true);
+    hf_messages_free(&m);
+}
+END_TEST
+
+/* Every HF_JOURNAL_SYNC_S, if there is news; that the disk refuses is an error. */
+START_TEST(what_is_appended_goes_to_the_disk)
+{
+    hf_journal j;
+    hf_messages m = {0};
+    open_new(&j, &m);
+    ck_assert_int_eq(hf_journal_tend(&j, 100, &m), HF_OK); /* starts the clock */
+    append(&j, 0, 'a', &m);
+    fail_call_at("fdatasync", 1, EIO, false);
+    ck_assert_int_eq(hf_journal_tend(&j, 100 + 0.9 * HF_JOURNAL_SYNC_S, &m), HF_OK);
+    ck_assert_int_eq(hf_journal_tend(&j, 100 + 1.1 * HF_JOURNAL_SYNC_S, &m), HF_IO);
+    ck_assert(end_call_failure());
+    append(&j, 1, 'b', &m);
+    ck_assert_int_eq(hf_journal_tend(&j, 100 + 2.2 * HF_JOURNAL_SYNC_S, &m), HF_OK);
+    fail_call_at("fdatasync", 1, EIO, false);
+    ck_assert_int_eq(hf_journal_tend(&j, 100 + 3.3 * HF_JOURNAL_SYNC_S, &m), HF_OK); /* no news */
+    ck_assert(!end_call_failure());
+    hf_journal_close(&j, true);
+    hf_messages_free(&m);
+}
+END_TEST
+
 Suite *suite_unit_journal(void)
 {
     Suite *suite = suite_create("unit/journal");
@@ -107,5 +152,7 @@ Suite *suite_unit_journal(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, a_spoilt_record_is_told);
     tcase_add_test(tests, the_lock_is_kept_while_the_journal_is_rotated);
+    tcase_add_test(tests, a_name_that_moves_before_the_lock_is_opened_again);
+    tcase_add_test(tests, what_is_appended_goes_to_the_disk);
     return suite;
 }

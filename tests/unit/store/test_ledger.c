@@ -199,6 +199,24 @@ START_TEST(a_row_that_fails_takes_no_other_along)
 }
 END_TEST
 
+/* The first row is synced, since it is long after the last sync. */
+START_TEST(a_row_goes_to_the_disk)
+{
+    hf_study s;
+    hf_summary summary = {0};
+    hf_ledger ledger;
+    hf_messages m = {0};
+    open_study(&s);
+    ck_assert_int_eq(hf_ledger_open(folder, &ledger, &m), HF_OK);
+    fail_call_at("fdatasync", 1, EIO, false);
+    ck_assert_int_eq(hf_ledger_write(&ledger, &s, 0, HF_OK, "", &summary, &m), HF_IO);
+    ck_assert(end_call_failure());
+    ck_assert_int_eq(hf_ledger_close(&ledger, &m), HF_OK);
+    hf_messages_free(&m);
+    hf_study_free(&s);
+}
+END_TEST
+
 /* What a close or a sync says at the end is an error. */
 START_TEST(rows_that_do_not_reach_the_disk)
 {
@@ -304,6 +322,7 @@ Suite *suite_unit_ledger(void)
     tcase_add_test(tests, what_others_finish_is_noticed);
     tcase_add_test(tests, rows_of_another_base_case_are_outdated);
     tcase_add_loop_test(tests, a_row_that_fails_takes_no_other_along, 0, 2);
+    tcase_add_test(tests, a_row_goes_to_the_disk);
     tcase_add_loop_test(tests, rows_that_do_not_reach_the_disk, 0, 2);
     tcase_add_test(tests, torn_rows_are_ignored);
     tcase_add_test(tests, a_point_runs_as_long_as_its_process_lives);
