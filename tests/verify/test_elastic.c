@@ -202,6 +202,25 @@ START_TEST(nets_of_files)
 }
 END_TEST
 
+/* A net of all four laws against an oracle of another algorithm in numpy. 70 nodes, 146 cables, some slack; one of
+ * given length is taut with 0.0044 N where others pull with 240 N. */
+START_TEST(net_of_all_laws_is_that_of_the_oracle)
+{
+    const char *file = temp_path("net.h5"), *folder = temp_path("found");
+    const char *net = source_path("tests/verify/data/nets/slack");
+    struct command c = run_hifdm("run", source_path("tests/verify/data/nets/slack/case.yaml"), "-o", file, "--quiet");
+    ck_assert_msg(c.exit_code == 0, "%s", c.err);
+    free_command(&c);
+    c = run_hifdm("export", file, "--csv", folder);
+    ck_assert_msg(c.exit_code == 0, "%s", c.err);
+    free_command(&c);
+    c = run_command(50, (const char *const[]){python_program(), source_path("tests/verify/net_oracle.py"), net, folder,
+                                              "1e-9", NULL});
+    ck_assert_msg(c.exit_code == 0, "%s%s", c.out, c.err);
+    free_command(&c);
+}
+END_TEST
+
 Suite *suite_verify_elastic(void)
 {
     Suite *suite = suite_create("verify/elastic");
@@ -209,5 +228,6 @@ Suite *suite_verify_elastic(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, analytical_nets, 0, N_BY_HAND);
     tcase_add_loop_test(tests, nets_of_files, 0, 2);
+    tcase_add_test(tests, net_of_all_laws_is_that_of_the_oracle);
     return suite;
 }
