@@ -210,12 +210,12 @@ static hf_status find_chains(hf_model *m)
     return HF_OK;
 }
 
-void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_chain, char *text, size_t size)
+void hf_model_chain_name(const hf_model *m, const hf_scene *scene, int i_chain, char *text, size_t size)
 {
     size_t used = 0;
     text[0] = '\0';
-    for (int k = model->chain_start[i_chain]; k < model->chain_start[i_chain + 1]; k++) {
-        const char *id = scene->cable_id[model->chain_cable[k]];
+    for (int k = m->chain_start[i_chain]; k < m->chain_start[i_chain + 1]; k++) {
+        const char *id = scene->cable_id[m->chain_cable[k]];
         if (used + strlen(id) + 8 > size) {
             snprintf(text + used, size - used, " ...");
             return;
@@ -270,31 +270,31 @@ static hf_status build(const hf_scene *scene, const hf_form_settings *form, cons
     return find_chains(m);
 }
 
-hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages)
+hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *m, hf_messages *messages)
 {
-    *model = (hf_model){.n_node = scene->n_node, .n_cable = scene->n_cable};
+    *m = (hf_model){.n_node = scene->n_node, .n_cable = scene->n_cable};
     for (int i = 0; i < scene->n_node; i++)
-        model->n_free += scene->role[i] != HF_ROLE_SUPPORT;
+        m->n_free += scene->role[i] != HF_ROLE_SUPPORT;
     int *order = malloc((size_t)scene->n_node * sizeof *order);
-    hf_status status = order ? hf_numbering_find(scene, order, &model->half_bandwidth) : HF_NO_MEMORY;
-    double n_band = (double)model->n_free * (model->half_bandwidth + 1.0);
+    hf_status status = order ? hf_numbering_find(scene, order, &m->half_bandwidth) : HF_NO_MEMORY;
+    double n_band = (double)m->n_free * (m->half_bandwidth + 1.0);
     if (status == HF_OK && 3 * n_band > INT_MAX / 2) { /* 3: the general band of nets with struts */
         free(order);
-        return hf_error(messages, HF_NO_MEMORY, "the band matrix of %d rows, half-bandwidth %d is too large",
-                        model->n_free, model->half_bandwidth);
+        return hf_error(messages, HF_NO_MEMORY, "the band matrix of %d rows, half-bandwidth %d is too large", m->n_free,
+                        m->half_bandwidth);
     }
-    model->n_band = (int)n_band;
-    if (status == HF_OK) status = build(scene, form, order, model);
+    m->n_band = (int)n_band;
+    if (status == HF_OK) status = build(scene, form, order, m);
     free(order);
     if (status != HF_OK) return hf_error(messages, status, "out of memory for a model of %d nodes", scene->n_node);
     return HF_OK;
 }
 
-void hf_model_free(hf_model *model)
+void hf_model_free(hf_model *m)
 {
-    free(model->block);
-    free(model->attachment_block);
-    *model = (hf_model){0};
+    free(m->block);
+    free(m->attachment_block);
+    *m = (hf_model){0};
 }
 
 /* ---- attachments ---- */

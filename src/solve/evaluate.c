@@ -9,12 +9,12 @@
 
 /* ---- choice of the method ---- */
 
-hf_method hf_evaluate_method(const hf_model *m, const hf_form_settings *form, const char **why)
+hf_method hf_evaluate_method(const hf_model *m, const hf_form_settings *s, const char **why)
 {
     const char *reason = "asked for";
-    hf_method method = form->method == HF_METHOD_NEWTON ? HF_METHOD_NEWTON : HF_METHOD_HIFDM;
-    if (form->method == HF_METHOD_AUTO) {
-        method = m->has_newton && form->stop == HF_STOP_RESIDUAL ? HF_METHOD_NEWTON : HF_METHOD_HIFDM;
+    hf_method method = s->method == HF_METHOD_NEWTON ? HF_METHOD_NEWTON : HF_METHOD_HIFDM;
+    if (s->method == HF_METHOD_AUTO) {
+        method = m->has_newton && s->stop == HF_STOP_RESIDUAL ? HF_METHOD_NEWTON : HF_METHOD_HIFDM;
         reason = method == HF_METHOD_NEWTON ? "every potential is convex: quadratic convergence"
                                             : "stop: rms_change is a rule for it";
     }
@@ -34,31 +34,31 @@ typedef struct {
     hf_stop_rule stop; /* of the paper's iteration */
 } net_problem;
 
-static hf_status find_alone(const void *context, hf_workspace *w, hf_history *history, hf_form_result *result)
+static hf_status find_alone(const void *context, hf_workspace *w, hf_history *history, hf_form_result *r)
 {
     const net_problem *p = context;
-    if (p->by_newton) return hf_equilibrium_find(p->m, p->form, w, history, result);
-    return hf_form_find(p->m, p->form, p->stop, w, history, result);
+    if (p->by_newton) return hf_equilibrium_find(p->m, p->form, w, history, r);
+    return hf_form_find(p->m, p->form, p->stop, w, history, r);
 }
 
 /* Finds the shape from the workspace's first force densities. Under the paper's rule the place of the stop depends on
  * the start, so all iterations of the coupling then share one start. */
-static hf_status find_net(const net_problem *p, hf_workspace *w, hf_history *history, hf_form_result *result)
+static hf_status find_net(const net_problem *p, hf_workspace *w, hf_history *history, hf_form_result *r)
 {
-    if (!p->m->n_attachment) return find_alone(p, w, history, result);
+    if (!p->m->n_attachment) return find_alone(p, w, history, r);
     bool start_counts = !p->by_newton && p->stop == HF_STOP_RMS_CHANGE;
-    return hf_coupling_find(p->m, &p->form->coupling, find_alone, p, start_counts, w, history, result);
+    return hf_coupling_find(p->m, &p->form->coupling, find_alone, p, start_counts, w, history, r);
 }
 
-hf_status hf_evaluate_form(const hf_model *m, const hf_form_settings *form, hf_workspace *w, hf_history *history,
-                           hf_form_result *result)
+hf_status hf_evaluate_form(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
+                           hf_form_result *r)
 {
-    net_problem problem = {m, form, hf_evaluate_method(m, form, NULL) == HF_METHOD_NEWTON, form->stop};
+    net_problem problem = {m, s, hf_evaluate_method(m, s, NULL) == HF_METHOD_NEWTON, s->stop};
     hf_form_prepare(m, w);
-    find_net(&problem, w, history, result);
-    hf_certify(m, w, result);
-    if (m->n_attachment) hf_coupling_certify(m, w, result);
-    return result->status;
+    find_net(&problem, w, history, r);
+    hf_certify(m, w, r);
+    if (m->n_attachment) hf_coupling_certify(m, w, r);
+    return r->status;
 }
 
 /* ---- one design ---- */
@@ -104,21 +104,19 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_works
         apply_rule(v, m->gene_cable[k], design_N[k], w);
 }
 
-hf_status hf_evaluate_judge(const hf_evaluator *v, hf_form_result *result)
+hf_status hf_evaluate_judge(const hf_evaluator *v, hf_form_result *r)
 {
-    if (result->status == HF_OK && result->boundary_tension_ratio > v->boundary_ratio_cap)
-        result->status = HF_RATIO_CAP;
-    if (result->status != HF_OK)
-        result->psi_m = result->inner_tension_ratio = result->boundary_tension_ratio = (double)NAN;
-    return result->status;
+    if (r->status == HF_OK && r->boundary_tension_ratio > v->boundary_ratio_cap) r->status = HF_RATIO_CAP;
+    if (r->status != HF_OK) r->psi_m = r->inner_tension_ratio = r->boundary_tension_ratio = (double)NAN;
+    return r->status;
 }
 
-hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspace *w, hf_form_result *result)
+hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspace *w, hf_form_result *r)
 {
     bool seeded = v->rule == HF_RULE_SEEDED;
     net_problem problem = {v->model, v->form, !seeded && v->solver != HF_SOLVER_FIXED_POINT && v->model->has_newton,
                            seeded ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
     hf_evaluate_prepare(v, design_N, w);
-    find_net(&problem, w, NULL, result);
-    return hf_evaluate_judge(v, result);
+    find_net(&problem, w, NULL, r);
+    return hf_evaluate_judge(v, r);
 }

@@ -141,40 +141,40 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
     return hf_store_hand_over(s, store);
 }
 
-int hf_store_generations(const hf_store *store)
+int hf_store_generations(const hf_store *s)
 {
-    return store ? store->rows.n_stored + store->rows.n_waiting + store->n_journal : 0;
+    return s ? s->rows.n_stored + s->rows.n_waiting + s->n_journal : 0;
 }
 
 /* ---- shapes ---- */
 
-static void write_shape(hf_store *s, hid_t group, const hf_model *model, const hf_workspace *workspace)
+static void write_shape(hf_store *s, hid_t group, const hf_model *m, const hf_workspace *w)
 {
-    size_t n = (size_t)model->n_node;
+    size_t n = (size_t)m->n_node;
     hf_shape shape = {.position_m = hf_store_scratch(s, 3 * n * sizeof(double)),
-                      .length_m = workspace->length_m,
-                      .tension_N = workspace->tension_N,
-                      .q_N_per_m = workspace->q_N_per_m,
-                      .law = workspace->law};
+                      .length_m = w->length_m,
+                      .tension_N = w->tension_N,
+                      .q_N_per_m = w->q_N_per_m,
+                      .law = w->law};
     if (!shape.position_m) return;
     for (size_t row = 0; row < n; row++)
         for (size_t c = 0; c < 3; c++)
-            shape.position_m[3 * (size_t)model->node_of_row[row] + c] = workspace->position_m[c * n + row];
-    hf_layout_write_columns(&s->f.io, group, &hf_layout_shape, model->n_node, model->n_cable, &shape);
+            shape.position_m[3 * (size_t)m->node_of_row[row] + c] = w->position_m[c * n + row];
+    hf_layout_write_columns(&s->f.io, group, &hf_layout_shape, m->n_node, m->n_cable, &shape);
 }
 
 /* A session on another machine, or of another build, may find the shape with other bits. */
-static void compare_shape(hf_store *s, const hf_model *model, const hf_workspace *workspace)
+static void compare_shape(hf_store *s, const hf_model *m, const hf_workspace *w)
 {
     hf_hdf5_array tension = {.name = "/form/tension_N", .kind = HF_KIND_REAL, .rank = 1};
-    size_t bytes = (size_t)model->n_cable * sizeof(double);
+    size_t bytes = (size_t)m->n_cable * sizeof(double);
     double *stored = hf_store_scratch(s, bytes);
-    tension.dims[0] = (hsize_t)model->n_cable;
+    tension.dims[0] = (hsize_t)m->n_cable;
     if (stored) hf_hdf5_read_array(&s->f.io, s->f.io.file, &tension, stored);
-    if (s->f.io.status != HF_OK || memcmp(stored, workspace->tension_N, bytes) == 0) return;
+    if (s->f.io.status != HF_OK || memcmp(stored, w->tension_N, bytes) == 0) return;
     double largest_N = 0, apart_N = 0;
-    for (int e = 0; e < model->n_cable; e++) {
-        double gap_N = fabs(stored[e] - workspace->tension_N[e]);
+    for (int e = 0; e < m->n_cable; e++) {
+        double gap_N = fabs(stored[e] - w->tension_N[e]);
         largest_N = fmax(largest_N, fabs(stored[e]));
         apart_N = gap_N <= apart_N || isnan(apart_N) ? apart_N : gap_N;
     }
@@ -191,10 +191,10 @@ static void compare_shape(hf_store *s, const hf_model *model, const hf_workspace
                    s->f.out.path);
 }
 
-hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspace *workspace,
-                        const hf_history *history, hf_messages *messages)
+hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, const hf_history *history,
+                        hf_messages *messages)
 {
-    if (!store) return HF_OK;
+    if (!s) return HF_OK;
 #define HISTORY(member, units, description)                                                                            \
     {                                                                                                                  \
 #member, HF_KIND_REAL, 0, 1, units, description, offsetof(hf_history, member)                                  \
@@ -208,67 +208,64 @@ hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspa
 #undef HISTORY
     static const hf_layout_columns columns = {HF_LAYOUT_COLUMNS(history_column)};
     hf_hdf5_lock();
-    store->f.io.messages = messages;
-    hf_store_file_open(&store->f);
-    if (store->is_resumed) {
-        compare_shape(store, model, workspace);
-        return hf_hdf5_unlock(store->f.io.status);
+    s->f.io.messages = messages;
+    hf_store_file_open(&s->f);
+    if (s->is_resumed) {
+        compare_shape(s, m, w);
+        return hf_hdf5_unlock(s->f.io.status);
     }
-    hid_t group = hf_hdf5_make_group(&store->f.io, "/form");
-    write_shape(store, group, model, workspace);
-    hf_hdf5_close(&store->f.io, group);
+    hid_t group = hf_hdf5_make_group(&s->f.io, "/form");
+    write_shape(s, group, m, w);
+    hf_hdf5_close(&s->f.io, group);
     if (history) {
-        group = hf_hdf5_make_group(&store->f.io, "/form/history");
-        hf_layout_write_columns(&store->f.io, group, &columns, history->n, 0, history);
-        hf_hdf5_close(&store->f.io, group);
+        group = hf_hdf5_make_group(&s->f.io, "/form/history");
+        hf_layout_write_columns(&s->f.io, group, &columns, history->n, 0, history);
+        hf_hdf5_close(&s->f.io, group);
     }
-    if (model->n_attachment)
-        hf_layout_write_coupling(&store->f.io, model, workspace, history ? &history->coupling : NULL);
-    return hf_hdf5_unlock(store->f.io.status);
+    if (m->n_attachment) hf_layout_write_coupling(&s->f.io, m, w, history ? &history->coupling : NULL);
+    return hf_hdf5_unlock(s->f.io.status);
 }
 
-static void write_design(hf_store *s, hid_t group, const hf_model *model, const double *design_N)
+static void write_design(hf_store *s, hid_t group, const hf_model *m, const double *design_N)
 {
-    hf_hdf5_array design = {
-        "design_N", HF_KIND_REAL, 1, {(hsize_t)model->n_gene}, "N", "boundary pretension T' of each gene"};
+    hf_hdf5_array design = {"design_N",           HF_KIND_REAL, 1,
+                            {(hsize_t)m->n_gene}, "N",          "boundary pretension T' of each gene"};
     hf_hdf5_write_array(&s->f.io, group, &design, design_N);
 }
 
-hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
-                        const double *design_N, hf_messages *messages)
+hf_status hf_store_best(hf_store *s, hf_stage stage, const hf_model *m, const hf_workspace *w, const double *design_N,
+                        hf_messages *messages)
 {
-    if (!store) return HF_OK;
+    if (!s) return HF_OK;
     hf_hdf5_lock();
-    store->f.io.messages = messages;
-    hf_store_file_open(&store->f);
-    if (stage == HF_STAGE_OPTIMIZE) hf_hdf5_close(&store->f.io, hf_hdf5_make_group(&store->f.io, "/ga"));
-    if (hf_hdf5_has(&store->f.io, store->f.io.file,
-                    hf_stage_group[stage]) && /* left by a session that was told to stop */
-        H5Ldelete(store->f.io.file, hf_stage_group[stage], H5P_DEFAULT) < 0)
-        hf_hdf5_fail(&store->f.io, "replace", store->f.io.file, hf_stage_group[stage]);
-    hid_t group = hf_hdf5_make_group(&store->f.io, hf_stage_group[stage]);
-    write_shape(store, group, model, workspace);
-    write_design(store, group, model, design_N);
-    hf_hdf5_close(&store->f.io, group);
-    return hf_hdf5_unlock(store->f.io.status);
+    s->f.io.messages = messages;
+    hf_store_file_open(&s->f);
+    if (stage == HF_STAGE_OPTIMIZE) hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/ga"));
+    if (hf_hdf5_has(&s->f.io, s->f.io.file, hf_stage_group[stage]) && /* left by a session that was told to stop */
+        H5Ldelete(s->f.io.file, hf_stage_group[stage], H5P_DEFAULT) < 0)
+        hf_hdf5_fail(&s->f.io, "replace", s->f.io.file, hf_stage_group[stage]);
+    hid_t group = hf_hdf5_make_group(&s->f.io, hf_stage_group[stage]);
+    write_shape(s, group, m, w);
+    write_design(s, group, m, design_N);
+    hf_hdf5_close(&s->f.io, group);
+    return hf_hdf5_unlock(s->f.io.status);
 }
 
-hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_carrier_state *state,
-                         hf_messages *messages)
+hf_status hf_store_truss(hf_store *s, const hf_carrier *carrier, const hf_carrier_state *state, hf_messages *messages)
 {
-    if (!store) return HF_OK;
+    if (!s) return HF_OK;
     hf_hdf5_lock();
-    store->f.io.messages = messages;
-    hf_store_file_open(&store->f);
-    hf_layout_write_truss(&store->f.io, carrier, state);
-    return hf_hdf5_unlock(store->f.io.status);
+    s->f.io.messages = messages;
+    hf_store_file_open(&s->f);
+    hf_layout_write_truss(&s->f.io, carrier, state);
+    return hf_hdf5_unlock(s->f.io.status);
 }
 
 /* ---- generations ---- */
 
-hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_population *population, hf_messages *messages)
+hf_status hf_store_genes(hf_store *s, const hf_model *m, const hf_population *population, hf_messages *messages)
 {
-    if (!store) return HF_OK;
+    if (!s) return HF_OK;
     const hsize_t k[3] = {(hsize_t)population->n_gene};
     const hf_hdf5_array cable = {"gene_cable", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/cable of each gene"};
     const hf_hdf5_array group_of = {"gene_group", HF_KIND_INT, 1, {k[0]}, "", "genes that were varied together"};
@@ -277,16 +274,15 @@ hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_popula
                                 {k[0]},   "N",          "pretension T of each gene, after form-finding"};
     const hf_hdf5_array lower = {"lower_N", HF_KIND_REAL, 1, {k[0]}, "N", "least T' of each gene"};
     const hf_hdf5_array upper = {"upper_N", HF_KIND_REAL, 1, {k[0]}, "N", "largest T' of each gene"};
-    hf_hdf5 *io = &store->f.io;
-    if (store->rows.block) return store->f.io.status; /* another session has written them */
+    hf_hdf5 *io = &s->f.io;
+    if (s->rows.block) return s->f.io.status; /* another session has written them */
     hf_hdf5_lock();
     io->messages = messages;
-    hf_store_file_open(&store->f);
+    hf_store_file_open(&s->f);
     hid_t group = hf_hdf5_make_group(io, "/ga");
-    hf_hdf5_write_array(io, group, &cable, model->gene_cable);
-    hf_hdf5_write_array(io, group, &group_of, model->gene_group);
-    if (model->gene_leader && model->n_leader < model->n_gene)
-        hf_hdf5_write_array(io, group, &leader, model->gene_leader);
+    hf_hdf5_write_array(io, group, &cable, m->gene_cable);
+    hf_hdf5_write_array(io, group, &group_of, m->gene_group);
+    if (m->gene_leader && m->n_leader < m->n_gene) hf_hdf5_write_array(io, group, &leader, m->gene_leader);
     hf_hdf5_write_array(io, group, &base, population->base_N);
     hf_hdf5_write_array(io, group, &lower, population->lower_N);
     hf_hdf5_write_array(io, group, &upper, population->upper_N);
@@ -294,37 +290,36 @@ hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_popula
     hf_hdf5_put(io, group, ".", "n_variable", HF_KIND_INT, 0, &population->n_gene);
     hf_hdf5_put(io, group, ".", "generations_limit", HF_KIND_INT, 0, &population->generation_limit);
     hf_hdf5_close(io, group);
-    if (io->status == HF_OK) io->status = hf_journal_restart(&store->f.journal, store->identity, messages);
+    if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, messages);
     if (io->status == HF_OK && hf_generations_create(population->n_individual, population->n_gene,
-                                                     population->generation_limit, &store->rows) != HF_OK)
-        io->status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", store->f.out.path);
+                                                     population->generation_limit, &s->rows) != HF_OK)
+        io->status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
     return hf_hdf5_unlock(io->status);
 }
 
-hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_population *population,
-                              hf_messages *messages)
+hf_status hf_store_generation(hf_store *s, const hf_model *m, const hf_population *population, hf_messages *messages)
 {
-    if (!store) return HF_OK;
+    if (!s) return HF_OK;
     struct iovec piece[HF_GENERATIONS_PIECES];
-    hf_generations *g = &store->rows;
-    store->f.io.messages = messages;
-    HF_TRY(store->f.io.status);
-    HF_TRY(hf_store_genes(store, model, population, messages)); /* unless they are there, as in a run */
+    hf_generations *g = &s->rows;
+    s->f.io.messages = messages;
+    HF_TRY(s->f.io.status);
+    HF_TRY(hf_store_genes(s, m, population, messages)); /* unless they are there, as in a run */
     int generation = g->n_stored + g->n_waiting;
     hf_generations_add(g, population, piece);
-    store->f.io.status = hf_journal_append(&store->f.journal, generation, piece, HF_GENERATIONS_PIECES, messages);
-    if (store->f.io.status != HF_OK || !hf_generations_are_due(g)) return store->f.io.status;
+    s->f.io.status = hf_journal_append(&s->f.journal, generation, piece, HF_GENERATIONS_PIECES, messages);
+    if (s->f.io.status != HF_OK || !hf_generations_are_due(g)) return s->f.io.status;
     /* The journal has it. Making room can wait while another run uses HDF5, unless there is none left. */
     if (hf_generations_are_full(g))
         hf_hdf5_lock();
     else if (!hf_hdf5_try_lock())
         return HF_OK;
     double begin_s = hf_clock_s();
-    hf_store_file_open(&store->f);
-    store->publish_s += hf_clock_s() - begin_s; /* the copy is what publishing costs, too */
-    hf_generations_make_room(&store->f.io, g);
-    HF_TRY(hf_hdf5_unlock(store->f.io.status));
-    hf_store_file_flow(&store->f);
+    hf_store_file_open(&s->f);
+    s->publish_s += hf_clock_s() - begin_s; /* the copy is what publishing costs, too */
+    hf_generations_make_room(&s->f.io, g);
+    HF_TRY(hf_hdf5_unlock(s->f.io.status));
+    hf_store_file_flow(&s->f);
     return HF_OK;
 }
 
@@ -433,11 +428,11 @@ hf_status hf_store_finish(hf_store *s, const hf_summary *summary, hf_messages *m
     return hf_store_settle(s, messages);
 }
 
-void hf_store_end(hf_store *store)
+void hf_store_end(hf_store *s)
 {
-    if (!store) return;
-    bool is_open = store->f.io.file >= 0;
+    if (!s) return;
+    bool is_open = s->f.io.file >= 0;
     if (is_open) hf_hdf5_lock();
-    hf_store_free(store);
+    hf_store_free(s);
     if (is_open) hf_hdf5_unlock(HF_OK);
 }

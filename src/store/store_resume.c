@@ -129,18 +129,18 @@ static void check_base(hf_hdf5 *io, int n_gene, const double *base_N)
             hf_hdf5_damaged(io, io->file, "/ga/base_N", "holds what is no pretension");
 }
 
-hf_status hf_store_restore_base(hf_store *store, int n_gene, double *base_N, hf_messages *messages)
+hf_status hf_store_restore_base(hf_store *s, int n_gene, double *base_N, hf_messages *messages)
 {
     const hf_hdf5_array base = {.name = "/ga/base_N", .kind = HF_KIND_REAL, .rank = 1, .dims = {(hsize_t)n_gene}};
-    if (!store || !store->rows.block) return HF_OK;
+    if (!s || !s->rows.block) return HF_OK;
     hf_hdf5_lock();
-    store->f.io.messages = messages;
-    hf_store_file_open(&store->f);
-    if (hf_hdf5_has(&store->f.io, store->f.io.file, base.name)) { /* earlier builds had none */
-        hf_hdf5_read_array(&store->f.io, store->f.io.file, &base, base_N);
-        check_base(&store->f.io, n_gene, base_N);
+    s->f.io.messages = messages;
+    hf_store_file_open(&s->f);
+    if (hf_hdf5_has(&s->f.io, s->f.io.file, base.name)) { /* earlier builds had none */
+        hf_hdf5_read_array(&s->f.io, s->f.io.file, &base, base_N);
+        check_base(&s->f.io, n_gene, base_N);
     }
-    return hf_hdf5_unlock(judge(&store->f.io));
+    return hf_hdf5_unlock(judge(&s->f.io));
 }
 
 /* ---- breeding again ---- */
@@ -210,26 +210,25 @@ static void read_known(hf_hdf5 *io, hf_summary *summary)
         hf_layout_get_summary(io, HF_LAYOUT_GA, summary);
 }
 
-static hf_status restore(hf_store *store, hf_optimiser *optimiser, int drops, hf_summary *summary,
-                         hf_messages *messages)
+static hf_status restore(hf_store *s, hf_optimiser *optimiser, int drops, hf_summary *summary, hf_messages *messages)
 {
-    if (hf_store_generations(store) == 0) return HF_OK;
-    hf_hdf5 *io = &store->f.io;
+    if (hf_store_generations(s) == 0) return HF_OK;
+    hf_hdf5 *io = &s->f.io;
     hf_hdf5_lock();
     io->messages = messages;
-    hf_store_file_open(&store->f);
-    if (!hf_generations_are_of(&store->rows, &optimiser->population))
+    hf_store_file_open(&s->f);
+    if (!hf_generations_are_of(&s->rows, &optimiser->population))
         hf_hdf5_damaged(io, io->file, "/ga", "has other sizes than the case");
     read_known(io, summary);
-    if (store->rows.n_stored && io->status == HF_OK) hf_generations_restore(io, &store->rows, &optimiser->population);
-    if (store->n_journal) breed_journal(store, optimiser, drops);
-    hf_generations_sum_up(io, &store->rows, summary);
+    if (s->rows.n_stored && io->status == HF_OK) hf_generations_restore(io, &s->rows, &optimiser->population);
+    if (s->n_journal) breed_journal(s, optimiser, drops);
+    hf_generations_sum_up(io, &s->rows, summary);
     return hf_hdf5_unlock(judge(io));
 }
 
-hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages)
+hf_status hf_store_restore(hf_store *s, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages)
 {
-    return restore(store, optimiser, 1, summary, messages);
+    return restore(s, optimiser, 1, summary, messages);
 }
 
 /* ---- recovery ---- */

@@ -25,16 +25,16 @@ typedef struct {
     char *text;
 } generator;
 
-static const hf_truss_unit *unit_of(const hf_truss_settings *set, hf_unit unit)
+static const hf_truss_unit *unit_of(const hf_truss_settings *s, hf_unit unit)
 {
-    return unit == HF_UNIT_BUD ? &set->bud : unit == HF_UNIT_MBUG ? &set->mbug : &set->abug;
+    return unit == HF_UNIT_BUD ? &s->bud : unit == HF_UNIT_MBUG ? &s->mbug : &s->abug;
 }
 
 /* Unit of the generatrix line i of n + 1: MBUG or ABUG. */
-static hf_unit line_unit(const hf_truss_settings *set, int i, int n)
+static hf_unit line_unit(const hf_truss_settings *s, int i, int n)
 {
     int from_edge = i < n - i ? i : n - i;
-    return from_edge % set->main_every == 0 ? HF_UNIT_MBUG : HF_UNIT_ABUG;
+    return from_edge % s->main_every == 0 ? HF_UNIT_MBUG : HF_UNIT_ABUG;
 }
 
 /* Index of the front node of module corner (i, j). Its rear node has the next index. */
@@ -195,11 +195,11 @@ static hf_status generate(generator *g, hf_messages *messages)
     return HF_OK;
 }
 
-hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder *cylinder, hf_truss *truss,
+hf_status hf_truss_generate(const hf_truss_settings *s, const hf_cylinder *cylinder, hf_truss *truss,
                             hf_messages *messages)
 {
     *truss = (hf_truss){0};
-    generator g = {.set = settings, .c = cylinder, .t = truss};
+    generator g = {.set = s, .c = cylinder, .t = truss};
     hf_status status = generate(&g, messages);
     hf_scene_free(&g.grid);
     return status;
