@@ -9,9 +9,9 @@ void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *inf
 void dtrtri_(const char *uplo, const char *diag, const int *n, double *a, const int *lda, int *info);
 
 /* A limit whose normal is this near to a combination of the active ones (as a part of its square) adds nothing: an
- * active one must go first. */
+ * active one must go first. No test fails from 1e-26 to 1e-14. */
 #define DEPENDENT 1e-20
-#define STEPS_PER_VARIABLE 50 /* of limits taken in or let go; far more than any programme needs that does not cycle */
+#define STEPS_PER_VARIABLE 50 /* of limits taken in or let go: 5 pass every test, 1 does not; against cycles */
 
 static void lay_out(hf_arena *a, hf_quadratic *q)
 {

@@ -9,14 +9,15 @@
 #include <math.h>
 #include <string.h>
 
-#define GAIN_CONVERGED 1e-12 /* converged: a step promises less than this part of psi^2 */
-#define DAMPING_FIRST 1e-3   /* relative to the squared columns of J */
-#define DAMPING_LEAST 1e-14
-#define DAMPING_MOST 1e12    /* with this much a step is too short to change psi */
-#define CORRECTIONS_MAX 4    /* of a step that breaks a limit on tensions, whose surface is curved */
-#define LIMIT_INSIDE 1e-9    /* relative part by which a step stays within the limits on tensions */
-#define LIMIT_ROUNDING 1e-12 /* a violation below this part of the tension counts as rounding */
-#define DENSITY_LEFT 1e-3    /* part of its first value below which no force density falls */
+/* In brackets: the range over which no test of this module and of cli/limits fails, as far as it was tried. */
+#define GAIN_CONVERGED 1e-12 /* converged: a step promises less than this part of psi^2 [1e-15 to 1e-8] */
+#define DAMPING_FIRST 1e-3   /* relative to the squared columns of J [1e-6 to 1] */
+#define DAMPING_LEAST 1e-14  /* [1e-20 to 1e-8] */
+#define DAMPING_MOST 1e12    /* with this much a step is too short to change psi [1e4 to 1e24] */
+#define CORRECTIONS_MAX 4 /* of a step that breaks a limit on tensions [40 passes; 1 fails: the runs stall at a cap] */
+#define LIMIT_INSIDE 1e-9 /* part by which a step stays within the limits on tensions [1e-11; 1e-7 fails] */
+#define LIMIT_ROUNDING 1e-12 /* a violation below this part of the tension is rounding [1e-14 to 1e-10] */
+#define DENSITY_LEFT 1e-3    /* part of its first value below which no force density falls [1e-6 to 0.3] */
 
 /* For hf_polish_is_cheap: steps that were counted on the cases of configs and METHOD; operations in about 0.1 s. */
 #define STEPS_EXPECTED 8

@@ -86,8 +86,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_write("points-fuzz-1.tsv", text, length);
     for (int i = 0; status == HF_OK && i < study.n_point; i++)
         hf_ledger_is_finished(&ledger, &study, i);
-    hf_ledger_close(&ledger);
-    FUZZ_REQUIRE(status == HF_OK);
+    hf_status closed = hf_ledger_close(&ledger, &messages);
+    FUZZ_REQUIRE(status == HF_OK && closed == HF_OK);
     status = hf_ledger_read(sweep, &study, &points, &messages);
     if (status == HF_OK) look_at(&points);
     /* one input of 16, because HDF5 takes longer than all the rest */
