@@ -3,6 +3,7 @@
 #define HIFDM_TESTS_EVOLUTION_H
 
 #include "results.h"
+#include "small_ga.h"
 
 #include <math.h>
 
@@ -22,17 +23,7 @@ static inline void open_run(struct run *r)
     memset(r, 0, sizeof *r);
     open_bow(&r->net);
     find_shape(&r->net);
-    r->settings = (hf_optimize_settings){.population = N_INDIVIDUAL,
-                                         .generations = N_GENERATION,
-                                         .stagnation_generations = N_GENERATION,
-                                         .range_N = 1,
-                                         .min_tension_N = -1e6,
-                                         .max_tension_N = 1e6,
-                                         .crossover_high = 0.9,
-                                         .crossover_low = 0.5,
-                                         .mutation_high = 0.3,
-                                         .mutation_low = 0.1,
-                                         .elites = 1};
+    r->settings = small_ga(N_INDIVIDUAL, N_GENERATION);
     r->model = (hf_model){.n_gene = N_GENE, .n_gene_group = 1, .gene_cable = r->gene, .gene_group = r->gene};
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &r->model, r->base_N, &r->ga), HF_OK);
 }

@@ -15,15 +15,11 @@ struct run {
     double start_q[MAX_CABLE], base_N[MAX_GENE], design_N[N_DESIGN * MAX_GENE];
 };
 
-/* Finds the shape of net->scene and draws designs around its boundary tensions: by up to 0.5 N, or by up to 0.01 N
- * under the rule tension, where larger changes may have no equilibrium. */
-static inline void start_run(struct run *r, int rule)
+/* Finds the shape of net->scene and draws designs up to range_N around its boundary tensions. */
+static inline void draw_designs(struct run *r, uint64_t seed, double range_N)
 {
     const hf_model *m = &r->net.model;
-    struct rng rng = rng_start(31);
-    double range_N = rule == HF_RULE_TENSION ? 0.01 : 0.5;
-    r->net.form.residual_tolerance = r->net.form.length_tolerance = TOLERANCE;
-    r->net.form.max_iterations = 100000;
+    struct rng rng = rng_start(seed);
     ck_assert(m->n_gene > 0 && m->n_gene <= MAX_GENE && m->n_cable <= MAX_CABLE);
     ck_assert_int_eq(find_shape(&r->net), HF_OK);
     memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
@@ -31,7 +27,16 @@ static inline void start_run(struct run *r, int rule)
         r->base_N[k] = r->net.work.tension_N[m->gene_cable[k]];
     for (int i = 0; i < N_DESIGN * m->n_gene; i++)
         r->design_N[i] = r->base_N[i % m->n_gene] + rng_uniform(&rng, -range_N, range_N);
-    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_CHORD, 1e9};
+}
+
+/* A shape to TOLERANCE and designs for the population solver: up to 0.5 N around the found tensions, or 0.01 N under
+ * the rule tension, where larger changes may have no equilibrium. */
+static inline void start_run(struct run *r, int rule)
+{
+    r->net.form.residual_tolerance = r->net.form.length_tolerance = TOLERANCE;
+    r->net.form.max_iterations = 100000;
+    draw_designs(r, 31, rule == HF_RULE_TENSION ? 0.01 : 0.5);
+    r->evaluator = (hf_evaluator){&r->net.model, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_CHORD, 1e9};
 }
 
 static inline void open_run(struct run *r, int rule)

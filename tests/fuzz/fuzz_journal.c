@@ -3,10 +3,10 @@
  * put right afterwards, so that damage reaches what lies behind them; bit 2: the end is cut off as well, at an offset
  * given by two bytes. The records are taken as a store takes them, into an optimiser that breeds the designs again. */
 #include "fuzz/fuzz.h"
+#include "small_ga.h"
 
 #include "store/generations.h"
 #include "store/journal.h"
-#include <hifdm/optimiser.h>
 
 #include <fcntl.h>
 #include <math.h>
@@ -22,19 +22,9 @@ enum { N_GENERATION = 4, N_INDIVIDUAL = 3, N_GENE = 2, HEADER_BYTES = 8 + HF_JOU
 static int gene[N_GENE];
 static double base_N[N_GENE] = {10, 12};
 static const hf_model model = {.n_gene = N_GENE, .n_gene_group = 1, .gene_cable = gene, .gene_group = gene};
-static const hf_optimize_settings settings = {.population = N_INDIVIDUAL,
-                                              .generations = N_GENERATION + 2,
-                                              .stagnation_generations = N_GENERATION + 2,
-                                              .range_N = 1,
-                                              .min_tension_N = -1e6,
-                                              .max_tension_N = 1e6,
-                                              .crossover_high = 0.9,
-                                              .crossover_low = 0.5,
-                                              .mutation_high = 0.3,
-                                              .mutation_low = 0.1,
-                                              .elites = 1};
 
 typedef struct {
+    hf_optimize_settings settings; /* of the optimiser, which borrows them */
     hf_optimiser optimiser;
     hf_generations rows;
     int n_taken;
@@ -42,9 +32,9 @@ typedef struct {
 
 static void open_run(run *r)
 {
-    *r = (run){0};
-    FUZZ_REQUIRE(hf_optimiser_create(&hf_optimiser_ga, &settings, &model, base_N, &r->optimiser) == HF_OK);
-    FUZZ_REQUIRE(hf_generations_create(N_INDIVIDUAL, N_GENE, settings.generations, &r->rows) == HF_OK);
+    *r = (run){.settings = small_ga(N_INDIVIDUAL, N_GENERATION + 2)};
+    FUZZ_REQUIRE(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &model, base_N, &r->optimiser) == HF_OK);
+    FUZZ_REQUIRE(hf_generations_create(N_INDIVIDUAL, N_GENE, r->settings.generations, &r->rows) == HF_OK);
 }
 
 static void close_run(run *r)

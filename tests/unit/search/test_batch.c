@@ -1,5 +1,6 @@
 /* Batches: only what is pending is evaluated, and the bits depend neither on threads nor on how designs are grouped. */
-#include "nets.h"
+#include "population.h"
+#include "small_ga.h"
 
 #include "search/parallel.h"
 #include <hifdm/batch.h>
@@ -7,27 +8,12 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MAX_GENE = 200, MAX_CABLE = 400, N_DESIGN = 24 };
-
-struct run {
-    struct net net;
-    hf_evaluator evaluator;
-    double start_q[MAX_CABLE], design_N[N_DESIGN * MAX_GENE];
-};
-
 /* The small reflector and designs up to 0.5 N around its boundary pretensions. */
-static void open_run(struct run *r, int rule)
+static void open_designs(struct run *r, int rule)
 {
     OPEN_CASE(&r->net, SMALL_REFLECTOR);
-    const hf_model *m = &r->net.model;
-    struct rng rng = rng_start(1);
-    ck_assert(m->n_gene <= MAX_GENE && m->n_cable <= MAX_CABLE);
-    ck_assert_int_eq(find_shape(&r->net), HF_OK);
-    memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
-    for (int i = 0; i < N_DESIGN; i++)
-        for (int k = 0; k < m->n_gene; k++)
-            r->design_N[i * m->n_gene + k] = r->net.work.tension_N[m->gene_cable[k]] + rng_uniform(&rng, -0.5, 0.5);
-    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_AUTO, 1e9};
+    draw_designs(r, 1, 0.5);
+    r->evaluator = (hf_evaluator){&r->net.model, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_AUTO, 1e9};
 }
 
 static void evaluate(struct run *r, int n_thread, int n_at_once, hf_form_result result[N_DESIGN])
@@ -58,7 +44,7 @@ START_TEST(threads_and_grouping_do_not_change_a_bit)
 {
     struct run r;
     hf_form_result alone[N_DESIGN], other[N_DESIGN];
-    open_run(&r, _i);
+    open_designs(&r, _i);
     evaluate(&r, 1, 1, alone);
     for (int i = 0; i < N_DESIGN; i++) { /* the same as without a batch */
         hf_form_result direct;
@@ -82,7 +68,7 @@ START_TEST(only_pending_designs_are_evaluated)
     hf_batch batch;
     hf_form_result result[N_DESIGN];
     unsigned char pending[N_DESIGN];
-    open_run(&r, HF_RULE_FORCE_DENSITY);
+    open_designs(&r, HF_RULE_FORCE_DENSITY);
     for (int i = 0; i < N_DESIGN; i++) {
         result[i] = (hf_form_result){.status = HF_NOT_EVALUATED, .iterations = -7};
         pending[i] = i % 3 == 0;
@@ -103,7 +89,7 @@ START_TEST(one_failure_stays_alone)
 {
     struct run r;
     hf_form_result good[N_DESIGN], mixed[N_DESIGN];
-    open_run(&r, HF_RULE_TENSION);
+    open_designs(&r, HF_RULE_TENSION);
     for (int k = 0; k < N_DESIGN * r.net.model.n_gene; k++) /* nearly the found tensions: equilibrium exists */
         r.design_N[k] = r.net.work.tension_N[r.net.model.gene_cable[k % r.net.model.n_gene]] + 1e-3 * (k % 7);
     evaluate(&r, 2, N_DESIGN, good);
@@ -122,7 +108,7 @@ START_TEST(default_is_a_thread_per_core)
 {
     struct run r;
     hf_batch batch;
-    open_run(&r, HF_RULE_FORCE_DENSITY);
+    open_designs(&r, HF_RULE_FORCE_DENSITY);
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 0, &batch), HF_OK);
     ck_assert_int_eq(batch.n_thread, hf_batch_default_threads());
     ck_assert_int_ge(batch.n_thread, 1);
@@ -164,7 +150,7 @@ START_TEST(batches_that_share_threads_do_not_change_a_bit)
     hf_batch batch;
     hf_form_result alone[N_DESIGN];
     static struct item_work w;
-    open_run(&r, HF_RULE_FORCE_DENSITY);
+    open_designs(&r, HF_RULE_FORCE_DENSITY);
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 1, &batch), HF_OK);
     hf_batch_share(&batch, r.design_N);
     hf_batch_run(&batch, N_DESIGN, r.design_N, NULL, alone);
@@ -230,18 +216,10 @@ START_TEST(a_generation_can_be_read_while_the_next_is_bred)
 {
     struct run r;
     double best_psi_m[2] = {0};
-    const hf_optimize_settings settings = {.seed = 5,
-                                           .population = N_INDIVIDUAL,
-                                           .generations = N_GENERATION,
-                                           .stagnation_generations = N_GENERATION,
-                                           .range_N = 1,
-                                           .max_tension_N = 1e6,
-                                           .crossover_high = 0.9,
-                                           .crossover_low = 0.6,
-                                           .mutation_high = 0.1,
-                                           .mutation_low = 0.01,
-                                           .elites = 1};
-    open_run(&r, HF_RULE_FORCE_DENSITY);
+    hf_optimize_settings settings = small_ga(N_INDIVIDUAL, N_GENERATION);
+    settings.seed = 5;
+    settings.min_tension_N = 0;
+    open_designs(&r, HF_RULE_FORCE_DENSITY);
     for (int n_thread = 0; n_thread <= 3; n_thread++) { /* 0: one, and nothing beside */
         hf_batch batch;
         hf_optimiser ga;
@@ -279,7 +257,7 @@ START_TEST(nothing_is_allocated)
     struct run r;
     hf_batch batch;
     hf_form_result result[N_DESIGN];
-    open_run(&r, HF_RULE_FORCE_DENSITY);
+    open_designs(&r, HF_RULE_FORCE_DENSITY);
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
     long before = allocation_count();
     hf_batch_run(&batch, N_DESIGN, r.design_N, NULL, result);

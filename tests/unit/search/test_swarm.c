@@ -1,30 +1,15 @@
 /* The paper's iteration in lanes gives the results of the scalar code, whichever designs share a pass. */
-#include "nets.h"
+#include "population.h"
 
 #include <hifdm/batch.h>
 
-enum { MAX_GENE = 200, MAX_CABLE = 400, N_DESIGN = 21 };
-
-struct run {
-    struct net net;
-    hf_evaluator evaluator;
-    double start_q[MAX_CABLE], design_N[N_DESIGN * MAX_GENE];
-};
-
-static void open_run(struct run *r, int rule, double range_N)
+static void open_designs(struct run *r, int rule, double range_N)
 {
     OPEN_CASE(&r->net, SMALL_REFLECTOR);
-    const hf_model *m = &r->net.model;
-    struct rng rng = rng_start(7);
-    ck_assert(m->n_gene <= MAX_GENE && m->n_cable <= MAX_CABLE);
-    ck_assert_int_eq(find_shape(&r->net), HF_OK);
-    memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
-    for (int i = 0; i < N_DESIGN; i++)
-        for (int k = 0; k < m->n_gene; k++) {
-            double tension_N = r->net.work.tension_N[m->gene_cable[k]];
-            r->design_N[i * m->n_gene + k] = fmax(0.05, tension_N + rng_uniform(&rng, -range_N, range_N));
-        }
-    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_FIXED_POINT, 1e9};
+    draw_designs(r, 7, range_N);
+    for (int i = 0; i < N_DESIGN * r->net.model.n_gene; i++)
+        r->design_N[i] = fmax(0.05, r->design_N[i]);
+    r->evaluator = (hf_evaluator){&r->net.model, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_FIXED_POINT, 1e9};
 }
 
 static void evaluate(struct run *r, int n_thread, int backwards, hf_form_result result[N_DESIGN])
@@ -48,7 +33,7 @@ START_TEST(results_are_those_of_the_scalar_code)
 {
     struct run r;
     hf_form_result result[N_DESIGN], alone;
-    open_run(&r, _i % 3, _i < 3 ? 0.5 : 9); /* the wide range includes designs without a shape */
+    open_designs(&r, _i % 3, _i < 3 ? 0.5 : 9); /* the wide range includes designs without a shape */
     r.net.form.residual_tolerance = 1e-7;
     r.net.form.max_iterations = 3000;
     evaluate(&r, 2, 0, result);
@@ -74,7 +59,7 @@ START_TEST(neighbours_and_threads_do_not_change_a_bit)
 {
     struct run r;
     hf_form_result result[N_DESIGN], other[N_DESIGN];
-    open_run(&r, _i, 0.5);
+    open_designs(&r, _i, 0.5);
     r.net.form.residual_tolerance = 1e-7;
     evaluate(&r, 1, 0, result);
     for (int k = 0; k < 3; k++) {
@@ -96,7 +81,7 @@ START_TEST(a_batch_may_share_again_and_be_empty)
     struct run r;
     hf_batch batch;
     hf_form_result result;
-    open_run(&r, HF_RULE_FORCE_DENSITY, 0.5);
+    open_designs(&r, HF_RULE_FORCE_DENSITY, 0.5);
     r.evaluator.solver = HF_SOLVER_AUTO;
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
     ck_assert_int_eq(hf_batch_share(&batch, r.design_N), HF_SOLVER_CHORD);

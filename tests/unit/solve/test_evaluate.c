@@ -1,28 +1,13 @@
 /* Evaluation of a design under the three rules: its bounds, and that the result does not depend on what the workspace
  * held before. */
-#include "nets.h"
-
-#include <hifdm/evaluate.h>
-
-enum { MAX_GENE = 200, MAX_CABLE = 400 };
-
-struct run {
-    struct net net;
-    hf_evaluator evaluator;
-    double start_q[MAX_CABLE], base_N[MAX_GENE], design_N[MAX_GENE];
-};
+#include "population.h"
 
 /* The small reflector, form-found to 1e-10; the design is its boundary pretensions. */
-static void open_run(struct run *r, int rule)
+static void open_design(struct run *r, int rule)
 {
     OPEN_CASE(&r->net, SMALL_REFLECTOR, "form.residual_tolerance=1e-10", "form.length_tolerance=1e-10");
-    const hf_model *m = &r->net.model;
-    ck_assert(m->n_gene > 0 && m->n_gene <= MAX_GENE && m->n_cable <= MAX_CABLE);
-    ck_assert_int_eq(find_shape(&r->net), HF_OK);
-    memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
-    for (int k = 0; k < m->n_gene; k++)
-        r->design_N[k] = r->base_N[k] = r->net.work.tension_N[m->gene_cable[k]];
-    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_AUTO, 1e9};
+    draw_designs(r, 1, 0);
+    r->evaluator = (hf_evaluator){&r->net.model, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_AUTO, 1e9};
 }
 
 static void disturb(struct run *r, double range_N)
@@ -44,7 +29,7 @@ START_TEST(base_design_gives_back_the_found_shape)
 {
     struct run r;
     hf_form_result result;
-    open_run(&r, _i);
+    open_design(&r, _i);
     ck_assert_int_eq(evaluate(&r, &result), HF_OK);
     if (_i == HF_RULE_SEEDED)
         ck_assert_double_eq_tol(result.psi_m, r.net.result.psi_m, 1e-4); /* stops early */
@@ -58,7 +43,7 @@ START_TEST(force_density_rule_holds_q)
 {
     struct run r;
     hf_form_result result;
-    open_run(&r, HF_RULE_FORCE_DENSITY);
+    open_design(&r, HF_RULE_FORCE_DENSITY);
     disturb(&r, 1);
     ck_assert_int_eq(evaluate(&r, &result), HF_OK);
     const hf_model *m = &r.net.model;
@@ -78,7 +63,7 @@ START_TEST(prescribed_lengths_count)
 {
     struct run r;
     hf_form_result result;
-    open_run(&r, HF_RULE_FORCE_DENSITY);
+    open_design(&r, HF_RULE_FORCE_DENSITY);
     const hf_model *m = &r.net.model;
     for (int k = 0; k < m->n_gene; k++)
         m->target[m->gene_cable[k]] *= 1.0625;
@@ -95,7 +80,7 @@ START_TEST(tension_rule_holds_tensions)
 {
     struct run r;
     hf_form_result result;
-    open_run(&r, HF_RULE_TENSION);
+    open_design(&r, HF_RULE_TENSION);
     disturb(&r, 0.01); /* small: equilibrium must exist */
     ck_assert_int_eq(evaluate(&r, &result), HF_OK);
     const hf_model *m = &r.net.model; /* residual 1e-10 of 10 N: the tensions are far closer than 1e-6 */
@@ -111,7 +96,7 @@ START_TEST(seeded_rule_is_the_papers_iteration)
 {
     struct run r;
     hf_form_result result, expected;
-    open_run(&r, HF_RULE_SEEDED);
+    open_design(&r, HF_RULE_SEEDED);
     disturb(&r, 1);
     ck_assert_int_eq(evaluate(&r, &result), HF_OK);
     const hf_model *m = &r.net.model;
@@ -132,7 +117,7 @@ START_TEST(force_density_rule_does_not_depend_on_the_start)
 {
     struct run r;
     hf_form_result result, other;
-    open_run(&r, HF_RULE_FORCE_DENSITY);
+    open_design(&r, HF_RULE_FORCE_DENSITY);
     disturb(&r, 1);
     ck_assert_int_eq(evaluate(&r, &result), HF_OK);
     struct rng rng = rng_start(18);
@@ -148,7 +133,7 @@ START_TEST(ratio_above_the_cap_is_infeasible)
 {
     struct run r;
     hf_form_result result;
-    open_run(&r, HF_RULE_FORCE_DENSITY);
+    open_design(&r, HF_RULE_FORCE_DENSITY);
     disturb(&r, 3);
     ck_assert_int_eq(evaluate(&r, &result), HF_OK);
     double ratio = result.boundary_tension_ratio, psi_m = result.psi_m;
@@ -170,7 +155,7 @@ START_TEST(impossible_designs_are_a_status_not_a_number)
 {
     struct run r;
     hf_form_result result;
-    open_run(&r, HF_RULE_TENSION);
+    open_design(&r, HF_RULE_TENSION);
     r.design_N[0] = 50 * r.base_N[0];
     ck_assert_int_eq(evaluate(&r, &result), HF_COLLAPSED);
     ck_assert_double_nan(result.psi_m);
@@ -182,7 +167,7 @@ START_TEST(not_converged_has_no_psi)
 {
     struct run r;
     hf_form_result result;
-    open_run(&r, HF_RULE_FORCE_DENSITY);
+    open_design(&r, HF_RULE_FORCE_DENSITY);
     disturb(&r, 1);
     r.net.form.max_iterations = 2;
     ck_assert_int_eq(evaluate(&r, &result), HF_NOT_CONVERGED);
@@ -196,7 +181,7 @@ START_TEST(stale_workspace_gives_the_same_bits)
 {
     struct run r;
     hf_form_result first, second;
-    open_run(&r, _i);
+    open_design(&r, _i);
     disturb(&r, 0.01);
     hf_workspace_poison(&r.net.model, &r.net.work);
     evaluate(&r, &first);
@@ -221,7 +206,7 @@ START_TEST(nothing_is_allocated)
 {
     struct run r;
     hf_form_result result;
-    open_run(&r, _i);
+    open_design(&r, _i);
     long before = allocation_count();
     evaluate(&r, &result);
     ck_assert_int_eq(allocation_count(), before);

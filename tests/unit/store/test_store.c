@@ -1,6 +1,7 @@
 /* Result files: what is written comes back, in C and in Python. */
 #include "flexible.h"
 #include "results.h"
+#include "small_ga.h"
 
 /* ---- round trips ---- */
 
@@ -342,7 +343,7 @@ START_TEST(generations_are_appended)
     struct net net;
     hf_messages messages = {0};
     hf_optimiser ga;
-    hf_optimize_settings settings = {.population = p, .generations = 5, .range_N = 1, .max_tension_N = 1e6};
+    hf_optimize_settings settings = small_ga(p, 5);
     open_bow(&net);
     double *base_N = malloc(((size_t)k + 1) * sizeof *base_N);
     int *gene = malloc((2 * (size_t)k + 1) * sizeof *gene), *group = gene + k;

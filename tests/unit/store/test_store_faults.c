@@ -1,5 +1,6 @@
 /* Result files: no other file is overwritten, damage is reported, a full disk or failed allocation leaves nothing. */
 #include "results.h"
+#include "small_ga.h"
 
 #include <signal.h>
 #include <sys/resource.h>
@@ -248,7 +249,7 @@ START_TEST(a_full_disk_is_told)
     const char *path, *folder = new_folder(&path);
     allow_leaks();
     open_bow(&net);
-    hf_optimize_settings settings = {.population = 50, .generations = 40, .range_N = 1, .max_tension_N = 1e6};
+    hf_optimize_settings settings = small_ga(50, 40);
     double base_N[40] = {0};
     int gene[40] = {0};
     hf_model m = {.n_gene = 40, .n_gene_group = 1, .gene_cable = gene, .gene_group = gene};
