@@ -85,7 +85,8 @@ static void print_plan(const hf_problem *p, FILE *f)
                 "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
                 hf_rule_word[o->rule], p->model.n_gene, o->population, o->generations, (unsigned long long)o->seed);
     bool is_result = hf_optimiser_plan_of(o->method).ends_with_polish;
-    if (optimizes && o->rule != HF_RULE_SEEDED && (is_result || o->compare_lm != HF_COMPARE_FALSE))
+    if (optimizes && p->model.has_newton && o->rule != HF_RULE_SEEDED &&
+        (is_result || o->compare_lm != HF_COMPARE_FALSE))
         fprintf(f, "                Levenberg-Marquardt: rule %s, at most %d iterations, %s\n", hf_rule_word[o->rule],
                 o->polish_iterations,
                 is_result                          ? "the result"

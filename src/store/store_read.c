@@ -88,6 +88,8 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *summary = (hf_summary){0};
+    if (io.status == HF_OK && hf_hdf5_has(&io, io.file, "points"))
+        io.status = hf_error(messages, HF_IO, "%s: is the merged table of a sweep; `hifdm report` reads it", path);
     hf_layout_get_summary(&io, HF_LAYOUT_FORM, summary);
     summary->has_coupling = io.status == HF_OK && hf_hdf5_has(&io, io.file, "coupling");
     if (summary->has_coupling) hf_layout_get_coupling(&io, summary);

@@ -108,6 +108,30 @@ START_TEST(a_comparison_nobody_asked_for_must_be_cheap)
 }
 END_TEST
 
+START_TEST(nothing_is_a_part_of_a_psi_of_zero)
+{
+    const char *path = net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0,0,support\nd,0.9,0,0,inner\n",
+                                "id,i,j,group,law,value\n1,a,d,boundary,tension,\n2,d,b,inner,tension,\n");
+    HIFDM(0, "run", path, "-o", temp("r.h5"), "--set", "optimize.range_N=2", "--set", "optimize.generations=5");
+    OUT("psi 0.0000 mm; found in generation 0");
+    ck_assert_ptr_null(strstr(said.out, "nan"));
+}
+END_TEST
+
+/* A strut: no Newton matrix, so no Levenberg-Marquardt either, and `check` does not promise it. */
+START_TEST(check_promises_what_runs)
+{
+    const char *path =
+        net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,2,0,0,support\nc,0,2,0,support\nd,0.9,0.8,0,"
+                 "inner\ne,0.4,0.4,0,inner\n",
+                 "id,i,j,group,law,value\n1,a,e,boundary,tension,\n2,d,b,inner,force_density,10\n3,d,c,"
+                 "inner,force_density,10\n4,e,d,inner,force_density,-1\n5,e,b,inner,force_density,10\n6,e,c,"
+                 "inner,force_density,10\n");
+    HIFDM(0, "check", path, "--set", "optimize.compare_lm=true");
+    ck_assert_ptr_null(strstr(said.out, "Levenberg-Marquardt: "));
+}
+END_TEST
+
 Suite *suite_cli_limits(void)
 {
     Suite *suite = suite_create("cli/limits");
@@ -119,6 +143,8 @@ Suite *suite_cli_limits(void)
     tcase_add_test(tests, a_cap_that_holds_it_is_named_and_met);
     tcase_add_test(tests, scipy_gains_nothing_on_capped_nets);
     tcase_add_test(tests, the_comparison_can_be_switched_off);
+    tcase_add_test(tests, nothing_is_a_part_of_a_psi_of_zero);
+    tcase_add_test(tests, check_promises_what_runs);
     tcase_add_test(tests, a_comparison_nobody_asked_for_must_be_cheap);
     return suite;
 }
