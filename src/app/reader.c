@@ -5,6 +5,7 @@
 #include "store/hdf5.h"
 
 #include <signal.h>
+#include <string.h>
 #include <sys/mman.h>
 
 /* A status of the manual, not one of a sanitizer or of abort handlers. */
@@ -37,8 +38,10 @@ bool hf_reader_watch(const hf_options *options, int *exit_status, hf_messages *m
     *exit_status = end.exit_status;
     if (end.is_known && !end.signal && is_ours(end.exit_status)) return true;
     hf_child_describe(end, words, sizeof words);
-    hf_status status =
-        hf_error(messages, HF_IO, "%s: is damaged: reading it ended by %s", *reading ? reading : options->file, words);
+    const char *file = *reading ? reading : options->file, *other = options->second;
+    if (other && !strcmp(file, other)) other = options->file;
+    hf_status status = hf_error(messages, HF_IO, "%s: is damaged: reading it ended by %s%s%s", file, words,
+                                other ? ", beside " : "", other ? other : "");
     *exit_status = hf_status_exit_code(status);
     return true;
 }

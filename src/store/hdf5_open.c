@@ -20,6 +20,16 @@ static bool is_hard(hf_hdf5 *io, hid_t place, const char *name)
     return io->status == HF_OK;
 }
 
+/* False for a data set: what a path names below one is not there. */
+static bool is_group(hf_hdf5 *io, hid_t place, const char *name)
+{
+    hid_t object = H5Oopen(place, name, H5P_DEFAULT);
+    bool is = object >= 0 && H5Iget_type(object) == H5I_GROUP;
+    if (object < 0) hf_hdf5_fail(io, "read", place, name);
+    hf_hdf5_close(io, object);
+    return is;
+}
+
 bool hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name)
 {
     char part[1024];
@@ -33,6 +43,7 @@ bool hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name)
         htri_t has = H5Lexists(place, part, H5P_DEFAULT);
         if (has < 0) hf_hdf5_fail(io, "read", place, part);
         if (has <= 0 || !is_hard(io, place, part)) return false;
+        if (*end && *part && !is_group(io, place, part)) return false;
     }
     return true;
 }

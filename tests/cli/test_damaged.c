@@ -41,9 +41,9 @@ START_TEST(a_crash_of_hdf5_names_the_file)
     HIFDM(0, "run", c, "-o", a, "--quiet");
     HIFDM(0, "run", c, "-o", b, "--quiet");
     SHELL(5, WITH_LIBRARY "exec \"$0\" diff \"$3\" \"$4\"", library, "1", a, b);
-    ERRS("error: %s: is damaged: reading it ended by signal 6 (Aborted)\n", a);
+    ERRS("error: %s: is damaged: reading it ended by signal 6 (Aborted), beside %s\n", a, b);
     SHELL(5, WITH_LIBRARY "exec \"$0\" diff \"$3\" \"$4\"", library, "2", a, b);
-    ERRS("error: %s: is damaged: reading it ended by signal 6 (Aborted)\n", b);
+    ERRS("error: %s: is damaged: reading it ended by signal 6 (Aborted), beside %s\n", b, a);
     SHELL(5, WITH_LIBRARY "exec \"$0\" report \"$3\" -o \"$4\"", library, "3", a, temp("page.html"));
     ERRS("error: %s: is damaged: reading it ended by signal 6", a);
     ck_assert(!is_there(temp("page.html")));

@@ -295,7 +295,8 @@ def fault(file, command, status, out, err):
         return f"exit status {status}"
     if status == 3 and command[0] == "sweep":
         return None  # the point has failed; `hifdm status` names its file
-    if status not in (0, 1) and os.path.basename(file).split(".h5")[0] not in err + out:
+    names = [os.path.basename(file).split(".h5")[0]] + (["study.d"] if file.endswith(".tsv") else [])
+    if status not in (0, 1) and not any(name in err + out for name in names):
         return f"exit status {status} without the name of the file"
     if status not in (0, 1) and not re.search("^(error|usage|warning)", err, re.M):
         return f"exit status {status} without words"

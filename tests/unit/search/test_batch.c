@@ -24,7 +24,8 @@ static void evaluate(struct run *r, int n_thread, int n_at_once, hf_form_result 
     for (int i = 0; i < batch.n_thread; i++)
         hf_workspace_poison(&r->net.model, &batch.workspace[i]);
     for (int i = 0; i < N_DESIGN; i += n_at_once)
-        hf_batch_run(&batch, n_at_once, r->design_N + i * r->net.model.n_gene, NULL, result + i);
+        hf_batch_run(&batch, i + n_at_once < N_DESIGN ? n_at_once : N_DESIGN - i, r->design_N + i * r->net.model.n_gene,
+                     NULL, result + i);
     ck_assert_double_gt(batch.cpu_s, 0);
     hf_batch_free(&batch);
 }
