@@ -65,7 +65,16 @@ static hf_status print_truss(const hf_problem *p, FILE *f, hf_messages *messages
     return status;
 }
 
-static void print_plan(const hf_problem *p, FILE *f)
+/* Does Levenberg-Marquardt run, or may it? */
+static bool polishes(const hf_problem *p, const hf_evaluator *v)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    bool is_wanted = hf_optimiser_plan_of(o->method).ends_with_polish || o->compare_lm != HF_COMPARE_FALSE;
+    return v && is_wanted && hf_polish_applies(v);
+}
+
+/* v: NULL without an optimisation */
+static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
 {
     const hf_case *c = &p->settings;
     const hf_optimize_settings *o = &c->optimize;
@@ -78,15 +87,13 @@ static void print_plan(const hf_problem *p, FILE *f)
         fprintf(f, "                coupling with the truss: %s, tof %g m, at most %d form-findings\n",
                 hf_coupling_scheme_word[c->form.coupling.scheme], c->form.coupling.tof_m,
                 c->form.coupling.max_iterations);
-    bool optimizes = c->has_optimize && p->model.n_gene > 0;
-    bool evolves = optimizes && hf_optimiser_plan_of(o->method).kind;
+    bool optimizes = v != NULL, evolves = optimizes && hf_optimiser_plan_of(o->method).kind;
     if (evolves)
         fprintf(f,
                 "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
                 hf_rule_word[o->rule], p->model.n_gene, o->population, o->generations, (unsigned long long)o->seed);
     bool is_result = hf_optimiser_plan_of(o->method).ends_with_polish;
-    if (optimizes && p->model.has_newton && o->rule != HF_RULE_SEEDED &&
-        (is_result || o->compare_lm != HF_COMPARE_FALSE))
+    if (polishes(p, v))
         fprintf(f, "                Levenberg-Marquardt: rule %s, at most %d iterations, %s\n", hf_rule_word[o->rule],
                 o->polish_iterations,
                 is_result                          ? "the result"
@@ -109,14 +116,6 @@ static void print_allocation(const char *title, const char *what, double bytes, 
     char text[32];
     hf_print_bytes(bytes, text, sizeof text);
     fprintf(f, "  %-13s %-38s %s\n", title, what, bytes > 0 ? text : without);
-}
-
-/* Does Levenberg-Marquardt run, or may it? */
-static bool polishes(const hf_problem *p, const hf_evaluator *v)
-{
-    const hf_optimize_settings *o = &p->settings.optimize;
-    bool is_wanted = hf_optimiser_plan_of(o->method).ends_with_polish || o->compare_lm != HF_COMPARE_FALSE;
-    return v && is_wanted && hf_polish_applies(v);
 }
 
 /* Bytes that Levenberg-Marquardt needs: sensitivities (twice as many with a truss), their rows of inner nodes, matrices
@@ -262,15 +261,14 @@ static hf_status check(hf_problem *p, const hf_options *options, FILE *f, hf_mes
     HF_TRY(hf_problem_load(options->file, options->set, options->n_set, p, messages));
     HF_TRY(hf_problem_allocate(p, messages));
     int threads = options->threads ? options->threads : hf_batch_default_threads();
-    bool optimizes = p->settings.has_optimize && p->model.n_gene > 0;
-    hf_evaluator v = hf_problem_evaluator(p);
+    hf_evaluator evaluator = hf_problem_evaluator(p);
+    const hf_evaluator *v = p->settings.has_optimize && p->model.n_gene > 0 ? &evaluator : NULL;
     hf_print_line(f, "%s: valid", options->file);
     print_scene(p, f);
     if (p->settings.has_truss) HF_TRY(print_truss(p, f, messages));
-    print_plan(p, f);
-    if (print_memory(p, optimizes ? &v : NULL, threads, f) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory");
-    return print_time(p, optimizes ? &v : NULL, threads, f, messages);
+    print_plan(p, v, f);
+    if (print_memory(p, v, threads, f) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory");
+    return print_time(p, v, threads, f, messages);
 }
 
 /* Returns HF_OK, HF_BAD_CASE with all faults, or an ill-posed status when the trial finds the scene ill-posed. */

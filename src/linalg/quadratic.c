@@ -1,6 +1,7 @@
 #include "linalg/quadratic.h"
 
 #include "base/arena.h"
+#include "linalg/dot.h"
 
 #include <math.h>
 #include <string.h>
@@ -40,14 +41,6 @@ void hf_quadratic_free(hf_quadratic *q)
     *q = (hf_quadratic){0};
 }
 
-static double inner_product(int n, const double *a, const double *b)
-{
-    double sum = 0;
-    for (int i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
-
 /* J = L^-T for H = L L', column j at inverse + j n; x = -J J' g, the free minimum. */
 static hf_status begin(hf_quadratic *q, const double *hessian, const double *gradient)
 {
@@ -61,7 +54,7 @@ static hf_status begin(hf_quadratic *q, const double *hessian, const double *gra
     if (info != 0) return HF_SINGULAR;
     memset(q->x, 0, (size_t)n * sizeof(double));
     for (int j = 0; j < n; j++) {
-        double share = inner_product(n, J + j * n, gradient);
+        double share = hf_dot((size_t)n, J + j * n, gradient);
         for (int i = 0; i < n; i++)
             q->x[i] -= share * J[j * n + i];
     }
@@ -135,9 +128,9 @@ static hf_status obey(hf_quadratic *q, const hf_quadratic_limit *limit, int *ste
         int m = q->n_active, blocking = -1;
         double dual_step = INFINITY, free_square, whole;
         for (int j = 0; j < n; j++)
-            d[j] = inner_product(n, q->inverse + j * n, limit->normal);
-        free_square = inner_product(n - m, d + m, d + m);
-        whole = inner_product(n, d, d);
+            d[j] = hf_dot((size_t)n, q->inverse + j * n, limit->normal);
+        free_square = hf_dot((size_t)(n - m), d + m, d + m);
+        whole = hf_dot((size_t)n, d, d);
         memset(z, 0, (size_t)n * sizeof(double));
         for (int j = m; j < n; j++)
             for (int i = 0; i < n; i++)
@@ -152,7 +145,7 @@ static hf_status obey(hf_quadratic *q, const hf_quadratic_limit *limit, int *ste
                 blocking = i;
             }
         }
-        double short_of = limit->bound - inner_product(n, limit->normal, q->x);
+        double short_of = limit->bound - hf_dot((size_t)n, limit->normal, q->x);
         double full_step = free_square > DEPENDENT * whole ? fmax(short_of, 0) / free_square : INFINITY;
         double step = fmin(dual_step, full_step);
         if (!isfinite(step)) return HF_DIFFERENT;

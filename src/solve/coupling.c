@@ -1,6 +1,7 @@
 /* Contents: forces and displacements - Anderson's method - the loop - certificate */
 #include "solve/coupling.h"
 
+#include "linalg/dot.h"
 #include "solve/newton_matrix.h"
 #include "solve/schur.h"
 
@@ -96,14 +97,6 @@ static accelerator lay_out_accelerator(const hf_model *m, hf_coupling_scheme sch
     return a;
 }
 
-static double dot(size_t n, const double *a, const double *b)
-{
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
-
 /* Solves the n x n system of the matrix g in place, by Cholesky. False when g is not positive definite. */
 static bool solve_gram(int n, double g[HF_COUPLING_DEPTH][HF_COUPLING_DEPTH], double b[HF_COUPLING_DEPTH])
 {
@@ -145,9 +138,9 @@ static void accelerate(accelerator *a, double *r)
     }
     double largest = 0;
     for (int i = 0; i < n_kept; i++) {
-        share[i] = dot(a->n, a->d_step[i], a->step);
+        share[i] = hf_dot(a->n, a->d_step[i], a->step);
         for (int j = 0; j <= i; j++)
-            gram[i][j] = dot(a->n, a->d_step[i], a->d_step[j]);
+            gram[i][j] = hf_dot(a->n, a->d_step[i], a->d_step[j]);
         largest = fmax(largest, gram[i][i]);
     }
     for (int i = 0; i < n_kept; i++)

@@ -178,22 +178,6 @@ typedef struct {
     double mu;
 } path_error;
 
-static void add_pull(const hf_model *m, int e, const double pull[3], double *force)
-{
-    int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-    for (int c = 0; c < 3; c++) {
-        if (a < m->n_free) force[3 * a + c] += pull[c];
-        if (b < m->n_free) force[3 * b + c] -= pull[c];
-    }
-}
-
-static void set_loads(const hf_model *m, double *force)
-{
-    for (int i = 0; i < m->n_free; i++)
-        for (int c = 0; c < 3; c++)
-            force[3 * i + c] = m->load_N ? m->load_N[c * m->n_node + i] : 0;
-}
-
 static double largest_force_N(const hf_model *m, const double *force)
 {
     double largest = 0, scale_N = 1 / m->reference_N;
@@ -210,7 +194,7 @@ static path_error measure_path(const hf_model *m, hf_workspace *w)
 {
     path_error error = {0};
     double sum = 0, all = 0;
-    set_loads(m, w->newton_force_N);
+    hf_newton_matrix_set_loads(m, w->newton_force_N);
     for (int e = 0; e < m->n_cable; e++) {
         path_cable *p = cables(w) + e;
         if (is_fixed(m, e)) continue;
@@ -222,7 +206,7 @@ static path_error measure_path(const hf_model *m, hf_workspace *w)
             sum += p->T * p->v - dot(p->t, p->d);
             all += p->weight;
         }
-        add_pull(m, e, p->t, w->newton_force_N);
+        hf_newton_matrix_add_pull(m, e, p->t, w->newton_force_N);
         if (!has_multiplier(w, e)) continue;
         p->short_m = hf_law_wanted_length_m(hf_workspace_cable(m, w, e), p->T) - p->v;
         error.length = fmax(error.length, fabs(p->short_m) / m->length_m[e]);
@@ -264,9 +248,7 @@ static void path_block(const hf_model *m, const hf_workspace *w, int e, double b
 {
     const path_cable *p = cables(w) + e;
     (void)m;
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++)
-            block[r][c] = (p->along - p->across) * p->unit[r] * p->unit[c] + (r == c ? p->across : 0);
+    hf_newton_matrix_spring(p->along, p->across, p->unit, block);
 }
 
 /* ---- direction ---- */
@@ -293,15 +275,21 @@ static void set_cable_side(path_cable *p, bool multiplier, double target, bool c
         p->off[c] = share * p->w1[c] - R1[c];
 }
 
+/* Change of the vector between the ends of a cable by newton_step. */
+static void set_vector_step(const hf_model *m, const hf_workspace *w, int e, double step[3])
+{
+    int i = m->end_row[2 * e], j = m->end_row[2 * e + 1];
+    for (int c = 0; c < 3; c++)
+        step[c] = (j < m->n_free ? w->newton_step[3 * j + c] : 0) - (i < m->n_free ? w->newton_step[3 * i + c] : 0);
+}
+
 static void set_cable_direction(const hf_model *m, const hf_workspace *w, int e)
 {
     path_cable *p = cables(w) + e;
-    int i = m->end_row[2 * e], j = m->end_row[2 * e + 1];
     double y[3];
-    for (int c = 0; c < 3; c++) {
-        p->Dd[c] = (j < m->n_free ? w->newton_step[3 * j + c] : 0) - (i < m->n_free ? w->newton_step[3 * i + c] : 0);
+    set_vector_step(m, w, e, p->Dd);
+    for (int c = 0; c < 3; c++)
         y[c] = p->Dd[c] + p->off[c];
-    }
     if (is_spring(w, e)) return;
     times_K(p, y, p->Dt);
     double a = p->eta2 * (2 * p->w0 * p->w0 - 1), turned = 2 * p->eta2 * p->w0 * dot(p->w1, p->Dt);
@@ -320,7 +308,7 @@ static void find_path_direction(const hf_model *m, hf_workspace *w, double targe
         if (is_fixed(m, e) || is_spring(w, e)) continue;
         set_cable_side(p, has_multiplier(w, e), target, corrected);
         times_K(p, p->off, pull);
-        add_pull(m, e, pull, rhs);
+        hf_newton_matrix_add_pull(m, e, pull, rhs);
     }
     hf_newton_matrix_solve(m, w, rhs);
     for (int e = 0; e < m->n_cable; e++)
@@ -361,11 +349,16 @@ static double find_room(const hf_model *m, hf_workspace *w, bool corrects)
     return inverse > 0 ? 1 / inverse : INFINITY;
 }
 
-static void move(const hf_model *m, hf_workspace *w, double part)
+static void move_nodes(const hf_model *m, hf_workspace *w, double part)
 {
     for (int i = 0; i < m->n_free; i++)
         for (int c = 0; c < 3; c++)
             w->position_m[c * m->n_node + i] += part * w->newton_step[3 * i + c];
+}
+
+static void move(const hf_model *m, hf_workspace *w, double part)
+{
+    move_nodes(m, w, part);
     for (int e = 0; e < m->n_cable; e++) {
         path_cable *p = cables(w) + e;
         if (is_fixed(m, e) || is_spring(w, e)) continue;
@@ -445,7 +438,7 @@ static path_error measure_end(const hf_model *m, hf_workspace *w)
 {
     path_error error = {0};
     double reference = m->reference_N;
-    set_loads(m, w->newton_force_N);
+    hf_newton_matrix_set_loads(m, w->newton_force_N);
     for (int e = 0; e < m->n_cable; e++) {
         path_cable *p = cables(w) + e;
         if (is_fixed(m, e)) continue;
@@ -466,7 +459,7 @@ static path_error measure_end(const hf_model *m, hf_workspace *w)
         p->across = fmax(T, 0) / length;
         for (int c = 0; c < 3; c++)
             pull[c] = T * p->unit[c];
-        add_pull(m, e, pull, w->newton_force_N);
+        hf_newton_matrix_add_pull(m, e, pull, w->newton_force_N);
     }
     error.balance = largest_force_N(m, w->newton_force_N) / reference;
     return error;
@@ -490,21 +483,17 @@ static bool take_last_step(const hf_model *m, hf_workspace *w)
         if (is_fixed(m, e)) continue;
         for (int c = 0; c < 3; c++)
             pull[c] = p->DT * p->unit[c];
-        add_pull(m, e, pull, step);
+        hf_newton_matrix_add_pull(m, e, pull, step);
     }
     hf_newton_matrix_solve(m, w, step);
     for (int e = 0; e < m->n_cable; e++) {
         const path_cable *p = cables(w) + e;
         if (is_fixed(m, e) || !has_multiplier(w, e)) continue;
-        int i = m->end_row[2 * e], j = m->end_row[2 * e + 1];
-        double longer = 0;
-        for (int c = 0; c < 3; c++)
-            longer += p->unit[c] * ((j < m->n_free ? step[3 * j + c] : 0) - (i < m->n_free ? step[3 * i + c] : 0));
-        w->tension_N[e] += p->DT + p->along * longer;
+        double longer[3];
+        set_vector_step(m, w, e, longer);
+        w->tension_N[e] += p->DT + p->along * dot(p->unit, longer);
     }
-    for (int i = 0; i < m->n_free; i++)
-        for (int c = 0; c < 3; c++)
-            w->position_m[c * m->n_node + i] += step[3 * i + c];
+    move_nodes(m, w, 1);
     return true;
 }
 

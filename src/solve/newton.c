@@ -30,18 +30,13 @@ static imbalance measure_imbalance(const hf_model *m, const hf_workspace *w, con
 {
     imbalance result = {0};
     double u[3], sum = 0, largest = 0, scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
-    for (int i = 0; i < m->n_free; i++)
-        for (int c = 0; c < 3; c++)
-            force[3 * i + c] = m->load_N ? m->load_N[c * m->n_node + i] : 0;
+    hf_newton_matrix_set_loads(m, force);
     for (int e = 0; e < m->n_cable; e++) {
-        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         hf_law_cable cable = hf_workspace_cable(m, w, e);
         double length = hf_newton_matrix_direction(m, position_m, e, u),
                tension = hf_newton_matrix_tension_N(cable, length, T[e]);
-        for (int c = 0; c < 3; c++) {
-            if (a < m->n_free) force[3 * a + c] += tension * u[c];
-            if (b < m->n_free) force[3 * b + c] -= tension * u[c];
-        }
+        double pull[3] = {tension * u[0], tension * u[1], tension * u[2]};
+        hf_newton_matrix_add_pull(m, e, pull, force);
         if (!hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
         double gap = length / hf_law_wanted_length_m(cable, tension) - 1;
         if (gap < 0) gap *= fmin(1, tension / m->reference_N);
@@ -76,14 +71,10 @@ static void right_hand_side(const hf_model *m, const hf_workspace *w, const doub
     for (int e = 0; e < m->n_cable; e++) {
         hf_law_cable cable = hf_workspace_cable(m, w, e);
         if (!hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
-        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         double length = hf_newton_matrix_direction(m, w->position_m, e, u);
         double T = w->tension_N[e], beyond = length - hf_law_wanted_length_m(cable, T);
-        double pull = tension_change(cable, length, T, 1, beyond);
-        for (int c = 0; c < 3; c++) {
-            if (a < m->n_free) rhs[3 * a + c] += pull * u[c];
-            if (b < m->n_free) rhs[3 * b + c] -= pull * u[c];
-        }
+        double more = tension_change(cable, length, T, 1, beyond), pull[3] = {more * u[0], more * u[1], more * u[2]};
+        hf_newton_matrix_add_pull(m, e, pull, rhs);
     }
 }
 

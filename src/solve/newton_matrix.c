@@ -21,10 +21,7 @@ void hf_newton_matrix_block(const hf_model *m, const hf_workspace *w, int e, dou
     hf_law_cable cable = hf_workspace_cable(m, w, e);
     double u[3], length = hf_newton_matrix_direction(m, w->position_m, e, u);
     double T = hf_newton_matrix_tension_N(cable, length, w->tension_N[e]);
-    double across = T / length, along = hf_newton_matrix_stiffness(cable, length, T) - across;
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++)
-            block[r][c] = along * u[r] * u[c] + (r == c ? across : 0);
+    hf_newton_matrix_spring(hf_newton_matrix_stiffness(cable, length, T), T / length, u, block);
 }
 
 /* Assembles the matrix of these blocks into newton_band. Returns the largest diagonal entry. */

@@ -38,6 +38,33 @@ static inline double hf_newton_matrix_direction(const hf_model *model, const dou
     return length;
 }
 
+/* Set force [3 n_free] to the loads. */
+static inline void hf_newton_matrix_set_loads(const hf_model *model, double *force)
+{
+    for (int i = 0; i < model->n_free; i++)
+        for (int c = 0; c < 3; c++)
+            force[3 * i + c] = model->load_N ? model->load_N[c * model->n_node + i] : 0;
+}
+
+/* Add the pull of cable i_cable on its first end, and the opposite on its second, to force [3 n_free]. */
+static inline void hf_newton_matrix_add_pull(const hf_model *model, int i_cable, const double pull[3], double *force)
+{
+    int a = model->end_row[2 * i_cable], b = model->end_row[2 * i_cable + 1];
+    for (int c = 0; c < 3; c++) {
+        if (a < model->n_free) force[3 * a + c] += pull[c];
+        if (b < model->n_free) force[3 * b + c] -= pull[c];
+    }
+}
+
+/* Stiffness [3][3] of a spring in the direction of the unit vector, N/m (M6). */
+static inline void hf_newton_matrix_spring(double along, double across, const double unit[3], double block[3][3])
+{
+    double more = along - across;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            block[r][c] = more * unit[r] * unit[c] + (r == c ? across : 0);
+}
+
 /* Tension, N: the multiplier where the law has one, else what the law gives at this length. */
 static inline double hf_newton_matrix_tension_N(hf_law_cable cable, double length_m, double multiplier_N)
 {

@@ -1,6 +1,7 @@
 #include "solve/schur.h"
 
 #include "base/arena.h"
+#include "linalg/dot.h"
 #include "solve/newton_matrix.h"
 
 #include <math.h>
@@ -25,14 +26,6 @@ void hf_schur_flex(const hf_model *m, const double *force, double *r)
         for (size_t i = 0; i < n; i++)
             r[i] += column[i] * force[j];
     }
-}
-
-static double inner_product(size_t n, const double *a, const double *b)
-{
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
 }
 
 static void lay_out_schur(hf_arena *arena, const hf_model *m, hf_schur *s)
@@ -157,7 +150,7 @@ int hf_schur_modes(hf_schur *s, double tolerance, int max_mode, double *mode)
         double total = 0, longest = 0;
         size_t pivot = 0;
         for (size_t j = 0; j < n; j++) {
-            double square = inner_product(n, a + j * n, a + j * n);
+            double square = hf_dot(n, a + j * n, a + j * n);
             total += square;
             if (square > longest) longest = square, pivot = j;
         }
@@ -165,7 +158,7 @@ int hf_schur_modes(hf_schur *s, double tolerance, int max_mode, double *mode)
         for (size_t i = 0; i < n; i++)
             mode[i] = a[pivot * n + i] / sqrt(longest);
         for (size_t j = 0; j < n; j++) {
-            double share = mode[n + j] = inner_product(n, mode, a + j * n);
+            double share = mode[n + j] = hf_dot(n, mode, a + j * n);
             for (size_t i = 0; i < n; i++)
                 a[j * n + i] -= share * mode[i];
         }
