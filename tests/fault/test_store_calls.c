@@ -136,21 +136,29 @@ static int fail_once(int call, long n, int was_killed, const char *whole)
     return was_reached;
 }
 
-/* All HDF5 ids that the store opened must be closed. Ids that a failed call leaves open inside HDF5 do not count. */
-static void check_call(int call, int was_killed)
+/* The result of a run that nothing disturbed: its path, which the caller frees. */
+static char *make_whole(void)
 {
     struct run r;
     hf_messages messages = {0};
     int n = 0;
-    const char *whole;
-    new_folder(&whole);
-    whole = strdup(whole);
+    const char *path;
+    new_folder(&path);
+    char *whole = strdup(path);
+    ck_assert_ptr_nonnull(whole);
     open_run(&r);
     ck_assert_int_eq(run_it(whole, &r, &n, &messages), HF_OK);
     close_run(&r);
-    for (n = 1; fail_once(call, n, was_killed, whole); n++)
+    return whole;
+}
+
+/* All HDF5 ids that the store opened must be closed. Ids that a failed call leaves open inside HDF5 do not count. */
+static void check_call(int call, int was_killed)
+{
+    char *whole = make_whole();
+    for (int n = 1; fail_once(call, n, was_killed, whole); n++)
         no_id_is_open();
-    free((char *)whole);
+    free(whole);
 }
 
 START_TEST(a_new_run_survives_each_failing_call)
@@ -192,12 +200,7 @@ START_TEST(a_run_killed_before_each_change_leaves_nothing)
     hf_messages messages = {0};
     int n = 0;
     long n_death = 0;
-    const char *whole;
-    new_folder(&whole);
-    whole = strdup(whole);
-    open_run(&r);
-    ck_assert_int_eq(run_it(whole, &r, &n, &messages), HF_OK);
-    close_run(&r);
+    char *whole = make_whole();
     for (bool dying = true; dying; n_death++) {
         const char *path, *folder = new_folder(&path);
         dying = die_at(path, n_death + 1);
@@ -210,7 +213,7 @@ START_TEST(a_run_killed_before_each_change_leaves_nothing)
         hf_messages_free(&messages);
     }
     ck_assert_int_gt(n_death, 40);
-    free((char *)whole);
+    free(whole);
 }
 END_TEST
 
@@ -220,12 +223,8 @@ START_TEST(a_run_whose_calls_are_disturbed)
     struct run r;
     hf_messages messages = {0};
     int n = 0;
-    const char *whole = NULL, *path = NULL;
-    new_folder(&whole);
-    whole = strdup(whole);
-    open_run(&r);
-    ck_assert_int_eq(run_it(whole, &r, &n, &messages), HF_OK);
-    close_run(&r);
+    const char *path = NULL;
+    char *whole = make_whole();
     new_folder(&path);
     if (_i) leave_killed_run(path);
     open_run(&r);
@@ -236,7 +235,7 @@ START_TEST(a_run_whose_calls_are_disturbed)
     close_run(&r);
     demand_whole(path, whole);
     hf_messages_free(&messages);
-    free((char *)whole);
+    free(whole);
 }
 END_TEST
 
