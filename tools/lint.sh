@@ -195,6 +195,9 @@ if [ -e .git ]; then
         sed 's/$/:1: not one of the rooms of the top level/' | report || true
 fi
 
+# ---- Mutants: an edit that no longer applies would go unseen until the next hours of make mutants --------------------
+"${PYTHON:-/usr/bin/python3}" tools/mutants.py --check 2>&1 | grep -vE '^[0-9]+ mutants$' | report || true
+
 # ---- Other programs, where installed ---------------------------------------------------------------------------------
 skipped=""
 if command -v cppcheck >/dev/null; then
