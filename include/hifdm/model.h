@@ -4,8 +4,9 @@
  * A model does not change once it is built, so all threads share it.
  *
  * Nodes are renumbered: "row" is a node's index in the model, free nodes first in band order (rows 0..n_free-1 are the
- * rows of the force density matrix D), supports after them. Cables keep the order of the scene.
- * The force density matrix is kept as LAPACK's lower band, column-major: D(i,j) at band[i-j + j*(half_bandwidth+1)]. */
+ * rows of the force density matrix D), then the supports on a truss, then the others. Cables keep the order of the
+ * scene. The force density matrix is kept as LAPACK's lower band, column-major: D(i,j) at
+ * band[i-j + j*(half_bandwidth+1)]. */
 #ifndef HIFDM_MODEL_H
 #define HIFDM_MODEL_H
 
@@ -67,7 +68,7 @@ typedef struct {
     /* Supports on an elastic truss (hf_model_attach): the displacement of degree of freedom 3*i + c under the forces on
      * the attachments, r = F f, Eq. 15 condensed. All zero without a truss. */
     int n_attachment, n_tie;
-    int *attachment_row;         /* [n_attachment] rows >= n_free, in the order of the flexibility */
+    int *attachment_row;         /* [n_attachment] rows n_free + i, in the order of the flexibility */
     double *flexibility_m_per_N; /* [3 n_attachment][3 n_attachment] symmetric; NULL without a truss */
     int *tie;                    /* [n_tie] cable ends at attachments: 2*cable + which end, by cable */
     int *tie_attachment;         /* [n_tie] index of the attachment */

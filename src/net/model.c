@@ -347,13 +347,13 @@ static void lay_out_attachments(hf_arena *a, hf_model *m)
     m->tie_attachment = hf_arena_take(a, (size_t)m->n_tie, sizeof(int));
 }
 
-/* List the cable ends at attachments, or only count them while there is no list. attachment_of_row: [n_node], or -1. */
-static void find_ties(hf_model *m, const int *attachment_of_row)
+/* List the cable ends at attachments, or only count them while there is no list. */
+static void find_ties(hf_model *m)
 {
     m->n_tie = 0;
     for (int k = 0; k < 2 * m->n_cable; k++) {
-        int i = attachment_of_row[m->end_row[k]];
-        if (i < 0) continue;
+        int i = m->end_row[k] - m->n_free;
+        if (i < 0 || i >= m->n_attachment) continue;
         if (m->tie) m->tie[m->n_tie] = k;
         if (m->tie) m->tie_attachment[m->n_tie] = i;
         m->n_tie++;
@@ -384,24 +384,40 @@ static void mark_chains(hf_model *m)
             }
 }
 
+static void swap_rows(hf_model *m, int a, int b)
+{
+    int node_a = m->node_of_row[a], node_b = m->node_of_row[b], chain = m->chain_of_row[a];
+    m->node_of_row[a] = node_b;
+    m->node_of_row[b] = node_a;
+    m->row_of_node[node_a] = b;
+    m->row_of_node[node_b] = a;
+    m->chain_of_row[a] = m->chain_of_row[b];
+    m->chain_of_row[b] = chain;
+    double *vector[] = {m->position_m, m->load_N};
+    for (int k = 0; k < 2; k++)
+        for (int c = 0; c < 3 && vector[k]; c++) {
+            double *x = vector[k] + c * m->n_node, kept = x[a];
+            x[a] = x[b];
+            x[b] = kept;
+        }
+    for (int k = 0; k < 2 * m->n_cable; k++)
+        m->end_row[k] = m->end_row[k] == a ? b : m->end_row[k] == b ? a : m->end_row[k];
+}
+
 static hf_status attach(hf_model *m, int n, const int *node, const double *flexibility)
 {
     size_t dofs = 3 * (size_t)n;
-    int *attachment_of_row = malloc((size_t)m->n_node * sizeof *attachment_of_row);
-    if (!attachment_of_row) return HF_NO_MEMORY;
-    for (int row = 0; row < m->n_node; row++)
-        attachment_of_row[row] = -1;
-    for (int i = 0; i < n; i++)
-        attachment_of_row[m->row_of_node[node[i]]] = i;
     hf_arena arena = {0};
+    for (int i = 0; i < n; i++)
+        swap_rows(m, m->n_free + i, m->row_of_node[node[i]]);
     m->n_attachment = n;
-    find_ties(m, attachment_of_row);
+    find_ties(m);
     hf_status status = HF_ARENA_MAKE(&arena, lay_out_attachments(&arena, m));
     if (status == HF_OK) {
         m->attachment_block = arena.block;
-        find_ties(m, attachment_of_row);
+        find_ties(m);
         for (int i = 0; i < n; i++)
-            m->attachment_row[i] = m->row_of_node[node[i]];
+            m->attachment_row[i] = m->n_free + i;
         for (size_t i = 0; i < dofs; i++)
             for (size_t j = 0; j < dofs; j++)
                 m->flexibility_m_per_N[i * dofs + j] = (flexibility[i * dofs + j] + flexibility[j * dofs + i]) / 2;
@@ -410,7 +426,6 @@ static hf_status attach(hf_model *m, int n, const int *node, const double *flexi
     } else {
         m->n_attachment = m->n_tie = 0;
     }
-    free(attachment_of_row);
     return status;
 }
 
@@ -449,6 +464,6 @@ bool hf_model_is_valid(const hf_model *m)
     for (int k = 0; k < m->n_tie; k++)
         if (m->end_row[m->tie[k]] != m->attachment_row[m->tie_attachment[k]]) return false;
     for (int i = 0; i < m->n_attachment; i++)
-        if (m->attachment_row[i] < m->n_free || m->attachment_row[i] >= m->n_node) return false;
+        if (m->attachment_row[i] != m->n_free + i || m->attachment_row[i] >= m->n_node) return false;
     return m->chain_start[0] == 0 && m->n_gene <= m->n_cable;
 }
