@@ -48,13 +48,23 @@ class Axes:
         return out
 
 
-def series(axes, points, colour):
+def dot(x, y, colour, r=2.8):
+    return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{r}" fill="{colour}"/>'
+
+
+def cross(x, y, colour, r=6):
+    path = f"M{x - r:.1f},{y - r:.1f}l{2 * r},{2 * r}m0,{-2 * r}l{-2 * r},{2 * r}"
+    return f'<path d="{path}" stroke="{colour}" stroke-width="2.4" fill="none"/>'
+
+
+def series(axes, points, colour, style, name):
+    """line: points joined in order; dash: the same, broken; mark: crosses with their name beside them."""
     at = [axes.at(x, y) for x, y in points]
-    out = []
-    if len(at) > 1:
-        path = " ".join(f"{x:.1f},{y:.1f}" for x, y in at)
-        out.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="1.6"/>')
-    return out + [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.8" fill="{colour}"/>' for x, y in at]
+    if style == "mark":
+        return [cross(x, y, colour) + text(x + 10, y - 4, name, 11, "start") for x, y in at]
+    path, broken = " ".join(f"{x:.1f},{y:.1f}" for x, y in at), ' stroke-dasharray="5 3"' if style == "dash" else ""
+    out = [f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="1.6"{broken}/>']
+    return out[: len(at) > 1] + [dot(x, y, colour) for x, y in at]
 
 
 def document(width, height, body, comment):
@@ -64,9 +74,9 @@ def document(width, height, body, comment):
             f'<rect width="100%" height="100%" fill="white"/>\n' + "\n".join(body) + "\n</svg>\n")
 
 
-def loglog(path, panels, x_label, y_label, comment, columns=2):
-    """panels: {title: {name: [(x, y), ...]}}; one legend for all below."""
-    body, names = [], []
+def loglog(path, panels, x_label, y_label, comment, columns=2, styles=None):
+    """panels: {title: {name: [(x, y), ...]}}; one legend for all below. styles: {name: line, dash or mark}."""
+    body, names, styles = [], [], styles or {}
     for panel in panels.values():
         names += [name for name in panel if name not in names]
     for i, (title, panel) in enumerate(panels.items()):
@@ -74,13 +84,14 @@ def loglog(path, panels, x_label, y_label, comment, columns=2):
         axes = Axes(i % columns * PANEL_W, i // columns * PANEL_H, [p for points in panel.values() for p in points])
         body += axes.frame(title, x_label, y_label)
         for name, points in panel.items():
-            body += series(axes, points, COLOURS[names.index(name) % len(COLOURS)])
+            body += series(axes, points, COLOURS[names.index(name) % len(COLOURS)], styles.get(name, "line"), name)
     columns = min(columns, len(panels))
     top = (len(panels) + columns - 1) // columns * PANEL_H
     per_row = max(1, columns * PANEL_W // 190)
     for i, name in enumerate(names):
         x, y = 20 + i % per_row * 190, top + 16 + i // per_row * 18
-        body += [f'<circle cx="{x}" cy="{y - 4}" r="4" fill="{COLOURS[i % len(COLOURS)]}"/>',
+        colour = COLOURS[i % len(COLOURS)]
+        body += [cross(x, y - 4, colour, 4) if styles.get(name) == "mark" else dot(x, y - 4, colour, 4),
                  text(x + 10, y, name, 12, "start")]
     height = top + 26 + 18 * ((len(names) + per_row - 1) // per_row)
     with open(path, "w") as file:

@@ -3,7 +3,7 @@
 sparse product, LAPACK's band solver or SuperLU. Called by run.py; prints samples as the C driver does. Reads
 FOLDER/NAME.net.
 
-    peers.py version | peers.py step FOLDER | peers.py single FOLDER NAME
+    peers.py version | peers.py step FOLDER | peers.py single FOLDER NAME | peers.py precision FOLDER NAME
 """
 import os
 import sys
@@ -22,6 +22,7 @@ except ImportError:
 
 ENOUGH_S = 0.1
 WANTED_M = 1e-6
+TRACE_S, TRACE_LEAST = 20, 1e-10  # as in precision.c
 TENSION, LENGTH, FORCE_DENSITY = range(3)
 
 
@@ -105,10 +106,29 @@ class Net:
         q, x = self.q0, self.x0.copy()
         for k in range(1, count + 1):
             length = self.step(solve, q, x)
-            if wanted_m and np.sqrt(((x - self.reference) ** 2).sum(axis=1)).max() <= wanted_m:
+            if wanted_m and self.error_m(x) <= wanted_m:
                 return k
             q = self.update(q, length)
         return count
+
+
+    def error_m(self, x):
+        return np.sqrt(((x - self.reference) ** 2).sum(axis=1)).max()
+
+    def trace(self, solve):
+        """(decade, seconds, error, iterations) whenever the error has fallen below another decade; it is not timed."""
+        q, x, passed_s, wanted_m, k = self.q0, self.x0.copy(), 0.0, np.inf, 0
+        while passed_s < TRACE_S and wanted_m > TRACE_LEAST:
+            k, start = k + 1, time.perf_counter()
+            length = self.step(solve, q, x)
+            passed_s += time.perf_counter() - start
+            error_m = self.error_m(x)
+            if error_m <= wanted_m:
+                wanted_m = 10.0 ** np.floor(np.log10(error_m))
+                yield wanted_m, passed_s, error_m, k
+            start = time.perf_counter()
+            q = self.update(q, length)
+            passed_s += time.perf_counter() - start
 
 
 def emit(section, scene, method, parameter, quantity, value):
@@ -150,10 +170,20 @@ def single(folder, scene):
         emit("single", scene, name, WANTED_M, "iterations", count)
 
 
+def precision(folder, scene):
+    net = Net(f"{folder}/{scene}.net")
+    net.iterate(net.solveh_banded, 5)  # the first calls are slow
+    for decade, *values in net.trace(net.solveh_banded):
+        for quantity, value in zip(("time_s", "error_m", "iterations"), values):
+            emit("precision", scene, "scipy fixed point", decade, quantity, value)
+
+
 if __name__ == "__main__":
     if sys.argv[1] == "version":
         print("numpy", np.__version__, "scipy", scipy.__version__)
     elif sys.argv[1] == "step":
         step(sys.argv[2])
+    elif sys.argv[1] == "precision":
+        precision(sys.argv[2], sys.argv[3])
     else:
         single(sys.argv[2], sys.argv[3])

@@ -1,9 +1,11 @@
-/* Contents: references - one method at one tolerance - work-precision - one evaluation to a given error */
+/* Contents: references - one method at one tolerance - a peer step by step - work-precision - one evaluation to a given
+ * error */
 #include "bench.h"
 
 #include "linalg/band.h"
 #include "search/chord.h"
 #include "solve/equilibrium.h"
+#include "solve/interior.h"
 #include "solve/newton.h"
 
 #include <math.h>
@@ -16,6 +18,9 @@
 #define COLD_TIGHTEST 1e-7
 #define WANTED_M 1e-6
 #define COUNT_MAX 200000
+#define TRACE_S 20.0      /* a peer is given up after this time */
+#define TRACE_LEAST 1e-10 /* m; no peer is asked for less error */
+#define PATH_STEPS 200
 
 /* ---- references: the true shapes of the first designs ---- */
 
@@ -101,6 +106,21 @@ static void by_newton(void *context)
     one_by_one(context);
 }
 
+/* From the theoretical shape, as the first form-finding of a case that nothing else solves. */
+static void by_path(void *context)
+{
+    run *r = context;
+    bench_scene *b = r->scene;
+    for (int i = 0; i < r->n; i++) {
+        int n_step = 0, culprit;
+        hf_evaluate_prepare(&b->evaluator, design(b, i), &b->workspace);
+        hf_status status = hf_interior_run(&b->model, &b->form, &b->workspace, PATH_STEPS, &n_step, &culprit);
+        if (status != HF_OK) bench_fail(b->name, hf_status_text(status));
+        r->result[i].iterations = n_step;
+        note_error(r, i, &b->workspace);
+    }
+}
+
 static void by_paper_stop(void *context)
 {
     run *r = context;
@@ -155,6 +175,36 @@ static int share_matrix(bench_scene *b, hf_batch *batch)
     return by == HF_SOLVER_CHORD;
 }
 
+/* ---- a peer step by step: the time its steps took, whenever the true error has fallen below another decade ---- */
+
+/* The fixed point of Eqs. 7 and 8 with CHOLMOD, of the first design, from the found shape; the errors are not timed. */
+static void trace_cholmod(bench_scene *b, const double *reference_m)
+{
+    const hf_model *m = &b->model;
+    hf_workspace *w = &b->workspace;
+    bench_cholmod *peer = bench_cholmod_create(m);
+    double passed_s = 0, wanted_m = INFINITY;
+    if (!peer) return;
+    hf_evaluate_prepare(&b->evaluator, b->design_N, w);
+    for (int k = 1; passed_s < TRACE_S && wanted_m > TRACE_LEAST; k++) {
+        double start_s = bench_clock_s();
+        if (bench_cholmod_step(peer, m, w)) bench_fail(b->name, "CHOLMOD");
+        bench_measure(m, &b->form, w);
+        passed_s += bench_clock_s() - start_s;
+        double error_m = bench_distance_m(m, w->position_m, reference_m);
+        if (error_m <= wanted_m) {
+            wanted_m = pow(10, floor(log10(error_m)));
+            bench_emit("precision", b->name, "CHOLMOD fixed point", wanted_m, "time_s", passed_s);
+            bench_emit("precision", b->name, "CHOLMOD fixed point", wanted_m, "error_m", error_m);
+            bench_emit("precision", b->name, "CHOLMOD fixed point", wanted_m, "iterations", k);
+        }
+        start_s = bench_clock_s();
+        hf_form_update(m, w);
+        passed_s += bench_clock_s() - start_s;
+    }
+    bench_cholmod_free(peer);
+}
+
 /* ---- work-precision ---- */
 
 void bench_precision(const char *name, const char *folder)
@@ -163,18 +213,22 @@ void bench_precision(const char *name, const char *folder)
     hf_batch batch;
     bench_scene_named(name, folder, &b);
     double *reference_m = make_references(&b);
+    hf_evaluate_prepare(&b.evaluator, b.design_N, &b.workspace);
+    bench_write_net(&b, &b.workspace, reference_m, folder, name);
     int has_chord = share_matrix(&b, &batch), n = n_true(&b);
     run way[] = {{&b, reference_m, NULL, "fixed point", by_fixed_point, n, 0, {{0}}},
                  {&b, reference_m, NULL, "fixed point, cold", by_cold_fixed_point, n, 0, {{0}}},
                  {&b, reference_m, NULL, "newton", by_newton, n, 0, {{0}}},
+                 {&b, reference_m, NULL, "path, cold", by_path, n, 0, {{0}}},
                  {&b, reference_m, &batch, "chord", by_chord, BENCH_POPULATION, 0, {{0}}}};
     for (double tolerance = TOLERANCE_LOOSEST; tolerance > 0.9 * TOLERANCE_TIGHTEST; tolerance /= 10)
-        for (int i = 0; i < 3 + has_chord; i++)
+        for (int i = 0; i < 4 + has_chord; i++)
             /* the cold start only costs a longer way to the same line */
             if (way[i].work != by_cold_fixed_point || tolerance > COLD_TIGHTEST)
                 sample(&way[i], "precision", tolerance);
     run paper = {&b, reference_m, NULL, "paper's stop", by_paper_stop, n, 0, {{0}}};
     sample(&paper, "precision", b.form.rms_tolerance_m);
+    trace_cholmod(&b, reference_m);
     hf_batch_free(&batch);
     free(reference_m);
     bench_scene_free(&b);

@@ -22,6 +22,16 @@ import svg  # noqa: E402
 
 SCENES = ["chen2022", "21x25 f=15", "imported 31x37", "41x49 f=5"]
 KERNEL_NET = "21x25 perimeter"
+# The methods of precision.csv that its picture shows, in the order of its legend: words and style.
+PICTURE = {
+    "scipy fixed point": ("scipy, fixed point", "line"),
+    "CHOLMOD fixed point": ("CHOLMOD in C, fixed point", "line"),
+    "fixed point": ("hifdm, fixed point", "line"),
+    "path, cold": ("hifdm, path, cold start", "line"),
+    "newton": ("hifdm, Newton", "line"),
+    "chord": ("hifdm, population of 50", "line"),
+    "paper's stop": ("the paper's stop", "mark"),
+}
 SCALES = {1: 3, 2: 3, 4: 3, 8: 2, 16: 1}  # nets of the cost growth: rounds, fewer for those that take seconds
 BIG = "scene.parabolic_cylinder.cells_per_module=[4,4]"
 # Arguments of the program. The polish is not what is measured here, and takes long.
@@ -161,6 +171,7 @@ class Bench:
             for scene in SCENES:
                 if scene != SCENES[-1] or r == 0:  # the fixed point takes 20 s there
                     self.driver("precision", scene)
+                    self.peers("precision", scene)
             for scene in (KERNEL_NET, *SCENES):
                 if scene != SCENES[-1] or r < 2:
                     self.driver("single", scene)
@@ -231,12 +242,13 @@ class Bench:
         self.wide("precision", "precision", ["time_s", "error_m", "iterations", "relative_residual", "setup_s"],
                   ("scene", "method", "tolerance"))
         panels = {}
-        for scene, method, parameter in self.samples.keys("precision"):
-            point = [self.samples.get("precision", scene, method, parameter, q) for q in ("time_s", "error_m")]
-            if None not in point:
-                panels.setdefault(scene, {}).setdefault(method, []).append(point)
+        for method, (title, _) in PICTURE.items():
+            for scene, of, parameter in self.samples.keys("precision"):
+                point = [self.samples.get("precision", scene, method, parameter, q) for q in ("time_s", "error_m")]
+                if of == method and None not in point:
+                    panels.setdefault(scene, {}).setdefault(title, []).append(point)
         svg.loglog(f"{self.a.out}/precision.svg", panels, "time per evaluation (s)", "true position error (m)",
-                   "\n".join(self.head))
+                   "\n".join(self.head), styles=dict(PICTURE.values()))
 
     def write_single(self):
         rows = []
