@@ -8,6 +8,8 @@
 #include <hifdm/config.h>
 #include <hifdm/formfind.h>
 
+#include <stdio.h>
+
 #define BENCH_POPULATION 50
 #define BENCH_TRUE 2 /* designs whose true position error is measured */
 
@@ -45,6 +47,7 @@ double bench_distance_m(const hf_model *model, const double *a_m, const double *
 double bench_clock_s(void);
 void *bench_alloc(size_t count, size_t item_bytes); /* zeroed; ends the program when there is no memory */
 void bench_fail(const char *what, const char *why);
+FILE *bench_open_file(const char *folder, const char *name); /* to be written; ends the program when it cannot be */
 void bench_emit(const char *section, const char *scene, const char *method, double parameter, const char *quantity,
                 double value);
 
@@ -77,6 +80,7 @@ void bench_peak(const char *what, const char *folder);
 void bench_phases(const char *scene, const char *folder);
 void bench_precision(const char *scene, const char *folder);
 void bench_single(const char *scene, const char *folder);
+void bench_equilibrium(const char *net, const char *folder);
 void bench_growth(const char *scale, const char *folder);
 void bench_population(const char *scene, const char *folder);
 void bench_whole(const char *path, const char *folder);

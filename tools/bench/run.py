@@ -22,6 +22,9 @@ import svg  # noqa: E402
 
 SCENES = ["chen2022", "21x25 f=15", "imported 31x37", "41x49 f=5"]
 KERNEL_NET = "21x25 perimeter"
+# The nets of equilibrium.c.
+FORM_FINDINGS = ["21x25 f=15", "41x49 f=5", "on its truss", "on a truss 300 times as soft", "21x25 elastic",
+                 "21x25 elastic; cut with errors of 0.5 mm", "21x25 tension; length and elastic"]
 # The methods of precision.csv that its picture shows, in the order of its legend: words and style.
 PICTURE = {
     "scipy fixed point": ("scipy, fixed point", "line"),
@@ -176,6 +179,8 @@ class Bench:
                 if scene != SCENES[-1] or r < 2:
                     self.driver("single", scene)
                     self.peers("single", scene)
+            for net in FORM_FINDINGS:
+                self.driver("equilibrium", net)
             self.say("cost growth")
             for scale, rounds in SCALES.items():
                 if r < rounds:
@@ -262,6 +267,9 @@ class Bench:
         self.wide("form", "form", ["time_s", "iterations", "residual_N", "position_error_estimate_m"],
                   ("scene", "method", "tolerance"))
 
+    def write_equilibrium(self):
+        self.wide("equilibrium", "equilibrium", ["time_s", "error_m", "steps", "n_slack"], ("net", "by", "wanted_m"))
+
     def write_step(self):
         base, rows = self.samples.any("step", KERNEL_NET, "dpbtrf", "time_s"), []
         for scene, method, n_free in self.samples.keys("step"):
@@ -332,7 +340,7 @@ class Bench:
         os.makedirs(self.a.out, exist_ok=True)
         self.head = self.header()
         self.wide("frame", "frame", ["time_s", "half_bandwidth"], ("truss", "what", "unknowns"))
-        for name in ("precision", "single", "step", "peak", "growth", "phases", "stages", "population"):
+        for name in ("precision", "single", "equilibrium", "step", "peak", "growth", "phases", "stages", "population"):
             getattr(self, f"write_{name}")()
         rows = list(summary(self.samples))
         self.table("summary", ["figure", "wanted", "measured"], rows)

@@ -120,7 +120,7 @@ void bench_scene_free(bench_scene *b)
 
 /* ---- an imported net: a generated one with every node moved and loaded, through CSV files ---- */
 
-static FILE *open_file(const char *folder, const char *name)
+FILE *bench_open_file(const char *folder, const char *name)
 {
     char path[HF_PATH_SIZE];
     snprintf(path, sizeof path, "%s/%s", folder, name);
@@ -157,13 +157,13 @@ static void open_imported(const char *folder, bench_scene *b)
     bench_scene base;
     char path[HF_PATH_SIZE];
     bench_scene_named("31x37", folder, &base);
-    FILE *file = open_file(folder, "nodes.csv");
+    FILE *file = bench_open_file(folder, "nodes.csv");
     write_nodes(&base.scene, file);
     fclose(file);
-    file = open_file(folder, "cables.csv");
+    file = bench_open_file(folder, "cables.csv");
     write_cables(&base.scene, file);
     fclose(file);
-    file = open_file(folder, "imported.yaml");
+    file = bench_open_file(folder, "imported.yaml");
     fputs("scene:\n  import:\n    nodes: nodes.csv\n    cables: cables.csv\n", file);
     fclose(file);
     bench_scene_free(&base);
