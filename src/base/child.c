@@ -1,14 +1,20 @@
+/* Contents: children - the server */
 #include "base/child.h"
 
 #include <errno.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #ifdef __linux__
 #include <sys/prctl.h>
 #endif
+
+/* ---- children ---- */
 
 pid_t hf_child_fork(void)
 {
@@ -40,4 +46,116 @@ void hf_child_describe(hf_child_end end, char *text, size_t size)
         snprintf(text, size, "signal %d (%s)", end.signal, strsignal(end.signal));
     else
         snprintf(text, size, "exit status %d", end.exit_status);
+}
+
+void hf_child_limit_cpu(int seconds)
+{
+    struct rusage used;
+    struct rlimit limit;
+    if (getrusage(RUSAGE_SELF, &used) != 0 || getrlimit(RLIMIT_CPU, &limit) != 0) return;
+    rlim_t until = (rlim_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec + 1 + seconds); /* 1: parts of a second */
+    if (seconds == 0) until = RLIM_INFINITY;
+    limit.rlim_cur = until < limit.rlim_max ? until : limit.rlim_max;
+    setrlimit(RLIMIT_CPU, &limit);
+}
+
+/* ---- the server ---- */
+
+typedef struct {
+    hf_child_work *work;
+    char text[HF_CHILD_TEXT_SIZE]; /* of a message as much as is needed */
+} order;
+
+static pthread_mutex_t server_lock = PTHREAD_MUTEX_INITIALIZER;
+static int n_begun; /* this and what follows under the lock */
+static pid_t server;
+static int server_socket = -1;
+
+/* The end of a child that does what is ordered. */
+static hf_child_end obey(const order *o)
+{
+    pid_t child = hf_child_fork();
+    if (child == 0) {
+        o->work(o->text);
+        _exit(0);
+    }
+    return child < 0 ? (hf_child_end){.is_known = false} : hf_child_wait(child);
+}
+
+/* Until the other end is closed. Only what POSIX allows in a copy of a process with threads, but for the work. */
+static void serve_orders(int by)
+{
+    static const int to_others[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGQUIT};
+    static order o;
+    for (size_t i = 0; i < sizeof to_others / sizeof *to_others; i++)
+        signal(to_others[i], SIG_IGN);
+    signal(SIGCHLD, SIG_DFL); /* where it is ignored, nobody learns how a child ended */
+    for (;;) {
+        ssize_t n = recv(by, &o, sizeof o, 0);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= (ssize_t)offsetof(order, text)) _exit(0);
+        hf_child_end end = obey(&o);
+        if (send(by, &end, sizeof end, MSG_NOSIGNAL) != (ssize_t)sizeof end) _exit(0);
+    }
+}
+
+static void end_server(void)
+{
+    if (server_socket < 0) return;
+    close(server_socket);
+    server_socket = -1;
+    hf_child_wait(server);
+}
+
+void hf_child_server_begin(void)
+{
+    int both[2];
+    pthread_mutex_lock(&server_lock);
+    if (n_begun++ == 0 && socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, both) == 0) {
+        server = hf_child_fork();
+        if (server == 0) {
+            close(both[0]);
+            serve_orders(both[1]);
+        }
+        close(both[1]);
+        if (server > 0)
+            server_socket = both[0];
+        else
+            close(both[0]);
+    }
+    pthread_mutex_unlock(&server_lock);
+}
+
+void hf_child_server_end(void)
+{
+    pthread_mutex_lock(&server_lock);
+    if (--n_begun == 0) end_server();
+    pthread_mutex_unlock(&server_lock);
+}
+
+/* A call that a signal interrupted is made again. False: the server has ended. */
+static bool exchange(const order *o, size_t size, hf_child_end *end)
+{
+    ssize_t n;
+    do
+        n = send(server_socket, o, size, MSG_NOSIGNAL);
+    while (n < 0 && errno == EINTR);
+    if (n != (ssize_t)size) return false;
+    do
+        n = recv(server_socket, end, sizeof *end, 0);
+    while (n < 0 && errno == EINTR);
+    return n == (ssize_t)sizeof *end;
+}
+
+bool hf_child_ask(hf_child_work *work, const char *text, hf_child_end *end)
+{
+    order o = {.work = work};
+    size_t length = strlen(text);
+    if (length >= sizeof o.text) return false;
+    memcpy(o.text, text, length + 1);
+    pthread_mutex_lock(&server_lock);
+    bool is_done = server_socket >= 0 && exchange(&o, offsetof(order, text) + length + 1, end);
+    if (!is_done) end_server();
+    pthread_mutex_unlock(&server_lock);
+    return is_done;
 }

@@ -1,6 +1,7 @@
 /* Contents: which points - one point - all points */
 #include "run/sweep.h"
 
+#include "base/child.h"
 #include "base/clock.h"
 #include "base/later.h"
 #include "base/path.h"
@@ -230,6 +231,7 @@ hf_status hf_sweep_run(const hf_sweep_request *request, hf_sweep_count *count, h
     hf_points points;
     sweep w = {.request = request, .messages = messages};
     pthread_mutex_init(&w.lock, NULL);
+    hf_child_server_begin(); /* before there are threads, and before the ledger has descriptors */
     hf_status status = hf_ledger_open(request->folder, &w.ledger, messages);
     if (status == HF_OK) status = hf_ledger_watch(&w.ledger, request->study, messages);
     if (status == HF_OK) {
@@ -240,6 +242,7 @@ hf_status hf_sweep_run(const hf_sweep_request *request, hf_sweep_count *count, h
     if (status == HF_OK) status = run_points(&w);
     hf_status closed = hf_ledger_close(&w.ledger, messages);
     if (closed != HF_OK) status = closed;
+    hf_child_server_end();
     pthread_mutex_destroy(&w.lock);
     free(w.todo);
     free(w.state);

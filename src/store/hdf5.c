@@ -307,10 +307,12 @@ void hf_hdf5_open_to_write(hf_hdf5 *io, const hf_file_out *file)
 
 void hf_hdf5_close_file(hf_hdf5 *io)
 {
-    if (io->file < 0) return;
-    assert(io->status != HF_OK || H5Fget_obj_count(io->file, H5F_OBJ_ALL | H5F_OBJ_LOCAL) == 1);
-    hf_hdf5_close(io, io->file);
+    if (io->file >= 0) {
+        assert(io->status != HF_OK || H5Fget_obj_count(io->file, H5F_OBJ_ALL | H5F_OBJ_LOCAL) == 1);
+        hf_hdf5_close(io, io->file);
+    }
     io->file = -1;
+    hf_hdf5_note(NULL);
 }
 
 hid_t hf_hdf5_make_group(hf_hdf5 *io, const char *path)

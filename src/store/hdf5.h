@@ -68,8 +68,12 @@ bool hf_hdf5_are_known(const hf_hdf5_kind *kind, const void *values, hsize_t n);
 size_t hf_hdf5_kind_bytes(const hf_hdf5_kind *kind); /* of one value in memory; not for HF_KIND_CHARS */
 
 /* Where the path of the file that is being read is noted, for whoever has to tell after a crash: HF_HDF5_READING_SIZE
- * bytes, or NULL. */
+ * bytes, or NULL. Unless it is NULL, hf_hdf5_note, which is called before each object is read, also gives this process
+ * HF_HDF5_CPU_S seconds of CPU time for it, because HDF5 may never come to an end with a damaged file; in a second it
+ * unpacks more than 100 MB, and what is read at a time has less than a GB. With NULL for io, called when a file is
+ * closed, the limit ends. */
 #define HF_HDF5_READING_SIZE 4096
+#define HF_HDF5_CPU_S 60
 extern char *hf_hdf5_reading;
 void hf_hdf5_note(const hf_hdf5 *io);
 

@@ -2,6 +2,8 @@
  * Contents: links - data sets - objects */
 #include "store/hdf5.h"
 
+#include "base/child.h"
+
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -92,7 +94,9 @@ char *hf_hdf5_reading;
 
 void hf_hdf5_note(const hf_hdf5 *io)
 {
-    if (hf_hdf5_reading) snprintf(hf_hdf5_reading, HF_HDF5_READING_SIZE, "%s", io->path);
+    if (!hf_hdf5_reading) return;
+    if (io) snprintf(hf_hdf5_reading, HF_HDF5_READING_SIZE, "%s", io->path);
+    hf_child_limit_cpu(io ? HF_HDF5_CPU_S : 0);
 }
 
 hid_t hf_hdf5_open(hf_hdf5 *io, hid_t place, const char *name, H5I_type_t wanted)

@@ -108,29 +108,38 @@ static void ignore_difference(void *context, const char *name, const char *how)
     (void)how;
 }
 
-/* Read all that a run will read, in a child: HDF5 crashes on some damaged files. Of a finished result a run reads the
- * summary alone. */
+/* Read all that a run will read, in a child: HDF5 crashes on some damaged files, or reads them for ever. Of a finished
+ * result a run reads the summary alone. */
 static void read_like_a_run(const char *path)
 {
+    static char reading[HF_HDF5_READING_SIZE];
     hf_messages unwanted = {0};
     hf_summary summary;
     hf_comparison comparison = {0};
-    hf_hdf5_unlock(HF_OK); /* that of the parent's thread, which is the only one here */
+    hf_hdf5_reading = reading; /* from now on the time is limited */
     hf_status status = hf_store_read_summary(path, &summary, &unwanted);
     if (status == HF_OK && !summary.finished)
         hf_compare_files(path, path, &comparison, ignore_difference, NULL, &unwanted);
-    _exit(0);
+}
+
+static hf_child_end read_in_a_child(const char *path)
+{
+    hf_child_end end = {.is_known = false};
+    if (hf_child_ask(read_like_a_run, path, &end)) return end;
+    hf_hdf5_lock(); /* no other thread is within HDF5 */
+    pid_t child = hf_child_fork();
+    hf_hdf5_unlock(HF_OK);
+    if (child == 0) {
+        read_like_a_run(path);
+        _exit(0);
+    }
+    return child > 0 ? hf_child_wait(child) : end;
 }
 
 static hf_status survive(const char *path, hf_messages *messages)
 {
     char words[128];
-    hf_hdf5_lock(); /* no other thread is within HDF5 */
-    pid_t child = hf_child_fork();
-    if (child == 0) read_like_a_run(path);
-    hf_hdf5_unlock(HF_OK);
-    if (child < 0) return HF_OK;
-    hf_child_end end = hf_child_wait(child);
+    hf_child_end end = read_in_a_child(path);
     if (!end.is_known || end.exit_status == 0) return HF_OK;
     hf_child_describe(end, words, sizeof words);
     return hf_error(messages, HF_EXISTS,

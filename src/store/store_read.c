@@ -43,6 +43,7 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
     hf_hdf5 io = {.path = path, .messages = messages, .status = HF_OK, .file = -1};
     struct stat info;
     int version = 0;
+    hf_hdf5_note(&io);
     if (stat(path, &info) != 0) {
         io.is_damaged = hf_file_io_fault(errno, HF_OK) == HF_OK;
         io.status = hf_error(messages, HF_IO, "%s: cannot open: %s", path, strerror(errno));

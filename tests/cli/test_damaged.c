@@ -1,15 +1,25 @@
-/* Damaged files: HDF5 crashes on some. What is made to crash here is a call of it, by a library that is loaded
- * first. */
+/* Damaged files: HDF5 crashes on some, and may read others for ever. What is made to do so here is a call of it, by a
+ * library that is loaded first. */
 #include "cli.h"
 
-/* H5Dread that aborts, or with HANG never returns, at call number AT. */
+/* H5Dread that aborts in a copy of the program at call number AT; with HANG it waits, with LOOP it computes for ever. A
+ * limit of 60 s becomes one of 1 s. */
 static const char reader[] = "#define _GNU_SOURCE\n"
                              "#include <dlfcn.h>\n#include <fcntl.h>\n#include <stdlib.h>\n#include <unistd.h>\n"
+                             "#include <sys/resource.h>\n"
                              "typedef int call(long, long, long, long, long, void *);\n"
+                             "typedef int limit(int, const struct rlimit *);\n"
+                             "static int first;\n"
+                             "__attribute__((constructor)) static void begin(void) { first = getpid(); }\n"
+                             "int setrlimit(__rlimit_resource_t what, const struct rlimit *wanted)\n{\n"
+                             "    struct rlimit less = *wanted;\n"
+                             "    if (what == RLIMIT_CPU && less.rlim_cur != RLIM_INFINITY) less.rlim_cur -= 59;\n"
+                             "    return ((limit *)dlsym(RTLD_NEXT, \"setrlimit\"))(what, &less);\n}\n"
                              "int H5Dread(long a, long b, long c, long d, long e, void *f)\n{\n"
                              "    static int n;\n"
                              "    const char *mark = getenv(\"HANG\");\n"
-                             "    if (++n == atoi(getenv(\"AT\"))) {\n"
+                             "    if (getpid() != first && ++n == atoi(getenv(\"AT\"))) {\n"
+                             "        while (getenv(\"LOOP\")) {}\n"
                              "        if (!mark) abort();\n"
                              "        open(mark, O_CREAT | O_WRONLY, 0600);\n"
                              "        for (;;) pause();\n"
@@ -69,6 +79,18 @@ START_TEST(a_signal_ends_the_reader)
 }
 END_TEST
 
+/* Signal 24 is SIGXCPU. */
+START_TEST(a_read_without_end_is_ended)
+{
+    const char *library = make_library(), *c = file_with("c.yaml", SMALL_SCENE SMALL_GA), *a = temp("a.h5");
+    HIFDM(0, "run", c, "-o", a, "--quiet");
+    SHELL(5, "export LOOP=1; " WITH_LIBRARY "exec \"$0\" export \"$3\" --csv \"$4\"", library, "4", a, temp("csv"));
+    ERRS("error: %s: is damaged: reading it ended by signal 24 (CPU time limit exceeded)\n", a);
+    SHELL(5, "export LOOP=1; " WITH_LIBRARY "exec \"$0\" run \"$4\" -o \"$3\"", library, "1", unfinished(a), c);
+    ERRS("error: %s: exists and is damaged: reading it ended by signal 24 (CPU time limit exceeded); use --restart", a);
+}
+END_TEST
+
 #define STUDY "base: c.yaml\nsweep:\n  form.pretension_N: [8, 9]\n"
 
 /* A merge is made of the ledger, so it does not notice; a sweep leaves the file alone and runs the other points. */
@@ -94,13 +116,32 @@ START_TEST(a_damaged_point_stops_no_other)
 }
 END_TEST
 
+/* The threads of a sweep let a process look that is older than they are. */
+START_TEST(a_crash_in_a_sweep_fails_its_point)
+{
+    const char *library = make_library();
+    file_with("c.yaml", SMALL_SCENE SMALL_GA);
+    const char *study = file_with("s.yaml", STUDY), *folder = temp("s.d");
+    HIFDM(0, "sweep", study, "--dir", folder, "--quiet");
+    SHELL(0, "cd \"$1\"; rm points-*.tsv; set -- *.h5; echo \"$1\"", folder);
+    said.out[strcspn(said.out, "\n")] = '\0';
+    const char *point = unfinished(keep(formatted("%s/%s", folder, said.out)));
+    SHELL(3, WITH_LIBRARY "exec \"$0\" sweep \"$3\" --dir \"$4\" --quiet", library, "2", study, folder);
+    HIFDM(0, "status", study, "--dir", folder);
+    OUT("done      1\n  failed    1\n");
+    OUT(formatted("%s: exists and is damaged: reading it ended by signal 6 (Aborted); use --restart", point));
+}
+END_TEST
+
 Suite *suite_cli_damaged(void)
 {
     Suite *suite = suite_create("cli/damaged");
     TCase *tcase = tcase_create("damaged");
     tcase_add_test(tcase, a_crash_of_hdf5_names_the_file);
     tcase_add_test(tcase, a_signal_ends_the_reader);
+    tcase_add_test(tcase, a_read_without_end_is_ended);
     tcase_add_test(tcase, a_damaged_point_stops_no_other);
+    tcase_add_test(tcase, a_crash_in_a_sweep_fails_its_point);
     suite_add_tcase(suite, tcase);
     return suite;
 }
