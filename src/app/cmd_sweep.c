@@ -3,6 +3,7 @@
 #include "app/cmd.h"
 
 #include "app/study_files.h"
+#include "base/file_io.h"
 #include "base/signals.h"
 #include "base/text.h"
 #include "out/print.h"
@@ -71,6 +72,7 @@ static void show_points(void *context, const hf_sweep_count *n)
     char left[32];
     if (n->wall_s - t->said_s < (t->on_terminal ? REFRESH_S : LOG_S)) return;
     t->said_s = n->wall_s;
+    if (!hf_file_io_await_room(STDERR_FILENO, 0)) return;
     hf_print_duration(n->wall_s * (n->n_todo - finished) / (finished ? finished : 1), left, sizeof left);
     fprintf(stderr, "%s%d of %d points, %d failed, %s left%s", t->on_terminal ? "\r\033[K" : "", finished, n->n_todo,
             n->n_failed, finished ? left : "?", t->on_terminal ? "" : "\n");
@@ -91,7 +93,7 @@ static hf_status sweep_study(const hf_sweep_request *request, bool quiet, FILE *
     }
     hf_status status = hf_sweep_run(&told, &n, messages);
     if (quiet || !n.has_run) return status;
-    if (t.on_terminal) fputs("\r\033[K", stderr);
+    if (t.on_terminal && hf_file_io_await_room(STDERR_FILENO, 0)) fputs("\r\033[K", stderr);
     hf_print_duration(n.wall_s, took, sizeof took);
     hf_print_line(file, "%d points run in %s on %d threads, %d of them failed; results in %s", n.n_done + n.n_failed,
                   took, request->threads, n.n_failed, request->folder);

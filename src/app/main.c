@@ -1,9 +1,11 @@
 /* main - reads the command line, runs the command, and returns the exit status. The file cmd_NAME.c holds the command
  * NAME. */
 #include "app/options.h"
+#include "app/output.h"
 #include "app/reader.h"
 
 #include "base/file_io.h"
+#include "base/signals.h"
 #include "linalg/band.h"
 #include <hifdm/batch.h>
 #include <hifdm/store.h>
@@ -66,18 +68,20 @@ static void keep_exit_status(void)
 /* Messages need memory, too: a failure is never silent. */
 static void say(const hf_messages *messages, hf_status status)
 {
-    if (messages->text) fputs(messages->text, stderr);
+    if (messages->text) hf_output_write(STDERR_FILENO, messages->text, strlen(messages->text));
     if (hf_status_exit_code(status) == hf_status_exit_code(HF_NO_MEMORY) &&
         (!messages->text || !strstr(messages->text, "error: ")))
         fprintf(stderr, "error: %s\n", hf_status_text(status));
 }
 
-/* 0, or -1: a file server may tell of a full disk as late as at the close. A closed standard output is no fault unless
- * something was written to it. */
-static int close_output(void)
+/* A file server may tell of a full disk as late as at the close. A closed standard output is no fault unless something
+ * was written to it. */
+static hf_status close_output(FILE *output)
 {
-    if (fflush(stdout) != 0 || ferror(stdout)) return -1;
-    return fclose(stdout) != 0 && errno != EBADF ? -1 : 0;
+    bool failed = fflush(output) != 0 || ferror(output);
+    if (output != stdout) fclose(output);
+    if (failed && *hf_signals_request()) return HF_INTERRUPTED;
+    return failed || (fclose(stdout) != 0 && errno != EBADF) ? HF_IO : HF_OK;
 }
 
 int main(int argc, char **argv)
@@ -100,14 +104,14 @@ int main(int argc, char **argv)
     atexit(keep_exit_status);  /* last, so that it is called first */
     hf_band_single_threaded(); /* threads of LAPACK's own would change bits and take cores from ours */
     if (uses_threads) status = take_room(&options, &messages);
-    if (status == HF_OK) status = options.command->run(&options, stdout, &messages);
+    FILE *output = hf_output_stream();
+    if (status == HF_OK) status = options.command->run(&options, output, &messages);
     hf_options_free(&options);
     say(&messages, status);
     hf_messages_free(&messages);
     is_ending = true;
-    if (close_output() != 0 && status == HF_OK) {
-        fputs("error: cannot write to standard output\n", stderr);
-        status = HF_IO;
-    }
+    hf_status written = close_output(output);
+    if (written == HF_IO && status == HF_OK) fputs("error: cannot write to standard output\n", stderr);
+    if (status == HF_OK) status = written;
     return hf_status_exit_code(status);
 }

@@ -1,5 +1,6 @@
 #include "app/progress.h"
 
+#include "base/file_io.h"
 #include "base/json.h"
 #include "out/print.h"
 
@@ -68,6 +69,7 @@ void hf_progress_show(void *progress, const hf_run_progress *now)
     if (is_first) p->last_s = p->mode == HF_PROGRESS_LOG ? 0 : -interval_s[p->mode];
     if (now->elapsed_s - p->last_s < interval_s[p->mode] && !(is_last && p->mode == HF_PROGRESS_JSONL)) return;
     p->last_s = now->elapsed_s;
+    if (!hf_file_io_await_room(fileno(p->file), 0)) return;
     if (p->mode == HF_PROGRESS_JSONL)
         show_json(p, now);
     else
@@ -77,7 +79,7 @@ void hf_progress_show(void *progress, const hf_run_progress *now)
 
 void hf_progress_end(hf_progress *p)
 {
-    if (!p->is_shown) return;
+    if (!p->is_shown || !hf_file_io_await_room(fileno(p->file), 0)) return;
     fputs("\r\033[K", p->file);
     fflush(p->file);
     p->is_shown = false;

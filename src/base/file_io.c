@@ -173,6 +173,17 @@ int hf_file_io_await(int file)
     }
 }
 
+bool hf_file_io_await_room(int file, int grace_ms)
+{
+    struct pollfd one = {.fd = file, .events = POLLOUT};
+    for (;;) {
+        bool is_last = *hf_signals_request() != 0;
+        int n = poll(&one, 1, is_last ? grace_ms : AWAIT_MS);
+        if (n > 0 || (n < 0 && errno != EINTR)) return true;
+        if (n == 0 && is_last) return false;
+    }
+}
+
 hf_status hf_file_io_fault(int why, hf_status otherwise)
 {
     switch (why) {

@@ -42,6 +42,10 @@ void hf_file_io_unlock_byte(int file, off_t at);
  * request to stop came (signals.h). A file of the disk never waits. */
 int hf_file_io_await(int file);
 
+/* Wait until something can be written to a pipe or a terminal, or writing would fail. False when a request to stop came
+ * and nobody has read for grace_ms since. */
+bool hf_file_io_await_room(int file, int grace_ms);
+
 /* Whose fault is it that a file cannot be opened or read? HF_NO_MEMORY and HF_IO: the machine's, and another time it
  * may go well; HF_INTERRUPTED for EINTR; `otherwise` when the name or the file is wrong. */
 hf_status hf_file_io_fault(int why, hf_status otherwise);

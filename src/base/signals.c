@@ -1,12 +1,14 @@
 #include "base/signals.h"
 
+#include <stdatomic.h>
 #include <stddef.h>
 
 static volatile sig_atomic_t requested;
+static atomic_flag is_second = ATOMIC_FLAG_INIT; /* two threads may each hear one at the same time */
 
 static void request(int number)
 {
-    if (requested) {
+    if (atomic_flag_test_and_set(&is_second)) {
         signal(number, SIG_DFL);
         raise(number);
     }

@@ -50,15 +50,51 @@ START_TEST(a_restart_replaces_nothing_before_it_has_a_shape)
 }
 END_TEST
 
-/* Who asks twice does not wait for the end of a generation. */
+/* Who asks twice does not wait for the end of a generation. It hears both before it goes on. */
 START_TEST(a_second_signal_ends_it_at_once)
 {
     const char *path = temp("run.h5");
     session s = start_held_run(storing_case("c.yaml", 1000), path, NULL);
-    wait_for_generations(&s, path);
+    ck_assert(freeze_when(&s, has_generations, path));
     kill(s.id, SIGINT); /* two different ones: of the same, the second may be lost */
     int code = end_by(&s, SIGTERM);
     ck_assert_msg(code == 128 + SIGINT || code == 128 + SIGTERM, "exit code %d", code);
+}
+END_TEST
+
+/* Nobody reads what it says, before or after. */
+static int end_unread(session *s)
+{
+    int err = s->err;
+    s->err = -1;
+    int code = end_by(s, SIGTERM);
+    close(err);
+    return code;
+}
+
+static bool is_done(const char *path)
+{
+    return is_there(path) && !is_there(formatted("%s.journal", path));
+}
+
+/* A reader that has stopped to read holds the program, but one signal is enough: while it computes, and when all that
+ * is left is to print. */
+START_TEST(a_signal_is_heard_while_nobody_reads)
+{
+    const char *path = temp("run.h5"), *c = storing_case("c.yaml", 60);
+    session s = start_held_run(c, path, NULL);
+    wait_for_generations(&s, path);
+    ck_assert_int_eq(end_unread(&s), 75);
+    HIFDM(0, "run", c, "-o", path, "--quiet");
+    HIFDM(0, "run", c, "-o", temp("whole.h5"), "--quiet");
+    HIFDM(0, "diff", path, temp("whole.h5"));
+    const char *const argv[] = {
+        "/bin/sh",        "-c", "exec \"$0\" run \"$1\" -o \"$2\" --progress none >&2", hifdm_program(), c,
+        temp("other.h5"), NULL};
+    s = start_session(temp_path(""), true, argv);
+    ck_assert(wait_until(&s, is_done, temp("other.h5")));
+    ck_assert_int_eq(end_unread(&s), 75);
+    HIFDM(0, "diff", temp("other.h5"), path);
 }
 END_TEST
 
@@ -82,6 +118,7 @@ Suite *suite_cli_interrupt(void)
     tcase_add_test(tcase, a_file_made_meanwhile_is_not_replaced);
     tcase_add_test(tcase, a_restart_replaces_nothing_before_it_has_a_shape);
     tcase_add_test(tcase, a_second_signal_ends_it_at_once);
+    tcase_add_test(tcase, a_signal_is_heard_while_nobody_reads);
     tcase_add_test(tcase, an_ignored_signal_stays_ignored);
     suite_add_tcase(suite, tcase);
     return suite;

@@ -1,0 +1,39 @@
+#define _GNU_SOURCE /* fopencookie */
+#include "app/output.h"
+
+#include "base/file_io.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <unistd.h>
+
+#define PART 4096     /* bytes that a pipe takes at once when it takes any: PIPE_BUF */
+#define GRACE_MS 3000 /* for a reader that is slow, once the program has been told to stop; in all */
+
+int hf_output_write(int file, const char *text, size_t n)
+{
+    static bool gave_up;
+    for (size_t part; n > 0; text += part, n -= part) {
+        part = n < PART ? n : PART;
+        if (!hf_file_io_await_room(file, gave_up ? 0 : GRACE_MS)) {
+            gave_up = true;
+            errno = EINTR;
+            return -1;
+        }
+        if (hf_file_io_write(file, text, part) != 0) return -1;
+    }
+    return 0;
+}
+
+static ssize_t take(void *unused, const char *text, size_t n)
+{
+    (void)unused;
+    return hf_output_write(STDOUT_FILENO, text, n) == 0 ? (ssize_t)n : 0;
+}
+
+FILE *hf_output_stream(void)
+{
+    FILE *stream = fopencookie(NULL, "w", (cookie_io_functions_t){.write = take});
+    if (stream && isatty(STDOUT_FILENO)) setvbuf(stream, NULL, _IOLBF, BUFSIZ);
+    return stream ? stream : stdout;
+}
