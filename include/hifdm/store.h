@@ -85,8 +85,8 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
 hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages);
 
 /* Add the generations of the journal to the unfinished file at `path`, without computing more, and return its summary.
- * Errors as hf_store_resume; HF_EXISTS also when this build does not propose the designs to which the
- * journal's results belong. */
+ * A finished file stays as it is; a warning says so. Errors as hf_store_resume; HF_EXISTS also when this build does not
+ * propose the designs to which the journal's results belong. */
 hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages);
 
 /* How many generations the store holds, those in the journal included. */

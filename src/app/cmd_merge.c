@@ -5,18 +5,12 @@
 #include "out/print.h"
 #include "store/merge.h"
 
-#include <unistd.h>
-
 static hf_status command_merge(const hf_options *o, FILE *file, hf_messages *messages)
 {
     char folder[HF_PATH_SIZE], output[HF_PATH_SIZE];
     hf_study study;
     hf_points points;
-    hf_status status = hf_study_files_read(o, folder, &study, &points, messages);
-    if (status == HF_OK && access(folder, F_OK) != 0)
-        status = hf_error(
-            messages, HF_IO,
-            "%s: there is no such folder, so nothing to merge; 'hifdm sweep' makes it, --dir names another", folder);
+    hf_status status = hf_study_files_read(o, true, folder, &study, &points, messages);
     if (status == HF_OK) status = hf_study_files_name(o->output, o->file, ".h5", output, messages);
     if (status == HF_OK) status = hf_merge(&study, folder, &points, output, o->force, messages);
     if (status == HF_OK && !o->quiet)
@@ -34,6 +28,5 @@ const hf_command hf_cmd_merge = {
     .about = "At any time after the sweep began; points that are not there yet have the status not_evaluated.",
     .examples = "hifdm merge study.yaml -o study.h5\n"
                 "hifdm report study.h5",
-    .reads_results = true,
     .run = command_merge,
 };

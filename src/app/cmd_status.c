@@ -72,7 +72,7 @@ static hf_status command_status(const hf_options *o, FILE *file, hf_messages *me
     char folder[HF_PATH_SIZE];
     hf_study study;
     hf_points points;
-    hf_status status = hf_study_files_read(o, folder, &study, &points, messages);
+    hf_status status = hf_study_files_read(o, o->folder != NULL, folder, &study, &points, messages);
     if (status == HF_OK && o->json)
         write_status_json(&study, &points, file);
     else if (status == HF_OK)

@@ -11,9 +11,9 @@
 hf_status hf_study_files_name(const char *given, const char *study, const char *ending, char name[HF_PATH_SIZE],
                               hf_messages *messages);
 
-/* Finds the folder of the results and reads the study o->file and the state of its points. Free study and points in any
- * case. */
-hf_status hf_study_files_read(const hf_options *o, char folder[HF_PATH_SIZE], hf_study *study, hf_points *points,
-                              hf_messages *messages);
+/* Finds the folder of the results and reads the study o->file and the state of its points. Without the folder all are
+ * missing, or, with demand_folder, it is HF_IO. Free study and points in any case. */
+hf_status hf_study_files_read(const hf_options *o, bool demand_folder, char folder[HF_PATH_SIZE], hf_study *study,
+                              hf_points *points, hf_messages *messages);
 
 #endif

@@ -7,6 +7,7 @@
 #ifndef HIFDM_STORE_HDF5_H
 #define HIFDM_STORE_HDF5_H
 
+#include "base/child.h"
 #include "base/file_out.h"
 #include <hifdm/status.h>
 #include <stdbool.h>
@@ -76,6 +77,12 @@ size_t hf_hdf5_kind_bytes(const hf_hdf5_kind *kind); /* of one value in memory; 
 #define HF_HDF5_CPU_S 60
 extern char *hf_hdf5_reading;
 void hf_hdf5_note(const hf_hdf5 *io);
+
+/* Does a child end as it should that does this work with the file at `path`? True also when no child could be made.
+ * False: `how` it ended, in words. Not under the lock. The work begins with hf_hdf5_limit, from which on the time is
+ * limited, and changes nothing. */
+void hf_hdf5_limit(void);
+bool hf_hdf5_survives(hf_child_work *work, const char *path, char *how, size_t size);
 
 /* Description of a data set: name, size, kind of its values. */
 typedef struct {

@@ -1,12 +1,11 @@
 /* The door to what a file holds: links and objects are looked at before HDF5 follows or reads them.
- * Contents: links - data sets - objects */
+ * Contents: links - data sets - crashes - objects */
 #include "store/hdf5.h"
-
-#include "base/child.h"
 
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 /* ---- links ---- */
 
@@ -88,7 +87,7 @@ static void check_storage(hf_hdf5 *io, hid_t place, const char *name, hid_t data
     hf_hdf5_close(io, space);
 }
 
-/* ---- objects ---- */
+/* ---- crashes ---- */
 
 char *hf_hdf5_reading;
 
@@ -98,6 +97,32 @@ void hf_hdf5_note(const hf_hdf5 *io)
     if (io) snprintf(hf_hdf5_reading, HF_HDF5_READING_SIZE, "%s", io->path);
     hf_child_limit_cpu(io ? HF_HDF5_CPU_S : 0);
 }
+
+void hf_hdf5_limit(void)
+{
+    static char reading[HF_HDF5_READING_SIZE];
+    hf_hdf5_reading = reading;
+}
+
+bool hf_hdf5_survives(hf_child_work *work, const char *path, char *how, size_t size)
+{
+    hf_child_end end = {.is_known = false};
+    if (!hf_child_ask(work, path, &end)) {
+        hf_hdf5_lock(); /* no other thread is within HDF5 */
+        pid_t child = hf_child_fork();
+        hf_hdf5_unlock(HF_OK);
+        if (child == 0) {
+            work(path);
+            _exit(0);
+        }
+        if (child > 0) end = hf_child_wait(child);
+    }
+    if (!end.is_known || end.exit_status == 0) return true;
+    hf_child_describe(end, how, size);
+    return false;
+}
+
+/* ---- objects ---- */
 
 hid_t hf_hdf5_open(hf_hdf5 *io, hid_t place, const char *name, H5I_type_t wanted)
 {

@@ -243,19 +243,38 @@ static void write_all(merger *m, const char *folder)
         hf_hdf5_close_file(&m->io);
 }
 
-/* May the file be replaced? True when it is not there or is a merge. */
-static bool is_ours(const char *path)
+/* True when there is no file or it is a merge, which a further one may replace. */
+static bool is_replaceable(const char *path)
 {
     hf_messages unwanted = {0};
     hf_hdf5 io = {.path = path, .messages = &unwanted, .status = HF_OK, .file = -1};
-    bool ours = access(path, F_OK) != 0;
-    if (!ours) {
+    bool is = access(path, F_OK) != 0;
+    if (!is) {
+        hf_hdf5_lock();
         hf_hdf5_open_file(&io, path);
-        ours = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/points") && hf_hdf5_has(&io, io.file, "/runs");
-        if (io.file >= 0) hf_hdf5_close_file(&io);
+        is = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/points") && hf_hdf5_has(&io, io.file, "/runs");
+        hf_hdf5_close_file(&io);
+        hf_hdf5_unlock(HF_OK);
     }
     hf_messages_free(&unwanted);
-    return ours;
+    return is;
+}
+
+static void look_at_output(const char *path)
+{
+    hf_hdf5_limit();
+    is_replaceable(path);
+}
+
+static hf_status check_output(const char *path, hf_messages *messages)
+{
+    char how[128];
+    if (!hf_hdf5_survives(look_at_output, path, how, sizeof how))
+        return hf_error(messages, HF_EXISTS,
+                        "%s: exists and is damaged: reading it ended by %s; use --force or -o to choose another name",
+                        path, how);
+    if (is_replaceable(path)) return HF_OK;
+    return hf_error(messages, HF_EXISTS, "%s: exists and is no merge; use --force or -o", path);
 }
 
 hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *points, const char *output, bool force,
@@ -264,13 +283,11 @@ hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *p
     hf_file_out out;
     merger m = {{.path = out.path, .messages = messages, .status = HF_OK, .file = -1}, study, points, NULL};
     HF_TRY(hf_file_out_target(output, out.path, messages));
+    if (!force) HF_TRY(check_output(out.path, messages));
     m.room = calloc((size_t)study->n_point, 2 * sizeof(double));
     if (!m.room) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", output);
     hf_hdf5_lock();
-    if (!force && !is_ours(out.path))
-        m.io.status = hf_error(messages, HF_EXISTS, "%s: exists and is no merge; use --force or -o", output);
-    else
-        m.io.status = hf_file_out_begin(output, &out, messages);
+    m.io.status = hf_file_out_begin(output, &out, messages);
     if (m.io.status == HF_OK) {
         hf_hdf5_create_file(&m.io, &out);
         if (m.io.status == HF_OK) write_all(&m, folder);

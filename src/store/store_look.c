@@ -2,7 +2,6 @@
  * Contents: identity - look */
 #include "store/store_read.h"
 
-#include "base/child.h"
 #include "base/file_io.h"
 #include "base/file_out.h"
 #include "base/sha256.h"
@@ -112,40 +111,13 @@ static void ignore_difference(void *context, const char *name, const char *how)
  * result a run reads the summary alone. */
 static void read_like_a_run(const char *path)
 {
-    static char reading[HF_HDF5_READING_SIZE];
     hf_messages unwanted = {0};
     hf_summary summary;
     hf_comparison comparison = {0};
-    hf_hdf5_reading = reading; /* from now on the time is limited */
+    hf_hdf5_limit();
     hf_status status = hf_store_read_summary(path, &summary, &unwanted);
     if (status == HF_OK && !summary.finished)
         hf_compare_files(path, path, &comparison, ignore_difference, NULL, &unwanted);
-}
-
-static hf_child_end read_in_a_child(const char *path)
-{
-    hf_child_end end = {.is_known = false};
-    if (hf_child_ask(read_like_a_run, path, &end)) return end;
-    hf_hdf5_lock(); /* no other thread is within HDF5 */
-    pid_t child = hf_child_fork();
-    hf_hdf5_unlock(HF_OK);
-    if (child == 0) {
-        read_like_a_run(path);
-        _exit(0);
-    }
-    return child > 0 ? hf_child_wait(child) : end;
-}
-
-static hf_status survive(const char *path, hf_messages *messages)
-{
-    char words[128];
-    hf_child_end end = read_in_a_child(path);
-    if (!end.is_known || end.exit_status == 0) return HF_OK;
-    hf_child_describe(end, words, sizeof words);
-    return hf_error(messages, HF_EXISTS,
-                    "%s: exists and is damaged: reading it ended by %s; use --restart (of a sweep: --retry failed) to "
-                    "replace it or -o to choose another name",
-                    path, words);
 }
 
 hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
@@ -160,7 +132,11 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
         return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
     if (failed || !S_ISREG(info.st_mode)) return HF_OK; /* hf_store_create says what is wrong */
     hf_messages said = {0};
-    HF_TRY(survive(path, messages));
+    if (!hf_hdf5_survives(read_like_a_run, path, words, sizeof words))
+        return hf_error(messages, HF_EXISTS,
+                        "%s: exists and is damaged: reading it ended by %s; use --restart (of a sweep: --retry failed) "
+                        "to replace it or -o to choose another name",
+                        path, words);
     if (hf_store_identify(settings, scene, truss, now) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     hf_hdf5_lock();

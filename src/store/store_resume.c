@@ -304,6 +304,10 @@ hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *m
     hf_store *s;
     stored_search a = {0};
     HF_TRY(hf_store_read_summary(path, summary, messages));
+    if (summary->finished) {
+        hf_warning(messages, "%s: is finished: there is nothing to recover", path);
+        return HF_OK;
+    }
     HF_TRY(hf_store_resume(path, &s, messages));
     hf_hdf5_lock();
     s->f.io.messages = messages;

@@ -133,6 +133,23 @@ START_TEST(a_crash_in_a_sweep_fails_its_point)
 }
 END_TEST
 
+START_TEST(a_merge_survives_what_it_would_replace)
+{
+    static const char opener[] = "#include <stdlib.h>\n"
+                                 "long H5Fopen(const char *n, unsigned f, long a) { abort(); }\n";
+    const char *source = file_with("opener.c", opener), *library = temp("opener.so");
+    SHELL(0, "cc -shared -fPIC -o \"$2\" \"$1\" -ldl", source, library);
+    file_with("c.yaml", SMALL_SCENE SMALL_GA);
+    const char *study = file_with("s.yaml", STUDY), *folder = temp("s.d"), *merged = file_with("m.h5", "mine");
+    SHELL(0, "mkdir \"$1\"", folder);
+    SHELL(5, WITH_LIBRARY "exec \"$0\" merge \"$3\" --dir \"$4\" -o \"$5\"", library, "1", study, folder, merged);
+    ERRS("error: %s: exists and is damaged: reading it ended by signal 6 (Aborted); use --force or -o", merged);
+    ck_assert(file_is(merged, "mine"));
+    SHELL(0, WITH_LIBRARY "exec \"$0\" merge \"$3\" --dir \"$4\" -o \"$5\" --force", library, "1", study, folder,
+          merged);
+}
+END_TEST
+
 Suite *suite_cli_damaged(void)
 {
     Suite *suite = suite_create("cli/damaged");
@@ -141,6 +158,7 @@ Suite *suite_cli_damaged(void)
     tcase_add_test(tcase, a_signal_ends_the_reader);
     tcase_add_test(tcase, a_read_without_end_is_ended);
     tcase_add_test(tcase, a_damaged_point_stops_no_other);
+    tcase_add_test(tcase, a_merge_survives_what_it_would_replace);
     tcase_add_test(tcase, a_crash_in_a_sweep_fails_its_point);
     suite_add_tcase(suite, tcase);
     return suite;

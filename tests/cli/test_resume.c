@@ -253,8 +253,9 @@ START_TEST(another_case_is_told_key_by_key)
     ERR("no key, but comments and layout");
     HIFDM(5, "run", file_with("c.yaml", SMALL_SCENE), "-o", path);
     ERR("what differs: optimize,");
-    HIFDM(5, "recover", path);
-    ERR("is finished, there is nothing to go on with");
+    HIFDM(0, "recover", path);
+    ERR("is finished: there is nothing to recover");
+    OUT("optimisation");
     HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", path, "--restart", "--quiet");
     EXPECT(path, "--", "'ga' not in a");
     const char *net = net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,2,0,0,support\nc,1,1,0.5,inner\n"

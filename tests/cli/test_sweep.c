@@ -27,7 +27,9 @@ static void equal_merges(const char *one, const char *other, int n)
 START_TEST(sweep_status_and_merge)
 {
     const char *path = study(), *folder = temp("s.d"), *merged = temp("s.h5");
-    HIFDM(0, "status", path, "--dir", folder);
+    HIFDM(5, "status", path, "--dir", folder);
+    ERRS("error: %s: there is no such folder of results; 'hifdm sweep' makes it, --dir names another\n", folder);
+    SHELL(0, "cd \"$1\" && \"$0\" status \"$2\"", temp(""), path); /* not begun */
     OUT("missing   4");
     HIFDM(0, "sweep", path, "--dir", folder);
     OUT("4 points run in");
@@ -53,7 +55,7 @@ START_TEST(sweep_status_and_merge)
     OUT("External Link");
     SHELL(0, "cp \"$1\" \"$1.old\"", merged); /* a misspelt folder does not empty the table */
     HIFDM(5, "merge", path, "--dir", temp("sd"), "-o", merged, "--force");
-    ERRS("error: %s: there is no such folder, so nothing to merge;", temp("sd"));
+    ERRS("error: %s: there is no such folder of results;", temp("sd"));
     SHELL(0, "cmp \"$1\" \"$1.old\"", merged);
     HIFDM(0, "sweep", path, "--dir", folder);
     OUT("0 points run");
@@ -320,6 +322,7 @@ END_TEST
 
 START_TEST(the_shipped_studies_are_valid)
 {
+    SHELL(0, "mkdir \"$1\"", temp("s.d"));
     HIFDM(0, "status", keep(source_path("configs/pretension-sweep.yaml")), "--dir", temp("s.d"));
     OUT("64 points");
     /* the truss gives way: more displacement at each step, and a worse shape in the end */
