@@ -40,14 +40,17 @@ static hf_status check_request(const hf_options *o, hf_messages *messages)
 
 static hf_status command_export(const hf_options *o, FILE *file, hf_messages *messages)
 {
+    static char said[HF_N_EXPORTER][HF_EXPORT_SAID_SIZE];
+    static hf_file_out_set files;
     HF_TRY(check_request(o, messages));
-    for (int i = 0; i < HF_N_EXPORTER; i++) {
-        char said[HF_EXPORT_SAID_SIZE];
-        if (!o->export_to[i]) continue;
-        const hf_export_request request = {o->file, o->export_to[i], o->stage, o->force};
-        HF_TRY(hf_exporter_table[i]->write(&request, said, sizeof said, messages));
-        hf_print_line(file, "%s", said);
+    hf_status status = HF_OK;
+    for (int i = 0; i < HF_N_EXPORTER && status == HF_OK; i++) {
+        const hf_export_request request = {o->file, o->export_to[i], o->stage, o->force, &files};
+        if (o->export_to[i]) status = hf_exporter_table[i]->write(&request, said[i], sizeof said[i], messages);
     }
+    HF_TRY(hf_file_out_set_end(&files, status, messages));
+    for (int i = 0; i < HF_N_EXPORTER; i++)
+        if (o->export_to[i]) hf_print_line(file, "%s", said[i]);
     return HF_OK;
 }
 

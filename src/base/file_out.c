@@ -1,4 +1,5 @@
-/* Contents: names - locks and leftovers - temporary files - files with fixed names - a file from begin to end */
+/* Contents: names - locks and leftovers - temporary files - files with fixed names - a file from begin to end
+ *           - files that belong together */
 #define _GNU_SOURCE /* F_OFD_SETLK */
 #include "base/file_out.h"
 
@@ -6,6 +7,7 @@
 #include "base/path.h"
 #include "base/text.h"
 
+#include <assert.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -284,12 +286,11 @@ hf_status hf_file_out_publish(hf_file_out *f, hf_messages *messages)
     return status;
 }
 
-hf_status hf_file_out_write(const char *path, void (*write)(const void *context, FILE *file), const void *context,
-                            hf_messages *messages)
+/* The file is dropped after a failure. */
+static hf_status fill_file(hf_file_out *f, void (*write)(const void *context, FILE *file), const void *context,
+                           hf_messages *messages)
 {
-    hf_file_out f;
-    HF_TRY(hf_file_out_begin(path, &f, messages));
-    int copy = fcntl(f.file, F_DUPFD_CLOEXEC, 0); /* that of the stream; the other keeps the lock */
+    int copy = fcntl(f->file, F_DUPFD_CLOEXEC, 0); /* that of the stream; the other keeps the lock */
     FILE *stream = copy >= 0 ? fdopen(copy, "w") : NULL;
     int failed = !stream;
     if (stream) {
@@ -299,8 +300,52 @@ hf_status hf_file_out_write(const char *path, void (*write)(const void *context,
     } else if (copy >= 0) {
         close(copy);
     }
-    if (!failed) return hf_file_out_publish(&f, messages);
-    hf_status status = fail(path, messages);
-    hf_file_out_drop(&f);
+    if (!failed) return HF_OK;
+    hf_status status = fail(f->path, messages);
+    hf_file_out_drop(f);
+    return status;
+}
+
+hf_status hf_file_out_write(const char *path, void (*write)(const void *context, FILE *file), const void *context,
+                            hf_messages *messages)
+{
+    hf_file_out f;
+    HF_TRY(hf_file_out_begin(path, &f, messages));
+    HF_TRY(fill_file(&f, write, context, messages));
+    return hf_file_out_publish(&f, messages);
+}
+
+/* ---- files that belong together ---- */
+
+hf_status hf_file_out_set_begin(hf_file_out_set *set, const char *path, hf_file_out **file, hf_messages *messages)
+{
+    assert(set->n < HF_FILE_OUT_SET_MAX);
+    hf_file_out *f = &set->file[set->n];
+    HF_TRY(hf_file_out_begin(path, f, messages));
+    set->n++;
+    *file = f;
+    for (int i = 0; i + 1 < set->n; i++)
+        if (!strcmp(set->file[i].path, f->path))
+            return hf_error(messages, HF_EXISTS, "%s: two files would have this name", path);
+    return HF_OK;
+}
+
+hf_status hf_file_out_set_write(hf_file_out_set *set, const char *path, void (*write)(const void *context, FILE *file),
+                                const void *context, hf_messages *messages)
+{
+    hf_file_out *f;
+    HF_TRY(hf_file_out_set_begin(set, path, &f, messages));
+    return fill_file(f, write, context, messages);
+}
+
+hf_status hf_file_out_set_end(hf_file_out_set *set, hf_status status, hf_messages *messages)
+{
+    for (int i = 0; i < set->n && status == HF_OK; i++)
+        if (hf_file_out_sync(set->file[i].file) != 0) status = fail(set->file[i].path, messages);
+    for (int i = 0; i < set->n && status == HF_OK; i++)
+        status = hf_file_out_publish(&set->file[i], messages);
+    for (int i = 0; i < set->n; i++)
+        hf_file_out_drop(&set->file[i]);
+    set->n = 0;
     return status;
 }

@@ -40,6 +40,25 @@ void hf_file_out_drop(hf_file_out *file); /* close and remove the temporary file
 hf_status hf_file_out_write(const char *path, void (*write)(const void *context, FILE *file), const void *context,
                             hf_messages *messages);
 
+/* ---- files that belong together: either all of them get their names or none ---- */
+
+#define HF_FILE_OUT_SET_MAX 16
+
+typedef struct {
+    hf_file_out file[HF_FILE_OUT_SET_MAX];
+    int n;
+} hf_file_out_set;
+
+/* A temporary file more, empty, in *file, which the set owns. HF_IO; HF_EXISTS when the set has this path already. */
+hf_status hf_file_out_set_begin(hf_file_out_set *set, const char *path, hf_file_out **file, hf_messages *messages);
+
+/* The same with a text in it, as hf_file_out_write. */
+hf_status hf_file_out_set_write(hf_file_out_set *set, const char *path, void (*write)(const void *context, FILE *file),
+                                const void *context, hf_messages *messages);
+
+/* Publish all, once all are on the disk; or drop them when `status` is another than HF_OK, which is returned. */
+hf_status hf_file_out_set_end(hf_file_out_set *set, hf_status status, hf_messages *messages);
+
 /* ---- the parts, for files that live longer under their temporary name ----
  * Those that return an int return 0, or -1 and errno, so that the caller says what it was doing. */
 

@@ -4,6 +4,7 @@
 #ifndef HIFDM_EXPORT_H
 #define HIFDM_EXPORT_H
 
+#include "base/file_out.h"
 #include <hifdm/store.h>
 
 #include <limits.h>
@@ -14,10 +15,11 @@
 
 /* What to export, and where to. */
 typedef struct {
-    const char *file;   /* the result */
-    const char *output; /* the file or folder to write: hf_exporter.argument says which */
-    const char *stage;  /* a word of hf_stage_word, NULL: the result of the run */
-    bool force;         /* replace existing files */
+    const char *file;       /* the result */
+    const char *output;     /* the file or folder to write: hf_exporter.argument says which */
+    const char *stage;      /* a word of hf_stage_word, NULL: the result of the run */
+    bool force;             /* replace existing files */
+    hf_file_out_set *files; /* takes what is written; the caller gives all of it names at once */
 } hf_export_request;
 
 typedef struct {

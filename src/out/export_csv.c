@@ -124,8 +124,8 @@ static hf_status export_truss(const hf_export_request *o, hf_truss *truss, hf_ca
     HF_TRY(claim_in_folder(o, "truss_nodes.csv", nodes, messages));
     HF_TRY(claim_in_folder(o, "members.csv", members, messages));
     HF_TRY(hf_store_read_truss(o->file, truss, state, messages));
-    HF_TRY(hf_file_out_write(nodes, write_truss_nodes, &both, messages));
-    HF_TRY(hf_file_out_write(members, write_members, &both, messages));
+    HF_TRY(hf_file_out_set_write(o->files, nodes, write_truss_nodes, &both, messages));
+    HF_TRY(hf_file_out_set_write(o->files, members, write_members, &both, messages));
     size_t used = strlen(said);
     snprintf(said + used, size - used, "; %d nodes and %d members of the truss in %s and %s", truss->n_node,
              truss->n_member, nodes, members);
@@ -141,8 +141,8 @@ static hf_status write_csv(const hf_export_request *o, const hf_export_stored *s
     HF_TRY(claim_in_folder(o, "cables.csv", cables, messages));
     HF_TRY(hf_file_out_folder(o->output, messages));
     const view both = {scene, &stored->shape};
-    HF_TRY(hf_file_out_write(nodes, write_nodes, &both, messages));
-    HF_TRY(hf_file_out_write(cables, write_cables, &both, messages));
+    HF_TRY(hf_file_out_set_write(o->files, nodes, write_nodes, &both, messages));
+    HF_TRY(hf_file_out_set_write(o->files, cables, write_cables, &both, messages));
     snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s and %s", o->file, scene->n_node,
              scene->n_cable, stored->word, nodes, cables);
     if (!stored->summary.has_truss) return HF_OK;

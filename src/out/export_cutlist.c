@@ -147,9 +147,9 @@ static hf_status write_cutlist(const hf_export_request *o, const hf_export_store
     HF_TRY(demand_EA(o->file, scene, messages));
     HF_TRY(name_files(o, path, messages)); /* all names are checked before any file is written */
     const view v = {scene, &stored->shape, hf_model_reference_N(scene, stored->summary.pretension_N)};
-    HF_TRY(hf_file_out_write(path[0], write_cables, &v, messages));
-    HF_TRY(hf_file_out_write(path[1], write_nodes, &v, messages));
-    HF_TRY(hf_file_out_write(path[2], write_totals, &v, messages));
+    HF_TRY(hf_file_out_set_write(o->files, path[0], write_cables, &v, messages));
+    HF_TRY(hf_file_out_set_write(o->files, path[1], write_nodes, &v, messages));
+    HF_TRY(hf_file_out_set_write(o->files, path[2], write_totals, &v, messages));
     snprintf(said, size, "%s: cut lengths of %d cables of the %s shape in %s, the jig in %s, totals in %s", o->file,
              scene->n_cable, stored->word, path[0], path[1], path[2]);
     return HF_OK;

@@ -121,16 +121,15 @@ static void put_grid(hf_hdf5 *io, const grid *g, int *offset, unsigned char *typ
     put_fields(io, "/VTKHDF/CellData", g->line, g->n_line_field, g->n_line);
 }
 
-static hf_status write_grid(const char *path, const grid *g, int *offset, unsigned char *type, hf_messages *messages)
+static hf_status write_grid(const hf_export_request *o, const char *path, const grid *g, int *offset,
+                            unsigned char *type, hf_messages *messages)
 {
-    hf_file_out out;
-    HF_TRY(hf_file_out_begin(path, &out, messages));
+    hf_file_out *out;
+    HF_TRY(hf_file_out_set_begin(o->files, path, &out, messages));
     hf_hdf5 io = {.path = path, .messages = messages, .status = HF_OK, .file = -1};
-    hf_hdf5_create_file(&io, &out);
+    hf_hdf5_create_file(&io, out);
     put_grid(&io, g, offset, type);
     hf_hdf5_close_file(&io);
-    if (io.status == HF_OK) return hf_file_out_publish(&out, messages);
-    hf_file_out_drop(&out);
     return io.status;
 }
 
@@ -214,7 +213,7 @@ static hf_status write_stage(const hf_export_request *o, int stage, const char *
     if (found) HF_TRY(hf_store_read_shape(o->file, (hf_stage)stage, &shape, messages));
     fill(scene, found, summary, t);
     const grid g = grid_of(scene, found, summary, t);
-    hf_status status = write_grid(path, &g, t->offset, t->type, messages);
+    hf_status status = write_grid(o, path, &g, t->offset, t->type, messages);
     hf_shape_free(&shape);
     return status;
 }
@@ -280,7 +279,7 @@ static hf_status write_truss(const hf_export_request *o, const char *path, hf_me
     }
     if (status == HF_OK) {
         const grid g = grid_of_truss(&truss, &state, &t);
-        status = write_grid(path, &g, t.offset, t.type, messages);
+        status = write_grid(o, path, &g, t.offset, t.type, messages);
     }
     hf_arena_free(&arena);
     hf_carrier_state_free(&state);

@@ -223,13 +223,24 @@ START_TEST(full_disk_leaves_nothing_and_does_not_crash)
 }
 END_TEST
 
-START_TEST(full_disk_leaves_no_csv)
+/* However far it gets, all files are there or none, and then the same command goes well without --force. */
+START_TEST(full_disk_leaves_no_part_of_an_export)
 {
-    HIFDM(0, "run", CHEN, "-o", temp("c.h5"), "--set", "optimize.generations=2");
-    SHELL(5, "trap '' XFSZ; ulimit -f 4; exec \"$0\" export \"$1\" --csv \"$2\" 2>/dev/null", temp("c.h5"),
-          temp("csv"));
-    SHELL(0, "ls -A \"$1\"", temp("csv"));
-    ck_assert_str_eq(said.out, "");
+    static const char *const blocks[] = {"1", "8", "16", "40"};
+    const char *result = temp("c.h5"), *csv = temp("csv"), *vtk = temp("vtk");
+    HIFDM(0, "run", CHEN, "-o", result, "--set", "optimize.generations=2");
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+        SHELL(5, "trap '' XFSZ; ulimit -f $4; exec \"$0\" export \"$1\" --csv \"$2\" --vtk \"$3\"", result, csv, vtk,
+              blocks[i]);
+        ERR("File too large");
+        SHELL(0, "ls -A \"$1\"; ls -A \"$2\" 2>/dev/null; true", csv, vtk);
+        ck_assert_str_eq(said.out, "");
+    }
+    HIFDM(0, "export", result, "--csv", csv, "--vtk", vtk);
+    SHELL(0, "ls -A \"$1\" \"$2\" | wc -w", csv, vtk);
+    ck_assert_str_eq(said.out, "8\n");
+    HIFDM(5, "export", result, "--csv", csv, "--cutlist", temp("csv/nodes.csv"), "--force");
+    ERR("two files would have this name");
 }
 END_TEST
 
@@ -247,7 +258,7 @@ Suite *suite_cli_output(void)
     tcase_add_loop_test(tcase, full_or_closed_standard_output_is_an_error, 0, N_PRINTING);
     tcase_add_test(tcase, closed_streams_do_not_spoil_the_result);
     tcase_add_loop_test(tcase, full_disk_leaves_nothing_and_does_not_crash, 0, sizeof limits / sizeof *limits);
-    tcase_add_test(tcase, full_disk_leaves_no_csv);
+    tcase_add_test(tcase, full_disk_leaves_no_part_of_an_export);
     suite_add_tcase(suite, tcase);
     return suite;
 }
