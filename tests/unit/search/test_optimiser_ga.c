@@ -187,6 +187,35 @@ START_TEST(every_generation_obeys_the_rules)
 }
 END_TEST
 
+/* Without crossover a child is its mother but for mutations, which raise a tension as often as they lower it: of
+ * 878 that stay clear of the bounds, 50 % with a standard deviation of 1.7 %. */
+START_TEST(mutations_go_both_ways)
+{
+    hf_optimize_settings s = plain;
+    double parents[N * N_GENE];
+    int n_up = 0, n_down = 0;
+    s.crossover_high = s.crossover_low = 0;
+    s.mutation_high = s.mutation_low = 0.3;
+    hf_optimiser ga = create(&s);
+    for (;;) {
+        evaluate_pending(&ga);
+        hf_optimiser_tell(&ga);
+        memcpy(parents, ga.population.design_N, sizeof parents);
+        if (!hf_optimiser_next(&ga)) break;
+        for (int i = 0; i < N * N_GENE; i++) {
+            int k = i % N_GENE;
+            double was_N = parents[ga.population.parent[2 * (i / N_GENE)] * N_GENE + k];
+            if (k == 3 || k == 5 || fabs(was_N - base_N[k]) > 0.5) continue; /* a step may be cut at a bound */
+            n_up += ga.population.design_N[i] > was_N;
+            n_down += ga.population.design_N[i] < was_N;
+        }
+    }
+    ck_assert_int_gt(n_up + n_down, 500);
+    ck_assert_msg(fabs(n_up / (double)(n_up + n_down) - 0.5) < 0.1, "%d up, %d down", n_up, n_down);
+    hf_optimiser_free(&ga);
+}
+END_TEST
+
 /* Roulette: over many draws the best of a population is a parent more often than an average one, that more than the
  * worst; the fitness ratios are about 50 : 25 : 1, so the order is certain. */
 START_TEST(better_individuals_have_more_children)
@@ -280,6 +309,7 @@ Suite *suite_unit_optimiser_ga(void)
     tcase_add_test(tests, nothing_feasible_goes_on_looking);
     tcase_add_test(tests, rates_follow_srinivas_and_patnaik);
     tcase_add_test(tests, every_generation_obeys_the_rules);
+    tcase_add_test(tests, mutations_go_both_ways);
     tcase_add_test(tests, better_individuals_have_more_children);
     tcase_add_test(tests, worst_individual_keeps_its_floor);
     tcase_add_test(tests, search_ends_for_a_reason);

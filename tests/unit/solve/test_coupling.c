@@ -3,6 +3,7 @@
 #include "flexible.h"
 #include "laws.h"
 
+#include "solve/certificate.h"
 #include "solve/coupling.h"
 
 #include <hifdm/evaluate.h>
@@ -456,6 +457,40 @@ START_TEST(forces_of_a_net_that_did_not_converge_are_its_own)
 }
 END_TEST
 
+/* Wanted lengths of cables at attachments change a little under a shape that was right: its position error is then how
+ * far the new one is away, to second order. */
+START_TEST(errors_of_length_at_attachments_are_position_errors)
+{
+    struct net net;
+    int n_changed = 0;
+    double moved_m = 0;
+    open_flexible(&net, 1e-4);
+    hf_model *m = &net.model;
+    ck_assert_int_eq(find_coupled(&net, HF_COUPLING_ACCELERATED, 1e-12), HF_OK);
+    double *before = copy_shape(&net);
+    for (int k = 0; k < m->n_tie; k++) {
+        int e = m->tie[k] / 2;
+        if (m->law[e] != HF_LAW_LENGTH) continue;
+        net.work.target[e] = m->target[e] *= 1 + 1e-6;
+        n_changed++;
+    }
+    ck_assert_int_gt(n_changed, 0);
+    hf_certify(m, &net.work, &net.result);
+    hf_coupling_certify(m, &net.work, &net.result);
+    double estimate_m = net.result.position_error_m;
+    ck_assert_int_eq(find_coupled(&net, HF_COUPLING_ACCELERATED, 1e-12), HF_OK);
+    double *after = copy_shape(&net);
+    for (int i = 0; i < net.scene.n_node; i++) {
+        const double *a = before + 3 * i, *b = after + 3 * i;
+        moved_m = fmax(moved_m, hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));
+    }
+    ck_assert_double_eq_tol(estimate_m, moved_m, 1e-2 * moved_m);
+    free(before);
+    free(after);
+    close_net(&net);
+}
+END_TEST
+
 Suite *suite_unit_coupling(void)
 {
     Suite *suite = suite_create("unit/coupling");
@@ -476,6 +511,7 @@ Suite *suite_unit_coupling(void)
     tcase_add_test(tests, growing_steps_have_a_ratio);
     tcase_add_test(tests, a_limit_is_a_limit);
     tcase_add_test(tests, ill_posed_nets_keep_their_name);
+    tcase_add_test(tests, errors_of_length_at_attachments_are_position_errors);
     tcase_add_loop_test(tests, a_stop_is_a_stop, 1, 4);
     tcase_add_loop_test(tests, forces_of_a_net_that_did_not_converge_are_its_own, 1, 4);
     return suite;

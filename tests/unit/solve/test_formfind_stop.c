@@ -236,6 +236,24 @@ START_TEST(stale_contents_do_no_harm)
 }
 END_TEST
 
+/* A shape from elsewhere in equilibrium, one of whose cables has another length than wanted. */
+START_TEST(a_shape_of_wrong_lengths_is_none)
+{
+    struct net net;
+    int e = 0;
+    OPEN_CASE(&net, SMALL_REFLECTOR, "form.residual_tolerance=1e-9", "form.length_tolerance=1e-9");
+    ck_assert_int_eq(find_shape(&net), HF_OK);
+    net.form.residual_tolerance = net.form.length_tolerance = 1e-7;
+    ck_assert_int_eq(hf_form_measure(&net.model, &net.form, &net.work, &net.result), HF_OK);
+    while (net.model.law[e] != HF_LAW_LENGTH)
+        e++;
+    net.work.target[e] *= 1 + 1e-6;
+    ck_assert_int_eq(hf_form_measure(&net.model, &net.form, &net.work, &net.result), HF_NOT_CONVERGED);
+    ck_assert_double_le(net.result.residual_N, 1e-7 * net.model.reference_N);
+    close_net(&net);
+}
+END_TEST
+
 Suite *suite_unit_formfind_stop(void)
 {
     Suite *suite = suite_create("unit/formfind_stop");
@@ -254,5 +272,6 @@ Suite *suite_unit_formfind_stop(void)
     tcase_add_test(tests, nothing_is_allocated);
     tcase_add_test(tests, model_stays_as_it_was);
     tcase_add_test(tests, stale_contents_do_no_harm);
+    tcase_add_test(tests, a_shape_of_wrong_lengths_is_none);
     return suite;
 }

@@ -288,6 +288,32 @@ START_TEST(good_import)
 }
 END_TEST
 
+/* A support of the net at each node of the truss in turn. */
+START_TEST(the_nearest_node_is_taken)
+{
+    hf_truss t;
+    char said[4096];
+    double position_m[3];
+    unsigned char role = HF_ROLE_SUPPORT;
+    const char *id = "s";
+    hf_scene scene = {.n_node = 1, .position_m = position_m, .role = &role, .node_id = &id};
+    ck_assert_msg(import(NODES, MEMBERS, &t, said, sizeof said) == HF_OK, "%s", said);
+    for (int i = 0; i < t.n_node; i++) {
+        hf_messages messages = {0};
+        int n, scene_node, truss_node;
+        memcpy(position_m, t.position_m + 3 * i, sizeof position_m);
+        position_m[2] += 1e-4;
+        ck_assert_int_eq(hf_truss_attach(&t, &scene, 1e-3, &n, &scene_node, &truss_node, &messages), HF_OK);
+        ck_assert(n == 1 && scene_node == 0 && truss_node == i);
+        ck_assert_int_eq(hf_truss_attach(&t, &scene, 0.9e-4, &n, &scene_node, &truss_node, &messages), HF_BAD_CASE);
+        snprintf(said, sizeof said, "the nearest truss node, '%s'", t.node_id[i]);
+        ck_assert_ptr_nonnull(strstr(messages.text, said));
+        hf_messages_free(&messages);
+    }
+    hf_truss_free(&t);
+}
+END_TEST
+
 static const struct {
     const char *nodes, *members, *says;
 } faulty[] = {
@@ -355,6 +381,7 @@ Suite *suite_unit_truss(void)
     tcase_add_test(tests, what_the_net_is_given);
     tcase_add_test(tests, support_without_attachment);
     tcase_add_test(tests, good_import);
+    tcase_add_test(tests, the_nearest_node_is_taken);
     tcase_add_loop_test(tests, faulty_import, 0, N_FAULTY);
     tcase_add_test(tests, mechanism_of_a_file);
     return suite;
