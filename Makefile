@@ -39,7 +39,8 @@ TEST_WRAP += open close write writev pwrite read pread fsync fdatasync rename li
 TEST_WRAP += geteuid
 
 # ---- Flags -----------------------------------------------------------------------------------------------------------
-# No fused multiply-adds and no -ffast-math: our code gives the same bits on every x86-64 machine (LAPACK may not). One
+# No -ffast-math, and multiply-adds are fused only where fma() says so: our code gives the same bits on every x86-64
+# machine (LAPACK may not). One
 # set of position-independent objects serves both libraries; -fno-semantic-interposition lets them be inlined as if they
 # were not.
 LANGUAGE := -std=c11 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp
@@ -282,7 +283,7 @@ $(BUILD)/src/store/store.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/tests/%.o: EXTRA = -Itests $(filter-out -l%,$(CHECK))
 
 FLAGS_portable :=
-FLAGS_avx2 := -mavx2
+FLAGS_avx2 := -mavx2 -mfma
 FLAGS_avx512 := -mavx512f -mprefer-vector-width=512
 define kernel_rule
 $(BUILD)/src/%_kernel_$(1).o: EXTRA = -DHF_ISA=$(1) $(FLAGS_$(1))

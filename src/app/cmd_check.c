@@ -43,7 +43,7 @@ static void print_scene(const hf_problem *p, FILE *f)
             count[HF_ROLE_SUPPORT], count[HF_ROLE_INNER], count[HF_ROLE_EDGE]);
     print_laws(m, f);
     fprintf(f, "  equations     %d unknowns, three right-hand sides; half-bandwidth %d; %s\n", m->n_free,
-            m->half_bandwidth, m->has_strut ? "indefinite: band LU (dgbtrf)" : "band Cholesky (dpbtrf)");
+            m->half_bandwidth, m->has_strut ? "indefinite: band LU (dgbtrf)" : "band Cholesky");
     if (m->n_chain) fprintf(f, "  note          %d straight chains of length-controlled cables\n", m->n_chain);
 }
 

@@ -1,15 +1,15 @@
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
 #include "linalg/band.h"
 
+#include "base/lane.h"
+#include "linalg/band_kernel.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 
 /* LAPACK (Fortran interface; the hidden string lengths of one-character arguments are never read) */
-void dpbtrf_(const char *uplo, const int *n, const int *kd, double *ab, const int *ldab, int *info);
-void dpbtrs_(const char *uplo, const int *n, const int *kd, const int *nrhs, const double *ab, const int *ldab,
-             double *b, const int *ldb, int *info);
 double dlansb_(const char *norm, const char *uplo, const int *n, const int *k, const double *ab, const int *ldab,
                double *work);
 void dpbcon_(const char *uplo, const int *n, const int *kd, const double *ab, const int *ldab, const double *anorm,
@@ -20,8 +20,6 @@ void dgbtrs_(const char *trans, const int *n, const int *kl, const int *ku, cons
              const int *ldab, const int *ipiv, double *b, const int *ldb, int *info);
 void dgbcon_(const char *norm, const int *n, const int *kl, const int *ku, const double *ab, const int *ldab,
              const int *ipiv, const double *anorm, double *rcond, double *work, int *iwork, int *info);
-void dsyrk_(const char *uplo, const char *trans, const int *n, const int *k, const double *alpha, const double *a,
-            const int *lda, const double *beta, double *c, const int *ldc);
 
 /* Only OpenBLAS defines these; with another library they are NULL. */
 #pragma weak openblas_set_num_threads
@@ -39,37 +37,50 @@ static const int three = 3;
 
 #define ROOMS_MAX 64 /* threads; OpenBLAS has buffers for as many processors as it was built for */
 
+/* ---- kernels ---- */
+
+typedef struct {
+    int (*factor)(int n, int half_bandwidth, double *band);
+    void (*back_solve)(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
+    void (*gram)(int n, int n_column, const double *a, int lda, double *gram, int ldg);
+} kernels;
+
+#define KERNELS(isa)                                                                                                   \
+    {                                                                                                                  \
+        hf_band_factor_##isa, hf_band_back_solve_##isa, hf_band_gram_##isa                                             \
+    }
+static const kernels kernels_of_isa[HF_LANE_N_ISA] = {KERNELS(portable), KERNELS(avx2), KERNELS(avx512)};
+
+static const kernels *kernels_here(void)
+{
+    return &kernels_of_isa[hf_lane_best_isa()];
+}
+
+int hf_band_factor(int n, int half_bandwidth, double *band)
+{
+    return kernels_here()->factor(n, half_bandwidth, band);
+}
+
+void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb)
+{
+    kernels_here()->back_solve(n, half_bandwidth, n_rhs, factor, b, ldb);
+}
+
 hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row)
 {
-    int ldab = half_bandwidth + 1, info = 0;
-    *bad_row = -1;
-    dpbtrf_("L", &n, &half_bandwidth, band, &ldab, &info);
-    if (info != 0) {
-        *bad_row = info > 0 ? info - 1 : 0;
-        return HF_SINGULAR;
-    }
-    dpbtrs_("L", &n, &half_bandwidth, &three, band, &ldab, b, &ldb, &info);
+    const kernels *here = kernels_here();
+    *bad_row = here->factor(n, half_bandwidth, band) - 1;
+    if (*bad_row >= 0) return HF_SINGULAR;
+    here->back_solve(n, half_bandwidth, 3, band, b, ldb);
     return HF_OK;
 }
 
 void hf_band_gram(int n, int n_column, const double *a, int lda, double *gram, int ldg)
 {
-    double one = 1, zero = 0;
-    dsyrk_("U", "T", &n, &n_column, &one, a, &lda, &zero, gram, &ldg); /* lower triangle by rows = upper by columns */
+    kernels_here()->gram(n, n_column, a, lda, gram, ldg);
 }
 
-int hf_band_factor(int n, int half_bandwidth, double *band)
-{
-    int ldab = half_bandwidth + 1, info = 0;
-    dpbtrf_("L", &n, &half_bandwidth, band, &ldab, &info);
-    return info;
-}
-
-void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb)
-{
-    int ldab = half_bandwidth + 1, info = 0;
-    dpbtrs_("L", &n, &half_bandwidth, &n_rhs, factor, &ldab, b, &ldb, &info);
-}
+/* ---- LAPACK ---- */
 
 double hf_band_norm(int n, int half_bandwidth, const double *band, double *work)
 {

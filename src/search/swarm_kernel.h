@@ -8,7 +8,7 @@
 #define HIFDM_SWARM_KERNEL_H
 
 #include "base/arena.h"
-#include "search/lane.h"
+#include "base/lane.h"
 
 #include <hifdm/workspace.h>
 

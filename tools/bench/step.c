@@ -12,6 +12,9 @@
 #define ENOUGH_S 0.05
 #define ITERATIONS 200 /* of hf_form_find, to spread what it does once over many */
 
+void dpbtrf_(const char *uplo, const int *n, const int *kd, double *ab, const int *ldab, int *info);
+void dpbtrs_(const char *uplo, const int *n, const int *kd, const int *nrhs, const double *ab, const int *ldab,
+             double *b, const int *ldb, int *info);
 void dpbsv_(const char *uplo, const int *n, const int *kd, const int *nrhs, double *ab, const int *ldab, double *b,
             const int *ldb, int *info);
 
@@ -26,22 +29,36 @@ typedef struct {
     hf_swarm_measures measures;
 } step_context;
 
-static void step_dpbtrf(void *context)
+static void step_ours(void *context)
 {
     bench_scene *b = ((step_context *)context)->scene;
     bench_fdm_step(&b->model, &b->form, &b->workspace);
 }
 
-static void step_dpbsv(void *context)
+static void step_by_lapack(bench_scene *b, bool at_once)
 {
-    bench_scene *b = ((step_context *)context)->scene;
     const hf_model *m = &b->model;
+    double *band = b->workspace.band, *x = b->workspace.position_m;
     int three = 3, ldab = m->half_bandwidth + 1, info;
     hf_form_assemble(m, &b->workspace);
     hf_form_assemble_loads(m, &b->workspace);
-    dpbsv_("L", &m->n_free, &m->half_bandwidth, &three, b->workspace.band, &ldab, b->workspace.position_m, &m->n_node,
-           &info);
+    if (at_once) {
+        dpbsv_("L", &m->n_free, &m->half_bandwidth, &three, band, &ldab, x, &m->n_node, &info);
+    } else {
+        dpbtrf_("L", &m->n_free, &m->half_bandwidth, band, &ldab, &info);
+        dpbtrs_("L", &m->n_free, &m->half_bandwidth, &three, band, &ldab, x, &m->n_node, &info);
+    }
     bench_measure(m, &b->form, &b->workspace);
+}
+
+static void step_dpbtrf(void *context)
+{
+    step_by_lapack(((step_context *)context)->scene, false);
+}
+
+static void step_dpbsv(void *context)
+{
+    step_by_lapack(((step_context *)context)->scene, true);
 }
 
 static void step_cholmod(void *context)
@@ -87,8 +104,11 @@ typedef struct {
 } step_row;
 
 static const step_row step_table[] = {
-    {"dpbtrf", step_dpbtrf, 1},      {"dpbsv", step_dpbsv, 1},
-    {"CHOLMOD", step_cholmod, 1},    {"hf_form_find", step_form_find, ITERATIONS},
+    {"dpbtrf", step_dpbtrf, 1},
+    {"dpbsv", step_dpbsv, 1},
+    {"CHOLMOD", step_cholmod, 1},
+    {"band", step_ours, 1},
+    {"hf_form_find", step_form_find, ITERATIONS},
     {"lanes", step_lanes, HF_LANES},
 };
 

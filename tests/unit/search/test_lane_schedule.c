@@ -1,7 +1,7 @@
 /* Which lane takes which design, by a solver that only counts: design i settles after rounds_of[i] looks. */
 #include "support.h"
 
-#include "search/lane.h"
+#include "base/lane.h"
 #include "search/lane_schedule.h"
 
 enum { MAX_DESIGN = 40, NONE = -1 };

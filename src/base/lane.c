@@ -1,4 +1,4 @@
-#include "search/lane.h"
+#include "base/lane.h"
 
 #if defined __x86_64__
 #define CPU_HAS(feature) (__builtin_cpu_supports(feature) != 0)
@@ -12,7 +12,7 @@ bool hf_lane_has_isa(hf_lane_isa isa)
     case HF_LANE_PORTABLE:
         return true;
     case HF_LANE_AVX2:
-        return CPU_HAS("avx2");
+        return CPU_HAS("avx2") && CPU_HAS("fma");
     case HF_LANE_AVX512:
         return CPU_HAS("avx512f");
     }

@@ -1,0 +1,383 @@
+/* The kernels of band, compiled once for each instruction set.
+ *
+ * Contents: strips - factor - substitution - products of rows
+ *
+ * LAPACK's lower band: entry (i,j) stands at band[i - j + j (k + 1)] = band[i + j k], so that a row lies k apart in
+ * memory and the rows of a column side by side. The factorisation is left-looking by blocks of four columns: for eight
+ * or sixteen rows of them at a time, the 4 x 8 entries stay in registers while the finished columns stream by. */
+#include "linalg/band_kernel.h"
+
+#include <math.h>
+#include <stddef.h>
+
+/* ---- strips: eight rows of a column, in PARTS vectors ---- */
+
+#if defined __AVX512F__
+#include <immintrin.h>
+enum { WIDTH = 8 };
+#elif defined __AVX2__ && defined __FMA__
+#include <immintrin.h>
+enum { WIDTH = 4 };
+#else
+enum { WIDTH = 2 };
+#endif
+enum { ROWS = 8, PARTS = ROWS / WIDTH, COLUMNS = 4 };
+
+typedef double vec __attribute__((vector_size(WIDTH * sizeof(double)), aligned(8), may_alias));
+typedef struct {
+    vec part[PARTS];
+} strip;
+
+#define JOIN_(a, b) a##_##b
+#define JOIN(a, b) JOIN_(a, b)
+#define KERNEL(name) JOIN(name, HF_ISA)
+#define INLINE static inline __attribute__((always_inline))
+/* a loop with a small constant count: it is unrolled, so that the arrays in it stay in registers */
+#define foreach(i, count) _Pragma("GCC unroll 16") for (int i = 0; i < (count); i++)
+
+INLINE int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+INLINE vec splat(double x)
+{
+    return x - (vec){0};
+}
+
+/* c - a b, rounded once */
+INLINE vec fused(vec a, vec b, vec c)
+{
+#if defined __AVX512F__
+    return _mm512_fnmadd_pd(a, b, c);
+#elif defined __AVX2__ && defined __FMA__
+    return _mm256_fnmadd_pd(a, b, c);
+#else
+    foreach (i, WIDTH)
+        c[i] = fma(-a[i], b[i], c[i]);
+    return c;
+#endif
+}
+
+INLINE strip zero(void)
+{
+    strip s;
+    foreach (i, PARTS)
+        s.part[i] = splat(0);
+    return s;
+}
+
+INLINE strip load(const double *from)
+{
+    strip s;
+    foreach (i, PARTS)
+        s.part[i] = *(const vec *)(from + i * WIDTH);
+    return s;
+}
+
+INLINE void store(double *to, strip s)
+{
+    foreach (i, PARTS)
+        *(vec *)(to + i * WIDTH) = s.part[i];
+}
+
+/* The first `count` rows; the others are 0 and are not read. */
+INLINE strip load_first(const double *from, int count)
+{
+    if (count >= ROWS) return load(from);
+#if defined __AVX512F__
+    strip s;
+    s.part[0] = _mm512_maskz_loadu_pd((__mmask8)(count > 0 ? (1 << count) - 1 : 0), from);
+    return s;
+#elif defined __AVX2__ && defined __FMA__
+    static const long long mask[2 * ROWS] = {-1, -1, -1, -1, -1, -1, -1, -1};
+    const long long *first = mask + ROWS - (count > 0 ? count : 0);
+    strip s;
+    foreach (i, PARTS)
+        s.part[i] = _mm256_maskload_pd(from + i * WIDTH, _mm256_loadu_si256((const __m256i *)(first + i * WIDTH)));
+    return s;
+#else
+    double row[ROWS] = {0};
+    for (int r = 0; r < count; r++)
+        row[r] = from[r];
+    return load(row);
+#endif
+}
+
+/* Rows begin to end - 1 alone. */
+INLINE void store_some(double *to, strip s, int begin, int end)
+{
+#if defined __AVX512F__
+    _mm512_mask_storeu_pd(to, (__mmask8)(end > begin ? ((1 << smaller(end, ROWS)) - 1) & ~((1 << begin) - 1) : 0),
+                          s.part[0]);
+#else
+    if (begin == 0 && end >= ROWS) {
+        store(to, s);
+        return;
+    }
+    double row[ROWS];
+    store(row, s);
+    for (int r = begin; r < smaller(end, ROWS); r++)
+        to[r] = row[r];
+#endif
+}
+
+INLINE double row_of(strip s, int row)
+{
+    return s.part[row / WIDTH][row % WIDTH];
+}
+
+INLINE void subtract(strip *s, strip a, double b)
+{
+    foreach (i, PARTS)
+        s->part[i] = fused(a.part[i], splat(b), s->part[i]);
+}
+
+INLINE void multiply(strip *s, double by)
+{
+    foreach (i, PARTS)
+        s->part[i] *= by;
+}
+
+/* In the same order for all widths. */
+INLINE double sum(strip s)
+{
+    double row[ROWS];
+    store(row, s);
+    return ((row[0] + row[4]) + (row[2] + row[6])) + ((row[1] + row[5]) + (row[3] + row[7]));
+}
+
+/* ---- factor ---- */
+
+#if defined __AVX512F__
+enum { STRIPS = 2 }; /* side by side */
+#else
+enum { STRIPS = 1 };
+#endif
+
+/* What one step on a block works with: columns j to j + n_column - 1 of a matrix of n rows. */
+typedef struct {
+    double *band;
+    ptrdiff_t k; /* half-bandwidth */
+    int n, j, n_column;
+    double inverse[COLUMNS]; /* of the pivots */
+} block;
+
+INLINE double *place(const block *b, int row, int column)
+{
+    return b->band + row + column * b->k;
+}
+
+/* How many entries of a column stand at this row and below; those below row n - 1 are never changed. */
+INLINE int entries(const block *b, int row, int column)
+{
+    return column + (int)b->k - row + 1;
+}
+
+/* t, rows `row` and on of the block, less the products of the columns `begin` to j - 1. */
+INLINE void eliminate(const block *b, int n_strip, int n_column, int row, int begin, strip t[][COLUMNS])
+{
+    int full = smaller(b->j, row + ROWS * n_strip - 1 - (int)b->k); /* columns before have not all of these rows */
+    for (int p = begin; p < full; p++)
+        foreach (s, n_strip) {
+            strip l = load_first(place(b, row + ROWS * s, p), entries(b, row + ROWS * s, p));
+            foreach (c, COLUMNS)
+                if (c < n_column) subtract(&t[s][c], l, *place(b, b->j + c, p));
+        }
+    for (int p = full > begin ? full : begin; p < b->j; p++)
+        foreach (s, n_strip) {
+            strip l = load(place(b, row + ROWS * s, p));
+            foreach (c, COLUMNS)
+                if (c < n_column) subtract(&t[s][c], l, *place(b, b->j + c, p));
+        }
+}
+
+/* Finish the rows `row` and on, ROWS * n_strip of them; they begin at the diagonal where row is j. 0, or 1 + the row
+ * whose pivot is not positive. */
+INLINE int finish_rows(block *b, int n_strip, int n_column, int row, int begin)
+{
+    strip t[STRIPS][COLUMNS];
+    foreach (s, n_strip)
+        foreach (c, COLUMNS) {
+            int first = row + ROWS * s, column = b->j + c;
+            t[s][c] = c < n_column ? load_first(place(b, first, column), entries(b, first, column)) : zero();
+        }
+    eliminate(b, n_strip, n_column, row, begin, t);
+    foreach (c, COLUMNS) {
+        if (c >= n_column) continue;
+        int column = b->j + c;
+        double pivot = 0;
+        if (row == b->j) {
+            pivot = row_of(t[0][c], c);
+            if (!(pivot > 0)) return column + 1;
+            pivot = sqrt(pivot);
+            b->inverse[c] = 1 / pivot;
+        }
+        foreach (s, n_strip) {
+            int first = row + ROWS * s;
+            multiply(&t[s][c], b->inverse[c]);
+            store_some(place(b, first, column), t[s][c], row == b->j && s == 0 ? c + 1 : 0,
+                       smaller(entries(b, first, column), b->n - first));
+        }
+        if (row == b->j) *place(b, column, column) = pivot;
+        foreach (d, COLUMNS) {
+            if (d <= c || d >= n_column) continue;
+            double l = row == b->j ? row_of(t[0][c], d) : d - c > b->k ? 0 : *place(b, b->j + d, column);
+            foreach (s, n_strip)
+                subtract(&t[s][d], t[s][c], l);
+        }
+    }
+    return 0;
+}
+
+/* Sixteen rows at a time. All begin with the same column where they are worked on in two halves: a product with an
+ * entry outside the band can change the sign of a zero. */
+INLINE int factor_block(block *b, int n_column)
+{
+    int last = smaller(b->j + n_column - 1 + (int)b->k, b->n - 1);
+    for (int row = b->j; row <= last; row += 2 * ROWS) {
+        int begin = row - (int)b->k > 0 ? row - (int)b->k : 0;
+        for (int s = 0; s < 2; s += STRIPS) {
+            if (row + ROWS * s > last) break;
+            int failed = finish_rows(b, STRIPS, n_column, row + ROWS * s, begin);
+            if (failed) return failed;
+        }
+    }
+    return 0;
+}
+
+int KERNEL(hf_band_factor)(int n, int half_bandwidth, double *band)
+{
+    block b = {.band = band, .k = half_bandwidth, .n = n};
+    for (b.j = 0; b.j < n; b.j += COLUMNS) {
+        int n_column = smaller(COLUMNS, n - b.j);
+        int failed = n_column == COLUMNS ? factor_block(&b, COLUMNS) : factor_block(&b, n_column);
+        if (failed) return failed;
+    }
+    return 0;
+}
+
+/* ---- substitution ---- */
+
+/* Entry (j + d, j + c) of the block's triangle. */
+INLINE double in_block(const block *b, int d, int c)
+{
+    return d - c > b->k ? 0 : *place(b, b->j + d, b->j + c);
+}
+
+INLINE void forward(const block *b, int n_column, int n_rhs, double *x, int ld)
+{
+    int last = smaller(b->j + n_column - 1 + (int)b->k, b->n - 1);
+    double y[COLUMNS][COLUMNS] = {{0}};
+    foreach (c, COLUMNS)
+        foreach (r, n_rhs) {
+            if (c >= n_column) continue;
+            double v = x[r * (ptrdiff_t)ld + b->j + c];
+            foreach (d, COLUMNS)
+                if (d < c) v = fma(-in_block(b, c, d), y[d][r], v);
+            x[r * (ptrdiff_t)ld + b->j + c] = y[c][r] = v / *place(b, b->j + c, b->j + c);
+        }
+    for (int row = b->j + n_column; row <= last; row += ROWS)
+        foreach (r, n_rhs) {
+            double *at = x + r * (ptrdiff_t)ld + row;
+            strip v = load_first(at, b->n - row);
+            foreach (c, COLUMNS)
+                if (c < n_column) subtract(&v, load_first(place(b, row, b->j + c), entries(b, row, b->j + c)), y[c][r]);
+            store_some(at, v, 0, b->n - row);
+        }
+}
+
+INLINE void subtract_product(strip *s, strip a, strip b)
+{
+    foreach (i, PARTS)
+        s->part[i] = fused(a.part[i], b.part[i], s->part[i]);
+}
+
+INLINE void backward(const block *b, int n_column, int n_rhs, double *x, int ld)
+{
+    int last = smaller(b->j + n_column - 1 + (int)b->k, b->n - 1);
+    strip t[COLUMNS][COLUMNS];
+    foreach (c, COLUMNS)
+        foreach (r, n_rhs)
+            t[c][r] = zero();
+    for (int row = b->j + n_column; row <= last; row += ROWS)
+        foreach (c, COLUMNS) {
+            if (c >= n_column) continue;
+            int count = smaller(entries(b, row, b->j + c), b->n - row);
+            strip l = load_first(place(b, row, b->j + c), count);
+            foreach (r, n_rhs)
+                subtract_product(&t[c][r], l, load_first(x + r * (ptrdiff_t)ld + row, count));
+        }
+    for (int c = n_column - 1; c >= 0; c--)
+        foreach (r, n_rhs) {
+            double *at = x + r * (ptrdiff_t)ld + b->j, v = at[c] + sum(t[c][r]);
+            for (int d = c + 1; d < n_column; d++)
+                v = fma(-in_block(b, d, c), at[d], v);
+            at[c] = v / *place(b, b->j + c, b->j + c);
+        }
+}
+
+INLINE void back_solve(int n, int half_bandwidth, int n_rhs, double *factor, double *x, int ld)
+{
+    block b = {.band = factor, .k = half_bandwidth, .n = n};
+    int whole = n - n % COLUMNS;
+    for (; b.j < whole; b.j += COLUMNS)
+        forward(&b, COLUMNS, n_rhs, x, ld);
+    if (whole < n) {
+        forward(&b, n - whole, n_rhs, x, ld);
+        backward(&b, n - whole, n_rhs, x, ld);
+    }
+    while ((b.j -= COLUMNS) >= 0)
+        backward(&b, COLUMNS, n_rhs, x, ld);
+}
+
+void KERNEL(hf_band_back_solve)(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb)
+{
+    double *f = (double *)factor; /* which is only read */
+    for (; n_rhs >= 3; n_rhs -= 3, b += 3 * (ptrdiff_t)ldb)
+        back_solve(n, half_bandwidth, 3, f, b, ldb);
+    if (n_rhs == 2) back_solve(n, half_bandwidth, 2, f, b, ldb);
+    if (n_rhs == 1) back_solve(n, half_bandwidth, 1, f, b, ldb);
+}
+
+/* ---- products of rows ---- */
+
+/* The products of n_row rows from `row` on with n_column rows from `column` on. */
+INLINE void gram_tile(int n_row, int n_column, int n, const double *row, const double *column, ptrdiff_t ld,
+                      double *gram, ptrdiff_t ldg)
+{
+    strip t[COLUMNS][COLUMNS];
+    foreach (r, n_row)
+        foreach (c, n_column)
+            t[r][c] = zero();
+    for (int i = 0; i < n; i += ROWS) {
+        strip b[COLUMNS];
+        foreach (c, n_column)
+            b[c] = load_first(column + c * ld + i, n - i);
+        foreach (r, n_row) {
+            strip a = load_first(row + r * ld + i, n - i);
+            foreach (c, n_column)
+                subtract_product(&t[r][c], a, b[c]);
+        }
+    }
+    foreach (r, n_row)
+        foreach (c, n_column)
+            gram[r * ldg + c] = -sum(t[r][c]);
+}
+
+void KERNEL(hf_band_gram)(int n, int n_column, const double *a, int lda, double *gram, int ldg)
+{
+    for (int i = 0; i < n; i += COLUMNS)
+        for (int j = 0; j <= i; j += COLUMNS) {
+            const double *row = a + i * (ptrdiff_t)lda, *column = a + j * (ptrdiff_t)lda;
+            double *to = gram + i * (ptrdiff_t)ldg + j;
+            if (i + COLUMNS <= n) {
+                gram_tile(COLUMNS, COLUMNS, n_column, row, column, lda, to, ldg);
+                continue;
+            }
+            for (int r = 0; i + r < n; r++)
+                for (int c = 0; c < COLUMNS && j + c <= i + r; c++)
+                    gram_tile(1, 1, n_column, row + r * (ptrdiff_t)lda, column + c * (ptrdiff_t)lda, lda,
+                              to + r * (ptrdiff_t)ldg + c, ldg);
+        }
+}
