@@ -13,7 +13,8 @@
 extern "C" {
 #endif
 
-/* Copy laws, targets and first force densities from the model into the workspace, and set displacement_m to zero. */
+/* Copy laws, targets and first force densities from the model into the workspace, set displacement_m to zero, and
+ * n_moving to n_free. */
 void hf_form_prepare(const hf_model *model, hf_workspace *workspace);
 
 /* Copy the theoretical positions into position_m, and add displacement_m to the attachments. */

@@ -91,7 +91,7 @@ const char *hf_coupling_stop_word(int stop); /* "unknown" for a foreign value */
 /* The same list for the coupling of the net with its truss. */
 #define HF_COUPLING_LIST(X)                                                                                            \
     X(hf_coupling_stop, stop_reason, COUPLING_STOP, 4, 0, "stop_reason", "", "how the coupling ended")                 \
-    X(int, iterations, INT, 1, 0, "iterations", "", "form-findings of the loop; passes of the population solver")      \
+    X(int, iterations, INT, 1, 0, "iterations", "", "form-findings of the loop, or steps in one matrix")               \
     X(double, step_m, REAL, 3, 0, "step_m", "m", "largest |F f - r| of an attachment: its move in the next iteration") \
     X(double, ratio, REAL, 3, 0, "ratio", "", "of the last two steps; NaN before there are two")                       \
     X(double, max_displacement_m, REAL, 2, 0, "max_displacement_m", "m", "largest displacement of an attachment")

@@ -22,7 +22,7 @@ typedef enum { HF_OPTIMIZE_METHODS(HF_OPTIMIZE_ENUMERATOR) HF_OPTIMIZE_N_METHOD 
 typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
 typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
-typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN } hf_coupling_scheme;
+typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN, HF_COUPLING_AUTO } hf_coupling_scheme;
 typedef enum { HF_COMPARE_AUTO, HF_COMPARE_TRUE, HF_COMPARE_FALSE } hf_compare;
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
@@ -34,7 +34,7 @@ extern const char *const hf_solver_word[5];
 extern const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1];
 extern const char *const hf_compare_word[4];
 extern const char *const hf_symmetry_word[6];
-extern const char *const hf_coupling_scheme_word[3];
+extern const char *const hf_coupling_scheme_word[4];
 
 /* How a net is coupled with an elastic truss. They are not used without a truss. */
 typedef struct {

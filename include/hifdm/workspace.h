@@ -13,11 +13,19 @@
 extern "C" {
 #endif
 
+/* Unknowns of Newton's matrix, without and with the attachments. */
 #define HF_NEWTON_DOFS(m) ((m)->has_newton ? 3 * (size_t)(m)->n_free : 0)
+#define HF_NEWTON_MOVES(m) ((m)->has_newton ? 3 * (size_t)((m)->n_free + (m)->n_attachment) : 0)
 
 /* Number of past displacements and steps that the accelerated coupling combines, and the doubles that they take. */
 #define HF_COUPLING_DEPTH 8
 #define HF_COUPLING_ITEMS(m) (3 * (size_t)(m)->n_attachment * (2 * HF_COUPLING_DEPTH + 4))
+
+/* Doubles of the dense matrices of net and truss together (src/solve/schur.h); columns of so many attachments are found
+ * at a time. */
+#define HF_SCHUR_PANEL 16
+#define HF_SCHUR_COLUMNS(m) (3 * ((size_t)(m)->n_attachment + HF_SCHUR_PANEL * 3 * (size_t)(m)->n_free))
+#define HF_SCHUR_ITEMS(m) (27 * (size_t)(m)->n_attachment * (size_t)(m)->n_attachment + HF_SCHUR_COLUMNS(m))
 
 /* Doubles per cable of the primal-dual path (src/solve/interior.c). */
 #define HF_INTERIOR_ITEMS 42
@@ -37,8 +45,8 @@ extern "C" {
     X(double, general_band, m->has_strut ? (size_t)m->n_free *(3 * (size_t)m->half_bandwidth + 1) : 0, "N/m",          \
       "struts")                                                                                                        \
     X(double, newton_band, HF_NEWTON_DOFS(m) * (3 * (size_t)m->half_bandwidth + 3), "N/m", "lower band, then factor")  \
-    X(double, newton_force_N, HF_NEWTON_DOFS(m), "N", "[3 n_free] by dof 3*row + c")                                   \
-    X(double, newton_step, HF_NEWTON_DOFS(m), "m", "[3 n_free] by dof")                                                \
+    X(double, newton_force_N, HF_NEWTON_MOVES(m), "N", "[3 n_moving] by dof 3*row + c")                                \
+    X(double, newton_step, HF_NEWTON_MOVES(m), "m", "[3 n_moving] by dof")                                             \
     X(double, newton_trial_m, m->has_newton ? 3 * (size_t)m->n_node : 0, "m", "[3][n_node] by row")                    \
     X(double, newton_trial_tension_N, m->has_newton ? (size_t)m->n_cable : 0, "N", "[n_cable]")                        \
     X(double, newton_work, 3 * HF_NEWTON_DOFS(m), "", "for the condition estimate")                                    \
@@ -51,6 +59,8 @@ extern "C" {
     X(double, displacement_m, 3 * (size_t)m->n_attachment, "m", "[3 n_attachment] displacements by the truss")         \
     X(double, attachment_force_N, 3 * (size_t)m->n_attachment, "N", "[3 n_attachment] pull of the net on the truss")   \
     X(double, coupling_work, HF_COUPLING_ITEMS(m), "", "history of the accelerated coupling")                          \
+    X(double, schur_work, m->has_newton && m->n_attachment ? HF_SCHUR_ITEMS(m) : 0, "", "net and truss together")      \
+    X(int, schur_pivot, m->has_newton ? 3 * (size_t)m->n_attachment : 0, "", "the same")                               \
     X(double, coupling_q_N_per_m, m->n_attachment ? (size_t)m->n_cable : 0, "N/m",                                     \
       "[n_cable] from which the next form-finding starts")                                                             \
     X(int, pivot, m->has_strut ? (size_t)m->n_free : 0, "", "struts")
@@ -60,6 +70,8 @@ typedef struct {
     HF_WORKSPACE_FIELDS(HF_WORKSPACE_MEMBER)
 #undef HF_WORKSPACE_MEMBER
     void *block;
+    /* Rows that Newton's matrix moves: n_free, or the attachments as well, when net and truss are solved together. */
+    int n_moving;
     const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 makes hf_form_find return HF_INTERRUPTED */
 } hf_workspace;
 

@@ -165,8 +165,8 @@ static void print_certificate(const hf_form_result *r, FILE *f)
 static void print_coupling(const hf_coupling_result *r, FILE *f)
 {
     fprintf(f,
-            "  on its truss  attachments give way by up to %.4f mm; %d form-finding%s, the last step %.1e m, stopped "
-            "by %s\n",
+            "  on its truss  attachments give way by up to %.4f mm; %d round%s, the last step %.1e m, stopped by "
+            "%s\n",
             r->max_displacement_m * 1e3, r->iterations, r->iterations == 1 ? "" : "s", r->step_m,
             hf_coupling_stop_word((int)r->stop_reason));
 }

@@ -4,6 +4,7 @@
 #include "base/path.h"
 #include "net/symmetry.h"
 #include "search/polish.h"
+#include <hifdm/evaluate.h>
 #include <hifdm/metrics.h>
 #include <hifdm/optimiser.h>
 
@@ -243,17 +244,40 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
                     w->length_m[e]);
 }
 
-/* The loop of net and truss diverges, or the net lost its shape in one of its iterations. */
+/* What makes the net pull less. */
+static const char *name_pull(const hf_problem *p)
+{
+    const hf_scene *s = &p->scene;
+    bool has_tension = false;
+    for (int e = 0; e < s->n_cable; e++) {
+        bool is_tension = hf_law_has(s->law[e], HF_LAW_GIVES_TENSION);
+        if (is_tension && isnan(s->target[e])) return "lower form.pretension_N";
+        has_tension |= is_tension || s->law[e] == HF_LAW_FORCE_DENSITY;
+    }
+    return has_tension ? "lower the values of the cables that hold a tension or a force density"
+                       : "give the cables longer values";
+}
+
+/* The loop of net and truss diverges, or net and truss together have no shape, where the net alone has one. */
 static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, hf_messages *messages)
 {
     const hf_coupling_result *c = &r->coupling;
+    const hf_form_settings *form = &p->settings.form;
+    const char *stiffen =
+        p->settings.has_truss_import ? "E_Pa and sections of its members" : "truss.E_Pa and its tubes";
     char move[MOVE_SIZE];
+    if (form->coupling.scheme == HF_COUPLING_AUTO && hf_evaluate_method(&p->model, form, NULL) == HF_METHOD_NEWTON)
+        return hf_error(messages, r->status,
+                        "the truss is too soft for its net: together they have no shape; stiffen the truss (%s) or %s",
+                        stiffen, name_pull(p));
+    const char *other = p->model.has_newton
+                            ? ", or solve both in one matrix: coupling.scheme: auto, form.method: newton"
+                        : form->coupling.scheme == HF_COUPLING_PLAIN ? ", or try coupling.scheme: accelerated"
+                                                                     : "";
     return hf_error(messages, r->status,
-                    "the truss is too soft for the pretension of its net: after %d form-findings an attachment would "
-                    "still move %s; stiffen the truss, lower form.pretension_N%s",
-                    c->iterations, name_move(c, move),
-                    p->settings.form.coupling.scheme == HF_COUPLING_PLAIN ? ", or try coupling.scheme: accelerated"
-                                                                          : "");
+                    "the truss is too soft for the loop with its net: after %d form-findings an attachment would "
+                    "still move %s; stiffen the truss (%s), %s%s",
+                    c->iterations, name_move(c, move), stiffen, name_pull(p), other);
 }
 
 static hf_status explain_chains(const hf_problem *p, hf_workspace *w, const hf_form_result *r, hf_messages *messages)

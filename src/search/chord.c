@@ -152,7 +152,7 @@ static hf_status pack_truss(const hf_model *m, hf_workspace *w, hf_chord *c)
     }
     memcpy(c->base_displacement_m, w->displacement_m, n * sizeof(double));
     hf_status status = hf_schur_create(m, &schur);
-    if (status == HF_OK) status = hf_schur_factor(m, w, &schur);
+    if (status == HF_OK) status = hf_schur_factor(m, w, hf_newton_matrix_block, &schur);
     if (status == HF_OK) c->n_mode = hf_schur_modes(&schur, MODES_LEFT, HF_CHORD_MODES_MAX, c->mode);
     hf_schur_free(&schur);
     return status;

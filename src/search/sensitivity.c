@@ -88,9 +88,9 @@ static void let_truss_answer(hf_sensitivity *s, const hf_workspace *w)
     for (size_t k = 0; k < n; k++) {
         double *free_nodes = s->move + k * s->n_dof, *supports = free_nodes + n_free,
                *pull = s->pull + k * n_attachment;
-        hf_schur_pull(m, w, free_nodes, pull);
+        hf_schur_pull(m, w, hf_newton_matrix_block, free_nodes, pull);
         hf_schur_displace(m, &s->schur, pull, supports);
-        hf_schur_push(m, w, supports, s->answer + k * n_free);
+        hf_schur_push(m, w, hf_newton_matrix_block, supports, s->answer + k * n_free);
     }
     hf_chord_back_solve(&s->matrix, &s->lanes, (int)n, s->answer, n_free);
     for (size_t k = 0; k < n; k++)
@@ -104,7 +104,7 @@ hf_status hf_sensitivity_find(hf_sensitivity *s, hf_workspace *w)
     memset(s->pull, 0, 3 * (size_t)s->n * (size_t)m->n_attachment * sizeof(double));
     memset(s->move, 0, (size_t)s->n * s->n_dof * sizeof(double));
     HF_TRY(hf_newton_matrix_factor(m, w, NULL));
-    if (m->n_attachment) HF_TRY(hf_schur_factor(m, w, &s->schur));
+    if (m->n_attachment) HF_TRY(hf_schur_factor(m, w, hf_newton_matrix_block, &s->schur));
     for (int k = 0; k < m->n_gene; k++) {
         size_t i = (size_t)s->variable_of_gene[k];
         add_force_of_gene(s, w, k, s->move + i * s->n_dof, s->pull + 3 * i * (size_t)m->n_attachment);

@@ -1,8 +1,8 @@
-/* Contents: forces and displacements - Anderson's method - the loop - certificate */
+/* Contents: forces and displacements - Anderson's method - the loop - in one matrix */
 #include "solve/coupling.h"
 
 #include "linalg/dot.h"
-#include "solve/newton_matrix.h"
+#include "solve/joint.h"
 #include "solve/schur.h"
 
 #include <math.h>
@@ -273,49 +273,33 @@ hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_
     return r->status;
 }
 
-/* ---- certificate ---- */
+/* ---- in one matrix ---- */
 
-/* The Newton step changes the tensions of cables with a multiplier to correct their lengths. Adds these changes to
- * `pull`. */
-static void add_length_errors(const hf_model *m, const hf_workspace *w, double *pull)
+/* Status of the net alone, on supports that stay. Overwrites the workspace's shape. */
+static hf_status status_alone(const hf_model *m, hf_net_solver *solve, const void *context, hf_workspace *w)
 {
-    double block[3][3], d[3];
-    for (int k = 0; k < m->n_tie; k++) {
-        int e = m->tie[k] / 2, here = m->end_row[m->tie[k]], there = m->end_row[m->tie[k] ^ 1];
-        if (!hf_law_has(w->law[e], HF_LAW_HAS_MULTIPLIER)) continue;
-        double wanted_m = hf_law_wanted_length_m(hf_workspace_cable(m, w, e), w->tension_N[e]);
-        hf_newton_matrix_block(m, w, e, block);
-        for (int c = 0; c < 3; c++)
-            d[c] = (w->position_m[c * m->n_node + there] - w->position_m[c * m->n_node + here]) *
-                   (1 - wanted_m / w->length_m[e]);
-        for (int c = 0; c < 3; c++) /* d is along the cable, where the block has the axial stiffness alone */
-            pull[3 * m->tie_attachment[k] + c] += block[c][0] * d[0] + block[c][1] * d[1] + block[c][2] * d[2];
-    }
+    hf_form_result alone;
+    w->n_moving = m->n_free;
+    memset(w->displacement_m, 0, (size_t)dofs(m) * sizeof(double));
+    memcpy(w->q_N_per_m, w->coupling_q_N_per_m, (size_t)m->n_cable * sizeof(double));
+    return solve(context, w, NULL, &alone);
 }
 
-void hf_coupling_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
+hf_status hf_coupling_find_at_once(const hf_model *m, const hf_coupling_settings *s, hf_net_solver *solve,
+                                   const void *context, hf_workspace *w, hf_history *history, hf_form_result *r)
 {
-    size_t n = (size_t)dofs(m);
-    hf_schur schur;
-    bool has_step = m->has_newton && isfinite(r->position_error_m);
-    r->position_error_m = (double)NAN;
-    if (!has_step) return;
-    if (hf_schur_create(m, &schur) == HF_OK && hf_schur_factor(m, w, &schur) == HF_OK) {
-        double *pull = w->coupling_work, *move = pull + n, *both = w->newton_step;
-        memcpy(pull, w->attachment_force_N, n * sizeof(double));
-        hf_schur_pull(m, w, both, pull);
-        add_length_errors(m, w, pull);
-        hf_schur_flex(m, pull, move);
-        for (size_t i = 0; i < n; i++)
-            move[i] -= w->displacement_m[i];
-        hf_schur_solve(&schur, move);
-        memset(schur.column, 0, 3 * (size_t)m->n_free * sizeof(double));
-        hf_schur_push(m, w, move, schur.column);
-        hf_newton_matrix_solve(m, w, schur.column);
-        for (int i = 0; i < 3 * m->n_free; i++)
-            both[i] += schur.column[i];
-        r->position_error_m =
-            fmax(largest_distance(m->n_free, both, NULL), largest_distance(m->n_attachment, move, NULL));
+    memcpy(w->coupling_q_N_per_m, w->q_N_per_m, (size_t)m->n_cable * sizeof(double));
+    w->n_moving = m->n_free + m->n_attachment;
+    solve(context, w, history, r);
+    r->coupling = (hf_coupling_result){.stop_reason = HF_COUPLING_NET, .iterations = r->iterations};
+    r->coupling.ratio = r->coupling.step_m = (double)NAN;
+    if (r->status == HF_OK || r->status == HF_NOT_CONVERGED) {
+        hf_joint_set_displacement(m, w);
+        bool is_there = hf_coupling_measure(m, w, r) <= s->tof_m && r->status == HF_OK;
+        if (is_there) r->coupling.stop_reason = HF_COUPLING_TOF;
+        r->status = is_there ? HF_OK : HF_NOT_CONVERGED;
+    } else if (r->status != HF_INTERRUPTED && status_alone(m, solve, context, w) != r->status) {
+        give_up(HF_TRUSS_TOO_SOFT, HF_COUPLING_DIVERGED, r);
     }
-    hf_schur_free(&schur);
+    return r->status;
 }

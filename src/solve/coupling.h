@@ -2,6 +2,8 @@
  * displacements r of the attachments. The pull f(r) of the net and the condensed flexibility F of the truss give
  * r = F f(r).
  *
+ * auto: where the net is solved by Newton's method, net and truss are solved together (hf_coupling_find_at_once); else
+ * accelerated.
  * plain: the paper's loop, r <- F f(r). With S the net's stiffness condensed to the attachments, every iteration
  * multiplies the error by up to the largest eigenvalue of F S, which may be more than 1.
  * accelerated: Anderson's method (1965) on the same loop, with a depth of HF_COUPLING_DEPTH. It needs no matrix of the
@@ -28,6 +30,13 @@ hf_status hf_coupling_find(const hf_model *model, const hf_coupling_settings *se
                            const void *context, bool start_counts, hf_workspace *workspace, hf_history *history,
                            hf_form_result *result);
 
+/* Find the coupled shape by one call of `solve` (hf_equilibrium_find), for which the attachments are unknowns
+ * (n_moving). Status: that of the net, or HF_TRUSS_TOO_SOFT when the net has no shape on its truss, and on fixed
+ * supports has one or fails in another way. */
+hf_status hf_coupling_find_at_once(const hf_model *model, const hf_coupling_settings *settings, hf_net_solver *solve,
+                                   const void *context, hf_workspace *workspace, hf_history *history,
+                                   hf_form_result *result);
+
 /* Set attachment_force_N to the pull of the net on the attachments at the workspace's shape plus the loads on them. */
 void hf_coupling_forces(const hf_model *model, hf_workspace *workspace);
 
@@ -38,9 +47,5 @@ double hf_coupling_measure(const hf_model *model, hf_workspace *workspace, hf_fo
 /* Set result->coupling for a shape of the population solver, which knows the step and the number of its passes. */
 void hf_coupling_accept(const hf_model *model, const hf_workspace *workspace, int iterations, double step_m,
                         hf_form_result *result);
-
-/* Set position_error_m of the coupled shape to the largest move in the Newton step of net and truss together, or to
- * NaN. newton_band must hold the factor of hf_newton_certify. */
-void hf_coupling_certify(const hf_model *model, hf_workspace *workspace, hf_form_result *result);
 
 #endif

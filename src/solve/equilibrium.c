@@ -1,7 +1,9 @@
 /* Contents: nodes without a place - from a start near the answer - from anywhere */
 #include "solve/equilibrium.h"
 
+#include "solve/coupling.h"
 #include "solve/interior.h"
+#include "solve/joint.h"
 #include "solve/newton.h"
 
 #include <string.h>
@@ -32,6 +34,15 @@ static int find_loose_row(const hf_model *m, hf_workspace *w)
 
 /* ---- from a start near the answer ---- */
 
+/* Whether attachments that are unknowns have come to where the truss has them under the measured shape. */
+static bool is_on_truss(const hf_model *m, const hf_form_settings *s, hf_workspace *w)
+{
+    hf_form_result at;
+    if (w->n_moving == m->n_free) return true;
+    hf_joint_set_displacement(m, w);
+    return hf_coupling_measure(m, w, &at) <= s->coupling.tof_m;
+}
+
 /* Iterations of the paper and Newton steps from the case's force densities: they take few steps when these are near the
  * answer's. True when the result is final. */
 static bool try_near(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
@@ -40,12 +51,13 @@ static bool try_near(const hf_model *m, const hf_form_settings *s, hf_workspace 
     hf_form_settings part = *s;
     part.max_iterations = smaller(FIRST_BLOCK, s->max_iterations);
     hf_form_find(m, &part, HF_STOP_RESIDUAL, w, history, r);
-    if (r->status == HF_OK || r->status == HF_INTERRUPTED || r->iterations >= s->max_iterations) return true;
-    if (r->status != HF_NOT_CONVERGED) return false;
+    bool is_found = r->status == HF_OK && is_on_truss(m, s, w);
+    if (is_found || r->status == HF_INTERRUPTED || r->iterations >= s->max_iterations) return true;
+    if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) return false;
     int n_step = r->iterations;
     bool is_near = hf_newton_run(m, s, w, smaller(NEWTON_MAX, s->max_iterations - n_step), &n_step);
     /* the shape is not solved for again with D: that would add rounding errors in proportion to D's condition */
-    is_near = is_near && hf_form_measure(m, s, w, r) == HF_OK;
+    is_near = is_near && hf_form_measure(m, s, w, r) == HF_OK && is_on_truss(m, s, w);
     if (is_near) hf_form_accept(m, s, HF_STOPPED_RESIDUAL, n_step, w, r);
     r->iterations = n_step;
     return is_near || n_step >= s->max_iterations;

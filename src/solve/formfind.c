@@ -34,6 +34,7 @@ void hf_form_prepare(const hf_model *m, hf_workspace *w)
     memcpy(w->q_N_per_m, m->start_q_N_per_m, n * sizeof(double));
     if (m->EA_N) memcpy(w->EA_N, m->EA_N, n * sizeof(double));
     memset(w->displacement_m, 0, 3 * (size_t)m->n_attachment * sizeof(double));
+    w->n_moving = m->n_free;
 }
 
 void hf_form_place_supports(const hf_model *m, hf_workspace *w)

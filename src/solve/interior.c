@@ -16,8 +16,8 @@
  * the form of the Newton matrix. */
 #include "solve/interior.h"
 
+#include "solve/joint.h"
 #include "solve/newton.h"
-#include "solve/newton_matrix.h"
 
 #include <assert.h>
 #include <math.h>
@@ -99,9 +99,9 @@ static path_cable *cables(const hf_workspace *w)
     return (path_cable *)w->interior_cable;
 }
 
-static bool is_fixed(const hf_model *m, int e)
+static bool is_fixed(const hf_model *m, const hf_workspace *w, int e)
 {
-    return m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free;
+    return m->end_row[2 * e] >= w->n_moving && m->end_row[2 * e + 1] >= w->n_moving;
 }
 
 static bool has_multiplier(const hf_workspace *w, int e)
@@ -122,14 +122,6 @@ static void set_vector(const hf_model *m, const hf_workspace *w, int e, double d
         d[c] = w->position_m[c * m->n_node + b] - w->position_m[c * m->n_node + a];
 }
 
-static double mean_length_m(const hf_model *m)
-{
-    double sum = 0;
-    for (int e = 0; e < m->n_cable; e++)
-        sum += m->length_m[e];
-    return sum / m->n_cable;
-}
-
 /* That of the law, else T with v = L + c T and T (v - l) = MU_FIRST times reference tension and length, within
  * FIRST_RANGE of the reference tension. */
 static double first_tension_N(const hf_model *m, hf_law_cable cable, double flex, double length)
@@ -145,7 +137,7 @@ static double first_tension_N(const hf_model *m, hf_law_cable cable, double flex
 /* A centred point for MU_FIRST at the theoretical shape. Errors of length and balance are left to the path. */
 static void set_start(const hf_model *m, hf_workspace *w)
 {
-    double mean_m = mean_length_m(m);
+    double mean_m = hf_joint_mean_length_m(m);
     hf_form_place_supports(m, w);
     for (int e = 0; e < m->n_cable; e++) {
         path_cable *p = cables(w) + e;
@@ -157,7 +149,7 @@ static void set_start(const hf_model *m, hf_workspace *w)
         if (is_spring(w, e)) {
             p->along = p->across = hf_law_tension_N(cable, 1);
             p->T = p->along * length;
-        } else if (is_fixed(m, e)) {
+        } else if (is_fixed(m, w, e)) {
             double over = has_multiplier(w, e) ? length - hf_law_wanted_length_m(cable, 0) : 0;
             p->T =
                 p->flex > 0 ? fmax(over, 0) / p->flex : hf_law_held_q_N_per_m(cable, length, w->q_N_per_m[e]) * length;
@@ -177,6 +169,7 @@ static void set_start(const hf_model *m, hf_workspace *w)
 
 typedef struct {
     double balance, length, gap; /* relative to reference tension and theoretical lengths */
+    double truss_m;              /* at the end: between attachments and truss, as hf_joint_gap_m */
     double mu;
 } path_error;
 
@@ -196,10 +189,10 @@ static path_error measure_path(const hf_model *m, hf_workspace *w)
 {
     path_error error = {0};
     double sum = 0, all = 0;
-    hf_newton_matrix_set_loads(m, w->newton_force_N);
+    hf_newton_matrix_set_loads(m, w, w->newton_force_N);
     for (int e = 0; e < m->n_cable; e++) {
         path_cable *p = cables(w) + e;
-        if (is_fixed(m, e)) continue;
+        if (is_fixed(m, w, e)) continue;
         set_vector(m, w, e, p->d);
         if (is_spring(w, e)) {
             for (int c = 0; c < 3; c++)
@@ -208,12 +201,14 @@ static path_error measure_path(const hf_model *m, hf_workspace *w)
             sum += p->T * p->v - dot(p->t, p->d);
             all += p->weight;
         }
-        hf_newton_matrix_add_pull(m, e, p->t, w->newton_force_N);
+        hf_newton_matrix_add_pull(m, w, e, p->t, w->newton_force_N);
         if (!has_multiplier(w, e)) continue;
         p->short_m = hf_law_wanted_length_m(hf_workspace_cable(m, w, e), p->T) - p->v;
         error.length = fmax(error.length, fabs(p->short_m) / m->length_m[e]);
     }
     error.balance = largest_force_N(m, w->newton_force_N) / m->reference_N;
+    double gap_m = hf_joint_gap_m(m, w, w->position_m, w->newton_force_N, NULL);
+    error.length = fmax(error.length, gap_m / hf_joint_mean_length_m(m));
     error.gap = error.mu = all > 0 ? sum / all : 0;
     return error;
 }
@@ -282,7 +277,7 @@ static void set_vector_step(const hf_model *m, const hf_workspace *w, int e, dou
 {
     int i = m->end_row[2 * e], j = m->end_row[2 * e + 1];
     for (int c = 0; c < 3; c++)
-        step[c] = (j < m->n_free ? w->newton_step[3 * j + c] : 0) - (i < m->n_free ? w->newton_step[3 * i + c] : 0);
+        step[c] = (j < w->n_moving ? w->newton_step[3 * j + c] : 0) - (i < w->n_moving ? w->newton_step[3 * i + c] : 0);
 }
 
 static void set_cable_direction(const hf_model *m, const hf_workspace *w, int e)
@@ -304,17 +299,17 @@ static void set_cable_direction(const hf_model *m, const hf_workspace *w, int e)
 static void find_path_direction(const hf_model *m, hf_workspace *w, double target, bool corrected)
 {
     double pull[3], *rhs = w->newton_step;
-    memcpy(rhs, w->newton_force_N, (size_t)hf_newton_matrix_dofs(m) * sizeof *rhs);
+    memcpy(rhs, w->newton_force_N, 3 * (size_t)w->n_moving * sizeof *rhs);
     for (int e = 0; e < m->n_cable; e++) {
         path_cable *p = cables(w) + e;
-        if (is_fixed(m, e) || is_spring(w, e)) continue;
+        if (is_fixed(m, w, e) || is_spring(w, e)) continue;
         set_cable_side(p, has_multiplier(w, e), target, corrected);
         times_K(p, p->off, pull);
-        hf_newton_matrix_add_pull(m, e, pull, rhs);
+        hf_newton_matrix_add_pull(m, w, e, pull, rhs);
     }
-    hf_newton_matrix_solve(m, w, rhs);
+    hf_joint_solve(m, w, path_block, rhs);
     for (int e = 0; e < m->n_cable; e++)
-        if (!is_fixed(m, e)) set_cable_direction(m, w, e);
+        if (!is_fixed(m, w, e)) set_cable_direction(m, w, e);
 }
 
 /* ---- step length ---- */
@@ -338,7 +333,7 @@ static double find_room(const hf_model *m, hf_workspace *w, bool corrects)
     double inverse = 0;
     for (int e = 0; e < m->n_cable; e++) {
         path_cable *p = cables(w) + e;
-        if (is_fixed(m, e) || is_spring(w, e)) continue;
+        if (is_fixed(m, w, e) || is_spring(w, e)) continue;
         double minus[3] = {-p->Dt[0], -p->Dt[1], -p->Dt[2]}, s0, s1[3], z0, z1[3];
         unscale(p, p->Dv, p->Dd, &s0, s1);
         scale(p, p->DT, minus, &z0, z1);
@@ -353,7 +348,7 @@ static double find_room(const hf_model *m, hf_workspace *w, bool corrects)
 
 static void move_nodes(const hf_model *m, hf_workspace *w, double part)
 {
-    for (int i = 0; i < m->n_free; i++)
+    for (int i = 0; i < w->n_moving; i++)
         for (int c = 0; c < 3; c++)
             w->position_m[c * m->n_node + i] += part * w->newton_step[3 * i + c];
 }
@@ -363,7 +358,7 @@ static void move(const hf_model *m, hf_workspace *w, double part)
     move_nodes(m, w, part);
     for (int e = 0; e < m->n_cable; e++) {
         path_cable *p = cables(w) + e;
-        if (is_fixed(m, e) || is_spring(w, e)) continue;
+        if (is_fixed(m, w, e) || is_spring(w, e)) continue;
         p->v += part * p->Dv;
         p->T += part * p->DT;
         for (int c = 0; c < 3; c++)
@@ -408,8 +403,8 @@ static bool is_told_to_stop(const hf_workspace *w)
 static bool take_step(const hf_model *m, hf_workspace *w, double mu)
 {
     for (int e = 0; e < m->n_cable; e++)
-        if (!is_fixed(m, e) && !is_spring(w, e)) set_scaling(cables(w) + e, has_multiplier(w, e));
-    if (hf_newton_matrix_factor_blocks(m, w, path_block, NULL) != HF_OK) return false;
+        if (!is_fixed(m, w, e) && !is_spring(w, e)) set_scaling(cables(w) + e, has_multiplier(w, e));
+    if (hf_joint_factor(m, w, path_block, NULL) != HF_OK) return false;
     find_path_direction(m, w, 0, false);
     double part = fmin(1, find_room(m, w, true)), left = 1 - part;
     find_path_direction(m, w, left * left * left * mu, true);
@@ -440,10 +435,10 @@ static path_error measure_end(const hf_model *m, hf_workspace *w)
 {
     path_error error = {0};
     double reference = m->reference_N;
-    hf_newton_matrix_set_loads(m, w->newton_force_N);
+    hf_newton_matrix_set_loads(m, w, w->newton_force_N);
     for (int e = 0; e < m->n_cable; e++) {
         path_cable *p = cables(w) + e;
-        if (is_fixed(m, e)) continue;
+        if (is_fixed(m, w, e)) continue;
         hf_law_cable cable = hf_workspace_cable(m, w, e);
         double length = hf_newton_matrix_direction(m, w->position_m, e, p->unit), pull[3];
         double T = hf_newton_matrix_tension_N(cable, length, w->tension_N[e]);
@@ -461,9 +456,10 @@ static path_error measure_end(const hf_model *m, hf_workspace *w)
         p->across = fmax(T, 0) / length;
         for (int c = 0; c < 3; c++)
             pull[c] = T * p->unit[c];
-        hf_newton_matrix_add_pull(m, e, pull, w->newton_force_N);
+        hf_newton_matrix_add_pull(m, w, e, pull, w->newton_force_N);
     }
     error.balance = largest_force_N(m, w->newton_force_N) / reference;
+    error.truss_m = hf_joint_gap_m(m, w, w->position_m, w->newton_force_N, NULL);
     return error;
 }
 
@@ -471,26 +467,32 @@ static bool is_within(const path_error *error, const hf_form_settings *s, double
 {
     return error->balance <= fmax(part * s->residual_tolerance, 1e-13) &&
            error->length <= fmax(part * s->length_tolerance, 1e-14) &&
-           error->gap <= fmax(part * s->residual_tolerance, 1e-13);
+           error->gap <= fmax(part * s->residual_tolerance, 1e-13) &&
+           error->truss_m <= fmax(part * s->coupling.tof_m, HF_JOINT_NO_GAP_M);
+}
+
+static double largest_error(const hf_model *m, const path_error *error)
+{
+    return fmax(fmax(error->balance, error->length), fmax(error->gap, error->truss_m / hf_joint_mean_length_m(m)));
 }
 
 /* Moves position_m and tension_N by one Newton step. False when its matrix has no factor. */
 static bool take_last_step(const hf_model *m, hf_workspace *w)
 {
     double pull[3], *step = w->newton_step;
-    if (hf_newton_matrix_factor_blocks(m, w, path_block, NULL) != HF_OK) return false;
-    memcpy(step, w->newton_force_N, (size_t)hf_newton_matrix_dofs(m) * sizeof *step);
+    if (hf_joint_factor(m, w, path_block, NULL) != HF_OK) return false;
+    memcpy(step, w->newton_force_N, 3 * (size_t)w->n_moving * sizeof *step);
     for (int e = 0; e < m->n_cable; e++) {
         const path_cable *p = cables(w) + e;
-        if (is_fixed(m, e)) continue;
+        if (is_fixed(m, w, e)) continue;
         for (int c = 0; c < 3; c++)
             pull[c] = p->DT * p->unit[c];
-        hf_newton_matrix_add_pull(m, e, pull, step);
+        hf_newton_matrix_add_pull(m, w, e, pull, step);
     }
-    hf_newton_matrix_solve(m, w, step);
+    hf_joint_solve(m, w, path_block, step);
     for (int e = 0; e < m->n_cable; e++) {
         const path_cable *p = cables(w) + e;
-        if (is_fixed(m, e) || !has_multiplier(w, e)) continue;
+        if (is_fixed(m, w, e) || !has_multiplier(w, e)) continue;
         double longer[3];
         set_vector_step(m, w, e, longer);
         w->tension_N[e] += p->DT + p->along * dot(p->unit, longer);
@@ -505,7 +507,7 @@ static void begin_end(const hf_model *m, hf_workspace *w)
     for (int e = 0; e < m->n_cable; e++) {
         const path_cable *p = cables(w) + e;
         double slack = p->v - sqrt(dot(p->d, p->d));
-        bool is_slack = has_multiplier(w, e) && !is_fixed(m, e) && p->T / m->reference_N <= slack / m->length_m[e];
+        bool is_slack = has_multiplier(w, e) && !is_fixed(m, w, e) && p->T / m->reference_N <= slack / m->length_m[e];
         w->tension_N[e] = is_slack ? 0 : p->T;
     }
 }
@@ -531,14 +533,13 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
     path_error now = measure_end(m, w);
     for (int k = 0; k < FINAL_MAX && *n_step < max_steps && !is_within(&now, s, 0.1); k++) {
         bool was_within = is_within(&now, s, 1);
-        double before = fmax(now.balance, fmax(now.length, now.gap));
+        double before = largest_error(m, &now);
         memcpy(w->newton_trial_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
         memcpy(w->newton_trial_tension_N, w->tension_N, (size_t)m->n_cable * sizeof(double));
         ++*n_step;
         if (!take_last_step(m, w)) return false;
         now = measure_end(m, w);
-        double after = fmax(now.balance, fmax(now.length, now.gap));
-        if (!was_within || after < before) continue;
+        if (!was_within || largest_error(m, &now) < before) continue;
         memcpy(w->position_m, w->newton_trial_m, 3 * (size_t)m->n_node * sizeof(double));
         memcpy(w->tension_N, w->newton_trial_tension_N, (size_t)m->n_cable * sizeof(double));
         return true;

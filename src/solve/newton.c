@@ -1,7 +1,7 @@
 /* Contents: forces - one step - Newton from a shape - certificate */
 #include "solve/newton.h"
 
-#include "solve/newton_matrix.h"
+#include "solve/joint.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,7 +21,8 @@
 typedef struct {
     double residual_N; /* largest nodal force */
     double length_gap; /* largest length error; that of a cable that is too short is weighted by its tension */
-    double merit;      /* sum of squared forces over the reference tension and squared length errors: steps lower it */
+    double truss_m;    /* largest distance of an attachment from where the truss has it under its forces */
+    double merit; /* sum of squared forces over the reference tension and squared relative lengths: steps lower it */
 } imbalance;
 
 /* Sets force [3*row + c] to the nodal forces out of balance, minus the gradient of Pi (M2). */
@@ -30,13 +31,13 @@ static imbalance measure_imbalance(const hf_model *m, const hf_workspace *w, con
 {
     imbalance result = {0};
     double u[3], sum = 0, largest = 0, scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
-    hf_newton_matrix_set_loads(m, force);
+    hf_newton_matrix_set_loads(m, w, force);
     for (int e = 0; e < m->n_cable; e++) {
         hf_law_cable cable = hf_workspace_cable(m, w, e);
         double length = hf_newton_matrix_direction(m, position_m, e, u),
                tension = hf_newton_matrix_tension_N(cable, length, T[e]);
         double pull[3] = {tension * u[0], tension * u[1], tension * u[2]};
-        hf_newton_matrix_add_pull(m, e, pull, force);
+        hf_newton_matrix_add_pull(m, w, e, pull, force);
         if (!hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
         double gap = length / hf_law_wanted_length_m(cable, tension) - 1;
         if (gap < 0) gap *= fmin(1, tension / m->reference_N);
@@ -51,6 +52,7 @@ static imbalance measure_imbalance(const hf_model *m, const hf_workspace *w, con
     }
     result.residual_N = sqrt(largest) * m->reference_N;
     result.merit += sum;
+    result.truss_m = hf_joint_gap_m(m, w, position_m, force, &result.merit);
     return result;
 }
 
@@ -67,23 +69,23 @@ static double tension_change(hf_law_cable cable, double length, double T, double
 static void right_hand_side(const hf_model *m, const hf_workspace *w, const double *force, double *rhs)
 {
     double u[3];
-    memcpy(rhs, force, (size_t)hf_newton_matrix_dofs(m) * sizeof *rhs);
+    memcpy(rhs, force, 3 * (size_t)w->n_moving * sizeof *rhs);
     for (int e = 0; e < m->n_cable; e++) {
         hf_law_cable cable = hf_workspace_cable(m, w, e);
         if (!hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
         double length = hf_newton_matrix_direction(m, w->position_m, e, u);
         double T = w->tension_N[e], beyond = length - hf_law_wanted_length_m(cable, T);
         double more = tension_change(cable, length, T, 1, beyond), pull[3] = {more * u[0], more * u[1], more * u[2]};
-        hf_newton_matrix_add_pull(m, e, pull, rhs);
+        hf_newton_matrix_add_pull(m, w, e, pull, rhs);
     }
 }
 
 /* Sets newton_step to the Newton step for the forces in newton_force_N. condition as in hf_newton_matrix_factor. */
 static hf_status find_step(const hf_model *m, hf_workspace *w, double *condition)
 {
-    HF_TRY(hf_newton_matrix_factor(m, w, condition));
+    HF_TRY(hf_joint_factor(m, w, hf_newton_matrix_block, condition));
     right_hand_side(m, w, w->newton_force_N, w->newton_step);
-    hf_newton_matrix_solve(m, w, w->newton_step);
+    hf_joint_solve(m, w, hf_newton_matrix_block, w->newton_step);
     return HF_OK;
 }
 
@@ -94,7 +96,7 @@ static void try_step(const hf_model *m, hf_workspace *w, double part)
     double u[3];
     memcpy(w->newton_trial_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
     memcpy(w->newton_trial_tension_N, w->tension_N, (size_t)m->n_cable * sizeof(double));
-    for (int i = 0; i < m->n_free; i++)
+    for (int i = 0; i < w->n_moving; i++)
         for (int c = 0; c < 3; c++)
             w->newton_trial_m[c * m->n_node + i] += part * step[3 * i + c];
     for (int e = 0; e < m->n_cable; e++) {
@@ -104,8 +106,8 @@ static void try_step(const hf_model *m, hf_workspace *w, double part)
         double length = hf_newton_matrix_direction(m, w->position_m, e, u), T = w->tension_N[e];
         double beyond = length - hf_law_wanted_length_m(cable, T);
         for (int c = 0; c < 3; c++) {
-            if (a < m->n_free) beyond -= u[c] * step[3 * a + c];
-            if (b < m->n_free) beyond += u[c] * step[3 * b + c];
+            if (a < w->n_moving) beyond -= u[c] * step[3 * a + c];
+            if (b < w->n_moving) beyond += u[c] * step[3 * b + c];
         }
         double least = hf_law_has(cable.law, HF_LAW_GOES_SLACK) ? 0 : TENSION_KEPT * T;
         w->newton_trial_tension_N[e] = fmax(T + tension_change(cable, length, T, part, beyond), least);
@@ -116,7 +118,8 @@ static void try_step(const hf_model *m, hf_workspace *w, double part)
 
 static bool is_balanced(const hf_model *m, const hf_form_settings *s, const imbalance *now)
 {
-    return now->residual_N <= s->residual_tolerance * m->reference_N && now->length_gap <= s->length_tolerance;
+    return now->residual_N <= s->residual_tolerance * m->reference_N && now->length_gap <= s->length_tolerance &&
+           now->truss_m <= fmax(s->coupling.tof_m, HF_JOINT_NO_GAP_M);
 }
 
 bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int max_steps, int *n_step)
@@ -125,6 +128,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
     hf_form_settings tight = *s;
     tight.residual_tolerance = fmax(0.1 * s->residual_tolerance, 1e-13);
     tight.length_tolerance = fmax(0.1 * s->length_tolerance, 1e-14);
+    tight.coupling.tof_m = 0.1 * s->coupling.tof_m;
     imbalance now = measure_imbalance(m, w, w->position_m, w->tension_N, w->newton_force_N), next = now;
     double first_merit = now.merit, u[3];
     int n_trusted = 0;
@@ -164,13 +168,16 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
 
 void hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
-    measure_imbalance(m, w, w->position_m, w->tension_N, w->newton_force_N);
-    if (find_step(m, w, &r->condition) != HF_OK) return;
     double largest = 0;
-    for (int i = 0; i < m->n_free; i++) {
+    int n_moving = w->n_moving;
+    w->n_moving = m->n_free + m->n_attachment;
+    measure_imbalance(m, w, w->position_m, w->tension_N, w->newton_force_N);
+    hf_status status = find_step(m, w, &r->condition);
+    for (int i = 0; i < w->n_moving; i++) {
         const double *d = w->newton_step + 3 * i;
         double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
         if (!(square <= largest)) largest = square; /* keeps a NaN */
     }
-    r->position_error_m = sqrt(largest);
+    w->n_moving = n_moving;
+    if (status == HF_OK) r->position_error_m = sqrt(largest);
 }

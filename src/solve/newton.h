@@ -15,8 +15,8 @@
 bool hf_newton_run(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace, int max_steps,
                    int *n_step);
 
-/* Set position_error_m (largest move of a node in the next Newton step) and condition of the result whose shape is in
- * the workspace. Leaves both unchanged when there is no such step. */
+/* Set position_error_m (largest move of a node in the next Newton step, of net and truss together) and condition of the
+ * result whose shape is in the workspace. Leaves both unchanged when there is no such step. */
 void hf_newton_certify(const hf_model *model, hf_workspace *workspace, hf_form_result *result);
 
 /* A tension below this fraction of the reference tension, in an elastic cable, is rounding: the cable is slack, and its

@@ -79,8 +79,13 @@ hf_status hf_newton_matrix_factor(const hf_model *m, hf_workspace *w, double *co
     return hf_newton_matrix_factor_blocks(m, w, hf_newton_matrix_block, condition);
 }
 
-void hf_newton_matrix_solve(const hf_model *m, const hf_workspace *w, double *rhs)
+void hf_newton_matrix_solve_many(const hf_model *m, const hf_workspace *w, int n_rhs, double *rhs)
 {
     int n = hf_newton_matrix_dofs(m);
-    hf_band_back_solve(n, half_bandwidth(m), 1, w->newton_band, rhs, n);
+    hf_band_back_solve(n, half_bandwidth(m), n_rhs, w->newton_band, rhs, n);
+}
+
+void hf_newton_matrix_solve(const hf_model *m, const hf_workspace *w, double *rhs)
+{
+    hf_newton_matrix_solve_many(m, w, 1, rhs);
 }

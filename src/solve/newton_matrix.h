@@ -19,7 +19,7 @@
  * tests of solve and stress pass; with 1e5 one fails (flat_edges_are_solved). */
 #define HF_NEWTON_STIFFENING 1e7
 
-/* Number of unknowns, 3 n_free. */
+/* Number of rows of the band, 3 n_free. */
 static inline int hf_newton_matrix_dofs(const hf_model *model)
 {
     return 3 * model->n_free;
@@ -38,21 +38,22 @@ static inline double hf_newton_matrix_direction(const hf_model *model, const dou
     return length;
 }
 
-/* Set force [3 n_free] to the loads. */
-static inline void hf_newton_matrix_set_loads(const hf_model *model, double *force)
+/* Set force [3 n_moving] to the loads. */
+static inline void hf_newton_matrix_set_loads(const hf_model *model, const hf_workspace *workspace, double *force)
 {
-    for (int i = 0; i < model->n_free; i++)
+    for (int i = 0; i < workspace->n_moving; i++)
         for (int c = 0; c < 3; c++)
             force[3 * i + c] = model->load_N ? model->load_N[c * model->n_node + i] : 0;
 }
 
-/* Add the pull of cable i_cable on its first end, and the opposite on its second, to force [3 n_free]. */
-static inline void hf_newton_matrix_add_pull(const hf_model *model, int i_cable, const double pull[3], double *force)
+/* Add the pull of cable i_cable on its first end, and the opposite on its second, to force [3 n_moving]. */
+static inline void hf_newton_matrix_add_pull(const hf_model *model, const hf_workspace *workspace, int i_cable,
+                                             const double pull[3], double *force)
 {
     int a = model->end_row[2 * i_cable], b = model->end_row[2 * i_cable + 1];
     for (int c = 0; c < 3; c++) {
-        if (a < model->n_free) force[3 * a + c] += pull[c];
-        if (b < model->n_free) force[3 * b + c] -= pull[c];
+        if (a < workspace->n_moving) force[3 * a + c] += pull[c];
+        if (b < workspace->n_moving) force[3 * b + c] -= pull[c];
     }
 }
 
@@ -95,7 +96,8 @@ hf_status hf_newton_matrix_factor(const hf_model *model, hf_workspace *workspace
 hf_status hf_newton_matrix_factor_blocks(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
                                          double *condition);
 
-/* Solve in place, rhs [3 n_free], with the factor in newton_band. */
+/* Solve in place, rhs [3 n_free] or [n_rhs][3 n_free], with the factor in newton_band. */
 void hf_newton_matrix_solve(const hf_model *model, const hf_workspace *workspace, double *rhs);
+void hf_newton_matrix_solve_many(const hf_model *model, const hf_workspace *workspace, int n_rhs, double *rhs);
 
 #endif

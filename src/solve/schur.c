@@ -2,7 +2,6 @@
 
 #include "base/arena.h"
 #include "linalg/dot.h"
-#include "solve/newton_matrix.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,8 +33,15 @@ static void lay_out_schur(hf_arena *arena, const hf_model *m, hf_schur *s)
     s->stiffness = hf_arena_take(arena, n * n, sizeof(double));
     s->flexed = hf_arena_take(arena, n * n, sizeof(double));
     s->factor = hf_arena_take(arena, n * n, sizeof(double));
-    s->column = hf_arena_take(arena, 3 * (size_t)m->n_free + n, sizeof(double));
+    s->column = hf_arena_take(arena, HF_SCHUR_COLUMNS(m), sizeof(double));
     s->pivot = hf_arena_take(arena, n, sizeof(int));
+}
+
+hf_schur hf_schur_of(const hf_model *m, const hf_workspace *w)
+{
+    size_t n = 3 * (size_t)m->n_attachment;
+    double *at = w->schur_work;
+    return (hf_schur){(int)n, at, at + n * n, at + 2 * n * n, at + 3 * n * n, w->schur_pivot, NULL};
 }
 
 hf_status hf_schur_create(const hf_model *m, hf_schur *schur)
@@ -53,34 +59,36 @@ void hf_schur_free(hf_schur *schur)
     *schur = (hf_schur){0};
 }
 
-void hf_schur_push(const hf_model *m, const hf_workspace *w, const double *displacement_m, double *force)
+void hf_schur_push(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, const double *displacement_m,
+                   double *force)
 {
     double block[3][3];
     for (int k = 0; k < m->n_tie; k++) {
         int there = m->end_row[m->tie[k] ^ 1];
         const double *r = displacement_m + 3 * m->tie_attachment[k];
         if (there >= m->n_free) continue;
-        hf_newton_matrix_block(m, w, m->tie[k] / 2, block);
+        block_of(m, w, m->tie[k] / 2, block);
         for (int c = 0; c < 3; c++)
             force[3 * there + c] += block[c][0] * r[0] + block[c][1] * r[1] + block[c][2] * r[2];
     }
 }
 
-void hf_schur_pull(const hf_model *m, const hf_workspace *w, const double *step_m, double *pull)
+void hf_schur_pull(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, const double *step_m,
+                   double *pull)
 {
     double block[3][3];
     for (int k = 0; k < m->n_tie; k++) {
         int there = m->end_row[m->tie[k] ^ 1];
         const double *d = step_m + 3 * there;
         if (there >= m->n_free) continue;
-        hf_newton_matrix_block(m, w, m->tie[k] / 2, block);
+        block_of(m, w, m->tie[k] / 2, block);
         for (int c = 0; c < 3; c++)
             pull[3 * m->tie_attachment[k] + c] += block[c][0] * d[0] + block[c][1] * d[1] + block[c][2] * d[2];
     }
 }
 
 /* Adds H_aa to the stiffness: cables from attachments to free nodes, fixed supports and other attachments. */
-static void add_attachment_stiffness(const hf_model *m, const hf_workspace *w, hf_schur *s)
+static void add_attachment_stiffness(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, hf_schur *s)
 {
     double block[3][3];
     size_t n = (size_t)s->n;
@@ -88,7 +96,7 @@ static void add_attachment_stiffness(const hf_model *m, const hf_workspace *w, h
         int partner = k > 0 && m->tie[k - 1] == (m->tie[k] ^ 1) ? k - 1 : k + 1;
         bool is_pair = partner < m->n_tie && m->tie[partner] == (m->tie[k] ^ 1);
         size_t here = 3 * (size_t)m->tie_attachment[k];
-        hf_newton_matrix_block(m, w, m->tie[k] / 2, block);
+        block_of(m, w, m->tie[k] / 2, block);
         for (size_t r = 0; r < 3; r++)
             for (size_t c = 0; c < 3; c++) {
                 s->stiffness[(here + r) * n + here + c] += block[r][c];
@@ -97,24 +105,40 @@ static void add_attachment_stiffness(const hf_model *m, const hf_workspace *w, h
     }
 }
 
-hf_status hf_schur_factor(const hf_model *m, const hf_workspace *w, hf_schur *s)
+/* Subtracts H_af H_ff^-1 H_fa from the rows of the stiffness of some attachments, as many as have room in `column`. */
+static void subtract_panel(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, int from, hf_schur *s)
 {
-    size_t n = (size_t)s->n, n_dof = 3 * (size_t)m->n_free;
-    double *unit = s->column + n_dof, one = 1, zero = 0;
+    int end = from + HF_SCHUR_PANEL < m->n_attachment ? from + HF_SCHUR_PANEL : m->n_attachment;
+    size_t n = (size_t)s->n, n_dof = (size_t)hf_newton_matrix_dofs(m), n_column = 3 * (size_t)(end - from);
+    double block[3][3];
+    memset(s->column, 0, n_column * n_dof * sizeof(double));
+    for (int k = 0; k < m->n_tie; k++) {
+        int here = m->tie_attachment[k], there = m->end_row[m->tie[k] ^ 1];
+        if (here < from || here >= end || there >= m->n_free) continue;
+        block_of(m, w, m->tie[k] / 2, block);
+        double *column = s->column + (size_t)(3 * (here - from)) * n_dof + 3 * there;
+        for (int c = 0; c < 3; c++, column += n_dof)
+            for (int r = 0; r < 3; r++)
+                column[r] += block[r][c];
+    }
+    hf_newton_matrix_solve_many(m, w, (int)n_column, s->column);
+    for (size_t j = 0; j < n_column; j++) {
+        double *row = s->stiffness + (3 * (size_t)from + j) * n;
+        hf_schur_pull(m, w, block_of, s->column + j * n_dof, row);
+        for (size_t i = 0; i < n; i++)
+            row[i] = -row[i];
+    }
+}
+
+hf_status hf_schur_factor(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, hf_schur *s)
+{
+    size_t n = (size_t)s->n;
+    double one = 1, zero = 0;
     int info = 0;
     memset(s->stiffness, 0, n * n * sizeof(double));
-    memset(unit, 0, n * sizeof(double));
-    for (size_t j = 0; j < n; j++) { /* row j of - H_af H_ff^-1 H_fa */
-        memset(s->column, 0, n_dof * sizeof(double));
-        unit[j] = 1;
-        hf_schur_push(m, w, unit, s->column);
-        unit[j] = 0;
-        hf_newton_matrix_solve(m, w, s->column);
-        hf_schur_pull(m, w, s->column, s->stiffness + j * n);
-        for (size_t i = 0; i < n; i++)
-            s->stiffness[j * n + i] = -s->stiffness[j * n + i];
-    }
-    add_attachment_stiffness(m, w, s);
+    for (int from = 0; from < m->n_attachment; from += HF_SCHUR_PANEL)
+        subtract_panel(m, w, block_of, from, s);
+    add_attachment_stiffness(m, w, block_of, s);
     dgemm_("N", "N", &s->n, &s->n, &s->n, &one, m->flexibility_m_per_N, &s->n, s->stiffness, &s->n, &zero, s->flexed,
            &s->n);
     memcpy(s->factor, s->flexed, n * n * sizeof(double));

@@ -7,7 +7,7 @@
 #ifndef HIFDM_SCHUR_H
 #define HIFDM_SCHUR_H
 
-#include <hifdm/workspace.h>
+#include "solve/newton_matrix.h"
 
 /* r = F f: displacements of the attachments under the forces on them; both [3 n_attachment], m and N. */
 void hf_schur_flex(const hf_model *model, const double *force_N, double *displacement_m);
@@ -18,7 +18,7 @@ typedef struct {
     double *stiffness; /* [n][n] S, symmetric */
     double *flexed;    /* [n][n] F S, column-major */
     double *factor;    /* [n][n] LU of I + F S, column-major */
-    double *column;    /* [3 n_free + n] scratch */
+    double *column;    /* [HF_SCHUR_COLUMNS] scratch */
     int *pivot;        /* [n] */
     void *block;
 } hf_schur;
@@ -27,9 +27,13 @@ typedef struct {
 hf_status hf_schur_create(const hf_model *model, hf_schur *schur);
 void hf_schur_free(hf_schur *schur);
 
-/* Assemble and factor at the workspace's shape, whose Newton matrix must be factored in newton_band. HF_OK or
- * HF_SINGULAR. */
-hf_status hf_schur_factor(const hf_model *model, const hf_workspace *workspace, hf_schur *schur);
+/* In the memory of a workspace that has a Newton matrix: nothing to free. The last factor there is kept. */
+hf_schur hf_schur_of(const hf_model *model, const hf_workspace *workspace);
+
+/* Assemble and factor at the workspace's shape for the matrix of these blocks, whose part for the free nodes must be
+ * factored in newton_band. HF_OK or HF_SINGULAR. */
+hf_status hf_schur_factor(const hf_model *model, const hf_workspace *workspace, hf_newton_block *block_of,
+                          hf_schur *schur);
 
 /* (I + F S)^-1 F b into displacement_m, both [n]: the move of the attachments when b, N, is added to the pull on them
  * at their present places. */
@@ -43,8 +47,10 @@ void hf_schur_solve(const hf_schur *schur, double *b);
  * right. Returns the number of modes. Overwrites `flexed`. */
 int hf_schur_modes(hf_schur *schur, double tolerance, int max_mode, double *mode);
 
-/* force [3 n_free] += -H_fa r; pull [3 n_attachment] += -H_af x, with H at the workspace's shape. */
-void hf_schur_push(const hf_model *model, const hf_workspace *workspace, const double *displacement_m, double *force);
-void hf_schur_pull(const hf_model *model, const hf_workspace *workspace, const double *step_m, double *pull);
+/* force [3 n_free] += -H_fa r; pull [3 n_attachment] += -H_af x, with H of these blocks. */
+void hf_schur_push(const hf_model *model, const hf_workspace *workspace, hf_newton_block *block_of,
+                   const double *displacement_m, double *force);
+void hf_schur_pull(const hf_model *model, const hf_workspace *workspace, hf_newton_block *block_of,
+                   const double *step_m, double *pull);
 
 #endif

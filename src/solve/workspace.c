@@ -26,6 +26,7 @@ hf_status hf_workspace_create(const hf_model *m, hf_workspace *w)
     hf_arena arena = {0};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, m, w)));
     w->block = arena.block;
+    w->n_moving = m->n_free;
     return HF_OK;
 }
 

@@ -122,12 +122,13 @@ END_TEST
 /* Tubes so soft that the coupling diverges. */
 START_TEST(a_truss_that_is_too_soft_is_named)
 {
-    HIFDM(4, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e5", "--set", "coupling.scheme=plain");
-    ERR("error: the truss is too soft for the pretension of its net: after ");
-    ERR("try coupling.scheme: accelerated");
     HIFDM(4, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e5");
-    ERR("error: the truss is too soft for the pretension of its net: after ");
-    ERR(" an attachment would still move beyond all bounds; stiffen the truss");
+    ERR("error: the truss is too soft for the loop with its net: after ");
+    ERR(" an attachment would still move beyond all bounds; stiffen the truss (truss.E_Pa and its tubes), lower "
+        "form.pretension_N, or solve both in one matrix: coupling.scheme: auto, form.method: newton");
+    HIFDM(4, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e5", "--set", "form.method=newton");
+    ERR("error: the truss is too soft for its net: together they have no shape; stiffen the truss (truss.E_Pa and its "
+        "tubes) or lower form.pretension_N");
     ck_assert(!is_there(temp("nowhere.h5")));
 }
 END_TEST
@@ -143,7 +144,10 @@ START_TEST(limits_and_keys)
           "coupling.tof_m=1e-9");
     ck_assert_msg(!strstr(said.err, "nan") && strstr(said.err, " m; raise "), "%s", said.err); /* no step before it */
     HIFDM(0, "check", TRUSS, "--set", "coupling.tof_m=1e-3");
-    OUT("coupling with the truss: accelerated, tof 0.001 m, at most 200 form-findings\n");
+    OUT("coupling with the truss: auto, accelerated, tof 0.001 m, at most 200 form-findings\n");
+    HIFDM(0, "check", TRUSS, "--set", "form.method=auto", "--set", "form.stop=residual", "--set",
+          "scene.parabolic_cylinder.boundary=outer_edge", "--set", "scene.parabolic_cylinder.scallop=0.1");
+    OUT("coupling with the truss: auto, in one matrix, tof 1e-06 m\n");
     HIFDM(2, "check", TRUSS, "--set", "coupling.tof_m=0");
     ERR("coupling.tof_m: must be above 0");
     HIFDM(2, "check", TRUSS, "--set", "coupling.scheme=fast");

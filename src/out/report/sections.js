@@ -140,8 +140,8 @@ function writeCoupling() {
     k = summary.coupling;
   if (!c || !range(c.step_m || [])) return;
   const x = spaced(c).map((i) => i + 1),
-    xLabel = "outer iteration",
-    head = (i) => `outer iteration ${x[i]}`;
+    xLabel = "round",
+    head = (i) => `round ${x[i]}`;
   const one = (title, key, yLabel, caption) =>
     c[key] &&
     chart({
@@ -156,7 +156,7 @@ function writeCoupling() {
     });
   const said =
     k &&
-    `Net and truss settled on each other in ${fmtCount(k.iterations)} outer iterations; the truss gives way ` +
+    `Net and truss settled on each other in ${fmtCount(k.iterations)} rounds; the truss gives way ` +
       `by up to ${fmt(1e3 * k.max_displacement_m)} mm. Stopped by ${stopText(k.stop_reason)}.`;
   section(
     "coupling",
@@ -169,7 +169,7 @@ function writeCoupling() {
         "Change of the elastic deformation",
         "step_m",
         "change (mm)",
-        "Largest change of a support's displacement in an outer iteration; Fig. 21.",
+        "Largest change of a support's displacement in a round; Fig. 21.",
       ),
       one(
         "Largest displacement",

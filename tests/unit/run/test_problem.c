@@ -122,7 +122,7 @@ static const struct refusal {
     {SMALL_NET(", scallop: 0.1") "optimize: {min_tension_N: 1e4, max_tension_N: 2e4}\n", HF_BAD_CASE,
      "does not reach min_tension_N"},
     {SMALL_NET(", scallop: 0.1") "truss: {bud: {diameter_m: 1e-4, wall_m: 4e-5}, mbug: {diameter_m: 1e-4, wall_m: "
-                                 "4e-5}, abug: {diameter_m: 1e-4, wall_m: 4e-5}}\n",
+                                 "4e-5}, abug: {diameter_m: 1e-4, wall_m: 4e-5}}\ncoupling: {scheme: accelerated}\n",
      HF_TRUSS_TOO_SOFT, "the truss is too soft"},
 };
 enum { N_REFUSAL = sizeof refusals / sizeof *refusals };

@@ -140,7 +140,7 @@ static void sensitivity(struct run *r, int k, hf_schur *schur, double *dx, doubl
     const int *end = m->end_row + 2 * e;
     ck_assert_int_eq(hf_evaluate(&r->evaluator, r->base_N, w, &at), HF_OK);
     ck_assert_int_eq(hf_newton_matrix_factor(m, w, NULL), HF_OK);
-    ck_assert_int_eq(hf_schur_factor(m, w, schur), HF_OK);
+    ck_assert_int_eq(hf_schur_factor(m, w, hf_newton_matrix_block, schur), HF_OK);
     memset(dx, 0, (size_t)n * sizeof *dx);
     for (int c = 0; c < 3; c++) {
         double f = (w->position_m[c * m->n_node + end[1]] - w->position_m[c * m->n_node + end[0]]) /
@@ -152,10 +152,10 @@ static void sensitivity(struct run *r, int k, hf_schur *schur, double *dx, doubl
         }
     }
     hf_band_back_solve(n, band, 1, w->newton_band, dx, n);
-    hf_schur_pull(m, w, dx, pull);
+    hf_schur_pull(m, w, hf_newton_matrix_block, dx, pull);
     hf_schur_displace(m, schur, pull, dr);
     memset(more, 0, (size_t)n * sizeof *more);
-    hf_schur_push(m, w, dr, more);
+    hf_schur_push(m, w, hf_newton_matrix_block, dr, more);
     hf_band_back_solve(n, band, 1, w->newton_band, more, n);
     for (int i = 0; i < n; i++)
         dx[i] += more[i];

@@ -476,7 +476,6 @@ START_TEST(errors_of_length_at_attachments_are_position_errors)
     }
     ck_assert_int_gt(n_changed, 0);
     hf_certify(m, &net.work, &net.result);
-    hf_coupling_certify(m, &net.work, &net.result);
     double estimate_m = net.result.position_error_m;
     ck_assert_int_eq(find_coupled(&net, HF_COUPLING_ACCELERATED, 1e-12), HF_OK);
     double *after = copy_shape(&net);

@@ -1,0 +1,81 @@
+#include "solve/joint.h"
+
+#include "solve/schur.h"
+
+#include <string.h>
+
+static bool has_truss(const hf_model *m, const hf_workspace *w)
+{
+    return w->n_moving > m->n_free;
+}
+
+static double displacement_m(const hf_model *m, const double *position_m, int i_dof)
+{
+    int at = i_dof % 3 * m->n_node + m->attachment_row[i_dof / 3];
+    return position_m[at] - m->position_m[at];
+}
+
+hf_status hf_joint_factor(const hf_model *m, hf_workspace *w, hf_newton_block *block_of, double *condition)
+{
+    HF_TRY(hf_newton_matrix_factor_blocks(m, w, block_of, condition));
+    if (!has_truss(m, w)) return HF_OK;
+    hf_schur schur = hf_schur_of(m, w);
+    return hf_schur_factor(m, w, block_of, &schur);
+}
+
+void hf_joint_solve(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, double *rhs)
+{
+    hf_newton_matrix_solve(m, w, rhs);
+    if (!has_truss(m, w)) return;
+    hf_schur schur = hf_schur_of(m, w);
+    int n_free = 3 * m->n_free;
+    double *pull = rhs + n_free, *answer = schur.column, *move = answer + n_free;
+    hf_schur_pull(m, w, block_of, rhs, pull);
+    hf_schur_flex(m, pull, move);
+    for (int i = 0; i < schur.n; i++)
+        move[i] -= displacement_m(m, w->position_m, i);
+    hf_schur_solve(&schur, move);
+    memset(answer, 0, (size_t)n_free * sizeof *answer);
+    hf_schur_push(m, w, block_of, move, answer);
+    hf_newton_matrix_solve(m, w, answer);
+    for (int i = 0; i < n_free; i++)
+        rhs[i] += answer[i];
+    memcpy(pull, move, (size_t)schur.n * sizeof *pull);
+}
+
+double hf_joint_mean_length_m(const hf_model *m)
+{
+    double sum = 0;
+    for (int e = 0; e < m->n_cable; e++)
+        sum += m->length_m[e];
+    return sum / m->n_cable;
+}
+
+double hf_joint_gap_m(const hf_model *m, const hf_workspace *w, const double *position_m, const double *force,
+                      double *square)
+{
+    double largest = 0, all = 0, *gap = w->coupling_work;
+    if (!has_truss(m, w)) return 0;
+    hf_schur_flex(m, force + 3 * m->n_free, gap);
+    for (int i = 0; i < 3 * m->n_attachment; i += 3) {
+        double sum = 0;
+        for (int c = i; c < i + 3; c++) {
+            double d = gap[c] - displacement_m(m, position_m, c);
+            sum += d * d;
+        }
+        if (!(sum <= largest)) largest = sum; /* keeps a NaN */
+        all += sum;
+    }
+    double mean_m = hf_joint_mean_length_m(m);
+    if (square) *square += all / (mean_m * mean_m);
+    return sqrt(largest);
+}
+
+void hf_joint_set_displacement(const hf_model *m, hf_workspace *w)
+{
+    for (int i = 0; i < 3 * m->n_attachment; i++) {
+        int at = i % 3 * m->n_node + m->attachment_row[i / 3];
+        w->displacement_m[i] = displacement_m(m, w->position_m, i);
+        w->position_m[at] = m->position_m[at] + w->displacement_m[i];
+    }
+}
