@@ -298,6 +298,15 @@ static yaml_mark_t problem_mark(const yaml_parser_t *parser, const char *text)
     return mark;
 }
 
+/* A parser that names no problem has no memory; it does not always say so in `error`. */
+static void complain_of_yaml(loader *l, const yaml_parser_t *parser, const char *text)
+{
+    if (parser->problem)
+        complain(l, problem_mark(parser, text), "YAML", parser->problem, "");
+    else
+        l->no_memory = true;
+}
+
 /* Parse `text` as one YAML document and give its root to `use`. */
 static void with_document(loader *l, const char *text, size_t length,
                           void (*use)(loader *, const yaml_node_t *, void *), void *context)
@@ -310,18 +319,13 @@ static void with_document(loader *l, const char *text, size_t length,
     }
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
     if (!yaml_parser_load(&parser, &document)) {
-        l->no_memory |= parser.error == YAML_MEMORY_ERROR;
-        if (!l->no_memory)
-            complain(l, problem_mark(&parser, text), "YAML", parser.problem ? parser.problem : "cannot be read", "");
+        complain_of_yaml(l, &parser, text);
     } else {
         l->document = &document;
         use(l, yaml_document_get_root_node(&document), context);
         yaml_document_delete(&document);
         if (!yaml_parser_load(&parser, &next)) {
-            l->no_memory |= parser.error == YAML_MEMORY_ERROR;
-            if (!l->no_memory)
-                complain(l, problem_mark(&parser, text), "YAML", parser.problem ? parser.problem : "cannot be read",
-                         "");
+            complain_of_yaml(l, &parser, text);
         } else {
             if (yaml_document_get_root_node(&next))
                 complain(l, next.start_mark, "YAML", "a second document in this file", "; one case per file");
@@ -461,7 +465,7 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
     with_document(&l, settings->text, settings->text_length, use_root, NULL);
     for (int i = 0; i < n_override; i++)
         apply_override(&l, overrides[i]);
-    if (l.walked && !l.is_study) hf_config_check(settings, &l.faults);
+    if (l.walked && !l.is_study && !l.no_memory) hf_config_check(settings, &l.faults);
     hf_config_complete(settings);
     cut_sweep(&l);
     hf_status sealed = seal(settings, overrides, n_override);

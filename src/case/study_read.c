@@ -159,6 +159,7 @@ static void add_value(reader *r, hf_study_axis *axis, const char *value, yaml_ma
     if (!fits) fault(r, mark, field->path, "is too long");
     if (!is_one_line) fault(r, mark, field->path, "a value must be on one line");
     if (status != HF_OK) {
+        r->no_memory |= status == HF_NO_MEMORY;
         r->failed = true;
         return;
     }
@@ -425,9 +426,10 @@ static void parse(reader *r, const char *text, size_t length)
     }
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
     if (!yaml_parser_load(&parser, &document)) {
-        r->no_memory |= parser.error == YAML_MEMORY_ERROR;
-        if (!r->no_memory)
-            fault(r, parser.problem_mark, "", "YAML: %s", parser.problem ? parser.problem : "cannot be read");
+        if (parser.problem)
+            fault(r, parser.problem_mark, "", "YAML: %s", parser.problem);
+        else
+            r->no_memory = true; /* the parser does not always say so in `error` */
     } else {
         r->document = &document;
         read_root(r, yaml_document_get_root_node(&document));
