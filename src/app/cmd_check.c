@@ -248,11 +248,12 @@ static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, F
     hf_print_duration(hf_clock_s() - begin_s, text, sizeof text);
     if (r->status == HF_NOT_CONVERGED && form.max_iterations < p->settings.form.max_iterations) {
         hf_print_duration(iteration_s * p->settings.form.max_iterations, text, sizeof text);
-        fprintf(f, "  expected time form-finding: not finished after %d iterations; at most %s\n", r->iterations, text);
+        fprintf(f, "  expected time form-finding: not finished after %d iteration%s; at most %s\n", r->iterations,
+                r->iterations == 1 ? "" : "s", text);
         return HF_OK;
     }
-    fprintf(f, "  expected time form-finding: %s (%d iterations, stopped by %s)\n", text, r->iterations,
-            hf_stop_reason_word((int)r->stop_reason));
+    fprintf(f, "  expected time form-finding: %s (%d iteration%s, stopped by %s)\n", text, r->iterations,
+            r->iterations == 1 ? "" : "s", hf_stop_reason_word((int)r->stop_reason));
     HF_TRY(hf_problem_explain(p, messages));
     if (!v) return HF_OK;
     HF_TRY(hf_problem_base(p, messages));

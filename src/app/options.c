@@ -315,6 +315,9 @@ static hf_status read_words(int argc, char *const *argv, const hf_command *comma
             if (!is_joined && i + 1 == argc)
                 return hf_error(messages, HF_BAD_USAGE, "'%s' needs %s behind it", argv[i], option.argument);
             value = is_joined ? equals + 1 : argv[++i];
+            if (!*value && option.read == read_text) /* a file or a folder */
+                return hf_error(messages, HF_BAD_USAGE, "'%s' needs %s behind it, not an empty word", option.name,
+                                option.argument);
         } else if (equals) {
             return hf_error(messages, HF_BAD_USAGE, "'%s' takes no value", option.name);
         }

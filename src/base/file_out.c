@@ -343,7 +343,7 @@ hf_status hf_file_out_set_end(hf_file_out_set *set, hf_status status, hf_message
     for (int i = 0; i < set->n && status == HF_OK; i++)
         if (hf_file_out_sync(set->file[i].file) != 0) status = fail(set->file[i].path, messages);
     for (int i = 0; i < set->n && status == HF_OK; i++)
-        status = hf_file_out_publish(&set->file[i], messages);
+        if (hf_file_out_replace(&set->file[i], set->file[i].path) != 0) status = fail(set->file[i].path, messages);
     for (int i = 0; i < set->n; i++)
         hf_file_out_drop(&set->file[i]);
     set->n = 0;

@@ -88,6 +88,10 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
     if (!c->has_optimize || f->failed) return; /* values that were refused are not compared */
     if (o->min_tension_N >= o->max_tension_N)
         hf_config_fault_of(f, "optimize.min_tension_N", "must be below optimize.max_tension_N");
+    if (o->compare_lm == HF_COMPARE_TRUE && o->rule == HF_RULE_SEEDED)
+        hf_config_fault_of(
+            f, "optimize.compare_lm",
+            "cannot be true with optimize.rule seeded, under which Levenberg-Marquardt has no derivatives");
     if (o->elites >= o->population) hf_config_fault_of(f, "optimize.elites", "must be below optimize.population");
     if (o->crossover_low > o->crossover_high)
         hf_config_fault_of(f, "optimize.crossover_low", "must not be above optimize.crossover_high");

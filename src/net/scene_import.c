@@ -36,6 +36,8 @@ static bool read_nodes(hf_csv *t, const int *where, hf_scene *s)
 
 /* ---- cables ---- */
 
+#define LENGTH_RATIO_MIN 1e-12 /* of an elastic cable, unstressed to theoretical: a tension of 1e12 EA says nothing */
+
 enum { CABLE_ID, CABLE_I, CABLE_J, CABLE_GROUP, CABLE_LAW, CABLE_VALUE, CABLE_EA, N_CABLE_COLUMN };
 static const char *const cable_column[N_CABLE_COLUMN] = {"id", "i", "j", "group", "law", "value", "EA_N"};
 
@@ -56,6 +58,11 @@ static void read_target(hf_csv *t, const int *where, int r, const char *id, hf_s
         if (!may_push && s->target[r] <= 0)
             hf_csv_fault(t, t->line[r], id, "value must be above zero for the law ", word);
         if (may_push && s->target[r] == 0) hf_csv_fault(t, t->line[r], id, "value must not be zero for the law ", word);
+        if (hf_law_has(s->law[r], HF_LAW_NEEDS_EA) && s->target[r] > 0 &&
+            s->target[r] < LENGTH_RATIO_MIN * hf_scene_theoretical_length(s, r))
+            hf_csv_fault(t, t->line[r], id,
+                         "value, the unstressed length, is less than 1e-12 of the distance of its ends for the law ",
+                         word);
     } else if (name) {
         char what[96];
         snprintf(what, sizeof what, " needs a value%s%s in %s", *name ? ", the " : "", name,

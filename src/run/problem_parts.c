@@ -92,7 +92,10 @@ static hf_status check_base(const hf_problem *p, hf_messages *messages)
         const char *id = p->scene.cable_id[p->model.gene_cable[k]];
         double base_N = p->base_N[k];
         if (!(base_N > 0))
-            return hf_error(messages, HF_BAD_CASE, "optimize: boundary cable '%s' has no tension to start from", id);
+            return hf_error(messages, HF_NO_FEASIBLE,
+                            "optimize: boundary cable '%s' has no tension after form-finding to start from; give it a "
+                            "shorter length, or a law that holds it taut",
+                            id);
         if (base_N + o->range_N < o->min_tension_N || base_N - o->range_N > o->max_tension_N)
             return hf_error(
                 messages, HF_BAD_CASE,
@@ -236,12 +239,13 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
                         "or loosen the tolerances",
                         r->residual_N, p->scene.cable_id[r->culprit], w->length_m[r->culprit]);
     int e = furthest_off(p);
-    return hf_error(messages, r->status,
-                    "form-finding did not converge in %d iterations: nodal residual %.2e N, cable lengths off by up to "
-                    "%.2e; furthest from its law is cable '%s', %g N and %g m long; raise form.max_iterations or "
-                    "loosen the tolerances",
-                    r->iterations, r->residual_N, r->length_error, p->scene.cable_id[e], w->tension_N[e],
-                    w->length_m[e]);
+    return hf_error(
+        messages, r->status,
+        "form-finding did not converge in %d iteration%s: nodal residual %.2e N, cable lengths off by up to "
+        "%.2e; furthest from its law is cable '%s', %g N and %g m long; raise form.max_iterations or "
+        "loosen the tolerances",
+        r->iterations, r->iterations == 1 ? "" : "s", r->residual_N, r->length_error, p->scene.cable_id[e],
+        w->tension_N[e], w->length_m[e]);
 }
 
 /* What makes the net pull less. */

@@ -4,6 +4,7 @@
 #include "base/arena.h"
 
 #include "base/file_io.h"
+#include "base/text.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -264,10 +265,11 @@ hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf
     size_t used = 0;
     *text = '\0';
     for (int i = 0; i < HF_HDF5_COUNT(from); i++) {
-        char value[8192] = ""; /* the flags of a build may be long */
+        char value[8192] = "", line[8192]; /* the flags of a build may be long */
         if (!hf_hdf5_has_chars(&io, io.file, from[i][0], from[i][1])) continue;
         hf_hdf5_get(&io, io.file, from[i][0], from[i][1], HF_KIND_CHARS, value, sizeof value);
-        int n = snprintf(text + used, size - used, "%s: %s\n", from[i][1], value);
+        hf_text_escape(value, line, sizeof line); /* a line each, whatever it holds */
+        int n = snprintf(text + used, size - used, "%s: %s\n", from[i][1], line);
         if (n < 0 || (size_t)n >= size - used) break; /* cut at the end of the room */
         used += (size_t)n;
     }

@@ -116,6 +116,12 @@ START_TEST(settings_that_contradict_each_other_are_told)
     ERRS("error: %s:8:18: optimize.crossover_low: must not be above optimize.crossover_high\n", path);
     ERRS("error: %s:9:17: optimize.mutation_low: must not be above optimize.mutation_high\n", path);
     ck_assert_int_eq(count_of(said.err, "\n"), 4);
+    path = file_with("d.yaml", SMALL_SCENE "optimize:\n"
+                                           "  rule: seeded\n"
+                                           "  compare_lm: true\n");
+    HIFDM(2, "check", path);
+    ERRS("error: %s:5:15: optimize.compare_lm: cannot be true with optimize.rule seeded", path);
+    HIFDM(0, "check", path, "--set", "optimize.compare_lm=auto");
 }
 END_TEST
 

@@ -48,6 +48,9 @@ static const struct {
      "error: @cables.csv:5: 'e': value must be above zero for the law tension\n"
      "error: @cables.csv:6: 'f': value must be above zero for the law length\n"
      "error: @cables.csv:7: 'g': the law force_density needs a value in N/m\n"},
+    {NODES, "id,i,j,group,law,value,EA_N\nac,a,c,inner,elastic,1e-300,1e5\nbc,b,c,inner,tension,10,\n",
+     "error: @cables.csv:2: 'ac': value, the unstressed length, is less than 1e-12 of the distance of its ends for the "
+     "law elastic\n"},
     {NODES, CABLES "e,a,c,inner,rubber,1\n",
      "error: @cables.csv:5: 'e': law must be one of tension length force_density elastic, not rubber\n"},
     {"", CABLES, "error: @nodes.csv:1: the file is empty: a header line is needed\n"},
@@ -161,6 +164,25 @@ START_TEST(other_ways_to_write_a_table_are_read)
 }
 END_TEST
 
+/* Nothing to start the optimisation from: the shape that was found is kept. */
+START_TEST(a_shape_with_a_slack_boundary_cable_is_kept)
+{
+    const char *path = temp("slack.h5");
+    net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0,0,edge\nc,2,0,0,support\nd,1,1,0,inner\ne,1,3,0,support\n",
+             "id,i,j,group,law,value,EA_N\nab,a,b,boundary,elastic,1.0,1e4\nbc,b,c,boundary,elastic,9.2,1e4\n"
+             "bd,b,d,inner,tension,10,\nde,d,e,inner,tension,10,\nbc2,c,b,inner,elastic,1.0,1e4\n");
+    const char *c = file_with("slack.yaml", "scene:\n  import: {nodes: nodes.csv, cables: cables.csv}\n" SMALL_GA);
+    HIFDM(3, "run", c, "-o", path);
+    ERR("error: optimize: boundary cable 'bc' has no tension after form-finding to start from; give it a shorter");
+    OUT("form-finding  psi");
+    EXPECT(path, "--", "a.attrs['finished'] == 1", "a['form/tension_N'].shape == (5,)", "'ga' not in a");
+    HIFDM(3, "run", c, "-o", path);
+    ERR("is the finished result of this case");
+    ERR("has no tension after form-finding");
+    HIFDM(0, "export", path, "--csv", temp("csv"));
+}
+END_TEST
+
 Suite *suite_cli_bad_net(void)
 {
     Suite *suite = suite_create("cli/bad_net");
@@ -170,6 +192,7 @@ Suite *suite_cli_bad_net(void)
     tcase_add_test(tcase, long_paths_leave_room_for_line_and_id);
     tcase_add_test(tcase, words_are_cut_between_letters);
     tcase_add_test(tcase, missing_files_of_a_net_are_told);
+    tcase_add_test(tcase, a_shape_with_a_slack_boundary_cable_is_kept);
     tcase_add_test(tcase, other_ways_to_write_a_table_are_read);
     suite_add_tcase(suite, tcase);
     return suite;

@@ -66,7 +66,6 @@ START_TEST(output_that_cannot_be_is_told)
     REFUSED("/dev/full", "error: /dev/full: is not an ordinary file; use -o to choose a file name\n");
     REFUSED("/dev/null", "error: /dev/null: is not an ordinary file; use -o to choose a file name\n");
     REFUSED("/proc/hifdm.h5", "error: /proc/hifdm.h5: cannot "); /* nobody can make a file there, root included */
-    REFUSED("", "error: : ");
     ck_assert(file_is(temp("file"), "mine"));
     HIFDM(5, "run", file_with("c.yaml", SMALL_SCENE), "-o", temp("file/r.h5"), "--force");
     HIFDM(5, "run", file_with("c.yaml", SMALL_SCENE), "-o", "/dev/full", "--force");

@@ -141,6 +141,24 @@ START_TEST(missing_stages_are_absent)
 }
 END_TEST
 
+/* A line of the provenance is an attribute, whatever the attribute holds. */
+START_TEST(an_attribute_forges_no_line)
+{
+    const char *out = temp("f.h5");
+    HIFDM(0, "run", file_with("f.yaml", SMALL_SCENE), "-o", out, "--quiet");
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
+          "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+')\n"
+          "f.attrs.create('host', b'here\\nrng: forged\\nsha256: forged', dtype=h5py.string_dtype('utf-8', 40))",
+          out);
+    HIFDM(0, "report", out, "-o", temp("f.html"));
+    EXPECT(data_of(temp("f.html"), "f.json"), "--",
+           "[p for p in a['provenance'] if p.startswith('host: here')] == "
+           "['host: here\\\\nrng: forged\\\\nsha256: forged']",
+           "len([p for p in a['provenance'] if p.startswith(('rng: ', 'sha256: '))]) == 2",
+           "not any(p.endswith(': forged') and not p.startswith('host') for p in a['provenance'])");
+}
+END_TEST
+
 START_TEST(truss_is_shown_when_there_is_one)
 {
     const char *out = temp("t.h5");
@@ -259,6 +277,7 @@ Suite *suite_cli_report(void)
     tcase_add_test(tcase, long_histories_are_thinned);
     tcase_add_test(tcase, nothing_in_a_case_becomes_markup);
     tcase_add_test(tcase, missing_stages_are_absent);
+    tcase_add_test(tcase, an_attribute_forges_no_line);
     tcase_add_test(tcase, truss_is_shown_when_there_is_one);
     tcase_add_test(tcase, merged_study_is_a_page_of_points);
     tcase_add_test(tcase, files_are_not_replaced_unasked);
