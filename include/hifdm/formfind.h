@@ -36,7 +36,8 @@ hf_status hf_form_measure(const hf_model *model, const hf_form_settings *setting
 /* Assemble the force density matrix D of q_N_per_m (Eq. 2) into the workspace's band. */
 void hf_form_assemble(const hf_model *model, hf_workspace *workspace);
 
-/* Largest nodal force out of balance at the workspace's shape, N. Leaves the nodal forces in force_N. */
+/* Largest nodal force out of balance at the workspace's shape, N, with the tensions q l of elastic cables. Leaves the
+ * nodal forces in force_N. The residual_N of a result has these cables at the tension of their law. */
 double hf_form_residual_N(const hf_model *model, hf_workspace *workspace);
 
 /* A cable of law force_density has collapsed when it is shorter than HF_FORM_GONE times its theoretical length (for a

@@ -154,9 +154,14 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
 
 /* ---- nodal residual ---- */
 
-/* Sums the forces of all cables on their nodes, at the tensions of their laws (T* of law tension, q l of the others),
- * and the loads, into force_N. `without_chains` leaves out the straight chains under law length. */
-static void nodal_forces(const hf_model *m, hf_workspace *w, bool without_chains)
+typedef enum {
+    WITH_MULTIPLIERS, /* T* of law tension, q l of the others: what the iterations balance */
+    WITHOUT_CHAINS,   /* the same without the straight chains under law length */
+    BY_LAW            /* elastic cables, too, at the tension that their law gives at this length */
+} pulls;
+
+/* Sums the forces of all cables on their nodes, and the loads, into force_N. */
+static void nodal_forces(const hf_model *m, hf_workspace *w, pulls which)
 {
     const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
     double *fx = w->force_N, *fy = fx + m->n_node, *fz = fy + m->n_node;
@@ -166,26 +171,33 @@ static void nodal_forces(const hf_model *m, hf_workspace *w, bool without_chains
         memset(fx, 0, 3 * (size_t)m->n_node * sizeof(double));
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-        if (without_chains && hf_law_has(w->law[e], HF_LAW_IS_RIGID) &&
+        if (which == WITHOUT_CHAINS && hf_law_has(w->law[e], HF_LAW_IS_RIGID) &&
             (m->chain_of_row[a] >= 0 || m->chain_of_row[b] >= 0))
             continue;
         double q = hf_workspace_held_q_N_per_m(m, w, e);
+        if (which == BY_LAW && hf_law_has(w->law[e], HF_LAW_GOES_SLACK))
+            q = hf_law_tension_N(hf_workspace_cable(m, w, e), w->length_m[e]) / w->length_m[e];
         double dx = q * (x[b] - x[a]), dy = q * (y[b] - y[a]), dz = q * (z[b] - z[a]);
         fx[a] += dx, fy[a] += dy, fz[a] += dz;
         fx[b] -= dx, fy[b] -= dy, fz[b] -= dz;
     }
 }
 
-double hf_form_residual_N(const hf_model *m, hf_workspace *w)
+static double largest_nodal_force_N(const hf_model *m, hf_workspace *w, pulls which)
 {
     double largest = 0, scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
     const double *fx = w->force_N, *fy = fx + m->n_node, *fz = fy + m->n_node;
-    nodal_forces(m, w, false);
+    nodal_forces(m, w, which);
     for (int i = 0; i < m->n_free; i++) {
         double x = scale * fx[i], y = scale * fy[i], z = scale * fz[i];
         largest = larger(largest, x * x + y * y + z * z);
     }
     return sqrt(largest) * m->reference_N;
+}
+
+double hf_form_residual_N(const hf_model *m, hf_workspace *w)
+{
+    return largest_nodal_force_N(m, w, WITH_MULTIPLIERS);
 }
 
 /* Largest coordinate of the ends of cable e, m. The rounding of the cable's length is relative to it. */
@@ -312,7 +324,7 @@ static double chain_burden_N(const hf_model *m, const hf_workspace *w, int i_cha
 bool hf_form_chain_is_loaded(const hf_model *m, hf_workspace *w, int i_chain)
 {
     if (!chain_is_straight(m, w, i_chain)) return false;
-    nodal_forces(m, w, true);
+    nodal_forces(m, w, WITHOUT_CHAINS);
     return chain_burden_N(m, w, i_chain) > CHAIN_LOAD_NONE * m->reference_N;
 }
 
@@ -323,7 +335,7 @@ static double look_at_chains(const hf_model *m, hf_workspace *w, hf_form_result 
     r->n_loaded_chain = 0;
     *worst = -1;
     int n_chain = hf_form_n_chain(m);
-    if (n_chain) nodal_forces(m, w, true);
+    if (n_chain) nodal_forces(m, w, WITHOUT_CHAINS);
     for (int i = 0; i < n_chain; i++) {
         if (!chain_is_straight(m, w, i)) continue;
         double load = chain_burden_N(m, w, i);
@@ -419,14 +431,18 @@ static void open_result(hf_form_result *r)
     hf_result_blank(r);
 }
 
+static hf_status close_refused(hf_form_result *r)
+{
+    r->stop_reason = HF_STOPPED_ILL_POSED;
+    hf_result_blank(r);
+    r->n_slack = 0;
+    return r->status;
+}
+
 static hf_status finish_result(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
-    if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) {
-        r->stop_reason = HF_STOPPED_ILL_POSED;
-        hf_result_blank(r);
-        r->n_slack = 0;
-        return r->status;
-    }
+    if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) return close_refused(r);
+    if (m->EA_N) r->residual_N = largest_nodal_force_N(m, w, BY_LAW);
     r->psi_m = hf_metrics_psi_m(m, w);
     r->inner_tension_ratio = hf_metrics_tension_ratio(m, w, HF_GROUP_INNER);
     r->boundary_tension_ratio = hf_metrics_tension_ratio(m, w, HF_GROUP_BOUNDARY);
@@ -512,5 +528,5 @@ void hf_form_refuse(hf_status status, int iterations, hf_form_result *r)
     open_result(r);
     r->status = status;
     r->iterations = iterations;
-    finish_result(NULL, NULL, r);
+    close_refused(r);
 }

@@ -247,6 +247,49 @@ START_TEST(populations_fall_back)
 }
 END_TEST
 
+/* Largest force out of balance in the workspace's shape: elastic cables pull with EA (l/l0 - 1). */
+static double imbalance_by_law_N(const struct net *net)
+{
+    const hf_model *m = &net->model;
+    double largest = 0;
+    for (int i = 0; i < m->n_free; i++) {
+        double force[3];
+        for (int c = 0; c < 3; c++)
+            force[c] = m->load_N ? m->load_N[c * m->n_node + i] : 0;
+        for (int k = 0; k < 2 * m->n_cable; k++) {
+            if (m->end_row[k] != i) continue;
+            double d[3], square = 0;
+            for (int c = 0; c < 3; c++) {
+                d[c] =
+                    net->work.position_m[c * m->n_node + m->end_row[k ^ 1]] - net->work.position_m[c * m->n_node + i];
+                square += d[c] * d[c];
+            }
+            hf_law_cable cable = hf_workspace_cable(m, &net->work, k / 2);
+            for (int c = 0; c < 3; c++)
+                force[c] += hf_law_tension_N(cable, sqrt(square)) * d[c] / sqrt(square);
+        }
+        largest = fmax(largest, hypot(hypot(force[0], force[1]), force[2]));
+    }
+    return largest;
+}
+
+/* Wherever the iteration stopped: the multipliers that it balances are not what the cables pull with there. */
+START_TEST(the_residual_has_cables_at_the_tension_of_their_law)
+{
+    double EA[400];
+    struct net net;
+    open_mixed(&net, 0, 1e5, EA);
+    net.form.method = HF_METHOD_HIFDM;
+    for (net.form.max_iterations = 1; net.form.max_iterations < 30; net.form.max_iterations *= 3) {
+        hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &net.result);
+        double by_law_N = imbalance_by_law_N(&net);
+        ck_assert_double_eq_tol(net.result.residual_N, by_law_N, 1e-9 * by_law_N + 1e-9);
+        ck_assert_double_gt(by_law_N, 1.01 * hf_form_residual_N(&net.model, &net.work));
+    }
+    close_net(&net);
+}
+END_TEST
+
 Suite *suite_unit_elastic(void)
 {
     Suite *suite = suite_create("unit/elastic");
@@ -258,6 +301,7 @@ Suite *suite_unit_elastic(void)
     tcase_add_test(tests, slack_cables_are_legal_and_counted);
     tcase_add_loop_test(tests, fixed_point_agrees_with_newton, 0, 3);
     tcase_add_test(tests, stiffness_counts_for_symmetry);
+    tcase_add_test(tests, the_residual_has_cables_at_the_tension_of_their_law);
     tcase_add_loop_test(tests, populations_fall_back, 0, 3);
     return suite;
 }
