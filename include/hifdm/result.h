@@ -48,6 +48,28 @@ typedef enum {
 
 const char *hf_coupling_stop_word(int stop); /* "unknown" for a foreign value */
 
+/* Whether the bounds of a result are proven, and if not, why. X(name, value, word stored in files, what it means).
+ * Never renumber. */
+#define HF_BOUND_REASON_LIST(X)                                                                                        \
+    X(NONE, 0, "none", "no proof was tried")                                                                           \
+    X(PROVEN, 1, "proven", "no equilibrium is farther away")                                                           \
+    X(STRUTS, 2, "struts", "the net has struts: its energy is not convex")                                             \
+    X(TRUSS, 3, "truss", "the net moves its truss")                                                                    \
+    X(NO_MATRIX, 4, "no_matrix", "the method has no Newton matrix for these laws")                                     \
+    X(NOT_DEFINITE, 5, "not_definite", "the net is too soft in some direction to tell its stiffness from rounding")    \
+    X(NOT_CONTRACTING, 6, "not_contracting", "the shape is too far from an equilibrium")                               \
+    X(SLACK_OR_TAUT, 7, "slack_or_taut", "some cable is at the brink of going slack")                                  \
+    X(DEPENDENT_LENGTHS, 8, "dependent_lengths", "prescribed lengths depend on each other")
+
+typedef enum {
+#define HF_BOUND_REASON_ENUM(name, value, word, meaning) HF_BOUND_##name = value,
+    HF_BOUND_REASON_LIST(HF_BOUND_REASON_ENUM)
+#undef HF_BOUND_REASON_ENUM
+} hf_bound_reason;
+
+const char *hf_bound_reason_word(int reason);    /* "unknown" for a foreign value */
+const char *hf_bound_reason_meaning(int reason); /* the same */
+
 /* ---- The list: X(type, member, kind, json, individual, key, units, description) ----
  *
  * kind         of the stored value (REAL, INT, or an enumeration of the store's layout)
@@ -62,12 +84,15 @@ const char *hf_coupling_stop_word(int stop); /* "unknown" for a foreign value */
  *   culprit                 cable (COLLAPSED, NOT_FINITE; NOT_CONVERGED: the one whose rounding stands in the way), row
  *                           of D (SINGULAR), chain (STRAIGHT_CHAIN)
  *   psi_m                   Eq. 10
- *   residual_N              with every cable at the tension of its law
+ *   residual_N              with every cable at the tension of its law: of an elastic one EA (l/l0 - 1) at its length
+ *                           l, not the multiplier that the iterations balance and of which length_error speaks
  *   length_error            for elastic cables L* = l0 (1 + T/EA); 0 without a cable of these laws
  *   inner_tension_ratio     max T / min T of the group, as boundary_tension_ratio; NaN when the group is empty or a
  *                           tension is not positive
- *   position_error_m        this one, condition (INFINITY: singular) and backward_error are NaN unless hf_certify was
- *                           called */
+ *   position_error_m        this one, the bounds, condition (INFINITY: singular) and backward_error are NaN unless
+ *                           hf_certify was called
+ *   position_bound_m        for the exact values of laws, loads and supports as doubles (METHOD section 3); NaN when
+ *                           bound_reason is not PROVEN */
 #define HF_RESULT_LIST(X)                                                                                              \
     X(hf_status, status, STATUS, 1, 1, "status", "", "ok = feasible; under any other psi is NaN")                      \
     X(hf_stop_reason, stop_reason, STOP_REASON, 0, 0, "stop_reason", "", "why the iteration stopped")                  \
@@ -81,6 +106,9 @@ const char *hf_coupling_stop_word(int stop); /* "unknown" for a foreign value */
     X(double, boundary_tension_ratio, REAL, 3, 1, "boundary_tension_ratio", "", "largest over smallest")               \
     X(double, shortest_length_ratio, REAL, 4, 0, "shortest_length_ratio", "", "min l / theoretical l over all cables") \
     X(double, position_error_m, REAL, 4, 0, "position_error_m", "m", "estimate: largest move in one more Newton step") \
+    X(double, position_bound_m, REAL, 4, 0, "position_bound_m", "m", "no node is farther from equilibrium: proven")    \
+    X(double, psi_bound_m, REAL, 4, 0, "psi_bound_m", "m", "psi at equilibrium differs by no more: proven")            \
+    X(hf_bound_reason, bound_reason, BOUND_REASON, 4, 0, "bound_reason", "", "proven, or why the bounds are NaN")      \
     X(double, condition, REAL, 4, 0, "condition", "", "estimate, of the Newton matrix, or D where there is none")      \
     X(double, backward_error, REAL, 4, 0, "backward_error", "",                                                        \
       "residual_N over the largest sum of tensions at a node")                                                         \
@@ -119,6 +147,7 @@ typedef enum {
     HF_RESULT_STATUS,
     HF_RESULT_STOP_REASON,
     HF_RESULT_COUPLING_STOP,
+    HF_RESULT_BOUND_REASON,
     /* only in the lists of <hifdm/summary.h> and <hifdm/surface.h> */
     HF_RESULT_LONG,
     HF_RESULT_FLAG,

@@ -30,6 +30,11 @@ extern "C" {
 /* Doubles per cable of the primal-dual path (src/solve/interior.c). */
 #define HF_INTERIOR_ITEMS 42
 
+/* Doubles of the proof of a bound (src/solve/bound.c): per cable, and in all. */
+#define HF_BOUND_CABLE_ITEMS 12
+#define HF_BOUND_ITEMS(m)                                                                                              \
+    (HF_BOUND_CABLE_ITEMS * (size_t)(m)->n_cable + 6 * (size_t)(m)->n_node + 10 * (size_t)(m)->n_free)
+
 /* X(type, name, number of items for a model m, unit, meaning). The solver of a net with struts needs a general band
  * matrix and pivots; other nets have none. */
 #define HF_WORKSPACE_FIELDS(X)                                                                                         \
@@ -54,6 +59,7 @@ extern "C" {
     X(double, interior_cable, m->has_newton ? HF_INTERIOR_ITEMS *(size_t)m->n_cable : 0, "",                           \
       "state and step of each cable")                                                                                  \
     X(double, interior_position_m, m->has_newton ? 3 * (size_t)m->n_node : 0, "m", "[3][n_node] point of the path")    \
+    X(double, bound_work, HF_BOUND_ITEMS(m), "", "cables and positions at twice the precision")                        \
     X(double, certificate_work, m->has_newton ? 0 : 3 * (size_t)m->n_node, "", "without a Newton matrix")              \
     X(int, certificate_integer_work, m->has_newton ? 0 : (size_t)m->n_free, "", "the same")                            \
     X(double, displacement_m, 3 * (size_t)m->n_attachment, "m", "[3 n_attachment] displacements by the truss")         \

@@ -27,6 +27,30 @@ const char *hf_coupling_stop_word(int stop)
     return "unknown";
 }
 
+const char *hf_bound_reason_word(int reason)
+{
+    switch (reason) {
+#define WORD(name, value, word, meaning)                                                                               \
+    case HF_BOUND_##name:                                                                                              \
+        return word;
+        HF_BOUND_REASON_LIST(WORD)
+#undef WORD
+    }
+    return "unknown";
+}
+
+const char *hf_bound_reason_meaning(int reason)
+{
+    switch (reason) {
+#define MEANING(name, value, word, meaning)                                                                            \
+    case HF_BOUND_##name:                                                                                              \
+        return meaning;
+        HF_BOUND_REASON_LIST(MEANING)
+#undef MEANING
+    }
+    return "unknown";
+}
+
 /* ---- the list ---- */
 
 #define RESULT_FIELD(type, member, kind, json, individual, key, units, description)                                    \

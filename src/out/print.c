@@ -85,6 +85,18 @@ static void print_result(const hf_form_result *r, FILE *f)
             ratio(r->inner_tension_ratio, inner), ratio(r->boundary_tension_ratio, boundary), r->residual_N);
 }
 
+static void print_certificate(const hf_form_result *r, FILE *f)
+{
+    if (isfinite(r->position_error_m) && isfinite(r->condition))
+        fprintf(f, "                estimated position error %.1e m; condition %.1e; backward error %.1e\n",
+                r->position_error_m, r->condition, r->backward_error);
+    if (r->bound_reason == HF_BOUND_PROVEN)
+        fprintf(f, "                proven: no node is farther than %.1e m from equilibrium, psi is right to %.1e m\n",
+                r->position_bound_m, r->psi_bound_m);
+    else if (r->bound_reason != HF_BOUND_NONE)
+        fprintf(f, "                no proven bound of the error: %s\n", hf_bound_reason_meaning((int)r->bound_reason));
+}
+
 /* Prints the measures of the surface of one stage, when the case asks for them. */
 static void print_surface(const hf_summary *s, int stage, FILE *f)
 {
@@ -125,6 +137,7 @@ static void print_optimize(const hf_summary *s, FILE *f)
                 100 * (1 - s->best.psi_m / s->base_psi_m), s->base_psi_m * 1e3);
     fprintf(f, "; found in generation %d\n", s->best_generation);
     print_result(&s->best, f);
+    print_certificate(&s->best, f);
     print_surface(s, 1, f);
     if (s->planes)
         fprintf(f, "                symmetry: %s; %d independent genes of %d\n", hf_symmetry_planes_text(s->planes),
@@ -153,13 +166,6 @@ static void print_polish(const hf_summary *s, FILE *f)
     fprintf(f, "                held by %d lower and %d upper bounds%s\n", s->polish_n_at_lower, s->polish_n_at_upper,
             s->polish_is_at_cap ? " and the cap on the boundary ratio" : "");
     print_surface(s, 2, f);
-}
-
-static void print_certificate(const hf_form_result *r, FILE *f)
-{
-    if (isfinite(r->position_error_m) && isfinite(r->condition))
-        fprintf(f, "                estimated position error %.1e m; condition %.1e; backward error %.1e\n",
-                r->position_error_m, r->condition, r->backward_error);
 }
 
 static void print_coupling(const hf_coupling_result *r, FILE *f)

@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "run/problem_parts.h"
 #include "search/polish.h"
+#include "solve/certificate.h"
 #include "solve/coupling.h"
 #include <hifdm/batch.h>
 #include <hifdm/store.h>
@@ -158,6 +159,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     const double *design = best_design(&r->optimiser.population);
     hf_form_result again;
     hf_workspace *w = hf_batch_run_one(&r->problem.batch, design, &again);
+    hf_certify(&r->problem.model, w, &again);
     s->best = again; /* the same bits, and the figures that are not stored for each individual */
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
     HF_TRY(measure_surface(r, HF_STAGE_OPTIMIZE, w, s, messages));
@@ -286,6 +288,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     }
     hf_evaluate(&r->problem.evaluator, design, w, &s->polish);
     if (must_stop(r)) return stop_here(r, s, messages); /* the evaluation may have been cut short */
+    hf_certify(&r->problem.model, w, &s->polish);
     s->has_polish = true;
     s->polish_is_result = r->plan.ends_with_polish;
     s->polish_iterations = outcome.iterations;

@@ -1,6 +1,7 @@
 #include "solve/certificate.h"
 
 #include "linalg/band.h"
+#include "solve/bound.h"
 #include "solve/newton.h"
 
 #include <math.h>
@@ -49,10 +50,13 @@ static void certify_linear(const hf_model *m, hf_workspace *w, hf_form_result *r
 void hf_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
     r->position_error_m = r->condition = r->backward_error = (double)NAN;
+    r->position_bound_m = r->psi_bound_m = (double)NAN;
+    r->bound_reason = HF_BOUND_NONE;
     if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) return;
     r->backward_error = r->residual_N / largest_pull_N(m, w, m->has_newton ? w->newton_trial_m : w->certificate_work);
     if (m->has_newton)
         hf_newton_certify(m, w, r);
     else
         certify_linear(m, w, r);
+    hf_bound_prove(m, !isnan(r->condition), w, r);
 }

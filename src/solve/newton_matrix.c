@@ -24,8 +24,7 @@ void hf_newton_matrix_block(const hf_model *m, const hf_workspace *w, int e, dou
     hf_newton_matrix_spring(hf_newton_matrix_stiffness(cable, length, T), T / length, u, block);
 }
 
-/* Assembles the matrix of these blocks into newton_band. Returns the largest diagonal entry. */
-static double assemble_blocks(const hf_model *m, hf_workspace *w, hf_newton_block *block_of)
+double hf_newton_matrix_assemble_blocks(const hf_model *m, hf_workspace *w, hf_newton_block *block_of)
 {
     int column = half_bandwidth(m) + 1;
     double *band = w->newton_band, block[3][3], largest = 0;
@@ -62,7 +61,7 @@ hf_status hf_newton_matrix_factor_blocks(const hf_model *m, hf_workspace *w, hf_
     int n = hf_newton_matrix_dofs(m), k = half_bandwidth(m);
     double shift = DIAGONAL_GUARD;
     for (;; shift = shift < SHIFT_FIRST ? SHIFT_FIRST : 100 * shift) {
-        double largest = assemble_blocks(m, w, block_of);
+        double largest = hf_newton_matrix_assemble_blocks(m, w, block_of);
         if (!(isfinite(largest) && largest > 0) || shift > 1) return HF_SINGULAR;
         shift_diagonal(m, w, shift * largest);
         double norm = condition ? hf_band_norm(n, k, w->newton_band, w->newton_work) : 0;

@@ -92,6 +92,9 @@ typedef void hf_newton_block(const hf_model *model, const hf_workspace *workspac
  * helps. */
 hf_status hf_newton_matrix_factor(const hf_model *model, hf_workspace *workspace, double *condition);
 
+/* Assemble the matrix of these blocks into newton_band. Returns the largest diagonal entry. */
+double hf_newton_matrix_assemble_blocks(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of);
+
 /* hf_newton_matrix_factor for the matrix of these blocks. Cables between two supports are not asked for. */
 hf_status hf_newton_matrix_factor_blocks(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
                                          double *condition);

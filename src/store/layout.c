@@ -20,6 +20,10 @@ static const char *const stop_word[] = {HF_STOP_REASON_LIST(STOP_WORD)};
 static const signed char stop_value[] = {HF_STOP_REASON_LIST(STOP_VALUE)};
 static const char *const coupling_word[] = {HF_COUPLING_STOP_LIST(STOP_WORD)};
 static const signed char coupling_value[] = {HF_COUPLING_STOP_LIST(STOP_VALUE)};
+#define BOUND_WORD(name, value, word, meaning) word,
+#define BOUND_VALUE(name, value, word, meaning) value,
+static const char *const bound_word[] = {HF_BOUND_REASON_LIST(BOUND_WORD)};
+static const signed char bound_value[] = {HF_BOUND_REASON_LIST(BOUND_VALUE)};
 
 /* Values 0, 1, 2, ... for the words; ENDED_WORDS: the list of words is ended by NULL. */
 #define WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, NULL
@@ -35,6 +39,7 @@ const hf_hdf5_kind hf_layout_unit = {WORDS(hf_unit_word)};
 const hf_hdf5_kind hf_layout_status = {VALUES(status_word, status_value)};
 const hf_hdf5_kind hf_layout_stop_reason = {VALUES(stop_word, stop_value)};
 const hf_hdf5_kind hf_layout_coupling_stop = {VALUES(coupling_word, coupling_value)};
+const hf_hdf5_kind hf_layout_bound_reason = {VALUES(bound_word, bound_value)};
 
 const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind)
 {
@@ -47,6 +52,8 @@ const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind)
         return HF_KIND_STATUS;
     case HF_RESULT_STOP_REASON:
         return HF_KIND_STOP_REASON;
+    case HF_RESULT_BOUND_REASON:
+        return HF_KIND_BOUND_REASON;
     default:
         return HF_KIND_COUPLING_STOP;
     }

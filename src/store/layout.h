@@ -22,7 +22,8 @@
 /* ---- Enumerations: words and values from the engine's own lists ---- */
 
 extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_layout_status, hf_layout_stop_reason,
-    hf_layout_ga_stop, hf_layout_polish_stop, hf_layout_joint, hf_layout_unit, hf_layout_coupling_stop;
+    hf_layout_ga_stop, hf_layout_polish_stop, hf_layout_joint, hf_layout_unit, hf_layout_coupling_stop,
+    hf_layout_bound_reason;
 #define HF_KIND_ROLE (&hf_layout_role)
 #define HF_KIND_GROUP (&hf_layout_group)
 #define HF_KIND_LAW (&hf_layout_law)
@@ -33,6 +34,7 @@ extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_lay
 #define HF_KIND_JOINT (&hf_layout_joint)
 #define HF_KIND_UNIT (&hf_layout_unit)
 #define HF_KIND_COUPLING_STOP (&hf_layout_coupling_stop)
+#define HF_KIND_BOUND_REASON (&hf_layout_bound_reason)
 #define HF_KIND_SOLVER HF_KIND_INT /* stored as its number */
 #define HF_KIND_TRUTH HF_KIND_INT  /* a bool that was stored as a number before there were flags */
 

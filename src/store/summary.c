@@ -66,6 +66,9 @@ static void write_field(const hf_result_field *field, const void *owner, hf_json
     case HF_RESULT_COUPLING_STOP:
         hf_json_text(j, field->key, hf_coupling_stop_word(number));
         break;
+    case HF_RESULT_BOUND_REASON:
+        hf_json_text(j, field->key, hf_bound_reason_word(number));
+        break;
     case HF_RESULT_SOLVER:
         hf_json_text(j, field->key, hf_solver_word[number]);
         break;

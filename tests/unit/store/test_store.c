@@ -21,6 +21,7 @@ static void fill_result(struct rng *rng, hf_form_result *result)
         bytes[i] = (unsigned char)rng_next(rng);
     result->status = rng_int(rng, 0, 1) ? HF_RATIO_CAP : HF_EXISTS;
     result->stop_reason = HF_STOPPED_ILL_POSED;
+    result->bound_reason = HF_BOUND_SLACK_OR_TAUT;
     result->coupling.stop_reason = HF_COUPLING_DIVERGED;
     result->psi_m = (double)NAN;
 }
@@ -58,6 +59,19 @@ static void fill_summary(struct rng *rng, hf_summary *s)
     fill_result(rng, &s->best);
 }
 
+static void same_fields(const hf_result_field *field, int n, const void *a, const void *b)
+{
+    for (const hf_result_field *f = field; f < field + n; f++)
+        ck_assert_msg(!memcmp((const char *)a + f->offset, (const char *)b + f->offset, f->size), "%s", f->name);
+}
+
+/* By member, because padding between members is not stored. */
+static void same_result(const hf_form_result *a, const hf_form_result *b)
+{
+    same_fields(hf_result_field_of, HF_RESULT_N, a, b);
+    same_fields(hf_coupling_field_of, HF_COUPLING_N, &a->coupling, &b->coupling);
+}
+
 /* Bits, not values: NaN differs from itself, and 0 equals -0. */
 static void same_summary(const hf_summary *a, const hf_summary *b)
 {
@@ -68,31 +82,15 @@ static void same_summary(const hf_summary *a, const hf_summary *b)
     static const struct {
         const char *name;
         size_t offset, size;
-    } members[] = {MEMBER(threads),
-                   MEMBER(status),
-                   MEMBER(seed),
-                   MEMBER(n_node),
-                   MEMBER(n_free),
-                   MEMBER(n_cable),
-                   MEMBER(n_gene),
-                   MEMBER(half_bandwidth),
-                   MEMBER(pretension_N),
-                   MEMBER(form),
-                   MEMBER(form_wall_s),
-                   MEMBER(has_optimize),
-                   MEMBER(has_coupling),
-                   MEMBER(best),
-                   MEMBER(best_generation),
-                   MEMBER(best_individual),
-                   MEMBER(generations),
-                   MEMBER(n_leader),
-                   MEMBER(planes),
-                   MEMBER(evaluations),
-                   MEMBER(infeasible),
-                   MEMBER(optimize_stop),
-                   MEMBER(optimize_wall_s),
-                   MEMBER(optimize_cpu_s)};
+    } members[] = {MEMBER(threads),         MEMBER(status),          MEMBER(seed),         MEMBER(n_node),
+                   MEMBER(n_free),          MEMBER(n_cable),         MEMBER(n_gene),       MEMBER(half_bandwidth),
+                   MEMBER(pretension_N),    MEMBER(form_wall_s),     MEMBER(has_optimize), MEMBER(has_coupling),
+                   MEMBER(best_generation), MEMBER(best_individual), MEMBER(generations),  MEMBER(n_leader),
+                   MEMBER(planes),          MEMBER(evaluations),     MEMBER(infeasible),   MEMBER(optimize_stop),
+                   MEMBER(optimize_wall_s), MEMBER(optimize_cpu_s)};
 #undef MEMBER
+    same_result(&a->form, &b->form);
+    same_result(&a->best, &b->best);
     ck_assert_str_eq(a->version, b->version);
     ck_assert_str_eq(a->title, b->title);
     ck_assert_str_eq(a->case_path, b->case_path);
