@@ -5,6 +5,9 @@
 
 #include "nets.h"
 
+#include "solve/certificate.h"
+#include "solve/coupling.h"
+#include "solve/equilibrium.h"
 #include <hifdm/evaluate.h>
 
 enum { MAX_ATTACHMENT = 160 };
@@ -60,6 +63,22 @@ static inline hf_status find_coupled(struct net *net, int scheme, double tof_m)
 {
     net->form.coupling = (hf_coupling_settings){tof_m, (hf_coupling_scheme)scheme, 500};
     return hf_evaluate_form(&net->model, &net->form, &net->work, NULL, &net->result);
+}
+
+static inline hf_status find_net_of(const void *net, hf_workspace *w, hf_history *history, hf_form_result *r)
+{
+    const struct net *n = net;
+    return hf_equilibrium_find(&n->model, &n->form, w, history, r);
+}
+
+/* The same in one matrix, without rounds of the loop before. */
+static inline hf_status find_at_once(struct net *net, double tof_m)
+{
+    net->form.coupling = (hf_coupling_settings){tof_m, HF_COUPLING_AUTO, 500};
+    hf_form_prepare(&net->model, &net->work);
+    hf_coupling_find_at_once(&net->model, &net->form.coupling, find_net_of, net, &net->work, NULL, &net->result);
+    hf_certify(&net->model, &net->work, &net->result);
+    return net->result.status;
 }
 
 #endif

@@ -85,12 +85,11 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
             hf_stop_rule_word[c->form.stop], c->form.max_iterations);
     const hf_coupling_settings *coupling = &c->form.coupling;
     bool is_auto = coupling->scheme == HF_COUPLING_AUTO;
-    if (p->model.n_attachment && is_auto && method == HF_METHOD_NEWTON)
-        fprintf(f, "                coupling with the truss: auto, in one matrix, tof %g m\n", coupling->tof_m);
-    else if (p->model.n_attachment)
-        fprintf(f, "                coupling with the truss: %s, tof %g m, at most %d form-findings\n",
-                is_auto ? "auto, accelerated" : hf_coupling_scheme_word[coupling->scheme], coupling->tof_m,
-                coupling->max_iterations);
+    if (p->model.n_attachment)
+        fprintf(f, "                coupling with the truss: %s, tof %g m, at most %d form-findings%s\n",
+                hf_coupling_scheme_word[is_auto ? HF_COUPLING_ACCELERATED : coupling->scheme], coupling->tof_m,
+                coupling->max_iterations,
+                is_auto && method == HF_METHOD_NEWTON ? "; in one matrix where they are slow" : "");
     bool optimizes = v != NULL, evolves = optimizes && hf_optimiser_plan_of(o->method).kind;
     if (evolves)
         fprintf(f,

@@ -82,9 +82,9 @@ const hf_field hf_field_table[] = {
     {"coupling.tof_m", HF_FIELD_DOUBLE, AT(form.coupling.tof_m), HF_ABOVE_ZERO, BIG, "1e-6", "m", NULL,
      "net and truss are one when no attachment moves farther than this any more; the paper takes 1e-3"},
     {"coupling.scheme", HF_FIELD_WORD, AT(form.coupling.scheme), 0, 0, "auto", "", hf_coupling_scheme_word,
-     "auto: net and truss in one matrix where the net is solved by Newton's method, else accelerated; plain: the "
-     "paper's loop, displacements straight from the forces; accelerated: the same with Anderson's method, which needs "
-     "fewer form-findings and also holds for softer trusses"},
+     "plain: the paper's loop, displacements straight from the forces; accelerated: the same with Anderson's method, "
+     "which needs fewer form-findings and also holds for softer trusses; auto: accelerated, and where that is slow net "
+     "and truss in one matrix, if the net is solved by Newton's method"},
     {"coupling.max_iterations", HF_FIELD_INT, AT(form.coupling.max_iterations), 1, 1000000, "200", "", NULL,
      "form-findings in this loop before it is given up"},
 

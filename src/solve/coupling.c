@@ -12,6 +12,8 @@
  * and 0.3, RETREATS_MAX 4, and GRAM_SHIFT 1e-16 and 1e-11. */
 #define GROWTHS_MAX 3    /* growing steps in a row of the plain loop that count as divergence */
 #define PATIENCE 15      /* iterations of the accelerated loop without a new smallest step */
+#define SLOW 0.5         /* auto: two rounds must bring the step down to this part ... */
+#define WILD 2.0         /* ... and the first not up to this one [0.2 to 0.7 and 1.5 to 10 pass] */
 #define STALLED 1e-2     /* a loop that stops improving below this fraction of its first step stalls, else diverges */
 #define RETREATS_MAX 12  /* halvings of steps that lead where the net has no shape */
 #define GRAM_SHIFT 1e-14 /* relative shift of the least squares' diagonal: past steps become nearly parallel */
@@ -159,6 +161,7 @@ static void accelerate(accelerator *a, double *r)
 
 typedef struct {
     double first_m, best_m, step_m, ratio; /* first, smallest and last step; last ratio of steps */
+    double before_m;                       /* the step before the last one */
     int n_growth, n_since_best;
 } progress;
 
@@ -166,12 +169,15 @@ typedef struct {
 static bool is_hopeless(progress *p, hf_coupling_scheme scheme, double step_m)
 {
     if (isnan(p->step_m)) p->first_m = step_m;
+    double two_m = p->before_m;
     p->ratio = step_m / p->step_m; /* NaN after the first */
+    p->before_m = p->step_m;
     p->step_m = step_m;
     p->n_growth = p->ratio >= 1 ? p->n_growth + 1 : 0;
     p->n_since_best = step_m < p->best_m ? 0 : p->n_since_best + 1;
     if (step_m < p->best_m) p->best_m = step_m;
     if (!isfinite(step_m)) return true;
+    if (scheme == HF_COUPLING_AUTO) return p->ratio > WILD || step_m > SLOW * two_m;
     return scheme == HF_COUPLING_PLAIN ? p->n_growth >= GROWTHS_MAX : p->n_since_best >= PATIENCE;
 }
 
@@ -197,7 +203,8 @@ static void give_up(hf_status status, hf_coupling_stop reason, hf_form_result *r
 
 /* For a net without a shape at its present supports. If it had one before, sets displacements half the way back and
  * returns true; else sets the result and returns false. */
-static bool try_nearer(const hf_model *m, const accelerator *a, int *n_retreat, hf_workspace *w, hf_form_result *r)
+static bool try_nearer(const hf_model *m, const hf_coupling_settings *s, const accelerator *a, int *n_retreat,
+                       hf_workspace *w, hf_form_result *r)
 {
     if (r->status == HF_NOT_CONVERGED) { /* there is a shape, so its coupling can be measured */
         double before_m = r->coupling.step_m;
@@ -207,7 +214,7 @@ static bool try_nearer(const hf_model *m, const accelerator *a, int *n_retreat, 
         give_up(r->status, HF_COUPLING_NET, r);
         return false;
     }
-    if (a->depth == 0 || *n_retreat == RETREATS_MAX) {
+    if (s->scheme != HF_COUPLING_ACCELERATED || *n_retreat == RETREATS_MAX) {
         give_up(HF_TRUSS_TOO_SOFT, HF_COUPLING_DIVERGED, r);
         return false;
     }
@@ -250,7 +257,7 @@ hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_
 {
     size_t q_bytes = (size_t)m->n_cable * sizeof(double);
     accelerator a = lay_out_accelerator(m, s->scheme, w);
-    progress p = {.best_m = INFINITY, .step_m = (double)NAN};
+    progress p = {.best_m = INFINITY, .step_m = (double)NAN, .before_m = (double)NAN};
     int n_solve = 0, n_retreat = 0;
     memcpy(w->coupling_q_N_per_m, w->q_N_per_m, q_bytes);
     for (int i = 1;; i++) {
@@ -258,7 +265,7 @@ hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_
         r->iterations = n_solve += r->iterations;
         r->coupling = (hf_coupling_result){.iterations = i, .step_m = p.step_m, .ratio = p.ratio};
         if (r->status != HF_OK) {
-            if (!try_nearer(m, &a, &n_retreat, w, r)) break;
+            if (!try_nearer(m, s, &a, &n_retreat, w, r)) break;
             continue;
         }
         bool over = is_over(m, s, &a, &p, w, r);
@@ -301,5 +308,22 @@ hf_status hf_coupling_find_at_once(const hf_model *m, const hf_coupling_settings
     } else if (r->status != HF_INTERRUPTED && status_alone(m, solve, context, w) != r->status) {
         give_up(HF_TRUSS_TOO_SOFT, HF_COUPLING_DIVERGED, r);
     }
+    return r->status;
+}
+
+hf_status hf_coupling_find_either_way(const hf_model *m, const hf_coupling_settings *s, hf_net_solver *solve,
+                                      const void *context, hf_workspace *w, hf_history *history, hf_form_result *r)
+{
+    hf_status status = hf_coupling_find(m, s, solve, context, false, w, history, r);
+    bool is_over = status == HF_NOT_CONVERGED && r->coupling.stop_reason == HF_COUPLING_NET; /* out of iterations */
+    if (status == HF_OK || status == HF_INTERRUPTED || is_over) return status;
+    int n_round = r->coupling.iterations, n_step = r->iterations;
+    if (!(r->coupling.ratio <= 1)) { /* the loop has led away, or nowhere */
+        memcpy(w->q_N_per_m, w->coupling_q_N_per_m, (size_t)m->n_cable * sizeof(double));
+        memset(w->displacement_m, 0, (size_t)dofs(m) * sizeof(double));
+    }
+    hf_coupling_find_at_once(m, s, solve, context, w, history, r);
+    r->iterations += n_step;
+    r->coupling.iterations += n_round;
     return r->status;
 }

@@ -2,8 +2,8 @@
  * displacements r of the attachments. The pull f(r) of the net and the condensed flexibility F of the truss give
  * r = F f(r).
  *
- * auto: where the net is solved by Newton's method, net and truss are solved together (hf_coupling_find_at_once); else
- * accelerated.
+ * auto: where the net is solved by Newton's method, the accelerated loop as long as it comes near quickly, and else net
+ * and truss in one matrix, from where the loop is.
  * plain: the paper's loop, r <- F f(r). With S the net's stiffness condensed to the attachments, every iteration
  * multiplies the error by up to the largest eigenvalue of F S, which may be more than 1.
  * accelerated: Anderson's method (1965) on the same loop, with a depth of HF_COUPLING_DEPTH. It needs no matrix of the
@@ -36,6 +36,13 @@ hf_status hf_coupling_find(const hf_model *model, const hf_coupling_settings *se
 hf_status hf_coupling_find_at_once(const hf_model *model, const hf_coupling_settings *settings, hf_net_solver *solve,
                                    const void *context, hf_workspace *workspace, hf_history *history,
                                    hf_form_result *result);
+
+/* hf_coupling_find; if that does not end well, hf_coupling_find_at_once. With scheme auto the loop ends early: when two
+ * rounds do not halve its step. On a stiff truss it takes two or three rounds, each of which costs less than the dense
+ * matrix of the attachments. */
+hf_status hf_coupling_find_either_way(const hf_model *model, const hf_coupling_settings *settings, hf_net_solver *solve,
+                                      const void *context, hf_workspace *workspace, hf_history *history,
+                                      hf_form_result *result);
 
 /* Set attachment_force_N to the pull of the net on the attachments at the workspace's shape plus the loads on them. */
 void hf_coupling_forces(const hf_model *model, hf_workspace *workspace);

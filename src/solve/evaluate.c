@@ -46,11 +46,12 @@ static hf_status find_alone(const void *context, hf_workspace *w, hf_history *hi
 static hf_status find_net(const net_problem *p, hf_workspace *w, hf_history *history, hf_form_result *r)
 {
     if (!p->m->n_attachment) return find_alone(p, w, history, r);
-    const hf_coupling_settings *s = &p->form->coupling;
-    if (p->by_newton && s->scheme == HF_COUPLING_AUTO)
-        return hf_coupling_find_at_once(p->m, s, find_alone, p, w, history, r);
+    hf_coupling_settings s = p->form->coupling;
+    if (p->by_newton && s.scheme == HF_COUPLING_AUTO)
+        return hf_coupling_find_either_way(p->m, &s, find_alone, p, w, history, r);
+    if (s.scheme == HF_COUPLING_AUTO) s.scheme = HF_COUPLING_ACCELERATED;
     bool start_counts = !p->by_newton && p->stop == HF_STOP_RMS_CHANGE;
-    return hf_coupling_find(p->m, s, find_alone, p, start_counts, w, history, r);
+    return hf_coupling_find(p->m, &s, find_alone, p, start_counts, w, history, r);
 }
 
 hf_status hf_evaluate_form(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,

@@ -144,10 +144,10 @@ START_TEST(limits_and_keys)
           "coupling.tof_m=1e-9");
     ck_assert_msg(!strstr(said.err, "nan") && strstr(said.err, " m; raise "), "%s", said.err); /* no step before it */
     HIFDM(0, "check", TRUSS, "--set", "coupling.tof_m=1e-3");
-    OUT("coupling with the truss: auto, accelerated, tof 0.001 m, at most 200 form-findings\n");
+    OUT("coupling with the truss: accelerated, tof 0.001 m, at most 200 form-findings\n");
     HIFDM(0, "check", TRUSS, "--set", "form.method=auto", "--set", "form.stop=residual", "--set",
           "scene.parabolic_cylinder.boundary=outer_edge", "--set", "scene.parabolic_cylinder.scallop=0.1");
-    OUT("coupling with the truss: auto, in one matrix, tof 1e-06 m\n");
+    OUT("tof 1e-06 m, at most 200 form-findings; in one matrix where they are slow\n");
     HIFDM(2, "check", TRUSS, "--set", "coupling.tof_m=0");
     ERR("coupling.tof_m: must be above 0");
     HIFDM(2, "check", TRUSS, "--set", "coupling.scheme=fast");

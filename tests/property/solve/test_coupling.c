@@ -64,11 +64,16 @@ START_TEST(one_matrix_serves_all)
     attach_all(&net, &rng, exp(rng_uniform(&rng, log(1e-6), log(1e-1))));
     bool is_looped = find_coupled(&net, HF_COUPLING_ACCELERATED, tof_m) == HF_OK;
     double *loop = copy_shape(&net);
-    hf_status status = find_coupled(&net, HF_COUPLING_AUTO, tof_m);
+    hf_status status = find_at_once(&net, tof_m);
     ck_assert_msg(status == HF_OK || (status == HF_TRUSS_TOO_SOFT && !is_looped), "%s", hf_status_word(status));
     ck_assert_int_le(net.result.iterations, 20); /* 13 seen */
     for (int k = 0; k < 3 * net.scene.n_node && is_looped; k++)
         ck_assert_double_eq_tol(found_m(&net, k / 3, k % 3), loop[k], 1e-8);
+    double *at_once = copy_shape(&net);
+    ck_assert_int_eq(find_coupled(&net, HF_COUPLING_AUTO, tof_m), status);
+    for (int k = 0; k < 3 * net.scene.n_node && status == HF_OK; k++)
+        ck_assert_double_eq_tol(found_m(&net, k / 3, k % 3), at_once[k], 1e-8);
+    free(at_once);
     free(loop);
     close_net(&net);
 }

@@ -2,8 +2,6 @@
 #include "flexible.h"
 #include "laws.h"
 
-#include "solve/coupling.h"
-
 /* A random net on a random foundation. Its cables are elastic, at about 10 N in the theoretical shape; if mixed, one of
  * three keeps its tension, and one its force density. */
 static double *open_elastic(struct net *net, struct rng *rng, bool is_mixed, double EA_N, double scale_m_per_N)
@@ -56,7 +54,7 @@ static void assert_the_loops_shape(struct net *net)
 {
     ck_assert_int_eq(find_coupled(net, HF_COUPLING_PLAIN, 1e-12), HF_OK);
     double *loop = copy_shape(net);
-    ck_assert_int_eq(find_coupled(net, HF_COUPLING_AUTO, 1e-12), HF_OK);
+    ck_assert_int_eq(find_at_once(net, 1e-12), HF_OK);
     assert_at_rest(net, 1e-12);
     ck_assert_int_le(net->result.coupling.iterations, 20);
     ck_assert_double_lt(net->result.position_error_m, 1e-9);
@@ -94,7 +92,7 @@ START_TEST(stiff_cables_on_a_soft_truss)
     struct rng rng = rng_start(30 + (uint64_t)_i);
     struct net net;
     double *EA_N = open_elastic(&net, &rng, false, 1e5, scale[_i % 3]);
-    find_coupled(&net, HF_COUPLING_AUTO, 1e-12);
+    find_at_once(&net, 1e-12);
     assert_at_rest(&net, 1e-12);
     ck_assert_int_le(net.result.coupling.iterations, 20);
     close_net(&net);
@@ -123,7 +121,7 @@ START_TEST(one_line_by_hand)
     ck_assert_int_eq(hf_model_attach(&net.model, 2, (int[]){2, 0}, F, &messages), HF_OK);
     hf_workspace_free(&net.work);
     ck_assert_int_eq(hf_workspace_create(&net.model, &net.work), HF_OK);
-    find_coupled(&net, HF_COUPLING_AUTO, 1e-12);
+    find_at_once(&net, 1e-12);
     assert_at_rest(&net, 1e-12);
     double T = 0.02 / (1.98 / 2e7 + 2 * c);
     ck_assert_double_eq_tol(net.work.tension_N[0], T, 1e-8 * T); /* 1e-16 m of a cable of 1e7 N/m */
@@ -142,7 +140,7 @@ START_TEST(a_rigid_truss_is_a_support)
     OPEN_CASE(&rigid, SMALL_REFLECTOR, "form.method=newton");
     attach_all(&rigid, &rng, 0);
     ck_assert_int_eq(find_coupled(&alone, HF_COUPLING_AUTO, 1e-9), HF_OK);
-    ck_assert_int_eq(find_coupled(&rigid, HF_COUPLING_AUTO, 1e-9), HF_OK);
+    ck_assert_int_eq(find_at_once(&rigid, 1e-9), HF_OK);
     ck_assert_int_eq(alone.result.coupling.iterations, 0);
     ck_assert_double_eq(rigid.result.coupling.max_displacement_m, 0);
     for (int k = 0; k < 3 * alone.model.n_node; k++)
@@ -157,7 +155,7 @@ START_TEST(too_soft)
 {
     struct net net;
     open_reflector(&net, 1e-1);
-    ck_assert_int_eq(find_coupled(&net, HF_COUPLING_AUTO, 1e-9), HF_TRUSS_TOO_SOFT);
+    ck_assert_int_eq(find_at_once(&net, 1e-9), HF_TRUSS_TOO_SOFT);
     ck_assert_int_eq(net.result.coupling.stop_reason, HF_COUPLING_DIVERGED);
     ck_assert(isnan(net.result.psi_m));
     close_net(&net);
@@ -170,7 +168,7 @@ START_TEST(ill_posed_nets_keep_their_name)
     struct rng rng = rng_start(2);
     OPEN_CASE(&net, "configs/chen2022.yaml", "form.method=newton", "form.stop=residual");
     attach_all(&net, &rng, 0);
-    ck_assert_int_eq(find_coupled(&net, HF_COUPLING_AUTO, 1e-6), HF_STRAIGHT_CHAIN);
+    ck_assert_int_eq(find_at_once(&net, 1e-6), HF_STRAIGHT_CHAIN);
     ck_assert_int_eq(net.result.coupling.stop_reason, HF_COUPLING_NET);
     close_net(&net);
 }
@@ -181,7 +179,7 @@ START_TEST(a_limit_is_a_limit)
     struct net net;
     open_reflector(&net, 1e-4);
     net.form.max_iterations = _i;
-    ck_assert_int_eq(find_coupled(&net, HF_COUPLING_AUTO, 1e-9), HF_NOT_CONVERGED);
+    ck_assert_int_eq(find_at_once(&net, 1e-9), HF_NOT_CONVERGED);
     ck_assert_int_eq(net.result.coupling.stop_reason, HF_COUPLING_NET);
     ck_assert_int_le(net.result.iterations, _i);
     ck_assert_double_gt(net.result.coupling.step_m, 1e-9);
@@ -196,9 +194,46 @@ START_TEST(a_stop_is_a_stop)
     struct net net;
     double *EA_N = open_elastic(&net, &rng, false, 1e5, 1e-3);
     net.work.stop = &stop;
-    ck_assert_int_eq(find_coupled(&net, HF_COUPLING_AUTO, 1e-9), HF_INTERRUPTED);
+    ck_assert_int_eq(find_at_once(&net, 1e-9), HF_INTERRUPTED);
     close_net(&net);
     free(EA_N);
+}
+END_TEST
+
+/* ---- either way ---- */
+
+/* On a stiff truss the loop ends at once, and auto is the accelerated loop to the bit. */
+START_TEST(auto_is_the_loop_on_stiff_trusses)
+{
+    struct net net;
+    open_reflector(&net, 1e-5);
+    ck_assert_int_eq(find_coupled(&net, HF_COUPLING_ACCELERATED, 1e-9), HF_OK);
+    double *loop = copy_shape(&net);
+    int n_step = net.result.iterations;
+    ck_assert_int_eq(find_coupled(&net, HF_COUPLING_AUTO, 1e-9), HF_OK);
+    ck_assert_int_eq(net.result.iterations, n_step);
+    for (int k = 0; k < 3 * net.scene.n_node; k++)
+        ck_assert_double_eq(found_m(&net, k / 3, k % 3), loop[k]);
+    free(loop);
+    close_net(&net);
+}
+END_TEST
+
+/* Here the loop leads away, after some rounds or at the first: the shape is that in one matrix. */
+START_TEST(auto_leaves_the_loop_on_soft_trusses)
+{
+    struct net net;
+    open_reflector(&net, _i ? 1e-2 : 3e-3);
+    ck_assert_int_eq(find_at_once(&net, 1e-10), HF_OK);
+    double *at_once = copy_shape(&net);
+    int n_step = net.result.iterations;
+    ck_assert_int_eq(find_coupled(&net, HF_COUPLING_AUTO, 1e-10), HF_OK);
+    assert_at_rest(&net, 1e-10);
+    ck_assert_int_gt(net.result.iterations, n_step);
+    for (int k = 0; k < 3 * net.scene.n_node; k++)
+        ck_assert_double_eq_tol(found_m(&net, k / 3, k % 3), at_once[k], 1e-8);
+    free(at_once);
+    close_net(&net);
 }
 END_TEST
 
@@ -216,5 +251,7 @@ Suite *suite_unit_joint(void)
     tcase_add_test(tests, ill_posed_nets_keep_their_name);
     tcase_add_loop_test(tests, a_limit_is_a_limit, 1, 8);
     tcase_add_test(tests, a_stop_is_a_stop);
+    tcase_add_test(tests, auto_is_the_loop_on_stiff_trusses);
+    tcase_add_loop_test(tests, auto_leaves_the_loop_on_soft_trusses, 0, 2);
     return suite;
 }
