@@ -50,12 +50,13 @@ SANITIZER := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all -
 
 # pkg-config is asked once, when a recipe first needs it: $(eval) replaces the question by its answer.
 LAPACK_PC = $(if $(LAPACK_LIBS),,$(shell pkg-config --exists openblas && echo openblas || echo lapack blas))
-PKG = $(eval PKG := $(or $(shell pkg-config --cflags --libs $(LAPACK_PC) gsl hdf5 zlib yaml-0.1),$(PKG_MISSING)))$(PKG)
+PKG = $(eval PKG := $(or $(shell pkg-config --cflags --libs gsl $(LAPACK_PC) hdf5 zlib yaml-0.1),$(PKG_MISSING)))$(PKG)
 PKG_MISSING = $(error A library or pkg-config itself is missing, see above: run `make setup`)
 CHECK = $(eval CHECK := $(or $(shell pkg-config --cflags --libs check),$(error run `make test`)))$(CHECK)
 # -isystem: our warnings are about our code, not about the headers of HDF5.
 PKG_CFLAGS = $(patsubst -I%,-isystem %,$(filter -I% -D%,$(PKG)))
-PKG_LIBS = $(filter-out -I% -D%,$(PKG)) $(LAPACK_LIBS) -lm
+# GSL's own BLAS comes before LAPACK's: the other one's bits depend on the processor.
+PKG_LIBS = -Wl,--push-state,--no-as-needed -lgslcblas -Wl,--pop-state $(filter-out -I% -D%,$(PKG)) $(LAPACK_LIBS) -lm
 
 # A peer of the benchmark, where its header is.
 CHOLMOD = $(eval CHOLMOD := $(shell $(CC) -E -include suitesparse/cholmod.h -x c /dev/null >/dev/null 2>&1 && \
@@ -255,7 +256,7 @@ $(Q)ln -sf $(SONAME) $(1)/lib/libhifdm.so
 $(Q)install -m 644 include/hifdm/*.h $(1)/include/hifdm/
 $(Q)printf '%s\n' 'prefix=$(2)' 'Name: hifdm' 'Version: $(VERSION)' \
     'Description: Form finding of cable nets with force densities' 'Cflags: -I$${prefix}/include' \
-    'Libs: -L$${prefix}/lib -lhifdm' 'Requires.private: $(LAPACK_PC) gsl hdf5 zlib yaml-0.1' \
+    'Libs: -L$${prefix}/lib -lhifdm' 'Requires.private: gsl $(LAPACK_PC) hdf5 zlib yaml-0.1' \
     'Libs.private: $(LAPACK_LIBS) -fopenmp -lm' >$(1)/lib/pkgconfig/hifdm.pc
 $(Q)$(PROGRAM) help --man >$(1)/share/man/man1/hifdm.1
 $(Q)$(PROGRAM) help --bash >$(1)/share/bash-completion/completions/hifdm

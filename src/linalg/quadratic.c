@@ -1,13 +1,11 @@
 #include "linalg/quadratic.h"
 
 #include "base/arena.h"
+#include "linalg/band.h"
 #include "linalg/dot.h"
 
 #include <math.h>
 #include <string.h>
-
-void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info);
-void dtrtri_(const char *uplo, const char *diag, const int *n, double *a, const int *lda, int *info);
 
 /* A limit whose normal is this near to a combination of the active ones (as a part of its square) adds nothing: an
  * active one must go first. No test fails from 1e-26 to 1e-14. */
@@ -41,17 +39,35 @@ void hf_quadratic_free(hf_quadratic *q)
     *q = (hf_quadratic){0};
 }
 
+/* J = L^-T for L as a band whose columns begin with the diagonal. Each column of L^-1, a row of J, is made in `column`,
+ * by columns of L, so that the inner loop has no sum. */
+static void invert_transposed(int n, const double *L, double *J, double *column)
+{
+    for (int c = 0; c < n; c++) {
+        memset(column, 0, (size_t)n * sizeof(double));
+        column[c] = 1;
+        for (int k = c; k < n; k++) {
+            const double *l = L + k * n - k; /* entry (i, k) is l[i] */
+            double x = column[k] /= l[k];
+            for (int i = k + 1; i < n; i++)
+                column[i] -= x * l[i];
+        }
+        for (int r = 0; r < n; r++)
+            J[r * n + c] = column[r];
+    }
+}
+
 /* J = L^-T for H = L L', column j at inverse + j n; x = -J J' g, the free minimum. */
 static hf_status begin(hf_quadratic *q, const double *hessian, const double *gradient)
 {
-    int n = q->n, info = 0;
-    double *J = q->inverse;
-    for (int r = 0; r < n; r++) /* L' is the upper triangle by columns = the lower one by rows */
-        for (int c = 0; c < n; c++)
-            J[r * n + c] = c <= r ? hessian[r * n + c] : 0;
-    dpotrf_("U", &n, J, &n, &info);
-    if (info == 0) dtrtri_("U", "N", &n, J, &n, &info);
-    if (info != 0) return HF_SINGULAR;
+    int n = q->n;
+    double *J = q->inverse, *L = q->triangle; /* which is needed as soon as a limit is active */
+    memset(L, 0, (size_t)n * (size_t)n * sizeof(double));
+    for (int c = 0; c < n; c++)
+        for (int r = c; r < n; r++)
+            L[c * n + r - c] = hessian[r * n + c];
+    if (hf_band_factor(n, n - 1, L) != 0) return HF_SINGULAR;
+    invert_transposed(n, L, J, q->scratch);
     memset(q->x, 0, (size_t)n * sizeof(double));
     for (int j = 0; j < n; j++) {
         double share = hf_dot((size_t)n, J + j * n, gradient);

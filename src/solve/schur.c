@@ -1,19 +1,12 @@
 #include "solve/schur.h"
 
 #include "base/arena.h"
+#include "linalg/dense.h"
 #include "linalg/dot.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* LAPACK and BLAS (Fortran interface) */
-void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *pivot, int *info);
-void dgetrs_(const char *trans, const int *n, const int *n_rhs, const double *a, const int *lda, const int *pivot,
-             double *b, const int *ldb, int *info);
-void dgemm_(const char *trans_a, const char *trans_b, const int *m, const int *n, const int *k, const double *alpha,
-            const double *a, const int *lda, const double *b, const int *ldb, const double *beta, double *c,
-            const int *ldc);
 
 /* Goes through F by columns. F is symmetric, so they are its rows. */
 void hf_schur_flex(const hf_model *m, const double *force, double *r)
@@ -133,25 +126,20 @@ static void subtract_panel(const hf_model *m, const hf_workspace *w, hf_newton_b
 hf_status hf_schur_factor(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, hf_schur *s)
 {
     size_t n = (size_t)s->n;
-    double one = 1, zero = 0;
-    int info = 0;
     memset(s->stiffness, 0, n * n * sizeof(double));
     for (int from = 0; from < m->n_attachment; from += HF_SCHUR_PANEL)
         subtract_panel(m, w, block_of, from, s);
     add_attachment_stiffness(m, w, block_of, s);
-    dgemm_("N", "N", &s->n, &s->n, &s->n, &one, m->flexibility_m_per_N, &s->n, s->stiffness, &s->n, &zero, s->flexed,
-           &s->n);
+    hf_dense_multiply(s->n, m->flexibility_m_per_N, s->stiffness, s->flexed);
     memcpy(s->factor, s->flexed, n * n * sizeof(double));
     for (size_t i = 0; i < n; i++)
         s->factor[i * n + i] += 1;
-    dgetrf_(&s->n, &s->n, s->factor, &s->n, s->pivot, &info);
-    return info == 0 ? HF_OK : HF_SINGULAR;
+    return hf_dense_factor(s->n, s->factor, s->pivot) == 0 ? HF_OK : HF_SINGULAR;
 }
 
 void hf_schur_solve(const hf_schur *s, double *b)
 {
-    int one = 1, info = 0;
-    dgetrs_("N", &s->n, &one, s->factor, &s->n, s->pivot, b, &s->n, &info);
+    hf_dense_solve(s->n, s->factor, s->pivot, 1, b);
 }
 
 void hf_schur_displace(const hf_model *m, const hf_schur *s, const double *b, double *displacement_m)
@@ -166,8 +154,8 @@ int hf_schur_modes(hf_schur *s, double tolerance, int max_mode, double *mode)
 {
     size_t n = (size_t)s->n;
     double *a = s->flexed;
-    int info = 0, n_mode = 0;
-    dgetrs_("N", &s->n, &s->n, s->factor, &s->n, s->pivot, a, &s->n, &info);
+    int n_mode = 0;
+    hf_dense_solve(s->n, s->factor, s->pivot, s->n, a);
     for (size_t i = 0; i < n * n; i++)
         a[i] = -a[i];
     for (; n_mode < max_mode; n_mode++, mode += 2 * n) {
