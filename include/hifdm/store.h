@@ -21,7 +21,7 @@
  *                attributes: version, HF_SUMMARY_FORM_LIST, and the figures of hf_summary.form
  *   /form/history  psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio, length_error [i]
  *   /coupling    with a truss, of the a attachments: node [a], displacement_m, force_N [a][3]; history/step_m, psi_m,
- *                max_displacement_m [form-findings]; attributes: the members of hf_summary.form.coupling (those of best
+ *                max_displacement_m [rounds]; attributes: the members of hf_summary.form.coupling (those of best
  *                and polish are best_coupling_... of /ga and coupling_... of /polish)
  *   /ga          design_N [g][p][k]; evaluated, status, psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio,
  *                iterations, crossover_rate, mutation_rate [g][p]; parent [g][p][2];

@@ -7,6 +7,7 @@
 #define HIFDM_WORKSPACE_H
 
 #include <hifdm/model.h>
+#include <hifdm/result.h>
 #include <signal.h>
 
 #ifdef __cplusplus
@@ -78,6 +79,8 @@ typedef struct {
     void *block;
     /* Rows that Newton's matrix moves: n_free, or the attachments as well, when net and truss are solved together. */
     int n_moving;
+    int n_joint_step;                  /* steps with the attachments, since they move */
+    hf_history *history;               /* of the form-finding that runs, or NULL */
     const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 makes hf_form_find return HF_INTERRUPTED */
 } hf_workspace;
 

@@ -2,6 +2,7 @@
 #include "solve/coupling.h"
 
 #include "linalg/dot.h"
+#include "solve/history.h"
 #include "solve/joint.h"
 #include "solve/schur.h"
 
@@ -181,15 +182,6 @@ static bool is_hopeless(progress *p, hf_coupling_scheme scheme, double step_m)
     return scheme == HF_COUPLING_PLAIN ? p->n_growth >= GROWTHS_MAX : p->n_since_best >= PATIENCE;
 }
 
-static void record_step(hf_history *history, const hf_form_result *r)
-{
-    hf_coupling_history *h = history ? &history->coupling : NULL;
-    if (!h || h->n == h->capacity) return;
-    h->step_m[h->n] = r->coupling.step_m;
-    h->psi_m[h->n] = r->psi_m;
-    h->max_displacement_m[h->n++] = r->coupling.max_displacement_m;
-}
-
 static void give_up(hf_status status, hf_coupling_stop reason, hf_form_result *r)
 {
     hf_coupling_result kept = r->coupling;
@@ -268,8 +260,9 @@ hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_
             if (!try_nearer(m, s, &a, &n_retreat, w, r)) break;
             continue;
         }
+        double psi_m = r->psi_m; /* a refusal has none */
         bool over = is_over(m, s, &a, &p, w, r);
-        record_step(history, r);
+        hf_history_add_coupling(history, r->coupling.step_m, psi_m, r->coupling.max_displacement_m);
         if (over) break;
         if (start_counts)
             memcpy(w->q_N_per_m, w->coupling_q_N_per_m, q_bytes);
@@ -297,8 +290,9 @@ hf_status hf_coupling_find_at_once(const hf_model *m, const hf_coupling_settings
 {
     memcpy(w->coupling_q_N_per_m, w->q_N_per_m, (size_t)m->n_cable * sizeof(double));
     w->n_moving = m->n_free + m->n_attachment;
+    w->n_joint_step = 0;
     solve(context, w, history, r);
-    r->coupling = (hf_coupling_result){.stop_reason = HF_COUPLING_NET, .iterations = r->iterations};
+    r->coupling = (hf_coupling_result){.stop_reason = HF_COUPLING_NET, .iterations = w->n_joint_step};
     r->coupling.ratio = r->coupling.step_m = (double)NAN;
     if (r->status == HF_OK || r->status == HF_NOT_CONVERGED) {
         hf_joint_set_displacement(m, w);

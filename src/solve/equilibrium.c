@@ -79,8 +79,8 @@ static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n
     return r->status;
 }
 
-hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
-                              hf_form_result *r)
+static hf_status find_equilibrium(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
+                                  hf_form_result *r)
 {
     int n_step = 0, culprit = -1;
     if (!m->EA_N) { /* first force densities of elastic cables can be decades away */
@@ -96,4 +96,13 @@ hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_w
     hf_form_refuse(status, n_step, r);
     r->culprit = culprit;
     return status;
+}
+
+hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
+                              hf_form_result *r)
+{
+    w->history = history;
+    find_equilibrium(m, s, w, history, r);
+    w->history = NULL;
+    return r->status;
 }

@@ -3,6 +3,7 @@
 #include <hifdm/formfind.h>
 
 #include "linalg/band.h"
+#include "solve/history.h"
 #include <hifdm/metrics.h>
 
 #include <assert.h>
@@ -414,16 +415,6 @@ static void judge_chains(const hf_model *m, hf_workspace *w, const progress *p, 
     r->culprit = worst;
 }
 
-static void record_iteration(hf_history *h, const hf_model *m, const hf_workspace *w, const hf_form_result *r)
-{
-    if (h->n == h->capacity) return;
-    h->psi_m[h->n] = r->psi_m;
-    h->residual_N[h->n] = r->residual_N;
-    h->inner_tension_ratio[h->n] = hf_metrics_tension_ratio(m, w, HF_GROUP_INNER);
-    h->boundary_tension_ratio[h->n] = hf_metrics_tension_ratio(m, w, HF_GROUP_BOUNDARY);
-    h->length_error[h->n++] = r->length_error;
-}
-
 /* A result before its first iteration: status ok, no culprit, all measures unknown (NaN). */
 static void open_result(hf_form_result *r)
 {
@@ -470,7 +461,7 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, hf_stop_rul
         if (r->status != HF_OK) break;
         if (need_psi) r->psi_m = hf_metrics_psi_m(m, w);
         if (need_residual) r->residual_N = hf_form_residual_N(m, w);
-        if (history) record_iteration(history, m, w, r);
+        if (history) hf_history_add(history, m, w, r->psi_m, r->residual_N, r->length_error);
         if (is_last(m, s, w, r, &p, length_gap)) break;
         hf_form_update(m, w);
     }

@@ -16,6 +16,7 @@
  * the form of the Newton matrix. */
 #include "solve/interior.h"
 
+#include "solve/history.h"
 #include "solve/joint.h"
 #include "solve/newton.h"
 
@@ -169,7 +170,7 @@ static void set_start(const hf_model *m, hf_workspace *w)
 
 typedef struct {
     double balance, length, gap; /* relative to reference tension and theoretical lengths */
-    double truss_m;              /* at the end: between attachments and truss, as hf_joint_gap_m */
+    double truss_m;              /* between attachments and truss, as hf_joint_gap_m */
     double mu;
 } path_error;
 
@@ -207,8 +208,8 @@ static path_error measure_path(const hf_model *m, hf_workspace *w)
         error.length = fmax(error.length, fabs(p->short_m) / m->length_m[e]);
     }
     error.balance = largest_force_N(m, w->newton_force_N) / m->reference_N;
-    double gap_m = hf_joint_gap_m(m, w, w->position_m, w->newton_force_N, NULL);
-    error.length = fmax(error.length, gap_m / hf_joint_mean_length_m(m));
+    error.truss_m = hf_joint_gap_m(m, w, w->position_m, w->newton_force_N, NULL);
+    error.length = fmax(error.length, error.truss_m / hf_joint_mean_length_m(m));
     error.gap = error.mu = all > 0 ? sum / all : 0;
     return error;
 }
@@ -414,11 +415,19 @@ static bool take_step(const hf_model *m, hf_workspace *w, double mu)
     return true;
 }
 
+static void record_path(const hf_model *m, hf_workspace *w, const path_error *error)
+{
+    for (int e = 0; e < m->n_cable; e++)
+        w->tension_N[e] = cables(w)[e].T;
+    hf_history_add_step(m, w, error->balance * m->reference_N, error->length, error->truss_m);
+}
+
 /* Goes along the path until the errors are at most `wanted`. False when they are not after max_steps. */
 static bool follow_path(const hf_model *m, hf_workspace *w, double wanted, int max_steps, int *n_step)
 {
-    for (;;) {
+    for (bool stepped = false;; stepped = true) {
         path_error error = measure_path(m, w);
+        if (stepped && w->history) record_path(m, w, &error);
         if (error.balance <= UNBALANCED * wanted && error.length <= wanted && error.gap <= wanted) return true;
         if (*n_step >= max_steps || is_told_to_stop(w) || !isfinite(error.balance)) return false;
         if (find_lost_row(m, w) >= 0) return false;
@@ -539,6 +548,7 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         ++*n_step;
         if (!take_last_step(m, w)) return false;
         now = measure_end(m, w);
+        hf_history_add_step(m, w, now.balance * m->reference_N, now.length, now.truss_m);
         if (!was_within || largest_error(m, &now) < before) continue;
         memcpy(w->position_m, w->newton_trial_m, 3 * (size_t)m->n_node * sizeof(double));
         memcpy(w->tension_N, w->newton_trial_tension_N, (size_t)m->n_cable * sizeof(double));

@@ -20,6 +20,7 @@ hf_status hf_joint_factor(const hf_model *m, hf_workspace *w, hf_newton_block *b
     HF_TRY(hf_newton_matrix_factor_blocks(m, w, block_of, condition));
     if (!has_truss(m, w)) return HF_OK;
     hf_schur schur = hf_schur_of(m, w);
+    w->n_joint_step++;
     return hf_schur_factor(m, w, block_of, &schur);
 }
 

@@ -1,6 +1,7 @@
 /* Contents: forces - one step - Newton from a shape - certificate */
 #include "solve/newton.h"
 
+#include "solve/history.h"
 #include "solve/joint.h"
 
 #include <math.h>
@@ -152,6 +153,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         memcpy(w->position_m, w->newton_trial_m, 3 * (size_t)m->n_node * sizeof(double));
         memcpy(w->tension_N, w->newton_trial_tension_N, (size_t)m->n_cable * sizeof(double));
         now = next;
+        hf_history_add_step(m, w, now.residual_N, now.length_gap, now.truss_m);
     }
     if (!(now.merit < first_merit)) return false;
     for (int e = 0; e < m->n_cable; e++) {

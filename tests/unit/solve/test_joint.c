@@ -237,6 +237,46 @@ START_TEST(auto_leaves_the_loop_on_soft_trusses)
 }
 END_TEST
 
+/* A row for each iteration and step with a shape, and in that of the coupling for each round or step with the truss.
+ * Recording changes no bit. */
+START_TEST(history_tells_every_step)
+{
+    enum { ROOM = 1000 };
+    static double form[5][ROOM], step_m[ROOM], psi_m[ROOM], max_m[ROOM];
+    hf_history history = {ROOM, 0, form[0], form[1], form[2], form[3], form[4], {ROOM, 0, step_m, psi_m, max_m}};
+    struct rng rng = rng_start(50);
+    struct net net;
+    double *EA_N = NULL;
+    if (_i)
+        EA_N = open_elastic(&net, &rng, true, 1e5, 3e-2);
+    else
+        open_reflector(&net, 1e-2);
+    find_coupled(&net, HF_COUPLING_AUTO, 1e-10);
+    assert_at_rest(&net, 1e-10);
+    hf_form_result without = net.result;
+    double *shape = copy_shape(&net);
+    ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, &history, &net.result), HF_OK);
+    ck_assert_int_eq(net.result.iterations, without.iterations);
+    for (int k = 0; k < 3 * net.scene.n_node; k++)
+        ck_assert_double_eq(found_m(&net, k / 3, k % 3), shape[k]);
+    int n = history.n, n_round = history.coupling.n;
+    int n_without_shape = net.result.iterations - n, n_empty_round = net.result.coupling.iterations - n_round;
+    ck_assert(_i == 0 ? n_without_shape >= 0 && n_without_shape <= 2 : n_without_shape == 0);
+    ck_assert(_i == 0 ? n_empty_round >= 0 && n_empty_round <= 2 : n_empty_round == 0);
+    ck_assert_double_eq_tol(history.psi_m[n - 1], net.result.psi_m, 1e-12);
+    ck_assert_double_le(history.residual_N[n - 1], 1e-9 * net.model.reference_N);
+    ck_assert_double_gt(history.residual_N[0], history.residual_N[n - 1]);
+    ck_assert_double_le(step_m[n_round - 1], 1e-10);
+    ck_assert_double_eq(psi_m[n_round - 1], history.psi_m[n - 1]);
+    ck_assert_double_eq_tol(max_m[n_round - 1], net.result.coupling.max_displacement_m, 1e-12);
+    for (int k = 0; k < n_round; k++)
+        ck_assert(isfinite(step_m[k]) && isfinite(psi_m[k]));
+    free(shape);
+    close_net(&net);
+    free(EA_N);
+}
+END_TEST
+
 Suite *suite_unit_joint(void)
 {
     Suite *suite = suite_create("unit/joint");
@@ -253,5 +293,6 @@ Suite *suite_unit_joint(void)
     tcase_add_test(tests, a_stop_is_a_stop);
     tcase_add_test(tests, auto_is_the_loop_on_stiff_trusses);
     tcase_add_loop_test(tests, auto_leaves_the_loop_on_soft_trusses, 0, 2);
+    tcase_add_loop_test(tests, history_tells_every_step, 0, 2);
     return suite;
 }
