@@ -91,6 +91,7 @@ int main(int argc, char **argv)
     hf_status status = hf_options_parse(argc, argv, &options, &messages);
     bool uses_threads = status == HF_OK && options.command->uses_threads;
     int exit_status;
+    signal(SIGCHLD, SIG_DFL); /* where a launcher left it ignored, nobody would learn how a child has ended */
     if (status == HF_OK && options.command->reads_results && hf_reader_watch(&options, &exit_status, &messages)) {
         say(&messages, status);
         hf_messages_free(&messages);

@@ -86,6 +86,8 @@ START_TEST(the_stored_truss_stands_under_the_stored_pull)
     const char *out = temp("t.h5");
     HIFDM(0, "run", TRUSS, "-o", out, "--set", set[0], "--set", set[1], "--set", set[2], "--set", set[3], "--set",
           set[4]);
+    EXPECT(out_as("said.txt"), out, "--",
+           "('give way by up to %.4f mm' % (b['coupling'].attrs['max_displacement_m'] * 1e3)).encode() in a");
     hid_t file = H5Fopen(out, H5F_ACC_RDONLY, H5P_DEFAULT);
     ck_assert_int_ge(file, 0);
     load_stored_pull(TRUSS, set, 5, file);

@@ -55,6 +55,8 @@ START_TEST(progress_for_programs)
     ck_assert_str_eq(said.err, ""); /* short runs are quiet where nobody watches */
     HIFDM(0, "run", c, "-o", temp("a.h5"), "--restart", "--progress", "line");
     ERR("\r\033[Kgeneration 1/3  best psi ");
+    EXPECT(file_with("err.txt", said.err), temp("a.h5"), "--",
+           "('generation 1/3  best psi %.4f mm' % (b['ga/best_psi_m'][0] * 1e3)).encode() in a");
     HIFDM(2, "run", c, "-o", temp("a.h5"), "--progress", "loud");
     ERR("--progress must be auto, none, line, log or jsonl, not 'loud'");
 }

@@ -89,6 +89,13 @@ START_TEST(exported_truss_can_be_imported)
            "for n in a['truss'][k] if n not in ('displacement', 'reaction', 'end_force'))",
            "list(a['truss/member']) == list(b['truss/member'])",
            "a['truss'].attrs['mass_kg'] == b['truss'].attrs['mass_kg']");
+    SHELL(0, "sed -i '0,/,all,/s//,ux uy uz ry,/' \"$1/truss_nodes.csv\"", folder); /* the first fixed node turns */
+    HIFDM(0, "run", again, "-o", two, "--quiet", "--restart");
+    HIFDM(0, "export", two, "--csv", temp("turns"));
+    EXPECT(keep(formatted("%s/truss_nodes.csv", folder)), temp("turns/truss_nodes.csv"), two, "--",
+           "[r['fixed'] for r in a] == [r['fixed'] for r in b]", "sum(r['fixed'] == 'ux uy uz ry' for r in a) == 1",
+           "sorted(c['truss/node/fixed'][:].sum(axis=1).tolist())[-2:] == [6, 6]",
+           "4 in c['truss/node/fixed'][:].sum(axis=1)");
     HIFDM(5, "run", again, "-o", keep(formatted("%s/members.csv", folder)), "--force");
     ERR("is an input of this run");
     HIFDM(5, "export", one, "--csv", folder);
