@@ -31,10 +31,10 @@ extern "C" {
 /* Doubles per cable of the primal-dual path (src/solve/interior.c). */
 #define HF_INTERIOR_ITEMS 42
 
-/* Doubles of the proof of a bound (src/solve/bound.c): per cable, and in all. */
-#define HF_BOUND_CABLE_ITEMS 12
+/* Doubles of the proof of a bound (src/solve/refine.h): per cable, and in all. */
+#define HF_BOUND_CABLE_ITEMS 14
 #define HF_BOUND_ITEMS(m)                                                                                              \
-    (HF_BOUND_CABLE_ITEMS * (size_t)(m)->n_cable + 6 * (size_t)(m)->n_node + 10 * (size_t)(m)->n_free)
+    (HF_BOUND_CABLE_ITEMS * (size_t)(m)->n_cable + 6 * (size_t)(m)->n_node + 16 * (size_t)(m)->n_free)
 
 /* X(type, name, number of items for a model m, unit, meaning). The solver of a net with struts needs a general band
  * matrix and pivots; other nets have none. */

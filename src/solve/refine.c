@@ -1,0 +1,346 @@
+/* Contents: start - forces and lengths at twice the precision - sums at nodes - steps near a measured shape -
+ * refinement. Forces are measured at twice the precision once before and once after a move; the steps of which it
+ * consists compute differences in doubles. */
+#include "solve/refine.h"
+
+#include "linalg/band.h"
+#include "solve/newton_matrix.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#define STEPS_MAX 12       /* steps with one matrix; a found shape takes two to four */
+#define NEAR_ENOUGH 1e-12  /* part of the errors of the measured shape at which steps end; 1e-15 would be rounding */
+#define MOVES_MAX 4        /* with one matrix; a found shape takes one or two */
+#define MATRICES_MAX 2     /* matrices of its own, for shapes far from balance and cables taken for slack or taut */
+#define ENOUGH 1e-11       /* part of the errors of the found shape at which refinement ends ... */
+#define FINEST 1e-28       /* ... or errors at which it does; twice the precision leaves 1e-30 */
+#define CONTRACTED 1e-18   /* errors that are not below it are taken for divergence; the proof does not rely on it */
+#define STIFFENING 1e7     /* of a taut cable of law length, as in interior.c */
+#define LEAST_PULL 1e-3    /* the same */
+#define SHARE_OF_GUESS 0.1 /* part of the estimate of the least eigenvalue that is tried first */
+
+/* ---- start ---- */
+
+static_assert(sizeof(hf_refined_cable) == HF_BOUND_CABLE_ITEMS * sizeof(double), "HF_BOUND_CABLE_ITEMS");
+
+/* Starts from the tensions in the workspace, and from what its matrix takes for taut. */
+static void set_first_state(hf_refined *p)
+{
+    for (int e = 0; e < p->m->n_cable; e++) {
+        hf_refined_cable *c = p->cable + e;
+        hf_law_cable cable = hf_workspace_cable(p->m, p->w, e);
+        c->T = (hf_twofold){0, 0};
+        c->along = 0;
+        c->is_taut = 1;
+        if (hf_refine_is_fixed(p->m, e) || !hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
+        double u[3], T = p->w->tension_N[e], length = hf_newton_matrix_direction(p->m, p->w->position_m, e, u);
+        c->along = hf_newton_matrix_stiffness(cable, length, T);
+        c->is_taut = c->along > 0;
+        if (c->is_taut > 0) c->T = hf_twofold_of(T);
+    }
+}
+
+void hf_refine_open(const hf_model *m, hf_workspace *w, double condition, hf_refined *p)
+{
+    size_t n_node = (size_t)m->n_node, n_free = (size_t)m->n_free;
+    *p = (hf_refined){
+        .m = m, .w = w, .cable = (hf_refined_cable *)w->bound_work, .condition = condition, .wanted = INFINITY};
+    p->x = (hf_twofold *)(p->cable + m->n_cable);
+    p->force = p->x + 3 * n_node;
+    p->move = (double *)(p->force + 3 * n_free);
+    p->step = p->move + 3 * n_free;
+    p->near_N = p->step + 3 * n_free;
+    p->sum = p->near_N + 3 * n_free;
+    for (size_t i = 0; i < 3 * n_node; i++)
+        p->x[i] = hf_twofold_of(w->position_m[i]);
+    set_first_state(p);
+}
+
+/* ---- forces and lengths at twice the precision ---- */
+
+/* hf_law_wanted_length_m */
+static hf_twofold wanted_length(hf_law_cable c, hf_twofold T)
+{
+    hf_twofold target = hf_twofold_of(c.target);
+    if (!hf_law_has(c.law, HF_LAW_NEEDS_EA)) return target;
+    return hf_twofold_add(target, hf_twofold_divide(hf_twofold_multiply(target, T), hf_twofold_of(c.EA_N)));
+}
+
+/* Tension of a taut cable: the multiplier, or what the law gives at this length. */
+static hf_twofold tension_at(hf_law_cable c, hf_twofold length, hf_twofold multiplier, bool by_law)
+{
+    if (hf_law_has(c.law, HF_LAW_GIVES_TENSION)) return hf_twofold_of(c.target);
+    if (hf_refine_is_spring(c.law)) return hf_twofold_multiply(hf_twofold_of(c.target), length);
+    if (!by_law || hf_law_has(c.law, HF_LAW_IS_RIGID)) return multiplier;
+    hf_twofold l0 = hf_twofold_of(c.target), EA = hf_twofold_of(c.EA_N);
+    return hf_twofold_divide(hf_twofold_multiply(EA, hf_twofold_subtract(length, l0)), l0);
+}
+
+static void add_to(hf_twofold *sum, hf_twofold a)
+{
+    *sum = hf_twofold_add(*sum, a);
+}
+
+/* Vector between the ends of cable e, m. Returns its length. */
+static hf_twofold vector_between(const hf_refined *p, int e, hf_twofold d[3])
+{
+    const int *end = p->m->end_row + 2 * e;
+    hf_twofold square = {0, 0};
+    for (int c = 0; c < 3; c++) {
+        const hf_twofold *x = p->x + (size_t)c * (size_t)p->m->n_node;
+        d[c] = hf_twofold_subtract(x[end[1]], x[end[0]]);
+        add_to(&square, hf_twofold_multiply(d[c], d[c]));
+    }
+    return hf_twofold_root(square);
+}
+
+/* Sets the forces out of balance, and length, unit, over and across of the cables. by_law: elastic cables pull with
+ * what their law gives at their length, else with the multiplier. Returns the largest error, relative to the reference
+ * tension and the theoretical lengths. */
+static double measure_refined(hf_refined *p, bool by_law)
+{
+    const hf_model *m = p->m;
+    double largest = 0;
+    for (int i = 0; i < 3 * m->n_free; i++)
+        p->force[i] = hf_twofold_of(m->load_N ? m->load_N[i % 3 * m->n_node + i / 3] : 0);
+    for (int e = 0; e < m->n_cable; e++) {
+        hf_refined_cable *c = p->cable + e;
+        if (hf_refine_is_fixed(m, e)) continue;
+        hf_law_cable cable = hf_workspace_cable(m, p->w, e);
+        hf_twofold d[3], length = vector_between(p, e, d);
+        bool is_taut = c->is_taut > 0;
+        c->length = length.hi;
+        if (hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) {
+            c->over = hf_twofold_subtract(length, wanted_length(cable, c->T));
+            if (is_taut) largest = fmax(largest, fabs(c->over.hi) / cable.theoretical_m);
+        }
+        hf_twofold q = hf_twofold_divide(tension_at(cable, length, c->T, by_law), length);
+        if (!is_taut) q = (hf_twofold){0, 0};
+        c->across = q.hi;
+        for (int k = 0; k < 3; k++) {
+            int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+            hf_twofold pull = hf_twofold_multiply(q, d[k]);
+            c->unit[k] = d[k].hi / length.hi;
+            if (a < m->n_free) add_to(p->force + 3 * a + k, pull);
+            if (b < m->n_free) add_to(p->force + 3 * b + k, hf_twofold_minus(pull));
+        }
+    }
+    for (int i = 0; i < 3 * m->n_free; i++) {
+        double error = fabs(p->force[i].hi) / m->reference_N;
+        if (!(error <= largest)) largest = error; /* keeps a NaN */
+    }
+    return largest;
+}
+
+/* ---- sums at nodes ---- */
+
+/* Largest sum of a figure of the cables at a free node. */
+double hf_refine_largest_sum(const hf_refined *p, hf_refined_figure *figure)
+{
+    double largest = 0;
+    memset(p->sum, 0, (size_t)p->m->n_free * sizeof *p->sum);
+    for (int e = 0; e < p->m->n_cable; e++) {
+        if (hf_refine_is_fixed(p->m, e) || !(p->cable[e].is_taut > 0)) continue;
+        double value = figure(p, e);
+        for (int k = 2 * e; k < 2 * e + 2; k++)
+            if (p->m->end_row[k] < p->m->n_free) p->sum[p->m->end_row[k]] += value;
+    }
+    for (int i = 0; i < p->m->n_free; i++)
+        largest = fmax(largest, p->sum[i]);
+    return largest;
+}
+
+/* Of the matrix that is factored, whose norm is at least as large as the largest sum. */
+static double matrix_sum(const hf_refined *p, int e)
+{
+    return p->cable[e].along + p->cable[e].across;
+}
+
+/* ---- steps near a measured shape ---- */
+
+/* Sets near_N and near_over after move and change, from what was measured before them. Differences alone are computed,
+ * so that errors are relative to the moves. Returns the largest error, as measure_refined does. */
+static double measure_near(hf_refined *p)
+{
+    const hf_model *m = p->m;
+    double largest = 0;
+    for (int i = 0; i < 3 * m->n_free; i++)
+        p->near_N[i] = p->force[i].hi;
+    for (int e = 0; e < m->n_cable; e++) {
+        hf_refined_cable *c = p->cable + e;
+        if (hf_refine_is_fixed(m, e) || !(c->is_taut > 0)) continue;
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        hf_law_cable cable = hf_workspace_cable(m, p->w, e);
+        double d[3], more[3], square = 0, change = 0, pull[3], T = c->across * c->length;
+        for (int k = 0; k < 3; k++) {
+            d[k] = c->length * c->unit[k];
+            more[k] = (b < m->n_free ? p->move[3 * b + k] : 0) - (a < m->n_free ? p->move[3 * a + k] : 0);
+            change += (2 * d[k] + more[k]) * more[k];
+            square += (d[k] + more[k]) * (d[k] + more[k]);
+        }
+        double length = sqrt(square), longer = change / (length + c->length);
+        for (int k = 0; k < 3; k++)
+            pull[k] = hf_refine_is_spring(cable.law)
+                          ? c->across * more[k]
+                          : (T * (more[k] - c->unit[k] * longer) + c->change * (d[k] + more[k])) / length;
+        hf_newton_matrix_add_pull(m, p->w, e, pull, p->near_N);
+        if (!hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
+        c->near_over = c->over.hi + longer - c->change / hf_law_stiffness_N_per_m(cable, INFINITY);
+        largest = fmax(largest, fabs(c->near_over) / cable.theoretical_m);
+    }
+    for (int i = 0; i < 3 * m->n_free; i++) {
+        double error = fabs(p->near_N[i]) / m->reference_N;
+        if (!(error <= largest)) largest = error; /* keeps a NaN */
+    }
+    return largest;
+}
+
+static void solve_for_step(hf_refined *p)
+{
+    const hf_model *m = p->m;
+    if (m->has_newton) {
+        hf_newton_matrix_solve(m, p->w, p->step);
+        return;
+    }
+    double *b = p->w->certificate_work;
+    for (int i = 0; i < 3 * m->n_free; i++)
+        b[i % 3 * m->n_node + i / 3] = p->step[i];
+    hf_band_back_solve(m->n_free, m->half_bandwidth, 3, p->w->band, b, m->n_node);
+    for (int i = 0; i < 3 * m->n_free; i++)
+        p->step[i] = b[i % 3 * m->n_node + i / 3];
+}
+
+/* The Newton step (M8) with the matrix that is factored: step, and last of the cables. */
+static void find_refinement(hf_refined *p)
+{
+    const hf_model *m = p->m;
+    memcpy(p->step, p->near_N, 3 * (size_t)m->n_free * sizeof *p->step);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int e = 0; e < m->n_cable; e++) {
+            hf_refined_cable *c = p->cable + e;
+            if (!(c->along > 0)) continue;
+            int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+            double longer = c->near_over, pull[3];
+            for (int k = 0; k < 3 && pass; k++)
+                longer +=
+                    c->unit[k] * ((b < m->n_free ? p->step[3 * b + k] : 0) - (a < m->n_free ? p->step[3 * a + k] : 0));
+            c->last = c->along * longer;
+            for (int k = 0; k < 3; k++)
+                pull[k] = c->last * c->unit[k];
+            if (!pass) hf_newton_matrix_add_pull(m, p->w, e, pull, p->step);
+        }
+        if (!pass) solve_for_step(p);
+    }
+}
+
+static void add_step(hf_refined *p, double part)
+{
+    for (int i = 0; i < 3 * p->m->n_free; i++)
+        p->move[i] += part * p->step[i];
+    for (int e = 0; e < p->m->n_cable; e++)
+        p->cable[e].change += part * p->cable[e].last;
+}
+
+/* Takes steps from the measured shape while each halves the errors: move, and change of the cables. */
+static void find_move(hf_refined *p)
+{
+    memset(p->move, 0, 3 * (size_t)p->m->n_free * sizeof *p->move);
+    for (int e = 0; e < p->m->n_cable; e++)
+        p->cable[e].change = p->cable[e].last = 0;
+    double first = measure_near(p), now = first, before = INFINITY;
+    for (int k = 0; k < STEPS_MAX && now < before / 2 && now > NEAR_ENOUGH * first; k++) {
+        find_refinement(p);
+        add_step(p, 1);
+        before = now;
+        now = measure_near(p);
+        if (!(now < before)) add_step(p, -1); /* which ends the loop */
+    }
+}
+
+/* ---- refinement ---- */
+
+static void apply_move(hf_refined *p, double part)
+{
+    const hf_model *m = p->m;
+    for (int i = 0; i < 3 * m->n_free; i++)
+        add_to(p->x + i % 3 * m->n_node + i / 3, hf_twofold_of(part * p->move[i]));
+    for (int e = 0; e < m->n_cable; e++)
+        if (p->cable[e].along > 0) add_to(&p->cable[e].T, hf_twofold_of(part * p->cable[e].change));
+}
+
+/* Moves while each move halves the errors. Returns the errors at the end, where the forces are by law. */
+static double refine(hf_refined *p)
+{
+    double now = measure_refined(p, false), before = INFINITY;
+    p->wanted = fmax(fmin(fmin(ENOUGH * now, p->wanted), CONTRACTED), FINEST);
+    for (int k = 0; k < MOVES_MAX && now > p->wanted && now < before / 2; k++) {
+        find_move(p);
+        apply_move(p, 1);
+        before = now;
+        now = measure_refined(p, false);
+        if (now < before) continue;
+        apply_move(p, -1);
+        measure_refined(p, false);
+    }
+    if (p->m->EA_N) measure_refined(p, true);
+    return now < before ? now : before;
+}
+
+void hf_refine_block(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
+{
+    const hf_refined_cable *c = (const hf_refined_cable *)w->bound_work + e;
+    (void)m;
+    hf_newton_matrix_spring(c->along, fmax(c->across, 0), c->unit, block);
+}
+
+/* Decides which cables are taut, as interior.c does, and factors the matrix of the refined shape. */
+static bool factor_anew(hf_refined *p)
+{
+    const hf_model *m = p->m;
+    if (!m->has_newton) return false;
+    for (int e = 0; e < m->n_cable; e++) {
+        hf_refined_cable *c = p->cable + e;
+        hf_law_cable cable = hf_workspace_cable(m, p->w, e);
+        if (hf_refine_is_fixed(m, e)) continue;
+        bool multiplier = hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER);
+        if (multiplier) {
+            c->is_taut = c->T.hi / m->reference_N + c->over.hi / cable.theoretical_m > 0;
+            if (!(c->is_taut > 0)) c->T = (hf_twofold){0, 0};
+        }
+        c->along = c->is_taut > 0 ? hf_law_stiffness_N_per_m(cable, INFINITY) : 0;
+        if (multiplier && isinf(c->along))
+            c->along = STIFFENING * fmax(c->T.hi, LEAST_PULL * m->reference_N) / cable.theoretical_m;
+    }
+    bool is_factored = hf_newton_matrix_factor_blocks(m, p->w, hf_refine_block, &p->condition) == HF_OK;
+    for (int e = 0; e < m->n_cable; e++) /* from here on `along` is of cables with a multiplier alone */
+        if (!hf_law_has((hf_law)p->w->law[e], HF_LAW_HAS_MULTIPLIER)) p->cable[e].along = 0;
+    return is_factored;
+}
+
+static bool is_told_apart(const hf_refined *p)
+{
+    for (int e = 0; e < p->m->n_cable; e++) {
+        const hf_refined_cable *c = p->cable + e;
+        if (hf_refine_is_fixed(p->m, e) || !hf_law_has((hf_law)p->w->law[e], HF_LAW_HAS_MULTIPLIER)) continue;
+        if (c->is_taut > 0 ? !(c->T.hi > 0) : !(c->over.hi < 0)) return false;
+    }
+    return true;
+}
+
+hf_bound_reason hf_refine_approach(hf_refined *p, bool has_factor)
+{
+    hf_bound_reason reason = HF_BOUND_NOT_CONTRACTING;
+    if (!has_factor) measure_refined(p, false);
+    for (int k = has_factor ? 0 : 1; k <= MATRICES_MAX; k++) {
+        if (k > 0 && !factor_anew(p)) return k == 1 && !has_factor ? HF_BOUND_NOT_DEFINITE : reason;
+        double error = refine(p);
+        reason = !(error < CONTRACTED) ? HF_BOUND_NOT_CONTRACTING
+                 : is_told_apart(p)    ? HF_BOUND_PROVEN
+                                       : HF_BOUND_SLACK_OR_TAUT;
+        p->guess = SHARE_OF_GUESS * hf_refine_largest_sum(p, matrix_sum) / p->condition;
+        if (reason == HF_BOUND_PROVEN && error <= p->wanted) break;
+    }
+    return reason;
+}
