@@ -2,6 +2,8 @@
 #include "flexible.h"
 #include "laws.h"
 
+#include "solve/joint.h"
+
 /* A random net on a random foundation. Its cables are elastic, at about 10 N in the theoretical shape; if mixed, one of
  * three keeps its tension, and one its force density. */
 static double *open_elastic(struct net *net, struct rng *rng, bool is_mixed, double EA_N, double scale_m_per_N)
@@ -48,6 +50,30 @@ static void assert_at_rest(struct net *net, double tof_m)
         ck_assert_double_eq(net->work.position_m[at], net->model.position_m[at] + net->work.displacement_m[i]);
     }
 }
+
+/* Without forces the truss has the attachments at their theoretical places, wherever they are. */
+START_TEST(gap_is_a_distance)
+{
+    struct net net;
+    open_reflector(&net, 1e-5);
+    const hf_model *m = &net.model;
+    size_t n = 3 * (size_t)(m->n_free + m->n_attachment);
+    double *force = calloc(n, sizeof *force), square = 1, mean_m = hf_joint_mean_length_m(m);
+    ck_assert_ptr_nonnull(force);
+    hf_form_prepare(m, &net.work);
+    hf_form_place_supports(m, &net.work);
+    double *x = net.work.position_m + m->attachment_row[1];
+    x[0] += 2e-3;
+    x[m->n_node] -= 3e-3;
+    x[2 * m->n_node] += 6e-3;
+    ck_assert_double_eq(hf_joint_gap_m(m, &net.work, net.work.position_m, force, &square), 0); /* they are supports */
+    net.work.n_moving = m->n_free + m->n_attachment;
+    ck_assert_double_eq_tol(hf_joint_gap_m(m, &net.work, net.work.position_m, force, &square), 7e-3, 1e-12);
+    ck_assert_double_eq_tol(square, 1 + 49e-6 / (mean_m * mean_m), 1e-12);
+    free(force);
+    close_net(&net);
+}
+END_TEST
 
 /* Trusses on which the plain loop converges; all to 1e-12 m. */
 static void assert_the_loops_shape(struct net *net)
@@ -282,6 +308,7 @@ Suite *suite_unit_joint(void)
     Suite *suite = suite_create("unit/joint");
     TCase *tests = tcase_create("joint");
     suite_add_tcase(suite, tests);
+    tcase_add_test(tests, gap_is_a_distance);
     tcase_add_loop_test(tests, the_loops_shape_of_a_reflector, 0, 3);
     tcase_add_loop_test(tests, the_loops_shape_of_elastic_nets, 0, 6);
     tcase_add_loop_test(tests, stiff_cables_on_a_soft_truss, 0, 9);
