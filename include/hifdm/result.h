@@ -83,12 +83,16 @@ const char *hf_bound_reason_meaning(int reason); /* the same */
  * hf_evaluate under any status but HF_OK psi_m and the two tension ratios are NaN. In more detail:
  *   culprit                 cable (COLLAPSED, NOT_FINITE; NOT_CONVERGED: the one whose rounding stands in the way), row
  *                           of D (SINGULAR), chain (STRAIGHT_CHAIN)
+ *                           OK: with n_drifting > 0, the row that moves farthest
  *   psi_m                   Eq. 10
  *   residual_N              with every cable at the tension of its law: of an elastic one EA (l/l0 - 1) at its length
  *                           l, not the multiplier that the iterations balance and of which length_error speaks
  *   length_error            for elastic cables L* = l0 (1 + T/EA); 0 without a cable of these laws
  *   inner_tension_ratio     max T / min T of the group, as boundary_tension_ratio; NaN when the group is empty or a
  *                           tension is not positive
+ *   n_loose                 such nodes are where no cable of theirs is too long, as near to their theoretical places as
+ *                           that allows. A design (hf_evaluate) with such a node is SINGULAR
+ *   n_drifting              others than those; position_error_m is then NaN
  *   position_error_m        this one, the bounds, condition (INFINITY: singular) and backward_error are NaN unless
  *                           hf_certify was called
  *   position_bound_m        for the exact values of laws, loads and supports as doubles (METHOD section 3); NaN when
@@ -113,6 +117,8 @@ const char *hf_bound_reason_meaning(int reason); /* the same */
     X(double, backward_error, REAL, 4, 0, "backward_error", "",                                                        \
       "residual_N over the largest sum of tensions at a node")                                                         \
     X(int, n_slack, INT, 5, 0, "slack_cables", "", "cables under HF_SLACK_RATIO of the reference tension")             \
+    X(int, n_loose, INT, 5, 0, "loose_nodes", "", "free nodes that no taut cable holds; psi is without them")          \
+    X(int, n_drifting, INT, 5, 0, "drifting_nodes", "", "free nodes that can move without a force: not unique")        \
     X(int, n_loaded_chain, INT, 5, 0, "loaded_straight_chains", "",                                                    \
       "chains under lateral load: their tensions mean nothing")
 

@@ -29,7 +29,7 @@ extern "C" {
 #define HF_SCHUR_ITEMS(m) (27 * (size_t)(m)->n_attachment * (size_t)(m)->n_attachment + HF_SCHUR_COLUMNS(m))
 
 /* Doubles per cable of the primal-dual path (src/solve/interior.c). */
-#define HF_INTERIOR_ITEMS 42
+#define HF_INTERIOR_ITEMS 43
 
 /* Doubles of the proof of a bound (src/solve/refine.h): per cable, and in all. */
 #define HF_BOUND_CABLE_ITEMS 14
@@ -61,6 +61,14 @@ extern "C" {
       "state and step of each cable")                                                                                  \
     X(double, interior_position_m, m->has_newton ? 3 * (size_t)m->n_node : 0, "m", "[3][n_node] point of the path")    \
     X(double, bound_work, HF_BOUND_ITEMS(m), "", "cables and positions at twice the precision")                        \
+    X(double, interior_tension_N, m->has_newton ? m->n_cable : 0, "N", "[n_cable] tensions there")                     \
+    X(unsigned char, loose, m->n_node, "", "[n_node] 1: no taut cable holds this row")                                 \
+    X(double, spring_N_per_m, m->has_newton ? (size_t)m->n_free : 0, "N/m", "[n_free] springs of the path")            \
+    X(double, spring_place_m, m->has_newton ? 3 * (size_t)m->n_node : 0, "m", "[3][n_node] to where they pull")        \
+    X(unsigned char, place_law, m->has_newton ? m->n_cable : 0, "", "kept while loose nodes are placed")               \
+    X(double, place_target, m->has_newton ? m->n_cable : 0, "by law", "the same")                                      \
+    X(double, place_q_N_per_m, m->has_newton ? m->n_cable : 0, "N/m", "the same")                                      \
+    X(double, place_before_m, m->has_newton ? 3 * (size_t)m->n_node : 0, "m", "the same")                              \
     X(double, certificate_work, m->has_newton ? 0 : 3 * (size_t)m->n_node, "", "without a Newton matrix")              \
     X(int, certificate_integer_work, m->has_newton ? 0 : (size_t)m->n_free, "", "the same")                            \
     X(double, displacement_m, 3 * (size_t)m->n_attachment, "m", "[3 n_attachment] displacements by the truss")         \

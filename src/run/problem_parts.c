@@ -169,6 +169,38 @@ static void name_loaded_chains(const hf_problem *p, hf_workspace *w, name_list *
     }
 }
 
+#define NODE_SIZE 2048
+
+/* "n (cables a, b)": a row and the cables around it. */
+static const char *name_node(const hf_problem *p, int row, char text[NODE_SIZE])
+{
+    const hf_model *m = &p->model;
+    name_list around = {0};
+    for (int k = 0; k < 2 * m->n_cable; k++)
+        if (m->end_row[k] == row) add_name(&around, p->scene.cable_id[k / 2]);
+    snprintf(text, NODE_SIZE, "%s (cables %s)", p->scene.node_id[m->node_of_row[row]], close_names(&around));
+    return text;
+}
+
+static void name_loose(const hf_problem *p, const char *stage, const hf_workspace *w, const hf_form_result *r,
+                       hf_messages *messages)
+{
+    name_list loose = {0};
+    char name[NODE_SIZE];
+    for (int i = 0; r->n_loose && i < p->model.n_free; i++)
+        if (w->loose[i]) add_name(&loose, name_node(p, i, name));
+    if (r->n_loose)
+        hf_warning(messages,
+                   "no taut cable holds these nodes of the %s shape, %d: %s. They are given the place nearest to the "
+                   "theoretical one that their cables allow, and psi leaves them out",
+                   stage, r->n_loose, close_names(&loose));
+    if (r->n_drifting)
+        hf_warning(messages,
+                   "the equilibrium is not unique: %d nodes can move without a force, farthest %s; the position error "
+                   "is unknown. Give a cable there another law, or support the node",
+                   r->n_drifting, name_node(p, r->culprit, name));
+}
+
 void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, const hf_form_result *r,
                      hf_messages *messages)
 {
@@ -187,6 +219,7 @@ void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, co
             "boundary tensions depend on where the iteration stopped: %s",
             r->n_loaded_chain, close_names(&chains));
     }
+    name_loose(p, stage, w, r, messages);
     for (int e = 0; r->n_slack && e < m->n_cable; e++)
         if (hf_metrics_is_slack(m, w, e)) add_name(&slack, p->scene.cable_id[e]);
     if (r->n_slack) hf_warning(messages, "slack in the %s shape, %d: %s", stage, r->n_slack, close_names(&slack));
@@ -308,6 +341,7 @@ hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
 {
     const hf_form_result *r = &p->form;
     hf_workspace *w = &p->workspace;
+    char node[NODE_SIZE] = "?";
     switch (r->status) {
     case HF_OK:
         hf_problem_warn(p, "form-finding", w, r, messages);
@@ -331,10 +365,11 @@ hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
         return hf_error(messages, r->status, "ill-posed: the tension of cable '%s' is no longer a finite number",
                         p->scene.cable_id[r->culprit]);
     default:
+        if (r->culprit >= 0) name_node(p, r->culprit, node);
         return hf_error(
             messages, r->status,
-            "ill-posed: the force density matrix is singular or not positive definite at node '%s': its cables "
+            "ill-posed: the force density matrix is singular or not positive definite at node %s: its cables "
             "are slack, or no match for its load, or lead to no support",
-            r->culprit >= 0 ? p->scene.node_id[p->model.node_of_row[r->culprit]] : "?");
+            node);
     }
 }

@@ -1,12 +1,10 @@
-/* Contents: nodes without a place - from a start near the answer - from anywhere */
+/* Contents: from a start near the answer - from anywhere */
 #include "solve/equilibrium.h"
 
 #include "solve/coupling.h"
 #include "solve/interior.h"
 #include "solve/joint.h"
 #include "solve/newton.h"
-
-#include <string.h>
 
 #define FIRST_BLOCK 6  /* iterations of hf_form_find before Newton is tried. Tests pass with 2 and 20. */
 #define NEWTON_MAX 30  /* Newton steps after them */
@@ -16,20 +14,6 @@
 static int smaller(int a, int b)
 {
     return a < b ? a : b;
-}
-
-/* ---- nodes without a place ---- */
-
-/* A free node whose cables are all without force, or -1. */
-static int find_loose_row(const hf_model *m, hf_workspace *w)
-{
-    double *held = w->newton_work;
-    memset(held, 0, (size_t)m->n_free * sizeof *held);
-    for (int k = 0; k < 2 * m->n_cable; k++)
-        if (m->end_row[k] < m->n_free) held[m->end_row[k]] += w->q_N_per_m[k / 2];
-    for (int i = 0; i < m->n_free; i++)
-        if (!(held[i] > 0)) return i;
-    return -1;
 }
 
 /* ---- from a start near the answer ---- */
@@ -88,7 +72,6 @@ static hf_status find_equilibrium(const hf_model *m, const hf_form_settings *s, 
         n_step = r->iterations;
     }
     hf_status status = hf_interior_run(m, s, w, smaller(PATH_MAX, s->max_iterations - n_step), &n_step, &culprit);
-    if (status == HF_OK && m->EA_N && (culprit = find_loose_row(m, w)) >= 0) status = HF_SINGULAR;
     if (status == HF_OK && hf_form_measure(m, s, w, r) == HF_OK)
         return hf_form_accept(m, s, HF_STOPPED_RESIDUAL, n_step, w, r);
     if (status == HF_OK || status == HF_STRAIGHT_CHAIN || status == HF_NOT_CONVERGED)

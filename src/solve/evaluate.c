@@ -4,6 +4,7 @@
 #include "solve/certificate.h"
 #include "solve/coupling.h"
 #include "solve/equilibrium.h"
+#include "solve/loose.h"
 
 #include <math.h>
 
@@ -60,6 +61,7 @@ hf_status hf_evaluate_form(const hf_model *m, const hf_form_settings *s, hf_work
     net_problem problem = {m, s, hf_evaluate_method(m, s, NULL) == HF_METHOD_NEWTON, s->stop};
     hf_form_prepare(m, w);
     find_net(&problem, w, history, r);
+    hf_loose_settle(m, s, w, r);
     hf_certify(m, w, r);
     return r->status;
 }
@@ -121,5 +123,6 @@ hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspac
                            seeded ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
     hf_evaluate_prepare(v, design_N, w);
     find_net(&problem, w, NULL, r);
+    hf_loose_refuse(v->model, v->form, w, r);
     return hf_evaluate_judge(v, r);
 }

@@ -34,6 +34,7 @@ void hf_form_prepare(const hf_model *m, hf_workspace *w)
     memcpy(w->target, m->target, n * sizeof(double));
     memcpy(w->q_N_per_m, m->start_q_N_per_m, n * sizeof(double));
     if (m->EA_N) memcpy(w->EA_N, m->EA_N, n * sizeof(double));
+    memset(w->loose, 0, (size_t)m->n_node);
     memset(w->displacement_m, 0, 3 * (size_t)m->n_attachment * sizeof(double));
     w->n_moving = m->n_free;
 }

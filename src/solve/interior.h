@@ -19,4 +19,9 @@
 hf_status hf_interior_run(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                           int max_steps, int *n_step, int *culprit);
 
+/* The same from the shape spring_place_m, to which springs of spring_N_per_m pull the rows (INFINITY: the row does not
+ * move), with the cables' laws and targets of the workspace. */
+hf_status hf_interior_run_held(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
+                               int max_steps, int *n_step, int *culprit);
+
 #endif

@@ -15,9 +15,10 @@ static double displacement_m(const hf_model *m, const double *position_m, int i_
     return position_m[at] - m->position_m[at];
 }
 
-hf_status hf_joint_factor(const hf_model *m, hf_workspace *w, hf_newton_block *block_of, double *condition)
+hf_status hf_joint_factor(const hf_model *m, hf_workspace *w, hf_newton_block *block_of, const double *spring_N_per_m,
+                          double *condition)
 {
-    HF_TRY(hf_newton_matrix_factor_blocks(m, w, block_of, condition));
+    HF_TRY(hf_newton_matrix_factor_blocks(m, w, block_of, spring_N_per_m, condition));
     if (!has_truss(m, w)) return HF_OK;
     hf_schur schur = hf_schur_of(m, w);
     w->n_joint_step++;

@@ -10,8 +10,10 @@
 
 #include "solve/newton_matrix.h"
 
-/* hf_newton_matrix_factor_blocks for net and truss. condition (may be NULL) is that of the band of the free nodes. */
-hf_status hf_joint_factor(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of, double *condition);
+/* hf_newton_matrix_factor_blocks for net and truss; springs at free nodes only. condition (may be NULL) is that of the
+ * band of the free nodes. */
+hf_status hf_joint_factor(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
+                          const double *spring_N_per_m, double *condition);
 
 /* Solve in place with that factor and the same blocks: rhs [3 n_moving], forces, becomes the step. The attachments
  * go from where they are in position_m to the displacements under the forces after the step. */

@@ -16,6 +16,13 @@
 #define TRUSTED_RISE 1e6
 /* A step leaves at least this fraction of a multiplier. The tests of form-finding pass with 0.01 and 0.5. */
 #define TENSION_KEPT 0.1
+/* Equilibria that are not unique: condition number from which they are looked for, rounds of inverse iteration, move of
+ * the trial over the mean length, errors that are rounding, and force that counts as none over the tensions there. */
+#define DRIFT_CONDITION 1e12
+#define DRIFT_ROUNDS 3
+#define DRIFT_PART 1e-2
+#define DRIFT_NOTHING 1e-15
+#define DRIFT_FORCE 1e-9
 
 /* ---- forces ---- */
 
@@ -81,10 +88,10 @@ static void right_hand_side(const hf_model *m, const hf_workspace *w, const doub
     }
 }
 
-/* Sets newton_step to the Newton step for the forces in newton_force_N. condition as in hf_newton_matrix_factor. */
-static hf_status find_step(const hf_model *m, hf_workspace *w, double *condition)
+/* Sets newton_step to the Newton step for the forces in newton_force_N. springs, condition as in hf_joint_factor. */
+static hf_status find_step(const hf_model *m, hf_workspace *w, const double *springs, double *condition)
 {
-    HF_TRY(hf_joint_factor(m, w, hf_newton_matrix_block, condition));
+    HF_TRY(hf_joint_factor(m, w, hf_newton_matrix_block, springs, condition));
     right_hand_side(m, w, w->newton_force_N, w->newton_step);
     hf_joint_solve(m, w, hf_newton_matrix_block, w->newton_step);
     return HF_OK;
@@ -134,7 +141,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
     double first_merit = now.merit, u[3];
     int n_trusted = 0;
     for (int k = 0; k < max_steps && !is_balanced(m, &tight, &now); k++) {
-        if (find_step(m, w, NULL) != HF_OK) break;
+        if (find_step(m, w, NULL, NULL) != HF_OK) break;
         double part = 1;
         int halvings = 0;
         for (; halvings <= HALVINGS_MAX; halvings++, part /= 2) {
@@ -168,18 +175,79 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
 
 /* ---- certificate ---- */
 
+/* Scales newton_step so that the node that moves farthest moves by 1, and leaves loose nodes where they are. Returns
+ * its row, or -1. */
+static int normalise_step(const hf_model *m, const hf_workspace *w)
+{
+    int row = -1;
+    double largest = 0;
+    for (int i = 0; i < m->n_free; i++) {
+        double *d = w->newton_step + 3 * i;
+        if (w->loose[i]) d[0] = d[1] = d[2] = 0;
+        double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        if (!(square > largest)) continue;
+        largest = square;
+        row = i;
+    }
+    for (int k = 0; k < hf_newton_matrix_dofs(m) && row >= 0; k++)
+        w->newton_step[k] /= sqrt(largest);
+    return row;
+}
+
+/* Sum of the tensions at a row, N. */
+static double pull_at_row_N(const hf_model *m, const hf_workspace *w, int row)
+{
+    double sum = 0;
+    for (int k = 0; k < 2 * m->n_cable; k++)
+        if (m->end_row[k] == row) sum += w->tension_N[k / 2];
+    return sum;
+}
+
+/* Where the factored matrix is nearly singular: moves the nodes a little along its softest direction, which inverse
+ * iteration finds. When the forces still balance there, the equilibrium is one of many: sets n_drifting to the number
+ * of nodes that take part, culprit to the one that moves farthest, and takes the position error away. */
+static void look_for_drift(const hf_model *m, hf_workspace *w, hf_form_result *r)
+{
+    int n = hf_newton_matrix_dofs(m), row = -1;
+    imbalance here = measure_imbalance(m, w, w->position_m, w->tension_N, w->newton_force_N);
+    for (int k = 0; k < n; k++)
+        w->newton_step[k] = 1 + k % 7 - k % 3;
+    for (int k = 0; k < DRIFT_ROUNDS; k++) {
+        hf_newton_matrix_solve(m, w, w->newton_step);
+        if ((row = normalise_step(m, w)) < 0) return;
+    }
+    for (int side = -1; side <= 1 && r->n_drifting == 0; side += 2) {
+        try_step(m, w, side * DRIFT_PART * hf_joint_mean_length_m(m));
+        imbalance there = measure_imbalance(m, w, w->newton_trial_m, w->tension_N, w->newton_force_N);
+        if (!(there.residual_N <= 1.001 * here.residual_N + DRIFT_NOTHING * m->reference_N)) continue;
+        const double *f = w->newton_force_N + 3 * row; /* beside a weak cable elsewhere all forces are small */
+        if (!(sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) <= DRIFT_FORCE * pull_at_row_N(m, w, row))) continue;
+        if (!(there.length_gap <= 1.001 * here.length_gap + DRIFT_NOTHING)) continue;
+        for (int i = 0; i < m->n_free; i++) {
+            const double *d = w->newton_step + 3 * i;
+            r->n_drifting += d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > DRIFT_PART * DRIFT_PART;
+        }
+        r->culprit = row;
+        r->position_error_m = (double)NAN;
+    }
+}
+
 void hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
     double largest = 0;
     int n_moving = w->n_moving;
     w->n_moving = m->n_free + m->n_attachment;
     measure_imbalance(m, w, w->position_m, w->tension_N, w->newton_force_N);
-    hf_status status = find_step(m, w, &r->condition);
+    for (int i = 0; i < m->n_free; i++) /* a loose node has no stiffness of its own */
+        w->spring_N_per_m[i] = w->loose[i] ? m->reference_N / hf_joint_mean_length_m(m) : 0;
+    hf_status status = find_step(m, w, w->spring_N_per_m, &r->condition);
     for (int i = 0; i < w->n_moving; i++) {
         const double *d = w->newton_step + 3 * i;
         double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
         if (!(square <= largest)) largest = square; /* keeps a NaN */
     }
     w->n_moving = n_moving;
-    if (status == HF_OK) r->position_error_m = sqrt(largest);
+    if (status != HF_OK) return;
+    r->position_error_m = sqrt(largest);
+    if (r->condition > DRIFT_CONDITION && !m->n_attachment) look_for_drift(m, w, r);
 }

@@ -10,6 +10,8 @@
 /* Shift after the first failed factorisation, a hundredfold after each further one. No net of these tests has such a
  * matrix, so that nothing changes from 1e-13 to 1e-4; the unit test makes one by a cable that pushes. */
 #define SHIFT_FIRST 1e-10
+/* Stiffness of the spring at a row that does not move, over the diagonal without it: it moves less than rounding. */
+#define PINNED 1e20
 
 static int half_bandwidth(const hf_model *m)
 {
@@ -55,8 +57,15 @@ static void shift_diagonal(const hf_model *m, hf_workspace *w, double shift)
         w->newton_band[i * column] += shift;
 }
 
+static void add_springs(const hf_model *m, hf_workspace *w, const double *spring_N_per_m)
+{
+    size_t column = (size_t)half_bandwidth(m) + 1;
+    for (int i = 0; i < hf_newton_matrix_dofs(m); i++)
+        w->newton_band[(size_t)i * column] += fmin(spring_N_per_m[i / 3], PINNED * w->newton_band[(size_t)i * column]);
+}
+
 hf_status hf_newton_matrix_factor_blocks(const hf_model *m, hf_workspace *w, hf_newton_block *block_of,
-                                         double *condition)
+                                         const double *spring_N_per_m, double *condition)
 {
     int n = hf_newton_matrix_dofs(m), k = half_bandwidth(m);
     double shift = DIAGONAL_GUARD;
@@ -64,6 +73,7 @@ hf_status hf_newton_matrix_factor_blocks(const hf_model *m, hf_workspace *w, hf_
         double largest = hf_newton_matrix_assemble_blocks(m, w, block_of);
         if (!(isfinite(largest) && largest > 0) || shift > 1) return HF_SINGULAR;
         shift_diagonal(m, w, shift * largest);
+        if (spring_N_per_m) add_springs(m, w, spring_N_per_m);
         double norm = condition ? hf_band_norm(n, k, w->newton_band, w->newton_work) : 0;
         if (hf_band_factor(n, k, w->newton_band) != 0) continue;
         if (condition)
@@ -75,7 +85,7 @@ hf_status hf_newton_matrix_factor_blocks(const hf_model *m, hf_workspace *w, hf_
 
 hf_status hf_newton_matrix_factor(const hf_model *m, hf_workspace *w, double *condition)
 {
-    return hf_newton_matrix_factor_blocks(m, w, hf_newton_matrix_block, condition);
+    return hf_newton_matrix_factor_blocks(m, w, hf_newton_matrix_block, NULL, condition);
 }
 
 void hf_newton_matrix_solve_many(const hf_model *m, const hf_workspace *w, int n_rhs, double *rhs)

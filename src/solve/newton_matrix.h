@@ -95,9 +95,10 @@ hf_status hf_newton_matrix_factor(const hf_model *model, hf_workspace *workspace
 /* Assemble the matrix of these blocks into newton_band. Returns the largest diagonal entry. */
 double hf_newton_matrix_assemble_blocks(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of);
 
-/* hf_newton_matrix_factor for the matrix of these blocks. Cables between two supports are not asked for. */
+/* hf_newton_matrix_factor for the matrix of these blocks. Cables between two supports are not asked for.
+ * spring_N_per_m [n_free] (may be NULL): springs that tie the rows to the ground; INFINITY: the row does not move. */
 hf_status hf_newton_matrix_factor_blocks(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
-                                         double *condition);
+                                         const double *spring_N_per_m, double *condition);
 
 /* Solve in place, rhs [3 n_free] or [n_rhs][3 n_free], with the factor in newton_band. */
 void hf_newton_matrix_solve(const hf_model *model, const hf_workspace *workspace, double *rhs);

@@ -313,7 +313,7 @@ static bool factor_anew(hf_refined *p)
         if (multiplier && isinf(c->along))
             c->along = STIFFENING * fmax(c->T.hi, LEAST_PULL * m->reference_N) / cable.theoretical_m;
     }
-    bool is_factored = hf_newton_matrix_factor_blocks(m, p->w, hf_refine_block, &p->condition) == HF_OK;
+    bool is_factored = hf_newton_matrix_factor_blocks(m, p->w, hf_refine_block, NULL, &p->condition) == HF_OK;
     for (int e = 0; e < m->n_cable; e++) /* from here on `along` is of cables with a multiplier alone */
         if (!hf_law_has((hf_law)p->w->law[e], HF_LAW_HAS_MULTIPLIER)) p->cable[e].along = 0;
     return is_factored;

@@ -1,7 +1,7 @@
 /* Nets as built: a reflector's net of elastic cables, from soft to nearly rigid, each cut a little too long or too
  * short. A shape that is found must be in equilibrium under the tensions that follow from its lengths; the test
- * measures this itself. A net without a shape has a node whose cables are all slack, and the result must name that
- * node. */
+ * measures this itself. Nodes whose cables are all slack are loose: they are counted, and are as near to their
+ * theoretical places as their cables allow. */
 #include "laws.h"
 
 #include <hifdm/evaluate.h>
@@ -44,6 +44,51 @@ static int is_loose(const struct net *net, int row)
     return 1;
 }
 
+/* Distance of a row to its theoretical place after `part` of the way there, or INFINITY if a cable gets too long. */
+static double distance_after(const struct net *net, int row, double part)
+{
+    const hf_model *m = &net->model;
+    double x[3], square = 0;
+    for (int c = 0; c < 3; c++) {
+        double at = net->work.position_m[c * m->n_node + row], there = m->position_m[c * m->n_node + row];
+        x[c] = at + part * (there - at);
+        square += (x[c] - there) * (x[c] - there);
+    }
+    for (int k = 0; k < 2 * m->n_cable; k++) {
+        double length = 0;
+        if (m->end_row[k] != row) continue;
+        for (int c = 0; c < 3; c++)
+            length += pow(x[c] - net->work.position_m[c * m->n_node + m->end_row[k ^ 1]], 2);
+        if (sqrt(length) > m->target[k / 2] * (1 + 2e-10)) return INFINITY;
+    }
+    return sqrt(square);
+}
+
+/* The loose nodes of a result are those without a taut cable, and none of them could be nearer to its theoretical
+ * place; psi is that of the others. */
+static void check_loose_nodes(const struct net *net)
+{
+    const hf_model *m = &net->model;
+    int n_loose = 0, n = 0;
+    double sum = 0;
+    for (int i = 0; i < m->n_free; i++) {
+        if (!is_loose(net, i)) continue;
+        n_loose++;
+        ck_assert_double_le(distance_after(net, i, 0), 10);
+        if (distance_after(net, i, 0) > 1e-6) ck_assert_double_eq(distance_after(net, i, 0.2), INFINITY);
+    }
+    ck_assert_int_eq(net->result.n_loose, n_loose);
+    for (int k = 0; k < m->n_inner_node; k++) {
+        if (is_loose(net, m->inner_row[k])) continue;
+        n++;
+        for (int c = 0; c < 3; c++)
+            sum += pow(
+                found_m(net, m->node_of_row[m->inner_row[k]], c) - m->position_m[c * m->n_node + m->inner_row[k]], 2);
+    }
+    if (n > 0) ck_assert_double_eq_tol(net->result.psi_m, sqrt(sum / n), 1e-12);
+    if (n == 0) ck_assert_double_nan(net->result.psi_m);
+}
+
 /* Cuts cables for the found shape with relative errors of up to `off`; the search starts from the theoretical shape. */
 static hf_status build_from_cuts(struct net *net, struct rng *rng, double EA_N, double off)
 {
@@ -70,12 +115,13 @@ static hf_status build_from_cuts(struct net *net, struct rng *rng, double EA_N, 
         /* ten cables at most meet at a node; a length is right to 1e-10 */
         double allowed_N = 1e-10 * 10 * 10 + 10 * EA_N * 1e-10 + 10 * rounding;
         ck_assert_msg(out_N <= allowed_N, "EA %g off %g: %g N, not %g", EA_N, off, out_N, allowed_N);
+        check_loose_nodes(&built);
         if (off == 0) /* exact cuts give back the shape that they were made for */
             for (int k = 0; k < 3 * built.model.n_node; k++)
                 ck_assert_double_eq_tol(built.work.position_m[k], net->work.position_m[k], 1e-8);
-    } else {
-        ck_assert_msg(status == HF_SINGULAR && is_loose(&built, built.result.culprit), "EA %g off %g: %s", EA_N, off,
-                      hf_status_word(status));
+    } else { /* rounding: the path ends before it is clear which cables are slack */
+        ck_assert_msg(status == HF_SINGULAR && EA_N >= 1e6 && is_loose(&built, built.result.culprit),
+                      "EA %g off %g: %s", EA_N, off, hf_status_word(status));
     }
     ck_assert_int_le(built.result.iterations, 1000);
     hf_workspace_free(&built.work);
@@ -98,7 +144,7 @@ START_TEST(nets_built_from_inexact_cuts)
     for (double EA_N = 1e2; EA_N < 2e9; EA_N *= 10)
         for (int k = 0; k < 5; k++)
             n_found += build_from_cuts(&net, &rng, EA_N, off[k]) == HF_OK;
-    ck_assert_int_gt(n_found, 20); /* of 40; the stiff ones that are badly cut have loose nodes */
+    ck_assert_int_ge(n_found, 38); /* of 40 */
     close_net(&net);
 }
 END_TEST

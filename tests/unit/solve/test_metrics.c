@@ -15,6 +15,7 @@ static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_INNER, HF_LAW_TENSIO
 static void open_by_hand(struct net *net)
 {
     OPEN_HAND(net, node, cable, HF_METHOD_HIFDM);
+    hf_form_prepare(&net->model, &net->work);
     memcpy(net->work.position_m, net->model.position_m, 3 * (size_t)net->model.n_node * sizeof(double));
 }
 
