@@ -79,16 +79,11 @@ typedef struct {
     void (*run)(const char *what, const char *folder);
 } section;
 
-static const section section_table[] = {{"step", bench_step},
-                                        {"peak", bench_peak},
-                                        {"phases", bench_phases},
-                                        {"precision", bench_precision},
-                                        {"single", bench_single},
-                                        {"equilibrium", bench_equilibrium},
-                                        {"growth", bench_growth},
-                                        {"population", bench_population},
-                                        {"whole", bench_whole},
-                                        {"frame", bench_frame}};
+static const section section_table[] = {{"step", bench_step},     {"peak", bench_peak},
+                                        {"phases", bench_phases}, {"precision", bench_precision},
+                                        {"single", bench_single}, {"equilibrium", bench_equilibrium},
+                                        {"growth", bench_growth}, {"population", bench_population},
+                                        {"whole", bench_whole},   {"frame", bench_frame}};
 
 int main(int argc, char **argv)
 {

@@ -4,6 +4,7 @@
 
 #include "linalg/band.h"
 #include "search/chord.h"
+#include "solve/certificate.h"
 #include "solve/equilibrium.h"
 #include "solve/interior.h"
 #include "solve/newton.h"
@@ -163,6 +164,23 @@ static double sample(run *r, const char *section, double tolerance)
     return r->error_m;
 }
 
+/* The proven bounds of the shapes that Newton found and the estimates, the largest of all designs as of the error; NaN
+ * when one has none. */
+static void sample_bound(run *r, double tolerance)
+{
+    bench_scene *b = r->scene;
+    double bound_m = 0, estimate_m = 0;
+    for (int i = 0; i < r->n; i++) {
+        hf_form_result result;
+        hf_evaluate(&b->evaluator, design(b, i), &b->workspace, &result);
+        hf_certify(&b->model, &b->workspace, &result);
+        if (!(result.position_bound_m <= bound_m)) bound_m = result.position_bound_m;
+        estimate_m = fmax(estimate_m, result.position_error_m);
+    }
+    bench_emit("precision", b->name, r->name, tolerance, "bound_m", bound_m);
+    bench_emit("precision", b->name, r->name, tolerance, "estimate_m", estimate_m);
+}
+
 static int share_matrix(bench_scene *b, hf_batch *batch)
 {
     b->evaluator.solver = HF_SOLVER_AUTO;
@@ -224,8 +242,10 @@ void bench_precision(const char *name, const char *folder)
     for (double tolerance = TOLERANCE_LOOSEST; tolerance > 0.9 * TOLERANCE_TIGHTEST; tolerance /= 10)
         for (int i = 0; i < 4 + has_chord; i++)
             /* the cold start only costs a longer way to the same line */
-            if (way[i].work != by_cold_fixed_point || tolerance > COLD_TIGHTEST)
+            if (way[i].work != by_cold_fixed_point || tolerance > COLD_TIGHTEST) {
                 sample(&way[i], "precision", tolerance);
+                if (way[i].work == by_newton) sample_bound(&way[i], tolerance);
+            }
     run paper = {&b, reference_m, NULL, "paper's stop", by_paper_stop, n, 0, {{0}}};
     sample(&paper, "precision", b.form.rms_tolerance_m);
     trace_cholmod(&b, reference_m);

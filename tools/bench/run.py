@@ -35,6 +35,7 @@ PICTURE = {
     "chord": ("hifdm, population of 50", "line"),
     "paper's stop": ("the paper's stop", "mark"),
 }
+BOUND = "its proven bound"
 SCALES = {1: 3, 2: 3, 4: 3, 8: 2, 16: 1}  # nets of the cost growth: rounds, fewer for those that take seconds
 BIG = "scene.parabolic_cylinder.cells_per_module=[4,4]"
 # Arguments of the program. The polish is not what is measured here, and takes long.
@@ -244,7 +245,7 @@ class Bench:
         self.table(name, [*labels, *quantities], rows)
 
     def write_precision(self):
-        self.wide("precision", "precision", ["time_s", "error_m", "iterations", "relative_residual", "setup_s"],
+        self.wide("precision", "precision", ["time_s", "error_m", "bound_m", "estimate_m", "iterations", "relative_residual", "setup_s"],
                   ("scene", "method", "tolerance"))
         panels = {}
         for method, (title, _) in PICTURE.items():
@@ -252,8 +253,11 @@ class Bench:
                 point = [self.samples.get("precision", scene, method, parameter, q) for q in ("time_s", "error_m")]
                 if of == method and None not in point:
                     panels.setdefault(scene, {}).setdefault(title, []).append(point)
+                bound_m = self.samples.get("precision", scene, method, parameter, "bound_m")
+                if of == method and bound_m:
+                    panels[scene].setdefault(BOUND, []).append([point[0], bound_m])
         svg.loglog(f"{self.a.out}/precision.svg", panels, "time per evaluation (s)", "true position error (m)",
-                   "\n".join(self.head), styles=dict(PICTURE.values()))
+                   "\n".join(self.head), styles={**dict(PICTURE.values()), BOUND: "dash"})
 
     def write_single(self):
         rows = []
