@@ -4,6 +4,7 @@
 #include "base/lane.h"
 #include "linalg/band_kernel.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,8 +13,7 @@
 /* LAPACK (Fortran interface; the hidden string lengths of one-character arguments are never read) */
 double dlansb_(const char *norm, const char *uplo, const int *n, const int *k, const double *ab, const int *ldab,
                double *work);
-void dpbcon_(const char *uplo, const int *n, const int *kd, const double *ab, const int *ldab, const double *anorm,
-             double *rcond, double *work, int *iwork, int *info);
+void dlacn2_(const int *n, double *v, double *x, int *isgn, double *est, int *kase, int *isave);
 void dgbtrf_(const int *m, const int *n, const int *kl, const int *ku, double *ab, const int *ldab, int *ipiv,
              int *info);
 void dgbtrs_(const char *trans, const int *n, const int *kl, const int *ku, const int *nrhs, const double *ab,
@@ -90,10 +90,14 @@ double hf_band_norm(int n, int half_bandwidth, const double *band, double *work)
 
 double hf_band_condition(int n, int half_bandwidth, const double *factor, double norm, double *work, int *integer_work)
 {
-    int ldab = half_bandwidth + 1, info = 0;
-    double reciprocal = 0;
-    dpbcon_("L", &n, &half_bandwidth, factor, &ldab, &norm, &reciprocal, work, integer_work, &info);
-    return reciprocal > 0 ? 1 / reciprocal : (double)INFINITY;
+    double inverse_norm = 0, *x = work + n;
+    int what = 0, kept[3];
+    do { /* asks for the inverse times x, or its transpose, until it has its estimate */
+        dlacn2_(&n, work, x, integer_work, &inverse_norm, &what, kept);
+        if (what != 0) hf_band_back_solve(n, half_bandwidth, 1, factor, x, n);
+    } while (what != 0);
+    double condition = norm * inverse_norm;
+    return isfinite(condition) && condition < 1 / DBL_EPSILON ? condition : (double)INFINITY;
 }
 
 hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band, double *general, int *pivot,

@@ -25,7 +25,7 @@ int hf_band_factor(int n, int half_bandwidth, double *band);
 void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
 
 /* 1-norm of the matrix (before factoring; work: [n]) and LAPACK's estimate of its condition number in that norm
- * (dpbcon; work: [3n], integer_work: [n]); INFINITY when it is singular to working precision. */
+ * (dlacn2; work: [3n], integer_work: [n]); INFINITY when it is singular to working precision. */
 double hf_band_norm(int n, int half_bandwidth, const double *band, double *work);
 double hf_band_condition(int n, int half_bandwidth, const double *factor, double norm, double *work, int *integer_work);
 

@@ -245,8 +245,8 @@ class Bench:
         self.table(name, [*labels, *quantities], rows)
 
     def write_precision(self):
-        self.wide("precision", "precision", ["time_s", "error_m", "bound_m", "estimate_m", "iterations", "relative_residual", "setup_s"],
-                  ("scene", "method", "tolerance"))
+        quantities = ["time_s", "error_m", "bound_m", "estimate_m", "iterations", "relative_residual", "setup_s"]
+        self.wide("precision", "precision", quantities, ("scene", "method", "tolerance"))
         panels = {}
         for method, (title, _) in PICTURE.items():
             for scene, of, parameter in self.samples.keys("precision"):
