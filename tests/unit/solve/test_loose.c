@@ -75,7 +75,7 @@ START_TEST(net_of_loose_nodes_has_no_psi)
     static const struct hand_node node[] = {{{0, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0, 1, 0.1}, HF_ROLE_INNER, {0}}};
     static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_INNER, HF_LAW_LENGTH, 1.3}};
     struct net net;
-    OPEN_HAND(&net, node, cable, method[_i]);
+    OPEN_HAND(&net, node, cable, (int)method[_i]);
     ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &net.result), HF_OK);
     ck_assert_int_eq(net.result.n_loose, 1);
     ck_assert_double_nan(net.result.psi_m);
