@@ -79,7 +79,8 @@ static hf_child_end obey(const order *o)
         o->work(o->text);
         _exit(0);
     }
-    return child < 0 ? (hf_child_end){.is_known = false} : hf_child_wait(child);
+    if (child > 0) return hf_child_wait(child);
+    return (hf_child_end){.is_known = false};
 }
 
 /* Until the other end is closed. Only what POSIX allows in a copy of a process with threads, but for the work. */

@@ -99,6 +99,24 @@ def sha256(content):
     return hashlib.sha256(content).hexdigest()
 
 
+def bits(file, case):
+    """A line per group of numbers: case, group, checksum of names, types, shapes and bytes."""
+    groups = {}
+    for name, (kind, shape, data) in sorted(contents(file).items()):
+        if isinstance(data, bytes) and not name.startswith("case/"):
+            group = groups.setdefault(name.split("/")[0], hashlib.sha256())
+            group.update(f"{name} {kind} {shape} ".encode() + data)
+    return [f"{case} {group} {checksum.hexdigest()[:16]}" for group, checksum in sorted(groups.items())]
+
+
+def bits_are(file, table, case):
+    wanted = [line for line in table.decode().splitlines() if line.startswith(case + " ")]
+    found = bits(file, case)
+    if found != wanted:
+        print("tests/verify/data/bits.txt has other lines than:", *found, sep="\n")
+    return found == wanted
+
+
 def near(value, wanted, tolerance):
     return abs(value - wanted) <= tolerance
 
