@@ -66,8 +66,8 @@ void hf_print_bytes(double bytes, char *text, size_t size)
     snprintf(text, size, i ? "%.1f %s" : "%.0f %s", bytes, unit[i]);
 }
 
-/* Writes a ratio as "4.2315", or "-" when it has no value. */
-static const char *ratio(double value, char text[32])
+/* Writes a number as "4.2315", or "-" when it has no value. */
+static const char *decimals(double value, char text[32])
 {
     if (isfinite(value))
         snprintf(text, 32, "%.4f", value);
@@ -82,7 +82,7 @@ static void print_result(const hf_form_result *r, FILE *f)
 {
     char inner[32], boundary[32];
     fprintf(f, "                tension ratio %s inside, %s on the boundary; largest nodal residual %.1e N\n",
-            ratio(r->inner_tension_ratio, inner), ratio(r->boundary_tension_ratio, boundary), r->residual_N);
+            decimals(r->inner_tension_ratio, inner), decimals(r->boundary_tension_ratio, boundary), r->residual_N);
 }
 
 static void print_certificate(const hf_form_result *r, FILE *f)
@@ -161,7 +161,7 @@ static void print_polish(const hf_summary *s, FILE *f)
     hf_print_duration(s->polish_wall_s, wall, sizeof wall);
     fprintf(f, "  LM optimum    psi %.4f mm from %s, %s; boundary ratio %s; %d iteration%s%s, %s\n",
             s->polish.psi_m * 1e3, s->has_optimize ? "there" : "the form-finding's tensions",
-            s->polish_is_result ? "the result" : "for comparison", ratio(s->polish.boundary_tension_ratio, boundary),
+            s->polish_is_result ? "the result" : "for comparison", decimals(s->polish.boundary_tension_ratio, boundary),
             s->polish_iterations, s->polish_iterations == 1 ? "" : "s", end[s->polish_stop], wall);
     fprintf(f, "                held by %d lower and %d upper bounds%s\n", s->polish_n_at_lower, s->polish_n_at_upper,
             s->polish_is_at_cap ? " and the cap on the boundary ratio" : "");
@@ -179,7 +179,7 @@ static void print_coupling(const hf_coupling_result *r, FILE *f)
 
 void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
 {
-    char wall[32];
+    char wall[32], psi[32];
     hf_print_duration(s->form_wall_s, wall, sizeof wall);
     hf_print_line(f, "%s", *s->title ? s->title : s->case_path);
     fprintf(f, "  net           %d nodes (%d free), %d cables (%d adjustable); half-bandwidth %d; pretension %g N\n",
@@ -187,9 +187,9 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
     if (s->has_truss)
         fprintf(f, "  truss         %d nodes, %d members; %.2f kg\n", s->truss.n_node, s->truss.n_member,
                 s->truss.mass_kg);
-    fprintf(f, "  form-finding  psi %.4f mm after %d iteration%s, stopped by %s, %s\n", s->form.psi_m * 1e3,
-            s->form.iterations, s->form.iterations == 1 ? "" : "s", hf_stop_reason_word((int)s->form.stop_reason),
-            wall);
+    fprintf(f, "  form-finding  psi %s mm after %d iteration%s, stopped by %s, %s\n",
+            decimals(s->form.psi_m * 1e3, psi), s->form.iterations, s->form.iterations == 1 ? "" : "s",
+            hf_stop_reason_word((int)s->form.stop_reason), wall);
     print_result(&s->form, f);
     print_certificate(&s->form, f);
     print_surface(s, 0, f);

@@ -196,9 +196,9 @@ static void name_loose(const hf_problem *p, const char *stage, const hf_workspac
                    stage, r->n_loose, close_names(&loose));
     if (r->n_drifting)
         hf_warning(messages,
-                   "the equilibrium is not unique: %d nodes can move without a force, farthest %s; the position error "
+                   "the equilibrium is not unique: %d node%s can move without a force, farthest %s; the position error "
                    "is unknown. Give a cable there another law, or support the node",
-                   r->n_drifting, name_node(p, r->culprit, name));
+                   r->n_drifting, r->n_drifting == 1 ? "" : "s", name_node(p, r->culprit, name));
 }
 
 void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, const hf_form_result *r,
