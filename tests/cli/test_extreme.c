@@ -154,8 +154,8 @@ START_TEST(cancelling_struts_are_singular)
           net_with(THREE, "id,i,j,group,law,value\n1,a,c,inner,force_density,1\n"
                           "2,c,b,inner,force_density,-1\n"),
           NOWHERE);
-    ERR("error: ill-posed: the force density matrix is singular or not positive definite at node 'c': its cables are "
-        "slack, or no match for its load");
+    ERR("error: ill-posed: the force density matrix is singular or not positive definite at node c (cables 1, 2): "
+        "its cables are slack, or no match for its load");
     HIFDM(4, "run",
           net_with(THREE, "id,i,j,group,law,value\n1,a,c,inner,force_density,1\n"
                           "2,c,b,inner,force_density,-0.9999999999999999\n"),
