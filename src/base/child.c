@@ -53,9 +53,12 @@ void hf_child_limit_cpu(int seconds)
     struct rusage used;
     struct rlimit limit;
     if (getrusage(RUSAGE_SELF, &used) != 0 || getrlimit(RLIMIT_CPU, &limit) != 0) return;
+    static rlim_t before; /* the user's own limit */
+    static bool is_known;
+    if (!is_known) before = limit.rlim_cur;
+    is_known = true;
     rlim_t until = (rlim_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec + 1 + seconds); /* 1: parts of a second */
-    if (seconds == 0) until = RLIM_INFINITY;
-    limit.rlim_cur = until < limit.rlim_max ? until : limit.rlim_max;
+    limit.rlim_cur = seconds == 0 || until > before ? before : until;
     setrlimit(RLIMIT_CPU, &limit);
 }
 

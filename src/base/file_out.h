@@ -40,7 +40,7 @@ void hf_file_out_drop(hf_file_out *file); /* close and remove the temporary file
 hf_status hf_file_out_write(const char *path, void (*write)(const void *context, FILE *file), const void *context,
                             hf_messages *messages);
 
-/* ---- files that belong together: either all of them get their names or none ---- */
+/* ---- files that belong together: all of them get their names, or none unless a rename fails ---- */
 
 #define HF_FILE_OUT_SET_MAX 16
 

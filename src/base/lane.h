@@ -1,8 +1,9 @@
-/* lane - the eight SIMD lanes that chord and swarm give a design each, and the instruction sets that their kernels are
+/* lane - the eight SIMD lanes that chord and swarm give a design each, and the instruction sets that kernels are
  * compiled for.
  *
  * All instruction sets give the same bits: there are always eight lanes, one order of operations, and only IEEE + - * /
- * and square root. Multiply-adds are never fused; swarm_kernel.c gives the measured price of this. */
+ * and square root. Lanes never fuse multiply-adds (swarm_kernel.c gives the measured price of this); the kernels of a
+ * single band do, everywhere. */
 #ifndef HIFDM_LANE_H
 #define HIFDM_LANE_H
 

@@ -34,7 +34,7 @@ double hf_band_condition_indefinite(int n, int half_bandwidth, const double *gen
                                     double *work, int *integer_work);
 
 /* Compute the lower triangle, row by row, of A A' for the dense A [n][n_column] of row length lda: gram [n][ldg]
- (of the upper triangle some places are written, too). */
+ * (of the upper triangle some places are written, too). */
 void hf_band_gram(int n, int n_column, const double *a, int lda, double *gram, int ldg);
 
 /* Keep a threaded BLAS from starting threads: each thread of this program solves systems of its own. Call once, before

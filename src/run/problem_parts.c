@@ -265,7 +265,7 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
             "tighten form.%s, which limits how well the forces are known",
             r->coupling.iterations, name_move(&r->coupling, move),
             r->stop_reason == HF_STOPPED_RMS_CHANGE ? "rms_tolerance_m" : "residual_tolerance");
-    if (r->culprit >= 0)
+    if (r->culprit >= 0 && r->n_drifting == 0) /* a cable; where nodes drift it is one of them */
         return hf_error(messages, r->status,
                         "form-finding is as exact as double precision allows, nodal residual %.2e N: cable '%s' is "
                         "%.2e m long, too short for coordinates of its size; move the origin near it, join its nodes "

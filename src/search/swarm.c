@@ -1,5 +1,7 @@
 #include "search/swarm.h"
 
+#include "solve/loose.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -77,6 +79,7 @@ static bool settle(void *solver, int lane, int i_design)
         hf_evaluate_prepare(s->v, s->design_N + (size_t)i_design * (size_t)s->v->model->n_gene, s->w);
         hf_swarm_get(s->plan, s->lanes, lane, s->w);
         hf_form_accept(s->v->model, s->v->form, reason, s->iterations[lane], s->w, r);
+        hf_loose_refuse(s->v->model, s->v->form, s->w, r);
     } else {
         hf_form_refuse(status, s->iterations[lane], r);
     }

@@ -299,8 +299,12 @@ hf_status hf_coupling_find_at_once(const hf_model *m, const hf_coupling_settings
         bool is_there = hf_coupling_measure(m, w, r) <= s->tof_m && r->status == HF_OK;
         if (is_there) r->coupling.stop_reason = HF_COUPLING_TOF;
         r->status = is_there ? HF_OK : HF_NOT_CONVERGED;
-    } else if (r->status != HF_INTERRUPTED && status_alone(m, solve, context, w) != r->status) {
-        give_up(HF_TRUSS_TOO_SOFT, HF_COUPLING_DIVERGED, r);
+    } else if (r->status != HF_INTERRUPTED) {
+        hf_status alone = status_alone(m, solve, context, w);
+        if (alone == HF_INTERRUPTED)
+            r->status = alone;
+        else if (alone != r->status)
+            give_up(HF_TRUSS_TOO_SOFT, HF_COUPLING_DIVERGED, r);
     }
     return r->status;
 }

@@ -1,4 +1,4 @@
-/* Contents: cones - state and start - errors - scaling - direction - step length - the path - the end
+/* Contents: state and start - errors - direction - step length - the path - the end
  *
  * The net as a second-order cone programme. A cable of the vector d between its ends, |d| <= v, pulls with a force t of
  * at most T:

@@ -124,6 +124,17 @@ static hf_status find_places(const hf_model *m, const hf_form_settings *s, hf_wo
     return status;
 }
 
+/* Balances the nodes that are held once more, supports kept. Where Newton's method does not end, nothing moves. */
+static void polish(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int *n_step)
+{
+    size_t places = 3 * (size_t)m->n_node * sizeof(double);
+    int n_moving = w->n_moving;
+    memcpy(w->place_before_m, w->position_m, places);
+    w->n_moving = m->n_free;
+    if (!hf_newton_run(m, s, w, POLISH_MAX, n_step)) memcpy(w->position_m, w->place_before_m, places);
+    w->n_moving = n_moving;
+}
+
 /* ---- results ---- */
 
 void hf_loose_settle(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r)
@@ -135,7 +146,7 @@ void hf_loose_settle(const hf_model *m, const hf_form_settings *s, hf_workspace 
     for (int e = 0; e < m->n_cable; e++)
         if (is_loose_cable(m, w, e)) w->q_N_per_m[e] = w->tension_N[e] = 0;
     if (hf_form_residual_N(m, w) > nothing_N(m, s)) /* the paper's iteration leaves slack cables a little tension */
-        hf_newton_run(m, s, w, POLISH_MAX, &before.iterations);
+        polish(m, s, w, &before.iterations);
     hf_status status = find_places(m, s, w, &before.iterations);
     hf_form_measure(m, s, w, r);
     if (status == HF_INTERRUPTED) r->status = status;

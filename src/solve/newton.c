@@ -3,6 +3,7 @@
 
 #include "solve/history.h"
 #include "solve/joint.h"
+#include "solve/loose.h"
 
 #include <math.h>
 #include <string.h>
@@ -238,8 +239,9 @@ void hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
     int n_moving = w->n_moving;
     w->n_moving = m->n_free + m->n_attachment;
     measure_imbalance(m, w, w->position_m, w->tension_N, w->newton_force_N);
+    double spring_N_per_m = hf_loose_spring_N_per_m(m);
     for (int i = 0; i < m->n_free; i++) /* a loose node has no stiffness of its own */
-        w->spring_N_per_m[i] = w->loose[i] ? m->reference_N / hf_joint_mean_length_m(m) : 0;
+        w->spring_N_per_m[i] = w->loose[i] ? spring_N_per_m : 0;
     hf_status status = find_step(m, w, w->spring_N_per_m, &r->condition);
     for (int i = 0; i < w->n_moving; i++) {
         const double *d = w->newton_step + 3 * i;

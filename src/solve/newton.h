@@ -21,7 +21,7 @@ void hf_newton_certify(const hf_model *model, hf_workspace *workspace, hf_form_r
 
 /* A tension below this fraction of the reference tension, in an elastic cable, is rounding: the cable is slack, and its
  * force density is set to 0. A node held by such cables alone has no position. The tests of solve pass from 1e-14 to
- * 1e-8; the larger, the more nets of stiff cables are refused for such a node. */
+ * 1e-8; the larger, the more nodes of nets of stiff cables count as loose. */
 #define HF_NEWTON_NOTHING 1e-12
 
 #endif

@@ -62,6 +62,22 @@ START_TEST(lengths_that_do_not_span)
 }
 END_TEST
 
+/* A design with a loose node is none, whichever solver finds its shape: d hangs on slack cables beside a net that can
+ * be designed. */
+START_TEST(designs_with_a_loose_node)
+{
+    static const char *const solver[] = {"auto", "newton", "fixed_point"};
+    const char *net = net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,2,0,0,support\ne,1,1.7,0,support\n"
+                               "c,1,0.6,0.1,inner\nd,0,0,1,inner\n",
+                               "id,i,j,group,law,value\nac,a,c,boundary,tension,10\nbc,b,c,boundary,tension,10\n"
+                               "ec,e,c,inner,tension,10\nad,a,d,inner,length,1.5\nbd,b,d,inner,length,2.5\n");
+    const char *result = temp("r.h5");
+    HIFDM(3, "run", net, "-o", result, "--set", "optimize.generations=2", "--set",
+          keep(formatted("optimize.solver=%s", solver[_i])));
+    EXPECT(result, "--", "(a['ga/status'][:] == 2).all()");
+}
+END_TEST
+
 Suite *suite_cli_no_place(void)
 {
     Suite *suite = suite_create("cli/no_place");
@@ -70,6 +86,7 @@ Suite *suite_cli_no_place(void)
     tcase_add_loop_test(tests, node_on_a_slack_cable, 0, N_METHOD);
     tcase_add_loop_test(tests, node_between_slack_cables, 0, N_METHOD);
     tcase_add_loop_test(tests, lengths_that_do_not_span, 0, N_METHOD);
+    tcase_add_loop_test(tests, designs_with_a_loose_node, 0, 3);
     suite_add_tcase(suite, tests);
     return suite;
 }
