@@ -54,6 +54,11 @@ static inline hf_twofold hf_twofold_add(hf_twofold a, hf_twofold b)
     return hf_twofold_sum_ordered(v.hi, t.lo + v.lo);
 }
 
+static inline void hf_twofold_add_to(hf_twofold *sum, hf_twofold a)
+{
+    *sum = hf_twofold_add(*sum, a);
+}
+
 static inline hf_twofold hf_twofold_subtract(hf_twofold a, hf_twofold b)
 {
     return hf_twofold_add(a, hf_twofold_minus(b));

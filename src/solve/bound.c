@@ -16,11 +16,6 @@
 #define SHARE_OF_LAST 1e-3  /* part of a shift that has failed that is tried next */
 #define INSIDE_LENGTH 0.005 /* the ball is smaller than this part of every length */
 
-static void add_twofold(hf_twofold *sum, hf_twofold a)
-{
-    *sum = hf_twofold_add(*sum, a);
-}
-
 /* ---- sums at nodes ---- */
 
 static double one(const hf_refined *p, int e)
@@ -45,7 +40,7 @@ static double stiffness_sum(const hf_refined *p, int e)
 /* The Hessian of a cable of law force_density does not depend on the shape. */
 static double stiffness_change(const hf_refined *p, int e)
 {
-    return hf_refine_is_spring((hf_law)p->w->law[e]) ? 0 : stiffness_sum(p, e) / p->cable[e].length;
+    return hf_newton_matrix_is_spring((hf_law)p->w->law[e]) ? 0 : stiffness_sum(p, e) / p->cable[e].length;
 }
 
 /* What the rounding of a pull is relative to, N. */
@@ -222,7 +217,7 @@ static bool stays_apart(const hf_refined *p, double radius)
     for (int e = 0; e < p->m->n_cable; e++) {
         const hf_refined_cable *c = p->cable + e;
         hf_law law = (hf_law)p->w->law[e];
-        if (hf_refine_is_fixed(p->m, e) || hf_refine_is_spring(law)) continue;
+        if (hf_refine_is_fixed(p->m, e) || hf_newton_matrix_is_spring(law)) continue;
         if (!(move < INSIDE_LENGTH * c->length)) return false;
         if (!hf_law_has(law, HF_LAW_HAS_MULTIPLIER)) continue;
         bool is_rigid = hf_law_has(law, HF_LAW_IS_RIGID);
@@ -282,7 +277,7 @@ static hf_twofold refined_psi(const hf_refined *p)
         for (int c = 0; c < 3; c++) {
             int i = c * m->n_node + m->inner_row[k];
             hf_twofold d = hf_twofold_subtract(p->x[i], hf_twofold_of(m->position_m[i]));
-            add_twofold(&sum, hf_twofold_multiply(d, d));
+            hf_twofold_add_to(&sum, hf_twofold_multiply(d, d));
         }
     return hf_twofold_root(hf_twofold_divide(sum, hf_twofold_of(m->n_inner_node)));
 }

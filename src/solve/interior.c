@@ -36,8 +36,6 @@
 #define TRIES_MAX 8       /* [4 loses nets] */
 #define STALLED 1e-7      /* a shorter step does not move [1e-4 passes, 1e-12 does not] */
 #define FINAL_MAX 12      /* steps of one try at the end [4 and 60 lose nets] */
-#define STIFFENING 1e7    /* of a taut cable of law length, at its tension or at LEAST_PULL [1e9 passes, 1e5 not] */
-#define LEAST_PULL 1e-3   /* over the reference tension [0.1 passes, 1e-6 does not] */
 #define DAMPING 1.0    /* of an end whose errors rise, at an error of 1, over mean length and tension [0: more steps] */
 #define CLEAR_FALL 0.1 /* fall of mu from which that of a tension tells whether the cable is slack [0 loses nets] */
 #define FIRST_RANGE 10.0 /* first tension of an elastic cable, around the reference tension [1e6 passes, 1 not] */
@@ -64,7 +62,7 @@ static bool has_multiplier(const hf_workspace *w, int e)
 /* A cable whose force is a linear function of the positions has no cone. */
 static bool is_spring(const hf_workspace *w, int e)
 {
-    return !hf_law_has((hf_law)w->law[e], HF_LAW_HAS_MULTIPLIER | HF_LAW_GIVES_TENSION);
+    return hf_newton_matrix_is_spring((hf_law)w->law[e]);
 }
 
 static void set_vector(const hf_model *m, const hf_workspace *w, int e, double d[3])
@@ -353,7 +351,7 @@ static path_error measure_end(const hf_model *m, hf_workspace *w, bool held)
         if (has_multiplier(w, e)) {
             double over = length - hf_law_wanted_length_m(cable, T);
             bool is_taut = T / reference + over / m->length_m[e] > 0;
-            double k = p->flex > 0 ? 1 / p->flex : STIFFENING * fmax(T, LEAST_PULL * reference) / m->length_m[e];
+            double k = p->flex > 0 ? 1 / p->flex : hf_newton_matrix_rigid_stiffness(m, e, T);
             p->along = is_taut ? k : 0;
             p->DT = is_taut ? k * over : -T;
             error.length = fmax(error.length, is_taut ? fabs(over) / m->length_m[e] : 0);

@@ -18,6 +18,7 @@
  * to a hard constraint. The forces do not contain it, so it costs no accuracy in the residual. From 1e6 to 1e9 the
  * tests of solve and stress pass; with 1e5 one fails (flat_edges_are_solved). */
 #define HF_NEWTON_STIFFENING 1e7
+#define HF_NEWTON_LEAST_PULL 1e-3 /* over the reference tension; the path's tests pass with 0.1, not with 1e-6 */
 
 /* Number of rows of the band, 3 n_free. */
 static inline int hf_newton_matrix_dofs(const hf_model *model)
@@ -78,6 +79,18 @@ static inline double hf_newton_matrix_stiffness(hf_law_cable cable, double lengt
     if (hf_law_has(cable.law, HF_LAW_IS_RIGID))
         return HF_NEWTON_STIFFENING * tension_N / hf_law_wanted_length_m(cable, tension_N);
     return hf_law_stiffness_N_per_m(cable, length_m);
+}
+
+/* The same spring for a taut cable whose tension may be near zero, or still below it. */
+static inline double hf_newton_matrix_rigid_stiffness(const hf_model *m, int i_cable, double tension_N)
+{
+    return HF_NEWTON_STIFFENING * fmax(tension_N, HF_NEWTON_LEAST_PULL * m->reference_N) / m->length_m[i_cable];
+}
+
+/* Law force_density: the force is a linear function of the positions. */
+static inline bool hf_newton_matrix_is_spring(hf_law law)
+{
+    return !hf_law_has(law, HF_LAW_HAS_MULTIPLIER | HF_LAW_GIVES_TENSION);
 }
 
 /* Stiffness [3][3] of cable i_cable between its ends at the workspace's shape and tensions, N/m (M6). The coupling with

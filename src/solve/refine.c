@@ -17,8 +17,6 @@
 #define ENOUGH 1e-11       /* part of the errors of the found shape at which refinement ends ... */
 #define FINEST 1e-28       /* ... or errors at which it does; twice the precision leaves 1e-30 */
 #define CONTRACTED 1e-18   /* errors that are not below it are taken for divergence; the proof does not rely on it */
-#define STIFFENING 1e7     /* of a taut cable of law length, as in interior.c */
-#define LEAST_PULL 1e-3    /* the same */
 #define SHARE_OF_GUESS 0.1 /* part of the estimate of the least eigenvalue that is tried first */
 
 /* ---- start ---- */
@@ -72,15 +70,10 @@ static hf_twofold wanted_length(hf_law_cable c, hf_twofold T)
 static hf_twofold tension_at(hf_law_cable c, hf_twofold length, hf_twofold multiplier, bool by_law)
 {
     if (hf_law_has(c.law, HF_LAW_GIVES_TENSION)) return hf_twofold_of(c.target);
-    if (hf_refine_is_spring(c.law)) return hf_twofold_multiply(hf_twofold_of(c.target), length);
+    if (hf_newton_matrix_is_spring(c.law)) return hf_twofold_multiply(hf_twofold_of(c.target), length);
     if (!by_law || hf_law_has(c.law, HF_LAW_IS_RIGID)) return multiplier;
     hf_twofold l0 = hf_twofold_of(c.target), EA = hf_twofold_of(c.EA_N);
     return hf_twofold_divide(hf_twofold_multiply(EA, hf_twofold_subtract(length, l0)), l0);
-}
-
-static void add_to(hf_twofold *sum, hf_twofold a)
-{
-    *sum = hf_twofold_add(*sum, a);
 }
 
 /* Vector between the ends of cable e, m. Returns its length. */
@@ -91,7 +84,7 @@ static hf_twofold vector_between(const hf_refined *p, int e, hf_twofold d[3])
     for (int c = 0; c < 3; c++) {
         const hf_twofold *x = p->x + (size_t)c * (size_t)p->m->n_node;
         d[c] = hf_twofold_subtract(x[end[1]], x[end[0]]);
-        add_to(&square, hf_twofold_multiply(d[c], d[c]));
+        hf_twofold_add_to(&square, hf_twofold_multiply(d[c], d[c]));
     }
     return hf_twofold_root(square);
 }
@@ -123,8 +116,8 @@ static double measure_refined(hf_refined *p, bool by_law)
             int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
             hf_twofold pull = hf_twofold_multiply(q, d[k]);
             c->unit[k] = d[k].hi / length.hi;
-            if (a < m->n_free) add_to(p->force + 3 * a + k, pull);
-            if (b < m->n_free) add_to(p->force + 3 * b + k, hf_twofold_minus(pull));
+            if (a < m->n_free) hf_twofold_add_to(p->force + 3 * a + k, pull);
+            if (b < m->n_free) hf_twofold_add_to(p->force + 3 * b + k, hf_twofold_minus(pull));
         }
     }
     for (int i = 0; i < 3 * m->n_free; i++) {
@@ -182,7 +175,7 @@ static double measure_near(hf_refined *p)
         }
         double length = sqrt(square), longer = change / (length + c->length);
         for (int k = 0; k < 3; k++)
-            pull[k] = hf_refine_is_spring(cable.law)
+            pull[k] = hf_newton_matrix_is_spring(cable.law)
                           ? c->across * more[k]
                           : (T * (more[k] - c->unit[k] * longer) + c->change * (d[k] + more[k])) / length;
         hf_newton_matrix_add_pull(m, p->w, e, pull, p->near_N);
@@ -265,9 +258,9 @@ static void apply_move(hf_refined *p, double part)
 {
     const hf_model *m = p->m;
     for (int i = 0; i < 3 * m->n_free; i++)
-        add_to(p->x + i % 3 * m->n_node + i / 3, hf_twofold_of(part * p->move[i]));
+        hf_twofold_add_to(p->x + i % 3 * m->n_node + i / 3, hf_twofold_of(part * p->move[i]));
     for (int e = 0; e < m->n_cable; e++)
-        if (p->cable[e].along > 0) add_to(&p->cable[e].T, hf_twofold_of(part * p->cable[e].change));
+        if (p->cable[e].along > 0) hf_twofold_add_to(&p->cable[e].T, hf_twofold_of(part * p->cable[e].change));
 }
 
 /* Moves while each move halves the errors. Returns the errors at the end, where the forces are by law. */
@@ -310,8 +303,7 @@ static bool factor_anew(hf_refined *p)
             if (!(c->is_taut > 0)) c->T = (hf_twofold){0, 0};
         }
         c->along = c->is_taut > 0 ? hf_law_stiffness_N_per_m(cable, INFINITY) : 0;
-        if (multiplier && isinf(c->along))
-            c->along = STIFFENING * fmax(c->T.hi, LEAST_PULL * m->reference_N) / cable.theoretical_m;
+        if (multiplier && isinf(c->along)) c->along = hf_newton_matrix_rigid_stiffness(m, e, c->T.hi);
     }
     bool is_factored = hf_newton_matrix_factor_blocks(m, p->w, hf_refine_block, NULL, &p->condition) == HF_OK;
     for (int e = 0; e < m->n_cable; e++) /* from here on `along` is of cables with a multiplier alone */

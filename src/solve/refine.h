@@ -52,10 +52,4 @@ static inline bool hf_refine_is_fixed(const hf_model *model, int i_cable)
     return model->end_row[2 * i_cable] >= model->n_free && model->end_row[2 * i_cable + 1] >= model->n_free;
 }
 
-/* A cable of law force_density: its force is a linear function of the positions. */
-static inline bool hf_refine_is_spring(hf_law law)
-{
-    return !hf_law_has(law, HF_LAW_HAS_MULTIPLIER | HF_LAW_GIVES_TENSION);
-}
-
 #endif

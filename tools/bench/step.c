@@ -134,10 +134,9 @@ void bench_write_net(const bench_scene *b, const hf_workspace *w, const double *
                      const char *name)
 {
     const hf_model *m = &b->model;
-    char path[HF_PATH_SIZE];
-    snprintf(path, sizeof path, "%s/%s.net", folder, name);
-    FILE *file = fopen(path, "w");
-    if (!file) bench_fail(path, "cannot be written");
+    char file_name[HF_PATH_SIZE];
+    snprintf(file_name, sizeof file_name, "%s.net", name);
+    FILE *file = bench_open_file(folder, file_name);
     int size[] = {m->n_node, m->n_free, m->n_cable, m->half_bandwidth};
     write_ints(file, "size", 4, size);
     write_ints(file, "end_row", 2 * m->n_cable, m->end_row);
