@@ -177,7 +177,8 @@ START_TEST(every_generation_obeys_the_rules)
                 ck_assert(child[k] >= fmax(base_N[k] - 1, 0.1) && child[k] <= fmin(base_N[k] + 1, 30));
         }
         ck_assert_double_le(told[ga.population.parent[0]].psi_m,
-                            told[ga.population.parent[2]].psi_m); /* elites in order */
+                            told[ga.population.parent[2]].psi_m); /* elites in order, and not one of them twice */
+        ck_assert_int_ne(ga.population.parent[0], ga.population.parent[2]);
     }
     ck_assert_int_eq(ga.population.stop_reason, HF_POPULATION_GENERATIONS);
     ck_assert_int_eq(ga.population.generation, 59);

@@ -47,7 +47,8 @@ START_TEST(bounds_are_the_range_within_the_limits)
 }
 END_TEST
 
-/* Gene 2 is linked to gene 0 and can only go down by 0.5 N, so gene 0 can, too. Gene 1 is not linked. */
+/* Gene 2 is linked to gene 0 and can only go down by 0.5 N, so gene 0 can, too. Gene 1 is not linked. The other way
+ * round, gene 0 lets gene 2 go up by 0.75 N. */
 START_TEST(linked_genes_share_step_and_bounds)
 {
     hf_population p, next;
@@ -64,6 +65,12 @@ START_TEST(linked_genes_share_step_and_bounds)
     ck_assert_double_eq(design_N[2], 2.25);
     hf_population_link(&p, &free_model, memcpy(design_N, (double[]){1, 2, 3}, sizeof design_N));
     ck_assert_double_eq(design_N[2], 3); /* not linked in this model */
+    hf_population_free(&p);
+    hf_optimize_settings tight = settings;
+    tight.max_tension_N = 10.75;
+    ck_assert_int_eq(hf_population_create(&tight, &linked_model, base_N, &p, &next), HF_OK);
+    ck_assert_double_eq(p.upper_N[0], 10.75);
+    ck_assert_double_eq(p.upper_N[2], 2.25);
     hf_population_free(&p);
 }
 END_TEST
