@@ -67,7 +67,8 @@ static inline struct outcome try_scene(hf_scene *scene, double pretension_N)
         o.condition = net.model.has_newton ? net.result.condition : 1;
         o.error_m = net.model.has_newton ? net.result.position_error_m : 0;
         int is_verified = o.residual <= STRESS_ROUNDED && v.length_gap <= STRESS_ROUNDED && v.least_tension_N >= 0;
-        if (is_verified && isfinite(net.result.psi_m) && o.condition >= 1 && o.error_m >= 0) o.verdict = SOLVED;
+        int has_error = o.error_m >= 0 || net.result.n_drifting > 0; /* else it is named, why the error is not known */
+        if (is_verified && isfinite(net.result.psi_m) && o.condition >= 1 && has_error) o.verdict = SOLVED;
     } else if (is_named(&net)) {
         o.verdict = NAMED;
     } else if (o.status == HF_NOT_CONVERGED) {
