@@ -8,7 +8,7 @@
 
 #define FIRST_BLOCK 6  /* iterations of hf_form_find before Newton is tried. Tests pass with 2 and 20. */
 #define NEWTON_MAX 30  /* Newton steps after them */
-#define PATH_MAX 100   /* factorisations on the path; up to 78 were seen in stress tests; 80 and 400 pass them */
+#define PATH_MAX 60    /* factorisations on the path; up to 49 were seen in stress tests */
 #define LAST_BLOCK 200 /* iterations that bring errors down to rounding, to name the cable at which it is largest */
 
 static int smaller(int a, int b)

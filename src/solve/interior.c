@@ -35,7 +35,9 @@
 #define NEARER 30.0       /* how much smaller they are at each next try [3 and 1e3 lose nets] */
 #define TRIES_MAX 8       /* [4 loses nets] */
 #define STALLED 1e-7      /* a shorter step does not move [1e-4 passes, 1e-12 does not] */
+#define STANDING_MAX 3    /* steps near the end that do not halve the errors [5 and 8 pass; without end: 100 steps] */
 #define FINAL_MAX 12      /* steps of one try at the end [4 and 60 lose nets] */
+#define CLEARLY 0.1       /* part of the errors that a step at the end leaves while the path can go on [0.5 passes] */
 #define DAMPING 1.0    /* of an end whose errors rise, at an error of 1, over mean length and tension [0: more steps] */
 #define CLEAR_FALL 0.1 /* fall of mu from which that of a tension tells whether the cable is slack [0 loses nets] */
 #define FIRST_RANGE 10.0 /* first tension of an elastic cable, around the reference tension [1e6 passes, 1 not] */
@@ -312,12 +314,13 @@ static void record_path(const hf_model *m, hf_workspace *w, const path_error *er
     hf_history_add_step(m, w, error->balance * m->reference_N, error->length, error->truss_m);
 }
 
-/* Goes along the path until the errors are at most `wanted`. False when they are not after max_steps. *fall: mu over
- * that before the last step. */
+/* Goes along the path until the errors are at most `wanted`. False when they are not after max_steps, or when they are
+ * near and stand still: rounding. *fall: mu over that before the last step. */
 static bool follow_path(const hf_model *m, hf_workspace *w, bool held, double wanted, int max_steps, int *n_step,
                         double *fall)
 {
-    double mu_before = INFINITY;
+    double mu_before = INFINITY, least = INFINITY;
+    int n_standing = 0;
     for (bool stepped = false;; stepped = true) {
         path_error error = measure_path(m, w, held);
         if (stepped && w->history && !held) record_path(m, w, &error);
@@ -325,6 +328,10 @@ static bool follow_path(const hf_model *m, hf_workspace *w, bool held, double wa
         if (error.balance <= UNBALANCED * wanted && error.length <= wanted && error.gap <= wanted) return true;
         if (*n_step >= max_steps || is_told_to_stop(w) || !isfinite(error.balance)) return false;
         if (find_lost_row(m, w) >= 0) return false;
+        double largest = fmax(fmax(error.balance / UNBALANCED, error.length), error.gap);
+        n_standing = largest < 0.5 * least ? 0 : n_standing + 1;
+        if (n_standing == 0) least = largest;
+        if (n_standing > STANDING_MAX && wanted < NEAR) return false;
         ++*n_step;
         mu_before = error.mu;
         if (!take_step(m, w, held, error.mu)) return false;
@@ -437,8 +444,10 @@ static void set_force_densities(const hf_model *m, hf_workspace *w)
 }
 
 /* Newton steps from the present point of the path, in position_m and tension_N alone, until the errors are a tenth of
- * the tolerances or fall no more. True when they are within the tolerances. */
-static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w, bool held, int max_steps, int *n_step)
+ * the tolerances or fall no more. True when they are within the tolerances. With `impatient` the second step and those
+ * after it must reduce the errors clearly: the path can go on, and its next steps are worth more. */
+static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w, bool held, bool impatient,
+                   int max_steps, int *n_step)
 {
     path_error now = measure_end(m, w, held);
     bool damps = false;
@@ -453,10 +462,12 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         if (!held) hf_history_add_step(m, w, now.balance * m->reference_N, now.length, now.truss_m);
         double after = largest_error(m, &now);
         damps = damps || after > before;
-        if (!was_within || after < before) continue;
-        memcpy(w->position_m, w->newton_trial_m, 3 * (size_t)m->n_node * sizeof(double));
-        memcpy(w->tension_N, w->newton_trial_tension_N, (size_t)m->n_cable * sizeof(double));
-        return true;
+        if (was_within && !(after < before)) {
+            memcpy(w->position_m, w->newton_trial_m, 3 * (size_t)m->n_node * sizeof(double));
+            memcpy(w->tension_N, w->newton_trial_tension_N, (size_t)m->n_cable * sizeof(double));
+            return true;
+        }
+        if (impatient && k > 0 && !(after < CLEARLY * before)) break;
     }
     return is_within(&now, s, 1);
 }
@@ -487,7 +498,7 @@ static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_works
         begin_end(m, w, fall);
         memcpy(w->interior_position_m, w->position_m, places);
         memcpy(w->interior_tension_N, w->tension_N, tensions);
-        bool is_found = finish(m, s, w, held, last, n_step);
+        bool is_found = finish(m, s, w, held, is_there && k < TRIES_MAX - 1, last, n_step);
         if (!is_found) memcpy(w->position_m, w->interior_position_m, places);
         set_force_densities(m, w);
         if (is_found) return HF_OK;
