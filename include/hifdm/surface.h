@@ -55,9 +55,9 @@ extern "C" {
  * out. In a shallow reflector a shift in x and a turn about y are nearly the same motion: each of the two
  * numbers is uncertain, but the fitted surface is not.
  * shift_x_m is 0 where the nodes do not determine it, which means that the least RMS needs a shift of more than a tenth
- * of the net's half-width or is not found. focal_length_m is the wanted one where the nodes do not determine it: when no
- * least RMS is found, or with a focal length more than twice or less than half as long, for example when they lie on
- * two lines along y. */
+ * of the net's half-width or is not found. focal_length_m is the wanted one where the nodes do not determine it: where
+ * no least RMS is found, or one with a focal length more than twice or less than half as long, for example of two lines
+ * along y. */
 typedef struct {
     HF_SURFACE_FIT_LIST(HF_SURFACE_MEMBER)
 } hf_surface_fit;

@@ -20,8 +20,8 @@
  * shift, because of the errors of the nodes. The tests of the surface pass with 0.01; with 1 one fails
  * (fit_of_few_rough_nodes_stays). */
 #define SHIFT_X_MOST 0.1
-/* The fitted focal length is at most this many times the wanted one, or as many times shorter: one beyond has been taken
- * from the errors of nodes that hardly show any curvature. The tests of the surface pass with 1.1 and with 5. */
+/* The fitted focal length is at most this many times the wanted one, or as many times shorter: one beyond comes from
+ * the errors of nodes that hardly show any curvature. The tests of the surface pass with 1.1 and with 5. */
 #define FOCAL_MOST 2.0
 
 /* ---- measures of one node ---- */
@@ -235,8 +235,8 @@ hf_status hf_surface_fit_nodes(double focal_length_m, int n, const double *posit
         hf_surface_fit next = *fit;
         HF_TRY(fit_some(&p, n_parameter, parameter, &next));
         double longer = next.focal_length_m / focal_length_m;
-        bool is_determined = next.converged && fabs(next.shift_x_m) <= SHIFT_X_MOST * p.size &&
-                             longer <= FOCAL_MOST && longer >= 1 / FOCAL_MOST;
+        bool is_determined = next.converged && fabs(next.shift_x_m) <= SHIFT_X_MOST * p.size && longer <= FOCAL_MOST &&
+                             longer >= 1 / FOCAL_MOST;
         if (is_determined) *fit = next;
         fit->iterations = next.iterations;
         if (!is_determined) break;
