@@ -57,7 +57,7 @@ static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n
     hf_form_accept(m, s, HF_STOPPED_MAX_ITERATIONS, n_step, w, r);
     hf_form_settings part = *s;
     part.max_iterations = smaller(LAST_BLOCK, s->max_iterations - n_step);
-    if (r->status != HF_NOT_CONVERGED || part.max_iterations < 1) return r->status;
+    if (r->status != HF_NOT_CONVERGED || r->culprit >= 0 || part.max_iterations < 1) return r->status;
     hf_form_find(m, &part, HF_STOP_RESIDUAL, w, history, r);
     r->iterations += n_step;
     return r->status;

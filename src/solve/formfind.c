@@ -510,6 +510,7 @@ hf_status hf_form_accept(const hf_model *m, const hf_form_settings *s, hf_stop_r
     if (r->status == HF_OK) {
         if (reason == HF_STOPPED_MAX_ITERATIONS) r->status = HF_NOT_CONVERGED;
         r->residual_N = hf_form_residual_N(m, w);
+        if (r->status == HF_NOT_CONVERGED) r->culprit = find_rounded_cable(m, s, w);
         judge_chains(m, w, &p, r);
     }
     return finish_result(m, w, r);

@@ -443,33 +443,48 @@ static void set_force_densities(const hf_model *m, hf_workspace *w)
     }
 }
 
+static void keep_point(const hf_model *m, const hf_workspace *w, double *position_m, double *tension_N)
+{
+    memcpy(position_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(tension_N, w->tension_N, (size_t)m->n_cable * sizeof(double));
+}
+
+static void take_point(const hf_model *m, hf_workspace *w, const double *position_m, const double *tension_N)
+{
+    memcpy(w->position_m, position_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(w->tension_N, tension_N, (size_t)m->n_cable * sizeof(double));
+}
+
 /* Newton steps from the present point of the path, in position_m and tension_N alone, until the errors are a tenth of
- * the tolerances or fall no more. True when they are within the tolerances. With `impatient` the second step and those
- * after it must reduce the errors clearly: the path can go on, and its next steps are worth more. */
+ * the tolerances or fall no more. True when they are within the tolerances; else the point is the first or the last,
+ * whichever has the smaller errors. With `impatient` the second step and those after it must reduce the errors clearly:
+ * the path can go on, and its next steps are worth more. */
 static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w, bool held, bool impatient,
                    int max_steps, int *n_step)
 {
     path_error now = measure_end(m, w, held);
+    double first = largest_error(m, &now);
     bool damps = false;
+    keep_point(m, w, w->interior_position_m, w->interior_tension_N);
     for (int k = 0; k < FINAL_MAX && *n_step < max_steps && !is_within(&now, s, 0.1); k++) {
         bool was_within = is_within(&now, s, 1);
         double before = largest_error(m, &now);
-        memcpy(w->newton_trial_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
-        memcpy(w->newton_trial_tension_N, w->tension_N, (size_t)m->n_cable * sizeof(double));
+        keep_point(m, w, w->newton_trial_m, w->newton_trial_tension_N);
         ++*n_step;
-        if (!take_last_step(m, w, held, damps ? before : 0)) return false;
+        if (!take_last_step(m, w, held, damps ? before : 0)) break;
         now = measure_end(m, w, held);
         if (!held) hf_history_add_step(m, w, now.balance * m->reference_N, now.length, now.truss_m);
         double after = largest_error(m, &now);
         damps = damps || after > before;
         if (was_within && !(after < before)) {
-            memcpy(w->position_m, w->newton_trial_m, 3 * (size_t)m->n_node * sizeof(double));
-            memcpy(w->tension_N, w->newton_trial_tension_N, (size_t)m->n_cable * sizeof(double));
+            take_point(m, w, w->newton_trial_m, w->newton_trial_tension_N);
             return true;
         }
         if (impatient && k > 0 && !(after < CLEARLY * before)) break;
     }
-    return is_within(&now, s, 1);
+    if (is_within(&now, s, 1)) return true;
+    if (!(largest_error(m, &now) < first)) take_point(m, w, w->interior_position_m, w->interior_tension_N);
+    return false;
 }
 
 static bool has_loaded_chain(const hf_model *m, hf_workspace *w)
@@ -484,7 +499,6 @@ static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_works
                           int *n_step, int *culprit)
 {
     double wanted = NEAR, fall = 1;
-    size_t places = 3 * (size_t)m->n_node * sizeof(double), tensions = (size_t)m->n_cable * sizeof(double);
     int last = *n_step + max_steps;
     bool is_there = true;
     *culprit = -1;
@@ -494,19 +508,19 @@ static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_works
         if (is_told_to_stop(w)) return HF_INTERRUPTED;
         if ((*culprit = find_lost_row(m, w)) >= 0) return HF_SINGULAR;
         if (is_there && (*culprit = find_collapsed(m, s, w)) >= 0) return HF_COLLAPSED;
-        if (k > 0 && isnan(w->position_m[0])) break; /* all rounding: the point before counts */
+        bool is_rounding = k > 0 && isnan(w->position_m[0]), goes_on = is_there && k < TRIES_MAX - 1;
+        if (is_rounding) { /* the point before counts */
+            take_point(m, w, w->interior_position_m, w->interior_tension_N);
+            set_force_densities(m, w);
+            break;
+        }
         begin_end(m, w, fall);
-        memcpy(w->interior_position_m, w->position_m, places);
-        memcpy(w->interior_tension_N, w->tension_N, tensions);
-        bool is_found = finish(m, s, w, held, is_there && k < TRIES_MAX - 1, last, n_step);
-        if (!is_found) memcpy(w->position_m, w->interior_position_m, places);
+        bool is_found = finish(m, s, w, held, goes_on, last, n_step);
         set_force_densities(m, w);
         if (is_found) return HF_OK;
         if (!held && has_loaded_chain(m, w)) return HF_STRAIGHT_CHAIN;
+        if (goes_on) take_point(m, w, w->interior_position_m, w->interior_tension_N);
     }
-    memcpy(w->position_m, w->interior_position_m, places);
-    memcpy(w->tension_N, w->interior_tension_N, tensions);
-    set_force_densities(m, w);
     return HF_NOT_CONVERGED;
 }
 
