@@ -27,20 +27,21 @@
 
 /* In brackets: other values with which the tests of solve, stress and the elastic nets pass, or do not. The way through
  * the degenerate ones among these nets is narrow: many values lose one net. */
-#define MU_FIRST 0.1      /* first mu over reference tension and mean length [1e-3 and 10 lose a net] */
-#define STEP_KEPT 0.995   /* part of the way to the boundary of the cones [0.9 passes, 0.9999 does not] */
+#define MU_FIRST 0.1      /* first mu over reference tension and mean length [1e-3 passes, 10 loses nets] */
+#define STEP_KEPT 0.995   /* part of the way to the boundary of the cones [0.9 and 0.9999 lose a net] */
 #define NEAR 1e-5         /* relative errors at which the end is tried first [1e-3 and 1e-7 lose nets] */
 #define LEAST_WEIGHT 1e-4 /* tension in the weight of a cable, over the reference tension [1e-6 to 1e-2 pass] */
-#define UNBALANCED 100.0  /* errors of balance may be larger than the others [1 to 1e4 pass] */
+#define UNBALANCED 100.0  /* errors of balance may be larger than the others [1 loses a net, 1e4 passes] */
 #define NEARER 30.0       /* how much smaller they are at each next try [3 and 1e3 lose nets] */
-#define TRIES_MAX 8       /* [4 loses nets] */
-#define STALLED 1e-7      /* a shorter step does not move [1e-4 passes, 1e-12 does not] */
-#define STANDING_MAX 3    /* steps near the end that do not halve the errors [5 and 8 pass; without end: 100 steps] */
-#define FINAL_MAX 12      /* steps of one try at the end [4 and 60 lose nets] */
-#define CLEARLY 0.1       /* part of the errors that a step at the end leaves while the path can go on [0.5 passes] */
-#define DAMPING 1.0    /* of an end whose errors rise, at an error of 1, over mean length and tension [0: more steps] */
-#define CLEAR_FALL 0.1 /* fall of mu from which that of a tension tells whether the cable is slack [0 loses nets] */
-#define FIRST_RANGE 10.0 /* first tension of an elastic cable, around the reference tension [1e6 passes, 1 not] */
+#define TRIES_MAX 8       /* [4 and 12 pass] */
+#define STALLED 1e-7      /* a shorter step does not move [1e-4 and 1e-12 pass] */
+#define STANDING_MAX 3    /* steps near the end that do not halve the errors [1 and 8 pass; without end: 100 steps] */
+#define FINAL_MAX 12      /* steps of one try at the end [4 loses nets, 60 passes] */
+#define CLEARLY 0.1 /* part of the errors that a step at the end leaves while the path can go on [0.03 loses a net] */
+#define FAR 1.0     /* errors after the first of these steps [0.1 passes; without: more steps] */
+#define DAMPING 1.0 /* of an end whose errors rise, at an error of 1, over mean length and tension [0: more steps] */
+#define CLEAR_FALL 0.1   /* fall of mu from which that of a tension tells whether the cable is slack [0 loses nets] */
+#define FIRST_RANGE 10.0 /* first tension of an elastic cable, around the reference tension [1 and 1e6 pass] */
 
 /* ---- state and start ---- */
 
@@ -457,8 +458,8 @@ static void take_point(const hf_model *m, hf_workspace *w, const double *positio
 
 /* Newton steps from the present point of the path, in position_m and tension_N alone, until the errors are a tenth of
  * the tolerances or fall no more. True when they are within the tolerances; else the point is the first or the last,
- * whichever has the smaller errors. With `impatient` the second step and those after it must reduce the errors clearly:
- * the path can go on, and its next steps are worth more. */
+ * whichever has the smaller errors. With `impatient` the first step must not lead far away and the others must reduce
+ * the errors clearly: the path can go on, and its next steps are worth more. */
 static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w, bool held, bool impatient,
                    int max_steps, int *n_step)
 {
@@ -480,7 +481,7 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
             take_point(m, w, w->newton_trial_m, w->newton_trial_tension_N);
             return true;
         }
-        if (impatient && k > 0 && !(after < CLEARLY * before)) break;
+        if (impatient && !(after < (k > 0 ? CLEARLY * before : FAR))) break;
     }
     if (is_within(&now, s, 1)) return true;
     if (!(largest_error(m, &now) < first)) take_point(m, w, w->interior_position_m, w->interior_tension_N);
