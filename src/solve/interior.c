@@ -457,9 +457,9 @@ static void take_point(const hf_model *m, hf_workspace *w, const double *positio
 }
 
 /* Newton steps from the present point of the path, in position_m and tension_N alone, until the errors are a tenth of
- * the tolerances or fall no more. True when they are within the tolerances; else the point is the first or the last,
- * whichever has the smaller errors. With `impatient` the first step must not lead far away and the others must reduce
- * the errors clearly: the path can go on, and its next steps are worth more. */
+ * the tolerances or fall no more. True when they are within the tolerances; else the point is the first, or the last if
+ * that is near and has smaller errors. With `impatient` the first step must not lead far away and the others must
+ * reduce the errors clearly: the path can go on, and its next steps are worth more. */
 static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w, bool held, bool impatient,
                    int max_steps, int *n_step)
 {
@@ -484,7 +484,8 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         if (impatient && !(after < (k > 0 ? CLEARLY * before : FAR))) break;
     }
     if (is_within(&now, s, 1)) return true;
-    if (!(largest_error(m, &now) < first)) take_point(m, w, w->interior_position_m, w->interior_tension_N);
+    if (!(isfinite(now.balance) && largest_error(m, &now) < fmin(first, NEAR))) /* fmax passes over a NaN */
+        take_point(m, w, w->interior_position_m, w->interior_tension_N);
     return false;
 }
 

@@ -98,14 +98,15 @@ START_TEST(a_run_without_locks)
 }
 END_TEST
 
-/* Real limits: of descriptors, and of the size of files in blocks. */
+/* Real limits: of descriptors, those of the tests aside, and of the size of files in blocks. */
 START_TEST(limits)
 {
     const char *path = study();
     static const char *const limit[] = {"n 7", "n 8", "n 9", "n 10", "f 1", "f 8", "f 40"};
     for (size_t i = 0; i < sizeof limit / sizeof *limit; i++) {
         const char *folder = temp(formatted("n%zu.d", i));
-        SHELL(5, "ulimit -$3; exec \"$0\" sweep \"$1\" --dir \"$2\" --quiet", path, folder, limit[i]);
+        SHELL(5, "exec 3>&- 4>&- 5>&- 6>&- 7>&- 8>&- 9>&-; ulimit -$3; exec \"$0\" sweep \"$1\" --dir \"$2\" --quiet",
+              path, folder, limit[i]);
         ERR("error: ");
         goes_on(path, folder, true);
     }
