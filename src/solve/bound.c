@@ -210,23 +210,24 @@ static double lengths_radius(const hf_refined *p, double *extra)
     return least > 0 && 2.3 * sqrt(bend) * radius <= least / 2 ? radius : -1;
 }
 
-/* Whether cables stay slack or taut within the radius, and are long against it. */
-static bool stays_apart(const hf_refined *p, double radius)
+/* Whether cables stay slack or taut within the radius. One that is not long against it: forces that only rounding has
+ * left move so soft a net that far. */
+static hf_bound_reason stays_apart(const hf_refined *p, double radius)
 {
     double move = 1.5 * radius;
     for (int e = 0; e < p->m->n_cable; e++) {
         const hf_refined_cable *c = p->cable + e;
         hf_law law = (hf_law)p->w->law[e];
         if (hf_refine_is_fixed(p->m, e) || hf_newton_matrix_is_spring(law)) continue;
-        if (!(move < INSIDE_LENGTH * c->length)) return false;
+        if (!(move < INSIDE_LENGTH * c->length)) return HF_BOUND_NOT_DEFINITE;
         if (!hf_law_has(law, HF_LAW_HAS_MULTIPLIER)) continue;
         bool is_rigid = hf_law_has(law, HF_LAW_IS_RIGID);
         double least = is_rigid ? c->along * move : 0, longest = c->length - p->w->target[e];
-        if (!(c->is_taut > 0) && !(c->over.hi < -move)) return false;
-        if (c->is_taut > 0 && is_rigid && !(c->T.hi > least)) return false;
-        if (c->is_taut > 0 && !is_rigid && !(longest > move + 4 * U * c->length)) return false;
+        if (!(c->is_taut > 0) && !(c->over.hi < -move)) return HF_BOUND_SLACK_OR_TAUT;
+        if (c->is_taut > 0 && is_rigid && !(c->T.hi > least)) return HF_BOUND_SLACK_OR_TAUT;
+        if (c->is_taut > 0 && !is_rigid && !(longest > move + 4 * U * c->length)) return HF_BOUND_SLACK_OR_TAUT;
     }
-    return true;
+    return HF_BOUND_PROVEN;
 }
 
 /* Sets *radius of the ball around the refined shape that holds every equilibrium, m. */
@@ -246,8 +247,8 @@ static hf_bound_reason find_radius(hf_refined *p, double *radius)
     double force = 1.0001 * sqrt(square) + extra + rounding * sqrt(3.0 * m->n_free);
     double norm = 3 * hf_refine_largest_sum(p, stiffness_sum), change = 8 * hf_refine_largest_sum(p, stiffness_change);
     *radius = lengths + 4.1 * (force + norm * lengths) / least;
-    if (!(change * *radius <= least / 2)) return HF_BOUND_NOT_CONTRACTING;
-    return stays_apart(p, *radius) ? HF_BOUND_PROVEN : HF_BOUND_SLACK_OR_TAUT;
+    if (!(change * *radius <= least / 2)) return HF_BOUND_NOT_DEFINITE;
+    return stays_apart(p, *radius);
 }
 
 /* ---- the proof ---- */
