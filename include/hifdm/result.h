@@ -83,7 +83,7 @@ const char *hf_bound_reason_meaning(int reason); /* the same */
  * hf_evaluate under any status but HF_OK psi_m and the two tension ratios are NaN. In more detail:
  *   culprit                 cable (COLLAPSED, NOT_FINITE; NOT_CONVERGED: the one whose rounding stands in the way), row
  *                           of D (SINGULAR), chain (STRAIGHT_CHAIN)
- *                           OK: with n_drifting > 0, the row that moves farthest
+ *                           OK, NOT_CONVERGED: with n_drifting > 0, the row that moves farthest
  *   psi_m                   Eq. 10
  *   residual_N              with every cable at the tension of its law: of an elastic one EA (l/l0 - 1) at its length
  *                           l, not the multiplier that the iterations balance and of which length_error speaks

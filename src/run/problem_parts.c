@@ -268,9 +268,10 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
     if (r->culprit >= 0 && r->n_drifting == 0) /* a cable; where nodes drift it is one of them */
         return hf_error(messages, r->status,
                         "form-finding is as exact as double precision allows, nodal residual %.2e N: cable '%s' is "
-                        "%.2e m long, too short for coordinates of its size; move the origin near it, join its nodes "
-                        "or loosen the tolerances",
-                        r->residual_N, p->scene.cable_id[r->culprit], w->length_m[r->culprit]);
+                        "%.2e m long under %.2e N, too short or too tight for coordinates of its size; move the origin "
+                        "near it, join its nodes or loosen the tolerances",
+                        r->residual_N, p->scene.cable_id[r->culprit], w->length_m[r->culprit],
+                        w->tension_N[r->culprit]);
     int e = furthest_off(p);
     return hf_error(
         messages, r->status,

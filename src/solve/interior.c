@@ -35,12 +35,12 @@
 #define NEARER 30.0       /* how much smaller they are at each next try [3 and 1e3 lose nets] */
 #define TRIES_MAX 8       /* [4 and 12 pass] */
 #define STALLED 1e-7      /* a shorter step does not move [1e-4 and 1e-12 pass] */
-#define STANDING_MAX 3    /* steps near the end that do not halve the errors [1 and 8 pass; without end: 100 steps] */
+#define STANDING_MAX 3    /* steps near the end that do not halve the errors [1 and 8 pass; without: all there are] */
 #define FINAL_MAX 12      /* steps of one try at the end [4 loses nets, 60 passes] */
-#define CLEARLY 0.1 /* part of the errors that a step at the end leaves while the path can go on [0.03 loses a net] */
-#define FAR 1.0     /* errors after the first of these steps [0.1 passes; without: more steps] */
-#define DAMPING 1.0 /* of an end whose errors rise, at an error of 1, over mean length and tension [0: more steps] */
-#define CLEAR_FALL 0.1   /* fall of mu from which that of a tension tells whether the cable is slack [0 loses nets] */
+#define CLEARLY 0.1       /* part of the errors left by a step at the end while the path can go on [0.03 loses a net] */
+#define FAR 1.0           /* errors after the first of these steps [0.1 passes; without: more steps] */
+#define DAMPING 1.0    /* of an end whose errors rise, at an error of 1, over mean length and tension [0: more steps] */
+#define CLEAR_FALL 0.1 /* fall of mu from which that of a tension tells whether the cable is slack [0 loses nets] */
 #define FIRST_RANGE 10.0 /* first tension of an elastic cable, around the reference tension [1 and 1e6 pass] */
 
 /* ---- state and start ---- */
@@ -386,6 +386,7 @@ static bool is_within(const path_error *error, const hf_form_settings *s, double
 
 static double largest_error(const hf_model *m, const path_error *error)
 {
+    if (!isfinite(error->balance)) return INFINITY; /* fmax passes over a NaN */
     return fmax(fmax(error->balance, error->length), fmax(error->gap, error->truss_m / hf_joint_mean_length_m(m)));
 }
 
@@ -481,11 +482,11 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
             take_point(m, w, w->newton_trial_m, w->newton_trial_tension_N);
             return true;
         }
-        if (impatient && !(after < (k > 0 ? CLEARLY * before : FAR))) break;
+        bool is_worth_it = after < (k > 0 ? CLEARLY * before : FAR) || is_within(&now, s, 1);
+        if (impatient && !is_worth_it) break;
     }
     if (is_within(&now, s, 1)) return true;
-    if (!(isfinite(now.balance) && largest_error(m, &now) < fmin(first, NEAR))) /* fmax passes over a NaN */
-        take_point(m, w, w->interior_position_m, w->interior_tension_N);
+    if (!(largest_error(m, &now) < fmin(first, NEAR))) take_point(m, w, w->interior_position_m, w->interior_tension_N);
     return false;
 }
 
@@ -520,7 +521,7 @@ static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_works
         bool is_found = finish(m, s, w, held, goes_on, last, n_step);
         set_force_densities(m, w);
         if (is_found) return HF_OK;
-        if (!held && has_loaded_chain(m, w)) return HF_STRAIGHT_CHAIN;
+        if (!held && !goes_on && has_loaded_chain(m, w)) return HF_STRAIGHT_CHAIN;
         if (goes_on) take_point(m, w, w->interior_position_m, w->interior_tension_N);
     }
     return HF_NOT_CONVERGED;

@@ -15,7 +15,7 @@
  *   HF_SINGULAR        the energy has no least value: row *culprit moves away without end
  *   HF_STRAIGHT_CHAIN  a straight chain is under lateral load (hf_form_chain_is_loaded)
  *   HF_INTERRUPTED     the workspace's stop was set
- *   HF_NOT_CONVERGED   none of these; the workspace holds the last shape of the path. */
+ *   HF_NOT_CONVERGED   none of these; the workspace holds the last shape of the path, or one nearer to the answer. */
 hf_status hf_interior_run(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                           int max_steps, int *n_step, int *culprit);
 

@@ -90,7 +90,6 @@ static int n_taut(const struct net *net, int row)
     return n;
 }
 
-/* Solved, with nodes that no cable holds or without. */
 /* Stiff cables that are cut too short pull with tensions whose rounding alone may exceed the tolerance: then a cable is
  * named. */
 static int is_rounding(const struct net *net)
@@ -100,9 +99,10 @@ static int is_rounding(const struct net *net)
         largest_N = fmax(largest_N, net->work.tension_N[e]);
     double floor_N = 100 * DBL_EPSILON * largest_N;
     return floor_N > net->form.residual_tolerance * net->model.reference_N && net->result.culprit >= 0 &&
-           largest_error_N(net) <= floor_N;
+           net->result.n_drifting == 0 && largest_error_N(net) <= floor_N;
 }
 
+/* Solved, with nodes that no cable holds or without. */
 START_TEST(nets_of_all_laws_are_solved)
 {
     double EA[400];
@@ -188,7 +188,7 @@ START_TEST(chain_beside_an_elastic_pair_is_named)
     ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &net.result), HF_STRAIGHT_CHAIN);
     ck_assert_int_eq(net.result.culprit, 0);
     ck_assert_int_eq(net.result.n_loaded_chain, 1);
-    ck_assert_int_le(net.result.iterations, 100);
+    ck_assert_int_le(net.result.iterations, MOST_STEPS);
     close_net(&net);
 }
 END_TEST
@@ -205,7 +205,7 @@ START_TEST(chain_that_is_too_short_is_named)
     OPEN_HAND(&net, node, cable, _i ? HF_METHOD_NEWTON : HF_METHOD_HIFDM);
     ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &net.result), HF_STRAIGHT_CHAIN);
     ck_assert_int_eq(net.result.culprit, 0);
-    ck_assert_int_le(net.result.iterations, 100);
+    ck_assert_int_le(net.result.iterations, 70);
     ck_assert(hf_form_chain_is_short(&net.model, &net.work, 0, &sum_m, &span_m));
     ck_assert_double_eq(sum_m, 1.8);
     ck_assert_double_eq(span_m, 2);
@@ -225,7 +225,7 @@ START_TEST(node_that_is_not_held_is_named)
     OPEN_HAND(&net, node, cable, HF_METHOD_NEWTON);
     ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &net.result), HF_SINGULAR);
     ck_assert_int_eq(net.model.node_of_row[net.result.culprit], 2);
-    ck_assert_int_le(net.result.iterations, 100);
+    ck_assert_int_le(net.result.iterations, MOST_STEPS);
     close_net(&net);
 }
 END_TEST
@@ -247,7 +247,7 @@ START_TEST(collapse_takes_few_steps)
     OPEN_HAND(&net, node, cable, HF_METHOD_NEWTON);
     ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &net.result), HF_COLLAPSED);
     ck_assert_int_lt(net.result.culprit, N);
-    ck_assert_int_le(net.result.iterations, 100);
+    ck_assert_int_le(net.result.iterations, MOST_STEPS);
     close_net(&net);
 }
 END_TEST

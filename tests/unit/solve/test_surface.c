@@ -160,6 +160,7 @@ START_TEST(fit_of_two_lines_keeps_the_focal_length)
         ck_assert(fit.converged);
         ck_assert_double_lt(fit.half_path_rms_m, 0.005);
         ck_assert_double_eq_tol(fit.shift_z_m, 0.0255, 0.02); /* 0.05 - 0.7^2/20 */
+        ck_assert(fit.focal_length_m >= 2.5 && fit.focal_length_m <= 10);
     }
 }
 END_TEST
