@@ -130,7 +130,19 @@ wait $twin && fail "GNU parallel did not notice that a task was killed"
 "$source/tools/slurm/sweep-parallel.sh" 3 study.yaml --dir twin.d --quiet >parallel.log 2>&1 ||
     fail "GNU parallel did not finish the second time"
 equals_local twin || fail "GNU parallel's results differ from the local sweep's"
-echo "GNU parallel: one task killed, --resume-failed, equal to the local sweep"
+echo "GNU parallel: one task killed, run again, equal to the local sweep"
+
+# A study of the same name elsewhere, and a point whose file is gone: all tasks are run again, whoever ran them before.
+rm "$(find twin.d -name '*.h5' | sort | head -n 1)"
+"$source/tools/slurm/sweep-parallel.sh" 3 study.yaml --dir twin.d --quiet >parallel.log 2>&1 && equals_local twin ||
+    fail "GNU parallel did not make the point whose file was gone: $(cat parallel.log)"
+"$source/tools/slurm/sweep-parallel.sh" 3 study.yaml --dir other.d --quiet >parallel.log 2>&1 && equals_local other ||
+    fail "GNU parallel did not sweep into another folder: $(cat parallel.log)"
+for tasks in 0 -1 '' abc 1e3; do
+    "$source/tools/slurm/sweep-parallel.sh" "$tasks" study.yaml --dir none.d >parallel.log 2>&1 && status=0 || status=$?
+    [ $status = 2 ] && grep -q usage parallel.log || fail "sweep-parallel.sh with '$tasks' tasks: exit status $status"
+done
+echo "GNU parallel: a lost point, another folder, wrong numbers of tasks"
 
 # ---- Names: of studies, folders and the program, that a shell or GNU parallel would run or take apart ----------------
 names=('blanks  in it' 'semi;touch PWNED;colon' '$(touch PWNED)' '`touch PWNED`' "it's" 'say "it"' 'back\slash\\' \

@@ -3,14 +3,17 @@
 #
 #     tools/slurm/sweep-parallel.sh TASKS STUDY [options of hifdm sweep]
 #
-# JOBS tasks at a time (1), each with THREADS threads (all cores). Run it again after whatever went wrong: tasks that
-# failed are run again (--resume-failed), and of their points only those that are missing.
+# JOBS tasks at a time (1), each with THREADS threads (all cores). Run it again after whatever went wrong, and after the
+# study has grown: all tasks are run, and of their points those that are missing. Ends with the number of tasks that
+# failed (GNU parallel).
 # Several machines: PARALLEL='--sshloginfile nodes.txt --workdir .' in the environment.
 set -eu
-[ $# -ge 2 ] || { echo "usage: sweep-parallel.sh TASKS STUDY [options]" >&2; exit 2; }
-tasks=$1 study=$2 program=${HIFDM:-hifdm} joblog=${2##*/}
+[[ $# -ge 2 && $1 =~ ^[1-9][0-9]{0,5}$ ]] || {
+    echo "usage: sweep-parallel.sh TASKS STUDY [options of hifdm sweep], TASKS from 1 to 999999" >&2
+    exit 2
+}
+tasks=$1 study=$2 program=${HIFDM:-hifdm}
 shift 2
-joblog=./${joblog%.*}.joblog
 case $program in -*) program=./$program ;; esac
 case $study in -*) study=./$study ;; esac
 
@@ -19,5 +22,4 @@ case $study in -*) study=./$study ;; esac
 words=("$program" sweep "$study" --tasks "$tasks" ${THREADS:+--threads "$THREADS"} "$@" --task)
 for ((task = 0; task < tasks; task++)); do
     printf '%s\0' "${words[@]}" "$task"
-done | parallel --jobs "${JOBS:-1}" --joblog "$joblog" --resume-failed --null \
-    --max-replace-args $((${#words[@]} + 1)) exec '{}'
+done | parallel --jobs "${JOBS:-1}" --null --max-replace-args $((${#words[@]} + 1)) exec '{}'
