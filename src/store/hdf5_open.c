@@ -1,11 +1,34 @@
-/* The door to what a file holds: links and objects are looked at before HDF5 follows or reads them.
- * Contents: links - data sets - crashes - objects */
+/* The door to what a file holds: files, links and objects are looked at before HDF5 opens, follows or reads them.
+ * Contents: the file - links - data sets - crashes - objects */
 #include "store/hdf5.h"
 
+#include "base/file_io.h"
+
+#include <errno.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+/* ---- the file ---- */
+
+bool hf_hdf5_look_at_file(hf_hdf5 *io, const char *name)
+{
+    struct stat info;
+    io->file = -1;
+    if (stat(name, &info) != 0) {
+        io->is_damaged = hf_file_io_fault(errno, HF_OK) == HF_OK;
+        io->status = hf_error(io->messages, HF_IO, "%s: cannot open: %s", io->path, strerror(errno));
+    } else if (S_ISDIR(info.st_mode)) {
+        io->is_damaged = true;
+        io->status = hf_error(io->messages, HF_IO, "%s: is a folder, not a result file", io->path);
+    } else if (!S_ISREG(info.st_mode) || H5Fis_hdf5(name) == 0) {
+        io->is_damaged = true;
+        io->status = hf_error(io->messages, HF_IO, "%s: is not an HDF5 file, so no result of hifdm", io->path);
+    }
+    return io->status == HF_OK;
+}
 
 /* ---- links ---- */
 

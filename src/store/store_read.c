@@ -3,13 +3,10 @@
 
 #include "base/arena.h"
 
-#include "base/file_io.h"
 #include "base/text.h"
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* ---- opening a result file ---- */
 
@@ -42,21 +39,8 @@ static void note_version(hf_hdf5 *io)
 hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
 {
     hf_hdf5 io = {.path = path, .messages = messages, .status = HF_OK, .file = -1};
-    struct stat info;
     int version = 0;
-    hf_hdf5_note(&io);
-    if (stat(path, &info) != 0) {
-        io.is_damaged = hf_file_io_fault(errno, HF_OK) == HF_OK;
-        io.status = hf_error(messages, HF_IO, "%s: cannot open: %s", path, strerror(errno));
-    } else if (S_ISDIR(info.st_mode)) {
-        io.is_damaged = true;
-        io.status = hf_error(messages, HF_IO, "%s: is a folder, not a result file", path);
-    } else if (!S_ISREG(info.st_mode) || H5Fis_hdf5(path) == 0) {
-        io.is_damaged = true;
-        io.status = hf_error(messages, HF_IO, "%s: is not an HDF5 file, so no result of hifdm", path);
-    } else {
-        hf_hdf5_open_file(&io, path);
-    }
+    hf_hdf5_open_file(&io, path);
     if (io.status != HF_OK) return io;
     if (!is_ours(&io, &io.is_damaged))
         io.status = hf_error(messages, HF_IO, "%s: is an HDF5 file, but no result of hifdm or a damaged one", path);

@@ -27,6 +27,23 @@ START_TEST(differences_are_named)
 }
 END_TEST
 
+/* A pipe that nobody writes into is not waited for. */
+START_TEST(what_is_no_file_is_named)
+{
+    const char *c = file_with("c.yaml", SMALL_SCENE), *a = temp("a.h5"), *pipe = temp("pipe");
+    HIFDM(0, "run", c, "-o", a, "--quiet");
+    SHELL(0, "mkfifo \"$1\"", pipe);
+    HIFDM(5, "diff", a, pipe);
+    ERRS("error: %s: is not an HDF5 file, so no result of hifdm\n", pipe);
+    HIFDM(5, "diff", pipe, a);
+    ERRS("error: %s: is not an HDF5 file, so no result of hifdm\n", pipe);
+    HIFDM(5, "diff", a, temp(""));
+    ERR("is a folder, not a result file\n");
+    HIFDM(5, "diff", a, temp("none.h5"));
+    ERRS("error: %s: cannot open: No such file or directory\n", temp("none.h5"));
+}
+END_TEST
+
 /* |a-b| <= R |b|: the second file is what the first is held against. */
 START_TEST(the_tolerance_is_relative_to_the_second_file)
 {
@@ -68,6 +85,7 @@ Suite *suite_cli_diff(void)
     TCase *tcase = tcase_create("diff");
     tcase_add_test(tcase, differences_are_named);
     tcase_add_test(tcase, the_tolerance_is_relative_to_the_second_file);
+    tcase_add_test(tcase, what_is_no_file_is_named);
     tcase_add_test(tcase, progress_for_programs);
     suite_add_tcase(suite, tcase);
     return suite;
