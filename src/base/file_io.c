@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define AWAIT_MS 200 /* until a request to stop is seen that came just before poll(2) */
@@ -22,6 +23,20 @@ int hf_file_io_open(const char *name, int flags)
     int file;
     UNINTERRUPTED(file, open(name, flags, 0666));
     return file;
+}
+
+int hf_file_io_open_ordinary(const char *name, off_t *size)
+{
+    struct stat info;
+    int file = hf_file_io_open(name, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (file < 0 && errno == ENXIO) errno = EEXIST; /* a socket */
+    if (file < 0) return -1;
+    int failed = fstat(file, &info), why = failed ? errno : EEXIST;
+    *size = failed ? 0 : info.st_size;
+    if (!failed && S_ISREG(info.st_mode)) return file;
+    close(file);
+    errno = why;
+    return -1;
 }
 
 /* ---- whole transfers ---- */

@@ -12,6 +12,10 @@
 
 int hf_file_io_open(const char *name, int flags); /* open(2); new files get the mode 0666. Returns the descriptor */
 
+/* An ordinary file to read, and its size. EEXIST when the name is that of anything else: a folder, a pipe, which is not
+ * waited for, a device. */
+int hf_file_io_open_ordinary(const char *name, off_t *size);
+
 int hf_file_io_write(int file, const void *from, size_t n);
 int hf_file_io_write_at(int file, const void *from, size_t n, off_t at);
 

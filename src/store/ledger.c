@@ -19,9 +19,10 @@
 #include <unistd.h>
 
 #define HEADER "#hifdm-points-1"
-#define SYNC_S 5.0      /* finished points of the last 5 s may be lost by a power cut */
-#define LINE_SIZE 16384 /* of one row: the reason, and at most 25 bytes for each number */
-#define N_FIXED 4       /* fields before the numbers: id, fingerprint, status, reason */
+#define SYNC_S 5.0                                  /* finished points of the last 5 s may be lost by a power cut */
+#define LINE_SIZE 16384                             /* of one row: the reason, and at most 25 bytes for each number */
+#define ROWS_MAX (HF_STUDY_POINT_MAX * (off_t)4096) /* bytes of a file: all points have a row, and few rows so much */
+#define N_FIXED 4                                   /* fields before the numbers: id, fingerprint, status, reason */
 
 const char *const hf_point_state_word[HF_N_POINT_STATE] = {"missing", "running", "done", "failed", "outdated"};
 
@@ -355,13 +356,40 @@ static bool read_rows(reading *r, char *text)
     return true;
 }
 
+static hf_status tell_in_the_way(const char *path, hf_messages *messages)
+{
+    return hf_error(messages, HF_IO, "%s: is a folder or no ordinary file, and in the way; remove it", path);
+}
+
+/* What the file holds now, as a text; rows that are added meanwhile are left out. The caller frees it. */
+static hf_status read_text(const char *path, char **text, hf_messages *messages)
+{
+    off_t size;
+    *text = NULL;
+    int file = hf_file_io_open_ordinary(path, &size);
+    if (file < 0 && errno == EEXIST) return tell_in_the_way(path, messages);
+    if (file < 0)
+        return hf_error(messages, hf_file_io_fault(errno, HF_IO), "%s: cannot open: %s", path, strerror(errno));
+    if (size <= ROWS_MAX) *text = malloc((size_t)size + 1);
+    ssize_t n = *text ? hf_file_io_read(file, *text, (size_t)size) : 0;
+    int why = errno;
+    close(file);
+    if (size > ROWS_MAX)
+        return hf_error(messages, HF_IO, "%s: is longer than %lld MB, so no table of hifdm, and in the way; remove it",
+                        path, (long long)ROWS_MAX / 1000000);
+    if (!*text) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    (*text)[n < 0 ? 0 : n] = '\0';
+    if (n >= 0) return HF_OK;
+    free(*text);
+    return hf_error(messages, hf_file_io_fault(why, HF_IO), "%s: cannot read: %s", path, strerror(why));
+}
+
 static hf_status read_file(reading *r, const char *folder, const char *name, hf_messages *messages)
 {
     hf_points *points = r->points;
     char path[HF_PATH_SIZE + 300], *text;
-    size_t length;
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    HF_TRY(hf_text_read_file(path, HF_IO, &text, &length, messages));
+    HF_TRY(read_text(path, &text, messages));
     char **more = realloc(points->text, ((size_t)points->n_text + 1) * sizeof *more);
     if (more) {
         points->text = more;
@@ -431,16 +459,15 @@ static off_t note_rows(struct hf_ledger_news *news, const hf_study *study, char 
 static void read_news_of(hf_ledger *l, const hf_study *study, const char *name, bool skip)
 {
     char path[HF_PATH_SIZE + 300];
-    struct stat info;
+    off_t length;
     int k = place_of(l->news, name);
     snprintf(path, sizeof path, "%s/%s", l->folder, name);
-    int file = k >= 0 ? hf_file_io_open(path, O_RDONLY | O_CLOEXEC) : -1;
+    int file = k >= 0 ? hf_file_io_open_ordinary(path, &length) : -1;
     if (file < 0) return;
     off_t *at = &l->news->file[k].at;
-    if (fstat(file, &info) != 0) info.st_size = 0;
-    if (skip) *at = info.st_size;
-    if (!skip && info.st_size > *at) {
-        size_t size = (size_t)(info.st_size - *at);
+    if (skip) *at = length;
+    if (!skip && length > *at && length <= ROWS_MAX) {
+        size_t size = (size_t)(length - *at);
         char *text = malloc(size + 1);
         ssize_t n = text ? hf_file_io_read_at(file, text, size, *at) : -1;
         if (n > 0) text[n] = '\0';
@@ -503,14 +530,16 @@ static void find_locks(reading *r, int file, off_t from, off_t to)
     }
 }
 
-static void find_running(reading *r, const char *folder)
+static hf_status find_running(reading *r, const char *folder, hf_messages *messages)
 {
     char path[HF_PATH_SIZE + 32];
+    off_t size;
     snprintf(path, sizeof path, "%s/claims", folder);
-    int file = hf_file_io_open(path, O_RDONLY | O_CLOEXEC);
-    if (file < 0) return;
+    int file = hf_file_io_open_ordinary(path, &size);
+    if (file < 0) return errno == EEXIST ? tell_in_the_way(path, messages) : HF_OK;
     find_locks(r, file, 0, (off_t)1 << 48);
     close(file);
+    return HF_OK;
 }
 
 /* ---- the whole ---- */
@@ -544,7 +573,7 @@ hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *p
     for (int i = 0; i < study->n_point; i++)
         points->point[i] = r.failure[i] = (hf_point){HF_POINT_MISSING, HF_NOT_EVALUATED, "", NULL};
     hf_status status = read_files(&r, folder, messages);
-    find_running(&r, folder);
+    if (status == HF_OK) status = find_running(&r, folder, messages);
     find_lost(&r, folder);
     for (int i = 0; i < study->n_point; i++)
         points->count[points->point[i].state]++;

@@ -90,8 +90,8 @@ typedef struct {
     int n_text, n_field_block;
 } hf_points;
 
-/* Read the state of the study's points. Without the folder all are missing. HF_OK, HF_IO, HF_NO_MEMORY.
- * Free in any case. */
+/* Read the state of the study's points. Without the folder all are missing. HF_OK; HF_IO, also when a name of ours is
+ * that of no ordinary file or of one that is longer than rows can be; HF_NO_MEMORY. Free in any case. */
 hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *points, hf_messages *messages);
 void hf_points_free(hf_points *points);
 

@@ -188,6 +188,43 @@ START_TEST(a_foreign_journal_goes_with_restart_only)
 }
 END_TEST
 
+/* A pipe that nobody writes into is not waited for. */
+START_TEST(what_is_no_file_in_the_folder_is_named)
+{
+    static const char *const name[] = {"points-zz-1.tsv", "claims"}, *const make[] = {"mkfifo", "mkdir"};
+    const char *path = study_of(SMALL_SCENE SMALL_GA), *folder = temp("s.d");
+    const char *there = keep(formatted("%s/%s", folder, name[_i]));
+    for (int k = 0; k < 2; k++) {
+        SHELL(0, "mkdir -p \"$1\" && $3 \"$2\"", folder, there, make[k]);
+        HIFDM(5, "status", path, "--dir", folder);
+        ERRS("error: %s: is a folder or no ordinary file, and in the way; remove it\n", there);
+        HIFDM(5, "merge", path, "--dir", folder, "-o", temp("s.h5"));
+        ERRS("error: %s: is a folder or no ordinary file, and in the way; remove it\n", there);
+        HIFDM(5, "sweep", path, "--dir", folder);
+        ERRS("error: %s: is a ", there);
+        ERR("and in the way; remove it\n");
+        SHELL(0, "rm -r \"$1\"", there);
+    }
+    HIFDM(0, "sweep", path, "--dir", folder, "--quiet");
+    SHELL(0, "mkfifo \"$1\"", temp("pipe.h5"));
+    HIFDM(5, "merge", path, "--dir", folder, "-o", temp("pipe.h5"));
+    ERRS("error: %s: exists and is no merge; use --force or -o", temp("pipe.h5"));
+}
+END_TEST
+
+/* 40 GB, none of them on the disk. */
+START_TEST(a_table_that_is_too_long_is_not_read)
+{
+    const char *path = study_of(SMALL_SCENE SMALL_GA), *folder = temp("s.d"), *there = temp("s.d/points-x-1.tsv");
+    static const char *const command[] = {"status", "merge", "sweep"};
+    SHELL(0, "mkdir \"$1\" && truncate -s 40G \"$2\"", folder, there);
+    for (int k = 0; k < 3; k++) {
+        HIFDM(5, command[k], path, "--dir", folder);
+        ERRS("error: %s: is longer than 4096 MB, so no table of hifdm, and in the way; remove it\n", there);
+    }
+}
+END_TEST
+
 Suite *suite_cli_sweep_files(void)
 {
     Suite *suite = suite_create("cli/sweep_files");
@@ -200,6 +237,8 @@ Suite *suite_cli_sweep_files(void)
     tcase_add_test(tcase, a_begun_point_with_a_cut_file);
     tcase_add_test(tcase, a_name_that_is_taken_meanwhile);
     tcase_add_test(tcase, a_foreign_journal_goes_with_restart_only);
+    tcase_add_loop_test(tcase, what_is_no_file_in_the_folder_is_named, 0, 2);
+    tcase_add_test(tcase, a_table_that_is_too_long_is_not_read);
     suite_add_tcase(suite, tcase);
     return suite;
 }

@@ -319,6 +319,36 @@ START_TEST(a_point_runs_as_long_as_its_process_lives)
 }
 END_TEST
 
+/* Nothing of the folder is waited for, neither when a sweep begins nor later, and what cannot be rows is not read. */
+START_TEST(what_is_no_table_is_in_the_way)
+{
+    static const char *const command[] = {"mkfifo '%s'", "mkdir '%s'", "truncate -s 40G '%s'"};
+    static const char *const words[] = {": is a folder or no ordinary file, and in the way; remove it\n",
+                                        ": is a folder or no ordinary file, and in the way; remove it\n",
+                                        ": is longer than 4096 MB, so no table of hifdm, and in the way; remove it\n"};
+    hf_study s;
+    hf_ledger mine;
+    hf_points points;
+    hf_messages m = {0};
+    char path[1200], line[1300];
+    open_study(&s);
+    ck_assert_int_eq(hf_ledger_open(folder, &mine, &m), HF_OK);
+    ck_assert_int_eq(hf_ledger_watch(&mine, &s, &m), HF_OK);
+    snprintf(path, sizeof path, "%s/points-a.tsv", folder);
+    snprintf(line, sizeof line, command[_i], path);
+    ck_assert_int_eq(system(line), 0);
+    write_point(&s, 1, HF_OK, "", &(hf_summary){0});
+    ck_assert(hf_ledger_is_finished(&mine, &s, 1));
+    ck_assert_int_eq(hf_ledger_read(folder, &s, &points, &m), HF_IO);
+    ck_assert_ptr_nonnull(strstr(m.text, path));
+    ck_assert_ptr_nonnull(strstr(m.text, words[_i]));
+    hf_points_free(&points);
+    hf_ledger_close(&mine, &m);
+    hf_messages_free(&m);
+    hf_study_free(&s);
+}
+END_TEST
+
 Suite *suite_unit_ledger(void)
 {
     Suite *suite = suite_create("unit/ledger");
@@ -334,5 +364,6 @@ Suite *suite_unit_ledger(void)
     tcase_add_loop_test(tests, rows_that_do_not_reach_the_disk, 0, 2);
     tcase_add_test(tests, torn_rows_are_ignored);
     tcase_add_test(tests, a_point_runs_as_long_as_its_process_lives);
+    tcase_add_loop_test(tests, what_is_no_table_is_in_the_way, 0, 3);
     return suite;
 }
