@@ -16,8 +16,8 @@ static bool is_ours(int exit_status)
 #undef IS
 }
 
-/* Is it a signal by which somebody ends programs, rather than a fault? */
-static bool is_sent(int number)
+/* Is it a signal by which somebody ends programs, and means this one as well as its copy? */
+static bool is_for_us(int number)
 {
     return number == SIGINT || number == SIGTERM || number == SIGHUP || number == SIGPIPE || number == SIGQUIT;
 }
@@ -31,7 +31,7 @@ bool hf_reader_watch(const hf_options *options, int *exit_status, hf_messages *m
     pid_t child = hf_child_fork();
     if (child <= 0) return false;
     hf_child_end end = hf_child_wait(child);
-    if (is_sent(end.signal)) { /* this program ends by the same */
+    if (is_for_us(end.signal)) { /* this program ends by the same */
         signal(end.signal, SIG_DFL);
         raise(end.signal);
     }
@@ -40,8 +40,12 @@ bool hf_reader_watch(const hf_options *options, int *exit_status, hf_messages *m
     hf_child_describe(end, words, sizeof words);
     const char *file = *reading ? reading : options->file, *other = options->second;
     if (other && !strcmp(file, other)) other = options->file;
-    hf_status status = hf_error(messages, HF_IO, "%s: is damaged: reading it ended by %s%s%s", file, words,
-                                other ? ", beside " : "", other ? other : "");
+    hf_status status = HF_IO;
+    if (end.is_sent)
+        hf_error(messages, status, "%s: reading it was ended by %s", file, words);
+    else
+        hf_error(messages, status, "%s: is damaged: reading it ended by %s%s%s", file, words, other ? ", beside " : "",
+                 other ? other : "");
     *exit_status = hf_status_exit_code(status);
     return true;
 }

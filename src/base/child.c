@@ -1,3 +1,4 @@
+#define _DEFAULT_SOURCE /* wait4 */
 /* Contents: children - the server */
 #include "base/child.h"
 
@@ -28,22 +29,47 @@ pid_t hf_child_fork(void)
     return 0;
 }
 
+static double seconds_of(const struct rusage *used)
+{
+    return (double)(used->ru_utime.tv_sec + used->ru_stime.tv_sec) +
+           1e-6 * (double)(used->ru_utime.tv_usec + used->ru_stime.tv_usec);
+}
+
+/* Is it none of the signals that a fault of the program raises? A limit of CPU time is a fault when it is that of
+ * hf_child_limit_cpu, and not a lower one of the user's, which this process has, too. */
+static bool is_from_outside(int number, const struct rusage *used)
+{
+    static const int of_faults[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGTRAP, SIGSYS};
+    struct rlimit limit;
+    for (size_t i = 0; i < sizeof of_faults / sizeof *of_faults; i++)
+        if (number == of_faults[i]) return false;
+    if (number != SIGXCPU) return true;
+    return getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+           seconds_of(used) > (double)limit.rlim_cur - 0.5; /* it is told in ticks of the clock */
+}
+
 hf_child_end hf_child_wait(pid_t child)
 {
     int status;
     pid_t ended;
+    struct rusage used;
     do
-        ended = waitpid(child, &status, 0);
+        ended = wait4(child, &status, 0, &used);
     while (ended < 0 && errno == EINTR);
     if (ended != child) return (hf_child_end){.is_known = false};
-    if (WIFSIGNALED(status)) return (hf_child_end){true, -1, WTERMSIG(status)};
-    return (hf_child_end){true, WEXITSTATUS(status), 0};
+    if (!WIFSIGNALED(status)) return (hf_child_end){.is_known = true, .exit_status = WEXITSTATUS(status)};
+    int number = WTERMSIG(status);
+    return (hf_child_end){true, -1, number, is_from_outside(number, &used)};
 }
 
 void hf_child_describe(hf_child_end end, char *text, size_t size)
 {
+    const char *advice = !end.is_sent            ? ""
+                         : end.signal == SIGKILL ? "; is there enough memory?"
+                         : end.signal == SIGXCPU ? "; raise the limit (ulimit -t)"
+                                                 : "; try again";
     if (end.signal)
-        snprintf(text, size, "signal %d (%s)", end.signal, strsignal(end.signal));
+        snprintf(text, size, "signal %d (%s)%s", end.signal, strsignal(end.signal), advice);
     else
         snprintf(text, size, "exit status %d", end.exit_status);
 }

@@ -14,6 +14,8 @@ typedef struct {
     bool is_known;   /* false: somebody else has waited for it, or it could not be made */
     int exit_status; /* -1 after a signal */
     int signal;      /* 0: it ended by itself */
+    bool is_sent;    /* the signal is none that a fault raises: it was killed, or had no more memory or CPU time of the
+                        user's; nothing follows for the work */
 } hf_child_end;
 
 /* As fork(2), for a process of one thread. The child leaves with _exit(2), or what is in buffers of stdio is written
@@ -22,7 +24,7 @@ pid_t hf_child_fork(void);
 
 hf_child_end hf_child_wait(pid_t child);
 
-/* "signal 11 (Segmentation fault)" or "exit status 99" */
+/* "signal 11 (Segmentation fault)", "signal 9 (Killed); is there enough memory?" or "exit status 99" */
 void hf_child_describe(hf_child_end end, char *text, size_t size);
 
 /* From now on this process ends by SIGXCPU when it has used so many more seconds of CPU time, at least 1; 0: it does

@@ -78,11 +78,12 @@ size_t hf_hdf5_kind_bytes(const hf_hdf5_kind *kind); /* of one value in memory; 
 extern char *hf_hdf5_reading;
 void hf_hdf5_note(const hf_hdf5 *io);
 
-/* Does a child end as it should that does this work with the file at `path`? True also when no child could be made.
- * False: `how` it ended, in words. Not under the lock. The work begins with hf_hdf5_limit, from which on the time is
+/* Does a child end as it should that does this work with the file at `path`? HF_OK, also when no child could be made;
+ * HF_EXISTS: the file is damaged, `how` the child ended is in words; HF_IO with a message: the child was ended by what
+ * says nothing about the file. Not under the lock. The work begins with hf_hdf5_limit, from which on the time is
  * limited, and changes nothing. */
 void hf_hdf5_limit(void);
-bool hf_hdf5_survives(hf_child_work *work, const char *path, char *how, size_t size);
+hf_status hf_hdf5_try(hf_child_work *work, const char *path, char *how, size_t size, hf_messages *messages);
 
 /* Description of a data set: name, size, kind of its values. */
 typedef struct {

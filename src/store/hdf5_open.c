@@ -127,7 +127,7 @@ void hf_hdf5_limit(void)
     hf_hdf5_reading = reading;
 }
 
-bool hf_hdf5_survives(hf_child_work *work, const char *path, char *how, size_t size)
+hf_status hf_hdf5_try(hf_child_work *work, const char *path, char *how, size_t size, hf_messages *messages)
 {
     hf_child_end end = {.is_known = false};
     if (!hf_child_ask(work, path, &end)) {
@@ -140,9 +140,9 @@ bool hf_hdf5_survives(hf_child_work *work, const char *path, char *how, size_t s
         }
         if (child > 0) end = hf_child_wait(child);
     }
-    if (!end.is_known || end.exit_status == 0) return true;
+    if (!end.is_known || end.exit_status == 0) return HF_OK;
     hf_child_describe(end, how, size);
-    return false;
+    return end.is_sent ? hf_error(messages, HF_IO, "%s: reading it was ended by %s", path, how) : HF_EXISTS;
 }
 
 /* ---- objects ---- */

@@ -269,10 +269,12 @@ static void look_at_output(const char *path)
 static hf_status check_output(const char *path, hf_messages *messages)
 {
     char how[128];
-    if (!hf_hdf5_survives(look_at_output, path, how, sizeof how))
+    hf_status tried = hf_hdf5_try(look_at_output, path, how, sizeof how, messages);
+    if (tried == HF_EXISTS)
         return hf_error(messages, HF_EXISTS,
                         "%s: exists and is damaged: reading it ended by %s; use --force or -o to choose another name",
                         path, how);
+    HF_TRY(tried);
     if (is_replaceable(path)) return HF_OK;
     return hf_error(messages, HF_EXISTS, "%s: exists and is no merge; use --force or -o", path);
 }

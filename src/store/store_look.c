@@ -132,11 +132,13 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
         return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
     if (failed || !S_ISREG(info.st_mode)) return HF_OK; /* hf_store_create says what is wrong */
     hf_messages said = {0};
-    if (!hf_hdf5_survives(read_like_a_run, path, words, sizeof words))
+    hf_status tried = hf_hdf5_try(read_like_a_run, path, words, sizeof words, messages);
+    if (tried == HF_EXISTS)
         return hf_error(messages, HF_EXISTS,
                         "%s: exists and is damaged: reading it ended by %s; use --restart (of a sweep: --retry failed) "
                         "to replace it or -o to choose another name",
                         path, words);
+    HF_TRY(tried);
     if (hf_store_identify(settings, scene, truss, now) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     hf_hdf5_lock();

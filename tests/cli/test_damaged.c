@@ -2,10 +2,11 @@
  * library that is loaded first. */
 #include "cli.h"
 
-/* H5Dread that aborts in a copy of the program at call number AT; with HANG it waits, with LOOP it computes for ever. A
- * limit of 60 s becomes one of 1 s. */
+/* H5Dread that aborts in a copy of the program at call number AT; with HANG it waits, with LOOP it computes for ever,
+ * with KILLED it ends as one whose memory the system takes. A limit of 60 s becomes one of 1 s. */
 static const char reader[] = "#define _GNU_SOURCE\n"
-                             "#include <dlfcn.h>\n#include <fcntl.h>\n#include <stdlib.h>\n#include <unistd.h>\n"
+                             "#include <dlfcn.h>\n#include <fcntl.h>\n#include <signal.h>\n#include <stdlib.h>\n"
+                             "#include <unistd.h>\n"
                              "#include <sys/resource.h>\n"
                              "typedef int call(long, long, long, long, long, void *);\n"
                              "typedef int limit(int, const struct rlimit *);\n"
@@ -20,6 +21,7 @@ static const char reader[] = "#define _GNU_SOURCE\n"
                              "    const char *mark = getenv(\"HANG\");\n"
                              "    if (getpid() != first && ++n == atoi(getenv(\"AT\"))) {\n"
                              "        while (getenv(\"LOOP\")) {}\n"
+                             "        if (getenv(\"KILLED\")) raise(SIGKILL);\n"
                              "        if (!mark) abort();\n"
                              "        open(mark, O_CREAT | O_WRONLY, 0600);\n"
                              "        for (;;) pause();\n"
@@ -137,6 +139,31 @@ START_TEST(a_crash_in_a_sweep_fails_its_point)
 }
 END_TEST
 
+/* The system ends processes when memory is short: that says nothing about the file, nor about the point of a sweep. */
+START_TEST(a_reader_that_is_killed_blames_no_file)
+{
+    const char *library = make_library(), *c = file_with("c.yaml", SMALL_SCENE SMALL_GA), *a = temp("a.h5");
+    HIFDM(0, "run", c, "-o", a, "--quiet");
+    SHELL(5, "export KILLED=1; " WITH_LIBRARY "exec \"$0\" report \"$3\" -o \"$4\"", library, "3", a,
+          temp("page.html"));
+    ERRS("error: %s: reading it was ended by signal 9 (Killed); is there enough memory?\n", a);
+    SHELL(5, "export KILLED=1; " WITH_LIBRARY "exec \"$0\" run \"$4\" -o \"$3\"", library, "5", unfinished(a), c);
+    ERRS("error: %s: reading it was ended by signal 9 (Killed); is there enough memory?\n", a);
+    const char *study = file_with("s.yaml", STUDY), *folder = temp("s.d");
+    HIFDM(0, "sweep", study, "--dir", folder, "--quiet");
+    SHELL(0, "cd \"$1\"; rm points-*.tsv; set -- *.h5; echo \"$1\"", folder);
+    said.out[strcspn(said.out, "\n")] = '\0';
+    const char *point = unfinished(keep(formatted("%s/%s", folder, said.out)));
+    SHELL(5, "export KILLED=1; " WITH_LIBRARY "exec \"$0\" sweep \"$3\" --dir \"$4\" --quiet", library, "2", study,
+          folder);
+    ERRS(": %s: reading it was ended by signal 9 (Killed); is there enough memory?\n", point);
+    HIFDM(0, "status", study, "--dir", folder, "--json");
+    OUT("\"failed\": 0");
+    HIFDM(0, "sweep", study, "--dir", folder, "--quiet");
+    HIFDM(0, "show", point);
+}
+END_TEST
+
 START_TEST(a_merge_survives_what_it_would_replace)
 {
     static const char opener[] = "#include <stdlib.h>\n"
@@ -165,6 +192,7 @@ Suite *suite_cli_damaged(void)
     tcase_add_test(tcase, a_damaged_point_stops_no_other);
     tcase_add_test(tcase, a_merge_survives_what_it_would_replace);
     tcase_add_test(tcase, a_crash_in_a_sweep_fails_its_point);
+    tcase_add_test(tcase, a_reader_that_is_killed_blames_no_file);
     suite_add_tcase(suite, tcase);
     return suite;
 }

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -37,6 +38,8 @@ static void work(const char *text)
 {
     shared->parent = getppid();
     if (*text == 'a') abort();
+    if (*text == 'k') raise(SIGKILL);
+    if (*text == 'u') raise(SIGUSR2);
     if (*text == 'e') _exit(7);
     if (*text == 's') kill(0, SIGTERM);
     if (*text == 'l') {
@@ -64,8 +67,30 @@ START_TEST(an_end_is_known)
     ck_assert_int_eq(shared->n, 1);
     ck_assert_int_eq(ask("exit").exit_status, 7);
     ck_assert_int_eq(ask("abort").signal, SIGABRT);
+    ck_assert(!ask("abort").is_sent);
     hf_child_describe(ask("loop"), words, sizeof words);
     ck_assert_str_eq(words, "signal 24 (CPU time limit exceeded)");
+    end();
+}
+END_TEST
+
+/* By the system without memory, by somebody, and by a limit of the user's, which is lower than the child's own. */
+START_TEST(an_end_from_outside_is_known)
+{
+    char words[128];
+    begin();
+    hf_child_describe(ask("kill"), words, sizeof words);
+    ck_assert_str_eq(words, "signal 9 (Killed); is there enough memory?");
+    hf_child_describe(ask("user"), words, sizeof words);
+    ck_assert_str_eq(words, "signal 12 (User defined signal 2); try again");
+    end();
+    struct rlimit limit;
+    ck_assert_int_eq(getrlimit(RLIMIT_CPU, &limit), 0);
+    limit.rlim_cur = 1;
+    ck_assert_int_eq(setrlimit(RLIMIT_CPU, &limit), 0);
+    hf_child_server_begin();
+    hf_child_describe(ask("loop"), words, sizeof words);
+    ck_assert_str_eq(words, "signal 24 (CPU time limit exceeded); raise the limit (ulimit -t)");
     end();
 }
 END_TEST
@@ -162,6 +187,7 @@ Suite *suite_unit_child(void)
     tcase_add_test(tests, an_end_is_known);
     tcase_add_test(tests, a_signal_for_the_group_ends_no_child);
     tcase_add_test(tests, without_a_server_nothing_is_done);
+    tcase_add_test(tests, an_end_from_outside_is_known);
     tcase_add_test(tests, an_end_is_known_where_children_are_ignored);
     tcase_add_test(tests, threads_ask_while_others_allocate);
     return suite;
