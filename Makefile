@@ -39,10 +39,9 @@ TEST_WRAP += open close write writev pwrite read pread fsync fdatasync rename li
 TEST_WRAP += geteuid
 
 # ---- Flags -----------------------------------------------------------------------------------------------------------
-# No -ffast-math, and multiply-adds are fused only where fma() says so: our code gives the same bits on every x86-64
-# machine (LAPACK may not). One
-# set of position-independent objects serves both libraries; -fno-semantic-interposition lets them be inlined as if they
-# were not.
+# No -ffast-math, and multiply-adds are fused only where fma() says so: our code gives the same bits on every machine
+# (LAPACK and GSL may not). One set of position-independent objects serves both libraries; -fno-semantic-interposition
+# lets them be inlined as if they were not.
 LANGUAGE := -std=c11 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp
 CODEGEN := -fno-math-errno -ffp-contract=off -fPIC -fno-semantic-interposition
 WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Wvla $(WERROR)
@@ -283,9 +282,11 @@ $(BUILD)/src/store/store.o: $(BUILD)/info
 $(BUILD)/src/store/store.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/tests/%.o: EXTRA = -Itests $(filter-out -l%,$(CHECK))
 
-FLAGS_portable :=
+# Elsewhere than on x86-64 all are the portable one, and the program chooses that.
+ifneq ($(filter x86_64-%,$(shell $(CC) -dumpmachine)),)
 FLAGS_avx2 := -mavx2 -mfma
 FLAGS_avx512 := -mavx512f -mprefer-vector-width=512
+endif
 # The stack on which gcc 12's address sanitizer finds uses after a return is not aligned for 512-bit vectors.
 FLAGS_kernel := $(if $(findstring address,$(SANITIZE)),$(if $(findstring clang,$(CC)),,--param=asan-stack=0))
 define kernel_rule

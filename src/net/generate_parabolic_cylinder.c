@@ -1,5 +1,6 @@
 /* Makes the quad net over a parabolic cylinder. */
 #include <hifdm/generate.h>
+#include "base/elementary.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -16,7 +17,7 @@ const char *const hf_supports_word[4] = {"module_corners", "ribs", "perimeter", 
 static double arc_length(double x, double focal)
 {
     double slope = x / (2 * focal);
-    return focal * (slope * sqrt(1 + slope * slope) + asinh(slope));
+    return focal * (slope * sqrt(1 + slope * slope) + hf_inverse_sinh(slope));
 }
 
 /* Inverse of arc_length by Newton's method. The function is convex and increasing, and the start s is not below the
@@ -25,7 +26,7 @@ static double x_at_arc_length(double s, double focal)
 {
     double x = s;
     for (int i = 0; i < 60; i++) {
-        double step = (arc_length(x, focal) - s) / hypot(1, x / (2 * focal));
+        double step = (arc_length(x, focal) - s) / hf_norm(1, x / (2 * focal), 0);
         x -= step;
         if (fabs(step) <= 1e-16 * fabs(s)) break;
     }
@@ -143,7 +144,7 @@ static void scallop_edge(const grid *g, int axis, int line, double inward)
         int here = on_line(g, axis, line, k);
         if (g->s->role[here] != HF_ROLE_SUPPORT) continue;
         const double *a = position + 3 * (size_t)on_line(g, axis, line, from), *b = position + 3 * (size_t)here;
-        double span = hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+        double span = hf_distance(a, b);
         for (int i = from + 1; i < k; i++) {
             double t = (double)(i - from) / (k - from), sag = 4 * g->c->scallop * span * t * (1 - t);
             double *p = position + 3 * (size_t)on_line(g, axis, line, i);

@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "base/union_find.h"
 #include "net/numbering.h"
+#include "base/elementary.h"
 
 #include <assert.h>
 #include <limits.h>
@@ -100,7 +101,7 @@ double hf_model_reference_N(const hf_scene *scene, double pretension_N)
         largest_N = fmax(largest_N, given_tension(scene, pretension_N, e));
     for (int i = 0; scene->load_N && i < scene->n_node; i++) {
         const double *p = scene->load_N + 3 * (size_t)i;
-        if (scene->role[i] != HF_ROLE_SUPPORT) largest_N = fmax(largest_N, hypot(hypot(p[0], p[1]), p[2]));
+        if (scene->role[i] != HF_ROLE_SUPPORT) largest_N = fmax(largest_N, hf_norm(p[0], p[1], p[2]));
     }
     return largest_N > 0 ? largest_N : pretension_N;
 }
@@ -156,7 +157,7 @@ static double distance(const hf_model *m, int row_a, int row_b)
     double d[3];
     for (int c = 0; c < 3; c++)
         d[c] = m->position_m[c * m->n_node + row_a] - m->position_m[c * m->n_node + row_b];
-    return hypot(hypot(d[0], d[1]), d[2]);
+    return hf_norm(d[0], d[1], d[2]);
 }
 
 /* Follow the chain that leaves the support `from` by cable `first`; keep it when it ends at a support and is straight

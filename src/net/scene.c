@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "base/text.h"
 #include "base/union_find.h"
+#include "base/elementary.h"
 #include <hifdm/settings.h>
 
 #include <math.h>
@@ -56,7 +57,7 @@ double hf_scene_theoretical_length(const hf_scene *scene, int i_cable)
 {
     const double *a = scene->position_m + 3 * (size_t)scene->end[2 * i_cable];
     const double *b = scene->position_m + 3 * (size_t)scene->end[2 * i_cable + 1];
-    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+    return hf_distance(a, b);
 }
 
 /* ---- checks ---- */

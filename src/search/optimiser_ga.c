@@ -8,6 +8,7 @@
 
 #include "base/arena.h"
 #include "base/random.h"
+#include "base/elementary.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -144,7 +145,7 @@ static double mutation_step(double rate, hf_random *random)
 {
     if (hf_random_uniform(random) >= rate) return 0;
     double sign = hf_random_uniform(random) < 0.5 ? -1 : 1;
-    return sign * exp2(-MUTATION_OCTAVES * hf_random_uniform(random));
+    return sign * hf_power_of_two(-MUTATION_OCTAVES * hf_random_uniform(random));
 }
 
 /* The cables of a chain mutate together. An unequal change drags the chain's nodes along it, which raises psi steeply,

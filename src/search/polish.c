@@ -385,7 +385,8 @@ static hf_status minimise(problem *p, int max_iterations, hf_polish_result *r)
         if (after < before) {
             keep(p);
             r->psi_m = p->result.psi_m;
-            damping = fmax(DAMPING_LEAST, damping * fmax(0.1, 1 - pow(2 * (before - after) / gain - 1, 3)));
+            double share = 2 * (before - after) / gain - 1;
+            damping = fmax(DAMPING_LEAST, damping * fmax(0.1, 1 - share * share * share));
             growth = 2;
             if (r->stop == HF_POLISH_MAX_ITERATIONS) status = linearise(p);
         } else {

@@ -3,6 +3,7 @@
 #include "linalg/band.h"
 #include "solve/bound.h"
 #include "solve/newton.h"
+#include "base/elementary.h"
 
 #include <math.h>
 #include <string.h>
@@ -40,7 +41,7 @@ static void certify_linear(const hf_model *m, hf_workspace *w, hf_form_result *r
     }
     double largest = 0;
     for (int i = 0; i < n; i++)
-        largest = fmax(largest, hypot(hypot(step[i], step[m->n_node + i]), step[2 * m->n_node + i]));
+        largest = fmax(largest, hf_norm(step[i], step[m->n_node + i], step[2 * m->n_node + i]));
     if (!hf_workspace_iterates(m, w) && !m->n_attachment) r->position_error_m = largest;
     if (m->has_strut)
         r->condition =

@@ -4,6 +4,7 @@
 
 #include "linalg/band.h"
 #include "solve/history.h"
+#include "base/elementary.h"
 #include <hifdm/metrics.h>
 
 #include <assert.h>
@@ -220,7 +221,7 @@ static int find_rounded_cable(const hf_model *m, const hf_form_settings *s, cons
     int worst_row = 0, culprit = -1;
     double worst = -1, floor_N = 0, coarsest_N = 0;
     for (int i = 0; i < m->n_free; i++) {
-        double force = hypot(hypot(f[i], f[m->n_node + i]), f[2 * m->n_node + i]);
+        double force = hf_norm(f[i], f[m->n_node + i], f[2 * m->n_node + i]);
         if (force > worst) worst = force, worst_row = i;
     }
     for (int e = 0; e < m->n_cable; e++) {

@@ -2,6 +2,7 @@
 #include <hifdm/surface.h>
 
 #include "base/arena.h"
+#include "base/elementary.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit_nlinear.h>
@@ -36,7 +37,7 @@ static double height(double curvature, double x, double z, double *slope)
 double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz)
 {
     double phase = 4 * PI * half_path_rms_m * frequency_Hz / LIGHT_M_PER_S;
-    return 10 / log(10) * phase * phase;
+    return 4.3429448190325182765 /* 10/ln 10 */ * phase * phase;
 }
 
 /* ---- the fitted surface ---- */
@@ -67,7 +68,7 @@ static void multiply(double a[3][3], double b[3][3], double to[3][3])
 static void transposed(int k, double angle, bool derivative, double to[3][3])
 {
     int i = (k + 1) % 3, j = (k + 2) % 3;
-    double c = derivative ? -sin(angle) : cos(angle), s = derivative ? cos(angle) : sin(angle);
+    double c = derivative ? -hf_sine(angle) : hf_cosine(angle), s = derivative ? hf_cosine(angle) : hf_sine(angle);
     memset(to, 0, 9 * sizeof(double));
     to[k][k] = !derivative;
     to[i][i] = to[j][j] = c;

@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "linalg/band.h"
 #include "net/numbering.h"
+#include "base/elementary.h"
 
 #include <limits.h>
 #include <math.h>
@@ -36,12 +37,12 @@ static void set_axes(const hf_truss *t, int e, hf_frame *f)
     double *axes = f->axes + 9 * (size_t)e, *x = axes;
     for (int c = 0; c < 3; c++)
         x[c] = (b[c] - a[c]) / length;
-    double across = hypot(x[0], x[1]);
+    double across = hf_norm(x[0], x[1], 0);
     y[0] = across > 0 ? -x[1] / across : 0;
     y[1] = across > 0 ? x[0] / across : 1;
     y[2] = 0;
     cross(x, y, z);
-    double cosine = cos(t->roll_rad[e]), sine = sin(t->roll_rad[e]);
+    double cosine = hf_cosine(t->roll_rad[e]), sine = hf_sine(t->roll_rad[e]);
     for (int c = 0; c < 3; c++) {
         axes[3 + c] = cosine * y[c] + sine * z[c];
         axes[6 + c] = cosine * z[c] - sine * y[c];

@@ -1,5 +1,6 @@
 /* Makes the truss of basic sub-rings over the modules of a net on a parabolic cylinder (Fig. 15). */
 #include <hifdm/truss.h>
+#include "base/elementary.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -45,7 +46,7 @@ static int corner(const generator *g, int i, int j)
 
 static void add_node(generator *g, const double *front_m, const char *where)
 {
-    double slope = front_m[0] / (2 * g->c->focal_length_m), stretch = hypot(1, slope);
+    double slope = front_m[0] / (2 * g->c->focal_length_m), stretch = hf_norm(1, slope, 0);
     double normal[3] = {-slope / stretch, 0, 1 / stretch};
     for (int side = 0; side < 2; side++) {
         int i = g->i_node++;
@@ -70,7 +71,7 @@ static void add_member(generator *g, int a, int b, hf_unit unit)
     t->E_Pa[e] = g->set->E_Pa;
     t->G_Pa[e] = g->set->G_Pa;
     t->A_m2[e] = PI * (outer * outer - inner * inner);
-    t->Iy_m4[e] = t->Iz_m4[e] = PI / 4 * (pow(outer, 4) - pow(inner, 4));
+    t->Iy_m4[e] = t->Iz_m4[e] = PI / 4 * (outer * outer * outer * outer - inner * inner * inner * inner);
     t->J_m4[e] = 2 * t->Iy_m4[e];
     t->Asy_m2[e] = t->Asz_m2[e] = g->set->theory == HF_THEORY_TIMOSHENKO ? t->A_m2[e] / 2 : (double)INFINITY;
     t->density_kg_per_m3[e] = g->set->density_kg_per_m3;

@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "base/text.h"
+#include "base/elementary.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -57,7 +58,7 @@ double hf_truss_member_length(const hf_truss *t, int i_member)
 {
     const double *a = t->position_m + 3 * (size_t)t->end[2 * i_member];
     const double *b = t->position_m + 3 * (size_t)t->end[2 * i_member + 1];
-    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+    return hf_distance(a, b);
 }
 
 double hf_truss_mass(const hf_truss *t)
@@ -72,11 +73,6 @@ double hf_truss_mass(const hf_truss *t)
 
 /* ---- attachments ---- */
 
-static double distance_m(const double *a, const double *b)
-{
-    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
-}
-
 hf_status hf_truss_attach(const hf_truss *t, const hf_scene *scene, double tolerance_m, int *n_attachment,
                           int *scene_node, int *truss_node, hf_messages *messages)
 {
@@ -87,9 +83,9 @@ hf_status hf_truss_attach(const hf_truss *t, const hf_scene *scene, double toler
         const double *p = scene->position_m + 3 * (size_t)i;
         int nearest = 0;
         for (int k = 1; k < t->n_node; k++)
-            if (distance_m(p, t->position_m + 3 * (size_t)k) < distance_m(p, t->position_m + 3 * (size_t)nearest))
+            if (hf_distance(p, t->position_m + 3 * (size_t)k) < hf_distance(p, t->position_m + 3 * (size_t)nearest))
                 nearest = k;
-        double gap = distance_m(p, t->position_m + 3 * (size_t)nearest);
+        double gap = hf_distance(p, t->position_m + 3 * (size_t)nearest);
         if (!(gap <= tolerance_m) && ++n_fault <= HF_FAULT_MAX)
             hf_error(messages, HF_BAD_CASE,
                      "truss: net support '%s' has no attachment: the nearest truss node, '%s', is %.3g m away, and "

@@ -25,7 +25,7 @@ static const struct {
 
 static int has_isa(int i)
 {
-    int has = i == PORTABLE || (i == AVX2 ? __builtin_cpu_supports("avx2") : __builtin_cpu_supports("avx512f"));
+    int has = hf_lane_has_isa((hf_lane_isa)i);
     char reason[64];
     snprintf(reason, sizeof reason, "no %s in this processor", isa[i].name);
     if (!has) skip_for_machine("unit/chord_kernel", reason);

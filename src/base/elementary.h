@@ -1,0 +1,22 @@
+/* elementary - lengths and functions whose last digit in the C library depends on the processor and on the library's
+ * version. Here they are sums, products, quotients and roots of doubles in a fixed order: the same bits everywhere. */
+#ifndef HIFDM_ELEMENTARY_H
+#define HIFDM_ELEMENTARY_H
+
+/* sqrt(x^2 + y^2 + z^2) without overflow or underflow; error below 2 units in the last place. NaN when one is. */
+double hf_norm(double x, double y, double z);
+
+/* Distance of two points [3]. */
+double hf_distance(const double *a, const double *b);
+
+/* Of an angle of up to 1e8 rad; error below 2e-16, beyond as much more as the angle is larger than 1e8. */
+double hf_sine(double angle_rad);
+double hf_cosine(double angle_rad);
+
+/* Inverse of the hyperbolic sine; relative error below 1e-15. */
+double hf_inverse_sinh(double x);
+
+/* 2^x for |x| < 1000; relative error below 4e-16. */
+double hf_power_of_two(double x);
+
+#endif

@@ -1,0 +1,82 @@
+/* Lengths and elementary functions: against the C library in long double, at the ends of their ranges, bit by bit. */
+#include "support.h"
+
+#include "base/elementary.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { N = 20000 };
+
+START_TEST(they_are_those_of_the_library)
+{
+    struct rng rng = rng_start(11);
+    double norm = 0, sine = 0, inverse = 0, power = 0;
+    for (int k = 0; k < N; k++) {
+        double size = pow(10, rng_uniform(&rng, -12, 8)), x = size * rng_uniform(&rng, -1, 1),
+               y = size * rng_uniform(&rng, -1, 1), z = size * rng_uniform(&rng, -1, 1),
+               e = rng_uniform(&rng, -900, 900);
+        long double length = sqrtl((long double)x * x + (long double)y * y + (long double)z * z);
+        norm = fmax(norm, (double)fabsl(hf_norm(x, y, z) / length - 1));
+        sine = fmax(sine, (double)fabsl(hf_sine(x) - sinl(x)));
+        sine = fmax(sine, (double)fabsl(hf_cosine(x) - cosl(x)));
+        inverse = fmax(inverse, (double)fabsl(hf_inverse_sinh(x) / asinhl(x) - 1));
+        power = fmax(power, (double)fabsl(hf_power_of_two(e) / exp2l(e) - 1));
+    }
+    ck_assert_double_le(norm, 4.4e-16);
+    ck_assert_double_le(sine, 2e-16);
+    ck_assert_double_le(inverse, 1e-15);
+    ck_assert_double_le(power, 4e-16);
+}
+END_TEST
+
+START_TEST(ends_of_the_ranges)
+{
+    ck_assert_double_eq(hf_norm(0, 0, 0), 0);
+    ck_assert_double_eq(hf_norm(3 * 0x1p700, 0, -4 * 0x1p700), 5 * 0x1p700);
+    ck_assert_double_eq(hf_norm(3 * 0x1p-1070, 4 * 0x1p-1070, 0), 5 * 0x1p-1070);
+    ck_assert_double_eq_tol(hf_norm(0x1p1023, 0x1p1023, 0x1p1023) / 0x1p1023, 1.7320508075688772, 4e-16);
+    ck_assert_double_eq(hf_norm(-(double)INFINITY, 1, 2), (double)INFINITY);
+    ck_assert_double_nan(hf_norm((double)NAN, 1, 2));
+    ck_assert_double_nan(hf_norm(1, 1e300, (double)NAN));
+    ck_assert_double_eq(hf_distance((double[]){1, 2, 3}, (double[]){1, 5, 7}), 5);
+    ck_assert_double_eq(hf_sine(0), 0);
+    ck_assert_double_eq(hf_cosine(0), 1);
+    ck_assert_double_nan(hf_sine((double)INFINITY));
+    ck_assert_double_nan(hf_cosine((double)NAN));
+    ck_assert_double_eq(hf_inverse_sinh(0), 0);
+    ck_assert_double_eq_tol(hf_inverse_sinh(1e300) / 691.4686750787736, 1, 1e-14); /* ln 2e300 */
+    ck_assert_double_eq_tol(hf_inverse_sinh(-1e-300) / 1e-300, -1, 1e-15);
+    ck_assert_double_eq(hf_inverse_sinh(-(double)INFINITY), -(double)INFINITY);
+    for (int k = -60; k <= 60; k++)
+        ck_assert_double_eq(hf_power_of_two(k), ldexp(1, k));
+}
+END_TEST
+
+/* FNV-1a of the bits of values between -8 and 8: by this number each processor and compiler must agree. */
+START_TEST(bits)
+{
+    uint64_t sum = 14695981039346656037u;
+    for (int k = 0; k < 4096; k++) {
+        double x = (k - 2048) / 256.0 + k * 0x1p-40;
+        const double value[] = {hf_norm(x, 1 / (x + 9), 0.3), hf_sine(x), hf_cosine(100 * x), hf_inverse_sinh(x),
+                                hf_power_of_two(2 * x)};
+        unsigned char byte[sizeof value];
+        memcpy(byte, value, sizeof value);
+        for (size_t i = 0; i < sizeof value; i++)
+            sum = (sum ^ byte[i]) * 1099511628211u;
+    }
+    ck_assert(sum == 5335450031240387848u);
+}
+END_TEST
+
+Suite *suite_unit_elementary(void)
+{
+    Suite *suite = suite_create("unit/elementary");
+    TCase *tests = tcase_create("elementary");
+    suite_add_tcase(suite, tests);
+    tcase_add_test(tests, they_are_those_of_the_library);
+    tcase_add_test(tests, ends_of_the_ranges);
+    tcase_add_test(tests, bits);
+    return suite;
+}
