@@ -30,40 +30,75 @@ static hf_status tell_too_long(const char *path, hf_messages *messages)
     return hf_error(messages, HF_IO, "%s: the path is too long", path);
 }
 
-/* HF_IO when the link at `path` is somebody else's. */
-static hf_status check_owner(const char *path, const struct stat *link, hf_messages *messages)
+static bool is_trusted(const struct stat *link)
 {
-    if (link->st_uid == geteuid() || link->st_uid == 0) return HF_OK;
+    return link->st_uid == geteuid() || link->st_uid == 0;
+}
+
+static hf_status refuse_link(const char *path, const char *what, hf_messages *messages)
+{
     return hf_error(messages, HF_IO,
-                    "%s: is a symbolic link that somebody else made; name the file that it leads to, or choose another "
+                    "%s: is a symbolic link that somebody else made; name the %s that it leads to, or choose another "
                     "name",
-                    path);
+                    path, what);
+}
+
+/* HF_IO when a folder on the way to `path` is a link that somebody else put where everybody may write. Other links of
+ * others are followed here: whose folder they are in has let them be made. */
+static hf_status check_folders(const char *path, hf_messages *messages)
+{
+    char part[HF_FILE_OUT_SIZE], folder[HF_FILE_OUT_SIZE];
+    struct stat info;
+    for (int i = 1; *path && path[i]; i++) {
+        if (path[i] != '/' || path[i - 1] == '/') continue;
+        snprintf(part, sizeof part, "%.*s", i, path);
+        if (lstat(part, &info) != 0 || !S_ISLNK(info.st_mode) || is_trusted(&info)) continue;
+        if (!hf_path_folder(part, folder, sizeof folder) || stat(folder, &info) != 0 || info.st_mode & S_IWOTH)
+            return refuse_link(part, "folder", messages);
+    }
+    return HF_OK;
+}
+
+/* Replaces `target` by what it leads to, as far as it is a link. what: a word for it. */
+static hf_status follow(char target[HF_FILE_OUT_SIZE], const char *what, hf_messages *messages)
+{
+    char to[HF_FILE_OUT_SIZE], next[HF_FILE_OUT_SIZE];
+    struct stat info;
+    HF_TRY(check_folders(target, messages));
+    for (int i = 0; lstat(target, &info) == 0 && S_ISLNK(info.st_mode); i++) {
+        if (!is_trusted(&info)) return refuse_link(target, what, messages);
+        ssize_t n = readlink(target, to, sizeof to - 1);
+        if (i == LINKS_MAX) errno = ELOOP;
+        if (n < 0 || i == LINKS_MAX)
+            return hf_error(messages, HF_IO, "%s: cannot follow this link: %s", target, strerror(errno));
+        to[n] = '\0';
+        if (!hf_path_beside(target, to, next, sizeof next)) return tell_too_long(target, messages);
+        strcpy(target, next);
+        HF_TRY(check_folders(target, messages));
+    }
+    return HF_OK;
 }
 
 hf_status hf_file_out_target(const char *path, char target[HF_FILE_OUT_SIZE], hf_messages *messages)
 {
-    char to[HF_FILE_OUT_SIZE], next[HF_FILE_OUT_SIZE];
     struct stat info;
     if (snprintf(target, HF_FILE_OUT_SIZE, "%s", path) >= HF_FILE_OUT_SIZE) return tell_too_long(path, messages);
-    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) return HF_OK;
-    for (int i = 0; lstat(target, &info) == 0 && S_ISLNK(info.st_mode); i++) {
-        HF_TRY(check_owner(target, &info, messages));
-        ssize_t n = readlink(target, to, sizeof to - 1);
-        if (i == LINKS_MAX) errno = ELOOP;
-        if (n < 0 || i == LINKS_MAX)
-            return hf_error(messages, HF_IO, "%s: cannot follow this link: %s", path, strerror(errno));
-        to[n] = '\0';
-        if (!hf_path_beside(target, to, next, sizeof next)) return tell_too_long(path, messages);
-        strcpy(target, next);
-    }
+    HF_TRY(follow(target, "file", messages));
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) strcpy(target, path);
     return HF_OK;
 }
 
 hf_status hf_file_out_folder(const char *path, hf_messages *messages)
 {
-    struct stat info;
-    if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode)) HF_TRY(check_owner(path, &info, messages));
-    if (mkdir(path, 0777) == 0 || errno == EEXIST) return HF_OK;
+    char name[HF_FILE_OUT_SIZE], target[HF_FILE_OUT_SIZE];
+    int n = snprintf(name, sizeof name, "%s", path);
+    if (n >= HF_FILE_OUT_SIZE) return tell_too_long(path, messages);
+    /* with a slash behind it a link is never seen as one */
+    while (n > 1 && (name[n - 1] == '/' || (name[n - 1] == '.' && name[n - 2] == '/')))
+        name[--n] = '\0';
+    strcpy(target, name);
+    HF_TRY(follow(target, "folder", messages));
+    if (mkdir(name, 0777) == 0 || errno == EEXIST) return HF_OK;
     return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", path, strerror(errno));
 }
 
@@ -266,6 +301,8 @@ hf_status hf_file_out_begin(const char *path, hf_file_out *f, hf_messages *messa
     f->file = -1;
     HF_TRY(hf_file_out_target(path, f->path, messages));
     if (lstat(f->path, &info) != 0 && errno == ENAMETOOLONG) return fail(path, messages);
+    if (stat(f->path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) /* no rename replaces a folder */
+        return hf_error(messages, HF_IO, "%s: is not an ordinary file; choose another name", path);
     hf_file_out_clean(f->path);
     return hf_file_out_make(f->path, f) == 0 ? HF_OK : fail(path, messages);
 }

@@ -8,7 +8,8 @@
  * file system without these locks leftovers stay.
  *
  * A symbolic link stands for the file that it leads to, if the user or root made it; links of others are refused, since
- * in a shared folder they could lead to any file of the user. */
+ * in a shared folder they could lead to any file of the user. The same holds for an output folder. A link of others
+ * further up the path is refused where everybody may write (as in /tmp), and else followed. */
 #ifndef HIFDM_FILE_OUT_H
 #define HIFDM_FILE_OUT_H
 
@@ -25,7 +26,8 @@ typedef struct {
     int file;                         /* the temporary file, open to read and write, locked; -1: there is none */
 } hf_file_out;
 
-/* Make a temporary file for `path`, after removing what killed processes left there. HF_OK, or HF_IO with a message. */
+/* Make a temporary file for `path`, after removing what killed processes left there. HF_OK, or HF_IO with a message,
+ * also when `path` is a device or another thing that is no ordinary file. */
 hf_status hf_file_out_begin(const char *path, hf_file_out *file, hf_messages *messages);
 
 /* Can the file be made? For a look before long work: makes the temporary file and removes it. HF_OK or HF_IO. */
@@ -63,10 +65,12 @@ hf_status hf_file_out_set_end(hf_file_out_set *set, hf_status status, hf_message
  * Those that return an int return 0, or -1 and errno, so that the caller says what it was doing. */
 
 /* The file that is meant by `path`: links are followed, also to where no file is yet. A path that leads to something
- * else than an ordinary file stays as it is. HF_IO when it is too long, or a link that somebody else made. */
+ * else than an ordinary file stays as it is. HF_IO when it is too long, or a link that somebody else made, whatever
+ * that leads to. */
 hf_status hf_file_out_target(const char *path, char target[HF_FILE_OUT_SIZE], hf_messages *messages);
 
-/* Make a folder, unless it is there. HF_IO also when it is a link that somebody else made. */
+/* Make a folder, unless it is there. HF_IO also when it is a link that somebody else made, with or without slashes and
+ * dots behind it. */
 hf_status hf_file_out_folder(const char *path, hf_messages *messages);
 
 /* Remove the temporary files of `path` whose processes live no more. */

@@ -88,6 +88,57 @@ START_TEST(links_of_others_are_refused)
 }
 END_TEST
 
+/* Nor does force replace one that leads to a device. */
+START_TEST(links_of_others_to_devices_are_refused)
+{
+    if (!can_make_devices()) {
+        skip_for_machine("cli/links: links of other users to devices", "this user cannot make them");
+        return;
+    }
+    if (!writing[_i].output) return; /* the name of the point's file is known after the sweep */
+    prepare(&writing[_i]);
+    play(0, &writing[_i],
+         "mknod \"$6/nul\" c 1 3 && ln -s \"$6/nul\" \"$OUT\"; chown -h 4711 \"$OUT\"; "
+         "! cmd \"$@\" >\"$6/said\" 2>&1 && test -L \"$OUT\" && test -c \"$6/nul\" && cat \"$6/said\"",
+         __LINE__);
+    OUT("is a symbolic link that somebody else made; name the file that it leads to");
+}
+END_TEST
+
+/* The folder of an output may be a link, too, with something behind it that hides the link. */
+static const struct writing in_folder[] = {{"run \"$1\" -o \"$5/out/x.h5\"", ""},
+                                           {"run \"$1\" -o \"$5/out//./x.h5\" --restart", ""},
+                                           {"sweep \"$3\" --dir \"$5/out/\"", ""},
+                                           {"sweep \"$3\" --dir \"$5/out/sub\"", ""},
+                                           {"merge \"$3\" --dir \"$4\" -o \"$5/out/x.h5\" --force", ""},
+                                           {"export \"$2\" --csv \"$5/out\" --force", ""},
+                                           {"export \"$2\" --csv \"$5/out/\" --force", ""},
+                                           {"export \"$2\" --vtk \"$5/out/.\" --force", ""},
+                                           {"export \"$2\" --vtk \"$5/out/.//\"", ""},
+                                           {"export \"$2\" --cutlist \"$5/out/x.csv\"", ""},
+                                           {"report \"$2\" -o \"$5/out/x.html\" --force", ""},
+                                           {"evaluate \"$1\" --template \"$5/out/x.csv\"", ""}};
+enum { N_IN_FOLDER = sizeof in_folder / sizeof *in_folder };
+
+START_TEST(folders_that_are_links_of_others_are_refused)
+{
+    static const char script[] = "chmod 1777 \"$5\"; ln -s ../real \"$5/out\"; chown -h %s \"$5/out\"; "
+                                 "mkdir \"$6/sub\"; cmd \"$@\" >\"$9\" 2>&1; code=$?; ls -AR \"$6\"; exit $code";
+    if (geteuid() != 0) { /* unit/file_out pretends to be another user */
+        skip_for_machine("cli/links: folders that are links of other users", "only root can make them");
+        return;
+    }
+    const char *empty = keep(formatted("%s:\nsub\n\n%s/sub:\n", temp("real"), temp("real")));
+    prepare(&in_folder[_i]);
+    play(5, &in_folder[_i], keep(formatted(script, "4711")), __LINE__);
+    ck_assert_str_eq(said.out, empty);
+    SHELL(0, "cat \"$1\"", temp("m"));
+    OUT(keep(formatted("%s: is a symbolic link that somebody else made; name the folder that it", temp("o/out"))));
+    play(0, &in_folder[_i], keep(formatted(script, "0")), __LINE__);
+    ck_assert_str_ne(said.out, empty);
+}
+END_TEST
+
 /* Names that earlier versions used, also with the number of the process, are the user's, be they files or links. A file
  * under a name of ours whose process is gone is removed, also if it is a second name of a file. */
 START_TEST(files_of_the_user_stay_and_leftovers_go)
@@ -169,6 +220,8 @@ Suite *suite_cli_links(void)
     TCase *tcase = tcase_create("links");
     tcase_add_loop_test(tcase, own_links_are_followed, 0, N_WRITING);
     tcase_add_loop_test(tcase, links_of_others_are_refused, 0, N_WRITING);
+    tcase_add_loop_test(tcase, links_of_others_to_devices_are_refused, 0, N_WRITING);
+    tcase_add_loop_test(tcase, folders_that_are_links_of_others_are_refused, 0, N_IN_FOLDER);
     tcase_add_loop_test(tcase, files_of_the_user_stay_and_leftovers_go, 0, N_WRITING);
     tcase_add_loop_test(tcase, locks_lead_nowhere_else, 0, N_IN_THE_WAY);
     tcase_add_test(tcase, a_link_has_the_lock_of_its_file);

@@ -278,6 +278,93 @@ START_TEST(links_of_others_are_refused)
 }
 END_TEST
 
+static void demand_refused(hf_status status, const char *name, hf_messages *messages)
+{
+    ck_assert_int_eq(status, HF_IO);
+    ck_assert_ptr_nonnull(messages->text);
+    ck_assert_msg(strstr(messages->text, name) != NULL, "%s is not in %s", name, messages->text);
+    hf_messages_free(messages);
+}
+
+/* The link may be a folder on the way, or have something behind it that hides it. Further up it is refused only where
+ * everybody may write. */
+START_TEST(folders_behind_links_of_others_are_refused)
+{
+    static const char *const hidden[] = {"/", "/.", "//", "/./", "/.//."};
+    hf_messages messages = {0};
+    struct stat info;
+    char link[4096], path[4200], target[HF_FILE_OUT_SIZE];
+    const char *folder = own_folder("shared", "their", link), *victim = temp_path("victims");
+    ck_assert_int_eq(chmod(folder, 01777), 0);
+    ck_assert_int_eq(mkdir(victim, 0777), 0);
+    ck_assert_int_eq(symlink(victim, link), 0);
+    ck_assert_int_eq(lstat(link, &info), 0);
+    if (info.st_uid == 0 && lchown(link, 4711, (gid_t)-1) != 0) ck_abort_msg("root cannot give a link away");
+    for (size_t i = 0; i < sizeof hidden / sizeof *hidden; i++) {
+        snprintf(path, sizeof path, "%s%s", link, hidden[i]);
+        pretended_user = 815;
+        hf_status status = hf_file_out_folder(path, &messages);
+        pretended_user = 0;
+        demand_refused(status, "shared/their: is a symbolic link that somebody else made", &messages);
+    }
+    for (int is_shared = 1; is_shared >= 0; is_shared--) {
+        ck_assert_int_eq(chmod(folder, is_shared ? 01777 : 0755), 0);
+        snprintf(path, sizeof path, "%s/file", link);
+        pretended_user = 815;
+        hf_status file = hf_file_out_target(path, target, &messages);
+        pretended_user = 0;
+        if (is_shared) demand_refused(file, "shared/their: is a symbolic link", &messages);
+        if (!is_shared) ck_assert_int_eq(file, HF_OK);
+        snprintf(path, sizeof path, "%s/sub", link);
+        pretended_user = 815;
+        hf_status below = hf_file_out_folder(path, &messages);
+        pretended_user = 0;
+        if (is_shared) demand_refused(below, "shared/their: is a symbolic link", &messages);
+        if (!is_shared) ck_assert_int_eq(below, HF_OK);
+    }
+    ck_assert_int_eq(count_in(victim), 1);
+    ck_assert_int_eq(hf_file_out_folder(temp_path("new/.//"), &messages), HF_OK);
+    ck_assert_int_eq(access(temp_path("new"), F_OK), 0);
+}
+END_TEST
+
+/* Whatever the link leads to: a device is no reason to replace the link. */
+START_TEST(links_of_others_to_devices_are_refused)
+{
+    hf_messages messages = {0};
+    struct stat info;
+    char target[HF_FILE_OUT_SIZE];
+    const char *link = temp_path("their_device");
+    ck_assert_int_eq(symlink("/dev/full", link), 0);
+    ck_assert_int_eq(hf_file_out_target(link, target, &messages), HF_OK);
+    ck_assert_str_eq(target, link);
+    ck_assert_int_eq(lstat(link, &info), 0);
+    if (info.st_uid == 0 && lchown(link, 4711, (gid_t)-1) != 0) ck_abort_msg("root cannot give a link away");
+    pretended_user = 815;
+    hf_status status = hf_file_out_target(link, target, &messages);
+    pretended_user = 0;
+    demand_refused(status, "their_device: is a symbolic link that somebody else made", &messages);
+}
+END_TEST
+
+/* A device or a FIFO is not replaced by a file of its name. */
+START_TEST(only_ordinary_files_are_replaced)
+{
+    hf_messages messages = {0};
+    hf_file_out f;
+    struct stat info;
+    const char *pipe = temp_path("pipe"), *link = temp_path("to_pipe");
+    ck_assert_int_eq(mkfifo(pipe, 0600), 0);
+    ck_assert_int_eq(symlink(pipe, link), 0);
+    demand_refused(hf_file_out_begin(pipe, &f, &messages), "pipe: is not an ordinary file; choose", &messages);
+    demand_refused(hf_file_out_write(link, put_text, "x", &messages), "to_pipe: is not an ordinary", &messages);
+    ck_assert_int_eq(lstat(pipe, &info), 0);
+    ck_assert(S_ISFIFO(info.st_mode));
+    ck_assert_int_eq(lstat(link, &info), 0);
+    ck_assert(S_ISLNK(info.st_mode));
+}
+END_TEST
+
 /* A file that stays is never one that others could have put there. */
 START_TEST(kept_files_are_ordinary_ones_with_one_name)
 {
@@ -324,6 +411,9 @@ Suite *suite_unit_file_out(void)
     tcase_add_test(tc, a_library_opens_the_file_that_was_made);
     tcase_add_test(tc, own_links_stand_for_what_they_lead_to);
     tcase_add_test(tc, links_of_others_are_refused);
+    tcase_add_test(tc, folders_behind_links_of_others_are_refused);
+    tcase_add_test(tc, links_of_others_to_devices_are_refused);
+    tcase_add_test(tc, only_ordinary_files_are_replaced);
     tcase_add_test(tc, kept_files_are_ordinary_ones_with_one_name);
     suite_add_tcase(suite, tc);
     return suite;
