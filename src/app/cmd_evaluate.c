@@ -252,7 +252,7 @@ static hf_status check_output(const job *j, const hf_options *o, const char *pat
 {
     if (!path) return HF_OK;
     HF_TRY(hf_problem_spare_inputs(&j->problem, o->designs, path, messages));
-    HF_TRY(hf_export_claim(path, o->force, messages));
+    HF_TRY(hf_export_claim_file(path, o->force, messages));
     return hf_file_out_try(path, messages);
 }
 

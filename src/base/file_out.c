@@ -102,6 +102,12 @@ hf_status hf_file_out_folder(const char *path, hf_messages *messages)
     return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", path, strerror(errno));
 }
 
+hf_status hf_file_out_spare(const char *input, const char *what, const char *output, hf_messages *messages)
+{
+    if (!input || !*input || !hf_path_is_same(input, output)) return HF_OK;
+    return hf_error(messages, HF_EXISTS, "%s: is %s; choose another name", output, what);
+}
+
 /* What the temporary names of `path` begin with, without the folder. */
 static void begin_of_names(const char *path, char begin[STEM_MAX + 16])
 {

@@ -73,6 +73,10 @@ hf_status hf_file_out_target(const char *path, char target[HF_FILE_OUT_SIZE], hf
  * dots behind it. */
 hf_status hf_file_out_folder(const char *path, hf_messages *messages);
 
+/* HF_EXISTS when `output` leads to the file `input`, which no option lets an output replace. what: what `input` is to
+ * the user, such as "the result itself". input may be NULL or "". */
+hf_status hf_file_out_spare(const char *input, const char *what, const char *output, hf_messages *messages);
+
 /* Remove the temporary files of `path` whose processes live no more. */
 void hf_file_out_clean(const char *path);
 

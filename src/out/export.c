@@ -10,7 +10,13 @@
 const hf_exporter *const hf_exporter_table[HF_N_EXPORTER] = {HF_EXPORTERS(ROW)};
 #undef ROW
 
-hf_status hf_export_claim(const char *path, bool force, hf_messages *messages)
+hf_status hf_export_claim(const hf_export_request *o, const char *path, hf_messages *messages)
+{
+    HF_TRY(hf_file_out_spare(o->file, "the result itself", path, messages));
+    return hf_export_claim_file(path, o->force, messages);
+}
+
+hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messages)
 {
     char target[HF_FILE_OUT_SIZE];
     struct stat info;

@@ -64,8 +64,9 @@ typedef hf_status hf_export_write_shape(const hf_export_request *request, const 
 hf_status hf_export_shape(const hf_export_request *request, hf_export_write_shape *write, char *said, size_t size,
                           hf_messages *messages);
 
-/* Checks that `path` may be written: HF_EXISTS with a message when it exists and `force` is false, HF_IO when it is not
- * an ordinary file. */
-hf_status hf_export_claim(const char *path, bool force, hf_messages *messages);
+/* Checks that `path` may be written: HF_EXISTS with a message when it is request->file, or exists and request->force is
+ * false; HF_IO when it is not an ordinary file. The second is for outputs that are not made of a result. */
+hf_status hf_export_claim(const hf_export_request *request, const char *path, hf_messages *messages);
+hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messages);
 
 #endif

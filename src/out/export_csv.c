@@ -113,7 +113,7 @@ static hf_status claim_in_folder(const hf_export_request *o, const char *name, c
 {
     if (snprintf(path, PATH_MAX, "%s/%s", o->output, name) >= PATH_MAX)
         return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
-    return hf_export_claim(path, o->force, messages);
+    return hf_export_claim(o, path, messages);
 }
 
 static hf_status export_truss(const hf_export_request *o, hf_truss *truss, hf_carrier_state *state, char *said,

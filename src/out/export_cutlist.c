@@ -134,7 +134,7 @@ static hf_status name_files(const hf_export_request *o, char path[3][PATH_MAX], 
     for (int i = 0; i < 3; i++) {
         if (!hf_path_insert(o->output, part[i], path[i], PATH_MAX))
             return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
-        HF_TRY(hf_export_claim(path[i], o->force, messages));
+        HF_TRY(hf_export_claim(o, path[i], messages));
     }
     return HF_OK;
 }

@@ -298,7 +298,7 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
     for (int i = 0; i < 5; i++) { /* all names are checked before anything is made */
         if (snprintf(path[i], PATH_MAX, "%s/%s.hdf", o->output, name[i]) >= PATH_MAX)
             return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
-        if (has[i]) HF_TRY(hf_export_claim(path[i], o->force, messages));
+        if (has[i]) HF_TRY(hf_export_claim(o, path[i], messages));
     }
     HF_TRY(hf_file_out_folder(o->output, messages));
     int used = snprintf(said, size, "%s: for ParaView, in %s:", o->file, o->output);

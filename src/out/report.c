@@ -13,9 +13,7 @@ static hf_status choose_output(const hf_export_request *o, char output[PATH_MAX]
 {
     if (!hf_path_choose(o->output, o->file, ".html", output, PATH_MAX))
         return hf_error(messages, HF_IO, "%s: the path is too long", o->output ? o->output : hf_path_name(o->file));
-    if (hf_path_is_same(o->file, output))
-        return hf_error(messages, HF_EXISTS, "%s: is the result itself; use -o to choose another name", output);
-    return hf_export_claim(output, o->force, messages);
+    return hf_export_claim(o, output, messages);
 }
 
 hf_status hf_report(const hf_export_request *request, char *said, size_t size, hf_messages *messages)

@@ -1,7 +1,7 @@
 /* Contents: from the case to the model - the base design - the batch - names for what went wrong */
 #include "run/problem_parts.h"
 
-#include "base/path.h"
+#include "base/file_out.h"
 #include "net/symmetry.h"
 #include "search/polish.h"
 #include <hifdm/evaluate.h>
@@ -71,8 +71,7 @@ hf_status hf_problem_spare_inputs(const hf_problem *p, const char *table, const 
         c->path, table, c->nodes_path, c->cables_path, c->truss_nodes_path, c->truss_members_path,
     };
     for (size_t i = 0; i < sizeof input / sizeof *input; i++)
-        if (input[i] && *input[i] && hf_path_is_same(input[i], output))
-            return hf_error(messages, HF_EXISTS, "%s: is an input of this run; use -o to choose another name", output);
+        HF_TRY(hf_file_out_spare(input[i], "an input of this run", output, messages));
     return HF_OK;
 }
 

@@ -161,6 +161,29 @@ START_TEST(the_case_itself_is_not_replaced)
 }
 END_TEST
 
+/* An export never replaces the result that it is made from, whatever file of the export has its name. */
+START_TEST(an_export_spares_its_result)
+{
+    static const char *const to[][2] = {{"r.h5", "--cutlist r.h5"},         {"r.h5", "--cutlist link"},
+                                        {"x_nodes.csv", "--cutlist x.csv"}, {"x_totals.csv", "--cutlist x.csv"},
+                                        {"x/nodes.csv", "--csv x"},         {"x/cables.csv", "--csv x/"},
+                                        {"x/form.hdf", "--vtk x"}};
+    const char *result = temp("one.h5"),
+               *c = file_with("c.yaml", SMALL_SCENE "  EA_inner_N: 4e4\n  EA_boundary_N: 4e4\n");
+    HIFDM(0, "run", c, "-o", result, "--quiet");
+    for (size_t i = 0; i < sizeof to / sizeof *to; i++) {
+        SHELL(5,
+              formatted("rm -rf \"$2\"; mkdir -p \"$2/x\" && cd \"$2\" && cp \"$1\" %s && ln -s r.h5 link; "
+                        "\"$0\" export %s %s --force; code=$?; cmp %s \"$1\" && exit $code",
+                        to[i][0], to[i][0], to[i][1], to[i][0]),
+              result, temp("e"));
+        ERR(": is the result itself; choose another name\n");
+        SHELL(0, "find \"$1\" -type f", temp("e")); /* nothing but the result */
+        ck_assert_int_eq(count_of(said.out, "\n"), 1);
+    }
+}
+END_TEST
+
 /* ---- standard output that takes nothing: every command that prints says so by its exit code ---- */
 
 static const char *const printing[] = {"run \"$1\" -o \"$2\"",
@@ -254,6 +277,7 @@ Suite *suite_cli_output(void)
     tcase_add_test(tcase, long_names_are_not_cut);
     tcase_add_test(tcase, paths_are_as_long_as_the_system_has_them);
     tcase_add_test(tcase, the_case_itself_is_not_replaced);
+    tcase_add_test(tcase, an_export_spares_its_result);
     tcase_add_loop_test(tcase, full_or_closed_standard_output_is_an_error, 0, N_PRINTING);
     tcase_add_test(tcase, closed_streams_do_not_spoil_the_result);
     tcase_add_loop_test(tcase, full_disk_leaves_nothing_and_does_not_crash, 0, sizeof limits / sizeof *limits);

@@ -252,7 +252,7 @@ START_TEST(files_are_not_replaced_unasked)
     HIFDM(0, "report", out, "-o", page, "--force");
     SHELL(0, "cmp \"$1\" \"$1.1\"", page); /* the same file gives the same bytes */
     HIFDM(5, "report", out, "-o", out, "--force");
-    ERR("r.h5: is the result itself; use -o to choose another name");
+    ERR("r.h5: is the result itself; choose another name");
     HIFDM(0, "show", out);
     SHELL(0, "cd \"$(dirname \"$1\")\" && mkdir x && cd x && \"$0\" report ../r.h5 && ls -A", out);
     OUT("report in r.html");
