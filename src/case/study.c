@@ -205,17 +205,18 @@ static void tell_faults(const hf_study *s, int i, const hf_messages *found, hf_m
 /* Digest of the base case and the tables that it imports (those of the first point, when an axis names tables). */
 static hf_status take_fingerprint(hf_study *s, const hf_case *c, hf_messages *messages)
 {
-    const char *table[] = {c->has_import ? c->nodes_path : NULL, c->has_import ? c->cables_path : NULL,
-                           c->has_truss_import ? c->truss_nodes_path : NULL,
-                           c->has_truss_import ? c->truss_members_path : NULL};
-    char digests[5 * 65], hex[65];
+    const char *table[HF_STUDY_TABLE_MAX] = {
+        c->has_import ? c->nodes_path : NULL, c->has_import ? c->cables_path : NULL,
+        c->has_truss_import ? c->truss_nodes_path : NULL, c->has_truss_import ? c->truss_members_path : NULL};
+    char digests[(HF_STUDY_TABLE_MAX + 1) * 65], hex[65];
     size_t used = 0;
     hf_sha256(c->text, c->text_length, digests);
     used += 64;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < HF_STUDY_TABLE_MAX; i++) {
         char *text;
         size_t length;
         if (!table[i]) continue;
+        snprintf(s->table[i], sizeof s->table[i], "%s", table[i]);
         HF_TRY(hf_text_read_file(table[i], HF_BAD_CASE, &text, &length, messages));
         hf_sha256(text, length, digests + used);
         used += 64;

@@ -20,6 +20,7 @@
 
 #define HF_STUDY_AXIS_MAX 32
 #define HF_STUDY_POINT_MAX 1000000
+#define HF_STUDY_TABLE_MAX 4
 #define HF_STUDY_ID_SIZE 13 /* 12 hexadecimal digits */
 #define HF_STUDY_FINGERPRINT_SIZE 17
 
@@ -36,8 +37,9 @@ typedef struct {
 } hf_study_axis;
 
 typedef struct {
-    char path[HF_PATH_SIZE]; /* of the study file */
-    char base[HF_PATH_SIZE]; /* of the case; the same in the one-file form */
+    char path[HF_PATH_SIZE];                      /* of the study file */
+    char base[HF_PATH_SIZE];                      /* of the case; the same in the one-file form */
+    char table[HF_STUDY_TABLE_MAX][HF_PATH_SIZE]; /* that the first point imports; "": none */
     bool is_zip;
     hf_study_files files;
     int n_axis;

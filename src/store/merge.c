@@ -4,6 +4,7 @@
 #include "base/file_out.h"
 #include "base/path.h"
 #include "base/text.h"
+#include "store/store_file.h"
 #include <hifdm/store.h>
 
 #include <errno.h>
@@ -279,12 +280,40 @@ static hf_status check_output(const char *path, hf_messages *messages)
     return hf_error(messages, HF_EXISTS, "%s: exists and is no merge; use --force or -o", path);
 }
 
+/* Is it a file of the sweep: a point's result, also elsewhere by a link, or what is in its folder and no merge? */
+static bool is_of_sweep(const hf_study *s, const char *folder, const char *path)
+{
+    char file[HF_PATH_SIZE + 32], here[PATH_MAX], how[128];
+    hf_messages unwanted = {0};
+    if (access(path, F_OK) != 0) return false;
+    for (int i = 0; i < s->n_point; i++)
+        if (hf_ledger_file(folder, s, i, file) != HF_LEDGER_NO_FILE && hf_path_is_same(file, path)) return true;
+    if (!hf_path_folder(path, here, sizeof here) || !hf_path_is_same(here, folder)) return false;
+    hf_status tried = hf_hdf5_try(look_at_output, path, how, sizeof how, &unwanted);
+    hf_messages_free(&unwanted);
+    return tried != HF_OK || !is_replaceable(path);
+}
+
+/* What the merge is made of is never replaced. */
+static hf_status spare_inputs(const hf_study *s, const char *folder, const char *path, hf_messages *messages)
+{
+    static const char what[] = "an input of this merge";
+    HF_TRY(hf_file_out_spare(s->path, what, path, messages));
+    HF_TRY(hf_file_out_spare(s->base, what, path, messages));
+    for (int i = 0; i < HF_STUDY_TABLE_MAX; i++)
+        HF_TRY(hf_file_out_spare(s->table[i], what, path, messages));
+    if (!is_of_sweep(s, folder, path)) return HF_OK;
+    return hf_error(messages, HF_EXISTS, "%s: belongs to the sweep in %s; choose another name", path, folder);
+}
+
 hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *points, const char *output, bool force,
                    hf_messages *messages)
 {
     hf_file_out out;
     merger m = {{.path = out.path, .messages = messages, .status = HF_OK, .file = -1}, study, points, NULL};
     HF_TRY(hf_file_out_target(output, out.path, messages));
+    HF_TRY(hf_store_file_check(out.path, messages));
+    HF_TRY(spare_inputs(study, folder, out.path, messages));
     if (!force) HF_TRY(check_output(out.path, messages));
     m.room = calloc((size_t)study->n_point, 2 * sizeof(double));
     if (!m.room) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", output);

@@ -13,7 +13,7 @@
 #include "store/ledger.h"
 
 /* folder: of the ledger that `points` was read from. An earlier merge at `output` is replaced; any other file only with
- * `force`, else HF_EXISTS. HF_IO, HF_NO_MEMORY. */
+ * `force`, else HF_EXISTS; never an input of the merge or what is no ordinary file. HF_IO, HF_NO_MEMORY. */
 hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *points, const char *output, bool force,
                    hf_messages *messages);
 

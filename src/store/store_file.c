@@ -20,8 +20,7 @@
 
 /* ---- names and checks ---- */
 
-/* Can the file be made under this name? Checked before the run rather than after hours of work. */
-static hf_status check_target(const char *path, hf_messages *messages)
+hf_status hf_store_file_check(const char *path, hf_messages *messages)
 {
     char folder[4096];
     struct stat info;
@@ -43,7 +42,7 @@ hf_status hf_store_file_begin(const char *path, bool replaces, hf_store_file *f,
     *f = (hf_store_file){.journal.file = -1, .io.file = -1, .visible = -1, .out.file = -1, .replaces = replaces};
     HF_TRY(hf_file_out_target(path, f->out.path, messages));
     f->io = (hf_hdf5){.path = f->out.path, .messages = messages, .status = HF_OK, .file = -1};
-    HF_TRY(check_target(f->out.path, messages));
+    HF_TRY(hf_store_file_check(f->out.path, messages));
     HF_TRY(hf_journal_open(f->out.path, replaces, &f->journal, messages));
     if (f->journal.was_there) hf_file_out_clean(f->out.path);
     return HF_OK;

@@ -37,6 +37,10 @@ typedef struct {
     int64_t flowing;   /* bytes of it that the system was asked to write to the disk */
 } hf_store_file;
 
+/* Can a file be made under this name, or the ordinary file there be replaced? Asked before the run rather than after
+ * hours of work. HF_EXISTS, HF_IO. */
+hf_status hf_store_file_check(const char *path, hf_messages *messages);
+
 /* Check that `path` can be written, take its lock, and remove what a killed process left. replaces: files with the
  * names of result and journal may be replaced. HF_IO, HF_EXISTS (a foreign journal), HF_NO_MEMORY. End in any case. */
 hf_status hf_store_file_begin(const char *path, bool replaces, hf_store_file *file, hf_messages *messages);

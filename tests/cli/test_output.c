@@ -161,6 +161,64 @@ START_TEST(the_case_itself_is_not_replaced)
 }
 END_TEST
 
+static const char *a_swept_study(void)
+{
+    file_with("c.yaml", SMALL_SCENE SMALL_GA);
+    const char *study = file_with("s.yaml", "base: c.yaml\nsweep: {form.pretension_N: [9, 10]}\n");
+    HIFDM(0, "sweep", study, "--dir", temp("s.d"), "--quiet");
+    return study;
+}
+
+#define MERGE_INTO(name) "\"$0\" merge \"$1\" --dir \"$2/s.d\" -o \"$2/" name "\""
+
+/* A merge replaces ordinary files alone, as a run does, and waits for nobody. */
+START_TEST(a_merge_into_no_ordinary_file)
+{
+    static const char *const make[][2] = {{"mkfifo", "test -p"}, {"mkdir", "test -d"}, {"mknod", "test -c"}};
+    const char *study = a_swept_study(), *folder = temp("");
+    for (int i = 0; i < 3; i++) {
+        if (i == 2 && !can_make_devices()) {
+            skip_for_machine("cli/output: a merge into a device", "this user cannot make one");
+            continue;
+        }
+        SHELL(0, formatted("cd \"$1\" && rm -rf x && %s x%s", make[i][0], i == 2 ? " c 1 3" : ""), folder);
+        for (int force = 0; force < 2; force++) {
+            SHELL(0, formatted(MERGE_INTO("x") "%s; test $? = 5 && %s \"$2/x\"", force ? " --force" : "", make[i][1]),
+                  study, folder);
+            ERRS("x: is %s; use -o to choose a file name\n", i == 1 ? "a folder" : "not an ordinary file");
+        }
+    }
+}
+END_TEST
+
+/* Nor what it is made of, by whatever name. */
+START_TEST(a_merge_spares_what_it_is_made_of)
+{
+    static const char *const input[] = {
+        "s.yaml",     "c.yaml", "nodes.csv", "$(cd \"$2\"; ls s.d/*.h5 | head -1)", "$(cd \"$2\"; ls s.d/points-*)",
+        "s.d/claims", "link"};
+    const char *folder = temp("");
+    net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,2,0,0,support\nc,1,0.5,0.1,inner\n",
+             "id,i,j,group,law,value\n1,a,c,inner,tension,10\n2,b,c,inner,tension,10\n");
+    file_with("c.yaml", "scene:\n  import: {nodes: nodes.csv, cables: cables.csv}\n");
+    const char *study = file_with("s.yaml", "base: c.yaml\nsweep: {form.max_iterations: [900, 1000], files: all}\n");
+    HIFDM(0, "sweep", study, "--dir", temp("s.d"), "--quiet");
+    SHELL(0, "ln -s c.yaml \"$1/link\"", folder);
+    for (size_t i = 0; i < sizeof input / sizeof *input; i++)
+        for (int force = 0; force < 2; force++) {
+            SHELL(5,
+                  formatted("name=%s; cp \"$2/$name\" \"$2/copy\"; " MERGE_INTO(
+                                "$name") "%s; code=$?; "
+                                         "cmp \"$2/$name\" \"$2/copy\" && exit $code",
+                            input[i], force ? " --force" : ""),
+                  study, folder);
+            ERR("; choose another name\n");
+            ERR(i >= 3 && i < 6 ? ": belongs to the sweep in " : ": is an input of this merge; ");
+        }
+    SHELL(0, MERGE_INTO("s.d/all.h5") " && " MERGE_INTO("s.d/all.h5") " --force", study, folder); /* a merge may go */
+}
+END_TEST
+
 /* An export never replaces the result that it is made from, whatever file of the export has its name. */
 START_TEST(an_export_spares_its_result)
 {
@@ -277,6 +335,8 @@ Suite *suite_cli_output(void)
     tcase_add_test(tcase, long_names_are_not_cut);
     tcase_add_test(tcase, paths_are_as_long_as_the_system_has_them);
     tcase_add_test(tcase, the_case_itself_is_not_replaced);
+    tcase_add_test(tcase, a_merge_into_no_ordinary_file);
+    tcase_add_test(tcase, a_merge_spares_what_it_is_made_of);
     tcase_add_test(tcase, an_export_spares_its_result);
     tcase_add_loop_test(tcase, full_or_closed_standard_output_is_an_error, 0, N_PRINTING);
     tcase_add_test(tcase, closed_streams_do_not_spoil_the_result);

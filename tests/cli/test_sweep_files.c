@@ -208,7 +208,7 @@ START_TEST(what_is_no_file_in_the_folder_is_named)
     HIFDM(0, "sweep", path, "--dir", folder, "--quiet");
     SHELL(0, "mkfifo \"$1\"", temp("pipe.h5"));
     HIFDM(5, "merge", path, "--dir", folder, "-o", temp("pipe.h5"));
-    ERRS("error: %s: exists and is no merge; use --force or -o", temp("pipe.h5"));
+    ERRS("error: %s: is not an ordinary file; use -o to choose a file name", temp("pipe.h5"));
 }
 END_TEST
 
