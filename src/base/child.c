@@ -65,7 +65,7 @@ hf_child_end hf_child_wait(pid_t child)
 void hf_child_describe(hf_child_end end, char *text, size_t size)
 {
     const char *advice = !end.is_sent            ? ""
-                         : end.signal == SIGKILL ? "; is there enough memory?"
+                         : end.signal == SIGKILL ? "; is there enough memory, and time (ulimit -t)?"
                          : end.signal == SIGXCPU ? "; raise the limit (ulimit -t)"
                                                  : "; try again";
     if (end.signal)

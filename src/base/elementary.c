@@ -24,10 +24,12 @@ double hf_distance(const double *a, const double *b)
 
 /* ---- sine and cosine ---- */
 
-/* pi/2 in three parts; the first two have 30 bits, so that multiples of up to 2^23 of them are exact. */
+/* pi/2 in three parts; the first two have 29 and 28 bits, so that multiples of up to 2^24 of them are exact, and up to
+ * ANGLE_MOST all but. */
 #define HALF_PI_1 0x1.921fb54p+0
 #define HALF_PI_2 0x1.10b46118p-30
 #define HALF_PI_3 0x1.313198a2e0370p-61
+#define ANGLE_MOST 1e8
 #define TERMS 9 /* the first one left out is below 1e-18 at pi/4 */
 
 /* first (1 - s/((n+1)(n+2)) (1 - s/((n+3)(n+4)) (...))) with s = r^2: the series of the sine for n = 1, first = r, that
@@ -44,6 +46,7 @@ static double alternating_series(double r, int n, double first)
 
 static double turned_sine(double angle_rad, int quarters)
 {
+    if (fabs(angle_rad) > ANGLE_MOST) angle_rad = remainder(angle_rad, 4 * (HALF_PI_1 + HALF_PI_2)); /* exact */
     double count = nearbyint(angle_rad / HALF_PI_1);
     double r = ((angle_rad - count * HALF_PI_1) - count * HALF_PI_2) - count * HALF_PI_3;
     int quadrant = (int)(count - 4 * floor(count / 4)) + quarters;

@@ -3,13 +3,14 @@
 #ifndef HIFDM_ELEMENTARY_H
 #define HIFDM_ELEMENTARY_H
 
-/* sqrt(x^2 + y^2 + z^2) without overflow or underflow; error below 2 units in the last place. NaN when one is. */
+/* sqrt(x^2 + y^2 + z^2) without overflow or underflow; error below 2 units in the last place. Infinite when one is,
+ * else NaN when one is. */
 double hf_norm(double x, double y, double z);
 
 /* Distance of two points [3]. */
 double hf_distance(const double *a, const double *b);
 
-/* Of an angle of up to 1e8 rad; error below 2e-16, beyond as much more as the angle is larger than 1e8. */
+/* Error below 3e-16 up to 1e8 rad; beyond, of an angle that differs by less than 1e-16 of it. */
 double hf_sine(double angle_rad);
 double hf_cosine(double angle_rad);
 

@@ -22,10 +22,9 @@ hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messag
     struct stat info;
     HF_TRY(hf_file_out_target(path, target, messages));
     if (lstat(target, &info) != 0) return HF_OK;
-    if (!force) return hf_error(messages, HF_EXISTS, "%s exists; use --force to replace it", path);
     if (!S_ISREG(info.st_mode))
         return hf_error(messages, HF_IO, "%s: is not an ordinary file; choose another name", path);
-    return HF_OK;
+    return force ? HF_OK : hf_error(messages, HF_EXISTS, "%s exists; use --force to replace it", path);
 }
 
 static const char *const shape_word[3] = {"form-finding", "optimised", "polished"};

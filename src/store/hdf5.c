@@ -295,7 +295,6 @@ static void open_file(hf_hdf5 *io, const char *name, unsigned how, bool locks)
 
 void hf_hdf5_open_file(hf_hdf5 *io, const char *name)
 {
-    hf_hdf5_note(io);
     if (hf_hdf5_look_at_file(io, name)) open_file(io, name, H5F_ACC_RDONLY, true);
 }
 

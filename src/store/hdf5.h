@@ -114,7 +114,7 @@ void hf_hdf5_no_memory(hf_hdf5 *io); /* record HF_NO_MEMORY */
  * that is no failure. */
 void hf_hdf5_create_file(hf_hdf5 *io, const hf_file_out *file);   /* in the temporary file */
 void hf_hdf5_open_to_write(hf_hdf5 *io, const hf_file_out *file); /* the temporary file holds one already */
-void hf_hdf5_open_file(hf_hdf5 *io, const char *name);            /* to read, after hf_hdf5_look_at_file */
+void hf_hdf5_open_file(hf_hdf5 *io, const char *name);            /* to read; looks at it first */
 void hf_hdf5_close_file(hf_hdf5 *io); /* no other id of the file may be open; also after a failure */
 
 /* Is it an ordinary file with HDF5 in it? HDF5 itself would wait for who writes into a pipe. */

@@ -19,10 +19,11 @@
 #include <unistd.h>
 
 #define HEADER "#hifdm-points-1"
-#define SYNC_S 5.0                                  /* finished points of the last 5 s may be lost by a power cut */
-#define LINE_SIZE 16384                             /* of one row: the reason, and at most 25 bytes for each number */
-#define ROWS_MAX (HF_STUDY_POINT_MAX * (off_t)4096) /* bytes of a file: all points have a row, and few rows so much */
-#define N_FIXED 4                                   /* fields before the numbers: id, fingerprint, status, reason */
+#define SYNC_S 5.0      /* finished points of the last 5 s may be lost by a power cut */
+#define LINE_SIZE 16384 /* of one row: the reason, and at most 25 bytes for each number */
+#define ROWS_MAX                                                                                                       \
+    (HF_STUDY_POINT_MAX * (off_t)4096) /* bytes of a file that is read: all points have a row, few so much */
+#define N_FIXED 4                      /* fields before the numbers: id, fingerprint, status, reason */
 
 const char *const hf_point_state_word[HF_N_POINT_STATE] = {"missing", "running", "done", "failed", "outdated"};
 

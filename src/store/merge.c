@@ -291,7 +291,7 @@ static bool is_of_sweep(const hf_study *s, const char *folder, const char *path)
     if (!hf_path_folder(path, here, sizeof here) || !hf_path_is_same(here, folder)) return false;
     hf_status tried = hf_hdf5_try(look_at_output, path, how, sizeof how, &unwanted);
     hf_messages_free(&unwanted);
-    return tried != HF_OK || !is_replaceable(path);
+    return tried == HF_OK && !is_replaceable(path); /* what is damaged or cannot be read is told, or may be replaced */
 }
 
 /* What the merge is made of is never replaced. */

@@ -146,9 +146,9 @@ START_TEST(a_reader_that_is_killed_blames_no_file)
     HIFDM(0, "run", c, "-o", a, "--quiet");
     SHELL(5, "export KILLED=1; " WITH_LIBRARY "exec \"$0\" report \"$3\" -o \"$4\"", library, "3", a,
           temp("page.html"));
-    ERRS("error: %s: reading it was ended by signal 9 (Killed); is there enough memory?\n", a);
+    ERRS("error: %s: reading it was ended by signal 9 (Killed); is there enough memory, and time (ulimit -t)?\n", a);
     SHELL(5, "export KILLED=1; " WITH_LIBRARY "exec \"$0\" run \"$4\" -o \"$3\"", library, "5", unfinished(a), c);
-    ERRS("error: %s: reading it was ended by signal 9 (Killed); is there enough memory?\n", a);
+    ERRS("error: %s: reading it was ended by signal 9 (Killed); is there enough memory, and time (ulimit -t)?\n", a);
     const char *study = file_with("s.yaml", STUDY), *folder = temp("s.d");
     HIFDM(0, "sweep", study, "--dir", folder, "--quiet");
     SHELL(0, "cd \"$1\"; rm points-*.tsv; set -- *.h5; echo \"$1\"", folder);
@@ -156,7 +156,7 @@ START_TEST(a_reader_that_is_killed_blames_no_file)
     const char *point = unfinished(keep(formatted("%s/%s", folder, said.out)));
     SHELL(5, "export KILLED=1; " WITH_LIBRARY "exec \"$0\" sweep \"$3\" --dir \"$4\" --quiet", library, "2", study,
           folder);
-    ERRS(": %s: reading it was ended by signal 9 (Killed); is there enough memory?\n", point);
+    ERRS(": %s: reading it was ended by signal 9 (Killed); is there enough memory, and time (ulimit -t)?\n", point);
     HIFDM(0, "status", study, "--dir", folder, "--json");
     OUT("\"failed\": 0");
     HIFDM(0, "sweep", study, "--dir", folder, "--quiet");

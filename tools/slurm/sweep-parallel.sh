@@ -5,7 +5,7 @@
 #
 # JOBS tasks at a time (1), each with THREADS threads (all cores). Run it again after whatever went wrong, and after the
 # study has grown: all tasks are run, and of their points those that are missing. Ends with the number of tasks that
-# failed (GNU parallel).
+# failed, at most 101 (GNU parallel).
 # Several machines: PARALLEL='--sshloginfile nodes.txt --workdir .' in the environment.
 set -eu
 [[ $# -ge 2 && $1 =~ ^[1-9][0-9]{0,5}$ ]] || {

@@ -80,7 +80,7 @@ START_TEST(an_end_from_outside_is_known)
     char words[128];
     begin();
     hf_child_describe(ask("kill"), words, sizeof words);
-    ck_assert_str_eq(words, "signal 9 (Killed); is there enough memory?");
+    ck_assert_str_eq(words, "signal 9 (Killed); is there enough memory, and time (ulimit -t)?");
     hf_child_describe(ask("user"), words, sizeof words);
     ck_assert_str_eq(words, "signal 12 (User defined signal 2); try again");
     end();

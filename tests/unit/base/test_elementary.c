@@ -37,6 +37,7 @@ START_TEST(ends_of_the_ranges)
     ck_assert_double_eq(hf_norm(3 * 0x1p-1070, 4 * 0x1p-1070, 0), 5 * 0x1p-1070);
     ck_assert_double_eq_tol(hf_norm(0x1p1023, 0x1p1023, 0x1p1023) / 0x1p1023, 1.7320508075688772, 4e-16);
     ck_assert_double_eq(hf_norm(-(double)INFINITY, 1, 2), (double)INFINITY);
+    ck_assert_double_eq(hf_norm((double)NAN, (double)INFINITY, 2), (double)INFINITY);
     ck_assert_double_nan(hf_norm((double)NAN, 1, 2));
     ck_assert_double_nan(hf_norm(1, 1e300, (double)NAN));
     ck_assert_double_eq(hf_distance((double[]){1, 2, 3}, (double[]){1, 5, 7}), 5);
@@ -45,7 +46,14 @@ START_TEST(ends_of_the_ranges)
     ck_assert_double_nan(hf_sine((double)INFINITY));
     ck_assert_double_nan(hf_cosine((double)NAN));
     ck_assert_double_eq(hf_inverse_sinh(0), 0);
-    ck_assert_double_eq_tol(hf_inverse_sinh(1e300) / 691.4686750787736, 1, 1e-14); /* ln 2e300 */
+    ck_assert_double_eq_tol(hf_inverse_sinh(1e300) / 691.46867507877364, 1, 1e-15); /* ln 2e300 */
+    for (int k = -490; k <= 490; k += 5)
+        ck_assert_double_eq_tol(hf_norm(ldexp(2, k), ldexp(3, k), ldexp(6, k)) / ldexp(7, k), 1, 3e-16);
+    for (int k = 8; k < 300; k += 7) { /* far beyond: a sine and a cosine of one angle */
+        double angle = 1.2345 * pow(10, k), s = hf_sine(angle), c = hf_cosine(angle);
+        ck_assert_double_eq_tol(s * s + c * c, 1, 1e-15);
+        if (k < 12) ck_assert_double_eq_tol(s, (double)sinl(angle), 1e-16 * angle);
+    }
     ck_assert_double_eq_tol(hf_inverse_sinh(-1e-300) / 1e-300, -1, 1e-15);
     ck_assert_double_eq(hf_inverse_sinh(-(double)INFINITY), -(double)INFINITY);
     for (int k = -60; k <= 60; k++)
