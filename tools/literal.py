@@ -16,7 +16,7 @@ import subprocess
 WAYS = [
     ("seeded", "fixed_point", "the paper's: Eq. 8 from the design, to its stop; band Cholesky in each iteration"),
     ("force_density", "fixed_point", "the same iteration to equilibrium, boundary force densities held"),
-    ("force_density", "newton", "Newton, each design with matrices of its own, by LAPACK"),
+    ("force_density", "newton", "Newton, each design with matrices of its own"),
     ("force_density", "auto", "default: one Newton matrix shared read-only by all threads"),
 ]
 
