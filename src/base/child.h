@@ -24,7 +24,7 @@ pid_t hf_child_fork(void);
 
 hf_child_end hf_child_wait(pid_t child);
 
-/* "signal 11 (Segmentation fault)", "signal 9 (Killed); is there enough memory?" or "exit status 99" */
+/* "signal 11 (Segmentation fault)", "exit status 99", or after a signal that was sent the signal and what to do */
 void hf_child_describe(hf_child_end end, char *text, size_t size);
 
 /* From now on this process ends by SIGXCPU when it has used so many more seconds of CPU time, at least 1; 0: it does

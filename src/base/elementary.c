@@ -44,8 +44,10 @@ static double alternating_series(double r, int n, double first)
     return first * sum;
 }
 
+/* Of an angle that is larger by so many quarters of a turn. */
 static double turned_sine(double angle_rad, int quarters)
 {
+    if (!isfinite(angle_rad)) return (double)NAN;
     if (fabs(angle_rad) > ANGLE_MOST) angle_rad = remainder(angle_rad, 4 * (HALF_PI_1 + HALF_PI_2)); /* exact */
     double count = nearbyint(angle_rad / HALF_PI_1);
     double r = ((angle_rad - count * HALF_PI_1) - count * HALF_PI_2) - count * HALF_PI_3;
@@ -56,12 +58,12 @@ static double turned_sine(double angle_rad, int quarters)
 
 double hf_sine(double angle_rad)
 {
-    return isfinite(angle_rad) ? turned_sine(angle_rad, 0) : (double)NAN;
+    return turned_sine(angle_rad, 0);
 }
 
 double hf_cosine(double angle_rad)
 {
-    return isfinite(angle_rad) ? turned_sine(angle_rad, 1) : (double)NAN;
+    return turned_sine(angle_rad, 1);
 }
 
 /* ---- inverse hyperbolic sine ---- */

@@ -1,5 +1,6 @@
 /* Makes the quad net over a parabolic cylinder. */
 #include <hifdm/generate.h>
+
 #include "base/elementary.h"
 
 #include <math.h>

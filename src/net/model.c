@@ -3,9 +3,9 @@
 #include <hifdm/model.h>
 
 #include "base/arena.h"
+#include "base/elementary.h"
 #include "base/union_find.h"
 #include "net/numbering.h"
-#include "base/elementary.h"
 
 #include <assert.h>
 #include <limits.h>

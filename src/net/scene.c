@@ -2,9 +2,9 @@
 #include <hifdm/scene.h>
 
 #include "base/arena.h"
+#include "base/elementary.h"
 #include "base/text.h"
 #include "base/union_find.h"
-#include "base/elementary.h"
 #include <hifdm/settings.h>
 
 #include <math.h>

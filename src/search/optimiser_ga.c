@@ -7,8 +7,8 @@
 #include <hifdm/optimiser.h>
 
 #include "base/arena.h"
-#include "base/random.h"
 #include "base/elementary.h"
+#include "base/random.h"
 
 #include <math.h>
 #include <stdlib.h>

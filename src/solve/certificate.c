@@ -1,9 +1,9 @@
 #include "solve/certificate.h"
 
+#include "base/elementary.h"
 #include "linalg/band.h"
 #include "solve/bound.h"
 #include "solve/newton.h"
-#include "base/elementary.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,9 +2,9 @@
  * updates (Eqs. 7, 8) - stopping - the iteration - shapes from elsewhere */
 #include <hifdm/formfind.h>
 
+#include "base/elementary.h"
 #include "linalg/band.h"
 #include "solve/history.h"
-#include "base/elementary.h"
 #include <hifdm/metrics.h>
 
 #include <assert.h>
