@@ -13,7 +13,8 @@ extern "C" {
 /* A cable is slack when its tension is below this fraction of the reference tension. */
 #define HF_SLACK_RATIO 1e-3
 
-/* RMS distance of the inner nodes to their theoretical positions, m (Eqs. 9, 10). */
+/* RMS distance of the inner nodes to their theoretical positions, m (Eqs. 9, 10), loose nodes left out; NaN when all
+ * are loose. */
 double hf_metrics_psi_m(const hf_model *model, const hf_workspace *workspace);
 
 /* Largest tension of a group divided by its smallest one. NaN when the group is empty or a tension is not positive. */

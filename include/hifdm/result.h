@@ -84,7 +84,7 @@ const char *hf_bound_reason_meaning(int reason); /* the same */
  *   culprit                 cable (COLLAPSED, NOT_FINITE; NOT_CONVERGED: the one whose rounding stands in the way), row
  *                           of D (SINGULAR), chain (STRAIGHT_CHAIN)
  *                           OK, NOT_CONVERGED: with n_drifting > 0, the row that moves farthest
- *   psi_m                   Eq. 10
+ *   psi_m                   Eq. 10, of the inner nodes that a taut cable holds; NaN when none does
  *   residual_N              with every cable at the tension of its law: of an elastic one EA (l/l0 - 1) at its length
  *                           l, not the multiplier that the iterations balance and of which length_error speaks
  *   length_error            for elastic cables L* = l0 (1 + T/EA); 0 without a cable of these laws
