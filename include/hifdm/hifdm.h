@@ -29,6 +29,7 @@
 
 #include <hifdm/batch.h>
 #include <hifdm/cable_law.h>
+#include <hifdm/cable_set.h>
 #include <hifdm/carrier.h>
 #include <hifdm/config.h>
 #include <hifdm/evaluate.h>

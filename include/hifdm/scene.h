@@ -32,12 +32,16 @@ typedef struct {
     double *target;        /* [n_cable] T* (N), L* (m), q (N/m) or l0 (m) by law; NaN in a tension law: the case's
                                 pretension */
     double *EA_N;          /* [n_cable] axial stiffness, NaN where not given; NULL when no cable has one */
+    int n_set;             /* named sets of cables beside the two groups (cable_set.h) */
+    const char **set_name; /* [n_set] sorted; NULL, as the next two, when there are no sets */
+    int *set_start;        /* [n_set + 1] where the cables of each begin in set_cable */
+    int *set_cable;        /* [set_start[n_set]] cables, ascending in each set */
     const char **node_id;  /* [n_node] */
     const char **cable_id; /* [n_cable] */
     int *node_line;        /* [n_node] line in nodes_file, or NULL for a generated scene */
     int *cable_line;       /* [n_cable] line in cables_file, or NULL */
     const char *nodes_file, *cables_file; /* names for messages, or NULL */
-    void *block, *text;                   /* owned memory behind all of the above */
+    void *block, *text, *set_block;       /* owned memory behind all of the above */
 } hf_scene;
 
 /* Allocate a scene of this size, all zero; with_* tell which optional arrays exist. Returns HF_OK or HF_NO_MEMORY. */

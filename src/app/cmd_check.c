@@ -33,6 +33,21 @@ static void print_laws(const hf_model *m, FILE *f)
     fputc('\n', f);
 }
 
+#define SETS_NAMED 12
+
+/* Prints how many cables are in each set; the groups come first. */
+static void print_sets(const hf_scene *s, FILE *f)
+{
+    int count[2] = {0};
+    for (int e = 0; e < s->n_cable; e++)
+        count[s->group[e]]++;
+    fprintf(f, "                sets: %d %s, %d %s", count[0], hf_group_word[0], count[1], hf_group_word[1]);
+    for (int k = 0; k < s->n_set && k < SETS_NAMED; k++)
+        fprintf(f, ", %d %s", s->set_start[k + 1] - s->set_start[k], s->set_name[k]);
+    if (s->n_set > SETS_NAMED) fprintf(f, " and %d more sets", s->n_set - SETS_NAMED);
+    fputc('\n', f);
+}
+
 static void print_scene(const hf_problem *p, FILE *f)
 {
     const hf_model *m = &p->model;
@@ -42,6 +57,7 @@ static void print_scene(const hf_problem *p, FILE *f)
     fprintf(f, "  scene         %d nodes: %d supports, %d inner (psi counts these), %d edge\n", m->n_node,
             count[HF_ROLE_SUPPORT], count[HF_ROLE_INNER], count[HF_ROLE_EDGE]);
     print_laws(m, f);
+    print_sets(&p->scene, f);
     fprintf(f, "  equations     %d unknowns, three right-hand sides; half-bandwidth %d; %s\n", m->n_free,
             m->half_bandwidth, m->has_strut ? "indefinite: band LU (dgbtrf)" : "band Cholesky");
     if (m->n_chain) fprintf(f, "  note          %d straight chains of length-controlled cables\n", m->n_chain);

@@ -49,7 +49,7 @@ const hf_field hf_field_table[] = {
         {"scene.import.nodes", HF_FIELD_TEXT, AT(nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
          "CSV id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]; path relative to the case file"},
     {"scene.import.cables", HF_FIELD_TEXT, AT(cables_path), 1, HF_PATH_SIZE, NULL, "", NULL,
-     "CSV id,i,j,group,law,value[,EA_N]; path relative to the case file"},
+     "CSV id,i,j,group,law,value[,EA_N,set]; path relative to the case file"},
 
     {"surface.focal_length_m", HF_FIELD_DOUBLE, AT(surface.focal_length_m), HF_ABOVE_ZERO, 1e9, "", "m", NULL,
      "of the wanted surface z = x^2/(4f) along y; default: that of parabolic_cylinder"},

@@ -50,6 +50,7 @@ void hf_scene_free(hf_scene *scene)
 {
     free(scene->block);
     free(scene->text);
+    free(scene->set_block);
     *scene = (hf_scene){0};
 }
 

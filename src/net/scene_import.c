@@ -1,7 +1,8 @@
-/* Contents: nodes - cables - together */
+/* Contents: nodes - cables - sets - together */
 #include "net/scene_import.h"
 
 #include "base/csv.h"
+#include <hifdm/cable_set.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -38,8 +39,8 @@ static bool read_nodes(hf_csv *t, const int *where, hf_scene *s)
 
 #define LENGTH_RATIO_MIN 1e-12 /* of an elastic cable, unstressed to theoretical: a tension of 1e12 EA says nothing */
 
-enum { CABLE_ID, CABLE_I, CABLE_J, CABLE_GROUP, CABLE_LAW, CABLE_VALUE, CABLE_EA, N_CABLE_COLUMN };
-static const char *const cable_column[N_CABLE_COLUMN] = {"id", "i", "j", "group", "law", "value", "EA_N"};
+enum { CABLE_ID, CABLE_I, CABLE_J, CABLE_GROUP, CABLE_LAW, CABLE_VALUE, CABLE_EA, CABLE_SET, N_CABLE_COLUMN };
+static const char *const cable_column[N_CABLE_COLUMN] = {"id", "i", "j", "group", "law", "value", "EA_N", "set"};
 
 static void fault_of_law(hf_csv *t, int r, const char *id, const char *word, const char *what)
 {
@@ -104,6 +105,83 @@ static void read_cables(hf_csv *t, const int *where, const hf_csv *nodes, const 
     }
 }
 
+/* ---- sets ---- */
+
+#define BETWEEN_NAMES " \t;"
+
+typedef struct {
+    const char *name; /* in the text of the table */
+    int row, set;
+} mention;
+
+static int count_mentions(const hf_csv *t, int column)
+{
+    int n = 0;
+    for (int r = 0; column >= 0 && r < t->n_row; r++)
+        for (const char *p = hf_csv_cell(t, r, column); *(p += strspn(p, BETWEEN_NAMES)); n++)
+            p += strcspn(p, BETWEEN_NAMES);
+    return n;
+}
+
+static int by_name_and_row(const void *a, const void *b)
+{
+    const mention *p = *(mention *const *)a, *q = *(mention *const *)b;
+    int order = strcmp(p->name, q->name);
+    return order ? order : (p->row > q->row) - (p->row < q->row);
+}
+
+/* Cuts the cells into names, in the order of the rows. */
+static void read_mentions(hf_csv *t, const int *where, mention *all)
+{
+    int n = 0;
+    for (int r = 0; r < t->n_row; r++)
+        for (char *p = hf_csv_cell(t, r, where[CABLE_SET]); *(p += strspn(p, BETWEEN_NAMES)); n++) {
+            char *end = p + strcspn(p, BETWEEN_NAMES);
+            bool is_last = *end == '\0';
+            *end = '\0';
+            all[n] = (mention){p, r, 0};
+            const char *fault = hf_cable_set_name_fault(p);
+            if (fault) {
+                char what[HF_CABLE_SET_NAME_SIZE + 16];
+                snprintf(what, sizeof what, "the set '%.63s' ", p);
+                hf_csv_fault(t, t->line[r], hf_csv_cell(t, r, where[CABLE_ID]), what, fault);
+            }
+            p = is_last ? end : end + 1;
+        }
+}
+
+static hf_status read_sets(hf_csv *t, const int *where, hf_scene *s)
+{
+    int n = count_mentions(t, where[CABLE_SET]), n_set = 0;
+    if (n == 0) return HF_OK;
+    mention *all = malloc((size_t)n * sizeof *all), **sorted = malloc((size_t)n * sizeof *sorted);
+    const char **name = malloc((size_t)n * sizeof *name);
+    hf_cable_set_member *member = malloc((size_t)n * sizeof *member);
+    hf_status status = all && sorted && name && member ? HF_OK : HF_NO_MEMORY;
+    if (status == HF_OK) {
+        read_mentions(t, where, all);
+        for (int k = 0; k < n; k++)
+            sorted[k] = &all[k];
+        qsort(sorted, (size_t)n, sizeof *sorted, by_name_and_row);
+        for (int k = 0; k < n; k++) {
+            bool is_same = k > 0 && !strcmp(sorted[k]->name, sorted[k - 1]->name);
+            if (!is_same) name[n_set++] = sorted[k]->name;
+            if (is_same && sorted[k]->row == sorted[k - 1]->row)
+                hf_csv_fault(t, t->line[sorted[k]->row], s->cable_id[sorted[k]->row], "stands twice in the set ",
+                             sorted[k]->name);
+            sorted[k]->set = n_set - 1;
+        }
+        for (int k = 0; k < n; k++)
+            member[k] = (hf_cable_set_member){all[k].set, all[k].row};
+        if (t->n_fault == 0) status = hf_cable_set_make(s, n_set, name, n, member);
+    }
+    free(all);
+    free(sorted);
+    free(name);
+    free(member);
+    return status;
+}
+
 /* ---- together ---- */
 
 /* The ids still point into the two texts: move them to one block that the scene owns. */
@@ -145,6 +223,8 @@ static hf_status build(hf_csv *nodes, hf_csv *cables, const double group_EA_N[2]
     if (!*node_index || !*cable_index) return hf_error(nodes->messages, HF_NO_MEMORY, "%s: out of memory", nodes->path);
     if (!read_nodes(nodes, node_where, s)) s->load_N = NULL; /* columns of zeros are no load */
     read_cables(cables, cable_where, nodes, *node_index, group_EA_N, s);
+    if (read_sets(cables, cable_where, s) != HF_OK)
+        return hf_error(cables->messages, HF_NO_MEMORY, "%s: out of memory", cables->path);
     node_status = hf_csv_close_faults(nodes);
     cable_status = hf_csv_close_faults(cables);
     HF_TRY(node_status);

@@ -1,8 +1,9 @@
 /* scene_import - a scene from two CSV files.
  *
  * nodes.csv : id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]   role: support | inner | edge
- * cables.csv: id,i,j,group,law,value[,EA_N]          group: inner | boundary
+ * cables.csv: id,i,j,group,law,value[,EA_N,set]      group: inner | boundary
  *                                                    law: tension | length | force_density | elastic
+ *                                                    set: names of sets with blanks or ; between them, or empty
  *
  * The header line gives the order of the columns; ids are any strings; fields may be quoted; empty lines and lines that
  * start with '#' are skipped. value: N, m, N/m or m by law; empty = the case's pretension, or the theoretical

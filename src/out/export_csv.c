@@ -1,7 +1,7 @@
 /* Writes a stored shape as CSV files into the folder of --csv, which is made if it does not exist:
  *
  * nodes.csv : id,x_m,y_m,z_m,x0_m,y0_m,z0_m,role   (found and theoretical position)
- * cables.csv: id,i,j,group,law,length_m,tension_N,q_N_per_m
+ * cables.csv: id,i,j,group,law,length_m,tension_N,q_N_per_m[,set]   (when the net has sets; blanks between names)
  * With a truss also truss_nodes.csv and members.csv, in the columns that truss_import reads; when the result has
  * displacements and end forces, they follow in further columns.
  * Numbers have 17 significant digits, so reading them back gives the same bits. */
@@ -9,6 +9,7 @@
 
 #include "base/csv.h"
 #include "base/file_out.h"
+#include <hifdm/cable_set.h>
 
 #include <math.h>
 #include <string.h>
@@ -31,19 +32,32 @@ static void write_nodes(const void *context, FILE *f)
     }
 }
 
+static void write_sets_of(const hf_scene *s, int e, FILE *f)
+{
+    const char *gap = "";
+    fputc(',', f);
+    for (int k = 0; k < s->n_set; k++) {
+        if (!hf_cable_set_has(s, k, e)) continue;
+        fprintf(f, "%s%s", gap, s->set_name[k]);
+        gap = " ";
+    }
+}
+
 static void write_cables(const void *context, FILE *f)
 {
     const hf_scene *s = ((const view *)context)->scene;
     const hf_shape *shape = ((const view *)context)->shape;
-    fputs("id,i,j,group,law,length_m,tension_N,q_N_per_m\n", f);
+    fprintf(f, "id,i,j,group,law,length_m,tension_N,q_N_per_m%s\n", s->n_set ? ",set" : "");
     for (int e = 0; e < s->n_cable; e++) {
         hf_csv_write_id(s->cable_id[e], f);
         fputc(',', f);
         hf_csv_write_id(s->node_id[s->end[2 * e]], f);
         fputc(',', f);
         hf_csv_write_id(s->node_id[s->end[2 * e + 1]], f);
-        fprintf(f, ",%s,%s,%.17g,%.17g,%.17g\n", hf_group_word[s->group[e]], hf_law_word[shape->law[e]],
+        fprintf(f, ",%s,%s,%.17g,%.17g,%.17g", hf_group_word[s->group[e]], hf_law_word[shape->law[e]],
                 shape->length_m[e], shape->tension_N[e], shape->q_N_per_m[e]);
+        if (s->n_set) write_sets_of(s, e, f);
+        fputc('\n', f);
     }
 }
 

@@ -94,6 +94,21 @@ static void write_case(hf_store *s, const hf_case *settings)
     hf_hdf5_close(&s->f.io, group);
 }
 
+static void write_sets(hf_store *s, hid_t group, const hf_scene *scene)
+{
+    if (scene->n_set == 0) return;
+    const hf_hdf5_array start = {"set/start", HF_KIND_INT,
+                                 1,           {(hsize_t)scene->n_set + 1},
+                                 "",          "where the cables of each set begin in `cable`, and the number of all"};
+    const hf_hdf5_array cable = {"set/cable", HF_KIND_INT,
+                                 1,           {(hsize_t)scene->set_start[scene->n_set]},
+                                 "",          "index into /scene/cable, ascending in each set"};
+    hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/scene/set"));
+    hf_hdf5_write_ids(&s->f.io, group, "set/name", scene->set_name, scene->n_set, "name of the set of cables");
+    hf_hdf5_write_array(&s->f.io, group, &start, scene->set_start);
+    hf_hdf5_write_array(&s->f.io, group, &cable, scene->set_cable);
+}
+
 static void write_scene(hf_store *s, const hf_scene *scene)
 {
     const hf_hdf5_array length = {
@@ -109,6 +124,7 @@ static void write_scene(hf_store *s, const hf_scene *scene)
     for (int e = 0; length_m && e < scene->n_cable; e++)
         length_m[e] = hf_scene_theoretical_length(scene, e);
     hf_hdf5_write_array(&s->f.io, group, &length, length_m);
+    write_sets(s, group, scene);
     hf_hdf5_close(&s->f.io, group);
 }
 

@@ -2,8 +2,10 @@
 #include "store/store_read.h"
 
 #include "base/arena.h"
-
 #include "base/text.h"
+#include <hifdm/cable_set.h>
+
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -101,6 +103,48 @@ static void check_ends(hf_hdf5 *io, hid_t group, const hf_scene *scene)
             hf_hdf5_damaged(io, group, "cable/end", "names a node that is not there");
 }
 
+static bool are_sets_right(const hf_scene *s)
+{
+    if (s->set_start[0] != 0) return false;
+    for (int k = 0; k < s->n_set; k++) {
+        int from = s->set_start[k], to = s->set_start[k + 1];
+        if (to <= from || hf_cable_set_name_fault(s->set_name[k])) return false;
+        if (k > 0 && strcmp(s->set_name[k - 1], s->set_name[k]) >= 0) return false;
+        for (int i = from; i < to; i++)
+            if (s->set_cable[i] < 0 || s->set_cable[i] >= s->n_cable ||
+                (i > from && s->set_cable[i] <= s->set_cable[i - 1]))
+                return false;
+    }
+    return true;
+}
+
+/* The sets of a scene; results of before have none. The start of each is checked before anything is taken from it. */
+static void read_sets(hf_hdf5 *io, hid_t group, hf_scene *s)
+{
+    if (io->status != HF_OK || !hf_hdf5_has(io, group, "set")) return;
+    int n_set = hf_hdf5_length(io, group, "set/name", HF_LAYOUT_COUNT_MAX);
+    int n_member = hf_hdf5_length(io, group, "set/cable", INT_MAX);
+    size_t length = hf_hdf5_chars_length(io, group, "set/name");
+    if (io->status == HF_OK && length >= HF_CABLE_SET_NAME_SIZE)
+        hf_hdf5_damaged(io, group, "set/name", "has a name that is too long");
+    char *name = io->status == HF_OK ? calloc((size_t)n_set, length) : NULL;
+    if (io->status == HF_OK && (!name || hf_cable_set_allocate(s, n_set, n_member) != HF_OK)) hf_hdf5_no_memory(io);
+    if (io->status == HF_OK) {
+        const hf_hdf5_array names = {
+            .name = "set/name", .kind = HF_KIND_CHARS, .rank = 1, .dims = {(hsize_t)n_set, length}};
+        const hf_hdf5_array start = {.name = "set/start", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)n_set + 1}};
+        const hf_hdf5_array cable = {.name = "set/cable", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)n_member}};
+        hf_hdf5_read_array(io, group, &names, name);
+        hf_hdf5_read_array(io, group, &start, s->set_start);
+        hf_hdf5_read_array(io, group, &cable, s->set_cable);
+        for (int k = 0; k < n_set; k++)
+            memcpy((char *)s->set_name[k], name + (size_t)k * length, length);
+        if (io->status == HF_OK && (s->set_start[n_set] != n_member || !are_sets_right(s)))
+            hf_hdf5_damaged(io, group, "set", "does not describe sets of cables");
+    }
+    free(name);
+}
+
 hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages)
 {
     hf_hdf5_lock();
@@ -117,6 +161,7 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
         hf_hdf5_read_ids(&io, group, "node/id", n_node, scene->node_id, "cable/id", n_cable, scene->cable_id,
                          &scene->text);
     check_ends(&io, group, scene);
+    read_sets(&io, group, scene);
     hf_hdf5_close(&io, group);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) hf_scene_free(scene);

@@ -97,6 +97,28 @@ START_TEST(odd_ids_survive_the_round_trip)
 }
 END_TEST
 
+/* Sets of cables: what check counts, the result file holds, and the table that is written reads back as. */
+START_TEST(sets_survive_the_round_trip)
+{
+    const char *nodes = "id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0.1,0,inner\nc,2,0,0,support\nd,1,2,0,support\n";
+    const char *cables = "id,i,j,group,law,value,set\nab,a,b,inner,tension,10,tie;front\nbc,b,c,inner,tension,10,\n"
+                         "bd,b,d,boundary,tension,12,front\n";
+    const char *path = net_with(nodes, cables);
+    HIFDM(0, "check", path);
+    OUT("                sets: 2 inner, 1 boundary, 2 front, 1 tie\n");
+    HIFDM(0, "run", path, "-o", temp("sets.h5"));
+    HIFDM(0, "export", temp("sets.h5"), "--csv", temp("sets"));
+    EXPECT(temp("sets.h5"), temp("sets/cables.csv"), "--", "[r['set'] for r in b] == ['front tie', '', 'front']",
+           "texts(a['scene/set/name']) == ['front', 'tie']", "a['scene/set/start'][:].tolist() == [0, 2, 3]",
+           "a['scene/set/cable'][:].tolist() == [0, 2, 0]");
+    SHELL(0, "cd \"$1\" && sed -i -e '1s/tension_N/value/' cables.csv", temp("sets"));
+    const char *again = file_with("again.yaml", "scene:\n  import: {nodes: sets/nodes.csv, cables: sets/cables.csv}\n");
+    HIFDM(0, "run", again, "-o", temp("again.h5"));
+    EXPECT(temp("sets.h5"), temp("again.h5"), "--", "texts(b['scene/set/name']) == ['front', 'tie']",
+           "all((a['scene/set'][k][:] == b['scene/set'][k][:]).all() for k in ('start', 'cable'))");
+}
+END_TEST
+
 START_TEST(existing_csv_is_not_replaced)
 {
     const char *out = run_once(), *nodes = temp("mine/nodes.csv"), *cables = temp("mine/cables.csv");
@@ -147,6 +169,7 @@ Suite *suite_cli_export(void)
     tcase_add_test(tcase, csv_holds_the_stored_numbers);
     tcase_add_test(tcase, exported_shape_can_be_imported);
     tcase_add_test(tcase, odd_ids_survive_the_round_trip);
+    tcase_add_test(tcase, sets_survive_the_round_trip);
     tcase_add_test(tcase, existing_csv_is_not_replaced);
     tcase_add_test(tcase, what_cannot_be_exported_is_told);
     suite_add_tcase(suite, tcase);

@@ -3,6 +3,8 @@
 #include "results.h"
 #include "small_ga.h"
 
+#include <hifdm/cable_set.h>
+
 /* ---- round trips ---- */
 
 static void fill_text(struct rng *rng, char *text, size_t size)
@@ -187,6 +189,9 @@ START_TEST(scene_comes_back)
         with.target[0] = with.EA_N[1] = (double)NAN;
         with.law[1] = HF_LAW_FORCE_DENSITY;
         with.group[0] = HF_GROUP_BOUNDARY;
+        const hf_cable_set_member member[] = {{2, 0}, {0, 1}, {2, 1}};
+        const char *name[] = {"front", "nobody", "z-1_longer"};
+        ck_assert_int_eq(hf_cable_set_make(&with, 3, name, 3, member), HF_OK);
         a = &with;
     }
     end(begin(temp_path("a.h5"), 1, a), &(hf_summary){0});
@@ -206,6 +211,14 @@ START_TEST(scene_comes_back)
         ck_assert_str_eq(a->node_id[i], b->node_id[i]);
     for (int e = 0; e < 2; e++)
         ck_assert_str_eq(a->cable_id[e], b->cable_id[e]);
+    ck_assert_int_eq(b->n_set, _i ? 2 : 0);
+    ck_assert_int_eq(b->set_block != NULL, _i);
+    if (_i) {
+        ck_assert_mem_eq(b->set_start, ((int[]){0, 1, 3}), 3 * sizeof(int));
+        ck_assert_mem_eq(b->set_cable, ((int[]){1, 0, 1}), 3 * sizeof(int));
+        ck_assert_str_eq(b->set_name[0], "front");
+        ck_assert_str_eq(b->set_name[1], "z-1_longer");
+    }
     ck_assert_ptr_null(b->node_line);
     hf_scene_free(b);
     hf_scene_free(&with);
