@@ -88,8 +88,8 @@ const char *hf_bound_reason_meaning(int reason); /* the same */
  *   residual_N              with every cable at the tension of its law: of an elastic one EA (l/l0 - 1) at its length
  *                           l, not the multiplier that the iterations balance and of which length_error speaks
  *   length_error            for elastic cables L* = l0 (1 + T/EA); 0 without a cable of these laws
- *   inner_tension_ratio     max T / min T of the group, as boundary_tension_ratio; NaN when the group is empty or a
- *                           tension is not positive
+ *   inner_tension_ratio     max T / min T of the group, as boundary_tension_ratio; INFINITY when a cable of it is slack
+ *                           (n_slack counts those of both groups), NaN when the group is empty or has a strut
  *   n_loose                 such nodes are where no cable of theirs is too long, as near to their theoretical places as
  *                           that allows. A design (hf_evaluate) with such a node is SINGULAR
  *   n_drifting              others than those; position_error_m is then NaN

@@ -70,10 +70,10 @@ void hf_json_text(hf_json *j, const char *key, const char *text)
 void hf_json_number(hf_json *j, const char *key, double value)
 {
     begin_item(j, key);
-    if (isfinite(value))
-        fprintf(j->file, "%.17g", value);
+    if (isinf(value))
+        fputs(value > 0 ? "\"Infinity\"" : "\"-Infinity\"", j->file);
     else
-        fputs("null", j->file);
+        hf_json_value(value, 17, j->file);
 }
 
 void hf_json_integer(hf_json *j, const char *key, int64_t value)

@@ -22,7 +22,9 @@ void hf_json_close(hf_json *json, char bracket);
 void hf_json_line(hf_json *json, const char *indentation);
 
 void hf_json_text(hf_json *json, const char *key, const char *text);
-void hf_json_number(hf_json *json, const char *key, double value); /* 17 digits; null unless finite */
+/* 17 digits; NaN is null, and what is infinite the text "Infinity" or "-Infinity", which float() of Python and Number()
+ * of JavaScript read. */
+void hf_json_number(hf_json *json, const char *key, double value);
 void hf_json_integer(hf_json *json, const char *key, int64_t value);
 void hf_json_unsigned(hf_json *json, const char *key, uint64_t value);
 void hf_json_bool(hf_json *json, const char *key, bool value);

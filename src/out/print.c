@@ -66,13 +66,13 @@ void hf_print_bytes(double bytes, char *text, size_t size)
     snprintf(text, size, i ? "%.1f %s" : "%.0f %s", bytes, unit[i]);
 }
 
-/* Writes a number as "4.2315", or "-" when it has no value. */
+/* Writes a number as "4.2315", as "inf", or "-" when it has no value. */
 static const char *decimals(double value, char text[32])
 {
     if (isfinite(value))
         snprintf(text, 32, "%.4f", value);
     else
-        strcpy(text, "-");
+        strcpy(text, isinf(value) ? "inf" : "-");
     return text;
 }
 
@@ -80,9 +80,11 @@ static const char *decimals(double value, char text[32])
 
 static void print_result(const hf_form_result *r, FILE *f)
 {
-    char inner[32], boundary[32];
-    fprintf(f, "                tension ratio %s inside, %s on the boundary; largest nodal residual %.1e N\n",
-            decimals(r->inner_tension_ratio, inner), decimals(r->boundary_tension_ratio, boundary), r->residual_N);
+    char inner[32], boundary[32], slack[40] = "";
+    if (r->n_slack) snprintf(slack, sizeof slack, " (%d slack cable%s)", r->n_slack, r->n_slack == 1 ? "" : "s");
+    fprintf(f, "                tension ratio %s inside, %s on the boundary%s; largest nodal residual %.1e N\n",
+            decimals(r->inner_tension_ratio, inner), decimals(r->boundary_tension_ratio, boundary), slack,
+            r->residual_N);
 }
 
 static void print_certificate(const hf_form_result *r, FILE *f)

@@ -21,13 +21,19 @@ double hf_metrics_psi_m(const hf_model *m, const hf_workspace *w)
 double hf_metrics_tension_ratio(const hf_model *m, const hf_workspace *w, hf_group group)
 {
     double low = INFINITY, high = -INFINITY;
+    bool any_slack = false;
     for (int e = 0; e < m->n_cable; e++) {
         if (m->group[e] != group) continue;
         double tension = w->tension_N[e];
+        if (hf_metrics_is_slack(m, w, e)) {
+            any_slack = true;
+            continue;
+        }
         if (!(tension > 0)) return (double)NAN;
         if (tension < low) low = tension;
         if (tension > high) high = tension;
     }
+    if (any_slack) return INFINITY;
     return high > 0 ? high / low : (double)NAN;
 }
 

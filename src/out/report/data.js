@@ -1,7 +1,9 @@
 // Contents: the data - elements - numbers for people - what is derived
 "use strict";
 
-const data = JSON.parse(document.getElementById("data").textContent);
+const data = JSON.parse(document.getElementById("data").textContent, (key, value) =>
+  value === "Infinity" ? Infinity : value,
+);
 
 // ---- elements: texts only ever become text nodes, so nothing in a case can become markup ----
 
@@ -35,6 +37,7 @@ const minus = (text) => text.replace(/^-/, "−");
 
 // A number with so many significant digits; tiny and huge ones as 1.2×10⁻⁷.
 function fmt(value, digits = 4) {
+  if (value === Infinity) return "∞";
   if (typeof value !== "number" || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
