@@ -31,7 +31,8 @@ extern "C" {
     X(double, deviation_p90_m, REAL, 4, "90 %")                                                                        \
     X(double, deviation_p95_m, REAL, 4, "95 %")                                                                        \
     X(double, deviation_p99_m, REAL, 4, "99 %")                                                                        \
-    X(double, deviation_max_m, REAL, 4, "the largest")
+    X(double, deviation_max_m, REAL, 4, "the largest")                                                                 \
+    X(double, ruze_limit_Hz, REAL, 6, "above it Ruze's formula does not hold: gain_loss_dB is NaN; INFINITY: no error")
 
 #define HF_SURFACE_FIT_LIST(X)                                                                                         \
     X(double, half_path_rms_m, REAL, 3, "of the nodes' errors against the fitted surface")                             \
@@ -42,6 +43,7 @@ extern "C" {
     X(double, rotation_x_rad, REAL, 3, "")                                                                             \
     X(double, rotation_y_rad, REAL, 3, "")                                                                             \
     X(double, rotation_z_rad, REAL, 3, "")                                                                             \
+    X(double, ruze_limit_Hz, REAL, 6, "of hf_surface_measure: above it fit_gain_loss_dB is NaN")                       \
     X(double, center_x_m, REAL, 0, "of the nodes")                                                                     \
     X(double, center_y_m, REAL, 0, "of the nodes")                                                                     \
     X(double, center_z_m, REAL, 0, "of the nodes")                                                                     \
@@ -77,8 +79,14 @@ typedef struct {
 hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_model *model, const hf_workspace *workspace,
                              hf_surface_measures *measures);
 
-/* Loss of gain by a half-path RMS at a frequency, positive, dB: Ruze's formula (M17). */
+/* Ruze's formula holds for errors that are small beside a wavelength: up to about this loss, an RMS of lambda/15. */
+#define HF_RUZE_MOST_DB 3.0
+
+/* Loss of gain by a half-path RMS at a frequency, positive, dB: Ruze's formula (M17). NaN beyond HF_RUZE_MOST_DB. */
 double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz);
+
+/* The frequency at which that loss is HF_RUZE_MOST_DB; INFINITY for an RMS of 0. */
+double hf_surface_ruze_limit_Hz(double half_path_rms_m);
 
 #ifdef __cplusplus
 }

@@ -99,6 +99,14 @@ static void print_certificate(const hf_form_result *r, FILE *f)
         fprintf(f, "                no proven bound of the error: %s\n", hf_bound_reason_meaning((int)r->bound_reason));
 }
 
+static void print_gain(double loss_dB, double limit_Hz, FILE *f)
+{
+    if (isnan(loss_dB))
+        fprintf(f, "beyond Ruze's formula, which ends at %g dB (%.3g GHz)", HF_RUZE_MOST_DB, limit_Hz / 1e9);
+    else
+        fprintf(f, "%.3g dB", loss_dB);
+}
+
 /* Prints the measures of the surface of one stage, when the case asks for them. */
 static void print_surface(const hf_summary *s, int stage, FILE *f)
 {
@@ -117,9 +125,12 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
     if (isfinite(m->faceting_rms_m)) fprintf(f, "; faceting %.4f mm", m->faceting_rms_m * 1e3);
     fputc('\n', f);
     for (int k = 0; k < s->surface.frequencies_Hz.n; k++) {
-        fprintf(f, "                loss of gain at %g GHz: %.3g dB", s->surface.frequencies_Hz.value[k] / 1e9,
-                m->gain_loss_dB[k]);
-        if (m->fit.converged) fprintf(f, ", best fit %.3g dB", m->fit_gain_loss_dB[k]);
+        fprintf(f, "                loss of gain at %g GHz: ", s->surface.frequencies_Hz.value[k] / 1e9);
+        print_gain(m->gain_loss_dB[k], m->ruze_limit_Hz, f);
+        if (m->fit.converged) {
+            fputs("; best fit: ", f);
+            print_gain(m->fit_gain_loss_dB[k], m->fit.ruze_limit_Hz, f);
+        }
         fputc('\n', f);
     }
 }

@@ -12,6 +12,7 @@
 
 #define LIGHT_M_PER_S 299792458.0
 #define PI 3.14159265358979323846
+#define DB_PER_SQUARE 4.3429448190325182765 /* 10/ln 10 */
 /* Bounds of the fit: largest number of steps of one fit; step at which it ends, of parameters of the order of one. The
  * tests of the surface pass with 30 steps, with 10 one fails (known_motion_and_focal_length_are_recovered); they pass
  * with a last step of 1e-16 and of 1e-12. */
@@ -36,8 +37,13 @@ static double height(double curvature, double x, double z, double *slope)
 
 double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz)
 {
-    double phase = 4 * PI * half_path_rms_m * frequency_Hz / LIGHT_M_PER_S;
-    return 4.3429448190325182765 /* 10/ln 10 */ * phase * phase;
+    double phase = 4 * PI * half_path_rms_m * frequency_Hz / LIGHT_M_PER_S, loss_dB = DB_PER_SQUARE * phase * phase;
+    return loss_dB <= HF_RUZE_MOST_DB ? loss_dB : (double)NAN;
+}
+
+double hf_surface_ruze_limit_Hz(double half_path_rms_m)
+{
+    return sqrt(HF_RUZE_MOST_DB / DB_PER_SQUARE) * LIGHT_M_PER_S / (4 * PI * half_path_rms_m);
 }
 
 /* ---- the fitted surface ---- */
@@ -311,6 +317,8 @@ hf_status hf_surface_measure(const hf_surface_settings *s, const hf_model *m, co
     all.faceting_rms_m =
         s->strip_width_m > 0 ? s->strip_width_m * s->strip_width_m / (24 * sqrt(5) * s->focal_length_m) : (double)NAN;
     hf_status status = hf_surface_fit_nodes(s->focal_length_m, (int)n, position_m, &all.fit);
+    all.ruze_limit_Hz = hf_surface_ruze_limit_Hz(all.half_path_rms_m);
+    all.fit.ruze_limit_Hz = hf_surface_ruze_limit_Hz(all.fit.half_path_rms_m);
     for (int k = 0; k < s->frequencies_Hz.n; k++) {
         all.gain_loss_dB[k] = hf_surface_gain_loss_dB(all.half_path_rms_m, s->frequencies_Hz.value[k]);
         all.fit_gain_loss_dB[k] = hf_surface_gain_loss_dB(all.fit.half_path_rms_m, s->frequencies_Hz.value[k]);

@@ -32,7 +32,7 @@ static hf_hdf5_array frequency_array(int n)
     return (hf_hdf5_array){"frequency_Hz", HF_KIND_REAL, 1, {(hsize_t)n}, "Hz", "at which the loss of gain is told"};
 }
 
-#define RAW "gain_loss_dB", n, "loss of gain (Ruze) by frequency"
+#define RAW "gain_loss_dB", n, "loss of gain (Ruze) by frequency; NaN beyond 3 dB, where the formula does not hold"
 #define FITTED "fit_gain_loss_dB", n, "the same after the best fit"
 
 void hf_layout_put_surface(hf_hdf5 *io, const hf_summary *summary)

@@ -2,7 +2,7 @@
  * surface. */
 #include "cli.h"
 
-#define FREQUENCIES "surface.frequencies_Hz=[1.2e9, 9.6e9]"
+#define FREQUENCIES "surface.frequencies_Hz=[1.2e9, 2.4e9, 9.6e9]"
 
 static const char *run_chen(void)
 {
@@ -202,16 +202,21 @@ START_TEST(surface_is_measured_for_every_shape)
                "b[d.decode()]['surface'] == c[d.decode()]['surface']",
                "all(b[d.decode()]['surface'][k] == v for k, v in a['surface'][d.decode()].attrs.items() "
                "if k in b[d.decode()]['surface'])",
-               "len(b[d.decode()]['surface']) == 21",
+               "len(b[d.decode()]['surface']) == 23",
                /* against numpy: the sums in another order */
                "near(np.sqrt(np.mean([(p[2] - p[0]**2 / 282.4)**2 / (1 + (p[0] / 141.2)**2) for p in "
                "a[e.decode()]['position_m'][:][a['scene/node/role'][:] == 1]])), b[d.decode()]['surface']"
                "['normal_rms_m'], 1e-15)",
                "near(np.percentile(np.linalg.norm((a[e.decode()]['position_m'][:] - a['scene/node/position_m'][:])"
                "[a['scene/node/role'][:] == 1], axis=1), 95), b[d.decode()]['surface']['deviation_p95_m'], 1e-15)",
-               "b[d.decode()]['surface']['frequency_Hz'] == [1.2e9, 9.6e9] == a['surface/frequency_Hz'][:].tolist()",
-               "near(b[d.decode()]['surface']['gain_loss_dB'][1] / b[d.decode()]['surface']['gain_loss_dB'][0], 64, "
+               "b[d.decode()]['surface']['frequency_Hz'] == [1.2e9, 2.4e9, 9.6e9] == a['surface/frequency_Hz'][:].tolist()",
+               "near(b[d.decode()]['surface']['gain_loss_dB'][1] / b[d.decode()]['surface']['gain_loss_dB'][0], 4, "
                "1e-12)",
+               /* Ruze's formula ends at 3 dB: the last frequency is beyond it, and every place says so */
+               "b[d.decode()]['surface']['gain_loss_dB'][2] is None and np.isnan(a['surface'][d]['gain_loss_dB'][2])",
+               "near(b[d.decode()]['surface']['gain_loss_dB'][1] * (b[d.decode()]['surface']['ruze_limit_Hz'] / 2.4e9)"
+               "**2, 3, 1e-12)",
+               "b[d.decode()]['surface']['ruze_limit_Hz'] < 9.6e9 < 1e12",
                "near(b[d.decode()]['surface']['faceting_rms_m'], 1 / (24 * 5**.5 * 70.6), 1e-18)",
                "b[d.decode()]['surface']['fit_half_path_rms_m'] <= b[d.decode()]['surface']['half_path_rms_m']",
                "b[d.decode()]['surface']['fit_converged'] is True and a['surface'][d].attrs['fit_converged'] == 1");
@@ -223,6 +228,7 @@ START_TEST(surface_is_measured_for_every_shape)
     HIFDM(0, "show", out);
     OUT("surface: half-path RMS ");
     OUT("loss of gain at 1.2 GHz: ");
+    ck_assert_int_eq(count_of(said.out, "loss of gain at 9.6 GHz: beyond Ruze's formula, which ends at 3 dB ("), 3);
     ck_assert_int_eq(count_of(said.out, "deviations 50/90/95/99 %: "), 3);
 }
 END_TEST

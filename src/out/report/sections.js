@@ -265,9 +265,11 @@ function writeSummary() {
   for (const [stage] of stages) {
     const surface = summary[stage].surface || {};
     values[stage] = { ...summary[stage], ...surface };
-    for (const key of ["gain_loss_dB", "fit_gain_loss_dB"])
-      (surface[key] || []).forEach((v, k) => (values[stage][`${key}[${k}]`] = v));
+    const beyond = { gain_loss_dB: "beyond Ruze", fit_gain_loss_dB: surface.fit_converged ? "beyond Ruze" : null };
+    for (const key in beyond)
+      (surface[key] || []).forEach((v, k) => (values[stage][`${key}[${k}]`] = v === null ? beyond[key] : v));
   }
+  const loss = (v) => (typeof v === "string" ? v : fmt(v, 3));
   const frequencies = (values[stages[0][0]].frequency_Hz || []).map((v) => `${fmt(v / 1e9, 4)} GHz`);
   const rows = [
     ["surface error ψ", "mm", "psi_m", mm],
@@ -283,9 +285,11 @@ function writeSummary() {
     ["99 % of them", "mm", "deviation_p99_m", mm],
     ["largest deviation", "mm", "deviation_max_m", mm],
     ...frequencies.flatMap((at, k) => [
-      [`loss of gain at ${at}`, "dB", `gain_loss_dB[${k}]`, (v) => fmt(v, 3)],
-      [`loss of gain at ${at}, best fit`, "dB", `fit_gain_loss_dB[${k}]`, (v) => fmt(v, 3)],
+      [`loss of gain at ${at}`, "dB", `gain_loss_dB[${k}]`, loss],
+      [`loss of gain at ${at}, best fit`, "dB", `fit_gain_loss_dB[${k}]`, loss],
     ]),
+    ["Ruze’s formula of that loss (to 3 dB) ends at", "GHz", "ruze_limit_Hz", (v) => fmt(v / 1e9, 3)],
+    ["the same, best fit", "GHz", "fit_ruze_limit_Hz", (v) => fmt(v / 1e9, 3)],
     ["tension ratio, inner cables", "", "inner_tension_ratio", fmtRatio],
     ["tension ratio, boundary cables", "", "boundary_tension_ratio", fmtRatio],
     ["slack cables", "", "slack_cables", fmtCount],

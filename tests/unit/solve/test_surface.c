@@ -180,7 +180,7 @@ END_TEST
 
 static void open_reflector(struct net *net)
 {
-    OPEN_CASE(net, SMALL_REFLECTOR, "surface.frequencies_Hz=[1e9, 9.6e9]");
+    OPEN_CASE(net, SMALL_REFLECTOR, "surface.frequencies_Hz=[1e9, 1.5e9]");
     memcpy(net->work.position_m, net->model.position_m, 3 * (size_t)net->model.n_node * sizeof(double));
 }
 
@@ -225,6 +225,21 @@ START_TEST(errors_are_those_of_their_definitions)
         ck_assert_double_lt(s.fit_gain_loss_dB[k], s.gain_loss_dB[k]);
     }
     close_net(&net);
+}
+END_TEST
+
+/* Beyond 3 dB, at lambda/15.1, Ruze's formula says nothing, and no number is given. */
+START_TEST(loss_beyond_the_formula_is_no_number)
+{
+    const double f = 9.6e9, wave_m = 299792458 / f, edge_m = wave_m * sqrt(0.3 * log(10)) / (4 * acos(-1));
+    ck_assert_double_eq_tol(wave_m / edge_m, 15.1, 0.05);
+    ck_assert_double_eq_tol(hf_surface_gain_loss_dB(edge_m * (1 - 1e-9), f), 3, 1e-8);
+    ck_assert_double_nan(hf_surface_gain_loss_dB(edge_m * (1 + 1e-9), f));
+    ck_assert_double_nan(hf_surface_gain_loss_dB(0.4678, f));
+    ck_assert_double_nan(hf_surface_gain_loss_dB((double)NAN, f));
+    ck_assert_double_eq(hf_surface_gain_loss_dB(0, f), 0);
+    ck_assert_double_eq_tol(hf_surface_ruze_limit_Hz(edge_m), f, 1e-12 * f);
+    ck_assert_double_eq(hf_surface_ruze_limit_Hz(0), INFINITY);
 }
 END_TEST
 
@@ -282,6 +297,7 @@ Suite *suite_unit_surface(void)
     tcase_add_test(tests, fit_of_two_lines_keeps_the_focal_length);
     tcase_add_test(tests, fit_without_an_answer_has_no_value);
     tcase_add_test(tests, errors_are_those_of_their_definitions);
+    tcase_add_test(tests, loss_beyond_the_formula_is_no_number);
     tcase_add_test(tests, drift_along_the_surface_is_no_error);
     tcase_add_test(tests, faceting_is_the_rms_under_a_chord);
     return suite;
