@@ -25,6 +25,7 @@ typedef struct {
     char *overrides; /* the --set arguments, one line each; "" when there are none */
     char sha256[65]; /* of text and overrides */
     char title[256];
+    char *where_given;                          /* places of the keys, for hf_config_place; internal */
     bool has_import, has_optimize, has_surface; /* which sections are there */
     bool has_sweep;                             /* its lines are cut out of `text`; study.h reads the axes */
 #define HF_CASE_GENERATOR(section, type, KEYS, help)                                                                   \
@@ -57,9 +58,20 @@ hf_status hf_config_parse(const char *path, const char *text, const char *const 
  * fit is cut. Returns the number of these keys. */
 int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t size);
 
+/* Write where a key of the table stands, for a message: "case.yaml:7:3: surface.kind", "--set surface.kind", or
+ * "case.yaml: surface.kind" when it is not given. Returns whether it is. */
+bool hf_config_place(const hf_case *settings, const char *key, char *text, size_t size);
+
 /* Make the scene that the case describes, and check it (hf_scene_check). Returns HF_OK; HF_BAD_CASE, also when a file
  * cannot be read; HF_NO_MEMORY. Free the scene in any case. */
 hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages);
+
+/* The wanted surface of a case with a section `surface`, all zero without one: that of the case, with the kind that the
+ * inner nodes of the scene are on where the case leaves it open. Returns HF_OK; HF_BAD_CASE when their theoretical
+ * positions are not on the surface, with the RMS of both kinds. Warns of a focal length out of proportion, also without
+ * that section. */
+hf_status hf_config_surface(const hf_case *settings, const hf_scene *scene, hf_surface_settings *surface,
+                            hf_messages *messages);
 
 /* Make the truss of a case that has one, and check it (hf_truss_check). Errors as hf_config_scene. Free the truss in
  * any case. */

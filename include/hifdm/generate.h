@@ -6,7 +6,7 @@
  *
  *   hf_scene_NAME         : const hf_TYPE *, const double EA_N[2], hf_scene *, hf_messages * -> hf_status
  *   hf_scene_NAME_surface : const hf_TYPE *, hf_surface_settings * that is all zero: sets what the net determines of
- *                           the wanted surface (focal length, width of a strip); the rest stays 0
+ *                           the wanted surface (kind, focal length, width of a strip); the rest stays 0
  *
  * The key table, the loading and checking of the section, the help and the making of the scene follow from the row. */
 #ifndef HIFDM_GENERATE_H

@@ -22,7 +22,7 @@
  *     once it is made, so threads share it; a workspace, batch, problem, optimiser or store belongs to one thread at a
  *     time.
  * GSL. GSL has one error handler for the whole program, which by default ends it even where GSL only reports "no
- *     progress": call gsl_set_error_handler_off() (gsl/gsl_errno.h) before hf_surface_measure, hf_surface_fit_nodes,
+ *     progress": call gsl_set_error_handler_off() (gsl/gsl_errno.h) before hf_surface_measure, hf_surface_fit_points,
  *     or hf_run_case for a case with a surface section. */
 #ifndef HIFDM_HIFDM_H
 #define HIFDM_HIFDM_H

@@ -17,8 +17,8 @@ extern "C" {
  * are loose. */
 double hf_metrics_psi_m(const hf_model *model, const hf_workspace *workspace);
 
-/* Largest tension of a group divided by its smallest one. NaN when the group is empty or has a strut; else INFINITY when
- * a cable is slack: what is left of its tension, 0 or 1e-22 N, is rounding. */
+/* Largest tension of a group divided by its smallest one. NaN when the group is empty or has a strut; else INFINITY
+ * when a cable is slack: what is left of its tension, 0 or 1e-22 N, is rounding. */
 double hf_metrics_tension_ratio(const hf_model *model, const hf_workspace *workspace, hf_group group);
 
 /* Whether cable i_cable is slack, and the number of slack cables. */

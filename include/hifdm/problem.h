@@ -19,14 +19,15 @@ typedef struct {
     hf_scene scene;
     hf_carrier carrier; /* all zero without a truss */
     hf_model model;
-    int planes;              /* of symmetry that link genes: bit 1 = x, bit 2 = y */
-    hf_workspace workspace;  /* holds the found shape until another is computed in it */
-    hf_form_result form;     /* of the form-finding */
-    double *start_q_N_per_m; /* [n_cable] of the found shape */
-    double *base_N;          /* [n_gene] boundary pretensions of the found shape, averaged over linked genes */
-    hf_evaluator evaluator;  /* of designs of this problem */
-    hf_batch batch;          /* evaluates designs; borrows the evaluator */
-    hf_solver solver;        /* the solver that the batch uses */
+    hf_surface_settings surface; /* the wanted one, its kind known; all zero when the case asks for no measures */
+    int planes;                  /* of symmetry that link genes: bit 1 = x, bit 2 = y */
+    hf_workspace workspace;      /* holds the found shape until another is computed in it */
+    hf_form_result form;         /* of the form-finding */
+    double *start_q_N_per_m;     /* [n_cable] of the found shape */
+    double *base_N;              /* [n_gene] boundary pretensions of the found shape, averaged over linked genes */
+    hf_evaluator evaluator;      /* of designs of this problem */
+    hf_batch batch;              /* evaluates designs; borrows the evaluator */
+    hf_solver solver;            /* the solver that the batch uses */
 } hf_problem;
 
 /* Read the case `path` under n_set overrides "key=value" (NULL, 0: none), build the model with its truss and symmetry,

@@ -24,6 +24,7 @@ typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
 typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN, HF_COUPLING_AUTO } hf_coupling_scheme;
 typedef enum { HF_COMPARE_AUTO, HF_COMPARE_TRUE, HF_COMPARE_FALSE } hf_compare;
+typedef enum { HF_SURFACE_AUTO, HF_SURFACE_PARABOLIC_CYLINDER, HF_SURFACE_PARABOLOID } hf_surface_kind;
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
 /* The words of these choices in a case file, indexed by the enumerations above; the last entry is NULL. */
@@ -34,6 +35,7 @@ extern const char *const hf_solver_word[5];
 extern const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1];
 extern const char *const hf_compare_word[4];
 extern const char *const hf_symmetry_word[6];
+extern const char *const hf_surface_kind_word[4];
 extern const char *const hf_coupling_scheme_word[4];
 
 /* How a net is coupled with an elastic truss. They are not used without a truss. */
@@ -81,11 +83,12 @@ typedef struct {
     double value[HF_LIST_MAX];
 } hf_double_list;
 
-/* The reflecting surface: the parabolic cylinder z = x^2/(4f) along y. */
+/* The reflecting surface: the parabolic cylinder z = x^2/(4f) along y, or the paraboloid z = (x^2 + y^2)/(4f). */
 typedef struct {
     double focal_length_m; /* 0 when no measures of the surface are asked for */
     double strip_width_m;  /* of the flat strips along y of which it consists; 0 = not known */
     hf_double_list frequencies_Hz;
+    hf_surface_kind kind; /* HF_SURFACE_AUTO in a case alone, until hf_config_surface has looked at the nodes */
 } hf_surface_settings;
 
 /* Room for the path of a case, a study or a table of a net or truss; a longer one is refused. */

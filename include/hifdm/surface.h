@@ -1,10 +1,11 @@
 /* surface - the errors of a shape as a reflector (METHOD section 9): RMS along the normal and of the half path length,
- * raw and after the best fit of the parabolic cylinder; loss of gain, faceting, percentiles. Computed once per reported
- * shape, for cases with a section `surface`.
+ * raw and after the best fit of the wanted kind of surface; loss of gain, faceting, percentiles. Computed once per
+ * reported shape, for cases with a section `surface`.
  * Stability: stable.
  *
- * The wanted surface is z = x^2/(4f), with its generatrix along y. With dz the height of an inner node above it, the
- * error along the normal is dz / sqrt(1 + (x/2f)^2), that of the half path length dz / (1 + (x/2f)^2). */
+ * The wanted surface is the cylinder z = x^2/(4f), with its generatrix along y, or the paraboloid z = (x^2 + y^2)/(4f).
+ * With dz the height of an inner node above it and t the slope there, x/(2f) or r/(2f), the error along the normal is
+ * dz / sqrt(1 + t^2), that of the half path length dz / (1 + t^2). */
 #ifndef HIFDM_SURFACE_H
 #define HIFDM_SURFACE_H
 
@@ -39,10 +40,11 @@ extern "C" {
     X(double, normal_rms_m, REAL, 2, "the same along the normal")                                                      \
     X(double, focal_length_m, REAL, 3, "of the fitted surface")                                                        \
     X(double, shift_x_m, REAL, 3, "")                                                                                  \
+    X(double, shift_y_m, REAL, 3, "0 of a cylinder")                                                                   \
     X(double, shift_z_m, REAL, 3, "")                                                                                  \
     X(double, rotation_x_rad, REAL, 3, "")                                                                             \
     X(double, rotation_y_rad, REAL, 3, "")                                                                             \
-    X(double, rotation_z_rad, REAL, 3, "")                                                                             \
+    X(double, rotation_z_rad, REAL, 3, "0 of a paraboloid")                                                            \
     X(double, ruze_limit_Hz, REAL, 6, "of hf_surface_measure: above it fit_gain_loss_dB is NaN")                       \
     X(double, center_x_m, REAL, 0, "of the nodes")                                                                     \
     X(double, center_y_m, REAL, 0, "of the nodes")                                                                     \
@@ -52,21 +54,23 @@ extern "C" {
 
 #define HF_SURFACE_MEMBER(type, member, kind, json, description) type member;
 
-/* The parabolic cylinder with the least half-path RMS from a set of nodes: the wanted one with another focal length,
- * turned about the centre of the nodes by Rx(a) Ry(b) Rz(c), then shifted. A shift along y changes nothing and is left
- * out. In a shallow reflector a shift in x and a turn about y are nearly the same motion: each of the two
- * numbers is uncertain, but the fitted surface is not.
- * shift_x_m is 0 where the nodes do not determine it, which means that the least RMS needs a shift of more than a tenth
- * of the net's half-width or is not found. focal_length_m is the wanted one where the nodes do not determine it: where
- * no least RMS is found, or one with a focal length more than twice or less than half as long, for example of two lines
- * along y. */
+/* The surface of the wanted kind with the least half-path RMS from a set of nodes: the wanted one with another focal
+ * length, turned about the centre of the nodes by Rx(a) Ry(b) Rz(c), then shifted. What changes nothing is left out: of
+ * a cylinder the shift along y, of a paraboloid the turn Rz. In a shallow reflector a shift across and a turn are
+ * nearly the same motion: each of the two numbers is uncertain, but the fitted surface is not.
+ * shift_x_m and shift_y_m are 0 where the nodes do not determine them, which means that the least RMS needs a shift of
+ * more than a tenth of the net's half-width or is not found. focal_length_m is the wanted one where the nodes do not
+ * determine it: where no least RMS is found, or one with a focal length more than twice or less than half as long, for
+ * example of two lines along y. */
 typedef struct {
     HF_SURFACE_FIT_LIST(HF_SURFACE_MEMBER)
 } hf_surface_fit;
 
-/* Fit n nodes, position_m [3][n]. With fewer than six nodes the answer is not unique. HF_OK or HF_NO_MEMORY. GSL's
- * error handler must be off here and in hf_surface_measure (hifdm.h). */
-hf_status hf_surface_fit_nodes(double focal_length_m, int n, const double *position_m, hf_surface_fit *fit);
+/* Fit n points, position_m [3][n], each with the square of root_weight [n]; NULL: all weigh the same. `kind` is not
+ * HF_SURFACE_AUTO. With fewer than six points the answer is not unique. HF_OK or HF_NO_MEMORY. GSL's error handler must
+ * be off here and in hf_surface_measure (hifdm.h). */
+hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int n, const double *position_m,
+                                const double *root_weight, hf_surface_fit *fit);
 
 typedef struct {
     bool is_measured; /* false: the other members have no meaning */
@@ -75,7 +79,8 @@ typedef struct {
     double gain_loss_dB[HF_LIST_MAX], fit_gain_loss_dB[HF_LIST_MAX]; /* by frequency, (M17) */
 } hf_surface_measures;
 
-/* Measure the inner nodes of the shape in the workspace. settings->focal_length_m > 0. HF_OK or HF_NO_MEMORY. */
+/* Measure the inner nodes of the shape in the workspace. settings->focal_length_m > 0, and the kind is known. HF_OK or
+ * HF_NO_MEMORY. */
 hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_model *model, const hf_workspace *workspace,
                              hf_surface_measures *measures);
 

@@ -455,7 +455,7 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
         return hf_error(messages, HF_BAD_CASE, "%s:%d:1: YAML: more than %d brackets are open", path,
                         hf_text_too_deep(settings->text), HF_TEXT_NESTING_MAX);
     loader l = {.c = settings, .faults = {.messages = messages, .path = path, .origin = path}};
-    l.faults.where_given = calloc((size_t)hf_n_field, HF_CONFIG_WHERE_SIZE);
+    l.faults.where_given = settings->where_given = calloc((size_t)hf_n_field, HF_CONFIG_WHERE_SIZE);
     if (!l.faults.where_given) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     for (int i = 0; i < hf_n_field; i++) {
         const char *text = hf_field_table[i].default_value;
@@ -469,7 +469,6 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
     hf_config_complete(settings);
     cut_sweep(&l);
     hf_status sealed = seal(settings, overrides, n_override);
-    free(l.faults.where_given);
     if (l.no_memory) sealed = HF_NO_MEMORY;
     if (sealed != HF_OK) return hf_error(messages, sealed, "%s: out of memory", path);
     if (l.faults.n > HF_FAULT_MAX_CASE)
@@ -518,5 +517,6 @@ void hf_case_free(hf_case *settings)
 {
     free(settings->text);
     free(settings->overrides);
+    free(settings->where_given);
     *settings = (hf_case){0};
 }

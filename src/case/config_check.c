@@ -31,12 +31,14 @@ static bool one_section_makes_the_net(const hf_case *c, char what[WHAT_SIZE])
     return n_present == 1;
 }
 
-/* What a generated net knows of its surface; 0 where it does not. */
-static hf_surface_settings known_surface(const hf_case *c)
+hf_surface_settings hf_config_known_surface(const hf_case *c, const char **key)
 {
     hf_surface_settings known = {0};
 #define KNOW(section, type, KEYS, help)                                                                                \
-    if (c->has_##section) hf_scene_##section##_surface(&c->section, &known);
+    if (c->has_##section) {                                                                                            \
+        hf_scene_##section##_surface(&c->section, &known);                                                             \
+        *key = "scene." #section ".focal_length_m";                                                                    \
+    }
     HF_GENERATORS(KNOW)
 #undef KNOW
     return known;
@@ -75,12 +77,14 @@ static void check_truss(const hf_case *c, hf_config_faults *f)
 void hf_config_check(const hf_case *c, hf_config_faults *f)
 {
     const hf_optimize_settings *o = &c->optimize;
+    const char *key;
     char what[WHAT_SIZE];
     if (!one_section_makes_the_net(c, what)) hf_config_fault_of(f, "scene", what);
     for (int i = 0; i < hf_n_field; i++)
         if (!hf_field_table[i].default_value && has_section_of(c, hf_field_table[i].path) && !*hf_config_where(f, i))
             hf_config_fault_of(f, hf_field_table[i].path, "is missing and has no default");
-    if (c->has_surface && c->surface.focal_length_m == 0 && known_surface(c).focal_length_m == 0 && !f->failed)
+    if (c->has_surface && c->surface.focal_length_m == 0 && hf_config_known_surface(c, &key).focal_length_m == 0 &&
+        !f->failed)
         hf_config_fault_of(f, "surface.focal_length_m",
                            c->has_import ? "is missing: an imported net does not tell its surface"
                                          : "is missing: this net does not tell its surface");
@@ -103,7 +107,9 @@ void hf_config_complete(hf_case *c)
 {
     c->has_truss |= c->has_truss_import;
     if (!c->has_surface) return;
-    hf_surface_settings known = known_surface(c);
+    const char *key;
+    hf_surface_settings known = hf_config_known_surface(c, &key);
+    if (c->surface.kind == HF_SURFACE_AUTO) c->surface.kind = known.kind;
     if (c->surface.focal_length_m == 0) c->surface.focal_length_m = known.focal_length_m;
     if (c->surface.strip_width_m == 0) c->surface.strip_width_m = known.strip_width_m;
 }

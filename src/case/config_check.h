@@ -12,4 +12,8 @@ void hf_config_check(const hf_case *settings, hf_config_faults *faults);
  * the net knows and the case does not give. */
 void hf_config_complete(hf_case *settings);
 
+/* What a generated net knows of its surface, 0 where it does not; *key: its key of the focal length, if there is such a
+ * net. */
+hf_surface_settings hf_config_known_surface(const hf_case *settings, const char **key);
+
 #endif

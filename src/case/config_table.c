@@ -51,8 +51,11 @@ const hf_field hf_field_table[] = {
     {"scene.import.cables", HF_FIELD_TEXT, AT(cables_path), 1, HF_PATH_SIZE, NULL, "", NULL,
      "CSV id,i,j,group,law,value[,EA_N,set]; path relative to the case file"},
 
+    {"surface.kind", HF_FIELD_WORD, AT(surface.kind), 0, 0, "auto", "", hf_surface_kind_word,
+     "parabolic_cylinder: z = x^2/(4f) along y; paraboloid: z = (x^2 + y^2)/(4f); auto: that of a generated net, of an "
+     "imported one the one that its inner nodes are on"},
     {"surface.focal_length_m", HF_FIELD_DOUBLE, AT(surface.focal_length_m), HF_ABOVE_ZERO, 1e9, "", "m", NULL,
-     "of the wanted surface z = x^2/(4f) along y; default: that of parabolic_cylinder"},
+     "of the wanted surface; default: that of a generated net"},
     {"surface.strip_width_m", HF_FIELD_DOUBLE, AT(surface.strip_width_m), HF_ABOVE_ZERO, 1e4, "", "m", NULL,
      "width of the flat strips along y, for the faceting error; default: a cell of parabolic_cylinder"},
     {"surface.frequencies_Hz", HF_FIELD_DOUBLE_LIST, AT(surface.frequencies_Hz), HF_ABOVE_ZERO, 1e15, "[]", "Hz", NULL,

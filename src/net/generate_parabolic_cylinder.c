@@ -219,6 +219,7 @@ hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double 
 void hf_scene_parabolic_cylinder_surface(const hf_cylinder *cylinder, hf_surface_settings *surface)
 {
     double n_cell = (double)cylinder->modules[0] * cylinder->cells_per_module[0];
+    surface->kind = HF_SURFACE_PARABOLIC_CYLINDER;
     surface->focal_length_m = cylinder->focal_length_m;
     if (n_cell > 0) surface->strip_width_m = cylinder->aperture_m / n_cell;
 }

@@ -11,5 +11,6 @@ const char *const hf_solver_word[5] = {"auto", "chord", "newton", "fixed_point",
 const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1] = {HF_OPTIMIZE_METHODS(WORD) NULL};
 #undef WORD
 const char *const hf_coupling_scheme_word[4] = {"accelerated", "plain", "auto", NULL};
+const char *const hf_surface_kind_word[4] = {"auto", "parabolic_cylinder", "paraboloid", NULL};
 const char *const hf_compare_word[4] = {"auto", "true", "false", NULL};
 const char *const hf_symmetry_word[6] = {"none", "x", "y", "xy", "auto", NULL};

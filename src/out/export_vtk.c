@@ -16,6 +16,7 @@
 
 #include "base/arena.h"
 #include "base/file_out.h"
+#include "net/wanted.h"
 #include "store/hdf5.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
@@ -160,16 +161,18 @@ static void lay_out(hf_arena *a, const hf_scene *s, scratch *t)
 
 static void fill(const hf_scene *s, const hf_shape *shape, const hf_summary *summary, scratch *t)
 {
-    double focal_m = summary->surface.focal_length_m, reference_N = hf_model_reference_N(s, summary->pretension_N);
+    const hf_surface_settings *surface = &summary->surface;
+    double reference_N = hf_model_reference_N(s, summary->pretension_N);
     const double *position_m = shape ? shape->position_m : s->position_m;
     for (int i = 0; i < s->n_node; i++) {
         const double *p = position_m + 3 * (size_t)i, *p0 = s->position_m + 3 * (size_t)i;
-        double *d = t->displacement_m + 3 * (size_t)i, slope = p[0] / (2 * focal_m);
+        double *d = t->displacement_m + 3 * (size_t)i, slope[2];
         for (int c = 0; c < 3; c++)
             d[c] = p[c] - p0[c];
         t->role[i] = s->role[i];
         t->deviation_m[i] = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-        t->normal_error_m[i] = (p[2] - p[0] * p[0] / (4 * focal_m)) / sqrt(1 + slope * slope);
+        double above = hf_wanted_height_above(surface->kind, 1 / (4 * surface->focal_length_m), p, slope);
+        t->normal_error_m[i] = above / sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
     }
     for (int e = 0; e < s->n_cable; e++) {
         t->group[e] = s->group[e];

@@ -112,7 +112,8 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
 {
     const hf_surface_measures *m = &s->measures[stage];
     if (!m->is_measured) return;
-    fprintf(f, "                surface: half-path RMS %.4f mm, normal %.4f mm; ", m->half_path_rms_m * 1e3,
+    fprintf(f, "                surface, %s: half-path RMS %.4f mm, normal %.4f mm; ",
+            s->surface.kind == HF_SURFACE_PARABOLOID ? "paraboloid" : "parabolic cylinder", m->half_path_rms_m * 1e3,
             m->normal_rms_m * 1e3);
     if (m->fit.converged)
         fprintf(f, "best fit (f %.4f m) %.4f mm, %.4f mm\n", m->fit.focal_length_m, m->fit.half_path_rms_m * 1e3,

@@ -21,6 +21,7 @@ hf_status hf_problem_load(const char *path, const char *const *set, int n_set, h
     *p = (hf_problem){0};
     HF_TRY(hf_config_load(path, set, n_set, &p->settings, messages));
     HF_TRY(hf_config_scene(&p->settings, &p->scene, messages));
+    HF_TRY(hf_config_surface(&p->settings, &p->scene, &p->surface, messages));
     HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));
     if (p->settings.has_truss) {
         const hf_carrier *c = &p->carrier;
@@ -57,7 +58,7 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->planes = p->planes;
     s->has_coupling = model->n_attachment > 0;
     s->pretension_N = model->pretension_N;
-    if (p->settings.has_surface) s->surface = p->settings.surface;
+    s->surface = p->surface;
     s->has_truss = settings->has_truss;
     s->truss.mass_kg = p->carrier.mass_kg;
     s->truss.n_node = p->carrier.truss.n_node;

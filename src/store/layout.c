@@ -35,6 +35,7 @@ const hf_hdf5_kind hf_layout_law = {WORDS(hf_law_word)};
 const hf_hdf5_kind hf_layout_ga_stop = {WORDS(hf_population_stop_word)};
 const hf_hdf5_kind hf_layout_polish_stop = {WORDS(hf_polish_stop_word)};
 const hf_hdf5_kind hf_layout_joint = {ENDED_WORDS(hf_joint_word)};
+const hf_hdf5_kind hf_layout_surface_kind = {ENDED_WORDS(hf_surface_kind_word)};
 const hf_hdf5_kind hf_layout_unit = {WORDS(hf_unit_word)};
 const hf_hdf5_kind hf_layout_status = {VALUES(status_word, status_value)};
 const hf_hdf5_kind hf_layout_stop_reason = {VALUES(stop_word, stop_value)};

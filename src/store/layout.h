@@ -23,7 +23,7 @@
 
 extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_layout_status, hf_layout_stop_reason,
     hf_layout_ga_stop, hf_layout_polish_stop, hf_layout_joint, hf_layout_unit, hf_layout_coupling_stop,
-    hf_layout_bound_reason;
+    hf_layout_bound_reason, hf_layout_surface_kind;
 #define HF_KIND_ROLE (&hf_layout_role)
 #define HF_KIND_GROUP (&hf_layout_group)
 #define HF_KIND_LAW (&hf_layout_law)
@@ -35,6 +35,7 @@ extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_lay
 #define HF_KIND_UNIT (&hf_layout_unit)
 #define HF_KIND_COUPLING_STOP (&hf_layout_coupling_stop)
 #define HF_KIND_BOUND_REASON (&hf_layout_bound_reason)
+#define HF_KIND_SURFACE (&hf_layout_surface_kind)
 #define HF_KIND_SOLVER HF_KIND_INT /* stored as its number */
 #define HF_KIND_TRUTH HF_KIND_INT  /* a bool that was stored as a number before there were flags */
 
@@ -104,7 +105,7 @@ void hf_layout_put_coupling(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_coupling(hf_hdf5 *io, hf_summary *summary);
 
 /* layout_surface: the measures of the surface, below /surface:
- *   /surface           attributes focal_length_m, strip_width_m; frequency_Hz [k]
+ *   /surface           attributes kind, focal_length_m, strip_width_m; frequency_Hz [k]
  *   /surface/STAGE     form, optimize, polish, as far as they ran: attributes, the numbers of hf_surface_measures and
  *                      of its fit (fit_...); gain_loss_dB, fit_gain_loss_dB [k]
  * Nothing when the case asks for none; no data sets when it names no frequencies. */

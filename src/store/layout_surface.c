@@ -10,6 +10,7 @@ static const hf_hdf5_member measures_table[] = {HF_SURFACE_LIST(MEASURE) HF_SURF
 #define N_MEASURE HF_HDF5_COUNT(measures_table)
 
 static const hf_hdf5_member settings_table[] = {
+    {"/surface", "kind", HF_KIND_SURFACE, offsetof(hf_surface_settings, kind), sizeof(hf_surface_kind)},
     {"/surface", "focal_length_m", HF_KIND_REAL, offsetof(hf_surface_settings, focal_length_m), sizeof(double)},
     {"/surface", "strip_width_m", HF_KIND_REAL, offsetof(hf_surface_settings, strip_width_m), sizeof(double)}};
 

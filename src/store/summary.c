@@ -104,6 +104,7 @@ static void write_surface(const hf_summary *s, int stage, hf_json *j)
     if (!m->is_measured) return;
     hf_json_line(j, "  ");
     hf_json_open(j, "surface", '{');
+    hf_json_text(j, "kind", hf_surface_kind_word[s->surface.kind]);
     for (int place = 1; place <= LAST_PLACE; place++) {
         write_fields(ALL(measure_field), place, place, m, j);
         write_fields(ALL(fit_field), place, place, &m->fit, j);

@@ -85,7 +85,7 @@ START_TEST(schema_is_yaml_with_every_key)
         "set(a['scene']) == {'parabolic_cylinder', 'import'}",
         "set(a['scene']['parabolic_cylinder']) == {'aperture_m', 'length_m', 'focal_length_m', 'modules', "
         "'cells_per_module', 'spacing', 'boundary', 'scallop', 'supports'}",
-        "set(a['scene']['import']) == {'nodes', 'cables'}", "a['surface'] == {'frequencies_Hz': []}",
+        "set(a['scene']['import']) == {'nodes', 'cables'}", "a['surface'] == {'kind': 'auto', 'frequencies_Hz': []}",
         "set(a['form']) == {'method', 'pretension_N', 'stop', 'residual_tolerance', 'length_tolerance', "
         "'rms_tolerance_m', 'max_iterations', 'collapse_ratio'}",
         "set(a['optimize']) == {'method', 'symmetry', 'solver', 'polish_iterations', 'compare_lm', 'rule', "

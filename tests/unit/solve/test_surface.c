@@ -5,6 +5,11 @@
 
 /* ---- the best fit ---- */
 
+static hf_status fit_nodes(double focal_length_m, int n, const double *position_m, hf_surface_fit *fit)
+{
+    return hf_surface_fit_points(HF_SURFACE_PARABOLIC_CYLINDER, focal_length_m, n, position_m, NULL, fit);
+}
+
 /* Rx(a) Ry(b) Rz(c) p, by the textbook. */
 static void turn(const double angle[3], const double p[3], double to[3])
 {
@@ -76,13 +81,89 @@ START_TEST(known_motion_and_focal_length_are_recovered)
     double position_m[3 * N_GRID];
     hf_surface_fit fit;
     moved_grid(motions[_i].found_m, motions[_i].angle, motions[_i].shift, position_m);
-    ck_assert_int_eq(hf_surface_fit_nodes(motions[_i].focal_length_m, N_GRID, position_m, &fit), HF_OK);
+    ck_assert_int_eq(fit_nodes(motions[_i].focal_length_m, N_GRID, position_m, &fit), HF_OK);
     ck_assert_double_eq_tol(fit.focal_length_m, motions[_i].found_m, motions[_i].tolerance * motions[_i].found_m);
     ck_assert_double_lt(difference_from(&fit, motions[_i].angle, motions[_i].shift), motions[_i].tolerance);
     ck_assert_double_lt(fit.half_path_rms_m, 1e-14); /* rounding of coordinates of a few metres */
     ck_assert_double_lt(fit.normal_rms_m, 1e-14);
     ck_assert(fit.converged);
     ck_assert_int_lt(fit.iterations, 60);
+}
+END_TEST
+
+/* A paraboloid of revolution: apertures about the axis and beside it. The turn about its axis is not to be seen; axis,
+ * vertex and focal length are. */
+static const struct {
+    double focal_length_m, found_m, middle_m, angle[3], shift[3];
+} round_motions[] = {
+    {5, 5, 0, {0}, {0}},
+    {5, 5.3, 0, {0}, {0}},
+    {5, 4.9, 0, {0.01, -0.02, 0.015}, {0.05, 0.1, -0.04}},
+    {5, 5.1, 7, {0.003, -0.002, 0.015}, {0.02, -0.03, 0.05}},
+};
+enum { N_ROUND_MOTION = sizeof round_motions / sizeof *round_motions };
+
+START_TEST(known_paraboloid_is_recovered)
+{
+    double p[3 * N_GRID], axis[2][3], vertex[2][3], zero[3] = {0}, z[3] = {0, 0, 1}, from[3];
+    double f = round_motions[_i].found_m;
+    hf_surface_fit fit;
+    for (int k = 0; k < N_GRID; k++) {
+        double x = round_motions[_i].middle_m - 3 + 6.0 * (k % NX) / (NX - 1), y = -3 + 6.0 * (k / NX) / (NY - 1);
+        double q[3];
+        turn(round_motions[_i].angle, (double[]){x, y, (x * x + y * y) / (4 * f)}, q);
+        for (int c = 0; c < 3; c++)
+            p[c * N_GRID + k] = q[c] + round_motions[_i].shift[c];
+    }
+    ck_assert_int_eq(
+        hf_surface_fit_points(HF_SURFACE_PARABOLOID, round_motions[_i].focal_length_m, N_GRID, p, NULL, &fit), HF_OK);
+    ck_assert(fit.converged);
+    ck_assert_double_eq_tol(fit.focal_length_m, f, 1e-9);
+    ck_assert_double_lt(fit.half_path_rms_m, 1e-14); /* rounding, as above */
+    ck_assert_double_lt(fit.normal_rms_m, 1e-14);
+    ck_assert_double_eq(fit.rotation_z_rad, 0);
+    const double turned[3] = {fit.rotation_x_rad, fit.rotation_y_rad, fit.rotation_z_rad};
+    const double center[3] = {fit.center_x_m, fit.center_y_m, fit.center_z_m};
+    const double moved[3] = {fit.shift_x_m, fit.shift_y_m, fit.shift_z_m};
+    turn(round_motions[_i].angle, z, axis[0]);
+    turn(turned, z, axis[1]);
+    turn(round_motions[_i].angle, zero, vertex[0]);
+    for (int c = 0; c < 3; c++)
+        from[c] = -center[c];
+    turn(turned, from, vertex[1]);
+    for (int c = 0; c < 3; c++) {
+        ck_assert_double_eq_tol(axis[0][c], axis[1][c], 1e-9);
+        ck_assert_double_eq_tol(vertex[0][c] + round_motions[_i].shift[c], vertex[1][c] + center[c] + moved[c], 1e-8);
+    }
+}
+END_TEST
+
+/* Points of weight two are points that are there twice. */
+START_TEST(weights_count_points)
+{
+    double p[3 * N_GRID], root[N_GRID], twice[2 * 3 * N_GRID];
+    struct rng rng = rng_start(440 + (uint64_t)_i);
+    hf_surface_kind kind = _i ? HF_SURFACE_PARABOLOID : HF_SURFACE_PARABOLIC_CYLINDER;
+    hf_surface_fit one, two;
+    int n = 0;
+    for (int k = 0; k < N_GRID; k++) {
+        p[k] = rng_uniform(&rng, -3, 3);
+        p[N_GRID + k] = rng_uniform(&rng, -3, 3);
+        p[2 * N_GRID + k] = (p[k] * p[k] + _i * p[N_GRID + k] * p[N_GRID + k]) / 21 + rng_uniform(&rng, -3e-3, 3e-3);
+        root[k] = k % 2 ? 1 : sqrt(2);
+        n += k % 2 ? 1 : 2;
+    }
+    for (int c = 0, at = 0; c < 3; c++)
+        for (int k = 0; k < N_GRID; k++)
+            for (int copy = k % 2; copy < 2; copy++)
+                twice[at++] = p[c * N_GRID + k];
+    ck_assert_int_eq(hf_surface_fit_points(kind, 5, N_GRID, p, root, &one), HF_OK);
+    ck_assert_int_eq(hf_surface_fit_points(kind, 5, n, twice, NULL, &two), HF_OK);
+    ck_assert(one.converged && two.converged);
+    ck_assert_double_eq_tol(one.focal_length_m, two.focal_length_m, 1e-7);
+    ck_assert_double_eq_tol(one.half_path_rms_m, two.half_path_rms_m, 1e-13);
+    ck_assert_double_eq_tol(one.normal_rms_m, two.normal_rms_m, 1e-10);
+    ck_assert_double_gt(one.half_path_rms_m, 1e-3);
 }
 END_TEST
 
@@ -97,8 +178,8 @@ START_TEST(fit_of_a_rough_surface_is_a_minimum)
     moved_grid(5.1, angle, shift, position_m);
     for (int k = 0; k < N_GRID; k++)
         position_m[2 * N_GRID + k] += rng_uniform(&rng, -0.003, 0.003);
-    ck_assert_int_eq(hf_surface_fit_nodes(5, N_GRID, position_m, &one), HF_OK);
-    ck_assert_int_eq(hf_surface_fit_nodes(5.4, N_GRID, position_m, &other), HF_OK);
+    ck_assert_int_eq(fit_nodes(5, N_GRID, position_m, &one), HF_OK);
+    ck_assert_int_eq(fit_nodes(5.4, N_GRID, position_m, &other), HF_OK);
     ck_assert_double_eq_tol(one.focal_length_m, other.focal_length_m, 1e-7);
     ck_assert_double_eq_tol(one.half_path_rms_m, other.half_path_rms_m, 1e-13);
     ck_assert_double_gt(one.half_path_rms_m, 0.5 * 0.003 / sqrt(3)); /* that of the noise, less six of 117 parts */
@@ -111,9 +192,9 @@ START_TEST(few_nodes_are_no_fault)
 {
     static const double position_m[] = {0, 1, 0, 1, 0, 0.3};
     hf_surface_fit fit;
-    ck_assert_int_eq(hf_surface_fit_nodes(5, 2, position_m, &fit), HF_OK);
+    ck_assert_int_eq(fit_nodes(5, 2, position_m, &fit), HF_OK);
     ck_assert_double_lt(fit.half_path_rms_m, 1e-9);
-    ck_assert_int_eq(hf_surface_fit_nodes(5, 1, position_m, &fit), HF_OK);
+    ck_assert_int_eq(fit_nodes(5, 1, position_m, &fit), HF_OK);
     ck_assert(isfinite(fit.focal_length_m));
     ck_assert(fit.converged);
 }
@@ -133,8 +214,8 @@ START_TEST(fit_of_few_rough_nodes_stays)
         p[N + k] = k / 4 * 1.3;
         p[2 * N + k] = p[k] * p[k] / 20 + rng_uniform(&rng, -0.002, 0.002);
     }
-    ck_assert_int_eq(hf_surface_fit_nodes(5, N, p, &one), HF_OK);
-    ck_assert_int_eq(hf_surface_fit_nodes(5.4, N, p, &other), HF_OK);
+    ck_assert_int_eq(fit_nodes(5, N, p, &one), HF_OK);
+    ck_assert_int_eq(fit_nodes(5.4, N, p, &other), HF_OK);
     ck_assert(one.converged && other.converged);
     ck_assert_double_eq_tol(one.focal_length_m, 5, 0.5);
     ck_assert_double_lt(fabs(one.shift_x_m), 0.13);
@@ -156,7 +237,7 @@ START_TEST(fit_of_two_lines_keeps_the_focal_length)
             p[N + k] = k / 2 * 0.8;
             p[2 * N + k] = 0.05 + rng_uniform(&rng, -0.005, 0.005);
         }
-        ck_assert_int_eq(hf_surface_fit_nodes(5, N, p, &fit), HF_OK);
+        ck_assert_int_eq(fit_nodes(5, N, p, &fit), HF_OK);
         ck_assert(fit.converged);
         ck_assert_double_lt(fit.half_path_rms_m, 0.005);
         ck_assert_double_eq_tol(fit.shift_z_m, 0.0255, 0.02); /* 0.05 - 0.7^2/20 */
@@ -170,7 +251,7 @@ START_TEST(fit_without_an_answer_has_no_value)
 {
     static const double position_m[] = {0, 1, 2, 0, 1, 0, NAN, 0.3, 0.2};
     hf_surface_fit fit;
-    ck_assert_int_eq(hf_surface_fit_nodes(5, 3, position_m, &fit), HF_OK);
+    ck_assert_int_eq(fit_nodes(5, 3, position_m, &fit), HF_OK);
     ck_assert(!fit.converged);
     ck_assert(isnan(fit.half_path_rms_m) && isnan(fit.focal_length_m) && isnan(fit.rotation_z_rad));
 }
@@ -202,13 +283,16 @@ START_TEST(errors_are_those_of_their_definitions)
     const double f = net.settings.parabolic_cylinder.focal_length_m;
     struct rng rng = rng_start(410);
     long double normal = 0, half_path = 0, up = 0;
-    int n = 0;
+    int n = 0, is_round = _i;
+    if (is_round) net.settings.surface.kind = HF_SURFACE_PARABOLOID;
     for (int row = 0; row < m->n_free; row++) {
-        double dz = rng_uniform(&rng, -0.02, 0.02), x = m->position_m[row];
+        double dz = rng_uniform(&rng, -0.02, 0.02), x = m->position_m[row], y = m->position_m[m->n_node + row];
+        if (is_round) net.work.position_m[2 * m->n_node + row] += y * y / (4 * f);
+        double moved = dz + (is_round ? y * y / (4 * f) : 0);
         net.work.position_m[2 * m->n_node + row] += dz;
         if (net.scene.role[m->node_of_row[row]] != HF_ROLE_INNER) continue;
-        long double cosine = 1 / sqrtl(1 + (long double)x * x / (4 * f * f)); /* of the slope x/(2f) */
-        up += dz * dz;
+        long double slope2 = ((long double)x * x + is_round * y * y) / (4 * f * f), cosine = 1 / sqrtl(1 + slope2);
+        up += moved * moved;
         normal += dz * cosine * dz * cosine;
         half_path += dz * cosine * cosine * dz * cosine * cosine;
         n++;
@@ -291,12 +375,14 @@ Suite *suite_unit_surface(void)
     TCase *tests = tcase_create("surface");
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, known_motion_and_focal_length_are_recovered, 0, N_MOTION);
+    tcase_add_loop_test(tests, known_paraboloid_is_recovered, 0, N_ROUND_MOTION);
+    tcase_add_loop_test(tests, weights_count_points, 0, 2);
     tcase_add_loop_test(tests, fit_of_a_rough_surface_is_a_minimum, 0, 3);
     tcase_add_test(tests, few_nodes_are_no_fault);
     tcase_add_loop_test(tests, fit_of_few_rough_nodes_stays, 0, 8);
     tcase_add_test(tests, fit_of_two_lines_keeps_the_focal_length);
     tcase_add_test(tests, fit_without_an_answer_has_no_value);
-    tcase_add_test(tests, errors_are_those_of_their_definitions);
+    tcase_add_loop_test(tests, errors_are_those_of_their_definitions, 0, 2);
     tcase_add_test(tests, loss_beyond_the_formula_is_no_number);
     tcase_add_test(tests, drift_along_the_surface_is_no_error);
     tcase_add_test(tests, faceting_is_the_rms_under_a_chord);

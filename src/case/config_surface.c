@@ -1,0 +1,53 @@
+/* Is the net on the surface that the case wants? */
+#include "case/config_check.h"
+#include "net/wanted.h"
+
+#include <stdio.h>
+
+/* Theoretical positions may be off the wanted surface by this part of its depth below the net, as RMS: 1 mm on the 50
+ * mm of a shallow reflector, or nodes raised by half the sag of facets of a sixth of the radius. A paraboloid taken for
+ * a cylinder is off by a third. */
+#define OFF_MOST 0.02
+
+#define PLACE_SIZE (HF_PATH_SIZE + 128)
+
+static bool is_on(const hf_wanted_fit *fit)
+{
+    return fit->rms_m <= OFF_MOST * fit->depth_m;
+}
+
+static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surface_settings *surface,
+                        const hf_wanted_fit *cylinder, const hf_wanted_fit *paraboloid, hf_messages *messages)
+{
+    char place[PLACE_SIZE], other[PLACE_SIZE], line[32] = "";
+    bool is_round = surface->kind == HF_SURFACE_PARABOLOID;
+    const hf_wanted_fit *fit = is_round ? paraboloid : cylinder;
+    const char *advice = "its vertex is the origin, its axis z, its focal length this one";
+    if (is_on(is_round ? cylinder : paraboloid))
+        advice = is_round ? "give surface.kind: parabolic_cylinder" : "give surface.kind: paraboloid";
+    if (!hf_config_place(c, "surface.focal_length_m", place, sizeof place) &&
+        hf_config_place(c, "surface.kind", other, sizeof other))
+        snprintf(place, sizeof place, "%s", other);
+    if (scene->node_line) snprintf(line, sizeof line, ", line %d", scene->node_line[fit->farthest]);
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: the inner nodes are not on the %s with f = %g m: RMS of their heights above it %.4g mm, "
+                    "farthest '%s'%s, %.4g mm (above the parabolic_cylinder z = x^2/(4f) the RMS is %.4g mm, above the "
+                    "paraboloid z = (x^2 + y^2)/(4f) %.4g mm); %s",
+                    place, hf_surface_kind_word[surface->kind], surface->focal_length_m, fit->rms_m * 1e3,
+                    scene->node_id[fit->farthest], line, fit->most_m * 1e3, cylinder->rms_m * 1e3,
+                    paraboloid->rms_m * 1e3, advice);
+}
+
+hf_status hf_config_surface(const hf_case *c, const hf_scene *scene, hf_surface_settings *surface,
+                            hf_messages *messages)
+{
+    *surface = (hf_surface_settings){0};
+    if (!c->has_surface) return HF_OK;
+    *surface = c->surface;
+    hf_wanted_fit cylinder = hf_wanted_compare(HF_SURFACE_PARABOLIC_CYLINDER, surface->focal_length_m, scene);
+    hf_wanted_fit paraboloid = hf_wanted_compare(HF_SURFACE_PARABOLOID, surface->focal_length_m, scene);
+    if (surface->kind == HF_SURFACE_AUTO)
+        surface->kind = paraboloid.rms_m < cylinder.rms_m ? HF_SURFACE_PARABOLOID : HF_SURFACE_PARABOLIC_CYLINDER;
+    if (is_on(surface->kind == HF_SURFACE_PARABOLOID ? &paraboloid : &cylinder)) return HF_OK;
+    return refuse(c, scene, surface, &cylinder, &paraboloid, messages);
+}

@@ -1,0 +1,25 @@
+#include "net/wanted.h"
+
+#include <math.h>
+
+hf_wanted_fit hf_wanted_compare(hf_surface_kind kind, double focal_length_m, const hf_scene *s)
+{
+    hf_wanted_fit fit = {.farthest = -1};
+    double low = INFINITY, high = -INFINITY, square = 0, slope[2], curvature = 1 / (4 * focal_length_m);
+    int n = 0;
+    for (int i = 0; i < s->n_node; i++) {
+        const double *p = s->position_m + 3 * (size_t)i;
+        double above = hf_wanted_height_above(kind, curvature, p, slope), wanted = p[2] - above;
+        low = fmin(low, wanted);
+        high = fmax(high, wanted);
+        if (s->role[i] != HF_ROLE_INNER) continue;
+        n++;
+        square += above * above;
+        if (!(fabs(above) > fit.most_m) && fit.farthest >= 0) continue;
+        fit.most_m = fabs(above);
+        fit.farthest = i;
+    }
+    fit.depth_m = high - low;
+    fit.rms_m = n ? sqrt(square / n) : 0;
+    return fit;
+}
