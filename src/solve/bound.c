@@ -288,6 +288,8 @@ void hf_bound_prove(const hf_model *m, bool has_factor, hf_workspace *w, hf_form
     hf_refined p;
     double radius = 0;
     r->position_bound_m = r->psi_bound_m = (double)NAN;
+    r->bound_reason = HF_BOUND_NOT_DEFINITE;
+    if (r->n_loose) return; /* such a node has no stiffness */
     r->bound_reason = m->has_strut ? HF_BOUND_STRUTS : m->n_attachment ? HF_BOUND_TRUSS : HF_BOUND_NO_MATRIX;
     if (m->has_strut || m->n_attachment || (!m->has_newton && hf_workspace_iterates(m, w))) return;
     hf_refine_open(m, w, r->condition, &p);

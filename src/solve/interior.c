@@ -87,8 +87,10 @@ static double first_tension_N(const hf_model *m, hf_law_cable cable, double flex
     return fmin(fmax(T, reference / FIRST_RANGE), reference * FIRST_RANGE);
 }
 
+/* Below, `held` are the rows that move among pinned ones (hf_interior_run_held), else NULL. */
+
 /* A centred point for MU_FIRST at the theoretical shape. Errors of length and balance are left to the path. */
-static void set_start(const hf_model *m, hf_workspace *w, bool held)
+static void set_start(const hf_model *m, hf_workspace *w, const hf_newton_rows *held)
 {
     double mean_m = hf_joint_mean_length_m(m);
     if (held)
@@ -151,7 +153,7 @@ static void add_springs_pull(const hf_model *m, hf_workspace *w)
 }
 
 /* Sets newton_force_N to the forces out of balance, and d and short_m of the cables. */
-static path_error measure_path(const hf_model *m, hf_workspace *w, bool held)
+static path_error measure_path(const hf_model *m, hf_workspace *w, const hf_newton_rows *held)
 {
     path_error error = {0};
     double sum = 0, all = 0;
@@ -197,16 +199,25 @@ static void set_vector_step(const hf_model *m, const hf_workspace *w, int e, dou
         step[c] = (j < w->n_moving ? w->newton_step[3 * j + c] : 0) - (i < w->n_moving ? w->newton_step[3 * i + c] : 0);
 }
 
-/* newton_step from the right-hand side to the step; rows that do not move get none, to the last bit. */
-static void solve_step(const hf_model *m, hf_workspace *w, bool held)
+/* Factor path_block with springs (may be NULL), which tie rows to the ground. */
+static hf_status factor(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, const double *spring_N_per_m)
 {
-    hf_joint_solve(m, w, path_block, w->newton_step);
-    for (int k = 0; k < hf_newton_matrix_dofs(m) && held; k++)
-        if (isinf(w->spring_N_per_m[k / 3])) w->newton_step[k] = 0;
+    if (held) return hf_newton_matrix_factor_rows(m, w, path_block, spring_N_per_m, held);
+    return hf_joint_factor(m, w, path_block, spring_N_per_m, NULL);
+}
+
+/* newton_step from the right-hand side to the step. */
+static void solve_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *held)
+{
+    if (held)
+        hf_newton_matrix_solve_rows(m, w, held, w->newton_step);
+    else
+        hf_joint_solve(m, w, path_block, w->newton_step);
 }
 
 /* Sets newton_step and the D... of all cables. newton_band holds the factor. */
-static void find_path_direction(const hf_model *m, hf_workspace *w, bool held, double target, bool corrected)
+static void find_path_direction(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double target,
+                                bool corrected)
 {
     double pull[3], *rhs = w->newton_step;
     memcpy(rhs, w->newton_force_N, 3 * (size_t)w->n_moving * sizeof *rhs);
@@ -294,11 +305,11 @@ static bool is_told_to_stop(const hf_workspace *w)
 }
 
 /* One step of the path. False when it does not move. */
-static bool take_step(const hf_model *m, hf_workspace *w, bool held, double mu)
+static bool take_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double mu)
 {
     for (int e = 0; e < m->n_cable; e++)
         if (!is_fixed(m, w, e) && !is_spring(w, e)) hf_path_cable_set_scaling(cables(w) + e, has_multiplier(w, e));
-    if (hf_joint_factor(m, w, path_block, held ? w->spring_N_per_m : NULL, NULL) != HF_OK) return false;
+    if (factor(m, w, held, held ? w->spring_N_per_m : NULL) != HF_OK) return false;
     find_path_direction(m, w, held, 0, false);
     double part = fmin(1, find_room(m, w, true)), left = 1 - part;
     find_path_direction(m, w, held, left * left * left * mu, true);
@@ -317,8 +328,8 @@ static void record_path(const hf_model *m, hf_workspace *w, const path_error *er
 
 /* Goes along the path until the errors are at most `wanted`. False when they are not after max_steps, or when they are
  * near and stand still: rounding. *fall: mu over that before the last step. */
-static bool follow_path(const hf_model *m, hf_workspace *w, bool held, double wanted, int max_steps, int *n_step,
-                        double *fall)
+static bool follow_path(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double wanted, int max_steps,
+                        int *n_step, double *fall)
 {
     double mu_before = INFINITY, least = INFINITY;
     int n_standing = 0;
@@ -343,7 +354,7 @@ static bool follow_path(const hf_model *m, hf_workspace *w, bool held, double wa
 
 /* Sets newton_force_N at position_m and tension_N, and per cable unit, along, across, and DT (the change of T for
  * the error of length alone). Returns the errors: lengths of taut cables, tensions left in slack ones. */
-static path_error measure_end(const hf_model *m, hf_workspace *w, bool held)
+static path_error measure_end(const hf_model *m, hf_workspace *w, const hf_newton_rows *held)
 {
     path_error error = {0};
     double reference = m->reference_N;
@@ -391,13 +402,13 @@ static double largest_error(const hf_model *m, const path_error *error)
 }
 
 /* Moves position_m and tension_N by one Newton step. `error`: that before it. False when its matrix has no factor. */
-static bool take_last_step(const hf_model *m, hf_workspace *w, bool held, double error)
+static bool take_last_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double error)
 {
     double pull[3], *step = w->newton_step,
                     damping = DAMPING * fmin(error, 1) * m->reference_N / hf_joint_mean_length_m(m);
     for (int i = 0; i < m->n_free && !held; i++)
         w->spring_N_per_m[i] = damping;
-    if (hf_joint_factor(m, w, path_block, w->spring_N_per_m, NULL) != HF_OK) return false;
+    if (factor(m, w, held, w->spring_N_per_m) != HF_OK) return false;
     memcpy(step, w->newton_force_N, 3 * (size_t)w->n_moving * sizeof *step);
     for (int e = 0; e < m->n_cable; e++) {
         const hf_path_cable *p = cables(w) + e;
@@ -461,8 +472,8 @@ static void take_point(const hf_model *m, hf_workspace *w, const double *positio
  * the tolerances or fall no more. True when they are within the tolerances; else the point is the first, or the last if
  * that is near and has smaller errors. With `impatient` the first step must not lead far away and the others must
  * reduce the errors clearly: the path can go on, and its next steps are worth more. */
-static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w, bool held, bool impatient,
-                   int max_steps, int *n_step)
+static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w, const hf_newton_rows *held,
+                   bool impatient, int max_steps, int *n_step)
 {
     path_error now = measure_end(m, w, held);
     double first = largest_error(m, &now);
@@ -498,8 +509,8 @@ static bool has_loaded_chain(const hf_model *m, hf_workspace *w)
 }
 
 /* hf_interior_run, and with `held` hf_interior_run_held. */
-static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_workspace *w, bool held, int max_steps,
-                          int *n_step, int *culprit)
+static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_workspace *w, const hf_newton_rows *held,
+                          int max_steps, int *n_step, int *culprit)
 {
     double wanted = NEAR, fall = 1;
     int last = *n_step + max_steps;
@@ -530,11 +541,12 @@ static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_works
 hf_status hf_interior_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int max_steps, int *n_step,
                           int *culprit)
 {
-    return run_path(m, s, w, false, max_steps, n_step, culprit);
+    return run_path(m, s, w, NULL, max_steps, n_step, culprit);
 }
 
 hf_status hf_interior_run_held(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int max_steps,
                                int *n_step, int *culprit)
 {
-    return run_path(m, s, w, true, max_steps, n_step, culprit);
+    hf_newton_rows rows = hf_newton_matrix_find_rows(m, w->spring_N_per_m, w->newton_integer_work);
+    return run_path(m, s, w, &rows, max_steps, n_step, culprit);
 }

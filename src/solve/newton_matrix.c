@@ -1,3 +1,4 @@
+/* Contents: rows that move - assembling - factor and solve */
 #include "solve/newton_matrix.h"
 
 #include "linalg/band.h"
@@ -10,14 +11,6 @@
 /* Shift after the first failed factorisation, a hundredfold after each further one. No net of these tests has such a
  * matrix, so that nothing changes from 1e-13 to 1e-4; the unit test makes one by a cable that pushes. */
 #define SHIFT_FIRST 1e-10
-/* Stiffness of the spring at a row that does not move, over the diagonal without it: it moves less than rounding. */
-#define PINNED 1e20
-
-static int half_bandwidth(const hf_model *m)
-{
-    return 3 * m->half_bandwidth + 2;
-}
-
 void hf_newton_matrix_block(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
 {
     hf_law_cable cable = hf_workspace_cable(m, w, e);
@@ -26,54 +19,98 @@ void hf_newton_matrix_block(const hf_model *m, const hf_workspace *w, int e, dou
     hf_newton_matrix_spring(hf_newton_matrix_stiffness(cable, length, T), T / length, u, block);
 }
 
-double hf_newton_matrix_assemble_blocks(const hf_model *m, hf_workspace *w, hf_newton_block *block_of)
+/* ---- rows that move ---- */
+
+static hf_newton_rows all_rows(const hf_model *m)
 {
-    int column = half_bandwidth(m) + 1;
-    double *band = w->newton_band, block[3][3], largest = 0;
-    memset(band, 0, (size_t)hf_newton_matrix_dofs(m) * (size_t)column * sizeof *band);
+    return (hf_newton_rows){m->n_free, m->half_bandwidth, NULL};
+}
+
+static int place_of(const hf_model *m, const hf_newton_rows *rows, int row)
+{
+    if (row >= m->n_free) return -1;
+    return rows->place ? rows->place[row] : row;
+}
+
+hf_newton_rows hf_newton_matrix_find_rows(const hf_model *m, const double *spring_N_per_m, int *place)
+{
+    hf_newton_rows rows = {0, 0, place};
+    for (int i = 0; i < m->n_free; i++)
+        place[i] = isinf(spring_N_per_m[i]) ? -1 : rows.n++;
     for (int e = 0; e < m->n_cable; e++) {
-        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], low = a < b ? a : b, high = a < b ? b : a;
-        if (low >= m->n_free) continue;
+        int a = place_of(m, &rows, m->end_row[2 * e]), b = place_of(m, &rows, m->end_row[2 * e + 1]);
+        int width = a < b ? b - a : a - b;
+        if (a >= 0 && b >= 0 && width > rows.half_bandwidth) rows.half_bandwidth = width;
+    }
+    return rows;
+}
+
+/* ---- assembling ---- */
+
+static int column_of(const hf_newton_rows *rows)
+{
+    return 3 * rows->half_bandwidth + 3;
+}
+
+static double assemble_rows(const hf_model *m, hf_workspace *w, hf_newton_block *block_of, const hf_newton_rows *rows)
+{
+    int column = column_of(rows);
+    double *band = w->newton_band, block[3][3], largest = 0;
+    memset(band, 0, 3 * (size_t)rows->n * (size_t)column * sizeof *band);
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = place_of(m, rows, m->end_row[2 * e]), b = place_of(m, rows, m->end_row[2 * e + 1]);
+        int low = a < b ? a : b, high = a < b ? b : a;
+        if (high < 0) continue;
+        bool is_between = low >= 0;
+        if (!is_between) low = high;
         block_of(m, w, e, block);
         for (int c = 0; c < 3; c++)
             for (int r = 0; r < 3; r++) {
                 double k = block[r][c];
                 double *diagonal = band + (r - c) + (size_t)(3 * low + c) * (size_t)column;
                 if (r >= c) *diagonal += k;
-                if (high >= m->n_free) continue;
+                if (!is_between) continue;
                 if (r >= c) diagonal[(size_t)(3 * (high - low)) * (size_t)column] += k;
                 diagonal[3 * (high - low)] -= k;
             }
     }
-    for (int i = 0; i < hf_newton_matrix_dofs(m); i++)
+    for (int i = 0; i < 3 * rows->n; i++)
         largest = fmax(largest, band[(size_t)i * (size_t)column]);
     return largest;
 }
 
-static void shift_diagonal(const hf_model *m, hf_workspace *w, double shift)
+double hf_newton_matrix_assemble_blocks(const hf_model *m, hf_workspace *w, hf_newton_block *block_of)
 {
-    size_t column = (size_t)half_bandwidth(m) + 1;
-    for (size_t i = 0; i < (size_t)hf_newton_matrix_dofs(m); i++)
-        w->newton_band[i * column] += shift;
+    hf_newton_rows rows = all_rows(m);
+    return assemble_rows(m, w, block_of, &rows);
 }
 
-static void add_springs(const hf_model *m, hf_workspace *w, const double *spring_N_per_m)
+/* Adds `shift` to the diagonal, and the springs (may be NULL). */
+static void stiffen(const hf_model *m, hf_workspace *w, const hf_newton_rows *rows, double shift,
+                    const double *spring_N_per_m)
 {
-    size_t column = (size_t)half_bandwidth(m) + 1;
-    for (int i = 0; i < hf_newton_matrix_dofs(m); i++)
-        w->newton_band[(size_t)i * column] += fmin(spring_N_per_m[i / 3], PINNED * w->newton_band[(size_t)i * column]);
+    size_t column = (size_t)column_of(rows);
+    for (int i = 0; i < m->n_free; i++) {
+        int at = place_of(m, rows, i);
+        for (int c = 0; c < 3 && at >= 0; c++) {
+            double *diagonal = w->newton_band + (size_t)(3 * at + c) * column;
+            *diagonal += shift;
+            if (spring_N_per_m) *diagonal += spring_N_per_m[i];
+        }
+    }
 }
 
-hf_status hf_newton_matrix_factor_blocks(const hf_model *m, hf_workspace *w, hf_newton_block *block_of,
-                                         const double *spring_N_per_m, double *condition)
+/* ---- factor and solve ---- */
+
+static hf_status factor_some(const hf_model *m, hf_workspace *w, hf_newton_block *block_of,
+                             const double *spring_N_per_m, const hf_newton_rows *rows, double *condition)
 {
-    int n = hf_newton_matrix_dofs(m), k = half_bandwidth(m);
+    int n = 3 * rows->n, k = column_of(rows) - 1;
     double shift = DIAGONAL_GUARD;
     for (;; shift = shift < SHIFT_FIRST ? SHIFT_FIRST : 100 * shift) {
-        double largest = hf_newton_matrix_assemble_blocks(m, w, block_of);
+        double largest = assemble_rows(m, w, block_of, rows);
         if (!(isfinite(largest) && largest > 0) || shift > 1) return HF_SINGULAR;
-        shift_diagonal(m, w, shift * largest);
-        if (spring_N_per_m) add_springs(m, w, spring_N_per_m);
+        stiffen(m, w, rows, shift * largest, spring_N_per_m);
         double norm = condition ? hf_band_norm(n, k, w->newton_band, w->newton_work) : 0;
         if (hf_band_factor(n, k, w->newton_band) != 0) continue;
         if (condition)
@@ -81,6 +118,31 @@ hf_status hf_newton_matrix_factor_blocks(const hf_model *m, hf_workspace *w, hf_
         if (condition && shift > DIAGONAL_GUARD) *condition = INFINITY;
         return HF_OK;
     }
+}
+
+hf_status hf_newton_matrix_factor_blocks(const hf_model *m, hf_workspace *w, hf_newton_block *block_of,
+                                         const double *spring_N_per_m, double *condition)
+{
+    hf_newton_rows rows = all_rows(m);
+    return factor_some(m, w, block_of, spring_N_per_m, &rows, condition);
+}
+
+hf_status hf_newton_matrix_factor_rows(const hf_model *m, hf_workspace *w, hf_newton_block *block_of,
+                                       const double *spring_N_per_m, const hf_newton_rows *rows)
+{
+    return factor_some(m, w, block_of, spring_N_per_m, rows, NULL);
+}
+
+/* In place: a row stands before or at its place among all rows. */
+void hf_newton_matrix_solve_rows(const hf_model *m, const hf_workspace *w, const hf_newton_rows *rows, double *rhs)
+{
+    int n = 3 * rows->n;
+    for (int i = 0; i < m->n_free; i++)
+        if (rows->place[i] >= 0) memmove(rhs + 3 * rows->place[i], rhs + 3 * i, 3 * sizeof *rhs);
+    hf_band_back_solve(n, column_of(rows) - 1, 1, w->newton_band, rhs, n);
+    for (int i = m->n_free - 1; i >= 0; i--)
+        for (int c = 0; c < 3; c++)
+            rhs[3 * i + c] = rows->place[i] >= 0 ? rhs[3 * rows->place[i] + c] : 0;
 }
 
 hf_status hf_newton_matrix_factor(const hf_model *m, hf_workspace *w, double *condition)
@@ -91,7 +153,7 @@ hf_status hf_newton_matrix_factor(const hf_model *m, hf_workspace *w, double *co
 void hf_newton_matrix_solve_many(const hf_model *m, const hf_workspace *w, int n_rhs, double *rhs)
 {
     int n = hf_newton_matrix_dofs(m);
-    hf_band_back_solve(n, half_bandwidth(m), n_rhs, w->newton_band, rhs, n);
+    hf_band_back_solve(n, 3 * m->half_bandwidth + 2, n_rhs, w->newton_band, rhs, n);
 }
 
 void hf_newton_matrix_solve(const hf_model *m, const hf_workspace *w, double *rhs)

@@ -100,6 +100,15 @@ void hf_newton_matrix_block(const hf_model *model, const hf_workspace *workspace
 /* Stiffness between the ends of a cable, for matrices of other blocks than the above. */
 typedef void hf_newton_block(const hf_model *model, const hf_workspace *workspace, int i_cable, double block[3][3]);
 
+/* The rows whose nodes move; a spring without end (INFINITY) pins a row. */
+typedef struct {
+    int n, half_bandwidth;
+    const int *place; /* [n_free] of a row among them; -1: it does not move */
+} hf_newton_rows;
+
+/* Find them; place: [n_free], filled. */
+hf_newton_rows hf_newton_matrix_find_rows(const hf_model *model, const double *spring_N_per_m, int *place);
+
 /* Factor the matrix at the workspace's shape and tensions into newton_band. *condition (may be NULL): estimate of its
  * 1-norm condition number, INFINITY when it took a Levenberg shift beyond the smallest. HF_SINGULAR when no shift
  * helps. */
@@ -109,9 +118,15 @@ hf_status hf_newton_matrix_factor(const hf_model *model, hf_workspace *workspace
 double hf_newton_matrix_assemble_blocks(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of);
 
 /* hf_newton_matrix_factor for the matrix of these blocks. Cables between two supports are not asked for.
- * spring_N_per_m [n_free] (may be NULL): springs that tie the rows to the ground; INFINITY: the row does not move. */
+ * spring_N_per_m [n_free] (may be NULL): springs that tie the rows to the ground. */
 hf_status hf_newton_matrix_factor_blocks(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
                                          const double *spring_N_per_m, double *condition);
+
+/* The same for the rows that move alone, and a solution: rhs [3 n_free] gets 0 in the others. */
+hf_status hf_newton_matrix_factor_rows(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
+                                       const double *spring_N_per_m, const hf_newton_rows *rows);
+void hf_newton_matrix_solve_rows(const hf_model *model, const hf_workspace *workspace, const hf_newton_rows *rows,
+                                 double *rhs);
 
 /* Solve in place, rhs [3 n_free] or [n_rhs][3 n_free], with the factor in newton_band. */
 void hf_newton_matrix_solve(const hf_model *model, const hf_workspace *workspace, double *rhs);

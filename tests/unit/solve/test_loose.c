@@ -44,6 +44,8 @@ START_TEST(loose_node_is_placed_and_left_out)
     ck_assert_double_le(net.result.residual_N, 1e-8); /* 1e5 N by the rounding of a length */
     ck_assert_double_le(net.result.position_error_m, 1e-9);
     ck_assert_double_le(net.result.condition, 1e6);
+    ck_assert_int_eq(net.result.bound_reason, HF_BOUND_NOT_DEFINITE);
+    ck_assert_double_nan(net.result.position_bound_m);
     close_net(&net);
 }
 END_TEST
