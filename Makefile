@@ -44,7 +44,8 @@ TEST_WRAP += geteuid
 # lets them be inlined as if they were not.
 LANGUAGE := -std=c11 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp
 CODEGEN := -fno-math-errno -ffp-contract=off -fPIC -fno-semantic-interposition
-WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Wvla $(WERROR)
+# psabi: functions that take vectors are inlined.
+WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wno-psabi $(WERROR)
 SANITIZER := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 
 # pkg-config is asked once, when a recipe first needs it: $(eval) replaces the question by its answer.

@@ -28,8 +28,9 @@ extern "C" {
 #define HF_SCHUR_COLUMNS(m) (3 * ((size_t)(m)->n_attachment + HF_SCHUR_PANEL * 3 * (size_t)(m)->n_free))
 #define HF_SCHUR_ITEMS(m) (27 * (size_t)(m)->n_attachment * (size_t)(m)->n_attachment + HF_SCHUR_COLUMNS(m))
 
-/* Doubles per cable of the primal-dual path (src/solve/interior.c). */
-#define HF_INTERIOR_ITEMS 43
+/* Doubles of the primal-dual path (src/solve/path_cable.h): blocks of eight cables. */
+#define HF_INTERIOR_BLOCK 416
+#define HF_INTERIOR_ITEMS(m) (HF_INTERIOR_BLOCK * (((size_t)(m)->n_cable + 7) / 8))
 
 /* Doubles of the proof of a bound (src/solve/refine.h): per cable, and in all. */
 #define HF_BOUND_CABLE_ITEMS 14
@@ -57,8 +58,7 @@ extern "C" {
     X(double, newton_trial_tension_N, m->has_newton ? (size_t)m->n_cable : 0, "N", "[n_cable]")                        \
     X(double, newton_work, 3 * HF_NEWTON_DOFS(m), "", "for the condition estimate")                                    \
     X(int, newton_integer_work, HF_NEWTON_DOFS(m), "", "for the condition estimate")                                   \
-    X(double, interior_cable, m->has_newton ? HF_INTERIOR_ITEMS *(size_t)m->n_cable : 0, "",                           \
-      "state and step of each cable")                                                                                  \
+    X(double, interior_cable, m->has_newton ? HF_INTERIOR_ITEMS(m) : 0, "", "state and step of each cable")            \
     X(double, interior_position_m, m->has_newton ? 3 * (size_t)m->n_node : 0, "m", "[3][n_node] point of the path")    \
     X(double, bound_work, HF_BOUND_ITEMS(m), "", "cables and positions at twice the precision")                        \
     X(double, interior_tension_N, m->has_newton ? m->n_cable : 0, "N", "[n_cable] tensions there")                     \

@@ -45,11 +45,41 @@
 
 /* ---- state and start ---- */
 
-static_assert(sizeof(hf_path_cable) == HF_INTERIOR_ITEMS * sizeof(double), "HF_INTERIOR_ITEMS");
+static_assert(sizeof(hf_path_cables) == HF_INTERIOR_BLOCK * sizeof(double), "HF_INTERIOR_BLOCK");
 
-static hf_path_cable *cables(const hf_workspace *w)
+static int n_block(const hf_model *m)
 {
-    return (hf_path_cable *)w->interior_cable;
+    return (m->n_cable + HF_LANES - 1) / HF_LANES;
+}
+
+static hf_path_cables *blocks(const hf_workspace *w)
+{
+    return (hf_path_cables *)w->interior_cable;
+}
+
+/* The cables among which cable e is, at *lane. */
+static hf_path_cables *block_of(const hf_workspace *w, int e, int *lane)
+{
+    *lane = e % HF_LANES;
+    return blocks(w) + e / HF_LANES;
+}
+
+static double path_tension_N(const hf_workspace *w, int e)
+{
+    return blocks(w)[e / HF_LANES].T[e % HF_LANES];
+}
+
+/* Square of the length of the vector between the ends of cable e. */
+static double path_square(const hf_workspace *w, int e)
+{
+    int k;
+    const hf_path_cables *p = block_of(w, e, &k);
+    return p->d[0][k] * p->d[0][k] + p->d[1][k] * p->d[1][k] + p->d[2][k] * p->d[2][k];
+}
+
+static double path_length_m(const hf_workspace *w, int e)
+{
+    return sqrt(path_square(w, e));
 }
 
 static bool is_fixed(const hf_model *m, const hf_workspace *w, int e)
@@ -68,11 +98,12 @@ static bool is_spring(const hf_workspace *w, int e)
     return hf_newton_matrix_is_spring((hf_law)w->law[e]);
 }
 
-static void set_vector(const hf_model *m, const hf_workspace *w, int e, double d[3])
+static void set_vector(const hf_model *m, const hf_workspace *w, int e)
 {
-    int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+    int k, a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+    hf_path_cables *p = block_of(w, e, &k);
     for (int c = 0; c < 3; c++)
-        d[c] = w->position_m[c * m->n_node + b] - w->position_m[c * m->n_node + a];
+        p->d[c][k] = w->position_m[c * m->n_node + b] - w->position_m[c * m->n_node + a];
 }
 
 /* That of the law, else T with v = L + c T and T (v - l) = MU_FIRST times reference tension and length, within
@@ -97,29 +128,36 @@ static void set_start(const hf_model *m, hf_workspace *w, const hf_newton_rows *
         memcpy(w->position_m, w->spring_place_m, 3 * (size_t)m->n_node * sizeof(double));
     else
         hf_form_place_supports(m, w);
+    memset(blocks(w), 0, (size_t)n_block(m) * sizeof *blocks(w));
     for (int e = 0; e < m->n_cable; e++) {
-        hf_path_cable *p = cables(w) + e;
+        int k;
+        hf_path_cables *p = block_of(w, e, &k);
         hf_law_cable cable = hf_workspace_cable(m, w, e);
-        memset(p, 0, sizeof *p);
-        set_vector(m, w, e, p->d);
-        double square = hf_path_cable_dot(p->d, p->d), length = sqrt(square);
-        p->flex = has_multiplier(w, e) ? 1 / hf_law_stiffness_N_per_m(cable, INFINITY) : 0;
+        set_vector(m, w, e);
+        double square = path_square(w, e), length = sqrt(square);
+        p->has_cone[k] = !is_fixed(m, w, e) && !is_spring(w, e);
+        p->has_multiplier[k] = p->has_cone[k] != 0 && has_multiplier(w, e);
+        p->target[k] = cable.target;
+        p->EA[k] = hf_law_has(cable.law, HF_LAW_NEEDS_EA) ? cable.EA_N : INFINITY;
+        p->theoretical[k] = cable.theoretical_m;
+        p->flex[k] = has_multiplier(w, e) ? 1 / hf_law_stiffness_N_per_m(cable, INFINITY) : 0;
         if (is_spring(w, e)) {
-            p->along = p->across = hf_law_tension_N(cable, 1);
-            p->T = p->along * length;
+            p->along[k] = p->across[k] = hf_law_tension_N(cable, 1);
+            p->T[k] = p->along[k] * length;
         } else if (is_fixed(m, w, e)) {
             double over = has_multiplier(w, e) ? length - hf_law_wanted_length_m(cable, 0) : 0;
-            p->T =
-                p->flex > 0 ? fmax(over, 0) / p->flex : hf_law_held_q_N_per_m(cable, length, w->q_N_per_m[e]) * length;
-            p->v = length;
+            p->T[k] = p->flex[k] > 0 ? fmax(over, 0) / p->flex[k]
+                                     : hf_law_held_q_N_per_m(cable, length, w->q_N_per_m[e]) * length;
+            p->v[k] = length;
         } else {
-            p->T = first_tension_N(m, cable, p->flex, length);
-            p->weight = mean_m * (has_multiplier(w, e) ? m->reference_N : fmax(p->T, LEAST_WEIGHT * m->reference_N));
-            double over = MU_FIRST * p->weight / p->T;
-            p->v = (over + sqrt(over * over + 4 * square)) / 2;
+            p->T[k] = first_tension_N(m, cable, p->flex[k], length);
+            p->weight[k] =
+                mean_m * (has_multiplier(w, e) ? m->reference_N : fmax(p->T[k], LEAST_WEIGHT * m->reference_N));
+            double over = MU_FIRST * p->weight[k] / p->T[k];
+            p->v[k] = (over + sqrt(over * over + 4 * square)) / 2;
         }
         for (int c = 0; c < 3; c++)
-            p->t[c] = is_spring(w, e) ? p->along * p->d[c] : p->T / p->v * p->d[c];
+            p->t[c][k] = is_spring(w, e) ? p->along[k] * p->d[c][k] : p->T[k] / p->v[k] * p->d[c][k];
     }
 }
 
@@ -136,7 +174,7 @@ static double largest_force_N(const hf_model *m, const double *force)
     double largest = 0, scale_N = 1 / m->reference_N;
     for (int i = 0; i < m->n_free; i++) {
         double f[3] = {scale_N * force[3 * i], scale_N * force[3 * i + 1], scale_N * force[3 * i + 2]};
-        double square = hf_path_cable_dot(f, f);
+        double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
         if (!(square <= largest)) largest = square; /* keeps a NaN */
     }
     return sqrt(largest) * m->reference_N;
@@ -157,22 +195,20 @@ static path_error measure_path(const hf_model *m, hf_workspace *w, const hf_newt
 {
     path_error error = {0};
     double sum = 0, all = 0;
+    for (int e = 0; e < m->n_cable; e++)
+        if (!is_fixed(m, w, e)) set_vector(m, w, e);
+    error.length = hf_path_measure(n_block(m), blocks(w));
     hf_newton_matrix_set_loads(m, w, w->newton_force_N);
     for (int e = 0; e < m->n_cable; e++) {
-        hf_path_cable *p = cables(w) + e;
+        int k;
+        const hf_path_cables *p = block_of(w, e, &k);
         if (is_fixed(m, w, e)) continue;
-        set_vector(m, w, e, p->d);
-        if (is_spring(w, e)) {
-            for (int c = 0; c < 3; c++)
-                p->t[c] = p->along * p->d[c];
-        } else {
-            sum += p->T * p->v - hf_path_cable_dot(p->t, p->d);
-            all += p->weight;
+        if (p->has_cone[k] != 0) {
+            sum += p->gap[k];
+            all += p->weight[k];
         }
-        hf_newton_matrix_add_pull(m, w, e, p->t, w->newton_force_N);
-        if (!has_multiplier(w, e)) continue;
-        p->short_m = hf_law_wanted_length_m(hf_workspace_cable(m, w, e), p->T) - p->v;
-        error.length = fmax(error.length, fabs(p->short_m) / m->length_m[e]);
+        double pull[3] = {p->t[0][k], p->t[1][k], p->t[2][k]};
+        hf_newton_matrix_add_pull(m, w, e, pull, w->newton_force_N);
     }
     if (held) add_springs_pull(m, w);
     error.balance = largest_force_N(m, w->newton_force_N) / m->reference_N;
@@ -186,17 +222,21 @@ static path_error measure_path(const hf_model *m, hf_workspace *w, const hf_newt
 
 static void path_block(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
 {
-    const hf_path_cable *p = cables(w) + e;
+    int k;
+    const hf_path_cables *p = block_of(w, e, &k);
+    double unit[3] = {p->unit[0][k], p->unit[1][k], p->unit[2][k]};
     (void)m;
-    hf_newton_matrix_spring(p->along, p->across, p->unit, block);
+    hf_newton_matrix_spring(p->along[k], p->across[k], unit, block);
 }
 
-/* Change of the vector between the ends of a cable by newton_step. */
-static void set_vector_step(const hf_model *m, const hf_workspace *w, int e, double step[3])
+/* Sets Dd, the change of the vector between the ends of a cable by newton_step. */
+static void set_vector_step(const hf_model *m, const hf_workspace *w, int e)
 {
-    int i = m->end_row[2 * e], j = m->end_row[2 * e + 1];
+    int k, i = m->end_row[2 * e], j = m->end_row[2 * e + 1];
+    hf_path_cables *p = block_of(w, e, &k);
     for (int c = 0; c < 3; c++)
-        step[c] = (j < w->n_moving ? w->newton_step[3 * j + c] : 0) - (i < w->n_moving ? w->newton_step[3 * i + c] : 0);
+        p->Dd[c][k] =
+            (j < w->n_moving ? w->newton_step[3 * j + c] : 0) - (i < w->n_moving ? w->newton_step[3 * i + c] : 0);
 }
 
 /* Factor path_block with springs (may be NULL), which tie rows to the ground. */
@@ -215,40 +255,29 @@ static void solve_step(const hf_model *m, hf_workspace *w, const hf_newton_rows 
         hf_joint_solve(m, w, path_block, w->newton_step);
 }
 
-/* Sets newton_step and the D... of all cables. newton_band holds the factor. */
-static void find_path_direction(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double target,
-                                bool corrected)
+/* Sets newton_step and the D... of all cables. newton_band holds the factor. Returns the largest part of the direction
+ * that stays in all cones. With `corrects` the second-order terms are set, too. */
+static double find_path_direction(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double target,
+                                  bool corrected, bool corrects)
 {
-    double pull[3], *rhs = w->newton_step;
+    double *rhs = w->newton_step;
     memcpy(rhs, w->newton_force_N, 3 * (size_t)w->n_moving * sizeof *rhs);
+    hf_path_set_side(n_block(m), blocks(w), target, corrected);
     for (int e = 0; e < m->n_cable; e++) {
-        hf_path_cable *p = cables(w) + e;
-        if (is_fixed(m, w, e) || is_spring(w, e)) continue;
-        hf_path_cable_set_side(p, has_multiplier(w, e), target, corrected);
-        hf_path_cable_times_K(p, p->off, pull);
+        int k;
+        const hf_path_cables *p = block_of(w, e, &k);
+        if (!(p->has_cone[k] != 0)) continue;
+        double pull[3] = {p->pull[0][k], p->pull[1][k], p->pull[2][k]};
         hf_newton_matrix_add_pull(m, w, e, pull, rhs);
     }
     solve_step(m, w, held);
     for (int e = 0; e < m->n_cable; e++)
-        if (!is_fixed(m, w, e)) {
-            set_vector_step(m, w, e, cables(w)[e].Dd);
-            if (!is_spring(w, e)) hf_path_cable_set_direction(cables(w) + e, has_multiplier(w, e));
-        }
+        if (!is_fixed(m, w, e)) set_vector_step(m, w, e);
+    double inverse = hf_path_set_direction(n_block(m), blocks(w), corrects);
+    return inverse > 0 ? 1 / inverse : INFINITY;
 }
 
 /* ---- step length ---- */
-
-/* Largest part of the direction that stays in all cones. With `corrects` the second-order terms are set, too. */
-static double find_room(const hf_model *m, hf_workspace *w, bool corrects)
-{
-    double inverse = 0;
-    for (int e = 0; e < m->n_cable; e++) {
-        hf_path_cable *p = cables(w) + e;
-        if (is_fixed(m, w, e) || is_spring(w, e)) continue;
-        inverse = fmax(inverse, hf_path_cable_inverse_room(p, corrects));
-    }
-    return inverse > 0 ? 1 / inverse : INFINITY;
-}
 
 static void move_nodes(const hf_model *m, hf_workspace *w, double part)
 {
@@ -260,15 +289,7 @@ static void move_nodes(const hf_model *m, hf_workspace *w, double part)
 static void move(const hf_model *m, hf_workspace *w, double part)
 {
     move_nodes(m, w, part);
-    for (int e = 0; e < m->n_cable; e++) {
-        hf_path_cable *p = cables(w) + e;
-        if (is_fixed(m, w, e) || is_spring(w, e)) continue;
-        p->T_before = p->T;
-        p->v += part * p->Dv;
-        p->T += part * p->DT;
-        for (int c = 0; c < 3; c++)
-            p->t[c] += part * p->Dt[c];
-    }
+    hf_path_move(n_block(m), blocks(w), part);
 }
 
 /* ---- the path ---- */
@@ -279,8 +300,7 @@ static int find_collapsed(const hf_model *m, const hf_form_settings *s, const hf
     int worst = -1;
     double least = s->collapse_ratio;
     for (int e = 0; e < m->n_cable; e++) {
-        const hf_path_cable *p = cables(w) + e;
-        double part = sqrt(hf_path_cable_dot(p->d, p->d)) / m->length_m[e];
+        double part = path_length_m(w, e) / m->length_m[e];
         if (has_multiplier(w, e) || is_spring(w, e) || !(part < least)) continue;
         least = part;
         worst = e;
@@ -292,9 +312,8 @@ static int find_collapsed(const hf_model *m, const hf_form_settings *s, const hf
 static int find_lost_row(const hf_model *m, const hf_workspace *w)
 {
     for (int e = 0; e < m->n_cable; e++) {
-        const hf_path_cable *p = cables(w) + e;
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-        if (sqrt(hf_path_cable_dot(p->d, p->d)) > HF_FORM_BLOWN_UP * m->length_m[e]) return a < b ? a : b;
+        if (path_length_m(w, e) > HF_FORM_BLOWN_UP * m->length_m[e]) return a < b ? a : b;
     }
     return -1;
 }
@@ -307,13 +326,10 @@ static bool is_told_to_stop(const hf_workspace *w)
 /* One step of the path. False when it does not move. */
 static bool take_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double mu)
 {
-    for (int e = 0; e < m->n_cable; e++)
-        if (!is_fixed(m, w, e) && !is_spring(w, e)) hf_path_cable_set_scaling(cables(w) + e, has_multiplier(w, e));
+    hf_path_set_scaling(n_block(m), blocks(w));
     if (factor(m, w, held, held ? w->spring_N_per_m : NULL) != HF_OK) return false;
-    find_path_direction(m, w, held, 0, false);
-    double part = fmin(1, find_room(m, w, true)), left = 1 - part;
-    find_path_direction(m, w, held, left * left * left * mu, true);
-    part = fmin(1, STEP_KEPT * find_room(m, w, false));
+    double part = fmin(1, find_path_direction(m, w, held, 0, false, true)), left = 1 - part;
+    part = fmin(1, STEP_KEPT * find_path_direction(m, w, held, left * left * left * mu, true, false));
     if (!(part > STALLED)) return false;
     move(m, w, part);
     return true;
@@ -322,7 +338,7 @@ static bool take_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *
 static void record_path(const hf_model *m, hf_workspace *w, const path_error *error)
 {
     for (int e = 0; e < m->n_cable; e++)
-        w->tension_N[e] = cables(w)[e].T;
+        w->tension_N[e] = path_tension_N(w, e);
     hf_history_add_step(m, w, error->balance * m->reference_N, error->length, error->truss_m);
 }
 
@@ -360,25 +376,28 @@ static path_error measure_end(const hf_model *m, hf_workspace *w, const hf_newto
     double reference = m->reference_N;
     hf_newton_matrix_set_loads(m, w, w->newton_force_N);
     for (int e = 0; e < m->n_cable; e++) {
-        hf_path_cable *p = cables(w) + e;
-        p->along = p->across = p->DT = 0;
+        int at;
+        hf_path_cables *p = block_of(w, e, &at);
+        p->along[at] = p->across[at] = p->DT[at] = 0;
         if (is_fixed(m, w, e)) continue;
         hf_law_cable cable = hf_workspace_cable(m, w, e);
-        double length = hf_newton_matrix_direction(m, w->position_m, e, p->unit), pull[3];
+        double unit[3], length = hf_newton_matrix_direction(m, w->position_m, e, unit), pull[3];
         double T = hf_newton_matrix_tension_N(cable, length, w->tension_N[e]);
-        p->along = has_multiplier(w, e) ? 0 : hf_law_stiffness_N_per_m(cable, length);
+        p->along[at] = has_multiplier(w, e) ? 0 : hf_law_stiffness_N_per_m(cable, length);
         if (has_multiplier(w, e)) {
             double over = length - hf_law_wanted_length_m(cable, T);
             bool is_taut = T / reference + over / m->length_m[e] > 0;
-            double k = p->flex > 0 ? 1 / p->flex : hf_newton_matrix_rigid_stiffness(m, e, T);
-            p->along = is_taut ? k : 0;
-            p->DT = is_taut ? k * over : -T;
+            double k = p->flex[at] > 0 ? 1 / p->flex[at] : hf_newton_matrix_rigid_stiffness(m, e, T);
+            p->along[at] = is_taut ? k : 0;
+            p->DT[at] = is_taut ? k * over : -T;
             error.length = fmax(error.length, is_taut ? fabs(over) / m->length_m[e] : 0);
             error.gap = fmax(error.gap, is_taut ? -T / reference : fabs(T) / reference);
         }
-        p->across = fmax(T, 0) / length;
-        for (int c = 0; c < 3; c++)
-            pull[c] = T * p->unit[c];
+        p->across[at] = fmax(T, 0) / length;
+        for (int c = 0; c < 3; c++) {
+            p->unit[c][at] = unit[c];
+            pull[c] = T * unit[c];
+        }
         hf_newton_matrix_add_pull(m, w, e, pull, w->newton_force_N);
     }
     if (held) add_springs_pull(m, w);
@@ -411,19 +430,21 @@ static bool take_last_step(const hf_model *m, hf_workspace *w, const hf_newton_r
     if (factor(m, w, held, w->spring_N_per_m) != HF_OK) return false;
     memcpy(step, w->newton_force_N, 3 * (size_t)w->n_moving * sizeof *step);
     for (int e = 0; e < m->n_cable; e++) {
-        const hf_path_cable *p = cables(w) + e;
+        int k;
+        const hf_path_cables *p = block_of(w, e, &k);
         if (is_fixed(m, w, e)) continue;
         for (int c = 0; c < 3; c++)
-            pull[c] = p->DT * p->unit[c];
+            pull[c] = p->DT[k] * p->unit[c][k];
         hf_newton_matrix_add_pull(m, w, e, pull, step);
     }
     solve_step(m, w, held);
     for (int e = 0; e < m->n_cable; e++) {
-        const hf_path_cable *p = cables(w) + e;
+        int k;
+        const hf_path_cables *p = block_of(w, e, &k);
         if (is_fixed(m, w, e) || !has_multiplier(w, e)) continue;
-        double longer[3];
-        set_vector_step(m, w, e, longer);
-        w->tension_N[e] += p->DT + p->along * hf_path_cable_dot(p->unit, longer);
+        set_vector_step(m, w, e);
+        double longer = p->unit[0][k] * p->Dd[0][k] + p->unit[1][k] * p->Dd[1][k] + p->unit[2][k] * p->Dd[2][k];
+        w->tension_N[e] += p->DT[k] + p->along[k] * longer;
     }
     move_nodes(m, w, 1);
     return true;
@@ -435,11 +456,12 @@ static bool take_last_step(const hf_model *m, hf_workspace *w, const hf_newton_r
 static void begin_end(const hf_model *m, hf_workspace *w, double fall)
 {
     for (int e = 0; e < m->n_cable; e++) {
-        const hf_path_cable *p = cables(w) + e;
-        double slack = p->v - sqrt(hf_path_cable_dot(p->d, p->d));
+        int k;
+        const hf_path_cables *p = block_of(w, e, &k);
+        double T = p->T[k], slack = p->v[k] - path_length_m(w, e);
         bool is_small =
-            fall < CLEAR_FALL ? p->T < sqrt(fall) * p->T_before : p->T / m->reference_N <= slack / m->length_m[e];
-        w->tension_N[e] = is_small && has_multiplier(w, e) && !is_fixed(m, w, e) ? 0 : p->T;
+            fall < CLEAR_FALL ? T < sqrt(fall) * p->T_before[k] : T / m->reference_N <= slack / m->length_m[e];
+        w->tension_N[e] = is_small && has_multiplier(w, e) && !is_fixed(m, w, e) ? 0 : T;
     }
 }
 
