@@ -52,6 +52,11 @@ hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, bool with_
  * id. */
 hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages);
 
+#define HF_SCENE_PLACE_SIZE 1324 /* a path, a line and an id of a table; a longer id is cut */
+
+/* Write what a message begins with: "nodes.csv:7: node 'a'", "cables.csv:7: cable 'a'", or "scene: node 'a'". */
+void hf_scene_place(const hf_scene *scene, bool is_cable, int index, char *text, size_t size);
+
 double hf_scene_theoretical_length(const hf_scene *scene, int i_cable); /* m, between theoretical positions */
 
 void hf_scene_free(hf_scene *scene);

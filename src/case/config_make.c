@@ -1,6 +1,7 @@
 /* Makes the net and the truss that a case describes. */
 #include <hifdm/config.h>
 
+#include "net/scene_doubt.h"
 #include "net/scene_import.h"
 #include "truss/truss_import.h"
 
@@ -12,7 +13,8 @@ hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages 
     if (settings->has_##section) HF_TRY(hf_scene_##section(&settings->section, settings->EA_N, scene, messages));
     HF_GENERATORS(MAKE)
 #undef MAKE
-    return hf_scene_check(scene, messages);
+    HF_TRY(hf_scene_check(scene, messages));
+    return hf_scene_doubt(scene, messages);
 }
 
 hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages *messages)

@@ -2,12 +2,15 @@
 #include "case/config_check.h"
 #include "net/wanted.h"
 
+#include <math.h>
 #include <stdio.h>
 
 /* Theoretical positions may be off the wanted surface by this part of its depth below the net, as RMS: 1 mm on the 50
  * mm of a shallow reflector, or nodes raised by half the sag of facets of a sixth of the radius. A paraboloid taken for
  * a cylinder is off by a third. */
 #define OFF_MOST 0.02
+
+#define FOCAL_MOST 20.0 /* apertures; beyond, the surface is as good as flat, and mm were meant */
 
 #define PLACE_SIZE (HF_PATH_SIZE + 128)
 
@@ -38,10 +41,36 @@ static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surfac
                     paraboloid->rms_m * 1e3, advice);
 }
 
+/* Focal lengths of reflectors are 0.2 to 10 apertures. The aperture is the extent across the axis: of a cylinder along
+ * x. */
+static void doubt_focal_length(const hf_case *c, const hf_scene *scene, hf_messages *messages)
+{
+    const char *key = NULL;
+    char place[PLACE_SIZE];
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    hf_surface_settings of = hf_config_known_surface(c, &key);
+    if (of.focal_length_m == 0) {
+        of = c->surface;
+        key = "surface.focal_length_m";
+    }
+    for (int i = 0; i < scene->n_node; i++)
+        for (int k = 0; k < 2; k++) {
+            low[k] = fmin(low[k], scene->position_m[3 * i + k]);
+            high[k] = fmax(high[k], scene->position_m[3 * i + k]);
+        }
+    double x_m = high[0] - low[0], y_m = high[1] - low[1];
+    double aperture_m = of.kind == HF_SURFACE_PARABOLIC_CYLINDER ? x_m : fmax(x_m, y_m);
+    if (!(of.focal_length_m > FOCAL_MOST * aperture_m)) return;
+    hf_config_place(c, key, place, sizeof place);
+    hf_warning(messages, "%s: %g m is %.0f times the aperture of %g m; reflectors have less than %g: is it in m?",
+               place, of.focal_length_m, of.focal_length_m / aperture_m, aperture_m, FOCAL_MOST);
+}
+
 hf_status hf_config_surface(const hf_case *c, const hf_scene *scene, hf_surface_settings *surface,
                             hf_messages *messages)
 {
     *surface = (hf_surface_settings){0};
+    doubt_focal_length(c, scene, messages);
     if (!c->has_surface) return HF_OK;
     *surface = c->surface;
     hf_wanted_fit cylinder = hf_wanted_compare(HF_SURFACE_PARABOLIC_CYLINDER, surface->focal_length_m, scene);

@@ -63,8 +63,7 @@ double hf_scene_theoretical_length(const hf_scene *scene, int i_cable)
 
 /* ---- checks ---- */
 
-/* "nodes.csv:7: node 'a'" or "scene: node 'a'" */
-static void describe(const hf_scene *s, bool is_cable, int index, char *text, size_t size)
+void hf_scene_place(const hf_scene *s, bool is_cable, int index, char *text, size_t size)
 {
     const int *line = is_cable ? s->cable_line : s->node_line;
     const char *file = is_cable ? s->cables_file : s->nodes_file, *kind = is_cable ? "cable" : "node";
@@ -73,14 +72,14 @@ static void describe(const hf_scene *s, bool is_cable, int index, char *text, si
         snprintf(text, size, "%s:%d: %s '%s'", file, line[index], kind, id);
     else
         snprintf(text, size, "scene: %s '%s'", kind, id);
+    hf_text_trim_utf8(text);
 }
 
 static void fault(const hf_scene *s, bool is_cable, int index, int *n_fault, const char *what, hf_messages *messages)
 {
-    char where[HF_PATH_SIZE + 300]; /* a path, a line and an id of a table; a longer id is cut */
+    char where[HF_SCENE_PLACE_SIZE];
     if (++*n_fault > HF_FAULT_MAX) return;
-    describe(s, is_cable, index, where, sizeof where);
-    hf_text_trim_utf8(where);
+    hf_scene_place(s, is_cable, index, where, sizeof where);
     hf_error(messages, HF_BAD_CASE, "%s %s", where, what);
 }
 

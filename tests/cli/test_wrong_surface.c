@@ -1,5 +1,5 @@
-/* What cannot be taken as it is printed is said: a net that is not on the surface it is measured against, tension
- * ratios of nets with slack cables. */
+/* What cannot be taken as it is printed is said: a net that is not on the surface it is measured against, what is
+ * hardly meant (cables twice, mm for m, a flat rim), tension ratios of nets with slack cables. */
 #include "cli.h"
 
 /* ---- slack cables ---- */
@@ -114,6 +114,76 @@ START_TEST(small_differences_from_the_surface_are_allowed)
 }
 END_TEST
 
+/* ---- what is hardly meant ---- */
+
+START_TEST(cables_between_the_same_nodes_are_told)
+{
+    char cables[2048] = SLACK_CABLES "twin,d,b,inner,force_density,0.01\n";
+    HIFDM(0, "check", net_with(SLACK_NODES, cables));
+    ERRS("warning: %s:7: cable 'twin' joins the same two nodes as cable 'bd'\n", temp("cables.csv"));
+    ck_assert_int_eq(count_of(said.err, "joins the same"), 1);
+    for (int i = 0; i < 9; i++)
+        snprintf(cables + strlen(cables), sizeof cables - strlen(cables), "t%d,e,d,inner,force_density,0.01\n", i);
+    HIFDM(0, "check", net_with(SLACK_NODES, cables));
+    ck_assert_int_eq(count_of(said.err, "joins the same"), 5);
+    ERR("warning: scene: and 5 more cables that join the same two nodes as another\n");
+}
+END_TEST
+
+START_TEST(far_nodes_are_told)
+{
+    const char *nodes = SLACK_NODES "f,1,1000,0.1,support\ng,200,0,0,support\n";
+    HIFDM(0, "check", net_with(nodes, SLACK_CABLES "ef,e,f,inner,tension,1\neg,e,g,inner,tension,1\n"));
+    ERRS("warning: %s:7: node 'f' is 999 m from the middle of the net, ", temp("nodes.csv"));
+    ERRS("warning: %s:8: node 'g' is 199 m from the middle of the net, ", temp("nodes.csv"));
+    ck_assert_int_eq(count_of(said.err, "times as far as the others: are all coordinates in m?\n"), 2);
+    HIFDM(0, "check", net_with(SLACK_NODES, SLACK_CABLES));
+    ck_assert_ptr_null(strstr(said.err, "as far as"));
+}
+END_TEST
+
+START_TEST(focal_length_out_of_proportion_is_told)
+{
+    const char *path = file_with("f.yaml", SMALL_SCENE);
+    HIFDM(0, "check", path, "--set", "scene.parabolic_cylinder.focal_length_m=41");
+    ERR("warning: --set scene.parabolic_cylinder.focal_length_m: 41 m is 20 times the aperture of 2 m; reflectors have "
+        "less than 20: is it in m?\n");
+    HIFDM(0, "check", path, "--set", "scene.parabolic_cylinder.focal_length_m=40");
+    ck_assert_ptr_null(strstr(said.err, "is it in m?"));
+    path = grid_net(true, "  kind: paraboloid\n  focal_length_m: 4000\n");
+    HIFDM(2, "check", path); /* and it is not on this surface */
+    ERRS("warning: %s:5:19: surface.focal_length_m: 4000 m is 1000 times the aperture of 4 m; ", path);
+}
+END_TEST
+
+/* A net with its rim in one plane, nothing to pull it off, is flat; with a tie, a load or a strut it is not. */
+START_TEST(net_that_collapses_to_the_plane_of_its_supports_is_told)
+{
+#define BOWL "id,x_m,y_m,z_m,role,Fz_N\na,1,0,1,support,\nb,-1,0,1,support,\nc,0,1,1,support,\nd,0,-1,1,support,\n"
+#define STAR "id,i,j,group,law,value\nae,a,e,inner,tension,1\nbe,b,e,inner,tension,1\nce,c,e,inner,tension,1\n"
+#define FLAT "warning: scene: all supports are in one plane, and no load, tie or strut holds the net off it: "
+    HIFDM(0, "run", net_with(BOWL "e,0,0,0.7,inner,\n", STAR "de,d,e,inner,tension,1\n"), "-o", temp("b.h5"), "--json");
+    ERR(FLAT "whatever its tensions, it collapses there, and the inner nodes are 300 mm RMS from their theoretical "
+             "places or more. Put supports on the surface, tie the net to another one, or load it\n");
+    EXPECT(out_as("b.json"), temp("b.h5"), "--", "near(a['form']['psi_m'], 0.3, 1e-9)",
+           "any('collapses there' in w for w in a['warnings'])", "'collapses there' in attribute(b, 'warnings')");
+    static const char *const other[][2] = {
+        {BOWL "e,0,0,0.7,inner,-1\n", STAR "de,d,e,inner,tension,1\n"},
+        {BOWL "e,0,0,0.7,inner,\nf,0,0,0,support,\n", STAR "de,d,e,inner,tension,1\nef,e,f,inner,tension,1\n"},
+        {BOWL "e,0,0,0.7,inner,\n", STAR "de,d,e,inner,force_density,-0.1\n"},
+        {BOWL "e,0,0,0.999,inner,\n", STAR "de,d,e,inner,tension,1\n"},
+    };
+    for (int i = 0; i < 4; i++) {
+        HIFDM(0, "check", net_with(other[i][0], other[i][1]));
+        ck_assert_ptr_null(strstr(said.err, "all supports are"));
+    }
+    HIFDM(0, "check",
+          net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0,1,inner\nc,2,0,0,support\n",
+                   "id,i,j,group,law,value\nab,a,b,inner,tension,\nbc,b,c,inner,tension,\n"));
+    ERR("warning: scene: all supports are on one line, ");
+}
+END_TEST
+
 Suite *suite_cli_wrong_surface(void)
 {
     Suite *suite = suite_create("cli/wrong_surface");
@@ -122,6 +192,10 @@ Suite *suite_cli_wrong_surface(void)
     tcase_add_loop_test(tests, surface_of_an_imported_net_has_a_kind, 0, 2);
     tcase_add_test(tests, net_beside_its_surface_is_refused);
     tcase_add_test(tests, small_differences_from_the_surface_are_allowed);
+    tcase_add_test(tests, cables_between_the_same_nodes_are_told);
+    tcase_add_test(tests, far_nodes_are_told);
+    tcase_add_test(tests, focal_length_out_of_proportion_is_told);
+    tcase_add_test(tests, net_that_collapses_to_the_plane_of_its_supports_is_told);
     tcase_add_loop_test(tests, ratio_with_a_slack_cable_is_infinite, 0, 2);
     return suite;
 }

@@ -1,0 +1,204 @@
+/* Contents: cables twice - far nodes - the plane of the supports - together */
+#include "net/scene_doubt.h"
+
+#include "base/arena.h"
+#include "base/elementary.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SAID_MAX 5 /* warnings of one sort */
+#define FAR 100.0  /* times as far from the middle as the others: mm for m are 1000 times */
+#define PLANE_PART                                                                                                     \
+    1e-6 /* supports are in one plane up to this part of their extent: positions of a table are rounded */
+#define FLATTER_PART 1e-3 /* inner nodes that are not farther from that plane are meant to be in it */
+
+typedef struct {
+    int low, high, cable; /* the ends, the smaller index first */
+} joint;
+
+typedef struct {
+    double m;
+    int node;
+} distance;
+
+typedef struct {
+    joint *joint;       /* [n_cable] */
+    double *coordinate; /* [n_node] */
+    distance *from;     /* [n_node] of the nodes from the middle of the net */
+} scratch;
+
+/* ---- cables twice ---- */
+
+static int by_ends(const void *a, const void *b)
+{
+    const joint *x = a, *y = b;
+    if (x->low != y->low) return x->low < y->low ? -1 : 1;
+    if (x->high != y->high) return x->high < y->high ? -1 : 1;
+    return x->cable < y->cable ? -1 : 1;
+}
+
+static void doubt_cables(const hf_scene *s, joint *all, hf_messages *messages)
+{
+    char place[HF_SCENE_PLACE_SIZE];
+    int n_said = 0, first = 0;
+    for (int e = 0; e < s->n_cable; e++) {
+        int a = s->end[2 * e], b = s->end[2 * e + 1];
+        all[e] = (joint){a < b ? a : b, a < b ? b : a, e};
+    }
+    qsort(all, (size_t)s->n_cable, sizeof *all, by_ends);
+    for (int k = 1; k < s->n_cable; k++) {
+        if (all[k].low != all[first].low || all[k].high != all[first].high) {
+            first = k;
+            continue;
+        }
+        if (++n_said > SAID_MAX) continue;
+        hf_scene_place(s, true, all[k].cable, place, sizeof place);
+        hf_warning(messages, "%s joins the same two nodes as cable '%s'", place, s->cable_id[all[first].cable]);
+    }
+    if (n_said > SAID_MAX)
+        hf_warning(messages, "scene: and %d more cables that join the same two nodes as another", n_said - SAID_MAX);
+}
+
+/* ---- far nodes ---- */
+
+static int by_value(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static int by_distance(const void *a, const void *b)
+{
+    const distance *x = a, *y = b;
+    if (x->m != y->m) return x->m < y->m ? -1 : 1;
+    return x->node < y->node ? -1 : 1;
+}
+
+/* The middle is the median of each coordinate, which a few far nodes do not move. */
+static void doubt_nodes(const hf_scene *s, const scratch *t, hf_messages *messages)
+{
+    char place[HF_SCENE_PLACE_SIZE];
+    double middle[3];
+    int n = s->n_node, k = n / 2 + 1;
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < n; i++)
+            t->coordinate[i] = s->position_m[3 * i + c];
+        qsort(t->coordinate, (size_t)n, sizeof(double), by_value);
+        middle[c] = t->coordinate[n / 2];
+    }
+    for (int i = 0; i < n; i++)
+        t->from[i] = (distance){hf_distance(s->position_m + 3 * (size_t)i, middle), i};
+    qsort(t->from, (size_t)n, sizeof *t->from, by_distance);
+    while (k < n && !(t->from[k - 1].m > 0 && t->from[k].m > FAR * t->from[k - 1].m))
+        k++;
+    for (int i = k; i < n && i < k + SAID_MAX; i++) {
+        hf_scene_place(s, false, t->from[i].node, place, sizeof place);
+        hf_warning(
+            messages,
+            "%s is %.3g m from the middle of the net, %.0f times as far as the others: are all coordinates in m?",
+            place, t->from[i].m, t->from[i].m / t->from[k - 1].m);
+    }
+    if (n > k + SAID_MAX) hf_warning(messages, "scene: and %d more nodes as far away", n - k - SAID_MAX);
+}
+
+/* ---- the plane of the supports ---- */
+
+/* The flat that the supports span: a point, a line or a plane, by orthonormal directions. */
+typedef struct {
+    double origin[3], along[2][3];
+    int n_along;
+} flat;
+
+/* Distance of a point from the flat; `off` is the vector. */
+static double off_flat(const flat *f, const double *p, double off[3])
+{
+    for (int c = 0; c < 3; c++)
+        off[c] = p[c] - f->origin[c];
+    for (int k = 0; k < f->n_along; k++) {
+        double dot = off[0] * f->along[k][0] + off[1] * f->along[k][1] + off[2] * f->along[k][2];
+        for (int c = 0; c < 3; c++)
+            off[c] -= dot * f->along[k][c];
+    }
+    return sqrt(off[0] * off[0] + off[1] * off[1] + off[2] * off[2]);
+}
+
+/* Distance of the support that is farthest from the flat, and where it is. */
+static double farthest_support(const hf_scene *s, const flat *f, double most_off[3])
+{
+    double most = 0, off[3];
+    for (int i = 0; i < s->n_node; i++) {
+        double d = s->role[i] == HF_ROLE_SUPPORT ? off_flat(f, s->position_m + 3 * (size_t)i, off) : 0;
+        if (d <= most) continue;
+        most = d;
+        memcpy(most_off, off, sizeof off);
+    }
+    return most;
+}
+
+/* A flat of at most two directions that goes through all supports, up to PLANE_PART of their extent. False when there
+ * is none. */
+static bool span_supports(const hf_scene *s, flat *f, double *extent_m)
+{
+    double off[3] = {0};
+    *f = (flat){.n_along = 0};
+    for (int i = s->n_node - 1; i >= 0; i--)
+        if (s->role[i] == HF_ROLE_SUPPORT) memcpy(f->origin, s->position_m + 3 * (size_t)i, sizeof f->origin);
+    *extent_m = farthest_support(s, f, off);
+    for (double d = *extent_m; d > PLANE_PART * *extent_m; d = farthest_support(s, f, off)) {
+        if (f->n_along == 2) return false;
+        for (int c = 0; c < 3; c++)
+            f->along[f->n_along][c] = off[c] / d;
+        f->n_along++;
+    }
+    return true;
+}
+
+/* Without loads and struts a taut net is inside the convex hull of its supports, because each free node is a weighted
+ * mean of its neighbours. */
+static void doubt_plane(const hf_scene *s, hf_messages *messages)
+{
+    static const char *const word[3] = {"at one point", "on one line", "in one plane"};
+    double extent_m, square = 0, off[3];
+    int n = 0;
+    flat f;
+    for (int e = 0; e < s->n_cable; e++)
+        if (hf_law_has(s->law[e], HF_LAW_MAY_PUSH) && s->target[e] < 0) return;
+    if (s->load_N || !span_supports(s, &f, &extent_m)) return;
+    for (int i = 0; i < s->n_node; i++) {
+        if (s->role[i] != HF_ROLE_INNER) continue;
+        double d = off_flat(&f, s->position_m + 3 * (size_t)i, off);
+        square += d * d;
+        n++;
+    }
+    double rms_m = sqrt(square / n);
+    if (rms_m > FLATTER_PART * extent_m)
+        hf_warning(messages,
+                   "scene: all supports are %s, and no load, tie or strut holds the net off it: whatever its tensions, "
+                   "it collapses there, and the inner nodes are %.4g mm RMS from their theoretical places or more. Put "
+                   "supports on the surface, tie the net to another one, or load it",
+                   word[f.n_along], rms_m * 1e3);
+}
+
+/* ---- together ---- */
+
+static void lay_out(hf_arena *a, const hf_scene *s, scratch *t)
+{
+    t->joint = hf_arena_take(a, (size_t)s->n_cable, sizeof *t->joint);
+    t->coordinate = hf_arena_take(a, (size_t)s->n_node, sizeof *t->coordinate);
+    t->from = hf_arena_take(a, (size_t)s->n_node, sizeof *t->from);
+}
+
+hf_status hf_scene_doubt(const hf_scene *s, hf_messages *messages)
+{
+    hf_arena arena = {0};
+    scratch t;
+    if (HF_ARENA_MAKE(&arena, lay_out(&arena, s, &t)) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "scene: out of memory");
+    doubt_cables(s, t.joint, messages);
+    doubt_nodes(s, &t, messages);
+    doubt_plane(s, messages);
+    hf_arena_free(&arena);
+    return HF_OK;
+}
