@@ -20,6 +20,7 @@ typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHO
 typedef enum { HF_OPTIMIZE_METHODS(HF_OPTIMIZE_ENUMERATOR) HF_OPTIMIZE_N_METHOD } hf_optimize_method;
 #undef HF_OPTIMIZE_ENUMERATOR
 typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
+typedef enum { HF_PRESTRESS_GIVEN, HF_PRESTRESS_EXACT } hf_prestress;
 typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
 typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN, HF_COUPLING_AUTO } hf_coupling_scheme;
@@ -29,6 +30,7 @@ typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, H
 
 /* The words of these choices in a case file, indexed by the enumerations above; the last entry is NULL. */
 extern const char *const hf_method_word[6];
+extern const char *const hf_prestress_word[3];
 extern const char *const hf_stop_rule_word[3];
 extern const char *const hf_rule_word[4];
 extern const char *const hf_solver_word[5];
@@ -48,6 +50,7 @@ typedef struct {
 typedef struct {
     hf_method method;
     double pretension_N; /* Td */
+    hf_prestress prestress;
     hf_stop_rule stop;
     double residual_tolerance; /* max nodal residual relative to the pretension */
     double length_tolerance;   /* max |l/L*-1| of cables under the length law */

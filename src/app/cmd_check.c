@@ -10,8 +10,11 @@
 #include "search/chord.h"
 #include "search/polish.h"
 #include "search/swarm_lane.h"
+#include "solve/prestress.h"
 #include <hifdm/batch.h>
 #include <hifdm/run.h>
+
+#include <math.h>
 
 #define TRIAL_S 1.0 /* wall-clock time that the trial of form-finding may take, about */
 
@@ -45,6 +48,24 @@ static void print_sets(const hf_scene *s, FILE *f)
     for (int k = 0; k < s->n_set && k < SETS_NAMED; k++)
         fprintf(f, ", %d %s", s->set_start[k + 1] - s->set_start[k], s->set_name[k]);
     if (s->n_set > SETS_NAMED) fprintf(f, " and %d more sets", s->n_set - SETS_NAMED);
+    fputc('\n', f);
+}
+
+/* Prints the range of the tensions that hold the net (form.prestress: exact) for each family of cables. */
+static void print_prestress(const hf_scene *s, FILE *f)
+{
+    fputs("  prestress     exact; N:", f);
+    for (int k = 0, n = 0; k < s->n_set + 2; k++) {
+        double least = INFINITY, most = -INFINITY;
+        for (int e = 0; e < s->n_cable; e++) {
+            double T = s->target[e] * hf_scene_theoretical_length(s, e);
+            if (hf_prestress_family(s, e) == k) least = fmin(least, T), most = fmax(most, T);
+        }
+        if (!(least <= most) || n++ >= SETS_NAMED) continue;
+        fprintf(f, "%s %s %.4g .. %.4g", n > 1 ? "," : "", k < s->n_set ? s->set_name[k] : hf_group_word[k - s->n_set],
+                least, most);
+        if (least > 0) fprintf(f, " (ratio %.4g)", most / least);
+    }
     fputc('\n', f);
 }
 
@@ -285,6 +306,7 @@ static hf_status check(hf_problem *p, const hf_options *options, FILE *f, hf_mes
     const hf_evaluator *v = p->settings.has_optimize && p->model.n_gene > 0 ? &evaluator : NULL;
     hf_print_line(f, "%s: valid", options->file);
     print_scene(p, f);
+    if (p->settings.form.prestress == HF_PRESTRESS_EXACT) print_prestress(&p->scene, f);
     if (p->settings.has_truss) HF_TRY(print_truss(p, f, messages));
     print_plan(p, v, f);
     if (print_memory(p, v, threads, f) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory");

@@ -68,6 +68,10 @@ const hf_field hf_field_table[] = {
      "solve with the starting force densities (Eqs. 5, 6)"},
     {"form.pretension_N", HF_FIELD_DOUBLE, AT(form.pretension_N), HF_ABOVE_ZERO, 1e9, "10", "N", NULL,
      "uniform tension Td of the inner cables"},
+    {"form.prestress", HF_FIELD_WORD, AT(form.prestress), 0, 0, "given", "", hf_prestress_word,
+     "given: every cable keeps its law; exact: every cable gets the force density that holds all nodes at their "
+     "theoretical places, with tensions as near as balance allows to those that laws give (tension, force_density), "
+     "and even where they give none (length, elastic)"},
     {"form.stop", HF_FIELD_WORD, AT(form.stop), 0, 0, "residual", "", hf_stop_rule_word,
      "residual: equilibrium and lengths within the tolerances; rms_change: the paper's rule, psi changes by less than "
      "rms_tolerance_m (stops early, for reproduction)"},

@@ -4,6 +4,7 @@
 #include "base/file_out.h"
 #include "net/symmetry.h"
 #include "search/polish.h"
+#include "solve/prestress.h"
 #include <hifdm/evaluate.h>
 #include <hifdm/metrics.h>
 #include <hifdm/optimiser.h>
@@ -22,6 +23,8 @@ hf_status hf_problem_load(const char *path, const char *const *set, int n_set, h
     HF_TRY(hf_config_load(path, set, n_set, &p->settings, messages));
     HF_TRY(hf_config_scene(&p->settings, &p->scene, messages));
     HF_TRY(hf_config_surface(&p->settings, &p->scene, &p->surface, messages));
+    if (p->settings.form.prestress == HF_PRESTRESS_EXACT)
+        HF_TRY(hf_prestress_hold(&p->scene, &p->settings.form, messages));
     HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));
     if (p->settings.has_truss) {
         const hf_carrier *c = &p->carrier;

@@ -1,0 +1,344 @@
+/* Contents: layout - what is wanted - tensions and forces - the dual problem - what cannot be held - the scene */
+#include "solve/prestress.h"
+
+#include "base/arena.h"
+#include "base/elementary.h"
+#include "linalg/band.h"
+#include <hifdm/cable_set.h>
+#include <hifdm/model.h>
+
+#include <limits.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Weight of a cable whose law gives no tension, over that of one whose law does. */
+#define FREE_WEIGHT 1e-2
+/* Least tension over the reference tension, above what counts as slack. */
+#define LEAST_RATIO 2e-3
+/* Nodal residual, over the reference tension, at which the tensions are as exact as rounding lets them be. */
+#define EXACT 1e-14
+/* Largest residual, over the reference tension, of tensions that hold the net. */
+#define HELD 1e-10
+/* A node is not held when its residual exceeds this part of the largest tension of its cables. */
+#define OUT_OF_BALANCE 1e-3
+/* Shift of the matrix over its largest diagonal entry; a hundredfold after a failed factorisation. */
+#define SHIFT 1e-13
+/* Part of its stiffness that a cable at its least tension keeps in the matrix, so that its nodes have some. */
+#define AT_LEAST 1e-9
+#define STEP_MAX 200
+/* Solutions for the means of families, each by the factor at hand; they settle at this change over the reference. */
+#define MEANS_MAX 10
+#define MEANS_SETTLED 1e-5
+
+/* ---- layout ---- */
+
+/* The programme and its dual: the multipliers of the 3 n_free equations are displacements, and a cable's tension rises
+ * by its stretch under them over its weight, as in a net of linear springs. */
+typedef struct {
+    const hf_model *m;
+    int n, half_bandwidth, n_family;
+    double reference_N;
+    double *wanted_N, *least_N, *weight; /* [n_cable] */
+    double *tension_N;                   /* [n_cable] */
+    double *unit;                        /* [n_cable][3] from the first end to the second */
+    int *family;                         /* [n_cable] */
+    double *family_sum_N;                /* [n_family] */
+    int *family_count;                   /* [n_family] */
+    bool *is_free;                       /* [n_cable] its law gives no tension */
+    bool *is_least, *was_least;          /* [n_cable] at its least tension now, and in the factor */
+    double *multiplier, *trial;          /* [n] */
+    double *force_N;                     /* [n] A T + p */
+    double *step;                        /* [n] */
+    double *band;                        /* [n][half_bandwidth+1] the factor */
+    bool has_factor;
+} programme;
+
+static void lay_out_programme(hf_arena *a, const hf_model *m, programme *p)
+{
+    size_t n = (size_t)p->n, e = (size_t)m->n_cable;
+    p->wanted_N = hf_arena_take(a, e, sizeof(double));
+    p->least_N = hf_arena_take(a, e, sizeof(double));
+    p->weight = hf_arena_take(a, e, sizeof(double));
+    p->tension_N = hf_arena_take(a, e, sizeof(double));
+    p->unit = hf_arena_take(a, 3 * e, sizeof(double));
+    p->family = hf_arena_take(a, e, sizeof(int));
+    p->family_sum_N = hf_arena_take(a, (size_t)p->n_family, sizeof(double));
+    p->family_count = hf_arena_take(a, (size_t)p->n_family, sizeof(int));
+    p->is_free = hf_arena_take(a, e, sizeof(bool));
+    p->is_least = hf_arena_take(a, e, sizeof(bool));
+    p->was_least = hf_arena_take(a, e, sizeof(bool));
+    p->multiplier = hf_arena_take(a, n, sizeof(double));
+    p->trial = hf_arena_take(a, n, sizeof(double));
+    p->force_N = hf_arena_take(a, n, sizeof(double));
+    p->step = hf_arena_take(a, n, sizeof(double));
+    p->band = hf_arena_take(a, n * ((size_t)p->half_bandwidth + 1), sizeof(double));
+}
+
+/* ---- what is wanted ---- */
+
+static void set_wants(programme *p)
+{
+    const hf_model *m = p->m;
+    bool is_any_given = false;
+    for (int e = 0; e < m->n_cable; e++)
+        is_any_given |= !hf_law_has(m->law[e], HF_LAW_HAS_MULTIPLIER);
+    for (int e = 0; e < m->n_cable; e++) {
+        const int *end = m->end_row + 2 * e;
+        for (int c = 0; c < 3; c++)
+            p->unit[3 * e + c] =
+                (m->position_m[c * m->n_node + end[1]] - m->position_m[c * m->n_node + end[0]]) / m->length_m[e];
+        bool is_density = m->law[e] == HF_LAW_FORCE_DENSITY, is_strut = is_density && m->target[e] < 0;
+        p->is_free[e] = is_any_given && !is_density && !hf_law_has(m->law[e], HF_LAW_GIVES_TENSION);
+        p->least_N[e] = is_strut ? -INFINITY : LEAST_RATIO * p->reference_N;
+        p->wanted_N[e] = is_density ? m->target[e] * m->length_m[e] : p->is_free[e] ? p->least_N[e] : m->target[e];
+        if (!is_any_given) p->wanted_N[e] = m->pretension_N;
+        p->weight[e] = p->is_free[e] ? FREE_WEIGHT : 1;
+    }
+}
+
+int hf_prestress_family(const hf_scene *s, int e)
+{
+    int family = s->n_set + s->group[e], least = INT_MAX;
+    for (int k = 0; k < s->n_set; k++) {
+        int size = s->set_start[k + 1] - s->set_start[k];
+        if (size < least && hf_cable_set_has(s, k, e)) family = k, least = size;
+    }
+    return family;
+}
+
+/* Cables that may have any tension want the mean of those of their family, and so come near each other. Returns the
+ * largest change, N. */
+static double want_means(programme *p)
+{
+    double change_N = 0;
+    memset(p->family_sum_N, 0, (size_t)p->n_family * sizeof *p->family_sum_N);
+    memset(p->family_count, 0, (size_t)p->n_family * sizeof *p->family_count);
+    for (int e = 0; e < p->m->n_cable; e++) {
+        if (!p->is_free[e]) continue;
+        p->family_sum_N[p->family[e]] += p->tension_N[e];
+        p->family_count[p->family[e]]++;
+    }
+    for (int e = 0; e < p->m->n_cable; e++) {
+        if (!p->is_free[e]) continue;
+        double mean_N = p->family_sum_N[p->family[e]] / p->family_count[p->family[e]];
+        change_N = fmax(change_N, fabs(mean_N - p->wanted_N[e]));
+        p->wanted_N[e] = mean_N;
+    }
+    return change_N;
+}
+
+/* ---- tensions and forces ---- */
+
+static double component(const programme *p, const double *vector, int row, int c)
+{
+    return row < p->m->n_free ? vector[3 * row + c] : 0;
+}
+
+/* Sets the tensions under these multipliers. Returns the dual function, which is least at the answer. */
+static double set_tensions(programme *p, const double *multiplier, bool is_bounded)
+{
+    const hf_model *m = p->m;
+    double value = 0;
+    for (int e = 0; e < m->n_cable; e++) {
+        double stretch = 0, wanted = p->wanted_N[e], least = p->least_N[e], weight = p->weight[e];
+        for (int c = 0; c < 3; c++)
+            stretch += p->unit[3 * e + c] * (component(p, multiplier, m->end_row[2 * e], c) -
+                                             component(p, multiplier, m->end_row[2 * e + 1], c));
+        double T = wanted + stretch / weight, bounded = fmax(T, least);
+        p->is_least[e] = is_bounded && T < least;
+        p->tension_N[e] = p->is_least[e] ? bounded : T;
+        value += p->is_least[e] ? weight * ((least * least - wanted * wanted) / 2 + least * (T - least))
+                                : weight * (T * T - wanted * wanted) / 2;
+    }
+    for (int i = 0; m->load_N && i < m->n_free; i++)
+        for (int c = 0; c < 3; c++)
+            value += m->load_N[c * m->n_node + i] * multiplier[3 * i + c];
+    return value;
+}
+
+/* Sets the forces on the free nodes. Returns the largest component, N. */
+static double set_forces(programme *p)
+{
+    const hf_model *m = p->m;
+    double largest = 0;
+    for (int i = 0; i < p->n; i++)
+        p->force_N[i] = m->load_N ? m->load_N[i % 3 * m->n_node + i / 3] : 0;
+    for (int e = 0; e < m->n_cable; e++)
+        for (int c = 0; c < 3; c++) {
+            int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+            if (a < m->n_free) p->force_N[3 * a + c] += p->unit[3 * e + c] * p->tension_N[e];
+            if (b < m->n_free) p->force_N[3 * b + c] -= p->unit[3 * e + c] * p->tension_N[e];
+        }
+    for (int i = 0; i < p->n; i++)
+        largest = fmax(largest, fabs(p->force_N[i]));
+    return largest;
+}
+
+/* ---- the dual problem ---- */
+
+static void assemble_springs(programme *p)
+{
+    const hf_model *m = p->m;
+    size_t column = (size_t)p->half_bandwidth + 1;
+    memset(p->band, 0, (size_t)p->n * column * sizeof *p->band);
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], low = a < b ? a : b, high = a < b ? b : a;
+        double stiffness = (p->is_least[e] ? AT_LEAST : 1) / p->weight[e];
+        const double *u = p->unit + 3 * (size_t)e;
+        for (int c = 0; c < 3 && low < m->n_free; c++)
+            for (int r = 0; r < 3; r++) {
+                double k = stiffness * u[r] * u[c];
+                double *diagonal = p->band + (r - c) + (size_t)(3 * low + c) * column;
+                if (r >= c) *diagonal += k;
+                if (high >= m->n_free) continue;
+                if (r >= c) diagonal[(size_t)(3 * (high - low)) * column] += k;
+                diagonal[3 * (high - low)] -= k;
+            }
+    }
+}
+
+static hf_status factor_springs(programme *p)
+{
+    size_t column = (size_t)p->half_bandwidth + 1;
+    if (p->has_factor && !memcmp(p->is_least, p->was_least, (size_t)p->m->n_cable * sizeof(bool))) return HF_OK;
+    memcpy(p->was_least, p->is_least, (size_t)p->m->n_cable * sizeof(bool));
+    for (double shift = SHIFT; shift < 1; shift *= 100) {
+        double largest = 0;
+        assemble_springs(p);
+        for (size_t i = 0; i < (size_t)p->n; i++)
+            largest = fmax(largest, p->band[i * column]);
+        for (size_t i = 0; i < (size_t)p->n; i++)
+            p->band[i * column] += shift * largest;
+        p->has_factor = hf_band_factor(p->n, p->half_bandwidth, p->band) == 0;
+        if (p->has_factor) return HF_OK;
+    }
+    return HF_SINGULAR;
+}
+
+/* One step of Newton's method on the dual function, halved until the function falls as it should. Returns the part of
+ * the step that was taken; the tensions and forces are those at its end, and *largest_N the largest force. */
+static double take_step(programme *p, bool is_bounded, double value, double *largest_N)
+{
+    double slope = 0, part = 1;
+    for (int i = 0; i < p->n; i++)
+        p->step[i] = -p->force_N[i];
+    hf_band_back_solve(p->n, p->half_bandwidth, 1, p->band, p->step, p->n);
+    for (int i = 0; i < p->n; i++)
+        slope += p->step[i] * p->force_N[i];
+    for (;; part /= 2) {
+        for (int i = 0; i < p->n; i++)
+            p->trial[i] = p->multiplier[i] + part * p->step[i];
+        double fallen = value - set_tensions(p, p->trial, is_bounded);
+        if (!is_bounded || fallen >= -1e-4 * part * slope || part < 1e-8) break;
+        /* near the answer the function is flat to rounding, and the forces tell */
+        if (set_forces(p) < *largest_N / 2) break;
+    }
+    memcpy(p->multiplier, p->trial, (size_t)p->n * sizeof *p->trial);
+    *largest_N = set_forces(p);
+    return part;
+}
+
+/* Newton's method, which ends after finitely many steps as the function is quadratic between changes of the set of
+ * cables at their least tension. Returns the largest force that is left, N. */
+static hf_status solve_dual(programme *p, bool is_bounded, double *largest_N)
+{
+    double value = set_tensions(p, p->multiplier, is_bounded);
+    *largest_N = set_forces(p);
+    for (int i = 0; i<STEP_MAX && * largest_N> EXACT * p->reference_N; i++) {
+        double before_N = *largest_N;
+        HF_TRY(factor_springs(p));
+        double part = take_step(p, is_bounded, value, largest_N);
+        value = set_tensions(p, p->multiplier, is_bounded);
+        bool is_same = !memcmp(p->is_least, p->was_least, (size_t)p->m->n_cable * sizeof(bool));
+        if (is_same && part == 1 && !(*largest_N < before_N / 2)) break;
+    }
+    return HF_OK;
+}
+
+/* First without limits, which needs one factorisation and is the answer of most nets. */
+static hf_status solve_within_limits(programme *p, double *largest_N)
+{
+    HF_TRY(solve_dual(p, false, largest_N));
+    set_tensions(p, p->multiplier, true);
+    return solve_dual(p, true, largest_N);
+}
+
+/* ---- what cannot be held ---- */
+
+static double node_force_N(const programme *p, int row)
+{
+    const double *f = p->force_N + 3 * (size_t)row;
+    return hf_norm(f[0], f[1], f[2]);
+}
+
+static hf_status name_unheld(const programme *p, const hf_scene *scene, hf_messages *messages)
+{
+    const hf_model *m = p->m;
+    double *largest = p->trial; /* [n_free] of the tensions around a row */
+    char names[1600] = "";
+    size_t used = 0;
+    int n = 0;
+    memset(largest, 0, (size_t)m->n_free * sizeof *largest);
+    for (int k = 0; k < 2 * m->n_cable; k++)
+        if (m->end_row[k] < m->n_free) largest[m->end_row[k]] = fmax(largest[m->end_row[k]], fabs(p->tension_N[k / 2]));
+    for (int i = 0; i < m->n_free; i++) {
+        if (!(node_force_N(p, i) > OUT_OF_BALANCE * largest[i])) continue;
+        if (n++ < 5 && used < sizeof names)
+            used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", n > 1 ? ", " : "",
+                                     scene->node_id[m->node_of_row[i]]);
+    }
+    char more[32] = "";
+    if (n > 5) snprintf(more, sizeof more, " and %d more", n - 5);
+    return hf_error(messages, HF_BAD_CASE,
+                    "form.prestress: exact: no tensions above zero hold %d of the %d free nodes at their theoretical "
+                    "places: %s%s. Each lacks a cable that pulls it back onto the surface: tie it to a second net, or "
+                    "let its place differ (form.prestress: given)",
+                    n, m->n_free, names, more);
+}
+
+/* ---- the scene ---- */
+
+static hf_status find_tensions(programme *p, const hf_scene *scene, hf_messages *messages)
+{
+    double largest_N = INFINITY;
+    set_wants(p);
+    for (int e = 0; e < p->m->n_cable; e++)
+        p->family[e] = hf_prestress_family(scene, e);
+    hf_status status = solve_within_limits(p, &largest_N);
+    for (int i = 0; i < MEANS_MAX && status == HF_OK && largest_N <= HELD * p->reference_N; i++) {
+        if (want_means(p) <= MEANS_SETTLED * p->reference_N) break;
+        status = solve_within_limits(p, &largest_N);
+    }
+    if (status == HF_OK && largest_N <= HELD * p->reference_N) return HF_OK;
+    return name_unheld(p, scene, messages);
+}
+
+static hf_status hold(hf_scene *scene, const hf_model *m, hf_messages *messages)
+{
+    hf_arena arena = {0};
+    programme p = {.m = m, .n = 3 * m->n_free, .half_bandwidth = 3 * m->half_bandwidth + 2};
+    p.reference_N = m->reference_N;
+    p.n_family = scene->n_set + 2;
+    if (HF_ARENA_MAKE(&arena, lay_out_programme(&arena, m, &p)) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the tensions of a net of %d nodes", m->n_node);
+    hf_status status = find_tensions(&p, scene, messages);
+    for (int e = 0; e < m->n_cable && status == HF_OK; e++) {
+        scene->law[e] = HF_LAW_FORCE_DENSITY;
+        scene->target[e] = p.tension_N[e] / m->length_m[e];
+    }
+    hf_arena_free(&arena);
+    return status;
+}
+
+hf_status hf_prestress_hold(hf_scene *scene, const hf_form_settings *form, hf_messages *messages)
+{
+    hf_form_settings by_law = *form;
+    hf_model model;
+    by_law.method = HF_METHOD_AUTO; /* the other methods replace laws */
+    hf_status status = hf_model_build(scene, &by_law, &model, messages);
+    if (status == HF_OK) status = hold(scene, &model, messages);
+    hf_model_free(&model);
+    return status;
+}
