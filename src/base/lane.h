@@ -1,9 +1,9 @@
-/* lane - the eight SIMD lanes that chord and swarm give a design each, and the instruction sets that kernels are
- * compiled for.
+/* lane - the eight SIMD lanes that chord and swarm give a design each, the instruction sets that kernels are compiled
+ * for, and the vectors that kernels are written in.
  *
- * All instruction sets give the same bits: there are always eight lanes, one order of operations, and only IEEE + - * /
- * and square root. Lanes never fuse multiply-adds (swarm_kernel.c gives the measured price of this); the kernels of a
- * single band do, everywhere. */
+ * All instruction sets give the same bits: there are always eight lanes, one order of operations, and only IEEE + - *
+ * /, square root and fused multiply-adds. A product is fused with the sum that it goes into where the source says so
+ * (`plus_product`, `less_product`, C's fma()) and nowhere else: the compiler fuses nothing (Makefile). */
 #ifndef HIFDM_LANE_H
 #define HIFDM_LANE_H
 
@@ -11,7 +11,7 @@
 
 #define HF_LANES 8
 
-/* Names of the instruction sets, slowest first. */
+/* Names of the instruction sets, slowest first. AVX2 stands for AVX2 with FMA. */
 typedef enum { HF_LANE_PORTABLE, HF_LANE_AVX2, HF_LANE_AVX512 } hf_lane_isa;
 #define HF_LANE_N_ISA 3
 
@@ -19,4 +19,109 @@ bool hf_lane_has_isa(hf_lane_isa isa); /* can this machine run it? */
 hf_lane_isa hf_lane_best_isa(void);    /* the fastest that this machine can run */
 const char *hf_lane_isa_name(hf_lane_isa isa);
 
+/* ---- vectors: for *_kernel.c, which the Makefile compiles with -DHF_ISA=avx512 and so on ---- */
+
+#ifdef HF_LANE_VECTORS
+
+#include <math.h>
+#if defined __AVX2__
+#include <immintrin.h>
+#endif
+
+#define HF_JOIN_(a, b) a##_##b
+#define HF_JOIN(a, b) HF_JOIN_(a, b)
+#define HF_KERNEL(name) HF_JOIN(name, HF_ISA) /* a name of this instruction set's own */
+
+/* WIDTH doubles are worked on at a time; PARTS vectors hold eight. */
+#if defined __AVX512F__
+enum { WIDTH = 8 };
+#elif defined __AVX2__
+enum { WIDTH = 4 };
+#else
+enum { WIDTH = 2 };
+#endif
+enum { PARTS = HF_LANES / WIDTH };
+
+typedef double vec __attribute__((vector_size(WIDTH * sizeof(double)), may_alias));
+
+#define INLINE static inline __attribute__((always_inline))
+/* a loop with a small constant count: it is unrolled, so that the arrays in it stay in registers */
+#define foreach(i, count) _Pragma("GCC unroll 16") for (int i = 0; i < (count); i++)
+
+INLINE vec splat(double x)
+{
+    return x - (vec){0};
+}
+
+/* c + a b, rounded once. Where the processor has no such instruction, C's fma() is called: the same bits, slowly. */
+INLINE vec plus_product(vec c, vec a, vec b)
+{
+#if defined __AVX512F__
+    return _mm512_fmadd_pd(a, b, c);
+#elif defined __AVX2__
+    return _mm256_fmadd_pd(a, b, c);
+#else
+    foreach (i, WIDTH)
+        c[i] = fma(a[i], b[i], c[i]);
+    return c;
+#endif
+}
+
+/* c - a b, rounded once */
+INLINE vec less_product(vec c, vec a, vec b)
+{
+#if defined __AVX512F__
+    return _mm512_fnmadd_pd(a, b, c);
+#elif defined __AVX2__
+    return _mm256_fnmadd_pd(a, b, c);
+#else
+    foreach (i, WIDTH)
+        c[i] = fma(-a[i], b[i], c[i]);
+    return c;
+#endif
+}
+
+INLINE vec root(vec a)
+{
+#if defined __AVX512F__
+    return _mm512_sqrt_pd(a);
+#elif defined __AVX2__
+    return _mm256_sqrt_pd(a);
+#else
+    foreach (i, WIDTH)
+        a[i] = sqrt(a[i]);
+    return a;
+#endif
+}
+
+/* The square of the length of (x, y, z). */
+INLINE vec norm_squared(vec x, vec y, vec z)
+{
+    return plus_product(plus_product(x * x, y, y), z, z);
+}
+
+/* a > b ? yes : no; "no" where a or b is NaN */
+INLINE vec if_greater(vec a, vec b, vec yes, vec no)
+{
+    typedef long long mask __attribute__((vector_size(WIDTH * sizeof(double))));
+    mask m = a > b;
+    return (vec)((m & (mask)yes) | (~m & (mask)no));
+}
+
+INLINE vec larger(vec a, vec b)
+{
+    return if_greater(a, b, a, b);
+}
+
+INLINE vec smaller(vec a, vec b)
+{
+    return if_greater(b, a, a, b);
+}
+
+INLINE vec magnitude(vec a)
+{
+    return larger(a, -a);
+}
+
+#endif
 #endif

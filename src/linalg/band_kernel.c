@@ -5,58 +5,26 @@
  * LAPACK's lower band: entry (i,j) stands at band[i - j + j (k + 1)] = band[i + j k], so that a row lies k apart in
  * memory and the rows of a column side by side. The factorisation is left-looking by blocks of four columns: for eight
  * or sixteen rows of them at a time, the 4 x 8 entries stay in registers while the finished columns stream by. */
+#define HF_LANE_VECTORS
 #include "linalg/band_kernel.h"
+
+#include "base/lane.h"
 
 #include <math.h>
 #include <stddef.h>
 
 /* ---- strips: eight rows of a column, in PARTS vectors ---- */
 
-#if defined __AVX512F__
-#include <immintrin.h>
-enum { WIDTH = 8 };
-#elif defined __AVX2__ && defined __FMA__
-#include <immintrin.h>
-enum { WIDTH = 4 };
-#else
-enum { WIDTH = 2 };
-#endif
-enum { ROWS = 8, PARTS = ROWS / WIDTH, COLUMNS = 4 };
+enum { ROWS = HF_LANES, COLUMNS = 4 };
 
-typedef double vec __attribute__((vector_size(WIDTH * sizeof(double)), aligned(8), may_alias));
+typedef vec row_vec __attribute__((aligned(8)));
 typedef struct {
     vec part[PARTS];
 } strip;
 
-#define JOIN_(a, b) a##_##b
-#define JOIN(a, b) JOIN_(a, b)
-#define KERNEL(name) JOIN(name, HF_ISA)
-#define INLINE static inline __attribute__((always_inline))
-/* a loop with a small constant count: it is unrolled, so that the arrays in it stay in registers */
-#define foreach(i, count) _Pragma("GCC unroll 16") for (int i = 0; i < (count); i++)
-
-INLINE int smaller(int a, int b)
+INLINE int least(int a, int b)
 {
     return a < b ? a : b;
-}
-
-INLINE vec splat(double x)
-{
-    return x - (vec){0};
-}
-
-/* c - a b, rounded once */
-INLINE vec fused(vec a, vec b, vec c)
-{
-#if defined __AVX512F__
-    return _mm512_fnmadd_pd(a, b, c);
-#elif defined __AVX2__ && defined __FMA__
-    return _mm256_fnmadd_pd(a, b, c);
-#else
-    foreach (i, WIDTH)
-        c[i] = fma(-a[i], b[i], c[i]);
-    return c;
-#endif
 }
 
 INLINE strip zero(void)
@@ -71,14 +39,14 @@ INLINE strip load(const double *from)
 {
     strip s;
     foreach (i, PARTS)
-        s.part[i] = *(const vec *)(from + i * WIDTH);
+        s.part[i] = *(const row_vec *)(from + i * WIDTH);
     return s;
 }
 
 INLINE void store(double *to, strip s)
 {
     foreach (i, PARTS)
-        *(vec *)(to + i * WIDTH) = s.part[i];
+        *(row_vec *)(to + i * WIDTH) = s.part[i];
 }
 
 /* The first `count` rows; the others are 0 and are not read. */
@@ -89,7 +57,7 @@ INLINE strip load_first(const double *from, int count)
     strip s;
     s.part[0] = _mm512_maskz_loadu_pd((__mmask8)(count > 0 ? (1 << count) - 1 : 0), from);
     return s;
-#elif defined __AVX2__ && defined __FMA__
+#elif defined __AVX2__
     static const long long mask[2 * ROWS] = {-1, -1, -1, -1, -1, -1, -1, -1};
     const long long *first = mask + ROWS - (count > 0 ? count : 0);
     strip s;
@@ -108,7 +76,7 @@ INLINE strip load_first(const double *from, int count)
 INLINE void store_some(double *to, strip s, int begin, int end)
 {
 #if defined __AVX512F__
-    _mm512_mask_storeu_pd(to, (__mmask8)(end > begin ? ((1 << smaller(end, ROWS)) - 1) & ~((1 << begin) - 1) : 0),
+    _mm512_mask_storeu_pd(to, (__mmask8)(end > begin ? ((1 << least(end, ROWS)) - 1) & ~((1 << begin) - 1) : 0),
                           s.part[0]);
 #else
     if (begin == 0 && end >= ROWS) {
@@ -117,7 +85,7 @@ INLINE void store_some(double *to, strip s, int begin, int end)
     }
     double row[ROWS];
     store(row, s);
-    for (int r = begin; r < smaller(end, ROWS); r++)
+    for (int r = begin; r < least(end, ROWS); r++)
         to[r] = row[r];
 #endif
 }
@@ -130,7 +98,7 @@ INLINE double row_of(strip s, int row)
 INLINE void subtract(strip *s, strip a, double b)
 {
     foreach (i, PARTS)
-        s->part[i] = fused(a.part[i], splat(b), s->part[i]);
+        s->part[i] = less_product(s->part[i], a.part[i], splat(b));
 }
 
 INLINE void multiply(strip *s, double by)
@@ -177,7 +145,7 @@ INLINE int entries(const block *b, int row, int column)
 /* t, rows `row` and on of the block, less the products of the columns `begin` to j - 1. */
 INLINE void eliminate(const block *b, int n_strip, int n_column, int row, int begin, strip t[][COLUMNS])
 {
-    int full = smaller(b->j, row + ROWS * n_strip - 1 - (int)b->k); /* columns before have not all of these rows */
+    int full = least(b->j, row + ROWS * n_strip - 1 - (int)b->k); /* columns before have not all of these rows */
     for (int p = begin; p < full; p++)
         foreach (s, n_strip) {
             strip l = load_first(place(b, row + ROWS * s, p), entries(b, row + ROWS * s, p));
@@ -217,7 +185,7 @@ INLINE int finish_rows(block *b, int n_strip, int n_column, int row, int begin)
             int first = row + ROWS * s;
             multiply(&t[s][c], b->inverse[c]);
             store_some(place(b, first, column), t[s][c], row == b->j && s == 0 ? c + 1 : 0,
-                       smaller(entries(b, first, column), b->n - first));
+                       least(entries(b, first, column), b->n - first));
         }
         if (row == b->j) *place(b, column, column) = pivot;
         foreach (d, COLUMNS) {
@@ -234,7 +202,7 @@ INLINE int finish_rows(block *b, int n_strip, int n_column, int row, int begin)
  * entry outside the band can change the sign of a zero. */
 INLINE int factor_block(block *b, int n_column)
 {
-    int last = smaller(b->j + n_column - 1 + (int)b->k, b->n - 1);
+    int last = least(b->j + n_column - 1 + (int)b->k, b->n - 1);
     for (int row = b->j; row <= last; row += 2 * ROWS) {
         int begin = row - (int)b->k > 0 ? row - (int)b->k : 0;
         for (int s = 0; s < 2; s += STRIPS) {
@@ -246,11 +214,11 @@ INLINE int factor_block(block *b, int n_column)
     return 0;
 }
 
-int KERNEL(hf_band_factor)(int n, int half_bandwidth, double *band)
+int HF_KERNEL(hf_band_factor)(int n, int half_bandwidth, double *band)
 {
     block b = {.band = band, .k = half_bandwidth, .n = n};
     for (b.j = 0; b.j < n; b.j += COLUMNS) {
-        int n_column = smaller(COLUMNS, n - b.j);
+        int n_column = least(COLUMNS, n - b.j);
         int failed = n_column == COLUMNS ? factor_block(&b, COLUMNS) : factor_block(&b, n_column);
         if (failed) return failed;
     }
@@ -267,7 +235,7 @@ INLINE double in_block(const block *b, int d, int c)
 
 INLINE void forward(const block *b, int n_column, int n_rhs, double *x, int ld)
 {
-    int last = smaller(b->j + n_column - 1 + (int)b->k, b->n - 1);
+    int last = least(b->j + n_column - 1 + (int)b->k, b->n - 1);
     double y[COLUMNS][COLUMNS] = {{0}};
     foreach (c, COLUMNS)
         foreach (r, n_rhs) {
@@ -290,12 +258,12 @@ INLINE void forward(const block *b, int n_column, int n_rhs, double *x, int ld)
 INLINE void subtract_product(strip *s, strip a, strip b)
 {
     foreach (i, PARTS)
-        s->part[i] = fused(a.part[i], b.part[i], s->part[i]);
+        s->part[i] = less_product(s->part[i], a.part[i], b.part[i]);
 }
 
 INLINE void backward(const block *b, int n_column, int n_rhs, double *x, int ld)
 {
-    int last = smaller(b->j + n_column - 1 + (int)b->k, b->n - 1);
+    int last = least(b->j + n_column - 1 + (int)b->k, b->n - 1);
     strip t[COLUMNS][COLUMNS];
     foreach (c, COLUMNS)
         foreach (r, n_rhs)
@@ -303,7 +271,7 @@ INLINE void backward(const block *b, int n_column, int n_rhs, double *x, int ld)
     for (int row = b->j + n_column; row <= last; row += ROWS)
         foreach (c, COLUMNS) {
             if (c >= n_column) continue;
-            int count = smaller(entries(b, row, b->j + c), b->n - row);
+            int count = least(entries(b, row, b->j + c), b->n - row);
             strip l = load_first(place(b, row, b->j + c), count);
             foreach (r, n_rhs)
                 subtract_product(&t[c][r], l, load_first(x + r * (ptrdiff_t)ld + row, count));
@@ -331,7 +299,7 @@ INLINE void back_solve(int n, int half_bandwidth, int n_rhs, double *factor, dou
         backward(&b, COLUMNS, n_rhs, x, ld);
 }
 
-void KERNEL(hf_band_back_solve)(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb)
+void HF_KERNEL(hf_band_back_solve)(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb)
 {
     double *f = (double *)factor; /* which is only read */
     for (; n_rhs >= 3; n_rhs -= 3, b += 3 * (ptrdiff_t)ldb)
@@ -365,7 +333,7 @@ INLINE void gram_tile(int n_row, int n_column, int n, const double *row, const d
             gram[r * ldg + c] = -sum(t[r][c]);
 }
 
-void KERNEL(hf_band_gram)(int n, int n_column, const double *a, int lda, double *gram, int ldg)
+void HF_KERNEL(hf_band_gram)(int n, int n_column, const double *a, int lda, double *gram, int ldg)
 {
     for (int i = 0; i < n; i += COLUMNS)
         for (int j = 0; j <= i; j += COLUMNS) {

@@ -131,15 +131,16 @@ static bool has_room(hf_batch *batch, int room)
     return true;
 }
 
-/* Evaluate designs that `next` hands out, in one thread, until none is left. */
-static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *context, const double *design_N,
-                     hf_form_result *r)
+/* Evaluate designs that `next` hands out, in one thread, until none is left. With keeps_shape the room's workspace
+ * holds the last shape. */
+static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *context, bool keeps_shape,
+                     const double *design_N, hf_form_result *r)
 {
     const hf_evaluator *v = batch->evaluator;
     const struct hf_batch_engine *e = batch->engine;
     hf_workspace *w = &batch->workspace[room];
     if (e && e->solver == HF_SOLVER_CHORD)
-        hf_chord_run(&e->shared, &e->chord[room], w, next, context, design_N, r);
+        hf_chord_run(&e->shared, &e->chord[room], w, next, context, keeps_shape, design_N, r);
     else if (e)
         hf_swarm_run(v, &e->plan, &e->lanes[room], w, next, context, design_N, r);
     else
@@ -163,7 +164,7 @@ static void work_on_job(void *context, int room)
     batch_job *j = context;
     if (hf_parallel_is_empty(&j->queue) || !has_room(j->batch, room)) return;
     double start_s = hf_clock_thread_cpu_s();
-    work_off(j->batch, room, hf_parallel_take, &j->queue, j->design_N, j->result);
+    work_off(j->batch, room, hf_parallel_take, &j->queue, false, j->design_N, j->result);
     hf_parallel_add(&j->batch->cpu_s,
                     hf_clock_thread_cpu_s() - start_s); /* the wait for other threads is not counted */
 }
@@ -209,7 +210,7 @@ bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *r)
 {
     hf_parallel_queue one = {1, 0, NULL};
-    work_off(batch, 0, hf_parallel_take, &one, design_N, r);
+    work_off(batch, 0, hf_parallel_take, &one, true, design_N, r);
     return &batch->workspace[0];
 }
 

@@ -5,8 +5,10 @@
 #include "solve/coupling.h"
 #include "solve/newton_matrix.h"
 #include "solve/schur.h"
+#include <hifdm/metrics.h>
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,7 +26,8 @@ static const hf_chord_kernels *choose_kernels(void)
 {
 #define TABLE(isa)                                                                                                     \
     {                                                                                                                  \
-        hf_chord_forces_##isa, hf_chord_solve_##isa, hf_chord_step_##isa, hf_chord_couple_##isa, hf_chord_move_##isa   \
+        hf_chord_forces_##isa, hf_chord_solve_##isa, hf_chord_step_##isa, hf_chord_couple_##isa, hf_chord_move_##isa,  \
+            hf_chord_measure_##isa                                                                                     \
     }
     static const hf_chord_kernels portable = TABLE(portable), avx2 = TABLE(avx2), avx512 = TABLE(avx512);
 #undef TABLE
@@ -45,36 +48,48 @@ static bool is_between_supports(const hf_model *m, int e)
     return m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free;
 }
 
+static bool is_served(const hf_model *m, int e)
+{
+    return hf_law_is_served(m->law[e], HF_CHORD_LAWS);
+}
+
 bool hf_chord_applies(const hf_evaluator *v)
 {
     const hf_model *m = v->model;
     if (!m->has_newton || v->rule == HF_RULE_SEEDED || m->n_gene == 0) return false;
     int n_other = 0; /* cables whose laws the kernels do not serve */
     for (int e = 0; e < m->n_cable; e++)
-        n_other += !hf_law_is_served(m->law[e], HF_CHORD_LAWS);
+        n_other += !is_served(m, e);
     for (int k = 0; k < m->n_gene; k++) /* the rule replaces the law of a gene's cable */
-        n_other -= !hf_law_is_served(m->law[m->gene_cable[k]], HF_CHORD_LAWS);
+        n_other -= !is_served(m, m->gene_cable[k]);
     for (int e = 0; e < m->n_cable; e++) /* a cable between two supports moves no node */
-        n_other -= !hf_law_is_served(m->law[e], HF_CHORD_LAWS) && is_between_supports(m, e);
+        n_other -= !is_served(m, e) && is_between_supports(m, e);
     for (int k = 0; k < m->n_tie; k++) /* but such a cable pulls on a truss */
-        n_other += !hf_law_is_served(m->law[m->tie[k] / 2], HF_CHORD_LAWS) && is_between_supports(m, m->tie[k] / 2);
+        n_other += !is_served(m, m->tie[k] / 2) && is_between_supports(m, m->tie[k] / 2);
     return n_other == 0;
 }
 
 static void lay_out(hf_arena *a, hf_chord *c)
 {
     const hf_model *m = c->evaluator->model;
-    size_t n = (size_t)c->n_dof + 4, w = (size_t)c->width; /* rows are read four at a time */
-    c->row = hf_arena_take(a, n * w, sizeof(double));
-    c->column = hf_arena_take(a, n * w, sizeof(double));
+    size_t n_block = (size_t)c->n_block, n = n_block * HF_CHORD_ROWS, n_packed = n * (size_t)(c->width + HF_CHORD_ROWS);
+    size_t n_cable = (size_t)m->n_cable, n_pull = (size_t)c->n_pull;
+    c->row = hf_arena_take(a, n_packed, sizeof(double));
+    c->column = hf_arena_take(a, n_packed, sizeof(double));
     c->inverse_diagonal = hf_arena_take(a, n, sizeof(double));
     c->base_m = hf_arena_take(a, 3 * (size_t)m->n_node, sizeof(double));
-    c->row_begin = hf_arena_take(a, n / 4, sizeof(int));
-    c->column_end = hf_arena_take(a, n / 4, sizeof(int));
-    c->gene_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
-    if (c->n_pull == 0) return;
-    size_t n_pull = (size_t)c->n_pull;
-    c->pull_of_row = hf_arena_take(a, (size_t)m->n_node, sizeof(int));
+    c->row_begin = hf_arena_take(a, n_block, sizeof(int));
+    c->column_end = hf_arena_take(a, n_block, sizeof(int));
+    c->gene_of_cable = hf_arena_take(a, n_cable, sizeof(int));
+    c->gene_divisor = hf_arena_take(a, (size_t)m->n_gene, sizeof(double));
+    c->inverse_length = hf_arena_take(a, n_cable, sizeof(double));
+    c->slot_of_cable = hf_arena_take(a, n_cable, sizeof(int));
+    c->pulled = hf_arena_take(a, n_cable, sizeof(int));
+    c->is_pulled = hf_arena_take(a, n_cable, 1);
+    c->incidence_start = hf_arena_take(a, (size_t)m->n_free + (size_t)m->n_attachment + 1, sizeof(int));
+    c->place_of_row = hf_arena_take(a, (size_t)m->n_node, sizeof(int));
+    c->incidence = hf_arena_take(a, 2 * n_cable, sizeof(hf_chord_incidence));
+    if (n_pull == 0) return;
     c->flexibility = hf_arena_take(a, n_pull * (size_t)c->n_pull_pad, sizeof(double));
     c->mode = hf_arena_take(a, 2 * n_pull * HF_CHORD_MODES_MAX, sizeof(double));
     c->tie_block = hf_arena_take(a, 9 * (size_t)m->n_tie, sizeof(double));
@@ -83,33 +98,39 @@ static void lay_out(hf_arena *a, hf_chord *c)
 
 static void pack_factor(const hf_workspace *w, hf_chord *c)
 {
-    size_t ld = 3 * (size_t)c->evaluator->model->half_bandwidth + 3, width = (size_t)c->width;
-    for (size_t j = 0; j < (size_t)c->n_dof; j++) {
-        c->inverse_diagonal[j] = 1 / w->newton_band[j * ld];
-        for (size_t d = 1; d < ld && j + d < (size_t)c->n_dof; d++) {
-            double value = w->newton_band[d + j * ld];
-            c->column[j * width + d - 1] = value;
-            c->row[(j + d) * width + width - d] = value;
+    const int rows = HF_CHORD_ROWS;
+    int n = c->n_dof, ld = 3 * c->evaluator->model->half_bandwidth + 3, places = c->width + rows;
+    for (int j = 0; j < n; j++)
+        c->inverse_diagonal[j] = 1 / w->newton_band[(ptrdiff_t)j * ld];
+    for (int j = 0; j < n; j++)
+        for (int d = 1; d < ld && j + d < n; d++) {
+            double value = w->newton_band[(ptrdiff_t)j * ld + d];
+            int i = j + d, row_0 = i / rows * rows, column_0 = j / rows * rows;
+            ptrdiff_t in_row = (ptrdiff_t)row_0 * places + (ptrdiff_t)(j - row_0 + c->width) * rows + i - row_0;
+            ptrdiff_t in_column = (ptrdiff_t)column_0 * places + (ptrdiff_t)(i - column_0) * rows + j - column_0;
+            c->row[in_row] = value * c->inverse_diagonal[i];
+            c->column[in_column] = value * c->inverse_diagonal[j];
         }
-    }
 }
 
-/* Is any of the four packed rows (or columns) at `block` not zero at place i of the part that they share? */
-static bool has_entry(const double *block, size_t width, int i)
+/* Is any entry beside each other not zero? */
+static bool has_entry(const double *packed)
 {
-    return block[i + 3] != 0 || block[width + (size_t)i + 2] != 0 || block[2 * width + (size_t)i + 1] != 0 ||
-           block[3 * width + (size_t)i] != 0;
+    for (int r = 0; r < HF_CHORD_ROWS; r++)
+        if (packed[r] != 0) return true;
+    return false;
 }
 
 static void find_skyline(hf_chord *c)
 {
-    size_t width = (size_t)c->width;
-    for (int b = 0; 4 * b < c->n_dof; b++) {
-        const double *row = c->row + 4 * (size_t)b * width, *column = c->column + 4 * (size_t)b * width;
-        int begin = 0, end = c->width - 3;
-        while (begin < c->width - 3 && !has_entry(row, width, begin))
+    int places = c->width + HF_CHORD_ROWS;
+    for (int b = 0; b < c->n_block; b++) {
+        const double *row = c->row + (ptrdiff_t)b * places * HF_CHORD_ROWS;
+        const double *column = c->column + (ptrdiff_t)b * places * HF_CHORD_ROWS;
+        int begin = 0, end = places;
+        while (begin < c->width && !has_entry(row + begin * HF_CHORD_ROWS))
             begin++;
-        while (end > 0 && !has_entry(column, width, end - 1))
+        while (end > HF_CHORD_ROWS && !has_entry(column + (end - 1) * HF_CHORD_ROWS))
             end--;
         c->row_begin[b] = begin;
         c->column_end[b] = end;
@@ -124,10 +145,11 @@ void hf_chord_pack(const hf_workspace *w, hf_chord *chord)
 
 static hf_chord dimensions(const hf_evaluator *v)
 {
-    int half_bandwidth = 3 * v->model->half_bandwidth + 2, n_pull = 3 * v->model->n_attachment;
+    int n_dof = 3 * v->model->n_free, n_pull = 3 * v->model->n_attachment;
     return (hf_chord){.evaluator = v,
-                      .n_dof = 3 * v->model->n_free,
-                      .width = (half_bandwidth + 3) / 4 * 4,
+                      .n_dof = n_dof,
+                      .n_block = (n_dof + HF_CHORD_ROWS - 1) / HF_CHORD_ROWS,
+                      .width = 3 * v->model->half_bandwidth + 2,
                       .n_pull = n_pull,
                       .n_pull_pad = (n_pull + HF_CHORD_ROWS - 1) / HF_CHORD_ROWS * HF_CHORD_ROWS};
 }
@@ -137,10 +159,6 @@ static hf_status pack_truss(const hf_model *m, hf_workspace *w, hf_chord *c)
 {
     size_t n = (size_t)c->n_pull;
     hf_schur schur;
-    for (int row = 0; row < m->n_node; row++)
-        c->pull_of_row[row] = -1;
-    for (int i = 0; i < m->n_attachment; i++)
-        c->pull_of_row[m->attachment_row[i]] = 3 * i;
     for (size_t i = 0; i < n; i++) /* the rows that fill up stay zero */
         for (size_t j = 0; j < n; j++)
             c->flexibility[(i / HF_CHORD_ROWS * n + j) * HF_CHORD_ROWS + i % HF_CHORD_ROWS] =
@@ -167,6 +185,52 @@ static hf_status allocate(hf_chord *chord)
     return HF_OK;
 }
 
+/* Which cables are whose, and where their force densities stand. */
+static void list_cables(const hf_evaluator *v, hf_chord *c)
+{
+    const hf_model *m = v->model;
+    bool gives_tension = v->rule == HF_RULE_TENSION;
+    for (int e = 0; e < m->n_cable; e++)
+        c->gene_of_cable[e] = -1;
+    for (int k = 0; k < m->n_gene; k++) {
+        c->gene_of_cable[m->gene_cable[k]] = k;
+        c->gene_divisor[k] = gives_tension ? 1 : hf_evaluate_design_length_m(m, m->gene_cable[k]);
+    }
+    c->serves_all = true;
+    for (int e = 0; e < m->n_cable; e++) {
+        int k = c->gene_of_cable[e];
+        c->inverse_length[e] = 1 / m->length_m[e];
+        c->slot_of_cable[e] = k >= 0 && !gives_tension ? k : m->n_gene + e;
+        c->is_pulled[e] = k >= 0 ? gives_tension : hf_law_has(m->law[e], HF_LAW_GIVES_TENSION);
+        if (c->is_pulled[e]) c->pulled[c->n_pulled++] = e;
+        if (k < 0 && !is_served(m, e)) c->serves_all = false;
+    }
+}
+
+/* The incidences are counted first. Then incidence_start[place] is that of the place's next one; when all are filled
+ * in, it is where the next place starts. */
+static void list_incidences(const hf_model *m, hf_chord *c)
+{
+    int *start = c->incidence_start, *place_of_row = c->place_of_row, n_place = m->n_free + m->n_attachment, sum = 0;
+    for (int row = 0; row < m->n_node; row++)
+        place_of_row[row] = row < m->n_free ? row : -1;
+    for (int i = 0; i < m->n_attachment; i++)
+        place_of_row[m->attachment_row[i]] = m->n_free + i;
+    for (int k = 0; k < 2 * m->n_cable; k++)
+        if (place_of_row[m->end_row[k]] >= 0) start[place_of_row[m->end_row[k]]]++;
+    for (int i = 0; i < n_place; i++) {
+        int count = start[i];
+        start[i] = sum;
+        sum += count;
+    }
+    for (int k = 0; k < 2 * m->n_cable; k++) {
+        int place = place_of_row[m->end_row[k]];
+        if (place >= 0) c->incidence[start[place]++] = (hf_chord_incidence){c->slot_of_cable[k / 2], m->end_row[k ^ 1]};
+    }
+    memmove(start + 1, start, (size_t)n_place * sizeof(int));
+    start[0] = 0;
+}
+
 hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_workspace *w, hf_chord *chord)
 {
     const hf_model *m = v->model;
@@ -177,10 +241,8 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_worksp
     HF_TRY(allocate(chord));
     hf_chord_pack(w, chord);
     memcpy(chord->base_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
-    for (int e = 0; e < m->n_cable; e++)
-        chord->gene_of_cable[e] = -1;
-    for (int k = 0; k < m->n_gene; k++)
-        chord->gene_of_cable[m->gene_cable[k]] = k;
+    list_cables(v, chord);
+    list_incidences(m, chord);
     return chord->n_pull ? pack_truss(m, w, chord) : HF_OK;
 }
 
@@ -196,8 +258,8 @@ static void lay_out_lanes(hf_arena *a, const hf_chord *c, hf_chord_lanes *l)
 {
     const hf_model *m = c->evaluator->model;
     l->x_m = hf_arena_take(a, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
-    l->force_N = hf_arena_take(a, ((size_t)c->n_dof + 2 * (size_t)c->width + 8) * HF_LANES, sizeof(double));
-    l->gene = hf_arena_take(a, (size_t)m->n_gene * HF_LANES, sizeof(double));
+    l->force_N = hf_arena_take(a, ((size_t)c->n_dof + 2 * (size_t)c->width + HF_CHORD_ROWS) * HF_LANES, sizeof(double));
+    l->gene = hf_arena_take(a, ((size_t)m->n_gene + (size_t)m->n_cable) * HF_LANES, sizeof(double));
     l->pull_N = hf_arena_take(a, (size_t)c->n_pull * HF_LANES, sizeof(double));
     l->displacement_m = hf_arena_take(a, (size_t)c->n_pull_pad * HF_LANES, sizeof(double));
     l->move_m = hf_arena_take(a, (size_t)c->n_pull_pad * HF_LANES, sizeof(double));
@@ -220,6 +282,12 @@ hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes)
     hf_arena arena = {0};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_lanes(&arena, chord, lanes)));
     lanes->block = arena.block;
+    const hf_model *m = chord->evaluator->model;
+    double *q_N_per_m = lanes->gene + (size_t)m->n_gene * HF_LANES;
+    for (size_t i = 0; i < 3 * (size_t)m->n_node * HF_LANES; i++)
+        lanes->x_m[i] = chord->base_m[i / HF_LANES];
+    for (size_t i = 0; i < (size_t)m->n_cable * HF_LANES; i++) /* which is that of cables of law force_density */
+        q_N_per_m[i] = m->target[i / HF_LANES];
     return HF_OK;
 }
 
@@ -244,7 +312,7 @@ void hf_chord_back_solve(const hf_chord *chord, const hf_chord_lanes *l, int n_r
 {
     double *rows = l->force_N + (size_t)chord->width * HF_LANES;
     size_t n = (size_t)chord->n_dof;
-    memset(rows, 0, (n + (size_t)chord->width + 8) * HF_LANES * sizeof *rows);
+    memset(rows, 0, (n + (size_t)chord->width + HF_CHORD_ROWS) * HF_LANES * sizeof *rows);
     for (int first = 0; first < n_rhs; first += HF_LANES) {
         int n_lane = n_rhs - first < HF_LANES ? n_rhs - first : HF_LANES;
         double *column = b + (size_t)first * ldb;
@@ -272,27 +340,36 @@ typedef struct {
     const hf_chord *chord;
     hf_chord_lanes *lanes;
     hf_workspace *w;
+    bool keeps_shape;
     const double *design_N;
     hf_form_result *result;
     int steps[HF_LANES];
     double excess_before_N[HF_LANES];
     standing at[HF_LANES];
+    bool is_measured; /* has `now` the figures of the lanes' shapes? */
+    hf_chord_measures now;
 } chord_run;
 
+/* The supports that do not move are where hf_chord_lanes_create put them. */
 static void load(void *solver, int lane, int i_design)
 {
     chord_run *s = solver;
     const hf_chord *c = s->chord;
     const hf_model *m = c->evaluator->model;
     const double *design_N = s->design_N + (size_t)i_design * (size_t)m->n_gene;
-    hf_chord_lanes *l = s->lanes;
-    for (int i = 0; i < 3 * m->n_node; i++)
-        l->x_m[(size_t)i * HF_LANES + (size_t)lane] = c->base_m[i];
+    const hf_chord_lanes *l = s->lanes;
+    for (int d = 0; d < 3; d++) {
+        double *x = l->x_m + (ptrdiff_t)d * m->n_node * HF_LANES + lane;
+        const double *base = c->base_m + (ptrdiff_t)d * m->n_node;
+        for (int i = 0; i < m->n_free; i++)
+            x[(ptrdiff_t)i * HF_LANES] = base[i];
+        for (int i = 0; i < m->n_attachment; i++)
+            x[(ptrdiff_t)m->attachment_row[i] * HF_LANES] = base[m->attachment_row[i]];
+    }
     for (int i = 0; i < c->n_pull; i++)
-        l->displacement_m[(size_t)i * HF_LANES + (size_t)lane] = c->base_displacement_m[i];
+        l->displacement_m[i * HF_LANES + lane] = c->base_displacement_m[i];
     for (int k = 0; k < m->n_gene; k++)
-        l->gene[(size_t)k * HF_LANES + (size_t)lane] =
-            hf_evaluate_design_target(c->evaluator, m->gene_cable[k], design_N[k]);
+        l->gene[k * HF_LANES + lane] = design_N[k] / c->gene_divisor[k];
     s->steps[lane] = 0;
     s->excess_before_N[lane] = INFINITY;
 }
@@ -306,12 +383,55 @@ static void unload(const chord_run *s, int lane, const double *design_N, hf_form
     hf_workspace *w = s->w;
     hf_evaluate_prepare(c->evaluator, design_N, w);
     for (int i = 0; i < 3 * m->n_node; i++)
-        w->position_m[i] = l->x_m[(size_t)i * HF_LANES + (size_t)lane];
-    for (int i = 0; i < c->n_pull; i++)
-        w->displacement_m[i] = l->displacement_m[(size_t)i * HF_LANES + (size_t)lane];
+        w->position_m[i] = l->x_m[i * HF_LANES + lane];
     hf_form_measure(m, c->evaluator->form, w, r);
+}
+
+/* Are the figures of the lane's shape those that the kernel has measured? No fault is to be named, and no cable is
+ * slack. */
+static bool is_ordinary(const chord_run *s, int lane)
+{
+    const hf_chord_measures *now = &s->now;
+    double slack_N = HF_SLACK_RATIO * s->chord->evaluator->model->reference_N;
+    return s->chord->serves_all && now->shortest_pulled[lane] >= s->chord->evaluator->form->collapse_ratio &&
+           now->shortest_other[lane] >= HF_FORM_GONE && now->longest[lane] <= HF_FORM_BLOWN_UP &&
+           now->lowest_N[HF_GROUP_INNER][lane] >= slack_N && now->lowest_N[HF_GROUP_BOUNDARY][lane] >= slack_N;
+}
+
+static double tension_ratio(const hf_chord_measures *now, hf_group group, int lane)
+{
+    double high_N = now->highest_N[group][lane];
+    return high_N > 0 ? high_N / now->lowest_N[group][lane] : (double)NAN;
+}
+
+static void report(const chord_run *s, int lane, hf_form_result *r)
+{
+    const hf_chord_measures *now = &s->now;
+    *r = (hf_form_result){.status = HF_OK, .stop_reason = HF_STOPPED_RESIDUAL, .culprit = -1};
+    hf_result_blank(r);
+    r->psi_m = s->chord->evaluator->model->n_inner_node ? now->psi_m[lane] : (double)NAN;
+    r->residual_N = s->at[lane].residual_N;
+    r->tension_error = now->tension_error[lane];
+    r->length_error = 0;
+    r->inner_tension_ratio = tension_ratio(now, HF_GROUP_INNER, lane);
+    r->boundary_tension_ratio = tension_ratio(now, HF_GROUP_BOUNDARY, lane);
+    r->shortest_length_ratio = fmin(now->shortest_pulled[lane], now->shortest_other[lane]);
+}
+
+/* The result of a lane that has converged. The kernel measures all lanes at once; a shape with a fault goes to the
+ * scalar code, which names it. */
+static void finish(chord_run *s, int lane, const double *design_N, hf_form_result *r)
+{
+    const hf_chord *c = s->chord;
+    if (!s->is_measured) c->kernels->measure(c, s->lanes, &s->now);
+    s->is_measured = true;
+    bool ordinary = is_ordinary(s, lane);
+    if (s->keeps_shape || !ordinary) unload(s, lane, design_N, r);
+    if (ordinary) report(s, lane, r);
     r->iterations = s->steps[lane];
-    if (c->n_pull) hf_coupling_accept(m, w, s->steps[lane], s->at[lane].gap_m, r);
+    for (int i = 0; i < c->n_pull; i++)
+        s->w->displacement_m[i] = s->lanes->displacement_m[i * HF_LANES + lane];
+    if (c->n_pull) hf_coupling_accept(c->evaluator->model, s->w, s->steps[lane], s->at[lane].gap_m, r);
     hf_evaluate_judge(c->evaluator, r);
 }
 
@@ -322,6 +442,7 @@ static void look(void *solver)
     const hf_chord *c = s->chord;
     double squared[HF_LANES], reference_N = c->evaluator->model->reference_N;
     const hf_form_settings *form = c->evaluator->form;
+    s->is_measured = false;
     c->kernels->forces(c, s->lanes, squared);
     for (int lane = 0; lane < HF_LANES; lane++) {
         double residual_N = reference_N * sqrt(squared[lane]);
@@ -347,7 +468,7 @@ static bool settle(void *solver, int lane, int i_design)
     const double *design_N = s->design_N + (size_t)i_design * (size_t)v->model->n_gene;
     double excess_N = s->at[lane].excess_N;
     if (excess_N <= v->form->residual_tolerance * v->model->reference_N) {
-        unload(s, lane, design_N, s->result + i_design);
+        finish(s, lane, design_N, s->result + i_design);
         return true;
     }
     bool contracts = s->steps[lane] < PATIENCE || excess_N < CONTRACTION * s->excess_before_N[lane];
@@ -370,9 +491,10 @@ static void step(void *solver)
 }
 
 void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *w, hf_lane_next *next, void *context,
-                  const double *design_N, hf_form_result *r)
+                  bool keeps_shape, const double *design_N, hf_form_result *r)
 {
     static const hf_lane_solver work = {load, look, settle, step};
-    chord_run s = {.chord = chord, .lanes = lanes, .w = w, .design_N = design_N, .result = r};
+    chord_run s = {
+        .chord = chord, .lanes = lanes, .w = w, .keeps_shape = keeps_shape, .design_N = design_N, .result = r};
     hf_lane_schedule_run(&work, &s, next, context);
 }

@@ -2,9 +2,9 @@
  * base design, and shared read-only by all threads; each triangular solve serves eight designs, one in each SIMD lane.
  *
  * A design has converged when its own nodal forces vanish; the shared matrix only affects how many steps that takes.
- * The scalar code of formfind measures the final shape again. A design whose residual does not fall fast enough is
- * evaluated by hf_evaluate instead. No operation mixes lanes, so a result depends neither on the designs in the other
- * lanes nor on the thread. */
+ * The kernels measure the final shape, too; one with a fault goes to the scalar code of formfind, which names it. A
+ * design whose residual does not fall fast enough is evaluated by hf_evaluate instead. No operation mixes lanes, so a
+ * result depends neither on the designs in the other lanes nor on the thread. */
 #ifndef HIFDM_CHORD_H
 #define HIFDM_CHORD_H
 
@@ -38,8 +38,8 @@ void hf_chord_pack(const hf_workspace *workspace, hf_chord *chord);
 void hf_chord_back_solve(const hf_chord *chord, const hf_chord_lanes *lanes, int n_rhs, double *b, size_t ldb);
 
 /* Evaluate the designs whose indices `next(context)` returns, until it returns -1: from design_N [][n_gene] into
- * result []. */
+ * result []. With keeps_shape the workspace holds the last shape at the end; else it is scratch. */
 void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, hf_lane_next *next,
-                  void *context, const double *design_N, hf_form_result *result);
+                  void *context, bool keeps_shape, const double *design_N, hf_form_result *result);
 
 #endif

@@ -1,220 +1,307 @@
-/* The inner loops of chord, over HF_LANES designs side by side. Multiplications and additions are never fused, and the
- * order of the operations in a lane is always the same, so all instruction sets give the same bits. */
+/* The inner loops of chord, over HF_LANES designs side by side. The order of the operations in a lane is always the
+ * same, and products are fused with the sums that they go into (lane.h), so all instruction sets give the same bits.
+ *
+ * Contents: vectors - forces - the truss - the matrix - measures */
+#define HF_LANE_VECTORS
 #include "search/chord_kernel.h"
 
-typedef double lanes __attribute__((vector_size(HF_LANES * sizeof(double))));
+#include <math.h>
+#include <stddef.h>
 
-/* sqrt has no vector form in C; a loop over the lanes becomes one instruction */
-static inline void square_root(lanes *value)
+/* ---- vectors: WIDTH lanes of a row, from lane p on ---- */
+
+enum { ROWS = HF_CHORD_ROWS };
+
+INLINE vec *lanes_of(const double *array, ptrdiff_t row, int p)
 {
-    for (int k = 0; k < HF_LANES; k++)
-        (*value)[k] = __builtin_sqrt((*value)[k]);
+    return (vec *)(void *)(array + row * HF_LANES + p);
 }
 
-/* with_truss is a constant where this is inlined */
-static inline __attribute__((always_inline)) void forces(const hf_chord *chord, const hf_chord_lanes *l,
-                                                         bool with_truss, double residual_squared[HF_LANES])
+/* The larger one; NaN where one of them is. */
+INLINE vec larger_or_nan(vec now, vec next)
+{
+    typedef long long mask __attribute__((vector_size(WIDTH * sizeof(double))));
+    mask takes = (next > now) | (next != next);
+    return (vec)((takes & (mask)next) | (~takes & (mask)now));
+}
+
+/* To an array of any alignment. */
+INLINE void put(double *to, vec from, int p)
+{
+    foreach (k, WIDTH)
+        to[p + k] = from[k];
+}
+
+/* From end to end of a cable. */
+INLINE void difference(const double *x_m, int n_node, int from, int to, int p, vec d[3])
+{
+    foreach (c, 3)
+        d[c] = *lanes_of(x_m, c * n_node + to, p) - *lanes_of(x_m, c * n_node + from, p);
+}
+
+/* ---- forces ---- */
+
+static void find_densities(const hf_chord *chord, const hf_chord_lanes *l, int p)
 {
     const hf_model *m = chord->evaluator->model;
-    const lanes *x = (const lanes *)(const void *)l->x_m, *y = x + m->n_node, *z = y + m->n_node;
-    const lanes *gene = (const lanes *)(const void *)l->gene;
-    lanes *force = (lanes *)(void *)l->force_N + chord->width, *pull = (lanes *)(void *)l->pull_N;
-    const lanes zero = {0};
-    int tension_rule = chord->evaluator->rule == HF_RULE_TENSION;
-    for (int i = 0; i < m->n_free; i++)
-        for (int c = 0; c < 3; c++) {
-            double load = m->load_N ? m->load_N[c * m->n_node + i] : 0;
-            force[3 * i + c] = zero + load;
-        }
-    /* the rows after the last: a lane that failed may have left NaNs there */
-    for (int i = chord->n_dof; i < chord->n_dof + chord->width + 8; i++)
-        force[i] = zero;
-    for (int i = 0; with_truss && i < m->n_attachment; i++)
-        for (int c = 0; c < 3; c++) {
-            double load = m->load_N ? m->load_N[c * m->n_node + m->attachment_row[i]] : 0;
-            pull[3 * i + c] = zero + load;
-        }
-    for (int e = 0; e < m->n_cable; e++) {
-        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], k = chord->gene_of_cable[e];
-        lanes dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a], q = {0};
-        if (k >= 0)
-            q = gene[k];
-        else
-            q += m->target[e];
-        if (k >= 0 ? tension_rule : hf_law_has(m->law[e], HF_LAW_GIVES_TENSION)) {
-            lanes length = dx * dx + dy * dy + dz * dz;
-            square_root(&length);
-            q /= length;
-        }
-        dx *= q, dy *= q, dz *= q;
-        if (a < m->n_free) force[3 * a] += dx, force[3 * a + 1] += dy, force[3 * a + 2] += dz;
-        if (b < m->n_free) force[3 * b] -= dx, force[3 * b + 1] -= dy, force[3 * b + 2] -= dz;
-        if (!with_truss) continue;
-        int at_a = chord->pull_of_row[a], at_b = chord->pull_of_row[b];
-        if (at_a >= 0) pull[at_a] += dx, pull[at_a + 1] += dy, pull[at_a + 2] += dz;
-        if (at_b >= 0) pull[at_b] -= dx, pull[at_b + 1] -= dy, pull[at_b + 2] -= dz;
+    vec d[3];
+    for (int i = 0; i < chord->n_pulled; i++) {
+        int e = chord->pulled[i], k = chord->gene_of_cable[e];
+        difference(l->x_m, m->n_node, m->end_row[2 * e], m->end_row[2 * e + 1], p, d);
+        vec tension = k >= 0 ? *lanes_of(l->gene, k, p) : splat(m->target[e]);
+        *lanes_of(l->gene, chord->slot_of_cable[e], p) = tension / root(norm_squared(d[0], d[1], d[2]));
     }
-    lanes largest = {0};
-    const double scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
+}
+
+/* The force on model row `row`, whose cables are the incidences of `place`. The loop goes over the nodes, so that a
+ * force is summed in registers. */
+INLINE void sum_force(const hf_chord *chord, const hf_chord_lanes *l, int place, int row, int p, vec f[3])
+{
+    const hf_model *m = chord->evaluator->model;
+    const hf_chord_incidence *i = chord->incidence + chord->incidence_start[place],
+                             *end = chord->incidence + chord->incidence_start[place + 1];
+    vec d[3];
+    foreach (c, 3)
+        f[c] = splat(m->load_N ? m->load_N[c * m->n_node + row] : 0);
+    for (; i < end; i++) {
+        vec q = *lanes_of(l->gene, i->slot, p);
+        difference(l->x_m, m->n_node, row, i->other, p, d);
+        foreach (c, 3)
+            f[c] = plus_product(f[c], q, d[c]);
+    }
+}
+
+static void forces(const hf_chord *chord, const hf_chord_lanes *l, int p, double *residual_squared)
+{
+    const hf_model *m = chord->evaluator->model;
+    const double *force = l->force_N + chord->width * HF_LANES;
+    vec f[3], largest = splat(0), scale = splat(1 / m->reference_N); /* squares of tiny forces would vanish */
+    find_densities(chord, l, p);
     for (int i = 0; i < m->n_free; i++) {
-        lanes fx = scale * force[3 * i], fy = scale * force[3 * i + 1], fz = scale * force[3 * i + 2];
-        lanes square = fx * fx + fy * fy + fz * fz;
-        for (int k = 0; k < HF_LANES; k++)
-            largest[k] = square[k] <= largest[k] ? largest[k] : square[k]; /* keeps a NaN */
+        sum_force(chord, l, i, i, p, f);
+        foreach (c, 3)
+            *lanes_of(force, 3 * i + c, p) = f[c];
+        largest = larger_or_nan(largest, norm_squared(scale * f[0], scale * f[1], scale * f[2]));
     }
-    for (int k = 0; k < HF_LANES; k++)
-        residual_squared[k] = largest[k];
+    /* the rows after the last: a lane that failed may have left NaNs there */
+    for (int i = chord->n_dof; i < chord->n_dof + chord->width + ROWS; i++)
+        *lanes_of(force, i, p) = splat(0);
+    for (int i = 0; 3 * i < chord->n_pull; i++) {
+        sum_force(chord, l, m->n_free + i, m->attachment_row[i], p, f);
+        foreach (c, 3)
+            *lanes_of(l->pull_N, 3 * i + c, p) = f[c];
+    }
+    put(residual_squared, largest, p);
 }
 
 void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES])
 {
-    if (chord->n_pull)
-        forces(chord, l, true, residual_squared);
-    else
-        forces(chord, l, false, residual_squared);
+    for (int p = 0; p < HF_LANES; p += WIDTH)
+        forces(chord, l, p, residual_squared);
 }
 
 /* ---- the truss ---- */
 
-/* Compute F f - r for HF_CHORD_ROWS rows at a time, which share the loads of f. */
-static void find_gap(const hf_chord *chord, const lanes *pull, const lanes *r, lanes *gap)
+/* Compute F f - r for ROWS rows at a time, which share the loads of f. */
+static void find_gap(const hf_chord *chord, const hf_chord_lanes *l, int p)
 {
     const double *f = chord->flexibility;
-    const lanes zero = {0};
-    for (int i = 0; i < chord->n_pull_pad; i += HF_CHORD_ROWS) {
-        lanes s0 = zero, s1 = zero, s2 = zero, s3 = zero, s4 = zero, s5 = zero;
-        for (int j = 0; j < chord->n_pull; j++, f += HF_CHORD_ROWS) {
-            lanes p = pull[j];
-            s0 += f[0] * p;
-            s1 += f[1] * p;
-            s2 += f[2] * p;
-            s3 += f[3] * p;
-            s4 += f[4] * p;
-            s5 += f[5] * p;
+    for (int i = 0; i < chord->n_pull_pad; i += ROWS) {
+        vec s[ROWS];
+        foreach (r, ROWS)
+            s[r] = splat(0);
+        for (int j = 0; j < chord->n_pull; j++, f += ROWS) {
+            vec pull = *lanes_of(l->pull_N, j, p);
+            foreach (r, ROWS)
+                s[r] = plus_product(s[r], splat(f[r]), pull);
         }
-        gap[i] = s0 - r[i];
-        gap[i + 1] = s1 - r[i + 1];
-        gap[i + 2] = s2 - r[i + 2];
-        gap[i + 3] = s3 - r[i + 3];
-        gap[i + 4] = s4 - r[i + 4];
-        gap[i + 5] = s5 - r[i + 5];
+        foreach (r, ROWS)
+            *lanes_of(l->move_m, i + r, p) = s[r] - *lanes_of(l->displacement_m, i + r, p);
+    }
+}
+
+static void couple(const hf_chord *chord, const hf_chord_lanes *l, int p, double *gap_squared)
+{
+    vec share[HF_CHORD_MODES_MAX], largest = splat(0);
+    find_gap(chord, l, p);
+    for (int i = 0; i < chord->n_pull; i += 3) {
+        const vec x = *lanes_of(l->move_m, i, p), y = *lanes_of(l->move_m, i + 1, p),
+                  z = *lanes_of(l->move_m, i + 2, p);
+        largest = larger_or_nan(largest, norm_squared(x, y, z));
+    }
+    put(gap_squared, largest, p);
+    for (int k = 0; k < chord->n_mode; k++) {
+        const double *right = chord->mode + (size_t)(2 * k + 1) * (size_t)chord->n_pull;
+        share[k] = splat(0);
+        for (int i = 0; i < chord->n_pull; i++)
+            share[k] = plus_product(share[k], splat(right[i]), *lanes_of(l->move_m, i, p));
+    }
+    for (int k = 0; k < chord->n_mode; k++) {
+        const double *left = chord->mode + (size_t)(2 * k) * (size_t)chord->n_pull;
+        for (int i = 0; i < chord->n_pull; i++) {
+            vec *at = lanes_of(l->move_m, i, p);
+            *at = plus_product(*at, splat(left[i]), share[k]);
+        }
     }
 }
 
 void HF_KERNEL(hf_chord_couple)(const hf_chord *chord, const hf_chord_lanes *l, double gap_squared[HF_LANES])
 {
-    lanes *move = (lanes *)(void *)l->move_m, share[HF_CHORD_MODES_MAX], largest = {0};
-    find_gap(chord, (const lanes *)(const void *)l->pull_N, (const lanes *)(const void *)l->displacement_m, move);
-    for (int i = 0; i < chord->n_pull; i += 3) {
-        lanes square = move[i] * move[i] + move[i + 1] * move[i + 1] + move[i + 2] * move[i + 2];
-        for (int k = 0; k < HF_LANES; k++)
-            largest[k] = square[k] <= largest[k] ? largest[k] : square[k]; /* keeps a NaN */
-    }
-    for (int k = 0; k < HF_LANES; k++)
-        gap_squared[k] = largest[k];
-    const double *mode = chord->mode;
-    for (int k = 0; k < chord->n_mode; k++) {
-        const double *right = mode + (size_t)(2 * k + 1) * (size_t)chord->n_pull;
-        share[k] = (lanes){0};
-        for (int i = 0; i < chord->n_pull; i++)
-            share[k] += right[i] * move[i];
-    }
-    for (int k = 0; k < chord->n_mode; k++) {
-        const double *left = mode + (size_t)(2 * k) * (size_t)chord->n_pull;
-        for (int i = 0; i < chord->n_pull; i++)
-            move[i] += left[i] * share[k];
+    for (int p = 0; p < HF_LANES; p += WIDTH)
+        couple(chord, l, p, gap_squared);
+}
+
+static void move(const hf_chord *chord, const hf_chord_lanes *l, int p)
+{
+    const hf_model *m = chord->evaluator->model;
+    const double *force = l->force_N + chord->width * HF_LANES;
+    for (int i = 0; i < m->n_attachment; i++)
+        for (int c = 0; c < 3; c++) {
+            vec step = *lanes_of(l->move_m, 3 * i + c, p);
+            *lanes_of(l->displacement_m, 3 * i + c, p) += step;
+            *lanes_of(l->x_m, c * m->n_node + m->attachment_row[i], p) += step;
+        }
+    for (int k = 0; k < m->n_tie; k++) {
+        int there = m->end_row[m->tie[k] ^ 1];
+        const double *block = chord->tie_block + 9 * k;
+        if (there >= m->n_free) continue;
+        foreach (c, 3) {
+            vec *f = lanes_of(force, 3 * there + c, p);
+            foreach (d, 3)
+                *f = plus_product(*f, splat(block[3 * c + d]), *lanes_of(l->move_m, 3 * m->tie_attachment[k] + d, p));
+        }
     }
 }
 
 void HF_KERNEL(hf_chord_move)(const hf_chord *chord, const hf_chord_lanes *l)
 {
-    const hf_model *m = chord->evaluator->model;
-    lanes *x = (lanes *)(void *)l->x_m, *r = (lanes *)(void *)l->displacement_m;
-    lanes *force = (lanes *)(void *)l->force_N + chord->width;
-    const lanes *move = (const lanes *)(const void *)l->move_m;
-    for (int i = 0; i < m->n_attachment; i++)
-        for (int c = 0; c < 3; c++) {
-            r[3 * i + c] += move[3 * i + c];
-            x[c * m->n_node + m->attachment_row[i]] += move[3 * i + c];
-        }
-    for (int k = 0; k < m->n_tie; k++) {
-        int there = m->end_row[m->tie[k] ^ 1];
-        const lanes *d = move + 3 * m->tie_attachment[k];
-        const double *block = chord->tie_block + 9 * k;
-        if (there >= m->n_free) continue;
-        for (int c = 0; c < 3; c++)
-            force[3 * there + c] += block[3 * c] * d[0] + block[3 * c + 1] * d[1] + block[3 * c + 2] * d[2];
-    }
+    for (int p = 0; p < HF_LANES; p += WIDTH)
+        move(chord, l, p);
 }
 
 /* ---- the matrix ---- */
 
-/* Both triangular solves take four rows at a time, which share the loads of what is already solved. A packed row (or
- * column) holds `width` entries, zeros where the band is shorter. `width` zero rows stand before and after the
- * right-hand side, and up to three rows after the last are computed without being used, so no edge needs code of its
- * own. Entries outside the skyline of a block of four are zero and are left out. */
+/* Both triangular solves take ROWS rows at a time, a block, which share the loads of what is already solved; each row
+ * has one accumulator. `width` zero rows stand before and after the right-hand side, and up to ROWS - 1 rows after the
+ * last are computed without being used, so no edge needs code of its own. */
 
-/* Row j + p holds the columns j + p - w .. j + p - 1; all four share j + 3 - w .. j - 1. */
-static void forward(const hf_chord *chord, lanes *f)
+/* s[r] less the products of row k of a packed block with what is solved there, from row `first` to row `last`. */
+INLINE void eliminate(vec s[ROWS], const double *packed, int first, int last, vec solved)
+{
+    foreach (r, ROWS)
+        if (first <= r && r <= last) s[r] = less_product(s[r], splat(packed[r]), solved);
+}
+
+INLINE void begin_rows(const hf_chord *chord, const double *rows, int j, int p, vec s[ROWS])
+{
+    foreach (r, ROWS)
+        s[r] = *lanes_of(rows, j + r, p) * chord->inverse_diagonal[j + r];
+}
+
+INLINE void forward(const hf_chord *chord, const double *rows, int j, int p)
 {
     int w = chord->width;
-    for (int j = 0; j < chord->n_dof; j += 4) {
-        const double *r0 = chord->row + (size_t)j * (size_t)w, *r1 = r0 + w, *r2 = r1 + w, *r3 = r2 + w;
-        const double *d = chord->inverse_diagonal + j;
-        lanes *y = f + j;
-        lanes s0 = y[0] - r0[0] * y[-w] - r0[1] * y[1 - w] - r0[2] * y[2 - w];
-        lanes s1 = y[1] - r1[0] * y[1 - w] - r1[1] * y[2 - w], s2 = y[2] - r2[0] * y[2 - w], s3 = y[3];
-        for (int i = chord->row_begin[j / 4]; i + 3 < w; i++) {
-            lanes solved = y[3 - w + i];
-            s0 -= r0[3 + i] * solved;
-            s1 -= r1[2 + i] * solved;
-            s2 -= r2[1 + i] * solved;
-            s3 -= r3[i] * solved;
-        }
-        y[0] = s0 *= d[0];
-        y[1] = s1 = (s1 - r1[w - 1] * s0) * d[1];
-        y[2] = s2 = (s2 - r2[w - 2] * s0 - r2[w - 1] * s1) * d[2];
-        y[3] = (s3 - r3[w - 3] * s0 - r3[w - 2] * s1 - r3[w - 1] * s2) * d[3];
+    const double *packed = chord->row + (ptrdiff_t)j * (w + ROWS);
+    vec s[ROWS];
+    begin_rows(chord, rows, j, p, s);
+    for (int k = chord->row_begin[j / ROWS]; k < w; k++)
+        eliminate(s, packed + k * ROWS, 0, ROWS - 1, *lanes_of(rows, j - w + k, p));
+    foreach (k, ROWS) {
+        *lanes_of(rows, j + k, p) = s[k];
+        eliminate(s, packed + (w + k) * ROWS, k + 1, ROWS - 1, s[k]);
     }
 }
 
-/* Column j + p holds the rows j + p + 1 .. j + p + w; all four share j + 4 .. j + w. */
-static void backward(const hf_chord *chord, lanes *f)
+/* The farthest rows come first. */
+INLINE void backward(const hf_chord *chord, const double *rows, int j, int p)
 {
-    int w = chord->width;
-    for (int j = (chord->n_dof - 1) / 4 * 4; j >= 0; j -= 4) {
-        const double *c0 = chord->column + (size_t)j * (size_t)w, *c1 = c0 + w, *c2 = c1 + w, *c3 = c2 + w;
-        const double *d = chord->inverse_diagonal + j;
-        lanes *y = f + j;
-        lanes s0 = y[0], s1 = y[1] - c1[w - 1] * y[w + 1], s2 = y[2] - c2[w - 2] * y[w + 1] - c2[w - 1] * y[w + 2];
-        lanes s3 = y[3] - c3[w - 3] * y[w + 1] - c3[w - 2] * y[w + 2] - c3[w - 1] * y[w + 3];
-        for (int i = 0; i < chord->column_end[j / 4]; i++) {
-            lanes solved = y[4 + i];
-            s0 -= c0[3 + i] * solved;
-            s1 -= c1[2 + i] * solved;
-            s2 -= c2[1 + i] * solved;
-            s3 -= c3[i] * solved;
-        }
-        y[3] = s3 *= d[3];
-        y[2] = s2 = (s2 - c2[0] * s3) * d[2];
-        y[1] = s1 = (s1 - c1[0] * s2 - c1[1] * s3) * d[1];
-        y[0] = (s0 - c0[0] * s1 - c0[1] * s2 - c0[2] * s3) * d[0];
+    const double *packed = chord->column + (ptrdiff_t)j * (chord->width + ROWS);
+    vec s[ROWS];
+    begin_rows(chord, rows, j, p, s);
+    for (int k = chord->column_end[j / ROWS] - 1; k >= ROWS; k--)
+        eliminate(s, packed + k * ROWS, 0, ROWS - 1, *lanes_of(rows, j + k, p));
+    foreach (i, ROWS) {
+        int k = ROWS - 1 - i;
+        *lanes_of(rows, j + k, p) = s[k];
+        eliminate(s, packed + k * ROWS, 0, k - 1, s[k]);
     }
 }
 
+/* Both halves of a block of rows before the next one, so that the matrix is read once. */
 void HF_KERNEL(hf_chord_solve)(const hf_chord *chord, const hf_chord_lanes *l)
 {
-    lanes *force = (lanes *)(void *)l->force_N + chord->width;
-    forward(chord, force);
-    backward(chord, force);
+    const double *rows = l->force_N + chord->width * HF_LANES;
+    for (int j = 0; j < chord->n_dof; j += ROWS)
+        for (int p = 0; p < HF_LANES; p += WIDTH)
+            forward(chord, rows, j, p);
+    for (int j = (chord->n_dof - 1) / ROWS * ROWS; j >= 0; j -= ROWS)
+        for (int p = 0; p < HF_LANES; p += WIDTH)
+            backward(chord, rows, j, p);
 }
 
 void HF_KERNEL(hf_chord_step)(const hf_chord *chord, const hf_chord_lanes *l)
 {
     const hf_model *m = chord->evaluator->model;
-    lanes *x = (lanes *)(void *)l->x_m;
-    const lanes *step = (const lanes *)(const void *)l->force_N + chord->width;
+    const double *step = l->force_N + chord->width * HF_LANES;
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < m->n_free; i++)
-            x[c * m->n_node + i] += step[3 * i + c];
+            for (int p = 0; p < HF_LANES; p += WIDTH)
+                *lanes_of(l->x_m, c * m->n_node + i, p) += *lanes_of(step, 3 * i + c, p);
+}
+
+/* ---- measures ---- */
+
+static vec psi(const hf_model *m, const double *x_m, int p)
+{
+    vec sum = splat(0), d[3];
+    for (int k = 0; k < m->n_inner_node; k++) {
+        int row = m->inner_row[k];
+        foreach (c, 3)
+            d[c] = *lanes_of(x_m, c * m->n_node + row, p) - m->position_m[c * m->n_node + row];
+        sum += norm_squared(d[0], d[1], d[2]);
+    }
+    return root(sum / (double)m->n_inner_node);
+}
+
+static void measure(const hf_chord *chord, const hf_chord_lanes *l, int p, hf_chord_measures *out)
+{
+    const hf_model *m = chord->evaluator->model;
+    vec most = splat(INFINITY), none = splat(0), error = none, d[3];
+    vec low[2] = {most, most}, high[2] = {-most, -most}, short_pulled = most, short_other = most, longest = none;
+    for (int e = 0; e < m->n_cable; e++) {
+        int k = chord->gene_of_cable[e], slot = chord->slot_of_cable[e];
+        difference(l->x_m, m->n_node, m->end_row[2 * e], m->end_row[2 * e + 1], p, d);
+        vec length = root(norm_squared(d[0], d[1], d[2])), part = length * chord->inverse_length[e];
+        vec q = *lanes_of(l->gene, slot, p), tension = q * length;
+        longest = larger(part, longest);
+        if (m->group[e] == HF_GROUP_INNER) {
+            low[HF_GROUP_INNER] = smaller(tension, low[HF_GROUP_INNER]);
+            high[HF_GROUP_INNER] = larger(tension, high[HF_GROUP_INNER]);
+        } else {
+            low[HF_GROUP_BOUNDARY] = smaller(tension, low[HF_GROUP_BOUNDARY]);
+            high[HF_GROUP_BOUNDARY] = larger(tension, high[HF_GROUP_BOUNDARY]);
+        }
+        if (chord->is_pulled[e]) {
+            vec target = k >= 0 ? *lanes_of(l->gene, k, p) : splat(m->target[e]);
+            error = larger(magnitude(tension / target - 1), error);
+            short_pulled = smaller(part, short_pulled);
+        } else {
+            short_other = smaller(part, short_other);
+        }
+    }
+    foreach (g, 2) {
+        *lanes_of(out->lowest_N[g], 0, p) = low[g];
+        *lanes_of(out->highest_N[g], 0, p) = high[g];
+    }
+    *lanes_of(out->psi_m, 0, p) = psi(m, l->x_m, p);
+    *lanes_of(out->tension_error, 0, p) = error;
+    *lanes_of(out->shortest_pulled, 0, p) = short_pulled;
+    *lanes_of(out->shortest_other, 0, p) = short_other;
+    *lanes_of(out->longest, 0, p) = longest;
+}
+
+void HF_KERNEL(hf_chord_measure)(const hf_chord *chord, const hf_chord_lanes *l, hf_chord_measures *measures)
+{
+    for (int p = 0; p < HF_LANES; p += WIDTH)
+        measure(chord, l, p, measures);
 }

@@ -3,21 +3,12 @@
  * Contents: vectors - tiles - factor - substitution - assembly - solve - measures - table
  *
  * The factorisation is left-looking by tiles of 4 x 4 entries: a tile stays in registers (16 of AVX-512's 32) while the
- * finished parts of its two block rows stream by, 8 loads for 16 multiplications and 16 subtractions. Both parts are
+ * finished parts of its two block rows stream by, 8 loads for 16 fused multiply-adds. Both parts are
  * contiguous, whatever the bandwidth. Each entry has one accumulator that runs over the columns in rising order, so how
  * the entries are grouped (GROUP columns at a time) cannot change a bit.
  *
- * Why no fused multiply-adds: *measured* on one core of a Zen 5 EPYC (FMA peak 134 GF/s), factor of 8 x (n = 437,
- * half-bandwidth 21), per individual, where LAPACK takes 73 us with its solve:
- *
- *                    fused                                                      not fused
- *     AVX-512        2.3 us (88 GF/s)                                           2.6 us (78 GF/s)
- *     AVX2           5.4 us                                                     5.9 us
- *     any x86-64     205 us by C's fma(), 13000 us where that is software       12 us
- *
- * Without fusing, a whole iteration takes 8 % longer, and it has the same bits on every processor. The price is that
- * low because AMD's multiply and add in separate units. Intel's use one unit for both: expect the factor to take up to
- * twice as long as it would fused (not measured). */
+ */
+#define HF_LANE_VECTORS
 #include "search/swarm_kernel.h"
 
 #include <hifdm/metrics.h>
@@ -25,24 +16,14 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- vectors: WIDTH lanes at a time, HF_LANES / WIDTH parts ---- */
+/* ---- vectors ---- */
 
+/* Columns of a tile that are eliminated at a time: their accumulators fill the registers. */
 #if defined __AVX512F__
-#include <immintrin.h>
-enum { WIDTH = 8, GROUP = 4 };
-#elif defined __AVX2__
-#include <immintrin.h>
-enum { WIDTH = 4, GROUP = 2 };
+enum { GROUP = 4 };
 #else
-enum { WIDTH = 2, GROUP = 2 };
+enum { GROUP = 2 };
 #endif
-
-typedef double vec __attribute__((vector_size(WIDTH * sizeof(double)), may_alias));
-typedef long long mask __attribute__((vector_size(WIDTH * sizeof(double))));
-
-#define INLINE static inline __attribute__((always_inline))
-/* a loop with a small constant count: it is unrolled, so that the arrays in it stay in registers */
-#define foreach(i, count) _Pragma("GCC unroll 16") for (int i = 0; i < (count); i++)
 
 INLINE vec load(const double *p)
 {
@@ -54,56 +35,17 @@ INLINE void store(double *p, vec a)
     *(vec *)p = a;
 }
 
-INLINE vec splat(double x)
-{
-    return x - (vec){0};
-}
-
-/* a > b ? yes : no; "no" where a or b is NaN */
-INLINE vec if_greater(vec a, vec b, vec yes, vec no)
-{
-    mask m = a > b;
-    return (vec)((m & (mask)yes) | (~m & (mask)no));
-}
-
-INLINE vec larger(vec a, vec b)
-{
-    return if_greater(a, b, a, b);
-}
-
-INLINE vec smaller(vec a, vec b)
-{
-    return if_greater(b, a, a, b);
-}
-
-INLINE vec magnitude(vec a)
-{
-    return larger(a, -a);
-}
-
 #if defined __AVX512F__
-INLINE vec root(vec a)
-{
-    return _mm512_sqrt_pd(a);
-}
 INLINE bool all_positive(vec a)
 {
     return _mm512_cmp_pd_mask(a, _mm512_setzero_pd(), _CMP_NGT_UQ) == 0;
 }
 #elif defined __AVX2__
-INLINE vec root(vec a)
-{
-    return _mm256_sqrt_pd(a);
-}
 INLINE bool all_positive(vec a)
 {
     return _mm256_movemask_pd(_mm256_cmp_pd(a, _mm256_setzero_pd(), _CMP_NGT_UQ)) == 0;
 }
 #else
-INLINE vec root(vec a)
-{
-    return (vec){sqrt(a[0]), sqrt(a[1])};
-}
 INLINE bool all_positive(vec a)
 {
     return a[0] > 0 && a[1] > 0;
@@ -133,7 +75,7 @@ INLINE void eliminate(int n_row, double *row, int stride, const double *pivot_ro
             if (r >= n_row) continue;
             vec a = load(row + r * HF_LANES);
             foreach (c, GROUP)
-                t[r][c] -= a * l[c];
+                t[r][c] = less_product(t[r][c], a, l[c]);
         }
     }
     foreach (c, GROUP) {
@@ -147,7 +89,7 @@ INLINE void eliminate(int n_row, double *row, int stride, const double *pivot_ro
             if (d <= c) continue;
             vec l = load(pivot_row + c * COLUMN + d * HF_LANES);
             foreach (r, BLOCK)
-                if (r < n_row) t[r][d] -= t[r][c] * l;
+                if (r < n_row) t[r][d] = less_product(t[r][d], t[r][c], l);
         }
     }
 }
@@ -167,7 +109,7 @@ INLINE void reduce_diagonal(double *row, int n_before)
             a[r] = load(row + r * HF_LANES);
         foreach (c, BLOCK)
             foreach (r, BLOCK)
-                if (r >= c) t[r][c] -= a[r] * a[c];
+                if (r >= c) t[r][c] = less_product(t[r][c], a[r], a[c]);
     }
     foreach (c, BLOCK)
         foreach (r, BLOCK)
@@ -200,7 +142,7 @@ INLINE void finish_column(int c, double *tile, int i_row, int *bad_row)
         store(column + r * HF_LANES, l[r]);
         foreach (d, BLOCK) {
             double *entry = tile + d * COLUMN + r * HF_LANES;
-            if (c < d && d <= r) store(entry, load(entry) - l[r] * l[d]);
+            if (c < d && d <= r) store(entry, less_product(load(entry), l[r], l[d]));
         }
     }
 }
@@ -299,7 +241,7 @@ static void substitute_back(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_
             t[r][c] = load(x + r * POINT + c * HF_LANES);
             foreach (n, BLOCK) {
                 int s = BLOCK - 1 - n;
-                if (s > r) t[r][c] -= load(column + r * COLUMN + s * HF_LANES) * t[s][c];
+                if (s > r) t[r][c] = less_product(t[r][c], load(column + r * COLUMN + s * HF_LANES), t[s][c]);
             }
             t[r][c] *= load(column + r * COLUMN + r * HF_LANES);
             store(x + r * POINT + c * HF_LANES, t[r][c]);
@@ -312,7 +254,7 @@ static void substitute_back(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_
         foreach (c, 3) {
             vec y = load(x + c * HF_LANES);
             foreach (k, BLOCK)
-                y -= l[BLOCK - 1 - k] * t[BLOCK - 1 - k][c];
+                y = less_product(y, l[BLOCK - 1 - k], t[BLOCK - 1 - k][c]);
             store(x + c * HF_LANES, y);
         }
     }
@@ -352,7 +294,7 @@ static void assemble_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_row
             store(entry, load(entry) - q);
         } else if (other >= first_support) {
             foreach (c, 3)
-                b[c] += q * load(w->position_m + other * POINT + c * HF_LANES + p);
+                b[c] = plus_product(b[c], q, load(w->position_m + other * POINT + c * HF_LANES + p));
         }
     }
     store(w->matrix + hf_swarm_place(plan, i, i) + p, diagonal);
@@ -424,7 +366,7 @@ static void measure_part(const hf_swarm_plan *plan, hf_swarm_lanes *w, hf_swarm_
         vec dx = load(b) - load(a), dy = load(b + HF_LANES) - load(a + HF_LANES),
             dz = load(b + 2 * HF_LANES) - load(a + 2 * HF_LANES);
         vec q = load(w->q_N_per_m + e * HF_LANES + p), target = load(w->target + e * HF_LANES + p);
-        vec length = root(dx * dx + dy * dy + dz * dz), tension = q * length;
+        vec length = root(norm_squared(dx, dy, dz)), tension = q * length;
         vec part = length * plan->inverse_length[e];
         finite += tension - tension; /* NaN from infinity and NaN, else 0 */
         longest = larger(part, longest);
@@ -482,11 +424,11 @@ static void residual_part(const hf_swarm_plan *plan, const hf_swarm_lanes *w, hf
             const double *other = w->position_m + plan->incidence[k].other * POINT + p;
             vec q = load(q_by_law[hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)] + e * HF_LANES + p);
             foreach (c, 3)
-                f[c] += q * (load(other + c * HF_LANES) - x_i[c]);
+                f[c] = plus_product(f[c], q, load(other + c * HF_LANES) - x_i[c]);
         }
         foreach (c, 3)
             f[c] *= scale;
-        largest = larger(f[0] * f[0] + f[1] * f[1] + f[2] * f[2], largest);
+        largest = larger(norm_squared(f[0], f[1], f[2]), largest);
     }
     store(out->residual_N + p, root(largest) * m->reference_N);
 }
@@ -508,7 +450,7 @@ static void psi(const hf_swarm_plan *plan, const hf_swarm_lanes *w, hf_swarm_mea
             vec d[3];
             foreach (c, 3)
                 d[c] = load(x + c * HF_LANES) - m->position_m[c * m->n_node + row];
-            sum += d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+            sum += norm_squared(d[0], d[1], d[2]);
         }
         store(out->psi_m + p, root(sum / (double)m->n_inner_node));
     }
@@ -516,7 +458,4 @@ static void psi(const hf_swarm_plan *plan, const hf_swarm_lanes *w, hf_swarm_mea
 
 /* ---- table ---- */
 
-#define TABLE_NAME(isa) TABLE_NAME_(isa)
-#define TABLE_NAME_(isa) hf_swarm_kernels_##isa
-
-const hf_swarm_kernels TABLE_NAME(HF_ISA) = {assemble, factor, substitute, solve, measure, residual, psi};
+const hf_swarm_kernels HF_KERNEL(hf_swarm_kernels) = {assemble, factor, substitute, solve, measure, residual, psi};

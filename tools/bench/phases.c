@@ -185,14 +185,22 @@ static void timed_chord_step(const hf_chord *c, const hf_chord_lanes *l)
     charge(UPDATE, &t);
 }
 
+static void timed_chord_measure(const hf_chord *c, const hf_chord_lanes *l, hf_chord_measures *measures)
+{
+    double t = bench_clock_s();
+    chord_kernels->measure(c, l, measures);
+    charge(MEASURE, &t);
+}
+
 static void run_chord(bench_scene *b, int (*next)(void *context), void *context, hf_form_result *result)
 {
-    hf_chord_run(&chord, &chord_lanes, &b->workspace, next, context, b->design_N, result);
+    hf_chord_run(&chord, &chord_lanes, &b->workspace, next, context, false, b->design_N, result);
 }
 
 static void chord_phases(bench_scene *b)
 {
-    static const hf_chord_kernels timed = {timed_chord_forces, timed_chord_solve, timed_chord_step, NULL, NULL};
+    static const hf_chord_kernels timed = {timed_chord_forces, timed_chord_solve, timed_chord_step, NULL, NULL,
+                                           timed_chord_measure};
     if (!hf_chord_applies(&b->evaluator)) return;
     b->evaluator.solver = HF_SOLVER_NEWTON;
     b->form.residual_tolerance = 1e-7;

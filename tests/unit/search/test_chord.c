@@ -80,6 +80,71 @@ START_TEST(answers_are_newtons)
 }
 END_TEST
 
+static int count_down(void *context)
+{
+    int *n_left = context;
+    return --*n_left;
+}
+
+/* The kernels measure a shape as the scalar code does, which they are made to leave it to by serves_all; both up to
+ * some roundings of coordinates of 10 m, 1e-15 m, times force densities of some 100 N/m. */
+START_TEST(figures_are_those_of_the_scalar_code)
+{
+    struct run r;
+    hf_chord chord;
+    hf_chord_lanes lanes;
+    hf_form_result result[2][N_DESIGN];
+    open_run(&r, _i);
+    ck_assert_int_eq(hf_chord_create(&r.evaluator, r.base_N, &r.net.work, &chord), HF_OK);
+    ck_assert_int_eq(hf_chord_lanes_create(&chord, &lanes), HF_OK);
+    ck_assert(chord.serves_all);
+    for (int k = 0; k < 2; k++) {
+        int n_left = N_DESIGN;
+        chord.serves_all = k == 0;
+        hf_chord_run(&chord, &lanes, &r.net.work, count_down, &n_left, false, r.design_N, result[k]);
+    }
+    for (int i = 0; i < N_DESIGN; i++) {
+        const hf_form_result *a = &result[0][i], *b = &result[1][i];
+        ck_assert(a->status == HF_OK && b->status == HF_OK && a->stop_reason == b->stop_reason);
+        ck_assert(a->iterations == b->iterations && a->culprit == b->culprit && a->n_slack == b->n_slack);
+        ck_assert_double_eq_tol(a->psi_m, b->psi_m, 1e-15);
+        ck_assert_double_eq_tol(a->residual_N, b->residual_N, 1e-12);
+        ck_assert_double_eq_tol(a->tension_error, b->tension_error, 1e-15);
+        ck_assert_double_eq_tol(a->inner_tension_ratio, b->inner_tension_ratio, 1e-14);
+        ck_assert_double_eq_tol(a->boundary_tension_ratio, b->boundary_tension_ratio, 1e-14);
+        ck_assert_double_eq_tol(a->shortest_length_ratio, b->shortest_length_ratio, 1e-15);
+        ck_assert(a->length_error == b->length_error && a->n_loose == 0 && isnan(a->condition));
+    }
+    hf_chord_lanes_free(&lanes);
+    hf_chord_free(&chord);
+    close_net(&r.net);
+}
+END_TEST
+
+/* A shape that is refused has the status and the culprit that the scalar code gives it: the first cable at fault. */
+START_TEST(faults_are_named)
+{
+    struct run r;
+    hf_batch batch;
+    hf_form_result result[N_DESIGN];
+    int first = 0;
+    open_run(&r, HF_RULE_FORCE_DENSITY);
+    while (r.net.model.law[first] != HF_LAW_TENSION)
+        first++;
+    ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
+    ck_assert_int_eq(hf_batch_share(&batch, r.base_N), HF_SOLVER_CHORD);
+    r.net.form.collapse_ratio = 10;
+    hf_batch_run(&batch, N_DESIGN, r.design_N, NULL, result);
+    for (int i = 0; i < N_DESIGN; i++) {
+        ck_assert_int_eq(result[i].status, HF_COLLAPSED);
+        ck_assert_int_eq(result[i].culprit, first);
+        ck_assert_double_nan(result[i].psi_m);
+    }
+    hf_batch_free(&batch);
+    close_net(&r.net);
+}
+END_TEST
+
 /* Other sizes and bandwidths, with loads and all laws. */
 START_TEST(answers_are_newtons_on_random_nets)
 {
@@ -314,6 +379,8 @@ Suite *suite_unit_chord(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, answers_are_newtons, 0, 2);
     tcase_add_loop_test(tests, answers_are_newtons_on_random_nets, 0, 8);
+    tcase_add_loop_test(tests, figures_are_those_of_the_scalar_code, 0, 2);
+    tcase_add_test(tests, faults_are_named);
     tcase_add_loop_test(tests, many_right_hand_sides, 0, 3);
     tcase_add_loop_test(tests, threads_and_grouping_do_not_change_a_bit, 0, 2);
     tcase_add_loop_test(tests, order_does_not_change_a_bit, 0, 2);

@@ -9,6 +9,7 @@
 
 typedef void (*forces_fn)(const hf_chord *, const hf_chord_lanes *, double *);
 typedef void (*solve_fn)(const hf_chord *, const hf_chord_lanes *);
+typedef void (*measure_fn)(const hf_chord *, const hf_chord_lanes *, hf_chord_measures *);
 
 enum { PORTABLE, AVX2, AVX512, N_ISA };
 static const struct {
@@ -16,12 +17,13 @@ static const struct {
     forces_fn forces;
     forces_fn couple;
     solve_fn move, solve, step;
-} isa[] = {
-    {"portable", hf_chord_forces_portable, hf_chord_couple_portable, hf_chord_move_portable, hf_chord_solve_portable,
-     hf_chord_step_portable},
-    {"avx2", hf_chord_forces_avx2, hf_chord_couple_avx2, hf_chord_move_avx2, hf_chord_solve_avx2, hf_chord_step_avx2},
-    {"avx512f", hf_chord_forces_avx512, hf_chord_couple_avx512, hf_chord_move_avx512, hf_chord_solve_avx512,
-     hf_chord_step_avx512}};
+    measure_fn measure;
+} isa[] = {{"portable", hf_chord_forces_portable, hf_chord_couple_portable, hf_chord_move_portable,
+            hf_chord_solve_portable, hf_chord_step_portable, hf_chord_measure_portable},
+           {"avx2", hf_chord_forces_avx2, hf_chord_couple_avx2, hf_chord_move_avx2, hf_chord_solve_avx2,
+            hf_chord_step_avx2, hf_chord_measure_avx2},
+           {"avx512f", hf_chord_forces_avx512, hf_chord_couple_avx512, hf_chord_move_avx512, hf_chord_solve_avx512,
+            hf_chord_step_avx512, hf_chord_measure_avx512}};
 
 static int has_isa(int i)
 {
@@ -109,16 +111,20 @@ static void work(struct kernel_run *r, int i, double squared[HF_LANES])
 START_TEST(instruction_sets_give_the_same_bits)
 {
     double squared[HF_LANES], again[HF_LANES];
+    hf_chord_measures measures, other_measures;
     for (int rule = HF_RULE_FORCE_DENSITY; rule <= HF_RULE_TENSION; rule++) {
         struct kernel_run r;
         open_kernel(&r, _i, rule);
         fill_lanes(&r, 1);
         work(&r, PORTABLE, squared);
+        isa[PORTABLE].measure(&r.chord, &r.lanes, &measures);
         double *x = copy(r.lanes.x_m, r.n_x), *force = copy(r.lanes.force_N, r.n_force);
         for (int i = AVX2; i < N_ISA; i++) {
             if (!has_isa(i)) continue;
             fill_lanes(&r, 1);
             work(&r, i, again);
+            isa[i].measure(&r.chord, &r.lanes, &other_measures);
+            ck_assert_mem_eq(&measures, &other_measures, sizeof measures);
             ck_assert_mem_eq(squared, again, sizeof squared);
             ck_assert_mem_eq(x, r.lanes.x_m, r.n_x * sizeof *x);
             ck_assert_mem_eq(force, r.lanes.force_N, r.n_force * sizeof *force);
@@ -167,6 +173,10 @@ START_TEST(a_lane_recovers_from_NaN)
     fill_lanes(&r, 3);
     work(&r, _i % 3, squared);
     double *x = copy(r.lanes.x_m, r.n_x);
+    fill_lanes(&r, 3);
+    r.lanes.x_m[bad] = (double)NAN; /* one coordinate of one node: no number is the largest force */
+    isa[_i % 3].forces(&r.chord, &r.lanes, again);
+    ck_assert_double_nan(again[bad]);
     fill_lanes(&r, 3);
     for (size_t i = (size_t)bad; i < r.n_x; i += HF_LANES)
         r.lanes.x_m[i] = (double)NAN;

@@ -117,13 +117,13 @@ static void assemble_plainly(const struct band_net *net, int lane, double *band,
             band[high - low + low * (k + 1)] -= q;
         } else {
             for (int c = 0; c < 3; c++)
-                b[c * n + low] += q * *position(net, high, c, lane);
+                b[c * n + low] = fma(q, *position(net, high, c, lane), b[c * n + low]);
         }
     }
 }
 
-/* Cholesky as it stands in the textbook, but for the reciprocals on the diagonal and the order of the back
- * substitution: what the kernels must reproduce bit by bit. */
+/* Cholesky as it stands in the textbook, but for the reciprocals on the diagonal, the order of the back substitution
+ * and the products, which are fused with their sums: what the kernels must reproduce bit by bit. */
 static void solve_plainly(int n, int k, double *band, double *b)
 {
 #define L(i, j) band[(i) - (j) + (j) * (k + 1)]
@@ -132,12 +132,12 @@ static void solve_plainly(int n, int k, double *band, double *b)
         for (int j = first; j <= i; j++) {
             double sum = L(i, j);
             for (int s = j - k > first ? j - k : first; s < j; s++)
-                sum -= L(i, s) * L(j, s);
+                sum = fma(-L(i, s), L(j, s), sum);
             L(i, j) = i == j ? 1 / sqrt(sum) : sum * L(j, j);
         }
         for (int c = 0; c < 3; c++) {
             for (int s = first; s < i; s++)
-                b[c * n + i] -= b[c * n + s] * L(i, s);
+                b[c * n + i] = fma(-b[c * n + s], L(i, s), b[c * n + i]);
             b[c * n + i] *= L(i, i);
         }
     }
@@ -145,7 +145,7 @@ static void solve_plainly(int n, int k, double *band, double *b)
         for (int c = 0; c < 3; c++) {
             b[c * n + i] *= L(i, i);
             for (int s = i - 1; s >= 0 && s >= i - k; s--)
-                b[c * n + s] -= L(i, s) * b[c * n + i];
+                b[c * n + s] = fma(-L(i, s), b[c * n + i], b[c * n + s]);
         }
 #undef L
 }
