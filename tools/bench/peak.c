@@ -1,6 +1,5 @@
 /* How near the lane factorisation comes to what one core can do: its operations per second over the measured peak of
- * independent fused multiply-adds in the same instruction set, one measured right after the other. The kernel itself
- * multiplies and subtracts apart (swarm_kernel.c says why), so the peak of that is measured as well.
+ * independent fused multiply-adds in the same instruction set, one measured right after the other.
  *
  * Contents: peaks - operations of the factorisation - nets - the section */
 #include "bench.h"
@@ -38,12 +37,6 @@ typedef double peak_kernel(double a, double b); /* returns something that depend
         return sum[0] + sum[(width)-1];                                                                                \
     }
 
-/* The product does not depend on x, and is done anew each time, for all that the compiler knows about a. */
-#define APART                                                                                                          \
-    x[i] -= a * b;                                                                                                     \
-    __asm__("" : "+x"(a))
-
-typedef double vec2 __attribute__((vector_size(16)));
 enum { CHAINS = 12 }; /* of 16 registers, or 32; 2 units x latency 4 or 5 need 8 to 10 */
 
 #if defined __x86_64__
@@ -53,22 +46,19 @@ typedef double vec8 __attribute__((vector_size(64)));
 #define AVX2 __attribute__((target("avx2,fma")))
 #define AVX512 __attribute__((target("avx512f")))
 PEAK_KERNEL(fused_avx512, AVX512, vec8, 8, x[i] = _mm512_fmadd_pd(x[i], a, b))
-PEAK_KERNEL(apart_avx512, AVX512, vec8, 8, APART)
 PEAK_KERNEL(fused_avx2, AVX2, vec4, 4, x[i] = _mm256_fmadd_pd(x[i], a, b))
-PEAK_KERNEL(apart_avx2, AVX2, vec4, 4, APART)
 #endif
-PEAK_KERNEL(apart_portable, , vec2, 2, APART)
 
 typedef struct {
-    peak_kernel *fused, *apart; /* fused NULL: the instruction set has none */
+    peak_kernel *fused; /* NULL: the instruction set has none */
     int width;
 } peak;
 
 static const peak peak_of_isa[HF_LANE_N_ISA] = {
-    [HF_LANE_PORTABLE] = {NULL, apart_portable, 2},
+    [HF_LANE_PORTABLE] = {NULL, 2},
 #if defined __x86_64__
-    [HF_LANE_AVX2] = {fused_avx2, apart_avx2, 4},
-    [HF_LANE_AVX512] = {fused_avx512, apart_avx512, 8},
+    [HF_LANE_AVX2] = {fused_avx2, 4},
+    [HF_LANE_AVX512] = {fused_avx512, 8},
 #endif
 };
 
@@ -88,7 +78,7 @@ static double flops_per_s(peak_kernel *kernel, int width)
 /* ---- operations of the factorisation ---- */
 
 /* Operations in one lane, as swarm_kernel.c does them: tiles from the skyline of the block row on, in the part that
- * both block rows of a product have. A multiplication, a subtraction, a root and a reciprocal count one each. */
+ * both block rows of a product have. A fused multiply-add counts two, a product, a root and a reciprocal one each. */
 static double flops_done(const hf_swarm_plan *p)
 {
     double n = 0;
@@ -171,17 +161,15 @@ static void one_round(net *n, hf_lane_isa isa)
     const char *name = n->scene.name, *set = hf_lane_isa_name(isa);
     const peak *p = &peak_of_isa[isa];
     int half_bandwidth = n->scene.model.half_bandwidth;
-    double fused = p->fused ? flops_per_s(p->fused, p->width) : 0, apart = flops_per_s(p->apart, p->width);
+    double fused = p->fused ? flops_per_s(p->fused, p->width) : 0;
     double seconds = factor_s(n), done = HF_LANES * flops_done(&n->plan) / seconds;
     if (p->fused) fused = (fused + flops_per_s(p->fused, p->width)) / 2; /* before and after: the clock rate wanders */
     bench_emit("peak", name, set, half_bandwidth, "factor_us", 1e6 * seconds / HF_LANES);
     bench_emit("peak", name, set, half_bandwidth, "flops", flops_done(&n->plan));
     bench_emit("peak", name, set, half_bandwidth, "flops_of_band", flops_of_band(&n->scene.model));
     bench_emit("peak", name, set, half_bandwidth, "factor_GFs", 1e-9 * done);
-    bench_emit("peak", name, set, half_bandwidth, "apart_peak_GFs", 1e-9 * apart);
     if (p->fused) bench_emit("peak", name, set, half_bandwidth, "fma_peak_GFs", 1e-9 * fused);
     if (p->fused) bench_emit("peak", name, set, half_bandwidth, "share_of_fma_peak", done / fused);
-    bench_emit("peak", name, set, half_bandwidth, "share_of_apart_peak", done / apart);
 }
 
 void bench_peak(const char *what, const char *folder)
@@ -190,7 +178,7 @@ void bench_peak(const char *what, const char *folder)
     for (size_t i = 0; i < sizeof net_table / sizeof *net_table; i++)
         for (int isa = 0; isa < HF_LANE_N_ISA; isa++) {
             net n;
-            if (!hf_lane_has_isa((hf_lane_isa)isa) || !peak_of_isa[isa].apart) continue;
+            if (!hf_lane_has_isa((hf_lane_isa)isa)) continue;
             open_net(net_table[i], (hf_lane_isa)isa, &n);
             for (int round = 0; round < ROUNDS; round++)
                 one_round(&n, (hf_lane_isa)isa);
