@@ -5,6 +5,8 @@
  * src/net/generate_NAME.c with
  *
  *   hf_scene_NAME         : const hf_TYPE *, const double EA_N[2], hf_scene *, hf_messages * -> hf_status
+ *   hf_scene_NAME_fault   : const hf_TYPE *, char what[size] -> the member that asks for what cannot be made, with the
+ *                           reason in `what` (HF_GENERATE_FAULT_SIZE is enough), or NULL; few steps, whatever the size
  *   hf_scene_NAME_surface : const hf_TYPE *, hf_surface_settings * that is all zero: sets what the net determines of
  *                           the wanted surface (kind, focal length, width of a strip); the rest stays 0
  *
@@ -20,32 +22,39 @@ extern "C" {
 #endif
 
 /* X(name of the section, type of the settings, keys, help). `hifdm schema` lists them in this order. */
-#define HF_GENERATORS(X) X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS, "A quad net over a parabolic cylinder.")
+#define HF_GENERATORS(X) X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS, "A net over a parabolic cylinder.")
 /* Help of the section scene. Its number of subsections is the number of generators and one for import. */
 #define HF_GENERATORS_HELP "The net: exactly one of the two sections below."
+
+#define HF_GENERATE_FAULT_SIZE 256 /* of the reason why something cannot be made */
 
 /* ---- parabolic_cylinder ---- */
 
 typedef enum { HF_SPACING_EQUAL_ARC, HF_SPACING_EQUAL_PROJECTED } hf_spacing;
 typedef enum { HF_BOUNDARY_OUTER_EDGE, HF_BOUNDARY_MODULE_EDGES } hf_boundary;
 typedef enum { HF_SUPPORTS_MODULE_CORNERS, HF_SUPPORTS_RIBS, HF_SUPPORTS_PERIMETER } hf_supports;
+typedef enum { HF_PATTERN_QUAD, HF_PATTERN_TRIANGLE, HF_PATTERN_DIAGONAL, HF_PATTERN_ALTERNATING } hf_pattern;
 
 /* Words of a case file, indexed by the enumerations above; the last entry is NULL. */
 extern const char *const hf_spacing_word[3];
 extern const char *const hf_boundary_word[3];
 extern const char *const hf_supports_word[4];
+extern const char *const hf_pattern_word[5];
 
 /* A parabolic cylinder z = x^2/(4 f): x along the directrix, y along the generatrix, origin on the vertex line. */
 typedef struct {
     double aperture_m; /* along the directrix (x), symmetric about x = 0 */
     double length_m;   /* along the generatrix (y), from y = 0 */
     double focal_length_m;
-    int modules[2];          /* along x, along y */
-    int cells_per_module[2]; /* along x, along y */
-    hf_spacing spacing;      /* of the nodes along the directrix */
-    hf_boundary boundary;    /* which cables are boundary cables (law length) */
-    double scallop;          /* sag of a free outer edge between two supports, relative to their distance */
-    hf_supports supports;    /* which nodes are fixed */
+    int modules[2];                          /* along x, along y */
+    int cells_per_module[2];                 /* along x, along y */
+    hf_double_list pitches_x_m, pitches_y_m; /* of the modules, from x = -aperture_m/2 and y = 0; empty: all alike */
+    hf_pattern pattern;
+    hf_spacing spacing;   /* of the nodes along the directrix */
+    hf_boundary boundary; /* which cables are boundary cables (law length) */
+    double scallop;       /* sag of a free outer edge between two supports, relative to their distance */
+    hf_supports supports; /* which nodes are fixed */
+    double edge_tie_m;    /* 0, or how far outside the fixed nodes of the outer edge are, which then hang on ties */
 } hf_cylinder;
 
 /* Keys of the section, as rows of hf_field_table (config.h): X(section, member, type, least, largest, default, unit,
@@ -57,20 +66,36 @@ typedef struct {
     X(section, modules, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL, "modules along the directrix and the generatrix")  \
     X(section, cells_per_module, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL,                                           \
       "net cells per module, along the directrix and the generatrix")                                                  \
+    X(section, pitches_x_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL,                                 \
+      "projected widths of the modules along x, from the left, which add up to aperture_m; without them modules are "  \
+      "alike in arc length or projection, as spacing says; with them only the cells within each are")                  \
+    X(section, pitches_y_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL,                                 \
+      "lengths of the modules along y, which add up to length_m; without them all are alike")                          \
+    X(section, pattern, HF_FIELD_WORD, 0, 0, "quad", "", hf_pattern_word,                                              \
+      "quad: cables along x and y; triangle: and one diagonal per cell, all in one direction; alternating: and one "   \
+      "diagonal per cell, in alternating directions; diagonal: the quad net turned by 45 degrees, four half "          \
+      "diagonals per cell that meet in a node at its middle, and of the cables along x and y the boundary ones. All "  \
+      "but quad leave out cables between two supports")                                                                \
     X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_arc", "", hf_spacing_word,                                         \
       "nodes along the directrix: equal arc length, or equal projected (x) spacing")                                   \
     X(section, boundary, HF_FIELD_WORD, 0, 0, "outer_edge", "", hf_boundary_word,                                      \
       "which cables are boundary cables (law length); the others are inner (law tension)")                             \
     X(section, scallop, HF_FIELD_DOUBLE, 0, 0.4, "0", "", NULL,                                                        \
-      "inward sag of a free outer edge between supports, relative to their distance")                                  \
+      "inward sag of a free outer edge between supports, relative to their distance; a parabola")                      \
     X(section, supports, HF_FIELD_WORD, 0, 0, "module_corners", "", hf_supports_word,                                  \
-      "fixed nodes: all module corners, all nodes on ribs (y = module border), or the perimeter")
+      "fixed nodes: all module corners, all nodes on ribs (y = module border), or the perimeter")                      \
+    X(section, edge_tie_m, HF_FIELD_DOUBLE, 0, 1e3, "0", "m", NULL,                                                    \
+      "above 0: the fixed nodes of the outer edge are free and hang on ties (boundary cables, law length); the "       \
+      "supports stand so far outside of them along x or y, at corners of the net along both")
 
-/* Make the quad net over the cylinder; node ids n<i>_<j>, cable ids <node>-<node>. EA_N: axial stiffness by hf_group,
- * 0 = not given; NULL: none is given. Free the scene with hf_scene_free in any case. Returns HF_OK; HF_BAD_CASE when
- * the net would be too large; HF_NO_MEMORY. */
+/* Make the net over the cylinder. Ids of nodes: n<i>_<j>; m<i>_<j> in the middle of cells; s<i>_<j> for the support
+ * that holds n<i>_<j> by an edge tie. Ids of cables: <node>-<node>. Sets of cables: directrix (along x), generatrix
+ * (along y), diagonal, edge (of the outer edge), edge_tie. EA_N: axial stiffness by hf_group, 0 = not given; NULL: none
+ * is given. Free the scene with hf_scene_free in any case. Returns HF_OK; HF_BAD_CASE when the net would be too large,
+ * or for what hf_scene_parabolic_cylinder_fault tells; HF_NO_MEMORY. */
 hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double EA_N[2], hf_scene *scene,
                                       hf_messages *messages);
+const char *hf_scene_parabolic_cylinder_fault(const hf_cylinder *cylinder, char *what, size_t size);
 void hf_scene_parabolic_cylinder_surface(const hf_cylinder *cylinder, hf_surface_settings *surface);
 
 #ifdef __cplusplus

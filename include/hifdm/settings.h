@@ -79,7 +79,7 @@ typedef struct {
     hf_symmetry symmetry;                 /* mirror planes that link genes */
 } hf_optimize_settings;
 
-#define HF_LIST_MAX 8
+#define HF_LIST_MAX 32
 
 typedef struct {
     int n; /* number of values in use */

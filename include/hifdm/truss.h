@@ -123,9 +123,9 @@ typedef struct {
     X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word, "diagonals of each panel")
 
 /* Make the truss of basic sub-rings over the modules of the net, with front nodes on the module corners, on the
- * cylinder. Node ids f<i>_<j> in front and r<i>_<j> behind, f<i>.<k>_<j> or f<i>_<j>.<k> inside units of several
- * panels; member ids <node>-<node>. Free the truss in any case. Returns HF_OK; HF_BAD_CASE when it would be too large;
- * HF_NO_MEMORY. */
+ * cylinder; the outer ones stand where the supports of edge ties are. Node ids f<i>_<j> in front and r<i>_<j> behind,
+ * f<i>.<k>_<j> or f<i>_<j>.<k> inside units of several panels; member ids <node>-<node>. Free the truss in any case.
+ * Returns HF_OK; HF_BAD_CASE when it would be too large; HF_NO_MEMORY. */
 hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder *cylinder, hf_truss *truss,
                             hf_messages *messages);
 

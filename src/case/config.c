@@ -173,7 +173,7 @@ static void set_list(loader *l, const yaml_node_t *node, const hf_field *f, hf_d
     long n = node->type == YAML_SEQUENCE_NODE ? node->data.sequence.items.top - node->data.sequence.items.start : 1;
     to->n = 0;
     if (node->type == YAML_MAPPING_NODE || n > HF_LIST_MAX) {
-        complain(l, node->start_mark, f->path, "must be a list of at most 8 numbers, like [1e9, 2e9]", "");
+        complain(l, node->start_mark, f->path, "must be a list of at most 32 numbers, like [1, 2.5]", "");
     } else if (node->type != YAML_SEQUENCE_NODE) {
         set_double(l, node, f, &to->value[to->n++]);
     } else {

@@ -44,6 +44,20 @@ hf_surface_settings hf_config_known_surface(const hf_case *c, const char **key)
     return known;
 }
 
+/* What cannot be made of a generator's keys is a fault of one of them. */
+static void check_generators(const hf_case *c, hf_config_faults *f)
+{
+    char what[HF_GENERATE_FAULT_SIZE], path[128];
+    const char *key;
+#define CHECK(section, type, KEYS, help)                                                                               \
+    if (c->has_##section && (key = hf_scene_##section##_fault(&c->section, what, sizeof what)) != NULL) {              \
+        snprintf(path, sizeof path, "scene.%s.%s", #section, key);                                                     \
+        hf_config_fault_of(f, path, what);                                                                             \
+    }
+    HF_GENERATORS(CHECK)
+#undef CHECK
+}
+
 /* Is the section of this key there? Sections that cannot be left out always are. */
 static bool has_section_of(const hf_case *c, const char *key)
 {
@@ -88,6 +102,7 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
         hf_config_fault_of(f, "surface.focal_length_m",
                            c->has_import ? "is missing: an imported net does not tell its surface"
                                          : "is missing: this net does not tell its surface");
+    if (!f->failed) check_generators(c, f);
     if ((c->has_truss || c->has_truss_import) && !f->failed) check_truss(c, f);
     if (!c->has_optimize || f->failed) return; /* values that were refused are not compared */
     if (o->min_tension_N >= o->max_tension_N)

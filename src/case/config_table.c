@@ -59,7 +59,7 @@ const hf_field hf_field_table[] = {
     {"surface.strip_width_m", HF_FIELD_DOUBLE, AT(surface.strip_width_m), HF_ABOVE_ZERO, 1e4, "", "m", NULL,
      "width of the flat strips along y, for the faceting error; default: a cell of parabolic_cylinder"},
     {"surface.frequencies_Hz", HF_FIELD_DOUBLE_LIST, AT(surface.frequencies_Hz), HF_ABOVE_ZERO, 1e15, "[]", "Hz", NULL,
-     "up to 8, at which the loss of gain is told (Ruze)"},
+     "up to 32, at which the loss of gain is told (Ruze)"},
 
     {"form.method", HF_FIELD_WORD, AT(form.method), 0, 0, "auto", "", hf_method_word,
      "auto: newton where it applies, else hifdm; newton: every cable obeys its own law, by Newton on the energy; "

@@ -1,18 +1,25 @@
-/* Makes the quad net over a parabolic cylinder. */
+/* Makes the net over a parabolic cylinder.
+ * Contents: the parabola - places along the axes - what can be made - roles - nodes - scallops - cables - names -
+ * together */
 #include <hifdm/generate.h>
 
 #include "base/elementary.h"
+#include <hifdm/cable_set.h>
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-#define NODE_MAX 4000000 /* keeps every index and band offset well inside an int */
+#define NODE_MAX 4000000   /* keeps every index and band offset well inside an int */
+#define SUM_TOLERANCE 1e-9 /* relative: pitches are written with some ten digits at most */
 
 const char *const hf_spacing_word[3] = {"equal_arc", "equal_projected", NULL};
 const char *const hf_boundary_word[3] = {"outer_edge", "module_edges", NULL};
 const char *const hf_supports_word[4] = {"module_corners", "ribs", "perimeter", NULL};
+const char *const hf_pattern_word[5] = {"quad", "triangle", "diagonal", "alternating", NULL};
+
+/* ---- the parabola ---- */
 
 /* Arc length of z = x^2/(4f) from the vertex to x. */
 static double arc_length(double x, double focal)
@@ -21,8 +28,8 @@ static double arc_length(double x, double focal)
     return focal * (slope * sqrt(1 + slope * slope) + hf_inverse_sinh(slope));
 }
 
-/* Inverse of arc_length by Newton's method. The function is convex and increasing, and the start s is not below the
- * solution (x <= s); the iterates therefore decrease to the solution, and converge quadratically. */
+/* Inverse of arc_length for s >= 0 by Newton's method. The function is convex and increasing, and the start s is not
+ * below the solution (x <= s); the iterates therefore decrease to the solution, and converge quadratically. */
 static double x_at_arc_length(double s, double focal)
 {
     double x = s;
@@ -34,11 +41,159 @@ static double x_at_arc_length(double s, double focal)
     return x;
 }
 
+static double z_on_parabola(const hf_cylinder *c, double x)
+{
+    return x * x / (4 * c->focal_length_m);
+}
+
+/* ---- places along the axes ---- */
+
+/* Where module border k lies along the sum of uneven pitches, which begins at `from` and ends at `to`. Each half is
+ * summed from its own end, so that pitches that are symmetric give borders that are symmetric to the last bit. */
+static double border(const hf_double_list *pitches, double from, double to, int k)
+{
+    double low = from, high = to;
+    for (int i = 0; i < k; i++)
+        low += pitches->value[i];
+    for (int i = pitches->n - 1; i >= k; i--)
+        high -= pitches->value[i];
+    return 2 * k < pitches->n ? low : 2 * k > pitches->n ? high : (low + high) / 2;
+}
+
+/* x between two places, at this fraction of the arc or of the projection from a to b. */
+static double x_between(const hf_cylinder *c, double a, double b, double fraction)
+{
+    if (c->spacing == HF_SPACING_EQUAL_PROJECTED || fraction == 0) return a + (b - a) * fraction;
+    double s_a = arc_length(a, c->focal_length_m), s_b = arc_length(b, c->focal_length_m);
+    double s = s_a + (s_b - s_a) * fraction;
+    return copysign(x_at_arc_length(fabs(s), c->focal_length_m), s);
+}
+
+/* x of the grid line half_index / 2; odd numbers lie in the middle of a cell. */
+static double x_of(const hf_cylinder *c, int half_index)
+{
+    double half = c->aperture_m / 2;
+    int n = 2 * c->cells_per_module[0];
+    if (c->pitches_x_m.n > 0) {
+        int k = half_index / n;
+        double from = border(&c->pitches_x_m, -half, half, k);
+        if (half_index % n == 0) return from;
+        return x_between(c, from, border(&c->pitches_x_m, -half, half, k + 1), (double)(half_index % n) / n);
+    }
+    int last = n * c->modules[0];
+    double t = (2.0 * half_index - last) / last; /* exactly antisymmetric */
+    if (c->spacing == HF_SPACING_EQUAL_PROJECTED || half_index == 0 || half_index == last) return t * half;
+    return copysign(x_at_arc_length(fabs(t) * arc_length(half, c->focal_length_m), c->focal_length_m), t);
+}
+
+/* y in the same way. */
+static double y_of(const hf_cylinder *c, int half_index)
+{
+    int n = 2 * c->cells_per_module[1];
+    if (c->pitches_y_m.n == 0) return c->length_m * half_index / (n * c->modules[1]);
+    int k = half_index / n;
+    double from = border(&c->pitches_y_m, 0, c->length_m, k);
+    if (half_index % n == 0) return from;
+    double to = border(&c->pitches_y_m, 0, c->length_m, k + 1);
+    return from + (to - from) * (half_index % n) / n;
+}
+
+static double place_along(const hf_cylinder *c, int axis, int half_index)
+{
+    return axis == 0 ? x_of(c, half_index) : y_of(c, half_index);
+}
+
+/* ---- what can be made ---- */
+
+static const char *fault_of_pitches(const hf_cylinder *c, int axis, char *what, size_t size)
+{
+    static const char *const key[] = {"pitches_x_m", "pitches_y_m"}, *const whole[] = {"aperture_m", "length_m"};
+    const hf_double_list *pitches = axis == 0 ? &c->pitches_x_m : &c->pitches_y_m;
+    double wanted = axis == 0 ? c->aperture_m : c->length_m, sum = 0;
+    for (int i = 0; i < pitches->n; i++)
+        sum += pitches->value[i];
+    if (pitches->n == 0) return NULL;
+    if (pitches->n != c->modules[axis])
+        snprintf(what, size, "must have a value for each of the %d modules along %c, and has %d", c->modules[axis],
+                 "xy"[axis], pitches -> n);
+    else if (fabs(sum - wanted) > SUM_TOLERANCE * wanted)
+        snprintf(what, size, "must add up to %s, %.12g m, and do to %.12g m", whole[axis], wanted, sum);
+    else
+        return NULL;
+    return key[axis];
+}
+
+/* The smallest module along an axis, m. */
+static double smallest_pitch(const hf_cylinder *c, int axis)
+{
+    double smallest = INFINITY;
+    for (int k = 0; k < c->modules[axis]; k++) {
+        int n = 2 * c->cells_per_module[axis];
+        smallest = fmin(smallest, place_along(c, axis, (k + 1) * n) - place_along(c, axis, k * n));
+    }
+    return smallest;
+}
+
+static const char *fault_of_ties(const hf_cylinder *c, char *what, size_t size)
+{
+    double smallest = fmin(smallest_pitch(c, 0), smallest_pitch(c, 1));
+    if (c->edge_tie_m < smallest) return NULL;
+    snprintf(what, size, "of %.6g m must be shorter than the smallest module, %.6g m", c->edge_tie_m, smallest);
+    return "edge_tie_m";
+}
+
+/* How far a scallop moves nodes of the edges along `axis` at most, m: those of the widest module. */
+static double largest_sag(const hf_cylinder *c, int axis)
+{
+    int n = c->cells_per_module[axis];
+    double largest = 0, t = (double)(n / 2) / n;
+    bool is_held = c->supports == HF_SUPPORTS_PERIMETER || (c->supports == HF_SUPPORTS_RIBS && axis == 0);
+    for (int k = 0; k < c->modules[axis] && !is_held; k++) {
+        double a = place_along(c, axis, 2 * n * k), b = place_along(c, axis, 2 * n * (k + 1));
+        double dz = axis == 0 ? z_on_parabola(c, b) - z_on_parabola(c, a) : 0;
+        largest = fmax(largest, 4 * c->scallop * hf_norm(b - a, dz, 0) * t * (1 - t));
+    }
+    return largest;
+}
+
+/* An edge must stay clear of the nodes next to it, or with one cell in between of the opposite edge. */
+static const char *fault_of_scallops(const hf_cylinder *c, char *what, size_t size)
+{
+    for (int axis = 0; axis < 2; axis++) {
+        int across = 1 - axis, last = 2 * c->cells_per_module[across] * c->modules[across];
+        int next = c->pattern == HF_PATTERN_DIAGONAL ? 1 : 2;
+        double room = fmin(place_along(c, across, next) - place_along(c, across, 0),
+                           place_along(c, across, last) - place_along(c, across, last - next));
+        double sag = largest_sag(c, axis);
+        if (last == 2 && next == 2) room /= 2;
+        if (sag < room) continue;
+        snprintf(what, size, "of %g moves edge nodes by %.4g m, past %s %.4g m inward; lower it", c->scallop, sag,
+                 last == 2 && next == 2 ? "the middle of the net" : "the next nodes", room);
+        return "scallop";
+    }
+    return NULL;
+}
+
+const char *hf_scene_parabolic_cylinder_fault(const hf_cylinder *cylinder, char *what, size_t size)
+{
+    const char *key = NULL;
+    for (int axis = 0; axis < 2 && !key; axis++)
+        key = fault_of_pitches(cylinder, axis, what, size);
+    if (!key && cylinder->edge_tie_m > 0) key = fault_of_ties(cylinder, what, size);
+    if (!key && cylinder->scallop > 0) key = fault_of_scallops(cylinder, what, size);
+    return key;
+}
+
+/* ---- roles ---- */
+
 typedef struct {
     const hf_cylinder *c;
     const double *EA_N; /* by hf_group, 0 = not given */
     hf_scene *s;
-    int nx, ny; /* nodes along the directrix and the generatrix */
+    int nx, ny;                  /* nodes along the directrix and the generatrix */
+    int first_middle, first_tie; /* nodes in the middle of cells (pattern diagonal), supports at the end of edge ties */
+    int n_cable, n_member;       /* so far; with member == NULL they are only counted */
+    hf_cable_set_member *member;
 } grid;
 
 static int at(const grid *g, int i, int j)
@@ -46,87 +201,73 @@ static int at(const grid *g, int i, int j)
     return j * g->nx + i;
 }
 
-static double z_on_parabola(const grid *g, double x)
+static bool is_on_perimeter(const grid *g, int i, int j)
 {
-    return x * x / (4 * g->c->focal_length_m);
+    return i == 0 || j == 0 || i == g->nx - 1 || j == g->ny - 1;
 }
 
-static void place_nodes(const grid *g)
-{
-    double half = g->c->aperture_m / 2, focal = g->c->focal_length_m;
-    double half_arc = arc_length(half, focal);
-    for (int i = 0; i < g->nx; i++) {
-        double t = (2.0 * i - (g->nx - 1)) / (g->nx - 1); /* exactly antisymmetric in i */
-        double x = t * half;
-        if (g->c->spacing == HF_SPACING_EQUAL_ARC && i != 0 && i != g->nx - 1)
-            x = copysign(x_at_arc_length(fabs(t) * half_arc, focal), t);
-        for (int j = 0; j < g->ny; j++) {
-            double *p = g->s->position_m + 3 * (size_t)at(g, i, j);
-            p[0] = x;
-            p[1] = g->c->length_m * j / (g->ny - 1);
-            p[2] = z_on_parabola(g, x);
-        }
-    }
-}
-
-static bool is_support(const grid *g, int i, int j)
+/* Does the truss hold this node, itself or by an edge tie? */
+static bool is_held(const grid *g, int i, int j)
 {
     bool on_rib = j % g->c->cells_per_module[1] == 0;
-    bool on_perimeter = i == 0 || j == 0 || i == g->nx - 1 || j == g->ny - 1;
     switch (g->c->supports) {
     case HF_SUPPORTS_RIBS:
         return on_rib;
     case HF_SUPPORTS_PERIMETER:
-        return on_perimeter;
+        return is_on_perimeter(g, i, j);
     default:
         return on_rib && i % g->c->cells_per_module[0] == 0;
     }
 }
 
+static bool is_tied(const grid *g, int i, int j)
+{
+    return g->c->edge_tie_m > 0 && is_on_perimeter(g, i, j) && is_held(g, i, j);
+}
+
+static bool is_outer_line(const grid *g, int axis, int index)
+{
+    return index == 0 || index == (axis == 0 ? g->nx : g->ny) - 1;
+}
+
 /* True when the grid line i = const (axis 0) or j = const (axis 1) is made of boundary cables. */
 static bool is_boundary_line(const grid *g, int axis, int index)
 {
-    int last = (axis == 0 ? g->nx : g->ny) - 1;
     if (g->c->boundary == HF_BOUNDARY_MODULE_EDGES) return index % g->c->cells_per_module[axis] == 0;
-    return index == 0 || index == last;
+    return is_outer_line(g, axis, index);
 }
 
-static hf_group group_of_line(const grid *g, int axis, int index)
+static hf_role role_of(const grid *g, int i, int j)
 {
-    return is_boundary_line(g, axis, index) ? HF_GROUP_BOUNDARY : HF_GROUP_INNER;
+    if (is_held(g, i, j) && !is_tied(g, i, j)) return HF_ROLE_SUPPORT;
+    return is_boundary_line(g, 0, i) || is_boundary_line(g, 1, j) ? HF_ROLE_EDGE : HF_ROLE_INNER;
 }
 
-static void assign_roles(const grid *g)
+/* ---- nodes ---- */
+
+static void put_node(const grid *g, int node, double x, double y, hf_role role)
 {
-    for (int j = 0; j < g->ny; j++)
-        for (int i = 0; i < g->nx; i++) {
-            bool on_boundary = is_boundary_line(g, 0, i) || is_boundary_line(g, 1, j);
-            g->s->role[at(g, i, j)] = (unsigned char)(is_support(g, i, j) ? HF_ROLE_SUPPORT
-                                                      : on_boundary       ? HF_ROLE_EDGE
-                                                                          : HF_ROLE_INNER);
+    double *p = g->s->position_m + 3 * (size_t)node;
+    p[0] = x;
+    p[1] = y;
+    p[2] = z_on_parabola(g->c, x);
+    g->s->role[node] = (unsigned char)role;
+}
+
+static void place_nodes(const grid *g)
+{
+    bool with_middles = g->c->pattern == HF_PATTERN_DIAGONAL;
+    for (int i = 0; i < g->nx; i++) {
+        double x = x_of(g->c, 2 * i), middle_x = with_middles && i + 1 < g->nx ? x_of(g->c, 2 * i + 1) : 0;
+        for (int j = 0; j < g->ny; j++) {
+            put_node(g, at(g, i, j), x, y_of(g->c, 2 * j), role_of(g, i, j));
+            if (with_middles && i + 1 < g->nx && j + 1 < g->ny)
+                put_node(g, g->first_middle + j * (g->nx - 1) + i, middle_x, y_of(g->c, 2 * j + 1), HF_ROLE_INNER);
         }
+    }
 }
 
-static void add_cable(const grid *g, int *i_cable, int a, int b, hf_group group)
-{
-    hf_scene *s = g->s;
-    int e = (*i_cable)++;
-    s->end[2 * e] = a;
-    s->end[2 * e + 1] = b;
-    s->group[e] = (unsigned char)group;
-    s->law[e] = group == HF_GROUP_BOUNDARY ? HF_LAW_LENGTH : HF_LAW_TENSION;
-    if (s->EA_N) s->EA_N[e] = g->EA_N[s->group[e]] > 0 ? g->EA_N[s->group[e]] : (double)NAN;
-}
-
-static void connect(const grid *g)
-{
-    int e = 0;
-    for (int j = 0; j < g->ny; j++)
-        for (int i = 0; i < g->nx; i++) {
-            if (i + 1 < g->nx) add_cable(g, &e, at(g, i, j), at(g, i + 1, j), group_of_line(g, 1, j));
-            if (j + 1 < g->ny) add_cable(g, &e, at(g, i, j), at(g, i, j + 1), group_of_line(g, 0, i));
-        }
-}
+/* ---- scallops ---- */
 
 /* Node k of the grid line that runs along `axis` (0: x, 1: y) at index `line` of the other axis. */
 static int on_line(const grid *g, int axis, int line, int k)
@@ -134,29 +275,134 @@ static int on_line(const grid *g, int axis, int line, int k)
     return axis == 0 ? at(g, k, line) : at(g, line, k);
 }
 
-/* Moves the free nodes of one outer edge inward by the parabola 4 s span t (1-t) between consecutive supports, where
- * span is their distance. A curved edge (axis 0, along x) moves in y; a straight edge moves in x and stays on the
- * cylinder. */
+/* Moves the free nodes of one outer edge inward by the parabola 4 s span t (1-t) between consecutive nodes that are
+ * held, where span is their distance. A curved edge (axis 0, along x) moves in y; a straight edge moves in x and stays
+ * on the cylinder. */
 static void scallop_edge(const grid *g, int axis, int line, double inward)
 {
     int n = axis == 0 ? g->nx : g->ny, from = 0;
     double *position = g->s->position_m;
     for (int k = 1; k < n; k++) {
         int here = on_line(g, axis, line, k);
-        if (g->s->role[here] != HF_ROLE_SUPPORT) continue;
+        if (!(axis == 0 ? is_held(g, k, line) : is_held(g, line, k))) continue;
         const double *a = position + 3 * (size_t)on_line(g, axis, line, from), *b = position + 3 * (size_t)here;
         double span = hf_distance(a, b);
         for (int i = from + 1; i < k; i++) {
             double t = (double)(i - from) / (k - from), sag = 4 * g->c->scallop * span * t * (1 - t);
             double *p = position + 3 * (size_t)on_line(g, axis, line, i);
             p[axis == 0 ? 1 : 0] += inward * sag;
-            if (axis == 1) p[2] = z_on_parabola(g, p[0]);
+            if (axis == 1) p[2] = z_on_parabola(g->c, p[0]);
         }
         from = k;
     }
 }
 
-/* Writes the ids n<i>_<j> of nodes and <node>-<node> of cables. */
+static void scallop_edges(const grid *g)
+{
+    for (int axis = 0; axis < 2 && g->c->scallop > 0; axis++) {
+        scallop_edge(g, axis, 0, +1);
+        scallop_edge(g, axis, axis == 0 ? g->ny - 1 : g->nx - 1, -1);
+    }
+}
+
+/* ---- cables ---- */
+
+/* Families of cables, in the order of their names. */
+enum { DIAGONAL, DIRECTRIX, EDGE, EDGE_TIE, GENERATRIX, N_FAMILY, NO_FAMILY = -1 };
+static const char *const family_name[N_FAMILY] = {"diagonal", "directrix", "edge", "edge_tie", "generatrix"};
+
+static void join_set(grid *g, int family)
+{
+    if (family == NO_FAMILY) return;
+    if (g->member) g->member[g->n_member] = (hf_cable_set_member){family, g->n_cable};
+    g->n_member++;
+}
+
+static void add_cable(grid *g, int a, int b, hf_group group, int family, int second_family)
+{
+    hf_scene *s = g->s;
+    int e = g->n_cable;
+    join_set(g, family);
+    join_set(g, second_family);
+    g->n_cable++;
+    if (!g->member) return;
+    s->end[2 * e] = a;
+    s->end[2 * e + 1] = b;
+    s->group[e] = (unsigned char)group;
+    s->law[e] = group == HF_GROUP_BOUNDARY ? HF_LAW_LENGTH : HF_LAW_TENSION;
+    s->target[e] = hf_law_default_target(s->law[e], hf_scene_theoretical_length(s, e));
+    if (s->EA_N) s->EA_N[e] = g->EA_N[group] > 0 ? g->EA_N[group] : (double)NAN;
+}
+
+/* The cable from node (i, j) to the next one along `axis`. The pattern diagonal has those of boundary lines alone, and
+ * only the quad net has cables between two supports. */
+static void add_along(grid *g, int axis, int i, int j)
+{
+    int to_i = i + (axis == 0), to_j = j + (axis == 1), line = axis == 0 ? j : i;
+    bool is_boundary = is_boundary_line(g, 1 - axis, line);
+    if (to_i >= g->nx || to_j >= g->ny) return;
+    if (g->c->pattern == HF_PATTERN_DIAGONAL && !is_boundary) return;
+    if (g->c->pattern != HF_PATTERN_QUAD && role_of(g, i, j) == HF_ROLE_SUPPORT &&
+        role_of(g, to_i, to_j) == HF_ROLE_SUPPORT)
+        return;
+    add_cable(g, at(g, i, j), at(g, to_i, to_j), is_boundary ? HF_GROUP_BOUNDARY : HF_GROUP_INNER,
+              axis == 0 ? DIRECTRIX : GENERATRIX, is_outer_line(g, 1 - axis, line) ? EDGE : NO_FAMILY);
+}
+
+/* What runs across the cell whose first corner is (i, j). */
+static void add_across(grid *g, int i, int j)
+{
+    bool falls = g->c->pattern == HF_PATTERN_ALTERNATING && (i + j) % 2 != 0;
+    int a = falls ? i + 1 : i, b = falls ? i : i + 1;
+    if (i + 1 == g->nx || j + 1 == g->ny || g->c->pattern == HF_PATTERN_QUAD) return;
+    if (g->c->pattern == HF_PATTERN_DIAGONAL)
+        for (int k = 0; k < 4; k++)
+            add_cable(g, at(g, i + k % 2, j + k / 2), g->first_middle + j * (g->nx - 1) + i, HF_GROUP_INNER, DIAGONAL,
+                      NO_FAMILY);
+    else if (role_of(g, a, j) != HF_ROLE_SUPPORT || role_of(g, b, j + 1) != HF_ROLE_SUPPORT)
+        add_cable(g, at(g, a, j), at(g, b, j + 1), HF_GROUP_INNER, DIAGONAL, NO_FAMILY);
+}
+
+/* -1 at the first line of n, 1 at the last. */
+static int side(int index, int n)
+{
+    return index == 0 ? -1 : index == n - 1;
+}
+
+/* Edge ties run outward in the plane of x and y, at a corner of the net by the same distance along both, and end on the
+ * cylinder. */
+static void add_edge_ties(grid *g, int *n_tie)
+{
+    *n_tie = 0;
+    for (int j = 0; j < g->ny; j++)
+        for (int i = 0; i < g->nx; i++) {
+            if (!is_tied(g, i, j)) continue;
+            int node = g->first_tie + (*n_tie)++;
+            if (g->member) {
+                const double *p = g->s->position_m + 3 * (size_t)at(g, i, j);
+                put_node(g, node, p[0] + side(i, g->nx) * g->c->edge_tie_m, p[1] + side(j, g->ny) * g->c->edge_tie_m,
+                         HF_ROLE_SUPPORT);
+            }
+            add_cable(g, node, at(g, i, j), HF_GROUP_BOUNDARY, EDGE_TIE, NO_FAMILY);
+        }
+}
+
+static void connect(grid *g, int *n_tie)
+{
+    g->n_cable = g->n_member = 0;
+    for (int j = 0; j < g->ny; j++)
+        for (int i = 0; i < g->nx; i++) {
+            add_along(g, 0, i, j);
+            add_along(g, 1, i, j);
+            add_across(g, i, j);
+        }
+    add_edge_ties(g, n_tie);
+}
+
+/* ---- names ---- */
+
+/* Writes the ids n<i>_<j> of nodes, m<i>_<j> of those in the middle of cells, s<i>_<j> of the supports that hold
+ * n<i>_<j> by an edge tie, and <node>-<node> of cables. */
 static hf_status name_all(const grid *g)
 {
     hf_scene *s = g->s;
@@ -164,11 +410,17 @@ static hf_status name_all(const grid *g)
     char *text = s->text = malloc(size);
     if (!text) return HF_NO_MEMORY;
     const char *end = text + size;
-    for (int j = 0; j < g->ny; j++)
-        for (int i = 0; i < g->nx; i++) {
-            s->node_id[at(g, i, j)] = text;
-            text += snprintf(text, (size_t)(end - text), "n%d_%d", i, j) + 1;
-        }
+    for (int node = 0; node < g->first_tie; node++) {
+        bool is_middle = node >= g->first_middle;
+        int k = is_middle ? node - g->first_middle : node, width = is_middle ? g->nx - 1 : g->nx;
+        s->node_id[node] = text;
+        text += snprintf(text, (size_t)(end - text), "%c%d_%d", is_middle ? 'm' : 'n', k % width, k / width) + 1;
+    }
+    for (int e = s->n_cable - (s->n_node - g->first_tie); e < s->n_cable; e++) { /* the edge ties are the last cables */
+        int node = s->end[2 * e + 1];
+        s->node_id[s->end[2 * e]] = text;
+        text += snprintf(text, (size_t)(end - text), "s%d_%d", node % g->nx, node / g->nx) + 1;
+    }
     for (int e = 0; e < s->n_cable; e++) {
         s->cable_id[e] = text;
         text +=
@@ -177,49 +429,53 @@ static hf_status name_all(const grid *g)
     return HF_OK;
 }
 
+/* ---- together ---- */
+
+static hf_status make(grid *g)
+{
+    int n_tie;
+    connect(g, &n_tie); /* only counts */
+    bool with_EA = g->EA_N && (g->EA_N[0] > 0 || g->EA_N[1] > 0);
+    hf_cable_set_member *member = malloc(((size_t)g->n_member + 1) * sizeof *member); /* not of 0 bytes */
+    hf_status status =
+        member ? hf_scene_allocate(g->s, g->first_tie + n_tie, g->n_cable, false, with_EA, false) : HF_NO_MEMORY;
+    if (status == HF_OK) {
+        g->member = member;
+        place_nodes(g);
+        scallop_edges(g);
+        connect(g, &n_tie);
+        status = hf_cable_set_make(g->s, N_FAMILY, family_name, g->n_member, member);
+    }
+    free(member);
+    return status == HF_OK ? name_all(g) : status;
+}
+
 hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double EA_N[2], hf_scene *scene,
                                       hf_messages *messages)
 {
+    char what[HF_GENERATE_FAULT_SIZE];
     *scene = (hf_scene){0};
     double nx = (double)cylinder->modules[0] * cylinder->cells_per_module[0] + 1;
     double ny = (double)cylinder->modules[1] * cylinder->cells_per_module[1] + 1;
-    if (nx * ny > NODE_MAX)
-        return hf_error(messages, HF_BAD_CASE, "scene: %.0f x %.0f nodes are more than this program takes (%d)", nx, ny,
-                        NODE_MAX);
-    double cell_x = cylinder->aperture_m / (nx - 1), cell_y = cylinder->length_m / (ny - 1);
-    double sag_x = cylinder->scallop * cell_y * cylinder->cells_per_module[1];
-    double sag_y = cylinder->scallop * cell_x * cylinder->cells_per_module[0];
-    if (cylinder->supports != HF_SUPPORTS_PERIMETER && (sag_x >= cell_x || sag_y >= cell_y))
-        return hf_error(messages, HF_BAD_CASE,
-                        "scene: scallop %g moves edge nodes by %.3g m, past the next nodes %.3g m inward; lower it",
-                        cylinder->scallop, sag_x / cell_x > sag_y / cell_y ? sag_x : sag_y,
-                        sag_x / cell_x > sag_y / cell_y ? cell_x : cell_y);
-    grid g = {cylinder, EA_N, scene, (int)nx, (int)ny};
-    int n_cable = (g.nx - 1) * g.ny + g.nx * (g.ny - 1);
-    bool with_EA = EA_N && (EA_N[0] > 0 || EA_N[1] > 0);
-    hf_status status = hf_scene_allocate(scene, g.nx * g.ny, n_cable, false, with_EA, false);
-    if (status == HF_OK) {
-        place_nodes(&g);
-        assign_roles(&g);
-        connect(&g);
-        if (cylinder->scallop > 0) {
-            scallop_edge(&g, 0, 0, +1);
-            scallop_edge(&g, 0, g.ny - 1, -1);
-            scallop_edge(&g, 1, 0, +1);
-            scallop_edge(&g, 1, g.nx - 1, -1);
-        }
-        for (int e = 0; e < n_cable; e++)
-            scene->target[e] = hf_law_default_target(scene->law[e], hf_scene_theoretical_length(scene, e));
-        status = name_all(&g);
-    }
-    if (status != HF_OK) return hf_error(messages, status, "scene: out of memory for %d nodes", g.nx * g.ny);
+    bool with_middles = cylinder->pattern == HF_PATTERN_DIAGONAL;
+    if (nx * ny + (with_middles ? (nx - 1) * (ny - 1) : 0) > NODE_MAX)
+        return hf_error(messages, HF_BAD_CASE, "scene: %.0f x %.0f nodes%s are more than this program takes (%d)", nx,
+                        ny, with_middles ? " and those in the middle of cells" : "", NODE_MAX);
+    const char *key = hf_scene_parabolic_cylinder_fault(cylinder, what, sizeof what);
+    if (key) return hf_error(messages, HF_BAD_CASE, "scene.parabolic_cylinder.%s: %s", key, what);
+    grid g = {.c = cylinder, .EA_N = EA_N, .s = scene, .nx = (int)nx, .ny = (int)ny};
+    g.first_middle = g.nx * g.ny;
+    g.first_tie = g.first_middle + (with_middles ? (g.nx - 1) * (g.ny - 1) : 0);
+    hf_status status = make(&g);
+    if (status != HF_OK) return hf_error(messages, status, "scene: out of memory for %d nodes", g.first_tie);
     return HF_OK;
 }
 
 void hf_scene_parabolic_cylinder_surface(const hf_cylinder *cylinder, hf_surface_settings *surface)
 {
     double n_cell = (double)cylinder->modules[0] * cylinder->cells_per_module[0];
+    bool are_even = cylinder->pitches_x_m.n == 0 && cylinder->pattern != HF_PATTERN_DIAGONAL;
     surface->kind = HF_SURFACE_PARABOLIC_CYLINDER;
     surface->focal_length_m = cylinder->focal_length_m;
-    if (n_cell > 0) surface->strip_width_m = cylinder->aperture_m / n_cell;
+    if (n_cell > 0 && are_even) surface->strip_width_m = cylinder->aperture_m / n_cell;
 }

@@ -44,8 +44,21 @@ static int corner(const generator *g, int i, int j)
     return 2 * (j * (g->c->modules[0] + 1) + i);
 }
 
-static void add_node(generator *g, const double *front_m, const char *where)
+/* The outer front nodes carry the supports of edge ties, which stand outside the net. i, j: module borders that the
+ * node lies on; -1 between two of them. */
+static void push_out(const generator *g, int i, int j, double position_m[3])
 {
+    const hf_cylinder *c = g->c;
+    position_m[0] += ((i == c->modules[0]) - (i == 0)) * c->edge_tie_m;
+    position_m[1] += ((j == c->modules[1]) - (j == 0)) * c->edge_tie_m;
+    position_m[2] = position_m[0] * position_m[0] / (4 * c->focal_length_m);
+}
+
+/* i, j: as for push_out. */
+static void add_node(generator *g, const double *grid_m, int i_line, int j_line, const char *where)
+{
+    double front_m[3] = {grid_m[0], grid_m[1], grid_m[2]};
+    push_out(g, i_line, j_line, front_m);
     double slope = front_m[0] / (2 * g->c->focal_length_m), stretch = hf_norm(1, slope, 0);
     double normal[3] = {-slope / stretch, 0, 1 / stretch};
     for (int side = 0; side < 2; side++) {
@@ -112,7 +125,7 @@ static void add_corners(generator *g)
     for (int j = 0; j <= g->c->modules[1]; j++)
         for (int i = 0; i <= g->c->modules[0]; i++) {
             snprintf(where, sizeof where, "%d_%d", i, j);
-            add_node(g, front_of(g, i, 0, j), where);
+            add_node(g, front_of(g, i, 0, j), i, j, where);
         }
     for (int k = 0; k < g->i_node; k += 2)
         add_member(g, k, k + 1, HF_UNIT_BUD);
@@ -127,7 +140,7 @@ static void add_ribs(generator *g)
             int inside = g->i_node;
             for (int k = 1; k < n; k++) {
                 snprintf(where, sizeof where, "%d.%d_%d", i, k, j);
-                add_node(g, front_of(g, i, k, j), where);
+                add_node(g, front_of(g, i, k, j), -1, j, where);
             }
             add_unit(g, HF_UNIT_BUD, corner(g, i, j), corner(g, i + 1, j), inside, i * n);
         }
@@ -145,7 +158,7 @@ static void add_lines(generator *g)
             for (int k = 1; k < n; k++) {
                 double position_m[3] = {from[0], from[1] + (to[1] - from[1]) * k / n, from[2]};
                 snprintf(where, sizeof where, "%d_%d.%d", i, j, k);
-                add_node(g, position_m, where);
+                add_node(g, position_m, i, -1, where);
             }
             add_unit(g, unit, corner(g, i, j), corner(g, i, j + 1), inside, j * n);
         }
@@ -183,7 +196,8 @@ static hf_status generate(generator *g, hf_messages *messages)
     hf_cylinder ribs = *g->c;
     ribs.cells_per_module[0] = g->set->bud.panels;
     ribs.cells_per_module[1] = 1;
-    ribs.scallop = 0;
+    ribs.scallop = ribs.edge_tie_m = 0;
+    ribs.pattern = HF_PATTERN_QUAD;
     HF_TRY(hf_scene_parabolic_cylinder(&ribs, NULL, &g->grid, messages));
     hf_status status = hf_truss_allocate(g->t, (int)n_node, (int)n_member, false);
     g->text = status == HF_OK ? malloc(ID_SIZE * (size_t)(n_node + 2 * n_member)) : NULL;

@@ -48,6 +48,39 @@ START_TEST(all_faults_of_a_file_are_told_in_one_run)
 }
 END_TEST
 
+/* Keys of a generator that ask for what cannot be made are named with their line. */
+START_TEST(impossible_nets_are_refused)
+{
+    const char *path = file_with("c.yaml", "scene:\n"
+                                           "  parabolic_cylinder:\n"
+                                           "    aperture_m: 10\n"
+                                           "    length_m: 12\n"
+                                           "    focal_length_m: 5\n"
+                                           "    modules: [2, 3]\n"
+                                           "    cells_per_module: [2, 2]\n"
+                                           "    pitches_x_m: [4, 5]\n"
+                                           "    scallop: 0.39\n"
+                                           "    edge_tie_m: 4\n");
+    HIFDM(2, "check", path);
+    ERRS("error: %s:8:18: scene.parabolic_cylinder.pitches_x_m: must add up to aperture_m, 10 m, and do to 9 m\n",
+         path);
+    HIFDM(2, "check", path, "--set", "scene.parabolic_cylinder.pitches_x_m=[4, 6]");
+    ERRS("error: %s:10:17: scene.parabolic_cylinder.edge_tie_m: of 4 m must be shorter than the smallest module, 4 m\n",
+         path);
+    HIFDM(2, "check", path, "--set", "scene.parabolic_cylinder.pitches_x_m=[4, 6]", "--set",
+          "scene.parabolic_cylinder.edge_tie_m=0.1");
+    ERRS("error: %s:9:14: scene.parabolic_cylinder.scallop: of 0.39 moves edge nodes by 2.", path);
+    HIFDM(2, "check", path, "--set", "scene.parabolic_cylinder.pitches_x_m=[4, 4, 2]");
+    ERR("error: --set scene.parabolic_cylinder.pitches_x_m: must have a value for each of the 2 modules along x, and "
+        "has "
+        "3\n");
+    HIFDM(2, "check", path, "--set", "scene.parabolic_cylinder.pitches_x_m=[10, 0]");
+    ERR("scene.parabolic_cylinder.pitches_x_m: must be above 0 and at most 10000, not 0\n");
+    HIFDM(2, "check", path, "--set", "scene.parabolic_cylinder.pattern=hexagon");
+    ERR("scene.parabolic_cylinder.pattern: must be one of quad triangle diagonal alternating, not hexagon\n");
+}
+END_TEST
+
 static const struct {
     const char *text, *error; /* behind "error: PATH" */
 } unreadable[] = {
@@ -140,6 +173,7 @@ Suite *suite_cli_bad_case(void)
     Suite *suite = suite_create("cli/bad_case");
     TCase *tcase = tcase_create("bad_case");
     tcase_add_test(tcase, all_faults_of_a_file_are_told_in_one_run);
+    tcase_add_test(tcase, impossible_nets_are_refused);
     tcase_add_loop_test(tcase, what_is_no_case_is_told, 0, N_UNREADABLE);
     tcase_add_test(tcase, what_is_no_file_is_told);
     tcase_add_test(tcase, settings_that_contradict_each_other_are_told);

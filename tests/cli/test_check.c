@@ -84,7 +84,8 @@ START_TEST(schema_is_yaml_with_every_key)
         schema, "--", "list(a) == ['title', 'scene', 'surface', 'form', 'optimize', 'truss', 'coupling', 'sweep']",
         "set(a['scene']) == {'parabolic_cylinder', 'import'}",
         "set(a['scene']['parabolic_cylinder']) == {'aperture_m', 'length_m', 'focal_length_m', 'modules', "
-        "'cells_per_module', 'spacing', 'boundary', 'scallop', 'supports'}",
+        "'cells_per_module', 'pitches_x_m', 'pitches_y_m', 'pattern', 'spacing', 'boundary', 'scallop', 'supports', "
+        "'edge_tie_m'}",
         "set(a['scene']['import']) == {'nodes', 'cables'}", "a['surface'] == {'kind': 'auto', 'frequencies_Hz': []}",
         "set(a['form']) == {'method', 'pretension_N', 'prestress', 'stop', 'residual_tolerance', 'length_tolerance', "
         "'rms_tolerance_m', 'max_iterations', 'collapse_ratio'}",

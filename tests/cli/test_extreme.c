@@ -109,7 +109,7 @@ static const struct {
     int exit_code;
 } odd_cylinders[] = {
     {CYLINDER "focal_length_m=1e9", 0},
-    {CYLINDER "focal_length_m=1e-3", 4},
+    {CYLINDER "focal_length_m=1e-3", 2}, /* scallops of 1250 m long spans */
     {CYLINDER "aperture_m=1e-9", 2},
     {CYLINDER "scallop=0.4", 0},
     {CYLINDER "scallop=0", 4},

@@ -252,12 +252,14 @@ START_TEST(surface_is_measured_only_when_asked_for)
           "surface.focal_length_m=3");
     EXPECT(out_as("n.json"), "--", "a['form']['surface']['faceting_rms_m'] is None",
            "len(a['form']['surface']['gain_loss_dB']) == 1");
-    HIFDM(2, "run", path, NOWHERE, "--set", "surface.frequencies_Hz=[1,2,3,4,5,6,7,8,9]");
-    ERR("must be a list of at most 8 numbers, like [1e9, 2e9]");
+    HIFDM(2, "run", path, NOWHERE, "--set",
+          "surface.frequencies_Hz=[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,"
+          "21,22,23,24,25,26,27,28,29,30,31,32,33]");
+    ERR("must be a list of at most 32 numbers, like [1, 2.5]");
     HIFDM(2, "run", path, NOWHERE, "--set", "surface.frequencies_Hz=[1e9, -1]");
     ERR("must be above 0");
     HIFDM(2, "run", path, NOWHERE, "--set", "surface.frequencies_Hz={a: 1}");
-    ERR("must be a list of at most 8 numbers");
+    ERR("must be a list of at most 32 numbers");
     HIFDM(2, "run", path, NOWHERE, "--set", "surface.frequencies_Hz=[[1], 2]");
     ERR("must be a number");
 }

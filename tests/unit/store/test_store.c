@@ -140,12 +140,13 @@ END_TEST
 /* Any bits, NaN included; a shape that was not measured comes back as nothing. */
 START_TEST(surface_comes_back_bit_by_bit)
 {
+    const int n = _i < 9 ? _i : HF_LIST_MAX;
     struct rng rng = rng_start(50 + (uint64_t)_i);
     struct net net;
     hf_messages messages = {0};
-    hf_summary read, written = {.surface = {7.2, 0.25, {_i, {0}}, (hf_surface_kind)(_i % 3)}};
+    hf_summary read, written = {.surface = {7.2, 0.25, {n, {0}}, (hf_surface_kind)(_i % 3)}};
     open_bow(&net);
-    for (int k = 0; k < _i; k++)
+    for (int k = 0; k < n; k++)
         written.surface.frequencies_Hz.value[k] = rng_uniform(&rng, 1e8, 1e11);
     for (int stage = 0; stage < 3; stage++) {
         hf_surface_measures *s = &written.measures[stage];
@@ -156,7 +157,7 @@ START_TEST(surface_comes_back_bit_by_bit)
         s->fit.converged = stage == 0;
         for (size_t k = 0; (char *)(value + k) < (char *)&s->fit.iterations; k++)
             value[k] = k == 3 ? (double)NAN : rng_uniform(&rng, -1, 1);
-        for (int k = 0; k < _i; k++) {
+        for (int k = 0; k < n; k++) {
             s->gain_loss_dB[k] = rng_uniform(&rng, 0, 1);
             s->fit_gain_loss_dB[k] = rng_uniform(&rng, 0, 1);
         }
@@ -482,7 +483,7 @@ Suite *suite_unit_store(void)
     suite_add_tcase(suite, tests);
     tcase_add_checked_fixture(tests, quiet, NULL);
     tcase_add_loop_test(tests, summary_comes_back_bit_by_bit, 0, 5);
-    tcase_add_loop_test(tests, surface_comes_back_bit_by_bit, 0, 1 + HF_LIST_MAX);
+    tcase_add_loop_test(tests, surface_comes_back_bit_by_bit, 0, 10);
     tcase_add_loop_test(tests, scene_comes_back, 0, 2);
     tcase_add_test(tests, shapes_come_back_in_the_order_of_the_scene);
     tcase_add_test(tests, coupling_is_stored_beside_the_shape);

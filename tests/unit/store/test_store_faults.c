@@ -186,6 +186,14 @@ static const struct {
     {"f.attrs.create('git_describe', b'old', dtype=h5py.string_dtype('utf-8', 3)); del f['form'].attrs['culprit']", 1,
      "(old) and has no attribute culprit of /form, which this version needs: run its case again, or use that version"},
     {"del f['form'].attrs['culprit']", 1, "is damaged: attribute culprit of /form is not there"},
+    {"f['scene/set/cable'][0] = 10**6", 1, "/scene/set does not describe sets of cables"},
+    {"f['scene/set/cable'][1] = f['scene/set/cable'][0]", 1, "/scene/set does not describe sets of cables"},
+    {"f['scene/set/start'][1] = 10**9", 1, "/scene/set does not describe sets of cables"},
+    {"f['scene/set/start'][0] = -1", 1, "/scene/set does not describe sets of cables"},
+    {"d = f['scene/set/name'][:]; f['scene/set/name'][0] = d[1]", 1, "/scene/set does not describe sets of cables"},
+    {"f['scene/set/name'][0] = b'a.b'", 1, "/scene/set does not describe sets of cables"},
+    {"del f['scene/set/name']; f['scene/set/name'] = np.array([b'x' * 64, b'y', b'z'])", 1, "a name that is too long"},
+    {"del f['scene/set/start']", 1, "/scene/set/start is not there"},
 };
 
 START_TEST(damage_is_told)

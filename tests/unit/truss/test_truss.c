@@ -158,6 +158,36 @@ START_TEST(every_choice)
 }
 END_TEST
 
+/* The supports of edge ties stand outside the net, and the truss with them; uneven modules and ribs are followed. */
+START_TEST(it_carries_edge_ties)
+{
+    hf_truss t;
+    hf_truss_settings set = settings();
+    hf_cylinder c = paper;
+    hf_messages messages = {0};
+    hf_scene net;
+    c.edge_tie_m = 0.2;
+    c.pattern = HF_PATTERN_DIAGONAL;
+    c.supports = HF_SUPPORTS_RIBS;
+    c.pitches_x_m.n = c.modules[0];
+    for (int k = 0; k < c.modules[0]; k++)
+        c.pitches_x_m.value[k] = c.aperture_m / c.modules[0] + (k == 0) - (k == 1);
+    set.bud.panels = c.cells_per_module[0];
+    generate(&set, &c, &t);
+    ck_assert_int_eq(hf_scene_parabolic_cylinder(&c, NULL, &net, &messages), HF_OK);
+    int n_attachment, n_support = 0, *node = calloc(2 * (size_t)net.n_node, sizeof *node);
+    ck_assert_ptr_nonnull(node);
+    for (int i = 0; i < net.n_node; i++)
+        n_support += net.role[i] == HF_ROLE_SUPPORT;
+    ck_assert_msg(hf_truss_attach(&t, &net, 1e-12, &n_attachment, node, node + net.n_node, &messages) == HF_OK, "%s",
+                  messages.text);
+    ck_assert_int_eq(n_attachment, n_support);
+    free(node);
+    hf_scene_free(&net);
+    hf_truss_free(&t);
+}
+END_TEST
+
 START_TEST(too_many_modules)
 {
     hf_truss t;
@@ -377,6 +407,7 @@ Suite *suite_unit_truss(void)
     tcase_add_test(tests, ribs_are_symmetric);
     tcase_add_test(tests, mass_by_hand);
     tcase_add_test(tests, every_choice);
+    tcase_add_test(tests, it_carries_edge_ties);
     tcase_add_test(tests, too_many_modules);
     tcase_add_test(tests, what_the_net_is_given);
     tcase_add_test(tests, support_without_attachment);
