@@ -8,6 +8,7 @@
 
 #include <hifdm/batch.h>
 #include <hifdm/config.h>
+#include <hifdm/facets.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -20,6 +21,7 @@ typedef struct {
     hf_carrier carrier; /* all zero without a truss */
     hf_model model;
     hf_surface_settings surface; /* the wanted one, its kind known; all zero when the case asks for no measures */
+    hf_facets facets;            /* of the wanted surface; none when the case asks for no measures */
     int planes;                  /* of symmetry that link genes: bit 1 = x, bit 2 = y */
     hf_workspace workspace;      /* holds the found shape until another is computed in it */
     hf_form_result form;         /* of the form-finding */

@@ -9,6 +9,7 @@
 #ifndef HIFDM_SURFACE_H
 #define HIFDM_SURFACE_H
 
+#include <hifdm/facets.h>
 #include <hifdm/workspace.h>
 
 #ifdef __cplusplus
@@ -33,6 +34,14 @@ extern "C" {
     X(double, deviation_p95_m, REAL, 4, "95 %")                                                                        \
     X(double, deviation_p99_m, REAL, 4, "99 %")                                                                        \
     X(double, deviation_max_m, REAL, 4, "the largest")                                                                 \
+    X(double, facet_half_path_rms_m, REAL, 7, "over the facets, by projected area; NaN without facets")                \
+    X(double, facet_normal_rms_m, REAL, 7, "the same along the normal")                                                \
+    X(double, facet_fit_half_path_rms_m, REAL, 7, "after the best fit to the facets")                                  \
+    X(double, facet_fit_normal_rms_m, REAL, 7, "the same along the normal")                                            \
+    X(double, facet_fit_focal_length_m, REAL, 7, "of that best fit")                                                   \
+    X(double, facet_area_m2, REAL, 7, "of the facets, projected along z")                                              \
+    X(int, n_facet, INT, 7, "triangles and quadrilaterals of the net, seen along z")                                   \
+    X(int, n_open_face, INT, 7, "faces left out: of more than four sides, or not convex")                              \
     X(double, ruze_limit_Hz, REAL, 6, "above it Ruze's formula does not hold: gain_loss_dB is NaN; INFINITY: no error")
 
 #define HF_SURFACE_FIT_LIST(X)                                                                                         \
@@ -79,10 +88,10 @@ typedef struct {
     double gain_loss_dB[HF_LIST_MAX], fit_gain_loss_dB[HF_LIST_MAX]; /* by frequency, (M17) */
 } hf_surface_measures;
 
-/* Measure the inner nodes of the shape in the workspace. settings->focal_length_m > 0, and the kind is known. HF_OK or
- * HF_NO_MEMORY. */
-hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_model *model, const hf_workspace *workspace,
-                             hf_surface_measures *measures);
+/* Measure the inner nodes of the shape in the workspace, and the facets between them. settings->focal_length_m > 0, and
+ * the kind is known; `facets` are those of the model's scene. HF_OK or HF_NO_MEMORY. */
+hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_facets *facets, const hf_model *model,
+                             const hf_workspace *workspace, hf_surface_measures *measures);
 
 /* Ruze's formula holds for errors that are small beside a wavelength: up to about this loss, an RMS of lambda/15. */
 #define HF_RUZE_MOST_DB 3.0

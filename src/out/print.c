@@ -99,6 +99,18 @@ static void print_certificate(const hf_form_result *r, FILE *f)
         fprintf(f, "                no proven bound of the error: %s\n", hf_bound_reason_meaning((int)r->bound_reason));
 }
 
+static void print_facets(const hf_surface_measures *m, FILE *f)
+{
+    if (m->n_facet == 0) return;
+    fprintf(f, "                its %d facets: half-path RMS %.4f mm, normal %.4f mm", m->n_facet,
+            m->facet_half_path_rms_m * 1e3, m->facet_normal_rms_m * 1e3);
+    if (isfinite(m->facet_fit_half_path_rms_m))
+        fprintf(f, "; best fit (f %.4f m) %.4f mm, %.4f mm", m->facet_fit_focal_length_m,
+                m->facet_fit_half_path_rms_m * 1e3, m->facet_fit_normal_rms_m * 1e3);
+    if (m->n_open_face) fprintf(f, "; %d face%s left out", m->n_open_face, m->n_open_face == 1 ? "" : "s");
+    fputc('\n', f);
+}
+
 static void print_gain(double loss_dB, double limit_Hz, FILE *f)
 {
     if (isnan(loss_dB))
@@ -120,6 +132,7 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
                 m->fit.normal_rms_m * 1e3);
     else
         fputs("best fit not converged\n", f);
+    print_facets(m, f);
     fprintf(f, "                deviations 50/90/95/99 %%: %.3f/%.3f/%.3f/%.3f mm, largest %.3f mm",
             m->deviation_p50_m * 1e3, m->deviation_p90_m * 1e3, m->deviation_p95_m * 1e3, m->deviation_p99_m * 1e3,
             m->deviation_max_m * 1e3);

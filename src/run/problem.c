@@ -26,6 +26,7 @@ void hf_problem_free(hf_problem *p)
     hf_workspace_free(&p->workspace);
     hf_model_free(&p->model);
     hf_carrier_free(&p->carrier);
+    hf_facets_free(&p->facets);
     hf_scene_free(&p->scene);
     hf_case_free(&p->settings);
     *p = (hf_problem){0};

@@ -17,12 +17,22 @@
 
 /* ---- from the case to the model ---- */
 
+static hf_status find_facets(hf_problem *p, hf_messages *messages)
+{
+    if (hf_facets_find(&p->scene, &p->surface, &p->facets) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the facets of a net of %d nodes", p->scene.n_node);
+    if (!p->facets.is_planar)
+        hf_warning(messages, "surface: cables on it cross without a node, seen along z: it has no facets to measure");
+    return HF_OK;
+}
+
 hf_status hf_problem_load(const char *path, const char *const *set, int n_set, hf_problem *p, hf_messages *messages)
 {
     *p = (hf_problem){0};
     HF_TRY(hf_config_load(path, set, n_set, &p->settings, messages));
     HF_TRY(hf_config_scene(&p->settings, &p->scene, messages));
     HF_TRY(hf_config_surface(&p->settings, &p->scene, &p->surface, messages));
+    if (p->settings.has_surface) HF_TRY(find_facets(p, messages));
     if (p->settings.form.prestress == HF_PRESTRESS_EXACT)
         HF_TRY(hf_prestress_hold(&p->scene, &p->settings.form, messages));
     HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));

@@ -56,7 +56,7 @@ static hf_status measure_surface(const run *r, hf_stage stage, const hf_workspac
 {
     const hf_problem *p = &r->problem;
     if (!p->settings.has_surface) return HF_OK;
-    if (hf_surface_measure(&p->surface, &p->model, w, &s->measures[stage]) != HF_OK)
+    if (hf_surface_measure(&p->surface, &p->facets, &p->model, w, &s->measures[stage]) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
     const hf_surface_fit *fit = &s->measures[stage].fit;
     if (!fit->converged)

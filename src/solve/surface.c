@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "net/wanted.h"
+#include "solve/facet_rms.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,6 +11,7 @@
 #define LIGHT_M_PER_S 299792458.0
 #define PI 3.14159265358979323846
 #define DB_PER_SQUARE 4.3429448190325182765 /* 10/ln 10 */
+
 /* ---- loss of gain ---- */
 
 double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz)
@@ -69,8 +71,8 @@ static void collect(const hf_surface_settings *s, const hf_model *m, const hf_wo
     to->half_path_rms_m = sqrt(half_path / n);
 }
 
-hf_status hf_surface_measure(const hf_surface_settings *s, const hf_model *m, const hf_workspace *w,
-                             hf_surface_measures *measures)
+hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
+                             const hf_workspace *w, hf_surface_measures *measures)
 {
     size_t n = (size_t)m->n_inner_node;
     hf_arena arena = {0};
@@ -89,6 +91,7 @@ hf_status hf_surface_measure(const hf_surface_settings *s, const hf_model *m, co
     all.faceting_rms_m =
         s->strip_width_m > 0 ? s->strip_width_m * s->strip_width_m / (24 * sqrt(5) * s->focal_length_m) : (double)NAN;
     hf_status status = hf_surface_fit_points(s->kind, s->focal_length_m, (int)n, position_m, NULL, &all.fit);
+    if (status == HF_OK) status = hf_facet_measure(s, facets, m, w, &all);
     all.ruze_limit_Hz = hf_surface_ruze_limit_Hz(all.half_path_rms_m);
     all.fit.ruze_limit_Hz = hf_surface_ruze_limit_Hz(all.fit.half_path_rms_m);
     for (int k = 0; k < s->frequencies_Hz.n; k++) {

@@ -52,6 +52,19 @@ def differing(one, other):
     return sorted(name for name in x.keys() | y.keys() if x.get(name) != y.get(name))
 
 
+def facet_rms(grid, f, n):
+    """RMS along the normal of the bilinear cells of a grid of nodes [j][i][xyz] above the cylinder x^2/(4f), over the
+    projected area, with n x n points of Gauss-Legendre in a cell."""
+    at, weight = np.polynomial.legendre.leggauss(n)
+    u, v = np.meshgrid((at + 1) / 2, (at + 1) / 2)
+    a, b, c, d = (part[..., :, None, None] for part in (grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]))
+    p = (1 - u) * (1 - v) * a + u * (1 - v) * b + u * v * c + (1 - u) * v * d
+    pu, pv = (1 - v) * (b - a) + v * (c - d), (1 - u) * (d - a) + u * (c - b)
+    area = np.abs(pu[:, :, 0] * pv[:, :, 1] - pu[:, :, 1] * pv[:, :, 0]) * np.outer(weight, weight)
+    x, z = p[:, :, 0], p[:, :, 2]
+    return np.sqrt(np.sum(area * (z - x**2 / (4 * f))**2 / (1 + x**2 / (4 * f**2))) / np.sum(area))
+
+
 def column(rows, *names):
     """Columns of a CSV file as numbers, one array row per line."""
     values = np.array([[float(row[name]) for name in names] for row in rows])

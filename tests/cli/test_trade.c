@@ -202,7 +202,7 @@ START_TEST(surface_is_measured_for_every_shape)
                "b[d.decode()]['surface'] == c[d.decode()]['surface']",
                "all(b[d.decode()]['surface'][k] == v for k, v in a['surface'][d.decode()].attrs.items() "
                "if k in b[d.decode()]['surface'])",
-               "len(b[d.decode()]['surface']) == 25", "b[d.decode()]['surface']['kind'] == 'parabolic_cylinder'",
+               "len(b[d.decode()]['surface']) == 33", "b[d.decode()]['surface']['kind'] == 'parabolic_cylinder'",
                /* against numpy: the sums in another order */
                "near(np.sqrt(np.mean([(p[2] - p[0]**2 / 282.4)**2 / (1 + (p[0] / 141.2)**2) for p in "
                "a[e.decode()]['position_m'][:][a['scene/node/role'][:] == 1]])), b[d.decode()]['surface']"
@@ -244,6 +244,16 @@ START_TEST(surface_is_measured_only_when_asked_for)
     HIFDM(0, "run", file_with("e.yaml", SMALL_SCENE "surface: {}\n"), "-o", out, "--json", "--force");
     EXPECT(out, out_as("e.json"), "--", "b['form']['surface']['frequency_Hz'] == []", "set(a['surface/form']) == set()",
            "near(a['surface'].attrs['strip_width_m'], 0.5, 0)", "a['surface'].attrs['focal_length_m'] == 2");
+    /* the quadrilaterals of 5 x 7 nodes, f = 2 m, against numpy: sums in another order;
+     * more points tell what 3 x 3 leave out for slopes that change in a cell, 2e-6 of the RMS */
+    EXPECT(out, out_as("e.json"), "--", "b['form']['surface']['n_facet'] == a['surface/form'].attrs['n_facet'] == 24",
+           "near(facet_rms(a['form/position_m'][:].reshape(7, 5, 3), 2, 3), "
+           "b['form']['surface']['facet_normal_rms_m'], 1e-15)",
+           "near(facet_rms(a['form/position_m'][:].reshape(7, 5, 3), 2, 8), "
+           "b['form']['surface']['facet_normal_rms_m'], 1e-7)",
+           "b['form']['surface']['facet_normal_rms_m'] == a['surface/form'].attrs['facet_normal_rms_m']",
+           "b['form']['surface']['facet_fit_normal_rms_m'] < b['form']['surface']['facet_normal_rms_m']",
+           "b['form']['surface']['n_open_face'] == 0");
     net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0,0.083,inner\nc,2,0,0.333,support\n",
              "id,i,j,group,law,value\nab,a,b,inner,tension,\nbc,b,c,inner,tension,\n");
     HIFDM(2, "run", temp("net.yaml"), NOWHERE, "--set", "surface.frequencies_Hz=1e9");

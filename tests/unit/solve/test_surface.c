@@ -268,7 +268,8 @@ static void open_reflector(struct net *net)
 static hf_surface_measures measured(struct net *net)
 {
     hf_surface_measures s;
-    ck_assert_int_eq(hf_surface_measure(&net->settings.surface, &net->model, &net->work, &s), HF_OK);
+    hf_facets none = {0};
+    ck_assert_int_eq(hf_surface_measure(&net->settings.surface, &none, &net->model, &net->work, &s), HF_OK);
     ck_assert(s.is_measured);
     return s;
 }

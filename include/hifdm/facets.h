@@ -1,0 +1,33 @@
+/* facets - the surface between the nodes: the triangles and quadrilaterals of a net, as its cables enclose them.
+ * Stability: internal; may change in any version. */
+#ifndef HIFDM_FACETS_H
+#define HIFDM_FACETS_H
+
+#include <hifdm/scene.h>
+#include <hifdm/settings.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct {
+    int n_facet;
+    int *corner; /* [n_facet][4] nodes of the scene, counter-clockwise seen from +z; of a triangle the last two are the
+                       same */
+    int n_open;  /* faces that are no facets: more than four sides, or not convex */
+    bool is_planar; /* false: cables cross, seen along z; there are no facets then */
+    void *block;    /* owned memory behind `corner` */
+} hf_facets;
+
+/* Find the facets among the nodes of the scene that are on the wanted surface: the inner ones, and of the others those
+ * whose theoretical position is on it up to 1e-3 of its depth. A facet is a minimal face of the plane graph that the
+ * cables between them make, seen along z. surface->focal_length_m > 0, and its kind is known. HF_OK or HF_NO_MEMORY;
+ * free with hf_facets_free in any case. */
+hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surface, hf_facets *facets);
+
+void hf_facets_free(hf_facets *facets);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,220 @@
+/* Contents: the graph - faces - together */
+#include <hifdm/facets.h>
+
+#include "base/arena.h"
+#include "base/union_find.h"
+#include "net/wanted.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NEAR_PART 1e-3     /* supports and edge nodes nearer to the wanted surface, in parts of its depth, are on it */
+#define STRAIGHT_PART 1e-9 /* a corner that points inwards by this part of the area is straight but for rounding */
+
+/* ---- the graph ---- */
+
+/* A cable in one direction. Those of a node stand together, counter-clockwise by their direction. */
+typedef struct {
+    int from, to;
+    double dx, dy;
+    int twin, place; /* the other direction of the cable; the number in the order of the cables */
+} half;
+
+typedef struct {
+    const hf_scene *scene;
+    unsigned char *is_on; /* [n_node] of the graph */
+    int *degree, *first;  /* [n_node], [n_node + 1]: the half edges from a node begin there */
+    int *parent;          /* [n_node] of the classes of nodes that are joined */
+    int *sorted;          /* [n_half] where a half edge is after sorting */
+    half *edge;           /* [n_half] */
+    unsigned char *seen;  /* [n_half] */
+    int n_half;
+} graph;
+
+static void lay_out(hf_arena *a, const hf_scene *s, graph *g)
+{
+    size_t n = (size_t)s->n_node, m = 2 * (size_t)s->n_cable;
+    g->is_on = hf_arena_take(a, n, 1);
+    g->degree = hf_arena_take(a, n, sizeof *g->degree);
+    g->first = hf_arena_take(a, n + 1, sizeof *g->first);
+    g->parent = hf_arena_take(a, n, sizeof *g->parent);
+    g->sorted = hf_arena_take(a, m, sizeof *g->sorted);
+    g->edge = hf_arena_take(a, m, sizeof *g->edge);
+    g->seen = hf_arena_take(a, m, 1);
+}
+
+static void choose_nodes(graph *g, const hf_surface_settings *surface)
+{
+    const hf_scene *s = g->scene;
+    double slope[2], curvature = 1 / (4 * surface->focal_length_m);
+    double near_m = NEAR_PART * hf_wanted_compare(surface->kind, surface->focal_length_m, s).depth_m;
+    for (int i = 0; i < s->n_node; i++) {
+        double above = hf_wanted_height_above(surface->kind, curvature, s->position_m + 3 * (size_t)i, slope);
+        g->is_on[i] = s->role[i] == HF_ROLE_INNER || fabs(above) <= near_m;
+    }
+}
+
+static bool in_graph(const graph *g, int cable)
+{
+    const int *end = g->scene->end + 2 * (size_t)cable;
+    return g->is_on[end[0]] && g->is_on[end[1]];
+}
+
+/* Nodes at the end of a single cable, such as that of a tie of the edge, are at no face: they leave, one after the
+ * other. Rounds are as many as such a chain has cables. */
+static void drop_ends(graph *g)
+{
+    const hf_scene *s = g->scene;
+    for (bool more = true; more;) {
+        more = false;
+        memset(g->degree, 0, (size_t)s->n_node * sizeof *g->degree);
+        for (int e = 0; e < s->n_cable; e++)
+            for (int k = 0; k < 2 && in_graph(g, e); k++)
+                g->degree[s->end[2 * e + k]]++;
+        for (int i = 0; i < s->n_node; i++) {
+            if (!g->is_on[i] || g->degree[i] > 1) continue;
+            g->is_on[i] = false;
+            more |= g->degree[i] == 1;
+        }
+    }
+}
+
+/* Order by node, then counter-clockwise from the direction of -x, without angles: those below the x axis come first.
+ * Two cables between the same two nodes lie side by side: their order at one end is the reverse of that at the other.
+ *  */
+static int by_direction(const void *a, const void *b)
+{
+    const half *p = a, *q = b;
+    if (p->from != q->from) return p->from < q->from ? -1 : 1;
+    bool p_up = p->dy > 0 || (p->dy == 0 && p->dx > 0), q_up = q->dy > 0 || (q->dy == 0 && q->dx > 0);
+    if (p_up != q_up) return p_up ? 1 : -1;
+    double cross = p->dx * q->dy - p->dy * q->dx;
+    if (cross != 0) return cross > 0 ? -1 : 1;
+    if (p->to != q->to) return p->to < q->to ? -1 : 1;
+    int order = p->place < q->place ? -1 : p->place > q->place;
+    return p->from < p->to ? order : -order;
+}
+
+static void collect(graph *g)
+{
+    const hf_scene *s = g->scene;
+    g->n_half = 0;
+    for (int e = 0; e < s->n_cable; e++)
+        for (int k = 0; k < 2 && in_graph(g, e); k++) {
+            int from = s->end[2 * e + k], to = s->end[2 * e + 1 - k];
+            const double *p = s->position_m + 3 * (size_t)from, *q = s->position_m + 3 * (size_t)to;
+            g->edge[g->n_half] = (half){from, to, q[0] - p[0], q[1] - p[1], g->n_half ^ 1, g->n_half};
+            g->n_half++;
+        }
+    qsort(g->edge, (size_t)g->n_half, sizeof *g->edge, by_direction);
+    memset(g->first, 0, ((size_t)s->n_node + 1) * sizeof *g->first);
+    for (int h = 0; h < g->n_half; h++) {
+        g->sorted[g->edge[h].place] = h;
+        g->first[g->edge[h].from + 1]++;
+    }
+    for (int i = 0; i < s->n_node; i++)
+        g->first[i + 1] += g->first[i];
+    for (int h = 0; h < g->n_half; h++)
+        g->edge[h].twin = g->sorted[g->edge[h].twin];
+}
+
+/* ---- faces ---- */
+
+/* The half edge that follows around the face on the left: at its far node the next one clockwise from the way back. */
+static int next_around(const graph *g, int h)
+{
+    int twin = g->edge[h].twin, node = g->edge[h].to;
+    return twin > g->first[node] ? twin - 1 : g->first[node + 1] - 1;
+}
+
+/* Twice the signed area of the triangle a, b, c, seen along z. */
+static double turn_of(const hf_scene *s, int a, int b, int c)
+{
+    const double *p = s->position_m + 3 * (size_t)a, *q = s->position_m + 3 * (size_t)b;
+    const double *r = s->position_m + 3 * (size_t)c;
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+}
+
+/* Walk around the face on the left of h. Returns its number of sides; the first four corners, and twice its area. */
+static int walk(graph *g, int h, int corner[4], double *area)
+{
+    const double *p0 = g->scene->position_m + 3 * (size_t)g->edge[h].from;
+    int n = 0;
+    *area = 0;
+    for (; !g->seen[h]; h = next_around(g, h)) {
+        const double *p = g->scene->position_m + 3 * (size_t)g->edge[h].from;
+        g->seen[h] = true;
+        *area += (p[0] - p0[0]) * g->edge[h].dy - (p[1] - p0[1]) * g->edge[h].dx;
+        if (n < 4) corner[n] = g->edge[h].from;
+        n++;
+    }
+    return n;
+}
+
+static bool is_convex(const hf_scene *s, int n, const int corner[4], double area)
+{
+    for (int k = 0; k < n; k++)
+        if (!(turn_of(s, corner[k], corner[(k + 1) % n], corner[(k + 2) % n]) > -STRAIGHT_PART * area)) return false;
+    return true;
+}
+
+/* Finds all faces and keeps the facets. A face without an area lies between two cables of the same nodes; one of
+ * negative area is the outside of the net. Euler: a graph of C parts is drawn without crossings if and only if V - E +
+ * F = 2 C. */
+static void find_faces(graph *g, hf_facets *f)
+{
+    const hf_scene *s = g->scene;
+    int n_face = 0, n_node = 0, n_part = 0;
+    for (int i = 0; i < s->n_node; i++)
+        g->parent[i] = i;
+    for (int h = 0; h < g->n_half; h++)
+        g->parent[hf_union_find_root(g->parent, g->edge[h].from)] = hf_union_find_root(g->parent, g->edge[h].to);
+    for (int i = 0; i < s->n_node; i++) {
+        n_node += g->is_on[i];
+        n_part += g->is_on[i] && g->parent[i] == i;
+    }
+    memset(g->seen, 0, (size_t)g->n_half);
+    for (int h = 0; h < g->n_half; h++) {
+        int *corner = f->corner + 4 * (size_t)f->n_facet;
+        double area;
+        if (g->seen[h]) continue;
+        int n = walk(g, h, corner, &area);
+        n_face++;
+        if (n < 3 || !(area > 0)) continue;
+        if (n > 4 || !is_convex(s, n, corner, area)) {
+            f->n_open++;
+            continue;
+        }
+        if (n == 3) corner[3] = corner[2];
+        f->n_facet++;
+    }
+    f->is_planar = n_node - g->n_half / 2 + n_face == 2 * n_part;
+    if (!f->is_planar) f->n_facet = f->n_open = 0;
+}
+
+/* ---- together ---- */
+
+hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surface, hf_facets *facets)
+{
+    *facets = (hf_facets){.is_planar = true};
+    graph g = {.scene = scene};
+    hf_arena arena = {0}, kept = {0};
+    size_t most =
+        4 * ((size_t)scene->n_cable + 1); /* a face of three sides or more has at least 3/2 cables of its own */
+    HF_TRY(HF_ARENA_MAKE(&kept, facets->corner = hf_arena_take(&kept, most, sizeof *facets->corner)));
+    facets->block = kept.block;
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, scene, &g)));
+    choose_nodes(&g, surface);
+    drop_ends(&g);
+    collect(&g);
+    find_faces(&g, facets);
+    hf_arena_free(&arena);
+    return HF_OK;
+}
+
+void hf_facets_free(hf_facets *facets)
+{
+    free(facets->block);
+    *facets = (hf_facets){0};
+}
