@@ -14,6 +14,7 @@
 #ifndef HIFDM_GENERATE_H
 #define HIFDM_GENERATE_H
 
+#include <hifdm/cable_law.h>
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
 
@@ -22,9 +23,12 @@ extern "C" {
 #endif
 
 /* X(name of the section, type of the settings, keys, help). `hifdm schema` lists them in this order. */
-#define HF_GENERATORS(X) X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS, "A net over a parabolic cylinder.")
+#define HF_GENERATORS(X)                                                                                               \
+    X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS, "A net over a parabolic cylinder.")                           \
+    X(paraboloid, hf_paraboloid, HF_PARABOLOID_KEYS,                                                                   \
+      "A net over a paraboloid with a round aperture, alone or tied to a rear net.")
 /* Help of the section scene. Its number of subsections is the number of generators and one for import. */
-#define HF_GENERATORS_HELP "The net: exactly one of the two sections below."
+#define HF_GENERATORS_HELP "The net: exactly one of the three sections below."
 
 #define HF_GENERATE_FAULT_SIZE 256 /* of the reason why something cannot be made */
 
@@ -97,6 +101,65 @@ hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double 
                                       hf_messages *messages);
 const char *hf_scene_parabolic_cylinder_fault(const hf_cylinder *cylinder, char *what, size_t size);
 void hf_scene_parabolic_cylinder_surface(const hf_cylinder *cylinder, hf_surface_settings *surface);
+
+/* ---- paraboloid ---- */
+
+typedef enum { HF_GRID_TRIANGLE, HF_GRID_QUAD } hf_grid;
+typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
+
+extern const char *const hf_grid_word[3];
+extern const char *const hf_tie_direction_word[3];
+extern const char *const hf_tie_law_word[HF_N_LAW + 1];
+
+/* A paraboloid z = (x^2 + y^2)/(4 f) over the circle of the aperture, whose centre is at x = offset. Its rim lies in a
+ * plane, z_rim(x). The rear net has its rim rear_distance below, and is z_rim - rear_distance + (R^2 - r^2)/(4 f_rear),
+ * r being the distance from the axis of the aperture: it bulges towards the front net. */
+typedef struct {
+    double aperture_m; /* diameter */
+    double focal_length_m;
+    double offset_m;
+    int rings; /* cells from the centre to the rim */
+    hf_grid grid;
+    hf_spacing spacing;         /* of the nodes along a radius */
+    double rear_distance_m;     /* 0: no rear net */
+    double rear_focal_length_m; /* 0: that of the front */
+    hf_tie_direction tie_direction;
+    hf_law tie_law;
+    double tie_tension_N; /* what tension, force_density and elastic ties have at the theoretical places */
+} hf_paraboloid;
+
+#define HF_PARABOLOID_KEYS(X, section)                                                                                 \
+    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "diameter of the aperture")           \
+    X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL,                                   \
+      "focal length of z = (x^2 + y^2)/(4f)")                                                                          \
+    X(section, offset_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                                      \
+      "distance of the middle of the aperture from the axis, along x; 0: fed from the centre")                         \
+    X(section, rings, HF_FIELD_INT, 1, 1000, NULL, "", NULL, "cells from the middle of the aperture to its rim")       \
+    X(section, grid, HF_FIELD_WORD, 0, 0, "triangle", "", hf_grid_word,                                                \
+      "triangle: three families of cables, in rings of 6, 12, 18, ... nodes, the last of which are supports on the "   \
+      "rim; quad: cables along x and y, which end at supports on the rim")                                             \
+    X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_projected", "", hf_spacing_word,                                   \
+      "nodes along a radius of the aperture: equal projected spacing, or equal arc length on a paraboloid about its "  \
+      "middle")                                                                                                        \
+    X(section, rear_distance_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                               \
+      "above 0: a rear net, whose rim lies so far below that of the front net, and a tie to each of its free nodes")   \
+    X(section, rear_focal_length_m, HF_FIELD_DOUBLE, 0, 1e9, "0", "m", NULL,                                           \
+      "focal length of the rear net, which bulges towards the front; 0: that of the front net")                        \
+    X(section, tie_direction, HF_FIELD_WORD, 0, 0, "z", "", hf_tie_direction_word,                                     \
+      "ties run along z, or along the normal of the front net")                                                        \
+    X(section, tie_law, HF_FIELD_WORD, 0, 0, "length", "", hf_tie_law_word,                                            \
+      "law of the ties; the nets have law tension, their edges law length")                                            \
+    X(section, tie_tension_N, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, "1", "N", NULL,                                     \
+      "what ties of the laws tension, force_density and elastic have at the theoretical places")
+
+/* Make the net over the paraboloid. Ids of nodes: f<ring>_<k> of the front net, r<ring>_<k> of the rear one (quad:
+ * f<i>_<j> by rows and fs<k> for supports); of cables: <node>-<node>. Sets of cables: front, rear, front_edge,
+ * rear_edge (those that end at a support), tie. Free nodes of the rear net have role edge: psi counts those of the
+ * front. Else as hf_scene_parabolic_cylinder. */
+hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N[2], hf_scene *scene,
+                              hf_messages *messages);
+const char *hf_scene_paraboloid_fault(const hf_paraboloid *paraboloid, char *what, size_t size);
+void hf_scene_paraboloid_surface(const hf_paraboloid *paraboloid, hf_surface_settings *surface);
 
 #ifdef __cplusplus
 }

@@ -56,6 +56,8 @@ static void check_generators(const hf_case *c, hf_config_faults *f)
     }
     HF_GENERATORS(CHECK)
 #undef CHECK
+    if (c->has_paraboloid && c->paraboloid.tie_law == HF_LAW_ELASTIC && c->EA_N[HF_GROUP_INNER] == 0)
+        hf_config_fault_of(f, "scene.paraboloid.tie_law", "elastic needs scene.EA_inner_N, the stiffness of the ties");
 }
 
 /* Is the section of this key there? Sections that cannot be left out always are. */

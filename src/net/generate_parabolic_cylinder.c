@@ -4,6 +4,7 @@
 #include <hifdm/generate.h>
 
 #include "base/elementary.h"
+#include "net/parabola.h"
 #include <hifdm/cable_set.h>
 
 #include <math.h>
@@ -20,26 +21,6 @@ const char *const hf_supports_word[4] = {"module_corners", "ribs", "perimeter", 
 const char *const hf_pattern_word[5] = {"quad", "triangle", "diagonal", "alternating", NULL};
 
 /* ---- the parabola ---- */
-
-/* Arc length of z = x^2/(4f) from the vertex to x. */
-static double arc_length(double x, double focal)
-{
-    double slope = x / (2 * focal);
-    return focal * (slope * sqrt(1 + slope * slope) + hf_inverse_sinh(slope));
-}
-
-/* Inverse of arc_length for s >= 0 by Newton's method. The function is convex and increasing, and the start s is not
- * below the solution (x <= s); the iterates therefore decrease to the solution, and converge quadratically. */
-static double x_at_arc_length(double s, double focal)
-{
-    double x = s;
-    for (int i = 0; i < 60; i++) {
-        double step = (arc_length(x, focal) - s) / hf_norm(1, x / (2 * focal), 0);
-        x -= step;
-        if (fabs(step) <= 1e-16 * fabs(s)) break;
-    }
-    return x;
-}
 
 static double z_on_parabola(const hf_cylinder *c, double x)
 {
@@ -64,9 +45,9 @@ static double border(const hf_double_list *pitches, double from, double to, int 
 static double x_between(const hf_cylinder *c, double a, double b, double fraction)
 {
     if (c->spacing == HF_SPACING_EQUAL_PROJECTED || fraction == 0) return a + (b - a) * fraction;
-    double s_a = arc_length(a, c->focal_length_m), s_b = arc_length(b, c->focal_length_m);
+    double s_a = hf_parabola_arc_m(a, c->focal_length_m), s_b = hf_parabola_arc_m(b, c->focal_length_m);
     double s = s_a + (s_b - s_a) * fraction;
-    return copysign(x_at_arc_length(fabs(s), c->focal_length_m), s);
+    return copysign(hf_parabola_x_at_arc_m(fabs(s), c->focal_length_m), s);
 }
 
 /* x of the grid line half_index / 2; odd numbers lie in the middle of a cell. */
@@ -83,7 +64,7 @@ static double x_of(const hf_cylinder *c, int half_index)
     int last = n * c->modules[0];
     double t = (2.0 * half_index - last) / last; /* exactly antisymmetric */
     if (c->spacing == HF_SPACING_EQUAL_PROJECTED || half_index == 0 || half_index == last) return t * half;
-    return copysign(x_at_arc_length(fabs(t) * arc_length(half, c->focal_length_m), c->focal_length_m), t);
+    return copysign(hf_parabola_x_at_arc_m(fabs(t) * hf_parabola_arc_m(half, c->focal_length_m), c->focal_length_m), t);
 }
 
 /* y in the same way. */

@@ -15,8 +15,8 @@
 
 /* Weight of a cable whose law gives no tension, over that of one whose law does. */
 #define FREE_WEIGHT 1e-2
-/* Least tension over the reference tension, above what counts as slack. */
-#define LEAST_RATIO 2e-3
+/* Least tension over the largest that is wanted, well above what counts as slack. */
+#define LEAST_RATIO 1e-2
 /* Nodal residual, over the reference tension, at which the tensions are as exact as rounding lets them be. */
 #define EXACT 1e-14
 /* Largest residual, over the reference tension, of tensions that hold the net. */

@@ -93,7 +93,7 @@ static const struct {
     {"title: {a: 1\n", ":2:1: YAML: did not find expected ',' or '}'\n"},
     {SMALL_SCENE "---\n" SMALL_SCENE, ":3:1: YAML: a second document in this file; one case per file\n"},
     {SMALL_SCENE "title: *nowhere\n", ":3:8: YAML: found undefined alias\n"},
-    {"title: x\n", ": scene: needs either parabolic_cylinder or import\n"},
+    {"title: x\n", ": scene: needs either parabolic_cylinder or paraboloid or import\n"},
     /* the place of what no reader of YAML accepts: Latin-1, and a control character */
     {SMALL_SCENE "title: \xfc"
                  "ber\n",
@@ -101,6 +101,24 @@ static const struct {
     {SMALL_SCENE "title: \x01\n", ":3:8: YAML: control characters are not allowed\n"},
 };
 enum { N_UNREADABLE = sizeof unreadable / sizeof *unreadable };
+
+START_TEST(impossible_paraboloids_are_refused)
+{
+    const char *path = file_with("c.yaml", "scene:\n"
+                                           "  paraboloid:\n"
+                                           "    aperture_m: 10\n"
+                                           "    focal_length_m: 5\n"
+                                           "    rings: 4\n"
+                                           "    rear_distance_m: 2.5\n"
+                                           "    tie_law: elastic\n");
+    HIFDM(2, "check", path);
+    ERRS("error: %s:6:22: scene.paraboloid.rear_distance_m: of 2.5 m lets the nets meet in the middle, where they come "
+         "2.5 m nearer than at the rim\n",
+         path);
+    ERRS("error: %s:7:14: scene.paraboloid.tie_law: elastic needs scene.EA_inner_N, the stiffness of the ties\n", path);
+    HIFDM(0, "check", path, "--set", "scene.paraboloid.rear_distance_m=2.6", "--set", "scene.EA_inner_N=1e5");
+}
+END_TEST
 
 START_TEST(what_is_no_case_is_told)
 {
@@ -174,6 +192,7 @@ Suite *suite_cli_bad_case(void)
     TCase *tcase = tcase_create("bad_case");
     tcase_add_test(tcase, all_faults_of_a_file_are_told_in_one_run);
     tcase_add_test(tcase, impossible_nets_are_refused);
+    tcase_add_test(tcase, impossible_paraboloids_are_refused);
     tcase_add_loop_test(tcase, what_is_no_case_is_told, 0, N_UNREADABLE);
     tcase_add_test(tcase, what_is_no_file_is_told);
     tcase_add_test(tcase, settings_that_contradict_each_other_are_told);

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.linalg import null_space
 from scipy.optimize import linprog, minimize
 
-LEAST = 2e-3  # of the largest tension that is wanted
+LEAST = 1e-2  # of the largest tension that is wanted
 
 
 def net(rng):

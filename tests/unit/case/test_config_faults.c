@@ -103,7 +103,7 @@ static const struct {
     {CYLINDER "optimize: {stagnation_tolerance_m: -1}\n", NULL,
      "error: c.yaml:3:36: optimize.stagnation_tolerance_m: must be at least 0, not -1\n"},
     {FORM "  rms_tolerance_m: 0\n", NULL, "error: c.yaml:4:20: form.rms_tolerance_m: must be above 0, not 0\n"},
-    {"form: {}\n", NULL, "error: c.yaml: scene: needs either parabolic_cylinder or import\n"},
+    {"form: {}\n", NULL, "error: c.yaml: scene: needs either parabolic_cylinder or paraboloid or import\n"},
     {CYLINDER "  import: {nodes: n.csv, cables: c.csv}\n", NULL,
      "error: c.yaml: scene: has both parabolic_cylinder and import; keep one\n"},
     {"scene:\n  import: {nodes: n.csv}\n", NULL, "error: c.yaml: scene.import.cables: is missing and has no default\n"},
