@@ -1,9 +1,13 @@
-/* lane - the eight SIMD lanes that chord and swarm give a design each, the instruction sets that kernels are compiled
- * for, and the vectors that kernels are written in.
+/* lane - the eight SIMD lanes that chord and swarm give a design each, the
+ * instruction sets that kernels are compiled for, and the vectors that kernels
+ * are written in.
  *
- * All instruction sets give the same bits: there are always eight lanes, one order of operations, and only IEEE + - *
- * /, square root and fused multiply-adds. A product is fused with the sum that it goes into where the source says so
- * (`plus_product`, `less_product`, C's fma()) and nowhere else: the compiler fuses nothing (Makefile). */
+ * All instruction sets give the same bits: there are always eight lanes, one
+ * order of operations, and only IEEE + - *
+ * /, square root and fused multiply-adds. A product is fused with the sum that
+ * it goes into where the source says so
+ * (`plus_product`, `less_product`, C's fma()) and nowhere else: the compiler
+ * fuses nothing (Makefile). */
 #ifndef HIFDM_LANE_H
 #define HIFDM_LANE_H
 
@@ -11,7 +15,8 @@
 
 #define HF_LANES 8
 
-/* Names of the instruction sets, slowest first. AVX2 stands for AVX2 with FMA. */
+/* Names of the instruction sets, slowest first. AVX2 stands for AVX2 with FMA.
+ */
 typedef enum { HF_LANE_PORTABLE, HF_LANE_AVX2, HF_LANE_AVX512 } hf_lane_isa;
 #define HF_LANE_N_ISA 3
 
@@ -19,7 +24,8 @@ bool hf_lane_has_isa(hf_lane_isa isa); /* can this machine run it? */
 hf_lane_isa hf_lane_best_isa(void);    /* the fastest that this machine can run */
 const char *hf_lane_isa_name(hf_lane_isa isa);
 
-/* ---- vectors: for *_kernel.c, which the Makefile compiles with -DHF_ISA=avx512 and so on ---- */
+/* ---- vectors: for *_kernel.c, which the Makefile compiles with
+ * -DHF_ISA=avx512 and so on ---- */
 
 #ifdef HF_LANE_VECTORS
 
@@ -43,9 +49,11 @@ enum { WIDTH = 2 };
 enum { PARTS = HF_LANES / WIDTH };
 
 typedef double vec __attribute__((vector_size(WIDTH * sizeof(double)), may_alias));
+typedef unsigned long long bits_of __attribute__((vector_size(WIDTH * sizeof(double))));
 
 #define INLINE static inline __attribute__((always_inline))
-/* a loop with a small constant count: it is unrolled, so that the arrays in it stay in registers */
+/* a loop with a small constant count: it is unrolled, so that the arrays in it
+ * stay in registers */
 #define foreach(i, count) _Pragma("GCC unroll 16") for (int i = 0; i < (count); i++)
 
 INLINE vec splat(double x)
@@ -53,7 +61,61 @@ INLINE vec splat(double x)
     return x - (vec){0};
 }
 
-/* c + a b, rounded once. Where the processor has no such instruction, C's fma() is called: the same bits, slowly. */
+#if !defined __AVX2__ && !defined FP_FAST_FMA
+/* Without an instruction for it: the algorithm of Boldo and Melquiond (IEEE
+ * Trans. Comput. 57, 2008), and beyond its range C's fma(), which is as exact,
+ * but on a processor that cannot fuse takes some fifty times as long. */
+
+/* What is left of a + b beside its rounded sum, exactly. */
+INLINE vec rest_of_sum(vec a, vec b, vec sum)
+{
+    vec part = sum - a;
+    return (a - (sum - part)) + (b - part);
+}
+
+INLINE vec high_half(vec a)
+{
+    vec c = 134217729.0 * a; /* 2^27 + 1 */
+    return c - (c - a);
+}
+
+INLINE vec rest_of_product(vec a, vec b, vec product)
+{
+    vec ah = high_half(a), al = a - ah, bh = high_half(b), bl = b - bh;
+    return ((ah * bh - product) + ah * bl + al * bh) + al * bl;
+}
+
+/* a + b, or where that is not a double the neighbour whose last bit is odd. */
+INLINE vec odd_sum(vec a, vec b)
+{
+    vec sum = a + b, rest = rest_of_sum(a, b, sum);
+    bits_of s = (bits_of)sum, is_even = (s & 1) - 1;    /* all bits, or none */
+    bits_of away = 1 - 2 * ((s ^ (bits_of)rest) >> 63); /* from 0: 1, or -1 where the rest has the other sign */
+    return (vec)(s + (away & is_even & (bits_of)(rest != 0)));
+}
+
+INLINE bool is_within(vec a, double low, double high)
+{
+    vec size = (vec)((bits_of)a & ~(1ULL << 63));
+    bits_of is = (bits_of)((size > low) & (size < high));
+    return (is[0] & is[1]) != 0;
+}
+
+/* c + a b, rounded once. */
+static __attribute__((noinline, unused)) vec plus_product(vec c, vec a, vec b)
+{
+    vec product = a * b;
+    if (is_within(a, 0, 0x1p990) && is_within(b, 0, 0x1p990) && is_within(product, 0x1p-900, 0x1p1000) &&
+        is_within(c, -1, 0x1p1000)) {
+        vec low = rest_of_product(a, b, product), t = c + low, v = product + t;
+        return v + odd_sum(rest_of_sum(c, low, t), rest_of_sum(product, t, v));
+    }
+    foreach (i, WIDTH)
+        c[i] = a[i] == 0 || b[i] == 0 ? product[i] + c[i] : fma(a[i], b[i], c[i]);
+    return c;
+}
+#else
+/* c + a b, rounded once. */
 INLINE vec plus_product(vec c, vec a, vec b)
 {
 #if defined __AVX512F__
@@ -66,8 +128,9 @@ INLINE vec plus_product(vec c, vec a, vec b)
     return c;
 #endif
 }
+#endif
 
-/* c - a b, rounded once */
+/* c - a b, rounded once. */
 INLINE vec less_product(vec c, vec a, vec b)
 {
 #if defined __AVX512F__
@@ -75,9 +138,7 @@ INLINE vec less_product(vec c, vec a, vec b)
 #elif defined __AVX2__
     return _mm256_fnmadd_pd(a, b, c);
 #else
-    foreach (i, WIDTH)
-        c[i] = fma(-a[i], b[i], c[i]);
-    return c;
+    return plus_product(c, -a, b);
 #endif
 }
 
