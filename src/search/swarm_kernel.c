@@ -159,62 +159,69 @@ static bool tile_has_entry(const hf_swarm_plan *plan, int i_block, int j_block)
     return plan->has_entry[plan->tile_0[i_block] + (size_t)j_block];
 }
 
-/* Finish at most `count` columns of the diagonal tile of a block row, from column *c on; *c becomes the next column. */
-static void finish_columns(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block, int p, int count, int *c)
+static void finish_one(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block, int c, int p)
 {
     double *tile = tile_at(plan, w, i_block, i_block) + p;
-    for (; count > 0 && *c < BLOCK; count--, ++*c) {
-        int i_row = i_block * BLOCK + *c - plan->n_pad;
-        switch (*c) { /* constants, so that the loops unroll */
-        case 0:
-            finish_column(0, tile, i_row, w->bad_row + p);
-            break;
-        case 1:
-            finish_column(1, tile, i_row, w->bad_row + p);
-            break;
-        case 2:
-            finish_column(2, tile, i_row, w->bad_row + p);
-            break;
-        default:
-            finish_column(3, tile, i_row, w->bad_row + p);
-        }
+    int i_row = i_block * BLOCK + c - plan->n_pad;
+    switch (c) { /* constants, so that the loops unroll */
+    case 0:
+        finish_column(0, tile, i_row, w->bad_row + p);
+        break;
+    case 1:
+        finish_column(1, tile, i_row, w->bad_row + p);
+        break;
+    case 2:
+        finish_column(2, tile, i_row, w->bad_row + p);
+        break;
+    default:
+        finish_column(3, tile, i_row, w->bad_row + p);
     }
+}
+
+/* Finish at most `count` columns of the diagonal tile of a block row, from column *c on; *c becomes the next column. */
+static void finish_columns(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block, int count, int *c)
+{
+    for (; count > 0 && *c < BLOCK; count--, ++*c)
+        for (int p = 0; p < HF_LANES; p += WIDTH)
+            finish_one(plan, w, i_block, *c, p);
 }
 
 /* Finish a block row up to its diagonal tile, which is only reduced. The root and the division of a pivot take as long
  * as half a tile, and the next pivot depends on them. Therefore the pivots of the block row before this one are found
- * here, one before each tile that does not need them. */
-static void factor_block_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block, int p)
+ * here, one before each tile that does not need them. All lanes of a tile are done before the next one, so that the
+ * finished rows come from the second level of the cache once. */
+static void factor_block_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block)
 {
     int first = plan->first_column[i_block], c = i_block ? 0 : BLOCK;
-    double *row = tile_at(plan, w, i_block, 0) + p;
+    double *row = tile_at(plan, w, i_block, 0);
     for (int j_block = first / BLOCK; j_block < i_block; j_block++) {
-        finish_columns(plan, w, i_block - 1, p, j_block < i_block - 1 ? 1 : BLOCK, &c);
-        const double *pivot_row = tile_at(plan, w, j_block, 0) + p;
+        finish_columns(plan, w, i_block - 1, j_block < i_block - 1 ? 1 : BLOCK, &c);
+        const double *pivot_row = tile_at(plan, w, j_block, 0);
         int j = j_block * BLOCK, k = plan->first_column[j_block];
         bool is_empty = !tile_has_entry(plan, i_block, j_block);
         if (k < first) k = first < j ? first : j;
-        for (int g = 0; g < BLOCK; g += GROUP)
-            eliminate(BLOCK, row + k * COLUMN, COLUMN, pivot_row + k * COLUMN + g * HF_LANES, j + g - k, is_empty);
+        for (int p = 0; p < HF_LANES; p += WIDTH)
+            for (int g = 0; g < BLOCK; g += GROUP)
+                eliminate(BLOCK, row + k * COLUMN + p, COLUMN, pivot_row + k * COLUMN + g * HF_LANES + p, j + g - k,
+                          is_empty);
     }
-    if (c < BLOCK) finish_columns(plan, w, i_block - 1, p, BLOCK, &c);
-    reduce_diagonal(row + first * COLUMN, i_block * BLOCK - first);
+    if (c < BLOCK) finish_columns(plan, w, i_block - 1, BLOCK, &c);
+    for (int p = 0; p < HF_LANES; p += WIDTH)
+        reduce_diagonal(row + first * COLUMN + p, i_block * BLOCK - first);
 }
 
-static void factor_last_tile(const hf_swarm_plan *plan, hf_swarm_lanes *w, int p)
+static void factor_last_tile(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 {
     int c = 0;
-    finish_columns(plan, w, plan->n_block - 1, p, BLOCK, &c);
+    finish_columns(plan, w, plan->n_block - 1, BLOCK, &c);
 }
 
 static void factor(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 {
     memset(w->bad_row, -1, HF_LANES * sizeof(int));
     for (int i_block = 0; i_block < plan->n_block; i_block++)
-        for (int p = 0; p < HF_LANES; p += WIDTH)
-            factor_block_row(plan, w, i_block, p);
-    for (int p = 0; p < HF_LANES; p += WIDTH)
-        factor_last_tile(plan, w, p);
+        factor_block_row(plan, w, i_block);
+    factor_last_tile(plan, w);
 }
 
 /* ---- substitution ---- */
@@ -341,15 +348,14 @@ static void solve(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 {
     assemble(plan, w);
     memset(w->bad_row, -1, HF_LANES * sizeof(int));
-    for (int i_block = 0; i_block < plan->n_block; i_block++)
-        for (int p = 0; p < HF_LANES; p += WIDTH) {
-            factor_block_row(plan, w, i_block, p);
-            if (i_block) substitute_forward(plan, w, i_block - 1, p); /* the row that has just got its pivots */
-        }
-    for (int p = 0; p < HF_LANES; p += WIDTH) {
-        factor_last_tile(plan, w, p);
-        substitute_forward(plan, w, plan->n_block - 1, p);
+    for (int i_block = 0; i_block < plan->n_block; i_block++) {
+        factor_block_row(plan, w, i_block);
+        for (int p = 0; i_block && p < HF_LANES; p += WIDTH)
+            substitute_forward(plan, w, i_block - 1, p); /* the row that has just got its pivots */
     }
+    factor_last_tile(plan, w);
+    for (int p = 0; p < HF_LANES; p += WIDTH)
+        substitute_forward(plan, w, plan->n_block - 1, p);
     substitute_all_back(plan, w);
 }
 
