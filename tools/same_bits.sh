@@ -1,11 +1,66 @@
 #!/usr/bin/env bash
-# The same bits? Runs cases by other compilers, with other LAPACKs, and on emulated processors, and tells for each how
-# many data sets differ from those of the default build. What is not installed is named and left out: clang, OpenBLAS
-# (Debian: libopenblas0-pthread, or OPENBLAS=.../libblas.so.3), qemu-x86_64 (Debian: qemu-user).
+# The same bits?
+#
+# tools/same_bits.sh: runs cases by other compilers and at other levels of optimisation, with fewer instruction sets,
+# with other LAPACKs, and on emulated processors, and tells for each how many data sets differ from those of the default
+# build. What is not installed is named and left out: clang, OpenBLAS (Debian: libopenblas0-pthread, or
+# OPENBLAS=.../libblas.so.3), qemu-x86_64 (Debian: qemu-user).
+#
+# tools/same_bits.sh built: builds nothing, but holds the programs that are there, build/hifdm and build/clang/hifdm, to
+# the checksums of the suite cli/bits, each with the kernels of every instruction set of this machine and, where it is
+# installed, with OpenBLAS as two processors have it. Needs build/tests/run_tests.
 set -eu
 cd "$(dirname "$0")/.."
-work=${BUILD:-build}/bits n_differ=0 n_case=0
+build=${BUILD:-build} work=${BUILD:-build}/bits n_differ=0 n_case=0
 mkdir -p "$work"
+openblas=${OPENBLAS:-$(find /usr/lib -name 'libblas.so.3' -path '*openblas*' 2>/dev/null | head -n 1)}
+isas=(portable) # of this machine, in the order of hf_lane_isa
+if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then isas+=(avx2); fi
+if grep -qw avx512f /proc/cpuinfo; then isas+=(avx512); fi
+
+# Links the objects of BUILD-FOLDER once more, into a program that takes the kernels of this instruction set.
+link_isa() { # BUILD-FOLDER CC ISA-NUMBER PROGRAM
+    local of=(make -s "BUILD=$1" "CC=$2") link objects libraries
+    link=$("${of[@]}" print-LINK) objects=$("${of[@]}" print-APP_OBJ) libraries=$("${of[@]}" print-PKG_LIBS)
+    printf 'int __wrap_hf_lane_best_isa(void);\nint __wrap_hf_lane_best_isa(void)\n{\n    return %s;\n}\n' "$3" >"$4.c"
+    # shellcheck disable=SC2086 # these are words
+    $link -Wl,--wrap=hf_lane_best_isa -o "$4" $objects "$4.c" "$1/libhifdm.a" $libraries
+}
+
+# ---- the programs that are there, against the checksums of cli/bits ----
+
+hold() { # NAME COMMAND-BEFORE... PROGRAM
+    local name=$1 program=${*: -1} ok=same
+    n_case=$((n_case + 1))
+    env "${@:2:$#-2}" HIFDM="$(realpath "$program")" HIFDM_SOURCE_DIR="$PWD" PYTHON="${PYTHON:-/usr/bin/python3}" \
+        TMPDIR="$(realpath "$work")" HIFDM_TEST_JOBS="$(nproc)" CK_DEFAULT_TIMEOUT=300 \
+        "$build/tests/run_tests" cli/bits >"$work/$name.log" 2>&1 || ok=differs
+    printf '%-28s %s\n' "$name" "$ok"
+    [ $ok = same ] || { n_differ=$((n_differ + 1)); tail -n 40 "$work/$name.log" >&2; }
+}
+hold_built() { # NAME BUILD-FOLDER CC
+    local i
+    [ -x "$2/hifdm" ] || { echo "$2/hifdm is not there: make all BUILD=$2 CC=$3" >&2; exit 1; }
+    for ((i = 0; i < ${#isas[@]}; i++)); do
+        link_isa "$2" "$3" "$i" "$work/hifdm-$1-${isas[i]}"
+        hold "$1-${isas[i]}" "$work/hifdm-$1-${isas[i]}"
+    done
+}
+if [ "${1:-}" = built ]; then
+    hold_built gcc "$build" "${CC:-cc}"
+    if [ -e "$build/clang/libhifdm.a" ]; then hold_built clang "$build/clang" clang; else echo "not tried: clang"; fi
+    if [ -n "$openblas" ]; then
+        for core in Prescott Haswell; do
+            hold "OpenBLAS-$core" "LD_LIBRARY_PATH=$(dirname "$openblas")" OPENBLAS_CORETYPE=$core "$build/hifdm"
+        done
+    else echo "not tried: OpenBLAS"; fi
+    echo "$n_differ of $n_case programs differ"
+    [ "$n_differ" = 0 ]
+    exit
+fi
+
+# ---- whole results, against those of the default build ----
+
 cases=("chen2022 --set optimize.generations=20 --set optimize.compare_lm=true"
     "chen2022-truss --set optimize.generations=10 --set optimize.compare_lm=true"
     "reflector --set optimize.generations=10 --set optimize.method=ga+lm")
@@ -38,17 +93,29 @@ build() { # PREFIX MAKE-ARGUMENT...
         exit 1
     }
 }
+try_isas() { # PREFIX CC
+    local i
+    for ((i = 0; i < ${#isas[@]} - 1; i++)); do
+        link_isa "$work/$1" "$2" "$i" "$work/$1/hifdm-${isas[i]}"
+        try "$1-${isas[i]}" "$work/$1/hifdm-${isas[i]}"
+    done
+}
 
 build base
 run_cases base "$work/base/hifdm"
-build O2 CFLAGS=-O2
-try O2 "$work/O2/hifdm"
+try_isas base "${CC:-cc}"
+for level in O1 O2; do # the default is O3
+    build $level CFLAGS=-$level
+    try $level "$work/$level/hifdm"
+done
 if command -v clang >/dev/null; then
     build clang CC=clang
     try clang "$work/clang/hifdm"
+    try_isas clang clang
+    build clang-O2 CC=clang CFLAGS=-O2
+    try clang-O2 "$work/clang-O2/hifdm"
 else echo "not tried: clang"; fi
 
-openblas=${OPENBLAS:-$(find /usr/lib -name 'libblas.so.3' -path '*openblas*' 2>/dev/null | head -n 1)}
 if [ -n "$openblas" ]; then
     for core in Haswell Zen SkylakeX Sandybridge Nehalem Prescott; do
         try "OpenBLAS-$core" env "LD_LIBRARY_PATH=$(dirname "$openblas")" "OPENBLAS_CORETYPE=$core" "$work/base/hifdm"
