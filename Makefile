@@ -194,8 +194,9 @@ literal: setup ## the paper's literal evaluation of an individual beside the def
 	$(SUB) $(PROGRAM)
 	$(PYTHON) tools/literal.py --program $(PROGRAM) --case $(CASE) --work $(BUILD)/literal --rounds $(LITERAL_ROUNDS)
 
-# Peers that cannot be installed are left out of the tables. BENCH_OUT=... writes elsewhere.
-bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/ (4 minutes)
+# Peers that cannot be installed are left out of the tables. BENCH_OUT=... writes elsewhere; in it, each processor has a
+# folder.
+bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/PROCESSOR (4 minutes)
 	$(Q)tools/setup.sh --bench || tools/setup.sh
 	$(SUB) $(PROGRAM) $(BENCH)
 	@mkdir -p $(BENCH_OUT)

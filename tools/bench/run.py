@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The whole benchmark: calls the C driver, the peers in Python and the program in interleaved rounds, takes medians,
-and writes tables (CSV) and figures (SVG). Times are compared within one run only; no time is asserted anywhere.
+and writes tables (CSV) and figures (SVG) into a folder of OUT for this processor. Times are compared within one run
+only; no time is asserted anywhere.
 
     run.py --driver build/bench/bench --program build/hifdm --work build/bench --out results/bench --flags TEXT
 """
@@ -8,6 +9,8 @@ import argparse
 import json
 import math
 import os
+import platform
+import re
 import shutil
 import statistics
 import subprocess
@@ -89,6 +92,8 @@ class Samples:
 class Bench:
     def __init__(self, arguments):
         self.a, self.samples = arguments, Samples()
+        self.processor = processor()
+        self.out = os.path.join(self.a.out, re.sub(r"[^a-z0-9]+", "-", self.processor.lower()).strip("-"))
         # as the program sets them for itself
         self.env = dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_WAIT_POLICY="passive", GOMP_SPINCOUNT="2000")
         self.start = time.monotonic()
@@ -219,16 +224,14 @@ class Bench:
 
     def header(self):
         about = subprocess.run([self.a.driver, "about"], capture_output=True, text=True).stdout.split("\n")
-        with open("/proc/cpuinfo") as file:
-            cpu = next((row.split(":")[1].strip() for row in file if row.startswith("model name")), "unknown")
-        return [f"date {datetime.now(timezone.utc):%Y-%m-%d %H:%M} UTC", f"cpu {cpu}, {os.cpu_count()} available",
+        return [f"date {datetime.now(timezone.utc):%Y-%m-%d %H:%M} UTC", f"cpu {self.processor}, {os.cpu_count()} available",
                 f"build {self.a.flags}", *filter(None, about), f"python peers {self.peer_version or 'not there'}",
                 f"medians of interleaved samples; load average at the end {os.getloadavg()[0]:.2f}"]
 
     # ---- what is written ----
 
     def table(self, name, columns, rows):
-        with open(f"{self.a.out}/{name}.csv", "w") as file:
+        with open(f"{self.out}/{name}.csv", "w") as file:
             file.write("".join(f"# {row}\n" for row in self.head))
             file.write(",".join(columns) + "\n")
             for row in rows:
@@ -256,7 +259,7 @@ class Bench:
                 bound_m = self.samples.get("precision", scene, method, parameter, "bound_m")
                 if of == method and bound_m:
                     panels[scene].setdefault(BOUND, []).append([point[0], bound_m])
-        svg.loglog(f"{self.a.out}/precision.svg", panels, "time per evaluation (s)", "true position error (m)",
+        svg.loglog(f"{self.out}/precision.svg", panels, "time per evaluation (s)", "true position error (m)",
                    "\n".join(self.head), styles={**dict(PICTURE.values()), BOUND: "dash"})
 
     def write_single(self):
@@ -301,7 +304,7 @@ class Bench:
                 if len(points) >= 3:  # over all sizes, and over the upper three, where it has settled
                     rows.append([method.replace(",", ";"), quantity, slope(points), slope(points[-3:])])
         self.table("growth_exponents", ["method", "quantity", "exponent", "exponent_upper_three"], rows)
-        svg.loglog(f"{self.a.out}/growth.svg", panels, "nodes", "per solve or evaluation", "\n".join(self.head))
+        svg.loglog(f"{self.out}/growth.svg", panels, "nodes", "per solve or evaluation", "\n".join(self.head))
 
     def write_phases(self):
         bars, rows = {}, []
@@ -313,7 +316,7 @@ class Bench:
             bars.setdefault(f"{scene}, {method}", {})[quantity] = share
             rows.append([scene, method.replace(",", ";"), quantity, statistics.median(values), share])
         self.table("phases", ["scene", "method", "phase", "time_s", "share"], rows)
-        svg.shares(f"{self.a.out}/phases.svg", bars, "\n".join(self.head))
+        svg.shares(f"{self.out}/phases.svg", bars, "\n".join(self.head))
 
     def write_stages(self):
         keys = self.samples.keys("stages")
@@ -341,15 +344,26 @@ class Bench:
                   ("scene", "mode", "threads"))
 
     def write(self):
-        os.makedirs(self.a.out, exist_ok=True)
+        os.makedirs(self.out, exist_ok=True)
         self.head = self.header()
         self.wide("frame", "frame", ["time_s", "half_bandwidth"], ("truss", "what", "unknowns"))
         for name in ("precision", "single", "equilibrium", "step", "peak", "growth", "phases", "stages", "population"):
             getattr(self, f"write_{name}")()
         rows = list(summary(self.samples))
-        self.table("summary", ["figure", "wanted", "measured"], rows)
+        self.table("summary", ["figure", "wanted", f"measured on {self.processor}"], rows)
+        print(f"  {'':<76} {'wanted':>10} measured on {self.processor}")
         for figure, wanted, measured in rows:
             print(f"  {figure:<76} {wanted:>10} {'-' if measured is None else f'{measured:.4g}':>10}")
+
+
+def processor():
+    """Its name without a comma; with family and model, because hypervisors shorten names."""
+    with open("/proc/cpuinfo") as file:
+        rows = dict(row.split(":", 1) for row in file.read().split("\n\n")[0].splitlines() if ":" in row)
+    row = {key.strip(): value.strip().replace(",", " ") for key, value in rows.items()}
+    name = row.get("model name", platform.machine())
+    return name + "".join(f" {key} {row[word]}" for key, word in (
+        ("family", "cpu family"), ("model", "model"), ("part", "CPU part")) if word in row)
 
 
 def slope(points):
@@ -457,7 +471,7 @@ def main():
     bench = Bench(parser.parse_args())
     bench.measure()
     bench.write()
-    bench.say(f"done: {bench.a.out}")
+    bench.say(f"done: {bench.out}")
 
 
 if __name__ == "__main__":
