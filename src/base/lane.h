@@ -1,13 +1,9 @@
-/* lane - the eight SIMD lanes that chord and swarm give a design each, the
- * instruction sets that kernels are compiled for, and the vectors that kernels
- * are written in.
+/* lane - the eight SIMD lanes that chord and swarm give a design each, the instruction sets that kernels are compiled
+ * for, and the vectors that kernels are written in.
  *
- * All instruction sets give the same bits: there are always eight lanes, one
- * order of operations, and only IEEE + - *
- * /, square root and fused multiply-adds. A product is fused with the sum that
- * it goes into where the source says so
- * (`plus_product`, `less_product`, C's fma()) and nowhere else: the compiler
- * fuses nothing (Makefile). */
+ * All instruction sets give the same bits: there are always eight lanes, one order of operations, and only IEEE + - *
+ * /, square root and fused multiply-adds. A product is fused with the sum that it goes into where the source says so
+ * (`plus_product`, `less_product`, C's fma()) and nowhere else: the compiler fuses nothing (Makefile). */
 #ifndef HIFDM_LANE_H
 #define HIFDM_LANE_H
 
@@ -15,8 +11,7 @@
 
 #define HF_LANES 8
 
-/* Names of the instruction sets, slowest first. AVX2 stands for AVX2 with FMA.
- */
+/* Names of the instruction sets, slowest first. AVX2 stands for AVX2 with FMA. */
 typedef enum { HF_LANE_PORTABLE, HF_LANE_AVX2, HF_LANE_AVX512 } hf_lane_isa;
 #define HF_LANE_N_ISA 3
 
@@ -24,8 +19,7 @@ bool hf_lane_has_isa(hf_lane_isa isa); /* can this machine run it? */
 hf_lane_isa hf_lane_best_isa(void);    /* the fastest that this machine can run */
 const char *hf_lane_isa_name(hf_lane_isa isa);
 
-/* ---- vectors: for *_kernel.c, which the Makefile compiles with
- * -DHF_ISA=avx512 and so on ---- */
+/* ---- vectors: for *_kernel.c, which the Makefile compiles with -DHF_ISA=avx512 and so on ---- */
 
 #ifdef HF_LANE_VECTORS
 
@@ -52,8 +46,7 @@ typedef double vec __attribute__((vector_size(WIDTH * sizeof(double)), may_alias
 typedef unsigned long long bits_of __attribute__((vector_size(WIDTH * sizeof(double))));
 
 #define INLINE static inline __attribute__((always_inline))
-/* a loop with a small constant count: it is unrolled, so that the arrays in it
- * stay in registers */
+/* a loop with a small constant count: it is unrolled, so that the arrays in it stay in registers */
 #define foreach(i, count) _Pragma("GCC unroll 16") for (int i = 0; i < (count); i++)
 
 INLINE vec splat(double x)
@@ -62,9 +55,8 @@ INLINE vec splat(double x)
 }
 
 #if !defined __AVX2__ && !defined FP_FAST_FMA
-/* Without an instruction for it: the algorithm of Boldo and Melquiond (IEEE
- * Trans. Comput. 57, 2008), and beyond its range C's fma(), which is as exact,
- * but on a processor that cannot fuse takes some fifty times as long. */
+/* Without an instruction for it: the algorithm of Boldo and Melquiond (IEEE Trans. Comput. 57, 2008), and beyond its range
+ * C's fma(), which is as exact, but takes a call, and is slow where the processor cannot fuse. */
 
 /* What is left of a + b beside its rounded sum, exactly. */
 INLINE vec rest_of_sum(vec a, vec b, vec sum)

@@ -1,7 +1,7 @@
 /* band_kernel - band Cholesky and what goes with it, compiled once for each instruction set; band.c chooses one at run
  * time. All give the same bits: products are fused with the sums that they go into (fma), rows are worked on in strips
  * of eight whatever the width of a vector is, and each entry has one accumulator that runs over the columns in rising
- * order. Where a processor has no fused multiply-add, C's fma() is called: the same bits, slowly. */
+ * order. Where a processor has no fused multiply-add: the same bits, slowly (lane.h). */
 #ifndef HIFDM_BAND_KERNEL_H
 #define HIFDM_BAND_KERNEL_H
 
