@@ -55,8 +55,8 @@ INLINE vec splat(double x)
 }
 
 #if !defined __AVX2__ && !defined FP_FAST_FMA
-/* Without an instruction for it: the algorithm of Boldo and Melquiond (IEEE Trans. Comput. 57, 2008), and beyond its range
- * C's fma(), which is as exact, but takes a call, and is slow where the processor cannot fuse. */
+/* Without an instruction for it: the algorithm of Boldo and Melquiond (IEEE Trans. Comput. 57, 2008), and beyond its
+ * range C's fma(), which is as exact, but takes a call, and is slow where the processor cannot fuse. */
 
 /* What is left of a + b beside its rounded sum, exactly. */
 INLINE vec rest_of_sum(vec a, vec b, vec sum)

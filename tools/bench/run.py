@@ -224,7 +224,8 @@ class Bench:
 
     def header(self):
         about = subprocess.run([self.a.driver, "about"], capture_output=True, text=True).stdout.split("\n")
-        return [f"date {datetime.now(timezone.utc):%Y-%m-%d %H:%M} UTC", f"cpu {self.processor}, {os.cpu_count()} available",
+        return [f"date {datetime.now(timezone.utc):%Y-%m-%d %H:%M} UTC",
+                f"cpu {self.processor}, {os.cpu_count()} available",
                 f"build {self.a.flags}", *filter(None, about), f"python peers {self.peer_version or 'not there'}",
                 f"medians of interleaved samples; load average at the end {os.getloadavg()[0]:.2f}"]
 
