@@ -14,6 +14,7 @@
 
 #define U 0x1p-53           /* unit of rounding */
 #define SHARE_OF_LAST 1e-3  /* part of a shift that has failed that is tried next */
+#define SMALL 1e-3          /* a radius by the first matrix that is a larger part of the bound is found anew */
 #define INSIDE_LENGTH 0.005 /* the ball is smaller than this part of every length */
 
 /* ---- sums at nodes ---- */
@@ -35,6 +36,13 @@ static double stiffness_of(const hf_refined *p, int e)
 static double stiffness_sum(const hf_refined *p, int e)
 {
     return stiffness_of(p, e) + p->cable[e].across;
+}
+
+/* The same without what the proof adds, which has no gradient where the lengths are exact. */
+static double own_stiffness_sum(const hf_refined *p, int e)
+{
+    bool is_rigid = hf_law_has((hf_law)p->w->law[e], HF_LAW_IS_RIGID);
+    return (is_rigid ? 0 : stiffness_of(p, e)) + p->cable[e].across;
 }
 
 /* The Hessian of a cable of law force_density does not depend on the shape. */
@@ -110,6 +118,41 @@ static double least_eigenvalue(hf_refined *p)
         if (!(guess > 2 * rounding)) return 0;
         guess *= SHARE_OF_LAST;
     }
+}
+
+/* A bound of the norm of the change of the block of a taut cable between the found and the refined shape, N/m, but
+ * for an eighth of its stiffness along the cable: of the pull over the length, of the direction, and what the proof
+ * adds for an error of length. */
+static double block_change(const hf_refined *p, int e)
+{
+    const hf_model *m = p->m;
+    const hf_refined_cable *c = p->cable + e;
+    hf_law_cable cable = hf_workspace_cable(m, p->w, e);
+    if (hf_newton_matrix_is_spring(cable.law)) return 0;
+    double u[3], length = hf_newton_matrix_direction(m, p->w->position_m, e, u), square = 0;
+    double across = hf_newton_matrix_tension_N(cable, length, p->w->tension_N[e]) / length;
+    for (int k = 0; k < 3; k++) {
+        int a = k * m->n_node + m->end_row[2 * e], b = k * m->n_node + m->end_row[2 * e + 1];
+        double from = (p->x[a].hi - p->w->position_m[a]) + p->x[a].lo;
+        double to = (p->x[b].hi - p->w->position_m[b]) + p->x[b].lo;
+        square += (to - from) * (to - from);
+    }
+    double turn = 1.02 * sqrt(square) / length; /* at most 2 |d - d'| / (l + l') */
+    if (!(turn < 0.01)) return INFINITY;
+    double along = hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER) ? c->along : 0;
+    double over = hf_law_has(cable.law, HF_LAW_IS_RIGID) ? fabs(c->over.hi) : 0;
+    return fabs(c->across - across) + 16 * U * (c->across + fabs(across)) + across * turn + 8 * along * turn * turn +
+           along * over / length;
+}
+
+/* A lower bound of the least eigenvalue at the refined shape from one at the found shape; 0 when they are too far
+ * apart. (u'.y)^2 >= 7/8 (u.y)^2 - 8 |u' - u|^2 |y|^2, so that a turned stiff cable costs little. */
+static double carried_over(const hf_refined *p, double least)
+{
+    for (int e = 0; e < p->m->n_cable; e++)
+        if (!(p->cable[e].is_taut > 0) && p->w->tension_N[e] != 0) return 0; /* was in the matrix */
+    double now = 0.875 * least - 2.01 * hf_refine_largest_sum(p, block_change);
+    return now > least / 4 ? now : 0;
 }
 
 /* ---- independent lengths ---- */
@@ -190,21 +233,18 @@ static double least_length_change(const hf_refined *p, const int *order, int n)
 
 /* ---- the radius of the ball ---- */
 
-/* Radius within which there is a shape with the exact lengths; -1 when there is no proof. *extra: what the stiffness of
- * the proof adds to the force, N. */
-static double lengths_radius(const hf_refined *p, double *extra)
+/* Radius within which there is a shape with the exact lengths; -1 when there is no proof. */
+static double lengths_radius(const hf_refined *p)
 {
     double square = 0, bend = 0;
     bool too_many;
     int n = order_active(p, p->w->newton_integer_work, &too_many);
-    *extra = 0;
     if (n == 0) return too_many ? -1 : 0;
     for (int k = 0; k < n; k++) {
         const hf_refined_cable *c = p->cable + p->w->newton_integer_work[k];
         double over = fabs(c->over.hi) + 128 * HF_TWOFOLD_UNIT * c->length;
         square += over * over;
         bend += 1 / (c->length * c->length);
-        *extra += 1.5 * c->along * over;
     }
     double least = least_length_change(p, p->w->newton_integer_work, n), radius = 2.01 * sqrt(square) / least;
     return least > 0 && 2.3 * sqrt(bend) * radius <= least / 2 ? radius : -1;
@@ -230,25 +270,38 @@ static hf_bound_reason stays_apart(const hf_refined *p, double radius)
     return HF_BOUND_PROVEN;
 }
 
-/* Sets *radius of the ball around the refined shape that holds every equilibrium, m. */
-static hf_bound_reason find_radius(hf_refined *p, double *radius)
+/* Sets *radius of the ball around the refined shape that holds every equilibrium, m, from a lower bound of the least
+ * eigenvalue there. */
+static hf_bound_reason find_radius(hf_refined *p, double least, double *radius)
 {
     const hf_model *m = p->m;
-    double square = 0, extra = 0, lengths = 0;
-    set_proof_stiffness(p);
-    double least = least_eigenvalue(p);
+    double square = 0, lengths = 0;
     if (!(least > 0)) return HF_BOUND_NOT_DEFINITE;
-    if (m->has_newton) lengths = lengths_radius(p, &extra);
+    if (m->has_newton) lengths = lengths_radius(p);
     if (lengths < 0) return HF_BOUND_DEPENDENT_LENGTHS;
     for (int i = 0; i < 3 * m->n_free; i++)
         square += p->force[i].hi * p->force[i].hi;
     double rounding =
         HF_TWOFOLD_UNIT * (128 + 4 * hf_refine_largest_sum(p, one)) * hf_refine_largest_sum(p, rounded_force);
-    double force = 1.0001 * sqrt(square) + extra + rounding * sqrt(3.0 * m->n_free);
-    double norm = 3 * hf_refine_largest_sum(p, stiffness_sum), change = 8 * hf_refine_largest_sum(p, stiffness_change);
+    double force = 1.0001 * sqrt(square) + rounding * sqrt(3.0 * m->n_free);
+    double norm = 3 * hf_refine_largest_sum(p, own_stiffness_sum),
+           change = 8 * hf_refine_largest_sum(p, stiffness_change);
     *radius = lengths + 4.1 * (force + norm * lengths) / least;
     if (!(change * *radius <= least / 2)) return HF_BOUND_NOT_DEFINITE;
     return stays_apart(p, *radius);
+}
+
+/* By the matrix of the found shape, if its least eigenvalue is known and the refined one is near; else by one of the
+ * refined shape. */
+static hf_bound_reason prove_radius(hf_refined *p, double least_N_per_m, double moved_m, double *radius)
+{
+    if (least_N_per_m > 0 && p->is_first_matrix) {
+        double least = carried_over(p, least_N_per_m);
+        if (least > 0 && find_radius(p, least, radius) == HF_BOUND_PROVEN && *radius <= SMALL * moved_m)
+            return HF_BOUND_PROVEN;
+    }
+    set_proof_stiffness(p);
+    return find_radius(p, least_eigenvalue(p), radius);
 }
 
 /* ---- the proof ---- */
@@ -283,10 +336,10 @@ static hf_twofold refined_psi(const hf_refined *p)
     return hf_twofold_root(hf_twofold_divide(sum, hf_twofold_of(m->n_inner_node)));
 }
 
-void hf_bound_prove(const hf_model *m, bool has_factor, hf_workspace *w, hf_form_result *r)
+void hf_bound_prove(const hf_model *m, bool has_factor, double least_N_per_m, hf_workspace *w, hf_form_result *r)
 {
     hf_refined p;
-    double radius = 0;
+    double radius = 0, moved_m;
     r->position_bound_m = r->psi_bound_m = (double)NAN;
     r->bound_reason = HF_BOUND_NOT_DEFINITE;
     if (r->n_loose) return; /* such a node has no stiffness */
@@ -294,9 +347,13 @@ void hf_bound_prove(const hf_model *m, bool has_factor, hf_workspace *w, hf_form
     if (m->has_strut || m->n_attachment || (!m->has_newton && hf_workspace_iterates(m, w))) return;
     hf_refine_open(m, w, r->condition, &p);
     r->bound_reason = hf_refine_approach(&p, has_factor);
-    if (r->bound_reason == HF_BOUND_PROVEN) r->bound_reason = find_radius(&p, &radius);
+    if (r->bound_reason != HF_BOUND_PROVEN) return;
+    moved_m = largest_move(&p);
+    r->bound_reason = prove_radius(&p, least_N_per_m, moved_m, &radius);
     if (r->bound_reason != HF_BOUND_PROVEN) return;
     hf_twofold psi = hf_twofold_subtract(refined_psi(&p), hf_twofold_of(r->psi_m));
-    r->position_bound_m = largest_move(&p) + radius;
-    r->psi_bound_m = fabs(psi.hi) * (1 + 4 * U) + HF_TWOFOLD_UNIT * (64 + 4.0 * m->n_inner_node) * r->psi_m + radius;
+    r->position_bound_m = moved_m + radius;
+    /* the ball is one of all coordinates together */
+    double error_m = HF_TWOFOLD_UNIT * (64 + 4.0 * m->n_inner_node) * r->psi_m + radius / sqrt(m->n_inner_node);
+    r->psi_bound_m = (fabs(psi.hi) + error_m) * (1 + 8 * U);
 }

@@ -55,9 +55,10 @@ void hf_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
     r->bound_reason = HF_BOUND_NONE;
     if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) return;
     r->backward_error = r->residual_N / largest_pull_N(m, w, m->has_newton ? w->newton_trial_m : w->certificate_work);
+    double least_N_per_m = 0;
     if (m->has_newton)
-        hf_newton_certify(m, w, r);
+        least_N_per_m = hf_newton_certify(m, w, r);
     else
         certify_linear(m, w, r);
-    hf_bound_prove(m, !isnan(r->condition), w, r);
+    hf_bound_prove(m, !isnan(r->condition), least_N_per_m, w, r);
 }

@@ -89,13 +89,11 @@ static void right_hand_side(const hf_model *m, const hf_workspace *w, const doub
     }
 }
 
-/* Sets newton_step to the Newton step for the forces in newton_force_N. springs, condition as in hf_joint_factor. */
-static hf_status find_step(const hf_model *m, hf_workspace *w, const double *springs, double *condition)
+/* Sets newton_step to the Newton step for the forces in newton_force_N, with the factored matrix. */
+static void solve_step_of(const hf_model *m, hf_workspace *w)
 {
-    HF_TRY(hf_joint_factor(m, w, hf_newton_matrix_block, springs, condition));
     right_hand_side(m, w, w->newton_force_N, w->newton_step);
     hf_joint_solve(m, w, hf_newton_matrix_block, w->newton_step);
-    return HF_OK;
 }
 
 /* Sets newton_trial_m and newton_trial_tension_N to shape and multipliers after `part` of the step. */
@@ -142,7 +140,8 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
     double first_merit = now.merit, u[3];
     int n_trusted = 0;
     for (int k = 0; k < max_steps && !is_balanced(m, &tight, &now); k++) {
-        if (find_step(m, w, NULL, NULL) != HF_OK) break;
+        if (hf_joint_factor(m, w, hf_newton_matrix_block, NULL, NULL) != HF_OK) break;
+        solve_step_of(m, w);
         double part = 1;
         int halvings = 0;
         for (; halvings <= HALVINGS_MAX; halvings++, part /= 2) {
@@ -233,23 +232,30 @@ static void look_for_drift(const hf_model *m, hf_workspace *w, hf_form_result *r
     }
 }
 
-void hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
+double hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
-    double largest = 0;
+    double largest = 0, least = 0;
     int n_moving = w->n_moving;
+    hf_status status = HF_OK;
     w->n_moving = m->n_free + m->n_attachment;
     measure_imbalance(m, w, w->position_m, w->tension_N, w->newton_force_N);
-    double spring_N_per_m = hf_loose_spring_N_per_m(m);
-    for (int i = 0; i < m->n_free; i++) /* a loose node has no stiffness of its own */
-        w->spring_N_per_m[i] = w->loose[i] ? spring_N_per_m : 0;
-    hf_status status = find_step(m, w, w->spring_N_per_m, &r->condition);
-    for (int i = 0; i < w->n_moving; i++) {
+    if (!m->n_attachment && !r->n_loose) least = hf_newton_matrix_factor_below(m, w, &r->condition);
+    if (!(least > 0)) {
+        double spring_N_per_m = hf_loose_spring_N_per_m(m);
+        for (int i = 0; i < m->n_free; i++) /* a loose node has no stiffness of its own */
+            w->spring_N_per_m[i] = w->loose[i] ? spring_N_per_m : 0;
+        r->condition = (double)NAN;
+        status = hf_joint_factor(m, w, hf_newton_matrix_block, w->spring_N_per_m, &r->condition);
+    }
+    if (status == HF_OK) solve_step_of(m, w);
+    for (int i = 0; i < w->n_moving && status == HF_OK; i++) {
         const double *d = w->newton_step + 3 * i;
         double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
         if (!(square <= largest)) largest = square; /* keeps a NaN */
     }
     w->n_moving = n_moving;
-    if (status != HF_OK) return;
+    if (status != HF_OK) return 0;
     r->position_error_m = sqrt(largest);
     if (r->condition > DRIFT_CONDITION && !m->n_attachment) look_for_drift(m, w, r);
+    return least;
 }

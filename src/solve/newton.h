@@ -15,9 +15,10 @@
 bool hf_newton_run(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace, int max_steps,
                    int *n_step);
 
-/* Set position_error_m (largest move of a node in the next Newton step, of net and truss together) and condition of the
- * result whose shape is in the workspace. Leaves both unchanged when there is no such step. */
-void hf_newton_certify(const hf_model *model, hf_workspace *workspace, hf_form_result *result);
+/* Set position_error_m (largest move of a node in the next Newton step, of net and truss together) and condition of
+ * the result whose shape is in the workspace. Leaves both unchanged when there is no such step. Returns a lower
+ * bound of the least eigenvalue of the matrix at that shape, N/m, or 0 (hf_newton_matrix_factor_below). */
+double hf_newton_certify(const hf_model *model, hf_workspace *workspace, hf_form_result *result);
 
 /* A tension below this fraction of the reference tension, in an elastic cable, is rounding: the cable is slack, and its
  * force density is set to 0. A node held by such cables alone has no position. The tests of solve pass from 1e-14 to

@@ -11,6 +11,12 @@
 /* Shift after the first failed factorisation, a hundredfold after each further one. No net of these tests has such a
  * matrix, so that nothing changes from 1e-13 to 1e-4; the unit test makes one by a cable that pushes. */
 #define SHIFT_FIRST 1e-10
+/* What hf_newton_matrix_factor_below takes from the diagonal, over the largest sum of T/l at a node, and how much
+ * the estimate of the least eigenvalue must be above it. The larger, the farther a shape may be from the equilibrium
+ * for its bound; from 1e-9 to 1e-7 refinement takes the same steps with this matrix as with the whole one. */
+#define BELOW 1e-7
+#define BELOW_CLEARLY 100.0
+
 void hf_newton_matrix_block(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
 {
     hf_law_cable cable = hf_workspace_cable(m, w, e);
@@ -131,6 +137,46 @@ hf_status hf_newton_matrix_factor_rows(const hf_model *m, hf_workspace *w, hf_ne
                                        const double *spring_N_per_m, const hf_newton_rows *rows)
 {
     return factor_some(m, w, block_of, spring_N_per_m, rows, NULL);
+}
+
+/* Largest sum of T/l of the cables at a free node, N/m. *n_most: most cables at one. */
+static double largest_across(const hf_model *m, hf_workspace *w, double *n_most)
+{
+    double *sum = w->newton_work, *count = sum + m->n_free, largest = 0, u[3];
+    memset(sum, 0, 2 * (size_t)m->n_free * sizeof *sum);
+    for (int e = 0; e < m->n_cable; e++) {
+        double length = hf_newton_matrix_direction(m, w->position_m, e, u);
+        double T = hf_newton_matrix_tension_N(hf_workspace_cable(m, w, e), length, w->tension_N[e]);
+        for (int k = 2 * e; k < 2 * e + 2; k++) {
+            if (m->end_row[k] >= m->n_free) continue;
+            sum[m->end_row[k]] += fabs(T) / length;
+            count[m->end_row[k]]++;
+        }
+    }
+    *n_most = 0;
+    for (int i = 0; i < m->n_free; i++) {
+        largest = fmax(largest, sum[i]);
+        *n_most = fmax(*n_most, count[i]);
+    }
+    return largest;
+}
+
+double hf_newton_matrix_factor_below(const hf_model *m, hf_workspace *w, double *condition)
+{
+    hf_newton_rows rows = all_rows(m);
+    int n = 3 * rows.n, k = column_of(&rows) - 1;
+    double n_most, across = largest_across(m, w, &n_most), shift = BELOW * across;
+    double largest = assemble_rows(m, w, hf_newton_matrix_block, &rows);
+    double part = hf_newton_matrix_rounding(k, n_most), least = shift - part * across;
+    if (!(isfinite(largest) && least > 0)) return 0;
+    for (int i = 0; i < n; i++) {
+        double *diagonal = w->newton_band + (size_t)i * ((size_t)k + 1);
+        *diagonal -= shift + part * *diagonal;
+    }
+    double norm = hf_band_norm(n, k, w->newton_band, w->newton_work);
+    if (hf_band_factor(n, k, w->newton_band) != 0) return 0;
+    *condition = hf_band_condition(n, k, w->newton_band, norm, w->newton_work, w->newton_integer_work);
+    return norm / *condition > BELOW_CLEARLY * shift ? least : 0;
 }
 
 /* In place: a row stands before or at its place among all rows. */

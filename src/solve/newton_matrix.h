@@ -128,6 +128,19 @@ hf_status hf_newton_matrix_factor_rows(const hf_model *model, hf_workspace *work
 void hf_newton_matrix_solve_rows(const hf_model *model, const hf_workspace *workspace, const hf_newton_rows *rows,
                                  double *rhs);
 
+/* hf_newton_matrix_factor for the matrix less a little on its diagonal, such that the factor proves a lower bound of
+ * its least eigenvalue, N/m, which is returned (METHOD section 3). 0: there is no such factor, or the little is not
+ * clearly below that eigenvalue; newton_band then holds nothing. */
+double hf_newton_matrix_factor_below(const hf_model *model, hf_workspace *workspace, double *condition);
+
+/* What assembling a matrix from cables, of which n_cable are at one node, and factoring it in half-bandwidth k can
+ * do to a quadratic form with it, relative to the sum of diagonal entries times squares. */
+static inline double hf_newton_matrix_rounding(int half_bandwidth, double n_cable)
+{
+    double k = half_bandwidth;
+    return 0x1p-53 * (1.1 * (k + 4) * (k + 1) + 400 + 20 * n_cable);
+}
+
 /* Solve in place, rhs [3 n_free] or [n_rhs][3 n_free], with the factor in newton_band. */
 void hf_newton_matrix_solve(const hf_model *model, const hf_workspace *workspace, double *rhs);
 void hf_newton_matrix_solve_many(const hf_model *model, const hf_workspace *workspace, int n_rhs, double *rhs);

@@ -5,6 +5,7 @@
 
 #include "linalg/band.h"
 #include "solve/newton_matrix.h"
+#include "solve/refine_kernel.h"
 
 #include <assert.h>
 #include <math.h>
@@ -58,35 +59,53 @@ void hf_refine_open(const hf_model *m, hf_workspace *w, double condition, hf_ref
 
 /* ---- forces and lengths at twice the precision ---- */
 
-/* hf_law_wanted_length_m */
-static hf_twofold wanted_length(hf_law_cable c, hf_twofold T)
+static hf_refine_measure *measure_here(void)
 {
-    hf_twofold target = hf_twofold_of(c.target);
-    if (!hf_law_has(c.law, HF_LAW_NEEDS_EA)) return target;
-    return hf_twofold_add(target, hf_twofold_divide(hf_twofold_multiply(target, T), hf_twofold_of(c.EA_N)));
+    static hf_refine_measure *const of_isa[HF_LANE_N_ISA] = {hf_refine_measure_portable, hf_refine_measure_avx2,
+                                                             hf_refine_measure_avx512};
+    return of_isa[hf_lane_best_isa()];
 }
 
-/* Tension of a taut cable: the multiplier, or what the law gives at this length. */
-static hf_twofold tension_at(hf_law_cable c, hf_twofold length, hf_twofold multiplier, bool by_law)
+/* Puts cable e into a lane. */
+static void put_cable(const hf_refined *p, int e, hf_refine_lanes *l, int k)
 {
-    if (hf_law_has(c.law, HF_LAW_GIVES_TENSION)) return hf_twofold_of(c.target);
-    if (hf_newton_matrix_is_spring(c.law)) return hf_twofold_multiply(hf_twofold_of(c.target), length);
-    if (!by_law || hf_law_has(c.law, HF_LAW_IS_RIGID)) return multiplier;
-    hf_twofold l0 = hf_twofold_of(c.target), EA = hf_twofold_of(c.EA_N);
-    return hf_twofold_divide(hf_twofold_multiply(EA, hf_twofold_subtract(length, l0)), l0);
-}
-
-/* Vector between the ends of cable e, m. Returns its length. */
-static hf_twofold vector_between(const hf_refined *p, int e, hf_twofold d[3])
-{
+    const hf_refined_cable *c = p->cable + e;
     const int *end = p->m->end_row + 2 * e;
-    hf_twofold square = {0, 0};
-    for (int c = 0; c < 3; c++) {
-        const hf_twofold *x = p->x + (size_t)c * (size_t)p->m->n_node;
-        d[c] = hf_twofold_subtract(x[end[1]], x[end[0]]);
-        hf_twofold_add_to(&square, hf_twofold_multiply(d[c], d[c]));
+    hf_law_cable cable = hf_workspace_cable(p->m, p->w, e);
+    bool is_given = hf_law_has(cable.law, HF_LAW_GIVES_TENSION), is_elastic = hf_law_has(cable.law, HF_LAW_NEEDS_EA);
+    for (int i = 0; i < 3; i++) {
+        const hf_twofold *x = p->x + (size_t)i * (size_t)p->m->n_node;
+        l->from[i][0][k] = x[end[0]].hi;
+        l->from[i][1][k] = x[end[0]].lo;
+        l->to[i][0][k] = x[end[1]].hi;
+        l->to[i][1][k] = x[end[1]].lo;
     }
-    return hf_twofold_root(square);
+    l->T[0][k] = is_given ? cable.target : c->T.hi;
+    l->T[1][k] = is_given ? 0 : c->T.lo;
+    l->target[k] = cable.target;
+    l->EA[k] = is_elastic ? cable.EA_N : 1;
+    l->is_spring[k] = hf_newton_matrix_is_spring(cable.law);
+    l->is_elastic[k] = is_elastic;
+    l->is_slack[k] = !(c->is_taut > 0);
+}
+
+/* Takes the measures of cable e from its lane, and adds its pull to the forces. Returns the error of length of a taut
+ * cable with a multiplier, over its theoretical length. */
+static double take_cable(hf_refined *p, int e, const hf_refine_lanes *l, int k)
+{
+    hf_refined_cable *c = p->cable + e;
+    int a = p->m->end_row[2 * e], b = p->m->end_row[2 * e + 1];
+    c->length = l->length[k];
+    c->across = l->q[k];
+    for (int i = 0; i < 3; i++) {
+        hf_twofold pull = {l->pull[i][0][k], l->pull[i][1][k]};
+        c->unit[i] = l->unit[i][k];
+        if (a < p->m->n_free) hf_twofold_add_to(p->force + 3 * a + i, pull);
+        if (b < p->m->n_free) hf_twofold_add_to(p->force + 3 * b + i, hf_twofold_minus(pull));
+    }
+    if (!hf_law_has((hf_law)p->w->law[e], HF_LAW_HAS_MULTIPLIER)) return 0;
+    c->over = (hf_twofold){l->over[0][k], l->over[1][k]};
+    return c->is_taut > 0 ? fabs(c->over.hi) / p->m->length_m[e] : 0;
 }
 
 /* Sets the forces out of balance, and length, unit, over and across of the cables. by_law: elastic cables pull with
@@ -98,27 +117,21 @@ static double measure_refined(hf_refined *p, bool by_law)
     double largest = 0;
     for (int i = 0; i < 3 * m->n_free; i++)
         p->force[i] = hf_twofold_of(m->load_N ? m->load_N[i % 3 * m->n_node + i / 3] : 0);
-    for (int e = 0; e < m->n_cable; e++) {
-        hf_refined_cable *c = p->cable + e;
-        if (hf_refine_is_fixed(m, e)) continue;
-        hf_law_cable cable = hf_workspace_cable(m, p->w, e);
-        hf_twofold d[3], length = vector_between(p, e, d);
-        bool is_taut = c->is_taut > 0;
-        c->length = length.hi;
-        if (hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) {
-            c->over = hf_twofold_subtract(length, wanted_length(cable, c->T));
-            if (is_taut) largest = fmax(largest, fabs(c->over.hi) / cable.theoretical_m);
+    int e = 0, kept[HF_LANES];
+    hf_refine_lanes lanes;
+    memset(&lanes, 0, sizeof lanes);
+    for (int k = 0; k < HF_LANES; k++)
+        lanes.to[0][0][k] = lanes.target[k] = lanes.EA[k] = 1;
+    while (e < m->n_cable) {
+        int n = 0;
+        for (; e < m->n_cable && n < HF_LANES; e++) {
+            if (hf_refine_is_fixed(m, e)) continue;
+            kept[n] = e;
+            put_cable(p, e, &lanes, n++);
         }
-        hf_twofold q = hf_twofold_divide(tension_at(cable, length, c->T, by_law), length);
-        if (!is_taut) q = (hf_twofold){0, 0};
-        c->across = q.hi;
-        for (int k = 0; k < 3; k++) {
-            int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-            hf_twofold pull = hf_twofold_multiply(q, d[k]);
-            c->unit[k] = d[k].hi / length.hi;
-            if (a < m->n_free) hf_twofold_add_to(p->force + 3 * a + k, pull);
-            if (b < m->n_free) hf_twofold_add_to(p->force + 3 * b + k, hf_twofold_minus(pull));
-        }
+        measure_here()(&lanes, by_law);
+        for (int k = 0; k < n; k++)
+            largest = fmax(largest, take_cable(p, kept[k], &lanes, k));
     }
     for (int i = 0; i < 3 * m->n_free; i++) {
         double error = fabs(p->force[i].hi) / m->reference_N;
@@ -326,6 +339,7 @@ hf_bound_reason hf_refine_approach(hf_refined *p, bool has_factor)
     hf_bound_reason reason = HF_BOUND_NOT_CONTRACTING;
     if (!has_factor) measure_refined(p, false);
     for (int k = has_factor ? 0 : 1; k <= MATRICES_MAX; k++) {
+        p->is_first_matrix = k == 0;
         if (k > 0 && !factor_anew(p)) return k == 1 && !has_factor ? HF_BOUND_NOT_DEFINITE : reason;
         double error = refine(p);
         reason = !(error < CONTRACTED) ? HF_BOUND_NOT_CONTRACTING

@@ -31,6 +31,7 @@ typedef struct {
     double wanted;           /* relative errors at which refinement ends */
     double condition;        /* estimate, of the matrix that is factored */
     double guess;            /* of a number below its least eigenvalue, N/m */
+    bool is_first_matrix;    /* it is the one with which refinement began */
 } hf_refined;
 
 /* Begin at the shape in the workspace, whose matrix of this condition is factored there. */
