@@ -2,7 +2,7 @@
 #include "cli.h"
 
 #define NODES_HEADER "id,x_m,y_m,z_m,x0_m,y0_m,z0_m,role\n"
-#define CABLES_HEADER "id,i,j,group,law,length_m,tension_N,q_N_per_m\n"
+#define CABLES_HEADER "id,i,j,group,law,length_m,tension_N,q_N_per_m,set\n"
 
 static const char *run_once(void)
 {
