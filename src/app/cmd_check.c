@@ -51,20 +51,27 @@ static void print_sets(const hf_scene *s, FILE *f)
     fputc('\n', f);
 }
 
+static void widen(const hf_scene *s, int e, double range[2])
+{
+    double T = s->target[e] * hf_scene_theoretical_length(s, e);
+    range[0] = fmin(range[0], T);
+    range[1] = fmax(range[1], T);
+}
+
 /* Prints the range of the tensions that hold the net (form.prestress: exact) for each family of cables. */
 static void print_prestress(const hf_scene *s, FILE *f)
 {
     fputs("  prestress     exact; N:", f);
-    for (int k = 0, n = 0; k < s->n_set + 2; k++) {
-        double least = INFINITY, most = -INFINITY;
-        for (int e = 0; e < s->n_cable; e++) {
-            double T = s->target[e] * hf_scene_theoretical_length(s, e);
-            if (hf_prestress_family(s, e) == k) least = fmin(least, T), most = fmax(most, T);
-        }
-        if (!(least <= most) || n++ >= SETS_NAMED) continue;
-        fprintf(f, "%s %s %.4g .. %.4g", n > 1 ? "," : "", k < s->n_set ? s->set_name[k] : hf_group_word[k - s->n_set],
-                least, most);
-        if (least > 0) fprintf(f, " (ratio %.4g)", most / least);
+    for (int k = 0, n = 0; k < s->n_set + 2 && n < SETS_NAMED; k++) {
+        double range[2] = {INFINITY, -INFINITY};
+        for (int i = k < s->n_set ? s->set_start[k] : 0; k < s->n_set && i < s->set_start[k + 1]; i++)
+            if (hf_prestress_family(s, s->set_cable[i]) == k) widen(s, s->set_cable[i], range);
+        for (int e = 0; e < s->n_cable && k >= s->n_set; e++)
+            if (s->group[e] == k - s->n_set && hf_prestress_family(s, e) == k) widen(s, e, range);
+        if (!(range[0] <= range[1])) continue;
+        fprintf(f, "%s %s %.4g .. %.4g", n++ ? "," : "", k < s->n_set ? s->set_name[k] : hf_group_word[k - s->n_set],
+                range[0], range[1]);
+        if (range[0] > 0) fprintf(f, " (ratio %.4g)", range[1] / range[0]);
     }
     fputc('\n', f);
 }

@@ -94,11 +94,16 @@ static const char *fault_of_pitches(const hf_cylinder *c, int axis, char *what, 
     for (int i = 0; i < pitches->n; i++)
         sum += pitches->value[i];
     if (pitches->n == 0) return NULL;
+    bool are_ascending = true;
+    for (int k = 0, n = 2 * c->cells_per_module[axis]; k < pitches->n && pitches->n == c->modules[axis]; k++)
+        are_ascending &= place_along(c, axis, k * n) < place_along(c, axis, (k + 1) * n);
     if (pitches->n != c->modules[axis])
         snprintf(what, size, "must have a value for each of the %d modules along %c, and has %d", c->modules[axis],
                  "xy"[axis], pitches -> n);
     else if (fabs(sum - wanted) > SUM_TOLERANCE * wanted)
         snprintf(what, size, "must add up to %s, %.12g m, and do to %.12g m", whole[axis], wanted, sum);
+    else if (!are_ascending)
+        snprintf(what, size, "must not differ so much that a module vanishes beside the others");
     else
         return NULL;
     return key[axis];

@@ -66,10 +66,30 @@ static void follow_normal(const hf_paraboloid *p, const double front[3], double 
 
 /* ---- what can be made ---- */
 
+/* Does a normal from the outermost free nodes lead past the rim of the rear net, or nowhere? */
+static bool leaves_rim(const hf_paraboloid *p)
+{
+    double R = radius(p), r = R * (p->rings - (p->grid == HF_GRID_QUAD ? LEAST_EDGE : 1)) / p->rings;
+    for (int k = 0; k < 24; k++) {
+        double angle = PI / 12 * k, rear[3], front[3] = {p->offset_m + r * hf_cosine(angle), r * hf_sine(angle), 0};
+        front[2] = z_front(p, front[0], front[1]);
+        follow_normal(p, front, rear);
+        if (!(hf_norm(rear[0] - p->offset_m, rear[1], 0) < R && rear[2] < front[2])) return true;
+    }
+    return false;
+}
+
 const char *hf_scene_paraboloid_fault(const hf_paraboloid *p, char *what, size_t size)
 {
     double R = radius(p), sag_m = R * R / (4 * p->focal_length_m) + R * R / (4 * rear_focal_length_m(p));
-    if (p->rear_distance_m == 0 || p->rear_distance_m > sag_m) return NULL;
+    if (p->rear_distance_m == 0) return NULL;
+    if (p->rear_distance_m > sag_m) {
+        if (p->tie_direction != HF_TIES_ALONG_NORMAL || p->rings == 1 || !leaves_rim(p)) return NULL;
+        snprintf(what, size,
+                 "normal leads to places outside the rim of the rear net; take z, a flatter front net or "
+                 "fewer rings");
+        return "tie_direction";
+    }
     snprintf(what, size, "of %.6g m lets the nets meet in the middle, where they come %.6g m nearer than at the rim",
              p->rear_distance_m, sag_m);
     return "rear_distance_m";
@@ -372,15 +392,16 @@ hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N
 {
     char what[HF_GENERATE_FAULT_SIZE];
     *scene = (hf_scene){0};
-    double n = 4.0 * paraboloid->rings * paraboloid->rings * (1 + (paraboloid->rear_distance_m > 0));
-    if (n > NODE_MAX)
+    double rings = paraboloid->rings, n_layer = paraboloid->rear_distance_m > 0 ? 2 : 1;
+    bool is_quad = paraboloid->grid == HF_GRID_QUAD; /* of the square around the aperture */
+    if (n_layer * (is_quad ? (2 * rings + 1) * (2 * rings + 1) : 1 + 3 * rings * (rings + 1)) > NODE_MAX)
         return hf_error(messages, HF_BAD_CASE, "scene: %d rings make more nodes than this program takes (%d)",
                         paraboloid->rings, NODE_MAX);
     const char *key = hf_scene_paraboloid_fault(paraboloid, what, sizeof what);
     if (key) return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.%s: %s", key, what);
     if (paraboloid->tie_law == HF_LAW_ELASTIC && !(EA_N && EA_N[HF_GROUP_INNER] > 0))
         return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.tie_law: elastic needs the stiffness of inner cables");
-    double_net d = {.p = paraboloid, .EA_N = EA_N, .s = scene, .n_layer = paraboloid->rear_distance_m > 0 ? 2 : 1};
+    double_net d = {.p = paraboloid, .EA_N = EA_N, .s = scene, .n_layer = (int)n_layer};
     int *node = NULL;
     hf_status status = allocate_grid(paraboloid, &d.g, &node);
     if (status == HF_OK) status = make_net(&d, node);

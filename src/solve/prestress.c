@@ -21,7 +21,7 @@
 #define EXACT 1e-14
 /* Largest residual, over the reference tension, of tensions that hold the net. */
 #define HELD 1e-10
-/* A node is not held when its residual exceeds this part of the largest tension of its cables. */
+/* Where tensions do not hold the net, a node is not held when its force reaches this part of the largest one. */
 #define OUT_OF_BALANCE 1e-3
 /* Shift of the matrix over its largest diagonal entry; a hundredfold after a failed factorisation. */
 #define SHIFT 1e-13
@@ -172,8 +172,8 @@ static double set_forces(programme *p)
             if (b < m->n_free) p->force_N[3 * b + c] -= p->unit[3 * e + c] * p->tension_N[e];
         }
     for (int i = 0; i < p->n; i++)
-        largest = fmax(largest, fabs(p->force_N[i]));
-    return largest;
+        if (!(fabs(p->force_N[i]) <= largest)) largest = fabs(p->force_N[i]); /* a NaN stays */
+    return isfinite(largest) ? largest : (double)INFINITY;
 }
 
 /* ---- the dual problem ---- */
@@ -276,15 +276,14 @@ static double node_force_N(const programme *p, int row)
 static hf_status name_unheld(const programme *p, const hf_scene *scene, hf_messages *messages)
 {
     const hf_model *m = p->m;
-    double *largest = p->trial; /* [n_free] of the tensions around a row */
     char names[1600] = "";
     size_t used = 0;
     int n = 0;
-    memset(largest, 0, (size_t)m->n_free * sizeof *largest);
-    for (int k = 0; k < 2 * m->n_cable; k++)
-        if (m->end_row[k] < m->n_free) largest[m->end_row[k]] = fmax(largest[m->end_row[k]], fabs(p->tension_N[k / 2]));
+    double largest_N = 0;
+    for (int i = 0; i < m->n_free; i++)
+        largest_N = fmax(largest_N, node_force_N(p, i));
     for (int i = 0; i < m->n_free; i++) {
-        if (!(node_force_N(p, i) > OUT_OF_BALANCE * largest[i])) continue;
+        if (node_force_N(p, i) < OUT_OF_BALANCE * largest_N) continue;
         if (n++ < 5 && used < sizeof names)
             used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", n > 1 ? ", " : "",
                                      scene->node_id[m->node_of_row[i]]);

@@ -103,12 +103,12 @@ static void check_ends(hf_hdf5 *io, hid_t group, const hf_scene *scene)
             hf_hdf5_damaged(io, group, "cable/end", "names a node that is not there");
 }
 
-static bool are_sets_right(const hf_scene *s)
+static bool are_sets_right(const hf_scene *s, int n_member)
 {
     if (s->set_start[0] != 0) return false;
     for (int k = 0; k < s->n_set; k++) {
         int from = s->set_start[k], to = s->set_start[k + 1];
-        if (to <= from || hf_cable_set_name_fault(s->set_name[k])) return false;
+        if (to <= from || to > n_member || hf_cable_set_name_fault(s->set_name[k])) return false;
         if (k > 0 && strcmp(s->set_name[k - 1], s->set_name[k]) >= 0) return false;
         for (int i = from; i < to; i++)
             if (s->set_cable[i] < 0 || s->set_cable[i] >= s->n_cable ||
@@ -139,7 +139,7 @@ static void read_sets(hf_hdf5 *io, hid_t group, hf_scene *s)
         hf_hdf5_read_array(io, group, &cable, s->set_cable);
         for (int k = 0; k < n_set; k++)
             memcpy((char *)s->set_name[k], name + (size_t)k * length, length);
-        if (io->status == HF_OK && (s->set_start[n_set] != n_member || !are_sets_right(s)))
+        if (io->status == HF_OK && (s->set_start[n_set] != n_member || !are_sets_right(s, n_member)))
             hf_hdf5_damaged(io, group, "set", "does not describe sets of cables");
     }
     free(name);

@@ -254,7 +254,14 @@ START_TEST(nets_that_would_meet_are_refused)
     ck_assert_int_eq(hf_scene_paraboloid(&p, NULL, &s, &messages), HF_BAD_CASE);
     ck_assert_ptr_nonnull(strstr(messages.text, "scene.paraboloid.rear_distance_m: of 1.60388 m lets the nets meet"));
     hf_messages_free(&messages);
+    p.tie_direction = HF_TIES_ALONG_NORMAL;
     p.rear_distance_m *= 1.001;
+    p.focal_length_m = 2.9;
+    p.rings = 30;
+    ck_assert_int_eq(hf_scene_paraboloid(&p, NULL, &s, &messages), HF_BAD_CASE);
+    ck_assert_ptr_nonnull(strstr(messages.text, "scene.paraboloid.tie_direction: normal leads to places outside the "));
+    hf_messages_free(&messages);
+    p.tie_direction = HF_TIES_ALONG_Z;
     s = generate(&p, NULL);
     hf_scene_free(&s);
     p.rings = 1000;

@@ -124,6 +124,17 @@ START_TEST(node_without_a_tie_is_named)
 }
 END_TEST
 
+/* Tensions beyond the range of doubles are no answer. */
+START_TEST(numbers_that_overflow_are_refused)
+{
+    static const struct hand_cable cable[] = {LEG(0, HF_LAW_TENSION, 1e308), LEG(1, HF_LAW_TENSION, 1e308),
+                                              LEG(2, HF_LAW_TENSION, 1e308), LEG(3, HF_LAW_TENSION, 1e308)};
+    struct net net;
+    ck_assert_int_eq(HOLD_HAND(&net, tripod, cable, "form.prestress: exact"), HF_BAD_CASE);
+    hf_scene_free(&net.scene);
+}
+END_TEST
+
 /* A strut may push: a load towards the tie's support is held by the one strut below. */
 START_TEST(struts_push)
 {
@@ -151,6 +162,7 @@ Suite *suite_unit_prestress(void)
     tcase_add_test(tests, tie_takes_what_balance_needs);
     tcase_add_test(tests, lengths_alone_want_the_pretension);
     tcase_add_test(tests, node_without_a_tie_is_named);
+    tcase_add_test(tests, numbers_that_overflow_are_refused);
     tcase_add_test(tests, struts_push);
     return suite;
 }
