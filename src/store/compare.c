@@ -52,7 +52,7 @@ static bool are_equal(const comparing *q, const side *a, const side *b, const ch
     memcpy(&u, x, sizeof u);
     memcpy(&v, y, sizeof v);
     if (isnan(u) && isnan(v)) return true;
-    return (q->c->rtol > 0 || q->c->atol > 0) && b->bytes == sizeof v &&
+    return (q->c->rtol > 0 || q->c->atol > 0) && b->bytes == sizeof v && isfinite(u) && isfinite(v) &&
            fabs(u - v) <= q->c->atol + q->c->rtol * fabs(v);
 }
 
