@@ -119,6 +119,18 @@ static void print_gain(double loss_dB, double limit_Hz, FILE *f)
         fprintf(f, "%.3g dB", loss_dB);
 }
 
+/* What the nodes alone do not tell: the mesh is flat between them. */
+static void print_facet_gain(const hf_surface_measures *m, double frequency_Hz, FILE *f)
+{
+    fputs("; facets: ", f);
+    print_gain(hf_surface_gain_loss_dB(m->facet_half_path_rms_m, frequency_Hz),
+               hf_surface_ruze_limit_Hz(m->facet_half_path_rms_m), f);
+    if (!isfinite(m->facet_fit_half_path_rms_m)) return;
+    fputs(", best fit ", f);
+    print_gain(hf_surface_gain_loss_dB(m->facet_fit_half_path_rms_m, frequency_Hz),
+               hf_surface_ruze_limit_Hz(m->facet_fit_half_path_rms_m), f);
+}
+
 /* Prints the measures of the surface of one stage, when the case asks for them. */
 static void print_surface(const hf_summary *s, int stage, FILE *f)
 {
@@ -145,6 +157,7 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
             fputs("; best fit: ", f);
             print_gain(m->fit_gain_loss_dB[k], m->fit.ruze_limit_Hz, f);
         }
+        if (m->n_facet) print_facet_gain(m, s->surface.frequencies_Hz.value[k], f);
         fputc('\n', f);
     }
 }

@@ -155,6 +155,7 @@ START_TEST(paraboloids_are_held)
     const char *out = temp("r.h5");
     HIFDM(0, "run", keep(source_path(name[_i])), "-o", out);
     ck_assert_str_eq(said.err, "");
+    OUT(" dB; facets: 0.");
     EXPECT(out, "--", "a['form'].attrs['psi_m'] < 1e-9", "a['form'].attrs['position_bound_m'] < 1e-9",
            "a['form'].attrs['n_slack'] == 0", "a['form'].attrs['inner_tension_ratio'] < 30");
 }
