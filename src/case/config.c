@@ -400,6 +400,19 @@ static void apply_override(loader *l, const char *argument)
     l->faults.origin = l->c->path;
 }
 
+/* The beginning of the next line: YAML 1.1 breaks lines at CR LF, CR, LF, NEL, LS and PS. */
+static char *after_line(char *text)
+{
+    for (; *text; text++) {
+        const unsigned char *c = (const unsigned char *)text;
+        if (c[0] == '\r') return text + (c[1] == '\n' ? 2 : 1);
+        if (c[0] == '\n') return text + 1;
+        if (c[0] == 0xC2 && c[1] == 0x85) return text + 2;
+        if (c[0] == 0xE2 && c[1] == 0x80 && (c[2] == 0xA8 || c[2] == 0xA9)) return text + 3;
+    }
+    return text;
+}
+
 /* Cut the lines of the sweep section out of the text. The rest is the case of one point, which is stored and digested;
  * it does not change when the sweep gets more points. */
 static void cut_sweep(loader *l)
@@ -412,10 +425,10 @@ static void cut_sweep(loader *l)
         complain(l, l->cut[0], "sweep", "must stand on lines of its own", "");
         return;
     }
-    for (; line < l->cut[0].line && *from; from++)
-        line += *from == '\n';
-    for (to = from; line < last && *to; to++)
-        line += *to == '\n';
+    for (; line < l->cut[0].line && *from; line++)
+        from = after_line(from);
+    for (to = from; line < last && *to; line++)
+        to = after_line(to);
     memmove(from, to, strlen(to) + 1);
     c->text_length -= (size_t)(to - from);
 }

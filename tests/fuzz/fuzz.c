@@ -111,6 +111,7 @@ hf_status __wrap_hf_config_load(const char *path, const char *const *overrides, 
     *settings = kept;
     settings->text = strdup(kept.text);
     settings->overrides = strdup(kept.overrides);
+    settings->where_given = NULL; /* messages then name keys without their lines */
     FUZZ_REQUIRE(settings->text && settings->overrides);
     return HF_OK;
 }
@@ -123,6 +124,8 @@ enum { NODE_MAX = 400, COUNT_MAX = 16, POINT_MAX = 64 };
 
 hf_status __real_hf_scene_parabolic_cylinder(const hf_cylinder *, const double[2], hf_scene *, hf_messages *);
 hf_status __wrap_hf_scene_parabolic_cylinder(const hf_cylinder *, const double[2], hf_scene *, hf_messages *);
+hf_status __real_hf_scene_paraboloid(const hf_paraboloid *, const double[2], hf_scene *, hf_messages *);
+hf_status __wrap_hf_scene_paraboloid(const hf_paraboloid *, const double[2], hf_scene *, hf_messages *);
 hf_status __real_hf_truss_generate(const hf_truss_settings *, const hf_cylinder *, hf_truss *, hf_messages *);
 hf_status __wrap_hf_truss_generate(const hf_truss_settings *, const hf_cylinder *, hf_truss *, hf_messages *);
 bool __real_hf_text_uint64(const char *, uint64_t *);
@@ -137,6 +140,15 @@ hf_status __wrap_hf_scene_parabolic_cylinder(const hf_cylinder *c, const double 
     double n =
         ((double)c->modules[0] * c->cells_per_module[0] + 1) * ((double)c->modules[1] * c->cells_per_module[1] + 1);
     if (n <= NODE_MAX || n > 4e6) return __real_hf_scene_parabolic_cylinder(c, EA_N, scene, messages);
+    *scene = (hf_scene){0};
+    return hf_error(messages, HF_BAD_CASE, "%g nodes take too long here", n);
+}
+
+hf_status __wrap_hf_scene_paraboloid(const hf_paraboloid *p, const double EA_N[2], hf_scene *scene,
+                                     hf_messages *messages)
+{
+    double n = 8.0 * p->rings * p->rings;
+    if (n <= NODE_MAX) return __real_hf_scene_paraboloid(p, EA_N, scene, messages);
     *scene = (hf_scene){0};
     return hf_error(messages, HF_BAD_CASE, "%g nodes take too long here", n);
 }

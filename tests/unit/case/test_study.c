@@ -257,6 +257,25 @@ START_TEST(a_case_may_hold_its_own_sweep)
 }
 END_TEST
 
+/* YAML ends a line at a carriage return, too: no line of the case is lost with the section. */
+START_TEST(a_sweep_with_other_line_breaks_is_cut_whole)
+{
+    static const char *const line_break[] = {"\r", "\r\n", "\xC2\x85", "\xE2\x80\xA8"};
+    hf_case c;
+    hf_messages m = {0};
+    char text[1024];
+    snprintf(text, sizeof text, "%ssweep:\n  form.pretension_N: [8,%s 10]\nform: {max_iterations: 99}\n", BASE,
+             line_break[_i]);
+    write_file(temp_path("one.yaml"), text);
+    ck_assert_msg(hf_config_load(temp_path("one.yaml"), NULL, 0, &c, &m) == HF_OK, "%s", m.text);
+    ck_assert(c.has_sweep && c.form.max_iterations == 99);
+    ck_assert_ptr_null(strstr(c.text, "sweep"));
+    ck_assert_ptr_null(strstr(c.text, "10]"));
+    ck_assert_ptr_nonnull(strstr(c.text, "form: {max_iterations: 99}\n"));
+    hf_case_free(&c);
+}
+END_TEST
+
 START_TEST(values_of_all_types_are_swept)
 {
     hf_study s;
@@ -397,6 +416,7 @@ Suite *suite_unit_study(void)
     tcase_add_test(tests, names_differ_and_are_digests_of_what_is_set);
     tcase_add_test(tests, every_point_has_a_seed_of_its_own);
     tcase_add_test(tests, a_case_may_hold_its_own_sweep);
+    tcase_add_loop_test(tests, a_sweep_with_other_line_breaks_is_cut_whole, 0, 4);
     tcase_add_test(tests, values_of_all_types_are_swept);
     tcase_add_loop_test(tests, faults_name_axis_file_and_line, 0, sizeof fault / sizeof *fault);
     tcase_add_test(tests, all_faults_are_told_at_once);
