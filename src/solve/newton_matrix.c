@@ -65,20 +65,9 @@ static double assemble_rows(const hf_model *m, hf_workspace *w, hf_newton_block 
     memset(band, 0, 3 * (size_t)rows->n * (size_t)column * sizeof *band);
     for (int e = 0; e < m->n_cable; e++) {
         int a = place_of(m, rows, m->end_row[2 * e]), b = place_of(m, rows, m->end_row[2 * e + 1]);
-        int low = a < b ? a : b, high = a < b ? b : a;
-        if (high < 0) continue;
-        bool is_between = low >= 0;
-        if (!is_between) low = high;
+        if (a < 0 && b < 0) continue;
         block_of(m, w, e, block);
-        for (int c = 0; c < 3; c++)
-            for (int r = 0; r < 3; r++) {
-                double k = block[r][c];
-                double *diagonal = band + (r - c) + (size_t)(3 * low + c) * (size_t)column;
-                if (r >= c) *diagonal += k;
-                if (!is_between) continue;
-                if (r >= c) diagonal[(size_t)(3 * (high - low)) * (size_t)column] += k;
-                diagonal[3 * (high - low)] -= k;
-            }
+        hf_newton_matrix_add_block(band, column, a, b, block);
     }
     for (int i = 0; i < 3 * rows->n; i++)
         largest = fmax(largest, band[(size_t)i * (size_t)column]);

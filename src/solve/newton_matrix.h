@@ -67,6 +67,24 @@ static inline void hf_newton_matrix_spring(double along, double across, const do
             block[r][c] = more * unit[r] * unit[c] + (r == c ? across : 0);
 }
 
+/* Add a spring between two nodes to a lower band of `column` entries a column, three rows to a node. a, b: their places
+ * in it; below zero: the node does not move, of one of them at most. */
+static inline void hf_newton_matrix_add_block(double *band, int column, int a, int b, double block[3][3])
+{
+    int low = a < b ? a : b, high = a < b ? b : a;
+    bool is_between = low >= 0;
+    if (!is_between) low = high;
+    for (int c = 0; c < 3; c++)
+        for (int r = 0; r < 3; r++) {
+            double k = block[r][c];
+            double *diagonal = band + (r - c) + (size_t)(3 * low + c) * (size_t)column;
+            if (r >= c) *diagonal += k;
+            if (!is_between) continue;
+            if (r >= c) diagonal[(size_t)(3 * (high - low)) * (size_t)column] += k;
+            diagonal[3 * (high - low)] -= k;
+        }
+}
+
 /* Tension, N: the multiplier where the law has one, else what the law gives at this length. */
 static inline double hf_newton_matrix_tension_N(hf_law_cable cable, double length_m, double multiplier_N)
 {

@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "linalg/band.h"
+#include "solve/newton_matrix.h"
 #include <hifdm/cable_set.h>
 #include <hifdm/model.h>
 
@@ -181,21 +182,15 @@ static double set_forces(programme *p)
 static void assemble_springs(programme *p)
 {
     const hf_model *m = p->m;
-    size_t column = (size_t)p->half_bandwidth + 1;
-    memset(p->band, 0, (size_t)p->n * column * sizeof *p->band);
+    int column = p->half_bandwidth + 1;
+    memset(p->band, 0, (size_t)p->n * (size_t)column * sizeof *p->band);
     for (int e = 0; e < m->n_cable; e++) {
-        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], low = a < b ? a : b, high = a < b ? b : a;
-        double stiffness = (p->is_least[e] ? AT_LEAST : 1) / p->weight[e];
-        const double *u = p->unit + 3 * (size_t)e;
-        for (int c = 0; c < 3 && low < m->n_free; c++)
-            for (int r = 0; r < 3; r++) {
-                double k = stiffness * u[r] * u[c];
-                double *diagonal = p->band + (r - c) + (size_t)(3 * low + c) * column;
-                if (r >= c) *diagonal += k;
-                if (high >= m->n_free) continue;
-                if (r >= c) diagonal[(size_t)(3 * (high - low)) * column] += k;
-                diagonal[3 * (high - low)] -= k;
-            }
+        int a = m->end_row[2 * e] < m->n_free ? m->end_row[2 * e] : -1;
+        int b = m->end_row[2 * e + 1] < m->n_free ? m->end_row[2 * e + 1] : -1;
+        double block[3][3];
+        if (a < 0 && b < 0) continue;
+        hf_newton_matrix_spring((p->is_least[e] ? AT_LEAST : 1) / p->weight[e], 0, p->unit + 3 * (size_t)e, block);
+        hf_newton_matrix_add_block(p->band, column, a, b, block);
     }
 }
 
