@@ -88,7 +88,7 @@ try() { # PREFIX COMMAND...
     compare "$1"
 }
 build() { # PREFIX MAKE-ARGUMENT...
-    make -s -j "$(nproc)" BUILD="$work/$1" "${@:2}" "$work/$1/hifdm" >"$work/$1.log" 2>&1 || {
+    make -s -j "$(nproc)" BUILD="$work/$1" WERROR= "${@:2}" "$work/$1/hifdm" >"$work/$1.log" 2>&1 || {
         tail -n 20 "$work/$1.log" >&2
         exit 1
     }

@@ -196,7 +196,7 @@ static void relative_folder(const char *output, const char *folder, char *to, si
 
 static void write_links(merger *m, const char *folder)
 {
-    char relative[PATH_MAX], file[HF_PATH_SIZE + 32], target[PATH_MAX + 32];
+    char relative[PATH_MAX + 1], file[HF_PATH_SIZE + 32], target[PATH_MAX + 64];
     hid_t group = hf_hdf5_make_group(&m->io, "/runs");
     relative_folder(m->io.path, folder, relative, sizeof relative);
     for (int i = 0; i < m->study->n_point && m->io.status == HF_OK; i++) {
