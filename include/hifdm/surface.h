@@ -42,7 +42,9 @@ extern "C" {
     X(double, facet_area_m2, REAL, 7, "of the facets, projected along z")                                              \
     X(int, n_facet, INT, 7, "triangles and quadrilaterals of the net, seen along z")                                   \
     X(int, n_open_face, INT, 7, "faces left out: of more than four sides, or not convex")                              \
-    X(double, ruze_limit_Hz, REAL, 6, "above it Ruze's formula does not hold: gain_loss_dB is NaN; INFINITY: no error")
+    X(double, ruze_limit_Hz, REAL, 6, "above it Ruze's formula does not hold: gain_loss_dB is NaN; INFINITY: no error") \
+    X(double, facet_ruze_limit_Hz, REAL, 8, "the same of facet_gain_loss_dB; NaN without facets")                      \
+    X(double, facet_fit_ruze_limit_Hz, REAL, 8, "the same of facet_fit_gain_loss_dB")
 
 #define HF_SURFACE_FIT_LIST(X)                                                                                         \
     X(double, half_path_rms_m, REAL, 3, "of the nodes' errors against the fitted surface")                             \
@@ -60,6 +62,13 @@ extern "C" {
     X(double, center_z_m, REAL, 0, "of the nodes")                                                                     \
     X(int, iterations, INT, 0, "of the last fit")                                                                      \
     X(bool, converged, TRUTH, 5, "false: all but the centre and iterations is NaN")
+
+/* Losses of gain by frequency (M17), dB: X(member, description). They are lists in JSON and data sets in HDF5. */
+#define HF_SURFACE_LOSS_LIST(X)                                                                                        \
+    X(gain_loss_dB, "loss of gain (Ruze) by frequency; NaN beyond 3 dB, where the formula does not hold")              \
+    X(fit_gain_loss_dB, "the same after the best fit")                                                                 \
+    X(facet_gain_loss_dB, "of the facets; NaN without facets")                                                         \
+    X(facet_fit_gain_loss_dB, "of the facets after their best fit")
 
 #define HF_SURFACE_MEMBER(type, member, kind, json, description) type member;
 
@@ -85,7 +94,8 @@ typedef struct {
     bool is_measured; /* false: the other members have no meaning */
     HF_SURFACE_LIST(HF_SURFACE_MEMBER)
     hf_surface_fit fit;
-    double gain_loss_dB[HF_LIST_MAX], fit_gain_loss_dB[HF_LIST_MAX]; /* by frequency, (M17) */
+#define HF_SURFACE_LOSS_MEMBER(member, description) double member[HF_LIST_MAX];
+    HF_SURFACE_LOSS_LIST(HF_SURFACE_LOSS_MEMBER)
 } hf_surface_measures;
 
 /* Measure the inner nodes of the shape in the workspace, and the facets between them. settings->focal_length_m > 0, and

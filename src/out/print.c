@@ -119,18 +119,6 @@ static void print_gain(double loss_dB, double limit_Hz, FILE *f)
         fprintf(f, "%.3g dB", loss_dB);
 }
 
-/* What the nodes alone do not tell: the mesh is flat between them. */
-static void print_facet_gain(const hf_surface_measures *m, double frequency_Hz, FILE *f)
-{
-    fputs("; facets: ", f);
-    print_gain(hf_surface_gain_loss_dB(m->facet_half_path_rms_m, frequency_Hz),
-               hf_surface_ruze_limit_Hz(m->facet_half_path_rms_m), f);
-    if (!isfinite(m->facet_fit_half_path_rms_m)) return;
-    fputs(", best fit ", f);
-    print_gain(hf_surface_gain_loss_dB(m->facet_fit_half_path_rms_m, frequency_Hz),
-               hf_surface_ruze_limit_Hz(m->facet_fit_half_path_rms_m), f);
-}
-
 /* Prints the measures of the surface of one stage, when the case asks for them. */
 static void print_surface(const hf_summary *s, int stage, FILE *f)
 {
@@ -157,7 +145,14 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
             fputs("; best fit: ", f);
             print_gain(m->fit_gain_loss_dB[k], m->fit.ruze_limit_Hz, f);
         }
-        if (m->n_facet) print_facet_gain(m, s->surface.frequencies_Hz.value[k], f);
+        if (m->n_facet) { /* what the nodes alone do not tell: the mesh is flat between them */
+            fputs("; facets: ", f);
+            print_gain(m->facet_gain_loss_dB[k], m->facet_ruze_limit_Hz, f);
+        }
+        if (isfinite(m->facet_fit_half_path_rms_m)) {
+            fputs(", best fit ", f);
+            print_gain(m->facet_fit_gain_loss_dB[k], m->facet_fit_ruze_limit_Hz, f);
+        }
         fputc('\n', f);
     }
 }

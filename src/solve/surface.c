@@ -25,6 +25,22 @@ double hf_surface_ruze_limit_Hz(double half_path_rms_m)
     return sqrt(HF_RUZE_MOST_DB / DB_PER_SQUARE) * LIGHT_M_PER_S / (4 * PI * half_path_rms_m);
 }
 
+static double note_loss(const hf_double_list *frequencies_Hz, double half_path_rms_m, double *loss_dB)
+{
+    for (int k = 0; k < frequencies_Hz->n; k++)
+        loss_dB[k] = hf_surface_gain_loss_dB(half_path_rms_m, frequencies_Hz->value[k]);
+    return hf_surface_ruze_limit_Hz(half_path_rms_m);
+}
+
+static void note_losses(const hf_surface_settings *s, hf_surface_measures *to)
+{
+    const hf_double_list *at = &s->frequencies_Hz;
+    to->ruze_limit_Hz = note_loss(at, to->half_path_rms_m, to->gain_loss_dB);
+    to->fit.ruze_limit_Hz = note_loss(at, to->fit.half_path_rms_m, to->fit_gain_loss_dB);
+    to->facet_ruze_limit_Hz = note_loss(at, to->facet_half_path_rms_m, to->facet_gain_loss_dB);
+    to->facet_fit_ruze_limit_Hz = note_loss(at, to->facet_fit_half_path_rms_m, to->facet_fit_gain_loss_dB);
+}
+
 /* ---- percentiles ---- */
 
 static int compare(const void *a, const void *b)
@@ -92,12 +108,7 @@ hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *face
         s->strip_width_m > 0 ? s->strip_width_m * s->strip_width_m / (24 * sqrt(5) * s->focal_length_m) : (double)NAN;
     hf_status status = hf_surface_fit_points(s->kind, s->focal_length_m, (int)n, position_m, NULL, &all.fit);
     if (status == HF_OK) status = hf_facet_measure(s, facets, m, w, &all);
-    all.ruze_limit_Hz = hf_surface_ruze_limit_Hz(all.half_path_rms_m);
-    all.fit.ruze_limit_Hz = hf_surface_ruze_limit_Hz(all.fit.half_path_rms_m);
-    for (int k = 0; k < s->frequencies_Hz.n; k++) {
-        all.gain_loss_dB[k] = hf_surface_gain_loss_dB(all.half_path_rms_m, s->frequencies_Hz.value[k]);
-        all.fit_gain_loss_dB[k] = hf_surface_gain_loss_dB(all.fit.half_path_rms_m, s->frequencies_Hz.value[k]);
-    }
+    note_losses(s, &all);
     hf_arena_free(&arena);
     if (status == HF_OK) *measures = all;
     return status;

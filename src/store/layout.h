@@ -107,7 +107,7 @@ void hf_layout_get_coupling(hf_hdf5 *io, hf_summary *summary);
 /* layout_surface: the measures of the surface, below /surface:
  *   /surface           attributes kind, focal_length_m, strip_width_m; frequency_Hz [k]
  *   /surface/STAGE     form, optimize, polish, as far as they ran: attributes, the numbers of hf_surface_measures and
- *                      of its fit (fit_...); gain_loss_dB, fit_gain_loss_dB [k]
+ *                      of its fit (fit_...); the losses of HF_SURFACE_LOSS_LIST [k]
  * Nothing when the case asks for none; no data sets when it names no frequencies. */
 void hf_layout_put_surface(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary);

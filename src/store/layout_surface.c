@@ -33,27 +33,40 @@ static hf_hdf5_array frequency_array(int n)
     return (hf_hdf5_array){"frequency_Hz", HF_KIND_REAL, 1, {(hsize_t)n}, "Hz", "at which the loss of gain is told"};
 }
 
-#define RAW "gain_loss_dB", n, "loss of gain (Ruze) by frequency; NaN beyond 3 dB, where the formula does not hold"
-#define FITTED "fit_gain_loss_dB", n, "the same after the best fit"
+/* The data sets of losses of gain of a stage, and where their values are. */
+#define LOSS(member, description) {#member, description, offsetof(hf_surface_measures, member)},
+static const struct {
+    const char *name, *description;
+    size_t offset;
+} loss_table[] = {HF_SURFACE_LOSS_LIST(LOSS)};
+enum { N_LOSS = sizeof loss_table / sizeof *loss_table };
+
+static double *loss_of(int i, int n, hf_surface_measures *s, hf_hdf5_array *array)
+{
+    *array = losses(loss_table[i].name, n, loss_table[i].description);
+    return (double *)((char *)s + loss_table[i].offset);
+}
 
 void hf_layout_put_surface(hf_hdf5 *io, const hf_summary *summary)
 {
     int n = summary->surface.frequencies_Hz.n;
     if (!(summary->surface.focal_length_m > 0)) return;
-    hf_hdf5_array frequency = frequency_array(n), raw = losses(RAW), fitted = losses(FITTED);
+    hf_hdf5_array frequency = frequency_array(n), loss;
     hid_t group = hf_hdf5_make_group(io, "/surface");
     hf_hdf5_put_members(io, settings_table, HF_HDF5_COUNT(settings_table), &summary->surface);
     if (n) hf_hdf5_write_array(io, group, &frequency, summary->surface.frequencies_Hz.value);
     hf_hdf5_close(io, group);
     for (int stage = 0; stage < 3; stage++) {
-        const hf_surface_measures *s = &summary->measures[stage];
+        hf_surface_measures s = summary->measures[stage];
         hf_hdf5_member table[N_MEASURE];
-        if (!s->is_measured) continue;
+        if (!s.is_measured) continue;
         table_of(stage, table);
         group = hf_hdf5_make_group(io, stage_group[stage]);
-        hf_hdf5_put_members(io, table, N_MEASURE, s);
-        if (n) hf_hdf5_write_array(io, group, &raw, s->gain_loss_dB);
-        if (n) hf_hdf5_write_array(io, group, &fitted, s->fit_gain_loss_dB);
+        hf_hdf5_put_members(io, table, N_MEASURE, &s);
+        for (int i = 0; n && i < N_LOSS; i++) {
+            const double *value = loss_of(i, n, &s, &loss);
+            hf_hdf5_write_array(io, group, &loss, value);
+        }
         hf_hdf5_close(io, group);
     }
 }
@@ -64,7 +77,7 @@ void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary)
     hid_t group = hf_hdf5_open_group(io, "/surface");
     hf_hdf5_get_members(io, settings_table, HF_HDF5_COUNT(settings_table), &summary->surface);
     int n = hf_hdf5_has(io, group, "frequency_Hz") ? hf_hdf5_length(io, group, "frequency_Hz", HF_LIST_MAX) : 0;
-    hf_hdf5_array frequency = frequency_array(n), raw = losses(RAW), fitted = losses(FITTED);
+    hf_hdf5_array frequency = frequency_array(n), loss;
     if (n) hf_hdf5_read_array(io, group, &frequency, summary->surface.frequencies_Hz.value);
     summary->surface.frequencies_Hz.n = n;
     hf_hdf5_close(io, group);
@@ -76,8 +89,10 @@ void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary)
         s->is_measured = true;
         group = hf_hdf5_open_group(io, stage_group[stage]);
         hf_hdf5_get_members(io, table, N_MEASURE, s);
-        if (n) hf_hdf5_read_array(io, group, &raw, s->gain_loss_dB);
-        if (n) hf_hdf5_read_array(io, group, &fitted, s->fit_gain_loss_dB);
+        for (int i = 0; n && i < N_LOSS; i++) {
+            double *value = loss_of(i, n, s, &loss);
+            hf_hdf5_read_array(io, group, &loss, value);
+        }
         hf_hdf5_close(io, group);
     }
 }

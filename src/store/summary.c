@@ -110,8 +110,8 @@ static void write_surface(const hf_summary *s, int stage, hf_json *j)
         write_fields(ALL(fit_field), place, place, &m->fit, j);
     }
     hf_json_list(j, "frequency_Hz", s->surface.frequencies_Hz.value, s->surface.frequencies_Hz.n);
-    hf_json_list(j, "gain_loss_dB", m->gain_loss_dB, s->surface.frequencies_Hz.n);
-    hf_json_list(j, "fit_gain_loss_dB", m->fit_gain_loss_dB, s->surface.frequencies_Hz.n);
+#define LOSS(member, description) hf_json_list(j, #member, m->member, s->surface.frequencies_Hz.n);
+    HF_SURFACE_LOSS_LIST(LOSS)
     hf_json_close(j, '}');
 }
 

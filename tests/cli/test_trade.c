@@ -202,7 +202,16 @@ START_TEST(surface_is_measured_for_every_shape)
                "b[d.decode()]['surface'] == c[d.decode()]['surface']",
                "all(b[d.decode()]['surface'][k] == v for k, v in a['surface'][d.decode()].attrs.items() "
                "if k in b[d.decode()]['surface'])",
-               "len(b[d.decode()]['surface']) == 33", "b[d.decode()]['surface']['kind'] == 'parabolic_cylinder'",
+               "len(b[d.decode()]['surface']) == 37",
+               /* the losses of the facets, from their own RMS; their place in the file is that in JSON */
+               "near(b[d.decode()]['surface']['facet_gain_loss_dB'][0], 10 / np.log(10) * (4 * np.pi * 1.2e9 / "
+               "299792458 * b[d.decode()]['surface']['facet_half_path_rms_m'])**2, 1e-12)",
+               "near(b[d.decode()]['surface']['facet_fit_gain_loss_dB'][0], 10 / np.log(10) * (4 * np.pi * 1.2e9 / "
+               "299792458 * b[d.decode()]['surface']['facet_fit_half_path_rms_m'])**2, 1e-12)",
+               "a['surface'][d]['facet_gain_loss_dB'][:2].tolist() == "
+               "b[d.decode()]['surface']['facet_gain_loss_dB'][:2]",
+               "a['surface'][d]['facet_fit_gain_loss_dB'][0] == b[d.decode()]['surface']['facet_fit_gain_loss_dB'][0]",
+               "a['surface'][d].attrs['facet_ruze_limit_Hz'] == b[d.decode()]['surface']['facet_ruze_limit_Hz']", "b[d.decode()]['surface']['kind'] == 'parabolic_cylinder'",
                /* against numpy: the sums in another order */
                "near(np.sqrt(np.mean([(p[2] - p[0]**2 / 282.4)**2 / (1 + (p[0] / 141.2)**2) for p in "
                "a[e.decode()]['position_m'][:][a['scene/node/role'][:] == 1]])), b[d.decode()]['surface']"

@@ -252,6 +252,14 @@ function table(headings, rows, caption) {
   );
 }
 
+// The RMS that each loss of gain is computed from: a loss without a number is beyond Ruze's formula if it has one.
+const RMS_OF_LOSS = {
+  gain_loss_dB: "half_path_rms_m",
+  fit_gain_loss_dB: "fit_half_path_rms_m",
+  facet_gain_loss_dB: "facet_half_path_rms_m",
+  facet_fit_gain_loss_dB: "facet_fit_half_path_rms_m",
+};
+
 function writeSummary() {
   const stages = [
     ["form", "Form-finding"],
@@ -265,9 +273,10 @@ function writeSummary() {
   for (const [stage] of stages) {
     const surface = summary[stage].surface || {};
     values[stage] = { ...summary[stage], ...surface };
-    const beyond = { gain_loss_dB: "beyond Ruze", fit_gain_loss_dB: surface.fit_converged ? "beyond Ruze" : null };
-    for (const key in beyond)
-      (surface[key] || []).forEach((v, k) => (values[stage][`${key}[${k}]`] = v === null ? beyond[key] : v));
+    for (const [loss, rms] of Object.entries(RMS_OF_LOSS))
+      (surface[loss] || []).forEach(
+        (v, k) => (values[stage][`${loss}[${k}]`] = v === null && surface[rms] !== null ? "beyond Ruze" : v),
+      );
   }
   const loss = (v) => (typeof v === "string" ? v : fmt(v, 3));
   const frequencies = (values[stages[0][0]].frequency_Hz || []).map((v) => `${fmt(v / 1e9, 4)} GHz`);
@@ -292,9 +301,13 @@ function writeSummary() {
     ...frequencies.flatMap((at, k) => [
       [`loss of gain at ${at}`, "dB", `gain_loss_dB[${k}]`, loss],
       [`loss of gain at ${at}, best fit`, "dB", `fit_gain_loss_dB[${k}]`, loss],
+      [`loss of gain of the facets at ${at}`, "dB", `facet_gain_loss_dB[${k}]`, loss],
+      [`loss of gain of the facets at ${at}, best fit`, "dB", `facet_fit_gain_loss_dB[${k}]`, loss],
     ]),
     ["Ruze’s formula of that loss (to 3 dB) ends at", "GHz", "ruze_limit_Hz", (v) => fmt(v / 1e9, 3)],
     ["the same, best fit", "GHz", "fit_ruze_limit_Hz", (v) => fmt(v / 1e9, 3)],
+    ["the same, facets", "GHz", "facet_ruze_limit_Hz", (v) => fmt(v / 1e9, 3)],
+    ["the same, facets after their best fit", "GHz", "facet_fit_ruze_limit_Hz", (v) => fmt(v / 1e9, 3)],
     ["tension ratio, inner cables", "", "inner_tension_ratio", fmtRatio],
     ["tension ratio, boundary cables", "", "boundary_tension_ratio", fmtRatio],
     ["slack cables", "", "slack_cables", fmtCount],
