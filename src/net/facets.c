@@ -24,7 +24,8 @@ typedef struct {
 typedef struct {
     const hf_scene *scene;
     unsigned char *is_on; /* [n_node] of the graph */
-    int *degree, *first;  /* [n_node], [n_node + 1]: the half edges from a node begin there */
+    int *degree, *mixed;  /* [n_node] of drop_ends */
+    int *first;           /* [n_node + 1] where the half edges from a node begin */
     int *parent;          /* [n_node] of the classes of nodes that are joined */
     int *sorted;          /* [n_half] where a half edge is after sorting */
     half *edge;           /* [n_half] */
@@ -37,6 +38,7 @@ static void lay_out(hf_arena *a, const hf_scene *s, graph *g)
     size_t n = (size_t)s->n_node, m = 2 * (size_t)s->n_cable;
     g->is_on = hf_arena_take(a, n, 1);
     g->degree = hf_arena_take(a, n, sizeof *g->degree);
+    g->mixed = hf_arena_take(a, n, sizeof *g->mixed);
     g->first = hf_arena_take(a, n + 1, sizeof *g->first);
     g->parent = hf_arena_take(a, n, sizeof *g->parent);
     g->sorted = hf_arena_take(a, m, sizeof *g->sorted);
@@ -62,22 +64,27 @@ static bool in_graph(const graph *g, int cable)
 }
 
 /* Nodes at the end of a single cable, such as that of a tie of the edge, are at no face: they leave, one after the
- * other. Rounds are as many as such a chain has cables. */
+ * other along a chain. Each node keeps the number of its cables that are left and their exclusive or, which is the
+ * last one's index when one is left: all together takes a time in proportion to the net. */
 static void drop_ends(graph *g)
 {
     const hf_scene *s = g->scene;
-    for (bool more = true; more;) {
-        more = false;
-        memset(g->degree, 0, (size_t)s->n_node * sizeof *g->degree);
-        for (int e = 0; e < s->n_cable; e++)
-            for (int k = 0; k < 2 && in_graph(g, e); k++)
-                g->degree[s->end[2 * e + k]]++;
-        for (int i = 0; i < s->n_node; i++) {
-            if (!g->is_on[i] || g->degree[i] > 1) continue;
-            g->is_on[i] = false;
-            more |= g->degree[i] == 1;
+    memset(g->degree, 0, (size_t)s->n_node * sizeof *g->degree);
+    memset(g->mixed, 0, (size_t)s->n_node * sizeof *g->mixed);
+    for (int e = 0; e < s->n_cable; e++)
+        for (int k = 0; k < 2 && in_graph(g, e); k++) {
+            g->degree[s->end[2 * e + k]]++;
+            g->mixed[s->end[2 * e + k]] ^= e;
         }
-    }
+    for (int i = 0; i < s->n_node; i++)
+        for (int at = i, next; g->is_on[at] && g->degree[at] <= 1; at = next) {
+            int e = g->mixed[at];
+            g->is_on[at] = false;
+            if (g->degree[at] == 0) break;
+            next = s->end[2 * e] == at ? s->end[2 * e + 1] : s->end[2 * e];
+            g->degree[next]--;
+            g->mixed[next] ^= e;
+        }
 }
 
 /* Order by node, then counter-clockwise from the direction of -x, without angles: those below the x axis come first.

@@ -129,6 +129,33 @@ START_TEST(cells_of_a_generated_net_are_found)
 }
 END_TEST
 
+/* A chain of half a million nodes hangs at a triangle, its end first or last in the order of the nodes. With a time
+ * that grows with the square of the chain this would take many minutes. */
+START_TEST(a_long_chain_leaves_in_linear_time)
+{
+    enum { N = 500000 };
+    hf_scene s;
+    ck_assert_int_eq(hf_scene_allocate(&s, N, N, false, false, false), HF_OK);
+    for (int i = 0; i < N; i++) {
+        s.position_m[3 * i] = _i ? -i * 1e-6 : i * 1e-6;
+        s.role[i] = HF_ROLE_INNER;
+        s.end[2 * i] = i;
+        s.end[2 * i + 1] = i + 1;
+    }
+    int tip = _i ? 0 : N - 1, other = _i ? 2 : N - 3;
+    s.position_m[3 * tip + 1] = 1;
+    s.end[2 * (N - 1)] = tip;
+    s.end[2 * (N - 1) + 1] = other;
+    hf_facets f = found(&s);
+    ck_assert(f.is_planar);
+    ck_assert_int_eq(f.n_facet, 1);
+    ck_assert_int_eq(f.n_open, 0);
+    hf_facets_free(&f);
+    hf_scene_free(&s);
+}
+END_TEST
+
+
 START_TEST(memory_may_end)
 {
     static const double xy[][2] = {{0, 0}, {1, 0}, {1, 1}};
@@ -157,6 +184,7 @@ Suite *suite_unit_facets(void)
     tcase_add_test(tests, crossing_cables_have_no_facets);
     tcase_add_test(tests, only_nodes_on_the_surface_count);
     tcase_add_test(tests, cells_of_a_generated_net_are_found);
+    tcase_add_loop_test(tests, a_long_chain_leaves_in_linear_time, 0, 2);
     tcase_add_test(tests, memory_may_end);
     return suite;
 }
