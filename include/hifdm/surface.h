@@ -42,7 +42,8 @@ extern "C" {
     X(double, facet_area_m2, REAL, 7, "of the facets, projected along z")                                              \
     X(int, n_facet, INT, 7, "triangles and quadrilaterals of the net, seen along z")                                   \
     X(int, n_open_face, INT, 7, "faces left out: of more than four sides, or not convex")                              \
-    X(double, ruze_limit_Hz, REAL, 6, "above it Ruze's formula does not hold: gain_loss_dB is NaN; INFINITY: no error") \
+    X(double, ruze_limit_Hz, REAL, 6,                                                                                  \
+      "above it Ruze's formula does not hold: gain_loss_dB is NaN; INFINITY: no error")                                \
     X(double, facet_ruze_limit_Hz, REAL, 8, "the same of facet_gain_loss_dB; NaN without facets")                      \
     X(double, facet_fit_ruze_limit_Hz, REAL, 8, "the same of facet_fit_gain_loss_dB")
 

@@ -44,7 +44,7 @@ enum { N_LOSS = sizeof loss_table / sizeof *loss_table };
 static double *loss_of(int i, int n, hf_surface_measures *s, hf_hdf5_array *array)
 {
     *array = losses(loss_table[i].name, n, loss_table[i].description);
-    return (double *)((char *)s + loss_table[i].offset);
+    return (void *)((char *)s + loss_table[i].offset);
 }
 
 void hf_layout_put_surface(hf_hdf5 *io, const hf_summary *summary)

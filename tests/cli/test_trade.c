@@ -211,7 +211,8 @@ START_TEST(surface_is_measured_for_every_shape)
                "a['surface'][d]['facet_gain_loss_dB'][:2].tolist() == "
                "b[d.decode()]['surface']['facet_gain_loss_dB'][:2]",
                "a['surface'][d]['facet_fit_gain_loss_dB'][0] == b[d.decode()]['surface']['facet_fit_gain_loss_dB'][0]",
-               "a['surface'][d].attrs['facet_ruze_limit_Hz'] == b[d.decode()]['surface']['facet_ruze_limit_Hz']", "b[d.decode()]['surface']['kind'] == 'parabolic_cylinder'",
+               "a['surface'][d].attrs['facet_ruze_limit_Hz'] == b[d.decode()]['surface']['facet_ruze_limit_Hz']",
+               "b[d.decode()]['surface']['kind'] == 'parabolic_cylinder'",
                /* against numpy: the sums in another order */
                "near(np.sqrt(np.mean([(p[2] - p[0]**2 / 282.4)**2 / (1 + (p[0] / 141.2)**2) for p in "
                "a[e.decode()]['position_m'][:][a['scene/node/role'][:] == 1]])), b[d.decode()]['surface']"

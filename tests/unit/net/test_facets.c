@@ -155,7 +155,6 @@ START_TEST(a_long_chain_leaves_in_linear_time)
 }
 END_TEST
 
-
 START_TEST(memory_may_end)
 {
     static const double xy[][2] = {{0, 0}, {1, 0}, {1, 1}};
