@@ -61,8 +61,8 @@ fi
 
 # ---- whole results, against those of the default build ----
 
-cases=("chen2022 --set optimize.generations=20 --set optimize.compare_lm=true"
-    "chen2022-truss --set optimize.generations=10 --set optimize.compare_lm=true"
+cases=("straight-edges --set optimize.generations=20 --set optimize.compare_lm=true"
+    "straight-edges-truss --set optimize.generations=10 --set optimize.compare_lm=true"
     "reflector --set optimize.generations=10 --set optimize.method=ga+lm")
 
 run_cases() { # PREFIX COMMAND...

@@ -31,7 +31,7 @@ k4,d',"<i>e</i>",boundary,tension,0.001
 `;
 
 export const pages = [
-  { name: "chen2022", source: "configs/chen2022.yaml", sections: GA, warnings: 2 },
+  { name: "straight-edges", source: "configs/straight-edges.yaml", sections: GA, warnings: 2 },
   { name: "reflector", source: "configs/reflector.yaml", sections: FORM, warnings: 0 },
   {
     name: "reflector-ga",
@@ -55,7 +55,7 @@ export const pages = [
     text: cylinder([20, 24], "optimize: {rule: tension, population: 4, generations: 400, polish_iterations: 2}\n"),
     sections: GA,
   },
-  { name: "truss", source: "configs/chen2022-truss.yaml", sections: FORM, maybe: ["coupling", "ga"], truss: true },
+  { name: "truss", source: "configs/straight-edges-truss.yaml", sections: FORM, maybe: ["coupling", "ga"], truss: true },
   {
     name: "sweep",
     study: 64,

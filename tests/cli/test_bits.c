@@ -5,8 +5,8 @@
 #include "cli.h"
 
 static const char *const cases[][5] = {
-    {"chen2022", "configs/chen2022.yaml", "optimize.generations=20", "optimize.compare_lm=true", NULL},
-    {"chen2022-truss", "configs/chen2022-truss.yaml", "optimize.generations=10", "optimize.compare_lm=true", NULL},
+    {"straight-edges", "configs/straight-edges.yaml", "optimize.generations=20", "optimize.compare_lm=true", NULL},
+    {"straight-edges-truss", "configs/straight-edges-truss.yaml", "optimize.generations=10", "optimize.compare_lm=true", NULL},
     {"reflector", "configs/reflector.yaml", "optimize.generations=10", "optimize.method=ga+lm", NULL},
     {"triangles_a", NULL, "optimize.generations=20", "optimize.method=ga+lm", NULL},
 };

@@ -5,7 +5,7 @@ START_TEST(check_tells_what_will_run)
 {
     HIFDM(0, "check", CHEN, "--threads", "2");
     ERR("warning: stop: rms_change ended before equilibrium"); /* what the run will warn of */
-    OUT("chen2022.yaml: valid\n");
+    OUT("straight-edges.yaml: valid\n");
     OUT("121 nodes: 36 supports, 25 inner (psi counts these), 60 edge\n");
     OUT("220 cables by law in force: 100 tension, 120 length, 0 force density\n");
     OUT("85 unknowns, three right-hand sides; half-bandwidth 12; band Cholesky\n");

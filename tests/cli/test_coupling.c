@@ -5,7 +5,7 @@
 
 #include <hdf5.h>
 
-#define TRUSS keep(source_path("configs/chen2022-truss.yaml"))
+#define TRUSS keep(source_path("configs/straight-edges-truss.yaml"))
 
 /* Supports of the stored shape are where the truss of the same file goes under their pull; 1e-6 m is tof_m. */
 START_TEST(run_show_and_file)

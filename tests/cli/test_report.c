@@ -162,7 +162,7 @@ END_TEST
 START_TEST(truss_is_shown_when_there_is_one)
 {
     const char *out = temp("t.h5");
-    HIFDM(0, "run", keep(source_path("configs/chen2022-truss.yaml")), "-o", out, "--quiet");
+    HIFDM(0, "run", keep(source_path("configs/straight-edges-truss.yaml")), "-o", out, "--quiet");
     HIFDM(0, "report", out, "-o", temp("t.html"));
     EXPECT(data_of(temp("t.html"), "t.json"), out, "--",
            "a['truss']['n_node'] == 132 and a['truss']['n_member'] == 336",
@@ -262,7 +262,7 @@ START_TEST(files_are_not_replaced_unasked)
     HIFDM(5, "report", temp("missing.h5"));
     ERR("missing.h5: cannot open: No such file or directory");
     HIFDM(5, "report", CHEN, "-o", temp("y.html"));
-    ERR("chen2022.yaml: is not an HDF5 file");
+    ERR("straight-edges.yaml: is not an HDF5 file");
     HIFDM(2, "report");
     ERR("'hifdm report' needs a FILE");
     ck_assert(!is_there(temp("y.html")));

@@ -34,7 +34,7 @@ END_TEST
 START_TEST(paraview_file_of_the_truss)
 {
     const char *out = temp("t.h5"), *folder = temp("vtk");
-    HIFDM(0, "run", keep(source_path("configs/chen2022-truss.yaml")), "-o", out, "--quiet", "--set",
+    HIFDM(0, "run", keep(source_path("configs/straight-edges-truss.yaml")), "-o", out, "--quiet", "--set",
           "optimize.generations=1");
     HIFDM(0, "export", out, "--vtk", folder);
     OUT(" polish.hdf truss.hdf\n");

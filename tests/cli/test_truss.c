@@ -1,7 +1,7 @@
 /* Cases with a truss: what run, show, check and export say and store; faults of the section. */
 #include "session.h"
 
-#define TRUSS keep(source_path("configs/chen2022-truss.yaml"))
+#define TRUSS keep(source_path("configs/straight-edges-truss.yaml"))
 
 START_TEST(run_show_check_and_file)
 {

@@ -47,7 +47,7 @@ is_there() { [ -s "$1" ]; }
 
 # ---- The study: eight points of about a second -----------------------------------------------------------------------
 cd "$work"
-cp "$source/configs/chen2022.yaml" base.yaml
+cp "$source/configs/straight-edges.yaml" base.yaml
 cat >study.yaml <<'YAML'
 base: base.yaml
 sweep:

@@ -110,13 +110,13 @@ static void work_carrier(void *context)
 static void truss_of_the_paper(void)
 {
     carrier_context c = {0};
-    if (hf_config_load("configs/chen2022-truss.yaml", NULL, 0, &c.settings, &c.messages) != HF_OK ||
+    if (hf_config_load("configs/straight-edges-truss.yaml", NULL, 0, &c.settings, &c.messages) != HF_OK ||
         hf_config_scene(&c.settings, &c.scene, &c.messages) != HF_OK)
         bench_fail("frame", c.messages.text);
     work_carrier(&c);
-    bench_emit("frame", "chen2022-truss", "generate; factor; condense to 36 attachments", c.carrier.frame.n_dof,
+    bench_emit("frame", "straight-edges-truss", "generate; factor; condense to 36 attachments", c.carrier.frame.n_dof,
                "time_s", bench_time_s(work_carrier, &c, ENOUGH_S));
-    bench_emit("frame", "chen2022-truss", "generate; factor; condense to 36 attachments", c.carrier.frame.n_dof,
+    bench_emit("frame", "straight-edges-truss", "generate; factor; condense to 36 attachments", c.carrier.frame.n_dof,
                "half_bandwidth", c.carrier.frame.half_bandwidth);
     hf_carrier_free(&c.carrier);
     hf_scene_free(&c.scene);

@@ -23,7 +23,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 import svg  # noqa: E402
 
-SCENES = ["chen2022", "21x25 f=15", "imported 31x37", "41x49 f=5"]
+SCENES = ["straight-edges", "21x25 f=15", "imported 31x37", "41x49 f=5"]
 KERNEL_NET = "21x25 perimeter"
 # The nets of equilibrium.c.
 FORM_FINDINGS = ["21x25 f=15", "41x49 f=5", "on its truss", "on a truss 300 times as soft", "21x25 elastic",
@@ -43,7 +43,7 @@ SCALES = {1: 3, 2: 3, 4: 3, 8: 2, 16: 1}  # nets of the cost growth: rounds, few
 BIG = "scene.parabolic_cylinder.cells_per_module=[4,4]"
 # Arguments of the program. The polish is not what is measured here, and takes long.
 GA_CASES = {
-    "chen2022": ["configs/chen2022.yaml"],
+    "straight-edges": ["configs/straight-edges.yaml"],
     "41x49 f=5": ["configs/reflector.yaml", "--set", BIG, "--set", "scene.parabolic_cylinder.focal_length_m=5",
                   "--set", "form.method=auto"],
 }
@@ -52,7 +52,7 @@ GA_GENERATIONS = (400, 100)
 STAGE_CASES = {
     "FDM only": ["configs/reflector.yaml", "form.method=fdm"],
     "HIFDM": ["configs/reflector.yaml", "form.method=hifdm"],
-    "HIFDM + GA": ["configs/chen2022.yaml"],
+    "HIFDM + GA": ["configs/straight-edges.yaml"],
 }
 
 
@@ -193,10 +193,10 @@ class Bench:
                     self.driver("growth", scale)
             self.say("populations")
             for _ in range(3):
-                self.driver("population", "chen2022")
+                self.driver("population", "straight-edges")
                 self.driver("whole", STAGE_CASES["HIFDM + GA"][0])
-                self.program("chen2022", 2, GA_GENERATIONS[0])
-                self.program("chen2022", 2, GA_GENERATIONS[0], "active")  # what a user gets who sets nothing
+                self.program("straight-edges", 2, GA_GENERATIONS[0])
+                self.program("straight-edges", 2, GA_GENERATIONS[0], "active")  # what a user gets who sets nothing
             self.driver("population", SCENES[-1])
             self.say("a sweep")
             for files in ("all", "none"):
@@ -416,10 +416,10 @@ def summary(s):
                 value = ratio(s.any("single", scene, peer, "time_s"), s.any("single", scene, method, "time_s"))
                 if value:
                     yield [f"to 1e-6 m; {scene}: {peer.replace(',', ';')} / {method}", wanted, value]
-    for scene, memory in (("chen2022", "64"), ("41x49 f=5", "256")):
+    for scene, memory in (("straight-edges", "64"), ("41x49 f=5", "256")):
         def ga(threads, quantity, generations=400, policy="passive"):
             return s.get("ga", scene, f"{threads} threads, {policy}", generations, quantity)
-        limit = "2" if scene == "chen2022" else ""
+        limit = "2" if scene == "straight-edges" else ""
         yield [f"50x400 GA; {scene}: wall s on 2 threads", limit, ga(2, "ga_wall_s")]
         active = ga(2, "ga_wall_s", 400, "active")
         if active:
@@ -434,7 +434,7 @@ def summary(s):
                s.paired("population", scene, one, two)]
         for mode in ("not stored", "stored"):
             yield [f"50x400 GA; {scene}: CPU utilisation on 2 threads; {mode}",
-                   "" if scene == "chen2022" else "0.95", population(mode, 2, "utilisation")]
+                   "" if scene == "straight-edges" else "0.95", population(mode, 2, "utilisation")]
         yield [f"50x400 GA; {scene}: share of the time spent storing; threads 1", "0.05",
                population("stored", 1, "store_share")]
         yield [f"50x400 GA; {scene}: stored / not stored; threads 1", "1.05",

@@ -21,7 +21,7 @@ typedef struct {
 #define PERIMETER CYLINDER "supports=perimeter", CYLINDER "scallop=0"
 
 static const scene_row scene_table[] = {
-    {"chen2022", "configs/chen2022.yaml", {NULL}},
+    {"straight-edges", "configs/straight-edges.yaml", {NULL}},
     {"21x25 f=15", "configs/reflector.yaml", {CYLINDER "focal_length_m=15", NULL}},
     {"41x49 f=5", "configs/reflector.yaml", {CYLINDER "focal_length_m=5", CYLINDER "cells_per_module=[4,4]", NULL}},
     /* the base of the imported net, and the net of the kernels: no free boundary cable, so no genes */

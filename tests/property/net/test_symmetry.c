@@ -21,7 +21,7 @@ static void open_search(struct search *s)
 {
     hf_messages messages = {0};
     int planes;
-    OPEN_CASE(&s->net, "configs/chen2022.yaml", "optimize.symmetry=xy", "optimize.population=16",
+    OPEN_CASE(&s->net, "configs/straight-edges.yaml", "optimize.symmetry=xy", "optimize.population=16",
               "optimize.generations=15", "form.residual_tolerance=1e-12");
     hf_model *m = &s->net.model;
     ck_assert(m->n_gene == N_GENE && m->n_cable == N_CABLE);

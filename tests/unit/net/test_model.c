@@ -208,7 +208,7 @@ END_TEST
 START_TEST(chains_of_the_papers_net)
 {
     struct net net;
-    OPEN_CASE(&net, "configs/chen2022.yaml");
+    OPEN_CASE(&net, "configs/straight-edges.yaml");
     /* 6 straight generatrix lines of 5 module edges; those along the directrix are polygons and not straight */
     ck_assert_int_eq(net.model.n_chain, 30);
     ck_assert_int_eq(net.model.n_gene, 120); /* 2 x 6 lines x 10 cables, all with a free end */
@@ -245,7 +245,7 @@ END_TEST
 START_TEST(groups_of_the_papers_net_are_module_edges)
 {
     struct net net;
-    OPEN_CASE(&net, "configs/chen2022.yaml");
+    OPEN_CASE(&net, "configs/straight-edges.yaml");
     int n_gene_of[120] = {0};
     ck_assert_int_eq(net.model.n_gene_group, 60);
     for (int k = 0; k < net.model.n_gene; k++)

@@ -54,7 +54,7 @@ START_TEST(classes_of_the_papers_net)
     struct net net;
     char said[512];
     int planes;
-    OPEN_CASE(&net, "configs/chen2022.yaml");
+    OPEN_CASE(&net, "configs/straight-edges.yaml");
     const hf_model *m = &net.model;
     ck_assert_int_eq(apply(&net, expected[_i].wanted, &planes, said, sizeof said), HF_OK);
     ck_assert_int_eq(planes, expected[_i].planes);

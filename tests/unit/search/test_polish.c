@@ -1,6 +1,6 @@
 /* Levenberg-Marquardt on the boundary pretensions: known optima, optimality by finite differences, bounds and cap.
  *
- * chen2022 within +-1 N of its base: 6.345 mm; free, from the base: 3.54 mm (METHOD section 10). */
+ * straight-edges within +-1 N of its base: 6.345 mm; free, from the base: 3.54 mm (METHOD section 10). */
 #include "laws.h"
 #include "population.h"
 
@@ -21,10 +21,10 @@ static void set_bounds(struct polish_run *p, double range_N)
     }
 }
 
-/* As `hifdm run configs/chen2022.yaml` starts, but each evaluation to 1e-10. */
+/* As `hifdm run configs/straight-edges.yaml` starts, but each evaluation to 1e-10. */
 static void open_chen(struct polish_run *p, double range_N)
 {
-    OPEN_CASE(&p->r.net, "configs/chen2022.yaml");
+    OPEN_CASE(&p->r.net, "configs/straight-edges.yaml");
     start_run(&p->r, HF_RULE_FORCE_DENSITY);
     p->r.evaluator.boundary_ratio_cap = p->r.net.settings.optimize.boundary_ratio_cap;
     set_bounds(p, range_N);

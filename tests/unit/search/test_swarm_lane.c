@@ -483,7 +483,7 @@ START_TEST(iterations_like_formfind_on_the_papers_net)
 {
     struct net net;
     if (!machine_has(isas[_i])) return;
-    OPEN_CASE(&net, "configs/chen2022.yaml");
+    OPEN_CASE(&net, "configs/straight-edges.yaml");
     compare_with_formfind(&net, _i);
     close_net(&net);
 }

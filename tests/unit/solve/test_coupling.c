@@ -207,7 +207,7 @@ START_TEST(the_papers_rule_is_restarted)
     struct net net;
     struct rng rng = {9};
     double psi_m[2];
-    OPEN_CASE(&net, "configs/chen2022.yaml");
+    OPEN_CASE(&net, "configs/straight-edges.yaml");
     attach_all(&net, &rng, 1e-5);
     for (int scheme = 0; scheme < 2; scheme++) {
         ck_assert_int_eq(find_coupled(&net, scheme, 1e-6), HF_OK);
@@ -392,7 +392,7 @@ START_TEST(ill_posed_nets_keep_their_name)
 {
     struct net net;
     struct rng rng = rng_start(2);
-    OPEN_CASE(&net, "configs/chen2022.yaml", "form.stop=residual", "form.max_iterations=3000");
+    OPEN_CASE(&net, "configs/straight-edges.yaml", "form.stop=residual", "form.max_iterations=3000");
     attach_all(&net, &rng, 1e-5);
     ck_assert_int_eq(find_coupled(&net, HF_COUPLING_ACCELERATED, 1e-6), HF_STRAIGHT_CHAIN);
     ck_assert_int_eq(net.result.coupling.stop_reason, HF_COUPLING_NET);

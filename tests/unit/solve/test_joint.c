@@ -192,7 +192,7 @@ START_TEST(ill_posed_nets_keep_their_name)
 {
     struct net net;
     struct rng rng = rng_start(2);
-    OPEN_CASE(&net, "configs/chen2022.yaml", "form.method=newton", "form.stop=residual");
+    OPEN_CASE(&net, "configs/straight-edges.yaml", "form.method=newton", "form.stop=residual");
     attach_all(&net, &rng, 0);
     ck_assert_int_eq(find_at_once(&net, 1e-6), HF_STRAIGHT_CHAIN);
     ck_assert_int_eq(net.result.coupling.stop_reason, HF_COUPLING_NET);

@@ -189,7 +189,7 @@ START_TEST(a_known_move_is_the_position_error)
     if (_i < 4)
         open_scene(&net, scene[_i]);
     else
-        OPEN_CASE(&net, "configs/chen2022.yaml", "form.method=fdm");
+        OPEN_CASE(&net, "configs/straight-edges.yaml", "form.method=fdm");
     net.form.residual_tolerance = net.form.length_tolerance = 1e-12;
     ck_assert_int_eq(find(&net), HF_OK);
     for (int c = 0; c < 3; c++) {

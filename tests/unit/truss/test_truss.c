@@ -104,7 +104,7 @@ START_TEST(mass_by_hand)
     hf_case c;
     hf_truss t;
     hf_messages messages = {0};
-    ck_assert_int_eq(hf_config_load(source_path("configs/chen2022.yaml"), (const char *const[]){"truss.depth_m=1"}, 1,
+    ck_assert_int_eq(hf_config_load(source_path("configs/straight-edges.yaml"), (const char *const[]){"truss.depth_m=1"}, 1,
                                     &c, &messages),
                      HF_OK);
     ck_assert_int_eq(hf_config_truss(&c, &t, &messages), HF_OK);
@@ -213,7 +213,7 @@ START_TEST(what_the_net_is_given)
     hf_messages messages = {0};
     struct rng rng = rng_start(1);
     double force[108], sum[3] = {0}, most = 0;
-    ck_assert_int_eq(hf_config_load(source_path("configs/chen2022-truss.yaml"), NULL, 0, &c, &messages), HF_OK);
+    ck_assert_int_eq(hf_config_load(source_path("configs/straight-edges-truss.yaml"), NULL, 0, &c, &messages), HF_OK);
     ck_assert_int_eq(hf_config_scene(&c, &scene, &messages), HF_OK);
     ck_assert_msg(hf_config_carrier(&c, &scene, &carrier, &messages) == HF_OK, "%s", messages.text);
     ck_assert_int_eq(carrier.n_attachment, 36);
@@ -257,7 +257,7 @@ START_TEST(support_without_attachment)
     hf_carrier carrier;
     hf_messages messages = {0};
     static const char *const ribs[] = {"scene.parabolic_cylinder.supports=ribs", "truss.bud.panels=1"};
-    ck_assert_int_eq(hf_config_load(source_path("configs/chen2022-truss.yaml"), ribs, 2, &c, &messages), HF_OK);
+    ck_assert_int_eq(hf_config_load(source_path("configs/straight-edges-truss.yaml"), ribs, 2, &c, &messages), HF_OK);
     ck_assert_int_eq(hf_config_scene(&c, &scene, &messages), HF_OK);
     ck_assert_int_eq(hf_config_carrier(&c, &scene, &carrier, &messages), HF_BAD_CASE);
     ck_assert_ptr_nonnull(

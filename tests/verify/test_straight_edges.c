@@ -1,4 +1,4 @@
-/* The reflector of the paper, configs/chen2022.yaml: its figures at the paper's stop, and that it is refused under the
+/* The reflector of the paper, configs/straight-edges.yaml: its figures at the paper's stop, and that it is refused under the
  * stopping rule residual.
  *
  * Source: Chen, Dong, Song, Chen, Li, Aerospace 2022, 9, 239: psi 6.6 mm, inner ratio 1.0011, boundary ratio 4.8445.
@@ -13,7 +13,7 @@
 START_TEST(stand_in_at_the_papers_stop)
 {
     struct net net;
-    OPEN_CASE(&net, "configs/chen2022.yaml");
+    OPEN_CASE(&net, "configs/straight-edges.yaml");
     ck_assert_int_eq(find_shape(&net), HF_OK);
     ck_assert_int_eq(net.result.stop_reason, HF_STOPPED_RMS_CHANGE);
     ck_assert_int_eq(net.result.iterations, 67);
@@ -30,7 +30,7 @@ END_TEST
 START_TEST(nothing_has_changed)
 {
     struct net net;
-    OPEN_CASE(&net, "configs/chen2022.yaml");
+    OPEN_CASE(&net, "configs/straight-edges.yaml");
     ck_assert_int_eq(find_shape(&net), HF_OK);
     ck_assert_double_eq_tol(1e3 * net.result.psi_m, 6.602655, 0.5e-6);
     ck_assert_double_eq_tol(net.result.inner_tension_ratio, 1.001262, 0.5e-6);
@@ -43,7 +43,7 @@ END_TEST
 START_TEST(finer_net_with_its_own_focal_length)
 {
     struct net net;
-    OPEN_CASE(&net, "configs/chen2022.yaml", "scene.parabolic_cylinder.modules=[10, 12]",
+    OPEN_CASE(&net, "configs/straight-edges.yaml", "scene.parabolic_cylinder.modules=[10, 12]",
               "scene.parabolic_cylinder.focal_length_m=17.6");
     ck_assert_int_eq(find_shape(&net), HF_OK);
     ck_assert_int_eq(net.result.iterations, 37);
@@ -59,7 +59,7 @@ END_TEST
 START_TEST(converging_it_is_refused)
 {
     struct net net;
-    OPEN_CASE(&net, "configs/chen2022.yaml", "form.stop=residual");
+    OPEN_CASE(&net, "configs/straight-edges.yaml", "form.stop=residual");
     ck_assert_int_eq(find_shape(&net), HF_STRAIGHT_CHAIN);
     ck_assert_int_eq(net.model.n_chain, 30);
     ck_assert_int_eq(net.result.n_loaded_chain, 30);
@@ -84,7 +84,7 @@ START_TEST(search_comes_near_the_optimum)
     struct net net;
     hf_batch batch;
     hf_optimiser ga;
-    OPEN_CASE(&net, "configs/chen2022.yaml", "optimize.population=16", "optimize.generations=60");
+    OPEN_CASE(&net, "configs/straight-edges.yaml", "optimize.population=16", "optimize.generations=60");
     ck_assert_int_eq(find_shape(&net), HF_OK);
     const hf_model *m = &net.model;
     double start_q[220], base_N[120];
@@ -110,10 +110,10 @@ START_TEST(search_comes_near_the_optimum)
 }
 END_TEST
 
-Suite *suite_verify_chen2022(void)
+Suite *suite_verify_straight_edges(void)
 {
-    Suite *suite = suite_create("verify/chen2022");
-    TCase *tests = tcase_create("chen2022");
+    Suite *suite = suite_create("verify/straight_edges");
+    TCase *tests = tcase_create("straight_edges");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, stand_in_at_the_papers_stop);
     tcase_add_test(tests, nothing_has_changed);
