@@ -55,7 +55,13 @@ export const pages = [
     text: cylinder([20, 24], "optimize: {rule: tension, population: 4, generations: 400, polish_iterations: 2}\n"),
     sections: GA,
   },
-  { name: "truss", source: "configs/straight-edges-truss.yaml", sections: FORM, maybe: ["coupling", "ga"], truss: true },
+  {
+    name: "truss",
+    source: "configs/straight-edges-truss.yaml",
+    sections: FORM,
+    maybe: ["coupling", "ga"],
+    truss: true,
+  },
   {
     name: "sweep",
     study: 64,

@@ -6,7 +6,8 @@
 
 static const char *const cases[][5] = {
     {"straight-edges", "configs/straight-edges.yaml", "optimize.generations=20", "optimize.compare_lm=true", NULL},
-    {"straight-edges-truss", "configs/straight-edges-truss.yaml", "optimize.generations=10", "optimize.compare_lm=true", NULL},
+    {"straight-edges-truss", "configs/straight-edges-truss.yaml", "optimize.generations=10", "optimize.compare_lm=true",
+     NULL},
     {"reflector", "configs/reflector.yaml", "optimize.generations=10", "optimize.method=ga+lm", NULL},
     {"triangles_a", NULL, "optimize.generations=20", "optimize.method=ga+lm", NULL},
 };

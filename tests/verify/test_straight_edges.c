@@ -1,5 +1,5 @@
-/* The reflector of the paper, configs/straight-edges.yaml: its figures at the paper's stop, and that it is refused under the
- * stopping rule residual.
+/* The ill-posed stand-in for the paper's reflector, configs/straight-edges.yaml: its figures at the paper's stop, and
+ * that it is refused under the stopping rule residual.
  *
  * Source: Chen, Dong, Song, Chen, Li, Aerospace 2022, 9, 239: psi 6.6 mm, inner ratio 1.0011, boundary ratio 4.8445.
  * The paper prints neither topology nor focal length; METHOD section 10 gives the figures of this stand-in, measured

@@ -25,8 +25,8 @@ struct trace {
 /* The cap lies just above the ratio of the form-found net, so that some designs exceed it and others do not. */
 static void open_search(struct search *s)
 {
-    OPEN_CASE(&s->net, "configs/straight-edges.yaml", "scene.parabolic_cylinder.modules=[3, 3]", "optimize.population=16",
-              "optimize.generations=12");
+    OPEN_CASE(&s->net, "configs/straight-edges.yaml", "scene.parabolic_cylinder.modules=[3, 3]",
+              "optimize.population=16", "optimize.generations=12");
     const hf_model *m = &s->net.model;
     ck_assert(m->n_gene <= MAX_GENE && m->n_cable <= MAX_CABLE);
     ck_assert_int_eq(find_shape(&s->net), HF_OK);

@@ -44,7 +44,8 @@ static struct outcome open_and_evaluate(const char *path, int n_thread)
 
 /* ---- what it gives ---- */
 
-static const char *const cases[] = {"configs/straight-edges.yaml", "configs/straight-edges-truss.yaml", "configs/reflector.yaml"};
+static const char *const cases[] = {"configs/straight-edges.yaml", "configs/straight-edges-truss.yaml",
+                                    "configs/reflector.yaml"};
 enum { N_CASE = sizeof cases / sizeof *cases };
 
 START_TEST(opening_gives_what_a_run_finds)

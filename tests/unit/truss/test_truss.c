@@ -104,8 +104,8 @@ START_TEST(mass_by_hand)
     hf_case c;
     hf_truss t;
     hf_messages messages = {0};
-    ck_assert_int_eq(hf_config_load(source_path("configs/straight-edges.yaml"), (const char *const[]){"truss.depth_m=1"}, 1,
-                                    &c, &messages),
+    ck_assert_int_eq(hf_config_load(source_path("configs/straight-edges.yaml"),
+                                    (const char *const[]){"truss.depth_m=1"}, 1, &c, &messages),
                      HF_OK);
     ck_assert_int_eq(hf_config_truss(&c, &t, &messages), HF_OK);
     double mass = t.n_node;
