@@ -91,6 +91,11 @@ typedef struct {
 hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int n, const double *position_m,
                                 const double *root_weight, hf_surface_fit *fit);
 
+/* The errors along the normal of n points, position_m [3][n], against a fitted surface of this kind; NaN when the fit
+ * did not converge. */
+void hf_surface_fit_errors(hf_surface_kind kind, const hf_surface_fit *fit, int n, const double *position_m,
+                           double *error_m);
+
 typedef struct {
     bool is_measured; /* false: the other members have no meaning */
     HF_SURFACE_LIST(HF_SURFACE_MEMBER)

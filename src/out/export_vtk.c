@@ -1,6 +1,6 @@
-/* Writes the shapes of a run for ParaView: VTKHDF 1.0 files, each an unstructured grid of lines, which VTK 9.1,
- * ParaView 5.11 and newer versions read. The folder of --vtk gets theoretical.hdf, form.hdf, and if the run has these
- * shapes optimize.hdf and polish.hdf.
+/* Writes the shapes of a run for ParaView: VTKHDF 1.0 files, each an unstructured grid, which VTK 9.1, ParaView 5.11
+ * and newer versions read. The folder of --vtk gets theoretical.hdf, form.hdf, and if the run has these shapes
+ * optimize.hdf and polish.hdf, whose cells are the cables as lines.
  *
  * Points and cells are in the order of the scene. Point data: role, load_N; a found shape also has displacement_m (from
  * the theoretical shape), its size deviation_m, and, when the case asks for measures of the surface, normal_error_m.
@@ -8,15 +8,21 @@
  * theoretical length). Words are stored as numbers: role 0 support, 1 inner, 2 edge; group 0 inner, 1 boundary; law
  * 0 tension, 1 length, 2 force_density, 3 elastic.
  *
+ * When the case asks for measures of the surface, each of these shapes has a second file, such as form_facets.hdf,
+ * with the same points. Its cells are the facets, triangles and quadrilaterals, with normal_mean_m and normal_rms_m,
+ * mean and RMS of the error along the normal over the facet, and fit_normal_mean_m, fit_normal_rms_m, the same after
+ * the best fit to all facets (NaN when it does not converge).
+ *
  * A run with a truss also gives truss.hdf. Point data: fixed (bit k: dof k is held), mass_kg, displacement_m,
  * rotation_rad; cell data: unit, joint, axial_force_N (tension > 0).
  *
- * Contents: a grid of lines - its file - the shapes of a run - the truss - together */
+ * Contents: a grid - its file - the shapes of a run - facets - the truss - together */
 #include "out/export.h"
 
 #include "base/arena.h"
 #include "base/file_out.h"
 #include "net/wanted.h"
+#include "solve/facet_rms.h"
 #include "store/hdf5.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
@@ -27,10 +33,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#define LINE_CELL 3   /* VTK's number of the cell type line */
+enum { LINE_CELL = 3, TRIANGLE_CELL = 5, QUAD_CELL = 9 }; /* VTK's numbers of the types of cells */
 #define FIELDS_MAX 12 /* point or cell fields of one file; add() demands that all have room */
 
-/* ---- a grid of lines ---- */
+/* ---- a grid ---- */
 
 /* A data field of the grid; `values` stay the caller's. */
 typedef struct {
@@ -41,10 +47,12 @@ typedef struct {
 } field;
 
 typedef struct {
-    int n_point, n_line, n_point_field, n_line_field;
-    const double *position_m; /* [n_point][3] */
-    const int *end;           /* [n_line][2] */
-    field point[FIELDS_MAX], line[FIELDS_MAX];
+    int n_point, n_cell, n_point_field, n_cell_field;
+    const double *position_m;  /* [n_point][3] */
+    const int *corner;         /* [offset[n_cell]] points of the cells, one after the other */
+    const int *offset;         /* [n_cell + 1] where those of each begin */
+    const unsigned char *type; /* [n_cell] */
+    field point[FIELDS_MAX], cell[FIELDS_MAX];
 } grid;
 
 static void add(field *list, int *n, const char *name, const char *units, const hf_hdf5_kind *kind, int columns,
@@ -100,38 +108,41 @@ static void put_cell_types(hf_hdf5 *io, hid_t group, int n, const unsigned char 
     hf_hdf5_close(io, space);
 }
 
-/* offset: [n_line + 1] scratch; type: [n_line] scratch */
-static void put_grid(hf_hdf5 *io, const grid *g, int *offset, unsigned char *type)
+static void put_grid(hf_hdf5 *io, const grid *g)
 {
-    const long n_point = g->n_point, n_line = g->n_line, n_end = 2L * g->n_line, version[2] = {1, 0};
-    for (int e = 0; e <= g->n_line; e++)
-        offset[e] = 2 * e;
-    memset(type, LINE_CELL, (size_t)g->n_line);
+    const long n_point = g->n_point, n_cell = g->n_cell, n_corner = g->offset[g->n_cell], version[2] = {1, 0};
     hid_t group = hf_hdf5_make_group(io, "/VTKHDF");
     hf_hdf5_put(io, group, ".", "Version", HF_KIND_LONG, 2, version);
     put_type(io, group);
     put(io, group, &(field){"NumberOfPoints", "", HF_KIND_LONG, 1, &n_point}, 1);
-    put(io, group, &(field){"NumberOfCells", "", HF_KIND_LONG, 1, &n_line}, 1);
-    put(io, group, &(field){"NumberOfConnectivityIds", "", HF_KIND_LONG, 1, &n_end}, 1);
+    put(io, group, &(field){"NumberOfCells", "", HF_KIND_LONG, 1, &n_cell}, 1);
+    put(io, group, &(field){"NumberOfConnectivityIds", "", HF_KIND_LONG, 1, &n_corner}, 1);
     put(io, group, &(field){"Points", "m", HF_KIND_REAL, 3, g->position_m}, g->n_point);
-    put(io, group, &(field){"Connectivity", "", HF_KIND_INT, 1, g->end}, 2 * g->n_line);
-    put(io, group, &(field){"Offsets", "", HF_KIND_INT, 1, offset}, g->n_line + 1);
-    put_cell_types(io, group, g->n_line, type);
+    put(io, group, &(field){"Connectivity", "", HF_KIND_INT, 1, g->corner}, (int)n_corner);
+    put(io, group, &(field){"Offsets", "", HF_KIND_INT, 1, g->offset}, g->n_cell + 1);
+    put_cell_types(io, group, g->n_cell, g->type);
     hf_hdf5_close(io, group);
     put_fields(io, "/VTKHDF/PointData", g->point, g->n_point_field, g->n_point);
-    put_fields(io, "/VTKHDF/CellData", g->line, g->n_line_field, g->n_line);
+    put_fields(io, "/VTKHDF/CellData", g->cell, g->n_cell_field, g->n_cell);
 }
 
-static hf_status write_grid(const hf_export_request *o, const char *path, const grid *g, int *offset,
-                            unsigned char *type, hf_messages *messages)
+static hf_status write_grid(const hf_export_request *o, const char *path, const grid *g, hf_messages *messages)
 {
     hf_file_out *out;
     HF_TRY(hf_file_out_set_begin(o->files, path, &out, messages));
     hf_hdf5 io = {.path = path, .messages = messages, .status = HF_OK, .file = -1};
     hf_hdf5_create_file(&io, out);
-    put_grid(&io, g, offset, type);
+    put_grid(&io, g);
     hf_hdf5_close_file(&io);
     return io.status;
+}
+
+/* All cells are lines. offset: [n + 1], type: [n] */
+static void set_lines(int n, int *offset, unsigned char *type)
+{
+    for (int e = 0; e <= n; e++)
+        offset[e] = 2 * e;
+    memset(type, LINE_CELL, (size_t)n);
 }
 
 /* ---- the shapes of a run ---- */
@@ -141,11 +152,15 @@ typedef struct {
     int *role, *group, *law, *slack, *offset;
     unsigned char *type;
     double *theoretical_m, *displacement_m, *deviation_m, *normal_error_m, *length_change_m;
+    hf_facets facets; /* none without measures of the surface */
+    int *facet_corner, *facet_offset;
+    unsigned char *facet_type;
+    hf_facet_errors facet_error;
 } scratch;
 
 static void lay_out(hf_arena *a, const hf_scene *s, scratch *t)
 {
-    size_t n = (size_t)s->n_node, m = (size_t)s->n_cable;
+    size_t n = (size_t)s->n_node, m = (size_t)s->n_cable, n_facet = (size_t)t->facets.n_facet;
     t->role = hf_arena_take(a, n, sizeof(int));
     t->group = hf_arena_take(a, m, sizeof(int));
     t->law = hf_arena_take(a, m, sizeof(int));
@@ -157,6 +172,13 @@ static void lay_out(hf_arena *a, const hf_scene *s, scratch *t)
     t->deviation_m = hf_arena_take(a, n, sizeof(double));
     t->normal_error_m = hf_arena_take(a, n, sizeof(double));
     t->length_change_m = hf_arena_take(a, m, sizeof(double));
+    t->facet_corner = hf_arena_take(a, 4 * n_facet, sizeof(int));
+    t->facet_offset = hf_arena_take(a, n_facet + 1, sizeof(int));
+    t->facet_type = hf_arena_take(a, n_facet, 1);
+    t->facet_error.normal_mean_m = hf_arena_take(a, n_facet, sizeof(double));
+    t->facet_error.normal_rms_m = hf_arena_take(a, n_facet, sizeof(double));
+    t->facet_error.fit_normal_mean_m = hf_arena_take(a, n_facet, sizeof(double));
+    t->facet_error.fit_normal_rms_m = hf_arena_take(a, n_facet, sizeof(double));
 }
 
 static void fill(const hf_scene *s, const hf_shape *shape, const hf_summary *summary, scratch *t)
@@ -187,36 +209,82 @@ static void fill(const hf_scene *s, const hf_shape *shape, const hf_summary *sum
 /* When shape is NULL, the grid is that of the theoretical shape. */
 static grid grid_of(const hf_scene *s, const hf_shape *shape, const hf_summary *summary, const scratch *t)
 {
-    grid g = {.n_point = s->n_node, .n_line = s->n_cable, .end = s->end};
-    int *n = &g.n_point_field, *m = &g.n_line_field;
+    grid g = {.n_point = s->n_node, .n_cell = s->n_cable, .corner = s->end, .offset = t->offset, .type = t->type};
+    int *n = &g.n_point_field, *m = &g.n_cell_field;
     g.position_m = shape ? shape->position_m : s->position_m;
     add(g.point, n, "role", "", HF_KIND_INT, 1, t->role);
     add(g.point, n, "load_N", "N", HF_KIND_REAL, 3, s->load_N);
     if (summary->surface.focal_length_m > 0) add(g.point, n, "normal_error_m", "m", HF_KIND_REAL, 1, t->normal_error_m);
-    add(g.line, m, "group", "", HF_KIND_INT, 1, t->group);
-    add(g.line, m, "law", "", HF_KIND_INT, 1, t->law);
-    add(g.line, m, "length_m", "m", HF_KIND_REAL, 1, shape ? shape->length_m : t->theoretical_m);
-    add(g.line, m, "EA_N", "N", HF_KIND_REAL, 1, s->EA_N);
+    add(g.cell, m, "group", "", HF_KIND_INT, 1, t->group);
+    add(g.cell, m, "law", "", HF_KIND_INT, 1, t->law);
+    add(g.cell, m, "length_m", "m", HF_KIND_REAL, 1, shape ? shape->length_m : t->theoretical_m);
+    add(g.cell, m, "EA_N", "N", HF_KIND_REAL, 1, s->EA_N);
     if (!shape) return g;
     add(g.point, n, "displacement_m", "m", HF_KIND_REAL, 3, t->displacement_m);
     add(g.point, n, "deviation_m", "m", HF_KIND_REAL, 1, t->deviation_m);
-    add(g.line, m, "tension_N", "N", HF_KIND_REAL, 1, shape->tension_N);
-    add(g.line, m, "q_N_per_m", "N/m", HF_KIND_REAL, 1, shape->q_N_per_m);
-    add(g.line, m, "length_change_m", "m", HF_KIND_REAL, 1, t->length_change_m);
-    add(g.line, m, "slack", "", HF_KIND_INT, 1, t->slack);
+    add(g.cell, m, "tension_N", "N", HF_KIND_REAL, 1, shape->tension_N);
+    add(g.cell, m, "q_N_per_m", "N/m", HF_KIND_REAL, 1, shape->q_N_per_m);
+    add(g.cell, m, "length_change_m", "m", HF_KIND_REAL, 1, t->length_change_m);
+    add(g.cell, m, "slack", "", HF_KIND_INT, 1, t->slack);
     return g;
 }
 
-/* Stage HF_STAGE_NONE stands for the theoretical shape. */
-static hf_status write_stage(const hf_export_request *o, int stage, const char *path, const hf_scene *scene,
-                             const hf_summary *summary, scratch *t, hf_messages *messages)
+/* ---- facets ---- */
+
+/* A triangle has its last corner once here. */
+static void set_facet_cells(scratch *t)
+{
+    int n = 0;
+    for (int i = 0; i < t->facets.n_facet; i++) {
+        const int *corner = t->facets.corner + 4 * (size_t)i;
+        int n_corner = corner[2] == corner[3] ? 3 : 4;
+        t->facet_offset[i] = n;
+        t->facet_type[i] = n_corner == 3 ? TRIANGLE_CELL : QUAD_CELL;
+        for (int k = 0; k < n_corner; k++)
+            t->facet_corner[n++] = corner[k];
+    }
+    t->facet_offset[t->facets.n_facet] = n;
+}
+
+/* Cells are the facets; the points are those of the cables' grid. */
+static grid grid_of_facets(const grid *cables, const scratch *t)
+{
+    const hf_facet_errors *e = &t->facet_error;
+    grid g = *cables;
+    int *m = &g.n_cell_field;
+    g.n_cell = t->facets.n_facet;
+    g.corner = t->facet_corner;
+    g.offset = t->facet_offset;
+    g.type = t->facet_type;
+    g.n_cell_field = 0;
+    add(g.cell, m, "normal_mean_m", "m", HF_KIND_REAL, 1, e->normal_mean_m);
+    add(g.cell, m, "normal_rms_m", "m", HF_KIND_REAL, 1, e->normal_rms_m);
+    add(g.cell, m, "fit_normal_mean_m", "m", HF_KIND_REAL, 1, e->fit_normal_mean_m);
+    add(g.cell, m, "fit_normal_rms_m", "m", HF_KIND_REAL, 1, e->fit_normal_rms_m);
+    return g;
+}
+
+static hf_status write_facets(const hf_export_request *o, const char *path, const grid *cables,
+                              const hf_summary *summary, const scratch *t, hf_messages *messages)
+{
+    const hf_facet_shape shape = {cables->position_m};
+    if (hf_facet_map(&summary->surface, &t->facets, &shape, &t->facet_error) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", o->file);
+    const grid g = grid_of_facets(cables, t);
+    return write_grid(o, path, &g, messages);
+}
+
+/* The shape of a stage, and its facets if there are any; stage HF_STAGE_NONE stands for the theoretical shape. */
+static hf_status write_stage(const hf_export_request *o, int stage, const char *path, const char *facets_path,
+                             const hf_scene *scene, const hf_summary *summary, scratch *t, hf_messages *messages)
 {
     hf_shape shape = {0};
     const hf_shape *found = stage == HF_STAGE_NONE ? NULL : &shape;
     if (found) HF_TRY(hf_store_read_shape(o->file, (hf_stage)stage, &shape, messages));
     fill(scene, found, summary, t);
     const grid g = grid_of(scene, found, summary, t);
-    hf_status status = write_grid(o, path, &g, t->offset, t->type, messages);
+    hf_status status = write_grid(o, path, &g, messages);
+    if (status == HF_OK && t->facets.n_facet) status = write_facets(o, facets_path, &g, summary, t, messages);
     hf_shape_free(&shape);
     return status;
 }
@@ -244,8 +312,14 @@ static void lay_out_truss(hf_arena *a, const hf_truss *truss, truss_scratch *t)
 
 static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *state, truss_scratch *t)
 {
-    grid g = {.n_point = truss->n_node, .n_line = truss->n_member, .position_m = truss->position_m, .end = truss->end};
-    int *n = &g.n_point_field, *m = &g.n_line_field, has_state = state->displacement && state->end_force;
+    grid g = {.n_point = truss->n_node,
+              .n_cell = truss->n_member,
+              .position_m = truss->position_m,
+              .corner = truss->end,
+              .offset = t->offset,
+              .type = t->type};
+    int *n = &g.n_point_field, *m = &g.n_cell_field, has_state = state->displacement && state->end_force;
+    set_lines(truss->n_member, t->offset, t->type);
     for (int i = 0; i < truss->n_node; i++) {
         t->fixed[i] = truss->fixed[i];
         for (int c = 0; c < 3 && has_state; c++) {
@@ -260,12 +334,12 @@ static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *state, 
     }
     add(g.point, n, "fixed", "", HF_KIND_INT, 1, t->fixed);
     add(g.point, n, "mass_kg", "kg", HF_KIND_REAL, 1, truss->mass_kg);
-    add(g.line, m, "unit", "", HF_KIND_INT, 1, t->unit);
-    add(g.line, m, "joint", "", HF_KIND_INT, 1, t->joint);
+    add(g.cell, m, "unit", "", HF_KIND_INT, 1, t->unit);
+    add(g.cell, m, "joint", "", HF_KIND_INT, 1, t->joint);
     if (!has_state) return g;
     add(g.point, n, "displacement_m", "m", HF_KIND_REAL, 3, t->displacement_m);
     add(g.point, n, "rotation_rad", "rad", HF_KIND_REAL, 3, t->rotation_rad);
-    add(g.line, m, "axial_force_N", "N", HF_KIND_REAL, 1, t->axial_force_N);
+    add(g.cell, m, "axial_force_N", "N", HF_KIND_REAL, 1, t->axial_force_N);
     return g;
 }
 
@@ -282,7 +356,7 @@ static hf_status write_truss(const hf_export_request *o, const char *path, hf_me
     }
     if (status == HF_OK) {
         const grid g = grid_of_truss(&truss, &state, &t);
-        status = write_grid(o, path, &g, t.offset, t.type, messages);
+        status = write_grid(o, path, &g, messages);
     }
     hf_arena_free(&arena);
     hf_carrier_state_free(&state);
@@ -292,13 +366,18 @@ static hf_status write_truss(const hf_export_request *o, const char *path, hf_me
 
 /* ---- together ---- */
 
+enum { N_FILE = 9, FACETS = 5 }; /* the facets of stage i are file FACETS + i */
+
 static hf_status write_all(const hf_export_request *o, const hf_scene *scene, const hf_summary *summary, scratch *t,
                            char *said, size_t size, hf_messages *messages)
 {
-    static const char *const name[5] = {"form", "optimize", "polish", "theoretical", "truss"}; /* by hf_stage */
-    bool has[5] = {true, hf_summary_has_best_shape(summary), summary->has_polish, true, summary->has_truss};
-    char path[5][PATH_MAX];
-    for (int i = 0; i < 5; i++) { /* all names are checked before anything is made */
+    static const char *const name[N_FILE] = {"form",        "optimize",        "polish",        "theoretical",
+                                             "truss", /* by hf_stage */
+                                             "form_facets", "optimize_facets", "polish_facets", "theoretical_facets"};
+    bool has[N_FILE] = {true, hf_summary_has_best_shape(summary), summary->has_polish, true, summary->has_truss};
+    char path[N_FILE][PATH_MAX];
+    for (int i = 0; i < N_FILE; i++) { /* all names are checked before anything is made */
+        if (i >= FACETS) has[i] = has[i - FACETS] && t->facets.n_facet > 0;
         if (snprintf(path[i], PATH_MAX, "%s/%s.hdf", o->output, name[i]) >= PATH_MAX)
             return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
         if (has[i]) HF_TRY(hf_export_claim(o, path[i], messages));
@@ -309,8 +388,10 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
     for (int k = 0; k < 5; k++) {
         int i = order[k];
         if (!has[i]) continue;
-        HF_TRY(i == 4 ? write_truss(o, path[i], messages) : write_stage(o, i, path[i], scene, summary, t, messages));
-        if ((size_t)used < size) used += snprintf(said + used, size - (size_t)used, " %s.hdf", name[i]);
+        HF_TRY(i == 4 ? write_truss(o, path[i], messages)
+                      : write_stage(o, i, path[i], path[FACETS + i], scene, summary, t, messages));
+        for (int j = i; j < N_FILE; j += FACETS)
+            if (has[j] && (size_t)used < size) used += snprintf(said + used, size - (size_t)used, " %s.hdf", name[j]);
     }
     return HF_OK;
 }
@@ -319,17 +400,22 @@ static hf_status export_vtk(const hf_export_request *request, char *said, size_t
 {
     hf_scene scene = {0};
     hf_summary summary;
-    scratch t;
+    scratch t = {0};
     hf_arena arena = {0};
     HF_TRY(hf_store_read_summary(request->file, &summary, messages));
     HF_TRY(hf_store_read_scene(request->file, &scene, messages));
-    hf_status status = HF_ARENA_MAKE(&arena, lay_out(&arena, &scene, &t));
+    hf_status status = HF_OK;
+    if (summary.surface.focal_length_m > 0) status = hf_facets_find(&scene, &summary.surface, &t.facets);
+    if (status == HF_OK) status = HF_ARENA_MAKE(&arena, lay_out(&arena, &scene, &t));
     if (status == HF_OK) {
+        set_lines(scene.n_cable, t.offset, t.type);
+        set_facet_cells(&t);
         status = write_all(request, &scene, &summary, &t, said, size, messages);
     } else {
         hf_error(messages, status, "%s: out of memory", request->file);
     }
     hf_arena_free(&arena);
+    hf_facets_free(&t.facets);
     hf_scene_free(&scene);
     return status;
 }
@@ -337,7 +423,7 @@ static hf_status export_vtk(const hf_export_request *request, char *said, size_t
 const hf_exporter hf_exporter_vtk = {
     .option = "--vtk",
     .argument = "DIR",
-    .help = "write every shape of the run into DIR, for ParaView (VTKHDF)",
+    .help = "write every shape of the run, and its facets, into DIR, for ParaView (VTKHDF)",
     .takes_stage = false,
     .write = export_vtk,
 };

@@ -1,13 +1,29 @@
-/* facet_rms - the errors of the surface between the nodes: RMS over the facets of a shape (METHOD section 9). */
+/* facet_rms - the errors of the surface between the nodes: RMS over the facets of a shape, and the errors of each facet
+ * (METHOD section 9). */
 #ifndef HIFDM_FACET_RMS_H
 #define HIFDM_FACET_RMS_H
 
 #include <hifdm/facets.h>
 #include <hifdm/surface.h>
 
-/* Set the members facet_... and n_facet, n_open_face of `to` from the shape in the workspace; NaN without a facet.
- * HF_OK or HF_NO_MEMORY. */
-hf_status hf_facet_measure(const hf_surface_settings *settings, const hf_facets *facets, const hf_model *model,
-                           const hf_workspace *workspace, hf_surface_measures *to);
+/* A found shape in the order of the scene; borrowed. */
+typedef struct {
+    const double *position_m; /* [n_node][3] */
+} hf_facet_shape;
+
+/* Set the members facet_... and n_facet, n_open_face of `to`, but for losses of gain; NaN without a facet. HF_OK or
+ * HF_NO_MEMORY. */
+hf_status hf_facet_measure(const hf_surface_settings *settings, const hf_facets *facets, const hf_facet_shape *shape,
+                           hf_surface_measures *to);
+
+/* Errors along the normal of each facet, [n_facet], by projected area: mean and RMS, against the wanted surface and
+ * against the best fit to all facets (NaN when it does not converge). */
+typedef struct {
+    double *normal_mean_m, *normal_rms_m, *fit_normal_mean_m, *fit_normal_rms_m;
+} hf_facet_errors;
+
+/* HF_OK or HF_NO_MEMORY. */
+hf_status hf_facet_map(const hf_surface_settings *settings, const hf_facets *facets, const hf_facet_shape *shape,
+                       const hf_facet_errors *to);
 
 #endif

@@ -87,6 +87,21 @@ static void collect(const hf_surface_settings *s, const hf_model *m, const hf_wo
     to->half_path_rms_m = sqrt(half_path / n);
 }
 
+static hf_status measure_facets(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
+                                const hf_workspace *w, hf_surface_measures *to)
+{
+    double *position_m;
+    hf_arena arena = {0};
+    HF_TRY(HF_ARENA_MAKE(&arena, position_m = hf_arena_take(&arena, 3 * (size_t)m->n_node, sizeof(double))));
+    for (int row = 0; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++)
+            position_m[3 * (size_t)m->node_of_row[row] + (size_t)c] = w->position_m[c * m->n_node + row];
+    const hf_facet_shape shape = {position_m};
+    hf_status status = hf_facet_measure(s, facets, &shape, to);
+    hf_arena_free(&arena);
+    return status;
+}
+
 hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
                              const hf_workspace *w, hf_surface_measures *measures)
 {
@@ -107,7 +122,7 @@ hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *face
     all.faceting_rms_m =
         s->strip_width_m > 0 ? s->strip_width_m * s->strip_width_m / (24 * sqrt(5) * s->focal_length_m) : (double)NAN;
     hf_status status = hf_surface_fit_points(s->kind, s->focal_length_m, (int)n, position_m, NULL, &all.fit);
-    if (status == HF_OK) status = hf_facet_measure(s, facets, m, w, &all);
+    if (status == HF_OK) status = measure_facets(s, facets, m, w, &all);
     note_losses(s, &all);
     hf_arena_free(&arena);
     if (status == HF_OK) *measures = all;

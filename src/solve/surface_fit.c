@@ -75,10 +75,8 @@ static void quantities(const fit_problem *p, const gsl_vector *v, double value[N
         value[p->parameter[k]] = gsl_vector_get(v, k);
 }
 
-static pose pose_of(const fit_problem *p, const gsl_vector *v)
+static pose pose_at(const fit_problem *p, const double value[N_QUANTITY])
 {
-    double value[N_QUANTITY];
-    quantities(p, v, value);
     pose q = {.shift = {p->size * value[SHIFT_X], p->size * value[SHIFT_Y], p->size * value[SHIFT_Z]},
               .curvature = p->curvature * (1 + value[CURVE])};
     for (int d = -1; d < 3; d++) { /* (Rx Ry Rz)' = Rz' Ry' Rx' */
@@ -89,6 +87,13 @@ static pose pose_of(const fit_problem *p, const gsl_vector *v)
         multiply(zy, r[0], d < 0 ? q.turn : q.slope[d]);
     }
     return q;
+}
+
+static pose pose_of(const fit_problem *p, const gsl_vector *v)
+{
+    double value[N_QUANTITY];
+    quantities(p, v, value);
+    return pose_at(p, value);
 }
 
 /* Row `k` of matrix m times the vector from the shifted centre to node i. */
@@ -273,4 +278,25 @@ hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int
     }
     if (!fit->converged) set_unknown(fit);
     return HF_OK;
+}
+
+void hf_surface_fit_errors(hf_surface_kind kind, const hf_surface_fit *fit, int n, const double *position_m,
+                           double *error_m)
+{
+    fit_problem p = {.n = n,
+                     .x = position_m,
+                     .y = position_m + n,
+                     .z = position_m + 2 * (size_t)n,
+                     .kind = kind,
+                     .curvature = 1 / (4 * fit->focal_length_m),
+                     .center = {fit->center_x_m, fit->center_y_m, fit->center_z_m},
+                     .size = 1};
+    const double value[N_QUANTITY] = {
+        [SHIFT_X] = fit->shift_x_m,     [SHIFT_Y] = fit->shift_y_m,     [SHIFT_Z] = fit->shift_z_m,
+        [TURN_X] = fit->rotation_x_rad, [TURN_Y] = fit->rotation_y_rad, [TURN_Z] = fit->rotation_z_rad};
+    pose q = pose_at(&p, value);
+    for (int i = 0; i < n; i++) {
+        double at[3], slope[2], above = height(&p, &q, i, at, slope);
+        error_m[i] = above / sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
+    }
 }

@@ -26,8 +26,10 @@ START_TEST(paraview_files_hold_the_stored_numbers)
     const char *out = run_chen(), *folder = temp("vtk");
     HIFDM(0, "export", out, "--vtk", folder);
     OUT("for ParaView, in ");
-    OUT(": theoretical.hdf form.hdf optimize.hdf polish.hdf\n");
-    demand_vtk(out, folder, "form optimize polish theoretical");
+    OUT(": theoretical.hdf theoretical_facets.hdf form.hdf form_facets.hdf optimize.hdf optimize_facets.hdf polish.hdf "
+        "polish_facets.hdf\n");
+    demand_vtk(out, folder,
+               "form form_facets optimize optimize_facets polish polish_facets theoretical theoretical_facets");
 }
 END_TEST
 
@@ -39,6 +41,21 @@ START_TEST(paraview_file_of_the_truss)
     HIFDM(0, "export", out, "--vtk", folder);
     OUT(" polish.hdf truss.hdf\n");
     demand_vtk(out, folder, "form optimize polish theoretical truss");
+}
+END_TEST
+
+/* Triangles of a double net and quadrilaterals of a cylinder: their errors along the normal, by numpy. */
+START_TEST(paraview_files_of_facets)
+{
+    static const char *const source[] = {"configs/paraboloid-6m.yaml", "configs/reflector.yaml"};
+    const char *out = temp("f.h5"), *folder = temp("vtk");
+    HIFDM(0, "run", keep(source_path(source[_i])), "-o", out, "--quiet", "--set", "surface.frequencies_Hz=[]");
+    HIFDM(0, "export", out, "--vtk", folder);
+    OUT(": theoretical.hdf theoretical_facets.hdf form.hdf form_facets.hdf\n");
+    demand_vtk(out, folder, "form form_facets theoretical theoretical_facets");
+    SHELL(0, "cd \"$1\" && rm form.hdf theoretical.hdf theoretical_facets.hdf", folder);
+    HIFDM(5, "export", out, "--vtk", folder);
+    ERR("form_facets.hdf exists; use --force to replace it");
 }
 END_TEST
 
@@ -292,6 +309,7 @@ Suite *suite_cli_trade(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, paraview_files_hold_the_stored_numbers);
     tcase_add_test(tests, paraview_file_of_the_truss);
+    tcase_add_loop_test(tests, paraview_files_of_facets, 0, 2);
     tcase_add_test(tests, paraview_files_of_an_imported_net);
     tcase_add_loop_test(tests, net_built_from_the_cut_list_has_the_found_shape, 0, 3);
     tcase_add_test(tests, cut_list_holds_what_it_says);

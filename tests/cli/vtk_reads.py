@@ -13,6 +13,7 @@ except ImportError:
     vtk = None
     print("no VTK here: the files are read by h5py alone")
 
+CELLS = {(3, 2), (5, 3), (9, 4)}  # lines, triangles, quadrilaterals in VTK's numbers, and their points
 LAWS = ["tension", "length", "force_density", "elastic"]
 
 
@@ -22,28 +23,28 @@ def by_vtk(path):
     reader.Update()
     grid = reader.GetOutput()
     assert grid.GetClassName() == "vtkUnstructuredGrid", grid
-    ends = []
+    cells = []
     for i in range(grid.GetNumberOfCells()):
         cell = grid.GetCell(i)
-        assert cell.GetCellType() == vtk.VTK_LINE and cell.GetNumberOfPoints() == 2
-        ends.append([cell.GetPointId(0), cell.GetPointId(1)])
+        assert (cell.GetCellType(), cell.GetNumberOfPoints()) in CELLS
+        cells.append([cell.GetPointId(k) for k in range(cell.GetNumberOfPoints())])
 
     def arrays(data):
         return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
 
-    return (vtk_to_numpy(grid.GetPoints().GetData()), np.array(ends), arrays(grid.GetPointData()),
+    return (vtk_to_numpy(grid.GetPoints().GetData()), cells, arrays(grid.GetPointData()),
             arrays(grid.GetCellData()))
 
 
 def by_h5py(path):
     grid = h5py.File(path, "r")["VTKHDF"]
     assert grid.attrs["Version"].tolist() == [1, 0] and grid.attrs["Type"] == b"UnstructuredGrid"
-    points, ends = grid["Points"][:], grid["Connectivity"][:].reshape(-1, 2)
-    assert grid["NumberOfPoints"][:].tolist() == [len(points)] and grid["NumberOfCells"][:].tolist() == [len(ends)]
-    assert grid["NumberOfConnectivityIds"][:].tolist() == [2 * len(ends)]
-    assert grid["Offsets"][:].tolist() == list(range(0, 2 * len(ends) + 1, 2))
-    assert grid["Types"].dtype == np.uint8 and (grid["Types"][:] == 3).all()
-    return (points, ends, {n: d[:] for n, d in grid["PointData"].items()},
+    points, corners, start = grid["Points"][:], grid["Connectivity"][:], grid["Offsets"][:]
+    cells = [corners[a:b].tolist() for a, b in zip(start, start[1:])]
+    assert grid["NumberOfPoints"][:].tolist() == [len(points)] and grid["NumberOfCells"][:].tolist() == [len(cells)]
+    assert grid["NumberOfConnectivityIds"][:].tolist() == [len(corners)] == [start[-1]] and start[0] == 0
+    assert grid["Types"].dtype == np.uint8 and set(zip(grid["Types"][:], map(len, cells))) <= CELLS
+    return (points, cells, {n: d[:] for n, d in grid["PointData"].items()},
             {n: d[:] for n, d in grid["CellData"].items()})
 
 
@@ -52,8 +53,52 @@ def same(name, one, other):
     assert one.shape == other.shape and one.astype(other.dtype).tobytes() == other.tobytes(), name
 
 
+def errors(points, cell, kind, f):
+    """Errors along the normal at 3 x 3 points of a facet and their weights, projected area. In a triangle the side
+    v = 1 is its third corner. More points change the RMS by 1e-5 of it, where the slope of a deep dish changes over a
+    facet."""
+    x, w = np.polynomial.legendre.leggauss(3)
+    u, v = (g.ravel() for g in np.meshgrid((x + 1) / 2, (x + 1) / 2))
+    w = np.outer(w, w).ravel() / 4
+    far = [cell[2], cell[2] if len(cell) == 3 else cell[3]]
+    cell = [cell[0], cell[1], *far]
+    shape = np.array([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v])
+    du, dv = np.array([v - 1, 1 - v, v, -v]), np.array([u - 1, -u, u, 1 - u])
+    p, a, b = shape.T @ points[cell], du.T @ points[cell], dv.T @ points[cell]
+    c = np.array([1, kind == 2, 0]) / (4 * f)  # z = c . (x^2, y^2)
+    slope = 2 * c * p
+    weight = w * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    assert (weight > 0).all(), "a facet that is not counter-clockwise"
+    return (p[:, 2] - (c * p * p).sum(1)) / np.sqrt(1 + (slope**2).sum(1)), weight
+
+
+def check_facets(result, path, stage, read):
+    points, cells, point, cell = read(path)
+    same("points", points, (result[stage] if stage else result["scene/node"])["position_m"][:])
+    cables = {frozenset(e) for e in result["scene/cable/end"][:].tolist()}
+    assert all(frozenset((c[k - 1], c[k])) in cables for c in cells for k in range(len(c)))
+    settings = result["surface"].attrs
+    area = np.zeros(len(cells))
+    for i, corners in enumerate(cells):
+        e, w = errors(points, corners, settings["kind"], settings["focal_length_m"])
+        area[i] = w.sum()
+        mean, rms = (e * w).sum() / area[i], np.sqrt((e * e * w).sum() / area[i])
+        assert abs(cell["normal_mean_m"][i] - mean) <= 1e-9 * rms and abs(cell["normal_rms_m"][i] - rms) <= 1e-9 * rms
+    if not stage:
+        return
+    said = result["surface"][{"form": "form", "ga/best": "optimize", "polish": "polish"}[stage]].attrs
+    assert said["n_facet"] == len(cells)
+    for name in ("normal", "fit_normal"):
+        rms = np.sqrt((area * cell[f"{name}_rms_m"] ** 2).sum() / area.sum())
+        assert abs(rms - said["facet_" + name + "_rms_m"]) <= 1e-9 * rms, name
+        assert (np.abs(cell[f"{name}_mean_m"]) <= cell[f"{name}_rms_m"] * (1 + 1e-12)).all()
+    same("role", point["role"], result["scene/node/role"][:])
+    same("displacement_m", point["displacement_m"], points - result["scene/node/position_m"][:])
+
+
 def check(result, path, stage, read):
-    points, ends, point, cell = read(path)
+    points, cells, point, cell = read(path)
+    ends = np.array(cells)
     scene, theory = result["scene"], result["scene/node/position_m"][:]
     shape = result[stage] if stage else None
     same("points", points, shape["position_m"][:] if stage else theory)
@@ -87,8 +132,9 @@ def check(result, path, stage, read):
         assert abs(rms_m - result["surface"][group].attrs["normal_rms_m"]) <= 1e-12 * rms_m
 
 
-def check_truss(result, path, read):
-    points, ends, point, cell = read(path)
+def check_truss(result, path, stage, read):
+    points, cells, point, cell = read(path)
+    ends = np.array(cells)
     node, member = result["truss/node"], result["truss/member"]
     same("points", points, node["position_m"][:])
     same("ends", ends, member["end"][:])
@@ -113,15 +159,16 @@ def main(result_path, folder):
         stages["optimize"] = "ga/best"
     if "polish" in result:
         stages["polish"] = "polish"
+    if any(stage.attrs["n_facet"] for stage in result["surface"].values() if isinstance(stage, h5py.Group)
+           ) if "surface" in result else False:
+        stages.update({f"{name}_facets": stage for name, stage in stages.items()})
     if "truss" in result:
         stages["truss"] = "truss"
     assert sorted(os.listdir(folder)) == sorted(f"{name}.hdf" for name in stages), os.listdir(folder)
     for name, stage in stages.items():
         for read in [by_h5py] + ([by_vtk] if vtk else []):
-            if name == "truss":
-                check_truss(result, f"{folder}/{name}.hdf", read)
-            else:
-                check(result, f"{folder}/{name}.hdf", stage, read)
+            of = check_truss if name == "truss" else check_facets if name.endswith("_facets") else check
+            of(result, f"{folder}/{name}.hdf", stage, read)
     print(" ".join(sorted(stages)))
 
 

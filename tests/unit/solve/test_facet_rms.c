@@ -55,13 +55,27 @@ static void open_hexagon(struct net *net, int rings, double radius_m, double foc
     memcpy(net->work.position_m, net->model.position_m, 3 * (size_t)n_node * sizeof(double));
 }
 
+/* As hf_surface_measure calls it. */
+static hf_status measure(const hf_surface_settings *s, const hf_facets *f, const struct net *net,
+                         hf_surface_measures *to)
+{
+    double *position_m = malloc(3 * (size_t)net->model.n_node * sizeof *position_m);
+    for (int i = 0; i < net->model.n_node; i++)
+        for (int c = 0; c < 3; c++)
+            position_m[3 * i + c] = net->work.position_m[c * net->model.n_node + net->model.row_of_node[i]];
+    const hf_facet_shape shape = {position_m};
+    hf_status status = hf_facet_measure(s, f, &shape, to);
+    free(position_m);
+    return status;
+}
+
 static hf_surface_measures measured_of(struct net *net, const hf_surface_settings *s)
 {
     hf_facets f;
     hf_surface_measures to = {0};
     ck_assert_int_eq(hf_facets_find(&net->scene, s, &f), HF_OK);
     ck_assert(f.is_planar);
-    ck_assert_int_eq(hf_facet_measure(s, &f, &net->model, &net->work, &to), HF_OK);
+    ck_assert_int_eq(measure(s, &f, net, &to), HF_OK);
     hf_facets_free(&f);
     return to;
 }
@@ -111,6 +125,35 @@ START_TEST(errors_fall_with_the_square_of_the_side)
 }
 END_TEST
 
+/* Errors of each facet: on equal triangles of a shallow paraboloid the mean is l^2/(16 f) and the RMS is that of all;
+ * after the best fit, which takes the mean away, the squares add up to that of all as well. */
+START_TEST(errors_of_each_facet_make_that_of_all)
+{
+    const double f = 1000, radius = 0.5, l = radius / 8;
+    const hf_surface_settings s = {.focal_length_m = f, .kind = HF_SURFACE_PARABOLOID};
+    struct net net;
+    hf_facets facets;
+    open_hexagon(&net, 8, radius, f);
+    hf_surface_measures all = measured_of(&net, &s);
+    ck_assert_int_eq(hf_facets_find(&net.scene, &s, &facets), HF_OK);
+    int n = facets.n_facet;
+    double *value = malloc(4 * (size_t)n * sizeof *value), square = 0;
+    const hf_facet_shape shape = {net.scene.position_m};
+    const hf_facet_errors e = {value, value + n, value + 2 * n, value + 3 * n};
+    ck_assert_int_eq(hf_facet_map(&s, &facets, &shape, &e), HF_OK);
+    for (int i = 0; i < n; i++) {
+        ck_assert_double_eq_tol(e.normal_mean_m[i] / (l * l / (16 * f)), 1, 1e-6);
+        ck_assert_double_eq_tol(e.normal_rms_m[i] / all.facet_normal_rms_m, 1, 1e-6);
+        ck_assert_double_le(fabs(e.fit_normal_mean_m[i]), 0.05 * e.fit_normal_rms_m[i]);
+        square += e.fit_normal_rms_m[i] * e.fit_normal_rms_m[i] / n;
+    }
+    ck_assert_double_eq_tol(sqrt(square) / all.facet_fit_normal_rms_m, 1, 1e-9);
+    free(value);
+    hf_facets_free(&facets);
+    close_net(&net);
+}
+END_TEST
+
 /* ---- by hand ---- */
 
 /* The triangle (0,0), (1,0), (0,1) in the plane z = 0 below the paraboloid c (x^2 + y^2): the mean of the square of the
@@ -141,12 +184,12 @@ START_TEST(integrals_are_exact)
     memcpy(net.work.position_m, net.model.position_m, 3 * (size_t)n * sizeof(double));
     hf_facets facets = {.n_facet = 1, .is_planar = true, .corner = (int[]){0, 1, 2, _i ? 3 : 2}};
     hf_surface_measures m = {0};
-    ck_assert_int_eq(hf_facet_measure(&s, &facets, &net.model, &net.work, &m), HF_OK);
+    ck_assert_int_eq(measure(&s, &facets, &net, &m), HF_OK);
     ck_assert_double_eq_tol(m.facet_area_m2, _i ? 1 : 0.5, 1e-15);
     ck_assert_double_eq_tol(m.facet_normal_rms_m / sqrt(square), 1, 1e-10);
     ck_assert_double_eq_tol(m.facet_half_path_rms_m / sqrt(square), 1, 1e-10);
     facets.n_facet = 0;
-    ck_assert_int_eq(hf_facet_measure(&s, &facets, &net.model, &net.work, &m), HF_OK);
+    ck_assert_int_eq(measure(&s, &facets, &net, &m), HF_OK);
     ck_assert_double_nan(m.facet_half_path_rms_m);
     ck_assert_double_nan(m.facet_fit_half_path_rms_m);
     close_net(&net);
@@ -160,6 +203,7 @@ Suite *suite_unit_facet_rms(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, triangles_have_the_error_of_the_formula);
     tcase_add_test(tests, errors_fall_with_the_square_of_the_side);
+    tcase_add_test(tests, errors_of_each_facet_make_that_of_all);
     tcase_add_loop_test(tests, integrals_are_exact, 0, 2);
     return suite;
 }
