@@ -32,6 +32,33 @@ extern "C" {
 
 #define HF_GENERATE_FAULT_SIZE 256 /* of the reason why something cannot be made */
 
+/* ---- rear nets, which several generators have ---- */
+
+typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
+
+extern const char *const hf_tie_direction_word[3];
+extern const char *const hf_tie_law_word[HF_N_LAW + 1];
+
+/* Members of the settings. A rear net has its rim rear_distance below that of the front net, and bulges towards it. */
+#define HF_DOUBLE_NET_MEMBERS                                                                                          \
+    double rear_distance_m;     /* 0: no rear net */                                                                   \
+    double rear_focal_length_m; /* 0: that of the front */                                                             \
+    hf_tie_direction tie_direction;                                                                                    \
+    hf_law tie_law;                                                                                                    \
+    double tie_tension_N; /* what tension, force_density and elastic ties have at the theoretical places */
+
+#define HF_DOUBLE_NET_KEYS(X, section)                                                                                 \
+    X(section, rear_distance_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                               \
+      "above 0: a rear net, whose rim lies so far below that of the front net, and a tie to each of its free nodes")   \
+    X(section, rear_focal_length_m, HF_FIELD_DOUBLE, 0, 1e9, "0", "m", NULL,                                           \
+      "focal length of the rear net, which bulges towards the front; 0: that of the front net")                        \
+    X(section, tie_direction, HF_FIELD_WORD, 0, 0, "z", "", hf_tie_direction_word,                                     \
+      "ties run along z, or along the normal of the front net")                                                        \
+    X(section, tie_law, HF_FIELD_WORD, 0, 0, "length", "", hf_tie_law_word,                                            \
+      "law of the ties; the nets have law tension, their boundary cables law length")                                  \
+    X(section, tie_tension_N, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, "1", "N", NULL,                                     \
+      "what ties of the laws tension, force_density and elastic have at the theoretical places")
+
 /* ---- parabolic_cylinder ---- */
 
 typedef enum { HF_SPACING_EQUAL_ARC, HF_SPACING_EQUAL_PROJECTED } hf_spacing;
@@ -59,6 +86,7 @@ typedef struct {
     double scallop;       /* sag of a free outer edge between two supports, relative to their distance */
     hf_supports supports; /* which nodes are fixed */
     double edge_tie_m;    /* 0, or how far outside the fixed nodes of the outer edge are, which then hang on ties */
+    HF_DOUBLE_NET_MEMBERS
 } hf_cylinder;
 
 /* Keys of the section, as rows of hf_field_table (config.h): X(section, member, type, least, largest, default, unit,
@@ -90,13 +118,17 @@ typedef struct {
       "fixed nodes: all module corners, all nodes on ribs (y = module border), or the perimeter")                      \
     X(section, edge_tie_m, HF_FIELD_DOUBLE, 0, 1e3, "0", "m", NULL,                                                    \
       "above 0: the fixed nodes of the outer edge are free and hang on ties (boundary cables, law length); the "       \
-      "supports stand so far outside of them along x or y, at corners of the net along both")
+      "supports stand so far outside of them along x or y, at corners of the net along both")                          \
+    HF_DOUBLE_NET_KEYS(X, section)
 
 /* Make the net over the cylinder. Ids of nodes: n<i>_<j>; m<i>_<j> in the middle of cells; s<i>_<j> for the support
- * that holds n<i>_<j> by an edge tie. Ids of cables: <node>-<node>. Sets of cables: directrix (along x), generatrix
- * (along y), diagonal, edge (of the outer edge), edge_tie. EA_N: axial stiffness by hf_group, 0 = not given; NULL: none
- * is given. Free the scene with hf_scene_free in any case. Returns HF_OK; HF_BAD_CASE when the net would be too large,
- * or for what hf_scene_parabolic_cylinder_fault tells; HF_NO_MEMORY. */
+ * that holds n<i>_<j> by an edge tie; behind them r<i>_<j>, rm<i>_<j>, rs<i>_<j> of the rear net. Ids of cables:
+ * <node>-<node>. Sets of cables: directrix (along x), generatrix (along y), diagonal, edge (of the outer edge),
+ * edge_tie; with a rear net front (all of the former), rear, tie, and the families of the rear net, rear_directrix and
+ * so on. Free nodes of the rear net have role edge: psi counts those of the front. Rear supports stand behind those of
+ * the front as ties do. EA_N: axial stiffness by hf_group, 0 = not given; NULL: none is given. Free the scene with
+ * hf_scene_free in any case. Returns HF_OK; HF_BAD_CASE when the net would be too large, or for what
+ * hf_scene_parabolic_cylinder_fault tells; HF_NO_MEMORY. */
 hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double EA_N[2], hf_scene *scene,
                                       hf_messages *messages);
 const char *hf_scene_parabolic_cylinder_fault(const hf_cylinder *cylinder, char *what, size_t size);
@@ -105,11 +137,8 @@ void hf_scene_parabolic_cylinder_surface(const hf_cylinder *cylinder, hf_surface
 /* ---- paraboloid ---- */
 
 typedef enum { HF_GRID_TRIANGLE, HF_GRID_QUAD } hf_grid;
-typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
 
 extern const char *const hf_grid_word[3];
-extern const char *const hf_tie_direction_word[3];
-extern const char *const hf_tie_law_word[HF_N_LAW + 1];
 
 /* A paraboloid z = (x^2 + y^2)/(4 f) over the circle of the aperture, whose centre is at x = offset. Its rim lies in a
  * plane, z_rim(x). The rear net has its rim rear_distance below, and is z_rim - rear_distance + (R^2 - r^2)/(4 f_rear),
@@ -120,12 +149,8 @@ typedef struct {
     double offset_m;
     int rings; /* cells from the centre to the rim */
     hf_grid grid;
-    hf_spacing spacing;         /* of the nodes along a radius */
-    double rear_distance_m;     /* 0: no rear net */
-    double rear_focal_length_m; /* 0: that of the front */
-    hf_tie_direction tie_direction;
-    hf_law tie_law;
-    double tie_tension_N; /* what tension, force_density and elastic ties have at the theoretical places */
+    hf_spacing spacing; /* of the nodes along a radius */
+    HF_DOUBLE_NET_MEMBERS
 } hf_paraboloid;
 
 #define HF_PARABOLOID_KEYS(X, section)                                                                                 \
@@ -141,16 +166,7 @@ typedef struct {
     X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_projected", "", hf_spacing_word,                                   \
       "nodes along a radius of the aperture: equal projected spacing, or equal arc length on a paraboloid about its "  \
       "middle")                                                                                                        \
-    X(section, rear_distance_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                               \
-      "above 0: a rear net, whose rim lies so far below that of the front net, and a tie to each of its free nodes")   \
-    X(section, rear_focal_length_m, HF_FIELD_DOUBLE, 0, 1e9, "0", "m", NULL,                                           \
-      "focal length of the rear net, which bulges towards the front; 0: that of the front net")                        \
-    X(section, tie_direction, HF_FIELD_WORD, 0, 0, "z", "", hf_tie_direction_word,                                     \
-      "ties run along z, or along the normal of the front net")                                                        \
-    X(section, tie_law, HF_FIELD_WORD, 0, 0, "length", "", hf_tie_law_word,                                            \
-      "law of the ties; the nets have law tension, their edges law length")                                            \
-    X(section, tie_tension_N, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, "1", "N", NULL,                                     \
-      "what ties of the laws tension, force_density and elastic have at the theoretical places")
+    HF_DOUBLE_NET_KEYS(X, section)
 
 /* Make the net over the paraboloid. Ids of nodes: f<ring>_<k> of the front net, r<ring>_<k> of the rear one (quad:
  * f<i>_<j> by rows and fs<k> for supports); of cables: <node>-<node>. Sets of cables: front, rear, front_edge,

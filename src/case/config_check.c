@@ -56,8 +56,14 @@ static void check_generators(const hf_case *c, hf_config_faults *f)
     }
     HF_GENERATORS(CHECK)
 #undef CHECK
-    if (c->has_paraboloid && c->paraboloid.tie_law == HF_LAW_ELASTIC && c->EA_N[HF_GROUP_INNER] == 0)
-        hf_config_fault_of(f, "scene.paraboloid.tie_law", "elastic needs scene.EA_inner_N, the stiffness of the ties");
+#define CHECK_TIES(section)                                                                                            \
+    if (c->has_##section && c->section.rear_distance_m > 0 && c->section.tie_law == HF_LAW_ELASTIC &&                  \
+        c->EA_N[HF_GROUP_INNER] == 0)                                                                                  \
+        hf_config_fault_of(f, "scene." #section ".tie_law",                                                            \
+                           "elastic needs scene.EA_inner_N, the stiffness of the ties");
+    CHECK_TIES(parabolic_cylinder)
+    CHECK_TIES(paraboloid)
+#undef CHECK_TIES
 }
 
 /* Is the section of this key there? Sections that cannot be left out always are. */

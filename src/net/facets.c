@@ -63,9 +63,17 @@ static bool in_graph(const graph *g, int cable)
     return g->is_on[end[0]] && g->is_on[end[1]];
 }
 
+/* A support that holds an inner node: the surface reaches it, even where no cable runs along the rim. */
+static bool is_rim(const graph *g, int cable, int k)
+{
+    const hf_scene *s = g->scene;
+    return s->role[s->end[2 * cable + k]] == HF_ROLE_SUPPORT && s->role[s->end[2 * cable + 1 - k]] == HF_ROLE_INNER;
+}
+
 /* Nodes at the end of a single cable, such as that of a tie of the edge, are at no face: they leave, one after the
  * other along a chain. Each node keeps the number of its cables that are left and their exclusive or, which is the
- * last one's index when one is left: all together takes a time in proportion to the net. */
+ * last one's index when one is left: all together takes a time in proportion to the net. Supports on the rim stay: a
+ * cable counts twice at them. */
 static void drop_ends(graph *g)
 {
     const hf_scene *s = g->scene;
@@ -73,7 +81,7 @@ static void drop_ends(graph *g)
     memset(g->mixed, 0, (size_t)s->n_node * sizeof *g->mixed);
     for (int e = 0; e < s->n_cable; e++)
         for (int k = 0; k < 2 && in_graph(g, e); k++) {
-            g->degree[s->end[2 * e + k]]++;
+            g->degree[s->end[2 * e + k]] += is_rim(g, e, k) ? 2 : 1;
             g->mixed[s->end[2 * e + k]] ^= e;
         }
     for (int i = 0; i < s->n_node; i++)
@@ -81,8 +89,9 @@ static void drop_ends(graph *g)
             int e = g->mixed[at];
             g->is_on[at] = false;
             if (g->degree[at] == 0) break;
-            next = s->end[2 * e] == at ? s->end[2 * e + 1] : s->end[2 * e];
-            g->degree[next]--;
+            int k = s->end[2 * e] == at;
+            next = s->end[2 * e + k];
+            g->degree[next] -= is_rim(g, e, k) ? 2 : 1;
             g->mixed[next] ^= e;
         }
 }
@@ -166,6 +175,40 @@ static bool is_convex(const hf_scene *s, int n, const int corner[4], double area
     return true;
 }
 
+static void add_facet(const hf_scene *s, int n, const int node[4], double area, hf_facets *f)
+{
+    int *corner = f->corner + 4 * (size_t)f->n_facet;
+    if (n > 4 || !is_convex(s, n, node, area)) {
+        f->n_open++;
+        return;
+    }
+    for (int k = 0; k < 4; k++)
+        corner[k] = node[k < n ? k : n - 1];
+    f->n_facet++;
+}
+
+/* Along the outside of the net, from half edge h: an inner node is surrounded by surface, so that the gap between two
+ * supports in sequence with inner nodes alone between them is a face, too, whose last side is the straight line on the
+ * rim. */
+static void close_gaps(const graph *g, int h, hf_facets *f)
+{
+    const hf_scene *s = g->scene;
+    int from = h;
+    do {
+        int node[4] = {g->edge[h].from}, n = 1, k = h;
+        double area = 0;
+        if (s->role[node[0]] == HF_ROLE_SUPPORT) {
+            for (; s->role[g->edge[k].to] == HF_ROLE_INNER; k = next_around(g, k), n++) {
+                if (n < 4) node[n] = g->edge[k].to;
+                area += turn_of(s, node[0], g->edge[k].to, g->edge[next_around(g, k)].to);
+            }
+            if (n < 4) node[n] = g->edge[k].to;
+            if (n++ > 1 && s->role[g->edge[k].to] == HF_ROLE_SUPPORT && area > 0) add_facet(s, n, node, area, f);
+        }
+        h = next_around(g, h);
+    } while (h != from);
+}
+
 /* Finds all faces and keeps the facets. A face without an area lies between two cables of the same nodes; one of
  * negative area is the outside of the net. Euler: a graph of C parts is drawn without crossings if and only if V - E +
  * F = 2 C. */
@@ -183,18 +226,13 @@ static void find_faces(graph *g, hf_facets *f)
     }
     memset(g->seen, 0, (size_t)g->n_half);
     for (int h = 0; h < g->n_half; h++) {
-        int *corner = f->corner + 4 * (size_t)f->n_facet;
+        int corner[4];
         double area;
         if (g->seen[h]) continue;
         int n = walk(g, h, corner, &area);
         n_face++;
-        if (n < 3 || !(area > 0)) continue;
-        if (n > 4 || !is_convex(s, n, corner, area)) {
-            f->n_open++;
-            continue;
-        }
-        if (n == 3) corner[3] = corner[2];
-        f->n_facet++;
+        if (area < 0) close_gaps(g, h, f);
+        if (n >= 3 && area > 0) add_facet(s, n, corner, area, f);
     }
     f->is_planar = n_node - g->n_half / 2 + n_face == 2 * n_part;
     if (!f->is_planar) f->n_facet = f->n_open = 0;

@@ -4,8 +4,8 @@
 #include <hifdm/generate.h>
 
 #include "base/elementary.h"
+#include "net/double_net.h"
 #include "net/parabola.h"
-#include <hifdm/cable_set.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -160,6 +160,27 @@ static const char *fault_of_scallops(const hf_cylinder *c, char *what, size_t si
     return NULL;
 }
 
+static hf_double_net rear_of(const hf_cylinder *c)
+{
+    return (hf_double_net){.kind = HF_SURFACE_PARABOLIC_CYLINDER,
+                           .focal_length_m = c->focal_length_m,
+                           .half_m = c->aperture_m / 2,
+                           HF_DOUBLE_NET_OF(c)};
+}
+
+/* Normals spread outwards. On a deep net the outermost ones may pass below the rim of the rear net. */
+static const char *fault_of_rear(const hf_cylinder *c, char *what, size_t size)
+{
+    hf_double_net d = rear_of(c);
+    double x = c->aperture_m / 2 + c->edge_tie_m, outermost[3] = {x, 0, z_on_parabola(c, x)}, rear[3];
+    const char *key = hf_double_net_fault(&d, what, size);
+    if (key || c->rear_distance_m == 0 ||
+        hf_double_net_behind(&d, c->tie_direction == HF_TIES_ALONG_Z, outermost, rear))
+        return key;
+    snprintf(what, size, "normal leads past the rear net at the edge of the aperture; take z or a flatter net");
+    return "tie_direction";
+}
+
 const char *hf_scene_parabolic_cylinder_fault(const hf_cylinder *cylinder, char *what, size_t size)
 {
     const char *key = NULL;
@@ -167,6 +188,7 @@ const char *hf_scene_parabolic_cylinder_fault(const hf_cylinder *cylinder, char 
         key = fault_of_pitches(cylinder, axis, what, size);
     if (!key && cylinder->edge_tie_m > 0) key = fault_of_ties(cylinder, what, size);
     if (!key && cylinder->scallop > 0) key = fault_of_scallops(cylinder, what, size);
+    if (!key) key = fault_of_rear(cylinder, what, size);
     return key;
 }
 
@@ -293,9 +315,27 @@ static void scallop_edges(const grid *g)
 
 /* ---- cables ---- */
 
-/* Families of cables, in the order of their names. */
-enum { DIAGONAL, DIRECTRIX, EDGE, EDGE_TIE, GENERATRIX, N_FAMILY, NO_FAMILY = -1 };
-static const char *const family_name[N_FAMILY] = {"diagonal", "directrix", "edge", "edge_tie", "generatrix"};
+/* Families of cables, in the order of their names: X(enumerator, name, that of the rear net). */
+#define FAMILIES(X)                                                                                                    \
+    X(DIAGONAL, "diagonal", REAR_DIAGONAL)                                                                             \
+    X(DIRECTRIX, "directrix", REAR_DIRECTRIX)                                                                          \
+    X(EDGE, "edge", REAR_EDGE)                                                                                         \
+    X(EDGE_TIE, "edge_tie", REAR_EDGE_TIE)                                                                             \
+    X(FRONT, "front", REAR)                                                                                            \
+    X(GENERATRIX, "generatrix", REAR_GENERATRIX)                                                                       \
+    X(REAR, "rear", NO_FAMILY)                                                                                         \
+    X(REAR_DIAGONAL, "rear_diagonal", NO_FAMILY)                                                                       \
+    X(REAR_DIRECTRIX, "rear_directrix", NO_FAMILY)                                                                     \
+    X(REAR_EDGE, "rear_edge", NO_FAMILY)                                                                               \
+    X(REAR_EDGE_TIE, "rear_edge_tie", NO_FAMILY)                                                                       \
+    X(REAR_GENERATRIX, "rear_generatrix", NO_FAMILY)                                                                   \
+    X(TIE, "tie", NO_FAMILY)
+#define ENUMERATOR(family, name, rear) family,
+enum { FAMILIES(ENUMERATOR) N_FAMILY, NO_FAMILY = -1 };
+#define NAME(family, name, rear) name,
+static const char *const family_name[N_FAMILY] = {FAMILIES(NAME)};
+#define BEHIND(family, name, rear) rear,
+static const int rear_family[N_FAMILY] = {FAMILIES(BEHIND)};
 
 static void join_set(grid *g, int family)
 {
@@ -310,6 +350,7 @@ static void add_cable(grid *g, int a, int b, hf_group group, int family, int sec
     int e = g->n_cable;
     join_set(g, family);
     join_set(g, second_family);
+    join_set(g, g->c->rear_distance_m > 0 ? FRONT : NO_FAMILY);
     g->n_cable++;
     if (!g->member) return;
     s->end[2 * e] = a;
@@ -388,11 +429,11 @@ static void connect(grid *g, int *n_tie)
 /* ---- names ---- */
 
 /* Writes the ids n<i>_<j> of nodes, m<i>_<j> of those in the middle of cells, s<i>_<j> of the supports that hold
- * n<i>_<j> by an edge tie, and <node>-<node> of cables. */
-static hf_status name_all(const grid *g)
+ * n<i>_<j> by an edge tie, and what follows from them. */
+static hf_status name_all(const grid *g, int n_tie)
 {
     hf_scene *s = g->s;
-    size_t n_digit = 16, size = (size_t)s->n_node * n_digit + (size_t)s->n_cable * 2 * n_digit;
+    size_t n_digit = 18, size = (size_t)s->n_node * n_digit + (size_t)s->n_cable * 2 * n_digit;
     char *text = s->text = malloc(size);
     if (!text) return HF_NO_MEMORY;
     const char *end = text + size;
@@ -402,38 +443,58 @@ static hf_status name_all(const grid *g)
         s->node_id[node] = text;
         text += snprintf(text, (size_t)(end - text), "%c%d_%d", is_middle ? 'm' : 'n', k % width, k / width) + 1;
     }
-    for (int e = s->n_cable - (s->n_node - g->first_tie); e < s->n_cable; e++) { /* the edge ties are the last cables */
+    for (int e = g->n_cable - n_tie; e < g->n_cable; e++) { /* the edge ties are the last cables of the front net */
         int node = s->end[2 * e + 1];
         s->node_id[s->end[2 * e]] = text;
         text += snprintf(text, (size_t)(end - text), "s%d_%d", node % g->nx, node / g->nx) + 1;
     }
-    for (int e = 0; e < s->n_cable; e++) {
-        s->cable_id[e] = text;
-        text +=
-            snprintf(text, (size_t)(end - text), "%s-%s", s->node_id[s->end[2 * e]], s->node_id[s->end[2 * e + 1]]) + 1;
-    }
+    hf_double_net_name(s, g->first_tie + n_tie, text, end);
     return HF_OK;
 }
 
 /* ---- together ---- */
 
+/* Fills a scene of this size, of which the ties between the nets are n_between cables. */
+static hf_status fill(grid *g, int n_between)
+{
+    hf_scene *s = g->s;
+    int n_edge_tie;
+    place_nodes(g);
+    scallop_edges(g);
+    connect(g, &n_edge_tie);
+    if (g->c->rear_distance_m > 0) {
+        hf_double_net d = rear_of(g->c);
+        hf_double_net_fill(&d, g->EA_N, g->first_tie + n_edge_tie, g->n_cable, s);
+        g->n_member = hf_double_net_join(g->member, g->n_member, g->n_cable, n_between, rear_family, TIE);
+    }
+    HF_TRY(hf_cable_set_make(s, N_FAMILY, family_name, g->n_member, g->member));
+    return name_all(g, n_edge_tie);
+}
+
+/* Free nodes of the front net, each of which has a tie to the rear net. */
+static int count_free(const grid *g)
+{
+    int n = g->first_tie - g->first_middle;
+    for (int j = 0; j < g->ny; j++)
+        for (int i = 0; i < g->nx; i++)
+            n += role_of(g, i, j) != HF_ROLE_SUPPORT;
+    return n;
+}
+
 static hf_status make(grid *g)
 {
-    int n_tie;
-    connect(g, &n_tie); /* only counts */
-    bool with_EA = g->EA_N && (g->EA_N[0] > 0 || g->EA_N[1] > 0);
-    hf_cable_set_member *member = malloc(((size_t)g->n_member + 1) * sizeof *member); /* not of 0 bytes */
-    hf_status status =
-        member ? hf_scene_allocate(g->s, g->first_tie + n_tie, g->n_cable, false, with_EA, false) : HF_NO_MEMORY;
-    if (status == HF_OK) {
-        g->member = member;
-        place_nodes(g);
-        scallop_edges(g);
-        connect(g, &n_tie);
-        status = hf_cable_set_make(g->s, N_FAMILY, family_name, g->n_member, member);
-    }
+    bool is_double = g->c->rear_distance_m > 0, with_EA = g->EA_N && (g->EA_N[0] > 0 || g->EA_N[1] > 0);
+    int n_edge_tie, n_between = is_double ? count_free(g) : 0;
+    connect(g, &n_edge_tie); /* only counts */
+    int n_layer = is_double ? 2 : 1, n_node = n_layer * (g->first_tie + n_edge_tie);
+    hf_cable_set_member *member =
+        malloc(((size_t)g->n_member * (size_t)n_layer + (size_t)n_between + 1) * sizeof *member);
+    hf_status status = member ? hf_scene_allocate(g->s, n_node, n_layer * g->n_cable + n_between, false, with_EA, false)
+                              : HF_NO_MEMORY;
+    g->member = member;
+    if (status == HF_OK) status = fill(g, n_between);
     free(member);
-    return status == HF_OK ? name_all(g) : status;
+    return status;
 }
 
 hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double EA_N[2], hf_scene *scene,
@@ -443,12 +504,17 @@ hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double 
     *scene = (hf_scene){0};
     double nx = (double)cylinder->modules[0] * cylinder->cells_per_module[0] + 1;
     double ny = (double)cylinder->modules[1] * cylinder->cells_per_module[1] + 1;
-    bool with_middles = cylinder->pattern == HF_PATTERN_DIAGONAL;
-    if (nx * ny + (with_middles ? (nx - 1) * (ny - 1) : 0) > NODE_MAX)
-        return hf_error(messages, HF_BAD_CASE, "scene: %.0f x %.0f nodes%s are more than this program takes (%d)", nx,
-                        ny, with_middles ? " and those in the middle of cells" : "", NODE_MAX);
+    bool with_middles = cylinder->pattern == HF_PATTERN_DIAGONAL, is_double = cylinder->rear_distance_m > 0;
+    if ((nx * ny + (with_middles ? (nx - 1) * (ny - 1) : 0)) * (is_double ? 2 : 1) > NODE_MAX)
+        return hf_error(messages, HF_BAD_CASE, "scene: %.0f x %.0f nodes%s%s are more than this program takes (%d)", nx,
+                        ny, with_middles ? " and those in the middle of cells" : "", is_double ? ", twice," : "",
+                        NODE_MAX);
     const char *key = hf_scene_parabolic_cylinder_fault(cylinder, what, sizeof what);
     if (key) return hf_error(messages, HF_BAD_CASE, "scene.parabolic_cylinder.%s: %s", key, what);
+    const hf_double_net rear = rear_of(cylinder);
+    if (hf_double_net_lacks_EA(&rear, EA_N))
+        return hf_error(messages, HF_BAD_CASE,
+                        "scene.parabolic_cylinder.tie_law: elastic needs the stiffness of inner cables");
     grid g = {.c = cylinder, .EA_N = EA_N, .s = scene, .nx = (int)nx, .ny = (int)ny};
     g.first_middle = g.nx * g.ny;
     g.first_tie = g.first_middle + (with_middles ? (g.nx - 1) * (g.ny - 1) : 0);

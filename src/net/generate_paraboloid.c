@@ -1,11 +1,10 @@
 /* Makes the net over a paraboloid with a round aperture, alone or tied to a rear net.
- * Contents: surfaces - what can be made - the plane grid - the triangular grid - the quad grid - nodes - cables - names
- * - together */
+ * Contents: what can be made - the plane grid - the triangular grid - the quad grid - the front net - together */
 #include <hifdm/generate.h>
 
 #include "base/elementary.h"
+#include "net/double_net.h"
 #include "net/parabola.h"
-#include <hifdm/cable_set.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -14,85 +13,60 @@
 #define NODE_MAX 4000000  /* keeps every index and band offset well inside an int */
 #define LEAST_EDGE 0.25   /* of a cell: no cable of the quad grid ends nearer to the rim than this */
 #define SAME_SUPPORT 1e-9 /* of the radius: ends of rows and columns that meet on the rim */
-#define HALF_ROOT_3 0.86602540378443864676
+#define RELAXED 1e-16     /* of the first residual */
+#define RELAX_STEPS 40    /* per ring; 4 are taken */
 #define PI 3.14159265358979323846
 
 const char *const hf_grid_word[3] = {"triangle", "quad", NULL};
-const char *const hf_tie_direction_word[3] = {"z", "normal", NULL};
-#define LAW_WORD(name, word, target, unit, flags) word,
-const char *const hf_tie_law_word[HF_N_LAW + 1] = {HF_LAW_LIST(LAW_WORD) NULL};
-#undef LAW_WORD
 
-/* ---- surfaces ---- */
+/* ---- what can be made ---- */
 
 static double radius(const hf_paraboloid *p)
 {
     return p->aperture_m / 2;
 }
 
-static double rear_focal_length_m(const hf_paraboloid *p)
+static hf_double_net rear_of(const hf_paraboloid *p)
 {
-    return p->rear_focal_length_m > 0 ? p->rear_focal_length_m : p->focal_length_m;
+    return (hf_double_net){.kind = HF_SURFACE_PARABOLOID,
+                           .focal_length_m = p->focal_length_m,
+                           .middle_x_m = p->offset_m,
+                           .half_m = radius(p),
+                           .supports_along_z = true,
+                           HF_DOUBLE_NET_OF(p)};
 }
 
-static double z_front(const hf_paraboloid *p, double x, double y)
+static double front_height(const hf_paraboloid *p, double x, double y)
 {
     return (x * x + y * y) / (4 * p->focal_length_m);
 }
 
-static double z_rear(const hf_paraboloid *p, double x, double y)
-{
-    double dx = x - p->offset_m, above_m2 = radius(p) * radius(p) - dx * dx - y * y;
-    return z_front(p, x, y) + above_m2 / (4 * p->focal_length_m) - p->rear_distance_m +
-           above_m2 / (4 * rear_focal_length_m(p));
-}
+static const char *const outside =
+    "normal leads to places outside the rim of the rear net; take z, a flatter front net or fewer rings";
 
-/* Where the normal of the front net at (x, y) meets the rear net, by Newton's method along it. */
-static void follow_normal(const hf_paraboloid *p, const double front[3], double rear[3])
-{
-    double n[3] = {front[0] / (2 * p->focal_length_m), front[1] / (2 * p->focal_length_m), -1}, t = 0;
-    for (int i = 0; i < 60; i++) {
-        for (int c = 0; c < 3; c++)
-            rear[c] = front[c] + t * n[c];
-        double slope_x = rear[0] / (2 * p->focal_length_m) - (rear[0] - p->offset_m) / (2 * p->focal_length_m) -
-                         (rear[0] - p->offset_m) / (2 * rear_focal_length_m(p));
-        double slope_y = -rear[1] / (2 * rear_focal_length_m(p));
-        double step = (rear[2] - z_rear(p, rear[0], rear[1])) / (n[2] - slope_x * n[0] - slope_y * n[1]);
-        t -= step;
-        if (fabs(step) <= 1e-16 * fabs(t)) break;
-    }
-    rear[2] = z_rear(p, rear[0], rear[1]);
-}
-
-/* ---- what can be made ---- */
-
-/* Does a normal from the outermost free nodes lead past the rim of the rear net, or nowhere? */
+/* Does a normal from where some of the outermost free nodes are, or from farther inside, lead past the rim of the rear
+ * net, or nowhere? */
 static bool leaves_rim(const hf_paraboloid *p)
 {
+    hf_double_net d = rear_of(p);
     double R = radius(p), r = R * (p->rings - (p->grid == HF_GRID_QUAD ? LEAST_EDGE : 1)) / p->rings;
     for (int k = 0; k < 24; k++) {
         double angle = PI / 12 * k, rear[3], front[3] = {p->offset_m + r * hf_cosine(angle), r * hf_sine(angle), 0};
-        front[2] = z_front(p, front[0], front[1]);
-        follow_normal(p, front, rear);
-        if (!(hf_norm(rear[0] - p->offset_m, rear[1], 0) < R && rear[2] < front[2])) return true;
+        front[2] = front_height(p, front[0], front[1]);
+        if (!hf_double_net_behind(&d, false, front, rear)) return true;
+        if (!(hf_norm(rear[0] - p->offset_m, rear[1], 0) < R)) return true;
     }
     return false;
 }
 
 const char *hf_scene_paraboloid_fault(const hf_paraboloid *p, char *what, size_t size)
 {
-    double R = radius(p), sag_m = R * R / (4 * p->focal_length_m) + R * R / (4 * rear_focal_length_m(p));
-    if (p->rear_distance_m == 0) return NULL;
-    if (p->rear_distance_m > sag_m) {
-        if (p->tie_direction != HF_TIES_ALONG_NORMAL || p->rings == 1 || !leaves_rim(p)) return NULL;
-        snprintf(what, size,
-                 "normal leads to places outside the rim of the rear net; take z, a flatter front net or "
-                 "fewer rings");
-        return "tie_direction";
-    }
-    snprintf(what, size, "of %.6g m lets the nets meet in the middle, where they come %.6g m nearer than at the rim",
-             p->rear_distance_m, sag_m);
-    return "rear_distance_m";
+    hf_double_net d = rear_of(p);
+    const char *key = hf_double_net_fault(&d, what, size);
+    if (key || p->rear_distance_m == 0) return key;
+    if (p->tie_direction != HF_TIES_ALONG_NORMAL || p->rings == 1 || !leaves_rim(p)) return NULL;
+    snprintf(what, size, "%s", outside);
+    return "tie_direction";
 }
 
 /* ---- the plane grid ---- */
@@ -139,21 +113,14 @@ static int first_of_ring(int ring)
     return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1);
 }
 
-/* Ring k has 6k nodes, k to a side of a hexagon; those of the last ring stand evenly on the rim. */
+/* Ring k has 6k nodes, k to a side; those of the last ring stand evenly on the rim. The others are relaxed from places
+ * on circles. */
 static void place_ring(const hf_paraboloid *p, plane_grid *g, int ring)
 {
-    static const double corner[7][2] = {
-        {1, 0}, {0.5, HALF_ROOT_3}, {-0.5, HALF_ROOT_3}, {-1, 0}, {-0.5, -HALF_ROOT_3}, {0.5, -HALF_ROOT_3}, {1, 0}};
-    double R = radius(p), cell = R / p->rings;
+    double r = radius(p) * ring / p->rings;
     for (int i = 0; i < 6 * ring; i++) {
-        int side = i / ring, j = i % ring;
-        double x = cell * (ring * corner[side][0] + j * (corner[side + 1][0] - corner[side][0]));
-        double y = cell * (ring * corner[side][1] + j * (corner[side + 1][1] - corner[side][1]));
-        double scale = spread(p, hf_norm(x, y, 0)), angle = PI / 3 * i / ring;
-        if (ring == p->rings)
-            add_point(g, R * hf_cosine(angle), R * hf_sine(angle), true, ring, i);
-        else
-            add_point(g, scale * x, scale * y, false, ring, i);
+        double angle = PI / 3 * i / ring;
+        add_point(g, r * hf_cosine(angle), r * hf_sine(angle), ring == p->rings, ring, i);
     }
 }
 
@@ -179,6 +146,63 @@ static void make_triangles(const hf_paraboloid *p, plane_grid *g)
         add_line(g, 0, 1 + i);
     for (int ring = 1; ring < p->rings; ring++)
         join_ring(p, g, ring);
+}
+
+/* ---- relaxing the triangular grid ----
+ * Cells of one size do not fill a circle. They change gradually where the grid lies as a plane net of equal force
+ * densities that its rim holds. For any number of rings facets then err by 1.07 times as much (RMS after a best fit) as
+ * equal-sided ones of the same mean side, and tensions that hold the net come out nearly even. */
+
+/* minus_force = the forces of the cables on the free nodes at these places, with the sign changed. Both [n_node][2]. */
+static void pull(const plane_grid *g, const double *place, double *minus_force)
+{
+    for (int i = 0; i < 2 * g->n_node; i++)
+        minus_force[i] = 0;
+    for (int e = 0; e < g->n_cable; e++)
+        for (int c = 0, a = 2 * g->end[2 * e], b = 2 * g->end[2 * e + 1]; c < 2; c++) {
+            minus_force[a + c] += place[a + c] - place[b + c];
+            minus_force[b + c] -= place[a + c] - place[b + c];
+        }
+    for (int i = 0; i < g->n_node; i++)
+        if (g->is_rim[i]) minus_force[2 * i] = minus_force[2 * i + 1] = 0;
+}
+
+static double product(size_t n, const double *a, const double *b)
+{
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+/* Conjugate gradients, to rounding. The number of steps grows with that of the rings. */
+static hf_status relax(const hf_paraboloid *p, plane_grid *g)
+{
+    size_t n = 2 * (size_t)g->n_node;
+    double *residual = malloc(3 * n * sizeof *residual), *direction = residual + n, *image = direction + n;
+    if (!residual) return HF_NO_MEMORY;
+    pull(g, g->plane_m, residual);
+    for (size_t i = 0; i < n; i++)
+        direction[i] = residual[i] = -residual[i];
+    double square = product(n, residual, residual), enough = RELAXED * RELAXED * square;
+    for (int step = 0; step < RELAX_STEPS * p->rings && square > enough; step++) {
+        pull(g, direction, image);
+        double length = square / product(n, direction, image), before = square;
+        for (size_t i = 0; i < n; i++) {
+            g->plane_m[i] += length * direction[i];
+            residual[i] -= length * image[i];
+        }
+        square = product(n, residual, residual);
+        for (size_t i = 0; i < n; i++)
+            direction[i] = residual[i] + square / before * direction[i];
+    }
+    free(residual);
+    for (int i = 0; i < g->n_node; i++) {
+        double *x = g->plane_m + 2 * (size_t)i, scale = g->is_rim[i] ? 1 : spread(p, hf_norm(x[0], x[1], 0));
+        x[0] *= scale;
+        x[1] *= scale;
+    }
+    return HF_OK;
 }
 
 /* ---- the quad grid ---- */
@@ -224,115 +248,55 @@ static void make_quads(const hf_paraboloid *p, plane_grid *g, int *node)
         }
 }
 
-/* ---- nodes ---- */
-
-typedef struct {
-    const hf_paraboloid *p;
-    const double *EA_N; /* by hf_group, 0 = not given */
-    hf_scene *s;
-    plane_grid g;
-    int n_layer;           /* 1, or 2 with a rear net */
-    int n_cable, n_member; /* so far; with member == NULL they are only counted */
-    hf_cable_set_member *member;
-} double_net;
-
-/* The free nodes of the rear net are edge nodes, which psi leaves out. */
-static void place_layer_nodes(const double_net *d)
-{
-    const hf_paraboloid *p = d->p;
-    int n = d->g.n_node;
-    for (int i = 0; i < n; i++) {
-        bool is_rim = d->g.is_rim[i];
-        double *front = d->s->position_m + 3 * (size_t)i, *rear = front + 3 * (size_t)n;
-        front[0] = d->g.plane_m[2 * i] + p->offset_m;
-        front[1] = d->g.plane_m[2 * i + 1];
-        front[2] = z_front(p, front[0], front[1]);
-        d->s->role[i] = is_rim ? HF_ROLE_SUPPORT : HF_ROLE_INNER;
-        if (d->n_layer == 1) continue;
-        d->s->role[n + i] = is_rim ? HF_ROLE_SUPPORT : HF_ROLE_EDGE;
-        rear[0] = front[0];
-        rear[1] = front[1];
-        rear[2] = is_rim ? front[2] - p->rear_distance_m : z_rear(p, rear[0], rear[1]);
-        if (!is_rim && p->tie_direction == HF_TIES_ALONG_NORMAL) follow_normal(p, front, rear);
-    }
-}
-
-/* ---- cables ---- */
+/* ---- the front net ---- */
 
 /* Families of cables, in the order of their names. */
 enum { FRONT, FRONT_EDGE, REAR, REAR_EDGE, TIE, N_FAMILY };
 static const char *const family_name[N_FAMILY] = {"front", "front_edge", "rear", "rear_edge", "tie"};
+static const int rear_family[N_FAMILY] = {REAR, REAR_EDGE};
 
-/* The tie's target by its law, where its tension at the theoretical length is to be tie_tension_N. */
-static double tie_target(const hf_paraboloid *p, double length, double EA_N)
+static void place_front(const hf_paraboloid *p, const plane_grid *g, hf_scene *s)
 {
-    switch (p->tie_law) {
-    case HF_LAW_TENSION:
-        return p->tie_tension_N;
-    case HF_LAW_FORCE_DENSITY:
-        return p->tie_tension_N / length;
-    case HF_LAW_ELASTIC:
-        return length / (1 + p->tie_tension_N / EA_N);
-    default:
-        return length;
+    for (int i = 0; i < g->n_node; i++) {
+        double *front = s->position_m + 3 * (size_t)i;
+        front[0] = g->plane_m[2 * i] + p->offset_m;
+        front[1] = g->plane_m[2 * i + 1];
+        front[2] = front_height(p, front[0], front[1]);
+        s->role[i] = g->is_rim[i] ? HF_ROLE_SUPPORT : HF_ROLE_INNER;
     }
 }
 
-static void put_cable(double_net *d, int a, int b, int family)
+/* member: [g->n_cable] */
+static void put_front(const plane_grid *g, const double EA_N[2], hf_scene *s, hf_cable_set_member *member)
 {
-    hf_scene *s = d->s;
-    int e = d->n_cable++, group = family == FRONT_EDGE || family == REAR_EDGE ? HF_GROUP_BOUNDARY : HF_GROUP_INNER;
-    if (d->member) d->member[d->n_member] = (hf_cable_set_member){family, e};
-    d->n_member++;
-    if (!d->member) return;
-    double EA_N = d->EA_N && d->EA_N[group] > 0 ? d->EA_N[group] : (double)NAN;
-    s->end[2 * e] = a;
-    s->end[2 * e + 1] = b;
-    s->group[e] = (unsigned char)group;
-    s->law[e] = family == TIE                ? (unsigned char)d->p->tie_law
-                : group == HF_GROUP_BOUNDARY ? HF_LAW_LENGTH
-                                             : HF_LAW_TENSION;
-    double length = hf_scene_theoretical_length(s, e);
-    s->target[e] = family == TIE ? tie_target(d->p, length, EA_N) : hf_law_default_target(s->law[e], length);
-    if (s->EA_N) s->EA_N[e] = EA_N;
+    for (int e = 0; e < g->n_cable; e++) {
+        bool is_edge = g->is_rim[g->end[2 * e]] || g->is_rim[g->end[2 * e + 1]];
+        int group = is_edge ? HF_GROUP_BOUNDARY : HF_GROUP_INNER;
+        s->end[2 * e] = g->end[2 * e];
+        s->end[2 * e + 1] = g->end[2 * e + 1];
+        s->group[e] = (unsigned char)group;
+        s->law[e] = is_edge ? HF_LAW_LENGTH : HF_LAW_TENSION;
+        s->target[e] = hf_law_default_target(s->law[e], hf_scene_theoretical_length(s, e));
+        if (s->EA_N) s->EA_N[e] = EA_N[group] > 0 ? EA_N[group] : (double)NAN;
+        member[e] = (hf_cable_set_member){is_edge ? FRONT_EDGE : FRONT, e};
+    }
 }
 
-static void put_cables(double_net *d)
+static hf_status name_all(const plane_grid *g, hf_scene *s)
 {
-    d->n_cable = d->n_member = 0;
-    for (int layer = 0; layer < d->n_layer; layer++)
-        for (int k = 0; k < d->g.n_cable; k++) {
-            int a = d->g.end[2 * k], b = d->g.end[2 * k + 1], first = layer * d->g.n_node;
-            bool is_edge = d->g.is_rim[a] || d->g.is_rim[b];
-            put_cable(d, first + a, first + b, (layer ? REAR : FRONT) + is_edge);
-        }
-    for (int i = 0; i < d->g.n_node && d->n_layer > 1; i++)
-        if (!d->g.is_rim[i]) put_cable(d, i, d->g.n_node + i, TIE);
-}
-
-/* ---- names ---- */
-
-static hf_status name_nodes(const double_net *d)
-{
-    hf_scene *s = d->s;
     size_t n_digit = 24, size = (size_t)s->n_node * n_digit + (size_t)s->n_cable * 2 * n_digit;
     char *text = s->text = malloc(size);
     if (!text) return HF_NO_MEMORY;
     const char *end = text + size;
-    for (int i = 0; i < s->n_node; i++) {
-        const int *label = d->g.label + 2 * (i % d->g.n_node);
-        char layer = i < d->g.n_node ? 'f' : 'r';
+    for (int i = 0; i < g->n_node; i++) {
+        const int *label = g->label + 2 * (size_t)i;
         s->node_id[i] = text;
         if (label[0] < 0)
-            text += snprintf(text, (size_t)(end - text), "%cs%d", layer, label[1]) + 1;
+            text += snprintf(text, (size_t)(end - text), "fs%d", label[1]) + 1;
         else
-            text += snprintf(text, (size_t)(end - text), "%c%d_%d", layer, label[0], label[1]) + 1;
+            text += snprintf(text, (size_t)(end - text), "f%d_%d", label[0], label[1]) + 1;
     }
-    for (int e = 0; e < s->n_cable; e++) {
-        s->cable_id[e] = text;
-        text +=
-            snprintf(text, (size_t)(end - text), "%s-%s", s->node_id[s->end[2 * e]], s->node_id[s->end[2 * e + 1]]) + 1;
-    }
+    hf_double_net_name(s, g->n_node, text, end);
     return HF_OK;
 }
 
@@ -372,19 +336,36 @@ static void free_grid(plane_grid *g, int *node)
     free(g->end);
 }
 
-static hf_status make_net(double_net *d, int *node)
+/* Free nodes of the rear net whose place is beyond its rim. */
+static int count_outside(const hf_paraboloid *p, const plane_grid *g, const hf_scene *s)
 {
-    make_grid(d->p, &d->g, node);
-    put_cables(d); /* only counts */
-    bool with_EA = d->EA_N && (d->EA_N[0] > 0 || d->EA_N[1] > 0);
-    HF_TRY(hf_scene_allocate(d->s, d->g.n_node * d->n_layer, d->n_cable, false, with_EA, false));
-    d->member = malloc((size_t)d->n_member * sizeof *d->member);
-    if (!d->member) return HF_NO_MEMORY;
-    place_layer_nodes(d);
-    put_cables(d);
-    hf_status status = hf_cable_set_make(d->s, N_FAMILY, family_name, d->n_member, d->member);
-    free(d->member);
-    return status == HF_OK ? name_nodes(d) : status;
+    int n = 0;
+    for (int i = 0; i < g->n_node; i++) {
+        const double *rear = s->position_m + 3 * (size_t)(g->n_node + i);
+        n += !g->is_rim[i] && !(hf_norm(rear[0] - p->offset_m, rear[1], 0) < radius(p));
+    }
+    return n;
+}
+
+static hf_status make_net(const hf_paraboloid *p, const plane_grid *g, const double EA_N[2], hf_scene *s)
+{
+    bool with_EA = EA_N && (EA_N[0] > 0 || EA_N[1] > 0), is_double = p->rear_distance_m > 0;
+    int n = g->n_node, m = g->n_cable, n_tie = 0, n_member = m;
+    for (int i = 0; i < n && is_double; i++)
+        n_tie += !g->is_rim[i];
+    HF_TRY(hf_scene_allocate(s, is_double ? 2 * n : n, is_double ? 2 * m + n_tie : m, false, with_EA, false));
+    hf_cable_set_member *member = malloc((size_t)s->n_cable * sizeof *member);
+    if (!member) return HF_NO_MEMORY;
+    place_front(p, g, s);
+    put_front(g, EA_N, s, member);
+    if (is_double) {
+        hf_double_net d = rear_of(p);
+        hf_double_net_fill(&d, EA_N, n, m, s);
+        n_member = hf_double_net_join(member, m, m, n_tie, rear_family, TIE);
+    }
+    hf_status status = hf_cable_set_make(s, N_FAMILY, family_name, n_member, member);
+    free(member);
+    return status == HF_OK ? name_all(g, s) : status;
 }
 
 hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N[2], hf_scene *scene,
@@ -399,13 +380,21 @@ hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N
                         paraboloid->rings, NODE_MAX);
     const char *key = hf_scene_paraboloid_fault(paraboloid, what, sizeof what);
     if (key) return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.%s: %s", key, what);
-    if (paraboloid->tie_law == HF_LAW_ELASTIC && !(EA_N && EA_N[HF_GROUP_INNER] > 0))
+    const hf_double_net rear = rear_of(paraboloid);
+    if (hf_double_net_lacks_EA(&rear, EA_N))
         return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.tie_law: elastic needs the stiffness of inner cables");
-    double_net d = {.p = paraboloid, .EA_N = EA_N, .s = scene, .n_layer = (int)n_layer};
+    plane_grid g = {0};
     int *node = NULL;
-    hf_status status = allocate_grid(paraboloid, &d.g, &node);
-    if (status == HF_OK) status = make_net(&d, node);
-    free_grid(&d.g, node);
+    bool is_outside = false;
+    hf_status status = allocate_grid(paraboloid, &g, &node);
+    if (status == HF_OK) {
+        make_grid(paraboloid, &g, node);
+        if (!is_quad) status = relax(paraboloid, &g);
+        if (status == HF_OK) status = make_net(paraboloid, &g, EA_N, scene);
+        is_outside = status == HF_OK && n_layer > 1 && count_outside(paraboloid, &g, scene) > 0;
+    }
+    free_grid(&g, node);
+    if (is_outside) return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.tie_direction: %s", outside);
     return status == HF_OK ? HF_OK : hf_error(messages, status, "scene: out of memory for %d rings", paraboloid->rings);
 }
 

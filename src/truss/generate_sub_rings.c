@@ -196,7 +196,7 @@ static hf_status generate(generator *g, hf_messages *messages)
     hf_cylinder ribs = *g->c;
     ribs.cells_per_module[0] = g->set->bud.panels;
     ribs.cells_per_module[1] = 1;
-    ribs.scallop = ribs.edge_tie_m = 0;
+    ribs.scallop = ribs.edge_tie_m = ribs.rear_distance_m = 0;
     ribs.pattern = HF_PATTERN_QUAD;
     HF_TRY(hf_scene_parabolic_cylinder(&ribs, NULL, &g->grid, messages));
     hf_status status = hf_truss_allocate(g->t, (int)n_node, (int)n_member, false);

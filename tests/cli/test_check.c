@@ -85,7 +85,7 @@ START_TEST(schema_is_yaml_with_every_key)
         "set(a['scene']) == {'parabolic_cylinder', 'paraboloid', 'import'}",
         "set(a['scene']['parabolic_cylinder']) == {'aperture_m', 'length_m', 'focal_length_m', 'modules', "
         "'cells_per_module', 'pitches_x_m', 'pitches_y_m', 'pattern', 'spacing', 'boundary', 'scallop', 'supports', "
-        "'edge_tie_m'}",
+        "'edge_tie_m', 'rear_distance_m', 'rear_focal_length_m', 'tie_direction', 'tie_law', 'tie_tension_N'}",
         "set(a['scene']['paraboloid']) == {'aperture_m', 'focal_length_m', 'offset_m', 'rings', 'grid', 'spacing', "
         "'rear_distance_m', 'rear_focal_length_m', 'tie_direction', 'tie_law', 'tie_tension_N'}",
         "set(a['scene']['import']) == {'nodes', 'cables'}", "a['surface'] == {'kind': 'auto', 'frequencies_Hz': []}",
@@ -117,7 +117,7 @@ START_TEST(schema_with_its_gaps_filled_is_a_case)
 {
     SHELL(0, "\"$0\" schema | sed -e '/^  import:/,/^    cables:/d' -e '/^  paraboloid:/,/^    tie_tension_N:/d' -e "
              "'s/aperture_m:/& 2/' -e 's/ length_m:/& 3/' "
-             "-e 's/focal_length_m:/& 2/' -e 's/modules:/& [2, 3]/' -e 's/cells_per_module:/& [2, 2]/' -e 's/scallop: "
+             "-e 's/ focal_length_m:/& 2/' -e 's/modules:/& [2, 3]/' -e 's/cells_per_module:/& [2, 2]/' -e 's/scallop: "
              "0/scallop: 0.1/'");
     const char *path = file_with("filled.yaml", said.out);
     HIFDM(0, "check", path);

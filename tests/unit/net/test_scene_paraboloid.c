@@ -4,6 +4,7 @@
 #include "solve/prestress.h"
 #include <hifdm/cable_set.h>
 #include <hifdm/evaluate.h>
+#include <hifdm/facets.h>
 
 static const hf_paraboloid centre_fed = {.aperture_m = 6.1,
                                          .focal_length_m = 2.9,
@@ -43,14 +44,6 @@ static int count_role(const hf_scene *s, hf_role role)
     for (int i = 0; i < s->n_node; i++)
         n += s->role[i] == role;
     return n;
-}
-
-static const double *node(const hf_scene *s, const char *id)
-{
-    for (int i = 0; i < s->n_node; i++)
-        if (!strcmp(s->node_id[i], id)) return s->position_m + 3 * (size_t)i;
-    ck_abort_msg("no node %s", id);
-    return NULL;
 }
 
 /* Radius about the middle of the aperture. */
@@ -156,22 +149,76 @@ START_TEST(net_has_six_sides)
 }
 END_TEST
 
-/* Along the x axis the nodes f<ring>_0 divide the meridian: its length by Simpson's rule. */
+/* Length of the meridian from the axis to this radius, by Simpson's rule. */
+static double arc_to(double radius, double focal_length)
+{
+    double h = radius / 2000, arc = 0;
+    for (int k = 0; k <= 2000; k++)
+        arc += h / 3 * (k % 2000 == 0 ? 1 : k % 2 ? 4 : 2) * hypot(1, k * h / (2 * focal_length));
+    return arc;
+}
+
+/* Equal arcs: a node stands at the part of the meridian that is its part of the radius with equal projected spacing. */
 START_TEST(arcs_are_equal)
 {
     hf_paraboloid p = centre_fed;
+    p.grid = (hf_grid)_i;
+    p.spacing = HF_SPACING_EQUAL_PROJECTED;
+    hf_scene projected = generate(&p, NULL);
     p.spacing = HF_SPACING_EQUAL_ARC;
     hf_scene s = generate(&p, NULL);
-    double arc[6] = {0};
-    for (int ring = 1; ring <= 5; ring++) {
-        char id[16];
-        snprintf(id, sizeof id, "f%d_0", ring);
-        double x = node(&s, id)[0], h = x / 2000;
-        for (int k = 0; k <= 2000; k++)
-            arc[ring] += h / 3 * (k % 2000 == 0 ? 1 : k % 2 ? 4 : 2) * hypot(1, k * h / (2 * 2.9));
+    for (int i = 0; i < s.n_node / 2; i++) {
+        double part = radius_of(&p, projected.position_m + 3 * (size_t)i) / 3.05;
+        double arc = arc_to(radius_of(&p, s.position_m + 3 * (size_t)i), 2.9);
+        ck_assert_double_eq_tol(arc, part * arc_to(3.05, 2.9), 1e-11);
     }
-    for (int ring = 1; ring < 5; ring++)
-        ck_assert_double_eq_tol(arc[ring], arc[5] * ring / 5, 1e-11);
+    hf_scene_free(&projected);
+    hf_scene_free(&s);
+}
+END_TEST
+
+/* Triangles fill the aperture with cells that widen gradually: neighbours along a cable differ little, and their error
+ * is near that of equal-sided triangles of the same mean side, l^2/(16 sqrt(15) f) by METHOD section 9. */
+START_TEST(cells_widen_gradually)
+{
+    static const int rings[] = {4, 8, 20};
+    hf_messages messages = {0};
+    hf_paraboloid p = centre_fed;
+    hf_surface_settings surface = {.kind = HF_SURFACE_PARABOLOID, .focal_length_m = p.focal_length_m};
+    hf_facets facets;
+    p.rings = rings[_i];
+    p.spacing = HF_SPACING_EQUAL_PROJECTED;
+    p.rear_distance_m = 0;
+    hf_scene s = generate(&p, NULL);
+    ck_assert_int_eq(hf_facets_find(&s, &surface, &facets), HF_OK);
+    ck_assert_int_eq(facets.n_facet, 6 * p.rings * p.rings); /* those at the rim, too, where no cable runs */
+    ck_assert_int_eq(facets.n_open, 0);
+    double area = 0, mean = 0, square = 0, side = 0;
+    for (int k = 0; k < facets.n_facet; k++) {
+        const int *c = facets.corner + 4 * (size_t)k;
+        const double *x[3] = {s.position_m + 3 * (size_t)c[0], s.position_m + 3 * (size_t)c[1],
+                              s.position_m + 3 * (size_t)c[2]};
+        double l2[3], sum = 0, cross = 0;
+        double twice = (x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) - (x[1][1] - x[0][1]) * (x[2][0] - x[0][0]);
+        ck_assert_double_gt(twice, 0);
+        for (int e = 0; e < 3; e++) {
+            l2[e] = pow(x[e][0] - x[(e + 1) % 3][0], 2) + pow(x[e][1] - x[(e + 1) % 3][1], 2);
+            side += sqrt(l2[e]) / (3 * facets.n_facet);
+        }
+        for (int e = 0; e < 3; e++) {
+            sum += l2[e];
+            cross += l2[e] * l2[e] + l2[e] * l2[(e + 1) % 3];
+        }
+        area += twice; /* dz is the sum of the products of two barycentric coordinates and l^2 between them, over 4 f */
+        mean += twice * sum / 12 / (4 * p.focal_length_m);
+        square += twice * cross / 90 / pow(4 * p.focal_length_m, 2);
+    }
+    double rms = sqrt(square / area - pow(mean / area, 2)), ideal = side * side / (16 * sqrt(15) * p.focal_length_m);
+    ck_assert_double_eq_tol(area / 2, 3 * p.rings * 3.05 * 3.05 * sin(acos(-1) / (3 * p.rings)), 1e-12);
+    ck_assert_double_lt(rms, 1.08 * ideal);
+    ck_assert_double_gt(rms, 1.05 * ideal);
+    ck_assert_ptr_null(messages.text);
+    hf_facets_free(&facets);
     hf_scene_free(&s);
 }
 END_TEST
@@ -180,6 +227,7 @@ END_TEST
 START_TEST(ties_along_the_normal)
 {
     hf_paraboloid p = offset_fed;
+    p.focal_length_m = 18;
     p.tie_direction = HF_TIES_ALONG_NORMAL;
     hf_scene s = generate(&p, NULL);
     double R = p.aperture_m / 2;
@@ -188,10 +236,10 @@ START_TEST(ties_along_the_normal)
         const double *f = s.position_m + 3 * (size_t)i, *r = f + 3 * (size_t)n;
         if (s.role[i] == HF_ROLE_SUPPORT) continue;
         double d[3] = {r[0] - f[0], r[1] - f[1], r[2] - f[2]};
-        ck_assert_double_eq_tol(d[0] + d[2] * f[0] / (2 * 9.1), 0, 1e-12);
-        ck_assert_double_eq_tol(d[1] + d[2] * f[1] / (2 * 9.1), 0, 1e-12);
+        ck_assert_double_eq_tol(d[0] + d[2] * f[0] / (2 * 18), 0, 1e-12);
+        ck_assert_double_eq_tol(d[1] + d[2] * f[1] / (2 * 18), 0, 1e-12);
         ck_assert_double_lt(d[2], 0);
-        double rim_z = (R * R - 8.3 * 8.3 + 2 * 8.3 * r[0]) / (4 * 9.1) - 3, inside = R * R - pow(radius_of(&p, r), 2);
+        double rim_z = (R * R - 8.3 * 8.3 + 2 * 8.3 * r[0]) / (4 * 18) - 3, inside = R * R - pow(radius_of(&p, r), 2);
         ck_assert_double_eq_tol(r[2], rim_z + inside / (4 * 12), 1e-12);
         moved += hypot(d[0], d[1]) > 0.1;
     }
@@ -232,7 +280,7 @@ START_TEST(net_is_held_on_the_paraboloid)
     hf_paraboloid p = _i % 2 ? offset_fed : centre_fed;
     p.grid = _i / 2 == 1 ? HF_GRID_QUAD : HF_GRID_TRIANGLE;
     p.tie_direction = _i / 2 == 2 ? HF_TIES_ALONG_NORMAL : HF_TIES_ALONG_Z;
-    if (_i / 2 == 2) p.focal_length_m *= 2; /* on deep dishes the corners of the rear net would have to be pushed */
+    if (_i / 2 == 2) p.focal_length_m *= 3; /* on deep dishes the corners of the rear net would have to be pushed */
     struct net net = {.form = tight_form(HF_METHOD_AUTO), .scene = generate(&p, NULL)};
     ck_assert_msg(hf_prestress_hold(&net.scene, &net.form, &messages) == HF_OK, "%s", messages.text);
     open_net(&net);
@@ -264,6 +312,14 @@ START_TEST(nets_that_would_meet_are_refused)
     p.tie_direction = HF_TIES_ALONG_Z;
     s = generate(&p, NULL);
     hf_scene_free(&s);
+    p = centre_fed; /* the corners of the grid are nearer to the rim than other nodes */
+    p.tie_direction = HF_TIES_ALONG_NORMAL;
+    p.focal_length_m = 4.5;
+    ck_assert_ptr_null(hf_scene_paraboloid_fault(&p, (char[HF_GENERATE_FAULT_SIZE]){0}, HF_GENERATE_FAULT_SIZE));
+    ck_assert_int_eq(hf_scene_paraboloid(&p, NULL, &s, &messages), HF_BAD_CASE);
+    ck_assert_ptr_nonnull(strstr(messages.text, "scene.paraboloid.tie_direction: normal leads to places outside the "));
+    hf_scene_free(&s);
+    hf_messages_free(&messages);
     p.rings = 1000;
     ck_assert_int_eq(hf_scene_paraboloid(&p, NULL, &s, &messages), HF_BAD_CASE);
     ck_assert_ptr_nonnull(strstr(messages.text, "1000 rings make more nodes than this program takes"));
@@ -280,7 +336,8 @@ Suite *suite_unit_scene_paraboloid(void)
     tcase_add_test(tests, quads_are_counted);
     tcase_add_test(tests, nodes_are_on_their_surfaces);
     tcase_add_loop_test(tests, net_has_six_sides, 0, 2);
-    tcase_add_test(tests, arcs_are_equal);
+    tcase_add_loop_test(tests, arcs_are_equal, 0, 2);
+    tcase_add_loop_test(tests, cells_widen_gradually, 0, 3);
     tcase_add_test(tests, ties_along_the_normal);
     tcase_add_loop_test(tests, ties_have_their_tension, 0, HF_N_LAW);
     tcase_add_loop_test(tests, net_is_held_on_the_paraboloid, 0, 6);

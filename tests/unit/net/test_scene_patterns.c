@@ -1,5 +1,5 @@
 /* Patterns, pitches, scallops and edge ties of the parabolic cylinder, against counts and geometry of the test's own.
- * Contents: helpers - patterns - pitches - edge ties - symmetry - what cannot be made */
+ * Contents: helpers - patterns - pitches - edge ties - rear nets - symmetry - what cannot be made */
 #include "nets.h"
 
 #include "net/symmetry.h"
@@ -271,6 +271,82 @@ START_TEST(edge_ties_stand_outside)
 }
 END_TEST
 
+/* ---- rear nets ---- */
+
+/* Node by node: the rear net is z_edge - distance + ((a/2)^2 - x^2)/(4 f_rear), straight below or where the normal of
+ * the front leads. Of each front cable there is one behind, and of each free node a tie. */
+START_TEST(rear_net_stands_behind)
+{
+    hf_cylinder c = plain;
+    c.pattern = (hf_pattern)(_i % 4);
+    c.tie_direction = _i < 4 ? HF_TIES_ALONG_Z : HF_TIES_ALONG_NORMAL;
+    c.scallop = 0.05;
+    c.edge_tie_m = 0.2;
+    hf_scene single = generate(&c);
+    c.rear_distance_m = 3.1;
+    c.rear_focal_length_m = 6.2;
+    c.tie_law = HF_LAW_FORCE_DENSITY;
+    c.tie_tension_N = 4;
+    hf_scene s = generate(&c);
+    int n = single.n_node, m = single.n_cable, n_free = 0;
+    ck_assert_int_eq(s.n_node, 2 * n);
+    ck_assert_mem_eq(s.position_m, single.position_m, 3 * (size_t)n * sizeof(double));
+    for (int i = 0; i < n; i++) {
+        const double *f = s.position_m + 3 * (size_t)i, *r = f + 3 * (size_t)n;
+        double slope = _i < 4 ? 0 : f[0] / (2 * 4.77), edge_z = pow(10.3 / 2, 2) / (4 * 4.77);
+        ck_assert_double_eq_tol(r[2], edge_z - 3.1 + (pow(10.3 / 2, 2) - r[0] * r[0]) / (4 * 6.2), 1e-12);
+        ck_assert_double_eq_tol(r[0] - f[0], slope * (f[2] - r[2]), 1e-12);
+        ck_assert_double_eq(r[1], f[1]);
+        ck_assert_double_lt(r[2], f[2] - 0.1);
+        ck_assert_int_eq(s.role[i], single.role[i]);
+        ck_assert_int_eq(s.role[n + i], s.role[i] == HF_ROLE_SUPPORT ? HF_ROLE_SUPPORT : HF_ROLE_EDGE);
+        bool is_plain = s.node_id[i][0] == 'n';
+        ck_assert_int_eq(s.node_id[n + i][0], 'r');
+        ck_assert_str_eq(s.node_id[n + i] + 1, s.node_id[i] + is_plain);
+        if (s.role[i] == HF_ROLE_SUPPORT) continue;
+        int e = cable_between(&s, i, n + i);
+        ck_assert_int_eq(e, 2 * m + n_free++);
+        ck_assert_double_eq_tol(s.target[e] * hf_scene_theoretical_length(&s, e), 4, 1e-14);
+    }
+    ck_assert_int_eq(s.n_cable, 2 * m + n_free);
+    for (int e = 0; e < m; e++) {
+        for (int k = 0; k < 2; k++)
+            ck_assert_int_eq(s.end[2 * (m + e) + k], s.end[2 * e + k] + n);
+        ck_assert_int_eq(s.law[m + e], s.law[e]);
+        ck_assert(is_in(&s, "front", e) && is_in(&s, "rear", m + e));
+        ck_assert(is_in(&s, "edge", e) == is_in(&single, "edge", e));
+        ck_assert(is_in(&s, "edge", e) == is_in(&s, "rear_edge", m + e));
+    }
+    ck_assert_int_eq(set_size(&s, "tie"), n_free);
+    ck_assert_int_eq(set_size(&s, "rear_edge_tie"), set_size(&single, "edge_tie"));
+    hf_scene_free(&single);
+    hf_scene_free(&s);
+}
+END_TEST
+
+START_TEST(rear_nets_that_cannot_be_are_refused)
+{
+    char what[HF_GENERATE_FAULT_SIZE];
+    hf_messages messages = {0};
+    hf_scene s;
+    hf_cylinder c = plain;
+    c.rear_distance_m = 2.78; /* 5.15^2/(2 f) = 2.7801 */
+    ck_assert_str_eq(hf_scene_parabolic_cylinder_fault(&c, what, sizeof what), "rear_distance_m");
+    ck_assert_str_eq(what,
+                     "of 2.78 m lets the nets meet in the middle, where they come 2.78014 m nearer than at the rim");
+    c.rear_distance_m = 2.781;
+    ck_assert_ptr_null(hf_scene_parabolic_cylinder_fault(&c, what, sizeof what));
+    c.tie_law = HF_LAW_ELASTIC;
+    ck_assert_int_eq(hf_scene_parabolic_cylinder(&c, NULL, &s, &messages), HF_BAD_CASE);
+    ck_assert_ptr_nonnull(strstr(messages.text, "parabolic_cylinder.tie_law: elastic needs the stiffness"));
+    hf_messages_free(&messages);
+    c.tie_direction = HF_TIES_ALONG_NORMAL; /* on so deep a net the normal runs beside the falling rear net */
+    c.focal_length_m = 1;
+    c.rear_distance_m = 20;
+    ck_assert_str_eq(hf_scene_parabolic_cylinder_fault(&c, what, sizeof what), "tie_direction");
+}
+END_TEST
+
 /* ---- symmetry ---- */
 
 static const struct {
@@ -390,6 +466,8 @@ Suite *suite_unit_scene_patterns(void)
     Suite *suite = suite_create("unit/scene_patterns");
     TCase *tests = tcase_create("scene_patterns");
     suite_add_tcase(suite, tests);
+    tcase_add_loop_test(tests, rear_net_stands_behind, 0, 8);
+    tcase_add_test(tests, rear_nets_that_cannot_be_are_refused);
     tcase_add_loop_test(tests, patterns_are_as_counted, 0, N_COUNTS);
     tcase_add_loop_test(tests, diagonals_run_as_said, 0, 2);
     tcase_add_loop_test(tests, middles_of_cells, 0, 2);

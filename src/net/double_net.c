@@ -1,0 +1,151 @@
+#include "net/double_net.h"
+
+#include "net/wanted.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define FOUND 1e-10 /* step of Newton's method, over the length of the normal: the next one is below rounding */
+
+const char *const hf_tie_direction_word[3] = {"z", "normal", NULL};
+#define LAW_WORD(name, word, target, unit, flags) word,
+const char *const hf_tie_law_word[HF_N_LAW + 1] = {HF_LAW_LIST(LAW_WORD) NULL};
+#undef LAW_WORD
+
+/* ---- places ---- */
+
+static double front_curvature(const hf_double_net *d)
+{
+    return 1 / (4 * d->focal_length_m);
+}
+
+/* By how much the nets come nearer to each other per square of the distance from the rim, 1/m. */
+static double nearing(const hf_double_net *d)
+{
+    return front_curvature(d) + 1 / (4 * d->rear_focal_length_m);
+}
+
+/* z of the rear surface at x and y of this point, and its slopes. */
+static double rear_height(const hf_double_net *d, const double p[3], double slope[2])
+{
+    bool is_round = d->kind == HF_SURFACE_PARABOLOID;
+    double dx = p[0] - d->middle_x_m, dy = is_round ? p[1] : 0;
+    double front_z = p[2] - hf_wanted_height_above(d->kind, front_curvature(d), p, slope);
+    slope[0] -= 2 * nearing(d) * dx;
+    slope[1] -= 2 * nearing(d) * dy;
+    return front_z + (d->half_m * d->half_m - dx * dx - dy * dy) * nearing(d) - d->distance_m;
+}
+
+bool hf_double_net_behind(const hf_double_net *d, bool along_z, const double front_m[3], double rear_m[3])
+{
+    double slope[2], normal[3] = {0, 0, -1}, t = 0;
+    bool is_found = along_z;
+    hf_wanted_height_above(d->kind, front_curvature(d), front_m, slope);
+    for (int c = 0; c < 3; c++)
+        rear_m[c] = front_m[c];
+    if (!along_z) normal[0] = slope[0], normal[1] = slope[1];
+    for (int i = 0; i < 60 && !is_found; i++) { /* Newton's method for the length along the normal */
+        for (int c = 0; c < 3; c++)
+            rear_m[c] = front_m[c] + t * normal[c];
+        double above = rear_m[2] - rear_height(d, rear_m, slope);
+        double step = above / (normal[2] - slope[0] * normal[0] - slope[1] * normal[1]);
+        t -= step;
+        is_found = fabs(step) <= FOUND * fabs(t);
+    }
+    for (int c = 0; c < 2; c++)
+        rear_m[c] = front_m[c] + t * normal[c];
+    rear_m[2] = rear_height(d, rear_m, slope);
+    return is_found && rear_m[2] < front_m[2];
+}
+
+const char *hf_double_net_fault(const hf_double_net *d, char *what, size_t size)
+{
+    double nearer_m = d->half_m * d->half_m * nearing(d);
+    if (d->distance_m == 0 || d->distance_m > nearer_m) return NULL;
+    snprintf(what, size, "of %.6g m lets the nets meet in the middle, where they come %.6g m nearer than at the rim",
+             d->distance_m, nearer_m);
+    return "rear_distance_m";
+}
+
+bool hf_double_net_lacks_EA(const hf_double_net *d, const double EA_N[2])
+{
+    return d->distance_m > 0 && d->law == HF_LAW_ELASTIC && !(EA_N && EA_N[HF_GROUP_INNER] > 0);
+}
+
+/* ---- cables ---- */
+
+/* The tie's target by its law, where its tension at the theoretical length is to be tension_N. */
+static double tie_target(const hf_double_net *d, double length, double EA_N)
+{
+    switch (d->law) {
+    case HF_LAW_TENSION:
+        return d->tension_N;
+    case HF_LAW_FORCE_DENSITY:
+        return d->tension_N / length;
+    case HF_LAW_ELASTIC:
+        return length / (1 + d->tension_N / EA_N);
+    default:
+        return length;
+    }
+}
+
+static void put_tie(const hf_double_net *d, double EA_N, hf_scene *s, int e, int a, int b)
+{
+    s->end[2 * e] = a;
+    s->end[2 * e + 1] = b;
+    s->group[e] = HF_GROUP_INNER;
+    s->law[e] = (unsigned char)d->law;
+    s->target[e] = tie_target(d, hf_scene_theoretical_length(s, e), EA_N);
+    if (s->EA_N) s->EA_N[e] = EA_N;
+}
+
+void hf_double_net_fill(const hf_double_net *d, const double EA_N[2], int n_front, int m_front, hf_scene *s)
+{
+    double tie_EA_N = EA_N && EA_N[HF_GROUP_INNER] > 0 ? EA_N[HF_GROUP_INNER] : (double)NAN;
+    int m = 2 * m_front;
+    for (int i = 0; i < n_front; i++) {
+        bool is_support = s->role[i] == HF_ROLE_SUPPORT;
+        const double *front = s->position_m + 3 * (size_t)i;
+        hf_double_net_behind(d, d->direction == HF_TIES_ALONG_Z || (is_support && d->supports_along_z), front,
+                             s->position_m + 3 * (size_t)(n_front + i));
+        s->role[n_front + i] = is_support ? HF_ROLE_SUPPORT : HF_ROLE_EDGE;
+    }
+    for (int e = 0; e < m_front; e++) {
+        int rear = m_front + e;
+        s->end[2 * rear] = n_front + s->end[2 * e];
+        s->end[2 * rear + 1] = n_front + s->end[2 * e + 1];
+        s->group[rear] = s->group[e];
+        s->law[rear] = s->law[e];
+        s->target[rear] = hf_law_default_target(s->law[rear], hf_scene_theoretical_length(s, rear));
+        if (s->EA_N) s->EA_N[rear] = s->EA_N[e];
+    }
+    for (int i = 0; i < n_front; i++)
+        if (s->role[i] != HF_ROLE_SUPPORT) put_tie(d, tie_EA_N, s, m++, i, n_front + i);
+}
+
+int hf_double_net_join(hf_cable_set_member *member, int n_member, int m_front, int n_tie, const int *rear_set,
+                       int tie_set)
+{
+    int n = n_member;
+    for (int k = 0; k < n_member; k++, n++)
+        if (member) member[n] = (hf_cable_set_member){rear_set[member[k].set], m_front + member[k].cable};
+    for (int k = 0; k < n_tie; k++, n++)
+        if (member) member[n] = (hf_cable_set_member){tie_set, 2 * m_front + k};
+    return n;
+}
+
+/* ---- names ---- */
+
+void hf_double_net_name(hf_scene *s, int n_front, char *text, const char *end)
+{
+    for (int i = n_front; i < s->n_node; i++) {
+        const char *front = s->node_id[i - n_front];
+        s->node_id[i] = text;
+        text += snprintf(text, (size_t)(end - text), "r%s", front + (*front == 'f' || *front == 'n')) + 1;
+    }
+    for (int e = 0; e < s->n_cable; e++) {
+        s->cable_id[e] = text;
+        text +=
+            snprintf(text, (size_t)(end - text), "%s-%s", s->node_id[s->end[2 * e]], s->node_id[s->end[2 * e + 1]]) + 1;
+    }
+}
