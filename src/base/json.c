@@ -70,10 +70,7 @@ void hf_json_text(hf_json *j, const char *key, const char *text)
 void hf_json_number(hf_json *j, const char *key, double value)
 {
     begin_item(j, key);
-    if (isinf(value))
-        fputs(value > 0 ? "\"Infinity\"" : "\"-Infinity\"", j->file);
-    else
-        hf_json_value(value, 17, j->file);
+    hf_json_value(value, 17, j->file);
 }
 
 void hf_json_integer(hf_json *j, const char *key, int64_t value)
@@ -126,8 +123,10 @@ void hf_json_string(const char *text, FILE *f)
 
 void hf_json_value(double value, int digits, FILE *f)
 {
-    if (!isfinite(value))
+    if (isnan(value))
         fputs("null", f);
+    else if (isinf(value))
+        fputs(value > 0 ? "\"Infinity\"" : "\"-Infinity\"", f);
     else
         fprintf(f, "%.*g", digits, value + 0.0); /* no -0 */
 }

@@ -1,15 +1,18 @@
 /* The page of one result. Contents: texts - net and shapes - series - the page - reading */
 #include "out/report_result.h"
 
+#include "base/arena.h"
 #include "base/file_out.h"
 #include "base/json.h"
 #include "base/path.h"
 #include "out/report_page.h"
+#include "solve/facet_rms.h"
 #include "store/store_read.h"
 #include "store/store_series.h"
 #include <hifdm/metrics.h>
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define POINTS_MAX 1000       /* points of a series that the page keeps: about what a screen can show */
@@ -41,6 +44,9 @@ typedef struct {
     bool has_shape[HF_STAGE_NONE];
     hf_shape shape[HF_STAGE_NONE];
     hf_series series[N_SERIES];
+    hf_facets facets;                           /* none without measures of the surface */
+    hf_facet_errors facet_error[HF_STAGE_NONE]; /* of each shape, in facet_block */
+    void *facet_block;
     hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or none, [m][2] */
     char provenance[PROVENANCE_SIZE];
 } page;
@@ -63,8 +69,29 @@ static const char *heading(const hf_summary *s)
 
 /* ---- net and shapes ---- */
 
-static void write_net(const hf_scene *s, FILE *f)
+static void write_integers(const char *key, const int *value, int n, FILE *f)
 {
+    fprintf(f, ",\"%s\":[", key);
+    for (int i = 0; i < n; i++)
+        fprintf(f, "%s%d", i ? "," : "", value[i]);
+    fputc(']', f);
+}
+
+static void write_sets(const hf_scene *s, FILE *f)
+{
+    fputs(",\"sets\":[", f);
+    for (int k = 0; k < s->n_set; k++) {
+        fputs(k ? ",{\"name\":" : "{\"name\":", f);
+        hf_json_string(s->set_name[k], f);
+        write_integers("cable", s->set_cable + s->set_start[k], s->set_start[k + 1] - s->set_start[k], f);
+        fputc('}', f);
+    }
+    fputc(']', f);
+}
+
+static void write_net(const page *p, FILE *f)
+{
+    const hf_scene *s = &p->scene;
     fprintf(f, ",\n\"net\":{\"n_node\":%d,\"n_cable\":%d", s->n_node, s->n_cable);
     hf_json_strings("role_word", hf_role_word, 3, f);
     hf_json_strings("group_word", hf_group_word, 2, f);
@@ -73,11 +100,10 @@ static void write_net(const hf_scene *s, FILE *f)
     hf_json_values("position_m", s->position_m, 3 * s->n_node, 1, 8, f);
     write_codes("role", s->role, s->n_node, f);
     hf_json_strings("cable_id", s->cable_id, s->n_cable, f);
-    fputs(",\"end\":[", f);
-    for (int i = 0; i < 2 * s->n_cable; i++)
-        fprintf(f, "%s%d", i ? "," : "", s->end[i]);
-    fputc(']', f);
+    write_integers("end", s->end, 2 * s->n_cable, f);
     write_codes("group", s->group, s->n_cable, f);
+    write_sets(s, f);
+    if (p->facets.n_facet) write_integers("facets", p->facets.corner, 4 * p->facets.n_facet, f);
     fputc('}', f);
 }
 
@@ -95,6 +121,12 @@ static void write_shape(const page *p, hf_stage stage, FILE *f)
     hf_json_values("length_m", shape->length_m, p->scene.n_cable, 1, 7, f);
     hf_json_values("tension_N", shape->tension_N, p->scene.n_cable, 1, 7, f);
     write_codes("law", shape->law, p->scene.n_cable, f);
+    if (p->facets.n_facet) {
+        const hf_facet_errors *e = &p->facet_error[stage];
+        hf_json_values("facet_normal_mean_m", e->normal_mean_m, p->facets.n_facet, 1, 6, f);
+        hf_json_values("facet_normal_rms_m", e->normal_rms_m, p->facets.n_facet, 1, 6, f);
+        hf_json_values("facet_fit_normal_mean_m", e->fit_normal_mean_m, p->facets.n_facet, 1, 6, f);
+    }
     fputc('}', f);
 }
 
@@ -186,7 +218,7 @@ static void write_data(const void *context, FILE *f)
     fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, s->n_gene);
     hf_json_value(s->pretension_N, 17, f);
     write_figures(f);
-    write_net(&p->scene, f);
+    write_net(p, f);
     write_shapes(p, f);
     write_truss(p, f);
     write_series(p, f);
@@ -223,12 +255,39 @@ static hf_status read_shapes(page *p, hf_messages *messages)
     return HF_OK;
 }
 
+static void lay_out_facets(hf_arena *a, page *p)
+{
+    size_t n = (size_t)p->facets.n_facet;
+    for (int i = 0; i < HF_STAGE_NONE; i++) {
+        hf_facet_errors *e = &p->facet_error[i];
+        e->normal_mean_m = hf_arena_take(a, n, sizeof(double));
+        e->normal_rms_m = hf_arena_take(a, n, sizeof(double));
+        e->fit_normal_mean_m = hf_arena_take(a, n, sizeof(double));
+        e->fit_normal_rms_m = hf_arena_take(a, n, sizeof(double));
+    }
+}
+
+static hf_status map_facets(page *p)
+{
+    hf_arena arena = {0};
+    if (!(p->summary.surface.focal_length_m > 0)) return HF_OK;
+    HF_TRY(hf_facets_find(&p->scene, &p->summary.surface, &p->facets));
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_facets(&arena, p)));
+    p->facet_block = arena.block;
+    for (int i = 0; i < HF_STAGE_NONE; i++) {
+        const hf_facet_shape shape = {p->shape[i].position_m};
+        if (p->has_shape[i]) HF_TRY(hf_facet_map(&p->summary.surface, &p->facets, &shape, &p->facet_error[i]));
+    }
+    return HF_OK;
+}
+
 static hf_status read_page(page *p, hf_messages *messages)
 {
     HF_TRY(hf_store_read_summary(p->path, &p->summary, messages));
     HF_TRY(hf_store_read_scene(p->path, &p->scene, messages));
     HF_TRY(hf_store_read_provenance(p->path, p->provenance, sizeof p->provenance, messages));
     HF_TRY(read_shapes(p, messages));
+    if (map_facets(p) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", p->path);
     for (int i = 0; i < N_SERIES; i++)
         HF_TRY(hf_store_read_series(p->path, series_table[i].path, 1, &p->series[i], messages));
     HF_TRY(hf_store_read_series(p->path, "/truss/node/position_m", 3, &p->truss_position_m, messages));
@@ -244,6 +303,8 @@ static void free_page(page *p)
         hf_shape_free(&p->shape[i]);
     for (int i = 0; i < N_SERIES; i++)
         hf_series_free(&p->series[i]);
+    hf_facets_free(&p->facets);
+    free(p->facet_block);
     hf_series_free(&p->truss_position_m);
     hf_series_free(&p->truss_displacement);
     hf_series_free(&p->truss_end);

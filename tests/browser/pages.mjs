@@ -3,6 +3,7 @@
 //   sections: those it must have, in order, apart from those that are there maybe
 //   title: what must stand on it, to the letter
 //   warnings, slack: how many it must tell of
+//   facets: how many, all triangles; off: families of cables whose switches are tried
 //   study: how many points
 
 const FORM = ["net", "map", "form-finding", "tensions", "summary", "provenance"];
@@ -54,6 +55,13 @@ export const pages = [
     name: "large", // 41x49 nodes
     text: cylinder([20, 24], "optimize: {rule: tension, population: 4, generations: 400, polish_iterations: 2}\n"),
     sections: GA,
+  },
+  {
+    name: "paraboloid",
+    text: "scene:\n  paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 8, rear_distance_m: 1.8}\nsurface: {}\n",
+    sections: FORM,
+    facets: 336,
+    off: ["rear", "rear edge", "tie"],
   },
   {
     name: "truss",

@@ -161,13 +161,15 @@ async function checkCharts(tab, least, words) {
       drawn: [...c.querySelectorAll("svg[tabindex] path")].map(
         (p) => p.getTotalLength() + p.getAttribute("d").length,
       ),
+      endless: c.querySelectorAll("svg[tabindex] circle").length,
     })),
   );
   assert.ok(charts.length >= least, "too few charts");
   for (const c of charts) {
     assert.ok(!/NaN|undefined|Infinity/.test(c.markup), `${c.title}: holds no numbers`);
     assert.ok(c.ticks >= 5, `${c.title}: ${c.ticks} labels`);
-    assert.ok(c.drawn.length && c.drawn.some((d) => d > 0), `${c.title}: is empty`);
+    assert.ok((c.drawn.length && c.drawn.some((d) => d > 0)) || c.endless, `${c.title}: is empty`);
+    assert.equal(c.endless > 0, c.markup.includes("∞"), `${c.title}: infinite values without their sign`);
   }
   const first = tab.locator(".chart svg[tabindex]").first(),
     said = tab.locator(".chart .tip").first();
@@ -176,9 +178,13 @@ async function checkCharts(tab, least, words) {
   assert.match(await said.innerText(), words);
   await tab.keyboard.press("Escape");
   assert.ok(await said.isHidden());
+  return charts.filter((c) => c.endless).map((c) => c.title);
 }
 
-async function checkHover(tab, made) {
+// Where families can be switched off they are first: from above, a rear net lies under the front one.
+async function checkHover(tab, page, made) {
+  for (const name of page.off || []) await tab.locator("#families").getByLabel(name, { exact: true }).uncheck();
+  const seen = made.cables.filter((c) => !(page.off || []).includes((c.set || "").replace("_", " ")));
   await tab.locator("#net-canvas").scrollIntoViewIfNeeded();
   const box = await tab.locator("#net-canvas").boundingBox();
   const at = (kind, i) => tab.evaluate(([k, e]) => report.net.screenOf(k, e), [kind, i]);
@@ -194,9 +200,8 @@ async function checkHover(tab, made) {
     return tip(tab, "net");
   }
   for (const part of [0.1, 0.37, 0.62, 0.98]) {
-    const e = Math.floor(part * made.cables.length),
-      cable = made.cables[e],
-      said = await hover("cable", e);
+    const cable = seen[Math.floor(part * seen.length)],
+      said = await hover("cable", made.cables.indexOf(cable));
     assert.equal(said && said.heading, `cable ${cable.id}`);
     same(number(said.tension), Number(cable.tension_N), 6);
     same(number(said.length), Number(cable.length_m), 6);
@@ -211,6 +216,7 @@ async function checkHover(tab, made) {
   await tab.mouse.move(box.x - 5, box.y - 5);
   await tab.getByRole("button", { name: "View from above" }).click();
   assert.equal(await tip(tab, "net"), null);
+  for (const name of page.off || []) await tab.locator("#families").getByLabel(name, { exact: true }).check();
 }
 
 async function checkNet(tab, page, made) {
@@ -267,6 +273,47 @@ async function checkMap(tab, made) {
   same(number(said["height, Δz"]), 1e3 * (node.z_m - node.z0_m), 4);
   await tab.locator("#map").getByLabel("height").check();
   assert.notEqual((await picture(tab, "map-canvas")).sum, before.sum);
+}
+
+// The value of a facet is that of its corners in the tables, by the rule of the middles of the sides; switches of
+// families take their cables out of the picture and from under the pointer.
+async function checkFacets(tab, page, made) {
+  const corners = await tab.evaluate("net.facets"),
+    f = 3; // m, of the case
+  assert.equal(corners.length, 4 * page.facets);
+  for (const quantity of ["facets, best fit", "facets, along the normal"]) {
+    const before = await picture(tab, "map-canvas");
+    await tab.locator("#map").getByLabel(quantity).check();
+    const after = await picture(tab, "map-canvas");
+    assert.ok(after.sum !== before.sum && after.colours > 8, `${quantity}: nothing is drawn`);
+  }
+  await tab.locator("#map-canvas").scrollIntoViewIfNeeded();
+  const box = await tab.locator("#map-canvas").boundingBox();
+  for (const k of [0, Math.floor(page.facets / 2), page.facets - 1]) {
+    const [x, y] = await tab.evaluate((facet) => report.map.facetAt(facet), k);
+    await tab.mouse.move(box.x + x, box.y + y);
+    const said = await tip(tab, "map"),
+      nodes = corners.slice(4 * k, 4 * k + 3).map((i) => made.nodes[i]);
+    assert.equal(said && said.heading, `facet ${nodes.map((n) => n.id).join(", ")}`);
+    const p = nodes.map((n) => [Number(n.x_m), Number(n.y_m), Number(n.z_m)]);
+    const errors = [0, 1, 2].map((i) => {
+      const [a, b, c] = [0, 1, 2].map((d) => (p[i][d] + p[(i + 1) % 3][d]) / 2);
+      return (c - (a * a + b * b) / (4 * f)) / Math.hypot(1, a / (2 * f), b / (2 * f));
+    });
+    const mean_mm = (1e3 * (errors[0] + errors[1] + errors[2])) / 3;
+    const size_mm = 1e3 * Math.max(...errors.map(Math.abs)); // the slope, which is not constant, makes 5e-3 of it
+    assert.ok(Math.abs(number(said["along the normal, mean"]) - mean_mm) < 5e-3 * size_mm, "another error");
+  }
+  const switches = tab.locator("#families"),
+    e = made.cables.findIndex((c) => page.off.includes(c.set));
+  for (const name of page.off) await changes(tab, name, () => switches.getByLabel(name, { exact: true }).uncheck());
+  await tab.locator("#net-canvas").scrollIntoViewIfNeeded();
+  const [x, y] = await tab.evaluate((i) => report.net.screenOf("cable", i), e),
+    view = await tab.locator("#net-canvas").boundingBox();
+  await tab.mouse.move(view.x + x, view.y + y);
+  const said = await tip(tab, "net");
+  assert.ok(!said || said.heading !== `cable ${made.cables[e].id}`, "a cable that is switched off is picked");
+  for (const name of page.off) await switches.getByLabel(name, { exact: true }).check();
 }
 
 async function checkRules(tab) {
@@ -436,10 +483,12 @@ async function test(browser, page) {
     await checkPoints(tab, page, made, folder);
   } else {
     await checkSummary(tab, made);
-    await checkCharts(tab, 4, /iteration \d+\s+ψ\s+[\d.]+.* mm/);
+    const endless = await checkCharts(tab, 4, /iteration \d+\s+ψ\s+[\d.]+.* mm/);
     await checkNet(tab, page, made);
-    await checkHover(tab, made);
+    await checkHover(tab, page, made);
+    if (page.slack) assert.ok(endless.includes("Tension ratio, boundary cables"), "an infinite ratio is not shown");
     await checkMap(tab, made);
+    if (page.facets) await checkFacets(tab, page, made);
     await checkUnknownFigure(browser, made, folder);
   }
   if (page.study || page.slack !== undefined) await checkHostile(browser, made, folder);

@@ -46,7 +46,7 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
   const leading = series.filter((s) => !s.free).flatMap((s) => s.values),
     positive = range(leading.filter((v) => v > 0));
   const clip = `clip-${++clips}`;
-  if (!range(leading)) return null; // nothing to draw
+  if (!range(leading) && !leading.includes(Infinity)) return null; // nothing to draw
   if (log === "auto") log = !!positive && positive[1] > 20 * positive[0];
   const margin = { left: 64, right: 14, top: 26, bottom: 42 },
     height = 290;
@@ -70,7 +70,7 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
     let text = "",
       on = false;
     s.values.forEach((v, i) => {
-      const good = typeof v === "number" && yAxis.has(v);
+      const good = Number.isFinite(v) && yAxis.has(v);
       if (good) text += `${on && !s.dots ? "L" : "M"}${sx(x[i]).toFixed(1)} ${sy(v).toFixed(1)}${s.dots ? "h0" : ""}`;
       on = good;
     });
@@ -78,9 +78,23 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
     return s.dots || x.length > MARKED_MAX ? line : [line, path({ ...s, dots: true }, sx, sy, yAxis)];
   }
 
+  // Infinite values stand on the upper edge of the picture, one sign for each run of neighbours.
+  function endless(s, sx) {
+    const marks = s.values.flatMap((v, i) =>
+      v === Infinity ? svg("circle", { cx: sx(x[i]), cy: margin.top, r: 3, style: `fill:${paint(s.colour)}` }) : [],
+    );
+    const signs = s.values.flatMap((v, i) =>
+      v === Infinity && s.values[i - 1] !== Infinity
+        ? svg("text", { class: "label", x: sx(x[i]) - 3, y: margin.top + 17, "text-anchor": "start" }, "∞")
+        : [],
+    );
+    return [...marks, ...signs];
+  }
+
   function draw() {
     const width = Math.max(holder.clientWidth, 260),
       yAxis = axis(leading, log);
+    if (!range(leading)) yAxis.ticks = []; // nothing finite has a place
     margin.left = 16 + 7 * Math.max(4, ...yAxis.ticks.map((t) => t.text.length));
     const w = width - margin.left - margin.right;
     const h = height - margin.top - margin.bottom;
@@ -127,6 +141,7 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
         { "clip-path": `url(#${clip})` },
         series.flatMap((s) => path(s, sx, sy, yAxis)),
       ),
+      ...series.flatMap((s) => endless(s, sx)),
       svg("g", { class: "at" }),
     ]);
     point(cursor);
@@ -142,7 +157,9 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
     }
     const px = place.sx(x[i]),
       here = series.filter((s) => typeof s.values[i] === "number");
-    const shown = here.filter((s) => place.yAxis.has(s.values[i]) && place.yAxis.at(s.values[i]) <= 1);
+    const shown = here.filter(
+      (s) => Number.isFinite(s.values[i]) && place.yAxis.has(s.values[i]) && place.yAxis.at(s.values[i]) <= 1,
+    );
     fill(group, {}, [
       svg("line", { class: "cursor", x1: px, x2: px, y1: margin.top, y2: place.bottom }),
       ...shown.map((s) =>

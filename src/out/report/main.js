@@ -143,8 +143,14 @@ function writeNet() {
     ["deviation", "deviation"],
     ["tension", "tension"],
     ["slack", "slack"],
+    ...(net.sets.length ? [["family", "family"]] : []),
     ["plain", "none"],
   ];
+  const showSet = (name, on) => {
+    if (on) view.state.off.delete(name);
+    else view.state.off.add(name);
+    view.redraw();
+  };
   section(
     "net",
     "The net",
@@ -157,6 +163,7 @@ function writeNet() {
       shapes.length ? el("label", {}, el("span", { class: "muted" }, "Deformation"), slider, output) : null,
       shapes.length ? tick("theoretical shape", true, (v) => set({ theory: v })) : null,
       data.truss ? tick("truss", true, (v) => set({ truss: v })) : null,
+      familyTicks(showSet),
       el(
         "span",
         { class: "buttons" },
@@ -187,6 +194,18 @@ function writeNet() {
     ),
   );
   report.net = view;
+}
+
+// Switches of the families of cables, such as front, rear and ties; many of them are folded away.
+const FAMILIES_OPEN = 8;
+function familyTicks(act) {
+  const { sets } = net;
+  if (!sets.length) return null;
+  const ticks = sets.map(({ name }) => tick(familyName(name), true, (on) => act(name, on)));
+  const all = el("fieldset", { id: "families" }, el("legend", {}, "Cables "), ticks);
+  return sets.length <= FAMILIES_OPEN
+    ? all
+    : el("details", {}, el("summary", {}, `${fmtCount(sets.length)} families of cables`), all);
 }
 
 function trussNote() {
@@ -236,6 +255,12 @@ function writeMap() {
         [
           ["distance", "distance"],
           ["height", "height Δz"],
+          ...(net.facets
+            ? [
+                ["normal", "facets, along the normal"],
+                ["fit", "facets, best fit"],
+              ]
+            : []),
         ],
         "distance",
         (v) => set({ quantity: v }),
@@ -250,7 +275,11 @@ function writeMap() {
         "figcaption",
         { id: "map-caption" },
         "The net seen along z, at its theoretical place; between the nodes the value is interpolated. Height is " +
-          "positive above the theoretical surface; distance, as in ψ, includes drift within the surface.",
+          "positive above the theoretical surface; distance, as in ψ, includes drift within the surface." +
+          (net.facets
+            ? " A facet has the mean of its error along the normal, positive above the wanted surface, or above the " +
+              "best fit to all facets."
+            : ""),
       ),
     ),
   );

@@ -3,11 +3,11 @@
 // ---- faces: at every node the cables are sorted by direction; the next side of a face is the one before the cable
 // by which the walk arrived.
 
-function findFaces() {
+function findFaces(cables) {
   const p = net.position_m,
     out = Array.from({ length: net.n_node }, () => []),
     faces = [];
-  for (let e = 0; e < net.n_cable; e++) {
+  for (const e of cables) {
     const a = net.end[2 * e],
       b = net.end[2 * e + 1];
     out[a].push({ to: b });
@@ -35,13 +35,33 @@ function findFaces() {
   return faces;
 }
 
+// ---- what is on the map: where there are facets, their nodes, the supports that these hang on, and the cables between
+// them; a rear net and its ties are behind it ----
+
+function mapParts() {
+  const every = Array.from({ length: net.n_cable }, (_, e) => e),
+    on = new Uint8Array(net.n_node);
+  if (!net.facets) return { cables: every, on: on.fill(1) };
+  for (const i of net.facets) on[i] = 1;
+  const ends = (e) => [net.end[2 * e], net.end[2 * e + 1]];
+  const cables = every.filter(
+    (e) => ends(e).some((i) => on[i]) && ends(e).every((i) => on[i] || digit(net.role, i) === 0),
+  );
+  for (const e of cables) for (const i of ends(e)) on[i] = 1;
+  return { cables, on };
+}
+
 // ---- the map ----
 
 function aperture({ canvas, tip, bar }) {
   const state = { shape: resultShape, quantity: "distance" };
   const p = net.position_m,
     n = net.n_node,
-    faces = findFaces(),
+    { cables, on } = mapParts(),
+    faces = findFaces(cables),
+    facets = Array.from({ length: (net.facets || []).length / 4 }, (_, k) => [
+      ...new Set(net.facets.slice(4 * k, 4 * k + 4)),
+    ]),
     left = 58,
     bottom = 44,
     top = 30,
@@ -54,10 +74,14 @@ function aperture({ canvas, tip, bar }) {
     sy = new Float64Array(n);
   let queued = false;
 
-  const values = () => (state.quantity === "distance" ? state.shape.distance_mm : state.shape.height_mm);
+  const ofFacets = () => ({ normal: "facet_normal_mean_m", fit: "facet_fit_normal_mean_m" })[state.quantity];
+  function values() {
+    if (ofFacets()) return state.shape[ofFacets()].map((v) => (v === null ? NaN : 1e3 * v));
+    return state.quantity === "distance" ? state.shape.distance_mm : state.shape.height_mm;
+  }
   const colours = () => (state.quantity === "distance" ? sequential : diverging);
   function limits() {
-    const size = innerMost(values());
+    const size = ofFacets() ? Math.max(...(range(values().map(Math.abs)) || [0, 1])) || 1 : innerMost(values());
     return state.quantity === "distance" ? [0, size] : [-size, size];
   }
 
@@ -106,12 +130,30 @@ function aperture({ canvas, tip, bar }) {
     c.putImageData(image, 0, 0);
   }
 
+  // A facet has one colour. Its border has it, too, so that no gap shows between neighbours.
+  function paintFacets(c) {
+    const table = levels(colours()),
+      limit = limits(),
+      v = values();
+    c.lineWidth = 0.6;
+    facets.forEach((facet, k) => {
+      if (!Number.isFinite(v[k])) return;
+      c.fillStyle = c.strokeStyle = rgb(table[levelOf(v[k], limit)]);
+      c.beginPath();
+      for (const i of facet) c.lineTo(sx[i], sy[i]);
+      c.closePath();
+      c.fill();
+      c.stroke();
+    });
+  }
+
   // A net without closed faces is shown by a disc at every node.
   function paintNodes(c) {
     const table = levels(colours()),
       limit = limits(),
       v = values();
     for (let i = 0; i < n; i++) {
+      if (!on[i]) continue;
       c.fillStyle = rgb(table[levelOf(v[i], limit)]);
       c.beginPath();
       c.arc(sx[i], sy[i], 8, 0, 7);
@@ -124,7 +166,7 @@ function aperture({ canvas, tip, bar }) {
     c.globalAlpha = 0.28;
     c.lineWidth = 0.7;
     c.beginPath();
-    for (let e = 0; e < net.n_cable; e++) {
+    for (const e of cables) {
       c.moveTo(sx[net.end[2 * e]], sy[net.end[2 * e]]);
       c.lineTo(sx[net.end[2 * e + 1]], sy[net.end[2 * e + 1]]);
     }
@@ -133,7 +175,7 @@ function aperture({ canvas, tip, bar }) {
     const side = n > 1000 ? 1 : 2.5;
     c.fillStyle = css("--ink");
     for (let i = 0; i < n; i++)
-      if (digit(net.role, i) === 0) c.fillRect(sx[i] - side, sy[i] - side, 2 * side, 2 * side);
+      if (on[i] && digit(net.role, i) === 0) c.fillRect(sx[i] - side, sy[i] - side, 2 * side, 2 * side);
   }
 
   function paintAxes(c, width, height, toX, toY) {
@@ -170,17 +212,23 @@ function aperture({ canvas, tip, bar }) {
       sx[i] = toX(p[3 * i + across]);
       sy[i] = toY(p[3 * i + up]);
     }
-    paintFaces(c, ratio);
+    if (!ofFacets()) paintFaces(c, ratio);
     c.setTransform(ratio, 0, 0, ratio, 0, 0);
+    if (ofFacets()) paintFacets(c);
     paintNet(c);
-    if (!faces.length) paintNodes(c);
+    if (!faces.length && !ofFacets()) paintNodes(c);
     paintAxes(c, width, height, toX, toY);
     drawBar(
       bar,
       colours(),
       limits(),
-      state.quantity === "distance" ? "distance to theory (mm)" : "height above theory, Δz (mm)",
-      range(values()),
+      {
+        distance: "distance to theory (mm)",
+        height: "height above theory, Δz (mm)",
+        normal: "above the wanted surface (mm)",
+        fit: "above the best fit (mm)",
+      }[state.quantity],
+      range(ofFacets() ? values() : values().filter((_, i) => on[i])),
     );
   }
   const redraw = () => {
@@ -188,13 +236,44 @@ function aperture({ canvas, tip, bar }) {
     queued = true;
   };
 
+  const middleOf = (facet, s) => facet.reduce((sum, i) => sum + s[i] / facet.length, 0);
+  // All sides of a convex facet turn the same way around a point inside.
+  function isInside(facet, x, y) {
+    const turns = facet.map((i, k) => {
+      const j = facet[(k + 1) % facet.length];
+      return (sx[j] - sx[i]) * (y - sy[i]) - (sy[j] - sy[i]) * (x - sx[i]);
+    });
+    return turns.every((t) => t >= 0) || turns.every((t) => t <= 0);
+  }
+  function tellFacet(x, y) {
+    const k = facets.findIndex((facet) => isInside(facet, x, y));
+    if (k < 0) {
+      tip.hidden = true;
+      return;
+    }
+    const mm = (values) => `${fmt(1e3 * values[k], 4)} mm`,
+      { facet_normal_mean_m: mean, facet_normal_rms_m: rms, facet_fit_normal_mean_m: fit } = state.shape;
+    placeTip(
+      tip,
+      middleOf(facets[k], sx),
+      middleOf(facets[k], sy),
+      tipContent(`facet ${facets[k].map((i) => net.node_id[i]).join(", ")}`, [
+        ["along the normal, mean", mm(mean), ""],
+        ["RMS", mm(rms), ""],
+        ["above the best fit, mean", fit[k] === null ? "–" : mm(fit), ""],
+      ]),
+    );
+  }
+
   canvas.addEventListener("pointermove", (event) => {
     const frame = canvas.getBoundingClientRect(),
       x = event.clientX - frame.left,
       y = event.clientY - frame.top;
+    if (ofFacets()) return tellFacet(x, y);
     let best = -1,
       least = 24;
     for (let i = 0; i < n; i++) {
+      if (!on[i]) continue;
       const d = Math.hypot(sx[i] - x, sy[i] - y);
       if (d < least) [least, best] = [d, i];
     }
@@ -220,5 +299,6 @@ function aperture({ canvas, tip, bar }) {
   printing.addEventListener("change", draw);
   addEventListener("beforeprint", draw);
   addEventListener("afterprint", redraw);
-  return { state, redraw };
+  const facetAt = (k) => [middleOf(facets[k], sx), middleOf(facets[k], sy)];
+  return { state, redraw, facetAt };
 }

@@ -1,3 +1,9 @@
+// ---- families: sets of cables ----
+
+const familyName = (name) => name.replace(/_/g, " ");
+// Colours around the circle of hues, as light as each other.
+const familyColour = (k) => rgb(oklch(isDark() ? 0.75 : 0.55, 0.14, 250 + (360 * k) / net.sets.length));
+
 // Draws the net in space. Dragging or the arrow keys turn it. Lines of one colour are drawn in one call.
 
 function netView({ canvas, tip, bar, scaleLabel }) {
@@ -9,6 +15,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     theory: true,
     truss: !!data.truss,
     picked: null,
+    off: new Set(), // sets of cables that are not drawn
   };
   const theory = data.net.position_m,
     n = net.n_node,
@@ -22,9 +29,27 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   const box = [0, 1, 2].map((k) => range(theory.filter((_, i) => i % 3 === k)));
   const centre = box.map(([a, b]) => (a + b) / 2),
     radius = Math.hypot(...box.map(([a, b]) => b - a)) / 2 || 1;
-  let queued = false,
+  // A cable is in any number of sets: it is drawn unless one of them is off, and has the colour of the smallest.
+  const setsOf = Array.from({ length: m }, () => []);
+  net.sets.forEach((set, k) => set.cable.forEach((e) => setsOf[e].push(k)));
+  const familyOf = setsOf.map((sets) => sets.sort((a, b) => net.sets[a].cable.length - net.sets[b].cable.length)[0]);
+  let visible = [],
+    isVisible = new Uint8Array(m),
+    hasVisible = new Uint8Array(n), // nodes with a cable that is drawn
+    queued = false,
     width = 0,
     height = 0;
+
+  function chooseVisible() {
+    visible = [];
+    isVisible.fill(0);
+    hasVisible.fill(0);
+    for (let e = 0; e < m; e++) {
+      if (setsOf[e].some((k) => state.off.has(net.sets[k].name))) continue;
+      visible.push(e);
+      isVisible[e] = hasVisible[end[2 * e]] = hasVisible[end[2 * e + 1]] = 1;
+    }
+  }
 
   function projection() {
     const a = (view.yaw * Math.PI) / 180,
@@ -79,7 +104,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     return (shape.distance_mm[end[2 * e]] + shape.distance_mm[end[2 * e + 1]]) / 2;
   }
   function limits() {
-    if (state.colour === "tension") return range(state.shape.tension_N) || [0, 1];
+    if (state.colour === "tension") return range(visible.map((e) => state.shape.tension_N[e])) || [0, 1];
     return [0, innerMost(state.shape.distance_mm)];
   }
 
@@ -110,27 +135,36 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   }
 
   function drawCables(c) {
-    const every = Array.from({ length: m }, (_, e) => e),
-      shape = state.shape;
+    const shape = state.shape;
     c.lineWidth = m > 3000 ? 1.1 : 1.7;
     if (!shape || state.colour === "plain") {
       c.strokeStyle = css("--one");
-      strokeAll(c, every, px, py);
+      strokeAll(c, visible, px, py);
+    } else if (state.colour === "family") {
+      for (const k of [undefined, ...net.sets.keys()]) {
+        c.strokeStyle = k === undefined ? css("--ghost") : familyColour(k);
+        strokeAll(
+          c,
+          visible.filter((e) => familyOf[e] === k),
+          px,
+          py,
+        );
+      }
     } else if (state.colour === "slack") {
       c.strokeStyle = css("--ghost");
       strokeAll(
         c,
-        every.filter((e) => !shape.isSlack(e)),
+        visible.filter((e) => !shape.isSlack(e)),
         px,
         py,
       );
       c.strokeStyle = css("--alarm");
       c.lineWidth = 3.2;
-      strokeAll(c, every.filter(shape.isSlack), px, py);
+      strokeAll(c, visible.filter(shape.isSlack), px, py);
     } else {
       const limit = limits(),
         bucket = Array.from({ length: LEVELS }, () => []);
-      for (const e of every) bucket[levelOf(valueOf(e), limit)].push(e);
+      for (const e of visible) bucket[levelOf(valueOf(e), limit)].push(e);
       levels(sequential).forEach((colour, k) => {
         if (!bucket[k].length) return;
         c.strokeStyle = rgb(colour);
@@ -143,7 +177,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     const side = n > 1000 ? 1.5 : 3;
     c.fillStyle = css("--ink");
     for (let i = 0; i < n; i++)
-      if (digit(net.role, i) === 0) c.fillRect(px[i] - side, py[i] - side, 2 * side, 2 * side);
+      if (digit(net.role, i) === 0 && hasVisible[i]) c.fillRect(px[i] - side, py[i] - side, 2 * side, 2 * side);
     if (!state.picked) return;
     const { kind, index } = state.picked;
     c.strokeStyle = css("--ink");
@@ -192,16 +226,12 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     c.setTransform(ratio, 0, 0, ratio, 0, 0);
     c.lineCap = "round";
     const project = place();
+    chooseVisible();
     if (truss && state.truss) drawTruss(c, project);
     if (state.theory || !state.shape) {
       c.strokeStyle = css("--ghost");
       c.lineWidth = 0.8;
-      strokeAll(
-        c,
-        Array.from({ length: m }, (_, e) => e),
-        tx,
-        ty,
-      );
+      strokeAll(c, visible, tx, ty);
     }
     if (state.shape) drawCables(c);
     drawNodes(c);
@@ -223,6 +253,17 @@ function netView({ canvas, tip, bar, scaleLabel }) {
         el("span", {}, `${k} of ${m} cables slack: tension below ${fmt(data.slack_below_N, 3)} N`),
       );
     }
+    if (state.colour === "family")
+      return bar.replaceChildren(
+        ...net.sets
+          .map((set, k) => [set.name, familyColour(k)])
+          .filter(([name]) => !state.off.has(name))
+          .map(([name, colour]) => {
+            const swatch = el("span", { class: "swatch" });
+            swatch.style.background = colour; // not an attribute: the rules of the page allow this alone
+            return el("span", { class: "family" }, swatch, familyName(name));
+          }),
+      );
     if (state.colour === "tension") drawBar(bar, sequential, limits(), "tension (N)");
     else drawBar(bar, sequential, limits(), "distance to theory (mm)", range(state.shape.distance_mm));
   }
@@ -241,12 +282,12 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     let best = null,
       least = 9;
     for (let i = 0; i < n; i++) {
-      const d = Math.hypot(px[i] - x, py[i] - y);
+      const d = hasVisible[i] ? Math.hypot(px[i] - x, py[i] - y) : Infinity;
       if (d < least) [least, best] = [d, { kind: "node", index: i }];
     }
     if (best) return best;
     least = 6;
-    for (let e = 0; e < m; e++) {
+    for (const e of visible) {
       const d = segmentDistance(x, y, e);
       if (d < least) [least, best] = [d, { kind: "cable", index: e }];
     }
@@ -272,6 +313,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   function describeCable(e) {
     const shape = state.shape,
       rows = [["group", groupOf(e), ""]];
+    if (setsOf[e].length) rows.push(["sets", setsOf[e].map((k) => net.sets[k].name).join(", "), ""]);
     if (shape)
       rows.push(
         ["tension", `${fmt(shape.tension_N[e], 6)} N${shape.isSlack(e) ? ", slack" : ""}`, "tension_N"],

@@ -18,7 +18,7 @@ function writeHistory() {
     head = (i) => `iteration ${x[i]}`,
     charts = [];
   const add = (title, key, name, figures, options, k = 1) => {
-    if (!h[key] || !range(h[key])) return;
+    if (!h[key] || !(range(h[key]) || h[key].includes(Infinity))) return;
     charts.push(
       chart({
         title,
