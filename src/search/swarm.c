@@ -71,15 +71,19 @@ static bool settle(void *solver, int lane, int i_design)
 {
     swarm *s = solver;
     hf_form_result *r = s->result + i_design;
+    const double *design_N = s->design_N + (size_t)i_design * (size_t)s->v->model->n_gene;
     s->iterations[lane]++;
     hf_status status = health(s, &s->now, lane);
     hf_stop_reason reason = status == HF_OK ? stop_reason(s, &s->now, lane) : HF_STOPPED_ILL_POSED;
     if (reason == HF_STOPPED_NONE) return false;
     if (status == HF_OK) {
-        hf_evaluate_prepare(s->v, s->design_N + (size_t)i_design * (size_t)s->v->model->n_gene, s->w);
+        hf_evaluate_prepare(s->v, design_N, s->w);
         hf_swarm_get(s->plan, s->lanes, lane, s->w);
         hf_form_accept(s->v->model, s->v->form, reason, s->iterations[lane], s->w, r);
         hf_loose_refuse(s->v->model, s->v->form, s->w, r);
+    } else if (s->v->model->has_newton) { /* on its own it is asked whether the net has a shape all the same */
+        hf_evaluate(s->v, design_N, s->w, r);
+        return true;
     } else {
         hf_form_refuse(status, s->iterations[lane], r);
     }

@@ -6,6 +6,8 @@
 #include "solve/joint.h"
 #include "solve/newton.h"
 
+#include <string.h>
+
 #define FIRST_BLOCK 6  /* iterations of hf_form_find before Newton is tried. Tests pass with 2 and 20. */
 #define NEWTON_MAX 30  /* Newton steps after them */
 #define PATH_MAX 60    /* factorisations on the path; up to 49 were seen in stress tests */
@@ -49,28 +51,58 @@ static bool try_near(const hf_model *m, const hf_form_settings *s, hf_workspace 
 
 /* ---- from anywhere ---- */
 
+/* Whether the iterate, and not the net, may be the reason of this status. */
+static bool is_refusal(hf_status status)
+{
+    return status == HF_COLLAPSED || status == HF_SINGULAR || status == HF_NOT_FINITE;
+}
+
+/* First force densities of laws that may have changed since hf_form_prepare. */
+static void set_first_force_densities(const hf_model *m, hf_workspace *w)
+{
+    for (int e = 0; e < m->n_cable; e++) {
+        hf_law_cable cable = hf_workspace_cable(m, w, e);
+        bool is_open = hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER);
+        w->q_N_per_m[e] = is_open ? m->start_q_N_per_m[e] : hf_law_tension_N(cable, m->length_m[e]) / m->length_m[e];
+    }
+}
+
 /* For a net that the path has not solved: the straight chain that is the reason, the cable whose rounding is, or no
- * name. */
+ * name. From where the path ended, iterations bring errors down to rounding; where they lead nowhere, those from the
+ * start may still see a chain. */
 static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n_step, hf_workspace *w,
                              hf_history *history, hf_form_result *r)
 {
-    hf_form_accept(m, s, HF_STOPPED_MAX_ITERATIONS, n_step, w, r);
+    size_t q = (size_t)m->n_cable * sizeof(double), places = 3 * (size_t)m->n_node * sizeof(double);
     hf_form_settings part = *s;
-    part.max_iterations = smaller(LAST_BLOCK, s->max_iterations - n_step);
-    if (r->status != HF_NOT_CONVERGED || r->culprit >= 0 || part.max_iterations < 1) return r->status;
-    hf_form_find(m, &part, HF_STOP_RESIDUAL, w, history, r);
-    r->iterations += n_step;
-    return r->status;
+    hf_form_accept(m, s, HF_STOPPED_MAX_ITERATIONS, n_step, w, r);
+    bool is_finite = r->status != HF_NOT_FINITE;
+    if (is_finite && (r->status != HF_NOT_CONVERGED || r->culprit >= 0)) return r->status;
+    memcpy(w->interior_tension_N, w->q_N_per_m, q);
+    memcpy(w->interior_position_m, w->position_m, places);
+    for (int start = is_finite ? 0 : 1; start < 2; start++) {
+        part.max_iterations = smaller(LAST_BLOCK, s->max_iterations - n_step);
+        if (part.max_iterations < 1) break;
+        if (start > 0) set_first_force_densities(m, w);
+        for (int e = 0; e < m->n_cable; e++) /* slack cables: see HF_LAW_LEAST_Q_N_PER_M */
+            if (w->q_N_per_m[e] == 0) w->q_N_per_m[e] = HF_LAW_LEAST_Q_N_PER_M;
+        hf_form_find(m, &part, HF_STOP_RESIDUAL, w, history, r);
+        n_step += r->iterations;
+        r->iterations = n_step;
+        bool is_iterate = r->status == HF_COLLAPSED || r->status == HF_NOT_FINITE;
+        if (r->status == HF_STRAIGHT_CHAIN || (is_finite && !is_iterate)) return r->status;
+    }
+    if (!is_finite) hf_form_refuse(HF_NOT_FINITE, n_step, r);
+    if (!is_finite || r->status == HF_COLLAPSED) return r->status; /* from both starts */
+    memcpy(w->q_N_per_m, w->interior_tension_N, q);
+    memcpy(w->position_m, w->interior_position_m, places);
+    return hf_form_accept(m, s, HF_STOPPED_MAX_ITERATIONS, n_step, w, r);
 }
 
-static hf_status find_equilibrium(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
-                                  hf_form_result *r)
+static hf_status find_on_path(const hf_model *m, const hf_form_settings *s, int n_step, hf_workspace *w,
+                              hf_history *history, hf_form_result *r)
 {
-    int n_step = 0, culprit = -1;
-    if (!m->EA_N) { /* first force densities of elastic cables can be decades away */
-        if (try_near(m, s, w, history, r)) return r->status;
-        n_step = r->iterations;
-    }
+    int culprit = -1;
     hf_status status = hf_interior_run(m, s, w, smaller(PATH_MAX, s->max_iterations - n_step), &n_step, &culprit);
     if (status == HF_OK && hf_form_measure(m, s, w, r) == HF_OK)
         return hf_form_accept(m, s, HF_STOPPED_RESIDUAL, n_step, w, r);
@@ -85,7 +117,60 @@ hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_w
                               hf_form_result *r)
 {
     w->history = history;
-    find_equilibrium(m, s, w, history, r);
+    /* first force densities of elastic cables can be decades away */
+    bool is_over = !m->EA_N && try_near(m, s, w, history, r);
+    if (!is_over) find_on_path(m, s, m->EA_N ? 0 : r->iterations, w, history, r);
     w->history = NULL;
+    return r->status;
+}
+
+/* ---- by the paper's iteration ---- */
+
+/* Steps of the path and of the iteration that names a reason, to learn whether a net has a shape. */
+#define VERDICT_MAX (PATH_MAX + LAST_BLOCK)
+
+/* What the path says of the net, in *said. Keeps q_N_per_m and position_m. */
+static hf_status ask_path(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *said)
+{
+    size_t q = (size_t)m->n_cable * sizeof(double), places = 3 * (size_t)m->n_node * sizeof(double);
+    hf_form_settings whole = *s;
+    whole.max_iterations = VERDICT_MAX;
+    memcpy(w->place_q_N_per_m, w->q_N_per_m, q);
+    memcpy(w->place_before_m, w->position_m, places);
+    find_on_path(m, &whole, 0, w, NULL, said);
+    memcpy(w->q_N_per_m, w->place_q_N_per_m, q);
+    memcpy(w->position_m, w->place_before_m, places);
+    return said->status;
+}
+
+hf_status hf_equilibrium_find_by_paper(const hf_model *m, const hf_form_settings *s, hf_stop_rule stop, hf_workspace *w,
+                                       hf_history *history, hf_form_result *r)
+{
+    hf_form_result said;
+    hf_form_find(m, s, stop, w, history, r);
+    bool is_refused = is_refusal(r->status);
+    bool is_open = r->status == HF_NOT_CONVERGED && r->culprit < 0 && stop == HF_STOP_RESIDUAL;
+    if (!m->has_newton || !(is_refused || is_open)) return r->status;
+    int n_step = r->iterations;
+    hf_status status = ask_path(m, s, w, &said);
+    bool has_shape =
+        status == HF_OK || status == HF_NOT_CONVERGED ||
+        (status == HF_STRAIGHT_CHAIN && stop == HF_STOP_RMS_CHANGE); /* the paper's rule ends all the same */
+    if (is_open && has_shape) {                                      /* the shape that is stored as not converged */
+        double length_gap;
+        hf_form_measure_cables(m, s, w, &said, &length_gap);
+        hf_form_residual_N(m, w);
+        return r->status;
+    }
+    if (has_shape) {
+        hf_form_settings rest = *s;
+        rest.collapse_ratio = HF_FORM_GONE;
+        rest.max_iterations = n_step < s->max_iterations ? s->max_iterations - n_step : 1;
+        hf_form_find(m, &rest, stop, w, history, r);
+        if (is_refusal(r->status)) hf_form_refuse(HF_NOT_CONVERGED, r->iterations, r);
+    } else {
+        *r = said;
+    }
+    r->iterations += n_step;
     return r->status;
 }

@@ -14,4 +14,11 @@
 hf_status hf_equilibrium_find(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                               hf_history *history, hf_form_result *result);
 
+/* hf_form_find, but where the path applies (has_newton) no refusal is about an iterate alone. Nodes that run together
+ * on the way may part again, and a net without a shape may end as not converged: the path says whether the net has a
+ * shape. Where it has one, the iteration goes on; else the status and the culprit are those of the path. Counts the
+ * steps of both. */
+hf_status hf_equilibrium_find_by_paper(const hf_model *model, const hf_form_settings *settings, hf_stop_rule stop,
+                                       hf_workspace *workspace, hf_history *history, hf_form_result *result);
+
 #endif

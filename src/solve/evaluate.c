@@ -39,7 +39,7 @@ static hf_status find_alone(const void *context, hf_workspace *w, hf_history *hi
 {
     const net_problem *p = context;
     if (p->by_newton) return hf_equilibrium_find(p->m, p->form, w, history, r);
-    return hf_form_find(p->m, p->form, p->stop, w, history, r);
+    return hf_equilibrium_find_by_paper(p->m, p->form, p->stop, w, history, r);
 }
 
 /* Finds the shape from the workspace's first force densities. Under the paper's rule the place of the stop depends on
@@ -104,7 +104,8 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_works
     /* A convex problem has one answer, so a start near it changes nothing but the time. The answer under rule seeded
      * depends on the start, so it keeps that of the model, as in the paper. */
     for (int e = 0; e < m->n_cable && v->rule != HF_RULE_SEEDED; e++)
-        if (hf_law_has(m->law[e], HF_LAW_ITERATES)) w->q_N_per_m[e] = v->start_q_N_per_m[e];
+        if (hf_law_has(m->law[e], HF_LAW_ITERATES))
+            w->q_N_per_m[e] = fmax(v->start_q_N_per_m[e], HF_LAW_LEAST_Q_N_PER_M);
     for (int k = 0; k < m->n_gene; k++)
         apply_rule(v, m->gene_cable[k], design_N[k], w);
 }

@@ -37,6 +37,7 @@
 #define STALLED 1e-7      /* a shorter step does not move [1e-4 and 1e-12 pass] */
 #define STANDING_MAX 3    /* steps near the end that do not halve the errors [1 and 8 pass; without: all there are] */
 #define FINAL_MAX 12      /* steps of one try at the end [4 loses nets, 60 passes] */
+#define LAST_MAX 40       /* of the last try [with 12 fewer nets of stiff cables are solved] */
 #define CLEARLY 0.1       /* part of the errors left by a step at the end while the path can go on [0.03 loses a net] */
 #define FAR 1.0           /* errors after the first of these steps [0.1 passes; without: more steps] */
 #define DAMPING 1.0    /* of an end whose errors rise, at an error of 1, over mean length and tension [0: more steps] */
@@ -473,7 +474,7 @@ static void set_force_densities(const hf_model *m, hf_workspace *w)
         double length = hf_newton_matrix_direction(m, w->position_m, e, u);
         double T = hf_newton_matrix_tension_N(cable, length, w->tension_N[e]);
         bool is_nothing = has_multiplier(w, e) && T < HF_NEWTON_NOTHING * m->reference_N;
-        w->q_N_per_m[e] = is_nothing ? 0 : T / length;
+        w->q_N_per_m[e] = is_nothing ? 0 : is_spring(w, e) ? hf_law_tension_N(cable, 1) : T / length;
         w->length_m[e] = length;
     }
 }
@@ -493,15 +494,16 @@ static void take_point(const hf_model *m, hf_workspace *w, const double *positio
 /* Newton steps from the present point of the path, in position_m and tension_N alone, until the errors are a tenth of
  * the tolerances or fall no more. True when they are within the tolerances; else the point is the first, or the last if
  * that is near and has smaller errors. With `impatient` the first step must not lead far away and the others must
- * reduce the errors clearly: the path can go on, and its next steps are worth more. */
+ * reduce the errors clearly: the path can go on, and its next steps are worth more. Without, all steps are damped:
+ * rounding hides which cables are slack, and a node that too few hold would be lost in one step. */
 static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w, const hf_newton_rows *held,
                    bool impatient, int max_steps, int *n_step)
 {
     path_error now = measure_end(m, w, held);
     double first = largest_error(m, &now);
-    bool damps = false;
+    bool damps = !impatient;
     keep_point(m, w, w->interior_position_m, w->interior_tension_N);
-    for (int k = 0; k < FINAL_MAX && *n_step < max_steps && !is_within(&now, s, 0.1); k++) {
+    for (int k = 0; k < (impatient ? FINAL_MAX : LAST_MAX) && *n_step < max_steps && !is_within(&now, s, 0.1); k++) {
         bool was_within = is_within(&now, s, 1);
         double before = largest_error(m, &now);
         keep_point(m, w, w->newton_trial_m, w->newton_trial_tension_N);
@@ -521,6 +523,13 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
     if (is_within(&now, s, 1)) return true;
     if (!(largest_error(m, &now) < fmin(first, NEAR))) take_point(m, w, w->interior_position_m, w->interior_tension_N);
     return false;
+}
+
+static bool has_places(const hf_model *m, const hf_workspace *w)
+{
+    for (int k = 0; k < 3 * m->n_node; k++)
+        if (!isfinite(w->position_m[k])) return false;
+    return true;
 }
 
 static bool has_loaded_chain(const hf_model *m, hf_workspace *w)
@@ -544,13 +553,11 @@ static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_works
         if (is_told_to_stop(w)) return HF_INTERRUPTED;
         if ((*culprit = find_lost_row(m, w)) >= 0) return HF_SINGULAR;
         if (is_there && (*culprit = find_collapsed(m, s, w)) >= 0) return HF_COLLAPSED;
-        bool is_rounding = k > 0 && isnan(w->position_m[0]), goes_on = is_there && k < TRIES_MAX - 1;
-        if (is_rounding) { /* the point before counts */
+        bool is_rounding = k > 0 && !has_places(m, w), goes_on = is_there && k < TRIES_MAX - 1 && !is_rounding;
+        if (is_rounding) /* the point before counts */
             take_point(m, w, w->interior_position_m, w->interior_tension_N);
-            set_force_densities(m, w);
-            break;
-        }
-        begin_end(m, w, fall);
+        else
+            begin_end(m, w, fall);
         bool is_found = finish(m, s, w, held, goes_on, last, n_step);
         set_force_densities(m, w);
         if (is_found) return HF_OK;

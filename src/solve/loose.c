@@ -75,8 +75,8 @@ static bool fits(const hf_model *m, const hf_form_settings *s, const hf_workspac
 {
     double u[3];
     for (int e = 0; e < m->n_cable; e++)
-        if (is_loose_cable(m, w, e) &&
-            hf_newton_matrix_direction(m, w->position_m, e, u) > (1 + s->length_tolerance) * slack_length_m(m, w, e))
+        if (is_loose_cable(m, w, e) && !(hf_newton_matrix_direction(m, w->position_m, e, u) <=
+                                         (1 + s->length_tolerance) * slack_length_m(m, w, e))) /* also for a NaN */
             return false;
     return true;
 }

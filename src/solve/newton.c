@@ -168,7 +168,8 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         double length = hf_newton_matrix_direction(m, w->position_m, e, u);
         double T = hf_newton_matrix_tension_N(cable, length, w->tension_N[e]);
         bool is_nothing = hf_law_has(cable.law, HF_LAW_GOES_SLACK) && T < HF_NEWTON_NOTHING * m->reference_N;
-        w->q_N_per_m[e] = is_nothing ? 0 : T / length;
+        bool is_spring = hf_newton_matrix_is_spring(cable.law);
+        w->q_N_per_m[e] = is_nothing ? 0 : is_spring ? hf_law_tension_N(cable, 1) : T / length;
     }
     return true;
 }

@@ -120,8 +120,7 @@ static hf_status build_from_cuts(struct net *net, struct rng *rng, double EA_N, 
             for (int k = 0; k < 3 * built.model.n_node; k++)
                 ck_assert_double_eq_tol(built.work.position_m[k], net->work.position_m[k], 1e-8);
     } else { /* rounding: the path ends before it is clear which cables are slack */
-        ck_assert_msg(status == HF_SINGULAR && EA_N >= 1e6 && is_loose(&built, built.result.culprit),
-                      "EA %g off %g: %s", EA_N, off, hf_status_word(status));
+        ck_assert_msg(status == HF_NOT_CONVERGED && EA_N >= 1e6, "EA %g off %g: %s", EA_N, off, hf_status_word(status));
     }
     ck_assert_int_le(built.result.iterations, 1000);
     hf_workspace_free(&built.work);
