@@ -19,7 +19,15 @@ bool hf_lane_has_isa(hf_lane_isa isa); /* can this machine run it? */
 hf_lane_isa hf_lane_best_isa(void);    /* the fastest that this machine can run */
 const char *hf_lane_isa_name(hf_lane_isa isa);
 
-/* ---- vectors: for *_kernel.c, which the Makefile compiles with -DHF_ISA=avx512 and so on ---- */
+/* ---- for *_kernel.c, which the Makefile compiles with -DHF_ISA=avx512 and so on ---- */
+
+#define HF_JOIN_(a, b) a##_##b
+#define HF_JOIN(a, b) HF_JOIN_(a, b)
+#define HF_KERNEL(name) HF_JOIN(name, HF_ISA) /* a name of this instruction set's own */
+
+#define INLINE static inline __attribute__((always_inline))
+
+/* ---- vectors as wide as the processor's ---- */
 
 #ifdef HF_LANE_VECTORS
 
@@ -27,10 +35,6 @@ const char *hf_lane_isa_name(hf_lane_isa isa);
 #if defined __AVX2__
 #include <immintrin.h>
 #endif
-
-#define HF_JOIN_(a, b) a##_##b
-#define HF_JOIN(a, b) HF_JOIN_(a, b)
-#define HF_KERNEL(name) HF_JOIN(name, HF_ISA) /* a name of this instruction set's own */
 
 /* WIDTH doubles are worked on at a time; PARTS vectors hold eight. */
 #if defined __AVX512F__
@@ -45,7 +49,6 @@ enum { PARTS = HF_LANES / WIDTH };
 typedef double vec __attribute__((vector_size(WIDTH * sizeof(double)), may_alias));
 typedef unsigned long long bits_of __attribute__((vector_size(WIDTH * sizeof(double))));
 
-#define INLINE static inline __attribute__((always_inline))
 /* a loop with a small constant count: it is unrolled, so that the arrays in it stay in registers */
 #define foreach(i, count) _Pragma("GCC unroll 16") for (int i = 0; i < (count); i++)
 
@@ -174,6 +177,48 @@ INLINE vec smaller(vec a, vec b)
 INLINE vec magnitude(vec a)
 {
     return larger(a, -a);
+}
+
+#endif
+
+/* ---- eight at once, which the compiler divides ---- */
+
+#ifdef HF_LANE_EIGHT
+
+#include <string.h>
+
+typedef double lanes __attribute__((vector_size(HF_LANES * sizeof(double))));
+typedef long long lanes_where __attribute__((vector_size(HF_LANES * sizeof(double)))); /* -1 or 0 */
+
+INLINE lanes lanes_load(const double from[HF_LANES])
+{
+    lanes a;
+    memcpy(&a, from, sizeof a);
+    return a;
+}
+
+INLINE void lanes_store(double to[HF_LANES], lanes a)
+{
+    memcpy(to, &a, sizeof a);
+}
+
+/* Lanes of a where the condition holds, else of b. */
+INLINE lanes lanes_choose(lanes_where condition, lanes a, lanes b)
+{
+    lanes_where x, y;
+    memcpy(&x, &a, sizeof x);
+    memcpy(&y, &b, sizeof y);
+    x = (x & condition) | (y & ~condition);
+    memcpy(&a, &x, sizeof a);
+    return a;
+}
+
+/* sqrt has no vector form in C; a loop over the lanes becomes one instruction */
+INLINE lanes lanes_root(lanes a)
+{
+    for (int k = 0; k < HF_LANES; k++)
+        a[k] = __builtin_sqrt(a[k]);
+    return a;
 }
 
 #endif

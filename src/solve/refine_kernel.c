@@ -1,61 +1,21 @@
 /* The measure of refine_kernel.h, compiled once for each instruction set.
  *
  * Contents: numbers of twice the precision - measure */
+#define HF_LANE_EIGHT
 #include "solve/refine_kernel.h"
-
-#include <string.h>
-
-#define JOIN_(a, b) a##_##b
-#define JOIN(a, b) JOIN_(a, b)
-#define KERNEL(name) JOIN(name, HF_ISA)
 
 /* ---- numbers of twice the precision: the operations of linalg/twofold.h, of which the bits are the same ---- */
 
-typedef double lanes __attribute__((vector_size(HF_LANES * sizeof(double))));
-typedef long long lane_bits __attribute__((vector_size(HF_LANES * sizeof(double))));
 typedef struct {
     lanes hi, lo;
 } twofold;
-
-#define INLINE static inline __attribute__((always_inline))
-
-INLINE lanes lanes_load(const double from[HF_LANES])
-{
-    lanes a;
-    memcpy(&a, from, sizeof a);
-    return a;
-}
-
-INLINE void lanes_store(double to[HF_LANES], lanes a)
-{
-    memcpy(to, &a, sizeof a);
-}
-
-/* Lanes of a where the condition (-1 or 0) holds, else of b. */
-INLINE lanes lanes_choose(lane_bits condition, lanes a, lanes b)
-{
-    lane_bits x, y;
-    memcpy(&x, &a, sizeof x);
-    memcpy(&y, &b, sizeof y);
-    x = (x & condition) | (y & ~condition);
-    memcpy(&a, &x, sizeof a);
-    return a;
-}
-
-/* sqrt has no vector form in C; a loop over the lanes becomes one instruction */
-INLINE lanes lanes_root(lanes a)
-{
-    for (int k = 0; k < HF_LANES; k++)
-        a[k] = __builtin_sqrt(a[k]);
-    return a;
-}
 
 INLINE twofold twofold_of(lanes a)
 {
     return (twofold){a, a - a};
 }
 
-INLINE twofold twofold_choose(lane_bits condition, twofold a, twofold b)
+INLINE twofold twofold_choose(lanes_where condition, twofold a, twofold b)
 {
     return (twofold){lanes_choose(condition, a.hi, b.hi), lanes_choose(condition, a.lo, b.lo)};
 }
@@ -129,11 +89,11 @@ INLINE void store2(double to[2][HF_LANES], twofold a)
     lanes_store(to[1], a.lo);
 }
 
-void KERNEL(hf_refine_measure)(hf_refine_lanes *p, bool by_law)
+void HF_KERNEL(hf_refine_measure)(hf_refine_lanes *p, bool by_law)
 {
     const twofold zero = {{0}, {0}};
-    lane_bits elastic = lanes_load(p->is_elastic) != 0, spring = lanes_load(p->is_spring) != 0;
-    lane_bits slack = lanes_load(p->is_slack) != 0;
+    lanes_where elastic = lanes_load(p->is_elastic) != 0, spring = lanes_load(p->is_spring) != 0;
+    lanes_where slack = lanes_load(p->is_slack) != 0;
     twofold d[3], square = zero, T = load2(p->T), target = twofold_of(lanes_load(p->target));
     twofold EA = twofold_of(lanes_load(p->EA)), wanted = target;
     for (int c = 0; c < 3; c++) {
