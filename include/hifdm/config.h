@@ -35,6 +35,7 @@ typedef struct {
 #undef HF_CASE_GENERATOR
     double EA_N[2]; /* by hf_group, of cables without a value in the net; 0 = not given */
     char nodes_path[HF_PATH_SIZE], cables_path[HF_PATH_SIZE]; /* resolved against the folder of the case file */
+    char facets_path[HF_PATH_SIZE];                           /* the same; "": facets are found */
     hf_form_settings form;
     hf_optimize_settings optimize;
     hf_surface_settings surface; /* a generated net supplies what is not given */

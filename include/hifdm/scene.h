@@ -36,12 +36,14 @@ typedef struct {
     const char **set_name; /* [n_set] sorted; NULL, as the next two, when there are no sets */
     int *set_start;        /* [n_set + 1] where the cables of each begin in set_cable */
     int *set_cable;        /* [set_start[n_set]] cables, ascending in each set */
-    const char **node_id;  /* [n_node] */
-    const char **cable_id; /* [n_cable] */
-    int *node_line;        /* [n_node] line in nodes_file, or NULL for a generated scene */
-    int *cable_line;       /* [n_cable] line in cables_file, or NULL */
+    int n_facet;           /* facets that an import names; 0: they are found (facets.h) */
+    int *facet; /* [n_facet][4] nodes, counter-clockwise seen from +z; of a triangle the last two are the same */
+    const char **node_id;                 /* [n_node] */
+    const char **cable_id;                /* [n_cable] */
+    int *node_line;                       /* [n_node] line in nodes_file, or NULL for a generated scene */
+    int *cable_line;                      /* [n_cable] line in cables_file, or NULL */
     const char *nodes_file, *cables_file; /* names for messages, or NULL */
-    void *block, *text, *set_block;       /* owned memory behind all of the above */
+    void *block, *text, *set_block;       /* owned memory behind all of the above but `facet`, which is its own */
 } hf_scene;
 
 /* Allocate a scene of this size, all zero; with_* tell which optional arrays exist. Returns HF_OK or HF_NO_MEMORY. */

@@ -51,6 +51,10 @@ const hf_field hf_field_table[] = {
     {"scene.import.cables", HF_FIELD_TEXT, AT(cables_path), 1, HF_PATH_SIZE, NULL, "", NULL,
      "CSV id,i,j,group,law,value[,EA_N,set]; path relative to the case file"},
 
+    {"scene.import.facets", HF_FIELD_TEXT, AT(facets_path), 1, HF_PATH_SIZE, "", "", NULL,
+     "CSV id,a,b,c[,d]: nodes around each facet, of a triangle without d; default: facets are found from the cables; "
+     "path relative to the case file"},
+
     {"surface.kind", HF_FIELD_WORD, AT(surface.kind), 0, 0, "auto", "", hf_surface_kind_word,
      "parabolic_cylinder: z = x^2/(4f) along y; paraboloid: z = (x^2 + y^2)/(4f); auto: that of a generated net, of an "
      "imported one the one that its inner nodes are on"},

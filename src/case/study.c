@@ -207,7 +207,8 @@ static hf_status take_fingerprint(hf_study *s, const hf_case *c, hf_messages *me
 {
     const char *table[HF_STUDY_TABLE_MAX] = {
         c->has_import ? c->nodes_path : NULL, c->has_import ? c->cables_path : NULL,
-        c->has_truss_import ? c->truss_nodes_path : NULL, c->has_truss_import ? c->truss_members_path : NULL};
+        c->has_truss_import ? c->truss_nodes_path : NULL, c->has_truss_import ? c->truss_members_path : NULL,
+        c->has_import && *c->facets_path ? c->facets_path : NULL};
     char digests[(HF_STUDY_TABLE_MAX + 1) * 65], hex[65];
     size_t used = 0;
     hf_sha256(c->text, c->text_length, digests);

@@ -20,7 +20,7 @@
 
 #define HF_STUDY_AXIS_MAX 32
 #define HF_STUDY_POINT_MAX 1000000
-#define HF_STUDY_TABLE_MAX 4
+#define HF_STUDY_TABLE_MAX 5
 #define HF_STUDY_ID_SIZE 13 /* 12 hexadecimal digits */
 #define HF_STUDY_FINGERPRINT_SIZE 17
 

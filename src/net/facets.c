@@ -245,10 +245,15 @@ hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surfa
     *facets = (hf_facets){.is_planar = true};
     graph g = {.scene = scene};
     hf_arena arena = {0}, kept = {0};
-    size_t most =
-        4 * ((size_t)scene->n_cable + 1); /* a face of three sides or more has at least 3/2 cables of its own */
+    size_t n_named = (size_t)scene->n_facet;
+    size_t most = 4 * (n_named > 0 ? n_named : (size_t)scene->n_cable + 1); /* a face has at least 3/2 cables */
     HF_TRY(HF_ARENA_MAKE(&kept, facets->corner = hf_arena_take(&kept, most, sizeof *facets->corner)));
     facets->block = kept.block;
+    if (n_named > 0) {
+        facets->n_facet = scene->n_facet;
+        memcpy(facets->corner, scene->facet, 4 * n_named * sizeof *facets->corner);
+        return HF_OK;
+    }
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, scene, &g)));
     choose_nodes(&g, surface);
     drop_ends(&g);

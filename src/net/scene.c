@@ -51,6 +51,7 @@ void hf_scene_free(hf_scene *scene)
     free(scene->block);
     free(scene->text);
     free(scene->set_block);
+    free(scene->facet);
     *scene = (hf_scene){0};
 }
 

@@ -2,6 +2,7 @@
  *
  * nodes.csv : id,x_m,y_m,z_m,x0_m,y0_m,z0_m,role   (found and theoretical position)
  * cables.csv: id,i,j,group,law,length_m,tension_N,q_N_per_m[,set]   (when the net has sets; blanks between names)
+ * facets.csv: id,a,b,c,d   (nodes around each, of a triangle without d; of nets with measures of the surface)
  * With a truss also truss_nodes.csv and members.csv, in the columns that truss_import reads; when the result has
  * displacements and end forces, they follow in further columns.
  * Numbers have 17 significant digits, so reading them back gives the same bits. */
@@ -10,6 +11,7 @@
 #include "base/csv.h"
 #include "base/file_out.h"
 #include <hifdm/cable_set.h>
+#include <hifdm/facets.h>
 
 #include <math.h>
 #include <string.h>
@@ -59,6 +61,40 @@ static void write_cables(const void *context, FILE *f)
         if (s->n_set) write_sets_of(s, e, f);
         fputc('\n', f);
     }
+}
+
+typedef struct {
+    const hf_scene *scene;
+    const hf_facets *facets;
+} facets_view;
+
+static void write_facets(const void *context, FILE *f)
+{
+    const facets_view *v = context;
+    fputs("id,a,b,c,d\n", f);
+    for (int i = 0; i < v->facets->n_facet; i++) {
+        const int *corner = v->facets->corner + 4 * (size_t)i;
+        fprintf(f, "f%d", i + 1);
+        for (int k = 0; k < 4; k++) {
+            fputc(',', f);
+            if (k < 3 || corner[3] != corner[2]) hf_csv_write_id(v->scene->node_id[corner[k]], f);
+        }
+        fputc('\n', f);
+    }
+}
+
+/* Nothing for a net without facets. */
+static hf_status export_facets(const hf_export_request *o, const hf_export_stored *stored, const char *path,
+                               hf_messages *messages)
+{
+    hf_facets facets;
+    const facets_view both = {&stored->scene, &facets};
+    if (hf_facets_find(&stored->scene, &stored->summary.surface, &facets) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", o->file);
+    hf_status status = HF_OK;
+    if (facets.n_facet > 0) status = hf_file_out_set_write(o->files, path, write_facets, &both, messages);
+    hf_facets_free(&facets);
+    return status;
 }
 
 typedef struct {
@@ -150,13 +186,16 @@ static hf_status write_csv(const hf_export_request *o, const hf_export_stored *s
                            hf_messages *messages)
 {
     const hf_scene *scene = &stored->scene;
-    char nodes[PATH_MAX], cables[PATH_MAX];
+    char nodes[PATH_MAX], cables[PATH_MAX], facets[PATH_MAX];
+    bool is_measured = stored->summary.surface.focal_length_m > 0;
     HF_TRY(claim_in_folder(o, "nodes.csv", nodes, messages)); /* both names are checked before anything is made */
     HF_TRY(claim_in_folder(o, "cables.csv", cables, messages));
+    if (is_measured) HF_TRY(claim_in_folder(o, "facets.csv", facets, messages));
     HF_TRY(hf_file_out_folder(o->output, messages));
     const view both = {scene, &stored->shape};
     HF_TRY(hf_file_out_set_write(o->files, nodes, write_nodes, &both, messages));
     HF_TRY(hf_file_out_set_write(o->files, cables, write_cables, &both, messages));
+    if (is_measured) HF_TRY(export_facets(o, stored, facets, messages));
     snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s and %s", o->file, scene->n_node,
              scene->n_cable, stored->word, nodes, cables);
     if (!stored->summary.has_truss) return HF_OK;
@@ -176,7 +215,8 @@ static hf_status export_csv(const hf_export_request *request, char *said, size_t
 const hf_exporter hf_exporter_csv = {
     .option = "--csv",
     .argument = "DIR",
-    .help = "write nodes.csv and cables.csv, and truss_nodes.csv and members.csv of a truss, into DIR",
+    .help = "write nodes.csv, cables.csv, facets.csv of nets with a surface, and truss_nodes.csv and members.csv of a "
+            "truss, into DIR",
     .takes_stage = true,
     .write = export_csv,
 };

@@ -82,7 +82,7 @@ hf_status hf_problem_spare_inputs(const hf_problem *p, const char *table, const 
 {
     const hf_case *c = &p->settings;
     const char *input[] = {
-        c->path, table, c->nodes_path, c->cables_path, c->truss_nodes_path, c->truss_members_path,
+        c->path, table, c->nodes_path, c->cables_path, c->facets_path, c->truss_nodes_path, c->truss_members_path,
     };
     for (size_t i = 0; i < sizeof input / sizeof *input; i++)
         HF_TRY(hf_file_out_spare(input[i], "an input of this run", output, messages));

@@ -109,6 +109,14 @@ static void write_sets(hf_store *s, hid_t group, const hf_scene *scene)
     hf_hdf5_write_array(&s->f.io, group, &cable, scene->set_cable);
 }
 
+static void write_facets(hf_store *s, hid_t group, const hf_scene *scene)
+{
+    const hf_hdf5_array facet = {"facet", HF_KIND_INT,
+                                 2,       {(hsize_t)scene->n_facet, 4},
+                                 "",      "that the import names: nodes around each, of a triangle the last one twice"};
+    if (scene->n_facet > 0) hf_hdf5_write_array(&s->f.io, group, &facet, scene->facet);
+}
+
 static void write_scene(hf_store *s, const hf_scene *scene)
 {
     const hf_hdf5_array length = {
@@ -125,6 +133,7 @@ static void write_scene(hf_store *s, const hf_scene *scene)
         length_m[e] = hf_scene_theoretical_length(scene, e);
     hf_hdf5_write_array(&s->f.io, group, &length, length_m);
     write_sets(s, group, scene);
+    write_facets(s, group, scene);
     hf_hdf5_close(&s->f.io, group);
 }
 

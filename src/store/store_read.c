@@ -145,6 +145,20 @@ static void read_sets(hf_hdf5 *io, hid_t group, hf_scene *s)
     free(name);
 }
 
+/* The facets that the import named, if any. */
+static void read_facets(hf_hdf5 *io, hid_t group, hf_scene *s)
+{
+    if (io->status != HF_OK || !hf_hdf5_has(io, group, "facet")) return;
+    int n = hf_hdf5_length(io, group, "facet", HF_LAYOUT_COUNT_MAX);
+    if (io->status == HF_OK && !(s->facet = calloc((size_t)n + 1, 4 * sizeof *s->facet))) hf_hdf5_no_memory(io);
+    const hf_hdf5_array facet = {.name = "facet", .kind = HF_KIND_INT, .rank = 2, .dims = {(hsize_t)n, 4}};
+    hf_hdf5_read_array(io, group, &facet, s->facet);
+    s->n_facet = n;
+    for (int i = 0; i < 4 * n && io->status == HF_OK; i++)
+        if (s->facet[i] < 0 || s->facet[i] >= s->n_node)
+            hf_hdf5_damaged(io, group, "facet", "names a node that is not there");
+}
+
 hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages)
 {
     hf_hdf5_lock();
@@ -162,6 +176,7 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
                          &scene->text);
     check_ends(&io, group, scene);
     read_sets(&io, group, scene);
+    read_facets(&io, group, scene);
     hf_hdf5_close(&io, group);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) hf_scene_free(scene);

@@ -60,7 +60,7 @@ export const pages = [
     name: "paraboloid",
     text: "scene:\n  paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 8, rear_distance_m: 1.8}\nsurface: {}\n",
     sections: FORM,
-    facets: 336,
+    facets: 384,
     off: ["rear", "rear edge", "tie"],
   },
   {

@@ -162,6 +162,37 @@ START_TEST(what_cannot_be_exported_is_told)
 }
 END_TEST
 
+/* Facets are written as a table, and a case that names this table has the same ones and the same errors. A table with
+ * fewer leaves the others out; a wrong one is refused by its line. */
+START_TEST(facets_are_written_and_named)
+{
+    const char *out = temp("f.h5"), *folder = temp("net"), *again = temp("again.h5");
+    HIFDM(0, "run", keep(source_path("configs/reflector.yaml")), "-o", out, "--quiet");
+    HIFDM(0, "export", out, "--csv", folder);
+    const char *path = file_with("net/case.yaml", "scene: {import: {nodes: nodes.csv, cables: cut.csv, facets: "
+                                                  "facets.csv}}\nsurface: {focal_length_m: 7.2}\n"
+                                                  "form: {method: fdm}\n");
+    SHELL(0,
+          "cd \"$1\" && sed -E '1s/.*/id,i,j,group,law,value/; 1!s/,(tension|length),.*,([^,]*),[^,]*$/,force_density,"
+          "\\2/' cables.csv >cut.csv && head -1 facets.csv && wc -l <facets.csv",
+          folder);
+    OUT("id,a,b,c,d\n");
+    HIFDM(0, "run", path, "-o", again, "--quiet");
+    EXPECT(out, again, "--", "a['surface/form'].attrs['n_facet'] == b['surface/form'].attrs['n_facet'] == 480",
+           "'facet' not in a['scene'] and b['scene/facet'].shape == (480, 4)",
+           "near(a['surface/form'].attrs['facet_normal_rms_m'], b['surface/form'].attrs['facet_normal_rms_m'], 1e-9)");
+    SHELL(0, "cd \"$1\" && head -3 facets.csv >two.csv", folder);
+    HIFDM(0, "run", path, "-o", again, "--quiet", "--force", "--set",
+          formatted("scene.import.facets=%s", temp("net/two.csv")));
+    EXPECT(again, "--", "a['surface/form'].attrs['n_facet'] == 2");
+    SHELL(0, "cd \"$1\" && echo 'wrong,n0_0,n1_0,n1_2,' >>two.csv", folder);
+    HIFDM(2, "check", path, "--set", formatted("scene.import.facets=%s", temp("net/two.csv")));
+    ERR("two.csv:4: 'wrong': no cable joins its nodes ");
+    HIFDM(2, "check", path, "--set", "scene.import.facets=none.csv");
+    ERR("none.csv: ");
+}
+END_TEST
+
 Suite *suite_cli_export(void)
 {
     Suite *suite = suite_create("cli/export");
@@ -172,6 +203,7 @@ Suite *suite_cli_export(void)
     tcase_add_test(tcase, sets_survive_the_round_trip);
     tcase_add_test(tcase, existing_csv_is_not_replaced);
     tcase_add_test(tcase, what_cannot_be_exported_is_told);
+    tcase_add_test(tcase, facets_are_written_and_named);
     suite_add_tcase(suite, tcase);
     return suite;
 }

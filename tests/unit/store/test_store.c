@@ -194,6 +194,9 @@ START_TEST(scene_comes_back)
         const hf_cable_set_member member[] = {{2, 0}, {0, 1}, {2, 1}};
         const char *name[] = {"front", "nobody", "z-1_longer"};
         ck_assert_int_eq(hf_cable_set_make(&with, 3, name, 3, member), HF_OK);
+        ck_assert_ptr_nonnull(with.facet = malloc(8 * sizeof *with.facet));
+        memcpy(with.facet, (int[8]){0, 1, 2, 2, 2, 1, 0, 1}, 8 * sizeof(int));
+        with.n_facet = 2;
         a = &with;
     }
     end(begin(temp_path("a.h5"), 1, a), &(hf_summary){0});
@@ -214,6 +217,8 @@ START_TEST(scene_comes_back)
     for (int e = 0; e < 2; e++)
         ck_assert_str_eq(a->cable_id[e], b->cable_id[e]);
     ck_assert_int_eq(b->n_set, _i ? 2 : 0);
+    ck_assert_int_eq(b->n_facet, _i ? 2 : 0);
+    if (_i) ck_assert_mem_eq(b->facet, a->facet, 8 * sizeof(int));
     ck_assert_int_eq(b->set_block != NULL, _i);
     if (_i) {
         ck_assert_mem_eq(b->set_start, ((int[]){0, 1, 3}), 3 * sizeof(int));

@@ -1,0 +1,165 @@
+/* Contents: nodes - sides - together */
+#include "net/facet_import.h"
+
+#include "base/csv.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define COLUMN_MAX 64
+#define NARROW_PART 1e-9 /* nodes that enclose this part of the square of their distance are in a line */
+
+enum { FACET_ID, FACET_A, FACET_D = FACET_A + 3, N_FACET_COLUMN };
+static const char *const facet_column[N_FACET_COLUMN] = {"id", "a", "b", "c", "d"};
+
+/* ---- nodes ---- */
+
+static int by_id(const void *a, const void *b)
+{
+    return strcmp(((const hf_csv_named *)a)->id, ((const hf_csv_named *)b)->id);
+}
+
+/* Twice the signed area of the triangle a, b, c, seen along z. */
+static double turn_of(const hf_scene *s, int a, int b, int c)
+{
+    const double *p = s->position_m + 3 * (size_t)a, *q = s->position_m + 3 * (size_t)b;
+    const double *r = s->position_m + 3 * (size_t)c;
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+}
+
+/* What is wrong with the shape of n nodes; NULL: nothing. They are turned counter-clockwise. */
+static const char *fault_of_shape(const hf_scene *s, int n, int corner[4])
+{
+    double area = 0, span = 0, least = INFINITY;
+    for (int k = 1; k < n; k++) {
+        const double *p = s->position_m + 3 * (size_t)corner[0], *q = s->position_m + 3 * (size_t)corner[k];
+        span = fmax(span, (q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]));
+        if (k + 1 < n) area += turn_of(s, corner[0], corner[k], corner[k + 1]);
+    }
+    if (area < 0) {
+        int second = corner[1];
+        corner[1] = corner[n - 1];
+        corner[n - 1] = second;
+    }
+    for (int k = 0; k < n; k++)
+        least = fmin(least, turn_of(s, corner[k], corner[(k + 1) % n], corner[(k + 2) % n]));
+    if (n == 3) return least > NARROW_PART * span ? NULL : "its nodes are in a line, seen along z";
+    return fabs(area) > NARROW_PART * span && least > -NARROW_PART * span
+               ? NULL
+               : "its nodes, in this order, do not go around a convex quadrilateral, seen along z";
+}
+
+/* Sets the corners of row r; those of a fault are 0. */
+static void read_corners(hf_csv *t, const int *where, const hf_csv_named *node, hf_scene *s, int r)
+{
+    const char *id = hf_csv_cell(t, r, where[FACET_ID]);
+    int n_before = t->n_fault, *corner = s->facet + 4 * (size_t)r;
+    int n = where[FACET_D] >= 0 && *hf_csv_cell(t, r, where[FACET_D]) ? 4 : 3;
+    for (int k = 0; k < n; k++) {
+        const char *name = hf_csv_cell(t, r, where[FACET_A + k]);
+        corner[k] = hf_csv_row_of(node, s->n_node, name);
+        if (!*name)
+            hf_csv_fault(t, t->line[r], id, "a facet has three or four nodes; there is none in the column ",
+                         facet_column[FACET_A + k]);
+        else if (corner[k] < 0)
+            hf_csv_fault(t, t->line[r], id, "there is no node with the id ", name);
+        for (int other = 0; other < k && corner[k] >= 0; other++)
+            if (corner[other] == corner[k]) hf_csv_fault(t, t->line[r], id, "names a node twice: ", name);
+    }
+    const char *fault = t->n_fault == n_before ? fault_of_shape(s, n, corner) : NULL;
+    if (fault) hf_csv_fault(t, t->line[r], id, fault, "");
+    if (t->n_fault > n_before) memset(corner, 0, 4 * sizeof *corner);
+    if (n == 3) corner[3] = corner[2];
+}
+
+/* ---- sides ---- */
+
+/* Two nodes and what joins them: the side of a facet, with it on the left, or a cable, its lower node first. */
+typedef struct {
+    int from, to, of;
+} side;
+
+static int by_nodes(const void *a, const void *b)
+{
+    const side *p = a, *q = b;
+    if (p->from != q->from) return p->from < q->from ? -1 : 1;
+    return p->to < q->to ? -1 : p->to > q->to;
+}
+
+static int by_nodes_and_row(const void *a, const void *b)
+{
+    const side *p = a, *q = b;
+    int order = by_nodes(a, b);
+    return order ? order : p->of < q->of ? -1 : p->of > q->of;
+}
+
+/* Each side is that of a cable or between supports, and of one facet on its left. */
+static void check_sides(hf_csv *t, const int *where, const hf_scene *s, side *of_cable, side *of_facet)
+{
+    int n = 0;
+    for (int e = 0; e < s->n_cable; e++) {
+        int i = s->end[2 * e], j = s->end[2 * e + 1];
+        of_cable[e] = (side){i < j ? i : j, i < j ? j : i, e};
+    }
+    qsort(of_cable, (size_t)s->n_cable, sizeof *of_cable, by_nodes);
+    for (int r = 0; r < s->n_facet; r++)
+        for (int k = 0; k < 4; k++) {
+            int i = s->facet[4 * r + k], j = s->facet[4 * r + (k + 1) % 4];
+            side wanted = {i < j ? i : j, i < j ? j : i, 0};
+            if (i == j) continue; /* the fourth side of a triangle; all of a facet with a fault */
+            of_facet[n++] = (side){i, j, r};
+            bool is_rim = s->role[i] == HF_ROLE_SUPPORT && s->role[j] == HF_ROLE_SUPPORT;
+            if (is_rim || bsearch(&wanted, of_cable, (size_t)s->n_cable, sizeof *of_cable, by_nodes)) continue;
+            char nodes[640];
+            snprintf(nodes, sizeof nodes, "'%s' and '%s'", s->node_id[i], s->node_id[j]);
+            hf_csv_fault(t, t->line[r], hf_csv_cell(t, r, where[FACET_ID]), "no cable joins its nodes ", nodes);
+        }
+    qsort(of_facet, (size_t)n, sizeof *of_facet, by_nodes_and_row);
+    for (int k = 1; k < n; k++) {
+        const side *p = &of_facet[k - 1], *q = &of_facet[k];
+        if (by_nodes(p, q) != 0) continue;
+        char other[320];
+        snprintf(other, sizeof other, "'%s' on line %d", hf_csv_cell(t, p->of, where[FACET_ID]), t->line[p->of]);
+        hf_csv_fault(t, t->line[q->of], hf_csv_cell(t, q->of, where[FACET_ID]),
+                     "is on the same side of a cable as the facet ", other);
+        while (k + 1 < n && by_nodes(p, &of_facet[k + 1]) == 0)
+            k++;
+    }
+}
+
+/* ---- together ---- */
+
+static hf_status build(hf_csv *t, hf_scene *s)
+{
+    int where[N_FACET_COLUMN] = {0};
+    HF_TRY(hf_csv_read(t->path, COLUMN_MAX, t, t->messages));
+    HF_TRY(hf_csv_find_columns(t, facet_column, N_FACET_COLUMN, FACET_D, where));
+    size_t n = (size_t)t->n_row;
+    hf_csv_named *id = hf_csv_index(t, where[FACET_ID]), *node = malloc((size_t)s->n_node * sizeof *node);
+    side *sides = malloc((4 * n + (size_t)s->n_cable) * sizeof *sides);
+    s->facet = calloc(4 * n, sizeof *s->facet);
+    bool has_room = id && node && sides && s->facet;
+    if (has_room) {
+        s->n_facet = t->n_row;
+        for (int i = 0; i < s->n_node; i++)
+            node[i] = (hf_csv_named){s->node_id[i], i};
+        qsort(node, (size_t)s->n_node, sizeof *node, by_id);
+        for (int r = 0; r < t->n_row; r++)
+            read_corners(t, where, node, s, r);
+        check_sides(t, where, s, sides, sides + s->n_cable);
+    }
+    free(id);
+    free(node);
+    free(sides);
+    return has_room ? hf_csv_close_faults(t) : hf_error(t->messages, HF_NO_MEMORY, "%s: out of memory", t->path);
+}
+
+hf_status hf_facet_import(const char *path, hf_scene *scene, hf_messages *messages)
+{
+    hf_csv table = {.path = path, .messages = messages};
+    hf_status status = build(&table, scene);
+    hf_csv_free(&table);
+    return status;
+}
