@@ -100,8 +100,8 @@ BENCH_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/bench/*.c)))
 # Harnesses of tests/fuzz, each fuzz_NAME.c, and the calls that tests/fuzz/fuzz.c limits or shortens.
 FUZZERS := $(patsubst tests/fuzz/%.c,$(BUILD)/%,$(sort $(wildcard tests/fuzz/fuzz_*.c)))
 FUZZ_OBJ := $(FUZZERS:$(BUILD)/%=$(BUILD)/tests/fuzz/%.o) $(BUILD)/tests/fuzz/fuzz.o
-FUZZ_WRAP := hf_config_load hf_scene_parabolic_cylinder hf_scene_paraboloid hf_truss_generate hf_text_uint64 \
-             hf_study_make_points
+FUZZ_WRAP := hf_config_load hf_scene_parabolic_cylinder hf_scene_paraboloid hf_truss_generate \
+             hf_truss_ring_generate hf_text_uint64 hf_study_make_points
 # The run is benchmarked with a clock around these calls: tools/bench/stages.c.
 BENCH_WRAP := hf_config_load hf_config_scene hf_model_build hf_symmetry_apply hf_workspace_create hf_evaluate_form \
               hf_batch_create hf_batch_share hf_optimiser_create hf_batch_run hf_batch_next hf_batch_run_one \

@@ -40,7 +40,7 @@ typedef struct {
     hf_optimize_settings optimize;
     hf_surface_settings surface; /* a generated net supplies what is not given */
 
-    bool has_truss, has_truss_import; /* which sections are there */
+    bool has_truss, has_truss_import, has_truss_ring; /* which sections are there */
     hf_truss_settings truss;
     char truss_nodes_path[HF_PATH_SIZE], truss_members_path[HF_PATH_SIZE];
 } hf_case;

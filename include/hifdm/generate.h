@@ -174,6 +174,9 @@ typedef struct {
  * front. Else as hf_scene_parabolic_cylinder. */
 hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N[2], hf_scene *scene,
                               hf_messages *messages);
+/* The supports of the front net, counted around from x towards y: place_m [n][3], from malloc. HF_OK or HF_NO_MEMORY;
+ * free *place_m in any case. */
+hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **place_m);
 const char *hf_scene_paraboloid_fault(const hf_paraboloid *paraboloid, char *what, size_t size);
 void hf_scene_paraboloid_surface(const hf_paraboloid *paraboloid, hf_surface_settings *surface);
 

@@ -19,12 +19,22 @@ extern "C" {
 /* A rigid member is a beam clamped to its two nodes; a pinned one carries axial force alone. */
 typedef enum { HF_JOINT_RIGID, HF_JOINT_PINNED } hf_joint;
 
-/* Basic units of the deployable structure (Fig. 15): on the directrix, main and assistant on the generatrix. */
-typedef enum { HF_UNIT_BUD, HF_UNIT_MBUG, HF_UNIT_ABUG, HF_UNIT_OTHER } hf_unit;
+/* What a member belongs to. Basic units of the deployable structure (Fig. 15): on the directrix, main and assistant on
+ * the generatrix. Parts of a ring truss: along a ring, between the rings, across a bay. */
+typedef enum {
+    HF_UNIT_BUD,
+    HF_UNIT_MBUG,
+    HF_UNIT_ABUG,
+    HF_UNIT_OTHER,
+    HF_UNIT_LONGERON,
+    HF_UNIT_VERTICAL,
+    HF_UNIT_DIAGONAL,
+    HF_N_UNIT
+} hf_unit;
 
 extern const char *const hf_dof_word[HF_TRUSS_DOF]; /* "ux".."rz" */
 extern const char *const hf_joint_word[3];          /* "rigid", "pinned", NULL */
-extern const char *const hf_unit_word[4];           /* "bud", "mbug", "abug", "other" */
+extern const char *const hf_unit_word[HF_N_UNIT];   /* "bud", "mbug", ... */
 
 /* Numbers of a member, X(name in struct and files, units, default when a file leaves it out, description). A number
  * whose default is NaN must be given. Local axes: x from i to j; y horizontal, y = (-x_y, x_x, 0) normalised, or the
@@ -60,18 +70,20 @@ typedef struct {
     void *block, *text;                    /* owned memory behind all of the above */
 } hf_truss;
 
-/* ---- the generated truss ---- */
+/* ---- the generated trusses ---- */
 
 typedef enum { HF_DIAGONALS_NONE, HF_DIAGONALS_SINGLE, HF_DIAGONALS_CROSSED } hf_diagonals;
 typedef enum { HF_THEORY_EULER_BERNOULLI, HF_THEORY_TIMOSHENKO } hf_theory;
 typedef enum { HF_HELD_CENTRAL_MODULE, HF_HELD_CENTRAL_MODULE_REAR } hf_held;
 typedef enum { HF_HELD_ALL_DOFS, HF_HELD_TRANSLATIONS } hf_held_dofs;
+typedef enum { HF_RING_HELD_BAY, HF_RING_HELD_VERTICAL, HF_RING_HELD_THREE_VERTICALS } hf_ring_held;
 
 /* Words of a case file, indexed by the enumerations above; the last entry is NULL. */
 extern const char *const hf_diagonals_word[4];
 extern const char *const hf_theory_word[3];
 extern const char *const hf_held_word[3];
 extern const char *const hf_held_dofs_word[3];
+extern const char *const hf_ring_held_word[4];
 
 /* A basic unit: a planar truss one module long with chords, posts and diagonals of one round tube. */
 typedef struct {
@@ -79,6 +91,21 @@ typedef struct {
     int panels;                /* along a module */
     hf_diagonals diagonals;    /* of a panel */
 } hf_truss_unit;
+
+typedef struct {
+    double diameter_m, wall_m; /* outside */
+} hf_tube;
+
+/* A hoop truss under the rim of a paraboloid: a front ring through the supports of the front net, a rear ring straight
+ * below it, through those of the rear net; bays between verticals. */
+typedef struct {
+    double height_m;   /* 0: that of the rear rim below the front rim */
+    int cells_per_bay; /* gaps between supports along the rim in a bay */
+    hf_diagonals bracing;
+    hf_ring_held held;
+    double held_at_deg; /* about the middle of the aperture, from x towards y */
+    hf_tube longeron, vertical, diagonal;
+} hf_truss_ring;
 
 typedef struct {
     double depth_m;                /* of all units: the rear chords lie this far behind the surface, along its normal */
@@ -91,6 +118,7 @@ typedef struct {
     hf_held supports;     /* which nodes */
     hf_held_dofs support_dofs;
     double match_tolerance_m; /* between a net support and its attachment */
+    hf_truss_ring ring;       /* instead of units */
 } hf_truss_settings;
 
 /* Keys of the section truss, and of each of its units with the defaults of diameter and number of panels, as rows of
@@ -122,12 +150,45 @@ typedef struct {
     X(section, panels, HF_FIELD_INT, 1, 1000, panel_number, "", NULL, "panels along one module")                       \
     X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word, "diagonals of each panel")
 
+/* Keys of the section truss.ring, and of each of its tubes with the default of the diameter. */
+#define HF_RING_KEYS(X, section)                                                                                       \
+    X(section, height_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "", "m", NULL,                                           \
+      "distance of the rear ring below the front ring, along z; default: rear_distance_m of the net")                  \
+    X(section, cells_per_bay, HF_FIELD_INT, 1, 6000, "1", "", NULL,                                                    \
+      "cells of the net along the rim in a bay of the ring, which has a vertical at each end; the longerons bend at "  \
+      "the supports of the net between them")                                                                          \
+    X(section, bracing, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word,                                          \
+      "diagonals of each bay; single ones fall and rise by turns")                                                     \
+    X(section, held, HF_FIELD_WORD, 0, 0, "bay", "", hf_ring_held_word,                                                \
+      "joints held by the spacecraft or the ground: the four of a bay, the two of a vertical, or the rear ones of "    \
+      "three verticals a third of the way round apart")                                                                \
+    X(section, held_at_deg, HF_FIELD_DOUBLE, 0, 360, "180", "deg", NULL,                                               \
+      "where the bay or the (first) vertical is, to the nearest one: the angle about the middle of the aperture, "     \
+      "from "                                                                                                          \
+      "x towards y; 180 is the side of the axis of an offset reflector")
+
+#define HF_TUBE_KEYS(X, section, diameter)                                                                             \
+    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL, "outer diameter of its tubes")     \
+    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "wall thickness of its tubes")
+
 /* Make the truss of basic sub-rings over the modules of the net, with front nodes on the module corners, on the
  * cylinder; the outer ones stand where the supports of edge ties are. Node ids f<i>_<j> in front and r<i>_<j> behind,
  * f<i>.<k>_<j> or f<i>_<j>.<k> inside units of several panels; member ids <node>-<node>. Free the truss in any case.
  * Returns HF_OK; HF_BAD_CASE when it would be too large; HF_NO_MEMORY. */
 hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder *cylinder, hf_truss *truss,
                             hf_messages *messages);
+
+/* Make the ring truss under the rim of the net. Node ids f<k> in front and r<k> behind, counted around from x towards y
+ * as the supports of the net are; member ids <node>-<node>. Hinges are where verticals end. Free the truss in any case.
+ * Returns HF_OK; HF_BAD_CASE for what hf_truss_ring_fault tells, or when a quad net's cells do not divide into bays;
+ * HF_NO_MEMORY. */
+hf_status hf_truss_ring_generate(const hf_truss_settings *settings, const hf_paraboloid *paraboloid, hf_truss *truss,
+                                 hf_messages *messages);
+
+/* The key of truss.ring that asks for what cannot be made, with the reason in what[size] (HF_GENERATE_FAULT_SIZE is
+ * enough), or NULL. */
+const char *hf_truss_ring_fault(const hf_truss_settings *settings, const hf_paraboloid *paraboloid, char *what,
+                                size_t size);
 
 /* ---- any truss ---- */
 

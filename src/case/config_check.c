@@ -79,21 +79,69 @@ static bool has_section_of(const hf_case *c, const char *key)
     return true;
 }
 
+/* Keys of a truss that is not made here have no effect. */
+static void check_unused(const hf_case *c, hf_config_faults *f)
+{
+    static const char *const of_units[] = {"truss.depth_m", "truss.main_every", "truss.supports"};
+    for (int i = 0; i < hf_n_field; i++) {
+        const char *path = hf_field_table[i].path;
+        bool is_of_units =
+            !strncmp(path, "truss.bud.", 10) || !strncmp(path, "truss.mbug.", 11) || !strncmp(path, "truss.abug.", 11);
+        if (strncmp(path, "truss.", 6) || !strncmp(path, "truss.import.", 13) || !*hf_config_where(f, i)) continue;
+        for (size_t k = 0; k < sizeof of_units / sizeof *of_units; k++)
+            is_of_units |= !strcmp(path, of_units[k]);
+        if (c->has_truss_import && strcmp(path, "truss.match_tolerance_m") != 0)
+            hf_config_fault_of(f, path, "has no effect beside truss.import, which brings all members; remove it");
+        else if (c->has_truss_ring && is_of_units)
+            hf_config_fault_of(f, path, "has no effect beside truss.ring, which has no units; remove it");
+    }
+}
+
+static void check_wall(hf_config_faults *f, const char *key, double diameter_m, double wall_m)
+{
+    if (2 * wall_m > diameter_m) hf_config_fault_of(f, key, "must not be more than half the diameter_m beside it");
+}
+
+static void check_ring(const hf_case *c, hf_config_faults *f)
+{
+    char what[HF_GENERATE_FAULT_SIZE], path[128];
+    const hf_truss_ring *ring = &c->truss.ring;
+    if (!c->has_paraboloid) {
+        hf_config_fault_of(f, "truss.ring", "needs scene.paraboloid, under whose rim it stands");
+        return;
+    }
+    const char *key = hf_truss_ring_fault(&c->truss, &c->paraboloid, what, sizeof what);
+    snprintf(path, sizeof path, "truss.ring.%s", key ? key : "");
+    if (key) hf_config_fault_of(f, path, what);
+    check_wall(f, "truss.ring.longeron.wall_m", ring->longeron.diameter_m, ring->longeron.wall_m);
+    check_wall(f, "truss.ring.vertical.wall_m", ring->vertical.diameter_m, ring->vertical.wall_m);
+    check_wall(f, "truss.ring.diagonal.wall_m", ring->diagonal.diameter_m, ring->diagonal.wall_m);
+}
+
+static void check_units(const hf_case *c, hf_config_faults *f)
+{
+    if (c->has_paraboloid)
+        hf_config_fault_of(f, "truss", "needs a section ring to stand on under scene.paraboloid, or truss.import");
+    else if (!c->has_parabolic_cylinder)
+        hf_config_fault_of(f, "truss", "needs scene.parabolic_cylinder to be generated over, or truss.import");
+    else if (c->parabolic_cylinder.rear_distance_m > 0)
+        hf_config_fault_of(f, "scene.parabolic_cylinder.rear_distance_m",
+                           "the truss over the modules has no joints where the supports of the rear net are; leave the "
+                           "truss out, or bring one by truss.import");
+    check_wall(f, "truss.bud.wall_m", c->truss.bud.diameter_m, c->truss.bud.wall_m);
+    check_wall(f, "truss.mbug.wall_m", c->truss.mbug.diameter_m, c->truss.mbug.wall_m);
+    check_wall(f, "truss.abug.wall_m", c->truss.abug.diameter_m, c->truss.abug.wall_m);
+}
+
 static void check_truss(const hf_case *c, hf_config_faults *f)
 {
-    const hf_truss_unit *unit[] = {&c->truss.bud, &c->truss.mbug, &c->truss.abug};
-    static const char *const wall[] = {"truss.bud.wall_m", "truss.mbug.wall_m", "truss.abug.wall_m"};
-    if (!c->has_truss_import && !c->has_parabolic_cylinder)
-        hf_config_fault_of(f, "truss", "needs scene.parabolic_cylinder to be generated over, or truss.import");
-    for (int i = 0; i < hf_n_field && c->has_truss_import; i++) {
-        const char *path = hf_field_table[i].path;
-        if (!strncmp(path, "truss.", 6) && strncmp(path, "truss.import.", 13) &&
-            strcmp(path, "truss.match_tolerance_m") && *hf_config_where(f, i))
-            hf_config_fault_of(f, path, "has no effect beside truss.import, which brings all members; remove it");
-    }
-    for (int k = 0; k < 3 && !c->has_truss_import; k++)
-        if (2 * unit[k]->wall_m > unit[k]->diameter_m)
-            hf_config_fault_of(f, wall[k], "must not be more than half the diameter_m beside it");
+    check_unused(c, f);
+    if (c->has_truss_import && c->has_truss_ring)
+        hf_config_fault_of(f, "truss", "has both ring and import; keep one");
+    else if (c->has_truss_ring)
+        check_ring(c, f);
+    else if (!c->has_truss_import)
+        check_units(c, f);
 }
 
 void hf_config_check(const hf_case *c, hf_config_faults *f)
@@ -111,7 +159,7 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
                            c->has_import ? "is missing: an imported net does not tell its surface"
                                          : "is missing: this net does not tell its surface");
     if (!f->failed) check_generators(c, f);
-    if ((c->has_truss || c->has_truss_import) && !f->failed) check_truss(c, f);
+    if ((c->has_truss || c->has_truss_import || c->has_truss_ring) && !f->failed) check_truss(c, f);
     if (!c->has_optimize || f->failed) return; /* values that were refused are not compared */
     if (o->min_tension_N >= o->max_tension_N)
         hf_config_fault_of(f, "optimize.min_tension_N", "must be below optimize.max_tension_N");
@@ -128,7 +176,7 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
 
 void hf_config_complete(hf_case *c)
 {
-    c->has_truss |= c->has_truss_import;
+    c->has_truss |= c->has_truss_import || c->has_truss_ring;
     if (!c->has_surface) return;
     const char *key;
     hf_surface_settings known = hf_config_known_surface(c, &key);

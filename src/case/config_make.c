@@ -23,6 +23,8 @@ hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages 
 {
     if (settings->has_truss_import)
         HF_TRY(hf_truss_import(settings->truss_nodes_path, settings->truss_members_path, truss, messages));
+    else if (settings->has_truss_ring)
+        HF_TRY(hf_truss_ring_generate(&settings->truss, &settings->paraboloid, truss, messages));
     else
         HF_TRY(hf_truss_generate(&settings->truss, &settings->parabolic_cylinder, truss, messages));
     return hf_truss_check(truss, messages);

@@ -24,6 +24,12 @@ const hf_section hf_section_table[] = {
     {"truss.bud", AT(has_truss), "Basic unit on the directrix: planar trusses on the module borders along x."},
     {"truss.mbug", AT(has_truss), "Main basic unit on the generatrix, along y."},
     {"truss.abug", AT(has_truss), "Assistant basic unit on the generatrix: the lines along y between the main ones."},
+    {"truss.ring", AT(has_truss_ring),
+     "Instead of the generated units: a hoop truss under the rim of scene.paraboloid, in the material of the section "
+     "truss. Every default is an assumption."},
+    {"truss.ring.longeron", AT(has_truss_ring), "Members of the two rings."},
+    {"truss.ring.vertical", AT(has_truss_ring), "Members between the rings."},
+    {"truss.ring.diagonal", AT(has_truss_ring), "Members across the bays."},
     {"truss.import", AT(has_truss_import), "Instead of the generated units: any truss from two CSV files."},
     {"coupling", SIZE_MAX, "Of the net with its truss (Fig. 17). Without a truss nothing of it is used."},
     {"sweep", AT(has_sweep),
@@ -158,9 +164,28 @@ const hf_field hf_field_table[] = {
 #undef UNIT
 #undef FIELD
 
-        {"truss.import.nodes", HF_FIELD_TEXT, AT(truss_nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
-         "CSV id,x_m,y_m,z_m,fixed[,mass_kg]; fixed: some of ux uy uz rx ry rz, or all, or empty; path relative to the "
-         "case file"},
+#define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
+    {"truss." #section "." #member, type, AT(truss.section.member), min, max, default_value, unit, words, help},
+        HF_RING_KEYS(FIELD, ring)
+#undef FIELD
+#define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
+    {"truss.ring." #section "." #member,                                                                               \
+     type,                                                                                                             \
+     AT(truss.ring.section.member),                                                                                    \
+     min,                                                                                                              \
+     max,                                                                                                              \
+     default_value,                                                                                                    \
+     unit,                                                                                                             \
+     words,                                                                                                            \
+     help},
+            HF_TUBE_KEYS(FIELD, longeron, "0.03") HF_TUBE_KEYS(FIELD, vertical, "0.03")
+                HF_TUBE_KEYS(FIELD, diagonal, "0.02")
+#undef FIELD
+
+                    {"truss.import.nodes", HF_FIELD_TEXT, AT(truss_nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
+                     "CSV id,x_m,y_m,z_m,fixed[,mass_kg]; fixed: some of ux uy uz rx ry rz, or all, or empty; path "
+                     "relative to the "
+                     "case file"},
     {"truss.import.members", HF_FIELD_TEXT, AT(truss_members_path), 1, HF_PATH_SIZE, NULL, "", NULL,
      "CSV "
      "id,i,j,E_Pa,A_m2[,G_Pa,Iy_m4,Iz_m4,J_m4,Asy_m2,Asz_m2,roll_rad,density_kg_per_m3,expansion_per_K,joint,unit]; "

@@ -1,5 +1,6 @@
 /* Makes the net over a paraboloid with a round aperture, alone or tied to a rear net.
- * Contents: what can be made - the plane grid - the triangular grid - the quad grid - the front net - together */
+ * Contents: what can be made - the plane grid - the triangular grid - the quad grid - the front net - together -
+ * the rim */
 #include <hifdm/generate.h>
 
 #include "base/elementary.h"
@@ -396,6 +397,49 @@ hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N
     free_grid(&g, node);
     if (is_outside) return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.tie_direction: %s", outside);
     return status == HF_OK ? HF_OK : hf_error(messages, status, "scene: out of memory for %d rings", paraboloid->rings);
+}
+
+/* ---- the rim ---- */
+
+/* Counter-clockwise from x, without angles. a, b: places about the middle of the aperture. */
+static int by_angle(const void *a, const void *b)
+{
+    const double *p = a, *q = b;
+    bool p_low = p[1] < 0 || (p[1] == 0 && p[0] < 0), q_low = q[1] < 0 || (q[1] == 0 && q[0] < 0);
+    double cross = p[0] * q[1] - p[1] * q[0];
+    if (p_low != q_low) return p_low ? 1 : -1;
+    return cross > 0 ? -1 : cross < 0;
+}
+
+hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **place_m)
+{
+    plane_grid g = {0};
+    int *node = NULL;
+    *n = 0;
+    *place_m = NULL;
+    hf_status status = allocate_grid(paraboloid, &g, &node);
+    if (status == HF_OK) {
+        make_grid(paraboloid, &g, node);
+        *place_m = malloc(3 * (size_t)g.n_node * sizeof **place_m);
+        if (!*place_m) status = HF_NO_MEMORY;
+    }
+    for (int i = 0; i < g.n_node && status == HF_OK; i++) {
+        double *p = *place_m + 3 * (size_t)*n;
+        if (!g.is_rim[i]) continue;
+        p[0] = g.plane_m[2 * i];
+        p[1] = fabs(g.plane_m[2 * i + 1]) < SAME_SUPPORT * radius(paraboloid) ? 0 : g.plane_m[2 * i + 1];
+        p[2] = 0;
+        ++*n;
+    }
+    free_grid(&g, node);
+    if (status != HF_OK) return status;
+    qsort(*place_m, (size_t)*n, 3 * sizeof **place_m, by_angle);
+    for (int i = 0; i < *n; i++) {
+        double *p = *place_m + 3 * (size_t)i;
+        p[0] += paraboloid->offset_m;
+        p[2] = front_height(paraboloid, p[0], p[1]);
+    }
+    return HF_OK;
 }
 
 void hf_scene_paraboloid_surface(const hf_paraboloid *paraboloid, hf_surface_settings *surface)

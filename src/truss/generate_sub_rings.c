@@ -1,16 +1,14 @@
 /* Makes the truss of basic sub-rings over the modules of a net on a parabolic cylinder (Fig. 15). */
 #include <hifdm/truss.h>
 #include "base/elementary.h"
+#include "truss/tube.h"
 
-#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #define TRUSS_NODE_MAX 1000000 /* keeps every index well inside an int */
 #define ID_SIZE 40             /* of f<i>.<k>_<j>; a member's id has room for two of them */
-
-static const double PI = 3.14159265358979323846;
 
 const char *const hf_diagonals_word[4] = {"none", "single", "crossed", NULL};
 const char *const hf_theory_word[3] = {"euler_bernoulli", "timoshenko", NULL};
@@ -76,19 +74,10 @@ static void add_member(generator *g, int a, int b, hf_unit unit)
     hf_truss *t = g->t;
     const hf_truss_unit *u = unit_of(g->set, unit);
     int e = g->i_member++;
-    double outer = u->diameter_m / 2, inner = outer - u->wall_m;
     t->end[2 * e] = a;
     t->end[2 * e + 1] = b;
     t->unit[e] = (unsigned char)unit;
-    t->joint[e] = (unsigned char)g->set->joints;
-    t->E_Pa[e] = g->set->E_Pa;
-    t->G_Pa[e] = g->set->G_Pa;
-    t->A_m2[e] = PI * (outer * outer - inner * inner);
-    t->Iy_m4[e] = t->Iz_m4[e] = PI / 4 * (outer * outer * outer * outer - inner * inner * inner * inner);
-    t->J_m4[e] = 2 * t->Iy_m4[e];
-    t->Asy_m2[e] = t->Asz_m2[e] = g->set->theory == HF_THEORY_TIMOSHENKO ? t->A_m2[e] / 2 : (double)INFINITY;
-    t->density_kg_per_m3[e] = g->set->density_kg_per_m3;
-    t->expansion_per_K[e] = g->set->expansion_per_K;
+    hf_tube_set(g->set, u->diameter_m, u->wall_m, t, e);
     t->member_id[e] = g->text;
     g->text += snprintf(g->text, 2 * ID_SIZE, "%s-%s", t->node_id[a], t->node_id[b]) + 1;
 }

@@ -11,7 +11,7 @@
 
 const char *const hf_dof_word[HF_TRUSS_DOF] = {"ux", "uy", "uz", "rx", "ry", "rz"};
 const char *const hf_joint_word[3] = {"rigid", "pinned", NULL};
-const char *const hf_unit_word[4] = {"bud", "mbug", "abug", "other"};
+const char *const hf_unit_word[HF_N_UNIT] = {"bud", "mbug", "abug", "other", "longeron", "vertical", "diagonal"};
 
 /* ---- memory ---- */
 

@@ -99,7 +99,7 @@ static void read_members(hf_csv *t, const int *where, const hf_csv *nodes, const
         }
         read_numbers(t, where, r, id, s);
         s->joint[r] = (unsigned char)optional_word(t, r, where[MEMBER_JOINT], id, hf_joint_word, 2, HF_JOINT_RIGID);
-        s->unit[r] = (unsigned char)optional_word(t, r, where[MEMBER_UNIT], id, hf_unit_word, 4, HF_UNIT_OTHER);
+        s->unit[r] = (unsigned char)optional_word(t, r, where[MEMBER_UNIT], id, hf_unit_word, HF_N_UNIT, HF_UNIT_OTHER);
     }
 }
 

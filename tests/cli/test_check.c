@@ -98,7 +98,10 @@ START_TEST(schema_is_yaml_with_every_key)
         "'stagnation_tolerance_m', 'stagnation_generations'}",
         "set(a['truss']) == {'depth_m', 'main_every', 'E_Pa', 'G_Pa', 'density_kg_per_m3', 'expansion_per_K', "
         "'hinge_mass_kg', 'theory', 'joints', 'supports', 'support_dofs', 'match_tolerance_m', 'bud', 'mbug', 'abug', "
-        "'import'}",
+        "'ring', 'import'}",
+        "set(a['truss']['ring']) == {'cells_per_bay', 'bracing', 'held', 'held_at_deg', 'longeron', 'vertical', "
+        "'diagonal'}",
+        "all(set(a['truss']['ring'][u]) == {'diameter_m', 'wall_m'} for u in ('longeron', 'vertical', 'diagonal'))",
         "all(set(a['truss'][u]) == {'diameter_m', 'wall_m', 'panels', 'diagonals'} for u in ('bud', 'mbug', 'abug'))",
         "set(a['truss']['import']) == {'nodes', 'members'}",
         /* a default, or none where the key is required */
@@ -116,6 +119,7 @@ END_TEST
 START_TEST(schema_with_its_gaps_filled_is_a_case)
 {
     SHELL(0, "\"$0\" schema | sed -e '/^  import:/,/^    cables:/d' -e '/^  paraboloid:/,/^    tie_tension_N:/d' -e "
+             "'/^  ring:/,/^  import:/d' -e "
              "'s/aperture_m:/& 2/' -e 's/ length_m:/& 3/' "
              "-e 's/ focal_length_m:/& 2/' -e 's/modules:/& [2, 3]/' -e 's/cells_per_module:/& [2, 2]/' -e 's/scallop: "
              "0/scallop: 0.1/'");

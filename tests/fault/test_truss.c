@@ -5,8 +5,8 @@
 #include <hifdm/carrier.h>
 #include <hifdm/store.h>
 
-/* Over the small net of a generated truss, or the same from files of more than 64 rows. */
-static void load(hf_case *c, hf_scene *scene, int imported)
+/* 0: over the small net of a generated truss, 1: the same from files of more than 64 rows, 2: a ring. */
+static void load(hf_case *c, hf_scene *scene, int kind)
 {
     hf_messages messages = {0};
     const char *path = temp_path("c.yaml");
@@ -20,7 +20,9 @@ static void load(hf_case *c, hf_scene *scene, int imported)
     }
     fclose(nodes);
     fclose(members);
-    write_file(path, imported
+    write_file(path, kind == 2 ? "scene: {paraboloid: {aperture_m: 2, focal_length_m: 2, rings: 2, grid: quad, "
+                                 "rear_distance_m: 1}}\ntruss: {ring: {}}\n"
+                     : kind == 1
                          ? "scene: {parabolic_cylinder: {aperture_m: 2, length_m: 2, focal_length_m: 2, modules: [1, "
                            "1], cells_per_module: [2, 2]}}\n"
                            "truss: {match_tolerance_m: 10, import: {nodes: tn.csv, members: m.csv}}\n"
@@ -151,7 +153,7 @@ Suite *suite_fault_truss(void)
     Suite *suite = suite_create("fault/truss");
     TCase *tests = tcase_create("truss");
     suite_add_tcase(suite, tests);
-    tcase_add_loop_test(tests, building_a_carrier, 0, 2);
+    tcase_add_loop_test(tests, building_a_carrier, 0, 3);
     tcase_add_test(tests, loading_a_carrier);
     tcase_add_test(tests, storing_and_reading);
     return suite;

@@ -128,6 +128,8 @@ hf_status __real_hf_scene_paraboloid(const hf_paraboloid *, const double[2], hf_
 hf_status __wrap_hf_scene_paraboloid(const hf_paraboloid *, const double[2], hf_scene *, hf_messages *);
 hf_status __real_hf_truss_generate(const hf_truss_settings *, const hf_cylinder *, hf_truss *, hf_messages *);
 hf_status __wrap_hf_truss_generate(const hf_truss_settings *, const hf_cylinder *, hf_truss *, hf_messages *);
+hf_status __real_hf_truss_ring_generate(const hf_truss_settings *, const hf_paraboloid *, hf_truss *, hf_messages *);
+hf_status __wrap_hf_truss_ring_generate(const hf_truss_settings *, const hf_paraboloid *, hf_truss *, hf_messages *);
 bool __real_hf_text_uint64(const char *, uint64_t *);
 bool __wrap_hf_text_uint64(const char *, uint64_t *);
 hf_status __real_hf_study_make_points(hf_study *, hf_messages *);
@@ -139,6 +141,7 @@ hf_status __wrap_hf_scene_parabolic_cylinder(const hf_cylinder *c, const double 
 {
     double n =
         ((double)c->modules[0] * c->cells_per_module[0] + 1) * ((double)c->modules[1] * c->cells_per_module[1] + 1);
+    n *= c->rear_distance_m > 0 ? 2 : 1;
     if (n <= NODE_MAX || n > 4e6) return __real_hf_scene_parabolic_cylinder(c, EA_N, scene, messages);
     *scene = (hf_scene){0};
     return hf_error(messages, HF_BAD_CASE, "%g nodes take too long here", n);
@@ -161,6 +164,15 @@ hf_status __wrap_hf_truss_generate(const hf_truss_settings *settings, const hf_c
     if (n <= NODE_MAX || n > 4e7) return __real_hf_truss_generate(settings, c, truss, messages);
     *truss = (hf_truss){0};
     return hf_error(messages, HF_BAD_CASE, "a truss of %g panels takes too long here", n);
+}
+
+hf_status __wrap_hf_truss_ring_generate(const hf_truss_settings *settings, const hf_paraboloid *p, hf_truss *truss,
+                                        hf_messages *messages)
+{
+    double n = 8.0 * p->rings * p->rings;
+    if (n <= NODE_MAX) return __real_hf_truss_ring_generate(settings, p, truss, messages);
+    *truss = (hf_truss){0};
+    return hf_error(messages, HF_BAD_CASE, "a ring under %g nodes takes too long here", n);
 }
 
 /* Values along an axis; seeds shrink with them. */

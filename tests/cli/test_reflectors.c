@@ -1,0 +1,108 @@
+/* The reflectors that come with the program, from their files to results: held against an oracle in another language
+ * that makes net and ring anew and solves the ring; what is told of rings that cannot be. */
+#include "cli.h"
+
+static const char *const example[] = {"configs/paraboloid-6m.yaml", "configs/paraboloid-offset-12m.yaml",
+                                      "configs/cylinder-tied-8m.yaml"};
+enum { N_EXAMPLE = sizeof example / sizeof *example, N_ROUND = 2 };
+
+START_TEST(generators_agree_with_the_oracle)
+{
+    const char *path = keep(source_path(example[_i])), *out = temp("r.h5");
+    HIFDM(0, "run", path, "-o", out);
+    ck_assert_str_eq(said.err, "");
+    const char *const oracle[] = {python_program(), keep(source_path("tests/verify/generators_oracle.py")), path, out,
+                                  NULL};
+    demand_exit(run_command(HANG_S, oracle), 0, "generators_oracle.py", __LINE__);
+    OUT(_i < N_ROUND ? "ring: " : "net: 234 nodes");
+}
+END_TEST
+
+/* On rigid ground tensions hold every node. On a stiff ring the net leaves its surface by a distance that falls with
+ * the stiffness; on one of carbon fibre less, because there the net gives way to its truss. */
+START_TEST(nets_are_held)
+{
+    const char *path = keep(source_path(example[_i]));
+    SHELL(0, "sed '/^truss:/,/^$/d' \"$1\"", path);
+    HIFDM(0, "run", file_with("rigid.yaml", said.out), "-o", temp("rigid.h5"));
+    EXPECT(temp("rigid.h5"), "--", "a['form'].attrs['psi_m'] < 1e-9", "a['form'].attrs['n_slack'] == 0",
+           "a['form'].attrs['position_bound_m'] < 1e-9", "'truss' not in a");
+    if (_i == N_ROUND) return;
+    HIFDM(0, "run", path, "-o", temp("elastic.h5"));
+    OUT("  on its truss  attachments give way by up to ");
+    HIFDM(0, "run", path, "-o", temp("stiff.h5"), "--set", "truss.E_Pa=130e11", "--set", "truss.G_Pa=5e11");
+    HIFDM(0, "run", path, "-o", temp("stiffer.h5"), "--set", "truss.E_Pa=130e12", "--set", "truss.G_Pa=5e12");
+    EXPECT(temp("elastic.h5"), temp("stiff.h5"), temp("stiffer.h5"), "--",
+           "1e-3 < a['form'].attrs['psi_m'] < 100 * b['form'].attrs['psi_m']",
+           "near(b['form'].attrs['psi_m'], 10 * c['form'].attrs['psi_m'], 0.02 * b['form'].attrs['psi_m'])");
+}
+END_TEST
+
+#define DISH "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, rear_distance_m: 1.8}}\n"
+#define DISH_ALONE "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4}}\n"
+#define QUAD_DISH                                                                                                      \
+    "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 5, rear_distance_m: 1.8, grid: quad}}\n"
+#define CYLINDER                                                                                                       \
+    "scene: {parabolic_cylinder: {aperture_m: 8, length_m: 6, focal_length_m: 4, modules: [1, 1], cells_per_module: "  \
+    "[8, 6], rear_distance_m: 2.5}}\n"
+
+static const struct {
+    const char *text, *error; /* behind "error: PATH" */
+} impossible[] = {
+    {DISH "truss: {ring: {height_m: 1.7}}\n", ":2:26: truss.ring.height_m: of 1.7 m puts the rear ring elsewhere than "
+                                              "the rim of the rear net, which hangs on it: "
+                                              "leave it out, or make it rear_distance_m, 1.8 m\n"},
+    {DISH_ALONE "truss: {ring: {}}\n", ": truss.ring.height_m: is missing: the net has no rear rim that tells it\n"},
+    {DISH "truss: {ring: {cells_per_bay: 5}}\n",
+     ":2:31: truss.ring.cells_per_bay: of 5 must divide the 24 cells at the rim into three bays or more\n"},
+    {DISH "truss: {ring: {cells_per_bay: 12}}\n", ":2:31: truss.ring.cells_per_bay: of 12 must divide the 24"},
+    {DISH "truss: {ring: {longeron: {wall_m: 0.02}}}\n",
+     ":2:35: truss.ring.longeron.wall_m: must not be more than half the diameter_m beside it\n"},
+    {DISH "truss: {depth_m: 1, ring: {}}\n",
+     ":2:18: truss.depth_m: has no effect beside truss.ring, which has no units; remove it\n"},
+    {DISH "truss: {ring: {}, bud: {panels: 2}}\n", ":2:33: truss.bud.panels: has no effect beside truss.ring"},
+    {DISH "truss: {ring: {}, import: {nodes: n, members: m}}\n", ": truss: has both ring and import; keep one\n"},
+    {DISH "truss: {ring: {bracing: double}}\n", ":2:25: truss.ring.bracing: must be one of none single crossed, not"},
+    {DISH "truss: {}\n", ": truss: needs a section ring to stand on under scene.paraboloid, or truss.import\n"},
+    {SMALL_SCENE "truss: {ring: {}}\n", ": truss.ring: needs scene.paraboloid, under whose rim it stands\n"},
+    {CYLINDER "truss: {}\n", ":1:137: scene.parabolic_cylinder.rear_distance_m: the truss over the modules has no "
+                             "joints where the supports of the rear net are"},
+    {"scene: {parabolic_cylinder: {aperture_m: 8, length_m: 6, focal_length_m: 4, modules: [1, 1], cells_per_module: "
+     "[8, 6], rear_distance_m: 2}}\n",
+     ":1:137: scene.parabolic_cylinder.rear_distance_m: of 2 m lets the nets meet in the middle"},
+};
+enum { N_IMPOSSIBLE = sizeof impossible / sizeof *impossible };
+
+START_TEST(what_cannot_be_is_named)
+{
+    const char *path = file_with("c.yaml", impossible[_i].text);
+    HIFDM(2, "check", path);
+    ERRS("error: %s%s", path, impossible[_i].error);
+}
+END_TEST
+
+/* The cells of a quad net at its rim, 28 here, are counted when they are made. */
+START_TEST(rings_under_quad_nets)
+{
+    const char *path = file_with("c.yaml", QUAD_DISH "truss: {ring: {cells_per_bay: 3}}\n");
+    HIFDM(2, "check", path);
+    ERR("error: truss.ring.cells_per_bay: of 3 must divide the 28 cells at the rim into three bays or more\n");
+    HIFDM(0, "check", path, "--set", "truss.ring.cells_per_bay=1");
+    OUT("  truss         56 nodes, 112 members; ");
+    OUT("; 56 attachments\n");
+    HIFDM(4, "check", path, "--set", "truss.ring.cells_per_bay=1", "--set", "truss.joints=pinned");
+    ERR(" can move along ");
+}
+END_TEST
+
+Suite *suite_cli_reflectors(void)
+{
+    Suite *suite = suite_create("cli/reflectors");
+    TCase *tcase = tcase_create("reflectors");
+    tcase_add_loop_test(tcase, generators_agree_with_the_oracle, 0, N_EXAMPLE);
+    tcase_add_loop_test(tcase, nets_are_held, 0, N_EXAMPLE);
+    tcase_add_loop_test(tcase, what_cannot_be_is_named, 0, N_IMPOSSIBLE);
+    tcase_add_test(tcase, rings_under_quad_nets);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
