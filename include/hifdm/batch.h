@@ -30,7 +30,7 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
  * result: [n].
  * Each design is one whole form-finding in one thread; the results do not depend on the number of threads, nor on which
  * other designs are evaluated beside it. A design that has no shape, or breaks a cap, has its status in its result and
- * NaN for psi and ratios. */
+ * NaN for psi, and without a shape for the ratios. */
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result);
 
 /* Propose the next generation and evaluate what is pending in it: hf_optimiser_next and hf_batch_run. Meanwhile

@@ -32,16 +32,18 @@ typedef struct {
 } hf_evaluator;
 
 /* Evaluate design_N [model->n_gene], boundary pretensions T' > 0. The shape is left in the workspace. A design that
- * fails has its status in the result and NaN for psi and ratios; the run itself does not fail. Returns
- * result->status. */
+ * fails has its status in the result and NaN for psi and ratios (one that breaks the cap keeps its ratios); the run
+ * itself does not fail. Returns result->status. */
 hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace,
                       hf_form_result *result);
 
 /* The parts of hf_evaluate before and after the solver. hf_evaluate_prepare writes laws, targets and first force
- * densities of a design into the workspace. hf_evaluate_judge applies the cap on the ratio, sets the measures of an
- * infeasible design to NaN and returns the status. */
+ * densities of a design into the workspace. hf_evaluate_judge applies the cap on the ratio, sets the
+ * violation, and the measures of an infeasible design to NaN, and returns the status; of a design above the cap it
+ * reads the tensions in the workspace. */
 void hf_evaluate_prepare(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace);
-hf_status hf_evaluate_judge(const hf_evaluator *evaluator, hf_form_result *result);
+bool hf_evaluate_is_above_cap(const hf_evaluator *evaluator, const hf_form_result *result);
+hf_status hf_evaluate_judge(const hf_evaluator *evaluator, const hf_workspace *workspace, hf_form_result *result);
 
 /* L* (m) of a boundary cable: the prescribed length where there is one, else the theoretical length. */
 double hf_evaluate_design_length_m(const hf_model *model, int i_cable);

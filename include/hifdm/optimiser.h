@@ -33,6 +33,8 @@ typedef struct {
     void (*first)(void *state, hf_population *population);
     /* Propose the generation after `now` in the arrays of `next`, with the results of those that are not pending. */
     void (*next)(void *state, const hf_population *now, hf_population *next);
+    /* Choose, once `now` is evaluated, what stands in it of its own individuals and of those before. NULL: its own. */
+    void (*survive)(void *state, const hf_population *before, hf_population *now);
     void (*free)(void *state); /* state may be NULL */
 } hf_optimiser_kind;
 
@@ -42,6 +44,7 @@ typedef struct {
     const hf_optimiser_kind *kind;
     const hf_optimize_settings *settings; /* borrowed */
     void *state;
+    bool is_fresh; /* internal: evaluated since it was proposed, and not yet told */
 } hf_optimiser;
 
 /* Settings and model are borrowed until hf_optimiser_free. base_N: [n_gene] pretensions T after form-finding. With kind
@@ -50,7 +53,7 @@ typedef struct {
 hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *settings,
                               const hf_model *model, const double *base_N, hf_optimiser *optimiser);
 
-/* Rank the generation by the results that the caller has written into population.result. */
+/* Take the results that the caller has written into population.result: choose the survivors, and rank them. */
 void hf_optimiser_tell(hf_optimiser *optimiser);
 
 /* Propose the next generation. Returns false, and does nothing, when stop_reason says that there is none. */

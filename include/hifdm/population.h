@@ -36,14 +36,21 @@ typedef struct {
     hf_form_result *result;                 /* [n_individual]; valid from the start where pending is 0 */
     unsigned char *pending;                 /* [n_individual] 1: must be evaluated */
     double *crossover_rate, *mutation_rate; /* [n_individual] rates that made the design; NaN where there are none */
-    int *parent;                            /* [n_individual][2] in the generation before; -1 where there are none */
+    int *parent;                            /* [n_individual][2] in the generation before; -1 where there are none;
+                                               i, -1: individual i of the generation before, which was kept */
+
+    /* Written by hf_optimiser_tell: what the evaluation of the proposed design gave, kept or not. */
+    hf_status *trial_status; /* [n_individual] */
+    double *trial_psi_m;     /* [n_individual] */
 
     /* Written by hf_population_rank. */
     int best;                                   /* index; -1 while no design is feasible */
     double *best_psi_m;                         /* [generation_limit] best of each generation, or NaN */
+    double *least_violation;                    /* [generation_limit] of each generation */
     double mean_psi_m, worst_psi_m;             /* of the feasible individuals */
     int n_infeasible;                           /* in this generation */
     long n_evaluation, n_evaluation_infeasible; /* in all generations so far */
+    long n_evaluation_above_cap;                /* of the infeasible ones: those that have a shape */
     hf_population_stop stop_reason;
 
     void *block;
@@ -57,13 +64,26 @@ hf_status hf_population_create(const hf_optimize_settings *settings, const hf_mo
                                hf_population *population, hf_population *next);
 void hf_population_free(hf_population *population);
 
+/* Write the trials from the results as they were evaluated. */
+void hf_population_note_trials(hf_population *population);
+
+/* Let individual i of the generation before stand in place of individual i. */
+void hf_population_take_over(const hf_population *before, hf_population *population, int i);
+
+/* The same for each individual whose own trial is worse, or which was not evaluated. */
+void hf_population_keep_better(const hf_population *before, hf_population *population);
+
 /* Exchange the arrays of the two generations and count the generation: `next` becomes the present one. */
 void hf_population_advance(hf_population *population, hf_population *next);
 
 /* Set best, mean, worst, counts and stop_reason from the results of this generation, which must be complete. */
 void hf_population_rank(const hf_optimize_settings *settings, hf_population *population);
 
-/* Is individual a better than b? Infeasible individuals come last, and of equals the lower index comes first. */
+/* How far a result is beyond its limits: 0 when it is feasible, INFINITY without a shape, else its violation. */
+double hf_population_violation(const hf_form_result *result);
+
+/* Is individual a better than b? Of feasible ones by psi, of infeasible ones, which come last, by violation; of equals
+ * the lower index comes first. */
 bool hf_population_is_better(const hf_population *population, int a, int b);
 
 /* The value of the gene within its bounds that is nearest to value_N. */

@@ -25,6 +25,7 @@ typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
 typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN, HF_COUPLING_AUTO } hf_coupling_scheme;
 typedef enum { HF_COMPARE_AUTO, HF_COMPARE_TRUE, HF_COMPARE_FALSE } hf_compare;
+typedef enum { HF_VARIATION_DIFFERENCE, HF_VARIATION_CHAIN } hf_variation;
 typedef enum { HF_SURFACE_AUTO, HF_SURFACE_PARABOLIC_CYLINDER, HF_SURFACE_PARABOLOID } hf_surface_kind;
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
@@ -36,6 +37,7 @@ extern const char *const hf_rule_word[4];
 extern const char *const hf_solver_word[5];
 extern const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1];
 extern const char *const hf_compare_word[4];
+extern const char *const hf_variation_word[3];
 extern const char *const hf_symmetry_word[6];
 extern const char *const hf_surface_kind_word[4];
 extern const char *const hf_coupling_scheme_word[4];
@@ -71,7 +73,8 @@ typedef struct {
     uint64_t seed;
     double crossover_high, crossover_low; /* Pc1, Pc2 */
     double mutation_high, mutation_low;   /* Pm1, Pm2 */
-    int elites;                           /* best individuals that are kept unchanged */
+    hf_variation variation;               /* how the genetic algorithm makes children */
+    int elites;                           /* best individuals: kept unchanged, and what crossovers move */
     double stagnation_tolerance_m;        /* stop when the best psi improved by less than this ... */
     int stagnation_generations;           /* ... in so many generations */
     int polish_iterations;                /* bound on the iterations of Levenberg-Marquardt */

@@ -26,8 +26,9 @@
  *                max_displacement_m [rounds]; attributes: the members of hf_summary.form.coupling (those of best
  *                and polish are best_coupling_... of /ga and coupling_... of /polish)
  *   /ga          design_N [g][p][k]; evaluated, status, psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio,
- *                iterations, crossover_rate, mutation_rate [g][p]; parent [g][p][2];
- *                best_individual, best_psi_m, mean_psi_m, worst_psi_m, n_infeasible [g];
+ *                iterations, violation, trial_status, trial_psi_m, crossover_rate, mutation_rate [g][p];
+ *                parent [g][p][2];
+ *                best_individual, best_psi_m, least_violation, mean_psi_m, worst_psi_m, n_infeasible [g];
  *                gene_cable (index into /scene/cable), gene_group, base_N, lower_N, upper_N [k]; gene_leader [k] under
  *                a symmetry; attributes: HF_SUMMARY_GA_LIST, the figures of hf_summary.best as best_...; n_individual,
  *                n_variable, generations_limit, by which a run goes on

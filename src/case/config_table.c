@@ -141,8 +141,11 @@ const hf_field hf_field_table[] = {
     {"optimize.crossover_low", HF_FIELD_DOUBLE, AT(optimize.crossover_low), 0, 1, "0.6", "", NULL, "Pc2"},
     {"optimize.mutation_high", HF_FIELD_DOUBLE, AT(optimize.mutation_high), 0, 1, "0.1", "", NULL, "Pm1"},
     {"optimize.mutation_low", HF_FIELD_DOUBLE, AT(optimize.mutation_low), 0, 1, "0.001", "", NULL, "Pm2"},
+    {"optimize.variation", HF_FIELD_WORD, AT(optimize.variation), 0, 0, "difference", "", hf_variation_word,
+     "difference: crossovers move an elite along the difference of two parents, children replace what is worse; chain: "
+     "crossovers mix two parents chain by chain, children replace whole generations"},
     {"optimize.elites", HF_FIELD_INT, AT(optimize.elites), 1, 100000, "1", "", NULL,
-     "best individuals that live on unchanged (and are not evaluated again)"},
+     "best individuals that live on unchanged; variation difference moves them in its crossovers"},
     {"optimize.stagnation_tolerance_m", HF_FIELD_DOUBLE, AT(optimize.stagnation_tolerance_m), 0, BIG, "1e-6", "m", NULL,
      "stop when the best psi gained less than this over the window below"},
     {"optimize.stagnation_generations", HF_FIELD_INT, AT(optimize.stagnation_generations), 1, 1000000, "50", "", NULL,

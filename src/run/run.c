@@ -236,6 +236,28 @@ static bool evaluate_first(run *r)
     return true;
 }
 
+/* Why no design was feasible, by counts, and what would change that. */
+static hf_status explain_infeasible(run *r, hf_messages *messages)
+{
+    const hf_population *p = &r->optimiser.population;
+    long above = p->n_evaluation_above_cap, shapeless = p->n_evaluation_infeasible - above;
+    hf_form_result base;
+    hf_batch_run_one(&r->problem.batch, p->base_N, &base);
+    if (above == 0)
+        return hf_error(messages, HF_NO_FEASIBLE,
+                        "optimize: no feasible design: none of %ld evaluations has a shape (%s); a smaller "
+                        "optimize.range_N keeps the tensions nearer to those of the form-finding",
+                        shapeless, hf_status_text(p->trial_status[0]));
+    char of_base[64] = "has no shape", others[64] = "";
+    if (isfinite(base.boundary_tension_ratio))
+        snprintf(of_base, sizeof of_base, "has %.4g", base.boundary_tension_ratio);
+    if (shapeless > 0) snprintf(others, sizeof others, ", %ld have no shape", shapeless);
+    return hf_error(messages, HF_NO_FEASIBLE,
+                    "optimize: no feasible design: %ld of %ld evaluations are above boundary_ratio_cap %g%s; the base "
+                    "design %s; raise optimize.boundary_ratio_cap or optimize.range_N",
+                    above, p->n_evaluation, r->problem.settings.optimize.boundary_ratio_cap, others, of_base);
+}
+
 static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
 {
     const hf_population *p = &r->optimiser.population;
@@ -262,7 +284,7 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
     }
     sum_up(r, start_s, s);
     if (p->best >= 0) return store_best(r, s, messages);
-    return hf_error(messages, HF_NO_FEASIBLE, "optimize: no feasible design among %ld evaluations", s->evaluations);
+    return explain_infeasible(r, messages);
 }
 
 /* Levenberg-Marquardt from the best individual, or from the base design when there was no genetic algorithm. */

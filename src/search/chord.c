@@ -236,7 +236,8 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_worksp
     const hf_model *m = v->model;
     hf_form_result base;
     *chord = dimensions(v);
-    HF_TRY(hf_evaluate(v, base_N, w, &base));
+    hf_status status = hf_evaluate(v, base_N, w, &base);
+    if (status != HF_OK && status != HF_RATIO_CAP) return status; /* above the cap it has a shape, too */
     HF_TRY(hf_newton_matrix_factor(m, w, NULL));
     HF_TRY(allocate(chord));
     hf_chord_pack(w, chord);
@@ -426,13 +427,15 @@ static void finish(chord_run *s, int lane, const double *design_N, hf_form_resul
     if (!s->is_measured) c->kernels->measure(c, s->lanes, &s->now);
     s->is_measured = true;
     bool ordinary = is_ordinary(s, lane);
-    if (s->keeps_shape || !ordinary) unload(s, lane, design_N, r);
     if (ordinary) report(s, lane, r);
+    hf_form_result alone = *r;
+    if (s->keeps_shape || !ordinary || hf_evaluate_is_above_cap(c->evaluator, r)) unload(s, lane, design_N, &alone);
+    if (!ordinary) *r = alone;
     r->iterations = s->steps[lane];
     for (int i = 0; i < c->n_pull; i++)
         s->w->displacement_m[i] = s->lanes->displacement_m[i * HF_LANES + lane];
     if (c->n_pull) hf_coupling_accept(c->evaluator->model, s->w, s->steps[lane], s->at[lane].gap_m, r);
-    hf_evaluate_judge(c->evaluator, r);
+    hf_evaluate_judge(c->evaluator, s->w, r);
 }
 
 /* Compute the forces of net and truss in all lanes, and from them `at`. */

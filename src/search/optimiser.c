@@ -18,12 +18,19 @@ hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_s
     o->kind = kind;
     HF_TRY(kind->create(s, m, &o->state));
     kind->first(o->state, &o->population);
+    o->is_fresh = true;
     return HF_OK;
 }
 
 void hf_optimiser_tell(hf_optimiser *optimiser)
 {
-    hf_population_rank(optimiser->settings, &optimiser->population);
+    hf_optimiser *o = optimiser;
+    if (o->is_fresh) {
+        hf_population_note_trials(&o->population);
+        if (o->population.generation > 0 && o->kind->survive) o->kind->survive(o->state, &o->next, &o->population);
+    }
+    o->is_fresh = false;
+    hf_population_rank(o->settings, &o->population);
 }
 
 bool hf_optimiser_next(hf_optimiser *optimiser)
@@ -32,6 +39,7 @@ bool hf_optimiser_next(hf_optimiser *optimiser)
     if (optimiser->population.stop_reason != HF_POPULATION_RUNNING) return false;
     optimiser->kind->next(optimiser->state, &optimiser->population, &optimiser->next);
     hf_population_advance(&optimiser->population, &optimiser->next);
+    optimiser->is_fresh = true;
     return true;
 }
 

@@ -1,8 +1,11 @@
-/* The adaptive real-coded genetic algorithm (Eqs. 11-13).
+/* The adaptive real-coded genetic algorithm (Eqs. 11-13), in two variations.
  *
- * Selection: roulette on psi_worst - psi. Crossover and mutation: intermediate recombination and the multi-scale
- * mutation of the breeder GA (Muehlenbein & Schlierkamp-Voosen 1993), acting on the chains of boundary cables
- * (model->gene_group) and, rarely, on single cables. Rates: Srinivas & Patnaik (1994), minimising.
+ * Both: roulette on psi_worst - psi; the multi-scale mutation of the breeder GA (Muehlenbein & Schlierkamp-Voosen
+ * 1993), acting on the chains of boundary cables (model->gene_group) and on single cables; rates of Srinivas & Patnaik
+ * (1994), minimising.
+ * Difference: a crossover moves an elite along the difference of two parents, as differential evolution does (Storn &
+ * Price 1997), and a child takes the place of an individual that is no better (hf_population_survive).
+ * Chain: intermediate recombination; whole generations are replaced, but for the elites.
  * Contents: state - the first generation - adaptive rates - selection - variation - the next generation */
 #include <hifdm/optimiser.h>
 
@@ -14,6 +17,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of the variation `difference`; measured on the nets of METHOD section 7, which says what others give. */
+#define STEP_MAX 2.0      /* a crossover moves by 0 to so many differences */
+#define SHARE_OCTAVES 2.3 /* 2^-SHARE_OCTAVES of the chains, or genes, to all of them are moved; log-uniform */
+#define BY_CHAIN 0.6      /* so many of the crossovers move whole chains, the others each gene for itself */
+#define SINGLES 10.0      /* genes that mutate alone are so many times as frequent as in the variation `chain` */
 /* Intermediate recombination, one draw per chain, reaches this far beyond the parents, so that the population's spread
  * does not shrink by recombination alone. The designs proposed depend on it; test_optimiser_ga passes with 0 and with
  * 0.75. */
@@ -31,7 +39,9 @@ typedef struct {
     const hf_model *model;
     const int *gene_leader; /* of the model; NULL when no genes are linked */
     int n_leader;
-    double *fitness, *group_draw; /* scratch: [n_individual], [n_gene_group] */
+    double *fitness, *group_draw;  /* scratch: [n_individual], [n_gene_group] */
+    int *elite;                    /* scratch: [elites] the best, in order */
+    double best_merit, mean_merit; /* scratch */
 } breeder;
 
 /* The struct itself comes first, so that its address is that of the block, and free(state) frees all. */
@@ -40,6 +50,7 @@ static breeder *lay_out(hf_arena *a, breeder *g)
     breeder *itself = hf_arena_take(a, 1, sizeof *itself);
     g->group_draw = hf_arena_take(a, (size_t)g->model->n_gene_group, sizeof(double));
     g->fitness = hf_arena_take(a, (size_t)g->settings->population, sizeof(double));
+    g->elite = hf_arena_take(a, (size_t)g->settings->elites, sizeof(int));
     return itself;
 }
 
@@ -88,27 +99,41 @@ static void first(void *state, hf_population *p)
 
 /* ---- adaptive rates (Srinivas & Patnaik 1994, minimising): the better an individual, the less it is disturbed ---- */
 
-static double adaptive(const hf_population *p, double high, double low, double psi_m)
+static double adaptive(const breeder *g, double high, double low, double merit)
 {
-    double best = p->result[p->best].psi_m, spread = p->mean_psi_m - best;
-    if (!(psi_m <= p->mean_psi_m) || !(spread > 0)) return high;
-    return high - (high - low) * (p->mean_psi_m - psi_m) / spread;
+    double spread = g->mean_merit - g->best_merit;
+    if (isinf(g->mean_merit)) return low;
+    if (!(merit <= g->mean_merit) || !(spread > 0)) return high;
+    return high - (high - low) * (g->mean_merit - merit) / spread;
 }
 
 /* ---- selection ---- */
 
-static void set_fitness(const hf_population *p, double *fitness)
+/* What is to be least: psi, or while no design is feasible the violation. NaN or INFINITY: it is no parent. */
+static double merit_of(const hf_population *p, int i)
 {
-    double spread = p->best < 0 ? 0 : p->worst_psi_m - p->result[p->best].psi_m;
+    return p->best >= 0 ? p->result[i].psi_m : hf_population_violation(&p->result[i]);
+}
+
+static void set_fitness(breeder *g, const hf_population *p)
+{
+    double best = INFINITY, worst = -INFINITY, sum = 0;
+    int n = 0;
     for (int i = 0; i < p->n_individual; i++) {
-        const hf_form_result *r = &p->result[i];
-        if (p->best < 0)
-            fitness[i] = 1;
-        else if (r->status != HF_OK)
-            fitness[i] = 0;
-        else
-            fitness[i] = spread > 0 ? (p->worst_psi_m - r->psi_m) / spread + FITNESS_FLOOR : 1;
+        double merit = merit_of(p, i);
+        if (!isfinite(merit)) continue;
+        best = fmin(best, merit);
+        worst = fmax(worst, merit);
+        sum += merit;
+        n++;
     }
+    for (int i = 0; i < p->n_individual; i++) {
+        double merit = merit_of(p, i);
+        g->fitness[i] = n == 0 ? 1 : !isfinite(merit) ? 0 : 1;
+        if (isfinite(merit) && worst > best) g->fitness[i] = (worst - merit) / (worst - best) + FITNESS_FLOOR;
+    }
+    g->best_merit = best;
+    g->mean_merit = n > 1 ? sum / n : n == 1 ? INFINITY : (double)NAN; /* one alone is not to be lost */
 }
 
 static int spin_roulette(const double *fitness, int n, hf_random *random)
@@ -150,10 +175,11 @@ static double mutation_step(double rate, hf_random *random)
 
 /* The cables of a chain mutate together. An unequal change drags the chain's nodes along it, which raises psi steeply,
  * so that independent steps of every gene nearly always make psi worse (measured: 400 generations then gain 1 um
- * instead of 240 um). Single genes mutate as well, on average `rate` of them per individual. */
-static void mutate(const breeder *g, const hf_population *p, double rate, double *child, hf_random *random)
+ * instead of 240 um). Single genes mutate as well, on average `single` of them per individual. */
+static void mutate(const breeder *g, const hf_population *p, double rate, double single, double *child,
+                   hf_random *random)
 {
-    double single = rate / g->n_leader;
+    single /= g->n_leader;
     for (int j = 0; j < g->model->n_gene_group; j++)
         g->group_draw[j] = mutation_step(rate, random);
     for (int k = 0; k < p->n_gene; k++) {
@@ -163,28 +189,53 @@ static void mutate(const breeder *g, const hf_population *p, double rate, double
     }
 }
 
-/* Make one child of two parents, all by random numbers of its own stream. A child equal to its first parent needs no
- * evaluation: it takes that parent's result. */
+/* An elite, moved by some part of the way from the worse of two parents to the better one, and beyond. */
+static void cross(const breeder *g, const hf_population *p, int a, int b, double *child, hf_random *random)
+{
+    size_t n = (size_t)p->n_gene;
+    int better = hf_population_is_better(p, a, b) ? a : b, worse = a + b - better;
+    const double *to = p->design_N + (size_t)better * n, *from = p->design_N + (size_t)worse * n;
+    int leader = g->elite[(int)(hf_random_uniform(random) * g->settings->elites)];
+    double step = STEP_MAX * hf_random_uniform(random);
+    double share = hf_power_of_two(-SHARE_OCTAVES * hf_random_uniform(random));
+    bool by_chain = hf_random_uniform(random) < BY_CHAIN;
+    memcpy(child, p->design_N + (size_t)leader * n, n * sizeof *child);
+    for (int j = 0; j < g->model->n_gene_group && by_chain; j++)
+        g->group_draw[j] = hf_random_uniform(random);
+    for (size_t k = 0; k < n; k++) {
+        double draw = by_chain ? g->group_draw[g->model->gene_group[k]] : hf_random_uniform(random);
+        if (draw < share) child[k] = hf_population_clamp(p, (int)k, child[k] + step * (to[k] - from[k]));
+    }
+}
+
+/* Make one child, all by random numbers of its own stream. A child equal to a design of the generation before needs no
+ * evaluation: it takes that one's result. */
 static void breed(const breeder *g, const hf_population *now, hf_population *next, int i)
 {
     const hf_optimize_settings *s = g->settings;
+    bool by_chain = s->variation == HF_VARIATION_CHAIN;
     size_t n = (size_t)now->n_gene;
     hf_random random = hf_random_stream(s->seed, now->generation + 1, i);
     int a = spin_roulette(g->fitness, now->n_individual, &random);
     int b = spin_roulette(g->fitness, now->n_individual, &random);
+    /* What a child is that no crossover makes. From outside the limits the way in leads past the best. */
+    int itself = by_chain ? a : now->result[i].status == HF_OK ? i : g->elite[0];
     const double *mother = now->design_N + (size_t)a * n, *father = now->design_N + (size_t)b * n;
+    const double *same = now->design_N + (size_t)itself * n;
     double *child = next->design_N + (size_t)i * n;
-    double psi_m = fmin(now->result[a].psi_m, now->result[b].psi_m); /* fmin ignores the NaN of an infeasible parent */
-    double pc = now->best < 0 ? s->crossover_high : adaptive(now, s->crossover_high, s->crossover_low, psi_m);
-    double pm = now->best < 0 ? s->mutation_high : adaptive(now, s->mutation_high, s->mutation_low, psi_m);
-    if (hf_random_uniform(&random) < pc)
+    double merit = fmin(merit_of(now, a), merit_of(now, b)); /* fmin ignores the NaN of an infeasible parent */
+    double pc = adaptive(g, s->crossover_high, s->crossover_low, merit);
+    double pm = adaptive(g, s->mutation_high, s->mutation_low, merit);
+    if (hf_random_uniform(&random) >= pc || (!by_chain && a == b))
+        memcpy(child, same, n * sizeof *child);
+    else if (by_chain)
         recombine(g, now, mother, father, child, &random);
     else
-        memcpy(child, mother, n * sizeof *child);
-    mutate(g, now, pm, child, &random);
+        cross(g, now, a, b, child, &random);
+    mutate(g, now, pm, by_chain ? pm : SINGLES * pm, child, &random);
     hf_population_link(now, g->model, child);
-    next->pending[i] = memcmp(child, mother, n * sizeof *child) != 0;
-    next->result[i] = now->result[a];
+    next->pending[i] = memcmp(child, same, n * sizeof *child) != 0;
+    next->result[i] = now->result[itself];
     next->crossover_rate[i] = pc;
     next->mutation_rate[i] = pm;
     next->parent[2 * i] = a;
@@ -193,38 +244,49 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
 
 /* ---- the next generation ---- */
 
-/* The best individual that is not taken, by repeated selection (elites are few). */
-static int next_elite(const hf_population *p, const unsigned char *taken)
+/* The best individuals, by repeated selection (elites are few). */
+static void list_elites(const breeder *g, const hf_population *p, unsigned char *taken)
 {
-    int best = -1;
-    for (int i = 0; i < p->n_individual; i++)
-        if (!taken[i] && (best < 0 || hf_population_is_better(p, i, best))) best = i;
-    return best;
+    memset(taken, 0, (size_t)p->n_individual);
+    for (int e = 0; e < g->settings->elites; e++) {
+        int best = -1;
+        for (int i = 0; i < p->n_individual; i++)
+            if (!taken[i] && (best < 0 || hf_population_is_better(p, i, best))) best = i;
+        taken[best] = 1;
+        g->elite[e] = best;
+    }
 }
 
+/* They live on, in the first places. */
 static void keep_elites(const breeder *g, const hf_population *now, hf_population *next)
 {
     size_t n = (size_t)now->n_gene;
-    unsigned char *taken = next->pending; /* what is pending is set by breed() */
-    memset(taken, 0, (size_t)now->n_individual);
     for (int e = 0; e < g->settings->elites; e++) {
-        int i = next_elite(now, taken);
-        taken[i] = 1;
+        int i = g->elite[e];
         memcpy(next->design_N + (size_t)e * n, now->design_N + (size_t)i * n, n * sizeof(double));
         next->result[e] = now->result[i];
         next->crossover_rate[e] = next->mutation_rate[e] = 0;
         next->parent[2 * e] = next->parent[2 * e + 1] = i;
+        next->pending[e] = 0;
     }
-    memset(next->pending, 0, (size_t)now->n_individual);
 }
 
 static void breed_all(void *state, const hf_population *now, hf_population *next)
 {
-    const breeder *g = state;
-    set_fitness(now, g->fitness);
-    keep_elites(g, now, next);
-    for (int i = g->settings->elites; i < now->n_individual; i++)
+    breeder *g = state;
+    bool replaces_all = g->settings->variation == HF_VARIATION_CHAIN;
+    set_fitness(g, now);
+    list_elites(g, now, next->pending); /* what is pending is set afterwards */
+    if (replaces_all) keep_elites(g, now, next);
+    for (int i = replaces_all ? g->settings->elites : 0; i < now->n_individual; i++)
         breed(g, now, next, i);
 }
 
-const hf_optimiser_kind hf_optimiser_ga = {create, first, breed_all, free};
+/* In the variation `difference` an individual gives way to a child that is not worse. */
+static void survive(void *state, const hf_population *before, hf_population *now)
+{
+    const breeder *g = state;
+    if (g->settings->variation == HF_VARIATION_DIFFERENCE) hf_population_keep_better(before, now);
+}
+
+const hf_optimiser_kind hf_optimiser_ga = {create, first, breed_all, survive, free};

@@ -10,6 +10,10 @@
 
 const char *const hf_population_stop_word[4] = {"running", "stagnation", "generations", "all_infeasible"};
 
+/* A run without a feasible design ends when the least violation falls by less than this part in the window of
+ * stagnation. */
+#define VIOLATION_GAIN 1e-3
+
 /* ---- memory ---- */
 
 static void lay_out_generation(hf_arena *a, hf_population *p)
@@ -21,6 +25,8 @@ static void lay_out_generation(hf_arena *a, hf_population *p)
     p->crossover_rate = hf_arena_take(a, n, sizeof(double));
     p->mutation_rate = hf_arena_take(a, n, sizeof(double));
     p->parent = hf_arena_take(a, 2 * n, sizeof(int));
+    p->trial_status = hf_arena_take(a, n, sizeof(hf_status));
+    p->trial_psi_m = hf_arena_take(a, n, sizeof(double));
 }
 
 static void lay_out_both(hf_arena *a, hf_population *p, hf_population *next)
@@ -30,6 +36,7 @@ static void lay_out_both(hf_arena *a, hf_population *p, hf_population *next)
     p->lower_N = hf_arena_take(a, k, sizeof(double));
     p->upper_N = hf_arena_take(a, k, sizeof(double));
     p->best_psi_m = hf_arena_take(a, (size_t)p->generation_limit, sizeof(double));
+    p->least_violation = hf_arena_take(a, (size_t)p->generation_limit, sizeof(double));
     *next = *p;
     lay_out_generation(a, p);
     lay_out_generation(a, next);
@@ -116,28 +123,68 @@ void hf_population_advance(hf_population *population, hf_population *next)
     EXCHANGE(hf_form_result, result);
     EXCHANGE(unsigned char, pending);
     EXCHANGE(int, parent);
+    EXCHANGE(hf_status, trial_status);
+    EXCHANGE(double, trial_psi_m);
 #undef EXCHANGE
     population->generation++;
 }
 
 /* ---- ranking ---- */
 
-bool hf_population_is_better(const hf_population *population, int a, int b)
+double hf_population_violation(const hf_form_result *r)
 {
-    const hf_form_result *r = population->result;
-    bool a_ok = r[a].status == HF_OK, b_ok = r[b].status == HF_OK;
-    if (!a_ok || !b_ok) return a_ok > b_ok || (a_ok == b_ok && a < b);
-    if (r[a].psi_m != r[b].psi_m) return r[a].psi_m < r[b].psi_m;
-    return a < b;
+    if (r->status == HF_OK) return 0;
+    return r->status == HF_RATIO_CAP ? r->violation : INFINITY;
 }
 
+/* Below zero: result a is better than b. */
+static int compare(const hf_form_result *a, const hf_form_result *b)
+{
+    bool are_ok = a->status == HF_OK && b->status == HF_OK;
+    double x = are_ok ? a->psi_m : hf_population_violation(a), y = are_ok ? b->psi_m : hf_population_violation(b);
+    return (x > y) - (x < y);
+}
+
+bool hf_population_is_better(const hf_population *population, int a, int b)
+{
+    int order = compare(&population->result[a], &population->result[b]);
+    return order ? order < 0 : a < b;
+}
+
+void hf_population_note_trials(hf_population *population)
+{
+    for (int i = 0; i < population->n_individual; i++) {
+        population->trial_status[i] = population->result[i].status;
+        population->trial_psi_m[i] = population->result[i].psi_m;
+    }
+}
+
+void hf_population_take_over(const hf_population *before, hf_population *population, int i)
+{
+    size_t n = (size_t)population->n_gene;
+    memcpy(population->design_N + (size_t)i * n, before->design_N + (size_t)i * n, n * sizeof(double));
+    population->result[i] = before->result[i];
+    population->parent[2 * i] = i;
+    population->parent[2 * i + 1] = -1;
+}
+
+void hf_population_keep_better(const hf_population *before, hf_population *population)
+{
+    for (int i = 0; i < population->n_individual; i++)
+        if (!population->pending[i] || compare(&before->result[i], &population->result[i]) < 0)
+            hf_population_take_over(before, population, i);
+}
+
+/* Without a feasible design a run goes on as long as designs come nearer to the limits. */
 static hf_population_stop judge(const hf_optimize_settings *s, const hf_population *p)
 {
     int window = s->stagnation_generations, now = p->generation;
-    if (now >= window) {
-        if (isnan(p->best_psi_m[now])) return HF_POPULATION_ALL_INFEASIBLE;
-        if (p->best_psi_m[now - window] - p->best_psi_m[now] < s->stagnation_tolerance_m)
-            return HF_POPULATION_STAGNATION;
+    if (isinf(p->least_violation[now])) return HF_POPULATION_ALL_INFEASIBLE; /* not one has a shape */
+    if (now >= window && isnan(p->best_psi_m[now])) {
+        double then = p->least_violation[now - window];
+        if (!(then - p->least_violation[now] > VIOLATION_GAIN * then)) return HF_POPULATION_ALL_INFEASIBLE;
+    } else if (now >= window && p->best_psi_m[now - window] - p->best_psi_m[now] < s->stagnation_tolerance_m) {
+        return HF_POPULATION_STAGNATION;
     }
     if (now + 1 < p->generation_limit) return HF_POPULATION_RUNNING;
     return isnan(p->best_psi_m[now]) ? HF_POPULATION_ALL_INFEASIBLE : HF_POPULATION_GENERATIONS;
@@ -148,14 +195,17 @@ void hf_population_rank(const hf_optimize_settings *s, hf_population *population
     hf_population *p = population;
     double sum = 0;
     p->n_infeasible = 0;
+    p->least_violation[p->generation] = INFINITY;
     p->best = -1;
     p->worst_psi_m = p->mean_psi_m = (double)NAN;
     for (int i = 0; i < p->n_individual; i++) {
         const hf_form_result *r = &p->result[i];
         bool is_infeasible = r->status != HF_OK;
         p->n_evaluation += p->pending[i];
-        p->n_evaluation_infeasible += p->pending[i] && is_infeasible;
+        p->n_evaluation_infeasible += p->pending[i] && p->trial_status[i] != HF_OK;
+        p->n_evaluation_above_cap += p->pending[i] && p->trial_status[i] == HF_RATIO_CAP;
         p->n_infeasible += is_infeasible;
+        p->least_violation[p->generation] = fmin(p->least_violation[p->generation], hf_population_violation(r));
         if (is_infeasible) continue;
         sum += r->psi_m;
         p->worst_psi_m = fmax(p->worst_psi_m, r->psi_m);

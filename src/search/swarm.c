@@ -87,7 +87,7 @@ static bool settle(void *solver, int lane, int i_design)
     } else {
         hf_form_refuse(status, s->iterations[lane], r);
     }
-    hf_evaluate_judge(s->v, r);
+    hf_evaluate_judge(s->v, s->w, r);
     return true;
 }
 

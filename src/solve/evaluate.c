@@ -5,6 +5,7 @@
 #include "solve/coupling.h"
 #include "solve/equilibrium.h"
 #include "solve/loose.h"
+#include <hifdm/metrics.h>
 
 #include <math.h>
 
@@ -110,10 +111,42 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_works
         apply_rule(v, m->gene_cable[k], design_N[k], w);
 }
 
-hf_status hf_evaluate_judge(const hf_evaluator *v, hf_form_result *r)
+bool hf_evaluate_is_above_cap(const hf_evaluator *v, const hf_form_result *r)
 {
-    if (r->status == HF_OK && r->boundary_tension_ratio > v->boundary_ratio_cap) r->status = HF_RATIO_CAP;
-    if (r->status != HF_OK) r->psi_m = r->inner_tension_ratio = r->boundary_tension_ratio = (double)NAN;
+    return r->status == HF_OK && r->boundary_tension_ratio > v->boundary_ratio_cap;
+}
+
+/* By how much tensions would have to change for the cap, cable by cable: a smaller sum is nearer to the cap also where
+ * several cables share the largest or the smallest tension, so that no single one of them changes the ratio. */
+static double violation(const hf_evaluator *v, const hf_workspace *w)
+{
+    const hf_model *m = v->model;
+    double low = INFINITY, high = 0, sum = 0, cap = v->boundary_ratio_cap, slack_N = HF_SLACK_RATIO * m->reference_N;
+    for (int e = 0; e < m->n_cable; e++) {
+        if (m->group[e] != HF_GROUP_BOUNDARY) continue;
+        low = fmin(low, w->tension_N[e]);
+        high = fmax(high, w->tension_N[e]);
+    }
+    double least = sqrt(fmax(low, slack_N) * high / cap), most = cap * least;
+    for (int e = 0; e < m->n_cable; e++) {
+        double tension = w->tension_N[e];
+        if (m->group[e] != HF_GROUP_BOUNDARY) continue;
+        if (tension < least) sum += 1 - tension / least;
+        if (tension > most) sum += 1 - most / tension;
+    }
+    return sum;
+}
+
+hf_status hf_evaluate_judge(const hf_evaluator *v, const hf_workspace *w, hf_form_result *r)
+{
+    r->violation = r->status == HF_OK ? 0 : (double)NAN;
+    if (hf_evaluate_is_above_cap(v, r)) {
+        r->status = HF_RATIO_CAP;
+        r->violation = violation(v, w);
+    }
+    if (r->status != HF_OK) r->psi_m = (double)NAN;
+    if (r->status != HF_OK && r->status != HF_RATIO_CAP)
+        r->inner_tension_ratio = r->boundary_tension_ratio = (double)NAN;
     return r->status;
 }
 
@@ -125,5 +158,5 @@ hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspac
     hf_evaluate_prepare(v, design_N, w);
     find_net(&problem, w, NULL, r);
     hf_loose_refuse(v->model, v->form, w, r);
-    return hf_evaluate_judge(v, r);
+    return hf_evaluate_judge(v, w, r);
 }

@@ -32,10 +32,13 @@ enum {
     ROW_RESULT,
     ROW_STATUS = ROW_RESULT,
     ROW_PSI,
-    ROW_BREEDING = ROW_RESULT + HF_RESULT_N_INDIVIDUAL,
+    ROW_TRIAL_STATUS = ROW_RESULT + HF_RESULT_N_INDIVIDUAL,
+    ROW_TRIAL_PSI,
+    ROW_BREEDING,
     ROW_BEST_INDIVIDUAL = ROW_BREEDING + 3,
     ROW_BEST_PSI,
-    ROW_N = ROW_BEST_PSI + 4
+    ROW_VIOLATION,
+    ROW_N = ROW_VIOLATION + 4
 };
 _Static_assert(ROW_N == HF_GENERATIONS_PIECES, "count the rows again");
 
@@ -46,20 +49,31 @@ static int list_rows(const hf_population *now, ga_row row[HF_GENERATIONS_PIECES]
 #define SINGLE(value) &(value), 0, sizeof(value)
     const ga_row before[] = {
         {{"design_N", HF_KIND_REAL, 3, {1, p, k}, "N", "boundary pretension T' of each gene"}, ARRAY(design_N)},
-        {{"evaluated", HF_KIND_FLAG, 2, {1, p}, "", "FALSE = a copy whose result was known"}, ARRAY(pending)}};
+        {{"evaluated",
+          HF_KIND_FLAG,
+          2,
+          {1, p},
+          "",
+          "TRUE = a trial was evaluated for this place; FALSE: its result was known"},
+         ARRAY(pending)}};
     const ga_row behind[] = {
+        {{"trial_status", HF_KIND_STATUS, 2, {1, p}, "", "of what was proposed for this place"}, ARRAY(trial_status)},
+        {{"trial_psi_m", HF_KIND_REAL, 2, {1, p}, "m", "the same; kept when it was not worse"}, ARRAY(trial_psi_m)},
         {{"crossover_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(crossover_rate)},
         {{"mutation_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(mutation_rate)},
-        {{"parent", HF_KIND_INT, 3, {1, p, 2}, "", "individuals of the generation before, or -1"}, ARRAY(parent)},
+        {{"parent", HF_KIND_INT, 3, {1, p, 2}, "", "individuals of the generation before, or -1; i, -1: i was kept"},
+         ARRAY(parent)},
         {{"best_individual", HF_KIND_INT, 1, {1}, "", "-1 while none is feasible"}, SINGLE(now->best)},
         {{"best_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the generation"}, SINGLE(now->best_psi_m[now->generation])},
+        {{"least_violation", HF_KIND_REAL, 1, {1}, "", "0: a design is feasible; inf: none has a shape"},
+         SINGLE(now->least_violation[now->generation])},
         {{"mean_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(now->mean_psi_m)},
         {{"worst_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(now->worst_psi_m)},
         {{"n_infeasible", HF_KIND_INT, 1, {1}, "", "individuals whose status is not ok"}, SINGLE(now->n_infeasible)}};
 #undef ARRAY
 #undef SINGLE
     _Static_assert(sizeof before == ROW_RESULT * sizeof row[0], "rows before the results");
-    _Static_assert(sizeof behind == (ROW_N - ROW_BREEDING) * sizeof row[0], "rows behind the results");
+    _Static_assert(sizeof behind == (ROW_N - ROW_TRIAL_STATUS) * sizeof row[0], "rows behind the results");
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
     hf_result_list_individual(field);
     memcpy(row, before, sizeof before);
@@ -70,10 +84,12 @@ static int list_rows(const hf_population *now, ga_row row[HF_GENERATIONS_PIECES]
                                        sizeof *now->result,
                                        f->size};
     }
-    memcpy(row + ROW_BREEDING, behind, sizeof behind);
+    memcpy(row + ROW_TRIAL_STATUS, behind, sizeof behind);
     assert(!strcmp(row[ROW_STATUS].array.name, "status") && !strcmp(row[ROW_PSI].array.name, "psi_m") &&
            !strcmp(row[ROW_BEST_INDIVIDUAL].array.name, "best_individual") &&
-           !strcmp(row[ROW_BEST_PSI].array.name, "best_psi_m"));
+           !strcmp(row[ROW_BEST_PSI].array.name, "best_psi_m") &&
+           !strcmp(row[ROW_TRIAL_STATUS].array.name, "trial_status") &&
+           !strcmp(row[ROW_VIOLATION].array.name, "least_violation"));
     return ROW_N;
 }
 
@@ -82,9 +98,12 @@ static int list_arrays(const hf_generations *g, ga_row row[HF_GENERATIONS_PIECES
 {
     hf_form_result nothing = {0};
     double none = 0;
-    return list_rows(
-        &(hf_population){.n_individual = g->n_individual, .n_gene = g->n_gene, .result = &nothing, .best_psi_m = &none},
-        row);
+    const hf_population empty = {.n_individual = g->n_individual,
+                                 .n_gene = g->n_gene,
+                                 .result = &nothing,
+                                 .best_psi_m = &none,
+                                 .least_violation = &none};
+    return list_rows(&empty, row);
 }
 
 /* ---- memory ---- */
@@ -219,18 +238,24 @@ static void scatter(const ga_row *row, size_t bytes, const char *from)
     }
 }
 
-bool hf_generations_take_payload(const hf_generations *g, const void *payload, hf_population *population)
+bool hf_generations_take_payload(const hf_generations *g, const void *payload, const hf_population *before,
+                                 hf_population *population)
 {
     ga_row row[HF_GENERATIONS_PIECES];
     uint64_t hash;
     int n = list_rows(population, row);
     const char *from = payload;
     memcpy(&hash, from, sizeof hash);
-    if (hash != hash_designs(population)) return false;
     from += sizeof hash;
     for (int i = ROW_DESIGN + 1; i < n; from += g->row_bytes[i++])
         scatter(&row[i], g->row_bytes[i], from);
-    return true;
+    for (int i = 0; i < population->n_individual && before; i++) {
+        const double *kept = before->design_N + (size_t)i * (size_t)population->n_gene;
+        if (population->parent[2 * i] == i && population->parent[2 * i + 1] == -1)
+            memcpy(population->design_N + (size_t)i * (size_t)population->n_gene, kept,
+                   g->row_bytes[ROW_DESIGN] / (size_t)population->n_individual);
+    }
+    return hash == hash_designs(population);
 }
 
 /* Has every value of an enumeration a word? */
@@ -344,12 +369,12 @@ int hf_generations_count(hf_hdf5 *io, hf_generations *g)
 }
 
 /* Evaluations of the first n generations, from what was stored, a block of generations at a time. */
-static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g, int n, long *all, long *infeasible)
+static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g, int n, hf_population *to)
 {
     ga_row row[HF_GENERATIONS_PIECES];
     size_t p = (size_t)g->n_individual;
     list_arrays(g, row);
-    *all = *infeasible = 0;
+    to->n_evaluation = to->n_evaluation_infeasible = to->n_evaluation_above_cap = 0;
     char *block = malloc(2 * BLOCK * p);
     if (!block) {
         hf_hdf5_no_memory(io);
@@ -358,12 +383,13 @@ static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g,
     char *status = block + BLOCK * p;
     for (int first = 0; io->status == HF_OK && first < n; first += BLOCK) {
         int some = n - first < BLOCK ? n - first : BLOCK;
-        row[ROW_EVALUATED].array.dims[0] = row[ROW_STATUS].array.dims[0] = (hsize_t)some;
+        row[ROW_EVALUATED].array.dims[0] = row[ROW_TRIAL_STATUS].array.dims[0] = (hsize_t)some;
         hf_hdf5_read_rows(io, group, &row[ROW_EVALUATED].array, (hsize_t)first, block);
-        hf_hdf5_read_rows(io, group, &row[ROW_STATUS].array, (hsize_t)first, status);
+        hf_hdf5_read_rows(io, group, &row[ROW_TRIAL_STATUS].array, (hsize_t)first, status);
         for (size_t i = 0; io->status == HF_OK && i < (size_t)some * p; i++) {
-            *all += block[i] != 0;
-            *infeasible += block[i] != 0 && status[i] != HF_OK;
+            to->n_evaluation += block[i] != 0;
+            to->n_evaluation_infeasible += block[i] != 0 && status[i] != HF_OK;
+            to->n_evaluation_above_cap += block[i] != 0 && status[i] == HF_RATIO_CAP;
         }
     }
     free(block);
@@ -422,8 +448,10 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population 
     if (io->status == HF_OK && !hf_generations_are_sound(population))
         hf_hdf5_damaged(io, group, NULL, "has a last generation that no run stores");
     row[ROW_BEST_PSI].array.dims[0] = (hsize_t)g->n_stored;
+    row[ROW_VIOLATION].array.dims[0] = (hsize_t)g->n_stored;
     hf_hdf5_read_rows(io, group, &row[ROW_BEST_PSI].array, 0, population->best_psi_m);
-    count_evaluations(io, group, g, last, &population->n_evaluation, &population->n_evaluation_infeasible);
+    hf_hdf5_read_rows(io, group, &row[ROW_VIOLATION].array, 0, population->least_violation);
+    count_evaluations(io, group, g, last, population);
     hf_hdf5_close(io, group);
 }
 
@@ -444,7 +472,10 @@ void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
     row[ROW_BEST_PSI].array.dims[0] = (hsize_t)g->n_stored;
     hf_hdf5_read_rows(io, group, &row[ROW_BEST_PSI].array, 0, best_psi_m);
     if (io->status == HF_OK) note_best(io, group, row, best_psi_m, g->n_stored, s);
-    count_evaluations(io, group, g, g->n_stored, &s->evaluations, &s->infeasible);
+    hf_population sums;
+    count_evaluations(io, group, g, g->n_stored, &sums);
+    s->evaluations = sums.n_evaluation;
+    s->infeasible = sums.n_evaluation_infeasible;
     s->has_optimize = true;
     s->generations = g->n_stored;
     free(best_psi_m);

@@ -12,7 +12,7 @@
 #include <hifdm/summary.h>
 #include <sys/uio.h>
 
-#define HF_GENERATIONS_PIECES (10 + HF_RESULT_N_INDIVIDUAL) /* data sets, and pieces of a payload */
+#define HF_GENERATIONS_PIECES (13 + HF_RESULT_N_INDIVIDUAL) /* data sets, and pieces of a payload */
 
 typedef struct {
     int n_individual, n_gene;
@@ -42,9 +42,11 @@ bool hf_generations_are_due(const hf_generations *g);
  * hash. */
 void hf_generations_add(hf_generations *g, const hf_population *population, struct iovec *piece);
 
-/* Copy results and all else from a payload into `population`, whose designs were proposed again. False, and nothing is
- * changed, when these have other bits than those that the results are of. */
-bool hf_generations_take_payload(const hf_generations *g, const void *payload, hf_population *population);
+/* Copy results and all else from a payload into `population`, whose designs were proposed again; those that were kept
+ * come from the generation `before` (NULL: there is none). False when the designs have other bits than those that the
+ * results are of. */
+bool hf_generations_take_payload(const hf_generations *g, const void *payload, const hf_population *before,
+                                 hf_population *population);
 
 /* Are the sizes and the limit those of this population? A file may say anything. */
 bool hf_generations_are_of(const hf_generations *g, const hf_population *population);

@@ -167,7 +167,8 @@ static hf_status breed_record(void *context, int generation, const void *payload
         hf_optimiser_tell(o);
         goes_on = hf_optimiser_next(o);
     }
-    if (!goes_on || !hf_generations_take_payload(g, payload, &o->population)) {
+    const hf_population *earlier = generation > 0 ? &o->next : NULL;
+    if (!goes_on || !hf_generations_take_payload(g, payload, earlier, &o->population)) {
         *o = before;
         if (b->drops) return HF_DIFFERENT;
         return hf_error(s->f.io.messages, HF_EXISTS,
@@ -180,6 +181,7 @@ static hf_status breed_record(void *context, int generation, const void *payload
                         "%s: %s is damaged: generation %d is none that a run stores; --restart (of a sweep: --retry "
                         "failed) begins anew",
                         s->f.out.path, s->f.journal.path, generation);
+    o->is_fresh = false; /* the record is of a generation that was told */
     hf_generations_add(g, &o->population, NULL);
     b->n_taken++;
     if (hf_generations_are_full(g)) hf_generations_make_room(&s->f.io, g);
@@ -220,7 +222,10 @@ static hf_status restore(hf_store *s, hf_optimiser *optimiser, int drops, hf_sum
     if (!hf_generations_are_of(&s->rows, &optimiser->population))
         hf_hdf5_damaged(io, io->file, "/ga", "has other sizes than the case");
     read_known(io, summary);
-    if (s->rows.n_stored && io->status == HF_OK) hf_generations_restore(io, &s->rows, &optimiser->population);
+    if (s->rows.n_stored && io->status == HF_OK) {
+        hf_generations_restore(io, &s->rows, &optimiser->population);
+        optimiser->is_fresh = false;
+    }
     if (s->n_journal) breed_journal(s, optimiser, drops);
     hf_generations_sum_up(io, &s->rows, summary);
     return hf_hdf5_unlock(judge(io));

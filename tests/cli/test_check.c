@@ -94,7 +94,8 @@ START_TEST(schema_is_yaml_with_every_key)
         "set(a['optimize']) == {'method', 'symmetry', 'solver', 'polish_iterations', 'compare_lm', 'rule', "
         "'population', "
         "'generations', 'range_N', 'min_tension_N', 'max_tension_N', "
-        "'boundary_ratio_cap', 'seed', 'crossover_high', 'crossover_low', 'mutation_high', 'mutation_low', 'elites', "
+        "'boundary_ratio_cap', 'seed', 'crossover_high', 'crossover_low', 'mutation_high', 'mutation_low', "
+        "'variation', 'elites', "
         "'stagnation_tolerance_m', 'stagnation_generations'}",
         "set(a['truss']) == {'depth_m', 'main_every', 'E_Pa', 'G_Pa', 'density_kg_per_m3', 'expansion_per_K', "
         "'hinge_mass_kg', 'theory', 'joints', 'supports', 'support_dofs', 'match_tolerance_m', 'bud', 'mbug', 'abug', "

@@ -51,7 +51,7 @@ static void count_free(void *state)
     calls.n_free++;
 }
 
-static const hf_optimiser_kind counting = {count_create, propose_first, propose_next, count_free};
+static const hf_optimiser_kind counting = {count_create, propose_first, propose_next, NULL, count_free};
 
 START_TEST(generations_are_asked_for_and_told)
 {

@@ -24,6 +24,7 @@ static const hf_optimize_settings plain = {.population = N,
                                            .crossover_low = 0.6,
                                            .mutation_high = 0.1,
                                            .mutation_low = 0.001,
+                                           .variation = HF_VARIATION_CHAIN,
                                            .elites = 2,
                                            .stagnation_tolerance_m = 0,
                                            .stagnation_generations = 1000};
@@ -110,7 +111,7 @@ START_TEST(nothing_feasible_goes_on_looking)
 {
     hf_optimiser ga = create(&plain);
     for (int i = 0; i < N; i++)
-        ga.population.result[i] = (hf_form_result){.status = HF_SINGULAR, .psi_m = (double)NAN};
+        ga.population.result[i] = (hf_form_result){.status = HF_RATIO_CAP, .psi_m = (double)NAN, .violation = 1};
     hf_optimiser_tell(&ga);
     ck_assert_int_eq(ga.population.best, -1);
     ck_assert_double_nan(ga.population.best_psi_m[0]);
@@ -265,15 +266,119 @@ START_TEST(worst_individual_keeps_its_floor)
 }
 END_TEST
 
+/* ---- the variation `difference` ---- */
+
+static hf_optimize_settings by_difference(void)
+{
+    hf_optimize_settings s = plain;
+    s.variation = HF_VARIATION_DIFFERENCE;
+    s.elites = 1;
+    return s;
+}
+
+static double best_after(const hf_optimize_settings *s, int generations)
+{
+    hf_optimize_settings some = *s;
+    some.generations = generations;
+    hf_optimiser ga = create(&some);
+    do {
+        evaluate_pending(&ga);
+        hf_optimiser_tell(&ga);
+    } while (hf_optimiser_next(&ga));
+    double best = ga.population.best_psi_m[ga.population.generation];
+    hf_optimiser_free(&ga);
+    return best;
+}
+
+/* A child stands where it is not worse than what stood there; else that stays, bit for bit, and the trial is noted. */
+START_TEST(nobody_gives_way_to_a_worse_child)
+{
+    hf_optimize_settings s = by_difference();
+    hf_optimiser ga = create(&s);
+    const hf_population *p = &ga.population;
+    double before[N * N_GENE], trial[N];
+    hf_form_result was[N];
+    int n_kept = 0, n_new = 0;
+    evaluate_pending(&ga);
+    hf_optimiser_tell(&ga);
+    for (;;) {
+        memcpy(before, p->design_N, sizeof before);
+        memcpy(was, p->result, sizeof was);
+        if (!hf_optimiser_next(&ga)) break;
+        evaluate_pending(&ga);
+        for (int i = 0; i < N; i++) {
+            trial[i] = p->result[i].psi_m;
+            ck_assert_double_eq(p->result[i].psi_m, distance_m(p->design_N + i * N_GENE)); /* also where not pending */
+        }
+        hf_optimiser_tell(&ga);
+        for (int i = 0; i < N; i++) {
+            bool is_kept = p->parent[2 * i] == i && p->parent[2 * i + 1] == -1;
+            const double *design = p->design_N + i * N_GENE;
+            ck_assert_double_eq(p->trial_psi_m[i], trial[i]);
+            ck_assert_double_eq(p->result[i].psi_m, fmin(trial[i], was[i].psi_m));
+            ck_assert_int_eq(is_kept, !p->pending[i] || trial[i] > was[i].psi_m);
+            if (is_kept) ck_assert_mem_eq(design, before + i * N_GENE, N_GENE * sizeof *design);
+            for (int k = 0; k < N_GENE; k++)
+                ck_assert(design[k] >= p->lower_N[k] && design[k] <= p->upper_N[k]);
+            n_kept += is_kept;
+            n_new += !is_kept;
+        }
+    }
+    ck_assert_int_gt(n_kept, 100);
+    ck_assert_int_gt(n_new, 100);
+    hf_optimiser_free(&ga);
+}
+END_TEST
+
+/* Of genes that want unequal steps within their groups, which no step of whole groups gives. */
+START_TEST(difference_gets_nearer_than_chain)
+{
+    hf_optimize_settings chain = plain, difference = by_difference();
+    int n_nearer = 0;
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        chain.seed = difference.seed = seed;
+        n_nearer += best_after(&difference, 60) < 0.1 * best_after(&chain, 60);
+    }
+    ck_assert_int_ge(n_nearer, 15); /* measured 20 */
+}
+END_TEST
+
+/* Feasible is what lies within 0.05 of the point that is sought; the violation is how far the way there is. */
+START_TEST(a_population_outside_its_limits_finds_the_way_in)
+{
+    hf_optimize_settings s = by_difference();
+    s.stagnation_generations = 10;
+    hf_optimiser ga = create(&s);
+    hf_population *p = &ga.population;
+    double least = INFINITY;
+    do {
+        for (int i = 0; i < N; i++) {
+            double far_m = distance_m(p->design_N + i * N_GENE);
+            if (!p->pending[i]) continue;
+            p->result[i] = (hf_form_result){.status = HF_OK, .psi_m = 1 + far_m};
+            if (far_m > 0.05)
+                p->result[i] = (hf_form_result){.status = HF_RATIO_CAP, .psi_m = (double)NAN, .violation = far_m};
+        }
+        hf_optimiser_tell(&ga);
+        ck_assert_double_le(p->least_violation[p->generation], least);
+        least = p->least_violation[p->generation];
+    } while (hf_optimiser_next(&ga));
+    ck_assert_int_ge(p->best, 0);
+    ck_assert_double_eq(least, 0);
+    hf_optimiser_free(&ga);
+}
+END_TEST
+
 /* ---- stopping ---- */
 
-static hf_population_stop stop_after(const hf_optimize_settings *s, int feasible, int *generation)
+/* Of results that are all alike. */
+static hf_population_stop stop_after(const hf_optimize_settings *s, hf_status status, int *generation)
 {
     hf_optimiser ga = create(s);
     do {
         for (int i = 0; i < N; i++)
-            ga.population.result[i] =
-                (hf_form_result){.status = feasible ? HF_OK : HF_COLLAPSED, .psi_m = feasible ? 1 : (double)NAN};
+            ga.population.result[i] = (hf_form_result){
+                .status = status, .psi_m = status == HF_OK ? 1 : (double)NAN, .violation = status == HF_OK ? 0 : 2};
         hf_optimiser_tell(&ga);
     } while (hf_optimiser_next(&ga));
     *generation = ga.population.generation;
@@ -286,16 +391,18 @@ START_TEST(search_ends_for_a_reason)
 {
     hf_optimize_settings s = plain;
     int generation;
-    ck_assert_int_eq(stop_after(&s, 0, &generation), HF_POPULATION_ALL_INFEASIBLE);
+    ck_assert_int_eq(stop_after(&s, HF_COLLAPSED, &generation), HF_POPULATION_ALL_INFEASIBLE);
+    ck_assert_int_eq(generation, 0); /* the base and all around it have no shape */
+    ck_assert_int_eq(stop_after(&s, HF_RATIO_CAP, &generation), HF_POPULATION_ALL_INFEASIBLE);
     ck_assert_int_eq(generation, 59);
     s.stagnation_generations = 7;
-    ck_assert_int_eq(stop_after(&s, 0, &generation), HF_POPULATION_ALL_INFEASIBLE);
+    ck_assert_int_eq(stop_after(&s, HF_RATIO_CAP, &generation), HF_POPULATION_ALL_INFEASIBLE);
     ck_assert_int_eq(generation, 7);
     s.stagnation_tolerance_m = 1e-9;
-    ck_assert_int_eq(stop_after(&s, 1, &generation), HF_POPULATION_STAGNATION);
+    ck_assert_int_eq(stop_after(&s, HF_OK, &generation), HF_POPULATION_STAGNATION);
     ck_assert_int_eq(generation, 7); /* a window of 7 needs 7 generations behind it */
     s.generations = 5;
-    ck_assert_int_eq(stop_after(&s, 1, &generation), HF_POPULATION_GENERATIONS);
+    ck_assert_int_eq(stop_after(&s, HF_OK, &generation), HF_POPULATION_GENERATIONS);
     ck_assert_int_eq(generation, 4);
 }
 END_TEST
@@ -313,6 +420,9 @@ Suite *suite_unit_optimiser_ga(void)
     tcase_add_test(tests, mutations_go_both_ways);
     tcase_add_test(tests, better_individuals_have_more_children);
     tcase_add_test(tests, worst_individual_keeps_its_floor);
+    tcase_add_test(tests, nobody_gives_way_to_a_worse_child);
+    tcase_add_test(tests, difference_gets_nearer_than_chain);
+    tcase_add_test(tests, a_population_outside_its_limits_finds_the_way_in);
     tcase_add_test(tests, search_ends_for_a_reason);
     return suite;
 }

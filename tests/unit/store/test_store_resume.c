@@ -110,22 +110,22 @@ START_TEST(other_designs_are_told_apart)
     for (int i = 0; i < HF_GENERATIONS_PIECES; used += piece[i++].iov_len)
         memcpy(payload + used, piece[i].iov_base, piece[i].iov_len);
     ck_assert_uint_eq(used, g.payload_bytes);
-    ck_assert(hf_generations_take_payload(&g, payload, &r.ga.population));
+    ck_assert(hf_generations_take_payload(&g, payload, NULL, &r.ga.population));
     double *d = r.ga.population.design_N, one[N_GENE];
     for (int k = 0; k < N_INDIVIDUAL * N_GENE; k++) {
         int other = (k + 5) % (N_INDIVIDUAL * N_GENE);
         double a = d[k], b = d[other];
         d[k] = nextafter(a, 1e9);
-        ck_assert(!hf_generations_take_payload(&g, payload, &r.ga.population));
+        ck_assert(!hf_generations_take_payload(&g, payload, NULL, &r.ga.population));
         d[other] = nextafter(b, -1e9);
-        ck_assert(!hf_generations_take_payload(&g, payload, &r.ga.population));
+        ck_assert(!hf_generations_take_payload(&g, payload, NULL, &r.ga.population));
         d[k] = a;
         d[other] = b;
     }
     memcpy(one, d + N_GENE, sizeof one);
     memcpy(d + N_GENE, d + 2 * N_GENE, sizeof one);
     memcpy(d + 2 * N_GENE, one, sizeof one);
-    ck_assert(!hf_generations_take_payload(&g, payload, &r.ga.population));
+    ck_assert(!hf_generations_take_payload(&g, payload, NULL, &r.ga.population));
     hf_generations_free(&g);
     close_run(&r);
 }
