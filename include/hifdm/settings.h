@@ -94,7 +94,8 @@ typedef struct {
     double focal_length_m; /* 0 when no measures of the surface are asked for */
     double strip_width_m;  /* of the flat strips along y of which it consists; 0 = not known */
     hf_double_list frequencies_Hz;
-    hf_surface_kind kind; /* HF_SURFACE_AUTO in a case alone, until hf_config_surface has looked at the nodes */
+    double mesh_tension_N_per_m; /* of the mesh on the front net, in all directions; 0 = not known */
+    hf_surface_kind kind;        /* HF_SURFACE_AUTO in a case alone, until hf_config_surface has looked at the nodes */
 } hf_surface_settings;
 
 /* Room for the path of a case, a study or a table of a net or truss; a longer one is refused. */

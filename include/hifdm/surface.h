@@ -40,6 +40,8 @@ extern "C" {
     X(double, facet_fit_normal_rms_m, REAL, 7, "the same along the normal")                                            \
     X(double, facet_fit_focal_length_m, REAL, 7, "of that best fit")                                                   \
     X(double, facet_area_m2, REAL, 7, "of the facets, projected along z")                                              \
+    X(double, pillow_rms_m, REAL, 7, "of how far the mesh is from flat facets; NaN without a mesh tension")            \
+    X(double, mesh_pull_ratio, REAL, 7, "largest N l / T of cables between facets; above 1 facets have no errors")     \
     X(int, n_facet, INT, 7, "triangles and quadrilaterals of the net, seen along z")                                   \
     X(int, n_open_face, INT, 7, "faces left out: of more than four sides, or not convex")                              \
     X(double, ruze_limit_Hz, REAL, 6,                                                                                  \

@@ -68,6 +68,9 @@ const hf_field hf_field_table[] = {
      "of the wanted surface; default: that of a generated net"},
     {"surface.strip_width_m", HF_FIELD_DOUBLE, AT(surface.strip_width_m), HF_ABOVE_ZERO, 1e4, "", "m", NULL,
      "width of the flat strips along y, for the faceting error; default: a cell of parabolic_cylinder"},
+    {"surface.mesh_tension_N_per_m", HF_FIELD_DOUBLE, AT(surface.mesh_tension_N_per_m), 0, 1e6, "0", "N/m", NULL,
+     "of the mesh, in all directions: it bends the cables between two facets, and the facets are pillows; 0: they are "
+     "flat"},
     {"surface.frequencies_Hz", HF_FIELD_DOUBLE_LIST, AT(surface.frequencies_Hz), HF_ABOVE_ZERO, 1e15, "[]", "Hz", NULL,
      "up to 32, at which the loss of gain is told (Ruze)"},
 

@@ -264,10 +264,10 @@ static grid grid_of_facets(const grid *cables, const scratch *t)
     return g;
 }
 
-static hf_status write_facets(const hf_export_request *o, const char *path, const grid *cables,
+static hf_status write_facets(const hf_export_request *o, const char *path, const grid *cables, const hf_shape *found,
                               const hf_summary *summary, const scratch *t, hf_messages *messages)
 {
-    const hf_facet_shape shape = {cables->position_m};
+    const hf_facet_shape shape = {cables->position_m, cables->n_cell, cables->corner, found ? found->tension_N : NULL};
     if (hf_facet_map(&summary->surface, &t->facets, &shape, &t->facet_error) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", o->file);
     const grid g = grid_of_facets(cables, t);
@@ -284,7 +284,7 @@ static hf_status write_stage(const hf_export_request *o, int stage, const char *
     fill(scene, found, summary, t);
     const grid g = grid_of(scene, found, summary, t);
     hf_status status = write_grid(o, path, &g, messages);
-    if (status == HF_OK && t->facets.n_facet) status = write_facets(o, facets_path, &g, summary, t, messages);
+    if (status == HF_OK && t->facets.n_facet) status = write_facets(o, facets_path, &g, found, summary, t, messages);
     hf_shape_free(&shape);
     return status;
 }

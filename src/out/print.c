@@ -107,6 +107,7 @@ static void print_facets(const hf_surface_measures *m, FILE *f)
     if (isfinite(m->facet_fit_half_path_rms_m))
         fprintf(f, "; best fit (f %.4f m) %.4f mm, %.4f mm", m->facet_fit_focal_length_m,
                 m->facet_fit_half_path_rms_m * 1e3, m->facet_fit_normal_rms_m * 1e3);
+    if (isfinite(m->pillow_rms_m)) fprintf(f, "; pillow %.4f mm RMS", m->pillow_rms_m * 1e3);
     if (m->n_open_face) fprintf(f, "; %d face%s left out", m->n_open_face, m->n_open_face == 1 ? "" : "s");
     fputc('\n', f);
 }

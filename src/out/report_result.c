@@ -275,7 +275,7 @@ static hf_status map_facets(page *p)
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_facets(&arena, p)));
     p->facet_block = arena.block;
     for (int i = 0; i < HF_STAGE_NONE; i++) {
-        const hf_facet_shape shape = {p->shape[i].position_m};
+        const hf_facet_shape shape = {p->shape[i].position_m, p->scene.n_cable, p->scene.end, p->shape[i].tension_N};
         if (p->has_shape[i]) HF_TRY(hf_facet_map(&p->summary.surface, &p->facets, &shape, &p->facet_error[i]));
     }
     return HF_OK;

@@ -15,6 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define MESH_PULL_DOUBT 0.3 /* of N l / T: the figures of the facets are warned about */
+
 #define HISTORY_MAX 1000000 /* iterations whose history is kept */
 
 /* Everything a run owns. */
@@ -59,6 +61,13 @@ static hf_status measure_surface(const run *r, hf_stage stage, const hf_workspac
     if (hf_surface_measure(&p->surface, &p->facets, &p->model, w, &s->measures[stage]) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
     const hf_surface_fit *fit = &s->measures[stage].fit;
+    if (s->measures[stage].mesh_pull_ratio > MESH_PULL_DOUBT)
+        hf_warning(messages,
+                   "surface: in the shape of stage %s the mesh pulls on a cable with N l = %.3g of its tension; the "
+                   "pillow is of first order in that%s. Raise the tension of the cables, or lower "
+                   "surface.mesh_tension_N_per_m",
+                   hf_stage_word[stage], s->measures[stage].mesh_pull_ratio,
+                   s->measures[stage].mesh_pull_ratio > 1 ? ", and facets have no errors here" : "");
     if (!fit->converged)
         hf_warning(messages,
                    "surface: the best fit to the shape of stage %s did not converge in %d steps; it has no value",

@@ -3,8 +3,13 @@
 
 #include "base/arena.h"
 #include "net/wanted.h"
+#include "solve/facet_mesh.h"
 
 #include <math.h>
+#include <string.h>
+
+/* The pillow is of first order in N l / T. At 1 the mesh outweighs the cable, and the formula says nothing. */
+#define PULL_MOST 1.0
 
 /* ---- points of quadrature ---- */
 
@@ -17,18 +22,36 @@ static const double gauss_weight[N_GAUSS] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 /* Points of quadrature over all facets, those of a facet together: [3][n], and the roots of their weights, which are
  * projected area. */
 typedef struct {
-    int n;
+    int n, per_facet;
     double *position_m, *root_m;
-    double *error_m; /* [n] scratch of a map */
+    double *error_m;                 /* [n] scratch of a map */
+    double *sag_m;                   /* [n_facet][4] of the mesh */
+    double pull_ratio, pillow_rms_m; /* NaN without a mesh */
+    bool has_shape;                  /* false: a cable cannot hold the pull of the mesh */
 } points;
 
 static void lay_out(hf_arena *a, int n_facet, points *q)
 {
-    size_t n = (size_t)n_facet * N_POINT;
+    size_t n = (size_t)n_facet * (size_t)q->per_facet;
     q->n = (int)n;
+    q->sag_m = hf_arena_take(a, 4 * (size_t)n_facet, sizeof(double));
     q->position_m = hf_arena_take(a, 3 * n, sizeof(double));
     q->root_m = hf_arena_take(a, n, sizeof(double));
     q->error_m = hf_arena_take(a, n, sizeof(double));
+}
+
+/* A point of a facet, and projected area per du dv there. Lifting it does not change the area to first order. */
+static double point_at(const hf_facet_mesh *m, double u, double v, double lift_m, double p[3])
+{
+    double du[3], dv[3];
+    for (int d = 0; d < 3; d++) {
+        double near = m->corner[0][d] + u * (m->corner[1][d] - m->corner[0][d]);
+        double far = m->corner[3][d] + u * (m->corner[2][d] - m->corner[3][d]);
+        p[d] = near + v * (far - near) + lift_m * m->normal[d];
+        du[d] = (1 - v) * (m->corner[1][d] - m->corner[0][d]) + v * (m->corner[2][d] - m->corner[3][d]);
+        dv[d] = far - near;
+    }
+    return fabs(du[0] * dv[1] - du[1] * dv[0]);
 }
 
 /* The bilinear surface through four corners in space; through three of them, the last twice, it is their triangle. The
@@ -36,26 +59,53 @@ static void lay_out(hf_arena *a, int n_facet, points *q)
  * for it. */
 static void put_facet(const hf_facets *f, int i, const hf_facet_shape *shape, points *q)
 {
-    const double *c[4];
-    for (int k = 0; k < 4; k++)
-        c[k] = shape->position_m + 3 * (size_t)f->corner[4 * (size_t)i + (size_t)k];
+    hf_facet_mesh flat;
+    hf_facet_mesh_take(f, i, shape->position_m, &flat);
     for (int k = 0; k < N_POINT; k++) {
-        double u = gauss_at[k % N_GAUSS], v = gauss_at[k / N_GAUSS], du[3], dv[3];
+        double p[3], area_m2 = point_at(&flat, gauss_at[k % N_GAUSS], gauss_at[k / N_GAUSS], 0, p);
         size_t at = (size_t)i * N_POINT + (size_t)k;
-        for (int d = 0; d < 3; d++) {
-            double near = c[0][d] + u * (c[1][d] - c[0][d]), far = c[3][d] + u * (c[2][d] - c[3][d]);
-            q->position_m[(size_t)d * (size_t)q->n + at] = near + v * (far - near);
-            du[d] = (1 - v) * (c[1][d] - c[0][d]) + v * (c[2][d] - c[3][d]);
-            dv[d] = far - near;
-        }
-        double area_m2 = fabs(du[0] * dv[1] - du[1] * dv[0]);
+        for (int d = 0; d < 3; d++)
+            q->position_m[(size_t)d * (size_t)q->n + at] = p[d];
         q->root_m[at] = sqrt(area_m2 * gauss_weight[k % N_GAUSS] * gauss_weight[k / N_GAUSS]);
     }
 }
 
-static hf_status take_points(const hf_facets *f, const hf_facet_shape *shape, hf_arena *arena, points *q)
+/* The facets under their mesh. Where a cable cannot hold its pull there is no shape, and lifts are NaN. */
+static hf_status put_meshes(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape *shape, points *q)
 {
+    double square = 0, all = 0;
+    HF_TRY(hf_facet_mesh_sags(mesh_N_per_m, f, shape, q->sag_m, &q->pull_ratio));
+    q->has_shape = q->pull_ratio <= PULL_MOST;
+    for (int i = 0, at = 0; i < f->n_facet; i++) {
+        hf_facet_mesh m;
+        hf_facet_mesh_take(f, i, shape->position_m, &m);
+        memcpy(m.sag_m, q->sag_m + 4 * (size_t)i, sizeof m.sag_m);
+        hf_facet_mesh_settle(&m);
+        for (int k = 0; k < q->per_facet; k++, at++) {
+            int a = k % HF_FACET_N_GAUSS, b = k / HF_FACET_N_GAUSS;
+            double u = hf_facet_gauss_at[a], v = hf_facet_gauss_at[b], p[3];
+            double lift_m = q->has_shape ? hf_facet_mesh_lift_m(&m, u, v) : (double)NAN;
+            double area_m2 = point_at(&m, u, v, lift_m, p) * hf_facet_gauss_weight[a] * hf_facet_gauss_weight[b];
+            for (int d = 0; d < 3; d++)
+                q->position_m[(size_t)d * (size_t)q->n + (size_t)at] = p[d];
+            q->root_m[at] = sqrt(area_m2);
+            square += area_m2 * lift_m * lift_m;
+            all += area_m2;
+        }
+    }
+    q->pillow_rms_m = sqrt(square / all);
+    return HF_OK;
+}
+
+static hf_status take_points(const hf_surface_settings *s, const hf_facets *f, const hf_facet_shape *shape,
+                             hf_arena *arena, points *q)
+{
+    bool has_mesh = s->mesh_tension_N_per_m > 0 && shape->tension_N;
+    *q = (points){.per_facet = has_mesh ? HF_FACET_N_GAUSS * HF_FACET_N_GAUSS : N_POINT};
+    q->pull_ratio = q->pillow_rms_m = (double)NAN;
+    q->has_shape = true;
     HF_TRY(HF_ARENA_MAKE(arena, lay_out(arena, f->n_facet, q)));
+    if (has_mesh) return put_meshes(s->mesh_tension_N_per_m, f, shape, q);
     for (int i = 0; i < f->n_facet; i++)
         put_facet(f, i, shape, q);
     return HF_OK;
@@ -97,10 +147,17 @@ hf_status hf_facet_measure(const hf_surface_settings *s, const hf_facets *f, con
     to->facet_area_m2 = 0;
     to->facet_normal_rms_m = to->facet_half_path_rms_m = to->facet_fit_focal_length_m = (double)NAN;
     to->facet_fit_normal_rms_m = to->facet_fit_half_path_rms_m = (double)NAN;
+    to->pillow_rms_m = to->mesh_pull_ratio = (double)NAN;
     if (f->n_facet == 0) return HF_OK;
-    HF_TRY(take_points(f, shape, &arena, &q));
+    hf_status status = take_points(s, f, shape, &arena, &q);
+    to->mesh_pull_ratio = q.pull_ratio;
+    to->pillow_rms_m = q.pillow_rms_m;
+    if (status != HF_OK || !q.has_shape) {
+        hf_arena_free(&arena);
+        return status;
+    }
     sum_up(s, &q, to);
-    hf_status status = hf_surface_fit_points(s->kind, s->focal_length_m, q.n, q.position_m, q.root_m, &fit);
+    status = hf_surface_fit_points(s->kind, s->focal_length_m, q.n, q.position_m, q.root_m, &fit);
     hf_arena_free(&arena);
     if (status != HF_OK) return status;
     to->facet_fit_half_path_rms_m = fit.half_path_rms_m;
@@ -116,7 +173,7 @@ static void average(const points *q, int n_facet, double *mean_m, double *rms_m)
 {
     for (int i = 0; i < n_facet; i++) {
         double area = 0, sum = 0, square = 0;
-        for (int k = i * N_POINT; k < (i + 1) * N_POINT; k++) {
+        for (int k = i * q->per_facet; k < (i + 1) * q->per_facet; k++) {
             double weight = q->root_m[k] * q->root_m[k], e = q->error_m[k];
             area += weight;
             sum += weight * e;
@@ -134,14 +191,18 @@ hf_status hf_facet_map(const hf_surface_settings *s, const hf_facets *f, const h
     hf_surface_fit fit;
     hf_arena arena = {0};
     if (f->n_facet == 0) return HF_OK;
-    HF_TRY(take_points(f, shape, &arena, &q));
-    for (int i = 0; i < q.n; i++) {
+    hf_status status = take_points(s, f, shape, &arena, &q);
+    for (int i = 0; i < q.n && status == HF_OK; i++) {
         double weight, dz = height_of(s, &q, i, &weight);
         q.error_m[i] = dz * sqrt(weight);
     }
-    average(&q, f->n_facet, to->normal_mean_m, to->normal_rms_m);
-    hf_status status = hf_surface_fit_points(s->kind, s->focal_length_m, q.n, q.position_m, q.root_m, &fit);
     if (status == HF_OK) {
+        average(&q, f->n_facet, to->normal_mean_m, to->normal_rms_m);
+        average(&q, f->n_facet, to->fit_normal_mean_m, to->fit_normal_rms_m); /* NaN, as it stays without a shape */
+    }
+    if (status == HF_OK && q.has_shape)
+        status = hf_surface_fit_points(s->kind, s->focal_length_m, q.n, q.position_m, q.root_m, &fit);
+    if (status == HF_OK && q.has_shape) {
         hf_surface_fit_errors(s->kind, &fit, q.n, q.position_m, q.error_m);
         average(&q, f->n_facet, to->fit_normal_mean_m, to->fit_normal_rms_m);
     }

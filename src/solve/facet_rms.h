@@ -9,6 +9,9 @@
 /* A found shape in the order of the scene; borrowed. */
 typedef struct {
     const double *position_m; /* [n_node][3] */
+    int n_cable;
+    const int *end;          /* [n_cable][2] */
+    const double *tension_N; /* [n_cable]; NULL, as of the theoretical shape: facets are flat, whatever the mesh */
 } hf_facet_shape;
 
 /* Set the members facet_... and n_facet, n_open_face of `to`, but for losses of gain; NaN without a facet. HF_OK or

@@ -91,12 +91,16 @@ static hf_status measure_facets(const hf_surface_settings *s, const hf_facets *f
                                 const hf_workspace *w, hf_surface_measures *to)
 {
     double *position_m;
+    int *end;
     hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, position_m = hf_arena_take(&arena, 3 * (size_t)m->n_node, sizeof(double))));
+    HF_TRY(HF_ARENA_MAKE(&arena, (position_m = hf_arena_take(&arena, 3 * (size_t)m->n_node, sizeof(double)),
+                                  end = hf_arena_take(&arena, 2 * (size_t)m->n_cable, sizeof(int)))));
+    for (int k = 0; k < 2 * m->n_cable; k++)
+        end[k] = m->node_of_row[m->end_row[k]];
     for (int row = 0; row < m->n_node; row++)
         for (int c = 0; c < 3; c++)
             position_m[3 * (size_t)m->node_of_row[row] + (size_t)c] = w->position_m[c * m->n_node + row];
-    const hf_facet_shape shape = {position_m};
+    const hf_facet_shape shape = {position_m, m->n_cable, end, w->tension_N};
     hf_status status = hf_facet_measure(s, facets, &shape, to);
     hf_arena_free(&arena);
     return status;

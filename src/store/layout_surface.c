@@ -12,7 +12,9 @@ static const hf_hdf5_member measures_table[] = {HF_SURFACE_LIST(MEASURE) HF_SURF
 static const hf_hdf5_member settings_table[] = {
     {"/surface", "kind", HF_KIND_SURFACE, offsetof(hf_surface_settings, kind), sizeof(hf_surface_kind)},
     {"/surface", "focal_length_m", HF_KIND_REAL, offsetof(hf_surface_settings, focal_length_m), sizeof(double)},
-    {"/surface", "strip_width_m", HF_KIND_REAL, offsetof(hf_surface_settings, strip_width_m), sizeof(double)}};
+    {"/surface", "strip_width_m", HF_KIND_REAL, offsetof(hf_surface_settings, strip_width_m), sizeof(double)},
+    {"/surface", "mesh_tension_N_per_m", HF_KIND_REAL, offsetof(hf_surface_settings, mesh_tension_N_per_m),
+     sizeof(double)}};
 
 static const char *const stage_group[3] = {"/surface/form", "/surface/optimize", "/surface/polish"};
 

@@ -76,13 +76,18 @@ def check_facets(result, path, stage, read):
     points, cells, point, cell = read(path)
     same("points", points, (result[stage] if stage else result["scene/node"])["position_m"][:])
     cables = {frozenset(e) for e in result["scene/cable/end"][:].tolist()}
-    assert all(frozenset((c[k - 1], c[k])) in cables for c in cells for k in range(len(c)))
+    supports = set(np.flatnonzero(result["scene/node/role"][:] == 0))
+    assert all(frozenset((c[k - 1], c[k])) in cables or {c[k - 1], c[k]} <= supports  # at a rim without cables
+               for c in cells for k in range(len(c)))
     settings = result["surface"].attrs
+    is_flat = not settings["mesh_tension_N_per_m"] > 0
     area = np.zeros(len(cells))
     for i, corners in enumerate(cells):
         e, w = errors(points, corners, settings["kind"], settings["focal_length_m"])
         area[i] = w.sum()
         mean, rms = (e * w).sum() / area[i], np.sqrt((e * e * w).sum() / area[i])
+        if stage and not is_flat:
+            continue  # tests/verify/mesh_oracle.py
         assert abs(cell["normal_mean_m"][i] - mean) <= 1e-9 * rms and abs(cell["normal_rms_m"][i] - rms) <= 1e-9 * rms
     if not stage:
         return

@@ -291,6 +291,8 @@ function writeSummary() {
     ["half-path RMS of the facets, best fit", "mm", "facet_fit_half_path_rms_m", mm],
     ["RMS of the facets along the normal", "mm", "facet_normal_rms_m", mm],
     ["RMS of the facets along the normal, best fit", "mm", "facet_fit_normal_rms_m", mm],
+    ["pillow, RMS", "mm", "pillow_rms_m", mm],
+    ["largest pull of the mesh, N l / T", "", "mesh_pull_ratio", (v) => fmt(v, 3)],
     ["facets", "", "n_facet", fmtCount],
     ["faceting error of flat strips", "mm", "faceting_rms_m", mm],
     ["half of the deviations are below", "mm", "deviation_p50_m", mm],

@@ -144,7 +144,7 @@ START_TEST(surface_comes_back_bit_by_bit)
     struct rng rng = rng_start(50 + (uint64_t)_i);
     struct net net;
     hf_messages messages = {0};
-    hf_summary read, written = {.surface = {7.2, 0.25, {n, {0}}, (hf_surface_kind)(_i % 3)}};
+    hf_summary read, written = {.surface = {7.2, 0.25, {n, {0}}, 3.5, (hf_surface_kind)(_i % 3)}};
     open_bow(&net);
     for (int k = 0; k < n; k++)
         written.surface.frequencies_Hz.value[k] = rng_uniform(&rng, 1e8, 1e11);

@@ -1,0 +1,242 @@
+/* Contents: facets - sides - the mesh of a facet */
+#include "solve/facet_mesh.h"
+
+#include "base/arena.h"
+#include "linalg/dense.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { N_SIDE = 4, N_BASIS = N_SIDE + HF_FACET_N_BUBBLE };
+
+const double hf_facet_gauss_at[HF_FACET_N_GAUSS] = {0.046910077030668004, 0.23076534494715845, 0.5, 0.76923465505284155,
+                                                    0.953089922969332};
+const double hf_facet_gauss_weight[HF_FACET_N_GAUSS] = {0.11846344252809454, 0.23931433524968324, 64.0 / 225,
+                                                        0.23931433524968324, 0.11846344252809454};
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double to[3])
+{
+    to[0] = a[1] * b[2] - a[2] * b[1];
+    to[1] = a[2] * b[0] - a[0] * b[2];
+    to[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* to = b - a, scaled to length 1; returns the length. */
+static double direction(const double *a, const double *b, double to[3])
+{
+    for (int d = 0; d < 3; d++)
+        to[d] = b[d] - a[d];
+    double length = sqrt(dot(to, to));
+    for (int d = 0; d < 3; d++)
+        to[d] /= length;
+    return length;
+}
+
+/* ---- facets ---- */
+
+void hf_facet_mesh_take(const hf_facets *f, int i, const double *position_m, hf_facet_mesh *m)
+{
+    static const double origin[3] = {0};
+    double one[3], other[3];
+    const int *corner = f->corner + 4 * (size_t)i;
+    *m = (hf_facet_mesh){.is_triangle = corner[2] == corner[3]};
+    for (int k = 0; k < 4; k++)
+        m->corner[k] = position_m + 3 * (size_t)corner[k];
+    for (int d = 0; d < 3; d++) { /* the diagonals; of a triangle two sides */
+        one[d] = m->corner[2][d] - m->corner[0][d];
+        other[d] = m->corner[3][d] - m->corner[1][d];
+    }
+    cross(one, other, m->normal);
+    direction(origin, (double[3]){m->normal[0], m->normal[1], m->normal[2]}, m->normal);
+}
+
+/* ---- sides ---- */
+
+/* A side of a facet, 4 i + k, or a cable, -1 - e, by its nodes, the lower one first. */
+typedef struct {
+    int low, high, of;
+} side;
+
+static int by_nodes(const void *a, const void *b)
+{
+    const side *p = a, *q = b;
+    if (p->low != q->low) return p->low < q->low ? -1 : 1;
+    if (p->high != q->high) return p->high < q->high ? -1 : 1;
+    return p->of < q->of ? -1 : p->of > q->of;
+}
+
+static side side_of(int i, int j, int of)
+{
+    return (side){i < j ? i : j, i < j ? j : i, of};
+}
+
+static int collect(const hf_facets *f, const hf_facet_shape *shape, side *all)
+{
+    int n = 0;
+    for (int e = 0; e < shape->n_cable; e++)
+        all[n++] = side_of(shape->end[2 * e], shape->end[2 * e + 1], -1 - e);
+    for (int i = 0; i < 4 * f->n_facet; i++) {
+        int a = f->corner[i], b = f->corner[i % 4 == 3 ? i - 3 : i + 1];
+        if (a != b) all[n++] = side_of(a, b, i);
+    }
+    qsort(all, (size_t)n, sizeof *all, by_nodes);
+    return n;
+}
+
+/* The mesh of each facet pulls on its side with N across it, in its own plane. Two facets in one plane balance each
+ * other; at an angle what is left bends the cable into an arc of height F l^2 / (8 T). Returns N l / T. */
+static double bend(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape *shape, double tension_N,
+                   const side pair[2], double *sag_m)
+{
+    double normal[2][3], pull[3] = {0}, length = 0;
+    for (int c = 0; c < 2; c++) {
+        hf_facet_mesh m;
+        double along[3], inward[3];
+        int k = pair[c].of % 4;
+        hf_facet_mesh_take(f, pair[c].of / 4, shape->position_m, &m);
+        length = direction(m.corner[k], m.corner[(k + 1) % 4], along);
+        cross(m.normal, along, inward);
+        memcpy(normal[c], m.normal, sizeof m.normal);
+        for (int d = 0; d < 3; d++)
+            pull[d] += mesh_N_per_m * inward[d];
+    }
+    if (!(tension_N > 0)) return INFINITY;
+    for (int c = 0; c < 2; c++)
+        sag_m[pair[c].of] = dot(pull, normal[c]) * length * length / (8 * tension_N);
+    return mesh_N_per_m * length / tension_N;
+}
+
+hf_status hf_facet_mesh_sags(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape *shape, double *sag_m,
+                             double *pull_ratio)
+{
+    side *all;
+    hf_arena arena = {0};
+    size_t most = (size_t)shape->n_cable + 4 * (size_t)f->n_facet;
+    HF_TRY(HF_ARENA_MAKE(&arena, all = hf_arena_take(&arena, most, sizeof *all)));
+    int n = collect(f, shape, all);
+    memset(sag_m, 0, 4 * (size_t)f->n_facet * sizeof *sag_m);
+    *pull_ratio = 0;
+    for (int from = 0, to; from < n; from = to) { /* all between the same two nodes; cables come first */
+        double tension_N = 0;
+        int first = from;
+        for (to = from; to < n && all[to].low == all[from].low && all[to].high == all[from].high; to++)
+            if (all[to].of < 0) {
+                tension_N += shape->tension_N[-1 - all[to].of];
+                first = to + 1;
+            }
+        if (to - first == 2)
+            *pull_ratio = fmax(*pull_ratio, bend(mesh_N_per_m, f, shape, tension_N, all + first, sag_m));
+    }
+    hf_arena_free(&arena);
+    return HF_OK;
+}
+
+/* ---- the mesh of a facet ---- */
+
+/* A function of u and v, and its derivatives. */
+typedef struct {
+    double value, by_u, by_v;
+} jet;
+
+static jet times(jet a, jet b)
+{
+    return (jet){a.value * b.value, a.by_u * b.value + a.value * b.by_u, a.by_v * b.value + a.value * b.by_v};
+}
+
+static jet less(jet a, jet b)
+{
+    return (jet){a.value - b.value, a.by_u - b.by_u, a.by_v - b.by_v};
+}
+
+static jet scaled(double s, jet a)
+{
+    return (jet){s * a.value, s * a.by_u, s * a.by_v};
+}
+
+/* Arcs of height 1 along the sides, then functions that vanish at all sides: the product of the distances from them,
+ * times the polynomials to the second power. */
+static void evaluate_basis(bool is_triangle, double u, double v, jet to[N_BASIS])
+{
+    const jet one = {1, 0, 0}, U = {u, 1, 0}, V = {v, 0, 1}, U1 = less(one, U), V1 = less(one, V);
+    const jet a = times(U1, V1), b = times(U, V1); /* of a triangle, with V: the barycentric coordinates */
+    jet bubble = is_triangle ? times(times(a, b), V) : times(times(U, U1), times(V, V1));
+    jet s = is_triangle ? less(b, a) : less(U, U1), t = is_triangle ? less(V, a) : less(V, V1);
+    to[0] = scaled(4, is_triangle ? times(a, b) : times(times(U, U1), V1));
+    to[1] = scaled(4, times(times(V, V1), U));
+    to[2] = scaled(is_triangle ? 0 : 4, times(times(U, U1), V));
+    to[3] = scaled(4, times(times(V, V1), U1));
+    const jet factor[HF_FACET_N_BUBBLE] = {one, s, t, times(s, s), times(s, t), times(t, t)};
+    for (int k = 0; k < HF_FACET_N_BUBBLE; k++)
+        to[N_SIDE + k] = times(bubble, factor[k]);
+}
+
+/* The metric of the facet's plane at u, v: gradients a and b of two functions have the product (g[0] a_u b_u + g[1]
+ * (a_u b_v + a_v b_u) + g[2] a_v b_v), times the element of area. `base`: height of the bilinear surface over it. */
+static void measure_at(const hf_facet_mesh *m, double u, double v, double g[3], jet *base)
+{
+    double du[3], dv[3], rise[3];
+    for (int d = 0; d < 3; d++) {
+        double near = m->corner[1][d] - m->corner[0][d], far = m->corner[2][d] - m->corner[3][d];
+        du[d] = (1 - v) * near + v * far;
+        dv[d] = (1 - u) * (m->corner[3][d] - m->corner[0][d]) + u * (m->corner[2][d] - m->corner[1][d]);
+        rise[d] = 0;
+    }
+    *base = (jet){0, dot(du, m->normal), dot(dv, m->normal)};
+    for (int d = 0; d < 3; d++) {
+        du[d] -= base->by_u * m->normal[d];
+        dv[d] -= base->by_v * m->normal[d];
+    }
+    cross(du, dv, rise);
+    double area = fabs(dot(rise, m->normal));
+    g[0] = dot(dv, dv) / area;
+    g[1] = -dot(du, dv) / area;
+    g[2] = dot(du, du) / area;
+}
+
+static double product(const double g[3], jet a, jet b)
+{
+    return g[0] * a.by_u * b.by_u + g[1] * (a.by_u * b.by_v + a.by_v * b.by_u) + g[2] * a.by_v * b.by_v;
+}
+
+void hf_facet_mesh_settle(hf_facet_mesh *m)
+{
+    double matrix[HF_FACET_N_BUBBLE * HF_FACET_N_BUBBLE] = {0}, right[HF_FACET_N_BUBBLE] = {0};
+    int pivot[HF_FACET_N_BUBBLE];
+    for (int k = 0; k < HF_FACET_N_GAUSS * HF_FACET_N_GAUSS; k++) {
+        int i = k % HF_FACET_N_GAUSS, j = k / HF_FACET_N_GAUSS;
+        double g[3], weight = hf_facet_gauss_weight[i] * hf_facet_gauss_weight[j];
+        jet basis[N_BASIS], height;
+        measure_at(m, hf_facet_gauss_at[i], hf_facet_gauss_at[j], g, &height);
+        evaluate_basis(m->is_triangle, hf_facet_gauss_at[i], hf_facet_gauss_at[j], basis);
+        for (int s = 0; s < N_SIDE; s++) {
+            height.by_u += m->sag_m[s] * basis[s].by_u;
+            height.by_v += m->sag_m[s] * basis[s].by_v;
+        }
+        for (int a = 0; a < HF_FACET_N_BUBBLE; a++) {
+            right[a] -= weight * product(g, basis[N_SIDE + a], height);
+            for (int b = 0; b < HF_FACET_N_BUBBLE; b++)
+                matrix[HF_FACET_N_BUBBLE * b + a] += weight * product(g, basis[N_SIDE + a], basis[N_SIDE + b]);
+        }
+    }
+    if (hf_dense_factor(HF_FACET_N_BUBBLE, matrix, pivot) != 0) return; /* a facet without an area has no mesh */
+    hf_dense_solve(HF_FACET_N_BUBBLE, matrix, pivot, 1, right);
+    memcpy(m->bubble_m, right, sizeof right);
+}
+
+double hf_facet_mesh_lift_m(const hf_facet_mesh *m, double u, double v)
+{
+    jet basis[N_BASIS];
+    double sum = 0;
+    evaluate_basis(m->is_triangle, u, v, basis);
+    for (int s = 0; s < N_SIDE; s++)
+        sum += m->sag_m[s] * basis[s].value;
+    for (int k = 0; k < HF_FACET_N_BUBBLE; k++)
+        sum += m->bubble_m[k] * basis[N_SIDE + k].value;
+    return sum;
+}
