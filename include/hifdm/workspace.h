@@ -87,6 +87,7 @@ typedef struct {
     void *block;
     /* Rows that Newton's matrix moves: n_free, or the attachments as well, when net and truss are solved together. */
     int n_moving;
+    bool starts_near;                  /* q_N_per_m is that of a shape on other supports */
     int n_joint_step;                  /* steps with the attachments, since they move */
     hf_history *history;               /* of the form-finding that runs, or NULL */
     const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 makes hf_form_find return HF_INTERRUPTED */

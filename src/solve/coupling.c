@@ -280,6 +280,7 @@ static hf_status status_alone(const hf_model *m, hf_net_solver *solve, const voi
 {
     hf_form_result alone;
     w->n_moving = m->n_free;
+    w->starts_near = false;
     memset(w->displacement_m, 0, (size_t)dofs(m) * sizeof(double));
     memcpy(w->q_N_per_m, w->coupling_q_N_per_m, (size_t)m->n_cable * sizeof(double));
     return solve(context, w, NULL, &alone);
@@ -316,11 +317,13 @@ hf_status hf_coupling_find_either_way(const hf_model *m, const hf_coupling_setti
     bool is_over = status == HF_NOT_CONVERGED && r->coupling.stop_reason == HF_COUPLING_NET; /* out of iterations */
     if (status == HF_OK || status == HF_INTERRUPTED || is_over) return status;
     int n_round = r->coupling.iterations, n_step = r->iterations;
+    w->starts_near = n_round > 1;    /* coupling_q_N_per_m is that of a shape */
     if (!(r->coupling.ratio <= 1)) { /* the loop has led away, or nowhere */
         memcpy(w->q_N_per_m, w->coupling_q_N_per_m, (size_t)m->n_cable * sizeof(double));
         memset(w->displacement_m, 0, (size_t)dofs(m) * sizeof(double));
     }
     hf_coupling_find_at_once(m, s, solve, context, w, history, r);
+    w->starts_near = false;
     r->iterations += n_step;
     r->coupling.iterations += n_round;
     return r->status;

@@ -118,8 +118,8 @@ hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_w
 {
     w->history = history;
     /* first force densities of elastic cables can be decades away */
-    bool is_over = !m->EA_N && try_near(m, s, w, history, r);
-    if (!is_over) find_on_path(m, s, m->EA_N ? 0 : r->iterations, w, history, r);
+    bool has_start = !m->EA_N || w->starts_near, is_over = has_start && try_near(m, s, w, history, r);
+    if (!is_over) find_on_path(m, s, has_start ? r->iterations : 0, w, history, r);
     w->history = NULL;
     return r->status;
 }
