@@ -247,7 +247,9 @@ static hf_status solve_dual(programme *p, bool is_bounded, double *largest_N)
         double part = take_step(p, is_bounded, value, largest_N);
         value = set_tensions(p, p->multiplier, is_bounded);
         bool is_same = !memcmp(p->is_least, p->was_least, (size_t)p->m->n_cable * sizeof(bool));
-        if (is_same && part == 1 && !(*largest_N < before_N / 2)) break;
+        /* where rounding is all that is left, a step that is cut short leads no nearer either */
+        bool is_as_near = part == 1 || *largest_N <= HELD * p->reference_N;
+        if (is_same && is_as_near && !(*largest_N < before_N / 2)) break;
     }
     return HF_OK;
 }
