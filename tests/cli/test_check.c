@@ -88,7 +88,8 @@ START_TEST(schema_is_yaml_with_every_key)
         "'edge_tie_m', 'rear_distance_m', 'rear_focal_length_m', 'tie_direction', 'tie_law', 'tie_tension_N'}",
         "set(a['scene']['paraboloid']) == {'aperture_m', 'focal_length_m', 'offset_m', 'rings', 'grid', 'spacing', "
         "'rear_distance_m', 'rear_focal_length_m', 'tie_direction', 'tie_law', 'tie_tension_N'}",
-        "set(a['scene']['import']) == {'nodes', 'cables'}", "a['surface'] == {'kind': 'auto', 'frequencies_Hz': []}",
+        "set(a['scene']['import']) == {'nodes', 'cables', 'facets'}",
+        "a['surface'] == {'kind': 'auto', 'frequencies_Hz': [], 'mesh_tension_N_per_m': 0}",
         "set(a['form']) == {'method', 'pretension_N', 'prestress', 'stop', 'residual_tolerance', 'length_tolerance', "
         "'rms_tolerance_m', 'max_iterations', 'collapse_ratio'}",
         "set(a['optimize']) == {'method', 'symmetry', 'solver', 'polish_iterations', 'compare_lm', 'rule', "
@@ -119,7 +120,7 @@ END_TEST
 /* With what is required filled in and two of the three scenes removed, the reference is a case that runs. */
 START_TEST(schema_with_its_gaps_filled_is_a_case)
 {
-    SHELL(0, "\"$0\" schema | sed -e '/^  import:/,/^    cables:/d' -e '/^  paraboloid:/,/^    tie_tension_N:/d' -e "
+    SHELL(0, "\"$0\" schema | sed -e '/^  import:/,/^    facets:/d' -e '/^  paraboloid:/,/^    tie_tension_N:/d' -e "
              "'/^  ring:/,/^  import:/d' -e "
              "'s/aperture_m:/& 2/' -e 's/ length_m:/& 3/' "
              "-e 's/ focal_length_m:/& 2/' -e 's/modules:/& [2, 3]/' -e 's/cells_per_module:/& [2, 2]/' -e 's/scallop: "
