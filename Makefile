@@ -121,8 +121,8 @@ quote = '$(subst ','\'',$(1))'
 stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
-FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check literal bench api lint \
-         asan tsan fuzz fuzz-results install
+FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
+         api lint asan tsan fuzz fuzz-results install
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -188,6 +188,11 @@ paper paper-check:
 	$(Q)tools/setup.sh --test
 	$(SUB) $(PROGRAM)
 	$(PYTHON) tools/paper/paper.py --program $(PROGRAM) --work $(BUILD)/paper $(PAPER_DO) $(PAPER_OUT)
+
+paper-search: ## search for the paper's net anew (some minutes): writes configs/chen2022-search*.yaml
+	$(Q)tools/setup.sh --test
+	$(SUB) $(PROGRAM)
+	$(PYTHON) tools/paper/search.py --program $(PROGRAM) --work $(BUILD)/paper-search
 
 # LITERAL_ROUNDS=... interleaved runs of each.
 LITERAL_ROUNDS ?= 7

@@ -32,6 +32,7 @@ k4,d',"<i>e</i>",boundary,tension,0.001
 `;
 
 export const pages = [
+  { name: "chen2022", source: "configs/chen2022.yaml", sections: GA, warnings: 0 },
   { name: "straight-edges", source: "configs/straight-edges.yaml", sections: GA, warnings: 2 },
   { name: "reflector", source: "configs/reflector.yaml", sections: FORM, warnings: 0 },
   {

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
-"""Chen et al. 2022, figure by figure: runs the program and writes one SVG per figure of the paper, and table.md.
+"""Chen et al. 2022, figure by figure: runs the program and writes one SVG per figure of the paper, table.md, and
+search.md, the table of the nets that were tried.
 
     paper.py --program build/hifdm --work build/paper --out results/chen2022
-    paper.py --program build/hifdm --work build/paper --check results/chen2022     # the table only, compared
+    paper.py --program build/hifdm --work build/paper --check results/chen2022     # the tables only, compared
 """
 import argparse
 import os
 import sys
 
 import figures
+import search_table
 import table
 import truss_figures
 from runs import Runs, net_runs, truss_runs
@@ -25,18 +27,21 @@ def main():
 
     runs = Runs(a.program, a.work)
     found = net_runs(runs) | truss_runs(runs)
-    text = table.write(found, runs.call("schema"))
+    texts = {"table.md": table.write(found, runs.call("schema")), "search.md": search_table.write(runs)}
     if a.check:
-        with open(os.path.join(a.check, "table.md")) as file:
-            wrong = table.differences(file.read(), text)
-        sys.exit("\n".join(["table.md differs from what the program gives now; `make paper` writes it anew:"] + wrong)
+        wrong = []
+        for name, text in texts.items():
+            with open(os.path.join(a.check, name)) as file:
+                wrong += [f"{name}: {line}" for line in table.differences(file.read(), text)]
+        sys.exit("\n".join(["`make paper` writes anew what differs from what the program gives now:"] + wrong)
                  if wrong else 0)
     os.makedirs(a.out, exist_ok=True)
     for number in range(2, 23):
         getattr(figures if number < 15 else truss_figures, f"fig{number:02d}")(found, a.out)
-    with open(os.path.join(a.out, "table.md"), "w") as file:
-        file.write(text)
-    print(f"{a.out}: figures 2 to 22, table.md")
+    for name, text in texts.items():
+        with open(os.path.join(a.out, name), "w") as file:
+            file.write(text)
+    print(f"{a.out}: figures 2 to 22, {', '.join(texts)}")
 
 
 main()
