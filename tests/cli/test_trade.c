@@ -47,9 +47,11 @@ END_TEST
 /* Triangles of a double net and quadrilaterals of a cylinder: their errors along the normal, by numpy. */
 START_TEST(paraview_files_of_facets)
 {
-    static const char *const source[] = {"configs/paraboloid-6m.yaml", "configs/reflector.yaml"};
+    static const char *const text[] = {"scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 6, "
+                                       "rear_distance_m: 1.8}}\nsurface: {}\n",
+                                       SMALL_SCENE "surface: {}\n"};
     const char *out = temp("f.h5"), *folder = temp("vtk");
-    HIFDM(0, "run", keep(source_path(source[_i])), "-o", out, "--quiet", "--set", "surface.frequencies_Hz=[]");
+    HIFDM(0, "run", file_with("f.yaml", text[_i]), "-o", out, "--quiet");
     HIFDM(0, "export", out, "--vtk", folder);
     OUT(": theoretical.hdf theoretical_facets.hdf form.hdf form_facets.hdf\n");
     demand_vtk(out, folder, "form form_facets theoretical theoretical_facets");
@@ -64,17 +66,18 @@ END_TEST
 START_TEST(mesh_makes_pillows)
 {
     static const char *const grid[] = {"scene.paraboloid.grid=triangle", "scene.paraboloid.grid=quad"};
-    const char *out = temp("m.h5"), *path = keep(source_path("configs/paraboloid-6m.yaml"));
-    HIFDM(0, "run", path, "-o", out, "--set", "scene.paraboloid.rings=4", "--set", grid[_i], "--set",
-          "surface.mesh_tension_N_per_m=1");
+    const char *out = temp("m.h5"),
+               *path = file_with("m.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, "
+                                           "rear_distance_m: 1.8}}\nform: {prestress: exact}\nsurface: {}\n");
+    HIFDM(0, "run", path, "-o", out, "--set", grid[_i], "--set", "surface.mesh_tension_N_per_m=1");
     OUT("; pillow 0.");
     HIFDM(0, "export", out, "--vtk", temp("vtk"));
     const char *const argv[] = {python_program(), keep(source_path("tests/verify/mesh_oracle.py")), out,
                                 temp("vtk/form_facets.hdf"), NULL};
     demand_exit(run_command(HANG_S, argv), 0, "mesh_oracle.py", __LINE__);
     demand_vtk(out, temp("vtk"), "form form_facets theoretical theoretical_facets");
-    HIFDM(0, "run", path, "-o", out, "--force", "--json", "--set", "scene.paraboloid.rings=4", "--set", grid[_i],
-          "--set", "surface.mesh_tension_N_per_m=100");
+    HIFDM(0, "run", path, "-o", out, "--force", "--json", "--set", grid[_i], "--set",
+          "surface.mesh_tension_N_per_m=100");
     ERR("warning: surface: in the shape of stage form the mesh pulls on a cable with N l = ");
     ERR("and facets have no errors here. Raise the tension of the cables, or lower surface.mesh_tension_N_per_m\n");
     EXPECT(out_as("m.json"), out, "--", "a['form']['surface']['facet_normal_rms_m'] is None",
