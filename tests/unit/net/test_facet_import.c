@@ -20,6 +20,7 @@ static hf_status import(const char *table, hf_scene *s, char *said, size_t size)
     for (int i = 0; i < N_NODE; i++) {
         memcpy(s->position_m + 3 * i, xy[i], sizeof xy[i]);
         s->node_id[i] = id[i];
+        s->role[i] = i == 0 || i == 3 ? HF_ROLE_SUPPORT : HF_ROLE_INNER;
     }
     memcpy(s->end, end, sizeof end);
     write_file(temp_path("facets.csv"), table);
@@ -77,6 +78,7 @@ static const struct {
     {HEAD "1,a,b,e\n", "error: facets.csv:2: 4 fields where the header has 5\n"},
     {"id,a,b\n1,a,b\n", "error: facets.csv:1: a column is missing: c\n"},
     {HEAD "1,a,b,e,d\n1,b,c,e,\n", "error: facets.csv:3: '1': this id was used before, on line 2\n"},
+    {HEAD "1,a,b,d,\n2,a,d,e,\n", "error: facets.csv:2: '1': no cable joins its nodes 'b' and 'd'\n"},
     {HEAD "1,a,b,e,\n", "error: facets.csv:2: '1': no cable joins its nodes 'e' and 'a'\n"},
     {HEAD "1,a,b,e,d\n\n2,d,e,b,a\n",
      "error: facets.csv:4: '2': is on the same side of a cable as the facet '1' on line 2\n"},
