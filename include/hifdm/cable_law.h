@@ -169,9 +169,9 @@ static inline double hf_law_held_q_N_per_m(hf_law_cable c, double length_m, doub
     return hf_law_has(c.law, HF_LAW_GIVES_TENSION) ? c.target / length_m : q_N_per_m;
 }
 
-/* What Eq. 8 leaves to a slack cable, N/m: far below all forces, and enough for a node that hangs on slack cables alone
- * to have a place. From 1e-200 to 1e-30 the tests of solve and stress pass. */
-#define HF_LAW_LEAST_Q_N_PER_M 1e-100
+/* What Eq. 8 leaves to a slack cable, N/m: far below all forces, also of nets with pretensions of 1e-300 N, for which
+ * 1e-100 is too much; and enough for a node that hangs on slack cables alone to have a place. */
+#define HF_LAW_LEAST_Q_N_PER_M 1e-305
 
 /* Next force density of the fixed-point iteration. Eq. 7 scales q by the wanted over the present tension; with T = q l
  * the result is the wanted tension over l. Eq. 8 scales q by the present over the wanted length; the wanted length of

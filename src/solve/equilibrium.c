@@ -167,7 +167,8 @@ hf_status hf_equilibrium_find_by_paper(const hf_model *m, const hf_form_settings
         rest.collapse_ratio = HF_FORM_GONE;
         rest.max_iterations = n_step < s->max_iterations ? s->max_iterations - n_step : 1;
         hf_form_find(m, &rest, stop, w, history, r);
-        if (is_refusal(r->status)) hf_form_refuse(HF_NOT_CONVERGED, r->iterations, r);
+        /* without finite places there is no iterate to speak of: a truss below must know */
+        if (r->status == HF_COLLAPSED || r->status == HF_SINGULAR) hf_form_refuse(HF_NOT_CONVERGED, r->iterations, r);
     } else {
         *r = said;
     }
