@@ -138,8 +138,9 @@ static void hold(const generator *g, const hf_paraboloid *p)
         g->t->fixed[joint(g, k) + side] = dofs;
         if (r->held == HF_RING_HELD_BAY) g->t->fixed[joint(g, k + g->cells) + side] = dofs;
     }
+    int n_bay = g->n / g->cells; /* three or more, so that thirds of them, rounded, are different verticals */
     for (int i = 0; i < 3 && r->held == HF_RING_HELD_THREE_VERTICALS; i++)
-        g->t->fixed[joint(g, nearest_bay(g, p, r->held_at_deg + 120 * i, false)) + 1] = dofs;
+        g->t->fixed[joint(g, (k / g->cells + (i * n_bay + 1) / 3) % n_bay * g->cells) + 1] = dofs;
 }
 
 /* ---- together ---- */

@@ -112,7 +112,8 @@ START_TEST(joints_are_held)
                   {HF_RING_HELD_BAY, 350, 4, {"f23", "r23", "f0", "r0"}},
                   {HF_RING_HELD_VERTICAL, 180, 2, {"f12", "r12"}},
                   {HF_RING_HELD_VERTICAL, 0, 2, {"f0", "r0"}},
-                  {HF_RING_HELD_THREE_VERTICALS, 30, 3, {"r2", "r10", "r18"}}};
+                  {HF_RING_HELD_THREE_VERTICALS, 30, 3, {"r2", "r10", "r18"}},
+                  {HF_RING_HELD_THREE_VERTICALS, 180, 3, {"r4", "r12", "r20"}}};
     for (int dofs = 0; dofs < 2; dofs++) {
         hf_truss_settings s = settings();
         hf_truss t;
@@ -169,6 +170,23 @@ START_TEST(ring_has_three_fold_symmetry)
 }
 END_TEST
 
+/* Of three bays, where each direction lies between two verticals. */
+START_TEST(three_verticals_are_three)
+{
+    hf_truss_settings s = settings();
+    hf_truss t;
+    int n_held = 0;
+    s.ring.held = HF_RING_HELD_THREE_VERTICALS;
+    s.ring.held_at_deg = 180;
+    s.ring.cells_per_bay = 8;
+    generate(&s, &dish, &t);
+    for (int i = 0; i < t.n_node; i++)
+        n_held += t.fixed[i] != 0;
+    ck_assert_int_eq(n_held, 3);
+    hf_truss_free(&t);
+}
+END_TEST
+
 Suite *suite_unit_ring(void)
 {
     Suite *suite = suite_create("unit/truss/ring");
@@ -176,7 +194,8 @@ Suite *suite_unit_ring(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, members_are_counted, 0, 6);
     tcase_add_test(tests, joints_are_on_the_rims);
-    tcase_add_loop_test(tests, joints_are_held, 0, 6);
+    tcase_add_loop_test(tests, joints_are_held, 0, 7);
+    tcase_add_test(tests, three_verticals_are_three);
     tcase_add_test(tests, ring_has_three_fold_symmetry);
     return suite;
 }
