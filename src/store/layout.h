@@ -14,7 +14,7 @@
 #include <hifdm/workspace.h>
 
 #define HF_PROGRAM "hifdm"  /* attribute `program`: the file is one of ours */
-#define HF_FORMAT_VERSION 1 /* attribute `format_version`; raise it for a change that old programs would misread */
+#define HF_FORMAT_VERSION 2 /* attribute `format_version`; raise it for a change that old programs would misread */
 
 /* More nodes or members than any scene has. The limit keeps a damaged file from taking all memory. */
 #define HF_LAYOUT_COUNT_MAX 20000000

@@ -187,7 +187,7 @@ static const char make_study[] =
     "import h5py, numpy as np, sys\n"
     "f = h5py.File(sys.argv[1], 'w')\n"
     "f.attrs.create('program', b'hifdm', dtype=h5py.string_dtype('utf-8', 5)); f.attrs['format_version'] = "
-    "np.int32(1)\n"
+    "np.int32(2)\n"
     "text = lambda v: np.array([t.encode() for t in v], dtype=h5py.string_dtype('utf-8', max(map(len, v)) or 1))\n"
     "f['points/id'] = text(['a1', 'b2', 'c3'])\n"
     "f['points/reason'] = text(['', '</script><b>no', ''])\n"

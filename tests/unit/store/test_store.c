@@ -420,7 +420,7 @@ START_TEST(provenance_and_units_are_there)
            "for name in ('version git_describe compiler build_flags hdf5_version gsl_version lapack host rng seed "
            "threads '\n"
            "             'started_utc finished_utc status warnings title').split(): assert name in a, name\n"
-           "assert a['program'] == b'hifdm' and a['format_version'] == 1\n"
+           "assert a['program'] == b'hifdm' and a['format_version'] == 2\n"
            "assert list(a['argv']) == ['hifdm', 'run', 'a b.yaml']\n"
            "assert f['case/text'].asstr()[()] == 'title: any\\n' and f['case'].attrs['sha256'] == b'abc'\n"
            "assert f['case/overrides'].asstr()[()] == 'form.pretension_N=12\\n'\n"

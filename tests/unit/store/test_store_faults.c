@@ -157,7 +157,7 @@ static const struct {
     int n_refused;
     const char *why;
 } damages[] = {
-    {"f.attrs.modify('format_version', 2)", 4, "format version 2"},
+    {"f.attrs.modify('format_version', 3)", 4, "format version 3"},
     {"del f.attrs['title']", 1, "attribute title of /"},
     {"del f.attrs['threads']; f.attrs['threads'] = 'many'", 1, "attribute threads of / is of another type"},
     {"del f.attrs['title']; f.attrs['title'] = np.bytes_(b'x' * 300)", 1, "too long"},
