@@ -35,7 +35,7 @@ typedef struct {
     double *design_N;                       /* [n_individual][n_gene] boundary pretensions T' */
     hf_form_result *result;                 /* [n_individual]; valid from the start where pending is 0 */
     unsigned char *pending;                 /* [n_individual] 1: must be evaluated */
-    double *crossover_rate, *mutation_rate; /* [n_individual] rates that made the design; NaN where there are none */
+    double *crossover_rate, *mutation_rate; /* [n_individual] rates of the trial; NaN where there are none */
     int *parent;                            /* [n_individual][2] in the generation before; -1 where there are none;
                                                i, -1: individual i of the generation before, which was kept */
 

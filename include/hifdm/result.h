@@ -92,7 +92,7 @@ const char *hf_bound_reason_meaning(int reason); /* the same */
  *   inner_tension_ratio     max T / min T of the group, as boundary_tension_ratio; INFINITY when a cable of it is slack
  *                           (n_slack counts those of both groups), NaN when the group is empty or has a strut
  *   violation               sum over boundary cables of 1 - T/t below t and 1 - cap t/T above cap t, where t^2 = min T
- *                           max T / cap; NaN for what is no design
+ *                           max T / cap, with a slack T as if just taut; NaN for what is no design
  *   n_loose                 such nodes are where no cable of theirs is too long, as near to their theoretical places as
  *                           that allows. A design (hf_evaluate) with such a node is SINGULAR
  *   n_drifting              others than those; position_error_m is then NaN

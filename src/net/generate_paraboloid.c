@@ -180,8 +180,9 @@ static double product(size_t n, const double *a, const double *b)
 static hf_status relax(const hf_paraboloid *p, plane_grid *g)
 {
     size_t n = 2 * (size_t)g->n_node;
-    double *residual = malloc(3 * n * sizeof *residual), *direction = residual + n, *image = direction + n;
+    double *residual = malloc(3 * n * sizeof *residual);
     if (!residual) return HF_NO_MEMORY;
+    double *direction = residual + n, *image = direction + n;
     pull(g, g->plane_m, residual);
     for (size_t i = 0; i < n; i++)
         direction[i] = residual[i] = -residual[i];

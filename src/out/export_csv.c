@@ -89,10 +89,11 @@ static hf_status export_facets(const hf_export_request *o, const hf_export_store
 {
     hf_facets facets;
     const facets_view both = {&stored->scene, &facets};
-    if (hf_facets_find(&stored->scene, &stored->summary.surface, &facets) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", o->file);
-    hf_status status = HF_OK;
-    if (facets.n_facet > 0) status = hf_file_out_set_write(o->files, path, write_facets, &both, messages);
+    hf_status status = hf_facets_find(&stored->scene, &stored->summary.surface, &facets);
+    if (status != HF_OK)
+        hf_error(messages, status, "%s: out of memory", o->file);
+    else if (facets.n_facet > 0)
+        status = hf_file_out_set_write(o->files, path, write_facets, &both, messages);
     hf_facets_free(&facets);
     return status;
 }

@@ -127,7 +127,7 @@ hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_w
 /* ---- by the paper's iteration ---- */
 
 /* Steps of the path and of the iteration that names a reason, to learn whether a net has a shape. */
-#define VERDICT_MAX (PATH_MAX + LAST_BLOCK)
+#define VERDICT_MAX (PATH_MAX + 2 * LAST_BLOCK)
 
 /* What the path says of the net, in *said. Keeps q_N_per_m and position_m. */
 static hf_status ask_path(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *said)

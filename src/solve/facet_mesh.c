@@ -27,13 +27,13 @@ static void cross(const double a[3], const double b[3], double to[3])
     to[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* to = b - a, scaled to length 1; returns the length. */
+/* to = b - a, scaled to length 1; 0 where a and b are one. Returns the length. */
 static double direction(const double *a, const double *b, double to[3])
 {
     for (int d = 0; d < 3; d++)
         to[d] = b[d] - a[d];
     double length = sqrt(dot(to, to));
-    for (int d = 0; d < 3; d++)
+    for (int d = 0; d < 3 && length > 0; d++)
         to[d] /= length;
     return length;
 }

@@ -159,7 +159,7 @@ static hf_status breed_record(void *context, int generation, const void *payload
     hf_store *s = b->store;
     hf_generations *g = &s->rows;
     hf_optimiser *o = b->optimiser;
-    const hf_optimiser before = *o; /* both generations stay as they are, see hf_optimiser_kind */
+    const hf_optimiser before = *o; /* the generation before stays as it is, see hf_optimiser_kind */
     hf_status status;
     if (!is_news(s, generation, bytes, g->n_stored + g->n_waiting, &status)) return status;
     int goes_on = 1;
