@@ -50,6 +50,7 @@ ORIGIN = {
     "optimize.min_tension_N": (ASSUMED, "the paper: > 0"),
     "optimize.boundary_ratio_cap": (CHOICE, "above every ratio found"),
     "optimize.seed": (CHOICE, ""),
+    "optimize.variation": (CHOICE, "crossover and survival: METHOD section 7; the paper tells neither"),
     "optimize.stagnation_generations": (ASSUMED, "the paper compares \"any two generations\""),
     "optimize.crossover_high": (ASSUMED, "\"an adaptive GA proposed by Lin\", without a reference: rates of "
                                          "Srinivas and Patnaik, 1994"),
@@ -178,7 +179,7 @@ def truss_rows(runs):
     psi = dict(zip(sweep.pretension_N, sweep.psi_m))
     loops = [r.get("coupling", "iterations") for r in (truss, stopped)]
     return [
-        ("15", "mass (kg)", "200", f"{truss.get('truss', 'mass_kg'):.1f}", "predicted, hinges of 1 kg", "", ""),
+        ("15", "mass (kg)", "200", f"{truss.get('truss', 'mass_kg'):.1f}", "fitted (hinges of 1 kg)", "", ""),
         ("18", "HIFDM on the truss: psi (mm)", "8.38", mm(tight.get("form", "psi_m")), "**calibrated** (E)",
          mm(stopped.get("form", "psi_m")), ""),
         ("18", f"the same with E = {USUAL_E_PA / 1e9:.0f} GPa (mm)", "8.38", mm(usual.get("form", "psi_m")),
