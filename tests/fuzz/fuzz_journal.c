@@ -126,7 +126,9 @@ static hf_status take(void *context, int generation, const void *payload, size_t
         hf_optimiser_tell(o);
         if (!hf_optimiser_next(o)) return HF_DIFFERENT;
     }
-    if (!hf_generations_take_payload(&r->rows, payload, &o->population)) return HF_DIFFERENT;
+    const hf_population *before = generation > 0 ? &o->next : NULL;
+    if (!hf_generations_take_payload(&r->rows, payload, before, &o->population)) return HF_DIFFERENT;
+    o->is_fresh = false;
     hf_generations_add(&r->rows, &o->population, NULL);
     r->n_taken++;
     return HF_OK;
