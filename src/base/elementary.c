@@ -22,6 +22,13 @@ double hf_distance(const double *a, const double *b)
     return hf_norm(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
+void hf_cross(const double *a, const double *b, double *c)
+{
+    c[0] = a[1] * b[2] - a[2] * b[1];
+    c[1] = a[2] * b[0] - a[0] * b[2];
+    c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
 /* ---- sine and cosine ---- */
 
 /* pi/2 in three parts; the first two have 29 and 28 bits, so that multiples of up to 2^24 of them are exact, and up to

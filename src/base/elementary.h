@@ -1,5 +1,6 @@
-/* elementary - lengths and functions whose last digit in the C library depends on the processor and on the library's
- * version. Here they are sums, products, quotients and roots of doubles in a fixed order: the same bits everywhere. */
+/* elementary - lengths, products of vectors, and functions whose last digit in the C library depends on the processor
+ * and on the version of the library. Here they are sums, products, quotients and roots of doubles in a fixed order: the
+ * same bits everywhere. */
 #ifndef HIFDM_ELEMENTARY_H
 #define HIFDM_ELEMENTARY_H
 
@@ -9,6 +10,9 @@ double hf_norm(double x, double y, double z);
 
 /* Distance of two points [3]. */
 double hf_distance(const double *a, const double *b);
+
+/* c = a x b of vectors [3]; c is another array. */
+void hf_cross(const double *a, const double *b, double *c);
 
 /* Error below 3e-16 up to 1e8 rad; beyond, of an angle that differs by less than 1e-16 of it. */
 double hf_sine(double angle_rad);

@@ -21,8 +21,7 @@ static int by_id(const void *a, const void *b)
     return strcmp(((const hf_csv_named *)a)->id, ((const hf_csv_named *)b)->id);
 }
 
-/* Twice the signed area of the triangle a, b, c, seen along z. */
-static double turn_of(const hf_scene *s, int a, int b, int c)
+double hf_facet_turn(const hf_scene *s, int a, int b, int c)
 {
     const double *p = s->position_m + 3 * (size_t)a, *q = s->position_m + 3 * (size_t)b;
     const double *r = s->position_m + 3 * (size_t)c;
@@ -36,7 +35,7 @@ static const char *fault_of_shape(const hf_scene *s, int n, int corner[4])
     for (int k = 1; k < n; k++) {
         const double *p = s->position_m + 3 * (size_t)corner[0], *q = s->position_m + 3 * (size_t)corner[k];
         span = fmax(span, (q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]));
-        if (k + 1 < n) area += turn_of(s, corner[0], corner[k], corner[k + 1]);
+        if (k + 1 < n) area += hf_facet_turn(s, corner[0], corner[k], corner[k + 1]);
     }
     if (area < 0) {
         int second = corner[1];
@@ -44,7 +43,7 @@ static const char *fault_of_shape(const hf_scene *s, int n, int corner[4])
         corner[n - 1] = second;
     }
     for (int k = 0; k < n; k++)
-        least = fmin(least, turn_of(s, corner[k], corner[(k + 1) % n], corner[(k + 2) % n]));
+        least = fmin(least, hf_facet_turn(s, corner[k], corner[(k + 1) % n], corner[(k + 2) % n]));
     if (n == 3) return least > NARROW_PART * span ? NULL : "its nodes are in a line, seen along z";
     return fabs(area) > NARROW_PART * span && least > -NARROW_PART * span
                ? NULL

@@ -11,4 +11,7 @@
  * another one; HF_NO_MEMORY. */
 hf_status hf_facet_import(const char *path, hf_scene *scene, hf_messages *messages);
 
+/* Twice the area (m2) of the triangle of three nodes, seen along z: above 0 when they go counter-clockwise. */
+double hf_facet_turn(const hf_scene *scene, int a, int b, int c);
+
 #endif

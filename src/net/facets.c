@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "base/union_find.h"
+#include "net/facet_import.h"
 #include "net/wanted.h"
 
 #include <math.h>
@@ -144,14 +145,6 @@ static int next_around(const graph *g, int h)
     return twin > g->first[node] ? twin - 1 : g->first[node + 1] - 1;
 }
 
-/* Twice the signed area of the triangle a, b, c, seen along z. */
-static double turn_of(const hf_scene *s, int a, int b, int c)
-{
-    const double *p = s->position_m + 3 * (size_t)a, *q = s->position_m + 3 * (size_t)b;
-    const double *r = s->position_m + 3 * (size_t)c;
-    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
-}
-
 /* Walk around the face on the left of h. Returns its number of sides; the first four corners, and twice its area. */
 static int walk(graph *g, int h, int corner[4], double *area)
 {
@@ -171,7 +164,8 @@ static int walk(graph *g, int h, int corner[4], double *area)
 static bool is_convex(const hf_scene *s, int n, const int corner[4], double area)
 {
     for (int k = 0; k < n; k++)
-        if (!(turn_of(s, corner[k], corner[(k + 1) % n], corner[(k + 2) % n]) > -STRAIGHT_PART * area)) return false;
+        if (!(hf_facet_turn(s, corner[k], corner[(k + 1) % n], corner[(k + 2) % n]) > -STRAIGHT_PART * area))
+            return false;
     return true;
 }
 
@@ -200,7 +194,7 @@ static void close_gaps(const graph *g, int h, hf_facets *f)
         if (s->role[node[0]] == HF_ROLE_SUPPORT) {
             for (; s->role[g->edge[k].to] == HF_ROLE_INNER; k = next_around(g, k), n++) {
                 if (n < 4) node[n] = g->edge[k].to;
-                area += turn_of(s, node[0], g->edge[k].to, g->edge[next_around(g, k)].to);
+                area += hf_facet_turn(s, node[0], g->edge[k].to, g->edge[next_around(g, k)].to);
             }
             if (n < 4) node[n] = g->edge[k].to;
             if (n++ > 1 && s->role[g->edge[k].to] == HF_ROLE_SUPPORT && area > 0) add_facet(s, n, node, area, f);

@@ -190,7 +190,7 @@ static void mutate(const breeder *g, const hf_population *p, double rate, double
 }
 
 /* An elite, moved by some part of the way from the worse of two parents to the better one, and beyond. */
-static void cross(const breeder *g, const hf_population *p, int a, int b, double *child, hf_random *random)
+static void move_elite(const breeder *g, const hf_population *p, int a, int b, double *child, hf_random *random)
 {
     size_t n = (size_t)p->n_gene;
     int better = hf_population_is_better(p, a, b) ? a : b, worse = a + b - better;
@@ -231,7 +231,7 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
     else if (by_chain)
         recombine(g, now, mother, father, child, &random);
     else
-        cross(g, now, a, b, child, &random);
+        move_elite(g, now, a, b, child, &random);
     mutate(g, now, pm, by_chain ? pm : SINGLES * pm, child, &random);
     hf_population_link(now, g->model, child);
     next->pending[i] = memcmp(child, same, n * sizeof *child) != 0;

@@ -138,7 +138,7 @@ double hf_population_violation(const hf_form_result *r)
 }
 
 /* Below zero: result a is better than b. */
-static int compare(const hf_form_result *a, const hf_form_result *b)
+static int rank_of_two(const hf_form_result *a, const hf_form_result *b)
 {
     bool are_ok = a->status == HF_OK && b->status == HF_OK;
     double x = are_ok ? a->psi_m : hf_population_violation(a), y = are_ok ? b->psi_m : hf_population_violation(b);
@@ -147,7 +147,7 @@ static int compare(const hf_form_result *a, const hf_form_result *b)
 
 bool hf_population_is_better(const hf_population *population, int a, int b)
 {
-    int order = compare(&population->result[a], &population->result[b]);
+    int order = rank_of_two(&population->result[a], &population->result[b]);
     return order ? order < 0 : a < b;
 }
 
@@ -171,7 +171,7 @@ void hf_population_take_over(const hf_population *before, hf_population *populat
 void hf_population_keep_better(const hf_population *before, hf_population *population)
 {
     for (int i = 0; i < population->n_individual; i++)
-        if (!population->pending[i] || compare(&before->result[i], &population->result[i]) < 0)
+        if (!population->pending[i] || rank_of_two(&before->result[i], &population->result[i]) < 0)
             hf_population_take_over(before, population, i);
 }
 

@@ -1,6 +1,7 @@
 /* Contents: facets - sides - the mesh of a facet */
 #include "solve/facet_mesh.h"
 
+#include "base/elementary.h"
 #include "base/arena.h"
 #include "linalg/dense.h"
 
@@ -18,13 +19,6 @@ const double hf_facet_gauss_weight[HF_FACET_N_GAUSS] = {0.11846344252809454, 0.2
 static double dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double to[3])
-{
-    to[0] = a[1] * b[2] - a[2] * b[1];
-    to[1] = a[2] * b[0] - a[0] * b[2];
-    to[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 /* to = b - a, scaled to length 1; 0 where a and b are one. Returns the length. */
@@ -52,7 +46,7 @@ void hf_facet_mesh_take(const hf_facets *f, int i, const double *position_m, hf_
         one[d] = m->corner[2][d] - m->corner[0][d];
         other[d] = m->corner[3][d] - m->corner[1][d];
     }
-    cross(one, other, m->normal);
+    hf_cross(one, other, m->normal);
     direction(origin, (double[3]){m->normal[0], m->normal[1], m->normal[2]}, m->normal);
 }
 
@@ -101,7 +95,7 @@ static double bend(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape
         int k = pair[c].of % 4;
         hf_facet_mesh_take(f, pair[c].of / 4, shape->position_m, &m);
         length = direction(m.corner[k], m.corner[(k + 1) % 4], along);
-        cross(m.normal, along, inward);
+        hf_cross(m.normal, along, inward);
         memcpy(normal[c], m.normal, sizeof m.normal);
         for (int d = 0; d < 3; d++)
             pull[d] += mesh_N_per_m * inward[d];
@@ -192,7 +186,7 @@ static void measure_at(const hf_facet_mesh *m, double u, double v, double g[3], 
         du[d] -= base->by_u * m->normal[d];
         dv[d] -= base->by_v * m->normal[d];
     }
-    cross(du, dv, rise);
+    hf_cross(du, dv, rise);
     double area = fabs(dot(rise, m->normal));
     g[0] = dot(dv, dv) / area;
     g[1] = -dot(du, dv) / area;

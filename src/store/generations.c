@@ -249,12 +249,9 @@ bool hf_generations_take_payload(const hf_generations *g, const void *payload, c
     from += sizeof hash;
     for (int i = ROW_DESIGN + 1; i < n; from += g->row_bytes[i++])
         scatter(&row[i], g->row_bytes[i], from);
-    for (int i = 0; i < population->n_individual && before; i++) {
-        const double *kept = before->design_N + (size_t)i * (size_t)population->n_gene;
+    for (int i = 0; i < population->n_individual && before; i++)
         if (population->parent[2 * i] == i && population->parent[2 * i + 1] == -1)
-            memcpy(population->design_N + (size_t)i * (size_t)population->n_gene, kept,
-                   g->row_bytes[ROW_DESIGN] / (size_t)population->n_individual);
-    }
+            hf_population_take_over(before, population, i);
     return hash == hash_designs(population);
 }
 

@@ -23,13 +23,6 @@ enum { N_DEFORMATION = 6 }; /* elongation, twist, end rotations about z at i, j,
 
 /* ---- members ---- */
 
-static void cross(const double *a, const double *b, double *c)
-{
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 static void set_axes(const hf_truss *t, int e, hf_frame *f)
 {
     const double *a = t->position_m + 3 * (size_t)t->end[2 * e], *b = t->position_m + 3 * (size_t)t->end[2 * e + 1];
@@ -41,7 +34,7 @@ static void set_axes(const hf_truss *t, int e, hf_frame *f)
     y[0] = across > 0 ? -x[1] / across : 0;
     y[1] = across > 0 ? x[0] / across : 1;
     y[2] = 0;
-    cross(x, y, z);
+    hf_cross(x, y, z);
     double cosine = hf_cosine(t->roll_rad[e]), sine = hf_sine(t->roll_rad[e]);
     for (int c = 0; c < 3; c++) {
         axes[3 + c] = cosine * y[c] + sine * z[c];
