@@ -122,7 +122,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
-         api lint asan tsan fuzz fuzz-results install
+         bench-before api lint asan tsan fuzz fuzz-results install
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -208,6 +208,14 @@ bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in res
 	@mkdir -p $(BENCH_OUT)
 	$(PYTHON) tools/bench/run.py --driver $(BENCH) --program $(PROGRAM) --work $(BUILD)/bench --out $(BENCH_OUT) \
 	    --rounds $(BENCH_ROUNDS) --flags $(call quote,$(COMPILER); $(CFLAGS) $(LANGUAGE) $(CODEGEN))
+
+# COMMIT=... is another one than 2161b94, OPENBLAS=.../libblas.so.3 the BLAS for both, CASES="FILE..." more nets.
+COMMIT ?= 2161b94
+bench-before: ## form-finding now against an old commit's, side by side: before.csv in results/bench/PROCESSOR
+	$(Q)tools/setup.sh --bench || tools/setup.sh
+	$(SUB) $(STATIC) $(BENCH)
+	$(Q)OPENBLAS=$(OPENBLAS) $(PYTHON) tools/bench/before.py --library $(STATIC) --driver $(BENCH) \
+	    --work $(BUILD)/before --out $(BENCH_OUT) --commit $(COMMIT) --rounds $(BENCH_ROUNDS) $(CASES)
 
 # From the headers' own comments: tools/api/filter.awk. A warning of doxygen's is an error.
 api: ## the library's interface as pages, from the public headers: build/api/index.html

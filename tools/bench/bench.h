@@ -75,6 +75,7 @@ const char *bench_cholmod_version(void);
 /* The sections, a file each. One more (the frame of a truss, say) is a file like step.c, a row in main.c, a line in
  * `measure`, a write_... in run.py, and a row in results/bench/README.md. */
 void bench_frame(const char *what, const char *folder);
+void bench_cases(const char *name, const char *folder); /* only writes the imported net's case into the folder */
 void bench_step(const char *what, const char *folder);
 void bench_peak(const char *what, const char *folder);
 void bench_phases(const char *scene, const char *folder);

@@ -83,7 +83,8 @@ static const section section_table[] = {{"step", bench_step},     {"peak", bench
                                         {"phases", bench_phases}, {"precision", bench_precision},
                                         {"single", bench_single}, {"equilibrium", bench_equilibrium},
                                         {"growth", bench_growth}, {"population", bench_population},
-                                        {"whole", bench_whole},   {"frame", bench_frame}};
+                                        {"whole", bench_whole},   {"frame", bench_frame},
+                                        {"cases", bench_cases}};
 
 int main(int argc, char **argv)
 {

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #define OVERRIDES_MAX 6
+#define IMPORTED "imported 31x37"
 
 typedef struct {
     const char *name, *path;
@@ -152,10 +153,9 @@ static void write_cables(const hf_scene *s, FILE *file)
                 hf_group_word[s->group[e]], hf_law_word[s->law[e]]);
 }
 
-static void open_imported(const char *folder, bench_scene *b)
+static void write_imported(const char *folder)
 {
     bench_scene base;
-    char path[HF_PATH_SIZE];
     bench_scene_named("31x37", folder, &base);
     FILE *file = bench_open_file(folder, "nodes.csv");
     write_nodes(&base.scene, file);
@@ -167,8 +167,12 @@ static void open_imported(const char *folder, bench_scene *b)
     fputs("scene:\n  import:\n    nodes: nodes.csv\n    cables: cables.csv\n", file);
     fclose(file);
     bench_scene_free(&base);
-    snprintf(path, sizeof path, "%s/imported.yaml", folder);
-    bench_scene_open("imported 31x37", path, NULL, 0, b);
+}
+
+void bench_cases(const char *name, const char *folder)
+{
+    if (strcmp(name, IMPORTED)) bench_fail(name, "is not written to files");
+    write_imported(folder);
 }
 
 static const scene_row *find_row(const char *name, int *n_override)
@@ -185,8 +189,11 @@ static const scene_row *find_row(const char *name, int *n_override)
 void bench_scene_named(const char *name, const char *folder, bench_scene *b)
 {
     int n_override;
-    if (!strcmp(name, "imported 31x37")) {
-        open_imported(folder, b);
+    if (!strcmp(name, IMPORTED)) {
+        char path[HF_PATH_SIZE];
+        write_imported(folder);
+        snprintf(path, sizeof path, "%s/imported.yaml", folder);
+        bench_scene_open(IMPORTED, path, NULL, 0, b);
         return;
     }
     const scene_row *row = find_row(name, &n_override);
