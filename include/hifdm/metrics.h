@@ -21,6 +21,9 @@ double hf_metrics_psi_m(const hf_model *model, const hf_workspace *workspace);
  * when a cable is slack: what is left of its tension, 0 or 1e-22 N, is rounding. */
 double hf_metrics_tension_ratio(const hf_model *model, const hf_workspace *workspace, hf_group group);
 
+/* The same of n cables. */
+double hf_metrics_set_ratio(const hf_model *model, const hf_workspace *workspace, int n, const int *cable);
+
 /* Whether cable i_cable is slack, and the number of slack cables. */
 bool hf_metrics_is_slack(const hf_model *model, const hf_workspace *workspace, int i_cable);
 int hf_metrics_slack_count(const hf_model *model, const hf_workspace *workspace);

@@ -38,6 +38,8 @@
  *   /surface     when the case asks for it: attributes focal_length_m, strip_width_m; frequency_Hz [f]
  *   /surface/form, /surface/optimize, /surface/polish   attributes: HF_SURFACE_LIST, HF_SURFACE_FIT_LIST as fit_...;
  *                gain_loss_dB, fit_gain_loss_dB [f]
+ *   /set_tension/form, /set_tension/optimize, /set_tension/polish   of the first s <= HF_SUMMARY_SETS sets of cables,
+ *                if there are any: name, least_N, largest_N, ratio [s]
  *   /truss       with a nodes, b members, c attachments; attributes mass_kg, n_node, n_member
  *   /truss/node  id, mass_kg [a], position_m [a][3], fixed [a][6]; displacement, reaction [a][6]
  *   /truss/member  id, joint, unit, E_Pa, A_m2, ..., expansion_per_K [b], end [b][2]; end_force [b][12]

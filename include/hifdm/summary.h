@@ -5,6 +5,7 @@
 #ifndef HIFDM_SUMMARY_H
 #define HIFDM_SUMMARY_H
 
+#include <hifdm/cable_set.h>
 #include <hifdm/optimiser.h>
 #include <hifdm/surface.h>
 #include <stdbool.h>
@@ -70,6 +71,16 @@ extern "C" {
     X(int, n_node, INT, 1, "nodes", "nodes")                                                                           \
     X(int, n_member, INT, 1, "members", "members")
 
+/* Tensions of the named sets of cables in one shape: the first HF_SUMMARY_SETS of the net, which a page can tell. The
+ * ratio is that of hf_metrics_tension_ratio. */
+#define HF_SUMMARY_SETS 16
+
+typedef struct {
+    int n;
+    char name[HF_SUMMARY_SETS][HF_CABLE_SET_NAME_SIZE];
+    double least_N[HF_SUMMARY_SETS], largest_N[HF_SUMMARY_SETS], ratio[HF_SUMMARY_SETS];
+} hf_set_tensions;
+
 #define HF_SUMMARY_MEMBER(type, member, kind, json, key, description) type member;
 
 typedef struct {
@@ -86,6 +97,7 @@ typedef struct {
 
     hf_surface_settings surface;     /* focal_length_m is 0 when the case has no such section */
     hf_surface_measures measures[3]; /* of the shapes of form, optimize, polish (hf_stage) */
+    hf_set_tensions sets[3];         /* of the same; n is 0 of a net without sets, and of a shape that is not there */
 
     HF_SUMMARY_FORM_LIST(HF_SUMMARY_MEMBER)
     hf_form_result form;

@@ -87,6 +87,16 @@ static void print_result(const hf_form_result *r, FILE *f)
             r->residual_N);
 }
 
+static void print_sets(const hf_set_tensions *s, FILE *f)
+{
+    char ratio[32];
+    if (s->n == 0) return;
+    fputs("                tension ratio of sets:", f);
+    for (int k = 0; k < s->n; k++)
+        fprintf(f, "%s %s %s", k ? "," : "", s->name[k], decimals(s->ratio[k], ratio));
+    fputc('\n', f);
+}
+
 static void print_certificate(const hf_form_result *r, FILE *f)
 {
     if (isfinite(r->position_error_m) && isfinite(r->condition))
@@ -173,6 +183,7 @@ static void print_optimize(const hf_summary *s, FILE *f)
                 100 * (1 - s->best.psi_m / s->base_psi_m), s->base_psi_m * 1e3);
     fprintf(f, "; found in generation %d\n", s->best_generation);
     print_result(&s->best, f);
+    print_sets(&s->sets[1], f);
     print_certificate(&s->best, f);
     print_surface(s, 1, f);
     if (s->planes)
@@ -201,6 +212,7 @@ static void print_polish(const hf_summary *s, FILE *f)
             s->polish_iterations, s->polish_iterations == 1 ? "" : "s", end[s->polish_stop], wall);
     fprintf(f, "                held by %d lower and %d upper bounds%s\n", s->polish_n_at_lower, s->polish_n_at_upper,
             s->polish_is_at_cap ? " and the cap on the boundary ratio" : "");
+    print_sets(&s->sets[2], f);
     print_surface(s, 2, f);
 }
 
@@ -227,6 +239,7 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
             decimals(s->form.psi_m * 1e3, psi), s->form.iterations, s->form.iterations == 1 ? "" : "s",
             hf_stop_reason_word((int)s->form.stop_reason), wall);
     print_result(&s->form, f);
+    print_sets(&s->sets[0], f);
     print_certificate(&s->form, f);
     print_surface(s, 0, f);
     if (s->has_coupling) print_coupling(&s->form.coupling, f);

@@ -9,6 +9,7 @@
 #include "solve/certificate.h"
 #include "solve/coupling.h"
 #include <hifdm/batch.h>
+#include <hifdm/metrics.h>
 #include <hifdm/store.h>
 
 #include <math.h>
@@ -52,11 +53,32 @@ static void observe(const run *r, hf_run_progress progress)
     if (r->request->observer) r->request->observer(r->request->observer_context, &progress);
 }
 
-/* For a case with a section `surface`: once for each shape that is reported. */
-static hf_status measure_surface(const run *r, hf_stage stage, const hf_workspace *w, hf_summary *s,
-                                 hf_messages *messages)
+/* Tensions of the named sets of cables: once for each shape that is reported. */
+static void measure_sets(const run *r, hf_stage stage, const hf_workspace *w, hf_summary *s)
+{
+    const hf_scene *scene = &r->problem.scene;
+    hf_set_tensions *to = &s->sets[stage];
+    to->n = scene->n_set < HF_SUMMARY_SETS ? scene->n_set : HF_SUMMARY_SETS;
+    for (int k = 0; k < to->n; k++) {
+        const int *cable = scene->set_cable + scene->set_start[k];
+        int n = scene->set_start[k + 1] - scene->set_start[k];
+        snprintf(to->name[k], sizeof to->name[k], "%s", scene->set_name[k]);
+        to->least_N[k] = INFINITY;
+        to->largest_N[k] = -INFINITY;
+        for (int i = 0; i < n; i++) {
+            to->least_N[k] = fmin(to->least_N[k], w->tension_N[cable[i]]);
+            to->largest_N[k] = fmax(to->largest_N[k], w->tension_N[cable[i]]);
+        }
+        to->ratio[k] = hf_metrics_set_ratio(&r->problem.model, w, n, cable);
+    }
+}
+
+/* Once for each shape that is reported: its sets and, for a case with a section `surface`, the surface. */
+static hf_status measure_shape(const run *r, hf_stage stage, const hf_workspace *w, hf_summary *s,
+                               hf_messages *messages)
 {
     const hf_problem *p = &r->problem;
+    measure_sets(r, stage, w, s);
     if (!p->settings.has_surface) return HF_OK;
     if (hf_surface_measure(&p->surface, &p->facets, &p->model, w, &s->measures[stage]) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
@@ -119,7 +141,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     s->form = p->form;
     hf_status status = hf_problem_explain(p, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
-    HF_TRY(measure_surface(r, HF_STAGE_FORM, &p->workspace, s, messages));
+    HF_TRY(measure_shape(r, HF_STAGE_FORM, &p->workspace, s, messages));
     HF_TRY(hf_store_form(r->store, &p->model, &p->workspace, &r->history, messages));
     HF_TRY(load_truss(r, &p->workspace, messages));
     return status;
@@ -171,7 +193,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     hf_certify(&r->problem.model, w, &again);
     s->best = again; /* the same bits, and the figures that are not stored for each individual */
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
-    HF_TRY(measure_surface(r, HF_STAGE_OPTIMIZE, w, s, messages));
+    HF_TRY(measure_shape(r, HF_STAGE_OPTIMIZE, w, s, messages));
     HF_TRY(load_truss(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->problem.model, w, design, messages);
 }
@@ -329,7 +351,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     s->polish_n_at_upper = outcome.n_at_upper;
     s->polish_is_at_cap = outcome.is_at_cap;
     s->polish_wall_s = hf_clock_s() - start_s;
-    HF_TRY(measure_surface(r, HF_STAGE_POLISH, w, s, messages));
+    HF_TRY(measure_shape(r, HF_STAGE_POLISH, w, s, messages));
     if (s->polish_is_result) HF_TRY(load_truss(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);
 }

@@ -18,23 +18,46 @@ double hf_metrics_psi_m(const hf_model *m, const hf_workspace *w)
     return n > 0 ? sqrt(sum / n) : (double)NAN;
 }
 
+/* What is known of some tensions after each of them. */
+typedef struct {
+    double low, high;
+    bool any_slack, any_strut;
+} spread;
+
+static void widen(const hf_model *m, const hf_workspace *w, int e, spread *s)
+{
+    double tension = w->tension_N[e];
+    if (hf_metrics_is_slack(m, w, e)) {
+        s->any_slack = true;
+    } else if (!(tension > 0)) {
+        s->any_strut = true;
+    } else {
+        if (tension < s->low) s->low = tension;
+        if (tension > s->high) s->high = tension;
+    }
+}
+
+static double ratio_of(const spread *s)
+{
+    if (s->any_strut) return (double)NAN;
+    if (s->any_slack) return INFINITY;
+    return s->high > 0 ? s->high / s->low : (double)NAN;
+}
+
 double hf_metrics_tension_ratio(const hf_model *m, const hf_workspace *w, hf_group group)
 {
-    double low = INFINITY, high = -INFINITY;
-    bool any_slack = false;
-    for (int e = 0; e < m->n_cable; e++) {
-        if (m->group[e] != group) continue;
-        double tension = w->tension_N[e];
-        if (hf_metrics_is_slack(m, w, e)) {
-            any_slack = true;
-            continue;
-        }
-        if (!(tension > 0)) return (double)NAN;
-        if (tension < low) low = tension;
-        if (tension > high) high = tension;
-    }
-    if (any_slack) return INFINITY;
-    return high > 0 ? high / low : (double)NAN;
+    spread s = {INFINITY, -INFINITY, false, false};
+    for (int e = 0; e < m->n_cable; e++)
+        if (m->group[e] == group) widen(m, w, e, &s);
+    return ratio_of(&s);
+}
+
+double hf_metrics_set_ratio(const hf_model *m, const hf_workspace *w, int n, const int *cable)
+{
+    spread s = {INFINITY, -INFINITY, false, false};
+    for (int i = 0; i < n; i++)
+        widen(m, w, cable[i], &s);
+    return ratio_of(&s);
 }
 
 bool hf_metrics_is_slack(const hf_model *m, const hf_workspace *w, int i_cable)

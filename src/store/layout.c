@@ -146,6 +146,12 @@ void hf_layout_read_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *c
     }
 }
 
+void hf_layout_renew(hf_hdf5 *io, const char *path)
+{
+    if (io->status == HF_OK && hf_hdf5_has(io, io->file, path) && H5Ldelete(io->file, path, H5P_DEFAULT) < 0)
+        hf_hdf5_fail(io, "replace", io->file, path);
+}
+
 /* ---- summary ---- */
 
 /* The figures of the results, by stage: <hifdm/result.h> lists them. */

@@ -73,6 +73,9 @@ void hf_layout_write_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *
 void hf_layout_read_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *columns, int n_node, int n_cable,
                             void *owner);
 
+/* Remove a group that is written anew, as when a result goes on whose end was there already. */
+void hf_layout_renew(hf_hdf5 *io, const char *path);
+
 /* ---- The summary: members of hf_summary <-> attributes of the groups of its stages ---- */
 
 typedef enum {
@@ -111,6 +114,11 @@ void hf_layout_get_coupling(hf_hdf5 *io, hf_summary *summary);
  * Nothing when the case asks for none; no data sets when it names no frequencies. */
 void hf_layout_put_surface(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary);
+
+/* layout_sets: tensions of the named sets of cables, below /set_tension/STAGE: name, least_N, largest_N, ratio [n].
+ * Nothing for a net without sets. */
+void hf_layout_put_sets(hf_hdf5 *io, const hf_summary *summary);
+void hf_layout_get_sets(hf_hdf5 *io, hf_summary *summary);
 
 /* layout_truss: the truss as described, its attachments and, when `state` is not NULL, its displacements and forces
  * under the pull of the net. Reading allocates: the caller frees both in any case. */

@@ -54,6 +54,7 @@ void hf_layout_put_surface(hf_hdf5 *io, const hf_summary *summary)
     int n = summary->surface.frequencies_Hz.n;
     if (!(summary->surface.focal_length_m > 0)) return;
     hf_hdf5_array frequency = frequency_array(n), loss;
+    hf_layout_renew(io, "/surface");
     hid_t group = hf_hdf5_make_group(io, "/surface");
     hf_hdf5_put_members(io, settings_table, HF_HDF5_COUNT(settings_table), &summary->surface);
     if (n) hf_hdf5_write_array(io, group, &frequency, summary->surface.frequencies_Hz.value);

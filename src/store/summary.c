@@ -115,6 +115,22 @@ static void write_surface(const hf_summary *s, int stage, hf_json *j)
     hf_json_close(j, '}');
 }
 
+/* The member "sets" of a stage: an object for each named set of cables. */
+static void write_sets(const hf_set_tensions *s, hf_json *j)
+{
+    if (s->n == 0) return;
+    hf_json_line(j, "  ");
+    hf_json_open(j, "sets", '{');
+    for (int k = 0; k < s->n; k++) {
+        hf_json_open(j, s->name[k], '{');
+        hf_json_number(j, "least_N", s->least_N[k]);
+        hf_json_number(j, "largest_N", s->largest_N[k]);
+        hf_json_number(j, "tension_ratio", s->ratio[k]);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, '}');
+}
+
 static void open_stage(const char *key, hf_json *j)
 {
     hf_json_line(j, " ");
@@ -135,6 +151,7 @@ static void write_form(const hf_summary *s, hf_json *j)
     hf_json_text(j, "stop_reason", hf_stop_reason_word((int)s->form.stop_reason));
     write_fields(ALL(form_field), 1, LAST_PLACE, s, j);
     write_surface(s, 0, j);
+    write_sets(&s->sets[0], j);
     hf_json_close(j, '}');
 }
 
@@ -151,6 +168,7 @@ static void write_optimize(const hf_summary *s, hf_json *j)
     write_result(&s->best, j);
     write_fields(ALL(ga_field), 1, LAST_PLACE, s, j);
     write_surface(s, 1, j);
+    write_sets(&s->sets[1], j);
     hf_json_close(j, '}');
 }
 
@@ -160,6 +178,7 @@ static void write_polish(const hf_summary *s, hf_json *j)
     write_result(&s->polish, j);
     write_fields(ALL(polish_field), 1, LAST_PLACE, s, j);
     write_surface(s, 2, j);
+    write_sets(&s->sets[2], j);
     hf_json_close(j, '}');
 }
 

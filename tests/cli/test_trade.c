@@ -290,6 +290,24 @@ START_TEST(surface_is_measured_for_every_shape)
 }
 END_TEST
 
+/* Tensions of named sets, the same in the summary, in JSON and in the file, and by numpy from the cables. */
+START_TEST(tension_ratio_of_each_set)
+{
+    const char *out = temp("sets.h5");
+    HIFDM(0, "run", REFLECTOR, "-o", out);
+    OUT("                tension ratio of sets: directrix ");
+    HIFDM(0, "show", out, "--json");
+    EXPECT(out_as("sets.json"), out, "--",
+           "list(a['form']['sets']) == b['set_tension/form/name'].asstr()[:].tolist() == "
+           "['directrix', 'edge', 'generatrix']",
+           "[s['tension_ratio'] for s in a['form']['sets'].values()] == b['set_tension/form/ratio'][:].tolist()",
+           "[s['least_N'] for s in a['form']['sets'].values()] == b['set_tension/form/least_N'][:].tolist()",
+           "all(t.max() / t.min() == r and t.max() == m for t, r, m in zip([b['form/tension_N'][:]"
+           "[b['scene/set/cable'][p:q]] for p, q in zip(b['scene/set/start'][:], b['scene/set/start'][1:])], "
+           "b['set_tension/form/ratio'][:], b['set_tension/form/largest_N'][:]))");
+}
+END_TEST
+
 /* Nothing of it in a case that does not ask; what is asked for in vain or wrongly is told. */
 START_TEST(surface_is_measured_only_when_asked_for)
 {
@@ -339,6 +357,7 @@ Suite *suite_cli_trade(void)
     tcase_add_test(tests, paraview_files_hold_the_stored_numbers);
     tcase_add_test(tests, paraview_file_of_the_truss);
     tcase_add_loop_test(tests, paraview_files_of_facets, 0, 2);
+    tcase_add_test(tests, tension_ratio_of_each_set);
     tcase_add_loop_test(tests, mesh_makes_pillows, 0, 2);
     tcase_add_test(tests, paraview_files_of_an_imported_net);
     tcase_add_loop_test(tests, net_built_from_the_cut_list_has_the_found_shape, 0, 3);

@@ -144,6 +144,7 @@ START_TEST(surface_comes_back_bit_by_bit)
     struct rng rng = rng_start(50 + (uint64_t)_i);
     struct net net;
     hf_messages messages = {0};
+    const char letters[] = "of_fifty-seven_letters_behind_the_number_and_what_is_before";
     hf_summary read, written = {.surface = {7.2, 0.25, {n, {0}}, 3.5, (hf_surface_kind)(_i % 3)}};
     open_bow(&net);
     for (int k = 0; k < n; k++)
@@ -153,6 +154,13 @@ START_TEST(surface_comes_back_bit_by_bit)
         double *value = &s->z_rms_m; /* the first of many */
         if (stage == 1 && _i == 2) continue;
         s->is_measured = 1;
+        written.sets[stage].n = _i % (HF_SUMMARY_SETS + 1);
+        for (int k = 0; k < written.sets[stage].n; k++) {
+            snprintf(written.sets[stage].name[k], HF_CABLE_SET_NAME_SIZE, "set_%02d%.*s", k, 57 * (k % 2), letters);
+            written.sets[stage].ratio[k] = k ? rng_uniform(&rng, 1, 2) : INFINITY;
+            written.sets[stage].least_N[k] = rng_uniform(&rng, -1, 2);
+            written.sets[stage].largest_N[k] = rng_uniform(&rng, 1, 2);
+        }
         s->fit.iterations = rng_int(&rng, 0, 100);
         s->fit.converged = stage == 0;
         for (size_t k = 0; (char *)(value + k) < (char *)&s->fit.iterations; k++)
@@ -167,6 +175,7 @@ START_TEST(surface_comes_back_bit_by_bit)
     ck_assert_int_eq(hf_store_read_summary(temp_path("a.h5"), &read, &messages), HF_OK);
     ck_assert_mem_eq(&read.surface, &written.surface, sizeof read.surface);
     ck_assert_mem_eq(read.measures, written.measures, sizeof read.measures);
+    ck_assert_mem_eq(read.sets, written.sets, sizeof read.sets);
     close_net(&net);
 }
 END_TEST

@@ -151,6 +151,11 @@ START_TEST(what_is_no_result_is_refused)
 }
 END_TEST
 
+/* A group of tensions of two sets, of these names. */
+#define SET_TENSION(names)                                                                                             \
+    "g = f.create_group('set_tension/form'); t = h5py.string_dtype('utf-8', 64); "                                     \
+    "g['name'] = np.array([" names "], t); g['least_N'] = g['largest_N'] = g['ratio'] = np.ones(2)"
+
 /* What Python does to a good file; how many of the four ways of reading must refuse it, and a word of their message. */
 static const struct {
     const char *deed;
@@ -194,6 +199,11 @@ static const struct {
     {"f['scene/set/name'][0] = b'a.b'", 1, "/scene/set does not describe sets of cables"},
     {"del f['scene/set/name']; f['scene/set/name'] = np.array([b'x' * 64, b'y', b'z'])", 1, "a name that is too long"},
     {"del f['scene/set/start']", 1, "/scene/set/start is not there"},
+    {SET_TENSION("b'edge', b'ends'"), 0, ""},
+    {SET_TENSION("b'edge', b'edge'"), 1, "/set_tension/form/name does not name sets of cables"},
+    {SET_TENSION("b'edge', b'\\x1b[1m'"), 1, "/set_tension/form/name does not name sets of cables"},
+    {SET_TENSION("b'edge'"), 1, "other dimensions"},
+    {SET_TENSION("b'edge', b'ends'") "; del g['ratio']; g['ratio'] = np.ones(17)", 1, "empty or too large"},
 };
 
 START_TEST(damage_is_told)
