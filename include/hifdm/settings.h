@@ -26,6 +26,7 @@ typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
 typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN, HF_COUPLING_AUTO } hf_coupling_scheme;
 typedef enum { HF_COMPARE_AUTO, HF_COMPARE_TRUE, HF_COMPARE_FALSE } hf_compare;
 typedef enum { HF_VARIATION_DIFFERENCE, HF_VARIATION_CHAIN } hf_variation;
+typedef enum { HF_KEEP_ALL, HF_KEEP_BEST, HF_KEEP_EVERY } hf_keep;
 typedef enum { HF_SURFACE_AUTO, HF_SURFACE_PARABOLIC_CYLINDER, HF_SURFACE_PARABOLOID } hf_surface_kind;
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
@@ -38,6 +39,7 @@ extern const char *const hf_solver_word[5];
 extern const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1];
 extern const char *const hf_compare_word[4];
 extern const char *const hf_variation_word[3];
+extern const char *const hf_keep_word[4];
 extern const char *const hf_symmetry_word[6];
 extern const char *const hf_surface_kind_word[4];
 extern const char *const hf_coupling_scheme_word[4];
@@ -80,6 +82,8 @@ typedef struct {
     int polish_iterations;                /* bound on the iterations of Levenberg-Marquardt */
     hf_compare compare_lm;                /* Levenberg-Marquardt after method ga, for comparison */
     hf_symmetry symmetry;                 /* mirror planes that link genes */
+    hf_keep store;                        /* what a result file holds of the generations */
+    int store_every;                      /* of HF_KEEP_EVERY: whole generations so far apart */
 } hf_optimize_settings;
 
 #define HF_LIST_MAX 32

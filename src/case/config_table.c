@@ -153,6 +153,11 @@ const hf_field hf_field_table[] = {
      "stop when the best psi gained less than this over the window below"},
     {"optimize.stagnation_generations", HF_FIELD_INT, AT(optimize.stagnation_generations), 1, 1000000, "50", "", NULL,
      "length of that window"},
+    {"optimize.store", HF_FIELD_WORD, AT(optimize.store), 0, 0, "all", "", hf_keep_word,
+     "what the result file holds of the generations beside their figures: all of each; the best individual of each; or "
+     "whole generations store_every apart. The last one is there in any case"},
+    {"optimize.store_every", HF_FIELD_INT, AT(optimize.store_every), 2, 1000000, "100", "", NULL,
+     "with store every: generations 0, n, 2n, ... are stored"},
     {"optimize.polish_iterations", HF_FIELD_INT, AT(optimize.polish_iterations), 1, 100000, "200", "", NULL,
      "largest number of Levenberg-Marquardt iterations"},
 

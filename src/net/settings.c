@@ -14,5 +14,6 @@ const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1] = {HF_OPTIMI
 const char *const hf_coupling_scheme_word[4] = {"accelerated", "plain", "auto", NULL};
 const char *const hf_surface_kind_word[4] = {"auto", "parabolic_cylinder", "paraboloid", NULL};
 const char *const hf_variation_word[3] = {"difference", "chain", NULL};
+const char *const hf_keep_word[4] = {"all", "best", "every", NULL};
 const char *const hf_compare_word[4] = {"auto", "true", "false", NULL};
 const char *const hf_symmetry_word[6] = {"none", "x", "y", "xy", "auto", NULL};

@@ -2,7 +2,10 @@
  * of a row come from; writing and restoring both use it. The rows of a generation are all that an optimiser needs to
  * propose the next one (hf_optimiser_kind). Rows wait in memory, up to a bound, to be written together, because
  * every call of HDF5 costs some microseconds. The designs, nine tenths of the bytes, are written when a chunk of them
- * is full, all other rows less often. */
+ * is full, all other rows less often.
+ *
+ * A file may hold less: of each generation the best individual alone, or whole generations only now and then. Figures
+ * of a generation have a row in any case, and the last generation stands as a whole in /ga/last. */
 #ifndef HIFDM_GENERATIONS_H
 #define HIFDM_GENERATIONS_H
 
@@ -13,23 +16,31 @@
 #include <sys/uio.h>
 
 #define HF_GENERATIONS_PIECES (13 + HF_RESULT_N_INDIVIDUAL) /* data sets, and pieces of a payload */
+#define HF_GENERATIONS_BEST 0                               /* as `every`: rows of the best individuals */
+enum { HF_GENERATIONS_COUNTS = 3 };
 
 typedef struct {
     int n_individual, n_gene;
-    int limit;                               /* generations that there can be */
-    int n_stored;                            /* in the file */
-    int n_waiting, capacity;                 /* in memory */
-    int n_design, design_capacity;           /* the last of these, whose designs are in memory, too */
-    int design_chunk;                        /* designs per chunk of the data set */
-    size_t row_bytes[HF_GENERATIONS_PIECES]; /* of one generation */
-    size_t payload_bytes;                    /* of what the journal keeps of one */
-    uint64_t design_hash;                    /* of the last one added */
-    char *row[HF_GENERATIONS_PIECES];        /* [capacity] rows of each data set, [design_capacity] of designs */
+    int limit;                                 /* generations that there can be */
+    int every;                                 /* whole ones that have a row: 0, every, 2 every, ... */
+    int n_stored;                              /* in the file */
+    int n_waiting, capacity;                   /* in memory */
+    int n_design, design_capacity;             /* the last of these, whose designs are in memory, too */
+    int design_chunk;                          /* designs per chunk of the data set */
+    size_t row_bytes[HF_GENERATIONS_PIECES];   /* of a row */
+    size_t whole_bytes[HF_GENERATIONS_PIECES]; /* of one generation with all its individuals */
+    size_t payload_bytes;                      /* of what the journal keeps of one */
+    uint64_t design_hash;                      /* of the last one added */
+    char *row[HF_GENERATIONS_PIECES];          /* [capacity] rows of each data set, [design_capacity] of designs */
+    char *last[HF_GENERATIONS_PIECES]; /* unless `every` is 1: the last one added, but for its figures as a whole */
+    long count[HF_GENERATIONS_COUNTS]; /* evaluations, infeasible, above the cap, of all added; unless `every` is 1 */
+    double base_psi_m;                 /* NaN until the first one is added */
     void *block;
 } hf_generations;
 
-/* HF_OK or HF_NO_MEMORY. Free in any case. */
-hf_status hf_generations_create(int n_individual, int n_gene, int limit, hf_generations *g);
+/* every: 1: each generation has a row of each data set; n: each n-th; HF_GENERATIONS_BEST. HF_OK or HF_NO_MEMORY. Free
+ * in any case. */
+hf_status hf_generations_create(int n_individual, int n_gene, int limit, int every, hf_generations *g);
 void hf_generations_free(hf_generations *g);
 
 /* Full: hf_generations_make_room must be called before another is added. Due: enough waits for that call. */

@@ -149,6 +149,8 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
     if (!s) return status;
     hf_hdf5_lock();
     double begin_s = hf_clock_s();
+    const hf_optimize_settings *o = &settings->optimize;
+    s->every = o->store == HF_KEEP_BEST ? HF_GENERATIONS_BEST : o->store == HF_KEEP_EVERY ? o->store_every : 1;
     if (!restart && lstat(s->f.out.path, &info) == 0)
         s->f.io.status = hf_error(
             messages, HF_EXISTS,
@@ -314,10 +316,11 @@ hf_status hf_store_genes(hf_store *s, const hf_model *m, const hf_population *po
     hf_hdf5_put(io, group, ".", "n_individual", HF_KIND_INT, 0, &population->n_individual);
     hf_hdf5_put(io, group, ".", "n_variable", HF_KIND_INT, 0, &population->n_gene);
     hf_hdf5_put(io, group, ".", "generations_limit", HF_KIND_INT, 0, &population->generation_limit);
+    hf_hdf5_put(io, group, ".", "store_every", HF_KIND_INT, 0, &s->every);
     hf_hdf5_close(io, group);
     if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, messages);
     if (io->status == HF_OK && hf_generations_create(population->n_individual, population->n_gene,
-                                                     population->generation_limit, &s->rows) != HF_OK)
+                                                     population->generation_limit, s->every, &s->rows) != HF_OK)
         io->status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
     return hf_hdf5_unlock(io->status);
 }

@@ -10,6 +10,7 @@ typedef struct hf_store hf_store;
 struct hf_store {
     hf_store_file f;
     hf_generations rows;
+    int every;     /* of the rows to be, see hf_generations_create */
     int n_journal; /* generations that only the journal has, until hf_store_restore has bred their designs again */
     bool is_resumed;
     char identity[65];

@@ -37,16 +37,18 @@ static hf_status count_record(void *context, int generation, const void *payload
 #define INDIVIDUALS_MAX 100000  /* as optimize.population and optimize.generations in the table of keys: the */
 #define GENERATIONS_MAX 1000000 /* limits keep a damaged file from taking all memory */
 
-/* Sizes of the population and limit of generations, read from the file. */
-static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_gene, int *limit)
+/* Sizes of the population, limit of generations and which of them the file holds. */
+static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_gene, int *limit, int *every)
 {
     hf_hdf5_get(io, io->file, "/ga", "n_individual", HF_KIND_INT, n_individual, sizeof *n_individual);
     hf_hdf5_get(io, io->file, "/ga", "n_variable", HF_KIND_INT, n_gene, sizeof *n_gene);
     hf_hdf5_get(io, io->file, "/ga", "generations_limit", HF_KIND_INT, limit, sizeof *limit);
+    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "store_every", H5P_DEFAULT) > 0) /* new */
+        hf_hdf5_get(io, io->file, "/ga", "store_every", HF_KIND_INT, every, sizeof *every);
     int n_stored =
         io->status == HF_OK && *n_gene == 0 ? 0 : hf_hdf5_length(io, io->file, "/ga/gene_group", HF_LAYOUT_COUNT_MAX);
     if (io->status == HF_OK && (*n_individual < 1 || *n_individual > INDIVIDUALS_MAX || *n_gene != n_stored ||
-                                *limit < 1 || *limit > GENERATIONS_MAX))
+                                *limit < 1 || *limit > GENERATIONS_MAX || *every < 0 || *every > GENERATIONS_MAX))
         hf_hdf5_damaged(io, io->file, "/ga", "has impossible sizes");
 }
 
@@ -80,7 +82,7 @@ static void read_state(hf_store *s)
 {
     hf_hdf5 *io = &s->f.io;
     signed char finished = 0;
-    int n_individual = 1, n_gene = 0, limit = 1;
+    int n_individual = 1, n_gene = 0, limit = 1, every = 1;
     hf_hdf5_walk(io, demand_plain, io);
     hf_hdf5_get(io, io->file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     hf_hdf5_get(io, io->file, "/", "identity", HF_KIND_CHARS, s->identity, sizeof s->identity);
@@ -91,8 +93,8 @@ static void read_state(hf_store *s)
         if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, io->messages);
         return;
     }
-    read_sizes(io, &n_individual, &n_gene, &limit);
-    if (io->status == HF_OK && hf_generations_create(n_individual, n_gene, limit, &s->rows) != HF_OK)
+    read_sizes(io, &n_individual, &n_gene, &limit, &every);
+    if (io->status == HF_OK && hf_generations_create(n_individual, n_gene, limit, every, &s->rows) != HF_OK)
         io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
     if (io->status == HF_OK) hf_generations_count(io, &s->rows);
     if (io->status == HF_OK) io->status = hf_journal_replay(&s->f.journal, s->identity, count_record, s, io->messages);

@@ -52,6 +52,18 @@ def differing(one, other):
     return sorted(name for name in x.keys() | y.keys() if x.get(name) != y.get(name))
 
 
+def holds_of(thin, whole, store, every):
+    """Are the rows of /ga in `thin` those that optimize.store leaves of a whole file, and the last generation there?"""
+    best = whole["ga/best_individual"][:]
+    rows = {"best": lambda v: v[np.arange(len(v)), best][:, None], "every": lambda v: v[::every]}[store]
+    per = [n for n, d in whole["ga"].items() if hasattr(d, "shape") and d.shape[:2] == whole["ga/psi_m"].shape]
+    figures = [n for n, d in whole["ga"].items() if hasattr(d, "shape") and d.shape == best.shape]
+    return (len(per) > 10 and len(figures) == 6 and set(thin["ga/last"]) == set(per) and
+            all(thin["ga"][n][()].tobytes() == rows(whole["ga"][n][()]).tobytes() for n in per) and
+            all(thin["ga/last"][n][()].tobytes() == whole["ga"][n][-1:].tobytes() for n in per) and
+            all(thin["ga"][n][()].tobytes() == whole["ga"][n][()].tobytes() for n in figures))
+
+
 def facet_rms(grid, f, n):
     """RMS along the normal of the bilinear cells of a grid of nodes [j][i][xyz] above the cylinder x^2/(4f), over the
     projected area, with n x n points of Gauss-Legendre in a cell."""

@@ -103,6 +103,25 @@ START_TEST(every_generation_is_there)
 }
 END_TEST
 
+/* The rows that are there are those of the whole file, and what reads results reads these, too. */
+START_TEST(less_is_stored_where_less_is_asked_for)
+{
+    static const char *const words[] = {"best", "every"};
+    const char *thin = temp("thin.h5"), *word = words[_i];
+    HIFDM(0, "run", CHEN, "-o", thin, "--quiet", "--set", "optimize.generations=8", "--set",
+          keep(formatted("optimize.store=%s", word)), "--set", "optimize.store_every=3");
+    EXPECT(thin, run_once(), "--", formatted("holds_of(a, b, '%s', 3)", word),
+           "a['ga'].attrs['evaluations'] == b['ga'].attrs['evaluations']",
+           "a['ga'].attrs['base_psi_m'] == b['ga'].attrs['base_psi_m']",
+           "all(name.startswith(('ga/', 'case/')) for name in differing(a, b))");
+    HIFDM(1, "diff", thin, run_once());
+    HIFDM(0, "show", thin);
+    OUT("found in generation ");
+    HIFDM(0, "report", thin, "-o", temp("thin.html"));
+    HIFDM(0, "export", thin, "--stage", "optimize", "--csv", temp("thin"));
+}
+END_TEST
+
 Suite *suite_cli_results(void)
 {
     Suite *suite = suite_create("cli/results");
@@ -113,6 +132,7 @@ Suite *suite_cli_results(void)
     tcase_add_test(tcase, provenance_is_in_the_root_attributes);
     tcase_add_test(tcase, stored_shapes_belong_to_their_numbers);
     tcase_add_test(tcase, every_generation_is_there);
+    tcase_add_loop_test(tcase, less_is_stored_where_less_is_asked_for, 0, 2);
     suite_add_tcase(suite, tcase);
     return suite;
 }

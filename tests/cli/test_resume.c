@@ -2,6 +2,7 @@
  * as an undisturbed run. Whatever happens, the result file opens, and no generation that was acknowledged is lost. */
 #include "session.h"
 
+#include <hifdm/settings.h>
 #include <math.h>
 
 /* ---- kill -9 ---- */
@@ -39,22 +40,26 @@ static bool is_finished(const char *path)
     return !strstr(said.out, "unfinished");
 }
 
+#define EVERY_7 "optimize.store_every=7"
+
 /* Each time after a random number of changes in the folder, from the first file that is made to thousands of
- * generations. HIFDM_STRESS=1: 300 kills instead of 30. */
+ * generations; once for each choice of what is stored. HIFDM_STRESS=1: 300 kills instead of 30 and 8. */
 START_TEST(killed_runs_go_on_to_the_same_bits)
 {
-    const char *value = getenv("HIFDM_STRESS");
-    int n_kill = value && *value && strcmp(value, "0") ? 300 : 30, n_resumed = 0, n_finished = 0, acknowledged = 0;
+    const char *value = getenv("HIFDM_STRESS"), *store = keep(formatted("optimize.store=%s", hf_keep_word[_i]));
+    int n_kill = _i == HF_KEEP_ALL ? 30 : 8, n_resumed = 0, n_finished = 0, acknowledged = 0;
+    if (value && *value && strcmp(value, "0")) n_kill = 300;
     const char *c = storing_case("c.yaml", 5000), *path = temp("run.h5"), *whole = temp("whole.h5");
     struct rng rng = rng_start(0);
-    double most = 3000;
-    HIFDM(0, "run", c, "-o", whole, "--quiet");
+    double least = _i == HF_KEEP_ALL ? 1 : 20, most = 3000; /* few kills: those before the first generation are known */
+    HIFDM(0, "run", c, "-o", whole, "--quiet", "--set", store, "--set", EVERY_7);
     for (int kills = 0; kills < n_kill;) {
         char threads[2] = {(char)('0' + rng_int(&rng, 1, 3)), '\0'}; /* another number each time */
-        const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--quiet", "--threads", threads, NULL};
+        const char *const argv[] = {hifdm_program(), "run",   c,     "-o",    path,    "--quiet", "--threads",
+                                    threads,         "--set", store, "--set", EVERY_7, NULL};
         n_resumed += acknowledged > 0;
         session s = start_program(argv);
-        int n_change = (int)exp(rng_uniform(&rng, 0, log(most)));
+        int n_change = (int)exp(rng_uniform(&rng, log(least), log(most)));
         while (s.n_change < n_change && wait_for_change(&s)) {
         }
         int code = end_by(&s, SIGKILL);
@@ -73,7 +78,7 @@ START_TEST(killed_runs_go_on_to_the_same_bits)
             most = fmax(0.5 * most, 100); /* on a busy machine several changes are seen as one */
         }
     }
-    HIFDM(0, "run", c, "-o", path, "--quiet");
+    HIFDM(0, "run", c, "-o", path, "--quiet", "--set", store, "--set", EVERY_7);
     HIFDM(0, "diff", path, whole);
     ck_assert_msg(n_resumed >= n_kill / 4, "only %d of %d kills left something to go on with", n_resumed, n_kill);
     if (n_kill > 100) printf("%d kills, %d resumed, %d runs finished between\n", n_kill, n_resumed, n_finished);
@@ -323,7 +328,7 @@ Suite *suite_cli_resume(void)
 {
     Suite *suite = suite_create("cli/resume");
     TCase *tcase = tcase_create("resume");
-    tcase_add_test(tcase, killed_runs_go_on_to_the_same_bits);
+    tcase_add_loop_test(tcase, killed_runs_go_on_to_the_same_bits, 0, 3);
     tcase_add_test(tcase, a_torn_journal_gives_what_is_whole);
     tcase_add_test(tcase, seed_and_symmetry_are_recovered);
     tcase_add_loop_test(tcase, stopped_runs_publish_and_go_on, 0, sizeof stops / sizeof *stops);

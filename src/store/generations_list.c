@@ -1,0 +1,117 @@
+/* Contents: the list - values */
+#include "store/generations_list.h"
+
+#include <assert.h>
+#include <string.h>
+
+/* ---- the list ---- */
+
+void hf_generations_list(const hf_population *now, hf_generations_row row[HF_GENERATIONS_PIECES])
+{
+    const hsize_t p = (hsize_t)now->n_individual, k = (hsize_t)now->n_gene;
+#define ARRAY(member) now->member, sizeof *now->member, sizeof *now->member
+#define SINGLE(value) &(value), 0, sizeof(value)
+    const hf_generations_row before[] = {
+        {{"design_N", HF_KIND_REAL, 3, {1, p, k}, "N", "boundary pretension T' of each gene"}, ARRAY(design_N)},
+        {{"evaluated",
+          HF_KIND_FLAG,
+          2,
+          {1, p},
+          "",
+          "TRUE = a trial was evaluated for this place; FALSE: its result was known"},
+         ARRAY(pending)}};
+    const hf_generations_row behind[] = {
+        {{"trial_status", HF_KIND_STATUS, 2, {1, p}, "", "of what was proposed for this place"}, ARRAY(trial_status)},
+        {{"trial_psi_m", HF_KIND_REAL, 2, {1, p}, "m", "the same; kept when it was not worse"}, ARRAY(trial_psi_m)},
+        {{"crossover_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(crossover_rate)},
+        {{"mutation_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(mutation_rate)},
+        {{"parent", HF_KIND_INT, 3, {1, p, 2}, "", "individuals of the generation before, or -1; i, -1: i was kept"},
+         ARRAY(parent)},
+        {{"best_individual", HF_KIND_INT, 1, {1}, "", "-1 while none is feasible"}, SINGLE(now->best)},
+        {{"best_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the generation"}, SINGLE(now->best_psi_m[now->generation])},
+        {{"least_violation", HF_KIND_REAL, 1, {1}, "", "0: a design is feasible; inf: none has a shape"},
+         SINGLE(now->least_violation[now->generation])},
+        {{"mean_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(now->mean_psi_m)},
+        {{"worst_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(now->worst_psi_m)},
+        {{"n_infeasible", HF_KIND_INT, 1, {1}, "", "individuals whose status is not ok"}, SINGLE(now->n_infeasible)}};
+#undef ARRAY
+#undef SINGLE
+    _Static_assert(sizeof before == HF_ROW_RESULT * sizeof row[0], "rows before the results");
+    _Static_assert(sizeof behind == (HF_ROW_N - HF_ROW_TRIAL_STATUS) * sizeof row[0], "rows behind the results");
+    const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
+    hf_result_list_individual(field);
+    memcpy(row, before, sizeof before);
+    for (int i = 0; i < HF_RESULT_N_INDIVIDUAL; i++) {
+        const hf_result_field *f = field[i];
+        row[HF_ROW_RESULT + i] =
+            (hf_generations_row){{f->name, hf_layout_kind_of(f->kind), 2, {1, p}, f->units, f->description},
+                                 (const char *)now->result + f->offset,
+                                 sizeof *now->result,
+                                 f->size};
+    }
+    memcpy(row + HF_ROW_TRIAL_STATUS, behind, sizeof behind);
+    assert(!strcmp(row[HF_ROW_STATUS].array.name, "status") && !strcmp(row[HF_ROW_PSI].array.name, "psi_m") &&
+           !strcmp(row[HF_ROW_BEST_INDIVIDUAL].array.name, "best_individual") &&
+           !strcmp(row[HF_ROW_BEST_PSI].array.name, "best_psi_m") &&
+           !strcmp(row[HF_ROW_TRIAL_STATUS].array.name, "trial_status") &&
+           !strcmp(row[HF_ROW_VIOLATION].array.name, "least_violation"));
+}
+
+void hf_generations_list_empty(const hf_generations *g, int n_individual, hf_generations_row row[HF_GENERATIONS_PIECES])
+{
+    hf_form_result nothing = {0};
+    double none = 0;
+    const hf_population empty = {.n_individual = n_individual,
+                                 .n_gene = g->n_gene,
+                                 .result = &nothing,
+                                 .best_psi_m = &none,
+                                 .least_violation = &none};
+    hf_generations_list(&empty, row);
+}
+
+/* ---- values ---- */
+
+const char *const hf_generations_count_name[HF_GENERATIONS_COUNTS] = {"n_evaluation", "n_evaluation_infeasible",
+                                                                      "n_evaluation_above_cap"};
+
+void hf_generations_tally(const hf_population *p, int sign, long count[HF_GENERATIONS_COUNTS])
+{
+    for (int i = 0; i < p->n_individual; i++) {
+        count[0] += p->pending[i] ? sign : 0;
+        count[1] += p->pending[i] && p->trial_status[i] != HF_OK ? sign : 0;
+        count[2] += p->pending[i] && p->trial_status[i] == HF_RATIO_CAP ? sign : 0;
+    }
+}
+
+/* An enumeration is an int in memory, a byte in the file. */
+void hf_generations_gather(const hf_generations_row *row, size_t bytes, char *to)
+{
+    size_t each = hf_hdf5_kind_bytes(row->array.kind), n = bytes / each;
+    const char *from = row->from;
+    if (row->item_bytes == each && (row->stride == each || n == 1)) {
+        if (bytes) memcpy(to, from, bytes);
+        return;
+    }
+    for (size_t i = 0; i < n; i++, from += row->stride) {
+        int value;
+        if (row->item_bytes == each) {
+            memcpy(to + i * each, from, each);
+        } else {
+            memcpy(&value, from, sizeof value);
+            to[i] = (char)value;
+        }
+    }
+}
+
+void hf_generations_scatter(const hf_generations_row *row, size_t bytes, const char *from)
+{
+    size_t each = hf_hdf5_kind_bytes(row->array.kind), n = bytes / each;
+    char *to = (char *)row->from;
+    for (size_t i = 0; i < n; i++, to += row->stride) {
+        int value = (signed char)from[i];
+        if (row->item_bytes == each)
+            memcpy(to, from + i * each, each);
+        else
+            memcpy(to, &value, sizeof value);
+    }
+}
