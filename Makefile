@@ -140,7 +140,9 @@ compile-all: ## everything, the tests too, without running anything
 setup: ## install the packages that are missing
 	$(Q)tools/setup.sh
 
-run: setup ## set up, build, and run CASE (configs/chen2022.yaml) into results/
+# What a program that is there was built from is there, too.
+run: ## set up, build, and run CASE (configs/chen2022.yaml) into results/
+	$(Q)test -x $(PROGRAM) || tools/setup.sh
 	$(SUB) $(PROGRAM)
 	@mkdir -p $(dir $(RESULT))
 	$(PROGRAM) run $(CASE) -o $(RESULT) --restart
@@ -299,10 +301,9 @@ $(BUILD)/src/store/store.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/tests/%.o: EXTRA = -Itests $(filter-out -l%,$(CHECK))
 
 # Elsewhere than on x86-64 all are the portable one, and the program chooses that.
-ifneq ($(filter x86_64-%,$(shell $(CC) -dumpmachine)),)
-FLAGS_avx2 := -mavx2 -mfma
-FLAGS_avx512 := -mavx512f -mprefer-vector-width=512
-endif
+X86 = $(eval X86 := $(filter x86_64-%,$(shell $(CC) -dumpmachine)))$(X86)
+FLAGS_avx2 = $(if $(X86),-mavx2 -mfma)
+FLAGS_avx512 = $(if $(X86),-mavx512f -mprefer-vector-width=512)
 # The stack on which gcc 12's address sanitizer finds uses after a return is not aligned for 512-bit vectors.
 FLAGS_kernel := $(if $(findstring address,$(SANITIZE)),$(if $(findstring clang,$(CC)),,--param=asan-stack=0))
 define kernel_rule
@@ -374,4 +375,7 @@ $(FUZZERS): $(BUILD)/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/fuzz/fuzz.o $(fil
 	$(call say,LD,$@)
 	$(Q)$(LINK) -fsanitize=fuzzer $(patsubst %,-Wl$(comma)--wrap=%,$(FUZZ_WRAP)) -o $@ $^ $(PKG_LIBS)
 
+# The targets to type make no files by themselves, and reading these takes a while.
+ifneq ($(filter-out $(FRONT) setup clean help print-%,$(MAKECMDGOALS)),)
 -include $(LIB_OBJ:.o=.d) $(APP_OBJ:.o=.d) $(TEST_OBJ:.o=.d) $(BENCH_OBJ:.o=.d) $(FUZZ_OBJ:.o=.d)
+endif
