@@ -193,6 +193,17 @@ static void finish_columns(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_b
             finish_one(plan, w, i_block, *c, p);
 }
 
+/* Tiles of a kilobyte that the second level of a cache does not hold: of so many, those of the next block row are
+ * fetched while this one is worked on. *Measured* with half-bandwidth 65 and 18 000 tiles: 67 % of the peak, else 53 %;
+ * with half-bandwidth 21 and 660 tiles a loss of 0 to 4 %. */
+enum { FETCHED_FROM = 2000 };
+
+INLINE void fetch_tile(const double *tile)
+{
+    for (int k = 0; k < TILE; k += HF_LANES)
+        __builtin_prefetch(tile + k, 1);
+}
+
 /* Finish a block row up to its diagonal tile, which is only reduced. The root and the division of a pivot take as long
  * as half a tile, and the next pivot depends on them. Therefore the pivots of the block row before this one are found
  * here, one before each tile that does not need them. All lanes of a tile are done before the next one, so that the
@@ -203,6 +214,8 @@ static void factor_block_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i
     double *row = tile_at(plan, w, i_block, 0);
     for (int j_block = first / BLOCK; j_block < i_block; j_block++) {
         finish_columns(plan, w, i_block - 1, j_block < i_block - 1 ? 1 : BLOCK, &c);
+        if (plan->n_tile >= FETCHED_FROM && i_block + 1 < plan->n_block)
+            fetch_tile(tile_at(plan, w, i_block + 1, j_block + 1));
         const double *pivot_row = tile_at(plan, w, j_block, 0);
         int j = j_block * BLOCK, k = plan->first_column[j_block];
         bool is_empty = !tile_has_entry(plan, i_block, j_block);
@@ -335,27 +348,32 @@ static void clear_block_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_
     }
 }
 
+static void assemble_block_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block)
+{
+    clear_block_row(plan, w, i_block);
+    for (int i = i_block * BLOCK; i < (i_block + 1) * BLOCK; i++)
+        for (int p = 0; p < HF_LANES; p += WIDTH) {
+            if (i < plan->n_pad)
+                assemble_dummy_row(plan, w, i, p);
+            else
+                assemble_row(plan, w, i - plan->n_pad, p);
+        }
+}
+
 static void assemble(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 {
-    for (int i_block = 0; i_block < plan->n_block; i_block++) {
-        clear_block_row(plan, w, i_block);
-        for (int i = i_block * BLOCK; i < (i_block + 1) * BLOCK; i++)
-            for (int p = 0; p < HF_LANES; p += WIDTH) {
-                if (i < plan->n_pad)
-                    assemble_dummy_row(plan, w, i, p);
-                else
-                    assemble_row(plan, w, i - plan->n_pad, p);
-            }
-    }
+    for (int i_block = 0; i_block < plan->n_block; i_block++)
+        assemble_block_row(plan, w, i_block);
 }
 
 /* ---- solve ---- */
 
+/* Each block row is assembled when it is factored, so that it is still in the first level of the cache. */
 static void solve(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 {
-    assemble(plan, w);
     memset(w->bad_row, -1, HF_LANES * sizeof(int));
     for (int i_block = 0; i_block < plan->n_block; i_block++) {
+        assemble_block_row(plan, w, i_block);
         factor_block_row(plan, w, i_block);
         for (int p = 0; i_block && p < HF_LANES; p += WIDTH)
             substitute_forward(plan, w, i_block - 1, p); /* the row that has just got its pivots */
