@@ -19,7 +19,7 @@ typedef struct {
     int n_thread;
     hf_workspace *workspace;        /* [n_thread]; inside hf_parallel_for all but the first are created when needed */
     struct hf_batch_engine *engine; /* what hf_batch_share made, or NULL */
-    double cpu_s;                   /* processor time spent inside evaluations so far, over all threads */
+    double cpu_s; /* processor time spent in proposals (by hf_batch_next) and evaluations so far, over all threads */
 } hf_batch;
 
 /* n_thread 0 means hf_batch_default_threads(). The evaluator is borrowed until hf_batch_free. Returns HF_OK or
@@ -33,9 +33,9 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
  * NaN for psi, and without a shape for the ratios. */
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result);
 
-/* Propose the next generation and evaluate what is pending in it: hf_optimiser_next and hf_batch_run. Meanwhile
- * beside(context) runs once (NULL: nothing runs), in another thread if there is one; it has returned when this function
- * returns. `beside` may read the population only from a copy of the struct that was made before the call. Returns false
+/* Propose the next generation and evaluate what is pending in it: hf_optimiser_next and hf_batch_run in one, by all
+ * threads. First the calling thread runs beside(context) once (NULL: nothing), while the others, if there are any,
+ * begin. `beside` may read the population only from a copy of the struct that was made before the call. Returns false
  * when no generation is left; then only `beside` has run. */
 bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
 

@@ -8,9 +8,9 @@
  *         hf_optimiser_tell(&optimiser);      // ranks; p->stop_reason says whether this was the last generation
  *     } while (hf_optimiser_next(&optimiser)); // proposes the next one
  *
- * hf_batch_next does the first and the last step of the loop with all threads. A generation stays as it is while the
- * next one is proposed: a copy of the struct hf_population, made after hf_optimiser_tell, may be read until the
- * hf_optimiser_next after that.
+ * hf_batch_next does the first and the last step of the loop with all threads, each of which proposes individuals and
+ * evaluates them. A generation stays as it is while the next one is proposed: a copy of the struct hf_population, made
+ * after hf_optimiser_tell, may be read until the hf_optimiser_next after that.
  *
  * A new optimiser needs a file src/search/optimiser_NAME.c, a row of HF_OPTIMISER_LIST and a word in settings.h. */
 #ifndef HIFDM_OPTIMISER_H
@@ -22,17 +22,20 @@
 extern "C" {
 #endif
 
-/* The functions of one optimiser. A store keeps only the population, and a resumed run calls `next` again for the
- * generations whose results are in the journal. Therefore `next` depends only on the settings, the model, the
- * population after hf_optimiser_tell (best_psi_m holds the earlier generations) and random numbers by (seed,
- * generation, individual). `state` holds constants, and scratch whose contents mean nothing between calls. */
+/* The functions of one optimiser. A store keeps only the population, and a resumed run proposes the generations again
+ * whose results are in the journal. Therefore a proposal depends only on the settings, the model, the population after
+ * hf_optimiser_tell (best_psi_m holds the earlier generations) and random numbers by (seed, generation, individual).
+ * `state` holds constants, and scratch whose contents mean nothing between generations. */
 typedef struct {
     /* Make the state. HF_OK or HF_NO_MEMORY. */
     hf_status (*create)(const hf_optimize_settings *settings, const hf_model *model, void **state);
     /* Propose generation 0: fill all arrays of the generation but the results. */
     void (*first)(void *state, hf_population *population);
-    /* Propose the generation after `now` in the arrays of `next`, with the results of those that are not pending. */
-    void (*next)(void *state, const hf_population *now, hf_population *next);
+    /* Prepare what all proposals of the generation after `now` need. */
+    void (*begin)(void *state, const hf_population *now);
+    /* Propose individual i of that generation in the arrays of `next`, with its result when it is not pending. Several
+     * threads call this at once, each for other individuals, in any order. */
+    void (*propose)(void *state, const hf_population *now, hf_population *next, int i);
     /* Choose, once `now` is evaluated, what stands in it of its own individuals and of those before. NULL: its own. */
     void (*survive)(void *state, const hf_population *before, hf_population *now);
     void (*free)(void *state); /* state may be NULL */
@@ -40,7 +43,7 @@ typedef struct {
 
 typedef struct {
     hf_population population;
-    hf_population next; /* internal: the arrays that kind->next writes to */
+    hf_population next; /* internal: the arrays that kind->propose writes to */
     const hf_optimiser_kind *kind;
     const hf_optimize_settings *settings; /* borrowed */
     void *state;
@@ -58,6 +61,13 @@ void hf_optimiser_tell(hf_optimiser *optimiser);
 
 /* Propose the next generation. Returns false, and does nothing, when stop_reason says that there is none. */
 bool hf_optimiser_next(hf_optimiser *optimiser);
+
+/* The same in steps, for several threads: after hf_optimiser_begin, which returns false when there is none,
+ * hf_optimiser_propose for each individual, which may be evaluated at once: design and result are those of
+ * optimiser->next. After hf_optimiser_end this is the present generation. */
+bool hf_optimiser_begin(hf_optimiser *optimiser);
+void hf_optimiser_propose(hf_optimiser *optimiser, int i);
+void hf_optimiser_end(hf_optimiser *optimiser);
 
 void hf_optimiser_free(hf_optimiser *optimiser);
 

@@ -52,7 +52,8 @@ extern "C" {
     X(long, infeasible, LONG, 1, "infeasible", "those without a feasible shape among them")                            \
     X(hf_population_stop, optimize_stop, GA_STOP, 7, "stop_reason", "why it ended")                                    \
     X(double, optimize_wall_s, REAL, 4, "wall_s", "wall-clock time")                                                   \
-    X(double, optimize_cpu_s, REAL, 4, "cpu_s", "inside evaluations, over all threads")
+    X(double, optimize_cpu_s, REAL, 4, "cpu_s", "breeding, evaluating and storing, over all threads; without waiting") \
+    X(double, store_cpu_s, REAL, 4, "store_cpu_s", "storing alone")
 
 /* Levenberg-Marquardt. */
 #define HF_SUMMARY_POLISH_LIST(X)                                                                                      \

@@ -31,7 +31,8 @@ typedef struct {
     hf_optimiser_plan plan; /* what optimize.method consists of */
     int first_generation;   /* of this session */
     long first_evaluation;
-    double earlier_wall_s, earlier_cpu_s; /* of the genetic algorithm in other sessions, as far as it was published */
+    double store_cpu_s;                                    /* spent in storing generations */
+    double earlier_wall_s, earlier_cpu_s, earlier_store_s; /* of other sessions, as far as it was published */
 } run;
 
 static void run_free(run *r)
@@ -204,7 +205,8 @@ static void sum_up(const run *r, double start_s, hf_summary *s)
     const hf_population *p = &r->optimiser.population;
     s->has_optimize = true;
     s->optimize_wall_s = r->earlier_wall_s + hf_clock_s() - start_s;
-    s->optimize_cpu_s = r->earlier_cpu_s + r->problem.batch.cpu_s;
+    s->optimize_cpu_s = r->earlier_cpu_s + r->problem.batch.cpu_s + r->store_cpu_s;
+    s->store_cpu_s = r->earlier_store_s + r->store_cpu_s;
     s->generations = p->generation + 1;
     s->evaluations = p->n_evaluation;
     s->infeasible = p->n_evaluation_infeasible;
@@ -213,7 +215,7 @@ static void sum_up(const run *r, double start_s, hf_summary *s)
 
 /* A generation that is being stored while the next one is bred and evaluated. */
 typedef struct {
-    const run *r;
+    run *r;
     hf_population population; /* as hf_optimiser_tell left it */
     const hf_summary *summary;
     hf_messages *messages;
@@ -237,9 +239,11 @@ static void observe_generation(const told *t)
 static void keep(void *context)
 {
     told *t = context;
+    double start_s = hf_clock_thread_cpu_s();
     t->status = hf_store_generation(t->r->store, &t->r->problem.model, &t->population, t->messages);
     if (t->status == HF_OK) t->status = hf_store_publish(t->r->store, t->summary, false, t->messages);
     if (t->status == HF_OK) observe_generation(t);
+    t->r->store_cpu_s += hf_clock_thread_cpu_s() - start_s;
 }
 
 /* Restore the generations of earlier sessions. Without any, publish a file without generations at once, since a journal
@@ -253,6 +257,7 @@ static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
     hf_optimiser_tell(&r->optimiser);
     r->earlier_wall_s = s->optimize_wall_s;
     r->earlier_cpu_s = s->optimize_cpu_s;
+    r->earlier_store_s = s->store_cpu_s;
     r->first_generation = p->generation + 1;
     r->first_evaluation = p->n_evaluation;
     return HF_OK;

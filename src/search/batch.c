@@ -177,33 +177,47 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
 
 /* ---- the next generation ---- */
 
+/* Of the individuals of a generation, shared by all threads. */
 typedef struct {
-    batch_job job; /* first, so that its address is that of the struct: work_on_job gets it */
+    hf_batch *batch;
     hf_optimiser *optimiser;
+    hf_parallel_queue place; /* those that nobody has proposed yet */
+    void (*beside)(void *context);
+    void *context;
 } generation_job;
 
-static void propose_job(void *context)
+/* Propose individuals until one must be evaluated; -1: there is none. */
+static int propose_one(void *context)
 {
     generation_job *g = context;
-    const hf_population *p = &g->optimiser->population;
-    hf_optimiser_next(g->optimiser);
-    g->job.queue = (hf_parallel_queue){p->n_individual, 0, p->pending};
-    g->job.design_N = p->design_N;
-    g->job.result = p->result;
+    int i = hf_parallel_take(&g->place);
+    for (; i >= 0; i = hf_parallel_take(&g->place)) {
+        hf_optimiser_propose(g->optimiser, i);
+        if (g->optimiser->next.pending[i]) break;
+    }
+    return i;
+}
+
+static void work_on_generation(void *context, int room)
+{
+    generation_job *g = context;
+    const hf_population *next = &g->optimiser->next;
+    if (room == 0 && g->beside) g->beside(g->context);
+    if (hf_parallel_is_empty(&g->place) || !has_room(g->batch, room)) return;
+    double start_s = hf_clock_thread_cpu_s();
+    work_off(g->batch, room, propose_one, g, false, next->design_N, next->result);
+    hf_parallel_add(&g->batch->cpu_s, hf_clock_thread_cpu_s() - start_s);
 }
 
 bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context)
 {
-    const hf_population *p = &optimiser->population;
-    bool is_last = p->stop_reason != HF_POPULATION_RUNNING;
-    if (beside && !is_last && batch->n_thread > 1 && !hf_parallel_is_inside()) {
-        generation_job g = {.job.batch = batch, .optimiser = optimiser};
-        hf_parallel_run_after(batch->n_thread, propose_job, work_on_job, &g, beside, context);
-        return true;
+    generation_job g = {batch, optimiser, {optimiser->population.n_individual, 0, NULL}, beside, context};
+    if (!hf_optimiser_begin(optimiser)) {
+        if (beside) beside(context);
+        return false;
     }
-    if (beside) beside(context);
-    if (!hf_optimiser_next(optimiser)) return false;
-    hf_batch_run(batch, p->n_individual, p->design_N, p->pending, p->result);
+    hf_parallel_run(batch->n_thread, work_on_generation, &g);
+    hf_optimiser_end(optimiser);
     return true;
 }
 

@@ -33,13 +33,31 @@ void hf_optimiser_tell(hf_optimiser *optimiser)
     hf_population_rank(o->settings, &o->population);
 }
 
-bool hf_optimiser_next(hf_optimiser *optimiser)
+bool hf_optimiser_begin(hf_optimiser *optimiser)
 {
     assert(optimiser->kind);
     if (optimiser->population.stop_reason != HF_POPULATION_RUNNING) return false;
-    optimiser->kind->next(optimiser->state, &optimiser->population, &optimiser->next);
+    optimiser->kind->begin(optimiser->state, &optimiser->population);
+    return true;
+}
+
+void hf_optimiser_propose(hf_optimiser *optimiser, int i)
+{
+    optimiser->kind->propose(optimiser->state, &optimiser->population, &optimiser->next, i);
+}
+
+void hf_optimiser_end(hf_optimiser *optimiser)
+{
     hf_population_advance(&optimiser->population, &optimiser->next);
     optimiser->is_fresh = true;
+}
+
+bool hf_optimiser_next(hf_optimiser *optimiser)
+{
+    if (!hf_optimiser_begin(optimiser)) return false;
+    for (int i = 0; i < optimiser->population.n_individual; i++)
+        hf_optimiser_propose(optimiser, i);
+    hf_optimiser_end(optimiser);
     return true;
 }
 

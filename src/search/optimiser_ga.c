@@ -39,17 +39,22 @@ typedef struct {
     const hf_model *model;
     const int *gene_leader; /* of the model; NULL when no genes are linked */
     int n_leader;
-    double *fitness, *group_draw;  /* scratch: [n_individual], [n_gene_group] */
-    int *elite;                    /* scratch: [elites] the best, in order */
-    double best_merit, mean_merit; /* scratch */
+    /* What the children of a generation share, made before the first of them: */
+    double *fitness; /* [n_individual] */
+    double total_fitness, best_merit, mean_merit;
+    int *elite;           /* [elites] the best, in order */
+    unsigned char *taken; /* [n_individual] scratch */
+    double *draw;         /* [n_individual][n_gene_group] scratch of each child, as several are bred at a time */
 } breeder;
 
 /* The struct itself comes first, so that its address is that of the block, and free(state) frees all. */
 static breeder *lay_out(hf_arena *a, breeder *g)
 {
     breeder *itself = hf_arena_take(a, 1, sizeof *itself);
-    g->group_draw = hf_arena_take(a, (size_t)g->model->n_gene_group, sizeof(double));
-    g->fitness = hf_arena_take(a, (size_t)g->settings->population, sizeof(double));
+    size_t n = (size_t)g->settings->population;
+    g->draw = hf_arena_take(a, n * (size_t)g->model->n_gene_group, sizeof(double));
+    g->fitness = hf_arena_take(a, n, sizeof(double));
+    g->taken = hf_arena_take(a, n, 1);
     g->elite = hf_arena_take(a, (size_t)g->settings->elites, sizeof(int));
     return itself;
 }
@@ -73,6 +78,12 @@ static bool leads(const breeder *g, int k)
     return !g->gene_leader || g->gene_leader[k] == k;
 }
 
+/* A number for each chain of individual i. */
+static double *draws_of(const breeder *g, int i)
+{
+    return g->draw + (size_t)i * (size_t)g->model->n_gene_group;
+}
+
 /* ---- the first generation ---- */
 
 /* Eq. 13 around the base, with one random number per chain (see mutate). Individual 0 is the base itself, so that the
@@ -83,11 +94,12 @@ static void first(void *state, hf_population *p)
     const hf_optimize_settings *s = g->settings;
     for (int i = 0; i < p->n_individual; i++) {
         double *design_N = p->design_N + (size_t)i * (size_t)p->n_gene;
+        double *draw = draws_of(g, i);
         hf_random random = hf_random_stream(s->seed, 0, i);
         for (int j = 0; j < g->model->n_gene_group; j++)
-            g->group_draw[j] = i == 0 ? 0 : 2 * hf_random_uniform(&random) - 1;
+            draw[j] = i == 0 ? 0 : 2 * hf_random_uniform(&random) - 1;
         for (int k = 0; k < p->n_gene; k++) {
-            double step = s->range_N * g->group_draw[g->model->gene_group[k]];
+            double step = s->range_N * draw[g->model->gene_group[k]];
             design_N[k] = hf_population_clamp(p, k, p->base_N[k] + step);
         }
         hf_population_link(p, g->model, design_N);
@@ -132,21 +144,21 @@ static void set_fitness(breeder *g, const hf_population *p)
         g->fitness[i] = n == 0 ? 1 : !isfinite(merit) ? 0 : 1;
         if (isfinite(merit) && worst > best) g->fitness[i] = (worst - merit) / (worst - best) + FITNESS_FLOOR;
     }
+    g->total_fitness = 0;
+    for (int i = 0; i < p->n_individual; i++)
+        g->total_fitness += g->fitness[i];
     g->best_merit = best;
     g->mean_merit = n > 1 ? sum / n : n == 1 ? INFINITY : (double)NAN; /* one alone is not to be lost */
 }
 
-static int spin_roulette(const double *fitness, int n, hf_random *random)
+static int spin_roulette(const breeder *g, hf_random *random)
 {
-    double total = 0;
-    for (int i = 0; i < n; i++)
-        total += fitness[i];
-    double left = hf_random_uniform(random) * total;
+    double left = hf_random_uniform(random) * g->total_fitness;
     int last = 0;
-    for (int i = 0; i < n; i++) {
-        if (!(fitness[i] > 0)) continue;
+    for (int i = 0; i < g->settings->population; i++) {
+        if (!(g->fitness[i] > 0)) continue;
         last = i;
-        left -= fitness[i];
+        left -= g->fitness[i];
         if (left < 0) break;
     }
     return last;
@@ -154,13 +166,13 @@ static int spin_roulette(const double *fitness, int n, hf_random *random)
 
 /* ---- variation ---- */
 
-static void recombine(const breeder *g, const hf_population *p, const double *a, const double *b, double *child,
-                      hf_random *random)
+static void recombine(const breeder *g, const hf_population *p, const double *a, const double *b, double *draw,
+                      double *child, hf_random *random)
 {
     for (int j = 0; j < g->model->n_gene_group; j++)
-        g->group_draw[j] = hf_random_uniform(random) * (1 + 2 * RECOMBINATION_REACH) - RECOMBINATION_REACH;
+        draw[j] = hf_random_uniform(random) * (1 + 2 * RECOMBINATION_REACH) - RECOMBINATION_REACH;
     for (int k = 0; k < p->n_gene; k++) {
-        double share = g->group_draw[g->model->gene_group[k]];
+        double share = draw[g->model->gene_group[k]];
         child[k] = hf_population_clamp(p, k, a[k] + share * (b[k] - a[k]));
     }
 }
@@ -176,21 +188,22 @@ static double mutation_step(double rate, hf_random *random)
 /* The cables of a chain mutate together. An unequal change drags the chain's nodes along it, which raises psi steeply,
  * so that independent steps of every gene nearly always make psi worse (measured: 400 generations then gain 1 um
  * instead of 240 um). Single genes mutate as well, on average `single` of them per individual. */
-static void mutate(const breeder *g, const hf_population *p, double rate, double single, double *child,
+static void mutate(const breeder *g, const hf_population *p, double rate, double single, double *draw, double *child,
                    hf_random *random)
 {
     single /= g->n_leader;
     for (int j = 0; j < g->model->n_gene_group; j++)
-        g->group_draw[j] = mutation_step(rate, random);
+        draw[j] = mutation_step(rate, random);
     for (int k = 0; k < p->n_gene; k++) {
         if (!leads(g, k)) continue;
-        double step = g->group_draw[g->model->gene_group[k]] + mutation_step(single, random);
+        double step = draw[g->model->gene_group[k]] + mutation_step(single, random);
         child[k] = hf_population_clamp(p, k, child[k] + step * (p->upper_N[k] - p->lower_N[k]));
     }
 }
 
 /* An elite, moved by some part of the way from the worse of two parents to the better one, and beyond. */
-static void move_elite(const breeder *g, const hf_population *p, int a, int b, double *child, hf_random *random)
+static void move_elite(const breeder *g, const hf_population *p, int a, int b, double *draw, double *child,
+                       hf_random *random)
 {
     size_t n = (size_t)p->n_gene;
     int better = hf_population_is_better(p, a, b) ? a : b, worse = a + b - better;
@@ -201,10 +214,10 @@ static void move_elite(const breeder *g, const hf_population *p, int a, int b, d
     bool by_chain = hf_random_uniform(random) < BY_CHAIN;
     memcpy(child, p->design_N + (size_t)leader * n, n * sizeof *child);
     for (int j = 0; j < g->model->n_gene_group && by_chain; j++)
-        g->group_draw[j] = hf_random_uniform(random);
+        draw[j] = hf_random_uniform(random);
     for (size_t k = 0; k < n; k++) {
-        double draw = by_chain ? g->group_draw[g->model->gene_group[k]] : hf_random_uniform(random);
-        if (draw < share) child[k] = hf_population_clamp(p, (int)k, child[k] + step * (to[k] - from[k]));
+        double drawn = by_chain ? draw[g->model->gene_group[k]] : hf_random_uniform(random);
+        if (drawn < share) child[k] = hf_population_clamp(p, (int)k, child[k] + step * (to[k] - from[k]));
     }
 }
 
@@ -216,23 +229,23 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
     bool by_chain = s->variation == HF_VARIATION_CHAIN;
     size_t n = (size_t)now->n_gene;
     hf_random random = hf_random_stream(s->seed, now->generation + 1, i);
-    int a = spin_roulette(g->fitness, now->n_individual, &random);
-    int b = spin_roulette(g->fitness, now->n_individual, &random);
+    int a = spin_roulette(g, &random);
+    int b = spin_roulette(g, &random);
     /* What a child is that no crossover makes. From outside the limits the way in leads past the best. */
     int itself = by_chain ? a : now->result[i].status == HF_OK ? i : g->elite[0];
     const double *mother = now->design_N + (size_t)a * n, *father = now->design_N + (size_t)b * n;
     const double *same = now->design_N + (size_t)itself * n;
-    double *child = next->design_N + (size_t)i * n;
+    double *child = next->design_N + (size_t)i * n, *draw = draws_of(g, i);
     double merit = fmin(merit_of(now, a), merit_of(now, b)); /* fmin ignores the NaN of an infeasible parent */
     double pc = adaptive(g, s->crossover_high, s->crossover_low, merit);
     double pm = adaptive(g, s->mutation_high, s->mutation_low, merit);
     if (hf_random_uniform(&random) >= pc || (!by_chain && a == b))
         memcpy(child, same, n * sizeof *child);
     else if (by_chain)
-        recombine(g, now, mother, father, child, &random);
+        recombine(g, now, mother, father, draw, child, &random);
     else
-        move_elite(g, now, a, b, child, &random);
-    mutate(g, now, pm, by_chain ? pm : SINGLES * pm, child, &random);
+        move_elite(g, now, a, b, draw, child, &random);
+    mutate(g, now, pm, by_chain ? pm : SINGLES * pm, draw, child, &random);
     hf_population_link(now, g->model, child);
     next->pending[i] = memcmp(child, same, n * sizeof *child) != 0;
     next->result[i] = now->result[itself];
@@ -245,40 +258,43 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
 /* ---- the next generation ---- */
 
 /* The best individuals, by repeated selection (elites are few). */
-static void list_elites(const breeder *g, const hf_population *p, unsigned char *taken)
+static void list_elites(const breeder *g, const hf_population *p)
 {
-    memset(taken, 0, (size_t)p->n_individual);
+    memset(g->taken, 0, (size_t)p->n_individual);
     for (int e = 0; e < g->settings->elites; e++) {
         int best = -1;
         for (int i = 0; i < p->n_individual; i++)
-            if (!taken[i] && (best < 0 || hf_population_is_better(p, i, best))) best = i;
-        taken[best] = 1;
+            if (!g->taken[i] && (best < 0 || hf_population_is_better(p, i, best))) best = i;
+        g->taken[best] = 1;
         g->elite[e] = best;
     }
 }
 
-/* They live on, in the first places. */
-static void keep_elites(const breeder *g, const hf_population *now, hf_population *next)
+/* The elite e lives on, in place e. */
+static void keep_elite(const breeder *g, const hf_population *now, hf_population *next, int e)
 {
     size_t n = (size_t)now->n_gene;
-    for (int e = 0; e < g->settings->elites; e++) {
-        int i = g->elite[e];
-        memcpy(next->design_N + (size_t)e * n, now->design_N + (size_t)i * n, n * sizeof(double));
-        next->result[e] = now->result[i];
-        next->crossover_rate[e] = next->mutation_rate[e] = 0;
-        next->parent[2 * e] = next->parent[2 * e + 1] = i;
-        next->pending[e] = 0;
-    }
+    int i = g->elite[e];
+    memcpy(next->design_N + (size_t)e * n, now->design_N + (size_t)i * n, n * sizeof(double));
+    next->result[e] = now->result[i];
+    next->crossover_rate[e] = next->mutation_rate[e] = 0;
+    next->parent[2 * e] = next->parent[2 * e + 1] = i;
+    next->pending[e] = 0;
 }
 
-static void breed_all(void *state, const hf_population *now, hf_population *next)
+static void begin(void *state, const hf_population *now)
 {
     breeder *g = state;
-    bool replaces_all = g->settings->variation == HF_VARIATION_CHAIN;
     set_fitness(g, now);
-    list_elites(g, now, next->pending); /* what is pending is set afterwards */
-    if (replaces_all) keep_elites(g, now, next);
-    for (int i = replaces_all ? g->settings->elites : 0; i < now->n_individual; i++)
+    list_elites(g, now);
+}
+
+static void propose(void *state, const hf_population *now, hf_population *next, int i)
+{
+    const breeder *g = state;
+    if (g->settings->variation == HF_VARIATION_CHAIN && i < g->settings->elites)
+        keep_elite(g, now, next, i);
+    else
         breed(g, now, next, i);
 }
 
@@ -289,4 +305,4 @@ static void survive(void *state, const hf_population *before, hf_population *now
     if (g->settings->variation == HF_VARIATION_DIFFERENCE) hf_population_keep_better(before, now);
 }
 
-const hf_optimiser_kind hf_optimiser_ga = {create, first, breed_all, survive, free};
+const hf_optimiser_kind hf_optimiser_ga = {create, first, begin, propose, survive, free};

@@ -2,10 +2,7 @@
 
 #include "base/later.h"
 
-#include <assert.h>
-#include <errno.h>
 #include <omp.h>
-#include <semaphore.h>
 #include <stddef.h>
 
 int hf_parallel_cores(void)
@@ -63,29 +60,6 @@ void hf_parallel_run(int n_thread, void (*work)(void *context, int room), void *
     }
 #pragma omp parallel num_threads(n_thread)
     work(context, omp_get_thread_num());
-}
-
-void hf_parallel_run_after(int n_thread, void (*first)(void *context), void (*work)(void *context, int room),
-                           void *context, void (*beside)(void *context), void *beside_context)
-{
-    sem_t is_ready;
-    int failed = sem_init(&is_ready, 0, 0);
-    assert(!failed && !hf_parallel_is_inside());
-    (void)failed;
-#pragma omp parallel num_threads(n_thread)
-    {
-        int room = omp_get_thread_num(), n = omp_get_num_threads();
-        if (room == 0) {
-            first(context);
-            for (int i = 1; i < n; i++)
-                sem_post(&is_ready);
-        }
-        if (room == (n > 1)) beside(beside_context);
-        while (room > 0 && sem_wait(&is_ready) != 0)
-            assert(errno == EINTR);
-        work(context, room);
-    }
-    sem_destroy(&is_ready);
 }
 
 /* later is NULL when no thread serves it. */

@@ -28,12 +28,6 @@ void hf_parallel_add(double *sum, double value);
  * loop without an item take rooms meanwhile. */
 void hf_parallel_run(int n_thread, void (*work)(void *context, int room), void *context);
 
-/* Call first(context) in one thread and beside(beside_context) in another; then work(context, room) in each of n_thread
- * threads. work begins when `first` has returned, and in the thread of `beside` when that has returned, too. With one
- * thread the three are called one after the other. Not to be called inside another loop. */
-void hf_parallel_run_after(int n_thread, void (*first)(void *context), void (*work)(void *context, int room),
-                           void *context, void (*beside)(void *context), void *beside_context);
-
 /* Call work(context, i) for i = 0 ... n-1, handed out in this order to n_thread threads (0: all cores). Calls of
  * hf_parallel_run inside share these threads: a thread that finds no i left helps there, so that all are busy until the
  * last i is done. What work gives to hf_later_do runs in one further thread, and is done when this returns. */

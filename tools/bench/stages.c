@@ -1,7 +1,8 @@
 /* A whole run, stage by stage, of a case that only needs the force density method, one that is form-found, and one that
  * is optimised as well: what takes how long, and what memory each stage has allocated and keeps. The run is the
  * program's own: the linker puts the functions below between it and the library (BENCH_WRAP in the Makefile). What a
- * case does not need has no sample. On one thread, where the stages of a generation come one after the other. */
+ * case does not need has no sample. Evaluations include the breeding of what is evaluated. On one thread, where the
+ * stages of a generation come one after the other. */
 #include "bench.h"
 
 #include "search/polish.h"
@@ -13,9 +14,9 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { READ, SCENE, MODEL, FORM, SETUP, EVALUATE, BREED, POLISH, STORE, N_STAGE };
-static const char *const stage_word[N_STAGE] = {"read case", "scene",          "model",          "form-finding",
-                                                "GA set-up", "GA evaluations", "GA bookkeeping", "Levenberg-Marquardt",
+enum { READ, SCENE, MODEL, FORM, SETUP, EVALUATE, RANK, POLISH, STORE, N_STAGE };
+static const char *const stage_word[N_STAGE] = {"read case", "scene",          "model",      "form-finding",
+                                                "GA set-up", "GA evaluations", "GA ranking", "Levenberg-Marquardt",
                                                 "storing"};
 
 /* Globals, because the functions of the library have no context to pass them in. */
@@ -103,8 +104,7 @@ WATCH(EVALUATE, bool, hf_batch_next, (hf_batch * batch, hf_optimiser *ga, void (
       (batch, ga, beside, context))
 WATCH(EVALUATE, hf_workspace *, hf_batch_run_one, (hf_batch * batch, const double *design_N, hf_form_result *result),
       (batch, design_N, result))
-WATCH_VOID(BREED, hf_optimiser_tell, (hf_optimiser * ga), (ga))
-WATCH(BREED, bool, hf_optimiser_next, (hf_optimiser * ga), (ga))
+WATCH_VOID(RANK, hf_optimiser_tell, (hf_optimiser * ga), (ga))
 WATCH(POLISH, hf_status, hf_polish_run,
       (const hf_evaluator *evaluator, const double *lower_N, const double *upper_N, int max_iterations,
        double *design_N, hf_workspace *workspace, hf_polish_result *result),

@@ -177,9 +177,9 @@ enum { N_INDIVIDUAL = 12, N_GENERATION = 6 };
 
 static int n_bred; /* generations */
 
-static void breed_and_count(void *state, const hf_population *now, hf_population *next)
+static void breed_and_count(void *state, const hf_population *now, hf_population *next, int i)
 {
-    hf_optimiser_ga.next(state, now, next);
+    hf_optimiser_ga.propose(state, now, next, i);
     __atomic_add_fetch(&n_bred, 1, __ATOMIC_SEQ_CST);
 }
 
@@ -204,7 +204,7 @@ static void read_late(void *context)
 {
     struct reader *r = context;
     while (r->is_beside && r->ga.population.stop_reason == HF_POPULATION_RUNNING &&
-           __atomic_load_n(&n_bred, __ATOMIC_SEQ_CST) <= r->ga.population.generation)
+           __atomic_load_n(&n_bred, __ATOMIC_SEQ_CST) < (r->ga.population.generation + 1) * N_INDIVIDUAL)
         sched_yield();
     r->n_call++;
     r->is_same = memcmp(r->design_N, r->ga.population.design_N,
@@ -226,7 +226,7 @@ START_TEST(a_generation_can_be_read_while_the_next_is_bred)
         hf_optimiser ga;
         static struct reader reader;
         hf_optimiser_kind counting = hf_optimiser_ga;
-        counting.next = breed_and_count;
+        counting.propose = breed_and_count;
         n_bred = 0;
         reader.n_call = 0;
         reader.is_beside = n_thread > 1;

@@ -35,14 +35,20 @@ static void propose_first(void *state, hf_population *p)
     }
 }
 
-static void propose_next(void *state, const hf_population *now, hf_population *next)
+static void begin_next(void *state, const hf_population *now)
+{
+    ck_assert_ptr_eq(state, &calls);
+    ck_assert_int_eq(now->stop_reason, HF_POPULATION_RUNNING);
+    calls.n_next++;
+}
+
+static void propose(void *state, const hf_population *now, hf_population *next, int i)
 {
     ck_assert_ptr_eq(state, &calls);
     ck_assert(now->design_N != next->design_N);
-    calls.n_next++;
-    for (int i = 0; i < N * N_GENE; i++)
-        next->design_N[i] = now->design_N[i] - 1;
-    memset(next->pending, 1, N);
+    for (int k = i * N_GENE; k < (i + 1) * N_GENE; k++)
+        next->design_N[k] = now->design_N[k] - 1;
+    next->pending[i] = 1;
 }
 
 static void count_free(void *state)
@@ -51,7 +57,7 @@ static void count_free(void *state)
     calls.n_free++;
 }
 
-static const hf_optimiser_kind counting = {count_create, propose_first, propose_next, NULL, count_free};
+static const hf_optimiser_kind counting = {count_create, propose_first, begin_next, propose, NULL, count_free};
 
 START_TEST(generations_are_asked_for_and_told)
 {

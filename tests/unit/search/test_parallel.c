@@ -14,7 +14,7 @@ enum { N_ITEM = 300, MAX_THREAD = 4 };
 
 static struct counts {
     hf_parallel_queue queue;
-    int n_taken[N_ITEM], n_room[MAX_THREAD], n_before, is_ready;
+    int n_taken[N_ITEM], n_room[MAX_THREAD];
     double sum;
 } counts;
 
@@ -22,7 +22,6 @@ static void take_all(void *context, int room)
 {
     struct counts *c = context;
     __atomic_add_fetch(&c->n_room[room], 1, __ATOMIC_SEQ_CST);
-    if (!__atomic_load_n(&c->is_ready, __ATOMIC_SEQ_CST)) __atomic_add_fetch(&c->n_before, 1, __ATOMIC_SEQ_CST);
     for (int i = hf_parallel_take(&c->queue); i >= 0; i = hf_parallel_take(&c->queue)) {
         c->n_taken[i]++;
         hf_parallel_add(&c->sum, i);
@@ -41,7 +40,6 @@ static void assert_all_taken(const struct counts *c, int n_thread)
         ck_assert_int_eq(c->n_room[room], room < n_thread);
     ck_assert_double_eq(c->sum, sum); /* whole numbers: exact in any order */
     ck_assert(hf_parallel_is_empty(&c->queue));
-    ck_assert_int_eq(c->n_before, 0);
 }
 
 START_TEST(every_wanted_number_and_every_room_comes_once)
@@ -50,36 +48,10 @@ START_TEST(every_wanted_number_and_every_room_comes_once)
     for (int i = 0; i < N_ITEM; i++)
         wanted[i] = i % 3 != 1;
     for (int n_thread = 1; n_thread <= MAX_THREAD; n_thread++) {
-        counts = (struct counts){.queue = {N_ITEM, 0, _i ? wanted : NULL}, .is_ready = 1};
+        counts = (struct counts){.queue = {N_ITEM, 0, _i ? wanted : NULL}};
         ck_assert(!hf_parallel_is_empty(&counts.queue));
         hf_parallel_run(n_thread, take_all, &counts);
         assert_all_taken(&counts, n_thread);
-    }
-}
-END_TEST
-
-static void make_ready(void *context)
-{
-    struct counts *c = context;
-    for (int i = 0; i < 10000; i++) /* lets others begin too early */
-        sched_yield();
-    c->queue = (hf_parallel_queue){N_ITEM, 0, NULL};
-    __atomic_store_n(&c->is_ready, 1, __ATOMIC_SEQ_CST);
-}
-
-static void count_call(void *context)
-{
-    (*(int *)context)++;
-}
-
-START_TEST(nobody_begins_before_the_first_step_is_done)
-{
-    for (int n_thread = 1; n_thread <= MAX_THREAD; n_thread++) {
-        int n_beside = 0;
-        counts = (struct counts){0};
-        hf_parallel_run_after(n_thread, make_ready, take_all, &counts, count_call, &n_beside);
-        assert_all_taken(&counts, n_thread);
-        ck_assert_int_eq(n_beside, 1);
     }
 }
 END_TEST
@@ -91,7 +63,7 @@ static struct counts inner[8];
 static void run_inner(void *context, int i)
 {
     (void)context;
-    inner[i] = (struct counts){.queue = {N_ITEM, 0, NULL}, .is_ready = 1};
+    inner[i] = (struct counts){.queue = {N_ITEM, 0, NULL}};
     hf_parallel_run(MAX_THREAD, take_all, &inner[i]);
 }
 
@@ -158,7 +130,6 @@ Suite *suite_unit_parallel(void)
     TCase *tests = tcase_create("parallel");
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, every_wanted_number_and_every_room_comes_once, 0, 2);
-    tcase_add_test(tests, nobody_begins_before_the_first_step_is_done);
     tcase_add_test(tests, runs_inside_a_loop_have_every_room_once);
     tcase_add_loop_test(tests, what_is_left_for_later_is_done, 0, 2);
     return suite;
