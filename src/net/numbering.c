@@ -160,8 +160,13 @@ static hf_status sort_along(graph *g, int axis)
 
 /* ---- choice ---- */
 
-/* Sum of the squared row widths of the lower triangle. The work of a skyline factorisation grows with this sum. */
-static double squared_widths(graph *g, int *half_bandwidth)
+/* The band's part of the work: nearly all factorisations are those of populations. With 1/4 the examples' order changes
+ * for a band narrower by a tenth; with less than 1/16 round nets keep one four times as dear. */
+#define BAND_PART 0.125
+
+/* The work of factorisations by the order under test: that of a skyline, as in the lanes of populations, grows with the
+ * sum of squared row widths, that of a band, as of the Newton matrix, with n times the square of the half-bandwidth. */
+static double work(graph *g, int *half_bandwidth)
 {
     double sum = 0;
     *half_bandwidth = 0;
@@ -174,7 +179,7 @@ static double squared_widths(graph *g, int *half_bandwidth)
         sum += (double)width * width;
         if (width > *half_bandwidth) *half_bandwidth = width;
     }
-    return sum;
+    return sum + BAND_PART * g->n * *half_bandwidth * *half_bandwidth;
 }
 
 static void reverse(graph *g)
@@ -187,13 +192,13 @@ static void reverse(graph *g)
 }
 
 /* Keep the order under test, or its reverse, whose rows have other widths, if it is better than the best so far. */
-static void keep_if_better(graph *g, double *best_sum, int *best_half_bandwidth)
+static void keep_if_better(graph *g, double *best_work, int *best_half_bandwidth)
 {
     for (int pass = 0; pass < 2; pass++, reverse(g)) {
         int half_bandwidth;
-        double sum = squared_widths(g, &half_bandwidth);
-        if (*best_sum >= 0 && sum >= *best_sum) continue;
-        *best_sum = sum;
+        double this_work = work(g, &half_bandwidth);
+        if (*best_work >= 0 && this_work >= *best_work) continue;
+        *best_work = this_work;
         *best_half_bandwidth = half_bandwidth;
         memcpy(g->best, g->order, (size_t)g->n * sizeof(int));
     }
@@ -205,13 +210,13 @@ hf_status hf_numbering_find(const hf_scene *scene, int *order, int *half_bandwid
     hf_arena arena = {0};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &g)));
     build(&g);
-    double best_sum = -1;
+    double best_work = -1;
     cuthill_mckee(&g);
-    keep_if_better(&g, &best_sum, half_bandwidth);
+    keep_if_better(&g, &best_work, half_bandwidth);
     hf_status status = HF_OK;
     for (int axis = 0; axis < 3 && status == HF_OK; axis++) {
         status = sort_along(&g, axis);
-        if (status == HF_OK) keep_if_better(&g, &best_sum, half_bandwidth);
+        if (status == HF_OK) keep_if_better(&g, &best_work, half_bandwidth);
     }
     for (int i = 0; i < g.n; i++)
         order[i] = g.node_of[g.best[i]];

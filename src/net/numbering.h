@@ -4,7 +4,7 @@
 
 #include <hifdm/scene.h>
 
-/* order[0..n_free-1]: the free nodes of the scene, in the order with the smallest sum of squared row widths found among
+/* order[0..n_free-1]: the free nodes of the scene, in the order with the least work of factorisations found among
  * Cuthill-McKee, sorting along x, y and z, and the reverse of each. HF_OK or HF_NO_MEMORY. */
 hf_status hf_numbering_find(const hf_scene *scene, int *order, int *half_bandwidth);
 

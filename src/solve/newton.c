@@ -15,6 +15,9 @@
  * form-finding pass with 0 and 30 such steps, and with factors of 1e1 and 1e12. */
 #define TRUSTED_MAX 6
 #define TRUSTED_RISE 1e6
+/* Steps after which the merit must be below the first one, else the path is tried: steps are dear in large nets. The
+ * tests of form-finding pass with 4 and 12. */
+#define LOST_AFTER 8
 /* A step leaves at least this fraction of a multiplier. The tests of form-finding pass with 0.01 and 0.5. */
 #define TENSION_KEPT 0.1
 /* Equilibria that are not unique: condition number from which they are looked for, rounds of inverse iteration, move of
@@ -160,6 +163,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         memcpy(w->position_m, w->newton_trial_m, 3 * (size_t)m->n_node * sizeof(double));
         memcpy(w->tension_N, w->newton_trial_tension_N, (size_t)m->n_cable * sizeof(double));
         now = next;
+        if (k >= LOST_AFTER && !(now.merit < first_merit)) return false;
         hf_history_add_step(m, w, now.residual_N, now.length_gap, now.truss_m);
     }
     if (!(now.merit < first_merit)) return false;

@@ -139,6 +139,20 @@ START_TEST(a_reflector_has_narrow_rows)
 }
 END_TEST
 
+/* Sorted along y, whose skyline is best, a net of rings has a band of 35. */
+START_TEST(a_round_net_has_a_narrow_band)
+{
+    const hf_paraboloid dish = {.aperture_m = 6, .focal_length_m = 3, .rings = 10};
+    hf_messages messages = {0};
+    hf_scene s;
+    double squares[2];
+    ck_assert_int_eq(hf_scene_paraboloid(&dish, NULL, &s, &messages), HF_OK);
+    ck_assert_int_le(number(&s, squares), 21);
+    ck_assert_double_le(squares[0], squares[1]);
+    hf_scene_free(&s);
+}
+END_TEST
+
 /* Two nets that share nothing, and free nodes that touch supports only. */
 START_TEST(separate_parts_are_numbered)
 {
@@ -169,6 +183,7 @@ Suite *suite_unit_numbering(void)
     tcase_add_loop_test(tests, grids_are_at_least_sorted, 0, 6);
     tcase_add_test(tests, never_worse_than_it_was_and_usually_better);
     tcase_add_test(tests, a_reflector_has_narrow_rows);
+    tcase_add_test(tests, a_round_net_has_a_narrow_band);
     tcase_add_test(tests, separate_parts_are_numbered);
     return suite;
 }
