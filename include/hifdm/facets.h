@@ -19,10 +19,11 @@ typedef struct {
     void *block;    /* owned memory behind `corner` */
 } hf_facets;
 
-/* The facets that the scene names. Where it names none they are found among the nodes that are on the wanted surface:
- * the inner ones, and of the others those whose theoretical position is on it up to 1e-3 of its depth. A facet is a
- * minimal face of the plane graph that the cables between them make, seen along z. Where no cable runs along the rim,
- * the straight line between two supports closes the face at the inner nodes between them. surface->focal_length_m > 0,
+/* Nodes are on the wanted surface that are inner nodes, and of the others those whose theoretical position is on it up
+ * to 1e-3 of its depth. Of the facets that the scene names, those with a node on the surface. Where it names none they
+ * are found: a facet is a minimal face of the plane graph that the cables between nodes on the surface make, seen
+ * along z. Where no cable runs along the rim, the straight line between two supports closes the face at the inner
+ * nodes between them, unless boundary cables hang there from one to the other as an edge. surface->focal_length_m > 0,
  * and its kind is known. HF_OK or HF_NO_MEMORY; free with hf_facets_free in any case. */
 hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surface, hf_facets *facets);
 

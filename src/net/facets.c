@@ -2,6 +2,7 @@
 #include <hifdm/facets.h>
 
 #include "base/arena.h"
+#include "base/elementary.h"
 #include "base/union_find.h"
 #include "net/facet_import.h"
 #include "net/wanted.h"
@@ -11,6 +12,7 @@
 #include <string.h>
 
 #define NEAR_PART 1e-3     /* supports and edge nodes nearer to the wanted surface, in parts of its depth, are on it */
+#define STRAIGHT_ON 0.5    /* cosine of the turn below which two cables go on straight: a sag of 0.29 of the span */
 #define STRAIGHT_PART 1e-9 /* a corner that points inwards by this part of the area is straight but for rounding */
 
 /* ---- the graph ---- */
@@ -20,6 +22,7 @@ typedef struct {
     int from, to;
     double dx, dy;
     int twin, place; /* the other direction of the cable; the number in the order of the cables */
+    int cable;
 } half;
 
 typedef struct {
@@ -121,7 +124,7 @@ static void collect(graph *g)
         for (int k = 0; k < 2 && in_graph(g, e); k++) {
             int from = s->end[2 * e + k], to = s->end[2 * e + 1 - k];
             const double *p = s->position_m + 3 * (size_t)from, *q = s->position_m + 3 * (size_t)to;
-            g->edge[g->n_half] = (half){from, to, q[0] - p[0], q[1] - p[1], g->n_half ^ 1, g->n_half};
+            g->edge[g->n_half] = (half){from, to, q[0] - p[0], q[1] - p[1], g->n_half ^ 1, g->n_half, e};
             g->n_half++;
         }
     qsort(g->edge, (size_t)g->n_half, sizeof *g->edge, by_direction);
@@ -181,9 +184,21 @@ static void add_facet(const hf_scene *s, int n, const int node[4], double area, 
     f->n_facet++;
 }
 
+/* Whether the n >= 2 cables along the outside from half edge h are an edge that hangs between two supports, with
+ * nothing beyond it: boundary cables alone, and where there are but two, such as also hold the last node before a
+ * rim, they go on in nearly the same direction. */
+static bool is_hanging_edge(const graph *g, int h, int n)
+{
+    const half *p = &g->edge[h], *q = &g->edge[next_around(g, h)];
+    double along = p->dx * q->dx + p->dy * q->dy;
+    for (int i = 0; i < n; i++, h = next_around(g, h))
+        if (g->scene->group[g->edge[h].cable] != HF_GROUP_BOUNDARY) return false;
+    return n > 2 || along > STRAIGHT_ON * hf_norm(p->dx, p->dy, 0) * hf_norm(q->dx, q->dy, 0);
+}
+
 /* Along the outside of the net, from half edge h: an inner node is surrounded by surface, so that the gap between two
  * supports in sequence with inner nodes alone between them is a face, too, whose last side is the straight line on the
- * rim. */
+ * rim; unless an edge of the net hangs there. */
 static void close_gaps(const graph *g, int h, hf_facets *f)
 {
     const hf_scene *s = g->scene;
@@ -197,7 +212,8 @@ static void close_gaps(const graph *g, int h, hf_facets *f)
                 area += hf_facet_turn(s, node[0], g->edge[k].to, g->edge[next_around(g, k)].to);
             }
             if (n < 4) node[n] = g->edge[k].to;
-            if (n++ > 1 && s->role[g->edge[k].to] == HF_ROLE_SUPPORT && area > 0) add_facet(s, n, node, area, f);
+            bool is_gap = n > 1 && s->role[g->edge[k].to] == HF_ROLE_SUPPORT && area > 0;
+            if (is_gap && !is_hanging_edge(g, h, n)) add_facet(s, n + 1, node, area, f);
         }
         h = next_around(g, h);
     } while (h != from);
@@ -234,6 +250,16 @@ static void find_faces(graph *g, hf_facets *f)
 
 /* ---- together ---- */
 
+/* Of the facets that the scene names those with a node on the surface: others are of a rear net. */
+static void keep_named(const graph *g, hf_facets *f)
+{
+    for (int i = 0; i < g->scene->n_facet; i++) {
+        const int *from = g->scene->facet + 4 * (size_t)i;
+        bool is_on = g->is_on[from[0]] || g->is_on[from[1]] || g->is_on[from[2]] || g->is_on[from[3]];
+        if (is_on) memcpy(f->corner + 4 * (size_t)f->n_facet++, from, 4 * sizeof *from);
+    }
+}
+
 hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surface, hf_facets *facets)
 {
     *facets = (hf_facets){.is_planar = true};
@@ -243,16 +269,15 @@ hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surfa
     size_t most = 4 * (n_named > 0 ? n_named : (size_t)scene->n_cable + 1); /* a face has at least 3/2 cables */
     HF_TRY(HF_ARENA_MAKE(&kept, facets->corner = hf_arena_take(&kept, most, sizeof *facets->corner)));
     facets->block = kept.block;
-    if (n_named > 0) {
-        facets->n_facet = scene->n_facet;
-        memcpy(facets->corner, scene->facet, 4 * n_named * sizeof *facets->corner);
-        return HF_OK;
-    }
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, scene, &g)));
     choose_nodes(&g, surface);
-    drop_ends(&g);
-    collect(&g);
-    find_faces(&g, facets);
+    if (n_named > 0) {
+        keep_named(&g, facets);
+    } else {
+        drop_ends(&g);
+        collect(&g);
+        find_faces(&g, facets);
+    }
     hf_arena_free(&arena);
     return HF_OK;
 }

@@ -53,6 +53,27 @@ START_TEST(facets_are_taken_counter_clockwise)
 }
 END_TEST
 
+/* A square that is a metre behind the surface, as one of a rear net. */
+START_TEST(facets_behind_the_surface_do_not_count)
+{
+    const hf_surface_settings flat = {.focal_length_m = 1e6, .kind = HF_SURFACE_PARABOLOID};
+    char said[512];
+    hf_scene s;
+    hf_facets f;
+    ck_assert_int_eq(import("id,a,b,c,d\n1,a,b,e,d\n2,b,c,e,\n", &s, said, sizeof said), HF_OK);
+    for (int i = 0; i < N_NODE; i++) {
+        bool is_rear = i == 0 || i == 1 || i == 3 || i == 4;
+        s.position_m[3 * i + 2] = is_rear ? -1 : 0;
+        s.role[i] = is_rear ? HF_ROLE_EDGE : HF_ROLE_INNER;
+    }
+    ck_assert_int_eq(hf_facets_find(&s, &flat, &f), HF_OK);
+    ck_assert_int_eq(f.n_facet, 1);
+    ck_assert_mem_eq(f.corner, s.facet + 4, 4 * sizeof *s.facet);
+    hf_facets_free(&f);
+    hf_scene_free(&s);
+}
+END_TEST
+
 START_TEST(triangles_need_no_fourth_column)
 {
     static const int corner[] = {1, 2, 4, 4};
@@ -102,6 +123,7 @@ Suite *suite_unit_facet_import(void)
     TCase *tests = tcase_create("facet_import");
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, facets_are_taken_counter_clockwise, 0, 2);
+    tcase_add_test(tests, facets_behind_the_surface_do_not_count);
     tcase_add_test(tests, triangles_need_no_fourth_column);
     tcase_add_loop_test(tests, faults_are_named_by_file_line_and_id, 0, N_FAULTY);
     return suite;

@@ -155,6 +155,39 @@ START_TEST(a_long_chain_leaves_in_linear_time)
 }
 END_TEST
 
+/* Two supports and what is between them outside of two cells: boundary cables that hang as an edge, over one node or
+ * two, leave nothing to close; those that hold the last nodes before a rim (the same, but steep), or that an inner
+ * cable joins, do. */
+START_TEST(an_edge_that_hangs_closes_no_gap)
+{
+    static const struct {
+        double depth;
+        int n_between, n_gap;
+        hf_group middle;
+    } edge[] = {{0.1, 1, 0, HF_GROUP_BOUNDARY},
+                {0.25, 1, 0, HF_GROUP_BOUNDARY},
+                {0.5, 1, 1, HF_GROUP_BOUNDARY},
+                {0.1, 2, 0, HF_GROUP_BOUNDARY},
+                {0.1, 2, 1, HF_GROUP_INNER}};
+    static const int one[][2] = {{0, 1}, {1, 2}, {0, 3}, {3, 1}, {3, 2}};
+    static const int two[][2] = {{0, 1}, {1, 2}, {2, 3}, {0, 4}, {4, 1}, {4, 2}, {4, 3}};
+    double depth = edge[_i].depth;
+    const double xy_one[][2] = {{0, 0}, {0.5, depth}, {1, 0}, {0.5, 2}};
+    const double xy_two[][2] = {{0, 0}, {0.3, depth}, {0.7, depth}, {1, 0}, {0.5, 2}};
+    bool is_one = edge[_i].n_between == 1;
+    hf_scene s = is_one ? drawn(4, xy_one, 5, one) : drawn(5, xy_two, 7, two);
+    int n_along = edge[_i].n_between + 1;
+    s.role[0] = s.role[n_along] = HF_ROLE_SUPPORT;
+    for (int e = 0; e < s.n_cable; e++)
+        s.group[e] = (unsigned char)(e >= n_along ? HF_GROUP_INNER : e == 1 ? edge[_i].middle : HF_GROUP_BOUNDARY);
+    hf_facets f = found(&s);
+    ck_assert(f.is_planar);
+    ck_assert_int_eq(f.n_facet, n_along + edge[_i].n_gap);
+    hf_facets_free(&f);
+    hf_scene_free(&s);
+}
+END_TEST
+
 START_TEST(memory_may_end)
 {
     static const double xy[][2] = {{0, 0}, {1, 0}, {1, 1}};
@@ -184,6 +217,7 @@ Suite *suite_unit_facets(void)
     tcase_add_test(tests, only_nodes_on_the_surface_count);
     tcase_add_test(tests, cells_of_a_generated_net_are_found);
     tcase_add_loop_test(tests, a_long_chain_leaves_in_linear_time, 0, 2);
+    tcase_add_loop_test(tests, an_edge_that_hangs_closes_no_gap, 0, 5);
     tcase_add_test(tests, memory_may_end);
     return suite;
 }
