@@ -84,6 +84,7 @@ void bench_single(const char *scene, const char *folder);
 void bench_equilibrium(const char *net, const char *folder);
 void bench_growth(const char *scale, const char *folder);
 void bench_population(const char *scene, const char *folder);
+void bench_lanes(const char *scene, const char *folder);
 void bench_whole(const char *path, const char *folder);
 void bench_stages(const char *name, const char *folder, const char *path, const char *const *overrides, int n_override);
 

@@ -23,6 +23,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 import svg  # noqa: E402
 
+LANE_SCENES = ["21x25 f=15", "21x25 f=15 tied", "21x25 f=15 tied and held"]
 SCENES = ["straight-edges", "21x25 f=15", "imported 31x37", "41x49 f=5"]
 KERNEL_NET = "21x25 perimeter"
 # The nets of equilibrium.c.
@@ -193,6 +194,8 @@ class Bench:
                     self.driver("growth", scale)
             self.say("populations")
             for _ in range(3):
+                for scene in LANE_SCENES:
+                    self.driver("lanes", scene)
                 self.driver("population", "straight-edges")
                 self.driver("whole", STAGE_CASES["HIFDM + GA"][0])
                 self.program("straight-edges", 2, GA_GENERATIONS[0])
@@ -335,6 +338,10 @@ class Bench:
                    [[case, *(cell.replace(",", ";") for cell in row)]
                     for case, check in self.checks.items() for row in check])
 
+    def write_lanes(self):
+        self.wide("lanes", "lanes", ["half_bandwidth", "iterations", "design_s", "iteration_dof_s", "band_GFs"],
+                  ("scene", "lanes", "degrees_of_freedom"))
+
     def write_population(self):
         self.wide("ga", "ga", ["ga_wall_s", "ga_cpu_s", "utilisation", "evaluations", "evaluations_per_s", "residual_N",
                                "process_wall_s", "process_cpu_s", "peak_MiB", "file_MB"],
@@ -348,7 +355,8 @@ class Bench:
         os.makedirs(self.out, exist_ok=True)
         self.head = self.header()
         self.wide("frame", "frame", ["time_s", "half_bandwidth"], ("truss", "what", "unknowns"))
-        for name in ("precision", "single", "equilibrium", "step", "peak", "growth", "phases", "stages", "population"):
+        for name in ("precision", "single", "equilibrium", "step", "peak", "growth", "phases", "stages", "lanes",
+                     "population"):
             getattr(self, f"write_{name}")()
         rows = list(summary(self.samples))
         self.table("summary", ["figure", "wanted", f"measured on {self.processor}"], rows)
@@ -406,6 +414,9 @@ def summary(s):
     for net, isa, half_bandwidth in list(best.values())[1:]:
         yield [f"lane factorisation / FMA peak ({isa}); half-bandwidth {half_bandwidth:.0f}", "0.65",
                s.get("peak", net, isa, half_bandwidth, "share_of_fma_peak")]
+    for lanes in ("shared matrix", "matrix per design"):
+        single, *tied = [s.any("lanes", scene, lanes, "band_GFs") for scene in LANE_SCENES]
+        yield [f"populations; {lanes}: speed of the lanes on a tied net / on a single one", "1", ratio(tied[0], single)]
     for truss, what, unknowns in s.keys("frame"):
         if what.endswith("five load cases"):  # Frame3DD took 2.2 s and 9.9 s for such trusses
             wanted = "0.5" if what.startswith("factor") else ""

@@ -1,8 +1,9 @@
-/* Contents: the four scenes and the kernel net - opening one - an imported net - the reference shape */
+/* Contents: the scenes and the kernel net - opening one - an imported net - the reference shape */
 #include "bench.h"
 
 #include "linalg/band.h"
 #include "solve/newton_matrix.h"
+#include "solve/prestress.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,6 +20,7 @@ typedef struct {
 
 #define CYLINDER "scene.parabolic_cylinder."
 #define ONE_CELL CYLINDER "cells_per_module=[1,1]"
+#define TIED CYLINDER "rear_distance_m=2.5"
 #define PERIMETER CYLINDER "supports=perimeter", CYLINDER "scallop=0"
 
 static const scene_row scene_table[] = {
@@ -28,6 +30,13 @@ static const scene_row scene_table[] = {
     /* the base of the imported net, and the net of the kernels: no free boundary cable, so no genes */
     {"31x37", "configs/reflector.yaml", {CYLINDER "cells_per_module=[3,3]", NULL}},
     {"21x25 perimeter", "configs/reflector.yaml", {PERIMETER, NULL}},
+    /* front and rear net, tied to each other */
+    {"21x25 f=15 tied",
+     "configs/reflector.yaml",
+     {CYLINDER "focal_length_m=15", TIED, CYLINDER "tie_law=tension", NULL}},
+    {"21x25 f=15 tied and held",
+     "configs/reflector.yaml",
+     {CYLINDER "focal_length_m=15", TIED, "form.prestress=exact", NULL}},
     /* half-bandwidths 21 and 65 */
     {"22x24 perimeter", "configs/reflector.yaml", {PERIMETER, ONE_CELL, CYLINDER "modules=[21,23]", NULL}},
     {"66x68 perimeter", "configs/reflector.yaml", {PERIMETER, ONE_CELL, CYLINDER "modules=[65,67]", NULL}},
@@ -79,6 +88,8 @@ static void build(const char *name, const char *path, const char *const *overrid
     *b = (bench_scene){.name = name};
     if (hf_config_load(path, overrides, n_override, &b->settings, &messages) != HF_OK ||
         hf_config_scene(&b->settings, &b->scene, &messages) != HF_OK ||
+        (b->settings.form.prestress == HF_PRESTRESS_EXACT &&
+         hf_prestress_hold(&b->scene, &b->settings.form, &messages) != HF_OK) ||
         hf_model_build(&b->scene, &b->settings.form, &b->model, &messages) != HF_OK)
         bench_fail(path, messages.text);
     b->form = b->settings.form;
