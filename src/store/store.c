@@ -114,7 +114,10 @@ static void write_facets(hf_store *s, hid_t group, const hf_scene *scene)
     const hf_hdf5_array facet = {"facet", HF_KIND_INT,
                                  2,       {(hsize_t)scene->n_facet, 4},
                                  "",      "that the import names: nodes around each, of a triangle the last one twice"};
-    if (scene->n_facet > 0) hf_hdf5_write_array(&s->f.io, group, &facet, scene->facet);
+    if (scene->n_facet == 0) return;
+    hf_hdf5_write_array(&s->f.io, group, &facet, scene->facet);
+    if (scene->facet_id)
+        hf_hdf5_write_ids(&s->f.io, group, "facet_id", scene->facet_id, scene->n_facet, "name of the facet");
 }
 
 static void write_scene(hf_store *s, const hf_scene *scene)
