@@ -187,8 +187,104 @@ static void follow_chain(hf_model *m, const length_graph *g, int from, int first
     m->chain_start[++m->n_any_chain] = start + n;
 }
 
+/* Cables of law length at each row, and where a search from one support has got. */
+typedef struct {
+    int *start, *cable; /* [n_node + 1], [2 n_cable] those at a row are cable[start[row] .. start[row + 1] - 1] */
+    int *queue, *via;   /* [n_node] rows to go on from; cable by which a row was reached */
+    char *is_waiting;   /* [n_node] in the queue */
+    double *reach_m;    /* [n_node] least sum of lengths to a row */
+    long steps_left;
+} path_search;
+
+/* From one support through free nodes, cable by cable. */
+static void search_from(const hf_model *m, path_search *s, int from)
+{
+    int n_waiting = 1, first = 0;
+    for (int row = 0; row < m->n_node; row++)
+        s->reach_m[row] = INFINITY;
+    s->reach_m[from] = 0;
+    s->queue[0] = from;
+    while (n_waiting-- > 0) {
+        int row = s->queue[first];
+        first = (first + 1) % m->n_node;
+        s->is_waiting[row] = 0;
+        for (int k = s->start[row]; k < s->start[row + 1] && s->steps_left > 0; k++, s->steps_left--) {
+            int e = s->cable[k], to = m->end_row[2 * e] == row ? m->end_row[2 * e + 1] : m->end_row[2 * e];
+            if (!(s->reach_m[row] + m->target[e] < s->reach_m[to])) continue;
+            s->reach_m[to] = s->reach_m[row] + m->target[e];
+            s->via[to] = e;
+            if (to >= m->n_free || s->is_waiting[to]) continue;
+            s->is_waiting[to] = 1;
+            s->queue[(first + n_waiting++) % m->n_node] = to;
+        }
+    }
+}
+
+static int row_before(const hf_model *m, const path_search *s, int row)
+{
+    const int *end = m->end_row + 2 * s->via[row];
+    return end[0] == row ? end[1] : end[0];
+}
+
+/* The way back from `to` to `from` as a chain, unless one of its cables is in a chain or there is just one. */
+static bool keep_path(hf_model *m, const path_search *s, int from, int to)
+{
+    int start = m->chain_start[m->n_any_chain], n = 0;
+    if (row_before(m, s, to) == from) return false;
+    for (int row = to; row != from; row = row_before(m, s, row))
+        for (int k = 0; k < start; k++)
+            if (m->chain_cable[k] == s->via[row]) return false;
+    for (int row = to; row != from; row = row_before(m, s, row)) {
+        m->chain_cable[start + n++] = s->via[row];
+        if (row < m->n_free && m->chain_of_row[row] < 0) m->chain_of_row[row] = m->n_any_chain;
+    }
+    m->chain_start[++m->n_any_chain] = start + n;
+    return true;
+}
+
+/* Lengths that do not span two supports, through nodes at which chains branch. One such path tells that no shape obeys
+ * the lengths, so the first is kept, as a chain. The bound of steps is far above what nets need of which a part is
+ * under law length; where it is met, a path may go unseen. */
+#define PATH_STEPS 4000000
+static void keep_short_path(hf_model *m, path_search *s)
+{
+    s->steps_left = PATH_STEPS;
+    for (int from = m->n_free; from < m->n_node; from++) {
+        if (s->start[from] == s->start[from + 1]) continue;
+        search_from(m, s, from);
+        for (int to = from + 1; to < m->n_node; to++)
+            if (s->reach_m[to] * (1 + HF_STRAIGHT_EXCESS) < distance(m, from, to) && keep_path(m, s, from, to)) return;
+    }
+}
+
+static hf_status find_short_path(hf_model *m)
+{
+    size_t n = (size_t)m->n_node, e = (size_t)m->n_cable;
+    int *block = calloc(3 * n + 1 + 2 * e, sizeof(int));
+    double *reach_m = malloc(n * sizeof *reach_m);
+    char *is_waiting = calloc(n, 1);
+    if (block && reach_m && is_waiting) {
+        path_search s = {block, block + n + 1, block + n + 1 + 2 * e, block + 2 * n + 1 + 2 * e, is_waiting, reach_m,
+                         0};
+        for (int k = 0; k < 2 * m->n_cable; k++)
+            if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID)) s.start[m->end_row[k] + 1]++;
+        for (int row = 0; row < m->n_node; row++)
+            s.start[row + 1] += s.start[row];
+        for (int k = 0; k < 2 * m->n_cable; k++) /* the counts in `via` are overwritten later */
+            if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID))
+                s.cable[s.start[m->end_row[k]] + s.via[m->end_row[k]]++] = k / 2;
+        keep_short_path(m, &s);
+    }
+    bool has_memory = block && reach_m && is_waiting;
+    free(block);
+    free(reach_m);
+    free(is_waiting);
+    return has_memory ? HF_OK : HF_NO_MEMORY;
+}
+
 static hf_status find_chains(hf_model *m)
 {
+    bool branches = false;
     length_graph g = {.count = calloc((size_t)m->n_node * 3, sizeof(int))};
     if (!g.count) return HF_NO_MEMORY;
     g.cable = g.count + m->n_node;
@@ -205,7 +301,14 @@ static hf_status find_chains(hf_model *m)
             for (int k = 0; k < 2 && hf_law_has(m->law[e], HF_LAW_IS_RIGID); k++)
                 if (m->end_row[2 * e + k] >= m->n_free && m->end_row[2 * e + 1 - k] < m->n_free)
                     follow_chain(m, &g, m->end_row[2 * e + k], e, want_straight);
-        if (want_straight) m->n_chain = m->n_any_chain;
+        if (!want_straight) break;
+        for (int row = 0; row < m->n_free; row++)
+            branches |= g.count[row] > 2;
+        if (branches && find_short_path(m) != HF_OK) {
+            free(g.count);
+            return HF_NO_MEMORY;
+        }
+        m->n_chain = m->n_any_chain;
     }
     free(g.count);
     return HF_OK;

@@ -214,6 +214,16 @@ static void name_loose(const hf_problem *p, const char *stage, const hf_workspac
                    r->n_drifting, r->n_drifting == 1 ? "" : "s", name_node(p, r->culprit, name));
 }
 
+/* Whether the shape is in balance with the multipliers of elastic cables, and far from it with the tensions of their
+ * laws, by more than rounding of lengths explains. */
+#define OFF_BY_LAW 10.0
+#define ROUNDED_LENGTH 1e-13
+static bool is_off_by_law(const hf_problem *p, const hf_form_result *r)
+{
+    double allowed_N = p->settings.form.residual_tolerance * p->model.reference_N;
+    return p->model.EA_N && r->residual_N > OFF_BY_LAW * allowed_N && r->length_error > ROUNDED_LENGTH;
+}
+
 void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, const hf_form_result *r,
                      hf_messages *messages)
 {
@@ -224,6 +234,14 @@ void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, co
                    "stop: rms_change ended before equilibrium: nodal residual %.2e N, cable lengths off by up to %.2e; "
                    "stop: residual iterates until they vanish",
                    r->residual_N, r->length_error);
+    if (r->stop_reason == HF_STOPPED_RESIDUAL && is_off_by_law(p, r))
+        hf_warning(messages,
+                   "by the laws of the elastic cables forces of up to %.2e N are out of balance, though those of the "
+                   "iteration are within form.residual_tolerance: lengths are off by up to %.2e of themselves; lower "
+                   "form.length_tolerance%s",
+                   r->residual_N, r->length_error,
+                   hf_evaluate_method(m, &p->settings.form, NULL) == HF_METHOD_NEWTON ? ""
+                                                                                      : ", or use form.method: newton");
     if (r->n_loaded_chain) {
         name_loaded_chains(p, w, &chains);
         hf_warning(

@@ -1,5 +1,6 @@
 #include "search/swarm.h"
 
+#include "solve/equilibrium.h"
 #include "solve/loose.h"
 
 #include <math.h>
@@ -80,6 +81,7 @@ static bool settle(void *solver, int lane, int i_design)
         hf_evaluate_prepare(s->v, design_N, s->w);
         hf_swarm_get(s->plan, s->lanes, lane, s->w);
         hf_form_accept(s->v->model, s->v->form, reason, s->iterations[lane], s->w, r);
+        if (s->stop == HF_STOP_RESIDUAL) hf_equilibrium_judge_open(s->v->model, s->v->form, s->w, r);
         hf_loose_refuse(s->v->model, s->v->form, s->w, r);
     } else if (s->v->model->has_newton) { /* on its own it is asked whether the net has a shape all the same */
         hf_evaluate(s->v, design_N, s->w, r);

@@ -143,25 +143,34 @@ static hf_status ask_path(const hf_model *m, const hf_form_settings *s, hf_works
     return said->status;
 }
 
-hf_status hf_equilibrium_find_by_paper(const hf_model *m, const hf_form_settings *s, hf_stop_rule stop, hf_workspace *w,
-                                       hf_history *history, hf_form_result *r)
+hf_status hf_equilibrium_judge_open(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r)
 {
     hf_form_result said;
-    hf_form_find(m, s, stop, w, history, r);
-    bool is_refused = is_refusal(r->status);
-    bool is_open = r->status == HF_NOT_CONVERGED && r->culprit < 0 && stop == HF_STOP_RESIDUAL;
-    if (!m->has_newton || !(is_refused || is_open)) return r->status;
-    int n_step = r->iterations;
+    if (!m->has_newton || r->status != HF_NOT_CONVERGED || r->culprit >= 0) return r->status;
     hf_status status = ask_path(m, s, w, &said);
-    bool has_shape =
-        status == HF_OK || status == HF_NOT_CONVERGED ||
-        (status == HF_STRAIGHT_CHAIN && stop == HF_STOP_RMS_CHANGE); /* the paper's rule ends all the same */
-    if (is_open && has_shape) {                                      /* the shape that is stored as not converged */
+    if (status == HF_OK || status == HF_NOT_CONVERGED) { /* the shape that is stored as not converged */
         double length_gap;
         hf_form_measure_cables(m, s, w, &said, &length_gap);
         hf_form_residual_N(m, w);
         return r->status;
     }
+    said.iterations += r->iterations;
+    *r = said;
+    return r->status;
+}
+
+hf_status hf_equilibrium_find_by_paper(const hf_model *m, const hf_form_settings *s, hf_stop_rule stop, hf_workspace *w,
+                                       hf_history *history, hf_form_result *r)
+{
+    hf_form_result said;
+    hf_form_find(m, s, stop, w, history, r);
+    if (r->status == HF_NOT_CONVERGED && stop == HF_STOP_RESIDUAL) return hf_equilibrium_judge_open(m, s, w, r);
+    if (!m->has_newton || !is_refusal(r->status)) return r->status;
+    int n_step = r->iterations;
+    hf_status status = ask_path(m, s, w, &said);
+    bool has_shape =
+        status == HF_OK || status == HF_NOT_CONVERGED ||
+        (status == HF_STRAIGHT_CHAIN && stop == HF_STOP_RMS_CHANGE); /* the paper's rule ends all the same */
     if (has_shape) {
         hf_form_settings rest = *s;
         rest.collapse_ratio = HF_FORM_GONE;

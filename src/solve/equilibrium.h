@@ -21,4 +21,10 @@ hf_status hf_equilibrium_find(const hf_model *model, const hf_form_settings *set
 hf_status hf_equilibrium_find_by_paper(const hf_model *model, const hf_form_settings *settings, hf_stop_rule stop,
                                        hf_workspace *workspace, hf_history *history, hf_form_result *result);
 
+/* For an iteration under the rule residual that has ended as not converged, with its laws, force densities and shape in
+ * the workspace: where the path says that the net has no shape, status and culprit become those of the path. Returns
+ * result->status. */
+hf_status hf_equilibrium_judge_open(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
+                                    hf_form_result *result);
+
 #endif

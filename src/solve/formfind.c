@@ -297,7 +297,9 @@ static double chain_sum(const hf_model *m, const hf_workspace *w, int i_chain, d
 
 static bool chain_is_rigid(const hf_model *m, const hf_workspace *w, int i_chain)
 {
-    return hf_law_has(w->law[m->chain_cable[m->chain_start[i_chain]]], HF_LAW_IS_RIGID);
+    for (int k = m->chain_start[i_chain]; k < m->chain_start[i_chain + 1]; k++)
+        if (!hf_law_has((hf_law)w->law[m->chain_cable[k]], HF_LAW_IS_RIGID)) return false;
+    return true;
 }
 
 /* True when chain i_chain is under law length and straight at the present places of its supports. */

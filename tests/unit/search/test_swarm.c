@@ -55,6 +55,29 @@ START_TEST(results_are_those_of_the_scalar_code)
 }
 END_TEST
 
+/* Lanes that run out of iterations ask the path whether the design has a shape, as the scalar code does: of the designs
+ * under rule tension some collapse, later than after 20 iterations. */
+START_TEST(designs_without_a_shape_are_named_before_they_get_there)
+{
+    struct run r;
+    hf_form_result result[N_DESIGN], alone;
+    int n_collapsed = 0;
+    open_designs(&r, HF_RULE_TENSION, 9);
+    r.net.form.residual_tolerance = 1e-10;
+    r.net.form.max_iterations = 20;
+    evaluate(&r, 2, 0, result);
+    for (int i = 0; i < N_DESIGN; i++) {
+        hf_evaluate(&r.evaluator, r.design_N + i * r.net.model.n_gene, &r.net.work, &alone);
+        ck_assert_int_eq(result[i].status, alone.status);
+        ck_assert_int_eq(result[i].stop_reason, alone.stop_reason);
+        ck_assert_int_eq(result[i].iterations, alone.iterations);
+        n_collapsed += alone.status == HF_COLLAPSED && alone.iterations > 20;
+    }
+    ck_assert_int_gt(n_collapsed, 0);
+    close_net(&r.net);
+}
+END_TEST
+
 START_TEST(neighbours_and_threads_do_not_change_a_bit)
 {
     struct run r;
@@ -99,6 +122,7 @@ Suite *suite_unit_swarm(void)
     Suite *suite = suite_create("unit/swarm");
     TCase *tests = tcase_create("swarm");
     tcase_add_loop_test(tests, results_are_those_of_the_scalar_code, 0, 6);
+    tcase_add_test(tests, designs_without_a_shape_are_named_before_they_get_there);
     tcase_add_loop_test(tests, neighbours_and_threads_do_not_change_a_bit, 0, 3);
     tcase_add_test(tests, a_batch_may_share_again_and_be_empty);
     suite_add_tcase(suite, tests);
