@@ -276,12 +276,15 @@ INLINE void backward(const block *b, int n_column, int n_rhs, double *x, int ld)
             foreach (r, n_rhs)
                 subtract_product(&t[c][r], l, load_first(x + r * (ptrdiff_t)ld + row, count));
         }
-    for (int c = n_column - 1; c >= 0; c--)
+    double y[COLUMNS][COLUMNS] = {{0}};
+    foreach (i, COLUMNS)
         foreach (r, n_rhs) {
+            int c = COLUMNS - 1 - i;
+            if (c >= n_column) continue;
             double *at = x + r * (ptrdiff_t)ld + b->j, v = at[c] + sum(t[c][r]);
-            for (int d = c + 1; d < n_column; d++)
-                v = fma(-in_block(b, d, c), at[d], v);
-            at[c] = v / *place(b, b->j + c, b->j + c);
+            foreach (d, COLUMNS)
+                if (d > c && d < n_column) v = fma(-in_block(b, d, c), y[d][r], v);
+            at[c] = y[c][r] = v / *place(b, b->j + c, b->j + c);
         }
 }
 

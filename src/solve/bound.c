@@ -103,11 +103,12 @@ static double rounding_of(int n, int k, double degree, double largest)
     return U * largest * (2.02 * (k + 4) * row + 400 + 20 * degree);
 }
 
-/* A lower bound of the least eigenvalue of the Hessian at the refined shape, N/m; 0 when there is no proof. */
-static double least_eigenvalue(hf_refined *p)
+/* A lower bound of the least eigenvalue of the Hessian at the refined shape, N/m; 0 when there is no proof. `guess` is
+ * tried first. */
+static double least_eigenvalue(hf_refined *p, double guess)
 {
     int n, k;
-    double *band, degree = hf_refine_largest_sum(p, one), guess = p->guess;
+    double *band, degree = hf_refine_largest_sum(p, one);
     for (;;) {
         double largest = assemble_proof(p, &band, &n, &k);
         double rounding = rounding_of(n, k, degree, largest), shift = fmax(guess, 2 * rounding);
@@ -300,8 +301,9 @@ static hf_bound_reason prove_radius(hf_refined *p, double least_N_per_m, double 
         if (least > 0 && find_radius(p, least, radius) == HF_BOUND_PROVEN && *radius <= SMALL * moved_m)
             return HF_BOUND_PROVEN;
     }
+    double guess = hf_refine_guess(p);
     set_proof_stiffness(p);
-    return find_radius(p, least_eigenvalue(p), radius);
+    return find_radius(p, least_eigenvalue(p, guess), radius);
 }
 
 /* ---- the proof ---- */

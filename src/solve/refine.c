@@ -249,13 +249,18 @@ static void add_step(hf_refined *p, double part)
         p->cable[e].change += part * p->cable[e].last;
 }
 
-/* Takes steps from the measured shape while each halves the errors: move, and change of the cables. */
-static void find_move(hf_refined *p)
+/* Takes steps from the measured shape, whose errors are `first`, while each halves the errors: move, and change of the
+ * cables. */
+static void find_move(hf_refined *p, double first)
 {
     memset(p->move, 0, 3 * (size_t)p->m->n_free * sizeof *p->move);
-    for (int e = 0; e < p->m->n_cable; e++)
+    for (int i = 0; i < 3 * p->m->n_free; i++)
+        p->near_N[i] = p->force[i].hi;
+    for (int e = 0; e < p->m->n_cable; e++) {
         p->cable[e].change = p->cable[e].last = 0;
-    double first = measure_near(p), now = first, before = INFINITY;
+        p->cable[e].near_over = p->cable[e].over.hi;
+    }
+    double now = first, before = INFINITY;
     for (int k = 0; k < STEPS_MAX && now < before / 2 && now > NEAR_ENOUGH * first; k++) {
         find_refinement(p);
         add_step(p, 1);
@@ -282,7 +287,7 @@ static double refine(hf_refined *p)
     double now = measure_refined(p, false), before = INFINITY;
     p->wanted = fmax(fmin(fmin(ENOUGH * now, p->wanted), CONTRACTED), FINEST);
     for (int k = 0; k < MOVES_MAX && now > p->wanted && now < before / 2; k++) {
-        find_move(p);
+        find_move(p, now);
         apply_move(p, 1);
         before = now;
         now = measure_refined(p, false);
@@ -324,6 +329,11 @@ static bool factor_anew(hf_refined *p)
     return is_factored;
 }
 
+double hf_refine_guess(const hf_refined *p)
+{
+    return SHARE_OF_GUESS * hf_refine_largest_sum(p, matrix_sum) / p->condition;
+}
+
 static bool is_told_apart(const hf_refined *p)
 {
     for (int e = 0; e < p->m->n_cable; e++) {
@@ -345,7 +355,6 @@ hf_bound_reason hf_refine_approach(hf_refined *p, bool has_factor)
         reason = !(error < CONTRACTED) ? HF_BOUND_NOT_CONTRACTING
                  : is_told_apart(p)    ? HF_BOUND_PROVEN
                                        : HF_BOUND_SLACK_OR_TAUT;
-        p->guess = SHARE_OF_GUESS * hf_refine_largest_sum(p, matrix_sum) / p->condition;
         if (reason == HF_BOUND_PROVEN && error <= p->wanted) break;
     }
     return reason;

@@ -30,16 +30,18 @@ typedef struct {
     double *sum;             /* [n_free] scratch */
     double wanted;           /* relative errors at which refinement ends */
     double condition;        /* estimate, of the matrix that is factored */
-    double guess;            /* of a number below its least eigenvalue, N/m */
     bool is_first_matrix;    /* it is the one with which refinement began */
 } hf_refined;
 
 /* Begin at the shape in the workspace, whose matrix of this condition is factored there. */
 void hf_refine_open(const hf_model *model, hf_workspace *workspace, double condition, hf_refined *refined);
 
-/* Go to the equilibrium. HF_BOUND_PROVEN, then with the forces by law and `guess`, or the reason why it does not get
- * there. has_factor: a matrix is factored. */
+/* Go to the equilibrium. HF_BOUND_PROVEN, then with the forces by law, or the reason why it does not get there.
+ * has_factor: a matrix is factored. */
 hf_bound_reason hf_refine_approach(hf_refined *refined, bool has_factor);
+
+/* A guess of a number below the least eigenvalue of the matrix that is factored, N/m. */
+double hf_refine_guess(const hf_refined *refined);
 
 /* The block of a cable from its along, across and unit, for hf_newton_matrix_assemble_blocks. */
 void hf_refine_block(const hf_model *model, const hf_workspace *workspace, int i_cable, double block[3][3]);
