@@ -94,6 +94,7 @@ RUNNER := $(BUILD)/tests/run_tests
 PAPER_OUT ?= results/chen2022
 INSTALLED := $(BUILD)/prefix/lib/pkgconfig/hifdm.pc
 BENCH := $(BUILD)/bench/bench
+PEERS := $(BUILD)/optimisers/peers
 BENCH_OUT ?= results/bench
 BENCH_ROUNDS ?= 3
 BENCH_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/bench/*.c)))
@@ -218,6 +219,15 @@ bench-before: ## form-finding now against an old commit's, side by side: before.
 	$(SUB) $(STATIC) $(BENCH)
 	$(Q)OPENBLAS=$(OPENBLAS) $(PYTHON) tools/bench/before.py --library $(STATIC) --driver $(BENCH) \
 	    --work $(BUILD)/before --out $(BENCH_OUT) --commit $(COMMIT) --rounds $(BENCH_ROUNDS) $(CASES)
+
+# The same on every processor, but for what pagmo's mathematics makes of last bits.
+OPTIMISER_SEEDS ?= 7
+bench-optimisers: ## our genetic algorithm beside pagmo's, nlopt's, scipy's: results/bench/optimisers.* (10 minutes)
+	$(Q)tools/setup.sh --optimisers
+	$(SUB) $(PROGRAM) $(PEERS)
+	@mkdir -p $(BENCH_OUT)
+	$(PYTHON) tools/optimisers/run.py --driver $(PEERS) --program $(PROGRAM) --seeds $(OPTIMISER_SEEDS) \
+	    --out $(BENCH_OUT)
 
 # From the headers' own comments: tools/api/filter.awk. A warning of doxygen's is an error.
 api: ## the library's interface as pages, from the public headers: build/api/index.html
@@ -349,6 +359,12 @@ $(SHARED): $(LIB_OBJ) Makefile
 $(PROGRAM): $(APP_OBJ) $(STATIC)
 	$(call say,LD,$@)
 	$(Q)$(LINK) -o $@ $^ $(PKG_LIBS)
+
+$(PEERS): tools/optimisers/peers.cpp $(STATIC) Makefile
+	$(call say,LD,$@)
+	$(Q)mkdir -p $(@D)
+	$(Q)$(CXX) -O2 -std=c++17 -Wall -Iinclude $$(pkg-config --cflags eigen3) $(LDFLAGS) -o $@ $< $(STATIC) -fopenmp \
+	    -lpagmo -lboost_serialization -ltbb -lnlopt_cxx -lnlopt $(PKG_LIBS)
 
 $(RUNNER): $(TEST_OBJ) $(STATIC)
 	$(call say,LD,$@)

@@ -1,19 +1,21 @@
 #!/usr/bin/env bash
-# Installs what is missing to build hifdm: setup.sh [--test] [--ci] [--bench] [--api]
+# Installs what is missing to build hifdm: setup.sh [--test] [--ci] [--bench] [--optimisers] [--api]
 #   --test  also what the tests need     --ci  also clang, sanitizers, linters, VTK, a browser, Slurm (includes --test)
 #   --bench also the peers of `make bench`     --api  also doxygen, for `make api`
+#   --optimisers also those of `make bench-optimisers`
 # Silent and quick when nothing is missing. Asks for what is needed (a compiler, a pkg-config name, a Python module)
 # rather than for packages, so that other providers do as well: reference LAPACK, modules from pip.
 set -eu
 
-with_test=no with_ci=no with_bench=no with_api=no
+with_test=no with_ci=no with_bench=no with_optimisers=no with_api=no
 for option in "$@"; do
     case $option in
     --test) with_test=yes ;;
     --ci) with_test=yes with_ci=yes with_api=yes ;;
     --bench) with_bench=yes ;;
+    --optimisers) with_optimisers=yes ;;
     --api) with_api=yes ;;
-    *) echo "usage: tools/setup.sh [--test] [--ci] [--bench] [--api]" >&2; exit 2 ;;
+    *) echo "usage: tools/setup.sh [--test] [--ci] [--bench] [--optimisers] [--api]" >&2; exit 2 ;;
     esac
 done
 
@@ -54,6 +56,15 @@ missing_packages() {
     fi
     if [ $with_bench = yes ]; then
         has_header suitesparse/cholmod.h || need libsuitesparse-dev
+        has_module scipy || need python3-scipy
+    fi
+    if [ $with_optimisers = yes ]; then
+        has g++ || need g++
+        has_library eigen3 || need libeigen3-dev
+        has_library tbb || need libtbb-dev
+        has_library nlopt || need libnlopt-dev libnlopt-cxx-dev
+        [ -e /usr/include/boost/serialization/access.hpp ] || need libboost-serialization-dev
+        [ -e /usr/include/pagmo/population.hpp ] || need libpagmo-dev
         has_module scipy || need python3-scipy
     fi
     if [ $with_api = yes ]; then
