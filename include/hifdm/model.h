@@ -28,7 +28,8 @@ typedef struct {
     int half_bandwidth;                        /* of D: columns below the diagonal */
     int n_band;      /* n_free * (half_bandwidth + 1); one spare place behind it takes the terms of supports */
     bool has_strut;  /* some force density is negative: D may be indefinite */
-    bool has_newton; /* workspaces hold a Newton matrix: some law iterates, and the energy is convex (no strut) */
+    bool has_newton; /* workspaces hold a Newton matrix: some law iterates (or hf_model_want_newton), and the energy is
+                        convex (no strut) */
     double pretension_N;
     double reference_N; /* residuals are relative to it: the largest tension of a law or load, else the pretension */
 
@@ -87,6 +88,11 @@ hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf
  * HF_NO_MEMORY. Call it once per model, before workspaces are created for it. */
 hf_status hf_model_attach(hf_model *model, int n_attachment, const int *node, const double *flexibility_m_per_N,
                           hf_messages *messages);
+
+/* Let workspaces of a net on a truss hold a Newton matrix where no law iterates, too, but for nets with struts: then
+ * populations share one, and move net and truss in lanes (chord). Its set-up is dear beside one form-finding. Call it
+ * before workspaces are created. */
+void hf_model_want_newton(hf_model *model);
 
 /* The force to which residuals and slack are relative, N: reference_N of a model of this scene. */
 double hf_model_reference_N(const hf_scene *scene, double pretension_N);

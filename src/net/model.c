@@ -543,6 +543,11 @@ hf_status hf_model_attach(hf_model *m, int n_attachment, const int *node, const 
     return hf_error(messages, HF_NO_MEMORY, "out of memory for %d attachments", n_attachment);
 }
 
+void hf_model_want_newton(hf_model *m)
+{
+    m->has_newton |= m->n_attachment > 0 && !m->has_strut; /* laws that do not iterate are force densities: convex */
+}
+
 /* ---- checks ---- */
 
 bool hf_model_is_valid(const hf_model *m)

@@ -40,6 +40,7 @@ hf_status hf_problem_load(const char *path, const char *const *set, int n_set, h
         const hf_carrier *c = &p->carrier;
         HF_TRY(hf_config_carrier(&p->settings, &p->scene, &p->carrier, messages));
         HF_TRY(hf_model_attach(&p->model, c->n_attachment, c->scene_node, c->flexibility_m_per_N, messages));
+        if (p->settings.has_optimize) hf_model_want_newton(&p->model);
     }
     if (!p->settings.has_optimize) return HF_OK;
     return hf_symmetry_apply(&p->scene, p->settings.optimize.symmetry, &p->model, &p->planes, messages);

@@ -81,6 +81,24 @@ START_TEST(what_cannot_be_is_named)
 }
 END_TEST
 
+/* Designs of a net that is held by force densities, on its ring: the lanes of a shared matrix find the shapes that
+ * each design has by itself, round by round. */
+START_TEST(designs_move_net_and_ring_in_lanes)
+{
+    static const char *const solver[] = {"optimize.solver=auto", "optimize.solver=fixed_point"};
+    const char *path = keep(source_path("configs/paraboloid-6m.yaml")), *out[] = {temp("auto.h5"), temp("alone.h5")};
+    HIFDM(0, "check", path, "--set", "optimize.generations=1");
+    OUT("for a design of the first generation by chord;");
+    for (int i = 0; i < 2; i++)
+        HIFDM(0, "run", path, "-o", out[i], "--quiet", "--set", "optimize.generations=1", "--set",
+              "optimize.compare_lm=false", "--set", "coupling.tof_m=1e-10", "--set", "form.residual_tolerance=1e-12",
+              "--set", solver[i]);
+    EXPECT(out[0], out[1], "--", "(a['ga/design_N'][:] == b['ga/design_N'][:]).all()", "a['ga/psi_m'].shape == (1, 50)",
+           "abs(a['ga/psi_m'][:] - b['ga/psi_m'][:]).max() < 1e-10",
+           "abs(a['ga/boundary_tension_ratio'][:] - b['ga/boundary_tension_ratio'][:]).max() < 1e-8");
+}
+END_TEST
+
 /* The cells of a quad net at its rim, 28 here, are counted when they are made. */
 START_TEST(rings_under_quad_nets)
 {
@@ -102,6 +120,7 @@ Suite *suite_cli_reflectors(void)
     tcase_add_loop_test(tcase, generators_agree_with_the_oracle, 0, N_EXAMPLE);
     tcase_add_loop_test(tcase, nets_are_held, 0, N_EXAMPLE);
     tcase_add_loop_test(tcase, what_cannot_be_is_named, 0, N_IMPOSSIBLE);
+    tcase_add_test(tcase, designs_move_net_and_ring_in_lanes);
     tcase_add_test(tcase, rings_under_quad_nets);
     suite_add_tcase(suite, tcase);
     return suite;
