@@ -192,7 +192,7 @@ paper paper-check:
 	$(SUB) $(PROGRAM)
 	$(PYTHON) tools/paper/paper.py --program $(PROGRAM) --work $(BUILD)/paper $(PAPER_DO) $(PAPER_OUT)
 
-paper-search: ## search for the paper's net anew (5 minutes): writes configs/chen2022-search*.yaml
+paper-search: ## search for the paper's net anew (some minutes): writes configs/chen2022-search*.yaml
 	$(Q)tools/setup.sh --test
 	$(SUB) $(PROGRAM)
 	$(PYTHON) tools/paper/search.py --program $(PROGRAM) --work $(BUILD)/paper-search

@@ -43,7 +43,8 @@ static inline void fill(hf_optimiser *o)
         for (int k = 0; k < N_GENE; k++)
             psi_m += fabs(g->design_N[i * N_GENE + k] - 0.1 * k);
         if (g->pending[i])
-            g->result[i] = (hf_form_result){.status = HF_OK, .psi_m = psi_m, .iterations = g->generation};
+            g->result[i] =
+                (hf_form_result){.status = HF_OK, .psi_m = psi_m, .merit = psi_m, .iterations = g->generation};
     }
     hf_optimiser_tell(o);
 }

@@ -36,7 +36,12 @@ static inline void start_run(struct run *r, int rule)
     r->net.form.residual_tolerance = r->net.form.length_tolerance = TOLERANCE;
     r->net.form.max_iterations = 100000;
     draw_designs(r, 31, rule == HF_RULE_TENSION ? 0.01 : 0.5);
-    r->evaluator = (hf_evaluator){&r->net.model, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_CHORD, 1e9};
+    r->evaluator = (hf_evaluator){.model = &r->net.model,
+                                  .form = &r->net.form,
+                                  .start_q_N_per_m = r->start_q,
+                                  .rule = (hf_rule)rule,
+                                  .solver = HF_SOLVER_CHORD,
+                                  .boundary_ratio_cap = 1e9};
 }
 
 static inline void open_run(struct run *r, int rule)

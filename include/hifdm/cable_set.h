@@ -2,24 +2,25 @@
  * Stability: stable.
  *
  * A cable belongs to any number of sets. Generators name the families of their cables; an import has the column `set`.
- * The groups inner and boundary are not listed, because hf_scene.group has them; their names are taken. */
+ * The groups inner and boundary are not listed, because hf_scene.group has them; their names are taken, as is `all`. */
 #ifndef HIFDM_CABLE_SET_H
 #define HIFDM_CABLE_SET_H
 
 #include <hifdm/scene.h>
+#include <hifdm/settings.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-#define HF_CABLE_SET_NAME_SIZE 64 /* of a name with its NUL */
+#define HF_CABLE_SET_NAME_SIZE HF_SET_NAME_SIZE
 
 typedef struct {
     int set, cable;
 } hf_cable_set_member;
 
 /* What is wrong with the name of a set, as the end of a sentence; NULL when it is right: letters, digits, _ and -, none
- * of the latter in front, and not the name of a group. */
+ * of the latter in front, and neither the name of a group nor `all`. */
 const char *hf_cable_set_name_fault(const char *name);
 
 /* Make room in a scene without sets for n_set >= 1 sets with n_member cables in all, names of up to

@@ -60,7 +60,8 @@ hf_status hf_config_parse(const char *path, const char *text, const char *const 
 int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t size);
 
 /* Write where a key of the table stands, for a message: "case.yaml:7:3: surface.kind", "--set surface.kind", or
- * "case.yaml: surface.kind" when it is not given. Returns whether it is. */
+ * "case.yaml: surface.kind" when it is not given; of a key of a row, such as "optimize.goals.0.set", then where the row
+ * stands, which is "optimize.goals.0". Returns whether it is given. */
 bool hf_config_place(const hf_case *settings, const char *key, char *text, size_t size);
 
 /* Make the scene that the case describes, and check it (hf_scene_check). Returns HF_OK; HF_BAD_CASE, also when a file
@@ -93,15 +94,18 @@ typedef enum {
     HF_FIELD_INT_PAIR,
     HF_FIELD_WORD, /* an enumeration: index into words */
     HF_FIELD_TEXT,
-    HF_FIELD_DOUBLE_LIST /* hf_double_list */
+    HF_FIELD_DOUBLE_LIST, /* hf_double_list */
+    HF_FIELD_AMOUNT,      /* double[2]: a number, or a part of something such as 30 % as 0.3; NaN is what it is not */
+    HF_FIELD_BOUNDS       /* double[2]: lower < upper, infinite where a side is open */
 } hf_field_type;
 
 typedef struct {
     const char *path; /* "form.pretension_N" */
     hf_field_type type;
-    size_t offset;             /* in hf_case */
+    size_t offset;             /* in hf_case; of a key of a row: in the row */
     double min, max;           /* inclusive; min HF_ABOVE_ZERO: above 0; text: max is the size of the buffer */
-    const char *default_value; /* as written in a case file; NULL = required when its section is there; "" = nothing */
+    const char *default_value; /* as written in a case file; NULL = required when its section or row is there; "" =
+                                * nothing, which in a row is NaN of numbers and open of bounds */
     const char *unit;          /* "" = dimensionless */
     const char *const *words;  /* of HF_FIELD_WORD, NULL-terminated */
     const char *help;
@@ -113,16 +117,30 @@ typedef struct {
     const char *help;
 } hf_section;
 
+/* A list of rows: a row is a section without a name, whose keys are "optimize.variables.0.range" and so on. */
+typedef struct {
+    const char *path;            /* "optimize.variables" */
+    size_t count_offset, offset; /* in hf_case: of the int that counts its rows, of the first row */
+    size_t row_size;
+    int max_row;
+    const hf_field *field; /* [n_field] the keys of a row, with the path "range" */
+    int n_field;
+    const char *help;
+} hf_list;
+
 #define HF_ABOVE_ZERO 1e-300 /* the min of a field that must be positive */
 
 extern const hf_field hf_field_table[]; /* [hf_n_field], by section */
 extern const int hf_n_field;
 extern const hf_section hf_section_table[];
 extern const int hf_n_section;
+extern const hf_list hf_list_table[];
+extern const int hf_n_list;
 
-/* Check `value`, written as in a case file, against the key hf_field_table[field]. Returns HF_OK; HF_BAD_CASE with the
- * message "<place>: <key>: <why not>"; HF_NO_MEMORY. Only hf_config_load checks the rules that involve several keys. */
-hf_status hf_config_check_value(int field, const char *value, const char *place, hf_messages *messages);
+/* Check `value`, written as in a case file, against a key of the table, "form.stop" or "optimize.variables.0.range".
+ * Returns HF_OK; HF_BAD_CASE with the message "<place>: <key>: <why not>"; HF_NO_MEMORY. Only hf_config_load checks the
+ * rules that involve several keys, and whether there is such a row. */
+hf_status hf_config_check_value(const char *key, const char *value, const char *place, hf_messages *messages);
 
 #ifdef __cplusplus
 }

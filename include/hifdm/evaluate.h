@@ -5,6 +5,7 @@
 #define HIFDM_EVALUATE_H
 
 #include <hifdm/formfind.h>
+#include <hifdm/goals.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -21,6 +22,20 @@ hf_method hf_evaluate_method(const hf_model *model, const hf_form_settings *form
 hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
                            hf_history *history, hf_form_result *result);
 
+/* A row of optimize.limits: what it keeps between bounds. */
+typedef struct {
+    hf_limit_kind kind;
+    double lower, upper;
+    int n_cable;
+    int *cable; /* [n_cable] of tension and ratio */
+} hf_limit;
+
+typedef struct {
+    int n;
+    hf_limit *row; /* [n] */
+    void *block;
+} hf_limits;
+
 /* What is constant during a run and shared by all threads. model, form and start_q_N_per_m are borrowed. */
 typedef struct {
     const hf_model *model;
@@ -29,11 +44,34 @@ typedef struct {
     hf_rule rule;
     hf_solver solver;
     double boundary_ratio_cap; /* a larger boundary tension ratio gives HF_RATIO_CAP; INFINITY: no cap */
+    const hf_limits *limits;   /* a shape that breaks one of them gives HF_OUT_OF_LIMITS; NULL: none */
+    const hf_goals *goals;     /* the merit of a shape; NULL: psi */
+    bool by_density; /* genes that set a tension T set the force density T/L* instead, as Levenberg-Marquardt wants */
 } hf_evaluator;
 
-/* Evaluate design_N [model->n_gene], boundary pretensions T' > 0. The shape is left in the workspace. A design that
- * fails has its status in the result and NaN for psi and ratios (one that breaks the cap keeps its ratios); the run
- * itself does not fail. Returns result->status. */
+/* What gene k sets, and in which way, by optimize.rule and optimize.variables. */
+typedef enum {
+    HF_SETS_START,   /* q = value/divisor, from which the case's own law starts (rule seeded) */
+    HF_SETS_TENSION, /* law tension */
+    HF_SETS_DENSITY, /* law force_density, q = value/divisor */
+    HF_SETS_LENGTH,  /* law length */
+    HF_SETS_CUT,     /* law elastic: its unstressed length */
+    HF_SETS_SUPPORT  /* the place of a support */
+} hf_gene_sets;
+hf_gene_sets hf_evaluate_sets(const hf_evaluator *evaluator, int i_gene);
+
+/* Does a design have one answer, wherever its solve starts? Not under rule seeded. */
+bool hf_evaluate_is_unique(const hf_evaluator *evaluator);
+
+/* By what the value of a gene is divided for its force density: L* (m) of pretensions, 1 of force densities. */
+double hf_evaluate_divisor(const hf_evaluator *evaluator, int i_gene);
+
+/* Make a workspace ready for designs of an evaluator with goals. HF_OK or HF_NO_MEMORY; hf_workspace_free frees it. */
+hf_status hf_evaluate_attend(const hf_evaluator *evaluator, hf_workspace *workspace);
+
+/* Evaluate design_N [model->n_gene], the values of the genes: those of cables > 0. The shape is left in the workspace.
+ * A design that fails has its status in the result and NaN for psi and ratios (one that breaks the cap keeps its
+ * ratios); the run itself does not fail. Returns result->status. */
 hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace,
                       hf_form_result *result);
 
@@ -42,15 +80,11 @@ hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design_N, hf_
  * violation, and the measures of an infeasible design to NaN, and returns the status; of a design above the cap it
  * reads the tensions in the workspace. */
 void hf_evaluate_prepare(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace);
-bool hf_evaluate_is_above_cap(const hf_evaluator *evaluator, const hf_form_result *result);
-hf_status hf_evaluate_judge(const hf_evaluator *evaluator, const hf_workspace *workspace, hf_form_result *result);
+bool hf_evaluate_needs_shape(const hf_evaluator *evaluator, const hf_form_result *result);
+hf_status hf_evaluate_judge(const hf_evaluator *evaluator, hf_workspace *workspace, hf_form_result *result);
 
 /* L* (m) of a boundary cable: the prescribed length where there is one, else the theoretical length. */
 double hf_evaluate_design_length_m(const hf_model *model, int i_cable);
-
-/* Target of a boundary cable to which the design gives the tension tension_N: q (N/m) under the rule force_density,
- * else the tension itself (N). */
-double hf_evaluate_design_target(const hf_evaluator *evaluator, int i_cable, double tension_N);
 
 #ifdef __cplusplus
 }

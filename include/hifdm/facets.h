@@ -14,10 +14,9 @@ typedef struct {
     int n_facet;
     int *corner; /* [n_facet][4] nodes of the scene, counter-clockwise seen from +z; of a triangle the last two are the
                        same */
-    int *named;  /* [n_facet] index among the facets that the scene names; NULL of facets that were found */
     int n_open;  /* faces that are no facets: more than four sides, or not convex */
     bool is_planar; /* false: cables cross, seen along z; there are no facets then */
-    void *block;    /* owned memory behind `corner` and `named` */
+    void *block;    /* owned memory behind `corner` */
 } hf_facets;
 
 /* Nodes are on the wanted surface that are inner nodes, and of the others those whose theoretical position is on it up

@@ -23,6 +23,14 @@ extern "C" {
  * stress pass; 1e-11 and 1e-7 each fail one of the model (straight_chains_are_found). */
 #define HF_STRAIGHT_EXCESS 1e-9
 
+/* What a gene sets in a scene with optimize.variables. */
+typedef struct {
+    hf_vary vary;        /* of the gene's cable, or HF_VARY_SUPPORT_... for a component of any of these */
+    int setting;         /* row of optimize.variables */
+    int support_row;     /* the support that moves, or -1 */
+    double direction[3]; /* in which it moves, of length 1 */
+} hf_gene;
+
 typedef struct {
     int n_node, n_free, n_cable, n_inner_node; /* n_free: nodes that are no supports; n_inner_node: those in psi */
     int half_bandwidth;                        /* of D: columns below the diagonal */
@@ -42,6 +50,7 @@ typedef struct {
     double *load_N;                              /* [3][n_node], or NULL */
     double *length_m;                            /* [n_cable] theoretical */
     unsigned char *group;                        /* [n_cable] hf_group */
+    int n_boundary, *boundary_cable;             /* [n_boundary] the cables of HF_GROUP_BOUNDARY */
     unsigned char *law;                          /* [n_cable] hf_law in force under the case's method */
     double *target;                              /* [n_cable] T* (N), L* (m), q (N/m) or l0 (m) by law */
     double *EA_N;                                /* [n_cable]; NULL unless some cable is elastic under the method */
@@ -51,8 +60,10 @@ typedef struct {
      * without a third one are in the same group, a chain. Unequal changes inside a chain push its nodes along it; equal
      * changes change its sag. */
     int n_gene, n_gene_group;
-    int *gene_cable; /* [n_gene] */
+    int *gene_cable; /* [n_gene] -1: none, the gene moves a support */
     int *gene_group; /* [n_gene] 0..n_gene_group-1 */
+    hf_gene *gene;   /* [n_gene] under optimize.variables, else NULL: boundary pretensions by optimize.rule */
+    bool moves_supports;
 
     /* Genes linked by a symmetry of the net (module symmetry) change by the same step as the first of their class. */
     int n_leader;     /* number of classes, the independent genes; n_gene without a symmetry */
@@ -74,7 +85,7 @@ typedef struct {
     int *tie;                    /* [n_tie] cable ends at attachments: 2*cable + which end, by cable */
     int *tie_attachment;         /* [n_tie] index of the attachment */
 
-    void *block, *attachment_block;
+    void *block, *attachment_block, *gene_block;
 } hf_model;
 
 /* Build from a checked scene. HF_OK or HF_NO_MEMORY (with a message). Free with hf_model_free in any case. */
@@ -96,6 +107,24 @@ void hf_model_want_newton(hf_model *model);
 
 /* The force to which residuals and slack are relative, N: reference_N of a model of this scene. */
 double hf_model_reference_N(const hf_scene *scene, double pretension_N);
+
+/* What gene k sets: HF_VARY_PRETENSION unless optimize.variables says more. */
+static inline hf_vary hf_model_vary(const hf_model *model, int i_gene)
+{
+    return model->gene ? model->gene[i_gene].vary : HF_VARY_PRETENSION;
+}
+
+/* Number the chains of the genes: gene_group, n_gene_group; and unlink them: gene_leader, n_leader. HF_OK or
+ * HF_NO_MEMORY. For those who make genes. */
+hf_status hf_model_group_genes(hf_model *model);
+
+#define HF_GENE_NAME_SIZE 320 /* ids of tables have at most 255 bytes */
+
+/* The name of a gene in tables: the id of its cable, or of the support that it moves with .x, .y, .z or .normal. */
+void hf_model_gene_name(const hf_model *model, const hf_scene *scene, int i_gene, char *text, size_t size);
+
+/* The unit of a gene: "N", "N/m" or "m". */
+const char *hf_model_gene_unit(const hf_model *model, int i_gene);
 
 /* True when every index and band place obeys its invariants; for asserts and tests. */
 bool hf_model_is_valid(const hf_model *model);

@@ -26,10 +26,12 @@ extern const char *const hf_population_stop_word[4]; /* "running", "stagnation",
 
 typedef struct {
     int n_gene, n_individual;
+    bool has_rows;             /* the genes are those of optimize.variables, in the unit of each; else pretensions */
     int generation;            /* number of the present generation, from 0 */
     int generation_limit;      /* the largest number of generations */
     double *base_N;            /* [n_gene] pretensions T after form-finding */
     double *lower_N, *upper_N; /* [n_gene] bounds on the pretensions T' of a design */
+    double *reach;             /* [n_gene] how far the first designs spread from the base */
 
     /* Written by the optimiser; the results of pending designs by the batch. */
     double *design_N;                       /* [n_individual][n_gene] boundary pretensions T' */
@@ -45,7 +47,8 @@ typedef struct {
 
     /* Written by hf_population_rank. */
     int best;                                   /* index; -1 while no design is feasible */
-    double *best_psi_m;                         /* [generation_limit] best of each generation, or NaN */
+    double *best_merit;                         /* [generation_limit] best of each generation, or NaN */
+    double *best_psi_m;                         /* [generation_limit] psi of these; the same without goals */
     double *least_violation;                    /* [generation_limit] of each generation */
     double mean_psi_m, worst_psi_m;             /* of the feasible individuals */
     int n_infeasible;                           /* in this generation */

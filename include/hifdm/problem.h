@@ -27,6 +27,8 @@ typedef struct {
     hf_form_result form;         /* of the form-finding */
     double *start_q_N_per_m;     /* [n_cable] of the found shape */
     double *base_N;              /* [n_gene] boundary pretensions of the found shape, averaged over linked genes */
+    hf_limits limits;            /* of optimize.limits; none without rows */
+    hf_goals goals;              /* of optimize.goals; none without rows: psi */
     hf_evaluator evaluator;      /* of designs of this problem */
     hf_batch batch;              /* evaluates designs; borrows the evaluator */
     hf_solver solver;            /* the solver that the batch uses */

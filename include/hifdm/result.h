@@ -8,6 +8,7 @@
 #ifndef HIFDM_RESULT_H
 #define HIFDM_RESULT_H
 
+#include <hifdm/settings.h>
 #include <hifdm/status.h>
 #include <stddef.h>
 
@@ -79,9 +80,9 @@ const char *hf_bound_reason_meaning(int reason); /* the same */
  * description  attribute of the data set, where there is one
  *
  * Attributes and columns of the ledger are in the order of the list. JSON has the figures of a coupling between places
- * 4 and 5. Under a status other than HF_OK, HF_NOT_CONVERGED and HF_RATIO_CAP the REAL ones are NaN. Of a design of
- * hf_evaluate under any status but HF_OK psi_m is NaN, and under any but HF_OK and HF_RATIO_CAP the two tension ratios
- * and the violation are. In more detail:
+ * 4 and 5. Under a status other than HF_OK, HF_NOT_CONVERGED and those of a broken limit the REAL ones are NaN. Of a
+ * design of hf_evaluate under any status but HF_OK psi_m and merit are NaN, and without a shape (hf_status_has_shape)
+ * the two tension ratios and the violation are. In more detail:
  *   culprit                 cable (COLLAPSED, NOT_FINITE; NOT_CONVERGED: the one whose rounding stands in the way), row
  *                           of D (SINGULAR), chain (STRAIGHT_CHAIN)
  *                           OK, NOT_CONVERGED: with n_drifting > 0, the row that moves farthest
@@ -92,7 +93,8 @@ const char *hf_bound_reason_meaning(int reason); /* the same */
  *   inner_tension_ratio     max T / min T of the group, as boundary_tension_ratio; INFINITY when a cable of it is slack
  *                           (n_slack counts those of both groups), NaN when the group is empty or has a strut
  *   violation               sum over boundary cables of 1 - T/t below t and 1 - cap t/T above cap t, where t^2 = min T
- *                           max T / cap, with a slack T as if just taut; NaN for what is no design
+ *                           max T / cap, with a slack T as if just taut; and what shapes are beyond optimize.limits;
+ *                           NaN for what is no design
  *   n_loose                 such nodes are where no cable of theirs is too long, as near to their theoretical places as
  *                           that allows. A design (hf_evaluate) with such a node is SINGULAR
  *   n_drifting              others than those; position_error_m is then NaN
@@ -111,7 +113,8 @@ const char *hf_bound_reason_meaning(int reason); /* the same */
     X(double, length_error, REAL, 4, 0, "length_error", "", "max |l/L*-1| over taut cables of law length or elastic")  \
     X(double, inner_tension_ratio, REAL, 3, 1, "inner_tension_ratio", "", "largest over smallest")                     \
     X(double, boundary_tension_ratio, REAL, 3, 1, "boundary_tension_ratio", "", "largest over smallest")               \
-    X(double, violation, REAL, 0, 3, "violation", "", "of the cap on the boundary ratio, summed over cables; 0: none") \
+    X(double, violation, REAL, 0, 3, "violation", "", "of the limits, summed over cables; 0: none")                    \
+    X(double, merit, REAL, 0, 3, "merit", "", "root of the sum of (weight x goal)^2; psi_m, in m, without goals")      \
     X(double, shortest_length_ratio, REAL, 4, 0, "shortest_length_ratio", "", "min l / theoretical l over all cables") \
     X(double, position_error_m, REAL, 4, 0, "position_error_m", "m", "estimate: largest move in one more Newton step") \
     X(double, position_bound_m, REAL, 4, 0, "position_bound_m", "m", "no node is farther from equilibrium: proven")    \
@@ -144,6 +147,7 @@ typedef struct {
 typedef struct {
     HF_RESULT_LIST(HF_RESULT_MEMBER)
     hf_coupling_result coupling;
+    double goal[HF_DESIGN_ROWS_MAX]; /* of a design with goals: each in its own unit, in the order of optimize.goals */
 } hf_form_result;
 
 /* Set every REAL member of HF_RESULT_LIST to NaN. */

@@ -38,14 +38,12 @@ typedef struct {
     int *set_cable;        /* [set_start[n_set]] cables, ascending in each set */
     int n_facet;           /* facets that an import names; 0: they are found (facets.h) */
     int *facet; /* [n_facet][4] nodes, counter-clockwise seen from +z; of a triangle the last two are the same */
-    const char **facet_id;                /* [n_facet], or NULL */
     const char **node_id;                 /* [n_node] */
     const char **cable_id;                /* [n_cable] */
     int *node_line;                       /* [n_node] line in nodes_file, or NULL for a generated scene */
     int *cable_line;                      /* [n_cable] line in cables_file, or NULL */
     const char *nodes_file, *cables_file; /* names for messages, or NULL */
-    void *block, *text, *set_block;       /* owned memory behind all of the above but `facet` and `facet_id` */
-    void *facet_text;                     /* that of the facets' ids */
+    void *block, *text, *set_block;       /* owned memory behind all of the above but `facet`, which is its own */
 } hf_scene;
 
 /* Allocate a scene of this size, all zero; with_* tell which optional arrays exist. Returns HF_OK or HF_NO_MEMORY. */

@@ -30,6 +30,42 @@ typedef enum { HF_KEEP_ALL, HF_KEEP_BEST, HF_KEEP_EVERY } hf_keep;
 typedef enum { HF_SURFACE_AUTO, HF_SURFACE_PARABOLIC_CYLINDER, HF_SURFACE_PARABOLOID } hf_surface_kind;
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
+/* What a row of optimize.variables varies of each cable of its set, or of the supports at which its cables end. */
+typedef enum {
+    HF_VARY_TENSION,           /* N, of a cable held at it */
+    HF_VARY_FORCE_DENSITY,     /* N/m */
+    HF_VARY_LENGTH,            /* m */
+    HF_VARY_UNSTRESSED_LENGTH, /* m, of cables of law elastic */
+    HF_VARY_SUPPORT_Z,         /* m, from where the net has the support */
+    HF_VARY_SUPPORT_NORMAL,    /* the same along the normal of the wanted surface */
+    HF_VARY_SUPPORT_XYZ,       /* three variables for each support */
+    HF_VARY_PRETENSION         /* of no row: N, what optimize.rule makes of the pretension of a boundary cable */
+} hf_vary;
+/* Which variables of a row change by the same step: none, all, or those at mirrored places (optimize.symmetry). */
+typedef enum { HF_LINK_EACH, HF_LINK_SET, HF_LINK_SYMMETRY } hf_link;
+
+/* What a row of optimize.goals measures; each is zero or more, and less is better. */
+typedef enum {
+    HF_GOAL_PSI,          /* m, distance of the inner nodes to their theoretical places, RMS */
+    HF_GOAL_SURFACE,      /* m, distance of the inner nodes to the wanted surface, RMS */
+    HF_GOAL_FACETS,       /* m, distance of the facets to it, RMS */
+    HF_GOAL_TENSION,      /* N, difference of tensions to `target`, RMS over the set */
+    HF_GOAL_LENGTH,       /* m, difference of lengths to `target`, RMS over the set */
+    HF_GOAL_EVENNESS,     /* standard deviation of the tensions of the set over their mean */
+    HF_GOAL_PULL,         /* N, largest force of the net on a support */
+    HF_GOAL_DISPLACEMENT, /* m, largest displacement of an attachment by the truss */
+    HF_GOAL_MASS          /* kg, of the cables of the set at mass_kg_per_m */
+} hf_goal_kind;
+typedef enum { HF_ALONG_NORMAL, HF_ALONG_HALF_PATH } hf_along;
+typedef enum { HF_FIT_NONE, HF_FIT_BEST } hf_fit; /* the wanted surface itself, or its best fit to the shape */
+
+/* What a row of optimize.limits keeps between bounds. */
+typedef enum {
+    HF_LIMIT_TENSION,     /* N, of each cable of the set */
+    HF_LIMIT_RATIO,       /* largest over smallest tension of the set */
+    HF_LIMIT_DISPLACEMENT /* m, of each attachment */
+} hf_limit_kind;
+
 /* The words of these choices in a case file, indexed by the enumerations above; the last entry is NULL. */
 extern const char *const hf_method_word[6];
 extern const char *const hf_prestress_word[3];
@@ -43,6 +79,44 @@ extern const char *const hf_keep_word[4];
 extern const char *const hf_symmetry_word[6];
 extern const char *const hf_surface_kind_word[4];
 extern const char *const hf_coupling_scheme_word[4];
+extern const char *const hf_vary_word[8];
+extern const char *const hf_link_word[4];
+extern const char *const hf_goal_word[10];
+extern const char *const hf_along_word[3];
+extern const char *const hf_fit_word[3];
+extern const char *const hf_limit_word[4];
+
+#define HF_SET_NAME_SIZE 64 /* of the name of a set of cables with its NUL */
+
+/* A row of optimize.variables. Values in the unit of what varies. */
+typedef struct {
+    char set[HF_SET_NAME_SIZE]; /* of cables, or inner, boundary, all */
+    hf_vary vary;
+    double range;        /* how far each may move from its value after form-finding; NaN: as far as the bounds */
+    double range_ratio;  /* the same over that value (`range: 30 %`); NaN: `range` holds */
+    double lower, upper; /* `bounds`; infinite where none are given */
+    hf_link link;
+} hf_variable_settings;
+
+/* A row of optimize.goals. */
+typedef struct {
+    hf_goal_kind goal;
+    char set[HF_SET_NAME_SIZE]; /* of tension, length, evenness, mass; "": all */
+    double target;              /* of tension and length; NaN: of lengths the theoretical ones */
+    double weight;              /* the merit of a design is sqrt(sum (weight * value)^2) */
+    double mass_kg_per_m;       /* of mass */
+    hf_along along;             /* of surface and facets */
+    hf_fit fit;                 /* the same */
+} hf_goal_settings;
+
+/* A row of optimize.limits. */
+typedef struct {
+    hf_limit_kind limit;
+    char set[HF_SET_NAME_SIZE]; /* of tension and ratio; "": all */
+    double lower, upper;        /* `bounds`; infinite where none is given */
+} hf_limit_settings;
+
+#define HF_DESIGN_ROWS_MAX 16 /* rows of each of these lists */
 
 /* How a net is coupled with an elastic truss. They are not used without a truss. */
 typedef struct {
@@ -84,6 +158,10 @@ typedef struct {
     hf_symmetry symmetry;                 /* mirror planes that link genes */
     hf_keep store;                        /* what a result file holds of the generations */
     int store_every;                      /* of HF_KEEP_EVERY: whole generations so far apart */
+    int n_variable, n_goal, n_limit;      /* 0: the pretensions of the boundary by rule and range_N; psi; no limits */
+    hf_variable_settings variable[HF_DESIGN_ROWS_MAX];
+    hf_goal_settings goal[HF_DESIGN_ROWS_MAX];
+    hf_limit_settings limit[HF_DESIGN_ROWS_MAX];
 } hf_optimize_settings;
 
 #define HF_LIST_MAX 32

@@ -7,6 +7,7 @@
 #ifndef HIFDM_STATUS_H
 #define HIFDM_STATUS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -27,6 +28,7 @@ extern "C" {
     X(NO_FEASIBLE, 8, 3, "no_feasible", "no design met the constraints")                                               \
     X(TRUSS_TOO_SOFT, 9, 4, "truss_too_soft", "the truss gives way to the pretension of its net without end")          \
     X(MECHANISM, 10, 4, "mechanism", "the truss is a mechanism, or not held by enough supports")                       \
+    X(OUT_OF_LIMITS, 12, 4, "out_of_limits", "the shape breaks a row of optimize.limits")                              \
     X(POINTS_FAILED, 11, 3, "points_failed", "some points of the sweep failed")                                        \
     X(BAD_USAGE, 20, 2, "bad_usage", "the command line is not understood")                                             \
     X(BAD_CASE, 21, 2, "bad_case", "the case has errors")                                                              \
@@ -47,6 +49,12 @@ hf_status hf_status_of_word(const char *word); /* HF_IO for a word not listed, a
 const char *hf_status_text(hf_status status);  /* a sentence */
 /* 0 done, 1 two files differ, 2 usage or case, 3 not converged, 4 ill-posed, 5 input/output, 75 told to stop */
 int hf_status_exit_code(hf_status status);
+
+/* Has a design with this status a shape: is it feasible, or infeasible by a limit alone? */
+static inline bool hf_status_has_shape(hf_status status)
+{
+    return status == HF_OK || status == HF_RATIO_CAP || status == HF_OUT_OF_LIMITS;
+}
 
 /* Evaluate `expression` once; return its status from the calling function unless it is HF_OK. */
 #define HF_TRY(expression)                                                                                             \

@@ -17,7 +17,6 @@
  *   /case        text, overrides; attributes sha256, case_path
  *   /scene/node  id [n], position_m [n][3], role [n]; load_N [n][3] if there are loads
  *   /scene/cable id, group, law, target, length_m (theoretical) [m], end [m][2]; EA_N [m] if any is given
- *   /scene       if the import names k facets: facet [k][4] (nodes; of a triangle the last one twice), facet_id [k]
  *   /scene/set   if there are named sets of cables, of the s sets with c cables in all: name [s], start [s + 1],
  *                cable (index into /scene/cable) [c]; set k has cable[start[k]] to cable[start[k + 1] - 1]
  *   /form        position_m [n][3]; length_m, tension_N, q_N_per_m, law [m]

@@ -61,9 +61,10 @@ extern "C" {
     X(int, polish_iterations, INT, 1, "lm_iterations", "steps")                                                        \
     X(int, polish_evaluations, INT, 1, "evaluations", "form-findings")                                                 \
     X(hf_polish_stop, polish_stop, POLISH_STOP, 4, "stop_reason", "why it ended")                                      \
-    X(int, polish_n_at_lower, INT, 5, "at_lower_bound", "pretensions at their lower bounds")                           \
-    X(int, polish_n_at_upper, INT, 5, "at_upper_bound", "pretensions at their upper bounds")                           \
+    X(int, polish_n_at_lower, INT, 5, "at_lower_bound", "genes at their lower bounds")                                 \
+    X(int, polish_n_at_upper, INT, 5, "at_upper_bound", "genes at their upper bounds")                                 \
     X(bool, polish_is_at_cap, FLAG, 5, "at_ratio_cap", "the cap on the boundary tension ratio holds it")               \
+    X(int, polish_n_at_limit, INT, 5, "at_limit", "limits of optimize.limits that hold it, cable by cable")            \
     X(double, polish_wall_s, REAL, 3, "wall_s", "wall-clock time")
 
 /* The truss. */

@@ -78,6 +78,8 @@ extern "C" {
     X(int, schur_pivot, m->has_newton ? 3 * (size_t)m->n_attachment : 0, "", "the same")                               \
     X(double, coupling_q_N_per_m, m->n_attachment ? (size_t)m->n_cable : 0, "N/m",                                     \
       "[n_cable] from which the next form-finding starts")                                                             \
+    X(double, support_move_m, m->moves_supports ? 3 * (size_t)m->n_node : 0, "m",                                      \
+      "[3][n_node] of a design's supports")                                                                            \
     X(int, pivot, m->has_strut ? (size_t)m->n_free : 0, "", "struts")
 
 typedef struct {
@@ -90,6 +92,7 @@ typedef struct {
     bool starts_near;                  /* q_N_per_m is that of a shape on other supports */
     int n_joint_step;                  /* steps with the attachments, since they move */
     hf_history *history;               /* of the form-finding that runs, or NULL */
+    struct hf_goals_point *goals;      /* owned: of designs with goals (hf_evaluate_attend), else NULL */
     const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 makes hf_form_find return HF_INTERRUPTED */
 } hf_workspace;
 

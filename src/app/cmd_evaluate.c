@@ -2,9 +2,9 @@
  *
  * in : one design per row. Each boundary cable with a free end has a column, named by the cable's id, with its
  *      pretension in N; the columns may be in any order. An optional column `id` names the rows.
- * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation. One row per design,
- *      in the order of the input, with 17 significant digits; a missing value is nan. Without an id column the rows are
- *      numbered from 1.
+ * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation,merit. One row per
+ * design,      in the order of the input, with 17 significant digits; a missing value is nan. Without an id column the
+ * rows are      numbered from 1.
  *
  * Contents: the table - the base design - evaluation - writing - together */
 #include "app/cmd.h"

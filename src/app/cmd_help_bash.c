@@ -67,6 +67,12 @@ static void bash_value(const char *argument, FILE *f)
         fputs("compopt -o nospace 2>/dev/null; words='", f);
         for (int i = 0; i < hf_n_field; i++)
             fprintf(f, "%s%s=", i ? " " : "", hf_field_table[i].path);
+        for (int i = 0; i < hf_n_list; i++) {
+            const hf_list *list = &hf_list_table[i];
+            fprintf(f, " %s=", list->path);
+            for (int k = 0; k < list->n_field; k++)
+                fprintf(f, " %s.0.%s=", list->path, list->field[k].path);
+        }
         fputs("'", f);
     } else if (strchr(argument, '|')) {
         fputs("words='", f);
@@ -77,6 +83,16 @@ static void bash_value(const char *argument, FILE *f)
         fputs("return", f);
     }
     fputs(" ;;\n", f);
+}
+
+/* What may be the value of a key that is a word; `between` stands for the number of a row. */
+static void bash_words(const char *list, const char *between, const hf_field *field, FILE *f)
+{
+    if (!field->words) return;
+    fprintf(f, "    *:%s%s%s) words='", list, between, field->path);
+    for (int k = 0; field->words[k]; k++)
+        fprintf(f, "%s%s", k ? " " : "", field->words[k]);
+    fputs("' ;;\n", f);
 }
 
 static void bash_values(FILE *f)
@@ -95,14 +111,11 @@ static void bash_values(FILE *f)
         fputs(") ", f);
         bash_value(o.argument, f);
     }
-    for (int i = 0; i < hf_n_field; i++) {
-        const hf_field *field = &hf_field_table[i];
-        if (!field->words) continue;
-        fprintf(f, "    *:%s) words='", field->path);
-        for (int k = 0; field->words[k]; k++)
-            fprintf(f, "%s%s", k ? " " : "", field->words[k]);
-        fputs("' ;;\n", f);
-    }
+    for (int i = 0; i < hf_n_field; i++)
+        bash_words("", "", &hf_field_table[i], f);
+    for (int i = 0; i < hf_n_list; i++)
+        for (int k = 0; k < hf_list_table[i].n_field; k++)
+            bash_words(hf_list_table[i].path, ".*.", &hf_list_table[i].field[k], f);
 }
 
 void hf_help_bash(FILE *f)

@@ -7,20 +7,28 @@
 
 static void print_range(const hf_field *field, FILE *f)
 {
-    static const char *const type[] = {"number", "whole number", "whole number",   "two whole numbers",
-                                       "",       "text",         "list of numbers"};
+    static const char *const type[] = {"number",
+                                       "whole number",
+                                       "whole number",
+                                       "two whole numbers",
+                                       "",
+                                       "text",
+                                       "list of numbers",
+                                       "number",
+                                       "[low, high], of which one may be null"};
     if (field->type == HF_FIELD_WORD) {
         for (int k = 0; field->words[k]; k++)
             fprintf(f, "%s%s", k ? " | " : "", field->words[k]);
         return;
     }
     fprintf(f, "%s", type[field->type]);
-    if (field->type == HF_FIELD_TEXT) return;
+    if (field->type == HF_FIELD_TEXT || field->min <= -1e300) return;
     if (field->min == HF_ABOVE_ZERO)
         fprintf(f, " > 0");
     else
         fprintf(f, " >= %.10g", field->min);
     if (field->max < 1e300) fprintf(f, ", <= %.10g", field->max);
+    if (field->type == HF_FIELD_AMOUNT) fprintf(f, ", or a part like 30 %%");
 }
 
 static int depth_of(const char *path)
@@ -58,6 +66,27 @@ static void print_field(const hf_field *field, FILE *f)
                 *field->default_value ? field->default_value : "\"\"");
 }
 
+/* A list has no rows by default, so the keys of a row are told in comments. */
+static void print_list(const hf_list *list, FILE *f)
+{
+    int indent = 2 * depth_of(list->path);
+    fprintf(f, "%*s# %s.\n%*s# up to %d rows {key: value, ...} of these keys:\n", indent, "", list->help, indent, "",
+            list->max_row);
+    for (const hf_field *field = list->field; field < list->field + list->n_field; field++) {
+        fprintf(f, "%*s#   %s: ", indent, "", field->path);
+        print_range(field, f);
+        if (*field->unit) fprintf(f, "; %s", field->unit);
+        if (!field->default_value)
+            fprintf(f, "; required");
+        else if (!*field->default_value)
+            fprintf(f, "; may be left out");
+        else
+            fprintf(f, "; default %s", field->default_value);
+        fprintf(f, ".\n%*s#     %s.\n", indent, "", field->help);
+    }
+    fprintf(f, "%*s%s: []\n", indent, "", last_word(list->path));
+}
+
 static void print_schema(FILE *f)
 {
     const hf_field *field = hf_field_table;
@@ -70,6 +99,8 @@ static void print_schema(FILE *f)
         fprintf(f, "\n%*s# %s\n%*s%s:\n", indent, "", section[s].help, indent, "", last_word(section[s].path));
         for (int i = 0; i < hf_n_field; i++)
             if (is_inside(field[i].path, section[s].path)) print_field(&field[i], f);
+        for (int i = 0; i < hf_n_list; i++)
+            if (is_inside(hf_list_table[i].path, section[s].path)) print_list(&hf_list_table[i], f);
     }
 }
 

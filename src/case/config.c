@@ -1,18 +1,15 @@
 /* Contents: looking up keys - setting one value - walking the YAML tree - overrides - load */
-#include <hifdm/config.h>
-
-#include "base/path.h"
 #include "base/sha256.h"
 #include "base/text.h"
 #include "case/config_check.h"
+#include "case/config_value.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <yaml.h>
 
-#define PATH_MAX_LENGTH 160 /* of a dotted key */
-#define CASE_MAX (1 << 20)  /* bytes of a case file */
+#define CASE_MAX (1 << 20) /* bytes of a case file */
 
 typedef struct {
     hf_case *c;
@@ -30,13 +27,6 @@ static void complain(loader *l, yaml_mark_t mark, const char *path, const char *
 }
 
 /* ---- looking up keys ---- */
-
-static int find_field(const char *path)
-{
-    for (int i = 0; i < hf_n_field; i++)
-        if (!strcmp(hf_field_table[i].path, path)) return i;
-    return -1;
-}
 
 static int find_section(const char *path)
 {
@@ -58,13 +48,19 @@ static const char *child_of(const char *path, const char *prefix)
 
 static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, const char *key)
 {
+    hf_key of;
+    const hf_list *row = hf_key_find(prefix, &of) && !of.field ? of.list : NULL;
     const char *names[128], *near;
     int n = 0;
-    char detail[2 * PATH_MAX_LENGTH] = "";
+    char detail[2 * HF_KEY_SIZE] = "";
     for (int i = 0; i < hf_n_field && n < 128; i++)
         if (child_of(hf_field_table[i].path, prefix)) names[n++] = child_of(hf_field_table[i].path, prefix);
     for (int i = 0; i < hf_n_section && n < 128; i++)
         if (child_of(hf_section_table[i].path, prefix)) names[n++] = child_of(hf_section_table[i].path, prefix);
+    for (int i = 0; i < hf_n_list && n < 128; i++)
+        if (child_of(hf_list_table[i].path, prefix)) names[n++] = child_of(hf_list_table[i].path, prefix);
+    for (int i = 0; row && i < row->n_field && n < 128; i++)
+        names[n++] = row->field[i].path;
     near = hf_text_nearest(key, names, n);
     if (!*prefix && !strcmp(key, "base")) {
         l->is_study = true;
@@ -83,176 +79,104 @@ static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, co
 
 /* ---- setting one value ---- */
 
-static const char *scalar_text(const yaml_node_t *node)
+static void tell_place(loader *l, const yaml_node_t *node, int i_place)
 {
-    return (const char *)node->data.scalar.value;
-}
-
-static bool is_plain(const yaml_node_t *node)
-{
-    return node->type == YAML_SCALAR_NODE && node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
-}
-
-static void complain_range(loader *l, const yaml_node_t *node, const hf_field *f)
-{
-    char what[160], low[48];
-    if (f->min == HF_ABOVE_ZERO)
-        snprintf(low, sizeof low, "must be above 0");
-    else
-        snprintf(low, sizeof low, "must be at least %.10g", f->min);
-    if (f->max >= 1e300)
-        snprintf(what, sizeof what, "%s, not ", low);
-    else
-        snprintf(what, sizeof what, "%s and at most %.10g, not ", low, f->max);
-    complain(l, node->start_mark, f->path, what, scalar_text(node));
-}
-
-/* Every member of hf_case that an HF_FIELD_WORD sets has an enumeration type as wide as an int; values are not
- * negative, so the int with the same bytes has the same value. */
-_Static_assert(sizeof(hf_method) == sizeof(int) && sizeof(hf_diagonals) == sizeof(int), "enumerations are int-sized");
-
-static void set_word(loader *l, const yaml_node_t *node, const hf_field *f, void *to)
-{
-    char what[256] = "must be one of";
-    if (node->type == YAML_SCALAR_NODE)
-        for (int k = 0; f->words[k]; k++)
-            if (!strcmp(f->words[k], scalar_text(node))) {
-                memcpy(to, &k, sizeof k);
-                return;
-            }
-    for (int k = 0; f->words[k]; k++) {
-        strcat(what, " ");
-        strcat(what, f->words[k]);
-    }
-    strcat(what, ", not ");
-    complain(l, node->start_mark, f->path, what,
-             node->type == YAML_SCALAR_NODE ? scalar_text(node) : "a list or section");
-}
-
-static void set_int(loader *l, const yaml_node_t *node, const hf_field *f, int *to)
-{
-    uint64_t value = 0;
-    double real = 0;
-    if (!is_plain(node))
-        complain(l, node->start_mark, f->path, "must be a whole number", "");
-    else if (!hf_text_uint64(scalar_text(node), &value) && !hf_text_double(scalar_text(node), &real))
-        complain(l, node->start_mark, f->path, "must be a whole number, not ", scalar_text(node));
-    else if (strpbrk(scalar_text(node), ".eE"))
-        complain(l, node->start_mark, f->path, "must be a whole number, not ", scalar_text(node));
-    else if (scalar_text(node)[0] == '-' || (double)value < f->min || (double)value > f->max)
-        complain_range(l, node, f);
-    else
-        *to = (int)value;
-}
-
-static void set_pair(loader *l, const yaml_node_t *node, const hf_field *f, int *to)
-{
-    if (node->type != YAML_SEQUENCE_NODE || node->data.sequence.items.top - node->data.sequence.items.start != 2) {
-        complain(l, node->start_mark, f->path, "must be a list of two whole numbers, like [5, 5]", "");
-        return;
-    }
-    for (int k = 0; k < 2; k++)
-        set_int(l, yaml_document_get_node(l->document, node->data.sequence.items.start[k]), f, to + k);
-}
-
-static void set_double(loader *l, const yaml_node_t *node, const hf_field *f, double *to)
-{
-    double value;
-    if (!is_plain(node) || !hf_text_double(scalar_text(node), &value))
-        complain(l, node->start_mark, f->path, "must be a number",
-                 node->type == YAML_SCALAR_NODE ? ", not a text" : "");
-    else if (value < f->min || value > f->max)
-        complain_range(l, node, f);
-    else
-        memcpy(to, &value, sizeof value);
-}
-
-/* A list of numbers, or one number. */
-static void set_list(loader *l, const yaml_node_t *node, const hf_field *f, hf_double_list *to)
-{
-    long n = node->type == YAML_SEQUENCE_NODE ? node->data.sequence.items.top - node->data.sequence.items.start : 1;
-    to->n = 0;
-    if (node->type == YAML_MAPPING_NODE || n > HF_LIST_MAX) {
-        complain(l, node->start_mark, f->path, "must be a list of at most 32 numbers, like [1, 2.5]", "");
-    } else if (node->type != YAML_SEQUENCE_NODE) {
-        set_double(l, node, f, &to->value[to->n++]);
-    } else {
-        for (; to->n < n; to->n++)
-            set_double(l, yaml_document_get_node(l->document, node->data.sequence.items.start[to->n]), f,
-                       &to->value[to->n]);
-    }
-}
-
-static void set_text(loader *l, const yaml_node_t *node, const hf_field *f, char *to)
-{
-    size_t size = (size_t)f->max;
-    if (node->type != YAML_SCALAR_NODE || (f->min > 0 && !*scalar_text(node))) {
-        complain(l, node->start_mark, f->path, "must be a text", "");
-        return;
-    }
-    /* paths in a case file are relative to that file, paths on the command line to the current folder */
-    const char *beside = size == HF_PATH_SIZE && !l->faults.is_override ? l->c->path : "";
-    if (!hf_path_beside(beside, scalar_text(node), to, size)) complain(l, node->start_mark, f->path, "is too long", "");
-}
-
-static void set_field(loader *l, const yaml_node_t *node, int i_field)
-{
-    const hf_field *f = &hf_field_table[i_field];
-    char *to = (char *)l->c + f->offset;
-    char *where = hf_config_where(&l->faults, i_field);
+    char *where = hf_config_where(&l->faults, i_place);
     if (l->faults.is_override)
         snprintf(where, HF_CONFIG_WHERE_SIZE, "--set");
     else
         snprintf(where, HF_CONFIG_WHERE_SIZE, "%zu:%zu", node->start_mark.line + 1, node->start_mark.column + 1);
-    switch (f->type) {
-    case HF_FIELD_DOUBLE:
-        set_double(l, node, f, (double *)(void *)to);
-        break;
-    case HF_FIELD_DOUBLE_LIST:
-        set_list(l, node, f, (hf_double_list *)(void *)to);
-        break;
-    case HF_FIELD_UINT64:
-        if (!is_plain(node) || !hf_text_uint64(scalar_text(node), (uint64_t *)(void *)to))
-            complain(l, node->start_mark, f->path, "must be a whole number from 0 to 18446744073709551615", "");
-        break;
-    case HF_FIELD_INT:
-        set_int(l, node, f, (int *)(void *)to);
-        break;
-    case HF_FIELD_INT_PAIR:
-        set_pair(l, node, f, (int *)(void *)to);
-        break;
-    case HF_FIELD_WORD:
-        set_word(l, node, f, to);
-        break;
-    case HF_FIELD_TEXT:
-        set_text(l, node, f, to);
-        break;
+}
+
+static void set_key(loader *l, const yaml_node_t *node, const hf_key *key)
+{
+    hf_field field = *key->field;
+    field.path = key->path;
+    if (key->list && l->walked && key->row >= hf_key_n_row(l->c, key->list)) {
+        char what[128];
+        snprintf(what, sizeof what, "there is no such row: %s has %d, numbered from 0", key->list->path,
+                 hf_key_n_row(l->c, key->list));
+        complain(l, node->start_mark, key->path, what, "");
+        return;
     }
+    tell_place(l, node, key->i_place);
+    hf_config_value(&l->faults, l->document, node, &field, l->c->path, (char *)l->c + key->offset);
 }
 
 /* ---- walking the YAML tree ---- */
 
 static void walk(loader *l, const yaml_node_t *mapping, const char *prefix);
+static void with_document(loader *l, const char *text, size_t length,
+                          void (*use)(loader *, const yaml_node_t *, const void *), const void *context);
+static void use_default(loader *l, const yaml_node_t *root, const void *context);
+
+/* Give all keys of a row their defaults. */
+static void clear_row(loader *l, const hf_list *list, int row)
+{
+    for (int i = 0; i < list->n_field; i++) {
+        const hf_key key = hf_key_of_row(list, row, i);
+        const char *text = key.field->default_value;
+        hf_config_no_value(key.field, (char *)l->c + key.offset);
+        if (text && *text) with_document(l, text, strlen(text), use_default, &key);
+        *hf_config_where(&l->faults, key.i_place) = '\0';
+    }
+}
+
+static void read_rows(loader *l, const yaml_node_t *node, const hf_list *list)
+{
+    int *n_row = (int *)(void *)((char *)l->c + list->count_offset);
+    char what[64];
+    *n_row = 0;
+    if (node->type != YAML_SEQUENCE_NODE) {
+        complain(l, node->start_mark, list->path, "must be a list of rows, each a line '- {key: value, ...}'", "");
+        return;
+    }
+    for (const int *item = node->data.sequence.items.start; item < node->data.sequence.items.top; item++) {
+        const yaml_node_t *row = yaml_document_get_node(l->document, *item);
+        if (*n_row == list->max_row) {
+            snprintf(what, sizeof what, "there are more than %d rows", list->max_row);
+            complain(l, row->start_mark, list->path, what, "");
+            return;
+        }
+        const hf_key key = hf_key_of_row(list, (*n_row)++, -1);
+        memset((char *)l->c + key.offset, 0, list->row_size);
+        clear_row(l, list, key.row);
+        *hf_config_where(&l->faults, key.i_place) = '\0';
+        if (row->type != YAML_MAPPING_NODE) {
+            complain(l, row->start_mark, key.path, "must be a row {key: value, ...}", "");
+        } else {
+            tell_place(l, row, key.i_place);
+            walk(l, row, key.path);
+        }
+    }
+}
 
 static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, const char *prefix, const char *key)
 {
-    char path[PATH_MAX_LENGTH];
-    int n = snprintf(path, sizeof path, "%s%s%s", prefix, *prefix ? "." : "", key);
-    int i_field = n < PATH_MAX_LENGTH ? find_field(path) : -1,
-        i_section = n < PATH_MAX_LENGTH ? find_section(path) : -1;
-    if (i_field >= 0) {
-        set_field(l, value, i_field);
+    char path[HF_KEY_SIZE];
+    hf_key found;
+    bool fits = snprintf(path, sizeof path, "%s%s%s", prefix, *prefix ? "." : "", key) < HF_KEY_SIZE;
+    const hf_list *list = fits ? hf_key_find_list(path) : NULL;
+    if (fits && hf_key_find(path, &found) && found.field) {
+        set_key(l, value, &found);
+    } else if (list) {
+        read_rows(l, value, list);
     } else if (!strcmp(path, "sweep") && !l->faults.is_override) {
         l->c->has_sweep = true;
         l->cut[0] = key_mark;
         l->cut[1] = value->end_mark;
-    } else if (i_section < 0) {
+    } else if (!fits || find_section(path) < 0) {
         complain_unknown(l, key_mark, prefix, key);
     } else if (value->type != YAML_MAPPING_NODE) {
         complain(l, key_mark, path, "must be a section of key: value lines", " ({} takes every default)");
     } else {
         walk(l, value, path);
     }
+}
+
+static const char *key_text(const yaml_node_t *node)
+{
+    return (const char *)node->data.scalar.value;
 }
 
 static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
@@ -267,11 +191,11 @@ static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
             complain(l, key->start_mark, *prefix ? prefix : "case", "a key must be a plain word", "");
             continue;
         }
-        const char *word = scalar_text(key);
+        const char *word = key_text(key);
         yaml_node_pair_t *earlier = mapping->data.mapping.pairs.start;
         for (; earlier < p; earlier++) {
             const yaml_node_t *other = yaml_document_get_node(l->document, earlier->key);
-            if (other->type == YAML_SCALAR_NODE && !strcmp(scalar_text(other), word)) break;
+            if (other->type == YAML_SCALAR_NODE && !strcmp(key_text(other), word)) break;
         }
         if (earlier < p) {
             char line[48];
@@ -309,8 +233,9 @@ static void complain_of_yaml(loader *l, const yaml_parser_t *parser, const char 
 
 /* Parse `text` as one YAML document and give its root to `use`. */
 static void with_document(loader *l, const char *text, size_t length,
-                          void (*use)(loader *, const yaml_node_t *, void *), void *context)
+                          void (*use)(loader *, const yaml_node_t *, const void *), const void *context)
 {
+    yaml_document_t *outer = l->document; /* while its rows get their defaults */
     yaml_parser_t parser;
     yaml_document_t document, next;
     if (!yaml_parser_initialize(&parser)) {
@@ -332,11 +257,11 @@ static void with_document(loader *l, const char *text, size_t length,
             yaml_document_delete(&next);
         }
     }
-    l->document = NULL;
+    l->document = outer;
     yaml_parser_delete(&parser);
 }
 
-static void use_root(loader *l, const yaml_node_t *root, void *context)
+static void use_root(loader *l, const yaml_node_t *root, const void *context)
 {
     (void)context;
     yaml_mark_t start = {0};
@@ -350,21 +275,23 @@ static void use_root(loader *l, const yaml_node_t *root, void *context)
     }
 }
 
-static void use_default(loader *l, const yaml_node_t *root, void *context)
+static void use_default(loader *l, const yaml_node_t *root, const void *context)
 {
     yaml_mark_t start = {0};
-    int i_field = *(const int *)context;
+    const hf_key *key = context;
     if (root)
-        set_field(l, root, i_field);
+        set_key(l, root, key);
     else
-        complain(l, start, hf_field_table[i_field].path, "has no value", "");
+        complain(l, start, key->path, "has no value", "");
 }
 
 /* ---- overrides ---- */
 
-static void use_override(loader *l, const yaml_node_t *root, void *context)
+static void use_override(loader *l, const yaml_node_t *root, const void *context)
 {
-    char *path = context, *dot = strrchr(path, '.');
+    char path[HF_KEY_SIZE];
+    snprintf(path, sizeof path, "%s", (const char *)context);
+    char *dot = strrchr(path, '.');
     yaml_mark_t start = {0};
     if (!root) {
         complain(l, start, path, "there is no value after the '='", "");
@@ -380,9 +307,9 @@ static void use_override(loader *l, const yaml_node_t *root, void *context)
 
 static void apply_override(loader *l, const char *argument)
 {
-    char path[PATH_MAX_LENGTH];
+    char path[HF_KEY_SIZE];
     const char *equals = strchr(argument, '=');
-    if (!equals || equals == argument || equals - argument >= PATH_MAX_LENGTH) {
+    if (!equals || equals == argument || equals - argument >= HF_KEY_SIZE) {
         l->faults.failed = true;
         hf_error(l->faults.messages, HF_BAD_CASE, "--set %s: must be key=value, like form.pretension_N=12", argument);
         return;
@@ -468,13 +395,15 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
         return hf_error(messages, HF_BAD_CASE, "%s:%d:1: YAML: more than %d brackets are open", path,
                         hf_text_too_deep(settings->text), HF_TEXT_NESTING_MAX);
     loader l = {.c = settings, .faults = {.messages = messages, .path = path, .origin = path}};
-    l.faults.where_given = settings->where_given = calloc((size_t)hf_n_field, HF_CONFIG_WHERE_SIZE);
+    l.faults.where_given = settings->where_given = calloc((size_t)hf_key_n_place(), HF_CONFIG_WHERE_SIZE);
     if (!l.faults.where_given) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    hf_key key;
     for (int i = 0; i < hf_n_field; i++) {
         const char *text = hf_field_table[i].default_value;
-        if (text && *text) with_document(&l, text, strlen(text), use_default, &i);
+        if (text && *text && hf_key_find(hf_field_table[i].path, &key))
+            with_document(&l, text, strlen(text), use_default, &key);
     }
-    memset(l.faults.where_given, 0, (size_t)hf_n_field * HF_CONFIG_WHERE_SIZE);
+    memset(l.faults.where_given, 0, (size_t)hf_key_n_place() * HF_CONFIG_WHERE_SIZE);
     with_document(&l, settings->text, settings->text_length, use_root, NULL);
     for (int i = 0; i < n_override; i++)
         apply_override(&l, overrides[i]);
@@ -510,13 +439,16 @@ hf_status hf_config_parse(const char *path, const char *text, const char *const 
     return parse(settings, overrides, n_override, messages);
 }
 
-hf_status hf_config_check_value(int field, const char *value, const char *place, hf_messages *messages)
+hf_status hf_config_check_value(const char *path, const char *value, const char *place, hf_messages *messages)
 {
+    hf_key key;
+    if (!hf_key_find(path, &key) || !key.field)
+        return hf_error(messages, HF_BAD_CASE, "%s: %s: unknown key", place, path);
     hf_case *scratch = calloc(1, sizeof *scratch);
     loader l = {.c = scratch, .faults = {.messages = messages, .origin = place, .place = place}};
-    l.faults.where_given = calloc((size_t)hf_n_field, HF_CONFIG_WHERE_SIZE);
+    l.faults.where_given = calloc((size_t)hf_key_n_place(), HF_CONFIG_WHERE_SIZE);
     if (scratch && l.faults.where_given)
-        with_document(&l, value, strlen(value), use_default, &field);
+        with_document(&l, value, strlen(value), use_default, &key);
     else
         l.no_memory = true;
     hf_status status = l.faults.failed ? HF_BAD_CASE : HF_OK;

@@ -1,5 +1,8 @@
 #include "case/config_check.h"
 
+#include <hifdm/cable_set.h>
+
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -144,6 +147,125 @@ static void check_truss(const hf_case *c, hf_config_faults *f)
         check_units(c, f);
 }
 
+/* ---- rows of lists ---- */
+
+static bool is_given(const hf_config_faults *f, const char *path)
+{
+    hf_key key;
+    return hf_key_find(path, &key) && *hf_config_where(f, key.i_place);
+}
+
+static void check_rows_are_whole(const hf_case *c, hf_config_faults *f)
+{
+    for (const hf_list *list = hf_list_table; list < hf_list_table + hf_n_list; list++)
+        for (int row = 0; row < hf_key_n_row(c, list); row++) {
+            if (!*hf_config_where(f, hf_key_of_row(list, row, -1).i_place)) continue; /* it was no row */
+            for (int i = 0; i < list->n_field; i++) {
+                const hf_key key = hf_key_of_row(list, row, i);
+                if (!key.field->default_value && !*hf_config_where(f, key.i_place))
+                    hf_config_fault_of(f, key.path, "is missing and has no default");
+            }
+        }
+}
+
+/* The fault of a key of a row. */
+static void fault_in_row(hf_config_faults *f, const char *list, int row, const char *key, const char *what)
+{
+    char path[HF_KEY_SIZE];
+    snprintf(path, sizeof path, "%s.%d.%s", list, row, key);
+    hf_config_fault_of(f, path, what);
+}
+
+static void check_set_name(hf_config_faults *f, const char *list, int row, const char *set)
+{
+    bool is_group = !strcmp(set, hf_group_word[0]) || !strcmp(set, hf_group_word[1]);
+    const char *fault = *set && !is_group ? hf_cable_set_name_fault(set) : NULL;
+    if (fault) fault_in_row(f, list, row, "set", fault);
+}
+
+/* Refuse a key where the row is of a kind that has no use for it. users: the kinds that have, a bit each. */
+static void check_use(hf_config_faults *f, const char *list, int row, const char *key, int kind,
+                      const char *const *kind_word, unsigned users)
+{
+    char path[HF_KEY_SIZE], what[WHAT_SIZE];
+    snprintf(path, sizeof path, "%s.%d.%s", list, row, key);
+    if (users & 1u << kind || !is_given(f, path)) return;
+    int used = snprintf(what, sizeof what, "has no meaning for %s, only for", kind_word[kind]), n = 0;
+    for (int k = 0; kind_word[k]; k++)
+        if (users & 1u << k)
+            used += snprintf(what + used, sizeof what - (size_t)used, "%s %s", n++ ? "," : "", kind_word[k]);
+    hf_config_fault_of(f, path, what);
+}
+
+static void check_variables(const hf_optimize_settings *o, hf_config_faults *f)
+{
+    static const char list[] = "optimize.variables";
+    static const char *const of_default[] = {"optimize.range_N", "optimize.min_tension_N", "optimize.max_tension_N"};
+    for (int i = 0; i < o->n_variable; i++) {
+        const hf_variable_settings *v = &o->variable[i];
+        bool has_bounds = !isinf(v->lower) || !isinf(v->upper);
+        check_set_name(f, list, i, v->set);
+        if (isnan(v->range) && isnan(v->range_ratio) && !has_bounds)
+            fault_in_row(f, list, i, "range", "is missing; give range, bounds or both");
+        if (!isnan(v->range_ratio) && v->vary >= HF_VARY_SUPPORT_Z)
+            fault_in_row(f, list, i, "range", "must be in m: the place of a support has no size to take a part of");
+        if (v->link == HF_LINK_SYMMETRY && o->symmetry == HF_SYMMETRY_NONE)
+            fault_in_row(f, list, i, "link", "symmetry needs optimize.symmetry, which is none");
+    }
+    if (o->n_variable == 0) return;
+    for (size_t k = 0; k < sizeof of_default / sizeof *of_default; k++)
+        if (is_given(f, of_default[k]))
+            hf_config_fault_of(
+                f, of_default[k],
+                "is of the default variables alone; with optimize.variables give range and bounds there");
+    if (o->rule == HF_RULE_SEEDED)
+        hf_config_fault_of(f, "optimize.rule", "cannot be seeded with optimize.variables; remove one of them");
+}
+
+static void check_goals(const hf_optimize_settings *o, hf_config_faults *f)
+{
+    enum {
+        SETS = 1u << HF_GOAL_TENSION | 1u << HF_GOAL_LENGTH | 1u << HF_GOAL_EVENNESS | 1u << HF_GOAL_MASS,
+        SURFACES = 1u << HF_GOAL_SURFACE | 1u << HF_GOAL_FACETS
+    };
+    static const struct {
+        const char *key;
+        unsigned users;
+    } use[] = {{"set", SETS},
+               {"target", 1u << HF_GOAL_TENSION | 1u << HF_GOAL_LENGTH},
+               {"mass_kg_per_m", 1u << HF_GOAL_MASS},
+               {"along", SURFACES},
+               {"fit", SURFACES}};
+    static const char list[] = "optimize.goals";
+    for (int i = 0; i < o->n_goal; i++) {
+        const hf_goal_settings *g = &o->goal[i];
+        for (size_t k = 0; k < sizeof use / sizeof *use; k++)
+            check_use(f, list, i, use[k].key, g->goal, hf_goal_word, use[k].users);
+        check_set_name(f, list, i, g->set);
+        if (g->goal == HF_GOAL_TENSION && isnan(g->target))
+            fault_in_row(f, list, i, "target", "is missing: the tension that is wanted, in N");
+        if (g->goal == HF_GOAL_LENGTH && g->target <= 0)
+            fault_in_row(f, list, i, "target", "of length must be above 0");
+        if (g->goal == HF_GOAL_MASS && isnan(g->mass_kg_per_m))
+            fault_in_row(f, list, i, "mass_kg_per_m", "is missing: the mass of the cables");
+    }
+}
+
+static void check_limits(const hf_optimize_settings *o, hf_config_faults *f)
+{
+    static const char list[] = "optimize.limits";
+    for (int i = 0; i < o->n_limit; i++) {
+        const hf_limit_settings *l = &o->limit[i];
+        check_use(f, list, i, "set", l->limit, hf_limit_word, 1u << HF_LIMIT_TENSION | 1u << HF_LIMIT_RATIO);
+        check_set_name(f, list, i, l->set);
+        double least = l->limit == HF_LIMIT_RATIO ? 1 : 0; /* of what is limited from above alone */
+        if (l->limit != HF_LIMIT_TENSION && (l->lower > least || l->upper <= least || isinf(l->upper)))
+            fault_in_row(f, list, i, "bounds",
+                         l->limit == HF_LIMIT_RATIO ? "must end above 1, and not begin above it: even tensions have 1"
+                                                    : "must end above 0, and not begin above it");
+    }
+}
+
 void hf_config_check(const hf_case *c, hf_config_faults *f)
 {
     const hf_optimize_settings *o = &c->optimize;
@@ -153,6 +275,7 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
     for (int i = 0; i < hf_n_field; i++)
         if (!hf_field_table[i].default_value && has_section_of(c, hf_field_table[i].path) && !*hf_config_where(f, i))
             hf_config_fault_of(f, hf_field_table[i].path, "is missing and has no default");
+    check_rows_are_whole(c, f);
     if (c->has_surface && c->surface.focal_length_m == 0 && hf_config_known_surface(c, &key).focal_length_m == 0 &&
         !f->failed)
         hf_config_fault_of(f, "surface.focal_length_m",
@@ -172,6 +295,9 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
         hf_config_fault_of(f, "optimize.crossover_low", "must not be above optimize.crossover_high");
     if (o->mutation_low > o->mutation_high)
         hf_config_fault_of(f, "optimize.mutation_low", "must not be above optimize.mutation_high");
+    check_variables(o, f);
+    check_goals(o, f);
+    check_limits(o, f);
 }
 
 void hf_config_complete(hf_case *c)

@@ -19,23 +19,32 @@ void hf_config_fault_at(hf_config_faults *faults, size_t line, size_t column, co
                  what, detail);
 }
 
+/* Where a key stands, or else the row that it belongs to; "": nowhere. */
+static const char *place_of(const char *where_given, const char *path, bool *is_given)
+{
+    hf_key key = {0};
+    const char *where = "";
+    if (where_given && hf_key_find(path, &key)) where = where_given + (size_t)key.i_place * HF_CONFIG_WHERE_SIZE;
+    *is_given = *where != '\0';
+    if (*is_given || !where_given || !key.list) return where;
+    return where_given + (size_t)hf_key_of_row(key.list, key.row, -1).i_place * HF_CONFIG_WHERE_SIZE;
+}
+
 bool hf_config_place(const hf_case *c, const char *key, char *text, size_t size)
 {
-    const char *where = "";
-    for (int i = 0; c->where_given && i < hf_n_field; i++)
-        if (!strcmp(hf_field_table[i].path, key)) where = c->where_given + (size_t)i * HF_CONFIG_WHERE_SIZE;
+    bool is_given = false;
+    const char *where = place_of(c->where_given, key, &is_given);
     if (!strcmp(where, "--set"))
         snprintf(text, size, "--set %s", key);
     else
         snprintf(text, size, "%s:%s%s %s", c->path, where, *where ? ":" : "", key);
-    return *where != '\0';
+    return is_given;
 }
 
 void hf_config_fault_of(hf_config_faults *faults, const char *path, const char *what)
 {
-    const char *where = "";
-    for (int i = 0; i < hf_n_field; i++)
-        if (!strcmp(hf_field_table[i].path, path)) where = hf_config_where(faults, i);
+    bool is_given;
+    const char *where = place_of(faults->where_given, path, &is_given);
     faults->failed = true;
     if (!strcmp(where, "--set"))
         hf_error(faults->messages, HF_BAD_CASE, "--set %s: %s", path, what);

@@ -2,9 +2,7 @@
 #ifndef HIFDM_CONFIG_FAULT_H
 #define HIFDM_CONFIG_FAULT_H
 
-#include <hifdm/config.h>
-#include <stdbool.h>
-#include <stddef.h>
+#include "case/config_key.h"
 
 #define HF_CONFIG_WHERE_SIZE 64
 
@@ -14,7 +12,8 @@ typedef struct {
     const char *origin; /* what is being read: the case file, or a --set argument */
     bool is_override;   /* the latter */
     const char *place;  /* of a value that is only checked: messages give it instead of origin, line and column */
-    char *where_given;  /* [hf_n_field][HF_CONFIG_WHERE_SIZE] place of each key: "line:col", "--set", or "" */
+    char
+        *where_given; /* [hf_key_n_place()][HF_CONFIG_WHERE_SIZE] places of keys and rows: "line:col", "--set", or "" */
     bool failed;
     int n; /* faults reported by hf_config_fault_at; those beyond HF_FAULT_MAX_CASE are only counted */
 } hf_config_faults;
@@ -26,10 +25,10 @@ void hf_config_fault_at(hf_config_faults *faults, size_t line, size_t column, co
 /* Report a fault of several keys, or a missing key, with the place of the key when the case contains it. */
 void hf_config_fault_of(hf_config_faults *faults, const char *path, const char *what);
 
-/* The place of the key hf_field_table[field]; "" when it is not given. */
-static inline char *hf_config_where(const hf_config_faults *faults, int field)
+/* Place i_place of hf_key: hf_field_table[i] has the place i; "" when it is not given. */
+static inline char *hf_config_where(const hf_config_faults *faults, int i_place)
 {
-    return faults->where_given + (size_t)field * HF_CONFIG_WHERE_SIZE;
+    return faults->where_given + (size_t)i_place * HF_CONFIG_WHERE_SIZE;
 }
 
 #endif

@@ -1,6 +1,6 @@
-/* The table of config.h: every key of a case file, with its default. The rows of generators are written beside their
+/* The tables of config.h: every key of a case file, with its default. The rows of generators are written beside their
  * settings, in generate.h and truss.h. No default stands anywhere else. */
-#include <hifdm/config.h>
+#include "case/config_key.h"
 
 #include <stddef.h>
 #include <stdio.h>
@@ -204,6 +204,78 @@ const hf_field hf_field_table[] = {
 };
 const int hf_n_field = sizeof hf_field_table / sizeof *hf_field_table;
 
+/* ---- lists of rows ---- */
+
+#define IN(member) offsetof(hf_variable_settings, member)
+_Static_assert(IN(range_ratio) == IN(range) + sizeof(double) && IN(upper) == IN(lower) + sizeof(double),
+               "a range is an amount, bounds are bounds");
+static const hf_field variable_field[] = {
+    {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
+     "cables that vary, or those whose supports do: a set of the net, or inner, boundary, all"},
+    {"vary", HF_FIELD_WORD, IN(vary), 0, 0, NULL, "", hf_vary_word,
+     "what varies of each: tension (N), force_density (N/m) or length (m) at which the cable is held; "
+     "unstressed_length "
+     "(m) of cables of law elastic; the place of the supports at which the cables end (m from where the net has them): "
+     "along z, along the normal of the wanted surface, or in all three directions"},
+    {"range", HF_FIELD_AMOUNT, IN(range), HF_ABOVE_ZERO, BIG, "", "", NULL,
+     "how far each may move from its value after form-finding, in the unit of what varies or as a part of that value; "
+     "default: as far as the bounds"},
+    {"bounds", HF_FIELD_BOUNDS, IN(lower), -BIG, BIG, "", "", NULL,
+     "between which each stays, in the unit of what varies; default: none"},
+    {"link", HF_FIELD_WORD, IN(link), 0, 0, "each", "", hf_link_word,
+     "which change by the same step: none; all of the row; those at mirrored places (optimize.symmetry)"},
+};
+#undef IN
+
+#define IN(member) offsetof(hf_goal_settings, member)
+static const hf_field goal_field[] = {
+    {"goal", HF_FIELD_WORD, IN(goal), 0, 0, NULL, "", hf_goal_word,
+     "psi: distance of the inner nodes to their theoretical places, RMS (m); surface: to the wanted surface (m); "
+     "facets: distance of the facets to it, RMS (m); tension, length: difference to target, RMS over the set (N, m); "
+     "evenness: standard deviation of the tensions of the set over their mean; pull: largest force of the net on a "
+     "support (N); displacement: the largest of an attachment by the truss (m); mass: of the cables of the set (kg)"},
+    {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL,
+     "cables of tension, length, evenness, mass; default: all"},
+    {"target", HF_FIELD_DOUBLE, IN(target), -BIG, BIG, "", "", NULL,
+     "of tension (N), which needs it, and of length (m), where the theoretical lengths are the default"},
+    {"weight", HF_FIELD_DOUBLE, IN(weight), HF_ABOVE_ZERO, BIG, "1", "", NULL,
+     "of this goal in the merit of a design, the root of the sum of (weight * value)^2"},
+    {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(mass_kg_per_m), HF_ABOVE_ZERO, BIG, "", "kg/m", NULL,
+     "of the cables, which mass needs"},
+    {"along", HF_FIELD_WORD, IN(along), 0, 0, "normal", "", hf_along_word,
+     "of surface and facets: distance along the normal, or half the change of the path of a ray"},
+    {"fit", HF_FIELD_WORD, IN(fit), 0, 0, "none", "", hf_fit_word,
+     "of surface and facets: distance to the wanted surface, or to its best fit to the shape"},
+};
+#undef IN
+
+#define IN(member) offsetof(hf_limit_settings, member)
+_Static_assert(IN(upper) == IN(lower) + sizeof(double), "bounds are bounds");
+static const hf_field limit_field[] = {
+    {"limit", HF_FIELD_WORD, IN(limit), 0, 0, NULL, "", hf_limit_word,
+     "tension of each cable of the set (N); ratio: its largest over its smallest tension; displacement of each "
+     "attachment by the truss (m)"},
+    {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL, "cables of tension, ratio; default: all"},
+    {"bounds", HF_FIELD_BOUNDS, IN(lower), -BIG, BIG, NULL, "", NULL, "between which it stays"},
+};
+#undef IN
+
+#define LIST(name, count, row, keys, help)                                                                             \
+    {                                                                                                                  \
+        "optimize." name, AT(optimize.count), AT(optimize.row), sizeof(((hf_case *)0)->optimize.row[0]),               \
+            HF_DESIGN_ROWS_MAX, keys, sizeof keys / sizeof *keys, help                                                 \
+    }
+const hf_list hf_list_table[] = {
+    LIST("variables", n_variable, variable, variable_field,
+         "What a design varies; without rows the pretensions of the boundary, within range_N by rule"),
+    LIST("goals", n_goal, goal, goal_field, "What a design should reach; without rows psi"),
+    LIST("limits", n_limit, limit, limit_field, "What a design must keep; without rows nothing"),
+};
+#undef LIST
+const int hf_n_list = sizeof hf_list_table / sizeof *hf_list_table;
+
+/* ---- differences ---- */
+
 static bool is_same(const hf_field *f, const char *a, const char *b)
 {
     const hf_double_list *p = (const void *)a, *q = (const void *)b;
@@ -216,6 +288,9 @@ static bool is_same(const hf_field *f, const char *a, const char *b)
         return !memcmp(a, b, sizeof(uint64_t));
     case HF_FIELD_INT_PAIR:
         return !memcmp(a, b, 2 * sizeof(int));
+    case HF_FIELD_AMOUNT:
+    case HF_FIELD_BOUNDS:
+        return !memcmp(a, b, 2 * sizeof(double));
     case HF_FIELD_INT:
     case HF_FIELD_WORD:
         return !memcmp(a, b, sizeof(int));
@@ -232,6 +307,20 @@ static int add_key(const char *key, int n, char *text, size_t size)
     return n + 1;
 }
 
+/* The keys in which the rows of a list differ, or the list itself when it is of another length. */
+static int add_rows(const hf_list *list, const hf_case *a, const hf_case *b, int n, char *text, size_t size)
+{
+    int n_row = hf_key_n_row(a, list);
+    if (n_row != hf_key_n_row(b, list)) return add_key(list->path, n, text, size);
+    for (int row = 0; row < n_row; row++)
+        for (int i = 0; i < list->n_field; i++) {
+            const hf_key key = hf_key_of_row(list, row, i);
+            if (!is_same(key.field, (const char *)a + key.offset, (const char *)b + key.offset))
+                n = add_key(key.path, n, text, size);
+        }
+    return n;
+}
+
 int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t size)
 {
     const char *p = (const char *)a, *q = (const char *)b;
@@ -245,5 +334,7 @@ int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t
     for (int i = 0; i < hf_n_field; i++)
         if (!is_same(&hf_field_table[i], p + hf_field_table[i].offset, q + hf_field_table[i].offset))
             n = add_key(hf_field_table[i].path, n, text, size);
+    for (int i = 0; i < hf_n_list; i++)
+        n = add_rows(&hf_list_table[i], a, b, n, text, size);
     return n;
 }

@@ -26,21 +26,29 @@ static void shortest(double value, char text[40])
     }
 }
 
-char *hf_study_canonical(const hf_field *field, const char *value)
+char *hf_study_canonical(const hf_key *key, const char *value)
 {
-    char number[40];
+    const hf_field *field = key->field;
+    char number[48];
     double real;
     uint64_t whole;
-    if (field->type == HF_FIELD_DOUBLE && hf_text_double(value, &real)) {
+    const char *percent = field->type == HF_FIELD_AMOUNT ? strchr(value, '%') : NULL;
+    char part[64] = "";
+    if (percent) snprintf(part, sizeof part, "%.*s", (int)strcspn(value, " %"), value);
+    if (percent && hf_text_double(part, &real)) {
+        shortest(real, number);
+        strcat(number, " %");
+        value = number;
+    } else if ((field->type == HF_FIELD_DOUBLE || field->type == HF_FIELD_AMOUNT) && hf_text_double(value, &real)) {
         shortest(real, number);
         value = number;
     } else if ((field->type == HF_FIELD_INT || field->type == HF_FIELD_UINT64) && hf_text_uint64(value, &whole)) {
         snprintf(number, sizeof number, "%" PRIu64, whole);
         value = number;
     }
-    size_t size = strlen(field->path) + strlen(value) + 2;
+    size_t size = strlen(key->path) + strlen(value) + 2;
     char *text = malloc(size);
-    if (text) snprintf(text, size, "%s=%s", field->path, value);
+    if (text) snprintf(text, size, "%s=%s", key->path, value);
     return text;
 }
 
@@ -48,7 +56,7 @@ void hf_study_range_value(const hf_field *field, double from, double to, bool is
 {
     double value = is_log ? from * pow(to / from, x) : from + (to - from) * x;
     if (x >= 1) value = to;
-    if (field->type == HF_FIELD_DOUBLE) {
+    if (field->type == HF_FIELD_DOUBLE || field->type == HF_FIELD_AMOUNT) {
         /* 12 digits are the same on every machine, although pow() may differ in the last bit */
         snprintf(text, 40, "%.12g", value);
         if (hf_text_double(text, &value)) shortest(value, text);
@@ -104,8 +112,8 @@ static hf_status count_points(hf_study *s, hf_messages *messages)
         if (s->is_zip && axis->n_value != s->axis[0].n_value)
             return hf_error(messages, HF_BAD_CASE,
                             "%s:%d:%d: sweep.%s: has %d values where %s has %d; combine: zip needs as many on all axes",
-                            s->path, axis->line, axis->column, hf_field_table[axis->field].path, axis->n_value,
-                            hf_field_table[s->axis[0].field].path, s->axis[0].n_value);
+                            s->path, axis->line, axis->column, axis->key.path, axis->n_value, s->axis[0].key.path,
+                            s->axis[0].n_value);
         if (s->is_zip)
             n = axis->n_value;
         else if (!axis->is_sampled || n_sampled++ == 0)
@@ -234,7 +242,7 @@ static hf_status check_points(hf_study *s, hf_messages *messages)
     int n_fault = 0;
     bool has_seed_axis = false;
     for (int a = 0; a < s->n_axis; a++)
-        has_seed_axis |= !strcmp(hf_field_table[s->axis[a].field].path, "optimize.seed");
+        has_seed_axis |= !strcmp(s->axis[a].key.path, "optimize.seed");
     for (int i = 0; i < s->n_point; i++) {
         hf_study_overrides o;
         hf_messages found = {0};

@@ -15,7 +15,7 @@
 #ifndef HIFDM_STUDY_H
 #define HIFDM_STUDY_H
 
-#include <hifdm/config.h>
+#include "case/config_key.h"
 #include <stdbool.h>
 
 #define HF_STUDY_AXIS_MAX 32
@@ -28,7 +28,7 @@ extern const char *const hf_study_files_word[3];
 typedef enum { HF_FILES_AUTO, HF_FILES_ALL, HF_FILES_NONE } hf_study_files;
 
 typedef struct {
-    int field; /* index into hf_field_table */
+    hf_key key;
     int line, column;
     bool is_sampled;
     int n_value;
@@ -91,6 +91,6 @@ hf_status hf_study_make_points(hf_study *study, hf_messages *messages);
 
 /* "key=value" with the value in its canonical form; the caller frees it; NULL without memory. The value must be valid
  * for the key. */
-char *hf_study_canonical(const hf_field *field, const char *value);
+char *hf_study_canonical(const hf_key *key, const char *value);
 
 #endif

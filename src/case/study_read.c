@@ -149,29 +149,29 @@ static bool quote(const reader *r, const hf_field *field, const char *value, cha
 
 static void add_value(reader *r, hf_study_axis *axis, const char *value, yaml_mark_t mark)
 {
-    const hf_field *field = &hf_field_table[axis->field];
+    const char *key = axis->key.path;
     char place[HF_PATH_SIZE + 128], text[VALUE_SIZE];
     snprintf(place, sizeof place, "%s:%zu:%zu: sweep", r->study->path, mark.line + 1, mark.column + 1);
-    bool fits = field->type != HF_FIELD_TEXT ? snprintf(text, sizeof text, "%s", value) < VALUE_SIZE
-                                             : quote(r, field, value, text);
+    bool fits = axis->key.field->type != HF_FIELD_TEXT ? snprintf(text, sizeof text, "%s", value) < VALUE_SIZE
+                                                       : quote(r, axis->key.field, value, text);
     bool is_one_line = !strchr(value, '\n');
-    hf_status status = fits && is_one_line ? hf_config_check_value(axis->field, text, place, r->messages) : HF_BAD_CASE;
-    if (!fits) fault(r, mark, field->path, "is too long");
-    if (!is_one_line) fault(r, mark, field->path, "a value must be on one line");
+    hf_status status = fits && is_one_line ? hf_config_check_value(key, text, place, r->messages) : HF_BAD_CASE;
+    if (!fits) fault(r, mark, key, "is too long");
+    if (!is_one_line) fault(r, mark, key, "a value must be on one line");
     if (status != HF_OK) {
         r->no_memory |= status == HF_NO_MEMORY;
         r->failed = true;
         return;
     }
-    size_t size = strlen(field->path) + strlen(text) + 2;
-    char *set = malloc(size), *canonical = hf_study_canonical(field, value);
+    size_t size = strlen(key) + strlen(text) + 2;
+    char *set = malloc(size), *canonical = hf_study_canonical(&axis->key, value);
     if (!set || !canonical) {
         r->no_memory = true;
         free(set);
         free(canonical);
         return;
     }
-    snprintf(set, size, "%s=%s", field->path, text);
+    snprintf(set, size, "%s=%s", key, text);
     axis->set[axis->n_value] = set;
     axis->canonical[axis->n_value++] = canonical;
 }
@@ -187,7 +187,7 @@ static bool reserve_values(reader *r, hf_study_axis *axis, int n)
 
 static void read_list(reader *r, hf_study_axis *axis, const yaml_node_t *list)
 {
-    const char *key = hf_field_table[axis->field].path;
+    const char *key = axis->key.path;
     long n = list->data.sequence.items.top - list->data.sequence.items.start;
     char text[VALUE_SIZE];
     if (n < 1 || n > HF_STUDY_POINT_MAX) {
@@ -229,23 +229,24 @@ static void read_range_key(reader *r, const char *path, const yaml_node_t *key, 
 
 static void read_range(reader *r, hf_study_axis *axis, const yaml_node_t *mapping, range *to)
 {
-    const hf_field *field = &hf_field_table[axis->field];
+    const char *path = axis->key.path;
+    const hf_field_type type = axis->key.field->type;
     bool given[2] = {false, false}, failed_before = r->failed;
     to->mark = mapping->start_mark;
-    if (field->type == HF_FIELD_WORD || field->type == HF_FIELD_TEXT || field->type == HF_FIELD_INT_PAIR) {
-        fault(r, to->mark, field->path, "is no number, so it needs a list of values");
+    if (type == HF_FIELD_WORD || type == HF_FIELD_TEXT || type == HF_FIELD_INT_PAIR || type == HF_FIELD_BOUNDS) {
+        fault(r, to->mark, path, "is no number, so it needs a list of values");
         return;
     }
     for (yaml_node_pair_t *p = mapping->data.mapping.pairs.start; p < mapping->data.mapping.pairs.top; p++)
-        if (!is_repeated(r, mapping, p, field->path))
-            read_range_key(r, field->path, node_at(r, p->key), node_at(r, p->value), to, given);
+        if (!is_repeated(r, mapping, p, path))
+            read_range_key(r, path, node_at(r, p->key), node_at(r, p->value), to, given);
     if (r->failed != failed_before) return;
     if (!given[0] || !given[1])
-        fault(r, to->mark, field->path, "a range needs from and to");
+        fault(r, to->mark, path, "a range needs from and to");
     else if (to->is_log && (to->from <= 0 || to->to <= 0))
-        fault(r, to->mark, field->path, "spacing: log needs from and to above 0");
+        fault(r, to->mark, path, "spacing: log needs from and to above 0");
     else if (to->sample && to->n)
-        fault(r, to->mark, field->path, "sampled axes share the n of the sweep section");
+        fault(r, to->mark, path, "sampled axes share the n of the sweep section");
     else
         to->i_axis = (int)(axis - r->study->axis);
 }
@@ -260,8 +261,7 @@ static void fill_range(reader *r, const range *from, const double *x, int stride
     bool failed_before = r->failed;
     r->failed = false;
     for (int i = 0; i < n && !r->failed; i++) { /* report one bad value of a range, not all */
-        hf_study_range_value(&hf_field_table[axis->field], from->from, from->to, from->is_log,
-                             x[(size_t)i * (size_t)stride], text);
+        hf_study_range_value(axis->key.field, from->from, from->to, from->is_log, x[(size_t)i * (size_t)stride], text);
         add_value(r, axis, text, from->mark);
     }
     r->failed |= failed_before;
@@ -272,7 +272,7 @@ static void fill_even(reader *r, const range *from)
     int n = from->n ? from->n : r->n;
     double *x = n ? malloc((size_t)n * sizeof *x) : NULL;
     if (!n) {
-        fault(r, from->mark, hf_field_table[r->study->axis[from->i_axis].field].path,
+        fault(r, from->mark, r->study->axis[from->i_axis].key.path,
               "needs n, here or for all ranges in the sweep section");
         return;
     }
@@ -308,20 +308,38 @@ static void fill_sampled(reader *r, sampling kind)
 
 /* ---- the sweep section ---- */
 
+/* Report a key that is none: of a row the keys of its list are those that may be meant. */
+static void fault_no_axis(reader *r, const yaml_node_t *key, const char *const *names, int n)
+{
+    const char *word = text_of(key), *dot = strrchr(word, '.'), *of_row[64];
+    char prefix[HF_KEY_SIZE];
+    hf_key row;
+    snprintf(prefix, sizeof prefix, "%.*s", dot ? (int)(dot - word) : 0, word);
+    if (hf_key_find_list(word) || hf_key_find(word, &row)) {
+        fault(r, key->start_mark, word, "has many keys; an axis is one key of one row, like %s.0.%s",
+              hf_list_table[0].path, hf_list_table[0].field[0].path);
+    } else if (hf_key_find(prefix, &row) && !row.field) {
+        for (n = 0; n < row.list->n_field && n < 64; n++)
+            of_row[n] = row.list->field[n].path;
+        fault_unknown(r, key->start_mark, prefix, dot + 1, of_row, n);
+    } else {
+        fault_unknown(r, key->start_mark, "", word, names, n);
+    }
+}
+
 static void read_axis(reader *r, const yaml_node_t *key, const yaml_node_t *value)
 {
     static const char *const reserved[] = {"n", "combine", "seed", "files"};
     const char *names[256];
     hf_study *s = r->study;
-    int n = 0, field = -1;
-    for (int i = 0; i < hf_n_field && n < 250; i++) {
+    hf_key found;
+    int n = 0;
+    for (int i = 0; i < hf_n_field && n < 250; i++)
         names[n++] = hf_field_table[i].path;
-        if (!strcmp(hf_field_table[i].path, text_of(key))) field = i;
-    }
     for (int i = 0; i < 4; i++)
         names[n++] = reserved[i];
-    if (field < 0) {
-        fault_unknown(r, key->start_mark, "", text_of(key), names, n);
+    if (!hf_key_find(text_of(key), &found) || !found.field) {
+        fault_no_axis(r, key, names, n);
         return;
     }
     if (s->n_axis == HF_STUDY_AXIS_MAX) {
@@ -329,8 +347,8 @@ static void read_axis(reader *r, const yaml_node_t *key, const yaml_node_t *valu
         return;
     }
     hf_study_axis *axis = &s->axis[s->n_axis++];
-    *axis = (hf_study_axis){
-        .field = field, .line = (int)key->start_mark.line + 1, .column = (int)key->start_mark.column + 1};
+    *axis =
+        (hf_study_axis){.key = found, .line = (int)key->start_mark.line + 1, .column = (int)key->start_mark.column + 1};
     if (value->type == YAML_SEQUENCE_NODE)
         read_list(r, axis, value);
     else if (value->type == YAML_MAPPING_NODE)
@@ -413,7 +431,7 @@ static void read_root(reader *r, const yaml_node_t *root)
 static int compare_axes(const void *a, const void *b)
 {
     const hf_study_axis *x = a, *y = b;
-    return strcmp(hf_field_table[x->field].path, hf_field_table[y->field].path);
+    return strcmp(x->key.path, y->key.path);
 }
 
 static void parse(reader *r, const char *text, size_t length)

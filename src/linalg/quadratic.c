@@ -90,8 +90,9 @@ static void rotate(double *f, double *g, double *cosine, double *sine)
 
 static void turn_columns(hf_quadratic *q, int a, double cosine, double sine)
 {
-    double *u = q->inverse + a * q->n, *v = u + q->n;
-    for (int i = 0; i < q->n; i++) {
+    int n = q->n;
+    double *restrict u = q->inverse + a * n, *restrict v = u + n;
+    for (int i = 0; i < n; i++) {
         double old = u[i];
         u[i] = cosine * old + sine * v[i];
         v[i] = cosine * v[i] - sine * old;
@@ -135,6 +136,28 @@ static void let_go(hf_quadratic *q, int k)
     }
 }
 
+/* d = J' normal. */
+static void find_share(const hf_quadratic *q, const hf_quadratic_limit *limit, double *d)
+{
+    int n = q->n;
+    for (int j = 0; j < n && limit->only >= 0; j++)
+        d[j] = limit->normal[limit->only] * q->inverse[j * n + limit->only];
+    for (int j = 0; j < n && limit->only < 0; j++)
+        d[j] = hf_dot((size_t)n, q->inverse + j * n, limit->normal);
+}
+
+/* z = the columns of J from the m-th on, times d. */
+static void find_direction(const hf_quadratic *q, int m, const double *d, double *restrict z)
+{
+    int n = q->n;
+    memset(z, 0, (size_t)n * sizeof(double));
+    for (int j = m; j < n; j++) {
+        const double *restrict column = q->inverse + j * n;
+        for (int i = 0; i < n; i++)
+            z[i] += d[j] * column[i];
+    }
+}
+
 /* Move until `limit` holds, letting active limits go whose multipliers would become negative. */
 static hf_status obey(hf_quadratic *q, const hf_quadratic_limit *limit, int *steps_left)
 {
@@ -143,14 +166,10 @@ static hf_status obey(hf_quadratic *q, const hf_quadratic_limit *limit, int *ste
     while ((*steps_left)-- > 0) {
         int m = q->n_active, blocking = -1;
         double dual_step = INFINITY, free_square, whole;
-        for (int j = 0; j < n; j++)
-            d[j] = hf_dot((size_t)n, q->inverse + j * n, limit->normal);
+        find_share(q, limit, d);
         free_square = hf_dot((size_t)(n - m), d + m, d + m);
         whole = hf_dot((size_t)n, d, d);
-        memset(z, 0, (size_t)n * sizeof(double));
-        for (int j = m; j < n; j++)
-            for (int i = 0; i < n; i++)
-                z[i] += d[j] * q->inverse[j * n + i];
+        find_direction(q, m, d, z);
         for (int i = m - 1; i >= 0; i--) {
             double sum = d[i];
             for (int j = i + 1; j < m; j++)
@@ -187,6 +206,7 @@ hf_status hf_quadratic_solve(hf_quadratic *q, const double *hessian, const doubl
     HF_TRY(begin(q, hessian, gradient));
     for (;;) {
         memset(limit.normal, 0, (size_t)q->n * sizeof(double));
+        limit.only = -1;
         if (!worst(context, q->x, &limit)) return HF_OK;
         HF_TRY(obey(q, &limit, &steps_left));
     }

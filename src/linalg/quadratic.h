@@ -10,12 +10,13 @@
 /* One limit, normal' x >= bound. `kind` is the caller's. */
 typedef struct {
     double *normal; /* [n] */
+    int only;       /* its only entry that is not zero, as of a bound of a variable; -1: not known */
     double bound;
     int kind;
 } hf_quadratic_limit;
 
-/* Write the limit that x violates most into *limit, whose `normal` is n zeros on entry; false when x violates none
- * beyond rounding. */
+/* Write the limit that x violates most into *limit, whose `normal` is n zeros and `only` -1 on entry; false when x
+ * violates none beyond rounding. */
 typedef bool hf_quadratic_worst(void *context, const double *x, hf_quadratic_limit *limit);
 
 typedef struct {

@@ -15,6 +15,7 @@ const char *hf_cable_set_name_fault(const char *name)
     for (int g = 0; g < 2; g++)
         if (!strcmp(name, hf_group_word[g]))
             return "is the name of a group, which the column group tells; leave it out";
+    if (!strcmp(name, "all")) return "is the name of all cables; leave it out";
     return NULL;
 }
 

@@ -130,20 +130,6 @@ static void check_sides(hf_csv *t, const int *where, const hf_scene *s, side *of
 
 /* ---- together ---- */
 
-/* Copies the ids, which go with the table. False: out of memory. */
-static bool keep_ids(const hf_csv *t, int column, hf_scene *s)
-{
-    size_t size = 0;
-    for (int r = 0; r < t->n_row; r++)
-        size += strlen(hf_csv_cell(t, r, column)) + 1;
-    char *text = s->facet_text = malloc(size + 1);
-    for (int r = 0; text && r < t->n_row; r++) {
-        s->facet_id[r] = strcpy(text, hf_csv_cell(t, r, column));
-        text += strlen(text) + 1;
-    }
-    return text != NULL;
-}
-
 static hf_status build(hf_csv *t, hf_scene *s)
 {
     int where[N_FACET_COLUMN] = {0};
@@ -153,8 +139,7 @@ static hf_status build(hf_csv *t, hf_scene *s)
     hf_csv_named *id = hf_csv_index(t, where[FACET_ID]), *node = malloc((size_t)s->n_node * sizeof *node);
     side *sides = malloc((4 * n + (size_t)s->n_cable) * sizeof *sides);
     s->facet = calloc(4 * n, sizeof *s->facet);
-    s->facet_id = calloc(n, sizeof *s->facet_id);
-    bool has_room = id && node && sides && s->facet && s->facet_id && keep_ids(t, where[FACET_ID], s);
+    bool has_room = id && node && sides && s->facet;
     if (has_room) {
         s->n_facet = t->n_row;
         for (int i = 0; i < s->n_node; i++)

@@ -256,9 +256,7 @@ static void keep_named(const graph *g, hf_facets *f)
     for (int i = 0; i < g->scene->n_facet; i++) {
         const int *from = g->scene->facet + 4 * (size_t)i;
         bool is_on = g->is_on[from[0]] || g->is_on[from[1]] || g->is_on[from[2]] || g->is_on[from[3]];
-        if (!is_on) continue;
-        memcpy(f->corner + 4 * (size_t)f->n_facet, from, 4 * sizeof *from);
-        f->named[f->n_facet++] = i;
+        if (is_on) memcpy(f->corner + 4 * (size_t)f->n_facet++, from, 4 * sizeof *from);
     }
 }
 
@@ -269,15 +267,13 @@ hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surfa
     hf_arena arena = {0}, kept = {0};
     size_t n_named = (size_t)scene->n_facet;
     size_t most = 4 * (n_named > 0 ? n_named : (size_t)scene->n_cable + 1); /* a face has at least 3/2 cables */
-    HF_TRY(HF_ARENA_MAKE(&kept, (facets->corner = hf_arena_take(&kept, most, sizeof *facets->corner),
-                                 facets->named = hf_arena_take(&kept, n_named, sizeof *facets->named))));
+    HF_TRY(HF_ARENA_MAKE(&kept, facets->corner = hf_arena_take(&kept, most, sizeof *facets->corner)));
     facets->block = kept.block;
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, scene, &g)));
     choose_nodes(&g, surface);
     if (n_named > 0) {
         keep_named(&g, facets);
     } else {
-        facets->named = NULL;
         drop_ends(&g);
         collect(&g);
         find_faces(&g, facets);

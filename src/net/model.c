@@ -39,6 +39,7 @@ static void lay_out(hf_arena *a, const hf_scene *s, hf_method method, hf_model *
     m->load_N = s->load_N ? hf_arena_take(a, 3 * n, sizeof(double)) : NULL;
     m->length_m = hf_arena_take(a, e, sizeof(double));
     m->group = hf_arena_take(a, e, 1);
+    m->boundary_cable = hf_arena_take(a, e, sizeof(int));
     m->law = hf_arena_take(a, e, 1);
     m->target = hf_arena_take(a, e, sizeof(double));
     m->EA_N = needs_EA(s, method) ? hf_arena_take(a, e, sizeof(double)) : NULL;
@@ -130,6 +131,7 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
         if (m->EA_N) m->EA_N[e] = s->EA_N ? s->EA_N[e] : (double)NAN;
         m->length_m[e] = length;
         m->group[e] = s->group[e];
+        if (s->group[e] == HF_GROUP_BOUNDARY) m->boundary_cable[m->n_boundary++] = e;
         m->law[e] = (unsigned char)law;
         m->target[e] = target;
         m->start_q_N_per_m[e] = q;
@@ -330,16 +332,17 @@ void hf_model_chain_name(const hf_model *m, const hf_scene *scene, int i_chain, 
 
 /* ---- groups of genes ---- */
 
-static hf_status group_genes(hf_model *m)
+hf_status hf_model_group_genes(hf_model *m)
 {
     int *scratch = malloc(((size_t)m->n_node * 3 + (size_t)m->n_gene * 2) * sizeof *scratch);
     if (!scratch) return HF_NO_MEMORY;
     int *count = scratch, *gene_at = count + m->n_node, *parent = gene_at + 2 * m->n_node, *label = parent + m->n_gene;
     memset(count, 0, (size_t)m->n_node * sizeof *count);
+    m->n_gene_group = 0;
     for (int k = 0; k < m->n_gene; k++) {
         parent[k] = k;
         label[k] = -1;
-        for (int end = 0; end < 2; end++) {
+        for (int end = 0; end < 2 && m->gene_cable[k] >= 0; end++) {
             int row = m->end_row[2 * m->gene_cable[k] + end];
             if (count[row] < 2) gene_at[2 * row + count[row]] = k;
             count[row]++;
@@ -359,6 +362,34 @@ static hf_status group_genes(hf_model *m)
     return HF_OK;
 }
 
+static const char *direction_name(const hf_gene *g)
+{
+    if (g->vary == HF_VARY_SUPPORT_NORMAL) return "normal";
+    return g->direction[0] > 0 ? "x" : g->direction[1] > 0 ? "y" : "z";
+}
+
+void hf_model_gene_name(const hf_model *m, const hf_scene *scene, int k, char *text, size_t size)
+{
+    if (m->gene_cable[k] >= 0)
+        snprintf(text, size, "%s", scene->cable_id[m->gene_cable[k]]);
+    else
+        snprintf(text, size, "%s.%s", scene->node_id[m->node_of_row[m->gene[k].support_row]],
+                 direction_name(&m->gene[k]));
+}
+
+const char *hf_model_gene_unit(const hf_model *m, int k)
+{
+    switch (hf_model_vary(m, k)) {
+    case HF_VARY_PRETENSION:
+    case HF_VARY_TENSION:
+        return "N";
+    case HF_VARY_FORCE_DENSITY:
+        return "N/m";
+    default:
+        return "m";
+    }
+}
+
 /* ---- build ---- */
 
 static hf_status build(const hf_scene *scene, const hf_form_settings *form, const int *order, hf_model *m)
@@ -370,7 +401,7 @@ static hf_status build(const hf_scene *scene, const hf_form_settings *form, cons
     number_nodes(scene, m);
     place_cables(scene, m);
     set_laws(scene, form, m);
-    HF_TRY(group_genes(m));
+    HF_TRY(hf_model_group_genes(m));
     return find_chains(m);
 }
 
@@ -398,6 +429,7 @@ void hf_model_free(hf_model *m)
 {
     free(m->block);
     free(m->attachment_block);
+    free(m->gene_block);
     *m = (hf_model){0};
 }
 
@@ -574,5 +606,5 @@ bool hf_model_is_valid(const hf_model *m)
         if (m->end_row[m->tie[k]] != m->attachment_row[m->tie_attachment[k]]) return false;
     for (int i = 0; i < m->n_attachment; i++)
         if (m->attachment_row[i] != m->n_free + i || m->attachment_row[i] >= m->n_node) return false;
-    return m->chain_start[0] == 0 && m->n_gene <= m->n_cable;
+    return m->chain_start[0] == 0 && (m->gene || m->n_gene <= m->n_cable);
 }

@@ -52,8 +52,6 @@ void hf_scene_free(hf_scene *scene)
     free(scene->text);
     free(scene->set_block);
     free(scene->facet);
-    free(scene->facet_id);
-    free(scene->facet_text);
     *scene = (hf_scene){0};
 }
 

@@ -16,4 +16,12 @@ const char *const hf_surface_kind_word[4] = {"auto", "parabolic_cylinder", "para
 const char *const hf_variation_word[3] = {"difference", "chain", NULL};
 const char *const hf_keep_word[4] = {"all", "best", "every", NULL};
 const char *const hf_compare_word[4] = {"auto", "true", "false", NULL};
+const char *const hf_vary_word[8] = {"tension",   "force_density",  "length",      "unstressed_length",
+                                     "support_z", "support_normal", "support_xyz", NULL};
+const char *const hf_link_word[4] = {"each", "set", "symmetry", NULL};
+const char *const hf_goal_word[10] = {"psi",      "surface", "facets",       "tension", "length",
+                                      "evenness", "pull",    "displacement", "mass",    NULL};
+const char *const hf_along_word[3] = {"normal", "half_path", NULL};
+const char *const hf_fit_word[3] = {"none", "best", NULL};
+const char *const hf_limit_word[4] = {"tension", "ratio", "displacement", NULL};
 const char *const hf_symmetry_word[6] = {"none", "x", "y", "xy", "auto", NULL};

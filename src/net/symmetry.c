@@ -38,7 +38,7 @@ typedef struct {
     place *place;                               /* [n_node] sorted */
     link *link;                                 /* [n_cable] sorted */
     int *node_image, *cable_image;              /* [n_node], [n_cable] under the plane looked at; -1 = none */
-    int *gene_of_cable;                         /* [n_cable] or -1 */
+    int *gene_of_cable, *gene_of_node;          /* [n_cable], [n_node] or -1; of those that a plane may link */
     int *parent;                                /* [n_gene] of the union-find over both planes */
     int *group_parent, *group_label;            /* [n_gene_group] */
 } search;
@@ -51,6 +51,7 @@ static void lay_out(hf_arena *a, search *q)
     q->node_image = hf_arena_take(a, n, sizeof(int));
     q->cable_image = hf_arena_take(a, e, sizeof(int));
     q->gene_of_cable = hf_arena_take(a, e, sizeof(int));
+    q->gene_of_node = hf_arena_take(a, n, sizeof(int));
     q->parent = hf_arena_take(a, (size_t)q->m->n_gene, sizeof(int));
     q->group_parent = hf_arena_take(a, (size_t)q->m->n_gene_group, sizeof(int));
     q->group_label = hf_arena_take(a, (size_t)q->m->n_gene_group, sizeof(int));
@@ -230,6 +231,14 @@ static void merge_groups(const search *q, hf_model *m)
 
 /* ---- together ---- */
 
+/* Rows that vary only one of two images link neither. */
+static void join_images(search *q, int gene, int image)
+{
+    const hf_model *m = q->m;
+    if (gene < 0 || image < 0 || (m->gene && m->gene[gene].setting != m->gene[image].setting)) return;
+    join(q->parent, gene, image);
+}
+
 static hf_status link_genes(search *q, hf_symmetry wanted, hf_model *m, int *planes, hf_messages *messages)
 {
     for (int axis = 0; axis < 2; axis++) {
@@ -239,8 +248,10 @@ static hf_status link_genes(search *q, hf_symmetry wanted, hf_model *m, int *pla
         if (n_missing && by_name) return refuse(q, axis, n_missing, messages);
         if (n_missing) continue;
         *planes |= axis == 0 ? HF_PLANE_X : HF_PLANE_Y;
-        for (int k = 0; k < m->n_gene; k++)
-            join(q->parent, k, q->gene_of_cable[q->cable_image[m->gene_cable[k]]]);
+        for (int e = 0; e < m->n_cable; e++)
+            join_images(q, q->gene_of_cable[e], q->gene_of_cable[q->cable_image[e]]);
+        for (int i = 0; i < m->n_node; i++)
+            if (q->gene_of_node[i] >= 0) join_images(q, q->gene_of_node[i], q->gene_of_node[q->node_image[i]]);
     }
     m->n_leader = 0;
     for (int k = 0; k < m->n_gene; k++) {
@@ -251,7 +262,7 @@ static hf_status link_genes(search *q, hf_symmetry wanted, hf_model *m, int *pla
     return HF_OK;
 }
 
-static void sort(search *q)
+static void sort(search *q, const hf_optimize_settings *o)
 {
     const hf_model *m = q->m;
     for (int i = 0; i < q->s->n_node; i++)
@@ -261,16 +272,24 @@ static void sort(search *q)
         q->link[e] = (link){{a < b ? a : b, a < b ? b : a}, m->group[e] << 8 | m->law[e], e, m->target[e]};
         q->gene_of_cable[e] = -1;
     }
+    for (int i = 0; i < m->n_node; i++)
+        q->gene_of_node[i] = -1;
     for (int k = 0; k < m->n_gene; k++) {
-        q->parent[k] = k;
-        q->gene_of_cable[m->gene_cable[k]] = k;
+        q->parent[k] = m->gene_leader[k];
+        if (m->gene && o->variable[m->gene[k].setting].link != HF_LINK_SYMMETRY) continue;
+        if (m->gene_cable[k] >= 0)
+            q->gene_of_cable[m->gene_cable[k]] = k;
+        else
+            q->gene_of_node[m->node_of_row[m->gene[k].support_row]] = k;
     }
     qsort(q->place, (size_t)q->s->n_node, sizeof *q->place, compare_places);
     qsort(q->link, (size_t)q->s->n_cable, sizeof *q->link, compare_links);
 }
 
-hf_status hf_symmetry_apply(const hf_scene *scene, hf_symmetry wanted, hf_model *m, int *planes, hf_messages *messages)
+hf_status hf_symmetry_apply(const hf_scene *scene, const hf_optimize_settings *settings, hf_model *m, int *planes,
+                            hf_messages *messages)
 {
+    hf_symmetry wanted = settings->symmetry;
     search q = {.s = scene, .m = m};
     hf_arena arena = {0};
     *planes = 0;
@@ -278,7 +297,7 @@ hf_status hf_symmetry_apply(const hf_scene *scene, hf_symmetry wanted, hf_model 
     if (HF_ARENA_MAKE(&arena, lay_out(&arena, &q)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "optimize.symmetry: out of memory");
     measure(&q);
-    sort(&q);
+    sort(&q, settings);
     hf_status status = link_genes(&q, wanted, m, planes, messages);
     hf_arena_free(&arena);
     return status;

@@ -11,10 +11,11 @@
 #define HF_PLANE_X 1
 #define HF_PLANE_Y 2
 
-/* Set model->gene_leader, n_leader and the merged gene_group of a newly built model as `wanted` says. *planes: the
- * HF_PLANE_ bits in force. Returns HF_OK; HF_BAD_CASE with the cables that have no mirror image, when the net is not
- * symmetric about a plane that was asked for by name; HF_NO_MEMORY. */
-hf_status hf_symmetry_apply(const hf_scene *scene, hf_symmetry wanted, hf_model *model, int *planes,
+/* Set model->gene_leader, n_leader and the merged gene_group of a newly built model as settings->symmetry says; genes
+ * of optimize.variables follow if their row has link: symmetry. *planes: the HF_PLANE_ bits in force. Returns HF_OK;
+ * HF_BAD_CASE with the cables that have no mirror image, when the net is not symmetric about a plane that was asked
+ * for by name; HF_NO_MEMORY. */
+hf_status hf_symmetry_apply(const hf_scene *scene, const hf_optimize_settings *settings, hf_model *model, int *planes,
                             hf_messages *messages);
 
 /* "planes x and y", "plane x", "no plane" */

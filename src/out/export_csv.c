@@ -74,10 +74,7 @@ static void write_facets(const void *context, FILE *f)
     fputs("id,a,b,c,d\n", f);
     for (int i = 0; i < v->facets->n_facet; i++) {
         const int *corner = v->facets->corner + 4 * (size_t)i;
-        if (v->facets->named && v->scene->facet_id)
-            hf_csv_write_id(v->scene->facet_id[v->facets->named[i]], f);
-        else
-            fprintf(f, "f%d", i + 1);
+        fprintf(f, "f%d", i + 1);
         for (int k = 0; k < 4; k++) {
             fputc(',', f);
             if (k < 3 || corner[3] != corner[2]) hf_csv_write_id(v->scene->node_id[corner[k]], f);

@@ -1,5 +1,7 @@
 #include <hifdm/problem.h>
 
+#include "solve/limits.h"
+
 #include "run/problem_parts.h"
 
 #include <stdlib.h>
@@ -26,6 +28,8 @@ void hf_problem_free(hf_problem *p)
     hf_workspace_free(&p->workspace);
     hf_model_free(&p->model);
     hf_carrier_free(&p->carrier);
+    hf_limits_free(&p->limits);
+    hf_goals_free(&p->goals);
     hf_facets_free(&p->facets);
     hf_scene_free(&p->scene);
     hf_case_free(&p->settings);

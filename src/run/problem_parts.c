@@ -3,7 +3,9 @@
 
 #include "base/file_out.h"
 #include "net/symmetry.h"
+#include "net/variables.h"
 #include "search/polish.h"
+#include "solve/limits.h"
 #include "solve/prestress.h"
 #include <hifdm/evaluate.h>
 #include <hifdm/metrics.h>
@@ -36,6 +38,8 @@ hf_status hf_problem_load(const char *path, const char *const *set, int n_set, h
     if (p->settings.form.prestress == HF_PRESTRESS_EXACT)
         HF_TRY(hf_prestress_hold(&p->scene, &p->settings.form, messages));
     HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));
+    if (p->settings.has_optimize)
+        HF_TRY(hf_variables_apply(&p->scene, &p->settings.optimize, &p->surface, &p->model, messages));
     if (p->settings.has_truss) {
         const hf_carrier *c = &p->carrier;
         HF_TRY(hf_config_carrier(&p->settings, &p->scene, &p->carrier, messages));
@@ -43,7 +47,11 @@ hf_status hf_problem_load(const char *path, const char *const *set, int n_set, h
         if (p->settings.has_optimize) hf_model_want_newton(&p->model);
     }
     if (!p->settings.has_optimize) return HF_OK;
-    return hf_symmetry_apply(&p->scene, p->settings.optimize.symmetry, &p->model, &p->planes, messages);
+    HF_TRY(hf_limits_create(&p->scene, &p->model, &p->settings.optimize, &p->limits, messages));
+    if (p->settings.optimize.n_goal)
+        HF_TRY(
+            hf_goals_create(&p->scene, &p->model, &p->settings.optimize, &p->surface, &p->facets, &p->goals, messages));
+    return hf_symmetry_apply(&p->scene, &p->settings.optimize, &p->model, &p->planes, messages);
 }
 
 hf_status hf_problem_allocate(hf_problem *p, hf_messages *messages)
@@ -95,29 +103,50 @@ hf_status hf_problem_spare_inputs(const hf_problem *p, const char *table, const 
 hf_evaluator hf_problem_evaluator(const hf_problem *p)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
-    return (hf_evaluator){&p->model, &p->settings.form, p->start_q_N_per_m,
-                          o->rule,   o->solver,         p->settings.has_optimize ? o->boundary_ratio_cap : INFINITY};
+    return (hf_evaluator){.model = &p->model,
+                          .form = &p->settings.form,
+                          .start_q_N_per_m = p->start_q_N_per_m,
+                          .rule = o->rule,
+                          .solver = o->solver,
+                          .boundary_ratio_cap = p->settings.has_optimize ? o->boundary_ratio_cap : INFINITY,
+                          .limits = p->limits.n ? &p->limits : NULL,
+                          .goals = p->goals.n_goal ? &p->goals : NULL};
+}
+
+/* Is there a value for gene k? Values of cables are above zero. */
+static hf_status check_gene(const hf_problem *p, int k, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    double base = p->base_N[k], lower, upper, reach;
+    char name[HF_GENE_NAME_SIZE];
+    hf_model_gene_name(&p->model, &p->scene, k, name, sizeof name);
+    bool is_row = p->model.gene, is_cable = p->model.gene_cable[k] >= 0;
+    if (is_cable && !(base > 0))
+        return hf_error(
+            messages, HF_NO_FEASIBLE,
+            "optimize: %s '%s' has no tension after form-finding to start from; give it a shorter length, or "
+            "a law that holds it taut",
+            is_row ? "cable" : "boundary cable", name);
+    if (!is_row && (base + o->range_N < o->min_tension_N || base - o->range_N > o->max_tension_N))
+        return hf_error(messages, HF_BAD_CASE,
+                        "optimize: boundary cable '%s' has %g N after form-finding; range_N %g around that does not "
+                        "reach min_tension_N %g .. max_tension_N %g",
+                        name, base, o->range_N, o->min_tension_N, o->max_tension_N);
+    hf_variables_bound(o, &p->model, k, base, &lower, &upper, &reach);
+    if (is_row && (base + reach < lower || base - reach > upper))
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "optimize.variables.%d: '%s' has %g %s after form-finding; its range around that does not reach "
+            "its bounds",
+            p->model.gene[k].setting, name, base, hf_model_gene_unit(&p->model, k));
+    return HF_OK;
 }
 
 static hf_status check_base(const hf_problem *p, hf_messages *messages)
 {
-    const hf_optimize_settings *o = &p->settings.optimize;
-    for (int k = 0; k < p->model.n_gene; k++) {
-        const char *id = p->scene.cable_id[p->model.gene_cable[k]];
-        double base_N = p->base_N[k];
-        if (!(base_N > 0))
-            return hf_error(messages, HF_NO_FEASIBLE,
-                            "optimize: boundary cable '%s' has no tension after form-finding to start from; give it a "
-                            "shorter length, or a law that holds it taut",
-                            id);
-        if (base_N + o->range_N < o->min_tension_N || base_N - o->range_N > o->max_tension_N)
-            return hf_error(
-                messages, HF_BAD_CASE,
-                "optimize: boundary cable '%s' has %g N after form-finding; range_N %g around that does not "
-                "reach min_tension_N %g .. max_tension_N %g",
-                id, base_N, o->range_N, o->min_tension_N, o->max_tension_N);
-    }
-    if (!hf_optimiser_plan_of(o->method).kind && !hf_polish_applies(&p->evaluator))
+    for (int k = 0; k < p->model.n_gene; k++)
+        HF_TRY(check_gene(p, k, messages));
+    if (!hf_optimiser_plan_of(p->settings.optimize.method).kind && !hf_polish_applies(&p->evaluator))
         return hf_error(messages, HF_BAD_CASE, "%s", HF_PROBLEM_POLISH_NEEDS);
     return HF_OK;
 }
@@ -126,9 +155,11 @@ hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
 {
     const hf_model *m = &p->model;
     memcpy(p->start_q_N_per_m, p->workspace.q_N_per_m, (size_t)m->n_cable * sizeof(double));
-    for (int k = 0; k < m->n_gene; k++)
-        p->base_N[k] = p->workspace.tension_N[m->gene_cable[k]];
+    const hf_workspace *w = &p->workspace;
+    hf_variables_read(m, w->q_N_per_m, w->tension_N, w->length_m, p->base_N);
     p->evaluator = hf_problem_evaluator(p);
+    if (hf_evaluate_attend(&p->evaluator, &p->workspace) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
     if (p->settings.has_optimize && m->n_gene > 0) HF_TRY(check_base(p, messages));
     hf_symmetry_average(m, p->base_N);
     return HF_OK;
@@ -144,7 +175,7 @@ hf_status hf_problem_batch(hf_problem *p, int n_thread)
 void hf_problem_share(hf_problem *p)
 {
     int n_taut = 0;
-    while (n_taut < p->model.n_gene && p->base_N[n_taut] > 0)
+    while (n_taut < p->model.n_gene && (p->model.gene_cable[n_taut] < 0 || p->base_N[n_taut] > 0))
         n_taut++;
     p->solver = HF_SOLVER_AUTO;
     if (n_taut > 0 && n_taut == p->model.n_gene) p->solver = hf_batch_share(&p->batch, p->base_N);

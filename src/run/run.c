@@ -178,7 +178,7 @@ static double *best_design(const hf_population *p)
 static void note_best(const hf_population *p, hf_summary *s)
 {
     if (p->best < 0) return;
-    if (s->best.status == HF_OK && !(p->result[p->best].psi_m < s->best.psi_m)) return;
+    if (s->best.status == HF_OK && !(p->result[p->best].merit < s->best.merit)) return;
     s->best = p->result[p->best];
     s->best_generation = p->generation;
     s->best_individual = p->best;
@@ -277,21 +277,28 @@ static hf_status explain_infeasible(run *r, hf_messages *messages)
 {
     const hf_population *p = &r->optimiser.population;
     long above = p->n_evaluation_above_cap, shapeless = p->n_evaluation_infeasible - above;
+    const char *wider = r->problem.model.gene ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
     hf_form_result base;
     hf_batch_run_one(&r->problem.batch, p->base_N, &base);
-    if (above == 0)
+    if (above > 0 && r->problem.settings.optimize.n_limit > 0)
         return hf_error(messages, HF_NO_FEASIBLE,
-                        "optimize: no feasible design: none of %ld evaluations has a shape (%s); a smaller "
-                        "optimize.range_N keeps the tensions nearer to those of the form-finding",
-                        shapeless, hf_status_text(p->trial_status[0]));
+                        "optimize: no feasible design: %ld of %ld evaluations have a shape beyond optimize.limits or "
+                        "boundary_ratio_cap; loosen the limits, or widen %s",
+                        above, p->n_evaluation, wider);
+    if (above == 0)
+        return hf_error(
+            messages, HF_NO_FEASIBLE,
+            "optimize: no feasible design: none of %ld evaluations has a shape (%s); tighten %s to keep designs "
+            "nearer to the form-finding",
+            shapeless, hf_status_text(p->trial_status[0]), wider);
     char of_base[64] = "has no shape", others[64] = "";
     if (isfinite(base.boundary_tension_ratio))
         snprintf(of_base, sizeof of_base, "has %.4g", base.boundary_tension_ratio);
     if (shapeless > 0) snprintf(others, sizeof others, ", %ld have no shape", shapeless);
     return hf_error(messages, HF_NO_FEASIBLE,
                     "optimize: no feasible design: %ld of %ld evaluations are above boundary_ratio_cap %g%s; the base "
-                    "design %s; raise optimize.boundary_ratio_cap or optimize.range_N",
-                    above, p->n_evaluation, r->problem.settings.optimize.boundary_ratio_cap, others, of_base);
+                    "design %s; raise optimize.boundary_ratio_cap, or widen %s",
+                    above, p->n_evaluation, r->problem.settings.optimize.boundary_ratio_cap, others, of_base, wider);
 }
 
 static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
@@ -354,6 +361,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     s->polish_stop = outcome.stop;
     s->polish_n_at_lower = outcome.n_at_lower;
     s->polish_n_at_upper = outcome.n_at_upper;
+    s->polish_n_at_limit = outcome.n_at_limit;
     s->polish_is_at_cap = outcome.is_at_cap;
     s->polish_wall_s = hf_clock_s() - start_s;
     HF_TRY(measure_shape(r, HF_STAGE_POLISH, w, s, messages));

@@ -20,6 +20,12 @@ static int n_room_at_once(const hf_batch *batch)
     return hf_parallel_is_inside() ? 1 : batch->n_thread;
 }
 
+static hf_status make_room(const hf_evaluator *v, hf_workspace *w)
+{
+    HF_TRY(hf_workspace_create(v->model, w));
+    return hf_evaluate_attend(v, w);
+}
+
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch)
 {
     if (n_thread <= 0) n_thread = hf_batch_default_threads();
@@ -28,7 +34,7 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
     if (!batch->workspace) return HF_NO_MEMORY;
     batch->n_thread = n_thread;
     for (int i = 0; i < n_room_at_once(batch); i++)
-        HF_TRY(hf_workspace_create(evaluator->model, &batch->workspace[i]));
+        HF_TRY(make_room(evaluator, &batch->workspace[i]));
     hf_band_single_threaded();
     return HF_OK;
 }
@@ -93,7 +99,7 @@ static bool set_engine(hf_batch *batch, hf_solver solver, const double *base_N)
 
 static bool each_by_newton(const hf_evaluator *v)
 {
-    return v->solver != HF_SOLVER_FIXED_POINT && v->rule != HF_RULE_SEEDED && v->model->has_newton;
+    return v->solver != HF_SOLVER_FIXED_POINT && hf_evaluate_is_unique(v) && v->model->has_newton;
 }
 
 hf_solver hf_batch_solver(const hf_evaluator *v, bool *has_lanes)
@@ -103,8 +109,8 @@ hf_solver hf_batch_solver(const hf_evaluator *v, bool *has_lanes)
     if (may_share && hf_chord_applies(v)) return HF_SOLVER_CHORD;
     *has_lanes = false;
     if (each_by_newton(v)) return HF_SOLVER_NEWTON;
-    /* the lanes serve neither struts, nor every law, nor a truss: designs of such nets are solved one by one */
-    *has_lanes = !v->model->has_strut && !v->model->n_attachment;
+    /* the lanes serve neither struts, nor every law, nor a truss, nor goals: such designs are solved one by one */
+    *has_lanes = !v->model->has_strut && !v->model->n_attachment && !v->model->gene && !v->limits && !v->goals;
     for (int e = 0; e < v->model->n_cable && *has_lanes; e++)
         *has_lanes = hf_law_is_served(v->model->law[e], HF_SWARM_LAWS);
     return HF_SOLVER_FIXED_POINT;
@@ -124,8 +130,7 @@ hf_solver hf_batch_share(hf_batch *batch, const double *base_N)
 static bool has_room(hf_batch *batch, int room)
 {
     struct hf_batch_engine *e = batch->engine;
-    if (!batch->workspace[room].block && hf_workspace_create(batch->evaluator->model, &batch->workspace[room]) != HF_OK)
-        return false;
+    if (!batch->workspace[room].block && make_room(batch->evaluator, &batch->workspace[room]) != HF_OK) return false;
     if (e && e->chord && !e->chord[room].block) return hf_chord_lanes_create(&e->shared, &e->chord[room]) == HF_OK;
     if (e && e->lanes && !e->lanes[room].block) return hf_swarm_lanes_create(&e->plan, &e->lanes[room]) == HF_OK;
     return true;

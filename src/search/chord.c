@@ -56,7 +56,11 @@ static bool is_served(const hf_model *m, int e)
 bool hf_chord_applies(const hf_evaluator *v)
 {
     const hf_model *m = v->model;
-    if (!m->has_newton || v->rule == HF_RULE_SEEDED || m->n_gene == 0) return false;
+    if (!m->has_newton || m->n_gene == 0) return false;
+    for (int k = 0; k < m->n_gene; k++) {
+        hf_gene_sets sets = hf_evaluate_sets(v, k);
+        if (sets != HF_SETS_TENSION && sets != HF_SETS_DENSITY) return false;
+    }
     int n_other = 0; /* cables whose laws the kernels do not serve */
     for (int e = 0; e < m->n_cable; e++)
         n_other += !is_served(m, e);
@@ -189,16 +193,16 @@ static hf_status allocate(hf_chord *chord)
 static void list_cables(const hf_evaluator *v, hf_chord *c)
 {
     const hf_model *m = v->model;
-    bool gives_tension = v->rule == HF_RULE_TENSION;
     for (int e = 0; e < m->n_cable; e++)
         c->gene_of_cable[e] = -1;
     for (int k = 0; k < m->n_gene; k++) {
         c->gene_of_cable[m->gene_cable[k]] = k;
-        c->gene_divisor[k] = gives_tension ? 1 : hf_evaluate_design_length_m(m, m->gene_cable[k]);
+        c->gene_divisor[k] = hf_evaluate_sets(v, k) == HF_SETS_TENSION ? 1 : hf_evaluate_divisor(v, k);
     }
     c->serves_all = true;
     for (int e = 0; e < m->n_cable; e++) {
         int k = c->gene_of_cable[e];
+        bool gives_tension = k >= 0 && hf_evaluate_sets(v, k) == HF_SETS_TENSION;
         c->inverse_length[e] = 1 / m->length_m[e];
         c->slot_of_cable[e] = k >= 0 && !gives_tension ? k : m->n_gene + e;
         c->is_pulled[e] = k >= 0 ? gives_tension : hf_law_has(m->law[e], HF_LAW_GIVES_TENSION);
@@ -237,7 +241,7 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_worksp
     hf_form_result base;
     *chord = dimensions(v);
     hf_status status = hf_evaluate(v, base_N, w, &base);
-    if (status != HF_OK && status != HF_RATIO_CAP) return status; /* above the cap it has a shape, too */
+    if (!hf_status_has_shape(status)) return status; /* above the cap it has a shape, too */
     HF_TRY(hf_newton_matrix_factor(m, w, NULL));
     HF_TRY(allocate(chord));
     hf_chord_pack(w, chord);
@@ -429,7 +433,7 @@ static void finish(chord_run *s, int lane, const double *design_N, hf_form_resul
     bool ordinary = is_ordinary(s, lane);
     if (ordinary) report(s, lane, r);
     hf_form_result alone = *r;
-    if (s->keeps_shape || !ordinary || hf_evaluate_is_above_cap(c->evaluator, r)) unload(s, lane, design_N, &alone);
+    if (s->keeps_shape || !ordinary || hf_evaluate_needs_shape(c->evaluator, r)) unload(s, lane, design_N, &alone);
     if (!ordinary) *r = alone;
     r->iterations = s->steps[lane];
     for (int i = 0; i < c->n_pull; i++)

@@ -99,7 +99,7 @@ static void first(void *state, hf_population *p)
         for (int j = 0; j < g->model->n_gene_group; j++)
             draw[j] = i == 0 ? 0 : 2 * hf_random_uniform(&random) - 1;
         for (int k = 0; k < p->n_gene; k++) {
-            double step = s->range_N * draw[g->model->gene_group[k]];
+            double step = p->reach[k] * draw[g->model->gene_group[k]];
             design_N[k] = hf_population_clamp(p, k, p->base_N[k] + step);
         }
         hf_population_link(p, g->model, design_N);
@@ -124,7 +124,7 @@ static double adaptive(const breeder *g, double high, double low, double merit)
 /* What is to be least: psi, or while no design is feasible the violation. NaN or INFINITY: it is no parent. */
 static double merit_of(const hf_population *p, int i)
 {
-    return p->best >= 0 ? p->result[i].psi_m : hf_population_violation(&p->result[i]);
+    return p->best >= 0 ? p->result[i].merit : hf_population_violation(&p->result[i]);
 }
 
 static void set_fitness(breeder *g, const hf_population *p)

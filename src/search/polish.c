@@ -1,10 +1,10 @@
-/* Contents: the problem - evaluation - limits - one step - the run */
+/* Contents: the problem - evaluation - one step - the run */
 #include "search/polish.h"
 
 #include "base/arena.h"
 #include "linalg/band.h"
 #include "linalg/quadratic.h"
-#include "search/sensitivity.h"
+#include "search/watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,7 +15,8 @@
 #define DAMPING_LEAST 1e-14  /* [1e-20 to 1e-8] */
 #define DAMPING_MOST 1e12    /* with this much a step is too short to change psi [1e4 to 1e24] */
 #define CORRECTIONS_MAX 4 /* of a step that breaks a limit on tensions [40 passes; 1 fails: the runs stall at a cap] */
-#define LIMIT_INSIDE 1e-9 /* part by which a step stays within the limits on tensions [1e-11; 1e-7 fails] */
+#define CORRECTIONS_FIRST 20 /* of a first step that leads into the limits from outside */
+#define LIMIT_INSIDE 2e-9    /* a tension so near to its bound, relative, is at it: twice what a step stays within */
 #define LIMIT_ROUNDING 1e-12 /* a violation below this part of the tension is rounding [1e-14 to 1e-10] */
 #define DENSITY_LEFT 1e-3    /* part of its first value below which no force density falls [1e-6 to 0.3] */
 
@@ -28,50 +29,43 @@
 
 /* ---- the problem ---- */
 
-/* A cable whose tension is limited. */
-typedef struct {
-    int cable;
-    bool is_in_ratio;         /* the cap on the boundary tension ratio counts it */
-    double lower_N, upper_N;  /* infinite when only the cap limits it */
-    double tension_N, bend_N; /* at the best variables; beyond the linear model at the last trial */
-    double predicted_N;       /* by the linear model */
-} watched;
-
 /* Shapes of tensions T and of the force densities T/l are the same, but the shape is a far more even function of the
- * force densities: single tensions in a chain drag its nodes along. So the variables always mean force densities, and
- * under rule tension the bounds are limits on the tensions. */
+ * force densities: single tensions in a chain drag its nodes along. So genes that set a tension mean force densities
+ * here, and their bounds are limits on the tensions. */
 typedef struct {
-    hf_evaluator v; /* that of the caller, with rule force_density and without a cap */
-    const double *lower_N, *upper_N;
-    double cap;
-    bool by_tension; /* the caller's rule is tension */
+    hf_evaluator v;             /* that of the caller, by force densities and without limits */
+    const hf_evaluator *caller; /* that of the caller */
+    const double *lower, *upper;
     hf_workspace *w;
     hf_sensitivity slopes;
+    hf_watch watch;
     hf_quadratic step;
-    int n;     /* variables: steps (N) from start_N, one for each class of linked genes */
-    int n_row; /* 3 n_inner_node */
-    int n_watched;
-    watched *watched; /* [n_watched] */
-    double *rate;     /* [n_watched][n] of tension_N per variable */
+    int n;     /* variables: steps from `start`, one for each class of linked genes */
+    int n_row; /* of the residuals */
     int evaluations;
+    bool is_outside;       /* no shape within the limits is known yet */
     hf_form_result result; /* of the last evaluation */
-    double *start_N;       /* [n_gene] pretensions q L* */
+    double *start;         /* [n_gene] values; of tensions the pretensions q L* */
     double *low, *high;    /* [n] bounds of the variables */
-    double *unit_N;        /* [n] size of the tension: violations are relative to it */
+    double *unit;          /* [n] size of the values: violations are relative to it */
     double *at, *trial;    /* [n] the best variables; those of the last step */
-    double *design_N;      /* [n_gene] of the last evaluation, as pretensions q L* */
-    double *best_N;        /* [n_gene] the best design in the caller's meaning */
+    double *design;        /* [n_gene] of the last evaluation, tensions as pretensions q L* */
+    double *best;          /* [n_gene] the best design in the caller's meaning */
     double *scale;         /* [n] largest norm of each column of J so far */
-    double *distance_m;    /* [n_row] residuals f; |f| = psi */
+    double *residual;      /* [n_row] f; |f| is the merit */
     double *row;           /* [n][n_row] J' */
     double *gram;          /* [n][n] J'J; lower triangle by rows, as `hessian` */
     double *hessian;       /* [n][n] J'J, damped */
     double *gradient;      /* [n] J'f */
+    double *move_m;        /* [3][n_node] scratch with goals */
+    double *tension_rate;  /* [n_cable] the same */
 } problem;
 
 bool hf_polish_applies(const hf_evaluator *v)
 {
-    return v->model->has_newton && v->rule != HF_RULE_SEEDED && v->model->n_gene > 0;
+    for (int k = 0; k < v->model->n_gene; k++)
+        if (hf_evaluate_sets(v, k) == HF_SETS_START) return false;
+    return v->model->has_newton && v->model->n_gene > 0;
 }
 
 bool hf_polish_is_cheap(const hf_evaluator *v, long n_evaluation)
@@ -88,48 +82,32 @@ static void lay_out(hf_arena *a, problem *p)
 {
     const hf_model *m = p->v.model;
     size_t n = (size_t)p->n, n_row = (size_t)p->n_row, n_gene = (size_t)m->n_gene;
-    p->watched = hf_arena_take(a, (size_t)p->n_watched, sizeof *p->watched);
-    p->rate = hf_arena_take(a, (size_t)p->n_watched * n, sizeof(double));
-    p->start_N = hf_arena_take(a, n_gene, sizeof(double));
+    p->start = hf_arena_take(a, n_gene, sizeof(double));
     p->low = hf_arena_take(a, n, sizeof(double));
     p->high = hf_arena_take(a, n, sizeof(double));
-    p->unit_N = hf_arena_take(a, n, sizeof(double));
+    p->unit = hf_arena_take(a, n, sizeof(double));
     p->at = hf_arena_take(a, n, sizeof(double));
     p->trial = hf_arena_take(a, n, sizeof(double));
-    p->design_N = hf_arena_take(a, n_gene, sizeof(double));
-    p->best_N = hf_arena_take(a, n_gene, sizeof(double));
+    p->design = hf_arena_take(a, n_gene, sizeof(double));
+    p->best = hf_arena_take(a, n_gene, sizeof(double));
     p->scale = hf_arena_take(a, n, sizeof(double));
-    p->distance_m = hf_arena_take(a, n_row, sizeof(double));
+    p->residual = hf_arena_take(a, n_row, sizeof(double));
     p->row = hf_arena_take(a, n * n_row, sizeof(double));
     p->gram = hf_arena_take(a, n * n, sizeof(double));
     p->hessian = hf_arena_take(a, n * n, sizeof(double));
     p->gradient = hf_arena_take(a, n, sizeof(double));
+    p->move_m = hf_arena_take(a, p->v.goals ? 3 * (size_t)m->n_node : 0, sizeof(double));
+    p->tension_rate = hf_arena_take(a, p->v.goals ? (size_t)m->n_cable : 0, sizeof(double));
 }
 
-/* Does any limit concern the tension of cable e? *gene: the cable's, when its bounds do; else -1. */
-static bool is_watched(const problem *p, int e, const int *gene_of_cable, int *gene)
+/* Does gene k set a tension for the caller, and a force density here? */
+static bool is_tension(const problem *p, int k)
 {
-    *gene = p->by_tension ? gene_of_cable[e] : -1;
-    return *gene >= 0 || (isfinite(p->cap) && p->v.model->group[e] == HF_GROUP_BOUNDARY);
-}
-
-static void watch(problem *p)
-{
-    const hf_model *m = p->v.model;
-    int gene, i = 0;
-    for (int e = 0; e < m->n_cable; e++) {
-        if (!is_watched(p, e, p->slopes.gene_of_cable, &gene)) continue;
-        watched *t = &p->watched[i++];
-        *t = (watched){.cable = e, .lower_N = -INFINITY, .upper_N = INFINITY};
-        t->is_in_ratio = isfinite(p->cap) && m->group[e] == HF_GROUP_BOUNDARY;
-        if (gene < 0) continue;
-        t->lower_N = p->lower_N[gene];
-        t->upper_N = p->upper_N[gene];
-    }
+    return hf_evaluate_sets(p->caller, k) == HF_SETS_TENSION;
 }
 
 /* Start at the design whose shape is in the workspace. */
-static void begin(problem *p, const double *design_N)
+static void begin(problem *p, const double *design)
 {
     const hf_model *m = p->v.model;
     for (int i = 0; i < p->n; i++) {
@@ -138,33 +116,40 @@ static void begin(problem *p, const double *design_N)
     }
     for (int k = 0; k < m->n_gene; k++) {
         int i = p->slopes.variable_of_gene[k], e = m->gene_cable[k];
-        double start = design_N[k], lower = p->lower_N[k], upper = p->upper_N[k];
-        if (p->by_tension) {
+        double start = design[k], lower = p->lower[k], upper = p->upper[k];
+        double unit = m->gene_cable[k] < 0 ? upper - lower : start;
+        if (is_tension(p, k)) {
             start = hf_evaluate_design_length_m(m, e) * p->w->tension_N[e] / p->w->length_m[e];
             lower = DENSITY_LEFT * start;
             upper = INFINITY;
+            unit = start;
         }
-        p->start_N[k] = start;
+        p->start[k] = start;
         p->low[i] = fmax(p->low[i], fmin(lower - start, 0));
         p->high[i] = fmin(p->high[i], fmax(upper - start, 0));
-        p->unit_N[i] = fmax(p->unit_N[i], start);
+        p->unit[i] = fmax(p->unit[i], unit);
     }
-    memcpy(p->best_N, design_N, (size_t)m->n_gene * sizeof(double));
-    memcpy(p->design_N, p->start_N, (size_t)m->n_gene * sizeof(double));
+    memcpy(p->best, design, (size_t)m->n_gene * sizeof(double));
+    memcpy(p->design, p->start, (size_t)m->n_gene * sizeof(double));
 }
 
 static hf_status create(problem *p, hf_arena *arena)
 {
     const hf_model *m = p->v.model;
-    int gene;
     p->n = m->n_leader;
-    p->n_row = 3 * m->n_inner_node;
+    p->n_row = p->v.goals ? p->v.goals->n_row : 3 * m->n_inner_node;
     HF_TRY(hf_sensitivity_create(&p->v, &p->slopes));
-    for (int e = 0; e < m->n_cable; e++)
-        p->n_watched += is_watched(p, e, p->slopes.gene_of_cable, &gene);
+    HF_TRY(hf_watch_create(p->caller, &p->slopes, p->lower, p->upper, &p->watch));
     HF_TRY(HF_ARENA_MAKE(arena, lay_out(arena, p)));
-    watch(p);
     return hf_quadratic_create(p->n, &p->step);
+}
+
+static void destroy(problem *p, hf_arena *arena)
+{
+    hf_quadratic_free(&p->step);
+    hf_watch_free(&p->watch);
+    hf_sensitivity_free(&p->slopes);
+    hf_arena_free(arena);
 }
 
 /* ---- evaluation ---- */
@@ -174,27 +159,11 @@ static hf_status evaluate(problem *p, const double *variable)
 {
     const hf_model *m = p->v.model;
     for (int k = 0; k < m->n_gene; k++) {
-        double T = p->start_N[k] + variable[p->slopes.variable_of_gene[k]];
-        p->design_N[k] = p->by_tension ? T : fmax(p->lower_N[k], fmin(p->upper_N[k], T));
+        double value = p->start[k] + variable[p->slopes.variable_of_gene[k]];
+        p->design[k] = is_tension(p, k) ? value : fmax(p->lower[k], fmin(p->upper[k], value));
     }
     p->evaluations++;
-    return hf_evaluate(&p->v, p->design_N, p->w, &p->result);
-}
-
-/* Does the shape in the workspace keep the limits on tensions? */
-static bool is_within_limits(const problem *p)
-{
-    double least = INFINITY, largest = -INFINITY;
-    for (int i = 0; i < p->n_watched; i++) {
-        const watched *t = &p->watched[i];
-        double T = p->w->tension_N[t->cable];
-        if (T < t->lower_N || T > t->upper_N) return false;
-        if (t->is_in_ratio) {
-            least = fmin(least, T);
-            largest = fmax(largest, T);
-        }
-    }
-    return !(largest > p->cap * least);
+    return hf_evaluate(&p->v, p->design, p->w, &p->result);
 }
 
 /* Take the shape in the workspace as the best. */
@@ -203,114 +172,82 @@ static void keep(problem *p)
     const hf_model *m = p->v.model;
     memcpy(p->at, p->trial, (size_t)p->n * sizeof(double));
     for (int k = 0; k < m->n_gene; k++)
-        p->best_N[k] = p->by_tension ? p->w->tension_N[m->gene_cable[k]] : p->design_N[k];
+        p->best[k] = is_tension(p, k) ? p->w->tension_N[m->gene_cable[k]] : p->design[k];
 }
 
-/* Write residuals, J', J'J, the gradient and the watched tensions with their rates at the workspace's shape. */
-static hf_status linearise(problem *p)
+/* Residuals and J' of psi. */
+static void linearise_psi(problem *p)
 {
     const hf_model *m = p->v.model;
-    const hf_sensitivity *s = &p->slopes;
     double part = 1 / sqrt(m->n_inner_node);
-    HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
     for (int i = 0; i < m->n_inner_node; i++)
         for (int c = 0; c < 3; c++) {
             int at = c * m->n_node + m->inner_row[i];
-            p->distance_m[3 * i + c] = part * (p->w->position_m[at] - m->position_m[at]);
+            p->residual[3 * i + c] = part * (p->w->position_m[at] - m->position_m[at]);
         }
     for (int k = 0; k < p->n; k++) {
         double *row = p->row + (size_t)k * (size_t)p->n_row;
-        const double *move = s->move + (size_t)k * s->n_dof;
-        p->gradient[k] = 0;
-        for (int i = 0; i < p->n_row; i++) {
+        const double *move = p->slopes.move + (size_t)k * p->slopes.n_dof;
+        for (int i = 0; i < p->n_row; i++)
             row[i] = part * move[3 * m->inner_row[i / 3] + i % 3];
-            p->gradient[k] += row[i] * p->distance_m[i];
-        }
     }
-    hf_band_gram(p->n, p->n_row, p->row, p->n_row, p->gram, p->n);
-    for (int k = 0; k < p->n; k++)
-        p->scale[k] = fmax(p->scale[k], sqrt(p->gram[k * p->n + k]));
-    for (int i = 0; i < p->n_watched; i++) {
-        watched *t = &p->watched[i];
-        t->tension_N = p->w->tension_N[t->cable];
-        hf_sensitivity_tension(s, p->w, t->cable, p->rate + (size_t)i * (size_t)p->n);
+}
+
+static hf_status linearise_goals(problem *p)
+{
+    HF_TRY(hf_goals_linearise(p->v.goals, p->w, p->w->goals, p->residual));
+    for (int k = 0; k < p->n; k++) {
+        const hf_goals_rate by = {p->move_m, p->tension_rate, hf_sensitivity_displacement(&p->slopes, k, 0)};
+        hf_sensitivity_spread(&p->slopes, k, p->move_m, p->tension_rate);
+        hf_goals_push(p->v.goals, p->w, p->w->goals, &by, p->row + (size_t)k * (size_t)p->n_row);
     }
     return HF_OK;
 }
 
-/* ---- limits ---- */
-
-/* What holds a step: the kinds of its active limits. */
-enum { BOUND, CAP };
-
-/* Tensions that the linear model gives for the step x. *high, *low: the largest and the least of those in the ratio. */
-static void predict(problem *p, const double *x, const watched **high, const watched **low)
+/* Write residuals, J', J'J, the gradient and what is watched with its rates at the workspace's shape. */
+static hf_status linearise(problem *p)
 {
-    size_t n = (size_t)p->n;
-    *high = *low = NULL;
-    for (int i = 0; i < p->n_watched; i++) {
-        const double *rate = p->rate + (size_t)i * n;
-        watched *t = &p->watched[i];
-        t->predicted_N = t->tension_N + t->bend_N;
-        for (size_t j = 0; j < n; j++)
-            t->predicted_N += rate[j] * x[j];
-        if (!t->is_in_ratio) continue;
-        if (!*high || t->predicted_N > (*high)->predicted_N) *high = t;
-        if (!*low || t->predicted_N < (*low)->predicted_N) *low = t;
+    HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
+    if (p->v.goals)
+        HF_TRY(linearise_goals(p));
+    else
+        linearise_psi(p);
+    for (int k = 0; k < p->n; k++) {
+        const double *row = p->row + (size_t)k * (size_t)p->n_row;
+        p->gradient[k] = 0;
+        for (int i = 0; i < p->n_row; i++)
+            p->gradient[k] += row[i] * p->residual[i];
     }
+    hf_band_gram(p->n, p->n_row, p->row, p->n_row, p->gram, p->n);
+    for (int k = 0; k < p->n; k++)
+        p->scale[k] = fmax(p->scale[k], sqrt(p->gram[k * p->n + k]));
+    hf_watch_linearise(&p->watch, &p->slopes, p->w);
+    return HF_OK;
 }
 
-static const double *rate_of(const problem *p, const watched *t)
-{
-    return p->rate + (size_t)(t - p->watched) * (size_t)p->n;
-}
+/* ---- one step ---- */
 
 /* The limit that the step x violates most; for hf_quadratic. */
 static bool worst_limit(void *context, const double *x, hf_quadratic_limit *limit)
 {
     problem *p = context;
-    double worst = LIMIT_ROUNDING, cap = p->cap * (1 - LIMIT_INSIDE), sign = 0;
-    const watched *high, *low, *held = NULL;
+    double worst = LIMIT_ROUNDING, sign = 0;
     int variable = -1;
-    predict(p, x, &high, &low);
     for (int i = 0; i < p->n; i++) {
-        double below = (p->low[i] - p->at[i] - x[i]) / p->unit_N[i],
-               above = (p->at[i] + x[i] - p->high[i]) / p->unit_N[i];
+        double below = (p->low[i] - p->at[i] - x[i]) / p->unit[i], above = (p->at[i] + x[i] - p->high[i]) / p->unit[i];
         if (!(fmax(below, above) > worst)) continue;
         worst = fmax(below, above);
         sign = below > above ? 1 : -1;
         variable = i;
     }
-    for (int i = 0; i < p->n_watched; i++) {
-        const watched *t = &p->watched[i];
-        double size = LIMIT_INSIDE * fabs(t->tension_N);
-        double below = (t->lower_N + size - t->predicted_N) / fabs(t->tension_N);
-        double above = (t->predicted_N - t->upper_N + size) / fabs(t->tension_N);
-        if (!(fmax(below, above) > worst)) continue;
-        worst = fmax(below, above);
-        sign = below > above ? 1 : -1;
-        held = t;
-    }
-    limit->kind = BOUND;
-    if (high && high->predicted_N - cap * low->predicted_N > worst * fabs(high->predicted_N)) {
-        const double *up = rate_of(p, high), *down = rate_of(p, low);
-        for (int j = 0; j < p->n; j++)
-            limit->normal[j] = cap * down[j] - up[j];
-        limit->bound = high->tension_N + high->bend_N - cap * (low->tension_N + low->bend_N);
-        limit->kind = CAP;
-    } else if (held) {
-        double inside = LIMIT_INSIDE * fabs(held->tension_N), limit_N = sign > 0 ? held->lower_N : held->upper_N;
-        for (int j = 0; j < p->n; j++)
-            limit->normal[j] = sign * rate_of(p, held)[j];
-        limit->bound = sign * (limit_N - held->tension_N - held->bend_N) + inside;
-    } else if (variable >= 0) {
-        limit->normal[variable] = sign;
-        limit->bound = sign * ((sign > 0 ? p->low : p->high)[variable] - p->at[variable]);
-    }
-    return worst > LIMIT_ROUNDING || limit->kind == CAP;
+    if (hf_watch_worst(&p->watch, x, worst, limit)) return true;
+    if (variable < 0) return false;
+    limit->kind = 0;
+    limit->only = variable;
+    limit->normal[variable] = sign;
+    limit->bound = sign * ((sign > 0 ? p->low : p->high)[variable] - p->at[variable]);
+    return true;
 }
-
-/* ---- one step ---- */
 
 /* The least of the model |f + J x|^2/2 + damping |scale x|^2/2 within the limits, as `trial`. *gain: what the model
  * promises of psi^2/2. */
@@ -338,16 +275,13 @@ static hf_status solve_step(problem *p, double damping, double *gain)
  * with what they really were. HF_RATIO_CAP: a limit is still broken. */
 static hf_status try_step(problem *p, double damping, double *gain)
 {
-    const watched *high, *low;
-    for (int i = 0; i < p->n_watched; i++)
-        p->watched[i].bend_N = 0;
-    for (int again = 0; again <= CORRECTIONS_MAX; again++) {
+    int most = p->is_outside ? CORRECTIONS_FIRST : CORRECTIONS_MAX;
+    hf_watch_forget(&p->watch);
+    for (int again = 0; again <= most; again++) {
         HF_TRY(solve_step(p, damping, gain));
         HF_TRY(evaluate(p, p->trial));
-        if (is_within_limits(p)) return HF_OK;
-        predict(p, p->step.x, &high, &low);
-        for (int i = 0; i < p->n_watched; i++)
-            p->watched[i].bend_N += p->w->tension_N[p->watched[i].cable] - p->watched[i].predicted_N;
+        if (hf_watch_keeps(&p->watch, p->w)) return HF_OK;
+        hf_watch_learn(&p->watch, p->step.x, p->w);
     }
     return HF_RATIO_CAP;
 }
@@ -358,12 +292,14 @@ static void count_limits(const problem *p, hf_polish_result *r)
 {
     const hf_model *m = p->v.model;
     for (int k = 0; k < m->n_gene; k++) {
-        double inside = p->by_tension ? 2 * LIMIT_INSIDE * p->best_N[k] : 0;
-        r->n_at_lower += p->best_N[k] <= p->lower_N[k] + inside;
-        r->n_at_upper += p->best_N[k] >= p->upper_N[k] - inside;
+        double inside = is_tension(p, k) ? LIMIT_INSIDE * p->best[k] : 0;
+        r->n_at_lower += p->best[k] <= p->lower[k] + inside;
+        r->n_at_upper += p->best[k] >= p->upper[k] - inside;
     }
-    for (int i = 0; i < p->step.n_active; i++)
-        r->is_at_cap |= p->step.active[i] == CAP;
+    for (int i = 0; i < p->step.n_active; i++) {
+        r->is_at_cap |= p->step.active[i] == HF_WATCH_CAP;
+        r->n_at_limit += p->step.active[i] == HF_WATCH_ROW;
+    }
 }
 
 /* Steps until one promises nothing more, none lowers psi any more, or the iteration limit is reached. The damping
@@ -374,18 +310,19 @@ static hf_status minimise(problem *p, int max_iterations, hf_polish_result *r)
     hf_status status = evaluate(p, p->at);
     if (status == HF_OK) status = linearise(p);
     while (status == HF_OK && r->stop == HF_POLISH_MAX_ITERATIONS && r->iterations < max_iterations) {
-        double before = r->psi_m * r->psi_m / 2;
+        double before = p->is_outside ? (double)INFINITY : r->merit * r->merit / 2;
         r->iterations++;
         status = try_step(p, damping, &gain);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-        double after = status == HF_OK ? p->result.psi_m * p->result.psi_m / 2 : (double)INFINITY;
-        if ((status == HF_OK || status == HF_RATIO_CAP) && gain <= GAIN_CONVERGED * before)
+        double after = status == HF_OK ? p->result.merit * p->result.merit / 2 : (double)INFINITY;
+        if ((status == HF_OK || status == HF_RATIO_CAP) && gain <= GAIN_CONVERGED * before && !p->is_outside)
             r->stop = HF_POLISH_CONVERGED;
         status = HF_OK;
         if (after < before) {
             keep(p);
-            r->psi_m = p->result.psi_m;
-            double share = 2 * (before - after) / gain - 1;
+            r->merit = p->result.merit;
+            double share = p->is_outside ? 0 : 2 * (before - after) / gain - 1;
+            p->is_outside = false;
             damping = fmax(DAMPING_LEAST, damping * fmax(0.1, 1 - share * share * share));
             growth = 2;
             if (r->stop == HF_POLISH_MAX_ITERATIONS) status = linearise(p);
@@ -401,41 +338,39 @@ static hf_status minimise(problem *p, int max_iterations, hf_polish_result *r)
     return HF_OK;
 }
 
-/* The best design, in the caller's meaning, replaces design_N if its own evaluation is not worse than the start. */
-static void hand_over(const problem *p, const hf_evaluator *v, double *design_N, hf_polish_result *r)
+/* The best design, in the caller's meaning, replaces `design` if its own evaluation is not worse than the start. */
+static void hand_over(const problem *p, const hf_form_result *start, double *design, hf_polish_result *r)
 {
     hf_form_result end;
-    if (hf_evaluate(v, p->best_N, p->w, &end) == HF_OK && end.psi_m <= r->start_psi_m) {
-        memcpy(design_N, p->best_N, (size_t)v->model->n_gene * sizeof(double));
-        r->psi_m = end.psi_m;
-    } else {
-        r->psi_m = r->start_psi_m;
-        r->stop = HF_POLISH_STALLED;
-    }
+    bool is_better =
+        hf_evaluate(p->caller, p->best, p->w, &end) == HF_OK && (start->status != HF_OK || end.merit <= start->merit);
+    if (is_better) memcpy(design, p->best, (size_t)p->v.model->n_gene * sizeof(double));
+    r->merit = is_better ? end.merit : start->merit;
+    if (!is_better) r->stop = HF_POLISH_STALLED;
 }
 
-hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower_N, const double *upper_N, int max_iterations,
-                        double *design_N, hf_workspace *w, hf_polish_result *result)
+hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
+                        double *design, hf_workspace *w, hf_polish_result *result)
 {
-    problem p = {.v = *evaluator, .lower_N = lower_N, .upper_N = upper_N, .w = w};
+    problem p = {.v = *evaluator, .caller = evaluator, .lower = lower, .upper = upper, .w = w};
     hf_form_result start;
     hf_arena arena = {0};
     *result = (hf_polish_result){.stop = HF_POLISH_MAX_ITERATIONS};
-    p.by_tension = evaluator->rule == HF_RULE_TENSION;
-    p.cap = evaluator->boundary_ratio_cap;
-    p.v.rule = HF_RULE_FORCE_DENSITY;
+    p.v.by_density = true;
     p.v.boundary_ratio_cap = INFINITY;
-    HF_TRY(hf_evaluate(evaluator, design_N, w, &start));
-    result->psi_m = result->start_psi_m = start.psi_m;
+    p.v.limits = NULL;
+    hf_evaluate(evaluator, design, w, &start);
+    if (!hf_status_has_shape(start.status)) return start.status;
+    p.is_outside = start.status != HF_OK;
+    result->merit = result->start_merit = start.merit;
     hf_status status = create(&p, &arena);
     if (status == HF_OK) {
-        begin(&p, design_N);
+        begin(&p, design);
         status = minimise(&p, max_iterations, result);
         result->evaluations = p.evaluations;
-        hand_over(&p, evaluator, design_N, result);
+        if (status == HF_OK && p.is_outside) status = start.status;
+        if (status == HF_OK) hand_over(&p, &start, design, result);
     }
-    hf_quadratic_free(&p.step);
-    hf_sensitivity_free(&p.slopes);
-    hf_arena_free(&arena);
+    destroy(&p, &arena);
     return status;
 }

@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "net/symmetry.h"
+#include "net/variables.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -35,16 +36,13 @@ static void lay_out_both(hf_arena *a, hf_population *p, hf_population *next)
     p->base_N = hf_arena_take(a, k, sizeof(double));
     p->lower_N = hf_arena_take(a, k, sizeof(double));
     p->upper_N = hf_arena_take(a, k, sizeof(double));
+    p->reach = hf_arena_take(a, k, sizeof(double));
+    p->best_merit = hf_arena_take(a, (size_t)p->generation_limit, sizeof(double));
     p->best_psi_m = hf_arena_take(a, (size_t)p->generation_limit, sizeof(double));
     p->least_violation = hf_arena_take(a, (size_t)p->generation_limit, sizeof(double));
     *next = *p;
     lay_out_generation(a, p);
     lay_out_generation(a, next);
-}
-
-static double within(double value, double low, double high)
-{
-    return value < low ? low : value > high ? high : value;
 }
 
 /* ---- linked genes ---- */
@@ -90,14 +88,16 @@ hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m,
 {
     hf_population *p = population;
     hf_arena arena = {0};
-    *p = (hf_population){
-        .n_gene = m->n_gene, .n_individual = s->population, .generation_limit = s->generations, .best = -1};
+    *p = (hf_population){.n_gene = m->n_gene,
+                         .has_rows = m->gene,
+                         .n_individual = s->population,
+                         .generation_limit = s->generations,
+                         .best = -1};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_both(&arena, p, next)));
     p->block = next->block = arena.block;
     memcpy(p->base_N, base_N, (size_t)p->n_gene * sizeof *base_N);
     for (int k = 0; k < p->n_gene; k++) {
-        p->lower_N[k] = within(base_N[k] - s->range_N, s->min_tension_N, s->max_tension_N);
-        p->upper_N[k] = within(base_N[k] + s->range_N, s->min_tension_N, s->max_tension_N);
+        hf_variables_bound(s, m, k, base_N[k], &p->lower_N[k], &p->upper_N[k], &p->reach[k]);
     }
     if (has_links(m)) link_bounds(m, p);
     return HF_OK;
@@ -134,14 +134,14 @@ void hf_population_advance(hf_population *population, hf_population *next)
 double hf_population_violation(const hf_form_result *r)
 {
     if (r->status == HF_OK) return 0;
-    return r->status == HF_RATIO_CAP ? r->violation : INFINITY;
+    return hf_status_has_shape(r->status) ? r->violation : INFINITY;
 }
 
 /* Below zero: result a is better than b. */
 static int rank_of_two(const hf_form_result *a, const hf_form_result *b)
 {
     bool are_ok = a->status == HF_OK && b->status == HF_OK;
-    double x = are_ok ? a->psi_m : hf_population_violation(a), y = are_ok ? b->psi_m : hf_population_violation(b);
+    double x = are_ok ? a->merit : hf_population_violation(a), y = are_ok ? b->merit : hf_population_violation(b);
     return (x > y) - (x < y);
 }
 
@@ -180,14 +180,14 @@ static hf_population_stop judge(const hf_optimize_settings *s, const hf_populati
 {
     int window = s->stagnation_generations, now = p->generation;
     if (isinf(p->least_violation[now])) return HF_POPULATION_ALL_INFEASIBLE; /* not one has a shape */
-    if (now >= window && isnan(p->best_psi_m[now])) {
+    if (now >= window && isnan(p->best_merit[now])) {
         double then = p->least_violation[now - window];
         if (!(then - p->least_violation[now] > VIOLATION_GAIN * then)) return HF_POPULATION_ALL_INFEASIBLE;
-    } else if (now >= window && p->best_psi_m[now - window] - p->best_psi_m[now] < s->stagnation_tolerance_m) {
+    } else if (now >= window && p->best_merit[now - window] - p->best_merit[now] < s->stagnation_tolerance_m) {
         return HF_POPULATION_STAGNATION;
     }
     if (now + 1 < p->generation_limit) return HF_POPULATION_RUNNING;
-    return isnan(p->best_psi_m[now]) ? HF_POPULATION_ALL_INFEASIBLE : HF_POPULATION_GENERATIONS;
+    return isnan(p->best_merit[now]) ? HF_POPULATION_ALL_INFEASIBLE : HF_POPULATION_GENERATIONS;
 }
 
 void hf_population_rank(const hf_optimize_settings *s, hf_population *population)
@@ -203,7 +203,8 @@ void hf_population_rank(const hf_optimize_settings *s, hf_population *population
         bool is_infeasible = r->status != HF_OK;
         p->n_evaluation += p->pending[i];
         p->n_evaluation_infeasible += p->pending[i] && p->trial_status[i] != HF_OK;
-        p->n_evaluation_above_cap += p->pending[i] && p->trial_status[i] == HF_RATIO_CAP;
+        p->n_evaluation_above_cap +=
+            p->pending[i] && p->trial_status[i] != HF_OK && hf_status_has_shape(p->trial_status[i]);
         p->n_infeasible += is_infeasible;
         p->least_violation[p->generation] = fmin(p->least_violation[p->generation], hf_population_violation(r));
         if (is_infeasible) continue;
@@ -212,6 +213,7 @@ void hf_population_rank(const hf_optimize_settings *s, hf_population *population
         if (p->best < 0 || hf_population_is_better(p, i, p->best)) p->best = i;
     }
     if (p->best >= 0) p->mean_psi_m = sum / (p->n_individual - p->n_infeasible);
+    p->best_merit[p->generation] = p->best >= 0 ? p->result[p->best].merit : (double)NAN;
     p->best_psi_m[p->generation] = p->best >= 0 ? p->result[p->best].psi_m : (double)NAN;
     p->stop_reason = judge(s, p);
 }

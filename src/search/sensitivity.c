@@ -1,4 +1,4 @@
-/* Contents: layout - first derivatives - tensions */
+/* Contents: layout - forces of genes - first derivatives - tensions - cables of law length - what others read */
 #include "search/sensitivity.h"
 
 #include "base/arena.h"
@@ -9,16 +9,64 @@
 
 /* ---- layout ---- */
 
+/* A cable at the workspace's shape. */
+typedef struct hf_strained {
+    double unit[3], stiffness_N_per_m;
+    double direct;       /* what its gene changes in its tension, if it has one */
+    int rigid, variable; /* of its gene; -1: none */
+} strained;
+
 static void lay_out(hf_arena *a, hf_sensitivity *s)
 {
     const hf_model *m = s->v->model;
     size_t n = (size_t)s->n;
     s->variable_of_gene = hf_arena_take(a, (size_t)m->n_gene, sizeof(int));
     s->gene_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
+    s->strained = hf_arena_take(a, (size_t)m->n_cable, sizeof(strained));
     s->place_of_row = hf_arena_take(a, (size_t)m->n_node, sizeof(int));
+    s->base_of_row = hf_arena_take(a, (size_t)m->n_node, sizeof(int));
     s->move = hf_arena_take(a, n * s->n_dof, sizeof(double));
     s->answer = hf_arena_take(a, m->n_attachment ? n * 3 * (size_t)m->n_free : 0, sizeof(double));
     s->pull = hf_arena_take(a, n * 3 * (size_t)m->n_attachment, sizeof(double));
+    s->rigid = hf_arena_take(a, (size_t)s->n_rigid, sizeof(int));
+    s->rigid_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
+    s->multiplier = hf_arena_take(a, n * (size_t)s->n_rigid, sizeof(double));
+}
+
+/* Is cable e of law length in the designs of this evaluator? It moves no node between two supports. */
+static bool is_rigid(const hf_evaluator *v, int e, int gene)
+{
+    const hf_model *m = v->model;
+    if (m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free) return false;
+    hf_gene_sets sets = gene >= 0 ? hf_evaluate_sets(v, gene) : HF_SETS_START;
+    return sets == HF_SETS_LENGTH || (sets == HF_SETS_START && hf_law_has((hf_law)m->law[e], HF_LAW_IS_RIGID));
+}
+
+static int count_rigid(const hf_evaluator *v)
+{
+    const hf_model *m = v->model;
+    int n = 0;
+    for (int e = 0; e < m->n_cable; e++)
+        n += is_rigid(v, e, -1);
+    for (int k = 0; k < m->n_gene; k++)
+        if (m->gene_cable[k] >= 0) n += is_rigid(v, m->gene_cable[k], k) - is_rigid(v, m->gene_cable[k], -1);
+    return n;
+}
+
+/* Number of supports that genes move. place_of_row [n_node] (may be NULL): where their moves stand in `move`. */
+static int place_supports(const hf_model *m, int *place_of_row)
+{
+    int n = 0;
+    for (int row = 0; place_of_row && row < m->n_node; row++)
+        place_of_row[row] = -1;
+    for (int row = m->n_free; m->moves_supports && row < m->n_node; row++) {
+        bool moves = false;
+        for (int k = 0; k < m->n_gene; k++)
+            moves |= m->gene[k].support_row == row;
+        if (moves && place_of_row) place_of_row[row] = 3 * (m->n_free + m->n_attachment + n);
+        n += moves;
+    }
+    return n;
 }
 
 static void number(hf_sensitivity *s)
@@ -30,18 +78,24 @@ static void number(hf_sensitivity *s)
     for (int e = 0; e < m->n_cable; e++)
         s->gene_of_cable[e] = -1;
     for (int k = 0; k < m->n_gene; k++)
-        s->gene_of_cable[m->gene_cable[k]] = k;
+        if (m->gene_cable[k] >= 0) s->gene_of_cable[m->gene_cable[k]] = k;
+    for (int e = n = 0; e < m->n_cable; e++) {
+        s->rigid_of_cable[e] = is_rigid(s->v, e, s->gene_of_cable[e]) ? n : -1;
+        if (s->rigid_of_cable[e] >= 0) s->rigid[n++] = e;
+    }
     for (int row = 0; row < m->n_node; row++)
         s->place_of_row[row] = row < m->n_free ? 3 * row : -1;
     for (int i = 0; i < m->n_attachment; i++)
         s->place_of_row[m->attachment_row[i]] = 3 * (m->n_free + i);
+    place_supports(m, s->base_of_row);
 }
 
 hf_status hf_sensitivity_create(const hf_evaluator *v, hf_sensitivity *s)
 {
     const hf_model *m = v->model;
     hf_arena arena = {0};
-    *s = (hf_sensitivity){.v = v, .n = m->n_leader, .n_dof = 3 * ((size_t)m->n_free + (size_t)m->n_attachment)};
+    *s = (hf_sensitivity){.v = v, .n = m->n_leader, .n_rigid = count_rigid(v)};
+    s->n_dof = 3 * ((size_t)m->n_free + (size_t)m->n_attachment + (size_t)place_supports(m, NULL));
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, s)));
     s->block = arena.block;
     number(s);
@@ -59,24 +113,76 @@ void hf_sensitivity_free(hf_sensitivity *s)
     *s = (hf_sensitivity){0};
 }
 
-/* ---- first derivatives ---- */
+/* ---- forces of genes ---- */
 
-/* Add -dg/dT of gene k at the workspace's shape: the change of the nodal forces for one newton of T', and of the pull
- * on the truss. */
+/* Add a pull on the first end of cable e, and the opposite on its second, to the forces on free nodes and truss. */
+static void add_pull(const hf_model *m, int e, const double pull[3], double *force, double *on_truss)
+{
+    int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+    for (int c = 0; c < 3; c++) {
+        if (a < m->n_free) force[3 * a + c] += pull[c];
+        if (b < m->n_free) force[3 * b + c] -= pull[c];
+        for (int t = 0; t < m->n_tie; t++)
+            if (m->tie[t] / 2 == e) on_truss[3 * m->tie_attachment[t] + c] += m->tie[t] % 2 ? -pull[c] : pull[c];
+    }
+}
+
+/* What one unit of gene k changes in the tension of its cable, whose nodes do not move. */
+static double direct_tension(const hf_sensitivity *s, const hf_workspace *w, int k, double length)
+{
+    int e = s->v->model->gene_cable[k];
+    hf_law_cable cable = hf_workspace_cable(s->v->model, w, e);
+    switch (hf_evaluate_sets(s->v, k)) {
+    case HF_SETS_DENSITY:
+        return length / hf_evaluate_divisor(s->v, k);
+    case HF_SETS_LENGTH:
+        return -hf_newton_matrix_stiffness(cable, length, w->tension_N[e]);
+    case HF_SETS_CUT:
+        return length > cable.target ? -cable.EA_N * length / (cable.target * cable.target) : 0;
+    default:
+        return 1;
+    }
+}
+
+/* A support that moves drags its cables along. */
+static void add_force_of_support(const hf_sensitivity *s, const hf_workspace *w, int k, double *force, double *on_truss)
+{
+    const hf_model *m = s->v->model;
+    const hf_gene *g = &m->gene[k];
+    for (int end = 0; end < 2 * m->n_cable; end++) {
+        double block[3][3], pull[3];
+        if (m->end_row[end] != g->support_row) continue;
+        hf_newton_matrix_block(m, w, end / 2, block);
+        for (int c = 0; c < 3; c++) {
+            pull[c] = block[c][0] * g->direction[0] + block[c][1] * g->direction[1] + block[c][2] * g->direction[2];
+            if (end % 2 == 0) pull[c] = -pull[c];
+        }
+        add_pull(m, end / 2, pull, force, on_truss);
+    }
+}
+
+/* Add -dg/dv of gene k at the workspace's shape: the change of the nodal forces for one unit of its value, and of the
+ * pull on the truss. */
 static void add_force_of_gene(const hf_sensitivity *s, const hf_workspace *w, int k, double *force, double *on_truss)
 {
     const hf_model *m = s->v->model;
-    int e = m->gene_cable[k], a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-    double length = w->length_m[e];
-    if (s->v->rule == HF_RULE_FORCE_DENSITY) length = hf_evaluate_design_length_m(m, e);
-    for (int c = 0; c < 3; c++) {
-        double pull = (w->position_m[c * m->n_node + b] - w->position_m[c * m->n_node + a]) / length;
-        if (a < m->n_free) force[3 * a + c] += pull;
-        if (b < m->n_free) force[3 * b + c] -= pull;
-        for (int t = 0; t < m->n_tie; t++)
-            if (m->tie[t] / 2 == e) on_truss[3 * m->tie_attachment[t] + c] += m->tie[t] % 2 ? -pull : pull;
+    int e = m->gene_cable[k];
+    double pull[3];
+    if (e < 0) {
+        add_force_of_support(s, w, k, force, on_truss);
+        return;
     }
+    hf_gene_sets sets = hf_evaluate_sets(s->v, k);
+    double length = sets == HF_SETS_DENSITY ? hf_evaluate_divisor(s->v, k) : w->length_m[e], rate = 1;
+    if (sets == HF_SETS_LENGTH || sets == HF_SETS_CUT) rate = direct_tension(s, w, k, length);
+    for (int c = 0; c < 3; c++) {
+        const double *x = w->position_m + (ptrdiff_t)c * m->n_node;
+        pull[c] = (x[m->end_row[2 * e + 1]] - x[m->end_row[2 * e]]) / length * rate;
+    }
+    add_pull(m, e, pull, force, on_truss);
 }
+
+/* ---- first derivatives ---- */
 
 /* Turn the moves with fixed supports into those of net and truss together. */
 static void let_truss_answer(hf_sensitivity *s, const hf_workspace *w)
@@ -98,45 +204,133 @@ static void let_truss_answer(hf_sensitivity *s, const hf_workspace *w)
             s->move[k * s->n_dof + i] += s->answer[k * n_free + i];
 }
 
-hf_status hf_sensitivity_find(hf_sensitivity *s, hf_workspace *w)
+/* Solve for the moves of all variables; `move` and `pull` hold the forces. */
+static void solve(hf_sensitivity *s, const hf_workspace *w)
+{
+    hf_chord_back_solve(&s->matrix, &s->lanes, s->n, s->move, s->n_dof);
+    if (s->v->model->n_attachment) let_truss_answer(s, w);
+}
+
+static void add_forces(hf_sensitivity *s, const hf_workspace *w)
 {
     const hf_model *m = s->v->model;
     memset(s->pull, 0, 3 * (size_t)s->n * (size_t)m->n_attachment * sizeof(double));
     memset(s->move, 0, (size_t)s->n * s->n_dof * sizeof(double));
-    HF_TRY(hf_newton_matrix_factor(m, w, NULL));
-    if (m->n_attachment) HF_TRY(hf_schur_factor(m, w, hf_newton_matrix_block, &s->schur));
     for (int k = 0; k < m->n_gene; k++) {
         size_t i = (size_t)s->variable_of_gene[k];
         add_force_of_gene(s, w, k, s->move + i * s->n_dof, s->pull + 3 * i * (size_t)m->n_attachment);
     }
-    hf_chord_pack(w, &s->matrix);
-    hf_chord_back_solve(&s->matrix, &s->lanes, s->n, s->move, s->n_dof);
-    if (m->n_attachment) let_truss_answer(s, w);
-    return HF_OK;
+}
+
+/* The supports that genes move, for themselves. */
+static void move_supports(hf_sensitivity *s)
+{
+    const hf_model *m = s->v->model;
+    for (int k = 0; k < m->n_gene && m->moves_supports; k++) {
+        if (m->gene[k].support_row < 0) continue;
+        double *move = s->move + (size_t)s->variable_of_gene[k] * s->n_dof + s->base_of_row[m->gene[k].support_row];
+        for (int c = 0; c < 3; c++)
+            move[c] += m->gene[k].direction[c];
+    }
 }
 
 /* ---- tensions ---- */
 
+/* Component c of the move of a row. */
+static double move_of_row(const hf_sensitivity *s, const double *move, int row, int c)
+{
+    int place = s->place_of_row[row], base = s->base_of_row[row];
+    return (place >= 0 ? move[place + c] : 0) + (base >= 0 ? move[base + c] : 0);
+}
+
 /* What the other end of cable e moves by relative to the first. */
 static void relative_move(const hf_sensitivity *s, int e, const double *move, double relative[3])
 {
-    const hf_model *m = s->v->model;
-    int a = s->place_of_row[m->end_row[2 * e]], b = s->place_of_row[m->end_row[2 * e + 1]];
+    const int *end = s->v->model->end_row + 2 * (ptrdiff_t)e;
     for (int c = 0; c < 3; c++)
-        relative[c] = (b >= 0 ? move[b + c] : 0) - (a >= 0 ? move[a + c] : 0);
+        relative[c] = move_of_row(s, move, end[1], c) - move_of_row(s, move, end[0], c);
 }
 
-void hf_sensitivity_tension(const hf_sensitivity *s, const hf_workspace *w, int e, double *rate)
+static strained look_at(const hf_sensitivity *s, const hf_workspace *w, int e)
 {
     const hf_model *m = s->v->model;
-    double u[3], relative[3], length = hf_newton_matrix_direction(m, w->position_m, e, u);
-    double k = hf_newton_matrix_stiffness(hf_workspace_cable(m, w, e), length, w->tension_N[e]);
-    for (int i = 0; i < s->n; i++) {
-        relative_move(s, e, s->move + (size_t)i * s->n_dof, relative);
-        rate[i] = k * (u[0] * relative[0] + u[1] * relative[1] + u[2] * relative[2]);
-    }
+    strained q = {.variable = -1, .rigid = s->rigid_of_cable[e]};
     int gene = s->gene_of_cable[e];
-    if (gene < 0) return;
-    bool is_density = s->v->rule == HF_RULE_FORCE_DENSITY;
-    rate[s->variable_of_gene[gene]] += is_density ? length / hf_evaluate_design_length_m(m, e) : 1;
+    double length = hf_newton_matrix_direction(m, w->position_m, e, q.unit);
+    q.stiffness_N_per_m = hf_newton_matrix_stiffness(hf_workspace_cable(m, w, e), length, w->tension_N[e]);
+    if (gene < 0) return q;
+    q.direct = direct_tension(s, w, gene, length);
+    q.variable = s->variable_of_gene[gene];
+    return q;
+}
+
+static double tension_rate(const hf_sensitivity *s, int e, int i)
+{
+    const strained *q = &s->strained[e];
+    double relative[3];
+    relative_move(s, e, s->move + (size_t)i * s->n_dof, relative);
+    double rate =
+        q->stiffness_N_per_m * (q->unit[0] * relative[0] + q->unit[1] * relative[1] + q->unit[2] * relative[2]);
+    if (q->variable == i) rate += q->direct;
+    if (q->rigid >= 0) rate += s->multiplier[(size_t)i * (size_t)s->n_rigid + (size_t)q->rigid];
+    return rate;
+}
+
+/* ---- cables of law length ---- */
+
+/* With the forces of the multipliers that the stiff springs have found, the springs need to give next to nothing. */
+static void harden(hf_sensitivity *s, const hf_workspace *w)
+{
+    const hf_model *m = s->v->model;
+    size_t n = (size_t)s->n, n_rigid = (size_t)s->n_rigid;
+    for (size_t r = 0; r < n_rigid; r++) {
+        for (size_t i = 0; i < n; i++)
+            s->multiplier[i * n_rigid + r] = tension_rate(s, s->rigid[r], (int)i);
+    }
+    add_forces(s, w);
+    for (size_t r = 0; r < n_rigid; r++) {
+        double u[3];
+        hf_newton_matrix_direction(m, w->position_m, s->rigid[r], u);
+        for (size_t i = 0; i < n; i++) {
+            double rate = s->multiplier[i * n_rigid + r], pull[3] = {rate * u[0], rate * u[1], rate * u[2]};
+            add_pull(m, s->rigid[r], pull, s->move + i * s->n_dof, s->pull + 3 * i * (size_t)m->n_attachment);
+        }
+    }
+    solve(s, w);
+    move_supports(s);
+}
+
+hf_status hf_sensitivity_find(hf_sensitivity *s, hf_workspace *w)
+{
+    const hf_model *m = s->v->model;
+    HF_TRY(hf_newton_matrix_factor(m, w, NULL));
+    if (m->n_attachment) HF_TRY(hf_schur_factor(m, w, hf_newton_matrix_block, &s->schur));
+    memset(s->multiplier, 0, (size_t)s->n * (size_t)s->n_rigid * sizeof(double));
+    add_forces(s, w);
+    hf_chord_pack(w, &s->matrix);
+    solve(s, w);
+    move_supports(s);
+    for (int e = 0; e < m->n_cable; e++)
+        s->strained[e] = look_at(s, w, e);
+    if (s->n_rigid) harden(s, w);
+    return HF_OK;
+}
+
+/* ---- what others read ---- */
+
+void hf_sensitivity_tension(const hf_sensitivity *s, int e, double *rate)
+{
+    for (int i = 0; i < s->n; i++)
+        rate[i] = tension_rate(s, e, i);
+}
+
+void hf_sensitivity_spread(const hf_sensitivity *s, int i_variable, double *move, double *rate)
+{
+    const hf_model *m = s->v->model;
+    const double *of = s->move + (size_t)i_variable * s->n_dof;
+    for (int row = 0; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++)
+            move[c * m->n_node + row] = move_of_row(s, of, row, c);
+    for (int e = 0; e < m->n_cable; e++)
+        rate[e] = tension_rate(s, e, i_variable);
 }

@@ -1,9 +1,11 @@
 /* Contents: choice of the method - one shape, alone or with a truss - one design */
 #include <hifdm/evaluate.h>
 
+#include "base/arena.h"
 #include "solve/certificate.h"
 #include "solve/coupling.h"
 #include "solve/equilibrium.h"
+#include "solve/limits.h"
 #include "solve/loose.h"
 #include <hifdm/metrics.h>
 
@@ -74,28 +76,81 @@ double hf_evaluate_design_length_m(const hf_model *m, int i_cable)
     return hf_law_has(m->law[i_cable], HF_LAW_IS_RIGID) ? m->target[i_cable] : m->length_m[i_cable];
 }
 
-double hf_evaluate_design_target(const hf_evaluator *v, int i_cable, double tension_N)
+hf_gene_sets hf_evaluate_sets(const hf_evaluator *v, int k)
 {
-    if (v->rule != HF_RULE_FORCE_DENSITY) return tension_N;
-    return tension_N / hf_evaluate_design_length_m(v->model, i_cable);
+    hf_vary vary = hf_model_vary(v->model, k);
+    if (vary == HF_VARY_PRETENSION && v->rule == HF_RULE_SEEDED) return HF_SETS_START;
+    if (vary == HF_VARY_PRETENSION) vary = v->rule == HF_RULE_TENSION ? HF_VARY_TENSION : HF_VARY_FORCE_DENSITY;
+    switch (vary) {
+    case HF_VARY_TENSION:
+        return v->by_density ? HF_SETS_DENSITY : HF_SETS_TENSION;
+    case HF_VARY_FORCE_DENSITY:
+        return HF_SETS_DENSITY;
+    case HF_VARY_LENGTH:
+        return HF_SETS_LENGTH;
+    case HF_VARY_UNSTRESSED_LENGTH:
+        return HF_SETS_CUT;
+    default:
+        return HF_SETS_SUPPORT;
+    }
 }
 
-/* Sets law, target and first force density of boundary cable e from its design tension (METHOD section 7). */
-static void apply_rule(const hf_evaluator *v, int e, double tension_N, hf_workspace *w)
+double hf_evaluate_divisor(const hf_evaluator *v, int k)
 {
-    w->q_N_per_m[e] = tension_N / hf_evaluate_design_length_m(v->model, e);
-    switch (v->rule) {
-    case HF_RULE_FORCE_DENSITY:
-        w->law[e] = HF_LAW_FORCE_DENSITY;
-        w->target[e] = hf_evaluate_design_target(v, e, tension_N);
+    if (hf_model_vary(v->model, k) == HF_VARY_FORCE_DENSITY) return 1;
+    return hf_evaluate_design_length_m(v->model, v->model->gene_cable[k]);
+}
+
+/* Sets law, target and first force density of a cable from the value of its gene, or the place of a support (METHOD
+ * section 7). */
+static void apply_gene(const hf_evaluator *v, int k, double value, hf_workspace *w)
+{
+    const hf_model *m = v->model;
+    int e = m->gene_cable[k];
+    hf_gene_sets sets = hf_evaluate_sets(v, k);
+    if (sets == HF_SETS_START || sets == HF_SETS_TENSION || sets == HF_SETS_DENSITY)
+        w->q_N_per_m[e] = value / hf_evaluate_divisor(v, k);
+    switch (sets) {
+    case HF_SETS_START: /* the law of the case, with this force density as its start */
         break;
-    case HF_RULE_TENSION:
+    case HF_SETS_TENSION:
         w->law[e] = HF_LAW_TENSION;
-        w->target[e] = hf_evaluate_design_target(v, e, tension_N);
+        w->target[e] = value;
         break;
-    default: /* seeded: the law of the case, with the force density set above as its start */
+    case HF_SETS_DENSITY:
+        w->law[e] = HF_LAW_FORCE_DENSITY;
+        w->target[e] = w->q_N_per_m[e];
+        break;
+    case HF_SETS_LENGTH:
+        w->law[e] = HF_LAW_LENGTH;
+        w->target[e] = value;
+        break;
+    case HF_SETS_CUT:
+        w->target[e] = value;
+        break;
+    case HF_SETS_SUPPORT:
+        for (int c = 0; c < 3; c++)
+            w->support_move_m[c * m->n_node + m->gene[k].support_row] += value * m->gene[k].direction[c];
         break;
     }
+}
+
+static bool is_above_cap(const hf_evaluator *v, const hf_form_result *r)
+{
+    return r->status == HF_OK && r->boundary_tension_ratio > v->boundary_ratio_cap;
+}
+
+bool hf_evaluate_needs_shape(const hf_evaluator *v, const hf_form_result *r)
+{
+    return is_above_cap(v, r) || v->limits || v->goals;
+}
+
+hf_status hf_evaluate_attend(const hf_evaluator *v, hf_workspace *w)
+{
+    hf_arena arena = {0};
+    if (!v->goals || w->goals) return HF_OK;
+    HF_TRY(HF_ARENA_MAKE(&arena, w->goals = hf_arena_take(&arena, 1, sizeof *w->goals)));
+    return hf_goals_point_create(v->goals, w->goals);
 }
 
 void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_workspace *w)
@@ -104,55 +159,52 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_works
     hf_form_prepare(m, w);
     /* A convex problem has one answer, so a start near it changes nothing but the time. The answer under rule seeded
      * depends on the start, so it keeps that of the model, as in the paper. */
-    for (int e = 0; e < m->n_cable && v->rule != HF_RULE_SEEDED; e++)
+    for (int e = 0; e < m->n_cable && hf_evaluate_is_unique(v); e++)
         if (hf_law_has(m->law[e], HF_LAW_ITERATES))
             w->q_N_per_m[e] = fmax(v->start_q_N_per_m[e], HF_LAW_LEAST_Q_N_PER_M);
     for (int k = 0; k < m->n_gene; k++)
-        apply_rule(v, m->gene_cable[k], design_N[k], w);
+        apply_gene(v, k, design_N[k], w);
 }
 
-bool hf_evaluate_is_above_cap(const hf_evaluator *v, const hf_form_result *r)
-{
-    return r->status == HF_OK && r->boundary_tension_ratio > v->boundary_ratio_cap;
-}
-
-/* By how much tensions would have to change for the cap, cable by cable: a smaller sum is nearer to the cap also where
- * several cables share the largest or the smallest tension, so that no single one of them changes the ratio. */
-static double violation(const hf_evaluator *v, const hf_workspace *w)
+static double violation_of_cap(const hf_evaluator *v, const hf_workspace *w)
 {
     const hf_model *m = v->model;
-    double low = INFINITY, high = 0, sum = 0, cap = v->boundary_ratio_cap, slack_N = HF_SLACK_RATIO * m->reference_N;
-    for (int e = 0; e < m->n_cable; e++) {
-        if (m->group[e] != HF_GROUP_BOUNDARY) continue;
-        low = fmin(low, w->tension_N[e]);
-        high = fmax(high, w->tension_N[e]);
-    }
-    double least = sqrt(fmax(low, slack_N) * high / cap), most = cap * least;
-    for (int e = 0; e < m->n_cable; e++) {
-        double tension = w->tension_N[e];
-        if (m->group[e] != HF_GROUP_BOUNDARY) continue;
-        if (tension < least) sum += 1 - tension / least;
-        if (tension > most) sum += 1 - most / tension;
-    }
-    return sum;
+    return hf_limits_ratio_violation(m->n_boundary, m->boundary_cable, w->tension_N, v->boundary_ratio_cap,
+                                     HF_SLACK_RATIO * m->reference_N);
 }
 
-hf_status hf_evaluate_judge(const hf_evaluator *v, const hf_workspace *w, hf_form_result *r)
+/* Measures the goals of a shape, feasible or not. */
+static void measure_goals(const hf_evaluator *v, hf_workspace *w, hf_form_result *r)
 {
-    r->violation = r->status == HF_OK ? 0 : (double)NAN;
-    if (hf_evaluate_is_above_cap(v, r)) {
+    if (!v->goals) return;
+    if (hf_goals_measure(v->goals, w, w->goals, r->goal, &r->merit) != HF_OK) r->status = HF_NO_MEMORY;
+}
+
+hf_status hf_evaluate_judge(const hf_evaluator *v, hf_workspace *w, hf_form_result *r)
+{
+    bool has_shape = r->status == HF_OK, breaks_cap = is_above_cap(v, r);
+    r->violation = has_shape ? 0 : (double)NAN;
+    if (has_shape && v->limits) r->violation = hf_limits_violation(v->limits, v->model, w);
+    if (has_shape && r->violation > 0) r->status = HF_OUT_OF_LIMITS;
+    if (breaks_cap) {
         r->status = HF_RATIO_CAP;
-        r->violation = violation(v, w);
+        r->violation += violation_of_cap(v, w);
     }
-    if (r->status != HF_OK) r->psi_m = (double)NAN;
-    if (r->status != HF_OK && r->status != HF_RATIO_CAP)
-        r->inner_tension_ratio = r->boundary_tension_ratio = (double)NAN;
+    if (has_shape) measure_goals(v, w, r);
+    r->merit = v->goals ? r->merit : r->psi_m;
+    if (r->status != HF_OK) r->psi_m = r->merit = (double)NAN;
+    if (!hf_status_has_shape(r->status)) r->inner_tension_ratio = r->boundary_tension_ratio = (double)NAN;
     return r->status;
+}
+
+bool hf_evaluate_is_unique(const hf_evaluator *v)
+{
+    return v->rule != HF_RULE_SEEDED || v->model->gene;
 }
 
 hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspace *w, hf_form_result *r)
 {
-    bool seeded = v->rule == HF_RULE_SEEDED;
+    bool seeded = !hf_evaluate_is_unique(v);
     net_problem problem = {v->model, v->form, !seeded && v->solver != HF_SOLVER_FIXED_POINT && v->model->has_newton,
                            seeded ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
     hf_evaluate_prepare(v, design_N, w);

@@ -13,11 +13,10 @@
 
 /* ---- points of quadrature ---- */
 
-enum { N_GAUSS = 3, N_POINT = N_GAUSS * N_GAUSS }; /* of a facet */
+enum { N_GAUSS = HF_FACET_N_FLAT, N_POINT = N_GAUSS * N_GAUSS }; /* of a facet */
 
-/* Gauss-Legendre on [0, 1], exact to the fifth power. */
-static const double gauss_at[N_GAUSS] = {0.11270166537925831, 0.5, 0.88729833462074169};
-static const double gauss_weight[N_GAUSS] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+const double hf_facet_flat_at[HF_FACET_N_FLAT] = {0.11270166537925831, 0.5, 0.88729833462074169};
+const double hf_facet_flat_weight[HF_FACET_N_FLAT] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
 /* Points of quadrature over all facets, those of a facet together: [3][n], and the roots of their weights, which are
  * projected area. */
@@ -62,11 +61,11 @@ static void put_facet(const hf_facets *f, int i, const hf_facet_shape *shape, po
     hf_facet_mesh flat;
     hf_facet_mesh_take(f, i, shape->position_m, &flat);
     for (int k = 0; k < N_POINT; k++) {
-        double p[3], area_m2 = point_at(&flat, gauss_at[k % N_GAUSS], gauss_at[k / N_GAUSS], 0, p);
+        double p[3], area_m2 = point_at(&flat, hf_facet_flat_at[k % N_GAUSS], hf_facet_flat_at[k / N_GAUSS], 0, p);
         size_t at = (size_t)i * N_POINT + (size_t)k;
         for (int d = 0; d < 3; d++)
             q->position_m[(size_t)d * (size_t)q->n + at] = p[d];
-        q->root_m[at] = sqrt(area_m2 * gauss_weight[k % N_GAUSS] * gauss_weight[k / N_GAUSS]);
+        q->root_m[at] = sqrt(area_m2 * hf_facet_flat_weight[k % N_GAUSS] * hf_facet_flat_weight[k / N_GAUSS]);
     }
 }
 

@@ -14,6 +14,10 @@ typedef struct {
     const double *tension_N; /* [n_cable]; NULL, as of the theoretical shape: facets are flat, whatever the mesh */
 } hf_facet_shape;
 
+/* Gauss-Legendre on [0, 1] for flat facets, exact to the fifth power. */
+enum { HF_FACET_N_FLAT = 3 };
+extern const double hf_facet_flat_at[HF_FACET_N_FLAT], hf_facet_flat_weight[HF_FACET_N_FLAT];
+
 /* Set the members facet_... and n_facet, n_open_face of `to`, but for losses of gain; NaN without a facet. HF_OK or
  * HF_NO_MEMORY. */
 hf_status hf_facet_measure(const hf_surface_settings *settings, const hf_facets *facets, const hf_facet_shape *shape,

@@ -36,6 +36,7 @@ void hf_form_prepare(const hf_model *m, hf_workspace *w)
     memcpy(w->q_N_per_m, m->start_q_N_per_m, n * sizeof(double));
     if (m->EA_N) memcpy(w->EA_N, m->EA_N, n * sizeof(double));
     memset(w->loose, 0, (size_t)m->n_node);
+    if (m->moves_supports) memset(w->support_move_m, 0, 3 * (size_t)m->n_node * sizeof(double));
     memset(w->displacement_m, 0, 3 * (size_t)m->n_attachment * sizeof(double));
     w->n_moving = m->n_free;
 }
@@ -43,6 +44,8 @@ void hf_form_prepare(const hf_model *m, hf_workspace *w)
 void hf_form_place_supports(const hf_model *m, hf_workspace *w)
 {
     memcpy(w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    for (int i = 0; m->moves_supports && i < 3 * m->n_node; i++)
+        w->position_m[i] += w->support_move_m[i];
     for (int i = 0; i < m->n_attachment; i++)
         for (int c = 0; c < 3; c++)
             w->position_m[c * m->n_node + m->attachment_row[i]] += w->displacement_m[3 * i + c];

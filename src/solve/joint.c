@@ -9,10 +9,16 @@ static bool has_truss(const hf_model *m, const hf_workspace *w)
     return w->n_moving > m->n_free;
 }
 
-static double displacement_m(const hf_model *m, const double *position_m, int i_dof)
+/* Where entry `at` of position_m is before the truss gives way. */
+static double resting_m(const hf_model *m, const hf_workspace *w, int at)
+{
+    return m->moves_supports ? m->position_m[at] + w->support_move_m[at] : m->position_m[at];
+}
+
+static double displacement_m(const hf_model *m, const hf_workspace *w, const double *position_m, int i_dof)
 {
     int at = i_dof % 3 * m->n_node + m->attachment_row[i_dof / 3];
-    return position_m[at] - m->position_m[at];
+    return position_m[at] - resting_m(m, w, at);
 }
 
 hf_status hf_joint_factor(const hf_model *m, hf_workspace *w, hf_newton_block *block_of, const double *spring_N_per_m,
@@ -35,7 +41,7 @@ void hf_joint_solve(const hf_model *m, const hf_workspace *w, hf_newton_block *b
     hf_schur_pull(m, w, block_of, rhs, pull);
     hf_schur_flex(m, pull, move);
     for (int i = 0; i < schur.n; i++)
-        move[i] -= displacement_m(m, w->position_m, i);
+        move[i] -= displacement_m(m, w, w->position_m, i);
     hf_schur_solve(&schur, move);
     memset(answer, 0, (size_t)n_free * sizeof *answer);
     hf_schur_push(m, w, block_of, move, answer);
@@ -62,7 +68,7 @@ double hf_joint_gap_m(const hf_model *m, const hf_workspace *w, const double *po
     for (int i = 0; i < 3 * m->n_attachment; i += 3) {
         double sum = 0;
         for (int c = i; c < i + 3; c++) {
-            double d = gap[c] - displacement_m(m, position_m, c);
+            double d = gap[c] - displacement_m(m, w, position_m, c);
             sum += d * d;
         }
         if (!(sum <= largest)) largest = sum; /* keeps a NaN */
@@ -77,7 +83,7 @@ void hf_joint_set_displacement(const hf_model *m, hf_workspace *w)
 {
     for (int i = 0; i < 3 * m->n_attachment; i++) {
         int at = i % 3 * m->n_node + m->attachment_row[i / 3];
-        w->displacement_m[i] = displacement_m(m, w->position_m, i);
-        w->position_m[at] = m->position_m[at] + w->displacement_m[i];
+        w->displacement_m[i] = displacement_m(m, w, w->position_m, i);
+        w->position_m[at] = resting_m(m, w, at) + w->displacement_m[i];
     }
 }

@@ -1,5 +1,5 @@
 /* The best fit of a surface. Contents: the fitted surface - the fit */
-#include <hifdm/surface.h>
+#include "solve/surface_fit.h"
 
 #include "base/elementary.h"
 #include "net/wanted.h"
@@ -24,11 +24,20 @@
 
 /* ---- the fitted surface ---- */
 
-enum { SHIFT_Z, TURN_X, TURN_Y, TURN_Z, CURVE, SHIFT_X, SHIFT_Y, N_QUANTITY };
+enum {
+    SHIFT_Z = HF_FIT_SHIFT_Z,
+    TURN_X = HF_FIT_TURN_X,
+    TURN_Y = HF_FIT_TURN_Y,
+    TURN_Z = HF_FIT_TURN_Z,
+    CURVE = HF_FIT_CURVE,
+    SHIFT_X = HF_FIT_SHIFT_X,
+    SHIFT_Y = HF_FIT_SHIFT_Y,
+    N_QUANTITY = HF_FIT_N_QUANTITY,
+    N_PARAMETER = HF_FIT_N_PARAMETER
+};
 
 /* The quantity of each parameter, and how many the three fits have, each of which starts from the one before. Moving a
  * cylinder along y changes nothing, nor does turning a paraboloid about its axis. */
-enum { N_PARAMETER = 6 };
 static const int cylinder_parameter[N_PARAMETER] = {SHIFT_Z, TURN_X, TURN_Y, TURN_Z, CURVE, SHIFT_X};
 static const int paraboloid_parameter[N_PARAMETER] = {SHIFT_Z, TURN_X, TURN_Y, CURVE, SHIFT_X, SHIFT_Y};
 static const int cylinder_fit[3] = {4, 5, 6}, paraboloid_fit[3] = {3, 4, 6};
@@ -56,16 +65,25 @@ static void multiply(double a[3][3], double b[3][3], double to[3][3])
             to[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
 }
 
-/* Transposed rotation about axis k, or its derivative by the angle. */
-static void transposed(int k, double angle, bool derivative, double to[3][3])
+/* Transposed rotation about axis k, or its derivative by the angle, of this order up to the second. */
+static void transposed(int k, double angle, int order, double to[3][3])
 {
     int i = (k + 1) % 3, j = (k + 2) % 3;
-    double c = derivative ? -hf_sine(angle) : hf_cosine(angle), s = derivative ? hf_cosine(angle) : hf_sine(angle);
+    const double turn[4] = {hf_cosine(angle), -hf_sine(angle), -hf_cosine(angle), hf_sine(angle)};
     memset(to, 0, 9 * sizeof(double));
-    to[k][k] = !derivative;
-    to[i][i] = to[j][j] = c;
-    to[i][j] = s;
-    to[j][i] = -s;
+    to[k][k] = order == 0;
+    to[i][i] = to[j][j] = turn[order];
+    to[j][i] = turn[order + 1];
+    to[i][j] = -turn[order + 1];
+}
+
+void hf_fit_rotation(const double angle[3], const int order[3], double to[3][3])
+{
+    double r[3][3][3], zy[3][3]; /* (Rx Ry Rz)' = Rz' Ry' Rx' */
+    for (int k = 0; k < 3; k++)
+        transposed(k, angle[k], order[k], r[k]);
+    multiply(r[2], r[1], zy);
+    multiply(zy, r[0], to);
 }
 
 static void quantities(const fit_problem *p, const gsl_vector *v, double value[N_QUANTITY])
@@ -79,13 +97,8 @@ static pose pose_at(const fit_problem *p, const double value[N_QUANTITY])
 {
     pose q = {.shift = {p->size * value[SHIFT_X], p->size * value[SHIFT_Y], p->size * value[SHIFT_Z]},
               .curvature = p->curvature * (1 + value[CURVE])};
-    for (int d = -1; d < 3; d++) { /* (Rx Ry Rz)' = Rz' Ry' Rx' */
-        double r[3][3][3], zy[3][3];
-        for (int k = 0; k < 3; k++)
-            transposed(k, value[TURN_X + k], k == d, r[k]);
-        multiply(r[2], r[1], zy);
-        multiply(zy, r[0], d < 0 ? q.turn : q.slope[d]);
-    }
+    for (int d = -1; d < 3; d++)
+        hf_fit_rotation(value + TURN_X, (const int[3]){d == 0, d == 1, d == 2}, d < 0 ? q.turn : q.slope[d]);
     return q;
 }
 
@@ -249,8 +262,8 @@ static void set_unknown(hf_surface_fit *fit)
     fit->rotation_x_rad = fit->rotation_y_rad = fit->rotation_z_rad = (double)NAN;
 }
 
-hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int n, const double *position_m,
-                                const double *root_weight, hf_surface_fit *fit)
+hf_status hf_surface_fit_find(hf_surface_kind kind, double focal_length_m, int n, const double *position_m,
+                              const double *root_weight, hf_surface_fit *fit, hf_fit_parameters *found)
 {
     bool is_round = kind == HF_SURFACE_PARABOLOID;
     fit_problem p = {.n = n, .x = position_m, .y = position_m + n, .z = position_m + 2 * (size_t)n};
@@ -261,6 +274,9 @@ hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int
     p.curvature = 1 / (4 * focal_length_m);
     *fit = (hf_surface_fit){0};
     center(&p);
+    *found = (hf_fit_parameters){.size_m = p.size};
+    memcpy(found->center_m, p.center, sizeof p.center);
+    memcpy(found->quantity, p.parameter, sizeof found->quantity);
     fit->center_x_m = p.center[0];
     fit->center_y_m = p.center[1];
     fit->center_z_m = p.center[2];
@@ -268,16 +284,27 @@ hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int
      * points determine the parameters */
     for (int k = 0; k < 3; k++) {
         hf_surface_fit next = *fit;
-        HF_TRY(fit_some(&p, (size_t)(is_round ? paraboloid_fit : cylinder_fit)[k], parameter, &next));
+        int n_parameter = (is_round ? paraboloid_fit : cylinder_fit)[k];
+        HF_TRY(fit_some(&p, (size_t)n_parameter, parameter, &next));
         double longer = next.focal_length_m / focal_length_m, across = fmax(fabs(next.shift_x_m), fabs(next.shift_y_m));
         bool is_determined =
             next.converged && across <= SHIFT_MOST * p.size && longer <= FOCAL_MOST && longer >= 1 / FOCAL_MOST;
-        if (is_determined) *fit = next;
         fit->iterations = next.iterations;
         if (!is_determined) break;
+        *fit = next;
+        found->n = n_parameter;
+        for (int i = 0; i < n_parameter; i++)
+            found->value[p.parameter[i]] = parameter[i];
     }
     if (!fit->converged) set_unknown(fit);
     return HF_OK;
+}
+
+hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int n, const double *position_m,
+                                const double *root_weight, hf_surface_fit *fit)
+{
+    hf_fit_parameters found;
+    return hf_surface_fit_find(kind, focal_length_m, n, position_m, root_weight, fit, &found);
 }
 
 void hf_surface_fit_errors(hf_surface_kind kind, const hf_surface_fit *fit, int n, const double *position_m,

@@ -1,3 +1,4 @@
+#include <hifdm/goals.h>
 #include <hifdm/workspace.h>
 
 #include "base/arena.h"
@@ -32,6 +33,8 @@ hf_status hf_workspace_create(const hf_model *m, hf_workspace *w)
 
 void hf_workspace_free(hf_workspace *w)
 {
+    if (w->goals) hf_goals_point_free(w->goals);
+    free(w->goals);
     free(w->block);
     *w = (hf_workspace){0};
 }

@@ -236,7 +236,7 @@ bool hf_generations_are_sound(const hf_population *p)
         if (!are_words(&row[i], p->n_individual)) return false;
     for (int i = 0; i < p->n_individual; i++) {
         const hf_form_result *r = &p->result[i];
-        if (r->status == HF_OK && !isfinite(r->psi_m)) return false;
+        if (r->status == HF_OK && !(isfinite(r->psi_m) && isfinite(r->merit))) return false;
         for (int k = 0; k < 2; k++)
             if (p->parent[2 * i + k] < -1 || p->parent[2 * i + k] >= p->n_individual) return false;
         for (int k = 0; k < p->n_gene; k++)
@@ -367,7 +367,7 @@ static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g,
         for (size_t i = 0; io->status == HF_OK && i < (size_t)some * p; i++) {
             count[0] += block[i] != 0;
             count[1] += block[i] != 0 && status[i] != HF_OK;
-            count[2] += block[i] != 0 && status[i] == HF_RATIO_CAP;
+            count[2] += block[i] != 0 && status[i] != HF_OK && hf_status_has_shape(status[i]);
         }
     }
     free(block);
@@ -387,21 +387,22 @@ static void read_of_best(hf_hdf5 *io, hid_t group, const hf_generations_row *row
     free(values);
 }
 
-/* The best as the run noted it: of the first generation with the least psi, which lives on in the last one. Figures
+/* The best as the run noted it: of the first generation with the least merit, which lives on in the last one. Figures
  * that are not stored are NaN. */
-static void note_best(hf_hdf5 *io, hid_t group, const hf_generations *g, const double *best_psi_m, hf_summary *s)
+static void note_best(hf_hdf5 *io, hid_t group, const hf_generations *g, const double *best_merit, hf_summary *s)
 {
     hf_generations_row row[HF_GENERATIONS_PIECES];
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
     int best = -1, individual = -1, last = g->n_stored - 1;
     for (int i = 0; i <= last; i++)
-        if (!isnan(best_psi_m[i]) && (best < 0 || best_psi_m[i] < best_psi_m[best])) best = i;
+        if (!isnan(best_merit[i]) && (best < 0 || best_merit[i] < best_merit[best])) best = i;
     if (best < 0) return;
     hf_generations_list_empty(g, g->n_individual, row);
     s->best_generation = best;
     s->best = (hf_form_result){.status = HF_OK, .culprit = -1};
     hf_result_blank(&s->best);
-    s->best.psi_m = best_psi_m[best];
+    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_PSI].array, (hsize_t)best, &s->best.psi_m);
+    s->best.merit = best_merit[best];
     hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_INDIVIDUAL].array, (hsize_t)best, &s->best_individual);
     hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_INDIVIDUAL].array,
                       (hsize_t)(hf_generations_has_last(g) ? last : best), &individual);
@@ -451,9 +452,10 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population 
     free(values);
     if (io->status == HF_OK && !hf_generations_are_sound(population))
         hf_hdf5_damaged(io, group, NULL, "has a last generation that no run stores");
-    row[HF_ROW_BEST_PSI].array.dims[0] = (hsize_t)g->n_stored;
+    row[HF_ROW_BEST_PSI].array.dims[0] = row[HF_ROW_BEST_MERIT].array.dims[0] = (hsize_t)g->n_stored;
     row[HF_ROW_VIOLATION].array.dims[0] = (hsize_t)g->n_stored;
     hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_PSI].array, 0, population->best_psi_m);
+    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_MERIT].array, 0, population->best_merit);
     hf_hdf5_read_rows(io, group, &row[HF_ROW_VIOLATION].array, 0, population->least_violation);
     restore_counts(io, group, g, population);
     hf_hdf5_close(io, whole);
@@ -465,8 +467,8 @@ void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
     hf_generations_row row[HF_GENERATIONS_PIECES];
     if (g->n_stored == 0 || io->status != HF_OK) return;
     int longer = g->n_stored > g->n_individual ? g->n_stored : g->n_individual;
-    double *best_psi_m = malloc((size_t)longer * sizeof *best_psi_m);
-    if (!best_psi_m) {
+    double *values = malloc((size_t)longer * sizeof *values);
+    if (!values) {
         hf_hdf5_no_memory(io);
         return;
     }
@@ -475,18 +477,18 @@ void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
     hf_generations_list_empty(g, g->n_individual, row);
     if (isfinite(g->base_psi_m)) s->base_psi_m = g->base_psi_m;
     if (g->every != HF_GENERATIONS_BEST) {
-        hf_hdf5_read_rows(io, group, &row[HF_ROW_PSI].array, 0, best_psi_m); /* of the first generation */
-        if (io->status == HF_OK) s->base_psi_m = best_psi_m[0];
+        hf_hdf5_read_rows(io, group, &row[HF_ROW_PSI].array, 0, values); /* of the first generation */
+        if (io->status == HF_OK) s->base_psi_m = values[0];
     }
-    row[HF_ROW_BEST_PSI].array.dims[0] = (hsize_t)g->n_stored;
-    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_PSI].array, 0, best_psi_m);
-    if (io->status == HF_OK) note_best(io, group, g, best_psi_m, s);
+    row[HF_ROW_BEST_MERIT].array.dims[0] = (hsize_t)g->n_stored;
+    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_MERIT].array, 0, values);
+    if (io->status == HF_OK) note_best(io, group, g, values, s);
     memcpy(count, g->count, sizeof count);
     if (!hf_generations_has_last(g)) count_evaluations(io, group, g, g->n_stored, count);
     s->evaluations = count[0];
     s->infeasible = count[1];
     s->has_optimize = true;
     s->generations = g->n_stored;
-    free(best_psi_m);
+    free(values);
     hf_hdf5_close(io, group);
 }

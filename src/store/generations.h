@@ -15,11 +15,12 @@
 #include <hifdm/summary.h>
 #include <sys/uio.h>
 
-#define HF_GENERATIONS_PIECES (13 + HF_RESULT_N_INDIVIDUAL) /* data sets, and pieces of a payload */
+#define HF_GENERATIONS_PIECES (14 + HF_RESULT_N_INDIVIDUAL) /* data sets, and pieces of a payload */
 #define HF_GENERATIONS_BEST 0                               /* as `every`: rows of the best individuals */
 enum { HF_GENERATIONS_COUNTS = 3 };
 
 typedef struct {
+    bool has_rows; /* as of hf_population; set it after creation */
     int n_individual, n_gene;
     int limit;                                 /* generations that there can be */
     int every;                                 /* whole ones that have a row: 0, every, 2 every, ... */

@@ -12,7 +12,7 @@ void hf_generations_list(const hf_population *now, hf_generations_row row[HF_GEN
 #define ARRAY(member) now->member, sizeof *now->member, sizeof *now->member
 #define SINGLE(value) &(value), 0, sizeof(value)
     const hf_generations_row before[] = {
-        {{"design_N", HF_KIND_REAL, 3, {1, p, k}, "N", "boundary pretension T' of each gene"}, ARRAY(design_N)},
+        {hf_layout_of_genes("design_N", now->has_rows, 3, (const hsize_t[3]){1, p, k}), ARRAY(design_N)},
         {{"evaluated",
           HF_KIND_FLAG,
           2,
@@ -29,6 +29,8 @@ void hf_generations_list(const hf_population *now, hf_generations_row row[HF_GEN
          ARRAY(parent)},
         {{"best_individual", HF_KIND_INT, 1, {1}, "", "-1 while none is feasible"}, SINGLE(now->best)},
         {{"best_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the generation"}, SINGLE(now->best_psi_m[now->generation])},
+        {{"best_merit", HF_KIND_REAL, 1, {1}, "", "of the generation: psi, m, without goals"},
+         SINGLE(now->best_merit[now->generation])},
         {{"least_violation", HF_KIND_REAL, 1, {1}, "", "0: a design is feasible; inf: none has a shape"},
          SINGLE(now->least_violation[now->generation])},
         {{"mean_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(now->mean_psi_m)},
@@ -53,6 +55,7 @@ void hf_generations_list(const hf_population *now, hf_generations_row row[HF_GEN
     assert(!strcmp(row[HF_ROW_STATUS].array.name, "status") && !strcmp(row[HF_ROW_PSI].array.name, "psi_m") &&
            !strcmp(row[HF_ROW_BEST_INDIVIDUAL].array.name, "best_individual") &&
            !strcmp(row[HF_ROW_BEST_PSI].array.name, "best_psi_m") &&
+           !strcmp(row[HF_ROW_BEST_MERIT].array.name, "best_merit") &&
            !strcmp(row[HF_ROW_TRIAL_STATUS].array.name, "trial_status") &&
            !strcmp(row[HF_ROW_VIOLATION].array.name, "least_violation"));
 }
@@ -63,8 +66,10 @@ void hf_generations_list_empty(const hf_generations *g, int n_individual, hf_gen
     double none = 0;
     const hf_population empty = {.n_individual = n_individual,
                                  .n_gene = g->n_gene,
+                                 .has_rows = g->has_rows,
                                  .result = &nothing,
                                  .best_psi_m = &none,
+                                 .best_merit = &none,
                                  .least_violation = &none};
     hf_generations_list(&empty, row);
 }

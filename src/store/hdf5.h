@@ -156,8 +156,7 @@ void hf_hdf5_read_text(hf_hdf5 *io, hid_t group, const char *name, char **text);
 void hf_hdf5_write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *const *id, int n,
                        const char *description);
 
-/* Read the n and m ids of two data sets, of one where name_b is NULL. id_a and id_b point into the block *text, which
- * the caller frees. */
+/* Read the n and m ids of two data sets. id_a and id_b point into the block *text, which the caller frees. */
 void hf_hdf5_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, const char **id_a, const char *name_b, int m,
                       const char **id_b, void **text);
 

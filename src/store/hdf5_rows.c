@@ -88,9 +88,8 @@ void hf_hdf5_write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *c
 /* The n strings of a data set as they are stored, side by side; the caller frees the arena. */
 static char *read_chars(hf_hdf5 *io, hid_t group, const char *name, int n, size_t *length, hf_arena *arena)
 {
-    *length = name ? hf_hdf5_chars_length(io, group, name) : 0;
+    *length = hf_hdf5_chars_length(io, group, name);
     char *chars = NULL;
-    if (!name) return NULL;
     if (io->status != HF_OK) return NULL;
     if (HF_ARENA_MAKE(arena, chars = hf_arena_take(arena, (size_t)n, *length)) != HF_OK) {
         hf_hdf5_no_memory(io);

@@ -209,3 +209,25 @@ void hf_layout_get_summary(hf_hdf5 *io, hf_layout_part part, hf_summary *summary
 {
     hf_hdf5_get_members(io, hf_layout_summary[part].member, hf_layout_summary[part].n, summary);
 }
+
+hf_hdf5_array hf_layout_of_genes(const char *name, bool has_rows, int rank, const hsize_t *dims)
+{
+    static const struct {
+        const char *in_N, *by_row, *meaning;
+    } list[] = {{"design_N", "design", "boundary pretension T' of each gene"},
+                {"base_N", "base", "pretension T of each gene, after form-finding"},
+                {"lower_N", "lower", "least T' of each gene"},
+                {"upper_N", "upper", "largest T' of each gene"}};
+    size_t i = 0;
+    while (strcmp(list[i].in_N, name))
+        i++;
+    hf_hdf5_array array = {.name = has_rows ? list[i].by_row : list[i].in_N,
+                           .kind = HF_KIND_REAL,
+                           .rank = rank,
+                           .units = has_rows ? "" : "N",
+                           .description =
+                               has_rows ? "of each gene, in the unit of what its variable varies" : list[i].meaning};
+    for (int d = 0; d < rank; d++)
+        array.dims[d] = dims[d];
+    return array;
+}

@@ -125,4 +125,8 @@ void hf_layout_get_sets(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carrier_state *state);
 void hf_layout_read_truss(hf_hdf5 *io, hf_truss *truss, hf_carrier_state *state);
 
+/* The data set of a value of each gene: design_N, base_N, lower_N or upper_N, in N; with genes of optimize.variables,
+ * each in its own unit, the same name without its end. */
+hf_hdf5_array hf_layout_of_genes(const char *name, bool has_rows, int rank, const hsize_t *dims);
+
 #endif

@@ -70,29 +70,40 @@ static const char *value_of(const merger *m, int i, int axis)
     return strchr(s->axis[axis].canonical[s->value[(size_t)i * (size_t)s->n_axis + (size_t)axis]], '=') + 1;
 }
 
-static void write_axis(merger *m, hid_t group, int axis)
+/* Are all values of an amount numbers, none a part such as 30 %? */
+static bool has_numbers(const hf_study_axis *axis)
 {
-    const hf_field *f = &hf_field_table[m->study->axis[axis].field];
-    int n = m->points->n_point, columns = f->type == HF_FIELD_INT_PAIR ? 2 : 1;
-    if (f->type == HF_FIELD_WORD || f->type == HF_FIELD_TEXT) {
-        write_texts(m, group, f->path, value_of, axis, f->help);
+    double value;
+    for (int k = 0; k < axis->n_value; k++)
+        if (!hf_text_double(strchr(axis->canonical[k], '=') + 1, &value)) return false;
+    return true;
+}
+
+static void write_axis(merger *m, hid_t group, int i_axis)
+{
+    const hf_study_axis *axis = &m->study->axis[i_axis];
+    const hf_field *f = axis->key.field;
+    hf_field_type type = f->type == HF_FIELD_AMOUNT && has_numbers(axis) ? HF_FIELD_DOUBLE : f->type;
+    const hf_hdf5_kind *kind = type == HF_FIELD_DOUBLE                             ? HF_KIND_REAL
+                               : type == HF_FIELD_UINT64                           ? HF_KIND_UINT64
+                               : type == HF_FIELD_INT || type == HF_FIELD_INT_PAIR ? HF_KIND_INT
+                                                                                   : NULL;
+    if (!kind) {
+        write_texts(m, group, axis->key.path, value_of, i_axis, f->help);
         return;
     }
-    for (int i = 0; i < n; i++) {
-        const char *text = value_of(m, i, axis);
-        if (f->type == HF_FIELD_DOUBLE)
+    for (int i = 0; i < m->points->n_point; i++) {
+        const char *text = value_of(m, i, i_axis);
+        if (type == HF_FIELD_DOUBLE)
             hf_text_double(text, (double *)m->room + i);
-        else if (f->type == HF_FIELD_UINT64)
+        else if (type == HF_FIELD_UINT64)
             hf_text_uint64(text, (uint64_t *)m->room + i);
-        else if (f->type == HF_FIELD_INT)
+        else if (type == HF_FIELD_INT)
             ((int *)m->room)[i] = atoi(text);
         else
             sscanf(text, "[%d ,%d", (int *)m->room + 2 * i, (int *)m->room + 2 * i + 1);
     }
-    const hf_hdf5_kind *kind = f->type == HF_FIELD_DOUBLE   ? HF_KIND_REAL
-                               : f->type == HF_FIELD_UINT64 ? HF_KIND_UINT64
-                                                            : HF_KIND_INT;
-    write_column(m, group, f->path, kind, columns, f->unit, f->help);
+    write_column(m, group, axis->key.path, kind, type == HF_FIELD_INT_PAIR ? 2 : 1, f->unit, f->help);
 }
 
 /* ---- outputs ---- */

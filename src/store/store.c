@@ -114,10 +114,7 @@ static void write_facets(hf_store *s, hid_t group, const hf_scene *scene)
     const hf_hdf5_array facet = {"facet", HF_KIND_INT,
                                  2,       {(hsize_t)scene->n_facet, 4},
                                  "",      "that the import names: nodes around each, of a triangle the last one twice"};
-    if (scene->n_facet == 0) return;
-    hf_hdf5_write_array(&s->f.io, group, &facet, scene->facet);
-    if (scene->facet_id)
-        hf_hdf5_write_ids(&s->f.io, group, "facet_id", scene->facet_id, scene->n_facet, "name of the facet");
+    if (scene->n_facet > 0) hf_hdf5_write_array(&s->f.io, group, &facet, scene->facet);
 }
 
 static void write_scene(hf_store *s, const hf_scene *scene)
@@ -258,8 +255,7 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
 
 static void write_design(hf_store *s, hid_t group, const hf_model *m, const double *design_N)
 {
-    hf_hdf5_array design = {"design_N",           HF_KIND_REAL, 1,
-                            {(hsize_t)m->n_gene}, "N",          "boundary pretension T' of each gene"};
+    hf_hdf5_array design = hf_layout_of_genes("design_N", m->gene, 1, (const hsize_t[1]){(hsize_t)m->n_gene});
     hf_hdf5_write_array(&s->f.io, group, &design, design_N);
 }
 
@@ -293,6 +289,28 @@ hf_status hf_store_truss(hf_store *s, const hf_carrier *carrier, const hf_carrie
 
 /* ---- generations ---- */
 
+/* What each gene of optimize.variables is: its row there, and the support that it moves. */
+static void write_rows(hf_hdf5 *io, hid_t group, const hf_model *m)
+{
+    const hsize_t k[1] = {(hsize_t)m->n_gene};
+    const hf_hdf5_array row = {"gene_variable", HF_KIND_INT, 1, {k[0]}, "", "row of optimize.variables"};
+    const hf_hdf5_array node = {"gene_node", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/node; -1: varies a cable"};
+    const hf_hdf5_array along = {"gene_direction", HF_KIND_REAL, 2, {k[0], 3}, "", "in which this support moves"};
+    int *of = malloc(2 * k[0] * sizeof *of), *support = of + k[0];
+    double *direction = malloc(3 * k[0] * sizeof *direction);
+    if (!of || !direction) hf_hdf5_no_memory(io);
+    for (int i = 0; of && direction && i < m->n_gene; i++) {
+        of[i] = m->gene[i].setting;
+        support[i] = m->gene[i].support_row < 0 ? -1 : m->node_of_row[m->gene[i].support_row];
+        memcpy(direction + 3 * i, m->gene[i].direction, 3 * sizeof *direction);
+    }
+    hf_hdf5_write_array(io, group, &row, of);
+    hf_hdf5_write_array(io, group, &node, support);
+    hf_hdf5_write_array(io, group, &along, direction);
+    free(of);
+    free(direction);
+}
+
 hf_status hf_store_genes(hf_store *s, const hf_model *m, const hf_population *population, hf_messages *messages)
 {
     if (!s) return HF_OK;
@@ -300,10 +318,9 @@ hf_status hf_store_genes(hf_store *s, const hf_model *m, const hf_population *po
     const hf_hdf5_array cable = {"gene_cable", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/cable of each gene"};
     const hf_hdf5_array group_of = {"gene_group", HF_KIND_INT, 1, {k[0]}, "", "genes that were varied together"};
     const hf_hdf5_array leader = {"gene_leader", HF_KIND_INT, 1, {k[0]}, "", "gene whose step each takes, by symmetry"};
-    const hf_hdf5_array base = {"base_N", HF_KIND_REAL, 1,
-                                {k[0]},   "N",          "pretension T of each gene, after form-finding"};
-    const hf_hdf5_array lower = {"lower_N", HF_KIND_REAL, 1, {k[0]}, "N", "least T' of each gene"};
-    const hf_hdf5_array upper = {"upper_N", HF_KIND_REAL, 1, {k[0]}, "N", "largest T' of each gene"};
+    const hf_hdf5_array base = hf_layout_of_genes("base_N", m->gene, 1, k);
+    const hf_hdf5_array lower = hf_layout_of_genes("lower_N", m->gene, 1, k);
+    const hf_hdf5_array upper = hf_layout_of_genes("upper_N", m->gene, 1, k);
     hf_hdf5 *io = &s->f.io;
     if (s->rows.block) return s->f.io.status; /* another session has written them */
     hf_hdf5_lock();
@@ -313,6 +330,7 @@ hf_status hf_store_genes(hf_store *s, const hf_model *m, const hf_population *po
     hf_hdf5_write_array(io, group, &cable, m->gene_cable);
     hf_hdf5_write_array(io, group, &group_of, m->gene_group);
     if (m->gene_leader && m->n_leader < m->n_gene) hf_hdf5_write_array(io, group, &leader, m->gene_leader);
+    if (m->gene) write_rows(io, group, m);
     hf_hdf5_write_array(io, group, &base, population->base_N);
     hf_hdf5_write_array(io, group, &lower, population->lower_N);
     hf_hdf5_write_array(io, group, &upper, population->upper_N);
@@ -325,6 +343,7 @@ hf_status hf_store_genes(hf_store *s, const hf_model *m, const hf_population *po
     if (io->status == HF_OK && hf_generations_create(population->n_individual, population->n_gene,
                                                      population->generation_limit, s->every, &s->rows) != HF_OK)
         io->status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
+    s->rows.has_rows = population->has_rows;
     return hf_hdf5_unlock(io->status);
 }
 

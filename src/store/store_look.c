@@ -62,10 +62,7 @@ hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, cons
     extend_columns(identity, &hf_layout_scene, scene->n_node, scene->n_cable, scene);
     HF_TRY(extend_ids(identity, scene->n_node, scene->node_id));
     HF_TRY(extend_ids(identity, scene->n_cable, scene->cable_id));
-    if (scene->n_facet > 0) {
-        extend(identity, scene->facet, 4 * (size_t)scene->n_facet * sizeof *scene->facet);
-        if (scene->facet_id) HF_TRY(extend_ids(identity, scene->n_facet, scene->facet_id));
-    }
+    if (scene->n_facet > 0) extend(identity, scene->facet, 4 * (size_t)scene->n_facet * sizeof *scene->facet);
     if (scene->n_set > 0 && scene->cables_file) { /* those of a generated net follow from the case */
         extend(identity, scene->set_start, ((size_t)scene->n_set + 1) * sizeof *scene->set_start);
         extend(identity, scene->set_cable, (size_t)scene->set_start[scene->n_set] * sizeof *scene->set_cable);

@@ -158,11 +158,6 @@ static void read_facets(hf_hdf5 *io, hid_t group, hf_scene *s)
     for (int i = 0; i < 4 * n && io->status == HF_OK; i++)
         if (s->facet[i] < 0 || s->facet[i] >= s->n_node)
             hf_hdf5_damaged(io, group, "facet", "names a node that is not there");
-    if (io->status != HF_OK || !hf_hdf5_has(io, group, "facet_id")) return; /* results of before have none */
-    if (!(s->facet_id = calloc((size_t)n, sizeof *s->facet_id)))
-        hf_hdf5_no_memory(io);
-    else
-        hf_hdf5_read_ids(io, group, "facet_id", n, s->facet_id, NULL, 0, NULL, &s->facet_text);
 }
 
 hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages)

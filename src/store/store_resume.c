@@ -94,8 +94,10 @@ static void read_state(hf_store *s)
         return;
     }
     read_sizes(io, &n_individual, &n_gene, &limit, &every);
+    bool has_rows = hf_hdf5_has(io, io->file, "/ga/gene_variable");
     if (io->status == HF_OK && hf_generations_create(n_individual, n_gene, limit, every, &s->rows) != HF_OK)
         io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
+    s->rows.has_rows = has_rows;
     if (io->status == HF_OK) hf_generations_count(io, &s->rows);
     if (io->status == HF_OK) io->status = hf_journal_replay(&s->f.journal, s->identity, count_record, s, io->messages);
 }
@@ -128,12 +130,13 @@ static void check_base(hf_hdf5 *io, int n_gene, const double *base_N)
 {
     for (int k = 0; k < n_gene && io->status == HF_OK; k++)
         if (!(base_N[k] >= 0 && isfinite(base_N[k])))
-            hf_hdf5_damaged(io, io->file, "/ga/base_N", "holds what is no pretension");
+            hf_hdf5_damaged(io, io->file, "/ga", "has a base that is no design");
 }
 
 hf_status hf_store_restore_base(hf_store *s, int n_gene, double *base_N, hf_messages *messages)
 {
-    const hf_hdf5_array base = {.name = "/ga/base_N", .kind = HF_KIND_REAL, .rank = 1, .dims = {(hsize_t)n_gene}};
+    hf_hdf5_array base = {.name = "/ga/base_N", .kind = HF_KIND_REAL, .rank = 1, .dims = {(hsize_t)n_gene}};
+    if (s && s->rows.has_rows) base.name = "/ga/base";
     if (!s || !s->rows.block) return HF_OK;
     hf_hdf5_lock();
     s->f.io.messages = messages;
@@ -246,8 +249,26 @@ typedef struct {
     hf_model model;
     int *group, *leader; /* [n_gene] */
     double *base_N;      /* [n_gene] */
+    hf_gene *rows;       /* [n_gene] under optimize.variables, else NULL */
     hf_optimiser optimiser;
 } stored_search;
+
+/* The rows of optimize.variables that the genes are of. */
+static void read_variables(hf_hdf5 *io, hid_t group, stored_search *a)
+{
+    const hf_optimize_settings *o = &a->settings.optimize;
+    hf_hdf5_array row = {.name = "gene_variable", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)a->model.n_gene}};
+    int *of = malloc((size_t)a->model.n_gene * sizeof *of);
+    if (!of) hf_hdf5_no_memory(io);
+    hf_hdf5_read_array(io, group, &row, of);
+    for (int k = 0; io->status == HF_OK && k < a->model.n_gene; k++) {
+        if (of[k] < 0 || of[k] >= o->n_variable)
+            hf_hdf5_damaged(io, io->file, "/ga", "has genes of other variables than the case");
+        else
+            a->rows[k] = (hf_gene){.vary = o->variable[of[k]].vary, .setting = of[k], .support_row = -1};
+    }
+    free(of);
+}
 
 static void read_genes(hf_hdf5 *io, stored_search *a)
 {
@@ -257,10 +278,11 @@ static void read_genes(hf_hdf5 *io, stored_search *a)
     row.name = "gene_leader";
     bool has_leader = hf_hdf5_has(io, group, row.name);
     if (has_leader) hf_hdf5_read_array(io, group, &row, a->leader);
-    row.name = "base_N";
+    row.name = a->rows ? "base" : "base_N";
     row.kind = HF_KIND_REAL;
     hf_hdf5_read_array(io, group, &row, a->base_N);
     check_base(io, a->model.n_gene, a->base_N);
+    if (a->rows) read_variables(io, group, a);
     hf_hdf5_close(io, group);
     for (int k = 0; io->status == HF_OK && k < a->model.n_gene; k++) {
         if (!has_leader) a->leader[k] = k;
@@ -280,7 +302,8 @@ static void open_stored_search(hf_store *s, stored_search *a)
     a->group = malloc(n * sizeof *a->group);
     a->leader = malloc(n * sizeof *a->leader);
     a->base_N = malloc(n * sizeof *a->base_N);
-    if (!a->group || !a->leader || !a->base_N) {
+    if (s->rows.has_rows) a->rows = malloc(n * sizeof *a->rows);
+    if (!a->group || !a->leader || !a->base_N || (s->rows.has_rows && !a->rows)) {
         hf_hdf5_no_memory(io);
         return;
     }
@@ -288,6 +311,7 @@ static void open_stored_search(hf_store *s, stored_search *a)
     read_genes(io, a);
     a->model.gene_group = a->group;
     a->model.gene_leader = a->leader;
+    a->model.gene = a->rows;
     const hf_optimize_settings *o = &a->settings.optimize;
     if (io->status == HF_OK && (o->population != s->rows.n_individual || o->generations != s->rows.limit))
         hf_hdf5_damaged(io, io->file, "/ga", "has other sizes than the case");
@@ -304,6 +328,7 @@ static void close_stored_search(stored_search *a)
     free(a->group);
     free(a->leader);
     free(a->base_N);
+    free(a->rows);
 }
 
 hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages)

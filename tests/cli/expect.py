@@ -58,7 +58,7 @@ def holds_of(thin, whole, store, every):
     rows = {"best": lambda v: v[np.arange(len(v)), best][:, None], "every": lambda v: v[::every]}[store]
     per = [n for n, d in whole["ga"].items() if hasattr(d, "shape") and d.shape[:2] == whole["ga/psi_m"].shape]
     figures = [n for n, d in whole["ga"].items() if hasattr(d, "shape") and d.shape == best.shape]
-    return (len(per) > 10 and len(figures) == 6 and set(thin["ga/last"]) == set(per) and
+    return (len(per) > 10 and len(figures) == 7 and set(thin["ga/last"]) == set(per) and
             all(thin["ga"][n][()].tobytes() == rows(whole["ga"][n][()]).tobytes() for n in per) and
             all(thin["ga/last"][n][()].tobytes() == whole["ga"][n][-1:].tobytes() for n in per) and
             all(thin["ga"][n][()].tobytes() == whole["ga"][n][()].tobytes() for n in figures))

@@ -81,6 +81,33 @@ START_TEST(impossible_nets_are_refused)
 }
 END_TEST
 
+/* Rows of what varies, of goals and limits; tests/unit/case/test_config_rows.c has all their faults. */
+START_TEST(faults_of_rows_are_told)
+{
+    const char *path = file_with("c.yaml", SMALL_SCENE "optimize:\n"
+                                                       "  variables:\n"
+                                                       "    - {set: boundary, vary: tensions, range: 30 %}\n"
+                                                       "    - {set: edge, vary: length, range_N: 1}\n"
+                                                       "  goals:\n"
+                                                       "    - {weight: 0}\n");
+    HIFDM(2, "run", path, "-o", temp("c.h5"));
+    ERRS("error: %s:5:29: optimize.variables.0.vary: must be one of tension force_density length unstressed_length "
+         "support_z support_normal support_xyz, not tensions\n",
+         path);
+    ERRS("error: %s:6:33: range_N: unknown key; did you mean 'range'?\n", path);
+    ERRS("error: %s:8:16: optimize.goals.0.weight: must be above 0, not 0\n", path);
+    ERRS("error: %s:8:7: optimize.goals.0.goal: is missing and has no default\n", path);
+    ck_assert_int_eq(count_of(said.err, "\n"), 4);
+    ck_assert(!is_there(temp("c.h5")));
+    path = file_with("c.yaml", SMALL_SCENE "optimize: {variables: [{set: edge, vary: length, range: 1}]}\n");
+    HIFDM(2, "check", path, "--set", "optimize.variables.1.range=2", "--set", "optimize.variables.0.range=x");
+    ERR("error: --set optimize.variables.1.range=2: optimize.variables.1.range: there is no such row: "
+        "optimize.variables has 1, numbered from 0\n");
+    ERR("error: --set optimize.variables.0.range=x: optimize.variables.0.range: must be a number, or a part like 30 %, "
+        "not x\n");
+}
+END_TEST
+
 static const struct {
     const char *text, *error; /* behind "error: PATH" */
 } unreadable[] = {
@@ -192,6 +219,7 @@ Suite *suite_cli_bad_case(void)
     TCase *tcase = tcase_create("bad_case");
     tcase_add_test(tcase, all_faults_of_a_file_are_told_in_one_run);
     tcase_add_test(tcase, impossible_nets_are_refused);
+    tcase_add_test(tcase, faults_of_rows_are_told);
     tcase_add_test(tcase, impossible_paraboloids_are_refused);
     tcase_add_loop_test(tcase, what_is_no_case_is_told, 0, N_UNREADABLE);
     tcase_add_test(tcase, what_is_no_file_is_told);

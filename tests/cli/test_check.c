@@ -96,8 +96,9 @@ START_TEST(schema_is_yaml_with_every_key)
         "'population', "
         "'generations', 'range_N', 'min_tension_N', 'max_tension_N', "
         "'boundary_ratio_cap', 'seed', 'crossover_high', 'crossover_low', 'mutation_high', 'mutation_low', "
-        "'variation', 'elites', "
-        "'stagnation_tolerance_m', 'stagnation_generations'}",
+        "'variation', 'elites', 'store', 'store_every', "
+        "'stagnation_tolerance_m', 'stagnation_generations', 'variables', 'goals', 'limits'}",
+        "a['optimize']['variables'] == a['optimize']['goals'] == a['optimize']['limits'] == []",
         "set(a['truss']) == {'depth_m', 'main_every', 'E_Pa', 'G_Pa', 'density_kg_per_m3', 'expansion_per_K', "
         "'hinge_mass_kg', 'theory', 'joints', 'supports', 'support_dofs', 'match_tolerance_m', 'bud', 'mbug', 'abug', "
         "'ring', 'import'}",
@@ -114,6 +115,12 @@ START_TEST(schema_is_yaml_with_every_key)
     OUT("  # EA_inner_N:\n");
     OUT("  # strip_width_m:\n");
     OUT("# number > 0, <= 1000000000; N\n");
+    OUT("\n  # up to 16 rows {key: value, ...} of these keys:\n  #   set: text; required.\n");
+    OUT("\n  #   range: number > 0, or a part like 30 %; may be left out.\n");
+    OUT("\n  #   bounds: [low, high], of which one may be null; required.\n");
+    OUT("\n  #   target: number; may be left out.\n");
+    OUT("\n  #   mass_kg_per_m: number > 0; kg/m; may be left out.\n");
+    OUT("\n  #   link: each | set | symmetry; default each.\n");
 }
 END_TEST
 

@@ -1,7 +1,7 @@
 /* `hifdm evaluate`: the tables that it reads and writes, faults in tables, and that it gives the GA's own figures. */
 #include "cli.h"
 
-#define HEADER "id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation\n"
+#define HEADER "id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation,merit\n"
 
 /* One free node on three boundary cables and one inner one. c4 joins two supports, so it is no gene. */
 static const char nodes[] = "id,x_m,y_m,z_m,role\na,0,0,0,support\nb,4,0,0,support\nc,2,3,0,support\nm,2,1,0,inner\n";

@@ -67,6 +67,9 @@ START_TEST(manual_page_renders_without_warnings)
                                         "\\fB\\-\\-set\\fR \\fIKEY=VALUE\\fR",
                                         "\n.SH CASE FILE\n",
                                         "\\fBform.pretension_N\\fR, \\fIN\\fR",
+                                        "\\fBoptimize.variables\\fR, rows\\fI\\fR\n",
+                                        "\\fBoptimize.variables.N.vary\\fR\\fI\\fR\n",
+                                        "Required in its row.\n",
                                         "\n.SH EXIT STATUS\n",
                                         "\\fB75\\fR\ntold to stop\n"};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
@@ -108,6 +111,9 @@ static const struct {
     {"hifdm run x.yaml --set optimize.method = ga", "ga ga+lm "},
     {"hifdm run x.yaml --set = optimize.method = l", "lm "},
     {"hifdm run x.yaml --set form.pretension_N =", ""},
+    {"hifdm run x.yaml --set optimize.lim", "optimize.limits.0.bounds= optimize.limits.0.limit= optimize.limits.0.set= "
+                                            "optimize.limits= "},
+    {"hifdm run x.yaml --set optimize.variables.7.vary = support", "support_normal support_xyz support_z "},
 };
 enum { N_COMPLETION = sizeof completion / sizeof *completion };
 

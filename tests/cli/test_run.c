@@ -105,7 +105,7 @@ START_TEST(a_failed_run_fails_again)
         ERR("error: form-finding did not converge in 7 iterations");
         EXPECT(out_as("c.json"), "--", "a['status'] == 'not_converged'", "len(a['errors']) == 1");
         HIFDM(3, "run", REFLECTOR, "-o", r, "--set", "optimize.method=lm", "--set", "optimize.rule=tension", "--set",
-              "optimize.boundary_ratio_cap=1.0001", "--quiet");
+              "optimize.boundary_ratio_cap=1.0001", "--set", "optimize.range_N=1e-6", "--quiet");
         ERR("error: optimize: Levenberg-Marquardt has no feasible start");
         ck_assert_int_eq(strstr(said.err, "is the finished result of this case") != NULL, i);
     }

@@ -118,6 +118,30 @@ START_TEST(tasks_that_would_leave_points_out_are_refused)
 }
 END_TEST
 
+/* Amounts are numbers in the merged file unless one of them is a part; lists are texts. */
+START_TEST(keys_of_rows_are_swept_and_merged)
+{
+    const char *path = file_with("study.yaml", SMALL_SCENE "surface: {}\n"
+                                                           "optimize:\n"
+                                                           "  population: 6\n"
+                                                           "  generations: 3\n"
+                                                           "  variables:\n"
+                                                           "    - {set: boundary, vary: force_density, range: 1}\n"
+                                                           "    - {set: inner, vary: tension, range: 1}\n"
+                                                           "sweep:\n"
+                                                           "  combine: zip\n"
+                                                           "  optimize.variables.0.range: [0.5, 1e-1]\n"
+                                                           "  optimize.variables.1.range: [0.5, 30%]\n"
+                                                           "  surface.frequencies_Hz: [[1e9, 2e9], [3e9]]\n"),
+               *folder = temp("s.d"), *merged = temp("s.h5");
+    HIFDM(0, "sweep", path, "--dir", folder);
+    HIFDM(0, "merge", path, "--dir", folder, "-o", merged);
+    EXPECT(merged, "--", "a['points/input/optimize.variables.0.range'][:].tolist() == [0.5, 0.1]",
+           "texts(a['points/input/optimize.variables.1.range']) == ['0.5', '30 %']",
+           "texts(a['points/input/surface.frequencies_Hz']) == ['[1e9,2e9]', '[3e9]']");
+}
+END_TEST
+
 START_TEST(a_failed_point_stops_no_other)
 {
     const char *path = study_with_failure(), *folder = temp("s.d"), *merged = temp("s.h5");
@@ -340,6 +364,7 @@ Suite *suite_cli_sweep(void)
     Suite *suite = suite_create("cli/sweep");
     TCase *tcase = tcase_create("sweep");
     tcase_add_test(tcase, sweep_status_and_merge);
+    tcase_add_test(tcase, keys_of_rows_are_swept_and_merged);
     tcase_add_test(tcase, a_point_is_a_run);
     tcase_add_test(tcase, shards_and_threads_make_the_same_whole);
     tcase_add_test(tcase, tasks_that_would_leave_points_out_are_refused);

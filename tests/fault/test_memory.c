@@ -41,7 +41,8 @@ static hf_status build_model(struct subject *s)
 static hf_status apply_symmetry(struct subject *s)
 {
     int planes;
-    return hf_symmetry_apply(&s->scene, HF_SYMMETRY_AUTO, &s->model, &planes, &s->messages);
+    return hf_symmetry_apply(&s->scene, &(hf_optimize_settings){.symmetry = HF_SYMMETRY_AUTO}, &s->model, &planes,
+                             &s->messages);
 }
 
 static hf_status create_workspace(struct subject *s)
@@ -51,8 +52,12 @@ static hf_status create_workspace(struct subject *s)
 
 static hf_status create_batch(struct subject *s)
 {
-    s->evaluator = (hf_evaluator){
-        &s->model, &s->settings.form, s->model.start_q_N_per_m, HF_RULE_FORCE_DENSITY, HF_SOLVER_AUTO, 10};
+    s->evaluator = (hf_evaluator){.model = &s->model,
+                                  .form = &s->settings.form,
+                                  .start_q_N_per_m = s->model.start_q_N_per_m,
+                                  .rule = HF_RULE_FORCE_DENSITY,
+                                  .solver = HF_SOLVER_AUTO,
+                                  .boundary_ratio_cap = 10};
     return hf_batch_create(&s->evaluator, 3, &s->batch);
 }
 

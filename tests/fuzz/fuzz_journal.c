@@ -65,8 +65,10 @@ static void make_real(int file)
         hf_population *p = &r.optimiser.population;
         if (g > 0) FUZZ_REQUIRE(hf_optimiser_next(&r.optimiser));
         for (int i = 0; i < N_INDIVIDUAL; i++)
-            p->result[i] =
-                (hf_form_result){.status = HF_OK, .psi_m = fabs(p->design_N[i * N_GENE] - 10), .iterations = g};
+            p->result[i] = (hf_form_result){.status = HF_OK,
+                                            .psi_m = fabs(p->design_N[i * N_GENE] - 10),
+                                            .merit = fabs(p->design_N[i * N_GENE] - 10),
+                                            .iterations = g};
         hf_optimiser_tell(&r.optimiser);
         hf_generations_add(&r.rows, p, piece);
         FUZZ_REQUIRE(hf_journal_append(&journal, g, piece, HF_GENERATIONS_PIECES, &messages) == HF_OK);

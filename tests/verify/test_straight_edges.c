@@ -93,7 +93,12 @@ START_TEST(search_comes_near_the_optimum)
     for (int k = 0; k < m->n_gene; k++)
         base_N[k] = net.work.tension_N[m->gene_cable[k]];
     const hf_optimize_settings *o = &net.settings.optimize;
-    hf_evaluator evaluator = {m, &net.form, start_q, o->rule, o->solver, o->boundary_ratio_cap};
+    hf_evaluator evaluator = {.model = m,
+                              .form = &net.form,
+                              .start_q_N_per_m = start_q,
+                              .rule = o->rule,
+                              .solver = o->solver,
+                              .boundary_ratio_cap = o->boundary_ratio_cap};
     ck_assert_int_eq(hf_batch_create(&evaluator, 2, &batch), HF_OK);
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, o, m, base_N, &ga), HF_OK);
     do {

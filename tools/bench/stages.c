@@ -84,8 +84,9 @@ WATCH(MODEL, hf_status, hf_model_build,
       (const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages),
       (scene, form, model, messages))
 WATCH(MODEL, hf_status, hf_symmetry_apply,
-      (const hf_scene *scene, hf_symmetry wanted, hf_model *model, int *planes, hf_messages *messages),
-      (scene, wanted, model, planes, messages))
+      (const hf_scene *scene, const hf_optimize_settings *settings, hf_model *model, int *planes,
+       hf_messages *messages),
+      (scene, settings, model, planes, messages))
 WATCH(FORM, hf_status, hf_workspace_create, (const hf_model *model, hf_workspace *workspace), (model, workspace))
 WATCH(FORM, hf_status, hf_evaluate_form,
       (const hf_model *model, const hf_form_settings *form, hf_workspace *w, hf_history *history, hf_form_result *r),

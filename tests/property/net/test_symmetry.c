@@ -25,14 +25,19 @@ static void open_search(struct search *s)
               "optimize.generations=15", "form.residual_tolerance=1e-12");
     hf_model *m = &s->net.model;
     ck_assert(m->n_gene == N_GENE && m->n_cable == N_CABLE);
-    ck_assert_int_eq(hf_symmetry_apply(&s->net.scene, s->net.settings.optimize.symmetry, m, &planes, &messages), HF_OK);
+    ck_assert_int_eq(hf_symmetry_apply(&s->net.scene, &s->net.settings.optimize, m, &planes, &messages), HF_OK);
     ck_assert_int_eq(m->n_leader, 30);
     ck_assert_int_eq(find_shape(&s->net), HF_OK);
     memcpy(s->start_q, s->net.work.q_N_per_m, sizeof s->start_q);
     for (int k = 0; k < m->n_gene; k++)
         s->base_N[k] = s->net.work.tension_N[m->gene_cable[k]];
     hf_symmetry_average(m, s->base_N);
-    s->evaluator = (hf_evaluator){m, &s->net.form, s->start_q, HF_RULE_FORCE_DENSITY, HF_SOLVER_AUTO, 100};
+    s->evaluator = (hf_evaluator){.model = m,
+                                  .form = &s->net.form,
+                                  .start_q_N_per_m = s->start_q,
+                                  .rule = HF_RULE_FORCE_DENSITY,
+                                  .solver = HF_SOLVER_AUTO,
+                                  .boundary_ratio_cap = 100};
     ck_assert_int_eq(hf_batch_create(&s->evaluator, 2, &s->batch), HF_OK);
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &s->net.settings.optimize, m, s->base_N, &s->ga), HF_OK);
 }
@@ -103,7 +108,7 @@ START_TEST(what_a_symmetric_search_finds_is_symmetric)
     ck_assert_int_eq(hf_polish_run(&s.evaluator, s.ga.population.lower_N, s.ga.population.upper_N, 20, design_N,
                                    &s.net.work, &polished),
                      HF_OK);
-    ck_assert_double_lt(polished.psi_m, found.psi_m);
+    ck_assert_double_lt(polished.merit, found.psi_m);
     demand_symmetric_design(&s, design_N);
     ck_assert_int_eq(hf_evaluate(&s.evaluator, design_N, &s.net.work, &found), HF_OK);
     ck_assert_double_lt(asymmetry_m(&s.net.model, &s.net.work), 1e-9);
@@ -125,7 +130,9 @@ START_TEST(polishing_linked_genes_reaches_the_free_optimum)
         OPEN_CASE(&net, SMALL_REFLECTOR);
         ck_assert(net.model.n_gene <= 200 && net.model.n_cable <= 1000);
         int wanted = linked ? HF_SYMMETRY_XY : HF_SYMMETRY_NONE;
-        ck_assert_int_eq(hf_symmetry_apply(&net.scene, (hf_symmetry)wanted, &net.model, &planes, &messages), HF_OK);
+        ck_assert_int_eq(hf_symmetry_apply(&net.scene, &(hf_optimize_settings){.symmetry = (hf_symmetry)wanted},
+                                           &net.model, &planes, &messages),
+                         HF_OK);
         ck_assert_int_eq(find_shape(&net), HF_OK);
         memcpy(start_q, net.work.q_N_per_m, (size_t)net.model.n_cable * sizeof(double));
         for (int k = 0; k < net.model.n_gene; k++)
@@ -133,10 +140,15 @@ START_TEST(polishing_linked_genes_reaches_the_free_optimum)
         hf_symmetry_average(&net.model, design_N);
         for (int k = 0; k < net.model.n_gene; k++)
             lower_N[k] = design_N[k] - 1, upper_N[k] = design_N[k] + 1;
-        hf_evaluator v = {&net.model, &net.form, start_q, HF_RULE_FORCE_DENSITY, HF_SOLVER_NEWTON, 100};
+        hf_evaluator v = {.model = &net.model,
+                          .form = &net.form,
+                          .start_q_N_per_m = start_q,
+                          .rule = HF_RULE_FORCE_DENSITY,
+                          .solver = HF_SOLVER_NEWTON,
+                          .boundary_ratio_cap = 100};
         ck_assert_int_eq(hf_polish_run(&v, lower_N, upper_N, 200, design_N, &net.work, &polished), HF_OK);
-        psi_m[linked] = polished.psi_m;
-        ck_assert_double_lt(polished.psi_m, polished.start_psi_m);
+        psi_m[linked] = polished.merit;
+        ck_assert_double_lt(polished.merit, polished.start_merit);
         close_net(&net);
     }
     ck_assert_double_eq_tol(psi_m[1] / psi_m[0], 1, 1e-7);

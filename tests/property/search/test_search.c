@@ -34,7 +34,12 @@ static void open_search(struct search *s)
     memcpy(s->start_q, s->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
     for (int k = 0; k < m->n_gene; k++)
         s->base_N[k] = s->net.work.tension_N[m->gene_cable[k]];
-    s->evaluator = (hf_evaluator){m, &s->net.form, s->start_q, HF_RULE_FORCE_DENSITY, HF_SOLVER_AUTO, 1e9};
+    s->evaluator = (hf_evaluator){.model = m,
+                                  .form = &s->net.form,
+                                  .start_q_N_per_m = s->start_q,
+                                  .rule = HF_RULE_FORCE_DENSITY,
+                                  .solver = HF_SOLVER_AUTO,
+                                  .boundary_ratio_cap = 1e9};
     ck_assert_int_eq(hf_evaluate(&s->evaluator, s->base_N, &s->net.work, &s->base), HF_OK);
     s->evaluator.boundary_ratio_cap = 1.05 * s->base.boundary_tension_ratio;
 }

@@ -180,6 +180,12 @@ END_TEST
 
 /* ---- what is refused: test_config_faults.c has the exact messages; here nothing may crash or be accepted ---- */
 
+static void check_field(const hf_field *field)
+{
+    ck_assert_msg(field->type == HF_FIELD_WORD ? !!field->words : field->min < field->max, "%s", field->path);
+    ck_assert_msg(*field->help && field->unit, "%s", field->path);
+}
+
 /* A default in the table must itself be a valid value: all are parsed by the same code, so a bad one shows in every
  * load. */
 START_TEST(table_is_sound)
@@ -193,12 +199,13 @@ START_TEST(table_is_sound)
             n_match += strlen(section[k].path) == (size_t)(dot - field[i].path) &&
                        !strncmp(section[k].path, field[i].path, (size_t)(dot - field[i].path));
         ck_assert_msg(n_match == 1, "%s is in no section", field[i].path);
-        ck_assert_msg(field[i].type == HF_FIELD_WORD ? !!field[i].words : field[i].min < field[i].max, "%s",
-                      field[i].path);
-        ck_assert_msg(*field[i].help && field[i].unit, "%s", field[i].path);
+        check_field(&field[i]);
         for (int k = 0; k < i; k++)
             ck_assert_str_ne(field[i].path, field[k].path);
     }
+    for (int i = 0; i < hf_n_list; i++)
+        for (int k = 0; k < hf_list_table[i].n_field; k++)
+            check_field(&hf_list_table[i].field[k]);
 }
 END_TEST
 
@@ -219,6 +226,10 @@ static bool change(const hf_field *field, int way, void *to)
         return way < 2;
     case HF_FIELD_INT_PAIR:
         if (way < 2) ((int *)to)[way]++;
+        return way < 2;
+    case HF_FIELD_AMOUNT:
+    case HF_FIELD_BOUNDS:
+        if (way < 2) ((double *)to)[way] = 7;
         return way < 2;
     case HF_FIELD_TEXT:
         strcpy(to, way ? "b" : "");

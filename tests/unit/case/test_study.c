@@ -296,6 +296,80 @@ START_TEST(values_of_all_types_are_swept)
 }
 END_TEST
 
+#define ROWS                                                                                                           \
+    "optimize:\n  variables: [{set: edge, vary: length, range: 1}, {set: edge, vary: tension, bounds: [1, 2]}]\n"      \
+    "  goals: [{goal: psi}]\n"
+
+static hf_status read_rows_study(const char *axes, hf_study *s)
+{
+    hf_messages m = {0};
+    char text[2048];
+    snprintf(text, sizeof text, "%s%ssweep:\n%s", BASE, ROWS, axes);
+    write_file(temp_path("one.yaml"), text);
+    hf_status status = hf_study_read(temp_path("one.yaml"), s, &m);
+    snprintf(said, sizeof said, "%s", m.text ? m.text : "");
+    hf_messages_free(&m);
+    return status;
+}
+
+START_TEST(keys_of_rows_are_swept)
+{
+    hf_study s;
+    hf_status status = read_rows_study("  optimize.variables.0.range: [1e-1, 30%, 30.0 %]\n"
+                                       "  optimize.variables.1.bounds: [[1, 2], [null, 3]]\n"
+                                       "  optimize.goals.0.weight: {from: 1, to: 3, n: 3}\n",
+                                       &s);
+    ck_assert_int_eq(status, HF_BAD_CASE); /* one way to write each amount */
+    ck_assert_msg(strstr(said, "two points are the same: ") && strstr(said, "optimize.variables.0.range=30 %,"), "%s",
+                  said);
+    hf_study_free(&s);
+    status = read_rows_study("  optimize.variables.0.range: [1e-1, 30%]\n"
+                             "  optimize.variables.1.bounds: [[1, 2], [null, 3]]\n"
+                             "  optimize.variables.1.range: {from: 1, to: 2, n: 2}\n"
+                             "  optimize.goals.0.weight: {from: 1, to: 3, n: 3}\n",
+                             &s);
+    ck_assert_msg(status == HF_OK, "%s", said);
+    ck_assert_int_eq(s.n_point, 24);
+    hf_study_overrides o;
+    hf_case c;
+    hf_messages m = {0};
+    hf_study_point_overrides(&s, 23, &o);
+    ck_assert_msg(hf_config_load(s.base, o.set, o.n_set, &c, &m) == HF_OK, "%s", m.text);
+    const hf_variable_settings *v = c.optimize.variable;
+    ck_assert(v[0].range_ratio == 0.3 && isnan(v[0].range) && v[1].range == 2);
+    ck_assert(v[1].lower == -INFINITY && v[1].upper == 3 && c.optimize.goal[0].weight == 3);
+    hf_case_free(&c);
+    hf_study_free(&s);
+}
+END_TEST
+
+static const struct {
+    const char *axes, *words;
+} row_fault[] = {
+    {"  optimize.variables.0.rnge: [1]\n",
+     "one.yaml:8:3: sweep.optimize.variables.0: unknown key 'rnge'; did you mean 'range'?"},
+    {"  optimize.variables: [1]\n",
+     "one.yaml:8:3: sweep.optimize.variables: has many keys; an axis is one key of one row"},
+    {"  optimize.goals.0: [1]\n", "one.yaml:8:3: sweep.optimize.goals.0: has many keys; an axis is one key of one row"},
+    {"  optimize.variables.0.range: [-1]\n",
+     "one.yaml:8:32: sweep: optimize.variables.0.range: must be above 0, not -1"},
+    {"  optimize.variables.1.bounds: {from: 1, to: 2, n: 2}\n",
+     "one.yaml:8:32: sweep.optimize.variables.1.bounds: is no number, so it needs a list of values"},
+    {"  optimize.variables.2.range: [1]\n",
+     "point optimize.variables.2.range=1: --set optimize.variables.2.range=1: optimize.variables.2.range: there is no "
+     "such row: optimize.variables has 2, numbered from 0"},
+    {"  optimize.range_N: [1]\n", "--set optimize.range_N: is of the default variables alone"},
+};
+
+START_TEST(faults_of_axes_over_rows_are_told)
+{
+    hf_study s;
+    ck_assert_int_eq(read_rows_study(row_fault[_i].axes, &s), HF_BAD_CASE);
+    ck_assert_msg(strstr(said, row_fault[_i].words), "'%s' is not in\n%s", row_fault[_i].words, said);
+    hf_study_free(&s);
+}
+END_TEST
+
 /* Each with its place; {axes, what is said}. */
 static const struct {
     const char *axes, *words;
@@ -418,6 +492,8 @@ Suite *suite_unit_study(void)
     tcase_add_test(tests, a_case_may_hold_its_own_sweep);
     tcase_add_loop_test(tests, a_sweep_with_other_line_breaks_is_cut_whole, 0, 4);
     tcase_add_test(tests, values_of_all_types_are_swept);
+    tcase_add_test(tests, keys_of_rows_are_swept);
+    tcase_add_loop_test(tests, faults_of_axes_over_rows_are_told, 0, sizeof row_fault / sizeof *row_fault);
     tcase_add_loop_test(tests, faults_name_axis_file_and_line, 0, sizeof fault / sizeof *fault);
     tcase_add_test(tests, all_faults_are_told_at_once);
     tcase_add_test(tests, damaged_files_are_refused);

@@ -75,6 +75,7 @@ static const struct {
     {"-x", "error: cables.csv:3: 'bc': the set '-x' must not begin with -\n"},
     {"boundary", "error: cables.csv:3: 'bc': the set 'boundary' is the name of a group, which the column group tells; "
                  "leave it out\n"},
+    {"all", "error: cables.csv:3: 'bc': the set 'all' is the name of all cables; leave it out\n"},
     {LONG_63 "4", "error: cables.csv:3: 'bc': the set '" LONG_63 "' is longer than 63 letters\n"},
 };
 enum { N_FAULTY = sizeof faulty / sizeof *faulty };

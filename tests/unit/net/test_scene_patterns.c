@@ -374,7 +374,9 @@ START_TEST(mirror_planes_are_found)
     c.edge_tie_m = 0.2;
     net.scene = generate(&c);
     open_net(&net);
-    ck_assert_int_eq(hf_symmetry_apply(&net.scene, HF_SYMMETRY_AUTO, &net.model, &planes, &messages), HF_OK);
+    ck_assert_int_eq(hf_symmetry_apply(&net.scene, &(hf_optimize_settings){.symmetry = HF_SYMMETRY_AUTO}, &net.model,
+                                       &planes, &messages),
+                     HF_OK);
     ck_assert_int_eq(planes, mirrored[_i].planes);
     close_net(&net);
 }

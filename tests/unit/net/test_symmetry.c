@@ -6,7 +6,8 @@
 static hf_status apply(struct net *net, int wanted, int *planes, char *said, size_t size)
 {
     hf_messages messages = {0};
-    hf_status status = hf_symmetry_apply(&net->scene, (hf_symmetry)wanted, &net->model, planes, &messages);
+    hf_status status = hf_symmetry_apply(&net->scene, &(hf_optimize_settings){.symmetry = (hf_symmetry)wanted},
+                                         &net->model, planes, &messages);
     snprintf(said, size, "%s", messages.text ? messages.text : "");
     hf_messages_free(&messages);
     return status;

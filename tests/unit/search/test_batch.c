@@ -13,7 +13,12 @@ static void open_designs(struct run *r, int rule)
 {
     OPEN_CASE(&r->net, SMALL_REFLECTOR);
     draw_designs(r, 1, 0.5);
-    r->evaluator = (hf_evaluator){&r->net.model, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_AUTO, 1e9};
+    r->evaluator = (hf_evaluator){.model = &r->net.model,
+                                  .form = &r->net.form,
+                                  .start_q_N_per_m = r->start_q,
+                                  .rule = (hf_rule)rule,
+                                  .solver = HF_SOLVER_AUTO,
+                                  .boundary_ratio_cap = 1e9};
 }
 
 static void evaluate(struct run *r, int n_thread, int n_at_once, hf_form_result result[N_DESIGN])

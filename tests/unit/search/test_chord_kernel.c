@@ -58,7 +58,12 @@ static void open_kernel(struct kernel_run *r, int trial, int rule)
     memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
     for (int k = 0; k < m->n_gene; k++)
         r->base_N[k] = r->net.work.tension_N[m->gene_cable[k]];
-    r->evaluator = (hf_evaluator){m, &r->net.form, r->start_q, (hf_rule)rule, HF_SOLVER_CHORD, 1e9};
+    r->evaluator = (hf_evaluator){.model = m,
+                                  .form = &r->net.form,
+                                  .start_q_N_per_m = r->start_q,
+                                  .rule = (hf_rule)rule,
+                                  .solver = HF_SOLVER_CHORD,
+                                  .boundary_ratio_cap = 1e9};
     ck_assert_int_eq(hf_chord_create(&r->evaluator, r->base_N, &r->net.work, &r->chord), HF_OK);
     ck_assert_int_eq(hf_chord_lanes_create(&r->chord, &r->lanes), HF_OK);
     r->n_x = 3 * (size_t)m->n_node * HF_LANES;

@@ -245,7 +245,7 @@ START_TEST(polished_design_has_no_coupled_slope_left)
         ck_assert_msg((is_free ? fabs(slope[1][k]) : slope[1][k] * at) < 1e-3 * scale, "gene %d at %g: %g of %g m/N", k,
                       at, slope[1][k], scale);
     }
-    ck_assert_double_lt(result.psi_m, result.start_psi_m);
+    ck_assert_double_lt(result.merit, result.start_merit);
     ck_assert_int_gt(n_free, 0);
     close_net(&r.net);
 }

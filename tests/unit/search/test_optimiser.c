@@ -71,7 +71,8 @@ START_TEST(generations_are_asked_for_and_told)
         for (int i = 0; i < N; i++) {
             ck_assert_int_eq(p->pending[i], 1);
             ck_assert_double_eq(p->design_N[i * N_GENE], base_N[0] - n_told);
-            p->result[i] = (hf_form_result){.status = HF_OK, .psi_m = p->design_N[i * N_GENE]};
+            p->result[i] =
+                (hf_form_result){.status = HF_OK, .psi_m = p->design_N[i * N_GENE], .merit = p->design_N[i * N_GENE]};
         }
         hf_optimiser_tell(&o);
         n_told++;
@@ -94,7 +95,7 @@ START_TEST(a_told_generation_stays_while_the_next_is_proposed)
     calls = (struct calls){0};
     ck_assert_int_eq(hf_optimiser_create(&counting, &settings, &model, base_N, &o), HF_OK);
     for (int i = 0; i < N; i++)
-        o.population.result[i] = (hf_form_result){.status = HF_OK, .psi_m = 5};
+        o.population.result[i] = (hf_form_result){.status = HF_OK, .psi_m = 5, .merit = 5};
     hf_optimiser_tell(&o);
     hf_population before = o.population;
     ck_assert(hf_optimiser_next(&o));

@@ -52,8 +52,9 @@ static void evaluate_pending(hf_optimiser *ga)
 {
     for (int i = 0; i < ga->population.n_individual; i++)
         if (ga->population.pending[i])
-            ga->population.result[i] =
-                (hf_form_result){.status = HF_OK, .psi_m = distance_m(ga->population.design_N + i * N_GENE)};
+            ga->population.result[i] = (hf_form_result){.status = HF_OK,
+                                                        .psi_m = distance_m(ga->population.design_N + i * N_GENE),
+                                                        .merit = distance_m(ga->population.design_N + i * N_GENE)};
 }
 
 START_TEST(first_generation_surrounds_the_base)
@@ -84,10 +85,10 @@ START_TEST(telling_finds_best_mean_and_worst)
 {
     hf_optimiser ga = create(&plain);
     for (int i = 0; i < N; i++)
-        ga.population.result[i] = (hf_form_result){.status = HF_COLLAPSED, .psi_m = (double)NAN};
-    ga.population.result[5] = (hf_form_result){.status = HF_OK, .psi_m = 3};
-    ga.population.result[7] = (hf_form_result){.status = HF_OK, .psi_m = 2};
-    ga.population.result[9] = (hf_form_result){.status = HF_OK, .psi_m = 2};
+        ga.population.result[i] = (hf_form_result){.status = HF_COLLAPSED, .psi_m = (double)NAN, .merit = (double)NAN};
+    ga.population.result[5] = (hf_form_result){.status = HF_OK, .psi_m = 3, .merit = 3};
+    ga.population.result[7] = (hf_form_result){.status = HF_OK, .psi_m = 2, .merit = 2};
+    ga.population.result[9] = (hf_form_result){.status = HF_OK, .psi_m = 2, .merit = 2};
     hf_optimiser_tell(&ga);
     ck_assert_int_eq(ga.population.best, 7); /* of equals the first */
     ck_assert_double_eq_tol(ga.population.mean_psi_m, 7.0 / 3, 1e-15);
@@ -111,7 +112,8 @@ START_TEST(nothing_feasible_goes_on_looking)
 {
     hf_optimiser ga = create(&plain);
     for (int i = 0; i < N; i++)
-        ga.population.result[i] = (hf_form_result){.status = HF_RATIO_CAP, .psi_m = (double)NAN, .violation = 1};
+        ga.population.result[i] =
+            (hf_form_result){.status = HF_RATIO_CAP, .psi_m = (double)NAN, .merit = (double)NAN, .violation = 1};
     hf_optimiser_tell(&ga);
     ck_assert_int_eq(ga.population.best, -1);
     ck_assert_double_nan(ga.population.best_psi_m[0]);
@@ -131,7 +133,7 @@ START_TEST(rates_follow_srinivas_and_patnaik)
     double psi[N];
     for (int i = 0; i < N; i++) {
         psi[i] = 1 + 0.1 * ((i * 7) % N);
-        ga.population.result[i] = (hf_form_result){.status = HF_OK, .psi_m = psi[i]};
+        ga.population.result[i] = (hf_form_result){.status = HF_OK, .psi_m = psi[i], .merit = psi[i]};
     }
     hf_optimiser_tell(&ga);
     double mean = ga.population.mean_psi_m, best = 1;
@@ -228,7 +230,7 @@ START_TEST(better_individuals_have_more_children)
         s.seed = seed;
         hf_optimiser ga = create(&s);
         for (int i = 0; i < N; i++)
-            ga.population.result[i] = (hf_form_result){.status = HF_OK, .psi_m = 2 + 0.1 * i};
+            ga.population.result[i] = (hf_form_result){.status = HF_OK, .psi_m = 2 + 0.1 * i, .merit = 2 + 0.1 * i};
         hf_optimiser_tell(&ga);
         hf_optimiser_next(&ga);
         for (int k = 2 * plain.elites; k < 2 * N; k++) {
@@ -252,9 +254,10 @@ START_TEST(worst_individual_keeps_its_floor)
         s.seed = seed;
         hf_optimiser ga = create(&s);
         for (int i = 0; i < N; i++)
-            ga.population.result[i] = (hf_form_result){.status = HF_COLLAPSED, .psi_m = (double)NAN};
-        ga.population.result[4] = (hf_form_result){.status = HF_OK, .psi_m = 1};
-        ga.population.result[11] = (hf_form_result){.status = HF_OK, .psi_m = 7};
+            ga.population.result[i] =
+                (hf_form_result){.status = HF_COLLAPSED, .psi_m = (double)NAN, .merit = (double)NAN};
+        ga.population.result[4] = (hf_form_result){.status = HF_OK, .psi_m = 1, .merit = 1};
+        ga.population.result[11] = (hf_form_result){.status = HF_OK, .psi_m = 7, .merit = 7};
         hf_optimiser_tell(&ga);
         ck_assert(hf_optimiser_next(&ga));
         for (int k = 2 * s.elites; k < 2 * N; k++, n_draw++)
@@ -355,9 +358,10 @@ START_TEST(a_population_outside_its_limits_finds_the_way_in)
         for (int i = 0; i < N; i++) {
             double far_m = distance_m(p->design_N + i * N_GENE);
             if (!p->pending[i]) continue;
-            p->result[i] = (hf_form_result){.status = HF_OK, .psi_m = 1 + far_m};
+            p->result[i] = (hf_form_result){.status = HF_OK, .psi_m = 1 + far_m, .merit = 1 + far_m};
             if (far_m > 0.05)
-                p->result[i] = (hf_form_result){.status = HF_RATIO_CAP, .psi_m = (double)NAN, .violation = far_m};
+                p->result[i] = (hf_form_result){
+                    .status = HF_RATIO_CAP, .psi_m = (double)NAN, .merit = (double)NAN, .violation = far_m};
         }
         hf_optimiser_tell(&ga);
         ck_assert_double_le(p->least_violation[p->generation], least);
@@ -377,8 +381,10 @@ static hf_population_stop stop_after(const hf_optimize_settings *s, hf_status st
     hf_optimiser ga = create(s);
     do {
         for (int i = 0; i < N; i++)
-            ga.population.result[i] = (hf_form_result){
-                .status = status, .psi_m = status == HF_OK ? 1 : (double)NAN, .violation = status == HF_OK ? 0 : 2};
+            ga.population.result[i] = (hf_form_result){.status = status,
+                                                       .psi_m = status == HF_OK ? 1 : (double)NAN,
+                                                       .merit = status == HF_OK ? 1 : (double)NAN,
+                                                       .violation = status == HF_OK ? 0 : 2};
         hf_optimiser_tell(&ga);
     } while (hf_optimiser_next(&ga));
     *generation = ga.population.generation;

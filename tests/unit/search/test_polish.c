@@ -45,7 +45,7 @@ static double psi_of(struct polish_run *p, const double *design_N)
 {
     hf_form_result result;
     ck_assert_int_eq(hf_evaluate(&p->r.evaluator, design_N, &p->r.net.work, &result), HF_OK);
-    return result.psi_m;
+    return result.merit;
 }
 
 static void assert_within_bounds(const struct polish_run *p, const double *design_N)
@@ -64,16 +64,16 @@ START_TEST(reaches_the_known_optimum)
     open_chen(&p, 1);
     double *design_N = p.r.base_N, start_m = psi_of(&p, design_N);
     ck_assert_int_eq(polish(&p, 200, design_N, &result), HF_OK);
-    ck_assert_double_eq_tol(1e3 * result.psi_m, 6.345, 1e-3);
-    ck_assert_double_eq_tol(result.start_psi_m, start_m, 1e-12);
-    ck_assert_double_eq_tol(psi_of(&p, design_N), result.psi_m, 1e-12);
+    ck_assert_double_eq_tol(1e3 * result.merit, 6.345, 1e-3);
+    ck_assert_double_eq_tol(result.start_merit, start_m, 1e-12);
+    ck_assert_double_eq_tol(psi_of(&p, design_N), result.merit, 1e-12);
     ck_assert_int_eq(result.stop, HF_POLISH_CONVERGED);
     ck_assert_int_le(result.iterations, 60); /* observed: 30; without exact derivatives or scaling far more */
     assert_within_bounds(&p, design_N);
     /* once more for one step: it starts by leaving the bounds, which is uphill, and must not end there */
-    double optimum_m = result.psi_m;
+    double optimum_m = result.merit;
     ck_assert_int_eq(polish(&p, 1, design_N, &result), HF_OK);
-    ck_assert_double_le(result.psi_m, optimum_m);
+    ck_assert_double_le(result.merit, optimum_m);
     ck_assert_double_le(psi_of(&p, design_N), optimum_m);
     close_net(&p.r.net);
 }
@@ -88,8 +88,8 @@ START_TEST(approaches_the_free_optimum)
     open_chen(&p, 1000);
     p.r.evaluator.boundary_ratio_cap = 1e9;
     ck_assert_int_eq(polish(&p, 500, p.r.base_N, &result), HF_OK);
-    ck_assert_double_ge(1e3 * result.psi_m, 3.535);
-    ck_assert_double_le(1e3 * result.psi_m, 3.59);
+    ck_assert_double_ge(1e3 * result.merit, 3.535);
+    ck_assert_double_le(1e3 * result.merit, 3.59);
     close_net(&p.r.net);
 }
 END_TEST
@@ -130,7 +130,7 @@ START_TEST(optimum_has_no_slope_left)
             ck_assert_msg(slope[1][k] * at < 1e-4 * scale, "gene %d: %g m/N into the bound", k, slope[1][k]);
         }
     }
-    ck_assert_double_lt(result.psi_m, result.start_psi_m);
+    ck_assert_double_lt(result.merit, result.start_merit);
     ck_assert_int_gt(n_free, 0);
     close_net(&p.r.net);
 }
@@ -146,10 +146,10 @@ START_TEST(never_worse_than_its_start)
         double *design_N = design(&p.r, i), before_m = psi_of(&p, design_N);
         for (int again = 0; again < 2; again++) {
             ck_assert_int_eq(polish(&p, again ? 300 : 1 + i, design_N, &result), HF_OK);
-            ck_assert_double_eq(result.start_psi_m, before_m);
-            ck_assert_double_le(result.psi_m, before_m);
+            ck_assert_double_eq(result.start_merit, before_m);
+            ck_assert_double_le(result.merit, before_m);
             before_m = psi_of(&p, design_N);
-            ck_assert_double_eq(before_m, result.psi_m);
+            ck_assert_double_eq(before_m, result.merit);
             assert_within_bounds(&p, design_N);
             ck_assert_int_gt(result.evaluations, 0);
             if (!again) ck_assert_int_le(result.iterations, 1 + i);
@@ -178,8 +178,8 @@ START_TEST(ratio_cap_is_kept)
         else
             ck_assert_double_gt(end.boundary_tension_ratio, 5);
     }
-    ck_assert_double_lt(capped.psi_m, capped.start_psi_m);
-    ck_assert_double_ge(capped.psi_m, (1 - 1e-5) * open.psi_m);
+    ck_assert_double_lt(capped.merit, capped.start_merit);
+    ck_assert_double_ge(capped.merit, (1 - 1e-5) * open.merit);
     close_net(&p.r.net);
 }
 END_TEST
@@ -196,7 +196,27 @@ START_TEST(infeasible_start_is_told)
     ck_assert_mem_eq(kept, p.r.base_N, (size_t)p.r.net.model.n_gene * sizeof *kept); /* untouched */
     ck_assert_int_eq(result.iterations, 0);
     p.r.evaluator.boundary_ratio_cap = 1 + 1e-9;
-    ck_assert_int_eq(polish(&p, 20, design(&p.r, 0), &result), HF_RATIO_CAP);
+    memcpy(p.r.base_N, design(&p.r, 0), sizeof kept);
+    ck_assert_int_eq(
+        hf_polish_run(&p.r.evaluator, design(&p.r, 0), design(&p.r, 0), 20, p.r.base_N, &p.r.net.work, &result),
+        HF_RATIO_CAP);
+    ck_assert_mem_eq(p.r.base_N, design(&p.r, 0), (size_t)p.r.net.model.n_gene * sizeof *kept); /* no way in */
+    close_net(&p.r.net);
+}
+END_TEST
+
+/* A start above the cap is led below it, and counts as infeasible whatever its psi. */
+START_TEST(start_outside_the_limits_is_led_in)
+{
+    struct polish_run p;
+    hf_polish_result result;
+    hf_form_result end;
+    open_small(&p, HF_RULE_TENSION, 1);
+    p.r.evaluator.boundary_ratio_cap = 1 + 1e-9;
+    ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design(&p.r, 0), &p.r.net.work, &end), HF_RATIO_CAP);
+    ck_assert_int_eq(polish(&p, 20, design(&p.r, 0), &result), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design(&p.r, 0), &p.r.net.work, &end), HF_OK);
+    ck_assert_double_eq(end.merit, result.merit);
     close_net(&p.r.net);
 }
 END_TEST
@@ -223,8 +243,8 @@ START_TEST(after_the_ga_the_same_optimum)
            best_m = ga.population.result[ga.population.best].psi_m;
     ck_assert_int_eq(polish(&p, 200, best_N, &from_ga), HF_OK);
     ck_assert_int_eq(polish(&p, 200, p.r.base_N, &from_base), HF_OK);
-    ck_assert_double_eq_tol(from_ga.psi_m, from_base.psi_m, 1e-6);
-    ck_assert_double_le(from_ga.psi_m, best_m);
+    ck_assert_double_eq_tol(from_ga.merit, from_base.merit, 1e-6);
+    ck_assert_double_le(from_ga.merit, best_m);
     hf_optimiser_free(&ga);
     hf_batch_free(&batch);
     close_net(&p.r.net);
@@ -258,6 +278,7 @@ Suite *suite_unit_polish(void)
     tcase_add_test(tests, never_worse_than_its_start);
     tcase_add_test(tests, ratio_cap_is_kept);
     tcase_add_test(tests, infeasible_start_is_told);
+    tcase_add_test(tests, start_outside_the_limits_is_led_in);
     tcase_add_test(tests, after_the_ga_the_same_optimum);
     tcase_add_test(tests, applies_to_convex_nets_and_rules_only);
     return suite;

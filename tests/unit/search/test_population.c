@@ -99,7 +99,8 @@ static void tell(hf_population *p, double psi_0_m)
 {
     static const double psi_m[N] = {3, 0, 2, 2};
     for (int i = 0; i < N; i++)
-        p->result[i] = (hf_form_result){.status = i == 1 ? HF_COLLAPSED : HF_OK, .psi_m = i ? psi_m[i] : psi_0_m};
+        p->result[i] = (hf_form_result){
+            .status = i == 1 ? HF_COLLAPSED : HF_OK, .psi_m = i ? psi_m[i] : psi_0_m, .merit = i ? psi_m[i] : psi_0_m};
     memcpy(p->pending, (unsigned char[]){1, 1, 0, 1}, N);
     hf_population_note_trials(p);
     hf_population_rank(&settings, p);

@@ -201,7 +201,9 @@ START_TEST(stiffness_counts_for_symmetry)
         hand_scene(&net.scene, 3, node, 2, cable);
         net.scene.EA_N = EA;
         open_net(&net);
-        ck_assert_int_eq(hf_symmetry_apply(&net.scene, HF_SYMMETRY_AUTO, &net.model, &planes, &messages), HF_OK);
+        ck_assert_int_eq(hf_symmetry_apply(&net.scene, &(hf_optimize_settings){.symmetry = HF_SYMMETRY_AUTO},
+                                           &net.model, &planes, &messages),
+                         HF_OK);
         ck_assert_int_eq(planes & HF_PLANE_X, differ ? 0 : HF_PLANE_X);
         ck_assert_int_eq(net.model.n_leader, differ ? 2 : 1);
         close_net(&net);
@@ -226,7 +228,12 @@ START_TEST(populations_fall_back)
         base[k] = net.work.tension_N[net.model.gene_cable[k % n_gene]] * (1 + 0.01 * (k / n_gene));
     static const int solver[] = {HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_FIXED_POINT};
     static const int used[] = {HF_SOLVER_NEWTON, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT};
-    hf_evaluator v = {&net.model, &net.form, start, HF_RULE_FORCE_DENSITY, (hf_solver)solver[_i], 1e3};
+    hf_evaluator v = {.model = &net.model,
+                      .form = &net.form,
+                      .start_q_N_per_m = start,
+                      .rule = HF_RULE_FORCE_DENSITY,
+                      .solver = (hf_solver)solver[_i],
+                      .boundary_ratio_cap = 1e3};
     ck_assert(!hf_chord_applies(&v));
     hf_batch batch;
     hf_form_result together[3], alone;

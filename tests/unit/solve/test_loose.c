@@ -112,7 +112,12 @@ START_TEST(design_with_a_loose_node_is_infeasible)
     struct net net;
     double EA[5], start_q[5] = {1, 1, 5, 5, 5}, design_N[1] = {0};
     open_pair(&net, HF_LAW_ELASTIC, HF_METHOD_AUTO, EA);
-    hf_evaluator v = {&net.model, &net.form, start_q, HF_RULE_FORCE_DENSITY, HF_SOLVER_NEWTON, 1e9};
+    hf_evaluator v = {.model = &net.model,
+                      .form = &net.form,
+                      .start_q_N_per_m = start_q,
+                      .rule = HF_RULE_FORCE_DENSITY,
+                      .solver = HF_SOLVER_NEWTON,
+                      .boundary_ratio_cap = 1e9};
     ck_assert_int_eq(net.model.n_gene, 0);
     ck_assert_int_eq(hf_evaluate(&v, design_N, &net.work, &net.result), HF_SINGULAR);
     ck_assert_int_eq(net.model.node_of_row[net.result.culprit], 2);

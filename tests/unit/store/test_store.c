@@ -25,7 +25,7 @@ static void fill_result(struct rng *rng, hf_form_result *result)
     result->stop_reason = HF_STOPPED_ILL_POSED;
     result->bound_reason = HF_BOUND_SLACK_OR_TAUT;
     result->coupling.stop_reason = HF_COUPLING_DIVERGED;
-    result->psi_m = (double)NAN;
+    result->psi_m = result->merit = (double)NAN;
 }
 
 static void fill_summary(struct rng *rng, hf_summary *s)
@@ -350,6 +350,7 @@ static void fill_generation(hf_population *g, int generation)
         g->result[i] = (hf_form_result){.status = i == 1 ? HF_RATIO_CAP : HF_OK,
                                         .iterations = 10 * generation + i,
                                         .psi_m = i == 1 ? (double)NAN : generation + 0.1 * i,
+                                        .merit = i == 1 ? (double)NAN : generation + 0.1 * i,
                                         .residual_N = generation + 0.25 * i,
                                         .inner_tension_ratio = 1 + i,
                                         .boundary_tension_ratio = 5 + i};
@@ -360,7 +361,7 @@ static void fill_generation(hf_population *g, int generation)
         g->parent[2 * i + 1] = i;
     }
     g->best = generation - 1;
-    g->best_psi_m[generation] = g->mean_psi_m = g->worst_psi_m = generation + 0.5;
+    g->best_psi_m[generation] = g->best_merit[generation] = g->mean_psi_m = g->worst_psi_m = generation + 0.5;
     g->n_infeasible = 1;
 }
 

@@ -151,7 +151,7 @@ static const struct {
     {"f['ga/psi_m'][1, 0] = np.inf", "a last generation that no run stores"},
     {"f['ga/parent'][1, 0, 0] = 10**6", "a last generation that no run stores"},
     {"f['ga/status'][1, 0] = 99", "/ga/status holds a value that has no word"},
-    {"f['ga/base_N'][0] = np.inf", "/ga/base_N holds what is no pretension"},
+    {"f['ga/base_N'][0] = np.inf", "/ga has a base that is no design"},
     {"f['ga/mutation_rate'].resize(1, 0)", "/ga/mutation_rate has other dimensions"},
     {"del f['ga/psi_m']; f['ga/psi_m'] = np.zeros((2, 3), int)", "/ga/psi_m "},
     {"f.move('ga/psi_m', 'x'); f['ga/psi_m'] = h5py.SoftLink('/x')", "/ga/psi_m is a link to another place"},

@@ -1,0 +1,246 @@
+/* Contents: faults - words and whole numbers - numbers - texts - all types */
+#include "case/config_value.h"
+
+#include "base/path.h"
+#include "base/text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct {
+    hf_config_faults *faults;
+    yaml_document_t *document;
+    const char *case_path;
+} setter;
+
+static void refuse(setter *s, const yaml_node_t *node, const hf_field *f, const char *what, const char *detail)
+{
+    hf_config_fault_at(s->faults, node->start_mark.line, node->start_mark.column, f->path, what, detail);
+}
+
+/* Number of items of a list; -1: it is none. */
+static long n_item(const yaml_node_t *node)
+{
+    if (node->type != YAML_SEQUENCE_NODE) return -1;
+    return node->data.sequence.items.top - node->data.sequence.items.start;
+}
+
+static const yaml_node_t *item_of(setter *s, const yaml_node_t *list, int i)
+{
+    return yaml_document_get_node(s->document, list->data.sequence.items.start[i]);
+}
+
+static const char *scalar_text(const yaml_node_t *node)
+{
+    return (const char *)node->data.scalar.value;
+}
+
+static bool is_plain(const yaml_node_t *node)
+{
+    return node->type == YAML_SCALAR_NODE && node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
+}
+
+static void refuse_range(setter *s, const yaml_node_t *node, const hf_field *f)
+{
+    char what[160], low[48];
+    if (f->min == HF_ABOVE_ZERO)
+        snprintf(low, sizeof low, "must be above 0");
+    else
+        snprintf(low, sizeof low, "must be at least %.10g", f->min);
+    if (f->max >= 1e300)
+        snprintf(what, sizeof what, "%s, not ", low);
+    else
+        snprintf(what, sizeof what, "%s and at most %.10g, not ", low, f->max);
+    refuse(s, node, f, what, scalar_text(node));
+}
+
+/* Every member of hf_case that an HF_FIELD_WORD sets has an enumeration type as wide as an int; values are not
+ * negative, so the int with the same bytes has the same value. */
+_Static_assert(sizeof(hf_method) == sizeof(int) && sizeof(hf_diagonals) == sizeof(int), "enumerations are int-sized");
+
+static void set_word(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
+{
+    char what[256] = "must be one of";
+    if (node->type == YAML_SCALAR_NODE)
+        for (int k = 0; f->words[k]; k++)
+            if (!strcmp(f->words[k], scalar_text(node))) {
+                memcpy(to, &k, sizeof k);
+                return;
+            }
+    for (int k = 0; f->words[k]; k++) {
+        strcat(what, " ");
+        strcat(what, f->words[k]);
+    }
+    strcat(what, ", not ");
+    refuse(s, node, f, what, node->type == YAML_SCALAR_NODE ? scalar_text(node) : "a list or section");
+}
+
+static void set_int(setter *s, const yaml_node_t *node, const hf_field *f, int *to)
+{
+    uint64_t value = 0;
+    double real = 0;
+    if (!is_plain(node))
+        refuse(s, node, f, "must be a whole number", "");
+    else if (!hf_text_uint64(scalar_text(node), &value) && !hf_text_double(scalar_text(node), &real))
+        refuse(s, node, f, "must be a whole number, not ", scalar_text(node));
+    else if (strpbrk(scalar_text(node), ".eE"))
+        refuse(s, node, f, "must be a whole number, not ", scalar_text(node));
+    else if (scalar_text(node)[0] == '-' || (double)value < f->min || (double)value > f->max)
+        refuse_range(s, node, f);
+    else
+        *to = (int)value;
+}
+
+static void set_pair(setter *s, const yaml_node_t *node, const hf_field *f, int *to)
+{
+    if (n_item(node) != 2) {
+        refuse(s, node, f, "must be a list of two whole numbers, like [5, 5]", "");
+        return;
+    }
+    for (int k = 0; k < 2; k++)
+        set_int(s, item_of(s, node, k), f, to + k);
+}
+
+static void set_double(setter *s, const yaml_node_t *node, const hf_field *f, double *to)
+{
+    double value;
+    if (!is_plain(node) || !hf_text_double(scalar_text(node), &value))
+        refuse(s, node, f, "must be a number", node->type == YAML_SCALAR_NODE ? ", not a text" : "");
+    else if (value < f->min || value > f->max)
+        refuse_range(s, node, f);
+    else
+        memcpy(to, &value, sizeof value);
+}
+
+/* A list of numbers, or one number. */
+static void set_list(setter *s, const yaml_node_t *node, const hf_field *f, hf_double_list *to)
+{
+    long n = node->type == YAML_SEQUENCE_NODE ? n_item(node) : 1;
+    to->n = 0;
+    if (node->type == YAML_MAPPING_NODE || n > HF_LIST_MAX) {
+        refuse(s, node, f, "must be a list of at most 32 numbers, like [1, 2.5]", "");
+    } else if (node->type != YAML_SEQUENCE_NODE) {
+        set_double(s, node, f, &to->value[to->n++]);
+    } else {
+        for (; to->n < n; to->n++)
+            set_double(s, item_of(s, node, to->n), f, &to->value[to->n]);
+    }
+}
+
+/* Text of a number with "%" behind it, with or without blanks between; false: it has none. */
+static bool is_percentage(const char *text, char number[64])
+{
+    size_t n = strlen(text);
+    if (n == 0 || text[n - 1] != '%') return false;
+    for (n--; n > 0 && text[n - 1] == ' ';)
+        n--;
+    snprintf(number, 64, "%.*s", (int)(n < 63 ? n : 0), text);
+    return true;
+}
+
+static void set_amount(setter *s, const yaml_node_t *node, const hf_field *f, double to[2])
+{
+    char number[64];
+    double value;
+    bool is_part = node->type == YAML_SCALAR_NODE && is_percentage(scalar_text(node), number);
+    if (!is_part && !is_plain(node))
+        refuse(s, node, f, "must be a number, or a part like 30 %", "");
+    else if (!hf_text_double(is_part ? number : scalar_text(node), &value))
+        refuse(s, node, f, "must be a number, or a part like 30 %, not ", scalar_text(node));
+    else if (value < f->min || value > f->max)
+        refuse_range(s, node, f);
+    else {
+        to[is_part] = is_part ? value / 100 : value;
+        to[!is_part] = (double)NAN;
+    }
+}
+
+/* A bound that is none. */
+static bool is_open(const yaml_node_t *node, bool is_upper)
+{
+    const char *const word[] = {"null", "~", ".", is_upper ? ".inf" : "-.inf"};
+    for (size_t k = 0; is_plain(node) && k < sizeof word / sizeof *word; k++)
+        if (!strcmp(scalar_text(node), word[k])) return true;
+    return false;
+}
+
+static void set_bounds(setter *s, const yaml_node_t *node, const hf_field *f, double to[2])
+{
+    double bound[2] = {(double)NAN, (double)NAN};
+    if (n_item(node) != 2) {
+        refuse(s, node, f, "must be two bounds, like [1, 20], or [1, .inf] without an upper one", "");
+        return;
+    }
+    for (int k = 0; k < 2; k++) {
+        if (is_open(item_of(s, node, k), k == 1))
+            bound[k] = k ? (double)INFINITY : -(double)INFINITY;
+        else
+            set_double(s, item_of(s, node, k), f, &bound[k]);
+    }
+    if (isnan(bound[0]) || isnan(bound[1])) return;
+    if (isinf(bound[0]) && isinf(bound[1]))
+        refuse(s, node, f, "leaves both sides open; give one bound at least", "");
+    else if (bound[0] >= bound[1])
+        refuse(s, node, f, "the lower bound must be below the upper one", "");
+    else
+        memcpy(to, bound, sizeof bound);
+}
+
+static void set_text(setter *s, const yaml_node_t *node, const hf_field *f, char *to)
+{
+    size_t size = (size_t)f->max;
+    if (node->type != YAML_SCALAR_NODE || (f->min > 0 && !*scalar_text(node))) {
+        refuse(s, node, f, "must be a text", "");
+        return;
+    }
+    /* paths in a case file are relative to that file, paths on the command line to the current folder */
+    const char *beside = size == HF_PATH_SIZE && !s->faults->is_override ? s->case_path : "";
+    if (!hf_path_beside(beside, scalar_text(node), to, size)) refuse(s, node, f, "is too long", "");
+}
+
+void hf_config_value(hf_config_faults *faults, yaml_document_t *document, const yaml_node_t *node, const hf_field *f,
+                     const char *case_path, void *to)
+{
+    setter s = {faults, document, case_path};
+    switch (f->type) {
+    case HF_FIELD_DOUBLE:
+        set_double(&s, node, f, (double *)to);
+        break;
+    case HF_FIELD_DOUBLE_LIST:
+        set_list(&s, node, f, (hf_double_list *)to);
+        break;
+    case HF_FIELD_AMOUNT:
+        set_amount(&s, node, f, (double *)to);
+        break;
+    case HF_FIELD_BOUNDS:
+        set_bounds(&s, node, f, (double *)to);
+        break;
+    case HF_FIELD_UINT64:
+        if (!is_plain(node) || !hf_text_uint64(scalar_text(node), (uint64_t *)to))
+            refuse(&s, node, f, "must be a whole number from 0 to 18446744073709551615", "");
+        break;
+    case HF_FIELD_INT:
+        set_int(&s, node, f, (int *)to);
+        break;
+    case HF_FIELD_INT_PAIR:
+        set_pair(&s, node, f, (int *)to);
+        break;
+    case HF_FIELD_WORD:
+        set_word(&s, node, f, to);
+        break;
+    case HF_FIELD_TEXT:
+        set_text(&s, node, f, to);
+        break;
+    }
+}
+
+void hf_config_no_value(const hf_field *field, void *to)
+{
+    double *number = to;
+    if (field->type == HF_FIELD_DOUBLE || field->type == HF_FIELD_AMOUNT) number[0] = (double)NAN;
+    if (field->type == HF_FIELD_AMOUNT) number[1] = (double)NAN;
+    if (field->type != HF_FIELD_BOUNDS) return;
+    number[0] = -(double)INFINITY;
+    number[1] = (double)INFINITY;
+}

@@ -1,0 +1,72 @@
+#include "net/cable_pick.h"
+
+#include "base/text.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char *const all_word = "all";
+
+int hf_cable_pick(const hf_scene *s, const char *set, int *cable)
+{
+    int n = 0, group = 2;
+    if (!strcmp(set, hf_group_word[HF_GROUP_INNER])) group = HF_GROUP_INNER;
+    if (!strcmp(set, hf_group_word[HF_GROUP_BOUNDARY])) group = HF_GROUP_BOUNDARY;
+    if (group < 2 || !*set || !strcmp(set, all_word)) {
+        for (int e = 0; e < s->n_cable; e++) {
+            if (group < 2 && s->group[e] != group) continue;
+            if (cable) cable[n] = e;
+            n++;
+        }
+        return n;
+    }
+    int k = hf_cable_set_find(s, set);
+    if (k < 0) return -1;
+    n = s->set_start[k + 1] - s->set_start[k];
+    if (cable) memcpy(cable, s->set_cable + s->set_start[k], (size_t)n * sizeof *cable);
+    return n;
+}
+
+/* The word nearest to `set` of those that hf_cable_pick knows, or NULL. */
+static const char *nearest_set(const hf_scene *s, const char *set)
+{
+    const char *known[] = {all_word, hf_group_word[HF_GROUP_INNER], hf_group_word[HF_GROUP_BOUNDARY]};
+    const char *pair[2] = {hf_text_nearest(set, known, 3), NULL};
+    for (int k = 0; k < s->n_set; k++) {
+        pair[pair[0] != NULL] = s->set_name[k];
+        pair[0] = hf_text_nearest(set, pair, pair[1] ? 2 : 1);
+        pair[1] = NULL;
+    }
+    return pair[0];
+}
+
+/* ", front, rear", cut off with ", ..." where it is full. */
+static void list_sets(const hf_scene *s, char *text, size_t size)
+{
+    size_t at = 0;
+    *text = '\0';
+    for (int k = 0; k < s->n_set; k++) {
+        if (at + strlen(s->set_name[k]) + sizeof ", , ..." > size) {
+            snprintf(text + at, size - at, ", ...");
+            return;
+        }
+        at += (size_t)snprintf(text + at, size - at, ", %s", s->set_name[k]);
+    }
+}
+
+int hf_cable_pick_some(const hf_scene *s, const char *set, const char *where, int *cable, hf_messages *messages)
+{
+    int n = hf_cable_pick(s, set, cable);
+    if (n > 0) return n;
+    char sets[512];
+    const char *near = nearest_set(s, set);
+    list_sets(s, sets, sizeof sets);
+    if (n == 0)
+        hf_error(messages, HF_BAD_CASE, "%s: this net has no %s cables", where, set);
+    else if (near)
+        hf_error(messages, HF_BAD_CASE, "%s: there is no set of cables '%s'; did you mean '%s'?", where, set, near);
+    else
+        hf_error(messages, HF_BAD_CASE, "%s: there is no set of cables '%s'; this net has all, inner, boundary%s",
+                 where, set, sets);
+    return 0;
+}

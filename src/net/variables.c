@@ -1,0 +1,275 @@
+/* Contents: genes of cables - genes of supports - links - all rows - values and bounds */
+#include "net/variables.h"
+
+#include "base/arena.h"
+#include "net/cable_pick.h"
+#include "net/wanted.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* No tension, force density or length falls below this part of its value after form-finding, whatever the range: a
+ * cable whose tension vanishes is no cable, and the solvers want values above zero. */
+#define LEFT 1e-3
+
+/* ---- genes of cables ---- */
+
+typedef struct {
+    const hf_scene *scene;
+    const hf_optimize_settings *settings;
+    const hf_surface_settings *surface;
+    hf_model *m;
+    int *picked;   /* [n_cable] scratch: the cables of a row */
+    int *taken;    /* [n_cable + n_node] row that varies a cable, or a support; -1: none */
+    int *cable;    /* [n_cable + 3 n_node] genes, as in the model */
+    hf_gene *gene; /* [n_cable + 3 n_node] */
+    hf_messages *messages;
+} maker;
+
+static void lay_out(hf_arena *a, maker *q)
+{
+    size_t e = (size_t)q->m->n_cable, n = (size_t)q->m->n_node;
+    q->picked = hf_arena_take(a, e, sizeof(int));
+    q->taken = hf_arena_take(a, e + n, sizeof(int));
+    q->cable = hf_arena_take(a, e + 3 * n, sizeof(int));
+    q->gene = hf_arena_take(a, e + 3 * n, sizeof(hf_gene));
+}
+
+static bool varies_support(hf_vary vary)
+{
+    return vary == HF_VARY_SUPPORT_Z || vary == HF_VARY_SUPPORT_NORMAL || vary == HF_VARY_SUPPORT_XYZ;
+}
+
+/* Note that a row varies cable or support `at`, which no other row may. */
+static hf_status take(maker *q, int row, int at, const char *kind, const char *id)
+{
+    if (q->taken[at] >= 0)
+        return hf_error(q->messages, HF_BAD_CASE, "optimize.variables.%d: %s '%s' is varied by row %d already", row,
+                        kind, id, q->taken[at]);
+    q->taken[at] = row;
+    return HF_OK;
+}
+
+static void add(maker *q, int cable, hf_gene gene)
+{
+    q->cable[q->m->n_gene] = cable;
+    q->gene[q->m->n_gene++] = gene;
+}
+
+static hf_status add_cable(maker *q, int row, int e)
+{
+    const hf_variable_settings *s = &q->settings->variable[row];
+    const hf_model *m = q->m;
+    const char *id = q->scene->cable_id[e];
+    if (m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free) return HF_OK;
+    if (s->vary == HF_VARY_UNSTRESSED_LENGTH && !hf_law_has((hf_law)m->law[e], HF_LAW_NEEDS_EA))
+        return hf_error(q->messages, HF_BAD_CASE,
+                        "optimize.variables.%d: cable '%s' of set %s has law %s: only cables of law elastic have an "
+                        "unstressed length",
+                        row, id, s->set, hf_law_word[m->law[e]]);
+    if (m->start_q_N_per_m[e] < 0)
+        return hf_error(q->messages, HF_BAD_CASE,
+                        "optimize.variables.%d: cable '%s' of set %s is a strut, which cannot be varied", row, id,
+                        s->set);
+    HF_TRY(take(q, row, e, "cable", id));
+    add(q, e, (hf_gene){.vary = s->vary, .setting = row, .support_row = -1});
+    return HF_OK;
+}
+
+/* ---- genes of supports ---- */
+
+static void find_normal(const maker *q, int support_row, double normal[3])
+{
+    double p[3], slope[2];
+    for (int c = 0; c < 3; c++)
+        p[c] = q->m->position_m[c * q->m->n_node + support_row];
+    hf_wanted_height_above(q->surface->kind, 1 / (4 * q->surface->focal_length_m), p, slope);
+    double length = sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
+    normal[0] = -slope[0] / length;
+    normal[1] = -slope[1] / length;
+    normal[2] = 1 / length;
+}
+
+static hf_status add_support(maker *q, int row, int support_row)
+{
+    const hf_model *m = q->m;
+    hf_gene gene = {.vary = q->settings->variable[row].vary, .setting = row, .support_row = support_row};
+    HF_TRY(take(q, row, m->n_cable + support_row, "support", q->scene->node_id[m->node_of_row[support_row]]));
+    if (gene.vary == HF_VARY_SUPPORT_NORMAL) find_normal(q, support_row, gene.direction);
+    if (gene.vary == HF_VARY_SUPPORT_Z) gene.direction[2] = 1;
+    if (gene.vary != HF_VARY_SUPPORT_XYZ) add(q, -1, gene);
+    for (int c = 0; c < 3 && gene.vary == HF_VARY_SUPPORT_XYZ; c++) {
+        for (int d = 0; d < 3; d++)
+            gene.direction[d] = c == d;
+        add(q, -1, gene);
+    }
+    return HF_OK;
+}
+
+/* The supports at the ends of the cables of a row, each once, in the order of the cables. */
+static hf_status add_supports(maker *q, int row, int n_picked)
+{
+    const hf_model *m = q->m;
+    if (q->settings->variable[row].vary == HF_VARY_SUPPORT_NORMAL && !(q->surface->focal_length_m > 0))
+        return hf_error(q->messages, HF_BAD_CASE,
+                        "optimize.variables.%d: support_normal needs the wanted surface: add a section `surface`", row);
+    for (int i = 0; i < 2 * n_picked; i++) {
+        int support_row = m->end_row[2 * q->picked[i / 2] + i % 2];
+        if (support_row < m->n_free || q->taken[m->n_cable + support_row] == row) continue;
+        HF_TRY(add_support(q, row, support_row));
+    }
+    return HF_OK;
+}
+
+/* ---- links ---- */
+
+/* The genes of a row with link: set follow its first, component by component of supports. */
+static void link_sets(const maker *q)
+{
+    hf_model *m = q->m;
+    int first = 0;
+    m->n_leader = 0;
+    for (int k = 0; k < m->n_gene; k++) {
+        const hf_variable_settings *s = &q->settings->variable[m->gene[k].setting];
+        int n_component = s->vary == HF_VARY_SUPPORT_XYZ ? 3 : 1;
+        if (k == 0 || m->gene[k].setting != m->gene[k - 1].setting) first = k;
+        if (s->link == HF_LINK_SET) m->gene_leader[k] = first + (k - first) % n_component;
+        m->n_leader += m->gene_leader[k] == k;
+    }
+}
+
+/* Linked genes are in one group. Groups are numbered in the order of their first genes. */
+static void join_groups(hf_model *m, int *label)
+{
+    int n = 0;
+    for (int k = 0; k < m->n_gene; k++)
+        label[k] = -1;
+    for (int k = 0; k < m->n_gene; k++) {
+        int group = m->gene_group[m->gene_leader[k]];
+        if (label[group] < 0) label[group] = n++;
+    }
+    for (int k = m->n_gene - 1; k >= 0; k--) /* a leader comes before those that follow it */
+        m->gene_group[k] = label[m->gene_group[m->gene_leader[k]]];
+    m->n_gene_group = n;
+}
+
+/* ---- all rows ---- */
+
+static hf_status make_row(maker *q, int row)
+{
+    const hf_variable_settings *s = &q->settings->variable[row];
+    int before = q->m->n_gene, n_picked;
+    char where[48];
+    snprintf(where, sizeof where, "optimize.variables.%d", row);
+    n_picked = hf_cable_pick_some(q->scene, s->set, where, q->picked, q->messages);
+    if (n_picked == 0) return HF_BAD_CASE;
+    if (varies_support(s->vary)) HF_TRY(add_supports(q, row, n_picked));
+    for (int i = 0; i < n_picked && !varies_support(s->vary); i++)
+        HF_TRY(add_cable(q, row, q->picked[i]));
+    if (q->m->n_gene == before)
+        return hf_error(q->messages, HF_BAD_CASE,
+                        "optimize.variables.%d: set %s has %d cables, but no %s: there is nothing to vary", row, s->set,
+                        n_picked, varies_support(s->vary) ? "support at their ends" : "cable with a free end");
+    return HF_OK;
+}
+
+/* Put the genes into a block of the model's own. */
+static hf_status keep(const maker *q)
+{
+    hf_model *m = q->m;
+    hf_arena arena = {0};
+    int *label;
+    size_t n = (size_t)m->n_gene;
+    HF_TRY(HF_ARENA_MAKE(&arena, (m->gene_cable = hf_arena_take(&arena, n, sizeof(int)),
+                                  m->gene_group = hf_arena_take(&arena, n, sizeof(int)),
+                                  m->gene_leader = hf_arena_take(&arena, n, sizeof(int)),
+                                  label = hf_arena_take(&arena, n, sizeof(int)),
+                                  m->gene = hf_arena_take(&arena, n, sizeof(hf_gene)))));
+    m->gene_block = arena.block;
+    memcpy(m->gene_cable, q->cable, n * sizeof(int));
+    memcpy(m->gene, q->gene, n * sizeof(hf_gene));
+    for (size_t k = 0; k < n; k++)
+        m->moves_supports |= m->gene[k].support_row >= 0;
+    HF_TRY(hf_model_group_genes(m));
+    link_sets(q);
+    join_groups(m, label);
+    return HF_OK;
+}
+
+hf_status hf_variables_apply(const hf_scene *scene, const hf_optimize_settings *settings,
+                             const hf_surface_settings *surface, hf_model *m, hf_messages *messages)
+{
+    maker q = {.scene = scene, .settings = settings, .surface = surface, .m = m, .messages = messages};
+    hf_arena arena = {0};
+    if (settings->n_variable == 0) return HF_OK;
+    if (HF_ARENA_MAKE(&arena, lay_out(&arena, &q)) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "optimize.variables: out of memory");
+    for (int i = 0; i < m->n_cable + m->n_node; i++)
+        q.taken[i] = -1;
+    m->n_gene = 0;
+    hf_status status = HF_OK;
+    for (int row = 0; row < settings->n_variable && status == HF_OK; row++)
+        status = make_row(&q, row);
+    if (status == HF_OK && keep(&q) != HF_OK)
+        status = hf_error(messages, HF_NO_MEMORY, "optimize.variables: out of memory");
+    m->has_newton = !m->has_strut; /* a design may change laws that one solve serves into others */
+    hf_arena_free(&arena);
+    return status;
+}
+
+/* ---- values and bounds ---- */
+
+void hf_variables_read(const hf_model *m, const double *q_N_per_m, const double *tension_N, const double *length_m,
+                       double *value)
+{
+    for (int k = 0; k < m->n_gene; k++) {
+        int e = m->gene_cable[k];
+        switch (hf_model_vary(m, k)) {
+        case HF_VARY_PRETENSION:
+        case HF_VARY_TENSION:
+            value[k] = tension_N[e];
+            break;
+        case HF_VARY_FORCE_DENSITY:
+            value[k] = q_N_per_m[e];
+            break;
+        case HF_VARY_LENGTH:
+            value[k] = length_m[e];
+            break;
+        case HF_VARY_UNSTRESSED_LENGTH:
+            value[k] = m->target[e];
+            break;
+        case HF_VARY_SUPPORT_Z:
+        case HF_VARY_SUPPORT_NORMAL:
+        case HF_VARY_SUPPORT_XYZ:
+            value[k] = 0;
+            break;
+        }
+    }
+}
+
+static double within(double value, double low, double high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+void hf_variables_bound(const hf_optimize_settings *s, const hf_model *m, int k, double base, double *lower,
+                        double *upper, double *reach)
+{
+    if (hf_model_vary(m, k) == HF_VARY_PRETENSION) {
+        *reach = s->range_N;
+        *lower = within(base - s->range_N, s->min_tension_N, s->max_tension_N);
+        *upper = within(base + s->range_N, s->min_tension_N, s->max_tension_N);
+        return;
+    }
+    const hf_variable_settings *row = &s->variable[m->gene[k].setting];
+    double range = isnan(row->range_ratio) ? row->range : row->range_ratio * fabs(base);
+    bool is_ranged = !isnan(range);
+    double low = is_ranged ? base - range : row->lower, high = is_ranged ? base + range : row->upper;
+    if (!varies_support(row->vary)) low = fmax(low, LEFT * base);
+    *lower = within(low, row->lower, row->upper);
+    *upper = within(high, row->lower, row->upper);
+    *reach = is_ranged ? range : fmax(base - *lower, *upper - base);
+    if (isinf(*reach)) *reach = isinf(*upper) ? base - *lower : *upper - base;
+}

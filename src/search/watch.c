@@ -1,0 +1,226 @@
+/* Contents: what is watched - shapes - a step */
+#include "search/watch.h"
+
+#include "base/arena.h"
+#include "base/elementary.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* In brackets: the range over which no test of this module and of cli/limits fails, as far as it was tried. */
+#define LIMIT_INSIDE 1e-9 /* part by which a step stays within the limits on tensions [1e-11; 1e-7 fails] */
+
+/* ---- what is watched ---- */
+
+static void add(hf_watch *q, hf_watched item)
+{
+    if (q->item) q->item[q->n] = item;
+    q->n++;
+}
+
+static int add_cap(hf_watch *q, double cap)
+{
+    if (q->cap) q->cap[q->n_cap] = cap;
+    return q->n_cap++;
+}
+
+static void add_row(const hf_evaluator *v, const hf_limit *row, hf_watch *q)
+{
+    bool is_ratio = row->kind == HF_LIMIT_RATIO;
+    int cap = is_ratio ? add_cap(q, row->upper) : -1;
+    for (int i = 0; i < row->n_cable; i++)
+        add(q, (hf_watched){.cable = row->cable[i],
+                            .attachment = -1,
+                            .kind = HF_WATCH_ROW,
+                            .ratio = cap,
+                            .lower = is_ratio ? -INFINITY : row->lower,
+                            .upper = is_ratio ? INFINITY : row->upper});
+    for (int i = 0; row->kind == HF_LIMIT_DISPLACEMENT && i < v->model->n_attachment; i++)
+        add(q, (hf_watched){.cable = -1,
+                            .attachment = i,
+                            .ratio = -1,
+                            .kind = HF_WATCH_ROW,
+                            .lower = row->lower,
+                            .upper = row->upper});
+}
+
+/* Count the items, or write them where there is room. */
+static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *lower, const double *upper, hf_watch *q)
+{
+    const hf_model *m = v->model;
+    q->n = q->n_cap = 0;
+    q->has_cap = isfinite(v->boundary_ratio_cap);
+    int cap = q->has_cap ? add_cap(q, v->boundary_ratio_cap) : -1;
+    for (int e = 0; e < m->n_cable; e++) {
+        int gene = s->gene_of_cable[e];
+        bool is_in_ratio = cap >= 0 && m->group[e] == HF_GROUP_BOUNDARY;
+        if (gene >= 0 && hf_evaluate_sets(v, gene) != HF_SETS_TENSION) gene = -1;
+        if (gene < 0 && !is_in_ratio) continue;
+        add(q, (hf_watched){.cable = e,
+                            .attachment = -1,
+                            .kind = HF_WATCH_BOUND,
+                            .ratio = is_in_ratio ? cap : -1,
+                            .lower = gene >= 0 ? lower[gene] : -INFINITY,
+                            .upper = gene >= 0 ? upper[gene] : INFINITY});
+    }
+    for (int i = 0; v->limits && i < v->limits->n; i++)
+        add_row(v, &v->limits->row[i], q);
+}
+
+static void lay_out(hf_arena *a, hf_watch *q)
+{
+    q->item = hf_arena_take(a, (size_t)q->n, sizeof *q->item);
+    q->rate = hf_arena_take(a, (size_t)q->n * (size_t)q->n_variable, sizeof(double));
+    q->cap = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
+}
+
+hf_status hf_watch_create(const hf_evaluator *v, const hf_sensitivity *s, const double *lower, const double *upper,
+                          hf_watch *q)
+{
+    hf_arena arena = {0};
+    *q = (hf_watch){.n_variable = s->n};
+    list(v, s, lower, upper, q);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, q)));
+    q->block = arena.block;
+    list(v, s, lower, upper, q);
+    return HF_OK;
+}
+
+void hf_watch_free(hf_watch *q)
+{
+    free(q->block);
+    *q = (hf_watch){0};
+}
+
+/* ---- shapes ---- */
+
+static double value_of(const hf_watched *t, const hf_workspace *w)
+{
+    if (t->cable >= 0) return w->tension_N[t->cable];
+    const double *d = w->displacement_m + 3 * (ptrdiff_t)t->attachment;
+    return hf_norm(d[0], d[1], d[2]);
+}
+
+bool hf_watch_keeps(const hf_watch *q, const hf_workspace *w)
+{
+    for (int k = 0; k < q->n_cap; k++) {
+        double least = INFINITY, largest = -INFINITY;
+        for (int i = 0; i < q->n; i++) {
+            if (q->item[i].ratio != k) continue;
+            least = fmin(least, value_of(&q->item[i], w));
+            largest = fmax(largest, value_of(&q->item[i], w));
+        }
+        if (largest > q->cap[k] * least) return false;
+    }
+    for (int i = 0; i < q->n; i++) {
+        double value = value_of(&q->item[i], w);
+        if (value < q->item[i].lower || value > q->item[i].upper) return false;
+    }
+    return true;
+}
+
+/* Of the displacement of an attachment, along itself. */
+static void displacement_rates(const hf_watched *t, const hf_sensitivity *s, const hf_workspace *w, double *rate)
+{
+    const double *d = w->displacement_m + 3 * (ptrdiff_t)t->attachment;
+    for (int j = 0; j < s->n; j++) {
+        const double *move = hf_sensitivity_displacement(s, j, t->attachment);
+        rate[j] = t->value > 0 ? (d[0] * move[0] + d[1] * move[1] + d[2] * move[2]) / t->value : 0;
+    }
+}
+
+void hf_watch_linearise(hf_watch *q, const hf_sensitivity *s, const hf_workspace *w)
+{
+    for (int i = 0; i < q->n; i++) {
+        hf_watched *t = &q->item[i];
+        double *rate = q->rate + (size_t)i * (size_t)q->n_variable;
+        t->value = value_of(t, w);
+        t->unit = t->cable >= 0 ? fabs(t->value) : isfinite(t->upper) ? t->upper : t->lower;
+        if (t->cable >= 0)
+            hf_sensitivity_tension(s, t->cable, rate);
+        else
+            displacement_rates(t, s, w, rate);
+    }
+}
+
+void hf_watch_forget(hf_watch *q)
+{
+    for (int i = 0; i < q->n; i++)
+        q->item[i].bend = 0;
+}
+
+/* ---- a step ---- */
+
+/* The values that the linear model gives for the step x. */
+static void predict(hf_watch *q, const double *x)
+{
+    size_t n = (size_t)q->n_variable;
+    for (int i = 0; i < q->n; i++) {
+        const double *rate = q->rate + (size_t)i * n;
+        hf_watched *t = &q->item[i];
+        t->predicted = t->value + t->bend;
+        for (size_t j = 0; j < n; j++)
+            t->predicted += rate[j] * x[j];
+    }
+}
+
+void hf_watch_learn(hf_watch *q, const double *x, const hf_workspace *w)
+{
+    predict(q, x);
+    for (int i = 0; i < q->n; i++)
+        q->item[i].bend += value_of(&q->item[i], w) - q->item[i].predicted;
+}
+
+static const double *rate_of(const hf_watch *q, const hf_watched *t)
+{
+    return q->rate + (size_t)(t - q->item) * (size_t)q->n_variable;
+}
+
+/* high <= cap low: the largest and the least of the predicted values that cap k counts. */
+static bool breaks_cap(const hf_watch *q, int k, double *worst, hf_quadratic_limit *limit)
+{
+    double cap = q->cap[k] * (1 - LIMIT_INSIDE);
+    const hf_watched *high = NULL, *low = NULL;
+    for (int i = 0; i < q->n; i++) {
+        const hf_watched *t = &q->item[i];
+        if (t->ratio != k) continue;
+        if (!high || t->predicted > high->predicted) high = t;
+        if (!low || t->predicted < low->predicted) low = t;
+    }
+    if (!high) return false;
+    double excess = (high->predicted - cap * low->predicted) / fabs(high->predicted);
+    if (!(excess > *worst)) return false;
+    *worst = excess;
+    const double *up = rate_of(q, high), *down = rate_of(q, low);
+    for (int j = 0; j < q->n_variable; j++)
+        limit->normal[j] = cap * down[j] - up[j];
+    limit->bound = high->value + high->bend - cap * (low->value + low->bend);
+    limit->kind = q->has_cap && k == 0 ? HF_WATCH_CAP : HF_WATCH_ROW;
+    return true;
+}
+
+bool hf_watch_worst(hf_watch *q, const double *x, double worst, hf_quadratic_limit *limit)
+{
+    const hf_watched *held = NULL;
+    double sign = 0;
+    bool is_broken = false;
+    predict(q, x);
+    for (int i = 0; i < q->n; i++) {
+        const hf_watched *t = &q->item[i];
+        double below = (t->lower + LIMIT_INSIDE * t->unit - t->predicted) / t->unit;
+        double above = (t->predicted - t->upper + LIMIT_INSIDE * t->unit) / t->unit;
+        if (!(fmax(below, above) > worst)) continue;
+        worst = fmax(below, above);
+        sign = below > above ? 1 : -1;
+        held = t;
+    }
+    for (int k = 0; k < q->n_cap; k++)
+        if (breaks_cap(q, k, &worst, limit)) is_broken = true;
+    if (is_broken || !held) return is_broken;
+    double inside = LIMIT_INSIDE * held->unit, bound = sign > 0 ? held->lower : held->upper;
+    for (int j = 0; j < q->n_variable; j++)
+        limit->normal[j] = sign * rate_of(q, held)[j];
+    limit->bound = sign * (bound - held->value - held->bend) + inside;
+    limit->kind = held->kind;
+    return true;
+}
