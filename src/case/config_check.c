@@ -240,7 +240,7 @@ static void check_goals(const hf_optimize_settings *o, hf_config_faults *f)
     for (int i = 0; i < o->n_goal; i++) {
         const hf_goal_settings *g = &o->goal[i];
         for (size_t k = 0; k < sizeof use / sizeof *use; k++)
-            check_use(f, list, i, use[k].key, g->goal, hf_goal_word, use[k].users);
+            check_use(f, list, i, use[k].key, (int)g->goal, hf_goal_word, use[k].users);
         check_set_name(f, list, i, g->set);
         if (g->goal == HF_GOAL_TENSION && isnan(g->target))
             fault_in_row(f, list, i, "target", "is missing: the tension that is wanted, in N");
@@ -256,7 +256,7 @@ static void check_limits(const hf_optimize_settings *o, hf_config_faults *f)
     static const char list[] = "optimize.limits";
     for (int i = 0; i < o->n_limit; i++) {
         const hf_limit_settings *l = &o->limit[i];
-        check_use(f, list, i, "set", l->limit, hf_limit_word, 1u << HF_LIMIT_TENSION | 1u << HF_LIMIT_RATIO);
+        check_use(f, list, i, "set", (int)l->limit, hf_limit_word, 1u << HF_LIMIT_TENSION | 1u << HF_LIMIT_RATIO);
         check_set_name(f, list, i, l->set);
         double least = l->limit == HF_LIMIT_RATIO ? 1 : 0; /* of what is limited from above alone */
         if (l->limit != HF_LIMIT_TENSION && (l->lower > least || l->upper <= least || isinf(l->upper)))

@@ -342,6 +342,23 @@ START_TEST(all_faults_of_rows_are_told_in_one_run)
 }
 END_TEST
 
+/* Rows get their defaults while the file is being read: without memory there, too, a status, no leak and no crash. */
+START_TEST(any_allocation_of_rows_may_fail)
+{
+    for (long n = 1;; n += 1 + n / 100) {
+        hf_messages messages = {0};
+        hf_case c;
+        fail_allocation_at(n);
+        hf_status status = hf_config_parse("c.yaml", ROWS, NULL, 0, &c, &messages);
+        bool reached = end_allocation_failure();
+        hf_case_free(&c);
+        hf_messages_free(&messages);
+        ck_assert_msg(status == (reached ? HF_NO_MEMORY : HF_OK), "allocation %ld: %d", n, status);
+        if (!reached) break;
+    }
+}
+END_TEST
+
 Suite *suite_unit_config_rows(void)
 {
     Suite *suite = suite_create("unit/config_rows");
@@ -355,5 +372,6 @@ Suite *suite_unit_config_rows(void)
     tcase_add_loop_test(tests, faults_of_rows_are_told_where_they_are, 0, N_BAD_ROW);
     tcase_add_test(tests, rows_are_counted);
     tcase_add_test(tests, all_faults_of_rows_are_told_in_one_run);
+    tcase_add_test(tests, any_allocation_of_rows_may_fail);
     return suite;
 }
