@@ -77,6 +77,27 @@ static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, co
     complain(l, mark, key, "unknown key", *detail ? detail : " (hifdm schema lists all keys)");
 }
 
+/* Report what --set takes for a key of a row, but is none: no number of a row, or a row as a whole. Returns whether it
+ * is in a list. */
+static bool complain_of_row(loader *l, yaml_mark_t mark, const char *path)
+{
+    char what[128];
+    hf_key of;
+    for (const hf_list *list = hf_list_table; list < hf_list_table + hf_n_list; list++) {
+        size_t n = strlen(list->path);
+        const char *dot = strrchr(path, '.');
+        char row[HF_KEY_SIZE];
+        if (strncmp(path, list->path, n) != 0 || path[n] != '.') continue;
+        snprintf(row, sizeof row, "%.*s", (int)(dot - path), path);
+        if (hf_key_find(row, &of) && !of.field) return false; /* the key is misspelt */
+        snprintf(what, sizeof what, "is no key of a row, which is %s.N.KEY with N from 0 to %d", list->path,
+                 list->max_row - 1);
+        complain(l, mark, path, what, "");
+        return true;
+    }
+    return false;
+}
+
 /* ---- setting one value ---- */
 
 static void tell_place(loader *l, const yaml_node_t *node, int i_place)
@@ -166,7 +187,7 @@ static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, cons
         l->cut[0] = key_mark;
         l->cut[1] = value->end_mark;
     } else if (!fits || find_section(path) < 0) {
-        complain_unknown(l, key_mark, prefix, key);
+        if (!fits || !complain_of_row(l, key_mark, path)) complain_unknown(l, key_mark, prefix, key);
     } else if (value->type != YAML_MAPPING_NODE) {
         complain(l, key_mark, path, "must be a section of key: value lines", " ({} takes every default)");
     } else {

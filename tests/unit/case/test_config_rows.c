@@ -283,6 +283,12 @@ static const struct {
     {OPTIMIZE "  variables: [" ROW "]\n", "optimize.variables.1.range=1",
      "error: --set optimize.variables.1.range=1: optimize.variables.1.range: there is no such row: optimize.variables "
      "has 1, numbered from 0\n"},
+    {OPTIMIZE "  variables: [" ROW "]\n", "optimize.variables.16.range=1",
+     "error: --set optimize.variables.16.range=1: optimize.variables.16.range: is no key of a row, which is "
+     "optimize.variables.N.KEY with N from 0 to 15\n"},
+    {OPTIMIZE "  variables: [" ROW "]\n", "optimize.variables.0={set: b}",
+     "error: --set optimize.variables.0={set: b}: optimize.variables.0: is no key of a row, which is "
+     "optimize.variables.N.KEY with N from 0 to 15\n"},
     {OPTIMIZE "  variables: [" ROW "]\n", "optimize.variables.0.rnge=1",
      "error: --set optimize.variables.0.rnge=1: rnge: unknown key; did you mean 'range'?\n"},
     {OPTIMIZE "  variables: [" ROW "]\n", "optimize.variables.0.link=symmetry",
