@@ -362,34 +362,6 @@ hf_status hf_model_group_genes(hf_model *m)
     return HF_OK;
 }
 
-static const char *direction_name(const hf_gene *g)
-{
-    if (g->vary == HF_VARY_SUPPORT_NORMAL) return "normal";
-    return g->direction[0] > 0 ? "x" : g->direction[1] > 0 ? "y" : "z";
-}
-
-void hf_model_gene_name(const hf_model *m, const hf_scene *scene, int k, char *text, size_t size)
-{
-    if (m->gene_cable[k] >= 0)
-        snprintf(text, size, "%s", scene->cable_id[m->gene_cable[k]]);
-    else
-        snprintf(text, size, "%s.%s", scene->node_id[m->node_of_row[m->gene[k].support_row]],
-                 direction_name(&m->gene[k]));
-}
-
-const char *hf_model_gene_unit(const hf_model *m, int k)
-{
-    switch (hf_model_vary(m, k)) {
-    case HF_VARY_PRETENSION:
-    case HF_VARY_TENSION:
-        return "N";
-    case HF_VARY_FORCE_DENSITY:
-        return "N/m";
-    default:
-        return "m";
-    }
-}
-
 /* ---- build ---- */
 
 static hf_status build(const hf_scene *scene, const hf_form_settings *form, const int *order, hf_model *m)
