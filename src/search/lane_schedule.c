@@ -6,18 +6,21 @@ void hf_lane_schedule_run(const hf_lane_solver *work, void *solver, hf_lane_next
 {
     int design[HF_LANES], n_busy = 0; /* -1: the lane is free */
     bool has_more = true;
-    for (int lane = 0; lane < HF_LANES; lane++) {
-        work->load(solver, lane, 0);
+    int i = next(context); /* -1: to be asked for */
+    if (i < 0) return;
+    for (int lane = 0; lane < HF_LANES; lane++) { /* free lanes repeat a design of this thread: others may be written */
+        work->load(solver, lane, i);
         design[lane] = -1;
     }
     for (;;) {
         for (int lane = 0; lane < HF_LANES && has_more; lane++) {
             if (design[lane] >= 0) continue;
-            int i = next(context);
+            if (i < 0) i = next(context);
             has_more = i >= 0;
             if (!has_more) break;
             work->load(solver, lane, i);
             design[lane] = i;
+            i = -1;
             n_busy++;
         }
         if (n_busy == 0) return;

@@ -16,8 +16,9 @@ typedef struct {
     void (*step)(void *solver);                           /* advance all lanes by one iteration */
 } hf_lane_solver;
 
-/* Solve every design whose index next(context) returns. A lane that has no design yet is loaded with design 0, because
- * the kernels work on all lanes and need ordinary numbers there; it is not settled. */
+/* Solve every design whose index next(context) returns. A lane that has no design yet is loaded with the first of
+ * them, because the kernels work on all lanes and need ordinary numbers there; it is not settled. Designs that `next`
+ * has not returned are not looked at: other threads may be writing them. */
 void hf_lane_schedule_run(const hf_lane_solver *work, void *solver, hf_lane_next *next, void *context);
 
 #endif
