@@ -16,7 +16,7 @@
 
 /* Weight of a cable whose law gives no tension, over that of one whose law does. */
 #define FREE_WEIGHT 1e-2
-/* Least tension over the largest that is wanted, well above what counts as slack. */
+/* Least tension over the largest that is wanted: ten times what counts as slack beside that one. */
 #define LEAST_RATIO 1e-2
 /* Nodal residual, over the reference tension, at which the tensions are as exact as rounding lets them be. */
 #define EXACT 1e-14
@@ -91,10 +91,12 @@ static void set_wants(programme *p)
             p->unit[3 * e + c] =
                 (m->position_m[c * m->n_node + end[1]] - m->position_m[c * m->n_node + end[0]]) / m->length_m[e];
         bool is_density = m->law[e] == HF_LAW_FORCE_DENSITY, is_strut = is_density && m->target[e] < 0;
-        p->is_free[e] = is_any_given && !is_density && !hf_law_has(m->law[e], HF_LAW_GIVES_TENSION);
+        bool moves_none = end[0] >= m->n_free && end[1] >= m->n_free; /* balance needs nothing of it */
+        bool gives = is_density || hf_law_has(m->law[e], HF_LAW_GIVES_TENSION);
+        p->is_free[e] = is_any_given && !moves_none && !gives;
         p->least_N[e] = is_strut ? -INFINITY : LEAST_RATIO * p->reference_N;
         p->wanted_N[e] = is_density ? m->target[e] * m->length_m[e] : p->is_free[e] ? p->least_N[e] : m->target[e];
-        if (!is_any_given) p->wanted_N[e] = m->pretension_N;
+        if (!is_any_given || (moves_none && !gives)) p->wanted_N[e] = m->pretension_N;
         p->weight[e] = p->is_free[e] ? FREE_WEIGHT : 1;
     }
 }

@@ -96,6 +96,22 @@ START_TEST(tie_takes_what_balance_needs)
 }
 END_TEST
 
+/* Its family, of law length, takes what balance needs; of this cable that is nothing. */
+START_TEST(cable_between_supports_wants_the_pretension)
+{
+    static const struct hand_cable cable[] = {LEG(0, HF_LAW_TENSION, 15),
+                                              LEG(1, HF_LAW_TENSION, 15),
+                                              LEG(2, HF_LAW_TENSION, 15),
+                                              LEG(3, HF_LAW_LENGTH, 2),
+                                              {{0, 1}, HF_GROUP_INNER, HF_LAW_LENGTH, 1}};
+    struct net net;
+    HOLD_HAND(&net, tripod, cable, NULL);
+    ck_assert_double_gt(pull_N(&net, 3), 20);
+    ck_assert_double_eq_tol(pull_N(&net, 4), net.form.pretension_N, 1e-12);
+    close_net(&net);
+}
+END_TEST
+
 /* Where no law gives a tension, all want the pretension. */
 START_TEST(lengths_alone_want_the_pretension)
 {
@@ -160,6 +176,7 @@ Suite *suite_unit_prestress(void)
     tcase_add_test(tests, cables_in_line_share_the_mean);
     tcase_add_test(tests, no_cable_pushes);
     tcase_add_test(tests, tie_takes_what_balance_needs);
+    tcase_add_test(tests, cable_between_supports_wants_the_pretension);
     tcase_add_test(tests, lengths_alone_want_the_pretension);
     tcase_add_test(tests, node_without_a_tie_is_named);
     tcase_add_test(tests, numbers_that_overflow_are_refused);
