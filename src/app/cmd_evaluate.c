@@ -1,10 +1,11 @@
 /* `hifdm evaluate` evaluates a table of designs. It serves optimisers and parameter studies that the user wrote.
  *
- * in : one design per row. Each boundary cable with a free end has a column, named by the cable's id, with its
- *      pretension in N; the columns may be in any order. An optional column `id` names the rows.
- * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation,merit. One row per
- * design,      in the order of the input, with 17 significant digits; a missing value is nan. Without an id column the
- * rows are      numbered from 1.
+ * in : one design per row. Each variable has a column by the name of its gene (hf_model_gene_name): without
+ *      optimize.variables each boundary cable with a free end, by its id, with its pretension in N. The columns may be
+ *      in any order. An optional column `id` names the rows.
+ * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation,merit, and with
+ *      optimize.goals a column for each (hf_goals_name). One row per design, in the order of the input, with 17
+ *      significant digits; a missing value is nan. Without an id column the rows are numbered from 1.
  *
  * Contents: the table - the base design - evaluation - writing - together */
 #include "app/cmd.h"
@@ -33,17 +34,19 @@
 typedef struct {
     hf_problem problem;
     hf_csv table;
-    const char **name;      /* [n_gene + 1] columns: the cable of each gene, then "id" */
-    int *where;             /* [n_gene + 1] column in the table */
-    double *design_N;       /* [n_row][n_gene] */
-    hf_form_result *result; /* [n_row] */
-    int n_feasible, best;   /* best: row, or -1 */
+    char (*gene)[HF_GENE_NAME_SIZE]; /* [n_gene] */
+    const char **name;               /* [n_gene + 1] columns: the name of each gene, then "id" */
+    int *where;                      /* [n_gene + 1] column in the table */
+    double *design_N;                /* [n_row][n_gene] */
+    hf_form_result *result;          /* [n_row] */
+    int n_feasible, best;            /* best: row, or -1 */
     double wall_s;
 } job;
 
 static void job_free(job *j)
 {
     hf_csv_free(&j->table);
+    free(j->gene);
     free(j->name);
     free(j->where);
     free(j->design_N);
@@ -53,7 +56,7 @@ static void job_free(job *j)
 
 static hf_status no_memory(const job *j, hf_messages *messages)
 {
-    return hf_error(messages, HF_NO_MEMORY, "out of memory for %d designs of %d cables", j->table.n_row,
+    return hf_error(messages, HF_NO_MEMORY, "out of memory for %d designs of %d variables", j->table.n_row,
                     j->problem.model.n_gene);
 }
 
@@ -61,13 +64,24 @@ static hf_status no_memory(const job *j, hf_messages *messages)
 
 static hf_status name_columns(job *j, hf_messages *messages)
 {
-    size_t n = (size_t)j->problem.model.n_gene + 1;
+    const hf_model *m = &j->problem.model;
+    size_t n = (size_t)m->n_gene + 1;
+    j->gene = calloc(n, sizeof *j->gene);
     j->name = calloc(n, sizeof *j->name);
     j->where = calloc(n, sizeof *j->where);
-    if (!j->name || !j->where) return no_memory(j, messages);
-    for (int k = 0; k < j->problem.model.n_gene; k++)
-        j->name[k] = j->problem.scene.cable_id[j->problem.model.gene_cable[k]];
-    j->name[j->problem.model.n_gene] = "id";
+    if (!j->gene || !j->name || !j->where) return no_memory(j, messages);
+    for (int k = 0; k < m->n_gene; k++) {
+        hf_model_gene_name(m, &j->problem.scene, k, j->gene[k], sizeof j->gene[k]);
+        j->name[k] = j->gene[k];
+    }
+    j->name[m->n_gene] = "id";
+    for (int k = 0; k < m->n_gene; k++) { /* cables among each other have ids of their own, and so have supports */
+        for (int i = 0; m->gene_cable[k] < 0 && i < m->n_gene; i++)
+            if (m->gene_cable[i] >= 0 && !strcmp(j->name[i], j->name[k]))
+                return hf_error(messages, HF_BAD_CASE,
+                                "optimize.variables: cable '%s' has the name of a variable of a support; rename it",
+                                j->name[i]);
+    }
     return HF_OK;
 }
 
@@ -85,7 +99,8 @@ static void read_row(job *j, int row)
     for (int k = 0; k < j->problem.model.n_gene; k++) {
         if (j->where[k] < 0) continue;
         design[k] = hf_csv_number(t, row, j->where[k], row_id(j, row), j->name[k]);
-        if (design[k] > 0 || isnan(design[k])) continue;
+        bool is_cable = j->problem.model.gene_cable[k] >= 0; /* supports move either way */
+        if (!is_cable || design[k] > 0 || isnan(design[k])) continue;
         char what[512];
         snprintf(what, sizeof what, "%s must be above zero, not ", j->name[k]);
         hf_csv_fault(t, t->line[row], row_id(j, row), what, hf_csv_cell(t, row, j->where[k]));
@@ -96,7 +111,8 @@ static hf_status read_table(job *j, const char *path, hf_messages *messages)
 {
     int n_gene = j->problem.model.n_gene;
     hf_csv *t = &j->table;
-    hf_status status = hf_csv_read(path, j->problem.scene.n_cable + COLUMN_SPARE, t, messages);
+    int most = n_gene > j->problem.scene.n_cable ? n_gene : j->problem.scene.n_cable;
+    hf_status status = hf_csv_read(path, most + COLUMN_SPARE, t, messages);
     /* a fault in one line does not end the reading: one run reports the faults of all lines */
     if (status == HF_NO_MEMORY || t->n_row == 0 || t->n_fault > HF_FAULT_MAX) return status;
     status = hf_csv_find_columns(t, j->name, n_gene + 1, n_gene, j->where);
@@ -136,7 +152,7 @@ static hf_status evaluate(job *j, int threads, hf_messages *messages)
     for (int i = 0; i < j->table.n_row; i++) {
         if (j->result[i].status != HF_OK) continue;
         j->n_feasible++;
-        if (j->best < 0 || j->result[i].psi_m < j->result[j->best].psi_m) j->best = i;
+        if (j->best < 0 || j->result[i].merit < j->result[j->best].merit) j->best = i;
     }
     return HF_OK;
 }
@@ -170,19 +186,32 @@ static void write_figure(const hf_result_field *field, const hf_form_result *r, 
         fprintf(f, ",%d", *(const int *)value);
 }
 
+/* Designs beyond a limit have a shape, and its goals. */
+static void write_goals(const hf_goals *goals, const hf_form_result *r, FILE *f)
+{
+    for (int k = 0; k < goals->n_goal; k++)
+        write_number(hf_status_has_shape(r->status) ? r->goal[k] : (double)NAN, f);
+}
+
 static void write_results(const void *context, FILE *f)
 {
     const job *j = context;
+    const hf_goals *goals = &j->problem.goals;
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
     hf_result_list_individual(field);
     fputs("id", f);
     for (int k = 0; k < HF_RESULT_N_INDIVIDUAL; k++)
         fprintf(f, ",%s", field[k]->name);
+    for (int k = 0; k < goals->n_goal; k++) {
+        char name[HF_GOAL_NAME_SIZE];
+        fprintf(f, ",%s", hf_goals_name(goals, k, name));
+    }
     fputc('\n', f);
     for (int i = 0; i < j->table.n_row; i++) {
         write_row_id(j, i, f);
         for (int k = 0; k < HF_RESULT_N_INDIVIDUAL; k++)
             write_figure(field[k], &j->result[i], f);
+        write_goals(goals, &j->result[i], f);
         fputc('\n', f);
     }
 }
@@ -206,13 +235,30 @@ static void print_summary(const job *j, const char *path, FILE *f)
     char wall[32], best[400] = "", row[16]; /* a longer id is cut */
     hf_print_duration(j->wall_s, wall, sizeof wall);
     snprintf(row, sizeof row, "%d", j->best + 1);
-    if (j->best >= 0)
-        snprintf(best, sizeof best, "; best psi %.4f mm, %s", j->result[j->best].psi_m * 1e3,
-                 row_id(j, j->best) ? row_id(j, j->best) : row);
+    const char *id = j->best >= 0 && row_id(j, j->best) ? row_id(j, j->best) : row;
+    if (j->best >= 0 && j->problem.goals.n_goal)
+        snprintf(best, sizeof best, "; best merit %.6g, %s", j->result[j->best].merit, id);
+    else if (j->best >= 0)
+        snprintf(best, sizeof best, "; best psi %.4f mm, %s", j->result[j->best].psi_m * 1e3, id);
     hf_print_line(f, "%d designs, %d feasible%s; %s, %.0f evaluations/s by %s on %d thread%s; results in %s",
                   j->table.n_row, j->n_feasible, best, wall, j->table.n_row / j->wall_s,
                   hf_solver_word[j->problem.solver], j->problem.batch.n_thread,
                   j->problem.batch.n_thread == 1 ? "" : "s", path);
+}
+
+/* Of the best design, with optimize.goals. */
+static void print_best_goals(const job *from, hf_json *j)
+{
+    const hf_goals *goals = &from->problem.goals;
+    if (goals->n_goal == 0) return;
+    const hf_form_result *best = from->best < 0 ? NULL : &from->result[from->best];
+    hf_json_number(j, "best_merit", best ? best->merit : (double)NAN);
+    hf_json_open(j, "best_goals", '{');
+    for (int k = 0; k < goals->n_goal; k++) {
+        char name[HF_GOAL_NAME_SIZE];
+        hf_json_number(j, hf_goals_name(goals, k, name), best ? best->goal[k] : (double)NAN);
+    }
+    hf_json_close(j, '}');
 }
 
 static void print_json(const job *from, const char *path, hf_status status, const char *messages, FILE *f)
@@ -226,6 +272,7 @@ static void print_json(const job *from, const char *path, hf_status status, cons
         hf_json_integer(&j, "feasible", from->n_feasible);
         hf_json_number(&j, "best_psi_m", from->best < 0 ? (double)NAN : from->result[from->best].psi_m);
         hf_json_integer(&j, "best_row", from->best + 1);
+        print_best_goals(from, &j);
         hf_json_integer(&j, "threads", from->problem.batch.n_thread);
         hf_json_text(&j, "solver", hf_solver_word[from->problem.solver]);
         hf_json_number(&j, "wall_s", from->wall_s);
@@ -299,8 +346,8 @@ static hf_status command_evaluate(const hf_options *options, FILE *file, hf_mess
     else if (status == HF_OK && path && !options->quiet && options->designs)
         print_summary(&j, path, file);
     else if (status == HF_OK && path && !options->quiet)
-        hf_print_line(file, "%d adjustable cables; their tensions after form-finding in %s", j.problem.model.n_gene,
-                      path);
+        hf_print_line(file, "%d %s after form-finding in %s", j.problem.model.n_gene,
+                      j.problem.model.gene ? "variables; their values" : "adjustable cables; their tensions", path);
     job_free(&j);
     return status;
 }
@@ -308,10 +355,11 @@ static hf_status command_evaluate(const hf_options *options, FILE *file, hf_mess
 const hf_command hf_cmd_evaluate = {
     .name = "evaluate",
     .argument = "CASE",
-    .help = "evaluate a table of designs (boundary pretensions), to a table on standard output or -o",
-    .about = "For an optimiser of your own: a row of the table is a design, one pretension in N for each boundary "
-             "cable with a free end; a row of the answer is its psi, residual and tension ratios, to the same bits as "
-             "in hifdm run. All cores work.",
+    .help = "evaluate a table of designs, to a table on standard output or -o",
+    .about =
+        "For an optimiser of your own: a row of the table is a design, a value for each variable of the case: "
+        "those of optimize.variables, or one pretension in N for each boundary cable with a free end; a row of the "
+        "answer is its psi, residual, tension ratios and goals, to the same bits as in hifdm run. All cores work.",
     .examples = "hifdm evaluate case.yaml --template base.csv\n"
                 "hifdm evaluate case.yaml --designs designs.csv -o results.csv",
     .uses_threads = true,

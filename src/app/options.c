@@ -154,9 +154,10 @@ static hf_status read_bash(const hf_option *option, const char *value, hf_option
 static const hf_option option_table[] = {
     {"--output", "-o", "FILE", "result file (default: the case's name with .h5, in this folder)", "run", read_text,
      AT(output), NULL},
-    {"--designs", NULL, "FILE", "CSV: a column for each adjustable cable by its id, optionally id; N; a design per row",
-     "evaluate", read_text, AT(designs), NULL},
-    {"--template", NULL, "FILE", "instead: write such a table, with the tensions after form-finding as its one row",
+    {"--designs", NULL, "FILE",
+     "CSV: a column for each variable (without optimize.variables: adjustable cable, N), optionally id", "evaluate",
+     read_text, AT(designs), NULL},
+    {"--template", NULL, "FILE", "instead: write such a table, with the values after form-finding as its one row",
      "evaluate", read_text, AT(template_path), NULL},
     {"--output", "-o", "FILE", "CSV of the results (default: standard output)", "evaluate", read_text, AT(output),
      NULL},

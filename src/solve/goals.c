@@ -110,6 +110,13 @@ hf_status hf_goals_create(const hf_scene *scene, const hf_model *m, const hf_opt
     return n_fault ? HF_BAD_CASE : HF_OK;
 }
 
+const char *hf_goals_name(const hf_goals *goals, int i_goal, char text[HF_GOAL_NAME_SIZE])
+{
+    const hf_goal_settings *s = &goals->goal[i_goal].wanted;
+    snprintf(text, HF_GOAL_NAME_SIZE, "goal_%d_%s%s%s", i_goal, hf_goal_word[s->goal], *s->set ? "_" : "", s->set);
+    return text;
+}
+
 void hf_goals_free(hf_goals *goals)
 {
     hf_arena arena = {.block = goals->block};

@@ -120,6 +120,13 @@ def residual_N(file):
     return float(np.linalg.norm(force_N[file["scene/node/role"][:] != 0], axis=1).max())
 
 
+def held(q_N_per_m, support_m):
+    """Where cables of these force densities hold a node among supports, and their tensions."""
+    q, support = np.array(q_N_per_m), np.array(support_m)
+    node = q @ support / q.sum()
+    return node, q * np.linalg.norm(node - support, axis=1)
+
+
 def sha256(content):
     return hashlib.sha256(content).hexdigest()
 

@@ -1,0 +1,104 @@
+/* The rows optimize.variables, goals and limits of a case on the surface of the program: tables of designs, summaries
+ * and files. */
+#include "cli.h"
+
+/* One free node on two boundary cables and a stay whose support moves. c4 joins two supports, so it has no gene. */
+static const char nodes[] =
+    "id,x_m,y_m,z_m,role\na,0,0,0,support\nb,4,0,0,support\nc,2,3,1,support\nm,1.7,1,0.3,inner\n";
+static const char cables[] = "id,i,j,group,law,value,set\nc1,a,m,boundary,tension,10,edge\n"
+                             "\"c,2\",b,m,boundary,tension,10,edge\nc3,c,m,boundary,tension,9,stay\n"
+                             "c4,a,b,boundary,tension,10,\n";
+
+#define VARIABLES                                                                                                      \
+    "optimize.variables=[{set: edge, vary: force_density, range: 50 %}, {set: stay, vary: support_xyz, range: 0.5}]"
+#define GOALS "optimize.goals=[{goal: psi}, {goal: tension, set: edge, target: 9, weight: 0.1}]"
+
+/* ---- hifdm evaluate ---- */
+
+START_TEST(a_template_has_a_column_for_each_variable)
+{
+    const char *net = net_with(nodes, cables), *path = temp("t.csv");
+    HIFDM(0, "evaluate", net, "--template", path, "--set", VARIABLES);
+    OUT("5 variables; their values after form-finding in ");
+    EXPECT(path, "--", "list(a[0]) == ['id', 'c1', 'c,2', 'c.x', 'c.y', 'c.z']", "len(a) == 1",
+           "[a[0][k] for k in ('id', 'c.x', 'c.y', 'c.z')] == ['base', '0', '0', '0']",
+           "3 < float(a[0]['c1']) < 6"); /* N/m of a cable of about 2 m with 10 N */
+    HIFDM(0, "evaluate", net, "--template", path, "--force", "--set",
+          "optimize.variables=[{set: edge, vary: length, range: 0.1}]");
+    EXPECT(path, "--", "list(a[0]) == ['id', 'c1', 'c,2']", "1 < float(a[0]['c1']) < 3");
+}
+END_TEST
+
+/* The node is the mean of its three neighbours, weighted by the force densities. */
+START_TEST(variables_and_goals_of_any_kind_are_evaluated)
+{
+    const char *net = net_with(nodes, cables), *table = temp("r.csv");
+    const char *designs = file_with("d.csv", "c.z,c1,\"c,2\",c.y,id,c.x,c3\n-.5,4,5,-1e-1,low,0,3\n.25,4,4,0,,.1,3\n");
+    HIFDM(
+        0, "evaluate", net, "--designs", designs, "-o", table, "--set",
+        "optimize.variables=[{set: edge, vary: force_density, range: 50 %}, {set: stay, vary: support_xyz, range: 1}, "
+        "{set: stay, vary: force_density, range: 90 %}]",
+        "--set", GOALS);
+    OUT("2 designs, 2 feasible; best merit ");
+#define HELD "held(q, [[0, 0, 0], [4, 0, 0], c])"
+#define EACH "for r, q, c in zip(a, ([4, 5, 3], [4, 4, 3]), ([2, 2.9, .5], [2.1, 3, 1.25])))"
+    EXPECT(table, "--", "list(a[0])[-4:] == ['violation', 'merit', 'goal_0_psi', 'goal_1_tension_edge']",
+           "[r['id'] for r in a] == ['low', '']",
+           "all(near(float(r['goal_0_psi']), np.linalg.norm(" HELD "[0] - [1.7, 1, .3]), 1e-14) " EACH,
+           "all(near(float(r['goal_1_tension_edge']), np.sqrt(np.mean((" HELD "[1][:2] - 9)**2)), 1e-14) " EACH,
+           "all(near(float(r['merit'])**2, float(r['goal_0_psi'])**2 + (float(r['goal_1_tension_edge']) / 10)**2, "
+           "1e-14) for r in a)",
+           "all(r['psi_m'] == r['goal_0_psi'] for r in a)");
+}
+END_TEST
+
+/* The best is that of the least merit; without a shape there are no goals, beyond a limit there are. */
+START_TEST(the_best_is_that_of_the_merit)
+{
+    const char *net = net_with(nodes, cables), *table = temp("r.csv");
+    HIFDM(0, "evaluate", net, "--designs", file_with("d.csv", "c1,\"c,2\"\n4.5,3.5\n5.5,5.5\n2,2\n"), "-o", table,
+          "--json", "--set", "optimize.variables=[{set: edge, vary: force_density, range: 50 %}]", "--set",
+          "optimize.goals=[{goal: psi, weight: 1e-9}, {goal: tension, set: edge, target: 12}]", "--set",
+          "optimize.limits=[{limit: tension, set: edge, bounds: [5, 30]}]");
+    EXPECT(out_as("r.json"), table, "--", "a['best_row'] == 2 and float(b[0]['psi_m']) < float(b[1]['psi_m'])",
+           "a['best_merit'] == float(b[1]['merit']) < float(b[0]['merit'])",
+           "a['best_goals'] == {k: float(b[1][k]) for k in ('goal_0_psi', 'goal_1_tension_edge')}",
+           "a['best_psi_m'] == float(b[1]['psi_m'])", "b[2]['status'] == 'out_of_limits'",
+           "b[2]['merit'] == b[2]['psi_m'] == 'nan' and float(b[2]['goal_1_tension_edge']) > 6");
+}
+END_TEST
+
+START_TEST(values_of_cables_are_above_zero)
+{
+    const char *bad = file_with("d.csv", "c1,\"c,2\",c.x,c.y,c.z\n4,-4,-1,0,-0.0\n4,4,one,0,0\n0,4,0,0,0\n");
+    HIFDM(2, "evaluate", net_with(nodes, cables), "--designs", bad, "--set", VARIABLES);
+    ERRS("error: %s:2: c,2 must be above zero, not -4\n", bad);
+    ERRS("error: %s:3: c.x must be a finite number, not one\n", bad);
+    ERRS("error: %s:4: c1 must be above zero, not 0\n", bad);
+    ck_assert_int_eq(count_of(said.err, "error: "), 3);
+}
+END_TEST
+
+START_TEST(a_cable_called_like_a_variable_of_a_support_is_refused)
+{
+    HIFDM(2, "evaluate",
+          net_with(nodes, "id,i,j,group,law,value,set\nc1,a,m,boundary,tension,10,edge\n"
+                          "c.y,b,m,boundary,tension,10,edge\nc3,c,m,boundary,tension,9,stay\n"),
+          "--template", temp("t.csv"), "--set", VARIABLES);
+    ERR("error: optimize.variables: cable 'c.y' has the name of a variable of a support; rename it\n");
+    ck_assert(!is_there(temp("t.csv")));
+}
+END_TEST
+
+Suite *suite_cli_rows(void)
+{
+    Suite *suite = suite_create("cli/rows");
+    TCase *tests = tcase_create("rows");
+    suite_add_tcase(suite, tests);
+    tcase_add_test(tests, a_template_has_a_column_for_each_variable);
+    tcase_add_test(tests, variables_and_goals_of_any_kind_are_evaluated);
+    tcase_add_test(tests, the_best_is_that_of_the_merit);
+    tcase_add_test(tests, values_of_cables_are_above_zero);
+    tcase_add_test(tests, a_cable_called_like_a_variable_of_a_support_is_refused);
+    return suite;
+}
