@@ -317,7 +317,7 @@ FLAGS_avx512 = $(if $(X86),-mavx512f -mprefer-vector-width=512)
 # The stack on which gcc 12's address sanitizer finds uses after a return is not aligned for 512-bit vectors.
 FLAGS_kernel := $(if $(findstring address,$(SANITIZE)),$(if $(findstring clang,$(CC)),,--param=asan-stack=0))
 define kernel_rule
-$(BUILD)/src/%_kernel_$(1).o: EXTRA = -DHF_ISA=$(1) $(FLAGS_$(1)) $(FLAGS_kernel)
+$(BUILD)/src/%_kernel_$(1).o: EXTRA = -DHF_ISA=$(1) $$(FLAGS_$(1)) $$(FLAGS_kernel)
 $(BUILD)/src/%_kernel_$(1).o: src/%_kernel.c $(BUILD)/flags
 	$$(call say,CC,$$< ($(1)))
 	@mkdir -p $$(@D)
