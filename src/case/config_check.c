@@ -178,7 +178,7 @@ static void fault_in_row(hf_config_faults *f, const char *list, int row, const c
 
 static void check_set_name(hf_config_faults *f, const char *list, int row, const char *set)
 {
-    bool is_group = !strcmp(set, hf_group_word[0]) || !strcmp(set, hf_group_word[1]);
+    bool is_group = !strcmp(set, hf_group_word[0]) || !strcmp(set, hf_group_word[1]) || !strcmp(set, "all");
     const char *fault = *set && !is_group ? hf_cable_set_name_fault(set) : NULL;
     if (fault) fault_in_row(f, list, row, "set", fault);
 }

@@ -150,7 +150,7 @@ const hf_field hf_field_table[] = {
     {"optimize.elites", HF_FIELD_INT, AT(optimize.elites), 1, 100000, "1", "", NULL,
      "best individuals that live on unchanged; variation difference moves them in its crossovers"},
     {"optimize.stagnation_tolerance_m", HF_FIELD_DOUBLE, AT(optimize.stagnation_tolerance_m), 0, BIG, "1e-6", "m", NULL,
-     "stop when the best psi gained less than this over the window below"},
+     "stop when the best psi, or merit, gained less than this over the window below"},
     {"optimize.stagnation_generations", HF_FIELD_INT, AT(optimize.stagnation_generations), 1, 1000000, "50", "", NULL,
      "length of that window"},
     {"optimize.store", HF_FIELD_WORD, AT(optimize.store), 0, 0, "all", "", hf_keep_word,

@@ -139,6 +139,11 @@ static hf_status check_gene(const hf_problem *p, int k, hf_messages *messages)
             "optimize.variables.%d: '%s' has %g %s after form-finding; its range around that does not reach "
             "its bounds",
             p->model.gene[k].setting, name, base, hf_model_gene_unit(&p->model, k));
+    if (hf_optimiser_plan_of(o->method).kind && !isfinite(upper - lower))
+        return hf_error(messages, HF_BAD_CASE,
+                        "optimize.variables.%d: '%s' is open on one side; the genetic algorithm needs a range, or both "
+                        "bounds (method: lm does not)",
+                        p->model.gene[k].setting, name);
     return HF_OK;
 }
 

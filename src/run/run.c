@@ -339,6 +339,8 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     hf_polish_result outcome;
     double *design = r->problem.base_N, start_s = hf_clock_s();
     if (s->has_optimize && p->best >= 0) design = best_design(p);
+    for (int k = 0; k < p->n_gene; k++) /* a base may be outside of the bounds */
+        design[k] = hf_population_clamp(p, k, design[k]);
     observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});
     hf_status status =
         hf_polish_run(&r->problem.evaluator, p->lower_N, p->upper_N, o->polish_iterations, design, w, &outcome);

@@ -165,6 +165,20 @@ START_TEST(other_ways_to_write_a_table_are_read)
 }
 END_TEST
 
+/* Random numbers between bounds need two of them. */
+START_TEST(an_open_range_is_for_derivatives_alone)
+{
+    net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0,0,inner\nc,2,0,0,support\n",
+             "id,i,j,group,law,value\nab,a,b,boundary,tension,10\nbc,b,c,inner,tension,10\n");
+    const char *c =
+        file_with("open.yaml", "scene:\n  import: {nodes: nodes.csv, cables: cables.csv}\n"
+                               "optimize: {variables: [{set: all, vary: force_density, bounds: [1, .inf]}]}\n");
+    HIFDM(2, "run", c, "-o", temp("open.h5"));
+    ERR("error: optimize.variables.0: 'ab' is open on one side; the genetic algorithm needs a range, or both bounds");
+    HIFDM(0, "run", c, "-o", temp("lm.h5"), "--set", "optimize.method=lm");
+}
+END_TEST
+
 /* Nothing to start the optimisation from: the shape that was found is kept. */
 START_TEST(a_shape_with_a_slack_boundary_cable_is_kept)
 {
@@ -193,6 +207,7 @@ Suite *suite_cli_bad_net(void)
     tcase_add_test(tcase, long_paths_leave_room_for_line_and_id);
     tcase_add_test(tcase, words_are_cut_between_letters);
     tcase_add_test(tcase, missing_files_of_a_net_are_told);
+    tcase_add_test(tcase, an_open_range_is_for_derivatives_alone);
     tcase_add_test(tcase, a_shape_with_a_slack_boundary_cable_is_kept);
     tcase_add_test(tcase, other_ways_to_write_a_table_are_read);
     suite_add_tcase(suite, tcase);

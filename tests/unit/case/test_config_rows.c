@@ -57,6 +57,11 @@ START_TEST(variables_reach_their_place)
     ck_assert_double_eq(v[1].range_ratio, 0.025);
     ck_assert(v[1].lower == 1 && v[1].upper == 40 && v[1].link == HF_LINK_SET);
     ck_assert_str_eq(v[2].set, "front-2");
+    static const char *const all[] = {"optimize.variables.1.set=all"};
+    hf_case every;
+    accept_rows(ROWS, all, 1, &every);
+    ck_assert_str_eq(every.optimize.variable[1].set, "all");
+    hf_case_free(&every);
     ck_assert_int_eq(v[2].vary, HF_VARY_SUPPORT_Z);
     ck_assert_double_eq(v[2].range, 0.02);
     ck_assert(isnan(v[2].range_ratio) && v[2].lower == -INFINITY && v[2].upper == 0.5 && v[2].link == HF_LINK_EACH);
