@@ -26,8 +26,9 @@ static void lay_out(hf_arena *a, hf_sensitivity *s)
     s->place_of_row = hf_arena_take(a, (size_t)m->n_node, sizeof(int));
     s->base_of_row = hf_arena_take(a, (size_t)m->n_node, sizeof(int));
     s->move = hf_arena_take(a, n * s->n_dof, sizeof(double));
-    s->answer = hf_arena_take(a, m->n_attachment ? n * 3 * (size_t)m->n_free : 0, sizeof(double));
+    s->answer = hf_arena_take(a, m->n_attachment || s->n_rigid ? n * 3 * (size_t)m->n_free : 0, sizeof(double));
     s->pull = hf_arena_take(a, n * 3 * (size_t)m->n_attachment, sizeof(double));
+    s->gap = hf_arena_take(a, 3 * (size_t)m->n_attachment, sizeof(double));
     s->rigid = hf_arena_take(a, (size_t)s->n_rigid, sizeof(int));
     s->rigid_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
     s->multiplier = hf_arena_take(a, n * (size_t)s->n_rigid, sizeof(double));
@@ -184,6 +185,16 @@ static void add_force_of_gene(const hf_sensitivity *s, const hf_workspace *w, in
 
 /* ---- first derivatives ---- */
 
+/* Add what the forces in `answer` move. */
+static void follow(hf_sensitivity *s)
+{
+    size_t n_free = 3 * (size_t)s->v->model->n_free, n = (size_t)s->n;
+    hf_chord_back_solve(&s->matrix, &s->lanes, s->n, s->answer, n_free);
+    for (size_t k = 0; k < n; k++)
+        for (size_t i = 0; i < n_free; i++)
+            s->move[k * s->n_dof + i] += s->answer[k * n_free + i];
+}
+
 /* Turn the moves with fixed supports into those of net and truss together. */
 static void let_truss_answer(hf_sensitivity *s, const hf_workspace *w)
 {
@@ -198,10 +209,7 @@ static void let_truss_answer(hf_sensitivity *s, const hf_workspace *w)
         hf_schur_displace(m, &s->schur, pull, supports);
         hf_schur_push(m, w, hf_newton_matrix_block, supports, s->answer + k * n_free);
     }
-    hf_chord_back_solve(&s->matrix, &s->lanes, (int)n, s->answer, n_free);
-    for (size_t k = 0; k < n; k++)
-        for (size_t i = 0; i < n_free; i++)
-            s->move[k * s->n_dof + i] += s->answer[k * n_free + i];
+    follow(s);
 }
 
 /* Solve for the moves of all variables; `move` and `pull` hold the forces. */
@@ -278,6 +286,50 @@ static double tension_rate(const hf_sensitivity *s, int e, int i)
 
 /* ---- cables of law length ---- */
 
+/* The forces on free nodes and truss by the moves as they stand, cable by cable, into `answer` and `pull`. */
+static void sum_forces(hf_sensitivity *s, const hf_workspace *w)
+{
+    const hf_model *m = s->v->model;
+    size_t n_free = 3 * (size_t)m->n_free, n_attachment = 3 * (size_t)m->n_attachment, n = (size_t)s->n;
+    memset(s->answer, 0, n * n_free * sizeof(double));
+    memset(s->pull, 0, n * n_attachment * sizeof(double));
+    for (int e = 0; e < m->n_cable; e++) {
+        const double *u = s->strained[e].unit;
+        double density = w->tension_N[e] / w->length_m[e];
+        for (size_t i = 0; i < n; i++) {
+            double pull[3], rate = tension_rate(s, e, (int)i);
+            relative_move(s, e, s->move + i * s->n_dof, pull);
+            double along = u[0] * pull[0] + u[1] * pull[1] + u[2] * pull[2];
+            for (int c = 0; c < 3; c++)
+                pull[c] = rate * u[c] + density * (pull[c] - along * u[c]);
+            add_pull(m, e, pull, s->answer + i * n_free, s->pull + i * n_attachment);
+        }
+    }
+}
+
+/* A stiff spring as a 3 x 3 block rounds off what holds its nodes across, by up to 1e-7 of the moves. Forces that are
+ * summed cable by cable do not: one more solve takes out what of them is left on the nodes, and on the truss. */
+static void refine(hf_sensitivity *s, const hf_workspace *w)
+{
+    const hf_model *m = s->v->model;
+    size_t n_free = 3 * (size_t)m->n_free, n_attachment = 3 * (size_t)m->n_attachment;
+    sum_forces(s, w);
+    follow(s);
+    for (size_t k = 0; k < (size_t)s->n && n_attachment; k++) {
+        double *supports = s->move + k * s->n_dof + n_free, *pull = s->pull + k * n_attachment;
+        hf_schur_pull(m, w, hf_newton_matrix_block, s->answer + k * n_free, pull);
+        hf_schur_flex(m, pull, s->gap);
+        for (size_t i = 0; i < n_attachment; i++)
+            s->gap[i] -= supports[i];
+        hf_schur_solve(&s->schur, s->gap);
+        for (size_t i = 0; i < n_attachment; i++)
+            supports[i] += s->gap[i];
+        memset(s->answer + k * n_free, 0, n_free * sizeof(double));
+        hf_schur_push(m, w, hf_newton_matrix_block, s->gap, s->answer + k * n_free);
+    }
+    if (n_attachment) follow(s);
+}
+
 /* With the forces of the multipliers that the stiff springs have found, the springs need to give next to nothing. */
 static void harden(hf_sensitivity *s, const hf_workspace *w)
 {
@@ -298,6 +350,7 @@ static void harden(hf_sensitivity *s, const hf_workspace *w)
     }
     solve(s, w);
     move_supports(s);
+    refine(s, w);
 }
 
 hf_status hf_sensitivity_find(hf_sensitivity *s, hf_workspace *w)

@@ -3,7 +3,7 @@
  * the same step. With a truss the supports move, too.
  *
  * A cable of law length is a stiff spring in the matrix. One more solve takes out what that leaves of the derivative of
- * its length, a part of 1/HF_NEWTON_STIFFENING. */
+ * its length, a part of 1/HF_NEWTON_STIFFENING, and a third what the spring rounds off. */
 #ifndef HIFDM_SENSITIVITY_H
 #define HIFDM_SENSITIVITY_H
 
@@ -23,7 +23,8 @@ typedef struct {
     int *rigid_of_cable;   /* [n_cable] -1: none */
     double *multiplier;    /* [n][n_rigid] dT/dv of these beyond what the stiff spring gives */
     struct hf_strained *strained; /* [n_cable] scratch: the cables at the shape of `move` */
-    double *answer;               /* [n][3 n_free] scratch: what the moving truss adds to `move` */
+    double *answer;               /* [n][3 n_free] scratch: what the moving truss, or refinement, adds to `move` */
+    double *gap;                  /* [3 n_attachment] scratch */
     double *pull;                 /* [n][3 n_attachment] scratch: change of the pull on the truss */
     hf_chord matrix;              /* of the net with fixed supports */
     hf_chord_lanes lanes;
