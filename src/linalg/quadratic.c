@@ -57,23 +57,19 @@ static void invert_transposed(int n, const double *L, double *J, double *column)
     }
 }
 
-/* J = L^-T for H = L L', column j at inverse + j n; x = -J J' g, the free minimum. */
+/* Factor H = L L', and solve for x = -H^-1 g, the free minimum. */
 static hf_status begin(hf_quadratic *q, const double *hessian, const double *gradient)
 {
     int n = q->n;
-    double *J = q->inverse, *L = q->triangle; /* which is needed as soon as a limit is active */
+    double *L = q->triangle; /* which is needed as soon as a limit is active */
     memset(L, 0, (size_t)n * (size_t)n * sizeof(double));
     for (int c = 0; c < n; c++)
         for (int r = c; r < n; r++)
             L[c * n + r - c] = hessian[r * n + c];
     if (hf_band_factor(n, n - 1, L) != 0) return HF_SINGULAR;
-    invert_transposed(n, L, J, q->scratch);
-    memset(q->x, 0, (size_t)n * sizeof(double));
-    for (int j = 0; j < n; j++) {
-        double share = hf_dot((size_t)n, J + j * n, gradient);
-        for (int i = 0; i < n; i++)
-            q->x[i] -= share * J[j * n + i];
-    }
+    for (int i = 0; i < n; i++)
+        q->x[i] = -gradient[i];
+    hf_band_back_solve(n, n - 1, 1, L, q->x, n);
     q->n_active = 0;
     return HF_OK;
 }
@@ -204,10 +200,11 @@ hf_status hf_quadratic_solve(hf_quadratic *q, const double *hessian, const doubl
     int steps_left = STEPS_PER_VARIABLE * (q->n + 1);
     hf_quadratic_limit limit = {.normal = q->scratch + 3 * q->n};
     HF_TRY(begin(q, hessian, gradient));
-    for (;;) {
+    for (bool is_free = true;; is_free = false) {
         memset(limit.normal, 0, (size_t)q->n * sizeof(double));
         limit.only = -1;
         if (!worst(context, q->x, &limit)) return HF_OK;
+        if (is_free) invert_transposed(q->n, q->triangle, q->inverse, q->scratch);
         HF_TRY(obey(q, &limit, &steps_left));
     }
 }
