@@ -367,7 +367,7 @@ static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g,
         for (size_t i = 0; io->status == HF_OK && i < (size_t)some * p; i++) {
             count[0] += block[i] != 0;
             count[1] += block[i] != 0 && status[i] != HF_OK;
-            count[2] += block[i] != 0 && status[i] != HF_OK && hf_status_has_shape(status[i]);
+            count[2] += block[i] != 0 && status[i] != HF_OK && hf_status_has_shape((hf_status)status[i]);
         }
     }
     free(block);
