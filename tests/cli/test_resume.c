@@ -28,7 +28,9 @@ static void look_at_remains(const char *path, int *acknowledged)
 static void recover_a_copy(const char *path, int acknowledged)
 {
     const char *copy = temp_path("copy.h5");
-    SHELL(0, "rm -f \"$2\" \"$2.journal\"; cp \"$1\" \"$2\" && cp \"$1.journal\" \"$2.journal\"", path, copy);
+    SHELL(0,
+          "rm -f \"$2\" \"$2.journal\"; cp \"$1\" \"$2\"; test ! -e \"$1.journal\" || cp \"$1.journal\" \"$2.journal\"",
+          path, copy); /* after a recovery there is none until the next run makes one */
     HIFDM(0, "recover", copy);
     ck_assert_int_eq(generations_in_file(copy), acknowledged);
 }
