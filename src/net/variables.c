@@ -108,7 +108,15 @@ static hf_status add_support(maker *q, int row, int support_row)
     return HF_OK;
 }
 
-/* The supports at the ends of the cables of a row, each once, in the order of the cables. */
+/* Does a cable join this support to a node that can move? */
+static bool holds_net(const hf_model *m, int support_row)
+{
+    for (int k = 0; k < 2 * m->n_cable; k++)
+        if (m->end_row[k] == support_row && m->end_row[k ^ 1] < m->n_free) return true;
+    return false;
+}
+
+/* The supports at the ends of the cables of a row that hold the net, each once, in the order of the cables. */
 static hf_status add_supports(maker *q, int row, int n_picked)
 {
     const hf_model *m = q->m;
@@ -118,6 +126,7 @@ static hf_status add_supports(maker *q, int row, int n_picked)
     for (int i = 0; i < 2 * n_picked; i++) {
         int support_row = m->end_row[2 * q->picked[i / 2] + i % 2];
         if (support_row < m->n_free || q->taken[m->n_cable + support_row] == row) continue;
+        if (!holds_net(m, support_row)) continue;
         HF_TRY(add_support(q, row, support_row));
     }
     return HF_OK;
@@ -169,9 +178,10 @@ static hf_status make_row(maker *q, int row)
     for (int i = 0; i < n_picked && !varies_support(s->vary); i++)
         HF_TRY(add_cable(q, row, q->picked[i]));
     if (q->m->n_gene == before)
-        return hf_error(q->messages, HF_BAD_CASE,
-                        "optimize.variables.%d: set %s has %d cables, but no %s: there is nothing to vary", row, s->set,
-                        n_picked, varies_support(s->vary) ? "support at their ends" : "cable with a free end");
+        return hf_error(
+            q->messages, HF_BAD_CASE,
+            "optimize.variables.%d: set %s has %d cables, but no %s: there is nothing to vary", row, s->set, n_picked,
+            varies_support(s->vary) ? "support at their ends that holds a free node" : "cable with a free end");
     return HF_OK;
 }
 

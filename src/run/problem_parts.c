@@ -133,6 +133,11 @@ static hf_status check_gene(const hf_problem *p, int k, hf_messages *messages)
                         "reach min_tension_N %g .. max_tension_N %g",
                         name, base, o->range_N, o->min_tension_N, o->max_tension_N);
     hf_variables_bound(o, &p->model, k, base, &lower, &upper, &reach);
+    if (is_row && is_cable && !(upper > 0))
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "optimize.variables.%d: bounds leave '%s' nothing above 0 %s: a cable has a tension and a length",
+            p->model.gene[k].setting, name, hf_model_gene_unit(&p->model, k));
     if (is_row && (base + reach < lower || base - reach > upper))
         return hf_error(
             messages, HF_BAD_CASE,

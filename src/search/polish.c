@@ -106,6 +106,20 @@ static bool is_tension(const problem *p, int k)
     return hf_evaluate_sets(p->caller, k) == HF_SETS_TENSION;
 }
 
+/* The size of the values of gene k, which starts at `start`. Of a support, which starts at 0: how far it may move, or
+ * the longest cable where that is open. */
+static double unit_of(const problem *p, int k, double start)
+{
+    const hf_model *m = p->v.model;
+    double unit = p->upper[k] - p->lower[k];
+    if (m->gene_cable[k] >= 0) return start;
+    if (isfinite(unit)) return unit;
+    unit = 0;
+    for (int e = 0; e < m->n_cable; e++)
+        unit = fmax(unit, m->length_m[e]);
+    return unit;
+}
+
 /* Start at the design whose shape is in the workspace. */
 static void begin(problem *p, const double *design)
 {
@@ -117,7 +131,7 @@ static void begin(problem *p, const double *design)
     for (int k = 0; k < m->n_gene; k++) {
         int i = p->slopes.variable_of_gene[k], e = m->gene_cable[k];
         double start = design[k], lower = p->lower[k], upper = p->upper[k];
-        double unit = m->gene_cable[k] < 0 ? upper - lower : start;
+        double unit = unit_of(p, k, start);
         if (is_tension(p, k)) {
             start = hf_evaluate_design_length_m(m, e) * p->w->tension_N[e] / p->w->length_m[e];
             lower = DENSITY_LEFT * start;
