@@ -6,8 +6,10 @@
  * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation,merit, and with
  *      optimize.goals a column for each (hf_goals_name). One row per design, in the order of the input, with 17
  *      significant digits; a missing value is nan. Without an id column the rows are numbered from 1.
+ * --jacobian: id,figure and a column for each variable: for every feasible design the derivatives of psi_m, or of each
+ *      goal and of the merit.
  *
- * Contents: the table - the base design - evaluation - writing - together */
+ * Contents: the table - the base design - evaluation - derivatives - writing - together */
 #include "app/cmd.h"
 
 #include "app/options.h"
@@ -20,6 +22,8 @@
 #include "out/export.h"
 #include "out/print.h"
 #include "run/problem_parts.h"
+#include "search/jacobian.h"
+#include "search/polish.h"
 #include <hifdm/run.h>
 #include <hifdm/store.h>
 
@@ -39,7 +43,9 @@ typedef struct {
     int *where;                      /* [n_gene + 1] column in the table */
     double *design_N;                /* [n_row][n_gene] */
     hf_form_result *result;          /* [n_row] */
-    int n_feasible, best;            /* best: row, or -1 */
+    double *derivative;              /* [n_feasible][n_figure][n_gene]; NULL: not asked for */
+    int n_figure;
+    int n_feasible, best; /* best: row, or -1 */
     double wall_s;
 } job;
 
@@ -50,6 +56,7 @@ static void job_free(job *j)
     free(j->name);
     free(j->where);
     free(j->design_N);
+    free(j->derivative);
     free(j->result);
     hf_problem_free(&j->problem);
 }
@@ -157,6 +164,36 @@ static hf_status evaluate(job *j, int threads, hf_messages *messages)
     return HF_OK;
 }
 
+/* ---- derivatives ---- */
+
+static hf_status check_jacobian(const job *j, const hf_options *o, hf_messages *messages)
+{
+    if (!o->jacobian || hf_polish_applies(&j->problem.evaluator)) return HF_OK;
+    return hf_error(messages, HF_BAD_CASE,
+                    "--jacobian: there are no derivatives of nets with struts, nor under optimize.rule seeded");
+}
+
+static hf_status differentiate(job *j, hf_messages *messages)
+{
+    const hf_evaluator *v = &j->problem.evaluator;
+    size_t n_gene = (size_t)v->model->n_gene;
+    hf_jacobian jacobian;
+    hf_form_result r;
+    hf_status status = hf_jacobian_create(v, &jacobian);
+    j->n_figure = jacobian.n_figure;
+    size_t n = (size_t)j->n_figure * n_gene;
+    if (status == HF_OK) j->derivative = calloc((size_t)j->n_feasible + 1, n * sizeof *j->derivative);
+    double *to = j->derivative;
+    for (int i = 0; i < j->table.n_row && to && status == HF_OK; i++) {
+        if (j->result[i].status != HF_OK) continue;
+        hf_evaluate(v, j->design_N + (size_t)i * n_gene, &j->problem.workspace, &r);
+        if (hf_jacobian_find(&jacobian, &j->problem.workspace, to) == HF_NO_MEMORY) status = HF_NO_MEMORY;
+        to += n;
+    }
+    hf_jacobian_free(&jacobian);
+    return j->derivative && status == HF_OK ? HF_OK : no_memory(j, messages);
+}
+
 /* ---- writing ---- */
 
 static void write_number(double value, FILE *f)
@@ -216,15 +253,47 @@ static void write_results(const void *context, FILE *f)
     }
 }
 
-static void write_template(const void *context, FILE *f)
+static void write_gene_names(const job *j, FILE *f)
 {
-    const job *j = context;
-    fputs("id", f);
     for (int k = 0; k < j->problem.model.n_gene; k++) {
         fputc(',', f);
         hf_csv_write_id(j->name[k], f);
     }
-    fputs("\nbase", f);
+    fputc('\n', f);
+}
+
+static void write_figure_name(const job *j, int figure, FILE *f)
+{
+    char name[HF_GOAL_NAME_SIZE];
+    const hf_goals *goals = &j->problem.goals;
+    const char *of_all = goals->n_goal ? "merit" : "psi_m";
+    fprintf(f, ",%s", figure < goals->n_goal ? hf_goals_name(goals, figure, name) : of_all);
+}
+
+static void write_jacobian(const void *context, FILE *f)
+{
+    const job *j = context;
+    int n_gene = j->problem.model.n_gene;
+    const double *value = j->derivative;
+    fputs("id,figure", f);
+    write_gene_names(j, f);
+    for (int i = 0; i < j->table.n_row; i++) {
+        for (int k = 0; k < j->n_figure && j->result[i].status == HF_OK; k++) {
+            write_row_id(j, i, f);
+            write_figure_name(j, k, f);
+            for (int gene = 0; gene < n_gene; gene++)
+                write_number(*value++, f);
+            fputc('\n', f);
+        }
+    }
+}
+
+static void write_template(const void *context, FILE *f)
+{
+    const job *j = context;
+    fputs("id", f);
+    write_gene_names(j, f);
+    fputs("base", f);
     for (int k = 0; k < j->problem.model.n_gene; k++)
         write_number(j->problem.base_N[k], f);
     fputc('\n', f);
@@ -261,7 +330,8 @@ static void print_best_goals(const job *from, hf_json *j)
     hf_json_close(j, '}');
 }
 
-static void print_json(const job *from, const char *path, hf_status status, const char *messages, FILE *f)
+static void print_json(const job *from, const char *path, const char *jacobian, hf_status status, const char *messages,
+                       FILE *f)
 {
     hf_json j = {.file = f};
     hf_json_open(&j, NULL, '{');
@@ -282,6 +352,7 @@ static void print_json(const job *from, const char *path, hf_status status, cons
     hf_json_text(&j, "version", hf_store_version());
     hf_json_text(&j, "case", from->problem.settings.path);
     if (status == HF_OK) hf_json_text(&j, "file", path);
+    if (status == HF_OK && jacobian) hf_json_text(&j, "jacobian", jacobian);
     hf_json_line(&j, " ");
     hf_json_lines(&j, "warnings", "warning: ", messages);
     if (status != HF_OK) {
@@ -310,11 +381,17 @@ static hf_status execute(job *j, const hf_options *o, const char *path, FILE *fi
         return hf_error(messages, HF_BAD_CASE, "%s: no boundary cable has a free end: there is nothing to set",
                         o->file);
     HF_TRY(check_output(j, o, path, messages));
+    if (o->jacobian) HF_TRY(check_output(j, o, o->jacobian, messages));
     HF_TRY(name_columns(j, messages));
     if (o->designs) HF_TRY(read_table(j, o->designs, messages));
     HF_TRY(find_base(j, messages));
     if (o->template_path) return hf_file_out_write(path, write_template, j, messages);
+    HF_TRY(check_jacobian(j, o, messages));
     HF_TRY(evaluate(j, o->threads, messages));
+    if (o->jacobian) {
+        HF_TRY(differentiate(j, messages));
+        HF_TRY(hf_file_out_write(o->jacobian, write_jacobian, j, messages));
+    }
     if (path) return hf_file_out_write(path, write_results, j, messages);
     write_results(j, file);
     return HF_OK;
@@ -325,6 +402,10 @@ static hf_status check_options(const hf_options *o, hf_messages *messages)
     if (!o->designs == !o->template_path)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm evaluate' needs either --designs FILE or --template FILE");
     if (o->template_path && o->output) return hf_error(messages, HF_BAD_USAGE, "'-o' does not go with --template");
+    if (o->template_path && o->jacobian) return hf_error(messages, HF_BAD_USAGE, "--jacobian needs --designs FILE");
+    if (o->jacobian && o->output && !strcmp(o->jacobian, o->output))
+        return hf_error(messages, HF_BAD_USAGE, "--jacobian and -o must name different files");
+    if (o->jacobian && o->output) HF_TRY(hf_file_out_spare(o->output, "the table of results", o->jacobian, messages));
     if (o->designs && o->json && !o->output)
         return hf_error(messages, HF_BAD_USAGE,
                         "--json needs -o FILE here: without it the table takes standard output");
@@ -342,7 +423,7 @@ static hf_status command_evaluate(const hf_options *options, FILE *file, hf_mess
     const char *path = options->template_path ? options->template_path : options->output;
     hf_status status = execute(&j, options, path, file, messages);
     if (options->json)
-        print_json(&j, path, status, messages->text, file);
+        print_json(&j, path, options->jacobian, status, messages->text, file);
     else if (status == HF_OK && path && !options->quiet && options->designs)
         print_summary(&j, path, file);
     else if (status == HF_OK && path && !options->quiet)
@@ -361,7 +442,8 @@ const hf_command hf_cmd_evaluate = {
         "those of optimize.variables, or one pretension in N for each boundary cable with a free end; a row of the "
         "answer is its psi, residual, tension ratios and goals, to the same bits as in hifdm run. All cores work.",
     .examples = "hifdm evaluate case.yaml --template base.csv\n"
-                "hifdm evaluate case.yaml --designs designs.csv -o results.csv",
+                "hifdm evaluate case.yaml --designs designs.csv -o results.csv\n"
+                "hifdm evaluate case.yaml --designs designs.csv -o results.csv --jacobian slopes.csv",
     .uses_threads = true,
     .run = command_evaluate,
 };

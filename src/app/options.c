@@ -159,6 +159,8 @@ static const hf_option option_table[] = {
      read_text, AT(designs), NULL},
     {"--template", NULL, "FILE", "instead: write such a table, with the values after form-finding as its one row",
      "evaluate", read_text, AT(template_path), NULL},
+    {"--jacobian", NULL, "FILE", "also write the exact derivatives of psi, or of goals and merit, by each variable",
+     "evaluate", read_text, AT(jacobian), NULL},
     {"--output", "-o", "FILE", "CSV of the results (default: standard output)", "evaluate", read_text, AT(output),
      NULL},
     {"--output", "-o", "FILE", "merged file (default: the study's name with .h5, in this folder)", "merge", read_text,

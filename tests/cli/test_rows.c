@@ -90,6 +90,54 @@ START_TEST(a_cable_called_like_a_variable_of_a_support_is_refused)
 }
 END_TEST
 
+/* The answer stays as it was; the derivatives are those of its own figures. c.x is linked to nothing, c1 to c,2. */
+START_TEST(derivatives_come_beside_the_results)
+{
+    const char *net = net_with(nodes, cables), *table = temp("r.csv"), *slopes = temp("j.csv");
+    const char *designs =
+        file_with("d.csv", "id,c1,\"c,2\",c.x,c.y,c.z\nat,4,5,0,.1,0\nup,4.0001,5,0,.1,0\ndown,3.9999,5,0,.1,0\n"
+                           "right,4,5,1e-4,.1,0\nleft,4,5,-1e-4,.1,0\nfar,4,5,0,0,1e300\n");
+    HIFDM(
+        0, "evaluate", net, "--designs", designs, "-o", table, "--jacobian", slopes, "--json", "--set",
+        "optimize.variables=[{set: edge, vary: force_density, range: 50 %, link: set}, {set: stay, vary: support_xyz, "
+        "range: 0.5}]",
+        "--set", GOALS, "--set", "form.residual_tolerance=1e-13");
+#define SLOPE(figure, up, down, gene)                                                                                  \
+    "near(float(next(r for r in b if r['id'] == 'at' and r['figure'] == '" figure "')['" gene "']), (lambda of: "      \
+    "(float(of['" up "']['" figure "']) - float(of['" down "']['" figure                                               \
+    "'])) / 2e-4)({r['id']: r for r in a}), 1e-7)"
+    EXPECT(table, slopes, out_as("r.json"), "--", "list(b[0]) == ['id', 'figure', 'c1', 'c,2', 'c.x', 'c.y', 'c.z']",
+           "[r['figure'] for r in b] == ['goal_0_psi', 'goal_1_tension_edge', 'merit'] * 5",
+           "[r['id'] for r in b[::3]] == ['at', 'up', 'down', 'right', 'left'] and a[5]['status'] != 'ok'",
+           SLOPE("goal_0_psi", "up", "down", "c1"), SLOPE("goal_1_tension_edge", "up", "down", "c1"),
+           SLOPE("merit", "up", "down", "c1"), SLOPE("merit", "right", "left", "c.x"),
+           SLOPE("goal_1_tension_edge", "right", "left", "c.x"), "c['jacobian'].endswith('j.csv')");
+    HIFDM(0, "evaluate", net, "--designs", file_with("e.csv", "c1,\"c,2\",c3\n10,10,9\n"), "--jacobian", slopes,
+          "--force");
+    EXPECT(slopes, "--", "[list(r.values())[:2] for r in a] == [['1', 'psi_m']]",
+           "list(a[0])[2:] == ['c1', 'c,2', 'c3']");
+}
+END_TEST
+
+START_TEST(derivatives_are_refused_where_there_are_none)
+{
+    const char *net = net_with(nodes, cables), *designs = file_with("d.csv", "c1,\"c,2\",c3\n10,10,9\n");
+    const char *slopes = temp("j.csv");
+    HIFDM(2, "evaluate", net, "--designs", designs, "--jacobian", slopes, "--set", "optimize.rule=seeded");
+    ERR("error: --jacobian: there are no derivatives of nets with struts, nor under optimize.rule seeded\n");
+    ck_assert(!is_there(slopes));
+    HIFDM(2, "evaluate", net, "--template", temp("t.csv"), "--jacobian", slopes);
+    ERR("error: --jacobian needs --designs FILE\n");
+    HIFDM(2, "evaluate", net, "--designs", designs, "-o", slopes, "--jacobian", slopes);
+    ERR("error: --jacobian and -o must name different files\n");
+    const char *table = file_with("r.csv", "mine"), *other = temp("./r.csv");
+    HIFDM(5, "evaluate", net, "--designs", designs, "-o", table, "--jacobian", other, "--force");
+    ERR("r.csv: is the table of results; choose another name\n");
+    HIFDM(5, "evaluate", net, "--designs", designs, "--jacobian", designs, "--force");
+    ERR("d.csv: is an input of this run");
+}
+END_TEST
+
 Suite *suite_cli_rows(void)
 {
     Suite *suite = suite_create("cli/rows");
@@ -100,5 +148,7 @@ Suite *suite_cli_rows(void)
     tcase_add_test(tests, the_best_is_that_of_the_merit);
     tcase_add_test(tests, values_of_cables_are_above_zero);
     tcase_add_test(tests, a_cable_called_like_a_variable_of_a_support_is_refused);
+    tcase_add_test(tests, derivatives_come_beside_the_results);
+    tcase_add_test(tests, derivatives_are_refused_where_there_are_none);
     return suite;
 }
