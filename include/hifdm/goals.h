@@ -63,8 +63,6 @@ hf_status hf_goals_create(const hf_scene *scene, const hf_model *model, const hf
                           hf_messages *messages);
 void hf_goals_free(hf_goals *goals);
 
-#define HF_GOAL_NAME_SIZE 112 /* "goal_15_displacement_" and the name of a set */
-
 /* What goal i_goal is called in tables: goal_0_psi, or goal_1_tension_edge of a goal of a set; returns text. */
 const char *hf_goals_name(const hf_goals *goals, int i_goal, char text[HF_GOAL_NAME_SIZE]);
 

@@ -117,6 +117,7 @@ typedef struct {
 } hf_limit_settings;
 
 #define HF_DESIGN_ROWS_MAX 16 /* rows of each of these lists */
+#define HF_GOAL_NAME_SIZE 112 /* of a goal in tables: "goal_15_displacement_" and the name of a set */
 
 /* How a net is coupled with an elastic truss. They are not used without a truss. */
 typedef struct {

@@ -43,6 +43,8 @@
  *                gain_loss_dB, fit_gain_loss_dB [f]
  *   /set_tension/form, /set_tension/optimize, /set_tension/polish   of the first s <= HF_SUMMARY_SETS sets of cables,
  *                if there are any: name, least_N, largest_N, ratio [s]
+ *   /goals       with g rows of optimize.goals: name, weight [g]; the value of each in the shapes of form, optimize,
+ *                polish [g], as far as these ran
  *   /truss       with a nodes, b members, c attachments; attributes mass_kg, n_node, n_member
  *   /truss/node  id, mass_kg [a], position_m [a][3], fixed [a][6]; displacement, reaction [a][6]
  *   /truss/member  id, joint, unit, E_Pa, A_m2, ..., expansion_per_K [b], end [b][2]; end_force [b][12]

@@ -33,7 +33,7 @@ extern "C" {
     X(int, n_node, INT, 0, "", "nodes")                                                                                \
     X(int, n_free, INT, 0, "", "nodes that are no supports")                                                           \
     X(int, n_cable, INT, 0, "", "cables")                                                                              \
-    X(int, n_gene, INT, 0, "", "boundary cables whose pretension an optimisation may change")                          \
+    X(int, n_gene, INT, 0, "", "variables: pretensions of boundary cables, or what optimize.variables says")           \
     X(int, half_bandwidth, INT, 0, "", "of the force density matrix")                                                  \
     X(double, pretension_N, REAL, 0, "", "of the case, N")                                                             \
     X(double, form_wall_s, REAL, 1, "wall_s", "of the form-finding")
@@ -83,6 +83,14 @@ typedef struct {
     double least_N[HF_SUMMARY_SETS], largest_N[HF_SUMMARY_SETS], ratio[HF_SUMMARY_SETS];
 } hf_set_tensions;
 
+/* The rows of optimize.goals. Their values are in the results of the stages, merit beside them: of the form-finding,
+ * the best individual and Levenberg-Marquardt. */
+typedef struct {
+    int n;                                            /* 0: psi is the goal */
+    char name[HF_DESIGN_ROWS_MAX][HF_GOAL_NAME_SIZE]; /* goal_1_tension_edge: number, goal, set */
+    double weight[HF_DESIGN_ROWS_MAX];
+} hf_goal_list;
+
 #define HF_SUMMARY_MEMBER(type, member, kind, json, key, description) type member;
 
 typedef struct {
@@ -100,6 +108,8 @@ typedef struct {
     hf_surface_settings surface;     /* focal_length_m is 0 when the case has no such section */
     hf_surface_measures measures[3]; /* of the shapes of form, optimize, polish (hf_stage) */
     hf_set_tensions sets[3];         /* of the same; n is 0 of a net without sets, and of a shape that is not there */
+
+    hf_goal_list goals;
 
     HF_SUMMARY_FORM_LIST(HF_SUMMARY_MEMBER)
     hf_form_result form;

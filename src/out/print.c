@@ -97,6 +97,17 @@ static void print_sets(const hf_set_tensions *s, FILE *f)
     fputc('\n', f);
 }
 
+static void print_goals(const hf_summary *s, const hf_form_result *r, FILE *f)
+{
+    if (s->goals.n == 0 || !isfinite(r->merit)) return; /* a run that ended before its base design has none as yet */
+    fprintf(f, "                merit %.6g of", r->merit);
+    for (int k = 0; k < s->goals.n; k++) {
+        fprintf(f, "%s %s %.6g", k ? "," : "", s->goals.name[k], r->goal[k]);
+        if (r == &s->form) fprintf(f, " (weight %g)", s->goals.weight[k]);
+    }
+    fputc('\n', f);
+}
+
 static void print_certificate(const hf_form_result *r, FILE *f)
 {
     if (isfinite(r->position_error_m) && isfinite(r->condition))
@@ -184,6 +195,7 @@ static void print_optimize(const hf_summary *s, FILE *f)
     fprintf(f, "; found in generation %d\n", s->best_generation);
     print_result(&s->best, f);
     print_sets(&s->sets[1], f);
+    print_goals(s, &s->best, f);
     print_certificate(&s->best, f);
     print_surface(s, 1, f);
     if (s->planes)
@@ -215,6 +227,7 @@ static void print_polish(const hf_summary *s, FILE *f)
     fprintf(f, "                held by %d lower and %d upper bounds%s%s\n", s->polish_n_at_lower, s->polish_n_at_upper,
             limits, s->polish_is_at_cap ? " and the cap on the boundary ratio" : "");
     print_sets(&s->sets[2], f);
+    print_goals(s, &s->polish, f);
     print_surface(s, 2, f);
 }
 
@@ -232,7 +245,7 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
     char wall[32], psi[32];
     hf_print_duration(s->form_wall_s, wall, sizeof wall);
     hf_print_line(f, "%s", *s->title ? s->title : s->case_path);
-    fprintf(f, "  net           %d nodes (%d free), %d cables (%d adjustable); half-bandwidth %d; pretension %g N\n",
+    fprintf(f, "  net           %d nodes (%d free), %d cables, %d variables; half-bandwidth %d; pretension %g N\n",
             s->n_node, s->n_free, s->n_cable, s->n_gene, s->half_bandwidth, s->pretension_N);
     if (s->has_truss)
         fprintf(f, "  truss         %d nodes, %d members; %.2f kg\n", s->truss.n_node, s->truss.n_member,
@@ -242,6 +255,7 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
             hf_stop_reason_word((int)s->form.stop_reason), wall);
     print_result(&s->form, f);
     print_sets(&s->sets[0], f);
+    print_goals(s, &s->form, f);
     print_certificate(&s->form, f);
     print_surface(s, 0, f);
     if (s->has_coupling) print_coupling(&s->form.coupling, f);

@@ -81,6 +81,11 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->has_coupling = model->n_attachment > 0;
     s->pretension_N = model->pretension_N;
     s->surface = p->surface;
+    s->goals.n = p->goals.n_goal;
+    for (int k = 0; k < s->goals.n; k++) {
+        hf_goals_name(&p->goals, k, s->goals.name[k]);
+        s->goals.weight[k] = p->goals.goal[k].wanted.weight;
+    }
     s->has_truss = settings->has_truss;
     s->truss.mass_kg = p->carrier.mass_kg;
     s->truss.n_node = p->carrier.truss.n_node;

@@ -157,11 +157,16 @@ static hf_status stop_here(run *r, const hf_summary *s, hf_messages *messages)
     return HF_INTERRUPTED;
 }
 
-/* Base design, batch and optimiser. Everything that the generations need is allocated here, before the first one. */
-static hf_status prepare_optimize(run *r, hf_messages *messages)
+/* Base design with its goals, batch and optimiser. Everything that the generations need is allocated here, before the
+ * first one. */
+static hf_status prepare_optimize(run *r, hf_summary *s, hf_messages *messages)
 {
     hf_problem *p = &r->problem;
     HF_TRY(hf_problem_base(p, messages));
+    const hf_goals *goals = &p->goals;
+    hf_goals_point *point = p->workspace.goals;
+    if (goals->n_goal && hf_goals_measure(goals, &p->workspace, point, s->form.goal, &s->form.merit) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
     HF_TRY(hf_store_restore_base(r->store, p->model.n_gene, p->base_N, messages));
     if (hf_problem_batch(p, r->request->threads) != HF_OK ||
         hf_optimiser_create(r->plan.kind, &p->settings.optimize, &p->model, p->base_N, &r->optimiser) != HF_OK)
@@ -382,7 +387,7 @@ static bool wants_polish(const run *r, const hf_summary *s)
 static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
 {
     r->plan = hf_optimiser_plan_of(r->problem.settings.optimize.method);
-    HF_TRY(prepare_optimize(r, messages));
+    HF_TRY(prepare_optimize(r, s, messages));
     s->threads = r->problem.batch.n_thread;
     if (r->plan.kind) HF_TRY(evolve(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);

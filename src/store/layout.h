@@ -120,6 +120,11 @@ void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_put_sets(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_sets(hf_hdf5 *io, hf_summary *summary);
 
+/* layout_goals: /goals, the rows of optimize.goals with their values in the results of the stages; nothing without
+ * rows. */
+void hf_layout_put_goals(hf_hdf5 *io, const hf_summary *summary);
+void hf_layout_get_goals(hf_hdf5 *io, hf_summary *summary);
+
 /* layout_truss: the truss as described, its attachments and, when `state` is not NULL, its displacements and forces
  * under the pull of the net. Reading allocates: the caller frees both in any case. */
 void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carrier_state *state);

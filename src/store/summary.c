@@ -131,6 +131,22 @@ static void write_sets(const hf_set_tensions *s, hf_json *j)
     hf_json_close(j, '}');
 }
 
+/* The members "merit" and "goals" of a stage, with optimize.goals: value and weight of each. */
+static void write_goals(const hf_summary *s, const hf_form_result *r, hf_json *j)
+{
+    if (s->goals.n == 0) return;
+    hf_json_line(j, "  ");
+    hf_json_number(j, "merit", r->merit);
+    hf_json_open(j, "goals", '{');
+    for (int k = 0; k < s->goals.n; k++) {
+        hf_json_open(j, s->goals.name[k], '{');
+        hf_json_number(j, "value", r->status == HF_OK ? r->goal[k] : (double)NAN);
+        hf_json_number(j, "weight", s->goals.weight[k]);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, '}');
+}
+
 static void open_stage(const char *key, hf_json *j)
 {
     hf_json_line(j, " ");
@@ -152,6 +168,7 @@ static void write_form(const hf_summary *s, hf_json *j)
     write_fields(ALL(form_field), 1, LAST_PLACE, s, j);
     write_surface(s, 0, j);
     write_sets(&s->sets[0], j);
+    write_goals(s, &s->form, j);
     hf_json_close(j, '}');
 }
 
@@ -169,6 +186,7 @@ static void write_optimize(const hf_summary *s, hf_json *j)
     write_fields(ALL(ga_field), 1, LAST_PLACE, s, j);
     write_surface(s, 1, j);
     write_sets(&s->sets[1], j);
+    write_goals(s, &s->best, j);
     hf_json_close(j, '}');
 }
 
@@ -179,6 +197,7 @@ static void write_polish(const hf_summary *s, hf_json *j)
     write_fields(ALL(polish_field), 1, LAST_PLACE, s, j);
     write_surface(s, 2, j);
     write_sets(&s->sets[2], j);
+    write_goals(s, &s->polish, j);
     hf_json_close(j, '}');
 }
 

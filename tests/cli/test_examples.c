@@ -231,7 +231,7 @@ START_TEST(recipe_for_a_net_of_ones_own_works)
           python_program(), file_with("follow.py", follow), keep(source_path("README.md")));
     SHELL(0, "cd \"$1\" && wc -c net.h5 net.html net/nodes.csv net/optimize.hdf cut.csv", folder);
     HIFDM(0, "show", keep(formatted("%s/net.h5", folder)));
-    OUT("9 nodes (5 free), 12 cables (8 adjustable)");
+    OUT("9 nodes (5 free), 12 cables, 8 variables");
 }
 END_TEST
 

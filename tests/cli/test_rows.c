@@ -138,6 +138,58 @@ START_TEST(derivatives_are_refused_where_there_are_none)
 }
 END_TEST
 
+/* ---- hifdm run and show ---- */
+
+START_TEST(runs_tell_what_became_of_each_goal)
+{
+    const char *net = net_with(nodes, cables), *out = temp("r.h5");
+    HIFDM(0, "run", net, "-o", out, "--json", "--set", VARIABLES, "--set", GOALS, "--set", "optimize.method=ga+lm",
+          "--set", "optimize.generations=4", "--set", "optimize.population=8", "--set", "optimize.elites=2");
+    const char *json = out_as("r.json");
+    EXPECT(
+        json, out, "--",
+        "[list(a[s]['goals']) for s in ('form', 'optimize', 'polish')] == "
+        "[['goal_0_psi', 'goal_1_tension_edge']] * 3",
+        "texts(b['goals/name']) == list(a['form']['goals']) and b['goals/weight'][:].tolist() == [1, .1]",
+        "all([g['value'] for g in a[s]['goals'].values()] == b['goals'][s][:].tolist() for s in ('form', 'optimize', "
+        "'polish'))",
+        "all(near(a[s]['merit'], np.linalg.norm([g['value'] * g['weight'] for g in a[s]['goals'].values()]), 1e-14) "
+        "for s in ('form', 'optimize', 'polish'))",
+        "a['form']['goals']['goal_0_psi']['value'] == a['form']['psi_m']", /* before: of the found shape */
+        "a['form']['merit'] > a['optimize']['merit'] >= a['polish']['merit'] > 0",
+        "a['optimize']['merit'] == b['ga/best_merit'][-1]");
+    HIFDM(0, "show", out);
+    OUT(" 4 cables, 5 variables; ");
+    OUT(" (weight 1), goal_1_tension_edge ");
+    OUT(" (weight 0.1)\n");
+    ck_assert_int_eq(count_of(said.out, "                merit 0."), 3);
+    HIFDM(0, "show", out, "--json");
+    EXPECT(json, out_as("s.json"), "--",
+           "all(a[s]['goals'] == b[s]['goals'] and a[s]['merit'] == b[s]['merit'] for s in "
+           "('form', 'optimize', 'polish'))");
+    HIFDM(0, "run", net, "-o", out, "--restart", "--json", "--set", VARIABLES, "--set", "optimize.method=lm");
+    EXPECT(out_as("p.json"), out, "--", "'goals' not in a['form'] and 'merit' not in a['polish'] and 'goals' not in b");
+}
+END_TEST
+
+START_TEST(goals_of_damaged_files_are_not_shown)
+{
+    static const char *const deed[] = {"f['goals/name'][0] = b'\\x1b[1m'", "del f['goals/polish']",
+                                       "del f['goals/weight']; f['goals/weight'] = np.ones(17)"};
+    static const char *const why[] = {"/goals/name does not name goals", "/goals/polish is not there",
+                                      "/goals/weight is empty or too large"};
+    const char *out = temp("r.h5");
+    HIFDM(0, "run", net_with(nodes, cables), "-o", out, "--set", VARIABLES, "--set", GOALS, "--set",
+          "optimize.method=lm");
+    const char *script =
+        keep(formatted("import h5py, sys, numpy as np\nf = h5py.File(sys.argv[1], 'a')\n%s", deed[_i]));
+    const char *const argv[] = {python_program(), "-c", script, out, NULL};
+    demand_exit(run_command(HANG_S, argv), 0, deed[_i], __LINE__);
+    HIFDM(5, "show", out);
+    ERR(why[_i]);
+}
+END_TEST
+
 Suite *suite_cli_rows(void)
 {
     Suite *suite = suite_create("cli/rows");
@@ -150,5 +202,7 @@ Suite *suite_cli_rows(void)
     tcase_add_test(tests, a_cable_called_like_a_variable_of_a_support_is_refused);
     tcase_add_test(tests, derivatives_come_beside_the_results);
     tcase_add_test(tests, derivatives_are_refused_where_there_are_none);
+    tcase_add_test(tests, runs_tell_what_became_of_each_goal);
+    tcase_add_loop_test(tests, goals_of_damaged_files_are_not_shown, 0, 3);
     return suite;
 }

@@ -1,0 +1,72 @@
+/* The group /goals. */
+#include "store/layout.h"
+
+#include <string.h>
+
+/* Where the values of a stage are in a summary, and its data set. */
+enum { N_STAGE = 3 };
+static const char *const stage_name[N_STAGE] = {"form", "optimize", "polish"};
+
+static hf_form_result *result_of(hf_summary *s, int stage)
+{
+    hf_form_result *const result[N_STAGE] = {&s->form, &s->best, &s->polish};
+    return result[stage];
+}
+
+static bool has_stage(const hf_summary *s, int stage)
+{
+    return stage == 0 || (stage == 1 ? hf_summary_has_best_shape(s) : s->has_polish);
+}
+
+static hf_hdf5_array names(int n)
+{
+    return (hf_hdf5_array){"name", HF_KIND_CHARS, 1, {(hsize_t)n, HF_GOAL_NAME_SIZE}, "", "number, goal and set"};
+}
+
+static hf_hdf5_array values(const char *name, int n, const char *description)
+{
+    return (hf_hdf5_array){name, HF_KIND_REAL, 1, {(hsize_t)n}, "", description};
+}
+
+void hf_layout_put_goals(hf_hdf5 *io, const hf_summary *summary)
+{
+    hf_summary s = *summary;
+    if (s.goals.n == 0) return;
+    hf_hdf5_array name = names(s.goals.n), weight = values("weight", s.goals.n, "of the value in the merit");
+    hf_layout_renew(io, "/goals");
+    hid_t group = hf_hdf5_make_group(io, "/goals");
+    hf_hdf5_write_array(io, group, &name, s.goals.name);
+    hf_hdf5_write_array(io, group, &weight, s.goals.weight);
+    for (int stage = 0; stage < N_STAGE; stage++) {
+        hf_hdf5_array value = values(stage_name[stage], s.goals.n, "value of each goal, in its own unit");
+        if (has_stage(&s, stage)) hf_hdf5_write_array(io, group, &value, result_of(&s, stage)->goal);
+    }
+    hf_hdf5_close(io, group);
+}
+
+/* They are printed as they are. */
+static bool are_names_right(hf_goal_list *g)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    for (int k = 0; k < g->n; k++) {
+        g->name[k][HF_GOAL_NAME_SIZE - 1] = '\0';
+        if (!*g->name[k] || g->name[k][strspn(g->name[k], letters)]) return false;
+    }
+    return true;
+}
+
+void hf_layout_get_goals(hf_hdf5 *io, hf_summary *s)
+{
+    if (!hf_hdf5_has(io, io->file, "/goals")) return;
+    hid_t group = hf_hdf5_open_group(io, "/goals");
+    s->goals.n = hf_hdf5_length(io, group, "weight", HF_DESIGN_ROWS_MAX);
+    hf_hdf5_array name = names(s->goals.n), weight = values("weight", s->goals.n, "");
+    hf_hdf5_read_array(io, group, &name, s->goals.name);
+    hf_hdf5_read_array(io, group, &weight, s->goals.weight);
+    for (int stage = 0; stage < N_STAGE; stage++) {
+        hf_hdf5_array value = values(stage_name[stage], s->goals.n, "");
+        if (has_stage(s, stage)) hf_hdf5_read_array(io, group, &value, result_of(s, stage)->goal);
+    }
+    if (io->status == HF_OK && !are_names_right(&s->goals)) hf_hdf5_damaged(io, group, "name", "does not name goals");
+    hf_hdf5_close(io, group);
+}
