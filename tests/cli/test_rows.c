@@ -163,6 +163,8 @@ START_TEST(runs_tell_what_became_of_each_goal)
     OUT(" (weight 1), goal_1_tension_edge ");
     OUT(" (weight 0.1)\n");
     ck_assert_int_eq(count_of(said.out, "                merit 0."), 3);
+    HIFDM(0, "report", out, "-o", temp("r.html")); /* its page has the object of --json */
+    EXPECT(temp("r.html"), "--", "a.count(b'\"goal_1_tension_edge\": {\"value\": ') == 3");
     HIFDM(0, "show", out, "--json");
     EXPECT(json, out_as("s.json"), "--",
            "all(a[s]['goals'] == b[s]['goals'] and a[s]['merit'] == b[s]['merit'] for s in "

@@ -273,15 +273,19 @@ function writeSummary() {
   for (const [stage] of stages) {
     const surface = summary[stage].surface || {};
     values[stage] = { ...summary[stage], ...surface };
+    for (const [name, { value }] of Object.entries(summary[stage].goals || {})) values[stage][name] = value;
     for (const [loss, rms] of Object.entries(RMS_OF_LOSS))
       (surface[loss] || []).forEach(
         (v, k) => (values[stage][`${loss}[${k}]`] = v === null && surface[rms] !== null ? "beyond Ruze" : v),
       );
   }
+  const goals = Object.entries(summary[stages[0][0]].goals || {});
   const loss = (v) => (typeof v === "string" ? v : fmt(v, 3));
   const frequencies = (values[stages[0][0]].frequency_Hz || []).map((v) => `${fmt(v / 1e9, 4)} GHz`);
   const rows = [
     ["surface error ψ", "mm", "psi_m", mm],
+    ["merit of all goals", "", "merit", (v) => fmt(v, 5)],
+    ...goals.map(([name, { weight }]) => [`goal, weight ${weight}`, "", name, (v) => fmt(v, 5)]),
     ["half-path RMS", "mm", "half_path_rms_m", mm],
     ["half-path RMS, best fit", "mm", "fit_half_path_rms_m", mm],
     ["RMS along the normal", "mm", "normal_rms_m", mm],
