@@ -211,6 +211,9 @@ static void check_variables(const hf_optimize_settings *o, hf_config_faults *f)
             fault_in_row(f, list, i, "range", "must be in m: the place of a support has no size to take a part of");
         if (v->link == HF_LINK_SYMMETRY && o->symmetry == HF_SYMMETRY_NONE)
             fault_in_row(f, list, i, "link", "symmetry needs optimize.symmetry, which is none");
+        if (v->link == HF_LINK_SYMMETRY && v->vary == HF_VARY_SUPPORT_XYZ)
+            fault_in_row(f, list, i, "link",
+                         "cannot be symmetry with support_xyz: mirrored supports move apart along x or y");
     }
     if (o->n_variable == 0) return;
     for (size_t k = 0; k < sizeof of_default / sizeof *of_default; k++)

@@ -57,6 +57,7 @@ typedef struct {
     double *gram;          /* [n][n] J'J; lower triangle by rows, as `hessian` */
     double *hessian;       /* [n][n] J'J, damped */
     double *gradient;      /* [n] J'f */
+    double noise;          /* what the tolerance of the form-finding leaves open in the merit */
     double *move_m;        /* [3][n_node] scratch with goals */
     double *tension_rate;  /* [n_cable] the same */
 } problem;
@@ -107,13 +108,13 @@ static bool is_tension(const problem *p, int k)
 }
 
 /* The size of the values of gene k, which starts at `start`. Of a support, which starts at 0: how far it may move, or
- * the longest cable where that is open. */
+ * the longest cable where that is open, or nothing. */
 static double unit_of(const problem *p, int k, double start)
 {
     const hf_model *m = p->v.model;
     double unit = p->upper[k] - p->lower[k];
     if (m->gene_cable[k] >= 0) return start;
-    if (isfinite(unit)) return unit;
+    if (isfinite(unit) && unit > 0) return unit;
     unit = 0;
     for (int e = 0; e < m->n_cable; e++)
         unit = fmax(unit, m->length_m[e]);
@@ -218,6 +219,16 @@ static hf_status linearise_goals(problem *p)
     return HF_OK;
 }
 
+/* Forces may be out of balance by residual_tolerance of the tensions, as if each value were off by that part of itself.
+ * A merit below what this changes in it is zero as far as shapes are known. */
+static double find_noise(const problem *p)
+{
+    double square = 0;
+    for (int k = 0; k < p->n; k++)
+        square += p->gram[k * p->n + k] * p->unit[k] * p->unit[k];
+    return p->v.form->residual_tolerance * sqrt(square);
+}
+
 /* Write residuals, J', J'J, the gradient and what is watched with its rates at the workspace's shape. */
 static hf_status linearise(problem *p)
 {
@@ -235,6 +246,7 @@ static hf_status linearise(problem *p)
     hf_band_gram(p->n, p->n_row, p->row, p->n_row, p->gram, p->n);
     for (int k = 0; k < p->n; k++)
         p->scale[k] = fmax(p->scale[k], sqrt(p->gram[k * p->n + k]));
+    p->noise = find_noise(p);
     hf_watch_linearise(&p->watch, &p->slopes, p->w);
     return HF_OK;
 }
@@ -329,8 +341,8 @@ static hf_status minimise(problem *p, int max_iterations, hf_polish_result *r)
         status = try_step(p, damping, &gain);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         double after = status == HF_OK ? p->result.merit * p->result.merit / 2 : (double)INFINITY;
-        if ((status == HF_OK || status == HF_RATIO_CAP) && gain <= GAIN_CONVERGED * before && !p->is_outside)
-            r->stop = HF_POLISH_CONVERGED;
+        bool promises = gain > GAIN_CONVERGED * before && 2 * gain > p->noise * p->noise;
+        if ((status == HF_OK || status == HF_RATIO_CAP) && !promises && !p->is_outside) r->stop = HF_POLISH_CONVERGED;
         status = HF_OK;
         if (after < before) {
             keep(p);

@@ -40,7 +40,7 @@ static void add_row(const hf_evaluator *v, const hf_limit *row, hf_watch *q)
                             .attachment = i,
                             .ratio = -1,
                             .kind = HF_WATCH_ROW,
-                            .lower = row->lower,
+                            .lower = -INFINITY, /* its derivative vanishes at zero, and none is below */
                             .upper = row->upper});
 }
 

@@ -191,7 +191,11 @@ hf_status hf_evaluate_judge(const hf_evaluator *v, hf_workspace *w, hf_form_resu
         r->violation += violation_of_cap(v, w);
     }
     if (has_shape) measure_goals(v, w, r);
-    r->merit = v->goals ? r->merit : r->psi_m;
+    if (!v->goals) r->merit = r->psi_m;
+    if (v->goals && r->status == HF_OK && !isfinite(r->merit)) { /* a goal has no value there */
+        r->status = HF_NOT_FINITE;
+        r->violation = (double)NAN;
+    }
     if (r->status != HF_OK) r->psi_m = r->merit = (double)NAN;
     if (!hf_status_has_shape(r->status)) r->inner_tension_ratio = r->boundary_tension_ratio = (double)NAN;
     return r->status;

@@ -67,20 +67,23 @@ double hf_limits_ratio_violation(int n, const int *cable, const double *tension_
         low = fmin(low, tension_N[cable[i]]);
         high = fmax(high, tension_N[cable[i]]);
     }
-    if (high <= cap * low) return 0;
+    if (low >= slack_N && high <= cap * low) return 0;
     double least = sqrt(fmax(low, slack_N) * high / cap), most = cap * least;
     for (int i = 0; i < n; i++) {
         double tension = tension_N[cable[i]];
         if (tension < least) sum += 1 - tension / least;
         if (tension > most) sum += 1 - most / tension;
     }
-    return sum;
+    return sum > 0 ? sum : 1 - low / slack_N; /* slack, under a cap so large that the rest is within it */
 }
+
+#define LIMIT_ROUNDING 1e-9 /* a value so near to its bound, over its unit, is at it */
 
 /* How far a value is outside of the bounds, over what it is measured in. */
 static double outside(const hf_limit *row, double value, double unit)
 {
-    return fmax(0, fmax(row->lower - value, value - row->upper)) / unit;
+    double beyond = fmax(row->lower - value, value - row->upper) / unit;
+    return beyond > LIMIT_ROUNDING ? beyond : 0;
 }
 
 static double row_violation(const hf_limit *row, const hf_model *m, const hf_workspace *w)

@@ -84,7 +84,7 @@ void hf_generations_tally(const hf_population *p, int sign, long count[HF_GENERA
     for (int i = 0; i < p->n_individual; i++) {
         count[0] += p->pending[i] ? sign : 0;
         count[1] += p->pending[i] && p->trial_status[i] != HF_OK ? sign : 0;
-        count[2] += p->pending[i] && p->trial_status[i] == HF_RATIO_CAP ? sign : 0;
+        count[2] += p->pending[i] && p->trial_status[i] != HF_OK && hf_status_has_shape(p->trial_status[i]) ? sign : 0;
     }
 }
 

@@ -64,6 +64,28 @@ START_TEST(a_cap_that_holds_it_is_named_and_met)
 }
 END_TEST
 
+/* A joint that does not move is at the least displacement, which holds nothing. */
+START_TEST(a_displacement_of_zero_holds_nothing)
+{
+    const char *net = keep(source_path("configs/straight-edges-truss.yaml")), *free_of_it = temp("a.h5"),
+               *within = temp("b.h5");
+    HIFDM(0, "run", net, "-o", free_of_it, "--quiet", "--set", "optimize.method=lm");
+    HIFDM(0, "run", net, "-o", within, "--quiet", "--set", "optimize.method=lm", "--set",
+          "optimize.limits=[{limit: displacement, bounds: [0, 0.05]}]");
+    EXPECT(free_of_it, within, "--", "near(a['polish'].attrs['psi_m'], b['polish'].attrs['psi_m'], 1e-9)");
+}
+END_TEST
+
+/* Evenness has no value where all tensions are zero, and a weight without end none at all: no design at all. */
+START_TEST(a_merit_without_a_value_is_no_merit)
+{
+    const char *net = net_of("loaded", LOADED), *out = temp("r.h5");
+    HIFDM(3, "run", net, "-o", out, "--set", "optimize.goals=[{goal: psi, weight: 1e300}, {goal: psi, weight: 1e200}]",
+          "--set", "optimize.method=ga");
+    ERR("error: optimize: no feasible design: none of ");
+}
+END_TEST
+
 /* Random nets by both rules, against SLSQP with equilibria and derivatives of its own. */
 START_TEST(scipy_gains_nothing_on_capped_nets)
 {
@@ -142,6 +164,8 @@ Suite *suite_cli_limits(void)
     tcase_add_loop_test(tests, nets_of_triangles_reach_their_optima, 0, 3);
     tcase_add_loop_test(tests, a_cap_that_does_not_hold_the_optimum_does_not_move_it, 0, 4);
     tcase_add_test(tests, a_cap_that_holds_it_is_named_and_met);
+    tcase_add_test(tests, a_displacement_of_zero_holds_nothing);
+    tcase_add_test(tests, a_merit_without_a_value_is_no_merit);
     tcase_add_test(tests, scipy_gains_nothing_on_capped_nets);
     tcase_add_test(tests, the_comparison_can_be_switched_off);
     tcase_add_test(tests, nothing_is_a_part_of_a_psi_of_zero);

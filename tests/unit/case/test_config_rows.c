@@ -242,6 +242,9 @@ static const struct {
      NULL, "error: c.yaml:5:13: optimize.variables.0.set: is too long\n"},
     {VARIABLE "{set: a, vary: tension, range: 1, link: symmetry}\n", NULL,
      "error: c.yaml:5:47: optimize.variables.0.link: symmetry needs optimize.symmetry, which is none\n"},
+    {OPTIMIZE "  symmetry: x\n  variables: [{set: a, vary: support_xyz, range: 1, link: symmetry}]\n", NULL,
+     "error: c.yaml:5:59: optimize.variables.0.link: cannot be symmetry with support_xyz: mirrored supports move apart "
+     "along x or y\n"},
     {GOAL "{goal: psi, set: a}]\n", NULL,
      "error: c.yaml:4:28: optimize.goals.0.set: has no meaning for psi, only for tension, length, evenness, mass\n"},
     {GOAL "{goal: psi, target: 1}]\n", NULL,
