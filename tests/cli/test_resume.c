@@ -109,6 +109,38 @@ static bool has_several_generations(const char *path)
     return end > first && n >= generation + 4;
 }
 
+#define ROWS                                                                                                           \
+    "optimize:\n"                                                                                                      \
+    "  population: 8\n"                                                                                                \
+    "  generations: 1000\n"                                                                                            \
+    "  stagnation_generations: 1000\n"                                                                                 \
+    "  compare_lm: false\n"                                                                                            \
+    "  variables:\n"                                                                                                   \
+    "    - {set: edge, vary: tension, range: 20 %}\n"                                                                  \
+    "    - {set: inner, vary: force_density, range: 10 %, link: set}\n"                                                \
+    "    - {set: edge, vary: support_z, range: 0.01}\n"                                                                \
+    "  goals: [{goal: psi}, {goal: evenness, set: edge, weight: 1e-3}]\n"                                              \
+    "  limits: [{limit: ratio, set: edge, bounds: [1, 1.3]}]\n"
+
+/* Genes of cables and of supports, goals and limits, whatever is stored, on another number of threads. */
+START_TEST(a_killed_run_of_rows_goes_on_to_the_same_bits)
+{
+    const char *c = file_with("rows.yaml", SMALL_SCENE ROWS), *path = temp("run.h5"), *whole = temp("w.h5");
+    const char *store = keep(formatted("optimize.store=%s", hf_keep_word[_i]));
+    const char *const argv[] = {hifdm_program(), "run", c,       "-o",    path, "--quiet", "--threads", "2",
+                                "--set",         store, "--set", EVERY_7, NULL};
+    HIFDM(0, "run", c, "-o", whole, "--quiet", "--threads", "1", "--set", store, "--set", EVERY_7);
+    session s = start_program(argv);
+    ck_assert(freeze_when(&s, has_several_generations, path));
+    ck_assert_int_eq(end_by(&s, SIGKILL), 128 + SIGKILL);
+    HIFDM(0, "recover", path);
+    ck_assert_int_ge(generations_in_file(path), 4);
+    HIFDM(0, "run", c, "-o", path, "--quiet", "--threads", "1", "--set", store, "--set", EVERY_7);
+    demand_same(path, whole);
+    EXPECT(path, "--", "0 < a['ga'].attrs['infeasible'] < a['ga'].attrs['evaluations']");
+}
+END_TEST
+
 /* A torn or spoilt tail is cut off: the generations before it count. */
 START_TEST(a_torn_journal_gives_what_is_whole)
 {
@@ -340,6 +372,7 @@ Suite *suite_cli_resume(void)
     Suite *suite = suite_create("cli/resume");
     TCase *tcase = tcase_create("resume");
     tcase_add_loop_test(tcase, killed_runs_go_on_to_the_same_bits, 0, 3);
+    tcase_add_loop_test(tcase, a_killed_run_of_rows_goes_on_to_the_same_bits, 0, 3);
     tcase_add_test(tcase, a_torn_journal_gives_what_is_whole);
     tcase_add_test(tcase, seed_and_symmetry_are_recovered);
     tcase_add_loop_test(tcase, stopped_runs_publish_and_go_on, 0, sizeof stops / sizeof *stops);

@@ -1,5 +1,6 @@
-"""lm_slsqp.py HIFDM FOLDER SEED N: N random nets whose cap on the boundary tension ratio matters, `hifdm run` with
-Levenberg-Marquardt, and scipy's SLSQP from its result, with equilibria and derivatives of this script's own.
+"""lm_slsqp.py HIFDM FOLDER SEED N: N random nets whose cap on the boundary tension ratio matters, which the case gives
+as such or as a row of optimize.limits, `hifdm run` with Levenberg-Marquardt, and scipy's SLSQP from its result, with
+equilibria and derivatives of this script's own.
 
 Fails when the equilibrium differs, a limit is broken, SLSQP gains more than 1e-6 of psi, or hifdm did not converge."""
 import os
@@ -144,15 +145,19 @@ def improve(net, density, low, high, cap, is_density, x):
 def compare(program, folder, random):
     net = Net(random)
     is_density, reach, cap = bool(random.integers(2)), float(random.uniform(3, 15)), float(random.uniform(1.1, 1.8))
+    # The same problem in two ways: by rule, range and cap, or by rows of variables and limits.
     rule = "force_density" if is_density else "tension"
-    net.write(folder, f"rule: {rule}, range_N: {reach}, boundary_ratio_cap: {cap}")
+    by_rows = not is_density and cap < 1.5
+    net.write(folder, f"variables: [{{set: boundary, vary: tension, range: {reach}, bounds: [0.1, null]}}], "
+              f"limits: [{{limit: ratio, set: boundary, bounds: [1, {cap}]}}]" if by_rows
+              else f"rule: {rule}, range_N: {reach}, boundary_ratio_cap: {cap}")
     result = os.path.join(folder, "r.h5")
     run = subprocess.run([program, "run", os.path.join(folder, "case.yaml"), "-o", result, "--restart", "--quiet"],
                          capture_output=True, text=True, check=False)
     if run.returncode != 0:
         return None  # not every random net starts below its cap: the caller draws another
     with h5py.File(result) as file:
-        design, polish = file["polish/design_N"][()], dict(file["polish"].attrs)
+        design, polish = file["polish/design" if by_rows else "polish/design_N"][()], dict(file["polish"].attrs)
         density, position = file["polish/q_N_per_m"][()][net.boundary], file["polish/position_m"][()]
         base, first = file["form/q_N_per_m"][()][net.boundary], file["form/tension_N"][()][net.boundary]
     shape, T, _, _ = net.solve(density, position)
@@ -161,7 +166,8 @@ def compare(program, folder, random):
     gain = (psi - improve(net, density, low, high, cap, is_density, shape)) / psi
     from_base = improve(net, base, low, high, cap, is_density, net.theory) / psi - 1
     start = net.psi(net.solve(base, net.theory)[0])
-    print(f"{len(T)} pretensions, rule {rule}, cap {cap:.4f}: psi {1e3 * start:.6f} -> {1e3 * psi:.6f} mm in "
+    given = "rows of" if by_rows else "rule"
+    print(f"{len(T)} pretensions, {given} {rule}, cap {cap:.4f}: psi {1e3 * start:.6f} -> {1e3 * psi:.6f} mm in "
           f"{polish['polish_iterations']} steps, ratio {T.max() / T.min():.6f}; SLSQP gains {gain:.1e} "
           f"from there, ends {from_base:+.1e} from the same start")
     wrong = [what for what, is_wrong in [

@@ -45,28 +45,60 @@ START_TEST(what_a_net_does_not_have_is_named)
 }
 END_TEST
 
-/* Bounds far away are as good as none, and a bound at the start is one. */
-static hf_summary *run_bowl(const char *bounds)
+static hf_summary *run_bowl(const char *rows, const char *more)
 {
     static hf_summary s;
     char output[HF_OUTPUT_SIZE], variables[256];
     hf_messages said = {0};
-    snprintf(variables, sizeof variables, "optimize.variables=[{set: front_edge, vary: support_z, bounds: %s}]",
-             bounds);
-    const char *const set[] = {"scene.paraboloid.rings=2", "optimize.method=lm", variables};
-    hf_run_request request = {
-        .case_path = source_path("configs/paraboloid-6m.yaml"), .set = set, .n_set = 3, .no_file = true, .threads = 1};
+    snprintf(variables, sizeof variables, "optimize.variables=%s", rows);
+    const char *const set[] = {"scene.paraboloid.rings=3", "optimize.method=lm", variables, more};
+    hf_run_request request = {.case_path = source_path("configs/paraboloid-6m.yaml"),
+                              .set = set,
+                              .n_set = more ? 4 : 3,
+                              .no_file = true,
+                              .threads = 1};
     ck_assert_msg(hf_run_case(&request, &s, output, &said) == HF_OK, "%s", said.text);
     hf_messages_free(&said);
     ck_assert_int_eq(s.polish_stop, HF_POLISH_CONVERGED);
     return &s;
 }
 
+/* Bounds far away are as good as none, and a bound at the start is one. */
 START_TEST(supports_open_on_one_side_keep_to_the_other)
 {
     static const char *const bounds[2][2] = {{"[null, 0]", "[-0.1, 0]"}, {"[0, null]", "[0, 0.1]"}};
-    double open_m = run_bowl(bounds[_i][0])->polish.merit;
-    ck_assert_double_eq_tol(open_m, run_bowl(bounds[_i][1])->polish.merit, 1e-9 * open_m);
+    double merit[2];
+    for (int k = 0; k < 2; k++) {
+        char rows[128];
+        snprintf(rows, sizeof rows, "[{set: front_edge, vary: support_z, bounds: %s}]", bounds[_i][k]);
+        merit[k] = run_bowl(rows, NULL)->polish.merit;
+    }
+    ck_assert_double_eq_tol(merit[0], merit[1], 1e-9 * merit[1]);
+}
+END_TEST
+
+#define ALL "[{set: all, vary: force_density, range: 40 %}]"
+
+/* Both nets of a reflector and their ties, on a ring that gives way: as many force densities as it takes. psi cannot be
+ * less than the places are known. */
+START_TEST(a_double_net_is_designed_onto_its_surface)
+{
+    const hf_summary *s = run_bowl(ALL, NULL);
+    ck_assert_double_gt(s->form.psi_m, 4e-4);
+    ck_assert_double_lt(s->polish.psi_m, 1e-9);
+}
+END_TEST
+
+/* 1.05 mm at the start, inside and outside. Attachments where the ring is held do not move at all. */
+START_TEST(a_limit_on_displacements_is_met)
+{
+    static const char *const limit[] = {"[{limit: displacement, bounds: [0, 1.2e-3]}]",
+                                        "[{limit: displacement, bounds: [0, 1.03e-3]}]"};
+    char limits[96];
+    snprintf(limits, sizeof limits, "optimize.limits=%s", limit[_i]);
+    const hf_summary *s = run_bowl(ALL, limits);
+    ck_assert_double_gt(s->form.coupling.max_displacement_m, 1e-3);
+    ck_assert_double_le(s->polish.coupling.max_displacement_m, _i ? 1.03e-3 : 1.2e-3);
 }
 END_TEST
 
@@ -76,6 +108,8 @@ Suite *suite_unit_variables(void)
     TCase *tests = tcase_create("variables");
     tcase_add_loop_test(tests, what_a_net_does_not_have_is_named, 0, N_REFUSED);
     tcase_add_loop_test(tests, supports_open_on_one_side_keep_to_the_other, 0, 2);
+    tcase_add_test(tests, a_double_net_is_designed_onto_its_surface);
+    tcase_add_loop_test(tests, a_limit_on_displacements_is_met, 0, 2);
     suite_add_tcase(suite, tests);
     return suite;
 }
