@@ -5,7 +5,6 @@
 #include "linalg/band.h"
 #include "linalg/quadratic.h"
 #include "search/watch.h"
-#include "solve/certificate.h"
 
 #include <math.h>
 #include <string.h>
@@ -365,13 +364,6 @@ static hf_status minimise(problem *p, int max_iterations, hf_polish_result *r)
     return HF_OK;
 }
 
-/* Is psi no more than the places of the nodes in the workspace are off by themselves? No step lowers it then. */
-static bool is_zero(const problem *p, hf_form_result *end)
-{
-    hf_certify(p->v.model, p->w, end);
-    return !p->v.goals && end->merit <= end->position_error_m;
-}
-
 /* The best design, in the caller's meaning, replaces `design` if its own evaluation is not worse than the start. */
 static void hand_over(const problem *p, const hf_form_result *start, double *design, hf_polish_result *r)
 {
@@ -381,7 +373,6 @@ static void hand_over(const problem *p, const hf_form_result *start, double *des
     if (is_better) memcpy(design, p->best, (size_t)p->v.model->n_gene * sizeof(double));
     r->merit = is_better ? end.merit : start->merit;
     if (!is_better) r->stop = HF_POLISH_STALLED;
-    if (is_better && r->stop == HF_POLISH_STALLED && is_zero(p, &end)) r->stop = HF_POLISH_CONVERGED;
 }
 
 hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
