@@ -15,8 +15,8 @@
 #define DAMPING_LEAST 1e-14  /* [1e-20 to 1e-8] */
 #define DAMPING_MOST 1e12    /* with this much a step is too short to change psi [1e4 to 1e24] */
 #define CORRECTIONS_MAX 4 /* of a step that breaks a limit on tensions [40 passes; 1 fails: the runs stall at a cap] */
-#define CORRECTIONS_FIRST 20 /* of a first step that leads into the limits from outside */
-#define LIMIT_INSIDE 2e-9    /* a tension so near to its bound, relative, is at it: twice what a step stays within */
+#define WAY_LEAST 1e-3    /* part of the way into the limits that a step goes [1e-2; 1e-6] */
+#define LIMIT_INSIDE 2e-9 /* a tension so near to its bound, relative, is at it: twice what a step stays within */
 #define LIMIT_ROUNDING 1e-12 /* a violation below this part of the tension is rounding [1e-14 to 1e-10] */
 #define DENSITY_LEFT 1e-3    /* part of its first value below which no force density falls [1e-6 to 0.3] */
 
@@ -301,9 +301,8 @@ static hf_status solve_step(problem *p, double damping, double *gain)
  * with what they really were. HF_RATIO_CAP: a limit is still broken. */
 static hf_status try_step(problem *p, double damping, double *gain)
 {
-    int most = p->is_outside ? CORRECTIONS_FIRST : CORRECTIONS_MAX;
     hf_watch_forget(&p->watch);
-    for (int again = 0; again <= most; again++) {
+    for (int again = 0; again <= CORRECTIONS_MAX; again++) {
         HF_TRY(solve_step(p, damping, gain));
         HF_TRY(evaluate(p, p->trial));
         if (hf_watch_keeps(&p->watch, p->w)) return HF_OK;
@@ -328,6 +327,30 @@ static void count_limits(const problem *p, hf_polish_result *r)
     }
 }
 
+/* From outside into the limits: each step goes as much of the way as brings the shape nearer to them. They are not
+ * linear, and where the whole way leads elsewhere, a part of it does not. */
+static hf_status enter(problem *p, int max_iterations, hf_polish_result *r)
+{
+    double way = 1, gain, before = hf_watch_violation(&p->watch, p->w);
+    hf_watch_forget(&p->watch);
+    while (p->is_outside && way > WAY_LEAST && r->iterations < max_iterations) {
+        r->iterations++;
+        hf_watch_aim(&p->watch, way);
+        hf_status status = solve_step(p, DAMPING_FIRST, &gain);
+        if (status == HF_OK) status = evaluate(p, p->trial);
+        if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+        double after = status == HF_OK ? hf_watch_violation(&p->watch, p->w) : (double)INFINITY;
+        way = after < before ? fmin(1, 2 * way) : way / 2;
+        if (!(after < before)) continue;
+        before = after;
+        keep(p);
+        p->is_outside = !hf_watch_keeps(&p->watch, p->w);
+        r->merit = p->result.merit;
+        HF_TRY(linearise(p));
+    }
+    return HF_OK;
+}
+
 /* Steps until one promises nothing more, none lowers psi any more, or the iteration limit is reached. The damping
  * follows Nielsen (Madsen, Nielsen, Tingleff, Methods for non-linear least squares problems, DTU 2004). */
 static hf_status minimise(problem *p, int max_iterations, hf_polish_result *r)
@@ -335,20 +358,20 @@ static hf_status minimise(problem *p, int max_iterations, hf_polish_result *r)
     double damping = DAMPING_FIRST, growth = 2, gain = 0;
     hf_status status = evaluate(p, p->at);
     if (status == HF_OK) status = linearise(p);
-    while (status == HF_OK && r->stop == HF_POLISH_MAX_ITERATIONS && r->iterations < max_iterations) {
-        double before = p->is_outside ? (double)INFINITY : r->merit * r->merit / 2;
+    if (status == HF_OK && p->is_outside) status = enter(p, max_iterations, r);
+    while (status == HF_OK && !p->is_outside && r->stop == HF_POLISH_MAX_ITERATIONS && r->iterations < max_iterations) {
+        double before = r->merit * r->merit / 2;
         r->iterations++;
         status = try_step(p, damping, &gain);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         double after = status == HF_OK ? p->result.merit * p->result.merit / 2 : (double)INFINITY;
         bool promises = gain > GAIN_CONVERGED * before && 2 * gain > p->noise * p->noise;
-        if ((status == HF_OK || status == HF_RATIO_CAP) && !promises && !p->is_outside) r->stop = HF_POLISH_CONVERGED;
+        if ((status == HF_OK || status == HF_RATIO_CAP) && !promises) r->stop = HF_POLISH_CONVERGED;
         status = HF_OK;
         if (after < before) {
             keep(p);
             r->merit = p->result.merit;
-            double share = p->is_outside ? 0 : 2 * (before - after) / gain - 1;
-            p->is_outside = false;
+            double share = 2 * (before - after) / gain - 1;
             damping = fmax(DAMPING_LEAST, damping * fmax(0.1, 1 - share * share * share));
             growth = 2;
             if (r->stop == HF_POLISH_MAX_ITERATIONS) status = linearise(p);

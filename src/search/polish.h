@@ -26,9 +26,9 @@ bool hf_polish_applies(const hf_evaluator *evaluator);
 bool hf_polish_is_cheap(const hf_evaluator *evaluator, long n_evaluation);
 
 /* Start from the design [n_gene] within [lower, upper], which has a shape, and replace it by the best one found, which
- * is feasible and never worse. A start that breaks limits is led into them first. Linked genes keep their differences.
- * workspace is scratch. Returns HF_OK, HF_NO_MEMORY, HF_INTERRUPTED, or the status of a start from which no feasible
- * design was found. */
+ * is feasible and never worse. A start that breaks limits is led into them first, step by step. Linked genes keep
+ * their differences. workspace is scratch. Returns HF_OK, HF_NO_MEMORY, HF_INTERRUPTED, or the status of a start from
+ * which no feasible design was found. */
 hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
                         double *design, hf_workspace *workspace, hf_polish_result *result);
 

@@ -72,6 +72,8 @@ static void lay_out(hf_arena *a, hf_watch *q)
     q->item = hf_arena_take(a, (size_t)q->n, sizeof *q->item);
     q->rate = hf_arena_take(a, (size_t)q->n * (size_t)q->n_variable, sizeof(double));
     q->cap = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
+    q->ratio = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
+    q->aim = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
 }
 
 hf_status hf_watch_create(const hf_evaluator *v, const hf_sensitivity *s, const double *lower, const double *upper,
@@ -101,22 +103,39 @@ static double value_of(const hf_watched *t, const hf_workspace *w)
     return hf_norm(d[0], d[1], d[2]);
 }
 
+/* The largest over the least of the values that cap k counts; INFINITY where the least is not above zero. */
+static double ratio_of(const hf_watch *q, int k, const hf_workspace *w)
+{
+    double least = INFINITY, largest = -INFINITY;
+    for (int i = 0; i < q->n; i++) {
+        if (q->item[i].ratio != k) continue;
+        least = fmin(least, value_of(&q->item[i], w));
+        largest = fmax(largest, value_of(&q->item[i], w));
+    }
+    return least > 0 ? largest / least : (double)INFINITY;
+}
+
 bool hf_watch_keeps(const hf_watch *q, const hf_workspace *w)
 {
-    for (int k = 0; k < q->n_cap; k++) {
-        double least = INFINITY, largest = -INFINITY;
-        for (int i = 0; i < q->n; i++) {
-            if (q->item[i].ratio != k) continue;
-            least = fmin(least, value_of(&q->item[i], w));
-            largest = fmax(largest, value_of(&q->item[i], w));
-        }
-        if (largest > q->cap[k] * least) return false;
-    }
+    for (int k = 0; k < q->n_cap; k++)
+        if (ratio_of(q, k, w) > q->cap[k]) return false;
     for (int i = 0; i < q->n; i++) {
         double value = value_of(&q->item[i], w);
         if (value < q->item[i].lower || value > q->item[i].upper) return false;
     }
     return true;
+}
+
+double hf_watch_violation(const hf_watch *q, const hf_workspace *w)
+{
+    double sum = 0;
+    for (int k = 0; k < q->n_cap; k++)
+        sum += fmax(0, ratio_of(q, k, w) / q->cap[k] - 1);
+    for (int i = 0; i < q->n; i++) {
+        double value = value_of(&q->item[i], w);
+        sum += fmax(0, fmax(q->item[i].lower - value, value - q->item[i].upper)) / q->item[i].unit;
+    }
+    return sum;
 }
 
 /* Of the displacement of an attachment, along itself. */
@@ -140,6 +159,26 @@ void hf_watch_linearise(hf_watch *q, const hf_sensitivity *s, const hf_workspace
             hf_sensitivity_tension(s, t->cable, rate);
         else
             displacement_rates(t, s, w, rate);
+    }
+    for (int k = 0; k < q->n_cap; k++)
+        q->ratio[k] = ratio_of(q, k, w);
+    hf_watch_aim(q, 1);
+}
+
+/* A part of the way from a value to its limit; all of it without rounding. */
+static double on_the_way(double value, double limit, double part)
+{
+    return part < 1 && isfinite(value) ? value + part * (limit - value) : limit;
+}
+
+void hf_watch_aim(hf_watch *q, double part)
+{
+    for (int k = 0; k < q->n_cap; k++)
+        q->aim[k] = q->ratio[k] > q->cap[k] ? on_the_way(q->ratio[k], q->cap[k], part) : q->cap[k];
+    for (int i = 0; i < q->n; i++) {
+        hf_watched *t = &q->item[i];
+        t->from = t->value < t->lower ? on_the_way(t->value, t->lower, part) : t->lower;
+        t->to = t->value > t->upper ? on_the_way(t->value, t->upper, part) : t->upper;
     }
 }
 
@@ -179,7 +218,7 @@ static const double *rate_of(const hf_watch *q, const hf_watched *t)
 /* high <= cap low: the largest and the least of the predicted values that cap k counts. */
 static bool breaks_cap(const hf_watch *q, int k, double *worst, hf_quadratic_limit *limit)
 {
-    double cap = q->cap[k] * (1 - LIMIT_INSIDE);
+    double cap = q->aim[k] * (1 - LIMIT_INSIDE);
     const hf_watched *high = NULL, *low = NULL;
     for (int i = 0; i < q->n; i++) {
         const hf_watched *t = &q->item[i];
@@ -207,8 +246,8 @@ bool hf_watch_worst(hf_watch *q, const double *x, double worst, hf_quadratic_lim
     predict(q, x);
     for (int i = 0; i < q->n; i++) {
         const hf_watched *t = &q->item[i];
-        double below = (t->lower + LIMIT_INSIDE * t->unit - t->predicted) / t->unit;
-        double above = (t->predicted - t->upper + LIMIT_INSIDE * t->unit) / t->unit;
+        double below = (t->from + LIMIT_INSIDE * t->unit - t->predicted) / t->unit;
+        double above = (t->predicted - t->to + LIMIT_INSIDE * t->unit) / t->unit;
         if (!(fmax(below, above) > worst)) continue;
         worst = fmax(below, above);
         sign = below > above ? 1 : -1;
@@ -217,7 +256,7 @@ bool hf_watch_worst(hf_watch *q, const double *x, double worst, hf_quadratic_lim
     for (int k = 0; k < q->n_cap; k++)
         if (breaks_cap(q, k, &worst, limit)) is_broken = true;
     if (is_broken || !held) return is_broken;
-    double inside = LIMIT_INSIDE * held->unit, bound = sign > 0 ? held->lower : held->upper;
+    double inside = LIMIT_INSIDE * held->unit, bound = sign > 0 ? held->from : held->to;
     for (int j = 0; j < q->n_variable; j++)
         limit->normal[j] = sign * rate_of(q, held)[j];
     limit->bound = sign * (bound - held->value - held->bend) + inside;

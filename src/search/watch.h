@@ -12,6 +12,7 @@ typedef struct {
     int ratio;              /* the cap that counts it; -1: none */
     int kind;               /* HF_WATCH_BOUND or HF_WATCH_ROW */
     double lower, upper;    /* infinite where only a cap limits it */
+    double from, to;        /* what a step keeps it between, see hf_watch_aim */
     double value, bend;     /* at the best variables; beyond the linear model at the last trial */
     double predicted, unit; /* by the linear model; violations are relative to the unit */
 } hf_watched;
@@ -22,6 +23,8 @@ typedef struct {
     hf_watched *item; /* [n] */
     double *rate;     /* [n][n_variable] of value per variable */
     double *cap;      /* [n_cap] largest over least of the tensions that it counts */
+    double *ratio;    /* [n_cap] the same at the best variables */
+    double *aim;      /* [n_cap] what a step keeps it below */
     void *block;
 } hf_watch;
 
@@ -36,6 +39,13 @@ bool hf_watch_keeps(const hf_watch *watch, const hf_workspace *workspace);
 
 /* Take the shape in the workspace as the best. */
 void hf_watch_linearise(hf_watch *watch, const hf_sensitivity *slopes, const hf_workspace *workspace);
+
+/* A step shall go this part of the way from the best variables into limits that they break; 1, as after
+ * hf_watch_linearise: it shall keep all limits. */
+void hf_watch_aim(hf_watch *watch, double part);
+
+/* How far the shape in the workspace is beyond what is watched, in all: sums of parts of the bounds and caps. */
+double hf_watch_violation(const hf_watch *watch, const hf_workspace *workspace);
 
 /* Forget what was beyond the linear model; or learn it from the shape that the step x has led to. */
 void hf_watch_forget(hf_watch *watch);

@@ -76,6 +76,26 @@ START_TEST(a_displacement_of_zero_holds_nothing)
 }
 END_TEST
 
+/* The base moves a joint by 1.05 mm; there are designs that hold every node in place and move none by half of it. */
+START_TEST(a_start_beyond_its_displacements_is_led_in)
+{
+    static const char *const most[] = {"1.03e-3", "0.9e-3", "0.7e-3", "0.5e-3"};
+    const char *out = temp("r.h5");
+    const char *c =
+        file_with("ring.yaml",
+                  "scene:\n  paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 3, rear_distance_m: 1.8}\n"
+                  "form: {pretension_N: 10, prestress: exact}\n"
+                  "truss:\n  ring: {cells_per_bay: 2, bracing: single, held: bay, longeron: {diameter_m: 0.03, wall_m: "
+                  "0.001}}\n"
+                  "optimize:\n  method: lm\n  variables: [{set: all, vary: force_density, range: 40 %}]\n");
+    HIFDM(0, "run", c, "-o", out, "--quiet", "--set",
+          keep(formatted("optimize.limits=[{limit: displacement, bounds: [0, %s]}]", most[_i])));
+    EXPECT(out, "--", "a['coupling'].attrs['max_displacement_m'] > 1.04e-3",
+           keep(formatted("a['polish'].attrs['coupling_max_displacement_m'] <= %s", most[_i])),
+           "a['polish'].attrs['psi_m'] < 1e-8");
+}
+END_TEST
+
 /* Evenness has no value where all tensions are zero, and a weight without end none at all: no design at all. */
 START_TEST(a_merit_without_a_value_is_no_merit)
 {
@@ -165,6 +185,7 @@ Suite *suite_cli_limits(void)
     tcase_add_loop_test(tests, a_cap_that_does_not_hold_the_optimum_does_not_move_it, 0, 4);
     tcase_add_test(tests, a_cap_that_holds_it_is_named_and_met);
     tcase_add_test(tests, a_displacement_of_zero_holds_nothing);
+    tcase_add_loop_test(tests, a_start_beyond_its_displacements_is_led_in, 0, 4);
     tcase_add_test(tests, a_merit_without_a_value_is_no_merit);
     tcase_add_test(tests, scipy_gains_nothing_on_capped_nets);
     tcase_add_test(tests, the_comparison_can_be_switched_off);
