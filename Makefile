@@ -123,7 +123,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
-         bench-before api lint asan tsan fuzz fuzz-results install
+         bench-before bench-optimisers api lint asan tsan fuzz fuzz-results install
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.

@@ -26,15 +26,17 @@
  *                max_displacement_m [rounds]; attributes: the members of hf_summary.form.coupling (those of best
  *                and polish are best_coupling_... of /ga and coupling_... of /polish)
  *   /ga          design_N [g][p][k]; evaluated, status, psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio,
- *                iterations, violation, trial_status, trial_psi_m, crossover_rate, mutation_rate [g][p];
+ *                iterations, violation, merit, trial_status, trial_psi_m, crossover_rate, mutation_rate [g][p];
  *                parent [g][p][2];
- *                best_individual, best_psi_m, least_violation, mean_psi_m, worst_psi_m, n_infeasible [g];
+ *                best_individual, best_psi_m, best_merit, least_violation, mean_psi_m, worst_psi_m, n_infeasible [g];
  *                with optimize.store best the rows of [g][p] are of one individual, the best, [g][1]; with every they
  *                are those of generations 0, n, 2n, ..., and both have /ga/last, the same of the last one [1][p], with
  *                attributes n_evaluation, n_evaluation_infeasible, n_evaluation_above_cap of all;
  *                gene_cable (index into /scene/cable), gene_group, base_N, lower_N, upper_N [k]; gene_leader [k] under
  *                a symmetry; attributes: HF_SUMMARY_GA_LIST, the figures of hf_summary.best as best_...; n_individual,
  *                n_variable, generations_limit, store_every (0: best), by which a run goes on
+ *                with optimize.variables design, base, lower and upper have no unit in their names, because each gene
+ *                has its own, and gene_variable (row of optimize.variables), gene_node, gene_direction [k][3] are there
  *   /ga/best     as /form, and design_N [k]
  *   /polish      the same, of Levenberg-Marquardt; attributes: HF_SUMMARY_POLISH_LIST, the figures of
  *                hf_summary.polish

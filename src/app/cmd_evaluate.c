@@ -186,8 +186,11 @@ static hf_status differentiate(job *j, hf_messages *messages)
     double *to = j->derivative;
     for (int i = 0; i < j->table.n_row && to && status == HF_OK; i++) {
         if (j->result[i].status != HF_OK) continue;
-        hf_evaluate(v, j->design_N + (size_t)i * n_gene, &j->problem.workspace, &r);
-        if (hf_jacobian_find(&jacobian, &j->problem.workspace, to) == HF_NO_MEMORY) status = HF_NO_MEMORY;
+        for (size_t k = 0; k < n; k++)
+            to[k] = (double)NAN;
+        hf_status found = hf_evaluate(v, j->design_N + (size_t)i * n_gene, &j->problem.workspace, &r);
+        if (found == HF_OK) found = hf_jacobian_find(&jacobian, &j->problem.workspace, to);
+        if (found == HF_NO_MEMORY) status = HF_NO_MEMORY;
         to += n;
     }
     hf_jacobian_free(&jacobian);

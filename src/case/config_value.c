@@ -169,7 +169,7 @@ static void set_bounds(setter *s, const yaml_node_t *node, const hf_field *f, do
 {
     double bound[2] = {(double)NAN, (double)NAN};
     if (n_item(node) != 2) {
-        refuse(s, node, f, "must be two bounds, like [1, 20], or [1, .inf] without an upper one", "");
+        refuse(s, node, f, "must be two bounds, like [1, 20]", "");
         return;
     }
     for (int k = 0; k < 2; k++) {

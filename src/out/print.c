@@ -188,8 +188,11 @@ static void print_optimize(const hf_summary *s, FILE *f)
         return;
     }
     fprintf(f, "  optimisation  psi %.4f mm", s->best.psi_m * 1e3);
-    if (isfinite(s->base_psi_m) &&
-        s->base_psi_m > 0) /* evaluated under the rule of the optimisation, so that only the tensions differ */
+    if (s->goals.n > 0 && s->form.merit > 0) /* what psi gained says nothing of goals; their line follows */
+        fprintf(f, ", merit %.6g, %.2f %% below that of the form-finding", s->best.merit,
+                100 * (1 - s->best.merit / s->form.merit));
+    else if (isfinite(s->base_psi_m) &&
+             s->base_psi_m > 0) /* evaluated under the rule of the optimisation, so that only the tensions differ */
         fprintf(f, ", %.2f %% below the %.4f mm of the form-finding's tensions",
                 100 * (1 - s->best.psi_m / s->base_psi_m), s->base_psi_m * 1e3);
     fprintf(f, "; found in generation %d\n", s->best_generation);

@@ -32,7 +32,7 @@ static const char *fault_of(const hf_goal *g, const hf_model *m, const hf_surfac
 {
     const hf_goal_settings *s = &g->wanted;
     if (is_on_surface(s->goal) && (!surface || !(surface->focal_length_m > 0)))
-        return "needs the wanted surface: add a section surface with focal_length_m";
+        return "needs the wanted surface: add a section surface (of an imported net with focal_length_m)";
     if (s->goal == HF_GOAL_FACETS && (!facets || facets->n_facet == 0)) return "this net has no facets";
     if (s->goal == HF_GOAL_SURFACE && s->fit == HF_FIT_BEST && m->n_inner_node < HF_FIT_N_PARAMETER)
         return "a best fit needs at least six inner nodes";

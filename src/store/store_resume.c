@@ -117,6 +117,7 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     if (!s) return status;
     hf_hdf5_lock();
     s->is_resumed = true;
+    s->every = 1;                     /* unless the file says otherwise: none of its generations is dropped */
     s->published_at_s = hf_clock_s(); /* what is there is visible */
     hf_store_file_adopt(&s->f);
     hf_store_file_open(&s->f);

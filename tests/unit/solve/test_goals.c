@@ -423,9 +423,9 @@ static const struct {
     {{HF_GOAL_EVENNESS, "inner", NAN, 1, NAN, 0, 0}, "evenness: one cable is always even; name a set of several"},
     {{HF_GOAL_MASS, "", NAN, 1, NAN, 0, 0}, "mass: needs mass_kg_per_m, of the cables of its set"},
     {{HF_GOAL_SURFACE, "", NAN, 1, NAN, 0, 0},
-     "surface: needs the wanted surface: add a section surface with focal_length_m"},
+     "surface: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
     {{HF_GOAL_FACETS, "", NAN, 1, NAN, 0, 0},
-     "facets: needs the wanted surface: add a section surface with focal_length_m"},
+     "facets: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
     {{HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, 0, 0}, "displacement: needs a truss that gives way: this net has none"},
 };
 enum { N_FAULTY = sizeof faulty / sizeof *faulty };
