@@ -7,19 +7,16 @@
 #ifndef HIFDM_JACOBIAN_H
 #define HIFDM_JACOBIAN_H
 
-#include "search/sensitivity.h"
+#include "search/residuals.h"
 
 typedef struct {
     hf_model model; /* that of the caller, with genes that are not linked */
     hf_evaluator v; /* that of the caller, of this model */
     int n_figure;   /* 1: psi_m; with goals one more than these: each goal, then the merit */
-    int n_row;      /* residuals */
     hf_sensitivity slopes;
-    int *leader;          /* [n_gene] of the model */
-    double *residual;     /* [n_row] */
-    double *rate;         /* [n_row] of a gene */
-    double *move_m;       /* [3][n_node] of a gene */
-    double *tension_rate; /* [n_cable] of a gene */
+    hf_residuals residuals;
+    int *leader;  /* [n_gene] of the model */
+    double *rate; /* [residuals.n_row] of a gene */
     void *block;
 } hf_jacobian;
 

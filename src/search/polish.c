@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "linalg/band.h"
 #include "linalg/quadratic.h"
+#include "search/residuals.h"
 #include "search/watch.h"
 
 #include <math.h>
@@ -38,10 +39,10 @@ typedef struct {
     const double *lower, *upper;
     hf_workspace *w;
     hf_sensitivity slopes;
+    hf_residuals residuals;
     hf_watch watch;
     hf_quadratic step;
-    int n;     /* variables: steps from `start`, one for each class of linked genes */
-    int n_row; /* of the residuals */
+    int n; /* variables: steps from `start`, one for each class of linked genes */
     int evaluations;
     bool is_outside;       /* no shape within the limits is known yet */
     hf_form_result result; /* of the last evaluation */
@@ -52,14 +53,11 @@ typedef struct {
     double *design;        /* [n_gene] of the last evaluation, tensions as pretensions q L* */
     double *best;          /* [n_gene] the best design in the caller's meaning */
     double *scale;         /* [n] largest norm of each column of J so far */
-    double *residual;      /* [n_row] f; |f| is the merit */
-    double *row;           /* [n][n_row] J' */
+    double *row;           /* [n][rows of the residuals] J' */
     double *gram;          /* [n][n] J'J; lower triangle by rows, as `hessian` */
     double *hessian;       /* [n][n] J'J, damped */
     double *gradient;      /* [n] J'f */
     double noise;          /* what the tolerance of the form-finding leaves open in the merit */
-    double *move_m;        /* [3][n_node] scratch with goals */
-    double *tension_rate;  /* [n_cable] the same */
 } problem;
 
 bool hf_polish_applies(const hf_evaluator *v)
@@ -82,7 +80,7 @@ bool hf_polish_is_cheap(const hf_evaluator *v, long n_evaluation)
 static void lay_out(hf_arena *a, problem *p)
 {
     const hf_model *m = p->v.model;
-    size_t n = (size_t)p->n, n_row = (size_t)p->n_row, n_gene = (size_t)m->n_gene;
+    size_t n = (size_t)p->n, n_row = (size_t)p->residuals.n_row, n_gene = (size_t)m->n_gene;
     p->start = hf_arena_take(a, n_gene, sizeof(double));
     p->low = hf_arena_take(a, n, sizeof(double));
     p->high = hf_arena_take(a, n, sizeof(double));
@@ -92,13 +90,10 @@ static void lay_out(hf_arena *a, problem *p)
     p->design = hf_arena_take(a, n_gene, sizeof(double));
     p->best = hf_arena_take(a, n_gene, sizeof(double));
     p->scale = hf_arena_take(a, n, sizeof(double));
-    p->residual = hf_arena_take(a, n_row, sizeof(double));
     p->row = hf_arena_take(a, n * n_row, sizeof(double));
     p->gram = hf_arena_take(a, n * n, sizeof(double));
     p->hessian = hf_arena_take(a, n * n, sizeof(double));
     p->gradient = hf_arena_take(a, n, sizeof(double));
-    p->move_m = hf_arena_take(a, p->v.goals ? 3 * (size_t)m->n_node : 0, sizeof(double));
-    p->tension_rate = hf_arena_take(a, p->v.goals ? (size_t)m->n_cable : 0, sizeof(double));
 }
 
 /* Does gene k set a tension for the caller, and a force density here? */
@@ -152,8 +147,8 @@ static hf_status create(problem *p, hf_arena *arena)
 {
     const hf_model *m = p->v.model;
     p->n = m->n_leader;
-    p->n_row = p->v.goals ? p->v.goals->n_row : 3 * m->n_inner_node;
     HF_TRY(hf_sensitivity_create(&p->v, &p->slopes));
+    HF_TRY(hf_residuals_create(&p->v, &p->residuals));
     HF_TRY(hf_watch_create(p->caller, &p->slopes, p->lower, p->upper, &p->watch));
     HF_TRY(HF_ARENA_MAKE(arena, lay_out(arena, p)));
     return hf_quadratic_create(p->n, &p->step);
@@ -163,6 +158,7 @@ static void destroy(problem *p, hf_arena *arena)
 {
     hf_quadratic_free(&p->step);
     hf_watch_free(&p->watch);
+    hf_residuals_free(&p->residuals);
     hf_sensitivity_free(&p->slopes);
     hf_arena_free(arena);
 }
@@ -190,35 +186,6 @@ static void keep(problem *p)
         p->best[k] = is_tension(p, k) ? p->w->tension_N[m->gene_cable[k]] : p->design[k];
 }
 
-/* Residuals and J' of psi. */
-static void linearise_psi(problem *p)
-{
-    const hf_model *m = p->v.model;
-    double part = 1 / sqrt(m->n_inner_node);
-    for (int i = 0; i < m->n_inner_node; i++)
-        for (int c = 0; c < 3; c++) {
-            int at = c * m->n_node + m->inner_row[i];
-            p->residual[3 * i + c] = part * (p->w->position_m[at] - m->position_m[at]);
-        }
-    for (int k = 0; k < p->n; k++) {
-        double *row = p->row + (size_t)k * (size_t)p->n_row;
-        const double *move = p->slopes.move + (size_t)k * p->slopes.n_dof;
-        for (int i = 0; i < p->n_row; i++)
-            row[i] = part * move[3 * m->inner_row[i / 3] + i % 3];
-    }
-}
-
-static hf_status linearise_goals(problem *p)
-{
-    HF_TRY(hf_goals_linearise(p->v.goals, p->w, p->w->goals, p->residual));
-    for (int k = 0; k < p->n; k++) {
-        const hf_goals_rate by = {p->move_m, p->tension_rate, hf_sensitivity_displacement(&p->slopes, k, 0)};
-        hf_sensitivity_spread(&p->slopes, k, p->move_m, p->tension_rate);
-        hf_goals_push(p->v.goals, p->w, p->w->goals, &by, p->row + (size_t)k * (size_t)p->n_row);
-    }
-    return HF_OK;
-}
-
 /* Forces may be out of balance by residual_tolerance of the tensions, as if each value were off by that part of itself.
  * A merit below what this changes in it is zero as far as shapes are known. */
 static double find_noise(const problem *p)
@@ -233,17 +200,16 @@ static double find_noise(const problem *p)
 static hf_status linearise(problem *p)
 {
     HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
-    if (p->v.goals)
-        HF_TRY(linearise_goals(p));
-    else
-        linearise_psi(p);
+    HF_TRY(hf_residuals_find(&p->residuals, p->w));
+    int n_row = p->residuals.n_row;
     for (int k = 0; k < p->n; k++) {
-        const double *row = p->row + (size_t)k * (size_t)p->n_row;
+        double *row = p->row + (size_t)k * (size_t)n_row;
+        hf_residuals_rate(&p->residuals, &p->slopes, p->w, k, row);
         p->gradient[k] = 0;
-        for (int i = 0; i < p->n_row; i++)
-            p->gradient[k] += row[i] * p->residual[i];
+        for (int i = 0; i < n_row; i++)
+            p->gradient[k] += row[i] * p->residuals.value[i];
     }
-    hf_band_gram(p->n, p->n_row, p->row, p->n_row, p->gram, p->n);
+    hf_band_gram(p->n, n_row, p->row, n_row, p->gram, p->n);
     for (int k = 0; k < p->n; k++)
         p->scale[k] = fmax(p->scale[k], sqrt(p->gram[k * p->n + k]));
     p->noise = find_noise(p);

@@ -353,24 +353,30 @@ static void differ(struct wanting *t, const struct shape *at, const struct shape
     free(difference);
 }
 
+/* At the shape `found`, roughened, which are freed: each goal's derivative is that of differences. */
+static void demand_derivatives(struct wanting *t, struct shape *found, struct shape *rough, struct rng *rng)
+{
+    double worst[N_DIFFERED];
+    put(&t->net, found, rough, 1);
+    struct shape at = shape_of(&t->net), by = random_change(&t->net.model, rng, 1, 10);
+    differ(t, &at, &by, worst);
+    for (int k = 0; k < t->goals.n_goal; k++)
+        ck_assert_msg(worst[k] < 1e-7, "goal %d: %g", k, worst[k]);
+    free_shape(found);
+    free_shape(rough);
+    free_shape(&at);
+    free_shape(&by);
+}
+
 START_TEST(derivatives_are_those_of_differences)
 {
     struct wanting t = {0};
     bool is_round = _i / 2, with_truss = _i % 2;
     struct rng rng = rng_start((uint64_t)_i);
-    double worst[N_DIFFERED];
     open_wanting(&t, is_round, with_truss, &rng);
     want(&t, with_truss ? N_DIFFERED : N_DIFFERED - 1, differed);
     struct shape found = shape_of(&t.net), rough = random_change(&t.net.model, &rng, 1e-2, 2);
-    put(&t.net, &found, &rough, 1);
-    struct shape at = shape_of(&t.net), by = random_change(&t.net.model, &rng, 1, 10);
-    differ(&t, &at, &by, worst);
-    for (int k = 0; k < t.goals.n_goal; k++)
-        ck_assert_msg(worst[k] < 1e-7, "goal %d: %g", k, worst[k]);
-    free_shape(&found);
-    free_shape(&rough);
-    free_shape(&at);
-    free_shape(&by);
+    demand_derivatives(&t, &found, &rough, &rng);
     close_wanting(&t);
 }
 END_TEST
@@ -383,7 +389,6 @@ START_TEST(lesser_fits_follow_their_centre)
     struct wanting t = {0};
     bool is_round = _i % 2, is_aside = _i / 2;
     struct rng rng = rng_start((uint64_t)_i);
-    double worst[4];
     hf_goal_settings goal[4];
     for (int k = 0; k < 4; k++) {
         goal[k] = goal_of(k / 2 ? HF_GOAL_FACETS : HF_GOAL_SURFACE);
@@ -396,17 +401,9 @@ START_TEST(lesser_fits_follow_their_centre)
     struct shape found = shape_of(&t.net), rough = random_change(&t.net.model, &rng, 1e-3, 2);
     for (int row = 0; row < t.net.model.n_node && is_aside; row++)
         found.position_m[row] += 1;
-    put(&t.net, &found, &rough, 1);
-    struct shape at = shape_of(&t.net), by = random_change(&t.net.model, &rng, 1, 10);
-    differ(&t, &at, &by, worst);
-    for (int k = 0; k < 4; k++) {
+    demand_derivatives(&t, &found, &rough, &rng);
+    for (int k = 0; k < 4; k++)
         ck_assert_int_eq(t.point.cloud[k].pose.found.n, n_parameter[_i]);
-        ck_assert_msg(worst[k] < 1e-7, "goal %d: %g", k, worst[k]);
-    }
-    free_shape(&found);
-    free_shape(&rough);
-    free_shape(&at);
-    free_shape(&by);
     close_wanting(&t);
 }
 END_TEST
