@@ -125,6 +125,14 @@ static inline double hf_law_tension_N(hf_law_cable c, double length_m)
     return (double)NAN;
 }
 
+/* Length, m, to which a cable must be cut to have this tension at this length. A slack cable has the length that its
+ * law gives, where it gives one. EA_N is needed whatever the law. */
+static inline double hf_law_cut_m(hf_law_cable c, double length_m, double tension_N, bool is_slack)
+{
+    if (is_slack && hf_law_has(c.law, HF_LAW_HAS_MULTIPLIER)) return hf_law_wanted_length_m(c, 0);
+    return length_m / (1 + tension_N / c.EA_N);
+}
+
 /* Stiffness along the cable, phi'' = dT/dl, N/m; infinite for a rigid law. */
 static inline double hf_law_stiffness_N_per_m(hf_law_cable c, double length_m)
 {

@@ -22,6 +22,11 @@ hf_method hf_evaluate_method(const hf_model *model, const hf_form_settings *form
 hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
                            hf_history *history, hf_form_result *result);
 
+/* The same for laws, targets and first force densities that the caller has put into the workspace after
+ * hf_form_prepare, without a certificate. Loose nodes are placed. */
+hf_status hf_evaluate_prepared(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
+                               hf_history *history, hf_form_result *result);
+
 /* A row of optimize.limits: what it keeps between bounds. */
 typedef struct {
     hf_limit_kind kind;

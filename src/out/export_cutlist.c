@@ -38,14 +38,13 @@ static cut cut_of(const view *v, int e)
 {
     const hf_scene *s = v->scene;
     hf_law law = v->shape->law[e];
-    bool keeps_length = law == s->law[e] && hf_law_has(law, HF_LAW_HAS_MULTIPLIER);
     cut c = {.tension_N = v->shape->tension_N[e], .length_m = v->shape->length_m[e]};
-    double stretch = 1 + c.tension_N / s->EA_N[e];
-    bool is_slack = fabs(c.tension_N) < HF_SLACK_RATIO * v->reference_N;
     double theoretical_m = hf_scene_theoretical_length(s, e);
     hf_law_cable cable = {law, s->target[e], s->EA_N[e], theoretical_m};
-    c.l0_m = is_slack && keeps_length ? hf_law_wanted_length_m(cable, 0) : c.length_m / stretch;
-    c.adjustment_m = c.l0_m - theoretical_m / stretch;
+    /* the scene's target is that of its own law, which a design may have replaced */
+    bool is_slack = fabs(c.tension_N) < HF_SLACK_RATIO * v->reference_N && law == s->law[e];
+    c.l0_m = hf_law_cut_m(cable, c.length_m, c.tension_N, is_slack);
+    c.adjustment_m = c.l0_m - theoretical_m / (1 + c.tension_N / s->EA_N[e]);
     return c;
 }
 

@@ -58,13 +58,20 @@ static hf_status find_net(const net_problem *p, hf_workspace *w, hf_history *his
     return hf_coupling_find(p->m, &s, find_alone, p, start_counts, w, history, r);
 }
 
+hf_status hf_evaluate_prepared(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
+                               hf_form_result *r)
+{
+    net_problem problem = {m, s, hf_evaluate_method(m, s, NULL) == HF_METHOD_NEWTON, s->stop};
+    find_net(&problem, w, history, r);
+    hf_loose_settle(m, s, w, r);
+    return r->status;
+}
+
 hf_status hf_evaluate_form(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
                            hf_form_result *r)
 {
-    net_problem problem = {m, s, hf_evaluate_method(m, s, NULL) == HF_METHOD_NEWTON, s->stop};
     hf_form_prepare(m, w);
-    find_net(&problem, w, history, r);
-    hf_loose_settle(m, s, w, r);
+    hf_evaluate_prepared(m, s, w, history, r);
     hf_certify(m, w, r);
     return r->status;
 }

@@ -1,0 +1,138 @@
+/* Contents: the nominal net - one net */
+#include <hifdm/built.h>
+
+#include "base/arena.h"
+#include <hifdm/metrics.h>
+
+#include <assert.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+/* ---- the nominal net ---- */
+
+static void lay_out(hf_arena *arena, const hf_scene *s, hf_built *b)
+{
+    size_t n = (size_t)s->n_cable, places = 3 * (size_t)s->n_node;
+    b->scene.law = hf_arena_take(arena, n, 1);
+    b->scene.target = hf_arena_take(arena, n, sizeof(double));
+    b->scene.EA_N = hf_arena_take(arena, n, sizeof(double));
+    b->scene.position_m = hf_arena_take(arena, places, sizeof(double));
+    b->place_m = hf_arena_take(arena, places, sizeof(double));
+    b->tension_N = hf_arena_take(arena, n, sizeof(double));
+}
+
+/* HF_BAD_CASE with a message for each kind of cable that cannot be cut: those without EA, by group, and struts. */
+static hf_status refuse_cables(const char *where, const hf_scene *s, const hf_workspace *w, hf_messages *messages)
+{
+    int n[3] = {0}, first[3] = {0};
+    for (int e = 0; e < s->n_cable; e++) {
+        bool has_EA = s->EA_N && s->EA_N[e] > 0;
+        int kind = w->tension_N[e] < 0 ? 2 : s->group[e];
+        if (has_EA && kind < 2) continue;
+        if (n[kind]++ == 0) first[kind] = e;
+    }
+    for (int g = 0; g < 2; g++)
+        if (n[g])
+            hf_error(messages, HF_BAD_CASE,
+                     "%s: %d %s cables have no EA, which the net as built needs, like '%s': give scene.EA_%s_N, or the "
+                     "column EA_N of an imported net",
+                     where, n[g], hf_group_word[g], s->cable_id[first[g]], hf_group_word[g]);
+    if (n[2])
+        hf_error(messages, HF_BAD_CASE,
+                 "%s: %d cables push, like '%s' with %.3g N: the net as built has cables alone, no struts", where, n[2],
+                 s->cable_id[first[2]], w->tension_N[first[2]]);
+    return n[0] + n[1] + n[2] ? HF_BAD_CASE : HF_OK;
+}
+
+/* Supports rest where the design has them; attachments where they are before the truss gives way. */
+static void rest_supports(const hf_scene *s, const hf_model *m, const hf_workspace *w, double *position_m)
+{
+    memcpy(position_m, s->position_m, 3 * (size_t)s->n_node * sizeof(double));
+    for (int i = 0; i < s->n_node; i++)
+        for (int c = 0; c < 3 && s->role[i] == HF_ROLE_SUPPORT; c++)
+            position_m[3 * i + c] = w->position_m[c * m->n_node + m->row_of_node[i]];
+    for (int k = 0; k < m->n_attachment; k++)
+        for (int c = 0; c < 3; c++)
+            position_m[3 * m->node_of_row[m->attachment_row[k]] + c] -= w->displacement_m[3 * k + c];
+}
+
+static void cut_cables(const hf_scene *s, const hf_model *m, const hf_workspace *w, hf_built *b)
+{
+    for (int e = 0; e < s->n_cable; e++) {
+        hf_law_cable cable = hf_workspace_cable(m, w, e);
+        cable.EA_N = s->EA_N[e];
+        b->scene.law[e] = HF_LAW_ELASTIC;
+        b->scene.EA_N[e] = cable.EA_N;
+        b->scene.target[e] = hf_law_cut_m(cable, w->length_m[e], w->tension_N[e], hf_metrics_is_slack(m, w, e));
+        b->tension_N[e] = w->tension_N[e];
+    }
+}
+
+static double largest_N(const hf_built *b)
+{
+    double largest = 0;
+    for (int e = 0; e < b->scene.n_cable; e++)
+        largest = fmax(largest, b->tension_N[e]);
+    return largest;
+}
+
+/* The flexibility of the truss, and the loads, as the design's model has them. */
+static hf_status attach_truss(const hf_model *m, hf_built *b, hf_messages *messages)
+{
+    hf_arena arena = {0};
+    int *node = NULL;
+    if (!m->n_attachment) return HF_OK;
+    HF_TRY(HF_ARENA_MAKE(&arena, node = hf_arena_take(&arena, (size_t)m->n_attachment, sizeof *node)));
+    for (int k = 0; k < m->n_attachment; k++)
+        node[k] = m->node_of_row[m->attachment_row[k]];
+    hf_status status = hf_model_attach(&b->model, m->n_attachment, node, m->flexibility_m_per_N, messages);
+    hf_arena_free(&arena);
+    return status;
+}
+
+hf_status hf_built_make(const char *where, const hf_scene *s, const hf_model *m, const hf_form_settings *form,
+                        const hf_workspace *w, hf_built *b, hf_messages *messages)
+{
+    hf_arena arena = {0};
+    *b = (hf_built){.scene = *s, .form = *form};
+    HF_TRY(refuse_cables(where, s, w, messages));
+    if (HF_ARENA_MAKE(&arena, lay_out(&arena, s, b)) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for the net as built", where);
+    b->block = arena.block;
+    b->form.method = HF_METHOD_NEWTON;
+    b->form.stop = HF_STOP_RESIDUAL;
+    rest_supports(s, m, w, b->scene.position_m);
+    cut_cables(s, m, w, b);
+    memcpy(b->place_m, w->position_m, 3 * (size_t)s->n_node * sizeof(double));
+    HF_TRY(hf_model_build(&b->scene, &b->form, &b->model, messages));
+    HF_TRY(attach_truss(m, b, messages));
+    assert(memcmp(b->model.row_of_node, m->row_of_node, (size_t)s->n_node * sizeof(int)) == 0);
+    b->model.moves_supports = true;
+    b->model.reference_N = largest_N(b);
+    for (int e = 0; e < s->n_cable; e++)
+        b->model.start_q_N_per_m[e] = b->tension_N[e] / w->length_m[e];
+    return HF_OK;
+}
+
+void hf_built_free(hf_built *b)
+{
+    hf_arena arena = {.block = b->block};
+    hf_model_free(&b->model);
+    hf_arena_free(&arena);
+    b->block = NULL;
+}
+
+/* ---- one net ---- */
+
+hf_status hf_built_solve(const hf_built *b, const hf_built_net *net, hf_workspace *w, hf_form_result *r)
+{
+    hf_model loaded = b->model;
+    size_t n = (size_t)loaded.n_cable * sizeof(double);
+    if (net->load_N) loaded.load_N = (double *)(uintptr_t)net->load_N; /* no solver writes to it */
+    hf_form_prepare(&loaded, w);
+    if (net->cut_m) memcpy(w->target, net->cut_m, n);
+    if (net->EA_N) memcpy(w->EA_N, net->EA_N, n);
+    if (net->support_move_m) memcpy(w->support_move_m, net->support_move_m, 3 * (size_t)loaded.n_node * sizeof(double));
+    return hf_evaluate_prepared(&loaded, &b->form, w, NULL, r);
+}
