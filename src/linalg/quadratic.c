@@ -18,8 +18,9 @@ static void lay_out(hf_arena *a, hf_quadratic *q)
     q->inverse = hf_arena_take(a, n * n, sizeof(double));
     q->triangle = hf_arena_take(a, n * n, sizeof(double));
     q->x = hf_arena_take(a, n, sizeof(double));
-    q->active = hf_arena_take(a, n, sizeof(int));
-    q->multiplier = hf_arena_take(a, n, sizeof(double));
+    q->active = hf_arena_take(a, n, sizeof *q->active);
+    q->side = hf_arena_take(a, n, sizeof(int));
+    q->order = hf_arena_take(a, n, sizeof(int));
     q->scratch = hf_arena_take(a, 4 * n, sizeof(double));
 }
 
@@ -39,39 +40,39 @@ void hf_quadratic_free(hf_quadratic *q)
     *q = (hf_quadratic){0};
 }
 
-/* J = L^-T for L as a band whose columns begin with the diagonal. Each column of L^-1, a row of J, is made in `column`,
- * by columns of L, so that the inner loop has no sum. */
-static void invert_transposed(int n, const double *L, double *J, double *column)
+/* J = L^-T for L as a band whose columns begin with the diagonal, L L' being H in the order of `order`. Each column of
+ * L^-1, a row of J, is made in `column`, by columns of L, so that the inner loop has no sum. The columns of J are in
+ * reverse: row order[n-1] of J has one entry, in column 0, row order[n-2] two, in columns 0 and 1, ... */
+static void invert_transposed(hf_quadratic *q)
 {
+    int n = q->n;
+    double *column = q->scratch;
     for (int c = 0; c < n; c++) {
         memset(column, 0, (size_t)n * sizeof(double));
         column[c] = 1;
         for (int k = c; k < n; k++) {
-            const double *l = L + k * n - k; /* entry (i, k) is l[i] */
+            const double *l = q->triangle + k * n - k; /* entry (i, k) is l[i] */
             double x = column[k] /= l[k];
             for (int i = k + 1; i < n; i++)
                 column[i] -= x * l[i];
         }
         for (int r = 0; r < n; r++)
-            J[r * n + c] = column[r];
+            q->inverse[(n - 1 - r) * n + q->order[c]] = column[r];
     }
 }
 
-/* Factor H = L L', and solve for x = -H^-1 g, the free minimum. */
-static hf_status begin(hf_quadratic *q, const double *hessian, const double *gradient)
+/* Factor H = L L' in the order of `order`. */
+static hf_status factor(hf_quadratic *q, const double *hessian)
 {
     int n = q->n;
     double *L = q->triangle; /* which is needed as soon as a limit is active */
     memset(L, 0, (size_t)n * (size_t)n * sizeof(double));
     for (int c = 0; c < n; c++)
-        for (int r = c; r < n; r++)
-            L[c * n + r - c] = hessian[r * n + c];
-    if (hf_band_factor(n, n - 1, L) != 0) return HF_SINGULAR;
-    for (int i = 0; i < n; i++)
-        q->x[i] = -gradient[i];
-    hf_band_back_solve(n, n - 1, 1, L, q->x, n);
-    q->n_active = 0;
-    return HF_OK;
+        for (int r = c; r < n; r++) {
+            int i = q->order[r], j = q->order[c];
+            L[c * n + r - c] = i > j ? hessian[i * n + j] : hessian[j * n + i];
+        }
+    return hf_band_factor(n, n - 1, L) == 0 ? HF_OK : HF_SINGULAR;
 }
 
 /* Turn columns a and b of J so that the pair (*f, *g), rows a and b of a column of R, becomes (length, 0). */
@@ -95,8 +96,8 @@ static void turn_columns(hf_quadratic *q, int a, double cosine, double sine)
     }
 }
 
-/* Take in the limit whose normal is d = J' normal in terms of J. */
-static void take_in(hf_quadratic *q, double *d, int kind, double multiplier)
+/* Take in a limit whose normal is d = J' normal in terms of J. */
+static void take_in(hf_quadratic *q, double *d, hf_quadratic_active limit)
 {
     int m = q->n_active, n = q->n;
     double cosine, sine;
@@ -105,9 +106,7 @@ static void take_in(hf_quadratic *q, double *d, int kind, double multiplier)
         turn_columns(q, i, cosine, sine);
     }
     memcpy(q->triangle + m * n, d, (size_t)(m + 1) * sizeof(double));
-    q->active[m] = kind;
-    q->multiplier[m] = multiplier;
-    q->n_active++;
+    q->active[q->n_active++] = limit;
 }
 
 /* Let the active limit k go: R without column k is made triangular again. */
@@ -119,7 +118,6 @@ static void let_go(hf_quadratic *q, int k)
     for (int j = k; j < q->n_active; j++) {
         memcpy(R + j * n, R + (j + 1) * n, (size_t)(j + 2) * sizeof(double));
         q->active[j] = q->active[j + 1];
-        q->multiplier[j] = q->multiplier[j + 1];
     }
     for (int j = k; j < q->n_active; j++) {
         rotate(R + j * n + j, R + j * n + j + 1, &cosine, &sine);
@@ -171,8 +169,8 @@ static hf_status obey(hf_quadratic *q, const hf_quadratic_limit *limit, int *ste
             for (int j = i + 1; j < m; j++)
                 sum -= q->triangle[j * n + i] * r[j];
             r[i] = sum / q->triangle[i * n + i];
-            if (r[i] > 0 && q->multiplier[i] / r[i] < dual_step) {
-                dual_step = q->multiplier[i] / r[i];
+            if (r[i] > 0 && q->active[i].multiplier / r[i] < dual_step) {
+                dual_step = q->active[i].multiplier / r[i];
                 blocking = i;
             }
         }
@@ -183,10 +181,11 @@ static hf_status obey(hf_quadratic *q, const hf_quadratic_limit *limit, int *ste
         for (int i = 0; i < n && isfinite(full_step); i++)
             q->x[i] += step * z[i];
         for (int i = 0; i < m; i++)
-            q->multiplier[i] -= step * r[i];
+            q->active[i].multiplier -= step * r[i];
         own += step;
         if (full_step <= dual_step) {
-            take_in(q, d, limit->kind, own);
+            double sign = limit->only >= 0 ? limit->normal[limit->only] : 0;
+            take_in(q, d, (hf_quadratic_active){limit->kind, limit->only, sign, limit->bound, own});
             return HF_OK;
         }
         let_go(q, blocking);
@@ -194,17 +193,92 @@ static hf_status obey(hf_quadratic *q, const hf_quadratic_limit *limit, int *ste
     return HF_DIFFERENT;
 }
 
-hf_status hf_quadratic_solve(hf_quadratic *q, const double *hessian, const double *gradient, hf_quadratic_worst *worst,
-                             void *context)
+/* ---- the start ---- */
+
+/* Put the variables whose bounds held the last answer at the end of the order, and take these bounds as active. */
+static void guess(hf_quadratic *q, const double *low, const double *high)
+{
+    int n = q->n, n_free = 0;
+    q->n_active = 0;
+    for (int i = 0; i < n; i++) {
+        double bound = q->side[i] == 0 ? INFINITY : q->side[i] > 0 ? low[i] : high[i];
+        if (!isfinite(bound)) {
+            q->order[n_free++] = i;
+            continue;
+        }
+        q->order[n - 1 - q->n_active] = i;
+        q->active[q->n_active++] = (hf_quadratic_active){0, i, q->side[i], q->side[i] * bound, 0};
+    }
+}
+
+/* The least under the active limits as equations: x = J (y, -J2' g) with R' y = their bounds, and the multipliers
+ * R^-1 (J1' g + y). Returns the most negative multiplier's limit; -1: there is none. */
+static int hold(hf_quadratic *q, const double *gradient)
+{
+    int n = q->n, m = q->n_active, worst = -1;
+    double *share = q->scratch, *y = share + n, least = 0;
+    for (int j = 0; j < n; j++)
+        y[j] = -(share[j] = hf_dot((size_t)n, q->inverse + j * n, gradient));
+    for (int j = 0; j < m; j++)
+        y[j] = (q->active[j].bound - hf_dot((size_t)j, q->triangle + j * n, y)) / q->triangle[j * n + j];
+    find_direction(q, 0, y, q->x);
+    for (int i = m - 1; i >= 0; i--) {
+        double sum = share[i] + y[i];
+        for (int j = i + 1; j < m; j++)
+            sum -= q->triangle[j * n + i] * q->active[j].multiplier;
+        double multiplier = q->active[i].multiplier = sum / q->triangle[i * n + i];
+        q->x[q->active[i].only] = q->active[i].sign * q->active[i].bound;
+        if (multiplier < least) least = multiplier, worst = i;
+    }
+    return worst;
+}
+
+/* Begin at the least under the bounds that held the last answer, without those that now pull the wrong way: what is
+ * left is the answer to a part of the limits, as each point on the way is. Without such bounds that is the free minimum
+ * x = -H^-1 g, and J is made when the first limit is broken. */
+static hf_status begin(hf_quadratic *q, const double *hessian, const double *gradient, const double *low,
+                       const double *high, bool *has_inverse)
+{
+    int n = q->n;
+    guess(q, low, high);
+    HF_TRY(factor(q, hessian));
+    *has_inverse = q->n_active > 0;
+    if (!*has_inverse) {
+        for (int i = 0; i < n; i++)
+            q->x[i] = -gradient[i];
+        hf_band_back_solve(n, n - 1, 1, q->triangle, q->x, n);
+        return HF_OK;
+    }
+    invert_transposed(q);
+    for (int k = 0; k < q->n_active; k++)
+        for (int j = 0; j <= k; j++)
+            q->triangle[k * n + j] = q->active[k].sign * q->inverse[j * n + q->active[k].only];
+    for (int k = hold(q, gradient); k >= 0; k = hold(q, gradient))
+        let_go(q, k);
+    return HF_OK;
+}
+
+static void remember_sides(hf_quadratic *q)
+{
+    memset(q->side, 0, (size_t)q->n * sizeof(int));
+    for (int k = 0; k < q->n_active; k++)
+        if (q->active[k].only >= 0) q->side[q->active[k].only] = q->active[k].sign > 0 ? 1 : -1;
+}
+
+hf_status hf_quadratic_solve(hf_quadratic *q, const double *hessian, const double *gradient, const double *low,
+                             const double *high, hf_quadratic_worst *worst, void *context)
 {
     int steps_left = STEPS_PER_VARIABLE * (q->n + 1);
     hf_quadratic_limit limit = {.normal = q->scratch + 3 * q->n};
-    HF_TRY(begin(q, hessian, gradient));
-    for (bool is_free = true;; is_free = false) {
+    bool has_inverse;
+    HF_TRY(begin(q, hessian, gradient, low, high, &has_inverse));
+    for (;; has_inverse = true) {
         memset(limit.normal, 0, (size_t)q->n * sizeof(double));
         limit.only = -1;
-        if (!worst(context, q->x, &limit)) return HF_OK;
-        if (is_free) invert_transposed(q->n, q->triangle, q->inverse, q->scratch);
+        if (!worst(context, q->x, &limit)) break;
+        if (!has_inverse) invert_transposed(q);
         HF_TRY(obey(q, &limit, &steps_left));
     }
+    remember_sides(q);
+    return HF_OK;
 }

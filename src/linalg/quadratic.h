@@ -15,19 +15,29 @@ typedef struct {
     int kind;
 } hf_quadratic_limit;
 
+/* A limit that holds with equality. */
+typedef struct {
+    int kind;          /* 0 of bounds that held the answer before */
+    int only;          /* of its normal; -1: not known */
+    double sign;       /* that entry, 1 or -1 of a bound of a variable */
+    double bound;      /* normal' x */
+    double multiplier; /* > 0 */
+} hf_quadratic_active;
+
 /* Write the limit that x violates most into *limit, whose `normal` is n zeros and `only` -1 on entry; false when x
  * violates none beyond rounding. */
 typedef bool hf_quadratic_worst(void *context, const double *x, hf_quadratic_limit *limit);
 
 typedef struct {
     int n;
-    double *inverse;    /* [n][n] scratch: columns J, with J J' = H^-1 */
-    double *triangle;   /* [n][n] scratch: R, the active normals in terms of J */
-    double *x;          /* [n] the answer */
-    int n_active;       /* limits that hold with equality */
-    int *active;        /* [n] their kinds */
-    double *multiplier; /* [n] of the active limits, > 0 */
-    double *scratch;    /* [4 n] */
+    double *inverse;             /* [n][n] scratch: columns J, with J J' = H^-1 */
+    double *triangle;            /* [n][n] scratch: R, the active normals in terms of J */
+    double *x;                   /* [n] the answer */
+    int n_active;                /* limits that hold with equality */
+    hf_quadratic_active *active; /* [n] */
+    int *side;                   /* [n] the bound of each variable that held the last answer: 1 low, -1 high, 0 none */
+    int *order;                  /* [n] of the variables in the factor: those held from the start are last */
+    double *scratch;             /* [4 n] */
     void *block;
 } hf_quadratic;
 
@@ -35,9 +45,11 @@ typedef struct {
 hf_status hf_quadratic_create(int n, hf_quadratic *quadratic);
 void hf_quadratic_free(hf_quadratic *quadratic);
 
-/* hessian [n][n]: its lower triangle by rows is read. HF_OK; HF_SINGULAR when it is not positive definite; HF_DIFFERENT
- * when no x obeys all limits. */
-hf_status hf_quadratic_solve(hf_quadratic *quadratic, const double *hessian, const double *gradient,
-                             hf_quadratic_worst *worst, void *context);
+/* hessian [n][n]: its lower triangle by rows is read. low, high [n]: bounds of x, which `worst` names like any other
+ * limit, of kind 0; those that held the last answer are where this one begins, so that a programme much like the last
+ * one takes few steps. HF_OK; HF_SINGULAR when the hessian is not positive definite; HF_DIFFERENT when no x obeys all
+ * limits. */
+hf_status hf_quadratic_solve(hf_quadratic *quadratic, const double *hessian, const double *gradient, const double *low,
+                             const double *high, hf_quadratic_worst *worst, void *context);
 
 #endif

@@ -48,6 +48,7 @@ typedef struct {
     hf_form_result result; /* of the last evaluation */
     double *start;         /* [n_gene] values; of tensions the pretensions q L* */
     double *low, *high;    /* [n] bounds of the variables */
+    double *down, *up;     /* [n] of a step: how far it may go */
     double *unit;          /* [n] size of the values: violations are relative to it */
     double *at, *trial;    /* [n] the best variables; those of the last step */
     double *design;        /* [n_gene] of the last evaluation, tensions as pretensions q L* */
@@ -84,6 +85,8 @@ static void lay_out(hf_arena *a, problem *p)
     p->start = hf_arena_take(a, n_gene, sizeof(double));
     p->low = hf_arena_take(a, n, sizeof(double));
     p->high = hf_arena_take(a, n, sizeof(double));
+    p->down = hf_arena_take(a, n, sizeof(double));
+    p->up = hf_arena_take(a, n, sizeof(double));
     p->unit = hf_arena_take(a, n, sizeof(double));
     p->at = hf_arena_take(a, n, sizeof(double));
     p->trial = hf_arena_take(a, n, sizeof(double));
@@ -226,7 +229,7 @@ static bool worst_limit(void *context, const double *x, hf_quadratic_limit *limi
     double worst = LIMIT_ROUNDING, sign = 0;
     int variable = -1;
     for (int i = 0; i < p->n; i++) {
-        double below = (p->low[i] - p->at[i] - x[i]) / p->unit[i], above = (p->at[i] + x[i] - p->high[i]) / p->unit[i];
+        double below = (p->down[i] - x[i]) / p->unit[i], above = (x[i] - p->up[i]) / p->unit[i];
         if (!(fmax(below, above) > worst)) continue;
         worst = fmax(below, above);
         sign = below > above ? 1 : -1;
@@ -237,7 +240,7 @@ static bool worst_limit(void *context, const double *x, hf_quadratic_limit *limi
     limit->kind = 0;
     limit->only = variable;
     limit->normal[variable] = sign;
-    limit->bound = sign * ((sign > 0 ? p->low : p->high)[variable] - p->at[variable]);
+    limit->bound = sign * (sign > 0 ? p->down : p->up)[variable];
     return true;
 }
 
@@ -250,8 +253,10 @@ static hf_status solve_step(problem *p, double damping, double *gain)
     for (int r = 0; r < n; r++) {
         memcpy(p->hessian + r * n, p->gram + r * n, (size_t)(r + 1) * sizeof(double));
         p->hessian[r * n + r] += damping * p->scale[r] * p->scale[r];
+        p->down[r] = p->low[r] - p->at[r];
+        p->up[r] = p->high[r] - p->at[r];
     }
-    HF_TRY(hf_quadratic_solve(&p->step, p->hessian, p->gradient, worst_limit, p));
+    HF_TRY(hf_quadratic_solve(&p->step, p->hessian, p->gradient, p->down, p->up, worst_limit, p));
     *gain = 0;
     for (int r = 0; r < n; r++) {
         double sum = p->gram[r * n + r] * x[r] / 2 + p->gradient[r];
@@ -288,8 +293,8 @@ static void count_limits(const problem *p, hf_polish_result *r)
         r->n_at_upper += p->best[k] >= p->upper[k] - inside;
     }
     for (int i = 0; i < p->step.n_active; i++) {
-        r->is_at_cap |= p->step.active[i] == HF_WATCH_CAP;
-        r->n_at_limit += p->step.active[i] == HF_WATCH_ROW;
+        r->is_at_cap |= p->step.active[i].kind == HF_WATCH_CAP;
+        r->n_at_limit += p->step.active[i].kind == HF_WATCH_ROW;
     }
 }
 
