@@ -28,7 +28,7 @@ typedef struct {
     double *start_q_N_per_m;     /* [n_cable] of the found shape */
     double *base_N;              /* [n_gene] boundary pretensions of the found shape, averaged over linked genes */
     hf_limits limits;            /* of optimize.limits; none without rows */
-    hf_goals goals;              /* of optimize.goals; none without rows: psi */
+    hf_goals goals;              /* of optimize.goals or objectives; none without rows: psi */
     hf_evaluator evaluator;      /* of designs of this problem */
     hf_batch batch;              /* evaluates designs; borrows the evaluator */
     hf_solver solver;            /* the solver that the batch uses */

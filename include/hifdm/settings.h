@@ -44,7 +44,7 @@ typedef enum {
 /* Which variables of a row change by the same step: none, all, or those at mirrored places (optimize.symmetry). */
 typedef enum { HF_LINK_EACH, HF_LINK_SET, HF_LINK_SYMMETRY } hf_link;
 
-/* What a row of optimize.goals measures; each is zero or more, and less is better. */
+/* What a row of optimize.goals or optimize.objectives measures; each is zero or more, and less is better. */
 typedef enum {
     HF_GOAL_PSI,          /* m, distance of the inner nodes to their theoretical places, RMS */
     HF_GOAL_SURFACE,      /* m, distance of the inner nodes to the wanted surface, RMS */
@@ -54,7 +54,8 @@ typedef enum {
     HF_GOAL_EVENNESS,     /* standard deviation of the tensions of the set over their mean */
     HF_GOAL_PULL,         /* N, largest force of the net on a support */
     HF_GOAL_DISPLACEMENT, /* m, largest displacement of an attachment by the truss */
-    HF_GOAL_MASS          /* kg, of the cables of the set at mass_kg_per_m */
+    HF_GOAL_MASS,         /* kg, of the cables of the set at mass_kg_per_m */
+    HF_GOAL_RATIO         /* largest over smallest tension of the set */
 } hf_goal_kind;
 typedef enum { HF_ALONG_NORMAL, HF_ALONG_HALF_PATH } hf_along;
 typedef enum { HF_FIT_NONE, HF_FIT_BEST } hf_fit; /* the wanted surface itself, or its best fit to the shape */
@@ -81,7 +82,7 @@ extern const char *const hf_surface_kind_word[4];
 extern const char *const hf_coupling_scheme_word[4];
 extern const char *const hf_vary_word[8];
 extern const char *const hf_link_word[4];
-extern const char *const hf_goal_word[10];
+extern const char *const hf_goal_word[11];
 extern const char *const hf_along_word[3];
 extern const char *const hf_fit_word[3];
 extern const char *const hf_limit_word[4];
@@ -98,10 +99,10 @@ typedef struct {
     hf_link link;
 } hf_variable_settings;
 
-/* A row of optimize.goals. */
+/* A row of optimize.goals, or of optimize.objectives, where weight is nothing. */
 typedef struct {
     hf_goal_kind goal;
-    char set[HF_SET_NAME_SIZE]; /* of tension, length, evenness, mass; "": all */
+    char set[HF_SET_NAME_SIZE]; /* of tension, length, evenness, mass, ratio; "": all */
     double target;              /* of tension and length; NaN: of lengths the theoretical ones */
     double weight;              /* the merit of a design is sqrt(sum (weight * value)^2) */
     double mass_kg_per_m;       /* of mass */
@@ -117,6 +118,7 @@ typedef struct {
 } hf_limit_settings;
 
 #define HF_DESIGN_ROWS_MAX 16 /* rows of each of these lists */
+#define HF_OBJECTIVES_MAX 3   /* rows of optimize.objectives */
 #define HF_GOAL_NAME_SIZE 112 /* of a goal in tables: "goal_15_displacement_" and the name of a set */
 
 /* How a net is coupled with an elastic truss. They are not used without a truss. */
@@ -163,6 +165,9 @@ typedef struct {
     hf_variable_settings variable[HF_DESIGN_ROWS_MAX];
     hf_goal_settings goal[HF_DESIGN_ROWS_MAX];
     hf_limit_settings limit[HF_DESIGN_ROWS_MAX];
+    int n_objective; /* 0, or 2 or 3 instead of goals: the front of designs of which none is better in all of them */
+    hf_goal_settings objective[HF_OBJECTIVES_MAX];
+    int front_points; /* of this front */
 } hf_optimize_settings;
 
 #define HF_LIST_MAX 32

@@ -225,10 +225,12 @@ static void check_variables(const hf_optimize_settings *o, hf_config_faults *f)
         hf_config_fault_of(f, "optimize.rule", "cannot be seeded with optimize.variables; remove one of them");
 }
 
-static void check_goals(const hf_optimize_settings *o, hf_config_faults *f)
+/* Rows of optimize.goals or optimize.objectives. */
+static void check_goals(const char *list, int n_goal, const hf_goal_settings *goal, hf_config_faults *f)
 {
     enum {
-        SETS = 1u << HF_GOAL_TENSION | 1u << HF_GOAL_LENGTH | 1u << HF_GOAL_EVENNESS | 1u << HF_GOAL_MASS,
+        SETS = 1u << HF_GOAL_TENSION | 1u << HF_GOAL_LENGTH | 1u << HF_GOAL_EVENNESS | 1u << HF_GOAL_MASS |
+               1u << HF_GOAL_RATIO,
         SURFACES = 1u << HF_GOAL_SURFACE | 1u << HF_GOAL_FACETS
     };
     static const struct {
@@ -239,9 +241,8 @@ static void check_goals(const hf_optimize_settings *o, hf_config_faults *f)
                {"mass_kg_per_m", 1u << HF_GOAL_MASS},
                {"along", SURFACES},
                {"fit", SURFACES}};
-    static const char list[] = "optimize.goals";
-    for (int i = 0; i < o->n_goal; i++) {
-        const hf_goal_settings *g = &o->goal[i];
+    for (int i = 0; i < n_goal; i++) {
+        const hf_goal_settings *g = &goal[i];
         for (size_t k = 0; k < sizeof use / sizeof *use; k++)
             check_use(f, list, i, use[k].key, (int)g->goal, hf_goal_word, use[k].users);
         check_set_name(f, list, i, g->set);
@@ -252,6 +253,22 @@ static void check_goals(const hf_optimize_settings *o, hf_config_faults *f)
         if (g->goal == HF_GOAL_MASS && isnan(g->mass_kg_per_m))
             fault_in_row(f, list, i, "mass_kg_per_m", "is missing: the mass of the cables");
     }
+}
+
+static void check_objectives(const hf_optimize_settings *o, hf_config_faults *f)
+{
+    static const char list[] = "optimize.objectives";
+    check_goals(list, o->n_objective, o->objective, f);
+    if (o->n_objective == 1)
+        hf_config_fault_of(f, "optimize.objectives.0",
+                           "is the only row; a front is of two or three objectives. For one use optimize.goals");
+    if (o->n_objective > 0 && o->n_goal > 0)
+        hf_config_fault_of(f, "optimize.goals.0",
+                           "cannot be with optimize.objectives, which takes the place of goals; keep one of them");
+    for (int i = 1; i < o->n_objective; i++)
+        for (int k = 0; k < i; k++)
+            if (!memcmp(&o->objective[i], &o->objective[k], sizeof o->objective[i]))
+                fault_in_row(f, list, i, "goal", "is the objective of an earlier row; a front needs different ones");
 }
 
 static void check_limits(const hf_optimize_settings *o, hf_config_faults *f)
@@ -299,7 +316,8 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
     if (o->mutation_low > o->mutation_high)
         hf_config_fault_of(f, "optimize.mutation_low", "must not be above optimize.mutation_high");
     check_variables(o, f);
-    check_goals(o, f);
+    check_goals("optimize.goals", o->n_goal, o->goal, f);
+    check_objectives(o, f);
     check_limits(o, f);
 }
 

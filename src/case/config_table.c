@@ -160,6 +160,8 @@ const hf_field hf_field_table[] = {
      "with store every: generations 0, n, 2n, ... are stored"},
     {"optimize.polish_iterations", HF_FIELD_INT, AT(optimize.polish_iterations), 1, 100000, "200", "", NULL,
      "largest number of Levenberg-Marquardt iterations"},
+    {"optimize.front_points", HF_FIELD_INT, AT(optimize.front_points), 3, 1000, "21", "", NULL,
+     "of the front of optimize.objectives that Levenberg-Marquardt finds, its two ends included"},
 
 #define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
     {"truss." #member, type, AT(section.member), min, max, default_value, unit, words, help},
@@ -233,20 +235,23 @@ static const hf_field goal_field[] = {
      "psi: distance of the inner nodes to their theoretical places, RMS (m); surface: to the wanted surface (m); "
      "facets: distance of the facets to it, RMS (m); tension, length: difference to target, RMS over the set (N, m); "
      "evenness: standard deviation of the tensions of the set over their mean; pull: largest force of the net on a "
-     "support (N); displacement: the largest of an attachment by the truss (m); mass: of the cables of the set (kg)"},
+     "support (N); displacement: the largest of an attachment by the truss (m); mass: of the cables of the set (kg); "
+     "ratio: largest over smallest tension of the set"},
     {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL,
-     "cables of tension, length, evenness, mass; default: all"},
+     "cables of tension, length, evenness, mass, ratio; default: all"},
     {"target", HF_FIELD_DOUBLE, IN(target), -BIG, BIG, "", "", NULL,
      "of tension (N), which needs it, and of length (m), where the theoretical lengths are the default"},
-    {"weight", HF_FIELD_DOUBLE, IN(weight), HF_ABOVE_ZERO, BIG, "1", "", NULL,
-     "of this goal in the merit of a design, the root of the sum of (weight * value)^2"},
     {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(mass_kg_per_m), HF_ABOVE_ZERO, BIG, "", "kg/m", NULL,
      "of the cables, which mass needs"},
     {"along", HF_FIELD_WORD, IN(along), 0, 0, "normal", "", hf_along_word,
      "of surface and facets: distance along the normal, or half the change of the path of a ray"},
     {"fit", HF_FIELD_WORD, IN(fit), 0, 0, "none", "", hf_fit_word,
      "of surface and facets: distance to the wanted surface, or to its best fit to the shape"},
+    {"weight", HF_FIELD_DOUBLE, IN(weight), HF_ABOVE_ZERO, BIG, "1", "", NULL,
+     "of this goal in the merit of a design, the root of the sum of (weight * value)^2"},
 };
+/* An objective is a goal without the last key, weight. */
+enum { N_GOAL_FIELD = sizeof goal_field / sizeof *goal_field, N_OBJECTIVE_FIELD = N_GOAL_FIELD - 1 };
 #undef IN
 
 #define IN(member) offsetof(hf_limit_settings, member)
@@ -260,16 +265,23 @@ static const hf_field limit_field[] = {
 };
 #undef IN
 
-#define LIST(name, count, row, keys, help)                                                                             \
+#define N_VARIABLE_FIELD (int)(sizeof variable_field / sizeof *variable_field)
+#define N_LIMIT_FIELD (int)(sizeof limit_field / sizeof *limit_field)
+#define LIST(name, count, row, max_row, keys, n_key, help)                                                             \
     {                                                                                                                  \
-        "optimize." name, AT(optimize.count), AT(optimize.row), sizeof(((hf_case *)0)->optimize.row[0]),               \
-            HF_DESIGN_ROWS_MAX, keys, sizeof keys / sizeof *keys, help                                                 \
+        "optimize." name, AT(optimize.count), AT(optimize.row), sizeof(((hf_case *)0)->optimize.row[0]), max_row,      \
+            keys, n_key, help                                                                                          \
     }
 const hf_list hf_list_table[] = {
-    LIST("variables", n_variable, variable, variable_field,
+    LIST("variables", n_variable, variable, HF_DESIGN_ROWS_MAX, variable_field, N_VARIABLE_FIELD,
          "What a design varies; without rows the pretensions of the boundary, within range_N by rule"),
-    LIST("goals", n_goal, goal, goal_field, "What a design should reach; without rows psi"),
-    LIST("limits", n_limit, limit, limit_field, "What a design must keep; without rows nothing"),
+    LIST("goals", n_goal, goal, HF_DESIGN_ROWS_MAX, goal_field, N_GOAL_FIELD,
+         "What a design should reach; without rows psi"),
+    LIST("objectives", n_objective, objective, HF_OBJECTIVES_MAX, goal_field, N_OBJECTIVE_FIELD,
+         "Two or three goals to be weighed against each other: instead of one design the run finds their front, the "
+         "designs than which none is better in all of them"),
+    LIST("limits", n_limit, limit, HF_DESIGN_ROWS_MAX, limit_field, N_LIMIT_FIELD,
+         "What a design must keep; without rows nothing"),
 };
 #undef LIST
 const int hf_n_list = sizeof hf_list_table / sizeof *hf_list_table;

@@ -19,8 +19,8 @@ const char *const hf_compare_word[4] = {"auto", "true", "false", NULL};
 const char *const hf_vary_word[8] = {"tension",   "force_density",  "length",      "unstressed_length",
                                      "support_z", "support_normal", "support_xyz", NULL};
 const char *const hf_link_word[4] = {"each", "set", "symmetry", NULL};
-const char *const hf_goal_word[10] = {"psi",      "surface", "facets",       "tension", "length",
-                                      "evenness", "pull",    "displacement", "mass",    NULL};
+const char *const hf_goal_word[11] = {"psi",  "surface",      "facets", "tension", "length", "evenness",
+                                      "pull", "displacement", "mass",   "ratio",   NULL};
 const char *const hf_along_word[3] = {"normal", "half_path", NULL};
 const char *const hf_fit_word[3] = {"none", "best", NULL};
 const char *const hf_limit_word[4] = {"tension", "ratio", "displacement", NULL};

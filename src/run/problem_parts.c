@@ -48,7 +48,7 @@ hf_status hf_problem_load(const char *path, const char *const *set, int n_set, h
     }
     if (!p->settings.has_optimize) return HF_OK;
     HF_TRY(hf_limits_create(&p->scene, &p->model, &p->settings.optimize, &p->limits, messages));
-    if (p->settings.optimize.n_goal)
+    if (p->settings.optimize.n_goal || p->settings.optimize.n_objective)
         HF_TRY(
             hf_goals_create(&p->scene, &p->model, &p->settings.optimize, &p->surface, &p->facets, &p->goals, messages));
     return hf_symmetry_apply(&p->scene, &p->settings.optimize, &p->model, &p->planes, messages);

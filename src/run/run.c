@@ -386,6 +386,9 @@ static bool wants_polish(const run *r, const hf_summary *s)
 
 static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
 {
+    if (r->problem.settings.optimize.n_objective > 0)
+        return hf_error(messages, HF_BAD_CASE,
+                        "optimize.objectives: fronts cannot be found by this version; use optimize.goals");
     r->plan = hf_optimiser_plan_of(r->problem.settings.optimize.method);
     HF_TRY(prepare_optimize(r, s, messages));
     s->threads = r->problem.batch.n_thread;

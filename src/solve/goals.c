@@ -23,7 +23,8 @@ static bool is_on_surface(hf_goal_kind kind)
 
 static bool has_set(hf_goal_kind kind)
 {
-    return kind == HF_GOAL_TENSION || kind == HF_GOAL_LENGTH || kind == HF_GOAL_EVENNESS || kind == HF_GOAL_MASS;
+    return kind == HF_GOAL_TENSION || kind == HF_GOAL_LENGTH || kind == HF_GOAL_EVENNESS || kind == HF_GOAL_MASS ||
+           kind == HF_GOAL_RATIO;
 }
 
 /* What is wrong with a goal in this scene, as the end of a sentence, or NULL. */
@@ -39,6 +40,7 @@ static const char *fault_of(const hf_goal *g, const hf_model *m, const hf_surfac
     if (s->goal == HF_GOAL_TENSION && isnan(s->target)) return "needs a target, in N";
     if (s->goal == HF_GOAL_MASS && !(s->mass_kg_per_m > 0)) return "needs mass_kg_per_m, of the cables of its set";
     if (s->goal == HF_GOAL_EVENNESS && g->n_cable == 1) return "one cable is always even; name a set of several";
+    if (s->goal == HF_GOAL_RATIO && g->n_cable == 1) return "the ratio of one cable is 1; name a set of several";
     if (s->goal == HF_GOAL_PULL && m->n_node == m->n_free) return "this net has no supports";
     if (s->goal == HF_GOAL_DISPLACEMENT && m->n_attachment == 0)
         return "needs a truss that gives way: this net has none";
@@ -57,6 +59,8 @@ static int row_count(const hf_goals *goals, const hf_goal *g)
         return m->n_attachment;
     case HF_GOAL_MASS:
         return 1;
+    case HF_GOAL_RATIO:
+        return 2 * g->n_cable;
     case HF_GOAL_SURFACE:
     case HF_GOAL_FACETS:
         return hf_cloud_size(goals, g);
@@ -81,9 +85,11 @@ hf_status hf_goals_create(const hf_scene *scene, const hf_model *m, const hf_opt
 {
     hf_arena arena = {0};
     int n_fault = 0;
-    *goals = (hf_goals){.model = m, .n_goal = s->n_goal > 0 ? s->n_goal : 1};
+    bool is_front = s->n_objective > 0;
+    *goals = (hf_goals){.model = m, .n_goal = is_front ? s->n_objective : s->n_goal > 0 ? s->n_goal : 1};
     for (int k = 0; k < goals->n_goal; k++) {
-        goals->goal[k].wanted = s->n_goal > 0 ? s->goal[k] : psi_alone;
+        goals->goal[k].wanted = is_front ? s->objective[k] : s->n_goal > 0 ? s->goal[k] : psi_alone;
+        if (is_front) goals->goal[k].wanted.weight = 1;
         if (goals->goal[k].wanted.goal == HF_GOAL_FACETS && facets) goals->n_facet = facets->n_facet;
     }
     if (surface) {
@@ -98,7 +104,7 @@ hf_status hf_goals_create(const hf_scene *scene, const hf_model *m, const hf_opt
     for (int k = 0; k < goals->n_goal; k++) {
         hf_goal *g = &goals->goal[k];
         char where[32];
-        snprintf(where, sizeof where, "optimize.goals.%d", k);
+        snprintf(where, sizeof where, "optimize.%s.%d", is_front ? "objectives" : "goals", k);
         if (g->cable) g->n_cable = hf_cable_pick_some(scene, g->wanted.set, where, g->cable, messages);
         bool is_known = !g->cable || g->n_cable > 0;
         const char *fault = is_known ? fault_of(g, m, surface, facets) : NULL;
@@ -127,11 +133,14 @@ void hf_goals_free(hf_goals *goals)
 static void lay_out_point(hf_arena *a, const hf_goals *goals, hf_goals_point *p)
 {
     const hf_model *m = goals->model;
-    size_t n_support = (size_t)(m->n_node - m->n_free);
+    size_t n_support = (size_t)(m->n_node - m->n_free), n_size = n_support; /* attachments are supports */
+    for (int k = 0; k < goals->n_goal; k++)
+        if (goals->goal[k].wanted.goal == HF_GOAL_RATIO && n_size < (size_t)goals->goal[k].n_row)
+            n_size = (size_t)goals->goal[k].n_row;
     p->psi_per_m = hf_arena_take(a, (size_t)m->n_inner_node, sizeof(double));
     p->force_N = hf_arena_take(a, 3 * n_support, sizeof(double));
     p->rate_N = hf_arena_take(a, 3 * n_support, sizeof(double));
-    p->size = hf_arena_take(a, n_support, sizeof(double)); /* attachments are supports */
+    p->size = hf_arena_take(a, n_size, sizeof(double));
     p->row = hf_arena_take(a, (size_t)goals->n_row, sizeof(double));
     p->cloud = hf_arena_take(a, (size_t)goals->n_goal, sizeof *p->cloud);
     for (int k = 0; k < goals->n_goal; k++) {
@@ -182,14 +191,15 @@ static double seventh(double x)
     return square * square * square * x;
 }
 
-/* rate [n]: changes of the sizes, then of the residuals; size [n]: s/P. */
-static void push_smooth(int n, const double *size, double *rate)
+/* rate [n]: changes of the sizes, then of the residuals; size [n]: s/P. Returns the change of P. */
+static double push_smooth(int n, const double *size, double *rate)
 {
     double norm_rate = 0;
     for (int i = 0; i < n; i++)
         norm_rate += seventh(size[i]) * seventh(size[i]) * size[i] * rate[i];
     for (int i = 0; i < n; i++)
         rate[i] = seventh(size[i]) * (8 * rate[i] - 7 * size[i] * norm_rate);
+    return norm_rate;
 }
 
 static double norm3(const double v[3])
@@ -294,6 +304,34 @@ static void take_displacements(const hf_model *m, const hf_workspace *w, hf_goal
         p->size[i] = norm3(w->displacement_m + 3 * (size_t)i);
 }
 
+/* The largest over the smallest of n tensions is the largest T times the largest 1/T, each of them smooth as above: A
+ * and B. size [2n] becomes T/A and 1/(T B); returns A B. */
+static double smooth_ratio(const hf_goal *g, const hf_workspace *w, double *size, double *high, double *low)
+{
+    int n = g->n_cable;
+    for (int i = 0; i < n; i++) {
+        size[i] = w->tension_N[g->cable[i]];
+        size[n + i] = 1 / size[i];
+    }
+    smooth_largest(n, size, high);
+    smooth_largest(n, size + n, low);
+    return *high * *low;
+}
+
+/* f [2n] has the norm A B; with a slack cable or a strut there is no ratio. Returns the true ratio. */
+static double measure_ratio(const hf_goal *g, const hf_model *m, const hf_workspace *w, hf_goals_point *p, double *f,
+                            double *norm)
+{
+    double high, low, ratio = hf_metrics_set_ratio(m, w, g->n_cable, g->cable);
+    *norm = ratio;
+    memset(f, 0, (size_t)g->n_row * sizeof *f);
+    if (!isfinite(ratio)) return ratio;
+    *norm = smooth_ratio(g, w, p->size, &high, &low);
+    for (int i = 0; i < g->n_row; i++)
+        f[i] = sqrt(0.5) * *norm * seventh(p->size[i]) * p->size[i];
+    return ratio;
+}
+
 /* Residuals of goal k without its weight, and their norm; *value as hf_goals_measure tells it. */
 static hf_status measure_goal(const hf_goals *goals, int k, const hf_workspace *w, hf_goals_point *p, double *f,
                               double *value, double *norm)
@@ -313,6 +351,9 @@ static hf_status measure_goal(const hf_goals *goals, int k, const hf_workspace *
         take_displacements(m, w, p);
         *value = measure_largest(g->n_row, p, f);
         break;
+    case HF_GOAL_RATIO:
+        *value = measure_ratio(g, m, w, p, f, norm);
+        return HF_OK;
     case HF_GOAL_SURFACE:
     case HF_GOAL_FACETS:
         HF_TRY(hf_cloud_measure(&p->cloud[k], w, f));
@@ -454,6 +495,25 @@ static void push_displacements(const hf_model *m, const hf_workspace *w, hf_goal
     push_smooth(m->n_attachment, p->size, rate);
 }
 
+static void push_ratio(const hf_goal *g, const hf_workspace *w, hf_goals_point *p, const hf_goals_rate *by,
+                       double *rate)
+{
+    int n = g->n_cable;
+    double high, low;
+    smooth_ratio(g, w, p->size, &high, &low);
+    for (int i = 0; i < n; i++) {
+        double tension = w->tension_N[g->cable[i]];
+        rate[i] = by->tension_N[g->cable[i]];
+        rate[n + i] = -rate[i] / (tension * tension);
+    }
+    double high_rate = push_smooth(n, p->size, rate), low_rate = push_smooth(n, p->size + n, rate + n);
+    for (int i = 0; i < n; i++) {
+        double *of_high = &rate[i], *of_low = &rate[n + i];
+        *of_high = sqrt(0.5) * (low * *of_high + high * low_rate * seventh(p->size[i]) * p->size[i]);
+        *of_low = sqrt(0.5) * (high * *of_low + low * high_rate * seventh(p->size[n + i]) * p->size[n + i]);
+    }
+}
+
 void hf_goals_push(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, const hf_goals_rate *by,
                    double *rate)
 {
@@ -469,6 +529,9 @@ void hf_goals_push(const hf_goals *goals, const hf_workspace *w, hf_goals_point 
             break;
         case HF_GOAL_DISPLACEMENT:
             push_displacements(m, w, p, by, rate);
+            break;
+        case HF_GOAL_RATIO:
+            push_ratio(g, w, p, by, rate);
             break;
         case HF_GOAL_SURFACE:
         case HF_GOAL_FACETS:

@@ -97,8 +97,10 @@ START_TEST(schema_is_yaml_with_every_key)
         "'generations', 'range_N', 'min_tension_N', 'max_tension_N', "
         "'boundary_ratio_cap', 'seed', 'crossover_high', 'crossover_low', 'mutation_high', 'mutation_low', "
         "'variation', 'elites', 'store', 'store_every', "
-        "'stagnation_tolerance_m', 'stagnation_generations', 'variables', 'goals', 'limits'}",
-        "a['optimize']['variables'] == a['optimize']['goals'] == a['optimize']['limits'] == []",
+        "'stagnation_tolerance_m', 'stagnation_generations', 'variables', 'goals', 'limits', "
+        "'objectives', 'front_points'}",
+        "a['optimize']['variables'] == a['optimize']['goals'] == a['optimize']['limits'] == "
+        "a['optimize']['objectives'] == []",
         "set(a['truss']) == {'depth_m', 'main_every', 'E_Pa', 'G_Pa', 'density_kg_per_m3', 'expansion_per_K', "
         "'hinge_mass_kg', 'theory', 'joints', 'supports', 'support_dofs', 'match_tolerance_m', 'bud', 'mbug', 'abug', "
         "'ring', 'import'}",

@@ -90,6 +90,21 @@ START_TEST(goals_and_limits_reach_their_place)
 }
 END_TEST
 
+START_TEST(objectives_reach_their_place)
+{
+    static const char *const set[] = {"optimize.goals=[]",
+                                      "optimize.objectives=[{goal: psi}, {goal: ratio, set: edge}]"};
+    hf_case c;
+    accept_rows(ROWS, set, 2, &c);
+    const hf_goal_settings *g = c.optimize.objective;
+    ck_assert_int_eq(c.optimize.n_objective, 2);
+    ck_assert_int_eq(c.optimize.front_points, 21);
+    ck_assert(g[0].goal == HF_GOAL_PSI && isnan(g[0].target) && !*g[0].set && g[1].goal == HF_GOAL_RATIO);
+    ck_assert_str_eq(g[1].set, "edge");
+    hf_case_free(&c);
+}
+END_TEST
+
 START_TEST(overrides_set_keys_of_rows_and_whole_lists)
 {
     static const char *const set[] = {"optimize.variables.0.range=5", "optimize.variables.2.bounds=[-1, 1]",
@@ -165,6 +180,7 @@ END_TEST
 
 #define VARIABLE OPTIMIZE "  variables:\n    - "
 #define GOAL OPTIMIZE "  goals: ["
+#define OBJECTIVE OPTIMIZE "  objectives: ["
 #define LIMIT OPTIMIZE "  limits: ["
 #define ROW "{set: a, vary: length, range: 1}"
 
@@ -197,7 +213,7 @@ static const struct {
      "support_z support_normal support_xyz, not tensions\n"},
     {GOAL "{goal: rms}]\n", NULL,
      "error: c.yaml:4:18: optimize.goals.0.goal: must be one of psi surface facets tension length evenness pull "
-     "displacement mass, not rms\n"},
+     "displacement mass ratio, not rms\n"},
     {LIMIT "{limit: length, bounds: [1, 2]}]\n", NULL,
      "error: c.yaml:4:20: optimize.limits.0.limit: must be one of tension ratio displacement, not length\n"},
     {VARIABLE "{set: a, vary: tension}\n", NULL,
@@ -244,7 +260,23 @@ static const struct {
      "error: c.yaml:5:59: optimize.variables.0.link: cannot be symmetry with support_xyz: mirrored supports move apart "
      "along x or y\n"},
     {GOAL "{goal: psi, set: a}]\n", NULL,
-     "error: c.yaml:4:28: optimize.goals.0.set: has no meaning for psi, only for tension, length, evenness, mass\n"},
+     "error: c.yaml:4:28: optimize.goals.0.set: has no meaning for psi, only for tension, length, evenness, mass, "
+     "ratio\n"},
+    {OBJECTIVE "{goal: psi}]\n", NULL,
+     "error: c.yaml:4:16: optimize.objectives.0: is the only row; a front is of two or three objectives. For one use "
+     "optimize.goals\n"},
+    {OBJECTIVE "{goal: psi}, {goal: pull}]\n  goals: [{goal: psi}]\n", NULL,
+     "error: c.yaml:5:11: optimize.goals.0: cannot be with optimize.objectives, which takes the place of goals; keep "
+     "one of them\n"},
+    {OBJECTIVE "{goal: psi}, {goal: pull}, {goal: psi}]\n", NULL,
+     "error: c.yaml:4:50: optimize.objectives.2.goal: is the objective of an earlier row; a front needs different "
+     "ones\n"},
+    {OBJECTIVE "{goal: psi}, {goal: pull}, {goal: mass}, {goal: ratio}]\n", NULL,
+     "error: c.yaml:4:57: optimize.objectives: there are more than 3 rows\n"},
+    {OBJECTIVE "{goal: psi, weight: 2}, {goal: pull}]\n", NULL,
+     "error: c.yaml:4:28: weight: unknown key (hifdm schema lists all keys)\n"},
+    {OBJECTIVE "{goal: psi}, {goal: ratio, target: 2}]\n", NULL,
+     "error: c.yaml:4:51: optimize.objectives.1.target: has no meaning for ratio, only for tension, length\n"},
     {GOAL "{goal: psi, target: 1}]\n", NULL,
      "error: c.yaml:4:31: optimize.goals.0.target: has no meaning for psi, only for tension, length\n"},
     {GOAL "{goal: tension, target: 1, along: normal}]\n", NULL,
@@ -348,7 +380,7 @@ START_TEST(all_faults_of_rows_are_told_in_one_run)
                      "error: c.yaml:7:13: optimize.variables.1.set: must be made of letters, digits, _ and -\n"
                      "error: c.yaml:4:9: optimize.rule: cannot be seeded with optimize.variables; remove one of them\n"
                      "error: c.yaml:8:28: optimize.goals.0.set: has no meaning for psi, only for tension, length, "
-                     "evenness, mass\n"
+                     "evenness, mass, ratio\n"
                      "error: c.yaml:8:36: optimize.goals.0.fit: has no meaning for psi, only for surface, facets\n");
     hf_case_free(&c);
 }
@@ -378,6 +410,7 @@ Suite *suite_unit_config_rows(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, variables_reach_their_place);
     tcase_add_test(tests, goals_and_limits_reach_their_place);
+    tcase_add_test(tests, objectives_reach_their_place);
     tcase_add_test(tests, overrides_set_keys_of_rows_and_whole_lists);
     tcase_add_test(tests, a_difference_in_a_row_is_named);
     tcase_add_test(tests, places_of_rows_are_told);

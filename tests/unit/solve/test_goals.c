@@ -125,7 +125,8 @@ static const struct {
     {{HF_GOAL_LENGTH, "", NAN, 1, NAN, 0, 0}, 0, 0},
     {{HF_GOAL_EVENNESS, "all", NAN, 4, NAN, 0, 0}, 0.20412414523193150, 0.81649658092772603}, /* sqrt(2/3)/4 */
     {{HF_GOAL_MASS, "", NAN, 1, 0.5, 0, 0}, 1.625, 1.625},
-    {{HF_GOAL_PULL, "", NAN, 2, NAN, 0, 0}, 5, 10.000176296057074}, /* 2 (3^16 + 5^16)^(1/16) */
+    {{HF_GOAL_PULL, "", NAN, 2, NAN, 0, 0}, 5, 10.000176296057074},                /* 2 (3^16 + 5^16)^(1/16) */
+    {{HF_GOAL_RATIO, "boundary", NAN, 2, NAN, 0, 0}, 5.0 / 3, 3.3334508650740591}, /* 10/3 (1 + (3/5)^16)^(1/8) */
 };
 enum { N_BY_HAND = sizeof by_hand / sizeof *by_hand };
 
@@ -138,6 +139,21 @@ START_TEST(values_are_those_by_hand)
     double value = value_of(&t, by_hand[_i].goal, &merit);
     ck_assert_double_eq_tol(value, by_hand[_i].value, 1e-15);
     ck_assert_double_eq_tol(merit, by_hand[_i].merit, 2e-15 * (1 + by_hand[_i].merit));
+    close_wanting(&t);
+}
+END_TEST
+
+/* A slack cable leaves no ratio, and no direction to a better one. */
+START_TEST(a_slack_cable_has_no_ratio)
+{
+    struct wanting t;
+    double merit, residual[6];
+    hf_goal_settings ratio = goal_of(HF_GOAL_RATIO);
+    open_line(&t);
+    t.net.work.tension_N[1] = 0;
+    ck_assert(isinf(value_of(&t, ratio, &merit)) && isinf(merit));
+    want(&t, 1, &ratio);
+    ck_assert_int_eq(hf_goals_linearise(&t.goals, &t.net.work, &t.point, residual), HF_NOT_FINITE);
     close_wanting(&t);
 }
 END_TEST
@@ -381,6 +397,25 @@ START_TEST(derivatives_are_those_of_differences)
 }
 END_TEST
 
+/* Largest and smallest tension of a set in turn, each smooth. */
+START_TEST(the_ratio_has_derivatives)
+{
+    struct wanting t = {0};
+    struct rng rng = rng_start((uint64_t)_i);
+    hf_goal_settings ratio[2] = {goal_of(HF_GOAL_RATIO), goal_of(HF_GOAL_RATIO)};
+    snprintf(ratio[0].set, sizeof ratio[0].set, "inner");
+    snprintf(ratio[1].set, sizeof ratio[1].set, "boundary");
+    ratio[1].weight = 0.4;
+    open_wanting(&t, _i / 2, _i % 2, &rng);
+    want(&t, 2, ratio);
+    struct shape found = shape_of(&t.net), rough = random_change(&t.net.model, &rng, 1e-3, 0.1);
+    for (int e = 0; e < t.net.model.n_cable; e++) /* of the small bowl on soft supports some are slack */
+        found.tension_N[e] = 10 + 0.1 * (e % 13);
+    demand_derivatives(&t, &found, &rough, &rng);
+    close_wanting(&t);
+}
+END_TEST
+
 /* Fits with fewer parameters turn about the centre of the points, which moves with them: where the wanted surface has
  * another focal length (0, 1), or stands a metre aside (2, 3). */
 START_TEST(lesser_fits_follow_their_centre)
@@ -418,6 +453,7 @@ static const struct {
     {{HF_GOAL_MASS, "rear", NAN, 1, 1, 0, 0}, "there is no set of cables 'rear'; this net has all, inner, boundary"},
     {{HF_GOAL_TENSION, "inner", NAN, 1, NAN, 0, 0}, "tension: needs a target, in N"},
     {{HF_GOAL_EVENNESS, "inner", NAN, 1, NAN, 0, 0}, "evenness: one cable is always even; name a set of several"},
+    {{HF_GOAL_RATIO, "inner", NAN, 1, NAN, 0, 0}, "ratio: the ratio of one cable is 1; name a set of several"},
     {{HF_GOAL_MASS, "", NAN, 1, NAN, 0, 0}, "mass: needs mass_kg_per_m, of the cables of its set"},
     {{HF_GOAL_SURFACE, "", NAN, 1, NAN, 0, 0},
      "surface: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
@@ -494,9 +530,11 @@ Suite *suite_unit_goals(void)
     tcase_add_loop_test(tests, without_rows_the_goal_is_psi, 0, 4);
     tcase_add_loop_test(tests, values_are_those_by_hand, 0, N_BY_HAND);
     tcase_add_test(tests, loose_nodes_do_not_count);
+    tcase_add_test(tests, a_slack_cable_has_no_ratio);
     tcase_add_test(tests, goals_are_weighed_together);
     tcase_add_loop_test(tests, errors_of_the_surface_are_those_of_a_result, 0, 2);
     tcase_add_loop_test(tests, derivatives_are_those_of_differences, 0, 4);
+    tcase_add_loop_test(tests, the_ratio_has_derivatives, 0, 4);
     tcase_add_loop_test(tests, lesser_fits_follow_their_centre, 0, 4);
     tcase_add_loop_test(tests, a_goal_without_meaning_is_refused, 0, N_FAULTY);
     tcase_add_test(tests, a_surface_may_lack_facets_and_nodes);

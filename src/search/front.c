@@ -1,0 +1,135 @@
+#include <hifdm/front.h>
+
+#include "base/arena.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WORD(name, word) word,
+const char *const hf_front_mark_word[HF_FRONT_N_MARK + 1] = {HF_FRONT_MARKS(WORD) NULL};
+#undef WORD
+
+static void lay_out(hf_arena *a, hf_front *f)
+{
+    f->point = hf_arena_take(a, (size_t)f->n_point, sizeof *f->point);
+    f->design = hf_arena_take(a, (size_t)f->n_point * (size_t)f->n_gene, sizeof(double));
+}
+
+hf_status hf_front_create(int n_objective, int n_gene, int n_point, hf_front *f)
+{
+    hf_arena arena = {0};
+    *f = (hf_front){.n_objective = n_objective, .n_gene = n_gene, .n_point = n_point, .minimised = -1, .knee = -1};
+    if (HF_ARENA_MAKE(&arena, lay_out(&arena, f)) != HF_OK) {
+        *f = (hf_front){.n_objective = n_objective, .n_gene = n_gene, .minimised = -1, .knee = -1};
+        return HF_NO_MEMORY;
+    }
+    f->block = arena.block;
+    return HF_OK;
+}
+
+void hf_front_free(hf_front *f)
+{
+    free(f->block);
+    *f = (hf_front){.minimised = -1, .knee = -1};
+}
+
+bool hf_front_dominates(int n_objective, const double *a, const double *b)
+{
+    bool is_better = false;
+    for (int k = 0; k < n_objective; k++) {
+        if (a[k] > b[k]) return false;
+        is_better |= a[k] < b[k];
+    }
+    return is_better;
+}
+
+/* ---- order ---- */
+
+static bool is_equal(const hf_front *f, const hf_front_point *a, const hf_front_point *b)
+{
+    for (int k = 0; k < f->n_objective; k++)
+        if (a->objective[k] != b->objective[k]) return false;
+    return true;
+}
+
+static bool comes_before(const hf_front *f, const hf_front_point *a, const hf_front_point *b)
+{
+    if ((a->status == HF_OK) != (b->status == HF_OK)) return a->status == HF_OK;
+    for (int k = 0; k < f->n_objective && a->status == HF_OK; k++)
+        if (a->objective[k] != b->objective[k]) return a->objective[k] < b->objective[k];
+    return false;
+}
+
+static void swap(void *a, void *b, size_t size)
+{
+    char *p = a, *q = b;
+    for (size_t i = 0; i < size; i++) {
+        char kept = p[i];
+        p[i] = q[i];
+        q[i] = kept;
+    }
+}
+
+/* By insertion: equal points keep their order, and the points of a front are few. */
+static void sort(hf_front *f)
+{
+    size_t n_gene = (size_t)f->n_gene;
+    for (int i = 1; i < f->n_point; i++)
+        for (int k = i; k > 0 && comes_before(f, &f->point[k], &f->point[k - 1]); k--) {
+            swap(&f->point[k], &f->point[k - 1], sizeof *f->point);
+            swap(f->design + (size_t)k * n_gene, f->design + (size_t)(k - 1) * n_gene, n_gene * sizeof(double));
+        }
+}
+
+static void mark(hf_front *f)
+{
+    for (int i = 0; i < f->n_point; i++) {
+        hf_front_point *p = &f->point[i];
+        p->mark = p->status == HF_OK ? HF_FRONT_ON : HF_FRONT_FAILED;
+        for (int k = 0; k < f->n_point && p->mark == HF_FRONT_ON; k++) {
+            const hf_front_point *q = &f->point[k];
+            if (q->status != HF_OK) continue;
+            if (hf_front_dominates(f->n_objective, q->objective, p->objective) || (k < i && is_equal(f, p, q)))
+                p->mark = HF_FRONT_DOMINATED;
+        }
+    }
+}
+
+/* ---- the knee ---- */
+
+/* The point farthest below the line, or plane, through the least of each objective: with each objective as 0 at its
+ * least and 1 at its largest on the front, that of the least sum. A front that is straight or bent outwards has none.
+ */
+static int find_knee(const hf_front *f)
+{
+    double low[HF_OBJECTIVES_MAX], high[HF_OBJECTIVES_MAX], least = 1 - 1e-9; /* sums of 1 differ by rounding */
+    int knee = -1;
+    for (int k = 0; k < f->n_objective; k++) {
+        low[k] = INFINITY;
+        high[k] = -INFINITY;
+        for (int i = 0; i < f->n_point; i++) {
+            if (f->point[i].mark != HF_FRONT_ON) continue;
+            low[k] = fmin(low[k], f->point[i].objective[k]);
+            high[k] = fmax(high[k], f->point[i].objective[k]);
+        }
+        if (!(high[k] > low[k])) return -1;
+    }
+    for (int i = 0; i < f->n_point; i++) {
+        double sum = 0;
+        if (f->point[i].mark != HF_FRONT_ON) continue;
+        for (int k = 0; k < f->n_objective; k++)
+            sum += (f->point[i].objective[k] - low[k]) / (high[k] - low[k]);
+        if (!(sum < least)) continue;
+        least = sum;
+        knee = i;
+    }
+    return knee;
+}
+
+void hf_front_settle(hf_front *f)
+{
+    sort(f);
+    mark(f);
+    f->knee = find_knee(f);
+}

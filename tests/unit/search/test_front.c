@@ -1,0 +1,64 @@
+/* Fronts: order, marks and knee of points by hand. */
+#include "support.h"
+
+#include <hifdm/front.h>
+
+static void put(hf_front *f, int i, double a, double b, hf_status status)
+{
+    f->point[i] = (hf_front_point){.objective = {a, b}, .multiplier = {NAN, i}, .status = status, .iterations = i};
+    f->design[i] = i;
+}
+
+START_TEST(points_are_sorted_and_marked)
+{
+    static const struct {
+        int was;
+        hf_front_mark mark;
+    } wanted[8] = {{3, HF_FRONT_ON},        {7, HF_FRONT_DOMINATED}, {2, HF_FRONT_ON},     {4, HF_FRONT_DOMINATED},
+                   {5, HF_FRONT_DOMINATED}, {0, HF_FRONT_ON},        {1, HF_FRONT_FAILED}, {6, HF_FRONT_FAILED}};
+    hf_front f;
+    ck_assert_int_eq(hf_front_create(2, 1, 8, &f), HF_OK);
+    put(&f, 0, 5, 0, HF_OK);
+    put(&f, 1, NAN, NAN, HF_COLLAPSED);
+    put(&f, 2, 1, 1, HF_OK);
+    put(&f, 3, 0, 4, HF_OK);
+    put(&f, 4, 1, 1, HF_OK); /* equal to an earlier one */
+    put(&f, 5, 2, 1, HF_OK);
+    put(&f, 6, NAN, NAN, HF_RATIO_CAP);
+    put(&f, 7, 0, 5, HF_OK);
+    hf_front_settle(&f);
+    for (int i = 0; i < 8; i++) {
+        ck_assert_int_eq(f.point[i].iterations, wanted[i].was);
+        ck_assert_double_eq(f.design[i], wanted[i].was);
+        ck_assert_int_eq(f.point[i].mark, wanted[i].mark);
+    }
+    ck_assert_int_eq(f.knee, 2); /* 1/5 + 1/4 */
+    hf_front_free(&f);
+    hf_front_free(&f);
+}
+END_TEST
+
+START_TEST(a_straight_front_has_no_knee)
+{
+    hf_front f;
+    ck_assert_int_eq(hf_front_create(2, 1, 3, &f), HF_OK);
+    for (int i = 0; i < 3; i++)
+        put(&f, i, 0.1 * i, 7 - 0.1 * i, HF_OK);
+    hf_front_settle(&f);
+    ck_assert_int_eq(f.knee, -1);
+    f.point[1].objective[1] -= 0.01;
+    hf_front_settle(&f);
+    ck_assert_int_eq(f.knee, 1);
+    hf_front_free(&f);
+}
+END_TEST
+
+Suite *suite_unit_front(void)
+{
+    Suite *s = suite_create("unit/front");
+    TCase *t = tcase_create("points");
+    tcase_add_test(t, points_are_sorted_and_marked);
+    tcase_add_test(t, a_straight_front_has_no_knee);
+    suite_add_tcase(s, t);
+    return s;
+}
