@@ -1,38 +1,11 @@
 /* The net as built: cut at the design's shape it has this shape; cables in line by hand; cables that cannot be cut. */
-#include "flexible.h"
-#include "laws.h"
-
-#include <hifdm/built.h>
-
-/* A random saddle net of cables with tensions of about 10 N and EA of 1e4 N, found to 1e-11. */
-static void open_design(struct net *net, int trial, double EA[400], bool on_truss)
-{
-    struct rng rng = rng_start(900 + (uint64_t)trial);
-    *net = (struct net){.form = tight_form(HF_METHOD_NEWTON)};
-    random_tension_scene(&rng, &net->scene);
-    for (int e = 0; e < net->scene.n_cable; e++)
-        EA[e] = rng_uniform(&rng, 1e3, 1e5);
-    net->scene.EA_N = EA;
-    open_net(net);
-    net->form.coupling = (hf_coupling_settings){1e-13, HF_COUPLING_AUTO, 500};
-    if (on_truss) attach_all(net, &rng, 1e-5);
-    ck_assert_int_eq(hf_evaluate_form(&net->model, &net->form, &net->work, NULL, &net->result), HF_OK);
-}
-
-static void make_built(const struct net *net, hf_built *built, hf_workspace *w)
-{
-    hf_messages messages = {0};
-    ck_assert_msg(hf_built_make("x.yaml", &net->scene, &net->model, &net->form, &net->work, built, &messages) == HF_OK,
-                  "%s", messages.text);
-    ck_assert_int_eq(hf_workspace_create(&built->model, w), HF_OK);
-    hf_workspace_poison(&built->model, w);
-}
+#include "built_nets.h"
 
 /* Residuals of 1e-11 of the tensions, over the least stiffness of nets of 10 N and lengths of about 1 m, are 1e-11 m;
  * two shapes are found, and stiffnesses vary by a few decades. */
 START_TEST(a_net_cut_at_its_shape_has_this_shape)
 {
-    double EA[400];
+    double EA[MAX_BUILT_CABLE];
     struct net net;
     hf_built built;
     hf_workspace w;
@@ -48,8 +21,7 @@ START_TEST(a_net_cut_at_its_shape_has_this_shape)
         ck_assert_double_eq_tol(w.tension_N[e], net.work.tension_N[e], 1e-6 * built.model.reference_N);
     hf_workspace_free(&w);
     hf_built_free(&built);
-    net.scene.EA_N = NULL;
-    close_net(&net);
+    close_design(&net);
 }
 END_TEST
 
@@ -90,8 +62,7 @@ START_TEST(two_cables_in_line)
                      "error: x.yaml: 1 inner cables have no EA, which the net as built needs, like 'c1': give "
                      "scene.EA_inner_N, or the column EA_N of an imported net\n");
     hf_built_free(&built);
-    net.scene.EA_N = NULL;
-    close_net(&net);
+    close_design(&net);
 }
 END_TEST
 

@@ -1,0 +1,64 @@
+/* built_nets - designs of random nets, the nets that are made of them, and samples of these with errors. Header only,
+ * as nets.h. */
+#ifndef HIFDM_TESTS_BUILT_NETS_H
+#define HIFDM_TESTS_BUILT_NETS_H
+
+#include "flexible.h"
+#include "laws.h"
+
+#include <hifdm/built_batch.h>
+
+enum { MAX_BUILT_CABLE = 400 };
+
+/* A random saddle net of cables with tensions of about 10 N and EA of 1e3 to 1e5 N, found to 1e-11. close_design
+ * closes it. */
+static inline void open_design(struct net *net, int trial, double EA[MAX_BUILT_CABLE], bool on_truss)
+{
+    struct rng rng = rng_start(900 + (uint64_t)trial);
+    *net = (struct net){.form = tight_form(HF_METHOD_NEWTON)};
+    random_tension_scene(&rng, &net->scene);
+    for (int e = 0; e < net->scene.n_cable; e++)
+        EA[e] = rng_uniform(&rng, 1e3, 1e5);
+    net->scene.EA_N = EA;
+    open_net(net);
+    net->form.coupling = (hf_coupling_settings){1e-13, HF_COUPLING_AUTO, 500};
+    if (on_truss) attach_all(net, &rng, 1e-5);
+    ck_assert_int_eq(hf_evaluate_form(&net->model, &net->form, &net->work, NULL, &net->result), HF_OK);
+}
+
+static inline void close_design(struct net *net)
+{
+    net->scene.EA_N = NULL; /* the caller's */
+    close_net(net);
+}
+
+static inline void make_built(const struct net *net, hf_built *built, hf_workspace *w)
+{
+    hf_messages messages = {0};
+    ck_assert_msg(hf_built_make("x.yaml", &net->scene, &net->model, &net->form, &net->work, built, &messages) == HF_OK,
+                  "%s", messages.text);
+    ck_assert_int_eq(hf_workspace_create(&built->model, w), HF_OK);
+    hf_workspace_poison(&built->model, w);
+}
+
+/* Errors of samples, uniform between plus and minus these, each sample with a stream of its own. */
+struct errors {
+    const hf_model *model;
+    uint64_t stream;
+    double cut_m, EA_part, support_m;
+};
+
+static inline void make_errors(void *context, long i, double *cut_m, double *EA_N, double *support_move_m)
+{
+    const struct errors *e = context;
+    struct rng rng = rng_start(e->stream + (uint64_t)i);
+    for (int k = 0; k < e->model->n_cable; k++) {
+        cut_m[k] += rng_uniform(&rng, -e->cut_m, e->cut_m);
+        if (EA_N) EA_N[k] *= 1 + rng_uniform(&rng, -e->EA_part, e->EA_part);
+    }
+    for (int row = e->model->n_free; row < e->model->n_node && support_move_m; row++)
+        for (int c = 0; c < 3; c++)
+            support_move_m[c * e->model->n_node + row] += rng_uniform(&rng, -e->support_m, e->support_m);
+}
+
+#endif
