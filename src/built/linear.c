@@ -1,0 +1,196 @@
+/* Contents: making - net and truss under forces - errors to moves - the transpose */
+#include "built/linear.h"
+
+#include "base/arena.h"
+#include "linalg/band.h"
+#include <hifdm/formfind.h>
+
+#include <math.h>
+#include <string.h>
+
+/* ---- making ---- */
+
+static void lay_out_linear(hf_arena *arena, const hf_model *m, hf_built_linear *l)
+{
+    size_t n = (size_t)m->n_cable;
+    l->unit = hf_arena_take(arena, 3 * n, sizeof(double));
+    l->stiffness_N_per_m = hf_arena_take(arena, n, sizeof(double));
+    l->cut_N_per_m = hf_arena_take(arena, n, sizeof(double));
+    l->ratio_N = hf_arena_take(arena, n, sizeof(double));
+    l->block_N_per_m = hf_arena_take(arena, 9 * n, sizeof(double));
+}
+
+/* The nominal net in the workspace. */
+static void take_shape(const hf_built *b, hf_workspace *w)
+{
+    const hf_model *m = &b->model;
+    hf_form_prepare(m, w);
+    memcpy(w->position_m, b->place_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(w->tension_N, b->tension_N, (size_t)m->n_cable * sizeof(double));
+}
+
+static void look_at_cable(hf_built_linear *l, int e)
+{
+    const hf_model *m = &l->built->model;
+    double block[3][3], *u = l->unit + 3 * (ptrdiff_t)e, l0 = l->work.target[e];
+    double length = hf_newton_matrix_direction(m, l->work.position_m, e, u);
+    double k = hf_newton_matrix_stiffness(hf_workspace_cable(m, &l->work, e), length, l->work.tension_N[e]);
+    hf_newton_matrix_block(m, &l->work, e, block);
+    memcpy(l->block_N_per_m + 9 * (ptrdiff_t)e, block, sizeof block);
+    l->stiffness_N_per_m[e] = k;
+    l->ratio_N[e] = -k * length;
+    l->cut_N_per_m[e] = -k * length / l0;
+}
+
+hf_status hf_built_linear_make(const hf_built *b, hf_built_linear *l)
+{
+    const hf_model *m = &b->model;
+    hf_arena arena = {0};
+    double condition;
+    *l = (hf_built_linear){.built = b, .n_dof = 3 * (size_t)m->n_node};
+    l->n_scratch = l->n_dof + (m->n_attachment ? 3 * (size_t)(m->n_free + m->n_attachment) : 0);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_linear(&arena, m, l)));
+    l->block = arena.block;
+    HF_TRY(hf_workspace_create(m, &l->work));
+    take_shape(b, &l->work);
+    for (int e = 0; e < m->n_cable; e++)
+        look_at_cable(l, e);
+    HF_TRY(hf_newton_matrix_factor(m, &l->work, &condition));
+    if (isinf(condition)) return HF_SINGULAR;
+    if (!m->n_attachment) return HF_OK;
+    HF_TRY(hf_schur_create(m, &l->schur));
+    return hf_schur_factor(m, &l->work, hf_newton_matrix_block, &l->schur);
+}
+
+void hf_built_linear_free(hf_built_linear *l)
+{
+    hf_arena arena = {.block = l->block};
+    hf_workspace_free(&l->work);
+    hf_schur_free(&l->schur);
+    hf_arena_free(&arena);
+    *l = (hf_built_linear){0};
+}
+
+/* ---- net and truss under forces ---- */
+
+/* Turn forces into moves, in place, v [n][n_dof]: on free nodes and attachments. Those of supports on rigid ground stay
+ * as they are. */
+static void answer_forces(const hf_built_linear *l, int n, double *v, double *scratch)
+{
+    const hf_model *m = &l->built->model;
+    size_t n_free = 3 * (size_t)m->n_free, n_attachment = 3 * (size_t)m->n_attachment;
+    int n_row = (int)n_free, half = 3 * m->half_bandwidth + 2;
+    hf_band_back_solve(n_row, half, n, l->work.newton_band, v, (int)l->n_dof);
+    if (!n_attachment) return;
+    double *answer = scratch, *pull = scratch + (size_t)n * n_free;
+    memset(answer, 0, (size_t)n * n_free * sizeof *answer);
+    for (size_t k = 0; k < (size_t)n; k++) {
+        double *free_nodes = v + k * l->n_dof, *attachments = free_nodes + n_free, *sum = pull + k * n_attachment;
+        memcpy(sum, attachments, n_attachment * sizeof *sum);
+        hf_schur_pull(m, &l->work, hf_newton_matrix_block, free_nodes, sum);
+        hf_schur_displace(m, &l->schur, sum, attachments);
+        hf_schur_push(m, &l->work, hf_newton_matrix_block, attachments, answer + k * n_free);
+    }
+    hf_band_back_solve(n_row, half, n, l->work.newton_band, answer, n_row);
+    for (size_t k = 0; k < (size_t)n; k++)
+        for (size_t i = 0; i < n_free; i++)
+            v[k * l->n_dof + i] += answer[k * n_free + i];
+}
+
+/* K (v of the second end - v of the first) of cable e. */
+static void stretch(const hf_built_linear *l, int e, const double *v, double force[3])
+{
+    const int *end = l->built->model.end_row + 2 * (ptrdiff_t)e;
+    const double *a = v + 3 * (ptrdiff_t)end[0], *b = v + 3 * (ptrdiff_t)end[1];
+    const double *k = l->block_N_per_m + 9 * (ptrdiff_t)e, d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    for (int r = 0; r < 3; r++)
+        force[r] = k[3 * r] * d[0] + k[3 * r + 1] * d[1] + k[3 * r + 2] * d[2];
+}
+
+/* Does cable e end at a support, on a truss or on rigid ground? */
+static bool is_at_support(const hf_model *m, int e)
+{
+    return m->end_row[2 * e] >= m->n_free || m->end_row[2 * e + 1] >= m->n_free;
+}
+
+/* Rows from `first` on get +force at the first end of cable e, -force at the second. */
+static void add_to_ends(const hf_model *m, int e, int first, const double force[3], double *sum)
+{
+    int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+    for (int c = 0; c < 3; c++) {
+        if (a >= first) sum[3 * (a - first) + c] += force[c];
+        if (b >= first) sum[3 * (b - first) + c] -= force[c];
+    }
+}
+
+/* ---- errors to moves ---- */
+
+/* The forces [n_dof] of strained cables, and of supports that are as far off as v says; its free nodes become 0. */
+static void push_by_errors(const hf_built_linear *l, const double *strain_N, double *v, double *force)
+{
+    const hf_model *m = &l->built->model;
+    memset(force, 0, l->n_dof * sizeof *force);
+    memset(v, 0, 3 * (size_t)m->n_free * sizeof *v);
+    for (int e = 0; e < m->n_cable; e++) {
+        double pull[3] = {0};
+        if (is_at_support(m, e)) stretch(l, e, v, pull);
+        for (int c = 0; c < 3 && strain_N; c++)
+            pull[c] += strain_N[e] * l->unit[3 * (ptrdiff_t)e + c];
+        add_to_ends(m, e, 0, pull, force);
+    }
+}
+
+void hf_built_linear_apply(const hf_built_linear *l, int n, const double *strain_N, double *move, double *scratch)
+{
+    const hf_model *m = &l->built->model;
+    size_t n_free = 3 * (size_t)m->n_free, n_moving = n_free + 3 * (size_t)m->n_attachment;
+    double *force = scratch, *more = scratch + (size_t)n * l->n_dof;
+    for (size_t k = 0; k < (size_t)n; k++)
+        push_by_errors(l, strain_N ? strain_N + k * (size_t)m->n_cable : NULL, move + k * l->n_dof,
+                       force + k * l->n_dof);
+    answer_forces(l, n, force, more);
+    for (size_t k = 0; k < (size_t)n; k++)
+        for (size_t i = 0; i < n_moving; i++) /* free nodes were 0, attachments rest where they are off */
+            move[k * l->n_dof + i] += force[k * l->n_dof + i];
+}
+
+void hf_built_linear_tension(const hf_built_linear *l, const double *strain_N, const double *move, double *change_N)
+{
+    const hf_model *m = &l->built->model;
+    for (int e = 0; e < m->n_cable; e++) {
+        const double *a = move + 3 * (ptrdiff_t)m->end_row[2 * e], *b = move + 3 * (ptrdiff_t)m->end_row[2 * e + 1];
+        const double *u = l->unit + 3 * (ptrdiff_t)e;
+        double along = u[0] * (b[0] - a[0]) + u[1] * (b[1] - a[1]) + u[2] * (b[2] - a[2]);
+        change_N[e] = l->stiffness_N_per_m[e] * along + (strain_N ? strain_N[e] : 0);
+    }
+}
+
+/* ---- the transpose ---- */
+
+/* From the answer z to the slopes as forces, and the slopes of supports. */
+static void pull_errors(const hf_built_linear *l, const double *z, double *slope, double *strain)
+{
+    const hf_model *m = &l->built->model;
+    for (int e = 0; e < m->n_cable; e++) {
+        const double *a = z + 3 * (ptrdiff_t)m->end_row[2 * e], *b = z + 3 * (ptrdiff_t)m->end_row[2 * e + 1];
+        const double *u = l->unit + 3 * (ptrdiff_t)e;
+        strain[e] = u[0] * (a[0] - b[0]) + u[1] * (a[1] - b[1]) + u[2] * (a[2] - b[2]);
+        if (!is_at_support(m, e)) continue;
+        double pull[3];
+        stretch(l, e, z, pull);
+        add_to_ends(m, e, m->n_free, pull, slope + 3 * (size_t)m->n_free);
+    }
+}
+
+void hf_built_linear_transpose(const hf_built_linear *l, int n, double *slope, double *strain, double *scratch)
+{
+    const hf_model *m = &l->built->model;
+    size_t n_moving = 3 * (size_t)(m->n_free + m->n_attachment);
+    double *z = scratch, *more = scratch + (size_t)n * l->n_dof;
+    memcpy(z, slope, (size_t)n * l->n_dof * sizeof *z);
+    answer_forces(l, n, z, more);
+    for (size_t k = 0; k < (size_t)n; k++) {
+        memset(z + k * l->n_dof + n_moving, 0, (l->n_dof - n_moving) * sizeof *z);
+        pull_errors(l, z + k * l->n_dof, slope + k * l->n_dof, strain + k * (size_t)m->n_cable);
+    }
+}
