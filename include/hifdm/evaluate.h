@@ -51,6 +51,7 @@ typedef struct {
     double boundary_ratio_cap; /* a larger boundary tension ratio gives HF_RATIO_CAP; INFINITY: no cap */
     const hf_limits *limits;   /* a shape that breaks one of them gives HF_OUT_OF_LIMITS; NULL: none */
     const hf_goals *goals;     /* the merit of a shape; NULL: psi */
+    int n_thread;              /* that find the derivatives of one design; 0: the calling one alone */
     bool by_density; /* genes that set a tension T set the force density T/L* instead, as Levenberg-Marquardt wants */
 } hf_evaluator;
 

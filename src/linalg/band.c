@@ -42,7 +42,7 @@ static const int three = 3;
 typedef struct {
     int (*factor)(int n, int half_bandwidth, double *band);
     void (*back_solve)(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
-    void (*gram)(int n, int n_column, const double *a, int lda, double *gram, int ldg);
+    void (*gram)(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg);
 } kernels;
 
 #define KERNELS(isa)                                                                                                   \
@@ -75,9 +75,9 @@ hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int 
     return HF_OK;
 }
 
-void hf_band_gram(int n, int n_column, const double *a, int lda, double *gram, int ldg)
+void hf_band_gram(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg)
 {
-    kernels_here()->gram(n, n_column, a, lda, gram, ldg);
+    kernels_here()->gram(first, end, n_column, a, lda, gram, ldg);
 }
 
 /* ---- LAPACK ---- */

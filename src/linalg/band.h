@@ -33,9 +33,9 @@ double hf_band_condition(int n, int half_bandwidth, const double *factor, double
 double hf_band_condition_indefinite(int n, int half_bandwidth, const double *general, const int *pivot, double norm,
                                     double *work, int *integer_work);
 
-/* Compute the lower triangle, row by row, of A A' for the dense A [n][n_column] of row length lda: gram [n][ldg]
- * (of the upper triangle some places are written, too). */
-void hf_band_gram(int n, int n_column, const double *a, int lda, double *gram, int ldg);
+/* Compute rows `first` to end-1 of the lower triangle of A A' for the dense A [n][n_column] of row length lda: gram
+ * [n][ldg] (of the upper triangle some places of these rows are written, too). `first` is a multiple of 4. */
+void hf_band_gram(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg);
 
 /* Keep a threaded BLAS from starting threads: each thread of this program solves systems of its own. Call once, before
  * any solve. */

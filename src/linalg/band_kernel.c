@@ -336,17 +336,17 @@ INLINE void gram_tile(int n_row, int n_column, int n, const double *row, const d
             gram[r * ldg + c] = -sum(t[r][c]);
 }
 
-void HF_KERNEL(hf_band_gram)(int n, int n_column, const double *a, int lda, double *gram, int ldg)
+void HF_KERNEL(hf_band_gram)(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg)
 {
-    for (int i = 0; i < n; i += COLUMNS)
+    for (int i = first; i < end; i += COLUMNS)
         for (int j = 0; j <= i; j += COLUMNS) {
             const double *row = a + i * (ptrdiff_t)lda, *column = a + j * (ptrdiff_t)lda;
             double *to = gram + i * (ptrdiff_t)ldg + j;
-            if (i + COLUMNS <= n) {
+            if (i + COLUMNS <= end) {
                 gram_tile(COLUMNS, COLUMNS, n_column, row, column, lda, to, ldg);
                 continue;
             }
-            for (int r = 0; i + r < n; r++)
+            for (int r = 0; i + r < end; r++)
                 for (int c = 0; c < COLUMNS && j + c <= i + r; c++)
                     gram_tile(1, 1, n_column, row + r * (ptrdiff_t)lda, column + c * (ptrdiff_t)lda, lda,
                               to + r * (ptrdiff_t)ldg + c, ldg);

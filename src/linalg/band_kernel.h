@@ -9,7 +9,7 @@
 #define HF_BAND_KERNELS(isa)                                                                                           \
     int hf_band_factor_##isa(int n, int half_bandwidth, double *band);                                                 \
     void hf_band_back_solve_##isa(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);     \
-    void hf_band_gram_##isa(int n, int n_column, const double *a, int lda, double *gram, int ldg);
+    void hf_band_gram_##isa(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg);
 
 /* What they do stands in band.h. */
 HF_BAND_KERNELS(portable)

@@ -184,7 +184,9 @@ hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
 
 hf_status hf_problem_batch(hf_problem *p, int n_thread)
 {
-    return hf_batch_create(&p->evaluator, n_thread, &p->batch);
+    hf_status status = hf_batch_create(&p->evaluator, n_thread, &p->batch);
+    p->evaluator.n_thread = p->batch.n_thread;
+    return status;
 }
 
 void hf_problem_share(hf_problem *p)

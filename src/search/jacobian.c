@@ -54,7 +54,7 @@ hf_status hf_jacobian_find(hf_jacobian *j, hf_workspace *w, double *derivative)
     HF_TRY(hf_sensitivity_find(&j->slopes, w));
     HF_TRY(hf_residuals_find(&j->residuals, w));
     for (int k = 0; k < n; k++) {
-        hf_residuals_rate(&j->residuals, &j->slopes, w, k, j->rate);
+        hf_residuals_rate(&j->residuals, &j->slopes, w, 0, k, j->rate);
         for (int i = 0, row = 0; i < j->n_figure - 1; row += goals->goal[i++].n_row)
             derivative[i * n + k] =
                 norm_rate(goals->goal[i].n_row, value + row, j->rate + row) / goals->goal[i].wanted.weight;

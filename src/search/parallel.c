@@ -62,6 +62,30 @@ void hf_parallel_run(int n_thread, void (*work)(void *context, int room), void *
     work(context, omp_get_thread_num());
 }
 
+/* The items of hf_parallel_each. */
+typedef struct {
+    hf_parallel_queue queue;
+    void (*work)(void *context, int room, int i);
+    void *context;
+} shared_items;
+
+static void work_in_room(void *context, int room)
+{
+    shared_items *items = context;
+    for (int i = hf_parallel_take(&items->queue); i >= 0; i = hf_parallel_take(&items->queue))
+        items->work(items->context, room, i);
+}
+
+void hf_parallel_each(int n_thread, int n, void (*work)(void *context, int room, int i), void *context)
+{
+    shared_items items = {{n, 0, NULL}, work, context};
+    if (n_thread > n) n_thread = n;
+    if (n_thread > 1)
+        hf_parallel_run(n_thread, work_in_room, &items);
+    else
+        work_in_room(&items, 0);
+}
+
 /* later is NULL when no thread serves it. */
 static void work_on_items(hf_parallel_queue *items, hf_later_list *later, void (*work)(void *context, int i),
                           void *context)

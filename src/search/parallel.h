@@ -28,6 +28,10 @@ void hf_parallel_add(double *sum, double value);
  * loop without an item take rooms meanwhile. */
 void hf_parallel_run(int n_thread, void (*work)(void *context, int room), void *context);
 
+/* Call work(context, room, i) once for i = 0 ... n-1, in hf_parallel_run with n_thread rooms, or in the calling thread
+ * alone with room 0 where n_thread is 0 or 1. */
+void hf_parallel_each(int n_thread, int n, void (*work)(void *context, int room, int i), void *context);
+
 /* Call work(context, i) for i = 0 ... n-1, handed out in this order to n_thread threads (0: all cores). Calls of
  * hf_parallel_run inside share these threads: a thread that finds no i left helps there, so that all are busy until the
  * last i is done. What work gives to hf_later_do runs in one further thread, and is done when this returns. */

@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "linalg/band.h"
 #include "linalg/quadratic.h"
+#include "search/parallel.h"
 #include "search/residuals.h"
 #include "search/watch.h"
 
@@ -19,6 +20,7 @@
 #define WAY_LEAST 1e-3    /* part of the way into the limits that a step goes [1e-2; 1e-6] */
 #define LIMIT_INSIDE 2e-9 /* a tension so near to its bound, relative, is at it: twice what a step stays within */
 #define LIMIT_ROUNDING 1e-12 /* a violation below this part of the tension is rounding [1e-14 to 1e-10] */
+#define GRAM_ROWS 32         /* of J'J that one thread works on at a time; the bits do not depend on it */
 #define DENSITY_LEFT 1e-3    /* part of its first value below which no force density falls [1e-6 to 0.3] */
 
 /* For hf_polish_is_cheap: steps that were counted on the cases of configs and METHOD; operations in about 0.1 s. */
@@ -199,20 +201,23 @@ static double find_noise(const problem *p)
     return p->v.form->residual_tolerance * sqrt(square);
 }
 
+/* Some rows of J'J. */
+static void multiply_rows(void *context, int room, int i_block)
+{
+    problem *p = context;
+    int first = GRAM_ROWS * i_block, end = first + GRAM_ROWS < p->n ? first + GRAM_ROWS : p->n;
+    int n_row = p->residuals.n_row;
+    (void)room;
+    hf_band_gram(first, end, n_row, p->row, n_row, p->gram, p->n);
+}
+
 /* Write residuals, J', J'J, the gradient and what is watched with its rates at the workspace's shape. */
 static hf_status linearise(problem *p)
 {
     HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
     HF_TRY(hf_residuals_find(&p->residuals, p->w));
-    int n_row = p->residuals.n_row;
-    for (int k = 0; k < p->n; k++) {
-        double *row = p->row + (size_t)k * (size_t)n_row;
-        hf_residuals_rate(&p->residuals, &p->slopes, p->w, k, row);
-        p->gradient[k] = 0;
-        for (int i = 0; i < n_row; i++)
-            p->gradient[k] += row[i] * p->residuals.value[i];
-    }
-    hf_band_gram(p->n, n_row, p->row, n_row, p->gram, p->n);
+    hf_residuals_rates(&p->residuals, &p->slopes, p->w, p->row, p->gradient);
+    hf_parallel_each(p->v.n_thread, (p->n + GRAM_ROWS - 1) / GRAM_ROWS, multiply_rows, p);
     for (int k = 0; k < p->n; k++)
         p->scale[k] = fmax(p->scale[k], sqrt(p->gram[k * p->n + k]));
     p->noise = find_noise(p);

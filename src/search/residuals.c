@@ -1,6 +1,7 @@
 #include "search/residuals.h"
 
 #include "base/arena.h"
+#include "search/parallel.h"
 
 #include <math.h>
 
@@ -8,31 +9,65 @@ static void lay_out(hf_arena *a, hf_residuals *r)
 {
     const hf_model *m = r->v->model;
     r->value = hf_arena_take(a, (size_t)r->n_row, sizeof(double));
-    r->move_m = hf_arena_take(a, r->v->goals ? 3 * (size_t)m->n_node : 0, sizeof(double));
-    r->tension_rate = hf_arena_take(a, r->v->goals ? (size_t)m->n_cable : 0, sizeof(double));
+    r->room = hf_arena_take(a, (size_t)r->n_room, sizeof *r->room);
+    for (int i = 0; i < r->n_room; i++) {
+        double *move_m = hf_arena_take(a, 3 * (size_t)m->n_node, sizeof(double));
+        double *tension_rate = hf_arena_take(a, (size_t)m->n_cable, sizeof(double));
+        double *value = hf_arena_take(a, i > 0 ? (size_t)r->n_row : 0, sizeof(double));
+        if (r->room) r->room[i] = (hf_residuals_room){{0}, NULL, HF_OK, move_m, tension_rate, value};
+    }
 }
 
+/* Without goals nothing is to be taken by threads: their derivatives are read off the moves. */
 hf_status hf_residuals_create(const hf_evaluator *v, hf_residuals *r)
 {
     hf_arena arena = {0};
     *r = (hf_residuals){.v = v, .n_row = v->goals ? v->goals->n_row : 3 * v->model->n_inner_node};
+    r->n_room = !v->goals ? 0 : v->n_thread > 1 ? v->n_thread : 1;
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, r)));
     r->block = arena.block;
+    for (int i = 1; i < r->n_room; i++) {
+        r->room[i].point = &r->room[i].own;
+        HF_TRY(hf_goals_point_create(v->goals, &r->room[i].own));
+    }
     return HF_OK;
 }
 
 void hf_residuals_free(hf_residuals *r)
 {
     hf_arena arena = {.block = r->block};
+    for (int i = 1; r->block && i < r->n_room; i++)
+        hf_goals_point_free(&r->room[i].own);
     hf_arena_free(&arena);
     *r = (hf_residuals){0};
+}
+
+typedef struct {
+    hf_residuals *r;
+    const hf_workspace *w;
+} entered;
+
+/* The goals' own derivatives, whichever thread finds them. */
+static void enter_room(void *context, int any_room, int i)
+{
+    const entered *q = context;
+    hf_residuals_room *room = &q->r->room[i];
+    (void)any_room;
+    room->status = hf_goals_linearise(q->r->v->goals, q->w, room->point, i ? room->value : q->r->value);
 }
 
 /* No node of a feasible design is loose. */
 hf_status hf_residuals_find(hf_residuals *r, hf_workspace *w)
 {
     const hf_model *m = r->v->model;
-    if (r->v->goals) return hf_goals_linearise(r->v->goals, w, w->goals, r->value);
+    if (r->n_room) {
+        entered q = {r, w};
+        r->room[0].point = w->goals;
+        hf_parallel_each(r->v->n_thread, r->n_room, enter_room, &q);
+        for (int i = 0; i < r->n_room; i++)
+            HF_TRY(r->room[i].status);
+        return HF_OK;
+    }
     double part = 1 / sqrt(m->n_inner_node);
     for (int i = 0; i < r->n_row; i++) {
         int at = i % 3 * m->n_node + m->inner_row[i / 3];
@@ -41,17 +76,44 @@ hf_status hf_residuals_find(hf_residuals *r, hf_workspace *w)
     return HF_OK;
 }
 
-void hf_residuals_rate(hf_residuals *r, const hf_sensitivity *slopes, hf_workspace *w, int i_variable, double *rate)
+void hf_residuals_rate(const hf_residuals *r, const hf_sensitivity *slopes, const hf_workspace *w, int i_room,
+                       int i_variable, double *rate)
 {
     const hf_model *m = r->v->model;
     if (r->v->goals) {
-        const hf_goals_rate by = {r->move_m, r->tension_rate, hf_sensitivity_displacement(slopes, i_variable, 0)};
-        hf_sensitivity_spread(slopes, i_variable, r->move_m, r->tension_rate);
-        hf_goals_push(r->v->goals, w, w->goals, &by, rate);
+        const hf_residuals_room *room = &r->room[i_room];
+        const hf_goals_rate by = {room->move_m, room->tension_rate, hf_sensitivity_displacement(slopes, i_variable, 0)};
+        hf_sensitivity_spread(slopes, i_variable, room->move_m, room->tension_rate);
+        hf_goals_push(r->v->goals, w, room->point, &by, rate);
         return;
     }
     const double *move = slopes->move + (size_t)i_variable * slopes->n_dof;
     double part = 1 / sqrt(m->n_inner_node);
     for (int i = 0; i < r->n_row; i++)
         rate[i] = part * move[3 * m->inner_row[i / 3] + i % 3];
+}
+
+typedef struct {
+    const hf_residuals *r;
+    const hf_sensitivity *slopes;
+    const hf_workspace *w;
+    double *rate, *gradient;
+} all_rates;
+
+static void rate_one(void *context, int i_room, int i_variable)
+{
+    const all_rates *q = context;
+    int n_row = q->r->n_row;
+    double *rate = q->rate + (size_t)i_variable * (size_t)n_row;
+    hf_residuals_rate(q->r, q->slopes, q->w, i_room, i_variable, rate);
+    q->gradient[i_variable] = 0;
+    for (int i = 0; i < n_row; i++)
+        q->gradient[i_variable] += rate[i] * q->r->value[i];
+}
+
+void hf_residuals_rates(const hf_residuals *r, const hf_sensitivity *slopes, const hf_workspace *w, double *rate,
+                        double *gradient)
+{
+    all_rates q = {r, slopes, w, rate, gradient};
+    hf_parallel_each(r->v->n_thread, slopes->n, rate_one, &q);
 }

@@ -5,11 +5,20 @@
 
 #include "search/sensitivity.h"
 
+/* What a thread needs with goals; the point of the first one is that of the workspace. */
+typedef struct {
+    hf_goals_point own, *point;
+    hf_status status;
+    double *move_m, *tension_rate; /* [3][n_node], [n_cable] scratch */
+    double *value;                 /* [n_row] scratch of the others */
+} hf_residuals_room;
+
 typedef struct {
     const hf_evaluator *v; /* borrowed */
     int n_row;
-    double *value;                 /* [n_row] f; |f| is the merit */
-    double *move_m, *tension_rate; /* [3][n_node], [n_cable] scratch with goals */
+    double *value;           /* [n_row] f; |f| is the merit */
+    int n_room;              /* threads */
+    hf_residuals_room *room; /* [n_room] */
     void *block;
 } hf_residuals;
 
@@ -17,11 +26,15 @@ typedef struct {
 hf_status hf_residuals_create(const hf_evaluator *evaluator, hf_residuals *residuals);
 void hf_residuals_free(hf_residuals *residuals);
 
-/* Take those of the shape in the workspace, which is feasible. HF_OK, or why goals have none. */
+/* Take those of the shape in the workspace, which is feasible, in every room. HF_OK, or why goals have none. */
 hf_status hf_residuals_find(hf_residuals *residuals, hf_workspace *workspace);
 
 /* rate [n_row] for one unit of a variable of `slopes`, which were found at the same shape. */
-void hf_residuals_rate(hf_residuals *residuals, const hf_sensitivity *slopes, hf_workspace *workspace, int i_variable,
-                       double *rate);
+void hf_residuals_rate(const hf_residuals *residuals, const hf_sensitivity *slopes, const hf_workspace *workspace,
+                       int i_room, int i_variable, double *rate);
+
+/* The same of all variables, rate [slopes->n][n_row], and the gradient [slopes->n] of |f|^2/2, by all threads. */
+void hf_residuals_rates(const hf_residuals *residuals, const hf_sensitivity *slopes, const hf_workspace *workspace,
+                        double *rate, double *gradient);
 
 #endif

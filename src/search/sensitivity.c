@@ -2,6 +2,7 @@
 #include "search/sensitivity.h"
 
 #include "base/arena.h"
+#include "search/parallel.h"
 #include "solve/newton_matrix.h"
 
 #include <math.h>
@@ -16,10 +17,16 @@ typedef struct hf_strained {
     int rigid, variable; /* of its gene; -1: none */
 } strained;
 
+static int n_room(const hf_sensitivity *s)
+{
+    return s->v->n_thread > 1 ? s->v->n_thread : 1;
+}
+
 static void lay_out(hf_arena *a, hf_sensitivity *s)
 {
     const hf_model *m = s->v->model;
     size_t n = (size_t)s->n;
+    s->lanes = hf_arena_take(a, (size_t)n_room(s), sizeof *s->lanes);
     s->variable_of_gene = hf_arena_take(a, (size_t)m->n_gene, sizeof(int));
     s->gene_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
     s->strained = hf_arena_take(a, (size_t)m->n_cable, sizeof(strained));
@@ -101,13 +108,17 @@ hf_status hf_sensitivity_create(const hf_evaluator *v, hf_sensitivity *s)
     s->block = arena.block;
     number(s);
     if (m->n_attachment) HF_TRY(hf_schur_create(m, &s->schur));
-    return hf_chord_create_matrix(v, &s->matrix, &s->lanes);
+    HF_TRY(hf_chord_create_matrix(v, &s->matrix, &s->lanes[0]));
+    for (int room = 1; room < n_room(s); room++)
+        HF_TRY(hf_chord_lanes_create(&s->matrix, &s->lanes[room]));
+    return HF_OK;
 }
 
 void hf_sensitivity_free(hf_sensitivity *s)
 {
     hf_arena arena = {.block = s->block};
-    hf_chord_lanes_free(&s->lanes);
+    for (int room = 0; s->block && room < n_room(s); room++)
+        hf_chord_lanes_free(&s->lanes[room]);
     hf_chord_free(&s->matrix);
     hf_schur_free(&s->schur);
     hf_arena_free(&arena);
@@ -185,38 +196,72 @@ static void add_force_of_gene(const hf_sensitivity *s, const hf_workspace *w, in
 
 /* ---- first derivatives ---- */
 
-/* Add what the forces in `answer` move. */
-static void follow(hf_sensitivity *s)
+/* Variables that one thread solves for at a time, as many as a solve has lanes: their numbers depend neither on the
+ * threads nor on each other. */
+typedef struct {
+    hf_sensitivity *s;
+    const hf_workspace *w;
+} solved;
+
+static int lanes_in_block(const hf_sensitivity *s, int i_block)
 {
-    size_t n_free = 3 * (size_t)s->v->model->n_free, n = (size_t)s->n;
-    hf_chord_back_solve(&s->matrix, &s->lanes, s->n, s->answer, n_free);
-    for (size_t k = 0; k < n; k++)
+    int left = s->n - HF_LANES * i_block;
+    return left < HF_LANES ? left : HF_LANES;
+}
+
+/* Add what the forces in `answer` move. */
+static void follow_block(void *context, int room, int i_block)
+{
+    hf_sensitivity *s = ((solved *)context)->s;
+    size_t n_free = 3 * (size_t)s->v->model->n_free, first = HF_LANES * (size_t)i_block;
+    int n = lanes_in_block(s, i_block);
+    hf_chord_back_solve(&s->matrix, &s->lanes[room], n, s->answer + first * n_free, n_free);
+    for (size_t k = first; k < first + (size_t)n; k++)
         for (size_t i = 0; i < n_free; i++)
             s->move[k * s->n_dof + i] += s->answer[k * n_free + i];
 }
 
 /* Turn the moves with fixed supports into those of net and truss together. */
-static void let_truss_answer(hf_sensitivity *s, const hf_workspace *w)
+static void let_truss_answer(solved *q, int room, int i_block)
 {
+    hf_sensitivity *s = q->s;
     const hf_model *m = s->v->model;
     size_t n_free = 3 * (size_t)m->n_free, n_attachment = 3 * (size_t)m->n_attachment;
-    size_t n = (size_t)s->n;
-    memset(s->answer, 0, n * n_free * sizeof(double));
-    for (size_t k = 0; k < n; k++) {
+    size_t first = HF_LANES * (size_t)i_block, n = (size_t)lanes_in_block(s, i_block);
+    memset(s->answer + first * n_free, 0, n * n_free * sizeof(double));
+    for (size_t k = first; k < first + n; k++) {
         double *free_nodes = s->move + k * s->n_dof, *supports = free_nodes + n_free,
                *pull = s->pull + k * n_attachment;
-        hf_schur_pull(m, w, hf_newton_matrix_block, free_nodes, pull);
+        hf_schur_pull(m, q->w, hf_newton_matrix_block, free_nodes, pull);
         hf_schur_displace(m, &s->schur, pull, supports);
-        hf_schur_push(m, w, hf_newton_matrix_block, supports, s->answer + k * n_free);
+        hf_schur_push(m, q->w, hf_newton_matrix_block, supports, s->answer + k * n_free);
     }
-    follow(s);
+    follow_block(q, room, i_block);
+}
+
+static void solve_block(void *context, int room, int i_block)
+{
+    hf_sensitivity *s = ((solved *)context)->s;
+    size_t first = HF_LANES * (size_t)i_block;
+    hf_chord_back_solve(&s->matrix, &s->lanes[room], lanes_in_block(s, i_block), s->move + first * s->n_dof, s->n_dof);
+    if (s->v->model->n_attachment) let_truss_answer(context, room, i_block);
+}
+
+static void do_blocks(hf_sensitivity *s, const hf_workspace *w, void (*work)(void *context, int room, int i_block))
+{
+    solved q = {s, w};
+    hf_parallel_each(s->v->n_thread, (s->n + HF_LANES - 1) / HF_LANES, work, &q);
+}
+
+static void follow(hf_sensitivity *s, const hf_workspace *w)
+{
+    do_blocks(s, w, follow_block);
 }
 
 /* Solve for the moves of all variables; `move` and `pull` hold the forces. */
 static void solve(hf_sensitivity *s, const hf_workspace *w)
 {
-    hf_chord_back_solve(&s->matrix, &s->lanes, s->n, s->move, s->n_dof);
-    if (s->v->model->n_attachment) let_truss_answer(s, w);
+    do_blocks(s, w, solve_block);
 }
 
 static void add_forces(hf_sensitivity *s, const hf_workspace *w)
@@ -314,7 +359,7 @@ static void refine(hf_sensitivity *s, const hf_workspace *w)
     const hf_model *m = s->v->model;
     size_t n_free = 3 * (size_t)m->n_free, n_attachment = 3 * (size_t)m->n_attachment;
     sum_forces(s, w);
-    follow(s);
+    follow(s, w);
     for (size_t k = 0; k < (size_t)s->n && n_attachment; k++) {
         double *supports = s->move + k * s->n_dof + n_free, *pull = s->pull + k * n_attachment;
         hf_schur_pull(m, w, hf_newton_matrix_block, s->answer + k * n_free, pull);
@@ -327,7 +372,7 @@ static void refine(hf_sensitivity *s, const hf_workspace *w)
         memset(s->answer + k * n_free, 0, n_free * sizeof(double));
         hf_schur_push(m, w, hf_newton_matrix_block, s->gap, s->answer + k * n_free);
     }
-    if (n_attachment) follow(s);
+    if (n_attachment) follow(s, w);
 }
 
 /* With the forces of the multipliers that the stiff springs have found, the springs need to give next to nothing. */

@@ -27,8 +27,8 @@ typedef struct {
     double *gap;                  /* [3 n_attachment] scratch */
     double *pull;                 /* [n][3 n_attachment] scratch: change of the pull on the truss */
     hf_chord matrix;              /* of the net with fixed supports */
-    hf_chord_lanes lanes;
-    hf_schur schur; /* only with a truss */
+    hf_chord_lanes *lanes;        /* [v->n_thread] */
+    hf_schur schur;               /* only with a truss */
     void *block;
 } hf_sensitivity;
 

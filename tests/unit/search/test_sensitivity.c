@@ -4,7 +4,7 @@
 #include "flexible.h"
 
 #include "net/variables.h"
-#include "search/sensitivity.h"
+#include "search/residuals.h"
 #include <hifdm/goals.h>
 
 enum { N_VARY = HF_VARY_SUPPORT_XYZ + 1, MAX_CABLE = 80, MAX_GENE = 80, MAX_ROW = 1200, MAX_TRIED = 8 };
@@ -233,11 +233,51 @@ START_TEST(every_pair_agrees_with_differences)
 }
 END_TEST
 
+/* Residuals, their derivatives by every variable and the gradient, by so many threads. */
+static double *rates_by(struct designed *d, int n_thread)
+{
+    hf_residuals residuals;
+    hf_form_result result;
+    size_t n = (size_t)d->slopes.n, n_row = (size_t)d->goals.n_row;
+    double *all = malloc((n_row + n + n * n_row) * sizeof *all);
+    ck_assert_ptr_nonnull(all);
+    hf_sensitivity_free(&d->slopes);
+    d->evaluator.n_thread = n_thread;
+    ck_assert_int_eq(hf_sensitivity_create(&d->evaluator, &d->slopes), HF_OK);
+    ck_assert_int_eq(hf_residuals_create(&d->evaluator, &residuals), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&d->evaluator, d->base, &d->net.work, &result), HF_OK);
+    ck_assert_int_eq(hf_sensitivity_find(&d->slopes, &d->net.work), HF_OK);
+    ck_assert_int_eq(hf_residuals_find(&residuals, &d->net.work), HF_OK);
+    memcpy(all, residuals.value, n_row * sizeof *all);
+    hf_residuals_rates(&residuals, &d->slopes, &d->net.work, all + n_row + n, all + n_row);
+    hf_residuals_free(&residuals);
+    return all;
+}
+
+START_TEST(any_number_of_threads_gives_the_same_bits)
+{
+    static const hf_vary tried[] = {HF_VARY_TENSION, HF_VARY_LENGTH}; /* length: all that is done for stiff springs */
+    struct designed d = {0};
+    open_designed(&d, tried[_i / 2], HF_LINK_EACH, _i % 2);
+    start(&d, false);
+    double *by_one = rates_by(&d, 0);
+    for (int n_thread = 1; n_thread <= 3; n_thread++) {
+        double *by_many = rates_by(&d, n_thread);
+        size_t n = (size_t)d.slopes.n, n_row = (size_t)d.goals.n_row;
+        ck_assert_mem_eq(by_many, by_one, (n_row + n + n * n_row) * sizeof *by_one);
+        free(by_many);
+    }
+    free(by_one);
+    close_designed(&d);
+}
+END_TEST
+
 Suite *suite_unit_sensitivity(void)
 {
     Suite *s = suite_create("unit/sensitivity");
     TCase *t = tcase_create("derivatives");
     tcase_add_loop_test(t, every_pair_agrees_with_differences, 0, 8 * N_VARY);
+    tcase_add_loop_test(t, any_number_of_threads_gives_the_same_bits, 0, 4);
     suite_add_tcase(s, t);
     return s;
 }
