@@ -8,6 +8,7 @@
 
 #include <hifdm/carrier.h>
 #include <hifdm/generate.h>
+#include <hifdm/material.h>
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
 #include <hifdm/status.h>
@@ -39,6 +40,7 @@ typedef struct {
     hf_form_settings form;
     hf_optimize_settings optimize;
     hf_surface_settings surface; /* a generated net supplies what is not given */
+    hf_built_settings built;
 
     bool has_truss, has_truss_import, has_truss_ring; /* which sections are there */
     hf_truss_settings truss;
@@ -74,6 +76,12 @@ hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages 
  * that section. */
 hf_status hf_config_surface(const hf_case *settings, const hf_scene *scene, hf_surface_settings *surface,
                             hf_messages *messages);
+
+/* What cables and nodes of the scene are made of, by the rows of `cables` and `nodes`; a later row replaces what an
+ * earlier one says. Returns HF_OK; HF_BAD_CASE for rows that name nothing of this net; HF_NO_MEMORY. Free it in any
+ * case. */
+hf_status hf_config_material(const hf_case *settings, const hf_scene *scene, hf_material *material,
+                             hf_messages *messages);
 
 /* Make the truss of a case that has one, and check it (hf_truss_check). Errors as hf_config_scene. Free the truss in
  * any case. */

@@ -36,6 +36,7 @@
 #include <hifdm/formfind.h>
 #include <hifdm/frame.h>
 #include <hifdm/generate.h>
+#include <hifdm/material.h>
 #include <hifdm/metrics.h>
 #include <hifdm/model.h>
 #include <hifdm/optimiser.h>

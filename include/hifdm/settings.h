@@ -78,6 +78,7 @@ extern const char *const hf_compare_word[4];
 extern const char *const hf_variation_word[3];
 extern const char *const hf_keep_word[4];
 extern const char *const hf_symmetry_word[6];
+extern const char *const hf_nodes_word[5];
 extern const char *const hf_surface_kind_word[4];
 extern const char *const hf_coupling_scheme_word[4];
 extern const char *const hf_vary_word[8];
@@ -169,6 +170,30 @@ typedef struct {
     hf_goal_settings objective[HF_OBJECTIVES_MAX];
     int front_points; /* of this front */
 } hf_optimize_settings;
+
+/* A row of `cables`: what the cables of a set are made of. NaN where it is not given. */
+typedef struct {
+    char set[HF_SET_NAME_SIZE]; /* of cables, or inner, boundary, all */
+    double expansion_per_K, mass_kg_per_m;
+} hf_cable_settings;
+
+/* Which nodes a row names: all, or those of a role. */
+typedef enum { HF_NODES_ALL, HF_NODES_SUPPORT, HF_NODES_INNER, HF_NODES_EDGE } hf_nodes;
+
+/* A row of `nodes`. */
+typedef struct {
+    hf_nodes role;
+    double mass_kg; /* of each */
+} hf_node_settings;
+
+#define HF_MATERIAL_ROWS_MAX 16 /* rows of each of these lists */
+
+/* The net as built. */
+typedef struct {
+    int n_cable, n_node;
+    hf_cable_settings cable[HF_MATERIAL_ROWS_MAX];
+    hf_node_settings node[HF_MATERIAL_ROWS_MAX];
+} hf_built_settings;
 
 #define HF_LIST_MAX 32
 

@@ -94,6 +94,8 @@ static void print_schema(FILE *f)
     fputs("# Every key of a hifdm case file, with its default. Units are the last part of a name.\n", f);
     for (int i = 0; i < hf_n_field; i++)
         if (!strchr(field[i].path, '.')) print_field(&field[i], f);
+    for (int i = 0; i < hf_n_list; i++)
+        if (!strchr(hf_list_table[i].path, '.')) print_list(&hf_list_table[i], f);
     for (int s = 0; s < hf_n_section; s++) {
         int indent = 2 * depth_of(section[s].path);
         fprintf(f, "\n%*s# %s\n%*s%s:\n", indent, "", section[s].help, indent, "", last_word(section[s].path));

@@ -149,12 +149,6 @@ static void check_truss(const hf_case *c, hf_config_faults *f)
 
 /* ---- rows of lists ---- */
 
-static bool is_given(const hf_config_faults *f, const char *path)
-{
-    hf_key key;
-    return hf_key_find(path, &key) && *hf_config_where(f, key.i_place);
-}
-
 static void check_rows_are_whole(const hf_case *c, hf_config_faults *f)
 {
     for (const hf_list *list = hf_list_table; list < hf_list_table + hf_n_list; list++)
@@ -168,28 +162,13 @@ static void check_rows_are_whole(const hf_case *c, hf_config_faults *f)
         }
 }
 
-/* The fault of a key of a row. */
-static void fault_in_row(hf_config_faults *f, const char *list, int row, const char *key, const char *what)
-{
-    char path[HF_KEY_SIZE];
-    snprintf(path, sizeof path, "%s.%d.%s", list, row, key);
-    hf_config_fault_of(f, path, what);
-}
-
-static void check_set_name(hf_config_faults *f, const char *list, int row, const char *set)
-{
-    bool is_group = !strcmp(set, hf_group_word[0]) || !strcmp(set, hf_group_word[1]) || !strcmp(set, "all");
-    const char *fault = *set && !is_group ? hf_cable_set_name_fault(set) : NULL;
-    if (fault) fault_in_row(f, list, row, "set", fault);
-}
-
 /* Refuse a key where the row is of a kind that has no use for it. users: the kinds that have, a bit each. */
 static void check_use(hf_config_faults *f, const char *list, int row, const char *key, int kind,
                       const char *const *kind_word, unsigned users)
 {
     char path[HF_KEY_SIZE], what[WHAT_SIZE];
     snprintf(path, sizeof path, "%s.%d.%s", list, row, key);
-    if (users & 1u << kind || !is_given(f, path)) return;
+    if (users & 1u << kind || !hf_config_is_given(f, path)) return;
     int used = snprintf(what, sizeof what, "has no meaning for %s, only for", kind_word[kind]), n = 0;
     for (int k = 0; kind_word[k]; k++)
         if (users & 1u << k)
@@ -204,20 +183,21 @@ static void check_variables(const hf_optimize_settings *o, hf_config_faults *f)
     for (int i = 0; i < o->n_variable; i++) {
         const hf_variable_settings *v = &o->variable[i];
         bool has_bounds = !isinf(v->lower) || !isinf(v->upper);
-        check_set_name(f, list, i, v->set);
+        hf_config_check_set(f, list, i, v->set);
         if (isnan(v->range) && isnan(v->range_ratio) && !has_bounds)
-            fault_in_row(f, list, i, "range", "is missing; give range, bounds or both");
+            hf_config_fault_in_row(f, list, i, "range", "is missing; give range, bounds or both");
         if (!isnan(v->range_ratio) && v->vary >= HF_VARY_SUPPORT_Z)
-            fault_in_row(f, list, i, "range", "must be in m: the place of a support has no size to take a part of");
+            hf_config_fault_in_row(f, list, i, "range",
+                                   "must be in m: the place of a support has no size to take a part of");
         if (v->link == HF_LINK_SYMMETRY && o->symmetry == HF_SYMMETRY_NONE)
-            fault_in_row(f, list, i, "link", "symmetry needs optimize.symmetry, which is none");
+            hf_config_fault_in_row(f, list, i, "link", "symmetry needs optimize.symmetry, which is none");
         if (v->link == HF_LINK_SYMMETRY && v->vary == HF_VARY_SUPPORT_XYZ)
-            fault_in_row(f, list, i, "link",
-                         "cannot be symmetry with support_xyz: mirrored supports move apart along x or y");
+            hf_config_fault_in_row(f, list, i, "link",
+                                   "cannot be symmetry with support_xyz: mirrored supports move apart along x or y");
     }
     if (o->n_variable == 0) return;
     for (size_t k = 0; k < sizeof of_default / sizeof *of_default; k++)
-        if (is_given(f, of_default[k]))
+        if (hf_config_is_given(f, of_default[k]))
             hf_config_fault_of(
                 f, of_default[k],
                 "is of the default variables alone; with optimize.variables give range and bounds there");
@@ -245,13 +225,13 @@ static void check_goals(const char *list, int n_goal, const hf_goal_settings *go
         const hf_goal_settings *g = &goal[i];
         for (size_t k = 0; k < sizeof use / sizeof *use; k++)
             check_use(f, list, i, use[k].key, (int)g->goal, hf_goal_word, use[k].users);
-        check_set_name(f, list, i, g->set);
+        hf_config_check_set(f, list, i, g->set);
         if (g->goal == HF_GOAL_TENSION && isnan(g->target))
-            fault_in_row(f, list, i, "target", "is missing: the tension that is wanted, in N");
+            hf_config_fault_in_row(f, list, i, "target", "is missing: the tension that is wanted, in N");
         if (g->goal == HF_GOAL_LENGTH && g->target <= 0)
-            fault_in_row(f, list, i, "target", "of length must be above 0");
+            hf_config_fault_in_row(f, list, i, "target", "of length must be above 0");
         if (g->goal == HF_GOAL_MASS && isnan(g->mass_kg_per_m))
-            fault_in_row(f, list, i, "mass_kg_per_m", "is missing: the mass of the cables");
+            hf_config_fault_in_row(f, list, i, "mass_kg_per_m", "is missing: the mass of the cables");
     }
 }
 
@@ -268,7 +248,8 @@ static void check_objectives(const hf_optimize_settings *o, hf_config_faults *f)
     for (int i = 1; i < o->n_objective; i++)
         for (int k = 0; k < i; k++)
             if (!memcmp(&o->objective[i], &o->objective[k], sizeof o->objective[i]))
-                fault_in_row(f, list, i, "goal", "is the objective of an earlier row; a front needs different ones");
+                hf_config_fault_in_row(f, list, i, "goal",
+                                       "is the objective of an earlier row; a front needs different ones");
 }
 
 static void check_limits(const hf_optimize_settings *o, hf_config_faults *f)
@@ -277,12 +258,13 @@ static void check_limits(const hf_optimize_settings *o, hf_config_faults *f)
     for (int i = 0; i < o->n_limit; i++) {
         const hf_limit_settings *l = &o->limit[i];
         check_use(f, list, i, "set", (int)l->limit, hf_limit_word, 1u << HF_LIMIT_TENSION | 1u << HF_LIMIT_RATIO);
-        check_set_name(f, list, i, l->set);
+        hf_config_check_set(f, list, i, l->set);
         double least = l->limit == HF_LIMIT_RATIO ? 1 : 0; /* of what is limited from above alone */
         if (l->limit != HF_LIMIT_TENSION && (l->lower > least || l->upper <= least || isinf(l->upper)))
-            fault_in_row(f, list, i, "bounds",
-                         l->limit == HF_LIMIT_RATIO ? "must end above 1, and not begin above it: even tensions have 1"
-                                                    : "must end above 0, and not begin above it");
+            hf_config_fault_in_row(f, list, i, "bounds",
+                                   l->limit == HF_LIMIT_RATIO
+                                       ? "must end above 1, and not begin above it: even tensions have 1"
+                                       : "must end above 0, and not begin above it");
     }
 }
 
@@ -303,6 +285,7 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
                                          : "is missing: this net does not tell its surface");
     if (!f->failed) check_generators(c, f);
     if ((c->has_truss || c->has_truss_import || c->has_truss_ring) && !f->failed) check_truss(c, f);
+    if (!f->failed) hf_config_check_built(c, f);
     if (!c->has_optimize || f->failed) return; /* values that were refused are not compared */
     if (o->min_tension_N >= o->max_tension_N)
         hf_config_fault_of(f, "optimize.min_tension_N", "must be below optimize.max_tension_N");

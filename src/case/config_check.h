@@ -8,6 +8,12 @@
 /* Report the keys that are missing and those that do not go together. */
 void hf_config_check(const hf_case *settings, hf_config_faults *faults);
 
+/* The part of it about the net as built: `cables`, `nodes` and `cases`. */
+void hf_config_check_built(const hf_case *settings, hf_config_faults *faults);
+
+/* Report the name of a set in a row that no set can have. */
+void hf_config_check_set(hf_config_faults *faults, const char *list, int row, const char *set);
+
 /* Set what follows from the sections that are there: whether there is a truss; of the surface, what the generator of
  * the net knows and the case does not give. */
 void hf_config_complete(hf_case *settings);

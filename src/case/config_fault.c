@@ -51,3 +51,23 @@ void hf_config_fault_of(hf_config_faults *faults, const char *path, const char *
     else
         hf_error(faults->messages, HF_BAD_CASE, "%s:%s%s %s: %s", faults->path, where, *where ? ":" : "", path, what);
 }
+
+void hf_config_fault_in_row(hf_config_faults *f, const char *list, int row, const char *key, const char *what)
+{
+    char path[HF_KEY_SIZE];
+    snprintf(path, sizeof path, "%s.%d.%s", list, row, key);
+    hf_config_fault_of(f, path, what);
+}
+
+bool hf_config_is_given(const hf_config_faults *f, const char *path)
+{
+    hf_key key;
+    return hf_key_find(path, &key) && *hf_config_where(f, key.i_place);
+}
+
+bool hf_config_is_given_in_row(const hf_config_faults *f, const char *list, int row, const char *key)
+{
+    char path[HF_KEY_SIZE];
+    snprintf(path, sizeof path, "%s.%d.%s", list, row, key);
+    return hf_config_is_given(f, path);
+}

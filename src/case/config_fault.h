@@ -25,6 +25,13 @@ void hf_config_fault_at(hf_config_faults *faults, size_t line, size_t column, co
 /* Report a fault of several keys, or a missing key, with the place of the key when the case contains it. */
 void hf_config_fault_of(hf_config_faults *faults, const char *path, const char *what);
 
+/* The same of a key of a row: list "optimize.goals", key "set". */
+void hf_config_fault_in_row(hf_config_faults *faults, const char *list, int row, const char *key, const char *what);
+
+/* Does the case give this key? */
+bool hf_config_is_given(const hf_config_faults *faults, const char *path);
+bool hf_config_is_given_in_row(const hf_config_faults *faults, const char *list, int row, const char *key);
+
 /* Place i_place of hf_key: hf_field_table[i] has the place i; "" when it is not given. */
 static inline char *hf_config_where(const hf_config_faults *faults, int i_place)
 {

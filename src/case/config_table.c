@@ -265,12 +265,35 @@ static const hf_field limit_field[] = {
 };
 #undef IN
 
+#define IN(member) offsetof(hf_cable_settings, member)
+static const hf_field cable_field[] = {
+    {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "all", "", NULL,
+     "of cables: a set of the net, or inner, boundary, all"},
+    {"expansion_per_K", HF_FIELD_DOUBLE, IN(expansion_per_K), -1, 1, "", "1/K", NULL,
+     "thermal expansion of the cables; 0: they keep their lengths"},
+    {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(mass_kg_per_m), 0, 1e6, "", "kg/m", NULL,
+     "mass of the cables, per metre of unstressed length"},
+};
+#undef IN
+
+#define IN(member) offsetof(hf_node_settings, member)
+static const hf_field node_field[] = {
+    {"role", HF_FIELD_WORD, IN(role), 0, 0, "all", "", hf_nodes_word, "nodes: those of a role, or all"},
+    {"mass_kg", HF_FIELD_DOUBLE, IN(mass_kg), 0, 1e6, NULL, "kg", NULL, "mass of each"},
+};
+#undef IN
+
 #define N_VARIABLE_FIELD (int)(sizeof variable_field / sizeof *variable_field)
 #define N_LIMIT_FIELD (int)(sizeof limit_field / sizeof *limit_field)
 #define LIST(name, count, row, max_row, keys, n_key, help)                                                             \
     {                                                                                                                  \
         "optimize." name, AT(optimize.count), AT(optimize.row), sizeof(((hf_case *)0)->optimize.row[0]), max_row,      \
             keys, n_key, help                                                                                          \
+    }
+#define BUILT_LIST(name, count, row, max_row, keys, help)                                                              \
+    {                                                                                                                  \
+        name, AT(built.count), AT(built.row), sizeof(((hf_case *)0)->built.row[0]), max_row, keys,                     \
+            sizeof keys / sizeof *keys, help                                                                           \
     }
 const hf_list hf_list_table[] = {
     LIST("variables", n_variable, variable, HF_DESIGN_ROWS_MAX, variable_field, N_VARIABLE_FIELD,
@@ -282,7 +305,12 @@ const hf_list hf_list_table[] = {
          "designs than which none is better in all of them"),
     LIST("limits", n_limit, limit, HF_DESIGN_ROWS_MAX, limit_field, N_LIMIT_FIELD,
          "What a design must keep; without rows nothing"),
+    BUILT_LIST("cables", n_cable, cable, HF_MATERIAL_ROWS_MAX, cable_field,
+               "What cables are made of, for the net as built; a later row replaces what an earlier one says"),
+    BUILT_LIST("nodes", n_node, node, HF_MATERIAL_ROWS_MAX, node_field,
+               "What joints weigh, for the net as built; a later row replaces an earlier one"),
 };
+#undef BUILT_LIST
 #undef LIST
 const int hf_n_list = sizeof hf_list_table / sizeof *hf_list_table;
 
