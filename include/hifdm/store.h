@@ -45,6 +45,8 @@
  *                gain_loss_dB, fit_gain_loss_dB [f]
  *   /set_tension/form, /set_tension/optimize, /set_tension/polish   of the first s <= HF_SUMMARY_SETS sets of cables,
  *                if there are any: name, least_N, largest_N, ratio [s]
+ *   /at_limit/optimize, /at_limit/polish   when the shape is at h limits that its design must keep: row of
+ *                optimize.limits or -1, the cap on the boundary; count, name, value, bound [h]
  *   /goals       with g rows of optimize.goals: name, weight [g]; the value of each in the shapes of form, optimize,
  *                polish [g], as far as these ran
  *   /truss       with a nodes, b members, c attachments; attributes mass_kg, n_node, n_member

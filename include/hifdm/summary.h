@@ -50,6 +50,8 @@ extern "C" {
     X(int, generations, INT, 1, "generations", "number finished")                                                      \
     X(long, evaluations, LONG, 1, "evaluations", "form-findings")                                                      \
     X(long, infeasible, LONG, 1, "infeasible", "those without a feasible shape among them")                            \
+    X(int, best_n_at_lower, INT, 3, "at_lower_bound", "genes of the best at their lower bounds")                       \
+    X(int, best_n_at_upper, INT, 3, "at_upper_bound", "genes of the best at their upper bounds")                       \
     X(hf_population_stop, optimize_stop, GA_STOP, 7, "stop_reason", "why it ended")                                    \
     X(double, optimize_wall_s, REAL, 4, "wall_s", "wall-clock time")                                                   \
     X(double, optimize_cpu_s, REAL, 4, "cpu_s", "breeding, evaluating and storing, over all threads; without waiting") \
@@ -83,6 +85,19 @@ typedef struct {
     double least_N[HF_SUMMARY_SETS], largest_N[HF_SUMMARY_SETS], ratio[HF_SUMMARY_SETS];
 } hf_set_tensions;
 
+/* What the shape of a stage is at, within 1e-8, of the limits that its design keeps: boundary_ratio_cap, rows of
+ * optimize.limits. The form-finding has none to keep. */
+#define HF_SUMMARY_HELD (2 * HF_DESIGN_ROWS_MAX + 1)
+#define HF_HELD_NAME_SIZE 160
+
+typedef struct {
+    int n;
+    int row[HF_SUMMARY_HELD];                      /* of optimize.limits; -1: boundary_ratio_cap */
+    int count[HF_SUMMARY_HELD];                    /* cables or attachments of the row that are at this bound */
+    char name[HF_SUMMARY_HELD][HF_HELD_NAME_SIZE]; /* of one: "tension of cable c7", "ratio of cable c7 to c9" */
+    double value[HF_SUMMARY_HELD], bound[HF_SUMMARY_HELD]; /* of this one, N, m or a ratio */
+} hf_held_limits;
+
 /* The rows of optimize.goals. Their values are in the results of the stages, merit beside them: of the form-finding,
  * the best individual and Levenberg-Marquardt. */
 typedef struct {
@@ -108,6 +123,7 @@ typedef struct {
     hf_surface_settings surface;     /* focal_length_m is 0 when the case has no such section */
     hf_surface_measures measures[3]; /* of the shapes of form, optimize, polish (hf_stage) */
     hf_set_tensions sets[3];         /* of the same; n is 0 of a net without sets, and of a shape that is not there */
+    hf_held_limits held[3];          /* of the same */
 
     hf_goal_list goals;
 

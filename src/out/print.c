@@ -97,6 +97,23 @@ static void print_sets(const hf_set_tensions *s, FILE *f)
     fputc('\n', f);
 }
 
+/* "boundary_ratio_cap", or a row of optimize.limits. */
+static const char *limit_of(const hf_held_limits *h, int i, char text[32])
+{
+    snprintf(text, 32, "optimize.limits.%d", h->row[i]);
+    return h->row[i] < 0 ? "boundary_ratio_cap" : text;
+}
+
+static void print_held(const hf_held_limits *h, FILE *f)
+{
+    char limit[32], more[40];
+    for (int i = 0; i < h->n; i++) {
+        snprintf(more, sizeof more, " and %d more", h->count[i] - 1);
+        hf_print_line(f, "                at %s: %s%s at %.6g", limit_of(h, i, limit), h->name[i],
+                      h->count[i] > 1 ? more : "", h->bound[i]);
+    }
+}
+
 static void print_goals(const hf_summary *s, const hf_form_result *r, FILE *f)
 {
     if (s->goals.n == 0 || !isfinite(r->merit)) return; /* a run that ended before its base design has none as yet */
@@ -197,6 +214,10 @@ static void print_optimize(const hf_summary *s, FILE *f)
                 100 * (1 - s->best.psi_m / s->base_psi_m), s->base_psi_m * 1e3);
     fprintf(f, "; found in generation %d\n", s->best_generation);
     print_result(&s->best, f);
+    if (s->best_n_at_lower + s->best_n_at_upper > 0)
+        fprintf(f, "                %d of %d variables at their lower and %d at their upper bounds\n",
+                s->best_n_at_lower, s->n_gene, s->best_n_at_upper);
+    print_held(&s->held[1], f);
     print_sets(&s->sets[1], f);
     print_goals(s, &s->best, f);
     print_certificate(&s->best, f);
@@ -229,6 +250,7 @@ static void print_polish(const hf_summary *s, FILE *f)
     if (s->polish_n_at_limit) snprintf(limits, sizeof limits, " and %d limits", s->polish_n_at_limit);
     fprintf(f, "                held by %d lower and %d upper bounds%s%s\n", s->polish_n_at_lower, s->polish_n_at_upper,
             limits, s->polish_is_at_cap ? " and the cap on the boundary ratio" : "");
+    print_held(&s->held[2], f);
     print_sets(&s->sets[2], f);
     print_goals(s, &s->polish, f);
     print_surface(s, 2, f);

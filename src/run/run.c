@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "run/problem_parts.h"
 #include "search/polish.h"
+#include "solve/limits.h"
 #include "solve/certificate.h"
 #include "solve/coupling.h"
 #include <hifdm/batch.h>
@@ -71,6 +72,22 @@ static void measure_sets(const run *r, hf_stage stage, const hf_workspace *w, hf
             to->largest_N[k] = fmax(to->largest_N[k], w->tension_N[cable[i]]);
         }
         to->ratio[k] = hf_metrics_set_ratio(&r->problem.model, w, n, cable);
+    }
+}
+
+/* What a found design is at; w has its shape. */
+static void tell_limits(const run *r, hf_stage stage, const hf_workspace *w, hf_summary *s)
+{
+    const hf_problem *p = &r->problem;
+    hf_limit_held held[HF_LIMITS_HELD];
+    hf_held_limits *to = &s->held[stage];
+    to->n = hf_limits_held(&p->evaluator, w, held);
+    for (int i = 0; i < to->n; i++) {
+        to->row[i] = held[i].row;
+        to->count[i] = held[i].n;
+        to->value[i] = held[i].value;
+        to->bound[i] = held[i].bound;
+        hf_limits_name(&p->scene, &p->model, &held[i], to->name[i], sizeof to->name[i]);
     }
 }
 
@@ -198,7 +215,12 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     hf_workspace *w = hf_batch_run_one(&r->problem.batch, design, &again);
     hf_certify(&r->problem.model, w, &again);
     s->best = again; /* the same bits, and the figures that are not stored for each individual */
+    for (int k = 0; k < r->optimiser.population.n_gene; k++) {
+        s->best_n_at_lower += design[k] <= r->optimiser.population.lower_N[k];
+        s->best_n_at_upper += design[k] >= r->optimiser.population.upper_N[k];
+    }
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
+    tell_limits(r, HF_STAGE_OPTIMIZE, w, s);
     HF_TRY(measure_shape(r, HF_STAGE_OPTIMIZE, w, s, messages));
     HF_TRY(load_truss(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->problem.model, w, design, messages);
@@ -277,6 +299,25 @@ static bool evaluate_first(run *r)
     return true;
 }
 
+/* Which limit the shape in w breaks most: ": tension of cable c7 is 12 beside 10 of optimize.limits.0"; "" where it
+ * breaks none. */
+static const char *name_broken(const run *r, const hf_workspace *w, char *text, size_t size)
+{
+    const hf_problem *p = &r->problem;
+    hf_limit_held held[HF_LIMITS_HELD];
+    char name[HF_HELD_NAME_SIZE], limit[32] = "boundary_ratio_cap";
+    int worst = -1, n = hf_limits_held(&p->evaluator, w, held);
+    for (int i = 0; i < n; i++)
+        if (held[i].beyond > (worst < 0 ? HF_LIMITS_AT : held[worst].beyond)) worst = i;
+    *text = '\0';
+    if (worst < 0) return text;
+    const hf_limit_held *h = &held[worst];
+    if (h->row != HF_LIMITS_CAP) snprintf(limit, sizeof limit, "optimize.limits.%d", h->row);
+    snprintf(text, size, ": %s is %.6g beside %g of %s", hf_limits_name(&p->scene, &p->model, h, name, sizeof name),
+             h->value, h->bound, limit);
+    return text;
+}
+
 /* Why no design was feasible, by counts, and what would change that. */
 static hf_status explain_infeasible(run *r, hf_messages *messages)
 {
@@ -284,12 +325,14 @@ static hf_status explain_infeasible(run *r, hf_messages *messages)
     long above = p->n_evaluation_above_cap, shapeless = p->n_evaluation_infeasible - above;
     const char *wider = r->problem.model.gene ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
     hf_form_result base;
-    hf_batch_run_one(&r->problem.batch, p->base_N, &base);
+    char broken[2 * HF_HELD_NAME_SIZE] = "";
+    const hf_workspace *w = hf_batch_run_one(&r->problem.batch, p->base_N, &base);
+    if (hf_status_has_shape(base.status)) name_broken(r, w, broken, sizeof broken);
     if (above > 0 && r->problem.settings.optimize.n_limit > 0)
         return hf_error(messages, HF_NO_FEASIBLE,
                         "optimize: no feasible design: %ld of %ld evaluations have a shape beyond optimize.limits or "
-                        "boundary_ratio_cap; loosen the limits, or widen %s",
-                        above, p->n_evaluation, wider);
+                        "boundary_ratio_cap%s%s; loosen the limits, or widen %s",
+                        above, p->n_evaluation, *broken ? "; the base design's" : "", broken + (*broken == ':'), wider);
     if (above == 0)
         return hf_error(
             messages, HF_NO_FEASIBLE,
@@ -353,9 +396,14 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
     if (status != HF_OK) {
         const char *why = hf_status_text(status);
+        char broken[2 * HF_HELD_NAME_SIZE] = "";
+        hf_form_result start;
+        if (hf_status_has_shape(hf_evaluate(&r->problem.evaluator, design, w, &start)))
+            name_broken(r, w, broken, sizeof broken);
         if (!r->plan.kind)
-            return hf_error(messages, HF_NO_FEASIBLE, "optimize: Levenberg-Marquardt has no feasible start: %s", why);
-        hf_warning(messages, "optimize: Levenberg-Marquardt has no feasible start: %s", why);
+            return hf_error(messages, HF_NO_FEASIBLE, "optimize: Levenberg-Marquardt has no feasible start: %s%s", why,
+                            broken);
+        hf_warning(messages, "optimize: Levenberg-Marquardt has no feasible start: %s%s", why, broken);
         return HF_OK;
     }
     hf_evaluate(&r->problem.evaluator, design, w, &s->polish);
@@ -371,6 +419,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     s->polish_n_at_limit = outcome.n_at_limit;
     s->polish_is_at_cap = outcome.is_at_cap;
     s->polish_wall_s = hf_clock_s() - start_s;
+    tell_limits(r, HF_STAGE_POLISH, w, s);
     HF_TRY(measure_shape(r, HF_STAGE_POLISH, w, s, messages));
     if (s->polish_is_result) HF_TRY(load_truss(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);

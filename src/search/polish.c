@@ -293,7 +293,8 @@ static void count_limits(const problem *p, hf_polish_result *r)
 {
     const hf_model *m = p->v.model;
     for (int k = 0; k < m->n_gene; k++) {
-        double inside = is_tension(p, k) ? LIMIT_INSIDE * p->best[k] : 0;
+        int i = p->slopes.variable_of_gene[k];
+        double inside = is_tension(p, k) ? LIMIT_INSIDE * p->best[k] : LIMIT_ROUNDING * p->unit[i];
         r->n_at_lower += p->best[k] <= p->lower[k] + inside;
         r->n_at_upper += p->best[k] >= p->upper[k] - inside;
     }
@@ -316,11 +317,12 @@ static hf_status enter(problem *p, int max_iterations, hf_polish_result *r)
         if (status == HF_OK) status = evaluate(p, p->trial);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         double after = status == HF_OK ? hf_watch_violation(&p->watch, p->w) : (double)INFINITY;
-        way = after < before ? fmin(1, 2 * way) : way / 2;
-        if (!(after < before)) continue;
+        bool is_inside = status == HF_OK && hf_watch_keeps(&p->watch, p->w), is_nearer = is_inside || after < before;
+        way = is_nearer ? fmin(1, 2 * way) : way / 2;
+        if (!is_nearer) continue;
         before = after;
         keep(p);
-        p->is_outside = !hf_watch_keeps(&p->watch, p->w);
+        p->is_outside = !is_inside;
         r->merit = p->result.merit;
         HF_TRY(linearise(p));
     }

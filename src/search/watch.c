@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "base/elementary.h"
+#include "solve/limits.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -80,7 +81,7 @@ hf_status hf_watch_create(const hf_evaluator *v, const hf_sensitivity *s, const 
                           hf_watch *q)
 {
     hf_arena arena = {0};
-    *q = (hf_watch){.n_variable = s->n};
+    *q = (hf_watch){.v = v, .n_variable = s->n};
     list(v, s, lower, upper, q);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, q)));
     q->block = arena.block;
@@ -128,12 +129,11 @@ bool hf_watch_keeps(const hf_watch *q, const hf_workspace *w)
 
 double hf_watch_violation(const hf_watch *q, const hf_workspace *w)
 {
-    double sum = 0;
-    for (int k = 0; k < q->n_cap; k++)
-        sum += fmax(0, ratio_of(q, k, w) / q->cap[k] - 1);
+    double sum = hf_limits_violation(q->v, w);
     for (int i = 0; i < q->n; i++) {
-        double value = value_of(&q->item[i], w);
-        sum += fmax(0, fmax(q->item[i].lower - value, value - q->item[i].upper)) / q->item[i].unit;
+        const hf_watched *t = &q->item[i];
+        if (t->kind == HF_WATCH_BOUND)
+            sum += hf_limits_tension_violation(q->v->model, w->tension_N[t->cable], t->lower, t->upper);
     }
     return sum;
 }

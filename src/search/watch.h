@@ -18,6 +18,7 @@ typedef struct {
 } hf_watched;
 
 typedef struct {
+    const hf_evaluator *v; /* borrowed; with the limits */
     int n, n_variable, n_cap;
     bool has_cap;     /* the first of them is that of the boundary */
     hf_watched *item; /* [n] */
@@ -44,7 +45,8 @@ void hf_watch_linearise(hf_watch *watch, const hf_sensitivity *slopes, const hf_
  * hf_watch_linearise: it shall keep all limits. */
 void hf_watch_aim(hf_watch *watch, double part);
 
-/* How far the shape in the workspace is beyond what is watched, in all: sums of parts of the bounds and caps. */
+/* How far the shape in the workspace is beyond what is watched, in all: the violation by which designs are ranked, and
+ * that of the bounds of tensions. */
 double hf_watch_violation(const hf_watch *watch, const hf_workspace *workspace);
 
 /* Forget what was beyond the linear model; or learn it from the shape that the step x has led to. */

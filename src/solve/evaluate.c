@@ -173,13 +173,6 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_works
         apply_gene(v, k, design_N[k], w);
 }
 
-static double violation_of_cap(const hf_evaluator *v, const hf_workspace *w)
-{
-    const hf_model *m = v->model;
-    return hf_limits_ratio_violation(m->n_boundary, m->boundary_cable, w->tension_N, v->boundary_ratio_cap,
-                                     HF_SLACK_RATIO * m->reference_N);
-}
-
 /* Measures the goals of a shape, feasible or not. */
 static void measure_goals(const hf_evaluator *v, hf_workspace *w, hf_form_result *r)
 {
@@ -191,12 +184,9 @@ hf_status hf_evaluate_judge(const hf_evaluator *v, hf_workspace *w, hf_form_resu
 {
     bool has_shape = r->status == HF_OK, breaks_cap = is_above_cap(v, r);
     r->violation = has_shape ? 0 : (double)NAN;
-    if (has_shape && v->limits) r->violation = hf_limits_violation(v->limits, v->model, w);
+    if (has_shape && (v->limits || breaks_cap)) r->violation = hf_limits_violation(v, w);
     if (has_shape && r->violation > 0) r->status = HF_OUT_OF_LIMITS;
-    if (breaks_cap) {
-        r->status = HF_RATIO_CAP;
-        r->violation += violation_of_cap(v, w);
-    }
+    if (breaks_cap) r->status = HF_RATIO_CAP;
     if (has_shape) measure_goals(v, w, r);
     if (!v->goals) r->merit = r->psi_m;
     if (v->goals && r->status == HF_OK && !isfinite(r->merit)) { /* a goal has no value there */

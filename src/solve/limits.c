@@ -1,7 +1,9 @@
+/* Contents: from the rows - violations - what a shape is at */
 #include "solve/limits.h"
 
 #include "base/arena.h"
 #include "base/elementary.h"
+#include "base/text.h"
 #include "net/cable_pick.h"
 #include <hifdm/metrics.h>
 
@@ -80,10 +82,21 @@ double hf_limits_ratio_violation(int n, const int *cable, const double *tension_
 #define LIMIT_ROUNDING 1e-9 /* a value so near to its bound, over its unit, is at it */
 
 /* How far a value is outside of the bounds, over what it is measured in. */
-static double outside(const hf_limit *row, double value, double unit)
+static double outside(double lower, double upper, double value, double unit)
 {
-    double beyond = fmax(row->lower - value, value - row->upper) / unit;
+    double beyond = fmax(lower - value, value - upper) / unit;
     return beyond > LIMIT_ROUNDING ? beyond : 0;
+}
+
+double hf_limits_tension_violation(const hf_model *m, double tension_N, double lower, double upper)
+{
+    return outside(lower, upper, tension_N, m->reference_N);
+}
+
+static double displacement_of(const hf_workspace *w, int i_attachment)
+{
+    const double *d = w->displacement_m + 3 * (ptrdiff_t)i_attachment;
+    return hf_norm(d[0], d[1], d[2]);
 }
 
 static double row_violation(const hf_limit *row, const hf_model *m, const hf_workspace *w)
@@ -92,24 +105,105 @@ static double row_violation(const hf_limit *row, const hf_model *m, const hf_wor
     switch (row->kind) {
     case HF_LIMIT_TENSION:
         for (int i = 0; i < row->n_cable; i++)
-            sum += outside(row, w->tension_N[row->cable[i]], m->reference_N);
+            sum += hf_limits_tension_violation(m, w->tension_N[row->cable[i]], row->lower, row->upper);
         break;
     case HF_LIMIT_RATIO:
         return hf_limits_ratio_violation(row->n_cable, row->cable, w->tension_N, row->upper, slack_N);
     case HF_LIMIT_DISPLACEMENT:
-        for (int i = 0; i < m->n_attachment; i++) {
-            const double *d = w->displacement_m + 3 * i;
-            sum += outside(row, hf_norm(d[0], d[1], d[2]), row->upper);
-        }
+        for (int i = 0; i < m->n_attachment; i++)
+            sum += outside(row->lower, row->upper, displacement_of(w, i), row->upper);
         break;
     }
     return sum;
 }
 
-double hf_limits_violation(const hf_limits *l, const hf_model *m, const hf_workspace *w)
+double hf_limits_violation(const hf_evaluator *v, const hf_workspace *w)
 {
-    double sum = 0;
-    for (int i = 0; i < l->n; i++)
-        sum += row_violation(&l->row[i], m, w);
+    const hf_model *m = v->model;
+    double sum = 0, cap = v->boundary_ratio_cap;
+    for (int i = 0; v->limits && i < v->limits->n; i++)
+        sum += row_violation(&v->limits->row[i], m, w);
+    if (isfinite(cap) && hf_metrics_set_ratio(m, w, m->n_boundary, m->boundary_cable) > cap)
+        sum += hf_limits_ratio_violation(m->n_boundary, m->boundary_cable, w->tension_N, cap,
+                                         HF_SLACK_RATIO * m->reference_N);
     return sum;
+}
+
+/* ---- what a shape is at ---- */
+
+/* How far a value is beyond its bound, over the bound; of a bound of 0 over `unit`. sign: 1 of an upper bound, -1 of a
+ * lower one. */
+static double beyond(double value, double bound, double sign, double unit)
+{
+    double size = fabs(bound) > 0 ? fabs(bound) : unit;
+    return isfinite(bound) ? sign * (value - bound) / size : -INFINITY;
+}
+
+/* Count a value at its bound, and keep that which is farthest out. */
+static void count(hf_limit_held *h, int cable, int attachment, double value, double bound, double excess)
+{
+    if (!(excess >= -HF_LIMITS_AT)) return;
+    if (h->n++ > 0 && !(excess > h->beyond)) return;
+    *h = (hf_limit_held){h->row, h->n, cable, -1, attachment, value, bound, excess};
+}
+
+static void count_ratio(const hf_model *m, const hf_workspace *w, int n, const int *cable, double cap, hf_limit_held *h)
+{
+    int low = -1, high = -1;
+    double ratio = hf_metrics_set_ratio(m, w, n, cable);
+    for (int i = 0; i < n; i++) {
+        if (low < 0 || w->tension_N[cable[i]] < w->tension_N[low]) low = cable[i];
+        if (high < 0 || w->tension_N[cable[i]] > w->tension_N[high]) high = cable[i];
+    }
+    count(h, high, -1, ratio, cap, beyond(ratio, cap, 1, 1));
+    h->other = low;
+}
+
+static void count_row(const hf_limit *row, const hf_model *m, const hf_workspace *w, double sign, hf_limit_held *h)
+{
+    double bound = sign > 0 ? row->upper : row->lower;
+    switch (row->kind) {
+    case HF_LIMIT_TENSION:
+        for (int i = 0; i < row->n_cable; i++) {
+            double tension = w->tension_N[row->cable[i]];
+            count(h, row->cable[i], -1, tension, bound, beyond(tension, bound, sign, m->reference_N));
+        }
+        break;
+    case HF_LIMIT_RATIO:
+        if (sign > 0) count_ratio(m, w, row->n_cable, row->cable, bound, h);
+        break;
+    case HF_LIMIT_DISPLACEMENT: /* none is below zero */
+        for (int i = 0; i < m->n_attachment && sign > 0; i++)
+            count(h, -1, i, displacement_of(w, i), bound, beyond(displacement_of(w, i), bound, 1, 1));
+        break;
+    }
+}
+
+int hf_limits_held(const hf_evaluator *v, const hf_workspace *w, hf_limit_held held[HF_LIMITS_HELD])
+{
+    const hf_model *m = v->model;
+    int n = 0;
+    hf_limit_held cap = {.row = HF_LIMITS_CAP};
+    if (isfinite(v->boundary_ratio_cap))
+        count_ratio(m, w, m->n_boundary, m->boundary_cable, v->boundary_ratio_cap, &cap);
+    if (cap.n > 0) held[n++] = cap;
+    for (int i = 0; v->limits && i < 2 * v->limits->n; i++) {
+        hf_limit_held one = {.row = i / 2};
+        count_row(&v->limits->row[i / 2], m, w, i % 2 ? 1 : -1, &one);
+        if (one.n > 0) held[n++] = one;
+    }
+    return n;
+}
+
+const char *hf_limits_name(const hf_scene *scene, const hf_model *m, const hf_limit_held *h, char *text, size_t size)
+{
+    if (h->attachment >= 0)
+        snprintf(text, size, "displacement of node %s",
+                 scene->node_id[m->node_of_row[m->attachment_row[h->attachment]]]);
+    else if (h->other >= 0)
+        snprintf(text, size, "ratio of cable %s to %s", scene->cable_id[h->cable], scene->cable_id[h->other]);
+    else
+        snprintf(text, size, "tension of cable %s", scene->cable_id[h->cable]);
+    hf_text_trim_utf8(text);
+    return text;
 }

@@ -120,6 +120,11 @@ void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_put_sets(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_sets(hf_hdf5 *io, hf_summary *summary);
 
+/* layout_held: what the shapes of optimize and polish are at, below /at_limit/STAGE: row, count, name, value, bound
+ * [n]. Nothing for a shape that is at no limit. */
+void hf_layout_put_held(hf_hdf5 *io, const hf_summary *summary);
+void hf_layout_get_held(hf_hdf5 *io, hf_summary *summary);
+
 /* layout_goals: /goals, the rows of optimize.goals with their values in the results of the stages; nothing without
  * rows. */
 void hf_layout_put_goals(hf_hdf5 *io, const hf_summary *summary);

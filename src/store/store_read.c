@@ -86,6 +86,7 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     get_status(&io, summary);
     hf_layout_get_surface(&io, summary);
     hf_layout_get_sets(&io, summary);
+    hf_layout_get_held(&io, summary);
     hf_layout_get_goals(&io, summary);
     if (io.status == HF_OK && ((int)summary->solver < 0 || summary->solver > HF_SOLVER_FIXED_POINT))
         hf_hdf5_damaged(&io, io.file, "/ga", "names a solver that there is not");

@@ -131,6 +131,24 @@ static void write_sets(const hf_set_tensions *s, hf_json *j)
     hf_json_close(j, '}');
 }
 
+/* The member "at_limits" of a stage: what its shape is at. */
+static void write_held(const hf_held_limits *h, hf_json *j)
+{
+    if (h->n == 0) return;
+    hf_json_line(j, "  ");
+    hf_json_open(j, "at_limits", '[');
+    for (int i = 0; i < h->n; i++) {
+        hf_json_open(j, NULL, '{');
+        hf_json_integer(j, "row", h->row[i]);
+        hf_json_text(j, "name", h->name[i]);
+        hf_json_number(j, "value", h->value[i]);
+        hf_json_number(j, "bound", h->bound[i]);
+        hf_json_integer(j, "count", h->count[i]);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
 /* The members "merit" and "goals" of a stage, with optimize.goals: value and weight of each. */
 static void write_goals(const hf_summary *s, const hf_form_result *r, hf_json *j)
 {
@@ -186,6 +204,7 @@ static void write_optimize(const hf_summary *s, hf_json *j)
     write_fields(ALL(ga_field), 1, LAST_PLACE, s, j);
     write_surface(s, 1, j);
     write_sets(&s->sets[1], j);
+    write_held(&s->held[1], j);
     write_goals(s, &s->best, j);
     hf_json_close(j, '}');
 }
@@ -197,6 +216,7 @@ static void write_polish(const hf_summary *s, hf_json *j)
     write_fields(ALL(polish_field), 1, LAST_PLACE, s, j);
     write_surface(s, 2, j);
     write_sets(&s->sets[2], j);
+    write_held(&s->held[2], j);
     write_goals(s, &s->polish, j);
     hf_json_close(j, '}');
 }

@@ -192,6 +192,52 @@ START_TEST(goals_of_damaged_files_are_not_shown)
 }
 END_TEST
 
+/* The edge wants 12 N, and may have 11; or its force densities may not rise so far. */
+#define PULLED "optimize.goals=[{goal: tension, set: edge, target: 12}]"
+#define EDGE(range) "optimize.variables=[{set: edge, vary: force_density, range: " range "}]"
+
+START_TEST(what_holds_a_design_has_names)
+{
+    const char *net = net_with(nodes, cables), *out = temp("r.h5");
+    HIFDM(0, "run", net, "-o", out, "--json", "--set", EDGE("50 %"), "--set", PULLED, "--set",
+          "optimize.limits=[{limit: tension, set: stay, bounds: [1, null]}, {limit: tension, set: edge, bounds: "
+          "[null, 11]}, {limit: ratio, set: edge, bounds: [1, 1.5]}]",
+          "--set", "optimize.method=lm");
+    const char *json = out_as("r.json");
+    EXPECT(json, out, "--", "[(h['row'], h['count'], h['bound']) for h in a['polish']['at_limits']] == [(1, 2, 11)]",
+           "a['polish']['at_limits'][0]['name'] in ('tension of cable c1', 'tension of cable c,2')",
+           "all(11 - 1e-7 < h['value'] <= 11 for h in a['polish']['at_limits'])",
+           "all([h[k] for h in a['polish']['at_limits']] == b['at_limit/polish'][k][:].tolist() for k in ('row', "
+           "'count', 'bound', 'value'))",
+           "texts(b['at_limit/polish/name']) == [h['name'] for h in a['polish']['at_limits']]");
+    HIFDM(0, "show", out);
+    OUT("                at optimize.limits.1: tension of cable c");
+    OUT(" and 1 more at 11\n");
+    HIFDM(0, "show", out, "--json");
+    EXPECT(json, out_as("s.json"), "--", "a['polish'] == b['polish']");
+    HIFDM(0, "run", net, "-o", out, "--restart", "--json", "--set", EDGE("1 %"), "--set", PULLED, "--set",
+          "optimize.generations=30");
+    EXPECT(out_as("g.json"), out, "--", "a['optimize']['at_lower_bound'] + a['optimize']['at_upper_bound'] == 2",
+           "'at_limits' not in a['optimize'] and 'at_limit' not in b",
+           "attribute(b['ga'], 'best_n_at_upper') == a['optimize']['at_upper_bound'] == 2");
+    HIFDM(0, "show", out);
+    OUT("                0 of 2 variables at their lower and 2 at their upper bounds\n");
+}
+END_TEST
+
+START_TEST(a_limit_that_nothing_keeps_has_a_name)
+{
+    static const char *const method[] = {"optimize.method=lm", "optimize.method=ga"};
+    static const char *const begin[] = {"has no feasible start: ", "have a shape beyond optimize.limits or "};
+    HIFDM(3, "run", net_with(nodes, cables), "-o", temp("r.h5"), "--set", EDGE("1 %"), "--set", PULLED, "--set",
+          "optimize.limits=[{limit: tension, set: edge, bounds: [5, 100]}, {limit: tension, set: stay, bounds: [50, "
+          "60]}]",
+          "--set", method[_i], "--set", "optimize.generations=3");
+    ERR(begin[_i]);
+    ERR(" tension of cable c3 is 9 beside 50 of optimize.limits.1");
+}
+END_TEST
+
 Suite *suite_cli_rows(void)
 {
     Suite *suite = suite_create("cli/rows");
@@ -206,5 +252,7 @@ Suite *suite_cli_rows(void)
     tcase_add_test(tests, derivatives_are_refused_where_there_are_none);
     tcase_add_test(tests, runs_tell_what_became_of_each_goal);
     tcase_add_loop_test(tests, goals_of_damaged_files_are_not_shown, 0, 3);
+    tcase_add_test(tests, what_holds_a_design_has_names);
+    tcase_add_loop_test(tests, a_limit_that_nothing_keeps_has_a_name, 0, 2);
     return suite;
 }

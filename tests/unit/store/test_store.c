@@ -161,6 +161,15 @@ START_TEST(surface_comes_back_bit_by_bit)
             written.sets[stage].least_N[k] = rng_uniform(&rng, -1, 2);
             written.sets[stage].largest_N[k] = rng_uniform(&rng, 1, 2);
         }
+        written.held[stage].n = _i * 4 % (HF_SUMMARY_HELD + 1);
+        for (int k = 0; k < written.held[stage].n; k++) {
+            hf_held_limits *h = &written.held[stage];
+            snprintf(h->name[k], HF_HELD_NAME_SIZE, "tension of cable %d%.*s", k, 57 * (k % 2), letters);
+            h->row[k] = k / 2 - 1;
+            h->count[k] = rng_int(&rng, 1, 100);
+            h->value[k] = rng_uniform(&rng, -1, 2);
+            h->bound[k] = rng_uniform(&rng, 1, 2);
+        }
         s->fit.iterations = rng_int(&rng, 0, 100);
         s->fit.converged = stage == 0;
         for (size_t k = 0; (char *)(value + k) < (char *)&s->fit.iterations; k++)
@@ -176,6 +185,7 @@ START_TEST(surface_comes_back_bit_by_bit)
     ck_assert_mem_eq(&read.surface, &written.surface, sizeof read.surface);
     ck_assert_mem_eq(read.measures, written.measures, sizeof read.measures);
     ck_assert_mem_eq(read.sets, written.sets, sizeof read.sets);
+    ck_assert_mem_eq(read.held, written.held, sizeof read.held);
     close_net(&net);
 }
 END_TEST

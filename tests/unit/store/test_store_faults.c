@@ -156,6 +156,11 @@ END_TEST
     "g = f.create_group('set_tension/form'); t = h5py.string_dtype('utf-8', 64); "                                     \
     "g['name'] = np.array([" names "], t); g['least_N'] = g['largest_N'] = g['ratio'] = np.ones(2)"
 
+/* A group of one limit. */
+#define AT_LIMIT(row, name)                                                                                            \
+    "g = f.create_group('at_limit/polish'); g['name'] = np.array([" name "], h5py.string_dtype('utf-8', 160)); "       \
+    "g['row'] = np.array([" row "], 'i4'); g['count'] = np.array([1], 'i4'); g['value'] = g['bound'] = np.ones(1)"
+
 /* What Python does to a good file; how many of the four ways of reading must refuse it, and a word of their message. */
 static const struct {
     const char *deed;
@@ -203,6 +208,10 @@ static const struct {
     {SET_TENSION("b'edge', b'edge'"), 1, "/set_tension/form/name does not name sets of cables"},
     {SET_TENSION("b'edge', b'\\x1b[1m'"), 1, "/set_tension/form/name does not name sets of cables"},
     {SET_TENSION("b'edge'"), 1, "other dimensions"},
+    {AT_LIMIT("0", "b'tension of cable c'"), 0, ""},
+    {AT_LIMIT("16", "b'tension of cable c'"), 1, "/at_limit/polish/name does not name limits"},
+    {AT_LIMIT("0", "b''"), 1, "/at_limit/polish/name does not name limits"},
+    {AT_LIMIT("0", "b'x'") "; del g['bound']; g['bound'] = np.ones(34)", 1, "empty or too large"},
     {SET_TENSION("b'edge', b'ends'") "; del g['ratio']; g['ratio'] = np.ones(17)", 1, "empty or too large"},
 };
 
