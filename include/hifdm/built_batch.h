@@ -28,7 +28,8 @@ typedef struct {
 
 /* Make sample i: change the nominal values in cut_m [n_cable], EA_N [n_cable], and the zeros in support_move_m
  * [3][n_node] by row, which mean what they mean in hf_built_net. EA_N and support_move_m are NULL when they do not
- * vary. Called in any thread, for several samples at a time: what it reads must be constant. */
+ * vary. Called in any thread, for several samples at a time, and more than once for some: what it writes depends on i
+ * alone. */
 typedef void hf_built_sample(void *context, long i, double *cut_m, double *EA_N, double *support_move_m);
 
 /* Take the shape and the result of sample i. Called in any thread and in any order, for several samples at a time, but

@@ -2,6 +2,7 @@
 #include <hifdm/built_batch.h>
 
 #include "base/arena.h"
+#include "built/near.h"
 #include "linalg/band.h"
 #include "search/parallel.h"
 
@@ -11,35 +12,53 @@
 
 /* ---- what one thread works with ---- */
 
+/* Each array has a part for each lane. */
 typedef struct {
     hf_workspace work;
-    double *cut_m, *EA_N, *support_move_m; /* of the sample */
+    hf_near_lanes near;
+    double *cut_m, *EA_N;   /* [HF_LANES][n_cable] of the samples in the lanes */
+    double *support_move_m; /* [HF_LANES][3][n_node] */
     void *block;
 } batch_room;
 
 struct hf_built_batch {
     const hf_built *built;
     int n_thread;
+    bool has_lanes; /* false: the nominal net has no matrix to share */
+    hf_near near;
     batch_room *room; /* [n_thread] each is made by the first thread that needs it; the first one with the batch */
 };
 
 static void lay_out_room(hf_arena *arena, const hf_model *m, batch_room *room)
 {
-    room->cut_m = hf_arena_take(arena, (size_t)m->n_cable, sizeof(double));
-    room->EA_N = hf_arena_take(arena, (size_t)m->n_cable, sizeof(double));
-    room->support_move_m = hf_arena_take(arena, 3 * (size_t)m->n_node, sizeof(double));
+    room->cut_m = hf_arena_take(arena, (size_t)m->n_cable * HF_LANES, sizeof(double));
+    room->EA_N = hf_arena_take(arena, (size_t)m->n_cable * HF_LANES, sizeof(double));
+    room->support_move_m = hf_arena_take(arena, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
 }
 
 /* Returns HF_OK, also when the room has been made before, or HF_NO_MEMORY. Only one thread at a time has the number of
  * a room, so nothing is locked. */
-static hf_status make_room(const hf_built *b, batch_room *room)
+static hf_status make_room(const hf_built_batch *batch, batch_room *room)
 {
+    const hf_model *m = &batch->built->model;
     hf_arena arena = {0};
     if (room->block) return HF_OK;
-    if (!room->work.block && hf_workspace_create(&b->model, &room->work) != HF_OK) return HF_NO_MEMORY;
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_room(&arena, &b->model, room)));
+    if (!room->work.block && hf_workspace_create(m, &room->work) != HF_OK) return HF_NO_MEMORY;
+    if (batch->has_lanes && !room->near.block && hf_near_lanes_create(&batch->near, &room->near) != HF_OK) {
+        hf_near_lanes_free(&room->near);
+        return HF_NO_MEMORY;
+    }
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_room(&arena, m, room)));
     room->block = arena.block;
     return HF_OK;
+}
+
+static void free_room(batch_room *room)
+{
+    hf_arena own = {.block = room->block};
+    hf_workspace_free(&room->work);
+    hf_near_lanes_free(&room->near);
+    hf_arena_free(&own);
 }
 
 /* ---- the batch ---- */
@@ -50,15 +69,25 @@ static void lay_out(hf_arena *arena, int n_thread, hf_built_batch **batch, batch
     *room = hf_arena_take(arena, (size_t)n_thread, sizeof **room);
 }
 
+/* The first room, and the matrix, which is factored in its workspace. */
+static hf_status share(hf_built_batch *batch)
+{
+    HF_TRY(hf_workspace_create(&batch->built->model, &batch->room[0].work));
+    hf_status status = hf_near_create(batch->built, &batch->room[0].work, &batch->near);
+    if (status == HF_NO_MEMORY) return status;
+    batch->has_lanes = status == HF_OK;
+    return make_room(batch, &batch->room[0]);
+}
+
 hf_status hf_built_batch_create(const hf_built *built, int n_thread, hf_built_batch **batch)
 {
     hf_arena arena = {0};
     batch_room *room = NULL;
     if (n_thread <= 0) n_thread = hf_parallel_cores();
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, n_thread, batch, &room)));
-    **batch = (hf_built_batch){built, n_thread, room};
+    **batch = (hf_built_batch){.built = built, .n_thread = n_thread, .room = room};
     hf_band_single_threaded();
-    if (make_room(built, &room[0]) == HF_OK) return HF_OK;
+    if (share(*batch) == HF_OK) return HF_OK;
     hf_built_batch_free(*batch);
     *batch = NULL;
     return HF_NO_MEMORY;
@@ -68,11 +97,9 @@ void hf_built_batch_free(hf_built_batch *batch)
 {
     hf_arena arena = {.block = (unsigned char *)batch}; /* the batch is the first thing in its block */
     if (!batch) return;
-    for (int i = 0; i < batch->n_thread; i++) {
-        hf_arena own = {.block = batch->room[i].block};
-        hf_workspace_free(&batch->room[i].work);
-        hf_arena_free(&own);
-    }
+    for (int i = 0; i < batch->n_thread; i++)
+        free_room(&batch->room[i]);
+    hf_near_free(&batch->near);
     hf_arena_free(&arena);
 }
 
@@ -94,41 +121,103 @@ typedef struct {
     void *context;
 } batch_job;
 
-static hf_built_net make_sample(const batch_job *j, const batch_room *room, long i)
+/* The work of one thread. */
+typedef struct {
+    const batch_job *job;
+    batch_room *room;
+    int place;
+    hf_built_net net[HF_LANES]; /* in the lanes, or in work by itself */
+} batch_work;
+
+/* Make sample i in a lane's part of the arrays. */
+static void make_sample(batch_work *work, int lane, int i)
 {
+    const batch_job *j = work->job;
     const hf_built *b = j->batch->built;
-    size_t bytes = (size_t)b->scene.n_cable * sizeof(double);
+    size_t n = (size_t)b->model.n_cable, places = 3 * (size_t)b->model.n_node;
     bool has_EA = j->varies & HF_BUILT_VARIES_EA, has_supports = j->varies & HF_BUILT_VARIES_SUPPORTS;
-    hf_built_net net = {room->cut_m, has_EA ? room->EA_N : NULL, has_supports ? room->support_move_m : NULL, NULL};
-    memcpy(room->cut_m, b->model.target, bytes);
-    if (has_EA) memcpy(room->EA_N, b->model.EA_N, bytes);
-    if (has_supports) memset(room->support_move_m, 0, 3 * (size_t)b->model.n_node * sizeof(double));
-    j->make(j->context, i, room->cut_m, has_EA ? room->EA_N : NULL, has_supports ? room->support_move_m : NULL);
-    return net;
+    double *cut_m = work->room->cut_m + (size_t)lane * n, *EA_N = work->room->EA_N + (size_t)lane * n;
+    double *move_m = has_supports ? work->room->support_move_m + (size_t)lane * places : NULL;
+    memcpy(cut_m, b->model.target, n * sizeof(double));
+    memcpy(EA_N, b->model.EA_N, n * sizeof(double));
+    if (has_supports) memset(move_m, 0, places * sizeof(double));
+    j->make(j->context, j->first + i, cut_m, has_EA ? EA_N : NULL, move_m);
+    work->net[lane] = (hf_built_net){cut_m, EA_N, move_m, NULL};
 }
 
-static void solve_alone(const batch_job *j, batch_room *room, int place, long i)
+/* The workspace holds the shape. */
+static void give(const batch_work *work, int i, const hf_form_result *r)
 {
-    const hf_built *b = j->batch->built;
-    hf_workspace *w = &room->work;
-    hf_form_result r;
-    hf_built_net net = make_sample(j, room, i);
-    hf_built_solve(b, &net, w, &r);
-    if (r.n_loose == 0) memset(w->loose, 0, (size_t)b->model.n_node);
+    const batch_job *j = work->job;
+    const hf_workspace *w = &work->room->work;
     hf_built_shape shape = {w->position_m, w->tension_N, w->loose};
-    j->take(j->context, i, place, &shape, &r);
+    if (r->n_loose == 0) memset(w->loose, 0, (size_t)j->batch->built->model.n_node);
+    j->take(j->context, j->first + i, work->place, &shape, r);
+}
+
+static void solve_alone(const batch_work *work, int lane, int i)
+{
+    const hf_built_batch *batch = work->job->batch;
+    hf_workspace *w = &work->room->work;
+    hf_form_result r;
+    if (!hf_near_find(&batch->near, &work->net[lane], w, &r)) hf_built_solve(batch->built, &work->net[lane], w, &r);
+    give(work, i, &r);
 }
 
 /* ---- the run ---- */
 
+static void load(void *solver, int lane, int i)
+{
+    batch_work *work = solver;
+    make_sample(work, lane, i);
+    hf_near_load(&work->job->batch->near, &work->room->near, lane, &work->net[lane]);
+}
+
+static void look(void *solver)
+{
+    batch_work *work = solver;
+    hf_near_look(&work->job->batch->near, &work->room->near);
+}
+
+static bool settle(void *solver, int lane, int i)
+{
+    batch_work *work = solver;
+    batch_room *room = work->room;
+    hf_form_result r;
+    switch (hf_near_settle(&work->job->batch->near, &room->near, lane, &work->net[lane], &room->work, &r)) {
+    case HF_NEAR_GOES_ON:
+        return false;
+    case HF_NEAR_FOUND:
+        give(work, i, &r);
+        return true;
+    case HF_NEAR_LOST:
+        break;
+    }
+    solve_alone(work, lane, i);
+    return true;
+}
+
+static void step(void *solver)
+{
+    batch_work *work = solver;
+    hf_near_step(&work->job->batch->near, &work->room->near);
+}
+
 /* The work of one thread. When there is no memory for its room, it returns and the other threads do its work. */
 static void work_on_job(void *context, int place)
 {
+    static const hf_lane_solver in_lanes = {load, look, settle, step};
     batch_job *j = context;
-    batch_room *room = &j->batch->room[place];
-    if (hf_parallel_is_empty(&j->queue) || make_room(j->batch->built, room) != HF_OK) return;
-    for (int i = hf_parallel_take(&j->queue); i >= 0; i = hf_parallel_take(&j->queue))
-        solve_alone(j, room, place, j->first + i);
+    batch_work work = {.job = j, .room = &j->batch->room[place], .place = place};
+    if (hf_parallel_is_empty(&j->queue) || make_room(j->batch, work.room) != HF_OK) return;
+    if (j->batch->has_lanes) {
+        hf_lane_schedule_run(&in_lanes, &work, hf_parallel_take, &j->queue);
+        return;
+    }
+    for (int i = hf_parallel_take(&j->queue); i >= 0; i = hf_parallel_take(&j->queue)) {
+        make_sample(&work, 0, i);
+        solve_alone(&work, 0, i);
+    }
 }
 
 void hf_built_batch_run(hf_built_batch *batch, unsigned varies, long first, long n, hf_built_sample *make,

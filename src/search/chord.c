@@ -235,13 +235,10 @@ static void list_incidences(const hf_model *m, hf_chord *c)
     start[0] = 0;
 }
 
-hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_workspace *w, hf_chord *chord)
+hf_status hf_chord_create_here(const hf_evaluator *v, hf_workspace *w, hf_chord *chord)
 {
     const hf_model *m = v->model;
-    hf_form_result base;
     *chord = dimensions(v);
-    hf_status status = hf_evaluate(v, base_N, w, &base);
-    if (!hf_status_has_shape(status)) return status; /* above the cap it has a shape, too */
     HF_TRY(hf_newton_matrix_factor(m, w, NULL));
     HF_TRY(allocate(chord));
     hf_chord_pack(w, chord);
@@ -249,6 +246,15 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_worksp
     list_cables(v, chord);
     list_incidences(m, chord);
     return chord->n_pull ? pack_truss(m, w, chord) : HF_OK;
+}
+
+hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_workspace *w, hf_chord *chord)
+{
+    hf_form_result base;
+    *chord = (hf_chord){0};
+    hf_status status = hf_evaluate(v, base_N, w, &base);
+    if (!hf_status_has_shape(status)) return status; /* above the cap it has a shape, too */
+    return hf_chord_create_here(v, w, chord);
 }
 
 void hf_chord_free(hf_chord *chord)

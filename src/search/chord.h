@@ -19,6 +19,10 @@ bool hf_chord_applies(const hf_evaluator *evaluator);
  * shape or no positive definite matrix. workspace is scratch. Call hf_chord_free in any case. */
 hf_status hf_chord_create(const hf_evaluator *evaluator, const double *base_N, hf_workspace *workspace,
                           hf_chord *chord);
+
+/* The same at the shape that the workspace holds, of any laws: without genes, whose force densities the caller writes
+ * into the lanes, row n_gene + e of `gene` for cable e. */
+hf_status hf_chord_create_here(const hf_evaluator *evaluator, hf_workspace *workspace, hf_chord *chord);
 void hf_chord_free(hf_chord *chord);
 
 /* Returns the bytes that the shared matrix takes for this evaluator; *lanes_bytes are those of one thread's lanes. */

@@ -1,0 +1,248 @@
+/* Contents: what all threads share - lanes - the shape in a workspace - what a lane comes to */
+#include "built/near.h"
+
+#include "base/arena.h"
+#include "built/pull_kernel.h"
+#include "solve/coupling.h"
+#include "solve/joint.h"
+#include "solve/loose.h"
+#include <hifdm/metrics.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* These decide how long a lane goes on before its net is solved by Newton's method, which reaches the same shape within
+ * the tolerance in 4 to 8 steps, each of which takes as long as a dozen in the lanes. */
+#define STEPS_MAX 60
+#define PATIENCE 2      /* steps before CONTRACTION is asked for */
+#define CONTRACTION 0.7 /* the residual must fall at least by this factor per step */
+
+/* ---- what all threads share ---- */
+
+static hf_pull_find *choose_pulls(void)
+{
+    switch (hf_lane_best_isa()) {
+    case HF_LANE_AVX512:
+        return hf_pull_find_avx512;
+    case HF_LANE_AVX2:
+        return hf_pull_find_avx2;
+    default:
+        return hf_pull_find_portable;
+    }
+}
+
+void hf_near_prepare(const hf_near *near, const hf_built_net *net, hf_workspace *w)
+{
+    const hf_built *b = near->built;
+    const hf_model *m = &near->model;
+    size_t cables = (size_t)m->n_cable * sizeof(double), places = 3 * (size_t)m->n_node * sizeof(double);
+    hf_form_prepare(m, w);
+    if (net->cut_m) memcpy(w->target, net->cut_m, cables);
+    if (net->EA_N) memcpy(w->EA_N, net->EA_N, cables);
+    if (net->support_move_m) memcpy(w->support_move_m, net->support_move_m, places);
+    memcpy(w->position_m, b->place_m, places);
+    memcpy(w->tension_N, b->tension_N, cables);
+    w->n_moving = m->n_free + m->n_attachment;
+    for (int c = 0; c < 3; c++)
+        for (int at = c * m->n_node + m->n_free; at < (c + 1) * m->n_node; at++)
+            w->position_m[at] += w->support_move_m[at];
+    hf_joint_set_displacement(m, w);
+}
+
+hf_status hf_near_create(const hf_built *b, hf_workspace *w, hf_near *near)
+{
+    hf_arena arena = {0};
+    *near = (hf_near){.built = b, .model = b->model};
+    near->model.n_gene = near->model.n_leader = near->model.n_gene_group = 0;
+    near->model.gene = NULL;
+    near->evaluator = (hf_evaluator){.model = &near->model, .form = &b->form, .rule = HF_RULE_TENSION};
+    hf_near_prepare(near, &(hf_built_net){0}, w);
+    w->n_moving = b->model.n_free;
+    HF_TRY(hf_chord_create_here(&near->evaluator, w, &near->chord));
+    if (b->model.n_attachment) return HF_OK;
+    size_t n = HF_NEWTON_DOFS(&b->model) * (3 * (size_t)b->model.half_bandwidth + 3);
+    HF_TRY(HF_ARENA_MAKE(&arena, near->band = hf_arena_take(&arena, n, sizeof *near->band)));
+    memcpy(near->band, w->newton_band, n * sizeof *near->band);
+    return HF_OK;
+}
+
+void hf_near_free(hf_near *near)
+{
+    hf_arena arena = {.block = (unsigned char *)near->band};
+    hf_chord_free(&near->chord);
+    hf_arena_free(&arena);
+}
+
+/* ---- lanes ---- */
+
+static void lay_out(hf_arena *arena, const hf_model *m, hf_near_lanes *l)
+{
+    size_t n = (size_t)m->n_cable * HF_LANES;
+    l->cut_m = hf_arena_take(arena, n, sizeof(double));
+    l->stiffness_N_per_m = hf_arena_take(arena, n, sizeof(double));
+    l->tension_N = hf_arena_take(arena, n, sizeof(double));
+}
+
+hf_status hf_near_lanes_create(const hf_near *near, hf_near_lanes *l)
+{
+    hf_arena arena = {0};
+    *l = (hf_near_lanes){0};
+    HF_TRY(hf_chord_lanes_create(&near->chord, &l->lanes));
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &near->model, l)));
+    l->block = arena.block;
+    return HF_OK;
+}
+
+void hf_near_lanes_free(hf_near_lanes *l)
+{
+    hf_chord_lanes_free(&l->lanes);
+    free(l->block);
+    l->block = NULL;
+}
+
+void hf_near_load(const hf_near *near, hf_near_lanes *l, int lane, const hf_built_net *net)
+{
+    const hf_model *m = &near->model;
+    const hf_chord *c = &near->chord;
+    for (int at = 0; at < 3 * m->n_node; at++)
+        l->lanes.x_m[at * HF_LANES + lane] = near->built->place_m[at];
+    for (int d = 0; d < 3 && net->support_move_m; d++)
+        for (int at = d * m->n_node + m->n_free; at < (d + 1) * m->n_node; at++)
+            l->lanes.x_m[at * HF_LANES + lane] += net->support_move_m[at];
+    for (int e = 0; e < m->n_cable; e++) {
+        l->cut_m[e * HF_LANES + lane] = net->cut_m[e];
+        l->stiffness_N_per_m[e * HF_LANES + lane] = net->EA_N[e] / net->cut_m[e];
+    }
+    for (int i = 0; i < c->n_pull; i++)
+        l->lanes.displacement_m[i * HF_LANES + lane] = c->base_displacement_m[i];
+    l->steps[lane] = 0;
+    l->excess_before_N[lane] = INFINITY;
+}
+
+void hf_near_look(const hf_near *near, hf_near_lanes *l)
+{
+    const hf_model *m = &near->model;
+    const hf_chord *c = &near->chord;
+    const hf_form_settings *form = &near->built->form;
+    double squared[HF_LANES], gap_squared[HF_LANES] = {0};
+    double scale = c->n_pull ? form->residual_tolerance * m->reference_N / form->coupling.tof_m : 0;
+    choose_pulls()(m, l->lanes.x_m, l->cut_m, l->stiffness_N_per_m, l->tension_N, l->lanes.gene);
+    c->kernels->forces(c, &l->lanes, squared);
+    if (c->n_pull) c->kernels->couple(c, &l->lanes, gap_squared);
+    l->is_measured = false;
+    for (int lane = 0; lane < HF_LANES; lane++) {
+        l->residual_N[lane] = m->reference_N * sqrt(squared[lane]);
+        l->gap_m[lane] = sqrt(gap_squared[lane]);
+        double gap_N = scale * l->gap_m[lane];
+        l->excess_N[lane] = gap_N <= l->residual_N[lane] ? l->residual_N[lane] : gap_N; /* keeps a NaN of the gap */
+    }
+}
+
+void hf_near_step(const hf_near *near, hf_near_lanes *l)
+{
+    const hf_chord_kernels *k = near->chord.kernels;
+    if (near->chord.n_pull) k->move(&near->chord, &l->lanes);
+    k->solve(&near->chord, &l->lanes);
+    k->step(&near->chord, &l->lanes);
+}
+
+/* ---- the shape in a workspace ---- */
+
+/* Measures it. False when it is no equilibrium within the tolerances, or nodes are loose. */
+static bool accept(const hf_near *near, int n_step, hf_workspace *w, hf_form_result *r)
+{
+    const hf_model *m = &near->model;
+    const hf_form_settings *form = &near->built->form;
+    if (hf_form_measure(m, form, w, r) != HF_OK) return false;
+    r->iterations = n_step;
+    if (m->n_attachment) {
+        hf_joint_set_displacement(m, w);
+        double gap_m = hf_coupling_measure(m, w, r);
+        if (!(gap_m <= form->coupling.tof_m)) return false;
+        hf_coupling_accept(m, w, n_step, gap_m, r);
+    }
+    if (r->n_slack > 0) hf_loose_settle(m, form, w, r);
+    return r->n_loose == 0;
+}
+
+bool hf_near_find(const hf_near *near, const hf_built_net *net, hf_workspace *w, hf_form_result *r)
+{
+    int n_step = 0;
+    hf_near_prepare(near, net, w);
+    return hf_near_newton(near, w, &n_step) && accept(near, n_step, w, r);
+}
+
+/* ---- what a lane comes to ---- */
+
+static void unload(const hf_near *near, const hf_near_lanes *l, int lane, hf_workspace *w)
+{
+    const hf_model *m = &near->model;
+    for (int i = 0; i < 3 * m->n_node; i++)
+        w->position_m[i] = l->lanes.x_m[i * HF_LANES + lane];
+    for (int e = 0; e < m->n_cable; e++)
+        w->tension_N[e] = l->tension_N[e * HF_LANES + lane];
+    for (int i = 0; i < near->chord.n_pull; i++)
+        w->displacement_m[i] = l->lanes.displacement_m[i * HF_LANES + lane];
+}
+
+static double lowest_N(const hf_near_lanes *l, int lane)
+{
+    return fmin(l->now.lowest_N[HF_GROUP_INNER][lane], l->now.lowest_N[HF_GROUP_BOUNDARY][lane]);
+}
+
+static double ratio_of(const hf_near_lanes *l, hf_group group, int lane)
+{
+    double high_N = l->now.highest_N[group][lane];
+    return high_N > 0 ? high_N / l->now.lowest_N[group][lane] : (double)NAN;
+}
+
+/* Of a lane without slack cables. Each cable has the tension of its law, so there is no error of lengths. */
+static void report(const hf_near *near, const hf_near_lanes *l, int lane, hf_workspace *w, hf_form_result *r)
+{
+    const hf_model *m = &near->model;
+    *r = (hf_form_result){.status = HF_OK, .stop_reason = HF_STOPPED_RESIDUAL, .culprit = -1};
+    hf_result_blank(r);
+    r->psi_m = m->n_inner_node ? l->now.psi_m[lane] : (double)NAN;
+    r->residual_N = l->residual_N[lane];
+    r->tension_error = r->length_error = 0;
+    r->inner_tension_ratio = ratio_of(l, HF_GROUP_INNER, lane);
+    r->boundary_tension_ratio = ratio_of(l, HF_GROUP_BOUNDARY, lane);
+    r->shortest_length_ratio = l->now.shortest_other[lane];
+    r->iterations = l->steps[lane];
+    memset(w->loose, 0, (size_t)m->n_node);
+    if (m->n_attachment) hf_coupling_accept(m, w, l->steps[lane], l->gap_m[lane], r);
+}
+
+/* A lane that has converged, with slack cables: the scalar code counts them and looks for loose nodes. */
+static bool accept_slack(const hf_near *near, const hf_near_lanes *l, int lane, const hf_built_net *net,
+                         hf_workspace *w, hf_form_result *r)
+{
+    const hf_model *m = &near->model;
+    hf_near_prepare(near, net, w);
+    unload(near, l, lane, w);
+    for (int e = 0; e < m->n_cable; e++)
+        w->q_N_per_m[e] = l->lanes.gene[e * HF_LANES + lane];
+    return accept(near, l->steps[lane], w, r);
+}
+
+hf_near_verdict hf_near_settle(const hf_near *near, hf_near_lanes *l, int lane, const hf_built_net *net,
+                               hf_workspace *w, hf_form_result *r)
+{
+    const hf_model *m = &near->model;
+    double excess_N = l->excess_N[lane];
+    if (excess_N <= near->built->form.residual_tolerance * m->reference_N) {
+        if (!l->is_measured) near->chord.kernels->measure(&near->chord, &l->lanes, &l->now);
+        l->is_measured = true;
+        if (!(lowest_N(l, lane) >= HF_SLACK_RATIO * m->reference_N))
+            return accept_slack(near, l, lane, net, w, r) ? HF_NEAR_FOUND : HF_NEAR_LOST;
+        unload(near, l, lane, w);
+        report(near, l, lane, w, r);
+        return HF_NEAR_FOUND;
+    }
+    bool contracts = l->steps[lane] < PATIENCE || excess_N < CONTRACTION * l->excess_before_N[lane];
+    if (!contracts || !isfinite(excess_N) || l->steps[lane] >= STEPS_MAX) return HF_NEAR_LOST;
+    l->excess_before_N[lane] = excess_N;
+    l->steps[lane]++;
+    return HF_NEAR_GOES_ON;
+}

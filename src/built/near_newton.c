@@ -1,0 +1,137 @@
+/* Newton's method for one elastic net, from the nominal shape (METHOD section 12). In the matrix a cable has the
+ * tension that the last step foretold, not that of its length, in which the sag of a step would count as stretch; and
+ * it stays taut until a step has foretold that it is slack. */
+#include "built/near.h"
+
+#include "linalg/band.h"
+#include "solve/joint.h"
+
+#include <math.h>
+#include <string.h>
+
+#define STEPS_MAX 40
+/* A step moves no node farther than this, over the mean length of the cables. */
+#define REACH 0.04
+/* The least tension in the matrix: so much of the largest force out of balance, and of the reference tension. */
+#define FLOOR_OF_RESIDUAL 0.1
+#define FLOOR_MAX 0.01
+/* From this residual on, over the reference tension, each step must halve it: what does not is rounding. */
+#define END_GAME 1e-6
+
+/* Stiffness in the matrix of the cables, which hf_near_newton has put into newton_trial_tension_N (along, N/m) and
+ * q_N_per_m (across). */
+static void block_of(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
+{
+    double u[3];
+    hf_newton_matrix_direction(m, w->position_m, e, u);
+    hf_newton_matrix_spring(w->newton_trial_tension_N[e], w->q_N_per_m[e], u, block);
+}
+
+/* Is the cable taut in the matrix? */
+static bool holds(const hf_workspace *w, int e, double over_m)
+{
+    return w->tension_N[e] > 0 || over_m > 0;
+}
+
+/* Sets newton_force_N to the forces out of balance with the tensions of the law, and newton_step to those in which
+ * cables that hold may push. Returns the largest of the first, N. */
+static double measure(const hf_model *m, hf_workspace *w)
+{
+    double u[3], largest = 0;
+    hf_newton_matrix_set_loads(m, w, w->newton_force_N);
+    memcpy(w->newton_step, w->newton_force_N, 3 * (size_t)w->n_moving * sizeof(double));
+    for (int e = 0; e < m->n_cable; e++) {
+        double length = hf_newton_matrix_direction(m, w->position_m, e, u);
+        double over_m = length - w->target[e];
+        w->length_m[e] = length;
+        if (!holds(w, e, over_m)) continue;
+        double tension = w->EA_N[e] / w->target[e] * over_m;
+        double pull[3] = {tension * u[0], tension * u[1], tension * u[2]};
+        hf_newton_matrix_add_pull(m, w, e, pull, w->newton_step);
+        if (tension > 0) hf_newton_matrix_add_pull(m, w, e, pull, w->newton_force_N);
+    }
+    for (int i = 0; i < m->n_free; i++) {
+        const double *f = w->newton_force_N + 3 * i;
+        double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+        if (!(square <= largest)) largest = square; /* keeps a NaN */
+    }
+    return sqrt(largest);
+}
+
+static void set_stiffness(const hf_model *m, hf_workspace *w, double floor_N)
+{
+    for (int e = 0; e < m->n_cable; e++) {
+        bool taut = holds(w, e, w->length_m[e] - w->target[e]);
+        w->newton_trial_tension_N[e] = taut ? w->EA_N[e] / w->target[e] : 0;
+        w->q_N_per_m[e] = fmax(w->tension_N[e], floor_N) / w->length_m[e];
+    }
+}
+
+static double largest_move_m(const hf_workspace *w)
+{
+    double largest = 0;
+    for (int i = 0; i < w->n_moving; i++) {
+        const double *d = w->newton_step + 3 * i;
+        largest = fmax(largest, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    }
+    return sqrt(largest);
+}
+
+/* Adds `part` of the step to positions, and foretells the tensions. */
+static void move(const hf_model *m, hf_workspace *w, double part)
+{
+    const double *step = w->newton_step;
+    double u[3];
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        double over_m = hf_newton_matrix_direction(m, w->position_m, e, u) - w->target[e], longer_m = 0;
+        for (int c = 0; c < 3; c++) {
+            if (a < w->n_moving) longer_m -= u[c] * step[3 * a + c];
+            if (b < w->n_moving) longer_m += u[c] * step[3 * b + c];
+        }
+        bool taut = holds(w, e, over_m);
+        w->tension_N[e] = taut ? fmax(w->EA_N[e] / w->target[e] * (over_m + part * longer_m), 0) : 0;
+    }
+    for (int i = 0; i < w->n_moving; i++)
+        for (int c = 0; c < 3; c++)
+            w->position_m[c * m->n_node + i] += part * step[3 * i + c];
+}
+
+/* Turns newton_step into the step, the first one with the matrix of the nominal net. */
+static bool solve(const hf_near *near, int k, double floor_N, hf_workspace *w)
+{
+    const hf_model *m = &near->model;
+    if (k == 0 && near->band) {
+        int n = hf_newton_matrix_dofs(m);
+        hf_band_back_solve(n, 3 * m->half_bandwidth + 2, 1, near->band, w->newton_step, n);
+        return true;
+    }
+    set_stiffness(m, w, floor_N);
+    if (hf_joint_factor(m, w, block_of, NULL, NULL) != HF_OK) return false;
+    hf_joint_solve(m, w, block_of, w->newton_step);
+    return true;
+}
+
+bool hf_near_newton(const hf_near *near, hf_workspace *w, int *n_step)
+{
+    const hf_model *m = &near->model;
+    const hf_form_settings *form = &near->built->form;
+    double reach_m = REACH * hf_joint_mean_length_m(m), before_N = INFINITY;
+    for (int k = 0;; k++) {
+        double residual_N = measure(m, w), gap_m = hf_joint_gap_m(m, w, w->position_m, w->newton_force_N, NULL);
+        if (residual_N <= form->residual_tolerance * m->reference_N && gap_m <= form->coupling.tof_m) break;
+        bool ends = residual_N < END_GAME * m->reference_N && !(m->n_attachment) && !(residual_N < before_N / 2);
+        if (!isfinite(residual_N) || ends || k == STEPS_MAX) return false;
+        before_N = residual_N;
+        if (!solve(near, k, fmin(FLOOR_OF_RESIDUAL * residual_N, FLOOR_MAX * m->reference_N), w)) return false;
+        double move_m = largest_move_m(w);
+        move(m, w, move_m > reach_m ? reach_m / move_m : 1);
+        ++*n_step;
+    }
+    for (int e = 0; e < m->n_cable; e++) {
+        double over_m = w->length_m[e] - w->target[e];
+        w->tension_N[e] = over_m > 0 ? w->EA_N[e] / w->target[e] * over_m : 0;
+        w->q_N_per_m[e] = w->tension_N[e] / w->length_m[e];
+    }
+    return true;
+}

@@ -1,0 +1,33 @@
+/* The inner loop over cables of nets side by side. */
+#define HF_LANE_VECTORS
+#include "built/pull_kernel.h"
+
+#include <stddef.h>
+
+INLINE vec lanes_at(const double *array, ptrdiff_t row, int p)
+{
+    return *(const vec *)(const void *)(array + row * HF_LANES + p);
+}
+
+INLINE void set_lanes(double *array, ptrdiff_t row, int p, vec value)
+{
+    *(vec *)(void *)(array + row * HF_LANES + p) = value;
+}
+
+void HF_KERNEL(hf_pull_find)(const hf_model *m, const double *x_m, const double *cut_m, const double *stiffness_N_per_m,
+                             double *tension_N, double *q_N_per_m)
+{
+    for (int e = 0; e < m->n_cable; e++)
+        for (int p = 0; p < HF_LANES; p += WIDTH) {
+            vec d[3], none = splat(0);
+            foreach (c, 3) {
+                ptrdiff_t first = (ptrdiff_t)c * m->n_node;
+                d[c] = lanes_at(x_m, first + m->end_row[2 * e + 1], p) - lanes_at(x_m, first + m->end_row[2 * e], p);
+            }
+            vec length = root(norm_squared(d[0], d[1], d[2]));
+            vec over = length - lanes_at(cut_m, e, p);
+            vec tension = if_greater(over, none, lanes_at(stiffness_N_per_m, e, p) * over, none);
+            set_lanes(tension_N, e, p, tension);
+            set_lanes(q_N_per_m, e, p, if_greater(tension, none, tension / length, none));
+        }
+}
