@@ -6,29 +6,23 @@
  * Difference: a crossover moves an elite along the difference of two parents, as differential evolution does (Storn &
  * Price 1997), and a child takes the place of an individual that is no better (hf_population_survive).
  * Chain: intermediate recombination; whole generations are replaced, but for the elites.
- * Contents: state - the first generation - adaptive rates - selection - variation - the next generation */
+ * Contents: state - adaptive rates - selection - variation - the next generation */
 #include <hifdm/optimiser.h>
 
 #include "base/arena.h"
-#include "base/elementary.h"
-#include "base/random.h"
+#include "search/breeding.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Of the variation `difference`; measured on the nets of METHOD section 7, which says what others give. */
-#define STEP_MAX 2.0      /* a crossover moves by 0 to so many differences */
-#define SHARE_OCTAVES 2.3 /* 2^-SHARE_OCTAVES of the chains, or genes, to all of them are moved; log-uniform */
-#define BY_CHAIN 0.6      /* so many of the crossovers move whole chains, the others each gene for itself */
-#define SINGLES 10.0      /* genes that mutate alone are so many times as frequent as in the variation `chain` */
+static const hf_breeding_move crossover = {.step_max = 2.0, .share_octaves = 2.3, .by_chain = 0.6};
+#define SINGLES 10.0 /* genes that mutate alone are so many times as frequent as in the variation `chain` */
 /* Intermediate recombination, one draw per chain, reaches this far beyond the parents, so that the population's spread
  * does not shrink by recombination alone. The designs proposed depend on it; test_optimiser_ga passes with 0 and with
  * 0.75. */
 #define RECOMBINATION_REACH 0.25
-/* Mutation steps run from the whole range down to 2^-MUTATION_OCTAVES of it, all scales equally likely. The designs
- * proposed depend on it; test_optimiser_ga passes with 5 and with 48. */
-#define MUTATION_OCTAVES 16
 /* Even the worst individual keeps about this share of the best one's fitness. A test fails at 0.0133 and at 0.03. */
 #define FITNESS_FLOOR 0.02
 
@@ -36,15 +30,12 @@
 
 typedef struct {
     const hf_optimize_settings *settings; /* borrowed, as the model */
-    const hf_model *model;
-    const int *gene_leader; /* of the model; NULL when no genes are linked */
-    int n_leader;
+    hf_breeding breeding;
     /* What the children of a generation share, made before the first of them: */
     double *fitness; /* [n_individual] */
     double total_fitness, best_merit, mean_merit;
     int *elite;           /* [elites] the best, in order */
     unsigned char *taken; /* [n_individual] scratch */
-    double *draw;         /* [n_individual][n_gene_group] scratch of each child, as several are bred at a time */
 } breeder;
 
 /* The struct itself comes first, so that its address is that of the block, and free(state) frees all. */
@@ -52,7 +43,7 @@ static breeder *lay_out(hf_arena *a, breeder *g)
 {
     breeder *itself = hf_arena_take(a, 1, sizeof *itself);
     size_t n = (size_t)g->settings->population;
-    g->draw = hf_arena_take(a, n * (size_t)g->model->n_gene_group, sizeof(double));
+    g->breeding.draw = hf_arena_take(a, n * (size_t)g->breeding.model->n_gene_group, sizeof(double));
     g->fitness = hf_arena_take(a, n, sizeof(double));
     g->taken = hf_arena_take(a, n, 1);
     g->elite = hf_arena_take(a, (size_t)g->settings->elites, sizeof(int));
@@ -61,10 +52,8 @@ static breeder *lay_out(hf_arena *a, breeder *g)
 
 static hf_status create(const hf_optimize_settings *s, const hf_model *m, void **state)
 {
-    breeder g = {.settings = s, .model = m};
+    breeder g = {.settings = s, .breeding = {.model = m}};
     hf_arena arena = {0};
-    g.gene_leader = m->n_leader < m->n_gene ? m->gene_leader : NULL;
-    g.n_leader = g.gene_leader ? m->n_leader : m->n_gene;
     breeder *itself;
     HF_TRY(HF_ARENA_MAKE(&arena, itself = lay_out(&arena, &g)));
     *itself = g;
@@ -72,41 +61,10 @@ static hf_status create(const hf_optimize_settings *s, const hf_model *m, void *
     return HF_OK;
 }
 
-/* Does the gene follow no other gene? */
-static bool leads(const breeder *g, int k)
-{
-    return !g->gene_leader || g->gene_leader[k] == k;
-}
-
-/* A number for each chain of individual i. */
-static double *draws_of(const breeder *g, int i)
-{
-    return g->draw + (size_t)i * (size_t)g->model->n_gene_group;
-}
-
-/* ---- the first generation ---- */
-
-/* Eq. 13 around the base, with one random number per chain (see mutate). Individual 0 is the base itself, so that the
- * result is never worse than the base. */
 static void first(void *state, hf_population *p)
 {
     const breeder *g = state;
-    const hf_optimize_settings *s = g->settings;
-    for (int i = 0; i < p->n_individual; i++) {
-        double *design_N = p->design_N + (size_t)i * (size_t)p->n_gene;
-        double *draw = draws_of(g, i);
-        hf_random random = hf_random_stream(s->seed, 0, i);
-        for (int j = 0; j < g->model->n_gene_group; j++)
-            draw[j] = i == 0 ? 0 : 2 * hf_random_uniform(&random) - 1;
-        for (int k = 0; k < p->n_gene; k++) {
-            double step = p->reach[k] * draw[g->model->gene_group[k]];
-            design_N[k] = hf_population_clamp(p, k, p->base_N[k] + step);
-        }
-        hf_population_link(p, g->model, design_N);
-        p->pending[i] = 1;
-        p->crossover_rate[i] = p->mutation_rate[i] = (double)NAN;
-        p->parent[2 * i] = p->parent[2 * i + 1] = -1;
-    }
+    hf_breeding_first(&g->breeding, g->settings->seed, p);
 }
 
 /* ---- adaptive rates (Srinivas & Patnaik 1994, minimising): the better an individual, the less it is disturbed ---- */
@@ -169,56 +127,23 @@ static int spin_roulette(const breeder *g, hf_random *random)
 static void recombine(const breeder *g, const hf_population *p, const double *a, const double *b, double *draw,
                       double *child, hf_random *random)
 {
-    for (int j = 0; j < g->model->n_gene_group; j++)
+    for (int j = 0; j < g->breeding.model->n_gene_group; j++)
         draw[j] = hf_random_uniform(random) * (1 + 2 * RECOMBINATION_REACH) - RECOMBINATION_REACH;
     for (int k = 0; k < p->n_gene; k++) {
-        double share = draw[g->model->gene_group[k]];
+        double share = draw[g->breeding.model->gene_group[k]];
         child[k] = hf_population_clamp(p, k, a[k] + share * (b[k] - a[k]));
     }
 }
 
-/* A step with a random sign and scale, relative to the range; 0 with probability 1 - rate. */
-static double mutation_step(double rate, hf_random *random)
-{
-    if (hf_random_uniform(random) >= rate) return 0;
-    double sign = hf_random_uniform(random) < 0.5 ? -1 : 1;
-    return sign * hf_power_of_two(-MUTATION_OCTAVES * hf_random_uniform(random));
-}
-
-/* The cables of a chain mutate together. An unequal change drags the chain's nodes along it, which raises psi steeply,
- * so that independent steps of every gene nearly always make psi worse (measured: 400 generations then gain 1 um
- * instead of 240 um). Single genes mutate as well, on average `single` of them per individual. */
-static void mutate(const breeder *g, const hf_population *p, double rate, double single, double *draw, double *child,
-                   hf_random *random)
-{
-    single /= g->n_leader;
-    for (int j = 0; j < g->model->n_gene_group; j++)
-        draw[j] = mutation_step(rate, random);
-    for (int k = 0; k < p->n_gene; k++) {
-        if (!leads(g, k)) continue;
-        double step = draw[g->model->gene_group[k]] + mutation_step(single, random);
-        child[k] = hf_population_clamp(p, k, child[k] + step * (p->upper_N[k] - p->lower_N[k]));
-    }
-}
-
 /* An elite, moved by some part of the way from the worse of two parents to the better one, and beyond. */
-static void move_elite(const breeder *g, const hf_population *p, int a, int b, double *draw, double *child,
-                       hf_random *random)
+static void move_elite(const breeder *g, const hf_population *p, int a, int b, int i, double *child, hf_random *random)
 {
     size_t n = (size_t)p->n_gene;
     int better = hf_population_is_better(p, a, b) ? a : b, worse = a + b - better;
     const double *to = p->design_N + (size_t)better * n, *from = p->design_N + (size_t)worse * n;
     int leader = g->elite[(int)(hf_random_uniform(random) * g->settings->elites)];
-    double step = STEP_MAX * hf_random_uniform(random);
-    double share = hf_power_of_two(-SHARE_OCTAVES * hf_random_uniform(random));
-    bool by_chain = hf_random_uniform(random) < BY_CHAIN;
     memcpy(child, p->design_N + (size_t)leader * n, n * sizeof *child);
-    for (int j = 0; j < g->model->n_gene_group && by_chain; j++)
-        draw[j] = hf_random_uniform(random);
-    for (size_t k = 0; k < n; k++) {
-        double drawn = by_chain ? draw[g->model->gene_group[k]] : hf_random_uniform(random);
-        if (drawn < share) child[k] = hf_population_clamp(p, (int)k, child[k] + step * (to[k] - from[k]));
-    }
+    hf_breeding_move_along(&g->breeding, p, &crossover, from, to, i, child, random);
 }
 
 /* Make one child, all by random numbers of its own stream. A child equal to a design of the generation before needs no
@@ -235,18 +160,18 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
     int itself = by_chain ? a : now->result[i].status == HF_OK ? i : g->elite[0];
     const double *mother = now->design_N + (size_t)a * n, *father = now->design_N + (size_t)b * n;
     const double *same = now->design_N + (size_t)itself * n;
-    double *child = next->design_N + (size_t)i * n, *draw = draws_of(g, i);
+    double *child = next->design_N + (size_t)i * n;
     double merit = fmin(merit_of(now, a), merit_of(now, b)); /* fmin ignores the NaN of an infeasible parent */
     double pc = adaptive(g, s->crossover_high, s->crossover_low, merit);
     double pm = adaptive(g, s->mutation_high, s->mutation_low, merit);
     if (hf_random_uniform(&random) >= pc || (!by_chain && a == b))
         memcpy(child, same, n * sizeof *child);
     else if (by_chain)
-        recombine(g, now, mother, father, draw, child, &random);
+        recombine(g, now, mother, father, hf_breeding_draws(&g->breeding, i), child, &random);
     else
-        move_elite(g, now, a, b, draw, child, &random);
-    mutate(g, now, pm, by_chain ? pm : SINGLES * pm, draw, child, &random);
-    hf_population_link(now, g->model, child);
+        move_elite(g, now, a, b, i, child, &random);
+    hf_breeding_mutate(&g->breeding, now, pm, by_chain ? pm : SINGLES * pm, i, child, &random);
+    hf_population_link(now, g->breeding.model, child);
     next->pending[i] = memcmp(child, same, n * sizeof *child) != 0;
     next->result[i] = now->result[itself];
     next->crossover_rate[i] = pc;
