@@ -86,11 +86,13 @@ typedef struct {
     bool ends_with_polish;         /* the design of Levenberg-Marquardt is the result; else it is only reported */
 } hf_optimiser_plan;
 
-hf_optimiser_plan hf_optimiser_plan_of(hf_optimize_method method);
+/* Of the settings' method; the generations of a front are those of hf_optimiser_nsga. */
+hf_optimiser_plan hf_optimiser_plan_of(const hf_optimize_settings *settings);
 
 #define HF_OPTIMISER_DECLARE(method, optimiser, ends_with_polish)                                                      \
     extern const hf_optimiser_kind hf_optimiser_##optimiser;
 HF_OPTIMISER_LIST(HF_OPTIMISER_DECLARE)
+extern const hf_optimiser_kind hf_optimiser_nsga; /* of optimize.objectives, in place of ga */
 #undef HF_OPTIMISER_DECLARE
 
 #ifdef __cplusplus

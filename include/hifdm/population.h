@@ -26,6 +26,7 @@ extern const char *const hf_population_stop_word[4]; /* "running", "stagnation",
 
 typedef struct {
     int n_gene, n_individual;
+    int n_objective;           /* of optimize.objectives; 0: there are none */
     bool has_rows;             /* the genes are those of optimize.variables, in the unit of each; else pretensions */
     int generation;            /* number of the present generation, from 0 */
     int generation_limit;      /* the largest number of generations */
@@ -39,7 +40,7 @@ typedef struct {
     unsigned char *pending;                 /* [n_individual] 1: must be evaluated */
     double *crossover_rate, *mutation_rate; /* [n_individual] rates of the trial; NaN where there are none */
     int *parent;                            /* [n_individual][2] in the generation before; -1 where there are none;
-                                               i, -1: individual i of the generation before, which was kept */
+                                               k, -1: individual k of the generation before, which was kept */
 
     /* Written by hf_optimiser_tell: what the evaluation of the proposed design gave, kept or not. */
     hf_status *trial_status; /* [n_individual] */
@@ -47,7 +48,7 @@ typedef struct {
 
     /* Written by hf_population_rank. */
     int best;                                   /* index; -1 while no design is feasible */
-    double *best_merit;                         /* [generation_limit] best of each generation, or NaN */
+    double *best_merit;                         /* [generation_limit] hf_population_merit of the best, or NaN */
     double *best_psi_m;                         /* [generation_limit] psi of these; the same without goals */
     double *least_violation;                    /* [generation_limit] of each generation */
     double mean_psi_m, worst_psi_m;             /* of the feasible individuals */
@@ -70,10 +71,11 @@ void hf_population_free(hf_population *population);
 /* Write the trials from the results as they were evaluated. */
 void hf_population_note_trials(hf_population *population);
 
-/* Let individual i of the generation before stand in place of individual i. */
-void hf_population_take_over(const hf_population *before, hf_population *population, int i);
+/* Let individual k of the generation before stand in place of individual i. */
+void hf_population_take_over(const hf_population *before, int k, hf_population *population, int i);
 
-/* The same for each individual whose own trial is worse, or which was not evaluated. */
+/* Let each individual of the generation before stand in its place where the trial there is worse, or was not
+ * evaluated. */
 void hf_population_keep_better(const hf_population *before, hf_population *population);
 
 /* Exchange the arrays of the two generations and count the generation: `next` becomes the present one. */
@@ -85,8 +87,11 @@ void hf_population_rank(const hf_optimize_settings *settings, hf_population *pop
 /* How far a result is beyond its limits: 0 when it is feasible, INFINITY without a shape, else its violation. */
 double hf_population_violation(const hf_form_result *result);
 
-/* Is individual a better than b? Of feasible ones by psi, of infeasible ones, which come last, by violation; of equals
- * the lower index comes first. */
+/* What is to be least of a feasible result: its merit, or the first of its objectives. */
+double hf_population_merit(const hf_population *population, const hf_form_result *result);
+
+/* Is individual a better than b? Of feasible ones by merit, or by their objectives in turn, of infeasible ones, which
+ * come last, by violation; of equals the lower index comes first. */
 bool hf_population_is_better(const hf_population *population, int a, int b);
 
 /* The value of the gene within its bounds that is nearest to value_N. */

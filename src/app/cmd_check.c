@@ -113,7 +113,7 @@ static hf_status print_truss(const hf_problem *p, FILE *f, hf_messages *messages
 static bool polishes(const hf_problem *p, const hf_evaluator *v)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
-    bool is_wanted = hf_optimiser_plan_of(o->method).ends_with_polish || o->compare_lm != HF_COMPARE_FALSE;
+    bool is_wanted = hf_optimiser_plan_of(o).ends_with_polish || o->compare_lm != HF_COMPARE_FALSE;
     return v && is_wanted && hf_polish_applies(v);
 }
 
@@ -134,12 +134,12 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
                 hf_coupling_scheme_word[is_auto ? HF_COUPLING_ACCELERATED : coupling->scheme], coupling->tof_m,
                 coupling->max_iterations,
                 is_auto && method == HF_METHOD_NEWTON ? "; in one matrix where they are slow" : "");
-    bool optimizes = v != NULL, evolves = optimizes && hf_optimiser_plan_of(o->method).kind;
+    bool optimizes = v != NULL, evolves = optimizes && hf_optimiser_plan_of(o).kind;
     if (evolves)
         fprintf(f,
                 "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
                 hf_rule_word[o->rule], p->model.n_gene, o->population, o->generations, (unsigned long long)o->seed);
-    bool is_result = hf_optimiser_plan_of(o->method).ends_with_polish;
+    bool is_result = hf_optimiser_plan_of(o).ends_with_polish;
     if (polishes(p, v))
         fprintf(f, "                Levenberg-Marquardt: rule %s, at most %d iterations, %s\n", hf_rule_word[o->rule],
                 o->polish_iterations,
@@ -201,7 +201,7 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
     hf_model without = *m;
     without.has_newton = false;
     size_t lanes = 0, shared = 0;
-    bool evolves = v && hf_optimiser_plan_of(p->settings.optimize.method).kind;
+    bool evolves = v && hf_optimiser_plan_of(&p->settings.optimize).kind;
     if (evolves) HF_TRY(engine_bytes(v, &shared, &lanes));
     double workspaces = v ? threads + 1 : 1, bare = (double)hf_workspace_bytes(&without);
     double population = evolves ? (double)p->settings.optimize.population : 0, genes = 8.0 * m->n_gene;
@@ -265,7 +265,7 @@ static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const h
 
 static hf_status print_optimize_time(hf_problem *p, const hf_evaluator *v, int threads, FILE *f)
 {
-    const hf_optimiser_kind *kind = hf_optimiser_plan_of(p->settings.optimize.method).kind;
+    const hf_optimiser_kind *kind = hf_optimiser_plan_of(&p->settings.optimize).kind;
     hf_optimiser o = {0};
     hf_status status = hf_optimiser_create(kind, &p->settings.optimize, &p->model, p->base_N, &o);
     if (status == HF_OK && kind) status = print_ga_time(p, v, threads, &o.population, f);

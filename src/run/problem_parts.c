@@ -149,7 +149,7 @@ static hf_status check_gene(const hf_problem *p, int k, hf_messages *messages)
             "optimize.variables.%d: '%s' has %g %s after form-finding; its range around that does not reach "
             "its bounds",
             p->model.gene[k].setting, name, base, hf_model_gene_unit(&p->model, k));
-    if (hf_optimiser_plan_of(o->method).kind && !isfinite(upper - lower))
+    if (hf_optimiser_plan_of(o).kind && !isfinite(upper - lower))
         return hf_error(messages, HF_BAD_CASE,
                         "optimize.variables.%d: '%s' is open on one side; the genetic algorithm needs a range, or both "
                         "bounds (method: lm does not)",
@@ -161,7 +161,7 @@ static hf_status check_base(const hf_problem *p, hf_messages *messages)
 {
     for (int k = 0; k < p->model.n_gene; k++)
         HF_TRY(check_gene(p, k, messages));
-    if (!hf_optimiser_plan_of(p->settings.optimize.method).kind && !hf_polish_applies(&p->evaluator))
+    if (!hf_optimiser_plan_of(&p->settings.optimize).kind && !hf_polish_applies(&p->evaluator))
         return hf_error(messages, HF_BAD_CASE, "%s", HF_PROBLEM_POLISH_NEEDS);
     return HF_OK;
 }

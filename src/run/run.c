@@ -200,7 +200,8 @@ static double *best_design(const hf_population *p)
 static void note_best(const hf_population *p, hf_summary *s)
 {
     if (p->best < 0) return;
-    if (s->best.status == HF_OK && !(p->result[p->best].merit < s->best.merit)) return;
+    if (s->best.status == HF_OK && !(hf_population_merit(p, &p->result[p->best]) < hf_population_merit(p, &s->best)))
+        return;
     s->best = p->result[p->best];
     s->best_generation = p->generation;
     s->best_individual = p->best;
@@ -438,7 +439,7 @@ static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
     if (r->problem.settings.optimize.n_objective > 0)
         return hf_error(messages, HF_BAD_CASE,
                         "optimize.objectives: fronts cannot be found by this version; use optimize.goals");
-    r->plan = hf_optimiser_plan_of(r->problem.settings.optimize.method);
+    r->plan = hf_optimiser_plan_of(&r->problem.settings.optimize);
     HF_TRY(prepare_optimize(r, s, messages));
     s->threads = r->problem.batch.n_thread;
     if (r->plan.kind) HF_TRY(evolve(r, s, messages));

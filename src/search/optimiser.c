@@ -72,13 +72,14 @@ void hf_optimiser_free(hf_optimiser *optimiser)
 
 const hf_optimiser_kind hf_optimiser_none = {0};
 
-hf_optimiser_plan hf_optimiser_plan_of(hf_optimize_method method)
+hf_optimiser_plan hf_optimiser_plan_of(const hf_optimize_settings *settings)
 {
 #define ROW(name, optimiser, ends_with_polish) [HF_OPTIMIZE_##name] = {&hf_optimiser_##optimiser, ends_with_polish},
     static const hf_optimiser_plan plan[] = {HF_OPTIMISER_LIST(ROW)};
 #undef ROW
-    hf_optimiser_plan it = plan[method];
+    hf_optimiser_plan it = plan[settings->method];
     assert(it.kind); /* every method has a row */
     if (it.kind == &hf_optimiser_none) it.kind = NULL;
+    if (it.kind && settings->n_objective) it.kind = &hf_optimiser_nsga;
     return it;
 }

@@ -91,6 +91,7 @@ hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m,
     *p = (hf_population){.n_gene = m->n_gene,
                          .has_rows = m->gene,
                          .n_individual = s->population,
+                         .n_objective = s->n_objective,
                          .generation_limit = s->generations,
                          .best = -1};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_both(&arena, p, next)));
@@ -137,17 +138,27 @@ double hf_population_violation(const hf_form_result *r)
     return hf_status_has_shape(r->status) ? r->violation : INFINITY;
 }
 
+double hf_population_merit(const hf_population *p, const hf_form_result *r)
+{
+    return p->n_objective ? r->goal[0] : r->merit;
+}
+
 /* Below zero: result a is better than b. */
-static int rank_of_two(const hf_form_result *a, const hf_form_result *b)
+static int rank_of_two(const hf_population *p, const hf_form_result *a, const hf_form_result *b)
 {
     bool are_ok = a->status == HF_OK && b->status == HF_OK;
-    double x = are_ok ? a->merit : hf_population_violation(a), y = are_ok ? b->merit : hf_population_violation(b);
+    double x = are_ok ? hf_population_merit(p, a) : hf_population_violation(a);
+    double y = are_ok ? hf_population_merit(p, b) : hf_population_violation(b);
+    for (int k = 1; are_ok && x == y && k < p->n_objective; k++) {
+        x = a->goal[k];
+        y = b->goal[k];
+    }
     return (x > y) - (x < y);
 }
 
 bool hf_population_is_better(const hf_population *population, int a, int b)
 {
-    int order = rank_of_two(&population->result[a], &population->result[b]);
+    int order = rank_of_two(population, &population->result[a], &population->result[b]);
     return order ? order < 0 : a < b;
 }
 
@@ -159,23 +170,24 @@ void hf_population_note_trials(hf_population *population)
     }
 }
 
-void hf_population_take_over(const hf_population *before, hf_population *population, int i)
+void hf_population_take_over(const hf_population *before, int k, hf_population *population, int i)
 {
     size_t n = (size_t)population->n_gene;
-    memcpy(population->design_N + (size_t)i * n, before->design_N + (size_t)i * n, n * sizeof(double));
-    population->result[i] = before->result[i];
-    population->parent[2 * i] = i;
+    memcpy(population->design_N + (size_t)i * n, before->design_N + (size_t)k * n, n * sizeof(double));
+    population->result[i] = before->result[k];
+    population->parent[2 * i] = k;
     population->parent[2 * i + 1] = -1;
 }
 
 void hf_population_keep_better(const hf_population *before, hf_population *population)
 {
     for (int i = 0; i < population->n_individual; i++)
-        if (!population->pending[i] || rank_of_two(&before->result[i], &population->result[i]) < 0)
-            hf_population_take_over(before, population, i);
+        if (!population->pending[i] || rank_of_two(population, &before->result[i], &population->result[i]) < 0)
+            hf_population_take_over(before, i, population, i);
 }
 
-/* Without a feasible design a run goes on as long as designs come nearer to the limits. */
+/* Without a feasible design a run goes on as long as designs come nearer to the limits. A front has no single figure
+ * whose stagnation would say that it is done. */
 static hf_population_stop judge(const hf_optimize_settings *s, const hf_population *p)
 {
     int window = s->stagnation_generations, now = p->generation;
@@ -183,7 +195,8 @@ static hf_population_stop judge(const hf_optimize_settings *s, const hf_populati
     if (now >= window && isnan(p->best_merit[now])) {
         double then = p->least_violation[now - window];
         if (!(then - p->least_violation[now] > VIOLATION_GAIN * then)) return HF_POPULATION_ALL_INFEASIBLE;
-    } else if (now >= window && p->best_merit[now - window] - p->best_merit[now] < s->stagnation_tolerance_m) {
+    } else if (!p->n_objective && now >= window &&
+               p->best_merit[now - window] - p->best_merit[now] < s->stagnation_tolerance_m) {
         return HF_POPULATION_STAGNATION;
     }
     if (now + 1 < p->generation_limit) return HF_POPULATION_RUNNING;
@@ -213,7 +226,7 @@ void hf_population_rank(const hf_optimize_settings *s, hf_population *population
         if (p->best < 0 || hf_population_is_better(p, i, p->best)) p->best = i;
     }
     if (p->best >= 0) p->mean_psi_m = sum / (p->n_individual - p->n_infeasible);
-    p->best_merit[p->generation] = p->best >= 0 ? p->result[p->best].merit : (double)NAN;
+    p->best_merit[p->generation] = p->best >= 0 ? hf_population_merit(p, &p->result[p->best]) : (double)NAN;
     p->best_psi_m[p->generation] = p->best >= 0 ? p->result[p->best].psi_m : (double)NAN;
     p->stop_reason = judge(s, p);
 }

@@ -44,7 +44,7 @@ static void lay_out(hf_arena *arena, hf_generations *g)
 bool hf_generations_are_of(const hf_generations *g, const hf_population *population)
 {
     return g->n_individual == population->n_individual && g->n_gene == population->n_gene &&
-           g->limit == population->generation_limit;
+           g->n_objective == population->n_objective && g->limit == population->generation_limit;
 }
 
 /* At least one, and no more than there can be. */
@@ -65,11 +65,15 @@ static void measure_rows(const hf_generations *g, int n_individual, size_t bytes
     }
 }
 
-hf_status hf_generations_create(int n_individual, int n_gene, int limit, int every, hf_generations *g)
+hf_status hf_generations_create(int n_individual, int n_gene, int n_objective, int limit, int every, hf_generations *g)
 {
     hf_arena arena = {0};
-    *g = (hf_generations){
-        .n_individual = n_individual, .n_gene = n_gene, .limit = limit, .every = every, .base_psi_m = (double)NAN};
+    *g = (hf_generations){.n_individual = n_individual,
+                          .n_gene = n_gene,
+                          .n_objective = n_objective,
+                          .limit = limit,
+                          .every = every,
+                          .base_psi_m = (double)NAN};
     size_t waiting = sizeof g->design_hash;
     measure_rows(g, n_individual, g->whole_bytes);
     measure_rows(g, n_in_row(g), g->row_bytes);
@@ -201,9 +205,11 @@ bool hf_generations_take_payload(const hf_generations *g, const void *payload, c
     from += sizeof hash;
     for (int i = HF_ROW_DESIGN + 1; i < HF_GENERATIONS_PIECES; from += g->whole_bytes[i++])
         hf_generations_scatter(&row[i], g->whole_bytes[i], from);
-    for (int i = 0; i < population->n_individual && before; i++)
-        if (population->parent[2 * i] == i && population->parent[2 * i + 1] == -1)
-            hf_population_take_over(before, population, i);
+    for (int i = 0; i < population->n_individual && before; i++) {
+        int kept = population->parent[2 * i];
+        if (kept >= 0 && kept < population->n_individual && population->parent[2 * i + 1] == -1)
+            hf_population_take_over(before, kept, population, i);
+    }
     return hash == hash_designs(population);
 }
 
@@ -237,6 +243,8 @@ bool hf_generations_are_sound(const hf_population *p)
     for (int i = 0; i < p->n_individual; i++) {
         const hf_form_result *r = &p->result[i];
         if (r->status == HF_OK && !(isfinite(r->psi_m) && isfinite(r->merit))) return false;
+        for (int k = 0; k < p->n_objective; k++)
+            if (r->status == HF_OK && !isfinite(r->goal[k])) return false;
         for (int k = 0; k < 2; k++)
             if (p->parent[2 * i + k] < -1 || p->parent[2 * i + k] >= p->n_individual) return false;
         for (int k = 0; k < p->n_gene; k++)
@@ -247,6 +255,12 @@ bool hf_generations_are_sound(const hf_population *p)
 }
 
 /* ---- writing ---- */
+
+/* Not an objective that the case does not have. */
+static bool is_stored(const hf_generations *g, int i)
+{
+    return i < HF_ROW_OBJECTIVE + g->n_objective || i >= HF_ROW_OBJECTIVE + HF_OBJECTIVES_MAX;
+}
 
 /* As many rows as fit, but no more than are written at a time; a row larger than CHUNK_BYTES is cut along its other
  * sides. */
@@ -274,7 +288,7 @@ static hid_t open_arrays(hf_hdf5 *io, const hf_generations *g, hf_generations_ro
     hid_t group = hf_hdf5_make_group(io, "/ga");
     if (g->n_stored > 0 || hf_hdf5_has(io, group, row[HF_ROW_DESIGN].array.name)) return group;
     for (int i = 0; i < HF_GENERATIONS_PIECES; i++)
-        make_array(io, group, &row[i], g->row_bytes[i], g->capacity);
+        if (is_stored(g, i)) make_array(io, group, &row[i], g->row_bytes[i], g->capacity);
     return group;
 }
 
@@ -284,7 +298,7 @@ static void write_row(hf_hdf5 *io, const hf_generations *g, hid_t group, hf_gene
     int end = g->n_stored + g->n_waiting;
     if (!hf_generations_is_series(i)) end = rows_of(g, end);
     row[i].array.dims[0] = (hsize_t)n;
-    if (n > 0) hf_hdf5_write_rows(io, group, &row[i].array, (hsize_t)(end - n), g->row[i]);
+    if (n > 0 && is_stored(g, i)) hf_hdf5_write_rows(io, group, &row[i].array, (hsize_t)(end - n), g->row[i]);
 }
 
 /* The last generation as a whole, from which a run goes on, and the counts of all generations until then. */
@@ -295,6 +309,7 @@ static void write_last(hf_hdf5 *io, const hf_generations *g)
     hid_t group = hf_hdf5_make_group(io, "/ga/last");
     bool is_new = !hf_hdf5_has(io, group, row[HF_ROW_DESIGN].array.name);
     for (int i = 0; !hf_generations_is_series(i); i++) {
+        if (!is_stored(g, i)) continue;
         if (is_new) make_array(io, group, &row[i], g->whole_bytes[i], 1);
         hf_hdf5_write_rows(io, group, &row[i].array, 0, g->last[i]);
     }
@@ -446,6 +461,7 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population 
     for (int i = 0; i < HF_GENERATIONS_PIECES && io->status == HF_OK; i++) {
         bool is_alone = hf_generations_has_last(g) && !hf_generations_is_series(i);
         assert(g->whole_bytes[i] <= largest);
+        if (!is_stored(g, i)) continue;
         hf_hdf5_read_rows(io, is_alone ? whole : group, &row[i].array, is_alone ? 0 : (hsize_t)last, values);
         if (io->status == HF_OK) hf_generations_scatter(&row[i], g->whole_bytes[i], values);
     }

@@ -15,13 +15,13 @@
 #include <hifdm/summary.h>
 #include <sys/uio.h>
 
-#define HF_GENERATIONS_PIECES (14 + HF_RESULT_N_INDIVIDUAL) /* data sets, and pieces of a payload */
+#define HF_GENERATIONS_PIECES (17 + HF_RESULT_N_INDIVIDUAL) /* data sets, and pieces of a payload */
 #define HF_GENERATIONS_BEST 0                               /* as `every`: rows of the best individuals */
 enum { HF_GENERATIONS_COUNTS = 3 };
 
 typedef struct {
     bool has_rows; /* as of hf_population; set it after creation */
-    int n_individual, n_gene;
+    int n_individual, n_gene, n_objective;
     int limit;                                 /* generations that there can be */
     int every;                                 /* whole ones that have a row: 0, every, 2 every, ... */
     int n_stored;                              /* in the file */
@@ -41,7 +41,7 @@ typedef struct {
 
 /* every: 1: each generation has a row of each data set; n: each n-th; HF_GENERATIONS_BEST. HF_OK or HF_NO_MEMORY. Free
  * in any case. */
-hf_status hf_generations_create(int n_individual, int n_gene, int limit, int every, hf_generations *g);
+hf_status hf_generations_create(int n_individual, int n_gene, int n_objective, int limit, int every, hf_generations *g);
 void hf_generations_free(hf_generations *g);
 
 /* Full: hf_generations_make_room must be called before another is added. Due: enough waits for that call. */

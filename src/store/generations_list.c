@@ -6,6 +6,20 @@
 
 /* ---- the list ---- */
 
+static void list_objectives(const hf_population *now, hf_generations_row *row)
+{
+    static const char *const name[] = {"objective_0", "objective_1", "objective_2"};
+    _Static_assert(sizeof name / sizeof *name == HF_OBJECTIVES_MAX, "a name for each objective");
+    for (int k = 0; k < HF_OBJECTIVES_MAX; k++) {
+        hsize_t n = k < now->n_objective ? (hsize_t)now->n_individual : 0;
+        row[k] =
+            (hf_generations_row){{name[k], HF_KIND_REAL, 2, {1, n}, "", "of optimize.objectives, each in its own unit"},
+                                 &now->result->goal[k],
+                                 sizeof *now->result,
+                                 sizeof(double)};
+    }
+}
+
 void hf_generations_list(const hf_population *now, hf_generations_row row[HF_GENERATIONS_PIECES])
 {
     const hsize_t p = (hsize_t)now->n_individual, k = (hsize_t)now->n_gene;
@@ -29,7 +43,7 @@ void hf_generations_list(const hf_population *now, hf_generations_row row[HF_GEN
          ARRAY(parent)},
         {{"best_individual", HF_KIND_INT, 1, {1}, "", "-1 while none is feasible"}, SINGLE(now->best)},
         {{"best_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the generation"}, SINGLE(now->best_psi_m[now->generation])},
-        {{"best_merit", HF_KIND_REAL, 1, {1}, "", "of the generation: psi, m, without goals"},
+        {{"best_merit", HF_KIND_REAL, 1, {1}, "", "of the generation: psi, m, without goals; the first of objectives"},
          SINGLE(now->best_merit[now->generation])},
         {{"least_violation", HF_KIND_REAL, 1, {1}, "", "0: a design is feasible; inf: none has a shape"},
          SINGLE(now->least_violation[now->generation])},
@@ -51,6 +65,7 @@ void hf_generations_list(const hf_population *now, hf_generations_row row[HF_GEN
                                  sizeof *now->result,
                                  f->size};
     }
+    list_objectives(now, row + HF_ROW_OBJECTIVE);
     memcpy(row + HF_ROW_TRIAL_STATUS, behind, sizeof behind);
     assert(!strcmp(row[HF_ROW_STATUS].array.name, "status") && !strcmp(row[HF_ROW_PSI].array.name, "psi_m") &&
            !strcmp(row[HF_ROW_BEST_INDIVIDUAL].array.name, "best_individual") &&
@@ -66,6 +81,7 @@ void hf_generations_list_empty(const hf_generations *g, int n_individual, hf_gen
     double none = 0;
     const hf_population empty = {.n_individual = n_individual,
                                  .n_gene = g->n_gene,
+                                 .n_objective = g->n_objective,
                                  .has_rows = g->has_rows,
                                  .result = &nothing,
                                  .best_psi_m = &none,

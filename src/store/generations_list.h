@@ -5,7 +5,8 @@
 
 #include "store/generations.h"
 
-/* A data set and where its values of one generation are: item after item, `stride` bytes apart. */
+/* A data set and where its values of one generation are: item after item, `stride` bytes apart. One without bytes is
+ * not in the file. */
 typedef struct {
     hf_hdf5_array array;
     const void *from;
@@ -19,7 +20,8 @@ enum {
     HF_ROW_RESULT,
     HF_ROW_STATUS = HF_ROW_RESULT,
     HF_ROW_PSI,
-    HF_ROW_TRIAL_STATUS = HF_ROW_RESULT + HF_RESULT_N_INDIVIDUAL,
+    HF_ROW_OBJECTIVE = HF_ROW_RESULT + HF_RESULT_N_INDIVIDUAL, /* those that a case does not have take no bytes */
+    HF_ROW_TRIAL_STATUS = HF_ROW_OBJECTIVE + HF_OBJECTIVES_MAX,
     HF_ROW_TRIAL_PSI,
     HF_ROW_BREEDING,
     HF_ROW_BEST_INDIVIDUAL = HF_ROW_BREEDING + 3,

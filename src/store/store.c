@@ -338,10 +338,12 @@ hf_status hf_store_genes(hf_store *s, const hf_model *m, const hf_population *po
     hf_hdf5_put(io, group, ".", "n_variable", HF_KIND_INT, 0, &population->n_gene);
     hf_hdf5_put(io, group, ".", "generations_limit", HF_KIND_INT, 0, &population->generation_limit);
     hf_hdf5_put(io, group, ".", "store_every", HF_KIND_INT, 0, &s->every);
+    if (population->n_objective) hf_hdf5_put(io, group, ".", "n_objective", HF_KIND_INT, 0, &population->n_objective);
     hf_hdf5_close(io, group);
     if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, messages);
-    if (io->status == HF_OK && hf_generations_create(population->n_individual, population->n_gene,
-                                                     population->generation_limit, s->every, &s->rows) != HF_OK)
+    if (io->status == HF_OK &&
+        hf_generations_create(population->n_individual, population->n_gene, population->n_objective,
+                              population->generation_limit, s->every, &s->rows) != HF_OK)
         io->status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
     s->rows.has_rows = population->has_rows;
     return hf_hdf5_unlock(io->status);

@@ -38,17 +38,20 @@ static hf_status count_record(void *context, int generation, const void *payload
 #define GENERATIONS_MAX 1000000 /* limits keep a damaged file from taking all memory */
 
 /* Sizes of the population, limit of generations and which of them the file holds. */
-static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_gene, int *limit, int *every)
+static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_gene, int *n_objective, int *limit, int *every)
 {
     hf_hdf5_get(io, io->file, "/ga", "n_individual", HF_KIND_INT, n_individual, sizeof *n_individual);
     hf_hdf5_get(io, io->file, "/ga", "n_variable", HF_KIND_INT, n_gene, sizeof *n_gene);
     hf_hdf5_get(io, io->file, "/ga", "generations_limit", HF_KIND_INT, limit, sizeof *limit);
     if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "store_every", H5P_DEFAULT) > 0) /* new */
         hf_hdf5_get(io, io->file, "/ga", "store_every", HF_KIND_INT, every, sizeof *every);
+    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "n_objective", H5P_DEFAULT) > 0) /* of a front */
+        hf_hdf5_get(io, io->file, "/ga", "n_objective", HF_KIND_INT, n_objective, sizeof *n_objective);
     int n_stored =
         io->status == HF_OK && *n_gene == 0 ? 0 : hf_hdf5_length(io, io->file, "/ga/gene_group", HF_LAYOUT_COUNT_MAX);
     if (io->status == HF_OK && (*n_individual < 1 || *n_individual > INDIVIDUALS_MAX || *n_gene != n_stored ||
-                                *limit < 1 || *limit > GENERATIONS_MAX || *every < 0 || *every > GENERATIONS_MAX))
+                                *n_objective < 0 || *n_objective > HF_OBJECTIVES_MAX || *limit < 1 ||
+                                *limit > GENERATIONS_MAX || *every < 0 || *every > GENERATIONS_MAX))
         hf_hdf5_damaged(io, io->file, "/ga", "has impossible sizes");
 }
 
@@ -82,7 +85,7 @@ static void read_state(hf_store *s)
 {
     hf_hdf5 *io = &s->f.io;
     signed char finished = 0;
-    int n_individual = 1, n_gene = 0, limit = 1, every = 1;
+    int n_individual = 1, n_gene = 0, n_objective = 0, limit = 1, every = 1;
     hf_hdf5_walk(io, demand_plain, io);
     hf_hdf5_get(io, io->file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     hf_hdf5_get(io, io->file, "/", "identity", HF_KIND_CHARS, s->identity, sizeof s->identity);
@@ -93,9 +96,10 @@ static void read_state(hf_store *s)
         if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, io->messages);
         return;
     }
-    read_sizes(io, &n_individual, &n_gene, &limit, &every);
+    read_sizes(io, &n_individual, &n_gene, &n_objective, &limit, &every);
     bool has_rows = hf_hdf5_has(io, io->file, "/ga/gene_variable");
-    if (io->status == HF_OK && hf_generations_create(n_individual, n_gene, limit, every, &s->rows) != HF_OK)
+    if (io->status == HF_OK &&
+        hf_generations_create(n_individual, n_gene, n_objective, limit, every, &s->rows) != HF_OK)
         io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
     s->rows.has_rows = has_rows;
     if (io->status == HF_OK) hf_generations_count(io, &s->rows);
@@ -314,9 +318,10 @@ static void open_stored_search(hf_store *s, stored_search *a)
     a->model.gene_leader = a->leader;
     a->model.gene = a->rows;
     const hf_optimize_settings *o = &a->settings.optimize;
-    if (io->status == HF_OK && (o->population != s->rows.n_individual || o->generations != s->rows.limit))
+    if (io->status == HF_OK && (o->population != s->rows.n_individual || o->generations != s->rows.limit ||
+                                o->n_objective != s->rows.n_objective))
         hf_hdf5_damaged(io, io->file, "/ga", "has other sizes than the case");
-    const hf_optimiser_kind *kind = hf_optimiser_plan_of(o->method).kind;
+    const hf_optimiser_kind *kind = hf_optimiser_plan_of(o).kind;
     if (io->status == HF_OK && !kind) hf_hdf5_damaged(io, io->file, "/case", "has no generations");
     if (io->status == HF_OK && hf_optimiser_create(kind, o, &a->model, a->base_N, &a->optimiser) != HF_OK)
         hf_hdf5_no_memory(io);

@@ -34,7 +34,7 @@ static void open_run(run *r)
 {
     *r = (run){.settings = small_ga(N_INDIVIDUAL, N_GENERATION + 2)};
     FUZZ_REQUIRE(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &model, base_N, &r->optimiser) == HF_OK);
-    FUZZ_REQUIRE(hf_generations_create(N_INDIVIDUAL, N_GENE, r->settings.generations, 1, &r->rows) == HF_OK);
+    FUZZ_REQUIRE(hf_generations_create(N_INDIVIDUAL, N_GENE, 0, r->settings.generations, 1, &r->rows) == HF_OK);
 }
 
 static void close_run(run *r)

@@ -142,10 +142,13 @@ START_TEST(every_method_has_its_plan)
                     {"ga+lm", HF_OPTIMIZE_GA_LM, &hf_optimiser_ga, true}};
     ck_assert_int_eq(HF_OPTIMIZE_N_METHOD, sizeof expected / sizeof *expected);
     for (int i = 0; i < HF_OPTIMIZE_N_METHOD; i++) {
-        hf_optimiser_plan plan = hf_optimiser_plan_of(expected[i].method);
+        hf_optimize_settings s = {.method = expected[i].method};
+        hf_optimiser_plan plan = hf_optimiser_plan_of(&s);
         ck_assert_str_eq(hf_optimize_method_word[expected[i].method], expected[i].word);
         ck_assert(plan.kind == expected[i].kind);
         ck_assert_int_eq(plan.ends_with_polish, expected[i].ends_with_polish);
+        s.n_objective = 2;
+        ck_assert(hf_optimiser_plan_of(&s).kind == (expected[i].kind ? &hf_optimiser_nsga : NULL));
     }
     ck_assert_ptr_null(hf_optimize_method_word[HF_OPTIMIZE_N_METHOD]); /* any other word is refused by the case file */
 }

@@ -105,7 +105,7 @@ START_TEST(other_designs_are_told_apart)
     size_t used = 0;
     open_run(&r);
     fill(&r.ga);
-    ck_assert_int_eq(hf_generations_create(N_INDIVIDUAL, N_GENE, N_GENERATION, 1, &g), HF_OK);
+    ck_assert_int_eq(hf_generations_create(N_INDIVIDUAL, N_GENE, 0, N_GENERATION, 1, &g), HF_OK);
     hf_generations_add(&g, &r.ga.population, piece);
     for (int i = 0; i < HF_GENERATIONS_PIECES; used += piece[i++].iov_len)
         memcpy(payload + used, piece[i].iov_base, piece[i].iov_len);

@@ -1,0 +1,215 @@
+/* The front of designs of two or three objectives: who lives on is NSGA-II's choice (Deb, Pratap, Agarwal & Meyarivan,
+ * IEEE Trans. Evol. Comput. 6, 2002), how children are made is that of the genetic algorithm's variation `difference`.
+ *
+ * Of all individuals and their children those of the first fronts live on, and of the front that does not fit the ones
+ * that cover it best (hf_pareto_keep); infeasible ones by violation. Each child has weights of its own, drawn at
+ * random, by which one of the individuals is the best: this one it moves, along the difference of two others or towards
+ * another. So all parts of the front draw the population their way, as in decomposition (Zhang & Li, IEEE Trans. Evol.
+ * Comput. 11, 2007), and there are no neighbourhoods to be kept.
+ * Contents: state - what children begin from - weights - a child - survival */
+#include <hifdm/optimiser.h>
+
+#include "base/arena.h"
+#include "search/breeding.h"
+#include "search/pareto.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Measured on the nets of METHOD section 7, which says what others give. */
+static const hf_breeding_move crossover = {.step_max = 3.0, .share_octaves = 4.0, .by_chain = 0.7};
+#define BY_APPROACH 0.4 /* so many crossovers go towards another individual, the others along a difference of two */
+#define BY_SUM 0.5      /* so many weigh the sum of the objectives, the others the largest of them */
+#define SUM_SHARE 0.01  /* of the sum beside the largest, so that no design that another dominates is the least */
+#define RATE 0.2        /* of mutation_high: what a chain mutates with */
+#define SINGLES 10.0    /* genes that mutate alone, over a chain's rate */
+
+/* ---- state ---- */
+
+typedef struct {
+    const hf_optimize_settings *settings; /* borrowed, as the model */
+    hf_breeding breeding;
+    hf_pareto both; /* an individual and, N places behind it, its child; of the present generation alone the first N */
+    int *rank;      /* [2 N] */
+    int *member;    /* [2 N] of a generation: the first front; then who lives on */
+    int n_leader;   /* members of the first front */
+    double least[HF_OBJECTIVES_MAX], range[HF_OBJECTIVES_MAX]; /* of each objective on the first front */
+} front_breeder;
+
+/* The struct itself comes first, so that its address is that of the block, and free(state) frees all. */
+static front_breeder *lay_out_breeder(hf_arena *a, front_breeder *g)
+{
+    front_breeder *itself = hf_arena_take(a, 1, sizeof *itself);
+    size_t n = (size_t)g->settings->population;
+    hf_pareto_lay_out(a, &g->both);
+    g->breeding.draw = hf_arena_take(a, n * (size_t)g->breeding.model->n_gene_group, sizeof(double));
+    g->rank = hf_arena_take(a, 2 * n, sizeof(int));
+    g->member = hf_arena_take(a, 2 * n, sizeof(int));
+    return itself;
+}
+
+static hf_status create_breeder(const hf_optimize_settings *s, const hf_model *m, void **state)
+{
+    front_breeder g = {
+        .settings = s, .breeding = {.model = m}, .both = {.n = 2 * s->population, .n_objective = s->n_objective}};
+    hf_arena arena = {0};
+    front_breeder *itself;
+    HF_TRY(HF_ARENA_MAKE(&arena, itself = lay_out_breeder(&arena, &g)));
+    *itself = g;
+    *state = itself;
+    return HF_OK;
+}
+
+static void first_front(void *state, hf_population *p)
+{
+    const front_breeder *g = state;
+    hf_breeding_first(&g->breeding, g->settings->seed, p);
+}
+
+/* ---- what children begin from ---- */
+
+static void take_values(front_breeder *g, const hf_population *p, int at)
+{
+    for (int i = 0; i < p->n_individual; i++)
+        hf_pareto_set(&g->both, at + i, p->result[i].goal, hf_population_violation(&p->result[i]));
+}
+
+static void begin_front(void *state, const hf_population *now)
+{
+    front_breeder *g = state;
+    hf_pareto present = g->both;
+    present.n = now->n_individual;
+    take_values(g, now, 0);
+    hf_pareto_rank(&present, g->rank);
+    g->n_leader = 0;
+    for (int i = 0; i < now->n_individual; i++)
+        if (g->rank[i] == 0) g->member[g->n_leader++] = i;
+    for (int j = 0; j < g->both.n_objective; j++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int k = 0; k < g->n_leader; k++) {
+            double value = hf_pareto_value(&g->both, g->member[k])[j];
+            low = fmin(low, value);
+            high = fmax(high, value);
+        }
+        g->least[j] = low;
+        g->range[j] = high > low ? high - low : 1;
+    }
+}
+
+/* ---- weights ---- */
+
+typedef struct {
+    double of[HF_OBJECTIVES_MAX]; /* their sum is 1 */
+    bool by_sum;                  /* weigh the sum of the objectives, else the largest of them */
+} weights;
+
+/* All weights with the sum 1 are equally likely. */
+static weights draw_weights(int n_objective, hf_random *random)
+{
+    weights w = {.by_sum = hf_random_uniform(random) < BY_SUM};
+    double a = hf_random_uniform(random), b = n_objective > 2 ? hf_random_uniform(random) : 1;
+    w.of[0] = fmin(a, b);
+    w.of[1] = fmax(a, b) - w.of[0];
+    w.of[2] = 1 - fmax(a, b);
+    return w;
+}
+
+/* Is individual a better than b by these weights? Infeasible ones come last, by their violation. */
+static bool is_better_by(const front_breeder *g, const weights *w, int a, int b)
+{
+    double value[2];
+    const int which[2] = {a, b};
+    if (g->both.violation[a] > 0 || g->both.violation[b] > 0) return g->both.violation[a] < g->both.violation[b];
+    for (int k = 0; k < 2; k++) {
+        const double *objective = hf_pareto_value(&g->both, which[k]);
+        double largest = 0, sum = 0;
+        for (int j = 0; j < g->both.n_objective; j++) {
+            double part = w->of[j] * (objective[j] - g->least[j]) / g->range[j];
+            largest = fmax(largest, part);
+            sum += part;
+        }
+        value[k] = w->by_sum ? sum : largest + SUM_SHARE * sum;
+    }
+    return value[0] < value[1];
+}
+
+/* ---- a child ---- */
+
+static int pick(int n, hf_random *random)
+{
+    return (int)(hf_random_uniform(random) * n);
+}
+
+/* By random numbers of the child's own stream. One that is equal to the individual that it began from needs no
+ * evaluation, and does not live on beside it. */
+static void propose_child(void *state, const hf_population *now, hf_population *next, int i)
+{
+    const front_breeder *g = state;
+    const hf_optimize_settings *s = g->settings;
+    size_t n = (size_t)now->n_gene;
+    hf_random random = hf_random_stream(s->seed, now->generation + 1, i);
+    weights w = draw_weights(g->both.n_objective, &random);
+    int leader = g->member[pick(g->n_leader, &random)];
+    for (int k = 0; k < g->n_leader; k++)
+        if (is_better_by(g, &w, g->member[k], leader)) leader = g->member[k];
+    int a = pick(now->n_individual, &random), b = pick(now->n_individual, &random);
+    int to = is_better_by(g, &w, a, b) ? a : b, from = a + b - to;
+    bool approaches = hf_random_uniform(&random) < BY_APPROACH;
+    if (approaches) to = a, from = leader;
+    const double *same = now->design_N + (size_t)leader * n;
+    double *child = next->design_N + (size_t)i * n;
+    memcpy(child, same, n * sizeof *child);
+    if (hf_random_uniform(&random) < s->crossover_high && to != from)
+        hf_breeding_move_along(&g->breeding, now, &crossover, now->design_N + (size_t)from * n,
+                               now->design_N + (size_t)to * n, i, child, &random);
+    double rate = RATE * s->mutation_high;
+    hf_breeding_mutate(&g->breeding, now, rate, SINGLES * rate, i, child, &random);
+    hf_population_link(now, g->breeding.model, child);
+    next->pending[i] = memcmp(child, same, n * sizeof *child) != 0;
+    next->result[i] = now->result[leader];
+    next->crossover_rate[i] = s->crossover_high;
+    next->mutation_rate[i] = rate;
+    next->parent[2 * i] = leader;
+    next->parent[2 * i + 1] = to;
+}
+
+/* ---- survival ---- */
+
+/* Fill member [N] with those of both generations that live on, front after front. */
+static void choose_survivors(front_breeder *g, const hf_population *now)
+{
+    int n = now->n_individual, n_front = hf_pareto_rank(&g->both, g->rank), n_kept = 0;
+    for (int i = 0; i < n; i++)
+        if (!now->pending[i]) g->rank[n + i] = n_front; /* it is the individual that it began from */
+    for (int front = 0; n_kept < n; front++) {
+        int n_member = 0, *member = g->member + n_kept;
+        for (int i = 0; i < 2 * n; i++)
+            if (g->rank[i] == front) member[n_member++] = i;
+        hf_pareto_keep(&g->both, n_member, member, n - n_kept);
+        n_kept = n_kept + n_member < n ? n_kept + n_member : n;
+    }
+}
+
+/* A child that lives on stays at its place; individuals of before take the places of those that do not, in order. */
+static void survive_front(void *state, const hf_population *before, hf_population *now)
+{
+    front_breeder *g = state;
+    int n = now->n_individual, place = 0;
+    take_values(g, before, 0);
+    take_values(g, now, n);
+    choose_survivors(g, now);
+    int *lives = g->rank; /* not needed any more */
+    memset(lives, 0, 2 * (size_t)n * sizeof *lives);
+    for (int k = 0; k < n; k++)
+        lives[g->member[k]] = 1;
+    for (int i = 0; i < n; i++) {
+        if (!lives[i]) continue;
+        while (lives[n + place])
+            place++;
+        hf_population_take_over(before, i, now, place++);
+    }
+}
+
+const hf_optimiser_kind hf_optimiser_nsga = {create_breeder, first_front,   begin_front,
+                                             propose_child,  survive_front, free};
