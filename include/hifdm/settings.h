@@ -87,6 +87,7 @@ extern const char *const hf_goal_word[11];
 extern const char *const hf_along_word[3];
 extern const char *const hf_fit_word[3];
 extern const char *const hf_limit_word[4];
+extern const char *const hf_figure_word[4]; /* the first goals, those that are figures of a shape */
 
 #define HF_SET_NAME_SIZE 64 /* of the name of a set of cables with its NUL */
 
@@ -194,6 +195,16 @@ typedef struct {
     hf_cable_settings cable[HF_MATERIAL_ROWS_MAX];
     hf_node_settings node[HF_MATERIAL_ROWS_MAX];
 } hf_built_settings;
+
+/* Turnbuckles that bring the figure of the net as built back: some cables of a set, by whole steps within a range. */
+typedef struct {
+    char set[HF_SET_NAME_SIZE]; /* cables that can be turned */
+    double range_m, step_m;     /* how far either way, and in which steps */
+    int moves;                  /* cables that are turned at most */
+    double target_m;            /* enough when the figure is below it */
+    hf_goal_kind figure;        /* HF_GOAL_PSI, HF_GOAL_SURFACE or HF_GOAL_FACETS */
+    double sigma_m;             /* of measured coordinates without one of their own; 0: not given */
+} hf_adjust_settings;
 
 #define HF_LIST_MAX 32
 

@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "linalg/band.h"
+#include "solve/loose.h"
 #include <hifdm/formfind.h>
 
 #include <math.h>
@@ -42,24 +43,51 @@ static void look_at_cable(hf_built_linear *l, int e)
     l->cut_N_per_m[e] = -k * length / l0;
 }
 
+static bool spring_loose(const hf_model *m, hf_workspace *w)
+{
+    bool has_loose = false;
+    for (int i = 0; i < m->n_free; i++) {
+        w->spring_N_per_m[i] = w->loose[i] ? hf_loose_spring_N_per_m(m) : 0;
+        has_loose |= w->loose[i];
+    }
+    return has_loose;
+}
+
+static hf_status factor_shape(hf_built_linear *l)
+{
+    const hf_model *m = &l->built->model;
+    double condition;
+    for (int e = 0; e < m->n_cable; e++)
+        look_at_cable(l, e);
+    const double *spring = spring_loose(m, &l->work) ? l->work.spring_N_per_m : NULL;
+    HF_TRY(hf_newton_matrix_factor_blocks(m, &l->work, hf_newton_matrix_block, spring, &condition));
+    if (isinf(condition)) return HF_SINGULAR;
+    return m->n_attachment ? hf_schur_factor(m, &l->work, hf_newton_matrix_block, &l->schur) : HF_OK;
+}
+
 hf_status hf_built_linear_make(const hf_built *b, hf_built_linear *l)
 {
     const hf_model *m = &b->model;
     hf_arena arena = {0};
-    double condition;
     *l = (hf_built_linear){.built = b, .n_dof = 3 * (size_t)m->n_node};
     l->n_scratch = l->n_dof + (m->n_attachment ? 3 * (size_t)(m->n_free + m->n_attachment) : 0);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_linear(&arena, m, l)));
     l->block = arena.block;
     HF_TRY(hf_workspace_create(m, &l->work));
+    if (m->n_attachment) HF_TRY(hf_schur_create(m, &l->schur));
     take_shape(b, &l->work);
-    for (int e = 0; e < m->n_cable; e++)
-        look_at_cable(l, e);
-    HF_TRY(hf_newton_matrix_factor(m, &l->work, &condition));
-    if (isinf(condition)) return HF_SINGULAR;
-    if (!m->n_attachment) return HF_OK;
-    HF_TRY(hf_schur_create(m, &l->schur));
-    return hf_schur_factor(m, &l->work, hf_newton_matrix_block, &l->schur);
+    return factor_shape(l);
+}
+
+hf_status hf_built_linear_take(hf_built_linear *l, const hf_workspace *shape)
+{
+    const hf_model *m = &l->built->model;
+    memcpy(l->work.position_m, shape->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(l->work.tension_N, shape->tension_N, (size_t)m->n_cable * sizeof(double));
+    memcpy(l->work.target, shape->target, (size_t)m->n_cable * sizeof(double));
+    memcpy(l->work.EA_N, shape->EA_N, (size_t)m->n_cable * sizeof(double));
+    memcpy(l->work.loose, shape->loose, (size_t)m->n_node);
+    return factor_shape(l);
 }
 
 void hf_built_linear_free(hf_built_linear *l)

@@ -26,6 +26,10 @@ typedef struct {
 /* Factor at the nominal shape of `built`, which is borrowed. HF_OK; HF_SINGULAR when something is loose there;
  * HF_NO_MEMORY. Free it in any case. */
 hf_status hf_built_linear_make(const hf_built *built, hf_built_linear *linear);
+
+/* The same at another shape of the net, that which hf_built_solve leaves in a workspace. Loose nodes stay where they
+ * are. */
+hf_status hf_built_linear_take(hf_built_linear *linear, const hf_workspace *shape);
 void hf_built_linear_free(hf_built_linear *linear);
 
 /* Errors to moves. strain_N [n][n_cable] (NULL: none): what the errors change in the tensions at held places, such as

@@ -33,8 +33,6 @@ char *openblas_get_corename(void);
 void *blas_memory_alloc(int which);
 void blas_memory_free(void *buffer);
 
-static const int three = 3;
-
 #define ROOMS_MAX 64 /* threads; OpenBLAS has buffers for as many processors as it was built for */
 
 /* ---- kernels ---- */
@@ -100,12 +98,24 @@ double hf_band_condition(int n, int half_bandwidth, const double *factor, double
     return isfinite(condition) && condition < 1 / DBL_EPSILON ? condition : (double)INFINITY;
 }
 
+int hf_band_factor_general(int n, int half_bandwidth, double *general, int *pivot)
+{
+    int k = half_bandwidth, ldab = 3 * k + 1, info = 0;
+    dgbtrf_(&n, &n, &k, &k, general, &ldab, pivot, &info);
+    return info > 0 ? info : info < 0;
+}
+
+void hf_band_back_solve_general(int n, int half_bandwidth, int n_rhs, const double *general, const int *pivot,
+                                double *b, int ldb)
+{
+    int k = half_bandwidth, ldab = 3 * k + 1, info = 0;
+    dgbtrs_("N", &n, &k, &k, &n_rhs, general, &ldab, pivot, b, &ldb, &info);
+}
+
 hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band, double *general, int *pivot,
                                    double *b, int ldb, int *bad_row)
 {
-    int k = half_bandwidth, ldab = 3 * k + 1, info = 0;
-    *bad_row = -1;
-    /* LAPACK's general band: entry (i,j) at general[2k + i - j + j*ldab]; the top k rows are room for pivoting */
+    int k = half_bandwidth, ldab = 3 * k + 1;
     memset(general, 0, (size_t)n * (size_t)ldab * sizeof *general);
     for (int j = 0; j < n; j++)
         for (int d = 0; d <= k && j + d < n; d++) {
@@ -113,12 +123,9 @@ hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band
             general[2 * k + d + j * ldab] = value;
             general[2 * k - d + (j + d) * ldab] = value;
         }
-    dgbtrf_(&n, &n, &k, &k, general, &ldab, pivot, &info);
-    if (info != 0) {
-        *bad_row = info > 0 ? info - 1 : 0;
-        return HF_SINGULAR;
-    }
-    dgbtrs_("N", &n, &k, &k, &three, general, &ldab, pivot, b, &ldb, &info);
+    *bad_row = hf_band_factor_general(n, k, general, pivot) - 1;
+    if (*bad_row >= 0) return HF_SINGULAR;
+    hf_band_back_solve_general(n, k, 3, general, pivot, b, ldb);
     return HF_OK;
 }
 

@@ -24,6 +24,12 @@ hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band
 int hf_band_factor(int n, int half_bandwidth, double *band);
 void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
 
+/* The same for a matrix [n][3*half_bandwidth+1] in LAPACK's general band: entry (i,j) at 2*half_bandwidth + i - j of
+ * column j; the first half_bandwidth places of each are room for pivoting. pivot: [n]. */
+int hf_band_factor_general(int n, int half_bandwidth, double *general, int *pivot);
+void hf_band_back_solve_general(int n, int half_bandwidth, int n_rhs, const double *general, const int *pivot,
+                                double *b, int ldb);
+
 /* 1-norm of the matrix (before factoring; work: [n]) and LAPACK's estimate of its condition number in that norm
  * (dlacn2; work: [3n], integer_work: [n]); INFINITY when it is singular to working precision. */
 double hf_band_norm(int n, int half_bandwidth, const double *band, double *work);

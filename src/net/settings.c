@@ -23,6 +23,7 @@ const char *const hf_goal_word[11] = {"psi",  "surface",      "facets", "tension
                                       "pull", "displacement", "mass",   "ratio",   NULL};
 const char *const hf_along_word[3] = {"normal", "half_path", NULL};
 const char *const hf_fit_word[3] = {"none", "best", NULL};
+const char *const hf_figure_word[4] = {"psi", "surface", "facets", NULL};
 const char *const hf_limit_word[4] = {"tension", "ratio", "displacement", NULL};
 const char *const hf_nodes_word[5] = {"all", "support", "inner", "edge", NULL};
 const char *const hf_symmetry_word[6] = {"none", "x", "y", "xy", "auto", NULL};

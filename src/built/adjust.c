@@ -1,0 +1,371 @@
+/* Contents: memory - the figure of a shape - the linear model - the choice - the best there is - one move after the
+ * other - what is left open - together */
+#include "built/adjust.h"
+
+#include "base/arena.h"
+#include <hifdm/metrics.h>
+
+#include <math.h>
+#include <string.h>
+
+#define ROUNDS_MAX 12  /* linear models of a choice, or of the best there is */
+#define PANEL 16       /* cables whose effects are found at a time */
+#define HALVINGS_MAX 6 /* of a step to the best there is */
+#define LITTLE 1e-6    /* of the figure: what a step to the best there is has to gain */
+
+/* ---- memory ---- */
+
+typedef struct {
+    hf_estimate *estimate;
+    const hf_adjust_task *task;
+    size_t n, n_row, n_dof; /* cables that can be turned; residuals of the figure; places */
+    hf_workspace work;      /* the last shape */
+    hf_form_result form;
+    hf_goals_point point;
+    double *turn_m;                           /* [n_cable of the model] of the last shape */
+    double *doubt_m;                          /* [samples][n_dof] */
+    double *residual, *at_zero;               /* [n_row] of the last shape; without turns, by the linear model */
+    double *column;                           /* [n][n_row] change of residuals per metre of each cable */
+    double *left_open;                        /* [samples][n_row] */
+    double *gram, *slope, *sample, *move_m;   /* [n][n], [n], [samples][n], [n] */
+    double *strain_N, *answer_m, *scratch;    /* [PANEL][...] of the linear answer */
+    double *rate_m, *rate_N, *displacement_m; /* of hf_goals_push */
+    int *steps, *trial;                       /* [n] */
+    hf_moves_problem problem;
+    void *block;
+} adjustment;
+
+static void lay_out_adjustment(hf_arena *arena, adjustment *a)
+{
+    const hf_model *m = &a->estimate->built->model;
+    size_t n_cable = (size_t)m->n_cable, samples = HF_ESTIMATE_SAMPLES;
+    a->turn_m = hf_arena_take(arena, n_cable, sizeof(double));
+    a->doubt_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
+    a->residual = hf_arena_take(arena, a->n_row, sizeof(double));
+    a->at_zero = hf_arena_take(arena, a->n_row, sizeof(double));
+    a->column = hf_arena_take(arena, a->n * a->n_row, sizeof(double));
+    a->left_open = hf_arena_take(arena, samples * a->n_row, sizeof(double));
+    a->gram = hf_arena_take(arena, a->n * a->n, sizeof(double));
+    a->slope = hf_arena_take(arena, a->n, sizeof(double));
+    a->sample = hf_arena_take(arena, samples * a->n, sizeof(double));
+    a->move_m = hf_arena_take(arena, a->n, sizeof(double));
+    a->strain_N = hf_arena_take(arena, PANEL * n_cable, sizeof(double));
+    a->answer_m = hf_arena_take(arena, PANEL * a->n_dof, sizeof(double));
+    a->scratch = hf_arena_take(arena, PANEL * a->estimate->linear.n_scratch, sizeof(double));
+    a->rate_m = hf_arena_take(arena, a->n_dof, sizeof(double));
+    a->rate_N = hf_arena_take(arena, n_cable, sizeof(double));
+    a->displacement_m = hf_arena_take(arena, 3 * (size_t)m->n_attachment, sizeof(double));
+    a->steps = hf_arena_take(arena, a->n, sizeof(int));
+    a->trial = hf_arena_take(arena, a->n, sizeof(int));
+}
+
+static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, adjustment *a)
+{
+    hf_arena arena = {0};
+    *a = (adjustment){.estimate = p, .task = task, .n = (size_t)task->n_cable, .n_row = (size_t)task->goals->n_row};
+    a->n_dof = p->linear.n_dof;
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_adjustment(&arena, a)));
+    a->block = arena.block;
+    HF_TRY(hf_goals_point_create(task->goals, &a->point));
+    const hf_adjust_settings *s = task->settings;
+    a->problem = (hf_moves_problem){.n = task->n_cable,
+                                    .gram = a->gram,
+                                    .slope = a->slope,
+                                    .step_m = s->step_m,
+                                    .steps_max = hf_adjust_steps(s),
+                                    .moves_max = s->moves,
+                                    .target = s->target_m,
+                                    .n_sample = HF_ESTIMATE_SAMPLES,
+                                    .sample = a->sample};
+    return hf_workspace_create(&p->built->model, &a->work);
+}
+
+static void free_adjustment(adjustment *a)
+{
+    hf_arena arena = {.block = a->block};
+    hf_workspace_free(&a->work);
+    hf_goals_point_free(&a->point);
+    hf_arena_free(&arena);
+}
+
+/* ---- the figure of a shape ---- */
+
+static hf_status measure_work(adjustment *a, double *figure_m)
+{
+    double merit;
+    return hf_goals_measure(a->task->goals, &a->work, &a->point, figure_m, &merit);
+}
+
+/* Of the net with the estimated errors and the turns in turn_m. */
+static hf_status solve_turned(adjustment *a, double *figure_m)
+{
+    *figure_m = (double)NAN;
+    HF_TRY(hf_estimate_shape(a->estimate, a->turn_m, &a->work, &a->form));
+    return measure_work(a, figure_m);
+}
+
+static hf_status solve_steps(adjustment *a, const int *steps, double *figure_m)
+{
+    for (size_t i = 0; i < a->n; i++)
+        a->turn_m[a->task->cable[i]] = steps[i] * a->problem.step_m;
+    return solve_turned(a, figure_m);
+}
+
+static hf_status solve_nominal(adjustment *a, double *figure_m)
+{
+    HF_TRY(hf_built_solve(a->estimate->built, &(hf_built_net){0}, &a->work, &a->form));
+    return measure_work(a, figure_m);
+}
+
+/* ---- the linear model ---- */
+
+/* Residuals per unit of a move by dof. */
+static void push_move(adjustment *a, const double *move_m, double *rate)
+{
+    const hf_model *m = &a->estimate->built->model;
+    for (int row = 0; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++)
+            a->rate_m[c * m->n_node + row] = move_m[3 * row + c];
+    hf_goals_rate by = {a->rate_m, a->rate_N, a->displacement_m};
+    hf_goals_push(a->task->goals, &a->work, &a->point, &by, rate);
+}
+
+static void find_columns(adjustment *a)
+{
+    const hf_built_linear *l = &a->estimate->linear;
+    size_t n_cable = (size_t)l->built->model.n_cable;
+    for (size_t first = 0; first < a->n; first += PANEL) {
+        size_t n = a->n - first < PANEL ? a->n - first : PANEL;
+        memset(a->strain_N, 0, n * n_cable * sizeof *a->strain_N);
+        memset(a->answer_m, 0, n * a->n_dof * sizeof *a->answer_m);
+        for (size_t k = 0; k < n; k++) {
+            size_t e = (size_t)a->task->cable[first + k];
+            a->strain_N[k * n_cable + e] = l->cut_N_per_m[e];
+        }
+        hf_built_linear_apply(l, (int)n, a->strain_N, a->answer_m, a->scratch);
+        for (size_t k = 0; k < n; k++)
+            push_move(a, a->answer_m + k * a->n_dof, a->column + (first + k) * a->n_row);
+    }
+}
+
+static double dot(size_t n, const double *a, const double *b)
+{
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+/* At the shape in `work`: residuals, what each cable does to them, and what is left open. */
+static hf_status linearise(adjustment *a)
+{
+    size_t n = a->n, n_row = a->n_row;
+    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->point, a->residual));
+    HF_TRY(hf_built_linear_take(&a->estimate->linear, &a->work));
+    find_columns(a);
+    memcpy(a->at_zero, a->residual, n_row * sizeof *a->at_zero);
+    for (size_t i = 0; i < n; i++)
+        for (size_t r = 0; r < n_row; r++)
+            a->at_zero[r] -= a->turn_m[a->task->cable[i]] * a->column[i * n_row + r];
+    for (size_t i = 0; i < n; i++) {
+        a->slope[i] = dot(n_row, a->column + i * n_row, a->at_zero);
+        for (size_t j = 0; j <= i; j++)
+            a->gram[i * n + j] = a->gram[j * n + i] = dot(n_row, a->column + i * n_row, a->column + j * n_row);
+    }
+    a->problem.square = dot(n_row, a->at_zero, a->at_zero);
+    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
+        double *left = a->left_open + s * n_row;
+        push_move(a, a->doubt_m + s * a->n_dof, left);
+        for (size_t i = 0; i < n; i++)
+            a->sample[s * n + i] = dot(n_row, a->column + i * n_row, left);
+    }
+    return HF_OK;
+}
+
+/* ---- the choice ---- */
+
+/* Into a->steps, 0 on entry: choices by the linear model of the last shape, as long as their own shapes are better. */
+static hf_status choose(adjustment *a, hf_adjustment *found)
+{
+    double figure_m;
+    HF_TRY(solve_steps(a, a->steps, &figure_m));
+    found->adjusted_m = found->estimated_m = figure_m;
+    while (found->n_round < ROUNDS_MAX) {
+        hf_moves_end end;
+        hf_status status = linearise(a);
+        if (status == HF_SINGULAR) return HF_OK; /* the net has no stiffness there to go on with */
+        HF_TRY(status);
+        HF_TRY(hf_moves_choose(&a->problem, a->trial, &end));
+        if (found->n_round++ == 0) found->end = end;
+        found->is_settled = memcmp(a->trial, a->steps, a->n * sizeof *a->trial) == 0;
+        if (found->is_settled) return HF_OK;
+        status = solve_steps(a, a->trial, &figure_m);
+        if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+        found->is_settled = status == HF_OK && !(figure_m < found->adjusted_m);
+        if (status != HF_OK || found->is_settled) return HF_OK;
+        found->adjusted_m = figure_m;
+        found->end = end;
+        memcpy(a->steps, a->trial, a->n * sizeof *a->trial);
+    }
+    return HF_OK;
+}
+
+/* ---- the best there is ---- */
+
+/* From the turns that are there towards a->move_m. Whether the figure became better by more than a little; else the
+ * turns and the shape are as before. */
+static hf_status go_on(adjustment *a, double *best_m, bool *gains)
+{
+    double length = 1, at = 0, figure_m = (double)NAN;
+    for (size_t i = 0; i < a->n; i++)
+        a->move_m[i] -= a->turn_m[a->task->cable[i]];
+    for (int k = 0; k <= HALVINGS_MAX + 1; k++, length /= 2) {
+        double to = k > HALVINGS_MAX ? 0 : length;
+        for (size_t i = 0; i < a->n; i++)
+            a->turn_m[a->task->cable[i]] += (to - at) * a->move_m[i];
+        at = to;
+        hf_status status = solve_turned(a, &figure_m);
+        if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+        *gains = status == HF_OK && figure_m < *best_m * (1 - LITTLE);
+        if (!*gains) continue;
+        *best_m = figure_m;
+        return HF_OK;
+    }
+    return HF_OK;
+}
+
+/* From the shape that was chosen. */
+static hf_status find_best(adjustment *a, hf_adjustment *found)
+{
+    bool gains = true;
+    HF_TRY(solve_steps(a, a->steps, &found->best_m));
+    for (int round_ = 0; gains && round_ < ROUNDS_MAX; round_++) {
+        hf_status status = linearise(a);
+        if (status == HF_SINGULAR) return HF_OK;
+        HF_TRY(status);
+        HF_TRY(hf_moves_best(&a->problem, a->move_m));
+        HF_TRY(go_on(a, &found->best_m, &gains));
+    }
+    return HF_OK;
+}
+
+/* ---- one move after the other ---- */
+
+static int count_slack(const adjustment *a)
+{
+    const hf_model *m = &a->estimate->built->model;
+    int n = 0;
+    for (int e = 0; e < m->n_cable; e++)
+        n += hf_metrics_is_slack(m, &a->work, e);
+    return n;
+}
+
+/* Of the chosen moves that are not in a->trial yet, the one after which the linear model has the least figure. */
+static size_t next_move(adjustment *a)
+{
+    double least = (double)INFINITY;
+    size_t next = a->n;
+    for (size_t i = 0; i < a->n; i++) {
+        if (a->steps[i] == a->trial[i]) continue;
+        a->trial[i] = a->steps[i];
+        double square = hf_moves_square(&a->problem, a->trial);
+        a->trial[i] = 0;
+        if (next < a->n && !(square < least)) continue;
+        least = square;
+        next = i;
+    }
+    return next;
+}
+
+static hf_status list_moves(adjustment *a, hf_adjustment *found)
+{
+    hf_arena arena = {0};
+    double figure_m;
+    for (size_t i = 0; i < a->n; i++)
+        found->n_move += a->steps[i] != 0;
+    HF_TRY(HF_ARENA_MAKE(&arena, found->move = hf_arena_take(&arena, (size_t)found->n_move, sizeof *found->move)));
+    found->block = arena.block;
+    HF_TRY(solve_steps(a, a->steps, &figure_m));
+    hf_status status = linearise(a);
+    if (status != HF_OK && status != HF_SINGULAR) return status; /* then in the order of the last linear model */
+    memset(a->trial, 0, a->n * sizeof *a->trial);
+    HF_TRY(solve_steps(a, a->trial, &figure_m));
+    for (int k = 0; k < found->n_move; k++) {
+        size_t i = next_move(a);
+        int e = a->task->cable[i];
+        hf_adjust_move *move = &found->move[k];
+        a->trial[i] = a->steps[i];
+        *move = (hf_adjust_move){.cable = e, .steps = a->steps[i], .move_m = a->steps[i] * a->problem.step_m};
+        move->before_N = a->work.tension_N[e];
+        status = solve_steps(a, a->trial, &move->figure_m);
+        if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+        move->after_N = status == HF_OK ? a->work.tension_N[e] : (double)NAN;
+        move->n_slack = count_slack(a);
+    }
+    return HF_OK;
+}
+
+/* ---- what is left open ---- */
+
+/* RMS and standard deviation of the figure, by the samples, at the shape in `work`. */
+static hf_status spread_figure(adjustment *a, double *doubt_m, double *spread_m)
+{
+    double mean = 0, square = 0;
+    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->point, a->residual));
+    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
+        push_move(a, a->doubt_m + s * a->n_dof, a->at_zero);
+        for (size_t r = 0; r < a->n_row; r++)
+            a->at_zero[r] += a->residual[r];
+        double sum = dot(a->n_row, a->at_zero, a->at_zero);
+        mean += sqrt(sum) / HF_ESTIMATE_SAMPLES;
+        square += sum / HF_ESTIMATE_SAMPLES;
+    }
+    *doubt_m = sqrt(square);
+    *spread_m = sqrt(fmax(square - mean * mean, 0));
+    return HF_OK;
+}
+
+static hf_status spread_both(adjustment *a, hf_adjustment *found)
+{
+    double figure_m;
+    memset(a->trial, 0, a->n * sizeof *a->trial);
+    HF_TRY(solve_steps(a, a->trial, &figure_m));
+    HF_TRY(spread_figure(a, &found->doubt_m[0], &found->spread_m[0]));
+    HF_TRY(solve_steps(a, a->steps, &figure_m));
+    return spread_figure(a, &found->doubt_m[1], &found->spread_m[1]);
+}
+
+/* ---- together ---- */
+
+int hf_adjust_steps(const hf_adjust_settings *s)
+{
+    double steps = floor(s->range_m / s->step_m * (1 + 1e-12));
+    return (int)fmin(steps, HF_ADJUST_STEPS_MAX);
+}
+
+static hf_status find_all(adjustment *a, hf_adjustment *found)
+{
+    HF_TRY(solve_nominal(a, &found->nominal_m));
+    HF_TRY(hf_estimate_doubt(a->estimate, a->doubt_m));
+    HF_TRY(choose(a, found));
+    HF_TRY(find_best(a, found));
+    HF_TRY(list_moves(a, found));
+    return spread_both(a, found);
+}
+
+hf_status hf_adjust_find(hf_estimate *p, const hf_adjust_task *task, hf_adjustment *found)
+{
+    adjustment a;
+    *found = (hf_adjustment){0};
+    hf_status status = create_adjustment(p, task, &a);
+    if (status == HF_OK) status = find_all(&a, found);
+    free_adjustment(&a);
+    return status;
+}
+
+void hf_adjust_free(hf_adjustment *found)
+{
+    hf_arena arena = {.block = found->block};
+    hf_arena_free(&arena);
+    *found = (hf_adjustment){0};
+}

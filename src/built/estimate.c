@@ -1,0 +1,265 @@
+/* Contents: making - shapes - steps - samples */
+#include "built/estimate.h"
+
+#include "base/arena.h"
+#include "base/random.h"
+#include "linalg/band.h"
+
+#include <math.h>
+#include <string.h>
+
+#define STEPS_MAX 100
+#define SETTLED 1e-9       /* of the misfit: what a step promises at the end */
+#define NEAR_SETTLED 1e-3  /* of that, where rounding of shapes damps the steps */
+#define ENOUGH 1e-4        /* of what a step promises, that it has to gain */
+#define DAMPING_LEAST 0.05 /* below it there is none */
+#define DAMPING_MOST 1e12
+#define SEED 20260000u /* of the signs; nothing depends on it but the digits of standard deviations */
+
+/* ---- making ---- */
+
+/* Scratch: a step's errors, supports, gap before and after, and move; the band; of shapes cut lengths and supports; one
+ * answer of `linear`. */
+typedef struct {
+    double *cut_m, *rest_m, *gap_m, *trial_m, *move_m, *band, *length_m, *support_m, *strain_N, *linear;
+} estimate_scratch;
+
+static size_t take(size_t *used, size_t n)
+{
+    size_t at = *used;
+    *used += n;
+    return at;
+}
+
+static size_t share_scratch(const hf_estimate *p, estimate_scratch *to)
+{
+    size_t n_cable = (size_t)p->built->model.n_cable, n_dof = p->linear.n_dof, used = 0;
+    double *base = p->scratch;
+    size_t cut = take(&used, n_cable), rest = take(&used, n_dof), gap = take(&used, n_dof);
+    size_t trial = take(&used, n_dof), move = take(&used, n_dof);
+    size_t band = take(&used, (size_t)p->saddle.n_band), length = take(&used, n_cable), support = take(&used, n_dof);
+    size_t strain = take(&used, n_cable), linear = take(&used, p->linear.n_scratch);
+    if (base)
+        *to = (estimate_scratch){base + cut,  base + rest,   base + gap,     base + trial,  base + move,
+                                 base + band, base + length, base + support, base + strain, base + linear};
+    return used;
+}
+
+static void lay_out_estimate(hf_arena *arena, hf_estimate *p)
+{
+    estimate_scratch none;
+    p->scratch = NULL;
+    size_t n = share_scratch(p, &none);
+    p->cut_m = hf_arena_take(arena, (size_t)p->built->model.n_cable, sizeof(double));
+    p->rest_m = hf_arena_take(arena, p->linear.n_dof, sizeof(double));
+    p->scratch = hf_arena_take(arena, n, sizeof(double));
+}
+
+hf_status hf_estimate_create(const hf_built *b, const hf_saddle_prior *prior, const double *place_m, hf_estimate *p)
+{
+    hf_arena arena = {0};
+    *p = (hf_estimate){.built = b, .prior = *prior, .place_m = place_m};
+    hf_band_single_threaded();
+    HF_TRY(hf_built_linear_make(b, &p->linear));
+    HF_TRY(hf_saddle_create(&p->linear, &p->prior, &p->saddle));
+    HF_TRY(hf_workspace_create(&b->model, &p->work));
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_estimate(&arena, p)));
+    p->block = arena.block;
+    return HF_OK;
+}
+
+void hf_estimate_free(hf_estimate *p)
+{
+    hf_arena arena = {.block = p->block};
+    hf_built_linear_free(&p->linear);
+    hf_saddle_free(&p->saddle);
+    hf_workspace_free(&p->work);
+    hf_arena_free(&arena);
+    *p = (hf_estimate){0};
+}
+
+/* ---- shapes ---- */
+
+static hf_status solve_net(const hf_estimate *p, const double *cut_m, const double *rest_m, const double *turn_m,
+                           hf_workspace *w, hf_form_result *r)
+{
+    const hf_model *m = &p->built->model;
+    estimate_scratch s;
+    share_scratch(p, &s);
+    for (int e = 0; e < m->n_cable; e++)
+        s.length_m[e] = m->target[e] + cut_m[e] + (turn_m ? turn_m[e] : 0);
+    for (int row = 0; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++)
+            s.support_m[c * m->n_node + row] = row < m->n_free ? 0 : rest_m[3 * row + c];
+    return hf_built_solve(p->built, &(hf_built_net){.cut_m = s.length_m, .support_move_m = s.support_m}, w, r);
+}
+
+hf_status hf_estimate_shape(const hf_estimate *p, const double *turn_m, hf_workspace *w, hf_form_result *r)
+{
+    return solve_net(p, p->cut_m, p->rest_m, turn_m, w, r);
+}
+
+/* Half the sum of squares of errors over their sigmas. */
+static double misfit_of_errors(const hf_estimate *p, const double *cut_m, const double *rest_m)
+{
+    double sum = 0, rest = p->prior.support_sigma_m;
+    for (int e = 0; e < p->built->model.n_cable; e++)
+        if (p->prior.sigma_m[e] > 0) sum += cut_m[e] * cut_m[e] / (p->prior.sigma_m[e] * p->prior.sigma_m[e]);
+    for (size_t i = 3 * (size_t)p->built->model.n_free; i < p->linear.n_dof && rest > 0; i++)
+        sum += rest_m[i] * rest_m[i] / (rest * rest);
+    return sum / 2;
+}
+
+/* Measured less present places, where they are measured. */
+static void find_gap(const hf_estimate *p, double *gap_m)
+{
+    const hf_model *m = &p->built->model;
+    for (int row = 0; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++) {
+            int i = 3 * row + c;
+            bool is_measured = p->prior.weight_per_m2[i] > 0;
+            gap_m[i] = is_measured ? p->place_m[i] - p->work.position_m[c * m->n_node + row] : 0;
+        }
+}
+
+/* The same of the differences that a move (NULL: none) leaves of the gap. */
+static double misfit_of_places(const hf_estimate *p, const double *gap_m, const double *move_m)
+{
+    double sum = 0;
+    for (size_t i = 0; i < p->linear.n_dof; i++) {
+        double left = gap_m[i] - (move_m ? move_m[i] : 0);
+        sum += p->prior.weight_per_m2[i] * left * left;
+    }
+    return sum / 2;
+}
+
+/* Solve for these errors; *misfit is INFINITY when there is no shape. */
+static hf_status try_errors(hf_estimate *p, const double *cut_m, const double *rest_m, double *gap_m, double *misfit)
+{
+    hf_status status = solve_net(p, cut_m, rest_m, NULL, &p->work, &p->form);
+    *misfit = (double)INFINITY;
+    if (status != HF_OK) return status;
+    find_gap(p, gap_m);
+    *misfit = misfit_of_errors(p, cut_m, rest_m) + misfit_of_places(p, gap_m, NULL);
+    return HF_OK;
+}
+
+/* ---- steps ---- */
+
+/* The answer of the linear model, damped, into s->cut_m and s->rest_m. Damping t pulls towards the present errors e,
+ * with t times the weight with which the prior pulls to none: together with 1 + t to e t/(1 + t). Divided by 1 + t this
+ * is the system of lesser weights of places, for what the errors are beyond e t/(1 + t). Returns what the undamped
+ * model promises of the misfit. */
+static double aim(const hf_estimate *p, const estimate_scratch *s, double damping)
+{
+    int n_cable = p->built->model.n_cable, n_dof = (int)p->linear.n_dof;
+    double part = 1 / (1 + damping);
+    for (int e = 0; e < n_cable; e++)
+        s->cut_m[e] = part * p->cut_m[e];
+    for (int i = 0; i < n_dof; i++)
+        s->rest_m[i] = part * p->rest_m[i];
+    hf_saddle_solve(&p->saddle, &(hf_saddle_answer){s->gap_m, s->cut_m, s->rest_m, s->move_m}, s->band);
+    for (int e = 0; e < n_cable; e++)
+        s->cut_m[e] += (1 - part) * p->cut_m[e];
+    for (int i = 0; i < n_dof; i++)
+        s->rest_m[i] += (1 - part) * p->rest_m[i];
+    return p->misfit - misfit_of_errors(p, s->cut_m, s->rest_m) - misfit_of_places(p, s->gap_m, s->move_m);
+}
+
+/* The damping after a step that gained this part of what was promised. */
+static double damp(double damping, double ratio)
+{
+    if (ratio < 0.25) return fmax(1, 10 * damping);
+    if (ratio < 0.75 || damping == 0) return damping;
+    return damping > DAMPING_LEAST ? damping / 10 : 0;
+}
+
+hf_status hf_estimate_find(hf_estimate *p)
+{
+    const hf_model *m = &p->built->model;
+    estimate_scratch s;
+    double damping = 0, misfit;
+    bool is_new = true; /* the linear model is that of an earlier shape */
+    share_scratch(p, &s);
+    HF_TRY(try_errors(p, p->cut_m, p->rest_m, s.gap_m, &p->misfit));
+    for (p->n_step = 0; p->n_step < STEPS_MAX && damping < DAMPING_MOST; p->n_step++) {
+        if (is_new && hf_built_linear_take(&p->linear, &p->work) != HF_OK) break;
+        if (hf_saddle_factor(&p->saddle, damping) != HF_OK) break;
+        double promise = aim(p, &s, damping);
+        p->is_settled = !(promise > (damping > 0 ? NEAR_SETTLED : 1) * SETTLED * p->misfit);
+        if (p->is_settled) break;
+        hf_status status = try_errors(p, s.cut_m, s.rest_m, s.trial_m, &misfit);
+        if (status == HF_INTERRUPTED || status == HF_NO_MEMORY) return status;
+        double ratio = (p->misfit - misfit) / promise; /* -infinity without a shape */
+        damping = damp(damping, ratio);
+        is_new = ratio > ENOUGH;
+        if (!is_new) continue;
+        p->misfit = misfit;
+        memcpy(p->cut_m, s.cut_m, (size_t)m->n_cable * sizeof *s.cut_m);
+        memcpy(p->rest_m, s.rest_m, p->linear.n_dof * sizeof *s.rest_m);
+        memcpy(s.gap_m, s.trial_m, p->linear.n_dof * sizeof *s.gap_m);
+    }
+    return is_new ? HF_OK : try_errors(p, p->cut_m, p->rest_m, s.gap_m, &misfit);
+}
+
+/* ---- samples ---- */
+
+static double random_sign(hf_random *random)
+{
+    return hf_random_next(random) >> 63 ? 1 : -1;
+}
+
+/* Random errors of the sizes of the prior: strains [n_cable], errors [n_cable], moves of supports and, out, of all. */
+static void draw_errors(const hf_estimate *p, hf_random *random, const estimate_scratch *s, double *cut_m,
+                        double *move_m)
+{
+    const hf_model *m = &p->built->model;
+    for (int e = 0; e < m->n_cable; e++) {
+        cut_m[e] = random_sign(random) * p->prior.sigma_m[e];
+        s->strain_N[e] = p->linear.cut_N_per_m[e] * cut_m[e];
+    }
+    for (size_t i = 3 * (size_t)m->n_free; i < p->linear.n_dof; i++)
+        move_m[i] = random_sign(random) * p->prior.support_sigma_m;
+    hf_built_linear_apply(&p->linear, 1, s->strain_N, move_m, s->linear);
+}
+
+hf_status hf_estimate_expect(hf_estimate *p, double *expected_m)
+{
+    const hf_model *m = &p->built->model;
+    estimate_scratch s;
+    share_scratch(p, &s);
+    memset(expected_m, 0, (size_t)m->n_node * sizeof *expected_m);
+    for (int k = 0; k < HF_ESTIMATE_SAMPLES; k++) {
+        hf_random random = hf_random_stream(SEED, 0, k);
+        draw_errors(p, &random, &s, s.cut_m, s.move_m);
+        for (int i = 0; i < 3 * m->n_node; i++)
+            expected_m[i / 3] += s.move_m[i] * s.move_m[i] / HF_ESTIMATE_SAMPLES;
+    }
+    for (int row = 0; row < m->n_node; row++)
+        expected_m[row] = sqrt(expected_m[row]);
+    return HF_OK;
+}
+
+hf_status hf_estimate_doubt(hf_estimate *p, double *move_m)
+{
+    size_t n_dof = p->linear.n_dof, n_cable = (size_t)p->built->model.n_cable;
+    estimate_scratch s;
+    share_scratch(p, &s);
+    HF_TRY(hf_built_linear_take(&p->linear, &p->work));
+    HF_TRY(hf_saddle_factor(&p->saddle, 0));
+    for (int k = 0; k < HF_ESTIMATE_SAMPLES; k++) {
+        hf_random random = hf_random_stream(SEED, 1, k);
+        double *move = move_m + (size_t)k * n_dof;
+        draw_errors(p, &random, &s, s.cut_m, move);
+        for (size_t i = 0; i < n_dof; i++) {
+            double weight = p->prior.weight_per_m2[i], sign = random_sign(&random);
+            s.gap_m[i] = weight > 0 ? move[i] + sign / sqrt(weight) : 0;
+        }
+        memset(s.cut_m, 0, n_cable * sizeof *s.cut_m);
+        memset(s.rest_m, 0, n_dof * sizeof *s.rest_m);
+        hf_saddle_solve(&p->saddle, &(hf_saddle_answer){s.gap_m, s.cut_m, s.rest_m, s.move_m}, s.band);
+        for (size_t i = 0; i < n_dof; i++)
+            move[i] -= s.move_m[i];
+    }
+    return HF_OK;
+}

@@ -1,0 +1,40 @@
+/* moves - which few cables to turn, by how many steps each, so that the sum of squares of linear residuals is least: a
+ * choice in whole numbers, made greedily with refits and exchanges (METHOD section 12).
+ *
+ * Residuals are r + J a for moves a = step * whole number; J'J and J'r are all that is read of them. */
+#ifndef HIFDM_MOVES_H
+#define HIFDM_MOVES_H
+
+#include <hifdm/status.h>
+
+/* All borrowed. */
+typedef struct {
+    int n;               /* cables that can be turned */
+    const double *gram;  /* [n][n] J'J */
+    const double *slope; /* [n] J'r */
+    double square;       /* r'r */
+    double step_m;
+    int steps_max;        /* of one cable, either way */
+    int moves_max;        /* cables that are turned */
+    double target;        /* enough when the root of the sum of squares is below it */
+    int n_sample;         /* of what r may be instead, as far as is known */
+    const double *sample; /* [n_sample][n] J' (difference of r) */
+} hf_moves_problem;
+
+typedef enum {
+    HF_MOVES_TARGET, /* the target is met */
+    HF_MOVES_ALL,    /* moves_max cables are turned */
+    HF_MOVES_DOUBT,  /* a further one gains less than its standard deviation by the samples */
+    HF_MOVES_NONE    /* no further one gains anything */
+} hf_moves_end;
+
+/* steps [n]: 0 of cables that are not turned. HF_OK or HF_NO_MEMORY. */
+hf_status hf_moves_choose(const hf_moves_problem *problem, int *steps, hf_moves_end *end);
+
+/* The sum of squares after these steps. */
+double hf_moves_square(const hf_moves_problem *problem, const int *steps);
+
+/* The best moves of all n cables without steps, within steps_max * step_m: move_m [n]. HF_OK or HF_NO_MEMORY. */
+hf_status hf_moves_best(const hf_moves_problem *problem, double *move_m);
+
+#endif

@@ -1,0 +1,299 @@
+/* Contents: making - assembling - factor - an answer */
+#include "built/saddle.h"
+
+#include "base/arena.h"
+#include "linalg/band.h"
+#include "linalg/dense.h"
+#include "solve/loose.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- making ---- */
+
+static int room_of_band(const hf_saddle *s)
+{
+    return 3 * s->half_bandwidth + 1;
+}
+
+static void lay_out_saddle(hf_arena *arena, hf_saddle *s)
+{
+    size_t n = (size_t)s->n_band, border = (size_t)s->n_border, attached = (size_t)s->n_attached;
+    s->general = hf_arena_take(arena, n * (size_t)room_of_band(s), sizeof(double));
+    s->pivot = hf_arena_take(arena, n, sizeof(int));
+    s->column = hf_arena_take(arena, border * n, sizeof(double));
+    s->solved = hf_arena_take(arena, border * n, sizeof(double));
+    s->corner = hf_arena_take(arena, border * border, sizeof(double));
+    s->dense = hf_arena_take(arena, border * border, sizeof(double));
+    s->flex = hf_arena_take(arena, attached * attached, sizeof(double));
+    s->work = hf_arena_take(arena, 2 * border, sizeof(double));
+    s->dense_pivot = hf_arena_take(arena, border, sizeof(int));
+}
+
+hf_status hf_saddle_create(const hf_built_linear *l, const hf_saddle_prior *prior, hf_saddle *s)
+{
+    const hf_model *m = &l->built->model;
+    hf_arena arena = {0};
+    *s = (hf_saddle){.linear = l, .prior = *prior, .n_band = 6 * m->n_free, .n_attached = 3 * m->n_attachment};
+    s->half_bandwidth = 6 * m->half_bandwidth + 5;
+    if (prior->support_sigma_m > 0) s->n_off = 3 * (m->n_node - m->n_free - m->n_attachment);
+    s->n_border = 2 * s->n_attached + s->n_off;
+    for (int e = 0; e < m->n_cable; e++)
+        s->size_m = fmax(s->size_m, prior->sigma_m[e]);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_saddle(&arena, s)));
+    s->block = arena.block;
+    return HF_OK;
+}
+
+void hf_saddle_free(hf_saddle *s)
+{
+    hf_arena arena = {.block = s->block};
+    hf_arena_free(&arena);
+    *s = (hf_saddle){0};
+}
+
+/* ---- assembling ---- */
+
+enum { MULTIPLIER, MOVE }; /* the kinds of unknowns */
+
+/* The first of three unknowns of a row; -1: it has none. Those of the border are from n_band on. */
+static int unknown_of(const hf_saddle *s, int row, int kind)
+{
+    const hf_model *m = &s->linear->built->model;
+    if (row < m->n_free) return 6 * row + 3 * kind;
+    int i = 3 * (row - m->n_free);
+    if (i < s->n_attached) return s->n_band + i + (kind == MULTIPLIER ? s->n_attached : 0);
+    return kind == MOVE && s->n_off ? s->n_band + s->n_attached + i : -1;
+}
+
+static void add_entry(hf_saddle *s, int i, int j, double value)
+{
+    int k = s->half_bandwidth;
+    if (i < s->n_band && j < s->n_band)
+        s->general[(size_t)(2 * k + i - j) + (size_t)j * (size_t)room_of_band(s)] += value;
+    else if (i < s->n_band)
+        s->column[(size_t)(j - s->n_band) * (size_t)s->n_band + (size_t)i] += value;
+    else if (j >= s->n_band)
+        s->corner[(size_t)(i - s->n_band) * (size_t)s->n_border + (size_t)(j - s->n_band)] += value;
+}
+
+static double unit_of(const hf_saddle *s, int kind)
+{
+    return kind == MOVE ? s->size_m : s->force_m_per_N;
+}
+
+/* Add block [3][3] between unknowns of two rows. */
+static void add_rows(hf_saddle *s, int row_i, int kind_i, int row_j, int kind_j, double sign, double block[3][3])
+{
+    int i = unknown_of(s, row_i, kind_i), j = unknown_of(s, row_j, kind_j);
+    double unit = sign * unit_of(s, kind_i) * unit_of(s, kind_j);
+    for (int r = 0; r < 3 && i >= 0 && j >= 0; r++)
+        for (int c = 0; c < 3; c++)
+            add_entry(s, i + r, j + c, unit * block[r][c]);
+}
+
+static void add_cable(hf_saddle *s, int e)
+{
+    const hf_built_linear *l = s->linear;
+    const int *end = l->built->model.end_row + 2 * (ptrdiff_t)e;
+    const double *u = l->unit + 3 * (ptrdiff_t)e;
+    double push = l->cut_N_per_m[e] * s->prior.sigma_m[e], block[3][3], spread[3][3];
+    memcpy(block, l->block_N_per_m + 9 * (ptrdiff_t)e, sizeof block);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            spread[r][c] = push * push * u[r] * u[c];
+    for (int p = 0; p < 2; p++)
+        for (int q = 0; q < 2; q++) {
+            double sign = p == q ? 1 : -1;
+            add_rows(s, end[p], MULTIPLIER, end[q], MOVE, sign, block);
+            add_rows(s, end[p], MOVE, end[q], MULTIPLIER, sign, block);
+            add_rows(s, end[p], MULTIPLIER, end[q], MULTIPLIER, -sign, spread);
+        }
+}
+
+static void add_row(hf_saddle *s, int row)
+{
+    const hf_model *m = &s->linear->built->model;
+    double weight[3][3] = {{0}}, spring[3][3] = {{0}}, rest = s->prior.support_sigma_m;
+    for (int c = 0; c < 3; c++) {
+        weight[c][c] = s->part * s->prior.weight_per_m2[3 * row + c];
+        if (row >= m->n_free + m->n_attachment && s->n_off) weight[c][c] += 1 / (rest * rest);
+        if (row < m->n_free && s->linear->work.loose[row]) spring[c][c] = hf_loose_spring_N_per_m(m);
+    }
+    add_rows(s, row, MOVE, row, MOVE, 1, weight);
+    if (spring[0][0] == 0) return;
+    add_rows(s, row, MOVE, row, MULTIPLIER, 1, spring);
+    add_rows(s, row, MULTIPLIER, row, MOVE, 1, spring);
+}
+
+/* ---- factor ---- */
+
+/* Matrix of the border in moves of attachments, forces on them, and moves of supports. With T the corner less what the
+ * band answers, F the flexibility and D the variance of where attachments rest: rows (T11, T12 F + 1, T13),
+ * (F T21 + 1, F T22 F - D, F T23), (T31, T32 F, T33). It is symmetric, so rows may be read as columns. */
+static void fill_border(hf_saddle *s)
+{
+    const double *flex = s->flex;
+    size_t n = (size_t)s->n_border, a = (size_t)s->n_attached;
+    double rest = s->prior.support_sigma_m / s->size_m, *to = s->dense, *sum = s->work;
+    memcpy(to, s->corner, n * n * sizeof *to);
+    for (int side = 0; side < 2; side++) /* of the multipliers' rows, then columns */
+        for (size_t j = 0; j < n; j++) {
+            size_t along = side ? 1 : n, at = side ? n * j : j;
+            for (size_t i = 0; i < a; i++) {
+                sum[i] = 0;
+                for (size_t k = 0; k < a; k++)
+                    sum[i] += flex[i * a + k] * to[(a + k) * along + at];
+            }
+            for (size_t i = 0; i < a; i++)
+                to[(a + i) * along + at] = sum[i];
+        }
+    for (size_t i = 0; i < a; i++) {
+        to[i * n + a + i] += 1;
+        to[(a + i) * n + i] += 1;
+        to[(a + i) * n + a + i] -= rest * rest;
+    }
+}
+
+static hf_status factor_border(hf_saddle *s)
+{
+    size_t n = (size_t)s->n_border, n_band = (size_t)s->n_band;
+    if (n == 0) return HF_OK;
+    memcpy(s->solved, s->column, n * n_band * sizeof *s->solved);
+    hf_band_back_solve_general(s->n_band, s->half_bandwidth, s->n_border, s->general, s->pivot, s->solved, s->n_band);
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++)
+            for (size_t k = 0; k < n_band; k++)
+                if (s->column[i * n_band + k] != 0)
+                    s->corner[i * n + j] -= s->column[i * n_band + k] * s->solved[j * n_band + k];
+    fill_border(s);
+    return hf_dense_factor(s->n_border, s->dense, s->dense_pivot) == 0 ? HF_OK : HF_SINGULAR;
+}
+
+/* Units in which the entries of the matrix are about 1. */
+static void choose_units(hf_saddle *s)
+{
+    const hf_built_linear *l = s->linear;
+    const hf_model *m = &l->built->model;
+    double stiffest = 0;
+    for (int e = 0; e < m->n_cable; e++)
+        stiffest = fmax(stiffest, l->stiffness_N_per_m[e]);
+    s->force_m_per_N = 1 / (stiffest * s->size_m);
+    for (int i = 0; i < s->n_attached * s->n_attached; i++)
+        s->flex[i] = stiffest * m->flexibility_m_per_N[i];
+}
+
+hf_status hf_saddle_factor(hf_saddle *s, double damping)
+{
+    const hf_model *m = &s->linear->built->model;
+    memset(s->general, 0, (size_t)s->n_band * (size_t)room_of_band(s) * sizeof *s->general);
+    memset(s->column, 0, (size_t)s->n_border * (size_t)s->n_band * sizeof *s->column);
+    memset(s->corner, 0, (size_t)s->n_border * (size_t)s->n_border * sizeof *s->corner);
+    s->part = 1 / (1 + damping);
+    choose_units(s);
+    for (int e = 0; e < m->n_cable; e++)
+        add_cable(s, e);
+    for (int row = 0; row < m->n_node; row++)
+        add_row(s, row);
+    if (hf_band_factor_general(s->n_band, s->half_bandwidth, s->general, s->pivot) != 0) return HF_SINGULAR;
+    return factor_border(s);
+}
+
+/* ---- an answer ---- */
+
+/* A right-hand side: of the band [n_band], and of the border. */
+static void ask(const hf_saddle *s, const hf_saddle_answer *a, double *band, double *border)
+{
+    const hf_built_linear *l = s->linear;
+    const hf_model *m = &l->built->model;
+    double precision = s->n_off ? 1 / (s->prior.support_sigma_m * s->prior.support_sigma_m) : 0;
+    memset(band, 0, (size_t)s->n_band * sizeof *band);
+    memset(border, 0, (size_t)s->n_border * sizeof *border);
+    for (int row = 0; row < m->n_node; row++) {
+        int at = unknown_of(s, row, MOVE);
+        double *to = at < s->n_band ? band + at : border + (at - s->n_band);
+        for (int c = 0; c < 3 && at >= 0; c++) {
+            int i = 3 * row + c;
+            if (s->prior.weight_per_m2[i] > 0) to[c] = s->part * s->prior.weight_per_m2[i] * a->gap_m[i] * s->size_m;
+            if (row >= m->n_free + m->n_attachment) to[c] -= precision * a->rest_m[i] * s->size_m;
+        }
+    }
+    for (int e = 0; e < m->n_cable; e++)
+        for (int p = 0; p < 2; p++) {
+            int at = unknown_of(s, m->end_row[2 * e + p], MULTIPLIER);
+            double *to = at < s->n_band ? band + at : border + (at - s->n_band);
+            double push = (p ? 1 : -1) * l->cut_N_per_m[e] * a->cut_m[e] * s->force_m_per_N;
+            for (int c = 0; c < 3 && at >= 0; c++)
+                to[c] += push * l->unit[3 * (ptrdiff_t)e + c];
+        }
+}
+
+/* From the right-hand side of the border, of which the band's answer is taken off, to moves of attachments, their
+ * multipliers and moves of supports; forces on attachments into `force`. */
+static void solve_border(const hf_saddle *s, const hf_saddle_answer *a, double *border, double *force)
+{
+    const hf_model *m = &s->linear->built->model;
+    size_t n = (size_t)s->n_attached;
+    for (size_t i = 0; i < n; i++) {
+        force[i] = -a->rest_m[3 * (size_t)m->n_free + i] / s->size_m;
+        for (size_t k = 0; k < n; k++)
+            force[i] += s->flex[i * n + k] * border[n + k];
+    }
+    memcpy(border + n, force, n * sizeof *border);
+    hf_dense_solve(s->n_border, s->dense, s->dense_pivot, 1, border);
+    memcpy(force, border + n, n * sizeof *force);
+    for (size_t i = 0; i < n; i++) {
+        border[n + i] = 0;
+        for (size_t k = 0; k < n; k++)
+            border[n + i] += s->flex[i * n + k] * force[k];
+    }
+}
+
+/* Three unknowns of a row; zeros where it has none. */
+static void read_unknown(const hf_saddle *s, int row, int kind, const double *band, const double *border, double to[3])
+{
+    int at = unknown_of(s, row, kind);
+    for (int c = 0; c < 3; c++)
+        to[c] = at < 0 ? 0 : unit_of(s, kind) * (at < s->n_band ? band[at + c] : border[at - s->n_band + c]);
+}
+
+static void read_answer(const hf_saddle *s, hf_saddle_answer *a, const double *band, const double *border,
+                        const double *force)
+{
+    const hf_built_linear *l = s->linear;
+    const hf_model *m = &l->built->model;
+    double rest = s->prior.support_sigma_m;
+    for (int row = 0; row < m->n_node; row++)
+        read_unknown(s, row, MOVE, band, border, a->move_m + 3 * (ptrdiff_t)row);
+    for (int i = 3 * m->n_free; i < 3 * m->n_node; i++) {
+        int k = i - 3 * m->n_free;
+        if (k < s->n_attached)
+            a->rest_m[i] = rest * rest * force[k] / s->size_m;
+        else
+            a->rest_m[i] += a->move_m[i];
+    }
+    for (int e = 0; e < m->n_cable; e++) {
+        const double *u = l->unit + 3 * (ptrdiff_t)e;
+        double p[3], q[3], sigma = s->prior.sigma_m[e];
+        read_unknown(s, m->end_row[2 * e], MULTIPLIER, band, border, p);
+        read_unknown(s, m->end_row[2 * e + 1], MULTIPLIER, band, border, q);
+        double along = u[0] * (p[0] - q[0]) + u[1] * (p[1] - q[1]) + u[2] * (p[2] - q[2]);
+        a->cut_m[e] = sigma * sigma * l->cut_N_per_m[e] * along;
+    }
+}
+
+void hf_saddle_solve(const hf_saddle *s, hf_saddle_answer *a, double *band)
+{
+    size_t n_band = (size_t)s->n_band;
+    double *border = s->work, *force = s->work + s->n_border;
+    ask(s, a, band, border);
+    hf_band_back_solve_general(s->n_band, s->half_bandwidth, 1, s->general, s->pivot, band, s->n_band);
+    for (size_t j = 0; j < (size_t)s->n_border; j++)
+        for (size_t i = 0; i < n_band; i++)
+            border[j] -= s->column[j * n_band + i] * band[i];
+    if (s->n_border) solve_border(s, a, border, force);
+    for (size_t j = 0; j < (size_t)s->n_border; j++)
+        for (size_t i = 0; i < n_band; i++)
+            band[i] -= s->solved[j * n_band + i] * border[j];
+    read_answer(s, a, band, border, force);
+}

@@ -1,0 +1,151 @@
+/* The choice of moves: against all choices there are; steps and range; when it ends. */
+#include "support.h"
+
+#include "built/moves.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_CABLES = 40, ROWS = 30 };
+
+typedef struct {
+    double column[MAX_CABLES][ROWS], residual[ROWS], gram[MAX_CABLES * MAX_CABLES], slope[MAX_CABLES];
+    hf_moves_problem p;
+} example;
+
+/* Columns that are alike, as those of neighbouring cables are: a walk of random steps. */
+static void make_example(example *x, struct rng *rng, int n, int n_row, int moves, int steps)
+{
+    memset(x, 0, sizeof *x);
+    for (int r = 0; r < n_row; r++) {
+        x->residual[r] = rng_uniform(rng, -1, 1);
+        for (int i = 0; i < n; i++)
+            x->column[i][r] = (i ? 0.7 * x->column[i - 1][r] : 0) + rng_uniform(rng, -1, 1);
+    }
+    for (int i = 0; i < n; i++)
+        for (int r = 0; r < n_row; r++) {
+            x->slope[i] += x->column[i][r] * x->residual[r];
+            for (int j = 0; j < n; j++)
+                x->gram[i * n + j] += x->column[i][r] * x->column[j][r];
+        }
+    x->p = (hf_moves_problem){
+        .n = n, .gram = x->gram, .slope = x->slope, .step_m = 0.1, .steps_max = steps, .moves_max = moves};
+    for (int r = 0; r < n_row; r++)
+        x->p.square += x->residual[r] * x->residual[r];
+}
+
+/* The least sum of squares over all choices of at most `left` cables from `first` on. */
+static double search_all(const hf_moves_problem *p, int first, int left, int *steps)
+{
+    double least = hf_moves_square(p, steps);
+    for (int i = first; i < p->n && left; i++)
+        for (int k = -p->steps_max; k <= p->steps_max; k++) {
+            if (!k) continue;
+            steps[i] = k;
+            least = fmin(least, search_all(p, i + 1, left - 1, steps));
+            steps[i] = 0;
+        }
+    return least;
+}
+
+/* The greedy choice with exchanges is that of a search in most cases, and nowhere far from it. */
+START_TEST(choices_are_nearly_the_best)
+{
+    static example x;
+    struct rng rng = rng_start(7000);
+    int n_best = 0;
+    double worst = 1;
+    enum { TRIALS = 60 };
+    for (int trial = 0; trial < TRIALS; trial++) {
+        int steps[MAX_CABLES] = {0}, none[MAX_CABLES] = {0}, n_turned = 0;
+        hf_moves_end end;
+        make_example(&x, &rng, 8, 12, 3, 4);
+        double least = search_all(&x.p, 0, x.p.moves_max, none);
+        ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end), HF_OK);
+        double square = hf_moves_square(&x.p, steps);
+        for (int i = 0; i < x.p.n; i++) {
+            n_turned += steps[i] != 0;
+            ck_assert_int_le(abs(steps[i]), x.p.steps_max);
+        }
+        ck_assert_int_le(n_turned, x.p.moves_max);
+        ck_assert_double_ge(square, least - 1e-9);
+        n_best += square < least + 1e-9;
+        worst = fmax(worst, sqrt(square / least));
+    }
+    printf("moves: %d of %d choices are the best, the worst is %.3f of it\n", n_best, TRIALS, worst);
+    ck_assert_int_ge(n_best, 4 * TRIALS / 5);
+    ck_assert_double_lt(worst, 1.1);
+}
+END_TEST
+
+START_TEST(it_ends_when_it_should)
+{
+    static example x;
+    struct rng rng = rng_start(7001);
+    int steps[MAX_CABLES], more[MAX_CABLES], n = 0;
+    double sample[MAX_CABLES] = {0};
+    hf_moves_end end;
+    make_example(&x, &rng, 20, 30, 5, 100);
+    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end), HF_OK);
+    ck_assert_int_eq(end, HF_MOVES_ALL);
+    double reached = sqrt(hf_moves_square(&x.p, steps));
+    x.p.target = reached * 1.2;
+    ck_assert_int_eq(hf_moves_choose(&x.p, more, &end), HF_OK);
+    ck_assert_int_eq(end, HF_MOVES_TARGET);
+    ck_assert_double_le(sqrt(hf_moves_square(&x.p, more)), x.p.target);
+    for (int i = 0; i < x.p.n; i++)
+        n += more[i] != 0;
+    ck_assert_int_lt(n, 5);
+
+    x.p.target = 0;
+    x.p.step_m = 100; /* every step is too large */
+    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end), HF_OK);
+    ck_assert_int_eq(end, HF_MOVES_NONE);
+    ck_assert(hf_moves_square(&x.p, steps) == x.p.square);
+
+    x.p.step_m = 0.1;
+    x.p.n_sample = 1;
+    x.p.sample = sample;
+    for (int i = 0; i < x.p.n; i++)
+        sample[i] = 1e3;
+    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end), HF_OK);
+    ck_assert_int_eq(end, HF_MOVES_DOUBT);
+    ck_assert(hf_moves_square(&x.p, steps) == x.p.square);
+}
+END_TEST
+
+/* Without steps the moves are within the range, and no choice of steps is better. */
+START_TEST(the_best_is_a_bound)
+{
+    static example x;
+    struct rng rng = rng_start(7100 + (uint64_t)_i);
+    int steps[MAX_CABLES];
+    double move[MAX_CABLES], square;
+    hf_moves_end end;
+    make_example(&x, &rng, 20, 30, 20, _i + 1);
+    ck_assert_int_eq(hf_moves_best(&x.p, move), HF_OK);
+    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end), HF_OK);
+    square = 0;
+    for (int r = 0; r < 30; r++) {
+        double sum = x.residual[r];
+        for (int i = 0; i < x.p.n; i++)
+            sum += x.column[i][r] * move[i];
+        square += sum * sum;
+    }
+    for (int i = 0; i < x.p.n; i++)
+        ck_assert_double_le(fabs(move[i]), x.p.steps_max * x.p.step_m);
+    ck_assert_double_le(square, hf_moves_square(&x.p, steps));
+}
+END_TEST
+
+Suite *suite_unit_moves(void)
+{
+    Suite *suite = suite_create("unit/built/moves");
+    TCase *tcase = tcase_create("moves");
+    tcase_add_test(tcase, choices_are_nearly_the_best);
+    tcase_add_test(tcase, it_ends_when_it_should);
+    tcase_add_loop_test(tcase, the_best_is_a_bound, 0, 8);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
