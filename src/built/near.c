@@ -149,7 +149,7 @@ void hf_near_step(const hf_near *near, hf_near_lanes *l)
 
 /* ---- the shape in a workspace ---- */
 
-/* Measures it. False when it is no equilibrium within the tolerances, or nodes are loose. */
+/* Measures it, and places loose nodes. False when it is no equilibrium within the tolerances. */
 static bool accept(const hf_near *near, int n_step, hf_workspace *w, hf_form_result *r)
 {
     const hf_model *m = &near->model;
@@ -163,7 +163,7 @@ static bool accept(const hf_near *near, int n_step, hf_workspace *w, hf_form_res
         hf_coupling_accept(m, w, n_step, gap_m, r);
     }
     if (r->n_slack > 0) hf_loose_settle(m, form, w, r);
-    return r->n_loose == 0;
+    return r->status == HF_OK;
 }
 
 bool hf_near_find(const hf_near *near, const hf_built_net *net, hf_workspace *w, hf_form_result *r)

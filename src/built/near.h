@@ -45,15 +45,15 @@ void hf_near_load(const hf_near *near, hf_near_lanes *lanes, int lane, const hf_
 void hf_near_look(const hf_near *near, hf_near_lanes *lanes);
 void hf_near_step(const hf_near *near, hf_near_lanes *lanes);
 
-/* After hf_near_look. LOST: the net is too far from the nominal one, or a cable is so slack that nodes may be loose. */
+/* After hf_near_look. LOST: the net is too far from the nominal one. */
 typedef enum { HF_NEAR_GOES_ON, HF_NEAR_FOUND, HF_NEAR_LOST } hf_near_verdict;
 
 /* What to do with a lane. When the shape is found, it is in position_m and tension_N of the workspace. */
 hf_near_verdict hf_near_settle(const hf_near *near, hf_near_lanes *lanes, int lane, const hf_built_net *net,
                                hf_workspace *w, hf_form_result *result);
 
-/* Find one net by Newton's method from the nominal shape. Returns false when it has not converged, or nodes are loose;
- * else the workspace holds the shape. */
+/* Find one net by Newton's method from the nominal shape. Loose nodes are placed and counted as by hf_built_solve.
+ * Returns false when it has not converged; else the status is HF_OK and the workspace holds the shape. */
 bool hf_near_find(const hf_near *near, const hf_built_net *net, hf_workspace *w, hf_form_result *result);
 
 /* ---- the parts of hf_near_find ---- */
@@ -62,7 +62,7 @@ bool hf_near_find(const hf_near *near, const hf_built_net *net, hf_workspace *w,
 void hf_near_prepare(const hf_near *near, const hf_built_net *net, hf_workspace *w);
 
 /* Newton's method from the workspace's position_m and tension_N. Adds its steps to *n_step. Returns false when it has
- * not converged; else tension_N and q_N_per_m are those of the law at the shape. */
+ * not come near an equilibrium; else tension_N and q_N_per_m belong to the shape, and the caller measures it. */
 bool hf_near_newton(const hf_near *near, hf_workspace *w, int *n_step);
 
 #endif

@@ -15,7 +15,7 @@
 /* The least tension in the matrix: so much of the largest force out of balance, and of the reference tension. */
 #define FLOOR_OF_RESIDUAL 0.1
 #define FLOOR_MAX 0.01
-/* From this residual on, over the reference tension, each step must halve it: what does not is rounding. */
+/* From this residual on, over the reference tension, each step halves it, or it is rounding. */
 #define END_GAME 1e-6
 
 /* Stiffness in the matrix of the cables, which hf_near_newton has put into newton_trial_tension_N (along, N/m) and
@@ -112,6 +112,17 @@ static bool solve(const hf_near *near, int k, double floor_N, hf_workspace *w)
     return true;
 }
 
+/* The tensions of the law at the shape; else those that the last step foretold, which balance where EA times the rounding
+ * of lengths does not. */
+static void set_tensions(const hf_model *m, bool by_law, hf_workspace *w)
+{
+    for (int e = 0; e < m->n_cable; e++) {
+        double over_m = w->length_m[e] - w->target[e];
+        if (by_law) w->tension_N[e] = over_m > 0 ? w->EA_N[e] / w->target[e] * over_m : 0;
+        w->q_N_per_m[e] = w->tension_N[e] / w->length_m[e];
+    }
+}
+
 bool hf_near_newton(const hf_near *near, hf_workspace *w, int *n_step)
 {
     const hf_model *m = &near->model;
@@ -119,19 +130,18 @@ bool hf_near_newton(const hf_near *near, hf_workspace *w, int *n_step)
     double reach_m = REACH * hf_joint_mean_length_m(m), before_N = INFINITY;
     for (int k = 0;; k++) {
         double residual_N = measure(m, w), gap_m = hf_joint_gap_m(m, w, w->position_m, w->newton_force_N, NULL);
-        if (residual_N <= form->residual_tolerance * m->reference_N && gap_m <= form->coupling.tof_m) break;
-        bool ends = residual_N < END_GAME * m->reference_N && !(m->n_attachment) && !(residual_N < before_N / 2);
-        if (!isfinite(residual_N) || ends || k == STEPS_MAX) return false;
+        bool on_truss = gap_m <= fmax(form->coupling.tof_m, HF_JOINT_NO_GAP_M);
+        bool balances = residual_N <= form->residual_tolerance * m->reference_N;
+        bool is_rounding = residual_N < END_GAME * m->reference_N && !(residual_N < before_N / 2);
+        if (on_truss && (balances || is_rounding)) {
+            set_tensions(m, balances, w);
+            return true;
+        }
+        if (!isfinite(residual_N) || k == STEPS_MAX) return false;
         before_N = residual_N;
         if (!solve(near, k, fmin(FLOOR_OF_RESIDUAL * residual_N, FLOOR_MAX * m->reference_N), w)) return false;
         double move_m = largest_move_m(w);
         move(m, w, move_m > reach_m ? reach_m / move_m : 1);
         ++*n_step;
     }
-    for (int e = 0; e < m->n_cable; e++) {
-        double over_m = w->length_m[e] - w->target[e];
-        w->tension_N[e] = over_m > 0 ? w->EA_N[e] / w->target[e] * over_m : 0;
-        w->q_N_per_m[e] = w->tension_N[e] / w->length_m[e];
-    }
-    return true;
 }

@@ -83,7 +83,7 @@ START_TEST(small_errors_are_found_in_lanes)
 }
 END_TEST
 
-/* Errors of 30 mm over lengths of about 1 m leave cables slack. Nets with loose nodes are left to the reference. */
+/* Errors of 30 mm over lengths of about 1 m leave cables slack. Loose nodes are those of the reference. */
 START_TEST(large_errors_are_found_by_newton)
 {
     struct near_run run;
@@ -97,16 +97,21 @@ START_TEST(large_errors_are_found_by_newton)
         hf_built_solve(&run.built, &run.sample, &run.w, &reference);
         n_loose += reference.n_loose > 0;
         if (!is_found) {
-            n_missed += reference.status == HF_OK && reference.n_loose == 0;
+            n_missed += reference.status == HF_OK;
             continue;
         }
         n_slack += r.n_slack;
         ck_assert_int_eq(reference.status, HF_OK);
-        ck_assert_int_eq(reference.n_loose, 0);
+        ck_assert_int_eq(r.n_loose, reference.n_loose);
         ck_assert_int_eq(r.n_slack, reference.n_slack);
         double rounding_N = 1e-10; /* of lengths of metres, 1e-15, times EA/l0, when the shape is measured once more */
-        ck_assert_double_le(r.residual_N, run.built.form.residual_tolerance * run.built.model.reference_N + rounding_N);
-        ck_assert_double_eq_tol(r.psi_m, reference.psi_m, 1e-9);
+        if (!r.n_loose)            /* whose cables are as long as their places are exact */
+            ck_assert_double_le(r.residual_N,
+                                run.built.form.residual_tolerance * run.built.model.reference_N + rounding_N);
+        if (isnan(reference.psi_m))
+            ck_assert(isnan(r.psi_m)); /* all inner nodes are loose */
+        else
+            ck_assert_double_eq_tol(r.psi_m, reference.psi_m, 1e-9);
     }
     ck_assert_int_le(n_missed, 1);
     ck_assert_int_gt(n_slack, 0);
