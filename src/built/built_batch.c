@@ -160,7 +160,8 @@ static void solve_alone(const batch_work *work, int lane, int i)
     const hf_built_batch *batch = work->job->batch;
     hf_workspace *w = &work->room->work;
     hf_form_result r;
-    if (!hf_near_find(&batch->near, &work->net[lane], w, &r)) hf_built_solve(batch->built, &work->net[lane], w, &r);
+    if (!batch->has_lanes || !hf_near_find(&batch->near, &work->net[lane], w, &r))
+        hf_built_solve(batch->built, &work->net[lane], w, &r);
     give(work, i, &r);
 }
 

@@ -2,13 +2,14 @@
 #include "built/near.h"
 
 #include "base/arena.h"
-#include "built/pull_kernel.h"
 #include "solve/coupling.h"
 #include "solve/joint.h"
 #include "solve/loose.h"
+#include "solve/schur.h"
 #include <hifdm/metrics.h>
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,16 +21,20 @@
 
 /* ---- what all threads share ---- */
 
-static hf_pull_find *choose_pulls(void)
+static void choose_kernels(hf_near *near)
 {
+#define SET(isa) near->find = hf_pull_find_##isa, near->multiply = hf_pull_multiply_##isa
     switch (hf_lane_best_isa()) {
     case HF_LANE_AVX512:
-        return hf_pull_find_avx512;
+        SET(avx512);
+        break;
     case HF_LANE_AVX2:
-        return hf_pull_find_avx2;
+        SET(avx2);
+        break;
     default:
-        return hf_pull_find_portable;
+        SET(portable);
     }
+#undef SET
 }
 
 void hf_near_prepare(const hf_near *near, const hf_built_net *net, hf_workspace *w)
@@ -50,6 +55,36 @@ void hf_near_prepare(const hf_near *near, const hf_built_net *net, hf_workspace 
     hf_joint_set_displacement(m, w);
 }
 
+static void lay_out_matrices(hf_arena *arena, hf_near *near)
+{
+    const hf_model *m = &near->model;
+    size_t column = 3 * (size_t)m->half_bandwidth + 3;
+    near->band = hf_arena_take(arena, HF_NEWTON_DOFS(m) * column, sizeof(double));
+    if (!m->n_attachment) return;
+    near->answer = hf_arena_take(arena, (size_t)near->chord.n_pull_pad * (size_t)near->chord.n_pull, sizeof(double));
+}
+
+/* How the truss answers gaps F f - r of the nominal net, whose matrix the workspace has factored. */
+static hf_status find_answer(hf_workspace *w, hf_near *near)
+{
+    const hf_model *m = &near->model;
+    size_t n = (size_t)near->chord.n_pull;
+    hf_schur schur;
+    hf_status status = hf_schur_create(m, &schur);
+    if (status == HF_OK) status = hf_schur_factor(m, w, hf_newton_matrix_block, &schur);
+    for (size_t j = 0; j < n && status == HF_OK; j++) {
+        double *column = schur.column;
+        memset(column, 0, n * sizeof *column);
+        column[j] = 1;
+        hf_schur_solve(&schur, column);
+        for (size_t i = 0; i < n; i++)
+            near->answer[(i / HF_PULL_ROWS * n + j) * HF_PULL_ROWS + i % HF_PULL_ROWS] = column[i];
+    }
+    hf_schur_free(&schur);
+    near->chord.n_mode = 0;
+    return status;
+}
+
 hf_status hf_near_create(const hf_built *b, hf_workspace *w, hf_near *near)
 {
     hf_arena arena = {0};
@@ -57,21 +92,22 @@ hf_status hf_near_create(const hf_built *b, hf_workspace *w, hf_near *near)
     near->model.n_gene = near->model.n_leader = near->model.n_gene_group = 0;
     near->model.gene = NULL;
     near->evaluator = (hf_evaluator){.model = &near->model, .form = &b->form, .rule = HF_RULE_TENSION};
+    choose_kernels(near);
     hf_near_prepare(near, &(hf_built_net){0}, w);
     w->n_moving = b->model.n_free;
     HF_TRY(hf_chord_create_here(&near->evaluator, w, &near->chord));
-    if (b->model.n_attachment) return HF_OK;
-    size_t n = HF_NEWTON_DOFS(&b->model) * (3 * (size_t)b->model.half_bandwidth + 3);
-    HF_TRY(HF_ARENA_MAKE(&arena, near->band = hf_arena_take(&arena, n, sizeof *near->band)));
-    memcpy(near->band, w->newton_band, n * sizeof *near->band);
-    return HF_OK;
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_matrices(&arena, near)));
+    near->block = arena.block;
+    memcpy(near->band, w->newton_band,
+           HF_NEWTON_DOFS(&b->model) * (3 * (size_t)b->model.half_bandwidth + 3) * sizeof *near->band);
+    return b->model.n_attachment ? find_answer(w, near) : HF_OK;
 }
 
 void hf_near_free(hf_near *near)
 {
-    hf_arena arena = {.block = (unsigned char *)near->band};
     hf_chord_free(&near->chord);
-    hf_arena_free(&arena);
+    free(near->block);
+    near->block = NULL;
 }
 
 /* ---- lanes ---- */
@@ -79,6 +115,7 @@ void hf_near_free(hf_near *near)
 static void lay_out(hf_arena *arena, const hf_model *m, hf_near_lanes *l)
 {
     size_t n = (size_t)m->n_cable * HF_LANES;
+    l->gap_lanes_m = hf_arena_take(arena, 3 * (size_t)m->n_attachment * HF_LANES, sizeof(double));
     l->cut_m = hf_arena_take(arena, n, sizeof(double));
     l->stiffness_N_per_m = hf_arena_take(arena, n, sizeof(double));
     l->tension_N = hf_arena_take(arena, n, sizeof(double));
@@ -127,7 +164,7 @@ void hf_near_look(const hf_near *near, hf_near_lanes *l)
     const hf_form_settings *form = &near->built->form;
     double squared[HF_LANES], gap_squared[HF_LANES] = {0};
     double scale = c->n_pull ? form->residual_tolerance * m->reference_N / form->coupling.tof_m : 0;
-    choose_pulls()(m, l->lanes.x_m, l->cut_m, l->stiffness_N_per_m, l->tension_N, l->lanes.gene);
+    near->find(m, l->lanes.x_m, l->cut_m, l->stiffness_N_per_m, l->tension_N, l->lanes.gene);
     c->kernels->forces(c, &l->lanes, squared);
     if (c->n_pull) c->kernels->couple(c, &l->lanes, gap_squared);
     l->is_measured = false;
@@ -139,12 +176,42 @@ void hf_near_look(const hf_near *near, hf_near_lanes *l)
     }
 }
 
+/* Adds to the pulls on the truss what the step of the free nodes does to them, and takes the step out of force_N, where
+ * it has been added to the shape. */
+static void follow(const hf_near *near, hf_chord_lanes *l)
+{
+    const hf_model *m = &near->model;
+    const hf_chord *c = &near->chord;
+    double *step = l->force_N + (size_t)c->width * HF_LANES;
+    for (int k = 0; k < m->n_tie; k++) {
+        int there = m->end_row[m->tie[k] ^ 1];
+        const double *block = c->tie_block + 9 * k, *d = step + (ptrdiff_t)3 * there * HF_LANES;
+        double *pull = l->pull_N + (ptrdiff_t)3 * m->tie_attachment[k] * HF_LANES;
+        if (there >= m->n_free) continue;
+        for (int i = 0; i < 9 * HF_LANES; i++) {
+            int row = i / (3 * HF_LANES), column = i / HF_LANES % 3, lane = i % HF_LANES;
+            pull[row * HF_LANES + lane] += block[3 * row + column] * d[column * HF_LANES + lane];
+        }
+    }
+    memset(step, 0, (size_t)c->n_dof * HF_LANES * sizeof *step);
+}
+
+/* On a truss first the free nodes with the attachments held, then the attachments, and what their move does. */
 void hf_near_step(const hf_near *near, hf_near_lanes *l)
 {
-    const hf_chord_kernels *k = near->chord.kernels;
-    if (near->chord.n_pull) k->move(&near->chord, &l->lanes);
-    k->solve(&near->chord, &l->lanes);
-    k->step(&near->chord, &l->lanes);
+    const hf_chord *c = &near->chord;
+    const hf_chord_kernels *k = c->kernels;
+    double gap_squared[HF_LANES];
+    k->solve(c, &l->lanes);
+    k->step(c, &l->lanes);
+    if (!c->n_pull) return;
+    follow(near, &l->lanes);
+    k->couple(c, &l->lanes, gap_squared);
+    memcpy(l->gap_lanes_m, l->lanes.move_m, (size_t)c->n_pull * HF_LANES * sizeof *l->gap_lanes_m);
+    near->multiply(c->n_pull, near->answer, l->gap_lanes_m, l->lanes.move_m);
+    k->move(c, &l->lanes);
+    k->solve(c, &l->lanes);
+    k->step(c, &l->lanes);
 }
 
 /* ---- the shape in a workspace ---- */

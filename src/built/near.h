@@ -6,6 +6,7 @@
 #ifndef HIFDM_NEAR_H
 #define HIFDM_NEAR_H
 
+#include "built/pull_kernel.h"
 #include "search/chord.h"
 #include <hifdm/built.h>
 
@@ -15,11 +16,17 @@ typedef struct {
     hf_model model;         /* that of `built` but for its genes, of which there are none; it borrows all memory */
     hf_evaluator evaluator; /* for chord, which reads its model and its settings; so this struct may not move */
     hf_chord chord;
-    double *band; /* the factored matrix of the nominal net, as in a workspace; NULL on a truss */
+    double *band; /* the factored matrix of the nominal net, as in a workspace */
+    /* On a truss: (I + F S)^-1, with F the flexibility and S the stiffness of the nominal net at the attachments,
+     * packed for hf_pull_multiply. It stands in place of the modes of chord. */
+    double *answer;
+    hf_pull_find *find; /* kernels of this machine */
+    hf_pull_multiply *multiply;
+    void *block;
 } hf_near;
 
 /* Factor the matrix of the nominal net; w is scratch. Returns HF_OK; HF_NO_MEMORY; or another status when there is no
- * matrix: then hf_near_find serves, and no lanes. Call hf_near_free in any case. */
+ * matrix: then nothing else here serves. Call hf_near_free in any case. */
 hf_status hf_near_create(const hf_built *built, hf_workspace *w, hf_near *near);
 void hf_near_free(hf_near *near);
 
@@ -27,6 +34,7 @@ void hf_near_free(hf_near *near);
 typedef struct {
     hf_chord_lanes lanes;
     double *cut_m, *stiffness_N_per_m, *tension_N; /* [n_cable][HF_LANES] */
+    double *gap_lanes_m;                           /* [chord.n_pull][HF_LANES] */
     int steps[HF_LANES];
     double excess_N[HF_LANES], excess_before_N[HF_LANES]; /* residual, or gap of the truss in units of its tolerance */
     double residual_N[HF_LANES], gap_m[HF_LANES];

@@ -5,8 +5,10 @@
 
 #include "linalg/band.h"
 #include "solve/joint.h"
+#include "solve/schur.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #define STEPS_MAX 40
@@ -97,23 +99,46 @@ static void move(const hf_model *m, hf_workspace *w, double part)
             w->position_m[c * m->n_node + i] += part * step[3 * i + c];
 }
 
+/* Net and truss with the attachments where they are now: turns newton_step, which the factor of the free nodes has made
+ * their step with the attachments held, into the step of both. The truss answers as to the nominal net. */
+static void follow_truss(const hf_near *near, const double *factor, hf_workspace *w)
+{
+    const hf_model *m = &near->model;
+    int n = hf_newton_matrix_dofs(m), n_pull = near->chord.n_pull;
+    double *pull = w->newton_step + n, *gap = w->coupling_work, *push = w->newton_force_N;
+    hf_schur_pull(m, w, block_of, w->newton_step, pull);
+    hf_schur_flex(m, pull, gap);
+    hf_joint_set_displacement(m, w);
+    for (int i = 0; i < n_pull; i++)
+        gap[i] -= w->displacement_m[i];
+    for (int i = 0; i < n_pull; i++) {
+        const double *row = near->answer + ((ptrdiff_t)i / HF_PULL_ROWS * n_pull) * HF_PULL_ROWS + i % HF_PULL_ROWS;
+        pull[i] = 0;
+        for (int j = 0; j < n_pull; j++)
+            pull[i] += row[(ptrdiff_t)j * HF_PULL_ROWS] * gap[j];
+    }
+    memset(push, 0, (size_t)n * sizeof *push);
+    hf_schur_push(m, w, block_of, pull, push);
+    hf_band_back_solve(n, 3 * m->half_bandwidth + 2, 1, factor, push, n);
+    for (int i = 0; i < n; i++)
+        w->newton_step[i] += push[i];
+}
+
 /* Turns newton_step into the step, the first one with the matrix of the nominal net. */
 static bool solve(const hf_near *near, int k, double floor_N, hf_workspace *w)
 {
     const hf_model *m = &near->model;
-    if (k == 0 && near->band) {
-        int n = hf_newton_matrix_dofs(m);
-        hf_band_back_solve(n, 3 * m->half_bandwidth + 2, 1, near->band, w->newton_step, n);
-        return true;
-    }
-    set_stiffness(m, w, floor_N);
-    if (hf_joint_factor(m, w, block_of, NULL, NULL) != HF_OK) return false;
-    hf_joint_solve(m, w, block_of, w->newton_step);
+    const double *factor = k == 0 ? near->band : w->newton_band;
+    int n = hf_newton_matrix_dofs(m);
+    if (k > 0 || m->n_attachment) set_stiffness(m, w, floor_N);
+    if (k > 0 && hf_newton_matrix_factor_blocks(m, w, block_of, NULL, NULL) != HF_OK) return false;
+    hf_band_back_solve(n, 3 * m->half_bandwidth + 2, 1, factor, w->newton_step, n);
+    if (m->n_attachment) follow_truss(near, factor, w);
     return true;
 }
 
-/* The tensions of the law at the shape; else those that the last step foretold, which balance where EA times the rounding
- * of lengths does not. */
+/* The tensions of the law at the shape; else those that the last step foretold, which balance where EA times the
+ * rounding of lengths does not. */
 static void set_tensions(const hf_model *m, bool by_law, hf_workspace *w)
 {
     for (int e = 0; e < m->n_cable; e++) {

@@ -1,4 +1,4 @@
-/* The inner loop over cables of nets side by side. */
+/* The inner loops over cables and over attachments of nets side by side. */
 #define HF_LANE_VECTORS
 #include "built/pull_kernel.h"
 
@@ -29,5 +29,22 @@ void HF_KERNEL(hf_pull_find)(const hf_model *m, const double *x_m, const double 
             vec tension = if_greater(over, none, lanes_at(stiffness_N_per_m, e, p) * over, none);
             set_lanes(tension_N, e, p, tension);
             set_lanes(q_N_per_m, e, p, if_greater(tension, none, tension / length, none));
+        }
+}
+
+void HF_KERNEL(hf_pull_multiply)(int n, const double *packed, const double *in, double *out)
+{
+    for (int i = 0; i < n; i += HF_PULL_ROWS, packed += (ptrdiff_t)n * HF_PULL_ROWS)
+        for (int p = 0; p < HF_LANES; p += WIDTH) {
+            vec sum[HF_PULL_ROWS];
+            foreach (r, HF_PULL_ROWS)
+                sum[r] = splat(0);
+            for (int j = 0; j < n; j++) {
+                vec x = lanes_at(in, j, p);
+                foreach (r, HF_PULL_ROWS)
+                    sum[r] = plus_product(sum[r], splat(packed[j * HF_PULL_ROWS + r]), x);
+            }
+            foreach (r, HF_PULL_ROWS)
+                set_lanes(out, i + r, p, sum[r]);
         }
 }

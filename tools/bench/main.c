@@ -84,7 +84,8 @@ static const section section_table[] = {{"step", bench_step},     {"peak", bench
                                         {"single", bench_single}, {"equilibrium", bench_equilibrium},
                                         {"growth", bench_growth}, {"population", bench_population},
                                         {"whole", bench_whole},   {"frame", bench_frame},
-                                        {"lanes", bench_lanes},   {"cases", bench_cases}};
+                                        {"lanes", bench_lanes},   {"cases", bench_cases},
+                                        {"built", bench_built}};
 
 int main(int argc, char **argv)
 {

@@ -4,6 +4,7 @@ sparse product, LAPACK's band solver or SuperLU. Called by run.py; prints sample
 FOLDER/NAME.net.
 
     peers.py version | peers.py step FOLDER | peers.py single FOLDER NAME | peers.py precision FOLDER NAME
+    peers.py built FOLDER SIGMA_MM
 """
 import os
 import sys
@@ -178,6 +179,94 @@ def precision(folder, scene):
             emit("precision", scene, "scipy fixed point", decade, quantity, value)
 
 
+class BuiltNet:
+    """The net as built with its samples, as built.c wrote them: elastic cables, sum EA/(2 l0) max(l - l0, 0)^2."""
+
+    def __init__(self, path):
+        with open(path, "rb") as file:
+            self.n_node, n, m, count = (int(v) for v in np.fromfile(file, "i4", 4))
+            self.n, self.end = n, np.fromfile(file, "i4", 2 * m).reshape(m, 2)
+            def read(*shape):
+                return np.fromfile(file, "f8", int(np.prod(shape))).reshape(shape)
+            self.x0 = read(3, self.n_node).T.copy()
+            _, self.EA, self.tension = read(m), read(m), read(m)
+            self.cut, self.found = read(count, m), read(count, 3, self.n_node).transpose(0, 2, 1)
+        a, b = self.end.T
+        # force on the free nodes from the pulls [3 m], and the matrix by columns from the blocks [m][3][3]
+        one = np.concatenate([np.ones((a < n).sum()), -np.ones((b < n).sum())])
+        row, who = np.concatenate([a[a < n], b[b < n]]), np.concatenate([np.flatnonzero(a < n), np.flatnonzero(b < n)])
+        self.gather = sp.kron(sp.csr_matrix((one, (row, who)), shape=(n, m)), sp.eye(3), format="csr")
+        inside = np.flatnonzero((a < n) & (b < n))
+        i = np.concatenate([row, a[inside], b[inside]])
+        j = np.concatenate([row, b[inside], a[inside]])
+        who = np.concatenate([who, inside, inside])
+        sign = np.where(np.arange(i.size) < row.size, 1.0, -1.0)
+        c = np.arange(3)
+        rows = (3 * i[:, None, None] + c[:, None] + 0 * c).ravel()
+        columns = (3 * j[:, None, None] + 0 * c[:, None] + c).ravel()
+        place, inverse = np.unique(columns * 3 * n + rows, return_inverse=True)
+        blocks = (9 * who[:, None, None] + 3 * c[:, None] + c).ravel()
+        self.data_of_blocks = sp.csr_matrix((np.repeat(sign, 9), (inverse, blocks)), shape=(place.size, 9 * m))
+        pointer = np.searchsorted(place // (3 * n), np.arange(3 * n + 1))
+        self.matrix = sp.csc_matrix((np.zeros(place.size), place % (3 * n), pointer), shape=(3 * n, 3 * n))
+        self.soft = np.flatnonzero(place // (3 * n) == place % (3 * n))
+
+    def geometry(self, x):
+        d = x[self.end[:, 1]] - x[self.end[:, 0]]
+        length = np.sqrt(np.einsum("ij,ij->i", d, d))
+        return d / length[:, None], length
+
+    def energy(self, x, cut):
+        return (self.EA / (2 * cut) * np.maximum(self.geometry(x)[1] - cut, 0) ** 2).sum()
+
+    def newton(self, cut, tolerance, most):
+        """Newton's method from the nominal shape with Armijo's rule on the energy; the shape, steps and residual."""
+        x, residual = self.x0.copy(), np.inf
+        for k in range(most + 1):
+            u, length = self.geometry(x)
+            stiffness = self.EA / cut * (length > cut)
+            tension = stiffness * (length - cut)
+            force = self.gather @ (tension[:, None] * u).ravel()
+            residual = np.sqrt((force.reshape(-1, 3) ** 2).sum(axis=1).max()) / self.tension.max()
+            if residual <= tolerance or k == most:
+                break
+            across = tension / length
+            block = (stiffness - across)[:, None, None] * u[:, :, None] * u[:, None, :] \
+                + across[:, None, None] * np.eye(3)
+            self.matrix.data = self.data_of_blocks @ block.ravel()
+            self.matrix.data[self.soft] += 1e-6  # N/m: what a node without taut cables has
+            step = splu(self.matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
+                        options={"SymmetricMode": True}).solve(force)
+            part, before, slope = 1.0, self.energy(x, cut), force @ step
+            while part > 1e-3:
+                trial = x.copy()
+                trial[: self.n] += part * step.reshape(-1, 3)
+                if self.energy(trial, cut) <= before - 1e-4 * part * slope + 1e-15 * before:
+                    break
+                part /= 2
+            x = trial
+        return x, k, residual
+
+
+def built(folder, sigma_mm):
+    """Samples that do not converge in 60 steps are counted, and left out of the differences."""
+    net = BuiltNet(f"{folder}/built_{sigma_mm}.bin")
+    net.newton(net.cut[0], 1e-8, 2)  # the first calls are slow
+    start, steps, missed, difference = time.process_time(), [], 0, 0.0
+    for cut, found in zip(net.cut, net.found):
+        x, k, residual = net.newton(cut, 1e-8, 60)
+        steps.append(k)
+        missed += residual > 1e-8
+        if residual <= 1e-8:
+            held = np.zeros(net.n_node, dtype=bool)  # loose nodes are anywhere
+            held[net.end[net.geometry(x)[1] > cut * (1 + 1e-9)]] = True
+            difference = max(difference, np.sqrt(((x - found)[held] ** 2).sum(axis=1)).max())
+    seconds = (time.process_time() - start) / len(net.cut)
+    for quantity, value in (("samples_per_s", 1 / seconds), ("cpu_s", seconds), ("steps", np.mean(steps)),
+                            ("error_m", difference), ("missed", missed / len(net.cut))):
+        emit("built", "21x25 f=7.2 as built", "scipy Newton; splu", float(sigma_mm), quantity, value)
+
+
 if __name__ == "__main__":
     if sys.argv[1] == "version":
         print("numpy", np.__version__, "scipy", scipy.__version__)
@@ -185,5 +274,7 @@ if __name__ == "__main__":
         step(sys.argv[2])
     elif sys.argv[1] == "precision":
         precision(sys.argv[2], sys.argv[3])
+    elif sys.argv[1] == "built":
+        built(sys.argv[2], sys.argv[3])
     else:
         single(sys.argv[2], sys.argv[3])

@@ -40,6 +40,8 @@ PICTURE = {
     "paper's stop": ("the paper's stop", "mark"),
 }
 BOUND = "its proven bound"
+BUILT_NET = "21x25 f=7.2 as built"
+BUILT_MM = ["0.01", "0.03", "0.1", "0.5"]  # errors of cut lengths of the net as built
 SCALES = {1: 3, 2: 3, 4: 3, 8: 2, 16: 1}  # nets of the cost growth: rounds, fewer for those that take seconds
 BIG = "scene.parabolic_cylinder.cells_per_module=[4,4]"
 # Arguments of the program. The polish is not what is measured here, and takes long.
@@ -188,6 +190,10 @@ class Bench:
                     self.peers("single", scene)
             for net in FORM_FINDINGS:
                 self.driver("equilibrium", net)
+            self.say("the net as built")
+            for sigma in BUILT_MM:
+                self.driver("built", sigma)
+                self.peers("built", sigma)
             self.say("cost growth")
             for scale, rounds in SCALES.items():
                 if r < rounds:
@@ -281,6 +287,22 @@ class Bench:
     def write_equilibrium(self):
         self.wide("equilibrium", "equilibrium", ["time_s", "error_m", "steps", "n_slack"], ("net", "by", "wanted_m"))
 
+    def write_built(self):
+        self.wide("built", "built", ["samples_per_s", "cpu_s", "steps", "slack_cables", "loose_nodes", "residual",
+                                     "error_m", "missed"], ("net", "method", "sigma_mm"))
+        self.wide("built_precision", "built_precision", ["cpu_s", "error_m"], ("net", "sigma", "tolerance"))
+        lines = {}
+        for scene, method, tolerance in self.samples.keys("built_precision"):
+            point = [self.samples.get("built_precision", scene, method, tolerance, q) for q in ("cpu_s", "error_m")]
+            lines.setdefault(method, []).append(point)
+        for scene, method, sigma in self.samples.keys("built"):
+            if method.startswith("scipy"):
+                point = [self.samples.get("built", scene, method, sigma, q) for q in ("cpu_s", "error_m")]
+                lines.setdefault("scipy, residual 1e-8", []).append(point)
+        svg.loglog(f"{self.out}/built.svg", {"the net as built, 525 nodes": lines}, "processor time per sample (s)",
+                   "largest true position error (m)", "\n".join(self.head), columns=1,
+                   styles={"scipy, residual 1e-8": "mark"})
+
     def write_step(self):
         base, rows = self.samples.any("step", KERNEL_NET, "dpbtrf", "time_s"), []
         for scene, method, n_free in self.samples.keys("step"):
@@ -355,8 +377,8 @@ class Bench:
         os.makedirs(self.out, exist_ok=True)
         self.head = self.header()
         self.wide("frame", "frame", ["time_s", "half_bandwidth"], ("truss", "what", "unknowns"))
-        for name in ("precision", "single", "equilibrium", "step", "peak", "growth", "phases", "stages", "lanes",
-                     "population"):
+        for name in ("precision", "single", "equilibrium", "built", "step", "peak", "growth", "phases", "stages",
+                     "lanes", "population"):
             getattr(self, f"write_{name}")()
         rows = list(summary(self.samples))
         self.table("summary", ["figure", "wanted", f"measured on {self.processor}"], rows)
@@ -417,6 +439,12 @@ def summary(s):
     for lanes in ("shared matrix", "matrix per design"):
         single, *tied = [s.any("lanes", scene, lanes, "band_GFs") for scene in LANE_SCENES]
         yield [f"populations; {lanes}: speed of the lanes on a tied net / on a single one", "1", ratio(tied[0], single)]
+    for sigma, wanted in zip(BUILT_MM, ("10000", "", "1000", "")):
+        yield [f"net as built; cuts {sigma} mm off: samples/s on 2 threads", wanted,
+               s.get("built", BUILT_NET, "hifdm, 2 threads", float(sigma), "samples_per_s")]
+        yield [f"net as built; cuts {sigma} mm off: scipy / hifdm on one core", "",
+               ratio(s.get("built", BUILT_NET, "scipy Newton; splu", float(sigma), "cpu_s"),
+                     s.get("built", BUILT_NET, "hifdm, 1 thread", float(sigma), "cpu_s"))]
     for truss, what, unknowns in s.keys("frame"):
         if what.endswith("five load cases"):  # Frame3DD took 2.2 s and 9.9 s for such trusses
             wanted = "0.5" if what.startswith("factor") else ""

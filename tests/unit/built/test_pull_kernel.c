@@ -1,4 +1,5 @@
-/* The kernel over cables of nets side by side: against the law, and the same bits from all instruction sets. */
+/* The kernels over cables and attachments of nets side by side: against the law and a matrix, and the same bits from
+ * all instruction sets. */
 #include "built_nets.h"
 
 #include "built/pull_kernel.h"
@@ -38,7 +39,7 @@ START_TEST(tensions_are_those_of_the_law)
     fill_pulls(&p);
     for (int isa = 0; isa < HF_LANE_N_ISA; isa++) {
         if (!hf_lane_has_isa((hf_lane_isa)isa)) {
-            skip_for_machine(hf_lane_isa_name((hf_lane_isa)isa), "this processor has it not");
+            skip_for_machine("unit/pull_kernel", hf_lane_isa_name((hf_lane_isa)isa));
             continue;
         }
         kernel[isa](&m, p.x_m, p.cut_m, p.stiffness_N_per_m, p.tension_N[isa], p.q_N_per_m[isa]);
@@ -63,11 +64,41 @@ START_TEST(tensions_are_those_of_the_law)
 }
 END_TEST
 
+/* The rows that fill up are zero in the matrix. */
+START_TEST(products_are_those_of_the_matrix)
+{
+    enum { N = 13, N_PAD = 16 };
+    static hf_pull_multiply *const multiply[HF_LANE_N_ISA] = {hf_pull_multiply_portable, hf_pull_multiply_avx2,
+                                                              hf_pull_multiply_avx512};
+    static _Alignas(64) double packed[N_PAD * N], in[N * HF_LANES], out[HF_LANE_N_ISA][N_PAD * HF_LANES];
+    double matrix[N][N];
+    struct rng rng = rng_start(78);
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++)
+            packed[(i / HF_PULL_ROWS * N + j) * HF_PULL_ROWS + i % HF_PULL_ROWS] = matrix[i][j] =
+                rng_uniform(&rng, -1, 1);
+    for (int i = 0; i < N * HF_LANES; i++)
+        in[i] = rng_uniform(&rng, -1, 1);
+    for (int isa = 0; isa < HF_LANE_N_ISA; isa++) {
+        if (!hf_lane_has_isa((hf_lane_isa)isa)) continue; /* the test above says so */
+        multiply[isa](N, packed, in, out[isa]);
+        ck_assert_mem_eq(out[isa], out[0], sizeof out[0]);
+    }
+    for (int i = 0; i < N_PAD * HF_LANES; i++) {
+        double sum = 0;
+        for (int j = 0; j < N && i / HF_LANES < N; j++)
+            sum += matrix[i / HF_LANES][j] * in[j * HF_LANES + i % HF_LANES];
+        ck_assert_double_eq_tol(out[0][i], sum, 1e-14);
+    }
+}
+END_TEST
+
 Suite *suite_unit_pull_kernel(void)
 {
     Suite *suite = suite_create("unit/pull_kernel");
     TCase *tcase = tcase_create("pull_kernel");
     tcase_add_test(tcase, tensions_are_those_of_the_law);
+    tcase_add_test(tcase, products_are_those_of_the_matrix);
     suite_add_tcase(suite, tcase);
     return suite;
 }
