@@ -95,6 +95,7 @@ PAPER_OUT ?= results/chen2022
 INSTALLED := $(BUILD)/prefix/lib/pkgconfig/hifdm.pc
 BENCH := $(BUILD)/bench/bench
 PEERS := $(BUILD)/optimisers/peers
+FRONTS := $(BUILD)/optimisers/fronts
 BENCH_OUT ?= results/bench
 BENCH_ROUNDS ?= 3
 BENCH_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/bench/*.c)))
@@ -123,7 +124,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
-         bench-before bench-optimisers api lint asan tsan fuzz fuzz-results install
+         bench-before bench-optimisers bench-fronts api lint asan tsan fuzz fuzz-results install
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -228,6 +229,12 @@ bench-optimisers: ## our genetic algorithm beside pagmo's, nlopt's, scipy's: res
 	@mkdir -p $(BENCH_OUT)
 	$(PYTHON) tools/optimisers/run.py --driver $(PEERS) --program $(PROGRAM) --seeds $(OPTIMISER_SEEDS) \
 	    --out $(BENCH_OUT)
+
+bench-fronts: ## fronts of two and three objectives beside pagmo's NSGA-II: results/bench/fronts.csv (2 minutes)
+	$(Q)tools/setup.sh --optimisers
+	$(SUB) $(FRONTS)
+	@mkdir -p $(BENCH_OUT)
+	$(PYTHON) tools/optimisers/fronts.py --driver $(FRONTS) --seeds $(OPTIMISER_SEEDS) --out $(BENCH_OUT)
 
 # From the headers' own comments: tools/api/filter.awk. A warning of doxygen's is an error.
 api: ## the library's interface as pages, from the public headers: build/api/index.html
@@ -360,7 +367,7 @@ $(PROGRAM): $(APP_OBJ) $(STATIC)
 	$(call say,LD,$@)
 	$(Q)$(LINK) -o $@ $^ $(PKG_LIBS)
 
-$(PEERS): tools/optimisers/peers.cpp $(STATIC) Makefile
+$(PEERS) $(FRONTS): $(BUILD)/optimisers/%: tools/optimisers/%.cpp $(STATIC) Makefile
 	$(call say,LD,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CXX) -O2 -std=c++17 -Wall -Iinclude $$(pkg-config --cflags eigen3) $(LDFLAGS) -o $@ $< $(STATIC) -fopenmp \
