@@ -45,6 +45,14 @@ typedef struct {
     void *block;                    /* owns point and design */
 } hf_front;
 
+/* A front without its designs, as a summary has it: the first HF_FRONT_POINTS_MAX points, n_row of n_point. */
+typedef struct {
+    int n_objective, n_point, n_row, n_on, n_dominated, n_failed, minimised, knee;
+    double base[HF_OBJECTIVES_MAX];
+    double wall_s; /* of finding it */
+    hf_front_point row[HF_FRONT_POINTS_MAX];
+} hf_front_table;
+
 /* A front of n_point points with all values 0. HF_OK or HF_NO_MEMORY; free in either case. */
 hf_status hf_front_create(int n_objective, int n_gene, int n_point, hf_front *front);
 void hf_front_free(hf_front *front);
@@ -52,6 +60,9 @@ void hf_front_free(hf_front *front);
 /* When objectives, designs and statuses are there: sort the points, mark those that are dominated (the later of two
  * that are equal, too) or have failed, and find the knee. */
 void hf_front_settle(hf_front *front);
+
+/* All of the table but the time. */
+void hf_front_tabulate(const hf_front *front, hf_front_table *table);
 
 /* Is a as good as b in all objectives, and better in one? */
 bool hf_front_dominates(int n_objective, const double *a, const double *b);

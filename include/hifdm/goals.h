@@ -86,6 +86,15 @@ hf_status hf_goals_linearise(const hf_goals *goals, const hf_workspace *workspac
 void hf_goals_push(const hf_goals *goals, const hf_workspace *workspace, hf_goals_point *point, const hf_goals_rate *by,
                    double *rate);
 
+/* Is the value the largest of several sizes, or over their least? Then it has corners, and residuals are of a smooth
+ * value beside it. */
+bool hf_goals_is_largest(hf_goal_kind kind);
+
+/* The forces (N) of the net on its supports, as point->size [n_support], and their change [n_support] by a variable. */
+void hf_goals_pulls(const hf_model *model, const hf_workspace *workspace, hf_goals_point *point);
+void hf_goals_pull_rates(const hf_model *model, const hf_workspace *workspace, hf_goals_point *point,
+                         const hf_goals_rate *by, double *rate);
+
 #ifdef __cplusplus
 }
 #endif

@@ -121,6 +121,7 @@ typedef struct {
 
 #define HF_DESIGN_ROWS_MAX 16 /* rows of each of these lists */
 #define HF_OBJECTIVES_MAX 3   /* rows of optimize.objectives */
+#define HF_FRONT_POINTS_MAX 512
 #define HF_GOAL_NAME_SIZE 112 /* of a goal in tables: "goal_15_displacement_" and the name of a set */
 
 /* How a net is coupled with an elastic truss. They are not used without a truss. */

@@ -49,6 +49,9 @@
  *                optimize.limits or -1, the cap on the boundary; count, name, value, bound [h]
  *   /goals       with g rows of optimize.goals: name, weight [g]; the value of each in the shapes of form, optimize,
  *                polish [g], as far as these ran
+ *   /front       of optimize.objectives, with p points, o objectives, k genes: name, base [o]; objective, multiplier
+ *                [p][o]; status, mark, iterations [p]; design_N (with optimize.variables design) [p][k]; gene, the name
+ *                of each [k]; attributes n_on, n_dominated, n_failed, minimised, knee (index into p, -1: none), wall_s
  *   /truss       with a nodes, b members, c attachments; attributes mass_kg, n_node, n_member
  *   /truss/node  id, mass_kg [a], position_m [a][3], fixed [a][6]; displacement, reaction [a][6]
  *   /truss/member  id, joint, unit, E_Pa, A_m2, ..., expansion_per_K [b], end [b][2]; end_force [b][12]
@@ -147,6 +150,10 @@ hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_o
 hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
                         const double *design_N, hf_messages *messages);
 
+/* Write the front, whose objectives are named by the goals of the summary, in place of an earlier one. */
+hf_status hf_store_front(hf_store *store, const hf_scene *scene, const hf_model *model, const hf_summary *summary,
+                         const hf_front *front, hf_messages *messages);
+
 /* Write the summary, close the file and give it its name. The store is freed in any case. A failure leaves the
  * published file and the journal as they were. When the file is whole but cannot get its name (HF_EXISTS, HF_IO), it
  * stays under another name, which the message gives. */
@@ -182,6 +189,10 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
 /* Read the shape that a stage found; HF_IO when there is none. Its counts are those of hf_store_read_scene. */
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
 void hf_shape_free(hf_shape *shape);
+
+/* Read the front, and *gene, the names of its genes, [n_gene] of *gene_size bytes each. HF_IO when there is none. Free
+ * the front by hf_front_free and *gene by free in any case. */
+hf_status hf_store_read_front(const char *path, hf_front *front, char **gene, size_t *gene_size, hf_messages *messages);
 
 /* Write the group /truss: the truss as described, its attachments to the net and, when `state` is not NULL, its
  * displacements and forces under the pull of the net. Call it once, before hf_store_finish of a summary that

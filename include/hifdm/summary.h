@@ -6,6 +6,7 @@
 #define HIFDM_SUMMARY_H
 
 #include <hifdm/cable_set.h>
+#include <hifdm/front.h>
 #include <hifdm/optimiser.h>
 #include <hifdm/surface.h>
 #include <stdbool.h>
@@ -134,6 +135,9 @@ typedef struct {
     bool has_polish; /* Levenberg-Marquardt ran */
     hf_form_result polish;
     HF_SUMMARY_POLISH_LIST(HF_SUMMARY_MEMBER)
+
+    bool has_front; /* of optimize.objectives, whose names are those of `goals` */
+    hf_front_table front;
 
     bool has_truss; /* `truss` is set */
     hf_truss_summary truss;

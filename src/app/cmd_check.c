@@ -117,6 +117,16 @@ static bool polishes(const hf_problem *p, const hf_evaluator *v)
     return v && is_wanted && hf_polish_applies(v);
 }
 
+/* The objectives of a front by name. */
+static void print_objectives(const hf_problem *p, FILE *f)
+{
+    char name[HF_GOAL_NAME_SIZE];
+    fprintf(f, "                front of");
+    for (int k = 0; k < p->goals.n_goal; k++)
+        fprintf(f, "%s %s", k ? " and" : "", hf_goals_name(&p->goals, k, name));
+    fprintf(f, ": %d points, each by Levenberg-Marquardt\n", p->settings.optimize.front_points);
+}
+
 /* v: NULL without an optimisation */
 static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
 {
@@ -140,10 +150,13 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
                 "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
                 hf_rule_word[o->rule], p->model.n_gene, o->population, o->generations, (unsigned long long)o->seed);
     bool is_result = hf_optimiser_plan_of(o).ends_with_polish;
+    bool is_front = optimizes && o->n_objective > 0;
+    if (is_front) print_objectives(p, f);
     if (polishes(p, v))
         fprintf(f, "                Levenberg-Marquardt: rule %s, at most %d iterations, %s\n", hf_rule_word[o->rule],
                 o->polish_iterations,
-                is_result                          ? "the result"
+                is_front                           ? "for each point"
+                : is_result                        ? "the result"
                 : o->compare_lm == HF_COMPARE_AUTO ? "for comparison, where it is cheap"
                                                    : "for comparison");
     if (optimizes && o->symmetry != HF_SYMMETRY_NONE)
@@ -258,7 +271,8 @@ static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const h
     if (status != HF_OK || r.iterations == 0) return HF_OK;
     double each_s = (hf_clock_s() - begin_s) / r.iterations;
     hf_print_duration(each_s, one, sizeof one);
-    hf_print_duration(each_s * p->settings.optimize.polish_iterations, all, sizeof all);
+    int n_point = p->settings.optimize.n_objective > 0 ? p->settings.optimize.front_points : 1;
+    hf_print_duration(each_s * p->settings.optimize.polish_iterations * n_point, all, sizeof all);
     fprintf(f, "                Levenberg-Marquardt: %s an iteration; at most about %s, mostly far less\n", one, all);
     return HF_OK;
 }

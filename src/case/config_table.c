@@ -160,7 +160,7 @@ const hf_field hf_field_table[] = {
      "with store every: generations 0, n, 2n, ... are stored"},
     {"optimize.polish_iterations", HF_FIELD_INT, AT(optimize.polish_iterations), 1, 100000, "200", "", NULL,
      "largest number of Levenberg-Marquardt iterations"},
-    {"optimize.front_points", HF_FIELD_INT, AT(optimize.front_points), 3, 1000, "21", "", NULL,
+    {"optimize.front_points", HF_FIELD_INT, AT(optimize.front_points), 3, HF_FRONT_POINTS_MAX, "21", "", NULL,
      "of the front of optimize.objectives that Levenberg-Marquardt finds, its two ends included"},
 
 #define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \

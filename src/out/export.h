@@ -34,7 +34,7 @@ typedef struct {
 } hf_exporter;
 
 /* In the order in which help lists them, and in which they are written when one command asks for several. */
-#define HF_EXPORTERS(X) X(csv) X(vtk) X(cutlist)
+#define HF_EXPORTERS(X) X(csv) X(vtk) X(cutlist) X(front)
 
 #define HF_EXPORTER_ROW(name) extern const hf_exporter hf_exporter_##name;
 HF_EXPORTERS(HF_EXPORTER_ROW)

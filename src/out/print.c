@@ -256,6 +256,38 @@ static void print_polish(const hf_summary *s, FILE *f)
     print_surface(s, 2, f);
 }
 
+/* One line of the front: the values of a point and, where it is known, what the least objective gains per unit of the
+ * others. */
+static void print_front_point(const hf_summary *s, const char *name, const double *objective, const double *multiplier,
+                              FILE *f)
+{
+    const hf_front_table *t = &s->front;
+    fprintf(f, "                %-6s", name);
+    for (int k = 0; k < t->n_objective; k++)
+        fprintf(f, "%s %s %.6g", k ? "," : "", s->goals.name[k], objective[k]);
+    for (int k = 0; k < t->n_objective && multiplier && t->minimised >= 0; k++)
+        if (k != t->minimised && isfinite(multiplier[k]))
+            fprintf(f, "; slope %.4g", multiplier[k] > 0 ? -multiplier[k] : 0.0);
+    fputc('\n', f);
+}
+
+static void print_front(const hf_summary *s, FILE *f)
+{
+    const hf_front_table *t = &s->front;
+    char wall[32];
+    int least[HF_OBJECTIVES_MAX] = {-1, -1, -1};
+    hf_print_duration(t->wall_s, wall, sizeof wall);
+    fprintf(f, "  front         %d points, %d of them dominated, %d failed; %s\n", t->n_point, t->n_dominated,
+            t->n_failed, wall);
+    if (isfinite(t->base[0])) print_front_point(s, "base", t->base, NULL, f);
+    for (int i = 0; i < t->n_row; i++)
+        for (int k = 0; k < t->n_objective && t->row[i].mark == HF_FRONT_ON; k++)
+            if (least[k] < 0 || t->row[i].objective[k] < t->row[least[k]].objective[k]) least[k] = i;
+    for (int k = 0; k < t->n_objective; k++)
+        if (least[k] >= 0) print_front_point(s, "end", t->row[least[k]].objective, t->row[least[k]].multiplier, f);
+    if (t->knee >= 0) print_front_point(s, "knee", t->row[t->knee].objective, t->row[t->knee].multiplier, f);
+}
+
 static void print_coupling(const hf_coupling_result *r, FILE *f)
 {
     fprintf(f,
@@ -286,6 +318,7 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
     if (s->has_coupling) print_coupling(&s->form.coupling, f);
     if (s->has_optimize) print_optimize(s, f);
     if (s->has_polish) print_polish(s, f);
+    if (s->has_front) print_front(s, f);
     if (path) hf_print_line(f, "  results       %s", path);
     if (path && !s->finished)
         hf_print_line(f, "  unfinished    `hifdm run %s -o %s` goes on, with the same options as before", s->case_path,

@@ -5,6 +5,7 @@
 #include "base/path.h"
 #include "base/text.h"
 #include "run/problem_parts.h"
+#include "run/run_front.h"
 #include "search/polish.h"
 #include "solve/limits.h"
 #include "solve/certificate.h"
@@ -29,6 +30,7 @@ typedef struct {
     hf_history history;
     hf_store *store;
     hf_optimiser optimiser;
+    hf_front front;         /* of optimize.objectives */
     hf_optimiser_plan plan; /* what optimize.method consists of */
     int first_generation;   /* of this session */
     long first_evaluation;
@@ -40,6 +42,7 @@ static void run_free(run *r)
 {
     hf_store_end(r->store); /* NULL once it is finished */
     hf_optimiser_free(&r->optimiser);
+    hf_front_free(&r->front);
     free(r->history.psi_m);
     hf_carrier_state_free(&r->truss);
     hf_problem_free(&r->problem);
@@ -434,14 +437,23 @@ static bool wants_polish(const run *r, const hf_summary *s)
     return compare == HF_COMPARE_AUTO && hf_polish_is_cheap(&r->problem.evaluator, s->evaluations);
 }
 
+/* The front of two objectives by Levenberg-Marquardt. */
+static hf_status follow_front(run *r, hf_summary *s, hf_messages *messages)
+{
+    observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});
+    hf_status status =
+        hf_run_front(&r->problem, &r->optimiser.population, r->request->stop_requested, &r->front, s, messages);
+    if (must_stop(r)) return stop_here(r, s, messages);
+    HF_TRY(status);
+    return hf_store_front(r->store, &r->problem.scene, &r->problem.model, s, &r->front, messages);
+}
+
 static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
 {
-    if (r->problem.settings.optimize.n_objective > 0)
-        return hf_error(messages, HF_BAD_CASE,
-                        "optimize.objectives: fronts cannot be found by this version; use optimize.goals");
     r->plan = hf_optimiser_plan_of(&r->problem.settings.optimize);
     HF_TRY(prepare_optimize(r, s, messages));
     s->threads = r->problem.batch.n_thread;
+    if (r->problem.settings.optimize.n_objective > 0) return follow_front(r, s, messages);
     if (r->plan.kind) HF_TRY(evolve(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
     if (hf_polish_applies(&r->problem.evaluator)) return wants_polish(r, s) ? polish(r, s, messages) : HF_OK;

@@ -133,3 +133,20 @@ void hf_front_settle(hf_front *f)
     mark(f);
     f->knee = find_knee(f);
 }
+
+void hf_front_tabulate(const hf_front *f, hf_front_table *t)
+{
+    int count[HF_FRONT_N_MARK] = {0};
+    for (int i = 0; i < f->n_point; i++)
+        count[f->point[i].mark]++;
+    t->n_objective = f->n_objective;
+    t->n_point = f->n_point;
+    t->n_row = f->n_point < HF_FRONT_POINTS_MAX ? f->n_point : HF_FRONT_POINTS_MAX;
+    t->n_on = count[HF_FRONT_ON];
+    t->n_dominated = count[HF_FRONT_DOMINATED];
+    t->n_failed = count[HF_FRONT_FAILED];
+    t->minimised = f->minimised;
+    t->knee = f->knee < t->n_row ? f->knee : -1;
+    memcpy(t->base, f->base, sizeof t->base);
+    memcpy(t->row, f->point, (size_t)t->n_row * sizeof *t->row);
+}

@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "linalg/band.h"
+#include "linalg/dot.h"
 #include "linalg/quadratic.h"
 #include "search/parallel.h"
 #include "search/residuals.h"
@@ -12,10 +13,12 @@
 #include <string.h>
 
 /* In brackets: the range over which no test of this module and of cli/limits fails, as far as it was tried. */
-#define GAIN_CONVERGED 1e-12 /* converged: a step promises less than this part of psi^2 [1e-15 to 1e-8] */
-#define DAMPING_FIRST 1e-3   /* relative to the squared columns of J [1e-6 to 1] */
-#define DAMPING_LEAST 1e-14  /* [1e-20 to 1e-8] */
-#define DAMPING_MOST 1e12    /* with this much a step is too short to change psi [1e4 to 1e24] */
+#define GAIN_CONVERGED 1e-12  /* converged: a step promises less than this part of psi^2 [1e-15 to 1e-8] */
+#define TRADE_CONVERGED 1e-20 /* the same of a trade, whose multipliers are wanted */
+#define DAMPING_FIRST 1e-3    /* relative to the squared columns of J [1e-6 to 1] */
+#define DAMPING_OF_MULTIPLIERS 1e-9
+#define DAMPING_LEAST 1e-14 /* [1e-20 to 1e-8] */
+#define DAMPING_MOST 1e12   /* with this much a step is too short to change psi [1e4 to 1e24] */
 #define CORRECTIONS_MAX 4 /* of a step that breaks a limit on tensions [40 passes; 1 fails: the runs stall at a cap] */
 #define WAY_LEAST 1e-3    /* part of the way into the limits that a step goes [1e-2; 1e-6] */
 #define LIMIT_INSIDE 2e-9 /* a tension so near to its bound, relative, is at it: twice what a step stays within */
@@ -44,23 +47,29 @@ typedef struct {
     hf_residuals residuals;
     hf_watch watch;
     hf_quadratic step;
-    int n; /* variables: steps from `start`, one for each class of linked genes */
+    const hf_watch_trade *trade; /* or NULL: the merit is to be least */
+    int first_row, n_row;        /* of the residuals that are to be least */
+    bool has_corners;            /* the goal to be least: then the level is one more variable of a step */
+    int n;                       /* variables: steps from `start`, one for each class of linked genes */
     int evaluations;
-    bool is_outside;       /* no shape within the limits is known yet */
-    hf_form_result result; /* of the last evaluation */
-    double *start;         /* [n_gene] values; of tensions the pretensions q L* */
-    double *low, *high;    /* [n] bounds of the variables */
-    double *down, *up;     /* [n] of a step: how far it may go */
-    double *unit;          /* [n] size of the values: violations are relative to it */
-    double *at, *trial;    /* [n] the best variables; those of the last step */
-    double *design;        /* [n_gene] of the last evaluation, tensions as pretensions q L* */
-    double *best;          /* [n_gene] the best design in the caller's meaning */
-    double *scale;         /* [n] largest norm of each column of J so far */
-    double *row;           /* [n][rows of the residuals] J' */
-    double *gram;          /* [n][n] J'J; lower triangle by rows, as `hessian` */
-    double *hessian;       /* [n][n] J'J, damped */
-    double *gradient;      /* [n] J'f */
-    double noise;          /* what the tolerance of the form-finding leaves open in the merit */
+    bool is_outside;                     /* no shape within the limits is known yet */
+    hf_form_result result;               /* of the last evaluation */
+    double *start;                       /* [n_gene] values; of tensions the pretensions q L* */
+    double *low, *high;                  /* [n] bounds of the variables */
+    double *down, *up;                   /* [n] of a step: how far it may go */
+    double *unit;                        /* [n] size of the values: violations are relative to it */
+    double *at, *trial;                  /* [n] the best variables; those of the last step */
+    double *design;                      /* [n_gene] of the last evaluation, tensions as pretensions q L* */
+    double *best;                        /* [n_gene] the best design in the caller's meaning */
+    double *scale;                       /* [n] largest norm of each column of J so far */
+    double *row;                         /* [n][rows of the residuals] J' */
+    double *gram;                        /* [n][n] J'J; lower triangle by rows, as `hessian` */
+    double *hessian;                     /* [n][n] J'J, damped */
+    double *gradient;                    /* [n] J'f */
+    double *goal_rate;                   /* [n_goal][n] of a trade: of goals without corners */
+    double pressure[HF_DESIGN_ROWS_MAX]; /* of a trade: multipliers of the last step, in units of merit^2/2 */
+    double promise;                      /* of a step before it was solved again: what the linear model says */
+    double noise;                        /* what the tolerance of the form-finding leaves open in the merit */
 } problem;
 
 bool hf_polish_applies(const hf_evaluator *v)
@@ -87,8 +96,8 @@ static void lay_out(hf_arena *a, problem *p)
     p->start = hf_arena_take(a, n_gene, sizeof(double));
     p->low = hf_arena_take(a, n, sizeof(double));
     p->high = hf_arena_take(a, n, sizeof(double));
-    p->down = hf_arena_take(a, n, sizeof(double));
-    p->up = hf_arena_take(a, n, sizeof(double));
+    p->down = hf_arena_take(a, n + 1, sizeof(double));
+    p->up = hf_arena_take(a, n + 1, sizeof(double));
     p->unit = hf_arena_take(a, n, sizeof(double));
     p->at = hf_arena_take(a, n, sizeof(double));
     p->trial = hf_arena_take(a, n, sizeof(double));
@@ -97,8 +106,9 @@ static void lay_out(hf_arena *a, problem *p)
     p->scale = hf_arena_take(a, n, sizeof(double));
     p->row = hf_arena_take(a, n * n_row, sizeof(double));
     p->gram = hf_arena_take(a, n * n, sizeof(double));
-    p->hessian = hf_arena_take(a, n * n, sizeof(double));
-    p->gradient = hf_arena_take(a, n, sizeof(double));
+    p->hessian = hf_arena_take(a, (n + 1) * (n + 1), sizeof(double));
+    p->gradient = hf_arena_take(a, n + 1, sizeof(double));
+    p->goal_rate = hf_arena_take(a, p->trade ? n * (size_t)p->v.goals->n_goal : 0, sizeof(double));
 }
 
 /* Does gene k set a tension for the caller, and a force density here? */
@@ -148,15 +158,30 @@ static void begin(problem *p, const double *design)
     memcpy(p->design, p->start, (size_t)m->n_gene * sizeof(double));
 }
 
+/* Which rows are to be least: all, or those of one goal. */
+static void aim(problem *p)
+{
+    p->n_row = p->residuals.n_row;
+    if (!p->trade) return;
+    const hf_goal *goal = p->v.goals->goal, *least = goal + p->trade->least;
+    for (; goal < least; goal++)
+        p->first_row += goal->n_row;
+    p->n_row = least->n_row;
+    p->has_corners = hf_goals_is_largest(least->wanted.goal);
+    p->watch.goal = p->result.goal;
+    p->watch.goal_rate = p->goal_rate;
+}
+
 static hf_status create(problem *p, hf_arena *arena)
 {
     const hf_model *m = p->v.model;
     p->n = m->n_leader;
     HF_TRY(hf_sensitivity_create(&p->v, &p->slopes));
     HF_TRY(hf_residuals_create(&p->v, &p->residuals));
-    HF_TRY(hf_watch_create(p->caller, &p->slopes, p->lower, p->upper, &p->watch));
+    HF_TRY(hf_watch_create(p->caller, &p->slopes, p->lower, p->upper, p->trade, &p->watch));
     HF_TRY(HF_ARENA_MAKE(arena, lay_out(arena, p)));
-    return hf_quadratic_create(p->n, &p->step);
+    aim(p);
+    return hf_quadratic_create(p->n + p->has_corners, &p->step);
 }
 
 static void destroy(problem *p, hf_arena *arena)
@@ -169,6 +194,14 @@ static void destroy(problem *p, hf_arena *arena)
 }
 
 /* ---- evaluation ---- */
+
+/* What is to be least. */
+static double merit_of(const problem *p, const hf_form_result *r)
+{
+    if (!p->trade) return r->merit;
+    double value = r->goal[p->trade->least];
+    return p->v.goals->goal[p->trade->least].wanted.goal == HF_GOAL_RATIO ? log(value) : value;
+}
 
 /* Find the shape of these variables in the workspace. */
 static hf_status evaluate(problem *p, const double *variable)
@@ -206,9 +239,49 @@ static void multiply_rows(void *context, int room, int i_block)
 {
     problem *p = context;
     int first = GRAM_ROWS * i_block, end = first + GRAM_ROWS < p->n ? first + GRAM_ROWS : p->n;
-    int n_row = p->residuals.n_row;
     (void)room;
-    hf_band_gram(first, end, n_row, p->row, n_row, p->gram, p->n);
+    hf_band_gram(first, end, p->n_row, p->row + p->first_row, p->residuals.n_row, p->gram, p->n);
+}
+
+/* The rate of a goal's norm, and what its residuals r bend a limit on it by: pressure (J'J - gg')/|r|, g the rate. */
+static void press(problem *p, int i_goal, int first_row, int n_row)
+{
+    const double *f = p->residuals.value + first_row;
+    double *rate = p->goal_rate + (size_t)i_goal * (size_t)p->n, norm = p->result.goal[i_goal];
+    double part = norm > 0 ? 1 / norm : 0, pressure = p->pressure[i_goal] * part;
+    int n_all = p->residuals.n_row;
+    for (int k = 0; k < p->n; k++)
+        rate[k] = part * hf_dot((size_t)n_row, p->row + (size_t)k * (size_t)n_all + first_row, f);
+    if (!(pressure > 0)) return;
+    hf_band_gram(0, p->n, n_row, p->row + first_row, n_all, p->hessian, p->n);
+    for (int r = 0; r < p->n; r++)
+        for (int c = 0; c <= r; c++)
+            p->gram[r * p->n + c] += pressure * (p->hessian[r * p->n + c] - rate[r] * rate[c]);
+}
+
+/* That of the residuals which are to be least, not of all. */
+static void take_gradient(problem *p)
+{
+    const double *f = p->residuals.value + p->first_row;
+    for (int k = 0; k < p->n; k++)
+        p->gradient[k] = hf_dot((size_t)p->n_row, p->row + (size_t)k * (size_t)p->residuals.n_row + p->first_row, f);
+}
+
+/* What a trade changes: goals without corners are limits that bend; one with corners that is to be least has a level
+ * instead of residuals. */
+static void linearise_trade(problem *p)
+{
+    const hf_goals *g = p->v.goals;
+    size_t n = (size_t)p->n;
+    if (p->has_corners) {
+        double value = p->result.goal[p->trade->least];
+        p->watch.level = merit_of(p, &p->result);
+        if (g->goal[p->trade->least].wanted.goal == HF_GOAL_RATIO) p->noise /= value;
+        memset(p->gram, 0, n * n * sizeof(double));
+        memset(p->gradient, 0, n * sizeof(double));
+    }
+    for (int k = 0, first = 0; k < g->n_goal; first += g->goal[k++].n_row)
+        if (k != p->trade->least && !hf_goals_is_largest(g->goal[k].wanted.goal)) press(p, k, first, g->goal[k].n_row);
 }
 
 /* Write residuals, J', J'J, the gradient and what is watched with its rates at the workspace's shape. */
@@ -217,10 +290,12 @@ static hf_status linearise(problem *p)
     HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
     HF_TRY(hf_residuals_find(&p->residuals, p->w));
     hf_residuals_rates(&p->residuals, &p->slopes, p->w, p->row, p->gradient);
+    if (p->trade) take_gradient(p);
     hf_parallel_each(p->v.n_thread, (p->n + GRAM_ROWS - 1) / GRAM_ROWS, multiply_rows, p);
     for (int k = 0; k < p->n; k++)
         p->scale[k] = fmax(p->scale[k], sqrt(p->gram[k * p->n + k]));
     p->noise = find_noise(p);
+    if (p->trade) linearise_trade(p);
     hf_watch_linearise(&p->watch, &p->slopes, p->w);
     return HF_OK;
 }
@@ -249,20 +324,32 @@ static bool worst_limit(void *context, const double *x, hf_quadratic_limit *limi
     return true;
 }
 
+/* The level of a goal with corners is the last variable of a step: level^2/2 is to be least. */
+static void begin_level(problem *p)
+{
+    int n = p->n, n_step = p->step.n;
+    memset(p->hessian + n * n_step, 0, (size_t)n * sizeof(double));
+    p->hessian[n * n_step + n] = 1;
+    p->gradient[n] = p->watch.level;
+    p->down[n] = -INFINITY;
+    p->up[n] = INFINITY;
+}
+
 /* The least of the model |f + J x|^2/2 + damping |scale x|^2/2 within the limits, as `trial`. *gain: what the model
  * promises of psi^2/2. */
 static hf_status solve_step(problem *p, double damping, double *gain)
 {
     const double *x = p->step.x;
-    int n = p->n;
+    int n = p->n, n_step = p->step.n;
     for (int r = 0; r < n; r++) {
-        memcpy(p->hessian + r * n, p->gram + r * n, (size_t)(r + 1) * sizeof(double));
-        p->hessian[r * n + r] += damping * p->scale[r] * p->scale[r];
+        memcpy(p->hessian + r * n_step, p->gram + r * n, (size_t)(r + 1) * sizeof(double));
+        p->hessian[r * n_step + r] += damping * p->scale[r] * p->scale[r];
         p->down[r] = p->low[r] - p->at[r];
         p->up[r] = p->high[r] - p->at[r];
     }
+    if (p->has_corners) begin_level(p);
     HF_TRY(hf_quadratic_solve(&p->step, p->hessian, p->gradient, p->down, p->up, worst_limit, p));
-    *gain = 0;
+    *gain = p->has_corners ? -(p->watch.level + x[n] / 2) * x[n] : 0;
     for (int r = 0; r < n; r++) {
         double sum = p->gram[r * n + r] * x[r] / 2 + p->gradient[r];
         for (int c = 0; c < r; c++)
@@ -280,6 +367,7 @@ static hf_status try_step(problem *p, double damping, double *gain)
     hf_watch_forget(&p->watch);
     for (int again = 0; again <= CORRECTIONS_MAX; again++) {
         HF_TRY(solve_step(p, damping, gain));
+        if (again == 0) p->promise = *gain;
         HF_TRY(evaluate(p, p->trial));
         if (hf_watch_keeps(&p->watch, p->w)) return HF_OK;
         hf_watch_learn(&p->watch, p->step.x, p->w);
@@ -323,9 +411,41 @@ static hf_status enter(problem *p, int max_iterations, hf_polish_result *r)
         before = after;
         keep(p);
         p->is_outside = !is_inside;
-        r->merit = p->result.merit;
+        r->merit = merit_of(p, &p->result);
         HF_TRY(linearise(p));
     }
+    return HF_OK;
+}
+
+/* The multipliers of the last step, goal by goal. */
+static void learn_pressure(problem *p)
+{
+    int goal;
+    memset(p->pressure, 0, sizeof p->pressure);
+    for (int i = 0; i < p->step.n_active; i++) {
+        const hf_quadratic_active *a = &p->step.active[i];
+        if (a->kind < HF_WATCH_GOAL) continue;
+        double relief = hf_watch_relief(&p->watch, a->kind, &goal);
+        p->pressure[goal] += relief * a->multiplier;
+    }
+}
+
+/* The multipliers of the linear model at the best design, free of what held the last step back. */
+static hf_status find_multipliers(problem *p, hf_polish_result *r)
+{
+    double gain, merit;
+    HF_TRY(evaluate(p, p->at));
+    HF_TRY(linearise(p));
+    hf_watch_forget(&p->watch);
+    HF_TRY(solve_step(p, DAMPING_OF_MULTIPLIERS, &gain));
+    learn_pressure(p);
+    merit = merit_of(p, &p->result);
+    merit = sqrt(fmax(0, merit * merit - 2 * gain)); /* where the linear model is least: a last small step away */
+    for (int k = 0; k < p->v.goals->n_goal; k++) {
+        r->multiplier[k] = p->pressure[k] > 0 ? p->pressure[k] / merit : 0;
+        if (p->v.goals->goal[p->trade->least].wanted.goal == HF_GOAL_RATIO) r->multiplier[k] *= exp(merit);
+    }
+    r->multiplier[p->trade->least] = NAN;
     return HF_OK;
 }
 
@@ -334,23 +454,31 @@ static hf_status enter(problem *p, int max_iterations, hf_polish_result *r)
 static hf_status minimise(problem *p, int max_iterations, hf_polish_result *r)
 {
     double damping = DAMPING_FIRST, growth = 2, gain = 0;
+    double converged = p->trade ? TRADE_CONVERGED : GAIN_CONVERGED;
     hf_status status = evaluate(p, p->at);
     if (status == HF_OK) status = linearise(p);
+    if (status == HF_OK && p->trade) {
+        r->merit = merit_of(p, &p->result);
+        p->is_outside = !hf_watch_keeps(&p->watch, p->w);
+    }
     if (status == HF_OK && p->is_outside) status = enter(p, max_iterations, r);
     while (status == HF_OK && !p->is_outside && r->stop == HF_POLISH_MAX_ITERATIONS && r->iterations < max_iterations) {
         double before = r->merit * r->merit / 2;
         r->iterations++;
         status = try_step(p, damping, &gain);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-        double after = status == HF_OK ? p->result.merit * p->result.merit / 2 : (double)INFINITY;
-        bool promises = gain > GAIN_CONVERGED * before && 2 * gain > p->noise * p->noise;
+        double merit = merit_of(p, &p->result), after = status == HF_OK ? merit * merit / 2 : (double)INFINITY;
+        double promise =
+            p->trade ? p->promise : gain; /* limits of goals may bend so far that a corrected step goes back */
+        bool promises = promise > converged * before && 2 * promise > p->noise * p->noise;
         if ((status == HF_OK || status == HF_RATIO_CAP) && !promises) r->stop = HF_POLISH_CONVERGED;
         status = HF_OK;
         if (after < before) {
             keep(p);
-            r->merit = p->result.merit;
+            r->merit = merit;
+            learn_pressure(p);
             double share = 2 * (before - after) / gain - 1;
-            damping = fmax(DAMPING_LEAST, damping * fmax(0.1, 1 - share * share * share));
+            if (gain > 0) damping = fmax(DAMPING_LEAST, damping * fmax(0.1, 1 - share * share * share));
             growth = 2;
             if (r->stop == HF_POLISH_MAX_ITERATIONS) status = linearise(p);
         } else {
@@ -365,21 +493,29 @@ static hf_status minimise(problem *p, int max_iterations, hf_polish_result *r)
     return HF_OK;
 }
 
+/* Does this design break a limit of the trade? */
+static bool breaks(const hf_watch_trade *trade, int n_goal, const hf_form_result *r)
+{
+    for (int k = 0; k < n_goal; k++)
+        if (k != trade->least && r->goal[k] > trade->most[k]) return true;
+    return false;
+}
+
 /* The best design, in the caller's meaning, replaces `design` if its own evaluation is not worse than the start. */
 static void hand_over(const problem *p, const hf_form_result *start, double *design, hf_polish_result *r)
 {
     hf_form_result end;
-    bool is_better =
-        hf_evaluate(p->caller, p->best, p->w, &end) == HF_OK && (start->status != HF_OK || end.merit <= start->merit);
+    bool is_better = hf_evaluate(p->caller, p->best, p->w, &end) == HF_OK &&
+                     (start->status != HF_OK || merit_of(p, &end) <= merit_of(p, start));
     if (is_better) memcpy(design, p->best, (size_t)p->v.model->n_gene * sizeof(double));
-    r->merit = is_better ? end.merit : start->merit;
+    r->merit = is_better ? merit_of(p, &end) : merit_of(p, start);
     if (!is_better) r->stop = HF_POLISH_STALLED;
 }
 
-hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                        double *design, hf_workspace *w, hf_polish_result *result)
+hf_status hf_polish_trade(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
+                          const hf_watch_trade *trade, double *design, hf_workspace *w, hf_polish_result *result)
 {
-    problem p = {.v = *evaluator, .caller = evaluator, .lower = lower, .upper = upper, .w = w};
+    problem p = {.v = *evaluator, .caller = evaluator, .lower = lower, .upper = upper, .w = w, .trade = trade};
     hf_form_result start;
     hf_arena arena = {0};
     *result = (hf_polish_result){.stop = HF_POLISH_MAX_ITERATIONS};
@@ -389,15 +525,24 @@ hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower, cons
     hf_evaluate(evaluator, design, w, &start);
     if (!hf_status_has_shape(start.status)) return start.status;
     p.is_outside = start.status != HF_OK;
-    result->merit = result->start_merit = start.merit;
+    result->merit = result->start_merit = merit_of(&p, &start);
     hf_status status = create(&p, &arena);
     if (status == HF_OK) {
         begin(&p, design);
+        if (trade && start.status == HF_OK && breaks(trade, evaluator->goals->n_goal, &start))
+            start.status = HF_OUT_OF_LIMITS;
         status = minimise(&p, max_iterations, result);
+        if (status == HF_OK && p.is_outside) status = start.status == HF_OK ? HF_OUT_OF_LIMITS : start.status;
+        if (status == HF_OK && trade) status = find_multipliers(&p, result);
         result->evaluations = p.evaluations;
-        if (status == HF_OK && p.is_outside) status = start.status;
         if (status == HF_OK) hand_over(&p, &start, design, result);
     }
     destroy(&p, &arena);
     return status;
+}
+
+hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
+                        double *design, hf_workspace *w, hf_polish_result *result)
+{
+    return hf_polish_trade(evaluator, lower, upper, max_iterations, NULL, design, w, result);
 }

@@ -6,6 +6,7 @@
 #ifndef HIFDM_POLISH_H
 #define HIFDM_POLISH_H
 
+#include "search/watch.h"
 #include <hifdm/optimiser.h>
 #include <hifdm/evaluate.h>
 
@@ -16,6 +17,9 @@ typedef struct {
     int n_at_lower, n_at_upper; /* genes at their bounds */
     int n_at_limit;             /* rows and cables of optimize.limits that hold the last step */
     bool is_at_cap;             /* the cap on the boundary tension ratio holds the last step */
+    /* Of hf_polish_trade: by how much the least goal gets less for one unit more of the limit of each other, in their
+     * units, to first order; NaN of the least itself. */
+    double multiplier[HF_DESIGN_ROWS_MAX];
 } hf_polish_result;
 
 /* Can designs of this evaluator be polished? The net must be convex, and the rule not seeded. */
@@ -31,5 +35,12 @@ bool hf_polish_is_cheap(const hf_evaluator *evaluator, long n_evaluation);
  * which no feasible design was found. */
 hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
                         double *design, hf_workspace *workspace, hf_polish_result *result);
+
+/* The same for one goal of the evaluator, the least of `trade`, while others keep their limits; merits are its value,
+ * of a ratio the logarithm. A goal with corners is least where no linear model of its sizes promises less.
+ * HF_OUT_OF_LIMITS where no way into the limits was found. */
+hf_status hf_polish_trade(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
+                          const hf_watch_trade *trade, double *design, hf_workspace *workspace,
+                          hf_polish_result *result);
 
 #endif

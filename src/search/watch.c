@@ -7,12 +7,14 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* In brackets: the range over which no test of this module and of cli/limits fails, as far as it was tried. */
 #define LIMIT_INSIDE 1e-9 /* part by which a step stays within the limits on tensions [1e-11; 1e-7 fails] */
 
 /* ---- what is watched ---- */
 
+/* An item of a cable, an attachment, a support or a goal: what it is not is -1. */
 static void add(hf_watch *q, hf_watched item)
 {
     if (q->item) q->item[q->n] = item;
@@ -32,6 +34,8 @@ static void add_row(const hf_evaluator *v, const hf_limit *row, hf_watch *q)
     for (int i = 0; i < row->n_cable; i++)
         add(q, (hf_watched){.cable = row->cable[i],
                             .attachment = -1,
+                            .support = -1,
+                            .goal = -1,
                             .kind = HF_WATCH_ROW,
                             .ratio = cap,
                             .lower = is_ratio ? -INFINITY : row->lower,
@@ -39,10 +43,41 @@ static void add_row(const hf_evaluator *v, const hf_limit *row, hf_watch *q)
     for (int i = 0; row->kind == HF_LIMIT_DISPLACEMENT && i < v->model->n_attachment; i++)
         add(q, (hf_watched){.cable = -1,
                             .attachment = i,
+                            .support = -1,
+                            .goal = -1,
                             .ratio = -1,
                             .kind = HF_WATCH_ROW,
                             .lower = -INFINITY, /* its derivative vanishes at zero, and none is below */
                             .upper = row->upper});
+}
+
+/* A goal below its limit; or the sizes of one that is to be least and has corners. */
+static void add_goal(const hf_evaluator *v, const hf_watch_trade *trade, int k, hf_watch *q)
+{
+    const hf_goal *g = &v->goals->goal[k];
+    const hf_model *m = v->model;
+    bool is_least = k == trade->least, is_ratio = g->wanted.goal == HF_GOAL_RATIO;
+    double most = is_least ? INFINITY : trade->most[k];
+    bool has_corners = hf_goals_is_largest(g->wanted.goal);
+    if (is_least ? !has_corners : !isfinite(most)) return;
+    hf_watched item = {-1, -1, -1, k, -1, .kind = is_least ? HF_WATCH_LEVEL : HF_WATCH_GOAL, -INFINITY, most};
+    if (is_ratio) {
+        item.ratio = add_cap(q, most);
+        item.upper = INFINITY;
+    }
+    for (int i = 0; is_ratio && i < g->n_cable; i++) {
+        item.cable = g->cable[i];
+        add(q, item);
+    }
+    for (int i = 0; g->wanted.goal == HF_GOAL_PULL && i < m->n_node - m->n_free; i++) {
+        item.support = i;
+        add(q, item);
+    }
+    for (int i = 0; g->wanted.goal == HF_GOAL_DISPLACEMENT && i < m->n_attachment; i++) {
+        item.attachment = i;
+        add(q, item);
+    }
+    if (!has_corners) add(q, item);
 }
 
 /* Count the items, or write them where there is room. */
@@ -59,6 +94,8 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
         if (gene < 0 && !is_in_ratio) continue;
         add(q, (hf_watched){.cable = e,
                             .attachment = -1,
+                            .support = -1,
+                            .goal = -1,
                             .kind = HF_WATCH_BOUND,
                             .ratio = is_in_ratio ? cap : -1,
                             .lower = gene >= 0 ? lower[gene] : -INFINITY,
@@ -66,6 +103,9 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
     }
     for (int i = 0; v->limits && i < v->limits->n; i++)
         add_row(v, &v->limits->row[i], q);
+    q->n_cap_of_limits = q->n_cap;
+    for (int k = 0; q->trade && k < v->goals->n_goal; k++)
+        add_goal(v, q->trade, k, q);
 }
 
 static void lay_out(hf_arena *a, hf_watch *q)
@@ -75,13 +115,18 @@ static void lay_out(hf_arena *a, hf_watch *q)
     q->cap = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
     q->ratio = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
     q->aim = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
+    const hf_model *m = q->v->model;
+    size_t has_pull = q->trade ? 1 : 0;
+    q->move_m = hf_arena_take(a, has_pull * 3 * (size_t)m->n_node, sizeof(double));
+    q->tension_rate = hf_arena_take(a, has_pull * (size_t)m->n_cable, sizeof(double));
+    q->pull_rate = hf_arena_take(a, has_pull * (size_t)(m->n_node - m->n_free), sizeof(double));
 }
 
 hf_status hf_watch_create(const hf_evaluator *v, const hf_sensitivity *s, const double *lower, const double *upper,
-                          hf_watch *q)
+                          const hf_watch_trade *trade, hf_watch *q)
 {
     hf_arena arena = {0};
-    *q = (hf_watch){.v = v, .n_variable = s->n};
+    *q = (hf_watch){.v = v, .n_variable = s->n, .trade = trade};
     list(v, s, lower, upper, q);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, q)));
     q->block = arena.block;
@@ -97,43 +142,55 @@ void hf_watch_free(hf_watch *q)
 
 /* ---- shapes ---- */
 
-static double value_of(const hf_watched *t, const hf_workspace *w)
+/* Look at the shape in the workspace. */
+static void look(hf_watch *q, hf_workspace *w)
 {
-    if (t->cable >= 0) return w->tension_N[t->cable];
-    const double *d = w->displacement_m + 3 * (ptrdiff_t)t->attachment;
-    return hf_norm(d[0], d[1], d[2]);
+    if (q->trade) hf_goals_pulls(q->v->model, w, w->goals);
+    for (int i = 0; i < q->n; i++) {
+        hf_watched *t = &q->item[i];
+        const double *d = w->displacement_m + 3 * (ptrdiff_t)(t->attachment < 0 ? 0 : t->attachment);
+        if (t->cable >= 0)
+            t->now = w->tension_N[t->cable];
+        else if (t->attachment >= 0)
+            t->now = hf_norm(d[0], d[1], d[2]);
+        else
+            t->now = t->support >= 0 ? w->goals->size[t->support] : q->goal[t->goal];
+    }
 }
 
 /* The largest over the least of the values that cap k counts; INFINITY where the least is not above zero. */
-static double ratio_of(const hf_watch *q, int k, const hf_workspace *w)
+static double ratio_of(const hf_watch *q, int k)
 {
     double least = INFINITY, largest = -INFINITY;
     for (int i = 0; i < q->n; i++) {
         if (q->item[i].ratio != k) continue;
-        least = fmin(least, value_of(&q->item[i], w));
-        largest = fmax(largest, value_of(&q->item[i], w));
+        least = fmin(least, q->item[i].now);
+        largest = fmax(largest, q->item[i].now);
     }
     return least > 0 ? largest / least : (double)INFINITY;
 }
 
-bool hf_watch_keeps(const hf_watch *q, const hf_workspace *w)
+bool hf_watch_keeps(hf_watch *q, hf_workspace *w)
 {
+    look(q, w);
     for (int k = 0; k < q->n_cap; k++)
-        if (ratio_of(q, k, w) > q->cap[k]) return false;
-    for (int i = 0; i < q->n; i++) {
-        double value = value_of(&q->item[i], w);
-        if (value < q->item[i].lower || value > q->item[i].upper) return false;
-    }
+        if (ratio_of(q, k) > q->cap[k]) return false;
+    for (int i = 0; i < q->n; i++)
+        if (q->item[i].now < q->item[i].lower || q->item[i].now > q->item[i].upper) return false;
     return true;
 }
 
-double hf_watch_violation(const hf_watch *q, const hf_workspace *w)
+double hf_watch_violation(hf_watch *q, hf_workspace *w)
 {
     double sum = hf_limits_violation(q->v, w);
+    look(q, w);
+    for (int k = q->n_cap_of_limits; k < q->n_cap; k++)
+        if (isfinite(q->cap[k])) sum += fmax(0, ratio_of(q, k) / q->cap[k] - 1);
     for (int i = 0; i < q->n; i++) {
         const hf_watched *t = &q->item[i];
         if (t->kind == HF_WATCH_BOUND)
             sum += hf_limits_tension_violation(q->v->model, w->tension_N[t->cable], t->lower, t->upper);
+        if (t->kind == HF_WATCH_GOAL) sum += fmax(0, t->now - t->upper) / t->unit;
     }
     return sum;
 }
@@ -148,20 +205,40 @@ static void displacement_rates(const hf_watched *t, const hf_sensitivity *s, con
     }
 }
 
-void hf_watch_linearise(hf_watch *q, const hf_sensitivity *s, const hf_workspace *w)
+/* Of the pulls on all supports that are watched, variable by variable. */
+static void pull_rates(hf_watch *q, const hf_sensitivity *s, hf_workspace *w)
 {
+    for (int j = 0; j < s->n; j++) {
+        const hf_goals_rate by = {q->move_m, q->tension_rate, hf_sensitivity_displacement(s, j, 0)};
+        hf_sensitivity_spread(s, j, q->move_m, q->tension_rate);
+        hf_goals_pull_rates(q->v->model, w, w->goals, &by, q->pull_rate);
+        for (int i = 0; i < q->n; i++)
+            if (q->item[i].support >= 0)
+                q->rate[(size_t)i * (size_t)q->n_variable + (size_t)j] = q->pull_rate[q->item[i].support];
+    }
+}
+
+void hf_watch_linearise(hf_watch *q, const hf_sensitivity *s, hf_workspace *w)
+{
+    bool has_pull = false;
+    look(q, w);
     for (int i = 0; i < q->n; i++) {
         hf_watched *t = &q->item[i];
         double *rate = q->rate + (size_t)i * (size_t)q->n_variable;
-        t->value = value_of(t, w);
+        t->value = t->now;
         t->unit = t->cable >= 0 ? fabs(t->value) : isfinite(t->upper) ? t->upper : t->lower;
+        if (t->kind == HF_WATCH_LEVEL) t->unit = fmax(t->value, 1);
         if (t->cable >= 0)
             hf_sensitivity_tension(s, t->cable, rate);
-        else
+        else if (t->attachment >= 0)
             displacement_rates(t, s, w, rate);
+        else if (t->support < 0)
+            memcpy(rate, q->goal_rate + (size_t)t->goal * (size_t)q->n_variable, (size_t)q->n_variable * sizeof *rate);
+        has_pull |= t->support >= 0;
     }
+    if (has_pull) pull_rates(q, s, w);
     for (int k = 0; k < q->n_cap; k++)
-        q->ratio[k] = ratio_of(q, k, w);
+        q->ratio[k] = ratio_of(q, k);
     hf_watch_aim(q, 1);
 }
 
@@ -203,16 +280,30 @@ static void predict(hf_watch *q, const double *x)
     }
 }
 
-void hf_watch_learn(hf_watch *q, const double *x, const hf_workspace *w)
+void hf_watch_learn(hf_watch *q, const double *x, hf_workspace *w)
 {
     predict(q, x);
+    look(q, w);
     for (int i = 0; i < q->n; i++)
-        q->item[i].bend += value_of(&q->item[i], w) - q->item[i].predicted;
+        q->item[i].bend += q->item[i].now - q->item[i].predicted;
 }
 
 static const double *rate_of(const hf_watch *q, const hf_watched *t)
 {
     return q->rate + (size_t)(t - q->item) * (size_t)q->n_variable;
+}
+
+/* HF_WATCH_GOAL and the number of an item, by which hf_watch_relief finds it again. */
+static int kind_of_goal(const hf_watch *q, const hf_watched *t)
+{
+    return HF_WATCH_GOAL + (int)(t - q->item);
+}
+
+double hf_watch_relief(const hf_watch *q, int kind, int *goal)
+{
+    const hf_watched *t = &q->item[kind - HF_WATCH_GOAL];
+    *goal = t->goal;
+    return t->ratio >= 0 ? t->value : 1; /* high <= cap low */
 }
 
 /* high <= cap low: the largest and the least of the predicted values that cap k counts. */
@@ -226,7 +317,7 @@ static bool breaks_cap(const hf_watch *q, int k, double *worst, hf_quadratic_lim
         if (!high || t->predicted > high->predicted) high = t;
         if (!low || t->predicted < low->predicted) low = t;
     }
-    if (!high) return false;
+    if (!high || !isfinite(cap)) return false;
     double excess = (high->predicted - cap * low->predicted) / fabs(high->predicted);
     if (!(excess > *worst)) return false;
     *worst = excess;
@@ -234,7 +325,39 @@ static bool breaks_cap(const hf_watch *q, int k, double *worst, hf_quadratic_lim
     for (int j = 0; j < q->n_variable; j++)
         limit->normal[j] = cap * down[j] - up[j];
     limit->bound = high->value + high->bend - cap * (low->value + low->bend);
-    limit->kind = q->has_cap && k == 0 ? HF_WATCH_CAP : HF_WATCH_ROW;
+    limit->kind = q->has_cap && k == 0 ? HF_WATCH_CAP : high->goal < 0 ? HF_WATCH_ROW : kind_of_goal(q, low);
+    return true;
+}
+
+/* Tensions by their logarithms, whose difference is the level of a ratio; other sizes as they are. */
+static double size_of(const hf_watched *t, double value)
+{
+    return t->cable >= 0 ? log(t->value + t->bend) + (value - t->value - t->bend) / (t->value + t->bend) : value;
+}
+
+/* size <= level, or high - low <= level of logarithms, where the last of x is what the level rises by. */
+static bool breaks_level(const hf_watch *q, const double *x, double *worst, hf_quadratic_limit *limit)
+{
+    const hf_watched *high = NULL, *low = NULL;
+    size_t n = (size_t)q->n_variable;
+    for (int i = 0; i < q->n; i++) {
+        const hf_watched *t = &q->item[i];
+        if (t->kind != HF_WATCH_LEVEL) continue;
+        if (!high || size_of(t, t->predicted) > size_of(high, high->predicted)) high = t;
+        if (t->cable >= 0 && (!low || size_of(t, t->predicted) < size_of(low, low->predicted))) low = t;
+    }
+    if (!high) return false;
+    double excess = size_of(high, high->predicted) - (low ? size_of(low, low->predicted) : 0) - q->level - x[n];
+    excess /= low ? 1 : high->unit;
+    if (!(excess > *worst)) return false;
+    *worst = excess;
+    const double *up = rate_of(q, high), *down = low ? rate_of(q, low) : NULL;
+    for (size_t j = 0; j < n; j++)
+        limit->normal[j] = low ? down[j] / (low->value + low->bend) - up[j] / (high->value + high->bend) : -up[j];
+    limit->normal[n] = 1;
+    limit->bound =
+        size_of(high, high->value + high->bend) - (low ? size_of(low, low->value + low->bend) : 0) - q->level;
+    limit->kind = HF_WATCH_LEVEL;
     return true;
 }
 
@@ -255,11 +378,12 @@ bool hf_watch_worst(hf_watch *q, const double *x, double worst, hf_quadratic_lim
     }
     for (int k = 0; k < q->n_cap; k++)
         if (breaks_cap(q, k, &worst, limit)) is_broken = true;
+    if (q->trade && breaks_level(q, x, &worst, limit)) is_broken = true;
     if (is_broken || !held) return is_broken;
     double inside = LIMIT_INSIDE * held->unit, bound = sign > 0 ? held->from : held->to;
     for (int j = 0; j < q->n_variable; j++)
         limit->normal[j] = sign * rate_of(q, held)[j];
     limit->bound = sign * (bound - held->value - held->bend) + inside;
-    limit->kind = held->kind;
+    limit->kind = held->kind == HF_WATCH_GOAL ? kind_of_goal(q, held) : held->kind;
     return true;
 }

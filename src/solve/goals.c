@@ -27,6 +27,11 @@ static bool has_set(hf_goal_kind kind)
            kind == HF_GOAL_RATIO;
 }
 
+bool hf_goals_is_largest(hf_goal_kind kind)
+{
+    return kind == HF_GOAL_PULL || kind == HF_GOAL_DISPLACEMENT || kind == HF_GOAL_RATIO;
+}
+
 /* What is wrong with a goal in this scene, as the end of a sentence, or NULL. */
 static const char *fault_of(const hf_goal *g, const hf_model *m, const hf_surface_settings *surface,
                             const hf_facets *facets)
@@ -223,7 +228,7 @@ static bool is_at_support(const hf_model *m, int e)
     return m->end_row[2 * e] >= m->n_free || m->end_row[2 * e + 1] >= m->n_free;
 }
 
-static void sum_pulls(const hf_model *m, const hf_workspace *w, hf_goals_point *p)
+void hf_goals_pulls(const hf_model *m, const hf_workspace *w, hf_goals_point *p)
 {
     int n = m->n_node - m->n_free;
     memset(p->force_N, 0, 3 * (size_t)n * sizeof(double));
@@ -344,7 +349,7 @@ static hf_status measure_goal(const hf_goals *goals, int k, const hf_workspace *
         *value = *norm = measure_psi(m, w, p, f);
         return HF_OK;
     case HF_GOAL_PULL:
-        sum_pulls(m, w, p);
+        hf_goals_pulls(m, w, p);
         *value = measure_largest(g->n_row, p, f);
         break;
     case HF_GOAL_DISPLACEMENT:
@@ -461,14 +466,12 @@ static double size_rate(const double v[3], const double rate[3])
     return size > 0 ? (v[0] * rate[0] + v[1] * rate[1] + v[2] * rate[2]) / size : 0;
 }
 
-static void push_pulls(const hf_model *m, const hf_workspace *w, hf_goals_point *p, const hf_goals_rate *by,
-                       double *rate)
+void hf_goals_pull_rates(const hf_model *m, const hf_workspace *w, hf_goals_point *p, const hf_goals_rate *by,
+                         double *rate)
 {
     int n = m->n_node - m->n_free;
-    double norm;
     memset(p->rate_N, 0, 3 * (size_t)n * sizeof(double));
-    sum_pulls(m, w, p);
-    smooth_largest(n, p->size, &norm);
+    hf_goals_pulls(m, w, p);
     for (int e = 0; e < m->n_cable; e++) {
         double u[3], pull[3];
         if (!is_at_support(m, e)) continue;
@@ -481,6 +484,15 @@ static void push_pulls(const hf_model *m, const hf_workspace *w, hf_goals_point 
     }
     for (int i = 0; i < n; i++)
         rate[i] = size_rate(p->force_N + 3 * (size_t)i, p->rate_N + 3 * (size_t)i);
+}
+
+static void push_pulls(const hf_model *m, const hf_workspace *w, hf_goals_point *p, const hf_goals_rate *by,
+                       double *rate)
+{
+    int n = m->n_node - m->n_free;
+    double norm;
+    hf_goals_pull_rates(m, w, p, by, rate);
+    smooth_largest(n, p->size, &norm);
     push_smooth(n, p->size, rate);
 }
 

@@ -130,6 +130,14 @@ void hf_layout_get_held(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_put_goals(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_goals(hf_hdf5 *io, hf_summary *summary);
 
+/* layout_front: /front, of optimize.objectives, whose names are the goals of the summary. The summary gets all of it
+ * but the designs. hf_layout_read_front reads a whole front and names of genes [n_gene] of *gene_size bytes each; the
+ * caller frees both in any case. has_rows: designs are of optimize.variables. */
+void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *model, const hf_summary *summary,
+                           const hf_front *front);
+void hf_layout_get_front(hf_hdf5 *io, hf_summary *summary);
+void hf_layout_read_front(hf_hdf5 *io, bool has_rows, hf_front *front, char **gene, size_t *gene_size);
+
 /* layout_truss: the truss as described, its attachments and, when `state` is not NULL, its displacements and forces
  * under the pull of the net. Reading allocates: the caller frees both in any case. */
 void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carrier_state *state);

@@ -287,6 +287,17 @@ hf_status hf_store_truss(hf_store *s, const hf_carrier *carrier, const hf_carrie
     return hf_hdf5_unlock(s->f.io.status);
 }
 
+hf_status hf_store_front(hf_store *s, const hf_scene *scene, const hf_model *m, const hf_summary *summary,
+                         const hf_front *front, hf_messages *messages)
+{
+    if (!s) return HF_OK;
+    hf_hdf5_lock();
+    s->f.io.messages = messages;
+    hf_store_file_open(&s->f);
+    hf_layout_write_front(&s->f.io, scene, m, summary, front);
+    return hf_hdf5_unlock(s->f.io.status);
+}
+
 /* ---- generations ---- */
 
 /* What each gene of optimize.variables is: its row there, and the support that it moves. */

@@ -88,12 +88,32 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     hf_layout_get_sets(&io, summary);
     hf_layout_get_held(&io, summary);
     hf_layout_get_goals(&io, summary);
+    hf_layout_get_front(&io, summary);
     if (io.status == HF_OK && ((int)summary->solver < 0 || summary->solver > HF_SOLVER_FIXED_POINT))
         hf_hdf5_damaged(&io, io.file, "/ga", "names a solver that there is not");
     summary->has_truss = hf_hdf5_has(&io, io.file, "/truss");
     if (summary->has_truss) hf_layout_get_summary(&io, HF_LAYOUT_TRUSS, summary);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) *summary = (hf_summary){0};
+    return hf_hdf5_unlock(io.status);
+}
+
+hf_status hf_store_read_front(const char *path, hf_front *front, char **gene, size_t *gene_size, hf_messages *messages)
+{
+    *front = (hf_front){.minimised = -1, .knee = -1};
+    *gene = NULL;
+    hf_hdf5_lock();
+    hf_hdf5 io = hf_store_open_result(path, messages);
+    if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/front"))
+        io.status = hf_error(messages, HF_IO, "%s: this run has no front: its case has no optimize.objectives", path);
+    bool has_rows = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/front/design");
+    if (io.status == HF_OK) hf_layout_read_front(&io, has_rows, front, gene, gene_size);
+    hf_hdf5_close_file(&io);
+    if (io.status != HF_OK) {
+        hf_front_free(front);
+        free(*gene);
+        *gene = NULL;
+    }
     return hf_hdf5_unlock(io.status);
 }
 

@@ -221,6 +221,44 @@ static void write_polish(const hf_summary *s, hf_json *j)
     hf_json_close(j, '}');
 }
 
+/* Values of all objectives by their names. */
+static void write_objectives(const hf_summary *s, const char *key, const double *value, hf_json *j)
+{
+    hf_json_open(j, key, '{');
+    for (int k = 0; k < s->front.n_objective; k++)
+        hf_json_number(j, s->goals.name[k], value[k]);
+    hf_json_close(j, '}');
+}
+
+static void write_front(const hf_summary *s, hf_json *j)
+{
+    const hf_front_table *t = &s->front;
+    open_stage("front", j);
+    hf_json_integer(j, "n_point", t->n_point);
+    hf_json_integer(j, "n_dominated", t->n_dominated);
+    hf_json_integer(j, "n_failed", t->n_failed);
+    if (t->minimised >= 0) hf_json_text(j, "minimised", s->goals.name[t->minimised]);
+    if (t->knee >= 0) hf_json_integer(j, "knee", t->knee);
+    hf_json_number(j, "wall_s", t->wall_s);
+    hf_json_line(j, "  ");
+    write_objectives(s, "base", t->base, j);
+    hf_json_line(j, "  ");
+    hf_json_open(j, "points", '[');
+    for (int i = 0; i < t->n_row; i++) {
+        const hf_front_point *p = &t->row[i];
+        hf_json_line(j, "   ");
+        hf_json_open(j, NULL, '{');
+        write_objectives(s, "objective", p->objective, j);
+        if (t->minimised >= 0) write_objectives(s, "multiplier", p->multiplier, j);
+        hf_json_text(j, "status", hf_status_word(p->status));
+        hf_json_text(j, "mark", hf_front_mark_word[p->mark]);
+        hf_json_integer(j, "iterations", p->iterations);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+    hf_json_close(j, '}');
+}
+
 void hf_summary_write_json(const hf_summary *s, hf_status status, const char *messages, const char *path, FILE *f)
 {
     hf_json writer = {.file = f}, *j = &writer;
@@ -231,6 +269,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
     if (s->has_coupling && s->form.coupling.iterations > 0) write_coupling(&s->form.coupling, j);
     if (s->has_optimize) write_optimize(s, j);
     if (s->has_polish) write_polish(s, j);
+    if (s->has_front) write_front(s, j);
     hf_json_line(j, " ");
     hf_json_integer(j, "threads", s->threads);
     hf_json_unsigned(j, "seed", s->seed);

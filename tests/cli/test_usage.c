@@ -22,7 +22,7 @@ static const struct {
     {{"run", "CASE", "--thread", "2"}, "error: unknown option '--thread'; did you mean '--threads'?\n"},
     {{"run", "CASE", "--jsn"}, "error: unknown option '--jsn'; did you mean '--json'?\n"},
     {{"run", "CASE", "-x"}, "error: unknown option '-x'; 'hifdm help run' lists them\n"},
-    {{"run", "CASE", "--frobnicate"}, "error: unknown option '--frobnicate'; 'hifdm help run' lists them\n"},
+    {{"run", "CASE", "--nonsense"}, "error: unknown option '--nonsense'; 'hifdm help run' lists them\n"},
     {{"show", "FILE", "--set", "a=1"},
      "error: '--set' does not go with this command; 'hifdm help show' lists what does\n"},
     {{"check", "CASE", "--force"},

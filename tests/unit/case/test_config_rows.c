@@ -92,10 +92,10 @@ END_TEST
 
 START_TEST(objectives_reach_their_place)
 {
-    static const char *const set[] = {"optimize.goals=[]",
+    static const char *const set[] = {"optimize.goals=[]", "optimize.method=lm",
                                       "optimize.objectives=[{goal: psi}, {goal: ratio, set: edge}]"};
     hf_case c;
-    accept_rows(ROWS, set, 2, &c);
+    accept_rows(ROWS, set, 3, &c);
     const hf_goal_settings *g = c.optimize.objective;
     ck_assert_int_eq(c.optimize.n_objective, 2);
     ck_assert_int_eq(c.optimize.front_points, 21);
@@ -180,7 +180,7 @@ END_TEST
 
 #define VARIABLE OPTIMIZE "  variables:\n    - "
 #define GOAL OPTIMIZE "  goals: ["
-#define OBJECTIVE OPTIMIZE "  objectives: ["
+#define OBJECTIVE OPTIMIZE "  method: lm\n  objectives: ["
 #define LIMIT OPTIMIZE "  limits: ["
 #define ROW "{set: a, vary: length, range: 1}"
 
@@ -263,20 +263,28 @@ static const struct {
      "error: c.yaml:4:28: optimize.goals.0.set: has no meaning for psi, only for tension, length, evenness, mass, "
      "ratio\n"},
     {OBJECTIVE "{goal: psi}]\n", NULL,
-     "error: c.yaml:4:16: optimize.objectives.0: is the only row; a front is of two or three objectives. For one use "
+     "error: c.yaml:5:16: optimize.objectives.0: is the only row; a front is of two or three objectives. For one use "
      "optimize.goals\n"},
     {OBJECTIVE "{goal: psi}, {goal: pull}]\n  goals: [{goal: psi}]\n", NULL,
-     "error: c.yaml:5:11: optimize.goals.0: cannot be with optimize.objectives, which takes the place of goals; keep "
+     "error: c.yaml:6:11: optimize.goals.0: cannot be with optimize.objectives, which takes the place of goals; keep "
      "one of them\n"},
-    {OBJECTIVE "{goal: psi}, {goal: pull}, {goal: psi}]\n", NULL,
-     "error: c.yaml:4:50: optimize.objectives.2.goal: is the objective of an earlier row; a front needs different "
+    {OBJECTIVE "{goal: psi}, {goal: psi}]\n", NULL,
+     "error: c.yaml:5:36: optimize.objectives.1.goal: is the objective of an earlier row; a front needs different "
      "ones\n"},
     {OBJECTIVE "{goal: psi}, {goal: pull}, {goal: mass}, {goal: ratio}]\n", NULL,
-     "error: c.yaml:4:57: optimize.objectives: there are more than 3 rows\n"},
+     "error: c.yaml:5:57: optimize.objectives: there are more than 3 rows\n"},
+    {OPTIMIZE "  objectives: [{goal: psi}, {goal: pull}]\n", NULL,
+     "error: c.yaml:4:16: optimize.objectives.0: and the others need optimize.method: lm\n"},
+    {OBJECTIVE "{goal: psi}, {goal: pull}, {goal: evenness}]\n", NULL,
+     "error: c.yaml:5:43: optimize.objectives.2: is a third objective; Levenberg-Marquardt follows the line of two. "
+     "Keep "
+     "two, and what the third must keep as a row of optimize.limits\n"},
+    {OBJECTIVE "{goal: psi}, {goal: pull}]\n  compare_lm: true\n", NULL,
+     "error: c.yaml:6:15: optimize.compare_lm: compares one design; it has no meaning for optimize.objectives\n"},
     {OBJECTIVE "{goal: psi, weight: 2}, {goal: pull}]\n", NULL,
-     "error: c.yaml:4:28: weight: unknown key (hifdm schema lists all keys)\n"},
+     "error: c.yaml:5:28: weight: unknown key (hifdm schema lists all keys)\n"},
     {OBJECTIVE "{goal: psi}, {goal: ratio, target: 2}]\n", NULL,
-     "error: c.yaml:4:51: optimize.objectives.1.target: has no meaning for ratio, only for tension, length\n"},
+     "error: c.yaml:5:51: optimize.objectives.1.target: has no meaning for ratio, only for tension, length\n"},
     {GOAL "{goal: psi, target: 1}]\n", NULL,
      "error: c.yaml:4:31: optimize.goals.0.target: has no meaning for psi, only for tension, length\n"},
     {GOAL "{goal: tension, target: 1, along: normal}]\n", NULL,

@@ -1,0 +1,81 @@
+/* Writes a stored front as one CSV file:
+ *
+ * id,mark,status,iterations,NAME...,slope_NAME...,GENE...
+ *
+ * with a column for each objective, for what the minimised objective changes by for one unit more of each other (empty
+ * where it is not known), and for each gene. Rows are numbered from 1, in the order of the file. `hifdm evaluate` reads
+ * it as a table of designs when the rows that failed are taken out. Numbers have 17 significant digits. */
+#include "out/export.h"
+
+#include "base/csv.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+typedef struct {
+    hf_summary summary;
+    hf_front front;
+    char *gene;
+    size_t gene_size;
+} view;
+
+static void write_number(double value, FILE *f)
+{
+    if (isfinite(value))
+        fprintf(f, ",%.17g", value);
+    else
+        fputs(isinf(value) ? ",inf" : ",", f);
+}
+
+static void write_front(const void *context, FILE *f)
+{
+    const view *v = context;
+    const hf_front *front = &v->front;
+    fputs("id,mark,status,iterations", f);
+    for (int k = 0; k < front->n_objective; k++)
+        fprintf(f, ",%s", v->summary.goals.name[k]);
+    for (int k = 0; k < front->n_objective; k++)
+        if (front->minimised >= 0 && k != front->minimised) fprintf(f, ",slope_%s", v->summary.goals.name[k]);
+    for (int k = 0; k < front->n_gene; k++) {
+        fputc(',', f);
+        hf_csv_write_id(v->gene + (size_t)k * v->gene_size, f);
+    }
+    fputc('\n', f);
+    for (int i = 0; i < front->n_point; i++) {
+        const hf_front_point *p = &front->point[i];
+        fprintf(f, "%d,%s,%s,%d", i + 1, hf_front_mark_word[p->mark], hf_status_word(p->status), p->iterations);
+        for (int k = 0; k < front->n_objective; k++)
+            write_number(p->objective[k], f);
+        for (int k = 0; k < front->n_objective; k++)
+            if (front->minimised >= 0 && k != front->minimised)
+                write_number(p->multiplier[k] > 0 ? -p->multiplier[k] : p->multiplier[k], f);
+        for (int k = 0; k < front->n_gene; k++)
+            write_number(front->design[(size_t)i * (size_t)front->n_gene + (size_t)k], f);
+        fputc('\n', f);
+    }
+}
+
+static hf_status export_front(const hf_export_request *o, char *said, size_t size, hf_messages *messages)
+{
+    view v = {0};
+    HF_TRY(hf_export_claim(o, o->output, messages));
+    HF_TRY(hf_store_read_summary(o->file, &v.summary, messages));
+    if (!v.summary.has_front)
+        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no front: its case has no optimize.objectives",
+                        o->file);
+    hf_status status = hf_store_read_front(o->file, &v.front, &v.gene, &v.gene_size, messages);
+    if (status == HF_OK) status = hf_file_out_set_write(o->files, o->output, write_front, &v, messages);
+    if (status == HF_OK)
+        snprintf(said, size, "%s: %d points of the front of %d objectives in %s", o->file, v.front.n_point,
+                 v.front.n_objective, o->output);
+    hf_front_free(&v.front);
+    free(v.gene);
+    return status;
+}
+
+const hf_exporter hf_exporter_front = {
+    .option = "--front",
+    .argument = "FILE",
+    .help = "write the front of optimize.objectives as a CSV file: objectives, slopes and design of each point",
+    .write = export_front,
+};

@@ -1,0 +1,20 @@
+/* run_front - the stage of a run that follows the front of optimize.objectives by Levenberg-Marquardt. */
+#ifndef HIFDM_RUN_FRONT_H
+#define HIFDM_RUN_FRONT_H
+
+#include <hifdm/optimiser.h>
+#include <hifdm/problem.h>
+#include <hifdm/summary.h>
+#include <signal.h>
+
+/* Find *front, which may hold an earlier one: its designs are then where the search begins, else the base design. The
+ * earlier one is freed, unless the search fails. The summary gets the table of the front; its form has the objectives
+ * of the base. HF_OK; HF_NO_FEASIBLE where an end has no feasible design, HF_NO_MEMORY, with a message; HF_INTERRUPTED.
+ */
+hf_status hf_run_front(hf_problem *problem, const hf_population *bounds, const volatile sig_atomic_t *stop,
+                       hf_front *front, hf_summary *summary, hf_messages *messages);
+
+/* What a front that was found, by whichever method, says in the summary. */
+void hf_run_front_tell(const hf_front *front, double wall_s, hf_summary *summary, hf_messages *messages);
+
+#endif

@@ -1,0 +1,233 @@
+/* The group /front. */
+#include "store/layout.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define POINTS_MAX 10000000
+
+static const hf_hdf5_kind kind_of_mark = {HF_HDF5_ENUM, HF_FRONT_N_MARK, hf_front_mark_word, NULL};
+
+/* What the rows of a front are. */
+enum { OBJECTIVE, MULTIPLIER, STATUS, MARK, ITERATIONS, N_COLUMN };
+static hf_hdf5_array column(int i, int n_point, int n_objective)
+{
+    const hsize_t n = (hsize_t)n_point, k = (hsize_t)n_objective;
+    const hf_hdf5_array all[N_COLUMN] = {
+        {"objective", HF_KIND_REAL, 2, {n, k}, "", "of each point, each in its own unit; NaN of one that failed"},
+        {"multiplier",
+         HF_KIND_REAL,
+         2,
+         {n, k},
+         "",
+         "what the minimised objective gains for one unit more of each other; NaN where it is not known"},
+        {"status", HF_KIND_STATUS, 1, {n}, "", "of each design"},
+        {"mark", &kind_of_mark, 1, {n}, "", "is it on the front, dominated by another point, or failed?"},
+        {"iterations", HF_KIND_INT, 1, {n}, "", "of Levenberg-Marquardt"},
+    };
+    return all[i];
+}
+
+static hf_hdf5_array names(int n)
+{
+    return (hf_hdf5_array){"name", HF_KIND_CHARS, 1, {(hsize_t)n, HF_GOAL_NAME_SIZE}, "", "number, goal and set"};
+}
+
+static hf_hdf5_array base_of(int n)
+{
+    return (hf_hdf5_array){"base", HF_KIND_REAL, 1, {(hsize_t)n}, "", "objectives of the shape after form-finding"};
+}
+
+/* The rows as arrays, for the file. */
+typedef struct {
+    double *objective, *multiplier; /* [n][n_objective] */
+    signed char *status, *mark;     /* [n] */
+    int *iterations;                /* [n] */
+} rows;
+
+static bool make_rows(rows *r, int n, int n_objective)
+{
+    size_t size = (size_t)n * (size_t)n_objective;
+    r->objective = malloc(size * sizeof(double));
+    r->multiplier = malloc(size * sizeof(double));
+    r->status = malloc((size_t)n);
+    r->mark = malloc((size_t)n);
+    r->iterations = malloc((size_t)n * sizeof(int));
+    return r->objective && r->multiplier && r->status && r->mark && r->iterations;
+}
+
+static void free_rows(rows *r)
+{
+    free(r->objective);
+    free(r->multiplier);
+    free(r->status);
+    free(r->mark);
+    free(r->iterations);
+}
+
+/* Between rows and points, one way or the other. */
+static void pack(rows *r, int n, int n_objective, const hf_front_point *point)
+{
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < n_objective; k++) {
+            r->objective[i * n_objective + k] = point[i].objective[k];
+            r->multiplier[i * n_objective + k] = point[i].multiplier[k];
+        }
+        r->status[i] = (signed char)point[i].status;
+        r->mark[i] = (signed char)point[i].mark;
+        r->iterations[i] = point[i].iterations;
+    }
+}
+
+static void unpack(const rows *r, int n, int n_objective, hf_front_point *point)
+{
+    for (int i = 0; i < n; i++) {
+        point[i] = (hf_front_point){.objective = {NAN, NAN, NAN},
+                                    .multiplier = {NAN, NAN, NAN},
+                                    .status = (hf_status)r->status[i],
+                                    .mark = (hf_front_mark)r->mark[i],
+                                    .iterations = r->iterations[i]};
+        for (int k = 0; k < n_objective; k++) {
+            point[i].objective[k] = r->objective[i * n_objective + k];
+            point[i].multiplier[k] = r->multiplier[i * n_objective + k];
+        }
+    }
+}
+
+static void *value_of(const rows *r, int i)
+{
+    void *const value[N_COLUMN] = {r->objective, r->multiplier, r->status, r->mark, r->iterations};
+    return value[i];
+}
+
+/* ---- writing ---- */
+
+static void write_genes(hf_hdf5 *io, hid_t group, const hf_scene *scene, const hf_model *m)
+{
+    size_t n = (size_t)m->n_gene;
+    char *text = malloc(n * HF_GENE_NAME_SIZE);
+    const char **name = malloc(n * sizeof *name);
+    if (!text || !name) hf_hdf5_no_memory(io);
+    for (size_t k = 0; text && name && k < n; k++) {
+        name[k] = text + k * HF_GENE_NAME_SIZE;
+        hf_model_gene_name(m, scene, (int)k, text + k * HF_GENE_NAME_SIZE, HF_GENE_NAME_SIZE);
+    }
+    if (text && name) hf_hdf5_write_ids(io, group, "gene", name, m->n_gene, "name of each gene of a design");
+    free(name);
+    free(text);
+}
+
+static void put_attributes(hf_hdf5 *io, hid_t group, const hf_front_table *t)
+{
+    hf_hdf5_put(io, group, ".", "n_on", HF_KIND_INT, 0, &t->n_on);
+    hf_hdf5_put(io, group, ".", "n_dominated", HF_KIND_INT, 0, &t->n_dominated);
+    hf_hdf5_put(io, group, ".", "n_failed", HF_KIND_INT, 0, &t->n_failed);
+    hf_hdf5_put(io, group, ".", "minimised", HF_KIND_INT, 0, &t->minimised);
+    hf_hdf5_put(io, group, ".", "knee", HF_KIND_INT, 0, &t->knee);
+    hf_hdf5_put(io, group, ".", "wall_s", HF_KIND_REAL, 0, &t->wall_s);
+}
+
+void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *m, const hf_summary *s,
+                           const hf_front *front)
+{
+    rows r;
+    int n = front->n_point, k = front->n_objective;
+    const hsize_t dims[2] = {(hsize_t)n, (hsize_t)front->n_gene};
+    const hf_hdf5_array name = names(k), base = base_of(k), design = hf_layout_of_genes("design_N", m->gene, 2, dims);
+    bool is_made = make_rows(&r, n, k);
+    hf_layout_renew(io, "/front");
+    hid_t group = hf_hdf5_make_group(io, "/front");
+    if (!is_made) hf_hdf5_no_memory(io);
+    if (is_made) pack(&r, n, k, front->point);
+    hf_hdf5_write_array(io, group, &name, s->goals.name);
+    hf_hdf5_write_array(io, group, &base, front->base);
+    for (int i = 0; i < N_COLUMN; i++) {
+        const hf_hdf5_array array = column(i, n, k);
+        hf_hdf5_write_array(io, group, &array, value_of(&r, i));
+    }
+    hf_hdf5_write_array(io, group, &design, front->design);
+    write_genes(io, group, scene, m);
+    put_attributes(io, group, &s->front);
+    hf_hdf5_close(io, group);
+    free_rows(&r);
+}
+
+/* ---- reading ---- */
+
+/* The first n points. */
+static void read_points(hf_hdf5 *io, hid_t group, int n, int n_objective, hf_front_point *point)
+{
+    rows r;
+    bool is_made = make_rows(&r, n, n_objective);
+    if (!is_made) hf_hdf5_no_memory(io);
+    for (int i = 0; i < N_COLUMN && is_made; i++) {
+        const hf_hdf5_array array = column(i, n, n_objective);
+        hf_hdf5_read_rows(io, group, &array, 0, value_of(&r, i));
+    }
+    if (io->status == HF_OK) unpack(&r, n, n_objective, point);
+    free_rows(&r);
+}
+
+static bool is_index(int value, int n)
+{
+    return value >= -1 && value < n;
+}
+
+void hf_layout_get_front(hf_hdf5 *io, hf_summary *s)
+{
+    hf_front_table *t = &s->front;
+    s->has_front = io->status == HF_OK && hf_hdf5_has(io, io->file, "/front");
+    if (!s->has_front) return;
+    hid_t group = hf_hdf5_open_group(io, "/front");
+    t->n_objective = hf_hdf5_length(io, group, "base", HF_OBJECTIVES_MAX);
+    t->n_point = hf_hdf5_length(io, group, "status", POINTS_MAX);
+    t->n_row = t->n_point < HF_FRONT_POINTS_MAX ? t->n_point : HF_FRONT_POINTS_MAX;
+    const hf_hdf5_array base = base_of(t->n_objective);
+    hf_hdf5_read_array(io, group, &base, t->base);
+    hf_hdf5_get(io, group, ".", "n_on", HF_KIND_INT, &t->n_on, 0);
+    hf_hdf5_get(io, group, ".", "n_dominated", HF_KIND_INT, &t->n_dominated, 0);
+    hf_hdf5_get(io, group, ".", "n_failed", HF_KIND_INT, &t->n_failed, 0);
+    hf_hdf5_get(io, group, ".", "minimised", HF_KIND_INT, &t->minimised, 0);
+    hf_hdf5_get(io, group, ".", "knee", HF_KIND_INT, &t->knee, 0);
+    hf_hdf5_get(io, group, ".", "wall_s", HF_KIND_REAL, &t->wall_s, 0);
+    if (io->status == HF_OK) read_points(io, group, t->n_row, t->n_objective, t->row);
+    if (io->status == HF_OK && (!is_index(t->minimised, t->n_objective) || !is_index(t->knee, t->n_row)))
+        hf_hdf5_damaged(io, group, ".", "has a knee or a minimised objective that is not there");
+    if (io->status == HF_OK && s->goals.n != t->n_objective)
+        hf_hdf5_damaged(io, group, "base", "has not as many objectives as /goals");
+    hf_hdf5_close(io, group);
+}
+
+/* Names of genes are printed: each ends within its room. */
+static char *read_genes(hf_hdf5 *io, hid_t group, int n, size_t *size)
+{
+    size_t length = hf_hdf5_chars_length(io, group, "gene");
+    char *stored = malloc((size_t)n * length + 1), *gene = calloc((size_t)n, length + 1);
+    const hf_hdf5_array array = {"gene", HF_KIND_CHARS, 1, {(hsize_t)n, length}, "", ""};
+    if (!stored || !gene) hf_hdf5_no_memory(io);
+    if (stored && gene) hf_hdf5_read_array(io, group, &array, stored);
+    for (size_t k = 0; io->status == HF_OK && k < (size_t)n; k++)
+        memcpy(gene + k * (length + 1), stored + k * length, length);
+    free(stored);
+    *size = length + 1;
+    return gene;
+}
+
+void hf_layout_read_front(hf_hdf5 *io, bool has_rows, hf_front *front, char **gene, size_t *gene_size)
+{
+    hid_t group = hf_hdf5_open_group(io, "/front");
+    int n_objective = hf_hdf5_length(io, group, "base", HF_OBJECTIVES_MAX);
+    int n_point = hf_hdf5_length(io, group, "status", POINTS_MAX);
+    int n_gene = hf_hdf5_length(io, group, "gene", POINTS_MAX);
+    if (io->status == HF_OK && hf_front_create(n_objective, n_gene, n_point, front) != HF_OK) hf_hdf5_no_memory(io);
+    const hsize_t dims[2] = {(hsize_t)n_point, (hsize_t)n_gene};
+    const hf_hdf5_array base = base_of(n_objective), design = hf_layout_of_genes("design_N", has_rows, 2, dims);
+    hf_hdf5_get(io, group, ".", "minimised", HF_KIND_INT, &front->minimised, 0);
+    hf_hdf5_get(io, group, ".", "knee", HF_KIND_INT, &front->knee, 0);
+    hf_hdf5_read_array(io, group, &base, front->base);
+    if (io->status == HF_OK) read_points(io, group, n_point, n_objective, front->point);
+    if (io->status == HF_OK) hf_hdf5_read_array(io, group, &design, front->design);
+    if (io->status == HF_OK) *gene = read_genes(io, group, n_gene, gene_size);
+    hf_hdf5_close(io, group);
+}

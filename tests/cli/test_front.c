@@ -1,0 +1,102 @@
+/* Fronts of optimize.objectives on the surface of the program: summary, JSON, file, table, and what is refused. */
+#include "cli.h"
+
+#define FRONT                                                                                                          \
+    keep(source_path("configs/chen2022.yaml")), "--set", "optimize.method=lm", "--set",                                \
+        "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}]", "--set", "optimize.front_points=7"
+
+START_TEST(a_front_is_printed_stored_and_told)
+{
+    const char *file = temp("f.h5"), *printed, *json;
+    HIFDM(0, "run", FRONT, "-o", file);
+    OUT("  front         7 points, 0 of them dominated, 0 failed; ");
+    OUT("                base   goal_0_psi 0.00660003, goal_1_ratio_boundary 4.84161\n");
+    OUT("                end    goal_0_psi 0.00428338, goal_1_ratio_boundary 5.23668; slope 0\n");
+    OUT("                end    goal_0_psi 0.0116996, goal_1_ratio_boundary 4.55962\n");
+    OUT("                knee   goal_0_psi ");
+    printed = keep(said.out);
+    HIFDM(0, "show", file);
+    ck_assert_str_eq(said.out, printed);
+    HIFDM(0, "show", file, "--json");
+    json = out_as("s.json");
+    EXPECT(file, json, "--", "b['front']['n_point'] == 7 and b['front']['minimised'] == 'goal_0_psi'",
+           "[p['objective']['goal_0_psi'] for p in b['front']['points']] == list(a['front/objective'][:, 0])",
+           "[p['multiplier']['goal_1_ratio_boundary'] for p in b['front']['points']][:6] == "
+           "list(a['front/multiplier'][:6, 1])",
+           "b['front']['points'][6]['multiplier']['goal_1_ratio_boundary'] is None",
+           "all(p['mark'] == 'on' and p['status'] == 'ok' for p in b['front']['points'])",
+           "list(b['front']['base'].values()) == list(a['front/base'])",
+           "b['front']['knee'] == a['front'].attrs['knee']",
+           "a['front/design_N'].shape == (7, 74) and a['front/design_N'].attrs['units'] == 'N'",
+           "np.all(np.diff(a['front/objective'][:, 0]) > 0) and np.all(np.diff(a['front/objective'][:, 1]) < 0)");
+}
+END_TEST
+
+/* The table is one of designs: evaluating it gives the objectives again. Threads change nothing. */
+START_TEST(a_table_of_the_front_is_one_of_designs)
+{
+    const char *file = temp("f.h5"), *other = temp("g.h5"), *table = temp("f.csv"), *again = temp("r.csv");
+    HIFDM(0, "run", FRONT, "-o", file, "--threads", "1", "--quiet");
+    HIFDM(0, "run", FRONT, "-o", other, "--threads", "2", "--quiet");
+    HIFDM(0, "diff", file, other);
+    HIFDM(0, "export", file, "--front", table);
+    OUT("7 points of the front of 2 objectives in ");
+    HIFDM(0, "evaluate", FRONT, "--designs", table, "-o", again);
+    EXPECT(table, again, "--",
+           "list(a[0])[:7] == ['id', 'mark', 'status', 'iterations', 'goal_0_psi', 'goal_1_ratio_boundary', "
+           "'slope_goal_1_ratio_boundary']",
+           "len(a) == 7 and a[0]['id'] == '1' and a[6]['slope_goal_1_ratio_boundary'] == ''",
+           "all(near(float(x[k]), float(y[k]), 1e-6) for x, y in zip(a, b) for k in ('goal_0_psi', "
+           "'goal_1_ratio_boundary'))");
+    HIFDM(5, "export", file, "--front", table);
+    ERR("exists; use --force to replace it\n");
+}
+END_TEST
+
+START_TEST(a_run_without_objectives_has_no_front)
+{
+    const char *file = temp("f.h5");
+    HIFDM(0, "run", keep(source_path("configs/chen2022.yaml")), "--set", "optimize.method=lm", "-o", file);
+    HIFDM(2, "export", file, "--front", temp("f.csv"));
+    ERR("this run has no front: its case has no optimize.objectives\n");
+    ck_assert(!is_there(temp("f.csv")));
+}
+END_TEST
+
+START_TEST(a_check_says_what_will_be_followed)
+{
+    HIFDM(0, "check", FRONT);
+    OUT("                front of goal_0_psi and goal_1_ratio_boundary: 7 points, each by Levenberg-Marquardt\n");
+    OUT("                Levenberg-Marquardt: rule force_density, at most 200 iterations, for each point\n");
+    HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: ratio, set: edges}]");
+    ERR("error: optimize.objectives.1: there is no set of cables 'edges'; did you mean 'edge'?\n");
+    HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: displacement}]");
+    ERR("error: optimize.objectives.1: displacement: needs a truss that gives way: this net has none\n");
+    HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}, {goal: evenness}]");
+    ERR("optimize.objectives.2: is a third objective; Levenberg-Marquardt follows the line of two. ");
+}
+END_TEST
+
+/* No design keeps the limit: the ends are not there, and the run says so. */
+START_TEST(limits_that_no_design_keeps_leave_no_front)
+{
+    const char *file = temp("f.h5");
+    HIFDM(3, "run", FRONT, "-o", file, "--set", "optimize.limits=[{limit: tension, set: edge, bounds: [500, 600]}]");
+    ERR("error: optimize.objectives: an end of the front has no feasible design: ");
+    HIFDM(0, "show", file);
+    ck_assert(!strstr(said.out, "  front "));
+}
+END_TEST
+
+Suite *suite_cli_front(void)
+{
+    Suite *suite = suite_create("cli/front");
+    TCase *tests = tcase_create("front");
+    suite_add_tcase(suite, tests);
+    tcase_add_test(tests, a_front_is_printed_stored_and_told);
+    tcase_add_test(tests, a_table_of_the_front_is_one_of_designs);
+    tcase_add_test(tests, a_run_without_objectives_has_no_front);
+    tcase_add_test(tests, a_check_says_what_will_be_followed);
+    tcase_add_test(tests, limits_that_no_design_keeps_leave_no_front);
+    return suite;
+}

@@ -1,0 +1,299 @@
+/* Fronts of two objectives by Levenberg-Marquardt: two in closed form, with their slopes; a reflector's, whose points
+ * are even, none better than another, and the same on any number of threads. */
+#include "nets.h"
+
+#include "net/variables.h"
+#include "search/polish.h"
+#include "search/trade.h"
+#include <hifdm/problem.h>
+
+enum { MAX_CABLE = 8, MAX_GENE = 4 };
+
+struct traded {
+    struct net net;
+    hf_goals goals;
+    hf_evaluator evaluator;
+    double start_q[MAX_CABLE], base[MAX_GENE], lower[MAX_GENE], upper[MAX_GENE];
+    hf_front front;
+};
+
+/* Follow the front of two objectives; all boundary cables vary their force densities between these bounds. */
+static void follow(struct traded *t, const hf_goal_settings objective[2], double lower, double upper, int n_point)
+{
+    hf_messages messages = {0};
+    hf_optimize_settings s = {.n_objective = 2, .n_variable = 1, .objective = {objective[0], objective[1]}};
+    hf_workspace *w = &t->net.work;
+    hf_model *m = &t->net.model;
+    s.variable[0] = (hf_variable_settings){.set = "boundary",
+                                           .vary = HF_VARY_FORCE_DENSITY,
+                                           .range = NAN,
+                                           .range_ratio = NAN,
+                                           .lower = lower,
+                                           .upper = upper};
+    t->net.form.residual_tolerance = t->net.form.length_tolerance = 1e-13;
+    ck_assert_int_eq(hf_variables_apply(&t->net.scene, &s, NULL, m, &messages), HF_OK);
+    hf_model_want_newton(m);
+    hf_workspace_free(w);
+    ck_assert_int_eq(hf_workspace_create(m, w), HF_OK);
+    ck_assert_msg(hf_goals_create(&t->net.scene, m, &s, NULL, NULL, &t->goals, &messages) == HF_OK, "%s",
+                  messages.text);
+    ck_assert_int_eq(find_shape(&t->net), HF_OK);
+    memcpy(t->start_q, w->q_N_per_m, (size_t)m->n_cable * sizeof(double));
+    hf_variables_read(m, w->q_N_per_m, w->tension_N, w->length_m, t->base);
+    for (int k = 0; k < m->n_gene; k++) {
+        t->lower[k] = lower;
+        t->upper[k] = upper;
+    }
+    t->evaluator = (hf_evaluator){.model = m,
+                                  .form = &t->net.form,
+                                  .start_q_N_per_m = t->start_q,
+                                  .solver = HF_SOLVER_NEWTON,
+                                  .boundary_ratio_cap = INFINITY,
+                                  .goals = &t->goals};
+    const hf_trade trade = {.evaluator = &t->evaluator,
+                            .lower = t->lower,
+                            .upper = t->upper,
+                            .n_point = n_point,
+                            .max_iterations = 200,
+                            .n_thread = 1,
+                            .n_start = 1,
+                            .start = t->base};
+    ck_assert(hf_trade_applies(&t->evaluator));
+    ck_assert_int_eq(hf_trade_find(&trade, &t->front), HF_OK);
+}
+
+static void close_traded(struct traded *t)
+{
+    hf_front_free(&t->front);
+    hf_goals_free(&t->goals);
+    close_net(&t->net);
+}
+
+static hf_goal_settings objective(hf_goal_kind kind, const char *set, double target)
+{
+    hf_goal_settings s = {.goal = kind, .target = target, .mass_kg_per_m = NAN};
+    snprintf(s.set, sizeof s.set, "%s", set);
+    return s;
+}
+
+static void assert_relative(double is, double wanted, double tolerance)
+{
+    ck_assert_msg(fabs(is - wanted) <= tolerance * fabs(wanted), "%.17g, not %.17g", is, wanted);
+}
+
+/* A node on the line between two supports at -1 and 1 m is at x = (q1 - q0)/(q0 + q1) and wants to be at 0.5 m, where
+ * its cables are 1.5 and 0.5 m long and want to be 0.8 m. So psi = 0.5 - x, and the length objective is
+ * L = sqrt(((1 + x - 0.8)^2 + (1 - x - 0.8)^2)/2) = sqrt(0.04 + x^2). The front is 0 <= x <= 0.5:
+ * psi = 0.5 - sqrt(L^2 - 0.04), and -d psi/dL = L/sqrt(L^2 - 0.04) = L/(0.5 - psi). */
+START_TEST(a_node_on_a_line_has_a_front_in_closed_form)
+{
+    static const struct hand_node node[] = {
+        {{-1, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0.5, 0, 0}, HF_ROLE_INNER, {0}}, {{1, 0, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 10},
+                                              {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 12}};
+    struct traded t = {0};
+    hf_goal_settings wanted[2] = {objective(HF_GOAL_PSI, "", NAN), objective(HF_GOAL_LENGTH, "", 0.8)};
+    bool is_turned = _i % 2; /* the order of the objectives says which one is least under limits on the other */
+    OPEN_HAND(&t.net, node, cable, HF_METHOD_FDM);
+    const hf_goal_settings turned[2] = {wanted[is_turned], wanted[!is_turned]};
+    follow(&t, turned, 1, 100, 11);
+    ck_assert_int_eq(t.front.n_point, 11);
+    ck_assert_int_eq(t.front.minimised, 0);
+    for (int i = 0; i < 11; i++) {
+        const hf_front_point *p = &t.front.point[i];
+        double psi_m = p->objective[is_turned], length_m = p->objective[!is_turned], slope = length_m / (0.5 - psi_m);
+        bool is_end = i == 0 || i == 10;
+        ck_assert_int_eq(p->status, HF_OK);
+        ck_assert_int_eq(p->mark, HF_FRONT_ON);
+        ck_assert_double_eq_tol(psi_m, 0.5 - sqrt(fmax(0, length_m * length_m - 0.04)), is_end ? 1e-6 : 1e-8 * psi_m);
+        if (!is_end) assert_relative(p->multiplier[1], is_turned ? 1 / slope : slope, 1e-8);
+    }
+    const hf_front_point *end = t.front.point; /* the least of objective 0 comes first */
+    ck_assert_double_eq_tol(end[is_turned ? 10 : 0].objective[is_turned], 0, 1e-12);
+    assert_relative(end[is_turned ? 0 : 10].objective[!is_turned], 0.2, 1e-8);
+    ck_assert_double_eq(end[0].multiplier[1], 0); /* where the first is least alone, the other holds nothing */
+    close_traded(&t);
+}
+END_TEST
+
+/* A node between supports at -1 and 1 m along x, whose cables vary up to Q = 40 N/m, and two at -1 and 1 m along y,
+ * with 5 N/m each: it stays on y = 0, and T0 = T1 - 2 x 5 x. So the ratio of T1 = q1 (1 - x) to T0 is least with
+ * q1 = Q: 1/r = 1 - 10 x/(Q (1 - x)). The node wants to be at 0.4 m: with u = (1 - 1/r) Q the front is
+ * psi = 0.4 - u/(10 + u) and -d psi/dr = 10 Q/(r (10 + u))^2, from r = 1 to 1/(1 - 4/(0.6 Q)). A bound and a corner
+ * hold all of it. */
+START_TEST(a_ratio_has_a_front_in_closed_form)
+{
+    static const struct hand_node node[] = {{{-1, 0, 0}, HF_ROLE_SUPPORT, {0}},
+                                            {{0.4, 0, 0}, HF_ROLE_INNER, {0}},
+                                            {{1, 0, 0}, HF_ROLE_SUPPORT, {0}},
+                                            {{0.4, -1, 0}, HF_ROLE_SUPPORT, {0}},
+                                            {{0.4, 1, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 20},
+                                              {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 25},
+                                              {{1, 3}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 5},
+                                              {{1, 4}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 5}};
+    struct traded t = {0};
+    const hf_goal_settings wanted[2] = {objective(HF_GOAL_RATIO, "boundary", NAN), objective(HF_GOAL_PSI, "", NAN)};
+    struct hand_node placed[5];
+    memcpy(placed, node, sizeof node);
+    placed[3].position_m[0] = placed[4].position_m[0] = 0; /* the cables along y pull the node to x = 0 */
+    OPEN_HAND(&t.net, placed, cable, HF_METHOD_FDM);
+    follow(&t, wanted, 1, 40, 9);
+    ck_assert_int_eq(t.front.n_point, 9);
+    ck_assert_int_eq(t.front.minimised, 1); /* psi is smooth */
+    for (int i = 0; i < 9; i++) {
+        const hf_front_point *p = &t.front.point[i];
+        double r = p->objective[0], u = 40 * (1 - 1 / r), psi_m = 0.4 - u / (10 + u);
+        ck_assert_int_eq(p->mark, HF_FRONT_ON);
+        ck_assert_double_eq_tol(p->objective[1], psi_m, i == 8 ? 1e-8 : 1e-8 * psi_m);
+        if (i > 0 && i < 8) assert_relative(p->multiplier[0], 400 / (r * r * (10 + u) * (10 + u)), 1e-8);
+        ck_assert(isnan(p->multiplier[1]));
+    }
+    assert_relative(t.front.point[0].objective[0], 1, 1e-8);
+    assert_relative(t.front.point[8].objective[0], 1 / (1 - 4 / (0.6 * 40)), 1e-5);
+    close_traded(&t);
+}
+END_TEST
+
+/* ---- a reflector ---- */
+
+static void open_chen(hf_problem *p, const char *objectives)
+{
+    const char *const set[] = {"optimize.method=lm", objectives, "surface.focal_length_m=15.95"};
+    hf_messages messages = {0};
+    ck_assert_msg(hf_problem_open("configs/chen2022.yaml", set, 3, 1, p, &messages) == HF_OK, "%s", messages.text);
+}
+
+static void follow_problem(hf_problem *p, int n_point, int n_thread, hf_front *front)
+{
+    int n = p->model.n_gene;
+    double *lower = malloc(2 * (size_t)n * sizeof *lower), *upper = lower + n;
+    for (int k = 0; k < n; k++) {
+        lower[k] = fmax(p->base_N[k] - 1, 0.1);
+        upper[k] = p->base_N[k] + 1;
+    }
+    const hf_trade trade = {.evaluator = &p->evaluator,
+                            .lower = lower,
+                            .upper = upper,
+                            .n_point = n_point,
+                            .max_iterations = 200,
+                            .n_thread = n_thread,
+                            .n_start = 1,
+                            .start = p->base_N};
+    ck_assert_int_eq(hf_trade_find(&trade, front), HF_OK);
+    free(lower);
+}
+
+/* The least psi where the other objective is at most this, from that design. */
+static double least_beside(hf_problem *p, double most, const double *from, const double *lower, const double *upper)
+{
+    double limit[2] = {INFINITY, most}, design[200];
+    const hf_watch_trade trade = {0, limit};
+    hf_polish_result r;
+    memcpy(design, from, (size_t)p->model.n_gene * sizeof *design);
+    ck_assert_int_eq(hf_polish_trade(&p->evaluator, lower, upper, 200, &trade, design, &p->workspace, &r), HF_OK);
+    return r.merit;
+}
+
+static const char *const traded[] = {
+    "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}]",
+    "optimize.objectives=[{goal: facets}, {goal: pull}]",
+    "optimize.objectives=[{goal: psi}, {goal: evenness, set: boundary}]",
+};
+enum { N_TRADED = sizeof traded / sizeof *traded, N_POINT = 11 };
+
+/* No point is better than another in both, the gaps between them are about even, and slopes are those of differences,
+ * with ratios and pulls, which have corners, and where only smooth goals are weighed. */
+START_TEST(points_are_even_and_slopes_those_of_differences)
+{
+    hf_problem p;
+    hf_front front;
+    double lower[200], upper[200], longest = 0, shortest = INFINITY;
+    open_chen(&p, traded[_i]);
+    ck_assert_int_le(p.model.n_gene, 200);
+    for (int k = 0; k < p.model.n_gene; k++) {
+        lower[k] = fmax(p.base_N[k] - 1, 0.1);
+        upper[k] = p.base_N[k] + 1;
+    }
+    follow_problem(&p, N_POINT, 1, &front);
+    ck_assert_int_eq(front.n_point, N_POINT);
+    const hf_front_point *a = front.point, *z = a + N_POINT - 1;
+    for (int i = 0; i < N_POINT; i++) {
+        ck_assert_int_eq(a[i].mark, HF_FRONT_ON);
+        if (i == 0) continue;
+        double gap = hypot((a[i].objective[0] - a[i - 1].objective[0]) / (z->objective[0] - a->objective[0]),
+                           (a[i].objective[1] - a[i - 1].objective[1]) / (z->objective[1] - a->objective[1]));
+        longest = fmax(longest, gap);
+        shortest = fmin(shortest, gap);
+    }
+    ck_assert_double_lt(longest, 6 * shortest);
+    for (int i = 1; i < N_POINT - 1; i += 3) {
+        double step = 1e-5 * (a->objective[1] - z->objective[1]), at = a[i].objective[1];
+        const double *design = front.design + (size_t)i * (size_t)front.n_gene;
+        double more = least_beside(&p, at + step, design, lower, upper);
+        double less =
+            least_beside(&p, at - step, front.design + (size_t)(N_POINT - 1) * (size_t)front.n_gene, lower, upper);
+        double slope = (less - more) / (2 * step);
+        ck_assert_msg(fabs(a[i].multiplier[1] - slope) < 1e-3 * slope, "point %d: %g, by differences %g", i,
+                      a[i].multiplier[1], slope);
+    }
+    hf_front_free(&front);
+    hf_problem_free(&p);
+}
+END_TEST
+
+START_TEST(threads_do_not_change_a_bit)
+{
+    hf_problem p;
+    hf_front one, two;
+    open_chen(&p, traded[0]);
+    follow_problem(&p, 9, 1, &one);
+    follow_problem(&p, 9, 2, &two);
+    ck_assert_int_eq(one.n_point, two.n_point);
+    ck_assert_mem_eq(one.design, two.design, (size_t)one.n_point * (size_t)one.n_gene * sizeof(double));
+    for (int i = 0; i < one.n_point; i++) {
+        ck_assert_mem_eq(one.point[i].objective, two.point[i].objective, sizeof one.point[i].objective);
+        ck_assert_mem_eq(&one.point[i].multiplier[1], &two.point[i].multiplier[1], sizeof(double));
+        ck_assert_int_eq(one.point[i].iterations, two.point[i].iterations);
+    }
+    hf_front_free(&one);
+    hf_front_free(&two);
+    hf_problem_free(&p);
+}
+END_TEST
+
+/* A run that is told to stop has no front. */
+START_TEST(a_stop_ends_the_search)
+{
+    static const volatile sig_atomic_t stop = 1;
+    hf_problem p;
+    hf_front front;
+    open_chen(&p, traded[0]);
+    const hf_trade trade = {.evaluator = &p.evaluator,
+                            .lower = p.base_N,
+                            .upper = p.base_N,
+                            .n_point = 5,
+                            .max_iterations = 200,
+                            .n_thread = 2,
+                            .n_start = 1,
+                            .start = p.base_N,
+                            .stop = &stop};
+    ck_assert_int_eq(hf_trade_find(&trade, &front), HF_INTERRUPTED);
+    ck_assert_int_eq(front.n_point, 0);
+    hf_front_free(&front);
+    hf_problem_free(&p);
+}
+END_TEST
+
+Suite *suite_unit_trade(void)
+{
+    Suite *suite = suite_create("unit/trade");
+    TCase *tests = tcase_create("trade");
+    suite_add_tcase(suite, tests);
+    tcase_add_loop_test(tests, a_node_on_a_line_has_a_front_in_closed_form, 0, 2);
+    tcase_add_loop_test(tests, points_are_even_and_slopes_those_of_differences, 0, N_TRADED);
+    tcase_add_test(tests, threads_do_not_change_a_bit);
+    tcase_add_test(tests, a_stop_ends_the_search);
+    tcase_add_test(tests, a_ratio_has_a_front_in_closed_form);
+    return suite;
+}
