@@ -5,6 +5,7 @@
 #define HIFDM_BUILT_H
 
 #include <hifdm/evaluate.h>
+#include <hifdm/states.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -41,6 +42,13 @@ typedef struct {
  * counted. Returns result->status. */
 hf_status hf_built_solve(const hf_built *built, const hf_built_net *net, hf_workspace *workspace,
                          hf_form_result *result);
+
+/* What a state makes of the nominal net, in arrays of the caller: cables are longer by their expansion, supports moved,
+ * and loads are those of the design, of the state, and the weights of nodes and of cables, half at each end.
+ * attachment_move_m [3 n_attachment]: how far the truss alone moves the attachments in this state, or NULL.
+ * cut_m [n_cable]; move_m, load_N [3][n_node] by row. `net` points to them. */
+void hf_built_state(const hf_built *built, const hf_material *material, const hf_state *state,
+                    const double *attachment_move_m, double *cut_m, double *move_m, double *load_N, hf_built_net *net);
 
 #ifdef __cplusplus
 }

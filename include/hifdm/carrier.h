@@ -40,6 +40,15 @@ typedef struct {
  * any case. */
 hf_status hf_carrier_load(const hf_carrier *carrier, const double *force_N, hf_carrier_state *state);
 
+/* The same with loads of its own beside them, as of temperature and weight; either may be NULL. Own moments where
+ * nothing resists rotation are refused: HF_MECHANISM. */
+hf_status hf_carrier_load_own(const hf_carrier *carrier, const double *force_N, const hf_frame_load *own,
+                              hf_carrier_state *state);
+
+/* Add the weight of members and hinges under gravity_m_per_s2 [3] to force [n_node][6]: of a member half at each end,
+ * so that its own bending between its ends is left out. */
+void hf_carrier_add_weight(const hf_carrier *carrier, const double gravity_m_per_s2[3], double *force);
+
 void hf_carrier_state_free(hf_carrier_state *state);
 
 #ifdef __cplusplus

@@ -11,6 +11,7 @@
 #include <hifdm/material.h>
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
+#include <hifdm/states.h>
 #include <hifdm/status.h>
 #include <hifdm/truss.h>
 
@@ -83,6 +84,12 @@ hf_status hf_config_surface(const hf_case *settings, const hf_scene *scene, hf_s
 hf_status hf_config_material(const hf_case *settings, const hf_scene *scene, hf_material *material,
                              hf_messages *messages);
 
+/* The states that the rows of `cases` describe, with their material; truss: NULL when there is none. A case without
+ * rows has none. HF_BAD_CASE for rows that name nothing of this net or truss, for cables without EA, for temperatures
+ * of what has no known expansion, for gravity on what has no known mass; HF_NO_MEMORY. Free them in any case. */
+hf_status hf_config_states(const hf_case *settings, const hf_scene *scene, const hf_truss *truss, hf_states *states,
+                           hf_messages *messages);
+
 /* Make the truss of a case that has one, and check it (hf_truss_check). Errors as hf_config_scene. Free the truss in
  * any case. */
 hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages *messages);
@@ -104,7 +111,8 @@ typedef enum {
     HF_FIELD_TEXT,
     HF_FIELD_DOUBLE_LIST, /* hf_double_list */
     HF_FIELD_AMOUNT,      /* double[2]: a number, or a part of something such as 30 % as 0.3; NaN is what it is not */
-    HF_FIELD_BOUNDS       /* double[2]: lower < upper, infinite where a side is open */
+    HF_FIELD_BOUNDS,      /* double[2]: lower < upper, infinite where a side is open */
+    HF_FIELD_VECTOR       /* double[3]: along x, y, z */
 } hf_field_type;
 
 typedef struct {

@@ -46,6 +46,7 @@
 #include <hifdm/run.h>
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
+#include <hifdm/states.h>
 #include <hifdm/status.h>
 #include <hifdm/store.h>
 #include <hifdm/summary.h>

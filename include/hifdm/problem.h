@@ -20,6 +20,7 @@ typedef struct {
     hf_scene scene;
     hf_carrier carrier; /* all zero without a truss */
     hf_model model;
+    hf_states states;            /* of the net as built; none without `cases` */
     hf_surface_settings surface; /* the wanted one, its kind known; all zero when the case asks for no measures */
     hf_facets facets;            /* of the wanted surface; none when the case asks for no measures */
     int planes;                  /* of symmetry that link genes: bit 1 = x, bit 2 = y */

@@ -79,6 +79,7 @@ extern const char *const hf_variation_word[3];
 extern const char *const hf_keep_word[4];
 extern const char *const hf_symmetry_word[6];
 extern const char *const hf_nodes_word[5];
+extern const char *const hf_part_word[11];
 extern const char *const hf_surface_kind_word[4];
 extern const char *const hf_coupling_scheme_word[4];
 extern const char *const hf_vary_word[8];
@@ -88,6 +89,9 @@ extern const char *const hf_along_word[3];
 extern const char *const hf_fit_word[3];
 extern const char *const hf_limit_word[4];
 extern const char *const hf_figure_word[4]; /* the first goals, those that are figures of a shape */
+
+/* Room for the path of a case, a study or a table of a net or truss; a longer one is refused. */
+#define HF_PATH_SIZE 1024
 
 #define HF_SET_NAME_SIZE 64 /* of the name of a set of cables with its NUL */
 
@@ -190,11 +194,33 @@ typedef struct {
 
 #define HF_MATERIAL_ROWS_MAX 16 /* rows of each of these lists */
 
+/* What the temperature of a row of `cases` is that of: members of the truss by hf_unit from HF_PART_UNIT on. */
+typedef enum { HF_PART_ALL, HF_PART_NET, HF_PART_TRUSS, HF_PART_UNIT } hf_part;
+
+/* A row of `cases`; rows with the same name are one state. NaN where a number is not given. */
+typedef struct {
+    char name[HF_SET_NAME_SIZE];
+    char set[HF_SET_NAME_SIZE]; /* of cables whose temperature it is; "": `part` says */
+    hf_part part;
+    double temperature_K;          /* difference to that at which the net was cut and the truss made */
+    double gradient_K_per_m[3];    /* added to it, linear in the place from the origin */
+    double gravity_m_per_s2;       /* weight */
+    double direction[3];           /* in which it pulls; default: -z */
+    hf_nodes role;                 /* nodes on which force_N acts */
+    double force_N[3];             /* on each of them */
+    double move_m[3];              /* of all supports */
+    char nodes_path[HF_PATH_SIZE]; /* table of forces and moves by node; "": none */
+} hf_state_settings;
+
+#define HF_STATE_ROWS_MAX 32 /* rows of `cases` */
+#define HF_STATES_MAX 16     /* states that they may name */
+
 /* The net as built. */
 typedef struct {
-    int n_cable, n_node;
+    int n_cable, n_node, n_state;
     hf_cable_settings cable[HF_MATERIAL_ROWS_MAX];
     hf_node_settings node[HF_MATERIAL_ROWS_MAX];
+    hf_state_settings state[HF_STATE_ROWS_MAX];
 } hf_built_settings;
 
 /* Turnbuckles that bring the figure of the net as built back: some cables of a set, by whole steps within a range. */
@@ -222,9 +248,6 @@ typedef struct {
     double mesh_tension_N_per_m; /* of the mesh on the front net, in all directions; 0 = not known */
     hf_surface_kind kind;        /* HF_SURFACE_AUTO in a case alone, until hf_config_surface has looked at the nodes */
 } hf_surface_settings;
-
-/* Room for the path of a case, a study or a table of a net or truss; a longer one is refused. */
-#define HF_PATH_SIZE 1024
 
 #ifdef __cplusplus
 }

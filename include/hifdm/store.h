@@ -52,6 +52,10 @@
  *   /front       of optimize.objectives, with p points, o objectives, k genes: name, base [o]; objective, multiplier
  *                [p][o]; status, mark, iterations [p]; design_N (with optimize.variables design) [p][k]; gene, the name
  *                of each [k]; attributes n_on, n_dominated, n_failed, minimised, knee (index into p, -1: none), wall_s
+ *   /cases       states of the net as built, when there are any: name [c] in the order of the case
+ *   /cases/NAME  as /form, unless it has no shape; attributes: the figures of its result, those of its coupling as
+ *                coupling_..., HF_STATE_LIST; /cases/NAME/surface as /surface/form; with a truss /cases/NAME/truss/node
+ *                with displacement, reaction [a][6], /cases/NAME/truss/member with end_force [b][12]
  *   /truss       with a nodes, b members, c attachments; attributes mass_kg, n_node, n_member
  *   /truss/node  id, mass_kg [a], position_m [a][3], fixed [a][6]; displacement, reaction [a][6]
  *   /truss/member  id, joint, unit, E_Pa, A_m2, ..., expansion_per_K [b], end [b][2]; end_force [b][12]
@@ -154,6 +158,11 @@ hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, 
 hf_status hf_store_front(hf_store *store, const hf_scene *scene, const hf_model *model, const hf_summary *summary,
                          const hf_front *front, hf_messages *messages);
 
+/* Write the shape in the workspace as that of a state of the net as built, with the truss in it (NULL without one). A
+ * state that is there already is replaced. */
+hf_status hf_store_built(hf_store *store, const char *name, const hf_model *model, const hf_workspace *workspace,
+                         const hf_carrier *carrier, const hf_carrier_state *truss, hf_messages *messages);
+
 /* Write the summary, close the file and give it its name. The store is freed in any case. A failure leaves the
  * published file and the journal as they were. When the file is whole but cannot get its name (HF_EXISTS, HF_IO), it
  * stays under another name, which the message gives. */
@@ -188,6 +197,8 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
 
 /* Read the shape that a stage found; HF_IO when there is none. Its counts are those of hf_store_read_scene. */
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
+/* The same of a state of the net as built. */
+hf_status hf_store_read_state(const char *path, const char *name, hf_shape *shape, hf_messages *messages);
 void hf_shape_free(hf_shape *shape);
 
 /* Read the front, and *gene, the names of its genes, [n_gene] of *gene_size bytes each. HF_IO when there is none. Free
@@ -203,6 +214,11 @@ hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_ca
 /* Read the truss, without its line numbers; state: all NULL when none was stored. HF_IO when there is no truss. Free
  * both in any case. */
 hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_state *state, hf_messages *messages);
+
+/* Read what a state of the net as built makes of the truss that hf_store_read_truss has read. HF_IO when it has no
+ * shape. Free it in any case. */
+hf_status hf_store_read_state_truss(const char *path, const char *name, const hf_truss *truss, hf_carrier_state *state,
+                                    hf_messages *messages);
 
 /* "VERSION (git describe)" of this library. */
 const char *hf_store_version(void);

@@ -70,6 +70,13 @@ extern "C" {
     X(int, polish_n_at_limit, INT, 5, "at_limit", "limits of optimize.limits that hold it, cable by cable")            \
     X(double, polish_wall_s, REAL, 3, "wall_s", "wall-clock time")
 
+/* A state of the net as built (`cases`), beside the figures of its result. */
+#define HF_STATE_LIST(X)                                                                                               \
+    X(double, least_tension_N, REAL, 1, "least_tension_N", "of all cables")                                            \
+    X(double, largest_tension_N, REAL, 1, "largest_tension_N", "of all cables")                                        \
+    X(double, move_rms_m, REAL, 2, "move_rms_m", "RMS of how far the inner nodes are from their places in the design") \
+    X(double, largest_member_N, REAL, 3, "largest_member_N", "largest axial force of a truss member; NaN: no truss")
+
 /* The truss. */
 #define HF_SUMMARY_TRUSS_LIST(X)                                                                                       \
     X(double, mass_kg, REAL, 1, "mass_kg", "members and hinges")                                                       \
@@ -113,6 +120,14 @@ typedef struct {
     HF_SUMMARY_TRUSS_LIST(HF_SUMMARY_MEMBER)
 } hf_truss_summary;
 
+/* The figures of a state without a shape are NaN, but for its status. */
+typedef struct {
+    char name[HF_SET_NAME_SIZE];
+    hf_form_result result;
+    HF_STATE_LIST(HF_SUMMARY_MEMBER)
+    hf_surface_measures measures;
+} hf_state_summary;
+
 typedef struct {
     char version[64], title[256], case_path[HF_PATH_SIZE];
     bool finished;                   /* false: the run can be resumed */
@@ -127,6 +142,9 @@ typedef struct {
     hf_held_limits held[3];          /* of the same */
 
     hf_goal_list goals;
+
+    int n_state; /* of the net as built */
+    hf_state_summary state[HF_STATES_MAX];
 
     HF_SUMMARY_FORM_LIST(HF_SUMMARY_MEMBER)
     hf_form_result form;

@@ -91,6 +91,15 @@ static void print_scene(const hf_problem *p, FILE *f)
     if (m->n_chain) fprintf(f, "  note          %d straight chains of length-controlled cables\n", m->n_chain);
 }
 
+/* Prints the names of the states of the net as built. */
+static void print_states(const hf_states *s, FILE *f)
+{
+    fprintf(f, "                %d case%s of the net as built:", s->n, s->n == 1 ? "" : "s");
+    for (int k = 0; k < s->n; k++)
+        fprintf(f, "%s %s", k ? "," : "", s->state[k].name);
+    fputc('\n', f);
+}
+
 /* Prints size and cost of the truss. The truss is built and condensed a second time to measure how long that takes. */
 static hf_status print_truss(const hf_problem *p, FILE *f, hf_messages *messages)
 {
@@ -162,13 +171,14 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
     if (optimizes && o->symmetry != HF_SYMMETRY_NONE)
         fprintf(f, "                symmetry: %s, %s; %d independent genes of %d\n", hf_symmetry_word[o->symmetry],
                 hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_gene);
-    fprintf(f, "  skipped       %s%s%s%s\n",
+    if (p->states.n) print_states(&p->states, f);
+    fprintf(f, "  skipped       %s%s%s%s%s\n",
             evolves           ? ""
             : optimizes       ? "genetic algorithm (method: lm); "
             : c->has_optimize ? "optimisation (no boundary cable has a free end); "
                               : "optimisation (no optimize section); ",
-            c->has_truss ? "" : "truss (no truss section); ", p->model.load_N ? "" : "loads (none given); ",
-            p->model.has_strut ? "" : "general band matrix (no struts)");
+            p->states.n ? "" : "cases (none given); ", c->has_truss ? "" : "truss (no truss section); ",
+            p->model.load_N ? "" : "loads (none given); ", p->model.has_strut ? "" : "general band matrix (no struts)");
 }
 
 static void print_allocation(const char *title, const char *what, double bytes, const char *without, FILE *f)

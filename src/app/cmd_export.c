@@ -32,6 +32,12 @@ static hf_status check_request(const hf_options *o, hf_messages *messages)
     }
     list_exporters(list, sizeof list);
     if (n_asked == 0) return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs %s", list);
+    if (o->stage && o->state) return hf_error(messages, HF_BAD_USAGE, "--stage and --case exclude each other");
+    for (int i = 0; i < HF_N_EXPORTER; i++)
+        if (o->state && o->export_to[i] && !hf_exporter_table[i]->takes_case)
+            return hf_error(messages, HF_BAD_USAGE, "--case does not go with %s, %s", hf_exporter_table[i]->option,
+                            hf_exporter_table[i]->takes_stage ? "which is of the design that all cases are made of"
+                                                              : "which writes every shape");
     if (o->stage && n_one_shape == 0)
         return hf_error(messages, HF_BAD_USAGE, "--stage does not go with %s alone, which writes every shape",
                         every_shape->option);
@@ -45,7 +51,7 @@ static hf_status command_export(const hf_options *o, FILE *file, hf_messages *me
     HF_TRY(check_request(o, messages));
     hf_status status = HF_OK;
     for (int i = 0; i < HF_N_EXPORTER && status == HF_OK; i++) {
-        const hf_export_request request = {o->file, o->export_to[i], o->stage, o->force, &files};
+        const hf_export_request request = {o->file, o->export_to[i], o->stage, o->state, o->force, &files};
         if (o->export_to[i]) status = hf_exporter_table[i]->write(&request, said[i], sizeof said[i], messages);
     }
     HF_TRY(hf_file_out_set_end(&files, status, messages));
@@ -61,6 +67,7 @@ const hf_command hf_cmd_export = {
     .about = "Numbers have 17 significant digits: read back they are the stored ones, bit by bit.",
     .examples = "hifdm export chen2022.h5 --csv best\n"
                 "hifdm export chen2022.h5 --csv found --stage form\n"
+                "hifdm export night.h5 --csv cold --case cold\n"
                 "hifdm export chen2022.h5 --vtk shapes --cutlist cut.csv",
     .reads_results = true,
     .run = command_export,

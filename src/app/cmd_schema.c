@@ -15,7 +15,8 @@ static void print_range(const hf_field *field, FILE *f)
                                        "text",
                                        "list of numbers",
                                        "number",
-                                       "[low, high], of which one may be null"};
+                                       "[low, high], of which one may be null",
+                                       "[x, y, z]"};
     if (field->type == HF_FIELD_WORD) {
         for (int k = 0; field->words[k]; k++)
             fprintf(f, "%s%s", k ? " | " : "", field->words[k]);
@@ -94,8 +95,6 @@ static void print_schema(FILE *f)
     fputs("# Every key of a hifdm case file, with its default. Units are the last part of a name.\n", f);
     for (int i = 0; i < hf_n_field; i++)
         if (!strchr(field[i].path, '.')) print_field(&field[i], f);
-    for (int i = 0; i < hf_n_list; i++)
-        if (!strchr(hf_list_table[i].path, '.')) print_list(&hf_list_table[i], f);
     for (int s = 0; s < hf_n_section; s++) {
         int indent = 2 * depth_of(section[s].path);
         fprintf(f, "\n%*s# %s\n%*s%s:\n", indent, "", section[s].help, indent, "", last_word(section[s].path));
@@ -103,6 +102,11 @@ static void print_schema(FILE *f)
             if (is_inside(field[i].path, section[s].path)) print_field(&field[i], f);
         for (int i = 0; i < hf_n_list; i++)
             if (is_inside(hf_list_table[i].path, section[s].path)) print_list(&hf_list_table[i], f);
+    }
+    for (int i = 0; i < hf_n_list; i++) {
+        if (strchr(hf_list_table[i].path, '.')) continue;
+        fputc('\n', f);
+        print_list(&hf_list_table[i], f);
     }
 }
 

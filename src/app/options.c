@@ -199,6 +199,8 @@ static const hf_option option_table[] = {
 #undef EXPORTER
         {"--stage", NULL, "form|optimize|polish", "which shape (default: the result of the run)", "export", read_stage,
          0, NULL},
+    {"--case", NULL, "NAME", "the shape of this state of the net as built (`cases`)", "export", read_text, AT(state),
+     NULL},
     {"--man", NULL, NULL, "print the manual page, for man(1)", "help", read_man, 0, NULL},
     {"--bash", NULL, NULL, "print the completion for bash", "help", read_bash, 0, NULL},
     {"--help", "-h", NULL, "print this", NULL, read_flag, AT(help), NULL},

@@ -44,7 +44,7 @@ hf_status hf_file_out_write(const char *path, void (*write)(const void *context,
 
 /* ---- files that belong together: all of them get their names, or none unless a rename fails ---- */
 
-#define HF_FILE_OUT_SET_MAX 16
+#define HF_FILE_OUT_SET_MAX 80
 
 typedef struct {
     hf_file_out file[HF_FILE_OUT_SET_MAX];

@@ -4,6 +4,7 @@
 #include <hifdm/cable_set.h>
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 void hf_config_check_set(hf_config_faults *f, const char *list, int row, const char *set)
@@ -24,7 +25,103 @@ static void check_cables(const hf_built_settings *b, hf_config_faults *f)
     }
 }
 
+/* ---- states ---- */
+
+static const char states_list[] = "cases";
+
+static bool is_there(const double vector[3])
+{
+    return !isnan(vector[0]);
+}
+
+static bool has_temperature(const hf_state_settings *s)
+{
+    return !isnan(s->temperature_K) || is_there(s->gradient_K_per_m);
+}
+
+static void check_name(const hf_state_settings *s, int row, hf_config_faults *f)
+{
+    static const char *const letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    if (s->name[strspn(s->name, letters)] || *s->name == '-')
+        hf_config_fault_in_row(f, states_list, row, "name",
+                               "must be made of letters, digits, _ and -, and not begin with -");
+    if (!strcmp(s->name, "name")) /* the result file has the names there: /cases/name */
+        hf_config_fault_in_row(f, states_list, row, "name", "must be another word than name");
+}
+
+/* Keys that mean something only beside another one. */
+static void check_company(const hf_state_settings *s, int row, hf_config_faults *f)
+{
+    const struct {
+        const char *key;
+        bool has_company;
+        const char *what;
+    } use[] = {{"set", has_temperature(s), "has no meaning without temperature_K or gradient_K_per_m"},
+               {"part", has_temperature(s), "has no meaning without temperature_K or gradient_K_per_m"},
+               {"direction", !isnan(s->gravity_m_per_s2), "has no meaning without gravity_m_per_s2"},
+               {"role", is_there(s->force_N), "has no meaning without force_N"}};
+    for (size_t k = 0; k < sizeof use / sizeof *use; k++)
+        if (!use[k].has_company && hf_config_is_given_in_row(f, states_list, row, use[k].key))
+            hf_config_fault_in_row(f, states_list, row, use[k].key, use[k].what);
+    if (*s->set && s->part != HF_PART_ALL)
+        hf_config_fault_in_row(f, states_list, row, "part", "does not go with set: a row names cables or members");
+    if (is_there(s->direction) && s->direction[0] == 0 && s->direction[1] == 0 && s->direction[2] == 0)
+        hf_config_fault_in_row(f, states_list, row, "direction", "must not be zero");
+    if (!has_temperature(s) && isnan(s->gravity_m_per_s2) && !is_there(s->force_N) && !is_there(s->move_m) &&
+        !*s->nodes_path)
+        hf_config_fault_in_row(f, states_list, row, "name",
+                               "this row says nothing; give temperature_K, gradient_K_per_m, gravity_m_per_s2, "
+                               "force_N, move_m or nodes");
+}
+
+/* What two rows of a state say of the same thing. Forces and moves add up. */
+static void check_twice(const hf_built_settings *b, int row, hf_config_faults *f)
+{
+    const hf_state_settings *s = &b->state[row];
+    char what[96];
+    for (int i = 0; i < row; i++) {
+        const hf_state_settings *before = &b->state[i];
+        if (strcmp(before->name, s->name) != 0) continue;
+        snprintf(what, sizeof what, "row %d has it for this state already", i);
+        if (!isnan(s->gravity_m_per_s2) && !isnan(before->gravity_m_per_s2))
+            hf_config_fault_in_row(f, states_list, row, "gravity_m_per_s2", what);
+        if (has_temperature(s) && has_temperature(before) && s->part == before->part && !strcmp(s->set, before->set))
+            hf_config_fault_in_row(f, states_list, row, isnan(s->temperature_K) ? "gradient_K_per_m" : "temperature_K",
+                                   what);
+    }
+}
+
+static void check_states(const hf_built_settings *b, hf_config_faults *f)
+{
+    int n_name = 0;
+    for (int i = 0; i < b->n_state; i++) {
+        int same = 0;
+        while (strcmp(b->state[same].name, b->state[i].name) != 0)
+            same++;
+        n_name += same == i;
+        if (n_name > HF_STATES_MAX && same == i)
+            hf_config_fault_in_row(f, states_list, i, "name", "there are more than 16 states");
+        check_name(&b->state[i], i, f);
+        hf_config_check_set(f, states_list, i, b->state[i].set);
+        check_company(&b->state[i], i, f);
+        check_twice(b, i, f);
+    }
+}
+
+/* An expansion is of use where something has a temperature. */
+static void check_expansions(const hf_built_settings *b, hf_config_faults *f)
+{
+    for (int i = 0; i < b->n_state; i++)
+        if (has_temperature(&b->state[i])) return;
+    for (int i = 0; i < b->n_cable; i++)
+        if (!isnan(b->cable[i].expansion_per_K))
+            hf_config_fault_in_row(f, "cables", i, "expansion_per_K",
+                                   "has no effect: no row of cases has a temperature");
+}
+
 void hf_config_check_built(const hf_case *c, hf_config_faults *f)
 {
     check_cables(&c->built, f);
+    check_states(&c->built, f);
+    check_expansions(&c->built, f);
 }

@@ -283,6 +283,32 @@ static const hf_field node_field[] = {
 };
 #undef IN
 
+#define IN(member) offsetof(hf_state_settings, member)
+static const hf_field state_field[] = {
+    {"name", HF_FIELD_TEXT, IN(name), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
+     "of the state: letters, digits, _ and -; rows with the same name are one state"},
+    {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL,
+     "cables that have the temperature: a set of the net, or inner, boundary, all"},
+    {"part", HF_FIELD_WORD, IN(part), 0, 0, "all", "", hf_part_word,
+     "what has the temperature: net and truss; all cables; the truss; or the members of a unit of the truss"},
+    {"temperature_K", HF_FIELD_DOUBLE, IN(temperature_K), -1e4, 1e4, "", "K", NULL,
+     "difference to the temperature at which the cables were cut and the truss was made; of what several rows of a "
+     "state name the last one holds"},
+    {"gradient_K_per_m", HF_FIELD_VECTOR, IN(gradient_K_per_m), -1e4, 1e4, "", "K/m", NULL,
+     "added to temperature_K in proportion to the place, 0 at the origin"},
+    {"gravity_m_per_s2", HF_FIELD_DOUBLE, IN(gravity_m_per_s2), HF_ABOVE_ZERO, 1e6, "", "m/s2", NULL,
+     "weight of cables, nodes and truss"},
+    {"direction", HF_FIELD_VECTOR, IN(direction), -1e9, 1e9, "", "", NULL,
+     "in which gravity pulls, of any length; default: [0, 0, -1]"},
+    {"force_N", HF_FIELD_VECTOR, IN(force_N), -1e12, 1e12, "", "N", NULL, "on each node of the role"},
+    {"role", HF_FIELD_WORD, IN(role), 0, 0, "all", "", hf_nodes_word, "nodes on which force_N acts"},
+    {"move_m", HF_FIELD_VECTOR, IN(move_m), -1e6, 1e6, "", "m", NULL,
+     "of all supports from where the design has them, on a truss from where the truss holds them"},
+    {"nodes", HF_FIELD_TEXT, IN(nodes_path), 1, HF_PATH_SIZE, "", "", NULL,
+     "CSV id[,Fx_N,Fy_N,Fz_N][,dx_m,dy_m,dz_m]: forces on nodes, moves of supports; path relative to the case file"},
+};
+#undef IN
+
 #define N_VARIABLE_FIELD (int)(sizeof variable_field / sizeof *variable_field)
 #define N_LIMIT_FIELD (int)(sizeof limit_field / sizeof *limit_field)
 #define LIST(name, count, row, max_row, keys, n_key, help)                                                             \
@@ -309,6 +335,9 @@ const hf_list hf_list_table[] = {
                "What cables are made of, for the net as built; a later row replaces what an earlier one says"),
     BUILT_LIST("nodes", n_node, node, HF_MATERIAL_ROWS_MAX, node_field,
                "What joints weigh, for the net as built; a later row replaces an earlier one"),
+    BUILT_LIST("cases", n_state, state, HF_STATE_ROWS_MAX, state_field,
+               "States of the net as built, of up to 16 names: temperatures, gravity, forces, moves of supports; "
+               "without rows none is computed"),
 };
 #undef BUILT_LIST
 #undef LIST
@@ -331,6 +360,8 @@ static bool is_same(const hf_field *f, const char *a, const char *b)
     case HF_FIELD_AMOUNT:
     case HF_FIELD_BOUNDS:
         return !memcmp(a, b, 2 * sizeof(double));
+    case HF_FIELD_VECTOR:
+        return !memcmp(a, b, 3 * sizeof(double));
     case HF_FIELD_INT:
     case HF_FIELD_WORD:
         return !memcmp(a, b, sizeof(int));

@@ -187,6 +187,18 @@ static void set_bounds(setter *s, const yaml_node_t *node, const hf_field *f, do
         memcpy(to, bound, sizeof bound);
 }
 
+static void set_vector(setter *s, const yaml_node_t *node, const hf_field *f, double to[3])
+{
+    double part[3] = {(double)NAN, (double)NAN, (double)NAN};
+    if (n_item(node) != 3) {
+        refuse(s, node, f, "must be a list of three numbers, along x, y and z, like [0, 0, -1]", "");
+        return;
+    }
+    for (int k = 0; k < 3; k++)
+        set_double(s, item_of(s, node, k), f, &part[k]);
+    if (!isnan(part[0] + part[1] + part[2])) memcpy(to, part, sizeof part);
+}
+
 static void set_text(setter *s, const yaml_node_t *node, const hf_field *f, char *to)
 {
     size_t size = (size_t)f->max;
@@ -216,6 +228,9 @@ void hf_config_value(hf_config_faults *faults, yaml_document_t *document, const 
     case HF_FIELD_BOUNDS:
         set_bounds(&s, node, f, (double *)to);
         break;
+    case HF_FIELD_VECTOR:
+        set_vector(&s, node, f, (double *)to);
+        break;
     case HF_FIELD_UINT64:
         if (!is_plain(node) || !hf_text_uint64(scalar_text(node), (uint64_t *)to))
             refuse(&s, node, f, "must be a whole number from 0 to 18446744073709551615", "");
@@ -240,6 +255,8 @@ void hf_config_no_value(const hf_field *field, void *to)
     double *number = to;
     if (field->type == HF_FIELD_DOUBLE || field->type == HF_FIELD_AMOUNT) number[0] = (double)NAN;
     if (field->type == HF_FIELD_AMOUNT) number[1] = (double)NAN;
+    for (int k = 0; k < 3 && field->type == HF_FIELD_VECTOR; k++)
+        number[k] = (double)NAN;
     if (field->type != HF_FIELD_BOUNDS) return;
     number[0] = -(double)INFINITY;
     number[1] = (double)INFINITY;

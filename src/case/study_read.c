@@ -233,7 +233,8 @@ static void read_range(reader *r, hf_study_axis *axis, const yaml_node_t *mappin
     const hf_field_type type = axis->key.field->type;
     bool given[2] = {false, false}, failed_before = r->failed;
     to->mark = mapping->start_mark;
-    if (type == HF_FIELD_WORD || type == HF_FIELD_TEXT || type == HF_FIELD_INT_PAIR || type == HF_FIELD_BOUNDS) {
+    if (type == HF_FIELD_WORD || type == HF_FIELD_TEXT || type == HF_FIELD_INT_PAIR || type == HF_FIELD_BOUNDS ||
+        type == HF_FIELD_VECTOR) {
         fault(r, to->mark, path, "is no number, so it needs a list of values");
         return;
     }

@@ -25,5 +25,7 @@ const char *const hf_along_word[3] = {"normal", "half_path", NULL};
 const char *const hf_fit_word[3] = {"none", "best", NULL};
 const char *const hf_figure_word[4] = {"psi", "surface", "facets", NULL};
 const char *const hf_limit_word[4] = {"tension", "ratio", "displacement", NULL};
+const char *const hf_part_word[11] = {"all",   "net",      "truss",    "bud",      "mbug", "abug",
+                                      "other", "longeron", "vertical", "diagonal", NULL};
 const char *const hf_nodes_word[5] = {"all", "support", "inner", "edge", NULL};
 const char *const hf_symmetry_word[6] = {"none", "x", "y", "xy", "auto", NULL};

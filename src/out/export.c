@@ -29,11 +29,29 @@ hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messag
 
 static const char *const shape_word[3] = {"form-finding", "optimised", "polished"};
 
+/* A state of the net as built; its name is what messages call the shape. */
+static hf_status read_state(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
+{
+    const hf_summary *s = &stored->summary;
+    char known[512] = "";
+    int k = 0, used = 0;
+    for (; k < s->n_state && strcmp(o->state, s->state[k].name) != 0; k++)
+        if (used < (int)sizeof known)
+            used += snprintf(known + used, sizeof known - (size_t)used, "%s%s", k ? ", " : "", s->state[k].name);
+    if (s->n_state == 0) return hf_error(messages, HF_BAD_USAGE, "%s: this run has no cases", o->file);
+    if (k == s->n_state)
+        return hf_error(messages, HF_BAD_USAGE, "%s: has no case '%s'; it has %s", o->file, o->state, known);
+    stored->word = s->state[k].name;
+    HF_TRY(hf_store_read_scene(o->file, &stored->scene, messages));
+    return hf_store_read_state(o->file, o->state, &stored->shape, messages);
+}
+
 /* Reads the shape of o->stage or, when that is NULL, the result of the run, with its summary and scene. */
 static hf_status read_stored(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
 {
     hf_summary *summary = &stored->summary;
     HF_TRY(hf_store_read_summary(o->file, summary, messages));
+    if (o->state) return read_state(o, stored, messages);
     bool has[3] = {true, hf_summary_has_best_shape(summary), summary->has_polish};
     hf_stage stage = has[HF_STAGE_POLISH] && summary->polish_is_result ? HF_STAGE_POLISH
                      : has[HF_STAGE_OPTIMIZE]                          ? HF_STAGE_OPTIMIZE

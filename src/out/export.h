@@ -18,6 +18,7 @@ typedef struct {
     const char *file;       /* the result */
     const char *output;     /* the file or folder to write: hf_exporter.argument says which */
     const char *stage;      /* a word of hf_stage_word, NULL: the result of the run */
+    const char *state;      /* of the net as built, by its name; NULL: a stage */
     bool force;             /* replace existing files */
     hf_file_out_set *files; /* takes what is written; the caller gives all of it names at once */
 } hf_export_request;
@@ -27,6 +28,7 @@ typedef struct {
     const char *argument; /* DIR or FILE: what hf_export_request.output is */
     const char *help;
     bool takes_stage; /* true: writes one shape, chosen by --stage; false: writes every shape of the run */
+    bool takes_case;  /* true: and that may be a state of the net as built, chosen by --case */
     /* Existing files are kept unless request->force is set; all names are checked before anything is written. `said`
      * gets one line for people on what was written. HF_EXISTS, HF_IO, HF_NO_MEMORY, HF_BAD_CASE or HF_BAD_USAGE, with
      * a message. */
@@ -59,8 +61,8 @@ typedef struct {
 typedef hf_status hf_export_write_shape(const hf_export_request *request, const hf_export_stored *stored, char *said,
                                         size_t size, hf_messages *messages);
 
-/* For exporters that take a stage: reads the shape of request->stage or, when that is NULL, the result of the run, and
- * calls `write` with it. */
+/* For exporters that take a stage: reads the shape of request->stage or request->state or, when both are NULL, the
+ * result of the run, and calls `write` with it. */
 hf_status hf_export_shape(const hf_export_request *request, hf_export_write_shape *write, char *said, size_t size,
                           hf_messages *messages);
 

@@ -175,6 +175,10 @@ static hf_status export_truss(const hf_export_request *o, hf_truss *truss, hf_ca
     HF_TRY(claim_in_folder(o, "truss_nodes.csv", nodes, messages));
     HF_TRY(claim_in_folder(o, "members.csv", members, messages));
     HF_TRY(hf_store_read_truss(o->file, truss, state, messages));
+    if (o->state) {
+        hf_carrier_state_free(state);
+        HF_TRY(hf_store_read_state_truss(o->file, o->state, truss, state, messages));
+    }
     HF_TRY(hf_file_out_set_write(o->files, nodes, write_truss_nodes, &both, messages));
     HF_TRY(hf_file_out_set_write(o->files, members, write_members, &both, messages));
     size_t used = strlen(said);
@@ -219,5 +223,6 @@ const hf_exporter hf_exporter_csv = {
     .help = "write nodes.csv, cables.csv, facets.csv of nets with a surface, and truss_nodes.csv and members.csv of a "
             "truss, into DIR",
     .takes_stage = true,
+    .takes_case = true,
     .write = export_csv,
 };

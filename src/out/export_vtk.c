@@ -16,7 +16,10 @@
  * A run with a truss also gives truss.hdf. Point data: fixed (bit k: dof k is held), mass_kg, displacement_m,
  * rotation_rad; cell data: unit, joint, axial_force_N (tension > 0).
  *
- * Contents: a grid - its file - the shapes of a run - facets - the truss - together */
+ * States of the net as built are case_1.hdf, case_2.hdf, ..., case_facets_1.hdf and case_truss_1.hdf, in the order of
+ * the case: ParaView opens such files as steps in time.
+ *
+ * Contents: a grid - its file - the shapes of a run - facets - the truss - states - together */
 #include "out/export.h"
 
 #include "base/arena.h"
@@ -274,17 +277,25 @@ static hf_status write_facets(const hf_export_request *o, const char *path, cons
     return write_grid(o, path, &g, messages);
 }
 
-/* The shape of a stage, and its facets if there are any; stage HF_STAGE_NONE stands for the theoretical shape. */
+/* A shape, and its facets if there are any; found NULL: the theoretical shape. */
+static hf_status write_found(const hf_export_request *o, const hf_shape *found, const char *path,
+                             const char *facets_path, const hf_scene *scene, const hf_summary *summary, scratch *t,
+                             hf_messages *messages)
+{
+    fill(scene, found, summary, t);
+    const grid g = grid_of(scene, found, summary, t);
+    HF_TRY(write_grid(o, path, &g, messages));
+    return t->facets.n_facet ? write_facets(o, facets_path, &g, found, summary, t, messages) : HF_OK;
+}
+
+/* The shape of a stage; stage HF_STAGE_NONE stands for the theoretical shape. */
 static hf_status write_stage(const hf_export_request *o, int stage, const char *path, const char *facets_path,
                              const hf_scene *scene, const hf_summary *summary, scratch *t, hf_messages *messages)
 {
     hf_shape shape = {0};
     const hf_shape *found = stage == HF_STAGE_NONE ? NULL : &shape;
     if (found) HF_TRY(hf_store_read_shape(o->file, (hf_stage)stage, &shape, messages));
-    fill(scene, found, summary, t);
-    const grid g = grid_of(scene, found, summary, t);
-    hf_status status = write_grid(o, path, &g, messages);
-    if (status == HF_OK && t->facets.n_facet) status = write_facets(o, facets_path, &g, found, summary, t, messages);
+    hf_status status = write_found(o, found, path, facets_path, scene, summary, t, messages);
     hf_shape_free(&shape);
     return status;
 }
@@ -343,13 +354,18 @@ static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *state, 
     return g;
 }
 
-static hf_status write_truss(const hf_export_request *o, const char *path, hf_messages *messages)
+/* The truss under the result of the run, or in a state of the net as built. */
+static hf_status write_truss(const hf_export_request *o, const char *of_state, const char *path, hf_messages *messages)
 {
     hf_truss truss = {0};
     hf_carrier_state state = {0};
     hf_arena arena = {0};
     truss_scratch t;
     hf_status status = hf_store_read_truss(o->file, &truss, &state, messages);
+    if (status == HF_OK && of_state) {
+        hf_carrier_state_free(&state);
+        status = hf_store_read_state_truss(o->file, of_state, &truss, &state, messages);
+    }
     if (status == HF_OK) {
         status = HF_ARENA_MAKE(&arena, lay_out_truss(&arena, &truss, &t));
         if (status != HF_OK) hf_error(messages, status, "%s: out of memory", o->file);
@@ -362,6 +378,63 @@ static hf_status write_truss(const hf_export_request *o, const char *path, hf_me
     hf_carrier_state_free(&state);
     hf_truss_free(&truss);
     return status;
+}
+
+/* ---- states of the net as built ---- */
+
+/* The files of state k, from 1: ParaView takes files that differ in a number at the end as steps in time. */
+enum { STATE_NET, STATE_FACETS, STATE_TRUSS, N_STATE_FILE };
+static const char *const state_file[N_STATE_FILE] = {"case", "case_facets", "case_truss"};
+
+static hf_status path_of_state(const hf_export_request *o, int kind, int k, char path[PATH_MAX], hf_messages *messages)
+{
+    if (snprintf(path, PATH_MAX, "%s/%s_%d.hdf", o->output, state_file[kind], k + 1) < PATH_MAX) return HF_OK;
+    return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
+}
+
+/* Is there this file of a state with a shape? */
+static bool has_state_file(const hf_summary *s, const scratch *t, int kind)
+{
+    return kind == STATE_NET || (kind == STATE_FACETS ? t->facets.n_facet > 0 : s->has_truss);
+}
+
+static hf_status claim_states(const hf_export_request *o, const hf_summary *s, const scratch *t, hf_messages *messages)
+{
+    char path[PATH_MAX];
+    for (int i = 0; i < N_STATE_FILE * s->n_state; i++) {
+        int k = i / N_STATE_FILE, kind = i % N_STATE_FILE;
+        if (s->state[k].result.status != HF_OK || !has_state_file(s, t, kind)) continue;
+        HF_TRY(path_of_state(o, kind, k, path, messages));
+        HF_TRY(hf_export_claim(o, path, messages));
+    }
+    return HF_OK;
+}
+
+static hf_status write_state(const hf_export_request *o, int k, const hf_scene *scene, const hf_summary *summary,
+                             scratch *t, hf_messages *messages)
+{
+    char path[N_STATE_FILE][PATH_MAX];
+    const char *name = summary->state[k].name;
+    hf_shape shape = {0};
+    for (int i = 0; i < N_STATE_FILE; i++)
+        HF_TRY(path_of_state(o, i, k, path[i], messages));
+    HF_TRY(hf_store_read_state(o->file, name, &shape, messages));
+    hf_status status = write_found(o, &shape, path[STATE_NET], path[STATE_FACETS], scene, summary, t, messages);
+    hf_shape_free(&shape);
+    if (status == HF_OK && summary->has_truss) status = write_truss(o, name, path[STATE_TRUSS], messages);
+    return status;
+}
+
+static hf_status write_states(const hf_export_request *o, const hf_scene *scene, const hf_summary *summary, scratch *t,
+                              char *said, size_t size, hf_messages *messages)
+{
+    for (int k = 0; k < summary->n_state; k++) {
+        if (summary->state[k].result.status != HF_OK) continue;
+        HF_TRY(write_state(o, k, scene, summary, t, messages));
+        size_t used = strlen(said);
+        snprintf(said + used, size - used, " %s_%d.hdf (%s)", state_file[STATE_NET], k + 1, summary->state[k].name);
+    }
+    return HF_OK;
 }
 
 /* ---- together ---- */
@@ -382,18 +455,19 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
             return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
         if (has[i]) HF_TRY(hf_export_claim(o, path[i], messages));
     }
+    HF_TRY(claim_states(o, summary, t, messages));
     HF_TRY(hf_file_out_folder(o->output, messages));
     int used = snprintf(said, size, "%s: for ParaView, in %s:", o->file, o->output);
     static const int order[5] = {HF_STAGE_NONE, HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, 4};
     for (int k = 0; k < 5; k++) {
         int i = order[k];
         if (!has[i]) continue;
-        HF_TRY(i == 4 ? write_truss(o, path[i], messages)
+        HF_TRY(i == 4 ? write_truss(o, NULL, path[i], messages)
                       : write_stage(o, i, path[i], path[FACETS + i], scene, summary, t, messages));
         for (int j = i; j < N_FILE; j += FACETS)
             if (has[j] && (size_t)used < size) used += snprintf(said + used, size - (size_t)used, " %s.hdf", name[j]);
     }
-    return HF_OK;
+    return write_states(o, scene, summary, t, said, size, messages);
 }
 
 static hf_status export_vtk(const hf_export_request *request, char *said, size_t size, hf_messages *messages)

@@ -288,6 +288,33 @@ static void print_front(const hf_summary *s, FILE *f)
     if (t->knee >= 0) print_front_point(s, "knee", t->row[t->knee].objective, t->row[t->knee].multiplier, f);
 }
 
+/* The states of the net as built, a line each. */
+static void print_states(const hf_summary *s, FILE *f)
+{
+    bool has_surface = s->surface.focal_length_m > 0, has_truss = s->has_truss;
+    if (s->n_state == 0) return;
+    fprintf(f, "  cases         %-16s %10s %10s%s %9s %9s %5s %5s%s\n", "the net as built", "psi mm", "moved mm",
+            has_surface ? " half-path    best fit" : "", "least N", "largest N", "slack", "loose",
+            has_truss ? "  member N" : "");
+    for (int k = 0; k < s->n_state; k++) {
+        const hf_state_summary *state = &s->state[k];
+        const hf_form_result *r = &state->result;
+        if (r->status != HF_OK) {
+            fprintf(f, "                %-16s no shape: %s\n", state->name, hf_status_text(r->status));
+            continue;
+        }
+        fprintf(f, "                %-16s %10.4f %10.4f", state->name, r->psi_m * 1e3, state->move_rms_m * 1e3);
+        if (has_surface) fprintf(f, " %9.4f", state->measures.half_path_rms_m * 1e3);
+        if (has_surface && state->measures.fit.converged)
+            fprintf(f, " %11.4f", state->measures.fit.half_path_rms_m * 1e3);
+        else if (has_surface)
+            fprintf(f, " %11s", "-");
+        fprintf(f, " %9.4f %9.4f %5d %5d", state->least_tension_N, state->largest_tension_N, r->n_slack, r->n_loose);
+        if (has_truss) fprintf(f, " %9.4g", state->largest_member_N);
+        fputc('\n', f);
+    }
+}
+
 static void print_coupling(const hf_coupling_result *r, FILE *f)
 {
     fprintf(f,
@@ -319,6 +346,7 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
     if (s->has_optimize) print_optimize(s, f);
     if (s->has_polish) print_polish(s, f);
     if (s->has_front) print_front(s, f);
+    print_states(s, f);
     if (path) hf_print_line(f, "  results       %s", path);
     if (path && !s->finished)
         hf_print_line(f, "  unfinished    `hifdm run %s -o %s` goes on, with the same options as before", s->case_path,

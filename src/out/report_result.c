@@ -36,16 +36,19 @@ static const struct {
 };
 enum { N_SERIES = sizeof series_table / sizeof *series_table };
 
+enum { N_SHAPE = HF_STAGE_NONE + HF_STATES_MAX }; /* those of stages, then states of the net as built */
+
 /* Everything that a page shows. */
 typedef struct {
     const char *path;
     hf_summary summary;
     hf_scene scene;
-    bool has_shape[HF_STAGE_NONE];
-    hf_shape shape[HF_STAGE_NONE];
+    bool has_shape[N_SHAPE];
+    hf_shape shape[N_SHAPE];
+    hf_series state_displacement[HF_STATES_MAX]; /* [n][6] of the truss in a state, or none */
     hf_series series[N_SERIES];
-    hf_facets facets;                           /* none without measures of the surface */
-    hf_facet_errors facet_error[HF_STAGE_NONE]; /* of each shape, in facet_block */
+    hf_facets facets;                     /* none without measures of the surface */
+    hf_facet_errors facet_error[N_SHAPE]; /* of each shape, in facet_block */
     void *facet_block;
     hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or none, [m][2] */
     char provenance[PROVENANCE_SIZE];
@@ -107,12 +110,31 @@ static void write_net(const page *p, FILE *f)
     fputc('}', f);
 }
 
+/* Of the nodes of the truss, without the rotations; nothing when there are none. */
+static void write_displacement(const char *key, const hf_series *d, FILE *f)
+{
+    if (!d->n) return;
+    fprintf(f, ",\"%s\":[", key);
+    for (int i = 0; i < 3 * d->n; i++) {
+        if (i) fputc(',', f);
+        hf_json_value(d->value[6 * (i / 3) + i % 3], 6, f);
+    }
+    fputc(']', f);
+}
+
 /* Writes displacements, not positions: six digits of a displacement reach nanometres, six digits of a position only
  * tenths of a millimetre. */
-static void write_shape(const page *p, hf_stage stage, FILE *f)
+static void write_shape(const page *p, int stage, FILE *f)
 {
     const hf_shape *shape = &p->shape[stage];
-    fprintf(f, "{\"stage\":\"%s\",\"displacement_m\":[", hf_stage_word[stage]);
+    if (stage < HF_STAGE_NONE) {
+        fprintf(f, "{\"stage\":\"%s\"", hf_stage_word[stage]);
+    } else { /* names are letters, digits, _ and - */
+        const char *name = p->summary.state[stage - HF_STAGE_NONE].name;
+        fprintf(f, "{\"stage\":\"case %s\",\"case\":\"%s\"", name, name);
+        write_displacement("truss_displacement_m", &p->state_displacement[stage - HF_STAGE_NONE], f);
+    }
+    fputs(",\"displacement_m\":[", f);
     for (int i = 0; i < 3 * p->scene.n_node; i++) {
         if (i) fputc(',', f);
         hf_json_value(shape->position_m[i] - p->scene.position_m[i], 6, f);
@@ -136,10 +158,10 @@ static void write_shapes(const page *p, FILE *f)
     fputs(",\n\"slack_below_N\":", f);
     hf_json_value(HF_SLACK_RATIO * hf_model_reference_N(&p->scene, p->summary.pretension_N), 17, f);
     fputs(",\n\"shapes\":[", f);
-    for (int i = 0; i < HF_STAGE_NONE; i++) {
+    for (int i = 0; i < N_SHAPE; i++) {
         if (!p->has_shape[i]) continue;
         fputs(comma, f);
-        write_shape(p, (hf_stage)i, f);
+        write_shape(p, i, f);
         comma = ",\n";
     }
     fputc(']', f);
@@ -152,14 +174,7 @@ static void write_truss(const page *p, FILE *f)
     fprintf(f, ",\n\"truss\":{\"n_node\":%d,\"n_member\":%d", node->n, end->n);
     hf_json_values("position_m", node->value, 3 * node->n, 1, 8, f);
     hf_json_values("end", end->value, 2 * end->n, 1, 9, f);
-    if (p->truss_displacement.n == node->n) {
-        fputs(",\"displacement_m\":[", f);
-        for (int i = 0; i < 3 * node->n; i++) {
-            if (i) fputc(',', f);
-            hf_json_value(p->truss_displacement.value[6 * (i / 3) + i % 3], 6, f); /* without the rotations */
-        }
-        fputc(']', f);
-    }
+    if (p->truss_displacement.n == node->n) write_displacement("displacement_m", &p->truss_displacement, f);
     fputc('}', f);
 }
 
@@ -255,10 +270,26 @@ static hf_status read_shapes(page *p, hf_messages *messages)
     return HF_OK;
 }
 
+static hf_status read_states(page *p, hf_messages *messages)
+{
+    char of_truss[HF_SET_NAME_SIZE + 48];
+    for (int k = 0; k < p->summary.n_state; k++) {
+        const hf_state_summary *s = &p->summary.state[k];
+        if (s->result.status != HF_OK) continue;
+        HF_TRY(hf_store_read_state(p->path, s->name, &p->shape[HF_STAGE_NONE + k], messages));
+        p->has_shape[HF_STAGE_NONE + k] = true;
+        snprintf(of_truss, sizeof of_truss, "/cases/%s/truss/node/displacement", s->name);
+        HF_TRY(hf_store_read_series(p->path, of_truss, 6, &p->state_displacement[k], messages));
+        if (p->state_displacement[k].n != p->truss_position_m.n) p->state_displacement[k].n = 0;
+    }
+    return HF_OK;
+}
+
 static void lay_out_facets(hf_arena *a, page *p)
 {
     size_t n = (size_t)p->facets.n_facet;
-    for (int i = 0; i < HF_STAGE_NONE; i++) {
+    for (int i = 0; i < N_SHAPE; i++) {
+        if (!p->has_shape[i]) continue;
         hf_facet_errors *e = &p->facet_error[i];
         e->normal_mean_m = hf_arena_take(a, n, sizeof(double));
         e->normal_rms_m = hf_arena_take(a, n, sizeof(double));
@@ -274,7 +305,7 @@ static hf_status map_facets(page *p)
     HF_TRY(hf_facets_find(&p->scene, &p->summary.surface, &p->facets));
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_facets(&arena, p)));
     p->facet_block = arena.block;
-    for (int i = 0; i < HF_STAGE_NONE; i++) {
+    for (int i = 0; i < N_SHAPE; i++) {
         const hf_facet_shape shape = {p->shape[i].position_m, p->scene.n_cable, p->scene.end, p->shape[i].tension_N};
         if (p->has_shape[i]) HF_TRY(hf_facet_map(&p->summary.surface, &p->facets, &shape, &p->facet_error[i]));
     }
@@ -286,11 +317,12 @@ static hf_status read_page(page *p, hf_messages *messages)
     HF_TRY(hf_store_read_summary(p->path, &p->summary, messages));
     HF_TRY(hf_store_read_scene(p->path, &p->scene, messages));
     HF_TRY(hf_store_read_provenance(p->path, p->provenance, sizeof p->provenance, messages));
+    HF_TRY(hf_store_read_series(p->path, "/truss/node/position_m", 3, &p->truss_position_m, messages));
     HF_TRY(read_shapes(p, messages));
+    HF_TRY(read_states(p, messages));
     if (map_facets(p) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", p->path);
     for (int i = 0; i < N_SERIES; i++)
         HF_TRY(hf_store_read_series(p->path, series_table[i].path, 1, &p->series[i], messages));
-    HF_TRY(hf_store_read_series(p->path, "/truss/node/position_m", 3, &p->truss_position_m, messages));
     HF_TRY(hf_store_read_series(p->path, "/truss/node/displacement", 6, &p->truss_displacement, messages));
     HF_TRY(hf_store_read_series(p->path, "/truss/member/end", 2, &p->truss_end, messages));
     return check_truss(p, messages);
@@ -299,8 +331,10 @@ static hf_status read_page(page *p, hf_messages *messages)
 static void free_page(page *p)
 {
     hf_scene_free(&p->scene);
-    for (int i = 0; i < HF_STAGE_NONE; i++)
+    for (int i = 0; i < N_SHAPE; i++)
         hf_shape_free(&p->shape[i]);
+    for (int k = 0; k < HF_STATES_MAX; k++)
+        hf_series_free(&p->state_displacement[k]);
     for (int i = 0; i < N_SERIES; i++)
         hf_series_free(&p->series[i]);
     hf_facets_free(&p->facets);

@@ -30,6 +30,7 @@ void hf_problem_free(hf_problem *p)
     hf_carrier_free(&p->carrier);
     hf_limits_free(&p->limits);
     hf_goals_free(&p->goals);
+    hf_states_free(&p->states);
     hf_facets_free(&p->facets);
     hf_scene_free(&p->scene);
     hf_case_free(&p->settings);

@@ -46,6 +46,10 @@ hf_status hf_problem_load(const char *path, const char *const *set, int n_set, h
         HF_TRY(hf_model_attach(&p->model, c->n_attachment, c->scene_node, c->flexibility_m_per_N, messages));
         if (p->settings.has_optimize) hf_model_want_newton(&p->model);
     }
+    if (p->settings.built.n_state) {
+        const hf_truss *truss = p->settings.has_truss ? &p->carrier.truss : NULL;
+        HF_TRY(hf_config_states(&p->settings, &p->scene, truss, &p->states, messages));
+    }
     if (!p->settings.has_optimize) return HF_OK;
     HF_TRY(hf_limits_create(&p->scene, &p->model, &p->settings.optimize, &p->limits, messages));
     if (p->settings.optimize.n_goal || p->settings.optimize.n_objective)
@@ -100,6 +104,8 @@ hf_status hf_problem_spare_inputs(const hf_problem *p, const char *table, const 
     };
     for (size_t i = 0; i < sizeof input / sizeof *input; i++)
         HF_TRY(hf_file_out_spare(input[i], "an input of this run", output, messages));
+    for (int i = 0; i < c->built.n_state; i++)
+        HF_TRY(hf_file_out_spare(c->built.state[i].nodes_path, "an input of this run", output, messages));
     return HF_OK;
 }
 

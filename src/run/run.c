@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/path.h"
 #include "base/text.h"
+#include "run/cases.h"
 #include "run/problem_parts.h"
 #include "run/run_front.h"
 #include "search/polish.h"
@@ -27,6 +28,7 @@ typedef struct {
     const hf_run_request *request;
     hf_problem problem;
     hf_carrier_state truss; /* under the shape of the last stage whose shape is the result */
+    hf_cases cases;         /* the net as built of that design, if the case has states */
     hf_history history;
     hf_store *store;
     hf_optimiser optimiser;
@@ -45,6 +47,7 @@ static void run_free(run *r)
     hf_front_free(&r->front);
     free(r->history.psi_m);
     hf_carrier_state_free(&r->truss);
+    hf_cases_free(&r->cases);
     hf_problem_free(&r->problem);
 }
 
@@ -129,6 +132,13 @@ static hf_status load_truss(run *r, hf_workspace *w, hf_messages *messages)
     return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the forces in the truss");
 }
 
+/* The shape in the workspace is the result, unless a later stage finds another. */
+static hf_status take_result(run *r, hf_workspace *w, hf_messages *messages)
+{
+    HF_TRY(load_truss(r, w, messages));
+    return r->problem.states.n ? hf_cases_take(&r->problem, w, &r->cases, messages) : HF_OK;
+}
+
 /* ---- form-finding ---- */
 
 static hf_status create_history(const hf_form_settings *s, bool has_truss, hf_history *h)
@@ -164,7 +174,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
     HF_TRY(measure_shape(r, HF_STAGE_FORM, &p->workspace, s, messages));
     HF_TRY(hf_store_form(r->store, &p->model, &p->workspace, &r->history, messages));
-    HF_TRY(load_truss(r, &p->workspace, messages));
+    HF_TRY(take_result(r, &p->workspace, messages));
     return status;
 }
 
@@ -226,7 +236,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
     tell_limits(r, HF_STAGE_OPTIMIZE, w, s);
     HF_TRY(measure_shape(r, HF_STAGE_OPTIMIZE, w, s, messages));
-    HF_TRY(load_truss(r, w, messages));
+    HF_TRY(take_result(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->problem.model, w, design, messages);
 }
 
@@ -425,7 +435,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     s->polish_wall_s = hf_clock_s() - start_s;
     tell_limits(r, HF_STAGE_POLISH, w, s);
     HF_TRY(measure_shape(r, HF_STAGE_POLISH, w, s, messages));
-    if (s->polish_is_result) HF_TRY(load_truss(r, w, messages));
+    if (s->polish_is_result) HF_TRY(take_result(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);
 }
 
@@ -530,6 +540,8 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     if (!q->no_file) HF_TRY(open_store(r, output, &state, messages));
     if (state == HF_STORE_FINISHED) return repeat_finished(output, s, messages);
     hf_status status = stages(r, s, messages);
+    if (status == HF_OK && r->problem.states.n)
+        status = hf_cases_run(&r->problem, &r->cases, r->store, q->stop_requested, s, messages);
     if (status == HF_INTERRUPTED && r->store)
         hf_error(messages, status, "%s: told to stop; the same command goes on from there", output);
     if (!leaves_result(status)) return status;

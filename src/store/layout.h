@@ -115,6 +115,19 @@ void hf_layout_get_coupling(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_put_surface(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary);
 
+/* The part of it about one shape, in the group `path`; reading sets nothing when there is no such group. */
+void hf_layout_put_measures(hf_hdf5 *io, const char *path, int n_frequency, const hf_surface_measures *measures);
+void hf_layout_get_measures(hf_hdf5 *io, const char *path, int n_frequency, hf_surface_measures *measures);
+
+/* layout_cases: figures of the states of the net as built:
+ *   /cases             name [n] of the states, in the order of the case
+ *   /cases/NAME        attributes: figures of HF_RESULT_LIST, coupling_..., HF_STATE_LIST; below it `surface`, as
+ *                      /surface/STAGE
+ * Shapes and the truss are written by hf_store_built before. Nothing without states. */
+#define HF_LAYOUT_STATE_SIZE (HF_SET_NAME_SIZE + 32) /* of the path of a group */
+void hf_layout_put_cases(hf_hdf5 *io, const hf_summary *summary);
+void hf_layout_get_cases(hf_hdf5 *io, hf_summary *summary);
+
 /* layout_sets: tensions of the named sets of cables, below /set_tension/STAGE: name, least_N, largest_N, ratio [n].
  * Nothing for a net without sets. */
 void hf_layout_put_sets(hf_hdf5 *io, const hf_summary *summary);
@@ -142,6 +155,9 @@ void hf_layout_read_front(hf_hdf5 *io, bool has_rows, hf_front *front, char **ge
  * under the pull of the net. Reading allocates: the caller frees both in any case. */
 void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carrier_state *state);
 void hf_layout_read_truss(hf_hdf5 *io, hf_truss *truss, hf_carrier_state *state);
+
+/* The displacements and forces alone, from the group `group`; none when it has none. */
+void hf_layout_read_truss_state(hf_hdf5 *io, hid_t group, const hf_truss *truss, hf_carrier_state *state);
 
 /* The data set of a value of each gene: design_N, base_N, lower_N or upper_N, in N; with genes of optimize.variables,
  * each in its own unit, the same name without its end. */

@@ -18,11 +18,11 @@ static const hf_hdf5_member settings_table[] = {
 
 static const char *const stage_group[3] = {"/surface/form", "/surface/optimize", "/surface/polish"};
 
-static void table_of(int stage, hf_hdf5_member table[N_MEASURE])
+static void table_of(const char *group, hf_hdf5_member table[N_MEASURE])
 {
     memcpy(table, measures_table, sizeof measures_table);
     for (int i = 0; i < N_MEASURE; i++)
-        table[i].object = stage_group[stage];
+        table[i].object = group;
 }
 
 static hf_hdf5_array losses(const char *name, int n, const char *description)
@@ -49,29 +49,50 @@ static double *loss_of(int i, int n, hf_surface_measures *s, hf_hdf5_array *arra
     return (void *)((char *)s + loss_table[i].offset);
 }
 
+void hf_layout_put_measures(hf_hdf5 *io, const char *path, int n_frequency, const hf_surface_measures *measures)
+{
+    hf_surface_measures s = *measures;
+    hf_hdf5_member table[N_MEASURE];
+    hf_hdf5_array loss;
+    table_of(path, table);
+    hid_t group = hf_hdf5_make_group(io, path);
+    hf_hdf5_put_members(io, table, N_MEASURE, &s);
+    for (int i = 0; n_frequency && i < N_LOSS; i++) {
+        const double *value = loss_of(i, n_frequency, &s, &loss);
+        hf_hdf5_write_array(io, group, &loss, value);
+    }
+    hf_hdf5_close(io, group);
+}
+
+void hf_layout_get_measures(hf_hdf5 *io, const char *path, int n_frequency, hf_surface_measures *s)
+{
+    hf_hdf5_member table[N_MEASURE];
+    hf_hdf5_array loss;
+    if (!hf_hdf5_has(io, io->file, path)) return;
+    table_of(path, table);
+    s->is_measured = true;
+    hid_t group = hf_hdf5_open_group(io, path);
+    hf_hdf5_get_members(io, table, N_MEASURE, s);
+    for (int i = 0; n_frequency && i < N_LOSS; i++) {
+        double *value = loss_of(i, n_frequency, s, &loss);
+        hf_hdf5_read_array(io, group, &loss, value);
+    }
+    hf_hdf5_close(io, group);
+}
+
 void hf_layout_put_surface(hf_hdf5 *io, const hf_summary *summary)
 {
     int n = summary->surface.frequencies_Hz.n;
     if (!(summary->surface.focal_length_m > 0)) return;
-    hf_hdf5_array frequency = frequency_array(n), loss;
+    hf_hdf5_array frequency = frequency_array(n);
     hf_layout_renew(io, "/surface");
     hid_t group = hf_hdf5_make_group(io, "/surface");
     hf_hdf5_put_members(io, settings_table, HF_HDF5_COUNT(settings_table), &summary->surface);
     if (n) hf_hdf5_write_array(io, group, &frequency, summary->surface.frequencies_Hz.value);
     hf_hdf5_close(io, group);
-    for (int stage = 0; stage < 3; stage++) {
-        hf_surface_measures s = summary->measures[stage];
-        hf_hdf5_member table[N_MEASURE];
-        if (!s.is_measured) continue;
-        table_of(stage, table);
-        group = hf_hdf5_make_group(io, stage_group[stage]);
-        hf_hdf5_put_members(io, table, N_MEASURE, &s);
-        for (int i = 0; n && i < N_LOSS; i++) {
-            const double *value = loss_of(i, n, &s, &loss);
-            hf_hdf5_write_array(io, group, &loss, value);
-        }
-        hf_hdf5_close(io, group);
-    }
+    for (int stage = 0; stage < 3; stage++)
+        if (summary->measures[stage].is_measured)
+            hf_layout_put_measures(io, stage_group[stage], n, &summary->measures[stage]);
 }
 
 void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary)
@@ -80,22 +101,10 @@ void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary)
     hid_t group = hf_hdf5_open_group(io, "/surface");
     hf_hdf5_get_members(io, settings_table, HF_HDF5_COUNT(settings_table), &summary->surface);
     int n = hf_hdf5_has(io, group, "frequency_Hz") ? hf_hdf5_length(io, group, "frequency_Hz", HF_LIST_MAX) : 0;
-    hf_hdf5_array frequency = frequency_array(n), loss;
+    hf_hdf5_array frequency = frequency_array(n);
     if (n) hf_hdf5_read_array(io, group, &frequency, summary->surface.frequencies_Hz.value);
     summary->surface.frequencies_Hz.n = n;
     hf_hdf5_close(io, group);
-    for (int stage = 0; stage < 3; stage++) {
-        hf_surface_measures *s = &summary->measures[stage];
-        hf_hdf5_member table[N_MEASURE];
-        if (!hf_hdf5_has(io, io->file, stage_group[stage])) continue;
-        table_of(stage, table);
-        s->is_measured = true;
-        group = hf_hdf5_open_group(io, stage_group[stage]);
-        hf_hdf5_get_members(io, table, N_MEASURE, s);
-        for (int i = 0; n && i < N_LOSS; i++) {
-            double *value = loss_of(i, n, s, &loss);
-            hf_hdf5_read_array(io, group, &loss, value);
-        }
-        hf_hdf5_close(io, group);
-    }
+    for (int stage = 0; stage < 3; stage++)
+        hf_layout_get_measures(io, stage_group[stage], n, &summary->measures[stage]);
 }

@@ -74,7 +74,7 @@ static void lay_out_state(hf_arena *a, size_t n_node, size_t n_member, hf_carrie
     s->end_force = hf_arena_take(a, 2 * HF_TRUSS_DOF * n_member, sizeof(double));
 }
 
-static void read_state(hf_hdf5 *io, hid_t group, const hf_truss *t, hf_carrier_state *state)
+void hf_layout_read_truss_state(hf_hdf5 *io, hid_t group, const hf_truss *t, hf_carrier_state *state)
 {
     hf_arena arena = {0};
     if (!hf_hdf5_has(io, group, "node/displacement")) return;
@@ -100,6 +100,6 @@ void hf_layout_read_truss(hf_hdf5 *io, hf_truss *t, hf_carrier_state *state)
     for (int k = 0; k < 2 * n_member && io->status == HF_OK; k++)
         if (t->end[k] < 0 || t->end[k] >= n_node)
             hf_hdf5_damaged(io, group, "member/end", "names a node that is not there");
-    if (io->status == HF_OK) read_state(io, group, t, state);
+    if (io->status == HF_OK) hf_layout_read_truss_state(io, group, t, state);
     hf_hdf5_close(io, group);
 }

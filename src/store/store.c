@@ -277,6 +277,35 @@ hf_status hf_store_best(hf_store *s, hf_stage stage, const hf_model *m, const hf
     return hf_hdf5_unlock(s->f.io.status);
 }
 
+hf_status hf_store_built(hf_store *s, const char *name, const hf_model *m, const hf_workspace *w,
+                         const hf_carrier *carrier, const hf_carrier_state *truss, hf_messages *messages)
+{
+    char path[HF_LAYOUT_STATE_SIZE];
+    if (!s) return HF_OK;
+    hf_hdf5_lock();
+    s->f.io.messages = messages;
+    hf_store_file_open(&s->f);
+    hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/cases"));
+    snprintf(path, sizeof path, "/cases/%s", name);
+    hf_layout_renew(&s->f.io, path);
+    hid_t group = hf_hdf5_make_group(&s->f.io, path);
+    write_shape(s, group, m, w);
+    hf_hdf5_close(&s->f.io, group);
+    if (truss) {
+        static const char *const part[] = {"/truss", "/truss/node", "/truss/member"};
+        for (int i = 0; i < HF_HDF5_COUNT(part); i++) {
+            snprintf(path, sizeof path, "/cases/%s%s", name, part[i]);
+            hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, path));
+        }
+        snprintf(path, sizeof path, "/cases/%s/truss", name);
+        group = hf_hdf5_open_group(&s->f.io, path);
+        hf_layout_write_columns(&s->f.io, group, &hf_layout_truss_state, carrier->truss.n_node, carrier->truss.n_member,
+                                truss);
+        hf_hdf5_close(&s->f.io, group);
+    }
+    return hf_hdf5_unlock(s->f.io.status);
+}
+
 hf_status hf_store_truss(hf_store *s, const hf_carrier *carrier, const hf_carrier_state *state, hf_messages *messages)
 {
     if (!s) return HF_OK;
@@ -412,6 +441,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
     if (finished) hf_layout_put_sets(&s->f.io, summary);
     if (finished) hf_layout_put_held(&s->f.io, summary);
     if (finished) hf_layout_put_goals(&s->f.io, summary);
+    if (finished) hf_layout_put_cases(&s->f.io, summary);
     hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "status", finished ? hf_status_word(summary->status) : "unfinished");
     hf_store_put_time(s, finished ? "finished_utc" : "published_utc");
 }

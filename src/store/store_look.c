@@ -5,6 +5,7 @@
 #include "base/file_io.h"
 #include "base/file_out.h"
 #include "base/sha256.h"
+#include "base/text.h"
 #include "store/compare.h"
 #include "store/journal.h"
 
@@ -54,6 +55,23 @@ static hf_status extend_ids(char identity[65], int n, const char *const *id)
     return HF_OK;
 }
 
+/* The tables that rows of `cases` name. The case has been read: one that cannot be read now is as good as empty. */
+static hf_status extend_tables(char identity[65], const hf_case *c)
+{
+    for (int i = 0; i < c->built.n_state; i++) {
+        hf_messages unwanted = {0};
+        char *text = NULL;
+        size_t n = 0;
+        if (!*c->built.state[i].nodes_path) continue;
+        hf_status status = hf_text_read_file(c->built.state[i].nodes_path, HF_BAD_CASE, &text, &n, &unwanted);
+        hf_messages_free(&unwanted);
+        if (status == HF_OK) extend(identity, text, n);
+        free(text);
+        if (status == HF_NO_MEMORY) return status;
+    }
+    return HF_OK;
+}
+
 hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, const hf_truss *truss, char identity[65])
 {
     char words[128];
@@ -68,6 +86,7 @@ hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, cons
         extend(identity, scene->set_cable, (size_t)scene->set_start[scene->n_set] * sizeof *scene->set_cable);
         HF_TRY(extend_ids(identity, scene->n_set, scene->set_name));
     }
+    HF_TRY(extend_tables(identity, settings));
     if (!truss) return HF_OK;
     extend_columns(identity, &hf_layout_truss, truss->n_node, truss->n_member, truss);
     extend(identity, truss->fixed, (size_t)truss->n_node);

@@ -89,6 +89,7 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     hf_layout_get_held(&io, summary);
     hf_layout_get_goals(&io, summary);
     hf_layout_get_front(&io, summary);
+    hf_layout_get_cases(&io, summary);
     if (io.status == HF_OK && ((int)summary->solver < 0 || summary->solver > HF_SOLVER_FIXED_POINT))
         hf_hdf5_damaged(&io, io.file, "/ga", "names a solver that there is not");
     summary->has_truss = hf_hdf5_has(&io, io.file, "/truss");
@@ -225,6 +226,16 @@ static hf_status allocate_shape(int n_node, int n_cable, hf_shape *shape)
     return HF_OK;
 }
 
+static void read_shape(hf_hdf5 *io, const char *path, hf_shape *shape)
+{
+    hid_t group = hf_hdf5_open_group(io, path);
+    int n_node = hf_hdf5_length(io, io->file, "/scene/node/role", HF_LAYOUT_COUNT_MAX);
+    int n_cable = hf_hdf5_length(io, io->file, "/scene/cable/law", HF_LAYOUT_COUNT_MAX);
+    if (io->status == HF_OK && allocate_shape(n_node, n_cable, shape) != HF_OK) hf_hdf5_no_memory(io);
+    hf_layout_read_columns(io, group, &hf_layout_shape, n_node, n_cable, shape);
+    hf_hdf5_close(io, group);
+}
+
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages)
 {
     hf_hdf5_lock();
@@ -236,12 +247,32 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
         io.status =
             hf_error(messages, HF_IO, "%s: has no %s shape: that stage did not run, or found no feasible design", path,
                      hf_stage_word[stage]);
-    hid_t group = hf_hdf5_open_group(&io, hf_stage_group[stage]);
-    int n_node = hf_hdf5_length(&io, io.file, "/scene/node/role", HF_LAYOUT_COUNT_MAX);
-    int n_cable = hf_hdf5_length(&io, io.file, "/scene/cable/law", HF_LAYOUT_COUNT_MAX);
-    if (io.status == HF_OK && allocate_shape(n_node, n_cable, shape) != HF_OK) hf_hdf5_no_memory(&io);
-    hf_layout_read_columns(&io, group, &hf_layout_shape, n_node, n_cable, shape);
-    hf_hdf5_close(&io, group);
+    read_shape(&io, hf_stage_group[stage], shape);
+    hf_hdf5_close_file(&io);
+    if (io.status != HF_OK) hf_shape_free(shape);
+    return hf_hdf5_unlock(io.status);
+}
+
+/* Is there this part of a state? If not, io has its error. */
+static bool has_state(hf_hdf5 *io, const char *name, const char *part, char group[HF_LAYOUT_STATE_SIZE])
+{
+    char object[HF_LAYOUT_STATE_SIZE];
+    snprintf(group, HF_LAYOUT_STATE_SIZE, "/cases/%s", name);
+    snprintf(object, sizeof object, "/cases/%s/%s", name, part);
+    bool is_there =
+        hf_hdf5_has(io, io->file, "/cases") && hf_hdf5_has(io, io->file, group) && hf_hdf5_has(io, io->file, object);
+    if (!is_there && io->status == HF_OK)
+        io->status = hf_error(io->messages, HF_IO, "%s: has no shape of a case '%s'", io->path, name);
+    return is_there;
+}
+
+hf_status hf_store_read_state(const char *path, const char *name, hf_shape *shape, hf_messages *messages)
+{
+    char group[HF_LAYOUT_STATE_SIZE];
+    hf_hdf5_lock();
+    hf_hdf5 io = hf_store_open_result(path, messages);
+    *shape = (hf_shape){0};
+    if (has_state(&io, name, "position_m", group)) read_shape(&io, group, shape);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) hf_shape_free(shape);
     return hf_hdf5_unlock(io.status);
@@ -269,6 +300,24 @@ hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_stat
         hf_truss_free(truss);
         hf_carrier_state_free(state);
     }
+    return hf_hdf5_unlock(io.status);
+}
+
+hf_status hf_store_read_state_truss(const char *path, const char *name, const hf_truss *truss, hf_carrier_state *state,
+                                    hf_messages *messages)
+{
+    char group[HF_LAYOUT_STATE_SIZE];
+    *state = (hf_carrier_state){0};
+    hf_hdf5_lock();
+    hf_hdf5 io = hf_store_open_result(path, messages);
+    if (has_state(&io, name, "truss", group)) {
+        strncat(group, "/truss", sizeof group - strlen(group) - 1);
+        hid_t id = hf_hdf5_open_group(&io, group);
+        hf_layout_read_truss_state(&io, id, truss, state);
+        hf_hdf5_close(&io, id);
+    }
+    hf_hdf5_close_file(&io);
+    if (io.status != HF_OK) hf_carrier_state_free(state);
     return hf_hdf5_unlock(io.status);
 }
 

@@ -31,6 +31,9 @@ static const hf_result_field form_field[] = {HF_SUMMARY_FORM_LIST(FIELD)};
 static const hf_result_field ga_field[] = {HF_SUMMARY_GA_LIST(FIELD)};
 static const hf_result_field polish_field[] = {HF_SUMMARY_POLISH_LIST(FIELD)};
 static const hf_result_field truss_field[] = {HF_SUMMARY_TRUSS_LIST(TRUSS_FIELD)};
+#define STATE_FIELD(type, member, kind, json, key, description)                                                        \
+    {#member, key, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_state_summary, member), sizeof(type)},
+static const hf_result_field state_field[] = {HF_STATE_LIST(STATE_FIELD)};
 static const hf_result_field measure_field[] = {HF_SURFACE_LIST(MEASURE)};
 static const hf_result_field fit_field[] = {HF_SURFACE_FIT_LIST(FIT)};
 #define ALL(table) table, (int)(sizeof(table) / sizeof(table)[0])
@@ -98,9 +101,8 @@ static void write_result(const hf_form_result *r, hf_json *j)
 }
 
 /* The member "surface" of a stage, after its others; nothing when the surface was not measured. */
-static void write_surface(const hf_summary *s, int stage, hf_json *j)
+static void write_surface(const hf_summary *s, const hf_surface_measures *m, hf_json *j)
 {
-    const hf_surface_measures *m = &s->measures[stage];
     if (!m->is_measured) return;
     hf_json_line(j, "  ");
     hf_json_open(j, "surface", '{');
@@ -184,7 +186,7 @@ static void write_form(const hf_summary *s, hf_json *j)
     write_result(&s->form, j);
     hf_json_text(j, "stop_reason", hf_stop_reason_word((int)s->form.stop_reason));
     write_fields(ALL(form_field), 1, LAST_PLACE, s, j);
-    write_surface(s, 0, j);
+    write_surface(s, &s->measures[0], j);
     write_sets(&s->sets[0], j);
     write_goals(s, &s->form, j);
     hf_json_close(j, '}');
@@ -202,7 +204,7 @@ static void write_optimize(const hf_summary *s, hf_json *j)
     open_stage("optimize", j);
     write_result(&s->best, j);
     write_fields(ALL(ga_field), 1, LAST_PLACE, s, j);
-    write_surface(s, 1, j);
+    write_surface(s, &s->measures[1], j);
     write_sets(&s->sets[1], j);
     write_held(&s->held[1], j);
     write_goals(s, &s->best, j);
@@ -214,7 +216,7 @@ static void write_polish(const hf_summary *s, hf_json *j)
     open_stage("polish", j);
     write_result(&s->polish, j);
     write_fields(ALL(polish_field), 1, LAST_PLACE, s, j);
-    write_surface(s, 2, j);
+    write_surface(s, &s->measures[2], j);
     write_sets(&s->sets[2], j);
     write_held(&s->held[2], j);
     write_goals(s, &s->polish, j);
@@ -259,6 +261,23 @@ static void write_front(const hf_summary *s, hf_json *j)
     hf_json_close(j, '}');
 }
 
+/* The member "cases": an object for each state of the net as built. */
+static void write_states(const hf_summary *s, hf_json *j)
+{
+    if (s->n_state == 0) return;
+    open_stage("cases", j);
+    for (int k = 0; k < s->n_state; k++) {
+        const hf_state_summary *state = &s->state[k];
+        hf_json_line(j, "  ");
+        hf_json_open(j, state->name, '{');
+        write_result(&state->result, j);
+        write_fields(ALL(state_field), 1, LAST_PLACE, state, j);
+        write_surface(s, &state->measures, j);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, '}');
+}
+
 void hf_summary_write_json(const hf_summary *s, hf_status status, const char *messages, const char *path, FILE *f)
 {
     hf_json writer = {.file = f}, *j = &writer;
@@ -270,6 +289,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
     if (s->has_optimize) write_optimize(s, j);
     if (s->has_polish) write_polish(s, j);
     if (s->has_front) write_front(s, j);
+    write_states(s, j);
     hf_json_line(j, " ");
     hf_json_integer(j, "threads", s->threads);
     hf_json_unsigned(j, "seed", s->seed);

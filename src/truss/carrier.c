@@ -57,7 +57,8 @@ static void lay_out_state(hf_arena *a, const hf_carrier *c, hf_carrier_state *s,
     *work = hf_arena_take(a, hf_frame_work_size(&c->frame, 1), sizeof(double));
 }
 
-hf_status hf_carrier_load(const hf_carrier *c, const double *force_N, hf_carrier_state *state)
+hf_status hf_carrier_load_own(const hf_carrier *c, const double *force_N, const hf_frame_load *own,
+                              hf_carrier_state *state)
 {
     double *force, *work;
     int bad_dof;
@@ -65,14 +66,36 @@ hf_status hf_carrier_load(const hf_carrier *c, const double *force_N, hf_carrier
     *state = (hf_carrier_state){0};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_state(&arena, c, state, &force, &work)));
     state->block = arena.block;
-    for (int k = 0; k < c->n_attachment; k++)
+    hf_frame_load load = {0};
+    if (own) load = *own;
+    for (int i = 0; load.force && i < HF_TRUSS_DOF * c->truss.n_node; i++)
+        force[i] = load.force[i];
+    for (int k = 0; force_N && k < c->n_attachment; k++)
         for (int d = 0; d < 3; d++)
             force[HF_TRUSS_DOF * c->truss_node[k] + d] += force_N[3 * k + d];
-    const hf_frame_load load = {.force = force};
-    HF_TRY(hf_frame_solve(&c->frame, 1, &load, work, state->displacement, &bad_dof)); /* no moments: no refusal */
+    load.force = force;
+    HF_TRY(hf_frame_solve(&c->frame, 1, &load, work, state->displacement, &bad_dof));
     hf_frame_reactions(&c->frame, &load, state->displacement, state->reaction, NULL);
     hf_frame_member_forces(&c->frame, &load, state->displacement, state->end_force);
     return HF_OK;
+}
+
+hf_status hf_carrier_load(const hf_carrier *carrier, const double *force_N, hf_carrier_state *state)
+{
+    return hf_carrier_load_own(carrier, force_N, NULL, state);
+}
+
+void hf_carrier_add_weight(const hf_carrier *c, const double gravity_m_per_s2[3], double *force)
+{
+    const hf_truss *t = &c->truss;
+    for (int d = 0; d < 3; d++) {
+        for (int i = 0; i < t->n_node; i++)
+            force[HF_TRUSS_DOF * i + d] += t->mass_kg[i] * gravity_m_per_s2[d];
+        for (int e = 0; e < t->n_member; e++)
+            for (int k = 0; k < 2; k++)
+                force[HF_TRUSS_DOF * t->end[2 * e + k] + d] +=
+                    t->density_kg_per_m3[e] * t->A_m2[e] * c->frame.length_m[e] * gravity_m_per_s2[d] / 2;
+    }
 }
 
 void hf_carrier_state_free(hf_carrier_state *state)

@@ -13,7 +13,8 @@ START_TEST(check_tells_what_will_run)
     OUT("will run      form-finding: hifdm, solved by fixed point (asked for), stop: rms_change, at most 100000 "
         "iterations\n");
     OUT("optimisation: rule force_density, 120 genes, 50 individuals, at most 400 generations, seed 2022\n");
-    OUT("skipped       truss (no truss section); loads (none given); general band matrix (no struts)\n");
+    OUT("skipped       cases (none given); truss (no truss section); loads (none given); general band matrix (no "
+        "struts)\n");
     OUT("  memory        workspaces (2 threads)   ");
     OUT("                matrix shared by all threads           ");
     OUT("expected time form-finding: ");
@@ -21,7 +22,8 @@ START_TEST(check_tells_what_will_run)
     OUT("optimisation: ");
     OUT(" for a design of the first generation by chord; at most about ");
     SHELL(0, "cd \"$1\" && \"$0\" check \"$2\" && ls -A", temp("."), REFLECTOR);
-    OUT("skipped       optimisation (no optimize section); truss (no truss section); loads (none given); general band "
+    OUT("skipped       optimisation (no optimize section); cases (none given); truss (no truss section); loads (none "
+        "given); general band "
         "matrix (no struts)\n");
     OUT("population                             none\n");
     OUT("  memory        workspace                              ");
@@ -81,7 +83,9 @@ START_TEST(schema_is_yaml_with_every_key)
     HIFDM(0, "schema");
     const char *schema = file_with("schema.yaml", said.out);
     EXPECT(
-        schema, "--", "list(a) == ['title', 'scene', 'surface', 'form', 'optimize', 'truss', 'coupling', 'sweep']",
+        schema, "--",
+        "list(a) == ['title', 'scene', 'surface', 'form', 'optimize', 'truss', 'coupling', 'sweep', "
+        "'cables', 'nodes', 'cases']",
         "set(a['scene']) == {'parabolic_cylinder', 'paraboloid', 'import'}",
         "set(a['scene']['parabolic_cylinder']) == {'aperture_m', 'length_m', 'focal_length_m', 'modules', "
         "'cells_per_module', 'pitches_x_m', 'pitches_y_m', 'pattern', 'spacing', 'boundary', 'scallop', 'supports', "

@@ -88,7 +88,7 @@ const groupOf = (e) => net.group_word[digit(net.group, e)];
 for (const shape of data.shapes || []) {
   const d = shape.displacement_m,
     n = net.n_node;
-  shape.name = stageName[shape.stage];
+  shape.name = shape.case ? `case ${shape.case}` : stageName[shape.stage];
   shape.distance_mm = new Float64Array(n);
   shape.height_mm = new Float64Array(n);
   for (let i = 0; i < n; i++) {

@@ -96,7 +96,8 @@ function button(text, name, act) {
 // net's size.
 const SCALES = Array.from({ length: 22 }, (_, k) => [1, 2, 5][k % 3] * 10 ** Math.floor(k / 3));
 function firstScale(radius) {
-  const largest = Math.max(0, ...data.shapes.map((s) => range(s.distance_mm)[1])) / 1e3;
+  const stages = data.shapes.filter((s) => !s.case); // a case of the net as built may move it much farther
+  const largest = Math.max(0, ...stages.map((s) => range(s.distance_mm)[1])) / 1e3;
   const wanted = largest > 0 ? (0.1 * radius) / largest : 1;
   return Math.max(0, SCALES.filter((s) => s <= wanted).length - 1);
 }
@@ -303,6 +304,7 @@ if (data.study) {
   writeFigures();
   writeNet();
   writeMap();
+  writeCases();
   writeHistory();
   writeTensions();
   writeGa();

@@ -119,7 +119,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
 
   function drawTruss(c, project) {
     const p = truss.position_m,
-      d = state.shape && truss.displacement_m,
+      d = state.shape && (state.shape.truss_displacement_m || truss.displacement_m),
       s = state.scale;
     const at = (i) => project(...[0, 1, 2].map((k) => p[3 * i + k] + (d ? s * d[3 * i + k] : 0)));
     c.strokeStyle = css("--four");

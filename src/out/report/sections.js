@@ -193,7 +193,7 @@ function tensionChart(group, figures) {
   const of = Array.from({ length: net.n_cable }, (_, e) => e).filter((e) => groupOf(e) === group);
   if (!of.length) return null;
   const colour = { form: "--one", optimize: "--two", polish: "--three" };
-  const shapes = data.shapes.filter((s) => s.stage !== "polish" || s === resultShape);
+  const shapes = data.shapes.filter((s) => !s.case && (s.stage !== "polish" || s === resultShape));
   return chart({
     title: `${group === "inner" ? "Inner" : "Boundary"} cables`,
     xLabel: "cable number",
@@ -364,6 +364,46 @@ function writeSummary() {
         ),
       ),
       "Summary",
+    ),
+  );
+}
+
+// The states of the net as built, a row each.
+function writeCases() {
+  const cases = Object.entries(summary.cases || {});
+  if (!cases.length) return;
+  const mm = (v) => fmt(1e3 * v, 5);
+  const columns = [
+    ["status", "status", (v) => v.replace(/_/g, " ")],
+    ["ψ (mm)", "psi_m", mm],
+    ["moved, RMS (mm)", "move_rms_m", mm],
+    ["half-path RMS (mm)", "half_path_rms_m", mm],
+    ["best fit (mm)", "fit_half_path_rms_m", mm],
+    ["facets, best fit (mm)", "facet_fit_half_path_rms_m", mm],
+    ["least tension (N)", "least_tension_N", (v) => fmt(v, 5)],
+    ["largest tension (N)", "largest_tension_N", (v) => fmt(v, 5)],
+    ["slack", "slack_cables", fmtCount],
+    ["loose nodes", "loose_nodes", fmtCount],
+    ["largest truss member (N)", "largest_member_N", (v) => fmt(v, 4)],
+  ];
+  const values = cases.map(([name, figures]) => [name, { ...figures, ...figures.surface }]);
+  const shown = columns.filter(([, key]) => values.some(([, v]) => v[key] !== undefined && v[key] !== null));
+  const cell = (v, format) => (typeof v === "number" || typeof v === "string" ? format(v) : "–");
+  section(
+    "cases",
+    "Cases of the net as built",
+    el("p", {}, "Cut as the design says, under the temperatures, loads and moves of each case."),
+    table(
+      [["Case"], ...shown.map(([name]) => [name, "number"])],
+      values.map(([name, v]) =>
+        el(
+          "tr",
+          {},
+          el("th", { scope: "row" }, name),
+          shown.map(([, key, format]) => el("td", { class: "number" }, cell(v[key], format))),
+        ),
+      ),
+      "Cases of the net as built",
     ),
   );
 }

@@ -231,6 +231,9 @@ static bool change(const hf_field *field, int way, void *to)
     case HF_FIELD_BOUNDS:
         if (way < 2) ((double *)to)[way] = 7;
         return way < 2;
+    case HF_FIELD_VECTOR:
+        if (way < 3) ((double *)to)[way] = 7;
+        return way < 3;
     case HF_FIELD_TEXT:
         strcpy(to, way ? "b" : "");
         return way < 2;

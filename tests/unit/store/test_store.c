@@ -59,6 +59,17 @@ static void fill_summary(struct rng *rng, hf_summary *s)
     fill_text(rng, s->warnings, sizeof s->warnings);
     fill_result(rng, &s->form);
     fill_result(rng, &s->best);
+    s->n_state = rng_int(rng, 0, 3);
+    for (int k = 0; k < s->n_state; k++) { /* in the order of the case, which is not that of the alphabet */
+        snprintf(s->state[k].name, sizeof s->state[k].name, "state-%d", 9 - k);
+        fill_result(rng, &s->state[k].result);
+        s->state[k].least_tension_N = rng_uniform(rng, -1, 1);
+        s->state[k].largest_tension_N = INFINITY;
+        s->state[k].move_rms_m = rng_uniform(rng, 0, 1);
+        s->state[k].largest_member_N = (double)NAN;
+        s->state[k].measures.is_measured = rng_int(rng, 0, 1);
+        if (s->state[k].measures.is_measured) s->state[k].measures.fit.center_x_m = rng_uniform(rng, 0, 1);
+    }
 }
 
 static void same_fields(const hf_result_field *field, int n, const void *a, const void *b)
@@ -93,6 +104,17 @@ static void same_summary(const hf_summary *a, const hf_summary *b)
 #undef MEMBER
     same_result(&a->form, &b->form);
     same_result(&a->best, &b->best);
+    ck_assert_int_eq(a->n_state, b->n_state);
+    for (int k = 0; k < a->n_state; k++) {
+        const hf_state_summary *s = &a->state[k], *t = &b->state[k];
+        ck_assert_str_eq(s->name, t->name);
+        same_result(&s->result, &t->result);
+        ck_assert(!memcmp(&s->least_tension_N, &t->least_tension_N, sizeof(double)) &&
+                  !memcmp(&s->largest_tension_N, &t->largest_tension_N, sizeof(double)) &&
+                  !memcmp(&s->move_rms_m, &t->move_rms_m, sizeof(double)) && isnan(t->largest_member_N));
+        ck_assert(s->measures.is_measured == t->measures.is_measured &&
+                  s->measures.fit.center_x_m == t->measures.fit.center_x_m);
+    }
     ck_assert_str_eq(a->version, b->version);
     ck_assert_str_eq(a->title, b->title);
     ck_assert_str_eq(a->case_path, b->case_path);

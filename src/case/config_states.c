@@ -1,0 +1,296 @@
+/* The states of the net as built, from the rows of `cases`. Contents: names - temperatures - gravity - forces and moves
+ * - a table of nodes - together */
+#include <hifdm/config.h>
+
+#include "base/csv.h"
+#include "net/cable_pick.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WHERE_SIZE (HF_PATH_SIZE + 96)
+#define COLUMN_MAX 64
+
+_Static_assert(sizeof hf_part_word / sizeof *hf_part_word == HF_PART_UNIT + HF_N_UNIT + 1, "a part for each unit");
+
+typedef struct {
+    const hf_case *c;
+    const hf_scene *scene;
+    const hf_truss *truss; /* NULL: none */
+    hf_states *states;
+    int *cable; /* [n_cable] scratch: the cables of a row */
+    hf_messages *messages;
+} maker;
+
+static const char *place_in_row(const maker *q, int row, const char *key, char where[WHERE_SIZE])
+{
+    char path[64];
+    snprintf(path, sizeof path, "cases.%d.%s", row, key);
+    hf_config_place(q->c, path, where, WHERE_SIZE);
+    return where;
+}
+
+/* ---- names ---- */
+
+/* The states in the order in which their names come first. */
+static int count_names(const hf_built_settings *b, const char *name[HF_STATES_MAX])
+{
+    int n = 0;
+    for (int i = 0; i < b->n_state; i++) {
+        int k = 0;
+        while (k < n && strcmp(name[k], b->state[i].name) != 0)
+            k++;
+        if (k == n) name[n++] = b->state[i].name; /* the case has been checked: there are no more than fit */
+    }
+    return n;
+}
+
+static hf_state *state_of_row(const maker *q, int row)
+{
+    hf_state *state = q->states->state;
+    while (strcmp(state->name, q->c->built.state[row].name) != 0)
+        state++;
+    return state;
+}
+
+/* ---- temperatures ---- */
+
+static double rise_at(const hf_state_settings *s, const double *a, const double *b)
+{
+    double rise = isnan(s->temperature_K) ? 0 : s->temperature_K;
+    for (int c = 0; c < 3 && !isnan(s->gradient_K_per_m[0]); c++)
+        rise += s->gradient_K_per_m[c] * (a[c] + b[c]) / 2; /* at its middle */
+    return rise;
+}
+
+static const char *temperature_key(const hf_state_settings *s)
+{
+    return isnan(s->temperature_K) ? "gradient_K_per_m" : "temperature_K";
+}
+
+static hf_status heat_cables(const maker *q, int row)
+{
+    const hf_state_settings *s = &q->c->built.state[row];
+    const hf_scene *scene = q->scene;
+    hf_state *state = state_of_row(q, row);
+    char where[WHERE_SIZE];
+    int n_unknown = 0, unknown = 0;
+    int n = hf_cable_pick_some(scene, s->set, place_in_row(q, row, "set", where), q->cable, q->messages);
+    for (int k = 0; k < n; k++) {
+        int e = q->cable[k];
+        state->rise_K[e] = rise_at(s, scene->position_m + 3 * (size_t)scene->end[2 * e],
+                                   scene->position_m + 3 * (size_t)scene->end[2 * e + 1]);
+        if (isnan(q->states->material.expansion_per_K[e]) && n_unknown++ == 0) unknown = e;
+    }
+    if (n == 0) return HF_BAD_CASE;
+    if (n_unknown == 0) return HF_OK;
+    return hf_error(q->messages, HF_BAD_CASE,
+                    "%s: the expansion of %d cables is not known, like '%s': give expansion_per_K of their sets in "
+                    "`cables`; 0 for those that keep their lengths",
+                    place_in_row(q, row, temperature_key(s), where), n_unknown, scene->cable_id[unknown]);
+}
+
+static hf_status heat_truss(const maker *q, int row)
+{
+    const hf_state_settings *s = &q->c->built.state[row];
+    const hf_truss *t = q->truss;
+    hf_state *state = state_of_row(q, row);
+    char where[WHERE_SIZE], place[WHERE_SIZE];
+    int n = 0, n_expanding = 0;
+    if (!t && s->part == HF_PART_ALL) return HF_OK;
+    place_in_row(q, row, s->part == HF_PART_ALL ? temperature_key(s) : "part", where);
+    if (!t) return hf_error(q->messages, HF_BAD_CASE, "%s: the case has no truss", where);
+    for (int e = 0; e < t->n_member; e++) {
+        if (s->part >= HF_PART_UNIT && (int)t->unit[e] != (int)s->part - HF_PART_UNIT) continue;
+        state->member_rise_K[e] =
+            rise_at(s, t->position_m + 3 * (size_t)t->end[2 * e], t->position_m + 3 * (size_t)t->end[2 * e + 1]);
+        n++;
+        n_expanding += t->expansion_per_K[e] != 0;
+    }
+    if (n == 0)
+        return hf_error(q->messages, HF_BAD_CASE, "%s: the truss has no members of unit %s", where,
+                        hf_part_word[s->part]);
+    bool is_told = q->c->has_truss_import || hf_config_place(q->c, "truss.expansion_per_K", place, sizeof place);
+    if (!is_told)
+        return hf_error(q->messages, HF_BAD_CASE,
+                        "%s: the expansion of the truss is not known: give truss.expansion_per_K; 0 for one that keeps "
+                        "its shape, or part: net for a temperature of the cables alone",
+                        where);
+    if (n_expanding == 0 && q->c->has_truss_import)
+        hf_warning(q->messages, "%s: no member of the truss expands: its table has no expansion_per_K above 0", where);
+    return HF_OK;
+}
+
+static hf_status heat(const maker *q, int row)
+{
+    const hf_state_settings *s = &q->c->built.state[row];
+    bool of_net = *s->set || s->part == HF_PART_ALL || s->part == HF_PART_NET;
+    if (isnan(s->temperature_K) && isnan(s->gradient_K_per_m[0])) return HF_OK;
+    if (of_net) HF_TRY(heat_cables(q, row));
+    return *s->set || s->part == HF_PART_NET ? HF_OK : heat_truss(q, row);
+}
+
+/* ---- gravity ---- */
+
+static hf_status weigh(const maker *q, int row)
+{
+    static const double down[3] = {0, 0, -1};
+    const hf_state_settings *s = &q->c->built.state[row];
+    const double *along = isnan(s->direction[0]) ? down : s->direction;
+    char where[WHERE_SIZE];
+    int n_unknown = 0, unknown = 0;
+    if (isnan(s->gravity_m_per_s2)) return HF_OK;
+    double length = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+    for (int c = 0; c < 3; c++)
+        state_of_row(q, row)->gravity_m_per_s2[c] = s->gravity_m_per_s2 * along[c] / length;
+    for (int e = 0; e < q->scene->n_cable; e++)
+        if (isnan(q->states->material.mass_kg_per_m[e]) && n_unknown++ == 0) unknown = e;
+    if (n_unknown == 0) return HF_OK;
+    return hf_error(
+        q->messages, HF_BAD_CASE,
+        "%s: the mass of %d cables is not known, like '%s': give mass_kg_per_m of their sets in `cables`; 0 "
+        "for those that weigh nothing",
+        place_in_row(q, row, "gravity_m_per_s2", where), n_unknown, q->scene->cable_id[unknown]);
+}
+
+/* ---- forces and moves ---- */
+
+static hf_status push(const maker *q, int row)
+{
+    const hf_state_settings *s = &q->c->built.state[row];
+    hf_state *state = state_of_row(q, row);
+    char where[WHERE_SIZE];
+    int n = 0;
+    for (int i = 0; i < q->scene->n_node; i++) {
+        bool is_support = q->scene->role[i] == HF_ROLE_SUPPORT;
+        bool is_pushed = !isnan(s->force_N[0]) && hf_material_names(s->role, q->scene->role[i]);
+        for (int c = 0; c < 3; c++) {
+            if (is_pushed) state->force_N[3 * i + c] += s->force_N[c];
+            if (is_support && !isnan(s->move_m[0])) state->move_m[3 * i + c] += s->move_m[c];
+        }
+        n += is_pushed;
+    }
+    if (isnan(s->force_N[0]) || n > 0) return HF_OK;
+    return hf_error(q->messages, HF_BAD_CASE, "%s: this net has no %s nodes", place_in_row(q, row, "role", where),
+                    hf_nodes_word[s->role]);
+}
+
+/* ---- a table of nodes ---- */
+
+enum { ROW_ID, ROW_FORCE, ROW_MOVE = ROW_FORCE + 3, N_ROW_COLUMN = ROW_MOVE + 3 };
+static const char *const row_column[N_ROW_COLUMN] = {"id", "Fx_N", "Fy_N", "Fz_N", "dx_m", "dy_m", "dz_m"};
+
+static int by_node_id(const void *a, const void *b)
+{
+    return strcmp(((const hf_csv_named *)a)->id, ((const hf_csv_named *)b)->id);
+}
+
+/* Adds a row of the table to the state. Empty cells are 0. */
+static void add_node(hf_csv *t, const int *where, int r, const hf_csv_named *node, const hf_scene *s, hf_state *state)
+{
+    const char *id = hf_csv_cell(t, r, where[ROW_ID]);
+    int i = hf_csv_row_of(node, s->n_node, id);
+    if (i < 0) {
+        hf_csv_fault(t, t->line[r], id, "the net has no node with this id", "");
+        return;
+    }
+    for (int k = ROW_FORCE; k < N_ROW_COLUMN; k++) {
+        if (where[k] < 0 || !*hf_csv_cell(t, r, where[k])) continue;
+        double value = hf_csv_number(t, r, where[k], id, row_column[k]);
+        double *to = k < ROW_MOVE ? state->force_N + 3 * i + (k - ROW_FORCE) : state->move_m + 3 * i + (k - ROW_MOVE);
+        if (k >= ROW_MOVE && value != 0 && s->role[i] != HF_ROLE_SUPPORT)
+            hf_csv_fault(t, t->line[r], id, "is no support, so it has no place to be moved to: ", row_column[k]);
+        *to += value;
+    }
+}
+
+static hf_status read_table(hf_csv *t, const hf_scene *s, hf_state *state)
+{
+    int where[N_ROW_COLUMN] = {0}, n_known = 0;
+    HF_TRY(hf_csv_read(t->path, COLUMN_MAX, t, t->messages));
+    HF_TRY(hf_csv_find_columns(t, row_column, N_ROW_COLUMN, ROW_FORCE, where));
+    for (int k = ROW_FORCE; k < N_ROW_COLUMN; k++)
+        n_known += where[k] >= 0;
+    if (n_known == 0)
+        return hf_error(t->messages, HF_BAD_CASE,
+                        "%s:%d: has none of the columns Fx_N, Fy_N, Fz_N, dx_m, dy_m, dz_m, so it says nothing",
+                        t->path, t->header_line);
+    hf_csv_named *id = hf_csv_index(t, where[ROW_ID]), *node = malloc((size_t)s->n_node * sizeof *node);
+    bool has_room = id && node;
+    if (has_room) {
+        for (int i = 0; i < s->n_node; i++)
+            node[i] = (hf_csv_named){s->node_id[i], i};
+        qsort(node, (size_t)s->n_node, sizeof *node, by_node_id);
+        for (int r = 0; r < t->n_row; r++)
+            add_node(t, where, r, node, s, state);
+    }
+    free(id);
+    free(node);
+    return has_room ? hf_csv_close_faults(t) : hf_error(t->messages, HF_NO_MEMORY, "%s: out of memory", t->path);
+}
+
+static hf_status read_nodes(const maker *q, int row)
+{
+    hf_csv table = {.path = q->c->built.state[row].nodes_path, .messages = q->messages};
+    if (!*table.path) return HF_OK;
+    hf_status status = read_table(&table, q->scene, state_of_row(q, row));
+    hf_csv_free(&table);
+    return status;
+}
+
+/* ---- together ---- */
+
+static hf_status check_EA(const maker *q)
+{
+    const hf_scene *s = q->scene;
+    char where[WHERE_SIZE];
+    int n = 0, first = 0;
+    for (int e = 0; e < s->n_cable; e++)
+        if (!(s->EA_N && s->EA_N[e] > 0) && n++ == 0) first = e;
+    if (n == 0) return HF_OK;
+    return hf_error(q->messages, HF_BAD_CASE,
+                    "%s: %d cables have no EA, which states of the net as built need, like '%s': give scene.EA_inner_N "
+                    "and scene.EA_boundary_N, or the column EA_N of an imported net",
+                    place_in_row(q, 0, "name", where), n, s->cable_id[first]);
+}
+
+typedef hf_status row_step(const maker *, int);
+
+/* All rows, so that all their faults are told in one go. */
+static hf_status read_rows_of_states(const maker *q)
+{
+    static row_step *const step[] = {heat, weigh, push, read_nodes};
+    hf_status worst = check_EA(q);
+    for (int row = 0; row < q->c->built.n_state; row++) {
+        for (size_t k = 0; k < sizeof step / sizeof *step; k++) {
+            hf_status status = step[k](q, row);
+            if (status != HF_OK) worst = status;
+            if (status == HF_NO_MEMORY) return status;
+        }
+    }
+    return worst;
+}
+
+hf_status hf_config_states(const hf_case *c, const hf_scene *s, const hf_truss *truss, hf_states *states,
+                           hf_messages *messages)
+{
+    const char *name[HF_STATES_MAX];
+    int n = count_names(&c->built, name);
+    *states = (hf_states){0};
+    if (n == 0) return HF_OK;
+    maker q = {c, s, truss, states, NULL, messages};
+    hf_status status = hf_states_allocate(s, truss ? truss->n_member : 0, n, states);
+    q.cable = malloc((size_t)s->n_cable * sizeof *q.cable);
+    if (status == HF_OK && !q.cable) status = HF_NO_MEMORY;
+    for (int k = 0; k < n; k++)
+        states->state[k].name = name[k];
+    if (status == HF_OK)
+        status = hf_config_material(c, s, &states->material, messages);
+    else
+        hf_error(messages, status, "%s: out of memory for %d states", c->path, n);
+    if (status == HF_OK) status = read_rows_of_states(&q);
+    free(q.cable);
+    return status;
+}

@@ -1,0 +1,162 @@
+/* Contents: the design - one state - all states */
+#include "run/cases.h"
+
+#include "base/arena.h"
+#include "solve/coupling.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- the design ---- */
+
+static void lay_out(hf_arena *arena, const hf_problem *p, hf_cases *c)
+{
+    size_t n = (size_t)p->model.n_node;
+    c->cut_m = hf_arena_take(arena, (size_t)p->model.n_cable, sizeof(double));
+    c->move_m = hf_arena_take(arena, 3 * n, sizeof(double));
+    c->load_N = hf_arena_take(arena, 3 * n, sizeof(double));
+    c->attachment_move_m = hf_arena_take(arena, 3 * (size_t)p->model.n_attachment, sizeof(double));
+    c->truss_force = hf_arena_take(arena, HF_TRUSS_DOF * (size_t)p->carrier.truss.n_node, sizeof(double));
+}
+
+hf_status hf_cases_take(const hf_problem *p, const hf_workspace *w, hf_cases *c, hf_messages *messages)
+{
+    char where[HF_PATH_SIZE + 96];
+    hf_arena arena = {0};
+    hf_cases_free(c);
+    hf_config_place(&p->settings, "cases.0.name", where, sizeof where);
+    HF_TRY(hf_built_make(where, &p->scene, &p->model, &p->settings.form, w, &c->built, messages));
+    if (HF_ARENA_MAKE(&arena, lay_out(&arena, p, c)) != HF_OK ||
+        hf_workspace_create(&c->built.model, &c->workspace) != HF_OK) {
+        hf_arena_free(&arena);
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the states of a net of %d nodes", p->model.n_node);
+    }
+    c->block = arena.block;
+    return HF_OK;
+}
+
+void hf_cases_free(hf_cases *c)
+{
+    hf_workspace_free(&c->workspace);
+    hf_built_free(&c->built);
+    hf_arena_free(&(hf_arena){.block = c->block});
+    *c = (hf_cases){0};
+}
+
+/* ---- one state ---- */
+
+/* What acts on the truss itself: its temperature and its weight. */
+static hf_frame_load load_of_truss(const hf_carrier *carrier, const hf_state *state, double *force)
+{
+    memset(force, 0, HF_TRUSS_DOF * (size_t)carrier->truss.n_node * sizeof *force);
+    hf_carrier_add_weight(carrier, state->gravity_m_per_s2, force);
+    return (hf_frame_load){.force = force, .temperature_K = state->member_rise_K};
+}
+
+/* Where the truss puts the attachments before the net pulls. */
+static hf_status move_attachments(const hf_carrier *carrier, const hf_frame_load *own, double *move_m)
+{
+    hf_carrier_state alone;
+    hf_status status = hf_carrier_load_own(carrier, NULL, own, &alone);
+    for (int k = 0; status == HF_OK && k < carrier->n_attachment; k++)
+        for (int d = 0; d < 3; d++)
+            move_m[3 * k + d] = alone.displacement[HF_TRUSS_DOF * carrier->truss_node[k] + d];
+    hf_carrier_state_free(&alone);
+    return status;
+}
+
+static void measure(const hf_built *b, const hf_carrier_state *truss, int n_member, const hf_workspace *w,
+                    hf_state_summary *s)
+{
+    const hf_model *m = &b->model;
+    double square = 0;
+    s->least_tension_N = INFINITY;
+    s->largest_tension_N = -INFINITY;
+    for (int e = 0; e < m->n_cable; e++) {
+        s->least_tension_N = fmin(s->least_tension_N, w->tension_N[e]);
+        s->largest_tension_N = fmax(s->largest_tension_N, w->tension_N[e]);
+    }
+    for (int i = 0; i < m->n_inner_node; i++)
+        for (int c = 0; c < 3; c++) {
+            double d = w->position_m[c * m->n_node + m->inner_row[i]] - b->place_m[c * m->n_node + m->inner_row[i]];
+            square += d * d;
+        }
+    s->move_rms_m = sqrt(square / m->n_inner_node);
+    s->largest_member_N = n_member ? 0 : (double)NAN;
+    for (int e = 0; e < n_member; e++)
+        s->largest_member_N = fmax(s->largest_member_N, fabs(truss->end_force[12 * e]));
+}
+
+/* Measure and store a shape that was found; `truss` is of the state, NULL without one. */
+static hf_status keep_shape(const hf_problem *p, hf_cases *c, hf_store *store, const hf_carrier_state *truss,
+                            hf_state_summary *s, hf_messages *messages)
+{
+    const hf_model *m = &c->built.model;
+    measure(&c->built, truss, truss ? p->carrier.truss.n_member : 0, &c->workspace, s);
+    if (p->settings.has_surface && hf_surface_measure(&p->surface, &p->facets, m, &c->workspace, &s->measures) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
+    return hf_store_built(store, s->name, m, &c->workspace, &p->carrier, truss, messages);
+}
+
+static hf_status run_state(const hf_problem *p, const hf_state *state, hf_cases *c, hf_store *store,
+                           hf_state_summary *s, hf_messages *messages)
+{
+    bool has_truss = p->settings.has_truss;
+    hf_frame_load own = {0};
+    hf_built_net net;
+    hf_carrier_state truss = {0};
+    hf_status status = HF_OK;
+    if (has_truss) {
+        own = load_of_truss(&p->carrier, state, c->truss_force);
+        status = move_attachments(&p->carrier, &own, c->attachment_move_m);
+    }
+    if (status != HF_OK) return hf_error(messages, status, "out of memory for the truss");
+    hf_built_state(&c->built, &p->states.material, state, has_truss ? c->attachment_move_m : NULL, c->cut_m, c->move_m,
+                   c->load_N, &net);
+    hf_built_solve(&c->built, &net, &c->workspace, &s->result);
+    if (s->result.status != HF_OK) return HF_OK;
+    if (has_truss) {
+        hf_model loaded = c->built.model;
+        loaded.load_N = c->load_N;
+        hf_coupling_forces(&loaded, &c->workspace);
+        status = hf_carrier_load_own(&p->carrier, c->workspace.attachment_force_N, &own, &truss);
+        if (status != HF_OK) hf_error(messages, status, "out of memory for the forces in the truss");
+    }
+    if (status == HF_OK) status = keep_shape(p, c, store, has_truss ? &truss : NULL, s, messages);
+    hf_carrier_state_free(&truss);
+    return status;
+}
+
+/* ---- all states ---- */
+
+static void blank(const char *name, hf_state_summary *s)
+{
+    *s = (hf_state_summary){.result.status = HF_NOT_EVALUATED};
+    snprintf(s->name, sizeof s->name, "%s", name);
+    s->least_tension_N = s->largest_tension_N = s->move_rms_m = s->largest_member_N = (double)NAN;
+}
+
+static void warn(const hf_state_summary *s, hf_messages *messages)
+{
+    const hf_form_result *r = &s->result;
+    if (r->status != HF_OK)
+        hf_warning(messages, "cases: the net has no shape in state '%s': %s", s->name, hf_status_text(r->status));
+    else if (r->n_slack)
+        hf_warning(messages, "cases: in state '%s' %d cable%s slack and %d node%s loose", s->name, r->n_slack,
+                   r->n_slack == 1 ? " is" : "s are", r->n_loose, r->n_loose == 1 ? " is" : "s are");
+}
+
+hf_status hf_cases_run(const hf_problem *p, hf_cases *c, hf_store *store, const volatile sig_atomic_t *stop,
+                       hf_summary *summary, hf_messages *messages)
+{
+    for (int k = 0; k < p->states.n; k++) {
+        hf_state_summary *s = &summary->state[k];
+        blank(p->states.state[k].name, s);
+        HF_TRY(run_state(p, &p->states.state[k], c, store, s, messages));
+        if (stop && *stop) return HF_INTERRUPTED;
+        summary->n_state = k + 1;
+        warn(s, messages);
+    }
+    return HF_OK;
+}

@@ -1,0 +1,82 @@
+/* The group /cases. */
+#include "store/layout.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* The object is set by state. */
+#define FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_state_summary, NULL, #member, result.member, kind)
+#define COUPLING(type, member, kind, ...)                                                                              \
+    HF_HDF5_MEMBER(hf_state_summary, NULL, "coupling_" #member, result.coupling.member, kind)
+#define STATE(type, member, kind, ...) HF_HDF5_MEMBER(hf_state_summary, NULL, #member, member, kind)
+static const hf_hdf5_member figure_table[] = {HF_RESULT_LIST(FIGURE) HF_STATE_LIST(STATE) HF_COUPLING_LIST(COUPLING)};
+enum { N_FIGURE = HF_HDF5_COUNT(figure_table) };
+
+static hf_hdf5_array name_array(int n)
+{
+    return (hf_hdf5_array){"name", HF_KIND_CHARS, 1, {(hsize_t)n, HF_SET_NAME_SIZE}, "", "states of the net as built"};
+}
+
+static void figures_of(const char *group, hf_hdf5_member table[N_FIGURE])
+{
+    memcpy(table, figure_table, sizeof figure_table);
+    for (int i = 0; i < N_FIGURE; i++)
+        table[i].object = group;
+}
+
+void hf_layout_put_cases(hf_hdf5 *io, const hf_summary *summary)
+{
+    if (summary->n_state == 0) return;
+    const hf_hdf5_array array = name_array(summary->n_state);
+    char name[HF_STATES_MAX][HF_SET_NAME_SIZE] = {{0}}, path[HF_LAYOUT_STATE_SIZE];
+    hid_t group = hf_hdf5_make_group(io, "/cases");
+    for (int k = 0; k < summary->n_state; k++)
+        memcpy(name[k], summary->state[k].name, sizeof name[k]);
+    hf_layout_renew(io, "/cases/name");
+    hf_hdf5_write_array(io, group, &array, name);
+    hf_hdf5_close(io, group);
+    for (int k = 0; k < summary->n_state; k++) {
+        const hf_state_summary *s = &summary->state[k];
+        hf_hdf5_member table[N_FIGURE];
+        snprintf(path, sizeof path, "/cases/%s", s->name);
+        figures_of(path, table);
+        hf_hdf5_close(io, hf_hdf5_make_group(io, path));
+        hf_hdf5_put_members(io, table, N_FIGURE, s);
+        snprintf(path, sizeof path, "/cases/%s/surface", s->name);
+        if (s->measures.is_measured) hf_layout_put_measures(io, path, summary->surface.frequencies_Hz.n, &s->measures);
+    }
+}
+
+/* They are printed as they are, and name groups. */
+static bool is_name_right(const char *name)
+{
+    static const char *const letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    return *name && !name[strspn(name, letters)];
+}
+
+void hf_layout_get_cases(hf_hdf5 *io, hf_summary *summary)
+{
+    char name[HF_STATES_MAX][HF_SET_NAME_SIZE] = {{0}}, path[HF_LAYOUT_STATE_SIZE];
+    if (!hf_hdf5_has(io, io->file, "/cases")) return;
+    hid_t group = hf_hdf5_open_group(io, "/cases");
+    int n = hf_hdf5_length(io, group, "name", HF_STATES_MAX);
+    const hf_hdf5_array array = name_array(n);
+    hf_hdf5_read_array(io, group, &array, name);
+    hf_hdf5_close(io, group);
+    for (int k = 0; k < n && io->status == HF_OK; k++) {
+        hf_state_summary *s = &summary->state[k];
+        hf_hdf5_member table[N_FIGURE];
+        name[k][HF_SET_NAME_SIZE - 1] = '\0';
+        if (!is_name_right(name[k])) {
+            hf_hdf5_damaged(io, io->file, "/cases/name", "does not name states");
+            return;
+        }
+        memcpy(s->name, name[k], sizeof s->name);
+        snprintf(path, sizeof path, "/cases/%s", s->name);
+        figures_of(path, table);
+        hf_hdf5_get_members(io, table, N_FIGURE, s);
+        snprintf(path, sizeof path, "/cases/%s/surface", s->name);
+        hf_layout_get_measures(io, path, summary->surface.frequencies_Hz.n, &s->measures);
+    }
+    summary->n_state = n;
+}

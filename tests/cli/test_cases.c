@@ -1,0 +1,168 @@
+/* `cases`: named states of the net as built, from the case file to the summary, JSON, the result file, the exports and
+ * the report. tests/unit/case/test_config_states.c has the faults of rows, tests/verify/test_states.c the figures. */
+#include "cli.h"
+
+#define EXAMPLE keep(source_path("configs/paraboloid-cases.yaml"))
+
+static const char *run_example(void)
+{
+    const char *out = temp("e.h5");
+    HIFDM(0, "run", EXAMPLE, "-o", out);
+    return out;
+}
+
+START_TEST(states_are_printed_stored_and_shown)
+{
+    const char *out = run_example(), *again = temp("again.h5");
+    OUT("  cases         the net as built     psi mm   moved mm half-path    best fit   least N largest N slack loose  "
+        "member N\n");
+    OUT("\n                cold      ");
+    ERR("warning: cases: in state 'cold' ");
+    HIFDM(0, "show", out, "--json");
+    EXPECT(out_as("s.json"), out, "--", "list(a['cases']) == ['cold', 'sun', 'cup_up', 'cup_down', 'spun']",
+           "texts(b['cases/name']) == list(a['cases'])", "all(c['status'] == 'ok' for c in a['cases'].values())",
+           "all(c['psi_m'] == b['cases/' + n].attrs['psi_m'] for n, c in a['cases'].items())",
+           "a['cases']['cold']['slack_cables'] > 0 and a['cases']['spun']['slack_cables'] == 0",
+           "all(c['least_tension_N'] == min(b[f'cases/{n}/tension_N']) for n, c in a['cases'].items())",
+           "all(c['surface']['n_facet'] == a['form']['surface']['n_facet'] for c in a['cases'].values())",
+           /* with nothing else than a force across, the truss carries the sum of it */
+           "near(sum(b['cases/spun/truss/node/reaction'][:, 0]), "
+           "-0.01 * sum(b['scene/node/role'][:] == 1), 1e-6)",
+           "b['cases/spun/truss/node/displacement'].shape == b['truss/node/displacement'].shape");
+    HIFDM(0, "run", EXAMPLE, "-o", again, "--quiet", "--threads", "2");
+    HIFDM(0, "diff", out, again);
+    HIFDM(0, "run", EXAMPLE, "-o", out, "--quiet");
+    ERR("is the finished result of this case");
+    HIFDM(0, "check", EXAMPLE);
+    OUT("5 cases of the net as built: cold, sun, cup_up, cup_down, spun\n");
+}
+END_TEST
+
+/* The same truss and net weighed both ways round: what the design has beside them changes neither sum. */
+START_TEST(weights_are_carried_by_the_truss)
+{
+    const char *out = run_example();
+    EXPECT(
+        out, "--",
+        "near(sum(a['cases/cup_up/truss/node/reaction'][:, 2]), 9.81 * a['truss'].attrs['mass_kg'] + "
+        "9.81 * 0.002 * len(a['scene/node/role']) + 9.81 * sum(a['form/length_m'][:] / (1 + "
+        "a['form/tension_N'][:] / 8e4) * np.where(np.isin(np.arange(len(a['form/length_m'])), "
+        "a['scene/set/cable'][a['scene/set/start'][4]:]), 0.0005, 0.0015)), 1e-4)",
+        "near(sum(a['cases/cup_down/truss/node/reaction'][:, 2]), -sum(a['cases/cup_up/truss/node/reaction'][:, 2]), "
+        "1e-6)",
+        "texts(a['scene/set/name'])[4] == 'tie'");
+}
+END_TEST
+
+START_TEST(a_state_is_exported)
+{
+    const char *out = run_example(), *csv = temp("csv"), *vtk = temp("vtk");
+    HIFDM(0, "export", out, "--csv", csv, "--case", "sun");
+    OUT("cables of the sun shape in ");
+    EXPECT(out, keep(formatted("%s/cables.csv", csv)), keep(formatted("%s/members.csv", csv)), "--",
+           "[float(r['tension_N']) for r in b] == list(a['cases/sun/tension_N'])",
+           "[float(r['Nx_i_N']) for r in c] == list(a['cases/sun/truss/member/end_force'][:, 0])");
+    HIFDM(0, "export", out, "--vtk", vtk);
+    OUT("case_1.hdf (cold) case_2.hdf (sun) case_3.hdf (cup_up) case_4.hdf (cup_down) case_5.hdf (spun)\n");
+    SHELL(0,
+          "cd \"$1\" && for k in 1 2 3 4 5; do mv case_$k.hdf case_$k.h5; test -e case_facets_$k.hdf || exit 1; "
+          "mv case_truss_$k.hdf case_truss_$k.h5 || exit 1; done",
+          vtk);
+    EXPECT(out, keep(formatted("%s/case_2.h5", vtk)), keep(formatted("%s/case_truss_2.h5", vtk)), "--",
+           "np.array_equal(a['cases/sun/position_m'], b['VTKHDF/Points'])",
+           "np.array_equal(a['cases/sun/tension_N'], b['VTKHDF/CellData/tension_N'])",
+           "np.array_equal(-a['cases/sun/truss/member/end_force'][:, 0], c['VTKHDF/CellData/axial_force_N'])");
+    HIFDM(2, "export", out, "--csv", temp("no"), "--case", "moon");
+    ERRS("error: %s: has no case 'moon'; it has cold, sun, cup_up, cup_down, spun\n", out);
+    HIFDM(2, "export", out, "--csv", temp("no"), "--case", "sun", "--stage", "form");
+    HIFDM(2, "export", out, "--cutlist", temp("no.csv"), "--case", "sun");
+    ERR("error: --case does not go with --cutlist, which is of the design that all cases are made of\n");
+    ck_assert(!is_there(temp("no")) && !is_there(temp("no.csv")));
+    HIFDM(0, "report", out, "-o", temp("page.html"));
+    SHELL(0, "grep -c '\"stage\":\"case ' \"$1\"", temp("page.html"));
+    ck_assert_str_eq(said.out, "5\n");
+}
+END_TEST
+
+/* A table of nodes belongs to the run as much as the case does. */
+START_TEST(another_table_is_another_run)
+{
+    const char *c = file_with("c.yaml", SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 1e5\ncases:\n"
+                                                    "  - {name: pulled, nodes: n.csv}\n");
+    file_with("n.csv", "id,Fz_N\nn1_1,0.01\n");
+    HIFDM(0, "run", c, "-o", temp("a.h5"), "--quiet");
+    file_with("n.csv", "id,Fz_N\nn1_1,0.02\n");
+    HIFDM(5, "run", c, "-o", temp("a.h5"), "--quiet");
+    ERR("exists");
+    HIFDM(5, "run", c, "-o", temp("n.csv"), "--restart");
+    ERR("is an input of this run; choose another name\n");
+    HIFDM(0, "run", c, "-o", temp("b.h5"), "--quiet");
+    EXPECT(temp("a.h5"), temp("b.h5"), "--",
+           "1.9 < b['cases/pulled'].attrs['move_rms_m'] / a['cases/pulled'].attrs['move_rms_m'] < 2.1");
+}
+END_TEST
+
+/* Of the design that the run found, not of the form-finding before it. */
+START_TEST(the_optimised_design_is_built)
+{
+    const char *c = file_with("c.yaml", SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 1e5\n" SMALL_GA
+                                                    "cases:\n  - {name: still, move_m: [0, 0, 0]}\n");
+    const char *of[][2] = {{"ga", "ga/best"}, {"ga+lm", "polish"}};
+    for (int k = 0; k < 2; k++) {
+        const char *out = temp(k ? "b.h5" : "a.h5");
+        HIFDM(0, "run", c, "-o", out, "--quiet", "--set", keep(formatted("optimize.method=%s", of[k][0])), "--set",
+              "optimize.compare_lm=true");
+        EXPECT(out, "--",
+               keep(formatted("np.abs(a['cases/still/position_m'][:] - a['%s/position_m'][:]).max() < 1e-8", of[k][1])),
+               "np.abs(a['cases/still/position_m'][:] - a['form/position_m'][:]).max() > 1e-6");
+    }
+}
+END_TEST
+
+/* A state without a shape is a warning: others have one. */
+START_TEST(a_state_without_a_shape_does_not_stop_the_others)
+{
+    const char *c = file_with("c.yaml", SMALL_SCENE
+                              "  EA_inner_N: 1e5\n  EA_boundary_N: 1e5\nform: {method: fdm, "
+                              "max_iterations: 20}\ncases:\n  - {name: far, move_m: [0, 0, 0], force_N: [1e4, "
+                              "1e4, 1e5]}\n  - {name: still, move_m: [0, 0, 0]}\n");
+    HIFDM(0, "run", c, "-o", temp("a.h5"));
+    OUT("                far              no shape: ");
+    ERR("warning: cases: the net has no shape in state 'far': ");
+    HIFDM(0, "show", temp("a.h5"), "--json");
+    EXPECT(out_as("s.json"), temp("a.h5"), "--", "a['cases']['far']['least_tension_N'] is None",
+           "'position_m' not in b['cases/far']", "a['cases']['still']['status'] == 'ok'");
+    HIFDM(5, "export", temp("a.h5"), "--csv", temp("csv"), "--case", "far");
+    ERR("has no shape of a case 'far'\n");
+    HIFDM(0, "export", temp("a.h5"), "--vtk", temp("vtk"));
+    OUT(" case_2.hdf (still)\n");
+    HIFDM(0, "report", temp("a.h5"), "-o", temp("page.html"));
+}
+END_TEST
+
+START_TEST(without_cases_there_is_nothing)
+{
+    const char *c = file_with("c.yaml", SMALL_SCENE);
+    HIFDM(0, "run", c, "-o", temp("a.h5"), "--json");
+    EXPECT(out_as("s.json"), temp("a.h5"), "--", "'cases' not in a", "'cases' not in b");
+    HIFDM(2, "export", temp("a.h5"), "--csv", temp("no"), "--case", "cold");
+    ERR("this run has no cases\n");
+    HIFDM(0, "check", c);
+    OUT("cases (none given); ");
+}
+END_TEST
+
+Suite *suite_cli_cases(void)
+{
+    Suite *suite = suite_create("cli/cases");
+    TCase *tcase = tcase_create("cases");
+    tcase_add_test(tcase, states_are_printed_stored_and_shown);
+    tcase_add_test(tcase, weights_are_carried_by_the_truss);
+    tcase_add_test(tcase, a_state_is_exported);
+    tcase_add_test(tcase, another_table_is_another_run);
+    tcase_add_test(tcase, the_optimised_design_is_built);
+    tcase_add_test(tcase, a_state_without_a_shape_does_not_stop_the_others);
+    tcase_add_test(tcase, without_cases_there_is_nothing);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
