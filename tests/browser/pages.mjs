@@ -65,6 +65,14 @@ export const pages = [
     off: ["rear", "rear edge", "tie"],
   },
   {
+    name: "front",
+    text: cylinder(
+      [4, 5],
+      "optimize: {method: lm, front_points: 5, objectives: [{goal: psi}, {goal: ratio, set: boundary}]}\n",
+    ),
+    sections: ["net", "map", "form-finding", "tensions", "front", "summary", "provenance"],
+  },
+  {
     name: "truss",
     source: "configs/straight-edges-truss.yaml",
     sections: FORM,

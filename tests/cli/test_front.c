@@ -32,6 +32,19 @@ START_TEST(a_front_is_printed_stored_and_told)
 }
 END_TEST
 
+/* The page draws what it finds in its data. */
+START_TEST(a_report_has_the_front)
+{
+    const char *file = temp("f.h5"), *page = temp("f.html");
+    HIFDM(0, "run", FRONT, "-o", file, "--quiet");
+    HIFDM(0, "report", file, "-o", page);
+    SHELL(0, "sed -n '/<script type=\"application.json\"/,/<\\/script>/p' \"$1\" | sed '1d;$d' >\"$2\"", page,
+          temp("data.json"));
+    EXPECT(temp("data.json"), "--", "len(a['summary']['front']['points']) == 7", "a['summary']['front']['knee'] > 0",
+           "set(a['summary']['front']['base']) == {'goal_0_psi', 'goal_1_ratio_boundary'}");
+}
+END_TEST
+
 /* The table is one of designs: evaluating it gives the objectives again. Threads change nothing. */
 START_TEST(a_table_of_the_front_is_one_of_designs)
 {
@@ -94,6 +107,7 @@ Suite *suite_cli_front(void)
     TCase *tests = tcase_create("front");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, a_front_is_printed_stored_and_told);
+    tcase_add_test(tests, a_report_has_the_front);
     tcase_add_test(tests, a_table_of_the_front_is_one_of_designs);
     tcase_add_test(tests, a_run_without_objectives_has_no_front);
     tcase_add_test(tests, a_check_says_what_will_be_followed);

@@ -70,6 +70,7 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
     let text = "",
       on = false;
     s.values.forEach((v, i) => {
+      if (v === undefined) return; // no place of this series: its line goes on
       const good = Number.isFinite(v) && yAxis.has(v);
       if (good) text += `${on && !s.dots ? "L" : "M"}${sx(x[i]).toFixed(1)} ${sy(v).toFixed(1)}${s.dots ? "h0" : ""}`;
       on = good;

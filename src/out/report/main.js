@@ -308,6 +308,7 @@ if (data.study) {
   writeHistory();
   writeTensions();
   writeGa();
+  writeFront();
   writeCoupling();
   writeSummary();
   writeProvenance();

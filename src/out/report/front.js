@@ -1,0 +1,81 @@
+// Contents: the front of optimize.objectives, two objectives at a time
+
+const objectiveName = (key) => key.replace(/^goal_[0-9]+_/, "");
+
+// Points of the front in rising order of objective a, with the base design among them. A place without a value for a
+// series has undefined there, which leaves its line whole.
+function frontPlaces(front, a, b) {
+  const places = front.points
+    .map((point, i) => ({ x: point.objective[a], y: point.objective[b], point, i }))
+    .filter((place) => place.point.mark !== "failed");
+  const base = { x: front.base[a], y: front.base[b] };
+  if (typeof base.x === "number" && typeof base.y === "number") places.push(base);
+  return places.filter((place) => typeof place.x === "number").sort((p, q) => p.x - q.x);
+}
+
+// What the minimised objective changes by for one unit more of each other, where it is known.
+function slopesOf(front, point) {
+  return Object.entries(point.multiplier || {})
+    .filter(([key, value]) => key !== front.minimised && typeof value === "number")
+    .map(
+      ([key, value]) =>
+        `; ${fmt(value ? -value : 0, 3)} of ${objectiveName(front.minimised)} per unit of ${objectiveName(key)}`,
+    )
+    .join("");
+}
+
+function frontChart(front, a, b) {
+  const places = frontPlaces(front, a, b),
+    isCurve = Object.keys(front.base).length === 2;
+  const series = (name, colour, dots, wanted) => ({
+    name,
+    colour,
+    dots,
+    values: places.map((place) => (wanted(place) ? place.y : undefined)),
+  });
+  const marked = (mark) => (place) => !!place.point && place.point.mark === mark;
+  const all = [
+    series("front", "--one", !isCurve, marked("on")),
+    series("dominated", "--ghost", true, marked("dominated")),
+    series("knee", "--three", true, (place) => !!place.point && place.i === front.knee),
+    series("after form-finding", "--two", true, (place) => !place.point),
+  ];
+  return chart({
+    title: `${objectiveName(b)} against ${objectiveName(a)}`,
+    xLabel: a,
+    yLabel: b,
+    x: places.map((place) => place.x),
+    counted: false,
+    log: false,
+    head: (i) =>
+      places[i].point
+        ? `point ${places[i].i + 1}: ${objectiveName(a)} ${fmt(places[i].x, 6)}${slopesOf(front, places[i].point)}`
+        : `after form-finding: ${objectiveName(a)} ${fmt(places[i].x, 6)}`,
+    series: all.filter((s) => s.values.some((v) => v !== undefined)),
+  });
+}
+
+function writeFront() {
+  const front = summary.front;
+  if (!front) return;
+  const names = Object.keys(front.base),
+    charts = [];
+  for (let a = 0; a < names.length; a++)
+    for (let b = a + 1; b < names.length; b++) charts.push(frontChart(front, names[a], names[b]));
+  const left = [
+    front.n_dominated ? `${fmtCount(front.n_dominated)} of them dominated by others` : "",
+    front.n_failed ? `${fmtCount(front.n_failed)} failed` : "",
+  ].filter((text) => text);
+  section(
+    "front",
+    "Front of the objectives",
+    el(
+      "p",
+      {},
+      `${fmtCount(front.n_point)} designs${left.length ? `, ${left.join(", ")}` : ""}: none of the others is better ` +
+        `in all objectives than one on the front. Found in ${fmtDuration(front.wall_s)}. The knee is farthest below ` +
+        "the straight line between the ends.",
+    ),
+    el("div", { class: "charts" }, charts),
+  );
+}
