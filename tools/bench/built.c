@@ -186,7 +186,6 @@ static void count_samples(built_bench *b)
     for (int i = 0; i < N_TRUE; i++)
         solve(b, i);
     cpu_s = (hf_clock_thread_cpu_s() - start_s) / N_TRUE;
-    bench_emit("built", SCENE, "hf_built_solve", b->sigma_mm, "samples_per_s", 1 / cpu_s);
     bench_emit("built", SCENE, "hf_built_solve", b->sigma_mm, "cpu_s", cpu_s);
     bench_emit("built", SCENE, "hf_built_solve", b->sigma_mm, "error_m", largest_error_m(b, b->found_m));
 }
