@@ -122,8 +122,9 @@ static hf_status print_truss(const hf_problem *p, FILE *f, hf_messages *messages
 static bool polishes(const hf_problem *p, const hf_evaluator *v)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
-    bool is_wanted = hf_optimiser_plan_of(o).ends_with_polish || o->compare_lm != HF_COMPARE_FALSE;
-    return v && is_wanted && hf_polish_applies(v);
+    bool is_result = hf_optimiser_plan_of(o).ends_with_polish;
+    bool is_wanted = is_result || o->compare_lm != HF_COMPARE_FALSE;
+    return v && is_wanted && (is_result || !o->n_objective) && hf_polish_applies(v);
 }
 
 /* The objectives of a front by name. */
@@ -133,7 +134,10 @@ static void print_objectives(const hf_problem *p, FILE *f)
     fprintf(f, "                front of");
     for (int k = 0; k < p->goals.n_goal; k++)
         fprintf(f, "%s %s", k ? " and" : "", hf_goals_name(&p->goals, k, name));
-    fprintf(f, ": %d points, each by Levenberg-Marquardt\n", p->settings.optimize.front_points);
+    if (hf_optimiser_plan_of(&p->settings.optimize).ends_with_polish)
+        fprintf(f, ": %d points, each by Levenberg-Marquardt\n", p->settings.optimize.front_points);
+    else
+        fprintf(f, ": that of the last generation\n");
 }
 
 /* v: NULL without an optimisation */

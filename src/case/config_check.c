@@ -245,12 +245,10 @@ static void check_objectives(const hf_optimize_settings *o, hf_config_faults *f)
     if (o->n_objective > 0 && o->n_goal > 0)
         hf_config_fault_of(f, "optimize.goals.0",
                            "cannot be with optimize.objectives, which takes the place of goals; keep one of them");
-    if (o->n_objective > 1 && o->method != HF_OPTIMIZE_LM)
-        hf_config_fault_of(f, "optimize.objectives.0", "and the others need optimize.method: lm");
-    else if (o->n_objective > 2)
+    if (o->n_objective > 2 && o->method != HF_OPTIMIZE_GA)
         hf_config_fault_of(f, "optimize.objectives.2",
-                           "is a third objective; Levenberg-Marquardt follows the line of two. Keep two, and what the "
-                           "third must keep as a row of optimize.limits");
+                           "is a third objective; Levenberg-Marquardt follows the line of two. Use method: ga, or keep "
+                           "two, and what the third must keep as a row of optimize.limits");
     if (o->n_objective > 1 && o->compare_lm == HF_COMPARE_TRUE)
         hf_config_fault_of(f, "optimize.compare_lm", "compares one design; it has no meaning for optimize.objectives");
     for (int i = 1; i < o->n_objective; i++)

@@ -205,7 +205,9 @@ static void print_optimize(const hf_summary *s, FILE *f)
         return;
     }
     fprintf(f, "  optimisation  psi %.4f mm", s->best.psi_m * 1e3);
-    if (s->goals.n > 0 && s->form.merit > 0) /* what psi gained says nothing of goals; their line follows */
+    if (s->has_front)
+        fprintf(f, ": the end of the front with the least %s", s->goals.name[0]);
+    else if (s->goals.n > 0 && s->form.merit > 0) /* what psi gained says nothing of goals; their line follows */
         fprintf(f, ", merit %.6g, %.2f %% below that of the form-finding", s->best.merit,
                 100 * (1 - s->best.merit / s->form.merit));
     else if (isfinite(s->base_psi_m) &&

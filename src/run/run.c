@@ -7,6 +7,7 @@
 #include "run/cases.h"
 #include "run/problem_parts.h"
 #include "run/run_front.h"
+#include "search/pareto.h"
 #include "search/polish.h"
 #include "solve/limits.h"
 #include "solve/certificate.h"
@@ -458,12 +459,27 @@ static hf_status follow_front(run *r, hf_summary *s, hf_messages *messages)
     return hf_store_front(r->store, &r->problem.scene, &r->problem.model, s, &r->front, messages);
 }
 
+/* The front of objectives: that of the last generation, from which Levenberg-Marquardt sets out where the method ends
+ * with it; or by that alone. */
+static hf_status find_front(run *r, hf_summary *s, hf_messages *messages)
+{
+    if (!r->plan.kind) return follow_front(r, s, messages);
+    HF_TRY(evolve(r, s, messages));
+    if (must_stop(r)) return stop_here(r, s, messages);
+    if (hf_pareto_front(&r->optimiser.population, &r->front) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the front");
+    if (r->plan.ends_with_polish) return follow_front(r, s, messages);
+    memcpy(r->front.base, s->form.goal, sizeof r->front.base);
+    hf_run_front_tell(&r->front, s->optimize_wall_s, s, messages);
+    return hf_store_front(r->store, &r->problem.scene, &r->problem.model, s, &r->front, messages);
+}
+
 static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
 {
     r->plan = hf_optimiser_plan_of(&r->problem.settings.optimize);
     HF_TRY(prepare_optimize(r, s, messages));
     s->threads = r->problem.batch.n_thread;
-    if (r->problem.settings.optimize.n_objective > 0) return follow_front(r, s, messages);
+    if (r->problem.settings.optimize.n_objective > 0) return find_front(r, s, messages);
     if (r->plan.kind) HF_TRY(evolve(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
     if (hf_polish_applies(&r->problem.evaluator)) return wants_polish(r, s) ? polish(r, s, messages) : HF_OK;

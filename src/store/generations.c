@@ -423,9 +423,14 @@ static void note_best(hf_hdf5 *io, hid_t group, const hf_generations *g, const d
                       (hsize_t)(hf_generations_has_last(g) ? last : best), &individual);
     hid_t from = hf_hdf5_open_group(io, hf_generations_has_last(g) ? "/ga/last" : "/ga");
     hf_result_list_individual(field);
+    hsize_t at = hf_generations_has_last(g) ? 0 : (hsize_t)best;
     for (int i = 0; i < HF_RESULT_N_INDIVIDUAL; i++)
-        read_of_best(io, from, &row[HF_ROW_RESULT + i], field[i], hf_generations_has_last(g) ? 0 : (hsize_t)best,
-                     individual, s);
+        read_of_best(io, from, &row[HF_ROW_RESULT + i], field[i], at, individual, s);
+    for (int k = 0; k < g->n_objective; k++) {
+        const hf_result_field goal = {.offset = offsetof(hf_form_result, goal) + (size_t)k * sizeof(double),
+                                      .size = sizeof(double)};
+        read_of_best(io, from, &row[HF_ROW_OBJECTIVE + k], &goal, at, individual, s);
+    }
     hf_hdf5_close(io, from);
 }
 

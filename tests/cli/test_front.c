@@ -90,6 +90,51 @@ START_TEST(a_check_says_what_will_be_followed)
 }
 END_TEST
 
+#define THREE                                                                                                          \
+    keep(source_path("configs/straight-edges.yaml")), "--set", "optimize.generations=5", "--set",                      \
+        "scene.parabolic_cylinder.modules=[3, 3]", "--set",                                                            \
+        "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}, {goal: pull}]"
+
+/* Generations give the front of the last of them, each individual's objectives are in the file, and the table is one of
+ * designs. */
+START_TEST(generations_end_in_a_front)
+{
+    const char *file = temp("f.h5"), *table = temp("f.csv"), *again = temp("r.csv"), *json;
+    HIFDM(0, "run", THREE, "-o", file);
+    OUT(": the end of the front with the least goal_0_psi; found in generation ");
+    OUT(" points, 0 of them dominated, 0 failed; ");
+    HIFDM(0, "show", file, "--json");
+    json = out_as("s.json");
+    EXPECT(
+        file, json, "--", "'minimised' not in b['front'] and len(b['front']['points']) > 9",
+        "all(p['mark'] == 'on' and p['iterations'] == 0 for p in b['front']['points'])",
+        "a['ga/objective_2'].shape == (5, 50) and a['ga/objective_0'].attrs['units'] == ''",
+        "a['ga'].attrs['n_objective'] == 3 and a['ga/best_merit'][-1] == min(a['front/objective'][:, 0])",
+        "all(np.all(np.isin(a['front/objective'][:, k], a['ga/objective_%d' % k][-1])) for k in range(3))",
+        "not any(np.all(q <= p) for p in a['front/objective'][:] for q in a['front/objective'][:] if np.any(q != p))",
+        "a['ga'].attrs['best_psi_m'] == a['front/objective'][0, 0]");
+    HIFDM(0, "export", file, "--front", table);
+    HIFDM(0, "evaluate", THREE, "--designs", table, "-o", again);
+    EXPECT(table, again, "--",
+           "all(near(float(x[k]), float(y[k]), 1e-6) for x, y in zip(a, b) for k in ('goal_0_psi', 'goal_2_pull'))");
+}
+END_TEST
+
+/* From the generations' front Levenberg-Marquardt goes on, whose points are better. */
+START_TEST(levenberg_marquardt_follows_generations)
+{
+    const char *file = temp("f.h5"), *before = temp("g.h5");
+    HIFDM(0, "run", FRONT, "--set", "optimize.method=ga+lm", "--set", "optimize.generations=3", "-o", file);
+    OUT("  front         7 points, 0 of them dominated, 0 failed; ");
+    HIFDM(0, "run", FRONT, "--set", "optimize.method=ga", "--set", "optimize.generations=3", "-o", before);
+    EXPECT(file, before, "--", "np.array_equal(a['ga/design_N'], b['ga/design_N'])",
+           "np.all(a['front/objective'][:].min(axis=0) < b['front/objective'][:].min(axis=0))");
+    HIFDM(0, "check", FRONT, "--set", "optimize.method=ga");
+    OUT("                front of goal_0_psi and goal_1_ratio_boundary: that of the last generation\n");
+    ck_assert(!strstr(said.out, "Levenberg-Marquardt: rule"));
+}
+END_TEST
+
 /* No design keeps the limit: the ends are not there, and the run says so. */
 START_TEST(limits_that_no_design_keeps_leave_no_front)
 {
@@ -111,6 +156,8 @@ Suite *suite_cli_front(void)
     tcase_add_test(tests, a_table_of_the_front_is_one_of_designs);
     tcase_add_test(tests, a_run_without_objectives_has_no_front);
     tcase_add_test(tests, a_check_says_what_will_be_followed);
+    tcase_add_test(tests, generations_end_in_a_front);
+    tcase_add_test(tests, levenberg_marquardt_follows_generations);
     tcase_add_test(tests, limits_that_no_design_keeps_leave_no_front);
     return suite;
 }

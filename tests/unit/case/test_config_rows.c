@@ -273,12 +273,9 @@ static const struct {
      "ones\n"},
     {OBJECTIVE "{goal: psi}, {goal: pull}, {goal: mass}, {goal: ratio}]\n", NULL,
      "error: c.yaml:5:57: optimize.objectives: there are more than 3 rows\n"},
-    {OPTIMIZE "  objectives: [{goal: psi}, {goal: pull}]\n", NULL,
-     "error: c.yaml:4:16: optimize.objectives.0: and the others need optimize.method: lm\n"},
     {OBJECTIVE "{goal: psi}, {goal: pull}, {goal: evenness}]\n", NULL,
      "error: c.yaml:5:43: optimize.objectives.2: is a third objective; Levenberg-Marquardt follows the line of two. "
-     "Keep "
-     "two, and what the third must keep as a row of optimize.limits\n"},
+     "Use method: ga, or keep two, and what the third must keep as a row of optimize.limits\n"},
     {OBJECTIVE "{goal: psi}, {goal: pull}]\n  compare_lm: true\n", NULL,
      "error: c.yaml:6:15: optimize.compare_lm: compares one design; it has no meaning for optimize.objectives\n"},
     {OBJECTIVE "{goal: psi, weight: 2}, {goal: pull}]\n", NULL,
