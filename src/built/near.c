@@ -14,7 +14,8 @@
 #include <string.h>
 
 /* These decide how long a lane goes on before its net is solved by Newton's method, which reaches the same shape within
- * the tolerance in 4 to 8 steps, each of which takes as long as a dozen in the lanes. */
+ * the tolerance in 4 to 8 steps, each of which takes as long as a dozen in the lanes. The tests of near, built_batch
+ * and samples pass with STEPS_MAX 20 and 180, PATIENCE 1 and 10, CONTRACTION 0.3 and 0.95. */
 #define STEPS_MAX 60
 #define PATIENCE 2      /* steps before CONTRACTION is asked for */
 #define CONTRACTION 0.7 /* the residual must fall at least by this factor per step */

@@ -11,6 +11,9 @@
 #include <stddef.h>
 #include <string.h>
 
+/* The tests of near, built_batch and samples pass with the five below, in their order, at 40, 0.02, 0.01, 0.001, 1e-8
+ * and at 100, 0.1, 1, 0.1, 1e-4. With REACH 0.01 nets of 525 nodes take two steps more at errors of 0.1 mm, and without
+ * it most of those of 0.5 mm are not found. */
 #define STEPS_MAX 40
 /* A step moves no node farther than this, over the mean length of the cables. */
 #define REACH 0.04
