@@ -336,10 +336,11 @@ INLINE void gram_tile(int n_row, int n_column, int n, const double *row, const d
             gram[r * ldg + c] = -sum(t[r][c]);
 }
 
+/* The few rows that a caller asks for at a time stay near while all others pass by once. */
 void HF_KERNEL(hf_band_gram)(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg)
 {
-    for (int i = first; i < end; i += COLUMNS)
-        for (int j = 0; j <= i; j += COLUMNS) {
+    for (int j = 0; j < end; j += COLUMNS)
+        for (int i = first > j ? first : j; i < end; i += COLUMNS) {
             const double *row = a + i * (ptrdiff_t)lda, *column = a + j * (ptrdiff_t)lda;
             double *to = gram + i * (ptrdiff_t)ldg + j;
             if (i + COLUMNS <= end) {

@@ -22,6 +22,7 @@ static void lay_out(hf_arena *a, hf_quadratic *q)
     q->side = hf_arena_take(a, n, sizeof(int));
     q->order = hf_arena_take(a, n, sizeof(int));
     q->scratch = hf_arena_take(a, 4 * n, sizeof(double));
+    q->strip = hf_arena_take(a, n, sizeof *q->strip);
 }
 
 hf_status hf_quadratic_create(int n, hf_quadratic *q)
@@ -40,24 +41,28 @@ void hf_quadratic_free(hf_quadratic *q)
     *q = (hf_quadratic){0};
 }
 
-/* J = L^-T for L as a band whose columns begin with the diagonal, L L' being H in the order of `order`. Each column of
- * L^-1, a row of J, is made in `column`, by columns of L, so that the inner loop has no sum. The columns of J are in
- * reverse: row order[n-1] of J has one entry, in column 0, row order[n-2] two, in columns 0 and 1, ... */
+/* J = L^-T for L as a band whose columns begin with the diagonal, L L' being H in the order of `order`. Columns of L^-1,
+ * rows of J, are made side by side in `strip`, by columns of L, so that the inner loop has no sum and L passes once for
+ * as many. The columns of J are in reverse: row order[n-1] of J has one entry, in column 0, row order[n-2] two, in
+ * columns 0 and 1, ... */
 static void invert_transposed(hf_quadratic *q)
 {
     int n = q->n;
-    double *column = q->scratch;
-    for (int c = 0; c < n; c++) {
-        memset(column, 0, (size_t)n * sizeof(double));
-        column[c] = 1;
-        for (int k = c; k < n; k++) {
-            const double *l = q->triangle + k * n - k; /* entry (i, k) is l[i] */
-            double x = column[k] /= l[k];
+    hf_quadratic_strip *restrict strip = q->strip;
+    for (int first = 0; first < n; first += HF_QUADRATIC_STRIP) {
+        int n_lane = first + HF_QUADRATIC_STRIP <= n ? HF_QUADRATIC_STRIP : n - first;
+        memset(strip, 0, (size_t)n * sizeof *strip);
+        for (int lane = 0; lane < n_lane; lane++)
+            strip[first + lane][lane] = 1;
+        for (int k = first; k < n; k++) {
+            const double *restrict l = q->triangle + k * n - k; /* entry (i, k) is l[i] */
+            hf_quadratic_strip x = strip[k] /= l[k];
             for (int i = k + 1; i < n; i++)
-                column[i] -= x * l[i];
+                strip[i] -= x * l[i];
         }
         for (int r = 0; r < n; r++)
-            q->inverse[(n - 1 - r) * n + q->order[c]] = column[r];
+            for (int lane = 0; lane < n_lane; lane++)
+                q->inverse[(n - 1 - r) * n + q->order[first + lane]] = strip[r][lane];
     }
 }
 

@@ -28,6 +28,9 @@ typedef struct {
  * violates none beyond rounding. */
 typedef bool hf_quadratic_worst(void *context, const double *x, hf_quadratic_limit *limit);
 
+#define HF_QUADRATIC_STRIP 8 /* columns that are worked on side by side */
+typedef double hf_quadratic_strip __attribute__((vector_size(HF_QUADRATIC_STRIP * sizeof(double)), aligned(8)));
+
 typedef struct {
     int n;
     double *inverse;             /* [n][n] scratch: columns J, with J J' = H^-1 */
@@ -38,6 +41,7 @@ typedef struct {
     int *side;                   /* [n] the bound of each variable that held the last answer: 1 low, -1 high, 0 none */
     int *order;                  /* [n] of the variables in the factor: those held from the start are last */
     double *scratch;             /* [4 n] */
+    hf_quadratic_strip *strip;   /* [n] scratch */
     void *block;
 } hf_quadratic;
 
