@@ -41,10 +41,10 @@ void hf_quadratic_free(hf_quadratic *q)
     *q = (hf_quadratic){0};
 }
 
-/* J = L^-T for L as a band whose columns begin with the diagonal, L L' being H in the order of `order`. Columns of L^-1,
- * rows of J, are made side by side in `strip`, by columns of L, so that the inner loop has no sum and L passes once for
- * as many. The columns of J are in reverse: row order[n-1] of J has one entry, in column 0, row order[n-2] two, in
- * columns 0 and 1, ... */
+/* J = L^-T for L as a band whose columns begin with the diagonal, L L' being H in the order of `order`. Columns of
+ * L^-1, rows of J, are made side by side in `strip`, by columns of L, so that the inner loop has no sum and L passes
+ * once for as many. The columns of J are in reverse: row order[n-1] of J has one entry, in column 0, row order[n-2]
+ * two, in columns 0 and 1, ... */
 static void invert_transposed(hf_quadratic *q)
 {
     int n = q->n;

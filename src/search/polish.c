@@ -23,6 +23,9 @@
 #define WAY_LEAST 1e-3    /* part of the way into the limits that a step goes [1e-2; 1e-6] */
 #define LIMIT_INSIDE 2e-9 /* a tension so near to its bound, relative, is at it: twice what a step stays within */
 #define LIMIT_ROUNDING 1e-12 /* a violation below this part of the tension is rounding [1e-14 to 1e-10] */
+#define BENDS_MAX 4          /* corrections of a step for the bend of its residuals [2 to 4] */
+#define BEND_BELOW 0.65      /* part of the promised gain from which on a step needs none [0.65 to 0.75; 0.5 fails] */
+#define BEND_WORTH 0.5       /* a correction that leaves more of the merit than this is the last [0.5 to 0.9] */
 #define GRAM_ROWS 32         /* of J'J that one thread works on at a time; the bits do not depend on it */
 #define DENSITY_LEFT 1e-3    /* part of its first value below which no force density falls [1e-6 to 0.3] */
 
@@ -61,6 +64,8 @@ typedef struct {
     double *at, *trial;                  /* [n] the best variables; those of the last step */
     double *design;                      /* [n_gene] of the last evaluation, tensions as pretensions q L* */
     double *best;                        /* [n_gene] the best design in the caller's meaning */
+    double *step_taken;                  /* [n] that led to `trial`, while it is corrected */
+    double *pull;                        /* [n] gradient of a correction */
     double *scale;                       /* [n] largest norm of each column of J so far */
     double *row;                         /* [n][rows of the residuals] J' */
     double *gram;                        /* [n][n] J'J; lower triangle by rows, as `hessian` */
@@ -103,6 +108,8 @@ static void lay_out(hf_arena *a, problem *p)
     p->trial = hf_arena_take(a, n, sizeof(double));
     p->design = hf_arena_take(a, n_gene, sizeof(double));
     p->best = hf_arena_take(a, n_gene, sizeof(double));
+    p->step_taken = hf_arena_take(a, n, sizeof(double));
+    p->pull = hf_arena_take(a, n, sizeof(double));
     p->scale = hf_arena_take(a, n, sizeof(double));
     p->row = hf_arena_take(a, n * n_row, sizeof(double));
     p->gram = hf_arena_take(a, n * n, sizeof(double));
@@ -335,7 +342,15 @@ static void begin_level(problem *p)
     p->up[n] = INFINITY;
 }
 
-/* The least of the model |f + J x|^2/2 + damping |scale x|^2/2 within the limits, as `trial`. *gain: what the model
+/* Find the shape at the end of the step, which becomes `trial`. */
+static hf_status take_step(problem *p)
+{
+    for (int r = 0; r < p->n; r++)
+        p->trial[r] = fmax(p->low[r], fmin(p->high[r], p->at[r] + p->step.x[r]));
+    return evaluate(p, p->trial);
+}
+
+/* The least of the model |f + J x|^2/2 + damping |scale x|^2/2 within the limits, as step.x. *gain: what the model
  * promises of psi^2/2. */
 static hf_status solve_step(problem *p, double damping, double *gain)
 {
@@ -355,7 +370,6 @@ static hf_status solve_step(problem *p, double damping, double *gain)
         for (int c = 0; c < r; c++)
             sum += p->gram[r * n + c] * x[c];
         *gain -= sum * x[r];
-        p->trial[r] = fmax(p->low[r], fmin(p->high[r], p->at[r] + x[r]));
     }
     return HF_OK;
 }
@@ -368,11 +382,48 @@ static hf_status try_step(problem *p, double damping, double *gain)
     for (int again = 0; again <= CORRECTIONS_MAX; again++) {
         HF_TRY(solve_step(p, damping, gain));
         if (again == 0) p->promise = *gain;
-        HF_TRY(evaluate(p, p->trial));
+        HF_TRY(take_step(p));
         if (hf_watch_keeps(&p->watch, p->w)) return HF_OK;
         hf_watch_learn(&p->watch, p->step.x, p->w);
     }
     return HF_RATIO_CAP;
+}
+
+/* The gradient, at a step of zero, of the model that has at x the residuals found there: J'(f(x) - J x). */
+static void find_pull(problem *p)
+{
+    const double *x = p->step_taken;
+    size_t n_row = (size_t)p->residuals.n_row;
+    for (int r = 0, n = p->n; r < n; r++)
+        p->pull[r] = hf_dot(n_row, p->row + (size_t)r * n_row, p->residuals.value) - p->gram[r * n + r] * x[r];
+    for (int r = 0, at = 0; r < p->n; r++, at = r * p->n)
+        for (int c = 0; c < r; c++, at++) {
+            p->pull[r] -= p->gram[at] * x[c];
+            p->pull[c] -= p->gram[at] * x[r];
+        }
+}
+
+/* Where residuals bend, a step along a valley ends up on its flank. The same matrices lead back to the floor with the
+ * residuals found there; again while that takes off a good part. `trial` and the workspace's shape become the best. */
+static hf_status bend_step(problem *p, double before, double gain)
+{
+    size_t size = (size_t)p->n * sizeof(double);
+    for (int again = 0; again < BENDS_MAX; again++) {
+        double merit = p->result.merit;
+        if (before - merit * merit / 2 > BEND_BELOW * gain || hf_residuals_find(&p->residuals, p->w) != HF_OK) break;
+        memcpy(p->step_taken, p->step.x, size);
+        find_pull(p);
+        hf_status status = hf_quadratic_solve(&p->step, p->hessian, p->pull, p->down, p->up, worst_limit, p);
+        if (status == HF_OK) status = take_step(p);
+        if (status == HF_INTERRUPTED || status == HF_NO_MEMORY) return status;
+        if (status == HF_OK && hf_watch_keeps(&p->watch, p->w) && p->result.merit < merit) {
+            if (p->result.merit > BEND_WORTH * merit) break;
+            continue;
+        }
+        memcpy(p->step.x, p->step_taken, size);
+        return take_step(p);
+    }
+    return HF_OK;
 }
 
 /* ---- the run ---- */
@@ -402,7 +453,7 @@ static hf_status enter(problem *p, int max_iterations, hf_polish_result *r)
         r->iterations++;
         hf_watch_aim(&p->watch, way);
         hf_status status = solve_step(p, DAMPING_FIRST, &gain);
-        if (status == HF_OK) status = evaluate(p, p->trial);
+        if (status == HF_OK) status = take_step(p);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         double after = status == HF_OK ? hf_watch_violation(&p->watch, p->w) : (double)INFINITY;
         bool is_inside = status == HF_OK && hf_watch_keeps(&p->watch, p->w), is_nearer = is_inside || after < before;
@@ -466,6 +517,7 @@ static hf_status minimise(problem *p, int max_iterations, hf_polish_result *r)
         double before = r->merit * r->merit / 2;
         r->iterations++;
         status = try_step(p, damping, &gain);
+        if (status == HF_OK && !p->trade) status = bend_step(p, before, gain);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         double merit = merit_of(p, &p->result), after = status == HF_OK ? merit * merit / 2 : (double)INFINITY;
         double promise =

@@ -82,7 +82,7 @@ START_TEST(it_ends_no_later_than_the_page)
 {
     char output[HF_OUTPUT_SIZE];
     static hf_summary s;
-    static const char *const set[] = {"optimize.polish_iterations=25"};
+    static const char *const set[] = {"optimize.polish_iterations=19"};
     hf_messages said = {0};
     hf_run_request request = {
         .case_path = written_case(), .set = set, .n_set = _i ? 0 : 1, .no_file = true, .threads = 2};
