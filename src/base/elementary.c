@@ -1,7 +1,8 @@
-/* Contents: lengths - sine and cosine - inverse hyperbolic sine - power of two */
+/* Contents: lengths - sine and cosine - inverse hyperbolic sine - logarithm - normal distribution - power of two */
 #include "base/elementary.h"
 
 #include <math.h>
+#include <stddef.h>
 
 /* ---- lengths ---- */
 
@@ -89,6 +90,62 @@ double hf_inverse_sinh(double x)
     for (int n = 25; n > 0; n -= 2)
         sum = sum * square + 1.0 / n;
     return scale * u * sum;
+}
+
+/* ---- logarithm ---- */
+
+/* x = 2^k m with m around 1; log m = 2 artanh u with u = (m - 1)/(m + 1), at most 0.172. */
+double hf_logarithm(double x)
+{
+    static const double inverse[] = {1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13, 1.0 / 11,
+                                     1.0 / 9,  1.0 / 7,  1.0 / 5,  1.0 / 3,  1.0};
+    int k;
+    double m = frexp(x, &k);
+    if (m < 0.70710678118654752) m *= 2, k--;
+    double u = (m - 1) / (m + 1), square = u * u, sum = 0;
+    for (size_t i = 0; i < sizeof inverse / sizeof *inverse; i++)
+        sum = sum * square + inverse[i];
+    return k * 0x1.62e42fefa3800p-1 +
+           (2 * u * sum + k * 0x1.ef35793c76730p-45); /* ln 2 in two parts, the first exact */
+}
+
+/* ---- normal distribution ---- */
+
+static double polynomial(const double c[8], double x)
+{
+    double sum = 0;
+    for (int i = 0; i < 8; i++)
+        sum = sum * x + c[i];
+    return sum;
+}
+
+/* Quotients of polynomials for the middle, the tails and the far tails: numerator, denominator, highest power first. */
+double hf_normal_quantile(double probability)
+{
+    static const double middle[2][8] = {
+        {2509.0809287301226727, 33430.575583588128105, 67265.770927008700853, 45921.953931549871457,
+         13731.693765509461125, 1971.5909503065514427, 133.14166789178437745, 3.387132872796366608},
+        {5226.495278852545925, 28729.085735721942674, 39307.89580009271061, 21213.794301586595867,
+         5394.1960214247511077, 687.1870074920579083, 42.313330701600911252, 1}};
+    static const double tail[2][8] = {
+        {7.7454501427834140764e-4, .0227238449892691845833, .24178072517745061177, 1.27045825245236838258,
+         3.64784832476320460504, 5.7694972214606914055, 4.6303378461565452959, 1.42343711074968357734},
+        {1.05075007164441684324e-9, 5.475938084995344946e-4, .0151986665636164571966, .14810397642748007459,
+         .68976733498510000455, 1.6763848301838038494, 2.05319162663775882187, 1}};
+    static const double far_tail[2][8] = {
+        {2.01033439929228813265e-7, 2.71155556874348757815e-5, .0012426609473880784386, .026532189526576123093,
+         .29656057182850489123, 1.7848265399172913358, 5.4637849111641143699, 6.6579046435011037772},
+        {2.04426310338993978564e-15, 1.4215117583164458887e-7, 1.8463183175100546818e-5, 7.868691311456132591e-4,
+         .0148753612908506148525, .13692988092273580531, .59983220655588793769, 1}};
+    double q = probability - 0.5;
+    if (fabs(q) <= 0.425) {
+        double r = 0.180625 - q * q;
+        return q * polynomial(middle[0], r) / polynomial(middle[1], r);
+    }
+    double r = sqrt(-hf_logarithm(q < 0 ? probability : 1 - probability));
+    const double(*c)[8] = r <= 5 ? tail : far_tail;
+    r -= r <= 5 ? 1.6 : 5;
+    return copysign(polynomial(c[0], r) / polynomial(c[1], r), q);
 }
 
 /* ---- power of two ---- */

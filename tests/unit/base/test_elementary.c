@@ -3,6 +3,7 @@
 
 #include "base/elementary.h"
 
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <string.h>
 
@@ -61,20 +62,44 @@ START_TEST(ends_of_the_ranges)
 }
 END_TEST
 
+/* Also against GSL, which takes the same quotients and the C library's logarithm. */
+START_TEST(logarithm_and_normal_quantile)
+{
+    for (int k = -1070 / 2; k < 1000; k += 7)
+        for (int i = 0; i < 16; i++) {
+            double x = ldexp(1 + i / 16.0, k), y = log(x);
+            ck_assert_double_eq_tol(hf_logarithm(x), y, fmax(3e-16 * fabs(y), 1e-16));
+        }
+    for (int k = 1; k < 4096; k++)
+        ck_assert_double_eq_tol(hf_normal_quantile(k / 4096.0), gsl_cdf_ugaussian_Pinv(k / 4096.0), 1e-14);
+    for (int k = 2; k < 1000; k += 3) {
+        double far = gsl_cdf_ugaussian_Pinv(ldexp(1, -k));
+        ck_assert_double_eq_tol(hf_normal_quantile(ldexp(1, -k)) / far, 1, 2e-15);
+        if (k < 53) ck_assert_double_eq(hf_normal_quantile(1 - ldexp(1, -k)), -hf_normal_quantile(ldexp(1, -k)));
+    }
+    ck_assert_double_eq(hf_normal_quantile(0.5), 0);
+}
+END_TEST
+
 /* FNV-1a of the bits of values between -8 and 8: by this number each processor and compiler must agree. */
 START_TEST(bits)
 {
     uint64_t sum = 14695981039346656037u;
     for (int k = 0; k < 4096; k++) {
         double x = (k - 2048) / 256.0 + k * 0x1p-40;
-        const double value[] = {hf_norm(x, 1 / (x + 9), 0.3), hf_sine(x), hf_cosine(100 * x), hf_inverse_sinh(x),
-                                hf_power_of_two(2 * x)};
+        const double value[] = {hf_norm(x, 1 / (x + 9), 0.3),
+                                hf_sine(x),
+                                hf_cosine(100 * x),
+                                hf_inverse_sinh(x),
+                                hf_power_of_two(2 * x),
+                                hf_logarithm(x + 9),
+                                hf_normal_quantile(x / 16.1 + 0.5)};
         unsigned char byte[sizeof value];
         memcpy(byte, value, sizeof value);
         for (size_t i = 0; i < sizeof value; i++)
             sum = (sum ^ byte[i]) * 1099511628211u;
     }
-    ck_assert(sum == 5335450031240387848u);
+    ck_assert(sum == 1827576997480047962u);
 }
 END_TEST
 
@@ -85,6 +110,7 @@ Suite *suite_unit_elementary(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, they_are_those_of_the_library);
     tcase_add_test(tests, ends_of_the_ranges);
+    tcase_add_test(tests, logarithm_and_normal_quantile);
     tcase_add_test(tests, bits);
     return suite;
 }
