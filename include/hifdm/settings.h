@@ -92,6 +92,9 @@ extern const char *const hf_figure_word[4]; /* the first goals, those that are f
 
 /* Room for the path of a case, a study or a table of a net or truss; a longer one is refused. */
 #define HF_PATH_SIZE 1024
+extern const char *const hf_distribution_word[3];
+extern const char *const hf_sampling_word[3];
+extern const char *const hf_tolerance_measure_word[]; /* by hf_tolerance_measure, ended by NULL */
 
 #define HF_SET_NAME_SIZE 64 /* of the name of a set of cables with its NUL */
 
@@ -232,6 +235,53 @@ typedef struct {
     hf_goal_kind figure;        /* HF_GOAL_PSI, HF_GOAL_SURFACE or HF_GOAL_FACETS */
     double sigma_m;             /* of measured coordinates without one of their own; 0: not given */
 } hf_adjust_settings;
+
+/* How errors are distributed, and how samples of them are chosen. */
+typedef enum { HF_DISTRIBUTION_NORMAL, HF_DISTRIBUTION_UNIFORM } hf_distribution;
+typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
+
+/* X(name, word, unit, condition, description): what is measured of each sample of the net as built. The words are in
+ * case files and result files. Conditions: ALWAYS, SURFACE (a section surface), FACETS (it has facets), LOSS (it has
+ * frequencies). */
+#define HF_TOLERANCE_MEASURES(X)                                                                                       \
+    X(PSI, "psi_m", "m", ALWAYS, "RMS distance of the inner nodes to their theoretical places")                        \
+    X(HALF_PATH, "half_path_rms_m", "m", SURFACE, "of the inner nodes to the wanted surface")                          \
+    X(FIT_HALF_PATH, "fit_half_path_rms_m", "m", SURFACE, "the same after the best fit")                               \
+    X(FACET_HALF_PATH, "facet_half_path_rms_m", "m", FACETS, "of the facets to the wanted surface")                    \
+    X(FACET_FIT_HALF_PATH, "facet_fit_half_path_rms_m", "m", FACETS, "the same after the best fit")                    \
+    X(GAIN_LOSS, "gain_loss_dB", "dB", LOSS,                                                                           \
+      "at the highest frequency after the best fit, of facets where there are some; infinite beyond 3 dB")             \
+    X(LEAST_TENSION, "least_tension_N", "N", ALWAYS, "smallest tension of a cable")                                    \
+    X(SLACK, "n_slack", "", ALWAYS, "slack cables")                                                                    \
+    X(LOOSE, "n_loose", "", ALWAYS, "nodes that no taut cable holds")
+
+#define HF_TOLERANCE_ENUMERATOR(name, word, unit, condition, description) HF_TOLERANCE_##name,
+typedef enum { HF_TOLERANCE_MEASURES(HF_TOLERANCE_ENUMERATOR) HF_TOLERANCE_N_MEASURE } hf_tolerance_measure;
+#undef HF_TOLERANCE_ENUMERATOR
+
+/* A row of tolerance.require. */
+typedef struct {
+    hf_tolerance_measure measure;
+    double at_most, at_least; /* NaN: not given */
+} hf_require_settings;
+
+#define HF_REQUIRE_ROWS_MAX 8
+
+/* Errors of the net as built; standard deviations, whatever the distribution. */
+typedef struct {
+    double sigma_cut_m, sigma_cut_ratio; /* of cut lengths: absolute, and over the length */
+    double sigma_support_m;              /* of each coordinate of a support */
+    double sigma_EA_ratio;               /* of EA over EA */
+    double sigma_temperature_K;          /* of the one temperature that all cables have */
+    hf_distribution distribution;
+    double batch; /* correlation of the errors sigma_cut_ratio, and of sigma_EA_ratio, among cables of one spool */
+    int samples;
+    uint64_t seed;
+    hf_sampling sampling;
+    double yield; /* part of the nets that should meet what is required; 0 = not asked for */
+    int n_require;
+    hf_require_settings require[HF_REQUIRE_ROWS_MAX];
+} hf_tolerance_settings;
 
 #define HF_LIST_MAX 32
 

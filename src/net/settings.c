@@ -24,6 +24,11 @@ const char *const hf_goal_word[11] = {"psi",  "surface",      "facets", "tension
 const char *const hf_along_word[3] = {"normal", "half_path", NULL};
 const char *const hf_fit_word[3] = {"none", "best", NULL};
 const char *const hf_figure_word[4] = {"psi", "surface", "facets", NULL};
+const char *const hf_distribution_word[3] = {"normal", "uniform", NULL};
+const char *const hf_sampling_word[3] = {"random", "sobol", NULL};
+#define WORD(name, word, unit, condition, description) word,
+const char *const hf_tolerance_measure_word[] = {HF_TOLERANCE_MEASURES(WORD) NULL};
+#undef WORD
 const char *const hf_limit_word[4] = {"tension", "ratio", "displacement", NULL};
 const char *const hf_part_word[11] = {"all",   "net",      "truss",    "bud",      "mbug", "abug",
                                       "other", "longeron", "vertical", "diagonal", NULL};

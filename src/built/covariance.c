@@ -1,0 +1,125 @@
+#include "built/covariance.h"
+
+#include "base/arena.h"
+#include "search/parallel.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Coordinates whose shares are summed together, in order: so the sum does not depend on threads. */
+#define STRIPS 32
+#define AT_ONCE 6 /* right-hand sides of a solve; the solver takes three at a time, and no sum changes with it */
+
+typedef struct {
+    const hf_built_errors *errors;
+    double *share;   /* [STRIPS][n] */
+    double *square;  /* [3 n_inner_node] of each coordinate */
+    double *scratch; /* [n_thread][AT_ONCE][...] */
+    size_t n_room;   /* of it for a thread */
+} strips;
+
+static void lay_out_strips(hf_arena *arena, size_t n_thread, size_t n_inner, strips *s)
+{
+    const hf_built_linear *l = s->errors->linear;
+    size_t n = (size_t)hf_built_errors_count(s->errors), n_cable = (size_t)l->built->model.n_cable;
+    s->n_room = AT_ONCE * (l->n_dof + n_cable + l->n_scratch) + n;
+    s->share = hf_arena_take(arena, STRIPS * n, sizeof(double));
+    s->square = hf_arena_take(arena, 3 * n_inner, sizeof(double));
+    s->scratch = hf_arena_take(arena, n_thread * s->n_room, sizeof(double));
+}
+
+/* Coordinates first to first + count - 1 of the inner nodes. */
+static void add_coordinates(strips *s, int i_strip, int first, int count, double *room)
+{
+    const hf_built_linear *l = s->errors->linear;
+    const hf_model *m = &l->built->model;
+    size_t n = (size_t)hf_built_errors_count(s->errors), n_cable = (size_t)m->n_cable;
+    double *slope = room, *strain = slope + AT_ONCE * l->n_dof, *of_z = strain + AT_ONCE * n_cable;
+    double *share = s->share + (size_t)i_strip * n;
+    memset(slope, 0, (size_t)count * l->n_dof * sizeof *slope);
+    for (int k = 0; k < count; k++)
+        slope[(size_t)k * l->n_dof + (size_t)(3 * m->inner_row[(first + k) / 3] + (first + k) % 3)] = 1;
+    hf_built_linear_transpose(l, count, slope, strain, of_z + n);
+    for (int k = 0; k < count; k++) {
+        double sum = 0;
+        hf_built_errors_slope(s->errors, strain + (size_t)k * n_cable, slope + (size_t)k * l->n_dof, of_z);
+        for (size_t i = 0; i < n; i++) {
+            share[i] += of_z[i] * of_z[i];
+            sum += of_z[i] * of_z[i];
+        }
+        s->square[first + k] = sum;
+    }
+}
+
+static void work_on_strip(void *context, int room, int i_strip)
+{
+    strips *s = context;
+    long n = 3L * s->errors->linear->built->model.n_inner_node;
+    int first = (int)(n * i_strip / STRIPS), end = (int)(n * (i_strip + 1) / STRIPS);
+    for (; first < end; first += AT_ONCE)
+        add_coordinates(s, i_strip, first, end - first < AT_ONCE ? end - first : AT_ONCE,
+                        s->scratch + (size_t)room * s->n_room);
+}
+
+static void sum_up(const strips *s, hf_covariance *c)
+{
+    const hf_model *m = &s->errors->linear->built->model;
+    int n = hf_built_errors_count(s->errors);
+    for (int i = 0; i < n; i++) {
+        double sum = 0;
+        for (int k = 0; k < STRIPS; k++)
+            sum += s->share[(size_t)k * (size_t)n + (size_t)i];
+        c->share_m2[i] = sum / m->n_inner_node;
+        c->spread_m2 += c->share_m2[i];
+        c->kind_m2[hf_built_errors_kind(s->errors, i)] += c->share_m2[i];
+        int cable = hf_built_errors_cable(s->errors, i);
+        if (cable >= 0) c->cable_m2[cable] += c->share_m2[i];
+    }
+    for (int k = 0; k < m->n_inner_node; k++)
+        c->deviation_m[k] = sqrt(s->square[3 * k] + s->square[3 * k + 1] + s->square[3 * k + 2]);
+}
+
+static void lay_out_covariance(hf_arena *arena, const hf_built_errors *e, hf_covariance *c)
+{
+    const hf_model *m = &e->linear->built->model;
+    c->share_m2 = hf_arena_take(arena, (size_t)hf_built_errors_count(e), sizeof(double));
+    c->cable_m2 = hf_arena_take(arena, (size_t)m->n_cable, sizeof(double));
+    c->deviation_m = hf_arena_take(arena, (size_t)m->n_inner_node, sizeof(double));
+}
+
+hf_status hf_covariance_find(const hf_built_errors *e, int n_thread, hf_covariance *c)
+{
+    strips s = {.errors = e};
+    hf_arena arena = {0}, scratch = {0};
+    if (n_thread < 1) n_thread = hf_parallel_cores();
+    *c = (hf_covariance){0};
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_covariance(&arena, e, c)));
+    c->block = arena.block;
+    HF_TRY(HF_ARENA_MAKE(&scratch,
+                         lay_out_strips(&scratch, (size_t)n_thread, (size_t)e->linear->built->model.n_inner_node, &s)));
+    hf_parallel_each(n_thread, STRIPS, work_on_strip, &s);
+    sum_up(&s, c);
+    c->nominal_psi_m = hf_covariance_psi_m(e->linear, NULL);
+    hf_arena_free(&scratch);
+    return HF_OK;
+}
+
+void hf_covariance_free(hf_covariance *c)
+{
+    hf_arena arena = {.block = c->block};
+    hf_arena_free(&arena);
+    *c = (hf_covariance){0};
+}
+
+double hf_covariance_psi_m(const hf_built_linear *l, const double *move)
+{
+    const hf_model *m = &l->built->model;
+    double sum = 0;
+    for (int k = 0; k < m->n_inner_node; k++)
+        for (int c = 0; c < 3; c++) {
+            int row = m->inner_row[k], at = c * m->n_node + row;
+            double d = l->built->place_m[at] - m->position_m[at] + (move ? move[3 * row + c] : 0);
+            sum += d * d;
+        }
+    return sqrt(sum / m->n_inner_node);
+}

@@ -1,0 +1,184 @@
+/* Contents: making - numbers - errors of a net - to first order */
+#include "built/errors.h"
+
+#include "base/arena.h"
+#include "base/elementary.h"
+#include "base/random.h"
+#include <hifdm/cable_set.h>
+
+#include <math.h>
+#include <string.h>
+
+#define KIND_SHIFT 27 /* bits of an item's number: 3 coordinates of more nodes than a net can have */
+
+/* ---- making ---- */
+
+static void lay_out_errors(hf_arena *arena, const hf_model *m, hf_built_errors *e)
+{
+    size_t n = (size_t)m->n_cable;
+    e->spool = hf_arena_take(arena, n, sizeof(int));
+    e->support = hf_arena_take(arena, (size_t)(m->n_node - m->n_free), sizeof(int));
+    e->expansion_per_K = hf_arena_take(arena, n, sizeof(double));
+}
+
+static void find_spools(const hf_scene *s, hf_built_errors *e)
+{
+    e->n_spool = s->n_set + 2; /* sets, then the two groups */
+    for (int i = 0; i < s->n_cable; i++)
+        e->spool[i] = s->n_set + s->group[i];
+    for (int k = s->n_set - 1; k >= 0; k--)
+        for (int i = s->set_start[k]; i < s->set_start[k + 1]; i++)
+            e->spool[s->set_cable[i]] = k;
+}
+
+static void count_errors(const hf_scene *s, hf_built_errors *e)
+{
+    const int count[HF_ERROR_N_KIND] = {s->n_cable, s->n_cable,       e->n_spool, s->n_cable,
+                                        e->n_spool, 3 * e->n_support, 1};
+    for (int k = 0; k < HF_ERROR_N_KIND; k++)
+        e->first[k + 1] = e->first[k] + (e->sigma[k] > 0 ? count[k] : 0);
+}
+
+hf_status hf_built_errors_make(const hf_built_linear *l, const hf_tolerance_settings *t, const double *expansion_per_K,
+                               hf_built_errors *e)
+{
+    const hf_scene *s = &l->built->scene;
+    const hf_model *m = &l->built->model;
+    hf_arena arena = {0};
+    double own = sqrt(1 - t->batch), shared = sqrt(t->batch);
+    *e = (hf_built_errors){.linear = l,
+                           .distribution = t->distribution,
+                           .seed = t->seed,
+                           .sigma = {t->sigma_cut_m, own * t->sigma_cut_ratio, shared * t->sigma_cut_ratio,
+                                     own * t->sigma_EA_ratio, shared * t->sigma_EA_ratio, t->sigma_support_m,
+                                     t->sigma_temperature_K}};
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_errors(&arena, m, e)));
+    e->block = arena.block;
+    find_spools(s, e);
+    for (int i = 0; i < s->n_node; i++)
+        if (s->role[i] == HF_ROLE_SUPPORT) e->support[e->n_support++] = i;
+    if (expansion_per_K) memcpy(e->expansion_per_K, expansion_per_K, (size_t)s->n_cable * sizeof(double));
+    count_errors(s, e);
+    return HF_OK;
+}
+
+void hf_built_errors_free(hf_built_errors *e)
+{
+    hf_arena arena = {.block = e->block};
+    hf_arena_free(&arena);
+    *e = (hf_built_errors){0};
+}
+
+/* ---- numbers ---- */
+
+hf_error_kind hf_built_errors_kind(const hf_built_errors *e, int i_error)
+{
+    int k = 0;
+    while (i_error >= e->first[k + 1])
+        k++;
+    return (hf_error_kind)k;
+}
+
+int hf_built_errors_cable(const hf_built_errors *e, int i_error)
+{
+    hf_error_kind kind = hf_built_errors_kind(e, i_error);
+    bool is_own = kind == HF_ERROR_CUT || kind == HF_ERROR_RATIO || kind == HF_ERROR_EA;
+    return is_own ? i_error - e->first[kind] : -1;
+}
+
+double hf_built_errors_uniform(uint64_t seed, long sample, int kind, int item)
+{
+    hf_random stream = hf_random_stream(seed, (int)sample, kind << KIND_SHIFT | item);
+    return ((double)(hf_random_next(&stream) >> 12) + 0.5) * 0x1p-52;
+}
+
+double hf_built_errors_shape(hf_distribution distribution, double uniform)
+{
+    static const double root_12 = 3.4641016151377545871;
+    return distribution == HF_DISTRIBUTION_UNIFORM ? root_12 * (uniform - 0.5) : hf_normal_quantile(uniform);
+}
+
+/* By which an error is known: 3 node + component of supports, else its place in its kind. */
+static int item_of(const hf_built_errors *e, int kind, int i)
+{
+    return kind == HF_ERROR_SUPPORT ? 3 * e->support[i / 3] + i % 3 : i;
+}
+
+void hf_built_errors_draw(const hf_built_errors *e, long sample, double *z)
+{
+    for (int kind = 0; kind < HF_ERROR_N_KIND; kind++)
+        for (int i = e->first[kind]; i < e->first[kind + 1]; i++) {
+            double uniform = hf_built_errors_uniform(e->seed, sample, kind, item_of(e, kind, i - e->first[kind]));
+            z[i] = hf_built_errors_shape(e->distribution, uniform);
+        }
+}
+
+/* ---- errors of a net ---- */
+
+/* sigma z of item i of a kind; 0 where there are none. */
+static double error_of(const hf_built_errors *e, hf_error_kind kind, int i, const double *z)
+{
+    return e->sigma[kind] > 0 ? e->sigma[kind] * z[e->first[kind] + i] : 0;
+}
+
+static double ratio_of(const hf_built_errors *e, hf_error_kind own, hf_error_kind batch, int i, const double *z)
+{
+    return error_of(e, own, i, z) + error_of(e, batch, e->spool[i], z);
+}
+
+void hf_built_errors_apply(const hf_built_errors *e, double scale, const double *z, double *cut_m, double *EA_N,
+                           double *support_move_m)
+{
+    const hf_model *m = &e->linear->built->model;
+    double warmer_K = scale * error_of(e, HF_ERROR_TEMPERATURE, 0, z);
+    for (int i = 0; i < m->n_cable; i++) {
+        cut_m[i] += scale * (cut_m[i] * ratio_of(e, HF_ERROR_RATIO, HF_ERROR_RATIO_BATCH, i, z) +
+                             error_of(e, HF_ERROR_CUT, i, z));
+        cut_m[i] *= 1 + e->expansion_per_K[i] * warmer_K;
+        if (EA_N) EA_N[i] *= 1 + scale * ratio_of(e, HF_ERROR_EA, HF_ERROR_EA_BATCH, i, z);
+    }
+    for (int k = 0; k < 3 * e->n_support && support_move_m && e->sigma[HF_ERROR_SUPPORT] > 0; k++)
+        support_move_m[k % 3 * m->n_node + m->row_of_node[e->support[k / 3]]] +=
+            scale * error_of(e, HF_ERROR_SUPPORT, k, z);
+}
+
+/* ---- to first order ---- */
+
+void hf_built_errors_strain(const hf_built_errors *e, double scale, const double *z, double *strain_N, double *move_m)
+{
+    const hf_built_linear *l = e->linear;
+    const hf_model *m = &l->built->model;
+    double warmer_K = error_of(e, HF_ERROR_TEMPERATURE, 0, z);
+    for (int i = 0; i < m->n_cable; i++) {
+        double longer = ratio_of(e, HF_ERROR_RATIO, HF_ERROR_RATIO_BATCH, i, z) + e->expansion_per_K[i] * warmer_K;
+        strain_N[i] = scale * (l->ratio_N[i] * longer + l->cut_N_per_m[i] * error_of(e, HF_ERROR_CUT, i, z) +
+                               l->built->tension_N[i] * ratio_of(e, HF_ERROR_EA, HF_ERROR_EA_BATCH, i, z));
+    }
+    memset(move_m, 0, l->n_dof * sizeof *move_m);
+    for (int k = 0; k < 3 * e->n_support && e->sigma[HF_ERROR_SUPPORT] > 0; k++)
+        move_m[3 * m->row_of_node[e->support[k / 3]] + k % 3] = scale * error_of(e, HF_ERROR_SUPPORT, k, z);
+}
+
+/* slope_z of item i of a kind += sigma times rate, where there are such errors. */
+static void add_slope(const hf_built_errors *e, hf_error_kind kind, int i, double rate, double *slope_z)
+{
+    if (e->sigma[kind] > 0) slope_z[e->first[kind] + i] += e->sigma[kind] * rate;
+}
+
+void hf_built_errors_slope(const hf_built_errors *e, const double *strain, const double *slope, double *slope_z)
+{
+    const hf_built_linear *l = e->linear;
+    const hf_model *m = &l->built->model;
+    memset(slope_z, 0, (size_t)hf_built_errors_count(e) * sizeof *slope_z);
+    for (int i = 0; i < m->n_cable; i++) {
+        double by_ratio = strain[i] * l->ratio_N[i], by_EA = strain[i] * l->built->tension_N[i];
+        add_slope(e, HF_ERROR_CUT, i, strain[i] * l->cut_N_per_m[i], slope_z);
+        add_slope(e, HF_ERROR_RATIO, i, by_ratio, slope_z);
+        add_slope(e, HF_ERROR_RATIO_BATCH, e->spool[i], by_ratio, slope_z);
+        add_slope(e, HF_ERROR_EA, i, by_EA, slope_z);
+        add_slope(e, HF_ERROR_EA_BATCH, e->spool[i], by_EA, slope_z);
+        add_slope(e, HF_ERROR_TEMPERATURE, 0, by_ratio * e->expansion_per_K[i], slope_z);
+    }
+    for (int k = 0; k < 3 * e->n_support; k++)
+        add_slope(e, HF_ERROR_SUPPORT, k, slope[3 * m->row_of_node[e->support[k / 3]] + k % 3], slope_z);
+}

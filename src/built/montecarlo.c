@@ -1,0 +1,242 @@
+/* Contents: making - errors of a sample - measures - first order - samples - what is required */
+#include "built/montecarlo.h"
+
+#include "base/arena.h"
+#include "search/parallel.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Samples at a time: their errors are kept until first order has been found, in up to so many bytes. Neither number
+ * changes a bit of any sample. */
+#define CHUNK_BYTES (64 << 20)
+#define CHUNK_LEAST 64
+#define CHUNK_MOST 1024
+#define AT_ONCE 6 /* right-hand sides of a solve to first order */
+
+/* ---- making ---- */
+
+static void lay_out_montecarlo(hf_arena *arena, int n_thread, hf_montecarlo *t)
+{
+    size_t n = (size_t)t->n_chunk;
+    t->row = hf_arena_take(arena, n * HF_TOLERANCE_COLUMNS, sizeof(double));
+    t->point = hf_arena_take(arena, n * (size_t)t->directions.n, sizeof(double));
+    t->z = hf_arena_take(arena, n * t->n_z, sizeof(double));
+    t->scratch = hf_arena_take(arena, (size_t)n_thread * t->n_room, sizeof(double));
+}
+
+static void choose_sizes(hf_montecarlo *t)
+{
+    const hf_model *m = &t->built->model;
+    size_t n_error = (size_t)hf_built_errors_count(&t->errors), bytes = n_error * sizeof(double);
+    size_t most = CHUNK_BYTES / (bytes + 1);
+    t->n_z = n_error;
+    t->n_chunk = most < CHUNK_LEAST ? CHUNK_LEAST : most > CHUNK_MOST ? CHUNK_MOST : (int)most;
+    if (t->n_chunk > t->settings->samples) t->n_chunk = t->settings->samples;
+    t->n_room = AT_ONCE * (t->linear.n_dof + (size_t)m->n_cable + t->linear.n_scratch);
+}
+
+hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b, const hf_surface_settings *surface,
+                               const hf_facets *facets, const double *expansion_per_K, int n_thread, hf_montecarlo *t)
+{
+    hf_arena arena = {0};
+    *t = (hf_montecarlo){.settings = s, .built = b, .surface = surface, .facets = facets};
+    HF_TRY(hf_built_batch_create(b, n_thread, &t->batch));
+    n_thread = hf_built_batch_threads(t->batch);
+    HF_TRY(hf_built_linear_make(b, &t->linear));
+    HF_TRY(hf_built_errors_make(&t->linear, s, expansion_per_K, &t->errors));
+    HF_TRY(hf_covariance_find(&t->errors, n_thread, &t->covariance));
+    if (s->sampling == HF_SAMPLING_SOBOL)
+        HF_TRY(hf_directions_find(&t->errors, &t->covariance, n_thread, &t->directions));
+    choose_sizes(t);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_montecarlo(&arena, n_thread, t)));
+    t->block = arena.block;
+    if (s->sigma_EA_ratio > 0) t->varies |= HF_BUILT_VARIES_EA;
+    if (s->sigma_support_m > 0) t->varies |= HF_BUILT_VARIES_SUPPORTS;
+    return HF_OK;
+}
+
+void hf_montecarlo_free(hf_montecarlo *t)
+{
+    hf_arena arena = {.block = t->block};
+    hf_built_batch_free(t->batch);
+    hf_directions_free(&t->directions);
+    hf_covariance_free(&t->covariance);
+    hf_built_errors_free(&t->errors);
+    hf_built_linear_free(&t->linear);
+    hf_arena_free(&arena);
+    *t = (hf_montecarlo){0};
+}
+
+/* ---- errors of a sample ---- */
+
+static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_move_m)
+{
+    hf_montecarlo *t = context;
+    size_t k = (size_t)(i - t->first);
+    double *z = t->z + k * t->n_z;
+    if (t->directions.n)
+        hf_directions_draw(&t->directions, i, t->point + k * (size_t)t->directions.n, z);
+    else
+        hf_built_errors_draw(&t->errors, i, z);
+    hf_built_errors_apply(&t->errors, t->scale, z, cut_m, EA_N, support_move_m);
+}
+
+/* ---- measures ---- */
+
+bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets *facets, hf_tolerance_measure measure)
+{
+    enum { ALWAYS, SURFACE, FACETS, LOSS };
+#define CONDITION(name, word, unit, condition, description) condition,
+    static const int condition_of[HF_TOLERANCE_N_MEASURE] = {HF_TOLERANCE_MEASURES(CONDITION)};
+#undef CONDITION
+    bool has_surface = surface && surface->focal_length_m > 0;
+    switch (condition_of[measure]) {
+    case SURFACE:
+        return has_surface;
+    case FACETS:
+        return has_surface && facets && facets->n_facet > 0;
+    case LOSS:
+        return has_surface && surface->frequencies_Hz.n > 0;
+    default:
+        return true;
+    }
+}
+
+static double loss_dB(const hf_montecarlo *t, double half_path_rms_m)
+{
+    const hf_double_list *at = &t->surface->frequencies_Hz;
+    double highest = 0;
+    for (int k = 0; k < at->n; k++)
+        highest = fmax(highest, at->value[k]);
+    if (at->n == 0) return (double)NAN;
+    double loss = hf_surface_gain_loss_dB(half_path_rms_m, highest);
+    return isnan(loss) ? (double)INFINITY : loss;
+}
+
+/* A fit that did not converge has no value, and is none that meets a requirement. */
+static void measure_surface(hf_montecarlo *t, const hf_built_shape *shape, double *value)
+{
+    hf_surface_measures is;
+    const hf_workspace w = {.position_m = (double *)(uintptr_t)shape->position_m, /* which are only read */
+                            .tension_N = (double *)(uintptr_t)shape->tension_N};
+    if (hf_surface_measure(t->surface, t->facets, &t->built->model, &w, &is) != HF_OK) {
+        t->has_no_memory = true;
+        return;
+    }
+    value[HF_TOLERANCE_HALF_PATH] = is.half_path_rms_m;
+    value[HF_TOLERANCE_FIT_HALF_PATH] = is.fit.half_path_rms_m;
+    bool has_facets = t->facets && t->facets->n_facet > 0;
+    if (has_facets) {
+        value[HF_TOLERANCE_FACET_HALF_PATH] = is.facet_half_path_rms_m;
+        value[HF_TOLERANCE_FACET_FIT_HALF_PATH] = is.facet_fit_half_path_rms_m;
+    }
+    value[HF_TOLERANCE_GAIN_LOSS] = loss_dB(t, has_facets ? is.facet_fit_half_path_rms_m : is.fit.half_path_rms_m);
+}
+
+static void take_sample(void *context, long i, int place, const hf_built_shape *shape, const hf_form_result *r)
+{
+    hf_montecarlo *t = context;
+    const hf_model *m = &t->built->model;
+    double *row = t->row + (i - t->first) * HF_TOLERANCE_COLUMNS, *value = row + HF_TOLERANCE_FIRST;
+    (void)place;
+    row[HF_TOLERANCE_STATUS] = r->status;
+    for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)
+        value[k] = (double)NAN;
+    if (r->status != HF_OK) return;
+    value[HF_TOLERANCE_PSI] = r->psi_m;
+    value[HF_TOLERANCE_SLACK] = r->n_slack;
+    value[HF_TOLERANCE_LOOSE] = r->n_loose;
+    double least = INFINITY;
+    for (int e = 0; e < m->n_cable; e++)
+        least = fmin(least, shape->tension_N[e]);
+    value[HF_TOLERANCE_LEAST_TENSION] = least;
+    if (t->surface && t->surface->focal_length_m > 0) measure_surface(t, shape, value);
+}
+
+/* ---- first order ---- */
+
+/* psi of AT_ONCE samples to first order, with one call of the solver. */
+static void predict(void *context, int room, int i)
+{
+    hf_montecarlo *t = context;
+    const hf_built_linear *l = &t->linear;
+    int first = i * AT_ONCE, n = t->n_now - first < AT_ONCE ? t->n_now - first : AT_ONCE;
+    size_t n_cable = (size_t)t->built->model.n_cable;
+    double *move = t->scratch + (size_t)room * t->n_room, *strain = move + AT_ONCE * l->n_dof,
+           *more = strain + AT_ONCE * n_cable;
+    for (int k = 0; k < n; k++)
+        hf_built_errors_strain(&t->errors, t->scale, t->z + (size_t)(first + k) * t->n_z, strain + (size_t)k * n_cable,
+                               move + (size_t)k * l->n_dof);
+    hf_built_linear_apply(l, n, strain, move, more);
+    for (int k = 0; k < n; k++)
+        t->row[(first + k) * HF_TOLERANCE_COLUMNS + HF_TOLERANCE_LINEAR_PSI] =
+            hf_covariance_psi_m(l, move + (size_t)k * l->n_dof);
+}
+
+/* ---- samples ---- */
+
+hf_status hf_montecarlo_run(hf_montecarlo *t, double scale, long first, int n)
+{
+    t->scale = scale;
+    t->first = first;
+    t->n_now = n;
+    if (t->directions.n) HF_TRY(hf_directions_points(&t->directions, first, n, t->point));
+    hf_built_batch_run(t->batch, t->varies, first, n, make_sample, take_sample, t);
+    hf_parallel_each(hf_built_batch_threads(t->batch), (n + AT_ONCE - 1) / AT_ONCE, predict, t);
+    return t->has_no_memory ? HF_NO_MEMORY : HF_OK;
+}
+
+/* ---- what is required ---- */
+
+bool hf_montecarlo_meets(const hf_tolerance_settings *s, int k, const double *row)
+{
+    const hf_require_settings *r = &s->require[k];
+    double value = row[HF_TOLERANCE_FIRST + r->measure];
+    return !isnan(value) && !(value > r->at_most) && !(value < r->at_least);
+}
+
+bool hf_montecarlo_meets_all(const hf_tolerance_settings *s, const double *row)
+{
+    for (int k = 0; k < s->n_require; k++)
+        if (!hf_montecarlo_meets(s, k, row)) return false;
+    return row[HF_TOLERANCE_STATUS] == HF_OK;
+}
+
+/* Do at least a part settings->yield of the first n samples meet everything, at this scale? */
+static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reaches)
+{
+    long met = 0;
+    for (long first = 0; first < n; first += t->n_chunk) {
+        int count = n - first < t->n_chunk ? (int)(n - first) : t->n_chunk;
+        HF_TRY(hf_montecarlo_run(t, scale, first, count));
+        for (int i = 0; i < count; i++)
+            met += hf_montecarlo_meets_all(t->settings, t->row + i * HF_TOLERANCE_COLUMNS);
+    }
+    *reaches = (double)met >= t->settings->yield * n;
+    return HF_OK;
+}
+
+/* In the logarithm of the scale. 10 doublings either way, then 7 halvings: 2^(1/128). */
+hf_status hf_montecarlo_find_scale(hf_montecarlo *t, int n, double *scale)
+{
+    enum { DOUBLINGS = 10, HALVINGS = 7 };
+    bool reaches;
+    double at = 1, factor = 2;
+    HF_TRY(reaches_yield(t, n, at, &reaches));
+    bool goes_up = reaches;
+    for (int k = 0; k < DOUBLINGS && reaches == goes_up; k++) {
+        at *= goes_up ? 2 : 0.5;
+        HF_TRY(reaches_yield(t, n, at, &reaches));
+    }
+    *scale = goes_up ? (double)INFINITY : 0;
+    if (reaches == goes_up) return HF_OK;
+    double good = goes_up ? at / factor : at;
+    for (int k = 0; k < HALVINGS; k++) {
+        factor = sqrt(factor);
+        HF_TRY(reaches_yield(t, n, good * factor, &reaches));
+        if (reaches) good *= factor;
+    }
+    *scale = good;
+    return HF_OK;
+}

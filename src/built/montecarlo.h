@@ -1,0 +1,56 @@
+/* montecarlo - samples of a net as built: their errors, their shapes, what is measured of them. */
+#ifndef HIFDM_MONTECARLO_H
+#define HIFDM_MONTECARLO_H
+
+#include "built/directions.h"
+#include <hifdm/built_batch.h>
+#include <hifdm/tolerance.h>
+
+/* Everything that samples need; it is not moved. */
+typedef struct {
+    const hf_tolerance_settings *settings;
+    const hf_built *built;
+    const hf_surface_settings *surface; /* focal_length_m 0: the surface is not measured */
+    const hf_facets *facets;
+    hf_built_linear linear;
+    hf_built_errors errors;
+    hf_covariance covariance;
+    hf_directions directions; /* n is 0 with random numbers alone */
+    hf_built_batch *batch;
+    int n_chunk;  /* most samples at a time */
+    double scale; /* of all errors, now */
+    long first;   /* sample of the first row, now */
+    int n_now;
+    double *row;     /* [n_chunk][HF_TOLERANCE_COLUMNS] */
+    double *z;       /* [n_chunk][n_z] errors of each sample */
+    double *point;   /* [n_chunk][directions.n] */
+    double *scratch; /* [n_thread][n_room] */
+    size_t n_z, n_room;
+    unsigned varies;    /* HF_BUILT_VARIES_... */
+    bool has_no_memory; /* some sample could not be measured */
+    void *block;
+} hf_montecarlo;
+
+/* settings, built, surface, facets are borrowed. expansion_per_K [n_cable] by cable, NULL when the temperature does not
+ * vary. HF_OK; HF_SINGULAR when the nominal net has no factor; HF_NO_MEMORY. Free in any case. */
+hf_status hf_montecarlo_create(const hf_tolerance_settings *settings, const hf_built *built,
+                               const hf_surface_settings *surface, const hf_facets *facets,
+                               const double *expansion_per_K, int n_thread, hf_montecarlo *montecarlo);
+void hf_montecarlo_free(hf_montecarlo *montecarlo);
+
+/* Is this measured? */
+bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets *facets, hf_tolerance_measure measure);
+
+/* Solve samples first to first + n - 1, n <= n_chunk, with all errors times `scale`, into montecarlo->row. HF_OK or
+ * HF_NO_MEMORY. */
+hf_status hf_montecarlo_run(hf_montecarlo *montecarlo, double scale, long first, int n);
+
+/* Does a row meet row k of the requirements, or all of them? */
+bool hf_montecarlo_meets(const hf_tolerance_settings *settings, int k, const double *row);
+bool hf_montecarlo_meets_all(const hf_tolerance_settings *settings, const double *row);
+
+/* The factor of all errors with which a part settings->yield of the first n samples meets what is required, by
+ * bisection with the same numbers for each: within 1 %. 0: not even the nominal net does; INFINITY: a thousandfold does. */
+hf_status hf_montecarlo_find_scale(hf_montecarlo *montecarlo, int n, double *scale);
+
+#endif

@@ -1,0 +1,292 @@
+/* Contents: rows - intervals - order - moments - together */
+#include "built/statistics.h"
+
+#include "base/arena.h"
+
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#define BLOCK 1024  /* rows that are read at a time */
+#define TAIL 0.025  /* on either side of an interval */
+#define DIGIT 65536 /* values of a digit of 16 bits */
+#define NORMAL_95 1.959963984540054
+
+/* ---- rows ---- */
+
+/* Call `take` for each row, in order. */
+static hf_status visit_rows(const hf_statistics_rows *rows, void (*take)(void *context, const double *row),
+                            void *context)
+{
+    double *block;
+    hf_arena arena = {0};
+    hf_status status =
+        HF_ARENA_MAKE(&arena, block = hf_arena_take(&arena, BLOCK * HF_TOLERANCE_COLUMNS, sizeof *block));
+    for (long first = 0; first < rows->n && status == HF_OK; first += BLOCK) {
+        int n = rows->n - first < BLOCK ? (int)(rows->n - first) : BLOCK;
+        status = rows->read(rows->context, first, n, block);
+        for (int i = 0; i < n && status == HF_OK; i++)
+            take(context, block + i * HF_TOLERANCE_COLUMNS);
+    }
+    hf_arena_free(&arena);
+    return status;
+}
+
+/* ---- intervals ---- */
+
+/* The least k with P(B <= k) >= probability, for B successes in n trials. */
+static long binomial_quantile(long n, double part, double probability)
+{
+    long low = 0, high = n;
+    while (low < high) {
+        long middle = low + (high - low) / 2;
+        if (gsl_cdf_binomial_P((unsigned)middle, part, (unsigned)n) >= probability)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+/* The quantile is below the value of rank k when at least k values are below it. */
+void hf_statistics_ranks(long n, double part, long *low, long *high)
+{
+    *low = binomial_quantile(n, part, TAIL);
+    *high = binomial_quantile(n, part, 1 - TAIL) + 1;
+}
+
+void hf_statistics_interval(long n, long met, double *low, double *high)
+{
+    double a = (double)met, b = (double)(n - met);
+    *low = met > 0 ? gsl_cdf_beta_Pinv(TAIL, a, b + 1) : 0;
+    *high = met < n ? gsl_cdf_beta_Pinv(1 - TAIL, a + 1, b) : 1;
+}
+
+/* ---- order ---- */
+
+/* Bits whose order as whole numbers is that of the values. */
+static uint64_t key_of(double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits >> 63 ? ~bits : bits | 1ull << 63;
+}
+
+static double value_of(uint64_t key)
+{
+    double value;
+    key = key >> 63 ? key & ~(1ull << 63) : ~key;
+    memcpy(&value, &key, sizeof value);
+    return value;
+}
+
+typedef struct {
+    int column, n_rank, shift;           /* the digit that is looked for begins at bit `shift` */
+    uint64_t above[HF_STATISTICS_RANKS]; /* digits that are known */
+    long left[HF_STATISTICS_RANKS];      /* rank among the values that have them */
+    long *count;                         /* [n_rank][DIGIT] */
+} selection;
+
+static void count_digit(void *context, const double *row)
+{
+    selection *s = context;
+    if (isnan(row[s->column])) return;
+    uint64_t key = key_of(row[s->column]), above = s->shift == 48 ? 0 : key >> (s->shift + 16);
+    for (int k = 0; k < s->n_rank; k++)
+        s->count[(size_t)k * DIGIT + (key >> s->shift & (DIGIT - 1))] += above == s->above[k];
+}
+
+static void choose_digits(selection *s)
+{
+    for (int k = 0; k < s->n_rank; k++) {
+        const long *count = s->count + (size_t)k * DIGIT;
+        uint64_t digit = 0;
+        while (digit < DIGIT - 1 && count[digit] < s->left[k])
+            s->left[k] -= count[digit++];
+        s->above[k] = s->above[k] << 16 | digit;
+    }
+}
+
+hf_status hf_statistics_order(const hf_statistics_rows *rows, int column, int n_rank, const long *rank, double *value)
+{
+    selection s = {.column = column, .n_rank = n_rank};
+    hf_arena arena = {0};
+    hf_status status = HF_ARENA_MAKE(&arena, s.count = hf_arena_take(&arena, (size_t)n_rank * DIGIT, sizeof *s.count));
+    memcpy(s.left, rank, (size_t)n_rank * sizeof *rank);
+    for (s.shift = 48; s.shift >= 0 && status == HF_OK; s.shift -= 16) {
+        memset(s.count, 0, (size_t)n_rank * DIGIT * sizeof *s.count);
+        status = visit_rows(rows, count_digit, &s);
+        choose_digits(&s);
+    }
+    for (int k = 0; k < n_rank; k++)
+        value[k] = value_of(s.above[k]);
+    hf_arena_free(&arena);
+    return status;
+}
+
+/* ---- moments ---- */
+
+typedef struct {
+    const hf_tolerance_settings *settings;
+    hf_tolerance_summary *to;
+    long n[HF_TOLERANCE_N_MEASURE], n_both, met, met_row[HF_REQUIRE_ROWS_MAX], bin[HF_TOLERANCE_BINS];
+    double sum[HF_TOLERANCE_N_MEASURE], square[HF_TOLERANCE_N_MEASURE]; /* of values, of (value - mean)^2 */
+    double mean_y, mean_x, xx, xy, yy; /* psi^2 of samples, and to first order: means, then sums of products */
+} moments;
+
+static void add_row(void *context, const double *row)
+{
+    moments *s = context;
+    double psi = row[HF_TOLERANCE_FIRST + HF_TOLERANCE_PSI], linear = row[HF_TOLERANCE_LINEAR_PSI];
+    for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++) {
+        hf_tolerance_figures *f = &s->to->figure[k];
+        double value = row[HF_TOLERANCE_FIRST + k];
+        if (isnan(value)) continue;
+        f->least = s->n[k] ? fmin(f->least, value) : value;
+        f->largest = s->n[k]++ ? fmax(f->largest, value) : value;
+        s->sum[k] += value;
+    }
+    if (row[HF_TOLERANCE_STATUS] != HF_OK) s->to->n_failed++;
+    s->to->n_with_slack += row[HF_TOLERANCE_FIRST + HF_TOLERANCE_SLACK] > 0;
+    s->to->n_with_loose += row[HF_TOLERANCE_FIRST + HF_TOLERANCE_LOOSE] > 0;
+    s->met += hf_montecarlo_meets_all(s->settings, row);
+    for (int k = 0; k < s->settings->n_require; k++)
+        s->met_row[k] += hf_montecarlo_meets(s->settings, k, row);
+    if (isnan(psi)) return;
+    s->n_both++;
+    s->mean_y += psi * psi;
+    s->mean_x += linear * linear;
+}
+
+static void add_deviations(void *context, const double *row)
+{
+    moments *s = context;
+    const hf_tolerance_figures *psi_of = &s->to->figure[HF_TOLERANCE_PSI];
+    double psi = row[HF_TOLERANCE_FIRST + HF_TOLERANCE_PSI], linear = row[HF_TOLERANCE_LINEAR_PSI];
+    for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++) {
+        double off = row[HF_TOLERANCE_FIRST + k] - s->to->figure[k].mean;
+        if (!isnan(row[HF_TOLERANCE_FIRST + k])) s->square[k] += off * off;
+    }
+    if (isnan(psi)) return;
+    double y = psi * psi - s->mean_y, x = linear * linear - s->mean_x;
+    s->xx += x * x;
+    s->xy += x * y;
+    s->yy += y * y;
+    double width = psi_of->largest - psi_of->least, place = width > 0 ? (psi - psi_of->least) / width : 0;
+    int bin = (int)(place * HF_TOLERANCE_BINS);
+    s->bin[bin < HF_TOLERANCE_BINS ? bin : HF_TOLERANCE_BINS - 1]++;
+}
+
+/* ---- together ---- */
+
+static hf_status find_quantiles(const moments *s, const hf_statistics_rows *rows, int k, hf_tolerance_figures *f)
+{
+    long rank[HF_STATISTICS_RANKS], n = s->n[k];
+    double value[HF_STATISTICS_RANKS];
+    for (int q = 0; q < HF_TOLERANCE_QUANTILES; q++) {
+        rank[3 * q] = (long)ceil(hf_tolerance_quantile[q] * (double)n);
+        hf_statistics_ranks(n, hf_tolerance_quantile[q], &rank[3 * q + 1], &rank[3 * q + 2]);
+    }
+    long asked[HF_STATISTICS_RANKS];
+    for (int i = 0; i < HF_STATISTICS_RANKS; i++)
+        asked[i] = rank[i] < 1 ? 1 : rank[i] > n ? n : rank[i];
+    HF_TRY(hf_statistics_order(rows, HF_TOLERANCE_FIRST + k, HF_STATISTICS_RANKS, asked, value));
+    for (int q = 0; q < HF_TOLERANCE_QUANTILES; q++) {
+        f->value[q] = value[3 * q];
+        f->low[q] = rank[3 * q + 1] < 1 ? (double)NAN : value[3 * q + 1];
+        f->high[q] = rank[3 * q + 2] > n ? (double)NAN : value[3 * q + 2];
+    }
+    return HF_OK;
+}
+
+/* A root of what an interval of a mean square says; below zero it says nothing. */
+static double root_of(double square)
+{
+    return sqrt(fmax(square, 0));
+}
+
+/* The mean of psi^2 with psi^2 to first order, whose mean is known, as control variate: its covariance with the other
+ * over its variance is how much of its error is taken off. */
+static void control(const hf_covariance *c, const moments *s, hf_tolerance_summary *to)
+{
+    double known = c->nominal_psi_m * c->nominal_psi_m + c->spread_m2, n = (double)s->n_both;
+    double beta = s->xx > 0 ? s->xy / s->xx : 0, left = s->yy - beta * s->xy;
+    double error = NORMAL_95 * sqrt(s->yy / (n - 1) / n), less = NORMAL_95 * sqrt(fmax(left, 0) / (n - 2) / n);
+    double mean = s->mean_y - beta * (s->mean_x - known);
+    to->rms_psi_m = sqrt(s->mean_y);
+    to->rms_psi_low_m = root_of(s->mean_y - error);
+    to->rms_psi_high_m = root_of(s->mean_y + error);
+    to->controlled_rms_psi_m = root_of(mean);
+    to->controlled_low_m = root_of(mean - less);
+    to->controlled_high_m = root_of(mean + less);
+    to->correlation = s->xx > 0 && s->yy > 0 ? s->xy / sqrt(s->xx * s->yy) : (double)NAN;
+    to->variance_saved = to->correlation * to->correlation;
+}
+
+static void judge_yield(const moments *s, long n, hf_tolerance_summary *to)
+{
+    const hf_tolerance_settings *t = s->settings;
+    to->yield = to->yield_low = to->yield_high = to->wanted_yield = to->sigma_scale = (double)NAN;
+    to->n_require = t->n_require;
+    if (t->n_require == 0) return;
+    to->yield = (double)s->met / (double)n;
+    hf_statistics_interval(n, s->met, &to->yield_low, &to->yield_high);
+    if (t->yield > 0) to->wanted_yield = t->yield;
+    for (int k = 0; k < t->n_require; k++) {
+        to->require[k] = t->require[k];
+        to->require_yield[k] = (double)s->met_row[k] / (double)n;
+    }
+}
+
+static void rank_cables(const hf_montecarlo *t, hf_tolerance_summary *to)
+{
+    const hf_covariance *c = &t->covariance;
+    int n_cable = t->built->scene.n_cable, ranked[HF_TOLERANCE_RANKED] = {0};
+    for (int e = 0; e < n_cable; e++) {
+        int at = to->n_ranked;
+        if (!(c->cable_m2[e] > 0)) continue;
+        for (; at > 0 && c->cable_m2[ranked[at - 1]] < c->cable_m2[e]; at--)
+            if (at < HF_TOLERANCE_RANKED) ranked[at] = ranked[at - 1];
+        if (at < HF_TOLERANCE_RANKED) ranked[at] = e;
+        if (to->n_ranked < HF_TOLERANCE_RANKED) to->n_ranked++;
+    }
+    for (int k = 0; k < to->n_ranked; k++) {
+        strncpy(to->ranked_id[k], t->built->scene.cable_id[ranked[k]], HF_TOLERANCE_ID_SIZE - 1);
+        to->ranked_share[k] = c->cable_m2[ranked[k]] / c->spread_m2;
+    }
+    for (int k = 0; k < HF_ERROR_N_KIND; k++)
+        to->kind_share[k] = c->spread_m2 > 0 ? c->kind_m2[k] / c->spread_m2 : 0;
+}
+
+hf_status hf_statistics_sum_up(const hf_montecarlo *t, const hf_statistics_rows *rows, hf_tolerance_summary *to)
+{
+    const hf_covariance *c = &t->covariance;
+    moments s = {.settings = t->settings, .to = to};
+    *to = (hf_tolerance_summary){.samples = (int)rows->n, .nominal_psi_m = c->nominal_psi_m};
+    to->first_order_rms_psi_m = sqrt(c->nominal_psi_m * c->nominal_psi_m + c->spread_m2);
+    HF_TRY(visit_rows(rows, add_row, &s));
+    s.mean_y /= (double)s.n_both;
+    s.mean_x /= (double)s.n_both;
+    for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)
+        to->figure[k].mean = s.sum[k] / (double)s.n[k];
+    HF_TRY(visit_rows(rows, add_deviations, &s));
+    for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++) {
+        hf_tolerance_figures *f = &to->figure[k];
+        double n = (double)s.n[k];
+        f->is_measured = s.n[k] > 0 && hf_montecarlo_measures(t->surface, t->facets, (hf_tolerance_measure)k);
+        if (!f->is_measured) continue;
+        f->deviation = sqrt(s.square[k] / (n - 1));
+        f->mean_low = f->mean - NORMAL_95 * f->deviation / sqrt(n);
+        f->mean_high = f->mean + NORMAL_95 * f->deviation / sqrt(n);
+        HF_TRY(find_quantiles(&s, rows, k, f));
+    }
+    control(c, &s, to);
+    judge_yield(&s, rows->n, to);
+    rank_cables(t, to);
+    to->bin_low_m = to->figure[HF_TOLERANCE_PSI].least;
+    to->bin_high_m = to->figure[HF_TOLERANCE_PSI].largest;
+    for (int k = 0; k < HF_TOLERANCE_BINS; k++)
+        to->bin[k] = (double)s.bin[k] / (double)s.n_both;
+    return HF_OK;
+}

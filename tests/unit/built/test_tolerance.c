@@ -1,0 +1,439 @@
+/* Errors of nets as built: by hand to first order, their distribution and correlation; samples: towards first order,
+ * their statistics, the same for any threads; quasi-random ones. */
+#include "built_nets.h"
+
+#include "built/statistics.h"
+
+#include <gsl/gsl_cdf.h>
+
+typedef struct {
+    struct net net;
+    double EA[MAX_BUILT_CABLE];
+    hf_built built;
+    hf_workspace work;
+    hf_tolerance_settings settings;
+    hf_montecarlo m;
+} study;
+
+static void begin(study *s, int threads)
+{
+    ck_assert_int_eq(hf_montecarlo_create(&s->settings, &s->built, NULL, NULL, NULL, threads, &s->m), HF_OK);
+}
+
+static void open_study(study *s, int trial, bool on_truss)
+{
+    *s = (study){.settings = {.sigma_cut_m = 1e-5, .samples = 200, .seed = 5}};
+    open_design(&s->net, trial, s->EA, on_truss);
+    make_built(&s->net, &s->built, &s->work);
+}
+
+/* The nominal net is where the theory wants it. */
+static void forget_psi(study *s)
+{
+    hf_model *m = &s->built.model;
+    for (int i = 0; i < 3 * m->n_node; i++) /* supports rest where they are */
+        if (i % m->n_node < m->n_free) m->position_m[i] = s->built.place_m[i];
+}
+
+static void close_study(study *s)
+{
+    hf_montecarlo_free(&s->m);
+    hf_workspace_free(&s->work);
+    hf_built_free(&s->built);
+    close_design(&s->net);
+}
+
+/* ---- by hand ---- */
+
+/* Between supports at distance L the node is at x = l1 (1 + T/EA1) with T = (L - l1 - l2) / (l1/EA1 + l2/EA2). */
+static double place_of(double L, const double cut[2], const double EA[2])
+{
+    return cut[0] * (1 + (L - cut[0] - cut[1]) / (cut[0] / EA[0] + cut[1] / EA[1]) / EA[0]);
+}
+
+/* Derivatives of this by two cuts, two stiffnesses (relative) and the place of the far support, times their sigmas. */
+START_TEST(two_cables_in_line)
+{
+    static const struct hand_node node[] = {
+        {{0, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{1, 0, 0}, HF_ROLE_INNER, {0}}, {{3, 0, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_INNER, HF_LAW_TENSION, 20},
+                                              {{1, 2}, HF_GROUP_INNER, HF_LAW_TENSION, 20}};
+    study s = {.settings = {.sigma_cut_m = 2e-4,
+                            .sigma_cut_ratio = 1e-4,
+                            .sigma_EA_ratio = 0.02,
+                            .sigma_support_m = 1e-3,
+                            .batch = 0.3,
+                            .samples = 1}};
+    double EA[2] = {2000, 5000}, cut[2], by_cut[2], by_EA[2], h = 1e-5;
+    OPEN_HAND(&s.net, node, cable, HF_METHOD_NEWTON);
+    s.net.scene.EA_N = EA;
+    ck_assert_int_eq(hf_evaluate_form(&s.net.model, &s.net.form, &s.net.work, NULL, &s.net.result), HF_OK);
+    make_built(&s.net, &s.built, &s.work);
+    begin(&s, 1);
+    for (int e = 0; e < 2; e++)
+        cut[e] = s.built.scene.target[e];
+    for (int e = 0; e < 2; e++) {
+        double a[2] = {cut[0], cut[1]}, b[2] = {cut[0], cut[1]}, stiff[2] = {EA[0], EA[1]}, soft[2] = {EA[0], EA[1]};
+        a[e] += h, b[e] -= h, stiff[e] *= 1 + h, soft[e] *= 1 - h;
+        by_cut[e] = (place_of(3, a, EA) - place_of(3, b, EA)) / (2 * h);
+        by_EA[e] = (place_of(3, cut, stiff) - place_of(3, cut, soft)) / (2 * h);
+    }
+    double by_far = (place_of(3 + h, cut, EA) - place_of(3 - h, cut, EA)) / (2 * h), variance = 0;
+    double ratio[2] = {by_cut[0] * cut[0], by_cut[1] * cut[1]};
+    for (int e = 0; e < 2; e++)
+        variance += pow(2e-4 * by_cut[e], 2) + 0.7 * pow(1e-4 * ratio[e], 2) + 0.7 * pow(0.02 * by_EA[e], 2);
+    variance += 0.3 * pow(1e-4 * (ratio[0] + ratio[1]), 2) + 0.3 * pow(0.02 * (by_EA[0] + by_EA[1]), 2);
+    /* along the line the supports pull by their stiffness, across by T/l: the node divides the move of its ends */
+    double across = 20 / 1.0 / (20 / 1.0 + 20 / 2.0);
+    variance += 1e-6 * (by_far * by_far + (1 - by_far) * (1 - by_far));
+    variance += 2 * 1e-6 * (across * across + (1 - across) * (1 - across));
+    ck_assert_double_eq_tol(s.m.covariance.spread_m2 / variance, 1, 1e-7); /* the differences */
+    hf_montecarlo_free(&s.m);
+    hf_workspace_free(&s.work);
+    hf_built_free(&s.built);
+    s.net.scene.EA_N = NULL;
+    close_net(&s.net);
+}
+END_TEST
+
+/* Three equal cables at 120 degrees: H = 3/2 (k + T/l) in the plane, and each error of a length pulls by k l/l0. */
+START_TEST(three_cables_at_a_node)
+{
+    const double r = sqrt(0.75);
+    const struct hand_node node[] = {{{0, 0, 0}, HF_ROLE_INNER, {0}},
+                                     {{1, 0, 0}, HF_ROLE_SUPPORT, {0}},
+                                     {{-0.5, r, 0}, HF_ROLE_SUPPORT, {0}},
+                                     {{-0.5, -r, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_INNER, HF_LAW_TENSION, 30},
+                                              {{0, 2}, HF_GROUP_INNER, HF_LAW_TENSION, 30},
+                                              {{0, 3}, HF_GROUP_INNER, HF_LAW_TENSION, 30}};
+    study s = {.settings = {.sigma_cut_m = 1e-3, .samples = 1}};
+    double EA[3] = {1000, 1000, 1000}, l0 = 1 / 1.03, k = 1000 / l0, rate = k / l0 / (1.5 * (k + 30));
+    OPEN_HAND(&s.net, node, cable, HF_METHOD_NEWTON);
+    s.net.scene.EA_N = EA;
+    ck_assert_int_eq(hf_evaluate_form(&s.net.model, &s.net.form, &s.net.work, NULL, &s.net.result), HF_OK);
+    make_built(&s.net, &s.built, &s.work);
+    begin(&s, 1);
+    ck_assert_double_eq_tol(s.m.covariance.spread_m2, 3 * pow(1e-3 * rate, 2), 1e-17);
+    for (int e = 0; e < 3; e++)
+        ck_assert_double_eq_tol(s.m.covariance.cable_m2[e] / s.m.covariance.spread_m2, 1.0 / 3, 1e-10);
+    ck_assert_double_eq_tol(s.m.covariance.deviation_m[0], sqrt(s.m.covariance.spread_m2), 1e-15);
+    hf_montecarlo_free(&s.m);
+    hf_workspace_free(&s.work);
+    hf_built_free(&s.built);
+    s.net.scene.EA_N = NULL;
+    close_net(&s.net);
+}
+END_TEST
+
+/* ---- numbers ---- */
+
+/* Variances of 8000 numbers are right within 5 of their own deviations; correlations too. */
+START_TEST(numbers_have_their_distribution)
+{
+    enum { N = 4000 };
+    static study s;
+    open_study(&s, 0, false);
+    s.settings.sigma_cut_ratio = 1e-3;
+    s.settings.sigma_cut_m = 0;
+    s.settings.batch = 0.36;
+    s.settings.distribution = (hf_distribution)_i;
+    begin(&s, 1);
+    int n = hf_built_errors_count(&s.m.errors), n_cable = s.built.model.n_cable;
+    double *z = malloc((size_t)n * sizeof *z), *cut = malloc((size_t)n_cable * sizeof *cut), error[2];
+    double square = 0, fourth = 0, product[2] = {0}, largest = 0;
+    for (int i = 0; i < N; i++) {
+        hf_built_errors_draw(&s.m.errors, i, z);
+        for (int k = 0; k < 2; k++) {
+            square += z[k] * z[k] / (2 * N);
+            fourth += pow(z[k], 4) / (2 * N);
+            largest = fmax(largest, fabs(z[k]));
+        }
+        memcpy(cut, s.built.scene.target, (size_t)n_cable * sizeof *cut);
+        hf_built_errors_apply(&s.m.errors, 1, z, cut, NULL, NULL);
+        for (int e = 0; e < 2; e++)
+            error[e] = (cut[e] / s.built.scene.target[e] - 1) / 1e-3;
+        product[0] += error[0] * error[0] / N;
+        product[1] += error[0] * error[1] / N;
+    }
+    bool is_uniform = _i == HF_DISTRIBUTION_UNIFORM;
+    ck_assert_double_eq_tol(square, 1, 5 * sqrt(2.0 / (2 * N)));
+    ck_assert_double_eq_tol(fourth, is_uniform ? 1.8 : 3, is_uniform ? 0.1 : 0.5);
+    ck_assert(is_uniform ? largest <= sqrt(3) : largest > 3.2);
+    ck_assert_double_eq_tol(product[0], 1, 5 * sqrt(2.0 / N));
+    ck_assert_double_eq_tol(product[1], 0.36, 5 * sqrt(1.2 / N));
+    free(z);
+    free(cut);
+    close_study(&s);
+}
+END_TEST
+
+/* ---- samples ---- */
+
+/* The mean of psi^2 over errors and their opposites is that of first order and a term of fourth order, when the nominal
+ * net is where it should be: twice the errors, four times the relative difference. */
+START_TEST(small_errors_tend_to_first_order)
+{
+    static study s;
+    open_study(&s, 3 + _i, _i % 2);
+    forget_psi(&s);
+    s.settings.sigma_EA_ratio = 1e-3;
+    s.settings.sigma_support_m = 1e-5;
+    begin(&s, 2);
+    double off[2];
+    for (int k = 0; k < 2; k++) {
+        double scale = k ? 2 : 1, sum = 0, linear = 0;
+        for (int sign = -1; sign <= 1; sign += 2) {
+            ck_assert_int_eq(hf_montecarlo_run(&s.m, sign * scale, 0, 40), HF_OK);
+            for (int i = 0; i < 40; i++) {
+                const double *row = s.m.row + i * HF_TOLERANCE_COLUMNS;
+                ck_assert_double_eq(row[HF_TOLERANCE_STATUS], HF_OK);
+                sum += pow(row[HF_TOLERANCE_FIRST + HF_TOLERANCE_PSI], 2);
+                linear += pow(row[HF_TOLERANCE_LINEAR_PSI], 2);
+            }
+        }
+        off[k] = sum / linear - 1;
+    }
+    ck_assert_msg(fabs(off[1] / off[0] - 4) < 0.4, "%g %g", off[0], off[1]);
+    close_study(&s);
+}
+END_TEST
+
+static hf_status read_rows(void *context, long first, int n, double *row)
+{
+    memcpy(row, (double *)context + first * HF_TOLERANCE_COLUMNS, (size_t)n * HF_TOLERANCE_COLUMNS * sizeof *row);
+    return HF_OK;
+}
+
+/* All samples of a study in new memory. */
+static double *run_all(study *s, hf_tolerance_summary *to)
+{
+    double *row = malloc(sizeof *row * HF_TOLERANCE_COLUMNS * (size_t)s->settings.samples);
+    for (int first = 0; first < s->settings.samples; first += s->m.n_chunk) {
+        int n = s->settings.samples - first < s->m.n_chunk ? s->settings.samples - first : s->m.n_chunk;
+        ck_assert_int_eq(hf_montecarlo_run(&s->m, 1, first, n), HF_OK);
+        memcpy(row + first * HF_TOLERANCE_COLUMNS, s->m.row, sizeof *row * HF_TOLERANCE_COLUMNS * (size_t)n);
+    }
+    const hf_statistics_rows rows = {s->settings.samples, read_rows, row};
+    ck_assert_int_eq(hf_statistics_sum_up(&s->m, &rows, to), HF_OK);
+    return row;
+}
+
+/* The intervals of the plain mean, and of that with the control variate, meet; where first order holds, nearly all of
+ * the variance is gone; and its mean is known. */
+START_TEST(samples_and_control_variate_agree)
+{
+    static study s;
+    hf_tolerance_summary to;
+    open_study(&s, 8 + _i, _i % 2);
+    s.settings.samples = 400;
+    s.settings.sampling = _i < 2 ? HF_SAMPLING_RANDOM : HF_SAMPLING_SOBOL;
+    begin(&s, 2);
+    double *row = run_all(&s, &to);
+    ck_assert_int_eq(to.n_failed, 0);
+    ck_assert(to.controlled_low_m < to.rms_psi_high_m && to.controlled_high_m > to.rms_psi_low_m);
+    ck_assert(to.correlation > 0.9 && to.correlation <= 1);
+    ck_assert(to.controlled_high_m - to.controlled_low_m < to.rms_psi_high_m - to.rms_psi_low_m);
+    ck_assert_double_eq_tol(to.controlled_rms_psi_m / to.first_order_rms_psi_m, 1, 0.05);
+    free(row);
+    close_study(&s);
+}
+END_TEST
+
+/* A row does not depend on threads, nor on which samples are found beside it. */
+START_TEST(rows_have_the_same_bits)
+{
+    static study s;
+    enum { N = 23 };
+    double row[N * HF_TOLERANCE_COLUMNS];
+    open_study(&s, 1, _i % 2);
+    s.settings.sigma_cut_m = 2e-2; /* with slack cables */
+    s.settings.sigma_EA_ratio = 0.01;
+    s.settings.sampling = (hf_sampling)(_i / 2);
+    begin(&s, 1);
+    ck_assert_int_eq(hf_montecarlo_run(&s.m, 1, 100, N), HF_OK);
+    memcpy(row, s.m.row, sizeof row);
+    double spread = s.m.covariance.spread_m2, slack = 0;
+    hf_montecarlo_free(&s.m);
+    begin(&s, 3);
+    ck_assert(s.m.covariance.spread_m2 == spread);
+    ck_assert_int_eq(hf_montecarlo_run(&s.m, 1, 93, N), HF_OK);
+    ck_assert_mem_eq(s.m.row + 7 * HF_TOLERANCE_COLUMNS, row, (N - 7) * HF_TOLERANCE_COLUMNS * sizeof *row);
+    for (int i = 0; i < N; i++)
+        slack += row[i * HF_TOLERANCE_COLUMNS + HF_TOLERANCE_FIRST + HF_TOLERANCE_SLACK];
+    ck_assert(slack > 0);
+    close_study(&s);
+}
+END_TEST
+
+/* The yield falls as errors grow: the scale that is found has it, a little more has not. */
+START_TEST(a_scale_has_the_wanted_yield)
+{
+    static study s;
+    double scale;
+    open_study(&s, 4, false);
+    forget_psi(&s);
+    s.settings.n_require = 1;
+    s.settings.require[0] = (hf_require_settings){HF_TOLERANCE_PSI, 1e-4, (double)NAN};
+    s.settings.yield = 0.9;
+    begin(&s, 2);
+    ck_assert_int_eq(hf_montecarlo_find_scale(&s.m, 200, &scale), HF_OK);
+    for (int k = 0; k < 2; k++) {
+        int met = 0;
+        ck_assert_int_eq(hf_montecarlo_run(&s.m, k ? 1.0055 * scale : scale, 0, 200), HF_OK);
+        for (int i = 0; i < 200; i++)
+            met += hf_montecarlo_meets_all(&s.settings, s.m.row + i * HF_TOLERANCE_COLUMNS);
+        ck_assert(k ? met < 180 : met >= 180);
+    }
+    close_study(&s);
+}
+END_TEST
+
+/* ---- quasi-random ones ---- */
+
+/* Directions are orthonormal, so turned numbers are as normal as the others; and the first ones hold most of what moves
+ * the shape. */
+START_TEST(directions_hold_most_of_the_variance)
+{
+    static study s;
+    open_study(&s, 2, false);
+    s.settings.sampling = HF_SAMPLING_SOBOL;
+    begin(&s, 2);
+    const hf_directions *d = &s.m.directions;
+    int n = hf_built_errors_count(&s.m.errors);
+    for (int a = 0; a < d->n; a++)
+        for (int b = 0; b <= a; b++) {
+            double sum = 0;
+            for (int i = 0; i < n; i++)
+                sum += d->axis[i * d->n + a] * d->axis[i * d->n + b];
+            ck_assert_double_eq_tol(sum, a == b, 1e-12);
+        }
+    double held = 0, *z = calloc((size_t)n, sizeof *z), *strain = calloc((size_t)s.built.model.n_cable, sizeof *z);
+    double *move = calloc(s.m.linear.n_dof + s.m.linear.n_scratch, sizeof *z);
+    for (int a = 0; a < d->n; a++) {
+        for (int i = 0; i < n; i++)
+            z[i] = d->axis[i * d->n + a];
+        hf_built_errors_strain(&s.m.errors, 1, z, strain, move);
+        hf_built_linear_apply(&s.m.linear, 1, strain, move, move + s.m.linear.n_dof);
+        for (int i = 0; i < s.built.model.n_inner_node; i++)
+            for (int c = 0; c < 3; c++)
+                held += pow(move[3 * s.built.model.inner_row[i] + c], 2) / s.built.model.n_inner_node;
+    }
+    ck_assert_msg(held > 0.8 * s.m.covariance.spread_m2 && held < (1 + 1e-9) * s.m.covariance.spread_m2, "%g of %g",
+                  held, s.m.covariance.spread_m2);
+    free(z);
+    free(strain);
+    free(move);
+    close_study(&s);
+}
+END_TEST
+
+/* The mean of psi^2 of 256 quasi-random samples is nearer to the exact one than that of random ones, by the root mean
+ * square over seeds; to first order, where the exact mean is known. */
+START_TEST(quasi_random_means_are_nearer)
+{
+    enum { N = 256, SEEDS = 4 };
+    static study s;
+    double error[2] = {0};
+    open_study(&s, 5, false);
+    forget_psi(&s);
+    s.settings.samples = N;
+    s.settings.distribution = (hf_distribution)_i;
+    for (int k = 0; k < 2 * SEEDS; k++) {
+        s.settings.sampling = (hf_sampling)(k % 2);
+        s.settings.seed = 100 + (uint64_t)k / 2;
+        begin(&s, 2);
+        double mean = 0, *z = malloc(sizeof *z * s.m.n_z), *point = malloc(sizeof *point * HF_DIRECTIONS_MAX * N),
+               *strain = malloc(sizeof *z * (size_t)s.built.model.n_cable),
+               *move = malloc(sizeof *z * (s.m.linear.n_dof + s.m.linear.n_scratch));
+        if (k % 2) ck_assert_int_eq(hf_directions_points(&s.m.directions, 0, N, point), HF_OK);
+        for (int i = 0; i < N; i++) {
+            if (k % 2)
+                hf_directions_draw(&s.m.directions, i, point + i * s.m.directions.n, z);
+            else
+                hf_built_errors_draw(&s.m.errors, i, z);
+            hf_built_errors_strain(&s.m.errors, 1, z, strain, move);
+            hf_built_linear_apply(&s.m.linear, 1, strain, move, move + s.m.linear.n_dof);
+            mean += pow(hf_covariance_psi_m(&s.m.linear, move), 2) / N;
+        }
+        error[k % 2] += pow(mean / s.m.covariance.spread_m2 - 1, 2);
+        free(z);
+        free(point);
+        free(strain);
+        free(move);
+        hf_montecarlo_free(&s.m);
+    }
+    ck_assert_msg(error[1] < error[0] / 4, "%g against %g", sqrt(error[1] / SEEDS), sqrt(error[0] / SEEDS));
+    close_study(&s);
+}
+END_TEST
+
+/* ---- statistics ---- */
+
+static int compare_numbers(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+START_TEST(order_is_that_of_sorting)
+{
+    enum { N = 3001 };
+    double *row = malloc(sizeof *row * N * HF_TOLERANCE_COLUMNS), sorted[N], value[5];
+    struct rng rng = rng_start(3);
+    int n = 0;
+    for (int i = 0; i < N; i++) {
+        double x = rng_uniform(&rng, -1, 1) * pow(10, rng_uniform(&rng, -9, 9));
+        if (i % 10 == 3) x = 7; /* ties */
+        if (i % 50 == 4) x = (double)NAN;
+        if (i == 77) x = INFINITY;
+        row[i * HF_TOLERANCE_COLUMNS + 4] = x;
+        if (!isnan(x)) sorted[n++] = x;
+    }
+    qsort(sorted, (size_t)n, sizeof *sorted, compare_numbers);
+    const hf_statistics_rows rows = {N, read_rows, row};
+    const long rank[5] = {1, n / 3, n / 2, n - 1, n};
+    ck_assert_int_eq(hf_statistics_order(&rows, 4, 5, rank, value), HF_OK);
+    for (int k = 0; k < 5; k++)
+        ck_assert(value[k] == sorted[rank[k] - 1]);
+    free(row);
+}
+END_TEST
+
+/* Figures of tables: Clopper and Pearson for 9 of 10; the median of 100 between ranks 40 and 61 (Conover). */
+START_TEST(intervals_are_those_of_tables)
+{
+    double low, high;
+    long from, to;
+    hf_statistics_interval(10, 9, &low, &high);
+    ck_assert_double_eq_tol(low, 0.5550, 5e-5);
+    ck_assert_double_eq_tol(high, 0.9975, 5e-5);
+    hf_statistics_interval(10, 10, &low, &high);
+    ck_assert_double_eq_tol(low, 0.6915, 5e-5);
+    ck_assert_double_eq(high, 1);
+    hf_statistics_ranks(100, 0.5, &from, &to);
+    ck_assert_int_eq(from, 40);
+    ck_assert_int_eq(to, 61);
+    hf_statistics_ranks(20, 0.99, &from, &to);
+    ck_assert_int_eq(to, 21); /* there is no such value */
+}
+END_TEST
+
+Suite *suite_unit_tolerance(void)
+{
+    Suite *suite = suite_create("unit/tolerance");
+    TCase *tcase = tcase_create("tolerance");
+    tcase_add_test(tcase, two_cables_in_line);
+    tcase_add_test(tcase, three_cables_at_a_node);
+    tcase_add_loop_test(tcase, numbers_have_their_distribution, 0, 2);
+    tcase_add_loop_test(tcase, small_errors_tend_to_first_order, 0, 4);
+    tcase_add_loop_test(tcase, samples_and_control_variate_agree, 0, 4);
+    tcase_add_loop_test(tcase, rows_have_the_same_bits, 0, 4);
+    tcase_add_test(tcase, a_scale_has_the_wanted_yield);
+    tcase_add_test(tcase, directions_hold_most_of_the_variance);
+    tcase_add_loop_test(tcase, quasi_random_means_are_nearer, 0, 2);
+    tcase_add_test(tcase, order_is_that_of_sorting);
+    tcase_add_test(tcase, intervals_are_those_of_tables);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
