@@ -124,7 +124,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
-         bench-before bench-optimisers bench-fronts api lint asan tsan fuzz fuzz-results install
+         bench-before bench-optimisers bench-fronts bench-sampling api lint asan tsan fuzz fuzz-results install
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -235,6 +235,11 @@ bench-fronts: ## fronts of two and three objectives beside pagmo's NSGA-II: resu
 	$(SUB) $(FRONTS)
 	@mkdir -p $(BENCH_OUT)
 	$(PYTHON) tools/optimisers/fronts.py --driver $(FRONTS) --seeds $(OPTIMISER_SEEDS) --out $(BENCH_OUT)
+
+bench-sampling: ## random beside quasi-random samples of a net as built: results/bench/sampling.* (2 minutes)
+	$(SUB) $(PROGRAM)
+	@mkdir -p $(BENCH_OUT)
+	$(PYTHON) tools/bench/sampling.py --program $(PROGRAM) --work $(BUILD)/sampling --out $(BENCH_OUT)
 
 # From the headers' own comments: tools/api/filter.awk. A warning of doxygen's is an error.
 api: ## the library's interface as pages, from the public headers: build/api/index.html

@@ -29,7 +29,8 @@ typedef struct {
     char title[256];
     char *where_given;                          /* places of the keys, for hf_config_place; internal */
     bool has_import, has_optimize, has_surface; /* which sections are there */
-    bool has_sweep;                             /* its lines are cut out of `text`; study.h reads the axes */
+    bool has_tolerance;
+    bool has_sweep; /* its lines are cut out of `text`; study.h reads the axes */
 #define HF_CASE_GENERATOR(section, type, KEYS, help)                                                                   \
     bool has_##section;                                                                                                \
     type section;
@@ -42,6 +43,7 @@ typedef struct {
     hf_optimize_settings optimize;
     hf_surface_settings surface; /* a generated net supplies what is not given */
     hf_built_settings built;
+    hf_tolerance_settings tolerance;
 
     bool has_truss, has_truss_import, has_truss_ring; /* which sections are there */
     hf_truss_settings truss;

@@ -18,7 +18,7 @@ extern "C" {
 
 #define HF_OUTPUT_SIZE 4096
 
-typedef enum { HF_RUN_FORM, HF_RUN_EVOLVE, HF_RUN_POLISH } hf_run_phase;
+typedef enum { HF_RUN_FORM, HF_RUN_EVOLVE, HF_RUN_POLISH, HF_RUN_TOLERANCE } hf_run_phase;
 
 /* How far a run is. The members after phase describe the genetic algorithm; they are 0 before it. */
 typedef struct {
@@ -29,6 +29,7 @@ typedef struct {
     long evaluations;            /* of this process */
     double best_psi_m;           /* NaN while nothing is feasible */
     double elapsed_s;            /* in this phase and process */
+    long samples, samples_all;   /* of tolerance: finished, of all; evaluations are those of this process */
 } hf_run_progress;
 
 /* Called at the start of each phase, and after each generation when it has been stored. Only one thread at a time calls
@@ -43,9 +44,12 @@ typedef struct {
     const char *output; /* NULL: the name of the case with .h5, in the current folder */
     bool no_file;       /* write no file: only the summary is wanted */
     bool of_sweep;      /* true: run one point of the case's sweep; false: refuse a case with a sweep section */
-    bool restart;       /* true: begin anew, whatever file exists; false: continue an unfinished result of this case */
-    int threads;        /* 0: all cores */
-    bool has_seed;      /* `seed` instead of optimize.seed */
+    bool of_tolerance;  /* refuse a case without a section tolerance */
+    int task, tasks; /* tasks > 0: only samples of this task, 0 to tasks - 1, and no result file; with task -1 samples
+                           of all tasks are put together */
+    bool restart;    /* true: begin anew, whatever file exists; false: continue an unfinished result of this case */
+    int threads;     /* 0: all cores */
+    bool has_seed;   /* `seed` instead of optimize.seed */
     uint64_t seed;
     int argc; /* for the provenance */
     char *const *argv;

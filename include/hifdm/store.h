@@ -56,6 +56,10 @@
  *   /cases/NAME  as /form, unless it has no shape; attributes: the figures of its result, those of its coupling as
  *                coupling_..., HF_STATE_LIST; /cases/NAME/surface as /surface/form; with a truss /cases/NAME/truss/node
  *                with displacement, reaction [a][6], /cases/NAME/truss/member with end_force [b][12]
+ *   /tolerance   with a section tolerance: attributes HF_TOLERANCE_LIST; figures [m] of the measures named in `measure`
+ *                (mean, deviation, ..., quantile [m][3]); require_... of the rows of tolerance.require; ranked_cable,
+ *                ranked_share; error_kind, kind_share; histogram; cable_share of each cable, node_deviation_m of each
+ *                node; sample/status, first_order_psi_m and the measures of each sample [samples]
  *   /truss       with a nodes, b members, c attachments; attributes mass_kg, n_node, n_member
  *   /truss/node  id, mass_kg [a], position_m [a][3], fixed [a][6]; displacement, reaction [a][6]
  *   /truss/member  id, joint, unit, E_Pa, A_m2, ..., expansion_per_K [b], end [b][2]; end_force [b][12]

@@ -9,6 +9,7 @@
 #include <hifdm/front.h>
 #include <hifdm/optimiser.h>
 #include <hifdm/surface.h>
+#include <hifdm/tolerance.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -159,6 +160,9 @@ typedef struct {
 
     bool has_truss; /* `truss` is set */
     hf_truss_summary truss;
+
+    bool has_tolerance; /* samples of the net as built were found */
+    hf_tolerance_summary tolerance;
 
     bool has_optimize;   /* the genetic algorithm ran; all that follows is about it */
     hf_form_result best; /* of the best individual; status HF_NOT_EVALUATED when none was feasible */

@@ -26,6 +26,7 @@ typedef struct {
     X(run)                                                                                                             \
     X(check)                                                                                                           \
     X(evaluate)                                                                                                        \
+    X(tolerance)                                                                                                       \
     X(sweep)                                                                                                           \
     X(status)                                                                                                          \
     X(merge)                                                                                                           \

@@ -7,6 +7,7 @@
 #include "net/symmetry.h"
 #include "out/print.h"
 #include "run/problem_parts.h"
+#include "run/tolerance_stage.h"
 #include "search/chord.h"
 #include "search/polish.h"
 #include "search/swarm_lane.h"
@@ -140,6 +141,22 @@ static void print_objectives(const hf_problem *p, FILE *f)
         fprintf(f, ": that of the last generation\n");
 }
 
+static void print_tolerance(const hf_case *c, FILE *f)
+{
+    const hf_tolerance_settings *t = &c->tolerance;
+    const double sigma[] = {t->sigma_cut_m, t->sigma_cut_ratio, t->sigma_EA_ratio, t->sigma_support_m,
+                            t->sigma_temperature_K};
+    static const char *const of[][2] = {
+        {"cuts", " m"}, {"cuts", " of the length"}, {"EA", " of it"}, {"supports", " m"}, {"temperature", " K"}};
+    if (!c->has_tolerance) return;
+    fprintf(f, "                as built: %d nets (%s numbers, %s errors, seed %llu)", t->samples,
+            hf_sampling_word[t->sampling], hf_distribution_word[t->distribution], (unsigned long long)t->seed);
+    for (int k = 0, n = 0; k < (int)(sizeof sigma / sizeof *sigma); k++) {
+        if (sigma[k] > 0) fprintf(f, "%s %s %g%s", n++ ? "," : ";", of[k][0], sigma[k], of[k][1]);
+    }
+    fprintf(f, "\n");
+}
+
 /* v: NULL without an optimisation */
 static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
 {
@@ -176,6 +193,7 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
         fprintf(f, "                symmetry: %s, %s; %d independent genes of %d\n", hf_symmetry_word[o->symmetry],
                 hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_gene);
     if (p->states.n) print_states(&p->states, f);
+    print_tolerance(c, f);
     fprintf(f, "  skipped       %s%s%s%s%s\n",
             evolves           ? ""
             : optimizes       ? "genetic algorithm (method: lm); "
@@ -335,6 +353,7 @@ static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, F
 static hf_status check(hf_problem *p, const hf_options *options, FILE *f, hf_messages *messages)
 {
     HF_TRY(hf_problem_load(options->file, options->set, options->n_set, p, messages));
+    HF_TRY(hf_tolerance_stage_check(p, false, messages));
     HF_TRY(hf_problem_allocate(p, messages));
     int threads = options->threads ? options->threads : hf_batch_default_threads();
     hf_evaluator evaluator = hf_problem_evaluator(p);

@@ -1,5 +1,5 @@
 /* `hifdm run` computes one case and writes its result file. */
-#include "app/cmd.h"
+#include "app/cmd_run.h"
 
 #include "app/options.h"
 #include "app/progress.h"
@@ -7,15 +7,28 @@
 #include "out/print.h"
 #include <hifdm/run.h>
 
-static hf_status command_run(const hf_options *o, FILE *file, hf_messages *messages)
+static hf_status check_tasks(const hf_options *o, hf_messages *messages)
+{
+    if (o->task >= 0 && o->tasks == 0) return hf_error(messages, HF_BAD_USAGE, "'--task' needs '--tasks' beside it");
+    if (o->tasks > 0 && o->task >= o->tasks)
+        return hf_error(messages, HF_BAD_USAGE, "--task %d: tasks of %d are 0 to %d", o->task, o->tasks, o->tasks - 1);
+    return HF_OK;
+}
+
+hf_status hf_cmd_run_case(const hf_options *o, FILE *file, hf_messages *messages)
 {
     hf_summary summary;
     char output[HF_OUTPUT_SIZE];
+    bool of_tolerance = o->command == &hf_cmd_tolerance;
+    HF_TRY(check_tasks(o, messages));
     hf_progress progress = hf_progress_on(stderr, o->quiet ? HF_PROGRESS_NONE : o->progress);
     hf_run_request request = {.case_path = o->file,
                               .set = o->set,
                               .n_set = o->n_set,
                               .output = o->output,
+                              .of_tolerance = of_tolerance,
+                              .task = o->task,
+                              .tasks = of_tolerance ? o->tasks : 0,
                               .restart = o->force,
                               .threads = o->threads,
                               .has_seed = o->has_seed,
@@ -40,10 +53,11 @@ const hf_command hf_cmd_run = {
     .argument = "CASE",
     .help = "run what the case file contains and store it in one HDF5 file",
     .about = "What the case file contains decides what runs: form-finding always, the genetic algorithm and "
-             "Levenberg-Marquardt with a section optimize. Every generation is stored. A run that was killed or told "
+             "Levenberg-Marquardt with a section optimize, samples of the net as built with a section tolerance. Every "
+             "generation is stored. A run that was killed or told "
              "to stop goes on when the same command is given again; a finished one is kept unless --restart is given.",
     .examples = "hifdm run configs/chen2022.yaml\n"
                 "hifdm run case.yaml --set form.pretension_N=12 --seed 7 -o twelve.h5",
     .uses_threads = true,
-    .run = command_run,
+    .run = hf_cmd_run_case,
 };

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 const char *const hf_progress_word[6] = {"auto", "none", "line", "log", "jsonl", NULL};
-static const char *const phase_word[] = {"form", "optimize", "polish"};
+static const char *const phase_word[] = {"form", "optimize", "polish", "tolerance"};
 static const double interval_s[] = {0, 0, 0.1, HF_PROGRESS_LOG_S, 1}; /* between two lines, by hf_progress_mode */
 
 hf_progress hf_progress_on(FILE *file, hf_progress_mode mode)
@@ -30,6 +30,17 @@ static double left_s(const hf_run_progress *now)
     return done > 0 ? now->elapsed_s * (now->generations - now->generation) / done : 0;
 }
 
+static void show_samples(hf_progress *p, const hf_run_progress *now)
+{
+    char left[32];
+    bool is_line = p->mode == HF_PROGRESS_LINE;
+    double each_s = now->evaluations > 0 ? now->elapsed_s / (double)now->evaluations : 0;
+    hf_print_duration(each_s * (double)(now->samples_all - now->samples), left, sizeof left);
+    fprintf(p->file, "%ssample %ld/%ld  %.0f samples/s  %s left%s", is_line ? "\r\033[K" : "", now->samples,
+            now->samples_all, rate_per_s(now), left, is_line ? "" : "\n");
+    p->is_shown = is_line;
+}
+
 static void show_line(hf_progress *p, const hf_run_progress *now)
 {
     char left[32];
@@ -46,6 +57,12 @@ static void show_json(const hf_progress *p, const hf_run_progress *now)
     hf_json j = {.file = p->file};
     hf_json_open(&j, NULL, '{');
     hf_json_text(&j, "phase", phase_word[now->phase]);
+    if (now->phase == HF_RUN_TOLERANCE) {
+        hf_json_integer(&j, "sample", now->samples);
+        hf_json_integer(&j, "samples", now->samples_all);
+        hf_json_number(&j, "samples_per_s", rate_per_s(now));
+        hf_json_number(&j, "elapsed_s", now->elapsed_s);
+    }
     if (now->generation > 0) {
         hf_json_integer(&j, "generation", now->generation);
         hf_json_integer(&j, "generations", now->generations);
@@ -63,15 +80,19 @@ static void show_json(const hf_progress *p, const hf_run_progress *now)
 void hf_progress_show(void *progress, const hf_run_progress *now)
 {
     hf_progress *p = progress;
-    bool is_first = now->generation <= now->first_generation + 1;
-    bool is_last = now->generation > 0 && now->is_last;
-    if (p->mode == HF_PROGRESS_NONE || (now->phase != HF_RUN_EVOLVE && p->mode != HF_PROGRESS_JSONL)) return;
+    bool samples = now->phase == HF_RUN_TOLERANCE;
+    bool is_first = samples ? now->evaluations == 0 : now->generation <= now->first_generation + 1;
+    bool is_last = (samples || now->generation > 0) && now->is_last;
+    bool has_line = samples ? now->evaluations > 0 : now->phase == HF_RUN_EVOLVE;
     if (is_first) p->last_s = p->mode == HF_PROGRESS_LOG ? 0 : -interval_s[p->mode];
+    if (p->mode == HF_PROGRESS_NONE || (!has_line && p->mode != HF_PROGRESS_JSONL)) return;
     if (now->elapsed_s - p->last_s < interval_s[p->mode] && !(is_last && p->mode == HF_PROGRESS_JSONL)) return;
     p->last_s = now->elapsed_s;
     if (!hf_file_io_await_room(fileno(p->file), 0)) return;
     if (p->mode == HF_PROGRESS_JSONL)
         show_json(p, now);
+    else if (samples)
+        show_samples(p, now);
     else
         show_line(p, now);
     fflush(p->file);

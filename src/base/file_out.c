@@ -392,3 +392,15 @@ hf_status hf_file_out_set_end(hf_file_out_set *set, hf_status status, hf_message
     set->n = 0;
     return status;
 }
+
+/* ---- without a name ---- */
+
+int hf_file_out_scratch(void)
+{
+    FILE *made = tmpfile();
+    if (!made) return -1;
+    int file = fcntl(fileno(made), F_DUPFD_CLOEXEC, 0), why = errno;
+    fclose(made);
+    errno = why;
+    return file;
+}

@@ -11,7 +11,7 @@
  * changes a bit of any sample. */
 #define CHUNK_BYTES (64 << 20)
 #define CHUNK_LEAST 64
-#define CHUNK_MOST 1024
+#define CHUNK_MOST 256
 #define AT_ONCE 6 /* right-hand sides of a solve to first order */
 
 /* ---- making ---- */
@@ -151,7 +151,7 @@ static void take_sample(void *context, long i, int place, const hf_built_shape *
     for (int e = 0; e < m->n_cable; e++)
         least = fmin(least, shape->tension_N[e]);
     value[HF_TOLERANCE_LEAST_TENSION] = least;
-    if (t->surface && t->surface->focal_length_m > 0) measure_surface(t, shape, value);
+    if (t->surface && t->surface->focal_length_m > 0 && !t->skips_surface) measure_surface(t, shape, value);
 }
 
 /* ---- first order ---- */
@@ -206,19 +206,33 @@ bool hf_montecarlo_meets_all(const hf_tolerance_settings *s, const double *row)
 /* Do at least a part settings->yield of the first n samples meet everything, at this scale? */
 static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reaches)
 {
-    long met = 0;
+    long met = 0, failed = 0;
+    double needed = t->settings->yield * n;
+    *reaches = false;
     for (long first = 0; first < n; first += t->n_chunk) {
         int count = n - first < t->n_chunk ? (int)(n - first) : t->n_chunk;
+        if (t->stop && *t->stop) return HF_INTERRUPTED;
         HF_TRY(hf_montecarlo_run(t, scale, first, count));
         for (int i = 0; i < count; i++)
             met += hf_montecarlo_meets_all(t->settings, t->row + i * HF_TOLERANCE_COLUMNS);
+        failed = first + count - met;
+        *reaches = (double)met >= needed;
+        if (*reaches || (double)(n - failed) < needed) break; /* the others do not change it */
     }
-    *reaches = (double)met >= t->settings->yield * n;
     return HF_OK;
 }
 
+/* Is a requirement about the surface? To measure it takes a hundred times the time of a sample. */
+static bool requires_surface(const hf_tolerance_settings *s)
+{
+    for (int k = 0; k < s->n_require; k++)
+        if (s->require[k].measure != HF_TOLERANCE_PSI && s->require[k].measure < HF_TOLERANCE_LEAST_TENSION)
+            return true;
+    return false;
+}
+
 /* In the logarithm of the scale. 10 doublings either way, then 7 halvings: 2^(1/128). */
-hf_status hf_montecarlo_find_scale(hf_montecarlo *t, int n, double *scale)
+static hf_status find_scale(hf_montecarlo *t, int n, double *scale)
 {
     enum { DOUBLINGS = 10, HALVINGS = 7 };
     bool reaches;
@@ -239,4 +253,12 @@ hf_status hf_montecarlo_find_scale(hf_montecarlo *t, int n, double *scale)
     }
     *scale = good;
     return HF_OK;
+}
+
+hf_status hf_montecarlo_find_scale(hf_montecarlo *t, int n, double *scale)
+{
+    t->skips_surface = !requires_surface(t->settings);
+    hf_status status = find_scale(t, n, scale);
+    t->skips_surface = false;
+    return status;
 }

@@ -26,8 +26,11 @@ typedef struct {
     double *point;   /* [n_chunk][directions.n] */
     double *scratch; /* [n_thread][n_room] */
     size_t n_z, n_room;
-    unsigned varies;    /* HF_BUILT_VARIES_... */
-    bool has_no_memory; /* some sample could not be measured */
+    unsigned varies;                   /* HF_BUILT_VARIES_... */
+    bool has_no_memory;                /* some sample could not be measured */
+    bool skips_surface;                /* it is not measured, now */
+    const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 makes hf_montecarlo_find_scale return
+                                          HF_INTERRUPTED */
     void *block;
 } hf_montecarlo;
 
@@ -50,7 +53,7 @@ bool hf_montecarlo_meets(const hf_tolerance_settings *settings, int k, const dou
 bool hf_montecarlo_meets_all(const hf_tolerance_settings *settings, const double *row);
 
 /* The factor of all errors with which a part settings->yield of the first n samples meets what is required, by
- * bisection with the same numbers for each: within 1 %. 0: not even the nominal net does; INFINITY: a thousandfold does. */
+ * bisection with the same numbers for each, to 1 %. 0: not even the nominal net does; INFINITY: a thousandfold does. */
 hf_status hf_montecarlo_find_scale(hf_montecarlo *montecarlo, int n, double *scale);
 
 #endif

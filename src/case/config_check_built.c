@@ -109,8 +109,10 @@ static void check_states(const hf_built_settings *b, hf_config_faults *f)
 }
 
 /* An expansion is of use where something has a temperature. */
-static void check_expansions(const hf_built_settings *b, hf_config_faults *f)
+static void check_expansions(const hf_case *c, hf_config_faults *f)
 {
+    const hf_built_settings *b = &c->built;
+    if (c->has_tolerance && c->tolerance.sigma_temperature_K > 0) return;
     for (int i = 0; i < b->n_state; i++)
         if (has_temperature(&b->state[i])) return;
     for (int i = 0; i < b->n_cable; i++)
@@ -119,9 +121,50 @@ static void check_expansions(const hf_built_settings *b, hf_config_faults *f)
                                    "has no effect: no row of cases has a temperature");
 }
 
+/* ---- tolerance ---- */
+
+static bool is_of_surface(hf_tolerance_measure measure)
+{
+    return measure != HF_TOLERANCE_PSI && measure < HF_TOLERANCE_LEAST_TENSION;
+}
+
+static void check_require(const hf_case *c, hf_config_faults *f)
+{
+    static const char list[] = "tolerance.require";
+    for (int i = 0; i < c->tolerance.n_require; i++) {
+        const hf_require_settings *row = &c->tolerance.require[i];
+        if (isnan(row->at_most) && isnan(row->at_least))
+            hf_config_fault_in_row(f, list, i, "measure", "has no limit; give at_most, at_least or both");
+        if (row->at_least > row->at_most) hf_config_fault_in_row(f, list, i, "at_least", "must not be above at_most");
+        if (is_of_surface(row->measure) && !c->has_surface)
+            hf_config_fault_in_row(f, list, i, "measure", "is not measured: add a section surface");
+        else if (row->measure == HF_TOLERANCE_GAIN_LOSS && c->surface.frequencies_Hz.n == 0)
+            hf_config_fault_in_row(f, list, i, "measure", "needs surface.frequencies_Hz");
+    }
+}
+
+static void check_tolerance(const hf_case *c, hf_config_faults *f)
+{
+    const hf_tolerance_settings *t = &c->tolerance;
+    bool knows_expansion = false;
+    for (int i = 0; i < c->built.n_cable; i++)
+        knows_expansion |= !isnan(c->built.cable[i].expansion_per_K);
+    check_require(c, f);
+    if (t->sigma_cut_m + t->sigma_cut_ratio + t->sigma_EA_ratio + t->sigma_support_m + t->sigma_temperature_K == 0)
+        hf_config_fault_of(f, "tolerance.sigma_cut_m",
+                           "must be above 0, or another sigma: without errors all is nominal");
+    if (t->sigma_temperature_K > 0 && !knows_expansion)
+        hf_config_fault_of(f, "tolerance.sigma_temperature_K", "needs expansion_per_K in a row of `cables`");
+    if (t->yield > 0 && t->n_require == 0)
+        hf_config_fault_of(f, "tolerance.yield", "needs rows of tolerance.require, which say what a net must keep");
+    if (t->batch > 0 && t->sigma_cut_ratio + t->sigma_EA_ratio == 0)
+        hf_config_fault_of(f, "tolerance.batch", "is about sigma_cut_ratio and sigma_EA_ratio; give one of them");
+}
+
 void hf_config_check_built(const hf_case *c, hf_config_faults *f)
 {
     check_cables(&c->built, f);
     check_states(&c->built, f);
-    check_expansions(&c->built, f);
+    check_expansions(c, f);
+    if (c->has_tolerance) check_tolerance(c, f);
 }

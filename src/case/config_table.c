@@ -18,6 +18,10 @@ const hf_section hf_section_table[] = {
     {"surface", AT(has_surface), "Measures of the reflecting surface. Without this section there are none."},
     {"form", SIZE_MAX, "Form-finding. May be left out: the defaults hold."},
     {"optimize", AT(has_optimize), "Optimisation of the boundary pretensions. Without this section none runs."},
+    {"tolerance", AT(has_tolerance),
+     "Errors of the net as built: samples of nets that are cut, stiff and supported a little wrong. Without this "
+     "section "
+     "there are none. Needs EA of all cables."},
     {"truss", AT(has_truss),
      "The deployable truss that carries the net. Without this section the supports stand on rigid ground. The paper "
      "prints no dimensions: every default here is an assumption."},
@@ -162,6 +166,31 @@ const hf_field hf_field_table[] = {
      "largest number of Levenberg-Marquardt iterations"},
     {"optimize.front_points", HF_FIELD_INT, AT(optimize.front_points), 3, HF_FRONT_POINTS_MAX, "21", "", NULL,
      "of the front of optimize.objectives that Levenberg-Marquardt finds, its two ends included"},
+
+    {"tolerance.sigma_cut_m", HF_FIELD_DOUBLE, AT(tolerance.sigma_cut_m), 0, 1, "0", "m", NULL,
+     "standard deviation of each cut length"},
+    {"tolerance.sigma_cut_ratio", HF_FIELD_DOUBLE, AT(tolerance.sigma_cut_ratio), 0, 0.05, "0", "", NULL,
+     "another one in parts of the length, as of a measuring tape"},
+    {"tolerance.sigma_EA_ratio", HF_FIELD_DOUBLE, AT(tolerance.sigma_EA_ratio), 0, 0.05, "0", "", NULL,
+     "of each EA, in parts of it"},
+    {"tolerance.sigma_support_m", HF_FIELD_DOUBLE, AT(tolerance.sigma_support_m), 0, 1, "0", "m", NULL,
+     "of each coordinate of each support, of attachments before the truss gives way"},
+    {"tolerance.sigma_temperature_K", HF_FIELD_DOUBLE, AT(tolerance.sigma_temperature_K), 0, 1000, "0", "K", NULL,
+     "of the temperature, the same for all cables; needs cables.expansion_per_K. The truss keeps its shape"},
+    {"tolerance.distribution", HF_FIELD_WORD, AT(tolerance.distribution), 0, 0, "normal", "", hf_distribution_word,
+     "of each error, with the same standard deviation: normal, or uniform up to 1.73 of it"},
+    {"tolerance.batch", HF_FIELD_DOUBLE, AT(tolerance.batch), 0, 1, "0", "", NULL,
+     "correlation of the errors of sigma_cut_ratio, and of those of sigma_EA_ratio, among the cables of one spool: a "
+     "set of the net (of several the first by name), or else inner or boundary"},
+    {"tolerance.samples", HF_FIELD_INT, AT(tolerance.samples), 2, 100000000, "1000", "", NULL, "nets that are solved"},
+    {"tolerance.seed", HF_FIELD_UINT64, AT(tolerance.seed), 0, 18446744073709551615.0, "1", "", NULL,
+     "the same seed gives the same samples, whatever the number of threads"},
+    {"tolerance.sampling", HF_FIELD_WORD, AT(tolerance.sampling), 0, 0, "random", "", hf_sampling_word,
+     "random numbers, or Sobol's sequence in the 40 directions of errors that move the shape most, which converges "
+     "faster"},
+    {"tolerance.yield", HF_FIELD_DOUBLE, AT(tolerance.yield), 0, 0.9999, "0", "", NULL,
+     "part of the nets that should meet tolerance.require: the run tells by which factor all errors may grow, or must "
+     "shrink; 0: it does not"},
 
 #define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
     {"truss." #member, type, AT(section.member), min, max, default_value, unit, words, help},
@@ -309,6 +338,16 @@ static const hf_field state_field[] = {
 };
 #undef IN
 
+#define IN(member) offsetof(hf_require_settings, member)
+static const hf_field require_field[] = {
+    {"measure", HF_FIELD_WORD, IN(measure), 0, 0, NULL, "", hf_tolerance_measure_word,
+     "what each net as built is measured by; those of the surface need a section surface, of facets a net that has "
+     "some, gain_loss_dB surface.frequencies_Hz"},
+    {"at_most", HF_FIELD_DOUBLE, IN(at_most), -BIG, BIG, "", "", NULL, "largest value that is allowed"},
+    {"at_least", HF_FIELD_DOUBLE, IN(at_least), -BIG, BIG, "", "", NULL, "smallest value that is allowed"},
+};
+#undef IN
+
 #define N_VARIABLE_FIELD (int)(sizeof variable_field / sizeof *variable_field)
 #define N_LIMIT_FIELD (int)(sizeof limit_field / sizeof *limit_field)
 #define LIST(name, count, row, max_row, keys, n_key, help)                                                             \
@@ -338,6 +377,9 @@ const hf_list hf_list_table[] = {
     BUILT_LIST("cases", n_state, state, HF_STATE_ROWS_MAX, state_field,
                "States of the net as built, of up to 16 names: temperatures, gravity, forces, moves of supports; "
                "without rows none is computed"),
+    {"tolerance.require", AT(tolerance.n_require), AT(tolerance.require), sizeof(hf_require_settings),
+     HF_REQUIRE_ROWS_MAX, require_field, sizeof require_field / sizeof *require_field,
+     "What a net as built must keep; without rows nothing, and there is no yield"},
 };
 #undef BUILT_LIST
 #undef LIST

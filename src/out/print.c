@@ -1,5 +1,5 @@
 /* Contents: lines - units for people - summary */
-#include "out/print.h"
+#include "out/print_tolerance.h"
 
 #include "base/text.h"
 #include "net/symmetry.h"
@@ -349,6 +349,7 @@ void hf_print_summary(const hf_summary *s, const char *path, FILE *f)
     if (s->has_polish) print_polish(s, f);
     if (s->has_front) print_front(s, f);
     print_states(s, f);
+    if (s->has_tolerance) hf_print_tolerance(&s->tolerance, f);
     if (path) hf_print_line(f, "  results       %s", path);
     if (path && !s->finished)
         hf_print_line(f, "  unfinished    `hifdm run %s -o %s` goes on, with the same options as before", s->case_path,

@@ -7,6 +7,7 @@
 #include "run/cases.h"
 #include "run/problem_parts.h"
 #include "run/run_front.h"
+#include "run/tolerance_stage.h"
 #include "search/pareto.h"
 #include "search/polish.h"
 #include "solve/limits.h"
@@ -28,8 +29,9 @@
 typedef struct {
     const hf_run_request *request;
     hf_problem problem;
-    hf_carrier_state truss; /* under the shape of the last stage whose shape is the result */
-    hf_cases cases;         /* the net as built of that design, if the case has states */
+    hf_carrier_state truss;    /* under the shape of the last stage whose shape is the result */
+    const hf_workspace *shape; /* that holds the same shape */
+    hf_cases cases;            /* the net as built of that design, if the case has states */
     hf_history history;
     hf_store *store;
     hf_optimiser optimiser;
@@ -137,6 +139,7 @@ static hf_status load_truss(run *r, hf_workspace *w, hf_messages *messages)
 static hf_status take_result(run *r, hf_workspace *w, hf_messages *messages)
 {
     HF_TRY(load_truss(r, w, messages));
+    r->shape = w;
     return r->problem.states.n ? hf_cases_take(&r->problem, w, &r->cases, messages) : HF_OK;
 }
 
@@ -533,6 +536,7 @@ static hf_status open_store(run *r, char *output, hf_store_state *state, hf_mess
     const hf_scene *scene = &r->problem.scene;
     const hf_truss *truss = settings->has_truss ? &r->problem.carrier.truss : NULL;
     HF_TRY(choose_output(q, output, messages));
+    if (hf_tolerance_stage_is_task(q)) return HF_OK;
     HF_TRY(hf_problem_spare_inputs(&r->problem, NULL, output, messages));
     if (!q->restart) HF_TRY(hf_store_look(output, settings, scene, truss, state, messages));
     if (*state == HF_STORE_FINISHED) return HF_OK;
@@ -548,19 +552,23 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     if (settings->has_sweep && !q->of_sweep)
         return hf_error(messages, HF_BAD_USAGE, "%s: has a sweep section; 'hifdm sweep %s' runs it", q->case_path,
                         q->case_path);
+    HF_TRY(hf_tolerance_stage_check(&r->problem, q->of_tolerance, messages));
     if (q->has_seed) settings->optimize.seed = q->seed;
     if (q->has_seed && !settings->has_optimize)
         hf_warning(messages, "--seed has no effect: the case has no optimize section");
     hf_problem_describe(&r->problem, s);
     hf_store_state state = HF_STORE_NOTHING;
     if (!q->no_file) HF_TRY(open_store(r, output, &state, messages));
+    if (state == HF_STORE_FINISHED && settings->has_tolerance) hf_tolerance_stage_end(q, output);
     if (state == HF_STORE_FINISHED) return repeat_finished(output, s, messages);
     hf_status status = stages(r, s, messages);
     if (status == HF_OK && r->problem.states.n)
         status = hf_cases_run(&r->problem, &r->cases, r->store, q->stop_requested, s, messages);
-    if (status == HF_INTERRUPTED && r->store)
+    const hf_tolerance_stage stage = {q, &r->problem, r->shape, output, r->store};
+    if (status == HF_OK && settings->has_tolerance) status = hf_tolerance_stage_run(&stage, s, messages);
+    if (status == HF_INTERRUPTED && (r->store || hf_tolerance_stage_is_task(q)))
         hf_error(messages, status, "%s: told to stop; the same command goes on from there", output);
-    if (!leaves_result(status)) return status;
+    if (!leaves_result(status) || hf_tolerance_stage_is_task(q)) return status;
     if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, &r->truss, messages));
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
     hf_text_trim_utf8(s->warnings);
@@ -573,6 +581,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
         *q->unsettled = store;
     else
         finish = hf_store_settle(store, messages);
+    if (finish == HF_OK && s->has_tolerance) hf_tolerance_stage_end(q, output);
     return finish != HF_OK ? finish : status;
 }
 
@@ -585,7 +594,7 @@ hf_status hf_run_case(const hf_run_request *request, hf_summary *summary, char o
     snprintf(summary->version, sizeof summary->version, "%s", hf_store_version());
     output[0] = '\0';
     hf_status status = execute(&r, summary, output, messages);
-    if (!leaves_result(status)) output[0] = '\0';
+    if (!leaves_result(status) || hf_tolerance_stage_is_task(request)) output[0] = '\0';
     run_free(&r);
     return status;
 }

@@ -151,6 +151,10 @@ void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *m
 void hf_layout_get_front(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_read_front(hf_hdf5 *io, bool has_rows, hf_front *front, char **gene, size_t *gene_size);
 
+/* layout_tolerance: /tolerance, the figures of samples of the net as built; nothing without such samples. */
+void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary);
+void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary);
+
 /* layout_truss: the truss as described, its attachments and, when `state` is not NULL, its displacements and forces
  * under the pull of the net. Reading allocates: the caller frees both in any case. */
 void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carrier_state *state);

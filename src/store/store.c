@@ -442,6 +442,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
     if (finished) hf_layout_put_held(&s->f.io, summary);
     if (finished) hf_layout_put_goals(&s->f.io, summary);
     if (finished) hf_layout_put_cases(&s->f.io, summary);
+    if (finished) hf_layout_put_tolerance(&s->f.io, summary);
     hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "status", finished ? hf_status_word(summary->status) : "unfinished");
     hf_store_put_time(s, finished ? "finished_utc" : "published_utc");
 }

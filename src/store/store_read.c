@@ -90,6 +90,7 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     hf_layout_get_goals(&io, summary);
     hf_layout_get_front(&io, summary);
     hf_layout_get_cases(&io, summary);
+    hf_layout_get_tolerance(&io, summary);
     if (io.status == HF_OK && ((int)summary->solver < 0 || summary->solver > HF_SOLVER_FIXED_POINT))
         hf_hdf5_damaged(&io, io.file, "/ga", "names a solver that there is not");
     summary->has_truss = hf_hdf5_has(&io, io.file, "/truss");

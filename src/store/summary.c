@@ -30,6 +30,9 @@ double hf_summary_utilisation(const hf_summary *s)
 static const hf_result_field form_field[] = {HF_SUMMARY_FORM_LIST(FIELD)};
 static const hf_result_field ga_field[] = {HF_SUMMARY_GA_LIST(FIELD)};
 static const hf_result_field polish_field[] = {HF_SUMMARY_POLISH_LIST(FIELD)};
+#define TOLERANCE(type, member, kind, json, key, description)                                                          \
+    {#member, key, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_tolerance_summary, member), sizeof(type)},
+static const hf_result_field tolerance_field[] = {HF_TOLERANCE_LIST(TOLERANCE)};
 static const hf_result_field truss_field[] = {HF_SUMMARY_TRUSS_LIST(TRUSS_FIELD)};
 #define STATE_FIELD(type, member, kind, json, key, description)                                                        \
     {#member, key, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_state_summary, member), sizeof(type)},
@@ -278,6 +281,69 @@ static void write_states(const hf_summary *s, hf_json *j)
     hf_json_close(j, '}');
 }
 
+static void write_figures(const hf_tolerance_figures *f, const char *measure, hf_json *j)
+{
+    hf_json_line(j, "  ");
+    hf_json_open(j, measure, '{');
+    hf_json_number(j, "mean", f->mean);
+    hf_json_number(j, "mean_low", f->mean_low);
+    hf_json_number(j, "mean_high", f->mean_high);
+    hf_json_number(j, "deviation", f->deviation);
+    hf_json_number(j, "least", f->least);
+    hf_json_number(j, "largest", f->largest);
+    hf_json_list(j, "quantile", f->value, HF_TOLERANCE_QUANTILES);
+    hf_json_list(j, "quantile_low", f->low, HF_TOLERANCE_QUANTILES);
+    hf_json_list(j, "quantile_high", f->high, HF_TOLERANCE_QUANTILES);
+    hf_json_close(j, '}');
+}
+
+static void write_requirements(const hf_tolerance_summary *t, hf_json *j)
+{
+    hf_json_line(j, "  ");
+    hf_json_open(j, "require", '[');
+    for (int k = 0; k < t->n_require; k++) {
+        hf_json_open(j, NULL, '{');
+        hf_json_text(j, "measure", hf_tolerance_measure_word[t->require[k].measure]);
+        hf_json_number(j, "at_most", t->require[k].at_most);
+        hf_json_number(j, "at_least", t->require[k].at_least);
+        hf_json_number(j, "yield", t->require_yield[k]);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
+static void write_shares(const hf_tolerance_summary *t, hf_json *j)
+{
+    hf_json_line(j, "  ");
+    hf_json_open(j, "kind_share", '{');
+    for (int k = 0; k < HF_TOLERANCE_KINDS; k++)
+        if (t->kind_share[k] > 0) hf_json_number(j, hf_tolerance_kind_word[k], t->kind_share[k]);
+    hf_json_close(j, '}');
+    hf_json_line(j, "  ");
+    hf_json_open(j, "cable_share", '[');
+    for (int k = 0; k < t->n_ranked; k++) {
+        hf_json_open(j, NULL, '{');
+        hf_json_text(j, "cable", t->ranked_id[k]);
+        hf_json_number(j, "share", t->ranked_share[k]);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
+static void write_tolerance(const hf_tolerance_summary *t, hf_json *j)
+{
+    open_stage("tolerance", j);
+    write_fields(ALL(tolerance_field), 1, LAST_PLACE, t, j);
+    hf_json_list(j, "quantiles", hf_tolerance_quantile, HF_TOLERANCE_QUANTILES);
+    for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)
+        if (t->figure[k].is_measured) write_figures(&t->figure[k], hf_tolerance_measure_word[k], j);
+    write_requirements(t, j);
+    write_shares(t, j);
+    hf_json_list(j, "histogram_range_m", (const double[]){t->bin_low_m, t->bin_high_m}, 2);
+    hf_json_list(j, "histogram", t->bin, HF_TOLERANCE_BINS);
+    hf_json_close(j, '}');
+}
+
 void hf_summary_write_json(const hf_summary *s, hf_status status, const char *messages, const char *path, FILE *f)
 {
     hf_json writer = {.file = f}, *j = &writer;
@@ -290,6 +356,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
     if (s->has_polish) write_polish(s, j);
     if (s->has_front) write_front(s, j);
     write_states(s, j);
+    if (s->has_tolerance) write_tolerance(&s->tolerance, j);
     hf_json_line(j, " ");
     hf_json_integer(j, "threads", s->threads);
     hf_json_unsigned(j, "seed", s->seed);

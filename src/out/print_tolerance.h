@@ -1,0 +1,9 @@
+/* print_tolerance - the samples of the net as built, in a few lines. */
+#ifndef HIFDM_PRINT_TOLERANCE_H
+#define HIFDM_PRINT_TOLERANCE_H
+
+#include "out/print.h"
+
+void hf_print_tolerance(const hf_tolerance_summary *tolerance, FILE *file);
+
+#endif

@@ -1,0 +1,259 @@
+/* Contents: what cannot be - the identity of samples - samples - together */
+#include "run/tolerance_stage.h"
+
+#include "base/clock.h"
+#include "base/sha256.h"
+#include "store/samples.h"
+#include "store/store_tolerance.h"
+
+#include <math.h>
+#include <string.h>
+
+#define SCALE_SAMPLES 1000 /* at most, of each yield on the way to the scale that is wanted */
+
+/* ---- what cannot be ---- */
+
+static hf_status check_measures(const hf_problem *p, hf_messages *messages)
+{
+    const hf_case *c = &p->settings;
+    hf_status status = HF_OK;
+    for (int i = 0; i < c->tolerance.n_require; i++) {
+        char key[64], place[HF_PATH_SIZE + 128];
+        hf_tolerance_measure measure = c->tolerance.require[i].measure;
+        if (hf_montecarlo_measures(&p->surface, &p->facets, measure)) continue;
+        snprintf(key, sizeof key, "tolerance.require.%d.measure", i);
+        hf_config_place(c, key, place, sizeof place);
+        status = hf_error(messages, HF_BAD_CASE, "%s: %s is not measured: this net has no facets", place,
+                          hf_tolerance_measure_word[measure]);
+    }
+    return status;
+}
+
+static hf_status check_expansion(const hf_problem *p, const hf_material *t, hf_messages *messages)
+{
+    const hf_scene *s = &p->scene;
+    char place[HF_PATH_SIZE + 128];
+    int n = 0, first = 0;
+    for (int e = 0; e < s->n_cable && p->settings.tolerance.sigma_temperature_K > 0; e++)
+        if (isnan(t->expansion_per_K[e]) && n++ == 0) first = e;
+    if (n == 0) return HF_OK;
+    hf_config_place(&p->settings, "tolerance.sigma_temperature_K", place, sizeof place);
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: %d cables have no expansion_per_K, like '%s': give it in a row of `cables`", place, n,
+                    s->cable_id[first]);
+}
+
+/* Absolute errors must leave something of each cable. */
+#define LARGEST_NUMBER 9 /* no number of either distribution is larger */
+static hf_status check_cuts(const hf_problem *p, hf_messages *messages)
+{
+    const hf_scene *s = &p->scene;
+    char place[HF_PATH_SIZE + 128];
+    for (int e = 0; e < s->n_cable; e++) {
+        if (LARGEST_NUMBER * p->settings.tolerance.sigma_cut_m < hf_scene_theoretical_length(s, e) / 2) continue;
+        hf_config_place(&p->settings, "tolerance.sigma_cut_m", place, sizeof place);
+        return hf_error(messages, HF_BAD_CASE, "%s: cable '%s' is %.3g m long: errors of %g m may leave nothing of it",
+                        place, s->cable_id[e], hf_scene_theoretical_length(s, e), p->settings.tolerance.sigma_cut_m);
+    }
+    return HF_OK;
+}
+
+/* The place of the section, for messages: that of the first sigma that the case gives. */
+static void place_section(const hf_case *c, char *place, size_t size)
+{
+    static const char *const key[] = {"tolerance.sigma_cut_m", "tolerance.sigma_cut_ratio", "tolerance.sigma_EA_ratio",
+                                      "tolerance.sigma_support_m", "tolerance.sigma_temperature_K"};
+    for (size_t i = 0; i < sizeof key / sizeof *key; i++)
+        if (hf_config_place(c, key[i], place, size)) return;
+}
+
+static hf_status check_EA(const hf_problem *p, hf_messages *messages)
+{
+    const hf_scene *s = &p->scene;
+    char place[HF_PATH_SIZE + 128];
+    int n[2] = {0}, first[2] = {0};
+    for (int e = 0; e < s->n_cable; e++)
+        if (!(s->EA_N && s->EA_N[e] > 0) && n[s->group[e]]++ == 0) first[s->group[e]] = e;
+    place_section(&p->settings, place, sizeof place);
+    for (int g = 0; g < 2; g++)
+        if (n[g])
+            hf_error(messages, HF_BAD_CASE,
+                     "%s: %d %s cables have no EA, which errors of nets as built need, like '%s': give scene.EA_%s_N, "
+                     "or the column EA_N of an imported net",
+                     place, n[g], hf_group_word[g], s->cable_id[first[g]], hf_group_word[g]);
+    return n[0] + n[1] ? HF_BAD_CASE : HF_OK;
+}
+
+static hf_status make_material(const hf_problem *p, hf_material *t, hf_messages *messages)
+{
+    hf_status status = hf_config_material(&p->settings, &p->scene, t, messages);
+    return status == HF_OK ? check_expansion(p, t, messages) : status;
+}
+
+hf_status hf_tolerance_stage_check(const hf_problem *p, bool is_demanded, hf_messages *messages)
+{
+    if (!p->settings.has_tolerance && !is_demanded) return HF_OK;
+    if (!p->settings.has_tolerance)
+        return hf_error(messages, HF_BAD_USAGE, "%s: has no section tolerance; 'hifdm schema' lists its keys",
+                        p->settings.path);
+    hf_material material;
+    hf_status status = make_material(p, &material, messages), other[3];
+    hf_material_free(&material);
+    other[0] = check_EA(p, messages);
+    other[1] = check_measures(p, messages);
+    other[2] = check_cuts(p, messages);
+    for (int i = 0; i < 3 && status == HF_OK; i++)
+        status = other[i];
+    return status;
+}
+
+/* ---- the identity of samples ---- */
+
+/* Of the case, and of the net that is made: machines that find other designs do not share samples. */
+static hf_status identify(const hf_problem *p, const hf_built *b, char identity[65])
+{
+    char both[128], hex[65];
+    const hf_truss *truss = p->settings.has_truss ? &p->carrier.truss : NULL;
+    HF_TRY(hf_store_identify(&p->settings, &p->scene, truss, identity));
+    hf_sha256(b->scene.target, (size_t)b->scene.n_cable * sizeof(double), hex);
+    memcpy(both, identity, 64);
+    memcpy(both + 64, hex, 64);
+    hf_sha256(both, sizeof both, identity);
+    return HF_OK;
+}
+
+/* ---- samples ---- */
+
+typedef struct {
+    const hf_tolerance_stage *stage;
+    hf_built built;
+    hf_montecarlo montecarlo;
+    hf_samples samples;
+    double begin_s;
+} job;
+
+static void job_free(job *j)
+{
+    hf_samples_close(&j->samples);
+    hf_montecarlo_free(&j->montecarlo);
+    hf_built_free(&j->built);
+}
+
+static bool is_mine(const hf_run_request *q, int chunk)
+{
+    return q->task < 0 || q->tasks <= 0 || chunk % q->tasks == q->task;
+}
+
+static void tell(const job *j, long n_new, bool is_last)
+{
+    const hf_run_request *q = j->stage->request;
+    long done = (long)j->samples.n_have * j->samples.n_chunk;
+    if (!q->observer) return;
+    hf_run_progress now = {.phase = HF_RUN_TOLERANCE,
+                           .samples = done < j->samples.n ? done : j->samples.n,
+                           .samples_all = j->samples.n,
+                           .evaluations = n_new,
+                           .is_last = is_last,
+                           .elapsed_s = hf_clock_s() - j->begin_s};
+    q->observer(q->observer_context, &now);
+}
+
+static hf_status find_samples(job *j, hf_messages *messages)
+{
+    const hf_run_request *q = j->stage->request;
+    hf_samples *s = &j->samples;
+    long n_new = 0;
+    tell(j, 0, false);
+    for (int chunk = 0; chunk < s->n_all; chunk++) {
+        int n;
+        long first = hf_samples_first(s, chunk, &n);
+        if (s->has[chunk] || !is_mine(q, chunk)) continue;
+        if (q->stop_requested && *q->stop_requested) return HF_INTERRUPTED;
+        if (hf_montecarlo_run(&j->montecarlo, 1, first, n) != HF_OK)
+            return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory for the measures of samples");
+        HF_TRY(hf_samples_add(s, chunk, j->montecarlo.row));
+        n_new += n;
+        tell(j, n_new, s->n_have == s->n_all);
+    }
+    return HF_OK;
+}
+
+static hf_status open_samples(job *j, hf_messages *messages)
+{
+    const hf_tolerance_stage *stage = j->stage;
+    const hf_problem *p = stage->problem;
+    const hf_run_request *q = stage->request;
+    char identity[65];
+    bool is_task = hf_tolerance_stage_is_task(q);
+    const char *output = *stage->output && !q->of_sweep ? stage->output : NULL; /* points of a sweep begin anew */
+    if (identify(p, &j->built, identity) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
+    HF_TRY(hf_samples_open(output, q->task, is_task ? q->tasks : 0, identity, q->restart, p->settings.tolerance.samples,
+                           j->montecarlo.n_chunk, &j->samples, messages));
+    if (output && q->tasks > 0 && !is_task) HF_TRY(hf_samples_collect(&j->samples, output, q->tasks));
+    return HF_OK;
+}
+
+static hf_status open_montecarlo(job *j, hf_messages *messages)
+{
+    const hf_problem *p = j->stage->problem;
+    hf_material material;
+    hf_status status = make_material(p, &material, messages);
+    if (status == HF_OK) {
+        const double *expansion = p->settings.tolerance.sigma_temperature_K > 0 ? material.expansion_per_K : NULL;
+        status = hf_montecarlo_create(&p->settings.tolerance, &j->built, &p->surface, &p->facets, expansion,
+                                      j->stage->request->threads, &j->montecarlo);
+        j->montecarlo.stop = j->stage->request->stop_requested;
+        if (status == HF_NO_MEMORY) hf_error(messages, status, "tolerance: out of memory");
+        if (status == HF_SINGULAR)
+            hf_error(messages, status,
+                     "tolerance: the net of the design is not stiff without errors: some node has no "
+                     "place of its own");
+    }
+    hf_material_free(&material);
+    return status;
+}
+
+/* ---- together ---- */
+
+static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
+{
+    const hf_tolerance_settings *t = &j->stage->problem->settings.tolerance;
+    const hf_statistics_rows rows = {j->samples.n, hf_samples_read, &j->samples};
+    hf_tolerance_summary *to = &summary->tolerance;
+    hf_status status = hf_statistics_sum_up(&j->montecarlo, &rows, to);
+    if (status == HF_OK && t->yield > 0) {
+        to->scale_samples = t->samples < SCALE_SAMPLES ? t->samples : SCALE_SAMPLES;
+        status = hf_montecarlo_find_scale(&j->montecarlo, to->scale_samples, &to->sigma_scale);
+    }
+    if (status == HF_NO_MEMORY) return hf_error(messages, status, "tolerance: out of memory");
+    HF_TRY(status);
+    summary->has_tolerance = true;
+    to->tolerance_wall_s = hf_clock_s() - j->begin_s;
+    return hf_store_tolerance(j->stage->store, &j->montecarlo, &rows, messages);
+}
+
+static hf_status work_off_stage(job *j, hf_summary *summary, hf_messages *messages)
+{
+    const hf_problem *p = j->stage->problem;
+    char place[HF_PATH_SIZE + 128];
+    place_section(&p->settings, place, sizeof place);
+    HF_TRY(hf_built_make(place, &p->scene, &p->model, &p->settings.form, j->stage->shape, &j->built, messages));
+    HF_TRY(open_montecarlo(j, messages));
+    HF_TRY(open_samples(j, messages));
+    HF_TRY(find_samples(j, messages));
+    if (j->samples.n_have < j->samples.n_all) return HF_OK; /* a task of several */
+    return sum_up(j, summary, messages);
+}
+
+hf_status hf_tolerance_stage_run(const hf_tolerance_stage *stage, hf_summary *summary, hf_messages *messages)
+{
+    job j = {.stage = stage, .begin_s = hf_clock_s()};
+    hf_status status = work_off_stage(&j, summary, messages);
+    job_free(&j);
+    return status;
+}
+
+void hf_tolerance_stage_end(const hf_run_request *q, const char *output)
+{
+    if (*output && !q->of_sweep) hf_samples_remove(output, q->tasks);
+}

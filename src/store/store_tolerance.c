@@ -1,0 +1,117 @@
+#include "store/store_tolerance.h"
+
+#include "base/arena.h"
+#include "store/store_internal.h"
+
+#include <math.h>
+
+#define BLOCK 4096 /* samples that are read and written at a time */
+
+typedef struct {
+    hf_hdf5_array array;
+    int column; /* of a row */
+} sample_column;
+
+static int list_columns(const hf_montecarlo *t, sample_column of[HF_TOLERANCE_COLUMNS])
+{
+    int n = 0;
+    of[n++] = (sample_column){{"status", HF_KIND_INT, 1, {0}, "", "0: has a shape; else a status of the program"},
+                              HF_TOLERANCE_STATUS};
+    of[n++] = (sample_column){{"first_order_psi_m", HF_KIND_REAL, 1, {0}, "m", "psi of the same errors to first order"},
+                              HF_TOLERANCE_LINEAR_PSI};
+    for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)
+        if (hf_montecarlo_measures(t->surface, t->facets, (hf_tolerance_measure)k))
+            of[n++] = (sample_column){{hf_tolerance_measure_word[k],
+                                       HF_KIND_REAL,
+                                       1,
+                                       {0},
+                                       hf_tolerance_measure_unit[k],
+                                       hf_tolerance_measure_help[k]},
+                                      HF_TOLERANCE_FIRST + k};
+    return n;
+}
+
+/* Values of a column, as the data set has them. */
+static void pick_column(const sample_column *c, int n, const double *row, double *real, int *whole)
+{
+    for (int i = 0; i < n; i++) {
+        real[i] = row[i * HF_TOLERANCE_COLUMNS + c->column];
+        if (c->column == HF_TOLERANCE_STATUS) whole[i] = (int)real[i];
+    }
+}
+
+static hf_status write_samples(hf_hdf5 *io, const hf_montecarlo *t, const hf_statistics_rows *rows)
+{
+    sample_column column[HF_TOLERANCE_COLUMNS];
+    int n_column = list_columns(t, column), *whole;
+    double *row, *real;
+    hf_arena arena = {0};
+    HF_TRY(HF_ARENA_MAKE(&arena, (row = hf_arena_take(&arena, BLOCK * HF_TOLERANCE_COLUMNS, sizeof *row),
+                                  real = hf_arena_take(&arena, BLOCK, sizeof *real),
+                                  whole = hf_arena_take(&arena, BLOCK, sizeof *whole))));
+    const hsize_t chunk[1] = {rows->n < BLOCK ? (hsize_t)rows->n : BLOCK};
+    hid_t group = hf_hdf5_make_group(io, "/tolerance/sample");
+    for (int k = 0; k < n_column; k++)
+        hf_hdf5_close(io, hf_hdf5_make_array(io, group, &column[k].array, chunk));
+    hf_status status = io->status;
+    for (long first = 0; first < rows->n && status == HF_OK; first += BLOCK) {
+        int n = rows->n - first < BLOCK ? (int)(rows->n - first) : BLOCK;
+        status = rows->read(rows->context, first, n, row);
+        for (int k = 0; k < n_column && status == HF_OK; k++) {
+            pick_column(&column[k], n, row, real, whole);
+            column[k].array.dims[0] = (hsize_t)n;
+            hf_hdf5_write_rows(io, group, &column[k].array, (hsize_t)first,
+                               column[k].column == HF_TOLERANCE_STATUS ? (void *)whole : (void *)real);
+            status = io->status;
+        }
+    }
+    hf_hdf5_close(io, group);
+    hf_arena_free(&arena);
+    return status;
+}
+
+static hf_status write_first_order(hf_hdf5 *io, const hf_montecarlo *t)
+{
+    const hf_covariance *c = &t->covariance;
+    const hf_model *m = &t->built->model;
+    double *share, *deviation;
+    hf_arena arena = {0};
+    HF_TRY(HF_ARENA_MAKE(&arena, (share = hf_arena_take(&arena, (size_t)m->n_cable, sizeof *share),
+                                  deviation = hf_arena_take(&arena, (size_t)m->n_node, sizeof *deviation))));
+    for (int e = 0; e < m->n_cable; e++)
+        share[e] = c->spread_m2 > 0 ? c->cable_m2[e] / c->spread_m2 : 0;
+    for (int i = 0; i < m->n_node; i++)
+        deviation[i] = (double)NAN;
+    for (int k = 0; k < m->n_inner_node; k++)
+        deviation[m->node_of_row[m->inner_row[k]]] = c->deviation_m[k];
+    const hf_hdf5_array of_cable = {"cable_share",
+                                    HF_KIND_REAL,
+                                    1,
+                                    {(hsize_t)m->n_cable},
+                                    "",
+                                    "of each cable's own errors in what they add to the mean of psi^2, to first order"};
+    const hf_hdf5_array of_node = {
+        "node_deviation_m",   HF_KIND_REAL, 1,
+        {(hsize_t)m->n_node}, "m",          "root mean square move of each inner node, to first order; NaN of others"};
+    hid_t group = hf_hdf5_make_group(io, "/tolerance");
+    hf_hdf5_write_array(io, group, &of_cable, share);
+    hf_hdf5_write_array(io, group, &of_node, deviation);
+    hf_hdf5_close(io, group);
+    hf_arena_free(&arena);
+    return io->status;
+}
+
+hf_status hf_store_tolerance(hf_store *s, const hf_montecarlo *t, const hf_statistics_rows *rows, hf_messages *messages)
+{
+    if (!s) return HF_OK;
+    hf_hdf5 *io = &s->f.io;
+    hf_hdf5_lock();
+    io->messages = messages;
+    hf_store_file_open(&s->f);
+    hf_layout_renew(io, "/tolerance");
+    hf_status status = write_first_order(io, t);
+    if (status == HF_OK) status = write_samples(io, t, rows);
+    if (status == HF_NO_MEMORY) hf_hdf5_no_memory(io);
+    if (io->status == HF_OK) io->status = status; /* reading them has told why */
+    return hf_hdf5_unlock(io->status);
+}

@@ -1,0 +1,130 @@
+/* Samples of nets as built: the same for any threads, tasks and interruptions; what a case must give; an independent
+ * solver. */
+#include "session.h"
+
+#define BUILT_SCENE SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n"
+#define TOLERANCE                                                                                                      \
+    "tolerance:\n"                                                                                                     \
+    "  sigma_cut_m: 1e-4\n"                                                                                            \
+    "  sigma_cut_ratio: 1e-5\n"                                                                                        \
+    "  sigma_EA_ratio: 0.02\n"                                                                                         \
+    "  sigma_support_m: 2e-5\n"                                                                                        \
+    "  batch: 0.5\n"                                                                                                   \
+    "  samples: 1500\n"                                                                                                \
+    "  sampling: %s\n"                                                                                                 \
+    "  yield: 0.9\n"                                                                                                   \
+    "  require: [{measure: psi_m, at_most: 2e-2}, {measure: n_slack, at_most: 3}]\n"
+
+static const char *built_case(const char *sampling)
+{
+    return file_with("c.yaml", formatted(BUILT_SCENE TOLERANCE, sampling));
+}
+
+static void demand_same(const char *path, const char *whole)
+{
+    HIFDM(0, "diff", path, whole);
+    EXPECT(path, whole, "--",
+           "[k for k in a['tolerance'].attrs if not k.endswith('wall_s') and a['tolerance'].attrs[k] != "
+           "b['tolerance'].attrs[k]] == []",
+           "len(a['tolerance/sample/psi_m']) == 1500", "(a['tolerance/sample/n_slack'][:] > 0).any()");
+}
+
+/* By one thread, by three, and by three tasks of which one never ran. */
+START_TEST(threads_and_tasks_change_nothing)
+{
+    const char *c = built_case(_i ? "sobol" : "random"), *whole = temp("a.h5"), *path = temp("b.h5");
+    HIFDM(0, "tolerance", c, "-o", whole, "--threads", "1");
+    OUT("as built      psi at most ");
+    OUT("yield ");
+    HIFDM(0, "run", c, "-o", path, "--threads", "3", "--quiet");
+    demand_same(path, whole);
+    path = temp("c.h5");
+    HIFDM(0, "tolerance", c, "-o", path, "--task", "0", "--tasks", "3", "--quiet");
+    HIFDM(0, "tolerance", c, "-o", path, "--task", "2", "--tasks", "3", "--quiet");
+    ck_assert(!is_there(path));
+    HIFDM(0, "tolerance", c, "-o", path, "--tasks", "3", "--quiet");
+    demand_same(path, whole);
+    SHELL(0, "test \"$(ls \"$1\"*)\" = \"$1\"", path); /* no journals are left */
+    HIFDM(0, "tolerance", c, "-o", path);
+    ERR("is the finished result of this case");
+    HIFDM(0, "show", path, "--json");
+    OUT("\"tolerance\": {\"samples\": 1500");
+}
+END_TEST
+
+/* Killed after a few changes in its folder, and continued: the same bits. */
+START_TEST(killed_runs_go_on)
+{
+    const char *c = built_case("random"), *whole = temp("a.h5"), *folder = temp("folder");
+    HIFDM(0, "tolerance", c, "-o", whole, "--quiet");
+    ck_assert_int_eq(mkdir(folder, 0777), 0);
+    const char *path = keep(formatted("%s/b.h5", folder));
+    const char *const argv[] = {hifdm_program(), "tolerance", c, "-o", path, "--quiet", "--threads", "1", NULL};
+    for (int kills = 0; kills < 4; kills++) {
+        session s = start_session(folder, false, argv);
+        for (int k = 0; k < 4 + 3 * kills && wait_for_change(&s) >= 0 && !s.has_ended;)
+            k = s.n_change;
+        end_by(&s, SIGKILL);
+    }
+    HIFDM(0, "tolerance", c, "-o", path, "--quiet");
+    demand_same(path, whole);
+    SHELL(0, "test \"$(ls \"$1\")\" = b.h5", folder);
+}
+END_TEST
+
+START_TEST(faults_are_named)
+{
+    static const char *const fault[][2] = {
+        {"  sigma_cut_m: 0\n", "tolerance.sigma_cut_m: must be above 0, or another sigma"},
+        {"  sigma_cut_m: 1e-4\n  samples: 0\n", "7:12: tolerance.samples: must be at least 2"},
+        {"  sigma_cut_m: 1e-4\n  yield: 0.9\n", "7:10: tolerance.yield: needs rows of tolerance.require"},
+        {"  sigma_temperature_K: 5\n",
+         "6:24: tolerance.sigma_temperature_K: needs expansion_per_K in a row of `cables`"},
+        {"  sigma_temperature_K: 5\ncables: [{set: boundary, expansion_per_K: 1e-6}]\n",
+         "tolerance.sigma_temperature_K: 38 cables have no expansion_per_K, like '"},
+        {"  sigma_cut_m: 1e-4\n  require: [{measure: psi_m}]\n", "has no limit; give at_most, at_least or both"},
+        {"  sigma_cut_m: 1e-4\n  require: [{measure: fit_half_path_rms_m, at_most: 1}]\n",
+         "7:23: tolerance.require.0.measure: is not measured: add a section surface"},
+        {"  sigma_cut_m: 0.1\n", "6:16: tolerance.sigma_cut_m: cable '"},
+    };
+    for (size_t k = 0; k < sizeof fault / sizeof *fault; k++) {
+        const char *c = file_with("f.yaml", formatted(BUILT_SCENE "tolerance:\n%s", fault[k][0]));
+        HIFDM(2, "check", c);
+        ERRS("%s", fault[k][1]);
+        HIFDM(2, "tolerance", c, NOWHERE);
+        ERRS("%s", fault[k][1]);
+    }
+    HIFDM(2, "tolerance", file_with("f.yaml", SMALL_SCENE "tolerance: {sigma_cut_m: 1e-4}\n"), NOWHERE);
+    ERR("f.yaml:3:26: tolerance.sigma_cut_m: ");
+    ERR("cables have no EA");
+    HIFDM(2, "tolerance", file_with("f.yaml", BUILT_SCENE), NOWHERE);
+    ERR("has no section tolerance");
+    HIFDM(2, "tolerance", built_case("random"), NOWHERE, "--task", "3", "--tasks", "3");
+    ERR("--task 3: tasks of 3 are 0 to 2");
+}
+END_TEST
+
+/* tests/verify/tolerance_oracle.py draws the errors anew and solves each net by scipy. */
+START_TEST(samples_are_those_of_another_solver)
+{
+    const char *c = built_case("random"), *path = temp("a.h5");
+    HIFDM(0, "tolerance", c, "-o", path, "--quiet", "--set", "tolerance.samples=50", "--set", "tolerance.yield=0",
+          "--set", "form.residual_tolerance=1e-11");
+    struct command o = run_command(
+        HANG_S, (const char *const[]){python_program(), source_path("tests/verify/tolerance_oracle.py"), path, NULL});
+    ck_assert_msg(o.exit_code == 0, "%s%s", o.out, o.err);
+    free_command(&o);
+}
+END_TEST
+
+Suite *suite_cli_tolerance(void)
+{
+    Suite *suite = suite_create("cli/tolerance");
+    TCase *tests = tcase_create("tolerance");
+    suite_add_tcase(suite, tests);
+    tcase_add_loop_test(tests, threads_and_tasks_change_nothing, 0, 2);
+    tcase_add_test(tests, killed_runs_go_on);
+    tcase_add_test(tests, faults_are_named);
+    tcase_add_test(tests, samples_are_those_of_another_solver);
+    return suite;
+}
