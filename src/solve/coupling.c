@@ -314,8 +314,8 @@ hf_status hf_coupling_find_either_way(const hf_model *m, const hf_coupling_setti
                                       const void *context, hf_workspace *w, hf_history *history, hf_form_result *r)
 {
     hf_status status = hf_coupling_find(m, s, solve, context, false, w, history, r);
-    bool is_over = status == HF_NOT_CONVERGED && r->coupling.stop_reason == HF_COUPLING_NET &&
-                   r->coupling.ratio <= 1; /* out of iterations, and not because the loop has led where nothing is */
+    /* the net is out of iterations, and not because the loop has led it to where it has no shape */
+    bool is_over = status == HF_NOT_CONVERGED && r->coupling.stop_reason == HF_COUPLING_NET && !(r->coupling.ratio > 1);
     if (status == HF_OK || status == HF_INTERRUPTED || is_over) return status;
     int n_round = r->coupling.iterations, n_step = r->iterations;
     w->starts_near = n_round > 1;    /* coupling_q_N_per_m is that of a shape */

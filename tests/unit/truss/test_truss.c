@@ -249,6 +249,54 @@ START_TEST(what_the_net_is_given)
 }
 END_TEST
 
+/* The weight of members and hinges is what the supports carry; loads of the truss itself add to those of the net. */
+START_TEST(own_loads_add_up)
+{
+    hf_case c;
+    hf_scene scene;
+    hf_carrier carrier;
+    hf_carrier_state own, net, both;
+    hf_messages messages = {0};
+    struct rng rng = rng_start(2);
+    const double g[3] = {1, -2, 9.81};
+    double pull[108];
+    ck_assert_int_eq(hf_config_load(source_path("configs/straight-edges-truss.yaml"), NULL, 0, &c, &messages), HF_OK);
+    ck_assert_int_eq(hf_config_scene(&c, &scene, &messages), HF_OK);
+    ck_assert_int_eq(hf_config_carrier(&c, &scene, &carrier, &messages), HF_OK);
+    size_t n = 6 * (size_t)carrier.truss.n_node;
+    double *force = zeros(n), *rise_K = zeros((size_t)carrier.truss.n_member), sum[3] = {0}, most = 0;
+    for (int k = 0; k < 108; k++)
+        pull[k] = rng_uniform(&rng, -20, 20);
+    hf_carrier_add_weight(&carrier, g, force);
+    ck_assert_int_eq(hf_carrier_load_own(&carrier, NULL, &(hf_frame_load){.force = force}, &own), HF_OK);
+    for (size_t i = 0; i < n; i++)
+        if (i % 6 < 3) sum[i % 6] -= own.reaction[i];
+    for (int d = 0; d < 3; d++)
+        ck_assert_double_eq_tol(sum[d], carrier.mass_kg * g[d], 1e-7 * carrier.mass_kg); /* rounding by condition 2e6 */
+    hf_carrier_state_free(&own);
+    for (int e = 0; e < carrier.truss.n_member; e++) {
+        carrier.truss.expansion_per_K[e] = 1e-6;
+        rise_K[e] = rng_uniform(&rng, -100, 100);
+    }
+    const hf_frame_load load = {.force = force, .temperature_K = rise_K};
+    ck_assert_int_eq(hf_carrier_load_own(&carrier, NULL, &load, &own), HF_OK);
+    ck_assert_int_eq(hf_carrier_load(&carrier, pull, &net), HF_OK);
+    ck_assert_int_eq(hf_carrier_load_own(&carrier, pull, &load, &both), HF_OK);
+    for (size_t i = 0; i < n; i++)
+        most = fmax(most, fabs(both.displacement[i]));
+    for (size_t i = 0; i < n; i++)
+        ck_assert_double_eq_tol(both.displacement[i], own.displacement[i] + net.displacement[i], 1e-9 * most);
+    hf_carrier_state_free(&own);
+    hf_carrier_state_free(&net);
+    hf_carrier_state_free(&both);
+    free(force);
+    free(rise_K);
+    hf_carrier_free(&carrier);
+    hf_scene_free(&scene);
+    hf_case_free(&c);
+}
+END_TEST
+
 /* A net whose supports are on all ribs has more of them than a truss with corners two cells apart has nodes. */
 START_TEST(support_without_attachment)
 {
@@ -410,6 +458,7 @@ Suite *suite_unit_truss(void)
     tcase_add_test(tests, it_carries_edge_ties);
     tcase_add_test(tests, too_many_modules);
     tcase_add_test(tests, what_the_net_is_given);
+    tcase_add_test(tests, own_loads_add_up);
     tcase_add_test(tests, support_without_attachment);
     tcase_add_test(tests, good_import);
     tcase_add_test(tests, the_nearest_node_is_taken);
