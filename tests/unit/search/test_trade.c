@@ -155,6 +155,44 @@ START_TEST(a_ratio_has_a_front_in_closed_form)
 }
 END_TEST
 
+/* Any allocation may fail: no front, no leak, and the next search is as ever. */
+START_TEST(without_memory_there_is_no_front)
+{
+    static const struct hand_node node[] = {
+        {{-1, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0.5, 0, 0}, HF_ROLE_INNER, {0}}, {{1, 0, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 10},
+                                              {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 12}};
+    struct traded t = {0};
+    const hf_goal_settings wanted[2] = {objective(HF_GOAL_PSI, "", NAN), objective(HF_GOAL_LENGTH, "", 0.8)};
+    OPEN_HAND(&t.net, node, cable, HF_METHOD_FDM);
+    follow(&t, wanted, 1, 100, 3);
+    const hf_trade trade = {.evaluator = &t.evaluator,
+                            .lower = t.lower,
+                            .upper = t.upper,
+                            .n_point = 3,
+                            .max_iterations = 200,
+                            .n_thread = 1,
+                            .n_start = 1,
+                            .start = t.base};
+    int n_failed = 0;
+    for (bool has_failed = true; has_failed;) {
+        hf_front front;
+        fail_allocation_at(n_failed + 1);
+        hf_status status = hf_trade_find(&trade, &front);
+        has_failed = end_allocation_failure();
+        ck_assert_int_eq(status, has_failed ? HF_NO_MEMORY : HF_OK);
+        if (has_failed)
+            ck_assert_int_eq(front.n_point, 0);
+        else
+            ck_assert_mem_eq(front.design, t.front.design, 3 * (size_t)front.n_gene * sizeof(double));
+        hf_front_free(&front);
+        n_failed += has_failed;
+    }
+    ck_assert_int_gt(n_failed, 20);
+    close_traded(&t);
+}
+END_TEST
+
 /* ---- a reflector ---- */
 
 static void open_chen(hf_problem *p, const char *objectives)
@@ -293,6 +331,7 @@ Suite *suite_unit_trade(void)
     tcase_add_loop_test(tests, a_node_on_a_line_has_a_front_in_closed_form, 0, 2);
     tcase_add_loop_test(tests, points_are_even_and_slopes_those_of_differences, 0, N_TRADED);
     tcase_add_test(tests, threads_do_not_change_a_bit);
+    tcase_add_test(tests, without_memory_there_is_no_front);
     tcase_add_test(tests, a_stop_ends_the_search);
     tcase_add_test(tests, a_ratio_has_a_front_in_closed_form);
     return suite;
