@@ -10,8 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Rounds of orthogonal iteration. Any orthonormal directions give right samples; with the true ones they converge
- * fastest. From 4 on the variance that the directions hold changes by less than 1 %. */
+/* Rounds of orthogonal iteration. Any orthonormal directions give right samples; the nearer they are to the leading
+ * ones, the faster means converge. */
 #define ROUNDS 6
 /* In place of the kind of an error, for numbers that belong to the sequence. */
 enum { SHIFTS = HF_ERROR_N_KIND, LAST_BITS, STARTS };
