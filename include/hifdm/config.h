@@ -42,6 +42,8 @@ typedef struct {
     hf_form_settings form;
     hf_optimize_settings optimize;
     hf_surface_settings surface; /* a generated net supplies what is not given */
+    bool has_adjust;
+    hf_adjust_settings adjust;
     hf_built_settings built;
     hf_tolerance_settings tolerance;
 

@@ -27,6 +27,7 @@ typedef struct {
     X(check)                                                                                                           \
     X(evaluate)                                                                                                        \
     X(tolerance)                                                                                                       \
+    X(adjust)                                                                                                          \
     X(sweep)                                                                                                           \
     X(status)                                                                                                          \
     X(merge)                                                                                                           \

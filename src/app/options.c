@@ -150,6 +150,7 @@ static hf_status read_bash(const hf_option *option, const char *value, hf_option
 
 #define AT(member) offsetof(hf_options, member)
 #define CASE_COMMANDS "run check evaluate tolerance"
+#define SET_COMMANDS CASE_COMMANDS " adjust"
 
 static const hf_option option_table[] = {
     {"--output", "-o", "FILE", "result file (default: the case's name with .h5, in this folder)", "run tolerance",
@@ -163,6 +164,10 @@ static const hf_option option_table[] = {
      "evaluate", read_text, AT(jacobian), NULL},
     {"--output", "-o", "FILE", "CSV of the results (default: standard output)", "evaluate", read_text, AT(output),
      NULL},
+    {"--measured", NULL, "FILE",
+     "CSV id,x_m,y_m,z_m[,sigma_m]: where nodes of the net as built are; some may be missing", "adjust", read_text,
+     AT(measured), NULL},
+    {"--output", "-o", "FILE", "CSV of the moves (default: none)", "adjust", read_text, AT(output), NULL},
     {"--output", "-o", "FILE", "merged file (default: the study's name with .h5, in this folder)", "merge", read_text,
      AT(output), NULL},
     {"--dir", NULL, "DIR", "folder of the results (default: the study's name with .d, in this folder)",
@@ -182,19 +187,19 @@ static const hf_option option_table[] = {
      "begin anew, whatever FILE and its journal hold; without it an unfinished result of this case goes on",
      "run tolerance", read_flag, AT(force), NULL},
     {"--force", NULL, NULL, "replace existing files (of run: the same as --restart)",
-     "run export evaluate report merge tolerance", read_flag, AT(force), NULL},
+     "run export evaluate report merge tolerance adjust", read_flag, AT(force), NULL},
     {"--set", NULL, "KEY=VALUE", "override one key of the case, like form.pretension_N=12; may be repeated",
-     CASE_COMMANDS, read_set, 0, NULL},
+     SET_COMMANDS, read_set, 0, NULL},
     {"--threads", NULL, "N", "threads (default: one per core); the results do not depend on it", CASE_COMMANDS " sweep",
      read_threads, 0, NULL},
     {"--seed", NULL, "S", "seed of the genetic algorithm instead of optimize.seed", "run", read_seed, 0, NULL},
-    {"--json", NULL, NULL, "one JSON object on standard output", "run show recover evaluate status tolerance",
+    {"--json", NULL, NULL, "one JSON object on standard output", "run show recover evaluate status tolerance adjust",
      read_flag, AT(json), NULL},
     {"--progress", NULL, "auto|none|line|log|jsonl",
      "on standard error: line for a terminal, log every 30 s, jsonl for programs", "run tolerance", read_progress, 0,
      NULL},
     {"--quiet", NULL, NULL, "no progress and no summary; warnings and errors stay",
-     "run evaluate sweep merge tolerance", read_flag, AT(quiet), NULL},
+     "run evaluate sweep merge tolerance adjust", read_flag, AT(quiet), NULL},
     {"--rtol", NULL, "R", "numbers are equal when |a-b| <= atol + R |b| (default 0: to the bit)", "diff",
      read_tolerance, AT(rtol), NULL},
     {"--atol", NULL, "A", "see --rtol", "diff", read_tolerance, AT(atol), NULL},

@@ -20,6 +20,7 @@ struct hf_options {
     const char *export_to[HF_N_EXPORTER]; /* file or folder by exporter; NULL: not asked for */
     const char *designs, *template_path;  /* --designs, --template */
     const char *jacobian;                 /* --jacobian */
+    const char *measured;                 /* --measured */
     const char *stage;                    /* --stage */
     const char *state;                    /* --case */
     const char **set;                     /* [n_set] --set key=value, owned */

@@ -1,4 +1,4 @@
-/* What joins several keys of the lists about the net as built: cables, nodes, cases. */
+/* What joins several keys about the net as built: adjust, and the lists cables, nodes, cases. */
 #include "case/config_check.h"
 
 #include <hifdm/cable_set.h>
@@ -12,6 +12,15 @@ void hf_config_check_set(hf_config_faults *f, const char *list, int row, const c
     bool is_group = !strcmp(set, hf_group_word[0]) || !strcmp(set, hf_group_word[1]) || !strcmp(set, "all");
     const char *fault = *set && !is_group ? hf_cable_set_name_fault(set) : NULL;
     if (fault) hf_config_fault_in_row(f, list, row, "set", fault);
+}
+
+static void check_adjust(const hf_adjust_settings *a, hf_config_faults *f)
+{
+    bool is_group = !strcmp(a->set, hf_group_word[0]) || !strcmp(a->set, hf_group_word[1]) || !strcmp(a->set, "all");
+    const char *fault = is_group ? NULL : hf_cable_set_name_fault(a->set);
+    if (fault) hf_config_fault_of(f, "adjust.set", fault);
+    if (a->range_m * (1 + 1e-12) < a->step_m)
+        hf_config_fault_of(f, "adjust.range_m", "is smaller than adjust.step_m, which allows no move at all");
 }
 
 static void check_cables(const hf_built_settings *b, hf_config_faults *f)
@@ -163,6 +172,7 @@ static void check_tolerance(const hf_case *c, hf_config_faults *f)
 
 void hf_config_check_built(const hf_case *c, hf_config_faults *f)
 {
+    if (c->has_adjust) check_adjust(&c->adjust, f);
     check_cables(&c->built, f);
     check_states(&c->built, f);
     check_expansions(c, f);

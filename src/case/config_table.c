@@ -36,6 +36,8 @@ const hf_section hf_section_table[] = {
     {"truss.ring.diagonal", AT(has_truss_ring), "Members across the bays."},
     {"truss.import", AT(has_truss_import), "Instead of the generated units: any truss from two CSV files."},
     {"coupling", SIZE_MAX, "Of the net with its truss (Fig. 17). Without a truss nothing of it is used."},
+    {"adjust", AT(has_adjust),
+     "Turnbuckles of the net as built, for `hifdm adjust`: which moves bring the figure back, given measured places."},
     {"sweep", AT(has_sweep),
      "Axes of a sweep, key: [values] or key: {from, to, n}: for `hifdm sweep`, which runs the case once per point."},
 };
@@ -111,6 +113,21 @@ const hf_field hf_field_table[] = {
      "and truss in one matrix, if the net is solved by Newton's method"},
     {"coupling.max_iterations", HF_FIELD_INT, AT(form.coupling.max_iterations), 1, 1000000, "200", "", NULL,
      "form-findings in this loop before it is given up"},
+
+    {"adjust.set", HF_FIELD_TEXT, AT(adjust.set), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
+     "cables that can be turned: a set of the net, or inner, boundary, all"},
+    {"adjust.range_m", HF_FIELD_DOUBLE, AT(adjust.range_m), HF_ABOVE_ZERO, 1e3, NULL, "m", NULL,
+     "how far the cut length of each may be changed, either way"},
+    {"adjust.step_m", HF_FIELD_DOUBLE, AT(adjust.step_m), HF_ABOVE_ZERO, 1e3, NULL, "m", NULL,
+     "moves are multiples of it"},
+    {"adjust.moves", HF_FIELD_INT, AT(adjust.moves), 1, 1000000, "10", "", NULL, "cables that are turned at most"},
+    {"adjust.target_m", HF_FIELD_DOUBLE, AT(adjust.target_m), 0, BIG, "0", "m", NULL,
+     "no further move is made once the figure is below it"},
+    {"adjust.figure", HF_FIELD_WORD, AT(adjust.figure), 0, 0, "psi", "", hf_figure_word,
+     "what the moves make small, RMS: psi: distance of the inner nodes to their theoretical places; surface: of the "
+     "inner nodes to the wanted surface; facets: of the facets to it"},
+    {"adjust.sigma_m", HF_FIELD_DOUBLE, AT(adjust.sigma_m), HF_ABOVE_ZERO, BIG, "", "m", NULL,
+     "standard deviation of each measured coordinate, of nodes without a sigma_m of their own"},
 
     {"optimize.method", HF_FIELD_WORD, AT(optimize.method), 0, 0, "ga", "", hf_optimize_method_word,
      "genetic algorithm, Levenberg-Marquardt from the form-finding's tensions, or both. After the genetic algorithm "

@@ -85,7 +85,7 @@ START_TEST(schema_is_yaml_with_every_key)
     EXPECT(
         schema, "--",
         "list(a) == ['title', 'scene', 'surface', 'form', 'optimize', 'tolerance', 'truss', 'coupling', "
-        "'sweep', 'cables', 'nodes', 'cases']",
+        "'adjust', 'sweep', 'cables', 'nodes', 'cases']",
         "set(a['scene']) == {'parabolic_cylinder', 'paraboloid', 'import'}",
         "set(a['scene']['parabolic_cylinder']) == {'aperture_m', 'length_m', 'focal_length_m', 'modules', "
         "'cells_per_module', 'pitches_x_m', 'pitches_y_m', 'pattern', 'spacing', 'boundary', 'scallop', 'supports', "

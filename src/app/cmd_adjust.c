@@ -1,0 +1,442 @@
+/* `hifdm adjust`: from measured places of the net as built to the errors of its cut lengths, and to the fewest moves of
+ * turnbuckles that bring its figure back.
+ *
+ * in : nodes.csv id,x_m,y_m,z_m[,sigma_m]; the sections tolerance (how large errors are) and adjust (what may be
+ *      turned) of the case.
+ * out: order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm. One row per move, in the order in
+ *      which they are made; a move above 0 lets cable out.
+ *
+ * Contents: the prior - the work - figures of what was measured - the table - for people - for programs - together */
+#include "app/cmd.h"
+
+#include "app/options.h"
+#include "base/arena.h"
+#include "base/csv.h"
+#include "base/file_out.h"
+#include "base/json.h"
+#include "built/adjust.h"
+#include "built/measured.h"
+#include "net/cable_pick.h"
+#include "out/export.h"
+#include "out/print.h"
+#include "run/problem_parts.h"
+#include <hifdm/store.h>
+
+#include <math.h>
+#include <string.h>
+
+#define STANDS_OUT 3.0 /* sigmas of an error that is named */
+#define NAMED_MAX 10   /* of these, for people */
+
+typedef struct {
+    hf_problem problem;
+    hf_built built;
+    hf_measured measured;
+    hf_estimate estimate;
+    hf_goals goals;
+    hf_adjustment adjustment;
+    hf_adjust_task task;
+    int *cable;         /* [n_cable] of the task */
+    double *sigma_m;    /* [n_cable] prior */
+    double *expected_m; /* [n_node] */
+    double measured_m;  /* psi of the inner nodes that were measured; NaN for other figures */
+    void *block;
+} job;
+
+static void job_free(job *j)
+{
+    hf_arena arena = {.block = j->block};
+    hf_adjust_free(&j->adjustment);
+    hf_goals_free(&j->goals);
+    hf_estimate_free(&j->estimate);
+    hf_measured_free(&j->measured);
+    hf_built_free(&j->built);
+    hf_problem_free(&j->problem);
+    hf_arena_free(&arena);
+}
+
+/* ---- the prior ---- */
+
+/* The standard deviation of each cut length. An error of EA acts as one of the length by which the cable is
+ * strained. */
+static hf_status find_prior(job *j, const char *path, hf_messages *messages)
+{
+    const hf_tolerance_settings *t = &j->problem.settings.tolerance;
+    const hf_built *b = &j->built;
+    double largest = 0;
+    for (int e = 0; e < b->model.n_cable; e++) {
+        double l0 = b->scene.target[e], strained = l0 * b->tension_N[e] / b->scene.EA_N[e];
+        double ratio = t->sigma_cut_ratio * l0, EA = t->sigma_EA_ratio * strained;
+        j->sigma_m[e] = sqrt(t->sigma_cut_m * t->sigma_cut_m + ratio * ratio + EA * EA);
+        largest = fmax(largest, j->sigma_m[e]);
+    }
+    if (largest > 0) return HF_OK;
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: tolerance: cables have no errors that could be estimated; give sigma_cut_m, sigma_cut_ratio "
+                    "or sigma_EA_ratio",
+                    path);
+}
+
+/* ---- the work ---- */
+
+static hf_status check_sections(const hf_case *c, const char *path, hf_messages *messages)
+{
+    char place[HF_PATH_SIZE + 64];
+    if (!c->has_adjust)
+        hf_error(messages, HF_BAD_CASE,
+                 "%s: has no section adjust: add adjust: {set: NAME, range_m: 0.002, step_m: 0.0001}, the cables that "
+                 "can be turned, how far, and in which steps",
+                 path);
+    if (!c->has_tolerance)
+        hf_error(messages, HF_BAD_CASE,
+                 "%s: has no section tolerance: add tolerance: {sigma_cut_m: 0.0001}, how well cables are cut", path);
+    hf_config_place(c, "adjust.figure", place, sizeof place);
+    if (c->has_adjust && c->adjust.figure != HF_GOAL_PSI && !c->has_surface)
+        hf_error(messages, HF_BAD_CASE, "%s: %s needs the wanted surface: add a section surface", place,
+                 hf_figure_word[c->adjust.figure]);
+    return messages->n_error ? HF_BAD_CASE : HF_OK;
+}
+
+static hf_status pick_cables(job *j, hf_messages *messages)
+{
+    char place[HF_PATH_SIZE + 64];
+    const hf_case *c = &j->problem.settings;
+    hf_config_place(c, "adjust.set", place, sizeof place);
+    int n = hf_cable_pick_some(&j->problem.scene, c->adjust.set, place, j->cable, messages);
+    j->task = (hf_adjust_task){&c->adjust, &j->goals, n, j->cable};
+    return n > 0 ? HF_OK : HF_BAD_CASE;
+}
+
+static hf_status find_figure(job *j, hf_messages *messages)
+{
+    const hf_problem *p = &j->problem;
+    hf_optimize_settings wanted = {.n_goal = 1};
+    wanted.goal[0] = (hf_goal_settings){.goal = p->settings.adjust.figure, .weight = 1};
+    if (wanted.goal[0].goal == HF_GOAL_FACETS && p->facets.n_facet == 0)
+        return hf_error(messages, HF_BAD_CASE, "%s: adjust.figure: facets: this net has no facets", p->settings.path);
+    return hf_goals_create(&j->built.scene, &j->built.model, &wanted, &p->surface, &p->facets, &j->goals, messages);
+}
+
+static hf_status make_net(job *j, const char *path, hf_messages *messages)
+{
+    hf_problem *p = &j->problem;
+    HF_TRY(hf_problem_allocate(p, messages));
+    hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
+    HF_TRY(hf_problem_explain(p, messages));
+    if (p->settings.has_optimize)
+        hf_warning(messages, "%s: the net is built as form-finding has it, before section optimize", path);
+    return hf_built_make(path, &p->scene, &p->model, &p->settings.form, &p->workspace, &j->built, messages);
+}
+
+static hf_status explain_failure(hf_status status, const char *what, const char *path, hf_messages *messages)
+{
+    if (status == HF_OK || status == HF_INTERRUPTED) return status;
+    return hf_error(messages, status, "%s: %s: %s", path, what, hf_status_text(status));
+}
+
+static hf_status estimate_errors(job *j, const hf_options *o, hf_messages *messages)
+{
+    const hf_tolerance_settings *t = &j->problem.settings.tolerance;
+    hf_saddle_prior prior = {j->sigma_m, t->sigma_support_m, j->measured.weight_per_m2};
+    hf_estimate *p = &j->estimate;
+    HF_TRY(explain_failure(hf_estimate_create(&j->built, &prior, j->measured.place_m, p), "the nominal net", o->file,
+                           messages));
+    HF_TRY(hf_estimate_expect(p, j->expected_m));
+    HF_TRY(hf_measured_check(o->measured, &j->built, j->expected_m, &j->measured, messages));
+    HF_TRY(explain_failure(hf_estimate_find(p), "the estimated net", o->file, messages));
+    if (!p->is_settled)
+        hf_warning(messages, "%s: the estimate did not settle in %d steps: the figures below are of the last one",
+                   o->measured, p->n_step);
+    return HF_OK;
+}
+
+/* ---- figures of what was measured ---- */
+
+static double measured_psi_m(const job *j)
+{
+    const hf_model *m = &j->built.model;
+    double square = 0;
+    int n = 0;
+    for (int k = 0; k < m->n_inner_node; k++) {
+        int row = m->inner_row[k];
+        if (!j->measured.line[row]) continue;
+        for (int c = 0; c < 3; c++) {
+            double d = j->measured.place_m[3 * row + c] - m->position_m[c * m->n_node + row];
+            square += d * d;
+        }
+        n++;
+    }
+    return n > 0 && j->problem.settings.adjust.figure == HF_GOAL_PSI ? sqrt(square / n) : (double)NAN;
+}
+
+static double sigmas_of(const job *j, int e)
+{
+    return j->sigma_m[e] > 0 ? j->estimate.cut_m[e] / j->sigma_m[e] : 0;
+}
+
+/* The cable with the largest error below `limit` sigmas, of those that stand out; -1: none. Of two alike the first. */
+static int next_outlier(const job *j, int last)
+{
+    int next = -1;
+    double limit = last < 0 ? (double)INFINITY : fabs(sigmas_of(j, last));
+    for (int e = 0; e < j->built.model.n_cable; e++) {
+        double size = fabs(sigmas_of(j, e));
+        if (size <= STANDS_OUT || size > limit || (size == limit && e <= last)) continue;
+        if (next < 0 || size > fabs(sigmas_of(j, next))) next = e;
+    }
+    return next;
+}
+
+/* ---- the table ---- */
+
+static void write_moves(const void *context, FILE *f)
+{
+    const job *j = context;
+    const hf_adjustment *a = &j->adjustment;
+    fputs("order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm\n", f);
+    for (int k = 0; k < a->n_move; k++) {
+        const hf_adjust_move *move = &a->move[k];
+        fprintf(f, "%d,", k + 1);
+        hf_csv_write_id(j->built.scene.cable_id[move->cable], f);
+        fprintf(f, ",%s,%.10g,%.6g,%.6g,%.6g\n", j->task.settings->set, move->move_m * 1e3, move->before_N,
+                move->after_N, move->figure_m * 1e3);
+    }
+}
+
+/* ---- for people ---- */
+
+static const char *const end_word[] = {"target", "moves", "doubt", "none"};
+
+static void print_end(const job *j, FILE *f)
+{
+    const hf_adjust_settings *s = j->task.settings;
+    switch (j->adjustment.end) {
+    case HF_MOVES_TARGET:
+        hf_print_line(f, "no further move: target_m is met");
+        break;
+    case HF_MOVES_ALL:
+        hf_print_line(f, "no further move: all %d are made (adjust.moves)", s->moves);
+        break;
+    case HF_MOVES_DOUBT:
+        hf_print_line(f, "no further move: the next one would gain less than these measurements can tell");
+        break;
+    case HF_MOVES_NONE:
+        hf_print_line(f, "no further move: none gains anything");
+        break;
+    }
+}
+
+static void print_outliers(const job *j, FILE *f)
+{
+    int n = 0;
+    for (int e = next_outlier(j, -1); e >= 0; e = next_outlier(j, e)) {
+        if (n++ >= NAMED_MAX) continue;
+        double error = j->estimate.cut_m[e];
+        hf_print_line(f, "cable '%s' seems %.3g mm too %s, %.1f sigma", j->built.scene.cable_id[e], fabs(error) * 1e3,
+                      error > 0 ? "long" : "short", fabs(sigmas_of(j, e)));
+    }
+    if (n > NAMED_MAX) hf_print_line(f, "and %d more cables beyond %g sigma", n - NAMED_MAX, STANDS_OUT);
+}
+
+static void print_moves(const job *j, FILE *f)
+{
+    const hf_adjustment *a = &j->adjustment;
+    if (a->n_move)
+        hf_print_line(f, "%5s  %-20s %9s  %10s %10s  %10s", "order", "cable", "move mm", "N before", "N after",
+                      "RMS mm");
+    for (int k = 0; k < a->n_move; k++) {
+        const hf_adjust_move *move = &a->move[k];
+        char slack[32] = "";
+        if (move->n_slack) snprintf(slack, sizeof slack, "  %d slack", move->n_slack);
+        hf_print_line(f, "%5d  %-20s %+9.6g  %10.4g %10.4g  %10.4f%s", k + 1, j->built.scene.cable_id[move->cable],
+                      move->move_m * 1e3, move->before_N, move->after_N, move->figure_m * 1e3, slack);
+    }
+}
+
+static void print_summary(const job *j, const char *path, FILE *f)
+{
+    const hf_adjustment *a = &j->adjustment;
+    const hf_tolerance_settings *t = &j->problem.settings.tolerance;
+    const char *figure = hf_figure_word[j->task.settings->figure];
+    hf_print_line(f, "%d of %d nodes measured; supports %s", j->measured.n_node, j->built.model.n_node,
+                  t->sigma_support_m > 0 ? "are estimated, too"
+                                         : "are taken to be where the case has them (no tolerance.sigma_support_m)");
+    if (isfinite(j->measured_m)) hf_print_line(f, "%s measured    %.4f mm", figure, j->measured_m * 1e3);
+    hf_print_line(f, "%s estimated   %.4f mm; with what is left open %.4f +- %.4f mm; as designed %.4f mm", figure,
+                  a->estimated_m * 1e3, a->doubt_m[0] * 1e3, a->spread_m[0] * 1e3, a->nominal_m * 1e3);
+    print_outliers(j, f);
+    print_moves(j, f);
+    hf_print_line(f,
+                  "%s after %d move%s %.4f mm; with what is left open %.4f +- %.4f mm; any moves of %d cables: %.4f mm",
+                  figure, a->n_move, a->n_move == 1 ? "" : "s", a->adjusted_m * 1e3, a->doubt_m[1] * 1e3,
+                  a->spread_m[1] * 1e3, j->task.n_cable, a->best_m * 1e3);
+    print_end(j, f);
+    if (path) hf_print_line(f, "moves in %s; above 0: let the cable out", path);
+}
+
+/* ---- for programs ---- */
+
+static void print_json_moves(const job *from, hf_json *j)
+{
+    const hf_adjustment *a = &from->adjustment;
+    hf_json_line(j, " ");
+    hf_json_open(j, "moves", '[');
+    for (int k = 0; k < a->n_move; k++) {
+        const hf_adjust_move *move = &a->move[k];
+        hf_json_line(j, "  ");
+        hf_json_open(j, NULL, '{');
+        hf_json_text(j, "cable", from->built.scene.cable_id[move->cable]);
+        hf_json_integer(j, "steps", move->steps);
+        hf_json_number(j, "move_m", move->move_m);
+        hf_json_number(j, "tension_before_N", move->before_N);
+        hf_json_number(j, "tension_after_N", move->after_N);
+        hf_json_number(j, "predicted_m", move->figure_m);
+        hf_json_integer(j, "slack", move->n_slack);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+    hf_json_line(j, " ");
+    hf_json_open(j, "stand_out", '[');
+    for (int e = next_outlier(from, -1); e >= 0; e = next_outlier(from, e)) {
+        hf_json_line(j, "  ");
+        hf_json_open(j, NULL, '{');
+        hf_json_text(j, "cable", from->built.scene.cable_id[e]);
+        hf_json_number(j, "error_m", from->estimate.cut_m[e]);
+        hf_json_number(j, "sigmas", fabs(sigmas_of(from, e)));
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
+static void print_json_figures(const job *from, hf_json *j)
+{
+    const hf_adjustment *a = &from->adjustment;
+    hf_json_line(j, " ");
+    hf_json_text(j, "figure", hf_figure_word[from->task.settings->figure]);
+    hf_json_integer(j, "measured_nodes", from->measured.n_node);
+    hf_json_integer(j, "cables", from->task.n_cable);
+    hf_json_number(j, "nominal_m", a->nominal_m);
+    hf_json_number(j, "measured_m", from->measured_m);
+    hf_json_number(j, "estimated_m", a->estimated_m);
+    hf_json_number(j, "adjusted_m", a->adjusted_m);
+    hf_json_number(j, "best_m", a->best_m);
+    hf_json_line(j, " ");
+    hf_json_number(j, "estimated_expected_m", a->doubt_m[0]);
+    hf_json_number(j, "estimated_sigma_m", a->spread_m[0]);
+    hf_json_number(j, "adjusted_expected_m", a->doubt_m[1]);
+    hf_json_number(j, "adjusted_sigma_m", a->spread_m[1]);
+    hf_json_line(j, " ");
+    hf_json_text(j, "end", end_word[a->end]);
+    hf_json_bool(j, "supports_estimated", from->problem.settings.tolerance.sigma_support_m > 0);
+    hf_json_integer(j, "estimate_steps", from->estimate.n_step);
+    hf_json_integer(j, "rounds", a->n_round);
+    hf_json_bool(j, "settled", from->estimate.is_settled && a->is_settled);
+}
+
+static void print_json_errors(const job *from, hf_json *j)
+{
+    hf_json_line(j, " ");
+    hf_json_open(j, "errors_m", '{');
+    for (int e = 0; e < from->built.model.n_cable; e++) {
+        if (e % 4 == 0) hf_json_line(j, "  ");
+        hf_json_number(j, from->built.scene.cable_id[e], from->estimate.cut_m[e]);
+    }
+    hf_json_close(j, '}');
+}
+
+static void print_json(const job *from, const char *path, hf_status status, const char *messages, FILE *f)
+{
+    hf_json j = {.file = f};
+    hf_json_open(&j, NULL, '{');
+    hf_json_text(&j, "status", hf_status_word(status));
+    if (status == HF_OK) {
+        print_json_figures(from, &j);
+        print_json_moves(from, &j);
+        print_json_errors(from, &j);
+    }
+    hf_json_line(&j, " ");
+    hf_json_text(&j, "version", hf_store_version());
+    hf_json_text(&j, "case", from->problem.settings.path);
+    if (status == HF_OK && path) hf_json_text(&j, "file", path);
+    hf_json_line(&j, " ");
+    hf_json_lines(&j, "warnings", "warning: ", messages);
+    if (status != HF_OK) {
+        hf_json_line(&j, " ");
+        hf_json_lines(&j, "errors", "error: ", messages);
+    }
+    hf_json_close(&j, '}');
+    fputc('\n', f);
+}
+
+/* ---- together ---- */
+
+static void lay_out_job(hf_arena *arena, job *j)
+{
+    size_t n_cable = (size_t)j->problem.scene.n_cable, n_node = (size_t)j->problem.scene.n_node;
+    j->cable = hf_arena_take(arena, n_cable, sizeof *j->cable);
+    j->sigma_m = hf_arena_take(arena, n_cable, sizeof *j->sigma_m);
+    j->expected_m = hf_arena_take(arena, n_node, sizeof *j->expected_m);
+}
+
+static hf_status allocate_job(job *j, hf_messages *messages)
+{
+    hf_arena arena = {0};
+    if (HF_ARENA_MAKE(&arena, lay_out_job(&arena, j)) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for %d cables", j->problem.scene.n_cable);
+    j->block = arena.block;
+    return HF_OK;
+}
+
+static hf_status check_output(const job *j, const hf_options *o, hf_messages *messages)
+{
+    if (!o->output) return HF_OK;
+    HF_TRY(hf_problem_spare_inputs(&j->problem, o->measured, o->output, messages));
+    HF_TRY(hf_export_claim_file(o->output, o->force, messages));
+    return hf_file_out_try(o->output, messages);
+}
+
+static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
+{
+    HF_TRY(hf_problem_load(o->file, o->set, o->n_set, &j->problem, messages));
+    HF_TRY(check_sections(&j->problem.settings, o->file, messages));
+    HF_TRY(check_output(j, o, messages));
+    HF_TRY(allocate_job(j, messages));
+    HF_TRY(pick_cables(j, messages));
+    HF_TRY(make_net(j, o->file, messages));
+    HF_TRY(find_prior(j, o->file, messages));
+    HF_TRY(find_figure(j, messages));
+    HF_TRY(hf_measured_read(o->measured, &j->built, j->problem.settings.adjust.sigma_m, &j->measured, messages));
+    HF_TRY(estimate_errors(j, o, messages));
+    j->measured_m = measured_psi_m(j);
+    HF_TRY(
+        explain_failure(hf_adjust_find(&j->estimate, &j->task, &j->adjustment), "the adjusted net", o->file, messages));
+    return o->output ? hf_file_out_write(o->output, write_moves, j, messages) : HF_OK;
+}
+
+/* HF_OK also when no move is worth it. HF_BAD_CASE for a faulty case or table, HF_EXISTS, HF_IO, HF_NO_MEMORY, or the
+ * status of a shape that failed. */
+static hf_status command_adjust(const hf_options *o, FILE *file, hf_messages *messages)
+{
+    if (!o->measured) return hf_error(messages, HF_BAD_USAGE, "'hifdm adjust' needs --measured FILE");
+    job j = {0};
+    hf_status status = execute(&j, o, messages);
+    if (o->json)
+        print_json(&j, o->output, status, messages->text, file);
+    else if (status == HF_OK && !o->quiet)
+        print_summary(&j, o->output, file);
+    job_free(&j);
+    return status;
+}
+
+const hf_command hf_cmd_adjust = {
+    .name = "adjust",
+    .argument = "CASE",
+    .help = "which turnbuckles to turn, given the measured places of the net as built",
+    .about = "The measured places of nodes tell which cut lengths are wrong, as far as the section tolerance leaves it "
+             "open; then the fewest moves of the cables that the section adjust names bring the figure back, in steps "
+             "and within a range. The table has them in the order in which they are made, with the tension of the "
+             "cable before and after, and the figure that is predicted after each.",
+    .examples = "hifdm adjust case.yaml --measured nodes.csv -o moves.csv\n"
+                "hifdm adjust case.yaml --measured nodes.csv --json --set adjust.moves=5",
+    .run = command_adjust,
+};

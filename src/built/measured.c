@@ -1,0 +1,311 @@
+/* Contents: the table - another unit, another frame - nodes far away */
+#include "built/measured.h"
+
+#include "base/arena.h"
+#include "base/csv.h"
+#include "base/text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ID, X, Y, Z, SIGMA, N_COLUMN };
+static const char *const column_name[N_COLUMN] = {"id", "x_m", "y_m", "z_m", "sigma_m"};
+#define SPARE_COLUMNS 64
+#define NODES_LEAST 3 /* that can move: fewer do not show a frame that is shifted or turned */
+
+/* ---- the table ---- */
+
+static void lay_out_measured(hf_arena *arena, const hf_model *m, hf_measured *measured)
+{
+    size_t n = (size_t)m->n_node;
+    measured->place_m = hf_arena_take(arena, 3 * n, sizeof(double));
+    measured->weight_per_m2 = hf_arena_take(arena, 3 * n, sizeof(double));
+    measured->line = hf_arena_take(arena, n, sizeof(int));
+}
+
+static double read_sigma(hf_csv *t, const int *where, int r, const char *id, double sigma_m)
+{
+    bool is_given = where[SIGMA] >= 0 && *hf_csv_cell(t, r, where[SIGMA]);
+    if (is_given) sigma_m = hf_csv_number(t, r, where[SIGMA], id, column_name[SIGMA]);
+    if (is_given && sigma_m <= 0) hf_csv_fault(t, t->line[r], id, "sigma_m must be above zero", "");
+    if (!is_given && !(sigma_m > 0))
+        hf_csv_fault(t, t->line[r], id, "has no sigma_m; give the column, or adjust.sigma_m for all nodes", "");
+    return sigma_m;
+}
+
+static void read_node(hf_csv *t, const int *where, int r, int row, double sigma_m, hf_measured *measured)
+{
+    const char *id = hf_csv_cell(t, r, where[ID]);
+    double sigma = read_sigma(t, where, r, id, sigma_m);
+    for (int c = 0; c < 3; c++) {
+        measured->place_m[3 * row + c] = hf_csv_number(t, r, where[X + c], id, column_name[X + c]);
+        measured->weight_per_m2[3 * row + c] = 1 / (sigma * sigma);
+    }
+    measured->line[row] = t->line[r];
+    measured->n_node++;
+}
+
+/* Every node of the scene looks for its row of the table; rows that nobody found have unknown ids. */
+static hf_status read_nodes(hf_csv *t, const int *where, const hf_built *b, double sigma_m, hf_measured *measured)
+{
+    const hf_model *m = &b->model;
+    hf_arena arena = {0};
+    bool *is_found = NULL;
+    hf_csv_named *index = hf_csv_index(t, where[ID]);
+    hf_status status =
+        index ? HF_ARENA_MAKE(&arena, is_found = hf_arena_take(&arena, (size_t)t->n_row, sizeof(bool))) : HF_NO_MEMORY;
+    for (int i = 0; i < m->n_node && status == HF_OK; i++) {
+        int r = hf_csv_row_of(index, t->n_row, b->scene.node_id[i]);
+        if (r < 0) continue;
+        is_found[r] = true;
+        read_node(t, where, r, m->row_of_node[i], sigma_m, measured);
+    }
+    for (int r = 0; r < t->n_row && status == HF_OK; r++) {
+        const char *id = hf_csv_cell(t, r, where[ID]);
+        bool is_again = *id && !is_found[r] && hf_csv_row_of(index, t->n_row, id) != r;
+        if (*id && !is_found[r] && !is_again) hf_csv_fault(t, t->line[r], id, "the net has no node of this id", "");
+    }
+    free(index);
+    hf_arena_free(&arena);
+    return status;
+}
+
+static hf_status count_nodes(const char *path, const hf_built *b, const hf_measured *measured, hf_messages *messages)
+{
+    const hf_model *m = &b->model;
+    int n = 0;
+    for (int row = 0; row < m->n_free + m->n_attachment; row++)
+        n += measured->line[row] > 0;
+    if (n >= NODES_LEAST) return HF_OK;
+    return hf_error(messages, HF_BAD_CASE, "%s: has %d node%s of the net that can move, %d at least are needed", path,
+                    n, n == 1 ? "" : "s", NODES_LEAST);
+}
+
+hf_status hf_measured_read(const char *path, const hf_built *b, double sigma_m, hf_measured *measured,
+                           hf_messages *messages)
+{
+    hf_arena arena = {0};
+    hf_csv table = {0};
+    int where[N_COLUMN];
+    *measured = (hf_measured){0};
+    hf_status status = hf_csv_read(path, N_COLUMN + SPARE_COLUMNS, &table, messages);
+    if (status == HF_OK) status = hf_csv_find_columns(&table, column_name, N_COLUMN, Z + 1, where);
+    if (status == HF_OK) status = HF_ARENA_MAKE(&arena, lay_out_measured(&arena, &b->model, measured));
+    measured->block = arena.block;
+    if (status == HF_OK) status = read_nodes(&table, where, b, sigma_m, measured);
+    if (status == HF_OK) status = hf_csv_close_faults(&table);
+    if (status == HF_NO_MEMORY) hf_error(messages, status, "%s: out of memory", path);
+    hf_csv_free(&table);
+    return status == HF_OK ? count_nodes(path, b, measured, messages) : status;
+}
+
+void hf_measured_free(hf_measured *measured)
+{
+    hf_arena arena = {.block = measured->block};
+    hf_arena_free(&arena);
+    *measured = (hf_measured){0};
+}
+
+/* ---- another unit, another frame ---- */
+
+/* The best rigid motion from the nominal places to the measured ones. */
+typedef struct {
+    double centre_m[2][3]; /* of nominal and measured places */
+    double spread[2];      /* sums of squares of distances to them */
+    double square, rest;   /* of the differences, before and after the motion */
+    double angle;          /* rad */
+} rigid_fit;
+
+static const double *measured_at(const hf_measured *measured, int row)
+{
+    return measured->place_m + 3 * (ptrdiff_t)row;
+}
+
+static double nominal_at(const hf_built *b, int row, int c)
+{
+    return b->place_m[c * b->model.n_node + row];
+}
+
+/* Sums over the measured nodes. product [3][3]: of nominal and measured coordinates about the centres. */
+static void sum_up(const hf_built *b, const hf_measured *measured, rigid_fit *f, double product[3][3])
+{
+    for (int row = 0; row < b->model.n_node; row++)
+        for (int c = 0; c < 3 && measured->line[row]; c++) {
+            double x = nominal_at(b, row, c), y = measured_at(measured, row)[c];
+            f->centre_m[0][c] += x / measured->n_node;
+            f->centre_m[1][c] += y / measured->n_node;
+            f->square += (y - x) * (y - x);
+        }
+    for (int row = 0; row < b->model.n_node; row++)
+        for (int c = 0; c < 3 && measured->line[row]; c++) {
+            double x = nominal_at(b, row, c) - f->centre_m[0][c];
+            f->spread[0] += x * x;
+            for (int d = 0; d < 3; d++) {
+                double y = measured_at(measured, row)[d] - f->centre_m[1][d];
+                product[c][d] += x * y;
+                if (c == d) f->spread[1] += y * y;
+            }
+        }
+}
+
+/* Horn, J. Opt. Soc. Am. A 4 (1987): the rotation is the eigenvector of the largest eigenvalue of a symmetric 4 x 4
+ * matrix, which many squarings of it leave. Returns that eigenvalue. */
+static double turn(double s[3][3], double *angle)
+{
+    double trace = s[0][0] + s[1][1] + s[2][2], size = 0, best = 0, value = 0;
+    double n[4][4] = {{trace, s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]}}, power[4][4], next[4][4];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            n[i + 1][j + 1] = s[i][j] + s[j][i] - (i == j ? trace : 0);
+    for (int i = 1; i < 4; i++)
+        n[i][0] = n[0][i];
+    for (int i = 0; i < 16; i++)
+        size = fmax(size, fabs(n[i / 4][i % 4]));
+    for (int i = 0; i < 16; i++)
+        power[i / 4][i % 4] = n[i / 4][i % 4] + (i % 5 == 0 ? 4 * size : 0); /* all eigenvalues above zero */
+    for (int k = 0; k < 40; k++) {
+        for (int i = 0; i < 16; i++) {
+            next[i / 4][i % 4] = 0;
+            for (int l = 0; l < 4; l++)
+                next[i / 4][i % 4] += power[i / 4][l] * power[l][i % 4];
+        }
+        double most = fmax(fmax(next[0][0], next[1][1]), fmax(next[2][2], next[3][3]));
+        for (int i = 0; i < 16; i++)
+            power[i / 4][i % 4] = next[i / 4][i % 4] / most;
+    }
+    int column = 0;
+    for (int i = 0; i < 4; i++)
+        if (power[i][i] > best) best = power[i][i], column = i;
+    double q[4], norm = 0;
+    for (int i = 0; i < 4; i++)
+        norm += power[i][column] * power[i][column];
+    for (int i = 0; i < 4; i++)
+        q[i] = power[i][column] / sqrt(norm);
+    for (int i = 0; i < 16; i++)
+        value += q[i / 4] * n[i / 4][i % 4] * q[i % 4];
+    *angle = 2 * acos(fmin(fabs(q[0]), 1));
+    return value;
+}
+
+static rigid_fit fit_motion(const hf_built *b, const hf_measured *measured)
+{
+    rigid_fit f = {0};
+    double product[3][3] = {{0}};
+    sum_up(b, measured, &f, product);
+    f.rest = fmax(f.spread[0] + f.spread[1] - 2 * turn(product, &f.angle), 0);
+    return f;
+}
+
+/* The unit that these lengths seem to be in; NULL: metres, or none that is known. */
+static const char *guess_unit(double ratio)
+{
+    static const struct {
+        double per_m;
+        const char *name;
+    } unit[] = {{1000, "mm"}, {100, "cm"}, {1e6, "um"}, {1e-3, "km"}, {39.37, "inches"}, {3.2808, "feet"}};
+    for (size_t i = 0; i < sizeof unit / sizeof *unit; i++)
+        if (fabs(ratio / unit[i].per_m - 1) < 0.02) return unit[i].name;
+    return NULL;
+}
+
+/* ---- nodes far away ---- */
+
+#define FAR 10.0      /* times what errors do to a node: not an error of this net */
+#define DOUBTFUL 3.0  /* times what they do to all nodes: a word of warning where a motion explains it */
+#define EXPLAINED 0.1 /* of the sum of squares that a motion may leave */
+#define MANY 0.2      /* of the nodes; fewer are named one by one */
+#define FRAME_SIZE 256
+
+static void describe_motion(const rigid_fit *f, int n, char text[FRAME_SIZE])
+{
+    snprintf(text, FRAME_SIZE,
+             "a shift of their centre by (%.4g, %.4g, %.4g) mm and a turn by %.4g degrees explain all but %.3g mm",
+             (f->centre_m[1][0] - f->centre_m[0][0]) * 1e3, (f->centre_m[1][1] - f->centre_m[0][1]) * 1e3,
+             (f->centre_m[1][2] - f->centre_m[0][2]) * 1e3, f->angle * 180 / 3.14159265358979323846,
+             sqrt(f->rest / n) * 1e3);
+}
+
+static double distance_of(const hf_built *b, const hf_measured *measured, int row)
+{
+    double square = 0;
+    for (int c = 0; c < 3; c++) {
+        double d = measured_at(measured, row)[c] - nominal_at(b, row, c);
+        square += d * d;
+    }
+    return sqrt(square);
+}
+
+/* What errors and measurement do to a node, RMS. */
+static double allowed_m(const double *expected_m, double all_m, const hf_measured *measured, int row)
+{
+    double weight = measured->weight_per_m2[3 * row], own = fmax(expected_m[row], all_m);
+    return sqrt(own * own + 3 / weight);
+}
+
+static hf_status explain_far(const char *path, const hf_built *b, double all_m, const hf_measured *measured,
+                             hf_messages *messages)
+{
+    char frame[FRAME_SIZE];
+    rigid_fit f = fit_motion(b, measured);
+    double rms_m = sqrt(f.square / measured->n_node);
+    const char *unit = guess_unit(sqrt(f.spread[1] / f.spread[0]));
+    describe_motion(&f, measured->n_node, frame);
+    if (unit)
+        return hf_error(messages, HF_BAD_CASE, "%s: the places seem to be in %s; x_m, y_m and z_m are in m", path,
+                        unit);
+    if (f.rest < EXPLAINED * f.square)
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: the nodes are %.4g mm from where the design has them (RMS), where section tolerance "
+                        "allows for %.3g mm; %s: bring the places into the frame of the case",
+                        path, rms_m * 1e3, all_m * 1e3, frame);
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: the nodes are %.4g mm from where the design has them (RMS), where section tolerance allows "
+                    "for %.3g mm: this is another net, or its errors are larger",
+                    path, rms_m * 1e3, all_m * 1e3);
+}
+
+static void name_far(const char *path, const hf_built *b, const double *expected_m, double all_m,
+                     const hf_measured *measured, hf_messages *messages)
+{
+    int n = 0;
+    for (int i = 0; i < b->model.n_node; i++) {
+        int row = b->model.row_of_node[i];
+        if (!measured->line[row]) continue;
+        double far_m = distance_of(b, measured, row), allowed = allowed_m(expected_m, all_m, measured, row);
+        if (far_m <= FAR * allowed || n++ >= HF_FAULT_MAX) continue;
+        hf_error(messages, HF_BAD_CASE,
+                 "%s:%d: node '%s' is %.4g mm from where the design has it, where section tolerance and sigma_m allow "
+                 "for %.3g mm: wrong id or number? Correct the line or leave it out",
+                 path, measured->line[row], b->scene.node_id[i], far_m * 1e3, allowed * 1e3);
+    }
+}
+
+hf_status hf_measured_check(const char *path, const hf_built *b, const double *expected_m, const hf_measured *measured,
+                            hf_messages *messages)
+{
+    double square = 0, allowed_square = 0;
+    int n_far = 0;
+    for (int row = 0; row < b->model.n_node; row++)
+        if (measured->line[row]) square += expected_m[row] * expected_m[row] / measured->n_node;
+    double all_m = sqrt(square);
+    for (int row = 0; row < b->model.n_node; row++) {
+        if (!measured->line[row]) continue;
+        double allowed = allowed_m(expected_m, all_m, measured, row);
+        allowed_square += allowed * allowed;
+        n_far += !(distance_of(b, measured, row) <= FAR * allowed);
+    }
+    if (n_far > MANY * measured->n_node) return explain_far(path, b, all_m, measured, messages);
+    if (n_far) {
+        name_far(path, b, expected_m, all_m, measured, messages);
+        return HF_BAD_CASE;
+    }
+    rigid_fit f = fit_motion(b, measured);
+    if (f.square > DOUBTFUL * DOUBTFUL * allowed_square && f.rest < EXPLAINED * f.square) {
+        char frame[FRAME_SIZE];
+        describe_motion(&f, measured->n_node, frame);
+        hf_warning(messages, "%s: %s: is this the frame of the case?", path, frame);
+    }
+    return HF_OK;
+}

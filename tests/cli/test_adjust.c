@@ -1,0 +1,168 @@
+/* hifdm adjust: the table of moves, and every bad input by name. */
+#include "cli.h"
+
+#define SECTIONS                                                                                                       \
+    "tolerance: {sigma_cut_m: 0.0001}\n"                                                                               \
+    "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 3, sigma_m: 0.0001}\n"
+#define EA_SCENE SMALL_SCENE "  EA_inner_N: 47000\n  EA_boundary_N: 47000\n"
+
+/* The places of the design, changed: what a measurement of the nominal net would say. `change` may alter a line's
+ * numbers; it returns false to leave the node out. */
+typedef bool change_node(int i, double x[3]);
+
+static const char *measured_with(const char *name, const char *header, change_node *change, const char *more)
+{
+    const char *folder = temp("shape"), *result = temp("shape.h5");
+    HIFDM(0, "run", file_with("case.yaml", EA_SCENE SECTIONS), "-o", result, "--restart", "--quiet");
+    HIFDM(0, "export", result, "--csv", folder, "--force");
+    char *text = read_file(formatted("%s/nodes.csv", folder), NULL), *to = malloc(1 << 16), *at = to;
+    ck_assert(text && to);
+    at += sprintf(at, "%s\n", header);
+    int i = 0;
+    for (char *line = strchr(text, '\n') + 1; *line; line = strchr(line, '\n') + 1, i++) {
+        char id[64];
+        double x[3];
+        if (sscanf(line, "%63[^,],%lf,%lf,%lf", id, &x[0], &x[1], &x[2]) != 4) break;
+        if (change && !change(i, x)) continue;
+        at += sprintf(at, "%s,%.17g,%.17g,%.17g\n", id, x[0], x[1], x[2]);
+    }
+    sprintf(at, "%s", more);
+    const char *path = file_with(name, to);
+    free(text);
+    free(to);
+    return path;
+}
+
+static bool wave(int i, double x[3])
+{
+    x[2] += (i % 5 - 2) * 2e-4;
+    return i % 4 > 0;
+}
+
+static bool in_mm(int i, double x[3])
+{
+    (void)i;
+    for (int c = 0; c < 3; c++)
+        x[c] *= 1000;
+    return true;
+}
+
+static bool turned(int i, double x[3])
+{
+    (void)i;
+    double y = x[1];
+    x[1] = 0.8 * y - 0.6 * x[2] + 0.25;
+    x[2] = 0.6 * y + 0.8 * x[2];
+    return true;
+}
+
+static bool one_off(int i, double x[3])
+{
+    if (i == 17) x[0] += 0.3;
+    return true;
+}
+
+static bool two_nodes(int i, double x[3])
+{
+    (void)x;
+    return i == 17 || i == 18 || i == 0;
+}
+
+#define HEADER "id,x_m,y_m,z_m"
+
+START_TEST(moves_are_a_table)
+{
+    const char *measured = measured_with("m.csv", HEADER, wave, ""), *moves = temp("moves.csv");
+    const char *path = file_with("case.yaml", EA_SCENE SECTIONS);
+    HIFDM(0, "adjust", path, "--measured", measured, "-o", moves);
+    OUT("nodes measured; supports are taken to be where the case has them");
+    OUT("psi measured ");
+    OUT("psi after 3 moves");
+    OUT("all 3 are made (adjust.moves)");
+    char *table = read_file(moves, NULL);
+    ck_assert_int_eq(count_of(table, "\n"), 4);
+    ck_assert_ptr_nonnull(
+        strstr(table, "order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm\n1,"));
+    HIFDM(5, "adjust", path, "--measured", measured, "-o", moves);
+    ERR("exists");
+    HIFDM(5, "adjust", path, "--measured", measured, "-o", measured, "--force");
+    ERR("an input of this run");
+    HIFDM(0, "adjust", path, "--measured", measured, "-o", temp("again.csv"), "--quiet");
+    char *again = read_file(temp("again.csv"), NULL);
+    ck_assert_str_eq(table, again);
+    HIFDM(0, "adjust", path, "--measured", measured, "--json", "--set", "tolerance.sigma_support_m=1e-4");
+    OUT("\"supports_estimated\": true");
+    OUT("\"moves\": [");
+    HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.target_m=1");
+    OUT("psi after 0 moves");
+    OUT("target_m is met");
+    free(table);
+    free(again);
+}
+END_TEST
+
+START_TEST(bad_tables_are_named)
+{
+    const char *path = file_with("case.yaml", EA_SCENE SECTIONS), *bad;
+    bad = measured_with("m.csv", HEADER, NULL, "x9,1,1,1\nn1_1,1,1,1\n");
+    HIFDM(2, "adjust", path, "--measured", bad);
+    ERRS("%s:37: 'x9': the net has no node of this id", bad);
+    ERR("'n1_1'");
+    bad = measured_with("m.csv", HEADER, in_mm, "");
+    HIFDM(2, "adjust", path, "--measured", bad);
+    ERR("the places seem to be in mm; x_m, y_m and z_m are in m");
+    bad = measured_with("m.csv", HEADER, turned, "");
+    HIFDM(2, "adjust", path, "--measured", bad);
+    ERR("a turn by 36.87 degrees explain all but");
+    bad = measured_with("m.csv", HEADER, one_off, "");
+    HIFDM(2, "adjust", path, "--measured", bad);
+    ERRS("%s:19: node '", bad);
+    ERR("is 300 mm from where the design has it");
+    bad = measured_with("m.csv", HEADER, two_nodes, "");
+    HIFDM(2, "adjust", path, "--measured", bad);
+    ERR("has 2 nodes of the net that can move, 3 at least are needed");
+    HIFDM(2, "adjust", path, "--measured", file_with("m.csv", HEADER ",sigma_m\nn1_1,0,0,0,-1\nn2_2,0,0,zero,1\n"));
+    ERR("sigma_m must be above zero");
+    HIFDM(2, "adjust", path, "--measured", temp("missing.csv"));
+    HIFDM(2, "adjust", path);
+    ERR("needs --measured FILE");
+}
+END_TEST
+
+START_TEST(bad_cases_are_named)
+{
+    const char *measured = measured_with("m.csv", HEADER, NULL, "");
+    HIFDM(2, "adjust", file_with("case.yaml", EA_SCENE), "--measured", measured);
+    ERR("has no section adjust");
+    ERR("has no section tolerance");
+    HIFDM(2, "adjust", file_with("case.yaml", SMALL_SCENE SECTIONS), "--measured", measured);
+    ERR("have no EA");
+    const char *path = file_with("case.yaml", EA_SCENE SECTIONS);
+    HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.range_m=5e-5");
+    ERR("adjust.range_m: is smaller than adjust.step_m, which allows no move at all");
+    HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.set=struts");
+    ERR("adjust.set");
+    HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.figure=surface");
+    ERR("surface needs the wanted surface: add a section surface");
+    HIFDM(2, "adjust", path, "--measured", measured, "--set", "tolerance.sigma_cut_m=0", "--set",
+          "tolerance.sigma_support_m=1e-4");
+    ERR("cables have no errors that could be estimated");
+    HIFDM(2, "adjust",
+          file_with("case.yaml", EA_SCENE "tolerance: {sigma_cut_m: 0.0001}\n"
+                                          "adjust: {set: inner, range_m: 0.002, step_m: 0.0001}\n"),
+          "--measured", measured);
+    ERR("has no sigma_m; give the column, or adjust.sigma_m");
+}
+END_TEST
+
+Suite *suite_cli_adjust(void)
+{
+    Suite *suite = suite_create("cli/adjust");
+    TCase *tcase = tcase_create("adjust");
+    tcase_set_timeout(tcase, HANG_S);
+    tcase_add_test(tcase, moves_are_a_table);
+    tcase_add_test(tcase, bad_tables_are_named);
+    tcase_add_test(tcase, bad_cases_are_named);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}

@@ -1,0 +1,151 @@
+"""An independent `hifdm adjust`: scipy's least squares on dense matrices, sensitivities by differences of solved nets.
+
+    adjust_oracle.py measure CUT.csv JIG.csv MEASURED.csv SEED      a net with random errors, measured with noise
+    adjust_oracle.py check CUT.csv JIG.csv NODES.csv MEASURED.csv ANSWER.json
+
+CUT.csv and JIG.csv are those of `hifdm export --cutlist`, NODES.csv that of `--csv`, ANSWER.json what `hifdm adjust
+--json` said. Cables are elastic and push never; errors of cut lengths have a sigma of 0.1 mm. Prints the largest
+differences of estimated errors and of predicted figures; exit 1 when they are too large.
+"""
+import csv
+import json
+import sys
+
+import numpy as np
+
+SIGMA_CUT = 1e-4
+SIGMA_PLACE = 1e-4
+
+
+def rows(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class Net:
+    def __init__(self, cut, jig):
+        nodes, cables = rows(jig), rows(cut)
+        self.id = [n["id"] for n in nodes]
+        index = {name: i for i, name in enumerate(self.id)}
+        self.place = np.array([[float(n[c]) for c in ("x_m", "y_m", "z_m")] for n in nodes])
+        self.free = np.array([i for i, n in enumerate(nodes) if n["role"] != "support"])
+        self.inner = np.array([n["role"] == "inner" for n in nodes])
+        self.cable = [c["id"] for c in cables]
+        self.end = np.array([[index[c["i"]], index[c["j"]]] for c in cables])
+        self.cut = np.array([float(c["l0_m"]) for c in cables])
+        self.EA = np.array([float(c["EA_N"]) for c in cables])
+
+    def forces(self, place, cut):
+        """Out of balance at all nodes, and the stiffness of the free ones."""
+        d = place[self.end[:, 1]] - place[self.end[:, 0]]
+        length = np.linalg.norm(d, axis=1)
+        unit = d / length[:, None]
+        tension = np.maximum(self.EA * (length / cut - 1), 0)
+        along = np.where(tension > 0, self.EA / cut, 0)
+        force = np.zeros_like(place)
+        np.add.at(force, self.end[:, 0], tension[:, None] * unit)
+        np.add.at(force, self.end[:, 1], -tension[:, None] * unit)
+        stiffness = np.zeros((3 * len(place), 3 * len(place)))
+        for e, (a, b) in enumerate(self.end):
+            across = tension[e] / length[e]
+            block = across * np.eye(3) + (along[e] - across) * np.outer(unit[e], unit[e])
+            for p, q, sign in ((a, a, 1), (b, b, 1), (a, b, -1), (b, a, -1)):
+                stiffness[3 * p:3 * p + 3, 3 * q:3 * q + 3] += sign * block
+        dof = (3 * self.free[:, None] + np.arange(3)).ravel()
+        return force.ravel()[dof], stiffness[np.ix_(dof, dof)], tension
+
+    def solve(self, cut, start):
+        """Newton with halved steps on the forces."""
+        place = start.copy()
+        for _ in range(100):
+            force, stiffness, tension = self.forces(place, cut)
+            size = np.linalg.norm(force)
+            if size < 1e-9:
+                break
+            step = np.linalg.solve(stiffness + 1e-12 * np.trace(stiffness) / len(force) * np.eye(len(force)), force)
+            for _ in range(20):
+                trial = place.copy()
+                trial[self.free] += step.reshape(-1, 3)
+                if np.linalg.norm(self.forces(trial, cut)[0]) < size:
+                    break
+                step /= 2
+            else:
+                break  # rounding
+            place = trial
+        return place, tension
+
+
+def measure(cut, jig, measured, seed):
+    net, random = Net(cut, jig), np.random.default_rng(int(seed))
+    truth = net.cut + SIGMA_CUT * random.standard_normal(len(net.cut))
+    place, _ = net.solve(truth, net.place)
+    with open(measured, "w") as file:
+        file.write("id,x_m,y_m,z_m,sigma_m\n")
+        for i in net.free:
+            if random.random() < 0.8:
+                at = place[i] + SIGMA_PLACE * random.standard_normal(3)
+                file.write(f"{net.id[i]},{at[0]:.17g},{at[1]:.17g},{at[2]:.17g},{SIGMA_PLACE:g}\n")
+
+
+def estimate(net, which, target):
+    """The most probable errors by Gauss and Newton with halved steps."""
+    last = [net.place]
+
+    def shape(e):
+        last[0] = net.solve(net.cut + e, last[0])[0]
+        return last[0]
+
+    def misfit(e):
+        left = shape(e)[which].ravel() - target
+        return (e @ e / SIGMA_CUT**2 + left @ left / SIGMA_PLACE**2) / 2
+
+    e = np.zeros(len(net.cut))
+    for _ in range(30):
+        place = shape(e)
+        h = 1e-7
+        effect = np.array([(net.solve(net.cut + e + h * unit, place)[0][which].ravel()
+                            - net.solve(net.cut + e - h * unit, place)[0][which].ravel()) / (2 * h)
+                           for unit in np.eye(len(e))]).T
+        gap = target - place[which].ravel() + effect @ e
+        matrix = np.vstack((effect / SIGMA_PLACE, np.eye(len(e)) / SIGMA_CUT))
+        wanted = np.linalg.lstsq(matrix, np.concatenate((gap / SIGMA_PLACE, np.zeros(len(e)))), rcond=None)[0]
+        step = wanted - e
+        before = misfit(e)
+        while misfit(e + step) > before and np.abs(step).max() > 1e-12:
+            step /= 2
+        e = e + step
+        if np.abs(step).max() < 1e-9:
+            break
+    return e, shape
+
+
+def check(cut, jig, nodes, measured, answer):
+    net, theory = Net(cut, jig), {n["id"]: n for n in rows(nodes)}
+    wanted = np.array([[float(theory[i][f"{c}0_m"]) for c in "xyz"] for i in net.id])
+    index = {name: i for i, name in enumerate(net.id)}
+    table = rows(measured)
+    which = np.array([index[r["id"]] for r in table])
+    target = np.array([[float(r[c]) for c in ("x_m", "y_m", "z_m")] for r in table]).ravel()
+    e, shape = estimate(net, which, target)
+    said = json.load(open(answer))
+    told = np.array([said["errors_m"][c] for c in net.cable])
+    worst_error = np.abs(told - e).max()
+
+    def psi(errors):
+        d = shape(errors)[net.inner] - wanted[net.inner]
+        return np.sqrt((d * d).sum(axis=1).mean())
+
+    worst_figure, turned = abs(psi(told) - said["estimated_m"]), told.copy()
+    for move in said["moves"]:
+        turned[net.cable.index(move["cable"])] += move["move_m"]
+        place, tension = net.solve(net.cut + turned, net.place)
+        worst_figure = max(worst_figure, abs(psi(turned) - move["predicted_m"]))
+        after = tension[net.cable.index(move["cable"])]
+        worst_figure = max(worst_figure, 1e-6 * abs(after - move["tension_after_N"]))
+    print(f"{len(said['moves'])} moves; errors differ by {worst_error:.2e} m of {np.abs(e).max():.2e}, "
+          f"figures by {worst_figure:.2e} m")
+    return 0 if len(said["moves"]) and worst_error < 1e-8 and worst_figure < 1e-9 else 1
+
+
+if __name__ == "__main__":
+    sys.exit({"measure": measure, "check": check}[sys.argv[1]](*sys.argv[2:]))
