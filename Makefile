@@ -124,7 +124,8 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
-         bench-before bench-optimisers bench-fronts bench-sampling api lint asan tsan fuzz fuzz-results install
+         bench-before bench-optimisers bench-fronts bench-sampling pretension-night api lint asan tsan fuzz \
+         fuzz-results install
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -240,6 +241,10 @@ bench-sampling: ## random beside quasi-random samples of a net as built: results
 	$(SUB) $(PROGRAM)
 	@mkdir -p $(BENCH_OUT)
 	$(PYTHON) tools/bench/sampling.py --program $(PROGRAM) --work $(BUILD)/sampling --out $(BENCH_OUT)
+
+pretension-night: ## which pretension, with errors of the cut: results/pretension/night.* (1 minute)
+	$(SUB) $(PROGRAM)
+	$(PYTHON) tools/paper/night.py --program $(PROGRAM) --work $(BUILD)/night --out results/pretension
 
 # From the headers' own comments: tools/api/filter.awk. A warning of doxygen's is an error.
 api: ## the library's interface as pages, from the public headers: build/api/index.html

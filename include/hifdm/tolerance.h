@@ -20,9 +20,10 @@ enum { HF_TOLERANCE_STATUS, HF_TOLERANCE_LINEAR_PSI, HF_TOLERANCE_FIRST };
 extern const char *const hf_tolerance_measure_unit[HF_TOLERANCE_N_MEASURE];
 extern const char *const hf_tolerance_measure_help[HF_TOLERANCE_N_MEASURE];
 
-/* Quantiles that are told. */
+/* Quantiles that are told: so many samples have no larger value, or no smaller one where more is better. */
 #define HF_TOLERANCE_QUANTILES 3
 extern const double hf_tolerance_quantile[HF_TOLERANCE_QUANTILES]; /* 0.5, 0.95, 0.99 */
+bool hf_tolerance_more_is_better(hf_tolerance_measure measure);
 
 /* Of one measure over all samples with a shape. Intervals hold the true value with 95 %: of quantiles by order
  * statistics, which need no assumption (NaN: too few samples), of the mean by its standard error. */
@@ -46,6 +47,7 @@ extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS];
     X(int, n_with_loose, INT, 1, "with_loose_nodes", "those with nodes that no taut cable holds")                      \
     X(double, nominal_psi_m, REAL, 2, "nominal_psi_m", "of the net without errors")                                    \
     X(double, first_order_rms_psi_m, REAL, 2, "first_order_rms_psi_m", "root of the mean of psi^2, to first order")    \
+    X(double, psi_95_m, REAL, 2, "psi_95_m", "95 % of the nets with a shape do not exceed it")                         \
     X(double, rms_psi_m, REAL, 2, "rms_psi_m", "the same of the samples")                                              \
     X(double, rms_psi_low_m, REAL, 2, "rms_psi_low_m", "95 % interval of it")                                          \
     X(double, rms_psi_high_m, REAL, 2, "rms_psi_high_m", "the same")                                                   \

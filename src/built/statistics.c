@@ -187,6 +187,11 @@ static hf_status find_quantiles(const moments *s, const hf_statistics_rows *rows
     for (int q = 0; q < HF_TOLERANCE_QUANTILES; q++) {
         rank[3 * q] = (long)ceil(hf_tolerance_quantile[q] * (double)n);
         hf_statistics_ranks(n, hf_tolerance_quantile[q], &rank[3 * q + 1], &rank[3 * q + 2]);
+        if (!hf_tolerance_more_is_better((hf_tolerance_measure)k)) continue;
+        long low = rank[3 * q + 1]; /* the same ranks from the other end */
+        rank[3 * q] = n + 1 - rank[3 * q];
+        rank[3 * q + 1] = n + 1 - rank[3 * q + 2];
+        rank[3 * q + 2] = n + 1 - low;
     }
     long asked[HF_STATISTICS_RANKS];
     for (int i = 0; i < HF_STATISTICS_RANKS; i++)
@@ -284,6 +289,7 @@ hf_status hf_statistics_sum_up(const hf_montecarlo *t, const hf_statistics_rows 
     control(c, &s, to);
     judge_yield(&s, rows->n, to);
     rank_cables(t, to);
+    to->psi_95_m = to->figure[HF_TOLERANCE_PSI].value[1]; /* hf_tolerance_quantile */
     to->bin_low_m = to->figure[HF_TOLERANCE_PSI].least;
     to->bin_high_m = to->figure[HF_TOLERANCE_PSI].largest;
     for (int k = 0; k < HF_TOLERANCE_BINS; k++)

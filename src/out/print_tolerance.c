@@ -18,7 +18,8 @@ static void print_measure(const hf_tolerance_figures *f, int measure, FILE *file
     const char *unit, *name = hf_tolerance_measure_word[measure];
     double times = unit_of(measure, &unit);
     if (!f->is_measured) return;
-    fprintf(file, "                %s: mean %.4g, 50/95/99 %% %.4g/%.4g/%.4g", name, times * f->mean,
+    const char *holds = hf_tolerance_more_is_better((hf_tolerance_measure)measure) ? "at least" : "at most";
+    fprintf(file, "                %s: mean %.4g, in 50/95/99 %% %s %.4g/%.4g/%.4g", name, times * f->mean, holds,
             times * f->value[0], times * f->value[1], times * f->value[2]);
     if (*unit) fprintf(file, " %s", unit);
     if (isfinite(f->low[1]) && isfinite(f->high[1]))
@@ -72,8 +73,8 @@ void hf_print_tolerance(const hf_tolerance_summary *t, FILE *f)
 {
     char wall[32];
     hf_print_duration(t->tolerance_wall_s, wall, sizeof wall);
-    fprintf(f, "  as built      psi at most %.4f mm in 95 %% of %d nets, %.4f mm without errors; ",
-            t->figure[HF_TOLERANCE_PSI].value[1] * 1e3, t->samples, t->nominal_psi_m * 1e3);
+    fprintf(f, "  as built      psi at most %.4f mm in 95 %% of %d nets, %.4f mm without errors; ", t->psi_95_m * 1e3,
+            t->samples, t->nominal_psi_m * 1e3);
     fprintf(f, "%d with slack cables, %d with loose nodes, %d without a shape; %s\n", t->n_with_slack, t->n_with_loose,
             t->n_failed, wall);
     for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)

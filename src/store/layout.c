@@ -181,6 +181,8 @@ void hf_layout_renew(hf_hdf5 *io, const char *path)
 #define FORM_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/form", #member, member, kind)
 #define GA_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/ga", #member, member, kind)
 #define POLISH_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/polish", #member, member, kind)
+#define TOLERANCE_MEMBER(type, member, kind, ...)                                                                      \
+    HF_HDF5_MEMBER(hf_summary, "/tolerance", #member, tolerance.member, kind)
 #define TRUSS_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/truss", #member, truss.member, kind)
 
 static const hf_hdf5_member form[] = {RUN_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_FORM_LIST(FORM_MEMBER)
@@ -191,6 +193,10 @@ static const hf_hdf5_member truss[] = {HF_SUMMARY_TRUSS_LIST(TRUSS_MEMBER)};
 static const hf_hdf5_member coupling[] = {HF_COUPLING_LIST(FORM_COUPLING)};
 static const hf_hdf5_member coupling_ga[] = {HF_COUPLING_LIST(BEST_COUPLING)};
 static const hf_hdf5_member coupling_polish[] = {HF_COUPLING_LIST(POLISH_COUPLING)};
+static const hf_hdf5_member tolerance[] = {
+    HF_TOLERANCE_LIST(TOLERANCE_MEMBER)
+        HF_HDF5_MEMBER(hf_summary, "/tolerance", "histogram_low_m", tolerance.bin_low_m, REAL)
+            HF_HDF5_MEMBER(hf_summary, "/tolerance", "histogram_high_m", tolerance.bin_high_m, REAL)};
 #define PART(table) table, HF_HDF5_COUNT(table)
 const hf_layout_members hf_layout_summary[HF_LAYOUT_N_PART] = {[HF_LAYOUT_FORM] = {PART(form)},
                                                                [HF_LAYOUT_GA] = {PART(ga)},
@@ -198,7 +204,8 @@ const hf_layout_members hf_layout_summary[HF_LAYOUT_N_PART] = {[HF_LAYOUT_FORM] 
                                                                [HF_LAYOUT_TRUSS] = {PART(truss)},
                                                                [HF_LAYOUT_COUPLING] = {PART(coupling)},
                                                                [HF_LAYOUT_COUPLING_GA] = {PART(coupling_ga)},
-                                                               [HF_LAYOUT_COUPLING_POLISH] = {PART(coupling_polish)}};
+                                                               [HF_LAYOUT_COUPLING_POLISH] = {PART(coupling_polish)},
+                                                               [HF_LAYOUT_TOLERANCE] = {PART(tolerance)}};
 
 void hf_layout_put_summary(hf_hdf5 *io, hf_layout_part part, const hf_summary *summary)
 {

@@ -86,6 +86,7 @@ typedef enum {
     HF_LAYOUT_COUPLING,        /* this and the next two: when has_coupling */
     HF_LAYOUT_COUPLING_GA,     /* and has_optimize; beside the results of that stage */
     HF_LAYOUT_COUPLING_POLISH, /* and has_polish */
+    HF_LAYOUT_TOLERANCE,       /* when has_tolerance */
     HF_LAYOUT_N_PART
 } hf_layout_part;
 

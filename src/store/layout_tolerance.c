@@ -5,13 +5,6 @@
 
 #define GROUP "/tolerance"
 
-#define MEMBER(type, member, kind, json, key, description)                                                             \
-    HF_HDF5_MEMBER(hf_tolerance_summary, GROUP, #member, member, kind)
-static const hf_hdf5_member tolerance_member[] = {
-    HF_TOLERANCE_LIST(MEMBER) HF_HDF5_MEMBER(hf_tolerance_summary, GROUP, "histogram_low_m", bin_low_m, REAL)
-        HF_HDF5_MEMBER(hf_tolerance_summary, GROUP, "histogram_high_m", bin_high_m, REAL)};
-#undef MEMBER
-
 enum { WORD_SIZE = 32, N_PLAIN = 7, N_QUANTILE = 3 };
 
 /* Figures of all measures, side by side as data sets have them. */
@@ -29,7 +22,7 @@ static const char *const plain_name[N_PLAIN][2] = {{"is_measured", "1: of the sa
                                                    {"least", "smallest value"},
                                                    {"largest", "largest value"}};
 static const char *const quantile_name[N_QUANTILE][2] = {
-    {"quantile", "values that 50, 95 and 99 % of the samples do not exceed"},
+    {"quantile", "what 50, 95 and 99 % of the samples do not exceed; of least_tension_N: do not fall below"},
     {"quantile_low", "95 % interval of each, by order statistics; NaN: too few samples"},
     {"quantile_high", "the same"}};
 
@@ -155,7 +148,7 @@ void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary)
     hf_hdf5_write_array(io, group, &array, kind);
     pass_shares(io, group, put_values, &s);
     hf_hdf5_close(io, group);
-    hf_hdf5_put_members(io, tolerance_member, HF_HDF5_COUNT(tolerance_member), &s);
+    hf_layout_put_summary(io, HF_LAYOUT_TOLERANCE, summary);
 }
 
 static void find_measures(hf_hdf5 *io, hid_t group, const requirements *r, hf_tolerance_summary *s)
@@ -192,5 +185,5 @@ void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
     for (int k = 0; k < s->n_ranked; k++)
         s->ranked_id[k][HF_TOLERANCE_ID_SIZE - 1] = '\0';
     hf_hdf5_close(io, group);
-    hf_hdf5_get_members(io, tolerance_member, HF_HDF5_COUNT(tolerance_member), s);
+    hf_layout_get_summary(io, HF_LAYOUT_TOLERANCE, summary);
 }

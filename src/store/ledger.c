@@ -61,6 +61,7 @@ static bool applies(const hf_hdf5_member *column, const hf_summary *s)
     if ((!strcmp(column->object, "/coupling") || strstr(column->name, "coupling_")) && !s->has_coupling) return false;
     if (!strcmp(column->object, "/ga")) return s->has_optimize;
     if (!strcmp(column->object, "/polish")) return s->has_polish;
+    if (!strcmp(column->object, "/tolerance")) return s->has_tolerance;
     return true;
 }
 

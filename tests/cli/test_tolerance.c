@@ -72,6 +72,24 @@ START_TEST(killed_runs_go_on)
 }
 END_TEST
 
+/* Quantiles of the rows in the file: psi from above, the least tension from below. A sweep has them in its table. */
+START_TEST(quantiles_are_those_of_the_samples)
+{
+    const char *c = built_case("random"), *path = temp("a.h5"), *folder = temp("s.d"), *merged = temp("m.h5");
+    const char *study = file_with("s.yaml", "base: c.yaml\nsweep:\n  form.pretension_N: [10, 20]\n");
+    HIFDM(0, "tolerance", c, "-o", path, "--quiet");
+    EXPECT(path, path, "--", "sorted(a['tolerance/sample/psi_m'][:])[1424] == a['tolerance'].attrs['psi_95_m']",
+           "a['tolerance/quantile'][0][1] == a['tolerance'].attrs['psi_95_m']",
+           "a['tolerance/quantile'][[w.decode() if isinstance(w, bytes) else w for w in "
+           "a['tolerance/measure'][:]].index('least_tension_N')][1] == "
+           "sorted(a['tolerance/sample/least_tension_N'][:])[1500 - 1425]");
+    HIFDM(0, "sweep", study, "--dir", folder, "--quiet");
+    HIFDM(0, "merge", study, "--dir", folder, "-o", merged);
+    EXPECT(path, merged, "--", "b['points/tolerance/psi_95_m'][0] == a['tolerance'].attrs['psi_95_m']",
+           "b['points/tolerance/samples'][1] == 1500");
+}
+END_TEST
+
 START_TEST(faults_are_named)
 {
     static const char *const fault[][2] = {
@@ -124,6 +142,7 @@ Suite *suite_cli_tolerance(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, threads_and_tasks_change_nothing, 0, 2);
     tcase_add_test(tests, killed_runs_go_on);
+    tcase_add_test(tests, quantiles_are_those_of_the_samples);
     tcase_add_test(tests, faults_are_named);
     tcase_add_test(tests, samples_are_those_of_another_solver);
     return suite;
