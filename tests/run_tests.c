@@ -47,12 +47,29 @@ static bool is_wanted(const char *name, int n_word, char **words)
     return n_word == 0;
 }
 
+/* What failed, for the end of the run: the tail of a log should name it. Runners that are forked share it. */
+static FILE *failures;
+
+/* Add the failures of a suite, in check's own words: it has no other way to the names of tests. */
+static void note_failures(SRunner *runner)
+{
+    fflush(stdout);
+    int kept = dup(STDOUT_FILENO);
+    if (kept < 0 || !failures) return;
+    dup2(fileno(failures), STDOUT_FILENO);
+    srunner_print(runner, CK_NORMAL);
+    fflush(stdout);
+    dup2(kept, STDOUT_FILENO);
+    close(kept);
+}
+
 static void run_suite(int i_suite, outcome *o)
 {
     SRunner *runner = srunner_create(suites[i_suite].create());
     srunner_run_all(runner, CK_ENV);
     o->n_run = srunner_ntests_run(runner);
     o->n_failed = srunner_ntests_failed(runner);
+    if (o->n_failed > 0) note_failures(runner);
     o->has_ended = true;
     srunner_free(runner);
 }
@@ -79,17 +96,26 @@ static void start_suite(int i_suite, outcome *o)
     _exit(EXIT_SUCCESS);
 }
 
-static void tell_suite(int i_suite, outcome *o)
+static void tell(FILE *words)
 {
     char part[4096];
-    if (!o->has_ended) o->n_run = o->n_failed = 1; /* the runner itself was killed */
-    o->runner = 0;
-    rewind(o->words);
-    printf("%s, %.1f s: ", suites[i_suite].name, hf_clock_s() - o->start_s);
-    for (size_t n; (n = fread(part, 1, sizeof part, o->words)) > 0;)
+    rewind(words);
+    for (size_t n; (n = fread(part, 1, sizeof part, words)) > 0;)
         fwrite(part, 1, n, stdout);
-    fclose(o->words);
+    fclose(words);
     fflush(stdout);
+}
+
+static void tell_suite(int i_suite, outcome *o)
+{
+    if (!o->has_ended) {
+        o->n_run = o->n_failed = 1;
+        if (failures) fprintf(failures, "%s: its runner was killed\n", suites[i_suite].name);
+        if (failures) fflush(failures);
+    }
+    o->runner = 0;
+    printf("%s, %.1f s: ", suites[i_suite].name, hf_clock_s() - o->start_s);
+    tell(o->words);
 }
 
 /* Wait until one of the suites that run has ended; true when it failed. */
@@ -134,6 +160,7 @@ int main(int argc, char **argv)
         return EXIT_FAILURE;
     }
     begin_test_run();
+    failures = tmpfile();
     for (int i = 0; i < N_SUITE; i++)
         wanted[i] = is_wanted(suites[i].name, argc - 1, argv + 1);
     if (n_job > 1) run_beside(n_job, stops, wanted, all);
@@ -145,6 +172,10 @@ int main(int argc, char **argv)
     int n_skipped = tell_skipped();
     end_test_run();
 
+    if (n_failed > 0 && failures) {
+        printf("what failed, once more:\n");
+        tell(failures);
+    }
     if (n_failed > 0) printf("random numbers of this run: HIFDM_TEST_SEED=%" PRIu64 "\n", test_seed());
     if (n_run == 0) printf("no test ran\n");
     printf("%d passed, %d failed, ", n_run - n_failed, n_failed);
