@@ -406,7 +406,7 @@ static hf_status check_options(const hf_options *o, hf_messages *messages)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm evaluate' needs either --designs FILE or --template FILE");
     if (o->template_path && o->output) return hf_error(messages, HF_BAD_USAGE, "'-o' does not go with --template");
     if (o->template_path && o->jacobian) return hf_error(messages, HF_BAD_USAGE, "--jacobian needs --designs FILE");
-    if (o->jacobian && o->output && !strcmp(o->jacobian, o->output))
+    if (o->jacobian && o->output && hf_path_will_be_same(o->jacobian, o->output))
         return hf_error(messages, HF_BAD_USAGE, "--jacobian and -o must name different files");
     if (o->jacobian && o->output) HF_TRY(hf_file_out_spare(o->output, "the table of results", o->jacobian, messages));
     if (o->designs && o->json && !o->output)

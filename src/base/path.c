@@ -1,5 +1,6 @@
 #include "base/path.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -60,6 +61,14 @@ bool hf_path_is_same(const char *a, const char *b)
 {
     struct stat of_a, of_b;
     return stat(a, &of_a) == 0 && stat(b, &of_b) == 0 && hf_path_is_same_inode(&of_a, &of_b);
+}
+
+bool hf_path_will_be_same(const char *a, const char *b)
+{
+    char of_a[PATH_MAX], of_b[PATH_MAX];
+    if (!strcmp(a, b)) return true;
+    return !strcmp(hf_path_name(a), hf_path_name(b)) && hf_path_folder(a, of_a, sizeof of_a) &&
+           hf_path_folder(b, of_b, sizeof of_b) && hf_path_is_same(of_a, of_b);
 }
 
 bool hf_path_leads_to(const char *path, int file)

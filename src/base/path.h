@@ -32,6 +32,8 @@ bool hf_path_insert(const char *path, const char *part, char *longer, size_t siz
 
 /* Do both names lead to one file that exists? Links are followed. */
 bool hf_path_is_same(const char *a, const char *b);
+/* Would both names lead to one file, if it existed? Same name in the same folder, however that is spelt. */
+bool hf_path_will_be_same(const char *a, const char *b);
 bool hf_path_is_same_inode(const struct stat *a, const struct stat *b);
 
 /* Is the open file still the one that `path` leads to? */

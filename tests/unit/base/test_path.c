@@ -79,6 +79,10 @@ START_TEST(names_may_lead_to_one_file)
     ck_assert(hf_path_is_same(twin, a));
     ck_assert(!hf_path_is_same(a, b));
     ck_assert(!hf_path_is_same(temp_path("none"), temp_path("none")));
+    ck_assert(hf_path_will_be_same(temp_path("none"), temp_path("./none")));
+    ck_assert(hf_path_will_be_same("none", "././none"));
+    ck_assert(!hf_path_will_be_same("none", temp_path("none")));
+    ck_assert(!hf_path_will_be_same(temp_path("none"), temp_path("nine")));
 
     int file = open(a, O_RDONLY);
     ck_assert_int_ge(file, 0);
