@@ -145,6 +145,10 @@ START_TEST(what_cannot_be_exported_is_told)
     HIFDM(0, "run", file_with("f.yaml", SMALL_SCENE), "-o", form_only, "--quiet");
     HIFDM(2, "export", form_only, "--csv", csv, "--stage", "optimize");
     ERR("this run has no optimised shape; use --stage form");
+    const char *lm = temp("lm.h5");
+    HIFDM(0, "run", file_with("lm.yaml", SMALL_SCENE "optimize: {method: lm}\n"), "-o", lm, "--quiet");
+    HIFDM(2, "export", lm, "--csv", csv, "--stage", "optimize");
+    ERR("this run has no optimised shape; use --stage polish");
     HIFDM(2, "export", form_only);
     ERR("error: 'hifdm export' needs --csv DIR, --vtk DIR, --cutlist FILE or --front FILE\n");
     HIFDM(2, "export", form_only, "--csv", csv, "--stage", "best");
