@@ -8,6 +8,7 @@
 #include "search/parallel.h"
 #include "search/residuals.h"
 #include "search/watch.h"
+#include "solve/limits.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,6 +18,7 @@
 #define TRADE_CONVERGED 1e-20 /* the same of a trade, whose multipliers are wanted */
 #define DAMPING_FIRST 1e-3    /* relative to the squared columns of J [1e-6 to 1] */
 #define DAMPING_OF_MULTIPLIERS 1e-9
+#define SCALE_LEAST 1e-8    /* part of the largest column of J: one below it is damped as the largest */
 #define DAMPING_LEAST 1e-14 /* [1e-20 to 1e-8] */
 #define DAMPING_MOST 1e12   /* with this much a step is too short to change psi [1e4 to 1e24] */
 #define CORRECTIONS_MAX 4 /* of a step that breaks a limit on tensions [40 passes; 1 fails: the runs stall at a cap] */
@@ -28,13 +30,6 @@
 #define BEND_WORTH 0.5       /* a correction that leaves more of the merit than this is the last [0.5 to 0.9] */
 #define GRAM_ROWS 32         /* of J'J that one thread works on at a time; the bits do not depend on it */
 #define DENSITY_LEFT 1e-3    /* part of its first value below which no force density falls [1e-6 to 0.3] */
-
-/* For hf_polish_is_cheap: steps that were counted on the cases of configs and METHOD; operations in about 0.1 s. */
-#define STEPS_EXPECTED 8
-#define STEP_EVALUATIONS 2
-#define NEWTON_STEPS 5
-#define CHORD_STEPS 4
-#define UNNOTICED 2e8
 
 /* ---- the problem ---- */
 
@@ -67,6 +62,7 @@ typedef struct {
     double *step_taken;                  /* [n] that led to `trial`, while it is corrected */
     double *pull;                        /* [n] gradient of a correction */
     double *scale;                       /* [n] largest norm of each column of J so far */
+    double largest_scale;                /* of them */
     double *row;                         /* [n][rows of the residuals] J' */
     double *gram;                        /* [n][n] J'J; lower triangle by rows, as `hessian` */
     double *hessian;                     /* [n][n] J'J, damped */
@@ -76,23 +72,6 @@ typedef struct {
     double promise;                      /* of a step before it was solved again: what the linear model says */
     double noise;                        /* what the tolerance of the form-finding leaves open in the merit */
 } problem;
-
-bool hf_polish_applies(const hf_evaluator *v)
-{
-    for (int k = 0; k < v->model->n_gene; k++)
-        if (hf_evaluate_sets(v, k) == HF_SETS_START) return false;
-    return v->model->has_newton && v->model->n_gene > 0;
-}
-
-bool hf_polish_is_cheap(const hf_evaluator *v, long n_evaluation)
-{
-    const hf_model *m = v->model;
-    double n_dof = 3.0 * m->n_free, width = 3.0 * m->half_bandwidth + 3, n = m->n_leader;
-    double factor = n_dof * width * width, solve = 4 * n_dof * width, newton = NEWTON_STEPS * (factor + solve);
-    double evaluation = v->solver == HF_SOLVER_CHORD ? CHORD_STEPS * solve : newton;
-    double step = STEP_EVALUATIONS * newton + factor + n * solve + n * n * (3.0 * m->n_inner_node + 2 * n);
-    return STEPS_EXPECTED * step <= fmax(UNNOTICED, (double)n_evaluation * evaluation / 10);
-}
 
 static void lay_out(hf_arena *a, problem *p)
 {
@@ -299,8 +278,10 @@ static hf_status linearise(problem *p)
     hf_residuals_rates(&p->residuals, &p->slopes, p->w, p->row, p->gradient);
     if (p->trade) take_gradient(p);
     hf_parallel_each(p->v.n_thread, (p->n + GRAM_ROWS - 1) / GRAM_ROWS, multiply_rows, p);
-    for (int k = 0; k < p->n; k++)
+    for (int k = 0; k < p->n; k++) {
         p->scale[k] = fmax(p->scale[k], sqrt(p->gram[k * p->n + k]));
+        p->largest_scale = fmax(p->largest_scale, p->scale[k]);
+    }
     p->noise = find_noise(p);
     if (p->trade) linearise_trade(p);
     hf_watch_linearise(&p->watch, &p->slopes, p->w);
@@ -350,6 +331,14 @@ static hf_status take_step(problem *p)
     return evaluate(p, p->trial);
 }
 
+/* A variable that does not act on what is to be least has no column of J to be damped by, and the model would have no
+ * single least. */
+static double damped_scale(const problem *p, int r)
+{
+    if (p->scale[r] > SCALE_LEAST * p->largest_scale) return p->scale[r];
+    return p->largest_scale > 0 ? p->largest_scale : 1;
+}
+
 /* The least of the model |f + J x|^2/2 + damping |scale x|^2/2 within the limits, as step.x. *gain: what the model
  * promises of psi^2/2. */
 static hf_status solve_step(problem *p, double damping, double *gain)
@@ -358,7 +347,7 @@ static hf_status solve_step(problem *p, double damping, double *gain)
     int n = p->n, n_step = p->step.n;
     for (int r = 0; r < n; r++) {
         memcpy(p->hessian + r * n_step, p->gram + r * n, (size_t)(r + 1) * sizeof(double));
-        p->hessian[r * n_step + r] += damping * p->scale[r] * p->scale[r];
+        p->hessian[r * n_step + r] += damping * damped_scale(p, r) * damped_scale(p, r);
         p->down[r] = p->low[r] - p->at[r];
         p->up[r] = p->high[r] - p->at[r];
     }
@@ -428,21 +417,6 @@ static hf_status bend_step(problem *p, double before, double gain)
 
 /* ---- the run ---- */
 
-static void count_limits(const problem *p, hf_polish_result *r)
-{
-    const hf_model *m = p->v.model;
-    for (int k = 0; k < m->n_gene; k++) {
-        int i = p->slopes.variable_of_gene[k];
-        double inside = is_tension(p, k) ? LIMIT_INSIDE * p->best[k] : LIMIT_ROUNDING * p->unit[i];
-        r->n_at_lower += p->best[k] <= p->lower[k] + inside;
-        r->n_at_upper += p->best[k] >= p->upper[k] - inside;
-    }
-    for (int i = 0; i < p->step.n_active; i++) {
-        r->is_at_cap |= p->step.active[i].kind == HF_WATCH_CAP;
-        r->n_at_limit += p->step.active[i].kind == HF_WATCH_ROW;
-    }
-}
-
 /* From outside into the limits: each step goes as much of the way as brings the shape nearer to them. They are not
  * linear, and where the whole way leads elsewhere, a part of it does not. */
 static hf_status enter(problem *p, int max_iterations, hf_polish_result *r)
@@ -481,14 +455,22 @@ static void learn_pressure(problem *p)
     }
 }
 
-/* The multipliers of the linear model at the best design, free of what held the last step back. */
+static void forget_multipliers(hf_polish_result *r)
+{
+    for (int k = 0; k < HF_DESIGN_ROWS_MAX; k++)
+        r->multiplier[k] = NAN;
+}
+
+/* Those of the linear model at the best design, free of what held the last step back; NaN where it has none. */
 static hf_status find_multipliers(problem *p, hf_polish_result *r)
 {
     double gain, merit;
-    HF_TRY(evaluate(p, p->at));
-    HF_TRY(linearise(p));
+    forget_multipliers(r);
+    hf_status status = evaluate(p, p->at);
+    if (status == HF_OK) status = linearise(p);
     hf_watch_forget(&p->watch);
-    HF_TRY(solve_step(p, DAMPING_OF_MULTIPLIERS, &gain));
+    if (status == HF_OK) status = solve_step(p, DAMPING_OF_MULTIPLIERS, &gain);
+    if (status != HF_OK) return status == HF_NO_MEMORY || status == HF_INTERRUPTED ? status : HF_OK;
     learn_pressure(p);
     merit = merit_of(p, &p->result);
     merit = sqrt(fmax(0, merit * merit - 2 * gain)); /* where the linear model is least: a last small step away */
@@ -541,27 +523,43 @@ static hf_status minimise(problem *p, int max_iterations, hf_polish_result *r)
     }
     if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
     if (status != HF_OK) r->stop = HF_POLISH_STALLED;
-    count_limits(p, r);
     return HF_OK;
 }
 
-/* Does this design break a limit of the trade? */
-static bool breaks(const hf_watch_trade *trade, int n_goal, const hf_form_result *r)
+/* What holds the design, whose shape is in the workspace. */
+static void count_limits(const problem *p, const double *design, hf_polish_result *r)
 {
-    for (int k = 0; k < n_goal; k++)
-        if (k != trade->least && r->goal[k] > trade->most[k]) return true;
-    return false;
+    hf_limit_held held[HF_LIMITS_HELD];
+    for (int k = 0; k < p->v.model->n_gene; k++) {
+        int i = p->slopes.variable_of_gene[k];
+        double inside = is_tension(p, k) ? LIMIT_INSIDE * design[k] : LIMIT_ROUNDING * p->unit[i];
+        r->n_at_lower += design[k] <= p->lower[k] + inside;
+        r->n_at_upper += design[k] >= p->upper[k] - inside;
+    }
+    for (int i = 0, n = hf_limits_held(p->caller, p->w, held); i < n; i++) {
+        r->is_at_cap |= held[i].row == HF_LIMITS_CAP;
+        if (held[i].row != HF_LIMITS_CAP) r->n_at_limit += held[i].n;
+    }
 }
 
-/* The best design, in the caller's meaning, replaces `design` if its own evaluation is not worse than the start. */
-static void hand_over(const problem *p, const hf_form_result *start, double *design, hf_polish_result *r)
+/* The best design, in the caller's meaning, replaces `design` if its own evaluation keeps all limits and is not worse
+ * than the start; else the start stays, without multipliers, which are not its own. */
+static hf_status hand_over(const problem *p, const hf_form_result *start, double *design, hf_polish_result *r)
 {
     hf_form_result end;
     bool is_better = hf_evaluate(p->caller, p->best, p->w, &end) == HF_OK &&
+                     !hf_watch_breaks(p->trade, p->v.goals, HF_LIMITS_AT, end.goal) &&
                      (start->status != HF_OK || merit_of(p, &end) <= merit_of(p, start));
+    if (!is_better && start->status != HF_OK) return start->status;
     if (is_better) memcpy(design, p->best, (size_t)p->v.model->n_gene * sizeof(double));
-    r->merit = is_better ? merit_of(p, &end) : merit_of(p, start);
-    if (!is_better) r->stop = HF_POLISH_STALLED;
+    if (!is_better) {
+        r->stop = HF_POLISH_STALLED;
+        forget_multipliers(r);
+        HF_TRY(hf_evaluate(p->caller, design, p->w, &end));
+    }
+    r->merit = merit_of(p, &end);
+    count_limits(p, design, r);
+    return HF_OK;
 }
 
 hf_status hf_polish_trade(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
@@ -581,13 +579,13 @@ hf_status hf_polish_trade(const hf_evaluator *evaluator, const double *lower, co
     hf_status status = create(&p, &arena);
     if (status == HF_OK) {
         begin(&p, design);
-        if (trade && start.status == HF_OK && breaks(trade, evaluator->goals->n_goal, &start))
+        if (start.status == HF_OK && hf_watch_breaks(trade, evaluator->goals, 0, start.goal))
             start.status = HF_OUT_OF_LIMITS;
         status = minimise(&p, max_iterations, result);
         if (status == HF_OK && p.is_outside) status = start.status == HF_OK ? HF_OUT_OF_LIMITS : start.status;
         if (status == HF_OK && trade) status = find_multipliers(&p, result);
         result->evaluations = p.evaluations;
-        if (status == HF_OK) hand_over(&p, &start, design, result);
+        if (status == HF_OK) status = hand_over(&p, &start, design, result);
     }
     destroy(&p, &arena);
     return status;

@@ -15,10 +15,10 @@ typedef struct {
     double start_merit, merit; /* psi, m, unless the evaluator has goals; NaN: the start is outside the limits */
     hf_polish_stop stop;
     int n_at_lower, n_at_upper; /* genes at their bounds */
-    int n_at_limit;             /* rows and cables of optimize.limits that hold the last step */
-    bool is_at_cap;             /* the cap on the boundary tension ratio holds the last step */
+    int n_at_limit;             /* limits of optimize.limits that the design is at, cable by cable */
+    bool is_at_cap;             /* the design is at the cap on the boundary tension ratio */
     /* Of hf_polish_trade: by how much the least goal gets less for one unit more of the limit of each other, in their
-     * units, to first order; NaN of the least itself. */
+     * units, to first order; NaN of the least itself, and where they are not known. */
     double multiplier[HF_DESIGN_ROWS_MAX];
 } hf_polish_result;
 

@@ -193,7 +193,10 @@ static hf_status find_ends(search *s, job *end[2])
     for (int k = 0; k < 2; k++) {
         const hf_front_point *found = &beside[k]->found;
         double gain = end[k]->found.objective[1 - k] - found->objective[1 - k];
-        if (found->status == HF_OK && gain > END_GAINS * s->range[1 - k]) end[k] = beside[k];
+        if (found->status != HF_OK || !(gain > END_GAINS * s->range[1 - k])) continue;
+        end[k] = beside[k];
+        for (int i = 0; i < 2; i++) /* that of the limit of END_GIVES, not of the front */
+            end[k]->found.multiplier[i] = NAN;
     }
     s->range[0] = end[1]->found.objective[0] - end[0]->found.objective[0];
     s->range[1] = end[0]->found.objective[1] - end[1]->found.objective[1];

@@ -140,6 +140,13 @@ void hf_watch_free(hf_watch *q)
     *q = (hf_watch){0};
 }
 
+bool hf_watch_breaks(const hf_watch_trade *trade, const hf_goals *goals, double part, const double *goal)
+{
+    for (int k = 0; trade && k < goals->n_goal; k++)
+        if (k != trade->least && goal[k] > (1 + part) * trade->most[k]) return true;
+    return false;
+}
+
 /* ---- shapes ---- */
 
 /* Look at the shape in the workspace. */

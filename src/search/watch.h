@@ -13,6 +13,9 @@ typedef struct {
     const double *most; /* [n_goal], above 0; INFINITY: no limit */
 } hf_watch_trade;
 
+/* Is a goal beyond its limit by more than this part of it? Without a trade (NULL) none is. */
+bool hf_watch_breaks(const hf_watch_trade *trade, const hf_goals *goals, double part, const double *goal);
+
 typedef struct {
     int cable, attachment;  /* whose tension, or displacement; else -1 */
     int support, goal;      /* whose pull; the goal that it limits, and measures where all others are -1 */

@@ -175,6 +175,37 @@ START_TEST(check_promises_what_runs)
 }
 END_TEST
 
+/* Two nets apart from each other: the variables of one do not act on a goal of the other, hold nothing up, and what
+ * holds the design is counted as it is listed. A front has no slope at an end that the other objective was made least
+ * beside. */
+START_TEST(a_variable_may_act_on_nothing)
+{
+    const char *out = temp("r.h5"), *table = temp("f.csv"),
+               *path = net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,3,0,0.5,support\nc,1,1,0.2,inner\n"
+                                "d,2,1,0.25,inner\nf,20,0,0,support\ng,23,0,0.5,support\nh,21,1,0.2,inner\n"
+                                "k,22,1,0.25,inner\n",
+                                "id,i,j,group,law,value,set\nac,a,c,boundary,tension,10,\nbd,b,d,boundary,tension,10,\n"
+                                "cd,c,d,inner,force_density,5,A\nfh,f,h,boundary,tension,10,\n"
+                                "gk,g,k,boundary,tension,10,\nhk,h,k,inner,force_density,5,B\n");
+    const char *const common[] = {"optimize.variables=[{set: boundary, vary: tension, range: 20 %}]",
+                                  "optimize.goals=[{goal: tension, set: A, target: 3}]",
+                                  "optimize.objectives=[{goal: tension, set: A, target: 3}, {goal: tension, set: B, "
+                                  "target: 3}]"};
+    HIFDM(0, "run", path, "-o", out, "--set", "optimize.method=lm", "--set", common[0], "--set", common[1]);
+    ck_assert(!strstr(said.out, "stalled"));
+    EXPECT(out, "--", "a['polish'].attrs['polish_stop'] == 0",
+           "a['polish'].attrs['merit'] < 0.9 * a['form'].attrs['merit']");
+    HIFDM(0, "run", path, "-o", out, "--force", "--set", "optimize.method=lm", "--set", common[0], "--set",
+          "optimize.goals=[{goal: tension, set: A, target: 3}, {goal: psi}]", "--set",
+          "optimize.limits=[{limit: tension, set: boundary, bounds: [9, 100]}]");
+    OUT(" and 4 limits\n");
+    OUT(" and 3 more at 9\n");
+    HIFDM(0, "run", path, "-o", out, "--force", "--set", "optimize.method=lm", "--set", common[0], "--set", common[2]);
+    HIFDM(0, "export", out, "--front", table);
+    EXPECT(out, "--", "a['front/objective'].shape[0] >= 2", "np.isnan(a['front/multiplier'][-1]).all()");
+}
+END_TEST
+
 Suite *suite_cli_limits(void)
 {
     Suite *suite = suite_create("cli/limits");
@@ -192,5 +223,6 @@ Suite *suite_cli_limits(void)
     tcase_add_test(tests, nothing_is_a_part_of_a_psi_of_zero);
     tcase_add_test(tests, check_promises_what_runs);
     tcase_add_test(tests, a_comparison_nobody_asked_for_must_be_cheap);
+    tcase_add_test(tests, a_variable_may_act_on_nothing);
     return suite;
 }

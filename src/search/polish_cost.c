@@ -1,0 +1,28 @@
+/* For which designs, and at what cost: see search/polish.h. */
+#include "search/polish.h"
+
+#include <math.h>
+
+/* Steps that were counted on the cases of configs and METHOD; operations in about 0.1 s. */
+#define STEPS_EXPECTED 8
+#define STEP_EVALUATIONS 2
+#define NEWTON_STEPS 5
+#define CHORD_STEPS 4
+#define UNNOTICED 2e8
+
+bool hf_polish_applies(const hf_evaluator *v)
+{
+    for (int k = 0; k < v->model->n_gene; k++)
+        if (hf_evaluate_sets(v, k) == HF_SETS_START) return false;
+    return v->model->has_newton && v->model->n_gene > 0;
+}
+
+bool hf_polish_is_cheap(const hf_evaluator *v, long n_evaluation)
+{
+    const hf_model *m = v->model;
+    double n_dof = 3.0 * m->n_free, width = 3.0 * m->half_bandwidth + 3, n = m->n_leader;
+    double factor = n_dof * width * width, solve = 4 * n_dof * width, newton = NEWTON_STEPS * (factor + solve);
+    double evaluation = v->solver == HF_SOLVER_CHORD ? CHORD_STEPS * solve : newton;
+    double step = STEP_EVALUATIONS * newton + factor + n * solve + n * n * (3.0 * m->n_inner_node + 2 * n);
+    return STEPS_EXPECTED * step <= fmax(UNNOTICED, (double)n_evaluation * evaluation / 10);
+}
