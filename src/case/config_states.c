@@ -12,6 +12,7 @@
 
 #define WHERE_SIZE (HF_PATH_SIZE + 96)
 #define COLUMN_MAX 64
+#define LARGEST_STRAIN 0.1 /* by temperature: beyond it a number is wrong, and far beyond it a length below zero */
 
 _Static_assert(sizeof hf_part_word / sizeof *hf_part_word == HF_PART_UNIT + HF_N_UNIT + 1, "a part for each unit");
 
@@ -76,16 +77,24 @@ static hf_status heat_cables(const maker *q, int row)
     const hf_scene *scene = q->scene;
     hf_state *state = state_of_row(q, row);
     char where[WHERE_SIZE];
-    int n_unknown = 0, unknown = 0;
+    int n_unknown = 0, unknown = 0, n_wild = 0, wild = 0;
     int n = hf_cable_pick_some(scene, s->set, place_in_row(q, row, "set", where), q->cable, q->messages);
     for (int k = 0; k < n; k++) {
         int e = q->cable[k];
+        double expansion = q->states->material.expansion_per_K[e];
         state->rise_K[e] = rise_at(s, scene->position_m + 3 * (size_t)scene->end[2 * e],
                                    scene->position_m + 3 * (size_t)scene->end[2 * e + 1]);
-        if (isnan(q->states->material.expansion_per_K[e]) && n_unknown++ == 0) unknown = e;
+        if (isnan(expansion) && n_unknown++ == 0) unknown = e;
+        if (fabs(expansion * state->rise_K[e]) > LARGEST_STRAIN && n_wild++ == 0) wild = e;
     }
     if (n == 0) return HF_BAD_CASE;
-    if (n_unknown == 0) return HF_OK;
+    if (n_wild)
+        hf_error(q->messages, HF_BAD_CASE,
+                 "%s: %d cables would change by more than %g of their lengths, like '%s' by %.3g at %.6g K: is this "
+                 "temperature wrong, or its expansion_per_K?",
+                 place_in_row(q, row, temperature_key(s), where), n_wild, LARGEST_STRAIN, scene->cable_id[wild],
+                 q->states->material.expansion_per_K[wild] * state->rise_K[wild], state->rise_K[wild]);
+    if (n_unknown == 0) return n_wild ? HF_BAD_CASE : HF_OK;
     return hf_error(q->messages, HF_BAD_CASE,
                     "%s: the expansion of %d cables is not known, like '%s': give expansion_per_K of their sets in "
                     "`cables`; 0 for those that keep their lengths",

@@ -240,7 +240,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
     tell_limits(r, HF_STAGE_OPTIMIZE, w, s);
     HF_TRY(measure_shape(r, HF_STAGE_OPTIMIZE, w, s, messages));
-    HF_TRY(take_result(r, w, messages));
+    if (r->problem.settings.optimize.n_objective == 0) HF_TRY(take_result(r, w, messages)); /* a front has no result */
     return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->problem.model, w, design, messages);
 }
 
@@ -317,25 +317,6 @@ static bool evaluate_first(run *r)
     return true;
 }
 
-/* Which limit the shape in w breaks most: ": tension of cable c7 is 12 beside 10 of optimize.limits.0"; "" where it
- * breaks none. */
-static const char *name_broken(const run *r, const hf_workspace *w, char *text, size_t size)
-{
-    const hf_problem *p = &r->problem;
-    hf_limit_held held[HF_LIMITS_HELD];
-    char name[HF_HELD_NAME_SIZE], limit[32] = "boundary_ratio_cap";
-    int worst = -1, n = hf_limits_held(&p->evaluator, w, held);
-    for (int i = 0; i < n; i++)
-        if (held[i].beyond > (worst < 0 ? HF_LIMITS_AT : held[worst].beyond)) worst = i;
-    *text = '\0';
-    if (worst < 0) return text;
-    const hf_limit_held *h = &held[worst];
-    if (h->row != HF_LIMITS_CAP) snprintf(limit, sizeof limit, "optimize.limits.%d", h->row);
-    snprintf(text, size, ": %s is %.6g beside %g of %s", hf_limits_name(&p->scene, &p->model, h, name, sizeof name),
-             h->value, h->bound, limit);
-    return text;
-}
-
 /* Why no design was feasible, by counts, and what would change that. */
 static hf_status explain_infeasible(run *r, hf_messages *messages)
 {
@@ -345,7 +326,8 @@ static hf_status explain_infeasible(run *r, hf_messages *messages)
     hf_form_result base;
     char broken[2 * HF_HELD_NAME_SIZE] = "";
     const hf_workspace *w = hf_batch_run_one(&r->problem.batch, p->base_N, &base);
-    if (hf_status_has_shape(base.status)) name_broken(r, w, broken, sizeof broken);
+    if (hf_status_has_shape(base.status))
+        hf_limits_name_broken(&r->problem.evaluator, &r->problem.scene, w, broken, sizeof broken);
     if (above > 0 && r->problem.settings.optimize.n_limit > 0)
         return hf_error(messages, HF_NO_FEASIBLE,
                         "optimize: no feasible design: %ld of %ld evaluations have a shape beyond optimize.limits or "
@@ -417,7 +399,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
         char broken[2 * HF_HELD_NAME_SIZE] = "";
         hf_form_result start;
         if (hf_status_has_shape(hf_evaluate(&r->problem.evaluator, design, w, &start)))
-            name_broken(r, w, broken, sizeof broken);
+            hf_limits_name_broken(&r->problem.evaluator, &r->problem.scene, w, broken, sizeof broken);
         if (!r->plan.kind)
             return hf_error(messages, HF_NO_FEASIBLE, "optimize: Levenberg-Marquardt has no feasible start: %s%s", why,
                             broken);
@@ -518,6 +500,13 @@ static bool leaves_result(hf_status status)
     return status == HF_OK || status == HF_NOT_CONVERGED || status == HF_NO_FEASIBLE;
 }
 
+/* Is the design kept though its samples failed? A point of a sweep whose machine is sick is tried again. */
+static bool outlives_samples(const hf_run_request *q, hf_status status)
+{
+    if (status == HF_OK || status == HF_INTERRUPTED || hf_tolerance_stage_is_task(q)) return false;
+    return !q->of_sweep || (status != HF_IO && status != HF_NO_MEMORY);
+}
+
 /* The result is finished already: return its stored summary and status, and the errors that explain the status. */
 static hf_status repeat_finished(const char *output, hf_summary *s, hf_messages *messages)
 {
@@ -528,7 +517,7 @@ static hf_status repeat_finished(const char *output, hf_summary *s, hf_messages 
     return s->status;
 }
 
-/* Set *state, and open the store unless the state is HF_STORE_FINISHED. */
+/* Set *state, and open the store unless the state is HF_STORE_FINISHED, or for one task of several, which has none. */
 static hf_status open_store(run *r, char *output, hf_store_state *state, hf_messages *messages)
 {
     const hf_run_request *q = r->request;
@@ -536,10 +525,11 @@ static hf_status open_store(run *r, char *output, hf_store_state *state, hf_mess
     const hf_scene *scene = &r->problem.scene;
     const hf_truss *truss = settings->has_truss ? &r->problem.carrier.truss : NULL;
     HF_TRY(choose_output(q, output, messages));
-    if (hf_tolerance_stage_is_task(q)) return HF_OK;
     HF_TRY(hf_problem_spare_inputs(&r->problem, NULL, output, messages));
     if (!q->restart) HF_TRY(hf_store_look(output, settings, scene, truss, state, messages));
     if (*state == HF_STORE_FINISHED) return HF_OK;
+    HF_TRY(hf_tolerance_stage_look(q, &r->problem, output, messages));
+    if (hf_tolerance_stage_is_task(q)) return HF_OK;
     if (*state == HF_STORE_UNFINISHED) return hf_store_resume(output, &r->store, messages);
     return hf_store_create(output, q->restart, settings, scene, truss, q->argc, q->argv, &r->store, messages);
 }
@@ -565,10 +555,15 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     if (status == HF_OK && r->problem.states.n)
         status = hf_cases_run(&r->problem, &r->cases, r->store, q->stop_requested, s, messages);
     const hf_tolerance_stage stage = {q, &r->problem, r->shape, output, r->store};
-    if (status == HF_OK && settings->has_tolerance) status = hf_tolerance_stage_run(&stage, s, messages);
+    bool keeps_design = false;
+    if (status == HF_OK && settings->has_tolerance) {
+        status = hf_tolerance_stage_run(&stage, s, messages);
+        keeps_design = outlives_samples(q, status);
+        if (keeps_design) hf_warning(messages, "tolerance: the result has the design alone, without samples");
+    }
     if (status == HF_INTERRUPTED && (r->store || hf_tolerance_stage_is_task(q)))
         hf_error(messages, status, "%s: told to stop; the same command goes on from there", output);
-    if (!leaves_result(status) || hf_tolerance_stage_is_task(q)) return status;
+    if ((!leaves_result(status) && !keeps_design) || hf_tolerance_stage_is_task(q)) return status;
     if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, &r->truss, messages));
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
     hf_text_trim_utf8(s->warnings);
@@ -594,7 +589,8 @@ hf_status hf_run_case(const hf_run_request *request, hf_summary *summary, char o
     snprintf(summary->version, sizeof summary->version, "%s", hf_store_version());
     output[0] = '\0';
     hf_status status = execute(&r, summary, output, messages);
-    if (!leaves_result(status) || hf_tolerance_stage_is_task(request)) output[0] = '\0';
+    bool is_kept = leaves_result(status) || (summary->finished && summary->status == status);
+    if (!is_kept || hf_tolerance_stage_is_task(request)) output[0] = '\0';
     run_free(&r);
     return status;
 }

@@ -43,17 +43,28 @@ static hf_status check_expansion(const hf_problem *p, const hf_material *t, hf_m
                     s->cable_id[first]);
 }
 
-/* Absolute errors must leave something of each cable. */
+/* All errors together must leave half of each cable. */
 #define LARGEST_NUMBER 9 /* no number of either distribution is larger */
-static hf_status check_cuts(const hf_problem *p, hf_messages *messages)
+static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf_messages *messages)
 {
     const hf_scene *s = &p->scene;
+    const hf_tolerance_settings *t = &p->settings.tolerance;
+    double by_ratio = LARGEST_NUMBER * t->sigma_cut_ratio * (sqrt(1 - t->batch) + sqrt(t->batch));
     char place[HF_PATH_SIZE + 128];
     for (int e = 0; e < s->n_cable; e++) {
-        if (LARGEST_NUMBER * p->settings.tolerance.sigma_cut_m < hf_scene_theoretical_length(s, e) / 2) continue;
-        hf_config_place(&p->settings, "tolerance.sigma_cut_m", place, sizeof place);
-        return hf_error(messages, HF_BAD_CASE, "%s: cable '%s' is %.3g m long: errors of %g m may leave nothing of it",
-                        place, s->cable_id[e], hf_scene_theoretical_length(s, e), p->settings.tolerance.sigma_cut_m);
+        double length = hf_scene_theoretical_length(s, e), by_cut = LARGEST_NUMBER * t->sigma_cut_m / length;
+        double by_heat = 0;
+        if (t->sigma_temperature_K > 0 && !isnan(material->expansion_per_K[e])) /* check_expansion tells of others */
+            by_heat = LARGEST_NUMBER * t->sigma_temperature_K * fabs(material->expansion_per_K[e]);
+        if (by_cut + by_ratio + by_heat < 0.5) continue;
+        const char *key = by_cut >= by_ratio && by_cut >= by_heat ? "tolerance.sigma_cut_m"
+                          : by_ratio >= by_heat                   ? "tolerance.sigma_cut_ratio"
+                                                                  : "tolerance.sigma_temperature_K";
+        hf_config_place(&p->settings, key, place, sizeof place);
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: cable '%s' is %.3g m long: errors of cutting and temperature, of %d standard deviations, "
+                        "may take %.3g of it, and 0.5 is the most: give smaller ones",
+                        place, s->cable_id[e], length, LARGEST_NUMBER, by_cut + by_ratio + by_heat);
     }
     return HF_OK;
 }
@@ -84,6 +95,21 @@ static hf_status check_EA(const hf_problem *p, hf_messages *messages)
     return n[0] + n[1] ? HF_BAD_CASE : HF_OK;
 }
 
+/* Struts that the laws tell of; those that other laws lead to show after form-finding alone. */
+static hf_status check_struts(const hf_problem *p, hf_messages *messages)
+{
+    const hf_scene *s = &p->scene;
+    char place[HF_PATH_SIZE + 128];
+    int n = 0, first = 0;
+    for (int e = 0; e < s->n_cable; e++)
+        if (hf_law_has(s->law[e], HF_LAW_MAY_PUSH) && s->target[e] < 0 && n++ == 0) first = e;
+    if (n == 0) return HF_OK;
+    place_section(&p->settings, place, sizeof place);
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: %d cables push, like '%s': the net as built has cables alone, no struts", place, n,
+                    s->cable_id[first]);
+}
+
 static hf_status make_material(const hf_problem *p, hf_material *t, hf_messages *messages)
 {
     hf_status status = hf_config_material(&p->settings, &p->scene, t, messages);
@@ -97,29 +123,42 @@ hf_status hf_tolerance_stage_check(const hf_problem *p, bool is_demanded, hf_mes
         return hf_error(messages, HF_BAD_USAGE, "%s: has no section tolerance; 'hifdm schema' lists its keys",
                         p->settings.path);
     hf_material material;
-    hf_status status = make_material(p, &material, messages), other[3];
+    hf_status status = make_material(p, &material, messages), other[4] = {HF_OK};
+    if (status != HF_NO_MEMORY) other[2] = check_cuts(p, &material, messages);
     hf_material_free(&material);
     other[0] = check_EA(p, messages);
     other[1] = check_measures(p, messages);
-    other[2] = check_cuts(p, messages);
-    for (int i = 0; i < 3 && status == HF_OK; i++)
+    other[3] = check_struts(p, messages);
+    for (int i = 0; i < 4 && status == HF_OK; i++)
         status = other[i];
     return status;
 }
 
 /* ---- the identity of samples ---- */
 
+static hf_status identify_case(const hf_problem *p, char identity[65])
+{
+    const hf_truss *truss = p->settings.has_truss ? &p->carrier.truss : NULL;
+    return hf_store_identify(&p->settings, &p->scene, truss, identity);
+}
+
 /* Of the case, and of the net that is made: machines that find other designs do not share samples. */
 static hf_status identify(const hf_problem *p, const hf_built *b, char identity[65])
 {
-    char both[128], hex[65];
-    const hf_truss *truss = p->settings.has_truss ? &p->carrier.truss : NULL;
-    HF_TRY(hf_store_identify(&p->settings, &p->scene, truss, identity));
-    hf_sha256(b->scene.target, (size_t)b->scene.n_cable * sizeof(double), hex);
-    memcpy(both, identity, 64);
-    memcpy(both + 64, hex, 64);
-    hf_sha256(both, sizeof both, identity);
+    char of_case[65], of_design[65];
+    HF_TRY(identify_case(p, of_case));
+    hf_sha256(b->scene.target, (size_t)b->scene.n_cable * sizeof(double), of_design);
+    hf_samples_identify(of_case, of_design, identity);
     return HF_OK;
+}
+
+hf_status hf_tolerance_stage_look(const hf_run_request *q, const hf_problem *p, const char *output,
+                                  hf_messages *messages)
+{
+    char of_case[65];
+    if (!p->settings.has_tolerance || q->restart || q->of_sweep) return HF_OK;
+    if (identify_case(p, of_case) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
+    return hf_samples_look(output, q->tasks > 0 ? q->task : -1, q->tasks, of_case, messages);
 }
 
 /* ---- samples ---- */
@@ -189,7 +228,7 @@ static hf_status open_samples(job *j, hf_messages *messages)
     if (identify(p, &j->built, identity) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
     HF_TRY(hf_samples_open(output, q->task, is_task ? q->tasks : 0, identity, q->restart, p->settings.tolerance.samples,
                            j->montecarlo.n_chunk, &j->samples, messages));
-    if (output && q->tasks > 0 && !is_task) HF_TRY(hf_samples_collect(&j->samples, output, q->tasks));
+    if (output && q->tasks > 0 && !is_task) HF_TRY(hf_samples_collect(&j->samples, output, q->tasks, q->restart));
     return HF_OK;
 }
 
@@ -255,5 +294,5 @@ hf_status hf_tolerance_stage_run(const hf_tolerance_stage *stage, hf_summary *su
 
 void hf_tolerance_stage_end(const hf_run_request *q, const char *output)
 {
-    if (*output && !q->of_sweep) hf_samples_remove(output, q->tasks);
+    if (*output && !q->of_sweep) hf_samples_remove(output);
 }

@@ -24,10 +24,15 @@ static inline bool hf_tolerance_stage_is_task(const hf_run_request *request)
 /* Remove what is left beside a finished result: nobody needs its journals any more. */
 void hf_tolerance_stage_end(const hf_run_request *request, const char *output);
 
-/* Fails where hf_tolerance_stage_run would before it solves anything: cables without EA or expansion, measures that
- * the net does not have. HF_OK, also without a section `tolerance` unless it is demanded: then HF_BAD_USAGE.
- * HF_BAD_CASE. */
+/* Fails where hf_tolerance_stage_run would before it solves anything: cables without EA or expansion, struts,
+ * errors that may leave nothing of a cable, measures that the net does not have. HF_OK, also without a section
+ * `tolerance` unless it is demanded: then HF_BAD_USAGE. HF_BAD_CASE. */
 hf_status hf_tolerance_stage_check(const hf_problem *problem, bool is_demanded, hf_messages *messages);
+
+/* HF_EXISTS when a journal beside the output has samples of another case, and the request does not begin anew.
+ * HF_NO_MEMORY. */
+hf_status hf_tolerance_stage_look(const hf_run_request *request, const hf_problem *problem, const char *output,
+                                  hf_messages *messages);
 
 /* Find all samples, or those of request->task, and sum them up into the summary. HF_OK; HF_INTERRUPTED: the same
  * request goes on; HF_BAD_CASE, HF_SINGULAR, HF_EXISTS, HF_IO, HF_NO_MEMORY. */

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* ---- from the rows ---- */
 
@@ -205,5 +206,24 @@ const char *hf_limits_name(const hf_scene *scene, const hf_model *m, const hf_li
     else
         snprintf(text, size, "tension of cable %s", scene->cable_id[h->cable]);
     hf_text_trim_utf8(text);
+    return text;
+}
+
+const char *hf_limits_name_broken(const hf_evaluator *e, const hf_scene *scene, const hf_workspace *w, char *text,
+                                  size_t size)
+{
+    hf_limit_held held[HF_LIMITS_HELD];
+    char limit[32] = "boundary_ratio_cap";
+    int worst = -1, n = hf_limits_held(e, w, held);
+    for (int i = 0; i < n; i++)
+        if (held[i].beyond > (worst < 0 ? HF_LIMITS_AT : held[worst].beyond)) worst = i;
+    *text = '\0';
+    if (worst < 0) return text;
+    const hf_limit_held *h = &held[worst];
+    if (h->row != HF_LIMITS_CAP) snprintf(limit, sizeof limit, "optimize.limits.%d", h->row);
+    snprintf(text, size, ": ");
+    hf_limits_name(scene, e->model, h, text + 2, size - 2);
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, " is %.6g beside %g of %s", h->value, h->bound, limit);
     return text;
 }

@@ -39,6 +39,11 @@ int hf_limits_held(const hf_evaluator *evaluator, const hf_workspace *workspace,
 const char *hf_limits_name(const hf_scene *scene, const hf_model *model, const hf_limit_held *held, char *text,
                            size_t size);
 
+/* Which limit the shape in the workspace breaks most: ": tension of cable c7 is 12 beside 10 of optimize.limits.0"; ""
+ * where it breaks none. Returns text. */
+const char *hf_limits_name_broken(const hf_evaluator *evaluator, const hf_scene *scene, const hf_workspace *workspace,
+                                  char *text, size_t size);
+
 /* By how much the tensions of these cables would have to change for a ratio of at most `cap`, cable by cable: a smaller
  * sum is nearer to the cap also where several cables share the largest or the smallest tension, so that no single one
  * of them changes the ratio. slack_N: no tension counts as less. */

@@ -115,19 +115,37 @@ hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_m
                     result, j->path);
 }
 
-bool hf_journal_is_there(const char *result)
+/* Whether there is a journal with a header; read through a name that nobody may have put a link at. */
+static bool read_head(const char *result, char header[HEADER_BYTES], bool *has_records)
 {
-    char path[HF_FILE_OUT_SIZE + 16], magic[8];
+    char path[HF_FILE_OUT_SIZE + 16];
+    struct stat info;
     hf_messages unwanted = {0};
     hf_status status = hf_file_out_target(result, path, &unwanted);
     hf_messages_free(&unwanted);
     if (status != HF_OK && !realpath(result, path)) return false; /* looking is allowed behind anybody's link */
     strcat(path, ".journal");
     int file = hf_file_io_open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
-    bool is_there =
-        file >= 0 && hf_file_io_read(file, magic, sizeof magic) == sizeof magic && !memcmp(magic, MAGIC, sizeof magic);
+    ssize_t n = file >= 0 ? hf_file_io_read(file, header, HEADER_BYTES) : -1;
+    *has_records = n == HEADER_BYTES && fstat(file, &info) == 0 && info.st_size > HEADER_BYTES;
     if (file >= 0) close(file);
-    return is_there;
+    return n >= 8 && !memcmp(header, MAGIC, 8);
+}
+
+bool hf_journal_is_there(const char *result)
+{
+    char header[HEADER_BYTES];
+    bool has_records;
+    return read_head(result, header, &has_records);
+}
+
+void hf_journal_peek(const char *result, char identity[HF_JOURNAL_IDENTITY + 1])
+{
+    char header[HEADER_BYTES];
+    bool has_records;
+    *identity = '\0';
+    if (read_head(result, header, &has_records) && has_records)
+        snprintf(identity, HF_JOURNAL_IDENTITY + 1, "%.*s", HF_JOURNAL_IDENTITY, header + 8);
 }
 
 /* 0, or -1 and errno. */

@@ -5,12 +5,14 @@
 #include "base/file_io.h"
 #include "base/file_out.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
 #define ROW_BYTES (HF_TOLERANCE_COLUMNS * sizeof(double))
+#define OF_CASE 32 /* characters of an identity that are known before the design is */
 
 static void name_journal(const char *result, int task, int tasks, char name[HF_SAMPLES_NAME_SIZE])
 {
@@ -70,12 +72,47 @@ hf_status hf_samples_open(const char *result, int task, int tasks, const char *i
     return hf_journal_replay(&s->journal, identity, take_chunk, s, messages);
 }
 
-hf_status hf_samples_collect(hf_samples *s, const char *result, int tasks)
+void hf_samples_identify(const char of_case[65], const char of_design[65], char identity[65])
+{
+    snprintf(identity, 65, "%.*s%.*s", OF_CASE, of_case, 64 - OF_CASE, of_design);
+}
+
+static bool is_of_other_case(const char *name, const char *of_case)
+{
+    char identity[HF_JOURNAL_IDENTITY + 1];
+    hf_journal_peek(name, identity);
+    return *identity && strncmp(identity, of_case, OF_CASE) != 0;
+}
+
+hf_status hf_samples_look(const char *result, int task, int tasks, const char of_case[65], hf_messages *messages)
 {
     char name[HF_SAMPLES_NAME_SIZE];
+    int first = task < 0 ? -1 : task, end = task < 0 ? tasks : task + 1;
+    for (int i = first; i < end; i++) {
+        name_journal(result, i, i < 0 ? 0 : tasks, name);
+        if (is_of_other_case(name, of_case))
+            return hf_error(messages, HF_EXISTS,
+                            "%s: %s.journal has samples of another case; delete it, or begin anew with --restart",
+                            result, name);
+    }
+    return HF_OK;
+}
+
+static void remove_journal_of(const char *name)
+{
+    char path[HF_SAMPLES_NAME_SIZE + 16];
+    snprintf(path, sizeof path, "%s.journal", name);
+    unlink(path);
+}
+
+hf_status hf_samples_collect(hf_samples *s, const char *result, int tasks, bool restart)
+{
+    char name[HF_SAMPLES_NAME_SIZE], identity[HF_JOURNAL_IDENTITY + 1];
     for (int task = 0; task < tasks; task++) {
         hf_journal journal;
         name_journal(result, task, tasks, name);
+        hf_journal_peek(name, identity);
+        if (restart && *identity && strcmp(identity, s->identity) != 0) remove_journal_of(name);
         if (!hf_journal_is_there(name)) continue;
         hf_status status = hf_journal_open(name, false, &journal, s->messages);
         if (status == HF_OK) status = hf_journal_replay(&journal, s->identity, take_chunk, s, s->messages);
@@ -115,12 +152,24 @@ void hf_samples_close(hf_samples *s)
     *s = (hf_samples){.messages = messages, .rows = -1};
 }
 
-void hf_samples_remove(const char *result, int tasks)
+/* RESULT.tolerance-*-of-*.journal, of any number of tasks: `name` begins behind RESULT. */
+static bool is_of_task(const char *name)
 {
-    char name[HF_SAMPLES_NAME_SIZE + 16];
-    for (int task = -1; task < tasks; task++) {
-        name_journal(result, task, task < 0 ? 0 : tasks, name);
-        strcat(name, ".journal");
-        unlink(name);
-    }
+    int task, tasks, end = 0;
+    return sscanf(name, ".tolerance-%d-of-%d.journal%n", &task, &tasks, &end) == 2 && end > 0 && !name[end];
+}
+
+void hf_samples_remove(const char *result)
+{
+    char path[HF_SAMPLES_NAME_SIZE], folder[HF_SAMPLES_NAME_SIZE];
+    const char *slash = strrchr(result, '/'), *base = slash ? slash + 1 : result;
+    size_t n = strlen(base);
+    name_journal(result, -1, 0, path);
+    remove_journal_of(path);
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - result) + 1 : 1, slash ? result : ".");
+    DIR *entries = opendir(folder);
+    if (!entries) return;
+    for (struct dirent *e = readdir(entries); e; e = readdir(entries))
+        if (!strncmp(e->d_name, base, n) && is_of_task(e->d_name + n)) unlinkat(dirfd(entries), e->d_name, 0);
+    closedir(entries);
 }

@@ -31,8 +31,16 @@ typedef struct {
 hf_status hf_samples_open(const char *result, int task, int tasks, const char *identity, bool restart, long n,
                           int n_chunk, hf_samples *samples, hf_messages *messages);
 
-/* Take what the journals of all tasks have. */
-hf_status hf_samples_collect(hf_samples *samples, const char *result, int tasks);
+/* The identity of samples of a case and of the design that was found for it, of a digest of each. */
+void hf_samples_identify(const char of_case[65], const char of_design[65], char identity[65]);
+
+/* Before the design is known: HF_EXISTS when the journal of `task`, or with task < 0 any of those that would be read,
+ * has samples of another case. */
+hf_status hf_samples_look(const char *result, int task, int tasks, const char of_case[65], hf_messages *messages);
+
+/* Take what the journals of all tasks have. With `restart` those of another identity are removed, else they are
+ * HF_EXISTS. */
+hf_status hf_samples_collect(hf_samples *samples, const char *result, int tasks, bool restart);
 
 /* First sample of a chunk, and how many it has. */
 static inline long hf_samples_first(const hf_samples *samples, int chunk, int *n)
@@ -50,7 +58,7 @@ hf_status hf_samples_read(void *samples, long first, int n, double *row);
 
 void hf_samples_close(hf_samples *samples);
 
-/* Remove the journals of a result that is finished: nobody needs them any more. */
-void hf_samples_remove(const char *result, int tasks);
+/* Remove the journals of a result that is finished, of any number of tasks: nobody needs them any more. */
+void hf_samples_remove(const char *result);
 
 #endif

@@ -72,6 +72,66 @@ START_TEST(killed_runs_go_on)
 }
 END_TEST
 
+/* Journals of another case are in the way of nobody who begins anew, and never of a finished result. */
+START_TEST(journals_of_another_case_are_no_dead_end)
+{
+    const char *c = built_case("random"), *path = temp("a.h5"), *whole = temp("b.h5");
+    HIFDM(0, "tolerance", c, "-o", path, "--task", "0", "--tasks", "2", "--quiet", "--set", "tolerance.samples=1400");
+    HIFDM(5, "tolerance", c, "-o", path, "--task", "0", "--tasks", "2", "--quiet");
+    ERR("has samples of another case");
+    HIFDM(5, "tolerance", c, "-o", path, "--tasks", "2", "--quiet");
+    ERR("has samples of another case");
+    ck_assert(!is_there(path));
+    HIFDM(0, "tolerance", c, "-o", path, "--task", "1", "--tasks", "2", "--quiet");
+    HIFDM(0, "tolerance", c, "-o", path, "--tasks", "2", "--quiet", "--restart");
+    HIFDM(0, "tolerance", c, "-o", whole, "--quiet");
+    demand_same(path, whole);
+    SHELL(0, "test \"$(ls \"$1\"*)\" = \"$1\"", path);
+    HIFDM(0, "tolerance", c, "-o", path, "--task", "0", "--tasks", "2");
+    ERR("is the finished result of this case");
+    SHELL(0, "test \"$(ls \"$1\"*)\" = \"$1\"", path);
+    SHELL(0, "touch \"$1.tolerance-3-of-9.journal\" \"$1.tolerance-x.journal\"", path);
+    HIFDM(0, "tolerance", c, "-o", path, "--quiet");
+    ck_assert(!is_there(keep(formatted("%s.tolerance-3-of-9.journal", path))));
+    ck_assert(is_there(keep(formatted("%s.tolerance-x.journal", path)))); /* nobody's */
+}
+END_TEST
+
+/* Samples of the same case, but of another design, as another machine may find it: that shows after optimising. */
+START_TEST(a_design_outlives_samples_that_fail)
+{
+    const char *c = built_case("random"), *path = temp("a.h5"),
+               *journal = keep(formatted("%s.tolerance-0-of-2.journal", path));
+    HIFDM(0, "tolerance", c, "-o", path, "--task", "0", "--tasks", "2", "--quiet");
+    SHELL(0, "printf zzzz | dd of=\"$1\" bs=1 seek=60 conv=notrunc 2>&1", journal);
+    HIFDM(5, "tolerance", c, "-o", path, "--tasks", "2");
+    ERR("is of another case");
+    ERR("the result has the design alone, without samples");
+    OUT("form-finding");
+    EXPECT(path, "--", "'tolerance' not in a", "len(a['form/length_m']) > 0");
+    HIFDM(5, "tolerance", c, "-o", path, "--tasks", "2");
+    ERR("is the finished result of this case");
+    ERR("is of another case");
+    HIFDM(0, "tolerance", c, "-o", path, "--tasks", "2", "--restart", "--quiet");
+    EXPECT(path, "--", "len(a['tolerance/sample/psi_m']) == 1500");
+}
+END_TEST
+
+/* A front has no design that is the result, however it was found: what is built is the form-finding's. */
+START_TEST(beside_a_front_the_net_of_form_finding_is_built)
+{
+    static const char *const method[] = {"lm, front_points: 3", "ga", "ga+lm, front_points: 3"};
+    const char *path = temp("a.h5");
+    const char *c = file_with(
+        "c.yaml",
+        formatted(BUILT_SCENE "optimize: {method: %s, population: 10, generations: 3, objectives: [{goal: psi}, {goal: "
+                              "ratio, set: boundary}]}\ntolerance: {sigma_cut_m: 1e-6, samples: 20}\n",
+                  method[_i]));
+    HIFDM(0, "run", c, "-o", path, "--quiet");
+    EXPECT(path, "--", "near(a['tolerance'].attrs['nominal_psi_m'], a['form'].attrs['psi_m'], 1e-9)");
+}
+END_TEST
+
 /* Quantiles of the rows in the file: psi from above, the least tension from below. A sweep has them in its table. */
 START_TEST(quantiles_are_those_of_the_samples)
 {
@@ -104,6 +164,10 @@ START_TEST(faults_are_named)
         {"  sigma_cut_m: 1e-4\n  require: [{measure: fit_half_path_rms_m, at_most: 1}]\n",
          "7:23: tolerance.require.0.measure: is not measured: add a section surface"},
         {"  sigma_cut_m: 0.1\n", "6:16: tolerance.sigma_cut_m: cable '"},
+        {"  sigma_temperature_K: 700\ncables: [{expansion_per_K: 1e-3}]\n",
+         "6:24: tolerance.sigma_temperature_K: cable '"},
+        {"  sigma_temperature_K: 30\n  sigma_cut_ratio: 0.028\ncables: [{expansion_per_K: 1e-3}]\n",
+         "6:24: tolerance.sigma_temperature_K: cable '"},
     };
     for (size_t k = 0; k < sizeof fault / sizeof *fault; k++) {
         const char *c = file_with("f.yaml", formatted(BUILT_SCENE "tolerance:\n%s", fault[k][0]));
@@ -142,6 +206,9 @@ Suite *suite_cli_tolerance(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, threads_and_tasks_change_nothing, 0, 2);
     tcase_add_test(tests, killed_runs_go_on);
+    tcase_add_test(tests, journals_of_another_case_are_no_dead_end);
+    tcase_add_test(tests, a_design_outlives_samples_that_fail);
+    tcase_add_loop_test(tests, beside_a_front_the_net_of_form_finding_is_built, 0, 3);
     tcase_add_test(tests, quantiles_are_those_of_the_samples);
     tcase_add_test(tests, faults_are_named);
     tcase_add_test(tests, samples_are_those_of_another_solver);

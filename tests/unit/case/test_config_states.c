@@ -155,6 +155,9 @@ static const struct {
     {NET "cases:\n  - {name: a, temperature_K: 1}\n", "",
      "error: c.yaml:6:30: cases.0.temperature_K: the expansion of 163 cables is not known, like 'f0_0-f1_0': give "
      "expansion_per_K of their sets in `cables`; 0 for those that keep their lengths\n"},
+    {NET "cables:\n  - {expansion_per_K: 1e-3}\ncases:\n  - {name: a, temperature_K: -2000}\n", "",
+     "error: c.yaml:8:30: cases.0.temperature_K: 163 cables would change by more than 0.1 of their lengths, like "
+     "'f0_0-f1_0' by -2 at -2000 K: is this temperature wrong, or its expansion_per_K?\n"},
     {NET "cables:\n  - {set: front, mass_kg_per_m: 1}\ncases:\n  - {name: a, gravity_m_per_s2: 1}\n", "",
      "error: c.yaml:8:33: cases.0.gravity_m_per_s2: the mass of 121 cables is not known, like 'f2_0-f3_17': give "
      "mass_kg_per_m of their sets in `cables`; 0 for those that weigh nothing\n"},
