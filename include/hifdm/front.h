@@ -45,11 +45,14 @@ typedef struct {
     void *block;                    /* owns point and design */
 } hf_front;
 
-/* A front without its designs, as a summary has it: the first HF_FRONT_POINTS_MAX points, n_row of n_point. */
+/* A front without its designs, as a summary has it: n_row of n_point points. Of more than HF_FRONT_POINTS_MAX these are
+ * the ends, the knee, and of the others as many as there is room for, evenly spaced in their order. */
 typedef struct {
-    int n_objective, n_point, n_row, n_on, n_dominated, n_failed, minimised, knee;
+    int n_objective, n_point, n_row, n_on, n_dominated, n_failed, minimised;
+    int knee, end[HF_OBJECTIVES_MAX]; /* rows: the knee, and the first point with the least of each objective; or -1 */
     double base[HF_OBJECTIVES_MAX];
-    double wall_s; /* of finding it */
+    double wall_s;                  /* of finding it */
+    int place[HF_FRONT_POINTS_MAX]; /* of each row in the front, from 0, ascending */
     hf_front_point row[HF_FRONT_POINTS_MAX];
 } hf_front_table;
 
@@ -61,7 +64,7 @@ void hf_front_free(hf_front *front);
  * that are equal, too) or have failed, and find the knee. */
 void hf_front_settle(hf_front *front);
 
-/* All of the table but the time. */
+/* All of the table but the time; of a front that is settled. */
 void hf_front_tabulate(const hf_front *front, hf_front_table *table);
 
 /* Is a as good as b in all objectives, and better in one? */

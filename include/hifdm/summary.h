@@ -107,12 +107,13 @@ typedef struct {
     double value[HF_SUMMARY_HELD], bound[HF_SUMMARY_HELD]; /* of this one, N, m or a ratio */
 } hf_held_limits;
 
-/* The rows of optimize.goals. Their values are in the results of the stages, merit beside them: of the form-finding,
- * the best individual and Levenberg-Marquardt. */
+/* The rows of optimize.goals, or of optimize.objectives, which have neither weights nor a merit. Their values are in
+ * the results of the stages, merit beside them: of the form-finding, the best individual and Levenberg-Marquardt. */
 typedef struct {
     int n;                                            /* 0: psi is the goal */
     char name[HF_DESIGN_ROWS_MAX][HF_GOAL_NAME_SIZE]; /* goal_1_tension_edge: number, goal, set */
     double weight[HF_DESIGN_ROWS_MAX];
+    bool are_objectives;
 } hf_goal_list;
 
 #define HF_SUMMARY_MEMBER(type, member, kind, json, key, description) type member;

@@ -235,6 +235,19 @@ static void check_goals(const char *list, int n_goal, const hf_goal_settings *go
     }
 }
 
+/* Keys of the genetic algorithm of one goal, which the one of fronts has no use for. */
+static void check_use_of_front(const hf_optimize_settings *o, hf_config_faults *f)
+{
+    static const char *const without[] = {"optimize.elites", "optimize.crossover_low", "optimize.mutation_low"};
+    for (size_t k = 0; k < sizeof without / sizeof *without; k++)
+        if (hf_config_is_given(f, without[k]))
+            hf_config_fault_of(f, without[k], "has no meaning for optimize.objectives; remove it");
+    if (o->variation == HF_VARIATION_CHAIN)
+        hf_config_fault_of(
+            f, "optimize.variation",
+            "cannot be chain with optimize.objectives, whose children move along differences; remove it");
+}
+
 static void check_objectives(const hf_optimize_settings *o, hf_config_faults *f)
 {
     static const char list[] = "optimize.objectives";
@@ -251,6 +264,7 @@ static void check_objectives(const hf_optimize_settings *o, hf_config_faults *f)
                            "two, and what the third must keep as a row of optimize.limits");
     if (o->n_objective > 1 && o->compare_lm == HF_COMPARE_TRUE)
         hf_config_fault_of(f, "optimize.compare_lm", "compares one design; it has no meaning for optimize.objectives");
+    if (o->n_objective > 1) check_use_of_front(o, f);
     for (int i = 1; i < o->n_objective; i++)
         for (int k = 0; k < i; k++)
             if (!memcmp(&o->objective[i], &o->objective[k], sizeof o->objective[i]))

@@ -117,10 +117,13 @@ static void print_held(const hf_held_limits *h, FILE *f)
 static void print_goals(const hf_summary *s, const hf_form_result *r, FILE *f)
 {
     if (s->goals.n == 0 || !isfinite(r->merit)) return; /* a run that ended before its base design has none as yet */
-    fprintf(f, "                merit %.6g of", r->merit);
+    if (s->goals.are_objectives)
+        fputs("                objectives", f);
+    else
+        fprintf(f, "                merit %.6g of", r->merit);
     for (int k = 0; k < s->goals.n; k++) {
         fprintf(f, "%s %s %.6g", k ? "," : "", s->goals.name[k], r->goal[k]);
-        if (r == &s->form) fprintf(f, " (weight %g)", s->goals.weight[k]);
+        if (r == &s->form && !s->goals.are_objectives) fprintf(f, " (weight %g)", s->goals.weight[k]);
     }
     fputc('\n', f);
 }
@@ -207,7 +210,7 @@ static void print_optimize(const hf_summary *s, FILE *f)
     fprintf(f, "  optimisation  psi %.4f mm", s->best.psi_m * 1e3);
     if (s->has_front)
         fprintf(f, ": the end of the front with the least %s", s->goals.name[0]);
-    else if (s->goals.n > 0 && s->form.merit > 0) /* what psi gained says nothing of goals; their line follows */
+    else if (s->goals.n > 0 && !s->goals.are_objectives && s->form.merit > 0) /* psi says nothing of goals */
         fprintf(f, ", merit %.6g, %.2f %% below that of the form-finding", s->best.merit,
                 100 * (1 - s->best.merit / s->form.merit));
     else if (isfinite(s->base_psi_m) &&
@@ -258,8 +261,8 @@ static void print_polish(const hf_summary *s, FILE *f)
     print_surface(s, 2, f);
 }
 
-/* One line of the front: the values of a point and, where it is known, what the least objective gains per unit of the
- * others. */
+/* One line of the front: the values of a point and, where it is known, what the minimised objective changes
+ * by per unit of the others. */
 static void print_front_point(const hf_summary *s, const char *name, const double *objective, const double *multiplier,
                               FILE *f)
 {
@@ -277,16 +280,19 @@ static void print_front(const hf_summary *s, FILE *f)
 {
     const hf_front_table *t = &s->front;
     char wall[32];
-    int least[HF_OBJECTIVES_MAX] = {-1, -1, -1};
     hf_print_duration(t->wall_s, wall, sizeof wall);
-    fprintf(f, "  front         %d points, %d of them dominated, %d failed; %s\n", t->n_point, t->n_dominated,
+    fprintf(f, "  front         %d points, %d of them dominated, %d failed; %s", t->n_point, t->n_dominated,
             t->n_failed, wall);
+    for (int k = 0; k < t->n_objective && t->minimised >= 0; k++)
+        if (k != t->minimised)
+            fprintf(f, "; slope of %s per unit of %s", s->goals.name[t->minimised], s->goals.name[k]);
+    fputc('\n', f);
+    if (t->n_row < t->n_point)
+        fprintf(f, "                %d of %d shown by --json and the report; hifdm export --front has all\n", t->n_row,
+                t->n_point);
     if (isfinite(t->base[0])) print_front_point(s, "base", t->base, NULL, f);
-    for (int i = 0; i < t->n_row; i++)
-        for (int k = 0; k < t->n_objective && t->row[i].mark == HF_FRONT_ON; k++)
-            if (least[k] < 0 || t->row[i].objective[k] < t->row[least[k]].objective[k]) least[k] = i;
     for (int k = 0; k < t->n_objective; k++)
-        if (least[k] >= 0) print_front_point(s, "end", t->row[least[k]].objective, t->row[least[k]].multiplier, f);
+        if (t->end[k] >= 0) print_front_point(s, "end", t->row[t->end[k]].objective, t->row[t->end[k]].multiplier, f);
     if (t->knee >= 0) print_front_point(s, "knee", t->row[t->knee].objective, t->row[t->knee].multiplier, f);
 }
 

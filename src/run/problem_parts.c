@@ -86,6 +86,7 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->pretension_N = model->pretension_N;
     s->surface = p->surface;
     s->goals.n = p->goals.n_goal;
+    s->goals.are_objectives = settings->optimize.n_objective > 0;
     for (int k = 0; k < s->goals.n; k++) {
         hf_goals_name(&p->goals, k, s->goals.name[k]);
         s->goals.weight[k] = p->goals.goal[k].wanted.weight;

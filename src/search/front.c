@@ -134,19 +134,71 @@ void hf_front_settle(hf_front *f)
     f->knee = find_knee(f);
 }
 
+/* ---- the table ---- */
+
+/* The first point on the front with the least of objective k, or -1. */
+static int find_end(const hf_front *f, int k)
+{
+    int end = -1;
+    for (int i = 0; i < f->n_point; i++)
+        if (f->point[i].mark == HF_FRONT_ON && (end < 0 || f->point[i].objective[k] < f->point[end].objective[k]))
+            end = i;
+    return end;
+}
+
+static bool has_a_name(const hf_front *f, const int end[HF_OBJECTIVES_MAX], int i)
+{
+    bool is_named = i == f->knee;
+    for (int k = 0; k < f->n_objective; k++)
+        is_named |= i == end[k];
+    return is_named;
+}
+
+/* The rows: each point with a name, and of the n_other without one n_kept, evenly. */
+static void choose_rows(const hf_front *f, const int end[HF_OBJECTIVES_MAX], hf_front_table *t)
+{
+    long n_named = 0, n_other, n_kept, other = 0;
+    for (int i = 0; i < f->n_point; i++)
+        n_named += has_a_name(f, end, i);
+    n_other = f->n_point - n_named;
+    n_kept = n_other < HF_FRONT_POINTS_MAX - n_named ? n_other : HF_FRONT_POINTS_MAX - n_named;
+    t->n_row = 0;
+    for (int i = 0; i < f->n_point; i++) {
+        bool is_row = has_a_name(f, end, i);
+        if (!is_row) {
+            is_row = (other + 1) * n_kept / n_other > other * n_kept / n_other;
+            other++;
+        }
+        if (!is_row) continue;
+        t->place[t->n_row] = i;
+        t->row[t->n_row++] = f->point[i];
+    }
+}
+
+static int row_of(const hf_front_table *t, int place)
+{
+    int row = place < 0 ? -1 : t->n_row - 1;
+    while (row >= 0 && t->place[row] != place)
+        row--;
+    return row;
+}
+
 void hf_front_tabulate(const hf_front *f, hf_front_table *t)
 {
-    int count[HF_FRONT_N_MARK] = {0};
+    int count[HF_FRONT_N_MARK] = {0}, end[HF_OBJECTIVES_MAX] = {-1, -1, -1};
     for (int i = 0; i < f->n_point; i++)
         count[f->point[i].mark]++;
+    for (int k = 0; k < f->n_objective; k++)
+        end[k] = find_end(f, k);
     t->n_objective = f->n_objective;
     t->n_point = f->n_point;
-    t->n_row = f->n_point < HF_FRONT_POINTS_MAX ? f->n_point : HF_FRONT_POINTS_MAX;
     t->n_on = count[HF_FRONT_ON];
     t->n_dominated = count[HF_FRONT_DOMINATED];
     t->n_failed = count[HF_FRONT_FAILED];
     t->minimised = f->minimised;
-    t->knee = f->knee < t->n_row ? f->knee : -1;
     memcpy(t->base, f->base, sizeof t->base);
-    memcpy(t->row, f->point, (size_t)t->n_row * sizeof *t->row);
+    choose_rows(f, end, t);
+    t->knee = row_of(t, f->knee);
+    for (int k = 0; k < HF_OBJECTIVES_MAX; k++)
+        t->end[k] = row_of(t, end[k]);
 }

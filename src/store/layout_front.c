@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define POINTS_MAX 10000000
+#define POINTS_MAX 100000 /* of a file: the largest optimize.population */
+#define GENES_MAX 10000000
 
 static const hf_hdf5_kind kind_of_mark = {HF_HDF5_ENUM, HF_FRONT_N_MARK, hf_front_mark_word, NULL};
 
@@ -118,13 +119,13 @@ static void write_genes(hf_hdf5 *io, hid_t group, const hf_scene *scene, const h
     free(text);
 }
 
-static void put_attributes(hf_hdf5 *io, hid_t group, const hf_front_table *t)
+static void put_attributes(hf_hdf5 *io, hid_t group, const hf_front *front, const hf_front_table *t)
 {
     hf_hdf5_put(io, group, ".", "n_on", HF_KIND_INT, 0, &t->n_on);
     hf_hdf5_put(io, group, ".", "n_dominated", HF_KIND_INT, 0, &t->n_dominated);
     hf_hdf5_put(io, group, ".", "n_failed", HF_KIND_INT, 0, &t->n_failed);
     hf_hdf5_put(io, group, ".", "minimised", HF_KIND_INT, 0, &t->minimised);
-    hf_hdf5_put(io, group, ".", "knee", HF_KIND_INT, 0, &t->knee);
+    hf_hdf5_put(io, group, ".", "knee", HF_KIND_INT, 0, &front->knee);
     hf_hdf5_put(io, group, ".", "wall_s", HF_KIND_REAL, 0, &t->wall_s);
 }
 
@@ -148,14 +149,13 @@ void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *m
     }
     hf_hdf5_write_array(io, group, &design, front->design);
     write_genes(io, group, scene, m);
-    put_attributes(io, group, &s->front);
+    put_attributes(io, group, front, &s->front);
     hf_hdf5_close(io, group);
     free_rows(&r);
 }
 
 /* ---- reading ---- */
 
-/* The first n points. */
 static void read_points(hf_hdf5 *io, hid_t group, int n, int n_objective, hf_front_point *point)
 {
     rows r;
@@ -174,29 +174,34 @@ static bool is_index(int value, int n)
     return value >= -1 && value < n;
 }
 
+/* A front of n_gene genes without its designs; the caller frees it. */
+static void read_front(hf_hdf5 *io, hid_t group, int n_gene, hf_front *front)
+{
+    int n_objective = hf_hdf5_length(io, group, "base", HF_OBJECTIVES_MAX);
+    int n_point = hf_hdf5_length(io, group, "status", POINTS_MAX);
+    const hf_hdf5_array base = base_of(n_objective);
+    if (io->status == HF_OK && hf_front_create(n_objective, n_gene, n_point, front) != HF_OK) hf_hdf5_no_memory(io);
+    hf_hdf5_get(io, group, ".", "minimised", HF_KIND_INT, &front->minimised, 0);
+    hf_hdf5_get(io, group, ".", "knee", HF_KIND_INT, &front->knee, 0);
+    hf_hdf5_read_array(io, group, &base, front->base);
+    if (io->status == HF_OK) read_points(io, group, n_point, n_objective, front->point);
+    if (io->status == HF_OK && (!is_index(front->minimised, n_objective) || !is_index(front->knee, n_point)))
+        hf_hdf5_damaged(io, group, ".", "has a knee or a minimised objective that is not there");
+}
+
 void hf_layout_get_front(hf_hdf5 *io, hf_summary *s)
 {
-    hf_front_table *t = &s->front;
+    hf_front front = {.minimised = -1, .knee = -1};
     s->has_front = io->status == HF_OK && hf_hdf5_has(io, io->file, "/front");
     if (!s->has_front) return;
     hid_t group = hf_hdf5_open_group(io, "/front");
-    t->n_objective = hf_hdf5_length(io, group, "base", HF_OBJECTIVES_MAX);
-    t->n_point = hf_hdf5_length(io, group, "status", POINTS_MAX);
-    t->n_row = t->n_point < HF_FRONT_POINTS_MAX ? t->n_point : HF_FRONT_POINTS_MAX;
-    const hf_hdf5_array base = base_of(t->n_objective);
-    hf_hdf5_read_array(io, group, &base, t->base);
-    hf_hdf5_get(io, group, ".", "n_on", HF_KIND_INT, &t->n_on, 0);
-    hf_hdf5_get(io, group, ".", "n_dominated", HF_KIND_INT, &t->n_dominated, 0);
-    hf_hdf5_get(io, group, ".", "n_failed", HF_KIND_INT, &t->n_failed, 0);
-    hf_hdf5_get(io, group, ".", "minimised", HF_KIND_INT, &t->minimised, 0);
-    hf_hdf5_get(io, group, ".", "knee", HF_KIND_INT, &t->knee, 0);
-    hf_hdf5_get(io, group, ".", "wall_s", HF_KIND_REAL, &t->wall_s, 0);
-    if (io->status == HF_OK) read_points(io, group, t->n_row, t->n_objective, t->row);
-    if (io->status == HF_OK && (!is_index(t->minimised, t->n_objective) || !is_index(t->knee, t->n_row)))
-        hf_hdf5_damaged(io, group, ".", "has a knee or a minimised objective that is not there");
-    if (io->status == HF_OK && s->goals.n != t->n_objective)
+    read_front(io, group, 0, &front);
+    hf_hdf5_get(io, group, ".", "wall_s", HF_KIND_REAL, &s->front.wall_s, 0);
+    if (io->status == HF_OK) hf_front_tabulate(&front, &s->front);
+    if (io->status == HF_OK && s->goals.n != front.n_objective)
         hf_hdf5_damaged(io, group, "base", "has not as many objectives as /goals");
     hf_hdf5_close(io, group);
+    hf_front_free(&front);
 }
 
 /* Names of genes are printed: each ends within its room. */
@@ -217,16 +222,10 @@ static char *read_genes(hf_hdf5 *io, hid_t group, int n, size_t *size)
 void hf_layout_read_front(hf_hdf5 *io, bool has_rows, hf_front *front, char **gene, size_t *gene_size)
 {
     hid_t group = hf_hdf5_open_group(io, "/front");
-    int n_objective = hf_hdf5_length(io, group, "base", HF_OBJECTIVES_MAX);
-    int n_point = hf_hdf5_length(io, group, "status", POINTS_MAX);
-    int n_gene = hf_hdf5_length(io, group, "gene", POINTS_MAX);
-    if (io->status == HF_OK && hf_front_create(n_objective, n_gene, n_point, front) != HF_OK) hf_hdf5_no_memory(io);
-    const hsize_t dims[2] = {(hsize_t)n_point, (hsize_t)n_gene};
-    const hf_hdf5_array base = base_of(n_objective), design = hf_layout_of_genes("design_N", has_rows, 2, dims);
-    hf_hdf5_get(io, group, ".", "minimised", HF_KIND_INT, &front->minimised, 0);
-    hf_hdf5_get(io, group, ".", "knee", HF_KIND_INT, &front->knee, 0);
-    hf_hdf5_read_array(io, group, &base, front->base);
-    if (io->status == HF_OK) read_points(io, group, n_point, n_objective, front->point);
+    int n_gene = hf_hdf5_length(io, group, "gene", GENES_MAX);
+    read_front(io, group, n_gene, front);
+    const hsize_t dims[2] = {(hsize_t)front->n_point, (hsize_t)n_gene};
+    const hf_hdf5_array design = hf_layout_of_genes("design_N", has_rows, 2, dims);
     if (io->status == HF_OK) hf_hdf5_read_array(io, group, &design, front->design);
     if (io->status == HF_OK) *gene = read_genes(io, group, n_gene, gene_size);
     hf_hdf5_close(io, group);

@@ -36,7 +36,7 @@ void hf_layout_put_goals(hf_hdf5 *io, const hf_summary *summary)
     hf_layout_renew(io, "/goals");
     hid_t group = hf_hdf5_make_group(io, "/goals");
     hf_hdf5_write_array(io, group, &name, s.goals.name);
-    hf_hdf5_write_array(io, group, &weight, s.goals.weight);
+    if (!s.goals.are_objectives) hf_hdf5_write_array(io, group, &weight, s.goals.weight);
     for (int stage = 0; stage < N_STAGE; stage++) {
         hf_hdf5_array value = values(stage_name[stage], s.goals.n, "value of each goal, in its own unit");
         if (has_stage(&s, stage)) hf_hdf5_write_array(io, group, &value, result_of(&s, stage)->goal);
@@ -59,10 +59,11 @@ void hf_layout_get_goals(hf_hdf5 *io, hf_summary *s)
 {
     if (!hf_hdf5_has(io, io->file, "/goals")) return;
     hid_t group = hf_hdf5_open_group(io, "/goals");
-    s->goals.n = hf_hdf5_length(io, group, "weight", HF_DESIGN_ROWS_MAX);
+    s->goals.are_objectives = !hf_hdf5_has(io, group, "weight");
+    s->goals.n = hf_hdf5_length(io, group, s->goals.are_objectives ? "name" : "weight", HF_DESIGN_ROWS_MAX);
     hf_hdf5_array name = names(s->goals.n), weight = values("weight", s->goals.n, "");
     hf_hdf5_read_array(io, group, &name, s->goals.name);
-    hf_hdf5_read_array(io, group, &weight, s->goals.weight);
+    if (!s->goals.are_objectives) hf_hdf5_read_array(io, group, &weight, s->goals.weight);
     for (int stage = 0; stage < N_STAGE; stage++) {
         hf_hdf5_array value = values(stage_name[stage], s->goals.n, "");
         if (has_stage(s, stage)) hf_hdf5_read_array(io, group, &value, result_of(s, stage)->goal);

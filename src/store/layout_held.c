@@ -27,8 +27,8 @@ void hf_layout_put_held(hf_hdf5 *io, const hf_summary *summary)
     int n = 0;
     for (int stage = 0; stage < N_STAGE; stage++)
         n += summary->held[stage].n;
-    if (n == 0) return;
     hf_layout_renew(io, "/at_limit");
+    if (n == 0) return;
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/at_limit"));
     for (int stage = 0; stage < N_STAGE; stage++) {
         hf_held_limits h = summary->held[stage];

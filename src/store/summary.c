@@ -154,17 +154,17 @@ static void write_held(const hf_held_limits *h, hf_json *j)
     hf_json_close(j, ']');
 }
 
-/* The members "merit" and "goals" of a stage, with optimize.goals: value and weight of each. */
+/* The members "merit" and "goals" of a stage: value and weight of each. Objectives have values alone. */
 static void write_goals(const hf_summary *s, const hf_form_result *r, hf_json *j)
 {
     if (s->goals.n == 0) return;
     hf_json_line(j, "  ");
-    hf_json_number(j, "merit", r->merit);
+    if (!s->goals.are_objectives) hf_json_number(j, "merit", r->merit);
     hf_json_open(j, "goals", '{');
     for (int k = 0; k < s->goals.n; k++) {
         hf_json_open(j, s->goals.name[k], '{');
         hf_json_number(j, "value", r->status == HF_OK ? r->goal[k] : (double)NAN);
-        hf_json_number(j, "weight", s->goals.weight[k]);
+        if (!s->goals.are_objectives) hf_json_number(j, "weight", s->goals.weight[k]);
         hf_json_close(j, '}');
     }
     hf_json_close(j, '}');
@@ -240,6 +240,7 @@ static void write_front(const hf_summary *s, hf_json *j)
     const hf_front_table *t = &s->front;
     open_stage("front", j);
     hf_json_integer(j, "n_point", t->n_point);
+    hf_json_integer(j, "n_listed", t->n_row);
     hf_json_integer(j, "n_dominated", t->n_dominated);
     hf_json_integer(j, "n_failed", t->n_failed);
     if (t->minimised >= 0) hf_json_text(j, "minimised", s->goals.name[t->minimised]);
@@ -253,6 +254,7 @@ static void write_front(const hf_summary *s, hf_json *j)
         const hf_front_point *p = &t->row[i];
         hf_json_line(j, "   ");
         hf_json_open(j, NULL, '{');
+        hf_json_integer(j, "id", t->place[i] + 1); /* as in the table of hifdm export --front */
         write_objectives(s, "objective", p->objective, j);
         if (t->minimised >= 0) write_objectives(s, "multiplier", p->multiplier, j);
         hf_json_text(j, "status", hf_status_word(p->status));

@@ -10,6 +10,9 @@ START_TEST(a_front_is_printed_stored_and_told)
     const char *file = temp("f.h5"), *printed, *json;
     HIFDM(0, "run", FRONT, "-o", file);
     OUT("  front         7 points, 0 of them dominated, 0 failed; ");
+    OUT("; slope of goal_0_psi per unit of goal_1_ratio_boundary\n");
+    OUT("                objectives goal_0_psi 0.00660003, goal_1_ratio_boundary 4.84161\n");
+    ck_assert(!strstr(said.out, "merit") && !strstr(said.out, "weight") && !strstr(said.out, " shown "));
     OUT("                base   goal_0_psi 0.00660003, goal_1_ratio_boundary 4.84161\n");
     OUT("                end    goal_0_psi 0.00428338, goal_1_ratio_boundary 5.23668; slope 0\n");
     OUT("                end    goal_0_psi 0.0116996, goal_1_ratio_boundary 4.55962\n");
@@ -19,16 +22,52 @@ START_TEST(a_front_is_printed_stored_and_told)
     ck_assert_str_eq(said.out, printed);
     HIFDM(0, "show", file, "--json");
     json = out_as("s.json");
-    EXPECT(file, json, "--", "b['front']['n_point'] == 7 and b['front']['minimised'] == 'goal_0_psi'",
-           "[p['objective']['goal_0_psi'] for p in b['front']['points']] == list(a['front/objective'][:, 0])",
-           "[p['multiplier']['goal_1_ratio_boundary'] for p in b['front']['points']][:6] == "
-           "list(a['front/multiplier'][:6, 1])",
-           "b['front']['points'][6]['multiplier']['goal_1_ratio_boundary'] is None",
-           "all(p['mark'] == 'on' and p['status'] == 'ok' for p in b['front']['points'])",
-           "list(b['front']['base'].values()) == list(a['front/base'])",
-           "b['front']['knee'] == a['front'].attrs['knee']",
-           "a['front/design_N'].shape == (7, 74) and a['front/design_N'].attrs['units'] == 'N'",
-           "np.all(np.diff(a['front/objective'][:, 0]) > 0) and np.all(np.diff(a['front/objective'][:, 1]) < 0)");
+    EXPECT(
+        file, json, "--", "b['front']['n_point'] == 7 and b['front']['minimised'] == 'goal_0_psi'",
+        "b['front']['n_listed'] == 7 and [p['id'] for p in b['front']['points']] == [1, 2, 3, 4, 5, 6, 7]",
+        "'merit' not in b['form'] and 'weight' not in b['form']['goals']['goal_0_psi']", "'weight' not in a['goals']",
+        "[p['objective']['goal_0_psi'] for p in b['front']['points']] == list(a['front/objective'][:, 0])",
+        "[p['multiplier']['goal_1_ratio_boundary'] for p in b['front']['points']][:6] == "
+        "list(a['front/multiplier'][:6, 1])",
+        "b['front']['points'][6]['multiplier']['goal_1_ratio_boundary'] is None",
+        "all(p['mark'] == 'on' and p['status'] == 'ok' for p in b['front']['points'])",
+        "list(b['front']['base'].values()) == list(a['front/base'])", "b['front']['knee'] == a['front'].attrs['knee']",
+        "a['front/design_N'].shape == (7, 74) and a['front/design_N'].attrs['units'] == 'N'",
+        "np.all(np.diff(a['front/objective'][:, 0]) > 0) and np.all(np.diff(a['front/objective'][:, 1]) < 0)");
+}
+END_TEST
+
+/* Where the second objective is the least one the slope is its change, by the first. */
+START_TEST(a_slope_says_of_what_it_is)
+{
+    HIFDM(0, "run", FRONT, "--set", "optimize.objectives=[{goal: ratio, set: boundary}, {goal: psi}]", "-o",
+          temp("f.h5"));
+    OUT("; slope of goal_1_psi per unit of goal_0_ratio_boundary\n");
+}
+END_TEST
+
+/* More points than are listed: the ends and the knee are those of all. */
+START_TEST(a_front_of_many_points_is_thinned)
+{
+    const char *file = temp("f.h5"), *json, *page = temp("f.html"), *data = temp("data.json");
+    HIFDM(0, "run", FRONT, "--set", "optimize.method=ga", "--set",
+          "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}, {goal: pull}]", "--set",
+          "optimize.generations=20", "--set", "optimize.population=700", "--set", "optimize.store=best", "-o", file,
+          "--json");
+    json = out_as("r.json");
+    HIFDM(0, "show", file);
+    OUT("                512 of 700 shown by --json and the report; hifdm export --front has all\n");
+    HIFDM(0, "show", file, "--json");
+    EXPECT(file, json, out_as("s.json"), "--", "b['front'] == c['front'] and b['front']['n_point'] == 700",
+           "len(b['front']['points']) == b['front']['n_listed'] == 512",
+           "all(list(p['objective'].values()) == a['front/objective'][p['id'] - 1].tolist() for p in "
+           "b['front']['points'])",
+           "[min(p['objective'][k] for p in b['front']['points']) for k in b['front']['base']] == "
+           "a['front/objective'][:].min(axis=0).tolist()",
+           "b['front']['points'][b['front']['knee']]['id'] - 1 == a['front'].attrs['knee']");
+    HIFDM(0, "report", file, "-o", page);
+    SHELL(0, "sed -n '/<script type=\"application.json\"/,/<\\/script>/p' \"$1\" | sed '1d;$d' >\"$2\"", page, data);
+    EXPECT(data, json, "--", "a['summary']['front'] == b['front']");
 }
 END_TEST
 
@@ -152,6 +191,8 @@ Suite *suite_cli_front(void)
     TCase *tests = tcase_create("front");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, a_front_is_printed_stored_and_told);
+    tcase_add_test(tests, a_slope_says_of_what_it_is);
+    tcase_add_test(tests, a_front_of_many_points_is_thinned);
     tcase_add_test(tests, a_report_has_the_front);
     tcase_add_test(tests, a_table_of_the_front_is_one_of_designs);
     tcase_add_test(tests, a_run_without_objectives_has_no_front);

@@ -49,7 +49,7 @@ function frontChart(front, a, b) {
     log: false,
     head: (i) =>
       places[i].point
-        ? `point ${places[i].i + 1}: ${objectiveName(a)} ${fmt(places[i].x, 6)}${slopesOf(front, places[i].point)}`
+        ? `point ${places[i].point.id}: ${objectiveName(a)} ${fmt(places[i].x, 6)}${slopesOf(front, places[i].point)}`
         : `after form-finding: ${objectiveName(a)} ${fmt(places[i].x, 6)}`,
     series: all.filter((s) => s.values.some((v) => v !== undefined)),
   });
@@ -65,6 +65,7 @@ function writeFront() {
   const left = [
     front.n_dominated ? `${fmtCount(front.n_dominated)} of them dominated by others` : "",
     front.n_failed ? `${fmtCount(front.n_failed)} failed` : "",
+    front.n_listed < front.n_point ? `${fmtCount(front.n_listed)} of ${fmtCount(front.n_point)} shown` : "",
   ].filter((text) => text);
   section(
     "front",

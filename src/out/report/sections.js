@@ -285,7 +285,12 @@ function writeSummary() {
   const rows = [
     ["surface error ψ", "mm", "psi_m", mm],
     ["merit of all goals", "", "merit", (v) => fmt(v, 5)],
-    ...goals.map(([name, { weight }]) => [`goal, weight ${weight}`, "", name, (v) => fmt(v, 5)]),
+    ...goals.map(([name, { weight }]) => [
+      weight === undefined ? "objective" : `goal, weight ${weight}`,
+      "",
+      name,
+      (v) => fmt(v, 5),
+    ]),
     ["half-path RMS", "mm", "half_path_rms_m", mm],
     ["half-path RMS, best fit", "mm", "fit_half_path_rms_m", mm],
     ["RMS along the normal", "mm", "normal_rms_m", mm],

@@ -53,12 +53,45 @@ START_TEST(a_straight_front_has_no_knee)
 }
 END_TEST
 
+/* Of more points than there are rows the table has the ends, the knee, and the others evenly. */
+START_TEST(a_table_of_many_points_has_the_ends_and_the_knee)
+{
+    static const int n_of[] = {1, 511, 512, 513, 514, 700, 1500, 100000};
+    static hf_front_table t;
+    int n = n_of[_i], n_on = n - n / 10, knee = 2 * n_on / 3, widest = 1;
+    hf_front f;
+    ck_assert_int_eq(hf_front_create(2, 0, n, &f), HF_OK);
+    for (int i = 0; i < n; i++) { /* as they are once settled */
+        f.point[i] = (hf_front_point){.objective = {i, i < n_on ? n_on - i : n}, .iterations = i};
+        f.point[i].mark = i < n_on ? HF_FRONT_ON : HF_FRONT_DOMINATED;
+    }
+    f.knee = n > 1 ? knee : -1;
+    hf_front_tabulate(&f, &t);
+    ck_assert_int_eq(t.n_point, n);
+    ck_assert_int_eq(t.n_on, n_on);
+    ck_assert_int_eq(t.n_row, n < HF_FRONT_POINTS_MAX ? n : HF_FRONT_POINTS_MAX);
+    for (int i = 0; i < t.n_row; i++) {
+        ck_assert_int_eq(t.row[i].iterations, t.place[i]);
+        if (i == 0) continue;
+        ck_assert_int_lt(t.place[i - 1], t.place[i]);
+        if (t.place[i] - t.place[i - 1] > widest) widest = t.place[i] - t.place[i - 1];
+    }
+    ck_assert_int_le(widest, n < HF_FRONT_POINTS_MAX ? 1 : n / (HF_FRONT_POINTS_MAX - 3) + 2);
+    ck_assert_int_eq(t.place[t.end[0]], 0);
+    ck_assert_int_eq(t.place[t.end[1]], n_on - 1);
+    ck_assert_int_eq(t.end[2], -1);
+    ck_assert_int_eq(n > 1 ? t.place[t.knee] : t.knee, f.knee);
+    hf_front_free(&f);
+}
+END_TEST
+
 Suite *suite_unit_front(void)
 {
     Suite *s = suite_create("unit/front");
     TCase *t = tcase_create("points");
     tcase_add_test(t, points_are_sorted_and_marked);
     tcase_add_test(t, a_straight_front_has_no_knee);
+    tcase_add_loop_test(t, a_table_of_many_points_has_the_ends_and_the_knee, 0, 8);
     suite_add_tcase(s, t);
     return s;
 }
