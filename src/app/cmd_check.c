@@ -15,6 +15,7 @@
 #include <hifdm/batch.h>
 #include <hifdm/run.h>
 
+#include <limits.h>
 #include <math.h>
 
 #define TRIAL_S 1.0 /* wall-clock time that the trial of form-finding may take, about */
@@ -141,6 +142,62 @@ static void print_objectives(const hf_problem *p, FILE *f)
         fprintf(f, ": that of the last generation\n");
 }
 
+static const char *set_or_all(const char *set)
+{
+    return *set ? set : "all";
+}
+
+/* ", bounds 5 .. 12"; nothing where both sides are open. */
+static void print_bounds(double lower, double upper, FILE *f)
+{
+    if (isfinite(lower) || isfinite(upper)) fprintf(f, ", bounds %g .. %g", lower, upper);
+}
+
+/* Prints the rows of optimize.variables with their genes. */
+static void print_variables(const hf_problem *p, FILE *f)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    const hf_model *m = &p->model;
+    for (int row = 0; row < o->n_variable && m->gene; row++) {
+        const hf_variable_settings *s = &o->variable[row];
+        int n = 0, last = 0;
+        for (int k = 0; k < m->n_gene; k++) {
+            if (m->gene[k].setting != row) continue;
+            last = k;
+            n++;
+        }
+        const char *unit = hf_model_gene_unit(m, last);
+        fprintf(f, "                variables.%d: %s of %s: %d in %s", row, hf_vary_word[s->vary], s->set, n, unit);
+        if (!isnan(s->range_ratio)) fprintf(f, ", range %g %%", 100 * s->range_ratio);
+        if (isnan(s->range_ratio) && !isnan(s->range)) fprintf(f, ", range %g", s->range);
+        print_bounds(s->lower, s->upper, f);
+        fputs(s->link == HF_LINK_SET ? ", as one\n" : "\n", f);
+    }
+}
+
+/* Prints goals, limits and the cap on the boundary ratio, which holds also where the case does not name it. */
+static void print_wishes(const hf_problem *p, FILE *f)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    char place[PATH_MAX];
+    for (int k = 0; k < o->n_goal && !o->n_objective; k++) {
+        const hf_goal_settings *s = &o->goal[k];
+        fprintf(f, "                goals.%d: %s", k, hf_goal_word[s->goal]);
+        if (p->goals.goal[k].cable) fprintf(f, " of %s", set_or_all(s->set));
+        if (!isnan(s->target)) fprintf(f, ", target %g", s->target);
+        fprintf(f, ", weight %g\n", s->weight);
+    }
+    for (int k = 0; k < o->n_limit; k++) {
+        const hf_limit_settings *s = &o->limit[k];
+        fprintf(f, "                limits.%d: %s", k, hf_limit_word[s->limit]);
+        if (s->limit != HF_LIMIT_DISPLACEMENT) fprintf(f, " of %s", set_or_all(s->set));
+        print_bounds(s->lower, s->upper, f);
+        fputc('\n', f);
+    }
+    bool is_given = hf_config_place(&p->settings, "optimize.boundary_ratio_cap", place, sizeof place);
+    fprintf(f, "                boundary_ratio_cap %g%s\n", o->boundary_ratio_cap, is_given ? "" : " (the default)");
+}
+
 static void print_tolerance(const hf_case *c, FILE *f)
 {
     const hf_tolerance_settings *t = &c->tolerance;
@@ -182,6 +239,8 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
     bool is_result = hf_optimiser_plan_of(o).ends_with_polish;
     bool is_front = optimizes && o->n_objective > 0;
     if (is_front) print_objectives(p, f);
+    if (optimizes) print_variables(p, f);
+    if (optimizes) print_wishes(p, f);
     if (polishes(p, v))
         fprintf(f, "                Levenberg-Marquardt: rule %s, at most %d iterations, %s\n", hf_rule_word[o->rule],
                 o->polish_iterations,

@@ -242,6 +242,20 @@ START_TEST(a_limit_that_nothing_keeps_has_a_name)
 }
 END_TEST
 
+START_TEST(check_names_variables_goals_and_limits)
+{
+    const char *net = net_with(nodes, cables);
+    HIFDM(0, "check", net, "--set", EDGE("1 %"), "--set", PULLED, "--set",
+          "optimize.limits=[{limit: tension, set: edge, bounds: [5, 100]}]");
+    OUT("                variables.0: force_density of edge: 2 in N/m, range 1 %\n");
+    OUT("                goals.0: tension of edge, target ");
+    OUT("                limits.0: tension of edge, bounds 5 .. 100\n");
+    OUT("                boundary_ratio_cap 10 (the default)\n");
+    HIFDM(0, "check", net, "--set", "optimize.boundary_ratio_cap=6");
+    OUT("                boundary_ratio_cap 6\n");
+}
+END_TEST
+
 Suite *suite_cli_rows(void)
 {
     Suite *suite = suite_create("cli/rows");
@@ -257,6 +271,7 @@ Suite *suite_cli_rows(void)
     tcase_add_test(tests, runs_tell_what_became_of_each_goal);
     tcase_add_loop_test(tests, goals_of_damaged_files_are_not_shown, 0, 3);
     tcase_add_test(tests, what_holds_a_design_has_names);
+    tcase_add_test(tests, check_names_variables_goals_and_limits);
     tcase_add_loop_test(tests, a_limit_that_nothing_keeps_has_a_name, 0, 2);
     return suite;
 }
