@@ -25,8 +25,10 @@ extern const char *const hf_tolerance_measure_help[HF_TOLERANCE_N_MEASURE];
 extern const double hf_tolerance_quantile[HF_TOLERANCE_QUANTILES]; /* 0.5, 0.95, 0.99 */
 bool hf_tolerance_more_is_better(hf_tolerance_measure measure);
 
-/* Of one measure over all samples with a shape. Intervals hold the true value with 95 %: of quantiles by order
- * statistics, which need no assumption (NaN: too few samples), of the mean by its standard error. */
+/* Of one measure: mean, deviation, least and largest over the samples that have a value, quantiles over all samples, of
+ * which those without a value are the worst (infinite). NaN is what is not known; there is no mean of infinite values.
+ * Intervals hold the true value with 95 %: of quantiles by order statistics, which need no assumption (NaN: too few
+ * samples), of the mean by its standard error. */
 typedef struct {
     bool is_measured;
     double mean, mean_low, mean_high, deviation, least, largest;
@@ -47,8 +49,8 @@ extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS];
     X(int, n_with_loose, INT, 1, "with_loose_nodes", "those with nodes that no taut cable holds")                      \
     X(double, nominal_psi_m, REAL, 2, "nominal_psi_m", "of the net without errors")                                    \
     X(double, first_order_rms_psi_m, REAL, 2, "first_order_rms_psi_m", "root of the mean of psi^2, to first order")    \
-    X(double, psi_95_m, REAL, 2, "psi_95_m", "95 % of the nets with a shape do not exceed it")                         \
-    X(double, rms_psi_m, REAL, 2, "rms_psi_m", "the same of the samples")                                              \
+    X(double, psi_95_m, REAL, 2, "psi_95_m", "95 % of all nets do not exceed it; infinite: fewer have a shape")        \
+    X(double, rms_psi_m, REAL, 2, "rms_psi_m", "the same of the samples with a shape")                                 \
     X(double, rms_psi_low_m, REAL, 2, "rms_psi_low_m", "95 % interval of it")                                          \
     X(double, rms_psi_high_m, REAL, 2, "rms_psi_high_m", "the same")                                                   \
     X(double, controlled_rms_psi_m, REAL, 3, "controlled_rms_psi_m", "the same with first order as a control variate") \
@@ -61,6 +63,7 @@ extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS];
     X(double, yield_high, REAL, 4, "yield_high", "the same")                                                           \
     X(double, wanted_yield, REAL, 4, "wanted_yield", "of the case; NaN: none")                                         \
     X(double, sigma_scale, REAL, 4, "sigma_scale", "all errors times this give the wanted yield; NaN: not asked for")  \
+    X(int, scale_bound, INT, 4, "scale_bound", "1: sigma_scale is at least that, -1: below that; 0: just that")        \
     X(int, scale_samples, INT, 4, "scale_samples", "of each yield on the way to it")                                   \
     X(double, tolerance_wall_s, REAL, 5, "wall_s", "wall-clock time")
 

@@ -6,7 +6,6 @@
 #include "linalg/dot.h"
 #include "search/parallel.h"
 
-#include <gsl/gsl_qrng.h>
 #include <math.h>
 #include <string.h>
 
@@ -113,6 +112,8 @@ hf_status hf_directions_find(const hf_built_errors *e, const hf_covariance *c, i
     HF_TRY(HF_ARENA_MAKE(&arena, (d->axis = hf_arena_take(&arena, n_axis, sizeof(double)),
                                   d->error = hf_arena_take(&arena, (size_t)d->n, sizeof(int)))));
     d->block = arena.block;
+    d->sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d->n);
+    if (!d->sequence) return HF_NO_MEMORY;
     for (int k = 0; k < d->n; k++)
         d->shift[k] = (uint32_t)(hf_built_errors_uniform(e->seed, 0, SHIFTS, k) * 0x1p30);
     if (turns) return find_axes(e, n_thread, d);
@@ -124,6 +125,7 @@ hf_status hf_directions_find(const hf_built_errors *e, const hf_covariance *c, i
 void hf_directions_free(hf_directions *d)
 {
     hf_arena arena = {.block = d->block};
+    if (d->sequence) gsl_qrng_free(d->sequence);
     hf_arena_free(&arena);
     *d = (hf_directions){0};
 }
@@ -131,21 +133,22 @@ void hf_directions_free(hf_directions *d)
 /* ---- points ---- */
 
 /* GSL's sequence, of 30 bits, begins after the origin, which belongs to it. */
-hf_status hf_directions_points(const hf_directions *d, long first, int count, double *point)
+void hf_directions_points(hf_directions *d, long first, int count, double *point)
 {
     double at[HF_DIRECTIONS_MAX] = {0};
-    gsl_qrng *sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d->n);
-    if (!sequence) return HF_NO_MEMORY;
-    for (long i = 0; i < first + count; i++) {
-        if (i > 0) gsl_qrng_get(sequence, at);
+    if (first < d->next) {
+        gsl_qrng_init(d->sequence);
+        d->next = 0;
+    }
+    for (; d->next < first + count; d->next++) {
+        long i = d->next;
+        if (i > 0) gsl_qrng_get(d->sequence, at);
         for (int k = 0; k < d->n && i >= first; k++) {
             uint32_t bits = (uint32_t)(at[k] * 0x1p30) ^ d->shift[k];
             double last = hf_built_errors_uniform(d->errors->seed, i, LAST_BITS, k);
             point[(i - first) * d->n + k] = (bits + last) * 0x1p-30;
         }
     }
-    gsl_qrng_free(sequence);
-    return HF_OK;
 }
 
 /* ---- numbers ---- */

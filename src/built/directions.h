@@ -8,6 +8,8 @@
 
 #include "built/covariance.h"
 
+#include <gsl/gsl_qrng.h>
+
 #define HF_DIRECTIONS_MAX 40
 
 typedef struct {
@@ -16,6 +18,8 @@ typedef struct {
     double *axis; /* [n_error][n] orthonormal columns; NULL: the dimensions are single errors */
     int *error;   /* [n] these errors */
     uint32_t shift[HF_DIRECTIONS_MAX];
+    gsl_qrng *sequence; /* it has given the points before `next`: who asks in order pays for each of them once */
+    long next;
     void *block;
 } hf_directions;
 
@@ -25,8 +29,8 @@ hf_status hf_directions_find(const hf_built_errors *errors, const hf_covariance 
 void hf_directions_free(hf_directions *directions);
 
 /* Points `first` to first + count - 1 of the sequence, point [count][n], after a digital shift by the seed: numbers in
- * (0, 1). HF_OK or HF_NO_MEMORY. */
-hf_status hf_directions_points(const hf_directions *directions, long first, int count, double *point);
+ * (0, 1). The same bits in whatever order they are asked for; by one thread at a time. */
+void hf_directions_points(hf_directions *directions, long first, int count, double *point);
 
 /* The numbers z of a sample, hf_built_errors_draw's where the point [n] has no say. */
 void hf_directions_draw(const hf_directions *directions, long sample, const double *point, double *z);

@@ -98,6 +98,19 @@ double hf_built_errors_shape(hf_distribution distribution, double uniform)
     return distribution == HF_DISTRIBUTION_UNIFORM ? root_12 * (uniform - 0.5) : hf_normal_quantile(uniform);
 }
 
+double hf_built_errors_largest_scale(const hf_built_errors *e)
+{
+    const hf_built *b = e->linear->built;
+    const double *sigma = e->sigma;
+    double largest = e->distribution == HF_DISTRIBUTION_UNIFORM ? hf_built_errors_shape(e->distribution, 1) : 6;
+    double most = sigma[HF_ERROR_EA] + sigma[HF_ERROR_EA_BATCH];
+    for (int i = 0; i < b->model.n_cable; i++)
+        most =
+            fmax(most, sigma[HF_ERROR_RATIO] + sigma[HF_ERROR_RATIO_BATCH] + sigma[HF_ERROR_CUT] / b->model.target[i] +
+                           fabs(e->expansion_per_K[i]) * sigma[HF_ERROR_TEMPERATURE]);
+    return 0.5 / (largest * most);
+}
+
 /* By which an error is known: 3 node + component of supports, else its place in its kind. */
 static int item_of(const hf_built_errors *e, int kind, int i)
 {

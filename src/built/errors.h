@@ -55,6 +55,10 @@ int hf_built_errors_cable(const hf_built_errors *errors, int i_error);
 double hf_built_errors_uniform(uint64_t seed, long sample, int kind, int item);
 double hf_built_errors_shape(hf_distribution distribution, double uniform);
 
+/* The largest factor of all errors that leaves at least half of each cut length and of each EA, for numbers up to 6, or
+ * up to the largest of uniform ones. INFINITY where neither varies. */
+double hf_built_errors_largest_scale(const hf_built_errors *errors);
+
 /* The numbers z [n] of a sample. */
 void hf_built_errors_draw(const hf_built_errors *errors, long sample, double *z);
 

@@ -111,10 +111,10 @@ static double loss_dB(const hf_montecarlo *t, double half_path_rms_m)
         highest = fmax(highest, at->value[k]);
     if (at->n == 0) return (double)NAN;
     double loss = hf_surface_gain_loss_dB(half_path_rms_m, highest);
-    return isnan(loss) ? (double)INFINITY : loss;
+    return isnan(loss) && !isnan(half_path_rms_m) ? (double)INFINITY : loss; /* beyond what Ruze's formula holds for */
 }
 
-/* A fit that did not converge has no value, and is none that meets a requirement. */
+/* A fit that did not converge has no value, nor has its loss of gain: neither meets a requirement. */
 static void measure_surface(hf_montecarlo *t, const hf_built_shape *shape, double *value)
 {
     hf_surface_measures is;
@@ -134,6 +134,20 @@ static void measure_surface(hf_montecarlo *t, const hf_built_shape *shape, doubl
     value[HF_TOLERANCE_GAIN_LOSS] = loss_dB(t, has_facets ? is.facet_fit_half_path_rms_m : is.fit.half_path_rms_m);
 }
 
+/* Over all inner nodes, as to first order. That of a result leaves out loose nodes; they have a place here, too. */
+static double psi_m_of(const hf_montecarlo *t, const hf_built_shape *shape, const hf_form_result *r)
+{
+    const hf_model *m = &t->built->model;
+    double sum = 0;
+    if (r->n_loose == 0) return r->psi_m;
+    for (int k = 0; k < 3 * m->n_inner_node; k++) {
+        int at = k % 3 * m->n_node + m->inner_row[k / 3];
+        double d = shape->position_m[at] - m->position_m[at];
+        sum += d * d;
+    }
+    return m->n_inner_node > 0 ? sqrt(sum / m->n_inner_node) : (double)NAN;
+}
+
 static void take_sample(void *context, long i, int place, const hf_built_shape *shape, const hf_form_result *r)
 {
     hf_montecarlo *t = context;
@@ -144,7 +158,7 @@ static void take_sample(void *context, long i, int place, const hf_built_shape *
     for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)
         value[k] = (double)NAN;
     if (r->status != HF_OK) return;
-    value[HF_TOLERANCE_PSI] = r->psi_m;
+    value[HF_TOLERANCE_PSI] = psi_m_of(t, shape, r);
     value[HF_TOLERANCE_SLACK] = r->n_slack;
     value[HF_TOLERANCE_LOOSE] = r->n_loose;
     double least = INFINITY;
@@ -181,7 +195,7 @@ hf_status hf_montecarlo_run(hf_montecarlo *t, double scale, long first, int n)
     t->scale = scale;
     t->first = first;
     t->n_now = n;
-    if (t->directions.n) HF_TRY(hf_directions_points(&t->directions, first, n, t->point));
+    if (t->directions.n) hf_directions_points(&t->directions, first, n, t->point);
     hf_built_batch_run(t->batch, t->varies, first, n, make_sample, take_sample, t);
     hf_parallel_each(hf_built_batch_threads(t->batch), (n + AT_ONCE - 1) / AT_ONCE, predict, t);
     return t->has_no_memory ? HF_NO_MEMORY : HF_OK;
@@ -231,34 +245,48 @@ static bool requires_surface(const hf_tolerance_settings *s)
     return false;
 }
 
-/* In the logarithm of the scale. 10 doublings either way, then 7 halvings: 2^(1/128). */
-static hf_status find_scale(hf_montecarlo *t, int n, double *scale)
+/* All scales that are tried have the yield, or none has it: then the net without errors tells whether any does. */
+static hf_status judge_end(hf_montecarlo *t, bool goes_up, double *scale, int *bound)
+{
+    bool reaches = true;
+    if (!goes_up) HF_TRY(reaches_yield(t, 1, 0, &reaches));
+    *bound = goes_up ? 1 : reaches ? -1 : 0;
+    if (!reaches) *scale = 0;
+    return HF_OK;
+}
+
+/* In the logarithm of the scale: 10 doublings either way, but none beyond what leaves something of each cable; then 7
+ * halvings, to 2^(1/128). */
+static hf_status find_scale(hf_montecarlo *t, int n, double *scale, int *bound)
 {
     enum { DOUBLINGS = 10, HALVINGS = 7 };
+    double largest = fmin(ldexp(1, DOUBLINGS), fmax(1, hf_built_errors_largest_scale(&t->errors)));
+    double at = 1, before = 1;
     bool reaches;
-    double at = 1, factor = 2;
+    *bound = 0;
     HF_TRY(reaches_yield(t, n, at, &reaches));
     bool goes_up = reaches;
-    for (int k = 0; k < DOUBLINGS && reaches == goes_up; k++) {
-        at *= goes_up ? 2 : 0.5;
+    while (reaches == goes_up && (goes_up ? at < largest : at > ldexp(1, -DOUBLINGS))) {
+        before = at;
+        at = goes_up ? fmin(2 * at, largest) : at / 2;
         HF_TRY(reaches_yield(t, n, at, &reaches));
     }
-    *scale = goes_up ? (double)INFINITY : 0;
-    if (reaches == goes_up) return HF_OK;
-    double good = goes_up ? at / factor : at;
+    *scale = at;
+    if (reaches == goes_up) return judge_end(t, goes_up, scale, bound);
+    double good = goes_up ? before : at, bad = goes_up ? at : before;
     for (int k = 0; k < HALVINGS; k++) {
-        factor = sqrt(factor);
-        HF_TRY(reaches_yield(t, n, good * factor, &reaches));
-        if (reaches) good *= factor;
+        double middle = sqrt(good * bad);
+        HF_TRY(reaches_yield(t, n, middle, &reaches));
+        *(reaches ? &good : &bad) = middle;
     }
     *scale = good;
     return HF_OK;
 }
 
-hf_status hf_montecarlo_find_scale(hf_montecarlo *t, int n, double *scale)
+hf_status hf_montecarlo_find_scale(hf_montecarlo *t, int n, double *scale, int *bound)
 {
     t->skips_surface = !requires_surface(t->settings);
-    hf_status status = find_scale(t, n, scale);
+    hf_status status = find_scale(t, n, scale, bound);
     t->skips_surface = false;
     return status;
 }

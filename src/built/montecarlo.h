@@ -6,6 +6,8 @@
 #include <hifdm/built_batch.h>
 #include <hifdm/tolerance.h>
 
+#include <stdatomic.h>
+
 /* Everything that samples need; it is not moved. */
 typedef struct {
     const hf_tolerance_settings *settings;
@@ -27,7 +29,7 @@ typedef struct {
     double *scratch; /* [n_thread][n_room] */
     size_t n_z, n_room;
     unsigned varies;                   /* HF_BUILT_VARIES_... */
-    bool has_no_memory;                /* some sample could not be measured */
+    atomic_bool has_no_memory;         /* some sample could not be measured; any thread may find that */
     bool skips_surface;                /* it is not measured, now */
     const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 makes hf_montecarlo_find_scale return
                                           HF_INTERRUPTED */
@@ -53,7 +55,8 @@ bool hf_montecarlo_meets(const hf_tolerance_settings *settings, int k, const dou
 bool hf_montecarlo_meets_all(const hf_tolerance_settings *settings, const double *row);
 
 /* The factor of all errors with which a part settings->yield of the first n samples meets what is required, by
- * bisection with the same numbers for each, to 1 %. 0: not even the nominal net does; INFINITY: a thousandfold does. */
-hf_status hf_montecarlo_find_scale(hf_montecarlo *montecarlo, int n, double *scale);
+ * bisection with the same numbers for each, to 1 %. bound 0: found, and `scale` 0: not even the nominal net does; 1: at
+ * least `scale`, the largest that is tried (hf_built_errors_largest_scale); -1: below `scale`, the smallest. */
+hf_status hf_montecarlo_find_scale(hf_montecarlo *montecarlo, int n, double *scale, int *bound);
 
 #endif

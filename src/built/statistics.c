@@ -3,7 +3,6 @@
 
 #include "base/arena.h"
 
-#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -35,13 +34,52 @@ static hf_status visit_rows(const hf_statistics_rows *rows, void (*take)(void *c
 
 /* ---- intervals ---- */
 
+/* Of the continued fraction of the incomplete beta function (Abramowitz and Stegun 26.5.8, by Lentz's method), up to
+ * its factor: it takes some sqrt(a + b) terms where x is at most about the mean, a/(a + b). */
+static double beta_fraction(double x, double a, double b)
+{
+    enum { TERMS = 1000000 };
+    double up = 1, down = 1 / (1 - (a + b) * x / (a + 1)), value = down, change = 0;
+    for (int i = 1; i < TERMS && !(fabs(change - 1) < 1e-14); i++) {
+        double even = i * (b - i) * x / ((a + 2 * i - 1) * (a + 2 * i));
+        double odd = -(a + i) * (a + b + i) * x / ((a + 2 * i) * (a + 2 * i + 1));
+        down = 1 / (1 + even * down);
+        up = 1 + even / up;
+        value *= down * up;
+        down = 1 / (1 + odd * down);
+        up = 1 + odd / up;
+        change = down * up;
+        value *= change;
+    }
+    return value;
+}
+
+/* P(B <= x) of a beta distribution, to 1e-6 of itself for a + b up to 1e8. GSL's fails where its fraction takes more
+ * than 512 terms, and its inverse at a = 969, b = 32. */
+static double beta_below(double x, double a, double b)
+{
+    if (!(x > 0) || !(x < 1)) return x >= 1;
+    double factor = exp(lgamma(a + b) - lgamma(a) - lgamma(b) + a * log(x) + b * log1p(-x));
+    return x <= (a + 1) / (a + b + 2) ? factor / a * beta_fraction(x, a, b)
+                                      : 1 - factor / b * beta_fraction(1 - x, b, a);
+}
+
+/* Its inverse: of two neighbouring numbers the lower one. */
+static double beta_quantile(double probability, double a, double b)
+{
+    double low = 0, high = 1;
+    for (double middle = 0.5; middle > low && middle < high; middle = low + (high - low) / 2)
+        *(beta_below(middle, a, b) < probability ? &low : &high) = middle;
+    return low;
+}
+
 /* The least k with P(B <= k) >= probability, for B successes in n trials. */
 static long binomial_quantile(long n, double part, double probability)
 {
     long low = 0, high = n;
     while (low < high) {
-        long middle = low + (high - low) / 2;
-        if (gsl_cdf_binomial_P((unsigned)middle, part, (unsigned)n) >= probability)
+        long middle = low + (high - low) / 2; /* below n */
+        if (1 - beta_below(part, (double)middle + 1, (double)(n - middle)) >= probability)
             high = middle;
         else
             low = middle + 1;
@@ -59,8 +97,8 @@ void hf_statistics_ranks(long n, double part, long *low, long *high)
 void hf_statistics_interval(long n, long met, double *low, double *high)
 {
     double a = (double)met, b = (double)(n - met);
-    *low = met > 0 ? gsl_cdf_beta_Pinv(TAIL, a, b + 1) : 0;
-    *high = met < n ? gsl_cdf_beta_Pinv(1 - TAIL, a + 1, b) : 1;
+    *low = met > 0 ? beta_quantile(TAIL, a, b + 1) : 0;
+    *high = met < n ? beta_quantile(1 - TAIL, a + 1, b) : 1;
 }
 
 /* ---- order ---- */
@@ -83,6 +121,7 @@ static double value_of(uint64_t key)
 
 typedef struct {
     int column, n_rank, shift;           /* the digit that is looked for begins at bit `shift` */
+    double missing;                      /* what NaN counts as */
     uint64_t above[HF_STATISTICS_RANKS]; /* digits that are known */
     long left[HF_STATISTICS_RANKS];      /* rank among the values that have them */
     long *count;                         /* [n_rank][DIGIT] */
@@ -91,8 +130,8 @@ typedef struct {
 static void count_digit(void *context, const double *row)
 {
     selection *s = context;
-    if (isnan(row[s->column])) return;
-    uint64_t key = key_of(row[s->column]), above = s->shift == 48 ? 0 : key >> (s->shift + 16);
+    uint64_t key = key_of(isnan(row[s->column]) ? s->missing : row[s->column]),
+             above = s->shift == 48 ? 0 : key >> (s->shift + 16);
     for (int k = 0; k < s->n_rank; k++)
         s->count[(size_t)k * DIGIT + (key >> s->shift & (DIGIT - 1))] += above == s->above[k];
 }
@@ -108,9 +147,10 @@ static void choose_digits(selection *s)
     }
 }
 
-hf_status hf_statistics_order(const hf_statistics_rows *rows, int column, int n_rank, const long *rank, double *value)
+hf_status hf_statistics_order(const hf_statistics_rows *rows, int column, double missing, int n_rank, const long *rank,
+                              double *value)
 {
-    selection s = {.column = column, .n_rank = n_rank};
+    selection s = {.column = column, .n_rank = n_rank, .missing = missing};
     hf_arena arena = {0};
     hf_status status = HF_ARENA_MAKE(&arena, s.count = hf_arena_take(&arena, (size_t)n_rank * DIGIT, sizeof *s.count));
     memcpy(s.left, rank, (size_t)n_rank * sizeof *rank);
@@ -180,14 +220,16 @@ static void add_deviations(void *context, const double *row)
 
 /* ---- together ---- */
 
-static hf_status find_quantiles(const moments *s, const hf_statistics_rows *rows, int k, hf_tolerance_figures *f)
+/* Of all nets: those without a value are the worst. */
+static hf_status find_quantiles(const hf_statistics_rows *rows, int k, hf_tolerance_figures *f)
 {
-    long rank[HF_STATISTICS_RANKS], n = s->n[k];
-    double value[HF_STATISTICS_RANKS];
+    long rank[HF_STATISTICS_RANKS], n = rows->n;
+    bool more_is_better = hf_tolerance_more_is_better((hf_tolerance_measure)k);
+    double value[HF_STATISTICS_RANKS], worst = more_is_better ? -(double)INFINITY : (double)INFINITY;
     for (int q = 0; q < HF_TOLERANCE_QUANTILES; q++) {
         rank[3 * q] = (long)ceil(hf_tolerance_quantile[q] * (double)n);
         hf_statistics_ranks(n, hf_tolerance_quantile[q], &rank[3 * q + 1], &rank[3 * q + 2]);
-        if (!hf_tolerance_more_is_better((hf_tolerance_measure)k)) continue;
+        if (!more_is_better) continue;
         long low = rank[3 * q + 1]; /* the same ranks from the other end */
         rank[3 * q] = n + 1 - rank[3 * q];
         rank[3 * q + 1] = n + 1 - rank[3 * q + 2];
@@ -196,7 +238,7 @@ static hf_status find_quantiles(const moments *s, const hf_statistics_rows *rows
     long asked[HF_STATISTICS_RANKS];
     for (int i = 0; i < HF_STATISTICS_RANKS; i++)
         asked[i] = rank[i] < 1 ? 1 : rank[i] > n ? n : rank[i];
-    HF_TRY(hf_statistics_order(rows, HF_TOLERANCE_FIRST + k, HF_STATISTICS_RANKS, asked, value));
+    HF_TRY(hf_statistics_order(rows, HF_TOLERANCE_FIRST + k, worst, HF_STATISTICS_RANKS, asked, value));
     for (int q = 0; q < HF_TOLERANCE_QUANTILES; q++) {
         f->value[q] = value[3 * q];
         f->low[q] = rank[3 * q + 1] < 1 ? (double)NAN : value[3 * q + 1];
@@ -205,20 +247,22 @@ static hf_status find_quantiles(const moments *s, const hf_statistics_rows *rows
     return HF_OK;
 }
 
-/* A root of what an interval of a mean square says; below zero it says nothing. */
+/* A root of what an interval of a mean square says: below zero it says nothing, but NaN stays NaN. */
 static double root_of(double square)
 {
-    return sqrt(fmax(square, 0));
+    return sqrt(square < 0 ? 0 : square);
 }
 
 /* The mean of psi^2 with psi^2 to first order, whose mean is known, as control variate: its covariance with the other
- * over its variance is how much of its error is taken off. */
+ * over its variance is how much of its error is taken off. That mean is one over all nets, so there is no control where
+ * some have no psi. */
 static void control(const hf_covariance *c, const moments *s, hf_tolerance_summary *to)
 {
     double known = c->nominal_psi_m * c->nominal_psi_m + c->spread_m2, n = (double)s->n_both;
     double beta = s->xx > 0 ? s->xy / s->xx : 0, left = s->yy - beta * s->xy;
-    double error = NORMAL_95 * sqrt(s->yy / (n - 1) / n), less = NORMAL_95 * sqrt(fmax(left, 0) / (n - 2) / n);
-    double mean = s->mean_y - beta * (s->mean_x - known);
+    double error = n > 1 ? NORMAL_95 * sqrt(s->yy / (n - 1) / n) : (double)NAN;
+    double less = n > 2 ? NORMAL_95 * sqrt(fmax(left, 0) / (n - 2) / n) : (double)NAN;
+    double mean = s->n_both == to->samples ? s->mean_y - beta * (s->mean_x - known) : (double)NAN;
     to->rms_psi_m = sqrt(s->mean_y);
     to->rms_psi_low_m = root_of(s->mean_y - error);
     to->rms_psi_high_m = root_of(s->mean_y + error);
@@ -226,7 +270,7 @@ static void control(const hf_covariance *c, const moments *s, hf_tolerance_summa
     to->controlled_low_m = root_of(mean - less);
     to->controlled_high_m = root_of(mean + less);
     to->correlation = s->xx > 0 && s->yy > 0 ? s->xy / sqrt(s->xx * s->yy) : (double)NAN;
-    to->variance_saved = to->correlation * to->correlation;
+    to->variance_saved = isnan(mean) ? (double)NAN : to->correlation * to->correlation;
 }
 
 static void judge_yield(const moments *s, long n, hf_tolerance_summary *to)
@@ -264,6 +308,23 @@ static void rank_cables(const hf_montecarlo *t, hf_tolerance_summary *to)
         to->kind_share[k] = c->spread_m2 > 0 ? c->kind_m2[k] / c->spread_m2 : 0;
 }
 
+/* What is known of a measure once its sums are: nothing is NaN, not 0. */
+static void find_figures(const moments *s, int k, hf_tolerance_figures *f)
+{
+    double n = (double)s->n[k], nothing = (double)NAN;
+    if (s->n[k] == 0) {
+        *f = (hf_tolerance_figures){false, nothing, nothing, nothing, nothing, nothing, nothing, {0}, {0}, {0}};
+        for (int q = 0; q < HF_TOLERANCE_QUANTILES; q++)
+            f->value[q] = f->low[q] = f->high[q] = nothing;
+        return;
+    }
+    if (!isfinite(f->mean)) f->mean = nothing; /* some loss of gain is infinite */
+    f->deviation = s->n[k] > 1 && !isnan(f->mean) ? sqrt(s->square[k] / (n - 1)) : nothing;
+    f->mean_low = f->mean - NORMAL_95 * f->deviation / sqrt(n);
+    f->mean_high = f->mean + NORMAL_95 * f->deviation / sqrt(n);
+    if (!hf_tolerance_more_is_better((hf_tolerance_measure)k) && f->mean_low < 0) f->mean_low = 0; /* no value is */
+}
+
 hf_status hf_statistics_sum_up(const hf_montecarlo *t, const hf_statistics_rows *rows, hf_tolerance_summary *to)
 {
     const hf_covariance *c = &t->covariance;
@@ -278,13 +339,9 @@ hf_status hf_statistics_sum_up(const hf_montecarlo *t, const hf_statistics_rows 
     HF_TRY(visit_rows(rows, add_deviations, &s));
     for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++) {
         hf_tolerance_figures *f = &to->figure[k];
-        double n = (double)s.n[k];
+        find_figures(&s, k, f);
         f->is_measured = s.n[k] > 0 && hf_montecarlo_measures(t->surface, t->facets, (hf_tolerance_measure)k);
-        if (!f->is_measured) continue;
-        f->deviation = sqrt(s.square[k] / (n - 1));
-        f->mean_low = f->mean - NORMAL_95 * f->deviation / sqrt(n);
-        f->mean_high = f->mean + NORMAL_95 * f->deviation / sqrt(n);
-        HF_TRY(find_quantiles(&s, rows, k, f));
+        if (f->is_measured) HF_TRY(find_quantiles(rows, k, f));
     }
     control(c, &s, to);
     judge_yield(&s, rows->n, to);

@@ -17,10 +17,11 @@ typedef struct {
 hf_status hf_statistics_sum_up(const hf_montecarlo *montecarlo, const hf_statistics_rows *rows,
                                hf_tolerance_summary *summary);
 
-/* The values of these ranks, 1 to the number of values that are not NaN, in a column: exact, by four passes over the
- * rows, each of which finds 16 bits more of each value. */
+/* The values of these ranks, 1 to the number of rows, in a column where NaN counts as `missing`: exact, by four passes
+ * over the rows, each of which finds 16 bits more of each value. */
 #define HF_STATISTICS_RANKS 9
-hf_status hf_statistics_order(const hf_statistics_rows *rows, int column, int n_rank, const long *rank, double *value);
+hf_status hf_statistics_order(const hf_statistics_rows *rows, int column, double missing, int n_rank, const long *rank,
+                              double *value);
 
 /* Ranks between which the quantile `part` of n independent values is with 95 %; 0, or n + 1: there is no such value. */
 void hf_statistics_ranks(long n, double part, long *low, long *high);

@@ -13,28 +13,57 @@ static double unit_of(int measure, const char **word)
     return is_length ? 1e3 : 1;
 }
 
+/* Numbers for people, as "1/2/3": what is not known, or is infinite, is "-". */
+static void print_numbers(FILE *file, int n, const double *value, double times)
+{
+    for (int i = 0; i < n; i++) {
+        if (i > 0) fputc('/', file);
+        if (isfinite(value[i]))
+            fprintf(file, "%.4g", times * value[i]);
+        else
+            fputc('-', file);
+    }
+}
+
+static void print_mm(FILE *file, double value_m)
+{
+    if (isfinite(value_m))
+        fprintf(file, "%.4f mm", value_m * 1e3);
+    else
+        fputc('-', file);
+}
+
 static void print_measure(const hf_tolerance_figures *f, int measure, FILE *file)
 {
-    const char *unit, *name = hf_tolerance_measure_word[measure];
+    const char *unit;
     double times = unit_of(measure, &unit);
     if (!f->is_measured) return;
     const char *holds = hf_tolerance_more_is_better((hf_tolerance_measure)measure) ? "at least" : "at most";
-    fprintf(file, "                %s: mean %.4g, in 50/95/99 %% %s %.4g/%.4g/%.4g", name, times * f->mean, holds,
-            times * f->value[0], times * f->value[1], times * f->value[2]);
+    fprintf(file, "                %s: mean ", hf_tolerance_measure_word[measure]);
+    print_numbers(file, 1, &f->mean, times);
+    fprintf(file, ", in 50/95/99 %% %s ", holds);
+    print_numbers(file, HF_TOLERANCE_QUANTILES, f->value, times);
     if (*unit) fprintf(file, " %s", unit);
     if (isfinite(f->low[1]) && isfinite(f->high[1]))
         fprintf(file, " (95 %%: %.4g to %.4g)", times * f->low[1], times * f->high[1]);
     fputc('\n', file);
 }
 
+/* First order is no control of samples that have little to do with it. */
+#define LEAST_CORRELATION 0.5
+
 static void print_first_order(const hf_tolerance_summary *t, FILE *f)
 {
-    fprintf(f, "                root of mean psi^2: %.4f mm to first order, %.4f mm of the samples",
-            t->first_order_rms_psi_m * 1e3, t->rms_psi_m * 1e3);
-    if (isfinite(t->controlled_high_m - t->controlled_low_m))
+    fputs("                root of mean psi^2: ", f);
+    print_mm(f, t->first_order_rms_psi_m);
+    fputs(" to first order, ", f);
+    print_mm(f, t->rms_psi_m);
+    fputs(t->n_failed ? " of the samples with a shape" : " of the samples", f);
+    if (isfinite(t->controlled_high_m - t->controlled_low_m) && t->correlation >= LEAST_CORRELATION)
         fprintf(f, ", %.4f to %.4f mm with first order as control", t->controlled_low_m * 1e3,
                 t->controlled_high_m * 1e3);
-    fprintf(f, " (correlation %.3f)\n", t->correlation);
+    if (isfinite(t->correlation)) fprintf(f, " (correlation %.3f)", t->correlation);
+    fputc('\n', f);
 }
 
 static void print_yield(const hf_tolerance_summary *t, FILE *f)
@@ -50,12 +79,15 @@ static void print_yield(const hf_tolerance_summary *t, FILE *f)
     }
     fputc('\n', f);
     if (isnan(t->wanted_yield)) return;
+    fprintf(f, "                a yield of %g %% ", 100 * t->wanted_yield);
     if (t->sigma_scale == 0)
-        fprintf(f, "                a yield of %g %% is out of reach: the net without errors does not meet it\n",
-                100 * t->wanted_yield);
+        fputs("is out of reach: the net without errors does not meet it\n", f);
     else
-        fprintf(f, "                a yield of %g %% takes errors of %.3g of these (by %d samples)\n",
-                100 * t->wanted_yield, t->sigma_scale, t->scale_samples);
+        fprintf(f, "takes errors of %s%.4g of these (by %d samples)\n",
+                t->scale_bound > 0   ? "at least "
+                : t->scale_bound < 0 ? "less than "
+                                     : "",
+                t->sigma_scale, t->scale_samples);
 }
 
 static void print_shares(const hf_tolerance_summary *t, FILE *f)
@@ -73,8 +105,15 @@ void hf_print_tolerance(const hf_tolerance_summary *t, FILE *f)
 {
     char wall[32];
     hf_print_duration(t->tolerance_wall_s, wall, sizeof wall);
-    fprintf(f, "  as built      psi at most %.4f mm in 95 %% of %d nets, %.4f mm without errors; ", t->psi_95_m * 1e3,
-            t->samples, t->nominal_psi_m * 1e3);
+    if (isinf(t->psi_95_m))
+        fprintf(f, "  as built      less than 95 %% of %d nets have a shape, ", t->samples);
+    else {
+        fputs("  as built      psi at most ", f);
+        print_mm(f, t->psi_95_m);
+        fprintf(f, " in 95 %% of %d nets, ", t->samples);
+    }
+    print_mm(f, t->nominal_psi_m);
+    fputs(" without errors; ", f);
     fprintf(f, "%d with slack cables, %d with loose nodes, %d without a shape; %s\n", t->n_with_slack, t->n_with_loose,
             t->n_failed, wall);
     for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)

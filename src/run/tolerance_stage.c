@@ -262,7 +262,7 @@ static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
     hf_status status = hf_statistics_sum_up(&j->montecarlo, &rows, to);
     if (status == HF_OK && t->yield > 0) {
         to->scale_samples = t->samples < SCALE_SAMPLES ? t->samples : SCALE_SAMPLES;
-        status = hf_montecarlo_find_scale(&j->montecarlo, to->scale_samples, &to->sigma_scale);
+        status = hf_montecarlo_find_scale(&j->montecarlo, to->scale_samples, &to->sigma_scale, &to->scale_bound);
     }
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "tolerance: out of memory");
     HF_TRY(status);

@@ -15,14 +15,16 @@ typedef struct {
 } figures;
 
 static const char *const plain_name[N_PLAIN][2] = {{"is_measured", "1: of the samples; 0: not in this case"},
-                                                   {"mean", "over the samples with a shape"},
+                                                   {"mean", "over the samples that have a value"},
                                                    {"mean_low", "95 % interval of the mean"},
                                                    {"mean_high", "the same"},
                                                    {"deviation", "standard deviation"},
                                                    {"least", "smallest value"},
                                                    {"largest", "largest value"}};
 static const char *const quantile_name[N_QUANTILE][2] = {
-    {"quantile", "what 50, 95 and 99 % of the samples do not exceed; of least_tension_N: do not fall below"},
+    {"quantile", "what 50, 95 and 99 % of all samples do not exceed (of least_tension_N: do not fall below); infinite: "
+                 "fewer have a "
+                 "value"},
     {"quantile_low", "95 % interval of each, by order statistics; NaN: too few samples"},
     {"quantile_high", "the same"}};
 

@@ -154,7 +154,7 @@ START_TEST(faults_are_named)
 {
     static const char *const fault[][2] = {
         {"  sigma_cut_m: 0\n", "tolerance.sigma_cut_m: must be above 0, or another sigma"},
-        {"  sigma_cut_m: 1e-4\n  samples: 0\n", "7:12: tolerance.samples: must be at least 2"},
+        {"  sigma_cut_m: 1e-4\n  samples: 0\n", "7:12: tolerance.samples: must be at least 10"},
         {"  sigma_cut_m: 1e-4\n  yield: 0.9\n", "7:10: tolerance.yield: needs rows of tolerance.require"},
         {"  sigma_temperature_K: 5\n",
          "6:24: tolerance.sigma_temperature_K: needs expansion_per_K in a row of `cables`"},
@@ -163,6 +163,8 @@ START_TEST(faults_are_named)
         {"  sigma_cut_m: 1e-4\n  require: [{measure: psi_m}]\n", "has no limit; give at_most, at_least or both"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: fit_half_path_rms_m, at_most: 1}]\n",
          "7:23: tolerance.require.0.measure: is not measured: add a section surface"},
+        {"  sigma_cut_m: 1e-4\n  require: [{measure: gain_loss_dB, at_least: 1}]\n", "asks for a loss of gain"},
+        {"  sigma_cut_m: 1e-4\n  require: [{measure: least_tension_N, at_most: 1}]\n", "asks for slack cables"},
         {"  sigma_cut_m: 0.1\n", "6:16: tolerance.sigma_cut_m: cable '"},
         {"  sigma_temperature_K: 700\ncables: [{expansion_per_K: 1e-3}]\n",
          "6:24: tolerance.sigma_temperature_K: cable '"},

@@ -100,7 +100,7 @@ def main(path):
         x, t = solve(x, free, end, cut * (1 + ratio) + case["sigma_cut_m"] * draw(CUT, cables), ea * (1 + stiff))
         psi = np.sqrt(np.mean(np.sum((x - target)[inner] ** 2, axis=1)))
         assert sample["status"][i] == 0, f"sample {i}"
-        if sample["n_loose"][i] == 0:  # psi leaves out loose nodes, whose places are free
+        if sample["n_loose"][i] == 0:  # the places of loose nodes are free
             worst, n_psi = max(worst, abs(psi - sample["psi_m"][i])), n_psi + 1
         assert abs(t.min() - sample["least_tension_N"][i]) < 1e-5 * t.max(), f"sample {i}: least tension {t.min()}"
         slack = int(np.sum(t < 1e-3 * tension.max()))
