@@ -32,7 +32,8 @@ typedef struct {
     double multiplier[HF_OBJECTIVES_MAX];
     hf_status status; /* of its design */
     hf_front_mark mark;
-    int iterations; /* of Levenberg-Marquardt; of the genetic algorithm 0 */
+    int iterations;    /* of Levenberg-Marquardt; of the genetic algorithm 0 */
+    bool is_converged; /* Levenberg-Marquardt ended here because no step promised more; else it has no multiplier */
 } hf_front_point;
 
 typedef struct {
@@ -51,7 +52,8 @@ typedef struct {
     int n_objective, n_point, n_row, n_on, n_dominated, n_failed, minimised;
     int knee, end[HF_OBJECTIVES_MAX]; /* rows: the knee, and the first point with the least of each objective; or -1 */
     double base[HF_OBJECTIVES_MAX];
-    double wall_s;                  /* of finding it */
+    int n_unconverged; /* of Levenberg-Marquardt: points with a design that is not known to be an optimum */
+    double wall_s;     /* of finding it */
     int place[HF_FRONT_POINTS_MAX]; /* of each row in the front, from 0, ascending */
     hf_front_point row[HF_FRONT_POINTS_MAX];
 } hf_front_table;

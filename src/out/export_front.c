@@ -1,10 +1,11 @@
 /* Writes a stored front as one CSV file:
  *
- * id,mark,status,iterations,NAME...,slope_NAME...,GENE...
+ * id,mark,status,iterations[,converged],NAME...,slope_NAME...,GENE...
  *
- * with a column for each objective, for what the minimised objective changes by for one unit more of each other (empty
- * where it is not known), and for each gene. Rows are numbered from 1, in the order of the file. `hifdm evaluate` reads
- * it as a table of designs when the rows that failed are taken out. Numbers have 17 significant digits. */
+ * converged (1 or 0) is of Levenberg-Marquardt alone. slope_NAME is what the minimised objective changes by for one
+ * unit more of each other (empty where it is not known). Rows are numbered from 1, in the order of the file.
+ * `hifdm evaluate` reads it as a table of designs when the rows that failed are taken out. Numbers have 17 significant
+ * digits. */
 #include "out/export.h"
 
 #include "base/csv.h"
@@ -31,7 +32,7 @@ static void write_front(const void *context, FILE *f)
 {
     const view *v = context;
     const hf_front *front = &v->front;
-    fputs("id,mark,status,iterations", f);
+    fputs(front->minimised >= 0 ? "id,mark,status,iterations,converged" : "id,mark,status,iterations", f);
     for (int k = 0; k < front->n_objective; k++)
         fprintf(f, ",%s", v->summary.goals.name[k]);
     for (int k = 0; k < front->n_objective; k++)
@@ -44,6 +45,7 @@ static void write_front(const void *context, FILE *f)
     for (int i = 0; i < front->n_point; i++) {
         const hf_front_point *p = &front->point[i];
         fprintf(f, "%d,%s,%s,%d", i + 1, hf_front_mark_word[p->mark], hf_status_word(p->status), p->iterations);
+        if (front->minimised >= 0) fprintf(f, ",%d", p->is_converged);
         for (int k = 0; k < front->n_objective; k++)
             write_number(p->objective[k], f);
         for (int k = 0; k < front->n_objective; k++)

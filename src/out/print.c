@@ -279,10 +279,11 @@ static void print_front_point(const hf_summary *s, const char *name, const doubl
 static void print_front(const hf_summary *s, FILE *f)
 {
     const hf_front_table *t = &s->front;
-    char wall[32];
+    char wall[32], rough[40] = "";
+    if (t->n_unconverged > 0) snprintf(rough, sizeof rough, ", %d not converged", t->n_unconverged);
     hf_print_duration(t->wall_s, wall, sizeof wall);
-    fprintf(f, "  front         %d points, %d of them dominated, %d failed; %s", t->n_point, t->n_dominated,
-            t->n_failed, wall);
+    fprintf(f, "  front         %d points, %d of them dominated, %d failed%s; %s", t->n_point, t->n_dominated,
+            t->n_failed, rough, wall);
     for (int k = 0; k < t->n_objective && t->minimised >= 0; k++)
         if (k != t->minimised)
             fprintf(f, "; slope of %s per unit of %s", s->goals.name[t->minimised], s->goals.name[k]);

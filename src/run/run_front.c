@@ -4,6 +4,7 @@
 #include "run/problem_parts.h"
 #include "search/trade.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,10 +13,45 @@ void hf_run_front_tell(const hf_front *front, double wall_s, hf_summary *s, hf_m
     hf_front_tabulate(front, &s->front);
     s->front.wall_s = wall_s;
     s->has_front = true;
-    if (s->front.n_failed > 0)
+    if (s->front.n_failed > 0) {
+        hf_status first = front->point[front->n_point - s->front.n_failed].status;
         hf_warning(messages, "optimize.objectives: %d of %d points of the front failed: the first with %s",
                    s->front.n_failed, front->n_point,
-                   hf_status_text(front->point[front->n_point - s->front.n_failed].status));
+                   first == HF_OUT_OF_LIMITS ? "no way from its neighbours into its limits" : hf_status_text(first));
+    }
+}
+
+/* Points that the bound on steps stopped; one that stalls gains nothing from more of them. */
+static void warn_of_steps(const hf_front *front, int max_iterations, hf_messages *messages)
+{
+    int n = 0;
+    for (int i = 0; i < front->n_point; i++) {
+        const hf_front_point *p = &front->point[i];
+        n += p->status == HF_OK && !p->is_converged && p->iterations >= max_iterations;
+    }
+    if (n > 0)
+        hf_warning(messages,
+                   "optimize.objectives: %d of %d points of the front are not converged after %d steps: they have no "
+                   "slope, and better designs are near; raise optimize.polish_iterations",
+                   n, front->n_point, max_iterations);
+}
+
+/* Why Levenberg-Marquardt has found no front; returns text. */
+static const char *explain(const hf_problem *p, hf_status status, int end, char *text, size_t size)
+{
+    char name[HF_GOAL_NAME_SIZE];
+    const char *why = hf_status_text(status);
+    if (status == HF_OUT_OF_LIMITS)
+        why = p->settings.optimize.n_limit > 0 ? "no way from its start into optimize.limits"
+                                               : "no way from its start into the bounds of optimize.variables";
+    if (end >= 0)
+        snprintf(text, size,
+                 "optimize.objectives.%d: Levenberg-Marquardt has found no design with the least %s, an end of the "
+                 "front: %s",
+                 end, hf_goals_name(p->evaluator.goals, end, name), why);
+    else
+        snprintf(text, size, "optimize.objectives: Levenberg-Marquardt has found no front: %s", why);
+    return text;
 }
 
 /* The designs of the earlier front within the bounds, or the base design: [n][n_gene], n at least 1. */
@@ -45,23 +81,31 @@ hf_status hf_run_front(hf_problem *p, const hf_population *bounds, const volatil
                       .max_iterations = o->polish_iterations,
                       .n_thread = p->batch.n_thread,
                       .stop = stop};
-    if (!hf_trade_applies(&p->evaluator)) return hf_error(messages, HF_BAD_CASE, "%s", HF_PROBLEM_POLISH_NEEDS);
+    char text[512];
+    int end = -1, has_earlier = front->n_point > 0;
     double start_s = hf_clock_s(), *start = make_starts(p, bounds, front, &trade.n_start);
     hf_front found = {0};
     trade.start = start;
-    hf_status status = start ? hf_trade_find(&trade, &found) : HF_NO_MEMORY;
+    bool applies = hf_trade_applies(&p->evaluator);
+    hf_status status = !start ? HF_NO_MEMORY : applies ? hf_trade_find(&trade, &found, &end) : HF_BAD_CASE;
     free(start);
+    if (status != HF_OK) hf_front_free(&found);
     if (status == HF_INTERRUPTED || (stop && *stop)) {
         hf_front_free(&found);
         return HF_INTERRUPTED;
     }
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the front");
-    if (status != HF_OK)
-        return hf_error(messages, HF_NO_FEASIBLE, "optimize.objectives: an end of the front has no feasible design: %s",
-                        hf_status_text(status));
+    memcpy((status == HF_OK ? &found : front)->base, s->form.goal, sizeof front->base);
+    if (status != HF_OK) {
+        const char *why = applies ? explain(p, status, end, text, sizeof text) : HF_PROBLEM_POLISH_NEEDS;
+        if (!has_earlier) return hf_error(messages, applies ? HF_NO_FEASIBLE : HF_BAD_CASE, "%s", why);
+        hf_warning(messages, "%s; the front is that of the last generation", why);
+        hf_run_front_tell(front, s->optimize_wall_s, s, messages);
+        return HF_OK;
+    }
     hf_front_free(front);
     *front = found;
-    memcpy(front->base, s->form.goal, sizeof front->base);
     hf_run_front_tell(front, hf_clock_s() - start_s, s, messages);
+    warn_of_steps(front, o->polish_iterations, messages);
     return HF_OK;
 }

@@ -8,9 +8,9 @@
 #include <signal.h>
 
 /* Find *front, which may hold an earlier one: its designs are then where the search begins, else the base design. The
- * earlier one is freed, unless the search fails. The summary gets the table of the front; its form has the objectives
- * of the base. HF_OK; HF_NO_FEASIBLE where an end has no feasible design, HF_NO_MEMORY, with a message; HF_INTERRUPTED.
- */
+ * earlier one is freed, unless the search fails: then it stays, and is told, with a warning. The summary gets the table
+ * of the front; its form has the objectives of the base. HF_OK; without an earlier one HF_NO_FEASIBLE where an end has
+ * no design, or HF_BAD_CASE where designs have no derivatives; HF_NO_MEMORY; each with a message; HF_INTERRUPTED. */
 hf_status hf_run_front(hf_problem *problem, const hf_population *bounds, const volatile sig_atomic_t *stop,
                        hf_front *front, hf_summary *summary, hf_messages *messages);
 

@@ -195,6 +195,9 @@ void hf_front_tabulate(const hf_front *f, hf_front_table *t)
     t->n_on = count[HF_FRONT_ON];
     t->n_dominated = count[HF_FRONT_DOMINATED];
     t->n_failed = count[HF_FRONT_FAILED];
+    t->n_unconverged = 0;
+    for (int i = 0; i < f->n_point && f->minimised >= 0; i++)
+        t->n_unconverged += f->point[i].status == HF_OK && !f->point[i].is_converged;
     t->minimised = f->minimised;
     memcpy(t->base, f->base, sizeof t->base);
     choose_rows(f, end, t);

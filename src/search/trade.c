@@ -21,7 +21,6 @@ typedef struct {
     const double *from[2]; /* [n_gene] designs to begin from: the second where the first leads nowhere; or NULL */
     double *design;        /* [n_gene] the answer */
     hf_front_point found;
-    bool is_rough;      /* Levenberg-Marquardt stopped before it had converged */
     const void *closed; /* the next point on the way, with none to be found between */
 } job;
 
@@ -30,6 +29,7 @@ typedef struct {
     size_t n_gene;
     int main, other; /* the objective that is least, under a limit on the other */
     double range[2]; /* of the objectives between the ends */
+    int failed_end;  /* the objective whose end has no design; else -1 */
     int n, n_run;    /* jobs, and those of them that have run */
     job *job;        /* [n_point + 4] */
     int n_way;
@@ -49,7 +49,7 @@ bool hf_trade_applies(const hf_evaluator *v)
 /* ---- one point ---- */
 
 /* Levenberg-Marquardt from the design, which is replaced. Returns what ends the whole search, else HF_OK. */
-static hf_status polish(const search *s, job *j, double *design, hf_workspace *w, hf_front_point *point)
+static hf_status polish(const search *s, const job *j, double *design, hf_workspace *w, hf_front_point *point)
 {
     const hf_trade *t = s->t;
     double most[2] = {INFINITY, INFINITY};
@@ -64,10 +64,10 @@ static hf_status polish(const search *s, job *j, double *design, hf_workspace *w
     if (status == HF_NO_MEMORY) return status;
     point->status = status;
     point->iterations = r.iterations;
-    j->is_rough = r.stop != HF_POLISH_CONVERGED;
+    point->is_converged = status == HF_OK && r.stop == HF_POLISH_CONVERGED;
     for (int k = 0; k < 2 && status == HF_OK; k++) {
         point->objective[k] = result.goal[k];
-        if (j->least == s->main) point->multiplier[k] = r.multiplier[k];
+        if (j->least == s->main && point->is_converged) point->multiplier[k] = r.multiplier[k];
     }
     return HF_OK;
 }
@@ -75,7 +75,7 @@ static hf_status polish(const search *s, job *j, double *design, hf_workspace *w
 /* Is a point unfinished, or worse than one that is there? */
 static bool is_doubtful(const search *s, const job *j)
 {
-    if (j->found.status != HF_OK || j->is_rough) return true;
+    if (j->found.status != HF_OK || !j->found.is_converged) return true;
     for (int i = 0; i < s->n_way; i++)
         if (hf_front_dominates(2, s->way[i]->found.objective, j->found.objective)) return true;
     return false;
@@ -180,8 +180,11 @@ static hf_status find_ends(search *s, job *end[2])
     for (int k = 0; k < 2; k++)
         end[k] = add(s, k, INFINITY, start[k], start[1 - k]);
     HF_TRY(run(s));
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; k++) {
+        s->failed_end = k;
         if (end[k]->found.status != HF_OK) return end[k]->found.status;
+    }
+    s->failed_end = -1;
     const hf_front_point *a = &end[0]->found, *b = &end[1]->found;
     s->range[0] = b->objective[0] - a->objective[0];
     s->range[1] = a->objective[1] - b->objective[1];
@@ -311,17 +314,18 @@ static hf_status hand_over(const search *s, job *end[2], int n_end, hf_front *fr
     return HF_OK;
 }
 
-hf_status hf_trade_find(const hf_trade *trade, hf_front *front)
+hf_status hf_trade_find(const hf_trade *trade, hf_front *front, int *failed_end)
 {
     hf_trade t = *trade;
     hf_evaluator alone = *trade->evaluator; /* each point has one thread */
     hf_arena arena = {0};
     job *end[2];
     if (t.n_thread <= 0) t.n_thread = hf_parallel_cores();
-    search s = {.t = &t, .n_gene = (size_t)t.evaluator->model->n_gene};
+    search s = {.t = &t, .failed_end = -1, .n_gene = (size_t)t.evaluator->model->n_gene};
     alone.n_thread = 1;
     t.evaluator = &alone;
     *front = (hf_front){.minimised = -1, .knee = -1};
+    *failed_end = -1;
     s.main = hf_goals_is_largest(t.evaluator->goals->goal[0].wanted.goal) &&
              !hf_goals_is_largest(t.evaluator->goals->goal[1].wanted.goal);
     s.other = 1 - s.main;
@@ -331,5 +335,6 @@ hf_status hf_trade_find(const hf_trade *trade, hf_front *front)
     if (status == HF_OK && s.range[0] > 0 && s.range[1] > 0) status = fill(&s, end);
     if (status == HF_OK) status = hand_over(&s, end, n_end, front);
     hf_arena_free(&arena);
+    *failed_end = s.failed_end;
     return status;
 }

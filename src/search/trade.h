@@ -22,7 +22,8 @@ typedef struct {
 bool hf_trade_applies(const hf_evaluator *evaluator);
 
 /* *front is created here, all of it but `base`; free it in any case. HF_OK, also when points failed, which are marked;
- * HF_NO_MEMORY; HF_INTERRUPTED; the status of the last try where no start leads to a feasible design at an end. */
-hf_status hf_trade_find(const hf_trade *trade, hf_front *front);
+ * HF_NO_MEMORY; HF_INTERRUPTED; the status of the last try where no start leads to a feasible design at an end, whose
+ * objective is *failed_end then, else -1. */
+hf_status hf_trade_find(const hf_trade *trade, hf_front *front, int *failed_end);
 
 #endif

@@ -11,7 +11,7 @@
 static const hf_hdf5_kind kind_of_mark = {HF_HDF5_ENUM, HF_FRONT_N_MARK, hf_front_mark_word, NULL};
 
 /* What the rows of a front are. */
-enum { OBJECTIVE, MULTIPLIER, STATUS, MARK, ITERATIONS, N_COLUMN };
+enum { OBJECTIVE, MULTIPLIER, STATUS, MARK, ITERATIONS, CONVERGED, N_COLUMN };
 static hf_hdf5_array column(int i, int n_point, int n_objective)
 {
     const hsize_t n = (hsize_t)n_point, k = (hsize_t)n_objective;
@@ -26,6 +26,7 @@ static hf_hdf5_array column(int i, int n_point, int n_objective)
         {"status", HF_KIND_STATUS, 1, {n}, "", "of each design"},
         {"mark", &kind_of_mark, 1, {n}, "", "is it on the front, dominated by another point, or failed?"},
         {"iterations", HF_KIND_INT, 1, {n}, "", "of Levenberg-Marquardt"},
+        {"converged", HF_KIND_FLAG, 1, {n}, "", "is it an optimum of Levenberg-Marquardt, as far as steps show?"},
     };
     return all[i];
 }
@@ -44,6 +45,7 @@ static hf_hdf5_array base_of(int n)
 typedef struct {
     double *objective, *multiplier; /* [n][n_objective] */
     signed char *status, *mark;     /* [n] */
+    bool *converged;                /* [n] */
     int *iterations;                /* [n] */
 } rows;
 
@@ -55,7 +57,8 @@ static bool make_rows(rows *r, int n, int n_objective)
     r->status = malloc((size_t)n);
     r->mark = malloc((size_t)n);
     r->iterations = malloc((size_t)n * sizeof(int));
-    return r->objective && r->multiplier && r->status && r->mark && r->iterations;
+    r->converged = malloc((size_t)n * sizeof(bool));
+    return r->objective && r->multiplier && r->status && r->mark && r->iterations && r->converged;
 }
 
 static void free_rows(rows *r)
@@ -65,6 +68,7 @@ static void free_rows(rows *r)
     free(r->status);
     free(r->mark);
     free(r->iterations);
+    free(r->converged);
 }
 
 /* Between rows and points, one way or the other. */
@@ -78,6 +82,7 @@ static void pack(rows *r, int n, int n_objective, const hf_front_point *point)
         r->status[i] = (signed char)point[i].status;
         r->mark[i] = (signed char)point[i].mark;
         r->iterations[i] = point[i].iterations;
+        r->converged[i] = point[i].is_converged;
     }
 }
 
@@ -88,7 +93,8 @@ static void unpack(const rows *r, int n, int n_objective, hf_front_point *point)
                                     .multiplier = {NAN, NAN, NAN},
                                     .status = (hf_status)r->status[i],
                                     .mark = (hf_front_mark)r->mark[i],
-                                    .iterations = r->iterations[i]};
+                                    .iterations = r->iterations[i],
+                                    .is_converged = r->converged[i]};
         for (int k = 0; k < n_objective; k++) {
             point[i].objective[k] = r->objective[i * n_objective + k];
             point[i].multiplier[k] = r->multiplier[i * n_objective + k];
@@ -98,7 +104,7 @@ static void unpack(const rows *r, int n, int n_objective, hf_front_point *point)
 
 static void *value_of(const rows *r, int i)
 {
-    void *const value[N_COLUMN] = {r->objective, r->multiplier, r->status, r->mark, r->iterations};
+    void *const value[N_COLUMN] = {r->objective, r->multiplier, r->status, r->mark, r->iterations, r->converged};
     return value[i];
 }
 

@@ -243,6 +243,7 @@ static void write_front(const hf_summary *s, hf_json *j)
     hf_json_integer(j, "n_listed", t->n_row);
     hf_json_integer(j, "n_dominated", t->n_dominated);
     hf_json_integer(j, "n_failed", t->n_failed);
+    if (t->minimised >= 0) hf_json_integer(j, "n_not_converged", t->n_unconverged);
     if (t->minimised >= 0) hf_json_text(j, "minimised", s->goals.name[t->minimised]);
     if (t->knee >= 0) hf_json_integer(j, "knee", t->knee);
     hf_json_number(j, "wall_s", t->wall_s);
@@ -260,6 +261,7 @@ static void write_front(const hf_summary *s, hf_json *j)
         hf_json_text(j, "status", hf_status_word(p->status));
         hf_json_text(j, "mark", hf_front_mark_word[p->mark]);
         hf_json_integer(j, "iterations", p->iterations);
+        if (t->minimised >= 0) hf_json_bool(j, "converged", p->is_converged);
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');

@@ -9,7 +9,7 @@ START_TEST(a_front_is_printed_stored_and_told)
 {
     const char *file = temp("f.h5"), *printed, *json;
     HIFDM(0, "run", FRONT, "-o", file);
-    OUT("  front         7 points, 0 of them dominated, 0 failed; ");
+    OUT("  front         7 points, 0 of them dominated, 0 failed, 1 not converged; ");
     OUT("; slope of goal_0_psi per unit of goal_1_ratio_boundary\n");
     OUT("                objectives goal_0_psi 0.00660003, goal_1_ratio_boundary 4.84161\n");
     ck_assert(!strstr(said.out, "merit") && !strstr(said.out, "weight") && !strstr(said.out, " shown "));
@@ -94,12 +94,13 @@ START_TEST(a_table_of_the_front_is_one_of_designs)
     HIFDM(0, "export", file, "--front", table);
     OUT("7 points of the front of 2 objectives in ");
     HIFDM(0, "evaluate", FRONT, "--designs", table, "-o", again);
-    EXPECT(table, again, "--",
-           "list(a[0])[:7] == ['id', 'mark', 'status', 'iterations', 'goal_0_psi', 'goal_1_ratio_boundary', "
-           "'slope_goal_1_ratio_boundary']",
-           "len(a) == 7 and a[0]['id'] == '1' and a[6]['slope_goal_1_ratio_boundary'] == ''",
-           "all(near(float(x[k]), float(y[k]), 1e-6) for x, y in zip(a, b) for k in ('goal_0_psi', "
-           "'goal_1_ratio_boundary'))");
+    EXPECT(
+        table, again, "--",
+        "list(a[0])[:8] == ['id', 'mark', 'status', 'iterations', 'converged', 'goal_0_psi', 'goal_1_ratio_boundary', "
+        "'slope_goal_1_ratio_boundary']",
+        "len(a) == 7 and a[0]['id'] == '1' and a[6]['slope_goal_1_ratio_boundary'] == ''",
+        "all(near(float(x[k]), float(y[k]), 1e-6) for x, y in zip(a, b) for k in ('goal_0_psi', "
+        "'goal_1_ratio_boundary'))");
     HIFDM(5, "export", file, "--front", table);
     ERR("exists; use --force to replace it\n");
 }
@@ -164,7 +165,7 @@ START_TEST(levenberg_marquardt_follows_generations)
 {
     const char *file = temp("f.h5"), *before = temp("g.h5");
     HIFDM(0, "run", FRONT, "--set", "optimize.method=ga+lm", "--set", "optimize.generations=3", "-o", file);
-    OUT("  front         7 points, 0 of them dominated, 0 failed; ");
+    OUT("  front         7 points, 0 of them dominated, 0 failed, 1 not converged; ");
     HIFDM(0, "run", FRONT, "--set", "optimize.method=ga", "--set", "optimize.generations=3", "-o", before);
     EXPECT(file, before, "--", "np.array_equal(a['ga/design_N'], b['ga/design_N'])",
            "np.all(a['front/objective'][:].min(axis=0) < b['front/objective'][:].min(axis=0))");
@@ -179,9 +180,48 @@ START_TEST(limits_that_no_design_keeps_leave_no_front)
 {
     const char *file = temp("f.h5");
     HIFDM(3, "run", FRONT, "-o", file, "--set", "optimize.limits=[{limit: tension, set: edge, bounds: [500, 600]}]");
-    ERR("error: optimize.objectives: an end of the front has no feasible design: ");
+    ERR("error: optimize.objectives.0: Levenberg-Marquardt has found no design with the least goal_0_psi, an end of "
+        "the "
+        "front: no way from its start into optimize.limits\n");
     HIFDM(0, "show", file);
     ck_assert(!strstr(said.out, "  front "));
+}
+END_TEST
+
+/* A point at which the steps ran out is told, and has no slope. */
+START_TEST(points_that_have_not_converged_say_so)
+{
+    const char *file = temp("f.h5"), *json, *table = temp("f.csv");
+    HIFDM(0, "run", FRONT, "-o", file, "--set", "optimize.polish_iterations=2");
+    ERR(" of 7 points of the front are not converged after 2 steps: they have no slope, and better designs are near; "
+        "raise optimize.polish_iterations\n");
+    OUT(" failed, ");
+    OUT(" not converged; ");
+    HIFDM(0, "show", file, "--json");
+    json = out_as("f.json");
+    EXPECT(file, json, "--", "[p['converged'] for p in b['front']['points']] == list(a['front/converged'][:] != 0)",
+           "b['front']['n_not_converged'] == np.sum(a['front/converged'][:] == 0) > 0",
+           "np.isnan(a['front/multiplier'][:][a['front/converged'][:] == 0]).all()");
+    HIFDM(0, "export", file, "--front", table);
+    SHELL(0, "head -1 \"$1\" | grep -q ^id,mark,status,iterations,converged,goal_0_psi,", table);
+    HIFDM(0, "run", FRONT, "-o", file, "--force");
+    ck_assert(!strstr(said.err, "raise optimize.polish_iterations"));
+}
+END_TEST
+
+/* Levenberg-Marquardt needs derivatives, which rule seeded has not: what the generations found is kept. */
+START_TEST(generations_keep_their_front)
+{
+    const char *file = temp("f.h5"), *before = temp("g.h5");
+    HIFDM(0, "run", FRONT, "--set", "optimize.method=ga+lm", "--set", "optimize.generations=3", "--set",
+          "optimize.rule=seeded", "-o", file);
+    ERR("warning: optimize: Levenberg-Marquardt needs ");
+    ERR("; the front is that of the last generation\n");
+    OUT("  front         ");
+    HIFDM(0, "run", FRONT, "--set", "optimize.method=ga", "--set", "optimize.generations=3", "--set",
+          "optimize.rule=seeded", "-o", before);
+    EXPECT(file, before, "--", "np.array_equal(a['front/design_N'], b['front/design_N'])",
+           "np.array_equal(a['front/base'], b['front/base'])");
 }
 END_TEST
 
@@ -200,5 +240,7 @@ Suite *suite_cli_front(void)
     tcase_add_test(tests, generations_end_in_a_front);
     tcase_add_test(tests, levenberg_marquardt_follows_generations);
     tcase_add_test(tests, limits_that_no_design_keeps_leave_no_front);
+    tcase_add_test(tests, points_that_have_not_converged_say_so);
+    tcase_add_test(tests, generations_keep_their_front);
     return suite;
 }

@@ -8,6 +8,7 @@
 #include <hifdm/problem.h>
 
 enum { MAX_CABLE = 8, MAX_GENE = 4 };
+static int failed_end;
 
 struct traded {
     struct net net;
@@ -59,7 +60,7 @@ static void follow(struct traded *t, const hf_goal_settings objective[2], double
                             .n_start = 1,
                             .start = t->base};
     ck_assert(hf_trade_applies(&t->evaluator));
-    ck_assert_int_eq(hf_trade_find(&trade, &t->front), HF_OK);
+    ck_assert_int_eq(hf_trade_find(&trade, &t->front, &failed_end), HF_OK);
 }
 
 static void close_traded(struct traded *t)
@@ -178,7 +179,7 @@ START_TEST(without_memory_there_is_no_front)
     for (bool has_failed = true; has_failed;) {
         hf_front front;
         fail_allocation_at(n_failed + 1);
-        hf_status status = hf_trade_find(&trade, &front);
+        hf_status status = hf_trade_find(&trade, &front, &failed_end);
         has_failed = end_allocation_failure();
         ck_assert_int_eq(status, has_failed ? HF_NO_MEMORY : HF_OK);
         if (has_failed)
@@ -218,7 +219,7 @@ static void follow_problem(hf_problem *p, int n_point, int n_thread, hf_front *f
                             .n_thread = n_thread,
                             .n_start = 1,
                             .start = p->base_N};
-    ck_assert_int_eq(hf_trade_find(&trade, front), HF_OK);
+    ck_assert_int_eq(hf_trade_find(&trade, front, &failed_end), HF_OK);
     free(lower);
 }
 
@@ -316,7 +317,7 @@ START_TEST(a_stop_ends_the_search)
                             .n_start = 1,
                             .start = p.base_N,
                             .stop = &stop};
-    ck_assert_int_eq(hf_trade_find(&trade, &front), HF_INTERRUPTED);
+    ck_assert_int_eq(hf_trade_find(&trade, &front, &failed_end), HF_INTERRUPTED);
     ck_assert_int_eq(front.n_point, 0);
     hf_front_free(&front);
     hf_problem_free(&p);
