@@ -224,6 +224,7 @@ static void print_end(const job *j, FILE *f)
         hf_print_line(f, "no further move: none gains anything");
         break;
     }
+    if (j->adjustment.is_held_taut) hf_print_line(f, "moves stay so small that no further cable goes slack");
 }
 
 static void print_outliers(const job *j, FILE *f)
@@ -327,6 +328,7 @@ static void print_json_figures(const job *from, hf_json *j)
     hf_json_number(j, "adjusted_sigma_m", a->spread_m[1]);
     hf_json_line(j, " ");
     hf_json_text(j, "end", end_word[a->end]);
+    hf_json_bool(j, "held_taut", a->is_held_taut);
     hf_json_bool(j, "supports_estimated", from->problem.settings.tolerance.sigma_support_m > 0);
     hf_json_integer(j, "estimate_steps", from->estimate.n_step);
     hf_json_integer(j, "rounds", a->n_round);

@@ -31,6 +31,7 @@ typedef struct {
     double *strain_N, *answer_m, *scratch;    /* [PANEL][...] of the linear answer */
     double *rate_m, *rate_N, *displacement_m; /* of hf_goals_push */
     int *steps, *trial;                       /* [n] */
+    int n_slack;                              /* cables without turns: moves leave no more of them slack */
     hf_moves_problem problem;
     void *block;
 } adjustment;
@@ -117,6 +118,15 @@ static hf_status solve_nominal(adjustment *a, double *figure_m)
     return measure_work(a, figure_m);
 }
 
+static int count_slack(const adjustment *a)
+{
+    const hf_model *m = &a->estimate->built->model;
+    int n = 0;
+    for (int e = 0; e < m->n_cable; e++)
+        n += hf_metrics_is_slack(m, &a->work, e);
+    return n;
+}
+
 /* ---- the linear model ---- */
 
 /* Residuals per unit of a move by dof. */
@@ -184,12 +194,14 @@ static hf_status linearise(adjustment *a)
 
 /* ---- the choice ---- */
 
-/* Into a->steps, 0 on entry: choices by the linear model of the last shape, as long as their own shapes are better. */
+/* Into a->steps, 0 on entry: choices by the linear model of the last shape, as long as their own shapes are better.
+ * After one that leaves cables slack the range of the next is half as large. */
 static hf_status choose(adjustment *a, hf_adjustment *found)
 {
     double figure_m;
     HF_TRY(solve_steps(a, a->steps, &figure_m));
     found->adjusted_m = found->estimated_m = figure_m;
+    a->n_slack = count_slack(a);
     while (found->n_round < ROUNDS_MAX) {
         hf_moves_end end;
         hf_status status = linearise(a);
@@ -201,6 +213,15 @@ static hf_status choose(adjustment *a, hf_adjustment *found)
         if (found->is_settled) return HF_OK;
         status = solve_steps(a, a->trial, &figure_m);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+        if (status == HF_OK && count_slack(a) > a->n_slack) {
+            found->is_held_taut = true;
+            a->problem.steps_max /= 2;
+            if (a->problem.steps_max == 0) found->end = HF_MOVES_NONE;
+            found->is_settled = a->problem.steps_max == 0;
+            if (found->is_settled) return HF_OK;
+            HF_TRY(solve_steps(a, a->steps, &figure_m));
+            continue;
+        }
         found->is_settled = status == HF_OK && !(figure_m < found->adjusted_m);
         if (status != HF_OK || found->is_settled) return HF_OK;
         found->adjusted_m = figure_m;
@@ -226,7 +247,7 @@ static hf_status go_on(adjustment *a, double *best_m, bool *gains)
         at = to;
         hf_status status = solve_turned(a, &figure_m);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-        *gains = status == HF_OK && figure_m < *best_m * (1 - LITTLE);
+        *gains = status == HF_OK && figure_m < *best_m * (1 - LITTLE) && count_slack(a) <= a->n_slack;
         if (!*gains) continue;
         *best_m = figure_m;
         return HF_OK;
@@ -239,6 +260,7 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
 {
     bool gains = true;
     HF_TRY(solve_steps(a, a->steps, &found->best_m));
+    a->problem.steps_max = hf_adjust_steps(a->task->settings);
     for (int round_ = 0; gains && round_ < ROUNDS_MAX; round_++) {
         hf_status status = linearise(a);
         if (status == HF_SINGULAR) return HF_OK;
@@ -250,15 +272,6 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
 }
 
 /* ---- one move after the other ---- */
-
-static int count_slack(const adjustment *a)
-{
-    const hf_model *m = &a->estimate->built->model;
-    int n = 0;
-    for (int e = 0; e < m->n_cable; e++)
-        n += hf_metrics_is_slack(m, &a->work, e);
-    return n;
-}
 
 /* Of the chosen moves that are not in a->trial yet, the one after which the linear model has the least figure. */
 static size_t next_move(adjustment *a)

@@ -32,6 +32,7 @@ typedef struct {
     double doubt_m[2];  /* RMS over what errors and measurement leave open, of the estimated and the adjusted shape */
     double spread_m[2]; /* standard deviation of these figures */
     int n_round;        /* linear models */
+    bool is_held_taut;  /* larger moves would have left more cables slack than there are */
     bool is_settled;    /* the last of them chose nothing better than the moves that it was linearised at */
     hf_moves_end end;
     int n_move;

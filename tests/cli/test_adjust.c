@@ -101,6 +101,18 @@ START_TEST(moves_are_a_table)
 }
 END_TEST
 
+/* A net with a psi of its own, and a range in which cables can be let out until they are slack: they are not. */
+START_TEST(no_cable_is_let_out_until_it_is_slack)
+{
+    const char *measured = measured_with("m.csv", HEADER, NULL, ""), *moves = temp("moves.csv");
+    const char *path = file_with("case.yaml", EA_SCENE SECTIONS);
+    HIFDM(0, "adjust", path, "--measured", measured, "-o", moves, "--set", "adjust.range_m=0.05", "--set",
+          "adjust.set=boundary");
+    OUT("moves stay so small that no further cable goes slack");
+    SHELL(0, "awk -F, 'NR > 1 && !($6 > 0.01) { bad = 1 } END { exit bad || NR < 2 }' \"$1\"", moves);
+}
+END_TEST
+
 START_TEST(bad_tables_are_named)
 {
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS), *bad;
@@ -161,6 +173,7 @@ Suite *suite_cli_adjust(void)
     TCase *tcase = tcase_create("adjust");
     tcase_set_timeout(tcase, HANG_S);
     tcase_add_test(tcase, moves_are_a_table);
+    tcase_add_test(tcase, no_cable_is_let_out_until_it_is_slack);
     tcase_add_test(tcase, bad_tables_are_named);
     tcase_add_test(tcase, bad_cases_are_named);
     suite_add_tcase(suite, tcase);
