@@ -17,10 +17,17 @@ typedef struct {
     hf_scene scene; /* the design's, but for laws, targets, EA and supports; it borrows all else */
     hf_model model; /* every cable of law elastic, target: its unstressed length; on the design's truss */
     hf_form_settings form;
-    double *place_m;   /* [3][n_node] shape of the design by row: where the nominal net has its nodes */
-    double *tension_N; /* [n_cable] of the design, and so of the nominal net */
+    double *place_m;                   /* [3][n_node] shape of the design by row: where the nominal net has its nodes */
+    double *tension_N;                 /* [n_cable] of the design, and so of the nominal net */
+    const volatile sig_atomic_t *stop; /* NULL, or a flag: where *stop != 0 what works on this net leaves early */
     void *block;
 } hf_built;
+
+/* Is it told to stop? Then what was left early returns HF_INTERRUPTED, and what it found means nothing. */
+static inline bool hf_built_must_stop(const hf_built *built)
+{
+    return built->stop && *built->stop;
+}
 
 /* Make the net whose design's shape `workspace` holds, an equilibrium of `model`, the model of `scene`. Residuals are
  * relative to the largest tension of the design. Returns HF_OK; HF_BAD_CASE with messages that begin with `where`, when

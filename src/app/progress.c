@@ -35,6 +35,11 @@ static void show_samples(hf_progress *p, const hf_run_progress *now)
     char left[32];
     bool is_line = p->mode == HF_PROGRESS_LINE;
     double each_s = now->evaluations > 0 ? now->elapsed_s / (double)now->evaluations : 0;
+    if (now->evaluations == 0) {
+        fprintf(p->file, "\r\033[Kfirst order, before %ld samples", now->samples_all);
+        p->is_shown = true;
+        return;
+    }
     hf_print_duration(each_s * (double)(now->samples_all - now->samples), left, sizeof left);
     fprintf(p->file, "%ssample %ld/%ld  %.0f samples/s  %s left%s", is_line ? "\r\033[K" : "", now->samples,
             now->samples_all, rate_per_s(now), left, is_line ? "" : "\n");
@@ -83,7 +88,7 @@ void hf_progress_show(void *progress, const hf_run_progress *now)
     bool samples = now->phase == HF_RUN_TOLERANCE;
     bool is_first = samples ? now->evaluations == 0 : now->generation <= now->first_generation + 1;
     bool is_last = (samples || now->generation > 0) && now->is_last;
-    bool has_line = samples ? now->evaluations > 0 : now->phase == HF_RUN_EVOLVE;
+    bool has_line = samples ? now->evaluations > 0 || p->mode == HF_PROGRESS_LINE : now->phase == HF_RUN_EVOLVE;
     if (is_first) p->last_s = p->mode == HF_PROGRESS_LOG ? 0 : -interval_s[p->mode];
     if (p->mode == HF_PROGRESS_NONE || (!has_line && p->mode != HF_PROGRESS_JSONL)) return;
     if (now->elapsed_s - p->last_s < interval_s[p->mode] && !(is_last && p->mode == HF_PROGRESS_JSONL)) return;

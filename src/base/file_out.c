@@ -395,7 +395,7 @@ hf_status hf_file_out_set_end(hf_file_out_set *set, hf_status status, hf_message
 
 /* ---- without a name ---- */
 
-int hf_file_out_scratch(void)
+static int scratch_of_system(void)
 {
     FILE *made = tmpfile();
     if (!made) return -1;
@@ -403,4 +403,33 @@ int hf_file_out_scratch(void)
     fclose(made);
     errno = why;
     return file;
+}
+
+/* Some file systems have no files without a name: there it loses its name at once. */
+static int scratch_with_name(const char *beside)
+{
+    hf_file_out f = {0};
+    if (hf_file_out_make(beside, &f) != 0) return -1;
+    int file = fcntl(f.file, F_DUPFD_CLOEXEC, 0), why = errno;
+    hf_file_out_drop(&f);
+    errno = why;
+    return file;
+}
+
+int hf_file_out_scratch(const char *beside)
+{
+    char folder[HF_FILE_OUT_SIZE];
+    if (!beside) return scratch_of_system();
+    const char *slash = strrchr(beside, '/');
+    int n = slash ? snprintf(folder, sizeof folder, "%.*s", (int)(slash - beside) + 1, beside)
+                  : snprintf(folder, sizeof folder, ".");
+    if (n >= HF_FILE_OUT_SIZE) {
+        errno = ENAMETOOLONG;
+        return -1;
+    }
+#ifdef O_TMPFILE
+    int file = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (file >= 0) return file;
+#endif
+    return scratch_with_name(beside);
 }

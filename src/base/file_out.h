@@ -102,8 +102,8 @@ int hf_file_out_create(const char *name); /* a new file to write; EEXIST when an
  * ordinary file with one name: through links one could be led to write into any file. */
 int hf_file_out_keep(const char *name, bool *was_there);
 
-/* A new file without a name in the folder of temporary files: its descriptor, or -1 and errno. It is gone when it is
- * closed. */
-int hf_file_out_scratch(void);
+/* A new file without a name in the folder of the file `beside`, or of temporary files where that is NULL: its
+ * descriptor, or -1 and errno. It is gone when it is closed. */
+int hf_file_out_scratch(const char *beside);
 
 #endif

@@ -204,6 +204,13 @@ static void step(void *solver)
     hf_near_step(&work->job->batch->near, &work->room->near);
 }
 
+/* An hf_lane_next: no sample begins when the batch is told to stop. */
+static int take_next(void *context)
+{
+    batch_job *j = context;
+    return hf_built_must_stop(j->batch->built) ? -1 : hf_parallel_take(&j->queue);
+}
+
 /* The work of one thread. When there is no memory for its room, it returns and the other threads do its work. */
 static void work_on_job(void *context, int place)
 {
@@ -211,11 +218,12 @@ static void work_on_job(void *context, int place)
     batch_job *j = context;
     batch_work work = {.job = j, .room = &j->batch->room[place], .place = place};
     if (hf_parallel_is_empty(&j->queue) || make_room(j->batch, work.room) != HF_OK) return;
+    work.room->work.stop = j->batch->built->stop;
     if (j->batch->has_lanes) {
-        hf_lane_schedule_run(&in_lanes, &work, hf_parallel_take, &j->queue);
+        hf_lane_schedule_run(&in_lanes, &work, take_next, j);
         return;
     }
-    for (int i = hf_parallel_take(&j->queue); i >= 0; i = hf_parallel_take(&j->queue)) {
+    for (int i = take_next(j); i >= 0; i = take_next(j)) {
         make_sample(&work, 0, i);
         solve_alone(&work, 0, i);
     }
@@ -225,7 +233,7 @@ void hf_built_batch_run(hf_built_batch *batch, unsigned varies, long first, long
                         hf_built_take *take, void *context)
 {
     const long most = INT_MAX / 2; /* in one queue, which goes on counting when it is empty */
-    for (; n > 0; first += most, n -= most) {
+    for (; n > 0 && !hf_built_must_stop(batch->built); first += most, n -= most) {
         batch_job job = {batch, varies, first, {(int)(n < most ? n : most), 0, NULL}, make, take, context};
         hf_parallel_run(batch->n_thread, work_on_job, &job);
     }

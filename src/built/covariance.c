@@ -56,7 +56,7 @@ static void work_on_strip(void *context, int room, int i_strip)
     strips *s = context;
     long n = 3L * s->errors->linear->built->model.n_inner_node;
     int first = (int)(n * i_strip / STRIPS), end = (int)(n * (i_strip + 1) / STRIPS);
-    for (; first < end; first += AT_ONCE)
+    for (; first < end && !hf_built_must_stop(s->errors->linear->built); first += AT_ONCE)
         add_coordinates(s, i_strip, first, end - first < AT_ONCE ? end - first : AT_ONCE,
                         s->scratch + (size_t)room * s->n_room);
 }
@@ -101,7 +101,7 @@ hf_status hf_covariance_find(const hf_built_errors *e, int n_thread, hf_covarian
     sum_up(&s, c);
     c->nominal_psi_m = hf_covariance_psi_m(e->linear, NULL);
     hf_arena_free(&scratch);
-    return HF_OK;
+    return hf_built_must_stop(e->linear->built) ? HF_INTERRUPTED : HF_OK;
 }
 
 void hf_covariance_free(hf_covariance *c)

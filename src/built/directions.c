@@ -34,6 +34,7 @@ static void multiply(void *context, int room, int i)
     const hf_model *m = &l->built->model;
     double *move = t->scratch + (size_t)room * t->n_room, *slope = move + l->n_dof, *strain = slope + l->n_dof,
            *more = strain + m->n_cable, *column = t->column + (size_t)i * (size_t)hf_built_errors_count(e);
+    if (hf_built_must_stop(l->built)) return;
     hf_built_errors_strain(e, 1, column, strain, move);
     hf_built_linear_apply(l, 1, strain, move, more);
     memset(slope, 0, l->n_dof * sizeof *slope);
@@ -75,7 +76,7 @@ static hf_status find_axes(const hf_built_errors *e, int n_thread, hf_directions
     for (size_t i = 0; i < (size_t)t.n * n; i++)
         t.column[i] = hf_built_errors_uniform(e->seed, (long)(i / n), STARTS, (int)(i % n)) - 0.5;
     orthonormalise(&t);
-    for (int round = 0; round < ROUNDS; round++) {
+    for (int round = 0; round < ROUNDS && !hf_built_must_stop(l->built); round++) {
         hf_parallel_each(n_thread, t.n, multiply, &t);
         orthonormalise(&t);
     }
@@ -83,7 +84,7 @@ static hf_status find_axes(const hf_built_errors *e, int n_thread, hf_directions
         for (int k = 0; k < t.n; k++)
             d->axis[i * (size_t)t.n + (size_t)k] = t.column[(size_t)k * n + i];
     hf_arena_free(&arena);
-    return HF_OK;
+    return hf_built_must_stop(l->built) ? HF_INTERRUPTED : HF_OK;
 }
 
 /* The errors of the largest shares, in this order. */

@@ -175,6 +175,7 @@ static void predict(void *context, int room, int i)
 {
     hf_montecarlo *t = context;
     const hf_built_linear *l = &t->linear;
+    if (hf_built_must_stop(t->built)) return;
     int first = i * AT_ONCE, n = t->n_now - first < AT_ONCE ? t->n_now - first : AT_ONCE;
     size_t n_cable = (size_t)t->built->model.n_cable;
     double *move = t->scratch + (size_t)room * t->n_room, *strain = move + AT_ONCE * l->n_dof,
@@ -198,6 +199,7 @@ hf_status hf_montecarlo_run(hf_montecarlo *t, double scale, long first, int n)
     if (t->directions.n) hf_directions_points(&t->directions, first, n, t->point);
     hf_built_batch_run(t->batch, t->varies, first, n, make_sample, take_sample, t);
     hf_parallel_each(hf_built_batch_threads(t->batch), (n + AT_ONCE - 1) / AT_ONCE, predict, t);
+    if (hf_built_must_stop(t->built)) return HF_INTERRUPTED;
     return t->has_no_memory ? HF_NO_MEMORY : HF_OK;
 }
 
@@ -225,7 +227,6 @@ static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reac
     *reaches = false;
     for (long first = 0; first < n; first += t->n_chunk) {
         int count = n - first < t->n_chunk ? (int)(n - first) : t->n_chunk;
-        if (t->stop && *t->stop) return HF_INTERRUPTED;
         HF_TRY(hf_montecarlo_run(t, scale, first, count));
         for (int i = 0; i < count; i++)
             met += hf_montecarlo_meets_all(t->settings, t->row + i * HF_TOLERANCE_COLUMNS);

@@ -28,16 +28,14 @@ typedef struct {
     double *point;   /* [n_chunk][directions.n] */
     double *scratch; /* [n_thread][n_room] */
     size_t n_z, n_room;
-    unsigned varies;                   /* HF_BUILT_VARIES_... */
-    atomic_bool has_no_memory;         /* some sample could not be measured; any thread may find that */
-    bool skips_surface;                /* it is not measured, now */
-    const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 makes hf_montecarlo_find_scale return
-                                          HF_INTERRUPTED */
+    unsigned varies;           /* HF_BUILT_VARIES_... */
+    atomic_bool has_no_memory; /* some sample could not be measured; any thread may find that */
+    bool skips_surface;        /* it is not measured, now */
     void *block;
 } hf_montecarlo;
 
 /* settings, built, surface, facets are borrowed. expansion_per_K [n_cable] by cable, NULL when the temperature does not
- * vary. HF_OK; HF_SINGULAR when the nominal net has no factor; HF_NO_MEMORY. Free in any case. */
+ * vary. HF_OK; HF_SINGULAR when the nominal net has no factor; HF_INTERRUPTED; HF_NO_MEMORY. Free in any case. */
 hf_status hf_montecarlo_create(const hf_tolerance_settings *settings, const hf_built *built,
                                const hf_surface_settings *surface, const hf_facets *facets,
                                const double *expansion_per_K, int n_thread, hf_montecarlo *montecarlo);
@@ -46,8 +44,8 @@ void hf_montecarlo_free(hf_montecarlo *montecarlo);
 /* Is this measured? */
 bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets *facets, hf_tolerance_measure measure);
 
-/* Solve samples first to first + n - 1, n <= n_chunk, with all errors times `scale`, into montecarlo->row. HF_OK or
- * HF_NO_MEMORY. */
+/* Solve samples first to first + n - 1, n <= n_chunk, with all errors times `scale`, into montecarlo->row. HF_OK;
+ * HF_INTERRUPTED when built->stop says so; HF_NO_MEMORY. */
 hf_status hf_montecarlo_run(hf_montecarlo *montecarlo, double scale, long first, int n);
 
 /* Does a row meet row k of the requirements, or all of them? */

@@ -150,6 +150,7 @@ static void warn(const hf_state_summary *s, hf_messages *messages)
 hf_status hf_cases_run(const hf_problem *p, hf_cases *c, hf_store *store, const volatile sig_atomic_t *stop,
                        hf_summary *summary, hf_messages *messages)
 {
+    c->workspace.stop = stop;
     for (int k = 0; k < p->states.n; k++) {
         hf_state_summary *s = &summary->state[k];
         blank(p->states.state[k].name, s);

@@ -197,6 +197,14 @@ static void tell(const job *j, long n_new, bool is_last)
     q->observer(q->observer_context, &now);
 }
 
+/* It takes a while in large nets, and no sample is found meanwhile. */
+static void tell_first_order(const job *j)
+{
+    const hf_run_request *q = j->stage->request;
+    hf_run_progress now = {.phase = HF_RUN_TOLERANCE, .samples_all = j->stage->problem->settings.tolerance.samples};
+    if (q->observer) q->observer(q->observer_context, &now);
+}
+
 static hf_status find_samples(job *j, hf_messages *messages)
 {
     const hf_run_request *q = j->stage->request;
@@ -207,9 +215,9 @@ static hf_status find_samples(job *j, hf_messages *messages)
         int n;
         long first = hf_samples_first(s, chunk, &n);
         if (s->has[chunk] || !is_mine(q, chunk)) continue;
-        if (q->stop_requested && *q->stop_requested) return HF_INTERRUPTED;
-        if (hf_montecarlo_run(&j->montecarlo, 1, first, n) != HF_OK)
-            return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory for the measures of samples");
+        hf_status status = hf_montecarlo_run(&j->montecarlo, 1, first, n);
+        if (status == HF_NO_MEMORY) hf_error(messages, status, "tolerance: out of memory for the measures of samples");
+        HF_TRY(status);
         HF_TRY(hf_samples_add(s, chunk, j->montecarlo.row));
         n_new += n;
         tell(j, n_new, s->n_have == s->n_all);
@@ -226,8 +234,10 @@ static hf_status open_samples(job *j, hf_messages *messages)
     bool is_task = hf_tolerance_stage_is_task(q);
     const char *output = *stage->output && !q->of_sweep ? stage->output : NULL; /* points of a sweep begin anew */
     if (identify(p, &j->built, identity) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
-    HF_TRY(hf_samples_open(output, q->task, is_task ? q->tasks : 0, identity, q->restart, p->settings.tolerance.samples,
-                           j->montecarlo.n_chunk, &j->samples, messages));
+    const char *beside = *stage->output ? stage->output : NULL;
+    HF_TRY(hf_samples_open(output, beside, q->task, is_task ? q->tasks : 0, identity, q->restart,
+                           p->settings.tolerance.samples, j->montecarlo.n_chunk, &j->samples, messages));
+    j->samples.stop = q->stop_requested;
     if (output && q->tasks > 0 && !is_task) HF_TRY(hf_samples_collect(&j->samples, output, q->tasks, q->restart));
     return HF_OK;
 }
@@ -241,7 +251,6 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
         const double *expansion = p->settings.tolerance.sigma_temperature_K > 0 ? material.expansion_per_K : NULL;
         status = hf_montecarlo_create(&p->settings.tolerance, &j->built, &p->surface, &p->facets, expansion,
                                       j->stage->request->threads, &j->montecarlo);
-        j->montecarlo.stop = j->stage->request->stop_requested;
         if (status == HF_NO_MEMORY) hf_error(messages, status, "tolerance: out of memory");
         if (status == HF_SINGULAR)
             hf_error(messages, status,
@@ -277,6 +286,8 @@ static hf_status work_off_stage(job *j, hf_summary *summary, hf_messages *messag
     char place[HF_PATH_SIZE + 128];
     place_section(&p->settings, place, sizeof place);
     HF_TRY(hf_built_make(place, &p->scene, &p->model, &p->settings.form, j->stage->shape, &j->built, messages));
+    j->built.stop = j->stage->request->stop_requested;
+    tell_first_order(j);
     HF_TRY(open_montecarlo(j, messages));
     HF_TRY(open_samples(j, messages));
     HF_TRY(find_samples(j, messages));

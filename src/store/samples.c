@@ -22,17 +22,17 @@ static void name_journal(const char *result, int task, int tasks, char name[HF_S
         snprintf(name, HF_SAMPLES_NAME_SIZE, "%s.tolerance", result);
 }
 
-static hf_status fail_rows(hf_samples *s, const char *what)
+static hf_status fail_rows(hf_samples *s, const char *what, const char *why)
 {
-    return hf_error(s->messages, HF_IO, "%s: cannot %s its scratch file in the folder of temporary files: %s", s->name,
-                    what, strerror(errno));
+    return hf_error(s->messages, HF_IO, "%s: cannot %s the scratch file of samples: %s", s->name, what, why);
 }
 
 static hf_status keep_rows(hf_samples *s, int chunk, const void *row)
 {
     int n;
     off_t at = (off_t)hf_samples_first(s, chunk, &n) * (off_t)ROW_BYTES;
-    if (hf_file_io_write_at(s->rows, row, (size_t)n * ROW_BYTES, at) != 0) return fail_rows(s, "write");
+    if (hf_file_io_write_at(s->rows, row, (size_t)n * ROW_BYTES, at) != 0)
+        return fail_rows(s, "write", strerror(errno));
     s->n_have += !s->has[chunk];
     s->has[chunk] = 1;
     return HF_OK;
@@ -52,8 +52,8 @@ static hf_status take_chunk(void *context, int chunk, const void *payload, size_
     return keep_rows(s, chunk, payload);
 }
 
-hf_status hf_samples_open(const char *result, int task, int tasks, const char *identity, bool restart, long n,
-                          int n_chunk, hf_samples *s, hf_messages *messages)
+hf_status hf_samples_open(const char *result, const char *beside, int task, int tasks, const char *identity,
+                          bool restart, long n, int n_chunk, hf_samples *s, hf_messages *messages)
 {
     *s = (hf_samples){.n = n, .n_chunk = n_chunk, .messages = messages, .journal.file = -1, .rows = -1};
     hf_arena arena = {0};
@@ -63,8 +63,8 @@ hf_status hf_samples_open(const char *result, int task, int tasks, const char *i
     if (HF_ARENA_MAKE(&arena, s->has = hf_arena_take(&arena, (size_t)s->n_all, 1)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", s->name);
     s->block = arena.block;
-    s->rows = hf_file_out_scratch();
-    if (s->rows < 0) return fail_rows(s, "make");
+    s->rows = hf_file_out_scratch(beside);
+    if (s->rows < 0) return fail_rows(s, "make", strerror(errno));
     if (!result) return HF_OK;
     s->has_journal = true;
     HF_TRY(hf_journal_open(s->name, restart, &s->journal, messages));
@@ -138,8 +138,10 @@ hf_status hf_samples_read(void *context, long first, int n, double *row)
 {
     hf_samples *s = context;
     size_t bytes = (size_t)n * ROW_BYTES;
+    if (s->stop && *s->stop) return HF_INTERRUPTED;
     ssize_t got = hf_file_io_read_at(s->rows, row, bytes, (off_t)first * (off_t)ROW_BYTES);
-    return got == (ssize_t)bytes ? HF_OK : fail_rows(s, "read");
+    if (got < 0) return fail_rows(s, "read", strerror(errno));
+    return got == (ssize_t)bytes ? HF_OK : fail_rows(s, "read", "it ends too early");
 }
 
 void hf_samples_close(hf_samples *s)

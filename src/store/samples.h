@@ -12,11 +12,12 @@
 #define HF_SAMPLES_NAME_SIZE 4200
 
 typedef struct {
-    long n;             /* samples */
-    int n_chunk;        /* samples of a chunk; of the last one perhaps less */
-    int n_have, n_all;  /* chunks that are there, and of all samples */
-    unsigned char *has; /* [n_all] */
-    int rows;           /* the scratch file; -1: none */
+    const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 makes hf_samples_read return HF_INTERRUPTED */
+    long n;                            /* samples */
+    int n_chunk;                       /* samples of a chunk; of the last one perhaps less */
+    int n_have, n_all;                 /* chunks that are there, and of all samples */
+    unsigned char *has;                /* [n_all] */
+    int rows;                          /* the scratch file; -1: none */
     void *block;
     bool has_journal;
     hf_journal journal;
@@ -25,11 +26,12 @@ typedef struct {
 } hf_samples;
 
 /* The name of the journal of a result is RESULT.tolerance.journal, and with a task from 0 to tasks - 1
- * RESULT.tolerance-TASK-of-TASKS.journal. RESULT NULL: no journal. Takes what an earlier process has left there of the
+ * RESULT.tolerance-TASK-of-TASKS.journal. RESULT NULL: no journal. The scratch file is in the folder of `beside`, or of
+ * temporary files where that is NULL. Takes what an earlier process has left there of the
  * same identity, unless `restart`. HF_OK; HF_EXISTS when it is of another case or in use, HF_IO, HF_NO_MEMORY. Close in
  * any case. */
-hf_status hf_samples_open(const char *result, int task, int tasks, const char *identity, bool restart, long n,
-                          int n_chunk, hf_samples *samples, hf_messages *messages);
+hf_status hf_samples_open(const char *result, const char *beside, int task, int tasks, const char *identity,
+                          bool restart, long n, int n_chunk, hf_samples *samples, hf_messages *messages);
 
 /* The identity of samples of a case and of the design that was found for it, of a digest of each. */
 void hf_samples_identify(const char of_case[65], const char of_design[65], char identity[65]);

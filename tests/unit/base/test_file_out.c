@@ -397,6 +397,30 @@ START_TEST(kept_files_are_ordinary_ones_with_one_name)
 }
 END_TEST
 
+/* Gigabytes of samples belong on the disk of the result, where there is room for them. */
+START_TEST(scratch_files_are_beside_the_result)
+{
+    char link[64], at[4096];
+    const char *path = temp_path("result.h5");
+    const char *beside[] = {path, "result.h5"};
+    for (int i = 0; i < 2; i++) {
+        int file = hf_file_out_scratch(beside[i]);
+        ck_assert_int_ge(file, 0);
+        snprintf(link, sizeof link, "/proc/self/fd/%d", file);
+        ssize_t n = readlink(link, at, sizeof at - 1);
+        ck_assert_int_gt((int)n, 0);
+        at[n] = '\0';
+        char *folder = realpath(i ? "." : temp_path("."), NULL);
+        ck_assert_msg(!strncmp(at, folder, strlen(folder)) && at[strlen(folder)] == '/', "%s", at);
+        free(folder);
+        ck_assert_int_eq((int)pwrite(file, "x", 1, 5), 1);
+        close(file);
+    }
+    ck_assert_int_eq(hf_file_out_scratch(temp_path("missing/result.h5")), -1);
+    ck_assert_int_eq(errno, ENOENT);
+}
+END_TEST
+
 Suite *suite_unit_file_out(void)
 {
     Suite *suite = suite_create("unit/file_out");
@@ -415,6 +439,7 @@ Suite *suite_unit_file_out(void)
     tcase_add_test(tc, links_of_others_to_devices_are_refused);
     tcase_add_test(tc, only_ordinary_files_are_replaced);
     tcase_add_test(tc, kept_files_are_ordinary_ones_with_one_name);
+    tcase_add_test(tc, scratch_files_are_beside_the_result);
     suite_add_tcase(suite, tc);
     return suite;
 }

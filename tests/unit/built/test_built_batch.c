@@ -1,6 +1,8 @@
 /* Samples of a net as built, solved many at a time, against hf_built_solve; threads, orders, memory. */
 #include "built_nets.h"
 
+#include "base/lane.h"
+
 enum { N_SAMPLE = 24 };
 
 /* All that was taken of samples 0 to N_SAMPLE - 1 of one net. */
@@ -207,6 +209,43 @@ START_TEST(memory_runs_out)
 }
 END_TEST
 
+static volatile sig_atomic_t stop_now;
+
+static void take_and_stop(void *context, long i, int place, const hf_built_shape *shape, const hf_form_result *result)
+{
+    take(context, i, place, shape, result);
+    stop_now = 1;
+}
+
+/* Only samples that have begun when the flag is set are finished. */
+START_TEST(no_sample_begins_after_a_stop)
+{
+    double EA[MAX_BUILT_CABLE];
+    struct net net;
+    hf_built built;
+    hf_workspace w;
+    struct taken t;
+    hf_built_batch *batch;
+    int n = 0;
+    open_design(&net, 1, EA, false);
+    make_built(&net, &built, &w);
+    open_taken(&built.model, errors_of(&built, 1), &t);
+    stop_now = 0;
+    built.stop = &stop_now;
+    ck_assert_int_eq(hf_built_batch_create(&built, 1, &batch), HF_OK);
+    hf_built_batch_run(batch, 0, 0, N_SAMPLE, make, take_and_stop, &t);
+    for (int i = 0; i < N_SAMPLE; i++)
+        n += t.n_take[i];
+    ck_assert_int_ge(n, 1);
+    ck_assert_int_le(n, HF_LANES);
+    hf_built_batch_free(batch);
+    close_taken(&t);
+    hf_workspace_free(&w);
+    hf_built_free(&built);
+    close_design(&net);
+}
+END_TEST
+
 Suite *suite_unit_built_batch(void)
 {
     Suite *suite = suite_create("unit/built_batch");
@@ -214,6 +253,7 @@ Suite *suite_unit_built_batch(void)
     tcase_add_loop_test(tcase, samples_are_those_of_the_reference, 0, 24);
     tcase_add_loop_test(tcase, bits_depend_on_the_sample_alone, 0, 8);
     tcase_add_loop_test(tcase, memory_runs_out, 0, 2);
+    tcase_add_test(tcase, no_sample_begins_after_a_stop);
     suite_add_tcase(suite, tcase);
     return suite;
 }

@@ -166,6 +166,33 @@ START_TEST(numbers_have_their_distribution)
 }
 END_TEST
 
+/* First order and samples of a large net take minutes: each part of them is left when it is told to. */
+START_TEST(what_is_told_to_stop_leaves)
+{
+    static study s;
+    volatile sig_atomic_t stop = 1;
+    open_study(&s, 3, false);
+    begin(&s, 2);
+    hf_covariance c;
+    hf_directions d;
+    s.built.stop = &stop;
+    ck_assert_int_eq(hf_covariance_find(&s.m.errors, 2, &c), HF_INTERRUPTED);
+    ck_assert_double_eq(c.spread_m2, 0); /* not one solve */
+    ck_assert_int_eq(hf_directions_find(&s.m.errors, &s.m.covariance, 2, &d), HF_INTERRUPTED);
+    hf_directions_free(&d);
+    s.m.row[HF_TOLERANCE_LINEAR_PSI] = -1;
+    ck_assert_int_eq(hf_montecarlo_run(&s.m, 1, 0, s.m.n_chunk), HF_INTERRUPTED);
+    ck_assert_double_eq(s.m.row[HF_TOLERANCE_LINEAR_PSI], -1);
+    hf_covariance_free(&c);
+    stop = 0;
+    ck_assert_int_eq(hf_covariance_find(&s.m.errors, 2, &c), HF_OK);
+    ck_assert_double_eq(c.spread_m2, s.m.covariance.spread_m2);
+    ck_assert_int_eq(hf_montecarlo_run(&s.m, 1, 0, s.m.n_chunk), HF_OK);
+    hf_covariance_free(&c);
+    close_study(&s);
+}
+END_TEST
+
 /* ---- samples ---- */
 
 /* The mean of psi^2 over errors and their opposites is that of first order and a term of fourth order, when the nominal
@@ -512,6 +539,7 @@ Suite *suite_unit_tolerance(void)
     tcase_add_test(tcase, two_cables_in_line);
     tcase_add_test(tcase, three_cables_at_a_node);
     tcase_add_loop_test(tcase, numbers_have_their_distribution, 0, 2);
+    tcase_add_test(tcase, what_is_told_to_stop_leaves);
     tcase_add_loop_test(tcase, small_errors_tend_to_first_order, 0, 4);
     tcase_add_loop_test(tcase, samples_and_control_variate_agree, 0, 4);
     tcase_add_loop_test(tcase, rows_have_the_same_bits, 0, 4);

@@ -4,6 +4,7 @@
 
 #include "base/path.h"
 #include "store/journal.h"
+#include "store/samples.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -145,6 +146,30 @@ START_TEST(what_is_appended_goes_to_the_disk)
 }
 END_TEST
 
+/* Nothing has gone wrong with the machine when the scratch file is too short, and errno says nothing. */
+START_TEST(samples_that_are_gone_are_told)
+{
+    hf_messages m = {0};
+    hf_samples s;
+    static double row[4 * HF_TOLERANCE_COLUMNS];
+    volatile sig_atomic_t stop = 0;
+    ck_assert_int_eq(hf_samples_open(NULL, result_path(), -1, 0, "", false, 4, 4, &s, &m), HF_OK);
+    s.stop = &stop;
+    ck_assert_int_eq(hf_samples_add(&s, 0, row), HF_OK);
+    ck_assert_int_eq(hf_samples_read(&s, 0, 4, row), HF_OK);
+    stop = 1;
+    ck_assert_int_eq(hf_samples_read(&s, 0, 4, row), HF_INTERRUPTED);
+    stop = 0;
+    ck_assert_ptr_null(m.text);
+    ck_assert_int_eq(ftruncate(s.rows, 8), 0);
+    errno = ENOSPC;
+    ck_assert_int_eq(hf_samples_read(&s, 0, 4, row), HF_IO);
+    ck_assert_str_eq(m.text, "error: samples.tolerance: cannot read the scratch file of samples: it ends too early\n");
+    hf_samples_close(&s);
+    hf_messages_free(&m);
+}
+END_TEST
+
 Suite *suite_unit_journal(void)
 {
     Suite *suite = suite_create("unit/journal");
@@ -154,5 +179,6 @@ Suite *suite_unit_journal(void)
     tcase_add_test(tests, the_lock_is_kept_while_the_journal_is_rotated);
     tcase_add_test(tests, a_name_that_moves_before_the_lock_is_opened_again);
     tcase_add_test(tests, what_is_appended_goes_to_the_disk);
+    tcase_add_test(tests, samples_that_are_gone_are_told);
     return suite;
 }
