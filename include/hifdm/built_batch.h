@@ -45,9 +45,9 @@ void hf_built_batch_free(hf_built_batch *batch);
 int hf_built_batch_threads(const hf_built_batch *batch);
 
 /* Make, solve and take samples first to first + n - 1: all of them, unless built->stop says to leave. `varies`: 0 or
- * flags HF_BUILT_VARIES_... A sample's bits depend on its own values alone: neither on the number of threads, nor on the
- * other samples, nor on the instruction set. In its result all figures of hf_built_solve are set but those of the steps
- * taken (iterations, and of a truss the coupling), which count the steps of another way. */
+ * flags HF_BUILT_VARIES_... A sample's bits depend on its own values alone: neither on the number of threads, nor on
+ * the other samples, nor on the instruction set. In its result all figures of hf_built_solve are set but those of the
+ * steps taken (iterations, and of a truss the coupling), which count the steps of another way. */
 void hf_built_batch_run(hf_built_batch *batch, unsigned varies, long first, long n, hf_built_sample *make,
                         hf_built_take *take, void *context);
 
