@@ -73,6 +73,16 @@ export const pages = [
     sections: ["net", "map", "form-finding", "tensions", "front", "summary", "provenance"],
   },
   {
+    name: "tolerance",
+    text:
+      "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n  parabolic_cylinder: {aperture_m: 10, length_m: 12, " +
+      "focal_length_m: 7.2, modules: [4, 5], cells_per_module: [2, 2], boundary: outer_edge, scallop: 0.1}\n" +
+      "form: {method: auto}\ntolerance: {sigma_cut_m: 1e-4, samples: 500, yield: 0.9, require: [{measure: psi_m, " +
+      "at_most: 0.0785, at_least: 0.001}]}\n",
+    sections: ["net", "map", "form-finding", "tensions", "tolerance", "summary", "provenance"],
+    slack: 0,
+  },
+  {
     name: "truss",
     source: "configs/straight-edges-truss.yaml",
     sections: FORM,

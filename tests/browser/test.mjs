@@ -316,6 +316,29 @@ async function checkFacets(tab, page, made) {
   for (const name of page.off) await switches.getByLabel(name, { exact: true }).check();
 }
 
+// Bars as high as the samples are many, a line for each figure at its place, and the cables of the file.
+async function checkTolerance(tab, made) {
+  const t = made.summary.tolerance,
+    legend = await tab.locator("#tolerance .legend > span").allTextContents(),
+    named = legend.filter((text) => text.endsWith(" mm")).map((text) => number(text.match(/([^ ]+) mm$/)[1]));
+  assert.equal(await tab.locator("#tolerance line.curve").count(), 3);
+  [t.nominal_psi_m, t.psi_95_m, t.require[0].at_most].forEach((at, k) => same(named[k], 1e3 * at, 5));
+  assert.match(await tab.locator("#tolerance figcaption").textContent(), /at least 1 mm, outside of the picture/);
+  const most = t.histogram.indexOf(Math.max(...t.histogram)),
+    [low, high] = t.histogram_range_m;
+  await tab.locator("#tolerance svg[tabindex]").focus();
+  for (let k = 0; k <= most; k++) await tab.keyboard.press("ArrowRight");
+  const said = await tab.locator("#tolerance .tip").innerText();
+  same(number(said.match(/nets\s+([\d.]+)/)[1]), 100 * t.histogram[most], 6);
+  same(number(said.match(/of ([\d.]+) to/)[1]), 1e3 * (low + (most * (high - low)) / t.histogram.length), 5);
+  assert.ok((await tab.locator("#tolerance > p").first().innerText()).includes("give a yield of 90\u00a0%"));
+  const rows = await tab.locator("#tolerance tbody th").allTextContents();
+  assert.deepEqual(
+    rows,
+    t.cable_share.map(({ cable }) => cable),
+  );
+}
+
 async function checkRules(tab) {
   assert.equal(await tab.locator("th:not([scope])").count(), 0, "a heading of a table without scope");
   assert.equal(await tab.locator("button:not([type])").count(), 0);
@@ -402,6 +425,7 @@ function poison(data) {
   }
   data.net.node_id = data.net.node_id.map(() => HOSTILE);
   data.net.cable_id = data.net.cable_id.map(() => HOSTILE);
+  if (data.summary.tolerance) data.summary.tolerance.cable_share.forEach((row) => (row.cable = HOSTILE));
   data.provenance = data.provenance.map((line) => line + HOSTILE);
   Object.assign(data.summary, { file: HOSTILE, case: HOSTILE, version: HOSTILE, warnings: [HOSTILE, HOSTILE] });
   data.figures.push({ key: "made_up_N", units: HOSTILE, description: HOSTILE });
@@ -489,6 +513,7 @@ async function test(browser, page) {
     if (page.slack) assert.ok(endless.includes("Tension ratio, boundary cables"), "an infinite ratio is not shown");
     await checkMap(tab, made);
     if (page.facets) await checkFacets(tab, page, made);
+    if (made.summary.tolerance) await checkTolerance(tab, made);
     await checkUnknownFigure(browser, made, folder);
   }
   if (page.study || page.slack !== undefined) await checkHostile(browser, made, folder);

@@ -150,6 +150,21 @@ START_TEST(quantiles_are_those_of_the_samples)
 }
 END_TEST
 
+/* The page draws what it finds in its data. */
+START_TEST(a_report_has_the_samples)
+{
+    const char *c = built_case("random"), *file = temp("a.h5"), *page = temp("a.html"), *data = temp("data.json");
+    HIFDM(0, "tolerance", c, "-o", file, "--quiet", "--set", "tolerance.samples=200");
+    HIFDM(0, "report", file, "-o", page);
+    SHELL(0, "sed -n '/<script type=\"application.json\"/,/<\\/script>/p' \"$1\" | sed '1d;$d' >\"$2\"", page, data);
+    SHELL(0, "grep -q 'writeTolerance();' \"$1\"", page);
+    EXPECT(data, "--", "abs(sum(a['summary']['tolerance']['histogram']) - 1) < 1e-12",
+           "len(a['summary']['tolerance']['histogram_range_m']) == 2", "a['summary']['tolerance']['psi_95_m'] > 0",
+           "{r['cable'] for r in a['summary']['tolerance']['cable_share']} <= set(a['net']['cable_id'])",
+           "a['summary']['tolerance']['require'][0]['measure'] == 'psi_m'");
+}
+END_TEST
+
 START_TEST(faults_are_named)
 {
     static const char *const fault[][2] = {
@@ -212,6 +227,7 @@ Suite *suite_cli_tolerance(void)
     tcase_add_test(tests, a_design_outlives_samples_that_fail);
     tcase_add_loop_test(tests, beside_a_front_the_net_of_form_finding_is_built, 0, 3);
     tcase_add_test(tests, quantiles_are_those_of_the_samples);
+    tcase_add_test(tests, a_report_has_the_samples);
     tcase_add_test(tests, faults_are_named);
     tcase_add_test(tests, samples_are_those_of_another_solver);
     return suite;

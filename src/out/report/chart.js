@@ -35,6 +35,8 @@ function placeTip(tip, x, y, content) {
 
 // ---- one chart: series over x with a cursor that follows the pointer or the arrow keys ----
 // series: { name, stored, values, colour, dash, dots: marks instead of a line, free: may lie outside of the picture }
+//   bars: half the width of a bar around each x, from 0 up
+// marks: { name, at, colour, dash } of vertical lines, which the axis of x includes
 // colour: a variable of the page's style, or a function that returns red, green and blue
 // x is in rising order; counted: x are whole numbers; log: "auto" = logarithmic when the values span a factor over 20
 let clips = 0;
@@ -42,8 +44,10 @@ const paint = (colour) => (typeof colour === "function" ? rgb(colour()) : `var($
 const LINES_MAX = 12, // lines of a tooltip
   MARKED_MAX = 16; // a curve with up to so many points gets marks besides its line
 
-function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "auto", counted = true, head }) {
-  const leading = series.filter((s) => !s.free).flatMap((s) => s.values),
+function chart(options) {
+  const { title, caption, xLabel, yLabel, unit = "", x, series, marks = [], counted = true, head } = options;
+  let { log = "auto" } = options;
+  const leading = series.filter((s) => !s.free).flatMap((s) => (s.bars === undefined ? s.values : [0, ...s.values])),
     positive = range(leading.filter((v) => v > 0));
   const clip = `clip-${++clips}`;
   if (!range(leading) && !leading.includes(Infinity)) return null; // nothing to draw
@@ -60,13 +64,24 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
   let cursor = -1,
     place;
 
+  const markLine = (m, ends) =>
+    svg("line", { class: "curve", ...ends, "stroke-dasharray": m.dash, style: `stroke:${paint(m.colour)}` });
+
   function mark(s) {
     return s.dots
       ? { class: "dots", "stroke-width": s.values.length > 300 ? 3 : 5 }
       : { class: "curve", "stroke-dasharray": s.dash };
   }
 
+  function bars(s, sx, sy) {
+    const edge = (v) => sx(v).toFixed(1),
+      text = s.values.map((v, i) => `V${sy(v).toFixed(1)}H${edge(x[i] + s.bars)}`).join("");
+    const d = `M${edge(x[0] - s.bars)} ${sy(0).toFixed(1)}${text}V${sy(0).toFixed(1)}`;
+    return svg("path", { d, class: "curve bars", style: `stroke:${paint(s.colour)};fill:${paint(s.colour)}` });
+  }
+
   function path(s, sx, sy, yAxis) {
+    if (s.bars !== undefined) return bars(s, sx, sy);
     let text = "",
       on = false;
     s.values.forEach((v, i) => {
@@ -99,7 +114,9 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
     margin.left = 16 + 7 * Math.max(4, ...yAxis.ticks.map((t) => t.text.length));
     const w = width - margin.left - margin.right;
     const h = height - margin.top - margin.bottom;
-    const xAxis = { low: x[0], high: x[x.length - 1] };
+    const half = Math.max(0, ...series.map((s) => s.bars || 0)),
+      ends = range([x[0] - half, x[x.length - 1] + half, ...marks.map((m) => m.at)]),
+      xAxis = { low: ends[0], high: ends[1] };
     if (xAxis.high === xAxis.low) {
       xAxis.low -= 1;
       xAxis.high += 1;
@@ -142,6 +159,7 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
         { "clip-path": `url(#${clip})` },
         series.flatMap((s) => path(s, sx, sy, yAxis)),
       ),
+      ...marks.map((m) => markLine(m, { x1: sx(m.at), x2: sx(m.at), y1: margin.top, y2: margin.top + h })),
       ...series.flatMap((s) => endless(s, sx)),
       svg("g", { class: "at" }),
     ]);
@@ -207,12 +225,12 @@ function chart({ title, caption, xLabel, yLabel, unit = "", x, series, log = "au
   holder.append(picture, tip);
 
   const legend =
-    series.length < 2
+    series.length + marks.length < 2
       ? null
       : el(
           "div",
           { class: "legend" },
-          series.map((s) =>
+          [...series, ...marks].map((s) =>
             el(
               "span",
               {},

@@ -309,6 +309,7 @@ if (data.study) {
   writeTensions();
   writeGa();
   writeFront();
+  writeTolerance();
   writeCoupling();
   writeSummary();
   writeProvenance();

@@ -1,0 +1,109 @@
+// Contents: samples of the net as built, which are under `tolerance` in the summary
+
+const ERROR_KIND = {
+  cut_m: "cut lengths",
+  cut_ratio: "cut lengths in parts of the length",
+  cut_ratio_batch: "cut lengths of a spool",
+  EA_ratio: "EA",
+  EA_ratio_batch: "EA of a spool",
+  support_m: "supports",
+  temperature_K: "temperature",
+};
+const percent = (part, digits = 3) => `${fmt(100 * part, digits)}\u00a0%`;
+
+// Limits of psi that the case requires, and figures of the samples. A limit that is farther from the samples than
+// REACH times their range would make the histogram a line, so it is only named.
+const REACH = 2;
+function toleranceMarks(t, [low, high]) {
+  const reach = REACH * (high - low);
+  const all = [
+    { name: "without errors", at: t.nominal_psi_m, colour: "--three", dash: "2 3" },
+    { name: "95 % of the nets are below", at: t.psi_95_m, colour: "--two" },
+    ...t.require
+      .filter(({ measure }) => measure === "psi_m")
+      .flatMap((row) => [
+        { name: "required: at most", at: row.at_most, colour: "--four", dash: "7 3" },
+        { name: "required: at least", at: row.at_least, colour: "--four", dash: "7 3" },
+      ]),
+  ].filter(({ at }) => typeof at === "number" && Number.isFinite(at));
+  return all.map((mark) => {
+    const isFar = mark.at < low - reach || mark.at > high + reach;
+    const name = `${mark.name} ${fmt(1e3 * mark.at, 5)} mm${isFar ? ", outside of the picture" : ""}`;
+    return { ...mark, name, at: 1e3 * mark.at, isFar };
+  });
+}
+
+function toleranceChart(t) {
+  const [low, high] = t.histogram_range_m;
+  if (typeof low !== "number" || typeof high !== "number") return null; // no sample has a shape
+  const n = t.histogram.length,
+    width = (1e3 * (high - low)) / n,
+    edge = (i) => fmt(1e3 * low + i * width, 5),
+    marks = toleranceMarks(t, [low, high]);
+  const far = marks.filter(({ isFar }) => isFar).map(({ name }) => name);
+  return chart({
+    title: "Surface error ψ of the nets",
+    xLabel: "ψ (mm)",
+    yLabel: "nets (%)",
+    unit: "%",
+    x: t.histogram.map((_, i) => 1e3 * low + (i + 0.5) * width),
+    counted: false,
+    log: false,
+    caption: `Of the nets with a shape, those in each ${n}th of the range.${far.length ? ` ${far.join("; ")}.` : ""}`,
+    head: (i) => `ψ of ${edge(i)} to ${edge(i + 1)} mm`,
+    series: [{ name: "nets", values: scaled(t.histogram, 100), colour: "--one", bars: width / 2 }],
+    marks: marks.filter(({ isFar }) => !isFar),
+  });
+}
+
+function scaleText(t) {
+  if (typeof t.sigma_scale !== "number") return "";
+  if (!(t.sigma_scale > 0))
+    return ` A yield of ${percent(t.wanted_yield)} is out of reach: the net without errors does not meet it.`;
+  return ` All errors times ${fmt(t.sigma_scale, 3)} give a yield of ${percent(t.wanted_yield)}.`;
+}
+
+function toleranceText(t) {
+  const failed = t.failed ? `, ${fmtCount(t.failed)} of them without a shape` : "";
+  const yielded =
+    typeof t.yield === "number"
+      ? ` Of them ${percent(t.yield)} meet all requirements (95 % interval: ${fmt(100 * t.yield_low, 3)} to ` +
+        `${percent(t.yield_high)}).`
+      : "";
+  return `${fmtCount(t.samples)} nets with the errors of the case were solved${failed}.${yielded}${scaleText(t)}`;
+}
+
+function shareTable(t) {
+  if (!t.cable_share.length) return null;
+  const group = new Map(net.cable_id.map((id, e) => [id, groupOf(e)]));
+  return table(
+    [["Cable"], ["Group"], ["Share", "number"]],
+    t.cable_share.map(({ cable, share }) =>
+      el(
+        "tr",
+        {},
+        el("th", { scope: "row" }, cable),
+        el("td", {}, group.get(cable) || "–"),
+        el("td", { class: "number" }, percent(share)),
+      ),
+    ),
+    "Cables by their share of the error",
+  );
+}
+
+function writeTolerance() {
+  const t = summary.tolerance;
+  if (!t) return;
+  const kinds = Object.entries(t.kind_share).map(([kind, part]) => `${ERROR_KIND[kind] || kind} ${percent(part)}`);
+  section(
+    "tolerance",
+    "Tolerances of the net as built",
+    el("p", {}, toleranceText(t)),
+    el("div", { class: "charts" }, toleranceChart(t)),
+    kinds.length ? el("h3", { class: "after" }, "Cables that must be cut well") : null,
+    kinds.length
+      ? el("p", {}, `Shares of what errors add to ψ², to first order. Of all errors: ${kinds.join(", ")}.`)
+      : null,
+    shareTable(t),
+  );
+}
