@@ -189,8 +189,8 @@ START_TEST(a_variable_may_act_on_nothing)
                                 "gk,g,k,boundary,tension,10,\nhk,h,k,inner,force_density,5,B\n");
     const char *const common[] = {"optimize.variables=[{set: boundary, vary: tension, range: 20 %}]",
                                   "optimize.goals=[{goal: tension, set: A, target: 3}]",
-                                  "optimize.objectives=[{goal: tension, set: A, target: 3}, {goal: tension, set: B, "
-                                  "target: 3}]"};
+                                  ("optimize.objectives=[{goal: tension, set: A, target: 3}, {goal: tension, set: B, "
+                                   "target: 3}]")};
     HIFDM(0, "run", path, "-o", out, "--set", "optimize.method=lm", "--set", common[0], "--set", common[1]);
     ck_assert(!strstr(said.out, "stalled"));
     EXPECT(out, "--", "a['polish'].attrs['polish_stop'] == 0",
