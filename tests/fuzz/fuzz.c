@@ -120,7 +120,7 @@ hf_status __wrap_hf_config_load(const char *path, const char *const *overrides, 
  * What the program accepts and works on for minutes is refused here, by -Wl,--wrap. What the program refuses for its
  * size still reaches the program. */
 
-enum { NODE_MAX = 400, COUNT_MAX = 16, POINT_MAX = 64 };
+enum { NODE_MAX = 400, COUNT_LEAST = 10, COUNT_MAX = 16, POINT_MAX = 64 };
 
 hf_status __real_hf_scene_parabolic_cylinder(const hf_cylinder *, const double[2], hf_scene *, hf_messages *);
 hf_status __wrap_hf_scene_parabolic_cylinder(const hf_cylinder *, const double[2], hf_scene *, hf_messages *);
@@ -175,11 +175,12 @@ hf_status __wrap_hf_truss_ring_generate(const hf_truss_settings *settings, const
     return hf_error(messages, HF_BAD_CASE, "a ring under %g nodes takes too long here", n);
 }
 
-/* Values along an axis; seeds shrink with them. */
+/* Values along an axis, samples, of which there are COUNT_LEAST; seeds shrink with them. */
 bool __wrap_hf_text_uint64(const char *text, uint64_t *value)
 {
     bool is_number = __real_hf_text_uint64(text, value);
-    if (is_number && *value > COUNT_MAX && *value <= HF_STUDY_POINT_MAX) *value = 1 + *value % COUNT_MAX;
+    if (is_number && *value > COUNT_MAX && *value <= HF_STUDY_POINT_MAX)
+        *value = COUNT_LEAST + *value % (COUNT_MAX - COUNT_LEAST + 1);
     return is_number;
 }
 
