@@ -360,14 +360,7 @@ static void print_json(const job *from, const char *path, hf_status status, cons
     hf_json_text(&j, "version", hf_store_version());
     hf_json_text(&j, "case", from->problem.settings.path);
     if (status == HF_OK && path) hf_json_text(&j, "file", path);
-    hf_json_line(&j, " ");
-    hf_json_lines(&j, "warnings", "warning: ", messages);
-    if (status != HF_OK) {
-        hf_json_line(&j, " ");
-        hf_json_lines(&j, "errors", "error: ", messages);
-    }
-    hf_json_close(&j, '}');
-    fputc('\n', f);
+    hf_json_end(&j, status != HF_OK, messages);
 }
 
 /* ---- together ---- */

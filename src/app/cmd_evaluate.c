@@ -356,14 +356,7 @@ static void print_json(const job *from, const char *path, const char *jacobian, 
     hf_json_text(&j, "case", from->problem.settings.path);
     if (status == HF_OK) hf_json_text(&j, "file", path);
     if (status == HF_OK && jacobian) hf_json_text(&j, "jacobian", jacobian);
-    hf_json_line(&j, " ");
-    hf_json_lines(&j, "warnings", "warning: ", messages);
-    if (status != HF_OK) {
-        hf_json_line(&j, " ");
-        hf_json_lines(&j, "errors", "error: ", messages);
-    }
-    hf_json_close(&j, '}');
-    fputc('\n', f);
+    hf_json_end(&j, status != HF_OK, messages);
 }
 
 /* ---- together ---- */

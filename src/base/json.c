@@ -114,6 +114,18 @@ void hf_json_lines(hf_json *j, const char *key, const char *prefix, const char *
     hf_json_close(j, ']');
 }
 
+void hf_json_end(hf_json *j, bool has_failed, const char *messages)
+{
+    hf_json_line(j, " ");
+    hf_json_lines(j, "warnings", "warning: ", messages);
+    if (has_failed) {
+        hf_json_line(j, " ");
+        hf_json_lines(j, "errors", "error: ", messages);
+    }
+    hf_json_close(j, '}');
+    fputc('\n', j->file);
+}
+
 /* ---- compact lists ---- */
 
 void hf_json_string(const char *text, FILE *f)

@@ -33,6 +33,9 @@ void hf_json_list(hf_json *json, const char *key, const double *value, int n); /
 /* Those lines of `lines` (may be NULL) that start with `prefix`, without it, as a list of texts. */
 void hf_json_lines(hf_json *json, const char *key, const char *prefix, const char *lines);
 
+/* How the object of a command ends: its warnings, its errors if it has failed, the brace and a newline. */
+void hf_json_end(hf_json *json, bool has_failed, const char *messages);
+
 /* ---- without a writer: compact, for the page ---- */
 
 /* A '<' in a text is written as \u003c, so that an object can stand in the script of an HTML page. A byte that is not

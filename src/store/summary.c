@@ -368,12 +368,5 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
     hf_json_line(j, " ");
     hf_json_text(j, "case", s->case_path);
     if (path) hf_json_text(j, "file", path);
-    hf_json_line(j, " ");
-    hf_json_lines(j, "warnings", "warning: ", messages);
-    if (status != HF_OK) {
-        hf_json_line(j, " ");
-        hf_json_lines(j, "errors", "error: ", messages);
-    }
-    hf_json_close(j, '}');
-    fputc('\n', f);
+    hf_json_end(j, status != HF_OK, messages);
 }
