@@ -63,13 +63,20 @@ static inline bool hf_status_has_shape(hf_status status)
         if (hf_try_status_ != HF_OK) return hf_try_status_;                                                            \
     } while (0)
 
+/* Who knows where a key of a case stands: writes "case.yaml:7:3: optimize.goals.0.set" or the like into text[size]. */
+typedef void hf_place_find(const void *context, const char *key, char *text, size_t size);
+
 /* A growing list of lines for people. Zero-initialise; call hf_messages_free when done. When memory runs out,
  * lines are lost, but the counts stay correct. */
 typedef struct {
     char *text; /* lines ending in '\n', or NULL while empty */
     size_t length, capacity;
     int n_error, n_warning;
+    hf_place_find *find_place; /* of keys that messages name; NULL: messages name the key alone */
+    const void *place_context; /* borrowed */
 } hf_messages;
+
+#define HF_PLACE_SIZE 1280 /* room for a path, a line, a column and a key */
 
 #if defined(__GNUC__)
 #define HF_PRINTF(format_index, first) __attribute__((format(printf, format_index, first)))
@@ -80,6 +87,10 @@ typedef struct {
 /* Append "error: ..." or "warning: ..."; hf_error returns `code`, so that a caller can `return hf_error(...)`. */
 hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...) HF_PRINTF(3, 4);
 void hf_warning(hf_messages *messages, const char *format, ...) HF_PRINTF(2, 3);
+/* Write where a key stands, for the begin of a message: "case.yaml:7:3: optimize.goals.0.set", or the key alone where
+ * nobody knows its place. Returns text. */
+const char *hf_messages_place(const hf_messages *messages, char text[HF_PLACE_SIZE], const char *key_format, ...)
+    HF_PRINTF(3, 4);
 void hf_messages_free(hf_messages *messages); /* frees all lines; the list can be used again */
 
 #ifdef __cplusplus

@@ -192,10 +192,12 @@ static hf_status refuse(const search *q, int axis, int n_missing, hf_messages *m
         used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", n++ ? ", " : "", q->s->cable_id[e]);
     }
     if (n_missing > NAMED_MAX) snprintf(more, sizeof more, " and %d more", n_missing - NAMED_MAX);
+    char where[HF_PLACE_SIZE];
+    hf_messages_place(messages, where, "optimize.symmetry");
     return hf_error(messages, HF_BAD_CASE,
-                    "optimize.symmetry: the net is not symmetric about the plane %c = %.10g m: no mirror image (ends, "
+                    "%s: the net is not symmetric about the plane %c = %.10g m: no mirror image (ends, "
                     "roles, loads, group, law and target) have %d cables: %s%s",
-                    "xy"[axis], (q->low_m[axis] + q->high_m[axis]) / 2, n_missing, names, more);
+                    where, "xy"[axis], (q->low_m[axis] + q->high_m[axis]) / 2, n_missing, names, more);
 }
 
 /* ---- classes of genes ---- */

@@ -26,7 +26,14 @@ typedef struct {
     int *cable;    /* [n_cable + 3 n_node] genes, as in the model */
     hf_gene *gene; /* [n_cable + 3 n_node] */
     hf_messages *messages;
+    char place[HF_PLACE_SIZE];
 } maker;
+
+/* Where a key of a row stands. */
+static const char *where_in(maker *q, int row, const char *key)
+{
+    return hf_messages_place(q->messages, q->place, "optimize.variables.%d.%s", row, key);
+}
 
 static void lay_out(hf_arena *a, maker *q)
 {
@@ -46,7 +53,7 @@ static bool varies_support(hf_vary vary)
 static hf_status take(maker *q, int row, int at, const char *kind, const char *id)
 {
     if (q->taken[at] >= 0)
-        return hf_error(q->messages, HF_BAD_CASE, "optimize.variables.%d: %s '%s' is varied by row %d already", row,
+        return hf_error(q->messages, HF_BAD_CASE, "%s: %s '%s' is varied by row %d already", where_in(q, row, "set"),
                         kind, id, q->taken[at]);
     q->taken[at] = row;
     return HF_OK;
@@ -66,13 +73,11 @@ static hf_status add_cable(maker *q, int row, int e)
     if (m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free) return HF_OK;
     if (s->vary == HF_VARY_UNSTRESSED_LENGTH && !hf_law_has((hf_law)m->law[e], HF_LAW_NEEDS_EA))
         return hf_error(q->messages, HF_BAD_CASE,
-                        "optimize.variables.%d: cable '%s' of set %s has law %s: only cables of law elastic have an "
-                        "unstressed length",
-                        row, id, s->set, hf_law_word[m->law[e]]);
+                        "%s: cable '%s' of set %s has law %s: only cables of law elastic have an unstressed length",
+                        where_in(q, row, "vary"), id, s->set, hf_law_word[m->law[e]]);
     if (m->start_q_N_per_m[e] < 0)
-        return hf_error(q->messages, HF_BAD_CASE,
-                        "optimize.variables.%d: cable '%s' of set %s is a strut, which cannot be varied", row, id,
-                        s->set);
+        return hf_error(q->messages, HF_BAD_CASE, "%s: cable '%s' of set %s is a strut, which cannot be varied",
+                        where_in(q, row, "set"), id, s->set);
     HF_TRY(take(q, row, e, "cable", id));
     add(q, e, (hf_gene){.vary = s->vary, .setting = row, .support_row = -1});
     return HF_OK;
@@ -122,7 +127,8 @@ static hf_status add_supports(maker *q, int row, int n_picked)
     const hf_model *m = q->m;
     if (q->settings->variable[row].vary == HF_VARY_SUPPORT_NORMAL && !(q->surface->focal_length_m > 0))
         return hf_error(q->messages, HF_BAD_CASE,
-                        "optimize.variables.%d: support_normal needs the wanted surface: add a section `surface`", row);
+                        "%s: support_normal needs the wanted surface: add a section `surface`",
+                        where_in(q, row, "vary"));
     for (int i = 0; i < 2 * n_picked; i++) {
         int support_row = m->end_row[2 * q->picked[i / 2] + i % 2];
         if (support_row < m->n_free || q->taken[m->n_cable + support_row] == row) continue;
@@ -170,18 +176,16 @@ static hf_status make_row(maker *q, int row)
 {
     const hf_variable_settings *s = &q->settings->variable[row];
     int before = q->m->n_gene, n_picked;
-    char where[48];
-    snprintf(where, sizeof where, "optimize.variables.%d", row);
-    n_picked = hf_cable_pick_some(q->scene, s->set, where, q->picked, q->messages);
+    n_picked = hf_cable_pick_some(q->scene, s->set, where_in(q, row, "set"), q->picked, q->messages);
     if (n_picked == 0) return HF_BAD_CASE;
     if (varies_support(s->vary)) HF_TRY(add_supports(q, row, n_picked));
     for (int i = 0; i < n_picked && !varies_support(s->vary); i++)
         HF_TRY(add_cable(q, row, q->picked[i]));
     if (q->m->n_gene == before)
-        return hf_error(
-            q->messages, HF_BAD_CASE,
-            "optimize.variables.%d: set %s has %d cables, but no %s: there is nothing to vary", row, s->set, n_picked,
-            varies_support(s->vary) ? "support at their ends that holds a free node" : "cable with a free end");
+        return hf_error(q->messages, HF_BAD_CASE, "%s: set %s has %d cables, but no %s: there is nothing to vary",
+                        where_in(q, row, "set"), s->set, n_picked,
+                        varies_support(s->vary) ? "support at their ends that holds a free node"
+                                                : "cable with a free end");
     return HF_OK;
 }
 
@@ -220,8 +224,9 @@ hf_status hf_variables_apply(const hf_scene *scene, const hf_optimize_settings *
         q.taken[i] = -1;
     m->n_gene = 0;
     hf_status status = HF_OK;
-    for (int row = 0; row < settings->n_variable && status == HF_OK; row++)
-        status = make_row(&q, row);
+    for (int row = 0; row < settings->n_variable; row++) /* the faults of all rows are told */
+        if (make_row(&q, row) != HF_OK) status = HF_BAD_CASE;
+    if (status != HF_OK) m->n_gene = 0;
     if (status == HF_OK && keep(&q) != HF_OK)
         status = hf_error(messages, HF_NO_MEMORY, "optimize.variables: out of memory");
     m->has_newton = !m->has_strut; /* a design may change laws that one solve serves into others */

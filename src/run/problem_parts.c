@@ -28,9 +28,30 @@ static hf_status find_facets(hf_problem *p, hf_messages *messages)
     return HF_OK;
 }
 
-hf_status hf_problem_load(const char *path, const char *const *set, int n_set, hf_problem *p, hf_messages *messages)
+static void find_key_place(const void *settings, const char *key, char *text, size_t size)
 {
-    *p = (hf_problem){0};
+    hf_config_place(settings, key, text, size);
+}
+
+/* While the problem is at hand, messages give keys with their places in its case. */
+static void give_places(const hf_problem *p, hf_messages *messages)
+{
+    messages->find_place = p ? find_key_place : NULL;
+    messages->place_context = p ? &p->settings : NULL;
+}
+
+/* The rows of limits and of goals or objectives; the faults of all are told. */
+static hf_status judge_by_rows(hf_problem *p, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    hf_status limits = hf_limits_create(&p->scene, &p->model, o, &p->limits, messages), goals = HF_OK;
+    if (o->n_goal || o->n_objective)
+        goals = hf_goals_create(&p->scene, &p->model, o, &p->surface, &p->facets, &p->goals, messages);
+    return limits != HF_OK ? limits : goals;
+}
+
+static hf_status load_parts(const char *path, const char *const *set, int n_set, hf_problem *p, hf_messages *messages)
+{
     HF_TRY(hf_config_load(path, set, n_set, &p->settings, messages));
     HF_TRY(hf_config_scene(&p->settings, &p->scene, messages));
     HF_TRY(hf_config_surface(&p->settings, &p->scene, &p->surface, messages));
@@ -38,8 +59,10 @@ hf_status hf_problem_load(const char *path, const char *const *set, int n_set, h
     if (p->settings.form.prestress == HF_PRESTRESS_EXACT)
         HF_TRY(hf_prestress_hold(&p->scene, &p->settings.form, messages));
     HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));
+    hf_status rows = HF_OK;
     if (p->settings.has_optimize)
-        HF_TRY(hf_variables_apply(&p->scene, &p->settings.optimize, &p->surface, &p->model, messages));
+        rows = hf_variables_apply(&p->scene, &p->settings.optimize, &p->surface, &p->model, messages);
+    if (rows != HF_OK && rows != HF_BAD_CASE) return rows;
     if (p->settings.has_truss) {
         const hf_carrier *c = &p->carrier;
         HF_TRY(hf_config_carrier(&p->settings, &p->scene, &p->carrier, messages));
@@ -51,11 +74,18 @@ hf_status hf_problem_load(const char *path, const char *const *set, int n_set, h
         HF_TRY(hf_config_states(&p->settings, &p->scene, truss, &p->states, messages));
     }
     if (!p->settings.has_optimize) return HF_OK;
-    HF_TRY(hf_limits_create(&p->scene, &p->model, &p->settings.optimize, &p->limits, messages));
-    if (p->settings.optimize.n_goal || p->settings.optimize.n_objective)
-        HF_TRY(
-            hf_goals_create(&p->scene, &p->model, &p->settings.optimize, &p->surface, &p->facets, &p->goals, messages));
+    hf_status aims = judge_by_rows(p, messages);
+    HF_TRY(rows != HF_OK ? rows : aims);
     return hf_symmetry_apply(&p->scene, &p->settings.optimize, &p->model, &p->planes, messages);
+}
+
+hf_status hf_problem_load(const char *path, const char *const *set, int n_set, hf_problem *p, hf_messages *messages)
+{
+    *p = (hf_problem){0};
+    give_places(p, messages);
+    hf_status status = load_parts(path, set, n_set, p, messages);
+    give_places(NULL, messages);
+    return status;
 }
 
 hf_status hf_problem_allocate(hf_problem *p, hf_messages *messages)
@@ -130,7 +160,7 @@ static hf_status check_gene(const hf_problem *p, int k, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     double base = p->base_N[k], lower, upper, reach;
-    char name[HF_GENE_NAME_SIZE];
+    char name[HF_GENE_NAME_SIZE], where[HF_PLACE_SIZE];
     hf_model_gene_name(&p->model, &p->scene, k, name, sizeof name);
     bool is_row = p->model.gene, is_cable = p->model.gene_cable[k] >= 0;
     if (is_cable && !(base > 0))
@@ -139,28 +169,29 @@ static hf_status check_gene(const hf_problem *p, int k, hf_messages *messages)
             "optimize: %s '%s' has no tension after form-finding to start from; give it a shorter length, or "
             "a law that holds it taut",
             is_row ? "cable" : "boundary cable", name);
+    if (is_row)
+        hf_messages_place(messages, where, "optimize.variables.%d", p->model.gene[k].setting);
+    else
+        hf_messages_place(messages, where, "optimize.range_N");
     if (!is_row && (base + o->range_N < o->min_tension_N || base - o->range_N > o->max_tension_N))
         return hf_error(messages, HF_BAD_CASE,
-                        "optimize: boundary cable '%s' has %g N after form-finding; range_N %g around that does not "
+                        "%s: boundary cable '%s' has %g N after form-finding; range_N %g around that does not "
                         "reach min_tension_N %g .. max_tension_N %g",
-                        name, base, o->range_N, o->min_tension_N, o->max_tension_N);
+                        where, name, base, o->range_N, o->min_tension_N, o->max_tension_N);
     hf_variables_bound(o, &p->model, k, base, &lower, &upper, &reach);
     if (is_row && is_cable && !(upper > 0))
-        return hf_error(
-            messages, HF_BAD_CASE,
-            "optimize.variables.%d: bounds leave '%s' nothing above 0 %s: a cable has a tension and a length",
-            p->model.gene[k].setting, name, hf_model_gene_unit(&p->model, k));
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: bounds leave '%s' nothing above 0 %s: a cable has a tension and a length", where, name,
+                        hf_model_gene_unit(&p->model, k));
     if (is_row && (base + reach < lower || base - reach > upper))
-        return hf_error(
-            messages, HF_BAD_CASE,
-            "optimize.variables.%d: '%s' has %g %s after form-finding; its range around that does not reach "
-            "its bounds",
-            p->model.gene[k].setting, name, base, hf_model_gene_unit(&p->model, k));
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: '%s' has %g %s after form-finding; its range around that does not reach its bounds", where,
+                        name, base, hf_model_gene_unit(&p->model, k));
     if (hf_optimiser_plan_of(o).kind && !isfinite(upper - lower))
         return hf_error(messages, HF_BAD_CASE,
-                        "optimize.variables.%d: '%s' is open on one side; the genetic algorithm needs a range, or both "
-                        "bounds (method: lm does not)",
-                        p->model.gene[k].setting, name);
+                        "%s: '%s' is open on one side; the genetic algorithm needs a range, or both bounds (method: lm "
+                        "does not)",
+                        where, name);
     return HF_OK;
 }
 
@@ -182,7 +213,10 @@ hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
     p->evaluator = hf_problem_evaluator(p);
     if (hf_evaluate_attend(&p->evaluator, &p->workspace) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
-    if (p->settings.has_optimize && m->n_gene > 0) HF_TRY(check_base(p, messages));
+    give_places(p, messages);
+    hf_status status = p->settings.has_optimize && m->n_gene > 0 ? check_base(p, messages) : HF_OK;
+    give_places(NULL, messages);
+    HF_TRY(status);
     hf_symmetry_average(m, p->base_N);
     return HF_OK;
 }

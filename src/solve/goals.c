@@ -108,11 +108,13 @@ hf_status hf_goals_create(const hf_scene *scene, const hf_model *m, const hf_opt
         goals->corner_row[i] = m->row_of_node[facets->corner[i]];
     for (int k = 0; k < goals->n_goal; k++) {
         hf_goal *g = &goals->goal[k];
-        char where[32];
-        snprintf(where, sizeof where, "optimize.%s.%d", is_front ? "objectives" : "goals", k);
+        char where[HF_PLACE_SIZE];
+        const char *list = is_front ? "objectives" : "goals";
+        hf_messages_place(messages, where, "optimize.%s.%d.set", list, k);
         if (g->cable) g->n_cable = hf_cable_pick_some(scene, g->wanted.set, where, g->cable, messages);
         bool is_known = !g->cable || g->n_cable > 0;
         const char *fault = is_known ? fault_of(g, m, surface, facets) : NULL;
+        hf_messages_place(messages, where, "optimize.%s.%d", list, k);
         if (fault) hf_error(messages, HF_BAD_CASE, "%s: %s: %s", where, hf_goal_word[g->wanted.goal], fault);
         n_fault += !is_known || fault;
         g->n_row = row_count(goals, g);

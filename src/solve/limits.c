@@ -17,15 +17,16 @@
 static hf_status read_row(const hf_scene *scene, const hf_model *m, const hf_limit_settings *s, int row, hf_limit *to,
                           hf_messages *messages)
 {
-    char where[48];
-    snprintf(where, sizeof where, "optimize.limits.%d", row);
+    char where[HF_PLACE_SIZE];
     to->kind = s->limit;
     to->lower = s->lower;
     to->upper = s->upper;
     if (s->limit == HF_LIMIT_DISPLACEMENT) {
         if (m->n_attachment > 0) return HF_OK;
-        return hf_error(messages, HF_BAD_CASE, "%s: displacement needs a truss, whose attachments it limits", where);
+        return hf_error(messages, HF_BAD_CASE, "%s: displacement needs a truss, whose attachments it limits",
+                        hf_messages_place(messages, where, "optimize.limits.%d.limit", row));
     }
+    hf_messages_place(messages, where, "optimize.limits.%d.set", row);
     to->n_cable = hf_cable_pick_some(scene, s->set, where, to->cable, messages);
     return to->n_cable ? HF_OK : HF_BAD_CASE;
 }
@@ -50,9 +51,10 @@ hf_status hf_limits_create(const hf_scene *scene, const hf_model *m, const hf_op
         return hf_error(messages, HF_NO_MEMORY, "optimize.limits: out of memory");
     }
     l->block = arena.block;
-    for (int i = 0; i < l->n; i++)
-        HF_TRY(read_row(scene, m, &s->limit[i], i, &l->row[i], messages));
-    return HF_OK;
+    hf_status status = HF_OK;
+    for (int i = 0; i < l->n; i++) /* all faults are told */
+        if (read_row(scene, m, &s->limit[i], i, &l->row[i], messages) != HF_OK) status = HF_BAD_CASE;
+    return status;
 }
 
 void hf_limits_free(hf_limits *l)

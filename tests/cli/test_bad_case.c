@@ -108,6 +108,48 @@ START_TEST(faults_of_rows_are_told)
 }
 END_TEST
 
+/* What the net of the case does not have is told like what its reader finds, of all rows at once. */
+START_TEST(rows_that_the_net_cannot_serve_have_their_places)
+{
+    const char *path = file_with("c.yaml", SMALL_SCENE "optimize:\n"
+                                                       "  symmetry: x\n"
+                                                       "  variables:\n"
+                                                       "    - {set: egde, vary: length, range: 1 %}\n"
+                                                       "    - {set: edge, vary: force_density, range: 1 %}\n"
+                                                       "    - set: boundary\n"
+                                                       "      vary: tension\n"
+                                                       "      range: 1\n"
+                                                       "    - {set: inner, vary: unstressed_length, range: 1 %}\n"
+                                                       "  limits:\n"
+                                                       "    - {limit: displacement, bounds: [0, 1]}\n"
+                                                       "    - {limit: ratio, set: diagonal, bounds: [1, 2]}\n"
+                                                       "  goals: [{goal: psi},\n"
+                                                       "    {goal: tension, set: tie, target: 1}, {goal: facets}]\n");
+    HIFDM(2, "run", path, "-o", temp("c.h5"));
+    ERRS("error: %s:6:13: optimize.variables.0.set: there is no set of cables 'egde'; did you mean 'edge'?\n", path);
+    ERRS("error: %s:8:12: optimize.variables.2.set: cable 'n0_0-n1_0' is varied by row 1 already\n", path);
+    ERRS("error: %s:11:26: optimize.variables.3.vary: cable 'n1_0-n1_1' of set inner has law tension: only cables of "
+         "law elastic have an unstressed length\n",
+         path);
+    ERRS("error: %s:13:15: optimize.limits.0.limit: displacement needs a truss, whose attachments it limits\n", path);
+    ERRS("error: %s:14:27: optimize.limits.1.set: there is no set of cables 'diagonal'; this net has all, ", path);
+    ERRS("error: %s:16:26: optimize.goals.1.set: there is no set of cables 'tie'; this net has all, inner, boundary",
+         path);
+    ERRS("error: %s:16:43: optimize.goals.2: facets: needs the wanted surface: add a section surface", path);
+    ck_assert_int_eq(count_of(said.err, "\n"), 7);
+    ck_assert(!is_there(temp("c.h5")));
+    HIFDM(2, "check", path, "--set", "optimize.goals=[{goal: evenness, set: tie}]", "--set",
+          "optimize.variables.0.set=edgy");
+    ERR("error: --set optimize.goals.0.set: there is no set of cables 'tie'");
+    ERR("error: --set optimize.variables.0.set: there is no set of cables 'edgy'; did you mean 'edge'?\n");
+    path = file_with("c.yaml", SMALL_SCENE "optimize:\n"
+                                           "  variables: [{set: edge, vary: length, range: 1 %, bounds: [9, 10]}]\n");
+    HIFDM(2, "run", path, "-o", temp("c.h5"));
+    ERRS("error: %s:4:15: optimize.variables.0: 'n0_0-n1_0' has ", path);
+    ERR(" m after form-finding; its range around that does not reach its bounds\n");
+}
+END_TEST
+
 static const struct {
     const char *text, *error; /* behind "error: PATH" */
 } unreadable[] = {
@@ -220,6 +262,7 @@ Suite *suite_cli_bad_case(void)
     tcase_add_test(tcase, all_faults_of_a_file_are_told_in_one_run);
     tcase_add_test(tcase, impossible_nets_are_refused);
     tcase_add_test(tcase, faults_of_rows_are_told);
+    tcase_add_test(tcase, rows_that_the_net_cannot_serve_have_their_places);
     tcase_add_test(tcase, impossible_paraboloids_are_refused);
     tcase_add_loop_test(tcase, what_is_no_case_is_told, 0, N_UNREADABLE);
     tcase_add_test(tcase, what_is_no_file_is_told);

@@ -174,7 +174,9 @@ START_TEST(an_open_range_is_for_derivatives_alone)
         file_with("open.yaml", "scene:\n  import: {nodes: nodes.csv, cables: cables.csv}\n"
                                "optimize: {variables: [{set: all, vary: force_density, bounds: [1, .inf]}]}\n");
     HIFDM(2, "run", c, "-o", temp("open.h5"));
-    ERR("error: optimize.variables.0: 'ab' is open on one side; the genetic algorithm needs a range, or both bounds");
+    ERRS("error: %s:3:24: optimize.variables.0: 'ab' is open on one side; the genetic algorithm needs a range, or both "
+         "bounds (method: lm does not)\n",
+         c);
     HIFDM(0, "run", c, "-o", temp("lm.h5"), "--set", "optimize.method=lm");
 }
 END_TEST

@@ -122,9 +122,9 @@ START_TEST(a_check_says_what_will_be_followed)
     OUT("                front of goal_0_psi and goal_1_ratio_boundary: 7 points, each by Levenberg-Marquardt\n");
     OUT("                Levenberg-Marquardt: rule force_density, at most 200 iterations, for each point\n");
     HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: ratio, set: edges}]");
-    ERR("error: optimize.objectives.1: there is no set of cables 'edges'; did you mean 'edge'?\n");
+    ERR("error: --set optimize.objectives.1.set: there is no set of cables 'edges'; did you mean 'edge'?\n");
     HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: displacement}]");
-    ERR("error: optimize.objectives.1: displacement: needs a truss that gives way: this net has none\n");
+    ERR("error: --set optimize.objectives.1: displacement: needs a truss that gives way: this net has none\n");
     HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}, {goal: evenness}]");
     ERR("optimize.objectives.2: is a third objective; Levenberg-Marquardt follows the line of two. ");
 }

@@ -17,7 +17,7 @@ static const struct {
     const char *rows, *more, *said;
 } refused[] = {
     {"[{set: frnt, vary: tension, range: 1}]", NULL,
-     "optimize.variables.0: there is no set of cables 'frnt'; did you mean 'front'?"},
+     "--set optimize.variables.0.set: there is no set of cables 'frnt'; did you mean 'front'?"},
     {"[{set: all, vary: tension, range: 1}, {set: tie, vary: length, range: 1}]", NULL, "is varied by row 0 already"},
     {"[{set: front_edge, vary: support_z, range: 1}, {set: front_edge, vary: support_xyz, range: 1}]", NULL,
      "is varied by row 0 already"},
@@ -28,9 +28,9 @@ static const struct {
     {"[{set: front, vary: tension, bounds: [-5, -2]}]", NULL, "nothing above 0 N: a cable has a tension and a length"},
     {"[{set: tie, vary: length, bounds: [null, 0]}]", NULL, "nothing above 0 m: a cable has a tension and a length"},
     {"[{set: tie, vary: tension, range: 1}]", "optimize.goals=[{goal: tension, set: ties, target: 3}]",
-     "optimize.goals.0: there is no set of cables 'ties'; did you mean 'tie'?"},
+     "--set optimize.goals.0.set: there is no set of cables 'ties'; did you mean 'tie'?"},
     {"[{set: tie, vary: tension, range: 1}]", "optimize.limits=[{limit: ratio, set: ties, bounds: [1, 3]}]",
-     "optimize.limits.0: there is no set of cables 'ties'; did you mean 'tie'?"},
+     "--set optimize.limits.0.set: there is no set of cables 'ties'; did you mean 'tie'?"},
 };
 enum { N_REFUSED = sizeof refused / sizeof *refused };
 

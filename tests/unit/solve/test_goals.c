@@ -449,17 +449,19 @@ static const struct {
     hf_goal_settings goal;
     const char *said;
 } faulty[] = {
-    {{HF_GOAL_TENSION, "bounday", 4, 1, NAN, 0, 0}, "there is no set of cables 'bounday'; did you mean 'boundary'?"},
-    {{HF_GOAL_MASS, "rear", NAN, 1, 1, 0, 0}, "there is no set of cables 'rear'; this net has all, inner, boundary"},
-    {{HF_GOAL_TENSION, "inner", NAN, 1, NAN, 0, 0}, "tension: needs a target, in N"},
-    {{HF_GOAL_EVENNESS, "inner", NAN, 1, NAN, 0, 0}, "evenness: one cable is always even; name a set of several"},
-    {{HF_GOAL_RATIO, "inner", NAN, 1, NAN, 0, 0}, "ratio: the ratio of one cable is 1; name a set of several"},
-    {{HF_GOAL_MASS, "", NAN, 1, NAN, 0, 0}, "mass: needs mass_kg_per_m, of the cables of its set"},
+    {{HF_GOAL_TENSION, "bounday", 4, 1, NAN, 0, 0},
+     ".set: there is no set of cables 'bounday'; did you mean 'boundary'?"},
+    {{HF_GOAL_MASS, "rear", NAN, 1, 1, 0, 0},
+     ".set: there is no set of cables 'rear'; this net has all, inner, boundary"},
+    {{HF_GOAL_TENSION, "inner", NAN, 1, NAN, 0, 0}, ": tension: needs a target, in N"},
+    {{HF_GOAL_EVENNESS, "inner", NAN, 1, NAN, 0, 0}, ": evenness: one cable is always even; name a set of several"},
+    {{HF_GOAL_RATIO, "inner", NAN, 1, NAN, 0, 0}, ": ratio: the ratio of one cable is 1; name a set of several"},
+    {{HF_GOAL_MASS, "", NAN, 1, NAN, 0, 0}, ": mass: needs mass_kg_per_m, of the cables of its set"},
     {{HF_GOAL_SURFACE, "", NAN, 1, NAN, 0, 0},
-     "surface: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
+     ": surface: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
     {{HF_GOAL_FACETS, "", NAN, 1, NAN, 0, 0},
-     "facets: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
-    {{HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, 0, 0}, "displacement: needs a truss that gives way: this net has none"},
+     ": facets: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
+    {{HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, 0, 0}, ": displacement: needs a truss that gives way: this net has none"},
 };
 enum { N_FAULTY = sizeof faulty / sizeof *faulty };
 
@@ -473,7 +475,7 @@ START_TEST(a_goal_without_meaning_is_refused)
                               .goal = {faulty[_i].goal, {.goal = HF_GOAL_PSI, .weight = 1}, faulty[_i].goal}};
     open_line(&t);
     ck_assert_int_eq(hf_goals_create(&t.net.scene, &t.net.model, &s, NULL, NULL, &t.goals, &messages), HF_BAD_CASE);
-    snprintf(said, sizeof said, "error: optimize.goals.0: %s\nerror: optimize.goals.2: %s\n", faulty[_i].said,
+    snprintf(said, sizeof said, "error: optimize.goals.0%s\nerror: optimize.goals.2%s\n", faulty[_i].said,
              faulty[_i].said);
     ck_assert_str_eq(messages.text, said);
     hf_messages_free(&messages);
