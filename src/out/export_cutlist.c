@@ -18,6 +18,7 @@
 #include "base/csv.h"
 #include "base/file_out.h"
 #include "base/path.h"
+#include "out/cut.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
 
@@ -30,31 +31,13 @@ typedef struct {
     double reference_N;
 } view;
 
-typedef struct {
-    double tension_N, length_m, l0_m, adjustment_m;
-} cut;
-
-static cut cut_of(const view *v, int e)
-{
-    const hf_scene *s = v->scene;
-    hf_law law = v->shape->law[e];
-    cut c = {.tension_N = v->shape->tension_N[e], .length_m = v->shape->length_m[e]};
-    double theoretical_m = hf_scene_theoretical_length(s, e);
-    hf_law_cable cable = {law, s->target[e], s->EA_N[e], theoretical_m};
-    /* the scene's target is that of its own law, which a design may have replaced */
-    bool is_slack = fabs(c.tension_N) < HF_SLACK_RATIO * v->reference_N && law == s->law[e];
-    c.l0_m = hf_law_cut_m(cable, c.length_m, c.tension_N, is_slack);
-    c.adjustment_m = c.l0_m - theoretical_m / (1 + c.tension_N / s->EA_N[e]);
-    return c;
-}
-
 static void write_cables(const void *context, FILE *f)
 {
     const view *v = context;
     const hf_scene *s = v->scene;
     fputs("id,i,j,group,tension_N,length_m,l0_m,elongation_m,EA_N,adjustment_m,law,value\n", f);
     for (int e = 0; e < s->n_cable; e++) {
-        cut c = cut_of(v, e);
+        hf_cut c = hf_cut_of(s, v->shape, v->reference_N, e);
         hf_csv_write_id(s->cable_id[e], f);
         for (int k = 0; k < 2; k++) {
             fputc(',', f);
@@ -87,7 +70,7 @@ static void write_total(const view *v, int group, FILE *f)
     double l0_m = 0, length_m = 0, tension_N[2] = {INFINITY, -INFINITY}, adjustment_m[2] = {INFINITY, -INFINITY};
     for (int e = 0; e < v->scene->n_cable; e++) {
         if (group < 2 && v->scene->group[e] != group) continue;
-        cut c = cut_of(v, e);
+        hf_cut c = hf_cut_of(v->scene, v->shape, v->reference_N, e);
         n++;
         l0_m += c.l0_m;
         length_m += c.length_m;

@@ -5,6 +5,7 @@
 #include "base/file_out.h"
 #include "base/json.h"
 #include "base/path.h"
+#include "out/cut.h"
 #include "out/report_page.h"
 #include "solve/facet_rms.h"
 #include "store/store_read.h"
@@ -50,6 +51,7 @@ typedef struct {
     hf_facets facets;                     /* none without measures of the surface */
     hf_facet_errors facet_error[N_SHAPE]; /* of each shape, in facet_block */
     void *facet_block;
+    hf_series cable_share;                                     /* [n_cable] of the error of the net as built, or none */
     hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or none, [m][2] */
     char provenance[PROVENANCE_SIZE];
 } page;
@@ -106,6 +108,7 @@ static void write_net(const page *p, FILE *f)
     write_integers("end", s->end, 2 * s->n_cable, f);
     write_codes("group", s->group, s->n_cable, f);
     write_sets(s, f);
+    if (p->cable_share.n == s->n_cable) hf_json_values("cable_share", p->cable_share.value, s->n_cable, 1, 5, f);
     if (p->facets.n_facet) write_integers("facets", p->facets.corner, 4 * p->facets.n_facet, f);
     fputc('}', f);
 }
@@ -120,6 +123,23 @@ static void write_displacement(const char *key, const hf_series *d, FILE *f)
         hf_json_value(d->value[6 * (i / 3) + i % 3], 6, f);
     }
     fputc(']', f);
+}
+
+/* What the workshop cuts and turns for a stage; null of a cable without EA, and nothing when none has one. */
+static void write_cuts(const page *p, const hf_shape *shape, FILE *f)
+{
+    const hf_scene *s = &p->scene;
+    double reference_N = hf_model_reference_N(s, p->summary.pretension_N);
+    if (!s->EA_N) return;
+    for (int is_turned = 0; is_turned < 2; is_turned++) {
+        fprintf(f, ",\"%s\":[", is_turned ? "adjustment_m" : "l0_m");
+        for (int e = 0; e < s->n_cable; e++) {
+            hf_cut c = hf_cut_of(s, shape, reference_N, e);
+            if (e) fputc(',', f);
+            hf_json_value(is_turned ? c.adjustment_m : c.l0_m, 9, f);
+        }
+        fputc(']', f);
+    }
 }
 
 /* Writes displacements, not positions: six digits of a displacement reach nanometres, six digits of a position only
@@ -143,6 +163,7 @@ static void write_shape(const page *p, int stage, FILE *f)
     hf_json_values("length_m", shape->length_m, p->scene.n_cable, 1, 7, f);
     hf_json_values("tension_N", shape->tension_N, p->scene.n_cable, 1, 7, f);
     write_codes("law", shape->law, p->scene.n_cable, f);
+    if (stage < HF_STAGE_NONE) write_cuts(p, shape, f);
     if (p->facets.n_facet) {
         const hf_facet_errors *e = &p->facet_error[stage];
         hf_json_values("facet_normal_mean_m", e->normal_mean_m, p->facets.n_facet, 1, 6, f);
@@ -323,6 +344,7 @@ static hf_status read_page(page *p, hf_messages *messages)
     if (map_facets(p) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", p->path);
     for (int i = 0; i < N_SERIES; i++)
         HF_TRY(hf_store_read_series(p->path, series_table[i].path, 1, &p->series[i], messages));
+    HF_TRY(hf_store_read_series(p->path, "/tolerance/cable_share", 1, &p->cable_share, messages));
     HF_TRY(hf_store_read_series(p->path, "/truss/node/displacement", 6, &p->truss_displacement, messages));
     HF_TRY(hf_store_read_series(p->path, "/truss/member/end", 2, &p->truss_end, messages));
     return check_truss(p, messages);
@@ -337,6 +359,7 @@ static void free_page(page *p)
         hf_series_free(&p->state_displacement[k]);
     for (int i = 0; i < N_SERIES; i++)
         hf_series_free(&p->series[i]);
+    hf_series_free(&p->cable_share);
     hf_facets_free(&p->facets);
     free(p->facet_block);
     hf_series_free(&p->truss_position_m);

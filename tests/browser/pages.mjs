@@ -6,8 +6,8 @@
 //   facets: how many, all triangles; off: families of cables whose switches are tried
 //   study: how many points
 
-const FORM = ["net", "map", "form-finding", "tensions", "summary", "provenance"];
-const GA = ["net", "map", "form-finding", "tensions", "ga", "summary", "provenance"];
+const FORM = ["net", "cables", "map", "tensions", "summary", "form-finding", "provenance"];
+const GA = ["net", "cables", "map", "tensions", "summary", "form-finding", "ga", "provenance"];
 
 const HOSTILE = `</script><img src=x onerror="window.hit=1"><!--<b>&amp;]]>'"\u2028\u202e\u007f`;
 
@@ -70,7 +70,7 @@ export const pages = [
       [4, 5],
       "optimize: {method: lm, front_points: 5, objectives: [{goal: psi}, {goal: ratio, set: boundary}]}\n",
     ),
-    sections: ["net", "map", "form-finding", "tensions", "front", "summary", "provenance"],
+    sections: ["net", "cables", "map", "tensions", "front", "summary", "form-finding", "provenance"],
   },
   {
     name: "tolerance",
@@ -79,7 +79,7 @@ export const pages = [
       "focal_length_m: 7.2, modules: [4, 5], cells_per_module: [2, 2], boundary: outer_edge, scallop: 0.1}\n" +
       "form: {method: auto}\ntolerance: {sigma_cut_m: 1e-4, samples: 500, yield: 0.9, require: [{measure: psi_m, " +
       "at_most: 0.0785, at_least: 0.001}]}\n",
-    sections: ["net", "map", "form-finding", "tensions", "tolerance", "summary", "provenance"],
+    sections: ["net", "cables", "map", "tensions", "tolerance", "summary", "form-finding", "provenance"],
     slack: 0,
   },
   {

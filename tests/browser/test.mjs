@@ -43,7 +43,7 @@ function build(page, folder) {
   }
   const start = performance.now();
   hifdm("report", result, "-o", html);
-  const made = { html, hifdm, made_ms: performance.now() - start };
+  const made = { html, hifdm, folder, made_ms: performance.now() - start };
   if (page.study) return made;
   hifdm("export", result, "--csv", ".");
   return {
@@ -152,7 +152,8 @@ async function checkPoints(tab, page, made, folder) {
   assert.notEqual(await tab.locator("#sweep .chart").first().innerHTML(), before, "another axis, the same curves");
 }
 
-async function checkCharts(tab, least, words) {
+// part: of the page, whose first chart must say these words about its last point.
+async function checkCharts(tab, least, part, words) {
   const charts = await tab.locator(".chart").evaluateAll((all) =>
     all.map((c) => ({
       title: c.querySelector("h3").textContent,
@@ -171,8 +172,8 @@ async function checkCharts(tab, least, words) {
     assert.ok((c.drawn.length && c.drawn.some((d) => d > 0)) || c.endless, `${c.title}: is empty`);
     assert.equal(c.endless > 0, c.markup.includes("∞"), `${c.title}: infinite values without their sign`);
   }
-  const first = tab.locator(".chart svg[tabindex]").first(),
-    said = tab.locator(".chart .tip").first();
+  const first = tab.locator(`${part} .chart svg[tabindex]`).first(),
+    said = tab.locator(`${part} .chart .tip`).first();
   await first.focus();
   await tab.keyboard.press("End");
   assert.match(await said.innerText(), words);
@@ -254,6 +255,70 @@ async function checkNet(tab, page, made) {
   await tab.locator("#net").getByLabel("deviation").check();
   await changes(tab, "the scale", () => tab.getByLabel("scale of the deformation").press("ArrowRight"));
   await tab.reload();
+}
+
+// The table of cables: values of the file, sorted by the heading that is pressed, found by a search; a name marks its
+// cable in the picture, a click on a cable there brings its row to the top.
+async function checkCables(tab, made) {
+  const rows = tab.locator("#cables tbody tr"),
+    names = tab.locator("#cables tbody th"),
+    heads = await tab.locator("#cables thead th").allTextContents(),
+    { length } = made.cables;
+  const more = tab.locator("#cables").getByRole("button", { name: "show all" });
+  if (length > 25) await more.click();
+  assert.equal(await rows.count(), length);
+  const column = heads.findLastIndex((head) => head.startsWith("tension, ")),
+    head = tab.locator("#cables thead th").nth(column);
+  await tab.locator("#cables thead button").first().click();
+  for (const [way, sign] of [
+    ["descending", -1],
+    ["ascending", 1],
+  ]) {
+    await head.getByRole("button").click();
+    assert.equal(await head.getAttribute("aria-sort"), way);
+    const shown = (await tab.locator(`#cables tbody tr > :nth-child(${column + 1})`).allTextContents()).map(number);
+    const wanted = made.cables.map((c) => Number(c.tension_N)).sort((a, b) => sign * (a - b));
+    const size = Math.max(...wanted.map(Math.abs));
+    shown.forEach((v, k) => assert.ok(Math.abs(v - wanted[k]) < 1e-4 * size, `${v} is shown for ${wanted[k]}`));
+  }
+  if (heads.some((text) => text.startsWith("cut to"))) await checkCuts(tab, made, heads);
+  const cable = made.cables[Math.floor(length / 2)],
+    search = tab.locator("#cables input[type=search]");
+  await search.fill(cable.id);
+  assert.ok((await names.allTextContents()).includes(cable.id) && (await rows.count()) < Math.max(length, 2));
+  await search.fill("there is no such cable");
+  assert.equal(await rows.count(), 0);
+  await search.fill("");
+  await changes(tab, "a name in the table", () => names.first().getByRole("button").click());
+  assert.equal((await tip(tab, "net")).heading, `cable ${await names.first().textContent()}`);
+  await tab.locator("#net-canvas").focus();
+  await tab.keyboard.press("Escape");
+  for (let k = 0; k < 3; k++) await tab.keyboard.press("c");
+  await tab.keyboard.press("Enter");
+  assert.equal(await names.first().textContent(), made.cables[2].id);
+  assert.equal(await tab.locator("#cables tr.chosen").count(), 1);
+  await tab.reload();
+}
+
+// Lengths and turns are those of the cut list, turns from the found net the difference of two.
+async function checkCuts(tab, made, heads) {
+  const of = (stage) => {
+    made.hifdm("export", "result.h5", "--cutlist", `${stage}.csv`, "--stage", stage, "--force");
+    return new Map(csv(join(made.folder, `${stage}.csv`)).map((c) => [c.id, c]));
+  };
+  const found = of("form"),
+    result = made.summary.polish?.is_result ? of("polish") : made.summary.optimize ? of("optimize") : found;
+  const cells = await tab.locator("#cables tbody tr").evaluateAll((all) =>
+    all.map((row) => [...row.children].map((c) => c.textContent)),
+  );
+  const column = (start) => heads.findIndex((text) => text.startsWith(start));
+  for (const row of cells) {
+    const now = result.get(row[0]),
+      turn_m = found === result ? Number(now.adjustment_m) : Number(now.l0_m) - Number(found.get(row[0]).l0_m);
+    assert.ok(Math.abs(number(row[column("cut to")]) - Number(now.l0_m)) < 1e-4 * Number(now.l0_m));
+    const shown_mm = number(row[column("turn, ")]);
+    assert.ok(Math.abs(shown_mm - 1e3 * turn_m) < 0.06, `a turn of ${shown_mm} mm for ${1e3 * turn_m}`);
+  }
 }
 
 async function checkMap(tab, made) {
@@ -503,12 +568,13 @@ async function test(browser, page) {
   await tab.goto(url);
   await checkText(tab, page);
   if (page.study) {
-    await checkCharts(tab, 3, /pretension [\d.]+ N/);
+    await checkCharts(tab, 3, "#sweep", /pretension [\d.]+ N/);
     await checkPoints(tab, page, made, folder);
   } else {
     await checkSummary(tab, made);
-    const endless = await checkCharts(tab, 4, /iteration \d+\s+ψ\s+[\d.]+.* mm/);
+    const endless = await checkCharts(tab, 4, "#form-finding", /iteration \d+\s+ψ\s+[\d.]+.* mm/);
     await checkNet(tab, page, made);
+    await checkCables(tab, made);
     await checkHover(tab, page, made);
     if (page.slack) assert.ok(endless.includes("Tension ratio, boundary cables"), "an infinite ratio is not shown");
     await checkMap(tab, made);

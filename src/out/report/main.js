@@ -189,7 +189,7 @@ function writeNet() {
           "span",
           { class: "keys", id: "net-keys" },
           " Drag or use the arrow keys to turn, with Shift to move, the wheel or + and − to zoom, 0 to start over; " +
-            "n and c step through nodes and cables, with Shift backwards.",
+            "n and c step through nodes and cables, with Shift backwards; Enter or a click marks a cable.",
         ),
       ),
     ),
@@ -303,14 +303,15 @@ if (data.study) {
   );
   writeFigures();
   writeNet();
+  writeCables(report.net);
   writeMap();
-  writeCases();
-  writeHistory();
   writeTensions();
-  writeGa();
-  writeFront();
+  writeCases();
   writeTolerance();
-  writeCoupling();
+  writeFront();
   writeSummary();
+  writeHistory(); // how it was found
+  writeGa();
+  writeCoupling();
   writeProvenance();
 }

@@ -15,6 +15,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     theory: true,
     truss: !!data.truss,
     picked: null,
+    chosen: -1, // the cable that was clicked, here or in the table
     off: new Set(), // sets of cables that are not drawn
   };
   const theory = data.net.position_m,
@@ -178,6 +179,11 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     c.fillStyle = css("--ink");
     for (let i = 0; i < n; i++)
       if (digit(net.role, i) === 0 && hasVisible[i]) c.fillRect(px[i] - side, py[i] - side, 2 * side, 2 * side);
+    if (state.chosen >= 0) {
+      c.strokeStyle = css("--alarm");
+      c.lineWidth = 5;
+      strokeAll(c, [state.chosen], px, py);
+    }
     if (!state.picked) return;
     const { kind, index } = state.picked;
     c.strokeStyle = css("--ink");
@@ -344,6 +350,20 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     redraw();
   }
 
+  // Marks a cable for good: view.onChoose tells the table.
+  function choose(e) {
+    state.chosen = e;
+    state.picked = null;
+    if (e >= 0) state.picked = { kind: "cable", index: e };
+    redraw();
+  }
+  function chooseFound() {
+    const e = state.picked && state.picked.kind === "cable" ? state.picked.index : -1;
+    state.chosen = e;
+    if (handle.onChoose) handle.onChoose(e);
+    redraw();
+  }
+
   // ---- pointer and keys ----
 
   const pointers = new Map();
@@ -379,7 +399,9 @@ function netView({ canvas, tip, bar, scaleLabel }) {
       const frame = canvas.getBoundingClientRect();
       pointers.delete(event.pointerId);
       canvas.classList.remove("dragging");
-      if (!dragged) select(pick(event.clientX - frame.left, event.clientY - frame.top)); // a tap or click
+      if (dragged) return;
+      select(pick(event.clientX - frame.left, event.clientY - frame.top)); // a tap or click
+      chooseFound();
     });
   canvas.addEventListener("pointerleave", (event) => {
     if (event.pointerType !== "touch") select(null);
@@ -440,6 +462,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
         N: () => step("node", -1),
         c: () => step("cable", 1),
         C: () => step("cable", -1),
+        Enter: chooseFound,
         Escape: () => select(null),
       };
     if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -452,5 +475,6 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   printing.addEventListener("change", draw);
   addEventListener("beforeprint", draw);
   addEventListener("afterprint", redraw);
-  return { state, view, redraw, zoom, look, screenOf, radius };
+  const handle = { state, view, redraw, zoom, look, screenOf, radius, choose };
+  return handle;
 }

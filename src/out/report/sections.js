@@ -55,6 +55,7 @@ function writeHistory() {
   );
   add("Nodal force out of balance", "residual_N", "residual", "Largest residual of a free node; 0 is equilibrium.", {
     yLabel: "residual (N)",
+    log: true,
     unit: "N",
   });
   if (charts.length)
@@ -193,7 +194,7 @@ function tensionChart(group, figures) {
   const of = Array.from({ length: net.n_cable }, (_, e) => e).filter((e) => groupOf(e) === group);
   if (!of.length) return null;
   const colour = { form: "--one", optimize: "--two", polish: "--three" };
-  const shapes = data.shapes.filter((s) => !s.case && (s.stage !== "polish" || s === resultShape));
+  const shapes = data.shapes.filter((s) => !s.case);
   return chart({
     title: `${group === "inner" ? "Inner" : "Boundary"} cables`,
     xLabel: "cable number",

@@ -1,0 +1,18 @@
+#include "out/cut.h"
+
+#include <hifdm/metrics.h>
+
+#include <math.h>
+
+hf_cut hf_cut_of(const hf_scene *s, const hf_shape *shape, double reference_N, int e)
+{
+    hf_law law = shape->law[e];
+    hf_cut c = {.tension_N = shape->tension_N[e], .length_m = shape->length_m[e]};
+    double theoretical_m = hf_scene_theoretical_length(s, e);
+    hf_law_cable cable = {law, s->target[e], s->EA_N[e], theoretical_m};
+    /* the scene's target is that of its own law, which a design may have replaced */
+    bool is_slack = fabs(c.tension_N) < HF_SLACK_RATIO * reference_N && law == s->law[e];
+    c.l0_m = hf_law_cut_m(cable, c.length_m, c.tension_N, is_slack);
+    c.adjustment_m = c.l0_m - theoretical_m / (1 + c.tension_N / s->EA_N[e]);
+    return c;
+}

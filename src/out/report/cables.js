@@ -1,0 +1,79 @@
+// Contents: the table of cables: which one to change, and by how much
+
+const familiesOf = (e) => net.sets.filter((set) => set.cable.includes(e)).map((set) => familyName(set.name));
+
+// A column of numbers with a value of each cable, to so many digits of the largest; nothing when no cable has one.
+//   unit: what it is multiplied by to be shown; isChange: it is sorted by its size, and has a sign
+function cableColumn(name, of, digits, { unit = 1, isChange = false } = {}) {
+  const values = Array.from({ length: net.n_cable }, (_, e) => of(e)),
+    [low, high] = range(values) || [0, 0],
+    most = unit * Math.max(Math.abs(low), Math.abs(high));
+  if (!range(values)) return null;
+  const decimals = most > 0 ? Math.min(12, Math.max(0, digits - 1 - Math.floor(Math.log10(most)))) : 0;
+  const show = (v) =>
+    typeof v === "number" ? (isChange && v > 0 ? "+" : "") + minus((unit * v).toFixed(decimals)) : "–";
+  return { name, number: true, of: (e) => values[e], show: (e) => show(values[e]), size: isChange };
+}
+
+// What the turnbuckle of a cable must do to make the found net the result; of a net that is only found, what it must
+// do in one that was cut for the theoretical shape.
+function turned(before, after) {
+  if (!after.l0_m) return null;
+  if (before === after) return ["turn, from the drawing (mm)", (e) => after.adjustment_m[e]];
+  const both = (e) => (after.l0_m[e] === null || before.l0_m[e] === null ? null : after.l0_m[e] - before.l0_m[e]);
+  return [`turn, from ${before.name} (mm)`, both];
+}
+
+function cableColumns(before, after, choose) {
+  const two = before !== after,
+    turn = turned(before, after);
+  const family = Array.from({ length: net.n_cable }, (_, e) => familiesOf(e).join(", ") || groupOf(e));
+  const link = (e) => {
+    const press = el("button", { type: "button", class: "link" }, net.cable_id[e]);
+    press.addEventListener("click", () => choose(e));
+    return press;
+  };
+  const change = (e) => after.tension_N[e] - before.tension_N[e];
+  return [
+    { name: "Cable", of: (e) => net.cable_id[e], show: link },
+    { name: "Family", of: (e) => family[e], show: (e) => family[e] },
+    two ? cableColumn(`tension, ${before.name} (N)`, (e) => before.tension_N[e], 5) : null,
+    cableColumn(`tension, ${after.name} (N)`, (e) => after.tension_N[e], 5),
+    two ? cableColumn("change (N)", change, 4, { isChange: true }) : null,
+    turn ? cableColumn(turn[0], turn[1], 4, { unit: 1e3, isChange: true }) : null,
+    cableColumn("length (m)", (e) => after.length_m[e], 6),
+    after.l0_m ? cableColumn("cut to (m)", (e) => after.l0_m[e], 6) : null,
+    net.cable_share ? cableColumn("share of the error (%)", (e) => net.cable_share[e], 3, { unit: 100 }) : null,
+  ].filter((column) => column);
+}
+
+const CABLES_SAID =
+  "A click on a heading sorts, a name shows its cable in the picture, and a click on a cable there puts its row at " +
+  "the top.";
+
+function writeCables(view) {
+  const after = resultShape,
+    before = shapeOf("form") || after;
+  if (!after) return;
+  const words = [
+    before === after ? null : `Tensions of the found net, and of the ${after.name}, which is the result.`,
+    after.l0_m ? "A turn above 0 lets the cable out." : null,
+    net.cable_share ? "The share is that of what all errors add to ψ², to first order: cut those cables well." : null,
+    CABLES_SAID,
+  ].filter((text) => text);
+  const choose = (e) => {
+    view.choose(e);
+    document.getElementById("net").scrollIntoView({ block: "nearest" });
+  };
+  const columns = cableColumns(before, after, choose),
+    change = columns.findIndex(({ size }) => size);
+  const all = sortableTable({
+    caption: "Cables",
+    columns,
+    n: net.n_cable,
+    by: change > 0 ? change : 2,
+    words: (e) => [net.cable_id[e], groupOf(e), ...familiesOf(e)].join(" "),
+  });
+  view.onChoose = (e) => all.first(e);
+  section("cables", "Cables", el("p", {}, words.join(" ")), all.node);
+}
