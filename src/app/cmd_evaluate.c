@@ -4,10 +4,11 @@
  *      optimize.variables each boundary cable with a free end, by its id, with its pretension in N. The columns may be
  *      in any order. An optional column `id` names the rows.
  * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation,merit, and with
- *      optimize.goals a column for each (hf_goals_name). One row per design, in the order of the input, with 17
- *      significant digits; a missing value is nan. Without an id column the rows are numbered from 1.
+ *      optimize.goals or objectives a column for each (hf_goals_name); objectives have no merit. One row per design, in
+ *      the order of the input, with 17 significant digits; a missing value is nan. Without an id column the rows are
+ *      numbered from 1.
  * --jacobian: id,figure and a column for each variable: for every feasible design the derivatives of psi_m, or of each
- *      goal and of the merit.
+ *      goal and of the merit, or of each objective.
  *
  * Contents: the table - the base design - evaluation - derivatives - writing - together */
 #include "app/cmd.h"
@@ -45,7 +46,7 @@ typedef struct {
     hf_form_result *result;          /* [n_row] */
     double *derivative;              /* [n_feasible][n_figure][n_gene]; NULL: not asked for */
     int n_figure;
-    int n_feasible, best; /* best: row, or -1 */
+    int n_feasible, best; /* best: row, or -1; -1 with objectives, which no single design is best in */
     double wall_s;
 } job;
 
@@ -59,6 +60,12 @@ static void job_free(job *j)
     free(j->derivative);
     free(j->result);
     hf_problem_free(&j->problem);
+}
+
+/* Objectives are weighed against each other by whoever asks: the table has no merit then. */
+static bool has_merit(const job *j)
+{
+    return j->problem.settings.optimize.n_objective == 0;
 }
 
 static hf_status no_memory(const job *j, hf_messages *messages)
@@ -159,6 +166,7 @@ static hf_status evaluate(job *j, int threads, hf_messages *messages)
     for (int i = 0; i < j->table.n_row; i++) {
         if (j->result[i].status != HF_OK) continue;
         j->n_feasible++;
+        if (!has_merit(j)) continue;
         if (j->best < 0 || j->result[i].merit < j->result[j->best].merit) j->best = i;
     }
     return HF_OK;
@@ -233,6 +241,11 @@ static void write_goals(const hf_goals *goals, const hf_form_result *r, FILE *f)
         write_number(hf_status_has_shape(r->status) ? r->goal[k] : (double)NAN, f);
 }
 
+static bool is_in_table(const job *j, const hf_result_field *field)
+{
+    return has_merit(j) || field->offset != offsetof(hf_form_result, merit);
+}
+
 static void write_results(const void *context, FILE *f)
 {
     const job *j = context;
@@ -241,7 +254,7 @@ static void write_results(const void *context, FILE *f)
     hf_result_list_individual(field);
     fputs("id", f);
     for (int k = 0; k < HF_RESULT_N_INDIVIDUAL; k++)
-        fprintf(f, ",%s", field[k]->name);
+        if (is_in_table(j, field[k])) fprintf(f, ",%s", field[k]->name);
     for (int k = 0; k < goals->n_goal; k++) {
         char name[HF_GOAL_NAME_SIZE];
         fprintf(f, ",%s", hf_goals_name(goals, k, name));
@@ -250,7 +263,7 @@ static void write_results(const void *context, FILE *f)
     for (int i = 0; i < j->table.n_row; i++) {
         write_row_id(j, i, f);
         for (int k = 0; k < HF_RESULT_N_INDIVIDUAL; k++)
-            write_figure(field[k], &j->result[i], f);
+            if (is_in_table(j, field[k])) write_figure(field[k], &j->result[i], f);
         write_goals(goals, &j->result[i], f);
         fputc('\n', f);
     }
@@ -280,14 +293,17 @@ static void write_jacobian(const void *context, FILE *f)
     const double *value = j->derivative;
     fputs("id,figure", f);
     write_gene_names(j, f);
+    int n_written = j->n_figure - !has_merit(j); /* the merit is the last */
     for (int i = 0; i < j->table.n_row; i++) {
-        for (int k = 0; k < j->n_figure && j->result[i].status == HF_OK; k++) {
+        if (j->result[i].status != HF_OK) continue;
+        for (int k = 0; k < n_written; k++) {
             write_row_id(j, i, f);
             write_figure_name(j, k, f);
             for (int gene = 0; gene < n_gene; gene++)
-                write_number(*value++, f);
+                write_number(value[k * n_gene + gene], f);
             fputc('\n', f);
         }
+        value += (size_t)j->n_figure * (size_t)n_gene;
     }
 }
 
@@ -318,12 +334,14 @@ static void print_summary(const job *j, const char *path, FILE *f)
                   j->problem.batch.n_thread == 1 ? "" : "s", path);
 }
 
-/* Of the best design, with optimize.goals. */
-static void print_best_goals(const job *from, hf_json *j)
+/* The best design, and its goals with optimize.goals. */
+static void print_best(const job *from, hf_json *j)
 {
     const hf_goals *goals = &from->problem.goals;
-    if (goals->n_goal == 0) return;
     const hf_form_result *best = from->best < 0 ? NULL : &from->result[from->best];
+    hf_json_number(j, "best_psi_m", best ? best->psi_m : (double)NAN);
+    hf_json_integer(j, "best_row", from->best + 1);
+    if (goals->n_goal == 0) return;
     hf_json_number(j, "best_merit", best ? best->merit : (double)NAN);
     hf_json_open(j, "best_goals", '{');
     for (int k = 0; k < goals->n_goal; k++) {
@@ -343,9 +361,7 @@ static void print_json(const job *from, const char *path, const char *jacobian, 
         hf_json_line(&j, " ");
         hf_json_integer(&j, "designs", from->table.n_row);
         hf_json_integer(&j, "feasible", from->n_feasible);
-        hf_json_number(&j, "best_psi_m", from->best < 0 ? (double)NAN : from->result[from->best].psi_m);
-        hf_json_integer(&j, "best_row", from->best + 1);
-        print_best_goals(from, &j);
+        if (has_merit(from)) print_best(from, &j);
         hf_json_integer(&j, "threads", from->problem.batch.n_thread);
         hf_json_text(&j, "solver", hf_solver_word[from->problem.solver]);
         hf_json_number(&j, "wall_s", from->wall_s);

@@ -5,6 +5,7 @@
 #include "base/path.h"
 #include "base/text.h"
 #include "run/cases.h"
+#include "run/no_design.h"
 #include "run/problem_parts.h"
 #include "run/run_front.h"
 #include "run/tolerance_stage.h"
@@ -317,38 +318,6 @@ static bool evaluate_first(run *r)
     return true;
 }
 
-/* Why no design was feasible, by counts, and what would change that. */
-static hf_status explain_infeasible(run *r, hf_messages *messages)
-{
-    const hf_population *p = &r->optimiser.population;
-    long above = p->n_evaluation_above_cap, shapeless = p->n_evaluation_infeasible - above;
-    const char *wider = r->problem.model.gene ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
-    hf_form_result base;
-    char broken[2 * HF_HELD_NAME_SIZE] = "";
-    const hf_workspace *w = hf_batch_run_one(&r->problem.batch, p->base_N, &base);
-    if (hf_status_has_shape(base.status))
-        hf_limits_name_broken(&r->problem.evaluator, &r->problem.scene, w, broken, sizeof broken);
-    if (above > 0 && r->problem.settings.optimize.n_limit > 0)
-        return hf_error(messages, HF_NO_FEASIBLE,
-                        "optimize: no feasible design: %ld of %ld evaluations have a shape beyond optimize.limits or "
-                        "boundary_ratio_cap%s%s; loosen the limits, or widen %s",
-                        above, p->n_evaluation, *broken ? "; the base design's" : "", broken + (*broken == ':'), wider);
-    if (above == 0)
-        return hf_error(
-            messages, HF_NO_FEASIBLE,
-            "optimize: no feasible design: none of %ld evaluations has a shape (%s); tighten %s to keep designs "
-            "nearer to the form-finding",
-            shapeless, hf_status_text(p->trial_status[0]), wider);
-    char of_base[64] = "has no shape", others[64] = "";
-    if (isfinite(base.boundary_tension_ratio))
-        snprintf(of_base, sizeof of_base, "has %.4g", base.boundary_tension_ratio);
-    if (shapeless > 0) snprintf(others, sizeof others, ", %ld have no shape", shapeless);
-    return hf_error(messages, HF_NO_FEASIBLE,
-                    "optimize: no feasible design: %ld of %ld evaluations are above boundary_ratio_cap %g%s; the base "
-                    "design %s; raise optimize.boundary_ratio_cap, or widen %s",
-                    above, p->n_evaluation, r->problem.settings.optimize.boundary_ratio_cap, others, of_base, wider);
-}
-
 static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
 {
     const hf_population *p = &r->optimiser.population;
@@ -375,7 +344,7 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
     }
     sum_up(r, start_s, s);
     if (p->best >= 0) return store_best(r, s, messages);
-    return explain_infeasible(r, messages);
+    return hf_no_design_evolved(&r->problem, p, messages);
 }
 
 /* Levenberg-Marquardt from the best individual, or from the base design when there was no genetic algorithm. */
@@ -395,15 +364,10 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     if (must_stop(r)) return stop_here(r, s, messages);
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
     if (status != HF_OK) {
-        const char *why = hf_status_text(status);
-        char broken[2 * HF_HELD_NAME_SIZE] = "";
-        hf_form_result start;
-        if (hf_status_has_shape(hf_evaluate(&r->problem.evaluator, design, w, &start)))
-            hf_limits_name_broken(&r->problem.evaluator, &r->problem.scene, w, broken, sizeof broken);
-        if (!r->plan.kind)
-            return hf_error(messages, HF_NO_FEASIBLE, "optimize: Levenberg-Marquardt has no feasible start: %s%s", why,
-                            broken);
-        hf_warning(messages, "optimize: Levenberg-Marquardt has no feasible start: %s%s", why, broken);
+        char why[HF_NO_DESIGN_SIZE];
+        hf_no_design_to_polish(&r->problem, design, status, why);
+        if (!r->plan.kind) return hf_error(messages, HF_NO_FEASIBLE, "%s", why);
+        hf_warning(messages, "%s", why);
         return HF_OK;
     }
     hf_evaluate(&r->problem.evaluator, design, w, &s->polish);

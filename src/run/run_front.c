@@ -1,6 +1,7 @@
 #include "run/run_front.h"
 
 #include "base/clock.h"
+#include "run/no_design.h"
 #include "run/problem_parts.h"
 #include "search/trade.h"
 
@@ -41,16 +42,18 @@ static const char *explain(const hf_problem *p, hf_status status, int end, char 
 {
     char name[HF_GOAL_NAME_SIZE];
     const char *why = hf_status_text(status);
+    char hint[HF_NO_DESIGN_HINT_SIZE];
+    hf_no_design_cap(p, p->form.boundary_tension_ratio, hint);
     if (status == HF_OUT_OF_LIMITS)
         why = p->settings.optimize.n_limit > 0 ? "no way from its start into optimize.limits"
                                                : "no way from its start into the bounds of optimize.variables";
     if (end >= 0)
         snprintf(text, size,
                  "optimize.objectives.%d: Levenberg-Marquardt has found no design with the least %s, an end of the "
-                 "front: %s",
-                 end, hf_goals_name(p->evaluator.goals, end, name), why);
+                 "front: %s%s",
+                 end, hf_goals_name(p->evaluator.goals, end, name), why, hint);
     else
-        snprintf(text, size, "optimize.objectives: Levenberg-Marquardt has found no front: %s", why);
+        snprintf(text, size, "optimize.objectives: Levenberg-Marquardt has found no front: %s%s", why, hint);
     return text;
 }
 
@@ -81,7 +84,7 @@ hf_status hf_run_front(hf_problem *p, const hf_population *bounds, const volatil
                       .max_iterations = o->polish_iterations,
                       .n_thread = p->batch.n_thread,
                       .stop = stop};
-    char text[512];
+    char text[HF_NO_DESIGN_SIZE];
     int end = -1, has_earlier = front->n_point > 0;
     double start_s = hf_clock_s(), *start = make_starts(p, bounds, front, &trade.n_start);
     hf_front found = {0};

@@ -68,6 +68,28 @@ START_TEST(the_best_is_that_of_the_merit)
 }
 END_TEST
 
+/* Objectives are weighed by whoever asks: their values are those of the same goals, and there is no merit of them. */
+START_TEST(objectives_are_evaluated_without_a_merit)
+{
+    const char *net = net_with(nodes, cables), *table = temp("r.csv"), *slopes = temp("j.csv");
+    const char *designs = file_with("d.csv", "c1,\"c,2\"\n4.5,3.5\n5.5,5.5\n");
+    const char *edge = "optimize.variables=[{set: edge, vary: force_density, range: 50 %}]";
+    HIFDM(0, "evaluate", net, "--designs", designs, "-o", table, "--jacobian", slopes, "--json", "--set", edge, "--set",
+          "optimize.objectives=[{goal: psi}, {goal: tension, set: edge, target: 12}]", "--set", "optimize.method=lm");
+    const char *json = out_as("r.json"), *goals = temp("g.csv"), *goal_slopes = temp("gj.csv");
+    HIFDM(0, "evaluate", net, "--designs", designs, "-o", goals, "--jacobian", goal_slopes, "--set", edge, "--set",
+          "optimize.goals=[{goal: psi}, {goal: tension, set: edge, target: 12}]");
+    EXPECT(table, goals, json, "--", "list(a[0])[-3:] == ['violation', 'goal_0_psi', 'goal_1_tension_edge']",
+           "'merit' not in a[0] and [{k: r[k] for k in a[0]} for r in b] == a and 'merit' in b[0]",
+           "c['feasible'] == 2 and not [k for k in c if k.startswith('best')]");
+    EXPECT(slopes, goal_slopes, "--", "[r['figure'] for r in a] == ['goal_0_psi', 'goal_1_tension_edge'] * 2",
+           "a == [r for r in b if r['figure'] != 'merit'] and len(b) == 6");
+    HIFDM(0, "evaluate", net, "--designs", designs, "-o", table, "--force", "--set", edge, "--set",
+          "optimize.objectives=[{goal: psi}, {goal: tension, set: edge, target: 12}]", "--set", "optimize.method=lm");
+    OUT("2 designs, 2 feasible; ");
+}
+END_TEST
+
 START_TEST(values_of_cables_are_above_zero)
 {
     const char *bad = file_with("d.csv", "c1,\"c,2\",c.x,c.y,c.z\n4,-4,-1,0,-0.0\n4,4,one,0,0\n0,4,0,0,0\n");
@@ -242,6 +264,35 @@ START_TEST(a_limit_that_nothing_keeps_has_a_name)
 }
 END_TEST
 
+/* A design that a cap refuses of which its author knows nothing: c4 holds the ratio at 22 whatever the others do. */
+START_TEST(a_cap_that_the_case_does_not_give_is_told_as_the_default)
+{
+    static const char *const how[] = {"optimize.method=lm", "optimize.method=ga",
+                                      "optimize.objectives=[{goal: psi}, {goal: evenness, set: edge}]",
+                                      "optimize.limits=[{limit: tension, set: stay, bounds: [1, 90]}]"};
+    static const char *const what[] = {
+        ": the boundary tension ratio exceeds optimize.boundary_ratio_cap: ratio of cable c4 to c3 is 22.2222 beside "
+        "10 of boundary_ratio_cap",
+        " are above boundary_ratio_cap 10; the base design has 22.22; raise optimize.boundary_ratio_cap, or widen the "
+        "ranges and bounds of optimize.variables",
+        "", " ratio of cable c4 to c3 is 22.2222 beside 10 of boundary_ratio_cap; loosen the limits, or widen "};
+    const char *hint =
+        "; 10 is the default of optimize.boundary_ratio_cap, which the case does not give: set it to what the net may "
+        "have\n";
+    const char *net = net_with(nodes, "id,i,j,group,law,value,set\nc1,a,m,boundary,tension,10,edge\n"
+                                      "\"c,2\",b,m,boundary,tension,10,edge\nc3,c,m,boundary,tension,9,stay\n"
+                                      "c4,a,b,boundary,tension,200,\n");
+    const char *method = _i == 2 ? "optimize.method=lm" : how[0 + (_i > 0)];
+    HIFDM(3, "run", net, "-o", temp("r.h5"), "--set", EDGE("1 %"), "--set", method, "--set", how[_i], "--set",
+          "optimize.generations=3");
+    ERR(what[_i]);
+    ERR(hint);
+    HIFDM(3, "run", net, "-o", temp("r.h5"), "--restart", "--set", EDGE("1 %"), "--set", method, "--set", how[_i],
+          "--set", "optimize.generations=3", "--set", "optimize.boundary_ratio_cap=11");
+    ck_assert(!strstr(said.err, "default"));
+}
+END_TEST
+
 START_TEST(check_names_variables_goals_and_limits)
 {
     const char *net = net_with(nodes, cables);
@@ -264,6 +315,7 @@ Suite *suite_cli_rows(void)
     tcase_add_test(tests, a_template_has_a_column_for_each_variable);
     tcase_add_test(tests, variables_and_goals_of_any_kind_are_evaluated);
     tcase_add_test(tests, the_best_is_that_of_the_merit);
+    tcase_add_test(tests, objectives_are_evaluated_without_a_merit);
     tcase_add_test(tests, values_of_cables_are_above_zero);
     tcase_add_test(tests, a_cable_called_like_a_variable_of_a_support_is_refused);
     tcase_add_test(tests, derivatives_come_beside_the_results);
@@ -272,6 +324,7 @@ Suite *suite_cli_rows(void)
     tcase_add_loop_test(tests, goals_of_damaged_files_are_not_shown, 0, 3);
     tcase_add_test(tests, what_holds_a_design_has_names);
     tcase_add_test(tests, check_names_variables_goals_and_limits);
+    tcase_add_loop_test(tests, a_cap_that_the_case_does_not_give_is_told_as_the_default, 0, 4);
     tcase_add_loop_test(tests, a_limit_that_nothing_keeps_has_a_name, 0, 2);
     return suite;
 }

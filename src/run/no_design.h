@@ -1,0 +1,24 @@
+/* no_design - why a run has no design, by counts and names, and what would change that. */
+#ifndef HIFDM_NO_DESIGN_H
+#define HIFDM_NO_DESIGN_H
+
+#include <hifdm/population.h>
+#include <hifdm/problem.h>
+
+#define HF_NO_DESIGN_SIZE 1024
+#define HF_NO_DESIGN_HINT_SIZE 192
+
+/* No individual of any generation was feasible: HF_NO_FEASIBLE with a message. */
+hf_status hf_no_design_evolved(hf_problem *problem, const hf_population *population, hf_messages *messages);
+
+/* Levenberg-Marquardt refused to start from this design with this status. Overwrites the shape in the problem's
+ * workspace; returns text. */
+const char *hf_no_design_to_polish(hf_problem *problem, const double *design, hf_status status,
+                                   char text[HF_NO_DESIGN_SIZE]);
+
+/* "; 10 is the default of ..." for a shape above a cap that the case does not give, which its author may not know of;
+ * else "". */
+const char *hf_no_design_cap(const hf_problem *problem, double boundary_tension_ratio,
+                             char text[HF_NO_DESIGN_HINT_SIZE]);
+
+#endif
