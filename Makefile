@@ -124,8 +124,8 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
-         bench-before bench-optimisers bench-fronts bench-sampling pretension-night api lint asan tsan fuzz \
-         fuzz-results install
+         bench-before bench-optimisers bench-fronts bench-sampling pretension-night api docs docs-browser lint \
+         asan tsan fuzz fuzz-results install
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -253,6 +253,15 @@ api: ## the library's interface as pages, from the public headers: build/api/ind
 	$(Q){ cat tools/api/Doxyfile; printf '%s\n' 'OUTPUT_DIRECTORY = "$(BUILD)/api"' 'PROJECT_NUMBER = $(VERSION)'; } | \
 	    doxygen -
 	@echo $(BUILD)/api/index.html
+
+docs: ## the manual as pages to search and to read offline: build/docs/index.html
+	$(Q)tools/setup.sh --docs
+	$(SUB) $(PROGRAM)
+	$(PYTHON) tools/docs/build.py --program $(PROGRAM) --version $(VERSION) --work $(BUILD)/docs.src --out $(BUILD)/docs
+
+docs-browser: docs ## every page of the manual in headless Chromium, on a phone; needs `tools/setup.sh --ci`
+	$(Q)HIFDM=$(abspath $(PROGRAM)) BUILD=$(BUILD) DOCS=$(BUILD)/docs \
+	    tests/browser/run.sh --node tests/browser/manual.mjs
 
 lint: ## check the rules of the house
 	+$(Q)tools/lint.sh

@@ -50,7 +50,7 @@ files_under src include | while read -r file; do
     name=$(basename "${file%.[ch]}")
     room=$(basename "$(dirname "$file")")
     case $file in
-    src/ARCHITECTURE.md | src/METHOD.md | src/MANUAL.md | include/hifdm/hifdm.h) ;;
+    src/ARCHITECTURE.md | src/METHOD.md | src/MANUAL.md | src/manual/*.md | include/hifdm/hifdm.h) ;;
     src/out/report/*)
         case " $page " in *" $file "*) ;; *) echo "$file:1: no part of the page (Makefile: PAGE)" ;; esac ;;
     src/*/*/*) echo "$file:1: rooms have no rooms" ;;
@@ -138,6 +138,7 @@ done | report
 # What the documents name is there: hf_... and HF_... in a source, files such as search/batch.c, links to other files.
 # hf_module_verb, hf_noun and names with a part in capitals (hf_cmd_NAME) stand for many.
 documents="README.md src/ARCHITECTURE.md src/METHOD.md src/MANUAL.md .github/CONTRIBUTING.md"
+documents="$documents $(files_under src/manual | tr '\n' ' ')"
 grep -ohE '\b(hf|HF)_[A-Za-z0-9_]+' $source_files | sort -u >"$work/names"
 grep -HnoE '\b(hf|HF)_[A-Za-z0-9_]+\b' -- $documents | grep -vE ':(hf_module_verb|hf_noun|hf_.*[A-Z].*)$' |
     while IFS=: read -r file line name; do

@@ -1,21 +1,23 @@
 #!/usr/bin/env bash
-# Installs what is missing to build hifdm: setup.sh [--test] [--ci] [--bench] [--optimisers] [--api]
+# Installs what is missing to build hifdm: setup.sh [--test] [--ci] [--bench] [--optimisers] [--api] [--docs]
 #   --test  also what the tests need     --ci  also clang, sanitizers, linters, VTK, a browser, Slurm (includes --test)
 #   --bench also the peers of `make bench`     --api  also doxygen, for `make api`
+#   --docs  also Sphinx with its theme, for `make docs`
 #   --optimisers also those of `make bench-optimisers`
 # Silent and quick when nothing is missing. Asks for what is needed (a compiler, a pkg-config name, a Python module)
 # rather than for packages, so that other providers do as well: reference LAPACK, modules from pip.
 set -eu
 
-with_test=no with_ci=no with_bench=no with_optimisers=no with_api=no
+with_test=no with_ci=no with_bench=no with_optimisers=no with_api=no with_docs=no
 for option in "$@"; do
     case $option in
     --test) with_test=yes ;;
-    --ci) with_test=yes with_ci=yes with_api=yes ;;
+    --ci) with_test=yes with_ci=yes with_api=yes with_docs=yes ;;
     --bench) with_bench=yes ;;
     --optimisers) with_optimisers=yes ;;
     --api) with_api=yes ;;
-    *) echo "usage: tools/setup.sh [--test] [--ci] [--bench] [--optimisers] [--api]" >&2; exit 2 ;;
+    --docs) with_docs=yes ;;
+    *) echo "usage: tools/setup.sh [--test] [--ci] [--bench] [--optimisers] [--api] [--docs]" >&2; exit 2 ;;
     esac
 done
 
@@ -69,6 +71,11 @@ missing_packages() {
     fi
     if [ $with_api = yes ]; then
         has doxygen || need doxygen
+    fi
+    if [ $with_docs = yes ]; then
+        has_module sphinx || need python3-sphinx
+        has_module myst_parser || need python3-myst-parser
+        has_module furo || need furo
     fi
     if [ $with_ci = yes ]; then
         has clang || need clang

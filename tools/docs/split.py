@@ -1,0 +1,112 @@
+"""Long documents of the sources, such as src/MANUAL.md, as pages of the manual, and the links between all of them."""
+import os
+import re
+
+LONG = 250  # lines of a section above which its parts are pages of their own
+
+
+def slug(title):
+    """The anchor that a heading has, on a page of ours and where the source is read as it stands."""
+    return re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-")
+
+
+class Page:
+    def __init__(self, name, source, lines):
+        self.name = name  # folder/name below the manual's root, without suffix
+        self.source = source  # path in the repository, which its links start from
+        self.lines = lines
+
+    @property
+    def title(self):
+        return next(line.lstrip("# ").strip() for line in self.lines if line.startswith("# "))
+
+
+def headings(lines):
+    """(number of line, level, title) of all headings outside of fenced blocks."""
+    fence = None
+    for k, line in enumerate(lines):
+        mark = re.match(r"(```+|~~~+)", line)
+        if mark and (fence is None or line.strip() == fence):
+            fence = mark[1] if fence is None else None
+        match = re.match(r"(#{1,6}) (.*)", line)
+        if match and fence is None:
+            yield k, len(match[1]), match[2]
+
+
+def promoted(lines, by):
+    levels = {k for k, _, _ in headings(lines)}
+    return [line[by:] if k in levels else line for k, line in enumerate(lines)]
+
+
+def split(path, folder):
+    """Pages of a document: one for each second-level heading, or one for each part of a section that is long. What
+    stands before the first of them, a list of contents, is left out: the manual makes its own."""
+    lines = open(path, encoding="utf-8").read().split("\n")
+    marks = [(k, level, title) for k, level, title in headings(lines) if level in (2, 3)] + [(len(lines), 2, "")]
+    sections = [mark for mark in marks if mark[1] == 2]
+    for (start, _, title), (end, _, _) in zip(sections, sections[1:]):
+        parts = [mark for mark in marks if mark[1] == 3 and start < mark[0] < end]
+        if end - start <= LONG:
+            parts = []
+        cuts = [k for k, _, _ in parts] + [end]
+        yield Page(f"{folder}/{slug(title)}", path, promoted(lines[start : cuts[0]], 1))
+        for (k, _, part), after in zip(parts, cuts[1:]):
+            yield Page(f"{folder}/{slug(part)}", path, promoted(lines[k:after], 2))
+
+
+def coloured(lines):
+    """Indented blocks of a document as fenced ones that name their language, where it is seen at once."""
+    text = "\n".join(lines)
+
+    def fenced(match):
+        block = re.sub(r"(?m)^    ", "", match[2]).rstrip("\n")
+        language = "text"
+        if re.search(r"(?m)^import ", block):
+            language = "python"
+        elif re.match(r"hifdm |sbatch |make |export |cc ", block):
+            language = "console"
+        elif re.match(r"[a-z_]+:( |$)", block.split("\n")[0]):
+            language = "yaml"
+        elif "HF_TRY" in block:
+            language = "c"
+        return f"{match[1]}```{language}\n{block}\n```\n"
+
+    return re.sub(r"((?:^|\n)\n)((?:    .*\n|\n(?=    ))+)", fenced, text).split("\n")
+
+
+class Links:
+    """Where a link of a source leads in the manual."""
+
+    def __init__(self, pages):
+        self.place = {}  # (path in the repository, anchor) -> (page, anchor)
+        for page in pages:
+            first = True
+            self.place.setdefault((page.source, ""), (page.name, ""))
+            for _, _, title in headings(page.lines):
+                self.place.setdefault((page.source, slug(title)), (page.name, "" if first else slug(title)))
+                first = False
+
+    def rewritten(self, page):
+        """The lines of a page with links to pages of the manual; to a file that is no page only the words are left."""
+
+        def link(match):
+            words, target = match[1], match[2]
+            if target.startswith("page:"):  # one that is made
+                return f"[{words}](/{target[5:]}.md)"
+            if re.match(r"[a-z]+:", target):
+                return match[0]
+            path, _, anchor = target.partition("#")
+            path = os.path.normpath(os.path.join(os.path.dirname(page.source), path)) if path else page.source
+            if path == "README.md":
+                return f"[{words}](/index.md)"
+            if (path, anchor) in self.place:
+                name, at = self.place[path, anchor]
+                return f"[{words}](/{name}.md{'#' + at if at else ''})"
+            if (path, "") in self.place or not os.path.exists(path):
+                raise SystemExit(f"{page.source}: a link to {target}, which is not there")
+            return words
+
+        fence = False
+        for line in page.lines:
+            fence ^= line.startswith("```")
+            yield line if fence or line.startswith("    ") else re.sub(r"(?<!!)\[([^\]]*)\]\(([^)\s]+)\)", link, line)
