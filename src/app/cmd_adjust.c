@@ -20,18 +20,23 @@
 #include "out/export.h"
 #include "out/print.h"
 #include "run/problem_parts.h"
+#include "run/tolerance_stage.h"
 #include <hifdm/store.h>
 
 #include <math.h>
 #include <string.h>
 
-#define STANDS_OUT 3.0 /* sigmas of an error that is named */
-#define NAMED_MAX 10   /* of these, for people */
+#define STANDS_OUT 3.0   /* sigmas of an error that is named */
+#define NAMED_MAX 10     /* of these, for people */
+#define MISFIT 5.0       /* standard deviations of the sum of squares that is no accident any more */
+#define ROUNDING 0.005   /* of figures in messages */
+#define SIGMA_LEAST 3e-5 /* of that of errors: weights beyond 1e9 times theirs are beyond double precision */
 
 typedef struct {
     hf_problem problem;
     hf_built built;
     hf_measured measured;
+    const char *measured_path;
     hf_estimate estimate;
     hf_goals goals;
     hf_adjustment adjustment;
@@ -57,6 +62,27 @@ static void job_free(job *j)
 
 /* ---- the prior ---- */
 
+/* Nothing may be known so much better than the errors that a difference of places is all rounding. */
+static hf_status check_sigmas(const job *j, const char *path, double error_m, hf_messages *messages)
+{
+    const hf_model *m = &j->built.model;
+    double least = SIGMA_LEAST * error_m, rest = j->problem.settings.tolerance.sigma_support_m;
+    if (rest > 0 && rest < least * (1 - ROUNDING))
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: tolerance.sigma_support_m of %.3g m is too small beside errors of cables of %.3g m: give "
+                        "at least %.3g, or 0",
+                        path, rest, error_m, least * (1 + ROUNDING));
+    for (int i = 0; i < m->n_node; i++) {
+        int row = m->row_of_node[i];
+        double sigma = 1 / sqrt(j->measured.weight_per_m2[3 * row]);
+        if (!j->measured.line[row] || sigma >= least * (1 - ROUNDING)) continue;
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s:%d: sigma_m of %.3g m is too small beside errors of cables of %.3g m: give at least %.3g",
+                        j->measured_path, j->measured.line[row], sigma, error_m, least * (1 + ROUNDING));
+    }
+    return HF_OK;
+}
+
 /* The standard deviation of each cut length. An error of EA acts as one of the length by which the cable is
  * strained. */
 static hf_status find_prior(job *j, const char *path, hf_messages *messages)
@@ -70,7 +96,7 @@ static hf_status find_prior(job *j, const char *path, hf_messages *messages)
         j->sigma_m[e] = sqrt(t->sigma_cut_m * t->sigma_cut_m + ratio * ratio + EA * EA);
         largest = fmax(largest, j->sigma_m[e]);
     }
-    if (largest > 0) return HF_OK;
+    if (largest > 0) return check_sigmas(j, path, largest, messages);
     return hf_error(messages, HF_BAD_CASE,
                     "%s: tolerance: cables have no errors that could be estimated; give sigma_cut_m, sigma_cut_ratio "
                     "or sigma_EA_ratio",
@@ -134,6 +160,23 @@ static hf_status explain_failure(hf_status status, const char *what, const char 
     return hf_error(messages, status, "%s: %s: %s", path, what, hf_status_text(status));
 }
 
+/* Chi^2 by coordinate: its mean is 1 when the sigmas of errors and places are right, whatever was measured. */
+static double chi_square(const job *j)
+{
+    return 2 * j->estimate.misfit / (3.0 * j->measured.n_node);
+}
+
+static void warn_of_misfit(const job *j, hf_messages *messages)
+{
+    double chi = chi_square(j);
+    if (chi <= 1 + MISFIT * sqrt(2 / (3.0 * j->measured.n_node))) return;
+    hf_warning(messages,
+               "%s: these places do not fit the net and its tolerances: chi^2 is %.3g per coordinate where 1 is "
+               "expected; sigma_m or a sigma of section tolerance is too small, supports are off "
+               "(tolerance.sigma_support_m), or it is another design",
+               j->measured_path, chi);
+}
+
 static hf_status estimate_errors(job *j, const hf_options *o, hf_messages *messages)
 {
     const hf_tolerance_settings *t = &j->problem.settings.tolerance;
@@ -144,6 +187,7 @@ static hf_status estimate_errors(job *j, const hf_options *o, hf_messages *messa
     HF_TRY(hf_estimate_expect(p, j->expected_m));
     HF_TRY(hf_measured_check(o->measured, &j->built, j->expected_m, &j->measured, messages));
     HF_TRY(explain_failure(hf_estimate_find(p), "the estimated net", o->file, messages));
+    warn_of_misfit(j, messages);
     if (!p->is_settled)
         hf_warning(messages, "%s: the estimate did not settle in %d steps: the figures below are of the last one",
                    o->measured, p->n_step);
@@ -259,7 +303,8 @@ static void print_summary(const job *j, const char *path, FILE *f)
     const hf_adjustment *a = &j->adjustment;
     const hf_tolerance_settings *t = &j->problem.settings.tolerance;
     const char *figure = hf_figure_word[j->task.settings->figure];
-    hf_print_line(f, "%d of %d nodes measured; supports %s", j->measured.n_node, j->built.model.n_node,
+    hf_print_line(f, "%d of %d nodes measured, chi^2 %.3g per coordinate; supports %s", j->measured.n_node,
+                  j->built.model.n_node, chi_square(j),
                   t->sigma_support_m > 0 ? "are estimated, too"
                                          : "are taken to be where the case has them (no tolerance.sigma_support_m)");
     if (isfinite(j->measured_m)) hf_print_line(f, "%s measured    %.4f mm", figure, j->measured_m * 1e3);
@@ -315,6 +360,7 @@ static void print_json_figures(const job *from, hf_json *j)
     hf_json_line(j, " ");
     hf_json_text(j, "figure", hf_figure_word[from->task.settings->figure]);
     hf_json_integer(j, "measured_nodes", from->measured.n_node);
+    hf_json_number(j, "chi_square", chi_square(from));
     hf_json_integer(j, "cables", from->task.n_cable);
     hf_json_number(j, "nominal_m", a->nominal_m);
     hf_json_number(j, "measured_m", from->measured_m);
@@ -393,14 +439,17 @@ static hf_status check_output(const job *j, const hf_options *o, hf_messages *me
 static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
 {
     HF_TRY(hf_problem_load(o->file, o->set, o->n_set, &j->problem, messages));
-    HF_TRY(check_sections(&j->problem.settings, o->file, messages));
+    const hf_problem *p = &j->problem;
+    j->measured_path = o->measured;
+    HF_TRY(check_sections(&p->settings, o->file, messages));
+    HF_TRY(hf_tolerance_stage_check(p, false, messages));
     HF_TRY(check_output(j, o, messages));
     HF_TRY(allocate_job(j, messages));
     HF_TRY(pick_cables(j, messages));
+    HF_TRY(hf_measured_read(o->measured, &p->scene, &p->model, p->settings.adjust.sigma_m, &j->measured, messages));
     HF_TRY(make_net(j, o->file, messages));
     HF_TRY(find_prior(j, o->file, messages));
     HF_TRY(find_figure(j, messages));
-    HF_TRY(hf_measured_read(o->measured, &j->built, j->problem.settings.adjust.sigma_m, &j->measured, messages));
     HF_TRY(estimate_errors(j, o, messages));
     j->measured_m = measured_psi_m(j);
     HF_TRY(

@@ -4,6 +4,7 @@
 #include "base/text.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -151,16 +152,24 @@ static bool add_row(hf_csv *t, char **field, int line)
     return true;
 }
 
+/* Is it a header line, but with semicolons where commas should be? */
+static bool has_semicolons(const char *line)
+{
+    return strchr(line, ';') && !strpbrk(line, ",\"");
+}
+
 /* Take one line that is not a comment. False without memory. */
 static bool take_line(hf_csv *t, char *line, int n_line, char **field, int column_max)
 {
-    char counts[64];
+    char counts[128];
     if (!hf_text_is_utf8(line)) {
         hf_csv_fault(t, n_line, NULL, "not UTF-8 text; save the file as UTF-8", "");
         return true;
     }
     int n = split(line, field, column_max);
-    snprintf(counts, sizeof counts, "%d fields where the header has %d", n, t->n_column);
+    bool may_have_commas = n > t->n_column + 1; /* in numbers, of several columns */
+    snprintf(counts, sizeof counts, "%d fields where the header has %d%s", n, t->n_column,
+             may_have_commas ? ": decimal commas? Numbers have points" : "");
     if (n < 0)
         hf_csv_fault(t, n_line, NULL, "a quoted field does not end on this line", "");
     else if (n > column_max)
@@ -187,6 +196,10 @@ hf_status hf_csv_read(const char *path, int column_max, hf_csv *t, hf_messages *
     if (!strncmp(rest, "\xEF\xBB\xBF", 3)) rest += 3; /* byte order mark of spreadsheet programs */
     for (int n_line = 1; (line = next_line(&rest)) != NULL; n_line++) {
         if (line[strspn(line, " \t")] == '\0' || *line == '#') continue;
+        if (t->n_column == 0 && t->n_fault == 0 && has_semicolons(line)) {
+            hf_csv_fault(t, n_line, NULL, "columns are separated by commas, not by ';', and numbers have points", "");
+            return hf_csv_close_faults(t);
+        }
         if (!take_line(t, line, n_line, field, column_max))
             return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     }
@@ -204,10 +217,31 @@ char *hf_csv_cell(const hf_csv *t, int row, int column)
 
 /* ---- columns and cells ---- */
 
+/* A first line without any of the names is no header. */
+static bool has_header(const hf_csv *t, const char *const *names, int n_name)
+{
+    for (int c = 0; c < t->n_column; c++)
+        for (int k = 0; k < n_name; k++)
+            if (!strcmp(names[k], t->header[c])) return true;
+    return false;
+}
+
+static hf_status refuse_header(hf_csv *t, const char *const *names, int n_required)
+{
+    char list[256] = "";
+    for (int k = 0; k < n_required; k++) {
+        size_t at = strlen(list);
+        snprintf(list + at, sizeof list - at, "%s%s", k ? "," : "", names[k]);
+    }
+    hf_csv_fault(t, t->header_line, NULL, "the first line has to name the columns: ", list);
+    return hf_csv_close_faults(t);
+}
+
 hf_status hf_csv_find_columns(hf_csv *t, const char *const *names, int n_name, int n_required, int *where)
 {
     for (int k = 0; k < n_name; k++)
         where[k] = -1;
+    if (n_required && !has_header(t, names, n_name)) return refuse_header(t, names, n_required);
     for (int c = 0; c < t->n_column; c++) {
         int k = 0;
         while (k < n_name && strcmp(names[k], t->header[c]))

@@ -48,16 +48,16 @@ static void read_node(hf_csv *t, const int *where, int r, int row, double sigma_
 }
 
 /* Every node of the scene looks for its row of the table; rows that nobody found have unknown ids. */
-static hf_status read_nodes(hf_csv *t, const int *where, const hf_built *b, double sigma_m, hf_measured *measured)
+static hf_status read_nodes(hf_csv *t, const int *where, const hf_scene *scene, const hf_model *m, double sigma_m,
+                            hf_measured *measured)
 {
-    const hf_model *m = &b->model;
     hf_arena arena = {0};
     bool *is_found = NULL;
     hf_csv_named *index = hf_csv_index(t, where[ID]);
     hf_status status =
         index ? HF_ARENA_MAKE(&arena, is_found = hf_arena_take(&arena, (size_t)t->n_row, sizeof(bool))) : HF_NO_MEMORY;
     for (int i = 0; i < m->n_node && status == HF_OK; i++) {
-        int r = hf_csv_row_of(index, t->n_row, b->scene.node_id[i]);
+        int r = hf_csv_row_of(index, t->n_row, scene->node_id[i]);
         if (r < 0) continue;
         is_found[r] = true;
         read_node(t, where, r, m->row_of_node[i], sigma_m, measured);
@@ -72,9 +72,8 @@ static hf_status read_nodes(hf_csv *t, const int *where, const hf_built *b, doub
     return status;
 }
 
-static hf_status count_nodes(const char *path, const hf_built *b, const hf_measured *measured, hf_messages *messages)
+static hf_status count_nodes(const char *path, const hf_model *m, const hf_measured *measured, hf_messages *messages)
 {
-    const hf_model *m = &b->model;
     int n = 0;
     for (int row = 0; row < m->n_free + m->n_attachment; row++)
         n += measured->line[row] > 0;
@@ -83,8 +82,8 @@ static hf_status count_nodes(const char *path, const hf_built *b, const hf_measu
                     n, n == 1 ? "" : "s", NODES_LEAST);
 }
 
-hf_status hf_measured_read(const char *path, const hf_built *b, double sigma_m, hf_measured *measured,
-                           hf_messages *messages)
+hf_status hf_measured_read(const char *path, const hf_scene *scene, const hf_model *m, double sigma_m,
+                           hf_measured *measured, hf_messages *messages)
 {
     hf_arena arena = {0};
     hf_csv table = {0};
@@ -92,13 +91,13 @@ hf_status hf_measured_read(const char *path, const hf_built *b, double sigma_m, 
     *measured = (hf_measured){0};
     hf_status status = hf_csv_read(path, N_COLUMN + SPARE_COLUMNS, &table, messages);
     if (status == HF_OK) status = hf_csv_find_columns(&table, column_name, N_COLUMN, Z + 1, where);
-    if (status == HF_OK) status = HF_ARENA_MAKE(&arena, lay_out_measured(&arena, &b->model, measured));
+    if (status == HF_OK) status = HF_ARENA_MAKE(&arena, lay_out_measured(&arena, m, measured));
     measured->block = arena.block;
-    if (status == HF_OK) status = read_nodes(&table, where, b, sigma_m, measured);
+    if (status == HF_OK) status = read_nodes(&table, where, scene, m, sigma_m, measured);
     if (status == HF_OK) status = hf_csv_close_faults(&table);
     if (status == HF_NO_MEMORY) hf_error(messages, status, "%s: out of memory", path);
     hf_csv_free(&table);
-    return status == HF_OK ? count_nodes(path, b, measured, messages) : status;
+    return status == HF_OK ? count_nodes(path, m, measured, messages) : status;
 }
 
 void hf_measured_free(hf_measured *measured)
@@ -215,6 +214,7 @@ static const char *guess_unit(double ratio)
 #define FAR 10.0      /* times what errors do to a node: not an error of this net */
 #define DOUBTFUL 3.0  /* times what they do to all nodes: a word of warning where a motion explains it */
 #define EXPLAINED 0.1 /* of the sum of squares that a motion may leave */
+#define VAGUE 30.0    /* times what errors do to all nodes: sigma_m in another unit */
 #define MANY 0.2      /* of the nodes; fewer are named one by one */
 #define FRAME_SIZE 256
 
@@ -301,6 +301,12 @@ hf_status hf_measured_check(const char *path, const hf_built *b, const double *e
         name_far(path, b, expected_m, all_m, measured, messages);
         return HF_BAD_CASE;
     }
+    double tells_m = sqrt(allowed_square / measured->n_node - all_m * all_m);
+    if (tells_m > VAGUE * all_m)
+        hf_warning(messages,
+                   "%s: with a sigma_m of about %.3g m these places tell next to nothing: section tolerance allows for "
+                   "%.3g m only",
+                   path, tells_m / sqrt(3), all_m);
     rigid_fit f = fit_motion(b, measured);
     if (f.square > DOUBTFUL * DOUBTFUL * allowed_square && f.rest < EXPLAINED * f.square) {
         char frame[FRAME_SIZE];

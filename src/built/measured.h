@@ -15,10 +15,10 @@ typedef struct {
     void *block;
 } hf_measured;
 
-/* sigma_m: of nodes without one of their own; 0: there is none. HF_OK; HF_BAD_CASE with all faults by file, line and
- * id; HF_NO_MEMORY. Free in any case. */
-hf_status hf_measured_read(const char *path, const hf_built *built, double sigma_m, hf_measured *measured,
-                           hf_messages *messages);
+/* Of the nodes of a scene, whose model says the rows. sigma_m: of nodes without one of their own; 0: there is none.
+ * HF_OK; HF_BAD_CASE with all faults by file, line and id; HF_NO_MEMORY. Free in any case. */
+hf_status hf_measured_read(const char *path, const hf_scene *scene, const hf_model *model, double sigma_m,
+                           hf_measured *measured, hf_messages *messages);
 void hf_measured_free(hf_measured *measured);
 
 /* Can errors of this size have moved the nominal net to where it was measured? expected_m [n_node of the model], by

@@ -75,7 +75,8 @@ START_TEST(moves_are_a_table)
     const char *measured = measured_with("m.csv", HEADER, wave, ""), *moves = temp("moves.csv");
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS);
     HIFDM(0, "adjust", path, "--measured", measured, "-o", moves);
-    OUT("nodes measured; supports are taken to be where the case has them");
+    OUT("nodes measured, chi^2 ");
+    OUT(" per coordinate; supports are taken to be where the case has them");
     OUT("psi measured ");
     OUT("psi after 3 moves");
     OUT("all 3 are made (adjust.moves)");
@@ -135,9 +136,25 @@ START_TEST(bad_tables_are_named)
     ERR("has 2 nodes of the net that can move, 3 at least are needed");
     HIFDM(2, "adjust", path, "--measured", file_with("m.csv", HEADER ",sigma_m\nn1_1,0,0,0,-1\nn2_2,0,0,zero,1\n"));
     ERR("sigma_m must be above zero");
+    bad = file_with("m.csv", HEADER ",sigma_m\nn1_1,0,0,0,1e-12\nn1_2,0,0,0,1\nn1_3,0,0,0,1\n");
+    HIFDM(2, "adjust", path, "--measured", bad);
+    ERRS("%s:2: sigma_m of 1e-12 m is too small beside errors of cables of 0.0001 m", bad);
     HIFDM(2, "adjust", path, "--measured", temp("missing.csv"));
     HIFDM(2, "adjust", path);
     ERR("needs --measured FILE");
+}
+END_TEST
+
+/* A table that contradicts its own sigmas, or says nothing, is used with a warning. */
+START_TEST(doubtful_tables_are_told)
+{
+    const char *path = file_with("case.yaml", EA_SCENE SECTIONS), *measured = measured_with("m.csv", HEADER, wave, "");
+    HIFDM(0, "adjust", path, "--measured", measured);
+    ck_assert_ptr_null(strstr(said.err, "do not fit"));
+    HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=1e-5");
+    ERR("these places do not fit the net and its tolerances: chi^2 is ");
+    HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=0.1");
+    ERR("these places tell next to nothing");
 }
 END_TEST
 
@@ -152,6 +169,10 @@ START_TEST(bad_cases_are_named)
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS);
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.range_m=5e-5");
     ERR("adjust.range_m: is smaller than adjust.step_m, which allows no move at all");
+    HIFDM(2, "adjust", path, "--measured", measured, "--set", "tolerance.sigma_support_m=1e-12");
+    ERR("tolerance.sigma_support_m of 1e-12 m is too small beside errors of cables of 0.0001 m");
+    HIFDM(2, "adjust", path, "--measured", measured, "--set", "tolerance.sigma_cut_m=0.5");
+    ERR("tolerance.sigma_cut_m: cable '");
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.set=struts");
     ERR("adjust.set");
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.figure=surface");
@@ -175,6 +196,7 @@ Suite *suite_cli_adjust(void)
     tcase_add_test(tcase, moves_are_a_table);
     tcase_add_test(tcase, no_cable_is_let_out_until_it_is_slack);
     tcase_add_test(tcase, bad_tables_are_named);
+    tcase_add_test(tcase, doubtful_tables_are_told);
     tcase_add_test(tcase, bad_cases_are_named);
     suite_add_tcase(suite, tcase);
     return suite;

@@ -60,7 +60,12 @@ static const struct {
     {"id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0,0,support\n", "id,i,j,group,law,value\nab,a,b,inner,tension,1\n",
      "error: scene: every node is a support: there is nothing to find\n"},
     /* as a spreadsheet in half of Europe saves it */
-    {"id;x_m;y_m;z_m;role\na;0;0;0;support\n", CABLES, "error: @nodes.csv:1: a column is missing: id\n"},
+    {"id;x_m;y_m;z_m;role\na;0;0;0;support\n", CABLES,
+     "error: @nodes.csv:1: columns are separated by commas, not by ';', and numbers have points\n"},
+    {"id,x_m,y_m,z_m,role\na,0,5,0,5,0,5,support\n", CABLES,
+     "error: @nodes.csv:2: 8 fields where the header has 5: decimal commas? Numbers have points\n"},
+    {"a,0,0,0,support\nb,1,0,0,support\n", CABLES,
+     "error: @nodes.csv:1: the first line has to name the columns: id,x_m,y_m,z_m,role\n"},
     /* texts in a result file are UTF-8, and so is JSON; this is Latin-1 */
     {NODES "caf\xe9,1,0.6,0.1,inner\n", CABLES "ce,c,caf\xe9,inner,tension,10\nde,d,caf\xe9,inner,tension,10\n",
      "error: @nodes.csv:6: "},
