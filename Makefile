@@ -8,7 +8,7 @@ LIB_ROOMS := base linalg net truss solve search built case store run
 APP_ROOMS := out app
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
-VERSION := 0.1.0
+VERSION := 0.2.0
 SOVERSION := 0
 BUILD ?= build
 PREFIX ?= /usr/local

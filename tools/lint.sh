@@ -196,6 +196,12 @@ if [ -e .git ]; then
         sed 's/$/:1: not one of the rooms of the top level/' | report || true
 fi
 
+# ---- The version is the Makefile's; what else names it agrees --------------------------------------------------------
+version=$(make -s print-VERSION)
+grep -qx "version: $version" CITATION.cff || echo "CITATION.cff:1: version is not the Makefile's, $version" | report
+[ "$(grep -m 1 '^## \[' CHANGELOG.md | cut -d'[' -f2 | cut -d']' -f1)" = "$version" ] ||
+    echo "CHANGELOG.md:1: the first version is not the Makefile's, $version" | report
+
 # ---- Mutants: an edit that no longer applies would go unseen until the next hours of make mutants --------------------
 "${PYTHON:-/usr/bin/python3}" tools/mutants.py --check 2>&1 | grep -vE '^[0-9]+ mutants$' | report || true
 

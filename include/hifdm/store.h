@@ -63,7 +63,9 @@
  *   /truss       with a nodes, b members, c attachments; attributes mass_kg, n_node, n_member
  *   /truss/node  id, mass_kg [a], position_m [a][3], fixed [a][6]; displacement, reaction [a][6]
  *   /truss/member  id, joint, unit, E_Pa, A_m2, ..., expansion_per_K [b], end [b][2]; end_force [b][12]
- *   /truss/attachment  net_node (index into /scene/node), truss_node (into /truss/node) [c] */
+ *   /truss/attachment  net_node (index into /scene/node), truss_node (into /truss/node) [c]
+ *   /VTKHDF      of a finished run: its shapes as a grid that ParaView opens, linked to the data sets above; the list
+ *                of its arrays is at the top of src/store/vtkhdf.h */
 #ifndef HIFDM_STORE_H
 #define HIFDM_STORE_H
 
@@ -86,6 +88,9 @@ typedef struct hf_store hf_store;
 typedef enum { HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, HF_STAGE_NONE } hf_stage;
 extern const char *const hf_stage_word[4];  /* "form", "optimize", "polish", "none" */
 extern const char *const hf_stage_group[4]; /* where a file keeps the shape: "/form", "/ga/best", "/polish", "/" */
+
+/* The stage whose shape is the result of a finished run. */
+hf_stage hf_store_result_stage(const hf_summary *summary);
 
 /* The identity of a run: 64 hexadecimal digits of a digest of the case's text and overrides, the seed, the scene and
  * the truss (NULL: none), with their ids. HF_OK or HF_NO_MEMORY. */

@@ -53,10 +53,7 @@ static hf_status read_stored(const hf_export_request *o, hf_export_stored *store
     HF_TRY(hf_store_read_summary(o->file, summary, messages));
     if (o->state) return read_state(o, stored, messages);
     bool has[3] = {true, hf_summary_has_best_shape(summary), summary->has_polish};
-    hf_stage result = has[HF_STAGE_POLISH] && summary->polish_is_result ? HF_STAGE_POLISH
-                      : has[HF_STAGE_OPTIMIZE]                          ? HF_STAGE_OPTIMIZE
-                                                                        : HF_STAGE_FORM;
-    hf_stage stage = result;
+    hf_stage result = hf_store_result_stage(summary), stage = result;
     for (int i = 0; o->stage && i < HF_STAGE_NONE; i++)
         if (!strcmp(o->stage, hf_stage_word[i])) stage = (hf_stage)i;
     stored->word = shape_word[stage];

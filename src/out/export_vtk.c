@@ -26,7 +26,7 @@
 #include "base/file_out.h"
 #include "net/wanted.h"
 #include "solve/facet_rms.h"
-#include "store/hdf5.h"
+#include "store/vtkhdf.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
 #include <hifdm/truss.h>
@@ -36,7 +36,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LINE_CELL = 3, TRIANGLE_CELL = 5, QUAD_CELL = 9 }; /* VTK's numbers of the types of cells */
 #define FIELDS_MAX 12 /* point or cell fields of one file; add() demands that all have room */
 
 /* ---- a grid ---- */
@@ -82,48 +81,11 @@ static void put_fields(hf_hdf5 *io, const char *path, const field *list, int n_f
     hf_hdf5_close(io, group);
 }
 
-/* VTK's reader accepts this attribute only as an ASCII string. */
-static void put_type(hf_hdf5 *io, hid_t group)
-{
-    static const char word[] = "UnstructuredGrid";
-    hid_t type = -1, space = -1, attribute = -1;
-    if (io->status != HF_OK) return;
-    if ((type = H5Tcopy(H5T_C_S1)) < 0 || H5Tset_size(type, sizeof word - 1) < 0 ||
-        H5Tset_strpad(type, H5T_STR_NULLPAD) < 0 || (space = H5Screate(H5S_SCALAR)) < 0 ||
-        (attribute = H5Acreate2(group, "Type", type, space, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
-        H5Awrite(attribute, type, word) < 0)
-        hf_hdf5_fail(io, "write", group, "Type");
-    hf_hdf5_close(io, attribute);
-    hf_hdf5_close(io, space);
-    hf_hdf5_close(io, type);
-}
-
-/* Writes the type of each cell; VTK's reader expects one byte for each. */
-static void put_cell_types(hf_hdf5 *io, hid_t group, int n, const unsigned char *type)
-{
-    hid_t space = -1, data_set = -1;
-    if (io->status != HF_OK) return;
-    if ((space = H5Screate_simple(1, &(hsize_t){(hsize_t)n}, NULL)) < 0 ||
-        (data_set = H5Dcreate2(group, "Types", H5T_NATIVE_UCHAR, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
-        H5Dwrite(data_set, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, type) < 0)
-        hf_hdf5_fail(io, "write", group, "Types");
-    hf_hdf5_close(io, data_set);
-    hf_hdf5_close(io, space);
-}
-
 static void put_grid(hf_hdf5 *io, const grid *g)
 {
-    const long n_point = g->n_point, n_cell = g->n_cell, n_corner = g->offset[g->n_cell], version[2] = {1, 0};
-    hid_t group = hf_hdf5_make_group(io, "/VTKHDF");
-    hf_hdf5_put(io, group, ".", "Version", HF_KIND_LONG, 2, version);
-    put_type(io, group);
-    put(io, group, &(field){"NumberOfPoints", "", HF_KIND_LONG, 1, &n_point}, 1);
-    put(io, group, &(field){"NumberOfCells", "", HF_KIND_LONG, 1, &n_cell}, 1);
-    put(io, group, &(field){"NumberOfConnectivityIds", "", HF_KIND_LONG, 1, &n_corner}, 1);
+    hf_vtkhdf_put_cells(io, &(hf_vtkhdf_cells){g->n_point, g->n_cell, g->corner, g->offset, g->type});
+    hid_t group = hf_hdf5_open_group(io, "/VTKHDF");
     put(io, group, &(field){"Points", "m", HF_KIND_REAL, 3, g->position_m}, g->n_point);
-    put(io, group, &(field){"Connectivity", "", HF_KIND_INT, 1, g->corner}, (int)n_corner);
-    put(io, group, &(field){"Offsets", "", HF_KIND_INT, 1, g->offset}, g->n_cell + 1);
-    put_cell_types(io, group, g->n_cell, g->type);
     hf_hdf5_close(io, group);
     put_fields(io, "/VTKHDF/PointData", g->point, g->n_point_field, g->n_point);
     put_fields(io, "/VTKHDF/CellData", g->cell, g->n_cell_field, g->n_cell);
@@ -145,7 +107,7 @@ static void set_lines(int n, int *offset, unsigned char *type)
 {
     for (int e = 0; e <= n; e++)
         offset[e] = 2 * e;
-    memset(type, LINE_CELL, (size_t)n);
+    memset(type, HF_VTKHDF_LINE, (size_t)n);
 }
 
 /* ---- the shapes of a run ---- */
@@ -242,7 +204,7 @@ static void set_facet_cells(scratch *t)
         const int *corner = t->facets.corner + 4 * (size_t)i;
         int n_corner = corner[2] == corner[3] ? 3 : 4;
         t->facet_offset[i] = n;
-        t->facet_type[i] = n_corner == 3 ? TRIANGLE_CELL : QUAD_CELL;
+        t->facet_type[i] = n_corner == 3 ? HF_VTKHDF_TRIANGLE : HF_VTKHDF_QUAD;
         for (int k = 0; k < n_corner; k++)
             t->facet_corner[n++] = corner[k];
     }

@@ -15,6 +15,7 @@ typedef struct {
     hf_comparison *c;
     hf_compare_tell *tell;
     void *context;
+    bool are_results;
 } comparing;
 
 /* A data set of one file: what is read, and how a value looks in memory. */
@@ -219,11 +220,17 @@ static void tell_absent(comparing *q, const char *path, const hf_hdf5 *io)
     q->c->n_different++;
 }
 
+/* What results have for ParaView follows from their other groups, and older versions did not write it. */
+static bool is_second(const comparing *q, const char *path)
+{
+    return q->are_results && !strncmp(path, "/VTKHDF/", 8);
+}
+
 static void visit_a(void *context, const char *path, hid_t object, H5I_type_t type)
 {
     comparing *q = context;
     (void)object;
-    if (type != H5I_DATASET) return;
+    if (type != H5I_DATASET || is_second(q, path)) return;
     q->c->n_data_set++;
     if (has_data_set(&q->b, path))
         q->c->n_different += compare_data_set(q, path);
@@ -236,7 +243,7 @@ static void visit_b(void *context, const char *path, hid_t object, H5I_type_t ty
 {
     comparing *q = context;
     (void)object;
-    if (type != H5I_DATASET || has_data_set(&q->a, path)) return;
+    if (type != H5I_DATASET || is_second(q, path) || has_data_set(&q->a, path)) return;
     q->c->n_data_set++;
     tell_absent(q, path, &q->a);
     if (q->b.status == HF_OK) q->b.status = q->a.status;
@@ -249,11 +256,13 @@ hf_status hf_compare_files(const char *a, const char *b, hf_comparison *comparis
                    {.path = b, .messages = messages, .status = HF_OK, .file = -1},
                    comparison,
                    tell,
-                   context};
+                   context,
+                   false};
     comparison->n_data_set = comparison->n_different = 0;
     hf_hdf5_lock();
     hf_hdf5_open_file(&q.a, a);
     if (q.a.status == HF_OK) hf_hdf5_open_file(&q.b, b);
+    q.are_results = hf_hdf5_has(&q.a, q.a.file, "/scene") && hf_hdf5_has(&q.b, q.b.file, "/scene");
     if (q.b.status == HF_OK) hf_hdf5_walk(&q.a, visit_a, &q);
     if (q.a.status == HF_OK) hf_hdf5_walk(&q.b, visit_b, &q);
     hf_status status = q.a.status != HF_OK ? q.a.status : q.b.status;

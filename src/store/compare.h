@@ -1,5 +1,6 @@
 /* compare - two result files, data set by data set. Attributes are not compared: they hold times, machine and
- * provenance, which differ between two runs of the same case, and a summary of what is in the data sets. */
+ * provenance, which differ between two runs of the same case, and a summary of what is in the data sets. Nor is /VTKHDF
+ * of two results, which follows from the rest of each. */
 #ifndef HIFDM_COMPARE_H
 #define HIFDM_COMPARE_H
 

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "linalg/band.h"
 #include "store/store_internal.h"
+#include "store/vtkhdf.h"
 
 #include <assert.h>
 #include <gsl/gsl_version.h>
@@ -443,6 +444,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
     if (finished) hf_layout_put_goals(&s->f.io, summary);
     if (finished) hf_layout_put_cases(&s->f.io, summary);
     if (finished) hf_layout_put_tolerance(&s->f.io, summary);
+    if (finished) hf_vtkhdf_put_result(&s->f.io, summary);
     hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "status", finished ? hf_status_word(summary->status) : "unfinished");
     hf_store_put_time(s, finished ? "finished_utc" : "published_utc");
 }

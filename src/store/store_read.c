@@ -237,6 +237,12 @@ static void read_shape(hf_hdf5 *io, const char *path, hf_shape *shape)
     hf_hdf5_close(io, group);
 }
 
+hf_stage hf_store_result_stage(const hf_summary *s)
+{
+    if (s->has_polish && s->polish_is_result) return HF_STAGE_POLISH;
+    return hf_summary_has_best_shape(s) ? HF_STAGE_OPTIMIZE : HF_STAGE_FORM;
+}
+
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages)
 {
     hf_hdf5_lock();

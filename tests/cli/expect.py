@@ -35,9 +35,13 @@ def refuse(word):
 
 
 def data_sets(file):
-    """Path -> data set, of all of them."""
+    """Path -> data set, of all of them, but second names in the grid for ParaView."""
     found = {}
-    file.visititems(lambda name, item: found.update({name: item}) if hasattr(item, "dtype") else None)
+    for name, item in file.items():
+        if hasattr(item, "dtype"):
+            found[name] = item
+        elif name != "VTKHDF":
+            found.update({f"{name}/{below}": of for below, of in data_sets(item).items()})
     return found
 
 

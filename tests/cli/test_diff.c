@@ -10,7 +10,8 @@ START_TEST(differences_are_named)
     OUT(" data sets, 0 differ; attributes (times, machine, provenance, summary) are not compared\n");
     SHELL(0,
           "\"$1\" -c 'import h5py, sys; f = h5py.File(sys.argv[1], \"a\"); f[\"ga/psi_m\"][2, 4] *= 1 + 1e-9; "
-          "f[\"form/law\"][3] = 2; del f[\"polish/law\"]; f[\"more\"] = 1' \"$2\"",
+          "f[\"form/law\"][3] = 2; del f[\"polish/law\"], f[\"VTKHDF\"]; "
+          "f[\"more\"] = 1' \"$2\"",
           python_program(), b);
     HIFDM(1, "diff", a, b);
     OUT("/ga/psi_m [2, 4]: 0.0");
@@ -24,6 +25,20 @@ START_TEST(differences_are_named)
     HIFDM(5, "diff", a, c);
     HIFDM(2, "diff", a);
     HIFDM(2, "diff", a, b, "--rtol", "-1");
+}
+END_TEST
+
+/* In a result /VTKHDF is what its other groups say; a file of `export --vtk` has nothing else. */
+START_TEST(exports_are_compared)
+{
+    const char *a = temp("a.h5"), *b = temp("b.h5"), *of_a = temp("a"), *of_b = temp("b");
+    HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", a, "--quiet");
+    HIFDM(0, "run", temp("c.yaml"), "-o", b, "--quiet", "--set", "form.pretension_N=7");
+    HIFDM(0, "export", a, "--vtk", of_a);
+    HIFDM(0, "export", b, "--vtk", of_b);
+    HIFDM(0, "diff", temp("a/theoretical.hdf"), temp("b/theoretical.hdf"));
+    HIFDM(1, "diff", temp("a/form.hdf"), temp("b/form.hdf"));
+    OUT("/VTKHDF/CellData/tension_N [0]: ");
 }
 END_TEST
 
@@ -88,6 +103,7 @@ Suite *suite_cli_diff(void)
     Suite *suite = suite_create("cli/diff");
     TCase *tcase = tcase_create("diff");
     tcase_add_test(tcase, differences_are_named);
+    tcase_add_test(tcase, exports_are_compared);
     tcase_add_test(tcase, the_tolerance_is_relative_to_the_second_file);
     tcase_add_test(tcase, what_is_no_file_is_named);
     tcase_add_test(tcase, progress_for_programs);

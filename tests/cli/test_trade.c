@@ -44,6 +44,27 @@ START_TEST(paraview_file_of_the_truss)
 }
 END_TEST
 
+/* The result file itself, of a rigid rim, of a truss, of states as built, of samples; whatever its name. */
+START_TEST(paraview_opens_the_result)
+{
+    static const char *const argument[][5] = {
+        {"configs/straight-edges.yaml", "optimize.generations=3", "title=grid", "form optimize polish\n", "c.h5"},
+        {"configs/straight-edges-truss.yaml", "optimize.generations=1", "title=grid", "form optimize polish\n",
+         "t.hdf"},
+        {"configs/paraboloid-cases.yaml", "title=grid", "title=grid",
+         "case_cold case_cup_down case_cup_up case_spun case_sun form\n", "e.hdf"},
+        {NULL, "scene.EA_inner_N=1e5", "scene.EA_boundary_N=2e5", "form\n", "s.hdf"}};
+    const char *samples = file_with("s.yaml", SMALL_SCENE "tolerance: {sigma_cut_m: 1e-4, samples: 20}\n");
+    const char *const *of = argument[_i], *out = temp(of[4]);
+    HIFDM(0, "run", of[0] ? keep(source_path(of[0])) : samples, "-o", out, "--quiet", "--set", of[1], "--set", of[2]);
+    const char *const argv[] = {python_program(), source_path("tests/cli/vtk_reads.py"), out, NULL};
+    demand_exit(run_command(HANG_S, argv), 0, "vtk_reads.py", __LINE__);
+    if (strstr(said.out, "no VTK here")) skip_for_tool("cli/trade: results read by VTK", "no Python module vtk");
+    OUT(of[3]);
+    HIFDM(0, "show", out);
+}
+END_TEST
+
 /* Triangles of a double net and quadrilaterals of a cylinder: their errors along the normal, by numpy. */
 START_TEST(paraview_files_of_facets)
 {
@@ -356,6 +377,7 @@ Suite *suite_cli_trade(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, paraview_files_hold_the_stored_numbers);
     tcase_add_test(tests, paraview_file_of_the_truss);
+    tcase_add_loop_test(tests, paraview_opens_the_result, 0, 4);
     tcase_add_loop_test(tests, paraview_files_of_facets, 0, 2);
     tcase_add_test(tests, tension_ratio_of_each_set);
     tcase_add_loop_test(tests, mesh_makes_pillows, 0, 2);

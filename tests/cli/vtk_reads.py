@@ -1,5 +1,6 @@
 """vtk_reads.py RESULT FOLDER: VTK (python3-vtk9) reads every file of `hifdm export --vtk`, and point and cell data are
-the numbers of the result file, bit by bit. Without VTK h5py looks at the same files, which is no proof that VTK can."""
+the numbers of the result file, bit by bit. vtk_reads.py RESULT: the same of the grid in the result itself. Without VTK
+h5py looks at the same files, which is no proof that VTK can."""
 import os
 import sys
 
@@ -14,6 +15,7 @@ except ImportError:
     print("no VTK here: the files are read by h5py alone")
 
 CELLS = {(3, 2), (5, 3), (9, 4)}  # lines, triangles, quadrilaterals in VTK's numbers, and their points
+FORCES = ["tension_N", "q_N_per_m", "length_m"]
 LAWS = ["tension", "length", "force_density", "elastic"]
 
 
@@ -157,7 +159,67 @@ def check_truss(result, path, stage, read):
     assert np.allclose(cell["axial_force_N"], tension, rtol=0, atol=1e-6 * np.abs(tension).max())
 
 
-def main(result_path, folder):
+def by_calculator(path, formula):
+    """The points after ParaView's filter Calculator with Coordinate Results."""
+    reader, calculator = vtk.vtkHDFReader(), vtk.vtkArrayCalculator()
+    reader.SetFileName(path)
+    calculator.SetInputConnection(reader.GetOutputPort())
+    calculator.CoordinateResultsOn()
+    calculator.SetResultArrayType(vtk.VTK_DOUBLE)
+    for name in ("coords", *by_vtk(path)[2]):
+        if name == "coords":
+            calculator.AddCoordinateVectorVariable(name)
+        elif name.endswith("position_m"):
+            calculator.AddVectorArrayName(name)
+    calculator.SetFunction(formula)
+    calculator.Update()
+    return vtk_to_numpy(calculator.GetOutput().GetPoints().GetData())
+
+
+def check_result(path):
+    """The grid of a result has the arrays of its other groups, all of them and no others, and its stages and states can
+    be made the coordinates."""
+    result = h5py.File(path, "r")
+    assert result.attrs["finished"]
+    scene, shapes = result["scene"], {"form": result["form"]}
+    if "ga/best" in result:
+        shapes["optimize"] = result["ga/best"]
+    if "polish" in result:
+        shapes["polish"] = result["polish"]
+    last = shapes["polish" if "polish" in shapes and result["polish"].attrs["polish_is_result"] else
+                  "optimize" if "optimize" in shapes else "form"]
+    if "cases" in result:
+        shapes.update({f"case_{n}": g for n, g in result["cases"].items() if n != "name" and "position_m" in g})
+    point = {f"{name}_position_m": shape["position_m"] for name, shape in shapes.items()}
+    cell = {f"{name}_{of}": shape[of] for name, shape in shapes.items() for of in FORCES}
+    cell.update({of: last[of] for of in FORCES}, group=scene["cable/group"])
+    cell["theoretical_length_m"] = scene["cable/length_m"]
+    point.update(role=scene["node/role"], theoretical_position_m=scene["node/position_m"])
+    point.update({"load_N": scene["node/load_N"]} if "load_N" in scene["node"] else {})
+    cell.update({"EA_N": scene["cable/EA_N"]} if "EA_N" in scene["cable"] else {})
+    if "tolerance" in result:
+        point["tolerance_node_deviation_m"] = result["tolerance/node_deviation_m"]
+        cell["tolerance_cable_share"] = result["tolerance/cable_share"]
+    for read in [by_h5py] + ([by_vtk] if vtk else []):
+        points, ends, in_points, in_cells = read(path)
+        same("points", points, last["position_m"][:])
+        same("ends", ends, scene["cable/end"][:])
+        for mine, theirs in ((in_points, point), (in_cells, cell)):
+            assert mine.keys() == theirs.keys(), mine.keys() ^ theirs.keys()
+            for name, values in theirs.items():
+                same(name, mine[name], values[:])
+    for grid, mine in (("PointData", point), ("CellData", cell)):  # one copy in the file, under two names
+        for name, values in mine.items():
+            assert (result["VTKHDF"][grid][name] == values) == (name not in ("role", "group")), name
+    for name, shape in shapes.items() if vtk else ():
+        same(name, by_calculator(path, f"{name}_position_m"), shape["position_m"][:])
+    print(" ".join(sorted(shapes)))
+
+
+def main(result_path, folder=None):
+    if not folder:
+        check_result(result_path)
+        return
     result = h5py.File(result_path, "r")
     stages = {"theoretical": None, "form": "form"}
     if "ga/best" in result:
