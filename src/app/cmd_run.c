@@ -2,10 +2,13 @@
 #include "app/cmd_run.h"
 
 #include "app/options.h"
+#include "app/output.h"
 #include "app/progress.h"
 #include "base/signals.h"
 #include "out/print.h"
 #include <hifdm/run.h>
+
+#include <unistd.h>
 
 static hf_status check_tasks(const hf_options *o, hf_messages *messages)
 {
@@ -44,7 +47,7 @@ hf_status hf_cmd_run_case(const hf_options *o, FILE *file, hf_messages *messages
     if (o->json)
         hf_summary_write_json(&summary, status, messages->text, path, file);
     else if (path && !o->quiet)
-        hf_print_summary(&summary, path, file);
+        hf_print_summary(&summary, path, (hf_print_style){o->verbose, hf_output_has_colour(STDOUT_FILENO)}, file);
     return status;
 }
 

@@ -7,6 +7,7 @@
 #include "base/file_io.h"
 #include "base/signals.h"
 #include "linalg/band.h"
+#include "out/print.h"
 #include <hifdm/batch.h>
 #include <hifdm/store.h>
 
@@ -65,10 +66,25 @@ static void keep_exit_status(void)
     _exit(hf_status_exit_code(HF_NO_MEMORY));
 }
 
+static void say_in_colours(const char *lines)
+{
+    for (const char *line = lines; *line; line += strcspn(line, "\n") + 1) {
+        const char *colour = !strncmp(line, "error:", 6) ? HF_PRINT_RED : HF_PRINT_YELLOW;
+        size_t n = strcspn(line, "\n") + 1, word = strcspn(line, ":\n");
+        hf_output_write(STDERR_FILENO, colour, strlen(colour));
+        hf_output_write(STDERR_FILENO, line, word);
+        hf_output_write(STDERR_FILENO, HF_PRINT_PLAIN, strlen(HF_PRINT_PLAIN));
+        hf_output_write(STDERR_FILENO, line + word, n - word);
+    }
+}
+
 /* Messages need memory, too: a failure is never silent. */
 static void say(const hf_messages *messages, hf_status status)
 {
-    if (messages->text) hf_output_write(STDERR_FILENO, messages->text, strlen(messages->text));
+    if (messages->text && hf_output_has_colour(STDERR_FILENO))
+        say_in_colours(messages->text);
+    else if (messages->text)
+        hf_output_write(STDERR_FILENO, messages->text, strlen(messages->text));
     if (hf_status_exit_code(status) == hf_status_exit_code(HF_NO_MEMORY) &&
         (!messages->text || !strstr(messages->text, "error: ")))
         fprintf(stderr, "error: %s\n", hf_status_text(status));

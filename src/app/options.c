@@ -200,6 +200,8 @@ static const hf_option option_table[] = {
      NULL},
     {"--quiet", NULL, NULL, "no progress and no summary; warnings and errors stay",
      "run evaluate sweep merge tolerance adjust", read_flag, AT(quiet), NULL},
+    {"--verbose", "-v", NULL, "the summary with certificates, ratios of sets, times and all else", "run tolerance show",
+     read_flag, AT(verbose), NULL},
     {"--rtol", NULL, "R", "numbers are equal when |a-b| <= atol + R |b| (default 0: to the bit)", "diff",
      read_tolerance, AT(rtol), NULL},
     {"--atol", NULL, "A", "see --rtol", "diff", read_tolerance, AT(atol), NULL},

@@ -33,7 +33,7 @@ struct hf_options {
     uint64_t seed;
     double rtol, atol; /* of diff */
     hf_progress_mode progress;
-    bool json, quiet, force;
+    bool json, quiet, verbose, force;
     bool help;               /* --help */
     const hf_command *topic; /* of help; NULL = all commands */
     hf_help_form help_as;

@@ -4,7 +4,8 @@
 #include "base/file_io.h"
 
 #include <errno.h>
-#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #define PART 4096     /* bytes that a pipe takes at once when it takes any: PIPE_BUF */
@@ -23,6 +24,12 @@ int hf_output_write(int file, const char *text, size_t n)
         if (hf_file_io_write(file, text, part) != 0) return -1;
     }
     return 0;
+}
+
+bool hf_output_has_colour(int file)
+{
+    const char *none = getenv("NO_COLOR"), *term = getenv("TERM");
+    return isatty(file) && !(none && *none) && term && strcmp(term, "dumb") != 0;
 }
 
 static ssize_t take(void *unused, const char *text, size_t n)

@@ -13,11 +13,24 @@ void hf_print_line(FILE *file, const char *format, ...) HF_PRINTF(2, 3);
 /* Messages that a file holds, each of them escaped. */
 void hf_print_lines(const char *lines, FILE *file);
 
-/* The summary in a few lines. path: of the result file, or NULL. */
-void hf_print_summary(const hf_summary *summary, const char *path, FILE *file);
+#define HF_PRINT_BOLD "\x1b[1m"
+#define HF_PRINT_YELLOW "\x1b[33m"
+#define HF_PRINT_RED "\x1b[31m"
+#define HF_PRINT_PLAIN "\x1b[0m"
+
+typedef struct {
+    bool verbose;    /* certificates, ratios of sets, times and all else that an engineer may want to look up */
+    bool has_colour; /* for a terminal: app/output.h */
+} hf_print_style;
+
+/* The summary: the answer in its first line, what the case is, a row for each stage. path: of the result, or NULL. */
+void hf_print_summary(const hf_summary *summary, const char *path, hf_print_style style, FILE *file);
 
 /* "85 us", "1.3 ms", "2.7 s", "4 min 10 s" */
 void hf_print_duration(double seconds, char *text, size_t size);
+
+/* "4.2315", "inf", or "-" when it has no value. */
+const char *hf_print_decimals(double value, char text[32]);
 
 /* "640 B", "1.2 MB" */
 void hf_print_bytes(double bytes, char *text, size_t size);

@@ -98,10 +98,10 @@ static void print_shares(const hf_tolerance_summary *t, FILE *f)
         snprintf(line + used, sizeof line - used, "%s%s %.2g %%", k ? ", " : "", t->ranked_id[k],
                  100 * t->ranked_share[k]);
     }
-    if (*line) hf_print_line(f, "                cables with the largest shares in it: %s", line);
+    if (*line) hf_print_line(f, "                cables with the largest shares in the variance of psi: %s", line);
 }
 
-void hf_print_tolerance(const hf_tolerance_summary *t, FILE *f)
+void hf_print_tolerance(const hf_tolerance_summary *t, bool verbose, FILE *f)
 {
     char wall[32];
     hf_print_duration(t->tolerance_wall_s, wall, sizeof wall);
@@ -116,9 +116,9 @@ void hf_print_tolerance(const hf_tolerance_summary *t, FILE *f)
     fputs(" without errors; ", f);
     fprintf(f, "%d with slack cables, %d with loose nodes, %d without a shape; %s\n", t->n_with_slack, t->n_with_loose,
             t->n_failed, wall);
-    for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)
+    for (int k = 0; verbose && k < HF_TOLERANCE_N_MEASURE; k++)
         if (k < HF_TOLERANCE_SLACK) print_measure(&t->figure[k], k, f);
-    print_first_order(t, f);
+    if (verbose) print_first_order(t, f);
     print_yield(t, f);
     print_shares(t, f);
 }

@@ -4,6 +4,7 @@
 
 #include "out/print.h"
 
-void hf_print_tolerance(const hf_tolerance_summary *tolerance, FILE *file);
+/* In few lines what an engineer asks for first; `verbose`: all measures, the control by first order. */
+void hf_print_tolerance(const hf_tolerance_summary *tolerance, bool verbose, FILE *file);
 
 #endif

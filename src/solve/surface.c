@@ -20,16 +20,16 @@ double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz)
     return loss_dB <= HF_RUZE_MOST_DB ? loss_dB : (double)NAN;
 }
 
-double hf_surface_ruze_limit_Hz(double half_path_rms_m)
+double hf_surface_frequency_of_loss_Hz(double half_path_rms_m, double loss_dB)
 {
-    return sqrt(HF_RUZE_MOST_DB / DB_PER_SQUARE) * LIGHT_M_PER_S / (4 * PI * half_path_rms_m);
+    return sqrt(loss_dB / DB_PER_SQUARE) * LIGHT_M_PER_S / (4 * PI * half_path_rms_m);
 }
 
 static double note_loss(const hf_double_list *frequencies_Hz, double half_path_rms_m, double *loss_dB)
 {
     for (int k = 0; k < frequencies_Hz->n; k++)
         loss_dB[k] = hf_surface_gain_loss_dB(half_path_rms_m, frequencies_Hz->value[k]);
-    return hf_surface_ruze_limit_Hz(half_path_rms_m);
+    return hf_surface_frequency_of_loss_Hz(half_path_rms_m, HF_RUZE_MOST_DB);
 }
 
 static void note_losses(const hf_surface_settings *s, hf_surface_measures *to)

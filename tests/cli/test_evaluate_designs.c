@@ -54,7 +54,7 @@ START_TEST(symmetric_runs_store_who_follows_whom)
            "len(set(b['ga/gene_leader'][:].tolist())) == 30",
            "(b['ga/design_N'][:] == b['ga/design_N'][:][:, :, b['ga/gene_leader'][:]]).all()",
            "b['ga/design_N'].shape == (4, 50, 120)");
-    HIFDM(0, "show", out);
+    HIFDM(0, "show", out, "-v");
     OUT("symmetry: planes x and y; 30 independent genes of 120\n");
     HIFDM(0, "check", CHEN, "--set", "optimize.symmetry=auto");
     OUT("symmetry: auto, planes x and y; 30 independent genes of 120\n");

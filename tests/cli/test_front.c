@@ -140,7 +140,7 @@ END_TEST
 START_TEST(generations_end_in_a_front)
 {
     const char *file = temp("f.h5"), *table = temp("f.csv"), *again = temp("r.csv"), *json;
-    HIFDM(0, "run", THREE, "-o", file);
+    HIFDM(0, "run", THREE, "-o", file, "--verbose");
     OUT(": the end of the front with the least goal_0_psi; found in generation ");
     OUT(" points, 0 of them dominated, 0 failed; ");
     HIFDM(0, "show", file, "--json");

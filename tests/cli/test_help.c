@@ -94,7 +94,7 @@ static const struct {
     {"hifdm e", "evaluate export "},
     {"hifdm run --th", "--threads "},
     {"hifdm schema -", "--help "},
-    {"hifdm show --", "--help --json "},
+    {"hifdm show --", "--help --json --verbose "},
     {"hifdm help ru", "run "},
     {"hifdm run ''", "case.yaml dir "},
     {"hifdm show r", "result.h5 "},

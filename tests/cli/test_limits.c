@@ -29,7 +29,8 @@ START_TEST(nets_of_triangles_reach_their_optima)
         double psi_mm;
     } of[] = {{"triangles_a", "lm", 4.0141387}, {"triangles_a", "ga", 4.0141387}, {"triangles_c", "ga", 3.8678978}};
     const char *path = net_of(of[_i].net, PAPER), *out = temp("r.h5");
-    HIFDM(0, "run", path, "-o", out, "--set", "optimize.variation=chain", "--set", /* the start that leads there */
+    HIFDM(0, "run", path, "-o", out, "-v", "--set", "optimize.variation=chain",
+          "--set", /* the start that leads there */
           keep(formatted("optimize.method=%s", of[_i].method)));
     OUT("LM optimum");
     OUT("held by ");
@@ -57,7 +58,7 @@ END_TEST
 START_TEST(a_cap_that_holds_it_is_named_and_met)
 {
     const char *path = net_of("loaded", LOADED), *out = temp("r.h5");
-    HIFDM(0, "run", path, "-o", out, "--set", "optimize.boundary_ratio_cap=1.1");
+    HIFDM(0, "run", path, "-o", out, "-v", "--set", "optimize.boundary_ratio_cap=1.1");
     OUT("upper bounds and the cap on the boundary ratio\n");
     EXPECT(out, "--", "a['polish'].attrs['psi_m'] * 1e3 > 132.52853", "a['polish'].attrs['polish_is_at_cap']",
            "0 <= 1.1 - a['polish'].attrs['boundary_tension_ratio'] < 1e-8", "a['polish'].attrs['polish_stop'] == 0");
@@ -155,7 +156,7 @@ START_TEST(nothing_is_a_part_of_a_psi_of_zero)
 {
     const char *path = net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0,0,support\nd,0.9,0,0,inner\n",
                                 "id,i,j,group,law,value\n1,a,d,boundary,tension,\n2,d,b,inner,tension,\n");
-    HIFDM(0, "run", path, "-o", temp("r.h5"), "--set", "optimize.range_N=2", "--set", "optimize.generations=5");
+    HIFDM(0, "run", path, "-o", temp("r.h5"), "-v", "--set", "optimize.range_N=2", "--set", "optimize.generations=5");
     OUT("psi 0.0000 mm; found in generation 0");
     ck_assert_ptr_null(strstr(said.out, "nan"));
 }
@@ -195,7 +196,7 @@ START_TEST(a_variable_may_act_on_nothing)
     ck_assert(!strstr(said.out, "stalled"));
     EXPECT(out, "--", "a['polish'].attrs['polish_stop'] == 0",
            "a['polish'].attrs['merit'] < 0.9 * a['form'].attrs['merit']");
-    HIFDM(0, "run", path, "-o", out, "--force", "--set", "optimize.method=lm", "--set", common[0], "--set",
+    HIFDM(0, "run", path, "-o", out, "--force", "-v", "--set", "optimize.method=lm", "--set", common[0], "--set",
           "optimize.goals=[{goal: tension, set: A, target: 3}, {goal: psi}]", "--set",
           "optimize.limits=[{limit: tension, set: boundary, bounds: [9, 100]}]");
     OUT(" and 4 limits\n");

@@ -30,7 +30,7 @@ START_TEST(node_on_a_slack_cable)
 {
     const char *net = net_with(NODES "b,0,1,0.1,inner,0,0,0\n", CABLES "ab,a,b,inner,length,1.3,\n");
     const char *result = temp("r.h5");
-    HIFDM(0, "run", net, "-o", result, "--set", by(_i));
+    HIFDM(0, "run", net, "-o", result, "--verbose", "--set", by(_i));
     ERR("no taut cable holds these nodes of the form-finding shape, 1: b (cables ab)");
     OUT("form-finding  psi - mm");
     EXPECT(result, "--", "a['form'].attrs['n_loose'] == 1", "np.allclose(a['form/position_m'][1], [0, 1, 0.1])");
@@ -42,7 +42,7 @@ START_TEST(node_between_slack_cables)
 {
     const char *cables = CABLES "ac,a,c,inner,elastic,1.1,1e5\ncb,c,b,inner,elastic,1.1,1e5\n", *result = temp("r.h5");
     const char *net = net_with(NODES "b,2,0,0,support,0,0,0\nc,1,0.1,0,inner,0,0,0\n", cables);
-    HIFDM(0, "run", net, "-o", result, "--set", by(_i));
+    HIFDM(0, "run", net, "-o", result, "--verbose", "--set", by(_i));
     ERR("no taut cable holds these nodes of the form-finding shape, 1: c (cables ac, cb)");
     EXPECT(result, "--", "np.allclose(a['form/position_m'][2], [1, 0.1, 0])");
     net = net_with(NODES "b,2,0,0,support,0,0,0\nc,1,0.1,0,inner,0,0,-1\n", cables);

@@ -115,7 +115,7 @@ START_TEST(less_is_stored_where_less_is_asked_for)
            "a['ga'].attrs['base_psi_m'] == b['ga'].attrs['base_psi_m']",
            "all(name.startswith(('ga/', 'case/')) for name in differing(a, b))");
     HIFDM(1, "diff", thin, run_once());
-    HIFDM(0, "show", thin);
+    HIFDM(0, "show", thin, "-v");
     OUT("found in generation ");
     HIFDM(0, "report", thin, "-o", temp("thin.html"));
     HIFDM(0, "export", thin, "--stage", "optimize", "--csv", temp("thin"));

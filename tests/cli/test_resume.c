@@ -303,7 +303,7 @@ START_TEST(another_case_is_told_key_by_key)
     HIFDM(0, "run", c, "-o", path, "--quiet");
     HIFDM(0, "run", c, "-o", path);
     ERR("is the finished result of this case; --restart computes it again");
-    OUT("optimisation");
+    OUT("\n  GA            ");
     HIFDM(5, "run", c, "-o", path, "--set", "form.pretension_N=11", "--set", "optimize.elites=3");
     ERR("finished result of another case; what differs: form.pretension_N, optimize.elites. Use --restart");
     HIFDM(5, "run", c, "-o", path, "--seed", "8");
@@ -314,7 +314,7 @@ START_TEST(another_case_is_told_key_by_key)
     ERR("what differs: optimize,");
     HIFDM(0, "recover", path);
     ERR("is finished: there is nothing to recover");
-    OUT("optimisation");
+    OUT("\n  GA            ");
     HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", path, "--restart", "--quiet");
     EXPECT(path, "--", "'ga' not in a");
     const char *net = net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,2,0,0,support\nc,1,1,0.5,inner\n"

@@ -118,10 +118,11 @@ END_TEST
 START_TEST(summary_says_what_json_says)
 {
     const char *out = temp("c.h5");
-    HIFDM(0, "run", CHEN, "-o", out, SHORT);
-    OUT("12 m x 10 m parabolic cylinder, straight module edges\n");
+    HIFDM(0, "run", CHEN, "-o", out, "--verbose", SHORT);
+    ck_assert_int_eq(strncmp(said.out, "psi 6.", 6), 0); /* the answer comes first */
+    OUT("  case          12 m x 10 m parabolic cylinder, straight module edges\n");
     OUT("121 nodes (85 free), 220 cables");
-    OUT("psi 6.60");
+    OUT("form-finding  psi 6.60");
     OUT("after 67 iterations, stopped by rms_change");
     OUT("15 generations");
     OUT("cpu_s / (wall_s * threads) = 0."); /* a share of the threads' time */
@@ -148,6 +149,58 @@ START_TEST(show_gives_the_numbers_of_the_run)
 }
 END_TEST
 
+/* The answer in the first line, by Ruze's formula from psi: 1 dB is lost where 4 pi psi / lambda = sqrt(ln(10)/10). */
+START_TEST(summary_begins_with_the_answer)
+{
+    const char *out = temp("c.h5");
+    HIFDM(0, "run", keep(source_path("configs/chen2022.yaml")), "-o", out);
+    ck_assert_str_eq(said.err, ""); /* the case that `make run` shows has nothing to be warned of */
+    ck_assert_int_le(count_of(said.out, "\n"), 12);
+    ck_assert(!strchr(said.out, '\x1b')); /* colours are for terminals */
+    const char *text = file_with("said.txt", said.out);
+    EXPECT(text, out, "--", "('psi %.4f mm, ' % (b['ga'].attrs['best_psi_m'] * 1e3)).encode() == a[:15]",
+           "('; good to %.3g GHz at 1 dB (its nodes, by psi)' % (np.sqrt(np.log(10) / 10) * 299792458 / (4 * np.pi * "
+           "b['ga'].attrs['best_psi_m']) / 1e9)).encode() in a.splitlines()[0]",
+           "[w.split()[:3] for w in a.decode().splitlines()[4:7]] == [[n, '%.4f' % (o.attrs[p + 'psi_m'] * 1e3), "
+           "'%.4f' % o.attrs[p + 'boundary_tension_ratio']] for n, o, p in (('form-finding', b['form'], ''), "
+           "('GA', b['ga'], 'best_'), ('LM', b['polish'], ''))]");
+    HIFDM(0, "show", out);
+    EXPECT(text, file_with("shown.txt", said.out), "--", "a == b");
+}
+END_TEST
+
+/* By its facets where a surface is wanted, and after the best fit, both by Ruze's formula. */
+START_TEST(surface_says_what_a_reflector_is_good_to)
+{
+    const char *out = temp("r.h5");
+    HIFDM(0, "run", REFLECTOR, "-o", out);
+    EXPECT(file_with("said.txt", said.out), out, "--",
+           "('; good to %.3g GHz at 1 dB (its facets; %.3g GHz after the best fit)' % tuple(np.sqrt(np.log(10) / 10) * "
+           "299792458 / (4e9 * np.pi * b['surface/form'].attrs[n + 'half_path_rms_m']) for n in ('facet_', "
+           "'facet_fit_'))).encode() in a.splitlines()[0]");
+}
+END_TEST
+
+#define ON_TERMINAL "script -qec \"\\\"$0\\\" show \\\"$1\\\"\" /dev/null"
+
+START_TEST(colours_are_for_terminals)
+{
+    const char *out = temp("c.h5");
+    SHELL(0, "command -v script >/dev/null && echo yes || true", "");
+    if (!strstr(said.out, "yes")) {
+        skip_for_tool("cli/run: colours on a terminal", "no script");
+        return;
+    }
+    HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", out, "--quiet");
+    SHELL(0, "unset NO_COLOR; TERM=xterm " ON_TERMINAL, out);
+    OUT("\x1b[1mpsi ");
+    SHELL(0, "NO_COLOR=1 TERM=xterm " ON_TERMINAL, out);
+    ck_assert(!strchr(said.out, '\x1b'));
+    SHELL(0, "unset NO_COLOR; TERM=dumb " ON_TERMINAL, out);
+    ck_assert(!strchr(said.out, '\x1b'));
+}
+END_TEST
+
 Suite *suite_cli_run(void)
 {
     Suite *suite = suite_create("cli/run");
@@ -161,6 +214,9 @@ Suite *suite_cli_run(void)
     tcase_add_test(tcase, a_failed_run_fails_again);
     tcase_add_test(tcase, summary_says_what_json_says);
     tcase_add_test(tcase, show_gives_the_numbers_of_the_run);
+    tcase_add_test(tcase, summary_begins_with_the_answer);
+    tcase_add_test(tcase, surface_says_what_a_reflector_is_good_to);
+    tcase_add_test(tcase, colours_are_for_terminals);
     suite_add_tcase(suite, tcase);
     return suite;
 }

@@ -90,7 +90,7 @@ START_TEST(mesh_makes_pillows)
     const char *out = temp("m.h5"),
                *path = file_with("m.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, "
                                            "rear_distance_m: 1.8}}\nform: {prestress: exact}\nsurface: {}\n");
-    HIFDM(0, "run", path, "-o", out, "--set", grid[_i], "--set", "surface.mesh_tension_N_per_m=1");
+    HIFDM(0, "run", path, "-o", out, "-v", "--set", grid[_i], "--set", "surface.mesh_tension_N_per_m=1");
     OUT("; pillow 0.");
     HIFDM(0, "export", out, "--vtk", temp("vtk"));
     const char *const argv[] = {python_program(), keep(source_path("tests/verify/mesh_oracle.py")), out,
@@ -303,7 +303,7 @@ START_TEST(surface_is_measured_for_every_shape)
     char *page = read_file(temp("c.html"), NULL);
     demand_part(page, "\"fit_half_path_rms_m\": ", __LINE__);
     free(page);
-    HIFDM(0, "show", out);
+    HIFDM(0, "show", out, "-v");
     OUT("surface, parabolic cylinder: half-path RMS ");
     OUT("loss of gain at 1.2 GHz: ");
     ck_assert_int_eq(count_of(said.out, "loss of gain at 9.6 GHz: beyond Ruze's formula, which ends at 3 dB ("), 3);
@@ -315,7 +315,7 @@ END_TEST
 START_TEST(tension_ratio_of_each_set)
 {
     const char *out = temp("sets.h5");
-    HIFDM(0, "run", REFLECTOR, "-o", out);
+    HIFDM(0, "run", REFLECTOR, "-o", out, "--verbose");
     OUT("                tension ratio of sets: directrix ");
     HIFDM(0, "show", out, "--json");
     EXPECT(out_as("sets.json"), out, "--",

@@ -66,7 +66,7 @@ START_TEST(titles_and_files_are_shown)
     SHOWN(0, "check", path);
     OUT(EVIL_SHOWN "\\xff.yaml: valid\n");
     SHOWN(0, "run", path, "-o", out);
-    ck_assert_int_eq(strncmp(said.out, EVIL_SHOWN "\n", strlen(EVIL_SHOWN "\n")), 0);
+    OUT("\n  case          " EVIL_SHOWN "\n");
     OUT("/" EVIL_SHOWN ".h5\n");
     SHOWN(0, "run", path, "-o", out);
     SHOWN(0, "show", out);

@@ -17,7 +17,9 @@ START_TEST(ratio_with_a_slack_cable_is_infinite)
 {
     static const char *const method[] = {"newton", "hifdm"};
     const char *path = net_with(SLACK_NODES, SLACK_CABLES), *out = temp("s.h5");
-    HIFDM(0, "run", path, "-o", out, "--set", formatted("form.method=%s", method[_i]));
+    HIFDM(0, "run", path, "-o", out, "-v", "--set", formatted("form.method=%s", method[_i]));
+    OUT("             inf        1.2000          -");
+    OUT("  1 slack cable;");
     OUT("tension ratio 1.2000 inside, inf on the boundary (1 slack cable); ");
     HIFDM(0, "show", out, "--json");
     EXPECT(out_as("s.json"), out, "--", "a['form']['boundary_tension_ratio'] == 'Infinity'",
@@ -66,7 +68,7 @@ START_TEST(surface_of_an_imported_net_has_a_kind)
             "near(np.sqrt(np.mean([(p[2] - (p[0]**2 + (c == b'paraboloid') * p[1]**2) / 16)**2 / (1 + (p[0]**2 + "
             "(c == b'paraboloid') * p[1]**2) / 64) for p in a['form/position_m'][:][a['scene/node/role'][:] == 1]])), "
             "b['form']['surface']['normal_rms_m'], 1e-15)");
-        HIFDM(0, "show", out);
+        HIFDM(0, "show", out, "--verbose");
         OUT(_i ? "surface, paraboloid: half-path RMS " : "surface, parabolic cylinder: half-path RMS ");
     }
     HIFDM(0, "export", out, "--vtk", temp("vtk"));

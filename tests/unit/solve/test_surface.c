@@ -323,8 +323,8 @@ START_TEST(loss_beyond_the_formula_is_no_number)
     ck_assert_double_nan(hf_surface_gain_loss_dB(0.4678, f));
     ck_assert_double_nan(hf_surface_gain_loss_dB((double)NAN, f));
     ck_assert_double_eq(hf_surface_gain_loss_dB(0, f), 0);
-    ck_assert_double_eq_tol(hf_surface_ruze_limit_Hz(edge_m), f, 1e-12 * f);
-    ck_assert_double_eq(hf_surface_ruze_limit_Hz(0), INFINITY);
+    ck_assert_double_eq_tol(hf_surface_frequency_of_loss_Hz(edge_m, HF_RUZE_MOST_DB), f, 1e-12 * f);
+    ck_assert_double_eq(hf_surface_frequency_of_loss_Hz(0, HF_RUZE_MOST_DB), INFINITY);
 }
 END_TEST
 

@@ -1,0 +1,213 @@
+/* Contents: parts - form-finding - genetic algorithm - Levenberg-Marquardt */
+#include "out/print_summary.h"
+
+#include "net/symmetry.h"
+#include <hifdm/config.h>
+
+#include <math.h>
+
+/* ---- parts ---- */
+
+static void print_result(const hf_form_result *r, FILE *f)
+{
+    char inner[32], boundary[32], slack[40] = "";
+    if (r->n_slack) snprintf(slack, sizeof slack, " (%d slack cable%s)", r->n_slack, r->n_slack == 1 ? "" : "s");
+    fprintf(f, "                tension ratio %s inside, %s on the boundary%s; largest nodal residual %.1e N\n",
+            hf_print_decimals(r->inner_tension_ratio, inner), hf_print_decimals(r->boundary_tension_ratio, boundary),
+            slack, r->residual_N);
+}
+
+static void print_sets(const hf_set_tensions *s, FILE *f)
+{
+    char ratio[32];
+    if (s->n == 0) return;
+    fputs("                tension ratio of sets:", f);
+    for (int k = 0; k < s->n; k++)
+        fprintf(f, "%s %s %s", k ? "," : "", s->name[k], hf_print_decimals(s->ratio[k], ratio));
+    fputc('\n', f);
+}
+
+/* "boundary_ratio_cap", or a row of optimize.limits. */
+static const char *limit_of(const hf_held_limits *h, int i, char text[32])
+{
+    snprintf(text, 32, "optimize.limits.%d", h->row[i]);
+    return h->row[i] < 0 ? "boundary_ratio_cap" : text;
+}
+
+void hf_print_held(const hf_held_limits *h, FILE *f)
+{
+    char limit[32], more[40];
+    for (int i = 0; i < h->n; i++) {
+        snprintf(more, sizeof more, " and %d more", h->count[i] - 1);
+        hf_print_line(f, "                at %s: %s%s at %.6g", limit_of(h, i, limit), h->name[i],
+                      h->count[i] > 1 ? more : "", h->bound[i]);
+    }
+}
+
+void hf_print_goals(const hf_summary *s, const hf_form_result *r, FILE *f)
+{
+    if (s->goals.n == 0 || !isfinite(r->merit)) return; /* a run that ended before its base design has none as yet */
+    if (s->goals.are_objectives)
+        fputs("                objectives", f);
+    else
+        fprintf(f, "                merit %.6g of", r->merit);
+    for (int k = 0; k < s->goals.n; k++) {
+        fprintf(f, "%s %s %.6g", k ? "," : "", s->goals.name[k], r->goal[k]);
+        if (!s->goals.are_objectives) fprintf(f, " (weight %g)", s->goals.weight[k]);
+    }
+    fputc('\n', f);
+}
+
+static void print_certificate(const hf_form_result *r, FILE *f)
+{
+    if (isfinite(r->position_error_m) && isfinite(r->condition))
+        fprintf(f, "                estimated position error %.1e m; condition %.1e; backward error %.1e\n",
+                r->position_error_m, r->condition, r->backward_error);
+    if (r->bound_reason == HF_BOUND_PROVEN)
+        fprintf(f, "                proven: no node is farther than %.1e m from equilibrium, psi is right to %.1e m\n",
+                r->position_bound_m, r->psi_bound_m);
+    else if (r->bound_reason != HF_BOUND_NONE)
+        fprintf(f, "                no proven bound of the error: %s\n", hf_bound_reason_meaning((int)r->bound_reason));
+}
+
+static void print_facets(const hf_surface_measures *m, FILE *f)
+{
+    if (m->n_facet == 0) return;
+    fprintf(f, "                its %d facets: half-path RMS %.4f mm, normal %.4f mm", m->n_facet,
+            m->facet_half_path_rms_m * 1e3, m->facet_normal_rms_m * 1e3);
+    if (isfinite(m->facet_fit_half_path_rms_m))
+        fprintf(f, "; best fit (f %.4f m) %.4f mm, %.4f mm", m->facet_fit_focal_length_m,
+                m->facet_fit_half_path_rms_m * 1e3, m->facet_fit_normal_rms_m * 1e3);
+    if (isfinite(m->pillow_rms_m)) fprintf(f, "; pillow %.4f mm RMS", m->pillow_rms_m * 1e3);
+    if (m->n_open_face) fprintf(f, "; %d face%s left out", m->n_open_face, m->n_open_face == 1 ? "" : "s");
+    fputc('\n', f);
+}
+
+static void print_gain(double loss_dB, double limit_Hz, FILE *f)
+{
+    if (isnan(loss_dB))
+        fprintf(f, "beyond Ruze's formula, which ends at %g dB (%.3g GHz)", HF_RUZE_MOST_DB, limit_Hz / 1e9);
+    else
+        fprintf(f, "%.3g dB", loss_dB);
+}
+
+/* Prints the measures of the surface of one stage, when the case asks for them. */
+static void print_surface(const hf_summary *s, int stage, FILE *f)
+{
+    const hf_surface_measures *m = &s->measures[stage];
+    if (!m->is_measured) return;
+    fprintf(f, "                surface, %s: half-path RMS %.4f mm, normal %.4f mm; ",
+            s->surface.kind == HF_SURFACE_PARABOLOID ? "paraboloid" : "parabolic cylinder", m->half_path_rms_m * 1e3,
+            m->normal_rms_m * 1e3);
+    if (m->fit.converged)
+        fprintf(f, "best fit (f %.4f m) %.4f mm, %.4f mm\n", m->fit.focal_length_m, m->fit.half_path_rms_m * 1e3,
+                m->fit.normal_rms_m * 1e3);
+    else
+        fputs("best fit not converged\n", f);
+    print_facets(m, f);
+    fprintf(f, "                deviations 50/90/95/99 %%: %.3f/%.3f/%.3f/%.3f mm, largest %.3f mm",
+            m->deviation_p50_m * 1e3, m->deviation_p90_m * 1e3, m->deviation_p95_m * 1e3, m->deviation_p99_m * 1e3,
+            m->deviation_max_m * 1e3);
+    if (isfinite(m->faceting_rms_m)) fprintf(f, "; faceting %.4f mm", m->faceting_rms_m * 1e3);
+    fputc('\n', f);
+    for (int k = 0; k < s->surface.frequencies_Hz.n; k++) {
+        fprintf(f, "                loss of gain at %g GHz: ", s->surface.frequencies_Hz.value[k] / 1e9);
+        print_gain(m->gain_loss_dB[k], m->ruze_limit_Hz, f);
+        if (m->fit.converged) {
+            fputs("; best fit: ", f);
+            print_gain(m->fit_gain_loss_dB[k], m->fit.ruze_limit_Hz, f);
+        }
+        if (m->n_facet) { /* what the nodes alone do not tell: the mesh is flat between them */
+            fputs("; facets: ", f);
+            print_gain(m->facet_gain_loss_dB[k], m->facet_ruze_limit_Hz, f);
+        }
+        if (isfinite(m->facet_fit_half_path_rms_m)) {
+            fputs(", best fit ", f);
+            print_gain(m->facet_fit_gain_loss_dB[k], m->facet_fit_ruze_limit_Hz, f);
+        }
+        fputc('\n', f);
+    }
+}
+
+/* ---- genetic algorithm ---- */
+
+static void print_optimize(const hf_summary *s, FILE *f)
+{
+    char wall[32];
+    hf_print_duration(s->optimize_wall_s, wall, sizeof wall);
+    if (s->best.status != HF_OK) {
+        fprintf(f, "  optimisation  no feasible design in %ld evaluations, %s\n", s->evaluations, wall);
+        return;
+    }
+    fprintf(f, "  optimisation  psi %.4f mm", s->best.psi_m * 1e3);
+    if (s->has_front)
+        fprintf(f, ": the end of the front with the least %s", s->goals.name[0]);
+    else if (s->goals.n > 0 && !s->goals.are_objectives && s->form.merit > 0) /* psi says nothing of goals */
+        fprintf(f, ", merit %.6g, %.2f %% below that of the form-finding", s->best.merit,
+                100 * (1 - s->best.merit / s->form.merit));
+    else if (isfinite(s->base_psi_m) &&
+             s->base_psi_m > 0) /* evaluated under the rule of the optimisation, so that only the tensions differ */
+        fprintf(f, ", %.2f %% below the %.4f mm of the form-finding's tensions",
+                100 * (1 - s->best.psi_m / s->base_psi_m), s->base_psi_m * 1e3);
+    fprintf(f, "; found in generation %d\n", s->best_generation);
+    print_result(&s->best, f);
+    if (s->best_n_at_lower + s->best_n_at_upper > 0)
+        fprintf(f, "                %d of %d variables at their lower and %d at their upper bounds\n",
+                s->best_n_at_lower, s->n_gene, s->best_n_at_upper);
+    hf_print_held(&s->held[1], f);
+    print_sets(&s->sets[1], f);
+    hf_print_goals(s, &s->best, f);
+    print_certificate(&s->best, f);
+    print_surface(s, 1, f);
+    if (s->planes)
+        fprintf(f, "                symmetry: %s; %d independent genes of %d\n", hf_symmetry_planes_text(s->planes),
+                s->n_leader, s->n_gene);
+    fprintf(f, "                %d generations, %ld evaluations (%ld infeasible)", s->generations, s->evaluations,
+            s->infeasible);
+    if (!s->finished) { /* everything else is as of the last publication, which may be before the first generation */
+        fputs(" so far\n", f);
+        return;
+    }
+    fprintf(f, " by %s, stopped by %s\n", hf_solver_word[s->solver], hf_population_stop_word[s->optimize_stop]);
+    fprintf(f, "                %s, %.0f evaluations/s; cpu_s / (wall_s * threads) = %.3f on %d thread%s\n", wall,
+            (double)s->evaluations / s->optimize_wall_s, hf_summary_utilisation(s), s->threads,
+            s->threads == 1 ? "" : "s");
+}
+
+/* ---- Levenberg-Marquardt ---- */
+
+static void print_polish(const hf_summary *s, FILE *f)
+{
+    static const char *const end[3] = {"", " (stalled: shorter steps gain nothing)", " (not converged)"};
+    char wall[32], boundary[32];
+    char limits[40] = "";
+    hf_print_duration(s->polish_wall_s, wall, sizeof wall);
+    fprintf(f, "  LM optimum    psi %.4f mm from %s, %s; boundary ratio %s; %d iteration%s%s, %s\n",
+            s->polish.psi_m * 1e3, s->has_optimize ? "there" : "the form-finding's tensions",
+            s->polish_is_result ? "the result" : "for comparison",
+            hf_print_decimals(s->polish.boundary_tension_ratio, boundary), s->polish_iterations,
+            s->polish_iterations == 1 ? "" : "s", end[s->polish_stop], wall);
+    if (s->polish_n_at_limit) snprintf(limits, sizeof limits, " and %d limits", s->polish_n_at_limit);
+    fprintf(f, "                held by %d lower and %d upper bounds%s%s\n", s->polish_n_at_lower, s->polish_n_at_upper,
+            limits, s->polish_is_at_cap ? " and the cap on the boundary ratio" : "");
+    hf_print_held(&s->held[2], f);
+    print_sets(&s->sets[2], f);
+    hf_print_goals(s, &s->polish, f);
+    print_surface(s, 2, f);
+}
+
+void hf_print_details(const hf_summary *s, FILE *f)
+{
+    char wall[32], psi[32];
+    hf_print_duration(s->form_wall_s, wall, sizeof wall);
+    fprintf(f, "  form-finding  psi %s mm after %d iteration%s, stopped by %s, %s; half-bandwidth %d\n",
+            hf_print_decimals(s->form.psi_m * 1e3, psi), s->form.iterations, s->form.iterations == 1 ? "" : "s",
+            hf_stop_reason_word((int)s->form.stop_reason), wall, s->half_bandwidth);
+    print_result(&s->form, f);
+    print_sets(&s->sets[0], f);
+    hf_print_goals(s, &s->form, f);
+    print_certificate(&s->form, f);
+    print_surface(s, 0, f);
+    if (s->has_optimize) print_optimize(s, f);
+    if (s->has_polish) print_polish(s, f);
+}

@@ -1,0 +1,304 @@
+/* Contents: the answer - the table of stages - surface - front, states, truss - together */
+#include "out/print_summary.h"
+#include "out/print_tolerance.h"
+#include <hifdm/store.h>
+
+#include <math.h>
+
+/* ---- the answer ---- */
+
+/* The loss of gain that a reflector is called good to, dB. */
+#define GOOD_TO_DB 1.0
+#define FREQUENCY_MOST_HZ 1e12 /* beyond there the errors that are left have no meaning */
+
+static const hf_form_result *result_of(const hf_summary *s, hf_stage stage)
+{
+    return stage == HF_STAGE_POLISH ? &s->polish : stage == HF_STAGE_OPTIMIZE ? &s->best : &s->form;
+}
+
+static bool has_merit(const hf_summary *s)
+{
+    return s->goals.n > 0 && !s->goals.are_objectives;
+}
+
+/* Up to which frequency the surface loses no more gain: by its facets where they are measured, else by its nodes; psi,
+ * which is no less than the half-path RMS of the nodes to first order (METHOD section 9), where no surface is. */
+static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, FILE *f)
+{
+    const hf_surface_measures *m = &s->measures[stage];
+    bool has_facets = m->is_measured && m->n_facet > 0 && isfinite(m->facet_half_path_rms_m);
+    double raw_m = has_facets ? m->facet_half_path_rms_m : m->is_measured ? m->half_path_rms_m : psi_m;
+    double fit_m = !m->is_measured ? (double)NAN : has_facets ? m->facet_fit_half_path_rms_m : m->fit.half_path_rms_m;
+    double raw_Hz = hf_surface_frequency_of_loss_Hz(raw_m, GOOD_TO_DB);
+    double fit_Hz = hf_surface_frequency_of_loss_Hz(fit_m, GOOD_TO_DB);
+    if (!(raw_Hz < FREQUENCY_MOST_HZ)) return;
+    fprintf(f, "; good to %.3g GHz at %g dB (%s", raw_Hz / 1e9, GOOD_TO_DB,
+            has_facets       ? "its facets"
+            : m->is_measured ? "its nodes"
+                             : "its nodes, by psi");
+    if (fit_Hz < FREQUENCY_MOST_HZ) fprintf(f, "; %.3g GHz after the best fit", fit_Hz / 1e9);
+    fputc(')', f);
+}
+
+/* How far below the form-finding's tensions the result is. Those of an optimisation are evaluated under its rule, so
+ * that only the tensions differ. */
+static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
+{
+    const hf_form_result *r = result_of(s, stage);
+    double base_psi_m = stage == HF_STAGE_OPTIMIZE ? s->base_psi_m : s->form.psi_m;
+    if (stage == HF_STAGE_FORM || s->goals.are_objectives) return;
+    if (has_merit(s)) {
+        if (s->form.merit > 0)
+            fprintf(f, ", merit %.6g, %.2f %% below that of the form-finding", r->merit,
+                    100 * (1 - r->merit / s->form.merit));
+    } else if (isfinite(base_psi_m) && base_psi_m > 0) {
+        fprintf(f, ", %.2f %% below the %.4f mm of the form-finding's tensions", 100 * (1 - r->psi_m / base_psi_m),
+                base_psi_m * 1e3);
+    }
+}
+
+static void print_answer(const hf_summary *s, hf_stage stage, FILE *f)
+{
+    const hf_form_result *r = result_of(s, stage);
+    char psi[32];
+    if (!s->finished) fputs("unfinished: ", f);
+    if (r->status == HF_NOT_CONVERGED) fputs("not converged: ", f);
+    if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) {
+        fprintf(f, "no shape: %s", hf_status_text(r->status));
+        return;
+    }
+    if (s->has_front) {
+        fprintf(f, "front of %d points:", s->front.n_point);
+        for (int k = 0; k < s->front.n_objective; k++)
+            if (s->front.end[k] >= 0)
+                fprintf(f, "%s least %s %.6g", k ? "," : "", s->goals.name[k],
+                        s->front.row[s->front.end[k]].objective[k]);
+        return;
+    }
+    fprintf(f, "psi %s mm", hf_print_decimals(r->psi_m * 1e3, psi));
+    print_gained(s, stage, f);
+    if (r->status == HF_OK) print_frequency(s, stage, r->psi_m, f);
+    if (s->has_optimize && s->finished && s->best.status != HF_OK) fputs("; no feasible design was found", f);
+}
+
+/* ---- the table of stages ---- */
+
+static void print_table_head(const hf_summary *s, FILE *f)
+{
+    fprintf(f, "  %-13s %9s  %14s  %12s%s  %9s  %s\n", "", "psi mm", "boundary ratio", "ratio inside",
+            has_merit(s) ? "         merit" : "", "at bounds", "proven to");
+}
+
+static void print_proof(const hf_form_result *r, FILE *f)
+{
+    char text[32] = "-";
+    if (r->bound_reason == HF_BOUND_PROVEN)
+        snprintf(text, sizeof text, "%.1e m", r->position_bound_m);
+    else if (r->bound_reason != HF_BOUND_NONE)
+        snprintf(text, sizeof text, "no: %s", hf_bound_reason_word((int)r->bound_reason));
+    fprintf(f, "  %-11s", text);
+}
+
+/* The row of a stage up to the words on how it ended. at_bounds: of n_variable variables; negative: of no design. */
+static void print_figures(const hf_summary *s, const char *name, const hf_form_result *r, int at_bounds, FILE *f)
+{
+    char psi[32], boundary[32], inside[32], bounds[40] = "-";
+    if (at_bounds >= 0) snprintf(bounds, sizeof bounds, "%d of %d", at_bounds, s->n_gene);
+    fprintf(f, "  %-13s %9s  %14s  %12s", name, hf_print_decimals(r->psi_m * 1e3, psi),
+            hf_print_decimals(r->boundary_tension_ratio, boundary), hf_print_decimals(r->inner_tension_ratio, inside));
+    if (has_merit(s)) fprintf(f, "  %12.6g", r->merit);
+    fprintf(f, "  %9s", bounds);
+    print_proof(r, f);
+    if (r->n_slack) fprintf(f, "  %d slack cable%s;", r->n_slack, r->n_slack == 1 ? "" : "s");
+    if (r->n_loose) fprintf(f, "  %d loose node%s;", r->n_loose, r->n_loose == 1 ? "" : "s");
+}
+
+static void print_ga(const hf_summary *s, bool is_result, FILE *f)
+{
+    char wall[32];
+    if (s->best.status != HF_OK) {
+        fprintf(f, "  GA            no feasible design in %ld evaluations%s\n", s->evaluations,
+                s->finished ? "" : " so far");
+        return;
+    }
+    print_figures(s, "GA", &s->best, s->best_n_at_lower + s->best_n_at_upper, f);
+    fprintf(f, "  %s%d generations", is_result ? "the result: " : "", s->generations);
+    if (s->infeasible) fprintf(f, ", %ld of %ld designs infeasible", s->infeasible, s->evaluations);
+    if (!s->finished) {
+        fputs(" so far\n", f);
+        return;
+    }
+    hf_print_duration(s->optimize_wall_s, wall, sizeof wall);
+    fprintf(f, ", stopped by %s, %s\n", hf_population_stop_word[s->optimize_stop], wall);
+}
+
+static void print_lm(const hf_summary *s, bool is_result, FILE *f)
+{
+    static const char *const end[3] = {"", ", stalled: shorter steps gain nothing", ", not converged"};
+    char wall[32];
+    hf_print_duration(s->polish_wall_s, wall, sizeof wall);
+    print_figures(s, "LM", &s->polish, s->polish_n_at_lower + s->polish_n_at_upper, f);
+    fprintf(f, "  %s: %d iteration%s%s, %s\n", is_result ? "the result" : "for comparison", s->polish_iterations,
+            s->polish_iterations == 1 ? "" : "s", end[s->polish_stop], wall);
+}
+
+static void print_stages(const hf_summary *s, hf_stage result, FILE *f)
+{
+    char wall[32];
+    hf_print_duration(s->form_wall_s, wall, sizeof wall);
+    print_table_head(s, f);
+    print_figures(s, "form-finding", &s->form, -1, f);
+    fprintf(f, "  %d iteration%s, stopped by %s, %s\n", s->form.iterations, s->form.iterations == 1 ? "" : "s",
+            hf_stop_reason_word((int)s->form.stop_reason), wall);
+    if (s->has_optimize) print_ga(s, result == HF_STAGE_OPTIMIZE, f);
+    if (s->has_optimize) hf_print_held(&s->held[HF_STAGE_OPTIMIZE], f);
+    if (s->has_polish) print_lm(s, result == HF_STAGE_POLISH, f);
+    if (s->has_polish) hf_print_held(&s->held[HF_STAGE_POLISH], f);
+    if (s->goals.n > 0) hf_print_goals(s, result_of(s, result), f);
+}
+
+/* ---- surface ---- */
+
+static void print_losses(const hf_summary *s, const double *loss_dB, FILE *f)
+{
+    for (int k = 0; k < s->surface.frequencies_Hz.n; k++) {
+        if (k) fputc('/', f);
+        if (isnan(loss_dB[k]))
+            fprintf(f, "above %g", HF_RUZE_MOST_DB);
+        else
+            fprintf(f, "%.3g", loss_dB[k]);
+    }
+}
+
+/* The errors of the result, of its facets where there are some, and what they cost at the frequencies of the case. */
+static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
+{
+    const hf_surface_measures *m = &s->measures[stage];
+    char node[32], fit[32], facet[32], facet_fit[32];
+    if (!m->is_measured) return;
+    fprintf(f, "  surface       half-path RMS %s mm", hf_print_decimals(m->half_path_rms_m * 1e3, node));
+    fprintf(f, ", after best fit %s mm", hf_print_decimals(m->fit.half_path_rms_m * 1e3, fit));
+    if (m->n_facet)
+        fprintf(f, "; of %d facets %s mm, after best fit %s mm", m->n_facet,
+                hf_print_decimals(m->facet_half_path_rms_m * 1e3, facet),
+                hf_print_decimals(m->facet_fit_half_path_rms_m * 1e3, facet_fit));
+    fputc('\n', f);
+    if (s->surface.frequencies_Hz.n == 0) return;
+    fputs("                loss of gain at ", f);
+    for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
+        fprintf(f, "%s%g", k ? "/" : "", s->surface.frequencies_Hz.value[k] / 1e9);
+    fputs(" GHz: ", f);
+    print_losses(s, m->n_facet ? m->facet_gain_loss_dB : m->gain_loss_dB, f);
+    fputs(" dB, after best fit ", f);
+    print_losses(s, m->n_facet ? m->facet_fit_gain_loss_dB : m->fit_gain_loss_dB, f);
+    fputs(" dB\n", f);
+}
+
+/* ---- front, states, truss ---- */
+
+/* One line of the front: the values of a point and, where it is known, what the minimised objective changes
+ * by per unit of the others. */
+static void print_front_point(const hf_summary *s, const char *name, const double *objective, const double *multiplier,
+                              FILE *f)
+{
+    const hf_front_table *t = &s->front;
+    fprintf(f, "                %-6s", name);
+    for (int k = 0; k < t->n_objective; k++)
+        fprintf(f, "%s %s %.6g", k ? "," : "", s->goals.name[k], objective[k]);
+    for (int k = 0; k < t->n_objective && multiplier && t->minimised >= 0; k++)
+        if (k != t->minimised && isfinite(multiplier[k]))
+            fprintf(f, "; slope %.4g", multiplier[k] > 0 ? -multiplier[k] : 0.0);
+    fputc('\n', f);
+}
+
+static void print_front(const hf_summary *s, FILE *f)
+{
+    const hf_front_table *t = &s->front;
+    char wall[32], rough[40] = "";
+    if (t->n_unconverged > 0) snprintf(rough, sizeof rough, ", %d not converged", t->n_unconverged);
+    hf_print_duration(t->wall_s, wall, sizeof wall);
+    fprintf(f, "  front         %d points, %d of them dominated, %d failed%s; %s", t->n_point, t->n_dominated,
+            t->n_failed, rough, wall);
+    for (int k = 0; k < t->n_objective && t->minimised >= 0; k++)
+        if (k != t->minimised)
+            fprintf(f, "; slope of %s per unit of %s", s->goals.name[t->minimised], s->goals.name[k]);
+    fputc('\n', f);
+    if (t->n_row < t->n_point)
+        fprintf(f, "                %d of %d shown by --json and the report; hifdm export --front has all\n", t->n_row,
+                t->n_point);
+    if (isfinite(t->base[0])) print_front_point(s, "base", t->base, NULL, f);
+    for (int k = 0; k < t->n_objective; k++)
+        if (t->end[k] >= 0) print_front_point(s, "end", t->row[t->end[k]].objective, t->row[t->end[k]].multiplier, f);
+    if (t->knee >= 0) print_front_point(s, "knee", t->row[t->knee].objective, t->row[t->knee].multiplier, f);
+}
+
+/* The states of the net as built, a line each. */
+static void print_states(const hf_summary *s, FILE *f)
+{
+    bool has_surface = s->surface.focal_length_m > 0, has_truss = s->has_truss;
+    if (s->n_state == 0) return;
+    fprintf(f, "  cases         %-16s %10s %10s%s %9s %9s %5s %5s%s\n", "the net as built", "psi mm", "moved mm",
+            has_surface ? " half-path    best fit" : "", "least N", "largest N", "slack", "loose",
+            has_truss ? "  member N" : "");
+    for (int k = 0; k < s->n_state; k++) {
+        const hf_state_summary *state = &s->state[k];
+        const hf_form_result *r = &state->result;
+        if (r->status != HF_OK) {
+            fprintf(f, "                %-16s no shape: %s\n", state->name, hf_status_text(r->status));
+            continue;
+        }
+        fprintf(f, "                %-16s %10.4f %10.4f", state->name, r->psi_m * 1e3, state->move_rms_m * 1e3);
+        if (has_surface) fprintf(f, " %9.4f", state->measures.half_path_rms_m * 1e3);
+        if (has_surface && state->measures.fit.converged)
+            fprintf(f, " %11.4f", state->measures.fit.half_path_rms_m * 1e3);
+        else if (has_surface)
+            fprintf(f, " %11s", "-");
+        fprintf(f, " %9.4f %9.4f %5d %5d", state->least_tension_N, state->largest_tension_N, r->n_slack, r->n_loose);
+        if (has_truss) fprintf(f, " %9.4g", state->largest_member_N);
+        fputc('\n', f);
+    }
+}
+
+static void print_coupling(const hf_coupling_result *r, FILE *f)
+{
+    fprintf(f,
+            "  on its truss  attachments give way by up to %.4f mm; %d round%s, the last step %.1e m, stopped by "
+            "%s\n",
+            r->max_displacement_m * 1e3, r->iterations, r->iterations == 1 ? "" : "s", r->step_m,
+            hf_coupling_stop_word((int)r->stop_reason));
+}
+
+/* ---- together ---- */
+
+static void print_end(const hf_summary *s, const char *path, hf_print_style style, FILE *f)
+{
+    if (!path) return;
+    hf_print_line(f, "  results       %s", path);
+    if (s->finished && !style.verbose)
+        hf_print_line(f, "  more          hifdm show --verbose %s; a page to look at: hifdm report %s", path, path);
+    if (!s->finished)
+        hf_print_line(f, "  unfinished    `hifdm run %s -o %s` goes on, with the same options as before", s->case_path,
+                      path);
+}
+
+void hf_print_summary(const hf_summary *s, const char *path, hf_print_style style, FILE *f)
+{
+    hf_stage result = hf_store_result_stage(s);
+    if (style.has_colour) fputs(HF_PRINT_BOLD, f);
+    print_answer(s, result, f);
+    fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
+    hf_print_line(f, "  case          %s", *s->title ? s->title : s->case_path);
+    fprintf(f, "  net           %d nodes (%d free), %d cables, %d variables; pretension %g N\n", s->n_node, s->n_free,
+            s->n_cable, s->n_gene, s->pretension_N);
+    if (s->has_truss)
+        fprintf(f, "  truss         %d nodes, %d members; %.2f kg\n", s->truss.n_node, s->truss.n_member,
+                s->truss.mass_kg);
+    print_stages(s, result, f);
+    if (s->has_coupling) print_coupling(&s->form.coupling, f);
+    print_errors(s, result, f);
+    if (style.verbose) hf_print_details(s, f);
+    if (s->has_front) print_front(s, f);
+    print_states(s, f);
+    if (s->has_tolerance) hf_print_tolerance(&s->tolerance, style.verbose, f);
+    print_end(s, path, style, f);
+}

@@ -1,0 +1,16 @@
+/* print_summary - the two parts of hf_print_summary: the answer with one table, and the details behind it. */
+#ifndef HIFDM_PRINT_SUMMARY_H
+#define HIFDM_PRINT_SUMMARY_H
+
+#include "out/print.h"
+
+/* A block for each stage: how it ended, ratios of sets, certificates, the surface, times. */
+void hf_print_details(const hf_summary *summary, FILE *file);
+
+/* A line for each limit that the design of a stage is at. */
+void hf_print_held(const hf_held_limits *held, FILE *file);
+
+/* A line: the merit of a result, and the values of the goals behind it, or those of objectives. */
+void hf_print_goals(const hf_summary *summary, const hf_form_result *result, FILE *file);
+
+#endif
