@@ -85,6 +85,7 @@ extern const char *const hf_coupling_scheme_word[4];
 extern const char *const hf_vary_word[8];
 extern const char *const hf_link_word[4];
 extern const char *const hf_goal_word[11];
+extern const char *const hf_goal_unit[10]; /* of the values; "" where they have none */
 extern const char *const hf_along_word[3];
 extern const char *const hf_fit_word[3];
 extern const char *const hf_limit_word[4];

@@ -21,6 +21,7 @@ const char *const hf_vary_word[8] = {"tension",   "force_density",  "length",   
 const char *const hf_link_word[4] = {"each", "set", "symmetry", NULL};
 const char *const hf_goal_word[11] = {"psi",  "surface",      "facets", "tension", "length", "evenness",
                                       "pull", "displacement", "mass",   "ratio",   NULL};
+const char *const hf_goal_unit[10] = {"m", "m", "m", "N", "m", "", "N", "m", "kg", ""};
 const char *const hf_along_word[3] = {"normal", "half_path", NULL};
 const char *const hf_fit_word[3] = {"none", "best", NULL};
 const char *const hf_figure_word[4] = {"psi", "surface", "facets", NULL};

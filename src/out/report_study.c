@@ -23,6 +23,14 @@ static const char *const output_name[] = {"psi_m", "inner_tension_ratio", "bound
                                           "n_slack"};
 enum { N_STAGE = 3, N_OUTPUT = sizeof output_name / sizeof *output_name };
 
+/* Goals of a stage that a page shows: all of a case, and more where their sets or kinds are axes. */
+enum { GOALS_MAX = 2 * HF_DESIGN_ROWS_MAX };
+typedef struct {
+    int n;
+    char name[GOALS_MAX][HF_GOAL_NAME_SIZE]; /* goal_1_tension_edge */
+    hf_series value[GOALS_MAX];
+} goal_columns;
+
 typedef struct {
     const char *path;
     char folder[LINK_SIZE], from_page[LINK_SIZE]; /* paths to the merged file's folder: "" or ending in '/' */
@@ -32,6 +40,7 @@ typedef struct {
     hf_series input[HF_STUDY_AXIS_MAX];
     hf_texts input_text[HF_STUDY_AXIS_MAX]; /* of axes whose values are words or seeds */
     hf_series output[N_STAGE][N_OUTPUT];
+    goal_columns goals[N_STAGE];
 } study_page;
 
 bool hf_report_is_study(const char *path)
@@ -119,6 +128,9 @@ static void write_outputs(const study_page *p, FILE *f)
         fprintf(f, "%s\n{\"stage\":\"%s\"", comma, stage_path[s][0]);
         for (int k = 0; k < N_OUTPUT; k++)
             if (p->output[s][k].n == p->n) hf_json_values(output_name[k], p->output[s][k].value, p->n, 1, 9, f);
+        for (int k = 0; k < p->goals[s].n; k++)
+            if (p->goals[s].value[k].n == p->n)
+                hf_json_values(p->goals[s].name[k], p->goals[s].value[k].value, p->n, 1, 9, f);
         fputc('}', f);
         comma = ",";
     }
@@ -150,6 +162,27 @@ static void write_page(const void *context, FILE *f)
 
 /* ---- reading ---- */
 
+/* The data sets of a stage that are goals: their names begin with goal_, behind what all of the stage begin with. */
+static hf_status read_goals(const char *file, const char *stage, goal_columns *goals, hf_messages *messages)
+{
+    char group[32], path[64 + HF_GOAL_NAME_SIZE];
+    const char *prefix = strrchr(stage, '/') + 1;
+    size_t n_prefix = strlen(prefix);
+    hf_texts names = {0};
+    snprintf(group, sizeof group, "%.*s", (int)(prefix - stage - 1), stage);
+    hf_status status = hf_store_read_names(file, group, &names, messages);
+    for (int i = 0; i < names.n && goals->n < GOALS_MAX && status == HF_OK; i++) {
+        const char *name = hf_texts_at(&names, i), *goal = name + n_prefix;
+        if (strncmp(name, prefix, n_prefix) != 0 || strncmp(goal, "goal_", 5) != 0) continue;
+        if (strlen(goal) >= HF_GOAL_NAME_SIZE) continue;
+        strcpy(goals->name[goals->n], goal);
+        snprintf(path, sizeof path, "%s%s", stage, goal);
+        status = hf_store_read_series(file, path, 1, &goals->value[goals->n++], messages);
+    }
+    hf_texts_free(&names);
+    return status;
+}
+
 static hf_status read_page(study_page *p, hf_messages *messages)
 {
     char name[512];
@@ -169,11 +202,13 @@ static hf_status read_page(study_page *p, hf_messages *messages)
         HF_TRY(hf_store_read_texts(p->path, name, &p->input_text[a], messages));
         if (!p->input_text[a].n) HF_TRY(hf_store_read_series(p->path, name, 0, &p->input[a], messages));
     }
-    for (int s = 0; s < N_STAGE; s++)
+    for (int s = 0; s < N_STAGE; s++) {
         for (int k = 0; k < N_OUTPUT; k++) {
             snprintf(name, sizeof name, "%s%s", stage_path[s][1], output_name[k]);
             HF_TRY(hf_store_read_series(p->path, name, 1, &p->output[s][k], messages));
         }
+        HF_TRY(read_goals(p->path, stage_path[s][1], &p->goals[s], messages));
+    }
     return HF_OK;
 }
 
@@ -188,9 +223,12 @@ static void free_page(study_page *p)
         hf_series_free(&p->input[a]);
         hf_texts_free(&p->input_text[a]);
     }
-    for (int s = 0; s < N_STAGE; s++)
+    for (int s = 0; s < N_STAGE; s++) {
         for (int k = 0; k < N_OUTPUT; k++)
             hf_series_free(&p->output[s][k]);
+        for (int k = 0; k < p->goals[s].n; k++)
+            hf_series_free(&p->goals[s].value[k]);
+    }
 }
 
 /* A page in the folder of the merged file links to the results by the same relative paths as that file. A page in

@@ -175,6 +175,8 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     hf_evaluate_form(&p->model, form, &p->workspace, &r->history, &p->form);
     s->form_wall_s = hf_clock_s() - start_s;
     s->form = p->form;
+    for (int k = 0; k < HF_DESIGN_ROWS_MAX; k++) /* measured with the base design, if the run comes to that */
+        s->form.goal[k] = (double)NAN;
     hf_status status = hf_problem_explain(p, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
     HF_TRY(measure_shape(r, HF_STAGE_FORM, &p->workspace, s, messages));

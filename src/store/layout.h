@@ -141,6 +141,8 @@ void hf_layout_get_held(hf_hdf5 *io, hf_summary *summary);
 
 /* layout_goals: /goals, the rows of optimize.goals with their values in the results of the stages; nothing without
  * rows. */
+enum { HF_LAYOUT_N_GOALS_STAGE = 3 };                                /* form, optimize, polish */
+const double *hf_layout_goals(const hf_summary *summary, int stage); /* [goals.n] of that stage; NULL: it has none */
 void hf_layout_put_goals(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_goals(hf_hdf5 *io, hf_summary *summary);
 

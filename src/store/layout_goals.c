@@ -4,10 +4,10 @@
 #include <string.h>
 
 /* Where the values of a stage are in a summary, and its data set. */
-enum { N_STAGE = 3 };
+enum { N_STAGE = HF_LAYOUT_N_GOALS_STAGE };
 static const char *const stage_name[N_STAGE] = {"form", "optimize", "polish"};
 
-static hf_form_result *result_of(hf_summary *s, int stage)
+static hf_form_result *goals_of(hf_summary *s, int stage)
 {
     hf_form_result *const result[N_STAGE] = {&s->form, &s->best, &s->polish};
     return result[stage];
@@ -16,6 +16,12 @@ static hf_form_result *result_of(hf_summary *s, int stage)
 static bool has_stage(const hf_summary *s, int stage)
 {
     return stage == 0 || (stage == 1 ? hf_summary_has_best_shape(s) : s->has_polish);
+}
+
+const double *hf_layout_goals(const hf_summary *s, int stage)
+{
+    const hf_form_result *const result[N_STAGE] = {&s->form, &s->best, &s->polish};
+    return s->goals.n > 0 && has_stage(s, stage) ? result[stage]->goal : NULL;
 }
 
 static hf_hdf5_array names(int n)
@@ -39,7 +45,7 @@ void hf_layout_put_goals(hf_hdf5 *io, const hf_summary *summary)
     if (!s.goals.are_objectives) hf_hdf5_write_array(io, group, &weight, s.goals.weight);
     for (int stage = 0; stage < N_STAGE; stage++) {
         hf_hdf5_array value = values(stage_name[stage], s.goals.n, "value of each goal, in its own unit");
-        if (has_stage(&s, stage)) hf_hdf5_write_array(io, group, &value, result_of(&s, stage)->goal);
+        if (has_stage(&s, stage)) hf_hdf5_write_array(io, group, &value, goals_of(&s, stage)->goal);
     }
     hf_hdf5_close(io, group);
 }
@@ -66,7 +72,7 @@ void hf_layout_get_goals(hf_hdf5 *io, hf_summary *s)
     if (!s->goals.are_objectives) hf_hdf5_read_array(io, group, &weight, s->goals.weight);
     for (int stage = 0; stage < N_STAGE; stage++) {
         hf_hdf5_array value = values(stage_name[stage], s->goals.n, "");
-        if (has_stage(s, stage)) hf_hdf5_read_array(io, group, &value, result_of(s, stage)->goal);
+        if (has_stage(s, stage)) hf_hdf5_read_array(io, group, &value, goals_of(s, stage)->goal);
     }
     if (io->status == HF_OK && !are_names_right(&s->goals)) hf_hdf5_damaged(io, group, "name", "does not name goals");
     hf_hdf5_close(io, group);

@@ -1,4 +1,4 @@
-/* Contents: columns - names - opening and writing - reading files - news of other processes - reading locks - the
+/* Contents: names - opening and writing - reading files - news of other processes - reading locks - the
  * whole */
 #include "store/ledger.h"
 
@@ -20,65 +20,12 @@
 
 #define HEADER "#hifdm-points-1"
 #define SYNC_S 5.0      /* finished points of the last 5 s may be lost by a power cut */
-#define LINE_SIZE 16384 /* of one row: the reason, and at most 25 bytes for each number */
+#define LINE_SIZE 16384 /* of one row: the reason, at most 25 bytes for each number, and the goals with their names */
 #define ROWS_MAX                                                                                                       \
     (HF_STUDY_POINT_MAX * (off_t)4096) /* bytes of a file that is read: all points have a row, few so much */
 #define N_FIXED 4                      /* fields before the numbers: id, fingerprint, status, reason */
 
 const char *const hf_point_state_word[HF_N_POINT_STATE] = {"missing", "running", "done", "failed", "outdated"};
-
-/* ---- columns ---- */
-
-const hf_hdf5_member *hf_ledger_column(int i)
-{
-    for (int part = 0; part < HF_LAYOUT_N_PART; part++)
-        for (int k = 0; k < hf_layout_summary[part].n; k++)
-            if (hf_layout_summary[part].member[k].kind != HF_KIND_CHARS && i-- == 0)
-                return &hf_layout_summary[part].member[k];
-    return NULL;
-}
-
-int hf_ledger_n_column(void)
-{
-    int n = 0;
-    for (int part = 0; part < HF_LAYOUT_N_PART; part++)
-        for (int k = 0; k < hf_layout_summary[part].n; k++)
-            n += hf_layout_summary[part].member[k].kind != HF_KIND_CHARS;
-    return n;
-}
-
-bool hf_ledger_is_circumstance(const hf_hdf5_member *column)
-{
-    size_t n = strlen(column->name);
-    return !strcmp(column->name, "threads") || (n > 2 && !strcmp(column->name + n - 2, "_s"));
-}
-
-/* Did the run reach the stage to which this number belongs? */
-static bool applies(const hf_hdf5_member *column, const hf_summary *s)
-{
-    if (s->form.status == HF_NOT_EVALUATED) return false;
-    if (!strcmp(column->object, "/truss")) return s->has_truss;
-    if ((!strcmp(column->object, "/coupling") || strstr(column->name, "coupling_")) && !s->has_coupling) return false;
-    if (!strcmp(column->object, "/ga")) return s->has_optimize;
-    if (!strcmp(column->object, "/polish")) return s->has_polish;
-    if (!strcmp(column->object, "/tolerance")) return s->has_tolerance;
-    return true;
-}
-
-static int print_number(const hf_hdf5_member *column, const hf_summary *s, char *text, size_t size)
-{
-    const void *from = (const char *)s + column->offset;
-    switch (column->kind->class) {
-    case HF_HDF5_REAL:
-        return snprintf(text, size, "%.17g", *(const double *)from);
-    case HF_HDF5_LONG:
-        return snprintf(text, size, "%ld", *(const long *)from);
-    case HF_HDF5_UINT64:
-        return snprintf(text, size, "%" PRIu64, *(const uint64_t *)from);
-    default:
-        return snprintf(text, size, "%d", hf_hdf5_int_value(column, s));
-    }
-}
 
 /* ---- names ---- */
 
@@ -196,9 +143,10 @@ static hf_status start_rows(hf_ledger *l, hf_messages *messages)
         return hf_error(messages, HF_IO, "%s: cannot create: %s", path, strerror(errno));
     l->size = 0;
     size_t used = (size_t)snprintf(line, sizeof line, HEADER "\tfingerprint\tstatus\treason");
-    for (int i = 0; i < hf_ledger_n_column(); i++)
-        used += (size_t)snprintf(line + used, sizeof line - used, "\t%s/%s", hf_ledger_column(i)->object,
-                                 hf_ledger_column(i)->name);
+    for (int i = 0; i < hf_ledger_n_field(); i++) {
+        line[used++] = '\t';
+        used += (size_t)hf_ledger_field_name(i, line + used, sizeof line - used);
+    }
     line[used++] = '\n';
     hf_status status = write_line(l, line, used, messages);
     if (status == HF_OK) return HF_OK;
@@ -226,10 +174,9 @@ hf_status hf_ledger_write(hf_ledger *l, const hf_study *study, int point, hf_sta
     size_t used = (size_t)snprintf(line, sizeof line, "%s\t%s\t%s\t", study->id[point], study->fingerprint,
                                    hf_status_word(status));
     used += put_reason(reason, line + used);
-    for (int i = 0; i < hf_ledger_n_column(); i++) {
-        const hf_hdf5_member *column = hf_ledger_column(i);
+    for (int i = 0; i < hf_ledger_n_field(); i++) {
         line[used++] = '\t';
-        if (applies(column, s)) used += (size_t)print_number(column, s, line + used, sizeof line - used);
+        used += (size_t)hf_ledger_print_field(i, s, line + used, sizeof line - used);
     }
     line[used++] = '\n';
     pthread_mutex_lock(&l->lock);
@@ -309,18 +256,17 @@ static void take_row(reading *r, char **field, char **number)
     if (p->state != HF_POINT_DONE) *p = row;
 }
 
-/* Fields of a row that are read: this version writes 99. */
+/* Fields of a row that are read: this version writes 102. */
 enum { FIELD_MAX = 512 };
 
-/* from[i]: the field of the file's rows that holds column i, or -1: files of other versions have other columns. */
-static int read_header(char *line, int *from, int n_column)
+/* from[i]: the field of the file's rows that holds our field i, or -1: files of other versions have others. */
+static int read_header(char *line, int *from, int n_ours)
 {
     char *name[FIELD_MAX];
     int n = split(line, name, FIELD_MAX);
-    for (int i = 0; i < n_column; i++) {
+    for (int i = 0; i < n_ours; i++) {
         char wanted[128];
-        const hf_hdf5_member *c = hf_ledger_column(i);
-        snprintf(wanted, sizeof wanted, "%s/%s", c->object, c->name);
+        hf_ledger_field_name(i, wanted, sizeof wanted);
         from[i] = -1;
         for (int k = N_FIXED; k < n; k++)
             if (!strcmp(name[k], wanted)) from[i] = k;
@@ -332,12 +278,12 @@ static int read_header(char *line, int *from, int n_column)
 static bool read_rows(reading *r, char *text)
 {
     hf_points *points = r->points;
-    int n_column = hf_ledger_n_column(), from[FIELD_MAX], n_field = 0;
+    int n_ours = hf_ledger_n_field(), from[FIELD_MAX], n_field = 0;
     char *field[FIELD_MAX], *end;
     long n_line = 0;
     for (const char *p = text; (p = strchr(p, '\n')) != NULL; p++)
         n_line++;
-    char **number = malloc(((size_t)n_line + 1) * (size_t)n_column * sizeof *number);
+    char **number = malloc(((size_t)n_line + 1) * (size_t)n_ours * sizeof *number);
     char ***more = realloc(points->fields, ((size_t)points->n_field_block + 1) * sizeof *more);
     if (more) points->fields = more;
     if (!number || !more) {
@@ -345,12 +291,12 @@ static bool read_rows(reading *r, char *text)
         return false;
     }
     points->fields[points->n_field_block++] = number;
-    for (char *line = text; (end = strchr(line, '\n')) != NULL; line = end + 1, number += n_column) {
+    for (char *line = text; (end = strchr(line, '\n')) != NULL; line = end + 1, number += n_ours) {
         *end = '\0';
         if (line == text) {
-            n_field = read_header(line, from, n_column);
+            n_field = read_header(line, from, n_ours);
         } else if (split(line, field, FIELD_MAX) == n_field && n_field >= N_FIXED) {
-            for (int i = 0; i < n_column; i++)
+            for (int i = 0; i < n_ours; i++)
                 number[i] = from[i] < 0 ? "" : field[from[i]];
             take_row(r, field, number);
         }

@@ -2,8 +2,8 @@
  * machines that share it, write at the same time.
  *
  *   points-HOST-PID.tsv   a line per finished point, by the process that finished it: id, fingerprint of the base
- *                         case, status, reason, every number of hf_summary. One write(2) each; an
- *                         incomplete line is ignored.
+ *                         case, status, reason, every number of hf_summary, the goals of each stage. One write(2)
+ *                         each; an incomplete line is ignored.
  *   claims                no content: the process that runs a point holds a record lock on the byte at the offset that
  *                         the point's id gives as a number; the system releases it when the process ends.
  *   ID-FINGERPRINT.h5     result files of points that have one; of the fingerprint the first digits: runs of different
@@ -25,6 +25,19 @@ const hf_hdf5_member *hf_ledger_column(int i); /* a member of hf_summary, never 
 
 /* Does the column depend on the machine and its load? Times and the number of threads do. */
 bool hf_ledger_is_circumstance(const hf_hdf5_member *column);
+
+/* ---- The fields of a row: these numbers, then the goals of each stage as one text (ledger_fields.c) ---- */
+
+int hf_ledger_n_field(void); /* HF_LAYOUT_N_GOALS_STAGE more than columns */
+int hf_ledger_field_name(int i, char *text, size_t size);
+int hf_ledger_print_field(int i, const hf_summary *summary, char *text, size_t size); /* nothing: not applicable */
+
+/* Where a merge has the goals of each stage: {group, what their names begin with}. */
+extern const char *const hf_ledger_goals_place[HF_LAYOUT_N_GOALS_STAGE][2];
+
+/* Take the next goal from the text of a stage, which moves behind it; false at the end, or where it is damaged. */
+bool hf_ledger_next_goal(const char **text, char name[HF_GOAL_NAME_SIZE], double *value);
+const char *hf_ledger_goal_unit(const char *name); /* of goal_1_tension_edge: N */
 
 /* ---- Writing ---- */
 
@@ -78,7 +91,7 @@ typedef struct {
     hf_point_state state;
     hf_status status;   /* HF_NOT_EVALUATED unless done or failed */
     const char *reason; /* "" unless failed */
-    char *const *field; /* [hf_ledger_n_column()] as text, "" = not applicable; NULL unless done or failed */
+    char *const *field; /* [hf_ledger_n_field()] as text, "" = not applicable; NULL unless done or failed */
 } hf_point;
 
 typedef struct {

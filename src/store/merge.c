@@ -1,4 +1,4 @@
-/* Contents: columns - inputs - outputs - links - the file */
+/* Contents: columns - inputs - outputs - goals - points - links - the file */
 #include "store/merge.h"
 
 #include "base/file_out.h"
@@ -157,6 +157,62 @@ static void write_output(merger *m, hid_t group, int column)
     write_column(m, group, name, c->kind, 1, unit_of(c->name), "as in the runs");
 }
 
+/* ---- goals ---- */
+
+/* What is called so in the text of a point's stage; NaN without it. */
+static double goal_of(const hf_point *p, int field, const char *wanted)
+{
+    char name[HF_GOAL_NAME_SIZE];
+    double value;
+    const char *text = p->field ? p->field[field] : "";
+    while (hf_ledger_next_goal(&text, name, &value))
+        if (!strcmp(name, wanted)) return value;
+    return (double)NAN;
+}
+
+static void write_goal(merger *m, hid_t group, int field, const char *prefix, const char *goal)
+{
+    char name[HF_GOAL_NAME_SIZE + 8];
+    snprintf(name, sizeof name, "%s%s", prefix, goal);
+    for (int i = 0; i < m->points->n_point; i++)
+        ((double *)m->room)[i] = goal_of(&m->points->point[i], field, goal);
+    write_column(m, group, name, HF_KIND_REAL, 1, hf_ledger_goal_unit(goal), "value of the goal");
+}
+
+/* A column for each goal that any point has in this stage: sets and kinds of goals may be axes. */
+static void write_goals(merger *m, int stage)
+{
+    char(*done)[HF_GOAL_NAME_SIZE] = NULL, path[32], name[HF_GOAL_NAME_SIZE];
+    const char *const *place = hf_ledger_goals_place[stage];
+    int n_done = 0, field = hf_ledger_n_column() + stage;
+    double value;
+    hid_t group = -1;
+    snprintf(path, sizeof path, "/points%s", place[0]);
+    for (int i = 0; i < m->points->n_point && m->io.status == HF_OK; i++) {
+        const hf_point *p = &m->points->point[i];
+        const char *text = p->field ? p->field[field] : "";
+        while (m->io.status == HF_OK && hf_ledger_next_goal(&text, name, &value)) {
+            int k = 0;
+            while (k < n_done && strcmp(done[k], name) != 0)
+                k++;
+            if (k < n_done) continue;
+            void *more = realloc(done, ((size_t)n_done + 1) * sizeof *done);
+            if (!more) {
+                m->io.status = hf_error(m->io.messages, HF_NO_MEMORY, "%s: out of memory", m->io.path);
+                break;
+            }
+            done = more;
+            memcpy(done[n_done++], name, sizeof name);
+            if (group < 0) group = hf_hdf5_make_group(&m->io, path);
+            write_goal(m, group, field, place[1], name);
+        }
+    }
+    if (group >= 0) hf_hdf5_close(&m->io, group);
+    free(done);
+}
+
+/* ---- points ---- */
+
 static void write_status(merger *m, hid_t group)
 {
     for (int i = 0; i < m->points->n_point; i++)
@@ -178,6 +234,8 @@ static void write_points(merger *m)
     for (int i = 0; i < hf_ledger_n_column(); i++)
         write_output(m, group, i);
     hf_hdf5_close(&m->io, group);
+    for (int stage = 0; stage < HF_LAYOUT_N_GOALS_STAGE; stage++)
+        write_goals(m, stage);
 }
 
 /* ---- links ---- */

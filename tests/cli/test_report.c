@@ -200,6 +200,9 @@ static const char make_study[] =
     "f['points/form/psi_m'] = [0.006, np.nan, np.nan]\n"
     "f['points/form/n_slack'] = np.array([2, 0, 0], dtype='i4')\n"
     "f['points/ga/best_psi_m'] = [0.005, np.nan, np.nan]\n"
+    "f['points/form/goal_0_psi'] = [0.006, np.nan, np.nan]\n"
+    "f['points/ga/best_goal_1_tension_edge'] = [3.5, np.nan, np.nan]\n"
+    "f['points/ga/best_' + 'goal_' * 50] = [1.0, 2.0, 3.0]\n" /* no goal of ours */
     "f['runs/a1'] = h5py.ExternalLink('s.d/a1.h5', '/')\n"
     "f['runs/b2'] = h5py.ExternalLink('s.d/b2.h5', '/')\n";
 
@@ -219,8 +222,9 @@ START_TEST(merged_study_is_a_page_of_points)
            "'newton', 'hifdm'], 'form.pretension_N': [8, 10.000000000000002, 12.5], 'optimize.seed': ['1', "
            "'9007199254740993', "
            "'18446744073709551615'], 'scene.parabolic_cylinder.modules': [5, 5, 5, 6, 5, 7]}",
-           "a['study']['output'] == [{'stage': 'form', 'psi_m': [0.006, None, None], 'n_slack': [2, 0, 0]}, {'stage': "
-           "'optimize', 'psi_m': [0.005, None, None]}]");
+           "a['study']['output'] == [{'stage': 'form', 'psi_m': [0.006, None, None], 'n_slack': [2, 0, 0], "
+           "'goal_0_psi': [0.006, None, None]}, {'stage': 'optimize', 'psi_m': [0.005, None, None], "
+           "'goal_1_tension_edge': [3.5, None, None]}]");
     /* from another folder: absolute paths */
     SHELL(0, "mkdir \"$1\"", temp("elsewhere"));
     HIFDM(0, "report", merged, "-o", temp("elsewhere/s.html"));

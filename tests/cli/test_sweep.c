@@ -118,6 +118,40 @@ START_TEST(tasks_that_would_leave_points_out_are_refused)
 }
 END_TEST
 
+/* A weight that is an axis can be drawn against what it does to each goal: the merge has a column for each, in each
+ * stage, with what the files of the points have. */
+START_TEST(goals_are_columns_of_a_merge)
+{
+    const char *path = file_with("study.yaml", SMALL_SCENE "optimize:\n"
+                                                           "  population: 6\n"
+                                                           "  generations: 2\n"
+                                                           "  method: ga+lm\n"
+                                                           "  goals: [{goal: psi}, {goal: evenness, set: edge}]\n"
+                                                           "sweep:\n"
+                                                           "  combine: zip\n"
+                                                           "  optimize.goals.1.weight: [1e-5, 1e-3, 1e-1]\n"
+                                                           "  optimize.goals.1.set: [edge, edge, directrix]\n"),
+               *folder = temp("s.d"), *merged = temp("s.h5"), *page = temp("s.html");
+    HIFDM(0, "sweep", path, "--dir", folder);
+    HIFDM(0, "merge", path, "--dir", folder, "-o", merged);
+#define COLUMN(name, stage, prefix)                                                                                    \
+    "all((lambda got, run: (got == run['goals/" stage "'][j]) if texts(run['goals/name'])[j] == '" name "' else "      \
+    "np.isnan(got))(a['points/" prefix name "'][i], a['runs/' + k]) for i, k in enumerate(texts(a['points/id'])) for " \
+    "j in [min(1, int('" name "'[5]))])"
+    EXPECT(merged, "--", "a['points/input/optimize.goals.1.weight'][:].tolist() == [1e-5, 1e-3, 1e-1]",
+           COLUMN("goal_0_psi", "form", "form/"), COLUMN("goal_0_psi", "optimize", "ga/best_"),
+           COLUMN("goal_0_psi", "polish", "polish/"), COLUMN("goal_1_evenness_edge", "form", "form/"),
+           COLUMN("goal_1_evenness_edge", "optimize", "ga/best_"), COLUMN("goal_1_evenness_edge", "polish", "polish/"),
+           COLUMN("goal_1_evenness_directrix", "polish", "polish/"),
+           "np.isnan(a['points/polish/goal_1_evenness_directrix'][:]).tolist() == [True, True, False]",
+           "a['points/polish/goal_1_evenness_edge'][1] < a['points/polish/goal_1_evenness_edge'][0]",
+           "attribute(a['points/polish/goal_0_psi'], 'units') == 'm'",
+           "attribute(a['points/form/goal_1_evenness_edge'], 'units') == ''");
+    HIFDM(0, "report", merged, "-o", page);
+    EXPECT(page, "--", "a.count(b'\"goal_1_evenness_edge\":[') == 3 and a.count(b'\"goal_0_psi\":[') == 3");
+}
+END_TEST
+
 /* Amounts are numbers in the merged file unless one of them is a part; lists are texts. */
 START_TEST(keys_of_rows_are_swept_and_merged)
 {
@@ -366,6 +400,7 @@ Suite *suite_cli_sweep(void)
     tcase_add_test(tcase, sweep_status_and_merge);
     tcase_add_test(tcase, keys_of_rows_are_swept_and_merged);
     tcase_add_test(tcase, a_point_is_a_run);
+    tcase_add_test(tcase, goals_are_columns_of_a_merge);
     tcase_add_test(tcase, shards_and_threads_make_the_same_whole);
     tcase_add_test(tcase, tasks_that_would_leave_points_out_are_refused);
     tcase_add_test(tcase, a_failed_point_stops_no_other);

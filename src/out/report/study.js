@@ -6,7 +6,9 @@ const NAME_MAX = 60; // characters of the name or value of an axis
 const UNITS = { N_per_m: "N/m", N: "N", m: "m", kg: "kg", Hz: "Hz" };
 // Splits a key into name and unit: "form.pretension_N" gives "pretension" and "N".
 function axisName(key) {
-  const last = key.split(".").pop(),
+  const parts = key.split("."),
+    isOfRow = /^\d+$/.test(parts[parts.length - 2] || ""),
+    last = parts.slice(isOfRow ? -3 : -1).join(" "),
     unit = Object.keys(UNITS).find((u) => last.endsWith(`_${u}`));
   const name = clip((unit ? last.slice(0, -unit.length - 1) : last).replace(/_/g, " "), NAME_MAX);
   return { name, unit: unit ? UNITS[unit] : "", text: unit ? `${name} (${UNITS[unit]})` : name };
@@ -40,6 +42,14 @@ const QUANTITIES = [
   { key: "inner_tension_ratio", title: "Tension ratio, inner cables", yLabel: "T max / T min", scale: 1 },
   { key: "boundary_tension_ratio", title: "Tension ratio, boundary cables", yLabel: "T max / T min", scale: 1 },
 ];
+// The goals that any stage has, each in its own unit.
+function goalQuantities(study) {
+  const keys = new Set(study.output.flatMap((o) => Object.keys(o).filter((k) => k.startsWith("goal_"))));
+  return [...keys].sort().map((key) => {
+    const name = clip(key.replace(/_/g, " "), NAME_MAX);
+    return { key, title: name[0].toUpperCase() + name.slice(1), yLabel: name, scale: 1 };
+  });
+}
 const CURVES_MAX = 12; // the points of more curves are drawn as marks, without lines
 
 // Groups the points into curves: the points of a curve agree in all axes but one. Curves are in the order of the values
@@ -98,7 +108,8 @@ function curveSeries(study, axis, others, stage, quantity) {
 }
 
 function drawCurves(study, axis, others, stage, place) {
-  const charts = QUANTITIES.filter((q) => study.output.some((o) => o[q.key])).map((quantity) => {
+  const quantities = [...QUANTITIES, ...goalQuantities(study)];
+  const charts = quantities.filter((q) => study.output.some((o) => o[q.key])).map((quantity) => {
     const { x, points, series } = curveSeries(study, axis, others, stage, quantity);
     const figure = quantity.key === "psi_m" && axis.key === "form.pretension_N" ? " Fig. 22." : "";
     const what = points
