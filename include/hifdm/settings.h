@@ -6,6 +6,7 @@
 #ifndef HIFDM_SETTINGS_H
 #define HIFDM_SETTINGS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -81,6 +82,8 @@ extern const char *const hf_symmetry_word[6];
 extern const char *const hf_nodes_word[5];
 extern const char *const hf_part_word[11];
 extern const char *const hf_surface_kind_word[4];
+extern const char *const hf_feed_word[5];
+extern const char *const hf_polarisation_word[3];
 extern const char *const hf_coupling_scheme_word[4];
 extern const char *const hf_vary_word[8];
 extern const char *const hf_link_word[4];
@@ -291,6 +294,24 @@ typedef struct {
     double value[HF_LIST_MAX];
 } hf_double_list;
 
+/* What illuminates the reflector, and the polarisation of its field. HF_FEED_AUTO: a line of a cylinder, else a point.
+ */
+typedef enum { HF_FEED_AUTO, HF_FEED_POINT, HF_FEED_LINE, HF_FEED_PLANE_WAVE } hf_feed_kind;
+typedef enum { HF_POLARISATION_X, HF_POLARISATION_Y } hf_polarisation;
+
+#define HF_PATTERN_CUTS 8
+
+/* The far field that is asked for (pattern.h). NaN: what the feed of the wanted surface has. */
+typedef struct {
+    double theta_deg[2];    /* angles from +z at which each cut begins and ends */
+    int n_theta;            /* of them, at even steps */
+    hf_double_list phi_deg; /* cuts, at most HF_PATTERN_CUTS */
+    hf_feed_kind feed;
+    double position_m[3], aim_m[3]; /* of the feed, and the point it looks at; a line is along y through it */
+    double cos_power;               /* q: its field goes as cos^q of the angle from there */
+    hf_polarisation polarisation;
+} hf_pattern_settings;
+
 /* The reflecting surface: the parabolic cylinder z = x^2/(4f) along y, or the paraboloid z = (x^2 + y^2)/(4f). */
 typedef struct {
     double focal_length_m; /* 0 when no measures of the surface are asked for */
@@ -298,6 +319,8 @@ typedef struct {
     hf_double_list frequencies_Hz;
     double mesh_tension_N_per_m; /* of the mesh on the front net, in all directions; 0 = not known */
     hf_surface_kind kind;        /* HF_SURFACE_AUTO in a case alone, until hf_config_surface has looked at the nodes */
+    bool has_pattern;            /* false: no far field is asked for */
+    hf_pattern_settings pattern;
 } hf_surface_settings;
 
 #ifdef __cplusplus

@@ -12,6 +12,8 @@ const char *const hf_solver_word[5] = {"auto", "chord", "newton", "fixed_point",
 const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1] = {HF_OPTIMIZE_METHODS(WORD) NULL};
 #undef WORD
 const char *const hf_coupling_scheme_word[4] = {"accelerated", "plain", "auto", NULL};
+const char *const hf_feed_word[5] = {"auto", "point", "line", "plane_wave", NULL};
+const char *const hf_polarisation_word[3] = {"x", "y", NULL};
 const char *const hf_surface_kind_word[4] = {"auto", "parabolic_cylinder", "paraboloid", NULL};
 const char *const hf_variation_word[3] = {"difference", "chain", NULL};
 const char *const hf_keep_word[4] = {"all", "best", "every", NULL};

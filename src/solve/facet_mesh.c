@@ -50,6 +50,17 @@ void hf_facet_mesh_take(const hf_facets *f, int i, const double *position_m, hf_
     direction(origin, (double[3]){m->normal[0], m->normal[1], m->normal[2]}, m->normal);
 }
 
+void hf_facet_mesh_at(const hf_facet_mesh *m, double u, double v, double p[3], double du[3], double dv[3])
+{
+    for (int d = 0; d < 3; d++) {
+        double near = m->corner[0][d] + u * (m->corner[1][d] - m->corner[0][d]);
+        double far = m->corner[3][d] + u * (m->corner[2][d] - m->corner[3][d]);
+        p[d] = near + v * (far - near);
+        du[d] = (1 - v) * (m->corner[1][d] - m->corner[0][d]) + v * (m->corner[2][d] - m->corner[3][d]);
+        dv[d] = far - near;
+    }
+}
+
 /* ---- sides ---- */
 
 /* A side of a facet, 4 i + k, or a cable, -1 - e, by its nodes, the lower one first. */
@@ -223,14 +234,18 @@ void hf_facet_mesh_settle(hf_facet_mesh *m)
     memcpy(m->bubble_m, right, sizeof right);
 }
 
-double hf_facet_mesh_lift_m(const hf_facet_mesh *m, double u, double v)
+double hf_facet_mesh_lift_m(const hf_facet_mesh *m, double u, double v, double slope[2])
 {
     jet basis[N_BASIS];
-    double sum = 0;
+    double sum = 0, part[N_BASIS];
+    memcpy(part, m->sag_m, sizeof m->sag_m);
+    memcpy(part + N_SIDE, m->bubble_m, sizeof m->bubble_m);
+    slope[0] = slope[1] = 0;
     evaluate_basis(m->is_triangle, u, v, basis);
-    for (int s = 0; s < N_SIDE; s++)
-        sum += m->sag_m[s] * basis[s].value;
-    for (int k = 0; k < HF_FACET_N_BUBBLE; k++)
-        sum += m->bubble_m[k] * basis[N_SIDE + k].value;
+    for (int k = 0; k < N_BASIS; k++) {
+        sum += part[k] * basis[k].value;
+        slope[0] += part[k] * basis[k].by_u;
+        slope[1] += part[k] * basis[k].by_v;
+    }
     return sum;
 }

@@ -28,8 +28,14 @@ hf_status hf_facet_mesh_sags(double mesh_tension_N_per_m, const hf_facets *facet
 /* Set bubble_m from sag_m: the mesh has the least area, to the second power of slopes, between its sides. */
 void hf_facet_mesh_settle(hf_facet_mesh *mesh);
 
-/* How far the point u, v is lifted. */
-double hf_facet_mesh_lift_m(const hf_facet_mesh *mesh, double u, double v);
+/* How far the point u, v is lifted; slope: its derivatives by u and v. */
+double hf_facet_mesh_lift_m(const hf_facet_mesh *mesh, double u, double v, double slope[2]);
+
+/* The point u, v of the bilinear surface through the corners, and its derivatives by u and v. */
+void hf_facet_mesh_at(const hf_facet_mesh *mesh, double u, double v, double p[3], double du[3], double dv[3]);
+
+/* The pillow is of first order in N l / T. Above this the mesh outweighs the cable, and the formula says nothing. */
+#define HF_FACET_PULL_MOST 1.0
 
 /* Gauss-Legendre on [0, 1], exact to the ninth power. */
 enum { HF_FACET_N_GAUSS = 5 };

@@ -8,9 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-/* The pillow is of first order in N l / T. At 1 the mesh outweighs the cable, and the formula says nothing. */
-#define PULL_MOST 1.0
-
 /* ---- points of quadrature ---- */
 
 enum { N_GAUSS = HF_FACET_N_FLAT, N_POINT = N_GAUSS * N_GAUSS }; /* of a facet */
@@ -43,13 +40,9 @@ static void lay_out(hf_arena *a, int n_facet, points *q)
 static double point_at(const hf_facet_mesh *m, double u, double v, double lift_m, double p[3])
 {
     double du[3], dv[3];
-    for (int d = 0; d < 3; d++) {
-        double near = m->corner[0][d] + u * (m->corner[1][d] - m->corner[0][d]);
-        double far = m->corner[3][d] + u * (m->corner[2][d] - m->corner[3][d]);
-        p[d] = near + v * (far - near) + lift_m * m->normal[d];
-        du[d] = (1 - v) * (m->corner[1][d] - m->corner[0][d]) + v * (m->corner[2][d] - m->corner[3][d]);
-        dv[d] = far - near;
-    }
+    hf_facet_mesh_at(m, u, v, p, du, dv);
+    for (int d = 0; d < 3; d++)
+        p[d] += lift_m * m->normal[d];
     return fabs(du[0] * dv[1] - du[1] * dv[0]);
 }
 
@@ -74,7 +67,7 @@ static hf_status put_meshes(double mesh_N_per_m, const hf_facets *f, const hf_fa
 {
     double square = 0, all = 0;
     HF_TRY(hf_facet_mesh_sags(mesh_N_per_m, f, shape, q->sag_m, &q->pull_ratio));
-    q->has_shape = q->pull_ratio <= PULL_MOST;
+    q->has_shape = q->pull_ratio <= HF_FACET_PULL_MOST;
     for (int i = 0, at = 0; i < f->n_facet; i++) {
         hf_facet_mesh m;
         hf_facet_mesh_take(f, i, shape->position_m, &m);
@@ -82,8 +75,8 @@ static hf_status put_meshes(double mesh_N_per_m, const hf_facets *f, const hf_fa
         hf_facet_mesh_settle(&m);
         for (int k = 0; k < q->per_facet; k++, at++) {
             int a = k % HF_FACET_N_GAUSS, b = k / HF_FACET_N_GAUSS;
-            double u = hf_facet_gauss_at[a], v = hf_facet_gauss_at[b], p[3];
-            double lift_m = q->has_shape ? hf_facet_mesh_lift_m(&m, u, v) : (double)NAN;
+            double u = hf_facet_gauss_at[a], v = hf_facet_gauss_at[b], p[3], slope[2];
+            double lift_m = q->has_shape ? hf_facet_mesh_lift_m(&m, u, v, slope) : (double)NAN;
             double area_m2 = point_at(&m, u, v, lift_m, p) * hf_facet_gauss_weight[a] * hf_facet_gauss_weight[b];
             for (int d = 0; d < 3; d++)
                 q->position_m[(size_t)d * (size_t)q->n + (size_t)at] = p[d];

@@ -1,0 +1,426 @@
+/* Contents: orders - layout - a facet - a block - gain - figures of a cut */
+#include <hifdm/pattern.h>
+
+#include "base/arena.h"
+#include "base/elementary.h"
+#include "solve/facet_mesh.h"
+#include "solve/pattern_feed.h"
+#include "solve/pattern_kernel.h"
+
+#include <math.h>
+#include <string.h>
+
+#define LIGHT_M_PER_S 299792458.0
+#define PI 3.14159265358979323846
+#define RAD_PER_DEG (PI / 180)
+#define DB_PER_LN 4.3429448190325182765 /* 10/ln 10 */
+
+enum { GAUSS_MOST = 64, GAUSS_MORE = 3, LOOKS = 16 };
+#define GAUSS_LN (-25.0)      /* logarithm of the error of a quadrature that is taken */
+#define NODE_LN (-28.0)       /* the same of what is found between angles */
+#define GAUSS_PHASE_MOST 78.0 /* half of the phase across a piece, at which GAUSS_MOST points have that error */
+
+typedef struct {
+    hf_pattern_points *points;
+    hf_pattern_spread *spread;
+} kernels;
+
+#define KERNELS(isa)                                                                                                   \
+    {                                                                                                                  \
+        hf_pattern_points_##isa, hf_pattern_spread_##isa                                                               \
+    }
+static const kernels kernels_of_isa[HF_LANE_N_ISA] = {KERNELS(portable), KERNELS(avx2), KERNELS(avx512)};
+
+/* ---- orders ---- */
+
+/* Smallest n with which Gauss-Legendre's rule on [-1, 1] has an error below exp(GAUSS_LN) for exp(j phase x):
+ * phase^(2n) 2^(2n+1) n!^4 / ((2n+1) (2n)!^3). */
+static int gauss_order(double phase)
+{
+    double ln = hf_logarithm(2.0), step = 2 * hf_logarithm(fmax(phase, 1e-3));
+    for (int n = 1; n < GAUSS_MOST; n++) {
+        double k = 2 * n;
+        ln += step + hf_logarithm(4.0 * n * n * n * n / (k * k * k * (k - 1) * (k - 1) * (k - 1)));
+        if (ln - hf_logarithm(k + 1) < GAUSS_LN) return n;
+    }
+    return GAUSS_MOST;
+}
+
+/* Smallest number of Chebyshev's nodes on [-1, 1] between which exp(j phase x) has an error below exp(NODE_LN): the
+ * coefficients J_n(phase) that are left out are below (phase/2)^n / n!. */
+static int node_order(double phase, int most)
+{
+    double ln = 0, step = hf_logarithm(fmax(phase, 1e-3) / 2);
+    int n = 0;
+    while (n < most && ln > NODE_LN)
+        n++, ln += step - hf_logarithm(n);
+    return n;
+}
+
+/* Legendre's polynomial of order n at x, and its derivative. */
+static double legendre(int n, double x, double *derivative)
+{
+    double p = 1, before = 0;
+    for (int k = 1; k <= n; k++) {
+        double next = ((2 * k - 1) * x * p - (k - 1) * before) / k;
+        before = p;
+        p = next;
+    }
+    *derivative = n * (x * p - before) / (x * x - 1);
+    return p;
+}
+
+static void make_gauss(double *at, double *weight)
+{
+    for (int n = 1; n <= GAUSS_MOST; n++)
+        for (int i = 0; i < n; i++) {
+            double x = hf_cosine(PI * (i + 0.75) / (n + 0.5)), slope = 1, step = 1;
+            for (int k = 0; k < 10 && fabs(step) > 1e-15; k++)
+                x -= step = legendre(n, x, &slope) / slope;
+            legendre(n, x, &slope);
+            at[n * GAUSS_MOST + i] = (1 - x) / 2;
+            weight[n * GAUSS_MOST + i] = 1 / ((1 - x * x) * slope * slope);
+        }
+}
+
+/* ---- layout ---- */
+
+static double theta_of(const hf_pattern_settings *s, double part)
+{
+    return RAD_PER_DEG * (s->theta_deg[0] + (s->theta_deg[1] - s->theta_deg[0]) * part);
+}
+
+static void direction_of(double theta, double phi, double to[3])
+{
+    double sine = hf_sine(theta);
+    to[0] = sine * hf_cosine(phi);
+    to[1] = sine * hf_sine(phi);
+    to[2] = hf_cosine(theta);
+}
+
+/* Parts of the range of theta: of angle i, of Chebyshev's node i. */
+static double part_of_angle(const hf_pattern *p, int i)
+{
+    return (double)i / (p->settings->n_theta - 1);
+}
+
+static double part_of_node(const hf_pattern *p, int i)
+{
+    return (1 - hf_cosine(PI * (i + 0.5) / p->n_node)) / 2;
+}
+
+static void fill_directions(const hf_pattern *p, bool are_nodes, int n, int n_padded, double *direction)
+{
+    for (int c = 0; c < p->settings->phi_deg.n; c++)
+        for (int i = 0; i < n; i++) {
+            double to[3], part = are_nodes ? part_of_node(p, i) : part_of_angle(p, i);
+            direction_of(theta_of(p->settings, part), RAD_PER_DEG * p->settings->phi_deg.value[c], to);
+            for (int d = 0; d < 3; d++)
+                direction[(3 * c + d) * n_padded + i] = to[d];
+        }
+}
+
+/* Lagrange's polynomials of the nodes at the angles, by their barycentric form. */
+static void fill_between(const hf_pattern *p)
+{
+    for (int a = 0; a < p->settings->n_theta; a++) {
+        double total = 0, x = part_of_angle(p, a);
+        int hit = -1;
+        for (int i = 0; i < p->n_node; i++) {
+            double gap = x - part_of_node(p, i), weight = hf_sine(PI * (i + 0.5) / p->n_node);
+            if (gap == 0) hit = i;
+            total += p->between[i * p->n_padded + a] = (i % 2 ? -weight : weight) / gap;
+        }
+        for (int i = 0; i < p->n_node; i++)
+            p->between[i * p->n_padded + a] = hit < 0 ? p->between[i * p->n_padded + a] / total : i == hit;
+    }
+}
+
+static int whole_lanes(int n)
+{
+    return (n + HF_LANES - 1) / HF_LANES * HF_LANES;
+}
+
+static void lay_out(hf_arena *a, hf_pattern *p)
+{
+    size_t n_cut = (size_t)p->settings->phi_deg.n, n = (size_t)p->n_padded, n_node = (size_t)p->n_node_padded;
+    size_t rooms = (size_t)p->n_thread, table = (GAUSS_MOST + 1) * GAUSS_MOST;
+    p->gauss_at = hf_arena_take(a, table, sizeof(double));
+    p->gauss_weight = hf_arena_take(a, table, sizeof(double));
+    p->direction = hf_arena_take(a, 3 * n_cut * n, sizeof(double));
+    p->node_direction = hf_arena_take(a, 3 * n_cut * n_node, sizeof(double));
+    p->between = hf_arena_take(a, (size_t)p->n_node * n, sizeof(double));
+    p->sum = hf_arena_take(a, HF_PATTERN_BLOCKS * n_cut * 6 * n, sizeof(double));
+    p->local = hf_arena_take(a, rooms * 6 * n_node, sizeof(double));
+    p->point = hf_arena_take(a, rooms * HF_PATTERN_POINT * GAUSS_MOST * GAUSS_MOST, sizeof(double));
+}
+
+/* ---- a facet ---- */
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void take_facet(const hf_pattern *p, int i, hf_facet_mesh *m)
+{
+    hf_facet_mesh_take(p->surface.facets, i, p->surface.position_m, m);
+    if (!p->surface.sag_m) return;
+    memcpy(m->sag_m, p->surface.sag_m + 4 * (size_t)i, sizeof m->sag_m);
+    hf_facet_mesh_settle(m);
+}
+
+/* Half of the phase across facet i, along u and along v, at most: k (direction - toward) along its sides, with the
+ * waves that meet its corners, towards LOOKS + 1 angles of each cut and what may be between them. radius_m: of its
+ * corners from its middle. */
+static double phase_of(const hf_pattern *p, const hf_facet_mesh *m, double *radius_m)
+{
+    double most = 0, longest = 0, middle[3], du[3], dv[3], wave = 2 * PI / p->wavelength_m;
+    const hf_pattern_settings *s = p->settings;
+    hf_facet_mesh_at(m, 0.5, 0.5, middle, du, dv);
+    *radius_m = 0;
+    for (int k = 0; k < 4; k++) {
+        const double *corner = m->corner[k], *next = m->corner[(k + 1) % 4], *last = m->corner[(k + 3) % 4];
+        double toward[3], field[3], side[2][3];
+        *radius_m = fmax(*radius_m, hf_distance(corner, middle));
+        longest = fmax(longest, hf_distance(corner, next));
+        hf_feed_light(&p->feed, corner, toward, field);
+        for (int d = 0; d < 3; d++) {
+            side[0][d] = next[d] - corner[d];
+            side[1][d] = last[d] - corner[d];
+        }
+        for (int c = 0; c < s->phi_deg.n; c++)
+            for (int i = 0; i <= LOOKS; i++) {
+                double to[3];
+                direction_of(theta_of(s, (double)i / LOOKS), RAD_PER_DEG * s->phi_deg.value[c], to);
+                for (int d = 0; d < 3; d++)
+                    to[d] -= toward[d];
+                most = fmax(most, fmax(fabs(dot(to, side[0])), fabs(dot(to, side[1]))));
+            }
+    }
+    double between = longest * (theta_of(s, 1) - theta_of(s, 0)) / (2 * LOOKS);
+    return wave * (most + between) / 2;
+}
+
+/* Pieces of a facet along u and along v, and points of quadrature of each along both. */
+static int pieces_of(double phase, int *order)
+{
+    int n = (int)(phase / GAUSS_PHASE_MOST) + 1, wanted = gauss_order(phase / n) + GAUSS_MORE;
+    *order = wanted < GAUSS_MOST ? wanted : GAUSS_MOST;
+    return n;
+}
+
+/* A point of a facet: its place, and the current 2 n x H there per du dv. Returns the path. */
+static double current_at(const hf_pattern *p, const hf_facet_mesh *m, double u, double v, double place[3], double to[3])
+{
+    double du[3], dv[3], up[3], toward[3], field[3], slope[2];
+    hf_facet_mesh_at(m, u, v, place, du, dv);
+    if (p->surface.sag_m) {
+        double lift_m = hf_facet_mesh_lift_m(m, u, v, slope);
+        for (int d = 0; d < 3; d++) {
+            place[d] += lift_m * m->normal[d];
+            du[d] += slope[0] * m->normal[d];
+            dv[d] += slope[1] * m->normal[d];
+        }
+    }
+    hf_cross(du, dv, up);
+    double path_m = hf_feed_light(&p->feed, place, toward, field), lit = dot(toward, up) < 0 ? 2 : 0;
+    hf_cross(up, field, to);
+    for (int d = 0; d < 3; d++)
+        to[d] *= lit;
+    return path_m;
+}
+
+/* The points of a piece, whose corner of least u and v is a and b, of `size` along both. Returns their number, middle
+ * and path of it in wavelengths. */
+static int put_points(const hf_pattern *p, const hf_facet_mesh *m, double a, double b, double size, int order,
+                      double *point, double middle[3], double *path)
+{
+    int n = order * order;
+    double place[3], current[3], toward[3];
+    const double *at = p->gauss_at + order * GAUSS_MOST, *weight = p->gauss_weight + order * GAUSS_MOST;
+    hf_facet_mesh_at(m, a + size / 2, b + size / 2, middle, place, current);
+    *path = hf_feed_light(&p->feed, middle, toward, current) / p->wavelength_m;
+    for (int i = 0; i < n; i++) {
+        int j = i % order, k = i / order;
+        double path_m = current_at(p, m, a + size * at[j], b + size * at[k], place, current);
+        for (int d = 0; d < 3; d++) {
+            point[d * n + i] = (place[d] - middle[d]) / p->wavelength_m;
+            point[(4 + d) * n + i] = weight[j] * weight[k] * size * size * current[d];
+        }
+        point[3 * n + i] = path_m / p->wavelength_m - *path;
+    }
+    for (int d = 0; d < 3; d++)
+        middle[d] /= p->wavelength_m;
+    return n;
+}
+
+/* ---- a block ---- */
+
+static int first_of(const hf_pattern *p, int i)
+{
+    return (int)((long)p->surface.facets->n_facet * i / HF_PATTERN_BLOCKS);
+}
+
+static void sum_piece(const hf_pattern *p, int n_point, const double *point, const double middle[3], double path,
+                      double *local, double *sum)
+{
+    const kernels *kernel = &kernels_of_isa[hf_lane_best_isa()];
+    for (int c = 0; c < p->settings->phi_deg.n; c++) {
+        ptrdiff_t n = p->n_padded, n_node = p->n_node_padded;
+        const double *direction = p->direction + 3 * c * n;
+        kernel->points(n_point, point, p->n_node_padded, p->node_direction + 3 * c * n_node, local);
+        kernel->spread(p->n_node, p->n_node_padded, local, p->between, middle, path, p->n_padded, direction,
+                       sum + 6 * c * n);
+    }
+}
+
+void hf_pattern_sum_block(void *pattern, int room, int i)
+{
+    const hf_pattern *p = pattern;
+    double *local = p->local + (ptrdiff_t)room * 6 * p->n_node_padded;
+    double *point = p->point + (ptrdiff_t)room * HF_PATTERN_POINT * GAUSS_MOST * GAUSS_MOST;
+    double *sum = p->sum + (ptrdiff_t)i * p->settings->phi_deg.n * 6 * p->n_padded;
+    for (int k = first_of(p, i); k < first_of(p, i + 1); k++) {
+        hf_facet_mesh m;
+        double radius_m, middle[3], path;
+        int order;
+        take_facet(p, k, &m);
+        int n_piece = pieces_of(phase_of(p, &m, &radius_m), &order);
+        double size = 1.0 / n_piece;
+        for (int j = 0; j < n_piece * n_piece; j++) {
+            int n = put_points(p, &m, size * (j % n_piece), size * (j / n_piece), size, order, point, middle, &path);
+            sum_piece(p, n, point, middle, path, local, sum);
+        }
+    }
+}
+
+hf_status hf_pattern_create(const hf_pattern_settings *s, const hf_pattern_surface *surface, const hf_feed *feed,
+                            double frequency_Hz, int n_thread, hf_pattern *p)
+{
+    double radius_m, widest_m = 0, half = RAD_PER_DEG * (s->theta_deg[1] - s->theta_deg[0]) / 2;
+    hf_arena arena = {0};
+    *p = (hf_pattern){.settings = s, .surface = *surface, .feed = *feed, .n_thread = n_thread};
+    p->wavelength_m = LIGHT_M_PER_S / frequency_Hz;
+    for (int i = 0; i < surface->facets->n_facet; i++) {
+        hf_facet_mesh m;
+        int order;
+        take_facet(p, i, &m);
+        int n_piece = pieces_of(phase_of(p, &m, &radius_m), &order);
+        widest_m = fmax(widest_m, radius_m / n_piece);
+        p->n_point += (long)n_piece * n_piece * order * order;
+    }
+    p->n_padded = whole_lanes(s->n_theta);
+    /* a pattern of this radius has no harmonics of theta beyond k r, but for some that decay fast */
+    p->n_node = node_order((2 * PI * widest_m / p->wavelength_m + 10) * half, s->n_theta);
+    if (2 * p->n_node > s->n_theta) p->n_node = 0;
+    p->n_node_padded = p->n_node ? whole_lanes(p->n_node) : p->n_padded;
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, p)));
+    p->block = arena.block;
+    make_gauss(p->gauss_at, p->gauss_weight);
+    fill_directions(p, false, s->n_theta, p->n_padded, p->direction);
+    fill_directions(p, p->n_node > 0, p->n_node ? p->n_node : s->n_theta, p->n_node_padded, p->node_direction);
+    if (p->n_node) fill_between(p);
+    return HF_OK;
+}
+
+void hf_pattern_free(hf_pattern *p)
+{
+    hf_arena arena = {.block = p->block};
+    hf_arena_free(&arena);
+    *p = (hf_pattern){0};
+}
+
+/* ---- gain ---- */
+
+/* Vectors across the direction at theta, phi, after Ludwig's third definition. */
+static void polarisations(hf_polarisation along, double theta, double phi, double co[3], double cross[3])
+{
+    double c = hf_cosine(phi), s = hf_sine(phi);
+    const double by_theta[3] = {hf_cosine(theta) * c, hf_cosine(theta) * s, -hf_sine(theta)}, by_phi[3] = {-s, c, 0};
+    for (int d = 0; d < 3; d++) {
+        double x = c * by_theta[d] - s * by_phi[d], y = s * by_theta[d] + c * by_phi[d];
+        co[d] = along == HF_POLARISATION_X ? x : y;
+        cross[d] = along == HF_POLARISATION_X ? y : x;
+    }
+}
+
+static double in_dB(double scale, const double vector[3], const double *sum, ptrdiff_t n)
+{
+    double re = 0, im = 0;
+    for (int d = 0; d < 3; d++) {
+        re += vector[d] * sum[d * n];
+        im += vector[d] * sum[(3 + d) * n];
+    }
+    return DB_PER_LN * hf_logarithm(fmax(scale * (re * re + im * im), 1e-300));
+}
+
+void hf_pattern_finish(hf_pattern *p, double *co_dBi, double *cross_dBi)
+{
+    const hf_pattern_settings *s = p->settings;
+    const ptrdiff_t n = p->n_padded, all = 6 * n * s->phi_deg.n;
+    double scale = p->feed.scale / (p->wavelength_m * p->wavelength_m);
+    for (int i = 1; i < HF_PATTERN_BLOCKS; i++)
+        for (ptrdiff_t k = 0; k < all; k++)
+            p->sum[k] += p->sum[i * all + k];
+    for (int c = 0; c < s->phi_deg.n; c++)
+        for (int i = 0; i < s->n_theta; i++) {
+            double co[3], cross[3];
+            const double *sum = p->sum + 6 * n * c + i;
+            polarisations(s->polarisation, theta_of(s, part_of_angle(p, i)), RAD_PER_DEG * s->phi_deg.value[c], co,
+                          cross);
+            co_dBi[c * s->n_theta + i] = in_dB(scale, co, sum, n);
+            cross_dBi[c * s->n_theta + i] = in_dB(scale, cross, sum, n);
+        }
+}
+
+/* ---- figures of a cut ---- */
+
+/* Where the cut crosses `level` on the way from angle i in steps of `step`, in angles; NaN: nowhere. */
+static double crossing(int n, const double *gain, int i, int step, double level)
+{
+    for (; i + step >= 0 && i + step < n; i += step)
+        if (gain[i + step] < level) return i + step * (gain[i] - level) / (gain[i] - gain[i + step]);
+    return (double)NAN;
+}
+
+/* The first local maximum beyond the valley beside angle i; -INFINITY: there is none. */
+static double next_maximum(int n, const double *gain, int i, int step)
+{
+    while (i + step >= 0 && i + step < n && gain[i + step] <= gain[i])
+        i += step;
+    while (i + step >= 0 && i + step < n && gain[i + step] >= gain[i])
+        i += step;
+    return i > 0 && i < n - 1 ? gain[i] : -INFINITY;
+}
+
+/* The highest local maximum beyond the valley beside angle i. */
+static double highest_beyond(int n, const double *gain, int i, int step)
+{
+    double most = -INFINITY;
+    while (i + step >= 0 && i + step < n && gain[i + step] <= gain[i])
+        i += step;
+    for (; i + step > 0 && i + step < n - 1; i += step)
+        if (gain[i + step] >= gain[i] && gain[i + step] >= gain[i + 2 * step]) most = fmax(most, gain[i + step]);
+    return most;
+}
+
+hf_cut_figures hf_pattern_figures(int n, const double theta_deg[2], const double *gain)
+{
+    int top = 0;
+    double step = (theta_deg[1] - theta_deg[0]) / (n - 1), beside = 0, more = 0;
+    for (int i = 1; i < n; i++)
+        if (gain[i] > gain[top]) top = i;
+    if (top > 0 && top < n - 1) {
+        double bend = 2 * gain[top] - gain[top - 1] - gain[top + 1], rise = gain[top + 1] - gain[top - 1];
+        if (bend > 0) beside = rise / (2 * bend), more = rise * rise / (8 * bend);
+    }
+    hf_cut_figures f = {.gain_dBi = gain[top] + more, .beam_deg = theta_deg[0] + step * (top + beside)};
+    double half = f.gain_dBi - DB_PER_LN * 0.69314718055994530942;
+    f.half_power_width_deg = step * (crossing(n, gain, top, 1, half) - crossing(n, gain, top, -1, half));
+    double first = fmax(next_maximum(n, gain, top, 1), next_maximum(n, gain, top, -1));
+    double highest = fmax(highest_beyond(n, gain, top, 1), highest_beyond(n, gain, top, -1));
+    f.first_sidelobe_dB = isfinite(first) ? first - f.gain_dBi : (double)NAN;
+    f.highest_sidelobe_dB = isfinite(highest) ? highest - f.gain_dBi : (double)NAN;
+    return f;
+}

@@ -1,0 +1,173 @@
+/* Contents: the field - what a case leaves open - together */
+#include "solve/pattern_feed.h"
+
+#include "base/elementary.h"
+#include "net/wanted.h"
+#include "solve/facet_mesh.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+#define LN_2 0.69314718055994530942
+#define EDGE_FIELD_LN (-0.5 * 2.30258509299404568402) /* 10 dB below the middle */
+#define POWER_MOST 1e4                                /* of the cosine: the beam of such a feed is a degree wide */
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* ---- the field ---- */
+
+/* c^q; 0 where that is nothing beside 1. */
+static double power(double c, double q)
+{
+    if (!(c > 0)) return 0;
+    double exponent = q * hf_logarithm(c) / LN_2;
+    return exponent > -900 ? hf_power_of_two(exponent) : 0;
+}
+
+/* Polarised along x or y on the axis, turned without twist towards the other directions (Ludwig's third definition);
+ * of a line along it, or across. */
+double hf_feed_light(const hf_feed *f, const double p[3], double toward[3], double field[3])
+{
+    double along[3] = {0, 1, 0}, size = 1, path_m;
+    for (int d = 0; d < 3; d++)
+        toward[d] = f->kind == HF_FEED_PLANE_WAVE ? f->axis[d] : p[d] - f->position_m[d];
+    if (f->kind == HF_FEED_PLANE_WAVE) {
+        path_m = dot(p, f->axis);
+    } else {
+        if (f->kind == HF_FEED_LINE) toward[1] = 0;
+        path_m = hf_norm(toward[0], toward[1], toward[2]);
+        for (int d = 0; d < 3; d++)
+            toward[d] /= path_m;
+        size = power(dot(toward, f->axis), f->cos_power) / (f->kind == HF_FEED_LINE ? sqrt(path_m) : path_m);
+    }
+    if (f->kind == HF_FEED_LINE && f->co[1] == 0) hf_cross(toward, (const double[3]){0, 1, 0}, along);
+    double turn = dot(f->co, toward) / (1 + dot(f->axis, toward));
+    for (int d = 0; d < 3 && f->kind != HF_FEED_LINE && size > 0; d++)
+        along[d] = f->co[d] - turn * (f->axis[d] + toward[d]);
+    hf_cross(toward, along, field);
+    for (int d = 0; d < 3; d++)
+        field[d] *= size;
+    return path_m;
+}
+
+/* The integral of cos^(2q) from -pi/2 to pi/2, sqrt(pi) Gamma(q + 1/2)/Gamma(q + 1), by its recurrence from q above 40,
+ * where the series of the quotient of two Gamma functions has an error below 1e-14. */
+static double half_circle(double q)
+{
+    double factor = 1;
+    for (; q < 40; q++)
+        factor *= (2 * q + 2) / (2 * q + 1);
+    double x = 1 / q;
+    return factor * sqrt(PI * x) *
+           (1 + x * (-1.0 / 8 + x * (1.0 / 128 + x * (5.0 / 1024 + x * (-21.0 / 32768 - x * 399.0 / 262144)))));
+}
+
+/* ---- what a case leaves open ---- */
+
+/* Extent of the facets' corners. */
+static void extent(const hf_facets *f, const double *position_m, double low[3], double high[3])
+{
+    for (int d = 0; d < 3; d++) {
+        low[d] = INFINITY;
+        high[d] = -INFINITY;
+        for (int k = 0; k < 4 * f->n_facet; k++) {
+            double x = position_m[3 * (size_t)f->corner[k] + (size_t)d];
+            low[d] = fmin(low[d], x);
+            high[d] = fmax(high[d], x);
+        }
+    }
+}
+
+/* The axis towards `aim`, and the polarisation across it. */
+static void look(const hf_pattern_settings *s, const double aim_m[3], hf_feed *f)
+{
+    double size = 0, part;
+    for (int d = 0; d < 3; d++)
+        f->axis[d] = f->kind == HF_FEED_PLANE_WAVE ? -(d == 2) : aim_m[d] - f->position_m[d];
+    if (f->kind == HF_FEED_LINE) f->axis[1] = 0;
+    size = hf_norm(f->axis[0], f->axis[1], f->axis[2]);
+    for (int d = 0; d < 3; d++)
+        f->axis[d] /= size;
+    int along = s->polarisation == HF_POLARISATION_Y;
+    if (fabs(f->axis[along]) > 0.999) along = 2; /* it looks along its own polarisation */
+    part = f->axis[along];
+    for (int d = 0; d < 3; d++)
+        f->co[d] = ((d == along) - part * f->axis[d]) / sqrt(1 - part * part);
+    if (f->kind == HF_FEED_LINE)
+        memcpy(f->co, s->polarisation ? (double[3]){0, 1, 0} : (double[3]){1, 0, 0}, sizeof f->co);
+}
+
+/* The power of the cosine with which the field at the widest corner is 10 dB below the axis, distances aside. */
+static double tapered(const hf_feed *f, const hf_facets *facets, const double *position_m)
+{
+    double least = 1, toward[3], field[3];
+    for (int k = 0; k < 4 * facets->n_facet; k++) {
+        hf_feed_light(f, position_m + 3 * (size_t)facets->corner[k], toward, field);
+        least = fmin(least, dot(toward, f->axis));
+    }
+    if (!(least > 0)) return 1;
+    double q = least < 1 ? EDGE_FIELD_LN / hf_logarithm(least) : POWER_MOST;
+    return fmin(q, POWER_MOST);
+}
+
+/* Gain over N of (M38). */
+static double scale_of(const hf_feed *f, const hf_facets *facets, const double *position_m)
+{
+    double low[3], high[3], area = 0;
+    extent(facets, position_m, low, high);
+    if (f->kind == HF_FEED_POINT) return (2 * f->cos_power + 1) / 2;
+    if (f->kind == HF_FEED_LINE) return PI / ((high[1] - low[1]) * half_circle(f->cos_power));
+    for (int i = 0; i < facets->n_facet; i++) {
+        const int *c = facets->corner + 4 * (size_t)i;
+        const double *p[4];
+        for (int k = 0; k < 4; k++)
+            p[k] = position_m + 3 * (size_t)c[k];
+        area += ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1])) / 2;
+    }
+    return PI / area;
+}
+
+/* ---- together ---- */
+
+static bool sees(const hf_feed *f, const hf_facets *facets, int i, const double *position_m)
+{
+    hf_facet_mesh m;
+    double p[3], du[3], dv[3], up[3], toward[3], field[3];
+    hf_facet_mesh_take(facets, i, position_m, &m);
+    hf_facet_mesh_at(&m, 0.5, 0.5, p, du, dv);
+    hf_cross(du, dv, up);
+    hf_feed_light(f, p, toward, field);
+    return dot(toward, up) < 0 && dot(toward, f->axis) > 0;
+}
+
+int hf_feed_make(const hf_surface_settings *s, const hf_facets *facets, const double *position_m, hf_feed *feed)
+{
+    const hf_pattern_settings *want = &s->pattern;
+    const double curvature = 1 / (4 * s->focal_length_m);
+    double low[3], high[3], aim_m[3], slope[2];
+    bool is_cylinder = s->kind == HF_SURFACE_PARABOLIC_CYLINDER;
+    *feed = (hf_feed){.kind = want->feed, .position_m = {0, 0, s->focal_length_m}, .cos_power = want->cos_power};
+    if (feed->kind == HF_FEED_AUTO) feed->kind = is_cylinder ? HF_FEED_LINE : HF_FEED_POINT;
+    extent(facets, position_m, low, high);
+    for (int d = 0; d < 2; d++)
+        aim_m[d] = (low[d] + high[d]) / 2;
+    aim_m[2] = 0;
+    aim_m[2] = -hf_wanted_height_above(s->kind, curvature, aim_m, slope);
+    if (is_cylinder) feed->position_m[1] = aim_m[1];
+    if (!isnan(want->position_m[0])) memcpy(feed->position_m, want->position_m, sizeof feed->position_m);
+    if (!isnan(want->aim_m[0])) memcpy(aim_m, want->aim_m, sizeof aim_m);
+    look(want, aim_m, feed);
+    if (isnan(feed->cos_power)) {
+        feed->cos_power = 0;
+        if (feed->kind != HF_FEED_PLANE_WAVE) feed->cos_power = tapered(feed, facets, position_m);
+    }
+    feed->scale = scale_of(feed, facets, position_m);
+    int n_dark = 0;
+    for (int i = 0; i < facets->n_facet; i++)
+        n_dark += !sees(feed, facets, i, position_m);
+    return n_dark;
+}
