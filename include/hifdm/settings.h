@@ -230,6 +230,10 @@ typedef struct {
     hf_state_settings state[HF_STATE_ROWS_MAX];
 } hf_built_settings;
 
+/* The places that psi of a net that is adjusted is measured from. */
+typedef enum { HF_AIM_THEORY, HF_AIM_DESIGN } hf_aim;
+extern const char *const hf_aim_word[3]; /* "theory", "design", NULL */
+
 /* Turnbuckles that bring the figure of the net as built back: some cables of a set, by whole steps within a range. */
 typedef struct {
     char set[HF_SET_NAME_SIZE]; /* cables that can be turned */
@@ -237,6 +241,7 @@ typedef struct {
     int moves;                  /* cables that are turned at most */
     double target_m;            /* enough when the figure is below it */
     hf_goal_kind figure;        /* HF_GOAL_PSI, HF_GOAL_SURFACE or HF_GOAL_FACETS */
+    hf_aim aim;                 /* of psi */
     double sigma_m;             /* of measured coordinates without one of their own; 0: not given */
 } hf_adjust_settings;
 

@@ -9,7 +9,7 @@
  * Contents: the prior - the work - figures of what was measured - the table - for people - for programs - together */
 #include "app/cmd.h"
 
-#include "app/options.h"
+#include "app/built_design.h"
 #include "base/arena.h"
 #include "base/csv.h"
 #include "base/file_out.h"
@@ -143,15 +143,16 @@ static hf_status find_figure(job *j, hf_messages *messages)
     return hf_goals_create(&j->built.scene, &j->built.model, &wanted, &p->surface, &p->facets, &j->goals, messages);
 }
 
-static hf_status make_net(job *j, const char *path, hf_messages *messages)
+/* psi is the distance to the places that moves aim at. */
+static hf_status make_net(job *j, const hf_options *o, hf_messages *messages)
 {
     hf_problem *p = &j->problem;
-    HF_TRY(hf_problem_allocate(p, messages));
-    hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
-    HF_TRY(hf_problem_explain(p, messages));
-    if (p->settings.has_optimize)
-        hf_warning(messages, "%s: the net is built as form-finding has it, before section optimize", path);
-    return hf_built_make(path, &p->scene, &p->model, &p->settings.form, &p->workspace, &j->built, messages);
+    HF_TRY(hf_built_design_make(o, p, &j->built, messages));
+    if (p->settings.adjust.aim != HF_AIM_DESIGN) return HF_OK;
+    hf_model *m = &j->built.model;
+    for (int c = 0; c < 3; c++)
+        memcpy(m->position_m + c * m->n_node, j->built.place_m + c * m->n_node, (size_t)m->n_free * sizeof(double));
+    return HF_OK;
 }
 
 static hf_status explain_failure(hf_status status, const char *what, const char *path, hf_messages *messages)
@@ -359,6 +360,7 @@ static void print_json_figures(const job *from, hf_json *j)
     const hf_adjustment *a = &from->adjustment;
     hf_json_line(j, " ");
     hf_json_text(j, "figure", hf_figure_word[from->task.settings->figure]);
+    hf_json_text(j, "aim", hf_aim_word[from->task.settings->aim]);
     hf_json_integer(j, "measured_nodes", from->measured.n_node);
     hf_json_number(j, "chi_square", chi_square(from));
     hf_json_integer(j, "cables", from->task.n_cable);
@@ -392,7 +394,7 @@ static void print_json_errors(const job *from, hf_json *j)
     hf_json_close(j, '}');
 }
 
-static void print_json(const job *from, const char *path, hf_status status, const char *messages, FILE *f)
+static void print_json(const job *from, const hf_options *o, hf_status status, const char *messages, FILE *f)
 {
     hf_json j = {.file = f};
     hf_json_open(&j, NULL, '{');
@@ -405,7 +407,8 @@ static void print_json(const job *from, const char *path, hf_status status, cons
     hf_json_line(&j, " ");
     hf_json_text(&j, "version", hf_store_version());
     hf_json_text(&j, "case", from->problem.settings.path);
-    if (status == HF_OK && path) hf_json_text(&j, "file", path);
+    if (o->result) hf_json_text(&j, "result", o->result);
+    if (status == HF_OK && o->output) hf_json_text(&j, "file", o->output);
     hf_json_end(&j, status != HF_OK, messages);
 }
 
@@ -432,6 +435,7 @@ static hf_status check_output(const job *j, const hf_options *o, hf_messages *me
 {
     if (!o->output) return HF_OK;
     HF_TRY(hf_problem_spare_inputs(&j->problem, o->measured, o->output, messages));
+    if (o->result) HF_TRY(hf_file_out_spare(o->result, "an input of this run", o->output, messages));
     HF_TRY(hf_export_claim_file(o->output, o->force, messages));
     return hf_file_out_try(o->output, messages);
 }
@@ -442,12 +446,13 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
     const hf_problem *p = &j->problem;
     j->measured_path = o->measured;
     HF_TRY(check_sections(&p->settings, o->file, messages));
+    HF_TRY(hf_built_design_check(o, &p->settings, messages));
     HF_TRY(hf_tolerance_stage_check(p, false, messages));
     HF_TRY(check_output(j, o, messages));
     HF_TRY(allocate_job(j, messages));
     HF_TRY(pick_cables(j, messages));
     HF_TRY(hf_measured_read(o->measured, &p->scene, &p->model, p->settings.adjust.sigma_m, &j->measured, messages));
-    HF_TRY(make_net(j, o->file, messages));
+    HF_TRY(make_net(j, o, messages));
     HF_TRY(find_prior(j, o->file, messages));
     HF_TRY(find_figure(j, messages));
     HF_TRY(estimate_errors(j, o, messages));
@@ -465,7 +470,7 @@ static hf_status command_adjust(const hf_options *o, FILE *file, hf_messages *me
     job j = {0};
     hf_status status = execute(&j, o, messages);
     if (o->json)
-        print_json(&j, o->output, status, messages->text, file);
+        print_json(&j, o, status, messages->text, file);
     else if (status == HF_OK && !o->quiet)
         print_summary(&j, o->output, file);
     job_free(&j);
@@ -481,6 +486,8 @@ const hf_command hf_cmd_adjust = {
              "and within a range. The table has them in the order in which they are made, with the tension of the "
              "cable before and after, and the figure that is predicted after each.",
     .examples = "hifdm adjust case.yaml --measured nodes.csv -o moves.csv\n"
+                "hifdm adjust case.yaml --result case.h5 --measured nodes.csv --set adjust.aim=design\n"
                 "hifdm adjust case.yaml --measured nodes.csv --json --set adjust.moves=5",
+    .reads_results = true,
     .run = command_adjust,
 };

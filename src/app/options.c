@@ -167,6 +167,8 @@ static const hf_option option_table[] = {
     {"--measured", NULL, "FILE",
      "CSV id,x_m,y_m,z_m[,sigma_m]: where nodes of the net as built are; some may be missing", "adjust", read_text,
      AT(measured), NULL},
+    {"--result", NULL, "FILE", "result of this case that the net was cut from (default: its form-finding)", "adjust",
+     read_text, AT(result), NULL},
     {"--output", "-o", "FILE", "CSV of the moves (default: none)", "adjust", read_text, AT(output), NULL},
     {"--output", "-o", "FILE", "merged file (default: the study's name with .h5, in this folder)", "merge", read_text,
      AT(output), NULL},
@@ -209,8 +211,8 @@ static const hf_option option_table[] = {
     {NULL, NULL, NULL, NULL, "export", read_text, AT(export_to[HF_EXPORTER_##name]), &hf_exporter_##name},
     HF_EXPORTERS(EXPORTER)
 #undef EXPORTER
-        {"--stage", NULL, "form|optimize|polish", "which shape (default: the result of the run)", "export", read_stage,
-         0, NULL},
+        {"--stage", NULL, "form|optimize|polish", "which shape (default: the result of the run)", "export adjust",
+         read_stage, 0, NULL},
     {"--case", NULL, "NAME", "the shape of this state of the net as built (`cases`)", "export", read_text, AT(state),
      NULL},
     {"--man", NULL, NULL, "print the manual page, for man(1)", "help", read_man, 0, NULL},

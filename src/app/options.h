@@ -21,6 +21,7 @@ struct hf_options {
     const char *designs, *template_path;  /* --designs, --template */
     const char *jacobian;                 /* --jacobian */
     const char *measured;                 /* --measured */
+    const char *result;                   /* --result */
     const char *stage;                    /* --stage */
     const char *state;                    /* --case */
     const char **set;                     /* [n_set] --set key=value, owned */

@@ -10,6 +10,7 @@
 
 #define STEPS_MAX 100
 #define SETTLED 1e-9       /* of the misfit: what a step promises at the end */
+#define LEAST_MISFIT 1.0   /* half of chi^2: less of it is a table without noise, as of a design that is read again */
 #define NEAR_SETTLED 1e-3  /* of that, where rounding of shapes damps the steps */
 #define ENOUGH 1e-4        /* of what a step promises, that it has to gain */
 #define DAMPING_LEAST 0.05 /* below it there is none */
@@ -186,7 +187,7 @@ hf_status hf_estimate_find(hf_estimate *p)
         if (is_new && hf_built_linear_take(&p->linear, &p->work) != HF_OK) break;
         if (hf_saddle_factor(&p->saddle, damping) != HF_OK) break;
         double promise = aim(p, &s, damping);
-        p->is_settled = !(promise > (damping > 0 ? NEAR_SETTLED : 1) * SETTLED * p->misfit);
+        p->is_settled = !(promise > (damping > 0 ? NEAR_SETTLED : 1) * SETTLED * fmax(p->misfit, LEAST_MISFIT));
         if (p->is_settled) break;
         hf_status status = try_errors(p, s.cut_m, s.rest_m, s.trial_m, &misfit);
         if (status == HF_INTERRUPTED || status == HF_NO_MEMORY) return status;

@@ -26,6 +26,7 @@ const char *const hf_goal_word[11] = {"psi",  "surface",      "facets", "tension
 const char *const hf_goal_unit[10] = {"m", "m", "m", "N", "m", "", "N", "m", "kg", ""};
 const char *const hf_along_word[3] = {"normal", "half_path", NULL};
 const char *const hf_fit_word[3] = {"none", "best", NULL};
+const char *const hf_aim_word[3] = {"theory", "design", NULL};
 const char *const hf_figure_word[4] = {"psi", "surface", "facets", NULL};
 const char *const hf_distribution_word[3] = {"normal", "uniform", NULL};
 const char *const hf_sampling_word[3] = {"random", "sobol", NULL};

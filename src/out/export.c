@@ -46,8 +46,7 @@ static hf_status read_state(const hf_export_request *o, hf_export_stored *stored
     return hf_store_read_state(o->file, o->state, &stored->shape, messages);
 }
 
-/* Reads the shape of o->stage or, when that is NULL, the result of the run, with its summary and scene. */
-static hf_status read_stored(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
+hf_status hf_export_read(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
 {
     hf_summary *summary = &stored->summary;
     HF_TRY(hf_store_read_summary(o->file, summary, messages));
@@ -64,13 +63,18 @@ static hf_status read_stored(const hf_export_request *o, hf_export_stored *store
     return hf_store_read_shape(o->file, stage, &stored->shape, messages);
 }
 
+void hf_export_free(hf_export_stored *stored)
+{
+    hf_shape_free(&stored->shape);
+    hf_scene_free(&stored->scene);
+}
+
 hf_status hf_export_shape(const hf_export_request *o, hf_export_write_shape *write, char *said, size_t size,
                           hf_messages *messages)
 {
     hf_export_stored stored = {0};
-    hf_status status = read_stored(o, &stored, messages);
+    hf_status status = hf_export_read(o, &stored, messages);
     if (status == HF_OK) status = write(o, &stored, said, size, messages);
-    hf_shape_free(&stored.shape);
-    hf_scene_free(&stored.scene);
+    hf_export_free(&stored);
     return status;
 }

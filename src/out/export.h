@@ -61,8 +61,13 @@ typedef struct {
 typedef hf_status hf_export_write_shape(const hf_export_request *request, const hf_export_stored *stored, char *said,
                                         size_t size, hf_messages *messages);
 
-/* For exporters that take a stage: reads the shape of request->stage or request->state or, when both are NULL, the
- * result of the run, and calls `write` with it. */
+/* Read the shape of request->stage or request->state or, when both are NULL, the result of the run, with its summary
+ * and scene; all zero on entry. HF_BAD_USAGE when the run has no such shape; HF_IO, HF_NO_MEMORY. Free it in any
+ * case. */
+hf_status hf_export_read(const hf_export_request *request, hf_export_stored *stored, hf_messages *messages);
+void hf_export_free(hf_export_stored *stored);
+
+/* For exporters that take a stage: calls `write` with what hf_export_read has read. */
 hf_status hf_export_shape(const hf_export_request *request, hf_export_write_shape *write, char *said, size_t size,
                           hf_messages *messages);
 

@@ -10,10 +10,10 @@
  * numbers; it returns false to leave the node out. */
 typedef bool change_node(int i, double x[3]);
 
-static const char *measured_with(const char *name, const char *header, change_node *change, const char *more)
+static const char *measured_of(const char *result, const char *name, const char *header, change_node *change,
+                               const char *more)
 {
-    const char *folder = temp("shape"), *result = temp("shape.h5");
-    HIFDM(0, "run", file_with("case.yaml", EA_SCENE SECTIONS), "-o", result, "--restart", "--quiet");
+    const char *folder = temp("shape");
     HIFDM(0, "export", result, "--csv", folder, "--force");
     char *text = read_file(formatted("%s/nodes.csv", folder), NULL), *to = malloc(1 << 16), *at = to;
     ck_assert(text && to);
@@ -31,6 +31,13 @@ static const char *measured_with(const char *name, const char *header, change_no
     free(text);
     free(to);
     return path;
+}
+
+static const char *measured_with(const char *name, const char *header, change_node *change, const char *more)
+{
+    const char *result = temp("shape.h5");
+    HIFDM(0, "run", file_with("case.yaml", EA_SCENE SECTIONS), "-o", result, "--restart", "--quiet");
+    return measured_of(result, name, header, change, more);
 }
 
 static bool wave(int i, double x[3])
@@ -111,6 +118,43 @@ START_TEST(no_cable_is_let_out_until_it_is_slack)
           "adjust.set=boundary");
     OUT("moves stay so small that no further cable goes slack");
     SHELL(0, "awk -F, 'NR > 1 && !($6 > 0.01) { bad = 1 } END { exit bad || NR < 2 }' \"$1\"", moves);
+}
+END_TEST
+
+/* The design is that of the result that the net was cut from, also on a truss: measured without an error, nothing is
+ * wrong with it. */
+START_TEST(the_design_is_that_of_a_result)
+{
+#define DESIGN "optimize: {method: lm, range_N: 2}\n"
+    const char *path = file_with("case.yaml", EA_SCENE SECTIONS DESIGN), *result = temp("r.h5");
+    HIFDM(0, "run", path, "-o", result, "--quiet");
+    const char *measured = measured_of(result, "m.csv", HEADER, NULL, "");
+    HIFDM(2, "adjust", path, "--measured", measured);
+    ERR("has a section optimize: give the result that the net was cut from, --result FILE");
+    HIFDM(2, "adjust", path, "--measured", measured, "--stage", "polish");
+    ERR("--stage polish needs --result FILE");
+    HIFDM(0, "adjust", path, "--measured", measured, "--result", result, "--json", "--set", "adjust.aim=design");
+    OUT("\"aim\": \"design\"");
+    OUT("\"moves\": []");
+    SHELL(0,
+          "\"$1\" adjust \"$2\" --measured \"$3\" --result \"$4\" --json --set adjust.aim=design | \"$5\" -c 'import "
+          "json, "
+          "sys; a = json.load(sys.stdin); sys.exit(not (a[\"nominal_m\"] < 1e-9 and a[\"estimated_m\"] < 1e-9 and "
+          "a[\"settled\"] and max(map(abs, a[\"errors_m\"].values())) < 1e-9))'",
+          hifdm_program(), path, measured, result, python_program());
+    HIFDM(0, "adjust", path, "--measured", measured, "--stage", "form");
+    ERR("or it is another design");
+    HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--stage", "optimize");
+    ERR("this run has no optimised shape");
+    HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--set", "scene.EA_inner_N=46000");
+    ERR("is a result of another net than");
+    ERR("by EA of cables");
+    HIFDM(5, "adjust", path, "--measured", measured, "--result", measured);
+    HIFDM(5, "adjust", path, "--measured", measured, "--result", result, "-o", result, "--force");
+    ERR("an input of this run");
+    HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--set", "adjust.figure=surface", "--set",
+          "surface.frequencies_Hz=[1e9]", "--set", "adjust.aim=design");
+    ERR("design goes with adjust.figure: psi alone");
 }
 END_TEST
 
@@ -195,6 +239,7 @@ Suite *suite_cli_adjust(void)
     tcase_set_timeout(tcase, HANG_S);
     tcase_add_test(tcase, moves_are_a_table);
     tcase_add_test(tcase, no_cable_is_let_out_until_it_is_slack);
+    tcase_add_test(tcase, the_design_is_that_of_a_result);
     tcase_add_test(tcase, bad_tables_are_named);
     tcase_add_test(tcase, doubtful_tables_are_told);
     tcase_add_test(tcase, bad_cases_are_named);

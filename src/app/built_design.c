@@ -1,0 +1,152 @@
+/* Contents: the net of the result - its shape - together */
+#include "app/built_design.h"
+
+#include "run/problem_parts.h"
+#include "solve/coupling.h"
+#include "solve/schur.h"
+#include <hifdm/formfind.h>
+#include <hifdm/metrics.h>
+
+#include <math.h>
+#include <string.h>
+
+#define SAME 1e-9 /* relative: numbers that libraries of two machines may have rounded differently */
+
+/* ---- the net of the result ---- */
+
+static bool are_same(size_t n, const double *a, const double *b)
+{
+    double size = 0;
+    if (!a || !b) return !a && !b;
+    for (size_t i = 0; i < n; i++)
+        if (isfinite(a[i])) size = fmax(size, fabs(a[i]));
+    for (size_t i = 0; i < n; i++)
+        if (!(fabs(a[i] - b[i]) <= SAME * size) && !(isinf(a[i]) && a[i] == b[i])) return false;
+    return true;
+}
+
+static bool have_same_ids(int n, const char *const *a, const char *const *b)
+{
+    for (int i = 0; i < n; i++)
+        if (strcmp(a[i], b[i]) != 0) return false;
+    return true;
+}
+
+/* In what two nets differ; NULL: in nothing that a design of the one would not fit to the other for. */
+static const char *net_difference(const hf_scene *a, const hf_scene *b)
+{
+    size_t n = (size_t)a->n_node, n_cable = (size_t)a->n_cable;
+    if (a->n_node != b->n_node || !have_same_ids(a->n_node, a->node_id, b->node_id)) return "nodes";
+    if (memcmp(a->role, b->role, n) != 0) return "roles of nodes";
+    if (!are_same(3 * n, a->position_m, b->position_m)) return "theoretical places of nodes";
+    if (!are_same(3 * n, a->load_N, b->load_N)) return "loads";
+    if (a->n_cable != b->n_cable || !have_same_ids(a->n_cable, a->cable_id, b->cable_id)) return "cables";
+    if (memcmp(a->end, b->end, 2 * n_cable * sizeof *a->end) != 0) return "ends of cables";
+    if (!are_same(n_cable, a->EA_N, b->EA_N)) return "EA of cables";
+    return NULL;
+}
+
+static const char *truss_difference(const hf_truss *a, const hf_truss *b)
+{
+    size_t n = (size_t)a->n_node, n_member = (size_t)a->n_member;
+    if (a->n_node != b->n_node || a->n_member != b->n_member) return "its truss";
+    if (!are_same(3 * n, a->position_m, b->position_m)) return "nodes of the truss";
+    if (memcmp(a->fixed, b->fixed, n) != 0) return "supports of the truss";
+    if (memcmp(a->end, b->end, 2 * n_member * sizeof *a->end) != 0) return "ends of members";
+    if (memcmp(a->joint, b->joint, n_member) != 0) return "joints of members";
+#define DIFFER(name, units, otherwise, description)                                                                    \
+    if (!are_same(n_member, a->name, b->name)) return #name " of members";
+    HF_MEMBER_NUMBERS(DIFFER)
+#undef DIFFER
+    return NULL;
+}
+
+static hf_status compare(const hf_options *o, const hf_problem *p, const hf_export_stored *stored,
+                         hf_messages *messages)
+{
+    hf_truss truss = {0};
+    hf_carrier_state state = {0};
+    const char *what = net_difference(&p->scene, &stored->scene);
+    hf_status status = HF_OK;
+    if (!what && stored->summary.has_truss != p->settings.has_truss) what = "its truss";
+    if (!what && p->settings.has_truss) {
+        status = hf_store_read_truss(o->result, &truss, &state, messages);
+        if (status == HF_OK) what = truss_difference(&p->carrier.truss, &truss);
+    }
+    hf_carrier_state_free(&state);
+    hf_truss_free(&truss);
+    HF_TRY(status);
+    if (!what) return HF_OK;
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: is a result of another net than %s has, by %s: give the case that it was made of", o->result,
+                    o->file, what);
+}
+
+/* ---- its shape ---- */
+
+/* A design may have replaced what the laws of the scene aim at, so each cable keeps its force density. A slack one is
+ * as long as its law says, as in the cut list, if that is still the scene's. */
+static void hold_cables(const hf_model *m, const hf_shape *s, hf_workspace *w)
+{
+    for (int e = 0; e < m->n_cable; e++) {
+        if (hf_metrics_is_slack(m, w, e) && s->law[e] == m->law[e]) continue;
+        w->law[e] = HF_LAW_FORCE_DENSITY;
+        w->target[e] = s->q_N_per_m[e];
+    }
+}
+
+static void take_shape(const hf_export_stored *stored, hf_problem *p)
+{
+    const hf_model *m = &p->model;
+    const hf_shape *s = &stored->shape;
+    hf_workspace *w = &p->workspace;
+    hf_form_prepare(m, w);
+    for (int i = 0; i < m->n_node; i++)
+        for (int c = 0; c < 3; c++)
+            w->position_m[c * m->n_node + m->row_of_node[i]] = s->position_m[3 * i + c];
+    memcpy(w->length_m, s->length_m, (size_t)m->n_cable * sizeof(double));
+    memcpy(w->tension_N, s->tension_N, (size_t)m->n_cable * sizeof(double));
+    memcpy(w->q_N_per_m, s->q_N_per_m, (size_t)m->n_cable * sizeof(double));
+    hold_cables(m, s, w);
+    if (!m->n_attachment) return;
+    hf_coupling_forces(m, w);
+    hf_schur_flex(m, w->attachment_force_N, w->displacement_m);
+}
+
+static hf_status read_design(const hf_options *o, hf_problem *p, hf_messages *messages)
+{
+    hf_export_stored stored = {0};
+    const hf_export_request request = {.file = o->result, .stage = o->stage};
+    hf_status status = hf_export_read(&request, &stored, messages);
+    if (status == HF_OK) status = compare(o, p, &stored, messages);
+    if (status == HF_OK) take_shape(&stored, p);
+    hf_export_free(&stored);
+    return status;
+}
+
+/* ---- together ---- */
+
+hf_status hf_built_design_check(const hf_options *o, const hf_case *c, hf_messages *messages)
+{
+    bool is_form = o->stage && !strcmp(o->stage, hf_stage_word[HF_STAGE_FORM]);
+    if (o->result || is_form || (!o->stage && !c->has_optimize)) return HF_OK;
+    if (o->stage)
+        return hf_error(messages, HF_BAD_USAGE, "--stage %s needs --result FILE, a result of this case", o->stage);
+    return hf_error(messages, HF_BAD_USAGE,
+                    "%s: has a section optimize: give the result that the net was cut from, --result FILE (hifdm run "
+                    "makes it), or --stage form if it was cut as form-finding has it",
+                    o->file);
+}
+
+hf_status hf_built_design_make(const hf_options *o, hf_problem *p, hf_built *built, hf_messages *messages)
+{
+    HF_TRY(hf_problem_allocate(p, messages));
+    if (o->result) {
+        HF_TRY(read_design(o, p, messages));
+    } else {
+        hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
+        HF_TRY(hf_problem_explain(p, messages));
+    }
+    return hf_built_make(o->result ? o->result : o->file, &p->scene, &p->model, &p->settings.form, &p->workspace, built,
+                         messages);
+}
