@@ -48,7 +48,7 @@ extern "C" {
     X(int, n_leader, INT, 5, "independent_genes", "independent genes")                                                 \
     X(int, planes, INT, 0, "", "HF_PLANE_ bits of the symmetry (1 = x, 2 = y) that links the others")                  \
     X(int, best_generation, INT, 3, "best_generation", "where the best was found, counted from 0")                     \
-    X(int, best_individual, INT, 3, "best_individual", "the same")                                                     \
+    X(int, best_individual, INT, 3, "best_individual", "which individual of that generation, counted from 0")          \
     X(int, generations, INT, 1, "generations", "number finished")                                                      \
     X(long, evaluations, LONG, 1, "evaluations", "form-findings")                                                      \
     X(long, infeasible, LONG, 1, "infeasible", "those without a feasible shape among them")                            \
@@ -62,7 +62,7 @@ extern "C" {
 /* Levenberg-Marquardt. */
 #define HF_SUMMARY_POLISH_LIST(X)                                                                                      \
     X(bool, polish_is_result, FLAG, 2, "is_result", "its design is the result, not only a comparison")                 \
-    X(int, polish_iterations, INT, 1, "lm_iterations", "steps")                                                        \
+    X(int, polish_iterations, INT, 1, "lm_iterations", "steps of Levenberg-Marquardt")                                 \
     X(int, polish_evaluations, INT, 1, "evaluations", "form-findings")                                                 \
     X(hf_polish_stop, polish_stop, POLISH_STOP, 4, "stop_reason", "why it ended")                                      \
     X(int, polish_n_at_lower, INT, 5, "at_lower_bound", "genes at their lower bounds")                                 \
@@ -73,16 +73,16 @@ extern "C" {
 
 /* A state of the net as built (`cases`), beside the figures of its result. */
 #define HF_STATE_LIST(X)                                                                                               \
-    X(double, least_tension_N, REAL, 1, "least_tension_N", "of all cables")                                            \
-    X(double, largest_tension_N, REAL, 1, "largest_tension_N", "of all cables")                                        \
+    X(double, least_tension_N, REAL, 1, "least_tension_N", "least tension of all cables")                              \
+    X(double, largest_tension_N, REAL, 1, "largest_tension_N", "largest tension of all cables")                        \
     X(double, move_rms_m, REAL, 2, "move_rms_m", "RMS of how far the inner nodes are from their places in the design") \
     X(double, largest_member_N, REAL, 3, "largest_member_N", "largest axial force of a truss member; NaN: no truss")
 
 /* The truss. */
 #define HF_SUMMARY_TRUSS_LIST(X)                                                                                       \
-    X(double, mass_kg, REAL, 1, "mass_kg", "members and hinges")                                                       \
-    X(int, n_node, INT, 1, "nodes", "nodes")                                                                           \
-    X(int, n_member, INT, 1, "members", "members")
+    X(double, mass_kg, REAL, 1, "mass_kg", "mass of members and hinges")                                               \
+    X(int, n_node, INT, 1, "nodes", "nodes of the truss")                                                              \
+    X(int, n_member, INT, 1, "members", "members of the truss")
 
 /* Tensions of the named sets of cables in one shape: the first HF_SUMMARY_SETS of the net, which a page can tell. The
  * ratio is that of hf_metrics_tension_ratio. */

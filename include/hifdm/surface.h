@@ -26,19 +26,19 @@ extern "C" {
  * row here and the code that computes it. */
 #define HF_SURFACE_LIST(X)                                                                                             \
     X(double, z_rms_m, REAL, 1, "of the nodes' heights above their theoretical heights")                               \
-    X(double, normal_rms_m, REAL, 1, "raw")                                                                            \
-    X(double, half_path_rms_m, REAL, 1, "raw")                                                                         \
+    X(double, normal_rms_m, REAL, 1, "RMS error along the normal at the inner nodes, raw")                             \
+    X(double, half_path_rms_m, REAL, 1, "RMS error of the half path length at the inner nodes, raw")                   \
     X(double, faceting_rms_m, REAL, 4, "error of flat strips of width w, w^2/(24 sqrt(5) f); NaN without a width")     \
     X(double, deviation_p50_m, REAL, 4, "of the distances in psi, as the next four: half of them are not above it")    \
-    X(double, deviation_p90_m, REAL, 4, "90 %")                                                                        \
-    X(double, deviation_p95_m, REAL, 4, "95 %")                                                                        \
-    X(double, deviation_p99_m, REAL, 4, "99 %")                                                                        \
-    X(double, deviation_max_m, REAL, 4, "the largest")                                                                 \
-    X(double, facet_half_path_rms_m, REAL, 7, "over the facets, by projected area; NaN without facets")                \
-    X(double, facet_normal_rms_m, REAL, 7, "the same along the normal")                                                \
-    X(double, facet_fit_half_path_rms_m, REAL, 7, "after the best fit to the facets")                                  \
-    X(double, facet_fit_normal_rms_m, REAL, 7, "the same along the normal")                                            \
-    X(double, facet_fit_focal_length_m, REAL, 7, "of that best fit")                                                   \
+    X(double, deviation_p90_m, REAL, 4, "90 % of these distances are not above it")                                    \
+    X(double, deviation_p95_m, REAL, 4, "95 % of these distances are not above it")                                    \
+    X(double, deviation_p99_m, REAL, 4, "99 % of these distances are not above it")                                    \
+    X(double, deviation_max_m, REAL, 4, "largest of these distances")                                                  \
+    X(double, facet_half_path_rms_m, REAL, 7, "RMS over the facets, by projected area; NaN without facets")            \
+    X(double, facet_normal_rms_m, REAL, 7, "RMS over the facets along the normal")                                     \
+    X(double, facet_fit_half_path_rms_m, REAL, 7, "RMS over the facets after the best fit to them")                    \
+    X(double, facet_fit_normal_rms_m, REAL, 7, "RMS over the facets along the normal after that fit")                  \
+    X(double, facet_fit_focal_length_m, REAL, 7, "focal length of that best fit")                                      \
     X(double, facet_area_m2, REAL, 7, "of the facets, projected along z")                                              \
     X(double, pillow_rms_m, REAL, 7, "of how far the mesh is from flat facets; NaN without a mesh tension")            \
     X(double, mesh_pull_ratio, REAL, 7, "largest N l / T of cables between facets; above 1 facets have no errors")     \
@@ -46,19 +46,19 @@ extern "C" {
     X(int, n_open_face, INT, 7, "faces left out: of more than four sides, or not convex")                              \
     X(double, ruze_limit_Hz, REAL, 6,                                                                                  \
       "above it Ruze's formula does not hold: gain_loss_dB is NaN; INFINITY: no error")                                \
-    X(double, facet_ruze_limit_Hz, REAL, 8, "the same of facet_gain_loss_dB; NaN without facets")                      \
-    X(double, facet_fit_ruze_limit_Hz, REAL, 8, "the same of facet_fit_gain_loss_dB")
+    X(double, facet_ruze_limit_Hz, REAL, 8, "above it facet_gain_loss_dB is NaN; NaN without facets")                  \
+    X(double, facet_fit_ruze_limit_Hz, REAL, 8, "above it facet_fit_gain_loss_dB is NaN")
 
 #define HF_SURFACE_FIT_LIST(X)                                                                                         \
-    X(double, half_path_rms_m, REAL, 3, "of the nodes' errors against the fitted surface")                             \
-    X(double, normal_rms_m, REAL, 2, "the same along the normal")                                                      \
+    X(double, half_path_rms_m, REAL, 3, "RMS of the nodes' errors against the fitted surface")                         \
+    X(double, normal_rms_m, REAL, 2, "RMS of the nodes' errors along the normal of the fitted surface")                \
     X(double, focal_length_m, REAL, 3, "of the fitted surface")                                                        \
-    X(double, shift_x_m, REAL, 3, "")                                                                                  \
-    X(double, shift_y_m, REAL, 3, "0 of a cylinder")                                                                   \
-    X(double, shift_z_m, REAL, 3, "")                                                                                  \
-    X(double, rotation_x_rad, REAL, 3, "")                                                                             \
-    X(double, rotation_y_rad, REAL, 3, "")                                                                             \
-    X(double, rotation_z_rad, REAL, 3, "0 of a paraboloid")                                                            \
+    X(double, shift_x_m, REAL, 3, "shift of the fitted surface along x")                                               \
+    X(double, shift_y_m, REAL, 3, "shift of the fitted surface along y; 0 of a cylinder")                              \
+    X(double, shift_z_m, REAL, 3, "shift of the fitted surface along z")                                               \
+    X(double, rotation_x_rad, REAL, 3, "turn of the fitted surface about x")                                           \
+    X(double, rotation_y_rad, REAL, 3, "turn of the fitted surface about y")                                           \
+    X(double, rotation_z_rad, REAL, 3, "turn of the fitted surface about z; 0 of a paraboloid")                        \
     X(double, ruze_limit_Hz, REAL, 6, "of hf_surface_measure: above it fit_gain_loss_dB is NaN")                       \
     X(double, center_x_m, REAL, 0, "of the nodes")                                                                     \
     X(double, center_y_m, REAL, 0, "of the nodes")                                                                     \

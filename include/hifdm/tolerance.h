@@ -50,18 +50,19 @@ extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS];
     X(double, nominal_psi_m, REAL, 2, "nominal_psi_m", "of the net without errors")                                    \
     X(double, first_order_rms_psi_m, REAL, 2, "first_order_rms_psi_m", "root of the mean of psi^2, to first order")    \
     X(double, psi_95_m, REAL, 2, "psi_95_m", "95 % of all nets do not exceed it; infinite: fewer have a shape")        \
-    X(double, rms_psi_m, REAL, 2, "rms_psi_m", "the same of the samples with a shape")                                 \
-    X(double, rms_psi_low_m, REAL, 2, "rms_psi_low_m", "95 % interval of it")                                          \
-    X(double, rms_psi_high_m, REAL, 2, "rms_psi_high_m", "the same")                                                   \
-    X(double, controlled_rms_psi_m, REAL, 3, "controlled_rms_psi_m", "the same with first order as a control variate") \
-    X(double, controlled_low_m, REAL, 3, "controlled_low_m", "95 % interval of it")                                    \
-    X(double, controlled_high_m, REAL, 3, "controlled_high_m", "the same")                                             \
+    X(double, rms_psi_m, REAL, 2, "rms_psi_m", "root of the mean of psi^2 of the samples with a shape")                \
+    X(double, rms_psi_low_m, REAL, 2, "rms_psi_low_m", "95 % interval of rms_psi_m: its lower end")                    \
+    X(double, rms_psi_high_m, REAL, 2, "rms_psi_high_m", "95 % interval of rms_psi_m: its upper end")                  \
+    X(double, controlled_rms_psi_m, REAL, 3, "controlled_rms_psi_m",                                                   \
+      "rms_psi_m with first order as a control variate")                                                               \
+    X(double, controlled_low_m, REAL, 3, "controlled_low_m", "95 % interval of controlled_rms_psi_m: its lower end")   \
+    X(double, controlled_high_m, REAL, 3, "controlled_high_m", "95 % interval of controlled_rms_psi_m: its upper end") \
     X(double, correlation, REAL, 3, "correlation", "of psi^2 with psi^2 to first order; 1: first order holds")         \
     X(double, variance_saved, REAL, 3, "variance_saved", "part of the variance of the mean of psi^2 that it takes")    \
     X(double, yield, REAL, 4, "yield", "part of the samples that meets all rows of tolerance.require; NaN: no rows")   \
-    X(double, yield_low, REAL, 4, "yield_low", "95 % interval of it (Clopper and Pearson)")                            \
-    X(double, yield_high, REAL, 4, "yield_high", "the same")                                                           \
-    X(double, wanted_yield, REAL, 4, "wanted_yield", "of the case; NaN: none")                                         \
+    X(double, yield_low, REAL, 4, "yield_low", "95 % interval of the yield (Clopper and Pearson): its lower end")      \
+    X(double, yield_high, REAL, 4, "yield_high", "95 % interval of the yield: its upper end")                          \
+    X(double, wanted_yield, REAL, 4, "wanted_yield", "tolerance.yield of the case; NaN: none")                         \
     X(double, sigma_scale, REAL, 4, "sigma_scale", "all errors times this give the wanted yield; NaN: not asked for")  \
     X(int, scale_bound, INT, 4, "scale_bound", "1: sigma_scale is at least that, -1: below that; 0: just that")        \
     X(int, scale_samples, INT, 4, "scale_samples", "of each yield on the way to it")                                   \

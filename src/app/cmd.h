@@ -11,7 +11,7 @@ typedef struct hf_options hf_options;
 
 typedef struct {
     const char *name;
-    const char *argument; /* "CASE"; "A B": two files; "[COMMAND]": may be left out; NULL: none */
+    const char *argument; /* "CASE"; "A B": two files; "[COMMAND]", "[WORD]": may be left out; NULL: none */
     const char *help;     /* one line */
     const char *about;    /* a paragraph on what the help on options does not say; NULL: none */
     const char *examples; /* command lines, separated by '\n'; NULL: none */
@@ -23,6 +23,7 @@ typedef struct {
 
 /* In the order in which help lists them. */
 #define HF_COMMANDS(X)                                                                                                 \
+    X(new)                                                                                                             \
     X(run)                                                                                                             \
     X(check)                                                                                                           \
     X(evaluate)                                                                                                        \
@@ -36,6 +37,7 @@ typedef struct {
     X(diff)                                                                                                            \
     X(report)                                                                                                          \
     X(export)                                                                                                          \
+    X(explain)                                                                                                         \
     X(schema)                                                                                                          \
     X(help)                                                                                                            \
     X(version)

@@ -15,9 +15,7 @@ const struct hf_help_exit hf_help_exit_table[HF_HELP_N_EXIT] = {
 
 #define WIDTH 100 /* columns of the help; longer words stand alone on a line */
 
-/* Prints the words of `text` in lines of at most WIDTH characters. The first line begins at `column`, the others at
- * `indent`. */
-static void wrap(const char *text, int indent, int column, FILE *f)
+void hf_help_wrap(const char *text, int indent, int column, FILE *f)
 {
     for (const char *p = text; *p;) {
         int n = (int)strcspn(p, " ");
@@ -40,7 +38,7 @@ static void print_row(const char *name, int indent, int help_column, const char 
         fputc('\n', f);
         column = 0;
     }
-    wrap(help, help_column, column, f);
+    hf_help_wrap(help, help_column, column, f);
 }
 
 static void print_overview(FILE *f)
@@ -61,10 +59,10 @@ static void print_command(const hf_command *c, FILE *f)
 {
     fprintf(f, "hifdm %s%s%s [OPTION]...\n\n", c->name, hf_help_space_before(c->argument),
             hf_help_or_nothing(c->argument));
-    wrap(c->help, 2, 0, f);
+    hf_help_wrap(c->help, 2, 0, f);
     if (c->about) {
         fputc('\n', f);
-        wrap(c->about, 2, 0, f);
+        hf_help_wrap(c->about, 2, 0, f);
     }
     fputs("\nOptions, anywhere behind the command:\n", f);
     for (int i = 0; i < hf_n_option; i++) {

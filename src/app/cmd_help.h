@@ -12,6 +12,10 @@ extern const struct hf_help_exit {
     const char *code, *meaning;
 } hf_help_exit_table[HF_HELP_N_EXIT];
 
+/* Prints the words of `text` in lines of at most 100 characters. The first line begins at `column`, the others at
+ * `indent`. */
+void hf_help_wrap(const char *text, int indent, int column, FILE *file);
+
 /* Write the manual page for man(1), and the completion script for bash. The caller checks the stream for errors. */
 void hf_help_man(FILE *file);
 void hf_help_bash(FILE *file);

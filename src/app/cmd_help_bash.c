@@ -1,6 +1,7 @@
 /* `hifdm help --bash` prints the completion script for bash. */
 #include "app/cmd_help.h"
 
+#include "out/words.h"
 #include <hifdm/config.h>
 
 #include <string.h>
@@ -118,6 +119,20 @@ static void bash_values(FILE *f)
             bash_words(hf_list_table[i].path, ".*.", &hf_list_table[i].field[k], f);
 }
 
+/* Each word once. Terms of several words are left out: bash would take them apart. */
+static void bash_explained(FILE *f)
+{
+    fputs("words='", f);
+    for (int i = 0; i < hf_n_word; i++) {
+        const char *word = hf_word_at(i).word;
+        int first = 0;
+        while (strcmp(hf_word_at(first).word, word) != 0)
+            first++;
+        if (first == i && !strchr(word, ' ')) fprintf(f, "%s%s", i ? " " : "", word);
+    }
+    fputs("' ;;\n", f);
+}
+
 void hf_help_bash(FILE *f)
 {
     fputs(bash_head, f);
@@ -139,6 +154,10 @@ void hf_help_bash(FILE *f)
             fputs("words='", f);
             bash_commands(f);
             fputs("' ;;\n", f);
+        } else if (!strcmp(c->argument, "[WORD]")) {
+            bash_explained(f);
+        } else if (!strcmp(c->argument, "NAME")) {
+            fputs("return ;;\n", f);
         } else {
             bool is_yaml = !strcmp(c->argument, "CASE") || !strcmp(c->argument, "STUDY");
             fprintf(f, "_hifdm_files %s ;;\n", is_yaml ? "yaml yml" : "h5");

@@ -146,6 +146,16 @@ static hf_status read_bash(const hf_option *option, const char *value, hf_option
     return HF_OK;
 }
 
+static hf_status read_new(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
+{
+    (void)value;
+    (void)messages;
+    o->new_case = !strcmp(option->name, "--import")     ? HF_NEW_IMPORT
+                  : !strcmp(option->name, "--cylinder") ? HF_NEW_CYLINDER
+                                                        : HF_NEW_PARABOLOID;
+    return HF_OK;
+}
+
 /* ---- the table ---- */
 
 #define AT(member) offsetof(hf_options, member)
@@ -215,6 +225,10 @@ static const hf_option option_table[] = {
          read_stage, 0, NULL},
     {"--case", NULL, "NAME", "the shape of this state of the net as built (`cases`)", "export", read_text, AT(state),
      NULL},
+    {"--paraboloid", NULL, NULL, "a round reflector: two nets that are tied to each other (the default)", "new",
+     read_new, 0, NULL},
+    {"--cylinder", NULL, NULL, "a parabolic cylinder: one net, optimised", "new", read_new, 0, NULL},
+    {"--import", NULL, NULL, "a net of your own in two tables, nodes and cables", "new", read_new, 0, NULL},
     {"--man", NULL, NULL, "print the manual page, for man(1)", "help", read_man, 0, NULL},
     {"--bash", NULL, NULL, "print the completion for bash", "help", read_bash, 0, NULL},
     {"--help", "-h", NULL, "print this", NULL, read_flag, AT(help), NULL},

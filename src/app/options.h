@@ -10,6 +10,8 @@
 
 typedef enum { HF_HELP_TEXT, HF_HELP_MAN, HF_HELP_BASH } hf_help_form;
 
+typedef enum { HF_NEW_PARABOLOID, HF_NEW_CYLINDER, HF_NEW_IMPORT } hf_new_case;
+
 struct hf_options {
     const hf_command *command;
     int argc; /* the whole command line, for the provenance of results */
@@ -38,6 +40,7 @@ struct hf_options {
     bool help;               /* --help */
     const hf_command *topic; /* of help; NULL = all commands */
     hf_help_form help_as;
+    hf_new_case new_case; /* of new */
 };
 
 typedef struct hf_option hf_option;

@@ -91,11 +91,14 @@ END_TEST
 static const struct {
     const char *words, *completions;
 } completion[] = {
-    {"hifdm e", "evaluate export "},
+    {"hifdm e", "evaluate explain export "},
     {"hifdm run --th", "--threads "},
     {"hifdm schema -", "--help "},
     {"hifdm show --", "--help --json --verbose "},
     {"hifdm help ru", "run "},
+    {"hifdm explain straight", "straight_chain "},
+    {"hifdm new --c", "--cylinder "},
+    {"hifdm new d", ""},
     {"hifdm run ''", "case.yaml dir "},
     {"hifdm show r", "result.h5 "},
     {"hifdm run x.yaml -o re", "result.h5 "},

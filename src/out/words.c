@@ -1,0 +1,426 @@
+/* Contents: entries from the lists - terms - what to do about a status - why something stopped - objects and figures of
+ * --json - warnings - all together */
+#include "out/words.h"
+
+#include <hifdm/front.h>
+#include <hifdm/summary.h>
+
+#include <string.h>
+
+/* ---- entries from the lists of figures and statuses ---- */
+
+#define SHAPE "figure of form, optimize, polish, cases"
+#define RESULT(type, member, kind, json, individual, key, units, description) {key, SHAPE, units, description, NULL},
+#define COUPLING(type, member, kind, json, individual, key, units, description)                                        \
+    {key, "figure of coupling", units, description, NULL},
+#define FORM(type, member, kind, json, key, description)                                                               \
+    {json ? key : #member, "figure of form", "", description, NULL},
+#define GA(type, member, kind, json, key, description)                                                                 \
+    {json ? key : #member, "figure of optimize", "", description, NULL},
+#define POLISH(type, member, kind, json, key, description) {key, "figure of polish", "", description, NULL},
+#define STATE(type, member, kind, json, key, description) {key, "figure of cases", "", description, NULL},
+#define TRUSS(type, member, kind, json, key, description) {key, "figure of truss", "", description, NULL},
+#define TOLERANCE(type, member, kind, json, key, description) {key, "figure of tolerance", "", description, NULL},
+#define SURFACE(type, member, kind, json, description) {#member, "figure of surface", "", description, NULL},
+#define FIT(type, member, kind, json, description)                                                                     \
+    {"fit_" #member, "figure of surface, best fit", "", description, NULL},
+#define LOSS(member, description) {#member, "figure of surface", "dB", description, NULL},
+#define STATUS(name, value, code, word, text) {word, "status; exit status " #code, "", text, NULL},
+#define PROOF(name, value, word, meaning) {word, "bound_reason", "", meaning, NULL},
+
+static const hf_word listed[] = {HF_STATUS_LIST(STATUS) HF_BOUND_REASON_LIST(PROOF) HF_RESULT_LIST(
+    RESULT) HF_COUPLING_LIST(COUPLING) HF_SUMMARY_FORM_LIST(FORM) HF_SUMMARY_GA_LIST(GA) HF_SUMMARY_POLISH_LIST(POLISH)
+                                     HF_STATE_LIST(STATE) HF_SUMMARY_TRUSS_LIST(TRUSS) HF_TOLERANCE_LIST(TOLERANCE)
+                                         HF_SURFACE_LIST(SURFACE) HF_SURFACE_FIT_LIST(FIT) HF_SURFACE_LOSS_LIST(LOSS)};
+enum { N_LISTED = sizeof listed / sizeof *listed };
+
+/* ---- and what the lists do not say ---- */
+
+static const hf_word told[] = {
+    /* ---- term ---- */
+    {"psi", "term", "",
+     "How far a net is from where it should be: the root mean square, over the inner nodes, of the distance to the "
+     "theoretical position (Eqs. 9, 10 of Chen et al.). Moves within the surface count, too. In JSON: psi_m.",
+     NULL},
+    {"law", "term", "",
+     "What a cable keeps: its tension, its length, its force density, or that of an elastic piece of cable with an "
+     "unstressed length.",
+     NULL},
+    {"chain", "term", "",
+     "Cables in a row between two supports whose inner ends have no other cable that could balance a force across: a "
+     "straight chain of cables that keep their lengths cannot carry a lateral load with any finite tension.",
+     NULL},
+    {"gene", "term", "",
+     "A variable of the optimisation: without optimize.variables the pretension of a boundary cable with a free end.",
+     NULL},
+    {"set", "term", "",
+     "A named group of cables: generated nets name the families of their cables (front, tie, edge, ...), imported ones "
+     "have a column `set`.",
+     NULL},
+    {"stage", "term", "",
+     "One of the steps of a run that has a shape: form (form-finding), optimize (the best of the genetic algorithm), "
+     "polish (Levenberg-Marquardt).",
+     NULL},
+    {"form-finding", "term", "",
+     "The first row of the summary: the shape in which all forces balance and every cable obeys its law.", NULL},
+    {"GA", "term", "",
+     "The genetic algorithm: generations of designs, the better ones of which breed the next; needs no derivatives. In "
+     "JSON: optimize.",
+     NULL},
+    {"LM", "term", "",
+     "Levenberg-Marquardt: least squares by exact derivatives from the best design there is; for comparison behind the "
+     "GA, or the result by optimize.method lm and ga+lm. In JSON: polish.",
+     NULL},
+    {"good to", "term", "",
+     "The frequency at which the errors cost 1 dB of gain by Ruze's formula: of the facets where a section surface "
+     "measures them, else of the nodes, else of psi, which is no less than the nodes' error. The second number is "
+     "after the best fit: the feed follows.",
+     NULL},
+    {"half path", "term", "",
+     "Half of how much longer or shorter the way from a plane wave to the focus is: the error along the normal times "
+     "the cosine of the angle there. What Ruze's formula takes.",
+     NULL},
+    {"best fit", "term", "",
+     "The surface of the wanted kind, moved, turned and with another focal length, that is nearest to the shape: the "
+     "errors that are left when the feed follows.",
+     NULL},
+    {"facet", "term", "",
+     "A flat triangle or a bilinear quadrilateral of mesh between cables; it is off a curved surface even where its "
+     "nodes are on it. Smaller ones are nearer.",
+     NULL},
+    {"force density", "term", "",
+     "Tension over length, N/m. With force densities given, balance is linear in the positions.", NULL},
+    {"pretension", "term", "",
+     "The tension that cables are to have without loads: form.pretension_N for cables of law tension without a value.",
+     NULL},
+    {"boundary ratio", "term", "", "Column of the summary: boundary_tension_ratio.", NULL},
+    {"ratio inside", "term", "", "Column of the summary: inner_tension_ratio.", NULL},
+    {"at bounds", "term", "",
+     "Column of the summary: how many variables are at an end of their ranges. Many of them: a wider range "
+     "(optimize.range_N) would give a better design.",
+     NULL},
+    {"proven to", "term", "",
+     "Column of the summary: position_bound_m, or \"no:\" and the bound_reason. Without a proof the figures are as "
+     "good as residual_N says.",
+     NULL},
+    {"slack cable", "term", "",
+     "A cable without tension: below 1e-3 of the reference tension. It does not shape the net; ratios with it are "
+     "infinite.",
+     NULL},
+    {"loose node", "term", "",
+     "A free node without load all of whose cables are slack: its place is anywhere its cables let it be, and psi "
+     "leaves it out.",
+     NULL},
+    /* ---- what to do ---- */
+    {"ok", "what to do", "", "Nothing: it is done, or the design is feasible.", NULL},
+    {"not_converged", "what to do", "",
+     "Raise form.max_iterations, or let Newton find it (form.method=newton). The message names the cable that is "
+     "furthest from its law; a length that its neighbours cannot take keeps the iteration from its end.",
+     NULL},
+    {"singular", "what to do", "",
+     "Some node is held by nothing, or only along a line: the message names it. Give it another cable or a support; of "
+     "a net with struts, change their force densities.",
+     NULL},
+    {"straight_chain", "what to do", "",
+     "Let the chain sag (a scallop, a shorter or longer length), give one of its cables law tension, or tie its nodes.",
+     NULL},
+    {"collapsed", "what to do", "",
+     "Force densities or tensions differ too much, or a part of the net has nothing that keeps it open. Look at the "
+     "cable that the message names: its length, its law, the supports behind it.",
+     NULL},
+    {"not_finite", "what to do", "",
+     "Numbers have run away, most often from lengths that cannot be. Look at the cable that the message names.", NULL},
+    {"ratio_cap", "what to do", "",
+     "As it counts for designs: they are infeasible. Raise optimize.boundary_ratio_cap if such tensions can be had, or "
+     "narrow the ranges.",
+     NULL},
+    {"no_feasible", "what to do", "",
+     "The message says which limit most designs break, or what status they have. Wider ranges, looser limits or a "
+     "better start help.",
+     NULL},
+    {"truss_too_soft", "what to do", "", "Stiffer tubes (E_Pa, diameter, wall), more bracing, less pretension.", NULL},
+    {"mechanism", "what to do", "",
+     "The message names the node that moves without a force: brace it, or hold more of the truss (truss.ring.held, "
+     "supports).",
+     NULL},
+    {"out_of_limits", "what to do", "",
+     "As it counts for designs: they are infeasible. The summary names the limits that hold the best one.", NULL},
+    {"points_failed", "what to do", "",
+     "`hifdm status STUDY` says which and why; `hifdm sweep STUDY --retry failed` runs those again.", NULL},
+    {"exists", "what to do", "", "Another name, or --force (of run: --restart), if it may be replaced.", NULL},
+    {"interrupted", "what to do", "", "The same command goes on where it was.", NULL},
+    {"io", "what to do", "", "The message names the file and the reason of the system; what was stored stays.", NULL},
+    /* ---- stop_reason ---- */
+    {"direct", "stop_reason", "", "No law changes a force density: one linear solve is the answer.", NULL},
+    {"residual", "stop_reason", "",
+     "Equilibrium, lengths and tensions are within the tolerances (form.residual_tolerance and its kin).", NULL},
+    {"rms_change", "stop_reason", "",
+     "The rule of the paper: psi changes by less than form.rms_tolerance_m from one iteration to the next. It ends "
+     "before equilibrium.",
+     NULL},
+    {"max_iterations", "stop_reason", "", "The limit of iterations came first: not converged.", NULL},
+    {"ill_posed", "stop_reason", "", "There is no answer; the status says why.", NULL},
+    {"tof", "stop_reason", "", "Of net and truss: no attachment moves farther than coupling.tof_m any more.", NULL},
+    {"diverged", "stop_reason", "", "Of net and truss: the steps grow, the truss is too soft.", NULL},
+    {"net", "stop_reason", "", "Of net and truss: the net has no shape on the truss as it is bent; see the status.",
+     NULL},
+    {"generations", "stop_reason", "", "The genetic algorithm has done optimize.generations.", NULL},
+    {"stagnation", "stop_reason", "", "The genetic algorithm has gained nothing for optimize.stagnation_generations.",
+     NULL},
+    {"all_infeasible", "stop_reason", "", "The genetic algorithm ends without a feasible design.", NULL},
+    {"running", "stop_reason", "", "The genetic algorithm goes on when the same command is given again.", NULL},
+    {"converged", "stop_reason", "", "Levenberg-Marquardt: no step promises more.", NULL},
+    {"stalled", "stop_reason", "",
+     "Levenberg-Marquardt: shorter steps gain nothing, though the derivatives promise it; the design is a good one, "
+     "but not shown to be an optimum.",
+     NULL},
+    /* ---- object of --json ---- */
+    {"form", "object of --json", "", "The found shape: figures of the form-finding.", NULL},
+    {"optimize", "object of --json", "", "The best design of the genetic algorithm.", NULL},
+    {"polish", "object of --json", "", "The optimum of Levenberg-Marquardt.", NULL},
+    {"truss", "object of --json", "", "The structure that carries the net.", NULL},
+    {"coupling", "object of --json", "", "How net and truss came to balance.", NULL},
+    {"surface", "object of --json", "", "Errors of a shape as a reflector.", NULL},
+    {"sets", "object of --json", "", "Tensions of each named set of cables.", NULL},
+    {"goals", "object of --json", "", "Value and weight of each row of optimize.goals or optimize.objectives.", NULL},
+    {"front", "object of --json", "", "Designs of which none is better than another in all objectives.", NULL},
+    {"cases", "object of --json", "", "States of the net as built: cold, in the sun, on the ground.", NULL},
+    {"tolerance", "object of --json", "", "Samples of nets as built with errors of cut, stiffness and supports.", NULL},
+    {"require", "object of --json", "", "Rows of tolerance.require, each with the part of samples that meets it.",
+     NULL},
+    {"kind_share", "object of --json", "", "Part of the variance of psi by kind of error.", NULL},
+    {"cable_share", "object of --json", "", "Cables with the largest parts of the variance of psi: cut these well.",
+     NULL},
+    {"at_limits", "object of --json", "", "Limits that the design is at: what to loosen for a better one.", NULL},
+    {"points", "object of --json", "", "Points of the front, ascending by the first objective.", NULL},
+    /* ---- figure ---- */
+    {"status", "figure", "", "How a run, a shape or a design ended; `hifdm explain` lists the words.", NULL},
+    {"stop_reason", "figure", "",
+     "Why an iteration, the genetic algorithm or Levenberg-Marquardt ended; `hifdm explain` lists the words.", NULL},
+    {"psi_m", "figure", "m", "How far the net is from where it should be; see psi. Of a status other than ok null.",
+     NULL},
+    {"residual_N", "figure", "N",
+     "What is out of balance at the worst node with every cable at the tension of its law. Against the pretension it "
+     "says how near to equilibrium the shape is: 1e-6 of it is plenty.",
+     NULL},
+    {"inner_tension_ratio", "figure", "",
+     "Largest over smallest tension of the inner cables: 1 is even. Infinity: one is slack.", NULL},
+    {"boundary_tension_ratio", "figure", "",
+     "Largest over smallest tension of the boundary cables. optimize.boundary_ratio_cap keeps it below a limit.", NULL},
+    {"condition", "figure", "",
+     "How much the net amplifies small forces and rounding, relatively: 1e10 leaves some six digits. A net that is "
+     "nearly a mechanism has a large one.",
+     NULL},
+    {"backward_error", "figure", "",
+     "What is out of balance beside the tensions at the node: rounding alone leaves 1e-16 to 1e-14.", NULL},
+    {"position_error_m", "figure", "m",
+     "Estimated distance of the worst node from equilibrium; the proven one is position_bound_m.", NULL},
+    {"position_bound_m", "figure", "m",
+     "Proven, rounding included: no equilibrium of the net has a node farther from its place here. Null without a "
+     "proof; bound_reason says why.",
+     NULL},
+    {"merit", "figure", "",
+     "What the optimisation lowers: the root of the sum of (weight x goal)^2; without goals psi.", NULL},
+    {"violation", "figure", "", "How far a design is beyond its limits, summed over cables; 0: feasible.", NULL},
+    {"wall_s", "figure", "s", "Time by the clock on the wall; cpu_s is what the processors worked.", NULL},
+    {"cpu_s", "figure", "s", "Processor time of breeding, evaluating and storing, over all threads.", NULL},
+    {"evaluations", "figure", "", "Designs that were evaluated, each a form-finding.", NULL},
+    {"iterations", "figure", "", "Linear solves of a form-finding; steps of the coupling, or of a point of the front.",
+     NULL},
+    {"seed", "figure", "", "Of the genetic algorithm: the same seed gives the same result, to the bit.", NULL},
+    {"threads", "figure", "", "Threads that were used; results do not depend on it.", NULL},
+    {"version", "figure", "", "Of the program that made the result.", NULL},
+    {"case", "figure", "", "The case file.", NULL},
+    {"file", "figure", "", "The result file.", NULL},
+    {"warnings", "figure", "", "What the run warned of; `hifdm explain` takes such a text, too.", NULL},
+    {"kind", "figure", "", "Of the surface: parabolic_cylinder or paraboloid.", NULL},
+    {"frequency_Hz", "figure", "Hz", "Where the losses of gain are told: surface.frequencies_Hz.", NULL},
+    {"least_N", "figure", "N", "Least tension of the set.", NULL},
+    {"largest_N", "figure", "N", "Largest tension of the set.", NULL},
+    {"tension_ratio", "figure", "", "Largest over least tension of the set; Infinity: a cable of it is slack.", NULL},
+    {"value", "figure", "", "Of a goal, in its own unit; of a limit, what the named cable has.", NULL},
+    {"weight", "figure", "", "Of a goal in the merit.", NULL},
+    {"row", "figure", "", "Of a limit: its row of optimize.limits from 0, or -1: boundary_ratio_cap.", NULL},
+    {"name", "figure", "", "Of one cable, or attachment, that is at the limit.", NULL},
+    {"bound", "figure", "", "The limit that it is at.", NULL},
+    {"count", "figure", "", "How many cables or attachments of the row are at this bound.", NULL},
+    {"n_point", "figure", "", "Points of the front.", NULL},
+    {"n_listed", "figure", "", "Points of the front that are listed here; the table of `hifdm export --front` has all.",
+     NULL},
+    {"n_dominated", "figure", "", "Points of the front that another one beats in all objectives.", NULL},
+    {"n_failed", "figure", "", "Points of the front without a feasible design.", NULL},
+    {"n_not_converged", "figure", "",
+     "Points of the front whose design is not known to be an optimum: raise optimize.polish_iterations.", NULL},
+    {"minimised", "figure", "", "The objective whose least is sought under limits on the others.", NULL},
+    {"knee", "figure", "",
+     "The point of the front farthest below the line between its ends: where a trade turns bad on both sides.", NULL},
+    {"base", "figure", "", "The objectives of the shape after form-finding.", NULL},
+    {"id", "figure", "", "Of a point: its row in the table of `hifdm export --front`.", NULL},
+    {"objective", "figure", "", "Values of the objectives at this point.", NULL},
+    {"multiplier", "figure", "",
+     "Slope of the front: by how much the minimised objective falls for one unit more of this one.", NULL},
+    {"mark", "figure", "", "Of a point: on the front, dominated, or failed.", NULL},
+    {"mean", "figure", "", "Over all samples that have the figure.", NULL},
+    {"mean_low", "figure", "", "Lower end of the 95 % interval of the mean.", NULL},
+    {"mean_high", "figure", "", "Upper end of the 95 % interval of the mean.", NULL},
+    {"deviation", "figure", "", "Standard deviation over the samples.", NULL},
+    {"least", "figure", "", "Smallest of the samples.", NULL},
+    {"largest", "figure", "", "Largest of the samples.", NULL},
+    {"quantiles", "figure", "", "The parts of nets that the quantiles are of: 50, 95, 99 %.", NULL},
+    {"quantile", "figure", "", "What these parts of the nets keep: at most, or of tensions at least.", NULL},
+    {"quantile_low", "figure", "", "Lower ends of the 95 % intervals of the quantiles.", NULL},
+    {"quantile_high", "figure", "", "Upper ends of the 95 % intervals of the quantiles.", NULL},
+    {"measure", "figure", "", "What the row of tolerance.require is about.", NULL},
+    {"at_most", "figure", "", "Limit of the row.", NULL},
+    {"at_least", "figure", "", "Limit of the row.", NULL},
+    {"histogram", "figure", "", "Samples of psi by bins of equal width over histogram_range_m.", NULL},
+    {"histogram_range_m", "figure", "m", "Ends of the histogram of psi.", NULL},
+    {"cable", "figure", "", "Id of the cable.", NULL},
+    {"share", "figure", "", "Part of the variance of psi that errors of this cable make, to first order.", NULL},
+    {"least_tension_N", "figure", "N", "Least tension of all cables, of a state or of a sample.", NULL},
+    {"n_slack", "figure", "", "Slack cables of a sample.", NULL},
+    {"n_loose", "figure", "", "Loose nodes of a sample.", NULL},
+    {"fit_gain_loss_dB", "figure", "dB", "Loss of gain (Ruze) after the best fit; null beyond 3 dB.", NULL},
+    {"n_node", "figure", "", "Nodes of the net.", NULL},
+    {"n_cable", "figure", "", "Cables of the net.", NULL},
+    {"fit_converged", "figure", "", "Whether the best fit has ended; false: it has no figures.", NULL},
+    /* ---- warning ---- */
+    {"loose_nodes", "warning", "",
+     "The nodes hang on slack cables alone. Shorten a cable there, raise its tension, or take the node out; their "
+     "places mean nothing.",
+     "no taut cable holds these nodes"},
+    {"drifting_nodes", "warning", "",
+     "Some node can move without a force, as one whose load equals the tension that it hangs on: the shape is one of "
+     "many. Hold the node, or give a cable there another law.",
+     "the equilibrium is not unique"},
+    {"stopped_early", "warning", "",
+     "The rule of the paper stops by the change of psi. For equilibrium: form.stop residual. Figures at this point "
+     "depend on where the iteration stopped.",
+     "ended before equilibrium"},
+    {"elastic_tolerance", "warning", "",
+     "A stiff cable turns a small error of its length into a large force. Lower form.length_tolerance.",
+     "by the laws of the elastic cables forces of"},
+    {"loaded_chains", "warning", "",
+     "Straight chains of cables that keep their lengths carry a load across, which no finite tension holds: their "
+     "tensions mean nothing. Let the edges sag (scene scallop), or give one cable of each chain law tension; form.stop "
+     "residual refuses such a net and names all chains.",
+     "of length-controlled cables carry lateral load"},
+    {"slack_cables", "warning", "",
+     "Cables without tension do not shape the net. Raise their tension, shorten them, or leave them out.",
+     "slack in the"},
+    {"mesh_pull", "warning", "",
+     "The mesh pulls so much on cables that figures of first order mean less: raise the tension of the cables, lower "
+     "surface.mesh_tension_N_per_m, or make facets smaller.",
+     "the mesh pulls on a cable"},
+    {"fit_failed", "warning", "",
+     "The nodes do not tell a best fit: too few of them, or a shape far from the wanted kind of surface. Its figures "
+     "are left out.",
+     "the best fit to the shape of stage"},
+    {"crossing_cables", "warning", "",
+     "Seen along the axis two cables cross without a node: the net has no facets there that could be measured. Name "
+     "them in a table of facets, or put a node at the crossing.",
+     "cross without a node"},
+    {"polish_needs", "warning", "",
+     "Levenberg-Marquardt needs derivatives, which this case has not; the genetic algorithm does without.",
+     "Levenberg-Marquardt needs"},
+    {"no_feasible_start", "warning", "",
+     "Levenberg-Marquardt starts from a design that keeps all limits, and there was none. Loosen the limit that the "
+     "message names, or let the genetic algorithm look for a start (optimize.method ga+lm).",
+     "has no feasible start"},
+    {"no_free_end", "warning", "",
+     "All ends of all boundary cables are supports, so that their tensions change nothing: check the column group, or "
+     "say what may vary (optimize.variables).",
+     "no boundary cable has a free end"},
+    {"finished_result", "warning", "",
+     "Nothing was computed: the file has the finished result of just this case. --restart computes it again.",
+     "is the finished result of this case"},
+    {"seed_unused", "warning", "", "Without a section optimize nothing is random.", "--seed has no effect"},
+    {"design_alone", "warning", "", "`hifdm tolerance` with this case adds the samples.",
+     "the result has the design alone"},
+    {"front_failed", "warning", "",
+     "Points of the front have no design within their limits. Fewer points, wider ranges or other objectives; the "
+     "other points hold.",
+     "points of the front failed"},
+    {"front_not_converged", "warning", "",
+     "These points are good designs, but not known to be optima, and have no slope. Raise optimize.polish_iterations.",
+     "points of the front are not converged"},
+    {"front_of_generations", "warning", "",
+     "Levenberg-Marquardt could not refine the front; it is that of the last generation.",
+     "the front is that of the last generation"},
+    {"no_shape_in_state", "warning", "",
+     "The net as built has no shape in this state of `cases`: look at its loads and temperatures.",
+     "the net has no shape in state"},
+    {"slack_in_state", "warning", "",
+     "In this state of `cases` cables go slack. Of nets in zero gravity that is a fault of the design; on the ground, "
+     "or folded, it may be meant.",
+     "cases: in state"},
+    {"cable_twice", "warning", "", "Two cables join the same nodes: one of them is mostly a slip.",
+     "joins the same two nodes as cable"},
+    {"cables_twice", "warning", "", "See cable_twice; these are the rest of them.",
+     "more cables that join the same two nodes"},
+    {"far_node", "warning", "", "A coordinate in mm among others in m, or a digit too many.",
+     "from the middle of the net"},
+    {"far_nodes", "warning", "", "See far_node; these are the rest of them.", "more nodes as far away"},
+    {"flat_rim", "warning", "",
+     "With all supports in one plane tensions pull the whole net into it. Tie the net to a second one "
+     "(rear_distance_m), load it, or put supports on the surface.",
+     "whatever its tensions, it collapses there"},
+    {"focal_length", "warning", "", "Reflectors have focal lengths of some apertures: is it in m?",
+     "times the aperture of"},
+    {"no_expansion", "warning", "",
+     "The state has a temperature of the truss, and no member with an expansion_per_K. Without it the truss stays as "
+     "it is.",
+     "no member of the truss expands"},
+    {"unused_column", "warning", "",
+     "A column of a table that hifdm does not know, perhaps a misspelt one; it is left out.", "is not used"},
+    {"built_before_optimize", "warning", "",
+     "`hifdm adjust` takes the net as form-finding has it: put the tensions of the best design into the tables if that "
+     "is what was built.",
+     "the net is built as form-finding has it"},
+    {"places_do_not_fit", "warning", "",
+     "The measured places are farther from what the net can be than the sigmas allow: units, the frame, mixed-up ids, "
+     "supports that have moved, or another design.",
+     "these places do not fit the net"},
+    {"estimate_not_settled", "warning", "",
+     "The estimate of the errors still moved: measure more nodes, or allow for fewer errors.",
+     "the estimate did not settle"},
+    {"places_tell_little", "warning", "",
+     "The places are measured less well than the net is known from its tolerances: they change next to nothing.",
+     "these places tell next to nothing"},
+    {"other_frame", "warning", "",
+     "The measured places look moved or turned as a whole: is this the frame of the case, in m?",
+     "is this the frame of the case"},
+    {"no_locks", "warning", "",
+     "The file system has no locks: start no second process on the same result or sweep; of a sweep only --task keeps "
+     "several apart.",
+     "this file system has no locks"},
+    {"run_elsewhere", "warning", "", "Another process works on these points: nothing to do.",
+     "points are run by another process"},
+    {"no_journal", "warning", "", "A file with the name of the journal was none; it was replaced.",
+     "was no journal of hifdm"},
+    {"damaged_journal", "warning", "",
+     "The end of the journal is damaged, as after a power cut: what it held is computed again.",
+     "bytes count for nothing"},
+    {"other_bits", "warning", "", "Another machine or build began this result. Figures agree, the last bits may not.",
+     "finds the shape with other last bits"},
+    {"other_designs", "warning", "",
+     "Another machine or build began this result: the generations that were not published are computed again.",
+     "breeds other designs"},
+    {"nothing_to_recover", "warning", "", "The result is finished.", "there is nothing to recover"},
+};
+enum { N_TOLD = sizeof told / sizeof *told };
+
+/* ---- all together ---- */
+
+const int hf_n_word = N_LISTED + N_TOLD;
+
+hf_word hf_word_at(int i)
+{
+    return i < N_LISTED ? listed[i] : told[i - N_LISTED];
+}
+
+bool hf_word_is(int i, const char *word)
+{
+    const hf_word entry = hf_word_at(i);
+    return !strcmp(entry.word, word) || (entry.says && strstr(word, entry.says));
+}

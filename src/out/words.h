@@ -1,0 +1,23 @@
+/* words - what every status, warning, figure and term means, and what to do about it: one table for `hifdm explain`.
+ * Figures and statuses come from the lists that define them (result.h, summary.h, surface.h, tolerance.h, status.h);
+ * what these lists do not say stands beside them in words.c. */
+#ifndef HIFDM_WORDS_H
+#define HIFDM_WORDS_H
+
+#include <stdbool.h>
+
+typedef struct {
+    const char *word;
+    const char *kind; /* what it is: "term", "status", "warning", "figure of form, optimize, polish", ... */
+    const char *units, *text;
+    const char *says; /* of a warning: words of it that no other has; else NULL */
+} hf_word;
+
+/* Entry i of 0..hf_n_word-1; a word may have several, of different kinds. */
+extern const int hf_n_word;
+hf_word hf_word_at(int i);
+
+/* Does entry i belong to `word`, or to a whole warning that a user copied? */
+bool hf_word_is(int i, const char *word);
+
+#endif

@@ -1,0 +1,149 @@
+/* How a new user begins: `hifdm new` writes cases that run at once, `hifdm explain` knows every word that is said. */
+#include "cli.h"
+
+/* ---- hifdm new ---- */
+
+static const struct {
+    const char *option;
+    int n_file;
+} begun[] = {{NULL, 1}, {"--paraboloid", 1}, {"--cylinder", 1}, {"--import", 3}};
+
+START_TEST(every_new_case_runs_without_a_warning)
+{
+    const char *name = temp("dish"), *path = temp("dish.yaml"),
+               *other[2] = {temp("dish_nodes.csv"), temp("dish_cables.csv")};
+    const char *option = begun[_i].option;
+    if (option)
+        HIFDM(0, "new", name, option);
+    else
+        HIFDM(0, "new", path); /* the name with its ending is taken for what it is */
+    ck_assert_int_eq(count_of(said.out, " is written\n"), begun[_i].n_file);
+    for (int k = 0; k < 2; k++)
+        ck_assert_int_eq(is_there(other[k]), begun[_i].n_file == 3);
+    HIFDM(0, "check", path);
+    ck_assert_str_eq(said.err, "");
+    HIFDM(0, "run", path, "-o", temp("dish.h5"), "--json");
+    ck_assert_str_eq(said.err, "");
+    EXPECT(out_as("dish.json"), "--", "a['warnings'] == [] and a['status'] == 'ok'",
+           "'optimize' not in a or a['optimize']['psi_m'] < 0.99 * a['form']['psi_m']");
+    HIFDM(0, "show", temp("dish.h5"));
+    OUT("\n  case          dish\n");
+}
+END_TEST
+
+START_TEST(nothing_is_replaced)
+{
+    const char *table = file_with("mine_cables.csv", "precious\n"), *mine = temp("mine");
+    HIFDM(5, "new", mine, "--import");
+    ERRS("error: %s exists, and is not replaced", table);
+    ck_assert(!is_there(temp("mine.yaml")) && !is_there(temp("mine_nodes.csv")));
+    char *text = read_file(table, NULL);
+    ck_assert_str_eq(text, "precious\n");
+    free(text);
+    HIFDM(0, "new", mine);
+    HIFDM(5, "new", mine, "--cylinder");
+    ERRS("error: %s.yaml exists, and is not replaced", mine);
+    static const char *const bad[] = {"a b", "../.x", "-", "folder/", "q'", "@", "\xc3\xa9"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        HIFDM(2, "new", keep(formatted("%s/%s", temp("x"), bad[i])));
+        ERR("needs a name of letters, digits");
+    }
+    HIFDM(2, "new");
+    ERR("'hifdm new' needs a NAME");
+}
+END_TEST
+
+/* ---- hifdm explain ---- */
+
+/* The words that explain lists, and what it says about them: never nothing, never "the same". */
+static const char look_up[] =
+    "import json, re, subprocess, sys\n"
+    "program, source, *results = sys.argv[1:]\n"
+    "def explain(*word): return subprocess.run([program, 'explain', *word], capture_output=True, text=True)\n"
+    "listed = explain().stdout\n"
+    "words = {w.strip() for part in re.split(r'^[^ ].*?: ', listed, flags=re.M) for w in part.split(',')}\n"
+    "words.discard('')\n"
+    "seen = set()\n"
+    "def demand(word, what):\n"
+    "    if word in seen: return\n"
+    "    seen.add(word)\n"
+    "    got = explain(word)\n"
+    "    if got.returncode: print(what, word, 'has no entry')\n"
+    "    texts = [t.strip() for t in re.split(r'^[^ ].*$', got.stdout, flags=re.M) if t.strip()]\n"
+    "    if not any(len(t) >= 12 and not t.startswith(('the same', 'The same')) for t in texts):\n"
+    "        print(what, word, 'is told as', texts)\n"
+    "for word in words: demand(word, 'listed')\n"
+    "named = {'goals', 'sets', 'cases', 'objective', 'multiplier', 'base', 'kind_share'} # names of the user, or of "
+    "keys\n"
+    "keys = set()\n"
+    "def walk(o):\n"
+    "    for v in o if isinstance(o, list) else []: walk(v)\n"
+    "    for k, v in o.items() if isinstance(o, dict) else []:\n"
+    "        keys.add(k)\n"
+    "        for inner in v.values() if k in named and isinstance(v, dict) else [v]: walk(inner)\n"
+    "for path in results: walk(json.load(open(path)))\n"
+    "for key in sorted(keys): demand(key, 'figure')\n"
+    "print(len(words), len(keys))\n"
+    "status = open(source + '/include/hifdm/status.h').read()\n"
+    "for word in re.findall(r'X\\([A-Z_]+, \\d+, \\d+, \"(\\w+)\"', status): demand(word, 'status')\n"
+    "import glob\n"
+    "for file in glob.glob(source + '/src/*/*.c'):\n"
+    "    text = open(file).read()\n"
+    "    for call in re.findall(r'hf_warning\\(\\s*[^,\"]+,\\s*((?:\"(?:[^\"\\\\]|\\\\.)*\"\\s*)+)', text):\n"
+    "        said = ''.join(re.findall(r'\"((?:[^\"\\\\]|\\\\.)*)\"', call))\n"
+    "        if said != '%s' and explain('warning: ' + said).returncode: print('warning', said, 'has no entry')\n";
+
+START_TEST(every_word_is_explained)
+{
+    const char *chen = temp("chen.h5"), *front = temp("front.h5"), *built = temp("built.h5"),
+               *states = temp("states.h5");
+    const char *json[4];
+    HIFDM(0, "run", keep(source_path("configs/chen2022-truss.yaml")), "-o", chen, "--json", "--set",
+          "optimize.generations=3", "--set", "optimize.goals=[{goal: psi}, {goal: tension, set: edge, target: 30}]",
+          "--set", "optimize.limits=[{limit: tension, set: boundary, bounds: [8, 200]}]", "--set", "surface={}");
+    json[0] = out_as("chen.json");
+    HIFDM(0, "run", keep(source_path("configs/chen2022.yaml")), "-o", front, "--json", "--set", "optimize.method=lm",
+          "--set", "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}]", "--set",
+          "optimize.front_points=5");
+    json[1] = out_as("front.json");
+    HIFDM(0, "run",
+          file_with("built.yaml", SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\ntolerance: {sigma_cut_m: 1e-4, "
+                                              "samples: 50, yield: 0.9, require: [{measure: psi_m, at_most: 1}]}\n"),
+          "-o", built, "--json");
+    json[2] = out_as("built.json");
+    HIFDM(0, "run", keep(source_path("configs/paraboloid-cases.yaml")), "-o", states, "--json");
+    json[3] = out_as("states.json");
+    SHELL(0, "OMP_WAIT_POLICY=passive \"$1\" \"$2\" \"$0\" \"$3\" \"$4\" \"$5\" \"$6\" \"$7\"", python_program(),
+          file_with("look_up.py", look_up), keep(source_path("")), json[0], json[1], json[2], json[3]);
+    int n_word = 0, n_key = 0, end = 0;
+    sscanf(said.out, "%d %d\n%n", &n_word, &n_key, &end);
+    ck_assert_msg(n_word > 200 && n_key > 150 && !said.out[end], "%s", said.out);
+}
+END_TEST
+
+START_TEST(explain_helps_with_slips)
+{
+    HIFDM(0, "explain", "straight_chain");
+    OUT("straight_chain (status; exit status 4)\n    a straight chain of length-controlled cables carries lateral "
+        "load\n");
+    HIFDM(0, "explain", "warning: slack in the form-finding shape, 1: c7");
+    OUT("slack_cables (warning)\n");
+    ck_assert_int_eq(count_of(said.out, "("), 1);
+    HIFDM(2, "explain", "residul_N");
+    ERR("nothing is called 'residul_N'; did you mean 'residual_N'?");
+    HIFDM(2, "explain", "gobbledygook");
+    ERR("'hifdm explain' lists all words");
+}
+END_TEST
+
+Suite *suite_cli_begin(void)
+{
+    Suite *suite = suite_create("cli/begin");
+    TCase *tcase = tcase_create("begin");
+    tcase_add_loop_test(tcase, every_new_case_runs_without_a_warning, 0, sizeof begun / sizeof *begun);
+    tcase_add_test(tcase, nothing_is_replaced);
+    tcase_add_test(tcase, every_word_is_explained);
+    tcase_add_test(tcase, explain_helps_with_slips);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
