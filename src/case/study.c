@@ -253,6 +253,7 @@ static hf_status check_points(hf_study *s, hf_messages *messages)
             s->has_optimize = c.has_optimize;
             s->derives_seed = c.has_optimize && !has_seed_axis;
             s->seed = c.optimize.seed;
+            if (!*s->title) snprintf(s->title, sizeof s->title, "%s", c.title);
             status = take_fingerprint(s, &c, messages);
         }
         if (status != HF_OK && n_fault++ < HF_FAULT_MAX_POINT) tell_faults(s, i, &found, messages);

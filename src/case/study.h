@@ -1,6 +1,7 @@
 /* study - a sweep: the axes that a study file gives over keys of a base case, and the points that they span.
  *
  *     base: reflector.yaml              # relative to this file; without it, this file is the case itself
+ *     title: which pretension?          # without it that of the case
  *     sweep:
  *       form.pretension_N: [8, 10, 12]
  *       scene.parabolic_cylinder.scallop: {from: 0.05, to: 0.15, n: 11, spacing: linear}   # or log
@@ -39,6 +40,7 @@ typedef struct {
 typedef struct {
     char path[HF_PATH_SIZE];                      /* of the study file */
     char base[HF_PATH_SIZE];                      /* of the case; the same in the one-file form */
+    char title[256];                              /* its own, or that of the case; "": none */
     char table[HF_STUDY_TABLE_MAX][HF_PATH_SIZE]; /* that the first point imports; "": none */
     bool is_zip;
     hf_study_files files;

@@ -402,27 +402,48 @@ static void read_base(reader *r, const yaml_node_t *node)
         fault(r, node->start_mark, "", "base is too long");
 }
 
+static void read_title(reader *r, const yaml_node_t *node)
+{
+    const char *text = text_of(node);
+    size_t size = sizeof r->study->title;
+    if (node->type != YAML_SCALAR_NODE || strchr(text, '\n'))
+        fault(r, node->start_mark, "", "title must be a text on one line");
+    else if (snprintf(r->study->title, size, "%s", text) >= (int)size)
+        fault(r, node->start_mark, "", "title is longer than %zu bytes", size - 1);
+}
+
+/* The index of a name; -1: not among them. */
+static int name_of(const char *word, const char *const *names, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!strcmp(word, names[i])) return i;
+    return -1;
+}
+
 static void read_root(reader *r, const yaml_node_t *root)
 {
-    static const char *const names[] = {"base", "sweep"};
-    const yaml_node_t *base = NULL, *sweep = NULL;
+    static const char *const names[] = {"base", "title", "sweep"};
+    enum { N_NAME = sizeof names / sizeof *names };
+    const yaml_node_t *found[N_NAME] = {0};
     yaml_mark_t start = {0};
     if (!root || root->type != YAML_MAPPING_NODE) {
         fault(r, start, "", "the file must be key: value lines");
         return;
     }
     for (yaml_node_pair_t *p = root->data.mapping.pairs.start; p < root->data.mapping.pairs.top; p++) {
-        if (!strcmp(text_of(node_at(r, p->key)), "base")) base = node_at(r, p->value);
-        if (!strcmp(text_of(node_at(r, p->key)), "sweep")) sweep = node_at(r, p->value);
+        int k = name_of(text_of(node_at(r, p->key)), names, N_NAME);
+        if (k >= 0) found[k] = node_at(r, p->value);
     }
+    const yaml_node_t *base = found[0], *title = found[1], *sweep = found[2];
     for (yaml_node_pair_t *p = root->data.mapping.pairs.start; base && p < root->data.mapping.pairs.top; p++) {
         const yaml_node_t *key = node_at(r, p->key);
         if (is_repeated(r, root, p, "")) continue;
-        if (strcmp(text_of(key), "base") && strcmp(text_of(key), "sweep"))
-            fault_unknown(r, key->start_mark, "", text_of(key), names, 2);
+        if (name_of(text_of(key), names, N_NAME) < 0)
+            fault_unknown(r, key->start_mark, "", text_of(key), names, N_NAME);
     }
     snprintf(r->study->base, sizeof r->study->base, "%s", r->study->path);
     if (base) read_base(r, base);
+    if (base && title) read_title(r, title);
     if (sweep)
         read_sweep(r, sweep);
     else

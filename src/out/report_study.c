@@ -21,7 +21,16 @@ static const char *const stage_path[][2] = {
     {"form", "/points/form/"}, {"optimize", "/points/ga/best_"}, {"polish", "/points/polish/"}};
 static const char *const output_name[] = {"psi_m", "inner_tension_ratio", "boundary_tension_ratio", "residual_N",
                                           "n_slack"};
-enum { N_STAGE = 3, N_OUTPUT = sizeof output_name / sizeof *output_name };
+/* Figures beside those of the stages, shown when any point has them: data set, words, unit. */
+static const char *const figure_text[][3] = {
+    {"/points/tolerance/psi_95_m", "ψ that 95 % of the nets as built keep", "m"},
+    {"/points/tolerance/yield", "part of the nets as built that meets all requirements", ""},
+};
+enum {
+    N_STAGE = 3,
+    N_OUTPUT = sizeof output_name / sizeof *output_name,
+    N_FIGURE = sizeof figure_text / sizeof *figure_text
+};
 
 /* Goals of a stage that a page shows: all of a case, and more where their sets or kinds are axes. */
 enum { GOALS_MAX = 2 * HF_DESIGN_ROWS_MAX };
@@ -35,11 +44,11 @@ typedef struct {
     const char *path;
     char folder[LINK_SIZE], from_page[LINK_SIZE]; /* paths to the merged file's folder: "" or ending in '/' */
     int n;                                        /* points */
-    hf_texts id, reason, file, input_name;
+    hf_texts id, reason, file, input_name, title;
     hf_series status;
     hf_series input[HF_STUDY_AXIS_MAX];
     hf_texts input_text[HF_STUDY_AXIS_MAX]; /* of axes whose values are words or seeds */
-    hf_series output[N_STAGE][N_OUTPUT];
+    hf_series output[N_STAGE][N_OUTPUT], figure[N_FIGURE];
     goal_columns goals[N_STAGE];
 } study_page;
 
@@ -137,11 +146,34 @@ static void write_outputs(const study_page *p, FILE *f)
     fputc(']', f);
 }
 
+static void write_study_figures(const study_page *p, FILE *f)
+{
+    hf_json j = {.file = f, .is_due = true};
+    hf_json_line(&j, "");
+    hf_json_open(&j, "figure", '[');
+    for (int k = 0; k < N_FIGURE; k++) {
+        if (p->figure[k].n != p->n) continue;
+        hf_json_open(&j, NULL, '{');
+        hf_json_text(&j, "key", figure_text[k][0] + strlen("/points/"));
+        hf_json_text(&j, "title", figure_text[k][1]);
+        hf_json_text(&j, "unit", figure_text[k][2]);
+        hf_json_values("values", p->figure[k].value, p->n, 1, 9, f);
+        hf_json_close(&j, '}');
+    }
+    hf_json_close(&j, ']');
+}
+
+/* The heading of the page: the title of the study or, without one, the name of the merged file. */
+static const char *study_heading(const study_page *p)
+{
+    return p->title.n ? hf_texts_at(&p->title, 0) : hf_path_name(p->path);
+}
+
 static void write_data(const void *context, FILE *f)
 {
     const study_page *p = context;
     fputc('{', f);
-    hf_json_text(&(hf_json){.file = f}, "title", hf_path_name(p->path));
+    hf_json_text(&(hf_json){.file = f}, "title", study_heading(p));
     fputs(",\n\"study\":{", f);
     hf_json_text(&(hf_json){.file = f}, "path", p->path);
     fprintf(f, ",\"n\":%d", p->n);
@@ -151,13 +183,14 @@ static void write_data(const void *context, FILE *f)
     write_links(p, f);
     write_inputs(p, f);
     write_outputs(p, f);
+    write_study_figures(p, f);
     fputs("}}\n", f);
 }
 
 static void write_page(const void *context, FILE *f)
 {
     const study_page *p = context;
-    hf_report_page_write(hf_path_name(p->path), write_data, p, f);
+    hf_report_page_write(study_heading(p), write_data, p, f);
 }
 
 /* ---- reading ---- */
@@ -189,6 +222,7 @@ static hf_status read_page(study_page *p, hf_messages *messages)
     HF_TRY(hf_store_read_series(p->path, "/points/status", 1, &p->status, messages));
     HF_TRY(hf_store_read_texts(p->path, "/points/id", &p->id, messages));
     HF_TRY(hf_store_read_texts(p->path, "/points/reason", &p->reason, messages));
+    HF_TRY(hf_store_read_texts(p->path, "/study/title", &p->title, messages));
     p->n = p->status.n;
     for (int i = 0; i < p->n; i++)
         if (!(p->status.value[i] >= 0 && p->status.value[i] <= SCHAR_MAX))
@@ -209,6 +243,8 @@ static hf_status read_page(study_page *p, hf_messages *messages)
         }
         HF_TRY(read_goals(p->path, stage_path[s][1], &p->goals[s], messages));
     }
+    for (int k = 0; k < N_FIGURE; k++)
+        HF_TRY(hf_store_read_series(p->path, figure_text[k][0], 1, &p->figure[k], messages));
     return HF_OK;
 }
 
@@ -218,6 +254,7 @@ static void free_page(study_page *p)
     hf_texts_free(&p->reason);
     hf_texts_free(&p->file);
     hf_texts_free(&p->input_name);
+    hf_texts_free(&p->title);
     hf_series_free(&p->status);
     for (int a = 0; a < HF_STUDY_AXIS_MAX; a++) {
         hf_series_free(&p->input[a]);
@@ -229,6 +266,8 @@ static void free_page(study_page *p)
         for (int k = 0; k < p->goals[s].n; k++)
             hf_series_free(&p->goals[s].value[k]);
     }
+    for (int k = 0; k < N_FIGURE; k++)
+        hf_series_free(&p->figure[k]);
 }
 
 /* A page in the folder of the merged file links to the results by the same relative paths as that file. A page in

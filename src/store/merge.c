@@ -303,6 +303,10 @@ static void write_all(merger *m, const char *folder)
     hid_t group = hf_hdf5_make_group(&m->io, "/study");
     write_text_file(m, group, "text", s->path, "the study file");
     write_text_file(m, group, "base_text", s->base, "the base case");
+    if (*s->title)
+        hf_hdf5_write_array(&m->io, group,
+                            &(hf_hdf5_array){"title", HF_KIND_CHARS, 1, {1, strlen(s->title)}, "", "of the study"},
+                            s->title);
     hf_hdf5_close(&m->io, group);
     write_points(m);
     write_links(m, folder);

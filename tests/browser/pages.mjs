@@ -4,7 +4,7 @@
 //   title: what must stand on it, to the letter
 //   warnings, slack: how many it must tell of
 //   facets: how many, all triangles; off: families of cables whose switches are tried
-//   study: how many points
+//   study: how many points; leads: the axis that matters most
 
 const FORM = ["net", "cables", "map", "tensions", "summary", "form-finding", "provenance"];
 const GA = ["net", "cables", "map", "tensions", "summary", "form-finding", "ga", "provenance"];
@@ -92,6 +92,7 @@ export const pages = [
   {
     name: "sweep",
     study: 64,
+    leads: "scene.parabolic_cylinder.scallop",
     text:
       "base: base.yaml\nsweep:\n  form.pretension_N: {from: 5, to: 40, n: 16, spacing: log}\n" +
       "  scene.parabolic_cylinder.scallop: [0.05, 0.08, 0.11, 0.14]\n  files: all\n",

@@ -10,6 +10,7 @@ import { pages } from "./pages.mjs";
 
 const { HIFDM, CHROMIUM, WORK } = process.env;
 const { chromium } = createRequire(join(WORK, "package.json"))("playwright-core");
+const DATA = /(<script type="application\/json" id="data">)([^]*?)(<\/script>)/;
 const SIZE_MAX = 1e6; // bytes: the promise of the README
 const at =
   (folder) =>
@@ -44,7 +45,7 @@ function build(page, folder) {
   const start = performance.now();
   hifdm("report", result, "-o", html);
   const made = { html, hifdm, folder, made_ms: performance.now() - start };
-  if (page.study) return made;
+  if (page.study) return { ...made, study: JSON.parse(readFileSync(html, "utf8").match(DATA)[2]).study };
   hifdm("export", result, "--csv", ".");
   return {
     ...made,
@@ -141,15 +142,62 @@ async function checkPoints(tab, page, made, folder) {
   assert.equal(await rows.count(), page.study);
   for (const i of [0, Math.floor(page.study / 2), page.study - 1]) {
     const file = decodeURIComponent(await rows.nth(i).locator("a").getAttribute("href"));
-    const cells = await rows.nth(i).locator("td").allTextContents();
     const summary = JSON.parse(at(folder)("show", file, "--json"));
-    assert.equal(cells[2], "done");
-    same(number(cells[3]), 1e3 * summary.form.psi_m, 5);
-    same(number(cells[5]), summary.form.boundary_tension_ratio, 5);
+    const cell = (label) => rows.nth(i).locator(`[data-label^="${label}"]`).textContent();
+    assert.equal(await cell("Status"), "done");
+    same(number(await cell("ψ found")), 1e3 * summary.form.psi_m, 5);
+    same(number(await cell("Tension ratio, boundary")), summary.form.boundary_tension_ratio, 5);
   }
-  const before = await tab.locator("#sweep .chart").first().innerHTML();
-  await tab.locator("#sweep").getByLabel("scallop").check();
-  assert.notEqual(await tab.locator("#sweep .chart").first().innerHTML(), before, "another axis, the same curves");
+  // the best point is on top and marked; a heading sorts; a figure with one value is a sentence and no column
+  const psi = tab.locator("#points thead button", { hasText: "ψ found" });
+  const column = (await tab.locator("#points thead th").allTextContents()).findIndex((t) => t.startsWith("ψ found"));
+  const shown = async () =>
+    (await tab.locator(`#points tbody tr > :nth-child(${column + 1})`).allTextContents()).map(number);
+  const all = await shown();
+  assert.equal(await tab.locator("#points tr.chosen").count(), 1);
+  assert.equal(all[0], Math.min(...all));
+  await psi.click();
+  assert.deepEqual((await shown()).slice(1), all.slice(1).sort((a, b) => b - a));
+  assert.match(await tab.locator("#sweep > p").innerText(), /inner cables is 1 at all points/);
+  assert.equal(await tab.locator("#points thead th", { hasText: "inner" }).count(), 0);
+  await checkShares(tab, made.study);
+  await checkHeat(tab, made.study);
+}
+
+// The shares of the axes in the variance of psi, from the points themselves: in a product of axes those of its means.
+async function checkShares(tab, study) {
+  const mean = (v) => v.reduce((sum, x) => sum + x, 0) / v.length,
+    variance = (v) => mean(v.map((x) => x * x)) - mean(v) ** 2;
+  const said = await tab.locator("#sweep > p").innerText(),
+    psi = study.output.at(-1).psi_m;
+  for (const { name, values } of study.input) {
+    const means = [...new Set(values)].map((at) => mean(psi.filter((_, i) => values[i] === at)));
+    const words = name.split(".").pop().replace(/_N$/, ""),
+      [, little, told] = said.match(new RegExp(`${words} (less than )?([\\d.]+)\u00a0%`)),
+      share = (100 * variance(means)) / variance(psi);
+    if (little) assert.ok(share < number(told));
+    else same(number(told), share, 2);
+  }
+}
+
+// Along the axis of few values the many of the other one are a map: each cell has the value of its point.
+async function checkHeat(tab, study) {
+  const few = study.input.find(({ values }) => new Set(values).size <= 4),
+    many = study.input.find((input) => input !== few),
+    sorted = ({ values }) => [...new Set(values)].sort((a, b) => a - b);
+  await tab.locator(`#sweep input[name=axis][value="${few.name}"]`).check();
+  const rows = tab.locator("#sweep .heat").first().locator("tbody tr"),
+    [x, y] = [sorted(few), sorted(many).reverse()];
+  assert.equal(await rows.count(), y.length);
+  for (const [r, c] of [
+    [0, 0],
+    [5, 2],
+  ]) {
+    const i = few.values.findIndex((v, k) => v === x[c] && many.values[k] === y[r]);
+    const title = await rows.nth(r).locator("td").nth(c).getAttribute("title");
+    same(number(title.match(/: (\S+) mm$/)[1]), 1e3 * study.output.at(-1).psi_m[i], 5);
+  }
+  await tab.locator(`#sweep input[name=axis][value="${many.name}"]`).check();
 }
 
 // part: of the page, whose first chart must say these words about its last point.
@@ -476,7 +524,6 @@ const HOSTILE =
   `</script><script>window.hit=4</script><img src=x onerror="window.hit=5"><svg onload="window.hit=6">javascript:0` +
   `<!--]]>'"\\&amp;\u2028\u2029\u202e\u2066\u200f\u061c\0\x1b[31m\x7f\x9b` + "x".repeat(1e4);
 const HIDDEN = /[\0-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]/;
-const DATA = /(<script type="application\/json" id="data">)([^]*?)(<\/script>)/;
 
 function poison(data) {
   data.title = HOSTILE;
@@ -568,7 +615,10 @@ async function test(browser, page) {
   await tab.goto(url);
   await checkText(tab, page);
   if (page.study) {
-    await checkCharts(tab, 3, "#sweep", /pretension [\d.]+ N/);
+    const chosen = tab.locator("#sweep input[name=axis]:checked");
+    assert.equal(await chosen.getAttribute("value"), page.leads, "the axis at first is not the one that matters most");
+    await tab.locator(`#sweep input[name=axis]:not([value="${page.leads}"])`).check();
+    await checkCharts(tab, 2, "#sweep", /pretension [\d.]+ N/);
     await checkPoints(tab, page, made, folder);
   } else {
     await checkSummary(tab, made);

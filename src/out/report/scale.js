@@ -51,6 +51,8 @@ function levelOf(value, [low, high]) {
 // The colour bar of a picture. Values outside its range, down to lowest and up to highest, take the colours of its
 // ends.
 function drawBar(bar, colours, [low, high], label, [lowest, highest] = [low, high]) {
+  const size = Math.max(Math.abs(low), Math.abs(high)),
+    digits = high > low ? Math.max(3, Math.ceil(Math.log10(size / (high - low))) + 2) : 3; // that tell its ends apart
   const canvas = el("canvas", { width: 256, height: 1, role: "img", "aria-label": `colour bar: ${label}` });
   const c = canvas.getContext("2d");
   for (let x = 0; x < 256; x++) {
@@ -72,7 +74,7 @@ function drawBar(bar, colours, [low, high], label, [lowest, highest] = [low, hig
             {},
             (t === 0 && lowest < low ? "≤ " : "") +
               (t === 1 && highest > high ? "≥ " : "") +
-              fmt(low + t * (high - low), 3),
+              fmt(low + t * (high - low), digits),
           ),
         ),
       ),

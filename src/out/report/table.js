@@ -2,11 +2,12 @@
 
 // A table of n rows, of which at most `most` are shown until the reader asks for all.
 //   columns: { name, number: right-aligned, of: (i) -> value to sort by, show: (i) -> text or node of the cell }
-//   by: the column that it is sorted by at first, largest value first
+//   by: the column that it is sorted by at first, largest value first; -1: none, in the order of the rows
+//   search: what the field of the search says
 //   size: its values without their signs (a change)
 //   words: (i) -> text that a search looks in; without it there is no search
 // Returns the node, and first(i): puts row i at the top and marks it; -1: none.
-function sortableTable({ caption, columns, n, by, words, most = 25 }) {
+function sortableTable({ caption, columns, n, by, words, search: hint = "name or family", most = 25 }) {
   const state = { by, falls: true, text: "", all: false, first: -1 };
   const texts = words && Array.from({ length: n }, (_, i) => words(i).toLowerCase());
   const body = el("tbody", {}),
@@ -35,7 +36,11 @@ function sortableTable({ caption, columns, n, by, words, most = 25 }) {
 
   function row(i) {
     const cells = columns.map(({ number, show }, k) =>
-      el(k ? "td" : "th", { scope: k ? undefined : "row", class: number ? "number" : undefined }, show(i)),
+      el(
+        k ? "td" : "th",
+        { scope: k ? undefined : "row", class: number ? "number" : undefined, "data-label": columns[k].name },
+        show(i),
+      ),
     );
     return el("tr", { class: i === state.first ? "chosen" : undefined }, cells);
   }
@@ -43,7 +48,7 @@ function sortableTable({ caption, columns, n, by, words, most = 25 }) {
   function redraw() {
     const order = Array.from({ length: n }, (_, i) => i)
       .filter((i) => !state.text || texts[i].includes(state.text))
-      .sort(compare);
+      .sort(state.by < 0 ? (a, b) => a - b : compare);
     if (state.first >= 0) order.unshift(...order.splice(order.indexOf(state.first) >>> 0, 1));
     const list = state.all ? order : order.slice(0, most);
     body.replaceChildren(...list.map(row));
@@ -61,7 +66,7 @@ function sortableTable({ caption, columns, n, by, words, most = 25 }) {
     state.all = !state.all;
     redraw();
   });
-  const search = el("input", { type: "search", placeholder: "name or family", "aria-label": `Search: ${caption}` });
+  const search = el("input", { type: "search", placeholder: hint, "aria-label": `Search: ${caption}` });
   search.addEventListener("input", () => {
     state.text = search.value.trim().toLowerCase();
     redraw();
@@ -75,7 +80,7 @@ function sortableTable({ caption, columns, n, by, words, most = 25 }) {
       el(
         "div",
         { class: "scroll", tabindex: 0, role: "region", "aria-label": caption },
-        el("table", {}, el("thead", {}, el("tr", {}, heads)), body),
+        el("table", { class: "stacked" }, el("thead", {}, el("tr", {}, heads)), body),
       ),
     ),
     first(i) {

@@ -424,6 +424,26 @@ START_TEST(all_faults_are_told_at_once)
 }
 END_TEST
 
+/* The title is the study's own, or else that of its case; a fault in it has its place. */
+START_TEST(the_title_is_of_the_study_or_of_its_case)
+{
+    hf_study s;
+    hf_messages m = {0};
+    open_study("  form.pretension_N: [1]\n", &s);
+    ck_assert_str_eq(s.title, "small");
+    hf_study_free(&s);
+    write_file(temp_path("study.yaml"), "title: which pretension?\nbase: base.yaml\nsweep: {form.pretension_N: [1]}\n");
+    ck_assert_int_eq(hf_study_read(temp_path("study.yaml"), &s, &m), HF_OK);
+    ck_assert_str_eq(s.title, "which pretension?");
+    hf_study_free(&s);
+    write_file(temp_path("study.yaml"), "base: base.yaml\ntitle: [a]\nsweep: {form.pretension_N: [1]}\n");
+    ck_assert_int_eq(hf_study_read(temp_path("study.yaml"), &s, &m), HF_BAD_CASE);
+    ck_assert_ptr_nonnull(strstr(m.text, "study.yaml:2:8: sweep: title must be a text on one line"));
+    hf_messages_free(&m);
+    hf_study_free(&s);
+}
+END_TEST
+
 /* Any study file that is damaged is refused with words; nothing crashes (the sanitizers watch). */
 START_TEST(damaged_files_are_refused)
 {
@@ -496,6 +516,7 @@ Suite *suite_unit_study(void)
     tcase_add_loop_test(tests, faults_of_axes_over_rows_are_told, 0, sizeof row_fault / sizeof *row_fault);
     tcase_add_loop_test(tests, faults_name_axis_file_and_line, 0, sizeof fault / sizeof *fault);
     tcase_add_test(tests, all_faults_are_told_at_once);
+    tcase_add_test(tests, the_title_is_of_the_study_or_of_its_case);
     tcase_add_test(tests, damaged_files_are_refused);
     tcase_add_test(tests, any_allocation_may_fail);
     return suite;
