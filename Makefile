@@ -12,6 +12,8 @@ VERSION := 0.2.0
 SOVERSION := 0
 BUILD ?= build
 PREFIX ?= /usr/local
+# Where libraries go below PREFIX; Debian's is lib/x86_64-linux-gnu.
+LIB ?= lib
 DESTDIR ?=
 CFLAGS ?= -O3 -g
 LDFLAGS ?=
@@ -66,7 +68,9 @@ COMPILE = $(CC) $(CFLAGS) $(LANGUAGE) $(CODEGEN) $(SANITIZER) $(WARNINGS) -Iincl
 LINK = $(CC) $(CFLAGS) -fopenmp $(SANITIZER) $(LDFLAGS)
 
 # Build information, compiled into store/store.c alone because it is what stamps a result file.
-GIT_DESCRIBE = $(shell test -e .git && git describe --always --dirty --tags 2>/dev/null || echo unknown)
+# `make dist` leaves the commit in .describe.
+GIT_DESCRIBE = $(shell test -e .git && git describe --always --dirty --tags 2>/dev/null || \
+  cat .describe 2>/dev/null || echo unknown)
 COMPILER = $(shell $(CC) --version | head -n 1)
 c_string = '"$(subst \,,$(subst ",,$(subst ',,$(strip $(1)))))"'
 BUILD_INFO = $(eval BUILD_INFO := -DHF_VERSION=$(call c_string,$(VERSION)) \
@@ -125,7 +129,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 # ---- Targets to type -------------------------------------------------------------------------------------------------
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
          bench-before bench-optimisers bench-fronts bench-sampling pretension-night api docs docs-browser lint \
-         asan tsan fuzz fuzz-results install
+         asan tsan fuzz fuzz-results install uninstall dist dist-check deb
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -298,22 +302,49 @@ fuzzers: $(FUZZERS) $(PROGRAM)
 install: all ## install under PREFIX (/usr/local), within DESTDIR if given
 	$(call install_files,$(DESTDIR)$(PREFIX),$(PREFIX))
 
+# The same PREFIX, LIB and DESTDIR as when it was installed; folders that others use, too, stay.
+uninstall: ## remove what `make install` of this version has put there
+	$(Q)rm -f $(addprefix $(DESTDIR)$(PREFIX)/,bin/hifdm share/man/man1/hifdm.1 \
+	    share/bash-completion/completions/hifdm $(addprefix $(LIB)/,libhifdm.a libhifdm.so $(SONAME) \
+	    libhifdm.so.$(VERSION) pkgconfig/hifdm.pc) $(wildcard include/hifdm/*.h))
+	$(Q)rmdir --ignore-fail-on-non-empty $(DESTDIR)$(PREFIX)/include/hifdm 2>/dev/null || true
+
 # What goes where: $(call install_files,FOLDER,PREFIX that the files will be found under).
 define install_files
-$(Q)install -d $(addprefix $(1)/,bin lib/pkgconfig include/hifdm share/man/man1 share/bash-completion/completions)
+$(Q)install -d $(addprefix $(1)/,bin $(LIB)/pkgconfig include/hifdm share/man/man1 share/bash-completion/completions)
 $(Q)install -m 755 $(PROGRAM) $(1)/bin/
-$(Q)install -m 644 $(STATIC) $(1)/lib/
-$(Q)install -m 755 $(SHARED) $(1)/lib/libhifdm.so.$(VERSION)
-$(Q)ln -sf libhifdm.so.$(VERSION) $(1)/lib/$(SONAME)
-$(Q)ln -sf $(SONAME) $(1)/lib/libhifdm.so
+$(Q)install -m 644 $(STATIC) $(1)/$(LIB)/
+$(Q)install -m 755 $(SHARED) $(1)/$(LIB)/libhifdm.so.$(VERSION)
+$(Q)ln -sf libhifdm.so.$(VERSION) $(1)/$(LIB)/$(SONAME)
+$(Q)ln -sf $(SONAME) $(1)/$(LIB)/libhifdm.so
 $(Q)install -m 644 include/hifdm/*.h $(1)/include/hifdm/
 $(Q)printf '%s\n' 'prefix=$(2)' 'Name: hifdm' 'Version: $(VERSION)' \
     'Description: Form finding of cable nets with force densities' 'Cflags: -I$${prefix}/include' \
-    'Libs: -L$${prefix}/lib -lhifdm' 'Requires.private: gsl $(LAPACK_PC) hdf5 zlib yaml-0.1' \
-    'Libs.private: $(LAPACK_LIBS) -fopenmp -lm' >$(1)/lib/pkgconfig/hifdm.pc
+    'Libs: -L$${prefix}/$(LIB) -lhifdm' 'Requires.private: gsl $(LAPACK_PC) hdf5 zlib yaml-0.1' \
+    'Libs.private: $(LAPACK_LIBS) -fopenmp -lm' >$(1)/$(LIB)/pkgconfig/hifdm.pc
 $(Q)$(PROGRAM) help --man >$(1)/share/man/man1/hifdm.1
 $(Q)$(PROGRAM) help --bash >$(1)/share/bash-completion/completions/hifdm
 endef
+
+# What is committed, and the commit. Of the same commit the same bytes.
+DIST := $(BUILD)/dist/hifdm-$(VERSION)
+dist: ## a tarball of what is committed, which builds and is tested without git: build/dist/hifdm-VERSION.tar.gz
+	$(Q)test -e .git || { echo 'make dist: takes what is committed, so it needs a checkout of git' >&2; exit 1; }
+	@mkdir -p $(DIST)
+	$(Q)git describe --always --tags >$(DIST)/.describe
+	$(Q)git archive --format=tar --prefix=hifdm-$(VERSION)/ --add-file=$(DIST)/.describe HEAD | gzip -9n \
+	    >$(DIST).tar.gz.new
+	$(Q)mv $(DIST).tar.gz.new $(DIST).tar.gz
+	@echo $(DIST).tar.gz
+
+# It needs nothing but what `make` needs. SUITE="...": also runs those tests there.
+dist-check: dist ## build that tarball without git, install and uninstall it, run a case with it
+	+$(Q)SUITE=$(call quote,$(SUITE)) tools/packages/check_dist.sh $(DIST).tar.gz $(BUILD)/dist/check
+
+# tools/debian has the recipe, the tarball the sources. Checked by lintian where that is installed.
+deb: dist ## Debian packages hifdm, libhifdm0, libhifdm-dev of that tarball: build/deb/*.deb
+	$(Q)tools/setup.sh --deb
+	+$(Q)tools/packages/make_deb.sh $(DIST).tar.gz $(BUILD)/deb
 
 clean: ## remove build/
 	rm -rf build $(BUILD)
