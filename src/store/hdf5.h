@@ -203,6 +203,7 @@ typedef struct {
 
 int hf_hdf5_int_value(const hf_hdf5_member *member, const void *owner); /* of HF_HDF5_ENUM and HF_HDF5_INT */
 
+/* Of a file of another version (io->made_by), a figure that it has not is NaN, 0 or "". */
 void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const void *owner);
 void hf_hdf5_get_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, void *owner);
 
