@@ -7,6 +7,7 @@
 #include "net/symmetry.h"
 #include "out/print.h"
 #include "run/problem_parts.h"
+#include "run/reach.h"
 #include "run/tolerance_stage.h"
 #include "search/chord.h"
 #include "search/polish.h"
@@ -405,6 +406,7 @@ static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, F
     HF_TRY(hf_problem_explain(p, messages));
     if (!v) return HF_OK;
     HF_TRY(hf_problem_base(p, messages));
+    HF_TRY(hf_reach_check(p, messages));
     if (print_optimize_time(p, v, threads, f) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory");
     return HF_OK;
 }

@@ -33,8 +33,7 @@ static void find_key_place(const void *settings, const char *key, char *text, si
     hf_config_place(settings, key, text, size);
 }
 
-/* While the problem is at hand, messages give keys with their places in its case. */
-static void give_places(const hf_problem *p, hf_messages *messages)
+void hf_problem_give_places(const hf_problem *p, hf_messages *messages)
 {
     messages->find_place = p ? find_key_place : NULL;
     messages->place_context = p ? &p->settings : NULL;
@@ -82,9 +81,9 @@ static hf_status load_parts(const char *path, const char *const *set, int n_set,
 hf_status hf_problem_load(const char *path, const char *const *set, int n_set, hf_problem *p, hf_messages *messages)
 {
     *p = (hf_problem){0};
-    give_places(p, messages);
+    hf_problem_give_places(p, messages);
     hf_status status = load_parts(path, set, n_set, p, messages);
-    give_places(NULL, messages);
+    hf_problem_give_places(NULL, messages);
     return status;
 }
 
@@ -213,9 +212,9 @@ hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
     p->evaluator = hf_problem_evaluator(p);
     if (hf_evaluate_attend(&p->evaluator, &p->workspace) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
-    give_places(p, messages);
+    hf_problem_give_places(p, messages);
     hf_status status = p->settings.has_optimize && m->n_gene > 0 ? check_base(p, messages) : HF_OK;
-    give_places(NULL, messages);
+    hf_problem_give_places(NULL, messages);
     HF_TRY(status);
     hf_symmetry_average(m, p->base_N);
     return HF_OK;

@@ -12,6 +12,10 @@
 hf_status hf_problem_load(const char *path, const char *const *set, int n_set, hf_problem *problem,
                           hf_messages *messages);
 
+/* While the problem is at hand, messages give keys with their places in its case (hf_messages_place); NULL ends
+ * that. */
+void hf_problem_give_places(const hf_problem *problem, hf_messages *messages);
+
 /* Fill in the members of the summary that case and model determine. */
 void hf_problem_describe(const hf_problem *problem, hf_summary *summary);
 

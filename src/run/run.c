@@ -7,6 +7,7 @@
 #include "run/cases.h"
 #include "run/no_design.h"
 #include "run/problem_parts.h"
+#include "run/reach.h"
 #include "run/run_front.h"
 #include "run/tolerance_stage.h"
 #include "search/pareto.h"
@@ -200,6 +201,7 @@ static hf_status prepare_optimize(run *r, hf_summary *s, hf_messages *messages)
 {
     hf_problem *p = &r->problem;
     HF_TRY(hf_problem_base(p, messages));
+    HF_TRY(hf_reach_check(p, messages));
     const hf_goals *goals = &p->goals;
     hf_goals_point *point = p->workspace.goals;
     if (goals->n_goal && hf_goals_measure(goals, &p->workspace, point, s->form.goal, &s->form.merit) != HF_OK)

@@ -267,6 +267,100 @@ START_TEST(a_limit_that_nothing_keeps_has_a_name)
 }
 END_TEST
 
+/* ---- what no variable changes ---- */
+
+/* Two nets; only the first, which hangs between c1, c2 and c3, is varied. d4 is slack. */
+static const char two_nets[] =
+    "id,x_m,y_m,z_m,role\na,0,0,0,support\nb,4,0,0,support\nc,2,3,1,support\nm,1.7,1,0.3,inner\n"
+    "d,10,0,0,support\ne,12,0,0,support\nf,11,2,0,support\ng,11,3,0,support\nn,11,0.5,0.2,edge\n";
+static const char two_cables[] =
+    "id,i,j,group,law,value,set,EA_N\nc1,a,m,boundary,tension,10,edge,\nc2,b,m,boundary,tension,10,edge,\n"
+    "c3,c,m,boundary,tension,9,stay,\nd1,d,n,inner,tension,10,far,\nd2,e,n,inner,tension,11,far,\n"
+    "d3,f,n,inner,force_density,9,far,\nd4,g,n,inner,elastic,9,loose,1000\n";
+
+START_TEST(rows_that_no_variable_reaches_are_named)
+{
+    net_with(two_nets, two_cables);
+    const char *path = file_with("two.yaml", "scene:\n"
+                                             "  import: {nodes: nodes.csv, cables: cables.csv}\n"
+                                             "optimize:\n"
+                                             "  method: lm\n"
+                                             "  variables:\n"
+                                             "    - {set: edge, vary: force_density, range: 50 %}\n"
+                                             "    - {set: loose, vary: unstressed_length, range: 10 %}\n"
+                                             "  goals:\n"
+                                             "    - {goal: mass, set: far, mass_kg_per_m: 0.1}\n"
+                                             "    - {goal: tension, set: stay, target: 3}\n"
+                                             "    - {goal: psi}\n"
+                                             "    - {goal: pull}\n"
+                                             "    - {goal: mass, set: stay, mass_kg_per_m: 0.1, weight: 0.1}\n"
+                                             "  limits:\n"
+                                             "    - {limit: tension, set: all, bounds: [null, 90]}\n"
+                                             "    - {limit: ratio, set: far, bounds: [1, 5]}\n");
+    HIFDM(0, "run", path, "-o", temp("two.h5"));
+    ERRS("warning: %s:7:7: optimize.variables.1: changes nothing at the base design: its cables, or those at its "
+         "supports, are slack\n",
+         path);
+    ERRS(
+        "warning: %s:9:7: optimize.goals.0: no variable of this case changes goal_0_mass_far: all cables that it looks "
+        "at keep their lengths\n",
+        path);
+    ERRS("warning: %s:10:7: optimize.goals.1: no variable of this case changes goal_1_tension_stay: all cables that it "
+         "looks at keep their tensions\n",
+         path);
+    ERRS("warning: %s:16:7: optimize.limits.1: no variable of this case changes what it limits: all cables that it "
+         "looks at keep their tensions\n",
+         path);
+    ck_assert_int_eq(count_of(said.err, "no variable of this case"), 3);
+    EXPECT(temp("two.h5"), "--", "attribute(a, 'warnings').count('no variable of this case') == 3",
+           "np.allclose(a['goals/form'][:2], a['goals/polish'][:2], rtol=1e-12)",
+           "all(a['goals/form'][i] != a['goals/polish'][i] for i in (2, 4))");
+}
+END_TEST
+
+START_TEST(nothing_is_sought_that_no_variable_reaches)
+{
+    static const char *const want[] = {
+        "optimize.goals=[{goal: length, set: far, target: 1}, {goal: evenness, set: far}]",
+        "optimize.objectives=[{goal: psi}, {goal: mass, set: far, mass_kg_per_m: 1}]",
+        "optimize.variables=[{set: far, vary: tension, range: 1}]"};
+    static const char *const why[] = {
+        "error: --set optimize.goals.0: no variable of this case changes goal_0_length_far: all cables that it looks "
+        "at "
+        "keep their lengths; vary what does, or leave it out\nerror: --set optimize.goals.1: no variable of this case "
+        "changes goal_1_evenness_far: all cables that it looks at keep their tensions; vary what does, or leave it "
+        "out\n",
+        "error: --set optimize.objectives.1: no variable of this case changes goal_1_mass_far: all cables that it "
+        "looks "
+        "at keep their lengths; vary what does, or leave it out\n",
+        "error: --set optimize.variables.0: no variable of this case changes psi: none of the nodes that it looks at "
+        "moves; vary what does, or name goals\n"};
+    static const char *const command[] = {"run", "check"};
+    const char *net = net_with(two_nets, two_cables), *out = temp("none.h5");
+    for (int k = 0; k < 2; k++) {
+        const char *const argv[] = {hifdm_program(),      command[k],      net,      "--set",
+                                    EDGE("50 %"),         "--set",         want[_i], "--set",
+                                    "optimize.method=lm", k ? NULL : "-o", out,      NULL};
+        demand_exit(run_command(HANG_S, argv), 2, command[k], __LINE__);
+        ERR(why[_i]);
+        ck_assert(!is_there(out));
+    }
+}
+END_TEST
+
+/* At a flat net no height of a support changes a length, to first order; a little beside it does. */
+START_TEST(a_goal_that_stands_still_at_one_point_is_no_fault)
+{
+    const char *flat = net_with("id,x_m,y_m,z_m,role\na,-1,0,0,support\nb,1,0,0,support\nc,0,1,0,support\n"
+                                "d,0,-1,0,support\nm,0,0,0,inner\n",
+                                "id,i,j,group,law,value\nma,m,a,boundary,tension,10\nmb,m,b,boundary,tension,10\n"
+                                "mc,m,c,boundary,tension,10\nmd,m,d,boundary,tension,10\n");
+    HIFDM(0, "check", flat, "--set", "optimize.variables=[{set: all, vary: support_z, range: 0.1}]", "--set",
+          "optimize.goals=[{goal: mass, mass_kg_per_m: 1}]");
+    ck_assert(!strstr(said.err, "no variable"));
+}
+END_TEST
+
 /* A design that a cap refuses of which its author knows nothing: c4 holds the ratio at 22 whatever the others do. */
 START_TEST(a_cap_that_the_case_does_not_give_is_told_as_the_default)
 {
@@ -327,6 +421,9 @@ Suite *suite_cli_rows(void)
     tcase_add_loop_test(tests, goals_of_damaged_files_are_not_shown, 0, 3);
     tcase_add_test(tests, what_holds_a_design_has_names);
     tcase_add_test(tests, check_names_variables_goals_and_limits);
+    tcase_add_test(tests, rows_that_no_variable_reaches_are_named);
+    tcase_add_loop_test(tests, nothing_is_sought_that_no_variable_reaches, 0, 3);
+    tcase_add_test(tests, a_goal_that_stands_still_at_one_point_is_no_fault);
     tcase_add_loop_test(tests, a_cap_that_the_case_does_not_give_is_told_as_the_default, 0, 4);
     tcase_add_loop_test(tests, a_limit_that_nothing_keeps_has_a_name, 0, 2);
     return suite;

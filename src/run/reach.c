@@ -1,0 +1,341 @@
+/* By exact derivatives at the base design and at one beside it, since a derivative may vanish at one point. Genes are
+ * taken together in as many classes as one solve has lanes: each class is of one row of optimize.variables, and linked
+ * genes are of one, so a goal that some gene changes is changed by some class, but for chance.
+ *
+ * Contents: classes of genes - what changes - what rows look at - messages */
+#include "run/reach.h"
+
+#include "base/arena.h"
+#include "base/random.h"
+#include "net/variables.h"
+#include "run/problem_parts.h"
+#include "search/polish.h"
+#include "search/sensitivity.h"
+#include "solve/limits.h"
+
+#include <math.h>
+#include <string.h>
+
+#define ROUNDED 1e-9 /* of the largest change: no change; what is prescribed comes out a thousand times smaller */
+#define BESIDE 0.05  /* of what a gene may move by: the second design */
+#define CLASSES 16   /* at least one for each row */
+
+/* What each row is left as; a row of variables that changes nothing. */
+typedef struct {
+    bool psi; /* with an inner node, and without goals */
+    bool goal[HF_DESIGN_ROWS_MAX], limit[HF_DESIGN_ROWS_MAX], variable[HF_DESIGN_ROWS_MAX];
+} unchanged;
+
+typedef struct {
+    const hf_problem *p;
+    hf_model model; /* that of the problem, with genes linked by class */
+    hf_evaluator v; /* that of the problem, of this model, without limits */
+    hf_sensitivity slopes;
+    hf_workspace w;
+    int *leader;             /* [n_gene] of the model */
+    double *design;          /* [n_gene] */
+    double *move_m, *rate_N; /* [3][n_node], [n_cable] of a class */
+    double most_m, most_N;   /* the largest of them */
+    unchanged now;
+    void *block;
+} reach;
+
+/* ---- classes of genes ---- */
+
+static int row_of_gene(const hf_model *m, int k)
+{
+    return m->gene ? m->gene[k].setting : 0;
+}
+
+/* Of a gene that leads: among the classes of its row, any. */
+static int class_of(const reach *q, int k)
+{
+    int n_row = q->p->settings.optimize.n_variable, n = n_row > 1 ? CLASSES / n_row : CLASSES;
+    return row_of_gene(&q->model, k) * n + (int)(hf_random_mix((uint64_t)k) % (uint64_t)n);
+}
+
+static void link_classes(reach *q)
+{
+    const hf_model *m = &q->p->model;
+    int first[CLASSES];
+    for (int i = 0; i < CLASSES; i++)
+        first[i] = -1;
+    q->model.n_leader = 0;
+    for (int k = 0; k < m->n_gene; k++) {
+        int i = class_of(q, m->gene_leader[k]);
+        if (first[i] < 0) first[i] = k;
+        q->leader[k] = first[i];
+        q->model.n_leader += first[i] == k;
+    }
+    q->model.gene_leader = q->leader;
+}
+
+static void lay_out(hf_arena *a, reach *q)
+{
+    const hf_model *m = &q->model;
+    q->leader = hf_arena_take(a, (size_t)m->n_gene, sizeof(int));
+    q->design = hf_arena_take(a, (size_t)m->n_gene, sizeof(double));
+    q->move_m = hf_arena_take(a, 3 * (size_t)m->n_node, sizeof(double));
+    q->rate_N = hf_arena_take(a, (size_t)m->n_cable, sizeof(double));
+}
+
+static hf_status create(const hf_problem *p, reach *q)
+{
+    hf_arena arena = {0};
+    *q = (reach){.p = p, .model = p->model, .v = p->evaluator};
+    q->v.model = &q->model;
+    q->v.boundary_ratio_cap = INFINITY;
+    q->v.limits = NULL;
+    q->v.goals = NULL;
+    q->v.n_thread = 1;
+    memset(&q->now, true, sizeof q->now);
+    q->now.psi = p->goals.n_goal == 0 && p->model.n_inner_node > 0;
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, q)));
+    q->block = arena.block;
+    link_classes(q);
+    HF_TRY(hf_workspace_create(&q->model, &q->w));
+    return hf_sensitivity_create(&q->v, &q->slopes);
+}
+
+static void destroy(reach *q)
+{
+    hf_arena arena = {.block = q->block};
+    hf_sensitivity_free(&q->slopes);
+    hf_workspace_free(&q->w);
+    hf_arena_free(&arena);
+}
+
+/* ---- what changes ---- */
+
+static void measure_class(reach *q, int i)
+{
+    const hf_model *m = &q->model;
+    hf_sensitivity_spread(&q->slopes, i, q->move_m, q->rate_N);
+    q->most_m = q->most_N = 0;
+    for (int k = 0; k < 3 * m->n_node; k++)
+        q->most_m = fmax(q->most_m, fabs(q->move_m[k]));
+    for (int e = 0; e < m->n_cable; e++)
+        q->most_N = fmax(q->most_N, fabs(q->rate_N[e]));
+}
+
+static bool moves(const reach *q, int row)
+{
+    bool does = false;
+    for (int c = 0; c < 3; c++)
+        does |= fabs(q->move_m[c * q->model.n_node + row]) > ROUNDED * q->most_m;
+    return does;
+}
+
+static bool pulls_otherwise(const reach *q, int e)
+{
+    return fabs(q->rate_N[e]) > ROUNDED * q->most_N;
+}
+
+static bool lengthens(const reach *q, int e)
+{
+    const hf_model *m = &q->model;
+    const int *end = m->end_row + 2 * (ptrdiff_t)e;
+    double sum = 0, length = q->w.length_m[e];
+    for (int c = 0; c < 3; c++) {
+        int at = c * m->n_node;
+        sum += (q->w.position_m[at + end[1]] - q->w.position_m[at + end[0]]) / length *
+               (q->move_m[at + end[1]] - q->move_m[at + end[0]]);
+    }
+    return fabs(sum) > ROUNDED * q->most_m;
+}
+
+/* ---- what rows look at ---- */
+
+static bool any_cable(const reach *q, int n, const int *cable, bool (*changes)(const reach *, int))
+{
+    for (int i = 0; i < n; i++)
+        if (changes(q, cable[i])) return true;
+    return false;
+}
+
+static bool any_pull(const reach *q)
+{
+    const hf_model *m = &q->model;
+    for (int end = 0; end < 2 * m->n_cable; end++)
+        if (m->end_row[end] >= m->n_free &&
+            (pulls_otherwise(q, end / 2) || moves(q, m->end_row[end]) || moves(q, m->end_row[end ^ 1])))
+            return true;
+    return false;
+}
+
+static bool any_row(const reach *q, int n, const int *row)
+{
+    for (int i = 0; i < n; i++)
+        if (moves(q, row[i])) return true;
+    return false;
+}
+
+static bool changes_goal(const reach *q, const hf_goal *g)
+{
+    const hf_goals *goals = &q->p->goals;
+    switch (g->wanted.goal) {
+    case HF_GOAL_PSI:
+    case HF_GOAL_SURFACE:
+        return any_row(q, q->model.n_inner_node, q->model.inner_row);
+    case HF_GOAL_FACETS:
+        return any_row(q, 4 * goals->n_facet, goals->corner_row);
+    case HF_GOAL_TENSION:
+    case HF_GOAL_EVENNESS:
+    case HF_GOAL_RATIO:
+        return any_cable(q, g->n_cable, g->cable, pulls_otherwise);
+    case HF_GOAL_LENGTH:
+    case HF_GOAL_MASS:
+        return any_cable(q, g->n_cable, g->cable, lengthens);
+    case HF_GOAL_PULL:
+    case HF_GOAL_DISPLACEMENT:
+        return any_pull(q);
+    }
+    return true;
+}
+
+static bool changes_limit(const reach *q, const hf_limit *row)
+{
+    return row->kind == HF_LIMIT_DISPLACEMENT ? any_pull(q) : any_cable(q, row->n_cable, row->cable, pulls_otherwise);
+}
+
+/* Strike out what the variables change at the design of the workspace. */
+static void strike(reach *q)
+{
+    const hf_optimize_settings *o = &q->p->settings.optimize;
+    const int *of_gene = q->slopes.variable_of_gene;
+    for (int k = 0; k < q->model.n_gene; k++) {
+        if (q->leader[k] != k) continue;
+        measure_class(q, of_gene[k]);
+        if (!(q->most_m > 0) && !(q->most_N > 0)) continue;
+        q->now.variable[row_of_gene(&q->model, k)] = false;
+        if (q->now.psi) q->now.psi = !any_row(q, q->model.n_inner_node, q->model.inner_row);
+        for (int i = 0; i < q->p->goals.n_goal; i++)
+            if (q->now.goal[i]) q->now.goal[i] = !changes_goal(q, &q->p->goals.goal[i]);
+        for (int i = 0; i < o->n_limit; i++)
+            if (q->now.limit[i]) q->now.limit[i] = !changes_limit(q, &q->p->limits.row[i]);
+    }
+}
+
+/* The base design, or one a little beside it that has no symmetry. */
+static void choose_design(reach *q, bool is_beside)
+{
+    const hf_problem *p = q->p;
+    hf_random random = hf_random_stream(1, 0, 0);
+    for (int k = 0; k < q->model.n_gene; k++) {
+        double lower, upper, range, base = p->base_N[k];
+        hf_variables_bound(&p->settings.optimize, &q->model, k, base, &lower, &upper, &range);
+        if (q->model.gene_cable[k] >= 0) range = fmin(range, base); /* they stay above zero */
+        double part = hf_random_uniform(&random);
+        q->design[k] = is_beside && isfinite(range) ? base + BESIDE * (2 * part - 1) * range : base;
+    }
+}
+
+/* ---- messages ---- */
+
+static const char *why_goal(hf_goal_kind kind)
+{
+    switch (kind) {
+    case HF_GOAL_PSI:
+    case HF_GOAL_SURFACE:
+    case HF_GOAL_FACETS:
+        return "none of the nodes that it looks at moves";
+    case HF_GOAL_TENSION:
+    case HF_GOAL_EVENNESS:
+    case HF_GOAL_RATIO:
+        return "all cables that it looks at keep their tensions";
+    case HF_GOAL_LENGTH:
+    case HF_GOAL_MASS:
+        return "all cables that it looks at keep their lengths";
+    default:
+        return "the pull on the supports stays as it is";
+    }
+}
+
+static hf_status tell_goals(const reach *q, hf_messages *messages)
+{
+    const hf_goals *goals = &q->p->goals;
+    bool is_front = q->p->settings.optimize.n_objective > 0, is_reached = false, has_fault = false;
+    char place[HF_PLACE_SIZE], name[HF_GOAL_NAME_SIZE];
+    for (int i = 0; i < goals->n_goal; i++)
+        is_reached |= !q->now.goal[i];
+    for (int i = 0; i < goals->n_goal; i++) {
+        if (!q->now.goal[i]) continue;
+        hf_messages_place(messages, place, "optimize.%s.%d", is_front ? "objectives" : "goals", i);
+        hf_goals_name(goals, i, name);
+        const char *why = why_goal(goals->goal[i].wanted.goal);
+        has_fault |= is_front || !is_reached;
+        if (is_front || !is_reached)
+            hf_error(messages, HF_BAD_CASE,
+                     "%s: no variable of this case changes %s: %s; vary what does, or leave it out", place, name, why);
+        else
+            hf_warning(messages, "%s: no variable of this case changes %s: %s", place, name, why);
+    }
+    return has_fault ? HF_BAD_CASE : HF_OK;
+}
+
+static hf_status tell(const reach *q, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &q->p->settings.optimize;
+    char place[HF_PLACE_SIZE];
+    for (int i = 0; i < o->n_variable; i++)
+        if (q->now.variable[i])
+            hf_warning(messages,
+                       "%s: changes nothing at the base design: its cables, or those at its supports, are slack",
+                       hf_messages_place(messages, place, "optimize.variables.%d", i));
+    for (int i = 0; i < o->n_limit; i++)
+        if (q->now.limit[i])
+            hf_warning(messages, "%s: no variable of this case changes what it limits: %s",
+                       hf_messages_place(messages, place, "optimize.limits.%d", i),
+                       o->limit[i].limit == HF_LIMIT_DISPLACEMENT ? why_goal(HF_GOAL_DISPLACEMENT)
+                                                                  : why_goal(HF_GOAL_TENSION));
+    if (q->p->goals.n_goal > 0) return tell_goals(q, messages);
+    if (!q->now.psi) return HF_OK;
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: no variable of this case changes psi: %s; vary what does, or name goals",
+                    hf_messages_place(messages, place, o->n_variable ? "optimize.variables.0" : "optimize.range_N"),
+                    why_goal(HF_GOAL_PSI));
+}
+
+/* Is there a row left of which it is not known that something changes it? */
+static bool is_open(const reach *q)
+{
+    const hf_optimize_settings *o = &q->p->settings.optimize;
+    bool is = q->now.psi;
+    for (int i = 0; i < HF_DESIGN_ROWS_MAX; i++)
+        is |= (i < q->p->goals.n_goal && q->now.goal[i]) || (i < o->n_limit && q->now.limit[i]) ||
+              (i < o->n_variable && q->now.variable[i]);
+    return is;
+}
+
+/* HF_OK, also with nothing known of the second design; HF_NOT_EVALUATED with nothing known at all. */
+static hf_status look(reach *q)
+{
+    for (int i = 0; i < 2 && (i == 0 || is_open(q)); i++) {
+        hf_form_result r;
+        choose_design(q, i > 0);
+        hf_status status = hf_evaluate(&q->v, q->design, &q->w, &r);
+        if (status == HF_OK) status = hf_sensitivity_find(&q->slopes, &q->w);
+        if (status == HF_NO_MEMORY) return status;
+        if (status == HF_OK) strike(q);
+        if (status != HF_OK && i == 0) return HF_NOT_EVALUATED;
+    }
+    return HF_OK;
+}
+
+hf_status hf_reach_check(const hf_problem *p, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    reach q;
+    if (!hf_polish_applies(&p->evaluator)) return HF_OK;
+    if (!o->n_variable && !o->n_limit && !p->goals.n_goal) return HF_OK;
+    hf_status status = create(p, &q);
+    if (status == HF_OK) status = look(&q);
+    if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the derivatives of the goals");
+    if (status == HF_OK) {
+        hf_problem_give_places(p, messages);
+        status = tell(&q, messages);
+        hf_problem_give_places(NULL, messages);
+    }
+    destroy(&q);
+    return status == HF_NOT_EVALUATED ? HF_OK : status;
+}
