@@ -37,6 +37,7 @@ typedef struct {
     hf_built built;
     hf_measured measured;
     const char *measured_path;
+    int threads;
     hf_estimate estimate;
     hf_goals goals;
     hf_adjustment adjustment;
@@ -129,7 +130,7 @@ static hf_status pick_cables(job *j, hf_messages *messages)
     const hf_case *c = &j->problem.settings;
     hf_config_place(c, "adjust.set", place, sizeof place);
     int n = hf_cable_pick_some(&j->problem.scene, c->adjust.set, place, j->cable, messages);
-    j->task = (hf_adjust_task){&c->adjust, &j->goals, n, j->cable};
+    j->task = (hf_adjust_task){&c->adjust, &j->goals, n, j->cable, j->threads};
     return n > 0 ? HF_OK : HF_BAD_CASE;
 }
 
@@ -445,6 +446,7 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
     HF_TRY(hf_problem_load(o->file, o->set, o->n_set, &j->problem, messages));
     const hf_problem *p = &j->problem;
     j->measured_path = o->measured;
+    j->threads = o->threads;
     HF_TRY(check_sections(&p->settings, o->file, messages));
     HF_TRY(hf_built_design_check(o, &p->settings, messages));
     HF_TRY(hf_tolerance_stage_check(p, false, messages));
@@ -489,5 +491,6 @@ const hf_command hf_cmd_adjust = {
                 "hifdm adjust case.yaml --result case.h5 --measured nodes.csv --set adjust.aim=design\n"
                 "hifdm adjust case.yaml --measured nodes.csv --json --set adjust.moves=5",
     .reads_results = true,
+    .uses_threads = true,
     .run = command_adjust,
 };

@@ -3,6 +3,8 @@
 #include "built/adjust.h"
 
 #include "base/arena.h"
+#include "linalg/band.h"
+#include "search/parallel.h"
 #include <hifdm/metrics.h>
 
 #include <math.h>
@@ -10,54 +12,77 @@
 
 #define ROUNDS_MAX 12  /* linear models of a choice, or of the best there is */
 #define PANEL 16       /* cables whose effects are found at a time */
+#define GRAM_ROWS 32   /* of the products that a thread finds at a time; a multiple of 4 */
 #define HALVINGS_MAX 6 /* of a step to the best there is */
 #define LITTLE 1e-6    /* of the figure: what a step to the best there is has to gain */
 
 /* ---- memory ---- */
 
+/* What a thread needs to find effects of cables. */
+typedef struct {
+    hf_goals_point point;
+    double *strain_N, *answer_m, *scratch;    /* [PANEL][...] of the linear answer */
+    double *rate_m, *rate_N, *displacement_m; /* of hf_goals_push */
+} adjust_room;
+
 typedef struct {
     hf_estimate *estimate;
     const hf_adjust_task *task;
+    int n_room;
+    adjust_room *room;      /* [n_room] */
     size_t n, n_row, n_dof; /* cables that can be turned; residuals of the figure; places */
     hf_workspace work;      /* the last shape */
     hf_form_result form;
-    hf_goals_point point;
-    double *turn_m;                           /* [n_cable of the model] of the last shape */
-    double *doubt_m;                          /* [samples][n_dof] */
-    double *residual, *at_zero;               /* [n_row] of the last shape; without turns, by the linear model */
-    double *column;                           /* [n][n_row] change of residuals per metre of each cable */
-    double *left_open;                        /* [samples][n_row] */
-    double *gram, *slope, *sample, *move_m;   /* [n][n], [n], [samples][n], [n] */
-    double *strain_N, *answer_m, *scratch;    /* [PANEL][...] of the linear answer */
-    double *rate_m, *rate_N, *displacement_m; /* of hf_goals_push */
-    int *steps, *trial;                       /* [n] */
-    int n_slack;                              /* cables without turns: moves leave no more of them slack */
+    double *turn_m;                         /* [n_cable of the model] of the last shape */
+    double *doubt_m;                        /* [samples][n_dof] */
+    double *residual;                       /* [n_row] of the last shape */
+    double *column;                         /* [n][n_row] change of residuals per metre of each cable, and behind it */
+    double *left_open, *at_zero;            /* [samples][n_row]; [n_row] residuals without turns, by the linear model */
+    double *product;                        /* of these n + samples + 1 rows with each other */
+    double *gram, *slope, *sample, *move_m; /* [n][n], [n], [samples][n], [n] */
+    int *steps, *trial;                     /* [n] */
+    bool is_current;                        /* is the linear model that of the shape with `steps`? */
+    int n_slack;                            /* cables without turns: moves leave no more of them slack */
     hf_moves_problem problem;
     void *block;
 } adjustment;
 
-static void lay_out_adjustment(hf_arena *arena, adjustment *a)
+static size_t rows_of(const adjustment *a)
+{
+    return a->n + HF_ESTIMATE_SAMPLES + 1;
+}
+
+static void lay_out_rooms(hf_arena *arena, adjustment *a)
 {
     const hf_model *m = &a->estimate->built->model;
-    size_t n_cable = (size_t)m->n_cable, samples = HF_ESTIMATE_SAMPLES;
+    a->room = hf_arena_take(arena, (size_t)a->n_room, sizeof *a->room);
+    for (int i = 0; i < a->n_room; i++) {
+        adjust_room of = {0};
+        of.strain_N = hf_arena_take(arena, PANEL * (size_t)m->n_cable, sizeof(double));
+        of.answer_m = hf_arena_take(arena, PANEL * a->n_dof, sizeof(double));
+        of.scratch = hf_arena_take(arena, PANEL * a->estimate->linear.n_scratch, sizeof(double));
+        of.rate_m = hf_arena_take(arena, a->n_dof, sizeof(double));
+        of.rate_N = hf_arena_take(arena, (size_t)m->n_cable, sizeof(double));
+        of.displacement_m = hf_arena_take(arena, 3 * (size_t)m->n_attachment, sizeof(double));
+        if (a->room) a->room[i] = of;
+    }
+}
+
+static void lay_out_adjustment(hf_arena *arena, adjustment *a)
+{
+    size_t n_cable = (size_t)a->estimate->built->model.n_cable, samples = HF_ESTIMATE_SAMPLES, n_all = rows_of(a);
     a->turn_m = hf_arena_take(arena, n_cable, sizeof(double));
     a->doubt_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
     a->residual = hf_arena_take(arena, a->n_row, sizeof(double));
-    a->at_zero = hf_arena_take(arena, a->n_row, sizeof(double));
-    a->column = hf_arena_take(arena, a->n * a->n_row, sizeof(double));
-    a->left_open = hf_arena_take(arena, samples * a->n_row, sizeof(double));
+    a->column = hf_arena_take(arena, n_all * a->n_row, sizeof(double));
+    a->product = hf_arena_take(arena, n_all * n_all, sizeof(double));
     a->gram = hf_arena_take(arena, a->n * a->n, sizeof(double));
     a->slope = hf_arena_take(arena, a->n, sizeof(double));
     a->sample = hf_arena_take(arena, samples * a->n, sizeof(double));
     a->move_m = hf_arena_take(arena, a->n, sizeof(double));
-    a->strain_N = hf_arena_take(arena, PANEL * n_cable, sizeof(double));
-    a->answer_m = hf_arena_take(arena, PANEL * a->n_dof, sizeof(double));
-    a->scratch = hf_arena_take(arena, PANEL * a->estimate->linear.n_scratch, sizeof(double));
-    a->rate_m = hf_arena_take(arena, a->n_dof, sizeof(double));
-    a->rate_N = hf_arena_take(arena, n_cable, sizeof(double));
-    a->displacement_m = hf_arena_take(arena, 3 * (size_t)m->n_attachment, sizeof(double));
     a->steps = hf_arena_take(arena, a->n, sizeof(int));
     a->trial = hf_arena_take(arena, a->n, sizeof(int));
+    lay_out_rooms(arena, a);
 }
 
 static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, adjustment *a)
@@ -65,9 +90,13 @@ static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, a
     hf_arena arena = {0};
     *a = (adjustment){.estimate = p, .task = task, .n = (size_t)task->n_cable, .n_row = (size_t)task->goals->n_row};
     a->n_dof = p->linear.n_dof;
+    a->n_room = task->n_thread > 0 ? task->n_thread : hf_parallel_cores();
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_adjustment(&arena, a)));
     a->block = arena.block;
-    HF_TRY(hf_goals_point_create(task->goals, &a->point));
+    a->left_open = a->column + a->n * a->n_row;
+    a->at_zero = a->left_open + HF_ESTIMATE_SAMPLES * a->n_row;
+    for (int i = 0; i < a->n_room; i++)
+        HF_TRY(hf_goals_point_create(task->goals, &a->room[i].point));
     const hf_adjust_settings *s = task->settings;
     a->problem = (hf_moves_problem){.n = task->n_cable,
                                     .gram = a->gram,
@@ -85,7 +114,8 @@ static void free_adjustment(adjustment *a)
 {
     hf_arena arena = {.block = a->block};
     hf_workspace_free(&a->work);
-    hf_goals_point_free(&a->point);
+    for (int i = 0; i < a->n_room && a->block; i++)
+        hf_goals_point_free(&a->room[i].point);
     hf_arena_free(&arena);
 }
 
@@ -94,7 +124,7 @@ static void free_adjustment(adjustment *a)
 static hf_status measure_work(adjustment *a, double *figure_m)
 {
     double merit;
-    return hf_goals_measure(a->task->goals, &a->work, &a->point, figure_m, &merit);
+    return hf_goals_measure(a->task->goals, &a->work, &a->room[0].point, figure_m, &merit);
 }
 
 /* Of the net with the estimated errors and the turns in turn_m. */
@@ -130,32 +160,41 @@ static int count_slack(const adjustment *a)
 /* ---- the linear model ---- */
 
 /* Residuals per unit of a move by dof. */
-static void push_move(adjustment *a, const double *move_m, double *rate)
+static void push_move(const adjustment *a, adjust_room *r, const double *move_m, double *rate)
 {
     const hf_model *m = &a->estimate->built->model;
     for (int row = 0; row < m->n_node; row++)
         for (int c = 0; c < 3; c++)
-            a->rate_m[c * m->n_node + row] = move_m[3 * row + c];
-    hf_goals_rate by = {a->rate_m, a->rate_N, a->displacement_m};
-    hf_goals_push(a->task->goals, &a->work, &a->point, &by, rate);
+            r->rate_m[c * m->n_node + row] = move_m[3 * row + c];
+    hf_goals_rate by = {r->rate_m, r->rate_N, r->displacement_m};
+    hf_goals_push(a->task->goals, &a->work, &r->point, &by, rate);
 }
 
-static void find_columns(adjustment *a)
+static void find_panel(void *context, int room, int i_panel)
 {
+    adjustment *a = context;
+    adjust_room *r = &a->room[room];
     const hf_built_linear *l = &a->estimate->linear;
-    size_t n_cable = (size_t)l->built->model.n_cable;
-    for (size_t first = 0; first < a->n; first += PANEL) {
-        size_t n = a->n - first < PANEL ? a->n - first : PANEL;
-        memset(a->strain_N, 0, n * n_cable * sizeof *a->strain_N);
-        memset(a->answer_m, 0, n * a->n_dof * sizeof *a->answer_m);
-        for (size_t k = 0; k < n; k++) {
-            size_t e = (size_t)a->task->cable[first + k];
-            a->strain_N[k * n_cable + e] = l->cut_N_per_m[e];
-        }
-        hf_built_linear_apply(l, (int)n, a->strain_N, a->answer_m, a->scratch);
-        for (size_t k = 0; k < n; k++)
-            push_move(a, a->answer_m + k * a->n_dof, a->column + (first + k) * a->n_row);
+    size_t n_cable = (size_t)l->built->model.n_cable, first = PANEL * (size_t)i_panel;
+    size_t n = a->n - first < PANEL ? a->n - first : PANEL;
+    memset(r->strain_N, 0, n * n_cable * sizeof *r->strain_N);
+    memset(r->answer_m, 0, n * a->n_dof * sizeof *r->answer_m);
+    for (size_t k = 0; k < n; k++) {
+        size_t e = (size_t)a->task->cable[first + k];
+        r->strain_N[k * n_cable + e] = l->cut_N_per_m[e];
     }
+    hf_built_linear_apply(l, (int)n, r->strain_N, r->answer_m, r->scratch);
+    for (size_t k = 0; k < n; k++)
+        push_move(a, r, r->answer_m + k * a->n_dof, a->column + (first + k) * a->n_row);
+}
+
+static void multiply_rows(void *context, int room, int i_block)
+{
+    adjustment *a = context;
+    int n_all = (int)rows_of(a), first = GRAM_ROWS * i_block;
+    int end = first + GRAM_ROWS < n_all ? first + GRAM_ROWS : n_all;
+    (void)room;
+    hf_band_gram(first, end, (int)a->n_row, a->column, (int)a->n_row, a->product, n_all);
 }
 
 static double dot(size_t n, const double *a, const double *b)
@@ -166,29 +205,35 @@ static double dot(size_t n, const double *a, const double *b)
     return sum;
 }
 
+/* Products of the effects of cables, the samples and the residuals without turns. */
+static void find_products(adjustment *a)
+{
+    size_t n = a->n, n_all = rows_of(a), last = n_all - 1;
+    hf_parallel_each(a->n_room, (int)((n_all + GRAM_ROWS - 1) / GRAM_ROWS), multiply_rows, a);
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j <= i; j++)
+            a->gram[i * n + j] = a->gram[j * n + i] = a->product[i * n_all + j];
+    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++)
+        memcpy(a->sample + s * n, a->product + (n + s) * n_all, n * sizeof(double));
+    memcpy(a->slope, a->product + last * n_all, n * sizeof(double));
+    a->problem.square = a->product[last * n_all + last];
+}
+
 /* At the shape in `work`: residuals, what each cable does to them, and what is left open. */
 static hf_status linearise(adjustment *a)
 {
     size_t n = a->n, n_row = a->n_row;
-    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->point, a->residual));
+    for (int i = 0; i < a->n_room; i++)
+        HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[i].point, a->residual));
     HF_TRY(hf_built_linear_take(&a->estimate->linear, &a->work));
-    find_columns(a);
+    hf_parallel_each(a->n_room, (int)((n + PANEL - 1) / PANEL), find_panel, a);
     memcpy(a->at_zero, a->residual, n_row * sizeof *a->at_zero);
     for (size_t i = 0; i < n; i++)
-        for (size_t r = 0; r < n_row; r++)
+        for (size_t r = 0; r < n_row && a->turn_m[a->task->cable[i]] != 0; r++)
             a->at_zero[r] -= a->turn_m[a->task->cable[i]] * a->column[i * n_row + r];
-    for (size_t i = 0; i < n; i++) {
-        a->slope[i] = dot(n_row, a->column + i * n_row, a->at_zero);
-        for (size_t j = 0; j <= i; j++)
-            a->gram[i * n + j] = a->gram[j * n + i] = dot(n_row, a->column + i * n_row, a->column + j * n_row);
-    }
-    a->problem.square = dot(n_row, a->at_zero, a->at_zero);
-    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
-        double *left = a->left_open + s * n_row;
-        push_move(a, a->doubt_m + s * a->n_dof, left);
-        for (size_t i = 0; i < n; i++)
-            a->sample[s * n + i] = dot(n_row, a->column + i * n_row, left);
-    }
+    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++)
+        push_move(a, &a->room[0], a->doubt_m + s * a->n_dof, a->left_open + s * n_row);
+    find_products(a);
     return HF_OK;
 }
 
@@ -207,6 +252,7 @@ static hf_status choose(adjustment *a, hf_adjustment *found)
         hf_status status = linearise(a);
         if (status == HF_SINGULAR) return HF_OK; /* the net has no stiffness there to go on with */
         HF_TRY(status);
+        a->is_current = true;
         HF_TRY(hf_moves_choose(&a->problem, a->trial, &end));
         if (found->n_round++ == 0) found->end = end;
         found->is_settled = memcmp(a->trial, a->steps, a->n * sizeof *a->trial) == 0;
@@ -227,6 +273,7 @@ static hf_status choose(adjustment *a, hf_adjustment *found)
         found->adjusted_m = figure_m;
         found->end = end;
         memcpy(a->steps, a->trial, a->n * sizeof *a->trial);
+        a->is_current = false;
     }
     return HF_OK;
 }
@@ -262,7 +309,7 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
     HF_TRY(solve_steps(a, a->steps, &found->best_m));
     a->problem.steps_max = hf_adjust_steps(a->task->settings);
     for (int round_ = 0; gains && round_ < ROUNDS_MAX; round_++) {
-        hf_status status = linearise(a);
+        hf_status status = round_ == 0 && a->is_current ? HF_OK : linearise(a);
         if (status == HF_SINGULAR) return HF_OK;
         HF_TRY(status);
         HF_TRY(hf_moves_best(&a->problem, a->move_m));
@@ -299,8 +346,9 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
     HF_TRY(HF_ARENA_MAKE(&arena, found->move = hf_arena_take(&arena, (size_t)found->n_move, sizeof *found->move)));
     found->block = arena.block;
     HF_TRY(solve_steps(a, a->steps, &figure_m));
-    hf_status status = linearise(a);
+    hf_status status = a->is_current ? HF_OK : linearise(a);
     if (status != HF_OK && status != HF_SINGULAR) return status; /* then in the order of the last linear model */
+    a->is_current = status == HF_OK;
     memset(a->trial, 0, a->n * sizeof *a->trial);
     HF_TRY(solve_steps(a, a->trial, &figure_m));
     for (int k = 0; k < found->n_move; k++) {
@@ -324,9 +372,9 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
 static hf_status spread_figure(adjustment *a, double *doubt_m, double *spread_m)
 {
     double mean = 0, square = 0;
-    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->point, a->residual));
+    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[0].point, a->residual));
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
-        push_move(a, a->doubt_m + s * a->n_dof, a->at_zero);
+        push_move(a, &a->room[0], a->doubt_m + s * a->n_dof, a->at_zero);
         for (size_t r = 0; r < a->n_row; r++)
             a->at_zero[r] += a->residual[r];
         double sum = dot(a->n_row, a->at_zero, a->at_zero);
@@ -361,8 +409,8 @@ static hf_status find_all(adjustment *a, hf_adjustment *found)
     HF_TRY(solve_nominal(a, &found->nominal_m));
     HF_TRY(hf_estimate_doubt(a->estimate, a->doubt_m));
     HF_TRY(choose(a, found));
-    HF_TRY(find_best(a, found));
     HF_TRY(list_moves(a, found));
+    HF_TRY(find_best(a, found));
     return spread_both(a, found);
 }
 

@@ -13,6 +13,7 @@ typedef struct {
     const hf_adjust_settings *settings;
     const hf_goals *goals; /* the figure, of one goal and of the model of the net as built */
     int n_cable, *cable;   /* [n_cable] that can be turned */
+    int n_thread;          /* 0: all cores */
 } hf_adjust_task;
 
 /* One move, in the order in which they are made. Longer cables have a move above 0. */

@@ -95,7 +95,7 @@ START_TEST(moves_are_a_table)
     ERR("exists");
     HIFDM(5, "adjust", path, "--measured", measured, "-o", measured, "--force");
     ERR("an input of this run");
-    HIFDM(0, "adjust", path, "--measured", measured, "-o", temp("again.csv"), "--quiet");
+    HIFDM(0, "adjust", path, "--measured", measured, "-o", temp("again.csv"), "--quiet", "--threads", "3");
     char *again = read_file(temp("again.csv"), NULL);
     ck_assert_str_eq(table, again);
     HIFDM(0, "adjust", path, "--measured", measured, "--json", "--set", "tolerance.sigma_support_m=1e-4");

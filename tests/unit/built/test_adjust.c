@@ -19,7 +19,7 @@ static void make_job(const twin *t, job *j, double range_m, double step_m, int m
     j->settings = (hf_adjust_settings){.range_m = range_m, .step_m = step_m, .moves = moves, .figure = HF_GOAL_PSI};
     for (int e = 0; e < t->built.model.n_cable; e++)
         j->cable[e] = e;
-    j->task = (hf_adjust_task){&j->settings, &j->goals, t->built.model.n_cable, j->cable};
+    j->task = (hf_adjust_task){&j->settings, &j->goals, t->built.model.n_cable, j->cable, 1};
 }
 
 static void find_moves(const twin *t, const job *j, hf_estimate *p, hf_adjustment *found)
