@@ -1,4 +1,4 @@
-// The net of a report as an SVG, as the page itself draws it: its canvas is given a pen that writes down what it is told.
+// The net of a report as an SVG, as the page draws it: its canvas is given a pen that writes down what it is told.
 //     tests/browser/run.sh --node tools/report_picture.mjs configs/paraboloid-6m.yaml results/report.svg
 import { execFileSync } from "node:child_process";
 import { mkdirSync, writeFileSync } from "node:fs";

@@ -255,6 +255,31 @@ START_TEST(recipe_for_a_sweep_names_a_study_that_can_run)
 }
 END_TEST
 
+/* The case of ten lines prints what stands below it, but for times and for the names of files. */
+START_TEST(first_case_says_what_the_readme_shows)
+{
+    static const char follow[] =
+        "import re, subprocess, sys\n"
+        "readme = open(sys.argv[2]).read()\n"
+        "assert readme.count('\\n') <= 200, 'the README is to be short'\n"
+        "pieces = [re.sub('^    ', '', p, flags=re.M) for p in re.findall('(?:^    .*\\n)+', readme, flags=re.M)]\n"
+        "case, = (p for p in pieces if p.startswith('title: '))\n"
+        "shown, = (p for p in pieces if p.startswith('psi '))\n"
+        "assert case.count('\\n') == 10, 'the case is to have ten lines'\n"
+        "open('dish.yaml', 'w').write(case)\n"
+        "said = subprocess.run([sys.argv[1], 'run', 'dish.yaml'], capture_output=True, text=True)\n"
+        "plain = lambda text: [re.sub(r'[\\d.]+ (us|ms|s)$', 'TIME', line) for line in text.splitlines()]\n"
+        "said_lines = [line for line in plain(said.stdout) if not re.match('  (results|more) ', line)]\n"
+        "sys.stdout.write('\\n'.join(a + ' | ' + b for a, b in zip(said_lines, plain(shown)) if a != b))\n"
+        "assert not said.stderr and len(said_lines) == len(plain(shown)), said\n";
+    const char *folder = temp("here");
+    SHELL(0, "mkdir -p \"$1\"", folder);
+    SHELL(0, "cd \"$1\" && OMP_WAIT_POLICY=passive \"$2\" \"$3\" \"$0\" \"$4\"", folder, python_program(),
+          file_with("follow.py", follow), keep(source_path("README.md")));
+    ck_assert_str_eq(said.out, "");
+}
+END_TEST
+
 Suite *suite_cli_examples(void)
 {
     Suite *suite = suite_create("cli/examples");
@@ -267,6 +292,7 @@ Suite *suite_cli_examples(void)
     tcase_add_test(tcase, pieces_of_readme_in_python_run);
     tcase_add_test(tcase, pieces_of_readme_in_c_are_those_of_the_examples);
     tcase_add_test(tcase, recipe_for_a_net_of_ones_own_works);
+    tcase_add_test(tcase, first_case_says_what_the_readme_shows);
     tcase_add_test(tcase, recipe_for_a_sweep_names_a_study_that_can_run);
     suite_add_tcase(suite, tcase);
     return suite;
