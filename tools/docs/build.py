@@ -4,12 +4,14 @@ Pages are those of src/manual, the sections of src/MANUAL.md, src/METHOD.md and 
 results/chen2022, and what the program prints about itself. Sphinx turns them into HTML; its warnings are errors."""
 import argparse
 import glob
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
 
+import blocks
 import check
 import reference
 from split import Links, Page, coloured, split
@@ -19,17 +21,68 @@ def read(path, name):
     return Page(name, path, open(path, encoding="utf-8").read().split("\n"))
 
 
-def all_pages(program):
+def written(program, work):
+    """The pages of src/manual, with what their commands print and the pages of hifdm report that they made."""
+    pages = []
+    for path in sorted(glob.glob("src/manual/**/*.md", recursive=True)):
+        name = path[len("src/manual/") : -3]
+        folder = f"{work}.run/{name.replace('/', '-')}"
+        page = Page(name, path, blocks.run_page(path, folder, program))
+        page.folder = folder
+        pages.append(page)
+    return pages
+
+
+def report_parts(pages, work):
+    """![words](report:FILE.html#PART) is a picture of a part of a page of `hifdm report`, and a link to the whole page;
+    with ?press=LABEL after pressing a button, with ?only=ELEMENT of the first such in it. What is to be drawn."""
+    wanted = []
+    for page in pages:
+        for k, line in enumerate(page.lines):
+            match = re.match(r"!\[(.*)\]\(report:([\w-]+)\.html#([\w-]+)(?:\?(press|only)=(\w+))?\)$", line)
+            if match:
+                words, report, part, option, value = match.groups()
+                name = f"{page.name.replace('/', '-')}-{report}"
+                shutil.copy(f"{page.folder}/{report}.html", f"{work}/_static/{name}.html")
+                file = f"_static/{name}-{part}.png"
+                wanted.append({"page": f"{page.folder}/{report}.html", "part": f"#{part}", "file": f"{work}/{file}",
+                               **({option: value} if option else {})})
+                up = "../" * page.name.count("/")
+                page.lines[k] = (f"![{words}](/{file})\n\n" if browser() else "") + (
+                    f'*{words}.* <a href="{up}_static/{name}.html">The whole page</a>.')
+    return wanted
+
+
+def browser():
+    return all(shutil.which(name) for name in ("chromium", "node", "npm"))
+
+
+def draw(wanted, work, build):
+    if not wanted:
+        return
+    if not browser():
+        said = "the manual has no pictures: no chromium, node or npm"
+        print(said)
+        if os.environ.get("HIFDM_NO_SKIP"):
+            sys.exit(1)
+        return
+    with open(f"{work}.run/pictures.json", "w", encoding="utf-8") as file:
+        json.dump(wanted, file)
+    command = ["tests/browser/run.sh", "--node", "tools/docs/pictures.mjs", f"{work}.run/pictures.json"]
+    subprocess.run(command, check=True, env={**os.environ, "BUILD": build})
+
+
+def all_pages(program, work):
     guide = list(split("src/MANUAL.md", "guide"))
     for page in guide:
         page.lines = coloured(page.lines)
     method = list(split("src/METHOD.md", "method"))
-    paths = sorted(glob.glob("src/manual/**/*.md", recursive=True))
-    written = [read(path, path[len("src/manual/") : -3]) for path in paths]
+    ours = written(program, work)
+    draw(report_parts(ours, work), work, os.path.dirname(work))
     paper = [read(f"results/chen2022/{name}.md", f"paper/{name}") for name in ("table", "search")]
     inside = [read("src/ARCHITECTURE.md", "inside")]
     made = [reference.schema(program), reference.commands(program), *reference.headers()]
-    return guide, method, written + paper + inside + made
+    return guide, method, ours + paper + inside + made
 
 
 def contents(line, guide, method):
@@ -79,7 +132,7 @@ def main():
     os.makedirs(f"{a.work}/_static")
     for name in ("conf.py", "style.css"):
         shutil.copy(f"tools/docs/{name}", a.work if name == "conf.py" else f"{a.work}/_static")
-    guide, method, others = all_pages(os.path.abspath(a.program))
+    guide, method, others = all_pages(a.program, a.work)
     write(guide + method + others, guide, method, a.work)
     sphinx = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-d", f"{a.work}/.doctrees", a.work, a.out]
     subprocess.run(sphinx, check=True, env={**os.environ, "HIFDM_VERSION": a.version})

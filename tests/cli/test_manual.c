@@ -1,0 +1,38 @@
+/* Every command in the pages of src/manual does what the page says: its exit status, and the figures in the text. */
+#include "cli.h"
+
+#define BLOCKS "cd \"$1\" && exec \"$2\" tools/docs/blocks.py --program \"$0\" --work \"$3\""
+#define WHERE keep(source_path(".")), python_program(), temp("manual")
+
+START_TEST(commands_of_the_manual_do_what_it_says)
+{
+    SHELL(0, BLOCKS, WHERE);
+    OUT("src/manual/tutorial.md: its commands do what it says");
+}
+END_TEST
+
+/* What the test above would not see if its program did not look. */
+START_TEST(a_page_that_is_wrong_is_named)
+{
+    static const char *const page[][2] = {
+        {"```console\n$ false\n```\n", "exit status 1 and not 0: false"},
+        {"```console status=3\n$ true\n```\n", "exit status 0 and not 3: true"},
+        {"```console\n$ echo psi 1.2\n```\npsi is {out}`1.3`\n", "\"1.3\" is not printed"},
+        {"```console by=Makefile\n$ no such line\n```\n", "Makefile does not run no such line"},
+    };
+    for (int k = 0; k < 4; k++) {
+        SHELL(1, BLOCKS " \"$4\"", WHERE, file_with("wrong.md", page[k][0]));
+        ERR(page[k][1]);
+    }
+}
+END_TEST
+
+Suite *suite_cli_manual(void)
+{
+    Suite *suite = suite_create("cli/manual");
+    TCase *tcase = tcase_create("manual");
+    tcase_add_test(tcase, commands_of_the_manual_do_what_it_says);
+    tcase_add_test(tcase, a_page_that_is_wrong_is_named);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
