@@ -1,4 +1,4 @@
-/* `hifdm report` shows a result, or a merged study, as one HTML page. */
+/* `hifdm report` shows a result, two of them side by side, or a merged study as one HTML page. */
 #include "app/cmd.h"
 
 #include "app/options.h"
@@ -9,17 +9,19 @@ static hf_status command_report(const hf_options *o, FILE *file, hf_messages *me
 {
     const hf_export_request request = {.file = o->file, .output = o->output, .force = o->force};
     char said[HF_EXPORT_SAID_SIZE];
-    HF_TRY(hf_report(&request, said, sizeof said, messages));
+    HF_TRY(hf_report(&request, o->second, said, sizeof said, messages));
     hf_print_line(file, "%s", said);
     return HF_OK;
 }
 
 const hf_command hf_cmd_report = {
     .name = "report",
-    .argument = "FILE",
+    .argument = "FILE [OTHER]",
     .help = "write a result as one HTML page to look at: net, histories, tensions, summary",
-    .about = "The page is one file for any browser; it needs no network.",
-    .examples = "hifdm report chen2022.h5 -o chen2022.html",
+    .about = "The page is one file for any browser; it needs no network. With a second result the page compares the\n"
+             "two: what differs in their cases, their figures, the tensions of each cable.",
+    .examples = "hifdm report chen2022.h5 -o chen2022.html\n"
+                "hifdm report monday.h5 tuesday.h5 -o both.html",
     .reads_results = true,
     .run = command_report,
 };

@@ -279,7 +279,7 @@ static bool needs_argument(const hf_command *command)
     return command->argument && *command->argument != '[';
 }
 
-/* Commands with two arguments have "A B" in their row. */
+/* Commands with two arguments have "A B" in their row, or "A [B]" where the second may be missing. */
 static bool takes_two(const hf_command *command)
 {
     return command->argument && strchr(command->argument, ' ');
@@ -382,7 +382,7 @@ hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_
         options->threads = (int)cpus;
     if (needs_argument(command) && !options->file)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm %s' needs a %s", command->name, command->argument);
-    if (takes_two(command) && !options->second)
+    if (takes_two(command) && !strchr(command->argument, '[') && !options->second)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm %s' needs a second file", command->name);
     return HF_OK;
 }

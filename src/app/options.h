@@ -17,7 +17,7 @@ struct hf_options {
     int argc; /* the whole command line, for the provenance of results */
     char *const *argv;
     const char *file;                     /* the CASE or FILE, NULL for commands without one */
-    const char *second;                   /* the other FILE of diff */
+    const char *second;                   /* the other FILE of diff and report */
     const char *output;                   /* -o */
     const char *export_to[HF_N_EXPORTER]; /* file or folder by exporter; NULL: not asked for */
     const char *designs, *template_path;  /* --designs, --template */

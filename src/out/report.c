@@ -16,15 +16,19 @@ static hf_status choose_output(const hf_export_request *o, char output[PATH_MAX]
     return hf_export_claim(o, output, messages);
 }
 
-hf_status hf_report(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
+hf_status hf_report(const hf_export_request *request, const char *other, char *said, size_t size, hf_messages *messages)
 {
     char output[PATH_MAX];
     struct stat info = {0};
     HF_TRY(choose_output(request, output, messages));
+    HF_TRY(hf_file_out_spare(other, "the result to compare with", output, messages));
+    if (other && (hf_report_is_study(request->file) || hf_report_is_study(other)))
+        return hf_error(messages, HF_BAD_USAGE, "%s is a merged study: only two results can be compared",
+                        hf_report_is_study(other) ? other : request->file);
     if (hf_report_is_study(request->file))
         HF_TRY(hf_report_study(request->file, output, messages));
     else
-        HF_TRY(hf_report_result(request->file, output, messages));
+        HF_TRY(hf_report_result(request->file, other, output, messages));
     if (stat(output, &info) == 0)
         snprintf(said, size, "%s: report in %s (%.0f kB)", request->file, output, (double)info.st_size / 1000);
     return HF_OK;

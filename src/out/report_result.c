@@ -1,4 +1,4 @@
-/* The page of one result. Contents: texts - net and shapes - series - the page - reading */
+/* The page of one result. Contents: texts - net and shapes - series - the page, and another - reading */
 #include "out/report_result.h"
 
 #include "base/arena.h"
@@ -17,6 +17,7 @@
 #include <string.h>
 
 #define POINTS_MAX 1000       /* points of a series that the page keeps: about what a screen can show */
+#define SAME_PLACE_M 1e-9     /* theoretical places of two results that are the same */
 #define PROVENANCE_SIZE 16384 /* 500 bytes are usual; lines that have no room are left out */
 
 /* The series of a page: path in the file, group and key on the page. The first row of a group sets its length. */
@@ -40,7 +41,7 @@ enum { N_SERIES = sizeof series_table / sizeof *series_table };
 enum { N_SHAPE = HF_STAGE_NONE + HF_STATES_MAX }; /* those of stages, then states of the net as built */
 
 /* Everything that a page shows. */
-typedef struct {
+typedef struct page {
     const char *path;
     hf_summary summary;
     hf_scene scene;
@@ -54,6 +55,8 @@ typedef struct {
     hf_series cable_share;                                     /* [n_cable] of the error of the net as built, or none */
     hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or none, [m][2] */
     char provenance[PROVENANCE_SIZE];
+    hf_texts case_text, overrides; /* one each */
+    const struct page *other;      /* the result that this one is compared with, or NULL */
 } page;
 
 /* ---- texts ---- */
@@ -173,13 +176,13 @@ static void write_shape(const page *p, int stage, FILE *f)
     fputc('}', f);
 }
 
-static void write_shapes(const page *p, FILE *f)
+static void write_shapes(const page *p, int n, FILE *f)
 {
     const char *comma = "";
     fputs(",\n\"slack_below_N\":", f);
     hf_json_value(HF_SLACK_RATIO * hf_model_reference_N(&p->scene, p->summary.pretension_N), 17, f);
     fputs(",\n\"shapes\":[", f);
-    for (int i = 0; i < N_SHAPE; i++) {
+    for (int i = 0; i < n; i++) {
         if (!p->has_shape[i]) continue;
         fputs(comma, f);
         write_shape(p, i, f);
@@ -239,6 +242,45 @@ static void write_series(const page *p, FILE *f)
 
 /* ---- the page ---- */
 
+/* ---- beside another result ---- */
+
+static bool are_equal(const char *const *a, const char *const *b, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (strcmp(a[i], b[i]) != 0) return false;
+    return true;
+}
+
+/* Have both the same nodes at the same theoretical places, and the same cables? Then their shapes are comparable. */
+static bool is_same_net(const hf_scene *a, const hf_scene *b)
+{
+    if (a->n_node != b->n_node || a->n_cable != b->n_cable) return false;
+    for (int i = 0; i < 3 * a->n_node; i++)
+        if (!(fabs(a->position_m[i] - b->position_m[i]) <= SAME_PLACE_M)) return false;
+    return !memcmp(a->end, b->end, 2 * (size_t)a->n_cable * sizeof *a->end) &&
+           are_equal((const char *const *)a->node_id, (const char *const *)b->node_id, a->n_node) &&
+           are_equal((const char *const *)a->cable_id, (const char *const *)b->cable_id, a->n_cable);
+}
+
+static void write_case(const page *p, FILE *f)
+{
+    hf_json_strings("case_text", &(const char *){p->case_text.n ? hf_texts_at(&p->case_text, 0) : ""}, 1, f);
+    hf_json_strings("overrides", &(const char *){p->overrides.n ? hf_texts_at(&p->overrides, 0) : ""}, 1, f);
+}
+
+static void write_other(const page *p, const page *other, FILE *f)
+{
+    hf_json j = {.file = f};
+    write_case(p, f);
+    fputs(",\n\"other\":{", f);
+    hf_json_text(&j, "name", hf_path_name(other->path));
+    write_case(other, f);
+    fputs(",\"summary\":", f);
+    hf_summary_write_json(&other->summary, other->summary.form.status, other->summary.warnings, other->path, f);
+    if (is_same_net(&p->scene, &other->scene)) write_shapes(other, HF_STAGE_NONE, f);
+    fputc('}', f);
+}
+
 static void write_data(const void *context, FILE *f)
 {
     const page *p = context;
@@ -255,9 +297,10 @@ static void write_data(const void *context, FILE *f)
     hf_json_value(s->pretension_N, 17, f);
     write_figures(f);
     write_net(p, f);
-    write_shapes(p, f);
+    write_shapes(p, N_SHAPE, f);
     write_truss(p, f);
     write_series(p, f);
+    if (p->other) write_other(p, p->other, f);
     fputs("}\n", f);
 }
 
@@ -339,6 +382,8 @@ static hf_status read_page(page *p, hf_messages *messages)
     HF_TRY(hf_store_read_scene(p->path, &p->scene, messages));
     HF_TRY(hf_store_read_provenance(p->path, p->provenance, sizeof p->provenance, messages));
     HF_TRY(hf_store_read_series(p->path, "/truss/node/position_m", 3, &p->truss_position_m, messages));
+    HF_TRY(hf_store_read_texts(p->path, "/case/text", &p->case_text, messages));
+    HF_TRY(hf_store_read_texts(p->path, "/case/overrides", &p->overrides, messages));
     HF_TRY(read_shapes(p, messages));
     HF_TRY(read_states(p, messages));
     if (map_facets(p) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", p->path);
@@ -365,13 +410,20 @@ static void free_page(page *p)
     hf_series_free(&p->truss_position_m);
     hf_series_free(&p->truss_displacement);
     hf_series_free(&p->truss_end);
+    hf_texts_free(&p->case_text);
+    hf_texts_free(&p->overrides);
 }
 
-hf_status hf_report_result(const char *path, const char *output, hf_messages *messages)
+hf_status hf_report_result(const char *path, const char *other, const char *output, hf_messages *messages)
 {
-    page p = {.path = path};
+    page p = {.path = path}, beside = {.path = other};
     hf_status status = read_page(&p, messages);
+    if (status == HF_OK && other) {
+        status = read_page(&beside, messages);
+        p.other = &beside;
+    }
     if (status == HF_OK) status = hf_file_out_write(output, write_page, &p, messages);
     free_page(&p);
+    free_page(&beside);
     return status;
 }

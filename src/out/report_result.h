@@ -4,7 +4,8 @@
 
 #include <hifdm/status.h>
 
-/* Writes the page of the result file `path` to `output`. HF_OK, HF_IO or HF_NO_MEMORY with a message. */
-hf_status hf_report_result(const char *path, const char *output, hf_messages *messages);
+/* Writes the page of the result file `path` to `output`, beside the result `other` unless that is NULL.
+ * HF_OK, HF_IO or HF_NO_MEMORY with a message. */
+hf_status hf_report_result(const char *path, const char *other, const char *output, hf_messages *messages);
 
 #endif

@@ -132,7 +132,13 @@ static void read_texts(hf_hdf5 *io, const char *name, hid_t data_set, hf_texts *
         length == sizeof(uint64_t) && H5Tget_class(stored) == H5T_INTEGER && H5Tget_sign(stored) == H5T_SGN_NONE;
     if (rank < 0 || length == 0) {
         hf_hdf5_fail(io, "read", io->file, name);
-    } else if (rank == 1 && (is_fixed || is_uint64) && H5Sget_simple_extent_dims(space, &n, NULL) == 1 && n > 0) {
+        n = 0;
+    } else if (rank == 0 && is_fixed) {
+        n = 1;
+    } else if (!(rank == 1 && (is_fixed || is_uint64) && H5Sget_simple_extent_dims(space, &n, NULL) == 1)) {
+        n = 0;
+    }
+    if (n > 0) {
         if (n > HF_LAYOUT_COUNT_MAX)
             hf_hdf5_damaged(io, io->file, name, "is too large");
         else if (is_uint64)

@@ -33,8 +33,8 @@ void hf_texts_free(hf_texts *texts);
 /* All three: names from the root, HF_OK with n = 0 when there is no such thing; else HF_IO or HF_NO_MEMORY, with a
  * message. Free with hf_texts_free in any case. */
 
-/* A data set [n] of texts of fixed length, or of unsigned 64-bit numbers, whose digits they are; n = 0 also when it is
- * of another type. */
+/* A data set [n] of texts of fixed length (a single text counts as [1]), or of unsigned 64-bit numbers, whose
+ * digits they are; n = 0 also when it is of another type. */
 hf_status hf_store_read_texts(const char *path, const char *name, hf_texts *texts, hf_messages *messages);
 
 /* The names of what is in a group, sorted. */

@@ -4,6 +4,7 @@
 //   title: what must stand on it, to the letter
 //   warnings, slack: how many it must tell of
 //   facets: how many, all triangles; off: families of cables whose switches are tried
+//   other: how the case of a second result differs, with which it is compared
 //   study: how many points; leads: the axis that matters most
 
 const FORM = ["net", "cables", "map", "tensions", "summary", "form-finding", "provenance"];
@@ -81,6 +82,13 @@ export const pages = [
       "at_most: 0.0785, at_least: 0.001}]}\n",
     sections: ["net", "cables", "map", "tensions", "tolerance", "summary", "form-finding", "provenance"],
     slack: 0,
+  },
+  {
+    name: "compare",
+    source: "configs/chen2022.yaml",
+    other: ["--set", "optimize.method=lm", "--set", "form.pretension_N=10.5"],
+    sections: ["compare", ...GA],
+    warnings: 0,
   },
   {
     name: "truss",

@@ -42,8 +42,10 @@ function build(page, folder) {
   } else {
     hifdm("run", source, "-o", result, "--quiet");
   }
+  const beside = page.other ? ["other.h5"] : [];
+  if (page.other) hifdm("run", source, ...page.other, "-o", "other.h5", "--quiet");
   const start = performance.now();
-  hifdm("report", result, "-o", html);
+  hifdm("report", result, ...beside, "-o", html);
   const made = { html, hifdm, folder, made_ms: performance.now() - start };
   if (page.study) return { ...made, study: JSON.parse(readFileSync(html, "utf8").match(DATA)[2]).study };
   hifdm("export", result, "--csv", ".");
@@ -369,6 +371,33 @@ async function checkCuts(tab, made, heads) {
   }
 }
 
+// Figures of both results, what differs in their cases, and the tensions of both in the table of cables.
+async function checkOther(tab, page, made) {
+  const other = JSON.parse(made.hifdm("show", "other.h5", "--json")),
+    row = tab.locator("#compare tr", { hasText: "surface error ψ" }),
+    [a, b, change] = (await row.locator("td").allTextContents()).map(number);
+  same(a, 1e3 * made.summary.optimize.psi_m, 5);
+  same(b, 1e3 * other.polish.psi_m, 5);
+  same(change, 1e3 * (other.polish.psi_m - made.summary.optimize.psi_m), 4);
+  const lines = await tab.locator("#compare .differences li").allTextContents();
+  assert.deepEqual(lines, ["+ optimize.method=lm", "+ form.pretension_N=10.5"]);
+  made.hifdm("export", "other.h5", "--csv", ".", "--force");
+  const theirs = new Map(csv(join(made.folder, "cables.csv")).map((c) => [c.id, Number(c.tension_N)])),
+    ours = new Map(made.cables.map((c) => [c.id, Number(c.tension_N)]));
+  const heads = await tab.locator("#cables thead th").allTextContents(),
+    column = heads.findIndex((text) => text.startsWith("change"));
+  const rows = await tab
+    .locator("#cables tbody tr")
+    .evaluateAll((all) => all.map((r) => [...r.children].map((c) => c.textContent)));
+  assert.equal(rows.length, 25);
+  for (const cells of rows) {
+    const wanted = theirs.get(cells[0]) - ours.get(cells[0]);
+    assert.ok(Math.abs(number(cells[column]) - wanted) < 2e-3, `${cells[column]} is shown for ${wanted}`);
+  }
+  await changes(tab, "the other shape", () => tab.locator("#net").getByLabel("other.h5: LM optimum").check());
+  await tab.reload();
+}
+
 async function checkMap(tab, made) {
   assert.ok((await picture(tab, "map-canvas")).colours > 30, "the map is not drawn");
   const canvas = tab.locator("#map-canvas");
@@ -537,6 +566,10 @@ function poison(data) {
   }
   data.net.node_id = data.net.node_id.map(() => HOSTILE);
   data.net.cable_id = data.net.cable_id.map(() => HOSTILE);
+  if (data.other) {
+    Object.assign(data.other, { name: HOSTILE, case_text: [HOSTILE], overrides: [`${HOSTILE}\n${HOSTILE}`] });
+    data.other.summary.form.status = HOSTILE;
+  }
   if (data.summary.tolerance) data.summary.tolerance.cable_share.forEach((row) => (row.cable = HOSTILE));
   data.provenance = data.provenance.map((line) => line + HOSTILE);
   Object.assign(data.summary, { file: HOSTILE, case: HOSTILE, version: HOSTILE, warnings: [HOSTILE, HOSTILE] });
@@ -624,7 +657,8 @@ async function test(browser, page) {
     await checkSummary(tab, made);
     const endless = await checkCharts(tab, 4, "#form-finding", /iteration \d+\s+ψ\s+[\d.]+.* mm/);
     await checkNet(tab, page, made);
-    await checkCables(tab, made);
+    if (page.other) await checkOther(tab, page, made);
+    else await checkCables(tab, made);
     await checkHover(tab, page, made);
     if (page.slack) assert.ok(endless.includes("Tension ratio, boundary cables"), "an infinite ratio is not shown");
     await checkMap(tab, made);
@@ -632,7 +666,7 @@ async function test(browser, page) {
     if (made.summary.tolerance) await checkTolerance(tab, made);
     await checkUnknownFigure(browser, made, folder);
   }
-  if (page.study || page.slack !== undefined) await checkHostile(browser, made, folder);
+  if (page.study || page.other || page.slack !== undefined) await checkHostile(browser, made, folder);
   await checkRules(tab);
   await checkMedia(tab, folder, page.study ? [] : ["net-canvas", "map-canvas"]);
   assert.deepEqual(trouble, []);

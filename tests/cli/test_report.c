@@ -243,6 +243,33 @@ START_TEST(merged_study_is_a_page_of_points)
 }
 END_TEST
 
+/* Beside another result: both cases and summaries, and shapes where the nets are the same. */
+START_TEST(two_results_are_compared)
+{
+    const char *first = temp("a.h5"), *second = temp("b.h5"), *page = temp("ab.html");
+    const char *scene = file_with("r.yaml", SMALL_SCENE);
+    HIFDM(0, "run", scene, "-o", first, "--quiet");
+    HIFDM(0, "run", scene, "--set", "form.pretension_N=12", "-o", second, "--quiet");
+    HIFDM(0, "report", first, second, "-o", page);
+    demand_well_formed(page);
+    EXPECT(data_of(page, "ab.json"), "--", "a['other']['name'] == 'b.h5' and a['other']['case_text'] == a['case_text']",
+           "a['other']['overrides'] == ['form.pretension_N=12\\n'] and a['overrides'] == ['']",
+           "[s['stage'] for s in a['other']['shapes']] == ['form']",
+           "abs(a['other']['summary']['form']['psi_m'] - a['summary']['form']['psi_m']) < 1e-9",
+           "abs(a['other']['shapes'][0]['tension_N'][0] / a['shapes'][0]['tension_N'][0] - 1.2) < 1e-6");
+    HIFDM(0, "run", scene, "--set", "scene.parabolic_cylinder.modules=[3, 3]", "-o", second, "--restart", "--quiet");
+    HIFDM(0, "report", first, second, "-o", page, "--force");
+    EXPECT(data_of(page, "ab.json"), "--", "'shapes' not in a['other'] and a['other']['summary']['form']['psi_m'] > 0");
+    HIFDM(5, "report", first, second, "-o", second, "--force");
+    ERR("b.h5: is the result to compare with; choose another name");
+    HIFDM(5, "report", first, temp("missing.h5"), "-o", page, "--force");
+    ERR("missing.h5: cannot open: No such file or directory");
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(), make_study, temp("s.h5"));
+    HIFDM(2, "report", first, temp("s.h5"), "-o", page, "--force");
+    ERR("s.h5 is a merged study: only two results can be compared");
+}
+END_TEST
+
 START_TEST(files_are_not_replaced_unasked)
 {
     const char *out = temp("r.h5"), *page = temp("r.html");
@@ -284,6 +311,7 @@ Suite *suite_cli_report(void)
     tcase_add_test(tcase, an_attribute_forges_no_line);
     tcase_add_test(tcase, truss_is_shown_when_there_is_one);
     tcase_add_test(tcase, merged_study_is_a_page_of_points);
+    tcase_add_test(tcase, two_results_are_compared);
     tcase_add_test(tcase, files_are_not_replaced_unasked);
     suite_add_tcase(suite, tcase);
     return suite;

@@ -52,11 +52,15 @@ const CABLES_SAID =
   "the top.";
 
 function writeCables(view) {
-  const after = resultShape,
-    before = shapeOf("form") || after;
+  const after = otherShape || resultShape,
+    before = otherShape ? resultShape : shapeOf("form") || after;
   if (!after) return;
   const words = [
-    before === after ? null : `Tensions of the found net, and of the ${after.name}, which is the result.`,
+    otherShape
+      ? "Tensions of this result, and of the other."
+      : before === after
+        ? null
+        : `Tensions of the found net, and of the ${after.name}, which is the result.`,
     after.l0_m ? "A turn above 0 lets the cable out." : null,
     net.cable_share ? "The share is that of what all errors add to ψ², to first order: cut those cables well." : null,
     CABLES_SAID,

@@ -84,11 +84,24 @@ const digit = (text, i) => text.charCodeAt(i) - 48;
 const roleOf = (i) => net.role_word[digit(net.role, i)];
 const groupOf = (e) => net.group_word[digit(net.group, e)];
 
+// The result that this one is compared with: its shapes are drawn with the others where it has the same net.
+const summary = data.summary || {};
+// The shape that is a run's result, chosen as `hifdm export` chooses it.
+const resultIn = (figures, shapes) => {
+  const of = (stage) => (shapes || []).find((shape) => shape.stage === stage);
+  return (figures.polish && figures.polish.is_result && of("polish")) || of("optimize") || of("form");
+};
+if (data.other) data.other.name = clip(data.other.name, 40);
+const otherShape = data.other && resultIn(data.other.summary, data.other.shapes);
+const resultShape = resultIn(summary, data.shapes);
+if (otherShape) data.shapes.push(otherShape);
+
 // Distance of each node from its theoretical position, and its signed difference in z, in millimetres.
 for (const shape of data.shapes || []) {
   const d = shape.displacement_m,
     n = net.n_node;
   shape.name = shape.case ? `case ${shape.case}` : stageName[shape.stage];
+  if (shape === otherShape) Object.assign(shape, { stage: "other", name: `${data.other.name}: ${shape.name}` });
   shape.distance_mm = new Float64Array(n);
   shape.height_mm = new Float64Array(n);
   for (let i = 0; i < n; i++) {
@@ -98,11 +111,7 @@ for (const shape of data.shapes || []) {
   shape.isSlack = (e) => Math.abs(shape.tension_N[e]) < data.slack_below_N;
 }
 
-// The shape that is the run's result, chosen as `hifdm export` chooses it.
-const summary = data.summary || {};
 const shapeOf = (stage) => (data.shapes || []).find((shape) => shape.stage === stage);
-const resultShape =
-  (summary.polish && summary.polish.is_result && shapeOf("polish")) || shapeOf("optimize") || shapeOf("form");
 
 // Upper end of the colours: the largest deviation of the inner nodes, which psi counts. The nodes of a free edge move
 // much farther; a range with them would show all inner nodes in one colour.

@@ -302,6 +302,7 @@ if (data.study) {
     lines,
   );
   writeFigures();
+  writeOther();
   writeNet();
   writeCables(report.net);
   writeMap();

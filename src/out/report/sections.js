@@ -193,7 +193,7 @@ function writeCoupling() {
 function tensionChart(group, figures) {
   const of = Array.from({ length: net.n_cable }, (_, e) => e).filter((e) => groupOf(e) === group);
   if (!of.length) return null;
-  const colour = { form: "--one", optimize: "--two", polish: "--three" };
+  const colour = { form: "--one", optimize: "--two", polish: "--three", other: "--four" };
   const shapes = data.shapes.filter((s) => !s.case);
   return chart({
     title: `${group === "inner" ? "Inner" : "Boundary"} cables`,
@@ -261,28 +261,25 @@ const RMS_OF_LOSS = {
   facet_fit_gain_loss_dB: "facet_fit_half_path_rms_m",
 };
 
-function writeSummary() {
-  const stages = [
-    ["form", "Form-finding"],
-    ["optimize", "GA best"],
-    ["polish", "LM optimum"],
-  ].filter(([key]) => summary[key]);
-  if (!stages.length) return;
+// All figures of a stage by their keys, those of the surface, goals and losses of gain too.
+function stageValues(stage) {
+  const surface = stage.surface || {},
+    values = { ...stage, ...surface };
+  for (const [name, { value }] of Object.entries(stage.goals || {})) values[name] = value;
+  for (const [loss, rms] of Object.entries(RMS_OF_LOSS))
+    (surface[loss] || []).forEach(
+      (v, k) => (values[`${loss}[${k}]`] = v === null && surface[rms] !== null ? "beyond Ruze" : v),
+    );
+  return values;
+}
+
+// Rows of tables of figures: words, unit, key, how it is shown. `first`: the values of a stage.
+function figureRows(first) {
   const word = (v) => v.replace(/_/g, " ");
   const mm = (v) => fmt(1e3 * v, 5);
-  const values = {};
-  for (const [stage] of stages) {
-    const surface = summary[stage].surface || {};
-    values[stage] = { ...summary[stage], ...surface };
-    for (const [name, { value }] of Object.entries(summary[stage].goals || {})) values[stage][name] = value;
-    for (const [loss, rms] of Object.entries(RMS_OF_LOSS))
-      (surface[loss] || []).forEach(
-        (v, k) => (values[stage][`${loss}[${k}]`] = v === null && surface[rms] !== null ? "beyond Ruze" : v),
-      );
-  }
-  const goals = Object.entries(summary[stages[0][0]].goals || {});
+  const goals = Object.entries(first.goals || {});
   const loss = (v) => (typeof v === "string" ? v : fmt(v, 3));
-  const frequencies = (values[stages[0][0]].frequency_Hz || []).map((v) => `${fmt(v / 1e9, 4)} GHz`);
+  const frequencies = (first.frequency_Hz || []).map((v) => `${fmt(v / 1e9, 4)} GHz`);
   const rows = [
     ["surface error ψ", "mm", "psi_m", mm],
     ["merit of all goals", "", "merit", (v) => fmt(v, 5)],
@@ -345,6 +342,20 @@ function writeSummary() {
   const named = new Set(rows.map(([, , key]) => key));
   const others = (data.figures || []).filter(({ key }) => !named.has(key));
   rows.push(...others.map(({ key, units, description }) => [description, units, key, (v) => fmt(v, 4)]));
+  return rows;
+}
+
+const hasFigure = (v) => typeof v === "number" || typeof v === "string";
+
+function writeSummary() {
+  const stages = [
+    ["form", "Form-finding"],
+    ["optimize", "GA best"],
+    ["polish", "LM optimum"],
+  ].filter(([key]) => summary[key]);
+  if (!stages.length) return;
+  const values = Object.fromEntries(stages.map(([stage]) => [stage, stageValues(summary[stage])]));
+  const rows = figureRows(values[stages[0][0]]);
   const shown = rows.filter(([, , key]) =>
     stages.some(([s]) => values[s][key] !== undefined && values[s][key] !== null),
   );
@@ -362,7 +373,7 @@ function writeSummary() {
             el(
               "td",
               { class: "number" },
-              typeof values[s][key] === "number" || typeof values[s][key] === "string" ? format(values[s][key]) : "–",
+              hasFigure(values[s][key]) ? format(values[s][key]) : "–",
             ),
           ),
           el("td", {}, unit),

@@ -1,0 +1,92 @@
+// Contents: this result beside another: figures, and what differs in the cases
+
+// Lines that only one of two texts has, by the longest common subsequence; "-" of the first, "+" of the second.
+const LINES_OF_CASE_MAX = 600;
+function differences(a, b) {
+  const [x, y] = [a, b].map((text) => text.split("\n").slice(0, LINES_OF_CASE_MAX));
+  const longest = Array.from({ length: x.length + 1 }, () => new Uint16Array(y.length + 1));
+  for (let i = x.length - 1; i >= 0; i--)
+    for (let j = y.length - 1; j >= 0; j--)
+      longest[i][j] = x[i] === y[j] ? longest[i + 1][j + 1] + 1 : Math.max(longest[i + 1][j], longest[i][j + 1]);
+  const found = [];
+  let i = 0,
+    j = 0;
+  while (i < x.length || j < y.length) {
+    if (i < x.length && j < y.length && x[i] === y[j]) {
+      i++;
+      j++;
+    } else if (j >= y.length || (i < x.length && longest[i + 1][j] >= longest[i][j + 1])) {
+      found.push(["−", x[i++]]);
+    } else {
+      found.push(["+", y[j++]]);
+    }
+  }
+  return found.filter(([, line]) => line.trim());
+}
+
+function caseDifferences() {
+  const text = (of) => `${of.case_text[0]}\n${of.overrides[0]}`,
+    lines = differences(text(data), text(data.other));
+  if (!lines.length) return [el("p", {}, "Both are of the same case.")];
+  return [
+    el("h3", { class: "after" }, "What differs in the cases"),
+    el("p", {}, `− of this one, + of ${data.other.name}.`),
+    el(
+      "ul",
+      { class: "differences" },
+      lines.map(([sign, line]) => el("li", {}, el("code", {}, `${sign} ${line}`))),
+    ),
+  ];
+}
+
+function writeOther() {
+  const { other } = data;
+  if (!other) return;
+  const stageOf = (figures) => {
+    const stage =
+      (figures.polish && figures.polish.is_result && "polish") || (figures.optimize && "optimize") || "form";
+    return [stage, stageValues(figures[stage])];
+  };
+  const [stageA, a] = stageOf(summary),
+    [stageB, b] = stageOf(other.summary);
+  const rows = figureRows({ ...b, ...a, goals: { ...b.goals, ...a.goals } }).filter(
+    ([, , key]) => hasFigure(a[key]) || hasFigure(b[key]),
+  );
+  const cell = (v, format) => el("td", { class: "number" }, hasFigure(v) ? format(v) : "–");
+  const change = (u, v, format) =>
+    typeof u === "number" && typeof v === "number" && u !== v ? `${v > u ? "+" : ""}${minus(format(v - u))}` : "";
+  section(
+    "compare",
+    `Beside ${other.name}`,
+    el(
+      "p",
+      {},
+      otherShape
+        ? "Both have the same net, so the shape of the other result can be chosen in the pictures, and the table of " +
+            "cables has the tensions of both."
+        : "The nets are not the same ones, so figures are compared and shapes are not.",
+    ),
+    table(
+      [
+        ["Quantity"],
+        [`this: ${stageName[stageA]}`, "number"],
+        [`other: ${stageName[stageB]}`, "number"],
+        ["change", "number"],
+        ["Unit"],
+      ],
+      rows.map(([name, unit, key, format]) =>
+        el(
+          "tr",
+          {},
+          el("th", { scope: "row" }, name),
+          cell(a[key], format),
+          cell(b[key], format),
+          el("td", { class: "number" }, change(a[key], b[key], format)),
+          el("td", {}, unit),
+        ),
+      ),
+      "This result and the other",
+    ),
+    ...caseDifferences(),
+  );
+}
