@@ -130,7 +130,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 # ---- Targets to type -------------------------------------------------------------------------------------------------
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
          bench-before bench-optimisers bench-fronts bench-sampling pretension-night api docs docs-browser lint \
-         asan tsan fuzz fuzz-results install uninstall dist dist-check deb
+         asan tsan fuzz fuzz-results install uninstall dist dist-check deb workflow-check
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -346,6 +346,11 @@ dist-check: dist ## build that tarball without git, install and uninstall it, ru
 deb: dist ## Debian packages hifdm, libhifdm0, libhifdm-dev of that tarball: build/deb/*.deb
 	$(Q)tools/setup.sh --deb
 	+$(Q)tools/packages/make_deb.sh $(DIST).tar.gz $(BUILD)/deb
+
+workflow-check: ## the rules for Snakemake, tools/packages/Snakefile, with Snakemake itself
+	$(Q)tools/setup.sh --workflows
+	$(SUB) $(PROGRAM)
+	$(Q)tools/packages/check_workflows.sh $(PROGRAM) $(BUILD)/workflows
 
 clean: ## remove build/
 	rm -rf build $(BUILD)

@@ -199,6 +199,10 @@ fi
 # ---- The version is the Makefile's; what else names it agrees --------------------------------------------------------
 version=$(make -s print-VERSION)
 grep -qx "version: $version" CITATION.cff || echo "CITATION.cff:1: version is not the Makefile's, $version" | report
+recipes=$(cat tools/packages/conda/meta.yaml tools/packages/spack/package.py)
+for words in "  version: $version" "version(\"$version\")" "hifdm-$version.tar"; do
+    [[ $recipes == *"$words"* ]] || echo "tools/packages:1: a version is not the Makefile's, $version" | report
+done
 [ "$(grep -m 1 '^## \[' CHANGELOG.md | cut -d'[' -f2 | cut -d']' -f1)" = "$version" ] ||
     echo "CHANGELOG.md:1: the first version is not the Makefile's, $version" | report
 

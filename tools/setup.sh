@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Installs what is missing to build hifdm: setup.sh [--test] [--ci] [--bench] [--optimisers] [--api] [--docs] [--deb]
+# Installs what is missing to build hifdm: setup.sh [--OPTION]...
 #   --test  also what the tests need     --ci  also clang, sanitizers, linters, VTK, a browser, Slurm (includes --test)
 #   --bench also the peers of `make bench`     --api  also doxygen, for `make api`
 #   --docs  also Sphinx with its theme, for `make docs`
-#   --deb   also debhelper and lintian, for `make deb`
+#   --deb   also debhelper and lintian, for `make deb`     --workflows also Snakemake, for `make workflow-check`
 #   --optimisers also those of `make bench-optimisers`
 # Silent and quick when nothing is missing. Asks for what is needed (a compiler, a pkg-config name, a Python module)
 # rather than for packages, so that other providers do as well: reference LAPACK, modules from pip.
 set -eu
 
-with_test=no with_ci=no with_bench=no with_optimisers=no with_api=no with_docs=no with_deb=no
+with_test=no with_ci=no with_bench=no with_optimisers=no with_api=no with_docs=no with_deb=no with_workflows=no
 for option in "$@"; do
     case $option in
     --test) with_test=yes ;;
@@ -18,8 +18,9 @@ for option in "$@"; do
     --optimisers) with_optimisers=yes ;;
     --api) with_api=yes ;;
     --deb) with_deb=yes ;;
+    --workflows) with_workflows=yes ;;
     --docs) with_docs=yes ;;
-    *) echo "usage: tools/setup.sh [--test] [--ci] [--bench] [--optimisers] [--api] [--docs] [--deb]" >&2; exit 2 ;;
+    *) echo "usage: tools/setup.sh [--OPTION]..., the options at its top" >&2; exit 2 ;;
     esac
 done
 
@@ -78,6 +79,9 @@ missing_packages() {
         has_module sphinx || need python3-sphinx
         has_module myst_parser || need python3-myst-parser
         has_module furo || need furo
+    fi
+    if [ $with_workflows = yes ]; then
+        has snakemake || need snakemake
     fi
     if [ $with_deb = yes ]; then
         has dpkg-buildpackage || need dpkg-dev
