@@ -260,9 +260,10 @@ api: ## the library's interface as pages, from the public headers: build/api/ind
 	@echo $(BUILD)/api/index.html
 
 docs: ## the manual as pages to search and to read offline: build/docs/index.html
-	$(Q)tools/setup.sh --docs
-	$(SUB) $(PROGRAM)
-	$(PYTHON) tools/docs/build.py --program $(PROGRAM) --version $(VERSION) --work $(BUILD)/docs.src --out $(BUILD)/docs
+	$(Q)tools/setup.sh --test --docs
+	$(SUB) $(PROGRAM) $(RUNNER) $(INSTALLED)
+	+$(PYTHON) tools/docs/build.py --program $(PROGRAM) --version $(VERSION) --make "$(MAKE)" --work $(BUILD)/docs.src \
+	    --out $(BUILD)/docs
 
 docs-browser: docs ## every page of the manual in headless Chromium, on a phone; needs `tools/setup.sh --ci`
 	$(Q)HIFDM=$(abspath $(PROGRAM)) BUILD=$(BUILD) DOCS=$(BUILD)/docs \

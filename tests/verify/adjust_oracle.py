@@ -11,6 +11,7 @@ import csv
 import json
 import sys
 
+import figures
 import numpy as np
 
 SIGMA_CUT = 1e-4
@@ -144,6 +145,8 @@ def check(cut, jig, nodes, measured, answer):
         worst_figure = max(worst_figure, 1e-6 * abs(after - move["tension_after_N"]))
     print(f"{len(said['moves'])} moves; errors differ by {worst_error:.2e} m of {np.abs(e).max():.2e}, "
           f"figures by {worst_figure:.2e} m")
+    figures.worst(worst_error, 1e-8, "estimated errors of cut lengths, m")
+    figures.worst(worst_figure, 1e-9, f"psi after each of {len(said['moves'])} moves, m")
     return 0 if len(said["moves"]) and worst_error < 1e-8 and worst_figure < 1e-9 else 1
 
 

@@ -15,6 +15,7 @@ condensation. Supports of the net are one with the truss node nearest to them.
 import csv
 import sys
 
+import figures
 import numpy as np
 
 from net_oracle import Net
@@ -136,6 +137,7 @@ def main(case, found, tolerance_m=1e-7, scale=1):
         f"attachments give way by {1e3 * gives_way:.4f} mm; farthest node {far:.2e} m, tension "
         f"{np.abs(T - pull).max():.2e} N, {np.sum(T < 1e-6 * net.reference)} cables slack"
     )
+    figures.worst(far, float(tolerance_m), f"attachments that give way by {1e3 * gives_way:.4f} mm: places, m")
     return 0 if far <= float(tolerance_m) else 1
 
 

@@ -13,6 +13,7 @@ The triangular grid is made here from axial coordinates of a hexagonal lattice, 
 """
 import sys
 
+import figures
 import h5py
 import numpy as np
 import yaml
@@ -225,7 +226,9 @@ def compare_ring(h, p, t):
     stored, stored_reaction = h["truss/node/displacement"][:], h["truss/node/reaction"][:]
     off = np.abs(u.reshape(-1, 6) - stored)[:, :3].max() / np.abs(stored[:, :3]).max()
     assert off < 1e-7, off
+    figures.worst(off, 1e-7, f"ring of {len(ids)} joints: displacements, in parts of the largest")
     off_reaction = np.abs(reaction * fixed - stored_reaction).max() / np.abs(stored_reaction).max()
+    figures.worst(off_reaction, 1e-7, f"ring of {len(ids)} joints: reactions, in parts of the largest")
     assert off_reaction < 1e-7, off_reaction
     force = load[:, :3].sum(0) + stored_reaction[:, :3].sum(0)
     moment = np.cross(x, load[:, :3] + stored_reaction[:, :3]).sum(0) + stored_reaction[:, 3:].sum(0)

@@ -18,6 +18,7 @@ scipy (SLSQP) puts them as near to their theoretical places, by the sum of squar
 import csv
 import sys
 
+import figures
 import numpy as np
 from scipy.optimize import minimize
 
@@ -145,6 +146,7 @@ def main(case, found, tolerance_m=1e-7, n_loose=0):
     pull = np.array([float(r["tension_N"]) for r in cables])
     far = np.linalg.norm(x - y, axis=1).max()
     print(f"farthest node {far:.2e} m, tension {np.abs(T - pull).max():.2e} N, {loose.sum()} nodes loose")
+    figures.worst(far, float(tolerance_m), f"{'/'.join(case.split('/')[-2:])}: places of {len(x)} nodes, m")
     return 0 if far <= float(tolerance_m) and loose.sum() == int(n_loose) else 1
 
 

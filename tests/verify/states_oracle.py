@@ -14,6 +14,7 @@ import sys
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # matrices are small: threads would wait for each other
 
+import figures
 import numpy as np
 
 TOLERANCE_M, TOLERANCE_N = 1e-9, 1e-6  # the residuals of both are 1e-9 N or less, stiffnesses are 1 N/m or more
@@ -219,6 +220,11 @@ class Case:
                 worst[0] = max(worst[0], abs(psi - state.attrs["psi_m"]))
         print(f"truss {self.on_truss}: places {worst[0]:.1e} m, tensions {worst[1]:.1e} N, bars {worst[2]:.1e} N; "
               f"slack {slack} of {len(T)}")
+        where = f"net {os.path.basename(path)[:-3]}, {len(self.states)} states: "
+        figures.worst(worst[0], TOLERANCE_M, where + "places, m")
+        figures.worst(worst[1], TOLERANCE_N, where + "tensions, N")
+        if self.on_truss:
+            figures.worst(worst[2], TOLERANCE_N, where + "forces of bars, N")
         return worst[0] < TOLERANCE_M and worst[1] < TOLERANCE_N and worst[2] < TOLERANCE_N
 
 

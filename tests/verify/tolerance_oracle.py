@@ -5,6 +5,7 @@ The stream of an error is SplitMix64 scattered by (seed, sample, kind, item), as
 least energy of its cables, sum EA/(2 l0) max(l - l0, 0)^2, by Newton with a shrinking ridge and a line search."""
 import sys
 
+import figures
 import h5py
 import numpy as np
 import yaml
@@ -107,6 +108,7 @@ def main(path):
         n_slack += slack
         assert slack == sample["n_slack"][i], f"sample {i}: {slack} slack cables, not {sample['n_slack'][i]}"
     print(f"{int(case['samples'])} samples, {n_slack} slack cables: psi differs by at most {worst:.2g} m")
+    figures.worst(worst, 1e-9, f"psi of {n_psi} samples with {n_slack} slack cables in all, m")
     assert worst < 1e-9 and n_slack > 0 and n_psi > 40
 
 

@@ -1,4 +1,4 @@
-"""The manual, `make docs`: build.py --program build/hifdm --version 0.1.0 --work FOLDER --out FOLDER.
+"""The manual, `make docs`: build.py --program build/hifdm --version 0.1.0 --make make --work FOLDER --out FOLDER.
 
 Pages are those of src/manual, the sections of src/MANUAL.md, src/METHOD.md and src/ARCHITECTURE.md, the tables in
 results/chen2022, and what the program prints about itself. Sphinx turns them into HTML; its warnings are errors."""
@@ -14,6 +14,7 @@ import sys
 import blocks
 import check
 import reference
+import validation
 from split import Links, Page, coloured, split
 
 
@@ -72,7 +73,7 @@ def draw(wanted, work, build):
     subprocess.run(command, check=True, env={**os.environ, "BUILD": build})
 
 
-def all_pages(program, work):
+def all_pages(program, make, work):
     guide = list(split("src/MANUAL.md", "guide"))
     for page in guide:
         page.lines = coloured(page.lines)
@@ -81,22 +82,25 @@ def all_pages(program, work):
     draw(report_parts(ours, work), work, os.path.dirname(work))
     paper = [read(f"results/chen2022/{name}.md", f"paper/{name}") for name in ("table", "search")]
     inside = [read("src/ARCHITECTURE.md", "inside")]
-    made = [reference.schema(program), reference.commands(program), *reference.headers()]
+    made = [validation.page(make, f"{work}.run"), reference.schema(program), reference.commands(program)]
+    made += reference.headers()
     return guide, method, ours + paper + inside + made
 
 
-def contents(line, guide, method):
-    """`@guide` and `@method` in a list of contents stand for the pages of a document."""
-    pages = {"@guide": guide, "@method": method}.get(line.strip())
+def contents(line, guide, method, program):
+    """`@guide` and `@method` in a list of contents stand for the pages of a document, `@words` for all words."""
+    if line == "@words":
+        return reference.glossary(program)
+    pages = {"@guide": guide, "@method": method}.get(line)
     return ["/" + page.name for page in pages] if pages else [line]
 
 
-def write(pages, guide, method, work):
+def write(pages, guide, method, program, work):
     links = Links(pages)
     for page in pages:
         path = f"{work}/{page.name}.md"
         os.makedirs(os.path.dirname(path), exist_ok=True)
-        lines = [more for line in links.rewritten(page) for more in contents(line, guide, method)]
+        lines = [more for line in links.rewritten(page) for more in contents(line, guide, method, program)]
         with open(path, "w", encoding="utf-8") as file:
             file.write("\n".join(lines))
         for picture in re.findall(r"!\[[^\]]*\]\(([^)\s]+)\)", "\n".join(page.lines)):
@@ -124,7 +128,7 @@ def mend_theme(out):
 
 def main():
     parser = argparse.ArgumentParser()
-    for name in ("program", "version", "work", "out"):
+    for name in ("program", "version", "make", "work", "out"):
         parser.add_argument(f"--{name}", required=True)
     a = parser.parse_args()
     shutil.rmtree(a.work, ignore_errors=True)
@@ -132,8 +136,8 @@ def main():
     os.makedirs(f"{a.work}/_static")
     for name in ("conf.py", "style.css"):
         shutil.copy(f"tools/docs/{name}", a.work if name == "conf.py" else f"{a.work}/_static")
-    guide, method, others = all_pages(a.program, a.work)
-    write(guide + method + others, guide, method, a.work)
+    guide, method, others = all_pages(a.program, a.make, a.work)
+    write(guide + method + others, guide, method, a.program, a.work)
     sphinx = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-d", f"{a.work}/.doctrees", a.work, a.out]
     subprocess.run(sphinx, check=True, env={**os.environ, "HIFDM_VERSION": a.version})
     shutil.rmtree(f"{a.out}/.doctrees", ignore_errors=True)

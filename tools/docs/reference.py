@@ -90,6 +90,30 @@ def commands(program):
     return Page("reference/commands", "src/manual/index.md", lines)
 
 
+def glossary(program):
+    """Terms, statuses, warnings and figures, as `hifdm explain` has them: a list by kind, then word by word. Lines."""
+    kinds, words = {}, set()
+    for line in ask(program, "explain"):
+        kind = re.match(r"(\S[^:]*):", line)
+        words |= {word.strip() for word in (line[kind.end() :] if kind else line).split(",")} - {""}
+    for word in sorted(words):
+        for line in ask(program, "explain", word):
+            head = re.match(r"(\S.*) \(([^()]*)\)$", line)
+            if head:
+                kind, _, unit = head[2].partition(", ")
+                said = kinds.setdefault(kind, {}).setdefault((head[1], unit), [])
+            else:
+                said.append(line.strip())
+    lines = []
+    for kind in sorted(kinds, key=lambda k: (k != "term", k.startswith("figure"), k)):
+        title = {"term": "terms", "stop_reason": "why something stopped", "bound_reason": "why there is no proof"}
+        title = title.get(kind, kind)
+        lines += [f"## {plain(title[:1].upper() + title[1:])}", ""]
+        for (word, unit), said in sorted(kinds[kind].items()):
+            lines += [f"`{word}`" + (f" – {plain(unit)}" if unit else ""), f": {plain(' '.join(said))}", ""]
+    return lines
+
+
 def headers():
     """A page for each public header, and one that lists them by what their first comment says."""
     lines = ["# Headers", "", "The library's interface, header by header: shapes, units and errors stand in the",

@@ -1,0 +1,88 @@
+"""The page of validation: every figure that a run of the suites below has held to a source (tests/figures.h)."""
+import os
+import re
+import subprocess
+
+from reference import plain as escaped
+from split import Page
+
+SUITES = "verify cli/reflectors cli/tolerance"
+
+
+def measured(make, file):
+    """Runs the suites, which append a line per figure to the file; what failed stops here."""
+    if os.path.exists(file):
+        os.remove(file)
+    done = subprocess.run([*make.split(), "-s", "test", f"SUITE={SUITES}"], text=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, env={**os.environ, "HIFDM_FIGURES": os.path.abspath(file)})
+    if done.returncode:
+        raise SystemExit(done.stdout)
+    rows = {}  # of several cases of one figure, the worst stays
+    for line in open(file, encoding="utf-8"):
+        r = line.rstrip("\n").split("\t")
+        key = tuple(r[:4])
+        if key not in rows or abs(float(r[4]) - float(r[5])) > abs(float(rows[key][4]) - float(rows[key][5])):
+            rows[key] = r
+    return sorted(rows.values(), key=lambda r: (r[0], natural(r)))
+
+
+def natural(row):
+    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", row[1] + row[3])]
+
+
+def said_on_top(path):
+    """The first comment, or docstring, of a test: its title, and its paragraphs in Markdown."""
+    text = open(path, encoding="utf-8").read()
+    if path.endswith(".py"):
+        top = re.match(r'(?:#[^\n]*\n)*"""(.*?)"""', text, re.S)[1]
+    else:
+        top = re.sub(r"(?m)^ \* ?", "", re.match(r"/\* (.*?)\*/", text, re.S)[1])
+    paragraphs = [p.strip("\n") for p in top.split("\n\n") if not re.match(r"\s+\w+\.py ", p)]  # how it is called
+    title = re.split(r"[:.](?:\s|$)", " ".join(paragraphs[0].split()))[0]
+    return title, [p if p.startswith("    ") else plain(" ".join(p.split())) for p in paragraphs]
+
+
+def plain(text):
+    """Text that means itself but for `names`."""
+    parts = re.split(r"(`[^`]*`)", text)
+    return "".join(part if part.startswith("`") else escaped(part) for part in parts)
+
+
+def shown(value):
+    return f"{float(value):.7g}"
+
+
+def table(rows):
+    """Figures side by side with those of the source; of many at once the largest difference alone."""
+    lines = []
+    for kind, figure, ours, reference, tolerance in rows:
+        difference = float(ours) - float(reference)
+        if kind == "worst":
+            lines.append(f"| {plain(figure)} | | | {difference:.1e} | {float(tolerance):.1e} |")
+            continue
+        limit = {"=": f"{float(tolerance):.2g}", "<=": "at most the source's", "not met": "**not met**"}[kind]
+        lines.append(f"| {plain(figure)} | {shown(ours)} | {shown(reference)} | {difference:+.1e} | {limit} |")
+    if all(kind == "worst" for kind, *_ in rows):
+        lines = [line.replace(" | | | ", " | ") for line in lines]
+        return ["| figures | largest difference | tolerance |", "|---|---|---|", *lines, ""]
+    return ["| figure | ours | source | difference | tolerance |", "|---|---|---|---|---|", *lines, ""]
+
+
+def page(make, work):
+    rows = measured(make, f"{work}/figures.tsv")
+    if not rows:
+        raise SystemExit("no figures were measured")
+    worst = sum(kind == "worst" for _, _, kind, *_ in rows)
+    missed = sum(kind == "not met" for _, _, kind, *_ in rows)
+    lines = ["# Figures held to a source", "",
+             f"{len(rows)} figures of the tests, measured when this page was made, with the program of this manual: "
+             f"{len(rows) - worst - missed} beside those of a source, {worst} times the largest difference of many, "
+             f"and {missed} that we do not meet. Any other that is outside of its tolerance stops `make docs`. "
+             "Tolerances are half a unit of the last digit that the source prints, or what the test says.", ""]
+    for path in sorted({r[0] for r in rows}):
+        title, paragraphs = said_on_top(path)
+        lines += [f"## {plain(title)}", ""]
+        for paragraph in paragraphs[paragraphs[0].rstrip(".:") == plain(title) :]:
+            lines += [paragraph, ""]
+        lines += [f"In `{path}`:", "", *table([(kind, *values) for file, _, kind, *values in rows if file == path])]
+    return Page("validation", "src/manual/index.md", lines)
