@@ -30,8 +30,16 @@ void hf_csv_fault(hf_csv *t, int line, const char *id, const char *what, const c
         hf_error(t->messages, HF_BAD_CASE, "%s:%d: %s%s", t->path, line, what, detail);
 }
 
+void hf_csv_fault_unknown(hf_csv *t, int line, const char *id, const char *what, const char *name, const hf_csv *of)
+{
+    if (!of->has_doubles) hf_csv_fault(t, line, id, what, *name ? name : "(empty)");
+}
+
 hf_status hf_csv_close_faults(hf_csv *t)
 {
+    if (t->n_comma > 1)
+        hf_error(t->messages, HF_BAD_CASE, "%s: and %d more numbers with decimal commas", t->path, t->n_comma - 1);
+    t->n_comma = 0;
     if (t->n_fault > HF_FAULT_MAX)
         hf_error(t->messages, HF_BAD_CASE, "%s: and %d more faults", t->path, t->n_fault - HF_FAULT_MAX);
     return t->n_fault ? HF_BAD_CASE : HF_OK;
@@ -152,24 +160,46 @@ static bool add_row(hf_csv *t, char **field, int line)
     return true;
 }
 
-/* Is it a header line, but with semicolons where commas should be? */
-static bool has_semicolons(const char *line)
+/* What stands between the columns of a header line where commas should be, or NULL. */
+static const char *other_separator(const char *line)
 {
-    return strchr(line, ';') && !strpbrk(line, ",\"");
+    if (strpbrk(line, ",\"")) return NULL;
+    return strchr(line, ';') ? "';', and numbers have points" : strchr(line, '\t') ? "tabs" : NULL;
+}
+
+/* Lines that all have the same wrong number of fields are one mistake, and told as one. */
+typedef struct {
+    int n_field, first_line, n_line;
+} uneven_lines;
+
+static void tell_uneven(hf_csv *t, const uneven_lines *u)
+{
+    char more[64] = "", what[192];
+    bool may_have_commas = u->n_field > t->n_column + 1; /* in numbers, of several columns */
+    if (u->n_line > 1) snprintf(more, sizeof more, ", here and on %d more lines", u->n_line - 1);
+    snprintf(what, sizeof what, "%d fields where the header has %d%s%s", u->n_field, t->n_column, more,
+             may_have_commas ? ": decimal commas? Numbers have points" : "");
+    if (u->n_line > 0) hf_csv_fault(t, u->first_line, NULL, what, "");
+}
+
+static void note_uneven(hf_csv *t, int n_field, int line, uneven_lines *u)
+{
+    if (u->n_line > 0 && u->n_field != n_field) {
+        tell_uneven(t, u);
+        u->n_line = 0;
+    }
+    if (u->n_line == 0) *u = (uneven_lines){n_field, line, 0};
+    u->n_line++;
 }
 
 /* Take one line that is not a comment. False without memory. */
-static bool take_line(hf_csv *t, char *line, int n_line, char **field, int column_max)
+static bool take_line(hf_csv *t, char *line, int n_line, char **field, int column_max, uneven_lines *uneven)
 {
-    char counts[128];
     if (!hf_text_is_utf8(line)) {
         hf_csv_fault(t, n_line, NULL, "not UTF-8 text; save the file as UTF-8", "");
         return true;
     }
     int n = split(line, field, column_max);
-    bool may_have_commas = n > t->n_column + 1; /* in numbers, of several columns */
-    snprintf(counts, sizeof counts, "%d fields where the header has %d%s", n, t->n_column,
-             may_have_commas ? ": decimal commas? Numbers have points" : "");
     if (n < 0)
         hf_csv_fault(t, n_line, NULL, "a quoted field does not end on this line", "");
     else if (n > column_max)
@@ -178,7 +208,7 @@ static bool take_line(hf_csv *t, char *line, int n_line, char **field, int colum
         memcpy(t->header, field, (size_t)(t->n_column = n) * sizeof *field);
         t->header_line = n_line;
     } else if (n != t->n_column)
-        hf_csv_fault(t, n_line, NULL, counts, "");
+        note_uneven(t, n, n_line, uneven);
     else
         return add_row(t, field, n_line);
     return true;
@@ -193,16 +223,19 @@ hf_status hf_csv_read(const char *path, int column_max, hf_csv *t, hf_messages *
     t->header = malloc(2 * (size_t)column_max * sizeof *t->header); /* and the fields of one line behind it */
     if (!t->header) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     char *rest = t->text, *line, **field = t->header + column_max;
+    uneven_lines uneven = {0};
     if (!strncmp(rest, "\xEF\xBB\xBF", 3)) rest += 3; /* byte order mark of spreadsheet programs */
     for (int n_line = 1; (line = next_line(&rest)) != NULL; n_line++) {
         if (line[strspn(line, " \t")] == '\0' || *line == '#') continue;
-        if (t->n_column == 0 && t->n_fault == 0 && has_semicolons(line)) {
-            hf_csv_fault(t, n_line, NULL, "columns are separated by commas, not by ';', and numbers have points", "");
+        const char *separator = t->n_column == 0 && t->n_fault == 0 ? other_separator(line) : NULL;
+        if (separator) {
+            hf_csv_fault(t, n_line, NULL, "columns are separated by commas, not by ", separator);
             return hf_csv_close_faults(t);
         }
-        if (!take_line(t, line, n_line, field, column_max))
+        if (!take_line(t, line, n_line, field, column_max, &uneven))
             return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     }
+    tell_uneven(t, &uneven);
     if (t->n_column == 0)
         hf_csv_fault(t, 1, NULL, "the file is empty: a header line is needed", "");
     else if (t->n_row == 0 && t->n_fault == 0)
@@ -247,9 +280,9 @@ hf_status hf_csv_find_columns(hf_csv *t, const char *const *names, int n_name, i
         while (k < n_name && strcmp(names[k], t->header[c]))
             k++;
         if (k == n_name) {
-            const char *near = hf_text_nearest(t->header[c], names, n_name);
-            hf_warning(t->messages, "%s:%d: column '%s' is not used%s%s%s", t->path, t->header_line, t->header[c],
-                       near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+            char hint[HF_TEXT_HINT_SIZE];
+            hf_text_hint(t->header[c], names, n_name, hint);
+            hf_warning(t->messages, "%s:%d: column '%s' is not used%s", t->path, t->header_line, t->header[c], hint);
         } else if (where[k] >= 0) {
             hf_csv_fault(t, t->header_line, NULL, "this column stands twice: ", names[k]);
         } else {
@@ -267,8 +300,14 @@ double hf_csv_number(hf_csv *t, int row, int column, const char *id, const char 
     const char *text = hf_csv_cell(t, row, column);
     char what[512]; /* ids may be long */
     snprintf(what, sizeof what, "%s must be a finite number, not ", name);
-    if (!hf_text_double(text, &value)) hf_csv_fault(t, t->line[row], id, what, *text ? text : "empty");
-    return value;
+    if (hf_text_double(text, &value)) return value;
+    if (!hf_text_has_decimal_comma(text)) {
+        hf_csv_fault(t, t->line[row], id, what, *text ? text : "empty");
+        return NAN;
+    }
+    snprintf(what, sizeof what, "%s has a decimal comma, and numbers have points: ", name);
+    if (t->n_comma++ == 0) hf_csv_fault(t, t->line[row], id, what, text);
+    return NAN;
 }
 
 int hf_csv_word(hf_csv *t, int row, int column, const char *id, const char *const *words, int n_word)
@@ -276,12 +315,14 @@ int hf_csv_word(hf_csv *t, int row, int column, const char *id, const char *cons
     const char *text = hf_csv_cell(t, row, column);
     for (int k = 0; k < n_word; k++)
         if (!strcmp(words[k], text)) return k;
-    char what[160];
+    char what[160], given[400], hint[HF_TEXT_HINT_SIZE];
     int n = snprintf(what, sizeof what, "%s must be one of", t->header[column]);
     for (int k = 0; k < n_word; k++)
         n += snprintf(what + n, sizeof what - (size_t)n, " %s", words[k]);
     snprintf(what + n, sizeof what - (size_t)n, ", not ");
-    hf_csv_fault(t, t->line[row], id, what, *text ? text : "empty");
+    hf_text_hint(text, words, n_word, hint);
+    snprintf(given, sizeof given, "%.200s%s", *text ? text : "empty", hint);
+    hf_csv_fault(t, t->line[row], id, what, given);
     return 0;
 }
 
@@ -314,6 +355,7 @@ hf_csv_named *hf_csv_index(hf_csv *t, int column)
             char what[64];
             snprintf(what, sizeof what, "this id was used before, on line %d", t->line[index[r - 1].row]);
             hf_csv_fault(t, t->line[index[r].row], index[r].id, what, "");
+            t->has_doubles = true;
         }
     return index;
 }

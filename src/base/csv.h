@@ -21,6 +21,8 @@ typedef struct {
     char **cell;   /* [n_row][n_column] */
     int *line;     /* [n_row] line number in the file */
     int n_fault;
+    int n_comma;      /* numbers with decimal commas: the first is a fault of its own, the others are counted */
+    bool has_doubles; /* ids stand twice: what names others may be a consequence */
     char *text;
     int row_capacity;
 } hf_csv;
@@ -34,6 +36,11 @@ char *hf_csv_cell(const hf_csv *table, int row, int column);
 
 /* Report one fault at a line, about an id unless that is NULL. Beyond HF_FAULT_MAX of a file they are counted. */
 void hf_csv_fault(hf_csv *table, int line, const char *id, const char *what, const char *detail);
+
+/* That `id` names something of `of` which is not there; not when ids of that table stand twice, since one of those may
+ * be the misspelt one. */
+void hf_csv_fault_unknown(hf_csv *table, int line, const char *id, const char *what, const char *name,
+                          const hf_csv *of);
 
 /* HF_BAD_CASE when there were faults; a last message counts those that were not spelled out. */
 hf_status hf_csv_close_faults(hf_csv *table);
@@ -53,7 +60,7 @@ typedef struct {
 } hf_csv_named;
 
 /* Sorted ids of a table (caller frees), or NULL without memory; empty, duplicate and overlong (255 bytes) ids are
- * faults. */
+ * faults, and duplicate ones set has_doubles. */
 hf_csv_named *hf_csv_index(hf_csv *table, int column);
 
 /* The row of an id, or -1. */

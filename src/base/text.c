@@ -225,3 +225,23 @@ const char *hf_text_nearest(const char *word, const char *const *candidates, int
     }
     return nearest;
 }
+
+void hf_text_hint(const char *word, const char *const *candidates, int n_candidate, char hint[HF_TEXT_HINT_SIZE])
+{
+    const char *near = hf_text_nearest(word, candidates, n_candidate);
+    *hint = '\0';
+    if (near) snprintf(hint, HF_TEXT_HINT_SIZE, "; did you mean '%s'?", near);
+}
+
+bool hf_text_has_decimal_comma(const char *text)
+{
+    char point[64];
+    double value;
+    char *comma;
+    if (strlen(text) >= sizeof point) return false;
+    strcpy(point, text);
+    comma = strchr(point, ',');
+    if (!comma || strchr(comma + 1, ',')) return false;
+    *comma = '.';
+    return hf_text_double(point, &value);
+}

@@ -51,4 +51,11 @@ int hf_text_too_deep(const char *text);
 /* The candidate nearest to `word` by edit distance, or NULL when none is near enough to be a typing error. */
 const char *hf_text_nearest(const char *word, const char *const *candidates, int n_candidate);
 
+/* The same as words behind an error: "; did you mean 'tension'?", or "" when none is near. */
+#define HF_TEXT_HINT_SIZE 160
+void hf_text_hint(const char *word, const char *const *candidates, int n_candidate, char hint[HF_TEXT_HINT_SIZE]);
+
+/* Is it a number with a comma for its point, such as 1,5? */
+bool hf_text_has_decimal_comma(const char *text);
+
 #endif

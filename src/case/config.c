@@ -65,6 +65,8 @@ static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, co
     if (!*prefix && !strcmp(key, "base")) {
         l->is_study = true;
         snprintf(detail, sizeof detail, "; a file with a base is a study, for 'hifdm sweep'");
+    } else if (*key && !key[strspn(key, "0123456789")]) {
+        snprintf(detail, sizeof detail, "; is it behind a decimal comma? Numbers have points");
     } else if (near) {
         snprintf(detail, sizeof detail, "; did you mean '%s'?", near);
     } else { /* look for the same key in another section */
@@ -243,10 +245,23 @@ static yaml_mark_t problem_mark(const yaml_parser_t *parser, const char *text)
     return mark;
 }
 
+/* Is there a tab among the blanks before the place, or at the place itself? */
+static bool has_tab_at(const char *text, yaml_mark_t at)
+{
+    for (size_t line = 0; line < at.line && text; line++)
+        text = strchr(text, '\n') ? strchr(text, '\n') + 1 : NULL;
+    if (!text) return false;
+    size_t blanks = strspn(text, " \t"), n = strcspn(text, "\n");
+    return memchr(text, '\t', blanks) || (at.column < n && text[at.column] == '\t');
+}
+
 /* A parser that names no problem has no memory; it does not always say so in `error`. */
 static void complain_of_yaml(loader *l, const yaml_parser_t *parser, const char *text)
 {
-    if (parser->problem)
+    yaml_mark_t at = problem_mark(parser, text);
+    if (parser->problem && has_tab_at(text, at))
+        complain(l, at, "YAML", "a tab: lines are set in by blanks, and no tab stands before a value", "");
+    else if (parser->problem)
         complain(l, problem_mark(parser, text), "YAML", parser->problem, "");
     else
         l->no_memory = true;

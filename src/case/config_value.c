@@ -61,19 +61,24 @@ _Static_assert(sizeof(hf_method) == sizeof(int) && sizeof(hf_diagonals) == sizeo
 
 static void set_word(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
 {
-    char what[256] = "must be one of";
+    char what[256] = "must be one of", given[512], hint[HF_TEXT_HINT_SIZE];
+    int n = 0;
     if (node->type == YAML_SCALAR_NODE)
         for (int k = 0; f->words[k]; k++)
             if (!strcmp(f->words[k], scalar_text(node))) {
                 memcpy(to, &k, sizeof k);
                 return;
             }
-    for (int k = 0; f->words[k]; k++) {
+    for (; f->words[n]; n++) {
         strcat(what, " ");
-        strcat(what, f->words[k]);
+        strcat(what, f->words[n]);
     }
     strcat(what, ", not ");
-    refuse(s, node, f, what, node->type == YAML_SCALAR_NODE ? scalar_text(node) : "a list or section");
+    if (node->type == YAML_SCALAR_NODE) {
+        hf_text_hint(scalar_text(node), f->words, n, hint);
+        snprintf(given, sizeof given, "%.300s%s", scalar_text(node), hint);
+    }
+    refuse(s, node, f, what, node->type == YAML_SCALAR_NODE ? given : "a list or section");
 }
 
 static void set_int(setter *s, const yaml_node_t *node, const hf_field *f, int *to)
@@ -105,7 +110,9 @@ static void set_pair(setter *s, const yaml_node_t *node, const hf_field *f, int 
 static void set_double(setter *s, const yaml_node_t *node, const hf_field *f, double *to)
 {
     double value;
-    if (!is_plain(node) || !hf_text_double(scalar_text(node), &value))
+    if (is_plain(node) && hf_text_has_decimal_comma(scalar_text(node)))
+        refuse(s, node, f, "has a decimal comma, and numbers have points: ", scalar_text(node));
+    else if (!is_plain(node) || !hf_text_double(scalar_text(node), &value))
         refuse(s, node, f, "must be a number", node->type == YAML_SCALAR_NODE ? ", not a text" : "");
     else if (value < f->min || value > f->max)
         refuse_range(s, node, f);

@@ -94,7 +94,7 @@ static void read_members(hf_csv *t, const int *where, const hf_csv *nodes, const
         for (int k = 0; k < 2; k++) {
             const char *end = hf_csv_cell(t, r, where[MEMBER_I + k]);
             int row = hf_csv_row_of(node_index, nodes->n_row, end);
-            if (row < 0) hf_csv_fault(t, t->line[r], id, "there is no truss node with the id ", *end ? end : "(empty)");
+            if (row < 0) hf_csv_fault_unknown(t, t->line[r], id, "there is no truss node with the id ", end, nodes);
             s->end[2 * r + k] = row < 0 ? 0 : row;
         }
         read_numbers(t, where, r, id, s);

@@ -26,7 +26,7 @@ START_TEST(all_faults_of_a_file_are_told_in_one_run)
         ":6:18: scene.parabolic_cylinder.modules: must be a whole number, not 5.5\n",
         ":7:23: scene.parabolic_cylinder.cells_per_module: must be a list of two whole numbers, like [5, 5]\n",
         ":8:5: boundry: unknown key; did you mean 'boundary'?\n",
-        ":10:9: form.stop: must be one of residual rms_change, not Residual\n",
+        ":10:9: form.stop: must be one of residual rms_change, not Residual; did you mean 'residual'?\n",
         ":12:3: pretension_N: this key stands here already, on line 11\n",
         ":13:1: optimise: unknown key; did you mean 'optimize'?\n",
         ":14:1: pretension_N: unknown key; did you mean 'form.pretension_N'?\n",
@@ -92,7 +92,7 @@ START_TEST(faults_of_rows_are_told)
                                                        "    - {weight: 0}\n");
     HIFDM(2, "run", path, "-o", temp("c.h5"));
     ERRS("error: %s:5:29: optimize.variables.0.vary: must be one of tension force_density length unstressed_length "
-         "support_z support_normal support_xyz, not tensions\n",
+         "support_z support_normal support_xyz, not tensions; did you mean 'tension'?\n",
          path);
     ERRS("error: %s:6:33: range_N: unknown key; did you mean 'range'?\n", path);
     ERRS("error: %s:8:16: optimize.goals.0.weight: must be above 0, not 0\n", path);
@@ -158,7 +158,7 @@ static const struct {
     {"just words\n", ":1:1: case: must be key: value lines\n"},
     {"- a\n- b\n", ":1:1: case: must be key: value lines\n"},
     {"title: \"no end\nscene: {}\n", ":3:1: YAML: found unexpected end of stream\n"},
-    {"title: x\n\tscene: {}\n", ":2:1: YAML: found a tab character that violates indentation\n"},
+    {"title: x\n\tscene: {}\n", ":2:1: YAML: a tab: lines are set in by blanks, and no tab stands before a value\n"},
     {"title: {a: 1\n", ":2:1: YAML: did not find expected ',' or '}'\n"},
     {SMALL_SCENE "---\n" SMALL_SCENE, ":3:1: YAML: a second document in this file; one case per file\n"},
     {SMALL_SCENE "title: *nowhere\n", ":3:8: YAML: found undefined alias\n"},

@@ -33,9 +33,9 @@ static const struct {
      "error: @nodes.csv:6: 'e': y_m must be a finite number, not inf\n"
      "error: @nodes.csv:6: 'e': z_m must be a finite number, not 1e999\n"},
     {NODES "e,1,\"2,5\",0x1p3,Inner\n", CABLES,
-     "error: @nodes.csv:6: 'e': y_m must be a finite number, not 2,5\n"
+     "error: @nodes.csv:6: 'e': y_m has a decimal comma, and numbers have points: 2,5\n"
      "error: @nodes.csv:6: 'e': z_m must be a finite number, not 0x1p3\n"
-     "error: @nodes.csv:6: 'e': role must be one of support inner edge, not Inner\n"},
+     "error: @nodes.csv:6: 'e': role must be one of support inner edge, not Inner; did you mean 'inner'?\n"},
     {NODES "e,1,2,0,inner,7\n", CABLES, "error: @nodes.csv:6: 6 fields where the header has 5\n"},
     {NODES "\"e,1,2,0,inner\n", CABLES, "error: @nodes.csv:6: a quoted field does not end on this line\n"},
     {NODES "c2,1,0.5,0.1,inner\n", CABLES "cc,c,c2,inner,tension,1\ndd,d,d,inner,tension,1\n",
@@ -64,6 +64,20 @@ static const struct {
      "error: @nodes.csv:1: columns are separated by commas, not by ';', and numbers have points\n"},
     {"id,x_m,y_m,z_m,role\na,0,5,0,5,0,5,support\n", CABLES,
      "error: @nodes.csv:2: 8 fields where the header has 5: decimal commas? Numbers have points\n"},
+    {"id\tx_m\ty_m\tz_m\trole\na\t0\t0\t0\tsupport\n", CABLES,
+     "error: @nodes.csv:1: columns are separated by commas, not by tabs\n"},
+    /* one mistake is told once */
+    {"id,x_m,y_m,z_m,role\na,0,5,0,5,0,5,support\nb,0,6,0,5,0,5,support\nc,0,7,0,5,0,5,inner\nd,1,inner\n", CABLES,
+     "error: @nodes.csv:2: 8 fields where the header has 5, here and on 2 more lines: decimal commas? Numbers have "
+     "points\nerror: @nodes.csv:5: 3 fields where the header has 5\n"},
+    {NODES "e,\"1,5\",\"2,5\",\"0,1\",inner\n", CABLES,
+     "error: @nodes.csv:6: 'e': x_m has a decimal comma, and numbers have points: 1,5\n"
+     "error: @nodes.csv: and 2 more numbers with decimal commas\n"},
+    /* the cables that name the node `e` are a consequence */
+    {NODES "d,5,5,5,inner\n", CABLES "ce,c,e,inner,tension,10\nde,d,e,inner,tensoin,10\n",
+     "error: @nodes.csv:6: 'd': this id was used before, on line 5\n"
+     "error: @cables.csv:6: 'de': law must be one of tension length force_density elastic, not tensoin; did you mean "
+     "'tension'?\n"},
     {"a,0,0,0,support\nb,1,0,0,support\n", CABLES,
      "error: @nodes.csv:1: the first line has to name the columns: id,x_m,y_m,z_m,role\n"},
     /* texts in a result file are UTF-8, and so is JSON; this is Latin-1 */

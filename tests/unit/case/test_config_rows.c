@@ -210,7 +210,7 @@ static const struct {
      "error: c.yaml:4:12: optimize.limits.0.bounds: is missing and has no default\n"},
     {VARIABLE "{set: a, vary: tensions, range: 1}\n", NULL,
      "error: c.yaml:5:22: optimize.variables.0.vary: must be one of tension force_density length unstressed_length "
-     "support_z support_normal support_xyz, not tensions\n"},
+     "support_z support_normal support_xyz, not tensions; did you mean 'tension'?\n"},
     {GOAL "{goal: rms}]\n", NULL,
      "error: c.yaml:4:18: optimize.goals.0.goal: must be one of psi surface facets tension length evenness pull "
      "displacement mass ratio, not rms\n"},

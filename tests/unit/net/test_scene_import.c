@@ -164,7 +164,7 @@ static const struct {
     {"id,x_m,y_m,z_m,role,Fy_N\na,0,0,0,support,\nb,1,0,0,inner,nan\nc,4,0,0,support,\n", NULL,
      "error: nodes.csv:3: 'b': Fy_N must be a finite number, not nan\n"},
     {NODES "a,0,0,0,support\nb,1,0,0,Inner\nc,4,0,0,support\n", NULL,
-     "error: nodes.csv:3: 'b': role must be one of support inner edge, not Inner\n"},
+     "error: nodes.csv:3: 'b': role must be one of support inner edge, not Inner; did you mean 'inner'?\n"},
     {NODES "a,0,0,0,support\nb,1,0,0,\nc,4,0,0,support\n", NULL,
      "error: nodes.csv:3: 'b': role must be one of support inner edge, not empty\n"},
     {NULL, CABLES "ab,a,b,middle,tension,1\nbc,b,c,boundary,length,\n",

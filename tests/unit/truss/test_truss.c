@@ -409,9 +409,10 @@ static const struct {
      "error: members.csv:4: member 'ac' needs E, G, A, Iy, Iz, J and shear areas above zero\n"},
     {NODES, MEMBERS "ac,a,c,1,-1,,,,,,,pinned,\n", "error: members.csv:4: member 'ac' needs E and A above zero\n"},
     {NODES, MEMBERS "ac,a,c,1,1,,,,,,,hinged,\n",
-     "error: members.csv:4: 'ac': joint must be one of rigid pinned, not hinged\n"},
+     "error: members.csv:4: 'ac': joint must be one of rigid pinned, not hinged; did you mean 'pinned'?\n"},
     {NODES, MEMBERS "ac,a,c,1,1,,,,,,,pinned,bug\n",
-     "error: members.csv:4: 'ac': unit must be one of bud mbug abug other longeron vertical diagonal, not bug\n"},
+     "error: members.csv:4: 'ac': unit must be one of bud mbug abug other longeron vertical diagonal, not bug; did you "
+     "mean 'bud'?\n"},
     {NODES, MEMBERS "aa,a,a,1,1,,,,,,,pinned,\n", "error: members.csv:4: member 'aa' joins a node to itself\n"},
     {NODES "d,0,0,0,,\n", MEMBERS "ad,a,d,1,1,,,,,,,pinned,\n",
      "error: members.csv:4: member 'ad' has zero length: its two nodes are at the same position\n"},
