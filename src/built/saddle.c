@@ -42,12 +42,13 @@ hf_status hf_saddle_create(const hf_built_linear *l, const hf_saddle_prior *prio
         s->size_m = fmax(s->size_m, prior->sigma_m[e]);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_saddle(&arena, s)));
     s->block = arena.block;
-    return HF_OK;
+    return s->n_border ? HF_OK : hf_saddle_dual_create(l, &s->dual);
 }
 
 void hf_saddle_free(hf_saddle *s)
 {
     hf_arena arena = {.block = s->block};
+    hf_saddle_dual_free(&s->dual);
     hf_arena_free(&arena);
     *s = (hf_saddle){0};
 }
@@ -186,11 +187,14 @@ static void choose_units(hf_saddle *s)
 hf_status hf_saddle_factor(hf_saddle *s, double damping)
 {
     const hf_model *m = &s->linear->built->model;
+    s->part = 1 / (1 + damping);
+    choose_units(s);
+    s->is_dual = !s->n_border && hf_saddle_dual_factor(&s->dual, s->prior.sigma_m, s->prior.weight_per_m2, s->part,
+                                                       s->size_m, s->force_m_per_N);
+    if (s->is_dual) return HF_OK;
     memset(s->general, 0, (size_t)s->n_band * (size_t)room_of_band(s) * sizeof *s->general);
     memset(s->column, 0, (size_t)s->n_border * (size_t)s->n_band * sizeof *s->column);
     memset(s->corner, 0, (size_t)s->n_border * (size_t)s->n_border * sizeof *s->corner);
-    s->part = 1 / (1 + damping);
-    choose_units(s);
     for (int e = 0; e < m->n_cable; e++)
         add_cable(s, e);
     for (int row = 0; row < m->n_node; row++)
@@ -287,7 +291,10 @@ void hf_saddle_solve(const hf_saddle *s, hf_saddle_answer *a, double *band)
     size_t n_band = (size_t)s->n_band;
     double *border = s->work, *force = s->work + s->n_border;
     ask(s, a, band, border);
-    hf_band_back_solve_general(s->n_band, s->half_bandwidth, 1, s->general, s->pivot, band, s->n_band);
+    if (s->is_dual)
+        hf_saddle_dual_solve(&s->dual, band);
+    else
+        hf_band_back_solve_general(s->n_band, s->half_bandwidth, 1, s->general, s->pivot, band, s->n_band);
     for (size_t j = 0; j < (size_t)s->n_border; j++)
         for (size_t i = 0; i < n_band; i++)
             border[j] -= s->column[j * n_band + i] * band[i];

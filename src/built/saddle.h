@@ -9,7 +9,7 @@
 #ifndef HIFDM_SADDLE_H
 #define HIFDM_SADDLE_H
 
-#include "built/linear.h"
+#include "built/saddle_dual.h"
 
 /* What is known beforehand, and how well places are known. Borrowed. */
 typedef struct {
@@ -24,6 +24,8 @@ typedef struct {
     int n_band, half_bandwidth;    /* 6 n_free rows: of each node three multipliers, then three moves */
     int n_attached, n_off;         /* 3 n_attachment; 3 times the supports on rigid ground that may be off */
     int n_border;                  /* moves of attachments, their multipliers, moves of these supports */
+    hf_saddle_dual dual;           /* without a border: a quicker way, which is tried first */
+    bool is_dual;                  /* the last factor is that */
     double part;                   /* of the weights, 1/(1 + damping) */
     double size_m, force_m_per_N;  /* units of moves and multipliers: entries of the matrix are about 1 */
     double *general;               /* the band, then its factor */

@@ -1,0 +1,290 @@
+/* Contents: making - the matrix - products - refinement - factor */
+#include "built/saddle_dual.h"
+
+#include "base/arena.h"
+#include "linalg/band.h"
+#include "solve/loose.h"
+
+#include <math.h>
+#include <string.h>
+
+#define WEAK 2.5e-5        /* weight that stands in for none: of moves 200 times the largest error of a length */
+#define REFINEMENTS_MAX 20 /* steps; a probe that takes more is for the other way */
+#define REFINED 1e-12      /* of the right-hand side: residual of a probe */
+#define ENOUGH 1e-14       /* of the right-hand side: no more steps */
+
+/* ---- making ---- */
+
+static void lay_out_dual(hf_arena *arena, hf_saddle_dual *d, size_t n_end)
+{
+    const hf_model *m = &d->linear->built->model;
+    size_t n = (size_t)d->n, n_cable = (size_t)m->n_cable;
+    d->start = hf_arena_take(arena, (size_t)m->n_free + 1, sizeof(int));
+    d->cable = hf_arena_take(arena, n_end, sizeof(int));
+    d->block = hf_arena_take(arena, 9 * n_cable, sizeof(double));
+    d->push = hf_arena_take(arena, n_cable, sizeof(double));
+    d->spring = hf_arena_take(arena, (size_t)m->n_free, sizeof(double));
+    d->weight = hf_arena_take(arena, n, sizeof(double));
+    d->band = hf_arena_take(arena, n * ((size_t)d->half_bandwidth + 1), sizeof(double));
+    d->right = hf_arena_take(arena, n, sizeof(double));
+    d->solution = hf_arena_take(arena, 2 * n, sizeof(double));
+    d->error = hf_arena_take(arena, 2 * n, sizeof(double));
+    d->probe = hf_arena_take(arena, 2 * n, sizeof(double));
+}
+
+/* The cables of each free row, one row after the other. */
+static void list_cables(hf_saddle_dual *d)
+{
+    const hf_model *m = &d->linear->built->model;
+    for (int i = 0; i < 2 * m->n_cable; i++)
+        if (m->end_row[i] < m->n_free) d->start[m->end_row[i] + 1]++;
+    for (int row = 0; row < m->n_free; row++)
+        d->start[row + 1] += d->start[row];
+    for (int i = 2 * m->n_cable - 1; i >= 0; i--) /* start[row + 1] is where the next one of `row` goes */
+        if (m->end_row[i] < m->n_free) d->cable[--d->start[m->end_row[i] + 1]] = i / 2;
+    int n_end = 0;
+    for (int i = 0; i < 2 * m->n_cable; i++)
+        n_end += m->end_row[i] < m->n_free;
+    for (int row = 0; row < m->n_free; row++)
+        d->start[row] = d->start[row + 1];
+    d->start[m->n_free] = n_end;
+}
+
+hf_status hf_saddle_dual_create(const hf_built_linear *l, hf_saddle_dual *d)
+{
+    const hf_model *m = &l->built->model;
+    hf_arena arena = {0};
+    size_t n_end = 0;
+    *d = (hf_saddle_dual){.linear = l, .n = 3 * m->n_free, .half_bandwidth = 6 * m->half_bandwidth + 2};
+    if (d->half_bandwidth > d->n - 1) d->half_bandwidth = d->n - 1;
+    for (int i = 0; i < 2 * m->n_cable; i++)
+        n_end += m->end_row[i] < m->n_free;
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_dual(&arena, d, n_end)));
+    d->memory = arena.block;
+    memset(d->start, 0, ((size_t)m->n_free + 1) * sizeof *d->start);
+    list_cables(d);
+    return HF_OK;
+}
+
+void hf_saddle_dual_free(hf_saddle_dual *d)
+{
+    hf_arena arena = {.block = d->memory};
+    hf_arena_free(&arena);
+    *d = (hf_saddle_dual){0};
+}
+
+/* ---- the matrix ---- */
+
+static double weight_of(const hf_saddle_dual *d, int i)
+{
+    return fmax(d->weight[i], WEAK);
+}
+
+/* Add sign times block to rows of node i and columns of node j, where that is the lower triangle. */
+static void add_block(hf_saddle_dual *d, int i, int j, double sign, double block[3][3])
+{
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            int row = 3 * i + r, column = 3 * j + c;
+            if (row >= column)
+                d->band[(size_t)column * ((size_t)d->half_bandwidth + 1) + (size_t)(row - column)] +=
+                    sign * block[r][c];
+        }
+}
+
+/* P: what errors of cable e push. */
+static void add_push(hf_saddle_dual *d, int e)
+{
+    const hf_model *m = &d->linear->built->model;
+    const int *end = m->end_row + 2 * (ptrdiff_t)e;
+    const double *u = d->linear->unit + 3 * (ptrdiff_t)e;
+    double block[3][3];
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            block[r][c] = d->push[e] * u[r] * u[c];
+    for (int p = 0; p < 2; p++)
+        for (int q = 0; q < 2; q++)
+            if (end[p] < m->n_free && end[q] < m->n_free) add_block(d, end[p], end[q], p == q ? 1 : -1, block);
+}
+
+static int other_end(const hf_model *m, int e, int row)
+{
+    return m->end_row[2 * e] == row ? m->end_row[2 * e + 1] : m->end_row[2 * e];
+}
+
+/* The part k of the block row of H at `row`: 0 is its diagonal, then its cables. Returns the column; -1: none. */
+static int part_of_row(const hf_saddle_dual *d, int row, int k, double block[3][3])
+{
+    const hf_model *m = &d->linear->built->model;
+    memset(block, 0, 9 * sizeof(double));
+    if (k == 0) {
+        for (int i = d->start[row]; i < d->start[row + 1]; i++)
+            for (int c = 0; c < 9; c++)
+                block[c / 3][c % 3] += d->block[9 * (ptrdiff_t)d->cable[i] + c];
+        for (int c = 0; c < 3; c++)
+            block[c][c] += d->spring[row];
+        return row;
+    }
+    int e = d->cable[d->start[row] + k - 1], other = other_end(m, e, row);
+    for (int c = 0; c < 9; c++)
+        block[c / 3][c % 3] = -d->block[9 * (ptrdiff_t)e + c];
+    return other < m->n_free ? other : -1;
+}
+
+/* H (W + R)^-1 H: what the moves of one node add. */
+static void add_node(hf_saddle_dual *d, int row)
+{
+    double left[3][3], right[3][3], product[3][3];
+    int n_part = d->start[row + 1] - d->start[row] + 1;
+    for (int k = 0; k < n_part; k++) {
+        int i = part_of_row(d, row, k, left);
+        for (int l = 0; l < n_part && i >= 0; l++) {
+            int j = part_of_row(d, row, l, right);
+            if (j < 0 || j > i) continue;
+            for (int r = 0; r < 3; r++)
+                for (int c = 0; c < 3; c++) {
+                    product[r][c] = 0;
+                    for (int t = 0; t < 3; t++)
+                        product[r][c] += left[t][r] * right[t][c] / weight_of(d, 3 * row + t);
+                }
+            add_block(d, i, j, 1, product);
+        }
+    }
+}
+
+/* ---- products ---- */
+
+/* Take M z off `left`, M the saddle's matrix. */
+static void take_off_product(const hf_saddle_dual *d, const double *z, double *left)
+{
+    const hf_model *m = &d->linear->built->model;
+    for (int e = 0; e < m->n_cable; e++) {
+        const int *end = m->end_row + 2 * (ptrdiff_t)e;
+        const double *u = d->linear->unit + 3 * (ptrdiff_t)e, *h = d->block + 9 * (ptrdiff_t)e;
+        double difference[6] = {0}, along = 0, force[6];
+        for (int p = 0; p < 2; p++)
+            for (int c = 0; c < 6 && end[p] < m->n_free; c++)
+                difference[c] += (p ? -1 : 1) * z[6 * (ptrdiff_t)end[p] + c];
+        for (int c = 0; c < 3; c++)
+            along += u[c] * difference[c];
+        for (int r = 0; r < 3; r++) {
+            force[r] = -d->push[e] * along * u[r];
+            force[3 + r] = 0;
+            for (int c = 0; c < 3; c++) {
+                force[r] += h[3 * r + c] * difference[3 + c];
+                force[3 + r] += h[3 * r + c] * difference[c];
+            }
+        }
+        for (int p = 0; p < 2; p++)
+            for (int c = 0; c < 6 && end[p] < m->n_free; c++)
+                left[6 * (ptrdiff_t)end[p] + c] -= (p ? -1 : 1) * force[c];
+    }
+    for (int i = 0; i < d->n; i++) {
+        int p = 6 * (i / 3) + i % 3, x = p + 3;
+        left[p] -= d->spring[i / 3] * z[x];
+        left[x] -= d->spring[i / 3] * z[p] + d->weight[i] * z[x];
+    }
+}
+
+/* H times a vector by node, sign times into sum. */
+static void add_stiffness(const hf_saddle_dual *d, double sign, const double *v, double *sum)
+{
+    const hf_model *m = &d->linear->built->model;
+    for (int e = 0; e < m->n_cable; e++) {
+        const int *end = m->end_row + 2 * (ptrdiff_t)e;
+        const double *h = d->block + 9 * (ptrdiff_t)e;
+        double difference[3] = {0};
+        for (int p = 0; p < 2; p++)
+            for (int c = 0; c < 3 && end[p] < m->n_free; c++)
+                difference[c] += (p ? -1 : 1) * v[3 * (ptrdiff_t)end[p] + c];
+        for (int r = 0; r < 3; r++) {
+            double force = sign * (h[3 * r] * difference[0] + h[3 * r + 1] * difference[1] + h[3 * r + 2] * difference[2]);
+            if (end[0] < m->n_free) sum[3 * (ptrdiff_t)end[0] + r] += force;
+            if (end[1] < m->n_free) sum[3 * (ptrdiff_t)end[1] + r] -= force;
+        }
+    }
+    for (int i = 0; i < d->n; i++)
+        sum[i] += sign * d->spring[i / 3] * v[i];
+}
+
+/* ---- refinement ---- */
+
+/* Add to z what the weighted matrix makes of a right-hand side, which is overwritten. */
+static void correct(const hf_saddle_dual *d, double *right, double *z)
+{
+    double *p = d->right, *moved = right; /* moves by node need less room than the right-hand side */
+    for (int i = 0; i < d->n; i++)
+        p[i] = -right[6 * (i / 3) + i % 3];
+    for (int i = 0; i < d->n; i++)
+        moved[i] = right[6 * (i / 3) + 3 + i % 3] / weight_of(d, i);
+    add_stiffness(d, 1, moved, p);
+    hf_band_back_solve(d->n, d->half_bandwidth, 1, d->band, p, d->n);
+    double *pull = right + d->n;
+    memset(pull, 0, (size_t)d->n * sizeof *pull);
+    add_stiffness(d, 1, p, pull);
+    for (int i = 0; i < d->n; i++) {
+        z[6 * (i / 3) + i % 3] += p[i];
+        z[6 * (i / 3) + 3 + i % 3] += moved[i] - pull[i] / weight_of(d, i);
+    }
+}
+
+/* The largest residual of the last step over the largest entry of the right-hand side. */
+static double refine(const hf_saddle_dual *d, double *band)
+{
+    size_t n = 2 * (size_t)d->n;
+    double size = 0, last = (double)INFINITY, largest = 0;
+    memset(d->solution, 0, n * sizeof(double));
+    for (size_t i = 0; i < n; i++)
+        size = fmax(size, fabs(band[i]));
+    for (int step = 0; step <= REFINEMENTS_MAX && size > 0; step++) {
+        memcpy(d->error, band, n * sizeof(double));
+        take_off_product(d, d->solution, d->error);
+        largest = 0;
+        for (size_t i = 0; i < n; i++)
+            largest = fmax(largest, fabs(d->error[i]));
+        if (!(largest > ENOUGH * size) || (largest <= REFINED * size && largest > last / 2)) break;
+        last = largest;
+        if (step < REFINEMENTS_MAX) correct(d, d->error, d->solution);
+    }
+    memcpy(band, d->solution, n * sizeof(double));
+    return size > 0 ? largest / size : 0;
+}
+
+void hf_saddle_dual_solve(const hf_saddle_dual *d, double *band)
+{
+    refine(d, band);
+}
+
+/* ---- factor ---- */
+
+static void take_cable(hf_saddle_dual *d, int e, double sigma_m, double size_m, double force_m_per_N)
+{
+    const hf_built_linear *l = d->linear;
+    double push = l->cut_N_per_m[e] * sigma_m * force_m_per_N;
+    d->push[e] = push * push;
+    for (int c = 0; c < 9; c++)
+        d->block[9 * (ptrdiff_t)e + c] = size_m * force_m_per_N * l->block_N_per_m[9 * (ptrdiff_t)e + c];
+}
+
+bool hf_saddle_dual_factor(hf_saddle_dual *d, const double *sigma_m, const double *weight_per_m2, double part,
+                           double size_m, double force_m_per_N)
+{
+    const hf_model *m = &d->linear->built->model;
+    for (int e = 0; e < m->n_cable; e++)
+        take_cable(d, e, sigma_m[e], size_m, force_m_per_N);
+    for (int row = 0; row < m->n_free; row++)
+        d->spring[row] = d->linear->work.loose[row] ? hf_loose_spring_N_per_m(m) * size_m * force_m_per_N : 0;
+    for (int i = 0; i < d->n; i++)
+        d->weight[i] = part * weight_per_m2[i] * size_m * size_m;
+    memset(d->band, 0, (size_t)d->n * ((size_t)d->half_bandwidth + 1) * sizeof *d->band);
+    for (int e = 0; e < m->n_cable; e++)
+        add_push(d, e);
+    for (int row = 0; row < m->n_free; row++)
+        add_node(d, row);
+    if (hf_band_factor(d->n, d->half_bandwidth, d->band) != 0) return false;
+    for (int i = 0; i < 2 * d->n; i++)
+        d->solution[i] = i % 7 < 3 ? 1 : -1; /* what the probe is made of */
+    memset(d->probe, 0, 2 * (size_t)d->n * sizeof *d->probe);
+    take_off_product(d, d->solution, d->probe);
+    return refine(d, d->probe) < REFINED;
+}
