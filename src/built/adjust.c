@@ -1,5 +1,5 @@
-/* Contents: memory - the figure of a shape - the linear model - the choice - the best there is - one move after the
- * other - what is left open - together */
+/* Contents: memory - the figure of a shape - the linear model - the choice - the best there is - what is left open -
+ * one move after the other - together */
 #include "built/adjust.h"
 
 #include "base/arena.h"
@@ -14,13 +14,14 @@
 #define PANEL 16       /* cables whose effects are found at a time */
 #define GRAM_ROWS 32   /* of the products that a thread finds at a time; a multiple of 4 */
 #define HALVINGS_MAX 6 /* of a step to the best there is */
-#define LITTLE 1e-6    /* of the figure: what a step to the best there is has to gain */
+#define LITTLE 1e-5    /* of the figure: what a step to the best there is has to gain */
 
 /* ---- memory ---- */
 
 /* What a thread needs to find effects of cables. */
 typedef struct {
     hf_goals_point point;
+    hf_chord_lanes lanes;
     double *strain_N, *answer_m, *scratch;    /* [PANEL][...] of the linear answer */
     double *rate_m, *rate_N, *displacement_m; /* of hf_goals_push */
 } adjust_room;
@@ -29,7 +30,9 @@ typedef struct {
     hf_estimate *estimate;
     const hf_adjust_task *task;
     int n_room;
-    adjust_room *room;      /* [n_room] */
+    adjust_room *room; /* [n_room] */
+    hf_evaluator evaluator;
+    hf_chord matrix;        /* of the linear answer, packed */
     size_t n, n_row, n_dof; /* cables that can be turned; residuals of the figure; places */
     hf_workspace work;      /* the last shape */
     hf_form_result form;
@@ -95,8 +98,12 @@ static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, a
     a->block = arena.block;
     a->left_open = a->column + a->n * a->n_row;
     a->at_zero = a->left_open + HF_ESTIMATE_SAMPLES * a->n_row;
-    for (int i = 0; i < a->n_room; i++)
+    a->evaluator = (hf_evaluator){.model = &p->built->model, .form = &p->built->form};
+    HF_TRY(hf_chord_create_matrix(&a->evaluator, &a->matrix, &a->room[0].lanes));
+    for (int i = 0; i < a->n_room; i++) {
+        if (i > 0) HF_TRY(hf_chord_lanes_create(&a->matrix, &a->room[i].lanes));
         HF_TRY(hf_goals_point_create(task->goals, &a->room[i].point));
+    }
     const hf_adjust_settings *s = task->settings;
     a->problem = (hf_moves_problem){.n = task->n_cable,
                                     .gram = a->gram,
@@ -114,8 +121,11 @@ static void free_adjustment(adjustment *a)
 {
     hf_arena arena = {.block = a->block};
     hf_workspace_free(&a->work);
-    for (int i = 0; i < a->n_room && a->block; i++)
+    for (int i = 0; i < a->n_room && a->block; i++) {
         hf_goals_point_free(&a->room[i].point);
+        hf_chord_lanes_free(&a->room[i].lanes);
+    }
+    hf_chord_free(&a->matrix);
     hf_arena_free(&arena);
 }
 
@@ -183,7 +193,8 @@ static void find_panel(void *context, int room, int i_panel)
         size_t e = (size_t)a->task->cable[first + k];
         r->strain_N[k * n_cable + e] = l->cut_N_per_m[e];
     }
-    hf_built_linear_apply(l, (int)n, r->strain_N, r->answer_m, r->scratch);
+    const hf_built_lanes by = {&a->matrix, &r->lanes};
+    hf_built_linear_apply_by(l, &by, (int)n, r->strain_N, r->answer_m, r->scratch);
     for (size_t k = 0; k < n; k++)
         push_move(a, r, r->answer_m + k * a->n_dof, a->column + (first + k) * a->n_row);
 }
@@ -226,6 +237,7 @@ static hf_status linearise(adjustment *a)
     for (int i = 0; i < a->n_room; i++)
         HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[i].point, a->residual));
     HF_TRY(hf_built_linear_take(&a->estimate->linear, &a->work));
+    hf_chord_pack(&a->estimate->linear.work, &a->matrix);
     hf_parallel_each(a->n_room, (int)((n + PANEL - 1) / PANEL), find_panel, a);
     memcpy(a->at_zero, a->residual, n_row * sizeof *a->at_zero);
     for (size_t i = 0; i < n; i++)
@@ -302,6 +314,15 @@ static hf_status go_on(adjustment *a, double *best_m, bool *gains)
     return HF_OK;
 }
 
+/* Does the linear model have a figure below this one after a->move_m? */
+static bool promises(const adjustment *a, double figure_m)
+{
+    double square = a->problem.square;
+    for (size_t i = 0; i < a->n; i++)
+        square += a->move_m[i] * (2 * a->slope[i] + dot(a->n, a->gram + i * a->n, a->move_m));
+    return !(square >= figure_m * figure_m * (1 - LITTLE) * (1 - LITTLE));
+}
+
 /* From the shape that was chosen. */
 static hf_status find_best(adjustment *a, hf_adjustment *found)
 {
@@ -313,8 +334,29 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
         if (status == HF_SINGULAR) return HF_OK;
         HF_TRY(status);
         HF_TRY(hf_moves_best(&a->problem, a->move_m));
+        if (!promises(a, found->best_m)) return HF_OK;
         HF_TRY(go_on(a, &found->best_m, &gains));
     }
+    return HF_OK;
+}
+
+/* ---- what is left open ---- */
+
+/* RMS and standard deviation of the figure, by the samples, at the shape in `work`. */
+static hf_status spread_figure(adjustment *a, double *doubt_m, double *spread_m)
+{
+    double mean = 0, square = 0;
+    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[0].point, a->residual));
+    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
+        push_move(a, &a->room[0], a->doubt_m + s * a->n_dof, a->at_zero); /* which nobody reads any more */
+        for (size_t r = 0; r < a->n_row; r++)
+            a->at_zero[r] += a->residual[r];
+        double sum = dot(a->n_row, a->at_zero, a->at_zero);
+        mean += sqrt(sum) / HF_ESTIMATE_SAMPLES;
+        square += sum / HF_ESTIMATE_SAMPLES;
+    }
+    *doubt_m = sqrt(square);
+    *spread_m = sqrt(fmax(square - mean * mean, 0));
     return HF_OK;
 }
 
@@ -345,12 +387,13 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
         found->n_move += a->steps[i] != 0;
     HF_TRY(HF_ARENA_MAKE(&arena, found->move = hf_arena_take(&arena, (size_t)found->n_move, sizeof *found->move)));
     found->block = arena.block;
-    HF_TRY(solve_steps(a, a->steps, &figure_m));
+    if (!a->is_current) HF_TRY(solve_steps(a, a->steps, &figure_m));
     hf_status status = a->is_current ? HF_OK : linearise(a);
     if (status != HF_OK && status != HF_SINGULAR) return status; /* then in the order of the last linear model */
     a->is_current = status == HF_OK;
     memset(a->trial, 0, a->n * sizeof *a->trial);
     HF_TRY(solve_steps(a, a->trial, &figure_m));
+    HF_TRY(spread_figure(a, &found->doubt_m[0], &found->spread_m[0]));
     for (int k = 0; k < found->n_move; k++) {
         size_t i = next_move(a);
         int e = a->task->cable[i];
@@ -363,37 +406,7 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
         move->after_N = status == HF_OK ? a->work.tension_N[e] : (double)NAN;
         move->n_slack = count_slack(a);
     }
-    return HF_OK;
-}
-
-/* ---- what is left open ---- */
-
-/* RMS and standard deviation of the figure, by the samples, at the shape in `work`. */
-static hf_status spread_figure(adjustment *a, double *doubt_m, double *spread_m)
-{
-    double mean = 0, square = 0;
-    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[0].point, a->residual));
-    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
-        push_move(a, &a->room[0], a->doubt_m + s * a->n_dof, a->at_zero);
-        for (size_t r = 0; r < a->n_row; r++)
-            a->at_zero[r] += a->residual[r];
-        double sum = dot(a->n_row, a->at_zero, a->at_zero);
-        mean += sqrt(sum) / HF_ESTIMATE_SAMPLES;
-        square += sum / HF_ESTIMATE_SAMPLES;
-    }
-    *doubt_m = sqrt(square);
-    *spread_m = sqrt(fmax(square - mean * mean, 0));
-    return HF_OK;
-}
-
-static hf_status spread_both(adjustment *a, hf_adjustment *found)
-{
-    double figure_m;
-    memset(a->trial, 0, a->n * sizeof *a->trial);
-    HF_TRY(solve_steps(a, a->trial, &figure_m));
-    HF_TRY(spread_figure(a, &found->doubt_m[0], &found->spread_m[0]));
-    HF_TRY(solve_steps(a, a->steps, &figure_m));
-    return spread_figure(a, &found->doubt_m[1], &found->spread_m[1]);
+    return spread_figure(a, &found->doubt_m[1], &found->spread_m[1]); /* of the last one, with all moves */
 }
 
 /* ---- together ---- */
@@ -410,8 +423,7 @@ static hf_status find_all(adjustment *a, hf_adjustment *found)
     HF_TRY(hf_estimate_doubt(a->estimate, a->doubt_m));
     HF_TRY(choose(a, found));
     HF_TRY(list_moves(a, found));
-    HF_TRY(find_best(a, found));
-    return spread_both(a, found);
+    return find_best(a, found);
 }
 
 hf_status hf_adjust_find(hf_estimate *p, const hf_adjust_task *task, hf_adjustment *found)

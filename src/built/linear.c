@@ -101,14 +101,22 @@ void hf_built_linear_free(hf_built_linear *l)
 
 /* ---- net and truss under forces ---- */
 
+static void back_solve(const hf_built_linear *l, const hf_built_lanes *by, int n, double *v, size_t ld)
+{
+    const hf_model *m = &l->built->model;
+    if (by)
+        hf_chord_back_solve(by->matrix, by->lanes, n, v, ld);
+    else
+        hf_band_back_solve(3 * m->n_free, 3 * m->half_bandwidth + 2, n, l->work.newton_band, v, (int)ld);
+}
+
 /* Turn forces into moves, in place, v [n][n_dof]: on free nodes and attachments. Those of supports on rigid ground stay
  * as they are. */
-static void answer_forces(const hf_built_linear *l, int n, double *v, double *scratch)
+static void answer_forces(const hf_built_linear *l, const hf_built_lanes *by, int n, double *v, double *scratch)
 {
     const hf_model *m = &l->built->model;
     size_t n_free = 3 * (size_t)m->n_free, n_attachment = 3 * (size_t)m->n_attachment;
-    int n_row = (int)n_free, half = 3 * m->half_bandwidth + 2;
-    hf_band_back_solve(n_row, half, n, l->work.newton_band, v, (int)l->n_dof);
+    back_solve(l, by, n, v, l->n_dof);
     if (!n_attachment) return;
     double *answer = scratch, *pull = scratch + (size_t)n * n_free;
     memset(answer, 0, (size_t)n * n_free * sizeof *answer);
@@ -119,7 +127,7 @@ static void answer_forces(const hf_built_linear *l, int n, double *v, double *sc
         hf_schur_displace(m, &l->schur, sum, attachments);
         hf_schur_push(m, &l->work, hf_newton_matrix_block, attachments, answer + k * n_free);
     }
-    hf_band_back_solve(n_row, half, n, l->work.newton_band, answer, n_row);
+    back_solve(l, by, n, answer, n_free);
     for (size_t k = 0; k < (size_t)n; k++)
         for (size_t i = 0; i < n_free; i++)
             v[k * l->n_dof + i] += answer[k * n_free + i];
@@ -170,13 +178,19 @@ static void push_by_errors(const hf_built_linear *l, const double *strain_N, dou
 
 void hf_built_linear_apply(const hf_built_linear *l, int n, const double *strain_N, double *move, double *scratch)
 {
+    hf_built_linear_apply_by(l, NULL, n, strain_N, move, scratch);
+}
+
+void hf_built_linear_apply_by(const hf_built_linear *l, const hf_built_lanes *by, int n, const double *strain_N,
+                              double *move, double *scratch)
+{
     const hf_model *m = &l->built->model;
     size_t n_free = 3 * (size_t)m->n_free, n_moving = n_free + 3 * (size_t)m->n_attachment;
     double *force = scratch, *more = scratch + (size_t)n * l->n_dof;
     for (size_t k = 0; k < (size_t)n; k++)
         push_by_errors(l, strain_N ? strain_N + k * (size_t)m->n_cable : NULL, move + k * l->n_dof,
                        force + k * l->n_dof);
-    answer_forces(l, n, force, more);
+    answer_forces(l, by, n, force, more);
     for (size_t k = 0; k < (size_t)n; k++)
         for (size_t i = 0; i < n_moving; i++) /* free nodes were 0, attachments rest where they are off */
             move[k * l->n_dof + i] += force[k * l->n_dof + i];
@@ -216,7 +230,7 @@ void hf_built_linear_transpose(const hf_built_linear *l, int n, double *slope, d
     size_t n_moving = 3 * (size_t)(m->n_free + m->n_attachment);
     double *z = scratch, *more = scratch + (size_t)n * l->n_dof;
     memcpy(z, slope, (size_t)n * l->n_dof * sizeof *z);
-    answer_forces(l, n, z, more);
+    answer_forces(l, NULL, n, z, more);
     for (size_t k = 0; k < (size_t)n; k++) {
         memset(z + k * l->n_dof + n_moving, 0, (l->n_dof - n_moving) * sizeof *z);
         pull_errors(l, z + k * l->n_dof, slope + k * l->n_dof, strain + k * (size_t)m->n_cable);

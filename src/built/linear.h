@@ -6,6 +6,7 @@
 #ifndef HIFDM_LINEAR_H
 #define HIFDM_LINEAR_H
 
+#include "search/chord.h"
 #include "solve/schur.h"
 #include <hifdm/built.h>
 
@@ -37,6 +38,15 @@ void hf_built_linear_free(hf_built_linear *linear);
  * entries without meaning; out, how far all nodes move. scratch: [n][n_scratch]. */
 void hf_built_linear_apply(const hf_built_linear *linear, int n, const double *strain_N, double *move_m,
                            double *scratch);
+
+/* The same, eight at a time where n is large: of the factor, packed by hf_chord_pack(&linear->work, ...), with lanes of
+ * the calling thread. by: NULL: hf_built_linear_apply. */
+typedef struct {
+    const hf_chord *matrix;
+    const hf_chord_lanes *lanes;
+} hf_built_lanes;
+void hf_built_linear_apply_by(const hf_built_linear *linear, const hf_built_lanes *by, int n, const double *strain_N,
+                              double *move_m, double *scratch);
 
 /* What such a move and strain [n_cable] (may be NULL) change in the tensions, change_N [n_cable]. */
 void hf_built_linear_tension(const hf_built_linear *linear, const double *strain_N, const double *move_m,

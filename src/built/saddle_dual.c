@@ -198,7 +198,8 @@ static void add_stiffness(const hf_saddle_dual *d, double sign, const double *v,
             for (int c = 0; c < 3 && end[p] < m->n_free; c++)
                 difference[c] += (p ? -1 : 1) * v[3 * (ptrdiff_t)end[p] + c];
         for (int r = 0; r < 3; r++) {
-            double force = sign * (h[3 * r] * difference[0] + h[3 * r + 1] * difference[1] + h[3 * r + 2] * difference[2]);
+            double force =
+                sign * (h[3 * r] * difference[0] + h[3 * r + 1] * difference[1] + h[3 * r + 2] * difference[2]);
             if (end[0] < m->n_free) sum[3 * (ptrdiff_t)end[0] + r] += force;
             if (end[1] < m->n_free) sum[3 * (ptrdiff_t)end[1] + r] -= force;
         }

@@ -65,6 +65,7 @@ START_TEST(the_saddle_is_least_squares)
     ck_assert_int_eq(hf_built_linear_make(&t.built, &l), HF_OK);
     ck_assert_int_eq(hf_saddle_create(&l, &t.prior, &s), HF_OK);
     ck_assert_int_eq(hf_saddle_factor(&s, 0), HF_OK);
+    ck_assert(s.is_dual == (s.n_border == 0)); /* both ways are tested: this net needs no LU without a border */
     for (int i = 0; i < 3 * m->n_node; i++)
         gap[i] = t.place_m[i] - t.built.place_m[i % 3 * m->n_node + i / 3];
     memset(cut, 0, sizeof cut);
