@@ -424,7 +424,7 @@ $(PROGRAM): $(APP_OBJ) $(STATIC)
 	$(call say,LD,$@)
 	$(Q)$(LINK) -o $@ $^ $(PKG_LIBS)
 
-$(PEERS) $(FRONTS): $(BUILD)/optimisers/%: tools/optimisers/%.cpp $(STATIC) Makefile
+$(PEERS) $(FRONTS): $(BUILD)/optimisers/%: tools/optimisers/%.cpp tools/optimisers/unit_cube.hpp $(STATIC) Makefile
 	$(call say,LD,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CXX) -O2 -std=c++17 -Wall -Iinclude $$(pkg-config --cflags eigen3) $(LDFLAGS) -o $@ $< $(STATIC) -fopenmp \

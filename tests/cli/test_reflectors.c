@@ -106,16 +106,8 @@ START_TEST(a_double_layer_is_designed)
     static const char *const limits[] = {"optimize.limits=[]",
                                          "optimize.limits=[{limit: tension, set: front, bounds: [9.9, 10.05]}]"};
     const char *out = temp("r.h5");
-    const char *path = file_with(
-        "c.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, rear_distance_m: 1.8}}\n"
-                  "form: {pretension_N: 10, prestress: exact, residual_tolerance: 1e-12}\n"
-                  "coupling: {tof_m: 1e-12}\n"
-                  "truss: {ring: {cells_per_bay: 2, bracing: single, held: bay, longeron: {diameter_m: 0.03, wall_m: "
-                  "0.001}}}\n"
-                  "optimize:\n  method: lm\n  polish_iterations: 40\n"
-                  "  variables: [{set: all, vary: force_density, bounds: [0.5, null]}]\n"
-                  "  goals: [{goal: psi}, {goal: evenness, set: front, weight: 1e-5}]\n");
-    HIFDM(0, "run", path, "-o", out, "--json", "--set", limits[_i]);
+    const char *path = keep(source_path("configs/paraboloid-even.yaml"));
+    HIFDM(0, "run", path, "-o", out, "--json", "--set", limits[_i], "--set", "optimize.polish_iterations=40");
     EXPECT(out_as("r.json"), out, "--", "a['form']['psi_m'] > 2e-4", "a['polish']['psi_m'] < 1e-9",
            "a['polish']['sets']['front']['tension_ratio'] < 1 + 1e-6", "a['polish']['stop_reason'] == 'converged'",
            formatted("%d or 9.9 <= a['polish']['sets']['front']['least_N'] <= "

@@ -44,6 +44,8 @@ class Net:
         self.inner = np.array([r == "inner" for r in self.role])
         self.length = np.linalg.norm(np.diff(self.theory[self.end], axis=1)[:, 0], axis=1)
         self.boundary = np.flatnonzero(self.is_boundary)
+        self.moving = np.repeat(self.free, 3)  # components that give way
+        self.K = np.zeros((3 * n * n, 3 * n * n))  # N/m, of what holds them
 
     def write(self, folder, settings):
         with open(os.path.join(folder, "nodes.csv"), "w", encoding="utf-8") as file:
@@ -61,12 +63,17 @@ class Net:
                        f"form: {{pretension_N: {self.pretension_N}, residual_tolerance: 1.0e-11}}\n"
                        f"optimize: {{method: lm, {settings}}}\n")
 
+    def energy(self, density, x):
+        l = np.linalg.norm(x[self.end[:, 1]] - x[self.end[:, 0]], axis=1)
+        off, of_nets = (x - self.theory).ravel(), self.pretension_N * l[~self.is_boundary].sum()
+        return of_nets + density @ l[self.boundary] ** 2 / 2 - np.sum(self.load * x) + off @ self.K @ off / 2
+
     def solve(self, density, start):
         """Newton's method for the equilibrium where boundary cable k has the force density density[k]: shape, boundary
         tensions, and the derivatives of both with respect to the force densities."""
         x, n, b = start.copy(), len(self.theory), self.boundary
-        dof = np.flatnonzero(np.repeat(self.free, 3))
-        for _ in range(60):
+        dof = np.flatnonzero(self.moving)
+        for _ in range(200):
             vector = x[self.end[:, 1]] - x[self.end[:, 0]]
             l = np.linalg.norm(vector, axis=1)
             u, T, along = vector / l[:, None], np.full(len(l), self.pretension_N), np.zeros(len(l))
@@ -79,13 +86,17 @@ class Net:
                 K = T[e] / l[e] * (np.eye(3) - uu) + along[e] * uu
                 for row, column, sign in ((i, i, 1), (j, j, 1), (i, j, -1), (j, i, -1)):
                     H[3 * row:3 * row + 3, 3 * column:3 * column + 3] += sign * K
-            right = force.ravel()[dof]
-            H = H[np.ix_(dof, dof)]
+            right = (force.ravel() - self.K @ (x - self.theory).ravel())[dof]
+            H = (H + self.K)[np.ix_(dof, dof)]
             if np.abs(right).max() < 1e-10:
                 break
             step = np.zeros(3 * n)
             step[dof] = np.linalg.solve(H, right)
-            x = x + step.reshape(n, 3) * min(1, 0.5 / np.abs(step).max())
+            step, most = step.reshape(n, 3), np.abs(step).max()
+            part = min(1, 0.5 / most)
+            while part * most > 1e-6 and self.energy(density, x + part * step) > self.energy(density, x):
+                part /= 2  # the energy is convex
+            x = x + part * step
         else:
             raise ArithmeticError("no equilibrium")
         push = np.zeros((3 * n, len(b)))

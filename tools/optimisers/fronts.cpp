@@ -9,7 +9,7 @@
  *
  * CSV: optimiser, variables (gene or chain), seed, evaluations, and the objectives of an individual of the population
  * that has taken so many evaluations, at most; 0: of the first one. */
-#include <hifdm/hifdm.h>
+#include "unit_cube.hpp"
 
 #include <pagmo/algorithm.hpp>
 #include <pagmo/algorithms/nsga2.hpp>
@@ -29,8 +29,6 @@ namespace {
 
 constexpr int population = 100; /* pagmo's needs a multiple of four */
 
-hf_problem problem;
-std::vector<double> lower, upper;
 std::vector<long> budgets;
 
 size_t objectives()
@@ -38,38 +36,9 @@ size_t objectives()
     return (size_t)problem.settings.optimize.n_objective;
 }
 
-int genes()
-{
-    return problem.model.n_gene;
-}
-
-int variables(bool by_chain)
-{
-    return by_chain ? problem.model.n_gene_group : genes();
-}
-
 double cost(const hf_form_result &r, size_t j)
 {
     return r.status == HF_OK ? r.goal[j] : hf_status_has_shape(r.status) ? 1e6 * (1 + r.violation) : 1e12;
-}
-
-/* A variable v in [0, 1] per gene, or per chain, is the place between the bounds. */
-void make_design(const double *v, bool by_chain, double *design_N)
-{
-    for (int k = 0; k < genes(); k++) {
-        double place = std::fmin(1, std::fmax(0, v[by_chain ? problem.model.gene_group[k] : k]));
-        design_N[k] = lower[k] + place * (upper[k] - lower[k]);
-    }
-}
-
-std::vector<double> make_variables(const double *design_N, bool by_chain)
-{
-    std::vector<double> v(variables(by_chain));
-    for (int k = genes() - 1; k >= 0; k--) {
-        double width = upper[k] - lower[k], place = width > 0 ? (design_N[k] - lower[k]) / width : 0.5;
-        v[by_chain ? problem.model.gene_group[k] : k] = place;
-    }
-    return v;
 }
 
 void report(const char *name, bool by_chain, unsigned seed, long evaluations, const std::vector<std::vector<double>> &f)
@@ -193,11 +162,7 @@ int main(int argc, char **argv)
         return status != HF_OK ? hf_status_exit_code(status) : 2;
     }
     hf_batch_share(&problem.batch, problem.base_N);
-    {
-        ours bounds(1);
-        lower.assign(bounds.o.population.lower_N, bounds.o.population.lower_N + genes());
-        upper.assign(bounds.o.population.upper_N, bounds.o.population.upper_N + genes());
-    }
+    take_bounds(ours(1).o.population);
     for (unsigned seed = 1; seed <= (unsigned)std::atoi(argv[2]); seed++) {
         evolve(seed);
         evolve_pagmo(false, seed);

@@ -11,7 +11,7 @@
  * each on a stack of its own: one that asks waits until the others have asked as well.
  *
  * CSV: optimiser, variables (gene or chain), seed, and for each number of evaluations the least psi (m) until then. */
-#include <hifdm/hifdm.h>
+#include "unit_cube.hpp"
 
 #include <nlopt.hpp>
 #include <pagmo/algorithm.hpp>
@@ -39,42 +39,11 @@ namespace {
 constexpr int population = 50, at_a_time = 8;
 constexpr size_t stack_bytes = 8 << 20;
 
-hf_problem problem;
-std::vector<double> lower, upper;
 std::vector<long> counts; /* of evaluations, at which the best so far is noted: twenty to a decade and a few more */
-
-int genes()
-{
-    return problem.model.n_gene;
-}
-
-int variables(bool by_chain)
-{
-    return by_chain ? problem.model.n_gene_group : genes();
-}
 
 double cost_m(const hf_form_result &r)
 {
     return r.status == HF_OK ? r.psi_m : r.status == HF_RATIO_CAP ? 1e3 + r.violation : 1e6;
-}
-
-/* A variable v in [0, 1] per gene, or per chain, is the place between the bounds. */
-void make_design(const double *v, bool by_chain, double *design_N)
-{
-    for (int k = 0; k < genes(); k++) {
-        double place = std::fmin(1, std::fmax(0, v[by_chain ? problem.model.gene_group[k] : k]));
-        design_N[k] = lower[k] + place * (upper[k] - lower[k]);
-    }
-}
-
-std::vector<double> make_variables(const double *design_N, bool by_chain)
-{
-    std::vector<double> v(variables(by_chain));
-    for (int k = genes() - 1; k >= 0; k--) {
-        double width = upper[k] - lower[k], place = width > 0 ? (design_N[k] - lower[k]) / width : 0.5;
-        v[by_chain ? problem.model.gene_group[k] : k] = place;
-    }
-    return v;
 }
 
 /* ---- runs ---- */
@@ -353,11 +322,7 @@ int main(int argc, char **argv)
         return hf_status_exit_code(status);
     }
     hf_batch_share(&problem.batch, problem.base_N);
-    {
-        ours bounds(1);
-        lower.assign(bounds.o.population.lower_N, bounds.o.population.lower_N + genes());
-        upper.assign(bounds.o.population.upper_N, bounds.o.population.upper_N + genes());
-    }
+    take_bounds(ours(1).o.population);
     if (serves) {
         serve();
     } else {

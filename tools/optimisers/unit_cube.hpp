@@ -1,0 +1,52 @@
+/* unit_cube - the designs of a case as points of the unit cube, which is what other people's optimisers work on: a
+ * variable in [0, 1] per gene, or per chain of boundary cables, is the place between the bounds. */
+#ifndef HIFDM_TOOLS_UNIT_CUBE_HPP
+#define HIFDM_TOOLS_UNIT_CUBE_HPP
+
+#include <hifdm/hifdm.h>
+
+#include <cmath>
+#include <vector>
+
+namespace {
+
+hf_problem problem;
+std::vector<double> lower, upper; /* of each gene */
+
+int genes()
+{
+    return problem.model.n_gene;
+}
+
+int variables(bool by_chain)
+{
+    return by_chain ? problem.model.n_gene_group : genes();
+}
+
+void take_bounds(const hf_population &p)
+{
+    lower.assign(p.lower_N, p.lower_N + genes());
+    upper.assign(p.upper_N, p.upper_N + genes());
+}
+
+void make_design(const double *v, bool by_chain, double *design_N)
+{
+    for (int k = 0; k < genes(); k++) {
+        double place = std::fmin(1, std::fmax(0, v[by_chain ? problem.model.gene_group[k] : k]));
+        design_N[k] = lower[k] + place * (upper[k] - lower[k]);
+    }
+}
+
+std::vector<double> make_variables(const double *design_N, bool by_chain)
+{
+    std::vector<double> v(variables(by_chain));
+    for (int k = genes() - 1; k >= 0; k--) {
+        double width = upper[k] - lower[k], place = width > 0 ? (design_N[k] - lower[k]) / width : 0.5;
+        v[by_chain ? problem.model.gene_group[k] : k] = place;
+    }
+    return v;
+}
+
+} // namespace
+
+#endif
