@@ -79,11 +79,28 @@ static void sum_up(const strips *s, hf_covariance *c)
         c->deviation_m[k] = sqrt(s->square[3 * k] + s->square[3 * k + 1] + s->square[3 * k + 2]);
 }
 
+/* One solve for all cables: psi has the slope d/(n psi) by the places of the inner nodes, d their distances. */
+static void find_psi_by_cut(const hf_built_linear *l, double *room, hf_covariance *c)
+{
+    const hf_model *m = &l->built->model;
+    double *slope = room, *strain = slope + l->n_dof, *scratch = strain + m->n_cable;
+    memset(slope, 0, l->n_dof * sizeof *slope);
+    for (int k = 0; k < m->n_inner_node; k++)
+        for (int i = 0; i < 3; i++) {
+            int row = m->inner_row[k], at = i * m->n_node + row;
+            slope[3 * row + i] = (l->built->place_m[at] - m->position_m[at]) / (m->n_inner_node * c->nominal_psi_m);
+        }
+    hf_built_linear_transpose(l, 1, slope, strain, scratch);
+    for (int e = 0; e < m->n_cable; e++)
+        c->psi_by_cut[e] = c->nominal_psi_m > 0 ? strain[e] * l->cut_N_per_m[e] : (double)NAN;
+}
+
 static void lay_out_covariance(hf_arena *arena, const hf_built_errors *e, hf_covariance *c)
 {
     const hf_model *m = &e->linear->built->model;
     c->share_m2 = hf_arena_take(arena, (size_t)hf_built_errors_count(e), sizeof(double));
     c->cable_m2 = hf_arena_take(arena, (size_t)m->n_cable, sizeof(double));
+    c->psi_by_cut = hf_arena_take(arena, (size_t)m->n_cable, sizeof(double));
     c->deviation_m = hf_arena_take(arena, (size_t)m->n_inner_node, sizeof(double));
 }
 
@@ -100,6 +117,7 @@ hf_status hf_covariance_find(const hf_built_errors *e, int n_thread, hf_covarian
     hf_parallel_each(n_thread, STRIPS, work_on_strip, &s);
     sum_up(&s, c);
     c->nominal_psi_m = hf_covariance_psi_m(e->linear, NULL);
+    find_psi_by_cut(e->linear, s.scratch, c);
     hf_arena_free(&scratch);
     return hf_built_must_stop(e->linear->built) ? HF_INTERRUPTED : HF_OK;
 }

@@ -52,6 +52,7 @@ typedef struct page {
     hf_facets facets;                     /* none without measures of the surface */
     hf_facet_errors facet_error[N_SHAPE]; /* of each shape, in facet_block */
     void *facet_block;
+    hf_series psi_by_cut;                                      /* [n_cable] of the net as built, or none */
     hf_series cable_share;                                     /* [n_cable] of the error of the net as built, or none */
     hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or none, [m][2] */
     char provenance[PROVENANCE_SIZE];
@@ -111,6 +112,7 @@ static void write_net(const page *p, FILE *f)
     write_integers("end", s->end, 2 * s->n_cable, f);
     write_codes("group", s->group, s->n_cable, f);
     write_sets(s, f);
+    if (p->psi_by_cut.n == s->n_cable) hf_json_values("psi_by_cut", p->psi_by_cut.value, s->n_cable, 1, 5, f);
     if (p->cable_share.n == s->n_cable) hf_json_values("cable_share", p->cable_share.value, s->n_cable, 1, 5, f);
     if (p->facets.n_facet) write_integers("facets", p->facets.corner, 4 * p->facets.n_facet, f);
     fputc('}', f);
@@ -389,6 +391,7 @@ static hf_status read_page(page *p, hf_messages *messages)
     if (map_facets(p) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", p->path);
     for (int i = 0; i < N_SERIES; i++)
         HF_TRY(hf_store_read_series(p->path, series_table[i].path, 1, &p->series[i], messages));
+    HF_TRY(hf_store_read_series(p->path, "/tolerance/psi_by_cut", 1, &p->psi_by_cut, messages));
     HF_TRY(hf_store_read_series(p->path, "/tolerance/cable_share", 1, &p->cable_share, messages));
     HF_TRY(hf_store_read_series(p->path, "/truss/node/displacement", 6, &p->truss_displacement, messages));
     HF_TRY(hf_store_read_series(p->path, "/truss/member/end", 2, &p->truss_end, messages));
@@ -404,6 +407,7 @@ static void free_page(page *p)
         hf_series_free(&p->state_displacement[k]);
     for (int i = 0; i < N_SERIES; i++)
         hf_series_free(&p->series[i]);
+    hf_series_free(&p->psi_by_cut);
     hf_series_free(&p->cable_share);
     hf_facets_free(&p->facets);
     free(p->facet_block);

@@ -90,11 +90,18 @@ static hf_status write_first_order(hf_hdf5 *io, const hf_montecarlo *t)
                                     {(hsize_t)m->n_cable},
                                     "",
                                     "of each cable's own errors in what they add to the mean of psi^2, to first order"};
+    const hf_hdf5_array by_cut = {"psi_by_cut",
+                                  HF_KIND_REAL,
+                                  1,
+                                  {(hsize_t)m->n_cable},
+                                  "",
+                                  "d psi / d l0 of the net without errors: m of psi by m that a cable is let out"};
     const hf_hdf5_array of_node = {
         "node_deviation_m",   HF_KIND_REAL, 1,
         {(hsize_t)m->n_node}, "m",          "root mean square move of each inner node, to first order; NaN of others"};
     hid_t group = hf_hdf5_make_group(io, "/tolerance");
     hf_hdf5_write_array(io, group, &of_cable, share);
+    hf_hdf5_write_array(io, group, &by_cut, c->psi_by_cut);
     hf_hdf5_write_array(io, group, &of_node, deviation);
     hf_hdf5_close(io, group);
     hf_arena_free(&arena);

@@ -43,6 +43,9 @@ function cableColumns(before, after, choose) {
     turn ? cableColumn(turn[0], turn[1], 4, { unit: 1e3, isChange: true }) : null,
     cableColumn("length (m)", (e) => after.length_m[e], 6),
     after.l0_m ? cableColumn("cut to (m)", (e) => after.l0_m[e], 6) : null,
+    net.psi_by_cut
+      ? cableColumn("ψ by a turn (mm per mm)", (e) => net.psi_by_cut[e], 3, { isChange: true })
+      : null,
     net.cable_share ? cableColumn("share of the error (%)", (e) => net.cable_share[e], 3, { unit: 100 }) : null,
   ].filter((column) => column);
 }
@@ -62,6 +65,7 @@ function writeCables(view) {
         ? null
         : `Tensions of the found net, and of the ${after.name}, which is the result.`,
     after.l0_m ? "A turn above 0 lets the cable out." : null,
+    net.psi_by_cut ? "ψ by a turn: what letting the cable out by 1 mm adds to ψ, while no cable goes slack." : null,
     net.cable_share ? "The share is that of what all errors add to ψ², to first order: cut those cables well." : null,
     CABLES_SAID,
   ].filter((text) => text);

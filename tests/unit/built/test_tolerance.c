@@ -193,6 +193,35 @@ START_TEST(what_is_told_to_stop_leaves)
 }
 END_TEST
 
+/* What a turn of each cable does to psi, against differences of solved nets; on a truss, too. */
+START_TEST(psi_by_cut_is_that_of_solved_nets)
+{
+    static study s;
+    const double h = 2e-6;
+    open_study(&s, 3 + _i, _i % 2);
+    begin(&s, 2);
+    int n_cable = s.built.model.n_cable;
+    double *cut = malloc(sizeof *cut * (size_t)n_cable), largest = 0;
+    for (int e = 0; e < n_cable; e++)
+        largest = fmax(largest, fabs(s.m.covariance.psi_by_cut[e]));
+    for (int e = _i; e < n_cable; e += 1 + n_cable / 12) {
+        double psi_m[2];
+        for (int k = 0; k < 2; k++) {
+            hf_form_result result;
+            memcpy(cut, s.built.scene.target, sizeof *cut * (size_t)n_cable);
+            cut[e] += k ? h : -h;
+            const hf_built_net net = {.cut_m = cut};
+            ck_assert_int_eq(hf_built_solve(&s.built, &net, &s.work, &result), HF_OK);
+            psi_m[k] = result.psi_m;
+        }
+        double slope = (psi_m[1] - psi_m[0]) / (2 * h); /* its error: h^2, and psi to 1e-11 m over h */
+        ck_assert_double_eq_tol(s.m.covariance.psi_by_cut[e], slope, 1e-4 * largest + 1e-5);
+    }
+    free(cut);
+    close_study(&s);
+}
+END_TEST
+
 /* ---- samples ---- */
 
 /* The mean of psi^2 over errors and their opposites is that of first order and a term of fourth order, when the nominal
@@ -540,6 +569,7 @@ Suite *suite_unit_tolerance(void)
     tcase_add_test(tcase, three_cables_at_a_node);
     tcase_add_loop_test(tcase, numbers_have_their_distribution, 0, 2);
     tcase_add_test(tcase, what_is_told_to_stop_leaves);
+    tcase_add_loop_test(tcase, psi_by_cut_is_that_of_solved_nets, 0, 4);
     tcase_add_loop_test(tcase, small_errors_tend_to_first_order, 0, 4);
     tcase_add_loop_test(tcase, samples_and_control_variate_agree, 0, 4);
     tcase_add_loop_test(tcase, rows_have_the_same_bits, 0, 4);
