@@ -90,6 +90,23 @@ static const hf_word told[] = {
      NULL},
     {"force density", "term", "",
      "Tension over length, N/m. With force densities given, balance is linear in the positions.", NULL},
+    {"individual", "term", "", "A design of the genetic algorithm: a whole form-finding of its own.", NULL},
+    {"generation", "term", "", "The individuals that are bred together, and compared.", NULL},
+    {"inner", "term", "", "The group of cables inside; of nodes: those that psi counts.", NULL},
+    {"boundary", "term", "", "The group of cables whose tensions the optimisation sets, mostly those along the edges.",
+     NULL},
+    {"attachment", "term", "", "A support of the net that is a node of its truss: it gives way as the truss does.",
+     NULL},
+    {"pillow", "term", "",
+     "A facet between bent cables: its mesh is bent by its own tension (surface.mesh_tension_N_per_m).", NULL},
+    {"as built", "term", "",
+     "The net cut from elastic cable to unstressed lengths: with errors (tolerance), in another state (cases), "
+     "measured and adjusted (hifdm adjust).",
+     NULL},
+    {"certificate", "term", "",
+     "What says how good a shape is: residual, backward error, condition, and a proven bound of how far it is from "
+     "equilibrium.",
+     NULL},
     {"pretension", "term", "",
      "The tension that cables are to have without loads: form.pretension_N for cables of law tension without a value.",
      NULL},
@@ -331,6 +348,14 @@ static const hf_word told[] = {
      "All ends of all boundary cables are supports, so that their tensions change nothing: check the column group, or "
      "say what may vary (optimize.variables).",
      "no boundary cable has a free end"},
+    {"no_effect", "warning", "",
+     "No variable of the case moves what the goal asks for: it only adds a constant to the merit. Let something vary "
+     "there, or leave the goal out.",
+     "no variable of this case changes"},
+    {"variable_without_effect", "warning", "",
+     "The variable acts on slack cables alone, or on none: at the base design it changes nothing. Give its cables "
+     "tension, or leave the row out.",
+     "changes nothing at the base design"},
     {"finished_result", "warning", "",
      "Nothing was computed: the file has the finished result of just this case. --restart computes it again.",
      "is the finished result of this case"},
