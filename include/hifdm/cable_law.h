@@ -93,6 +93,11 @@ static inline double hf_law_default_target(hf_law law, double theoretical_m)
     return (double)NAN;
 }
 
+#define HF_LAW_FAULT_SIZE 160
+
+/* What is wrong with the value that a user gives a cable (NaN: none), written into text; NULL when it is right. */
+const char *hf_law_target_fault(hf_law law, double target, double theoretical_m, char text[HF_LAW_FAULT_SIZE]);
+
 /* Length, m, that a law with a multiplier demands at this tension; NaN for other laws. This form needs no special case
  * for stiff cables: in the limit of infinite EA the law elastic is the law length. */
 static inline double hf_law_wanted_length_m(hf_law_cable c, double tension_N)

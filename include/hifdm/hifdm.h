@@ -45,6 +45,7 @@
 #include <hifdm/result.h>
 #include <hifdm/run.h>
 #include <hifdm/scene.h>
+#include <hifdm/scene_arrays.h>
 #include <hifdm/settings.h>
 #include <hifdm/states.h>
 #include <hifdm/status.h>

@@ -9,6 +9,7 @@
 #include <hifdm/batch.h>
 #include <hifdm/config.h>
 #include <hifdm/facets.h>
+#include <hifdm/scene_arrays.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -35,6 +36,13 @@ typedef struct {
     hf_solver solver;            /* the solver that the batch uses */
 } hf_problem;
 
+/* A case whose net a program has in memory. `text` is that of a case file whose section scene has a part import (the
+ * files that it names are not read); it and the arrays are borrowed. */
+typedef struct {
+    const char *text;
+    const hf_scene_arrays *net;
+} hf_problem_source;
+
 /* Read the case `path` under n_set overrides "key=value" (NULL, 0: none), build the model with its truss and symmetry,
  * find the shape, and create the batch of n_thread threads (0: all cores); hf_batch_share prepares what they share from
  * base_N. A sweep section is ignored. model.n_gene may be 0: then there is nothing to design. Returns HF_OK;
@@ -43,6 +51,25 @@ typedef struct {
  * failure leaves an error in the messages. hf_problem_free in any case. */
 hf_status hf_problem_open(const char *path, const char *const *set, int n_set, int n_thread, hf_problem *problem,
                           hf_messages *messages);
+
+/* Is a design judged by its merit? Not with objectives. */
+bool hf_problem_has_merit(const hf_problem *problem);
+
+/* The figures of a design, in order; returns how many: without objectives all. */
+int hf_problem_list_figures(const hf_problem *problem, const hf_result_field *field[HF_RESULT_N_INDIVIDUAL]);
+
+/* The number of figures that have derivatives by the genes, and what each is called: the value of each goal and
+ * "merit", which objectives do not have, or without goals "psi_m"; returns text. */
+int hf_problem_n_slope(const hf_problem *problem);
+const char *hf_problem_slope_name(const hf_problem *problem, int i_slope, char text[HF_GOAL_NAME_SIZE]);
+
+/* Exact derivatives of these figures at n designs [n][n_gene] with these results [n] of hf_batch_run: slope
+ * [feasible designs][n_slope][n_gene], in the unit of the figure per unit of the gene, by each gene alone; without the
+ * weights of goals, and of a goal that is the largest of several sizes that of its smooth largest; NaN of a figure that
+ * is 0. HF_OK; HF_BAD_CASE for nets with struts and under rule seeded, with a message; HF_NO_MEMORY. */
+hf_status hf_problem_slopes(hf_problem *problem, int n, const double *design_N, const hf_form_result *result,
+                            double *slope, hf_messages *messages);
+hf_status hf_problem_has_slopes(const hf_problem *problem, hf_messages *messages); /* HF_OK or HF_BAD_CASE */
 
 void hf_problem_free(hf_problem *problem);
 

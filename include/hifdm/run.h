@@ -7,6 +7,7 @@
 #ifndef HIFDM_RUN_H
 #define HIFDM_RUN_H
 
+#include <hifdm/problem.h>
 #include <hifdm/store.h>
 #include <hifdm/summary.h>
 #include <signal.h>
@@ -19,6 +20,7 @@ extern "C" {
 #define HF_OUTPUT_SIZE 4096
 
 typedef enum { HF_RUN_FORM, HF_RUN_EVOLVE, HF_RUN_POLISH, HF_RUN_TOLERANCE } hf_run_phase;
+extern const char *const hf_run_phase_word[4]; /* "form", "optimize", "polish", "tolerance" */
 
 /* How far a run is. The members after phase describe the genetic algorithm; they are 0 before it. */
 typedef struct {
@@ -39,7 +41,8 @@ typedef void hf_run_observer(void *context, const hf_run_progress *progress);
 /* All members are borrowed until hf_run_case returns. Every member but case_path may be zero. */
 typedef struct {
     const char *case_path;
-    const char *const *set; /* [n_set] overrides "key=value" */
+    const hf_problem_source *source; /* NULL: the case and its net are read from files; else case_path is a name */
+    const char *const *set;          /* [n_set] overrides "key=value" */
     int n_set;
     const char *output; /* NULL: the name of the case with .h5, in the current folder */
     bool no_file;       /* write no file: only the summary is wanted */

@@ -59,6 +59,10 @@ hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages);
 /* Write what a message begins with: "nodes.csv:7: node 'a'", "cables.csv:7: cable 'a'", or "scene: node 'a'". */
 void hf_scene_place(const hf_scene *scene, bool is_cable, int index, char *text, size_t size);
 
+/* Count a fault of a node or cable, and report it unless there were HF_FAULT_MAX before: "<place> <what>". */
+void hf_scene_fault(const hf_scene *scene, bool is_cable, int index, int *n_fault, const char *what,
+                    hf_messages *messages);
+
 double hf_scene_theoretical_length(const hf_scene *scene, int i_cable); /* m, between theoretical positions */
 
 void hf_scene_free(hf_scene *scene);

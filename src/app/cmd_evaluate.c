@@ -23,8 +23,6 @@
 #include "out/export.h"
 #include "out/print.h"
 #include "run/problem_parts.h"
-#include "search/jacobian.h"
-#include "search/polish.h"
 #include <hifdm/run.h>
 #include <hifdm/store.h>
 
@@ -44,9 +42,8 @@ typedef struct {
     int *where;                      /* [n_gene + 1] column in the table */
     double *design_N;                /* [n_row][n_gene] */
     hf_form_result *result;          /* [n_row] */
-    double *derivative;              /* [n_feasible][n_figure][n_gene]; NULL: not asked for */
-    int n_figure;
-    int n_feasible, best; /* best: row, or -1; -1 with objectives, which no single design is best in */
+    double *derivative;              /* [n_feasible][n_slope][n_gene]; NULL: not asked for */
+    int n_feasible, best;            /* best: row, or -1; -1 with objectives, which no single design is best in */
     double wall_s;
 } job;
 
@@ -63,11 +60,6 @@ static void job_free(job *j)
 }
 
 /* Objectives are weighed against each other by whoever asks: the table has no merit then. */
-static bool has_merit(const job *j)
-{
-    return j->problem.settings.optimize.n_objective == 0;
-}
-
 static hf_status no_memory(const job *j, hf_messages *messages)
 {
     return hf_error(messages, HF_NO_MEMORY, "out of memory for %d designs of %d variables", j->table.n_row,
@@ -166,7 +158,7 @@ static hf_status evaluate(job *j, int threads, hf_messages *messages)
     for (int i = 0; i < j->table.n_row; i++) {
         if (j->result[i].status != HF_OK) continue;
         j->n_feasible++;
-        if (!has_merit(j)) continue;
+        if (!hf_problem_has_merit(&j->problem)) continue;
         if (j->best < 0 || j->result[i].merit < j->result[j->best].merit) j->best = i;
     }
     return HF_OK;
@@ -174,35 +166,12 @@ static hf_status evaluate(job *j, int threads, hf_messages *messages)
 
 /* ---- derivatives ---- */
 
-static hf_status check_jacobian(const job *j, const hf_options *o, hf_messages *messages)
-{
-    if (!o->jacobian || hf_polish_applies(&j->problem.evaluator)) return HF_OK;
-    return hf_error(messages, HF_BAD_CASE,
-                    "--jacobian: there are no derivatives of nets with struts, nor under optimize.rule seeded");
-}
-
 static hf_status differentiate(job *j, hf_messages *messages)
 {
-    const hf_evaluator *v = &j->problem.evaluator;
-    size_t n_gene = (size_t)v->model->n_gene;
-    hf_jacobian jacobian;
-    hf_form_result r;
-    hf_status status = hf_jacobian_create(v, &jacobian);
-    j->n_figure = jacobian.n_figure;
-    size_t n = (size_t)j->n_figure * n_gene;
-    if (status == HF_OK) j->derivative = calloc((size_t)j->n_feasible + 1, n * sizeof *j->derivative);
-    double *to = j->derivative;
-    for (int i = 0; i < j->table.n_row && to && status == HF_OK; i++) {
-        if (j->result[i].status != HF_OK) continue;
-        for (size_t k = 0; k < n; k++)
-            to[k] = (double)NAN;
-        hf_status found = hf_evaluate(v, j->design_N + (size_t)i * n_gene, &j->problem.workspace, &r);
-        if (found == HF_OK) found = hf_jacobian_find(&jacobian, &j->problem.workspace, to);
-        if (found == HF_NO_MEMORY) status = HF_NO_MEMORY;
-        to += n;
-    }
-    hf_jacobian_free(&jacobian);
-    return j->derivative && status == HF_OK ? HF_OK : no_memory(j, messages);
+    size_t n = (size_t)hf_problem_n_slope(&j->problem) * (size_t)j->problem.model.n_gene;
+    j->derivative = calloc((size_t)j->n_feasible + 1, n * sizeof *j->derivative);
+    if (!j->derivative) return no_memory(j, messages);
+    return hf_problem_slopes(&j->problem, j->table.n_row, j->design_N, j->result, j->derivative, messages);
 }
 
 /* ---- writing ---- */
@@ -241,20 +210,15 @@ static void write_goals(const hf_goals *goals, const hf_form_result *r, FILE *f)
         write_number(hf_status_has_shape(r->status) ? r->goal[k] : (double)NAN, f);
 }
 
-static bool is_in_table(const job *j, const hf_result_field *field)
-{
-    return has_merit(j) || field->offset != offsetof(hf_form_result, merit);
-}
-
 static void write_results(const void *context, FILE *f)
 {
     const job *j = context;
     const hf_goals *goals = &j->problem.goals;
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
-    hf_result_list_individual(field);
+    int n_field = hf_problem_list_figures(&j->problem, field);
     fputs("id", f);
-    for (int k = 0; k < HF_RESULT_N_INDIVIDUAL; k++)
-        if (is_in_table(j, field[k])) fprintf(f, ",%s", field[k]->name);
+    for (int k = 0; k < n_field; k++)
+        fprintf(f, ",%s", field[k]->name);
     for (int k = 0; k < goals->n_goal; k++) {
         char name[HF_GOAL_NAME_SIZE];
         fprintf(f, ",%s", hf_goals_name(goals, k, name));
@@ -262,8 +226,8 @@ static void write_results(const void *context, FILE *f)
     fputc('\n', f);
     for (int i = 0; i < j->table.n_row; i++) {
         write_row_id(j, i, f);
-        for (int k = 0; k < HF_RESULT_N_INDIVIDUAL; k++)
-            if (is_in_table(j, field[k])) write_figure(field[k], &j->result[i], f);
+        for (int k = 0; k < n_field; k++)
+            write_figure(field[k], &j->result[i], f);
         write_goals(goals, &j->result[i], f);
         fputc('\n', f);
     }
@@ -278,14 +242,6 @@ static void write_gene_names(const job *j, FILE *f)
     fputc('\n', f);
 }
 
-static void write_figure_name(const job *j, int figure, FILE *f)
-{
-    char name[HF_GOAL_NAME_SIZE];
-    const hf_goals *goals = &j->problem.goals;
-    const char *of_all = goals->n_goal ? "merit" : "psi_m";
-    fprintf(f, ",%s", figure < goals->n_goal ? hf_goals_name(goals, figure, name) : of_all);
-}
-
 static void write_jacobian(const void *context, FILE *f)
 {
     const job *j = context;
@@ -293,17 +249,16 @@ static void write_jacobian(const void *context, FILE *f)
     const double *value = j->derivative;
     fputs("id,figure", f);
     write_gene_names(j, f);
-    int n_written = j->n_figure - !has_merit(j); /* the merit is the last */
     for (int i = 0; i < j->table.n_row; i++) {
         if (j->result[i].status != HF_OK) continue;
-        for (int k = 0; k < n_written; k++) {
+        for (int k = 0; k < hf_problem_n_slope(&j->problem); k++) {
+            char name[HF_GOAL_NAME_SIZE];
             write_row_id(j, i, f);
-            write_figure_name(j, k, f);
+            fprintf(f, ",%s", hf_problem_slope_name(&j->problem, k, name));
             for (int gene = 0; gene < n_gene; gene++)
-                write_number(value[k * n_gene + gene], f);
+                write_number(*value++, f);
             fputc('\n', f);
         }
-        value += (size_t)j->n_figure * (size_t)n_gene;
     }
 }
 
@@ -361,7 +316,7 @@ static void print_json(const job *from, const char *path, const char *jacobian, 
         hf_json_line(&j, " ");
         hf_json_integer(&j, "designs", from->table.n_row);
         hf_json_integer(&j, "feasible", from->n_feasible);
-        if (has_merit(from)) print_best(from, &j);
+        if (hf_problem_has_merit(&from->problem)) print_best(from, &j);
         hf_json_integer(&j, "threads", from->problem.batch.n_thread);
         hf_json_text(&j, "solver", hf_solver_word[from->problem.solver]);
         hf_json_number(&j, "wall_s", from->wall_s);
@@ -388,7 +343,7 @@ static hf_status check_output(const job *j, const hf_options *o, const char *pat
 
 static hf_status execute(job *j, const hf_options *o, const char *path, FILE *file, hf_messages *messages)
 {
-    HF_TRY(hf_problem_load(o->file, o->set, o->n_set, &j->problem, messages));
+    HF_TRY(hf_problem_load(o->file, NULL, o->set, o->n_set, &j->problem, messages));
     if (j->problem.model.n_gene == 0)
         return hf_error(messages, HF_BAD_CASE, "%s: no boundary cable has a free end: there is nothing to set",
                         o->file);
@@ -398,7 +353,7 @@ static hf_status execute(job *j, const hf_options *o, const char *path, FILE *fi
     if (o->designs) HF_TRY(read_table(j, o->designs, messages));
     HF_TRY(find_base(j, messages));
     if (o->template_path) return hf_file_out_write(path, write_template, j, messages);
-    HF_TRY(check_jacobian(j, o, messages));
+    if (o->jacobian) HF_TRY(hf_problem_has_slopes(&j->problem, messages));
     HF_TRY(evaluate(j, o->threads, messages));
     if (o->jacobian) {
         HF_TRY(differentiate(j, messages));

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 const char *const hf_progress_word[6] = {"auto", "none", "line", "log", "jsonl", NULL};
-static const char *const phase_word[] = {"form", "optimize", "polish", "tolerance"};
 static const double interval_s[] = {0, 0, 0.1, HF_PROGRESS_LOG_S, 1}; /* between two lines, by hf_progress_mode */
 
 hf_progress hf_progress_on(FILE *file, hf_progress_mode mode)
@@ -61,7 +60,7 @@ static void show_json(const hf_progress *p, const hf_run_progress *now)
 {
     hf_json j = {.file = p->file};
     hf_json_open(&j, NULL, '{');
-    hf_json_text(&j, "phase", phase_word[now->phase]);
+    hf_json_text(&j, "phase", hf_run_phase_word[now->phase]);
     if (now->phase == HF_RUN_TOLERANCE) {
         hf_json_integer(&j, "sample", now->samples);
         hf_json_integer(&j, "samples", now->samples_all);

@@ -1,7 +1,8 @@
-/* The words of the laws. The functions of the laws are inline in the header. */
+/* The words of the laws, and what a user may ask of them. The other functions of the laws are inline in the header. */
 #include <hifdm/cable_law.h>
 
 #include <stddef.h>
+#include <stdio.h>
 
 #define WORD(name, word, target, unit, flags) word,
 #define TARGET(name, word, target, unit, flags) target,
@@ -9,3 +10,23 @@
 const char *const hf_law_word[HF_N_LAW] = {HF_LAW_LIST(WORD)};
 const char *const hf_law_target_name[HF_N_LAW] = {HF_LAW_LIST(TARGET)};
 const char *const hf_law_target_unit[HF_N_LAW] = {HF_LAW_LIST(UNIT)};
+
+#define LENGTH_RATIO_MIN 1e-12 /* of an elastic cable, unstressed to theoretical: a tension of 1e12 EA says nothing */
+
+const char *hf_law_target_fault(hf_law law, double target, double theoretical_m, char text[HF_LAW_FAULT_SIZE])
+{
+    const char *word = hf_law_word[law], *name = hf_law_target_name[law], *what = NULL;
+    bool may_push = hf_law_has(law, HF_LAW_MAY_PUSH);
+    if (isnan(target) && name) {
+        snprintf(text, HF_LAW_FAULT_SIZE, "the law %s needs a value%s%s in %s", word, *name ? ", the " : "", name,
+                 hf_law_target_unit[law]);
+        return text;
+    }
+    if (!may_push && target <= 0) what = "value must be above zero";
+    if (may_push && target == 0) what = "value must not be zero";
+    if (!what && hf_law_has(law, HF_LAW_NEEDS_EA) && target < LENGTH_RATIO_MIN * theoretical_m)
+        what = "value, the unstressed length, is less than 1e-12 of the distance of its ends";
+    if (!what) return NULL;
+    snprintf(text, HF_LAW_FAULT_SIZE, "%s for the law %s", what, word);
+    return text;
+}

@@ -76,7 +76,7 @@ void hf_scene_place(const hf_scene *s, bool is_cable, int index, char *text, siz
     hf_text_trim_utf8(text);
 }
 
-static void fault(const hf_scene *s, bool is_cable, int index, int *n_fault, const char *what, hf_messages *messages)
+void hf_scene_fault(const hf_scene *s, bool is_cable, int index, int *n_fault, const char *what, hf_messages *messages)
 {
     char where[HF_SCENE_PLACE_SIZE];
     if (++*n_fault > HF_FAULT_MAX) return;
@@ -89,9 +89,9 @@ static void check_nodes(const hf_scene *s, int *n_fault, hf_messages *messages)
     for (int i = 0; i < s->n_node; i++)
         for (int c = 0; c < 3; c++) {
             if (!isfinite(s->position_m[3 * i + c]))
-                fault(s, false, i, n_fault, "has a position that is no number", messages);
+                hf_scene_fault(s, false, i, n_fault, "has a position that is no number", messages);
             if (s->load_N && !isfinite(s->load_N[3 * i + c]))
-                fault(s, false, i, n_fault, "has a load that is no number", messages);
+                hf_scene_fault(s, false, i, n_fault, "has a load that is no number", messages);
         }
 }
 
@@ -101,9 +101,9 @@ static void check_elastic(const hf_scene *s, int e, int *n_fault, hf_messages *m
     char what[96];
     const char *word = hf_law_word[s->law[e]];
     snprintf(what, sizeof what, "has the law %s, but no %s above zero", word, hf_law_target_name[s->law[e]]);
-    if (!(s->target[e] > 0)) fault(s, true, e, n_fault, what, messages);
+    if (!(s->target[e] > 0)) hf_scene_fault(s, true, e, n_fault, what, messages);
     snprintf(what, sizeof what, "has the law %s, but no EA_N above zero", word);
-    if (!(s->EA_N && s->EA_N[e] > 0)) fault(s, true, e, n_fault, what, messages);
+    if (!(s->EA_N && s->EA_N[e] > 0)) hf_scene_fault(s, true, e, n_fault, what, messages);
 }
 
 static void check_cables(const hf_scene *s, int *n_fault, hf_messages *messages)
@@ -111,9 +111,9 @@ static void check_cables(const hf_scene *s, int *n_fault, hf_messages *messages)
     for (int e = 0; e < s->n_cable; e++) {
         int a = s->end[2 * e], b = s->end[2 * e + 1];
         if (a == b)
-            fault(s, true, e, n_fault, "joins a node to itself", messages);
+            hf_scene_fault(s, true, e, n_fault, "joins a node to itself", messages);
         else if (!(hf_scene_theoretical_length(s, e) > 0))
-            fault(s, true, e, n_fault, "has zero length: its two nodes are at the same position", messages);
+            hf_scene_fault(s, true, e, n_fault, "has zero length: its two nodes are at the same position", messages);
         if (hf_law_has(s->law[e], HF_LAW_NEEDS_EA)) check_elastic(s, e, n_fault, messages);
     }
 }
@@ -134,7 +134,8 @@ static hf_status check_anchored(const hf_scene *s, int *n_fault, hf_messages *me
         if (s->role[i] == HF_ROLE_SUPPORT) anchored[hf_union_find_root(parent, i)] = 1;
     for (int i = 0; i < s->n_node; i++)
         if (!anchored[hf_union_find_root(parent, i)])
-            fault(s, false, i, n_fault, "has no path of cables to a support; connect it or remove it", messages);
+            hf_scene_fault(s, false, i, n_fault, "has no path of cables to a support; connect it or remove it",
+                           messages);
     free(parent);
     return HF_OK;
 }

@@ -37,39 +37,19 @@ static bool read_nodes(hf_csv *t, const int *where, hf_scene *s)
 
 /* ---- cables ---- */
 
-#define LENGTH_RATIO_MIN 1e-12 /* of an elastic cable, unstressed to theoretical: a tension of 1e12 EA says nothing */
-
 enum { CABLE_ID, CABLE_I, CABLE_J, CABLE_GROUP, CABLE_LAW, CABLE_VALUE, CABLE_EA, CABLE_SET, N_CABLE_COLUMN };
 static const char *const cable_column[N_CABLE_COLUMN] = {"id", "i", "j", "group", "law", "value", "EA_N", "set"};
 
-static void fault_of_law(hf_csv *t, int r, const char *id, const char *word, const char *what)
-{
-    char text[160];
-    snprintf(text, sizeof text, "the law %s%s", word, what);
-    hf_csv_fault(t, t->line[r], id, text, "");
-}
-
 static void read_target(hf_csv *t, const int *where, int r, const char *id, hf_scene *s)
 {
-    const char *word = hf_law_word[s->law[r]], *name = hf_law_target_name[s->law[r]];
-    s->target[r] = hf_law_default_target(s->law[r], hf_scene_theoretical_length(s, r));
-    if (*hf_csv_cell(t, r, where[CABLE_VALUE])) {
-        bool may_push = hf_law_has(s->law[r], HF_LAW_MAY_PUSH);
-        s->target[r] = hf_csv_number(t, r, where[CABLE_VALUE], id, "value");
-        if (!may_push && s->target[r] <= 0)
-            hf_csv_fault(t, t->line[r], id, "value must be above zero for the law ", word);
-        if (may_push && s->target[r] == 0) hf_csv_fault(t, t->line[r], id, "value must not be zero for the law ", word);
-        if (hf_law_has(s->law[r], HF_LAW_NEEDS_EA) && s->target[r] > 0 &&
-            s->target[r] < LENGTH_RATIO_MIN * hf_scene_theoretical_length(s, r))
-            hf_csv_fault(t, t->line[r], id,
-                         "value, the unstressed length, is less than 1e-12 of the distance of its ends for the law ",
-                         word);
-    } else if (name) {
-        char what[96];
-        snprintf(what, sizeof what, " needs a value%s%s in %s", *name ? ", the " : "", name,
-                 hf_law_target_unit[s->law[r]]);
-        fault_of_law(t, r, id, word, what);
-    }
+    hf_law law = s->law[r];
+    double theoretical_m = hf_scene_theoretical_length(s, r), given = NAN;
+    bool is_given = *hf_csv_cell(t, r, where[CABLE_VALUE]);
+    if (is_given) given = hf_csv_number(t, r, where[CABLE_VALUE], id, "value");
+    s->target[r] = is_given ? given : hf_law_default_target(law, theoretical_m);
+    char text[HF_LAW_FAULT_SIZE];
+    const char *fault = is_given && isnan(given) ? NULL : hf_law_target_fault(law, given, theoretical_m, text);
+    if (fault) hf_csv_fault(t, t->line[r], id, fault, "");
 }
 
 static void read_EA(hf_csv *t, const int *where, int r, const char *id, const double group_EA_N[2], hf_scene *s)
@@ -80,7 +60,9 @@ static void read_EA(hf_csv *t, const int *where, int r, const char *id, const do
         EA_N = hf_csv_number(t, r, where[CABLE_EA], id, "EA_N");
         if (EA_N <= 0) hf_csv_fault(t, t->line[r], id, "EA_N must be above zero", "");
     } else if (isnan(EA_N) && hf_law_has(s->law[r], HF_LAW_NEEDS_EA)) {
-        fault_of_law(t, r, id, hf_law_word[s->law[r]], " needs an EA_N");
+        char text[HF_LAW_FAULT_SIZE];
+        snprintf(text, sizeof text, "the law %s needs an EA_N", hf_law_word[s->law[r]]);
+        hf_csv_fault(t, t->line[r], id, text, "");
     }
     if (s->EA_N) s->EA_N[r] = EA_N;
 }

@@ -1,15 +1,17 @@
 #include <hifdm/problem.h>
 
+#include "run/problem_parts.h"
+#include "search/jacobian.h"
+#include "search/polish.h"
 #include "solve/limits.h"
 
-#include "run/problem_parts.h"
-
+#include <math.h>
 #include <stdlib.h>
 
 hf_status hf_problem_open(const char *path, const char *const *set, int n_set, int n_thread, hf_problem *p,
                           hf_messages *messages)
 {
-    HF_TRY(hf_problem_load(path, set, n_set, p, messages));
+    HF_TRY(hf_problem_load(path, NULL, set, n_set, p, messages));
     HF_TRY(hf_problem_allocate(p, messages));
     hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
     HF_TRY(hf_problem_explain(p, messages));
@@ -18,6 +20,65 @@ hf_status hf_problem_open(const char *path, const char *const *set, int n_set, i
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the batch of a net of %d nodes", p->model.n_node);
     hf_problem_share(p);
     return HF_OK;
+}
+
+bool hf_problem_has_merit(const hf_problem *p)
+{
+    return p->settings.optimize.n_objective == 0;
+}
+
+int hf_problem_list_figures(const hf_problem *p, const hf_result_field *field[HF_RESULT_N_INDIVIDUAL])
+{
+    int n = 0;
+    hf_result_list_individual(field);
+    for (int k = 0; k < HF_RESULT_N_INDIVIDUAL; k++)
+        if (hf_problem_has_merit(p) || field[k]->offset != offsetof(hf_form_result, merit)) field[n++] = field[k];
+    return n;
+}
+
+int hf_problem_n_slope(const hf_problem *p)
+{
+    return p->goals.n_goal + hf_problem_has_merit(p);
+}
+
+const char *hf_problem_slope_name(const hf_problem *p, int i_slope, char text[HF_GOAL_NAME_SIZE])
+{
+    if (i_slope < p->goals.n_goal) return hf_goals_name(&p->goals, i_slope, text);
+    snprintf(text, HF_GOAL_NAME_SIZE, "%s", p->goals.n_goal ? "merit" : "psi_m");
+    return text;
+}
+
+hf_status hf_problem_has_slopes(const hf_problem *p, hf_messages *messages)
+{
+    if (hf_polish_applies(&p->evaluator)) return HF_OK;
+    return hf_error(messages, HF_BAD_CASE,
+                    "there are no derivatives of nets with struts, nor under optimize.rule seeded");
+}
+
+hf_status hf_problem_slopes(hf_problem *p, int n, const double *design_N, const hf_form_result *result, double *slope,
+                            hf_messages *messages)
+{
+    hf_jacobian jacobian;
+    hf_form_result r;
+    double *all = NULL; /* with the merit behind, where objectives have none */
+    size_t n_gene = (size_t)p->model.n_gene, size = (size_t)hf_problem_n_slope(p) * n_gene;
+    HF_TRY(hf_problem_has_slopes(p, messages));
+    hf_status status = hf_jacobian_create(&p->evaluator, &jacobian);
+    if (status == HF_OK) all = malloc(((size_t)jacobian.n_figure * n_gene + 1) * sizeof *all);
+    if (!all) status = HF_NO_MEMORY;
+    for (int i = 0; i < n && status == HF_OK; i++) {
+        if (result[i].status != HF_OK) continue;
+        hf_status found = hf_evaluate(&p->evaluator, design_N + (size_t)i * n_gene, &p->workspace, &r);
+        if (found == HF_OK) found = hf_jacobian_find(&jacobian, &p->workspace, all);
+        if (found == HF_NO_MEMORY) status = HF_NO_MEMORY;
+        for (size_t k = 0; k < size; k++)
+            slope[k] = found == HF_OK ? all[k] : (double)NAN;
+        slope += size;
+    }
+    free(all);
+    hf_jacobian_free(&jacobian);
+    return status == HF_OK ? HF_OK
+                           : hf_error(messages, status, "out of memory for derivatives by %zu variables", n_gene);
 }
 
 void hf_problem_free(hf_problem *p)

@@ -2,6 +2,7 @@
 #include "run/problem_parts.h"
 
 #include "base/file_out.h"
+#include "net/scene_doubt.h"
 #include "net/symmetry.h"
 #include "net/variables.h"
 #include "search/polish.h"
@@ -49,10 +50,27 @@ static hf_status judge_by_rows(hf_problem *p, hf_messages *messages)
     return limits != HF_OK ? limits : goals;
 }
 
-static hf_status load_parts(const char *path, const char *const *set, int n_set, hf_problem *p, hf_messages *messages)
+static hf_status make_scene(const hf_problem_source *source, hf_problem *p, hf_messages *messages)
 {
-    HF_TRY(hf_config_load(path, set, n_set, &p->settings, messages));
-    HF_TRY(hf_config_scene(&p->settings, &p->scene, messages));
+    if (!source) return hf_config_scene(&p->settings, &p->scene, messages);
+    if (!p->settings.has_import || *p->settings.facets_path)
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: a net of arrays needs a section scene with an import of nodes and "
+                        "cables, and no facets",
+                        p->settings.path);
+    HF_TRY(hf_scene_from_arrays(source->net, p->settings.EA_N, &p->scene, messages));
+    HF_TRY(hf_scene_check(&p->scene, messages));
+    return hf_scene_doubt(&p->scene, messages);
+}
+
+static hf_status load_parts(const char *path, const hf_problem_source *source, const char *const *set, int n_set,
+                            hf_problem *p, hf_messages *messages)
+{
+    if (source)
+        HF_TRY(hf_config_parse(path, source->text, set, n_set, &p->settings, messages));
+    else
+        HF_TRY(hf_config_load(path, set, n_set, &p->settings, messages));
+    HF_TRY(make_scene(source, p, messages));
     HF_TRY(hf_config_surface(&p->settings, &p->scene, &p->surface, messages));
     if (p->settings.has_surface) HF_TRY(find_facets(p, messages));
     if (p->settings.form.prestress == HF_PRESTRESS_EXACT)
@@ -78,11 +96,12 @@ static hf_status load_parts(const char *path, const char *const *set, int n_set,
     return hf_symmetry_apply(&p->scene, &p->settings.optimize, &p->model, &p->planes, messages);
 }
 
-hf_status hf_problem_load(const char *path, const char *const *set, int n_set, hf_problem *p, hf_messages *messages)
+hf_status hf_problem_load(const char *path, const hf_problem_source *source, const char *const *set, int n_set,
+                          hf_problem *p, hf_messages *messages)
 {
     *p = (hf_problem){0};
     hf_problem_give_places(p, messages);
-    hf_status status = load_parts(path, set, n_set, p, messages);
+    hf_status status = load_parts(path, source, set, n_set, p, messages);
     hf_problem_give_places(NULL, messages);
     return status;
 }

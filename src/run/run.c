@@ -15,7 +15,6 @@
 #include "solve/limits.h"
 #include "solve/certificate.h"
 #include "solve/coupling.h"
-#include <hifdm/batch.h>
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
 
@@ -24,6 +23,8 @@
 #include <string.h>
 
 #define MESH_PULL_DOUBT 0.3 /* of N l / T: the figures of the facets are warned about */
+
+const char *const hf_run_phase_word[4] = {"form", "optimize", "polish", "tolerance"};
 
 #define HISTORY_MAX 1000000 /* iterations whose history is kept */
 
@@ -506,7 +507,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
 {
     const hf_run_request *q = r->request;
     hf_case *settings = &r->problem.settings;
-    HF_TRY(hf_problem_load(q->case_path, q->set, q->n_set, &r->problem, messages));
+    HF_TRY(hf_problem_load(q->case_path, q->source, q->set, q->n_set, &r->problem, messages));
     if (settings->has_sweep && !q->of_sweep)
         return hf_error(messages, HF_BAD_USAGE, "%s: has a sweep section; 'hifdm sweep %s' runs it", q->case_path,
                         q->case_path);
