@@ -98,6 +98,11 @@ SONAME := libhifdm.so.$(SOVERSION)
 RUNNER := $(BUILD)/tests/run_tests
 PAPER_OUT ?= results/chen2022
 INSTALLED := $(BUILD)/prefix/lib/pkgconfig/hifdm.pc
+# The folder below a prefix in which PYTHON looks for packages.
+PYTHON_PLACE = $(eval PYTHON_PLACE := $(shell $(PYTHON) -c 'import sys, sysconfig; print("lib/python%d.%d/%s-packages" \
+  % (*sys.version_info[:2], "dist" if "deb_system" in sysconfig.get_scheme_names() else "site"))'))$(PYTHON_PLACE)
+PYTHON_DIR ?= $(PREFIX)/$(PYTHON_PLACE)
+PYTHON_FILES := $(wildcard tools/python/hifdm/*.py) tools/python/hifdm/py.typed
 BENCH := $(BUILD)/bench/bench
 PEERS := $(BUILD)/optimisers/peers
 FRONTS := $(BUILD)/optimisers/fronts
@@ -131,6 +136,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
          bench-before bench-optimisers bench-fronts bench-sampling pretension-night api docs docs-browser lint \
          asan tsan fuzz fuzz-results install uninstall dist dist-check deb workflow-check
+FRONT += python-install
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -304,12 +310,25 @@ fuzzers: $(FUZZERS) $(PROGRAM)
 install: all ## install under PREFIX (/usr/local), within DESTDIR if given
 	$(call install_files,$(DESTDIR)$(PREFIX),$(PREFIX))
 
-# The same PREFIX, LIB and DESTDIR as when it was installed; folders that others use, too, stay.
-uninstall: ## remove what `make install` of this version has put there
+# PYTHON_DIR=... is another folder than that of PYTHON's version below PREFIX.
+python-install: install ## install, and the package hifdm for Python with it, into PYTHON_DIR
+	$(call install_python,$(DESTDIR)$(PYTHON_DIR))
+	@echo 'the package is in $(DESTDIR)$(PYTHON_DIR); if python3 does not look there, add it to PYTHONPATH'
+
+define install_python
+$(Q)install -d $(1)/hifdm
+$(Q)install -m 644 $(PYTHON_FILES) $(1)/hifdm/
+endef
+
+# The same PREFIX, LIB, PYTHON_DIR and DESTDIR as when it was installed; folders that others use, too, stay.
+uninstall: ## remove what `make install` or `make python-install` of this version has put there
 	$(Q)rm -f $(addprefix $(DESTDIR)$(PREFIX)/,bin/hifdm share/man/man1/hifdm.1 \
 	    share/bash-completion/completions/hifdm $(addprefix $(LIB)/,libhifdm.a libhifdm.so $(SONAME) \
 	    libhifdm.so.$(VERSION) pkgconfig/hifdm.pc) $(wildcard include/hifdm/*.h))
 	$(Q)rmdir --ignore-fail-on-non-empty $(DESTDIR)$(PREFIX)/include/hifdm 2>/dev/null || true
+	$(Q)rm -f $(addprefix $(DESTDIR)$(PYTHON_DIR)/hifdm/,$(notdir $(PYTHON_FILES)))
+	$(Q)rm -rf $(DESTDIR)$(PYTHON_DIR)/hifdm/__pycache__
+	$(Q)rmdir $(DESTDIR)$(PYTHON_DIR)/hifdm 2>/dev/null || true
 
 # What goes where: $(call install_files,FOLDER,PREFIX that the files will be found under).
 define install_files
@@ -437,9 +456,10 @@ $(RUNNER): $(TEST_OBJ) $(STATIC)
 comma := ,
 
 # An installation for the tests of the examples, which are built as a user would build them.
-$(INSTALLED): $(PROGRAM) $(STATIC) $(SHARED) $(wildcard include/hifdm/*.h) Makefile
+$(INSTALLED): $(PROGRAM) $(STATIC) $(SHARED) $(wildcard include/hifdm/*.h) $(PYTHON_FILES) Makefile
 	$(call say,INST,$(BUILD)/prefix)
 	$(call install_files,$(abspath $(BUILD))/prefix,$(abspath $(BUILD))/prefix)
+	$(call install_python,$(abspath $(BUILD))/prefix/$(PYTHON_PLACE))
 
 $(BUILD)/bench/peers: FORCE
 	$(call stamp,$(CHOLMOD))

@@ -111,6 +111,7 @@ missing_packages() {
         has localedef || need libc-bin
         has g++ || need g++
         has_module matplotlib || need python3-matplotlib
+        has_module pandas || need python3-pandas
     fi
     echo $list
 }

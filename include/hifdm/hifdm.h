@@ -33,6 +33,7 @@
 #include <hifdm/carrier.h>
 #include <hifdm/config.h>
 #include <hifdm/evaluate.h>
+#include <hifdm/flat.h>
 #include <hifdm/formfind.h>
 #include <hifdm/frame.h>
 #include <hifdm/generate.h>

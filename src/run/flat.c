@@ -1,0 +1,512 @@
+/* Contents: words - a case - texts - numbers - work - a run */
+#include <hifdm/flat.h>
+
+#include "linalg/band.h"
+#include "net/variables.h"
+#include "run/problem_parts.h"
+#include <hifdm/run.h>
+#include <hifdm/store.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct hf_flat {
+    hf_messages said;
+    const char *path;
+    const char *const *set;
+    int n_set, n_thread;
+    hf_scene_arrays net;
+    hf_problem_source source; /* text NULL: files */
+    hf_problem problem;
+    bool is_open, is_ready;    /* there is a model; there is a batch */
+    const hf_workspace *shape; /* of the last form or shape, NULL before */
+    hf_form_result result;     /* of the same */
+    int n_room;
+    hf_form_result *room; /* [n_room] of designs */
+    char text[HF_GENE_NAME_SIZE];
+    hf_summary summary;
+    char *summary_text;
+    volatile sig_atomic_t stop;
+};
+
+int hf_flat_interface(void)
+{
+    return HF_FLAT_INTERFACE;
+}
+
+const char *hf_flat_version(void)
+{
+    return hf_store_version();
+}
+
+/* ---- words ---- */
+
+/* An entry of a list of n words. */
+static const char *word_at(const char *const *word, int n, int i)
+{
+    return i >= 0 && i < n ? word[i] : NULL;
+}
+
+static const char *known(const char *word)
+{
+    return strcmp(word, "unknown") ? word : NULL;
+}
+
+const char *hf_flat_word(const char *list, int code)
+{
+    if (!strcmp(list, "role")) return word_at(hf_role_word, 3, code);
+    if (!strcmp(list, "group")) return word_at(hf_group_word, 2, code);
+    if (!strcmp(list, "law")) return word_at(hf_law_word, HF_N_LAW, code);
+    if (!strcmp(list, "phase")) return word_at(hf_run_phase_word, 4, code);
+    if (!strcmp(list, "status")) return known(hf_status_word((hf_status)code));
+    if (!strcmp(list, "stop_reason")) return known(hf_stop_reason_word(code));
+    if (!strcmp(list, "bound_reason")) return known(hf_bound_reason_word(code));
+    if (!strcmp(list, "coupling_stop")) return known(hf_coupling_stop_word(code));
+    return NULL;
+}
+
+int hf_flat_code(const char *list, const char *word)
+{
+    const char *at;
+    for (int code = 0; (at = hf_flat_word(list, code)) != NULL; code++)
+        if (!strcmp(at, word)) return code;
+    return -1;
+}
+
+/* ---- a case ---- */
+
+hf_flat *hf_flat_create(void)
+{
+    return calloc(1, sizeof(hf_flat));
+}
+
+void hf_flat_free(hf_flat *f)
+{
+    if (!f) return;
+    hf_problem_free(&f->problem);
+    hf_messages_free(&f->said);
+    free(f->room);
+    free(f->summary_text);
+    free(f);
+}
+
+const char *hf_flat_said(const hf_flat *f)
+{
+    return f->said.text ? f->said.text : "";
+}
+
+/* Forget what was said. False, with a message, unless the handle has what the call needs. */
+static bool begins(hf_flat *f, bool has, const char *what)
+{
+    hf_messages_free(&f->said);
+    if (!has) hf_error(&f->said, HF_BAD_USAGE, "%s", what);
+    return has;
+}
+
+int hf_flat_open(hf_flat *f, const char *path, int n_set, const char *const *set, int n_thread)
+{
+    if (!begins(f, !f->path, "a handle opens one case")) return HF_BAD_USAGE;
+    hf_band_single_threaded(); /* as the program: LAPACK's own threads would change bits */
+    f->path = path;
+    f->n_set = n_set;
+    f->set = set;
+    f->n_thread = n_thread;
+    const hf_problem_source *source = f->source.text ? &f->source : NULL;
+    hf_status status = hf_problem_load(path, source, set, n_set, &f->problem, &f->said);
+    f->is_open = status == HF_OK;
+    return status;
+}
+
+void hf_flat_nodes(hf_flat *f, int n_node, const double *position_m, const unsigned char *role, const double *load_N,
+                   const char *const *node_id)
+{
+    f->net.n_node = n_node;
+    f->net.position_m = position_m;
+    f->net.role = role;
+    f->net.load_N = load_N;
+    f->net.node_id = node_id;
+}
+
+void hf_flat_cables(hf_flat *f, int n_cable, const int *end, const unsigned char *group, const unsigned char *law,
+                    const double *value, const double *EA_N, const char *const *cable_id)
+{
+    f->net.n_cable = n_cable;
+    f->net.end = end;
+    f->net.group = group;
+    f->net.law = law;
+    f->net.value = value;
+    f->net.EA_N = EA_N;
+    f->net.cable_id = cable_id;
+}
+
+void hf_flat_sets(hf_flat *f, int n_set, const char *const *name, const int *start, const int *cable)
+{
+    f->net.n_set = n_set;
+    f->net.set_name = name;
+    f->net.set_start = start;
+    f->net.set_cable = cable;
+}
+
+int hf_flat_open_net(hf_flat *f, const char *name, const char *text, int n_set, const char *const *set, int n_thread)
+{
+    if (!f->path) f->source = (hf_problem_source){text, &f->net};
+    return hf_flat_open(f, name, n_set, set, n_thread);
+}
+
+/* ---- texts ---- */
+
+enum { COLUMN_NAME, COLUMN_UNIT, COLUMN_HELP, COLUMN_KIND };
+
+static const char *kind_word(hf_result_kind kind)
+{
+    switch (kind) {
+    case HF_RESULT_REAL:
+        return "real";
+    case HF_RESULT_STATUS:
+        return "status";
+    case HF_RESULT_STOP_REASON:
+        return "stop_reason";
+    case HF_RESULT_COUPLING_STOP:
+        return "coupling_stop";
+    case HF_RESULT_BOUND_REASON:
+        return "bound_reason";
+    default:
+        return "int";
+    }
+}
+
+static const char *of_field(const hf_result_field *field, int column)
+{
+    if (column == COLUMN_UNIT) return field->units;
+    if (column == COLUMN_HELP) return field->description;
+    return column == COLUMN_KIND ? kind_word(field->kind) : field->name;
+}
+
+static const char *of_goal(hf_flat *f, int i, int column)
+{
+    if (i >= f->problem.goals.n_goal) return NULL;
+    if (column == COLUMN_NAME) return hf_goals_name(&f->problem.goals, i, f->text);
+    if (column == COLUMN_UNIT) return hf_goal_unit[f->problem.goals.goal[i].wanted.goal];
+    return column == COLUMN_KIND ? "real" : "value of the goal, without its weight";
+}
+
+/* Figures of designs: those of an individual, then goals. */
+static const char *figure_text(hf_flat *f, int i, int column)
+{
+    const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
+    int n = hf_problem_list_figures(&f->problem, field);
+    return i < n ? of_field(field[i], column) : of_goal(f, i - n, column);
+}
+
+static int n_coupling(const hf_flat *f)
+{
+    return f->problem.model.n_attachment ? HF_COUPLING_N : 0;
+}
+
+/* Figures of a shape: all, then with a truss those of the coupling, then goals. */
+static const char *result_text(hf_flat *f, int i, int column)
+{
+    if (i < HF_RESULT_N) return of_field(&hf_result_field_of[i], column);
+    i -= HF_RESULT_N;
+    if (i >= n_coupling(f)) return of_goal(f, i - n_coupling(f), column);
+    if (column != COLUMN_NAME) return of_field(&hf_coupling_field_of[i], column);
+    snprintf(f->text, sizeof f->text, "coupling_%s", hf_coupling_field_of[i].name);
+    return f->text;
+}
+
+static const char *gene_text(hf_flat *f, int i, int column)
+{
+    const hf_model *m = &f->problem.model;
+    if (i >= m->n_gene) return NULL;
+    if (column == COLUMN_UNIT) return hf_model_gene_unit(m, i);
+    hf_model_gene_name(m, &f->problem.scene, i, f->text, sizeof f->text);
+    return f->text;
+}
+
+const char *hf_flat_text(hf_flat *f, const char *list, int i)
+{
+    static const struct {
+        const char *list;
+        const char *(*text)(hf_flat *, int i, int column);
+        int column;
+    } made[] = {{"gene", gene_text, COLUMN_NAME},          {"gene_unit", gene_text, COLUMN_UNIT},
+                {"figure", figure_text, COLUMN_NAME},      {"figure_unit", figure_text, COLUMN_UNIT},
+                {"figure_help", figure_text, COLUMN_HELP}, {"result", result_text, COLUMN_NAME},
+                {"result_unit", result_text, COLUMN_UNIT}, {"result_help", result_text, COLUMN_HELP},
+                {"result_kind", result_text, COLUMN_KIND}};
+    const hf_problem *p = &f->problem;
+    if (!strcmp(list, "summary")) return i ? NULL : f->summary_text;
+    if (!f->is_open || i < 0) return NULL;
+    for (size_t k = 0; k < sizeof made / sizeof *made; k++)
+        if (!strcmp(list, made[k].list)) return made[k].text(f, i, made[k].column);
+    if (!strcmp(list, "title")) return i ? NULL : p->settings.title;
+    if (!strcmp(list, "solver")) return i || !f->is_ready ? NULL : hf_solver_word[p->solver];
+    if (!strcmp(list, "node_id")) return word_at(p->scene.node_id, p->scene.n_node, i);
+    if (!strcmp(list, "cable_id")) return word_at(p->scene.cable_id, p->scene.n_cable, i);
+    if (!strcmp(list, "set_name")) return word_at(p->scene.set_name, p->scene.n_set, i);
+    if (!strcmp(list, "slope")) return i >= hf_problem_n_slope(p) ? NULL : hf_problem_slope_name(p, i, f->text);
+    return NULL;
+}
+
+/* ---- numbers ---- */
+
+static int copy_bytes(const unsigned char *from, int n, int *to)
+{
+    for (int i = 0; to && i < n; i++)
+        to[i] = from[i];
+    return n;
+}
+
+static int copy_ints(const int *from, int n, int *to)
+{
+    if (!from) return 0;
+    if (to && n) memcpy(to, from, (size_t)n * sizeof *to);
+    return n;
+}
+
+int hf_flat_ints(const hf_flat *f, const char *name, int *to)
+{
+    const hf_scene *s = &f->problem.scene;
+    const hf_model *m = &f->problem.model;
+    if (!f->is_open) return 0;
+    if (!strcmp(name, "end")) return copy_ints(s->end, 2 * s->n_cable, to);
+    if (!strcmp(name, "role")) return copy_bytes(s->role, s->n_node, to);
+    if (!strcmp(name, "group")) return copy_bytes(s->group, s->n_cable, to);
+    if (!strcmp(name, "law")) return copy_bytes(s->law, s->n_cable, to);
+    if (!strcmp(name, "gene_cable")) return copy_ints(m->gene_cable, m->n_gene, to);
+    if (!strcmp(name, "gene_leader")) return copy_ints(m->gene_leader, m->n_gene, to);
+    if (!strcmp(name, "set_start")) return copy_ints(s->set_start, s->n_set + 1, to);
+    if (!strcmp(name, "set_cable")) return copy_ints(s->set_cable, s->n_set ? s->set_start[s->n_set] : 0, to);
+    return -1;
+}
+
+static int copy_reals(const double *from, int n, double *to)
+{
+    if (!from) return 0;
+    if (to && n) memcpy(to, from, (size_t)n * sizeof *to);
+    return n;
+}
+
+static int copy_position(const hf_flat *f, double *to)
+{
+    const hf_model *m = &f->problem.model;
+    for (int row = 0; to && row < m->n_node; row++)
+        for (int c = 0; c < 3; c++)
+            to[3 * m->node_of_row[row] + c] = f->shape->position_m[c * m->n_node + row];
+    return 3 * m->n_node;
+}
+
+static double field_value(const hf_result_field *field, const void *owner)
+{
+    const void *value = (const char *)owner + field->offset;
+    return field->kind == HF_RESULT_REAL ? *(const double *)value : *(const int *)value;
+}
+
+/* Designs beyond a limit have a shape, and its goals. */
+static double goal_value(const hf_form_result *r, int i)
+{
+    return hf_status_has_shape(r->status) ? r->goal[i] : (double)NAN;
+}
+
+static int copy_result(const hf_flat *f, double *to)
+{
+    int n = HF_RESULT_N + n_coupling(f), n_goal = f->problem.goals.n_goal;
+    for (int i = 0; to && i < n; i++)
+        to[i] = i < HF_RESULT_N ? field_value(&hf_result_field_of[i], &f->result)
+                                : field_value(&hf_coupling_field_of[i - HF_RESULT_N], &f->result.coupling);
+    for (int i = 0; to && i < n_goal; i++)
+        to[n + i] = goal_value(&f->result, i);
+    return n + n_goal;
+}
+
+static int copy_bounds(const hf_flat *f, bool is_upper, double *to)
+{
+    const hf_problem *p = &f->problem;
+    for (int k = 0; to && k < p->model.n_gene; k++) {
+        double lower, upper, reach;
+        hf_variables_bound(&p->settings.optimize, &p->model, k, p->base_N[k], &lower, &upper, &reach);
+        to[k] = is_upper ? upper : lower;
+    }
+    return p->model.n_gene;
+}
+
+int hf_flat_reals(const hf_flat *f, const char *name, double *to)
+{
+    const hf_scene *s = &f->problem.scene;
+    const hf_workspace *w = f->shape;
+    if (!f->is_open) return 0;
+    if (!strcmp(name, "theoretical_m")) return copy_reals(s->position_m, 3 * s->n_node, to);
+    if (!strcmp(name, "load_N")) return copy_reals(s->load_N, 3 * s->n_node, to);
+    if (!strcmp(name, "target")) return copy_reals(s->target, s->n_cable, to);
+    if (!strcmp(name, "EA_N")) return copy_reals(s->EA_N, s->n_cable, to);
+    if (!strcmp(name, "base")) return f->is_ready ? copy_reals(f->problem.base_N, f->problem.model.n_gene, to) : 0;
+    if (!strcmp(name, "lower")) return f->is_ready ? copy_bounds(f, false, to) : 0;
+    if (!strcmp(name, "upper")) return f->is_ready ? copy_bounds(f, true, to) : 0;
+    if (!strcmp(name, "position_m")) return w ? copy_position(f, to) : 0;
+    if (!strcmp(name, "length_m")) return w ? copy_reals(w->length_m, s->n_cable, to) : 0;
+    if (!strcmp(name, "tension_N")) return w ? copy_reals(w->tension_N, s->n_cable, to) : 0;
+    if (!strcmp(name, "q_N_per_m")) return w ? copy_reals(w->q_N_per_m, s->n_cable, to) : 0;
+    if (!strcmp(name, "result")) return w ? copy_result(f, to) : 0;
+    return -1;
+}
+
+/* ---- work ---- */
+
+#define NEEDS_CASE "open a case first"
+#define NEEDS_SHAPE "the case has no shape yet: hf_flat_form finds it"
+
+/* The batch, once the shape of the case is in the problem's workspace. */
+static hf_status make_batch(hf_flat *f)
+{
+    hf_problem *p = &f->problem;
+    HF_TRY(hf_problem_base(p, &f->said));
+    if (hf_problem_batch(p, f->n_thread) != HF_OK)
+        return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the batch of a net of %d nodes", p->model.n_node);
+    hf_problem_share(p);
+    f->is_ready = true;
+    return HF_OK;
+}
+
+int hf_flat_form(hf_flat *f)
+{
+    hf_problem *p = &f->problem;
+    hf_form_result *r = &f->result;
+    if (!begins(f, f->is_open, NEEDS_CASE)) return HF_BAD_USAGE;
+    if (!p->workspace.block) HF_TRY(hf_problem_allocate(p, &f->said));
+    hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
+    f->shape = &p->workspace;
+    *r = p->form;
+    HF_TRY(hf_problem_explain(p, &f->said));
+    if (!f->is_ready) HF_TRY(make_batch(f));
+    if (p->goals.n_goal && hf_goals_measure(&p->goals, &p->workspace, p->workspace.goals, r->goal, &r->merit) != HF_OK)
+        return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the goals");
+    return HF_OK;
+}
+
+/* Values are finite numbers, those of cables above zero. */
+static hf_status check_designs(hf_flat *f, int n, const double *design)
+{
+    const hf_model *m = &f->problem.model;
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < m->n_gene; k++) {
+            double value = design[(size_t)i * (size_t)m->n_gene + (size_t)k];
+            bool is_cable = m->gene_cable[k] >= 0;
+            if (isfinite(value) && (value > 0 || !is_cable)) continue;
+            return hf_error(&f->said, HF_BAD_CASE, "design %d: %s must be %s, not %g", i, gene_text(f, k, COLUMN_NAME),
+                            is_cable ? "a finite number above zero" : "a finite number", value);
+        }
+    return HF_OK;
+}
+
+/* Leave the results of n designs in the room. */
+static hf_status evaluate(hf_flat *f, int n, const double *design)
+{
+    if (!begins(f, f->is_ready, NEEDS_SHAPE)) return HF_BAD_USAGE;
+    HF_TRY(check_designs(f, n, design));
+    if (n > f->n_room) {
+        free(f->room);
+        f->room = malloc((size_t)n * sizeof *f->room);
+        f->n_room = f->room ? n : 0;
+        if (!f->room) return hf_error(&f->said, HF_NO_MEMORY, "out of memory for %d designs", n);
+    }
+    hf_batch_run(&f->problem.batch, n, design, NULL, f->room);
+    return HF_OK;
+}
+
+int hf_flat_evaluate(hf_flat *f, int n, const double *design, double *figure)
+{
+    const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
+    int n_field = hf_problem_list_figures(&f->problem, field);
+    HF_TRY(evaluate(f, n, design));
+    for (int k = 0; k < n_field; k++)
+        for (int i = 0; i < n; i++)
+            *figure++ = field_value(field[k], &f->room[i]);
+    for (int k = 0; k < f->problem.goals.n_goal; k++)
+        for (int i = 0; i < n; i++)
+            *figure++ = goal_value(&f->room[i], k);
+    return HF_OK;
+}
+
+int hf_flat_shape(hf_flat *f, const double *design)
+{
+    if (!begins(f, f->is_ready, NEEDS_SHAPE)) return HF_BAD_USAGE;
+    HF_TRY(check_designs(f, 1, design));
+    f->shape = hf_batch_run_one(&f->problem.batch, design, &f->result);
+    return HF_OK;
+}
+
+int hf_flat_slopes(hf_flat *f, int n, const double *design, double *slope)
+{
+    hf_problem *p = &f->problem;
+    HF_TRY(evaluate(f, n, design));
+    HF_TRY(hf_problem_slopes(p, n, design, f->room, slope, &f->said));
+    size_t size = (size_t)hf_problem_n_slope(p) * (size_t)p->model.n_gene, n_feasible = 0;
+    for (int i = 0; i < n; i++)
+        n_feasible += f->room[i].status == HF_OK;
+    for (int i = n - 1; i >= 0; i--) { /* they stand one behind the other: each goes to the place of its design */
+        double *to = slope + (size_t)i * size;
+        bool is_feasible = f->room[i].status == HF_OK;
+        if (is_feasible) memmove(to, slope + --n_feasible * size, size * sizeof *to);
+        for (size_t k = 0; !is_feasible && k < size; k++)
+            to[k] = (double)NAN;
+    }
+    return HF_OK;
+}
+
+/* ---- a run ---- */
+
+typedef struct {
+    hf_flat *flat;
+    hf_flat_observer *observer;
+    void *context;
+} watcher;
+
+static void pass_on(void *context, const hf_run_progress *now)
+{
+    const watcher *w = context;
+    bool is_sampling = now->phase == HF_RUN_TOLERANCE;
+    long done = is_sampling ? now->samples : now->generation, all = is_sampling ? now->samples_all : now->generations;
+    if (w->observer &&
+        w->observer(w->context, now->phase, done, all, now->evaluations, now->best_psi_m, now->elapsed_s))
+        hf_flat_stop(w->flat);
+}
+
+/* The figures as the program's JSON. */
+static hf_status tell_summary(hf_flat *f, hf_status status, const char *output)
+{
+    size_t size = 0;
+    free(f->summary_text);
+    f->summary_text = NULL;
+    FILE *file = open_memstream(&f->summary_text, &size);
+    if (!file) return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the summary");
+    hf_summary_write_json(&f->summary, status, f->said.text, *output ? output : NULL, file);
+    if (fclose(file)) return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the summary");
+    return status;
+}
+
+int hf_flat_run(hf_flat *f, const char *output, int restart, hf_flat_observer *observer, void *context)
+{
+    char written[HF_OUTPUT_SIZE];
+    watcher beside = {f, observer, context};
+    if (!begins(f, f->is_open, NEEDS_CASE)) return HF_BAD_USAGE;
+    hf_run_request request = {.case_path = f->path,
+                              .source = f->source.text ? &f->source : NULL,
+                              .set = f->set,
+                              .n_set = f->n_set,
+                              .output = output,
+                              .no_file = !output,
+                              .restart = restart,
+                              .threads = f->n_thread,
+                              .stop_requested = &f->stop,
+                              .observer = pass_on,
+                              .observer_context = &beside};
+    hf_status status = hf_run_case(&request, &f->summary, written, &f->said);
+    f->stop = 0;
+    return tell_summary(f, status, written);
+}
+
+void hf_flat_stop(hf_flat *f)
+{
+    f->stop = 1;
+}

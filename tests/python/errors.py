@@ -1,0 +1,202 @@
+"""What is refused, and in which words: arrays, cases, designs, runs; a package that does not go with its library."""
+import os
+import re
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+
+from common import SMALL, main, near, source, temp
+
+import hifdm
+from hifdm import _library
+
+POSITION = np.array([[0, 0, 0], [1, 0, 0.5], [2, 0, 0], [1, 1, 0], [1, -1, 0.0]])
+END = np.array([[0, 1], [1, 2], [1, 3], [4, 1]], np.int32)
+ROLE = ["support", "inner", "support", "support", "support"]
+
+
+class Errors(unittest.TestCase):
+    def refused(self, kind, words, function, *arguments, **more):
+        with self.assertRaises(kind) as caught:
+            function(*arguments, **more)
+        for part in [words] if isinstance(words, str) else words:
+            self.assertIn(part, str(caught.exception))
+        return caught.exception
+
+    def net(self, position=POSITION, end=END, role=ROLE, **more):
+        return hifdm.net(position, end, **{"role": role, **more})
+
+    def test_arrays_of_designs(self):
+        case = hifdm.open(temp("small.yaml", SMALL))
+        designs, want = near(case, 4), f"dtype float64 and shape (n, {case.n_gene}) in C order"
+        for function, name in ((case.evaluate, "designs"), (case.jacobian, "designs")):
+            self.refused(TypeError, [f"{name} has dtype float32;", want], function, designs.astype(np.float32))
+            self.refused(TypeError, [f"{name} is of type list;", want], function, designs.tolist())
+            self.refused(ValueError, [f"{name} has shape (4, 3);", want], function, designs[:, :3].copy())
+            self.refused(ValueError, [f"{name} has shape ({case.n_gene},);", want], function, designs[0])
+            self.refused(ValueError, [f"{name} is not contiguous in C order", want], function,
+                         np.asfortranarray(designs))
+            self.refused(ValueError, f"{name} is not contiguous in C order", function, designs[::2])
+        self.refused(ValueError, f"design has shape (4, {case.n_gene});", case.shape, designs)
+        for bad in (0, -1, np.nan, np.inf):
+            designs[2, 1] = bad
+            error = self.refused(hifdm.HifdmError, f"design 2: {case.genes[1]} must be a finite number above zero, "
+                                 "not ", case.evaluate, designs)
+            self.assertEqual(error.status, "bad_case")
+        self.assertEqual(len(case.evaluate(np.empty((0, case.n_gene)))), 0)
+        self.assertEqual(case.evaluate(near(case, 2)).psi_m.shape, (2,))  # the case still works
+        out = case.evaluate(near(case, 1))
+        self.refused(AttributeError, "there is no psi; there are status, psi_m", lambda: out.psi)
+        self.refused(AttributeError, "there is no psi; there are status,", lambda: case.form().psi)
+
+    def test_arrays_of_a_net(self):
+        for part, arguments in {
+            "position_m has dtype float32; wanted is a numpy array of dtype float64 and shape (n, 3)":
+                {"position": POSITION.astype(np.float32)},
+            "end has dtype int64; wanted is a numpy array of dtype int32 and shape (n, 2)":
+                {"end": END.astype(np.int64)},
+            "value has dtype int64; wanted": {"value": np.arange(4)},
+            "role has dtype int64; wanted is a numpy array of dtype uint8 and shape (5,)": {"role": np.arange(5)},
+        }.items():
+            self.refused(TypeError, part, self.net, **arguments)
+        for part, arguments in {
+            "position_m has shape (5, 2)": {"position": POSITION[:, :2].copy()},
+            "position_m is not contiguous": {"position": np.asfortranarray(POSITION)},
+            "EA_N has shape (5,); wanted is a numpy array of dtype float64 and shape (4,)": {"EA_N": np.ones(5)},
+            "load_N has shape (4, 3);": {"load_N": np.ones((4, 3))},
+            "role has 4 words; wanted is one, or 5": {"role": ROLE[:4]},
+            "role has 'free'; wanted is one of support, inner, edge": {"role": ["free", *ROLE[1:]]},
+            "law has 'spring'; wanted is one of tension, length, force_density, elastic": {"law": "spring"},
+            "node_ids has 2 ids; wanted are 5": {"node_ids": ["a", "b"]},
+        }.items():
+            self.refused(ValueError, part, self.net, **arguments)
+
+    def test_nets(self):
+        bad, far = END.copy(), POSITION.copy()
+        bad[3, 0], far[1, 2] = 5, np.nan
+        for part, arguments in {
+            "scene: cable '3' ends at node 5, but nodes count from 0 to 4": {"end": bad},
+            "scene: node '1' has a position that is no number": {"position": far},
+            "scene: cable '2' is refused: value must be above zero for the law tension":
+                {"value": np.array([1, 1, 0, 1.0])},
+            "scene: cable '2' is refused: value must be a finite number": {"value": np.array([1, 1, np.inf, 1])},
+            "scene: cable '0' is refused: the law elastic needs a value, the unstressed length in m":
+                {"law": "elastic"},
+            "scene: cable '1' is refused: EA_N must be a finite number above zero":
+                {"EA_N": np.array([1, -1, 1, 1.0])},
+            "scene: node '3' has a role that is none of 0 to 2": {"role": np.array([0, 1, 0, 7, 0], np.uint8)},
+            "scene: cable '3' has a law that there is not": {"law": np.array([0, 0, 0, 9], np.uint8)},
+            "scene: cable '0' has a group that is none of 0 and 1": {"group": np.array([2, 0, 0, 0], np.uint8)},
+            "scene: node 'a' has an id that was used before": {"node_ids": list("abcda")},
+            "scene: cable '' has an empty id": {"cable_ids": ["a", "", "c", "d"]},
+            "has an id longer than 255 bytes": {"cable_ids": ["a" * 256, "b", "c", "d"]},
+            "scene: the set 'all' is the name of all cables": {"sets": {"all": [0]}},
+            "scene: the set 'a b' must be made of letters": {"sets": {"a b": [0]}},
+            "scene: the set 'a' names a cable that there is not": {"sets": {"a": [0, 4]}},
+            "scene: the set 'a' must name each cable once": {"sets": {"a": [1, 1]}},
+            "scene: every node is a support": {"role": "support"},
+            "scene: 5 nodes and 0 cables are no net": {"end": END[:0]},
+            "arrays:": {"form": {"pretention_N": 1}},
+            "unknown key; did you mean 'pretension_N'": {"form": {"pretention_N": 1}},
+            "a net of arrays needs a section scene with an import of nodes and cables, and no facets":
+                {"set": {"scene.import.facets": "facets.csv"}},
+        }.items():
+            self.assertEqual(self.refused(hifdm.HifdmError, part, self.net, **arguments).status, "bad_case")
+
+    def test_cases(self):
+        path = temp("wrong.yaml", "scene: {}\nfrom: {}\n")
+        error = self.refused(hifdm.HifdmError, f"{path}:2:1: from: unknown key; did you mean 'form'?", hifdm.open, path)
+        self.assertEqual(error.status, "bad_case")
+        self.refused(hifdm.HifdmError, "nowhere.yaml: cannot open", hifdm.open, "nowhere.yaml")
+        small = temp("small.yaml", SMALL)
+        self.refused(hifdm.HifdmError, "--set form.max_iterations", hifdm.open, small, {"form.max_iterations": -1})
+        self.refused(TypeError, "wanted is a list of 'key=value', or a dict", hifdm.open, small, "form.stop=residual")
+        few = hifdm.open(source("configs/chen2022.yaml"), {"form.max_iterations": 1, "form.method": "hifdm"})
+        error = self.refused(hifdm.HifdmError, "did not converge in 1 iteration", few.form)
+        self.assertEqual(error.status, "not_converged")
+        self.refused(hifdm.HifdmError, "did not converge", lambda: few.base)
+        struts = hifdm.open(source("configs/chen2022.yaml"), ["optimize.rule=seeded"])
+        self.refused(hifdm.HifdmError, "there are no derivatives of nets with struts", struts.jacobian, near(struts, 1))
+
+    def test_runs(self):
+        case = hifdm.open(temp("run.yaml", SMALL + "optimize: {population: 6, generations: 50, stagnation_tolerance_m: "
+                               "0, stagnation_generations: 50}\n"))
+        self.assertEqual(self.refused(hifdm.HifdmError, "nowhere", case.run, "/nowhere/out.h5").status, "io")
+
+        def fail(now):
+            raise ValueError(f"in {now.phase}")
+
+        self.refused(ValueError, "in form", case.run, progress=fail)
+        stopped = case.run(temp("stopped.h5"), progress=lambda now: now.done < 3)
+        self.assertEqual(stopped.status, "interrupted")
+        rest = []
+        whole = case.run(temp("stopped.h5"), progress=rest.append)
+        self.assertEqual(whole.status, "ok")
+        self.assertGreater(rest[1].done, 3)
+        self.assertEqual(whole["optimize"]["psi_m"], case.run()["optimize"]["psi_m"])
+        self.refused(hifdm.HifdmError, "this run wrote no file", case.run().read)
+
+    def test_interrupt(self):
+        """Ctrl-C ends a run that would take hours."""
+        script = ("import hifdm, os, signal, sys\n"
+                  "long = {'optimize.generations': 100000, 'optimize.stagnation_generations': 100000}\n"
+                  "case = hifdm.open(sys.argv[1], long)\n"
+                  "try: case.run(progress=lambda now: now.done != 2 or os.kill(os.getpid(), signal.SIGINT))\n"
+                  "except KeyboardInterrupt: print('interrupted')\n")
+        out = subprocess.run([sys.executable, "-W", "ignore", "-c", script, source("configs/straight-edges.yaml")],
+                             capture_output=True, text=True, timeout=200, check=False)
+        self.assertEqual((out.stdout, out.stderr), ("interrupted\n", ""))
+
+    def test_a_forked_process_is_refused(self):
+        case = hifdm.open(temp("small.yaml", SMALL))
+        case.form()
+        child = os.fork()
+        if child == 0:
+            try:
+                case.evaluate(near(case, 4))
+            except hifdm.HifdmError as error:
+                os._exit(7 if "use multiprocessing with 'spawn'" in str(error) else 8)
+            finally:
+                os._exit(9)
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 7)
+
+
+class Library(unittest.TestCase):
+    def test_prototypes_are_those_of_the_header(self):
+        with open(source("include/hifdm/flat.h"), encoding="utf-8") as file:
+            text = re.sub(r"/\*.*?\*/", "", file.read(), flags=re.S)
+        ctype = {"int": "c_int", "void": None, "const char *": "c_char_p", "hf_flat *": "c_void_p",
+                 "const hf_flat *": "c_void_p", "double": "c_double", "double *": "LP_c_double",
+                 "const double *": "LP_c_double", "const int *": "LP_c_int", "int *": "LP_c_int", "long": "c_long",
+                 "const unsigned char *": "LP_c_ubyte", "const char *const *": "LP_c_char_p", "void *": "c_void_p",
+                 "hf_flat_observer *": _library.Observer.__name__}
+        found = {}
+        for result, name, arguments in re.findall(r"^([a-z][\w ]*?[ *]+)hf_flat_(\w+)\(([^)]*)\);", text, flags=re.M):
+            if result.startswith("typedef"):
+                continue
+            parts = [part.strip() for part in arguments.split(",")]
+            parts = [] if parts == ["void"] else [re.sub(r"\w+$", "", part).strip() for part in parts]
+            found[name] = (ctype[result.strip()], [ctype[" ".join(part.split())] for part in parts])
+        ours = {name: (result and result.__name__, [argument.__name__ for argument in arguments])
+                for name, (result, arguments) in _library.PROTOTYPES.items()}
+        self.assertEqual(ours, found)
+        self.assertEqual(int(re.search(r"#define HF_FLAT_INTERFACE (\d+)", text)[1]), _library.INTERFACE)
+
+    def test_another_library_is_refused(self):
+        """One that is none of ours, and one with another interface."""
+        other = temp("other.so")
+        source_of = temp("other.c", "int hf_flat_interface(void) { return 999; }\n")
+        subprocess.run(["cc", "-shared", "-fPIC", source_of, "-o", other], check=True)
+        for library, words in ((other, f"has the interface 999, this package is for {_library.INTERFACE}"),
+                               ("libm.so.6", "hf_flat_interface"), (temp("none.so"), "cannot open shared object file")):
+            out = subprocess.run([sys.executable, "-c", "import hifdm"], capture_output=True, text=True, check=False,
+                                 env={**os.environ, "HIFDM_LIBRARY": library})
+            self.assertEqual(out.returncode, 1)
+            self.assertIn(words, out.stderr)
+            self.assertIn("ImportError", out.stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,25 @@
+"""scipy's least squares with exact derivatives: tensions of the least psi within the bounds of the case.
+
+    python3 tools/python/examples/least_squares.py configs/chen2022.yaml
+"""
+import sys
+
+import numpy as np
+from scipy.optimize import least_squares
+
+import hifdm
+
+case = hifdm.open(sys.argv[1])
+
+
+def psi_mm(design):
+    out = case.evaluate(design[np.newaxis])
+    return out.psi_m * 1e3 if out.feasible[0] else [1e3]  # so bad that the step is taken back
+
+
+def slopes(design):
+    return case.jacobian(design[np.newaxis])[0] * 1e3
+
+
+found = least_squares(psi_mm, case.base, slopes, bounds=(case.lower, case.upper), max_nfev=30)
+print(f"psi {psi_mm(case.base)[0]:.4f} -> {found.fun[0]:.4f} mm in {found.nfev} evaluations")

@@ -1,0 +1,18 @@
+"""A table of designs with pandas: what do the best tenth have in common?
+
+    python3 tools/python/examples/table.py configs/chen2022.yaml
+"""
+import sys
+
+import numpy as np
+import pandas as pd
+
+import hifdm
+
+case = hifdm.open(sys.argv[1])
+designs = case.base + np.random.default_rng(1).uniform(-1, 1, (1000, case.n_gene))
+table = pd.DataFrame(case.evaluate(designs).columns())
+print(table.groupby("status").psi_m.describe())
+best = pd.DataFrame(designs - case.base, columns=case.genes)[table.psi_m < table.psi_m.quantile(0.1)]
+print("tensions of the best tenth, N above those of the form-finding, where they are surest:")
+print(best.mean().sort_values(key=np.abs).tail(5).round(3).to_string())

@@ -1,0 +1,18 @@
+"""Form-finding of cable nets of mesh reflectors: the library hifdm from Python, with numpy.
+
+    import hifdm, numpy as np
+    case = hifdm.open("configs/chen2022.yaml")
+    shape = case.form()  # shape.psi_m, shape.position_m, shape.tension_N
+    designs = case.base + np.random.default_rng(1).uniform(-1, 1, (1000, case.n_gene))
+    out = case.evaluate(designs)  # out.psi_m, on all cores
+
+SI, and the unit is the last part of a name. Errors are HifdmError with the program's words and .status.
+"""
+
+from ._library import HifdmError, version as __version__
+from .case import Case, Designs, HifdmWarning, Progress, Run, Shape, net, open
+from .plots import plot_generations, plot_net
+from .results import Result, read
+
+__all__ = ["Case", "Designs", "HifdmError", "HifdmWarning", "Progress", "Result", "Run", "Shape", "net", "open",
+           "plot_generations", "plot_net", "read"]

@@ -1,0 +1,128 @@
+"""The shared library and its flat interface (include/hifdm/flat.h), by ctypes, which releases the GIL in every call."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int, c_long, c_ubyte, c_void_p
+from pathlib import Path
+
+import numpy as np
+
+INTERFACE = 1  # HF_FLAT_INTERFACE that this package is written for
+Observer = CFUNCTYPE(c_int, c_void_p, c_int, c_long, c_long, c_long, c_double, c_double)
+
+_texts, _ints, _reals, _codes = POINTER(c_char_p), POINTER(c_int), POINTER(c_double), POINTER(c_ubyte)
+# Function: result, arguments; a test compares them with flat.h.
+PROTOTYPES = {
+    "interface": (c_int, []),
+    "version": (c_char_p, []),
+    "word": (c_char_p, [c_char_p, c_int]),
+    "code": (c_int, [c_char_p, c_char_p]),
+    "create": (c_void_p, []),
+    "free": (None, [c_void_p]),
+    "said": (c_char_p, [c_void_p]),
+    "open": (c_int, [c_void_p, c_char_p, c_int, _texts, c_int]),
+    "nodes": (None, [c_void_p, c_int, _reals, _codes, _reals, _texts]),
+    "cables": (None, [c_void_p, c_int, _ints, _codes, _codes, _reals, _reals, _texts]),
+    "sets": (None, [c_void_p, c_int, _texts, _ints, _ints]),
+    "open_net": (c_int, [c_void_p, c_char_p, c_char_p, c_int, _texts, c_int]),
+    "text": (c_char_p, [c_void_p, c_char_p, c_int]),
+    "ints": (c_int, [c_void_p, c_char_p, _ints]),
+    "reals": (c_int, [c_void_p, c_char_p, _reals]),
+    "form": (c_int, [c_void_p]),
+    "evaluate": (c_int, [c_void_p, c_int, _reals, _reals]),
+    "shape": (c_int, [c_void_p, _reals]),
+    "slopes": (c_int, [c_void_p, c_int, _reals, _reals]),
+    "run": (c_int, [c_void_p, c_char_p, c_int, Observer, c_void_p]),
+    "stop": (None, [c_void_p]),
+}
+
+
+class HifdmError(Exception):
+    """What the library refuses or cannot do, in the program's words.
+
+    status: its word, such as "bad_case", "not_converged" or "no_memory".
+    """
+
+    def __init__(self, status: str, message: str):
+        super().__init__(message)
+        self.status = status
+
+
+def _candidates() -> list[str]:
+    """Where the library may be: as told, beside an installed package, built in the sources, where the loader looks."""
+    told = os.environ.get("HIFDM_LIBRARY")
+    if told:
+        return [told]
+    here = Path(__file__).resolve()
+    lib = here.parents[3]  # of PREFIX/lib/pythonX/dist-packages/hifdm
+    places = [lib / "libhifdm.so.0", *lib.glob("*-linux-*/libhifdm.so.0")]
+    if (lib / "Makefile").exists():  # tools/python/hifdm in the sources
+        places.append(lib / "build" / "libhifdm.so")
+    return [str(place) for place in places if place.exists()] + ["libhifdm.so.0"]
+
+
+def _load() -> ctypes.CDLL:
+    path = _candidates()[0]
+    try:
+        found = ctypes.CDLL(path)
+        found.hf_flat_interface.restype = c_int
+        interface = found.hf_flat_interface()
+    except (OSError, AttributeError) as fault:
+        raise ImportError(f"libhifdm cannot be used: {fault}; install it, or name it by HIFDM_LIBRARY") from None
+    if interface != INTERFACE:
+        raise ImportError(f"{path} has the interface {interface}, this package is for {INTERFACE}: "
+                          "install library and package of the same version")
+    for name, (result, arguments) in PROTOTYPES.items():
+        function = getattr(found, f"hf_flat_{name}")
+        function.restype, function.argtypes = result, arguments
+    for name in ("hf_status_word", "hf_status_text"):
+        getattr(found, name).restype = c_char_p
+    found.gsl_set_error_handler_off()  # GSL's default ends the process where it only reports no progress
+    return found
+
+
+lib = _load()
+version: str = lib.hf_flat_version().decode()
+
+
+def status_word(status: int) -> str:
+    return lib.hf_status_word(status).decode()
+
+
+def word(of: str, code: int) -> str:
+    """The word of a code in the list `of`."""
+    found = status_word(code) if of == "status" else lib.hf_flat_word(of.encode(), code)
+    return "unknown" if found is None else found if isinstance(found, str) else found.decode()
+
+
+def text_list(items: list[str]) -> ctypes.Array:
+    return (c_char_p * max(len(items), 1))(*[item.encode() for item in items])
+
+
+_pointer_of = {np.dtype(np.float64): _reals, np.dtype(np.int32): _ints, np.dtype(np.uint8): _codes}
+
+
+def pointer(array: np.ndarray | None):
+    """Into the memory of an array, which its user keeps alive."""
+    return None if array is None else array.ctypes.data_as(_pointer_of[array.dtype])
+
+
+def wanted(name: str, array, dtype, shape: tuple) -> np.ndarray:
+    """The array itself, without a copy, when it has this dtype and shape (None: any length) in C order.
+
+    Else TypeError or ValueError that name the argument, what it is, and what is wanted.
+    """
+    want = "(" + ", ".join("n" if n is None else str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
+    want = f"a numpy array of dtype {np.dtype(dtype)} and shape {want} in C order"
+    if not isinstance(array, np.ndarray):
+        raise TypeError(f"{name} is of type {type(array).__name__}; wanted is {want}")
+    if array.dtype != np.dtype(dtype):
+        raise TypeError(f"{name} has dtype {array.dtype}; wanted is {want}")
+    fits = array.ndim == len(shape) and all(n is None or n == m for n, m in zip(shape, array.shape))
+    if not fits:
+        raise ValueError(f"{name} has shape {array.shape}; wanted is {want}")
+    if not array.flags.c_contiguous or not array.flags.aligned:
+        raise ValueError(f"{name} is not contiguous in C order; wanted is {want}: numpy.ascontiguousarray makes one")
+    return array

@@ -1,0 +1,408 @@
+"""A case: its net, its shape, designs of it, and whole runs."""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import sys
+import threading
+import warnings
+import weakref
+from typing import Any, Callable, Mapping, NamedTuple, Sequence
+
+import numpy as np
+
+from ._library import HifdmError, Observer, lib, pointer, status_word, text_list, wanted, word
+
+Overrides = Mapping[str, Any] | Sequence[str]
+_process = {"pid": os.getpid(), "is_used": False}
+
+
+class HifdmWarning(UserWarning):
+    """What the program warns of, in its words."""
+
+
+class Progress(NamedTuple):
+    """How far a run is."""
+
+    phase: str  # "form", "optimize", "polish", "tolerance"
+    done: int  # generations, or samples of "tolerance"
+    all: int  # at most
+    evaluations: int  # of this run
+    best_psi_m: float  # NaN while nothing is feasible
+    elapsed_s: float  # in this phase
+
+
+class Shape:
+    """A shape found: arrays, and each figure as an attribute: psi_m, residual_N, status, ... (all in `figures`)."""
+
+    position_m: np.ndarray  # [n_node, 3] m, supports included
+    length_m: np.ndarray  # [n_cable] m
+    tension_N: np.ndarray  # [n_cable] N
+    q_N_per_m: np.ndarray  # [n_cable] N/m, force densities
+
+    def __init__(self, figures: dict[str, Any], goals: dict[str, float], arrays: dict[str, np.ndarray]):
+        self.figures = figures  # by name
+        self.goals = goals  # the value of each goal, in its unit
+        self.__dict__.update(arrays)
+
+    def __getattr__(self, name: str) -> Any:
+        if name != "figures" and name in self.figures:
+            return self.figures[name]
+        raise AttributeError(f"there is no {name}; there are {', '.join(self.__dict__.get('figures', ()))}")
+
+    def __repr__(self) -> str:
+        return f"<hifdm.Shape: {self.status}, psi {self.psi_m * 1e3:.4f} mm>"
+
+
+class Designs:
+    """Results of n designs; each column as an attribute or an item: psi_m, merit, iterations, goal_0_psi, ..."""
+
+    def __init__(self, names: list[str], n_goal: int, table: np.ndarray):
+        self.names = names
+        self.goal_names = names[len(names) - n_goal:]
+        self.table = table  # [n_figure, n]; status as a code
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """[n]; NaN where a design has no such figure."""
+        if name not in self.names:
+            raise KeyError(f"there is no {name}; there are {', '.join(self.names)}")
+        column = self.table[self.names.index(name)]
+        if name == "status":
+            return np.array([word("status", int(code)) for code in column], dtype=str)
+        return column.astype(int) if name == "iterations" else column
+
+    def __getattr__(self, name: str) -> np.ndarray:
+        if "names" in self.__dict__ and name in self.names:
+            return self[name]
+        raise AttributeError(f"there is no {name}; there are {', '.join(self.__dict__.get('names', ()))}")
+
+    def __len__(self) -> int:
+        return self.table.shape[1]
+
+    @property
+    def feasible(self) -> np.ndarray:
+        """[n] bool"""
+        return self.table[0] == 0
+
+    @property
+    def best(self) -> int:
+        """Index of the feasible design with the least merit; -1 when none is feasible. Objectives have no merit."""
+        merit = np.where(self.feasible, self["merit"], np.inf)
+        return int(merit.argmin()) if self.feasible.any() else -1
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """By name, for pandas.DataFrame or numpy."""
+        return {name: self[name] for name in self.names}
+
+
+class Run:
+    """A run that has ended: its figures, as `hifdm run --json` prints them."""
+
+    def __init__(self, figures: dict[str, Any]):
+        self.figures = figures
+        self.status: str = figures["status"]
+        self.file: str | None = figures.get("file")  # the result file, if one was written
+
+    def __getitem__(self, stage: str) -> Any:
+        """Of a stage: "form", "optimize", "polish", "tolerance", ..."""
+        return self.figures[stage]
+
+    def read(self):
+        """The result file (hifdm.read)."""
+        from .results import read
+
+        if self.file is None:
+            raise HifdmError("io", "this run wrote no file")
+        return read(self.file)
+
+
+def _user_level() -> int:
+    """How many calls above the caller the first is that is not of this package."""
+    level = 2
+    while sys._getframe(level).f_globals.get("__name__", "").startswith("hifdm.") and level < 9:
+        level += 1
+    return level
+
+
+def _lines(set: Overrides) -> list[str]:
+    if isinstance(set, Mapping):
+        return [f"{key}={value if isinstance(value, str) else json.dumps(value, default=_plain)}"
+                for key, value in set.items()]
+    if isinstance(set, str):
+        raise TypeError("set is a text; wanted is a list of 'key=value', or a dict")
+    return list(set)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    raise TypeError(f"a key of the case has a value of type {type(value).__name__}")
+
+
+class Case:
+    """Made by hifdm.open or hifdm.net. One thread at a time works with a case; others wait. Indices count from 0."""
+
+    def __init__(self, open_handle: Callable[[int], int], keep: Any = ()):
+        self._lock = threading.RLock()
+        self._check_process()
+        self._handle = lib.hf_flat_create()
+        if not self._handle:
+            raise MemoryError("no memory for a case")
+        self._keep = keep  # what the library borrows
+        self._shape: Shape | None = None
+        weakref.finalize(self, lib.hf_flat_free, self._handle)
+        self._call(open_handle, self._handle)
+        self.title = self._texts("title")[0]
+        self.node_ids, self.cable_ids = self._texts("node_id"), self._texts("cable_id")
+        self.genes = self._texts("gene")  # the variables of a design: ids of cables, or of supports with .x, .y, .z
+        self.gene_units = self._texts("gene_unit")  # "N", "N/m" or "m"
+        self.gene_leader = self._numbers("gene_leader", dtype=np.int32)  # [n_gene] with which each is linked, or itself
+        self.figure_names = self._texts("figure")  # columns of evaluate
+        self.slope_names = self._texts("slope")  # figures of jacobian
+        self.n_node, self.n_cable, self.n_gene = len(self.node_ids), len(self.cable_ids), len(self.genes)
+        self.theoretical_m = self._numbers("theoretical_m", 3)  # [n_node, 3] wanted; of supports the real ones
+        self.role = self._words("role")  # [n_node] "support", "inner" or "edge"
+        self.end = self._numbers("end", 2, dtype=np.int32)  # [n_cable, 2] indices of nodes
+        self.group = self._words("group")  # [n_cable] "inner" or "boundary"
+        self.law = self._words("law")  # [n_cable] "tension", "length", "force_density" or "elastic"
+        self.target = self._numbers("target")  # [n_cable] N, m, N/m or m by law; NaN: the pretension of the case
+        self.load_N = self._numbers("load_N", 3)  # [n_node, 3], or [0, 3] without loads
+        self.EA_N = self._numbers("EA_N")  # [n_cable], NaN where not given; [0] when no cable has one
+        start, cable = (self._numbers(name, dtype=np.int32) for name in ("set_start", "set_cable"))
+        self.sets = {name: cable[start[k]:start[k + 1]] for k, name in enumerate(self._texts("set_name"))}
+        self._goals = [name for name in self.figure_names if name.startswith("goal_")]
+        self._result = [self._texts(name) for name in ("result", "result_kind")]
+
+    # ---- calls ----
+
+    @staticmethod
+    def _check_process() -> None:
+        if os.getpid() != _process["pid"] and _process["is_used"]:
+            raise HifdmError("bad_usage", "hifdm has worked in the process that this one was forked from, and its "
+                                          "threads did not come along; use multiprocessing with 'spawn'")
+        _process.update(pid=os.getpid())
+
+    def _call(self, function: Callable, *arguments: Any) -> int:
+        """Call the library; its warnings become warnings, a status other than ok an exception."""
+        self._check_process()
+        _process["is_used"] = True
+        status = function(*arguments)
+        said = lib.hf_flat_said(self._handle).decode()
+        for line in said.splitlines():
+            if line.startswith("warning: "):
+                warnings.warn(line[len("warning: "):], HifdmWarning, stacklevel=_user_level())
+        if status:
+            errors = [line[len("error: "):] for line in said.splitlines() if line.startswith("error: ")]
+            raise HifdmError(status_word(status), "\n".join(errors) or lib.hf_status_text(status).decode())
+        return status
+
+    def _texts(self, of: str) -> list[str]:
+        found: list[str] = []
+        with self._lock:
+            while (text := lib.hf_flat_text(self._handle, of.encode(), len(found))) is not None:
+                found.append(text.decode())
+                if of in ("title", "solver", "summary"):
+                    break
+        return found
+
+    def _numbers(self, name: str, *shape: int, dtype=np.float64) -> np.ndarray:
+        get = lib.hf_flat_reals if dtype is np.float64 else lib.hf_flat_ints
+        with self._lock:
+            to = np.empty(get(self._handle, name.encode(), None), dtype)
+            get(self._handle, name.encode(), pointer(to))
+        return to.reshape(-1, *shape)
+
+    def _words(self, of: str) -> np.ndarray:
+        return np.array([word(of, code) for code in self._numbers(of, dtype=np.int32)], dtype=str)
+
+    # ---- the shape, and designs ----
+
+    def _take_shape(self) -> Shape:
+        codes = self._numbers("result")
+        figures = {name: float(code) if kind == "real" else int(code) if kind == "int" else word(kind, int(code))
+                   for name, kind, code in zip(*self._result, codes)}
+        goals = {name: figures.pop(name) for name in self._goals}
+        arrays = {name: self._numbers(name) for name in ("length_m", "tension_N", "q_N_per_m")}
+        return Shape(figures, goals, {"position_m": self._numbers("position_m", 3), **arrays})
+
+    def form(self) -> Shape:
+        """Find the shape of the case. HifdmError when there is none, or when the iteration does not converge."""
+        with self._lock:
+            if self._shape is None:
+                self._call(lib.hf_flat_form, self._handle)
+                self._shape = self._take_shape()
+            return self._shape
+
+    def shape(self, design: np.ndarray) -> Shape:
+        """The shape of one design [n_gene], with its status as a figure: no error when it is infeasible."""
+        design = wanted("design", design, float, (self.n_gene,))
+        with self._lock:
+            self.form()
+            self._call(lib.hf_flat_shape, self._handle, pointer(design))
+            return self._take_shape()
+
+    def _after_form(self, name: str) -> np.ndarray:
+        with self._lock:
+            self.form()
+            return self._numbers(name)
+
+    @property
+    def base(self) -> np.ndarray:
+        """[n_gene] the design of the shape found, in gene_units."""
+        return self._after_form("base")
+
+    @property
+    def lower(self) -> np.ndarray:
+        """[n_gene] lower bounds, by the section optimize; -inf where open."""
+        return self._after_form("lower")
+
+    @property
+    def upper(self) -> np.ndarray:
+        """[n_gene] upper bounds."""
+        return self._after_form("upper")
+
+    @property
+    def solver(self) -> str:
+        """By which designs are solved."""
+        with self._lock:
+            self.form()
+            return self._texts("solver")[0]
+
+    def evaluate(self, designs: np.ndarray) -> Designs:
+        """Evaluate designs [n, n_gene] in gene_units, on all cores: the results, bit by bit, of `hifdm evaluate`."""
+        designs = wanted("designs", designs, float, (None, self.n_gene))
+        table = np.empty((len(self.figure_names), len(designs)))
+        with self._lock:
+            self.form()
+            self._call(lib.hf_flat_evaluate, self._handle, len(designs), pointer(designs), pointer(table))
+        return Designs(self.figure_names, len(self._goals), table)
+
+    def jacobian(self, designs: np.ndarray) -> np.ndarray:
+        """Exact derivatives [n, n_slope, n_gene] of slope_names at designs [n, n_gene]; NaN of infeasible designs.
+
+        psi_m, or with goals the value of each and the merit, in the unit of the figure per unit of the gene.
+        """
+        designs = wanted("designs", designs, float, (None, self.n_gene))
+        slopes = np.empty((len(designs), len(self.slope_names), self.n_gene))
+        with self._lock:
+            self.form()
+            self._call(lib.hf_flat_slopes, self._handle, len(designs), pointer(designs), pointer(slopes))
+        return slopes
+
+    # ---- a run ----
+
+    def run(self, output: str | os.PathLike | None = None, *, restart: bool = False,
+            progress: Callable[[Progress], Any] | None = None) -> Run:
+        """Run the case as `hifdm run` does: form-finding, optimisation, `cases` and `tolerance`.
+
+        output: the result file; a later run into it goes on where this one was stopped, or with restart begins anew.
+        None: figures alone. progress: called as the run goes on, in a thread of its own; a run is stopped when it
+        returns False (the status is then "interrupted"), and when it raises, which is raised here, as is Ctrl-C.
+        """
+        path = None if output is None else os.fsencode(output)
+        raised: list[BaseException] = []
+        outcome: list[int] = []
+
+        def observe(_: Any, phase: int, *now: Any) -> int:
+            try:
+                return int(progress is not None and progress(Progress(word("phase", phase), *now)) is False)
+            except BaseException as fault:
+                raised.append(fault)
+                return 1
+
+        def work() -> None:
+            outcome.append(lib.hf_flat_run(self._handle, path, int(restart), observer, None))
+
+        observer = Observer(observe)
+        with self._lock:
+            worker = threading.Thread(target=work, name="hifdm run")  # so that this thread can be interrupted
+            worker.start()
+            while worker.is_alive():
+                try:
+                    worker.join()
+                except BaseException as fault:
+                    raised.append(fault)
+                    lib.hf_flat_stop(self._handle)
+            if raised:
+                raise raised[0]
+            figures = json.loads(self._texts("summary")[0])
+            was_stopped = status_word(outcome[0]) == "interrupted"
+            self._call(lambda: 0 if was_stopped else outcome[0])
+        return Run(figures)
+
+
+def open(path: str | os.PathLike, set: Overrides = (), *, threads: int = 0) -> Case:
+    """Open a case file under overrides, {"form.pretension_N": 12} or ["form.pretension_N=12"]; threads 0: all cores."""
+    lines = _lines(set)
+    keep = (os.fsencode(path), text_list(lines))
+    return Case(lambda handle: lib.hf_flat_open(handle, keep[0], len(lines), keep[1], threads), keep)
+
+
+def _codes(name: str, words: str | Sequence[str] | np.ndarray, of: str, n: int) -> np.ndarray:
+    """Codes [n] of a word for all, of n words, or as given (uint8)."""
+    if isinstance(words, np.ndarray) and words.dtype.kind != "U":
+        return wanted(name, words, np.uint8, (n,))
+    each = [words] * n if isinstance(words, str) else list(words)
+    if len(each) != n:
+        raise ValueError(f"{name} has {len(each)} words; wanted is one, or {n}")
+    code_of = {text: lib.hf_flat_code(of.encode(), str(text).encode()) for text in {*each}}
+    for text, code in code_of.items():
+        if code < 0:
+            known = [each for each in (word(of, code) for code in range(9)) if each != "unknown"]
+            raise ValueError(f"{name} has {text!r}; wanted is one of {', '.join(known)}")
+    return np.array([code_of[text] for text in each], np.uint8)
+
+
+def _ids(name: str, ids: Sequence[str] | None, n: int) -> ctypes.Array | None:
+    if ids is not None and len(ids) != n:
+        raise ValueError(f"{name} has {len(ids)} ids; wanted are {n}")
+    return None if ids is None else text_list([str(item) for item in ids])
+
+
+def _sets(sets: Mapping[str, Sequence[int]]) -> tuple:
+    """Names in the order of strcmp, where each begins, indices."""
+    names = sorted(sets, key=lambda name: name.encode())
+    members = [np.sort(np.asarray(sets[name], np.int32)) for name in names]
+    start = np.cumsum([0] + [len(member) for member in members], dtype=np.int32)
+    return text_list(names), start, np.concatenate(members + [np.empty(0, np.int32)])
+
+
+def net(position_m: np.ndarray, end: np.ndarray, *, role: str | Sequence[str] | np.ndarray,
+        group: str | Sequence[str] | np.ndarray = "inner", law: str | Sequence[str] | np.ndarray = "tension",
+        value: np.ndarray | None = None, EA_N: np.ndarray | None = None, load_N: np.ndarray | None = None,
+        node_ids: Sequence[str] | None = None, cable_ids: Sequence[str] | None = None,
+        sets: Mapping[str, Sequence[int]] | None = None, set: Overrides = (), threads: int = 0,
+        **sections: Any) -> Case:
+    """A case whose net is given by arrays, which are used without a copy and must not be changed while it lives.
+
+    position_m [n_node, 3] m, theoretical; of supports the real ones. end [n_cable, 2] int32, indices of nodes.
+    role, by node: "support", "inner" (counted by psi), "edge". group, by cable: "inner", "boundary" (the variables of
+    a design without optimize.variables). law, by cable: "tension", "length", "force_density", "elastic". Words are one
+    for all, a sequence, or codes [n] uint8. value [n_cable] N, m, N/m or m (unstressed) by law; NaN: the pretension of
+    the case, or the theoretical length. EA_N [n_cable] N, load_N [n_node, 3] N. sets: names of cables, by indices.
+    sections: those of a case file, as form={"pretension_N": 10}, optimize={"goals": [{"goal": "psi"}]}.
+    """
+    wanted("position_m", position_m, float, (None, 3))
+    wanted("end", end, np.int32, (None, 2))
+    n_node, n_cable = len(position_m), len(end)
+    for name, array, *shape in (("value", value, n_cable), ("EA_N", EA_N, n_cable), ("load_N", load_N, n_node, 3)):
+        if array is not None:
+            wanted(name, array, float, tuple(shape))
+    codes = [_codes("role", role, "role", n_node), _codes("group", group, "group", n_cable),
+             _codes("law", law, "law", n_cable)]
+    ids = [_ids("node_ids", node_ids, n_node), _ids("cable_ids", cable_ids, n_cable)]
+    members, lines = _sets(sets or {}), _lines(set)
+    scene = {**sections.pop("scene", {}), "import": {"nodes": "nodes.csv", "cables": "cables.csv"}}
+    text = json.dumps({"scene": scene, **sections}, default=_plain, ensure_ascii=False, indent=1).encode()
+    texts = text_list(lines)
+
+    def open_handle(handle: int) -> int:
+        lib.hf_flat_nodes(handle, n_node, pointer(position_m), pointer(codes[0]), pointer(load_N), ids[0])
+        lib.hf_flat_cables(handle, n_cable, pointer(end), pointer(codes[1]), pointer(codes[2]), pointer(value),
+                           pointer(EA_N), ids[1])
+        lib.hf_flat_sets(handle, len(sets or {}), members[0], pointer(members[1]), pointer(members[2]))
+        return lib.hf_flat_open_net(handle, b"arrays", text, len(lines), texts, threads)
+
+    return Case(open_handle, (position_m, end, value, EA_N, load_N, codes, ids, members, text, texts))

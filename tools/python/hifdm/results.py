@@ -1,0 +1,58 @@
+"""Result files, thin over h5py: `h5` is the open file, and include/hifdm/store.h lists what is in it."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+
+from .case import Shape
+
+_STAGES = {"form": "form", "optimize": "ga/best", "polish": "polish"}
+
+
+class Result:
+    """An open result file. Read it when its run has ended, or in another process: HDF5 is not safe for threads."""
+
+    def __init__(self, path: str | os.PathLike):
+        import h5py  # only here: the rest of the package does without
+
+        self.h5 = h5py.File(path, "r")
+
+    def __enter__(self) -> Result:
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.h5.close()
+
+    @property
+    def stages(self) -> list[str]:
+        """Those with a shape: "form", "optimize", "polish", then the states of `cases`, "cases/cold"."""
+        states = [f"cases/{name}" for name, item in self.h5.get("cases", {}).items() if "position_m" in item]
+        return [name for name, group in _STAGES.items() if group in self.h5] + states
+
+    def shape(self, stage: str = "form") -> Shape:
+        """Arrays of a stage as hifdm.Shape, and as figures the attributes of its group."""
+        group = self.h5[_STAGES.get(stage, stage)]
+        arrays = {name: group[name][:] for name in ("position_m", "length_m", "tension_N", "q_N_per_m")}
+        return Shape(dict(group.attrs), {}, arrays)
+
+    @property
+    def end(self) -> np.ndarray:
+        """[n_cable, 2] indices of nodes."""
+        return self.h5["scene/cable/end"][:]
+
+    @property
+    def psi_m(self) -> np.ndarray:
+        """[generation, individual] m, of the genetic algorithm; NaN of infeasible ones."""
+        return self.h5["ga/psi_m"][:]
+
+    @property
+    def best_psi_m(self) -> np.ndarray:
+        """[generation] m"""
+        return self.h5["ga/best_psi_m"][:]
+
+
+def read(path: str | os.PathLike) -> Result:
+    """Open a result file."""
+    return Result(path)
