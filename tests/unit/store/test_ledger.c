@@ -82,6 +82,52 @@ START_TEST(numbers_come_back_bit_by_bit)
 }
 END_TEST
 
+/* The goals of each stage that the run reached, by name, to the last bit. */
+START_TEST(goals_come_back)
+{
+    hf_study s;
+    hf_summary summary = {.has_polish = true, .goals = {.n = 2, .name = {"goal_0_psi", "goal_1_tension_edge"}}};
+    summary.form.goal[0] = (double)NAN;
+    summary.form.goal[1] = 0.1 + 0.2;
+    summary.polish.goal[0] = 5e-324;
+    summary.polish.goal[1] = INFINITY;
+    open_study(&s);
+    write_point(&s, 1, HF_OK, "", &summary);
+    write_point(&s, 2, HF_OK, "", &(hf_summary){0}); /* no goals */
+    hf_points points = read_points(&s);
+    char *const *goals = points.point[1].field + hf_ledger_n_column(), name[HF_GOAL_NAME_SIZE];
+    const char *form = goals[0], *polish = goals[2];
+    double value;
+    ck_assert_str_eq(goals[1], ""); /* there was no such stage */
+    ck_assert_str_eq(points.point[2].field[hf_ledger_n_column()], "");
+    ck_assert(hf_ledger_next_goal(&form, name, &value) && isnan(value) && !strcmp(name, "goal_0_psi"));
+    ck_assert(hf_ledger_next_goal(&form, name, &value) && value == 0.1 + 0.2 && !strcmp(name, "goal_1_tension_edge"));
+    ck_assert(!hf_ledger_next_goal(&form, name, &value));
+    ck_assert(hf_ledger_next_goal(&polish, name, &value) && value == 5e-324);
+    ck_assert(hf_ledger_next_goal(&polish, name, &value) && value == INFINITY);
+    ck_assert(!hf_ledger_next_goal(&polish, name, &value));
+    hf_points_free(&points);
+    hf_study_free(&s);
+}
+END_TEST
+
+/* Names become those of data sets. */
+START_TEST(damaged_goals_are_none)
+{
+    static const char *const damaged[] = {"psi=1", "goal_0/x=1", "goal_0_psi", "goal_0_psi=", "goal_0_psi=x", "=1", ""};
+    char name[HF_GOAL_NAME_SIZE], longest[2 * HF_GOAL_NAME_SIZE];
+    double value;
+    for (size_t i = 0; i < sizeof damaged / sizeof *damaged; i++)
+        ck_assert(!hf_ledger_next_goal(&(const char *){damaged[i]}, name, &value));
+    snprintf(longest, sizeof longest, "goal_0_%0*d=1", HF_GOAL_NAME_SIZE, 0);
+    ck_assert(!hf_ledger_next_goal(&(const char *){longest}, name, &value));
+    ck_assert_str_eq(hf_ledger_goal_unit("goal_1_tension_mass"), "N");
+    ck_assert_str_eq(hf_ledger_goal_unit("goal_15_mass"), "kg");
+    ck_assert_str_eq(hf_ledger_goal_unit("goal_0_ratio_edge"), "");
+    ck_assert_str_eq(hf_ledger_goal_unit("goal_0_ratios"), "");
+}
+END_TEST
+
 /* Give the file of rows that was just written the name of another process. */
 static void rename_rows(const char *name)
 {
@@ -355,6 +401,8 @@ Suite *suite_unit_ledger(void)
     TCase *tests = tcase_create("ledger");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, numbers_come_back_bit_by_bit);
+    tcase_add_test(tests, goals_come_back);
+    tcase_add_test(tests, damaged_goals_are_none);
     tcase_add_test(tests, a_success_counts_more_than_a_failure);
     tcase_add_loop_test(tests, the_same_row_counts_in_any_order_of_files, 0, 2);
     tcase_add_test(tests, what_others_finish_is_noticed);
