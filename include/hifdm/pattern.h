@@ -55,11 +55,11 @@ typedef struct {
     double *sum;                     /* [HF_PATTERN_BLOCKS][n_cut][6][n_padded] of the blocks */
     double *local, *point;           /* [n_thread] scratch of each room */
     void *block;                     /* owned memory */
-} hf_pattern;
+} hf_far_field;
 
 /* Lay out the sums at one frequency for n_thread rooms. HF_OK or HF_NO_MEMORY; free in any case. */
 hf_status hf_pattern_create(const hf_pattern_settings *settings, const hf_pattern_surface *surface, const hf_feed *feed,
-                            double frequency_Hz, int n_thread, hf_pattern *pattern);
+                            double frequency_Hz, int n_thread, hf_far_field *pattern);
 
 /* Sum block i < HF_PATTERN_BLOCKS of the surface in the scratch of a room; for hf_parallel_each, context: the pattern.
  * The sums are the same in every room. */
@@ -67,9 +67,9 @@ void hf_pattern_sum_block(void *pattern, int room, int i);
 
 /* With all blocks summed: gain over isotropic radiation of the power of the feed, by polarisation after Ludwig's third
  * definition, dBi; co_dBi, cross_dBi [n_cut][n_theta]. */
-void hf_pattern_finish(hf_pattern *pattern, double *co_dBi, double *cross_dBi);
+void hf_pattern_finish(hf_far_field *pattern, double *co_dBi, double *cross_dBi);
 
-void hf_pattern_free(hf_pattern *pattern);
+void hf_pattern_free(hf_far_field *pattern);
 
 /* Of one cut; NaN where the angles do not reach it. */
 typedef struct {
@@ -80,6 +80,27 @@ typedef struct {
 } hf_cut_figures;
 
 hf_cut_figures hf_pattern_figures(int n_theta, const double theta_deg[2], const double *co_dBi);
+
+/* ---- of a shape ---- */
+
+/* Figures of the cuts at all frequencies, in the order of the tables. */
+typedef struct {
+    int n_frequency, n_cut; /* 0: no pattern */
+    double frequency_Hz[HF_LIST_MAX], phi_deg[HF_PATTERN_CUTS];
+    hf_feed feed;
+    hf_cut_figures figure[HF_LIST_MAX * HF_PATTERN_CUTS]; /* [n_frequency][n_cut] */
+} hf_pattern_summary;
+
+/* All angles. */
+typedef struct {
+    int n_frequency, n_cut, n_theta;
+    double *frequency_Hz, *phi_deg, *theta_deg;
+    double *co_dBi, *cross_dBi; /* [n_frequency][n_cut][n_theta] */
+    void *block;                /* owned memory */
+} hf_pattern_table;
+
+hf_status hf_pattern_table_create(int n_frequency, int n_cut, int n_theta, hf_pattern_table *table);
+void hf_pattern_table_free(hf_pattern_table *table);
 
 #ifdef __cplusplus
 }

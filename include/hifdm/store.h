@@ -167,6 +167,12 @@ hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, 
 hf_status hf_store_front(hf_store *store, const hf_scene *scene, const hf_model *model, const hf_summary *summary,
                          const hf_front *front, hf_messages *messages);
 
+/* Write the far field of the shape of a stage, in place of an earlier one. Reading it: HF_IO when there is none; free
+ * the table in any case. */
+hf_status hf_store_pattern(hf_store *store, hf_stage stage, const hf_pattern_table *table,
+                           const hf_pattern_summary *figures, hf_messages *messages);
+hf_status hf_store_read_pattern(const char *path, hf_stage stage, hf_pattern_table *table, hf_messages *messages);
+
 /* Write the shape in the workspace as that of a state of the net as built, with the truss in it (NULL without one). A
  * state that is there already is replaced. */
 hf_status hf_store_built(hf_store *store, const char *name, const hf_model *model, const hf_workspace *workspace,

@@ -8,6 +8,7 @@
 #include <hifdm/cable_set.h>
 #include <hifdm/front.h>
 #include <hifdm/optimiser.h>
+#include <hifdm/pattern.h>
 #include <hifdm/surface.h>
 #include <hifdm/tolerance.h>
 #include <stdbool.h>
@@ -139,6 +140,7 @@ typedef struct {
     char warnings[HF_WARNINGS_SIZE]; /* lines "warning: ..." and "error: ..." */
 
     hf_surface_settings surface;     /* focal_length_m is 0 when the case has no such section */
+    hf_pattern_summary pattern[3];   /* of the same; none without surface.pattern */
     hf_surface_measures measures[3]; /* of the shapes of form, optimize, polish (hf_stage) */
     hf_set_tensions sets[3];         /* of the same; n is 0 of a net without sets, and of a shape that is not there */
     hf_held_limits held[3];          /* of the same */

@@ -117,6 +117,9 @@ hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_facet
 /* Loss of gain by a half-path RMS at a frequency, positive, dB: Ruze's formula (M17). NaN beyond HF_RUZE_MOST_DB. */
 double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz);
 
+/* The same without that bound. */
+double hf_surface_ruze_dB(double half_path_rms_m, double frequency_Hz);
+
 /* The frequency at which that loss is loss_dB, 0 < loss_dB <= HF_RUZE_MOST_DB; INFINITY for an RMS of 0. */
 double hf_surface_frequency_of_loss_Hz(double half_path_rms_m, double loss_dB);
 

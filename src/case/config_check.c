@@ -82,6 +82,26 @@ static bool has_section_of(const hf_case *c, const char *key)
     return true;
 }
 
+static void check_pattern(const hf_case *c, hf_config_faults *f)
+{
+    static const char *const of_feed[] = {"surface.pattern.feed.position_m", "surface.pattern.feed.aim_m",
+                                          "surface.pattern.feed.cos_power"};
+    const hf_pattern_settings *p = &c->surface.pattern;
+    const char *given = "surface.pattern"; /* the section itself has no line, but its keys have */
+    for (int i = hf_n_field - 1; i >= 0; i--)
+        if (!strncmp(hf_field_table[i].path, "surface.pattern.", 16) && *hf_config_where(f, i))
+            given = hf_field_table[i].path;
+    if (c->surface.frequencies_Hz.n == 0)
+        hf_config_fault_of(f, given, "needs surface.frequencies_Hz: at which frequencies is the far field wanted?");
+    if (isinf(p->theta_deg[0]) || isinf(p->theta_deg[1]))
+        hf_config_fault_of(f, "surface.pattern.theta_deg", "must have both ends, like [-5, 5]");
+    if (p->phi_deg.n < 1 || p->phi_deg.n > HF_PATTERN_CUTS)
+        hf_config_fault_of(f, "surface.pattern.phi_deg", "must have 1 to 8 cuts");
+    for (size_t k = 0; k < sizeof of_feed / sizeof *of_feed && p->feed == HF_FEED_PLANE_WAVE; k++)
+        if (hf_config_is_given(f, of_feed[k]))
+            hf_config_fault_of(f, of_feed[k], "has no meaning for a plane_wave, which comes along -z; remove it");
+}
+
 /* Keys of a truss that is not made here have no effect. */
 static void check_unused(const hf_case *c, hf_config_faults *f)
 {
@@ -303,6 +323,7 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
         hf_config_fault_of(f, "surface.focal_length_m",
                            c->has_import ? "is missing: an imported net does not tell its surface"
                                          : "is missing: this net does not tell its surface");
+    if (c->surface.has_pattern && !f->failed) check_pattern(c, f);
     if (!f->failed) check_generators(c, f);
     if ((c->has_truss || c->has_truss_import || c->has_truss_ring) && !f->failed) check_truss(c, f);
     if (!f->failed) hf_config_check_built(c, f);

@@ -66,6 +66,15 @@ static void doubt_focal_length(const hf_case *c, const hf_scene *scene, hf_messa
                place, of.focal_length_m, of.focal_length_m / aperture_m, aperture_m, FOCAL_MOST);
 }
 
+/* What the case leaves open of the feed follows from the wanted surface. */
+static void open_feed(const hf_case *c, hf_pattern_settings *p)
+{
+    char place[PLACE_SIZE];
+    if (!hf_config_place(c, "surface.pattern.feed.position_m", place, sizeof place)) p->position_m[0] = (double)NAN;
+    if (!hf_config_place(c, "surface.pattern.feed.aim_m", place, sizeof place)) p->aim_m[0] = (double)NAN;
+    if (!hf_config_place(c, "surface.pattern.feed.cos_power", place, sizeof place)) p->cos_power = (double)NAN;
+}
+
 hf_status hf_config_surface(const hf_case *c, const hf_scene *scene, hf_surface_settings *surface,
                             hf_messages *messages)
 {
@@ -73,6 +82,7 @@ hf_status hf_config_surface(const hf_case *c, const hf_scene *scene, hf_surface_
     doubt_focal_length(c, scene, messages);
     if (!c->has_surface) return HF_OK;
     *surface = c->surface;
+    open_feed(c, &surface->pattern);
     hf_wanted_fit cylinder = hf_wanted_compare(HF_SURFACE_PARABOLIC_CYLINDER, surface->focal_length_m, scene);
     hf_wanted_fit paraboloid = hf_wanted_compare(HF_SURFACE_PARABOLOID, surface->focal_length_m, scene);
     if (surface->kind == HF_SURFACE_AUTO)

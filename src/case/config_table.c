@@ -16,6 +16,10 @@ const hf_section hf_section_table[] = {
 #undef SECTION
         {"scene.import", AT(has_import), "Any net from two CSV files."},
     {"surface", AT(has_surface), "Measures of the reflecting surface. Without this section there are none."},
+    {"surface.pattern", AT(surface.has_pattern),
+     "The far field by physical optics over the facets, at surface.frequencies_Hz. Without this section there is "
+     "none."},
+    {"surface.pattern.feed", AT(surface.has_pattern), "What illuminates the reflector."},
     {"form", SIZE_MAX, "Form-finding. May be left out: the defaults hold."},
     {"optimize", AT(has_optimize), "Optimisation of the boundary pretensions. Without this section none runs."},
     {"tolerance", AT(has_tolerance),
@@ -79,6 +83,25 @@ const hf_field hf_field_table[] = {
      "flat"},
     {"surface.frequencies_Hz", HF_FIELD_DOUBLE_LIST, AT(surface.frequencies_Hz), HF_ABOVE_ZERO, 1e15, "[]", "Hz", NULL,
      "up to 32, at which the loss of gain is told (Ruze)"},
+
+    {"surface.pattern.theta_deg", HF_FIELD_BOUNDS, AT(surface.pattern.theta_deg), -180, 180, "[-5, 5]", "deg", NULL,
+     "first and last angle from +z of each cut; below 0 on the other side of +z"},
+    {"surface.pattern.n_theta", HF_FIELD_INT, AT(surface.pattern.n_theta), 2, 4001, "721", "", NULL,
+     "angles of each cut, at even steps"},
+    {"surface.pattern.phi_deg", HF_FIELD_DOUBLE_LIST, AT(surface.pattern.phi_deg), -360, 360, "[0, 90]", "deg", NULL,
+     "up to 8 cuts, angles from +x towards +y"},
+    {"surface.pattern.feed.kind", HF_FIELD_WORD, AT(surface.pattern.feed), 0, 0, "auto", "", hf_feed_word,
+     "point; line along y; plane_wave that falls along -z; auto: a line of a parabolic cylinder, a point of a "
+     "paraboloid"},
+    {"surface.pattern.feed.position_m", HF_FIELD_VECTOR, AT(surface.pattern.position_m), -1e9, 1e9, "", "m", NULL,
+     "of a point, or of a line along y through it; default: the focus of the wanted surface"},
+    {"surface.pattern.feed.aim_m", HF_FIELD_VECTOR, AT(surface.pattern.aim_m), -1e9, 1e9, "", "m", NULL,
+     "the point that the feed looks at; default: the middle of the aperture, on the wanted surface"},
+    {"surface.pattern.feed.cos_power", HF_FIELD_DOUBLE, AT(surface.pattern.cos_power), 0, 1e4, "", "", NULL,
+     "q: the field of the feed goes as cos^q of the angle from its axis, its power as cos^(2q); default: 10 dB less at "
+     "the edge of the facets, distances aside"},
+    {"surface.pattern.feed.polarisation", HF_FIELD_WORD, AT(surface.pattern.polarisation), 0, 0, "x", "",
+     hf_polarisation_word, "of the electric field on the axis of the feed; of a line: across it or along it"},
 
     {"form.method", HF_FIELD_WORD, AT(form.method), 0, 0, "auto", "", hf_method_word,
      "auto: newton where it applies, else hifdm; newton: every cable obeys its own law, by Newton on the energy; "

@@ -16,6 +16,14 @@ hf_status hf_export_claim(const hf_export_request *o, const char *path, hf_messa
     return hf_export_claim_file(path, o->force, messages);
 }
 
+hf_status hf_export_claim_in_folder(const hf_export_request *o, const char *name, char path[PATH_MAX],
+                                    hf_messages *messages)
+{
+    if (snprintf(path, PATH_MAX, "%s/%s", o->output, name) >= PATH_MAX)
+        return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
+    return hf_export_claim(o, path, messages);
+}
+
 hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messages)
 {
     char target[HF_FILE_OUT_SIZE];

@@ -36,7 +36,7 @@ typedef struct {
 } hf_exporter;
 
 /* In the order in which help lists them, and in which they are written when one command asks for several. */
-#define HF_EXPORTERS(X) X(csv) X(vtk) X(cutlist) X(front)
+#define HF_EXPORTERS(X) X(csv) X(vtk) X(cutlist) X(front) X(pattern) X(rf)
 
 #define HF_EXPORTER_ROW(name) extern const hf_exporter hf_exporter_##name;
 HF_EXPORTERS(HF_EXPORTER_ROW)
@@ -75,5 +75,9 @@ hf_status hf_export_shape(const hf_export_request *request, hf_export_write_shap
  * false; HF_IO when it is not an ordinary file. The second is for outputs that are not made of a result. */
 hf_status hf_export_claim(const hf_export_request *request, const char *path, hf_messages *messages);
 hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messages);
+
+/* The same of the file `name` in the folder request->output, which sets `path` to it. */
+hf_status hf_export_claim_in_folder(const hf_export_request *request, const char *name, char path[PATH_MAX],
+                                    hf_messages *messages);
 
 #endif

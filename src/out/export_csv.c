@@ -158,22 +158,13 @@ static void write_members(const void *context, FILE *f)
     }
 }
 
-/* Sets `path` to the file `name` in the folder. HF_EXISTS when the file exists and must not be replaced. */
-static hf_status claim_in_folder(const hf_export_request *o, const char *name, char path[PATH_MAX],
-                                 hf_messages *messages)
-{
-    if (snprintf(path, PATH_MAX, "%s/%s", o->output, name) >= PATH_MAX)
-        return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
-    return hf_export_claim(o, path, messages);
-}
-
 static hf_status export_truss(const hf_export_request *o, hf_truss *truss, hf_carrier_state *state, char *said,
                               size_t size, hf_messages *messages)
 {
     char nodes[PATH_MAX], members[PATH_MAX];
     const truss_view both = {truss, state};
-    HF_TRY(claim_in_folder(o, "truss_nodes.csv", nodes, messages));
-    HF_TRY(claim_in_folder(o, "members.csv", members, messages));
+    HF_TRY(hf_export_claim_in_folder(o, "truss_nodes.csv", nodes, messages));
+    HF_TRY(hf_export_claim_in_folder(o, "members.csv", members, messages));
     HF_TRY(hf_store_read_truss(o->file, truss, state, messages));
     if (o->state) {
         hf_carrier_state_free(state);
@@ -193,9 +184,10 @@ static hf_status write_csv(const hf_export_request *o, const hf_export_stored *s
     const hf_scene *scene = &stored->scene;
     char nodes[PATH_MAX], cables[PATH_MAX], facets[PATH_MAX];
     bool is_measured = stored->summary.surface.focal_length_m > 0;
-    HF_TRY(claim_in_folder(o, "nodes.csv", nodes, messages)); /* both names are checked before anything is made */
-    HF_TRY(claim_in_folder(o, "cables.csv", cables, messages));
-    if (is_measured) HF_TRY(claim_in_folder(o, "facets.csv", facets, messages));
+    HF_TRY(hf_export_claim_in_folder(o, "nodes.csv", nodes,
+                                     messages)); /* both names are checked before anything is made */
+    HF_TRY(hf_export_claim_in_folder(o, "cables.csv", cables, messages));
+    if (is_measured) HF_TRY(hf_export_claim_in_folder(o, "facets.csv", facets, messages));
     HF_TRY(hf_file_out_folder(o->output, messages));
     const view both = {scene, &stored->shape};
     HF_TRY(hf_file_out_set_write(o->files, nodes, write_nodes, &both, messages));

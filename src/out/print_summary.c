@@ -259,6 +259,35 @@ static void print_states(const hf_summary *s, FILE *f)
     }
 }
 
+/* A dash, this wide, in place of NaN. */
+static void print_if_finite(const char *format, double value, int width, FILE *f)
+{
+    if (isfinite(value))
+        fprintf(f, format, value);
+    else
+        fprintf(f, "%*s", width, "-");
+}
+
+/* The far field of the result, a line for each frequency and cut. */
+static void print_pattern(const hf_pattern_summary *s, FILE *f)
+{
+    static const char *const of_feed[] = {"", "a point", "a line", "a plane wave"};
+    if (s->n_frequency == 0) return;
+    fprintf(f, "  pattern       %7s %7s %9s %10s %13s %15s %8s   by physical optics, fed by %s", "GHz", "phi deg",
+            "gain dBi", "beam deg", "half power at", "first sidelobe", "highest", of_feed[s->feed.kind]);
+    if (s->feed.kind != HF_FEED_PLANE_WAVE) fprintf(f, ", cos^%.3g", s->feed.cos_power);
+    fputc('\n', f);
+    for (int k = 0; k < s->n_frequency * s->n_cut; k++) {
+        const hf_cut_figures *c = &s->figure[k];
+        fprintf(f, "                %7.4g %7.4g %9.3f %10.4f", s->frequency_Hz[k / s->n_cut] / 1e9,
+                s->phi_deg[k % s->n_cut], c->gain_dBi, c->beam_deg);
+        print_if_finite(" %9.4f deg", c->half_power_width_deg, 14, f);
+        print_if_finite(" %12.2f dB", c->first_sidelobe_dB, 16, f);
+        print_if_finite(" %8.2f", c->highest_sidelobe_dB, 9, f);
+        fputc('\n', f);
+    }
+}
+
 static void print_coupling(const hf_coupling_result *r, FILE *f)
 {
     fprintf(f,
@@ -298,6 +327,7 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
     print_errors(s, result, f);
     if (style.verbose) hf_print_details(s, f);
     if (s->has_front) print_front(s, f);
+    if (result != HF_STAGE_NONE) print_pattern(&s->pattern[result], f);
     print_states(s, f);
     if (s->has_tolerance) hf_print_tolerance(&s->tolerance, style.verbose, f);
     print_end(s, path, style, f);

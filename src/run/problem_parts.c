@@ -6,19 +6,57 @@
 #include "net/symmetry.h"
 #include "net/variables.h"
 #include "search/polish.h"
+#include "solve/facet_rms.h"
 #include "solve/limits.h"
 #include "solve/prestress.h"
 #include <hifdm/evaluate.h>
 #include <hifdm/metrics.h>
 #include <hifdm/optimiser.h>
+#include <hifdm/pattern.h>
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define NAMED_MAX 5 /* cables or chains that a message names */
+#define FACET_LOSS_MOST_DB 1.0 /* of facets that are taken for the surface (METHOD section 13) */
+#define NAMED_MAX 5            /* cables or chains that a message names */
 
 /* ---- from the case to the model ---- */
+
+/* Does the feed see all facets of the theoretical net, and are they small enough to be taken for its surface? */
+static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
+{
+    char place[HF_PATH_SIZE + 128];
+    hf_feed feed;
+    hf_surface_measures m;
+    const hf_facet_shape theory = {.position_m = p->scene.position_m};
+    const hf_double_list *at = &p->surface.frequencies_Hz;
+    double most_Hz = 0;
+    bool is_given = hf_config_place(&p->settings, "surface.pattern.feed.position_m", place, sizeof place);
+    if (!is_given) hf_config_place(&p->settings, "surface.pattern", place, sizeof place);
+    if (p->facets.n_facet == 0)
+        return hf_error(messages, HF_BAD_CASE, "%s: this net has no facets, of which the far field is made", place);
+    int n_dark = hf_feed_make(&p->surface, &p->facets, p->scene.position_m, &feed);
+    if (n_dark > 0)
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: from (%g, %g, %g) m the feed sees %d of %d facets from behind or not at all; it must be "
+                        "above all of them and look at them",
+                        place, feed.position_m[0], feed.position_m[1], feed.position_m[2], n_dark, p->facets.n_facet);
+    for (int k = 0; k < at->n; k++)
+        most_Hz = fmax(most_Hz, at->value[k]);
+    if (hf_facet_measure(&p->surface, &p->facets, &theory, &m) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
+    double loss_dB = hf_surface_ruze_dB(m.facet_fit_half_path_rms_m, most_Hz);
+    if (loss_dB > FACET_LOSS_MOST_DB)
+        hf_warning(
+            messages,
+            "surface.pattern: at %g GHz the facets are coarse: those of the theoretical net alone are off a "
+            "smooth surface by %.3g mm (half path, RMS), which loses %.2g dB into lobes of their own. About %.0f "
+            "facets instead of %d would lose %g dB",
+            most_Hz / 1e9, m.facet_fit_half_path_rms_m * 1e3, loss_dB,
+            ceil(p->facets.n_facet * sqrt(loss_dB / FACET_LOSS_MOST_DB)), p->facets.n_facet, FACET_LOSS_MOST_DB);
+    return HF_OK;
+}
 
 static hf_status find_facets(hf_problem *p, hf_messages *messages)
 {
@@ -26,7 +64,7 @@ static hf_status find_facets(hf_problem *p, hf_messages *messages)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the facets of a net of %d nodes", p->scene.n_node);
     if (!p->facets.is_planar)
         hf_warning(messages, "surface: cables on it cross without a node, seen along z: it has no facets to measure");
-    return HF_OK;
+    return p->surface.has_pattern ? check_pattern(p, messages) : HF_OK;
 }
 
 static void find_key_place(const void *settings, const char *key, char *text, size_t size)

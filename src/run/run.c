@@ -5,6 +5,7 @@
 #include "base/path.h"
 #include "base/text.h"
 #include "run/cases.h"
+#include "run/pattern_stage.h"
 #include "run/no_design.h"
 #include "run/problem_parts.h"
 #include "run/reach.h"
@@ -124,7 +125,7 @@ static hf_status measure_shape(const run *r, hf_stage stage, const hf_workspace 
         hf_warning(messages,
                    "surface: the best fit to the shape of stage %s did not converge in %d steps; it has no value",
                    hf_stage_word[stage], fit->iterations);
-    return HF_OK;
+    return hf_pattern_stage(p, stage, w, r->request->threads, r->store, s, messages);
 }
 
 /* Forces and displacements of the truss, if there is one, under the net of this shape. */

@@ -249,3 +249,14 @@ double hf_facet_mesh_lift_m(const hf_facet_mesh *m, double u, double v, double s
     }
     return sum;
 }
+
+void hf_facet_mesh_lifted(const hf_facet_mesh *m, double u, double v, double p[3], double du[3], double dv[3])
+{
+    double slope[2], lift_m = hf_facet_mesh_lift_m(m, u, v, slope);
+    hf_facet_mesh_at(m, u, v, p, du, dv);
+    for (int d = 0; d < 3; d++) {
+        p[d] += lift_m * m->normal[d];
+        du[d] += slope[0] * m->normal[d];
+        dv[d] += slope[1] * m->normal[d];
+    }
+}

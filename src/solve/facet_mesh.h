@@ -34,6 +34,9 @@ double hf_facet_mesh_lift_m(const hf_facet_mesh *mesh, double u, double v, doubl
 /* The point u, v of the bilinear surface through the corners, and its derivatives by u and v. */
 void hf_facet_mesh_at(const hf_facet_mesh *mesh, double u, double v, double p[3], double du[3], double dv[3]);
 
+/* The same of the mesh, with its bubble_m set. */
+void hf_facet_mesh_lifted(const hf_facet_mesh *mesh, double u, double v, double p[3], double du[3], double dv[3]);
+
 /* The pillow is of first order in N l / T. Above this the mesh outweighs the cable, and the formula says nothing. */
 #define HF_FACET_PULL_MOST 1.0
 

@@ -1,4 +1,4 @@
-/* Contents: points of quadrature - all facets - each facet */
+/* Contents: a shape - points of quadrature - all facets - each facet */
 #include "solve/facet_rms.h"
 
 #include "base/arena.h"
@@ -7,6 +7,23 @@
 
 #include <math.h>
 #include <string.h>
+
+/* ---- a shape ---- */
+
+hf_status hf_facet_shape_take(const hf_model *m, const hf_workspace *w, hf_facet_shape *shape, hf_arena *arena)
+{
+    double *position_m;
+    int *end;
+    HF_TRY(HF_ARENA_MAKE(arena, (position_m = hf_arena_take(arena, 3 * (size_t)m->n_node, sizeof(double)),
+                                 end = hf_arena_take(arena, 2 * (size_t)m->n_cable, sizeof(int)))));
+    for (int k = 0; k < 2 * m->n_cable; k++)
+        end[k] = m->node_of_row[m->end_row[k]];
+    for (int row = 0; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++)
+            position_m[3 * (size_t)m->node_of_row[row] + (size_t)c] = w->position_m[c * m->n_node + row];
+    *shape = (hf_facet_shape){position_m, m->n_cable, end, w->tension_N};
+    return HF_OK;
+}
 
 /* ---- points of quadrature ---- */
 

@@ -3,6 +3,7 @@
 #ifndef HIFDM_FACET_RMS_H
 #define HIFDM_FACET_RMS_H
 
+#include "base/arena.h"
 #include <hifdm/facets.h>
 #include <hifdm/surface.h>
 
@@ -13,6 +14,11 @@ typedef struct {
     const int *end;          /* [n_cable][2] */
     const double *tension_N; /* [n_cable]; NULL, as of the theoretical shape: facets are flat, whatever the mesh */
 } hf_facet_shape;
+
+/* The shape in the workspace; it borrows its tensions. Free the arena in
+ * any case. HF_OK or HF_NO_MEMORY. */
+hf_status hf_facet_shape_take(const hf_model *model, const hf_workspace *workspace, hf_facet_shape *shape,
+                              hf_arena *arena);
 
 /* Gauss-Legendre on [0, 1] for flat facets, exact to the fifth power. */
 enum { HF_FACET_N_FLAT = 3 };

@@ -1,4 +1,4 @@
-/* Contents: orders - layout - a facet - a block - gain - figures of a cut */
+/* Contents: orders - layout - a facet - a block - gain - figures of a cut - tables */
 #include <hifdm/pattern.h>
 
 #include "base/arena.h"
@@ -99,17 +99,17 @@ static void direction_of(double theta, double phi, double to[3])
 }
 
 /* Parts of the range of theta: of angle i, of Chebyshev's node i. */
-static double part_of_angle(const hf_pattern *p, int i)
+static double part_of_angle(const hf_far_field *p, int i)
 {
     return (double)i / (p->settings->n_theta - 1);
 }
 
-static double part_of_node(const hf_pattern *p, int i)
+static double part_of_node(const hf_far_field *p, int i)
 {
     return (1 - hf_cosine(PI * (i + 0.5) / p->n_node)) / 2;
 }
 
-static void fill_directions(const hf_pattern *p, bool are_nodes, int n, int n_padded, double *direction)
+static void fill_directions(const hf_far_field *p, bool are_nodes, int n, int n_padded, double *direction)
 {
     for (int c = 0; c < p->settings->phi_deg.n; c++)
         for (int i = 0; i < n; i++) {
@@ -121,7 +121,7 @@ static void fill_directions(const hf_pattern *p, bool are_nodes, int n, int n_pa
 }
 
 /* Lagrange's polynomials of the nodes at the angles, by their barycentric form. */
-static void fill_between(const hf_pattern *p)
+static void fill_between(const hf_far_field *p)
 {
     for (int a = 0; a < p->settings->n_theta; a++) {
         double total = 0, x = part_of_angle(p, a);
@@ -141,7 +141,7 @@ static int whole_lanes(int n)
     return (n + HF_LANES - 1) / HF_LANES * HF_LANES;
 }
 
-static void lay_out(hf_arena *a, hf_pattern *p)
+static void lay_out(hf_arena *a, hf_far_field *p)
 {
     size_t n_cut = (size_t)p->settings->phi_deg.n, n = (size_t)p->n_padded, n_node = (size_t)p->n_node_padded;
     size_t rooms = (size_t)p->n_thread, table = (GAUSS_MOST + 1) * GAUSS_MOST;
@@ -162,7 +162,7 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void take_facet(const hf_pattern *p, int i, hf_facet_mesh *m)
+static void take_facet(const hf_far_field *p, int i, hf_facet_mesh *m)
 {
     hf_facet_mesh_take(p->surface.facets, i, p->surface.position_m, m);
     if (!p->surface.sag_m) return;
@@ -173,7 +173,7 @@ static void take_facet(const hf_pattern *p, int i, hf_facet_mesh *m)
 /* Half of the phase across facet i, along u and along v, at most: k (direction - toward) along its sides, with the
  * waves that meet its corners, towards LOOKS + 1 angles of each cut and what may be between them. radius_m: of its
  * corners from its middle. */
-static double phase_of(const hf_pattern *p, const hf_facet_mesh *m, double *radius_m)
+static double phase_of(const hf_far_field *p, const hf_facet_mesh *m, double *radius_m)
 {
     double most = 0, longest = 0, middle[3], du[3], dv[3], wave = 2 * PI / p->wavelength_m;
     const hf_pattern_settings *s = p->settings;
@@ -211,18 +211,11 @@ static int pieces_of(double phase, int *order)
 }
 
 /* A point of a facet: its place, and the current 2 n x H there per du dv. Returns the path. */
-static double current_at(const hf_pattern *p, const hf_facet_mesh *m, double u, double v, double place[3], double to[3])
+static double current_at(const hf_far_field *p, const hf_facet_mesh *m, double u, double v, double place[3],
+                         double to[3])
 {
-    double du[3], dv[3], up[3], toward[3], field[3], slope[2];
-    hf_facet_mesh_at(m, u, v, place, du, dv);
-    if (p->surface.sag_m) {
-        double lift_m = hf_facet_mesh_lift_m(m, u, v, slope);
-        for (int d = 0; d < 3; d++) {
-            place[d] += lift_m * m->normal[d];
-            du[d] += slope[0] * m->normal[d];
-            dv[d] += slope[1] * m->normal[d];
-        }
-    }
+    double du[3], dv[3], up[3], toward[3], field[3];
+    (p->surface.sag_m ? hf_facet_mesh_lifted : hf_facet_mesh_at)(m, u, v, place, du, dv);
     hf_cross(du, dv, up);
     double path_m = hf_feed_light(&p->feed, place, toward, field), lit = dot(toward, up) < 0 ? 2 : 0;
     hf_cross(up, field, to);
@@ -233,7 +226,7 @@ static double current_at(const hf_pattern *p, const hf_facet_mesh *m, double u, 
 
 /* The points of a piece, whose corner of least u and v is a and b, of `size` along both. Returns their number, middle
  * and path of it in wavelengths. */
-static int put_points(const hf_pattern *p, const hf_facet_mesh *m, double a, double b, double size, int order,
+static int put_points(const hf_far_field *p, const hf_facet_mesh *m, double a, double b, double size, int order,
                       double *point, double middle[3], double *path)
 {
     int n = order * order;
@@ -257,12 +250,12 @@ static int put_points(const hf_pattern *p, const hf_facet_mesh *m, double a, dou
 
 /* ---- a block ---- */
 
-static int first_of(const hf_pattern *p, int i)
+static int first_of(const hf_far_field *p, int i)
 {
     return (int)((long)p->surface.facets->n_facet * i / HF_PATTERN_BLOCKS);
 }
 
-static void sum_piece(const hf_pattern *p, int n_point, const double *point, const double middle[3], double path,
+static void sum_piece(const hf_far_field *p, int n_point, const double *point, const double middle[3], double path,
                       double *local, double *sum)
 {
     const kernels *kernel = &kernels_of_isa[hf_lane_best_isa()];
@@ -277,7 +270,7 @@ static void sum_piece(const hf_pattern *p, int n_point, const double *point, con
 
 void hf_pattern_sum_block(void *pattern, int room, int i)
 {
-    const hf_pattern *p = pattern;
+    const hf_far_field *p = pattern;
     double *local = p->local + (ptrdiff_t)room * 6 * p->n_node_padded;
     double *point = p->point + (ptrdiff_t)room * HF_PATTERN_POINT * GAUSS_MOST * GAUSS_MOST;
     double *sum = p->sum + (ptrdiff_t)i * p->settings->phi_deg.n * 6 * p->n_padded;
@@ -296,11 +289,11 @@ void hf_pattern_sum_block(void *pattern, int room, int i)
 }
 
 hf_status hf_pattern_create(const hf_pattern_settings *s, const hf_pattern_surface *surface, const hf_feed *feed,
-                            double frequency_Hz, int n_thread, hf_pattern *p)
+                            double frequency_Hz, int n_thread, hf_far_field *p)
 {
     double radius_m, widest_m = 0, half = RAD_PER_DEG * (s->theta_deg[1] - s->theta_deg[0]) / 2;
     hf_arena arena = {0};
-    *p = (hf_pattern){.settings = s, .surface = *surface, .feed = *feed, .n_thread = n_thread};
+    *p = (hf_far_field){.settings = s, .surface = *surface, .feed = *feed, .n_thread = n_thread};
     p->wavelength_m = LIGHT_M_PER_S / frequency_Hz;
     for (int i = 0; i < surface->facets->n_facet; i++) {
         hf_facet_mesh m;
@@ -324,11 +317,11 @@ hf_status hf_pattern_create(const hf_pattern_settings *s, const hf_pattern_surfa
     return HF_OK;
 }
 
-void hf_pattern_free(hf_pattern *p)
+void hf_pattern_free(hf_far_field *p)
 {
     hf_arena arena = {.block = p->block};
     hf_arena_free(&arena);
-    *p = (hf_pattern){0};
+    *p = (hf_far_field){0};
 }
 
 /* ---- gain ---- */
@@ -355,7 +348,7 @@ static double in_dB(double scale, const double vector[3], const double *sum, ptr
     return DB_PER_LN * hf_logarithm(fmax(scale * (re * re + im * im), 1e-300));
 }
 
-void hf_pattern_finish(hf_pattern *p, double *co_dBi, double *cross_dBi)
+void hf_pattern_finish(hf_far_field *p, double *co_dBi, double *cross_dBi)
 {
     const hf_pattern_settings *s = p->settings;
     const ptrdiff_t n = p->n_padded, all = 6 * n * s->phi_deg.n;
@@ -423,4 +416,32 @@ hf_cut_figures hf_pattern_figures(int n, const double theta_deg[2], const double
     f.first_sidelobe_dB = isfinite(first) ? first - f.gain_dBi : (double)NAN;
     f.highest_sidelobe_dB = isfinite(highest) ? highest - f.gain_dBi : (double)NAN;
     return f;
+}
+
+/* ---- tables ---- */
+
+static void lay_out_table(hf_arena *a, hf_pattern_table *t)
+{
+    size_t n = (size_t)t->n_frequency * (size_t)t->n_cut * (size_t)t->n_theta;
+    t->frequency_Hz = hf_arena_take(a, (size_t)t->n_frequency, sizeof(double));
+    t->phi_deg = hf_arena_take(a, (size_t)t->n_cut, sizeof(double));
+    t->theta_deg = hf_arena_take(a, (size_t)t->n_theta, sizeof(double));
+    t->co_dBi = hf_arena_take(a, n, sizeof(double));
+    t->cross_dBi = hf_arena_take(a, n, sizeof(double));
+}
+
+hf_status hf_pattern_table_create(int n_frequency, int n_cut, int n_theta, hf_pattern_table *t)
+{
+    hf_arena arena = {0};
+    *t = (hf_pattern_table){.n_frequency = n_frequency, .n_cut = n_cut, .n_theta = n_theta};
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_table(&arena, t)));
+    t->block = arena.block;
+    return HF_OK;
+}
+
+void hf_pattern_table_free(hf_pattern_table *t)
+{
+    hf_arena arena = {.block = t->block};
+    hf_arena_free(&arena);
+    *t = (hf_pattern_table){0};
 }

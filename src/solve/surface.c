@@ -14,9 +14,15 @@
 
 /* ---- loss of gain ---- */
 
+double hf_surface_ruze_dB(double half_path_rms_m, double frequency_Hz)
+{
+    double phase = 4 * PI * half_path_rms_m * frequency_Hz / LIGHT_M_PER_S;
+    return DB_PER_SQUARE * phase * phase;
+}
+
 double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz)
 {
-    double phase = 4 * PI * half_path_rms_m * frequency_Hz / LIGHT_M_PER_S, loss_dB = DB_PER_SQUARE * phase * phase;
+    double loss_dB = hf_surface_ruze_dB(half_path_rms_m, frequency_Hz);
     return loss_dB <= HF_RUZE_MOST_DB ? loss_dB : (double)NAN;
 }
 
@@ -90,18 +96,10 @@ static void collect(const hf_surface_settings *s, const hf_model *m, const hf_wo
 static hf_status measure_facets(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
                                 const hf_workspace *w, hf_surface_measures *to)
 {
-    double *position_m;
-    int *end;
     hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, (position_m = hf_arena_take(&arena, 3 * (size_t)m->n_node, sizeof(double)),
-                                  end = hf_arena_take(&arena, 2 * (size_t)m->n_cable, sizeof(int)))));
-    for (int k = 0; k < 2 * m->n_cable; k++)
-        end[k] = m->node_of_row[m->end_row[k]];
-    for (int row = 0; row < m->n_node; row++)
-        for (int c = 0; c < 3; c++)
-            position_m[3 * (size_t)m->node_of_row[row] + (size_t)c] = w->position_m[c * m->n_node + row];
-    const hf_facet_shape shape = {position_m, m->n_cable, end, w->tension_N};
-    hf_status status = hf_facet_measure(s, facets, &shape, to);
+    hf_facet_shape shape;
+    hf_status status = hf_facet_shape_take(m, w, &shape, &arena);
+    if (status == HF_OK) status = hf_facet_measure(s, facets, &shape, to);
     hf_arena_free(&arena);
     return status;
 }

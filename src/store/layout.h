@@ -120,6 +120,12 @@ void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_put_measures(hf_hdf5 *io, const char *path, int n_frequency, const hf_surface_measures *measures);
 void hf_layout_get_measures(hf_hdf5 *io, const char *path, int n_frequency, hf_surface_measures *measures);
 
+/* layout_pattern: the far field, /pattern/STAGE: attributes of the feed; frequency_Hz [f], phi_deg [c], theta_deg [t];
+ * co_dBi, cross_dBi [f][c][t]; the members of hf_cut_figures [f][c]. Nothing without surface.pattern. */
+void hf_layout_write_pattern(hf_hdf5 *io, int stage, const hf_pattern_table *table, const hf_pattern_summary *figures);
+void hf_layout_get_pattern(hf_hdf5 *io, hf_summary *summary);
+void hf_layout_read_pattern(hf_hdf5 *io, int stage, hf_pattern_table *table);
+
 /* layout_cases: figures of the states of the net as built:
  *   /cases             name [n] of the states, in the order of the case
  *   /cases/NAME        attributes: figures of HF_RESULT_LIST, coupling_..., HF_STATE_LIST; below it `surface`, as

@@ -328,6 +328,17 @@ hf_status hf_store_front(hf_store *s, const hf_scene *scene, const hf_model *m, 
     return hf_hdf5_unlock(s->f.io.status);
 }
 
+hf_status hf_store_pattern(hf_store *s, hf_stage stage, const hf_pattern_table *table,
+                           const hf_pattern_summary *figures, hf_messages *messages)
+{
+    if (!s) return HF_OK;
+    hf_hdf5_lock();
+    s->f.io.messages = messages;
+    hf_store_file_open(&s->f);
+    hf_layout_write_pattern(&s->f.io, stage, table, figures);
+    return hf_hdf5_unlock(s->f.io.status);
+}
+
 /* ---- generations ---- */
 
 /* What each gene of optimize.variables is: its row there, and the support that it moves. */

@@ -85,6 +85,7 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     if (summary->has_optimize) hf_layout_get_summary(&io, HF_LAYOUT_GA, summary);
     get_status(&io, summary);
     hf_layout_get_surface(&io, summary);
+    hf_layout_get_pattern(&io, summary);
     hf_layout_get_sets(&io, summary);
     hf_layout_get_held(&io, summary);
     hf_layout_get_goals(&io, summary);
@@ -116,6 +117,17 @@ hf_status hf_store_read_front(const char *path, hf_front *front, char **gene, si
         free(*gene);
         *gene = NULL;
     }
+    return hf_hdf5_unlock(io.status);
+}
+
+hf_status hf_store_read_pattern(const char *path, hf_stage stage, hf_pattern_table *table, hf_messages *messages)
+{
+    *table = (hf_pattern_table){0};
+    hf_hdf5_lock();
+    hf_hdf5 io = hf_store_open_result(path, messages);
+    if (io.status == HF_OK) hf_layout_read_pattern(&io, stage, table);
+    hf_hdf5_close_file(&io);
+    if (io.status != HF_OK) hf_pattern_table_free(table);
     return hf_hdf5_unlock(io.status);
 }
 

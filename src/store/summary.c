@@ -120,6 +120,28 @@ static void write_surface(const hf_summary *s, const hf_surface_measures *m, hf_
     hf_json_close(j, '}');
 }
 
+/* The member "pattern" of a stage: an object for each frequency and cut; nothing without surface.pattern. */
+static void write_pattern(const hf_pattern_summary *s, hf_json *j)
+{
+    if (s->n_frequency == 0) return;
+    hf_json_line(j, "  ");
+    hf_json_open(j, "pattern", '[');
+    for (int k = 0; k < s->n_frequency * s->n_cut; k++) {
+        const hf_cut_figures *f = &s->figure[k];
+        hf_json_line(j, "   ");
+        hf_json_open(j, NULL, '{');
+        hf_json_number(j, "frequency_Hz", s->frequency_Hz[k / s->n_cut]);
+        hf_json_number(j, "phi_deg", s->phi_deg[k % s->n_cut]);
+        hf_json_number(j, "gain_dBi", f->gain_dBi);
+        hf_json_number(j, "beam_deg", f->beam_deg);
+        hf_json_number(j, "half_power_width_deg", f->half_power_width_deg);
+        hf_json_number(j, "first_sidelobe_dB", f->first_sidelobe_dB);
+        hf_json_number(j, "highest_sidelobe_dB", f->highest_sidelobe_dB);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
 /* The member "sets" of a stage: an object for each named set of cables. */
 static void write_sets(const hf_set_tensions *s, hf_json *j)
 {
@@ -190,6 +212,7 @@ static void write_form(const hf_summary *s, hf_json *j)
     hf_json_text(j, "stop_reason", hf_stop_reason_word((int)s->form.stop_reason));
     write_fields(ALL(form_field), 1, LAST_PLACE, s, j);
     write_surface(s, &s->measures[0], j);
+    write_pattern(&s->pattern[0], j);
     write_sets(&s->sets[0], j);
     write_goals(s, &s->form, j);
     hf_json_close(j, '}');
@@ -208,6 +231,7 @@ static void write_optimize(const hf_summary *s, hf_json *j)
     write_result(&s->best, j);
     write_fields(ALL(ga_field), 1, LAST_PLACE, s, j);
     write_surface(s, &s->measures[1], j);
+    write_pattern(&s->pattern[1], j);
     write_sets(&s->sets[1], j);
     write_held(&s->held[1], j);
     write_goals(s, &s->best, j);
@@ -220,6 +244,7 @@ static void write_polish(const hf_summary *s, hf_json *j)
     write_result(&s->polish, j);
     write_fields(ALL(polish_field), 1, LAST_PLACE, s, j);
     write_surface(s, &s->measures[2], j);
+    write_pattern(&s->pattern[2], j);
     write_sets(&s->sets[2], j);
     write_held(&s->held[2], j);
     write_goals(s, &s->polish, j);

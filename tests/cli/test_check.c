@@ -93,7 +93,11 @@ START_TEST(schema_is_yaml_with_every_key)
         "set(a['scene']['paraboloid']) == {'aperture_m', 'focal_length_m', 'offset_m', 'rings', 'grid', 'spacing', "
         "'rear_distance_m', 'rear_focal_length_m', 'tie_direction', 'tie_law', 'tie_tension_N'}",
         "set(a['scene']['import']) == {'nodes', 'cables', 'facets'}",
-        "a['surface'] == {'kind': 'auto', 'frequencies_Hz': [], 'mesh_tension_N_per_m': 0}",
+        "{k: v for k, v in a['surface'].items() if k != 'pattern'} == {'kind': 'auto', 'frequencies_Hz': [], "
+        "'mesh_tension_N_per_m': 0}",
+        "a['surface']['pattern'] == {'theta_deg': [-5, 5], 'n_theta': 721, 'phi_deg': [0, 90], 'feed': {'kind': "
+        "'auto', "
+        "'polarisation': 'x'}}",
         "set(a['form']) == {'method', 'pretension_N', 'prestress', 'stop', 'residual_tolerance', 'length_tolerance', "
         "'rms_tolerance_m', 'max_iterations', 'collapse_ratio'}",
         "set(a['optimize']) == {'method', 'symmetry', 'solver', 'polish_iterations', 'compare_lm', 'rule', "
@@ -136,7 +140,7 @@ START_TEST(schema_with_its_gaps_filled_is_a_case)
     SHELL(0, "\"$0\" schema | sed -e '/^  import:/,/^    facets:/d' -e '/^  paraboloid:/,/^    tie_tension_N:/d' "
              "-e '/^tolerance:/,/^truss:/{/^truss:/!d}' -e "
              "'/^  ring:/,/^  import:/d' -e "
-             "'s/aperture_m:/& 2/' -e 's/ length_m:/& 3/' "
+             "'s/frequencies_Hz: \\[\\]/frequencies_Hz: [1e9]/' -e 's/aperture_m:/& 2/' -e 's/ length_m:/& 3/' "
              "-e 's/ focal_length_m:/& 2/' -e 's/modules:/& [2, 3]/' -e 's/cells_per_module:/& [2, 2]/' -e 's/scallop: "
              "0/scallop: 0.1/'");
     const char *path = file_with("filled.yaml", said.out);

@@ -150,7 +150,7 @@ START_TEST(what_cannot_be_exported_is_told)
     HIFDM(2, "export", lm, "--csv", csv, "--stage", "optimize");
     ERR("this run has no optimised shape; use --stage polish");
     HIFDM(2, "export", form_only);
-    ERR("error: 'hifdm export' needs --csv DIR, --vtk DIR, --cutlist FILE or --front FILE\n");
+    ERR("error: 'hifdm export' needs --csv DIR, --vtk DIR, --cutlist FILE, --front FILE, --pattern FILE or --rf DIR\n");
     HIFDM(2, "export", form_only, "--csv", csv, "--stage", "best");
     ERR("error: --stage must be form, optimize or polish, not 'best'\n");
     HIFDM(5, "export", temp("missing.h5"), "--csv", csv);

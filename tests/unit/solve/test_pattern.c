@@ -63,7 +63,7 @@ static void add_rectangle(double x, double y, double z, double width, double hei
 static void solve(int n_thread)
 {
     hf_feed feed;
-    hf_pattern p;
+    hf_far_field p;
     const hf_pattern_surface surface = {&s.facets, s.position_m, NULL};
     ck_assert_int_eq(hf_feed_make(&s.surface, &s.facets, s.position_m, &feed), 0);
     ck_assert_int_eq(hf_pattern_create(&s.surface.pattern, &surface, &feed, LIGHT_M_PER_S, n_thread, &p), HF_OK);
@@ -406,7 +406,7 @@ END_TEST
 START_TEST(memory_may_fail)
 {
     hf_feed feed;
-    hf_pattern p;
+    hf_far_field p;
     begin(HF_FEED_AUTO, -5, 5, N_ANGLE);
     add_paraboloid(2, 20, 16);
     const hf_pattern_surface surface = {&s.facets, s.position_m, NULL};

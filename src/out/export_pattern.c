@@ -1,0 +1,46 @@
+/* Writes the far field of a shape as one CSV file:
+ *
+ * frequency_Hz,phi_deg,theta_deg,co_dBi,cross_dBi
+ *
+ * Numbers have 17 significant digits. */
+#include "out/export.h"
+
+#include <string.h>
+
+static void write_pattern(const void *context, FILE *f)
+{
+    const hf_pattern_table *t = context;
+    const int n = t->n_cut * t->n_theta;
+    fputs("frequency_Hz,phi_deg,theta_deg,co_dBi,cross_dBi\n", f);
+    for (int k = 0; k < t->n_frequency * n; k++)
+        fprintf(f, "%.17g,%.17g,%.17g,%.17g,%.17g\n", t->frequency_Hz[k / n], t->phi_deg[k % n / t->n_theta],
+                t->theta_deg[k % t->n_theta], t->co_dBi[k], t->cross_dBi[k]);
+}
+
+static hf_status export_pattern(const hf_export_request *o, char *said, size_t size, hf_messages *messages)
+{
+    hf_summary summary;
+    hf_pattern_table table;
+    HF_TRY(hf_export_claim(o, o->output, messages));
+    HF_TRY(hf_store_read_summary(o->file, &summary, messages));
+    hf_stage stage = hf_store_result_stage(&summary);
+    for (int i = 0; o->stage && i < HF_STAGE_NONE; i++)
+        if (!strcmp(o->stage, hf_stage_word[i])) stage = (hf_stage)i;
+    if (stage == HF_STAGE_NONE || summary.pattern[stage].n_frequency == 0)
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: there is no far field of this shape: its case has no surface.pattern", o->file);
+    HF_TRY(hf_store_read_pattern(o->file, stage, &table, messages));
+    hf_status status = hf_file_out_set_write(o->files, o->output, write_pattern, &table, messages);
+    snprintf(said, size, "%s: far field at %d frequencies in %d cuts of %d angles in %s", o->file, table.n_frequency,
+             table.n_cut, table.n_theta, o->output);
+    hf_pattern_table_free(&table);
+    return status;
+}
+
+const hf_exporter hf_exporter_pattern = {
+    .option = "--pattern",
+    .argument = "FILE",
+    .help = "write the far field of surface.pattern as a CSV file: gain by frequency, cut and angle",
+    .takes_stage = true,
+    .write = export_pattern,
+};

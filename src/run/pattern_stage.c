@@ -1,0 +1,77 @@
+#include "run/pattern_stage.h"
+
+#include "search/parallel.h"
+#include "solve/facet_mesh.h"
+#include <hifdm/pattern.h>
+
+#include <string.h>
+
+/* One frequency, into its part of the table. */
+static hf_status solve(const hf_problem *p, const hf_pattern_surface *surface, const hf_feed *feed, int i, int n_thread,
+                       hf_pattern_table *t)
+{
+    hf_far_field pattern;
+    const hf_pattern_settings *s = &p->surface.pattern;
+    const size_t at = (size_t)i * (size_t)(t->n_cut * t->n_theta);
+    hf_status status = hf_pattern_create(s, surface, feed, t->frequency_Hz[i], n_thread, &pattern);
+    if (status == HF_OK) {
+        hf_parallel_each(n_thread, HF_PATTERN_BLOCKS, hf_pattern_sum_block, &pattern);
+        hf_pattern_finish(&pattern, t->co_dBi + at, t->cross_dBi + at);
+    }
+    hf_pattern_free(&pattern);
+    return status;
+}
+
+static void sum_up(const hf_pattern_settings *s, const hf_pattern_table *t, const hf_feed *feed, hf_pattern_summary *to)
+{
+    *to = (hf_pattern_summary){.n_frequency = t->n_frequency, .n_cut = t->n_cut, .feed = *feed};
+    memcpy(to->frequency_Hz, t->frequency_Hz, (size_t)t->n_frequency * sizeof(double));
+    memcpy(to->phi_deg, t->phi_deg, (size_t)t->n_cut * sizeof(double));
+    for (int k = 0; k < t->n_frequency * t->n_cut; k++)
+        to->figure[k] = hf_pattern_figures(t->n_theta, s->theta_deg, t->co_dBi + (size_t)k * (size_t)t->n_theta);
+}
+
+static hf_status solve_all(const hf_problem *p, const hf_pattern_surface *surface, int n_thread, hf_pattern_table *t,
+                           hf_pattern_summary *to)
+{
+    const hf_pattern_settings *s = &p->surface.pattern;
+    const hf_double_list *frequencies = &p->surface.frequencies_Hz;
+    hf_feed feed;
+    HF_TRY(hf_pattern_table_create(frequencies->n, s->phi_deg.n, s->n_theta, t));
+    memcpy(t->frequency_Hz, frequencies->value, (size_t)frequencies->n * sizeof(double));
+    memcpy(t->phi_deg, s->phi_deg.value, (size_t)s->phi_deg.n * sizeof(double));
+    for (int i = 0; i < s->n_theta; i++)
+        t->theta_deg[i] = s->theta_deg[0] + (s->theta_deg[1] - s->theta_deg[0]) * i / (s->n_theta - 1);
+    hf_feed_make(&p->surface, &p->facets, p->scene.position_m, &feed);
+    for (int i = 0; i < frequencies->n; i++)
+        HF_TRY(solve(p, surface, &feed, i, n_thread, t));
+    sum_up(s, t, &feed, to);
+    return HF_OK;
+}
+
+hf_status hf_pattern_stage(const hf_problem *p, hf_stage stage, const hf_workspace *w, int n_thread, hf_store *store,
+                           hf_summary *summary, hf_messages *messages)
+{
+    hf_arena arena = {0}, sags = {0};
+    hf_facet_shape shape;
+    hf_pattern_table table = {0};
+    hf_pattern_summary *to = &summary->pattern[stage];
+    double pull_ratio = 0, mesh_N_per_m = p->surface.mesh_tension_N_per_m, *sag_m = NULL;
+    if (!p->surface.has_pattern) return HF_OK;
+    if (n_thread <= 0) n_thread = hf_parallel_cores();
+    hf_status status = hf_facet_shape_take(&p->model, w, &shape, &arena);
+    if (status == HF_OK && mesh_N_per_m > 0) {
+        status = HF_ARENA_MAKE(&sags, sag_m = hf_arena_take(&sags, 4 * (size_t)p->facets.n_facet, sizeof(double)));
+        if (status == HF_OK) status = hf_facet_mesh_sags(mesh_N_per_m, &p->facets, &shape, sag_m, &pull_ratio);
+    }
+    if (status == HF_OK && pull_ratio <= HF_FACET_PULL_MOST) {
+        const hf_pattern_surface surface = {&p->facets, shape.position_m, sag_m};
+        status = solve_all(p, &surface, n_thread, &table, to);
+    }
+    if (status != HF_OK) hf_error(messages, status, "out of memory for the far field");
+    if (status == HF_OK && table.block) status = hf_store_pattern(store, stage, &table, to, messages);
+    hf_pattern_table_free(&table);
+    hf_arena_free(&sags);
+    hf_arena_free(&arena);
+    return status;
+}
