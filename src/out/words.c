@@ -249,6 +249,19 @@ static const hf_word told[] = {
     {"version", "figure", "", "Of the program that made the result.", NULL},
     {"case", "figure", "", "The case file.", NULL},
     {"file", "figure", "", "The result file.", NULL},
+    {"pattern", "object", "", "The far field of the shape by surface.pattern: an object for each frequency and cut.",
+     NULL},
+    {"phi_deg", "figure of pattern", "deg", "Where the cut is, from +x towards +y.", NULL},
+    {"gain_dBi", "figure of pattern", "dBi",
+     "Highest gain of the cut over isotropic radiation of the power of the feed: taper, spillover and errors of the "
+     "surface are in it, losses of mesh and feed are not.",
+     NULL},
+    {"beam_deg", "figure of pattern", "deg", "Theta of it, from +z; below 0 on the other side of +z.", NULL},
+    {"half_power_width_deg", "figure of pattern", "deg",
+     "Width of the beam at half of its power; null where the angles do not reach it, as the next two.", NULL},
+    {"first_sidelobe_dB", "figure of pattern", "dB", "The higher one of the two beside the beam, below the beam.",
+     NULL},
+    {"highest_sidelobe_dB", "figure of pattern", "dB", "The highest of the cut, below the beam.", NULL},
     {"warnings", "figure", "", "What the run warned of; `hifdm explain` takes such a text, too.", NULL},
     {"kind", "figure", "", "Of the surface: parabolic_cylinder or paraboloid.", NULL},
     {"frequency_Hz", "figure", "Hz", "Where the losses of gain are told: surface.frequencies_Hz.", NULL},
@@ -329,6 +342,11 @@ static const hf_word told[] = {
      "The mesh pulls so much on cables that figures of first order mean less: raise the tension of the cables, lower "
      "surface.mesh_tension_N_per_m, or make facets smaller.",
      "the mesh pulls on a cable"},
+    {"coarse_facets", "warning", "",
+     "The far field is that of the facets, whatever the shape: their errors make lobes at the angles of their period. "
+     "Use "
+     "a finer net, or a lower frequency.",
+     "the facets are coarse"},
     {"fit_failed", "warning", "",
      "The nodes do not tell a best fit: too few of them, or a shape far from the wanted kind of surface. Its figures "
      "are left out.",

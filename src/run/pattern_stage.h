@@ -6,8 +6,8 @@
 #include <hifdm/store.h>
 
 /* Find the pattern of the shape in the workspace at all frequencies on n_thread threads (0: all cores), with the feed
- * of the theoretical net; its figures go into the summary, all of it into the store (NULL: nowhere). A shape whose cables
- * cannot hold the mesh has none. HF_OK, HF_NO_MEMORY, or an error of the store, with a message. */
+ * of the theoretical net; its figures go into the summary, all of it into the store (NULL: nowhere). A shape whose
+ * cables cannot hold the mesh has none. HF_OK, HF_NO_MEMORY, or an error of the store, with a message. */
 hf_status hf_pattern_stage(const hf_problem *problem, hf_stage stage, const hf_workspace *workspace, int n_thread,
                            hf_store *store, hf_summary *summary, hf_messages *messages);
 
