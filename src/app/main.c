@@ -8,6 +8,7 @@
 #include "base/signals.h"
 #include "linalg/band.h"
 #include "out/print.h"
+#include "out/words.h"
 #include <hifdm/batch.h>
 #include <hifdm/store.h>
 
@@ -78,6 +79,20 @@ static void say_in_colours(const char *lines)
     }
 }
 
+/* Where people read: which words `hifdm explain` knows of these messages, and of a status that speaks of the net. */
+static void say_where_to_read_on(const char *lines, hf_status status)
+{
+    int n = 0;
+    for (int i = 0; i < hf_n_word; i++) {
+        const hf_word w = hf_word_at(i);
+        bool is_status = status != HF_OK && (hf_status_exit_code(status) == 3 || hf_status_exit_code(status) == 4) &&
+                         !strcmp(w.kind, "what to do") && !strcmp(w.word, hf_status_word(status));
+        if (!is_status && !(w.says && strstr(lines, w.says))) continue;
+        fprintf(stderr, "%s%s", n++ ? ", " : "`hifdm explain WORD` tells more: ", w.word);
+    }
+    if (n) fputc('\n', stderr);
+}
+
 /* Messages need memory, too: a failure is never silent. */
 static void say(const hf_messages *messages, hf_status status)
 {
@@ -85,6 +100,7 @@ static void say(const hf_messages *messages, hf_status status)
         say_in_colours(messages->text);
     else if (messages->text)
         hf_output_write(STDERR_FILENO, messages->text, strlen(messages->text));
+    if (messages->text && isatty(STDERR_FILENO)) say_where_to_read_on(messages->text, status);
     if (hf_status_exit_code(status) == hf_status_exit_code(HF_NO_MEMORY) &&
         (!messages->text || !strstr(messages->text, "error: ")))
         fprintf(stderr, "error: %s\n", hf_status_text(status));

@@ -136,6 +136,26 @@ START_TEST(explain_helps_with_slips)
 }
 END_TEST
 
+/* On a terminal, where people read. */
+START_TEST(messages_say_where_to_read_on)
+{
+    SHELL(0, "command -v script >/dev/null && echo yes || true", "");
+    if (!strstr(said.out, "yes")) {
+        skip_for_tool("cli/begin: messages on a terminal", "no script");
+        return;
+    }
+    const char *chen = keep(source_path("configs/straight-edges.yaml"));
+    SHELL(4, "script -qec \"\\\"$0\\\" run \\\"$1\\\" -o \\\"$2\\\" --set form.stop=residual\" /dev/null", chen,
+          temp("c.h5"));
+    OUT("`hifdm explain WORD` tells more: straight_chain, loaded_chains\r\n");
+    SHELL(0, "script -qec \"\\\"$0\\\" run \\\"$1\\\" -o \\\"$2\\\" --set optimize.generations=1\" /dev/null", chen,
+          temp("c.h5"));
+    OUT("`hifdm explain WORD` tells more: stopped_early, loaded_chains\r\n");
+    HIFDM(0, "show", temp("c.h5"));
+    ck_assert_ptr_null(strstr(said.err, "explain"));
+}
+END_TEST
+
 Suite *suite_cli_begin(void)
 {
     Suite *suite = suite_create("cli/begin");
@@ -144,6 +164,7 @@ Suite *suite_cli_begin(void)
     tcase_add_test(tcase, nothing_is_replaced);
     tcase_add_test(tcase, every_word_is_explained);
     tcase_add_test(tcase, explain_helps_with_slips);
+    tcase_add_test(tcase, messages_say_where_to_read_on);
     suite_add_tcase(suite, tcase);
     return suite;
 }
