@@ -251,37 +251,48 @@ static hf_status linearise(adjustment *a)
 
 /* ---- the choice ---- */
 
+/* Back to `steps`, with half the range. HF_MOVES_NONE when no range is left and nothing was chosen. */
+static hf_status draw_in(adjustment *a, hf_adjustment *found, hf_moves_end end)
+{
+    double figure_m;
+    a->problem.steps_max /= 2;
+    found->is_settled = a->problem.steps_max == 0;
+    if (found->is_settled && found->adjusted_m < found->estimated_m) found->end = end;
+    return found->is_settled ? HF_OK : solve_steps(a, a->steps, &figure_m);
+}
+
 /* Into a->steps, 0 on entry: choices by the linear model of the last shape, as long as their own shapes are better.
- * After one that leaves cables slack the range of the next is half as large. */
+ * After one that leaves cables slack, has no shape or, as the first one, is no better, the range of the next is half as
+ * large: as far as that the model does not hold. */
 static hf_status choose(adjustment *a, hf_adjustment *found)
 {
     double figure_m;
     HF_TRY(solve_steps(a, a->steps, &figure_m));
     found->adjusted_m = found->estimated_m = figure_m;
+    found->end = HF_MOVES_NONE;
     a->n_slack = count_slack(a);
-    while (found->n_round < ROUNDS_MAX) {
+    while (found->n_round < ROUNDS_MAX && !found->is_settled) {
         hf_moves_end end;
-        hf_status status = linearise(a);
+        hf_status status = a->is_current ? HF_OK : linearise(a);
         if (status == HF_SINGULAR) return HF_OK; /* the net has no stiffness there to go on with */
         HF_TRY(status);
+        found->n_round += !a->is_current;
         a->is_current = true;
         HF_TRY(hf_moves_choose(&a->problem, a->trial, &end));
-        if (found->n_round++ == 0) found->end = end;
         found->is_settled = memcmp(a->trial, a->steps, a->n * sizeof *a->trial) == 0;
+        if (found->is_settled) found->end = end;
         if (found->is_settled) return HF_OK;
         status = solve_steps(a, a->trial, &figure_m);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-        if (status == HF_OK && count_slack(a) > a->n_slack) {
-            found->is_held_taut = true;
-            a->problem.steps_max /= 2;
-            if (a->problem.steps_max == 0) found->end = HF_MOVES_NONE;
-            found->is_settled = a->problem.steps_max == 0;
-            if (found->is_settled) return HF_OK;
-            HF_TRY(solve_steps(a, a->steps, &figure_m));
+        bool is_slack = status == HF_OK && count_slack(a) > a->n_slack, is_better = figure_m < found->adjusted_m;
+        bool is_first = found->adjusted_m == found->estimated_m;
+        found->is_held_taut |= is_slack;
+        if (status != HF_OK || is_slack || (is_first && !is_better)) {
+            HF_TRY(draw_in(a, found, end));
             continue;
         }
-        found->is_settled = status == HF_OK && !(figure_m < found->adjusted_m);
-        if (status != HF_OK || found->is_settled) return HF_OK;
+        found->is_settled = !is_better;
+        if (found->is_settled) return HF_OK;
         found->adjusted_m = figure_m;
         found->end = end;
         memcpy(a->steps, a->trial, a->n * sizeof *a->trial);

@@ -118,6 +118,8 @@ START_TEST(no_cable_is_let_out_until_it_is_slack)
           "adjust.set=boundary");
     OUT("moves stay so small that no further cable goes slack");
     SHELL(0, "awk -F, 'NR > 1 && !($6 > 0.01) { bad = 1 } END { exit bad || NR < 2 }' \"$1\"", moves);
+    HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.range_m=100");
+    OUT("psi after 3 moves");
 }
 END_TEST
 
