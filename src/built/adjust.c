@@ -251,16 +251,6 @@ static hf_status linearise(adjustment *a)
 
 /* ---- the choice ---- */
 
-/* Back to `steps`, with half the range. HF_MOVES_NONE when no range is left and nothing was chosen. */
-static hf_status draw_in(adjustment *a, hf_adjustment *found, hf_moves_end end)
-{
-    double figure_m;
-    a->problem.steps_max /= 2;
-    found->is_settled = a->problem.steps_max == 0;
-    if (found->is_settled && found->adjusted_m < found->estimated_m) found->end = end;
-    return found->is_settled ? HF_OK : solve_steps(a, a->steps, &figure_m);
-}
-
 /* Into a->steps, 0 on entry: choices by the linear model of the last shape, as long as their own shapes are better.
  * After one that leaves cables slack, has no shape or, as the first one, is no better, the range of the next is half as
  * large: as far as that the model does not hold. */
@@ -288,7 +278,8 @@ static hf_status choose(adjustment *a, hf_adjustment *found)
         bool is_first = found->adjusted_m == found->estimated_m;
         found->is_held_taut |= is_slack;
         if (status != HF_OK || is_slack || (is_first && !is_better)) {
-            HF_TRY(draw_in(a, found, end));
+            a->problem.steps_max /= 2;
+            found->is_settled = a->problem.steps_max == 0;
             continue;
         }
         found->is_settled = !is_better;

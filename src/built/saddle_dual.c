@@ -8,10 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-#define WEAK 2.5e-5        /* weight that stands in for none: of moves 200 times the largest error of a length */
+#define WEAK 2.5e-7        /* weight that stands in for none: of moves 2000 times the largest error of a length */
 #define REFINEMENTS_MAX 20 /* steps; a probe that takes more is for the other way */
 #define REFINED 1e-12      /* of the right-hand side: residual of a probe */
-#define ENOUGH 1e-14       /* of the right-hand side: no more steps */
+#define ENOUGH 1e-13       /* of the right-hand side: no more steps */
 
 /* ---- making ---- */
 
