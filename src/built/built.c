@@ -2,6 +2,7 @@
 #include <hifdm/built.h>
 
 #include "base/arena.h"
+#include "net/cable_pick.h"
 #include <hifdm/metrics.h>
 
 #include <assert.h>
@@ -25,24 +26,14 @@ static void lay_out(hf_arena *arena, const hf_scene *s, hf_built *b)
 /* HF_BAD_CASE with a message for each kind of cable that cannot be cut: those without EA, by group, and struts. */
 static hf_status refuse_cables(const char *where, const hf_scene *s, const hf_workspace *w, hf_messages *messages)
 {
-    int n[3] = {0}, first[3] = {0};
-    for (int e = 0; e < s->n_cable; e++) {
-        bool has_EA = s->EA_N && s->EA_N[e] > 0;
-        int kind = w->tension_N[e] < 0 ? 2 : s->group[e];
-        if (has_EA && kind < 2) continue;
-        if (n[kind]++ == 0) first[kind] = e;
-    }
-    for (int g = 0; g < 2; g++)
-        if (n[g])
-            hf_error(messages, HF_BAD_CASE,
-                     "%s: %d %s cables have no EA, which the net as built needs, like '%s': give scene.EA_%s_N, or the "
-                     "column EA_N of an imported net",
-                     where, n[g], hf_group_word[g], s->cable_id[first[g]], hf_group_word[g]);
-    if (n[2])
-        hf_error(messages, HF_BAD_CASE,
-                 "%s: %d cables push, like '%s' with %.3g N: the net as built has cables alone, no struts", where, n[2],
-                 s->cable_id[first[2]], w->tension_N[first[2]]);
-    return n[0] + n[1] + n[2] ? HF_BAD_CASE : HF_OK;
+    int n = 0, first = 0;
+    hf_status status = hf_cable_demand_EA(s, where, "the net as built needs", "", messages);
+    for (int e = 0; e < s->n_cable; e++)
+        if (w->tension_N[e] < 0 && n++ == 0) first = e;
+    if (n == 0) return status;
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: %d cables push, like '%s' with %.3g N: the net as built has cables alone, no struts", where, n,
+                    s->cable_id[first], w->tension_N[first]);
 }
 
 /* Supports rest where the design has them; attachments where they are before the truss gives way. */

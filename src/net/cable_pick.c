@@ -70,3 +70,18 @@ int hf_cable_pick_some(const hf_scene *s, const char *set, const char *where, in
                  where, set, sets);
     return 0;
 }
+
+hf_status hf_cable_demand_EA(const hf_scene *s, const char *where, const char *who_needs, const char *then,
+                             hf_messages *messages)
+{
+    int n[2] = {0}, first[2] = {0};
+    for (int e = 0; e < s->n_cable; e++)
+        if (!(s->EA_N && s->EA_N[e] > 0) && n[s->group[e]]++ == 0) first[s->group[e]] = e;
+    for (int g = 0; g < 2; g++)
+        if (n[g])
+            hf_error(messages, HF_BAD_CASE,
+                     "%s: %d %s cables have no EA, which %s, like '%s': give scene.EA_%s_N, or the column EA_N of an "
+                     "imported net%s",
+                     where, n[g], hf_group_word[g], who_needs, s->cable_id[first[g]], hf_group_word[g], then);
+    return n[0] + n[1] ? HF_BAD_CASE : HF_OK;
+}

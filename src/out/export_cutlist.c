@@ -18,6 +18,7 @@
 #include "base/csv.h"
 #include "base/file_out.h"
 #include "base/path.h"
+#include "net/cable_pick.h"
 #include "out/cut.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
@@ -91,24 +92,6 @@ static void write_totals(const void *context, FILE *f)
         write_total(context, group, f);
 }
 
-/* Checks that every cable has an EA: HF_BAD_CASE with the group of the cables that have none. */
-static hf_status demand_EA(const char *path, const hf_scene *s, hf_messages *messages)
-{
-    int n[2] = {0}, first[2] = {0};
-    for (int e = 0; e < s->n_cable; e++) {
-        if (s->EA_N && s->EA_N[e] > 0) continue;
-        if (n[s->group[e]]++ == 0) first[s->group[e]] = e;
-    }
-    for (int g = 0; g < 2; g++)
-        if (n[g])
-            hf_error(
-                messages, HF_BAD_CASE,
-                "%s: %d %s cables have no EA, which cut lengths need, like '%s': give scene.EA_%s_N, or the column "
-                "EA_N of an imported net, and run again",
-                path, n[g], hf_group_word[g], s->cable_id[first[g]], hf_group_word[g]);
-    return n[0] + n[1] ? HF_BAD_CASE : HF_OK;
-}
-
 /* Makes the three names: NAME.csv, NAME_nodes.csv, NAME_totals.csv. */
 static hf_status name_files(const hf_export_request *o, char path[3][PATH_MAX], hf_messages *messages)
 {
@@ -126,7 +109,7 @@ static hf_status write_cutlist(const hf_export_request *o, const hf_export_store
 {
     const hf_scene *scene = &stored->scene;
     char path[3][PATH_MAX];
-    HF_TRY(demand_EA(o->file, scene, messages));
+    HF_TRY(hf_cable_demand_EA(scene, o->file, "cut lengths need", ", and run again", messages));
     HF_TRY(name_files(o, path, messages)); /* all names are checked before any file is written */
     const view v = {scene, &stored->shape, hf_model_reference_N(scene, stored->summary.pretension_N)};
     HF_TRY(hf_file_out_set_write(o->files, path[0], write_cables, &v, messages));

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/sha256.h"
+#include "net/cable_pick.h"
 #include "store/samples.h"
 #include "store/store_tolerance.h"
 
@@ -80,19 +81,9 @@ static void place_section(const hf_case *c, char *place, size_t size)
 
 static hf_status check_EA(const hf_problem *p, hf_messages *messages)
 {
-    const hf_scene *s = &p->scene;
     char place[HF_PATH_SIZE + 128];
-    int n[2] = {0}, first[2] = {0};
-    for (int e = 0; e < s->n_cable; e++)
-        if (!(s->EA_N && s->EA_N[e] > 0) && n[s->group[e]]++ == 0) first[s->group[e]] = e;
     place_section(&p->settings, place, sizeof place);
-    for (int g = 0; g < 2; g++)
-        if (n[g])
-            hf_error(messages, HF_BAD_CASE,
-                     "%s: %d %s cables have no EA, which errors of nets as built need, like '%s': give scene.EA_%s_N, "
-                     "or the column EA_N of an imported net",
-                     place, n[g], hf_group_word[g], s->cable_id[first[g]], hf_group_word[g]);
-    return n[0] + n[1] ? HF_BAD_CASE : HF_OK;
+    return hf_cable_demand_EA(&p->scene, place, "errors of nets as built need", "", messages);
 }
 
 /* Struts that the laws tell of; those that other laws lead to show after form-finding alone. */
