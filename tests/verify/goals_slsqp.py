@@ -8,6 +8,7 @@ import os
 import subprocess
 import sys
 
+import figures
 import h5py
 import numpy as np
 import scipy.optimize
@@ -162,6 +163,9 @@ def compare(program, folder, random, on_truss):
     print(f"{len(design)} force densities, {name}: merit {start:.6e} -> {merit:.6e} (psi {1e3 * psi:.4f} mm, "
           f"{largest:.4e}) in {polish['polish_iterations']} steps, {n_held} tensions held; "
           f"SLSQP gains {gain:.1e} from there, ends {from_base:+.1e} from the same start")
+    what = f"{len(design)} force densities, psi and {name}"
+    figures.worst(abs(own - merit) / merit, 1e-9, f"{what}: merit of the optimum, in parts of it")
+    figures.worst(max(gain, 0), GAIN_MOST, f"{what}: what SLSQP gains there, in parts of the merit")
     wrong = [what for what, is_wrong in [
         ("merit differs", abs(own - merit) > 1e-9 * merit),
         ("goals differ", np.abs(goal / [psi, largest] - 1).max() > 1e-8), ("not converged", polish["polish_stop"] != 0),

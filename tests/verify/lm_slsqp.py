@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 
+import figures
 import h5py
 import numpy as np
 import scipy.optimize
@@ -181,6 +182,9 @@ def compare(program, folder, random):
     print(f"{len(T)} pretensions, {given} {rule}, cap {cap:.4f}: psi {1e3 * start:.6f} -> {1e3 * psi:.6f} mm in "
           f"{polish['polish_iterations']} steps, ratio {T.max() / T.min():.6f}; SLSQP gains {gain:.1e} "
           f"from there, ends {from_base:+.1e} from the same start")
+    net_is = f"{len(T)} pretensions, {given} {rule}"
+    figures.worst(abs(own - psi) / psi, 1e-9, f"{net_is}: psi of the optimum, in parts of it")
+    figures.worst(max(gain, 0), GAIN_MOST, f"{net_is}: what SLSQP gains there, in parts of psi")
     wrong = [what for what, is_wrong in [
         ("psi differs", abs(own - psi) > 1e-9 * psi), ("not converged", polish["polish_stop"] != 0),
         ("above the cap", T.max() / T.min() > cap * (1 + 1e-9)), ("SLSQP gains", gain > GAIN_MOST),

@@ -6,7 +6,7 @@ import subprocess
 from reference import plain as escaped
 from split import Page
 
-SUITES = "verify cli/reflectors cli/tolerance"
+SUITES = "verify cli/reflectors cli/tolerance cli/limits cli/trade"
 
 
 def measured(make, file):
@@ -34,7 +34,7 @@ def said_on_top(path):
     """The first comment, or docstring, of a test: its title, and its paragraphs in Markdown."""
     text = open(path, encoding="utf-8").read()
     if path.endswith(".py"):
-        top = re.match(r'(?:#[^\n]*\n)*"""(.*?)"""', text, re.S)[1]
+        top = re.match(r'(?:#[^\n]*\n)*"""(?:\w+\.py [A-Z_ ]+: )?(.*?)"""', text, re.S)[1]
     else:
         top = re.sub(r"(?m)^ \* ?", "", re.match(r"/\* (.*?)\*/", text, re.S)[1])
     paragraphs = [p.strip("\n") for p in top.split("\n\n") if not re.match(r"\s+\w+\.py ", p)]  # how it is called
