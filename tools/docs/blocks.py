@@ -34,7 +34,9 @@ def prepare(folder, program):
             os.symlink(path, f"{names}/{name}")
     for name in ("configs", "tools"):
         os.symlink(os.path.abspath(name), f"{folder}/{name}")
-    return {**os.environ, "PATH": f"{os.path.abspath(names)}:{os.environ['PATH']}", "LC_ALL": "C.UTF-8"}
+    library = os.path.join(os.path.dirname(os.path.abspath(program)), "libhifdm.so")
+    return {**os.environ, "PATH": f"{os.path.abspath(names)}:{os.environ['PATH']}", "LC_ALL": "C.UTF-8",
+            "PYTHONPATH": os.path.abspath("tools/python"), "HIFDM_LIBRARY": library, "PYTHONDONTWRITEBYTECODE": "1"}
 
 
 def commands(lines):
