@@ -89,19 +89,21 @@ class Links:
     def rewritten(self, page):
         """The lines of a page with links to pages of the manual; to a file that is no page only the words are left."""
 
+        def to(name, anchor=""):
+            return os.path.relpath(name, os.path.dirname(page.name)) + ".md" + ("#" + anchor if anchor else "")
+
         def link(match):
             words, target = match[1], match[2]
             if target.startswith("page:"):  # one that is made
-                return f"[{words}](/{target[5:]}.md)"
+                return f"[{words}]({to(target[5:])})"
             if re.match(r"[a-z]+:", target):
                 return match[0]
             path, _, anchor = target.partition("#")
             path = os.path.normpath(os.path.join(os.path.dirname(page.source), path)) if path else page.source
             if path == "README.md":
-                return f"[{words}](/index.md)"
+                return f"[{words}]({to('index')})"
             if (path, anchor) in self.place:
-                name, at = self.place[path, anchor]
-                return f"[{words}](/{name}.md{'#' + at if at else ''})"
+                return f"[{words}]({to(*self.place[path, anchor])})"
             if (path, "") in self.place or not os.path.exists(path):
                 raise SystemExit(f"{page.source}: a link to {target}, which is not there")
             return words
