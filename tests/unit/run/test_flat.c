@@ -1,0 +1,112 @@
+/* The flat interface: a net of arrays with each allocation failing once, and what is said without a case. What it
+ * computes is held to the program in tests/python. */
+#include "support.h"
+
+#include <hifdm/flat.h>
+#include <hifdm/status.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A square on four supports, its rim a boundary: one gene for each of the eight outer cables. */
+static const double position_m[][3] = {{-2, 0, 0.5}, {2, 0, 0.5},   {0, -2, -0.5}, {0, 2, -0.5}, {-1, 0, 0.2},
+                                       {1, 0, 0.2},  {0, -1, -0.2}, {0, 1, -0.2},  {0, 0, 0}};
+static const unsigned char role[] = {0, 0, 0, 0, 1, 1, 1, 1, 1};
+static const int end[][2] = {{0, 4}, {1, 5}, {2, 6}, {3, 7}, {4, 8}, {5, 8}, {6, 8}, {7, 8}};
+static const unsigned char group[] = {1, 1, 1, 1, 0, 0, 0, 0}, law[8] = {0};
+static const double load_N[9][3] = {[8] = {0, 0, -0.1}};
+static const char *const node_id[] = {"a", "b", "c", "d", "e", "f", "g", "h", "i"};
+static const char *const set_name[] = {"x", "y"};
+static const int set_start[] = {0, 2, 4}, set_cable[] = {4, 5, 6, 7};
+static const char text[] =
+    "scene: {import: {nodes: nodes.csv, cables: cables.csv}}\nform: {pretension_N: 10, residual_tolerance: 1e-12}\n";
+enum { N_DESIGN = 3, N_GENE = 4 };
+
+/* Everything once; the first status that is not HF_OK. psi_m: of the last design. */
+static int work(hf_flat *flat, double *psi_m)
+{
+    double design[N_DESIGN * N_GENE], figure[16 * N_DESIGN], slope[N_DESIGN * N_GENE];
+    hf_flat_nodes(flat, 9, position_m[0], role, load_N[0], node_id);
+    hf_flat_cables(flat, 8, end[0], group, law, NULL, NULL, NULL);
+    hf_flat_sets(flat, 2, set_name, set_start, set_cable);
+    int status = hf_flat_open_net(flat, "arrays", text, 0, NULL, 1);
+    if (status == HF_OK) status = hf_flat_form(flat);
+    if (status != HF_OK) return status;
+    hf_flat_reals(flat, "base", design);
+    for (int i = N_GENE; i < N_DESIGN * N_GENE; i++)
+        design[i] = design[i - N_GENE] * 1.01;
+    status = hf_flat_evaluate(flat, N_DESIGN, design, figure);
+    if (status == HF_OK) status = hf_flat_slopes(flat, N_DESIGN, design, slope);
+    if (status == HF_OK) status = hf_flat_shape(flat, design);
+    *psi_m = figure[N_DESIGN + N_DESIGN - 1];
+    if (status == HF_OK && figure[0] != HF_OK) status = (int)figure[0];
+    return status == HF_OK ? hf_flat_run(flat, NULL, 0, NULL, NULL) : status;
+}
+
+START_TEST(every_allocation_may_fail)
+{
+    double first_m = NAN, psi_m = NAN;
+    int n_refused = 0;
+    for (long n = 0;; n++) { /* n = 0: none fails */
+        int status = HF_NO_MEMORY;
+        fail_allocation_at(n ? n : 1L << 40);
+        hf_flat *flat = hf_flat_create();
+        if (flat) status = work(flat, &psi_m);
+        bool failed = end_allocation_failure();
+        char said[256] = "out of memory";
+        if (flat) snprintf(said, sizeof said, "%s", hf_flat_said(flat));
+        if (status == HF_OK) ck_assert_ptr_nonnull(hf_flat_text(flat, "summary", 0));
+        hf_flat_free(flat);
+        if (n == 0) first_m = psi_m;
+        if (status == HF_OK)
+            ck_assert_double_eq_tol(psi_m, first_m, 1e-9);
+        else
+            ck_assert_msg(status == HF_NO_MEMORY && strstr(said, "out of memory"), "allocation %ld: %s: %s", n,
+                          hf_status_word((hf_status)status), said);
+        n_refused += status != HF_OK;
+        ck_assert_msg(n > 0 || status == HF_OK, "%s", said);
+        if (n > 0 && !failed) break;
+    }
+    ck_assert_int_ge(n_refused, 30);
+}
+END_TEST
+
+START_TEST(what_is_read_has_its_size)
+{
+    hf_flat *flat = hf_flat_create();
+    double psi_m;
+    ck_assert_int_eq(hf_flat_form(flat), HF_BAD_USAGE);
+    ck_assert_str_eq(hf_flat_said(flat), "error: open a case first\n");
+    ck_assert_ptr_null(hf_flat_text(flat, "node_id", 0));
+    ck_assert_int_eq(hf_flat_reals(flat, "base", NULL), 0);
+    ck_assert_msg(work(flat, &psi_m) == HF_OK, "%s", hf_flat_said(flat));
+    ck_assert_int_eq(hf_flat_reals(flat, "position_m", NULL), 27);
+    ck_assert_int_eq(hf_flat_reals(flat, "base", NULL), N_GENE);
+    ck_assert_int_eq(hf_flat_reals(flat, "EA_N", NULL), 0);
+    ck_assert_int_eq(hf_flat_reals(flat, "nothing", NULL), -1);
+    ck_assert_int_eq(hf_flat_ints(flat, "set_start", NULL), 3);
+    ck_assert_int_eq(hf_flat_ints(flat, "nothing", NULL), -1);
+    ck_assert_str_eq(hf_flat_text(flat, "gene", 3), "3");
+    ck_assert_str_eq(hf_flat_text(flat, "node_id", 8), "i");
+    ck_assert_ptr_null(hf_flat_text(flat, "node_id", 9));
+    ck_assert_ptr_null(hf_flat_text(flat, "gene", N_GENE));
+    ck_assert_str_eq(hf_flat_text(flat, "slope", 0), "psi_m");
+    ck_assert_int_eq(hf_flat_open(flat, "again.yaml", 0, NULL, 1), HF_BAD_USAGE);
+    hf_flat_free(flat);
+    ck_assert_int_eq(hf_flat_code("law", "elastic"), 3);
+    ck_assert_int_eq(hf_flat_code("law", "spring"), -1);
+    ck_assert_str_eq(hf_flat_word("phase", 3), "tolerance");
+    ck_assert_ptr_null(hf_flat_word("phase", 4));
+}
+END_TEST
+
+Suite *suite_unit_flat(void)
+{
+    Suite *suite = suite_create("unit/run/flat");
+    TCase *tests = tcase_create("flat");
+    suite_add_tcase(suite, tests);
+    tcase_add_test(tests, every_allocation_may_fail);
+    tcase_add_test(tests, what_is_read_has_its_size);
+    return suite;
+}
