@@ -220,10 +220,12 @@ literal: setup ## the paper's literal evaluation of an individual beside the def
 # folder.
 bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/PROCESSOR (4 minutes)
 	$(Q)tools/setup.sh --bench || tools/setup.sh
-	$(SUB) $(PROGRAM) $(BENCH)
+	$(SUB) $(PROGRAM) $(SHARED) $(BENCH)
 	@mkdir -p $(BENCH_OUT)
 	$(PYTHON) tools/bench/run.py --driver $(BENCH) --program $(PROGRAM) --work $(BUILD)/bench --out $(BENCH_OUT) \
 	    --rounds $(BENCH_ROUNDS) --flags $(call quote,$(COMPILER); $(CFLAGS) $(LANGUAGE) $(CODEGEN))
+	HIFDM_LIBRARY=$(abspath $(SHARED)) PYTHONPATH=tools/python PYTHONDONTWRITEBYTECODE=1 \
+	    $(PYTHON) tools/bench/python_batch.py --program $(PROGRAM) --work $(BUILD)/bench
 
 # COMMIT=... is another one than 2161b94, OPENBLAS=.../libblas.so.3 the BLAS for both, CASES="FILE..." more nets.
 COMMIT ?= 2161b94
