@@ -10,7 +10,8 @@
 
 #define POINT_DATA "/VTKHDF/PointData"
 #define CELL_DATA "/VTKHDF/CellData"
-#define LINKS_MAX 1000 /* of a group: 3 for each of HF_STATES_MAX states and of 5 shapes, and a few more */
+#define PACKED_MIN 4096 /* bytes; a chunk of its own takes 2 KiB of tables */
+#define LINKS_MAX 1000  /* of a group: 3 for each of HF_STATES_MAX states and of 5 shapes, and a few more */
 
 /* ---- cells ---- */
 
@@ -30,15 +31,30 @@ static void put_type(hf_hdf5 *io, hid_t group)
     hf_hdf5_close(io, type);
 }
 
-/* Numbers of one byte: as what VTK's reader expects the types of cells. */
-static void put_bytes(hf_hdf5 *io, hid_t group, const char *name, int n, const void *values, const char *description)
+/* Properties of a data set of n values, packed when they are many: what is written here only repeats or counts. */
+static hid_t make_properties(hid_t type, hsize_t n)
 {
+    hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+    if (properties >= 0 && (H5Pset_obj_track_times(properties, 0) < 0 ||
+                            (n * H5Tget_size(type) >= PACKED_MIN && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0 &&
+                             (H5Pset_chunk(properties, 1, &n) < 0 || H5Pset_shuffle(properties) < 0 ||
+                              H5Pset_deflate(properties, 1) < 0)))) {
+        H5Pclose(properties);
+        return -1;
+    }
+    return properties;
+}
+
+/* type: H5T_NATIVE_UCHAR, which VTK's reader expects of the types of cells, or H5T_NATIVE_INT */
+static void put_packed(hf_hdf5 *io, hid_t group, const char *name, hid_t type, int n, const void *values,
+                       const char *description)
+{
+    const hsize_t dims = (hsize_t)n;
     hid_t space = -1, properties = -1, data_set = -1;
     if (io->status != HF_OK) return;
-    if ((space = H5Screate_simple(1, &(hsize_t){(hsize_t)n}, NULL)) < 0 ||
-        (properties = H5Pcreate(H5P_DATASET_CREATE)) < 0 || H5Pset_obj_track_times(properties, 0) < 0 ||
-        (data_set = H5Dcreate2(group, name, H5T_NATIVE_UCHAR, space, H5P_DEFAULT, properties, H5P_DEFAULT)) < 0 ||
-        H5Dwrite(data_set, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
+    if ((space = H5Screate_simple(1, &dims, NULL)) < 0 || (properties = make_properties(type, dims)) < 0 ||
+        (data_set = H5Dcreate2(group, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT)) < 0 ||
+        H5Dwrite(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
         hf_hdf5_fail(io, "write", group, name);
     hf_hdf5_close(io, properties);
     hf_hdf5_close(io, space);
@@ -60,24 +76,24 @@ static hid_t make_group(hf_hdf5 *io, const char *path)
     return group;
 }
 
-static void put_numbers(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_kind *kind, int n, const void *values)
+static void put_count(hf_hdf5 *io, hid_t group, const char *name, long count)
 {
-    const hf_hdf5_array array = {name, kind, 1, {(hsize_t)n}, "", ""};
-    hf_hdf5_write_array(io, group, &array, values);
+    const hf_hdf5_array array = {name, HF_KIND_LONG, 1, {1}, "", ""};
+    hf_hdf5_write_array(io, group, &array, &count);
 }
 
 void hf_vtkhdf_put_cells(hf_hdf5 *io, const hf_vtkhdf_cells *c)
 {
-    const long n_point = c->n_point, n_cell = c->n_cell, n_corner = c->offset[c->n_cell], version[2] = {1, 0};
+    const int n_corner = c->offset[c->n_cell];
     hid_t group = make_group(io, "/VTKHDF");
-    hf_hdf5_put(io, group, ".", "Version", HF_KIND_LONG, 2, version);
+    hf_hdf5_put(io, group, ".", "Version", HF_KIND_LONG, 2, (const long[]){1, 0});
     put_type(io, group);
-    put_numbers(io, group, "NumberOfPoints", HF_KIND_LONG, 1, &n_point);
-    put_numbers(io, group, "NumberOfCells", HF_KIND_LONG, 1, &n_cell);
-    put_numbers(io, group, "NumberOfConnectivityIds", HF_KIND_LONG, 1, &n_corner);
-    put_numbers(io, group, "Connectivity", HF_KIND_INT, (int)n_corner, c->corner);
-    put_numbers(io, group, "Offsets", HF_KIND_INT, c->n_cell + 1, c->offset);
-    put_bytes(io, group, "Types", c->n_cell, c->type, "");
+    put_count(io, group, "NumberOfPoints", c->n_point);
+    put_count(io, group, "NumberOfCells", c->n_cell);
+    put_count(io, group, "NumberOfConnectivityIds", n_corner);
+    put_packed(io, group, "Connectivity", H5T_NATIVE_INT, n_corner, c->corner, "");
+    put_packed(io, group, "Offsets", H5T_NATIVE_INT, c->n_cell + 1, c->offset, "");
+    put_packed(io, group, "Types", H5T_NATIVE_UCHAR, c->n_cell, c->type, "");
     hf_hdf5_close(io, group);
     hf_hdf5_close(io, make_group(io, POINT_DATA));
     hf_hdf5_close(io, make_group(io, CELL_DATA));
@@ -157,7 +173,7 @@ static void copy_numbers(hf_hdf5 *io, const char *from, const hf_hdf5_kind *kind
     const hf_hdf5_array array = {.name = from, .kind = kind, .rank = 1, .dims = {(hsize_t)n}};
     hf_hdf5_read_array(io, io->file, &array, values);
     hid_t place = hf_hdf5_open_group(io, group);
-    put_bytes(io, place, name, n, values, description);
+    put_packed(io, place, name, H5T_NATIVE_UCHAR, n, values, description);
     hf_hdf5_close(io, place);
 }
 
