@@ -85,7 +85,7 @@ static const section section_table[] = {{"step", bench_step},     {"peak", bench
                                         {"growth", bench_growth}, {"population", bench_population},
                                         {"whole", bench_whole},   {"frame", bench_frame},
                                         {"lanes", bench_lanes},   {"cases", bench_cases},
-                                        {"built", bench_built}};
+                                        {"built", bench_built},   {"pattern", bench_pattern}};
 
 int main(int argc, char **argv)
 {

@@ -42,6 +42,7 @@ PICTURE = {
 BOUND = "its proven bound"
 BUILT_NET = "21x25 f=7.2 as built"
 BUILT_MM = ["0.01", "0.03", "0.1", "0.5"]  # errors of cut lengths of the net as built
+PATTERN_DEG = ["2", "5"]  # ends of the 721 angles of the far field
 SCALES = {1: 3, 2: 3, 4: 3, 8: 2, 16: 1}  # nets of the cost growth: rounds, fewer for those that take seconds
 BIG = "scene.parabolic_cylinder.cells_per_module=[4,4]"
 # Arguments of the program. The polish is not what is measured here, and takes long.
@@ -194,6 +195,10 @@ class Bench:
             for sigma in BUILT_MM:
                 self.driver("built", sigma)
                 self.peers("built", sigma)
+            self.say("the far field")
+            for to_deg in PATTERN_DEG:
+                self.driver("pattern", to_deg)
+                self.peers("pattern", to_deg)
             self.say("cost growth")
             for scale, rounds in SCALES.items():
                 if r < rounds:
@@ -303,6 +308,9 @@ class Bench:
                    "largest true position error (m)", "\n".join(self.head), columns=1,
                    styles={"scipy, residual 1e-8": "mark"})
 
+    def write_pattern(self):
+        self.wide("pattern", "pattern", ["wall_s", "points", "difference"], ("reflector", "method", "to_deg"))
+
     def write_step(self):
         base, rows = self.samples.any("step", KERNEL_NET, "dpbtrf", "time_s"), []
         for scene, method, n_free in self.samples.keys("step"):
@@ -377,8 +385,8 @@ class Bench:
         os.makedirs(self.out, exist_ok=True)
         self.head = self.header()
         self.wide("frame", "frame", ["time_s", "half_bandwidth"], ("truss", "what", "unknowns"))
-        for name in ("precision", "single", "equilibrium", "built", "step", "peak", "growth", "phases", "stages",
-                     "lanes", "population"):
+        for name in ("precision", "single", "equilibrium", "built", "pattern", "step", "peak", "growth",
+                     "phases", "stages", "lanes", "population"):
             getattr(self, f"write_{name}")()
         rows = list(summary(self.samples))
         self.table("summary", ["figure", "wanted", f"measured on {self.processor}"], rows)
