@@ -36,6 +36,10 @@ hf_status hf_built_make(const char *where, const hf_scene *scene, const hf_model
                         const hf_workspace *workspace, hf_built *built, hf_messages *messages);
 void hf_built_free(hf_built *built);
 
+/* The same net for another design of the same model: what hf_built_make makes of it. HF_OK, or HF_BAD_CASE when cables
+ * push; then nothing has changed. */
+hf_status hf_built_renew(const hf_model *model, const hf_workspace *workspace, hf_built *built);
+
 /* In what one net differs from the nominal one. NULL: in nothing of the kind. */
 typedef struct {
     const double *cut_m;          /* [n_cable] unstressed lengths, at the temperature that the net has */

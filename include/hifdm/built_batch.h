@@ -21,9 +21,10 @@ enum {
 /* The shape of one sample, by row; valid during the call of hf_built_take. Of a sample whose status gives no shape
  * (hf_status_has_shape) the values mean nothing. */
 typedef struct {
-    const double *position_m;   /* [3][n_node] */
-    const double *tension_N;    /* [n_cable] */
-    const unsigned char *loose; /* [n_node] 1: no taut cable holds this node; all 0 unless the result has n_loose */
+    const double *position_m;     /* [3][n_node] */
+    const double *tension_N;      /* [n_cable] */
+    const unsigned char *loose;   /* [n_node] 1: no taut cable holds this node; all 0 unless the result has n_loose */
+    const double *displacement_m; /* [3 n_attachment] of the attachments by the truss */
 } hf_built_shape;
 
 /* Make sample i: change the nominal values in cut_m [n_cable], EA_N [n_cable], and the zeros in support_move_m
@@ -43,6 +44,12 @@ typedef struct hf_built_batch hf_built_batch;
 hf_status hf_built_batch_create(const hf_built *built, int n_thread, hf_built_batch **batch);
 void hf_built_batch_free(hf_built_batch *batch);
 int hf_built_batch_threads(const hf_built_batch *batch);
+
+/* After hf_built_renew, of a batch of one thread. HF_OK or HF_NO_MEMORY. */
+hf_status hf_built_batch_renew(hf_built_batch *batch);
+
+/* Solve one net, which may have loads of its own, in this thread: the workspace of the first one holds its shape. */
+const hf_workspace *hf_built_batch_find(hf_built_batch *batch, const hf_built_net *net, hf_form_result *result);
 
 /* Make, solve and take samples first to first + n - 1: all of them, unless built->stop says to leave. `varies`: 0 or
  * flags HF_BUILT_VARIES_... A sample's bits depend on its own values alone: neither on the number of threads, nor on

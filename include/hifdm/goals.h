@@ -20,10 +20,43 @@ extern "C" {
 
 typedef struct {
     hf_goal_settings wanted;
-    int n_cable; /* of its set */
-    int *cable;  /* [n_cable] ascending; NULL where the goal has no set */
-    int n_row;   /* its residuals */
+    int n_cable;          /* of its set */
+    int *cable;           /* [n_cable] ascending; NULL where the goal has no set */
+    int n_shape_row;      /* residuals of one shape */
+    int first_net, n_net; /* nets that it is over; n_net 0: the design itself */
+    int first_row, n_row; /* its residuals among all: of one shape after the other */
 } hf_goal;
+
+/* Changes of a shape per unit of a variable. */
+typedef struct {
+    const double *position_m;     /* [3][n_node] by row, supports included */
+    const double *tension_N;      /* [n_cable] */
+    const double *displacement_m; /* [3 n_attachment], of the attachments by the truss; NULL without a truss */
+} hf_goals_rate;
+
+/* Take the shape of a net, NULL where it has none: position_m, tension_N, length_m, displacement_m and loose alone. */
+typedef void hf_goals_take(void *context, int i_net, const hf_workspace *shape);
+
+/* The nets that are made of a design and that goals may be over: its states, then samples of its errors. Who knows them
+ * (built/built_nets.h) stands above this room, and fills in the functions. What is found of a net depends on the design
+ * and on the number of the net alone. */
+typedef struct hf_goals_nets {
+    int n_state, n_sample;
+    const char *const *state_name; /* [n_state] */
+    /* The scratch of one thread. HF_OK or HF_NO_MEMORY; close it in either case. */
+    hf_status (*open)(const struct hf_goals_nets *nets, void **room);
+    void (*close)(void *room);
+    /* Cut the nets for the design whose shape the workspace holds. HF_OK; HF_NO_MEMORY; HF_BAD_CASE where it cannot be
+     * cut. The other functions are of this design. */
+    hf_status (*cut)(void *room, const hf_workspace *design);
+    /* Find shapes; `take` is called in this thread, in any order. */
+    void (*solve)(void *room, int first, int n, hf_goals_take *take, void *context);
+    /* Find the shape of one net and factor its matrix there; NULL: it has none. It is the net of `follow`. */
+    const hf_workspace *(*linearise)(void *room, int i_net);
+    /* n <= HF_GOALS_AT_ONCE changes of the design to those of the net, in arrays of the room. */
+    void (*follow)(void *room, int n, const hf_goals_rate *by_design, hf_goals_rate *by_net);
+} hf_goals_nets;
+#define HF_GOALS_AT_ONCE 8
 
 /* Constant after creation, shared by all threads. */
 typedef struct {
@@ -34,6 +67,7 @@ typedef struct {
     int *corner_row; /* [n_facet][4] rows of the model; only with a goal facets */
     int n_goal, n_row;
     hf_goal goal[HF_DESIGN_ROWS_MAX];
+    const hf_goals_nets *nets; /* borrowed; NULL where no goal is over any */
     void *block;
 } hf_goals;
 
@@ -46,23 +80,21 @@ typedef struct hf_goals_point {
     double *size;           /* [n_support], [n_attachment] or of ratio [2 n_cable] scratch */
     double *row;            /* [n_row] scratch */
     struct hf_cloud *cloud; /* [n_goal] of those of the surface: its points, their errors, the best fit */
+    void *nets;             /* the room of goals->nets; NULL without */
+    void (*free_nets)(void *room);
+    double *net_value; /* [n_goal][n_state + n_sample] of the goals over nets, in each; infinite without a shape */
+    double *net_norm;  /* the same of residuals */
+    double *net_part;  /* the same over the smooth largest; or scratch */
     void *block;
 } hf_goals_point;
 
-/* Changes of a shape per unit of a variable. */
-typedef struct {
-    const double *position_m;     /* [3][n_node] by row, supports included */
-    const double *tension_N;      /* [n_cable] */
-    const double *displacement_m; /* [3 n_attachment], of the attachments by the truss; NULL without a truss */
-} hf_goals_rate;
-
 /* The goals of a case, its objectives, or psi where there is no row. The model has its truss already; `surface` and
- * `facets` may be NULL for goals that do not need them. HF_OK; HF_BAD_CASE with a message for each row that asks for
- * what this scene does not have, "optimize.goals.1: ..." or "optimize.objectives.1: ..."; HF_NO_MEMORY. Free in any
- * case. */
+ * `facets` may be NULL for goals that do not need them, `nets` (borrowed) where all are of the design. HF_OK;
+ * HF_BAD_CASE with a message for each row that asks for what this scene does not have, "optimize.goals.1: ..." or
+ * "optimize.objectives.1: ..."; HF_NO_MEMORY. Free in any case. */
 hf_status hf_goals_create(const hf_scene *scene, const hf_model *model, const hf_optimize_settings *settings,
-                          const hf_surface_settings *surface, const hf_facets *facets, hf_goals *goals,
-                          hf_messages *messages);
+                          const hf_surface_settings *surface, const hf_facets *facets, const hf_goals_nets *nets,
+                          hf_goals *goals, hf_messages *messages);
 void hf_goals_free(hf_goals *goals);
 
 /* What goal i_goal is called in tables: goal_0_psi, or goal_1_tension_edge of a goal of a set; returns text. */
@@ -82,9 +114,57 @@ hf_status hf_goals_measure(const hf_goals *goals, const hf_workspace *workspace,
 hf_status hf_goals_linearise(const hf_goals *goals, const hf_workspace *workspace, hf_goals_point *point,
                              double *residual);
 
-/* The derivative [n_row] of these residuals by a variable. The workspace holds the same shape. */
+/* The same of the goals of the design itself alone; the rows of others are left as they are. */
+hf_status hf_goals_linearise_design(const hf_goals *goals, const hf_workspace *workspace, hf_goals_point *point,
+                                    double *residual);
+
+/* The derivative [n_row] of these residuals by a variable, of the goals of the design itself. The workspace holds the
+ * same shape. */
 void hf_goals_push(const hf_goals *goals, const hf_workspace *workspace, hf_goals_point *point, const hf_goals_rate *by,
                    double *rate);
+
+/* ---- goals over nets ---- */
+
+/* Has this goal derivatives? Not a quantile. */
+bool hf_goals_is_smooth(const hf_goal_settings *goal);
+
+/* Is some goal over this net? */
+bool hf_goals_are_over(const hf_goals *goals, int i_net);
+
+/* Find the nets of the design in the workspace: residuals of the goals over them, without weights, and net_value and
+ * net_norm of the point. HF_OK, also when nets have no shape; HF_NO_MEMORY. */
+hf_status hf_goals_nets_measure(const hf_goals *goals, const hf_workspace *workspace, hf_goals_point *point,
+                                double *residual);
+
+/* What goal i_goal takes of its nets: scales its residuals [n_row], whose norm is *norm then. */
+void hf_goals_nets_gather(const hf_goals *goals, int i_goal, hf_goals_point *point, double *residual, double *value,
+                          double *norm);
+
+/* Derivatives by a variable, net by net: hf_goals_nets_push writes into rate [n_row] the change of the residuals of net
+ * i_net by themselves, at the shape that hf_goals_nets_linearise took last (HF_OK or HF_NOT_FINITE). When all are there
+ * hf_goals_nets_close makes of them the change of `residual` [n_row], which hf_goals_linearise wrote with `point`. */
+hf_status hf_goals_nets_linearise(const hf_goals *goals, int i_net, hf_goals_point *point, const hf_workspace **shape);
+void hf_goals_nets_push(const hf_goals *goals, int i_net, const hf_workspace *shape, hf_goals_point *point,
+                        const hf_goals_rate *by, double *rate);
+void hf_goals_nets_close(const hf_goals *goals, const hf_goals_point *point, const double *residual, double *rate);
+
+/* ---- parts, for goals_nets.c ---- */
+
+/* Residuals of goal i_goal of one shape, without its weight, with their norm and value; and their derivative. */
+hf_status hf_goals_measure_shape(const hf_goals *goals, int i_goal, const hf_workspace *shape, hf_goals_point *point,
+                                 double *residual, double *value, double *norm);
+void hf_goals_push_shape(const hf_goals *goals, int i_goal, const hf_workspace *shape, hf_goals_point *point,
+                         const hf_goals_rate *by, double *rate);
+bool hf_goals_is_on_surface(hf_goal_kind kind);
+
+/* The largest of n sizes, and the smooth one P = (sum s^16)^(1/16) as *norm; size [n] becomes s/P. */
+double hf_goals_smooth_largest(int n, double *size, double *norm);
+
+static inline double hf_goals_seventh(double x)
+{
+    double square = x * x;
+    return square * square * square * x;
+}
 
 /* Is the value the largest of several sizes, or over their least? Then it has corners, and residuals are of a smooth
  * value beside it. */

@@ -21,19 +21,20 @@ typedef struct {
     hf_scene scene;
     hf_carrier carrier; /* all zero without a truss */
     hf_model model;
-    hf_states states;            /* of the net as built; none without `cases` */
-    hf_surface_settings surface; /* the wanted one, its kind known; all zero when the case asks for no measures */
-    hf_facets facets;            /* of the wanted surface; none when the case asks for no measures */
-    int planes;                  /* of symmetry that link genes: bit 1 = x, bit 2 = y */
-    hf_workspace workspace;      /* holds the found shape until another is computed in it */
-    hf_form_result form;         /* of the form-finding */
-    double *start_q_N_per_m;     /* [n_cable] of the found shape */
-    double *base_N;              /* [n_gene] boundary pretensions of the found shape, averaged over linked genes */
-    hf_limits limits;            /* of optimize.limits; none without rows */
-    hf_goals goals;              /* of optimize.goals or objectives; none without rows: psi */
-    hf_evaluator evaluator;      /* of designs of this problem */
-    hf_batch batch;              /* evaluates designs; borrows the evaluator */
-    hf_solver solver;            /* the solver that the batch uses */
+    hf_states states;             /* of the net as built; none without `cases` */
+    hf_surface_settings surface;  /* the wanted one, its kind known; all zero when the case asks for no measures */
+    hf_facets facets;             /* of the wanted surface; none when the case asks for no measures */
+    int planes;                   /* of symmetry that link genes: bit 1 = x, bit 2 = y */
+    hf_workspace workspace;       /* holds the found shape until another is computed in it */
+    hf_form_result form;          /* of the form-finding */
+    double *start_q_N_per_m;      /* [n_cable] of the found shape */
+    double *base_N;               /* [n_gene] boundary pretensions of the found shape, averaged over linked genes */
+    hf_limits limits;             /* of optimize.limits; none without rows */
+    struct hf_problem_nets *nets; /* as built, that goals are over; NULL without */
+    hf_goals goals;               /* of optimize.goals or objectives; none without rows: psi */
+    hf_evaluator evaluator;       /* of designs of this problem */
+    hf_batch batch;               /* evaluates designs; borrows the evaluator */
+    hf_solver solver;             /* the solver that the batch uses */
 } hf_problem;
 
 /* A case whose net a program has in memory. `text` is that of a case file whose section scene has a part import (the

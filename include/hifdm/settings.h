@@ -61,6 +61,11 @@ typedef enum {
 typedef enum { HF_ALONG_NORMAL, HF_ALONG_HALF_PATH } hf_along;
 typedef enum { HF_FIT_NONE, HF_FIT_BEST } hf_fit; /* the wanted surface itself, or its best fit to the shape */
 
+/* Of what a goal is: the design, all states of the net that is cut for it, or samples of its errors; and which figure
+ * of these: the root of the mean of squares, or the largest. */
+typedef enum { HF_OVER_DESIGN, HF_OVER_STATES, HF_OVER_SAMPLES } hf_over;
+typedef enum { HF_TAKE_MEAN, HF_TAKE_WORST } hf_take;
+
 /* What a row of optimize.limits keeps between bounds. */
 typedef enum {
     HF_LIMIT_TENSION,     /* N, of each cable of the set */
@@ -91,6 +96,8 @@ extern const char *const hf_goal_word[11];
 extern const char *const hf_goal_unit[10]; /* of the values; "" where they have none */
 extern const char *const hf_along_word[3];
 extern const char *const hf_fit_word[3];
+extern const char *const hf_over_word[4];
+extern const char *const hf_take_word[3];
 extern const char *const hf_limit_word[4];
 extern const char *const hf_figure_word[4]; /* the first goals, those that are figures of a shape */
 
@@ -115,12 +122,16 @@ typedef struct {
 /* A row of optimize.goals, or of optimize.objectives, where weight is nothing. */
 typedef struct {
     hf_goal_kind goal;
-    char set[HF_SET_NAME_SIZE]; /* of tension, length, evenness, mass, ratio; "": all */
-    double target;              /* of tension and length; NaN: of lengths the theoretical ones */
-    double weight;              /* the merit of a design is sqrt(sum (weight * value)^2) */
-    double mass_kg_per_m;       /* of mass */
-    hf_along along;             /* of surface and facets */
-    hf_fit fit;                 /* the same */
+    char set[HF_SET_NAME_SIZE];   /* of tension, length, evenness, mass, ratio; "": all */
+    double target;                /* of tension and length; NaN: of lengths the theoretical ones */
+    double weight;                /* the merit of a design is sqrt(sum (weight * value)^2) */
+    double mass_kg_per_m;         /* of mass */
+    hf_along along;               /* of surface and facets */
+    hf_fit fit;                   /* the same */
+    char state[HF_SET_NAME_SIZE]; /* of `cases`; "": `over` says */
+    hf_over over;
+    hf_take take;    /* of states and samples */
+    double quantile; /* of samples, instead of `take`: so large a part has no larger value; 0 or NaN: none */
 } hf_goal_settings;
 
 /* A row of optimize.limits. */
@@ -182,7 +193,11 @@ typedef struct {
     int n_objective; /* 0, or 2 or 3 instead of goals: the front of designs of which none is better in all of them */
     hf_goal_settings objective[HF_OBJECTIVES_MAX];
     int front_points; /* of this front */
+    int samples;      /* of goals over samples: the first so many of the random ones of `tolerance` */
 } hf_optimize_settings;
+
+/* Is a goal, or an objective, over samples of nets with errors? */
+bool hf_optimize_takes_samples(const hf_optimize_settings *settings);
 
 /* A row of `cables`: what the cables of a set are made of. NaN where it is not given. */
 typedef struct {

@@ -141,7 +141,8 @@ static hf_status find_figure(job *j, hf_messages *messages)
     wanted.goal[0] = (hf_goal_settings){.goal = p->settings.adjust.figure, .weight = 1};
     if (wanted.goal[0].goal == HF_GOAL_FACETS && p->facets.n_facet == 0)
         return hf_error(messages, HF_BAD_CASE, "%s: adjust.figure: facets: this net has no facets", p->settings.path);
-    return hf_goals_create(&j->built.scene, &j->built.model, &wanted, &p->surface, &p->facets, &j->goals, messages);
+    return hf_goals_create(&j->built.scene, &j->built.model, &wanted, &p->surface, &p->facets, NULL, &j->goals,
+                           messages);
 }
 
 /* psi is the distance to the places that moves aim at. */

@@ -176,6 +176,32 @@ static void print_variables(const hf_problem *p, FILE *f)
     }
 }
 
+/* Of what nets as built a goal is. */
+static void print_nets(const hf_goal_settings *s, FILE *f)
+{
+    if (*s->state) fprintf(f, ", in state %s", s->state);
+    if (s->over != HF_OVER_DESIGN) fprintf(f, " over %s, ", hf_over_word[s->over]);
+    if (s->over != HF_OVER_DESIGN && s->quantile > 0)
+        fprintf(f, "quantile %g", s->quantile);
+    else if (s->over != HF_OVER_DESIGN)
+        fprintf(f, "%s", hf_take_word[s->take]);
+}
+
+static void print_cost_of_nets(const hf_problem *p, FILE *f)
+{
+    const hf_goals_nets *nets = p->goals.nets;
+    int n = 0, n_sample = 0;
+    for (int i = 0; nets && i < nets->n_state + nets->n_sample; i++) {
+        n += hf_goals_are_over(&p->goals, i);
+        n_sample += i >= nets->n_state;
+    }
+    if (!nets) return;
+    fprintf(f, "                each design is cut and solved as %d net%s as built", n, n == 1 ? "" : "s");
+    if (n_sample)
+        fprintf(f, ", %d of them samples, seed %llu", n_sample, (unsigned long long)p->settings.tolerance.seed);
+    fputc('\n', f);
+}
+
 /* Prints goals, limits and the cap on the boundary ratio, which holds also where the case does not name it. */
 static void print_wishes(const hf_problem *p, FILE *f)
 {
@@ -186,8 +212,10 @@ static void print_wishes(const hf_problem *p, FILE *f)
         fprintf(f, "                goals.%d: %s", k, hf_goal_word[s->goal]);
         if (p->goals.goal[k].cable) fprintf(f, " of %s", set_or_all(s->set));
         if (!isnan(s->target)) fprintf(f, ", target %g", s->target);
+        print_nets(s, f);
         fprintf(f, ", weight %g\n", s->weight);
     }
+    print_cost_of_nets(p, f);
     for (int k = 0; k < o->n_limit; k++) {
         const hf_limit_settings *s = &o->limit[k];
         fprintf(f, "                limits.%d: %s", k, hf_limit_word[s->limit]);

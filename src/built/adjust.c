@@ -194,7 +194,7 @@ static void find_panel(void *context, int room, int i_panel)
         r->strain_N[k * n_cable + e] = l->cut_N_per_m[e];
     }
     const hf_built_lanes by = {&a->matrix, &r->lanes};
-    hf_built_linear_apply_by(l, &by, (int)n, r->strain_N, r->answer_m, r->scratch);
+    hf_built_linear_apply_by(l, &by, (int)n, r->strain_N, NULL, r->answer_m, r->scratch);
     for (size_t k = 0; k < n; k++)
         push_move(a, r, r->answer_m + k * a->n_dof, a->column + (first + k) * a->n_row);
 }

@@ -37,24 +37,21 @@ static hf_status refuse_cables(const char *where, const hf_scene *s, const hf_wo
 }
 
 /* Supports rest where the design has them; attachments where they are before the truss gives way. */
-static void rest_supports(const hf_scene *s, const hf_model *m, const hf_workspace *w, double *position_m)
+static void rest_supports(const hf_model *m, const hf_workspace *w, hf_scene *s)
 {
-    memcpy(position_m, s->position_m, 3 * (size_t)s->n_node * sizeof(double));
     for (int i = 0; i < s->n_node; i++)
         for (int c = 0; c < 3 && s->role[i] == HF_ROLE_SUPPORT; c++)
-            position_m[3 * i + c] = w->position_m[c * m->n_node + m->row_of_node[i]];
+            s->position_m[3 * i + c] = w->position_m[c * m->n_node + m->row_of_node[i]];
     for (int k = 0; k < m->n_attachment; k++)
         for (int c = 0; c < 3; c++)
-            position_m[3 * m->node_of_row[m->attachment_row[k]] + c] -= w->displacement_m[3 * k + c];
+            s->position_m[3 * m->node_of_row[m->attachment_row[k]] + c] -= w->displacement_m[3 * k + c];
 }
 
-static void cut_cables(const hf_scene *s, const hf_model *m, const hf_workspace *w, hf_built *b)
+static void cut_cables(const hf_model *m, const hf_workspace *w, hf_built *b)
 {
-    for (int e = 0; e < s->n_cable; e++) {
+    for (int e = 0; e < b->scene.n_cable; e++) {
         hf_law_cable cable = hf_workspace_cable(m, w, e);
-        cable.EA_N = s->EA_N[e];
-        b->scene.law[e] = HF_LAW_ELASTIC;
-        b->scene.EA_N[e] = cable.EA_N;
+        cable.EA_N = b->scene.EA_N[e];
         b->scene.target[e] = hf_law_cut_m(cable, w->length_m[e], w->tension_N[e], hf_metrics_is_slack(m, w, e));
         b->tension_N[e] = w->tension_N[e];
     }
@@ -82,6 +79,28 @@ static hf_status attach_truss(const hf_model *m, hf_built *b, hf_messages *messa
     return status;
 }
 
+static void take_design(const hf_model *m, const hf_workspace *w, hf_built *b)
+{
+    rest_supports(m, w, &b->scene);
+    cut_cables(m, w, b);
+    memcpy(b->place_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
+}
+
+/* What in the model depends on the design. */
+static void hold_design(const hf_workspace *w, hf_built *b)
+{
+    hf_model *m = &b->model;
+    for (int row = m->n_free; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++)
+            m->position_m[c * m->n_node + row] = b->scene.position_m[3 * m->node_of_row[row] + c];
+    m->reference_N = largest_N(b);
+    for (int e = 0; e < m->n_cable; e++) {
+        m->target[e] = b->scene.target[e];
+        m->length_m[e] = hf_scene_theoretical_length(&b->scene, e);
+        m->start_q_N_per_m[e] = b->tension_N[e] / w->length_m[e];
+    }
+}
+
 hf_status hf_built_make(const char *where, const hf_scene *s, const hf_model *m, const hf_form_settings *form,
                         const hf_workspace *w, hf_built *b, hf_messages *messages)
 {
@@ -93,16 +112,24 @@ hf_status hf_built_make(const char *where, const hf_scene *s, const hf_model *m,
     b->block = arena.block;
     b->form.method = HF_METHOD_NEWTON;
     b->form.stop = HF_STOP_RESIDUAL;
-    rest_supports(s, m, w, b->scene.position_m);
-    cut_cables(s, m, w, b);
-    memcpy(b->place_m, w->position_m, 3 * (size_t)s->n_node * sizeof(double));
+    memcpy(b->scene.position_m, s->position_m, 3 * (size_t)s->n_node * sizeof(double));
+    memcpy(b->scene.EA_N, s->EA_N, (size_t)s->n_cable * sizeof(double));
+    memset(b->scene.law, HF_LAW_ELASTIC, (size_t)s->n_cable);
+    take_design(m, w, b);
     HF_TRY(hf_model_build(&b->scene, &b->form, &b->model, messages));
     HF_TRY(attach_truss(m, b, messages));
     assert(memcmp(b->model.row_of_node, m->row_of_node, (size_t)s->n_node * sizeof(int)) == 0);
     b->model.moves_supports = true;
-    b->model.reference_N = largest_N(b);
-    for (int e = 0; e < s->n_cable; e++)
-        b->model.start_q_N_per_m[e] = b->tension_N[e] / w->length_m[e];
+    hold_design(w, b);
+    return HF_OK;
+}
+
+hf_status hf_built_renew(const hf_model *m, const hf_workspace *w, hf_built *b)
+{
+    for (int e = 0; e < m->n_cable; e++)
+        if (!(w->tension_N[e] >= 0)) return HF_BAD_CASE;
+    take_design(m, w, b);
+    hold_design(w, b);
     return HF_OK;
 }
 

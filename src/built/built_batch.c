@@ -93,6 +93,16 @@ hf_status hf_built_batch_create(const hf_built *built, int n_thread, hf_built_ba
     return HF_NO_MEMORY;
 }
 
+hf_status hf_built_batch_renew(hf_built_batch *batch)
+{
+    hf_near_free(&batch->near);
+    hf_status status = hf_near_create(batch->built, &batch->room[0].work, &batch->near);
+    batch->has_lanes = status == HF_OK;
+    if (status == HF_OK && !batch->room[0].near.block) /* no earlier design had a matrix */
+        status = hf_near_lanes_create(&batch->near, &batch->room[0].near);
+    return status == HF_NO_MEMORY ? status : HF_OK;
+}
+
 void hf_built_batch_free(hf_built_batch *batch)
 {
     hf_arena arena = {.block = (unsigned char *)batch}; /* the batch is the first thing in its block */
@@ -150,19 +160,27 @@ static void give(const batch_work *work, int i, const hf_form_result *r)
 {
     const batch_job *j = work->job;
     const hf_workspace *w = &work->room->work;
-    hf_built_shape shape = {w->position_m, w->tension_N, w->loose};
+    hf_built_shape shape = {w->position_m, w->tension_N, w->loose, w->displacement_m};
     if (r->n_loose == 0) memset(w->loose, 0, (size_t)j->batch->built->model.n_node);
     j->take(j->context, j->first + i, work->place, &shape, r);
 }
 
+static void find_net(const hf_built_batch *batch, const hf_built_net *net, hf_workspace *w, hf_form_result *r)
+{
+    if (!batch->has_lanes || !hf_near_find(&batch->near, net, w, r)) hf_built_solve(batch->built, net, w, r);
+}
+
 static void solve_alone(const batch_work *work, int lane, int i)
 {
-    const hf_built_batch *batch = work->job->batch;
-    hf_workspace *w = &work->room->work;
     hf_form_result r;
-    if (!batch->has_lanes || !hf_near_find(&batch->near, &work->net[lane], w, &r))
-        hf_built_solve(batch->built, &work->net[lane], w, &r);
+    find_net(work->job->batch, &work->net[lane], &work->room->work, &r);
     give(work, i, &r);
+}
+
+const hf_workspace *hf_built_batch_find(hf_built_batch *batch, const hf_built_net *net, hf_form_result *result)
+{
+    find_net(batch, net, &batch->room[0].work, result);
+    return &batch->room[0].work;
 }
 
 /* ---- the run ---- */
@@ -235,6 +253,9 @@ void hf_built_batch_run(hf_built_batch *batch, unsigned varies, long first, long
     const long most = INT_MAX / 2; /* in one queue, which goes on counting when it is empty */
     for (; n > 0 && !hf_built_must_stop(batch->built); first += most, n -= most) {
         batch_job job = {batch, varies, first, {(int)(n < most ? n : most), 0, NULL}, make, take, context};
-        hf_parallel_run(batch->n_thread, work_on_job, &job);
+        if (batch->n_thread > 1)
+            hf_parallel_run(batch->n_thread, work_on_job, &job);
+        else
+            work_on_job(&job, 0);
     }
 }

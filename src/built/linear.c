@@ -161,11 +161,14 @@ static void add_to_ends(const hf_model *m, int e, int first, const double force[
 
 /* ---- errors to moves ---- */
 
-/* The forces [n_dof] of strained cables, and of supports that are as far off as v says; its free nodes become 0. */
-static void push_by_errors(const hf_built_linear *l, const double *strain_N, double *v, double *force)
+/* The forces [n_dof] of loads, of strained cables, and of supports that are as far off as v says; its free nodes become
+ * 0. */
+static void push_by_errors(const hf_built_linear *l, const double *strain_N, const double *load_N, double *v,
+                           double *force)
 {
     const hf_model *m = &l->built->model;
     memset(force, 0, l->n_dof * sizeof *force);
+    if (load_N) memcpy(force, load_N, l->n_dof * sizeof *force);
     memset(v, 0, 3 * (size_t)m->n_free * sizeof *v);
     for (int e = 0; e < m->n_cable; e++) {
         double pull[3] = {0};
@@ -178,18 +181,18 @@ static void push_by_errors(const hf_built_linear *l, const double *strain_N, dou
 
 void hf_built_linear_apply(const hf_built_linear *l, int n, const double *strain_N, double *move, double *scratch)
 {
-    hf_built_linear_apply_by(l, NULL, n, strain_N, move, scratch);
+    hf_built_linear_apply_by(l, NULL, n, strain_N, NULL, move, scratch);
 }
 
 void hf_built_linear_apply_by(const hf_built_linear *l, const hf_built_lanes *by, int n, const double *strain_N,
-                              double *move, double *scratch)
+                              const double *load_N, double *move, double *scratch)
 {
     const hf_model *m = &l->built->model;
     size_t n_free = 3 * (size_t)m->n_free, n_moving = n_free + 3 * (size_t)m->n_attachment;
     double *force = scratch, *more = scratch + (size_t)n * l->n_dof;
     for (size_t k = 0; k < (size_t)n; k++)
-        push_by_errors(l, strain_N ? strain_N + k * (size_t)m->n_cable : NULL, move + k * l->n_dof,
-                       force + k * l->n_dof);
+        push_by_errors(l, strain_N ? strain_N + k * (size_t)m->n_cable : NULL, load_N ? load_N + k * l->n_dof : NULL,
+                       move + k * l->n_dof, force + k * l->n_dof);
     answer_forces(l, by, n, force, more);
     for (size_t k = 0; k < (size_t)n; k++)
         for (size_t i = 0; i < n_moving; i++) /* free nodes were 0, attachments rest where they are off */

@@ -40,13 +40,14 @@ void hf_built_linear_apply(const hf_built_linear *linear, int n, const double *s
                            double *scratch);
 
 /* The same, eight at a time where n is large: of the factor, packed by hf_chord_pack(&linear->work, ...), with lanes of
- * the calling thread. by: NULL: hf_built_linear_apply. */
+ * the calling thread. by: NULL: hf_built_linear_apply. load_N [n][n_dof] (NULL: none): what is added to the loads of
+ * nodes. */
 typedef struct {
     const hf_chord *matrix;
     const hf_chord_lanes *lanes;
 } hf_built_lanes;
 void hf_built_linear_apply_by(const hf_built_linear *linear, const hf_built_lanes *by, int n, const double *strain_N,
-                              double *move_m, double *scratch);
+                              const double *load_N, double *move_m, double *scratch);
 
 /* What such a move and strain [n_cable] (may be NULL) change in the tensions, change_N [n_cable]. */
 void hf_built_linear_tension(const hf_built_linear *linear, const double *strain_N, const double *move_m,

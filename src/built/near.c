@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -236,9 +237,11 @@ static bool accept(const hf_near *near, int n_step, hf_workspace *w, hf_form_res
 
 bool hf_near_find(const hf_near *near, const hf_built_net *net, hf_workspace *w, hf_form_result *r)
 {
+    hf_near loaded = *near;
     int n_step = 0;
-    hf_near_prepare(near, net, w);
-    return hf_near_newton(near, w, &n_step) && accept(near, n_step, w, r);
+    if (net->load_N) loaded.model.load_N = (double *)(uintptr_t)net->load_N; /* no solver writes to it */
+    hf_near_prepare(&loaded, net, w);
+    return hf_near_newton(&loaded, w, &n_step) && accept(&loaded, n_step, w, r);
 }
 
 /* ---- what a lane comes to ---- */

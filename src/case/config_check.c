@@ -343,6 +343,8 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
     check_goals("optimize.goals", o->n_goal, o->goal, f);
     check_objectives(o, f);
     check_limits(o, f);
+    hf_config_check_nets(c, "optimize.goals", o->n_goal, o->goal, f);
+    hf_config_check_nets(c, "optimize.objectives", o->n_objective, o->objective, f);
 }
 
 void hf_config_complete(hf_case *c)

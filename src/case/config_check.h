@@ -11,6 +11,10 @@ void hf_config_check(const hf_case *settings, hf_config_faults *faults);
 /* The part of it about the net as built: `cables`, `nodes` and `cases`. */
 void hf_config_check_built(const hf_case *settings, hf_config_faults *faults);
 
+/* The part of it about what rows of a list of goals are over. */
+void hf_config_check_nets(const hf_case *settings, const char *list, int n_goal, const hf_goal_settings *goal,
+                          hf_config_faults *faults);
+
 /* Report the name of a set in a row that no set can have. */
 void hf_config_check_set(hf_config_faults *faults, const char *list, int row, const char *set);
 

@@ -1,6 +1,7 @@
 /* What joins several keys about the net as built: adjust, and the lists cables, nodes, cases. */
 #include "case/config_check.h"
 
+#include "base/text.h"
 #include <hifdm/cable_set.h>
 
 #include <math.h>
@@ -183,4 +184,79 @@ void hf_config_check_built(const hf_case *c, hf_config_faults *f)
     check_states(&c->built, f);
     check_expansions(c, f);
     if (c->has_tolerance) check_tolerance(c, f);
+}
+
+/* ---- what goals are over ---- */
+
+static void check_state(const hf_case *c, const char *list, int row, const hf_goal_settings *g, hf_config_faults *f)
+{
+    const hf_built_settings *b = &c->built;
+    const char *name[HF_STATE_ROWS_MAX];
+    char what[2 * HF_KEY_SIZE];
+    bool is_known = false;
+    for (int i = 0; i < b->n_state; i++) {
+        name[i] = b->state[i].name;
+        is_known |= !strcmp(name[i], g->state);
+    }
+    if (g->over != HF_OVER_DESIGN)
+        hf_config_fault_in_row(f, list, row, "state", "is one net and `over` speaks of many; remove one of them");
+    if (is_known) return;
+    const char *near = hf_text_nearest(g->state, name, b->n_state);
+    if (b->n_state == 0)
+        snprintf(what, sizeof what, "needs rows of `cases`, which name the states of the net as built");
+    else if (near)
+        snprintf(what, sizeof what, "is no state of `cases`; did you mean '%s'?", near);
+    else
+        snprintf(what, sizeof what, "is no state of `cases`, whose first is '%s'", name[0]);
+    hf_config_fault_in_row(f, list, row, "state", what);
+}
+
+static void check_quantile(const hf_optimize_settings *o, const char *list, int row, const hf_goal_settings *g,
+                           hf_config_faults *f)
+{
+    if (!(g->quantile > 0)) return;
+    if (g->over != HF_OVER_SAMPLES)
+        hf_config_fault_in_row(f, list, row, "quantile", "has a meaning for over: samples alone");
+    if (hf_config_is_given_in_row(f, list, row, "take"))
+        hf_config_fault_in_row(f, list, row, "quantile", "stands in place of take; remove one of them");
+    if (o->method != HF_OPTIMIZE_GA)
+        hf_config_fault_in_row(f, list, row, "quantile",
+                               "has no derivatives, which Levenberg-Marquardt needs: use method: ga, or take: mean or "
+                               "worst");
+    if (o->method == HF_OPTIMIZE_GA && o->compare_lm == HF_COMPARE_TRUE)
+        hf_config_fault_in_row(f, list, row, "quantile",
+                               "has no derivatives, which optimize.compare_lm: true needs; remove one of them");
+}
+
+/* The front of Levenberg-Marquardt keeps limits on the norm of residuals, or on sizes of the design itself. */
+static void check_objective(const hf_optimize_settings *o, const char *list, int row, const hf_goal_settings *g,
+                            hf_config_faults *f)
+{
+    bool is_largest = g->goal == HF_GOAL_PULL || g->goal == HF_GOAL_DISPLACEMENT || g->goal == HF_GOAL_RATIO;
+    bool is_worst = g->over != HF_OVER_DESIGN && g->take == HF_TAKE_WORST && !(g->quantile > 0);
+    bool is_of_nets = *g->state || g->over != HF_OVER_DESIGN;
+    if (o->n_objective > 0 && o->method != HF_OPTIMIZE_GA && (is_worst || (is_of_nets && is_largest)))
+        hf_config_fault_in_row(f, list, row, is_worst ? "take" : "goal",
+                               is_worst ? "worst needs method: ga in optimize.objectives"
+                                        : "as the largest of several sizes of nets as built needs method: ga in "
+                                          "optimize.objectives");
+}
+
+void hf_config_check_nets(const hf_case *c, const char *list, int n_goal, const hf_goal_settings *goal,
+                          hf_config_faults *f)
+{
+    for (int i = 0; i < n_goal; i++) {
+        const hf_goal_settings *g = &goal[i];
+        if (*g->state) check_state(c, list, i, g, f);
+        if (g->over == HF_OVER_STATES && c->built.n_state == 0)
+            hf_config_fault_in_row(f, list, i, "over", "states needs rows of `cases`, which say what they are");
+        if (g->over == HF_OVER_SAMPLES && !c->has_tolerance)
+            hf_config_fault_in_row(f, list, i, "over",
+                                   "samples needs a section tolerance, which says how large errors "
+                                   "are");
+        if (g->over == HF_OVER_DESIGN && hf_config_is_given_in_row(f, list, i, "take"))
+            hf_config_fault_in_row(f, list, i, "take", "has a meaning for over: states and over: samples alone");
+        check_quantile(&c->optimize, list, i, g, f);
+        check_objective(&c->optimize, list, i, g, f);
+    }
 }

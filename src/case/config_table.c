@@ -207,6 +207,10 @@ const hf_field hf_field_table[] = {
      "with store every: generations 0, n, 2n, ... are stored"},
     {"optimize.polish_iterations", HF_FIELD_INT, AT(optimize.polish_iterations), 1, 100000, "200", "", NULL,
      "largest number of Levenberg-Marquardt iterations"},
+    {"optimize.samples", HF_FIELD_INT, AT(optimize.samples), 2, 100000, "64", "", NULL,
+     "of goals over samples: nets with errors that each design is judged by, the same numbers for all; the first so "
+     "many "
+     "of those that tolerance.sampling random draws"},
     {"optimize.front_points", HF_FIELD_INT, AT(optimize.front_points), 3, HF_FRONT_POINTS_MAX, "21", "", NULL,
      "of the front of optimize.objectives that Levenberg-Marquardt finds, its two ends included"},
 
@@ -319,6 +323,14 @@ static const hf_field goal_field[] = {
      "of surface and facets: distance along the normal, or half the change of the path of a ray"},
     {"fit", HF_FIELD_WORD, IN(fit), 0, 0, "none", "", hf_fit_word,
      "of surface and facets: distance to the wanted surface, or to its best fit to the shape"},
+    {"state", HF_FIELD_TEXT, IN(state), 1, HF_SET_NAME_SIZE, "", "", NULL,
+     "of `cases`: the goal is that of the net that is cut for the design, in this state"},
+    {"over", HF_FIELD_WORD, IN(over), 0, 0, "design", "", hf_over_word,
+     "of what the goal is: the design itself; all states of `cases`; samples of the errors of `tolerance`"},
+    {"take", HF_FIELD_WORD, IN(take), 0, 0, "mean", "", hf_take_word,
+     "over states or samples: the root of the mean of squares, or the largest"},
+    {"quantile", HF_FIELD_DOUBLE, IN(quantile), HF_ABOVE_ZERO, 1, "", "", NULL,
+     "over samples, instead of take: so large a part of them has no larger value; method ga alone"},
     {"weight", HF_FIELD_DOUBLE, IN(weight), HF_ABOVE_ZERO, BIG, "1", "", NULL,
      "of this goal in the merit of a design, the root of the sum of (weight * value)^2"},
 };

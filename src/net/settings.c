@@ -33,8 +33,20 @@ const char *const hf_sampling_word[3] = {"random", "sobol", NULL};
 #define WORD(name, word, unit, condition, description) word,
 const char *const hf_tolerance_measure_word[] = {HF_TOLERANCE_MEASURES(WORD) NULL};
 #undef WORD
+const char *const hf_over_word[4] = {"design", "states", "samples", NULL};
+const char *const hf_take_word[3] = {"mean", "worst", NULL};
 const char *const hf_limit_word[4] = {"tension", "ratio", "displacement", NULL};
 const char *const hf_part_word[11] = {"all",   "net",      "truss",    "bud",      "mbug", "abug",
                                       "other", "longeron", "vertical", "diagonal", NULL};
 const char *const hf_nodes_word[5] = {"all", "support", "inner", "edge", NULL};
 const char *const hf_symmetry_word[6] = {"none", "x", "y", "xy", "auto", NULL};
+
+bool hf_optimize_takes_samples(const hf_optimize_settings *s)
+{
+    bool takes = false;
+    for (int k = 0; k < s->n_goal; k++)
+        takes |= s->goal[k].over == HF_OVER_SAMPLES;
+    for (int k = 0; k < s->n_objective; k++)
+        takes |= s->objective[k].over == HF_OVER_SAMPLES;
+    return takes;
+}

@@ -99,6 +99,21 @@ static hf_status keep_shape(const hf_problem *p, hf_cases *c, hf_store *store, c
     return hf_store_built(store, s->name, m, &c->workspace, &p->carrier, truss, messages);
 }
 
+hf_status hf_cases_rest(const hf_problem *p, double *move_m)
+{
+    size_t n_force = HF_TRUSS_DOF * (size_t)p->carrier.truss.n_node;
+    hf_arena arena = {0};
+    double *force = NULL;
+    HF_TRY(HF_ARENA_MAKE(&arena, force = hf_arena_take(&arena, n_force, sizeof *force)));
+    hf_status status = HF_OK;
+    for (int k = 0; k < p->states.n && status == HF_OK; k++) {
+        const hf_frame_load own = load_of_truss(&p->carrier, &p->states.state[k], force);
+        status = move_attachments(&p->carrier, &own, move_m + 3 * (size_t)k * (size_t)p->carrier.n_attachment);
+    }
+    hf_arena_free(&arena);
+    return status;
+}
+
 static hf_status run_state(const hf_problem *p, const hf_state *state, hf_cases *c, hf_store *store,
                            hf_state_summary *s, hf_messages *messages)
 {

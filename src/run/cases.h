@@ -24,6 +24,10 @@ typedef struct {
 hf_status hf_cases_take(const hf_problem *problem, const hf_workspace *workspace, hf_cases *cases,
                         hf_messages *messages);
 
+/* Where the truss puts the attachments in each state before the net pulls: move_m [n_state][3 n_attachment]. HF_OK or
+ * HF_NO_MEMORY. */
+hf_status hf_cases_rest(const hf_problem *problem, double *move_m);
+
 /* Find, measure and store all states of problem->states. A state without a shape has a warning and its status in the
  * summary, and the run goes on. HF_INTERRUPTED, when *stop is set (stop may be NULL); HF_NO_MEMORY; errors of the
  * store, which may be NULL. */

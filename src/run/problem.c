@@ -1,5 +1,6 @@
 #include <hifdm/problem.h>
 
+#include "run/problem_nets.h"
 #include "run/problem_parts.h"
 #include "search/jacobian.h"
 #include "search/polish.h"
@@ -91,6 +92,7 @@ void hf_problem_free(hf_problem *p)
     hf_carrier_free(&p->carrier);
     hf_limits_free(&p->limits);
     hf_goals_free(&p->goals);
+    hf_problem_nets_free(p);
     hf_states_free(&p->states);
     hf_facets_free(&p->facets);
     hf_scene_free(&p->scene);

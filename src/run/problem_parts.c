@@ -5,6 +5,7 @@
 #include "net/scene_doubt.h"
 #include "net/symmetry.h"
 #include "net/variables.h"
+#include "run/problem_nets.h"
 #include "search/polish.h"
 #include "solve/facet_rms.h"
 #include "solve/limits.h"
@@ -78,13 +79,19 @@ void hf_problem_give_places(const hf_problem *p, hf_messages *messages)
     messages->place_context = p ? &p->settings : NULL;
 }
 
+static hf_status find_goals(hf_problem *p, hf_messages *messages)
+{
+    HF_TRY(hf_problem_nets_make(p, messages));
+    return hf_goals_create(&p->scene, &p->model, &p->settings.optimize, &p->surface, &p->facets, hf_problem_nets_of(p),
+                           &p->goals, messages);
+}
+
 /* The rows of limits and of goals or objectives; the faults of all are told. */
 static hf_status judge_by_rows(hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     hf_status limits = hf_limits_create(&p->scene, &p->model, o, &p->limits, messages), goals = HF_OK;
-    if (o->n_goal || o->n_objective)
-        goals = hf_goals_create(&p->scene, &p->model, o, &p->surface, &p->facets, &p->goals, messages);
+    if (o->n_goal || o->n_objective) goals = find_goals(p, messages);
     return limits != HF_OK ? limits : goals;
 }
 

@@ -173,6 +173,7 @@ static bool any_row(const reach *q, int n, const int *row)
 static bool changes_goal(const reach *q, const hf_goal *g)
 {
     const hf_goals *goals = &q->p->goals;
+    if (g->n_net) return true; /* a net that is cut otherwise has other tensions, and another shape */
     switch (g->wanted.goal) {
     case HF_GOAL_PSI:
     case HF_GOAL_SURFACE:

@@ -9,7 +9,8 @@ static void lay_out(hf_arena *a, hf_jacobian *j)
 {
     const hf_model *m = &j->model;
     j->leader = hf_arena_take(a, (size_t)m->n_gene, sizeof(int));
-    j->rate = hf_arena_take(a, (size_t)j->residuals.n_row, sizeof(double));
+    j->rate = hf_arena_take(a, (size_t)m->n_gene * (size_t)j->residuals.n_row, sizeof(double));
+    j->gradient = hf_arena_take(a, (size_t)m->n_gene, sizeof(double));
 }
 
 hf_status hf_jacobian_create(const hf_evaluator *evaluator, hf_jacobian *j)
@@ -53,12 +54,13 @@ hf_status hf_jacobian_find(hf_jacobian *j, hf_workspace *w, double *derivative)
         derivative[i] = (double)NAN;
     HF_TRY(hf_sensitivity_find(&j->slopes, w));
     HF_TRY(hf_residuals_find(&j->residuals, w));
+    HF_TRY(hf_residuals_rates(&j->residuals, &j->slopes, w, j->rate, j->gradient));
     for (int k = 0; k < n; k++) {
-        hf_residuals_rate(&j->residuals, &j->slopes, w, 0, k, j->rate);
+        const double *rate = j->rate + (size_t)k * (size_t)j->residuals.n_row;
         for (int i = 0, row = 0; i < j->n_figure - 1; row += goals->goal[i++].n_row)
             derivative[i * n + k] =
-                norm_rate(goals->goal[i].n_row, value + row, j->rate + row) / goals->goal[i].wanted.weight;
-        derivative[(j->n_figure - 1) * n + k] = norm_rate(j->residuals.n_row, value, j->rate);
+                norm_rate(goals->goal[i].n_row, value + row, rate + row) / goals->goal[i].wanted.weight;
+        derivative[(j->n_figure - 1) * n + k] = norm_rate(j->residuals.n_row, value, rate);
     }
     return HF_OK;
 }

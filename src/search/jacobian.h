@@ -15,8 +15,9 @@ typedef struct {
     int n_figure;   /* 1: psi_m; with goals one more than these: each goal, then the merit */
     hf_sensitivity slopes;
     hf_residuals residuals;
-    int *leader;  /* [n_gene] of the model */
-    double *rate; /* [residuals.n_row] of a gene */
+    int *leader;      /* [n_gene] of the model */
+    double *rate;     /* [n_gene][residuals.n_row] */
+    double *gradient; /* [n_gene] scratch */
     void *block;
 } hf_jacobian;
 

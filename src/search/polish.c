@@ -275,7 +275,7 @@ static hf_status linearise(problem *p)
 {
     HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
     HF_TRY(hf_residuals_find(&p->residuals, p->w));
-    hf_residuals_rates(&p->residuals, &p->slopes, p->w, p->row, p->gradient);
+    HF_TRY(hf_residuals_rates(&p->residuals, &p->slopes, p->w, p->row, p->gradient));
     if (p->trade) take_gradient(p);
     hf_parallel_each(p->v.n_thread, (p->n + GRAM_ROWS - 1) / GRAM_ROWS, multiply_rows, p);
     for (int k = 0; k < p->n; k++) {

@@ -8,11 +8,12 @@
 static void lay_out(hf_arena *a, hf_residuals *r)
 {
     const hf_model *m = r->v->model;
+    size_t n_at_once = r->v->goals && r->v->goals->nets ? HF_GOALS_AT_ONCE : 1;
     r->value = hf_arena_take(a, (size_t)r->n_row, sizeof(double));
     r->room = hf_arena_take(a, (size_t)r->n_room, sizeof *r->room);
     for (int i = 0; i < r->n_room; i++) {
-        double *move_m = hf_arena_take(a, 3 * (size_t)m->n_node, sizeof(double));
-        double *tension_rate = hf_arena_take(a, (size_t)m->n_cable, sizeof(double));
+        double *move_m = hf_arena_take(a, 3 * n_at_once * (size_t)m->n_node, sizeof(double));
+        double *tension_rate = hf_arena_take(a, n_at_once * (size_t)m->n_cable, sizeof(double));
         double *value = hf_arena_take(a, i > 0 ? (size_t)r->n_row : 0, sizeof(double));
         if (r->room) r->room[i] = (hf_residuals_room){{0}, NULL, HF_OK, move_m, tension_rate, value};
     }
@@ -53,7 +54,10 @@ static void enter_room(void *context, int any_room, int i)
     const entered *q = context;
     hf_residuals_room *room = &q->r->room[i];
     (void)any_room;
-    room->status = hf_goals_linearise(q->r->v->goals, q->w, room->point, i ? room->value : q->r->value);
+    if (i)
+        room->status = hf_goals_linearise_design(q->r->v->goals, q->w, room->point, room->value);
+    else
+        room->status = hf_goals_linearise(q->r->v->goals, q->w, room->point, q->r->value);
 }
 
 /* No node of a feasible design is loose. */
@@ -76,8 +80,9 @@ hf_status hf_residuals_find(hf_residuals *r, hf_workspace *w)
     return HF_OK;
 }
 
-void hf_residuals_rate(const hf_residuals *r, const hf_sensitivity *slopes, const hf_workspace *w, int i_room,
-                       int i_variable, double *rate)
+/* rate [n_row] for one unit of a variable: all of it but the rows of goals over nets. */
+static void find_rate(const hf_residuals *r, const hf_sensitivity *slopes, const hf_workspace *w, int i_room,
+                      int i_variable, double *rate)
 {
     const hf_model *m = r->v->model;
     if (r->v->goals) {
@@ -100,20 +105,75 @@ typedef struct {
     double *rate, *gradient;
 } all_rates;
 
+static double *rate_of(const all_rates *q, int i_variable)
+{
+    return q->rate + (size_t)i_variable * (size_t)q->r->n_row;
+}
+
 static void rate_one(void *context, int i_room, int i_variable)
 {
     const all_rates *q = context;
-    int n_row = q->r->n_row;
-    double *rate = q->rate + (size_t)i_variable * (size_t)n_row;
-    hf_residuals_rate(q->r, q->slopes, q->w, i_room, i_variable, rate);
-    q->gradient[i_variable] = 0;
-    for (int i = 0; i < n_row; i++)
-        q->gradient[i_variable] += rate[i] * q->r->value[i];
+    find_rate(q->r, q->slopes, q->w, i_room, i_variable, rate_of(q, i_variable));
 }
 
-void hf_residuals_rates(const hf_residuals *r, const hf_sensitivity *slopes, const hf_workspace *w, double *rate,
-                        double *gradient)
+/* A thread cuts the nets of the design for itself. */
+static void cut_nets(void *context, int any_room, int i)
+{
+    const all_rates *q = context;
+    hf_residuals_room *room = &q->r->room[i];
+    (void)any_room;
+    room->status = q->r->v->goals->nets->cut(room->point->nets, q->w);
+}
+
+/* The rows of goals over one net, by all variables. */
+static void rate_net(void *context, int i_room, int i_net)
+{
+    const all_rates *q = context;
+    const hf_goals *goals = q->r->v->goals;
+    const hf_model *m = q->r->v->model;
+    hf_residuals_room *room = &q->r->room[i_room];
+    const hf_workspace *shape;
+    hf_goals_rate by[HF_GOALS_AT_ONCE], by_net[HF_GOALS_AT_ONCE];
+    if (room->status != HF_OK || !hf_goals_are_over(goals, i_net)) return;
+    room->status = hf_goals_nets_linearise(goals, i_net, room->point, &shape);
+    for (int first = 0; first < q->slopes->n && room->status == HF_OK; first += HF_GOALS_AT_ONCE) {
+        int n = q->slopes->n - first < HF_GOALS_AT_ONCE ? q->slopes->n - first : HF_GOALS_AT_ONCE;
+        for (int k = 0; k < n; k++) {
+            double *move = room->move_m + 3 * (size_t)k * (size_t)m->n_node;
+            double *tension = room->tension_rate + (size_t)k * (size_t)m->n_cable;
+            hf_sensitivity_spread(q->slopes, first + k, move, tension);
+            by[k] = (hf_goals_rate){move, tension, hf_sensitivity_displacement(q->slopes, first + k, 0)};
+        }
+        goals->nets->follow(room->point->nets, n, by, by_net);
+        for (int k = 0; k < n; k++)
+            hf_goals_nets_push(goals, i_net, shape, room->point, &by_net[k], rate_of(q, first + k));
+    }
+}
+
+static void close_rate(void *context, int i_room, int i_variable)
+{
+    const all_rates *q = context;
+    const hf_residuals *r = q->r;
+    double *rate = rate_of(q, i_variable);
+    (void)i_room;
+    if (r->n_room && r->v->goals->nets) hf_goals_nets_close(r->v->goals, r->room[0].point, r->value, rate);
+    q->gradient[i_variable] = 0;
+    for (int i = 0; i < r->n_row; i++)
+        q->gradient[i_variable] += rate[i] * r->value[i];
+}
+
+hf_status hf_residuals_rates(const hf_residuals *r, const hf_sensitivity *slopes, const hf_workspace *w, double *rate,
+                             double *gradient)
 {
     all_rates q = {r, slopes, w, rate, gradient};
+    const hf_goals_nets *nets = r->v->goals ? r->v->goals->nets : NULL;
     hf_parallel_each(r->v->n_thread, slopes->n, rate_one, &q);
+    if (nets) {
+        hf_parallel_each(r->v->n_thread, r->n_room, cut_nets, &q);
+        hf_parallel_each(r->v->n_thread, nets->n_state + nets->n_sample, rate_net, &q);
+        for (int i = 0; i < r->n_room; i++)
+            HF_TRY(r->room[i].status);
+    }
+    hf_parallel_each(r->v->n_thread, slopes->n, close_rate, &q);
+    return HF_OK;
 }

@@ -9,7 +9,7 @@
 typedef struct {
     hf_goals_point own, *point;
     hf_status status;
-    double *move_m, *tension_rate; /* [3][n_node], [n_cable] scratch */
+    double *move_m, *tension_rate; /* [at once][3][n_node], [at once][n_cable] scratch */
     double *value;                 /* [n_row] scratch of the others */
 } hf_residuals_room;
 
@@ -29,12 +29,9 @@ void hf_residuals_free(hf_residuals *residuals);
 /* Take those of the shape in the workspace, which is feasible, in every room. HF_OK, or why goals have none. */
 hf_status hf_residuals_find(hf_residuals *residuals, hf_workspace *workspace);
 
-/* rate [n_row] for one unit of a variable of `slopes`, which were found at the same shape. */
-void hf_residuals_rate(const hf_residuals *residuals, const hf_sensitivity *slopes, const hf_workspace *workspace,
-                       int i_room, int i_variable, double *rate);
-
-/* The same of all variables, rate [slopes->n][n_row], and the gradient [slopes->n] of |f|^2/2, by all threads. */
-void hf_residuals_rates(const hf_residuals *residuals, const hf_sensitivity *slopes, const hf_workspace *workspace,
-                        double *rate, double *gradient);
+/* rate [slopes->n][n_row] by all variables of `slopes`, which were found at the same shape, and the gradient
+ * [slopes->n] of |f|^2/2, by all threads. HF_OK, or why the nets of a design have none. */
+hf_status hf_residuals_rates(const hf_residuals *residuals, const hf_sensitivity *slopes, const hf_workspace *workspace,
+                             double *rate, double *gradient);
 
 #endif

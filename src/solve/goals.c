@@ -1,158 +1,37 @@
-/* Contents: what a case asks for - creation - sizes of which the largest counts - residuals - derivatives */
+/* Contents: points - sizes of which the largest counts - residuals - derivatives */
 #include <hifdm/goals.h>
 
 #include "base/arena.h"
 #include "linalg/dot.h"
-#include "net/cable_pick.h"
 #include "solve/cloud.h"
 #include "solve/newton_matrix.h"
 #include <hifdm/metrics.h>
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
-/* ---- what a case asks for ---- */
-
-static const hf_goal_settings psi_alone = {.goal = HF_GOAL_PSI, .target = NAN, .weight = 1, .mass_kg_per_m = NAN};
-
-static bool is_on_surface(hf_goal_kind kind)
-{
-    return kind == HF_GOAL_SURFACE || kind == HF_GOAL_FACETS;
-}
-
-static bool has_set(hf_goal_kind kind)
-{
-    return kind == HF_GOAL_TENSION || kind == HF_GOAL_LENGTH || kind == HF_GOAL_EVENNESS || kind == HF_GOAL_MASS ||
-           kind == HF_GOAL_RATIO;
-}
-
-bool hf_goals_is_largest(hf_goal_kind kind)
-{
-    return kind == HF_GOAL_PULL || kind == HF_GOAL_DISPLACEMENT || kind == HF_GOAL_RATIO;
-}
-
-/* What is wrong with a goal in this scene, as the end of a sentence, or NULL. */
-static const char *fault_of(const hf_goal *g, const hf_model *m, const hf_surface_settings *surface,
-                            const hf_facets *facets)
-{
-    const hf_goal_settings *s = &g->wanted;
-    if (is_on_surface(s->goal) && (!surface || !(surface->focal_length_m > 0)))
-        return "needs the wanted surface: add a section surface (of an imported net with focal_length_m)";
-    if (s->goal == HF_GOAL_FACETS && (!facets || facets->n_facet == 0)) return "this net has no facets";
-    if (s->goal == HF_GOAL_SURFACE && s->fit == HF_FIT_BEST && m->n_inner_node < HF_FIT_N_PARAMETER)
-        return "a best fit needs at least six inner nodes";
-    if (s->goal == HF_GOAL_TENSION && isnan(s->target)) return "needs a target, in N";
-    if (s->goal == HF_GOAL_MASS && !(s->mass_kg_per_m > 0)) return "needs mass_kg_per_m, of the cables of its set";
-    if (s->goal == HF_GOAL_EVENNESS && g->n_cable == 1) return "one cable is always even; name a set of several";
-    if (s->goal == HF_GOAL_RATIO && g->n_cable == 1) return "the ratio of one cable is 1; name a set of several";
-    if (s->goal == HF_GOAL_PULL && m->n_node == m->n_free) return "this net has no supports";
-    if (s->goal == HF_GOAL_DISPLACEMENT && m->n_attachment == 0)
-        return "needs a truss that gives way: this net has none";
-    return NULL;
-}
-
-static int row_count(const hf_goals *goals, const hf_goal *g)
-{
-    const hf_model *m = goals->model;
-    switch (g->wanted.goal) {
-    case HF_GOAL_PSI:
-        return 3 * m->n_inner_node;
-    case HF_GOAL_PULL:
-        return m->n_node - m->n_free;
-    case HF_GOAL_DISPLACEMENT:
-        return m->n_attachment;
-    case HF_GOAL_MASS:
-        return 1;
-    case HF_GOAL_RATIO:
-        return 2 * g->n_cable;
-    case HF_GOAL_SURFACE:
-    case HF_GOAL_FACETS:
-        return hf_cloud_size(goals, g);
-    default:
-        return g->n_cable;
-    }
-}
-
-/* ---- creation ---- */
-
-static void lay_out(hf_arena *a, const hf_model *m, hf_goals *goals)
-{
-    for (int k = 0; k < goals->n_goal; k++)
-        goals->goal[k].cable =
-            has_set(goals->goal[k].wanted.goal) ? hf_arena_take(a, (size_t)m->n_cable, sizeof(int)) : NULL;
-    goals->corner_row = hf_arena_take(a, 4 * (size_t)goals->n_facet, sizeof(int));
-}
-
-hf_status hf_goals_create(const hf_scene *scene, const hf_model *m, const hf_optimize_settings *s,
-                          const hf_surface_settings *surface, const hf_facets *facets, hf_goals *goals,
-                          hf_messages *messages)
-{
-    hf_arena arena = {0};
-    int n_fault = 0;
-    bool is_front = s->n_objective > 0;
-    *goals = (hf_goals){.model = m, .n_goal = is_front ? s->n_objective : s->n_goal > 0 ? s->n_goal : 1};
-    for (int k = 0; k < goals->n_goal; k++) {
-        goals->goal[k].wanted = is_front ? s->objective[k] : s->n_goal > 0 ? s->goal[k] : psi_alone;
-        if (is_front) goals->goal[k].wanted.weight = 1;
-        if (goals->goal[k].wanted.goal == HF_GOAL_FACETS && facets) goals->n_facet = facets->n_facet;
-    }
-    if (surface) {
-        goals->kind = surface->kind;
-        goals->focal_length_m = surface->focal_length_m;
-    }
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, m, goals)) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
-    goals->block = arena.block;
-    for (int i = 0; i < 4 * goals->n_facet; i++)
-        goals->corner_row[i] = m->row_of_node[facets->corner[i]];
-    for (int k = 0; k < goals->n_goal; k++) {
-        hf_goal *g = &goals->goal[k];
-        char where[HF_PLACE_SIZE];
-        const char *list = is_front ? "objectives" : "goals";
-        hf_messages_place(messages, where, "optimize.%s.%d.set", list, k);
-        if (g->cable) g->n_cable = hf_cable_pick_some(scene, g->wanted.set, where, g->cable, messages);
-        bool is_known = !g->cable || g->n_cable > 0;
-        const char *fault = is_known ? fault_of(g, m, surface, facets) : NULL;
-        hf_messages_place(messages, where, "optimize.%s.%d", list, k);
-        if (fault) hf_error(messages, HF_BAD_CASE, "%s: %s: %s", where, hf_goal_word[g->wanted.goal], fault);
-        n_fault += !is_known || fault;
-        g->n_row = row_count(goals, g);
-        goals->n_row += g->n_row;
-    }
-    return n_fault ? HF_BAD_CASE : HF_OK;
-}
-
-const char *hf_goals_name(const hf_goals *goals, int i_goal, char text[HF_GOAL_NAME_SIZE])
-{
-    const hf_goal_settings *s = &goals->goal[i_goal].wanted;
-    snprintf(text, HF_GOAL_NAME_SIZE, "goal_%d_%s%s%s", i_goal, hf_goal_word[s->goal], *s->set ? "_" : "", s->set);
-    return text;
-}
-
-void hf_goals_free(hf_goals *goals)
-{
-    hf_arena arena = {.block = goals->block};
-    hf_arena_free(&arena);
-    *goals = (hf_goals){0};
-}
+/* ---- points ---- */
 
 static void lay_out_point(hf_arena *a, const hf_goals *goals, hf_goals_point *p)
 {
     const hf_model *m = goals->model;
     size_t n_support = (size_t)(m->n_node - m->n_free), n_size = n_support; /* attachments are supports */
     for (int k = 0; k < goals->n_goal; k++)
-        if (goals->goal[k].wanted.goal == HF_GOAL_RATIO && n_size < (size_t)goals->goal[k].n_row)
-            n_size = (size_t)goals->goal[k].n_row;
+        if (goals->goal[k].wanted.goal == HF_GOAL_RATIO && n_size < (size_t)goals->goal[k].n_shape_row)
+            n_size = (size_t)goals->goal[k].n_shape_row;
     p->psi_per_m = hf_arena_take(a, (size_t)m->n_inner_node, sizeof(double));
     p->force_N = hf_arena_take(a, 3 * n_support, sizeof(double));
     p->rate_N = hf_arena_take(a, 3 * n_support, sizeof(double));
     p->size = hf_arena_take(a, n_size, sizeof(double));
     p->row = hf_arena_take(a, (size_t)goals->n_row, sizeof(double));
+    size_t n_net = goals->nets ? (size_t)goals->nets->n_state + (size_t)goals->nets->n_sample : 0;
+    p->net_value = hf_arena_take(a, (size_t)goals->n_goal * n_net, sizeof(double));
+    p->net_norm = hf_arena_take(a, (size_t)goals->n_goal * n_net, sizeof(double));
+    p->net_part = hf_arena_take(a, (size_t)goals->n_goal * n_net, sizeof(double));
     p->cloud = hf_arena_take(a, (size_t)goals->n_goal, sizeof *p->cloud);
     for (int k = 0; k < goals->n_goal; k++) {
         hf_cloud cloud = {0};
-        if (is_on_surface(goals->goal[k].wanted.goal)) hf_cloud_lay_out(a, goals, &goals->goal[k], &cloud);
+        if (hf_goals_is_on_surface(goals->goal[k].wanted.goal)) hf_cloud_lay_out(a, goals, &goals->goal[k], &cloud);
         if (a->block) p->cloud[k] = cloud;
     }
 }
@@ -163,12 +42,14 @@ hf_status hf_goals_point_create(const hf_goals *goals, hf_goals_point *point)
     *point = (hf_goals_point){0};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_point(&arena, goals, point)));
     point->block = arena.block;
-    return HF_OK;
+    point->free_nets = goals->nets ? goals->nets->close : NULL;
+    return goals->nets ? goals->nets->open(goals->nets, &point->nets) : HF_OK;
 }
 
 void hf_goals_point_free(hf_goals_point *point)
 {
     hf_arena arena = {.block = point->block};
+    if (point->nets) point->free_nets(point->nets);
     hf_arena_free(&arena);
     *point = (hf_goals_point){0};
 }
@@ -177,7 +58,7 @@ void hf_goals_point_free(hf_goals_point *point)
 
 /* The smooth largest of n sizes is P = (sum s^16)^(1/16), and the residuals s^8/P^7 have the norm P. Returns the
  * largest size; size [n] becomes s/P. */
-static double smooth_largest(int n, double *size, double *norm)
+double hf_goals_smooth_largest(int n, double *size, double *norm)
 {
     double largest = 0, sum = 0;
     for (int i = 0; i < n; i++)
@@ -192,20 +73,14 @@ static double smooth_largest(int n, double *size, double *norm)
     return largest;
 }
 
-static double seventh(double x)
-{
-    double square = x * x;
-    return square * square * square * x;
-}
-
 /* rate [n]: changes of the sizes, then of the residuals; size [n]: s/P. Returns the change of P. */
 static double push_smooth(int n, const double *size, double *rate)
 {
     double norm_rate = 0;
     for (int i = 0; i < n; i++)
-        norm_rate += seventh(size[i]) * seventh(size[i]) * size[i] * rate[i];
+        norm_rate += hf_goals_seventh(size[i]) * hf_goals_seventh(size[i]) * size[i] * rate[i];
     for (int i = 0; i < n; i++)
-        rate[i] = seventh(size[i]) * (8 * rate[i] - 7 * size[i] * norm_rate);
+        rate[i] = hf_goals_seventh(size[i]) * (8 * rate[i] - 7 * size[i] * norm_rate);
     return norm_rate;
 }
 
@@ -299,9 +174,9 @@ static void measure_cables(const hf_goal *g, const hf_model *m, const hf_workspa
 /* f [n] from the n sizes in the point, which become parts of the smooth largest; returns the true largest. */
 static double measure_largest(int n, hf_goals_point *p, double *f)
 {
-    double norm, largest = smooth_largest(n, p->size, &norm);
+    double norm, largest = hf_goals_smooth_largest(n, p->size, &norm);
     for (int i = 0; i < n; i++)
-        f[i] = norm * seventh(p->size[i]) * p->size[i];
+        f[i] = norm * hf_goals_seventh(p->size[i]) * p->size[i];
     return largest;
 }
 
@@ -320,8 +195,8 @@ static double smooth_ratio(const hf_goal *g, const hf_workspace *w, double *size
         size[i] = w->tension_N[g->cable[i]];
         size[n + i] = 1 / size[i];
     }
-    smooth_largest(n, size, high);
-    smooth_largest(n, size + n, low);
+    hf_goals_smooth_largest(n, size, high);
+    hf_goals_smooth_largest(n, size + n, low);
     return *high * *low;
 }
 
@@ -331,17 +206,17 @@ static double measure_ratio(const hf_goal *g, const hf_model *m, const hf_worksp
 {
     double high, low, ratio = hf_metrics_set_ratio(m, w, g->n_cable, g->cable);
     *norm = ratio;
-    memset(f, 0, (size_t)g->n_row * sizeof *f);
+    memset(f, 0, (size_t)g->n_shape_row * sizeof *f);
     if (!isfinite(ratio)) return ratio;
     *norm = smooth_ratio(g, w, p->size, &high, &low);
-    for (int i = 0; i < g->n_row; i++)
-        f[i] = sqrt(0.5) * *norm * seventh(p->size[i]) * p->size[i];
+    for (int i = 0; i < g->n_shape_row; i++)
+        f[i] = sqrt(0.5) * *norm * hf_goals_seventh(p->size[i]) * p->size[i];
     return ratio;
 }
 
 /* Residuals of goal k without its weight, and their norm; *value as hf_goals_measure tells it. */
-static hf_status measure_goal(const hf_goals *goals, int k, const hf_workspace *w, hf_goals_point *p, double *f,
-                              double *value, double *norm)
+hf_status hf_goals_measure_shape(const hf_goals *goals, int k, const hf_workspace *w, hf_goals_point *p, double *f,
+                                 double *value, double *norm)
 {
     const hf_model *m = goals->model;
     const hf_goal *g = &goals->goal[k];
@@ -352,11 +227,11 @@ static hf_status measure_goal(const hf_goals *goals, int k, const hf_workspace *
         return HF_OK;
     case HF_GOAL_PULL:
         hf_goals_pulls(m, w, p);
-        *value = measure_largest(g->n_row, p, f);
+        *value = measure_largest(g->n_shape_row, p, f);
         break;
     case HF_GOAL_DISPLACEMENT:
         take_displacements(m, w, p);
-        *value = measure_largest(g->n_row, p, f);
+        *value = measure_largest(g->n_shape_row, p, f);
         break;
     case HF_GOAL_RATIO:
         *value = measure_ratio(g, m, w, p, f, norm);
@@ -370,22 +245,28 @@ static hf_status measure_goal(const hf_goals *goals, int k, const hf_workspace *
         measure_cables(g, m, w, f);
         has_own_value = false;
     }
-    *norm = sqrt(hf_dot((size_t)g->n_row, f, f));
+    *norm = sqrt(hf_dot((size_t)g->n_shape_row, f, f));
     if (!has_own_value) *value = *norm;
     return HF_OK;
 }
 
-/* All goals into f [n_row], weighted. */
-static hf_status measure_all(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, double *f, double *value,
-                             double *merit)
+/* All goals, or those of the design itself alone, into f [n_row], weighted. */
+static hf_status measure_all(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, bool with_nets, double *f,
+                             double *value, double *merit)
 {
     double square = 0, norm = 0;
-    for (int k = 0; k < goals->n_goal; f += goals->goal[k++].n_row) {
-        double weight = goals->goal[k].wanted.weight, one;
-        HF_TRY(measure_goal(goals, k, w, p, f, value ? &value[k] : &one, &norm));
-        for (int i = 0; i < goals->goal[k].n_row; i++)
-            f[i] *= weight;
-        norm *= weight;
+    if (goals->nets && with_nets) HF_TRY(hf_goals_nets_measure(goals, w, p, f));
+    for (int k = 0; k < goals->n_goal; k++) {
+        const hf_goal *g = &goals->goal[k];
+        double one, *of_goal = f + g->first_row;
+        if (g->n_net && !with_nets) continue;
+        if (g->n_net)
+            hf_goals_nets_gather(goals, k, p, of_goal, value ? &value[k] : &one, &norm);
+        else
+            HF_TRY(hf_goals_measure_shape(goals, k, w, p, of_goal, value ? &value[k] : &one, &norm));
+        for (int i = 0; i < g->n_row; i++)
+            of_goal[i] *= g->wanted.weight;
+        norm *= g->wanted.weight;
         square += norm * norm;
     }
     *merit = goals->n_goal == 1 ? norm : sqrt(square);
@@ -395,17 +276,29 @@ static hf_status measure_all(const hf_goals *goals, const hf_workspace *w, hf_go
 hf_status hf_goals_measure(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, double *value,
                            double *merit)
 {
-    return measure_all(goals, w, p, p->row, value, merit);
+    return measure_all(goals, w, p, true, p->row, value, merit);
+}
+
+static hf_status linearise_all(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, bool with_nets,
+                               double *residual)
+{
+    double merit;
+    HF_TRY(measure_all(goals, w, p, with_nets, residual, NULL, &merit));
+    if (!isfinite(merit)) return HF_NOT_FINITE;
+    for (int k = 0; k < goals->n_goal; k++)
+        if (hf_goals_is_on_surface(goals->goal[k].wanted.goal) && !goals->goal[k].n_net)
+            HF_TRY(hf_cloud_linearise(&p->cloud[k]));
+    return HF_OK;
 }
 
 hf_status hf_goals_linearise(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, double *residual)
 {
-    double merit;
-    HF_TRY(measure_all(goals, w, p, residual, NULL, &merit));
-    if (!isfinite(merit)) return HF_NOT_FINITE;
-    for (int k = 0; k < goals->n_goal; k++)
-        if (is_on_surface(goals->goal[k].wanted.goal)) HF_TRY(hf_cloud_linearise(&p->cloud[k]));
-    return HF_OK;
+    return linearise_all(goals, w, p, true, residual);
+}
+
+hf_status hf_goals_linearise_design(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, double *residual)
+{
+    return linearise_all(goals, w, p, false, residual);
 }
 
 /* ---- derivatives ---- */
@@ -494,7 +387,7 @@ static void push_pulls(const hf_model *m, const hf_workspace *w, hf_goals_point 
     int n = m->n_node - m->n_free;
     double norm;
     hf_goals_pull_rates(m, w, p, by, rate);
-    smooth_largest(n, p->size, &norm);
+    hf_goals_smooth_largest(n, p->size, &norm);
     push_smooth(n, p->size, rate);
 }
 
@@ -503,7 +396,7 @@ static void push_displacements(const hf_model *m, const hf_workspace *w, hf_goal
 {
     double norm;
     take_displacements(m, w, p);
-    smooth_largest(m->n_attachment, p->size, &norm);
+    hf_goals_smooth_largest(m->n_attachment, p->size, &norm);
     for (int i = 0; i < m->n_attachment; i++)
         rate[i] = size_rate(w->displacement_m + 3 * (size_t)i, by->displacement_m + 3 * (size_t)i);
     push_smooth(m->n_attachment, p->size, rate);
@@ -523,38 +416,46 @@ static void push_ratio(const hf_goal *g, const hf_workspace *w, hf_goals_point *
     double high_rate = push_smooth(n, p->size, rate), low_rate = push_smooth(n, p->size + n, rate + n);
     for (int i = 0; i < n; i++) {
         double *of_high = &rate[i], *of_low = &rate[n + i];
-        *of_high = sqrt(0.5) * (low * *of_high + high * low_rate * seventh(p->size[i]) * p->size[i]);
-        *of_low = sqrt(0.5) * (high * *of_low + low * high_rate * seventh(p->size[n + i]) * p->size[n + i]);
+        *of_high = sqrt(0.5) * (low * *of_high + high * low_rate * hf_goals_seventh(p->size[i]) * p->size[i]);
+        *of_low = sqrt(0.5) * (high * *of_low + low * high_rate * hf_goals_seventh(p->size[n + i]) * p->size[n + i]);
+    }
+}
+
+void hf_goals_push_shape(const hf_goals *goals, int k, const hf_workspace *w, hf_goals_point *p,
+                         const hf_goals_rate *by, double *rate)
+{
+    const hf_model *m = goals->model;
+    const hf_goal *g = &goals->goal[k];
+    switch (g->wanted.goal) {
+    case HF_GOAL_PSI:
+        push_psi(m, p, by->position_m, rate);
+        break;
+    case HF_GOAL_PULL:
+        push_pulls(m, w, p, by, rate);
+        break;
+    case HF_GOAL_DISPLACEMENT:
+        push_displacements(m, w, p, by, rate);
+        break;
+    case HF_GOAL_RATIO:
+        push_ratio(g, w, p, by, rate);
+        break;
+    case HF_GOAL_SURFACE:
+    case HF_GOAL_FACETS:
+        hf_cloud_push(&p->cloud[k], by->position_m, rate);
+        break;
+    default:
+        push_cables(g, m, w, by, rate);
     }
 }
 
 void hf_goals_push(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, const hf_goals_rate *by,
                    double *rate)
 {
-    const hf_model *m = goals->model;
-    for (int k = 0; k < goals->n_goal; rate += goals->goal[k++].n_row) {
+    for (int k = 0; k < goals->n_goal; k++) {
         const hf_goal *g = &goals->goal[k];
-        switch (g->wanted.goal) {
-        case HF_GOAL_PSI:
-            push_psi(m, p, by->position_m, rate);
-            break;
-        case HF_GOAL_PULL:
-            push_pulls(m, w, p, by, rate);
-            break;
-        case HF_GOAL_DISPLACEMENT:
-            push_displacements(m, w, p, by, rate);
-            break;
-        case HF_GOAL_RATIO:
-            push_ratio(g, w, p, by, rate);
-            break;
-        case HF_GOAL_SURFACE:
-        case HF_GOAL_FACETS:
-            hf_cloud_push(&p->cloud[k], by->position_m, rate);
-            break;
-        default:
-            push_cables(g, m, w, by, rate);
-        }
+        if (g->n_net) continue;
+        hf_goals_push_shape(goals, k, w, p, by, rate + g->first_row);
         for (int i = 0; i < g->n_row; i++)
-            rate[i] *= g->wanted.weight;
+            rate[g->first_row + i] *= g->wanted.weight;
     }
 }

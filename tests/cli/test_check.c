@@ -106,7 +106,7 @@ START_TEST(schema_is_yaml_with_every_key)
         "'boundary_ratio_cap', 'seed', 'crossover_high', 'crossover_low', 'mutation_high', 'mutation_low', "
         "'variation', 'elites', 'store', 'store_every', "
         "'stagnation_tolerance_m', 'stagnation_generations', 'variables', 'goals', 'limits', "
-        "'objectives', 'front_points'}",
+        "'objectives', 'front_points', 'samples'}",
         "a['optimize']['variables'] == a['optimize']['goals'] == a['optimize']['limits'] == "
         "a['optimize']['objectives'] == []",
         "set(a['truss']) == {'depth_m', 'main_every', 'E_Pa', 'G_Pa', 'density_kg_per_m3', 'expansion_per_K', "

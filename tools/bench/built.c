@@ -115,7 +115,7 @@ static void solve(built_bench *b, long i)
     memcpy(cut_m, b->built.model.target, n * sizeof *cut_m);
     make(b, i, cut_m, NULL, NULL);
     hf_built_solve(&b->built, &(hf_built_net){.cut_m = cut_m}, &b->work, &r);
-    hf_built_shape shape = {b->work.position_m, b->work.tension_N, b->work.loose};
+    hf_built_shape shape = {b->work.position_m, b->work.tension_N, b->work.loose, b->work.displacement_m};
     take(b, i, 0, &shape, &r);
     free(cut_m);
 }

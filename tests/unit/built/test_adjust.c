@@ -15,7 +15,8 @@ static void make_job(const twin *t, job *j, double range_m, double step_m, int m
 {
     hf_messages messages = {0};
     hf_optimize_settings psi = {0};
-    ck_assert_int_eq(hf_goals_create(&t->built.scene, &t->built.model, &psi, NULL, NULL, &j->goals, &messages), HF_OK);
+    ck_assert_int_eq(hf_goals_create(&t->built.scene, &t->built.model, &psi, NULL, NULL, NULL, &j->goals, &messages),
+                     HF_OK);
     j->settings = (hf_adjust_settings){.range_m = range_m, .step_m = step_m, .moves = moves, .figure = HF_GOAL_PSI};
     for (int e = 0; e < t->built.model.n_cable; e++)
         j->cable[e] = e;

@@ -31,22 +31,22 @@ static const char *const set_of[N_VARY] = {
 };
 
 static const hf_goal_settings wanted[] = {
-    {HF_GOAL_PSI, "", NAN, 1, NAN, 0, 0},
-    {HF_GOAL_SURFACE, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE},
-    {HF_GOAL_SURFACE, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_BEST},
-    {HF_GOAL_SURFACE, "", NAN, 1, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE},
-    {HF_GOAL_SURFACE, "", NAN, 1, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST},
-    {HF_GOAL_FACETS, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE},
-    {HF_GOAL_FACETS, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_BEST},
-    {HF_GOAL_FACETS, "", NAN, 1, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE},
-    {HF_GOAL_FACETS, "", NAN, 3, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST},
-    {HF_GOAL_TENSION, "tie", 9, 1, NAN, 0, 0},
-    {HF_GOAL_TENSION, "rear", 9, 1, NAN, 0, 0},
-    {HF_GOAL_LENGTH, "front", NAN, 2, NAN, 0, 0},
-    {HF_GOAL_EVENNESS, "all", NAN, 1, NAN, 0, 0},
-    {HF_GOAL_PULL, "", NAN, 1, NAN, 0, 0},
-    {HF_GOAL_MASS, "", NAN, 1, 0.01, 0, 0},
-    {HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, 0, 0}, /* the last: only with a truss */
+    {HF_GOAL_PSI, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0},
+    {HF_GOAL_SURFACE, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_SURFACE, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_BEST, "", 0, 0, 0},
+    {HF_GOAL_SURFACE, "", NAN, 1, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_SURFACE, "", NAN, 1, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST, "", 0, 0, 0},
+    {HF_GOAL_FACETS, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_FACETS, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_BEST, "", 0, 0, 0},
+    {HF_GOAL_FACETS, "", NAN, 1, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_FACETS, "", NAN, 3, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST, "", 0, 0, 0},
+    {HF_GOAL_TENSION, "tie", 9, 1, NAN, 0, 0, "", 0, 0, 0},
+    {HF_GOAL_TENSION, "rear", 9, 1, NAN, 0, 0, "", 0, 0, 0},
+    {HF_GOAL_LENGTH, "front", NAN, 2, NAN, 0, 0, "", 0, 0, 0},
+    {HF_GOAL_EVENNESS, "all", NAN, 1, NAN, 0, 0, "", 0, 0, 0},
+    {HF_GOAL_PULL, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0},
+    {HF_GOAL_MASS, "", NAN, 1, 0.01, 0, 0, "", 0, 0, 0},
+    {HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0}, /* the last: only with a truss */
 };
 enum { N_WANTED = sizeof wanted / sizeof *wanted };
 
@@ -108,7 +108,7 @@ static void open_designed(struct designed *d, hf_vary vary, hf_link link, bool o
     hf_workspace_free(&net->work);
     ck_assert_int_eq(hf_workspace_create(&net->model, &net->work), HF_OK);
     if (on_truss) attach_all(net, &rng, 1e-4);
-    status = hf_goals_create(&net->scene, &net->model, &s, &d->surface, &d->facets, &d->goals, &messages);
+    status = hf_goals_create(&net->scene, &net->model, &s, &d->surface, &d->facets, NULL, &d->goals, &messages);
     ck_assert_msg(status == HF_OK, "%s", messages.text);
     ck_assert_int_le(d->goals.n_row, MAX_ROW);
 }

@@ -36,7 +36,7 @@ static void follow(struct traded *t, const hf_goal_settings objective[2], double
     hf_model_want_newton(m);
     hf_workspace_free(w);
     ck_assert_int_eq(hf_workspace_create(m, w), HF_OK);
-    ck_assert_msg(hf_goals_create(&t->net.scene, m, &s, NULL, NULL, &t->goals, &messages) == HF_OK, "%s",
+    ck_assert_msg(hf_goals_create(&t->net.scene, m, &s, NULL, NULL, NULL, &t->goals, &messages) == HF_OK, "%s",
                   messages.text);
     ck_assert_int_eq(find_shape(&t->net), HF_OK);
     memcpy(t->start_q, w->q_N_per_m, (size_t)m->n_cable * sizeof(double));

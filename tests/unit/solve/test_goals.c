@@ -53,7 +53,8 @@ static void want(struct wanting *t, int n_goal, const hf_goal_settings *goal)
     hf_messages messages = {0};
     for (int k = 0; k < n_goal; k++)
         s.goal[k] = goal[k];
-    hf_status status = hf_goals_create(&t->net.scene, &t->net.model, &s, &t->surface, &t->facets, &t->goals, &messages);
+    hf_status status =
+        hf_goals_create(&t->net.scene, &t->net.model, &s, &t->surface, &t->facets, NULL, &t->goals, &messages);
     ck_assert_msg(status == HF_OK, "%s", messages.text);
     ck_assert_int_eq(hf_goals_point_create(&t->goals, &t->point), HF_OK);
 }
@@ -118,15 +119,19 @@ static const struct {
     hf_goal_settings goal;
     double value, merit;
 } by_hand[] = {
-    {{HF_GOAL_PSI, "", NAN, 1, NAN, 0, 0}, 0.5, 0.5}, /* one of two nodes is sqrt(1/2) away */
-    {{HF_GOAL_TENSION, "boundary", 4, 2, NAN, 0, 0}, 1, 2},
-    {{HF_GOAL_TENSION, "inner", 4, 1, NAN, 0, 0}, 0, 0},
-    {{HF_GOAL_LENGTH, "inner", 1, 1, NAN, 0, 0}, 0.25, 0.25},
-    {{HF_GOAL_LENGTH, "", NAN, 1, NAN, 0, 0}, 0, 0},
-    {{HF_GOAL_EVENNESS, "all", NAN, 4, NAN, 0, 0}, 0.20412414523193150, 0.81649658092772603}, /* sqrt(2/3)/4 */
-    {{HF_GOAL_MASS, "", NAN, 1, 0.5, 0, 0}, 1.625, 1.625},
-    {{HF_GOAL_PULL, "", NAN, 2, NAN, 0, 0}, 5, 10.000176296057074},                /* 2 (3^16 + 5^16)^(1/16) */
-    {{HF_GOAL_RATIO, "boundary", NAN, 2, NAN, 0, 0}, 5.0 / 3, 3.3334508650740591}, /* 10/3 (1 + (3/5)^16)^(1/8) */
+    {{HF_GOAL_PSI, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0}, 0.5, 0.5}, /* one of two nodes is sqrt(1/2) away */
+    {{HF_GOAL_TENSION, "boundary", 4, 2, NAN, 0, 0, "", 0, 0, 0}, 1, 2},
+    {{HF_GOAL_TENSION, "inner", 4, 1, NAN, 0, 0, "", 0, 0, 0}, 0, 0},
+    {{HF_GOAL_LENGTH, "inner", 1, 1, NAN, 0, 0, "", 0, 0, 0}, 0.25, 0.25},
+    {{HF_GOAL_LENGTH, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0}, 0, 0},
+    {{HF_GOAL_EVENNESS, "all", NAN, 4, NAN, 0, 0, "", 0, 0, 0},
+     0.20412414523193150,
+     0.81649658092772603}, /* sqrt(2/3)/4 */
+    {{HF_GOAL_MASS, "", NAN, 1, 0.5, 0, 0, "", 0, 0, 0}, 1.625, 1.625},
+    {{HF_GOAL_PULL, "", NAN, 2, NAN, 0, 0, "", 0, 0, 0}, 5, 10.000176296057074}, /* 2 (3^16 + 5^16)^(1/16) */
+    {{HF_GOAL_RATIO, "boundary", NAN, 2, NAN, 0, 0, "", 0, 0, 0},
+     5.0 / 3,
+     3.3334508650740591}, /* 10/3 (1 + (3/5)^16)^(1/8) */
 };
 enum { N_BY_HAND = sizeof by_hand / sizeof *by_hand };
 
@@ -317,22 +322,22 @@ static void put(struct net *net, const struct shape *from, const struct shape *b
 }
 
 static const hf_goal_settings differed[] = {
-    {HF_GOAL_PSI, "", NAN, 0.3, NAN, HF_ALONG_NORMAL, HF_FIT_NONE},
-    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_NONE},
-    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_BEST},
-    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE},
-    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST},
-    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_NONE},
-    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_BEST},
-    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE},
-    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST},
-    {HF_GOAL_TENSION, "boundary", 10, 3, NAN, HF_ALONG_NORMAL, HF_FIT_NONE},
-    {HF_GOAL_LENGTH, "all", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE},
-    {HF_GOAL_LENGTH, "inner", 0.3, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE},
-    {HF_GOAL_EVENNESS, "inner", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE},
-    {HF_GOAL_PULL, "", NAN, 0.1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE},
-    {HF_GOAL_MASS, "", NAN, 1, 0.002, HF_ALONG_NORMAL, HF_FIT_NONE},
-    {HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE},
+    {HF_GOAL_PSI, "", NAN, 0.3, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_BEST, "", 0, 0, 0},
+    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST, "", 0, 0, 0},
+    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_BEST, "", 0, 0, 0},
+    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST, "", 0, 0, 0},
+    {HF_GOAL_TENSION, "boundary", 10, 3, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_LENGTH, "all", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_LENGTH, "inner", 0.3, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_EVENNESS, "inner", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_PULL, "", NAN, 0.1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_MASS, "", NAN, 1, 0.002, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
 };
 enum { N_DIFFERED = sizeof differed / sizeof *differed };
 
@@ -449,19 +454,22 @@ static const struct {
     hf_goal_settings goal;
     const char *said;
 } faulty[] = {
-    {{HF_GOAL_TENSION, "bounday", 4, 1, NAN, 0, 0},
+    {{HF_GOAL_TENSION, "bounday", 4, 1, NAN, 0, 0, "", 0, 0, 0},
      ".set: there is no set of cables 'bounday'; did you mean 'boundary'?"},
-    {{HF_GOAL_MASS, "rear", NAN, 1, 1, 0, 0},
+    {{HF_GOAL_MASS, "rear", NAN, 1, 1, 0, 0, "", 0, 0, 0},
      ".set: there is no set of cables 'rear'; this net has all, inner, boundary"},
-    {{HF_GOAL_TENSION, "inner", NAN, 1, NAN, 0, 0}, ": tension: needs a target, in N"},
-    {{HF_GOAL_EVENNESS, "inner", NAN, 1, NAN, 0, 0}, ": evenness: one cable is always even; name a set of several"},
-    {{HF_GOAL_RATIO, "inner", NAN, 1, NAN, 0, 0}, ": ratio: the ratio of one cable is 1; name a set of several"},
-    {{HF_GOAL_MASS, "", NAN, 1, NAN, 0, 0}, ": mass: needs mass_kg_per_m, of the cables of its set"},
-    {{HF_GOAL_SURFACE, "", NAN, 1, NAN, 0, 0},
+    {{HF_GOAL_TENSION, "inner", NAN, 1, NAN, 0, 0, "", 0, 0, 0}, ": tension: needs a target, in N"},
+    {{HF_GOAL_EVENNESS, "inner", NAN, 1, NAN, 0, 0, "", 0, 0, 0},
+     ": evenness: one cable is always even; name a set of several"},
+    {{HF_GOAL_RATIO, "inner", NAN, 1, NAN, 0, 0, "", 0, 0, 0},
+     ": ratio: the ratio of one cable is 1; name a set of several"},
+    {{HF_GOAL_MASS, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0}, ": mass: needs mass_kg_per_m, of the cables of its set"},
+    {{HF_GOAL_SURFACE, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0},
      ": surface: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
-    {{HF_GOAL_FACETS, "", NAN, 1, NAN, 0, 0},
+    {{HF_GOAL_FACETS, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0},
      ": facets: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
-    {{HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, 0, 0}, ": displacement: needs a truss that gives way: this net has none"},
+    {{HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0},
+     ": displacement: needs a truss that gives way: this net has none"},
 };
 enum { N_FAULTY = sizeof faulty / sizeof *faulty };
 
@@ -474,7 +482,8 @@ START_TEST(a_goal_without_meaning_is_refused)
     hf_optimize_settings s = {.n_goal = 3,
                               .goal = {faulty[_i].goal, {.goal = HF_GOAL_PSI, .weight = 1}, faulty[_i].goal}};
     open_line(&t);
-    ck_assert_int_eq(hf_goals_create(&t.net.scene, &t.net.model, &s, NULL, NULL, &t.goals, &messages), HF_BAD_CASE);
+    ck_assert_int_eq(hf_goals_create(&t.net.scene, &t.net.model, &s, NULL, NULL, NULL, &t.goals, &messages),
+                     HF_BAD_CASE);
     snprintf(said, sizeof said, "error: optimize.goals.0%s\nerror: optimize.goals.2%s\n", faulty[_i].said,
              faulty[_i].said);
     ck_assert_str_eq(messages.text, said);
@@ -492,7 +501,7 @@ START_TEST(a_surface_may_lack_facets_and_nodes)
     s.goal[1].fit = HF_FIT_BEST;
     open_line(&t);
     ck_assert_int_eq(hf_facets_find(&t.net.scene, &surface, &t.facets), HF_OK);
-    ck_assert_int_eq(hf_goals_create(&t.net.scene, &t.net.model, &s, &surface, &t.facets, &t.goals, &messages),
+    ck_assert_int_eq(hf_goals_create(&t.net.scene, &t.net.model, &s, &surface, &t.facets, NULL, &t.goals, &messages),
                      HF_BAD_CASE);
     ck_assert_str_eq(messages.text, "error: optimize.goals.0: facets: this net has no facets\n"
                                     "error: optimize.goals.1: surface: a best fit needs at least six inner nodes\n");
@@ -509,7 +518,7 @@ START_TEST(without_memory_there_are_no_goals)
     hf_messages messages = {0};
     open_line(&t);
     fail_allocation_at(1);
-    hf_status status = hf_goals_create(&t.net.scene, &t.net.model, &s, NULL, NULL, &t.goals, &messages);
+    hf_status status = hf_goals_create(&t.net.scene, &t.net.model, &s, NULL, NULL, NULL, &t.goals, &messages);
     ck_assert(end_allocation_failure());
     ck_assert_int_eq(status, HF_NO_MEMORY);
     hf_goals_free(&t.goals);

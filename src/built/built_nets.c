@@ -1,0 +1,370 @@
+/* Contents: the room of a thread - one net - shapes - derivatives - all nets */
+#include "built/built_nets.h"
+
+#include "base/arena.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- the room of a thread ---- */
+
+typedef struct {
+    const hf_built_nets *nets;
+    bool is_made; /* of the first design that was cut */
+    hf_built built;
+    hf_built_batch *batch;
+    hf_built_linear linear;      /* of the net that was linearised last; its factor only from then on */
+    hf_built_errors errors;      /* only with samples */
+    hf_workspace design, of_net; /* views of a shape: arrays of others */
+    hf_goals_take *take;
+    void *context;
+    double *cut_m, *EA_N, *move_m, *load_N; /* [n_cable] or [3][n_node] of one net */
+    double *z;                              /* [errors] numbers of a sample */
+    double *stretch;                        /* [n_cable] derivative of its length by that of the design */
+    double *weight_N_per_m;                 /* [n_cable][3] of a state: weight by unstressed length */
+    bool has_weight;
+    double *length_m;                                     /* [n_cable] of a shape */
+    unsigned char *loose;                                 /* [n_node] zero: every node counts where it is */
+    double *strain_N, *dof_load_N, *dof_move_m, *scratch; /* [HF_GOALS_AT_ONCE] of linear */
+    double *cut_rate;                                     /* [n_cable] */
+    double *rate_m, *rate_N, *rate_displacement_m;        /* [HF_GOALS_AT_ONCE] of a net */
+    void *block, *more;
+} nets_room;
+
+static size_t scratch_of(const hf_model *m) /* of hf_built_linear */
+{
+    return 3 * (size_t)m->n_node + (m->n_attachment ? 3 * (size_t)(m->n_free + m->n_attachment) : 0);
+}
+
+static void lay_out_room(hf_arena *arena, const hf_built_nets *nets, nets_room **room)
+{
+    const hf_model *m = nets->model;
+    size_t n = (size_t)m->n_cable, places = 3 * (size_t)m->n_node, many = HF_GOALS_AT_ONCE;
+    nets_room *r = hf_arena_take(arena, 1, sizeof *r), unmade = {0}, *to = arena->block ? r : &unmade;
+    *room = r;
+    to->cut_m = hf_arena_take(arena, n, sizeof(double));
+    to->EA_N = hf_arena_take(arena, n, sizeof(double));
+    to->move_m = hf_arena_take(arena, places, sizeof(double));
+    to->load_N = hf_arena_take(arena, places, sizeof(double));
+    to->stretch = hf_arena_take(arena, n, sizeof(double));
+    to->weight_N_per_m = hf_arena_take(arena, 3 * n, sizeof(double));
+    to->length_m = hf_arena_take(arena, n, sizeof(double));
+    to->loose = hf_arena_take(arena, (size_t)m->n_node, 1);
+    to->strain_N = hf_arena_take(arena, many * n, sizeof(double));
+    to->dof_load_N = hf_arena_take(arena, many * places, sizeof(double));
+    to->dof_move_m = hf_arena_take(arena, many * places, sizeof(double));
+    to->scratch = hf_arena_take(arena, many * scratch_of(m), sizeof(double));
+    to->cut_rate = hf_arena_take(arena, n, sizeof(double));
+    to->rate_m = hf_arena_take(arena, many * places, sizeof(double));
+    to->rate_N = hf_arena_take(arena, many * n, sizeof(double));
+    to->rate_displacement_m = hf_arena_take(arena, many * 3 * (size_t)m->n_attachment, sizeof(double));
+}
+
+static hf_status open_room(const hf_goals_nets *as, void **room)
+{
+    const hf_built_nets *nets = (const void *)as;
+    hf_arena arena = {0};
+    nets_room *r = NULL;
+    *room = NULL;
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_room(&arena, nets, &r)));
+    r->nets = nets;
+    r->block = arena.block;
+    *room = r;
+    return HF_OK;
+}
+
+static void close_room(void *room)
+{
+    nets_room *r = room;
+    if (!r) return;
+    hf_arena arena = {.block = r->block}, more = {.block = r->more};
+    hf_built_batch_free(r->batch);
+    hf_built_linear_free(&r->linear);
+    hf_built_errors_free(&r->errors);
+    hf_built_free(&r->built);
+    hf_arena_free(&more);
+    hf_arena_free(&arena);
+}
+
+static void lay_out_numbers(hf_arena *arena, nets_room *r)
+{
+    r->z = hf_arena_take(arena, (size_t)hf_built_errors_count(&r->errors), sizeof(double));
+}
+
+/* What depends on the first design by its model alone. */
+static hf_status make_room_for(nets_room *r, const hf_workspace *w)
+{
+    const hf_built_nets *nets = r->nets;
+    hf_messages messages = {0};
+    hf_arena arena = {0};
+    hf_built_free(&r->built); /* of a design that could not be cut */
+    hf_status status = hf_built_make("", nets->scene, nets->model, nets->form, w, &r->built, &messages);
+    hf_messages_free(&messages);
+    HF_TRY(status);
+    HF_TRY(hf_built_batch_create(&r->built, 1, &r->batch));
+    r->linear.built = &r->built;
+    if (nets->as.n_sample > 0) {
+        HF_TRY(hf_built_errors_make(&r->linear, nets->tolerance, nets->expansion_per_K, &r->errors));
+        HF_TRY(HF_ARENA_MAKE(&arena, lay_out_numbers(&arena, r)));
+        r->more = arena.block;
+    }
+    r->is_made = true;
+    return HF_OK;
+}
+
+static hf_status cut_for(void *room, const hf_workspace *w)
+{
+    nets_room *r = room;
+    r->design = (hf_workspace){.length_m = w->length_m, .tension_N = w->tension_N};
+    if (!r->is_made) return make_room_for(r, w);
+    HF_TRY(hf_built_renew(r->nets->model, w, &r->built));
+    return hf_built_batch_renew(r->batch);
+}
+
+/* ---- one net ---- */
+
+static void make_sample_of(nets_room *r, long i, double *cut_m, double *EA_N, double *move_m)
+{
+    hf_built_errors_draw(&r->errors, i, r->z);
+    hf_built_errors_apply(&r->errors, 1, r->z, cut_m, EA_N, move_m);
+}
+
+static void make_state(nets_room *r, int i, hf_built_net *net)
+{
+    const hf_built_nets *nets = r->nets;
+    const double *move_m = nets->attachment_move_m;
+    if (move_m) move_m += 3 * (size_t)i * (size_t)nets->model->n_attachment;
+    hf_built_state(&r->built, &nets->states->material, &nets->states->state[i], move_m, r->cut_m, r->move_m, r->load_N,
+                   net);
+}
+
+static unsigned what_varies(const hf_built_nets *nets)
+{
+    return (nets->tolerance->sigma_EA_ratio > 0 ? HF_BUILT_VARIES_EA : 0u) |
+           (nets->tolerance->sigma_support_m > 0 ? HF_BUILT_VARIES_SUPPORTS : 0u);
+}
+
+static void make_net(nets_room *r, int i_net, hf_built_net *net)
+{
+    const hf_model *m = &r->built.model;
+    size_t n = (size_t)m->n_cable * sizeof(double);
+    if (i_net < r->nets->as.n_state) {
+        make_state(r, i_net, net);
+        return;
+    }
+    unsigned varies = what_varies(r->nets);
+    *net = (hf_built_net){.cut_m = r->cut_m,
+                          .EA_N = varies & HF_BUILT_VARIES_EA ? r->EA_N : NULL,
+                          .support_move_m = varies & HF_BUILT_VARIES_SUPPORTS ? r->move_m : NULL};
+    memcpy(r->cut_m, m->target, n);
+    memcpy(r->EA_N, m->EA_N, n);
+    memset(r->move_m, 0, 3 * (size_t)m->n_node * sizeof(double));
+    make_sample_of(r, i_net - r->nets->as.n_state, r->cut_m, net->EA_N ? r->EA_N : NULL,
+                   net->support_move_m ? r->move_m : NULL);
+}
+
+/* ---- shapes ---- */
+
+/* All nodes of a net count, loose ones at the places that they are given, as in samples of `tolerance`. */
+static const hf_workspace *view(nets_room *r, const double *position_m, const double *tension_N,
+                                const double *displacement_m)
+{
+    const hf_model *m = &r->built.model;
+    for (int e = 0; e < m->n_cable; e++) {
+        double square = 0;
+        for (int c = 0; c < 3; c++) {
+            const double *x = position_m + (ptrdiff_t)c * m->n_node;
+            double d = x[m->end_row[2 * e + 1]] - x[m->end_row[2 * e]];
+            square += d * d;
+        }
+        r->length_m[e] = sqrt(square);
+    }
+    r->of_net = (hf_workspace){.position_m = (double *)(uintptr_t)position_m, /* which are only read */
+                               .tension_N = (double *)(uintptr_t)tension_N,
+                               .displacement_m = (double *)(uintptr_t)displacement_m,
+                               .length_m = r->length_m,
+                               .loose = r->loose};
+    return &r->of_net;
+}
+
+static void make_in_lane(void *context, long i, double *cut_m, double *EA_N, double *move_m)
+{
+    make_sample_of(context, i, cut_m, EA_N, move_m);
+}
+
+static void take_from_lane(void *context, long i, int place, const hf_built_shape *s, const hf_form_result *result)
+{
+    nets_room *r = context;
+    bool has_shape = result->status == HF_OK;
+    (void)place;
+    r->take(r->context, r->nets->as.n_state + (int)i,
+            has_shape ? view(r, s->position_m, s->tension_N, s->displacement_m) : NULL);
+}
+
+static const hf_workspace *find_one(nets_room *r, int i_net, const hf_workspace **whole)
+{
+    hf_built_net net;
+    hf_form_result result;
+    make_net(r, i_net, &net);
+    *whole = hf_built_batch_find(r->batch, &net, &result);
+    const hf_workspace *w = *whole;
+    return result.status == HF_OK ? view(r, w->position_m, w->tension_N, w->displacement_m) : NULL;
+}
+
+static void solve_nets(void *room, int first, int n, hf_goals_take *take, void *context)
+{
+    nets_room *r = room;
+    const hf_workspace *whole;
+    int i = first, n_state = r->nets->as.n_state;
+    for (; i < n_state && i < first + n; i++)
+        take(context, i, find_one(r, i, &whole));
+    r->take = take;
+    r->context = context;
+    if (i < first + n)
+        hf_built_batch_run(r->batch, what_varies(r->nets), i - n_state, first + n - i, make_in_lane, take_from_lane, r);
+}
+
+/* ---- derivatives ---- */
+
+/* Of the lengths of a net by those of the design, to which they are linear. */
+static void find_stretch(nets_room *r, int i_net)
+{
+    const hf_built_nets *nets = r->nets;
+    const hf_model *m = &r->built.model;
+    r->has_weight = false;
+    if (i_net < nets->as.n_state) {
+        const hf_state *state = &nets->states->state[i_net];
+        const hf_material *t = &nets->states->material;
+        for (int e = 0; e < m->n_cable; e++)
+            r->stretch[e] = state->rise_K[e] != 0 ? 1 + t->expansion_per_K[e] * state->rise_K[e] : 1;
+        for (int c = 0; c < 3; c++)
+            r->has_weight |= state->gravity_m_per_s2[c] != 0;
+        for (int e = 0; e < 3 * m->n_cable && r->has_weight; e++)
+            r->weight_N_per_m[e] = t->mass_kg_per_m[e / 3] * state->gravity_m_per_s2[e % 3];
+        return;
+    }
+    for (int e = 0; e < m->n_cable; e++) {
+        r->stretch[e] = 1;
+        r->cut_rate[e] = 0;
+    }
+    hf_built_errors_apply(&r->errors, 1, r->z, r->stretch, NULL, NULL);
+    hf_built_errors_apply(&r->errors, 1, r->z, r->cut_rate, NULL, NULL);
+    for (int e = 0; e < m->n_cable; e++)
+        r->stretch[e] -= r->cut_rate[e];
+}
+
+static const hf_workspace *linearise_net(void *room, int i_net)
+{
+    nets_room *r = room;
+    const hf_workspace *whole, *shape = find_one(r, i_net, &whole);
+    if (!shape) return NULL;
+    if (!r->linear.block) {
+        hf_status status = hf_built_linear_make(&r->built, &r->linear);
+        if (status == HF_NO_MEMORY || !r->linear.work.block) return NULL;
+    }
+    if (hf_built_linear_take(&r->linear, whole) != HF_OK) return NULL;
+    find_stretch(r, i_net);
+    return shape;
+}
+
+/* Of the pieces that are cut for the design: l0 = l/(1 + T/EA). */
+static void follow_cut(nets_room *r, const hf_goals_rate *by)
+{
+    const hf_model *m = r->nets->model;
+    const double *x = r->built.place_m, *v = by->position_m;
+    for (int e = 0; e < m->n_cable; e++) {
+        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
+        double l = r->design.length_m[e], l0 = r->built.model.target[e], longer = 0;
+        for (int c = 0; c < 3; c++, a += m->n_node, b += m->n_node)
+            longer += (x[b] - x[a]) * (v[b] - v[a]);
+        r->cut_rate[e] = l0 / l * (longer / l - l0 / r->built.model.EA_N[e] * by->tension_N[e]);
+    }
+}
+
+/* The rest of the supports follows the design, that of attachments without what the truss gives way. */
+static void follow_rest(const nets_room *r, const hf_goals_rate *by, double *dof_move)
+{
+    const hf_model *m = r->nets->model;
+    for (int row = m->n_free; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++)
+            dof_move[3 * row + c] = by->position_m[c * m->n_node + row];
+    for (int k = 0; k < m->n_attachment; k++)
+        for (int c = 0; c < 3; c++)
+            dof_move[3 * m->attachment_row[k] + c] -= by->displacement_m[3 * k + c];
+}
+
+static void follow_weight(const nets_room *r, double *dof_load)
+{
+    const hf_model *m = r->nets->model;
+    memset(dof_load, 0, 3 * (size_t)m->n_node * sizeof *dof_load);
+    for (int k = 0; k < 6 * m->n_cable; k++) { /* half of a piece at each of its ends */
+        int e = k / 6, row = m->end_row[k / 3];
+        dof_load[3 * row + k % 3] += r->weight_N_per_m[3 * e + k % 3] * r->cut_rate[e] / 2;
+    }
+}
+
+static void spread_net(const nets_room *r, int k, double *displacement_m)
+{
+    const hf_model *m = r->nets->model;
+    size_t n_dof = r->linear.n_dof;
+    const double *dof_move = r->dof_move_m + (size_t)k * n_dof;
+    double *move = r->rate_m + (size_t)k * n_dof;
+    for (int row = 0; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++)
+            move[c * m->n_node + row] = dof_move[3 * row + c];
+    for (int i = 0; i < 3 * m->n_attachment; i++) /* which held the rest's */
+        displacement_m[i] = dof_move[3 * m->attachment_row[i / 3] + i % 3] - displacement_m[i];
+}
+
+static void follow_net(void *room, int n, const hf_goals_rate *by, hf_goals_rate *by_net)
+{
+    nets_room *r = room;
+    const hf_model *m = r->nets->model;
+    size_t n_cable = (size_t)m->n_cable, n_dof = r->linear.n_dof, n_attachment = 3 * (size_t)m->n_attachment;
+    for (size_t k = 0; k < (size_t)n; k++) {
+        double *strain = r->strain_N + k * n_cable, *move = r->dof_move_m + k * n_dof;
+        follow_cut(r, &by[k]);
+        follow_rest(r, &by[k], move);
+        for (size_t e = 0; e < n_cable; e++)
+            strain[e] = r->linear.cut_N_per_m[e] * r->stretch[e] * r->cut_rate[e];
+        for (size_t i = 0; i < n_attachment; i++)
+            r->rate_displacement_m[k * n_attachment + i] = move[3 * (size_t)m->attachment_row[i / 3] + i % 3];
+        if (r->has_weight) follow_weight(r, r->dof_load_N + k * n_dof);
+    }
+    hf_built_linear_apply_by(&r->linear, NULL, n, r->strain_N, r->has_weight ? r->dof_load_N : NULL, r->dof_move_m,
+                             r->scratch);
+    for (size_t k = 0; k < (size_t)n; k++) {
+        double *tension = r->rate_N + k * n_cable, *displacement = r->rate_displacement_m + k * n_attachment;
+        hf_built_linear_tension(&r->linear, r->strain_N + k * n_cable, r->dof_move_m + k * n_dof, tension);
+        spread_net(r, (int)k, displacement);
+        by_net[k] = (hf_goals_rate){r->rate_m + k * n_dof, tension, displacement};
+    }
+}
+
+/* ---- all nets ---- */
+
+void hf_built_nets_make(const hf_scene *scene, const hf_model *model, const hf_form_settings *form,
+                        const hf_states *states, const double *attachment_move_m,
+                        const hf_tolerance_settings *tolerance, const double *expansion_per_K, int n_sample,
+                        hf_built_nets *nets)
+{
+    int n_state = states ? states->n : 0;
+    *nets = (hf_built_nets){.as = {.n_state = n_state,
+                                   .n_sample = n_sample,
+                                   .state_name = nets->name,
+                                   .open = open_room,
+                                   .close = close_room,
+                                   .cut = cut_for,
+                                   .solve = solve_nets,
+                                   .linearise = linearise_net,
+                                   .follow = follow_net},
+                            .scene = scene,
+                            .model = model,
+                            .form = form,
+                            .states = states,
+                            .tolerance = tolerance,
+                            .attachment_move_m = attachment_move_m,
+                            .expansion_per_K = expansion_per_K};
+    for (int i = 0; i < n_state; i++)
+        nets->name[i] = states->state[i].name;
+}

@@ -1,0 +1,68 @@
+#include "run/problem_nets.h"
+
+#include "base/arena.h"
+#include "built/built_nets.h"
+#include "run/cases.h"
+#include "run/tolerance_stage.h"
+
+struct hf_problem_nets {
+    hf_built_nets nets;
+    hf_material material;      /* for the expansion of samples */
+    double *attachment_move_m; /* [n_state][3 n_attachment] */
+};
+
+static bool is_over_states(const hf_goal_settings *g, int n)
+{
+    bool is_over = false;
+    for (int k = 0; k < n; k++)
+        is_over |= *g[k].state || g[k].over == HF_OVER_STATES;
+    return is_over;
+}
+
+static void lay_out_nets(hf_arena *arena, const hf_problem *p, struct hf_problem_nets **nets, double **move_m)
+{
+    *nets = hf_arena_take(arena, 1, sizeof **nets);
+    *move_m = hf_arena_take(arena, 3 * (size_t)p->states.n * (size_t)p->model.n_attachment, sizeof(double));
+}
+
+static hf_status make_nets(hf_problem *p, bool has_states, int n_sample, hf_messages *messages)
+{
+    struct hf_problem_nets *q = p->nets;
+    const hf_case *c = &p->settings;
+    bool is_on_truss = has_states && p->model.n_attachment > 0, is_warm = c->tolerance.sigma_temperature_K > 0;
+    if (n_sample > 0) HF_TRY(hf_tolerance_stage_check(p, false, messages));
+    if (n_sample > 0 && is_warm) HF_TRY(hf_config_material(c, &p->scene, &q->material, messages));
+    if (is_on_truss && hf_cases_rest(p, q->attachment_move_m) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the truss");
+    hf_built_nets_make(&p->scene, &p->model, &c->form, has_states ? &p->states : NULL,
+                       is_on_truss ? q->attachment_move_m : NULL, n_sample > 0 ? &c->tolerance : NULL,
+                       is_warm ? q->material.expansion_per_K : NULL, n_sample, &q->nets);
+    return HF_OK;
+}
+
+hf_status hf_problem_nets_make(hf_problem *p, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    bool has_states = is_over_states(o->goal, o->n_goal) || is_over_states(o->objective, o->n_objective);
+    int n_sample = hf_optimize_takes_samples(o) ? o->samples : 0;
+    hf_arena arena = {0};
+    double *move_m = NULL;
+    if (!has_states && n_sample == 0) return HF_OK;
+    if (HF_ARENA_MAKE(&arena, lay_out_nets(&arena, p, &p->nets, &move_m)) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the nets that goals are over");
+    p->nets->attachment_move_m = move_m;
+    return make_nets(p, has_states, n_sample, messages);
+}
+
+void hf_problem_nets_free(hf_problem *p)
+{
+    hf_arena arena = {.block = (unsigned char *)p->nets}; /* the first thing in its block */
+    if (p->nets) hf_material_free(&p->nets->material);
+    hf_arena_free(&arena);
+    p->nets = NULL;
+}
+
+const hf_goals_nets *hf_problem_nets_of(const hf_problem *p)
+{
+    return p->nets ? &p->nets->nets.as : NULL;
+}

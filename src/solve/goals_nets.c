@@ -1,0 +1,203 @@
+/* Goals over nets that are made of the design: its states, and samples of its errors (METHOD section 7). Contents:
+ * which nets - residuals - derivatives */
+#include <hifdm/goals.h>
+
+#include "linalg/dot.h"
+#include "solve/cloud.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- which nets ---- */
+
+bool hf_goals_is_smooth(const hf_goal_settings *goal)
+{
+    return !(goal->quantile > 0);
+}
+
+static bool is_over(const hf_goal *g, int i_net)
+{
+    return i_net >= g->first_net && i_net < g->first_net + g->n_net;
+}
+
+bool hf_goals_are_over(const hf_goals *goals, int i_net)
+{
+    for (int k = 0; k < goals->n_goal; k++)
+        if (is_over(&goals->goal[k], i_net)) return true;
+    return false;
+}
+
+/* Where the residuals of a net begin among all. */
+static int row_of_net(const hf_goal *g, int i_net)
+{
+    return g->first_row + (i_net - g->first_net) * g->n_shape_row;
+}
+
+static size_t place_of_net(const hf_goals *goals, int k, int i_net)
+{
+    return (size_t)k * ((size_t)goals->nets->n_state + (size_t)goals->nets->n_sample) + (size_t)i_net;
+}
+
+/* ---- residuals ---- */
+
+typedef struct {
+    const hf_goals *goals;
+    hf_goals_point *point;
+    double *residual;
+    hf_status status;
+} measured_nets;
+
+/* A net without a shape, or without a value, is the worst of all. */
+static void measure_net(void *context, int i_net, const hf_workspace *shape)
+{
+    measured_nets *q = context;
+    for (int k = 0; k < q->goals->n_goal; k++) {
+        const hf_goal *g = &q->goals->goal[k];
+        double *f = q->residual + row_of_net(g, i_net), value = INFINITY, norm = INFINITY;
+        if (!is_over(g, i_net)) continue;
+        memset(f, 0, (size_t)g->n_shape_row * sizeof *f);
+        if (shape && hf_goals_measure_shape(q->goals, k, shape, q->point, f, &value, &norm) != HF_OK)
+            q->status = HF_NO_MEMORY;
+        q->point->net_value[place_of_net(q->goals, k, i_net)] = isnan(value) ? (double)INFINITY : value;
+        q->point->net_norm[place_of_net(q->goals, k, i_net)] = isnan(norm) ? (double)INFINITY : norm;
+    }
+}
+
+hf_status hf_goals_nets_measure(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, double *residual)
+{
+    const hf_goals_nets *nets = goals->nets;
+    measured_nets q = {goals, p, residual, HF_OK};
+    int n_state = nets->n_state, n_sample = nets->n_sample;
+    bool has_samples = n_sample > 0 && hf_goals_are_over(goals, n_state);
+    hf_status status = nets->cut(p->nets, w);
+    if (status == HF_NO_MEMORY) return status;
+    for (int i = 0; i < n_state + n_sample && status != HF_OK; i++)
+        measure_net(&q, i, NULL);
+    for (int i = 0; i < n_state && status == HF_OK; i++)
+        if (hf_goals_are_over(goals, i)) nets->solve(p->nets, i, 1, measure_net, &q);
+    if (has_samples && status == HF_OK) nets->solve(p->nets, n_state, n_sample, measure_net, &q);
+    return q.status;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The value that a part q of n is not above, as statistics of tolerances have it (built/statistics.h). */
+static double quantile_of(int n, const double *value, double part, double *order)
+{
+    int rank = (int)ceil(part * n);
+    memcpy(order, value, (size_t)n * sizeof *order);
+    qsort(order, (size_t)n, sizeof *order, by_size);
+    return order[rank > 0 ? rank - 1 : 0];
+}
+
+/* Residuals of each net times (norm/P)^7, with P the smooth largest norm, have the norm P. */
+static double scale_worst(const hf_goal *g, const double *norm, double *part, double *f)
+{
+    double smooth;
+    memcpy(part, norm, (size_t)g->n_net * sizeof *part);
+    hf_goals_smooth_largest(g->n_net, part, &smooth);
+    for (int s = 0; s < g->n_net; s++)
+        for (int i = 0; i < g->n_shape_row; i++)
+            f[s * g->n_shape_row + i] *= hf_goals_seventh(part[s]);
+    return smooth;
+}
+
+static double largest_of(int n, const double *value)
+{
+    double largest = 0;
+    for (int s = 0; s < n; s++)
+        largest = fmax(largest, value[s]);
+    return largest;
+}
+
+void hf_goals_nets_gather(const hf_goals *goals, int k, hf_goals_point *p, double *f, double *value, double *norm)
+{
+    const hf_goal *g = &goals->goal[k];
+    const double *of_net = p->net_value + place_of_net(goals, k, g->first_net);
+    const double *norm_of_net = p->net_norm + place_of_net(goals, k, g->first_net);
+    double *part = p->net_part + place_of_net(goals, k, g->first_net);
+    size_t n = (size_t)g->n_net;
+    *value = largest_of(g->n_net, of_net);
+    *norm = largest_of(g->n_net, norm_of_net);
+    if (g->n_net == 1) return;
+    if (g->wanted.quantile > 0) {
+        *value = quantile_of(g->n_net, of_net, g->wanted.quantile, part);
+        *norm = quantile_of(g->n_net, norm_of_net, g->wanted.quantile, part);
+    } else if (isfinite(*norm) && g->wanted.take == HF_TAKE_WORST) {
+        *norm = scale_worst(g, norm_of_net, part, f);
+    } else if (isfinite(*norm)) {
+        *value = sqrt(hf_dot(n, of_net, of_net) / g->n_net);
+        *norm = sqrt(hf_dot(n, norm_of_net, norm_of_net) / g->n_net);
+        for (int i = 0; i < g->n_row; i++)
+            f[i] /= sqrt(g->n_net);
+    }
+}
+
+/* ---- derivatives ---- */
+
+hf_status hf_goals_nets_linearise(const hf_goals *goals, int i_net, hf_goals_point *p, const hf_workspace **shape)
+{
+    *shape = goals->nets->linearise(p->nets, i_net);
+    if (!*shape) return HF_NOT_FINITE;
+    for (int k = 0; k < goals->n_goal; k++) {
+        double value, norm;
+        if (!is_over(&goals->goal[k], i_net)) continue;
+        HF_TRY(hf_goals_measure_shape(goals, k, *shape, p, p->row, &value, &norm));
+        if (!isfinite(norm)) return HF_NOT_FINITE;
+        if (hf_goals_is_on_surface(goals->goal[k].wanted.goal)) HF_TRY(hf_cloud_linearise(&p->cloud[k]));
+    }
+    return HF_OK;
+}
+
+void hf_goals_nets_push(const hf_goals *goals, int i_net, const hf_workspace *shape, hf_goals_point *p,
+                        const hf_goals_rate *by, double *rate)
+{
+    for (int k = 0; k < goals->n_goal; k++)
+        if (is_over(&goals->goal[k], i_net))
+            hf_goals_push_shape(goals, k, shape, p, by, rate + row_of_net(&goals->goal[k], i_net));
+}
+
+/* f [n_row] are the residuals with their weights. The change of the norm S of a net is that of its residuals along
+ * them, and d(f (S/P)^7) = df (S/P)^7 + 7 f (S/P)^7 (dS/S - dP/P), dP = sum (S/P)^15 dS. */
+static void close_worst(const hf_goal *g, const double *norm, const double *part, const double *f, double *rate)
+{
+    double smooth = 0, smooth_rate = 0;
+    size_t n = (size_t)g->n_shape_row;
+    for (int s = 0; s < g->n_net; s++)
+        if (norm[s] > 0) smooth = fmax(smooth, norm[s] / part[s]);
+    for (int pass = 0; pass < 2; pass++)
+        for (int s = 0; s < g->n_net; s++) {
+            const double *of_net = f + (size_t)s * n;
+            double *by_net = rate + (size_t)s * n, length = sqrt(hf_dot(n, of_net, of_net));
+            double seventh = hf_goals_seventh(part[s]), turn = 0;
+            double norm_rate = length > 0 ? hf_dot(n, of_net, by_net) / length : 0;
+            if (pass == 0) {
+                smooth_rate += seventh * seventh * part[s] * norm_rate;
+                continue;
+            }
+            if (length > 0) turn = 7 * (norm_rate / norm[s] - smooth_rate / smooth);
+            for (size_t i = 0; i < n; i++)
+                by_net[i] = g->wanted.weight * seventh * by_net[i] + turn * of_net[i];
+        }
+}
+
+void hf_goals_nets_close(const hf_goals *goals, const hf_goals_point *p, const double *residual, double *rate)
+{
+    for (int k = 0; k < goals->n_goal; k++) {
+        const hf_goal *g = &goals->goal[k];
+        double *of_goal = rate + g->first_row;
+        if (g->n_net == 0) continue;
+        if (g->wanted.take == HF_TAKE_WORST && g->n_net > 1) {
+            size_t at = place_of_net(goals, k, g->first_net);
+            close_worst(g, p->net_norm + at, p->net_part + at, residual + g->first_row, of_goal);
+            continue;
+        }
+        for (int i = 0; i < g->n_row; i++)
+            of_goal[i] *= g->wanted.weight / sqrt(g->n_net);
+    }
+}

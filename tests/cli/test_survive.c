@@ -1,0 +1,84 @@
+/* Goals of nets as built: the same for any threads and interruptions, what survives better, what a case must give. */
+#include "session.h"
+
+#define SURVIVE                                                                                                        \
+    SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n"                                                            \
+                "tolerance: {sigma_cut_m: 1e-4, samples: 64, sampling: random}\n"                                      \
+                "cases: [{name: pushed, force_N: [0, 0, 0.2], role: inner}]\n"                                         \
+                "optimize: {method: %s, range_N: 4, population: 12, generations: 8, compare_lm: false, samples: 64, "  \
+                "goals: [%s]}\n"
+
+static const char *survive_case(const char *name, const char *method, const char *goals)
+{
+    return file_with(name, formatted(SURVIVE, method, goals));
+}
+
+/* By one thread and by three, and as a run that goes on from an earlier one. */
+START_TEST(threads_change_nothing)
+{
+    static const char *const method[] = {"lm", "ga", "ga+lm"},
+                             *const goals[] = {"{goal: psi, over: samples}, {goal: psi, state: pushed, weight: 0.1}",
+                                               "{goal: psi, over: samples, quantile: 0.95}",
+                                               "{goal: psi, over: samples, take: worst}"};
+    const char *c = survive_case("c.yaml", method[_i], goals[_i]), *one = temp("a.h5"), *many = temp("b.h5");
+    HIFDM(0, "run", c, "-o", one, "--quiet", "--threads", "1");
+    HIFDM(0, "run", c, "-o", many, "--quiet", "--threads", "3");
+    HIFDM(0, "diff", one, many);
+}
+END_TEST
+
+/* The goal over the samples of `tolerance` is its figure, and its optimum is better in it than that of psi. */
+START_TEST(what_is_sought_is_found)
+{
+    static const char *const goal[] = {"{goal: psi, over: samples}", "{goal: psi, over: samples, quantile: 0.95}"},
+                             *const method[] = {"lm", "ga"}, *const stage[] = {"polish", "optimize"},
+                             *const figure[] = {"rms_psi_m", "psi_95_m"};
+    const char *psi = temp("a.h5"), *survives = temp("b.h5");
+    HIFDM(0, "run", survive_case("p.yaml", method[_i], "{goal: psi}"), "-o", psi, "--quiet");
+    HIFDM(0, "run", survive_case("s.yaml", method[_i], goal[_i]), "-o", survives, "--quiet");
+    EXPECT(survives, psi, "--",
+           formatted("near(a['goals/%s'][0], a['tolerance'].attrs['%s'], 1e-7)", stage[_i], figure[_i]),
+           formatted("a['tolerance'].attrs['%s'] < b['tolerance'].attrs['%s']", figure[_i], figure[_i]));
+}
+END_TEST
+
+START_TEST(faults_of_nets_are_named)
+{
+    static const char *const fault[][3] = {
+        {"lm", "{goal: psi, state: pushd}", "state: is no state of `cases`; did you mean 'pushed'?"},
+        {"lm", "{goal: psi, over: samples, quantile: 0.9}", "quantile: has no derivatives"},
+        {"ga+lm", "{goal: psi, over: samples, quantile: 0.9}", "quantile: has no derivatives"},
+        {"ga", "{goal: psi, over: states, quantile: 0.9}", "quantile: has a meaning for over: samples alone"},
+        {"lm", "{goal: psi, take: worst}", "take: has a meaning for over: states and over: samples alone"},
+        {"lm", "{goal: psi, state: pushed, over: states}", "state: is one net"},
+    };
+    HIFDM(2, "check", survive_case("c.yaml", fault[_i][0], fault[_i][1]));
+    ERR(fault[_i][2]);
+    ERR("c.yaml:");
+}
+END_TEST
+
+START_TEST(what_nets_need_is_named)
+{
+    static const char scene[] = SMALL_SCENE "optimize: {method: lm, goals: [%s]}\n%s";
+    HIFDM(2, "check", file_with("c.yaml", formatted(scene, "{goal: psi, over: states}", "")));
+    ERR("over: states needs rows of `cases`");
+    HIFDM(2, "check", file_with("c.yaml", formatted(scene, "{goal: psi, over: samples}", "")));
+    ERR("over: samples needs a section tolerance");
+    HIFDM(2, "check",
+          file_with("c.yaml", formatted(scene, "{goal: psi, over: samples}", "tolerance: {sigma_cut_m: 1e-5}\n")));
+    ERR("have no EA");
+}
+END_TEST
+
+Suite *suite_cli_survive(void)
+{
+    Suite *suite = suite_create("cli/survive");
+    TCase *tests = tcase_create("survive");
+    suite_add_tcase(suite, tests);
+    tcase_add_loop_test(tests, threads_change_nothing, 0, 3);
+    tcase_add_loop_test(tests, what_is_sought_is_found, 0, 2);
+    tcase_add_loop_test(tests, faults_of_nets_are_named, 0, 6);
+    tcase_add_test(tests, what_nets_need_is_named);
+    return suite;
+}

@@ -1,0 +1,309 @@
+/* Goals over nets as built of a design: their derivatives against differences, on fixed supports and on a truss, their
+ * values against the states and samples of other modules, and what they must be where nothing differs. */
+#include "nets.h"
+
+#include "built/montecarlo.h"
+#include "run/cases.h"
+#include "run/problem_parts.h"
+#include "search/residuals.h"
+#include <hifdm/problem.h>
+
+enum { MAX_SET = 24, MAX_TRIED = 3 };
+#define MOVE_M 2.5e-4 /* of the node that a step moves most: differences of order 4 are off by some (MOVE_M/l)^4 */
+#define AGREEMENT 1e-7
+
+static const char truss_path[] = "configs/chen2022-truss.yaml", rigid_path[] = "configs/reflector.yaml";
+static const char *const rigid[] = {"scene.parabolic_cylinder.modules=[3, 3]",
+                                    "scene.parabolic_cylinder.edge_tie_m=0.25",
+                                    "scene.parabolic_cylinder.pattern=triangle"};
+
+/* Small errors: beyond them cables go slack, where derivatives jump. */
+static const char *const common[] = {
+    "form.stop=residual",
+    "form.residual_tolerance=1e-13",
+    "form.length_tolerance=1e-13",
+    "coupling.tof_m=1e-13",
+    "scene.EA_inner_N=1e4",
+    "scene.EA_boundary_N=2e4",
+    "cables=[{expansion_per_K: -2e-6, mass_kg_per_m: 0.01}]",
+    "nodes=[{mass_kg: 0.002}]",
+    "cases=[{name: cold, temperature_K: -20, part: net}, {name: up, gravity_m_per_s2: 9.81}, {name: moved, move_m: "
+    "[0, 0, 0.01], force_N: [0, 0, -0.01], role: inner}]",
+    "tolerance.sigma_cut_m=2e-5",
+    "tolerance.sigma_cut_ratio=1e-6",
+    "tolerance.sigma_EA_ratio=0.01",
+    "tolerance.sigma_support_m=1e-5",
+    "tolerance.sampling=random",
+    "tolerance.seed=5",
+    "optimize.samples=6",
+};
+
+static void open_problem(hf_problem *p, bool on_truss, const char *variables, const char *goals)
+{
+    const char *set[MAX_SET];
+    int n = 0;
+    hf_messages messages = {0};
+    for (size_t i = 0; i < sizeof common / sizeof *common; i++)
+        set[n++] = common[i];
+    for (size_t i = 0; i < sizeof rigid / sizeof *rigid && !on_truss; i++)
+        set[n++] = rigid[i];
+    set[n++] = goals;
+    if (variables) set[n++] = variables;
+    if (variables) set[n++] = "optimize.symmetry=none";
+    hf_status status = hf_problem_open(source_path(on_truss ? truss_path : rigid_path), set, n, 1, p, &messages);
+    ck_assert_msg(status == HF_OK, "%s", messages.text);
+    hf_messages_free(&messages);
+}
+
+/* ---- derivatives ---- */
+
+struct differed {
+    hf_problem p;
+    hf_sensitivity slopes;
+    hf_residuals residuals;
+    double *design, *exact, *gradient, *found[4];
+};
+
+static void residuals_at(struct differed *d, int i, double step, double *residual)
+{
+    const hf_model *m = &d->p.model;
+    hf_form_result result;
+    for (int k = 0; k < m->n_gene; k++)
+        d->design[k] = d->p.base_N[k] + (d->slopes.variable_of_gene[k] == i ? step : 0);
+    ck_assert_int_eq(hf_evaluate(&d->p.evaluator, d->design, &d->p.workspace, &result), HF_OK);
+    ck_assert_int_eq(hf_goals_linearise(&d->p.goals, &d->p.workspace, d->p.workspace.goals, residual), HF_OK);
+}
+
+static double largest_move(const struct differed *d, int i)
+{
+    const double *move = d->slopes.move + (size_t)i * d->slopes.n_dof;
+    double most = 0;
+    for (size_t k = 0; k < d->slopes.n_dof; k++)
+        most = fmax(most, fabs(move[k]));
+    return most;
+}
+
+/* |x - y| of the rows of a goal; y: NULL for zero. */
+static double distance(const hf_goal *g, const double *x, const double *y)
+{
+    double square = 0;
+    for (int r = g->first_row; r < g->first_row + g->n_row; r++)
+        square += (x[r] - (y ? y[r] : 0)) * (x[r] - (y ? y[r] : 0));
+    return sqrt(square);
+}
+
+/* Central differences over `step` and twice that, together of order 4, in found[0]. */
+static void differ(struct differed *d, int i, double step)
+{
+    for (int k = 0; k < 4; k++)
+        residuals_at(d, i, step * (k < 2 ? 1 : 2) * (k % 2 ? -1 : 1), d->found[k]);
+    for (int r = 0; r < d->residuals.n_row; r++)
+        d->found[0][r] = (8 * (d->found[0][r] - d->found[1][r]) - (d->found[2][r] - d->found[3][r])) / (12 * step);
+}
+
+static void open_differed(struct differed *d, bool on_truss, const char *variables, const char *goals)
+{
+    hf_form_result result;
+    open_problem(&d->p, on_truss, variables, goals);
+    d->p.evaluator.solver = HF_SOLVER_NEWTON;
+    ck_assert_int_eq(hf_sensitivity_create(&d->p.evaluator, &d->slopes), HF_OK);
+    ck_assert_int_eq(hf_residuals_create(&d->p.evaluator, &d->residuals), HF_OK);
+    size_t n = (size_t)d->slopes.n, n_row = (size_t)d->residuals.n_row;
+    d->design = calloc((size_t)d->p.model.n_gene + n + n * n_row + 4 * n_row, sizeof *d->design);
+    ck_assert_ptr_nonnull(d->design);
+    d->gradient = d->design + d->p.model.n_gene;
+    d->exact = d->gradient + n;
+    for (size_t k = 0; k < 4; k++)
+        d->found[k] = d->exact + n * n_row + k * n_row;
+    ck_assert_int_eq(hf_evaluate(&d->p.evaluator, d->p.base_N, &d->p.workspace, &result), HF_OK);
+    ck_assert_int_eq(hf_sensitivity_find(&d->slopes, &d->p.workspace), HF_OK);
+    ck_assert_int_eq(hf_residuals_find(&d->residuals, &d->p.workspace), HF_OK);
+    ck_assert_int_eq(hf_residuals_rates(&d->residuals, &d->slopes, &d->p.workspace, d->exact, d->gradient), HF_OK);
+}
+
+static void close_differed(struct differed *d)
+{
+    hf_residuals_free(&d->residuals);
+    hf_sensitivity_free(&d->slopes);
+    hf_problem_free(&d->p);
+    free(d->design);
+}
+
+static const char *const varied[] = {
+    NULL, /* the pretensions of the boundary */
+    "optimize.variables=[{set: directrix, vary: tension, range: 1}]",
+    "optimize.variables=[{set: edge_tie, vary: length, range: 0.01}]",
+    "optimize.variables=[{set: edge_tie, vary: support_z, range: 0.01, link: each}]",
+};
+static const char all_goals[] =
+    "optimize.goals=[{goal: psi}, {goal: psi, state: cold}, {goal: psi, state: up, weight: 2}, "
+    "{goal: psi, over: states}, {goal: psi, over: states, take: worst}, {goal: psi, over: samples, weight: 3}, "
+    "{goal: psi, over: samples, take: worst, weight: 2}, {goal: tension, set: directrix, target: 12, state: moved}, "
+    "{goal: ratio, set: generatrix, over: samples}, {goal: pull, over: states, take: worst}, "
+    "{goal: length, set: inner, over: states}, {goal: evenness, over: samples, take: worst}]";
+
+START_TEST(derivatives_are_those_of_differences)
+{
+    struct differed d = {0};
+    bool on_truss = _i % 2;
+    open_differed(&d, on_truss, varied[_i / 2], all_goals);
+    const hf_goals *goals = &d.p.goals;
+    int n_row = d.residuals.n_row, stride = 1 + d.slopes.n / MAX_TRIED;
+    double largest[HF_DESIGN_ROWS_MAX] = {0};
+    for (int k = 0; k < goals->n_goal; k++)
+        for (int i = 0; i < d.slopes.n; i += stride)
+            largest[k] = fmax(largest[k], distance(&goals->goal[k], d.exact + (ptrdiff_t)i * n_row, NULL));
+    for (int i = 0; i < d.slopes.n; i += stride) {
+        differ(&d, i, MOVE_M / largest_move(&d, i));
+        for (int k = 0; k < goals->n_goal; k++) {
+            double off = distance(&goals->goal[k], d.exact + (ptrdiff_t)i * n_row, d.found[0]);
+            ck_assert_msg(off <= AGREEMENT * largest[k], "%s%s, variable %d, goal %d: off by %g of %g",
+                          varied[_i / 2] ? varied[_i / 2] : "pretensions", on_truss ? ", truss" : "", i, k, off,
+                          largest[k]);
+        }
+    }
+    close_differed(&d);
+}
+END_TEST
+
+/* ---- values ---- */
+
+static const char value_goals[] =
+    "optimize.goals=[{goal: psi}, {goal: psi, over: samples}, {goal: psi, over: samples, take: worst}, "
+    "{goal: psi, over: samples, quantile: 0.5}, {goal: psi, state: cold}, {goal: psi, state: up}, "
+    "{goal: psi, state: moved}, {goal: psi, over: states}, {goal: psi, over: states, take: worst}, "
+    "{goal: pull, over: samples}, {goal: pull}]";
+
+static void evaluate_base(hf_problem *p, hf_form_result *r)
+{
+    ck_assert_int_eq(hf_evaluate(&p->evaluator, p->base_N, &p->workspace, r), HF_OK);
+}
+
+static void assert_near(double value, double wanted)
+{
+    ck_assert_msg(fabs(value - wanted) <= 1e-9 * wanted, "%.17g, not %.17g", value, wanted);
+}
+
+/* The same samples by the module behind `tolerance`. */
+START_TEST(values_over_samples_are_those_of_tolerances)
+{
+    hf_problem p;
+    hf_form_result r;
+    hf_built built;
+    hf_montecarlo t;
+    hf_messages messages = {0};
+    double square = 0, psi[6];
+    open_problem(&p, _i, NULL, value_goals);
+    evaluate_base(&p, &r);
+    ck_assert_int_eq(hf_built_make("x.yaml", &p.scene, &p.model, &p.settings.form, &p.workspace, &built, &messages),
+                     HF_OK);
+    ck_assert_int_eq(hf_montecarlo_create(&p.settings.tolerance, &built, NULL, NULL, NULL, 1, &t), HF_OK);
+    ck_assert_int_eq(hf_montecarlo_run(&t, 1, 0, 6), HF_OK);
+    for (int i = 0; i < 6; i++) {
+        double value = t.row[i * HF_TOLERANCE_COLUMNS + HF_TOLERANCE_FIRST + HF_TOLERANCE_PSI];
+        int at = i;
+        for (; at > 0 && psi[at - 1] > value; at--)
+            psi[at] = psi[at - 1];
+        psi[at] = value;
+        square += value * value / 6;
+    }
+    assert_near(r.goal[1], sqrt(square));
+    assert_near(r.goal[2], psi[5]);
+    assert_near(r.goal[3], psi[2]);
+    ck_assert_double_gt(psi[5], 1.00001 * psi[0]);
+    hf_montecarlo_free(&t);
+    hf_built_free(&built);
+    hf_problem_free(&p);
+}
+END_TEST
+
+/* The same states by the reference, hf_built_solve. */
+START_TEST(values_of_states_are_those_of_cases)
+{
+    hf_problem p;
+    hf_form_result r, of_state;
+    hf_cases cases = {0};
+    hf_built_net net;
+    hf_messages messages = {0};
+    double square = 0, worst = 0, rest_m[3 * 3 * 100] = {0};
+    open_problem(&p, _i, NULL, value_goals);
+    size_t n = 3 * (size_t)p.model.n_attachment;
+    ck_assert_uint_le(3 * n, sizeof rest_m / sizeof *rest_m);
+    if (n) ck_assert_int_eq(hf_cases_rest(&p, rest_m), HF_OK);
+    evaluate_base(&p, &r);
+    ck_assert_int_eq(hf_cases_take(&p, &p.workspace, &cases, &messages), HF_OK);
+    for (int k = 0; k < 3; k++) {
+        hf_built_state(&cases.built, &p.states.material, &p.states.state[k], n ? rest_m + (size_t)k * n : NULL,
+                       cases.cut_m, cases.move_m, cases.load_N, &net);
+        ck_assert_int_eq(hf_built_solve(&cases.built, &net, &cases.workspace, &of_state), HF_OK);
+        assert_near(r.goal[4 + k], of_state.psi_m);
+        ck_assert_double_gt(fabs(of_state.psi_m - r.goal[0]), 1e-6);
+        square += of_state.psi_m * of_state.psi_m / 3;
+        worst = fmax(worst, of_state.psi_m);
+    }
+    assert_near(r.goal[7], sqrt(square));
+    assert_near(r.goal[8], worst);
+    hf_cases_free(&cases);
+    hf_problem_free(&p);
+}
+END_TEST
+
+/* Without errors, and in states in which nothing is different, every net is the design. */
+START_TEST(nets_that_do_not_differ_are_the_design)
+{
+    hf_problem p;
+    hf_form_result r;
+    open_problem(&p, _i, NULL, value_goals);
+    hf_tolerance_settings *t = &p.settings.tolerance;
+    t->sigma_cut_m = t->sigma_cut_ratio = t->sigma_EA_ratio = t->sigma_support_m = 0;
+    for (int k = 0; k < p.states.n; k++) {
+        hf_state *s = &p.states.state[k];
+        memset(s->rise_K, 0, (size_t)p.model.n_cable * sizeof(double));
+        memset(s->force_N, 0, 3 * (size_t)p.model.n_node * sizeof(double));
+        memset(s->move_m, 0, 3 * (size_t)p.model.n_node * sizeof(double));
+        memset(s->gravity_m_per_s2, 0, sizeof s->gravity_m_per_s2);
+    }
+    evaluate_base(&p, &r);
+    for (int k = 1; k < 9; k++) /* on a truss its own weight has moved the attachments of state `up` before */
+        if (k < 4 || p.model.n_attachment == 0) assert_near(r.goal[k], r.goal[0]);
+    assert_near(r.goal[9], r.goal[10]);
+    hf_problem_free(&p);
+}
+END_TEST
+
+/* A design is judged alike after any other, and by any room. */
+START_TEST(values_do_not_depend_on_earlier_designs)
+{
+    hf_problem p;
+    hf_form_result first, other, again;
+    open_problem(&p, _i, NULL, value_goals);
+    evaluate_base(&p, &first);
+    double *design = malloc((size_t)p.model.n_gene * sizeof *design);
+    ck_assert_ptr_nonnull(design);
+    for (int k = 0; k < p.model.n_gene; k++)
+        design[k] = p.base_N[k] * (1 + 0.02 * (k % 5));
+    ck_assert_int_eq(hf_evaluate(&p.evaluator, design, &p.workspace, &other), HF_OK);
+    evaluate_base(&p, &again);
+    ck_assert_mem_eq(first.goal, again.goal, sizeof first.goal);
+    hf_batch_run_one(&p.batch, design, &again); /* by chord, in another workspace */
+    for (int k = 0; k < p.goals.n_goal; k++)
+        ck_assert_msg(fabs(again.goal[k] - other.goal[k]) <= 1e-8 * other.goal[k], "goal %d: %g and %g", k,
+                      again.goal[k], other.goal[k]);
+    free(design);
+    hf_problem_free(&p);
+}
+END_TEST
+
+Suite *suite_unit_built_nets(void)
+{
+    Suite *suite = suite_create("unit/built/built_nets");
+    TCase *tcase = tcase_create("built_nets");
+    tcase_set_timeout(tcase, 60);
+    tcase_add_loop_test(tcase, derivatives_are_those_of_differences, 0, 2 * (int)(sizeof varied / sizeof *varied));
+    tcase_add_loop_test(tcase, values_over_samples_are_those_of_tolerances, 0, 2);
+    tcase_add_loop_test(tcase, values_of_states_are_those_of_cases, 0, 2);
+    tcase_add_loop_test(tcase, nets_that_do_not_differ_are_the_design, 0, 2);
+    tcase_add_loop_test(tcase, values_do_not_depend_on_earlier_designs, 0, 2);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
