@@ -365,7 +365,7 @@ dist-check: dist ## build that tarball without git, install and uninstall it, ru
 	+$(Q)SUITE=$(call quote,$(SUITE)) tools/packages/check_dist.sh $(DIST).tar.gz $(BUILD)/dist/check
 
 # tools/debian has the recipe, the tarball the sources. Checked by lintian where that is installed.
-deb: dist ## Debian packages hifdm, libhifdm0, libhifdm-dev of that tarball: build/deb/*.deb
+deb: dist ## Debian packages of that tarball: program, library, headers, Python: build/deb/*.deb
 	$(Q)tools/setup.sh --deb
 	+$(Q)tools/packages/make_deb.sh $(DIST).tar.gz $(BUILD)/deb
 

@@ -86,6 +86,7 @@ missing_packages() {
     if [ $with_deb = yes ]; then
         has dpkg-buildpackage || need dpkg-dev
         has dh || need debhelper
+        has dh_python3 || need dh-python
         has lintian || need lintian
     fi
     if [ $with_ci = yes ]; then
