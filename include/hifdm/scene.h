@@ -65,6 +65,12 @@ void hf_scene_fault(const hf_scene *scene, bool is_cable, int index, int *n_faul
 
 double hf_scene_theoretical_length(const hf_scene *scene, int i_cable); /* m, between theoretical positions */
 
+/* In what two nets differ: nodes, their roles or theoretical places, cables or their ends; NULL: in none of these. */
+const char *hf_scene_difference(const hf_scene *a, const hf_scene *b);
+
+/* Are these numbers [n] the same but for rounding, as that of two machines? NULL agrees with NULL alone. */
+bool hf_scene_numbers_agree(size_t n, const double *a, const double *b);
+
 void hf_scene_free(hf_scene *scene);
 
 #ifdef __cplusplus

@@ -10,39 +10,15 @@
 #include <math.h>
 #include <string.h>
 
-#define SAME 1e-9 /* relative: numbers that libraries of two machines may have rounded differently */
-
 /* ---- the net of the result ---- */
-
-static bool are_same(size_t n, const double *a, const double *b)
-{
-    double size = 0;
-    if (!a || !b) return !a && !b;
-    for (size_t i = 0; i < n; i++)
-        if (isfinite(a[i])) size = fmax(size, fabs(a[i]));
-    for (size_t i = 0; i < n; i++)
-        if (!(fabs(a[i] - b[i]) <= SAME * size) && !(isinf(a[i]) && a[i] == b[i])) return false;
-    return true;
-}
-
-static bool have_same_ids(int n, const char *const *a, const char *const *b)
-{
-    for (int i = 0; i < n; i++)
-        if (strcmp(a[i], b[i]) != 0) return false;
-    return true;
-}
 
 /* In what two nets differ; NULL: in nothing that a design of the one would not fit to the other for. */
 static const char *net_difference(const hf_scene *a, const hf_scene *b)
 {
-    size_t n = (size_t)a->n_node, n_cable = (size_t)a->n_cable;
-    if (a->n_node != b->n_node || !have_same_ids(a->n_node, a->node_id, b->node_id)) return "nodes";
-    if (memcmp(a->role, b->role, n) != 0) return "roles of nodes";
-    if (!are_same(3 * n, a->position_m, b->position_m)) return "theoretical places of nodes";
-    if (!are_same(3 * n, a->load_N, b->load_N)) return "loads";
-    if (a->n_cable != b->n_cable || !have_same_ids(a->n_cable, a->cable_id, b->cable_id)) return "cables";
-    if (memcmp(a->end, b->end, 2 * n_cable * sizeof *a->end) != 0) return "ends of cables";
-    if (!are_same(n_cable, a->EA_N, b->EA_N)) return "EA of cables";
+    const char *what = hf_scene_difference(a, b);
+    if (what) return what;
+    if (!hf_scene_numbers_agree(3 * (size_t)a->n_node, a->load_N, b->load_N)) return "loads";
+    if (!hf_scene_numbers_agree((size_t)a->n_cable, a->EA_N, b->EA_N)) return "EA of cables";
     return NULL;
 }
 
@@ -50,12 +26,12 @@ static const char *truss_difference(const hf_truss *a, const hf_truss *b)
 {
     size_t n = (size_t)a->n_node, n_member = (size_t)a->n_member;
     if (a->n_node != b->n_node || a->n_member != b->n_member) return "its truss";
-    if (!are_same(3 * n, a->position_m, b->position_m)) return "nodes of the truss";
+    if (!hf_scene_numbers_agree(3 * n, a->position_m, b->position_m)) return "nodes of the truss";
     if (memcmp(a->fixed, b->fixed, n) != 0) return "supports of the truss";
     if (memcmp(a->end, b->end, 2 * n_member * sizeof *a->end) != 0) return "ends of members";
     if (memcmp(a->joint, b->joint, n_member) != 0) return "joints of members";
 #define DIFFER(name, units, otherwise, description)                                                                    \
-    if (!are_same(n_member, a->name, b->name)) return #name " of members";
+    if (!hf_scene_numbers_agree(n_member, a->name, b->name)) return #name " of members";
     HF_MEMBER_NUMBERS(DIFFER)
 #undef DIFFER
     return NULL;

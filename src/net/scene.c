@@ -1,4 +1,4 @@
-/* Contents: words - memory - checks */
+/* Contents: words - memory - checks - two scenes */
 #include <hifdm/scene.h>
 
 #include "base/arena.h"
@@ -11,6 +11,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define ROUNDING 1e-9 /* relative to the largest */
 
 const char *const hf_role_word[3] = {"support", "inner", "edge"};
 const char *const hf_group_word[2] = {"inner", "boundary"};
@@ -156,4 +158,37 @@ hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages)
     HF_TRY(check_anchored(scene, &n_fault, messages));
     if (n_fault > HF_FAULT_MAX) hf_error(messages, HF_BAD_CASE, "scene: and %d more faults", n_fault - HF_FAULT_MAX);
     return n_fault ? HF_BAD_CASE : HF_OK;
+}
+
+/* ---- two scenes ---- */
+
+bool hf_scene_numbers_agree(size_t n, const double *a, const double *b)
+{
+    double size = 0;
+    if (!a || !b) return !a && !b;
+    for (size_t i = 0; i < n; i++)
+        if (isfinite(a[i])) size = fmax(size, fabs(a[i]));
+    for (size_t i = 0; i < n; i++) {
+        bool is_same = a[i] == b[i] || (isnan(a[i]) && isnan(b[i]));
+        if (!is_same && !(fabs(a[i] - b[i]) <= ROUNDING * size)) return false;
+    }
+    return true;
+}
+
+static bool have_same_ids(int n, const char *const *a, const char *const *b)
+{
+    for (int i = 0; i < n; i++)
+        if (strcmp(a[i], b[i]) != 0) return false;
+    return true;
+}
+
+const char *hf_scene_difference(const hf_scene *a, const hf_scene *b)
+{
+    size_t n = (size_t)a->n_node, n_cable = (size_t)a->n_cable;
+    if (a->n_node != b->n_node || !have_same_ids(a->n_node, a->node_id, b->node_id)) return "nodes";
+    if (memcmp(a->role, b->role, n) != 0) return "roles of nodes";
+    if (!hf_scene_numbers_agree(3 * n, a->position_m, b->position_m)) return "theoretical places of nodes";
+    if (a->n_cable != b->n_cable || !have_same_ids(a->n_cable, a->cable_id, b->cable_id)) return "cables";
+    if (memcmp(a->end, b->end, 2 * n_cable * sizeof *a->end) != 0) return "ends of cables";
+    return NULL;
 }

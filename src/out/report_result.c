@@ -17,7 +17,6 @@
 #include <string.h>
 
 #define POINTS_MAX 1000       /* points of a series that the page keeps: about what a screen can show */
-#define SAME_PLACE_M 1e-9     /* theoretical places of two results that are the same */
 #define PROVENANCE_SIZE 16384 /* 500 bytes are usual; lines that have no room are left out */
 
 /* The series of a page: path in the file, group and key on the page. The first row of a group sets its length. */
@@ -246,24 +245,6 @@ static void write_series(const page *p, FILE *f)
 
 /* ---- beside another result ---- */
 
-static bool are_equal(const char *const *a, const char *const *b, int n)
-{
-    for (int i = 0; i < n; i++)
-        if (strcmp(a[i], b[i]) != 0) return false;
-    return true;
-}
-
-/* Have both the same nodes at the same theoretical places, and the same cables? Then their shapes are comparable. */
-static bool is_same_net(const hf_scene *a, const hf_scene *b)
-{
-    if (a->n_node != b->n_node || a->n_cable != b->n_cable) return false;
-    for (int i = 0; i < 3 * a->n_node; i++)
-        if (!(fabs(a->position_m[i] - b->position_m[i]) <= SAME_PLACE_M)) return false;
-    return !memcmp(a->end, b->end, 2 * (size_t)a->n_cable * sizeof *a->end) &&
-           are_equal((const char *const *)a->node_id, (const char *const *)b->node_id, a->n_node) &&
-           are_equal((const char *const *)a->cable_id, (const char *const *)b->cable_id, a->n_cable);
-}
-
 static void write_case(const page *p, FILE *f)
 {
     hf_json_strings("case_text", &(const char *){p->case_text.n ? hf_texts_at(&p->case_text, 0) : ""}, 1, f);
@@ -279,7 +260,7 @@ static void write_other(const page *p, const page *other, FILE *f)
     write_case(other, f);
     fputs(",\"summary\":", f);
     hf_summary_write_json(&other->summary, other->summary.form.status, other->summary.warnings, other->path, f);
-    if (is_same_net(&p->scene, &other->scene)) write_shapes(other, HF_STAGE_NONE, f);
+    if (!hf_scene_difference(&p->scene, &other->scene)) write_shapes(other, HF_STAGE_NONE, f);
     fputc('}', f);
 }
 
