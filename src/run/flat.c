@@ -115,7 +115,7 @@ int hf_flat_open(hf_flat *f, const char *path, int n_set, const char *const *set
     const hf_problem_source *source = f->source.text ? &f->source : NULL;
     hf_status status = hf_problem_load(path, source, set, n_set, &f->problem, &f->said);
     f->is_open = status == HF_OK;
-    return status;
+    return (int)status;
 }
 
 void hf_flat_nodes(hf_flat *f, int n_node, const double *position_m, const unsigned char *role, const double *load_N,
@@ -368,7 +368,7 @@ static hf_status make_batch(hf_flat *f)
     return HF_OK;
 }
 
-int hf_flat_form(hf_flat *f)
+static hf_status find_form(hf_flat *f)
 {
     hf_problem *p = &f->problem;
     hf_form_result *r = &f->result;
@@ -382,6 +382,11 @@ int hf_flat_form(hf_flat *f)
     if (p->goals.n_goal && hf_goals_measure(&p->goals, &p->workspace, p->workspace.goals, r->goal, &r->merit) != HF_OK)
         return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the goals");
     return HF_OK;
+}
+
+int hf_flat_form(hf_flat *f)
+{
+    return (int)find_form(f);
 }
 
 /* Values are finite numbers, those of cables above zero. */

@@ -125,7 +125,7 @@ hf_status hf_store_read_pattern(const char *path, hf_stage stage, hf_pattern_tab
     *table = (hf_pattern_table){0};
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
-    if (io.status == HF_OK) hf_layout_read_pattern(&io, stage, table);
+    if (io.status == HF_OK) hf_layout_read_pattern(&io, (int)stage, table);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) hf_pattern_table_free(table);
     return hf_hdf5_unlock(io.status);

@@ -325,16 +325,16 @@ START_TEST(nothing_is_sought_that_no_variable_reaches)
         "optimize.objectives=[{goal: psi}, {goal: mass, set: far, mass_kg_per_m: 1}]",
         "optimize.variables=[{set: far, vary: tension, range: 1}]"};
     static const char *const why[] = {
-        "error: --set optimize.goals.0: no variable of this case changes goal_0_length_far: all cables that it looks "
-        "at "
-        "keep their lengths; vary what does, or leave it out\nerror: --set optimize.goals.1: no variable of this case "
-        "changes goal_1_evenness_far: all cables that it looks at keep their tensions; vary what does, or leave it "
-        "out\n",
-        "error: --set optimize.objectives.1: no variable of this case changes goal_1_mass_far: all cables that it "
-        "looks "
-        "at keep their lengths; vary what does, or leave it out\n",
-        "error: --set optimize.variables.0: no variable of this case changes psi: none of the nodes that it looks at "
-        "moves; vary what does, or name goals\n"};
+        ("error: --set optimize.goals.0: no variable of this case changes goal_0_length_far: all cables that it looks "
+         "at "
+         "keep their lengths; vary what does, or leave it out\nerror: --set optimize.goals.1: no variable of this case "
+         "changes goal_1_evenness_far: all cables that it looks at keep their tensions; vary what does, or leave it "
+         "out\n"),
+        ("error: --set optimize.objectives.1: no variable of this case changes goal_1_mass_far: all cables that it "
+         "looks "
+         "at keep their lengths; vary what does, or leave it out\n"),
+        ("error: --set optimize.variables.0: no variable of this case changes psi: none of the nodes that it looks at "
+         "moves; vary what does, or name goals\n")};
     static const char *const command[] = {"run", "check"};
     const char *net = net_with(two_nets, two_cables), *out = temp("none.h5");
     for (int k = 0; k < 2; k++) {

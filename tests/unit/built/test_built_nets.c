@@ -27,8 +27,8 @@ static const char *const common[] = {
     "scene.EA_boundary_N=2e4",
     "cables=[{expansion_per_K: -2e-6, mass_kg_per_m: 0.01}]",
     "nodes=[{mass_kg: 0.002}]",
-    "cases=[{name: cold, temperature_K: -20, part: net}, {name: up, gravity_m_per_s2: 9.81}, {name: moved, move_m: "
-    "[0, 0, 0.01], force_N: [0, 0, -0.01], role: inner}]",
+    ("cases=[{name: cold, temperature_K: -20, part: net}, {name: up, gravity_m_per_s2: 9.81}, {name: moved, move_m: "
+     "[0, 0, 0.01], force_N: [0, 0, -0.01], role: inner}]"),
     "tolerance.sigma_cut_m=2e-5",
     "tolerance.sigma_cut_ratio=1e-6",
     "tolerance.sigma_EA_ratio=0.01",

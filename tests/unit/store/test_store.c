@@ -167,7 +167,11 @@ START_TEST(surface_comes_back_bit_by_bit)
     struct net net;
     hf_messages messages = {0};
     const char letters[] = "of_fifty-seven_letters_behind_the_number_and_what_is_before";
-    hf_summary read, written = {.surface = {7.2, 0.25, {n, {0}}, 3.5, (hf_surface_kind)(_i % 3)}};
+    hf_summary read, written = {.surface = {.focal_length_m = 7.2,
+                                            .strip_width_m = 0.25,
+                                            .frequencies_Hz = {n, {0}},
+                                            .mesh_tension_N_per_m = 3.5,
+                                            .kind = (hf_surface_kind)(_i % 3)}};
     open_bow(&net);
     for (int k = 0; k < n; k++)
         written.surface.frequencies_Hz.value[k] = rng_uniform(&rng, 1e8, 1e11);
