@@ -11,6 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* HF_TRY of functions that return a status as int. */
+#define TRY(expression)                                                                                                \
+    do {                                                                                                               \
+        hf_status status_ = (expression);                                                                              \
+        if (status_ != HF_OK) return (int)status_;                                                                     \
+    } while (0)
+
 struct hf_flat {
     hf_messages said;
     const char *path;
@@ -423,7 +430,7 @@ int hf_flat_evaluate(hf_flat *f, int n, const double *design, double *figure)
 {
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
     int n_field = hf_problem_list_figures(&f->problem, field);
-    HF_TRY(evaluate(f, n, design));
+    TRY(evaluate(f, n, design));
     for (int k = 0; k < n_field; k++)
         for (int i = 0; i < n; i++)
             *figure++ = field_value(field[k], &f->room[i]);
@@ -436,7 +443,7 @@ int hf_flat_evaluate(hf_flat *f, int n, const double *design, double *figure)
 int hf_flat_shape(hf_flat *f, const double *design)
 {
     if (!begins(f, f->is_ready, NEEDS_SHAPE)) return HF_BAD_USAGE;
-    HF_TRY(check_designs(f, 1, design));
+    TRY(check_designs(f, 1, design));
     f->shape = hf_batch_run_one(&f->problem.batch, design, &f->result);
     return HF_OK;
 }
@@ -444,8 +451,8 @@ int hf_flat_shape(hf_flat *f, const double *design)
 int hf_flat_slopes(hf_flat *f, int n, const double *design, double *slope)
 {
     hf_problem *p = &f->problem;
-    HF_TRY(evaluate(f, n, design));
-    HF_TRY(hf_problem_slopes(p, n, design, f->room, slope, &f->said));
+    TRY(evaluate(f, n, design));
+    TRY(hf_problem_slopes(p, n, design, f->room, slope, &f->said));
     size_t size = (size_t)hf_problem_n_slope(p) * (size_t)p->model.n_gene, n_feasible = 0;
     for (int i = 0; i < n; i++)
         n_feasible += f->room[i].status == HF_OK;
@@ -473,7 +480,7 @@ static void pass_on(void *context, const hf_run_progress *now)
     bool is_sampling = now->phase == HF_RUN_TOLERANCE;
     long done = is_sampling ? now->samples : now->generation, all = is_sampling ? now->samples_all : now->generations;
     if (w->observer &&
-        w->observer(w->context, now->phase, done, all, now->evaluations, now->best_psi_m, now->elapsed_s))
+        w->observer(w->context, (int)now->phase, done, all, now->evaluations, now->best_psi_m, now->elapsed_s))
         hf_flat_stop(w->flat);
 }
 
@@ -508,7 +515,7 @@ int hf_flat_run(hf_flat *f, const char *output, int restart, hf_flat_observer *o
                               .observer_context = &beside};
     hf_status status = hf_run_case(&request, &f->summary, written, &f->said);
     f->stop = 0;
-    return tell_summary(f, status, written);
+    return (int)tell_summary(f, status, written);
 }
 
 void hf_flat_stop(hf_flat *f)

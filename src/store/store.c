@@ -335,7 +335,7 @@ hf_status hf_store_pattern(hf_store *s, hf_stage stage, const hf_pattern_table *
     hf_hdf5_lock();
     s->f.io.messages = messages;
     hf_store_file_open(&s->f);
-    hf_layout_write_pattern(&s->f.io, stage, table, figures);
+    hf_layout_write_pattern(&s->f.io, (int)stage, table, figures);
     return hf_hdf5_unlock(s->f.io.status);
 }
 
