@@ -4,6 +4,8 @@
 #include "app/options.h"
 #include "out/print.h"
 
+#include <unistd.h>
+
 /* "--csv DIR, --vtk DIR or --cutlist FILE" */
 static void list_exporters(char *text, size_t size)
 {
@@ -50,11 +52,17 @@ static hf_status command_export(const hf_options *o, FILE *file, hf_messages *me
     static hf_file_out_set files;
     HF_TRY(check_request(o, messages));
     hf_status status = HF_OK;
+    bool is_new[HF_N_EXPORTER];
+    for (int i = 0; i < HF_N_EXPORTER; i++)
+        is_new[i] = o->export_to[i] && access(o->export_to[i], F_OK) != 0;
     for (int i = 0; i < HF_N_EXPORTER && status == HF_OK; i++) {
         const hf_export_request request = {o->file, o->export_to[i], o->stage, o->state, o->force, &files};
         if (o->export_to[i]) status = hf_exporter_table[i]->write(&request, said[i], sizeof said[i], messages);
     }
-    HF_TRY(hf_file_out_set_end(&files, status, messages));
+    status = hf_file_out_set_end(&files, status, messages);
+    for (int i = 0; i < HF_N_EXPORTER && status != HF_OK; i++)
+        if (is_new[i]) rmdir(o->export_to[i]); /* a folder that was made for files which it did not get */
+    HF_TRY(status);
     for (int i = 0; i < HF_N_EXPORTER; i++)
         if (o->export_to[i]) hf_print_line(file, "%s", said[i]);
     return HF_OK;

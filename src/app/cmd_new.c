@@ -124,8 +124,10 @@ static const char cables[] =
     "c5,w,p,inner,tension,,47000\nc6,p,q,inner,tension,,47000\n"
     "c7,q,e,inner,tension,,47000\n";
 
-static const char *const case_text[] = {
-    [HF_NEW_PARABOLOID] = paraboloid, [HF_NEW_CYLINDER] = cylinder, [HF_NEW_IMPORT] = import};
+static const char *const case_text[] = {[HF_NEW_UNSAID] = paraboloid,
+                                        [HF_NEW_PARABOLOID] = paraboloid,
+                                        [HF_NEW_CYLINDER] = cylinder,
+                                        [HF_NEW_IMPORT] = import};
 
 /* ---- writing ---- */
 

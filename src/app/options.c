@@ -148,11 +148,13 @@ static hf_status read_bash(const hf_option *option, const char *value, hf_option
 
 static hf_status read_new(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
 {
+    hf_new_case asked = !strcmp(option->name, "--import")     ? HF_NEW_IMPORT
+                        : !strcmp(option->name, "--cylinder") ? HF_NEW_CYLINDER
+                                                              : HF_NEW_PARABOLOID;
     (void)value;
-    (void)messages;
-    o->new_case = !strcmp(option->name, "--import")     ? HF_NEW_IMPORT
-                  : !strcmp(option->name, "--cylinder") ? HF_NEW_CYLINDER
-                                                        : HF_NEW_PARABOLOID;
+    if (o->new_case != HF_NEW_UNSAID && o->new_case != asked)
+        return hf_error(messages, HF_BAD_USAGE, "%s excludes the kind that was asked for before it", option->name);
+    o->new_case = asked;
     return HF_OK;
 }
 

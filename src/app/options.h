@@ -10,7 +10,7 @@
 
 typedef enum { HF_HELP_TEXT, HF_HELP_MAN, HF_HELP_BASH } hf_help_form;
 
-typedef enum { HF_NEW_PARABOLOID, HF_NEW_CYLINDER, HF_NEW_IMPORT } hf_new_case;
+typedef enum { HF_NEW_UNSAID, HF_NEW_PARABOLOID, HF_NEW_CYLINDER, HF_NEW_IMPORT } hf_new_case;
 
 struct hf_options {
     const hf_command *command;

@@ -425,6 +425,9 @@ static hf_status seal(hf_case *c, const char *const *overrides, int n_override)
 static hf_status parse(hf_case *settings, const char *const *overrides, int n_override, hf_messages *messages)
 {
     const char *path = settings->path;
+    if (settings->text_length > 4 && !memcmp(settings->text, "\x89HDF", 4))
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: is an HDF5 file, no case: if it is a result, hifdm show, report and export read it", path);
     if (settings->text_length > CASE_MAX)
         return hf_error(messages, HF_BAD_CASE, "%s: longer than %d kB, so no case file", path, CASE_MAX >> 10);
     if (hf_text_too_deep(settings->text))

@@ -97,7 +97,7 @@ static void doubt_nodes(const hf_scene *s, const scratch *t, hf_messages *messag
         hf_scene_place(s, false, t->from[i].node, place, sizeof place);
         hf_warning(
             messages,
-            "%s is %.3g m from the middle of the net, %.0f times as far as the others: are all coordinates in m?",
+            "%s is %.3g m from the middle of the net, %.3g times as far as the others: are all coordinates in m?",
             place, t->from[i].m, t->from[i].m / t->from[k - 1].m);
     }
     if (n > k + SAID_MAX) hf_warning(messages, "scene: and %d more nodes as far away", n - k - SAID_MAX);

@@ -145,10 +145,8 @@ static void print_optimize(const hf_summary *s, FILE *f)
     else if (s->goals.n > 0 && !s->goals.are_objectives && s->form.merit > 0) /* psi says nothing of goals */
         fprintf(f, ", merit %.6g, %.2f %% below that of the form-finding", s->best.merit,
                 100 * (1 - s->best.merit / s->form.merit));
-    else if (isfinite(s->base_psi_m) &&
-             s->base_psi_m > 0) /* evaluated under the rule of the optimisation, so that only the tensions differ */
-        fprintf(f, ", %.2f %% below the %.4f mm of the form-finding's tensions",
-                100 * (1 - s->best.psi_m / s->base_psi_m), s->base_psi_m * 1e3);
+    else /* evaluated under the rule of the optimisation, so that only the tensions differ */
+        hf_print_below(s, s->best.psi_m, s->base_psi_m, f);
     fprintf(f, "; found in generation %d\n", s->best_generation);
     print_result(&s->best, f);
     if (s->best_n_at_lower + s->best_n_at_upper > 0)

@@ -4,6 +4,7 @@
 #include <hifdm/store.h>
 
 #include <math.h>
+#include <string.h>
 
 /* ---- the answer ---- */
 
@@ -40,8 +41,17 @@ static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, F
     fputc(')', f);
 }
 
-/* How far below the form-finding's tensions the result is. Those of an optimisation are evaluated under its rule, so
- * that only the tensions differ. */
+void hf_print_below(const hf_summary *s, double psi_m, double base_psi_m, FILE *f)
+{
+    char base[32], form[32];
+    if (!(base_psi_m > 0) || !isfinite(base_psi_m)) return;
+    bool is_same = !strcmp(hf_print_decimals(base_psi_m * 1e3, base), hf_print_decimals(s->form.psi_m * 1e3, form));
+    fprintf(f, ", %.2f %% below the %s mm of %s", 100 * (1 - psi_m / base_psi_m), base,
+            is_same ? "the form-finding's tensions" : "the base design");
+}
+
+/* How far the result is below the base design. Designs of an optimisation are evaluated under its rule, so that only
+ * the tensions differ. */
 static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_form_result *r = result_of(s, stage);
@@ -51,9 +61,8 @@ static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
         if (s->form.merit > 0)
             fprintf(f, ", merit %.6g, %.2f %% below that of the form-finding", r->merit,
                     100 * (1 - r->merit / s->form.merit));
-    } else if (isfinite(base_psi_m) && base_psi_m > 0) {
-        fprintf(f, ", %.2f %% below the %.4f mm of the form-finding's tensions", 100 * (1 - r->psi_m / base_psi_m),
-                base_psi_m * 1e3);
+    } else {
+        hf_print_below(s, r->psi_m, base_psi_m, f);
     }
 }
 

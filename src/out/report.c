@@ -5,13 +5,21 @@
 #include "out/report_result.h"
 #include "out/report_study.h"
 
+#include <stdio.h>
+#include <string.h>
 #include <sys/stat.h>
 
-/* Sets the name of the page: that of -o, or the name of the file with the ending .html in the current folder. A name
- * that is the file itself is refused. */
-static hf_status choose_output(const hf_export_request *o, char output[PATH_MAX], hf_messages *messages)
+/* Sets the name of the page: that of -o, or the name of the file with the ending .html in the current folder; of two
+ * files both names, A_B.html. A name that is the file itself is refused. */
+static hf_status choose_output(const hf_export_request *o, const char *other, char output[PATH_MAX],
+                               hf_messages *messages)
 {
-    if (!hf_path_choose(o->output, o->file, ".html", output, PATH_MAX))
+    char page[PATH_MAX], part[PATH_MAX] = "";
+    const char *name = other ? hf_path_name(other) : "";
+    bool fits = hf_path_choose(o->output, o->file, ".html", page, PATH_MAX);
+    if (other && !o->output)
+        fits = fits && snprintf(part, PATH_MAX, "_%.*s", (int)(hf_path_ending(name) - name), name) < PATH_MAX;
+    if (!fits || (*part ? !hf_path_insert(page, part, output, PATH_MAX) : !strcpy(output, page)))
         return hf_error(messages, HF_IO, "%s: the path is too long", o->output ? o->output : hf_path_name(o->file));
     return hf_export_claim(o, output, messages);
 }
@@ -20,7 +28,7 @@ hf_status hf_report(const hf_export_request *request, const char *other, char *s
 {
     char output[PATH_MAX];
     struct stat info = {0};
-    HF_TRY(choose_output(request, output, messages));
+    HF_TRY(choose_output(request, other, output, messages));
     HF_TRY(hf_file_out_spare(other, "the result to compare with", output, messages));
     if (other && (hf_report_is_study(request->file) || hf_report_is_study(other)))
         return hf_error(messages, HF_BAD_USAGE, "%s is a merged study: only two results can be compared",
@@ -30,6 +38,7 @@ hf_status hf_report(const hf_export_request *request, const char *other, char *s
     else
         HF_TRY(hf_report_result(request->file, other, output, messages));
     if (stat(output, &info) == 0)
-        snprintf(said, size, "%s: report in %s (%.0f kB)", request->file, output, (double)info.st_size / 1000);
+        snprintf(said, size, "%s%s%s: report in %s (%.0f kB)", request->file, other ? " and " : "", other ? other : "",
+                 output, (double)info.st_size / 1000);
     return HF_OK;
 }

@@ -547,6 +547,7 @@ hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
             "tension cannot hold it apart",
             p->scene.cable_id[r->culprit], p->settings.form.collapse_ratio);
     case HF_NOT_FINITE:
+        if (r->culprit < 0) return hf_error(messages, r->status, "ill-posed: a tension is no longer a finite number");
         return hf_error(messages, r->status, "ill-posed: the tension of cable '%s' is no longer a finite number",
                         p->scene.cable_id[r->culprit]);
     default:

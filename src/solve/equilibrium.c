@@ -77,6 +77,7 @@ static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n
     hf_form_settings part = *s;
     hf_form_accept(m, s, HF_STOPPED_MAX_ITERATIONS, n_step, w, r);
     bool is_finite = r->status != HF_NOT_FINITE;
+    int cable = r->culprit; /* of a tension that is not finite */
     if (is_finite && (r->status != HF_NOT_CONVERGED || r->culprit >= 0)) return r->status;
     memcpy(w->interior_tension_N, w->q_N_per_m, q);
     memcpy(w->interior_position_m, w->position_m, places);
@@ -92,7 +93,10 @@ static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n
         bool is_iterate = r->status == HF_COLLAPSED || r->status == HF_NOT_FINITE;
         if (r->status == HF_STRAIGHT_CHAIN || (is_finite && !is_iterate)) return r->status;
     }
-    if (!is_finite) hf_form_refuse(HF_NOT_FINITE, n_step, r);
+    if (!is_finite) {
+        hf_form_refuse(HF_NOT_FINITE, n_step, r);
+        r->culprit = cable;
+    }
     if (!is_finite || r->status == HF_COLLAPSED) return r->status; /* from both starts */
     memcpy(w->q_N_per_m, w->interior_tension_N, q);
     memcpy(w->position_m, w->interior_position_m, places);

@@ -179,13 +179,13 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
         hf_messages_free(&said);
         return io.status;
     }
+    bool is_cut = said.text && strstr(said.text, ": cannot open: truncated file");
     hf_messages_free(&said);
     if (io.status != HF_OK)
-        return hf_error(
-            messages, HF_EXISTS,
-            "%s: exists and is no result of hifdm; use --restart (of a sweep: --retry failed) to replace it or "
-            "-o to choose another name",
-            path);
+        return hf_error(messages, HF_EXISTS,
+                        "%s: exists and is %s; use --restart (of a sweep: --retry failed) to replace it or "
+                        "-o to choose another name",
+                        path, is_cut ? "cut off: a truncated HDF5 file" : "no result of hifdm");
     if (*words)
         return hf_error(messages, HF_EXISTS,
                         "%s: exists and is the %s result of another case; what differs: %s. Use --restart (of a sweep: "

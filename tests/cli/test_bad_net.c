@@ -219,6 +219,19 @@ START_TEST(a_shape_with_a_slack_boundary_cable_is_kept)
 }
 END_TEST
 
+/* Values that no net has: what is named is a cable, and a quotient is no row of digits. */
+START_TEST(numbers_that_run_away_are_told)
+{
+    const char *net = net_with(NODES, "id,i,j,group,law,value,EA_N\nac,a,c,inner,tension,10,\n"
+                                      "bc,b,c,inner,elastic,1e308,1e5\ncd,c,d,boundary,tension,12,\n");
+    HIFDM(4, "run", net, "-o", temp("far.h5"));
+    ERR("error: ill-posed: the tension of cable 'ac' is no longer a finite number\n");
+    net_with(NODES "e,1e200,0,0,inner\n", CABLES "ce,c,e,inner,tension,10\nbe,b,e,inner,tension,10\n");
+    HIFDM(4, "check", net);
+    ERR("node 'e' is 1e+200 m from the middle of the net, 5.88e+199 times as far as the others");
+}
+END_TEST
+
 Suite *suite_cli_bad_net(void)
 {
     Suite *suite = suite_create("cli/bad_net");
@@ -230,6 +243,7 @@ Suite *suite_cli_bad_net(void)
     tcase_add_test(tcase, missing_files_of_a_net_are_told);
     tcase_add_test(tcase, an_open_range_is_for_derivatives_alone);
     tcase_add_test(tcase, a_shape_with_a_slack_boundary_cable_is_kept);
+    tcase_add_test(tcase, numbers_that_run_away_are_told);
     tcase_add_test(tcase, other_ways_to_write_a_table_are_read);
     suite_add_tcase(suite, tcase);
     return suite;

@@ -31,6 +31,20 @@ START_TEST(every_new_case_runs_without_a_warning)
 }
 END_TEST
 
+/* The base design under the rule of the case is another shape than the first row of the table, and is called so. */
+START_TEST(the_gain_is_over_what_it_says)
+{
+    HIFDM(0, "new", temp("net"), "--import");
+    HIFDM(0, "run", temp("net.yaml"), "-o", temp("net.h5"));
+    OUT(" mm of the base design;");
+    ck_assert_ptr_null(strstr(said.out, "of the form-finding's tensions"));
+    HIFDM(0, "show", temp("net.h5"), "--verbose");
+    OUT(" mm of the base design; found in generation");
+    HIFDM(0, "run", keep(source_path("configs/chen2022.yaml")), "-o", temp("s.h5"), "--set", "optimize.generations=1");
+    OUT(" mm of the form-finding's tensions");
+}
+END_TEST
+
 START_TEST(nothing_is_replaced)
 {
     const char *table = file_with("mine_cables.csv", "precious\n"), *mine = temp("mine");
@@ -48,6 +62,9 @@ START_TEST(nothing_is_replaced)
         HIFDM(2, "new", keep(formatted("%s/%s", temp("x"), bad[i])));
         ERR("needs a name of letters, digits");
     }
+    HIFDM(2, "new", temp("two"), "--paraboloid", "--cylinder");
+    ERR("--cylinder excludes the kind that was asked for before it");
+    ck_assert(!is_there(temp("two.yaml")));
     HIFDM(2, "new");
     ERR("'hifdm new' needs a NAME");
 }
@@ -161,6 +178,7 @@ Suite *suite_cli_begin(void)
     Suite *suite = suite_create("cli/begin");
     TCase *tcase = tcase_create("begin");
     tcase_add_loop_test(tcase, every_new_case_runs_without_a_warning, 0, sizeof begun / sizeof *begun);
+    tcase_add_test(tcase, the_gain_is_over_what_it_says);
     tcase_add_test(tcase, nothing_is_replaced);
     tcase_add_test(tcase, every_word_is_explained);
     tcase_add_test(tcase, explain_helps_with_slips);

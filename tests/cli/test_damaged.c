@@ -116,7 +116,8 @@ START_TEST(a_damaged_point_stops_no_other)
     HIFDM(3, "sweep", study, "--dir", folder, "--quiet");
     HIFDM(0, "status", study, "--dir", folder);
     OUT("done      1\n  failed    1\n");
-    OUT(formatted("%s: exists and is no result of hifdm; use --restart (of a sweep: --retry failed)", point));
+    OUT(formatted("%s: exists and is cut off: a truncated HDF5 file; use --restart (of a sweep: --retry failed)",
+                  point));
     HIFDM(0, "sweep", study, "--dir", folder, "--quiet", "--retry", "failed");
     HIFDM(0, "show", point);
 }

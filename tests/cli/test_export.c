@@ -145,6 +145,9 @@ START_TEST(what_cannot_be_exported_is_told)
     HIFDM(0, "run", file_with("f.yaml", SMALL_SCENE), "-o", form_only, "--quiet");
     HIFDM(2, "export", form_only, "--csv", csv, "--stage", "optimize");
     ERR("this run has no optimised shape; use --stage form");
+    HIFDM(2, "export", form_only, "--vtk", temp("no_vtk"), "--cutlist", temp("no.csv"));
+    ERR("error: "); /* refused as a whole: no folder is left for what was not written */
+    ck_assert(!is_there(temp("no_vtk")) && !is_there(temp("no.csv")));
     const char *lm = temp("lm.h5");
     HIFDM(0, "run", file_with("lm.yaml", SMALL_SCENE "optimize: {method: lm}\n"), "-o", lm, "--quiet");
     HIFDM(2, "export", lm, "--csv", csv, "--stage", "optimize");

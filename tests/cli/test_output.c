@@ -33,6 +33,10 @@ START_TEST(existing_output_is_not_replaced)
     HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", path, "--force");
     EXPECT(path, "--", "'form' in a");
     demand_no_leftovers();
+    HIFDM(2, "run", path, "-o", temp("other.h5"));
+    ERR("mine.h5: is an HDF5 file, no case: if it is a result, hifdm show, report and export read it\n");
+    SHELL(0, "head -c 30000 \"$1\" >\"$1.cut\" && mv \"$1.cut\" \"$1\"", path);
+    REFUSED(path, "error: %s: exists and is cut off: a truncated HDF5 file; use --restart", path);
 }
 END_TEST
 

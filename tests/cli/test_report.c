@@ -260,6 +260,9 @@ START_TEST(two_results_are_compared)
     HIFDM(0, "run", scene, "--set", "scene.parabolic_cylinder.modules=[3, 3]", "-o", second, "--restart", "--quiet");
     HIFDM(0, "report", first, second, "-o", page, "--force");
     EXPECT(data_of(page, "ab.json"), "--", "'shapes' not in a['other'] and a['other']['summary']['form']['psi_m'] > 0");
+    SHELL(0, "cd \"$(dirname \"$1\")\" && mkdir x && cd x && \"$0\" report ../a.h5 ../b.h5 && ls -A", first);
+    OUT("../a.h5 and ../b.h5: report in a_b.html");
+    OUT("\na_b.html\n"); /* a.html is the page of a.h5 alone */
     HIFDM(5, "report", first, second, "-o", second, "--force");
     ERR("b.h5: is the result to compare with; choose another name");
     HIFDM(5, "report", first, temp("missing.h5"), "-o", page, "--force");

@@ -30,6 +30,8 @@ class Evolution:
         self.spread = 0.8 * self.spread + 0.2 * x[order].std(axis=0)
 
 
+if len(sys.argv) < 2:
+    sys.exit("usage:" + __doc__.split("\n\n")[1].rstrip())
 case = hifdm.open(sys.argv[1])
 optimiser = Evolution(case.base, case.lower, case.upper)
 for generation in range(30):

@@ -9,6 +9,8 @@ from scipy.optimize import least_squares
 
 import hifdm
 
+if len(sys.argv) < 2:
+    sys.exit("usage:" + __doc__.split("\n\n")[1].rstrip())
 case = hifdm.open(sys.argv[1])
 
 

@@ -13,6 +13,8 @@ def progress(now):
     return now.elapsed_s < 60  # False stops the run; the same call goes on with it
 
 
+if len(sys.argv) < 3:
+    sys.exit("usage:" + __doc__.split("\n\n")[1].rstrip())
 case = hifdm.open(sys.argv[1], {"optimize.generations": 40})
 run = case.run(sys.argv[2], restart=True, progress=progress)
 print(f"{run.status}: psi {run['form']['psi_m'] * 1e3:.4f} mm -> {run['optimize']['psi_m'] * 1e3:.4f} mm")

@@ -9,6 +9,8 @@ import pandas as pd
 
 import hifdm
 
+if len(sys.argv) < 2:
+    sys.exit("usage:" + __doc__.split("\n\n")[1].rstrip())
 case = hifdm.open(sys.argv[1])
 designs = case.base + np.random.default_rng(1).uniform(-1, 1, (1000, case.n_gene))
 table = pd.DataFrame(case.evaluate(designs).columns())
