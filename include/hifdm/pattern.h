@@ -8,6 +8,7 @@
 
 #include <hifdm/facets.h>
 
+#include <signal.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -44,18 +45,26 @@ typedef struct {
     hf_pattern_surface surface;
     hf_feed feed;
     double wavelength_m;
-    int n_thread;                    /* rooms of scratch */
-    int n_padded;                    /* angles of a cut, filled up to whole lanes */
-    int n_node, n_node_padded;       /* angles at which a facet is summed; n_node 0: at those of the cut themselves */
-    long n_point;                    /* of quadrature, over all facets */
-    double *gauss_at, *gauss_weight; /* Gauss-Legendre on [0, 1], row n of the rule of n points */
-    double *direction;               /* [n_cut][3][n_padded] unit vectors of the angles */
-    double *node_direction;          /* [n_cut][3][n_node_padded] */
-    double *between;                 /* [n_node][n_padded] what each node gives to an angle */
-    double *sum;                     /* [HF_PATTERN_BLOCKS][n_cut][6][n_padded] of the blocks */
-    double *local, *point;           /* [n_thread] scratch of each room */
-    void *block;                     /* owned memory */
+    int n_thread;                      /* rooms of scratch */
+    const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 ends the sums early, which then mean nothing */
+    int n_padded;                      /* angles of a cut, filled up to whole lanes */
+    int n_node, n_node_padded;         /* angles at which a facet is summed; n_node 0: at those of the cut themselves */
+    long n_point;                      /* of quadrature, over all facets */
+    double *gauss_at, *gauss_weight;   /* Gauss-Legendre on [0, 1], row n of the rule of n points */
+    double *direction;                 /* [n_cut][3][n_padded] unit vectors of the angles */
+    double *node_direction;            /* [n_cut][3][n_node_padded] */
+    double *between;                   /* [n_node][n_padded] what each node gives to an angle */
+    double *sum;                       /* [HF_PATTERN_BLOCKS][n_cut][6][n_padded] of the blocks */
+    double *local, *point;             /* [n_thread] scratch of each room */
+    void *block;                       /* owned memory */
 } hf_far_field;
+
+/* What the sums at one frequency will take, without memory for them: n_point, n_node and the settings of *pattern. */
+void hf_pattern_plan(const hf_pattern_settings *settings, const hf_pattern_surface *surface, const hf_feed *feed,
+                     double frequency_Hz, hf_far_field *pattern);
+
+/* Angles of all cuts at which each point of quadrature is summed. */
+int hf_pattern_angles(const hf_far_field *pattern);
 
 /* Lay out the sums at one frequency for n_thread rooms. HF_OK or HF_NO_MEMORY; free in any case. */
 hf_status hf_pattern_create(const hf_pattern_settings *settings, const hf_pattern_surface *surface, const hf_feed *feed,
@@ -71,12 +80,22 @@ void hf_pattern_finish(hf_far_field *pattern, double *co_dBi, double *cross_dBi)
 
 void hf_pattern_free(hf_far_field *pattern);
 
-/* Of one cut; NaN where the angles do not reach it. */
+#define HF_PATTERN_WIDTH_STEPS 4.0 /* of angle, in the width of a beam whose figures are told */
+
+/* What speaks against the figures of a cut. */
+typedef enum {
+    HF_CUT_FINE,
+    HF_CUT_COARSE, /* fewer than HF_PATTERN_WIDTH_STEPS steps of angle in the half-power width: lobes are missed */
+    HF_CUT_AT_END  /* the highest angle is the first or the last */
+} hf_cut_doubt;
+
+/* Of one cut; NaN where the angles do not reach it, and but for the highest point where there is a doubt. */
 typedef struct {
     double gain_dBi, beam_deg;   /* the highest point, by the parabola through the highest angle and its neighbours */
     double half_power_width_deg; /* around it */
     double first_sidelobe_dB;    /* the higher one of the two beside the beam, below it */
     double highest_sidelobe_dB;  /* of all of the cut */
+    hf_cut_doubt doubt;          /* not stored */
 } hf_cut_figures;
 
 hf_cut_figures hf_pattern_figures(int n_theta, const double theta_deg[2], const double *co_dBi);

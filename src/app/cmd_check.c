@@ -14,6 +14,7 @@
 #include "search/swarm_lane.h"
 #include "solve/prestress.h"
 #include <hifdm/batch.h>
+#include <hifdm/pattern.h>
 #include <hifdm/run.h>
 
 #include <limits.h>
@@ -243,6 +244,22 @@ static void print_tolerance(const hf_case *c, FILE *f)
     fprintf(f, "\n");
 }
 
+/* Size of the sums of the far field at each frequency. */
+static void print_pattern(const hf_problem *p, FILE *f)
+{
+    const hf_double_list *at = &p->surface.frequencies_Hz;
+    const hf_pattern_surface theory = {&p->facets, p->scene.position_m, NULL};
+    hf_feed feed;
+    if (!p->surface.has_pattern) return;
+    hf_feed_make(&p->surface, &p->facets, p->scene.position_m, &feed);
+    for (int k = 0; k < at->n; k++) {
+        hf_far_field plan;
+        hf_pattern_plan(&p->surface.pattern, &theory, &feed, at->value[k], &plan);
+        fprintf(f, "                far field at %g GHz: %ld points of quadrature by %d angles\n", at->value[k] / 1e9,
+                plan.n_point, hf_pattern_angles(&plan));
+    }
+}
+
 /* v: NULL without an optimisation */
 static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
 {
@@ -282,6 +299,7 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
                 hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_gene);
     if (p->states.n) print_states(&p->states, f);
     print_tolerance(c, f);
+    print_pattern(p, f);
     fprintf(f, "  skipped       %s%s%s%s%s\n",
             evolves           ? ""
             : optimizes       ? "genetic algorithm (method: lm); "

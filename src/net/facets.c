@@ -220,8 +220,8 @@ static void close_gaps(const graph *g, int h, hf_facets *f)
 }
 
 /* Finds all faces and keeps the facets. A face without an area lies between two cables of the same nodes; one of
- * negative area is the outside of the net. Euler: a graph of C parts is drawn without crossings if and only if V - E +
- * F = 2 C. */
+ * negative area is the outside of the net, and so is the only face of a tree, like one node between supports.
+ * Euler: a graph of C parts is drawn without crossings if and only if V - E + F = 2 C. */
 static void find_faces(graph *g, hf_facets *f)
 {
     const hf_scene *s = g->scene;
@@ -241,8 +241,9 @@ static void find_faces(graph *g, hf_facets *f)
         if (g->seen[h]) continue;
         int n = walk(g, h, corner, &area);
         n_face++;
-        if (area < 0) close_gaps(g, h, f);
-        if (n >= 3 && area > 0) add_facet(s, n, corner, area, f);
+        bool is_tree = n == g->n_half;
+        if (area < 0 || is_tree) close_gaps(g, h, f);
+        if (n >= 3 && area > 0 && !is_tree) add_facet(s, n, corner, area, f);
     }
     f->is_planar = n_node - g->n_half / 2 + n_face == 2 * n_part;
     if (!f->is_planar) f->n_facet = f->n_open = 0;

@@ -31,8 +31,8 @@ static hf_status export_pattern(const hf_export_request *o, char *said, size_t s
                         "%s: there is no far field of this shape: its case has no surface.pattern", o->file);
     HF_TRY(hf_store_read_pattern(o->file, stage, &table, messages));
     hf_status status = hf_file_out_set_write(o->files, o->output, write_pattern, &table, messages);
-    snprintf(said, size, "%s: far field at %d frequencies in %d cuts of %d angles in %s", o->file, table.n_frequency,
-             table.n_cut, table.n_theta, o->output);
+    snprintf(said, size, "%s: far field at %d frequenc%s in %d cut%s of %d angles in %s", o->file, table.n_frequency,
+             table.n_frequency == 1 ? "y" : "ies", table.n_cut, table.n_cut == 1 ? "" : "s", table.n_theta, o->output);
     hf_pattern_table_free(&table);
     return status;
 }

@@ -289,7 +289,7 @@ static void print_pattern(const hf_pattern_summary *s, FILE *f)
     for (int k = 0; k < s->n_frequency * s->n_cut; k++) {
         const hf_cut_figures *c = &s->figure[k];
         fprintf(f, "                %7.4g %7.4g %9.3f %10.4f", s->frequency_Hz[k / s->n_cut] / 1e9,
-                s->phi_deg[k % s->n_cut], c->gain_dBi, c->beam_deg);
+                s->phi_deg[k % s->n_cut], c->gain_dBi, fabs(c->beam_deg) < 5e-5 ? 0 : c->beam_deg); /* no -0 */
         print_if_finite(" %9.4f deg", c->half_power_width_deg, 14, f);
         print_if_finite(" %12.2f dB", c->first_sidelobe_dB, 16, f);
         print_if_finite(" %8.2f", c->highest_sidelobe_dB, 9, f);

@@ -347,6 +347,22 @@ static const hf_word told[] = {
      "Use "
      "a finer net, or a lower frequency.",
      "the facets are coarse"},
+    {"coarse_angles", "warning", "",
+     "The angles of the far field are too far apart for the beam, so that lobes are missed. Raise "
+     "surface.pattern.n_theta, or narrow surface.pattern.theta_deg.",
+     "deg are coarse: fewer than"},
+    {"beam_at_end", "warning", "",
+     "The highest gain is at an end of surface.pattern.theta_deg: the beam may lie beyond. Widen the range, or move "
+     "it.",
+     "the gain is largest at the end of theta_deg"},
+    {"long_waves", "warning", "",
+     "Physical optics holds for reflectors of many wavelengths; in smaller ones the edge matters as much as the "
+     "surface. Use a higher frequency, or leave out surface.pattern.",
+     "wavelengths across: physical optics does not hold"},
+    {"no_facets", "warning", "",
+     "No cables on the surface enclose a triangle or a quadrangle, so that nothing is known of the mesh between the "
+     "nodes. Add cables, or name facets in a table.",
+     "the net has no facets"},
     {"fit_failed", "warning", "",
      "The nodes do not tell a best fit: too few of them, or a shape far from the wanted kind of surface. Its figures "
      "are left out.",

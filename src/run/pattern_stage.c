@@ -6,20 +6,53 @@
 
 #include <string.h>
 
+/* How it is found, besides the case. */
+typedef struct {
+    int n_thread;
+    const volatile sig_atomic_t *stop;
+} means;
+
 /* One frequency, into its part of the table. */
-static hf_status solve(const hf_problem *p, const hf_pattern_surface *surface, const hf_feed *feed, int i, int n_thread,
+static hf_status solve(const hf_problem *p, const hf_pattern_surface *surface, const hf_feed *feed, int i, means by,
                        hf_pattern_table *t)
 {
     hf_far_field pattern;
     const hf_pattern_settings *s = &p->surface.pattern;
     const size_t at = (size_t)i * (size_t)(t->n_cut * t->n_theta);
-    hf_status status = hf_pattern_create(s, surface, feed, t->frequency_Hz[i], n_thread, &pattern);
+    hf_status status = hf_pattern_create(s, surface, feed, t->frequency_Hz[i], by.n_thread, &pattern);
+    pattern.stop = by.stop;
     if (status == HF_OK) {
-        hf_parallel_each(n_thread, HF_PATTERN_BLOCKS, hf_pattern_sum_block, &pattern);
+        hf_parallel_each(by.n_thread, HF_PATTERN_BLOCKS, hf_pattern_sum_block, &pattern);
+        if (by.stop && *by.stop) status = HF_INTERRUPTED;
+    }
+    if (status == HF_OK) {
         hf_pattern_finish(&pattern, t->co_dBi + at, t->cross_dBi + at);
     }
     hf_pattern_free(&pattern);
     return status;
+}
+
+/* Figures that are not told, for the reason that holds for the first such cut. */
+static void doubt(const hf_pattern_settings *s, const hf_pattern_summary *to, hf_stage stage, hf_messages *messages)
+{
+    int n = 0, first = -1, n_all = to->n_frequency * to->n_cut;
+    for (int k = 0; k < n_all; k++)
+        if (to->figure[k].doubt && n++ == 0) first = k;
+    if (n == 0) return;
+    double GHz = to->frequency_Hz[first / to->n_cut] / 1e9, phi_deg = to->phi_deg[first % to->n_cut];
+    if (to->figure[first].doubt == HF_CUT_AT_END)
+        hf_warning(
+            messages,
+            "surface.pattern: in %d of %d cuts of stage %s, like phi %g deg at %g GHz, the gain is largest at the "
+            "end of theta_deg: the beam may lie beyond, and has no width or sidelobes; widen theta_deg",
+            n, n_all, hf_stage_word[stage], phi_deg, GHz);
+    else
+        hf_warning(messages,
+                   "surface.pattern: in %d of %d cuts of stage %s, like phi %g deg at %g GHz, steps of %.3g deg are "
+                   "coarse: fewer than %g of them in the width of the beam, so that its gain may be missed, and width "
+                   "and sidelobes are not told; raise n_theta, or narrow theta_deg",
+                   n, n_all, hf_stage_word[stage], phi_deg, GHz, (s->theta_deg[1] - s->theta_deg[0]) / (s->n_theta - 1),
+                   HF_PATTERN_WIDTH_STEPS);
 }
 
 static void sum_up(const hf_pattern_settings *s, const hf_pattern_table *t, const hf_feed *feed, hf_pattern_summary *to)
@@ -31,7 +64,7 @@ static void sum_up(const hf_pattern_settings *s, const hf_pattern_table *t, cons
         to->figure[k] = hf_pattern_figures(t->n_theta, s->theta_deg, t->co_dBi + (size_t)k * (size_t)t->n_theta);
 }
 
-static hf_status solve_all(const hf_problem *p, const hf_pattern_surface *surface, int n_thread, hf_pattern_table *t,
+static hf_status solve_all(const hf_problem *p, const hf_pattern_surface *surface, means by, hf_pattern_table *t,
                            hf_pattern_summary *to)
 {
     const hf_pattern_settings *s = &p->surface.pattern;
@@ -44,13 +77,14 @@ static hf_status solve_all(const hf_problem *p, const hf_pattern_surface *surfac
         t->theta_deg[i] = s->theta_deg[0] + (s->theta_deg[1] - s->theta_deg[0]) * i / (s->n_theta - 1);
     hf_feed_make(&p->surface, &p->facets, p->scene.position_m, &feed);
     for (int i = 0; i < frequencies->n; i++)
-        HF_TRY(solve(p, surface, &feed, i, n_thread, t));
+        HF_TRY(solve(p, surface, &feed, i, by, t));
     sum_up(s, t, &feed, to);
     return HF_OK;
 }
 
-hf_status hf_pattern_stage(const hf_problem *p, hf_stage stage, const hf_workspace *w, int n_thread, hf_store *store,
-                           hf_summary *summary, hf_messages *messages)
+hf_status hf_pattern_stage(const hf_problem *p, hf_stage stage, const hf_workspace *w, int n_thread,
+                           const volatile sig_atomic_t *stop, hf_store *store, hf_summary *summary,
+                           hf_messages *messages)
 {
     hf_arena arena = {0}, sags = {0};
     hf_facet_shape shape;
@@ -66,9 +100,10 @@ hf_status hf_pattern_stage(const hf_problem *p, hf_stage stage, const hf_workspa
     }
     if (status == HF_OK && pull_ratio <= HF_FACET_PULL_MOST) {
         const hf_pattern_surface surface = {&p->facets, shape.position_m, sag_m};
-        status = solve_all(p, &surface, n_thread, &table, to);
+        status = solve_all(p, &surface, (means){n_thread, stop}, &table, to);
     }
-    if (status != HF_OK) hf_error(messages, status, "out of memory for the far field");
+    if (status == HF_OK && table.block) doubt(&p->surface.pattern, to, stage, messages);
+    if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the far field");
     if (status == HF_OK && table.block) status = hf_store_pattern(store, stage, &table, to, messages);
     hf_pattern_table_free(&table);
     hf_arena_free(&sags);

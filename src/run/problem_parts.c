@@ -19,10 +19,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FACET_LOSS_MOST_DB 1.0 /* of facets that are taken for the surface (METHOD section 13) */
-#define NAMED_MAX 5            /* cables or chains that a message names */
+#define FACET_LOSS_MOST_DB 1.0  /* of facets that are taken for the surface (METHOD section 13) */
+#define PATTERN_TERMS_MOST 1e13 /* of the sums of a far field at one frequency: hours of a core */
+#define WAVELENGTHS_LEAST 5.0   /* across a reflector of physical optics */
+#define NAMED_MAX 5             /* cables or chains that a message names */
 
 /* ---- from the case to the model ---- */
+
+/* Are waves short beside the reflector, as physical optics wants them, and long enough for the sums to end? */
+static hf_status check_frequencies(const hf_problem *p, const hf_feed *feed, double area_m2, hf_messages *messages)
+{
+    const hf_double_list *at = &p->surface.frequencies_Hz;
+    const hf_pattern_surface theory = {&p->facets, p->scene.position_m, NULL};
+    char place[HF_PATH_SIZE + 128];
+    double least_Hz = INFINITY;
+    for (int k = 0; k < at->n; k++) {
+        hf_far_field plan;
+        hf_pattern_plan(&p->surface.pattern, &theory, feed, at->value[k], &plan);
+        double terms = (double)plan.n_point * hf_pattern_angles(&plan);
+        least_Hz = fmin(least_Hz, at->value[k]);
+        if (terms <= PATTERN_TERMS_MOST) continue;
+        hf_config_place(&p->settings, "surface.frequencies_Hz", place, sizeof place);
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: at %g GHz the far field has %.3g points of quadrature times %d angles: %.2g terms, and %g "
+                        "is the most; lower the frequency, or narrow surface.pattern.theta_deg",
+                        place, at->value[k] / 1e9, (double)plan.n_point, hf_pattern_angles(&plan), terms,
+                        PATTERN_TERMS_MOST);
+    }
+    double across = 2 * sqrt(area_m2 / 3.14159265358979323846) * least_Hz / 299792458.0;
+    if (across < WAVELENGTHS_LEAST)
+        hf_warning(messages,
+                   "surface.pattern: at %g GHz the reflector is %.2g wavelengths across: physical optics does not hold "
+                   "below about %g",
+                   least_Hz / 1e9, across, WAVELENGTHS_LEAST);
+    return HF_OK;
+}
 
 /* Does the feed see all facets of the theoretical net, and are they small enough to be taken for its surface? */
 static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
@@ -38,6 +69,11 @@ static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
     if (p->facets.n_facet == 0)
         return hf_error(messages, HF_BAD_CASE, "%s: this net has no facets, of which the far field is made", place);
     int n_dark = hf_feed_make(&p->surface, &p->facets, p->scene.position_m, &feed);
+    if (isnan(feed.axis[2])) {
+        hf_config_place(&p->settings, "surface.pattern.feed.aim_m", place, sizeof place);
+        return hf_error(messages, HF_BAD_CASE, "%s: the feed, at (%g, %g, %g) m, cannot look at its own place", place,
+                        feed.position_m[0], feed.position_m[1], feed.position_m[2]);
+    }
     if (n_dark > 0)
         return hf_error(messages, HF_BAD_CASE,
                         "%s: from (%g, %g, %g) m the feed sees %d of %d facets from behind or not at all; it must be "
@@ -47,6 +83,7 @@ static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
         most_Hz = fmax(most_Hz, at->value[k]);
     if (hf_facet_measure(&p->surface, &p->facets, &theory, &m) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
+    HF_TRY(check_frequencies(p, &feed, m.facet_area_m2, messages));
     double loss_dB = hf_surface_ruze_dB(m.facet_fit_half_path_rms_m, most_Hz);
     if (loss_dB > FACET_LOSS_MOST_DB)
         hf_warning(
@@ -65,6 +102,8 @@ static hf_status find_facets(hf_problem *p, hf_messages *messages)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the facets of a net of %d nodes", p->scene.n_node);
     if (!p->facets.is_planar)
         hf_warning(messages, "surface: cables on it cross without a node, seen along z: it has no facets to measure");
+    else if (p->facets.n_facet == 0)
+        hf_warning(messages, "surface: the net has no facets: its errors and losses are those of its nodes alone");
     return p->surface.has_pattern ? check_pattern(p, messages) : HF_OK;
 }
 

@@ -104,9 +104,15 @@ static void tell_limits(const run *r, hf_stage stage, const hf_workspace *w, hf_
     }
 }
 
+/* End a run that was told to stop: publish all finished generations, from which the same command goes on. */
+static hf_status stop_here(run *r, const hf_summary *s, hf_messages *messages)
+{
+    HF_TRY(hf_store_publish(r->store, s, true, messages));
+    return HF_INTERRUPTED;
+}
+
 /* Once for each shape that is reported: its sets and, for a case with a section `surface`, the surface. */
-static hf_status measure_shape(const run *r, hf_stage stage, const hf_workspace *w, hf_summary *s,
-                               hf_messages *messages)
+static hf_status measure_shape(run *r, hf_stage stage, const hf_workspace *w, hf_summary *s, hf_messages *messages)
 {
     const hf_problem *p = &r->problem;
     measure_sets(r, stage, w, s);
@@ -125,7 +131,9 @@ static hf_status measure_shape(const run *r, hf_stage stage, const hf_workspace 
         hf_warning(messages,
                    "surface: the best fit to the shape of stage %s did not converge in %d steps; it has no value",
                    hf_stage_word[stage], fit->iterations);
-    return hf_pattern_stage(p, stage, w, r->request->threads, r->store, s, messages);
+    hf_status status =
+        hf_pattern_stage(p, stage, w, r->request->threads, r->request->stop_requested, r->store, s, messages);
+    return status == HF_INTERRUPTED && stage != HF_STAGE_FORM ? stop_here(r, s, messages) : status;
 }
 
 /* Forces and displacements of the truss, if there is one, under the net of this shape. */
@@ -189,13 +197,6 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
 }
 
 /* ---- optimisation ---- */
-
-/* End a run that was told to stop: publish all finished generations, from which the same command goes on. */
-static hf_status stop_here(run *r, const hf_summary *s, hf_messages *messages)
-{
-    HF_TRY(hf_store_publish(r->store, s, true, messages));
-    return HF_INTERRUPTED;
-}
 
 /* Base design with its goals, batch and optimiser. Everything that the generations need is allocated here, before the
  * first one. */

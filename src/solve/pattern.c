@@ -15,7 +15,7 @@
 #define RAD_PER_DEG (PI / 180)
 #define DB_PER_LN 4.3429448190325182765 /* 10/ln 10 */
 
-enum { GAUSS_MOST = 64, GAUSS_MORE = 3, LOOKS = 16 };
+enum { GAUSS_MOST = 64, GAUSS_MORE = 3, LOOKS = 16, PIECES_MOST = 100000 };
 #define GAUSS_LN (-25.0)      /* logarithm of the error of a quadrature that is taken */
 #define NODE_LN (-28.0)       /* the same of what is found between angles */
 #define GAUSS_PHASE_MOST 78.0 /* half of the phase across a piece, at which GAUSS_MOST points have that error */
@@ -205,7 +205,7 @@ static double phase_of(const hf_far_field *p, const hf_facet_mesh *m, double *ra
 /* Pieces of a facet along u and along v, and points of quadrature of each along both. */
 static int pieces_of(double phase, int *order)
 {
-    int n = (int)(phase / GAUSS_PHASE_MOST) + 1, wanted = gauss_order(phase / n) + GAUSS_MORE;
+    int n = (int)fmin(phase / GAUSS_PHASE_MOST, PIECES_MOST) + 1, wanted = gauss_order(phase / n) + GAUSS_MORE;
     *order = wanted < GAUSS_MOST ? wanted : GAUSS_MOST;
     return n;
 }
@@ -259,7 +259,7 @@ static void sum_piece(const hf_far_field *p, int n_point, const double *point, c
                       double *local, double *sum)
 {
     const kernels *kernel = &kernels_of_isa[hf_lane_best_isa()];
-    for (int c = 0; c < p->settings->phi_deg.n; c++) {
+    for (int c = 0; c < p->settings->phi_deg.n && !(p->stop && *p->stop); c++) {
         ptrdiff_t n = p->n_padded, n_node = p->n_node_padded;
         const double *direction = p->direction + 3 * c * n;
         kernel->points(n_point, point, p->n_node_padded, p->node_direction + 3 * c * n_node, local);
@@ -274,26 +274,25 @@ void hf_pattern_sum_block(void *pattern, int room, int i)
     double *local = p->local + (ptrdiff_t)room * 6 * p->n_node_padded;
     double *point = p->point + (ptrdiff_t)room * HF_PATTERN_POINT * GAUSS_MOST * GAUSS_MOST;
     double *sum = p->sum + (ptrdiff_t)i * p->settings->phi_deg.n * 6 * p->n_padded;
-    for (int k = first_of(p, i); k < first_of(p, i + 1); k++) {
+    for (int k = first_of(p, i); k < first_of(p, i + 1) && !(p->stop && *p->stop); k++) {
         hf_facet_mesh m;
         double radius_m, middle[3], path;
         int order;
         take_facet(p, k, &m);
         int n_piece = pieces_of(phase_of(p, &m, &radius_m), &order);
         double size = 1.0 / n_piece;
-        for (int j = 0; j < n_piece * n_piece; j++) {
+        for (int j = 0; j < n_piece * n_piece && !(p->stop && *p->stop); j++) {
             int n = put_points(p, &m, size * (j % n_piece), size * (j / n_piece), size, order, point, middle, &path);
             sum_piece(p, n, point, middle, path, local, sum);
         }
     }
 }
 
-hf_status hf_pattern_create(const hf_pattern_settings *s, const hf_pattern_surface *surface, const hf_feed *feed,
-                            double frequency_Hz, int n_thread, hf_far_field *p)
+void hf_pattern_plan(const hf_pattern_settings *s, const hf_pattern_surface *surface, const hf_feed *feed,
+                     double frequency_Hz, hf_far_field *p)
 {
     double radius_m, widest_m = 0, half = RAD_PER_DEG * (s->theta_deg[1] - s->theta_deg[0]) / 2;
-    hf_arena arena = {0};
-    *p = (hf_far_field){.settings = s, .surface = *surface, .feed = *feed, .n_thread = n_thread};
+    *p = (hf_far_field){.settings = s, .surface = *surface, .feed = *feed};
     p->wavelength_m = LIGHT_M_PER_S / frequency_Hz;
     for (int i = 0; i < surface->facets->n_facet; i++) {
         hf_facet_mesh m;
@@ -308,6 +307,19 @@ hf_status hf_pattern_create(const hf_pattern_settings *s, const hf_pattern_surfa
     p->n_node = node_order((2 * PI * widest_m / p->wavelength_m + 10) * half, s->n_theta);
     if (2 * p->n_node > s->n_theta) p->n_node = 0;
     p->n_node_padded = p->n_node ? whole_lanes(p->n_node) : p->n_padded;
+}
+
+int hf_pattern_angles(const hf_far_field *p)
+{
+    return p->settings->phi_deg.n * (p->n_node ? p->n_node : p->settings->n_theta);
+}
+
+hf_status hf_pattern_create(const hf_pattern_settings *s, const hf_pattern_surface *surface, const hf_feed *feed,
+                            double frequency_Hz, int n_thread, hf_far_field *p)
+{
+    hf_arena arena = {0};
+    hf_pattern_plan(s, surface, feed, frequency_Hz, p);
+    p->n_thread = n_thread;
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, p)));
     p->block = arena.block;
     make_gauss(p->gauss_at, p->gauss_weight);
@@ -415,6 +427,11 @@ hf_cut_figures hf_pattern_figures(int n, const double theta_deg[2], const double
     double highest = fmax(highest_beyond(n, gain, top, 1), highest_beyond(n, gain, top, -1));
     f.first_sidelobe_dB = isfinite(first) ? first - f.gain_dBi : (double)NAN;
     f.highest_sidelobe_dB = isfinite(highest) ? highest - f.gain_dBi : (double)NAN;
+    if (top == 0 || top == n - 1)
+        f.doubt = HF_CUT_AT_END;
+    else if (f.half_power_width_deg < HF_PATTERN_WIDTH_STEPS * step)
+        f.doubt = HF_CUT_COARSE;
+    if (f.doubt) f.half_power_width_deg = f.first_sidelobe_dB = f.highest_sidelobe_dB = (double)NAN;
     return f;
 }
 

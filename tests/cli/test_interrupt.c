@@ -50,6 +50,19 @@ START_TEST(a_restart_replaces_nothing_before_it_has_a_shape)
 }
 END_TEST
 
+/* The sums of a far field, of an hour here, end as well. */
+START_TEST(a_far_field_is_told_to_stop)
+{
+    const char *path = temp("far.h5");
+    const char *c = file_with("far.yaml", "scene:\n  paraboloid: {aperture_m: 4, focal_length_m: 2, rings: 5}\n"
+                                          "surface:\n  frequencies_Hz: [2e13]\n  pattern: {}\n");
+    const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--progress", "jsonl", NULL};
+    session s = start_program(argv);
+    ck_assert(wait_until(&s, says_form, temp("err")));
+    ck_assert_int_eq(end_by(&s, SIGTERM), 75);
+}
+END_TEST
+
 /* Who asks twice does not wait for the end of a generation. It hears both before it goes on. */
 START_TEST(a_second_signal_ends_it_at_once)
 {
@@ -118,6 +131,7 @@ Suite *suite_cli_interrupt(void)
     TCase *tcase = tcase_create("interrupt");
     tcase_add_test(tcase, a_file_made_meanwhile_is_not_replaced);
     tcase_add_test(tcase, a_restart_replaces_nothing_before_it_has_a_shape);
+    tcase_add_test(tcase, a_far_field_is_told_to_stop);
     tcase_add_test(tcase, a_second_signal_ends_it_at_once);
     tcase_add_test(tcase, a_signal_is_heard_while_nobody_reads);
     tcase_add_test(tcase, an_ignored_signal_stays_ignored);

@@ -92,6 +92,34 @@ START_TEST(crossing_cables_have_no_facets)
 }
 END_TEST
 
+/* One node between supports, and no cable on the rim: a net that is a tree has its facets, too. */
+START_TEST(a_tree_between_supports_is_closed)
+{
+    enum { ARMS = 6 };
+    double xy[ARMS + 1][2] = {{0.1, 0.2}};
+    int end[ARMS][2];
+    for (int i = 0; i < ARMS; i++) {
+        xy[i + 1][0] = cos(acos(0.5) * i);
+        xy[i + 1][1] = sin(acos(0.5) * i);
+        end[i][0] = 0;
+        end[i][1] = i + 1;
+    }
+    hf_scene s = drawn(ARMS + 1, (const double(*)[2])xy, ARMS, (const int(*)[2])end);
+    for (int i = 1; i <= ARMS; i++)
+        s.role[i] = HF_ROLE_SUPPORT;
+    hf_facets f = found(&s);
+    double area = 0;
+    for (int i = 0; i < f.n_facet; i++)
+        area += area_of(&s, f.corner + 4 * i);
+    ck_assert(f.is_planar);
+    ck_assert_int_eq(f.n_facet, ARMS);
+    ck_assert_int_eq(f.n_open, 0);
+    ck_assert_double_eq_tol(area, 3 * sqrt(3.0), 1e-12);
+    hf_facets_free(&f);
+    hf_scene_free(&s);
+}
+END_TEST
+
 /* Nodes of a rear net and ties are not on the surface; supports and edge nodes are where they are. */
 START_TEST(only_nodes_on_the_surface_count)
 {
@@ -214,6 +242,7 @@ Suite *suite_unit_facets(void)
     tcase_add_test(tests, triangles_and_quadrilaterals_are_found);
     tcase_add_test(tests, other_faces_are_counted);
     tcase_add_test(tests, crossing_cables_have_no_facets);
+    tcase_add_test(tests, a_tree_between_supports_is_closed);
     tcase_add_test(tests, only_nodes_on_the_surface_count);
     tcase_add_test(tests, cells_of_a_generated_net_are_found);
     tcase_add_loop_test(tests, a_long_chain_leaves_in_linear_time, 0, 2);
