@@ -26,9 +26,9 @@ struct hf_flat {
     hf_scene_arrays net;
     hf_problem_source source; /* text NULL: files */
     hf_problem problem;
-    bool is_open, is_ready;    /* there is a model; there is a batch */
-    const hf_workspace *shape; /* of the last form or shape, NULL before */
-    hf_form_result result;     /* of the same */
+    bool is_open, is_ready; /* there is a model; there is a batch */
+    double *shape;          /* [3 n_node + 3 n_cable] of the last form or shape (shape_part), NULL before */
+    hf_form_result result;  /* of the same */
     int n_room;
     hf_form_result *room; /* [n_room] of designs */
     char text[HF_GENE_NAME_SIZE];
@@ -93,6 +93,7 @@ void hf_flat_free(hf_flat *f)
     if (!f) return;
     hf_problem_free(&f->problem);
     hf_messages_free(&f->said);
+    free(f->shape);
     free(f->room);
     free(f->summary_text);
     free(f);
@@ -295,13 +296,29 @@ static int copy_reals(const double *from, int n, double *to)
     return n;
 }
 
-static int copy_position(const hf_flat *f, double *to)
+enum { SHAPE_LENGTH, SHAPE_TENSION, SHAPE_Q };
+
+/* Behind the positions [n_node][3], [n_cable] each. */
+static double *shape_part(const hf_flat *f, int part)
 {
+    const hf_scene *s = &f->problem.scene;
+    return f->shape + 3 * (size_t)s->n_node + (size_t)part * (size_t)s->n_cable;
+}
+
+/* Calls that follow overwrite the workspace. */
+static hf_status keep_shape(hf_flat *f, const hf_workspace *w)
+{
+    const hf_scene *s = &f->problem.scene;
     const hf_model *m = &f->problem.model;
-    for (int row = 0; to && row < m->n_node; row++)
+    if (!f->shape) f->shape = malloc(3 * ((size_t)s->n_node + (size_t)s->n_cable) * sizeof *f->shape);
+    if (!f->shape) return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the shape of %d nodes", s->n_node);
+    for (int row = 0; row < m->n_node; row++)
         for (int c = 0; c < 3; c++)
-            to[3 * m->node_of_row[row] + c] = f->shape->position_m[c * m->n_node + row];
-    return 3 * m->n_node;
+            f->shape[3 * m->node_of_row[row] + c] = w->position_m[c * m->n_node + row];
+    copy_reals(w->length_m, s->n_cable, shape_part(f, SHAPE_LENGTH));
+    copy_reals(w->tension_N, s->n_cable, shape_part(f, SHAPE_TENSION));
+    copy_reals(w->q_N_per_m, s->n_cable, shape_part(f, SHAPE_Q));
+    return HF_OK;
 }
 
 static double field_value(const hf_result_field *field, const void *owner)
@@ -341,7 +358,7 @@ static int copy_bounds(const hf_flat *f, bool is_upper, double *to)
 int hf_flat_reals(const hf_flat *f, const char *name, double *to)
 {
     const hf_scene *s = &f->problem.scene;
-    const hf_workspace *w = f->shape;
+    bool has_shape = f->shape != NULL;
     if (!f->is_open) return 0;
     if (!strcmp(name, "theoretical_m")) return copy_reals(s->position_m, 3 * s->n_node, to);
     if (!strcmp(name, "load_N")) return copy_reals(s->load_N, 3 * s->n_node, to);
@@ -350,11 +367,11 @@ int hf_flat_reals(const hf_flat *f, const char *name, double *to)
     if (!strcmp(name, "base")) return f->is_ready ? copy_reals(f->problem.base_N, f->problem.model.n_gene, to) : 0;
     if (!strcmp(name, "lower")) return f->is_ready ? copy_bounds(f, false, to) : 0;
     if (!strcmp(name, "upper")) return f->is_ready ? copy_bounds(f, true, to) : 0;
-    if (!strcmp(name, "position_m")) return w ? copy_position(f, to) : 0;
-    if (!strcmp(name, "length_m")) return w ? copy_reals(w->length_m, s->n_cable, to) : 0;
-    if (!strcmp(name, "tension_N")) return w ? copy_reals(w->tension_N, s->n_cable, to) : 0;
-    if (!strcmp(name, "q_N_per_m")) return w ? copy_reals(w->q_N_per_m, s->n_cable, to) : 0;
-    if (!strcmp(name, "result")) return w ? copy_result(f, to) : 0;
+    if (!strcmp(name, "position_m")) return copy_reals(f->shape, 3 * s->n_node, to);
+    if (!strcmp(name, "length_m")) return has_shape ? copy_reals(shape_part(f, SHAPE_LENGTH), s->n_cable, to) : 0;
+    if (!strcmp(name, "tension_N")) return has_shape ? copy_reals(shape_part(f, SHAPE_TENSION), s->n_cable, to) : 0;
+    if (!strcmp(name, "q_N_per_m")) return has_shape ? copy_reals(shape_part(f, SHAPE_Q), s->n_cable, to) : 0;
+    if (!strcmp(name, "result")) return has_shape ? copy_result(f, to) : 0;
     return -1;
 }
 
@@ -382,7 +399,7 @@ static hf_status find_form(hf_flat *f)
     if (!begins(f, f->is_open, NEEDS_CASE)) return HF_BAD_USAGE;
     if (!p->workspace.block) HF_TRY(hf_problem_allocate(p, &f->said));
     hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
-    f->shape = &p->workspace;
+    HF_TRY(keep_shape(f, &p->workspace));
     *r = p->form;
     HF_TRY(hf_problem_explain(p, &f->said));
     if (!f->is_ready) HF_TRY(make_batch(f));
@@ -444,8 +461,7 @@ int hf_flat_shape(hf_flat *f, const double *design)
 {
     if (!begins(f, f->is_ready, NEEDS_SHAPE)) return HF_BAD_USAGE;
     TRY(check_designs(f, 1, design));
-    f->shape = hf_batch_run_one(&f->problem.batch, design, &f->result);
-    return HF_OK;
+    return (int)keep_shape(f, hf_batch_run_one(&f->problem.batch, design, &f->result));
 }
 
 int hf_flat_slopes(hf_flat *f, int n, const double *design, double *slope)
@@ -502,6 +518,7 @@ int hf_flat_run(hf_flat *f, const char *output, int restart, hf_flat_observer *o
     char written[HF_OUTPUT_SIZE];
     watcher beside = {f, observer, context};
     if (!begins(f, f->is_open, NEEDS_CASE)) return HF_BAD_USAGE;
+    f->stop = 0; /* of a run before, at whose end it came */
     hf_run_request request = {.case_path = f->path,
                               .source = f->source.text ? &f->source : NULL,
                               .set = f->set,
@@ -514,7 +531,6 @@ int hf_flat_run(hf_flat *f, const char *output, int restart, hf_flat_observer *o
                               .observer = pass_on,
                               .observer_context = &beside};
     hf_status status = hf_run_case(&request, &f->summary, written, &f->said);
-    f->stop = 0;
     return (int)tell_summary(f, status, written);
 }
 

@@ -1,6 +1,7 @@
 """What is refused, and in which words: arrays, cases, designs, runs; a package that does not go with its library."""
 import os
 import re
+import shutil
 import subprocess
 import sys
 import unittest
@@ -105,6 +106,35 @@ class Errors(unittest.TestCase):
         }.items():
             self.assertEqual(self.refused(hifdm.HifdmError, part, self.net, **arguments).status, "bad_case")
 
+    def test_sets_and_texts(self):
+        """Nothing is rounded or cut on the way to C."""
+        self.assertEqual(self.net(sets={"a": [2, 0], "b": []}).sets["a"].tolist(), [0, 2])
+        for bad in ([0.9, 2.2], [True, False], [[0, 1]], 0):
+            self.refused(TypeError, "sets['a'] has dtype", self.net, sets={"a": bad})
+        self.refused(ValueError, "sets['a'] names a cable that there is not", self.net, sets={"a": [2**32]})
+        small = temp("small.yaml", SMALL)
+        for function, arguments in ((self.net, {"cable_ids": ["a\0b", "b", "c", "d"]}),
+                                    (self.net, {"role": ["support\0", *ROLE[1:]]}),
+                                    (hifdm.open, {"path": small + "\0"}),
+                                    (hifdm.open, {"path": small, "set": ["form.stop=residual\0"]}),
+                                    (hifdm.open(small).run, {"output": temp("nul.h5") + "\0"})):
+            self.refused(ValueError, "has a NUL character", function, **arguments)
+
+    def test_a_relative_path_is_that_of_its_opening(self):
+        temp("here.yaml", SMALL + "optimize: {population: 4, generations: 1}\n")
+        before = os.getcwd()
+        try:
+            os.chdir(temp(""))
+            case = hifdm.open("here.yaml")
+            os.chdir("/")
+            self.assertEqual(case.run(temp("here.h5")).status, "ok")
+        finally:
+            os.chdir(before)
+        with hifdm.read(temp("here.h5")) as result:
+            self.assertEqual(result.shape().status, "ok")
+            self.assertEqual(result.shape().stop_reason, case.form().stop_reason)
+            self.assertEqual(result.shape().bound_reason, case.form().bound_reason)
+
     def test_cases(self):
         path = temp("wrong.yaml", "scene: {}\nfrom: {}\n")
         error = self.refused(hifdm.HifdmError, f"{path}:2:1: from: unknown key; did you mean 'form'?", hifdm.open, path)
@@ -129,6 +159,9 @@ class Errors(unittest.TestCase):
             raise ValueError(f"in {now.phase}")
 
         self.refused(ValueError, "in form", case.run, progress=fail)
+        for use in (lambda now: case.base, lambda now: case.run()):  # would wait for itself
+            error = self.refused(hifdm.HifdmError, "progress uses the case whose run calls it", case.run, progress=use)
+            self.assertEqual(error.status, "bad_usage")
         stopped = case.run(temp("stopped.h5"), progress=lambda now: now.done < 3)
         self.assertEqual(stopped.status, "interrupted")
         rest = []
@@ -196,6 +229,18 @@ class Library(unittest.TestCase):
             self.assertEqual(out.returncode, 1)
             self.assertIn(words, out.stderr)
             self.assertIn("ImportError", out.stderr)
+
+    def test_a_broken_library_does_not_hide_another(self):
+        folder = temp("broken/lib")
+        shutil.copytree(os.path.dirname(_library.__file__), folder + "/python3/dist-packages/hifdm")
+        os.makedirs(folder + "/some-linux-gnu")
+        os.symlink(os.path.realpath(_library.lib._name), folder + "/some-linux-gnu/libhifdm.so.0")
+        temp("broken/lib/libhifdm.so.0", "no library")
+        plain = {key: value for key, value in os.environ.items() if key != "HIFDM_LIBRARY"}
+        out = subprocess.run([sys.executable, "-c", "from hifdm import _library; print(_library.lib._name)"], text=True,
+                             capture_output=True, check=False,
+                             env={**plain, "PYTHONPATH": folder + "/python3/dist-packages"})
+        self.assertIn("broken/lib/some-linux-gnu/libhifdm.so.0", out.stdout, out.stderr)
 
 
 if __name__ == "__main__":

@@ -101,6 +101,30 @@ START_TEST(what_is_read_has_its_size)
 }
 END_TEST
 
+/* Other designs between a shape and its reading; a stop that comes when no run goes on. */
+START_TEST(calls_leave_no_trace)
+{
+    double psi_m, base[N_GENE], other[2 * N_GENE], before[2][27], result[128], figure[16 * 2], slope[2 * N_GENE];
+    hf_flat *flat = hf_flat_create();
+    ck_assert_msg(work(flat, &psi_m) == HF_OK, "%s", hf_flat_said(flat));
+    hf_flat_reals(flat, "base", base);
+    for (int i = 0; i < 2 * N_GENE; i++)
+        other[i] = base[i % N_GENE] * (i % 2 ? 1.2 : 0.7);
+    ck_assert_int_eq(hf_flat_form(flat), HF_OK);
+    hf_flat_reals(flat, "position_m", before[0]);
+    hf_flat_reals(flat, "tension_N", before[1]);
+    ck_assert_int_eq(hf_flat_evaluate(flat, 2, other, figure), HF_OK);
+    ck_assert_int_eq(hf_flat_slopes(flat, 2, other, slope), HF_OK);
+    hf_flat_reals(flat, "position_m", result);
+    ck_assert_mem_eq(result, before[0], sizeof before[0]);
+    hf_flat_reals(flat, "tension_N", result);
+    ck_assert_mem_eq(result, before[1], 8 * sizeof *result);
+    hf_flat_stop(flat);
+    ck_assert_int_eq(hf_flat_run(flat, NULL, 0, NULL, NULL), HF_OK);
+    hf_flat_free(flat);
+}
+END_TEST
+
 Suite *suite_unit_flat(void)
 {
     Suite *suite = suite_create("unit/run/flat");
@@ -108,5 +132,6 @@ Suite *suite_unit_flat(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, every_allocation_may_fail);
     tcase_add_test(tests, what_is_read_has_its_size);
+    tcase_add_test(tests, calls_leave_no_trace);
     return suite;
 }

@@ -64,13 +64,17 @@ def _candidates() -> list[str]:
 
 
 def _load() -> ctypes.CDLL:
-    path = _candidates()[0]
-    try:
-        found = ctypes.CDLL(path)
-        found.hf_flat_interface.restype = c_int
-        interface = found.hf_flat_interface()
-    except (OSError, AttributeError) as fault:
-        raise ImportError(f"libhifdm cannot be used: {fault}; install it, or name it by HIFDM_LIBRARY") from None
+    faults = []
+    for path in _candidates():
+        try:
+            found = ctypes.CDLL(path)
+            found.hf_flat_interface.restype = c_int
+            interface = found.hf_flat_interface()
+            break
+        except (OSError, AttributeError) as fault:
+            faults.append(str(fault))
+    else:
+        raise ImportError(f"libhifdm cannot be used: {'; '.join(faults)}; install it, or name it by HIFDM_LIBRARY")
     if interface != INTERFACE:
         raise ImportError(f"{path} has the interface {interface}, this package is for {INTERFACE}: "
                           "install library and package of the same version")
@@ -97,8 +101,15 @@ def word(of: str, code: int) -> str:
     return "unknown" if found is None else found if isinstance(found, str) else found.decode()
 
 
+def c_text(text: bytes) -> bytes:
+    """The text itself; ValueError when C would see only its beginning."""
+    if b"\0" in text:
+        raise ValueError(f"{text.decode(errors='replace')!r} has a NUL character")
+    return text
+
+
 def text_list(items: list[str]) -> ctypes.Array:
-    return (c_char_p * max(len(items), 1))(*[item.encode() for item in items])
+    return (c_char_p * max(len(items), 1))(*[c_text(item.encode()) for item in items])
 
 
 _pointer_of = {np.dtype(np.float64): _reals, np.dtype(np.int32): _ints, np.dtype(np.uint8): _codes}

@@ -13,7 +13,7 @@ from typing import Any, Callable, Mapping, NamedTuple, Sequence
 
 import numpy as np
 
-from ._library import HifdmError, Observer, lib, pointer, status_word, text_list, wanted, word
+from ._library import HifdmError, Observer, c_text, lib, pointer, status_word, text_list, wanted, word
 
 Overrides = Mapping[str, Any] | Sequence[str]
 _process = {"pid": os.getpid(), "is_used": False}
@@ -141,11 +141,28 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"a key of the case has a value of type {type(value).__name__}")
 
 
+class _Lock:
+    """One thread at a time works with a case. Not the one that a run calls `progress` in: the run has the lock."""
+
+    def __init__(self) -> None:
+        self._lock = threading.RLock()
+        self.observing: int | None = None  # ident of that thread while it is in `progress`
+
+    def __enter__(self) -> None:
+        if self.observing == threading.get_ident():
+            raise HifdmError("bad_usage", "progress uses the case whose run calls it; take what it needs of the case "
+                                          "before the run")
+        self._lock.acquire()
+
+    def __exit__(self, *_: Any) -> None:
+        self._lock.release()
+
+
 class Case:
     """Made by hifdm.open or hifdm.net. One thread at a time works with a case; others wait. Indices count from 0."""
 
     def __init__(self, open_handle: Callable[[int], int], keep: Any = ()):
-        self._lock = threading.RLock()
+        self._lock = _Lock()
         self._check_process()
         self._handle = lib.hf_flat_create()
         if not self._handle:
@@ -299,18 +316,22 @@ class Case:
 
         output: the result file; a later run into it goes on where this one was stopped, or with restart begins anew.
         None: figures alone. progress: called as the run goes on, in a thread of its own; a run is stopped when it
-        returns False (the status is then "interrupted"), and when it raises, which is raised here, as is Ctrl-C.
+        returns False (the status is then "interrupted"), and when it raises, which is raised here, as is Ctrl-C. It
+        cannot call this case, which is busy.
         """
-        path = None if output is None else os.fsencode(output)
+        path = None if output is None else c_text(os.fsencode(output))
         raised: list[BaseException] = []
         outcome: list[int] = []
 
         def observe(_: Any, phase: int, *now: Any) -> int:
+            self._lock.observing = threading.get_ident()
             try:
                 return int(progress is not None and progress(Progress(word("phase", phase), *now)) is False)
             except BaseException as fault:
                 raised.append(fault)
                 return 1
+            finally:
+                self._lock.observing = None
 
         def work() -> None:
             outcome.append(lib.hf_flat_run(self._handle, path, int(restart), observer, None))
@@ -321,9 +342,10 @@ class Case:
             worker.start()
             while worker.is_alive():
                 try:
-                    worker.join()
+                    worker.join(0.2 if raised else None)
                 except BaseException as fault:
                     raised.append(fault)
+                if raised:  # again and again: a run that only begins forgets what came before
                     lib.hf_flat_stop(self._handle)
             if raised:
                 raise raised[0]
@@ -336,7 +358,9 @@ class Case:
 def open(path: str | os.PathLike, set: Overrides = (), *, threads: int = 0) -> Case:
     """Open a case file under overrides, {"form.pretension_N": 12} or ["form.pretension_N=12"]; threads 0: all cores."""
     lines = _lines(set)
-    keep = (os.fsencode(path), text_list(lines))
+    given = os.fsencode(path)
+    full = given if os.path.isabs(given) else os.path.join(os.getcwdb(), given)  # a run reads it again
+    keep = (c_text(full), text_list(lines))
     return Case(lambda handle: lib.hf_flat_open(handle, keep[0], len(lines), keep[1], threads), keep)
 
 
@@ -347,7 +371,7 @@ def _codes(name: str, words: str | Sequence[str] | np.ndarray, of: str, n: int) 
     each = [words] * n if isinstance(words, str) else list(words)
     if len(each) != n:
         raise ValueError(f"{name} has {len(each)} words; wanted is one, or {n}")
-    code_of = {text: lib.hf_flat_code(of.encode(), str(text).encode()) for text in {*each}}
+    code_of = {text: lib.hf_flat_code(of.encode(), c_text(str(text).encode())) for text in {*each}}
     for text, code in code_of.items():
         if code < 0:
             known = [each for each in (word(of, code) for code in range(9)) if each != "unknown"]
@@ -361,10 +385,22 @@ def _ids(name: str, ids: Sequence[str] | None, n: int) -> ctypes.Array | None:
     return None if ids is None else text_list([str(item) for item in ids])
 
 
+def _members(name: str, cables: Sequence[int]) -> np.ndarray:
+    """Indices of the cables of a set, in order."""
+    given = np.asarray(cables)
+    if given.ndim != 1 or given.size and given.dtype.kind not in "iu":
+        raise TypeError(f"sets[{name!r}] has dtype {given.dtype} and {given.ndim} dimensions; "
+                        "wanted is a list of integers, indices of cables")
+    index = given.astype(np.int32)
+    if (index != given).any():
+        raise ValueError(f"sets[{name!r}] names a cable that there is not")
+    return np.sort(index)
+
+
 def _sets(sets: Mapping[str, Sequence[int]]) -> tuple:
     """Names in the order of strcmp, where each begins, indices."""
     names = sorted(sets, key=lambda name: name.encode())
-    members = [np.sort(np.asarray(sets[name], np.int32)) for name in names]
+    members = [_members(name, sets[name]) for name in names]
     start = np.cumsum([0] + [len(member) for member in members], dtype=np.int32)
     return text_list(names), start, np.concatenate(members + [np.empty(0, np.int32)])
 

@@ -6,8 +6,10 @@ import os
 
 import numpy as np
 
+from ._library import word
 from .case import Shape
 
+_WORDS = ("status", "stop_reason", "bound_reason")  # figures that are codes in a file
 _STAGES = {"form": "form", "optimize": "ga/best", "polish": "polish"}
 
 
@@ -35,7 +37,8 @@ class Result:
         """Arrays of a stage as hifdm.Shape, and as figures the attributes of its group."""
         group = self.h5[_STAGES.get(stage, stage)]
         arrays = {name: group[name][:] for name in ("position_m", "length_m", "tension_N", "q_N_per_m")}
-        return Shape(dict(group.attrs), {}, arrays)
+        figures = {name: word(name, int(value)) if name in _WORDS else value for name, value in group.attrs.items()}
+        return Shape(figures, {}, arrays)
 
     @property
     def end(self) -> np.ndarray:
