@@ -8,6 +8,8 @@
 
 #include <string.h>
 
+#define SHORT 4 /* letters: words as short as this are like many others, and a guess has the first one in common */
+
 static void print_entry(const hf_word *w, const char *word, FILE *f)
 {
     const char *unit = *w->units ? ", " : "";
@@ -44,24 +46,57 @@ static void print_words(FILE *f)
     }
 }
 
+/* Prints the entries of a word, those that are only like it when none is just that; 0: there are none. */
+static int print_entries(const char *word, FILE *f)
+{
+    int n = 0;
+    for (int is_loose = 0; is_loose < 2 && n == 0; is_loose++) {
+        for (int i = 0; i < hf_n_word; i++) {
+            if (!(is_loose ? hf_word_is_like(i, word) : hf_word_is(i, word))) continue;
+            const hf_word entry = hf_word_at(i);
+            print_entry(&entry, entry.word, f);
+            n++;
+        }
+    }
+    return n;
+}
+
+/* "75" or "exit status 75": what the help says of it, and the statuses that end so. */
+static bool print_exit_status(const char *word, FILE *f)
+{
+    static const char begin[] = "exit status ";
+    const char *code = strncmp(word, begin, strlen(begin)) ? word : word + strlen(begin);
+    for (int k = 0; k < HF_HELP_N_EXIT; k++) {
+        const struct hf_help_exit *e = &hf_help_exit_table[k];
+        if (strcmp(e->code, code) != 0) continue;
+        hf_print_line(f, "%s (exit status)", code);
+        hf_help_wrap(e->meaning, 4, 0, f);
+        for (int i = 0; i < hf_n_word; i++) {
+            const hf_word w = hf_word_at(i);
+            const char *of = strstr(w.kind, begin);
+            if (of && !strcmp(of + strlen(begin), code)) print_entry(&w, w.word, f);
+        }
+        return true;
+    }
+    return false;
+}
+
 static hf_status command_explain(const hf_options *o, FILE *file, hf_messages *messages)
 {
-    const char *names[512];
-    int n_name = 0, n_entry = 0;
+    static const char no_proof[] = "no: "; /* as the table has it before a bound_reason */
+    const char *names[1024], *word = o->file;
+    int n_name = 0;
     if (!o->file) {
         print_words(file);
         return HF_OK;
     }
-    for (int i = 0; i < hf_n_word; i++) {
-        const hf_word entry = hf_word_at(i);
-        if (n_name < (int)(sizeof names / sizeof *names)) names[n_name++] = entry.word;
-        if (!hf_word_is(i, o->file)) continue;
-        print_entry(&entry, entry.word, file);
-        n_entry++;
-    }
-    if (n_entry) return HF_OK;
+    if (!strncmp(word, no_proof, strlen(no_proof))) word += strlen(no_proof);
+    if (print_exit_status(word, file) || print_entries(word, file)) return HF_OK;
+    for (int i = 0; i < hf_n_word && n_name < (int)(sizeof names / sizeof *names); i++)
+        names[n_name++] = hf_word_at(i).word;
     const char *near = hf_text_nearest(o->file, names, n_name);
-    if (near) return hf_error(messages, HF_BAD_USAGE, "nothing is called '%s'; did you mean '%s'?", o->file, near);
+    bool is_likely = near && (strlen(word) > SHORT || hf_word_letter(*near) == hf_word_letter(*word));
+    if (is_likely) return hf_error(messages, HF_BAD_USAGE, "nothing is called '%s'; did you mean '%s'?", o->file, near);
     return hf_error(messages, HF_BAD_USAGE, "nothing is called '%s'; 'hifdm explain' lists all words", o->file);
 }
 

@@ -5,6 +5,7 @@
 #include <hifdm/front.h>
 #include <hifdm/summary.h>
 
+#include <ctype.h>
 #include <string.h>
 
 /* ---- entries from the lists of figures and statuses ---- */
@@ -128,6 +129,44 @@ static const hf_word told[] = {
      "A free node without load all of whose cables are slack: its place is anywhere its cables let it be, and psi "
      "leaves it out.",
      NULL},
+    {"slack", "term", "", "Without tension; see slack cable. The figure slack_cables counts them.", NULL},
+    {"tension", "term", "N",
+     "The force by which a cable pulls at its two nodes: force density times length. As a law of a cable: it keeps "
+     "this "
+     "force whatever its length.",
+     NULL},
+    {"EA", "term", "N",
+     "Stiffness of a cable, modulus of elasticity times cross-section: the force that would stretch it to twice its "
+     "length. Columns EA_N of tables, keys EA_inner_N and EA_boundary_N of generated nets; cut lengths need it.",
+     NULL},
+    {"prestress", "term", "",
+     "Tensions that balance each other without any load. form.prestress exact looks for those that hold every node at "
+     "its theoretical place.",
+     NULL},
+    {"rule", "term", "",
+     "optimize.rule: what a design of tensions means. force_density holds T'/L* in the boundary cables, L* their "
+     "theoretical length; tension holds T' itself; seeded is the paper's iteration, begun there.",
+     NULL},
+    {"base design", "term", "",
+     "The design that an optimisation starts from: the tensions that the form-finding found, under optimize.rule. See "
+     "base_psi_m.",
+     NULL},
+    {"edge", "term", "",
+     "Of cables the set along a border of the net; of nodes the role of free ones that psi does not count.", NULL},
+    {"support", "term", "", "A node that does not move; on a truss it is an attachment, and moves with it.", NULL},
+    {"tie", "term", "",
+     "A cable between the two nets of a double net. An edge tie holds a node of the rim to a support outside of the "
+     "net.",
+     NULL},
+    {"Ruze", "term", "",
+     "Ruze's formula: errors of RMS half path e cost a gain factor of exp(-(4 pi e / wavelength)^2). See good to.",
+     NULL},
+    {"Levenberg-Marquardt", "term", "", "Least squares by derivatives, a damped Gauss-Newton method; see LM.", NULL},
+    {"chi_square", "term", "",
+     "Of `hifdm adjust`: squares of errors over their sigmas, by coordinate. About 1 when the sigmas are right; much "
+     "above it the measured places do not fit the net.",
+     NULL},
+    {"chi^2", "term", "", "See chi_square, its name in JSON.", NULL},
     /* ---- what to do ---- */
     {"ok", "what to do", "", "Nothing: it is done, or the design is feasible.", NULL},
     {"not_converged", "what to do", "",
@@ -215,6 +254,11 @@ static const hf_word told[] = {
     {"stop_reason", "figure", "",
      "Why an iteration, the genetic algorithm or Levenberg-Marquardt ended; `hifdm explain` lists the words.", NULL},
     {"psi_m", "figure", "m", "How far the net is from where it should be; see psi. Of a status other than ok null.",
+     NULL},
+    {"base_psi_m", "figure", "m",
+     "psi of the base design, which gains of the optimisation are measured against. Where boundary cables keep lengths "
+     "in the form-finding and force densities T'/L* in designs, the same tensions give another shape, so that it may "
+     "differ from the psi of the form-finding.",
      NULL},
     {"residual_N", "figure", "N",
      "What is out of balance at the worst node with every cable at the tension of its law. Against the pretension it "
@@ -482,4 +526,17 @@ bool hf_word_is(int i, const char *word)
 {
     const hf_word entry = hf_word_at(i);
     return !strcmp(entry.word, word) || (entry.says && strstr(word, entry.says));
+}
+
+int hf_word_letter(char letter)
+{
+    return letter == '-' || letter == '_' ? ' ' : tolower((unsigned char)letter);
+}
+
+bool hf_word_is_like(int i, const char *word)
+{
+    const char *known = hf_word_at(i).word;
+    while (*known && hf_word_letter(*known) == hf_word_letter(*word))
+        known++, word++;
+    return !*known && !*word;
 }

@@ -20,4 +20,10 @@ hf_word hf_word_at(int i);
 /* Does entry i belong to `word`, or to a whole warning that a user copied? */
 bool hf_word_is(int i, const char *word);
 
+/* A letter as words are compared: small, and a blank for "-" and "_". */
+int hf_word_letter(char letter);
+
+/* Is `word` its word, but for capitals and for what stands between the parts: "-", "_" or a blank? */
+bool hf_word_is_like(int i, const char *word);
+
 #endif

@@ -146,6 +146,23 @@ START_TEST(explain_helps_with_slips)
     HIFDM(0, "explain", "warning: slack in the form-finding shape, 1: c7");
     OUT("slack_cables (warning)\n");
     ck_assert_int_eq(count_of(said.out, "("), 1);
+    static const char *const as_said[][2] = {
+        {"Straight-Chain", "straight_chain (status; exit status 4)"},
+        {"levenberg marquardt", "Levenberg-Marquardt (term)"},
+        {"lm", "LM (term)"},
+        {"ruze", "Ruze (term)"},
+        {"chi^2", "chi^2 (term)"},
+        {"no: truss", "truss (bound_reason)"},
+        {"ea", "EA (term, N)"},
+        {"slack-cable", "slack cable (term)"},
+        {"exit status 75", "75 (exit status)\n    told to stop\ninterrupted (status"},
+        {"75", "75 (exit status)\n"}};
+    for (size_t i = 0; i < sizeof as_said / sizeof *as_said; i++) {
+        HIFDM(0, "explain", as_said[i][0]);
+        OUT(as_said[i][1]);
+    }
+    HIFDM(2, "explain", "rope");
+    ERR("nothing is called 'rope'; 'hifdm explain' lists all words");
     HIFDM(2, "explain", "residul_N");
     ERR("nothing is called 'residul_N'; did you mean 'residual_N'?");
     HIFDM(2, "explain", "gobbledygook");
