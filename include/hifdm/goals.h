@@ -51,8 +51,9 @@ typedef struct hf_goals_nets {
     hf_status (*cut)(void *room, const hf_workspace *design);
     /* Find shapes; `take` is called in this thread, in any order. */
     void (*solve)(void *room, int first, int n, hf_goals_take *take, void *context);
-    /* Find the shape of one net and factor its matrix there; NULL: it has none. It is the net of `follow`. */
-    const hf_workspace *(*linearise)(void *room, int i_net);
+    /* Find the shape of one net and factor its matrix there: HF_OK, it is the net of `follow`; HF_NOT_FINITE: it has
+     * none; HF_NO_MEMORY. */
+    hf_status (*linearise)(void *room, int i_net, const hf_workspace **shape);
     /* n <= HF_GOALS_AT_ONCE changes of the design to those of the net, in arrays of the room. */
     void (*follow)(void *room, int n, const hf_goals_rate *by_design, hf_goals_rate *by_net);
 } hf_goals_nets;

@@ -253,18 +253,20 @@ static void find_stretch(nets_room *r, int i_net)
         r->stretch[e] -= r->cut_rate[e];
 }
 
-static const hf_workspace *linearise_net(void *room, int i_net)
+static hf_status linearise_net(void *room, int i_net, const hf_workspace **shape)
 {
     nets_room *r = room;
-    const hf_workspace *whole, *shape = find_one(r, i_net, &whole);
-    if (!shape) return NULL;
+    const hf_workspace *whole;
+    *shape = find_one(r, i_net, &whole);
+    if (!*shape) return HF_NOT_FINITE;
     if (!r->linear.block) {
         hf_status status = hf_built_linear_make(&r->built, &r->linear);
-        if (status == HF_NO_MEMORY || !r->linear.work.block) return NULL;
+        if (status == HF_NO_MEMORY || !r->linear.work.block) return HF_NO_MEMORY;
     }
-    if (hf_built_linear_take(&r->linear, whole) != HF_OK) return NULL;
+    hf_status status = hf_built_linear_take(&r->linear, whole);
+    if (status != HF_OK) return status == HF_NO_MEMORY ? status : HF_NOT_FINITE;
     find_stretch(r, i_net);
-    return shape;
+    return HF_OK;
 }
 
 /* Of the pieces that are cut for the design: l0 = l/(1 + T/EA). */

@@ -51,7 +51,14 @@ const char *hf_problem_slope_name(const hf_problem *p, int i_slope, char text[HF
 
 hf_status hf_problem_has_slopes(const hf_problem *p, hf_messages *messages)
 {
+    const hf_optimize_settings *s = &p->settings.optimize;
+    char place[HF_PLACE_SIZE];
     if (hf_polish_applies(&p->evaluator)) return HF_OK;
+    for (int k = 0; k < p->goals.n_goal; k++)
+        if (!hf_goals_is_smooth(&p->goals.goal[k].wanted))
+            return hf_error(messages, HF_BAD_CASE, "%s: there are no derivatives of quantiles: use take: mean or worst",
+                            hf_messages_place(messages, place, "optimize.%s.%d.quantile",
+                                              s->n_objective > 0 ? "objectives" : "goals", k));
     return hf_error(messages, HF_BAD_CASE,
                     "there are no derivatives of nets with struts, nor under optimize.rule seeded");
 }

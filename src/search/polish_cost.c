@@ -25,7 +25,7 @@ bool hf_polish_is_cheap(const hf_evaluator *v, long n_evaluation)
     double n_dof = 3.0 * m->n_free, width = 3.0 * m->half_bandwidth + 3, n = m->n_leader;
     double factor = n_dof * width * width, solve = 4 * n_dof * width, newton = NEWTON_STEPS * (factor + solve);
     double evaluation = v->solver == HF_SOLVER_CHORD ? CHORD_STEPS * solve : newton;
-    double n_row = v->goals ? v->goals->n_row : 3.0 * m->n_inner_node;
+    double n_row = v->goals && v->goals->nets ? v->goals->n_row : 3.0 * m->n_inner_node;
     double step = STEP_EVALUATIONS * newton + factor + n * solve + n * n * (n_row + 2 * n);
     for (int i = 0; v->goals && v->goals->nets && i < v->goals->nets->n_state + v->goals->nets->n_sample; i++) {
         if (!hf_goals_are_over(v->goals, i)) continue;

@@ -73,6 +73,35 @@ static int row_count(const hf_goals *goals, const hf_goal *g)
 
 /* ---- creation ---- */
 
+/* Residuals of all goals: one table of them takes 1 GiB, and their numbers are int. */
+#define ROWS_MAX (1L << 27)
+
+/* Rows are counted in long: 3 000 nodes under 16 goals over 100 000 samples are more than an int holds. */
+static void number_rows(hf_goals *goals, hf_goal *g, long *n_all)
+{
+    g->n_shape_row = row_count(goals, g);
+    *n_all += (long)g->n_shape_row * (g->n_net ? g->n_net : 1);
+    if (*n_all > ROWS_MAX) return; /* which is refused */
+    g->first_row = goals->n_row;
+    g->n_row = (int)*n_all - g->first_row;
+    goals->n_row = (int)*n_all;
+}
+
+static hf_status refuse_rows(const hf_goals *goals, const char *list, long n_all, hf_messages *messages)
+{
+    char where[HF_PLACE_SIZE];
+    int n_sample = 0;
+    for (int k = 0; k < goals->n_goal; k++)
+        if (goals->goal[k].wanted.over == HF_OVER_SAMPLES) n_sample = goals->goal[k].n_net;
+    if (n_sample)
+        hf_messages_place(messages, where, "optimize.samples");
+    else
+        hf_messages_place(messages, where, "optimize.%s", list);
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: the goals have %ld residuals in all nets, and at most %ld (1 GiB) are kept: take fewer %s",
+                    where, n_all, ROWS_MAX, n_sample ? "samples, or fewer goals over samples" : "goals");
+}
+
 static void lay_out(hf_arena *a, const hf_model *m, hf_goals *goals)
 {
     for (int k = 0; k < goals->n_goal; k++)
@@ -97,6 +126,7 @@ hf_status hf_goals_create(const hf_scene *scene, const hf_model *m, const hf_opt
 {
     hf_arena arena = {0};
     int n_fault = 0;
+    long n_all = 0;
     bool is_front = s->n_objective > 0;
     *goals = (hf_goals){.model = m, .n_goal = is_front ? s->n_objective : s->n_goal > 0 ? s->n_goal : 1};
     for (int k = 0; k < goals->n_goal; k++) {
@@ -115,10 +145,10 @@ hf_status hf_goals_create(const hf_scene *scene, const hf_model *m, const hf_opt
     goals->block = arena.block;
     for (int i = 0; i < 4 * goals->n_facet; i++)
         goals->corner_row[i] = m->row_of_node[facets->corner[i]];
+    const char *list = is_front ? "objectives" : "goals";
     for (int k = 0; k < goals->n_goal; k++) {
         hf_goal *g = &goals->goal[k];
         char where[HF_PLACE_SIZE];
-        const char *list = is_front ? "objectives" : "goals";
         hf_messages_place(messages, where, "optimize.%s.%d.set", list, k);
         if (g->cable) g->n_cable = hf_cable_pick_some(scene, g->wanted.set, where, g->cable, messages);
         bool is_known = !g->cable || g->n_cable > 0;
@@ -126,11 +156,9 @@ hf_status hf_goals_create(const hf_scene *scene, const hf_model *m, const hf_opt
         hf_messages_place(messages, where, "optimize.%s.%d", list, k);
         if (fault) hf_error(messages, HF_BAD_CASE, "%s: %s: %s", where, hf_goal_word[g->wanted.goal], fault);
         n_fault += !is_known || fault;
-        g->n_shape_row = row_count(goals, g);
-        g->first_row = goals->n_row;
-        g->n_row = g->n_shape_row * (g->n_net ? g->n_net : 1);
-        goals->n_row += g->n_row;
+        number_rows(goals, g, &n_all);
     }
+    if (n_all > ROWS_MAX) return refuse_rows(goals, list, n_all, messages);
     return n_fault ? HF_BAD_CASE : HF_OK;
 }
 

@@ -142,8 +142,7 @@ void hf_goals_nets_gather(const hf_goals *goals, int k, hf_goals_point *p, doubl
 
 hf_status hf_goals_nets_linearise(const hf_goals *goals, int i_net, hf_goals_point *p, const hf_workspace **shape)
 {
-    *shape = goals->nets->linearise(p->nets, i_net);
-    if (!*shape) return HF_NOT_FINITE;
+    HF_TRY(goals->nets->linearise(p->nets, i_net, shape));
     for (int k = 0; k < goals->n_goal; k++) {
         double value, norm;
         if (!is_over(&goals->goal[k], i_net)) continue;

@@ -71,6 +71,15 @@ START_TEST(what_nets_need_is_named)
 }
 END_TEST
 
+START_TEST(quantiles_have_no_derivatives)
+{
+    const char *c = survive_case("c.yaml", "ga", "{goal: psi, over: samples, quantile: 0.9}"), *d = temp("d.csv");
+    HIFDM(0, "evaluate", c, "--template", d);
+    HIFDM(2, "evaluate", c, "--designs", d, "--jacobian", temp("j.csv"));
+    ERR("no derivatives of quantiles");
+}
+END_TEST
+
 Suite *suite_cli_survive(void)
 {
     Suite *suite = suite_create("cli/survive");
@@ -80,5 +89,6 @@ Suite *suite_cli_survive(void)
     tcase_add_loop_test(tests, what_is_sought_is_found, 0, 2);
     tcase_add_loop_test(tests, faults_of_nets_are_named, 0, 6);
     tcase_add_test(tests, what_nets_need_is_named);
+    tcase_add_test(tests, quantiles_have_no_derivatives);
     return suite;
 }

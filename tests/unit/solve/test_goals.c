@@ -533,6 +533,27 @@ START_TEST(without_memory_there_are_no_goals)
 }
 END_TEST
 
+/* Three samples of 2^30 residuals are more than an int holds: no table of them may be made too small. */
+START_TEST(too_many_residuals_are_refused)
+{
+    struct wanting t;
+    hf_goal_settings goal = goal_of(HF_GOAL_PSI);
+    const hf_goals_nets nets = {.n_sample = 1 << 30};
+    hf_messages messages = {0};
+    open_line(&t);
+    goal.over = HF_OVER_SAMPLES;
+    hf_optimize_settings s = {.n_goal = 3, .goal = {goal, goal, goal}};
+    ck_assert_int_eq(hf_goals_create(&t.net.scene, &t.net.model, &s, NULL, NULL, &nets, &t.goals, &messages),
+                     HF_BAD_CASE);
+    ck_assert_ptr_nonnull(strstr(messages.text, "optimize.samples"));
+    hf_messages_free(&messages);
+    hf_goals_free(&t.goals);
+    goal.over = HF_OVER_DESIGN;
+    want(&t, 1, &goal);
+    close_wanting(&t);
+}
+END_TEST
+
 Suite *suite_unit_goals(void)
 {
     Suite *suite = suite_create("unit/goals");
@@ -550,5 +571,6 @@ Suite *suite_unit_goals(void)
     tcase_add_loop_test(tests, a_goal_without_meaning_is_refused, 0, N_FAULTY);
     tcase_add_test(tests, a_surface_may_lack_facets_and_nodes);
     tcase_add_test(tests, without_memory_there_are_no_goals);
+    tcase_add_test(tests, too_many_residuals_are_refused);
     return suite;
 }
