@@ -5,6 +5,8 @@
  * Numbers have 17 significant digits. */
 #include "out/export.h"
 
+#include "solve/facet_mesh.h"
+
 #include <string.h>
 
 static void write_pattern(const void *context, FILE *f)
@@ -17,6 +19,19 @@ static void write_pattern(const void *context, FILE *f)
                 t->theta_deg[k % t->n_theta], t->co_dBi[k], t->cross_dBi[k]);
 }
 
+static hf_status refuse(const char *file, const hf_summary *s, hf_stage stage, hf_messages *messages)
+{
+    double pull_ratio = stage == HF_STAGE_NONE ? 0 : s->measures[stage].mesh_pull_ratio;
+    if (pull_ratio > HF_FACET_PULL_MOST)
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: there is no far field of this shape: the mesh pulls on a cable with N l = %.3g of its "
+                        "tension, and the formula of the pillow ends at %g. Raise the tension of the cables, or lower "
+                        "surface.mesh_tension_N_per_m",
+                        file, pull_ratio, HF_FACET_PULL_MOST);
+    return hf_error(messages, HF_BAD_USAGE, "%s: there is no far field of this shape: its case has no surface.pattern",
+                    file);
+}
+
 static hf_status export_pattern(const hf_export_request *o, char *said, size_t size, hf_messages *messages)
 {
     hf_summary summary;
@@ -27,8 +42,7 @@ static hf_status export_pattern(const hf_export_request *o, char *said, size_t s
     for (int i = 0; o->stage && i < HF_STAGE_NONE; i++)
         if (!strcmp(o->stage, hf_stage_word[i])) stage = (hf_stage)i;
     if (stage == HF_STAGE_NONE || summary.pattern[stage].n_frequency == 0)
-        return hf_error(messages, HF_BAD_USAGE,
-                        "%s: there is no far field of this shape: its case has no surface.pattern", o->file);
+        return refuse(o->file, &summary, stage, messages);
     HF_TRY(hf_store_read_pattern(o->file, stage, &table, messages));
     hf_status status = hf_file_out_set_write(o->files, o->output, write_pattern, &table, messages);
     snprintf(said, size, "%s: far field at %d frequenc%s in %d cut%s of %d angles in %s", o->file, table.n_frequency,

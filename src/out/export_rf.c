@@ -44,16 +44,23 @@ static void take(const view *v, int i, hf_facet_mesh *m)
     hf_facet_mesh_settle(m);
 }
 
-static hf_status find_sags(view *v, hf_arena *arena)
+static hf_status find_sags(view *v, const char *file, hf_arena *arena, hf_messages *messages)
 {
     const hf_export_stored *s = v->stored;
     const hf_facet_shape shape = {s->shape.position_m, s->scene.n_cable, s->scene.end, s->shape.tension_N};
     double pull_ratio, mesh_N_per_m = s->summary.surface.mesh_tension_N_per_m, *sag_m;
     if (!(mesh_N_per_m > 0)) return HF_OK;
-    HF_TRY(HF_ARENA_MAKE(arena, sag_m = hf_arena_take(arena, 4 * (size_t)v->facets.n_facet, sizeof(double))));
-    HF_TRY(hf_facet_mesh_sags(mesh_N_per_m, &v->facets, &shape, sag_m, &pull_ratio));
-    v->sag_m = pull_ratio <= HF_FACET_PULL_MOST ? sag_m : NULL; /* else the mesh has no shape */
-    return HF_OK;
+    hf_status status =
+        HF_ARENA_MAKE(arena, sag_m = hf_arena_take(arena, 4 * (size_t)v->facets.n_facet, sizeof(double)));
+    if (status == HF_OK) status = hf_facet_mesh_sags(mesh_N_per_m, &v->facets, &shape, sag_m, &pull_ratio);
+    if (status != HF_OK) return hf_error(messages, status, "%s: out of memory for its facets", file);
+    v->sag_m = sag_m;
+    if (pull_ratio <= HF_FACET_PULL_MOST) return HF_OK;
+    return hf_error(messages, HF_BAD_USAGE,
+                    "%s: the pillows of the %s shape are not known: the mesh pulls on a cable with N l = %.3g of its "
+                    "tension, and the formula ends at %g. Raise the tension of the cables, or lower "
+                    "surface.mesh_tension_N_per_m",
+                    file, s->word, pull_ratio, HF_FACET_PULL_MOST);
 }
 
 /* Extent of the facets, and points along their sides. */
@@ -219,10 +226,10 @@ static hf_status write_files(const hf_export_request *o, view *v, char path[3][P
 {
     hf_arena sags = {0}, grid = {0};
     measure(v);
-    hf_status status = find_sags(v, &sags);
+    hf_status status = find_sags(v, o->file, &sags, messages);
     size_t n = (size_t)v->n[0] * (size_t)v->n[1];
-    if (status == HF_OK) status = HF_ARENA_MAKE(&grid, v->z_m = hf_arena_take(&grid, n, sizeof(double)));
-    if (status != HF_OK) hf_error(messages, status, "%s: out of memory for its facets", o->file);
+    if (status == HF_OK && HF_ARENA_MAKE(&grid, v->z_m = hf_arena_take(&grid, n, sizeof(double))) != HF_OK)
+        status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory for its facets", o->file);
     if (status == HF_OK) fill_grid(v);
     if (status == HF_OK) status = hf_file_out_folder(o->output, messages);
     if (status == HF_OK) status = hf_file_out_set_write(o->files, path[0], write_grid, v, messages);

@@ -168,11 +168,14 @@ static void print_stages(const hf_summary *s, hf_stage result, FILE *f)
 
 /* ---- surface ---- */
 
-static void print_losses(const hf_summary *s, const double *loss_dB, FILE *f)
+/* A loss without a value is beyond Ruze's formula, but where the errors themselves have none. */
+static void print_losses(const hf_summary *s, double rms_m, const double *loss_dB, FILE *f)
 {
     for (int k = 0; k < s->surface.frequencies_Hz.n; k++) {
         if (k) fputc('/', f);
-        if (isnan(loss_dB[k]))
+        if (isnan(rms_m))
+            fputc('-', f);
+        else if (isnan(loss_dB[k]))
             fprintf(f, "above %g", HF_RUZE_MOST_DB);
         else
             fprintf(f, "%.3g", loss_dB[k]);
@@ -197,9 +200,11 @@ static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
     for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
         fprintf(f, "%s%g", k ? "/" : "", s->surface.frequencies_Hz.value[k] / 1e9);
     fputs(" GHz: ", f);
-    print_losses(s, m->n_facet ? m->facet_gain_loss_dB : m->gain_loss_dB, f);
+    print_losses(s, m->n_facet ? m->facet_half_path_rms_m : m->half_path_rms_m,
+                 m->n_facet ? m->facet_gain_loss_dB : m->gain_loss_dB, f);
     fputs(" dB, after best fit ", f);
-    print_losses(s, m->n_facet ? m->facet_fit_gain_loss_dB : m->fit_gain_loss_dB, f);
+    print_losses(s, m->n_facet ? m->facet_fit_half_path_rms_m : m->fit.half_path_rms_m,
+                 m->n_facet ? m->facet_fit_gain_loss_dB : m->fit_gain_loss_dB, f);
     fputs(" dB\n", f);
 }
 

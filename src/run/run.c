@@ -16,6 +16,7 @@
 #include "solve/limits.h"
 #include "solve/certificate.h"
 #include "solve/coupling.h"
+#include "solve/facet_mesh.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
 
@@ -126,7 +127,9 @@ static hf_status measure_shape(run *r, hf_stage stage, const hf_workspace *w, hf
                    "pillow is of first order in that%s. Raise the tension of the cables, or lower "
                    "surface.mesh_tension_N_per_m",
                    hf_stage_word[stage], s->measures[stage].mesh_pull_ratio,
-                   s->measures[stage].mesh_pull_ratio > 1 ? ", and facets have no errors here" : "");
+                   s->measures[stage].mesh_pull_ratio <= HF_FACET_PULL_MOST ? ""
+                   : p->surface.has_pattern ? ", and facets have neither errors nor a far field here"
+                                            : ", and facets have no errors here");
     if (!fit->converged)
         hf_warning(messages,
                    "surface: the best fit to the shape of stage %s did not converge in %d steps; it has no value",

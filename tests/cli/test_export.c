@@ -169,6 +169,25 @@ START_TEST(what_cannot_be_exported_is_told)
 }
 END_TEST
 
+/* A mesh that outweighs its cables has no shape: nothing flat stands in for it, and no reason but this is given. */
+START_TEST(a_mesh_without_shape_is_not_exported)
+{
+    const char *out = temp("h.h5"), *rf = temp("rf");
+    HIFDM(0, "run",
+          file_with("h.yaml", SMALL_SCENE "surface: {mesh_tension_N_per_m: 500, frequencies_Hz: [1e10], pattern: "
+                                          "{n_theta: 11, feed: {cos_power: 1}}}\n"),
+          "-o", out);
+    ERR("facets have neither errors nor a far field here");
+    OUT("loss of gain at 10 GHz: - dB, after best fit - dB");
+    HIFDM(2, "export", out, "--rf", rf);
+    ERR("pillows of the form-finding shape are not known: the mesh pulls on a cable");
+    ck_assert(!is_there(rf));
+    HIFDM(2, "export", out, "--pattern", temp("p.csv"));
+    ERR("there is no far field of this shape: the mesh pulls on a cable");
+    ck_assert(!is_there(temp("p.csv")));
+}
+END_TEST
+
 /* Facets are written as a table, and a case that names this table has the same ones and the same errors. A table with
  * fewer leaves the others out; a wrong one is refused by its line. */
 START_TEST(facets_are_written_and_named)
@@ -210,6 +229,7 @@ Suite *suite_cli_export(void)
     tcase_add_test(tcase, sets_survive_the_round_trip);
     tcase_add_test(tcase, existing_csv_is_not_replaced);
     tcase_add_test(tcase, what_cannot_be_exported_is_told);
+    tcase_add_test(tcase, a_mesh_without_shape_is_not_exported);
     tcase_add_test(tcase, facets_are_written_and_named);
     suite_add_tcase(suite, tcase);
     return suite;
