@@ -241,9 +241,7 @@ static void write_series(const page *p, FILE *f)
     }
 }
 
-/* ---- the page ---- */
-
-/* ---- beside another result ---- */
+/* ---- the page, and another ---- */
 
 static void write_case(const page *p, FILE *f)
 {

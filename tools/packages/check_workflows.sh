@@ -36,6 +36,13 @@ sed -i 's/pretension_N: 10 /pretension_N: 11 /' dish.yaml
 run
 [ "$(count)" = 10 ] || fail "another base case is not all points anew"
 
+# Two studies of one name would write one table.
+mkdir other
+cp "a study.yaml" other
+if snakemake -s "$rules" --cores 2 --config studies="['a study.yaml', 'other/a study.yaml']" \
+    program="$program" >log 2>&1; then fail "two studies of one name"; fi
+grep -q "would both write" log || { cat log; fail "two studies of one name are not told"; }
+
 # One iteration is too few: that point fails, the job does not.
 "$program" new strips --cylinder >/dev/null
 printf '%s\n' 'base: strips.yaml' 'sweep: {form.method: [hifdm], form.max_iterations: [1, 20000]}' >failing.yaml

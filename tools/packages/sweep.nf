@@ -45,5 +45,10 @@ process sweep {
 workflow {
     if (!params.studies) error 'which studies? --studies FILE'
     also = Channel.fromPath(params.also, checkIfExists: true).collect().ifEmpty([])
-    sweep(Channel.fromPath(params.studies, checkIfExists: true), also, file(params.results).toAbsolutePath().toString())
+    studies = Channel.fromPath(params.studies, checkIfExists: true).toList().flatMap { all ->
+        twice = all.countBy { it.baseName }.findAll { it.value > 1 }.keySet()
+        if (twice) error "several studies would write the same files: ${twice.join(', ')}; rename them"
+        all
+    }
+    sweep(studies, also, file(params.results).toAbsolutePath().toString())
 }
