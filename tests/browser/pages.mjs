@@ -4,7 +4,7 @@
 //   title: what must stand on it, to the letter
 //   warnings, slack: how many it must tell of
 //   facets: how many, all triangles; off: families of cables whose switches are tried
-//   other: how the case of a second result differs, with which it is compared
+//   other: how the case of a second result differs, with which it is compared; unlike: in its figures, too
 //   study: how many points; leads: the axis that matters most
 
 const FORM = ["net", "cables", "map", "tensions", "summary", "form-finding", "provenance"];
@@ -89,6 +89,15 @@ export const pages = [
     other: ["--set", "optimize.method=lm", "--set", "form.pretension_N=10.5"],
     sections: ["compare", ...GA],
     warnings: 0,
+  },
+  {
+    name: "compare-unlike", // EA and fewer frequencies in the other one alone
+    text: cylinder([4, 5], "surface: {frequencies_Hz: [1e7, 5e7]}\n"),
+    other: ["EA_inner_N=1e5", "EA_boundary_N=2e5"]
+      .flatMap((line) => ["--set", `scene.${line}`])
+      .concat("--set", "surface.frequencies_Hz=[5e7]"),
+    unlike: true,
+    sections: ["compare", ...FORM],
   },
   {
     name: "truss",

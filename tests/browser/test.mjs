@@ -398,6 +398,35 @@ async function checkOther(tab, page, made) {
   await tab.reload();
 }
 
+// Losses of gain stand beside those at the same frequency; cases are compared without comments, and what is left out of
+// long ones is said.
+async function checkUnlike(browser, tab, made, folder) {
+  const [a, b] = ["result.h5", "other.h5"].map((file) => JSON.parse(made.hifdm("show", file, "--json")).form.surface),
+    cells = (at) => tab.locator("#compare tr", { hasText: `loss of gain at ${at}` }).first().locator("td");
+  const [low, high] = [await cells("0.01 GHz").allTextContents(), await cells("0.05 GHz").allTextContents()];
+  same(number(low[0]), a.gain_loss_dB[0], 3);
+  assert.deepEqual(low.slice(1, 3), ["–", ""]);
+  same(number(high[0]), a.gain_loss_dB[1], 3);
+  same(number(high[1]), b.gain_loss_dB[0], 3);
+  const page = readFileSync(made.html, "utf8"),
+    said = async (text, otherText) => {
+      let found;
+      const data = JSON.parse(page.match(DATA)[2]);
+      Object.assign(data, { case_text: [text], overrides: [""] });
+      Object.assign(data.other, { case_text: [otherText], overrides: [""] });
+      const copy = page.replace(DATA, (_, head, old, tail) => head + JSON.stringify(data) + tail);
+      await openCopy(browser, folder, "texts", copy, async (of) => (found = await of.locator("#compare").innerText()));
+      return found;
+    };
+  const long = "a: 1\n".repeat(700);
+  assert.ok((await said("a: 1 # one\n# two\n", "  # three\na: 1 # one\n")).includes("the same text of the case"));
+  assert.ok((await said("a: 1\n", "a: 2\n")).includes("+ a: 2"));
+  for (const end of ["", "b: 2\n"]) {
+    const text = await said(long, `${end}${long}`);
+    assert.ok(text.includes("Only the first 600 lines") && !text.includes("the same text"), text);
+  }
+}
+
 async function checkMap(tab, made) {
   assert.ok((await picture(tab, "map-canvas")).colours > 30, "the map is not drawn");
   const canvas = tab.locator("#map-canvas");
@@ -657,7 +686,8 @@ async function test(browser, page) {
     await checkSummary(tab, made);
     const endless = await checkCharts(tab, 4, "#form-finding", /iteration \d+\s+ψ\s+[\d.]+.* mm/);
     await checkNet(tab, page, made);
-    if (page.other) await checkOther(tab, page, made);
+    if (page.unlike) await checkUnlike(browser, tab, made, folder);
+    else if (page.other) await checkOther(tab, page, made);
     else await checkCables(tab, made);
     await checkHover(tab, page, made);
     if (page.slack) assert.ok(endless.includes("Tension ratio, boundary cables"), "an infinite ratio is not shown");

@@ -18,7 +18,7 @@ function cableColumn(name, of, digits, { unit = 1, isChange = false } = {}) {
 // What the turnbuckle of a cable must do to make the found net the result; of a net that is only found, what it must
 // do in one that was cut for the theoretical shape.
 function turned(before, after) {
-  if (!after.l0_m) return null;
+  if (!after.l0_m || (before !== after && !before.l0_m)) return null;
   if (before === after) return ["turn, from the drawing (mm)", (e) => after.adjustment_m[e]];
   const both = (e) => (after.l0_m[e] === null || before.l0_m[e] === null ? null : after.l0_m[e] - before.l0_m[e]);
   return [`turn, from ${before.name} (mm)`, both];

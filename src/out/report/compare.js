@@ -1,9 +1,7 @@
 // Contents: this result beside another: figures, and what differs in the cases
 
 // Lines that only one of two texts has, by the longest common subsequence; "-" of the first, "+" of the second.
-const LINES_OF_CASE_MAX = 600;
-function differences(a, b) {
-  const [x, y] = [a, b].map((text) => text.split("\n").slice(0, LINES_OF_CASE_MAX));
+function differences(x, y) {
   const longest = Array.from({ length: x.length + 1 }, () => new Uint16Array(y.length + 1));
   for (let i = x.length - 1; i >= 0; i--)
     for (let j = y.length - 1; j >= 0; j--)
@@ -24,13 +22,22 @@ function differences(a, b) {
   return found.filter(([, line]) => line.trim());
 }
 
+// Lines of the case and its overrides, without comments. Tables that it imports are not in it.
+const LINES_OF_CASE_MAX = 600;
 function caseDifferences() {
-  const text = (of) => `${of.case_text[0]}\n${of.overrides[0]}`,
-    lines = differences(text(data), text(data.other));
-  if (!lines.length) return [el("p", {}, "Both are of the same case.")];
+  const linesOf = (of) => `${of.case_text[0]}\n${of.overrides[0]}`.split("\n").filter((line) => !/^\s*#/.test(line));
+  const all = [data, data.other].map(linesOf),
+    left = Math.max(...all.map((text) => text.length)) - LINES_OF_CASE_MAX,
+    lines = differences(...all.map((text) => text.slice(0, LINES_OF_CASE_MAX)));
+  const cut =
+    left > 0
+      ? el("p", {}, `Only the first ${LINES_OF_CASE_MAX} lines are compared; up to ${fmtCount(left)} more are not.`)
+      : null;
+  if (!lines.length) return [left > 0 ? cut : el("p", {}, "Both have the same text of the case.")];
   return [
     el("h3", { class: "after" }, "What differs in the cases"),
     el("p", {}, `− of this one, + of ${data.other.name}.`),
+    cut,
     el(
       "ul",
       { class: "differences" },
@@ -42,14 +49,14 @@ function caseDifferences() {
 function writeOther() {
   const { other } = data;
   if (!other) return;
-  const stageOf = (figures) => {
-    const stage =
-      (figures.polish && figures.polish.is_result && "polish") || (figures.optimize && "optimize") || "form";
-    return [stage, stageValues(figures[stage])];
-  };
-  const [stageA, a] = stageOf(summary),
-    [stageB, b] = stageOf(other.summary);
-  const rows = figureRows({ ...b, ...a, goals: { ...b.goals, ...a.goals } }).filter(
+  const stageOf = (figures) =>
+    (figures.polish && figures.polish.is_result && "polish") || (figures.optimize && "optimize") || "form";
+  const [stageA, stageB] = [summary, other.summary].map(stageOf),
+    stages = [summary[stageA], other.summary[stageB]];
+  const each_Hz = stages.flatMap(({ surface }) => (surface && surface.frequency_Hz) || []),
+    frequency_Hz = [...new Set(each_Hz)].sort((u, v) => u - v);
+  const [a, b] = stages.map((stage) => stageValues(stage, frequency_Hz));
+  const rows = figureRows({ ...b, ...a, frequency_Hz, goals: { ...b.goals, ...a.goals } }).filter(
     ([, , key]) => hasFigure(a[key]) || hasFigure(b[key]),
   );
   const cell = (v, format) => el("td", { class: "number" }, hasFigure(v) ? format(v) : "–");

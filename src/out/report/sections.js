@@ -261,15 +261,19 @@ const RMS_OF_LOSS = {
   facet_fit_gain_loss_dB: "facet_fit_half_path_rms_m",
 };
 
-// All figures of a stage by their keys, those of the surface, goals and losses of gain too.
-function stageValues(stage) {
+// All figures of a stage by their keys, those of the surface, goals and losses of gain too; of a loss the key has the
+// place of its frequency among those given, by default the stage's own.
+function stageValues(stage, frequency_Hz) {
   const surface = stage.surface || {},
+    own_Hz = surface.frequency_Hz || [],
+    all_Hz = frequency_Hz || own_Hz,
     values = { ...stage, ...surface };
   for (const [name, { value }] of Object.entries(stage.goals || {})) values[name] = value;
   for (const [loss, rms] of Object.entries(RMS_OF_LOSS))
-    (surface[loss] || []).forEach(
-      (v, k) => (values[`${loss}[${k}]`] = v === null && surface[rms] !== null ? "beyond Ruze" : v),
-    );
+    (surface[loss] || []).forEach((v, k) => {
+      const place = all_Hz.indexOf(own_Hz[k]);
+      values[`${loss}[${place}]`] = v === null && surface[rms] !== null ? "beyond Ruze" : v;
+    });
   return values;
 }
 
