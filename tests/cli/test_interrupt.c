@@ -1,6 +1,8 @@
 /* Somebody else writes the result file while a run goes on, or a restart does not get far: no file is lost. */
 #include "session.h"
 
+#include <time.h>
+
 /* Another file takes the name of the result while the run goes on. The result is kept, and the message says where. */
 START_TEST(a_file_made_meanwhile_is_not_replaced)
 {
@@ -59,6 +61,7 @@ START_TEST(a_far_field_is_told_to_stop)
     const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--progress", "jsonl", NULL};
     session s = start_program(argv);
     ck_assert(wait_until(&s, says_form, temp("err")));
+    nanosleep(&(struct timespec){.tv_nsec = 500000000}, NULL); /* form-finding takes a thousandth of it */
     ck_assert_int_eq(end_by(&s, SIGTERM), 75);
 }
 END_TEST
