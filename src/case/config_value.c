@@ -4,9 +4,11 @@
 #include "base/path.h"
 #include "base/text.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 typedef struct {
     hf_config_faults *faults;
@@ -107,13 +109,46 @@ static void set_pair(setter *s, const yaml_node_t *node, const hf_field *f, int 
         set_int(s, item_of(s, node, k), f, to + k);
 }
 
+/* A number with a unit behind it, such as "10 N": letters that are no exponent and no digits of another base. */
+static bool has_unit(const char *text)
+{
+    char number[64];
+    double value;
+    size_t n = strspn(text, "+-.0123456789"), blanks = strspn(text + n, " ");
+    const char *unit = text + n + blanks;
+    snprintf(number, sizeof number, "%.*s", (int)n, text);
+    return n < sizeof number && hf_text_double(number, &value) && isalpha((unsigned char)*unit) &&
+           !isdigit((unsigned char)unit[1]);
+}
+
+/* ".inf", "nan", or more than a double holds. */
+static bool is_not_finite(const char *text)
+{
+    double value = 0;
+    const char *word = text + strspn(text, "+-");
+    if (*word == '.') word++;
+    if (!strcasecmp(word, "inf") || !strcasecmp(word, "nan")) return true;
+    return !hf_text_double(text, &value) && isinf(value);
+}
+
+static void refuse_number(setter *s, const yaml_node_t *node, const hf_field *f)
+{
+    if (node->type != YAML_SCALAR_NODE)
+        refuse(s, node, f, "must be a number", "");
+    else if (is_not_finite(scalar_text(node)))
+        refuse(s, node, f, "must be a finite number, not ", scalar_text(node));
+    else
+        refuse(s, node, f, "must be a number, not a text",
+               *f->unit && has_unit(scalar_text(node)) ? "; the unit is in the key's name" : "");
+}
+
 static void set_double(setter *s, const yaml_node_t *node, const hf_field *f, double *to)
 {
     double value;
     if (is_plain(node) && hf_text_has_decimal_comma(scalar_text(node)))
         refuse(s, node, f, "has a decimal comma, and numbers have points: ", scalar_text(node));
     else if (!is_plain(node) || !hf_text_double(scalar_text(node), &value))
-        refuse(s, node, f, "must be a number", node->type == YAML_SCALAR_NODE ? ", not a text" : "");
+        refuse_number(s, node, f);
     else if (value < f->min || value > f->max)
         refuse_range(s, node, f);
     else

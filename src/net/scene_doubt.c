@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SAID_MAX 5 /* warnings of one sort */
-#define FAR 100.0  /* times as far from the middle as the others: mm for m are 1000 times */
+#define SAID_MAX 5    /* warnings of one sort */
+#define FAR 100.0     /* times as far from the middle as the others: mm for m are 1000 times */
+#define LARGE_M 500.0 /* across: no reflector of cables is larger, and one of 1 m in mm is */
 #define PLANE_PART                                                                                                     \
     1e-6 /* supports are in one plane up to this part of their extent: positions of a table are rounded */
 #define FLATTER_PART 1e-3 /* inner nodes that are not farther from that plane are meant to be in it */
@@ -101,6 +102,21 @@ static void doubt_nodes(const hf_scene *s, const scratch *t, hf_messages *messag
             place, t->from[i].m, t->from[i].m / t->from[k - 1].m);
     }
     if (n > k + SAID_MAX) hf_warning(messages, "scene: and %d more nodes as far away", n - k - SAID_MAX);
+}
+
+/* The longest side of the box around all nodes. */
+static void doubt_size(const hf_scene *s, hf_messages *messages)
+{
+    double largest = 0;
+    for (int c = 0; c < 3; c++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int i = 0; i < s->n_node; i++) {
+            low = fmin(low, s->position_m[3 * i + c]);
+            high = fmax(high, s->position_m[3 * i + c]);
+        }
+        largest = fmax(largest, high - low);
+    }
+    if (largest > LARGE_M) hf_warning(messages, "scene: the net is %.4g m across: are all lengths in m?", largest);
 }
 
 /* ---- the plane of the supports ---- */
@@ -198,6 +214,7 @@ hf_status hf_scene_doubt(const hf_scene *s, hf_messages *messages)
         return hf_error(messages, HF_NO_MEMORY, "scene: out of memory");
     doubt_cables(s, t.joint, messages);
     doubt_nodes(s, &t, messages);
+    doubt_size(s, messages);
     doubt_plane(s, messages);
     hf_arena_free(&arena);
     return HF_OK;

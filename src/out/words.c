@@ -464,6 +464,10 @@ static const hf_word told[] = {
     {"far_node", "warning", "", "A coordinate in mm among others in m, or a digit too many.",
      "from the middle of the net"},
     {"far_nodes", "warning", "", "See far_node; these are the rest of them.", "more nodes as far away"},
+    {"large_net", "warning", "",
+     "A net of more than 500 m: lengths may be in mm, and keys and tables have them in m. If it is meant, nothing to "
+     "do.",
+     "m across: are all lengths in m?"},
     {"flat_rim", "warning", "",
      "With all supports in one plane tensions pull the whole net into it. Tie the net to a second one "
      "(rear_distance_m), load it, or put supports on the surface.",

@@ -21,7 +21,7 @@ START_TEST(all_faults_of_a_file_are_told_in_one_run)
                                            "optimize: {population: 1, range_N: .nan, seed: 1e3}\n");
     HIFDM(2, "run", path, "-o", temp("c.h5"));
     static const char *const faults[] = {
-        ":4:17: scene.parabolic_cylinder.aperture_m: must be a number, not a text\n",
+        ":4:17: scene.parabolic_cylinder.aperture_m: must be a number, not a text; the unit is in the key's name\n",
         ":5:21: scene.parabolic_cylinder.focal_length_m: must be above 0 and at most 1000000000, not -1\n",
         ":6:18: scene.parabolic_cylinder.modules: must be a whole number, not 5.5\n",
         ":7:23: scene.parabolic_cylinder.cells_per_module: must be a list of two whole numbers, like [5, 5]\n",
@@ -31,7 +31,7 @@ START_TEST(all_faults_of_a_file_are_told_in_one_run)
         ":13:1: optimise: unknown key; did you mean 'optimize'?\n",
         ":14:1: pretension_N: unknown key; did you mean 'form.pretension_N'?\n",
         ":15:24: optimize.population: must be at least 2 and at most 100000, not 1\n",
-        ":15:36: optimize.range_N: must be a number, not a text\n",
+        ":15:36: optimize.range_N: must be a finite number, not .nan\n",
         ":15:48: optimize.seed: must be a whole number from 0 to 18446744073709551615\n",
         ": scene.parabolic_cylinder.length_m: is missing and has no default\n",
     };

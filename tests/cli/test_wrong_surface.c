@@ -139,8 +139,10 @@ START_TEST(far_nodes_are_told)
     ERRS("warning: %s:7: node 'f' is 999 m from the middle of the net, ", temp("nodes.csv"));
     ERRS("warning: %s:8: node 'g' is 199 m from the middle of the net, ", temp("nodes.csv"));
     ck_assert_int_eq(count_of(said.err, "times as far as the others: are all coordinates in m?\n"), 2);
+    ERR("warning: scene: the net is 1000 m across: are all lengths in m?\n");
     HIFDM(0, "check", net_with(SLACK_NODES, SLACK_CABLES));
     ck_assert_ptr_null(strstr(said.err, "as far as"));
+    ck_assert_ptr_null(strstr(said.err, "across"));
 }
 END_TEST
 

@@ -44,13 +44,18 @@ static const struct {
     {FORM "  pretension_N: {a: 1}\n", NULL, "error: c.yaml:4:17: form.pretension_N: must be a number\n"},
     {FORM "  pretension_N: \n", NULL, "error: c.yaml:4:16: form.pretension_N: must be a number, not a text\n"},
     {FORM "  pretension_N: ~\n", NULL, "error: c.yaml:4:17: form.pretension_N: must be a number, not a text\n"},
-    {FORM "  pretension_N: nan\n", NULL, "error: c.yaml:4:17: form.pretension_N: must be a number, not a text\n"},
-    {FORM "  pretension_N: .nan\n", NULL, "error: c.yaml:4:17: form.pretension_N: must be a number, not a text\n"},
-    {FORM "  pretension_N: .inf\n", NULL, "error: c.yaml:4:17: form.pretension_N: must be a number, not a text\n"},
+    {FORM "  pretension_N: nan\n", NULL, "error: c.yaml:4:17: form.pretension_N: must be a finite number, not nan\n"},
+    {FORM "  pretension_N: .nan\n", NULL, "error: c.yaml:4:17: form.pretension_N: must be a finite number, not .nan\n"},
+    {FORM "  pretension_N: .inf\n", NULL, "error: c.yaml:4:17: form.pretension_N: must be a finite number, not .inf\n"},
     {FORM "  pretension_N: 0x10\n", NULL, "error: c.yaml:4:17: form.pretension_N: must be a number, not a text\n"},
     {FORM "  pretension_N: 1_000\n", NULL, "error: c.yaml:4:17: form.pretension_N: must be a number, not a text\n"},
     {FORM "  pretension_N: 1:30\n", NULL, "error: c.yaml:4:17: form.pretension_N: must be a number, not a text\n"},
-    {FORM "  pretension_N: 10 N\n", NULL, "error: c.yaml:4:17: form.pretension_N: must be a number, not a text\n"},
+    {FORM "  pretension_N: 1e999\n", NULL,
+     "error: c.yaml:4:17: form.pretension_N: must be a finite number, not 1e999\n"},
+    {FORM "  pretension_N: 10 N\n", NULL,
+     "error: c.yaml:4:17: form.pretension_N: must be a number, not a text; the unit is in the key's name\n"},
+    {FORM "  pretension_N: 10N\n", NULL,
+     "error: c.yaml:4:17: form.pretension_N: must be a number, not a text; the unit is in the key's name\n"},
     {FORM "  max_iterations: 1.5\n", NULL,
      "error: c.yaml:4:19: form.max_iterations: must be a whole number, not 1.5\n"},
     {FORM "  max_iterations: 1e3\n", NULL,
@@ -164,7 +169,7 @@ START_TEST(all_faults_are_told_in_one_run)
         "error: c.yaml:4:5: lenght_m: unknown key; did you mean 'length_m'?\n"
         "error: c.yaml:5:21: scene.parabolic_cylinder.focal_length_m: must be above 0 and at most 1000000000, not -5\n"
         "error: c.yaml:7:5: modules: this key stands here already, on line 6\n"
-        "error: c.yaml:8:22: form.pretension_N: must be a number, not a text\n"
+        "error: c.yaml:8:22: form.pretension_N: must be a finite number, not 1e400\n"
         "error: --set form.stop=never: form.stop: must be one of residual rms_change, not never\n"
         "error: c.yaml: scene.parabolic_cylinder.length_m: is missing and has no default\n"
         "error: c.yaml: scene.parabolic_cylinder.cells_per_module: is missing and has no default\n");

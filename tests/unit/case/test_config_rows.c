@@ -242,7 +242,7 @@ static const struct {
     {VARIABLE "{set: a, vary: tension, bounds: [1, b]}\n", NULL,
      "error: c.yaml:5:43: optimize.variables.0.bounds: must be a number, not a text\n"},
     {VARIABLE "{set: a, vary: tension, bounds: [.inf, 1]}\n", NULL,
-     "error: c.yaml:5:40: optimize.variables.0.bounds: must be a number, not a text\n"},
+     "error: c.yaml:5:40: optimize.variables.0.bounds: must be a finite number, not .inf\n"},
     {VARIABLE "{set: a, vary: tension, bounds: [-.inf, .inf]}\n", NULL,
      "error: c.yaml:5:39: optimize.variables.0.bounds: leaves both sides open; give one bound at least\n"},
     {VARIABLE "{set: front edge, vary: tension, range: 1}\n", NULL,
