@@ -309,7 +309,12 @@ fuzz: ## inputs that a fuzzer makes up, under the sanitizers, in build/fuzz; fin
 
 fuzzers: $(FUZZERS) $(PROGRAM)
 
+# Names of files in lists, and of folders for rm -rf, end at a blank.
+no_blanks = $(foreach name,$(1),$(if $(word 2,x$($(name))x),$(error \
+    $(name)='$($(name))' has a blank: install into a folder without one)))
+
 install: all ## install under PREFIX (/usr/local), within DESTDIR if given
+	$(call no_blanks,PREFIX DESTDIR LIB $(filter PYTHON_DIR,$(MAKECMDGOALS:python-install=PYTHON_DIR)))
 	$(call install_files,$(DESTDIR)$(PREFIX),$(PREFIX))
 
 # PYTHON_DIR=... is another folder than that of PYTHON's version below PREFIX.
@@ -324,6 +329,7 @@ endef
 
 # The same PREFIX, LIB, PYTHON_DIR and DESTDIR as when it was installed; folders that others use, too, stay.
 uninstall: ## remove what `make install` or `make python-install` of this version has put there
+	$(call no_blanks,PREFIX DESTDIR LIB PYTHON_DIR)
 	$(Q)rm -f $(addprefix $(DESTDIR)$(PREFIX)/,bin/hifdm share/man/man1/hifdm.1 \
 	    share/bash-completion/completions/hifdm $(addprefix $(LIB)/,libhifdm.a libhifdm.so $(SONAME) \
 	    libhifdm.so.$(VERSION) pkgconfig/hifdm.pc) $(wildcard include/hifdm/*.h))
@@ -355,9 +361,10 @@ dist: ## a tarball of what is committed, which builds and is tested without git:
 	$(Q)test -e .git || { echo 'make dist: takes what is committed, so it needs a checkout of git' >&2; exit 1; }
 	@mkdir -p $(DIST)
 	$(Q)git describe --always --tags >$(DIST)/.describe
-	$(Q)git archive --format=tar --prefix=hifdm-$(VERSION)/ --add-file=$(DIST)/.describe HEAD | gzip -9n \
-	    >$(DIST).tar.gz.new
+	$(Q)git archive --format=tar --prefix=hifdm-$(VERSION)/ --add-file=$(DIST)/.describe -o $(DIST).tar HEAD
+	$(Q)gzip -9n <$(DIST).tar >$(DIST).tar.gz.new
 	$(Q)mv $(DIST).tar.gz.new $(DIST).tar.gz
+	@rm $(DIST).tar
 	@echo $(DIST).tar.gz
 
 # It needs nothing but what `make` needs. SUITE="...": also runs those tests there.

@@ -35,4 +35,8 @@ LD_LIBRARY_PATH="$there/usr/lib/here" ./use | grep -Fx "$(build/hifdm version | 
 make -s uninstall DESTDIR="$there" PREFIX=/usr LIB=lib/here
 left=$(find "$there" ! -type d -o -path '*hifdm*')
 [ -z "$left" ] || fail "make uninstall leaves $left"
+for what in install python-install uninstall; do
+    if make -s "$what" DESTDIR="$there/two words" PREFIX=/usr >log 2>&1; then fail "make $what takes a blank"; fi
+    grep -F 'has a blank' log >/dev/null || fail "make $what does not refuse a blank"
+done
 echo "$(basename "$tarball"): $(wc -c <"$tarball") bytes; builds, installs, runs and uninstalls without git"
