@@ -149,9 +149,9 @@ static hf_status try_errors(hf_estimate *p, const double *cut_m, const double *r
 
 /* The answer of the linear model, damped, into s->cut_m and s->rest_m. Damping t pulls towards the present errors e,
  * with t times the weight with which the prior pulls to none: together with 1 + t to e t/(1 + t). Divided by 1 + t this
- * is the system of lesser weights of places, for what the errors are beyond e t/(1 + t). Returns what the undamped
- * model promises of the misfit. */
-static double aim(const hf_estimate *p, const estimate_scratch *s, double damping)
+ * is the system of lesser weights of places, for what the errors are beyond e t/(1 + t). *promise: what the undamped
+ * model promises of the misfit. HF_OK or HF_SINGULAR. */
+static hf_status aim(const hf_estimate *p, const estimate_scratch *s, double damping, double *promise)
 {
     int n_cable = p->built->model.n_cable, n_dof = (int)p->linear.n_dof;
     double part = 1 / (1 + damping);
@@ -159,12 +159,13 @@ static double aim(const hf_estimate *p, const estimate_scratch *s, double dampin
         s->cut_m[e] = part * p->cut_m[e];
     for (int i = 0; i < n_dof; i++)
         s->rest_m[i] = part * p->rest_m[i];
-    hf_saddle_solve(&p->saddle, &(hf_saddle_answer){s->gap_m, s->cut_m, s->rest_m, s->move_m}, s->band);
+    HF_TRY(hf_saddle_solve(&p->saddle, &(hf_saddle_answer){s->gap_m, s->cut_m, s->rest_m, s->move_m}, s->band));
     for (int e = 0; e < n_cable; e++)
         s->cut_m[e] += (1 - part) * p->cut_m[e];
     for (int i = 0; i < n_dof; i++)
         s->rest_m[i] += (1 - part) * p->rest_m[i];
-    return p->misfit - misfit_of_errors(p, s->cut_m, s->rest_m) - misfit_of_places(p, s->gap_m, s->move_m);
+    *promise = p->misfit - misfit_of_errors(p, s->cut_m, s->rest_m) - misfit_of_places(p, s->gap_m, s->move_m);
+    return HF_OK;
 }
 
 /* The damping after a step that gained this part of what was promised. */
@@ -179,14 +180,14 @@ hf_status hf_estimate_find(hf_estimate *p)
 {
     const hf_model *m = &p->built->model;
     estimate_scratch s;
-    double damping = 0, misfit;
+    double damping = 0, misfit, promise;
     bool is_new = true; /* the linear model is that of an earlier shape */
     share_scratch(p, &s);
     HF_TRY(try_errors(p, p->cut_m, p->rest_m, s.gap_m, &p->misfit));
     for (p->n_step = 0; p->n_step < STEPS_MAX && damping < DAMPING_MOST; p->n_step++) {
         if (is_new && hf_built_linear_take(&p->linear, &p->work) != HF_OK) break;
         if (hf_saddle_factor(&p->saddle, damping) != HF_OK) break;
-        double promise = aim(p, &s, damping);
+        if (aim(p, &s, damping, &promise) != HF_OK) break;
         p->is_settled = !(promise > (damping > 0 ? NEAR_SETTLED : 1) * SETTLED * fmax(p->misfit, LEAST_MISFIT));
         if (p->is_settled) break;
         hf_status status = try_errors(p, s.cut_m, s.rest_m, s.trial_m, &misfit);
@@ -258,7 +259,7 @@ hf_status hf_estimate_doubt(hf_estimate *p, double *move_m)
         }
         memset(s.cut_m, 0, n_cable * sizeof *s.cut_m);
         memset(s.rest_m, 0, n_dof * sizeof *s.rest_m);
-        hf_saddle_solve(&p->saddle, &(hf_saddle_answer){s.gap_m, s.cut_m, s.rest_m, s.move_m}, s.band);
+        HF_TRY(hf_saddle_solve(&p->saddle, &(hf_saddle_answer){s.gap_m, s.cut_m, s.rest_m, s.move_m}, s.band));
         for (size_t i = 0; i < n_dof; i++)
             move[i] -= s.move_m[i];
     }

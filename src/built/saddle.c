@@ -286,15 +286,13 @@ static void read_answer(const hf_saddle *s, hf_saddle_answer *a, const double *b
     }
 }
 
-void hf_saddle_solve(const hf_saddle *s, hf_saddle_answer *a, double *band)
+hf_status hf_saddle_solve(const hf_saddle *s, hf_saddle_answer *a, double *band)
 {
     size_t n_band = (size_t)s->n_band;
     double *border = s->work, *force = s->work + s->n_border;
     ask(s, a, band, border);
-    if (s->is_dual)
-        hf_saddle_dual_solve(&s->dual, band);
-    else
-        hf_band_back_solve_general(s->n_band, s->half_bandwidth, 1, s->general, s->pivot, band, s->n_band);
+    if (s->is_dual && !hf_saddle_dual_solve(&s->dual, band)) return HF_SINGULAR;
+    if (!s->is_dual) hf_band_back_solve_general(s->n_band, s->half_bandwidth, 1, s->general, s->pivot, band, s->n_band);
     for (size_t j = 0; j < (size_t)s->n_border; j++)
         for (size_t i = 0; i < n_band; i++)
             border[j] -= s->column[j * n_band + i] * band[i];
@@ -303,4 +301,5 @@ void hf_saddle_solve(const hf_saddle *s, hf_saddle_answer *a, double *band)
         for (size_t i = 0; i < n_band; i++)
             band[i] -= s->solved[j * n_band + i] * border[j];
     read_answer(s, a, band, border, force);
+    return HF_OK;
 }

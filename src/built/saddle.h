@@ -53,7 +53,7 @@ typedef struct {
     double *move_m;      /* out: from the present shape to the estimated one */
 } hf_saddle_answer;
 
-/* work: [n_band]. */
-void hf_saddle_solve(const hf_saddle *saddle, hf_saddle_answer *answer, double *work);
+/* work: [n_band]. HF_OK; HF_SINGULAR when rounding leaves no answer, which is not written then. */
+hf_status hf_saddle_solve(const hf_saddle *saddle, hf_saddle_answer *answer, double *work);
 
 #endif

@@ -251,9 +251,9 @@ static double refine(const hf_saddle_dual *d, double *band)
     return size > 0 ? largest / size : 0;
 }
 
-void hf_saddle_dual_solve(const hf_saddle_dual *d, double *band)
+bool hf_saddle_dual_solve(const hf_saddle_dual *d, double *band)
 {
-    refine(d, band);
+    return refine(d, band) < REFINED;
 }
 
 /* ---- factor ---- */

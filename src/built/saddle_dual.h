@@ -33,7 +33,8 @@ void hf_saddle_dual_free(hf_saddle_dual *dual);
 bool hf_saddle_dual_factor(hf_saddle_dual *dual, const double *sigma_m, const double *weight_per_m2, double part,
                            double size_m, double force_m_per_N);
 
-/* A right-hand side [6 n_free], rows of each node side by side, replaced by the solution. */
-void hf_saddle_dual_solve(const hf_saddle_dual *dual, double *band);
+/* A right-hand side [6 n_free], rows of each node side by side, replaced by the solution. False when refinement does
+ * not find it. */
+bool hf_saddle_dual_solve(const hf_saddle_dual *dual, double *band);
 
 #endif

@@ -142,6 +142,24 @@ static const char all_goals[] =
     "{goal: ratio, set: generatrix, over: samples}, {goal: pull, over: states, take: worst}, "
     "{goal: length, set: inner, over: states}, {goal: evenness, over: samples, take: worst}]";
 
+/* The room and the net are there: what is asked for is the linear answer. */
+START_TEST(a_net_without_memory_is_told)
+{
+    hf_problem p;
+    hf_form_result result;
+    const hf_workspace *shape;
+    open_problem(&p, false, NULL, "optimize.goals=[{goal: psi, over: samples}]");
+    const hf_goals_nets *nets = p.goals.nets;
+    ck_assert_int_eq(hf_evaluate(&p.evaluator, p.base_N, &p.workspace, &result), HF_OK);
+    ck_assert_int_eq(nets->cut(p.workspace.goals->nets, &p.workspace), HF_OK);
+    fail_allocation_at(1);
+    hf_status status = hf_goals_nets_linearise(&p.goals, nets->n_state, p.workspace.goals, &shape);
+    ck_assert(end_allocation_failure());
+    ck_assert_int_eq(status, HF_NO_MEMORY);
+    hf_problem_free(&p);
+}
+END_TEST
+
 START_TEST(derivatives_are_those_of_differences)
 {
     struct differed d = {0};
@@ -300,6 +318,7 @@ Suite *suite_unit_built_nets(void)
     TCase *tcase = tcase_create("built_nets");
     tcase_set_timeout(tcase, 60);
     tcase_add_loop_test(tcase, derivatives_are_those_of_differences, 0, 2 * (int)(sizeof varied / sizeof *varied));
+    tcase_add_test(tcase, a_net_without_memory_is_told);
     tcase_add_loop_test(tcase, values_over_samples_are_those_of_tolerances, 0, 2);
     tcase_add_loop_test(tcase, values_of_states_are_those_of_cases, 0, 2);
     tcase_add_loop_test(tcase, nets_that_do_not_differ_are_the_design, 0, 2);

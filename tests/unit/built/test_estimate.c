@@ -70,7 +70,7 @@ START_TEST(the_saddle_is_least_squares)
         gap[i] = t.place_m[i] - t.built.place_m[i % 3 * m->n_node + i / 3];
     memset(cut, 0, sizeof cut);
     memset(rest, 0, sizeof rest);
-    hf_saddle_solve(&s, &(hf_saddle_answer){gap, cut[0], rest[0], move[0]}, work);
+    ck_assert_int_eq(hf_saddle_solve(&s, &(hf_saddle_answer){gap, cut[0], rest[0], move[0]}, work), HF_OK);
     dense_answer(&t, &l, gap, cut[1], rest[1], move[1]);
     double most = 0;
     for (int e = 0; e < m->n_cable; e++)
@@ -80,6 +80,30 @@ START_TEST(the_saddle_is_least_squares)
     for (int i = 0; i < 3 * (m->n_free + m->n_attachment); i++)
         most = fmax(most, fabs(move[0][i] - move[1][i]));
     ck_assert_double_lt(most, 1e-10); /* of errors of 1e-3: the condition of both systems times rounding */
+    hf_saddle_free(&s);
+    hf_built_linear_free(&l);
+    close_twin(&t);
+}
+END_TEST
+
+/* An answer that refinement does not find is none: with a factor that is not that of the matrix. */
+START_TEST(a_saddle_that_is_not_refined_is_told)
+{
+    static twin t;
+    static double gap[TWIN_DOFS], work[2 * TWIN_DOFS], cut[TWIN_CABLES], rest[TWIN_DOFS], move[TWIN_DOFS];
+    hf_built_linear l;
+    hf_saddle s;
+    open_random_twin(&t, 0, false);
+    measure_twin(&t, 1e-3, 0, 1e-3, 3);
+    ck_assert_int_eq(hf_built_linear_make(&t.built, &l), HF_OK);
+    ck_assert_int_eq(hf_saddle_create(&l, &t.prior, &s), HF_OK);
+    ck_assert_int_eq(hf_saddle_factor(&s, 0), HF_OK);
+    ck_assert(s.is_dual);
+    for (int i = 0; i < s.dual.n * (s.dual.half_bandwidth + 1); i++)
+        s.dual.band[i] *= 10;
+    for (int i = 0; i < 3 * t.built.model.n_node; i++)
+        gap[i] = 1e-3;
+    ck_assert_int_eq(hf_saddle_solve(&s, &(hf_saddle_answer){gap, cut, rest, move}, work), HF_SINGULAR);
     hf_saddle_free(&s);
     hf_built_linear_free(&l);
     close_twin(&t);
@@ -211,6 +235,7 @@ Suite *suite_unit_estimate(void)
     Suite *suite = suite_create("unit/built/estimate");
     TCase *tcase = tcase_create("estimate");
     tcase_add_loop_test(tcase, the_saddle_is_least_squares, 0, 8);
+    tcase_add_test(tcase, a_saddle_that_is_not_refined_is_told);
     tcase_add_loop_test(tcase, what_is_measured_exactly_is_reproduced, 0, 6);
     tcase_add_loop_test(tcase, one_wrong_cable_is_found, 0, 12);
     tcase_add_test(tcase, the_estimate_is_the_most_probable);
