@@ -255,7 +255,7 @@ bench-sampling: ## random beside quasi-random samples of a net as built: results
 	@mkdir -p $(BENCH_OUT)
 	$(PYTHON) tools/bench/sampling.py --program $(PROGRAM) --work $(BUILD)/sampling --out $(BENCH_OUT)
 
-pretension-night: ## which pretension, with errors of the cut: results/pretension/night.* (1 minute)
+pretension-night: ## which pretension, with errors of the cut: results/pretension/night* (3 minutes)
 	$(SUB) $(PROGRAM)
 	$(PYTHON) tools/paper/night.py --program $(PROGRAM) --work $(BUILD)/night --out results/pretension
 
