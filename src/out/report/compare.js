@@ -49,9 +49,7 @@ function caseDifferences() {
 function writeOther() {
   const { other } = data;
   if (!other) return;
-  const stageOf = (figures) =>
-    (figures.polish && figures.polish.is_result && "polish") || (figures.optimize && "optimize") || "form";
-  const [stageA, stageB] = [summary, other.summary].map(stageOf),
+  const [stageA, stageB] = [summary, other.summary].map((figures) => resultStageIn(figures, (stage) => figures[stage])),
     stages = [summary[stageA], other.summary[stageB]];
   const each_Hz = stages.flatMap(({ surface }) => (surface && surface.frequency_Hz) || []),
     frequency_Hz = [...new Set(each_Hz)].sort((u, v) => u - v);

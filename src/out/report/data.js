@@ -84,13 +84,17 @@ const digit = (text, i) => text.charCodeAt(i) - 48;
 const roleOf = (i) => net.role_word[digit(net.role, i)];
 const groupOf = (e) => net.group_word[digit(net.group, e)];
 
-// The result that this one is compared with: its shapes are drawn with the others where it has the same net.
 const summary = data.summary || {};
-// The shape that is a run's result, chosen as `hifdm export` chooses it.
+// The stage that is a run's result, of those that it has, chosen as `hifdm export` chooses it; and its shape.
+const resultStageIn = (figures, has) =>
+  (figures.polish && figures.polish.is_result && has("polish") && "polish") ||
+  (has("optimize") && "optimize") ||
+  "form";
 const resultIn = (figures, shapes) => {
   const of = (stage) => (shapes || []).find((shape) => shape.stage === stage);
-  return (figures.polish && figures.polish.is_result && of("polish")) || of("optimize") || of("form");
+  return of(resultStageIn(figures, of));
 };
+// The result that this one is compared with: its shapes are drawn with the others where it has the same net.
 if (data.other) data.other.name = clip(data.other.name, 40);
 const otherShape = data.other && resultIn(data.other.summary, data.other.shapes);
 const resultShape = resultIn(summary, data.shapes);
