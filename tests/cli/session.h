@@ -230,10 +230,15 @@ static inline bool has_begun_point(const char *folder)
     return is_there(path) && has_generations(path);
 }
 
-/* Of a run with --progress jsonl: form-finding has begun. */
+/* Of a run with --progress jsonl: form-finding or Levenberg-Marquardt has begun. */
 static inline bool says_form(const char *err)
 {
     return says(err, "\"phase\": \"form\"");
+}
+
+static inline bool says_polish(const char *err)
+{
+    return says(err, "\"phase\": \"polish\"");
 }
 
 /* Wait until the run has stored a generation in the journal of `path`. */

@@ -243,11 +243,6 @@ START_TEST(stopped_runs_publish_and_go_on)
 }
 END_TEST
 
-static bool says_polish(const char *err)
-{
-    return says(err, "\"phase\": \"polish\"");
-}
-
 /* In a form-finding or a Levenberg-Marquardt that would take long. */
 START_TEST(stops_are_heard_between_generations_too)
 {

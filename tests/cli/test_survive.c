@@ -6,11 +6,11 @@
                 "tolerance: {sigma_cut_m: 1e-4, samples: 64, sampling: random}\n"                                      \
                 "cases: [{name: pushed, force_N: [0, 0, 0.2], role: inner}]\n"                                         \
                 "optimize: {method: %s, range_N: 4, population: 12, generations: 8, compare_lm: false, samples: 64, "  \
-                "goals: [%s]}\n"
+                "%s: [%s]}\n"
 
 static const char *survive_case(const char *name, const char *method, const char *goals)
 {
-    return file_with(name, formatted(SURVIVE, method, goals));
+    return file_with(name, formatted(SURVIVE, method, "goals", goals));
 }
 
 /* By one thread and by three, and as a run that goes on from an earlier one. */
@@ -24,6 +24,44 @@ START_TEST(threads_change_nothing)
     HIFDM(0, "run", c, "-o", one, "--quiet", "--threads", "1");
     HIFDM(0, "run", c, "-o", many, "--quiet", "--threads", "3");
     HIFDM(0, "diff", one, many);
+}
+END_TEST
+
+/* Killed in the genetic algorithm, in Levenberg-Marquardt, and among the samples, each time by another number of
+ * threads and from what the last kill left: the bits of a run that nobody disturbed. */
+START_TEST(killed_runs_go_on_to_the_same_bits)
+{
+    static const struct {
+        const char *method, *list, *rows;
+    } seek[] = {
+        {"ga+lm", "goals", "{goal: psi, over: samples}, {goal: psi, state: pushed, weight: 0.1}"},
+        {"ga", "goals", "{goal: psi, over: samples, quantile: 0.95}, {goal: psi, over: states, weight: 0.5}"},
+        {"ga+lm", "goals", "{goal: psi, over: states, take: worst}, {goal: psi, over: samples, take: worst}"},
+        {"ga", "objectives", "{goal: psi, over: samples, quantile: 0.9}, {goal: ratio, set: boundary}"},
+    };
+    const char *c = file_with("c.yaml", formatted(SURVIVE, seek[_i].method, seek[_i].list, seek[_i].rows)),
+               *path = temp("a.h5"), *whole = temp("b.h5"), *samples = keep(formatted("%s.tolerance", path));
+    const char *const longer = "optimize.generations=30", *const more = "tolerance.samples=15000";
+    const struct {
+        const char *threads, *at;
+        bool (*is_so)(const char *at);
+    } kill_when[] = {{"2", path, has_generations}, {"3", temp("err"), says_polish}, {"1", samples, has_generations}};
+    HIFDM(0, "run", c, "-o", whole, "--quiet", "--threads", "1", "--set", longer, "--set", more);
+    for (int k = 0; k < 3; k++) {
+        const char *const argv[] = {
+            hifdm_program(), "run",   c,       "-o",   path,    "--threads", kill_when[k].threads,
+            "--progress",    "jsonl", "--set", longer, "--set", more,        NULL};
+        if (kill_when[k].is_so == says_polish && !strcmp(seek[_i].method, "ga")) continue;
+        session s = start_program(argv);
+        ck_assert_msg(freeze_when(&s, kill_when[k].is_so, kill_when[k].at), "kill %d: the run has ended before", k);
+        ck_assert_int_eq(end_by(&s, SIGKILL), 128 + SIGKILL);
+        ck_assert(is_there(keep(formatted("%s.journal", path))) || is_there(path));
+    }
+    HIFDM(0, "run", c, "-o", path, "--threads", "2", "--set", longer, "--set", more, "--progress", "jsonl");
+    ck_assert(!strstr(said.err, "\"phase\": \"optimize\", \"generation\": 1,")); /* they were not computed again */
+    HIFDM(0, "diff", path, whole);
+    SHELL(0, "test \"$(ls \"$1\"*)\" = \"$1\"", path); /* no journals are left */
+    EXPECT(path, whole, "--", "a.attrs['sessions'] > 1", "differing(a, b) == []");
 }
 END_TEST
 
@@ -86,6 +124,7 @@ Suite *suite_cli_survive(void)
     TCase *tests = tcase_create("survive");
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, threads_change_nothing, 0, 3);
+    tcase_add_loop_test(tests, killed_runs_go_on_to_the_same_bits, 0, 4);
     tcase_add_loop_test(tests, what_is_sought_is_found, 0, 2);
     tcase_add_loop_test(tests, faults_of_nets_are_named, 0, 6);
     tcase_add_test(tests, what_nets_need_is_named);
