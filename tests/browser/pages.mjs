@@ -3,6 +3,7 @@
 //   sections: those it must have, in order, apart from those that are there maybe
 //   title: what must stand on it, to the letter
 //   warnings, slack: how many it must tell of
+//   rounding: the deviations of its result are nothing else
 //   facets: how many, all triangles; off: families of cables whose switches are tried
 //   other: how the case of a second result differs, with which it is compared; unlike: in its figures, too
 //   study: how many points; leads: the axis that matters most
@@ -105,6 +106,13 @@ export const pages = [
     sections: FORM,
     maybe: ["coupling", "ga"],
     truss: true,
+  },
+  {
+    name: "rounding",
+    source: "configs/paraboloid-even.yaml",
+    sections: [...FORM.slice(0, -1), "coupling", "provenance"],
+    rounding: true,
+    off: ["rear", "rear edge", "tie"],
   },
   {
     name: "sweep",

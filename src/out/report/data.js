@@ -121,7 +121,7 @@ const shapeOf = (stage) => (data.shapes || []).find((shape) => shape.stage === s
 // much farther; a range with them would show all inner nodes in one colour.
 function innerMost(values) {
   const inner = range(Array.from(values, Math.abs).filter((_, i) => roleOf(i) === "inner"));
-  return inner && inner[1] > 0 ? inner[1] : (range(Array.from(values, Math.abs)) || [0, 1])[1] || 1;
+  return (inner || range(Array.from(values, Math.abs)) || [0, 1])[1];
 }
 
 function range(values) {

@@ -98,7 +98,7 @@ const SCALES = Array.from({ length: 22 }, (_, k) => [1, 2, 5][k % 3] * 10 ** Mat
 function firstScale(radius) {
   const stages = data.shapes.filter((s) => !s.case); // a case of the net as built may move it much farther
   const largest = Math.max(0, ...stages.map((s) => range(s.distance_mm)[1])) / 1e3;
-  const wanted = largest > 0 ? (0.1 * radius) / largest : 1;
+  const wanted = 1e3 * largest > RESOLVED_MM ? (0.1 * radius) / largest : 1;
   return Math.max(0, SCALES.filter((s) => s <= wanted).length - 1);
 }
 
@@ -225,7 +225,7 @@ function netCaption() {
     "Deformation from the theoretical shape (grey) ",
     el("strong", { id: "scale-note" }),
     `; squares are supports${trussNote()}. The colours of the deviation ` +
-      `span the inner nodes, which ψ counts. ${figures}`,
+      `span the inner nodes, which ψ counts, where these deviate. ${figures}`,
   );
 }
 

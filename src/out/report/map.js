@@ -79,7 +79,8 @@ function aperture({ canvas, tip, bar }) {
     if (ofFacets()) return state.shape[ofFacets()].map((v) => (v === null ? NaN : 1e3 * v));
     return state.quantity === "distance" ? state.shape.distance_mm : state.shape.height_mm;
   }
-  const colours = () => (state.quantity === "distance" ? sequential : diverging);
+  const isRounding = () => limits()[1] < RESOLVED_MM;
+  const colours = () => (isRounding() ? neutral : state.quantity === "distance" ? sequential : diverging);
   function limits() {
     const size = ofFacets() ? Math.max(...(range(values().map(Math.abs)) || [0, 1])) || 1 : innerMost(values());
     return state.quantity === "distance" ? [0, size] : [-size, size];
@@ -218,6 +219,7 @@ function aperture({ canvas, tip, bar }) {
     paintNet(c);
     if (!faces.length && !ofFacets()) paintNodes(c);
     paintAxes(c, width, height, toX, toY);
+    if (isRounding()) return bar.replaceChildren(roundingNote());
     drawBar(
       bar,
       colours(),

@@ -106,8 +106,10 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   }
   function limits() {
     if (state.colour === "tension") return range(visible.map((e) => state.shape.tension_N[e])) || [0, 1];
-    return [0, innerMost(state.shape.distance_mm)];
+    return [0, isRounding() ? range(state.shape.distance_mm)[1] : innerMost(state.shape.distance_mm)];
   }
+
+  const isRounding = () => state.colour === "deviation" && innerMost(state.shape.distance_mm) < RESOLVED_MM;
 
   function strokeAll(c, list, x, y) {
     c.beginPath();
@@ -164,8 +166,16 @@ function netView({ canvas, tip, bar, scaleLabel }) {
       strokeAll(c, visible.filter(shape.isSlack), px, py);
     } else {
       const limit = limits(),
-        bucket = Array.from({ length: LEVELS }, () => []);
-      for (const e of visible) bucket[levelOf(valueOf(e), limit)].push(e);
+        bucket = Array.from({ length: LEVELS }, () => []),
+        isNone = (v) => state.colour === "deviation" && v < RESOLVED_MM;
+      c.strokeStyle = css("--soft");
+      strokeAll(
+        c,
+        visible.filter((e) => isNone(valueOf(e))),
+        px,
+        py,
+      );
+      for (const e of visible) if (!isNone(valueOf(e))) bucket[levelOf(valueOf(e), limit)].push(e);
       levels(sequential).forEach((colour, k) => {
         if (!bucket[k].length) return;
         c.strokeStyle = rgb(colour);
@@ -272,6 +282,10 @@ function netView({ canvas, tip, bar, scaleLabel }) {
       );
     if (state.colour === "tension") drawBar(bar, sequential, limits(), "tension (N)");
     else drawBar(bar, sequential, limits(), "distance to theory (mm)", range(state.shape.distance_mm));
+    if (isRounding()) {
+      if (limits()[1] < RESOLVED_MM) bar.replaceChildren();
+      bar.append(roundingNote());
+    }
   }
 
   // ---- what is under the pointer, and its values ----

@@ -38,6 +38,10 @@ function diverging(t) {
   return isDark() ? oklch(0.3 + 0.48 * size, 0.15 * size, hue) : oklch(0.95 - 0.47 * size, 0.16 * size, hue);
 }
 
+// Smaller deviations are rounding: they have one colour and no scale.
+const RESOLVED_MM = 1e-6;
+const neutral = () => diverging(0.5);
+
 const LEVELS = 64;
 const rgb = (c) => `rgb(${c[0]},${c[1]},${c[2]})`;
 function levels(colours) {
@@ -47,6 +51,13 @@ function levelOf(value, [low, high]) {
   const t = high > low ? (value - low) / (high - low) : 0;
   return Math.max(0, Math.min(LEVELS - 1, Math.round(t * (LEVELS - 1))));
 }
+
+const roundingNote = () =>
+  el(
+    "span",
+    {},
+    "The nodes that ψ counts are within 1 nm of theory, less than what is resolved here: they have one neutral colour.",
+  );
 
 // The colour bar of a picture. Values outside its range, down to lowest and up to highest, take the colours of its
 // ends.
