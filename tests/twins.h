@@ -7,7 +7,7 @@
 
 #include "built/estimate.h"
 
-enum { TWIN_CABLES = 4000, TWIN_DOFS = 6000 };
+enum { TWIN_CABLES = 4000, TWIN_DOFS = 6000, TWIN_SPOOLS = 3 };
 
 typedef struct {
     struct net net;
@@ -16,6 +16,7 @@ typedef struct {
     double EA[TWIN_CABLES];
     double sigma_m[TWIN_CABLES], cut_m[TWIN_CABLES]; /* prior, true errors */
     double place_m[TWIN_DOFS], weight_per_m2[TWIN_DOFS], rest_m[TWIN_DOFS];
+    double shared[TWIN_SPOOLS], shared_m[TWIN_SPOOLS * TWIN_CABLES]; /* true numbers; what they add to lengths */
     hf_saddle_prior prior;
     struct rng rng;
 } twin;
@@ -31,7 +32,7 @@ static inline void make_twin(twin *t)
     ck_assert_int_lt(3 * t->net.model.n_node, TWIN_DOFS);
     ck_assert_int_eq(hf_workspace_create(&t->built.model, &t->work), HF_OK);
     hf_workspace_poison(&t->built.model, &t->work);
-    t->prior = (hf_saddle_prior){t->sigma_m, 0, t->weight_per_m2};
+    t->prior = (hf_saddle_prior){.sigma_m = t->sigma_m, .weight_per_m2 = t->weight_per_m2};
 }
 
 /* A random saddle of 10 N and EA of 1e3 to 1e4 N; on a truss that gives way, or on rigid ground. */
@@ -68,6 +69,19 @@ static inline double rng_normal(struct rng *rng)
     return sum;
 }
 
+/* Before measure_twin: n spools, each of every n-th cable, whose lengths have an error in common, of this deviation
+ * over the length. */
+static inline void spool_twin(twin *t, int n, double ratio)
+{
+    const hf_model *m = &t->built.model;
+    ck_assert_int_le(n, TWIN_SPOOLS);
+    for (int k = 0; k < n; k++)
+        for (int e = 0; e < m->n_cable; e++)
+            t->shared_m[k * m->n_cable + e] = e % n == k ? ratio * m->target[e] : 0;
+    t->prior.n_shared = n;
+    t->prior.shared_m = t->shared_m;
+}
+
 /* Errors of cut lengths (m) and of supports (m), the shape that they give, and its measurement of free nodes and
  * attachments, of which about one of `missing` is left out (0: none). */
 static inline void measure_twin(twin *t, double cut_m, double support_m, double noise_m, int missing)
@@ -75,9 +89,13 @@ static inline void measure_twin(twin *t, double cut_m, double support_m, double 
     const hf_model *m = &t->built.model;
     static double length[TWIN_CABLES], off[TWIN_DOFS];
     hf_form_result r;
+    for (int k = 0; k < t->prior.n_shared; k++)
+        t->shared[k] = rng_normal(&t->rng);
     for (int e = 0; e < m->n_cable; e++) {
         t->sigma_m[e] = cut_m;
         t->cut_m[e] = cut_m * rng_normal(&t->rng);
+        for (int k = 0; k < t->prior.n_shared; k++)
+            t->cut_m[e] += t->shared[k] * t->shared_m[k * m->n_cable + e];
         length[e] = m->target[e] + t->cut_m[e];
     }
     for (int row = 0; row < m->n_node; row++)

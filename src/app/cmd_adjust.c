@@ -16,6 +16,7 @@
 #include "base/json.h"
 #include "built/adjust.h"
 #include "built/measured.h"
+#include "built/prior.h"
 #include "net/cable_pick.h"
 #include "out/export.h"
 #include "out/print.h"
@@ -42,8 +43,8 @@ typedef struct {
     hf_goals goals;
     hf_adjustment adjustment;
     hf_adjust_task task;
-    int *cable;         /* [n_cable] of the task */
-    double *sigma_m;    /* [n_cable] prior */
+    int *cable; /* [n_cable] of the task */
+    hf_prior prior;
     double *expected_m; /* [n_node] */
     double measured_m;  /* psi of the inner nodes that were measured; NaN for other figures */
     void *block;
@@ -53,6 +54,7 @@ static void job_free(job *j)
 {
     hf_arena arena = {.block = j->block};
     hf_adjust_free(&j->adjustment);
+    hf_prior_free(&j->prior);
     hf_goals_free(&j->goals);
     hf_estimate_free(&j->estimate);
     hf_measured_free(&j->measured);
@@ -84,23 +86,30 @@ static hf_status check_sigmas(const job *j, const char *path, double error_m, hf
     return HF_OK;
 }
 
-/* The standard deviation of each cut length. An error of EA acts as one of the length by which the cable is
- * strained. */
+static hf_status make_prior(job *j, hf_messages *messages)
+{
+    const hf_case *c = &j->problem.settings;
+    hf_material material;
+    hf_status status = hf_config_material(c, &j->problem.scene, &material, messages);
+    if (status == HF_OK) {
+        const double *expansion = c->tolerance.sigma_temperature_K > 0 ? material.expansion_per_K : NULL;
+        status = hf_prior_make(&j->built, &c->tolerance, expansion, &j->prior);
+        if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the errors of %s", c->path);
+    }
+    hf_material_free(&material);
+    return status;
+}
+
 static hf_status find_prior(job *j, const char *path, hf_messages *messages)
 {
-    const hf_tolerance_settings *t = &j->problem.settings.tolerance;
-    const hf_built *b = &j->built;
     double largest = 0;
-    for (int e = 0; e < b->model.n_cable; e++) {
-        double l0 = b->scene.target[e], strained = l0 * b->tension_N[e] / b->scene.EA_N[e];
-        double ratio = t->sigma_cut_ratio * l0, EA = t->sigma_EA_ratio * strained;
-        j->sigma_m[e] = sqrt(t->sigma_cut_m * t->sigma_cut_m + ratio * ratio + EA * EA);
-        largest = fmax(largest, j->sigma_m[e]);
-    }
+    HF_TRY(make_prior(j, messages));
+    for (int e = 0; e < j->built.model.n_cable; e++)
+        largest = fmax(largest, j->prior.sigma_m[e]);
     if (largest > 0) return check_sigmas(j, path, largest, messages);
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: tolerance: cables have no errors that could be estimated; give sigma_cut_m, sigma_cut_ratio "
-                    "or sigma_EA_ratio",
+                    "%s: tolerance: cables have no errors that could be estimated; give sigma_cut_m, sigma_cut_ratio, "
+                    "sigma_EA_ratio or sigma_temperature_K",
                     path);
 }
 
@@ -183,7 +192,8 @@ static void warn_of_misfit(const job *j, hf_messages *messages)
 static hf_status estimate_errors(job *j, const hf_options *o, hf_messages *messages)
 {
     const hf_tolerance_settings *t = &j->problem.settings.tolerance;
-    hf_saddle_prior prior = {j->sigma_m, t->sigma_support_m, j->measured.weight_per_m2};
+    hf_saddle_prior prior = {j->prior.own_m, t->sigma_support_m, j->measured.weight_per_m2, j->prior.n_shared,
+                             j->prior.shared_m};
     hf_estimate *p = &j->estimate;
     HF_TRY(explain_failure(hf_estimate_create(&j->built, &prior, j->measured.place_m, p), "the nominal net", o->file,
                            messages));
@@ -218,7 +228,7 @@ static double measured_psi_m(const job *j)
 
 static double sigmas_of(const job *j, int e)
 {
-    return j->sigma_m[e] > 0 ? j->estimate.cut_m[e] / j->sigma_m[e] : 0;
+    return j->prior.sigma_m[e] > 0 ? j->estimate.cut_m[e] / j->prior.sigma_m[e] : 0;
 }
 
 /* The cable with the largest error below `limit` sigmas, of those that stand out; -1: none. Of two alike the first. */
@@ -286,6 +296,28 @@ static void print_outliers(const job *j, FILE *f)
     if (n > NAMED_MAX) hf_print_line(f, "and %d more cables beyond %g sigma", n - NAMED_MAX, STANDS_OUT);
 }
 
+static const char *number_word(const hf_prior_number *n)
+{
+    return n->kind == HF_ERROR_TEMPERATURE ? "temperature_K" : n->kind == HF_ERROR_EA_BATCH ? "EA_ratio" : "cut_ratio";
+}
+
+/* What cables of a spool, or all of them, share. */
+static void print_numbers(const job *j, FILE *f)
+{
+    for (int k = 0; k < j->prior.n_shared && k < NAMED_MAX; k++) {
+        const hf_prior_number *n = &j->prior.number[k];
+        double z = j->estimate.shared[k], error = z * n->sigma;
+        if (n->kind == HF_ERROR_TEMPERATURE)
+            hf_print_line(f, "cables seem %.3g K %s than when they were cut, %.1f sigma", fabs(error),
+                          error < 0 ? "colder" : "warmer", fabs(z));
+        else
+            hf_print_line(f, "spool '%s' seems off by %+.3g of its %s, %.1f sigma", n->set, error,
+                          n->kind == HF_ERROR_EA_BATCH ? "EA" : "lengths", fabs(z));
+    }
+    if (j->prior.n_shared > NAMED_MAX)
+        hf_print_line(f, "and %d more numbers that cables share (--json has them)", j->prior.n_shared - NAMED_MAX);
+}
+
 static void print_moves(const job *j, FILE *f)
 {
     const hf_adjustment *a = &j->adjustment;
@@ -313,6 +345,7 @@ static void print_summary(const job *j, const char *path, FILE *f)
     if (isfinite(j->measured_m)) hf_print_line(f, "%s measured    %.4f mm", figure, j->measured_m * 1e3);
     hf_print_line(f, "%s estimated   %.4f mm; with what is left open %.4f +- %.4f mm; as designed %.4f mm", figure,
                   a->estimated_m * 1e3, a->doubt_m[0] * 1e3, a->spread_m[0] * 1e3, a->nominal_m * 1e3);
+    print_numbers(j, f);
     print_outliers(j, f);
     print_moves(j, f);
     hf_print_line(f,
@@ -385,6 +418,23 @@ static void print_json_figures(const job *from, hf_json *j)
     hf_json_bool(j, "settled", from->estimate.is_settled && a->is_settled);
 }
 
+static void print_json_numbers(const job *from, hf_json *j)
+{
+    hf_json_line(j, " ");
+    hf_json_open(j, "shared", '[');
+    for (int k = 0; k < from->prior.n_shared; k++) {
+        const hf_prior_number *n = &from->prior.number[k];
+        hf_json_line(j, "  ");
+        hf_json_open(j, NULL, '{');
+        hf_json_text(j, "kind", number_word(n));
+        if (n->set) hf_json_text(j, "set", n->set);
+        hf_json_number(j, "error", from->estimate.shared[k] * n->sigma);
+        hf_json_number(j, "sigmas", fabs(from->estimate.shared[k]));
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
 static void print_json_errors(const job *from, hf_json *j)
 {
     hf_json_line(j, " ");
@@ -404,6 +454,7 @@ static void print_json(const job *from, const hf_options *o, hf_status status, c
     if (status == HF_OK) {
         print_json_figures(from, &j);
         print_json_moves(from, &j);
+        print_json_numbers(from, &j);
         print_json_errors(from, &j);
     }
     hf_json_line(&j, " ");
@@ -420,7 +471,6 @@ static void lay_out_job(hf_arena *arena, job *j)
 {
     size_t n_cable = (size_t)j->problem.scene.n_cable, n_node = (size_t)j->problem.scene.n_node;
     j->cable = hf_arena_take(arena, n_cable, sizeof *j->cable);
-    j->sigma_m = hf_arena_take(arena, n_cable, sizeof *j->sigma_m);
     j->expected_m = hf_arena_take(arena, n_node, sizeof *j->expected_m);
 }
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define STEPS_MAX 100
-#define SETTLED 1e-9       /* of the misfit: what a step promises at the end */
+#define SETTLED 1e-10      /* of the misfit: what a step promises at the end */
 #define LEAST_MISFIT 1.0   /* half of chi^2: less of it is a table without noise, as of a design that is read again */
 #define NEAR_SETTLED 1e-3  /* of that, where rounding of shapes damps the steps */
 #define ENOUGH 1e-4        /* of what a step promises, that it has to gain */
@@ -19,10 +19,10 @@
 
 /* ---- making ---- */
 
-/* Scratch: a step's errors, supports, gap before and after, and move; the band; of shapes cut lengths and supports; one
- * answer of `linear`. */
+/* Scratch: a step's errors, supports, numbers, gap before and after, and move; the band; of shapes
+ * cut lengths and supports; one answer of `linear`. */
 typedef struct {
-    double *cut_m, *rest_m, *gap_m, *trial_m, *move_m, *band, *length_m, *support_m, *strain_N, *linear;
+    double *cut_m, *rest_m, *shared, *gap_m, *trial_m, *move_m, *band, *length_m, *support_m, *strain_N, *linear;
 } estimate_scratch;
 
 static size_t take(size_t *used, size_t n)
@@ -37,11 +37,12 @@ static size_t share_scratch(const hf_estimate *p, estimate_scratch *to)
     size_t n_cable = (size_t)p->built->model.n_cable, n_dof = p->linear.n_dof, used = 0;
     double *base = p->scratch;
     size_t cut = take(&used, n_cable), rest = take(&used, n_dof), gap = take(&used, n_dof);
+    size_t shared = take(&used, (size_t)p->prior.n_shared);
     size_t trial = take(&used, n_dof), move = take(&used, n_dof);
     size_t band = take(&used, (size_t)p->saddle.n_band), length = take(&used, n_cable), support = take(&used, n_dof);
     size_t strain = take(&used, n_cable), linear = take(&used, p->linear.n_scratch);
     if (base)
-        *to = (estimate_scratch){base + cut,  base + rest,   base + gap,     base + trial,  base + move,
+        *to = (estimate_scratch){base + cut,  base + rest,   base + shared,  base + gap,    base + trial, base + move,
                                  base + band, base + length, base + support, base + strain, base + linear};
     return used;
 }
@@ -53,6 +54,7 @@ static void lay_out_estimate(hf_arena *arena, hf_estimate *p)
     size_t n = share_scratch(p, &none);
     p->cut_m = hf_arena_take(arena, (size_t)p->built->model.n_cable, sizeof(double));
     p->rest_m = hf_arena_take(arena, p->linear.n_dof, sizeof(double));
+    p->shared = hf_arena_take(arena, (size_t)p->prior.n_shared, sizeof(double));
     p->scratch = hf_arena_take(arena, n, sizeof(double));
 }
 
@@ -100,12 +102,25 @@ hf_status hf_estimate_shape(const hf_estimate *p, const double *turn_m, hf_works
     return solve_net(p, p->cut_m, p->rest_m, turn_m, w, r);
 }
 
+/* What numbers that cables share make of the length of cable e. */
+static double shared_error_m(const hf_estimate *p, const double *shared, int e)
+{
+    double sum = 0;
+    for (int k = 0; k < p->prior.n_shared; k++)
+        sum += shared[k] * p->prior.shared_m[(size_t)k * (size_t)p->built->model.n_cable + (size_t)e];
+    return sum;
+}
+
 /* Half the sum of squares of errors over their sigmas. */
-static double misfit_of_errors(const hf_estimate *p, const double *cut_m, const double *rest_m)
+static double misfit_of_errors(const hf_estimate *p, const double *cut_m, const double *rest_m, const double *shared)
 {
     double sum = 0, rest = p->prior.support_sigma_m;
-    for (int e = 0; e < p->built->model.n_cable; e++)
-        if (p->prior.sigma_m[e] > 0) sum += cut_m[e] * cut_m[e] / (p->prior.sigma_m[e] * p->prior.sigma_m[e]);
+    for (int e = 0; e < p->built->model.n_cable; e++) {
+        double own = cut_m[e] - shared_error_m(p, shared, e), sigma = p->prior.sigma_m[e];
+        if (sigma > 0) sum += own * own / (sigma * sigma);
+    }
+    for (int k = 0; k < p->prior.n_shared; k++)
+        sum += shared[k] * shared[k];
     for (size_t i = 3 * (size_t)p->built->model.n_free; i < p->linear.n_dof && rest > 0; i++)
         sum += rest_m[i] * rest_m[i] / (rest * rest);
     return sum / 2;
@@ -135,22 +150,29 @@ static double misfit_of_places(const hf_estimate *p, const double *gap_m, const 
 }
 
 /* Solve for these errors; *misfit is INFINITY when there is no shape. */
-static hf_status try_errors(hf_estimate *p, const double *cut_m, const double *rest_m, double *gap_m, double *misfit)
+static hf_status try_errors(hf_estimate *p, const double *cut_m, const double *rest_m, const double *shared,
+                            double *gap_m, double *misfit)
 {
     hf_status status = solve_net(p, cut_m, rest_m, NULL, &p->work, &p->form);
     *misfit = (double)INFINITY;
     if (status != HF_OK) return status;
     find_gap(p, gap_m);
-    *misfit = misfit_of_errors(p, cut_m, rest_m) + misfit_of_places(p, gap_m, NULL);
+    *misfit = misfit_of_errors(p, cut_m, rest_m, shared) + misfit_of_places(p, gap_m, NULL);
     return HF_OK;
 }
 
 /* ---- steps ---- */
 
-/* The answer of the linear model, damped, into s->cut_m and s->rest_m. Damping t pulls towards the present errors e,
- * with t times the weight with which the prior pulls to none: together with 1 + t to e t/(1 + t). Divided by 1 + t this
- * is the system of lesser weights of places, for what the errors are beyond e t/(1 + t). *promise: what the undamped
- * model promises of the misfit. HF_OK or HF_SINGULAR. */
+static hf_status ask_saddle(const hf_estimate *p, const estimate_scratch *s)
+{
+    hf_saddle_answer answer = {s->gap_m, s->cut_m, s->rest_m, s->move_m, s->shared};
+    return hf_saddle_solve(&p->saddle, &answer, s->band);
+}
+
+/* The answer of the linear model, damped, into s->cut_m, s->rest_m and s->shared. Damping t pulls towards the present
+ * errors e, with t times the weight with which the prior pulls to none: together with 1 + t to e t/(1 + t). Divided by
+ * 1 + t this is the system of lesser weights of places, for what the errors are beyond e t/(1 + t). *promise: what the
+ * undamped model promises of the misfit. HF_OK or HF_SINGULAR. */
 static hf_status aim(const hf_estimate *p, const estimate_scratch *s, double damping, double *promise)
 {
     int n_cable = p->built->model.n_cable, n_dof = (int)p->linear.n_dof;
@@ -159,12 +181,15 @@ static hf_status aim(const hf_estimate *p, const estimate_scratch *s, double dam
         s->cut_m[e] = part * p->cut_m[e];
     for (int i = 0; i < n_dof; i++)
         s->rest_m[i] = part * p->rest_m[i];
-    HF_TRY(hf_saddle_solve(&p->saddle, &(hf_saddle_answer){s->gap_m, s->cut_m, s->rest_m, s->move_m}, s->band));
+    HF_TRY(ask_saddle(p, s));
     for (int e = 0; e < n_cable; e++)
         s->cut_m[e] += (1 - part) * p->cut_m[e];
     for (int i = 0; i < n_dof; i++)
         s->rest_m[i] += (1 - part) * p->rest_m[i];
-    *promise = p->misfit - misfit_of_errors(p, s->cut_m, s->rest_m) - misfit_of_places(p, s->gap_m, s->move_m);
+    for (int k = 0; k < p->prior.n_shared; k++)
+        s->shared[k] += (1 - part) * p->shared[k];
+    *promise =
+        p->misfit - misfit_of_errors(p, s->cut_m, s->rest_m, s->shared) - misfit_of_places(p, s->gap_m, s->move_m);
     return HF_OK;
 }
 
@@ -183,14 +208,14 @@ hf_status hf_estimate_find(hf_estimate *p)
     double damping = 0, misfit, promise;
     bool is_new = true; /* the linear model is that of an earlier shape */
     share_scratch(p, &s);
-    HF_TRY(try_errors(p, p->cut_m, p->rest_m, s.gap_m, &p->misfit));
+    HF_TRY(try_errors(p, p->cut_m, p->rest_m, p->shared, s.gap_m, &p->misfit));
     for (p->n_step = 0; p->n_step < STEPS_MAX && damping < DAMPING_MOST; p->n_step++) {
         if (is_new && hf_built_linear_take(&p->linear, &p->work) != HF_OK) break;
         if (hf_saddle_factor(&p->saddle, damping) != HF_OK) break;
         if (aim(p, &s, damping, &promise) != HF_OK) break;
         p->is_settled = !(promise > (damping > 0 ? NEAR_SETTLED : 1) * SETTLED * fmax(p->misfit, LEAST_MISFIT));
         if (p->is_settled) break;
-        hf_status status = try_errors(p, s.cut_m, s.rest_m, s.trial_m, &misfit);
+        hf_status status = try_errors(p, s.cut_m, s.rest_m, s.shared, s.trial_m, &misfit);
         if (status == HF_INTERRUPTED || status == HF_NO_MEMORY) return status;
         double ratio = (p->misfit - misfit) / promise; /* -infinity without a shape */
         damping = damp(damping, ratio);
@@ -199,9 +224,10 @@ hf_status hf_estimate_find(hf_estimate *p)
         p->misfit = misfit;
         memcpy(p->cut_m, s.cut_m, (size_t)m->n_cable * sizeof *s.cut_m);
         memcpy(p->rest_m, s.rest_m, p->linear.n_dof * sizeof *s.rest_m);
+        memcpy(p->shared, s.shared, (size_t)p->prior.n_shared * sizeof *s.shared);
         memcpy(s.gap_m, s.trial_m, p->linear.n_dof * sizeof *s.gap_m);
     }
-    return is_new ? HF_OK : try_errors(p, p->cut_m, p->rest_m, s.gap_m, &misfit);
+    return is_new ? HF_OK : try_errors(p, p->cut_m, p->rest_m, p->shared, s.gap_m, &misfit);
 }
 
 /* ---- samples ---- */
@@ -216,8 +242,10 @@ static void draw_errors(const hf_estimate *p, hf_random *random, const estimate_
                         double *move_m)
 {
     const hf_model *m = &p->built->model;
+    for (int k = 0; k < p->prior.n_shared; k++)
+        s->shared[k] = random_sign(random);
     for (int e = 0; e < m->n_cable; e++) {
-        cut_m[e] = random_sign(random) * p->prior.sigma_m[e];
+        cut_m[e] = random_sign(random) * p->prior.sigma_m[e] + shared_error_m(p, s->shared, e);
         s->strain_N[e] = p->linear.cut_N_per_m[e] * cut_m[e];
     }
     for (size_t i = 3 * (size_t)m->n_free; i < p->linear.n_dof; i++)
@@ -259,7 +287,7 @@ hf_status hf_estimate_doubt(hf_estimate *p, double *move_m)
         }
         memset(s.cut_m, 0, n_cable * sizeof *s.cut_m);
         memset(s.rest_m, 0, n_dof * sizeof *s.rest_m);
-        HF_TRY(hf_saddle_solve(&p->saddle, &(hf_saddle_answer){s.gap_m, s.cut_m, s.rest_m, s.move_m}, s.band));
+        HF_TRY(ask_saddle(p, &s));
         for (size_t i = 0; i < n_dof; i++)
             move[i] -= s.move_m[i];
     }

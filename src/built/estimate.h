@@ -14,6 +14,7 @@ typedef struct {
     hf_workspace work;   /* holds the estimated shape */
     hf_form_result form; /* of that shape */
     double *cut_m;       /* [n_cable] estimated errors of cut lengths */
+    double *shared;      /* [n_shared] estimated numbers that cables share, which are in cut_m, too */
     double *rest_m;      /* [n_dof] how far supports are off; of attachments, where they rest */
     double misfit;       /* half the sum of squares of errors and differences, each over its sigma */
     int n_step;

@@ -30,6 +30,22 @@ static void lay_out_saddle(hf_arena *arena, hf_saddle *s)
     s->dense_pivot = hf_arena_take(arena, border, sizeof(int));
 }
 
+static bool may_be_dual(const hf_saddle *s)
+{
+    return s->n_border == s->prior.n_shared;
+}
+
+/* Of a length, one deviation of the own error or of a number. */
+static double largest_error_m(const hf_model *m, const hf_saddle_prior *prior)
+{
+    double largest = 0;
+    for (int e = 0; e < m->n_cable; e++)
+        largest = fmax(largest, prior->sigma_m[e]);
+    for (size_t i = 0; i < (size_t)prior->n_shared * (size_t)m->n_cable; i++)
+        largest = fmax(largest, fabs(prior->shared_m[i]));
+    return largest;
+}
+
 hf_status hf_saddle_create(const hf_built_linear *l, const hf_saddle_prior *prior, hf_saddle *s)
 {
     const hf_model *m = &l->built->model;
@@ -37,12 +53,11 @@ hf_status hf_saddle_create(const hf_built_linear *l, const hf_saddle_prior *prio
     *s = (hf_saddle){.linear = l, .prior = *prior, .n_band = 6 * m->n_free, .n_attached = 3 * m->n_attachment};
     s->half_bandwidth = 6 * m->half_bandwidth + 5;
     if (prior->support_sigma_m > 0) s->n_off = 3 * (m->n_node - m->n_free - m->n_attachment);
-    s->n_border = 2 * s->n_attached + s->n_off;
-    for (int e = 0; e < m->n_cable; e++)
-        s->size_m = fmax(s->size_m, prior->sigma_m[e]);
+    s->n_border = 2 * s->n_attached + s->n_off + prior->n_shared;
+    s->size_m = largest_error_m(m, prior);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_saddle(&arena, s)));
     s->block = arena.block;
-    return s->n_border ? HF_OK : hf_saddle_dual_create(l, &s->dual);
+    return may_be_dual(s) ? hf_saddle_dual_create(l, &s->dual) : HF_OK;
 }
 
 void hf_saddle_free(hf_saddle *s)
@@ -127,11 +142,30 @@ static void add_row(hf_saddle *s, int row)
     add_rows(s, row, MULTIPLIER, row, MOVE, 1, spring);
 }
 
+/* The border of number k, with which z = U'B'p: what its errors push, in the rows of the multipliers. */
+static void add_number(hf_saddle *s, int k)
+{
+    const hf_built_linear *l = s->linear;
+    const hf_model *m = &l->built->model;
+    const double *shared_m = s->prior.shared_m + (size_t)k * (size_t)m->n_cable;
+    int at = s->n_band + s->n_border - s->prior.n_shared + k;
+    for (int i = 0; i < 2 * m->n_cable; i++) {
+        int e = i / 2, to = unknown_of(s, m->end_row[i], MULTIPLIER);
+        double push = (i % 2 ? 1 : -1) * l->cut_N_per_m[e] * shared_m[e] * s->force_m_per_N;
+        for (int c = 0; c < 3 && to >= 0 && push != 0; c++) {
+            add_entry(s, to + c, at, push * l->unit[3 * (ptrdiff_t)e + c]);
+            if (to >= s->n_band) add_entry(s, at, to + c, push * l->unit[3 * (ptrdiff_t)e + c]);
+        }
+    }
+    add_entry(s, at, at, 1);
+}
+
 /* ---- factor ---- */
 
 /* Matrix of the border in moves of attachments, forces on them, and moves of supports. With T the corner less what the
  * band answers, F the flexibility and D the variance of where attachments rest: rows (T11, T12 F + 1, T13),
- * (F T21 + 1, F T22 F - D, F T23), (T31, T32 F, T33). It is symmetric, so rows may be read as columns. */
+ * (F T21 + 1, F T22 F - D, F T23), (T31, T32 F, T33), numbers after supports. It
+ * is symmetric, so rows may be read as columns. */
 static void fill_border(hf_saddle *s)
 {
     const double *flex = s->flex;
@@ -156,12 +190,21 @@ static void fill_border(hf_saddle *s)
     }
 }
 
+/* In place, b [n][n_band]. HF_OK; HF_SINGULAR when rounding leaves no answer. */
+static hf_status solve_band(const hf_saddle *s, int n, double *b)
+{
+    if (!s->is_dual) hf_band_back_solve_general(s->n_band, s->half_bandwidth, n, s->general, s->pivot, b, s->n_band);
+    for (int k = 0; k < n && s->is_dual; k++)
+        if (!hf_saddle_dual_solve(&s->dual, b + (size_t)k * (size_t)s->n_band)) return HF_SINGULAR;
+    return HF_OK;
+}
+
 static hf_status factor_border(hf_saddle *s)
 {
     size_t n = (size_t)s->n_border, n_band = (size_t)s->n_band;
     if (n == 0) return HF_OK;
     memcpy(s->solved, s->column, n * n_band * sizeof *s->solved);
-    hf_band_back_solve_general(s->n_band, s->half_bandwidth, s->n_border, s->general, s->pivot, s->solved, s->n_band);
+    HF_TRY(solve_band(s, s->n_border, s->solved));
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j < n; j++)
             for (size_t k = 0; k < n_band; k++)
@@ -184,17 +227,26 @@ static void choose_units(hf_saddle *s)
         s->flex[i] = stiffest * m->flexibility_m_per_N[i];
 }
 
+static void clear_border(hf_saddle *s)
+{
+    memset(s->column, 0, (size_t)s->n_border * (size_t)s->n_band * sizeof *s->column);
+    memset(s->corner, 0, (size_t)s->n_border * (size_t)s->n_border * sizeof *s->corner);
+    for (int k = 0; k < s->prior.n_shared; k++)
+        add_number(s, k);
+}
+
 hf_status hf_saddle_factor(hf_saddle *s, double damping)
 {
     const hf_model *m = &s->linear->built->model;
     s->part = 1 / (1 + damping);
     choose_units(s);
-    s->is_dual = !s->n_border && hf_saddle_dual_factor(&s->dual, s->prior.sigma_m, s->prior.weight_per_m2, s->part,
-                                                       s->size_m, s->force_m_per_N);
-    if (s->is_dual) return HF_OK;
+    clear_border(s);
+    s->is_dual = may_be_dual(s) && hf_saddle_dual_factor(&s->dual, s->prior.sigma_m, s->prior.weight_per_m2, s->part,
+                                                         s->size_m, s->force_m_per_N);
+    if (s->is_dual && factor_border(s) == HF_OK) return HF_OK;
+    s->is_dual = false;
+    clear_border(s);
     memset(s->general, 0, (size_t)s->n_band * (size_t)room_of_band(s) * sizeof *s->general);
-    memset(s->column, 0, (size_t)s->n_border * (size_t)s->n_band * sizeof *s->column);
-    memset(s->corner, 0, (size_t)s->n_border * (size_t)s->n_border * sizeof *s->corner);
     for (int e = 0; e < m->n_cable; e++)
         add_cable(s, e);
     for (int row = 0; row < m->n_node; row++)
@@ -233,7 +285,7 @@ static void ask(const hf_saddle *s, const hf_saddle_answer *a, double *band, dou
 }
 
 /* From the right-hand side of the border, of which the band's answer is taken off, to moves of attachments, their
- * multipliers and moves of supports; forces on attachments into `force`. */
+ * multipliers, moves of supports and numbers; forces on attachments into `force`. */
 static void solve_border(const hf_saddle *s, const hf_saddle_answer *a, double *border, double *force)
 {
     const hf_model *m = &s->linear->built->model;
@@ -284,6 +336,11 @@ static void read_answer(const hf_saddle *s, hf_saddle_answer *a, const double *b
         double along = u[0] * (p[0] - q[0]) + u[1] * (p[1] - q[1]) + u[2] * (p[2] - q[2]);
         a->cut_m[e] = sigma * sigma * l->cut_N_per_m[e] * along;
     }
+    for (int k = 0; k < s->prior.n_shared; k++) {
+        a->shared[k] = border[s->n_border - s->prior.n_shared + k];
+        for (int e = 0; e < m->n_cable; e++)
+            a->cut_m[e] += a->shared[k] * s->prior.shared_m[(size_t)k * (size_t)m->n_cable + (size_t)e];
+    }
 }
 
 hf_status hf_saddle_solve(const hf_saddle *s, hf_saddle_answer *a, double *band)
@@ -291,8 +348,7 @@ hf_status hf_saddle_solve(const hf_saddle *s, hf_saddle_answer *a, double *band)
     size_t n_band = (size_t)s->n_band;
     double *border = s->work, *force = s->work + s->n_border;
     ask(s, a, band, border);
-    if (s->is_dual && !hf_saddle_dual_solve(&s->dual, band)) return HF_SINGULAR;
-    if (!s->is_dual) hf_band_back_solve_general(s->n_band, s->half_bandwidth, 1, s->general, s->pivot, band, s->n_band);
+    HF_TRY(solve_band(s, 1, band));
     for (size_t j = 0; j < (size_t)s->n_border; j++)
         for (size_t i = 0; i < n_band; i++)
             border[j] -= s->column[j * n_band + i] * band[i];

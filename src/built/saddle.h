@@ -3,9 +3,9 @@
  *
  * With the multipliers p of equilibrium the errors are e = sigma^2 B'p, and what is left are moves x and p:
  *     H x - B sigma^2 B' p = -B e_now,    H p + W x = W gap,
- * of both parts in the band of H. Attachments on a truss, whose flexibility is dense, and supports that may be off, are
- * a border. Nothing is inverted that may be singular: neither B sigma^2 B' (a flat net has none across) nor W (nodes
- * that nobody measured). */
+ * of both parts in the band of H. Attachments on a truss, whose flexibility is dense, supports that may be off, and
+ * numbers z that cables share (lengths e = own errors + U z, so z = U'B'p) are a border. Nothing is inverted that may
+ * be singular: neither B sigma^2 B' (a flat net has none across) nor W (nodes that nobody measured). */
 #ifndef HIFDM_SADDLE_H
 #define HIFDM_SADDLE_H
 
@@ -13,9 +13,11 @@
 
 /* What is known beforehand, and how well places are known. Borrowed. */
 typedef struct {
-    const double *sigma_m;       /* [n_cable] of cut lengths; >= 0, one of them above */
+    const double *sigma_m;       /* [n_cable] of a cable's own errors of its length; >= 0 */
     double support_sigma_m;      /* of a coordinate of supports and of where attachments rest; 0: they are right */
     const double *weight_per_m2; /* [n_dof] 1/sigma^2 of measured coordinates; 0: not measured */
+    int n_shared;                /* numbers of deviation 1 that cables share */
+    const double *shared_m;      /* [n_shared][n_cable] what each adds to the lengths */
 } hf_saddle_prior;
 
 typedef struct {
@@ -23,8 +25,8 @@ typedef struct {
     hf_saddle_prior prior;
     int n_band, half_bandwidth;    /* 6 n_free rows: of each node three multipliers, then three moves */
     int n_attached, n_off;         /* 3 n_attachment; 3 times the supports on rigid ground that may be off */
-    int n_border;                  /* moves of attachments, their multipliers, moves of these supports */
-    hf_saddle_dual dual;           /* without a border: a quicker way, which is tried first */
+    int n_border;                  /* moves of attachments, their multipliers, moves of these supports, numbers */
+    hf_saddle_dual dual;           /* with no border but numbers: a quicker way, which is tried first */
     bool is_dual;                  /* the last factor is that */
     double part;                   /* of the weights, 1/(1 + damping) */
     double size_m, force_m_per_N;  /* units of moves and multipliers: entries of the matrix are about 1 */
@@ -51,6 +53,7 @@ typedef struct {
     double *cut_m;       /* in: errors of the present shape; out: the estimate */
     double *rest_m;      /* in: how far supports are off in the present shape; out: the estimate */
     double *move_m;      /* out: from the present shape to the estimated one */
+    double *shared;      /* out: numbers [n_shared], which are in cut_m, too */
 } hf_saddle_answer;
 
 /* work: [n_band]. HF_OK; HF_SINGULAR when rounding leaves no answer, which is not written then. */

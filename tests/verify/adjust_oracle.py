@@ -1,11 +1,12 @@
 """An independent `hifdm adjust`: scipy's least squares on dense matrices, sensitivities by differences of solved nets.
 
-    adjust_oracle.py measure CUT.csv JIG.csv MEASURED.csv SEED      a net with random errors, measured with noise
-    adjust_oracle.py check CUT.csv JIG.csv NODES.csv MEASURED.csv ANSWER.json
+    adjust_oracle.py measure CUT.csv JIG.csv SHAPE MEASURED.csv SEED    a net with random errors, measured with noise
+    adjust_oracle.py check CUT.csv JIG.csv SHAPE MEASURED.csv ANSWER.json
 
-CUT.csv and JIG.csv are those of `hifdm export --cutlist`, NODES.csv that of `--csv`, ANSWER.json what `hifdm adjust
---json` said. Cables are elastic and push never; errors of cut lengths have a sigma of 0.1 mm. Prints the largest
-differences of estimated errors and of predicted figures; exit 1 when they are too large.
+CUT.csv and JIG.csv are those of `hifdm export --cutlist`, SHAPE the folder of `--csv`, ANSWER.json what `hifdm adjust
+--json` said. Cables are elastic and push never. Errors of cut lengths have the dense covariance of the constants below,
+which are those of the case: sets of cables are spools, the first in the order of names. Prints the largest differences
+of estimated errors and of predicted figures; exit 1 when they are too large.
 """
 import csv
 import json
@@ -15,6 +16,11 @@ import figures
 import numpy as np
 
 SIGMA_CUT = 1e-4
+SIGMA_RATIO = 3e-4  # of cut lengths
+SIGMA_EA = 0.05
+BATCH = 0.7  # correlation of both within a spool
+SIGMA_TEMPERATURE_K = 20
+EXPANSION_PER_K = {"inner": 1e-5, "boundary": 2e-5}
 SIGMA_PLACE = 1e-4
 
 
@@ -24,7 +30,7 @@ def rows(path):
 
 
 class Net:
-    def __init__(self, cut, jig):
+    def __init__(self, cut, jig, shape):
         nodes, cables = rows(jig), rows(cut)
         self.id = [n["id"] for n in nodes]
         index = {name: i for i, name in enumerate(self.id)}
@@ -35,6 +41,13 @@ class Net:
         self.end = np.array([[index[c["i"]], index[c["j"]]] for c in cables])
         self.cut = np.array([float(c["l0_m"]) for c in cables])
         self.EA = np.array([float(c["EA_N"]) for c in cables])
+        strained = self.cut * np.array([float(c["tension_N"]) for c in cables]) / self.EA
+        spool = [sorted(c["set"].split())[0] for c in rows(f"{shape}/cables.csv")]
+        alike = np.array([[BATCH if a == b else 0 for a in spool] for b in spool]) + (1 - BATCH) * np.eye(len(spool))
+        expansion = self.cut * np.array([EXPANSION_PER_K[c["group"]] for c in cables])
+        self.covariance = (SIGMA_CUT**2 * np.eye(len(spool)) + SIGMA_RATIO**2 * alike * np.outer(self.cut, self.cut)
+                           + SIGMA_EA**2 * alike * np.outer(strained, strained)
+                           + SIGMA_TEMPERATURE_K**2 * np.outer(expansion, expansion))
 
     def forces(self, place, cut):
         """Out of balance at all nodes, and the stiffness of the free ones."""
@@ -76,9 +89,9 @@ class Net:
         return place, tension
 
 
-def measure(cut, jig, measured, seed):
-    net, random = Net(cut, jig), np.random.default_rng(int(seed))
-    truth = net.cut + SIGMA_CUT * random.standard_normal(len(net.cut))
+def measure(cut, jig, shape, measured, seed):
+    net, random = Net(cut, jig, shape), np.random.default_rng(int(seed))
+    truth = net.cut + np.linalg.cholesky(net.covariance) @ random.standard_normal(len(net.cut))
     place, _ = net.solve(truth, net.place)
     with open(measured, "w") as file:
         file.write("id,x_m,y_m,z_m,sigma_m\n")
@@ -90,7 +103,7 @@ def measure(cut, jig, measured, seed):
 
 def estimate(net, which, target):
     """The most probable errors by Gauss and Newton with halved steps."""
-    last = [net.place]
+    last, whiten = [net.place], np.linalg.inv(np.linalg.cholesky(net.covariance))
 
     def shape(e):
         last[0] = net.solve(net.cut + e, last[0])[0]
@@ -98,7 +111,7 @@ def estimate(net, which, target):
 
     def misfit(e):
         left = shape(e)[which].ravel() - target
-        return (e @ e / SIGMA_CUT**2 + left @ left / SIGMA_PLACE**2) / 2
+        return ((whiten @ e) @ (whiten @ e) + left @ left / SIGMA_PLACE**2) / 2
 
     e = np.zeros(len(net.cut))
     for _ in range(30):
@@ -108,7 +121,7 @@ def estimate(net, which, target):
                             - net.solve(net.cut + e - h * unit, place)[0][which].ravel()) / (2 * h)
                            for unit in np.eye(len(e))]).T
         gap = target - place[which].ravel() + effect @ e
-        matrix = np.vstack((effect / SIGMA_PLACE, np.eye(len(e)) / SIGMA_CUT))
+        matrix = np.vstack((effect / SIGMA_PLACE, whiten))
         wanted = np.linalg.lstsq(matrix, np.concatenate((gap / SIGMA_PLACE, np.zeros(len(e)))), rcond=None)[0]
         step = wanted - e
         before = misfit(e)
@@ -120,8 +133,8 @@ def estimate(net, which, target):
     return e, shape
 
 
-def check(cut, jig, nodes, measured, answer):
-    net, theory = Net(cut, jig), {n["id"]: n for n in rows(nodes)}
+def check(cut, jig, folder, measured, answer):
+    net, theory = Net(cut, jig, folder), {n["id"]: n for n in rows(f"{folder}/nodes.csv")}
     wanted = np.array([[float(theory[i][f"{c}0_m"]) for c in "xyz"] for i in net.id])
     index = {name: i for i, name in enumerate(net.id)}
     table = rows(measured)

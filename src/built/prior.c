@@ -1,0 +1,115 @@
+#include "built/prior.h"
+
+#include "base/arena.h"
+
+#include <math.h>
+
+static void lay_out_prior(hf_arena *arena, size_t n_cable, size_t n_shared, hf_prior *p)
+{
+    p->own_m = hf_arena_take(arena, n_cable, sizeof(double));
+    p->sigma_m = hf_arena_take(arena, n_cable, sizeof(double));
+    p->number = hf_arena_take(arena, n_shared, sizeof *p->number);
+    p->shared_m = hf_arena_take(arena, n_shared * n_cable, sizeof(double));
+}
+
+/* What an error of 1 of this kind adds to the length of cable i. */
+static double effect_of(const hf_built_errors *errors, hf_error_kind kind, int i)
+{
+    const hf_built *b = errors->linear->built;
+    double l0 = b->scene.target[i];
+    if (kind == HF_ERROR_CUT) return 1;
+    if (kind == HF_ERROR_TEMPERATURE) return errors->expansion_per_K[i] * l0;
+    bool is_length = kind == HF_ERROR_RATIO || kind == HF_ERROR_RATIO_BATCH;
+    return is_length ? l0 : -l0 * b->tension_N[i] / b->scene.EA_N[i];
+}
+
+static const char *set_of(const hf_scene *s, int spool)
+{
+    return spool < s->n_set ? s->set_name[spool] : hf_group_word[spool - s->n_set];
+}
+
+static int count_cables(const hf_built_errors *errors, int spool)
+{
+    int n = 0;
+    for (int i = 0; i < errors->linear->built->model.n_cable; i++)
+        n += errors->spool[i] == spool;
+    return n;
+}
+
+/* The number of this kind that the cables of a spool share (-1: all cables), or their own, of a spool of one cable. */
+static void add_number(const hf_built_errors *errors, hf_error_kind kind, int spool, hf_prior *p)
+{
+    const hf_scene *s = &errors->linear->built->scene;
+    size_t n_cable = (size_t)s->n_cable;
+    int n = spool < 0 ? s->n_cable : count_cables(errors, spool);
+    if (errors->sigma[kind] == 0 || n == 0) return;
+    double *column = p->shared_m + (size_t)p->n_shared * n_cable;
+    for (int i = 0; i < s->n_cable; i++) {
+        bool is_in = spool < 0 || errors->spool[i] == spool;
+        double length = is_in ? errors->sigma[kind] * effect_of(errors, kind, i) : 0;
+        if (n == 1)
+            p->own_m[i] = sqrt(p->own_m[i] * p->own_m[i] + length * length);
+        else
+            column[i] = length;
+    }
+    if (n == 1) return;
+    p->number[p->n_shared++] = (hf_prior_number){kind, spool < 0 ? NULL : set_of(s, spool), errors->sigma[kind]};
+}
+
+static void fill_prior(const hf_built_errors *errors, hf_prior *p)
+{
+    static const hf_error_kind own[] = {HF_ERROR_CUT, HF_ERROR_RATIO, HF_ERROR_EA};
+    size_t n_cable = (size_t)errors->linear->built->model.n_cable;
+    for (size_t i = 0; i < n_cable; i++) {
+        double square = 0;
+        for (int k = 0; k < 3; k++) {
+            double length = errors->sigma[own[k]] * effect_of(errors, own[k], (int)i);
+            square += length * length;
+        }
+        p->own_m[i] = sqrt(square);
+    }
+    for (int spool = 0; spool < errors->n_spool; spool++) {
+        add_number(errors, HF_ERROR_RATIO_BATCH, spool, p);
+        add_number(errors, HF_ERROR_EA_BATCH, spool, p);
+    }
+    add_number(errors, HF_ERROR_TEMPERATURE, -1, p);
+    for (size_t i = 0; i < n_cable; i++) {
+        double square = p->own_m[i] * p->own_m[i];
+        for (size_t k = 0; k < (size_t)p->n_shared; k++)
+            square += p->shared_m[k * n_cable + i] * p->shared_m[k * n_cable + i];
+        p->sigma_m[i] = sqrt(square);
+    }
+}
+
+static size_t numbers_at_most(const hf_built_errors *e)
+{
+    size_t n = e->sigma[HF_ERROR_TEMPERATURE] > 0, per_spool = e->sigma[HF_ERROR_RATIO_BATCH] > 0;
+    per_spool += e->sigma[HF_ERROR_EA_BATCH] > 0;
+    for (int spool = 0; spool < e->n_spool && per_spool; spool++)
+        n += count_cables(e, spool) > 1 ? per_spool : 0;
+    return n + 1; /* one of a spool of one cable is written behind the last */
+}
+
+hf_status hf_prior_make(const hf_built *b, const hf_tolerance_settings *t, const double *expansion_per_K, hf_prior *p)
+{
+    const hf_built_linear of = {.built = b}; /* errors are made from the net alone */
+    hf_arena arena = {0};
+    hf_built_errors errors;
+    *p = (hf_prior){0};
+    hf_status status = hf_built_errors_make(&of, t, expansion_per_K, &errors);
+    if (status == HF_OK)
+        status = HF_ARENA_MAKE(&arena, lay_out_prior(&arena, (size_t)b->scene.n_cable, numbers_at_most(&errors), p));
+    if (status == HF_OK) {
+        p->block = arena.block;
+        fill_prior(&errors, p);
+    }
+    hf_built_errors_free(&errors);
+    return status;
+}
+
+void hf_prior_free(hf_prior *p)
+{
+    hf_arena arena = {.block = p->block};
+    hf_arena_free(&arena);
+    *p = (hf_prior){0};
+}
