@@ -1,8 +1,10 @@
 #include "linalg/quadratic.h"
 
 #include "base/arena.h"
+#include "base/lane.h"
 #include "linalg/band.h"
 #include "linalg/dot.h"
+#include "linalg/quadratic_kernel.h"
 
 #include <math.h>
 #include <string.h>
@@ -12,23 +14,44 @@
 #define DEPENDENT 1e-20
 #define STEPS_PER_VARIABLE 50 /* of limits taken in or let go: 5 pass every test, 1 does not; against cycles */
 
+/* ---- kernels ---- */
+
+typedef struct {
+    void (*invert)(int n, int first, const double *triangle, double *strip);
+    void (*turn)(int ld, int first, int last, const double *cosine, const double *sine, double *J);
+    void (*combine)(int ld, int first, int end, const double *weight, const double *J, double *sum);
+} loops;
+
+#define LOOPS(isa)                                                                                                     \
+    {                                                                                                                  \
+        hf_quadratic_invert_##isa, hf_quadratic_turn_##isa, hf_quadratic_combine_##isa                                 \
+    }
+static const loops loops_of_isa[HF_LANE_N_ISA] = {LOOPS(portable), LOOPS(avx2), LOOPS(avx512)};
+
+static const loops *loops_here(void)
+{
+    return &loops_of_isa[hf_lane_best_isa()];
+}
+
+/* ---- layout ---- */
+
 static void lay_out(hf_arena *a, hf_quadratic *q)
 {
-    size_t n = (size_t)q->n;
-    q->inverse = hf_arena_take(a, n * n, sizeof(double));
+    size_t n = (size_t)q->n, ld = (size_t)q->ld;
+    q->inverse = hf_arena_take(a, n * ld, sizeof(double));
     q->triangle = hf_arena_take(a, n * n, sizeof(double));
-    q->x = hf_arena_take(a, n, sizeof(double));
+    q->x = hf_arena_take(a, ld, sizeof(double));
     q->active = hf_arena_take(a, n, sizeof *q->active);
     q->side = hf_arena_take(a, n, sizeof(int));
     q->order = hf_arena_take(a, n, sizeof(int));
-    q->scratch = hf_arena_take(a, 4 * n, sizeof(double));
-    q->strip = hf_arena_take(a, n, sizeof *q->strip);
+    q->scratch = hf_arena_take(a, 6 * ld, sizeof(double));
+    q->strip = hf_arena_take(a, n * HF_LANES, sizeof(double));
 }
 
 hf_status hf_quadratic_create(int n, hf_quadratic *q)
 {
     hf_arena arena = {0};
-    *q = (hf_quadratic){.n = n};
+    *q = (hf_quadratic){.n = n, .ld = (n + HF_LANES - 1) / HF_LANES * HF_LANES};
     hf_status status = HF_ARENA_MAKE(&arena, lay_out(&arena, q));
     q->block = arena.block;
     return status;
@@ -41,6 +64,8 @@ void hf_quadratic_free(hf_quadratic *q)
     *q = (hf_quadratic){0};
 }
 
+/* ---- matrices ---- */
+
 /* J = L^-T for L as a band whose columns begin with the diagonal, L L' being H in the order of `order`. Columns of
  * L^-1, rows of J, are made side by side in `strip`, by columns of L, so that the inner loop has no sum and L passes
  * once for as many. The columns of J are in reverse: row order[n-1] of J has one entry, in column 0, row order[n-2]
@@ -48,21 +73,15 @@ void hf_quadratic_free(hf_quadratic *q)
 static void invert_transposed(hf_quadratic *q)
 {
     int n = q->n;
-    hf_quadratic_strip *restrict strip = q->strip;
-    for (int first = 0; first < n; first += HF_QUADRATIC_STRIP) {
-        int n_lane = first + HF_QUADRATIC_STRIP <= n ? HF_QUADRATIC_STRIP : n - first;
-        memset(strip, 0, (size_t)n * sizeof *strip);
+    for (int first = 0; first < n; first += HF_LANES) {
+        int n_lane = first + HF_LANES <= n ? HF_LANES : n - first;
+        memset(q->strip, 0, (size_t)n * HF_LANES * sizeof(double));
         for (int lane = 0; lane < n_lane; lane++)
-            strip[first + lane][lane] = 1;
-        for (int k = first; k < n; k++) {
-            const double *restrict l = q->triangle + k * n - k; /* entry (i, k) is l[i] */
-            hf_quadratic_strip x = strip[k] /= l[k];
-            for (int i = k + 1; i < n; i++)
-                strip[i] -= x * l[i];
-        }
+            q->strip[HF_LANES * (first + lane) + lane] = 1;
+        loops_here()->invert(n, first, q->triangle, q->strip);
         for (int r = 0; r < n; r++)
             for (int lane = 0; lane < n_lane; lane++)
-                q->inverse[(n - 1 - r) * n + q->order[first + lane]] = strip[r][lane];
+                q->inverse[(n - 1 - r) * q->ld + q->order[first + lane]] = q->strip[HF_LANES * r + lane];
     }
 }
 
@@ -71,12 +90,14 @@ static hf_status factor(hf_quadratic *q, const double *hessian)
 {
     int n = q->n;
     double *L = q->triangle; /* which is needed as soon as a limit is active */
-    memset(L, 0, (size_t)n * (size_t)n * sizeof(double));
-    for (int c = 0; c < n; c++)
+    for (int c = 0; c < n; c++) {
+        int j = q->order[c];
         for (int r = c; r < n; r++) {
-            int i = q->order[r], j = q->order[c];
+            int i = q->order[r];
             L[c * n + r - c] = i > j ? hessian[i * n + j] : hessian[j * n + i];
         }
+        memset(L + c * n + n - c, 0, (size_t)c * sizeof(double));
+    }
     return hf_band_factor(n, n - 1, L) == 0 ? HF_OK : HF_SINGULAR;
 }
 
@@ -90,26 +111,14 @@ static void rotate(double *f, double *g, double *cosine, double *sine)
     *g = 0;
 }
 
-static void turn_columns(hf_quadratic *q, int a, double cosine, double sine)
-{
-    int n = q->n;
-    double *restrict u = q->inverse + a * n, *restrict v = u + n;
-    for (int i = 0; i < n; i++) {
-        double old = u[i];
-        u[i] = cosine * old + sine * v[i];
-        v[i] = cosine * v[i] - sine * old;
-    }
-}
-
 /* Take in a limit whose normal is d = J' normal in terms of J. */
 static void take_in(hf_quadratic *q, double *d, hf_quadratic_active limit)
 {
     int m = q->n_active, n = q->n;
-    double cosine, sine;
-    for (int i = n - 2; i >= m; i--) {
-        rotate(d + i, d + i + 1, &cosine, &sine);
-        turn_columns(q, i, cosine, sine);
-    }
+    double *cosine = q->scratch + 4 * q->ld, *sine = cosine + q->ld;
+    for (int i = n - 2; i >= m; i--)
+        rotate(d + i, d + i + 1, cosine + i, sine + i);
+    loops_here()->turn(q->ld, m, n - 2, cosine, sine, q->inverse);
     memcpy(q->triangle + m * n, d, (size_t)(m + 1) * sizeof(double));
     q->active[q->n_active++] = limit;
 }
@@ -126,7 +135,7 @@ static void let_go(hf_quadratic *q, int k)
     }
     for (int j = k; j < q->n_active; j++) {
         rotate(R + j * n + j, R + j * n + j + 1, &cosine, &sine);
-        turn_columns(q, j, cosine, sine);
+        loops_here()->turn(q->ld, 0, 0, &cosine, &sine, q->inverse + j * q->ld);
         for (int c = j + 1; c < q->n_active; c++) {
             double *f = R + c * n + j, old = f[0];
             f[0] = cosine * old + sine * f[1];
@@ -138,30 +147,22 @@ static void let_go(hf_quadratic *q, int k)
 /* d = J' normal. */
 static void find_share(const hf_quadratic *q, const hf_quadratic_limit *limit, double *d)
 {
-    int n = q->n;
-    for (int j = 0; j < n && limit->only >= 0; j++)
-        d[j] = limit->normal[limit->only] * q->inverse[j * n + limit->only];
-    for (int j = 0; j < n && limit->only < 0; j++)
-        d[j] = hf_dot((size_t)n, q->inverse + j * n, limit->normal);
+    for (int j = 0; j < q->n && limit->only >= 0; j++)
+        d[j] = limit->normal[limit->only] * q->inverse[j * q->ld + limit->only];
+    if (limit->only < 0) hf_dots((size_t)q->n, (size_t)q->n, q->inverse, (size_t)q->ld, limit->normal, d);
 }
 
 /* z = the columns of J from the m-th on, times d. */
-static void find_direction(const hf_quadratic *q, int m, const double *d, double *restrict z)
+static void find_direction(const hf_quadratic *q, int m, const double *d, double *z)
 {
-    int n = q->n;
-    memset(z, 0, (size_t)n * sizeof(double));
-    for (int j = m; j < n; j++) {
-        const double *restrict column = q->inverse + j * n;
-        for (int i = 0; i < n; i++)
-            z[i] += d[j] * column[i];
-    }
+    loops_here()->combine(q->ld, m, q->n, d, q->inverse, z);
 }
 
 /* Move until `limit` holds, letting active limits go whose multipliers would become negative. */
 static hf_status obey(hf_quadratic *q, const hf_quadratic_limit *limit, int *steps_left)
 {
     int n = q->n;
-    double own = 0, *d = q->scratch, *z = d + n, *r = z + n;
+    double own = 0, *d = q->scratch, *z = d + q->ld, *r = z + q->ld;
     while ((*steps_left)-- > 0) {
         int m = q->n_active, blocking = -1;
         double dual_step = INFINITY, free_square, whole;
@@ -221,9 +222,10 @@ static void guess(hf_quadratic *q, const double *low, const double *high)
 static int hold(hf_quadratic *q, const double *gradient)
 {
     int n = q->n, m = q->n_active, worst = -1;
-    double *share = q->scratch, *y = share + n, least = 0;
+    double *share = q->scratch, *y = share + q->ld, least = 0;
+    hf_dots((size_t)n, (size_t)n, q->inverse, (size_t)q->ld, gradient, share);
     for (int j = 0; j < n; j++)
-        y[j] = -(share[j] = hf_dot((size_t)n, q->inverse + j * n, gradient));
+        y[j] = -share[j];
     for (int j = 0; j < m; j++)
         y[j] = (q->active[j].bound - hf_dot((size_t)j, q->triangle + j * n, y)) / q->triangle[j * n + j];
     find_direction(q, 0, y, q->x);
@@ -257,7 +259,7 @@ static hf_status begin(hf_quadratic *q, const double *hessian, const double *gra
     invert_transposed(q);
     for (int k = 0; k < q->n_active; k++)
         for (int j = 0; j <= k; j++)
-            q->triangle[k * n + j] = q->active[k].sign * q->inverse[j * n + q->active[k].only];
+            q->triangle[k * n + j] = q->active[k].sign * q->inverse[j * q->ld + q->active[k].only];
     for (int k = hold(q, gradient); k >= 0; k = hold(q, gradient))
         let_go(q, k);
     return HF_OK;
@@ -274,7 +276,7 @@ hf_status hf_quadratic_solve(hf_quadratic *q, const double *hessian, const doubl
                              const double *high, hf_quadratic_worst *worst, void *context)
 {
     int steps_left = STEPS_PER_VARIABLE * (q->n + 1);
-    hf_quadratic_limit limit = {.normal = q->scratch + 3 * q->n};
+    hf_quadratic_limit limit = {.normal = q->scratch + 3 * q->ld};
     bool has_inverse;
     HF_TRY(begin(q, hessian, gradient, low, high, &has_inverse));
     for (;; has_inverse = true) {

@@ -28,20 +28,17 @@ typedef struct {
  * violates none beyond rounding. */
 typedef bool hf_quadratic_worst(void *context, const double *x, hf_quadratic_limit *limit);
 
-#define HF_QUADRATIC_STRIP 8 /* columns that are worked on side by side */
-typedef double hf_quadratic_strip __attribute__((vector_size(HF_QUADRATIC_STRIP * sizeof(double)), aligned(8)));
-
 typedef struct {
-    int n;
-    double *inverse;             /* [n][n] scratch: columns J, with J J' = H^-1 */
+    int n, ld;                   /* ld: n, and as many more as make whole vectors */
+    double *inverse;             /* [n][ld] scratch: columns J, with J J' = H^-1; 0 from n on */
     double *triangle;            /* [n][n] scratch: R, the active normals in terms of J */
-    double *x;                   /* [n] the answer */
+    double *x;                   /* [ld] the answer; 0 from n on */
     int n_active;                /* limits that hold with equality */
     hf_quadratic_active *active; /* [n] */
     int *side;                   /* [n] the bound of each variable that held the last answer: 1 low, -1 high, 0 none */
     int *order;                  /* [n] of the variables in the factor: those held from the start are last */
-    double *scratch;             /* [4 n] */
-    hf_quadratic_strip *strip;   /* [n] scratch */
+    double *scratch;             /* [6 ld] */
+    double *strip;               /* [n][HF_LANES] scratch: columns that are worked on side by side */
     void *block;
 } hf_quadratic;
 

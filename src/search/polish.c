@@ -236,8 +236,9 @@ static void press(problem *p, int i_goal, int first_row, int n_row)
     double *rate = p->goal_rate + (size_t)i_goal * (size_t)p->n, norm = p->result.goal[i_goal];
     double part = norm > 0 ? 1 / norm : 0, pressure = p->pressure[i_goal] * part;
     int n_all = p->residuals.n_row;
+    hf_dots((size_t)p->n, (size_t)n_row, p->row + first_row, (size_t)n_all, f, rate);
     for (int k = 0; k < p->n; k++)
-        rate[k] = part * hf_dot((size_t)n_row, p->row + (size_t)k * (size_t)n_all + first_row, f);
+        rate[k] *= part;
     if (!(pressure > 0)) return;
     hf_band_gram(0, p->n, n_row, p->row + first_row, n_all, p->hessian, p->n);
     for (int r = 0; r < p->n; r++)
@@ -248,9 +249,8 @@ static void press(problem *p, int i_goal, int first_row, int n_row)
 /* That of the residuals which are to be least, not of all. */
 static void take_gradient(problem *p)
 {
-    const double *f = p->residuals.value + p->first_row;
-    for (int k = 0; k < p->n; k++)
-        p->gradient[k] = hf_dot((size_t)p->n_row, p->row + (size_t)k * (size_t)p->residuals.n_row + p->first_row, f);
+    hf_dots((size_t)p->n, (size_t)p->n_row, p->row + p->first_row, (size_t)p->residuals.n_row,
+            p->residuals.value + p->first_row, p->gradient);
 }
 
 /* What a trade changes: goals without corners are limits that bend; one with corners that is to be least has a level
@@ -383,8 +383,9 @@ static void find_pull(problem *p)
 {
     const double *x = p->step_taken;
     size_t n_row = (size_t)p->residuals.n_row;
-    for (int r = 0, n = p->n; r < n; r++)
-        p->pull[r] = hf_dot(n_row, p->row + (size_t)r * n_row, p->residuals.value) - p->gram[r * n + r] * x[r];
+    hf_dots((size_t)p->n, n_row, p->row, n_row, p->residuals.value, p->pull);
+    for (int r = 0; r < p->n; r++)
+        p->pull[r] -= p->gram[r * p->n + r] * x[r];
     for (int r = 0, at = 0; r < p->n; r++, at = r * p->n)
         for (int c = 0; c < r; c++, at++) {
             p->pull[r] -= p->gram[at] * x[c];
