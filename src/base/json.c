@@ -5,6 +5,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Hidden characters are escaped although JSON asks for that below U+0020 alone: what is read is the same, and a
@@ -162,4 +163,53 @@ void hf_json_values(const char *key, const double *value, int n, int stride, int
         hf_json_value(value[i], digits, f);
     }
     fputc(']', f);
+}
+
+/* ---- numbers as bytes, and these as letters ---- */
+
+hf_json_packed hf_json_pack(const char *key, const char *type, FILE *f)
+{
+    fprintf(f, ",\"%s\":{\"%s\":\"", key, type);
+    return (hf_json_packed){.file = f, .type = *type, .n_byte = atoi(type + 1) / 8};
+}
+
+static void put_letter(unsigned six_bits, FILE *f)
+{
+    fputc("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"[six_bits & 63], f);
+}
+
+static uint64_t bits_of(double value, char type, int n_byte)
+{
+    uint32_t half;
+    uint64_t whole;
+    float single = (float)value;
+    if (type == 'i') return (uint32_t)(int32_t)value;
+    memcpy(&half, &single, sizeof half);
+    memcpy(&whole, &value, sizeof whole);
+    return n_byte == 4 ? half : whole;
+}
+
+void hf_json_pack_value(hf_json_packed *p, double value)
+{
+    uint64_t word = bits_of(value, p->type, p->n_byte);
+    for (int i = 0; i < p->n_byte; i++) {
+        p->bits = p->bits << 8 | (unsigned)(word >> 8 * i & 255);
+        for (p->n_bit += 8; p->n_bit >= 6; p->n_bit -= 6)
+            put_letter(p->bits >> (p->n_bit - 6), p->file);
+    }
+}
+
+void hf_json_pack_end(hf_json_packed *p)
+{
+    static const char *const padding[] = {"", "", "==", "", "="}; /* of the 2 or 4 bits that are left */
+    if (p->n_bit) put_letter(p->bits << (6 - p->n_bit), p->file);
+    fprintf(p->file, "%s\"}", padding[p->n_bit]);
+}
+
+void hf_json_pack_values(const char *key, const char *type, const double *value, int n, FILE *f)
+{
+    hf_json_packed p = hf_json_pack(key, type, f);
+    for (int i = 0; i < n; i++)
+        hf_json_pack_value(&p, value[i]);
+    hf_json_pack_end(&p);
 }

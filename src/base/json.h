@@ -47,4 +47,18 @@ void hf_json_value(double value, int digits, FILE *file); /* null unless finite 
 void hf_json_strings(const char *key, const char *const *text, int n, FILE *file);
 void hf_json_values(const char *key, const double *value, int n, int stride, int digits, FILE *file);
 
+/* ,"key":{"f32":"..."} with the comma in front: numbers one after the other as base64 of their bytes, the lowest first.
+ * The type is "i32", "f32" or "f64", as in names of the typed arrays of JavaScript and numpy. */
+typedef struct {
+    FILE *file;
+    char type;     /* i or f */
+    int n_byte;    /* of a number */
+    unsigned bits; /* those that wait to become letters, the lowest n_bit */
+    int n_bit;
+} hf_json_packed;
+hf_json_packed hf_json_pack(const char *key, const char *type, FILE *file);
+void hf_json_pack_value(hf_json_packed *packed, double value);
+void hf_json_pack_end(hf_json_packed *packed);
+void hf_json_pack_values(const char *key, const char *type, const double *value, int n, FILE *file); /* all of it */
+
 #endif

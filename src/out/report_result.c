@@ -79,10 +79,10 @@ static const char *heading(const hf_summary *s)
 
 static void write_integers(const char *key, const int *value, int n, FILE *f)
 {
-    fprintf(f, ",\"%s\":[", key);
+    hf_json_packed packed = hf_json_pack(key, "i32", f);
     for (int i = 0; i < n; i++)
-        fprintf(f, "%s%d", i ? "," : "", value[i]);
-    fputc(']', f);
+        hf_json_pack_value(&packed, value[i]);
+    hf_json_pack_end(&packed);
 }
 
 static void write_sets(const hf_scene *s, FILE *f)
@@ -105,14 +105,14 @@ static void write_net(const page *p, FILE *f)
     hf_json_strings("group_word", hf_group_word, 2, f);
     hf_json_strings("law_word", hf_law_word, HF_N_LAW, f);
     hf_json_strings("node_id", s->node_id, s->n_node, f);
-    hf_json_values("position_m", s->position_m, 3 * s->n_node, 1, 8, f);
+    hf_json_pack_values("position_m", "f64", s->position_m, 3 * s->n_node, f);
     write_codes("role", s->role, s->n_node, f);
     hf_json_strings("cable_id", s->cable_id, s->n_cable, f);
     write_integers("end", s->end, 2 * s->n_cable, f);
     write_codes("group", s->group, s->n_cable, f);
     write_sets(s, f);
-    if (p->psi_by_cut.n == s->n_cable) hf_json_values("psi_by_cut", p->psi_by_cut.value, s->n_cable, 1, 5, f);
-    if (p->cable_share.n == s->n_cable) hf_json_values("cable_share", p->cable_share.value, s->n_cable, 1, 5, f);
+    if (p->psi_by_cut.n == s->n_cable) hf_json_pack_values("psi_by_cut", "f32", p->psi_by_cut.value, s->n_cable, f);
+    if (p->cable_share.n == s->n_cable) hf_json_pack_values("cable_share", "f32", p->cable_share.value, s->n_cable, f);
     if (p->facets.n_facet) write_integers("facets", p->facets.corner, 4 * p->facets.n_facet, f);
     fputc('}', f);
 }
@@ -121,33 +121,30 @@ static void write_net(const page *p, FILE *f)
 static void write_displacement(const char *key, const hf_series *d, FILE *f)
 {
     if (!d->n) return;
-    fprintf(f, ",\"%s\":[", key);
-    for (int i = 0; i < 3 * d->n; i++) {
-        if (i) fputc(',', f);
-        hf_json_value(d->value[6 * (i / 3) + i % 3], 6, f);
-    }
-    fputc(']', f);
+    hf_json_packed packed = hf_json_pack(key, "f32", f);
+    for (int i = 0; i < 3 * d->n; i++)
+        hf_json_pack_value(&packed, d->value[6 * (i / 3) + i % 3]);
+    hf_json_pack_end(&packed);
 }
 
-/* What the workshop cuts and turns for a stage; null of a cable without EA, and nothing when none has one. */
+/* What the workshop cuts and turns for a stage; NaN of a cable without EA, and nothing when none has one. */
 static void write_cuts(const page *p, const hf_shape *shape, FILE *f)
 {
     const hf_scene *s = &p->scene;
     double reference_N = hf_model_reference_N(s, p->summary.pretension_N);
     if (!s->EA_N) return;
     for (int is_turned = 0; is_turned < 2; is_turned++) {
-        fprintf(f, ",\"%s\":[", is_turned ? "adjustment_m" : "l0_m");
+        hf_json_packed packed = is_turned ? hf_json_pack("adjustment_m", "f32", f) : hf_json_pack("l0_m", "f64", f);
         for (int e = 0; e < s->n_cable; e++) {
             hf_cut c = hf_cut_of(s, shape, reference_N, e);
-            if (e) fputc(',', f);
-            hf_json_value(is_turned ? c.adjustment_m : c.l0_m, 9, f);
+            hf_json_pack_value(&packed, is_turned ? c.adjustment_m : c.l0_m);
         }
-        fputc(']', f);
+        hf_json_pack_end(&packed);
     }
 }
 
-/* Writes displacements, not positions: six digits of a displacement reach nanometres, six digits of a position only
- * tenths of a millimetre. */
+/* Writes displacements, not positions: single precision of a displacement reaches nanometres, that of a position only
+ * micrometres. */
 static void write_shape(const page *p, int stage, FILE *f)
 {
     const hf_shape *shape = &p->shape[stage];
@@ -158,21 +155,19 @@ static void write_shape(const page *p, int stage, FILE *f)
         fprintf(f, "{\"stage\":\"case %s\",\"case\":\"%s\"", name, name);
         write_displacement("truss_displacement_m", &p->state_displacement[stage - HF_STAGE_NONE], f);
     }
-    fputs(",\"displacement_m\":[", f);
-    for (int i = 0; i < 3 * p->scene.n_node; i++) {
-        if (i) fputc(',', f);
-        hf_json_value(shape->position_m[i] - p->scene.position_m[i], 6, f);
-    }
-    fputc(']', f);
-    hf_json_values("length_m", shape->length_m, p->scene.n_cable, 1, 7, f);
-    hf_json_values("tension_N", shape->tension_N, p->scene.n_cable, 1, 7, f);
+    hf_json_packed packed = hf_json_pack("displacement_m", "f32", f);
+    for (int i = 0; i < 3 * p->scene.n_node; i++)
+        hf_json_pack_value(&packed, shape->position_m[i] - p->scene.position_m[i]);
+    hf_json_pack_end(&packed);
+    hf_json_pack_values("length_m", "f32", shape->length_m, p->scene.n_cable, f);
+    hf_json_pack_values("tension_N", "f32", shape->tension_N, p->scene.n_cable, f);
     write_codes("law", shape->law, p->scene.n_cable, f);
     if (stage < HF_STAGE_NONE) write_cuts(p, shape, f);
     if (p->facets.n_facet) {
         const hf_facet_errors *e = &p->facet_error[stage];
-        hf_json_values("facet_normal_mean_m", e->normal_mean_m, p->facets.n_facet, 1, 6, f);
-        hf_json_values("facet_normal_rms_m", e->normal_rms_m, p->facets.n_facet, 1, 6, f);
-        hf_json_values("facet_fit_normal_mean_m", e->fit_normal_mean_m, p->facets.n_facet, 1, 6, f);
+        hf_json_pack_values("facet_normal_mean_m", "f32", e->normal_mean_m, p->facets.n_facet, f);
+        hf_json_pack_values("facet_normal_rms_m", "f32", e->normal_rms_m, p->facets.n_facet, f);
+        hf_json_pack_values("facet_fit_normal_mean_m", "f32", e->fit_normal_mean_m, p->facets.n_facet, f);
     }
     fputc('}', f);
 }
@@ -197,8 +192,8 @@ static void write_truss(const page *p, FILE *f)
     const hf_series *node = &p->truss_position_m, *end = &p->truss_end;
     if (!node->n || !end->n) return;
     fprintf(f, ",\n\"truss\":{\"n_node\":%d,\"n_member\":%d", node->n, end->n);
-    hf_json_values("position_m", node->value, 3 * node->n, 1, 8, f);
-    hf_json_values("end", end->value, 2 * end->n, 1, 9, f);
+    hf_json_pack_values("position_m", "f64", node->value, 3 * node->n, f);
+    hf_json_pack_values("end", "i32", end->value, 2 * end->n, f);
     if (p->truss_displacement.n == node->n) write_displacement("displacement_m", &p->truss_displacement, f);
     fputc('}', f);
 }

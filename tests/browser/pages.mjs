@@ -6,6 +6,7 @@
 //   rounding: the deviations of its result are nothing else
 //   facets: how many, all triangles; off: families of cables whose switches are tried
 //   other: how the case of a second result differs, with which it is compared; unlike: in its figures, too
+//   bytes_max: how large it may be, if more than usual; fluid: it is only looked at how fast it is
 //   study: how many points; leads: the axis that matters most
 
 const FORM = ["net", "cables", "map", "tensions", "summary", "form-finding", "provenance"];
@@ -58,6 +59,13 @@ export const pages = [
     name: "large", // 41x49 nodes
     text: cylinder([20, 24], "optimize: {rule: tension, population: 4, generations: 400, polish_iterations: 2}\n"),
     sections: GA,
+  },
+  {
+    name: "ten-thousand", // 81x121 nodes
+    text: cylinder([40, 60], "surface: {}\n").replace("scene:\n", "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n"),
+    bytes_max: 5e6,
+    fluid: true,
+    sections: FORM,
   },
   {
     name: "paraboloid",

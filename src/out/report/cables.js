@@ -1,6 +1,11 @@
 // Contents: the table of cables: which one to change, and by how much
 
-const familiesOf = (e) => net.sets.filter((set) => set.cable.includes(e)).map((set) => familyName(set.name));
+// The names of the families of every cable.
+function allFamilies() {
+  const all = Array.from({ length: net.n_cable }, () => []);
+  for (const { name, cable } of net.sets) for (const e of cable) all[e].push(familyName(name));
+  return all;
+}
 
 // A column of numbers with a value of each cable, to so many digits of the largest; nothing when no cable has one.
 //   unit: what it is multiplied by to be shown; isChange: it is sorted by its size, and has a sign
@@ -11,7 +16,7 @@ function cableColumn(name, of, digits, { unit = 1, isChange = false } = {}) {
   if (!range(values)) return null;
   const decimals = most > 0 ? Math.min(12, Math.max(0, digits - 1 - Math.floor(Math.log10(most)))) : 0;
   const show = (v) =>
-    typeof v === "number" ? (isChange && v > 0 ? "+" : "") + minus((unit * v).toFixed(decimals)) : "–";
+    Number.isFinite(v) ? (isChange && v > 0 ? "+" : "") + minus((unit * v).toFixed(decimals)) : "–";
   return { name, number: true, of: (e) => values[e], show: (e) => show(values[e]), size: isChange };
 }
 
@@ -20,14 +25,13 @@ function cableColumn(name, of, digits, { unit = 1, isChange = false } = {}) {
 function turned(before, after) {
   if (!after.l0_m || (before !== after && !before.l0_m)) return null;
   if (before === after) return ["turn, from the drawing (mm)", (e) => after.adjustment_m[e]];
-  const both = (e) => (after.l0_m[e] === null || before.l0_m[e] === null ? null : after.l0_m[e] - before.l0_m[e]);
-  return [`turn, from ${before.name} (mm)`, both];
+  return [`turn, from ${before.name} (mm)`, (e) => after.l0_m[e] - before.l0_m[e]];
 }
 
-function cableColumns(before, after, choose) {
+function cableColumns(before, after, families, choose) {
   const two = before !== after,
     turn = turned(before, after);
-  const family = Array.from({ length: net.n_cable }, (_, e) => familiesOf(e).join(", ") || groupOf(e));
+  const family = families.map((names, e) => names.join(", ") || groupOf(e));
   const link = (e) => {
     const press = el("button", { type: "button", class: "link" }, net.cable_id[e]);
     press.addEventListener("click", () => choose(e));
@@ -73,14 +77,15 @@ function writeCables(view) {
     view.choose(e);
     document.getElementById("net").scrollIntoView({ block: "nearest" });
   };
-  const columns = cableColumns(before, after, choose),
+  const families = allFamilies(),
+    columns = cableColumns(before, after, families, choose),
     change = columns.findIndex(({ size }) => size);
   const all = sortableTable({
     caption: "Cables",
     columns,
     n: net.n_cable,
     by: change > 0 ? change : 2,
-    words: (e) => [net.cable_id[e], groupOf(e), ...familiesOf(e)].join(" "),
+    words: (e) => [net.cable_id[e], groupOf(e), ...families[e]].join(" "),
   });
   view.onChoose = (e) => all.first(e);
   section("cables", "Cables", el("p", {}, words.join(" ")), all.node);

@@ -1,9 +1,29 @@
 // Contents: the data - elements - numbers for people - what is derived
 "use strict";
 
-const data = JSON.parse(document.getElementById("data").textContent, (key, value) =>
-  value === "Infinity" ? Infinity : value,
-);
+// Numbers of all nodes or cables are base64 of their bytes, which only an object of this kind can be.
+const PACKED = { i32: Int32Array, f32: Float32Array, f64: Float64Array };
+function unpack(type, text) {
+  const letters = atob(text),
+    bytes = new Uint8Array(letters.length);
+  for (let k = 0; k < bytes.length; k++) bytes[k] = letters.charCodeAt(k);
+  return new PACKED[type](bytes.buffer);
+}
+// What JSON has no numbers for, replaced in place: a reviver of JSON.parse would be called for every name of a cable.
+function revived(value) {
+  if (value === "Infinity") return Infinity;
+  if (value === null || typeof value !== "object") return value;
+  if (Array.isArray(value)) {
+    for (let k = 0; k < value.length; k++) if (typeof value[k] !== "number") value[k] = revived(value[k]);
+    return value;
+  }
+  for (const key of Object.keys(value)) {
+    if (key in PACKED && typeof value[key] === "string") return unpack(key, value[key]);
+    value[key] = revived(value[key]);
+  }
+  return value;
+}
+const data = revived(JSON.parse(document.getElementById("data").textContent));
 
 // ---- elements: texts only ever become text nodes, so nothing in a case can become markup ----
 
@@ -48,7 +68,7 @@ function fmt(value, digits = 4) {
 }
 // Ratios of tensions: 1 means uniform tensions, so a fixed number of decimals is shown, not of digits.
 const fmtRatio = (value) => (typeof value === "number" && value < 1e4 ? value.toFixed(4) : fmt(value));
-const fmtCount = (value) => (typeof value === "number" ? value.toLocaleString("en").replace(/,/g, " ") : "–");
+const fmtCount = (value) => (typeof value === "number" ? String(value).replace(/\B(?=(\d{3})+$)/g, " ") : "–");
 
 function fmtDuration(s) {
   if (typeof s !== "number") return "–";
@@ -81,6 +101,8 @@ const stopText = (word) => STOP[word] || String(word).replace(/_/g, " ");
 const net = data.net;
 const stageName = { form: "found", optimize: "GA best", polish: "LM optimum" };
 const digit = (text, i) => text.charCodeAt(i) - 48;
+const innerCode = net && net.role_word.indexOf("inner"),
+  isInner = (i) => digit(net.role, i) === innerCode;
 const roleOf = (i) => net.role_word[digit(net.role, i)];
 const groupOf = (e) => net.group_word[digit(net.group, e)];
 
@@ -120,8 +142,14 @@ const shapeOf = (stage) => (data.shapes || []).find((shape) => shape.stage === s
 // Upper end of the colours: the largest deviation of the inner nodes, which psi counts. The nodes of a free edge move
 // much farther; a range with them would show all inner nodes in one colour.
 function innerMost(values) {
-  const inner = range(Array.from(values, Math.abs).filter((_, i) => roleOf(i) === "inner"));
-  return (inner || range(Array.from(values, Math.abs)) || [0, 1])[1];
+  let inner = -1,
+    any = -1;
+  for (let i = 0; i < values.length; i++) {
+    const size = Math.abs(values[i]);
+    if (size > any) any = size;
+    if (size > inner && isInner(i)) inner = size;
+  }
+  return inner >= 0 ? inner : any >= 0 ? any : 1;
 }
 
 function range(values) {

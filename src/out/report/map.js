@@ -76,7 +76,7 @@ function aperture({ canvas, tip, bar }) {
 
   const ofFacets = () => ({ normal: "facet_normal_mean_m", fit: "facet_fit_normal_mean_m" })[state.quantity];
   function values() {
-    if (ofFacets()) return state.shape[ofFacets()].map((v) => (v === null ? NaN : 1e3 * v));
+    if (ofFacets()) return state.shape[ofFacets()].map((v) => 1e3 * v);
     return state.quantity === "distance" ? state.shape.distance_mm : state.shape.height_mm;
   }
   const isRounding = () => limits()[1] < RESOLVED_MM;
@@ -253,7 +253,7 @@ function aperture({ canvas, tip, bar }) {
       tip.hidden = true;
       return;
     }
-    const mm = (values) => `${fmt(1e3 * values[k], 4)} mm`,
+    const mm = (values) => (Number.isFinite(values[k]) ? `${fmt(1e3 * values[k], 4)} mm` : "–"),
       { facet_normal_mean_m: mean, facet_normal_rms_m: rms, facet_fit_normal_mean_m: fit } = state.shape;
     placeTip(
       tip,
@@ -262,7 +262,7 @@ function aperture({ canvas, tip, bar }) {
       tipContent(`facet ${facets[k].map((i) => net.node_id[i]).join(", ")}`, [
         ["along the normal, mean", mm(mean), ""],
         ["RMS", mm(rms), ""],
-        ["above the best fit, mean", fit[k] === null ? "–" : mm(fit), ""],
+        ["above the best fit, mean", mm(fit), ""],
       ]),
     );
   }

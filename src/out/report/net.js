@@ -4,7 +4,10 @@ const familyName = (name) => name.replace(/_/g, " ");
 // Colours around the circle of hues, as light as each other.
 const familyColour = (k) => rgb(oklch(isDark() ? 0.75 : 0.55, 0.14, 250 + (360 * k) / net.sets.length));
 
-// Draws the net in space. Dragging or the arrow keys turn it. Lines of one colour are drawn in one call.
+// Draws the net in space. Lines of one colour are drawn in one call; nothing is allocated while it is turned.
+
+const MANY_LINES = 4000; // from so many on there are fewer details while it is turned
+const REST_MS = 160; // without a move, after which they are back
 
 function netView({ canvas, tip, bar, scaleLabel }) {
   const view = { yaw: -35, pitch: 32, zoom: 1, panX: 0, panY: 0, fitted: true }; // fitted: the zoom follows the room
@@ -21,12 +24,16 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   const theory = data.net.position_m,
     n = net.n_node,
     m = net.n_cable,
-    end = net.end;
-  const truss = data.truss;
-  const px = new Float64Array(n),
-    py = new Float64Array(n),
-    tx = new Float64Array(n),
-    ty = new Float64Array(n);
+    end = net.end,
+    truss = data.truss;
+  // Places in space, and on the screen: of the net as it is drawn, of theory, of the truss.
+  const drawn = { at: new Float64Array(3 * n), x: new Float32Array(n), y: new Float32Array(n) },
+    ghost = { at: theory, x: new Float32Array(n), y: new Float32Array(n) },
+    beams = truss && {
+      at: new Float64Array(3 * truss.n_node),
+      x: new Float32Array(truss.n_node),
+      y: new Float32Array(truss.n_node),
+    };
   const box = [0, 1, 2].map((k) => range(theory.filter((_, i) => i % 3 === k)));
   const centre = box.map(([a, b]) => (a + b) / 2),
     radius = Math.hypot(...box.map(([a, b]) => b - a)) / 2 || 1;
@@ -34,70 +41,36 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   const setsOf = Array.from({ length: m }, () => []);
   net.sets.forEach((set, k) => set.cable.forEach((e) => setsOf[e].push(k)));
   const familyOf = setsOf.map((sets) => sets.sort((a, b) => net.sets[a].cable.length - net.sets[b].cable.length)[0]);
-  let visible = [],
-    isVisible = new Uint8Array(m),
-    hasVisible = new Uint8Array(n), // nodes with a cable that is drawn
-    queued = false,
+  const supports = Array.from({ length: n }, (_, i) => i).filter((i) => digit(net.role, i) === 0),
+    isHeavy = m > MANY_LINES;
+  // The cables that are drawn in the order of their batches, with those ends; batch k from start[k] on.
+  const order = new Int32Array(m),
+    first = new Int32Array(m),
+    second = new Int32Array(m),
+    batchOf = new Int32Array(m),
+    hasVisible = new Uint8Array(n); // nodes with a cable that is drawn
+  let batches = [], // { colour, width }
+    start = new Int32Array(1),
+    nVisible = 0;
+  const ink = {};
+  const still = document.createElement("canvas"); // the picture without what is marked
+  const camera = { fit: 1, ax: 0, ay: 0, bx: 0, by: 0, bz: 0, x0: 0, y0: 0 };
+  let queued = false,
+    isStale = true, // what is drawn has changed, not just the direction
+    isStill = false,
+    resting = 0,
     width = 0,
     height = 0;
 
-  function chooseVisible() {
-    visible = [];
-    isVisible.fill(0);
-    hasVisible.fill(0);
-    for (let e = 0; e < m; e++) {
-      if (setsOf[e].some((k) => state.off.has(net.sets[k].name))) continue;
-      visible.push(e);
-      isVisible[e] = hasVisible[end[2 * e]] = hasVisible[end[2 * e + 1]] = 1;
-    }
+  // ---- what is drawn, and in which colours ----
+
+  // Places of a shape whose displacements are drawn `scale` times as large; [3] of each place, stride of d.
+  function displace(at, from, d) {
+    for (let k = 0; k < at.length; k++) at[k] = from[k] + (d ? state.scale * d[k] : 0);
   }
 
-  function projection() {
-    const a = (view.yaw * Math.PI) / 180,
-      b = (view.pitch * Math.PI) / 180;
-    const fit = (0.5 * Math.min(width, height) * view.zoom) / radius;
-    const ux = [Math.cos(a), Math.sin(a), 0];
-    const uy = [Math.sin(a) * Math.sin(b), -Math.cos(a) * Math.sin(b), -Math.cos(b)];
-    return (x, y, z) => {
-      const q = [x - centre[0], y - centre[1], z - centre[2]];
-      return [
-        width / 2 + view.panX + fit * (ux[0] * q[0] + ux[1] * q[1]),
-        height / 2 + view.panY + fit * (uy[0] * q[0] + uy[1] * q[1] + uy[2] * q[2]),
-      ];
-    };
-  }
-
-  // The zoom at which net and truss, seen from the present direction, fill the picture.
-  function fitZoom() {
-    Object.assign(view, { zoom: 1, panX: 0, panY: 0 });
-    const project = projection(),
-      points = truss && state.truss ? [theory, truss.position_m] : [theory];
-    let x = 1,
-      y = 1;
-    for (const p of points)
-      for (let k = 0; k < p.length; k += 3) {
-        const at = project(p[k], p[k + 1], p[k + 2]);
-        x = Math.max(x, Math.abs(at[0] - width / 2));
-        y = Math.max(y, Math.abs(at[1] - height / 2));
-      }
-    view.zoom = Math.min((width / 2 - 30) / x, (height / 2 - 34) / y);
-  }
-
-  function place() {
-    if (view.fitted) fitZoom();
-    const project = projection(),
-      d = state.shape ? state.shape.displacement_m : null,
-      s = state.scale;
-    for (let i = 0; i < n; i++) {
-      const p = theory.slice(3 * i, 3 * i + 3);
-      [tx[i], ty[i]] = project(...p);
-      [px[i], py[i]] = d
-        ? project(p[0] + s * d[3 * i], p[1] + s * d[3 * i + 1], p[2] + s * d[3 * i + 2])
-        : [tx[i], ty[i]];
-    }
-    return project;
-  }
-
+  const isNone = (v) => state.colour === "deviation" && v < RESOLVED_MM;
+  const isRounding = () => state.colour === "deviation" && innerMost(state.shape.distance_mm) < RESOLVED_MM;
   // The value that a cable's colour shows, and the range of these values.
   function valueOf(e) {
     const shape = state.shape;
@@ -105,160 +78,275 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     return (shape.distance_mm[end[2 * e]] + shape.distance_mm[end[2 * e + 1]]) / 2;
   }
   function limits() {
-    if (state.colour === "tension") return range(visible.map((e) => state.shape.tension_N[e])) || [0, 1];
+    if (state.colour === "tension")
+      return range(state.shape.tension_N.filter((_, e) => batchOf[e] >= 0)) || [0, 1];
     return [0, isRounding() ? range(state.shape.distance_mm)[1] : innerMost(state.shape.distance_mm)];
   }
 
-  const isRounding = () => state.colour === "deviation" && innerMost(state.shape.distance_mm) < RESOLVED_MM;
+  // Batches for the present colours, and the batch of a cable.
+  function colourRule() {
+    const shape = state.shape,
+      thin = isHeavy ? 1 : 1.7;
+    const line = (colour, width = thin) => ({ colour, width });
+    if (!shape) return [[line(ink.ghost, 0.8)], () => 0];
+    if (state.colour === "plain") return [[line(ink.one)], () => 0];
+    if (state.colour === "family")
+      return [
+        [line(ink.ghost), ...net.sets.map((_, k) => line(familyColour(k)))],
+        (e) => (familyOf[e] === undefined ? 0 : 1 + familyOf[e]),
+      ];
+    if (state.colour === "slack") return [[line(ink.ghost), line(ink.alarm, 3.2)], (e) => (shape.isSlack(e) ? 1 : 0)];
+    const limit = limits();
+    return [
+      [line(ink.soft), ...levels(sequential).map((colour) => line(rgb(colour)))],
+      (e) => (isNone(valueOf(e)) ? 0 : 1 + levelOf(valueOf(e), limit)),
+    ];
+  }
 
-  function strokeAll(c, list, x, y) {
+  function sortIntoBatches() {
+    hasVisible.fill(0);
+    for (let e = 0; e < m; e++) {
+      batchOf[e] = setsOf[e].some((k) => state.off.has(net.sets[k].name)) ? -1 : 0;
+      if (batchOf[e] === 0) hasVisible[end[2 * e]] = hasVisible[end[2 * e + 1]] = 1;
+    }
+    const [lines, batch] = colourRule();
+    batches = lines;
+    start = new Int32Array(lines.length + 1);
+    for (let e = 0; e < m; e++) {
+      if (batchOf[e] < 0) continue;
+      batchOf[e] = batch(e);
+      start[batchOf[e] + 1]++;
+    }
+    for (let k = 0; k < lines.length; k++) start[k + 1] += start[k];
+    const next = start.slice();
+    for (let e = 0; e < m; e++) {
+      if (batchOf[e] < 0) continue;
+      const at = next[batchOf[e]]++;
+      order[at] = e;
+      first[at] = end[2 * e];
+      second[at] = end[2 * e + 1];
+    }
+    nVisible = start[lines.length];
+  }
+
+  function prepare() {
+    const shape = state.shape;
+    for (const name of ["ink", "soft", "ghost", "one", "four", "alarm"]) ink[name] = css(`--${name}`);
+    displace(drawn.at, theory, shape && shape.displacement_m);
+    if (truss)
+      displace(beams.at, truss.position_m, shape && (shape.truss_displacement_m || truss.displacement_m));
+    sortIntoBatches();
+    drawLegend();
+    isStale = false;
+  }
+
+  // ---- where it is on the screen ----
+
+  function aim() {
+    const a = (view.yaw * Math.PI) / 180,
+      b = (view.pitch * Math.PI) / 180,
+      fit = (0.5 * Math.min(width, height) * view.zoom) / radius;
+    camera.fit = fit;
+    camera.ax = fit * Math.cos(a);
+    camera.ay = fit * Math.sin(a);
+    camera.bx = fit * Math.sin(a) * Math.sin(b);
+    camera.by = -fit * Math.cos(a) * Math.sin(b);
+    camera.bz = -fit * Math.cos(b);
+    camera.x0 = width / 2 + view.panX - camera.ax * centre[0] - camera.ay * centre[1];
+    camera.y0 = height / 2 + view.panY - camera.bx * centre[0] - camera.by * centre[1] - camera.bz * centre[2];
+  }
+  function project({ at, x, y }) {
+    const { ax, ay, bx, by, bz, x0, y0 } = camera;
+    for (let i = 0; i < x.length; i++) {
+      x[i] = x0 + ax * at[3 * i] + ay * at[3 * i + 1];
+      y[i] = y0 + bx * at[3 * i] + by * at[3 * i + 1] + bz * at[3 * i + 2];
+    }
+  }
+
+  // The zoom at which net and truss, seen from the present direction, fill the picture.
+  function fitZoom() {
+    Object.assign(view, { zoom: 1, panX: 0, panY: 0 });
+    aim();
+    let u = 1,
+      v = 1;
+    for (const part of beams && state.truss ? [ghost, beams] : [ghost]) {
+      project(part);
+      for (const x of part.x) u = Math.max(u, Math.abs(x - width / 2));
+      for (const y of part.y) v = Math.max(v, Math.abs(y - height / 2));
+    }
+    view.zoom = Math.min((width / 2 - 30) / u, (height / 2 - 34) / v);
+  }
+
+  // ---- drawing ----
+
+  function strokePart(c, from, to, { x, y }) {
     c.beginPath();
-    for (const e of list) {
-      c.moveTo(x[end[2 * e]], y[end[2 * e]]);
-      c.lineTo(x[end[2 * e + 1]], y[end[2 * e + 1]]);
+    for (let k = from; k < to; k++) {
+      c.moveTo(x[first[k]], y[first[k]]);
+      c.lineTo(x[second[k]], y[second[k]]);
     }
     c.stroke();
   }
+  function strokeCable(c, e, { x, y }) {
+    c.beginPath();
+    c.moveTo(x[end[2 * e]], y[end[2 * e]]);
+    c.lineTo(x[end[2 * e + 1]], y[end[2 * e + 1]]);
+    c.stroke();
+  }
 
-  function drawTruss(c, project) {
-    const p = truss.position_m,
-      d = state.shape && (state.shape.truss_displacement_m || truss.displacement_m),
-      s = state.scale;
-    const at = (i) => project(...[0, 1, 2].map((k) => p[3 * i + k] + (d ? s * d[3 * i + k] : 0)));
-    c.strokeStyle = css("--four");
+  function drawTruss(c) {
+    const { x, y } = beams;
+    c.strokeStyle = ink.four;
     c.globalAlpha = 0.7;
     c.lineWidth = 1.1;
     c.beginPath();
     for (let k = 0; k < truss.n_member; k++) {
-      c.moveTo(...at(truss.end[2 * k]));
-      c.lineTo(...at(truss.end[2 * k + 1]));
+      c.moveTo(x[truss.end[2 * k]], y[truss.end[2 * k]]);
+      c.lineTo(x[truss.end[2 * k + 1]], y[truss.end[2 * k + 1]]);
     }
     c.stroke();
     c.globalAlpha = 1;
   }
 
-  function drawCables(c) {
-    const shape = state.shape;
-    c.lineWidth = m > 3000 ? 1.1 : 1.7;
-    if (!shape || state.colour === "plain") {
-      c.strokeStyle = css("--one");
-      strokeAll(c, visible, px, py);
-    } else if (state.colour === "family") {
-      for (const k of [undefined, ...net.sets.keys()]) {
-        c.strokeStyle = k === undefined ? css("--ghost") : familyColour(k);
-        strokeAll(
-          c,
-          visible.filter((e) => familyOf[e] === k),
-          px,
-          py,
-        );
-      }
-    } else if (state.colour === "slack") {
-      c.strokeStyle = css("--ghost");
-      strokeAll(
-        c,
-        visible.filter((e) => !shape.isSlack(e)),
-        px,
-        py,
-      );
-      c.strokeStyle = css("--alarm");
-      c.lineWidth = 3.2;
-      strokeAll(c, visible.filter(shape.isSlack), px, py);
-    } else {
-      const limit = limits(),
-        bucket = Array.from({ length: LEVELS }, () => []),
-        isNone = (v) => state.colour === "deviation" && v < RESOLVED_MM;
-      c.strokeStyle = css("--soft");
-      strokeAll(
-        c,
-        visible.filter((e) => isNone(valueOf(e))),
-        px,
-        py,
-      );
-      for (const e of visible) if (!isNone(valueOf(e))) bucket[levelOf(valueOf(e), limit)].push(e);
-      levels(sequential).forEach((colour, k) => {
-        if (!bucket[k].length) return;
-        c.strokeStyle = rgb(colour);
-        strokeAll(c, bucket[k], px, py);
-      });
+  // A line of one pixel of the screen is drawn many times as fast as a wider one.
+  function drawCables(c, ratio, isFast) {
+    for (let k = 0; k < batches.length; k++) {
+      if (start[k] === start[k + 1]) continue;
+      c.strokeStyle = batches[k].colour;
+      c.lineWidth = isFast ? 1 / ratio : batches[k].width;
+      strokePart(c, start[k], start[k + 1], drawn);
     }
   }
 
-  function drawNodes(c) {
+  function drawSupports(c) {
     const side = n > 1000 ? 1.5 : 3;
-    c.fillStyle = css("--ink");
-    for (let i = 0; i < n; i++)
-      if (digit(net.role, i) === 0 && hasVisible[i]) c.fillRect(px[i] - side, py[i] - side, 2 * side, 2 * side);
+    c.fillStyle = ink.ink;
+    for (const i of supports)
+      if (hasVisible[i]) c.fillRect(drawn.x[i] - side, drawn.y[i] - side, 2 * side, 2 * side);
+  }
+
+  function drawMarks(c) {
     if (state.chosen >= 0) {
-      c.strokeStyle = css("--alarm");
+      c.strokeStyle = ink.alarm;
       c.lineWidth = 5;
-      strokeAll(c, [state.chosen], px, py);
+      strokeCable(c, state.chosen, drawn);
     }
     if (!state.picked) return;
     const { kind, index } = state.picked;
-    c.strokeStyle = css("--ink");
+    c.strokeStyle = ink.ink;
     c.lineWidth = kind === "node" ? 2 : 4;
-    if (kind === "cable") return strokeAll(c, [index], px, py);
+    if (kind === "cable") return strokeCable(c, index, drawn);
     c.beginPath();
-    c.arc(px[index], py[index], 7, 0, 7);
+    c.arc(drawn.x[index], drawn.y[index], 7, 0, 7);
     c.stroke();
   }
 
-  function drawAxes(c) {
-    const a = (view.yaw * Math.PI) / 180,
-      b = (view.pitch * Math.PI) / 180,
-      length = 26,
+  function drawArm(c, name, dx, dy) {
+    const length = 26 / camera.fit,
       x0 = 42,
       y0 = height - 42;
-    const arms = [
-      ["x", Math.cos(a), Math.sin(a) * Math.sin(b)],
-      ["y", Math.sin(a), -Math.cos(a) * Math.sin(b)],
-      ["z", 0, -Math.cos(b)],
-    ];
-    c.strokeStyle = c.fillStyle = css("--soft");
+    if (Math.hypot(dx, dy) * length < 4) return;
+    c.beginPath();
+    c.moveTo(x0, y0);
+    c.lineTo(x0 + length * dx, y0 + length * dy);
+    c.stroke();
+    c.fillText(name, x0 + 1.4 * length * dx, y0 + 1.4 * length * dy);
+  }
+  function drawAxes(c) {
+    c.strokeStyle = c.fillStyle = ink.soft;
     c.lineWidth = 1.2;
     c.font = "12px system-ui, sans-serif";
     c.textAlign = "center";
     c.textBaseline = "middle";
-    for (const [name, dx, dy] of arms) {
-      if (Math.hypot(dx, dy) < 0.15) continue;
-      c.beginPath();
-      c.moveTo(x0, y0);
-      c.lineTo(x0 + length * dx, y0 + length * dy);
-      c.stroke();
-      c.fillText(name, x0 + (length + 10) * dx, y0 + (length + 10) * dy);
-    }
+    drawArm(c, "x", camera.ax, camera.bx);
+    drawArm(c, "y", camera.ay, camera.by);
+    drawArm(c, "z", 0, camera.bz);
   }
 
-  function draw() {
-    queued = false;
+  function drawAll(c, ratio, isFast) {
+    if (view.fitted) fitZoom();
+    aim();
+    project(drawn);
+    c.clearRect(0, 0, width, height);
+    c.lineCap = isHeavy ? "butt" : "round";
+    if (truss && state.truss) {
+      project(beams);
+      drawTruss(c);
+    }
+    if (state.theory && state.shape && !isFast) {
+      project(ghost);
+      c.strokeStyle = ink.ghost;
+      c.lineWidth = 0.8;
+      strokePart(c, 0, nVisible, ghost);
+    }
+    drawCables(c, ratio, isFast);
+    if (!isFast || supports.length < MANY_LINES / 10) drawSupports(c);
+    drawAxes(c);
+  }
+
+  // isFast: while a net of many lines is turned.
+  function draw(isFast) {
     width = canvas.clientWidth;
     height = canvas.clientHeight;
     if (!width || !height) return;
-    const ratio = printing.matches ? 3 : Math.max(1, devicePixelRatio || 1),
-      c = canvas.getContext("2d");
-    canvas.width = Math.round(width * ratio);
-    canvas.height = Math.round(height * ratio);
-    c.setTransform(ratio, 0, 0, ratio, 0, 0);
-    c.lineCap = "round";
-    const project = place();
-    chooseVisible();
-    if (truss && state.truss) drawTruss(c, project);
-    if (state.theory || !state.shape) {
-      c.strokeStyle = css("--ghost");
-      c.lineWidth = 0.8;
-      strokeAll(c, visible, tx, ty);
+    const ratio = printing.matches ? 3 : isFast ? 1 : Math.max(1, devicePixelRatio || 1),
+      c = canvas.getContext("2d"),
+      across = Math.round(width * ratio),
+      down = Math.round(height * ratio);
+    if (canvas.width !== across || canvas.height !== down) {
+      Object.assign(canvas, { width: across, height: down });
+      isStill = false;
     }
-    if (state.shape) drawCables(c);
-    drawNodes(c);
-    drawAxes(c);
-    drawLegend();
+    c.setTransform(ratio, 0, 0, ratio, 0, 0);
+    if (isStale) {
+      prepare();
+      isStill = false;
+    }
+    if (isStill) {
+      c.clearRect(0, 0, width, height);
+      c.drawImage(still, 0, 0, width, height);
+    } else {
+      drawAll(c, ratio, isFast);
+    }
+    if (!isStill && !isFast) {
+      Object.assign(still, { width: across, height: down });
+      still.getContext("2d").drawImage(canvas, 0, 0);
+      isStill = true;
+    }
+    drawMarks(c);
     showTip();
   }
-  const redraw = () => {
-    if (!queued) requestAnimationFrame(draw);
+  function drawNow() {
+    isStale = true;
+    draw(false);
+  }
+  function onFrame() {
+    queued = false;
+    draw(isHeavy && resting !== 0);
+  }
+  const request = () => {
+    if (!queued) requestAnimationFrame(onFrame);
     queued = true;
   };
+  function rest() {
+    resting = 0;
+    isStill = false;
+    request();
+  }
+  // The net is seen from elsewhere.
+  function move() {
+    isStill = false;
+    if (isHeavy) {
+      clearTimeout(resting);
+      resting = setTimeout(rest, REST_MS);
+    }
+    request();
+  }
+  // Something about it is drawn otherwise.
+  function redraw() {
+    isStale = true;
+    request();
+  }
 
   function drawLegend() {
     scaleLabel(state.scale);
@@ -291,10 +379,10 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   // ---- what is under the pointer, and its values ----
 
   function segmentDistance(x, y, e) {
-    const ax = px[end[2 * e]],
-      ay = py[end[2 * e]],
-      bx = px[end[2 * e + 1]] - ax,
-      by = py[end[2 * e + 1]] - ay;
+    const ax = drawn.x[end[2 * e]],
+      ay = drawn.y[end[2 * e]],
+      bx = drawn.x[end[2 * e + 1]] - ax,
+      by = drawn.y[end[2 * e + 1]] - ay;
     const t = Math.max(0, Math.min(1, ((x - ax) * bx + (y - ay) * by) / (bx * bx + by * by || 1)));
     return Math.hypot(x - ax - t * bx, y - ay - t * by);
   }
@@ -302,12 +390,13 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     let best = null,
       least = 9;
     for (let i = 0; i < n; i++) {
-      const d = hasVisible[i] ? Math.hypot(px[i] - x, py[i] - y) : Infinity;
+      const d = hasVisible[i] ? Math.hypot(drawn.x[i] - x, drawn.y[i] - y) : Infinity;
       if (d < least) [least, best] = [d, { kind: "node", index: i }];
     }
     if (best) return best;
     least = 6;
-    for (const e of visible) {
+    for (let k = 0; k < nVisible; k++) {
+      const e = order[k];
       const d = segmentDistance(x, y, e);
       if (d < least) [least, best] = [d, { kind: "cable", index: e }];
     }
@@ -315,7 +404,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   }
 
   function describeNode(i) {
-    const t = theory.slice(3 * i, 3 * i + 3),
+    const t = Array.from(theory.slice(3 * i, 3 * i + 3)),
       shape = state.shape,
       d = shape ? shape.displacement_m : [];
     const at = t.map((v, k) => fmt(v + (shape ? d[3 * i + k] : 0), 6)).join(", ");
@@ -353,15 +442,15 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     placeTip(tip, x, y, kind === "node" ? describeNode(index) : describeCable(index));
   }
   function screenOf(kind, index) {
-    if (kind === "node") return [px[index], py[index]];
+    if (kind === "node") return [drawn.x[index], drawn.y[index]];
     const [i, j] = [end[2 * index], end[2 * index + 1]];
-    return [(px[i] + px[j]) / 2, (py[i] + py[j]) / 2];
+    return [(drawn.x[i] + drawn.x[j]) / 2, (drawn.y[i] + drawn.y[j]) / 2];
   }
   function select(picked) {
     const same = state.picked && picked && state.picked.kind === picked.kind && state.picked.index === picked.index;
     if (same || (!state.picked && !picked)) return;
     state.picked = picked;
-    redraw();
+    request();
   }
 
   // Marks a cable for good: view.onChoose tells the table.
@@ -369,78 +458,26 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     state.chosen = e;
     state.picked = null;
     if (e >= 0) state.picked = { kind: "cable", index: e };
-    redraw();
+    request();
   }
   function chooseFound() {
     const e = state.picked && state.picked.kind === "cable" ? state.picked.index : -1;
     state.chosen = e;
     if (handle.onChoose) handle.onChoose(e);
-    redraw();
+    request();
   }
-
-  // ---- pointer and keys ----
-
-  const pointers = new Map();
-  let pinch = 0,
-    dragged = false;
-  const spread = () => {
-    const [a, b] = [...pointers.values()];
-    return Math.hypot(a.x - b.x, a.y - b.y);
-  };
-  canvas.addEventListener("pointerdown", (event) => {
-    pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    dragged = false;
-    canvas.setPointerCapture(event.pointerId);
-    canvas.classList.add("dragging");
-    if (pointers.size === 2) pinch = spread();
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    const at = pointers.get(event.pointerId),
-      frame = canvas.getBoundingClientRect();
-    if (!at) return select(pick(event.clientX - frame.left, event.clientY - frame.top));
-    dragged = true;
-    const dx = event.clientX - at.x,
-      dy = event.clientY - at.y;
-    pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    if (pointers.size === 2) {
-      zoom(spread() / pinch);
-      pinch = spread();
-    } else if (event.shiftKey || event.buttons === 2) pan(dx, dy);
-    else turn(0.4 * dx, 0.4 * dy);
-  });
-  for (const name of ["pointerup", "pointercancel"])
-    canvas.addEventListener(name, (event) => {
-      const frame = canvas.getBoundingClientRect();
-      pointers.delete(event.pointerId);
-      canvas.classList.remove("dragging");
-      if (dragged) return;
-      select(pick(event.clientX - frame.left, event.clientY - frame.top)); // a tap or click
-      chooseFound();
-    });
-  canvas.addEventListener("pointerleave", (event) => {
-    if (event.pointerType !== "touch") select(null);
-  });
-  canvas.addEventListener(
-    "wheel",
-    (event) => {
-      event.preventDefault();
-      const frame = canvas.getBoundingClientRect();
-      zoom(Math.exp(-0.0015 * event.deltaY), event.clientX - frame.left, event.clientY - frame.top);
-    },
-    { passive: false },
-  );
 
   function turn(yaw, pitch) {
     view.fitted = false;
     view.yaw = (view.yaw + yaw) % 360;
     view.pitch = Math.max(-90, Math.min(90, view.pitch + pitch));
-    redraw();
+    move();
   }
   function pan(dx, dy) {
     view.fitted = false;
     view.panX += dx;
     view.panY += dy;
-    redraw();
+    move();
   }
   // Zooms about a point of the picture: that point stays where it is.
   function zoom(factor, x = width / 2, y = height / 2) {
@@ -450,44 +487,24 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     const k = view.zoom / before;
     view.panX = (view.panX + width / 2 - x) * k + x - width / 2;
     view.panY = (view.panY + height / 2 - y) * k + y - height / 2;
-    redraw();
+    move();
   }
   function look(yaw, pitch) {
     Object.assign(view, { yaw, pitch, fitted: true });
-    redraw();
+    isStill = false;
+    request();
   }
   function step(kind, by) {
     const count = kind === "node" ? n : m,
       at = state.picked && state.picked.kind === kind ? state.picked.index : -1;
     select({ kind, index: at < 0 ? (by > 0 ? 0 : count - 1) : (at + by + count) % count });
   }
-  canvas.addEventListener("keydown", (event) => {
-    const far = event.shiftKey,
-      keys = {
-        ArrowLeft: () => (far ? pan(-30, 0) : turn(-5, 0)),
-        ArrowRight: () => (far ? pan(30, 0) : turn(5, 0)),
-        ArrowUp: () => (far ? pan(0, -30) : turn(0, -5)),
-        ArrowDown: () => (far ? pan(0, 30) : turn(0, 5)),
-        "+": () => zoom(1.2),
-        "=": () => zoom(1.2),
-        "-": () => zoom(1 / 1.2),
-        0: () => look(-35, 32),
-        n: () => step("node", 1),
-        N: () => step("node", -1),
-        c: () => step("cable", 1),
-        C: () => step("cable", -1),
-        Enter: chooseFound,
-        Escape: () => select(null),
-      };
-    if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
-    event.preventDefault();
-    keys[event.key]();
-  });
 
-  new ResizeObserver(redraw).observe(canvas);
+  netHand(canvas, { turn, pan, zoom, look, step, pick, select, chooseFound });
+  new ResizeObserver(rest).observe(canvas);
   darkScheme.addEventListener("change", redraw);
-  printing.addEventListener("change", draw);
-  addEventListener("beforeprint", draw);
+  printing.addEventListener("change", drawNow);
+  addEventListener("beforeprint", drawNow);
   addEventListener("afterprint", redraw);
   const handle = { state, view, redraw, zoom, look, screenOf, radius, choose };
   return handle;

@@ -1,6 +1,9 @@
 // Contents: tables that are sorted by a click on a heading, and searched
 
-// A table of n rows, of which at most `most` are shown until the reader asks for all.
+const ROWS_AT_ONCE = 100;
+
+// A table of n rows, of which at most `most` are shown until the reader asks for all; of all those are made that are
+// scrolled to.
 //   columns: { name, number: right-aligned, of: (i) -> value to sort by, show: (i) -> text or node of the cell }
 //   by: the column that it is sorted by at first, largest value first; -1: none, in the order of the rows
 //   search: what the field of the search says
@@ -8,8 +11,10 @@
 //   words: (i) -> text that a search looks in; without it there is no search
 // Returns the node, and first(i): puts row i at the top and marks it; -1: none.
 function sortableTable({ caption, columns, n, by, words, search: hint = "name or family", most = 25 }) {
-  const state = { by, falls: true, text: "", all: false, first: -1 };
-  const texts = words && Array.from({ length: n }, (_, i) => words(i).toLowerCase());
+  const state = { by, falls: true, text: "", all: false, first: -1, order: [], made: 0 };
+  const every = Array.from({ length: n }, (_, i) => i),
+    letters = new Intl.Collator("en", { numeric: true });
+  let texts = null; // made by the first search
   const body = el("tbody", {}),
     more = el("button", { type: "button" }),
     said = el("span", { class: "muted", role: "status" });
@@ -30,7 +35,7 @@ function sortableTable({ caption, columns, n, by, words, search: hint = "name or
       hasU = u !== null && u !== undefined && !Number.isNaN(u),
       hasV = v !== null && v !== undefined && !Number.isNaN(v);
     if (!hasU || !hasV) return hasV - hasU || a - b;
-    const order = typeof u === "string" ? u.localeCompare(v, "en", { numeric: true }) : u < v ? -1 : u > v ? 1 : 0;
+    const order = typeof u === "string" ? letters.compare(u, v) : u < v ? -1 : u > v ? 1 : 0;
     return (state.falls ? -order : order) || a - b;
   }
 
@@ -45,19 +50,32 @@ function sortableTable({ caption, columns, n, by, words, search: hint = "name or
     return el("tr", { class: i === state.first ? "chosen" : undefined }, cells);
   }
 
+  // More rows, as long as the end of those that are there is less than `far` below the upper edge of the screen.
+  function makeRows(far = 2 * innerHeight) {
+    const { order } = state,
+      limit = state.all ? order.length : Math.min(most, order.length);
+    while (state.made < limit && (state.made < most || body.getBoundingClientRect().bottom < far)) {
+      const next = order.slice(state.made, Math.min(limit, state.made + (state.made < most ? most : ROWS_AT_ONCE)));
+      body.append(...next.map(row));
+      state.made += next.length;
+    }
+  }
+
   function redraw() {
-    const order = Array.from({ length: n }, (_, i) => i)
-      .filter((i) => !state.text || texts[i].includes(state.text))
-      .sort(state.by < 0 ? (a, b) => a - b : compare);
+    if (state.text && !texts) texts = every.map((i) => words(i).toLowerCase());
+    const order = every.filter((i) => !state.text || texts[i].includes(state.text));
+    if (state.by >= 0) order.sort(compare);
     if (state.first >= 0) order.unshift(...order.splice(order.indexOf(state.first) >>> 0, 1));
-    const list = state.all ? order : order.slice(0, most);
-    body.replaceChildren(...list.map(row));
+    Object.assign(state, { order, made: 0 });
+    body.replaceChildren();
+    makeRows();
     heads.forEach((head, k) =>
       k === state.by
         ? head.setAttribute("aria-sort", state.falls ? "descending" : "ascending")
         : head.removeAttribute("aria-sort"),
     );
-    said.textContent = `${fmtCount(list.length)} of ${fmtCount(order.length)}${state.text ? " found" : ""}`;
+    const listed = state.all ? order.length : Math.min(most, order.length);
+    said.textContent = `${fmtCount(listed)} of ${fmtCount(order.length)}${state.text ? " found" : ""}`;
     more.hidden = order.length <= most;
     more.textContent = state.all ? "show fewer" : "show all";
   }
@@ -71,6 +89,8 @@ function sortableTable({ caption, columns, n, by, words, search: hint = "name or
     state.text = search.value.trim().toLowerCase();
     redraw();
   });
+  addEventListener("scroll", () => state.all && makeRows(), { passive: true });
+  addEventListener("beforeprint", () => makeRows(Infinity));
   redraw();
   return {
     node: el(

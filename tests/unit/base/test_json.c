@@ -4,6 +4,7 @@
 
 #include "base/json.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -62,6 +63,25 @@ START_TEST(texts_are_escaped)
 }
 END_TEST
 
+/* The letters are those of base64.b64encode(struct.pack("<3f", ...)) in Python, likewise <2i and <1d. */
+START_TEST(numbers_are_packed)
+{
+    char *text;
+    size_t size;
+    FILE *f = open_memstream(&text, &size);
+    hf_json_pack_values("a", "f32", (const double[]){1.5, -0.1, INFINITY}, 3, f);
+    hf_json_pack_values("b", "i32", (const double[]){-2, 70000}, 2, f);
+    hf_json_pack_values("c", "f64", (const double[]){0.1}, 1, f);
+    hf_json_pack_values("d", "f32", NULL, 0, f);
+    hf_json_pack_values("e", "i32", (const double[]){INT_MIN}, 1, f);
+    fclose(f);
+    ck_assert_str_eq(text,
+                     ",\"a\":{\"f32\":\"AADAP83MzL0AAIB/\"},\"b\":{\"i32\":\"/v///"
+                     "3ARAQA=\"},\"c\":{\"f64\":\"mpmZmZmZuT8=\"},\"d\":{\"f32\":\"\"},\"e\":{\"i32\":\"AAAAgA==\"}");
+    free(text);
+}
+END_TEST
+
 Suite *suite_unit_json(void)
 {
     Suite *suite = suite_create("unit/json");
@@ -69,5 +89,6 @@ Suite *suite_unit_json(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, commas_stand_between_items);
     tcase_add_test(tests, texts_are_escaped);
+    tcase_add_test(tests, numbers_are_packed);
     return suite;
 }
