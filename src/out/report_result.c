@@ -7,6 +7,7 @@
 #include "base/path.h"
 #include "out/cut.h"
 #include "out/report_page.h"
+#include "out/report_pattern.h"
 #include "solve/facet_rms.h"
 #include "store/store_read.h"
 #include "store/store_series.h"
@@ -51,6 +52,7 @@ typedef struct page {
     hf_facets facets;                     /* none without measures of the surface */
     hf_facet_errors facet_error[N_SHAPE]; /* of each shape, in facet_block */
     void *facet_block;
+    hf_pattern_table pattern[HF_STAGE_NONE];                   /* without angles: none */
     hf_series psi_by_cut;                                      /* [n_cable] of the net as built, or none */
     hf_series cable_share;                                     /* [n_cable] of the error of the net as built, or none */
     hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or none, [m][2] */
@@ -236,6 +238,17 @@ static void write_series(const page *p, FILE *f)
     }
 }
 
+static void write_patterns(const page *p, FILE *f)
+{
+    int n = 0;
+    for (int i = 0; i < HF_STAGE_NONE; i++) {
+        if (!p->pattern[i].n_theta) continue;
+        fputs(n++ ? ",\n" : ",\n\"pattern\":[", f);
+        hf_report_pattern_write(hf_stage_word[i], &p->summary.pattern[i], &p->pattern[i], f);
+    }
+    if (n) fputc(']', f);
+}
+
 /* ---- the page, and another ---- */
 
 static void write_case(const page *p, FILE *f)
@@ -254,6 +267,7 @@ static void write_other(const page *p, const page *other, FILE *f)
     fputs(",\"summary\":", f);
     hf_summary_write_json(&other->summary, other->summary.form.status, other->summary.warnings, other->path, f);
     if (!hf_scene_difference(&p->scene, &other->scene)) write_shapes(other, HF_STAGE_NONE, f);
+    write_patterns(other, f);
     fputc('}', f);
 }
 
@@ -276,6 +290,7 @@ static void write_data(const void *context, FILE *f)
     write_shapes(p, N_SHAPE, f);
     write_truss(p, f);
     write_series(p, f);
+    write_patterns(p, f);
     if (p->other) write_other(p, p->other, f);
     fputs("}\n", f);
 }
@@ -325,6 +340,14 @@ static hf_status read_states(page *p, hf_messages *messages)
     return HF_OK;
 }
 
+static hf_status read_patterns(page *p, hf_messages *messages)
+{
+    for (int i = 0; i < HF_STAGE_NONE; i++)
+        if (p->summary.pattern[i].n_frequency)
+            HF_TRY(hf_store_read_pattern(p->path, (hf_stage)i, &p->pattern[i], messages));
+    return HF_OK;
+}
+
 static void lay_out_facets(hf_arena *a, page *p)
 {
     size_t n = (size_t)p->facets.n_facet;
@@ -362,6 +385,7 @@ static hf_status read_page(page *p, hf_messages *messages)
     HF_TRY(hf_store_read_texts(p->path, "/case/overrides", &p->overrides, messages));
     HF_TRY(read_shapes(p, messages));
     HF_TRY(read_states(p, messages));
+    HF_TRY(read_patterns(p, messages));
     if (map_facets(p) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", p->path);
     for (int i = 0; i < N_SERIES; i++)
         HF_TRY(hf_store_read_series(p->path, series_table[i].path, 1, &p->series[i], messages));
@@ -379,6 +403,8 @@ static void free_page(page *p)
         hf_shape_free(&p->shape[i]);
     for (int k = 0; k < HF_STATES_MAX; k++)
         hf_series_free(&p->state_displacement[k]);
+    for (int i = 0; i < HF_STAGE_NONE; i++)
+        hf_pattern_table_free(&p->pattern[i]);
     for (int i = 0; i < N_SERIES; i++)
         hf_series_free(&p->series[i]);
     hf_series_free(&p->psi_by_cut);

@@ -4,6 +4,7 @@
 //   title: what must stand on it, to the letter
 //   warnings, slack: how many it must tell of
 //   rounding: the deviations of its result are nothing else
+//   pattern: how many charts of its far field, of how many neighbouring angles each
 //   facets: how many, all triangles; off: families of cables whose switches are tried
 //   other: how the case of a second result differs, with which it is compared; unlike: in its figures, too
 //   bytes_max: how large it may be, if more than usual; fluid: it is only looked at how fast it is
@@ -121,6 +122,19 @@ export const pages = [
     sections: [...FORM.slice(0, -1), "coupling", "provenance"],
     rounding: true,
     off: ["rear", "rear edge", "tie"],
+  },
+  {
+    name: "pattern", // more angles than a screen shows, more cuts than there are colours; one cut too coarse to tell
+    text:
+      "scene:\n  paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 3, rear_distance_m: 1.8}\nform: {prestress: " +
+      "exact}\ntruss: {ring: {cells_per_bay: 2, held: bay, longeron: {diameter_m: 0.03, wall_m: 0.001}}}\nsurface: " +
+      "{frequencies_Hz: [2e9, 40e9], pattern: {theta_deg: [-80, 80], n_theta: 2401, phi_deg: [0, 45, 90, 135, 20]}}\n" +
+      "optimize: {method: lm, variables: [{set: all, vary: force_density, range: 50 %}]}\n",
+    sections: ["net", "cables", "map", "tensions", "far-field", "summary", "form-finding", "coupling", "provenance"],
+    off: ["rear", "rear edge", "tie"],
+    facets: 54,
+    rounding: true,
+    pattern: { charts: 4, neighbours: 3 },
   },
   {
     name: "sweep",

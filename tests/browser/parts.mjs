@@ -1,6 +1,7 @@
 // Parts of a page that only some results have.
 import assert from "node:assert/strict";
-import { picture } from "./see.mjs";
+import { join } from "node:path";
+import { csv, number, picture, same, settle } from "./see.mjs";
 
 // Nodes whose deviations are rounding have one colour, and the page says so; another shape of the page has a scale. Of
 // the two nets in space only the front counts.
@@ -23,4 +24,50 @@ export async function checkRounding(tab) {
     assert.ok(many > one + 20, `${part}: ${one} colours of rounding, ${many} of deviations`);
   }
   await tab.reload();
+}
+
+// Every line of the far field has the values of the exported table, of neighbouring angles the highest; the table of
+// cuts has the figures of the summary.
+export async function checkPattern(tab, page, made) {
+  const { charts, neighbours } = page.pattern,
+    stages = { form: "found", polish: "LM optimum" };
+  assert.equal(await tab.locator("#far-field .chart").count(), charts);
+  assert.equal(await tab.locator("#far-field h3").nth(1).textContent(), "2 GHz, φ 135°");
+  const cells = await tab
+      .locator("#far-field tbody tr")
+      .evaluateAll((all) => all.map((row) => [...row.children].map((c) => c.textContent))),
+    figures = Object.keys(stages).flatMap((stage) => made.summary[stage].pattern.map((cut) => ({ ...cut, stage })));
+  figures.sort((a, b) => a.frequency_Hz - b.frequency_Hz || a.phi_deg - b.phi_deg);
+  assert.equal(cells.length, figures.length);
+  assert.ok(figures.some((cut) => cut.half_power_width_deg === null));
+  figures.forEach((cut, k) => {
+    const [frequency, phi, shape, gain, beam, ...rest] = cells[k];
+    assert.deepEqual(
+      [number(frequency), number(phi), shape],
+      [cut.frequency_Hz / 1e9, cut.phi_deg, stages[cut.stage].replace(" ", "\u00a0")],
+    );
+    assert.ok(Math.abs(number(gain) - cut.gain_dBi) < 6e-4 && Math.abs(number(beam) - cut.beam_deg) < 6e-5);
+    [cut.half_power_width_deg, cut.first_sidelobe_dB, cut.highest_sidelobe_dB].forEach((v, c) =>
+      v === null ? assert.equal(rest[c], "–") : assert.ok(Math.abs(number(rest[c]) - v) < 6e-3),
+    );
+  });
+  const picture = tab.locator("#far-field .chart").first(),
+    at = 401; // near the beam
+  assert.match(await picture.locator(".legend").innerText(), /φ 0°, found/);
+  await picture.locator("svg[tabindex]").focus();
+  for (let i = 0; i <= at; i++) await tab.keyboard.press("ArrowRight");
+  await settle(tab);
+  const said = await picture.locator(".tip tr").evaluateAll((all) => all.map((r) => r.innerText.split("\t")));
+  assert.equal(said.length, 8);
+  for (const [stage, name] of Object.entries(stages)) {
+    made.hifdm("export", "result.h5", "--pattern", "pattern.csv", "--stage", stage, "--force");
+    const table = csv(join(made.folder, "pattern.csv")).filter((row) => row.frequency_Hz === "2000000000");
+    for (const phi of [0, 20, 45, 90]) {
+      const cut = table.filter((row) => Number(row.phi_deg) === phi),
+        near = cut.slice(neighbours * at, neighbours * (at + 1)).map((row) => Number(row.co_dBi)),
+        [, shown] = said.find(([heading]) => heading === `φ ${phi}°, ${name}`);
+      same(number(shown), Math.max(...near), 5);
+    }
+  }
+  await tab.keyboard.press("Escape");
 }

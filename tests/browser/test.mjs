@@ -8,7 +8,7 @@ import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { checkFluid } from "./large.mjs";
 import { pages } from "./pages.mjs";
-import { checkRounding } from "./parts.mjs";
+import { checkPattern, checkRounding } from "./parts.mjs";
 import { csv, number, picture, same, settle, tip } from "./see.mjs";
 
 const { HIFDM, CHROMIUM, WORK } = process.env;
@@ -660,6 +660,7 @@ async function test(browser, page) {
     if (page.rounding) await checkRounding(tab);
     else await checkMap(tab, made);
     if (page.facets) await checkFacets(tab, page, made);
+    if (page.pattern) await checkPattern(tab, page, made);
     if (made.summary.tolerance) await checkTolerance(tab, made);
     await checkUnknownFigure(browser, made, folder);
   }

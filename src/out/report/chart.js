@@ -38,6 +38,7 @@ function placeTip(tip, x, y, content) {
 //   bars: half the width of a bar around each x, from 0 up
 // marks: { name, at, colour, dash } of vertical lines, which the axis of x includes
 // colour: a variable of the page's style, or a function that returns red, green and blue
+// floor: what lies below is under the picture
 // x is in rising order; counted: x are whole numbers; log: "auto" = logarithmic when the values span a factor over 20
 let clips = 0;
 const paint = (colour) => (typeof colour === "function" ? rgb(colour()) : `var(${colour})`);
@@ -45,9 +46,10 @@ const LINES_MAX = 12, // lines of a tooltip
   MARKED_MAX = 16; // a curve with up to so many points gets marks besides its line
 
 function chart(options) {
-  const { title, caption, xLabel, yLabel, unit = "", x, series, marks = [], counted = true, head } = options;
+  const { title, caption, xLabel, yLabel, unit = "", x, series, marks = [], counted = true, head, floor } = options;
   let { log = "auto" } = options;
-  const leading = series.filter((s) => !s.free).flatMap((s) => (s.bars === undefined ? s.values : [0, ...s.values])),
+  const shownOf = (s) => (floor === undefined ? s.values : s.values.map((v) => (v < floor ? floor : v))),
+    leading = series.filter((s) => !s.free).flatMap((s) => (s.bars === undefined ? shownOf(s) : [0, ...s.values])),
     positive = range(leading.filter((v) => v > 0));
   const clip = `clip-${++clips}`;
   if (!range(leading) && !leading.includes(Infinity)) return null; // nothing to draw
@@ -166,6 +168,7 @@ function chart(options) {
     point(cursor);
   }
 
+  const isInside = (at) => at >= 0 && at <= 1;
   function point(i) {
     cursor = i;
     const group = picture.querySelector(".at");
@@ -177,7 +180,7 @@ function chart(options) {
     const px = place.sx(x[i]),
       here = series.filter((s) => typeof s.values[i] === "number");
     const shown = here.filter(
-      (s) => Number.isFinite(s.values[i]) && place.yAxis.has(s.values[i]) && place.yAxis.at(s.values[i]) <= 1,
+      (s) => Number.isFinite(s.values[i]) && place.yAxis.has(s.values[i]) && isInside(place.yAxis.at(s.values[i])),
     );
     fill(group, {}, [
       svg("line", { class: "cursor", x1: px, x2: px, y1: margin.top, y2: place.bottom }),

@@ -310,6 +310,7 @@ if (data.study) {
   writeCases();
   writeTolerance();
   writeFront();
+  writePattern();
   writeSummary();
   writeHistory(); // how it was found
   writeGa();
