@@ -88,6 +88,11 @@ hf_status hf_config_surface(const hf_case *settings, const hf_scene *scene, hf_s
 hf_status hf_config_material(const hf_case *settings, const hf_scene *scene, hf_material *material,
                              hf_messages *messages);
 
+/* Has the truss members of this part, and is their expansion known? HF_OK; HF_BAD_CASE with a message that begins with
+ * `where` and ends with `other`, what may be done instead. Warns of a table in which none of them expands. */
+hf_status hf_config_demand_expansion(const hf_case *settings, const hf_truss *truss, hf_part part, const char *where,
+                                     const char *other, hf_messages *messages);
+
 /* The states that the rows of `cases` describe, with their material; truss: NULL when there is none. A case without
  * rows has none. HF_BAD_CASE for rows that name nothing of this net or truss, for cables without EA, for temperatures
  * of what has no known expansion, for gravity on what has no known mass; HF_NO_MEMORY. Free them in any case. */

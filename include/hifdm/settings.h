@@ -291,6 +291,14 @@ typedef struct {
 
 #define HF_REQUIRE_ROWS_MAX 8
 
+/* A row of tolerance.truss: a temperature of its own of all members of a part. */
+typedef struct {
+    int part; /* from HF_PART_TRUSS on: 0 is the whole truss, 1 + k the members of hf_unit k */
+    double sigma_temperature_K;
+} hf_truss_heat_settings;
+
+#define HF_TRUSS_HEAT_ROWS_MAX 8 /* each part once */
+
 /* Errors of the net as built; standard deviations, whatever the distribution. */
 typedef struct {
     double sigma_cut_m, sigma_cut_ratio; /* of cut lengths: absolute, and over the length */
@@ -303,8 +311,9 @@ typedef struct {
     uint64_t seed;
     hf_sampling sampling;
     double yield; /* part of the nets that should meet what is required; 0 = not asked for */
-    int n_require;
+    int n_require, n_truss;
     hf_require_settings require[HF_REQUIRE_ROWS_MAX];
+    hf_truss_heat_settings truss[HF_TRUSS_HEAT_ROWS_MAX];
 } hf_tolerance_settings;
 
 #define HF_LIST_MAX 32

@@ -38,7 +38,7 @@ typedef struct {
 #define HF_TOLERANCE_RANKED 20 /* cables that are named */
 #define HF_TOLERANCE_BINS 40   /* of the histogram of psi */
 #define HF_TOLERANCE_ID_SIZE 256
-#define HF_TOLERANCE_KINDS 7 /* of errors */
+#define HF_TOLERANCE_KINDS 8 /* of errors */
 extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS];
 
 /* X(type, member, kind, json, key, description), as the lists of summary.h. */

@@ -70,6 +70,12 @@ typedef struct {
     void *block, *text;                    /* owned memory behind all of the above */
 } hf_truss;
 
+/* Is member i_member of this part, from HF_PART_UNIT on of one unit? */
+static inline bool hf_truss_is_of(const hf_truss *truss, int i_member, hf_part part)
+{
+    return part < HF_PART_UNIT || (int)truss->unit[i_member] == (int)part - HF_PART_UNIT;
+}
+
 /* ---- the generated trusses ---- */
 
 typedef enum { HF_DIAGONALS_NONE, HF_DIAGONALS_SINGLE, HF_DIAGONALS_CROSSED } hf_diagonals;

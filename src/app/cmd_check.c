@@ -238,9 +238,12 @@ static void print_tolerance(const hf_case *c, FILE *f)
     if (!c->has_tolerance) return;
     fprintf(f, "                as built: %d nets (%s numbers, %s errors, seed %llu)", t->samples,
             hf_sampling_word[t->sampling], hf_distribution_word[t->distribution], (unsigned long long)t->seed);
-    for (int k = 0, n = 0; k < (int)(sizeof sigma / sizeof *sigma); k++) {
+    int n = 0;
+    for (int k = 0; k < (int)(sizeof sigma / sizeof *sigma); k++)
         if (sigma[k] > 0) fprintf(f, "%s %s %g%s", n++ ? "," : ";", of[k][0], sigma[k], of[k][1]);
-    }
+    for (int k = 0; k < t->n_truss; k++)
+        fprintf(f, "%s temperature of %s %g K", n++ ? "," : ";", hf_part_word[HF_PART_TRUSS + t->truss[k].part],
+                t->truss[k].sigma_temperature_K);
     fprintf(f, "\n");
 }
 

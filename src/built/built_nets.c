@@ -104,7 +104,7 @@ static hf_status make_room_for(nets_room *r, const hf_workspace *w)
     HF_TRY(hf_built_batch_create(&r->built, 1, &r->batch));
     r->linear.built = &r->built;
     if (nets->as.n_sample > 0) {
-        HF_TRY(hf_built_errors_make(&r->linear, nets->tolerance, nets->expansion_per_K, &r->errors));
+        HF_TRY(hf_built_errors_make(&r->linear, nets->tolerance, &nets->heat, &r->errors));
         HF_TRY(HF_ARENA_MAKE(&arena, lay_out_numbers(&arena, r)));
         r->more = arena.block;
     }
@@ -138,12 +138,6 @@ static void make_state(nets_room *r, int i, hf_built_net *net)
                    net);
 }
 
-static unsigned what_varies(const hf_built_nets *nets)
-{
-    return (nets->tolerance->sigma_EA_ratio > 0 ? HF_BUILT_VARIES_EA : 0u) |
-           (nets->tolerance->sigma_support_m > 0 ? HF_BUILT_VARIES_SUPPORTS : 0u);
-}
-
 static void make_net(nets_room *r, int i_net, hf_built_net *net)
 {
     const hf_model *m = &r->built.model;
@@ -152,7 +146,7 @@ static void make_net(nets_room *r, int i_net, hf_built_net *net)
         make_state(r, i_net, net);
         return;
     }
-    unsigned varies = what_varies(r->nets);
+    unsigned varies = hf_built_errors_vary(&r->errors);
     *net = (hf_built_net){.cut_m = r->cut_m,
                           .EA_N = varies & HF_BUILT_VARIES_EA ? r->EA_N : NULL,
                           .support_move_m = varies & HF_BUILT_VARIES_SUPPORTS ? r->move_m : NULL};
@@ -221,7 +215,8 @@ static void solve_nets(void *room, int first, int n, hf_goals_take *take, void *
     r->take = take;
     r->context = context;
     if (i < first + n)
-        hf_built_batch_run(r->batch, what_varies(r->nets), i - n_state, first + n - i, make_in_lane, take_from_lane, r);
+        hf_built_batch_run(r->batch, hf_built_errors_vary(&r->errors), i - n_state, first + n - i, make_in_lane,
+                           take_from_lane, r);
 }
 
 /* ---- derivatives ---- */
@@ -347,7 +342,7 @@ static void follow_net(void *room, int n, const hf_goals_rate *by, hf_goals_rate
 
 void hf_built_nets_make(const hf_scene *scene, const hf_model *model, const hf_form_settings *form,
                         const hf_states *states, const double *attachment_move_m,
-                        const hf_tolerance_settings *tolerance, const double *expansion_per_K, int n_sample,
+                        const hf_tolerance_settings *tolerance, const hf_built_heat *heat, int n_sample,
                         hf_built_nets *nets)
 {
     int n_state = states ? states->n : 0;
@@ -366,7 +361,7 @@ void hf_built_nets_make(const hf_scene *scene, const hf_model *model, const hf_f
                             .states = states,
                             .tolerance = tolerance,
                             .attachment_move_m = attachment_move_m,
-                            .expansion_per_K = expansion_per_K};
+                            .heat = *heat};
     for (int i = 0; i < n_state; i++)
         nets->name[i] = states->state[i].name;
 }

@@ -19,14 +19,14 @@ typedef struct {
     const hf_states *states;
     const hf_tolerance_settings *tolerance;
     const double *attachment_move_m; /* [n_state][3 n_attachment] how far the truss alone moves them; NULL without */
-    const double *expansion_per_K;   /* [n_cable] for errors of temperature, or NULL */
+    hf_built_heat heat;              /* what temperatures of samples do */
     const char *name[HF_STATES_MAX];
 } hf_built_nets;
 
 /* All but n_sample is borrowed; `states` and `tolerance` may be NULL where there are none of them. */
 void hf_built_nets_make(const hf_scene *scene, const hf_model *model, const hf_form_settings *form,
                         const hf_states *states, const double *attachment_move_m,
-                        const hf_tolerance_settings *tolerance, const double *expansion_per_K, int n_sample,
+                        const hf_tolerance_settings *tolerance, const hf_built_heat *heat, int n_sample,
                         hf_built_nets *nets);
 
 #endif

@@ -13,7 +13,7 @@
  * ones, the faster means converge. */
 #define ROUNDS 6
 /* In place of the kind of an error, for numbers that belong to the sequence. */
-enum { SHIFTS = HF_ERROR_N_KIND, LAST_BITS, STARTS };
+enum { SHIFTS = HF_ERROR_STREAMS, LAST_BITS, STARTS };
 
 /* ---- leading directions ---- */
 

@@ -15,10 +15,11 @@
 
 static void lay_out_errors(hf_arena *arena, const hf_model *m, hf_built_errors *e)
 {
-    size_t n = (size_t)m->n_cable;
+    size_t n = (size_t)m->n_cable, n_attachment = (size_t)m->n_attachment;
     e->spool = hf_arena_take(arena, n, sizeof(int));
     e->support = hf_arena_take(arena, (size_t)(m->n_node - m->n_free), sizeof(int));
     e->expansion_per_K = hf_arena_take(arena, n, sizeof(double));
+    e->truss_move_m = hf_arena_take(arena, 3 * (size_t)e->n_truss * n_attachment, sizeof(double));
 }
 
 static void find_spools(const hf_scene *s, hf_built_errors *e)
@@ -34,30 +35,44 @@ static void find_spools(const hf_scene *s, hf_built_errors *e)
 static void count_errors(const hf_scene *s, hf_built_errors *e)
 {
     const int count[HF_ERROR_N_KIND] = {s->n_cable, s->n_cable,       e->n_spool, s->n_cable,
-                                        e->n_spool, 3 * e->n_support, 1};
+                                        e->n_spool, 3 * e->n_support, 1,          e->n_truss};
     for (int k = 0; k < HF_ERROR_N_KIND; k++)
         e->first[k + 1] = e->first[k] + (e->sigma[k] > 0 ? count[k] : 0);
 }
 
-hf_status hf_built_errors_make(const hf_built_linear *l, const hf_tolerance_settings *t, const double *expansion_per_K,
+static void heat_truss_parts(const hf_tolerance_settings *t, const double *move_m_per_K, hf_built_errors *e)
+{
+    int n = 3 * e->linear->built->model.n_attachment;
+    for (int k = 0; k < e->n_truss; k++) {
+        e->part[k] = t->truss[k].part;
+        for (int i = 0; i < n; i++)
+            e->truss_move_m[k * n + i] = t->truss[k].sigma_temperature_K * move_m_per_K[k * n + i];
+    }
+}
+
+hf_status hf_built_errors_make(const hf_built_linear *l, const hf_tolerance_settings *t, const hf_built_heat *heat,
                                hf_built_errors *e)
 {
     const hf_scene *s = &l->built->scene;
     const hf_model *m = &l->built->model;
     hf_arena arena = {0};
     double own = sqrt(1 - t->batch), shared = sqrt(t->batch);
+    const hf_built_heat none = {0};
+    if (!heat) heat = &none;
     *e = (hf_built_errors){.linear = l,
                            .distribution = t->distribution,
                            .seed = t->seed,
+                           .n_truss = heat->truss_move_m_per_K ? t->n_truss : 0,
                            .sigma = {t->sigma_cut_m, own * t->sigma_cut_ratio, shared * t->sigma_cut_ratio,
                                      own * t->sigma_EA_ratio, shared * t->sigma_EA_ratio, t->sigma_support_m,
-                                     t->sigma_temperature_K}};
+                                     t->sigma_temperature_K, 1}};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_errors(&arena, m, e)));
     e->block = arena.block;
     find_spools(s, e);
     for (int i = 0; i < s->n_node; i++)
         if (s->role[i] == HF_ROLE_SUPPORT) e->support[e->n_support++] = i;
-    if (expansion_per_K) memcpy(e->expansion_per_K, expansion_per_K, (size_t)s->n_cable * sizeof(double));
+    if (heat->expansion_per_K) memcpy(e->expansion_per_K, heat->expansion_per_K, (size_t)s->n_cable * sizeof(double));
+    heat_truss_parts(t, heat->truss_move_m_per_K, e);
     count_errors(s, e);
     return HF_OK;
 }
@@ -70,6 +85,13 @@ void hf_built_errors_free(hf_built_errors *e)
 }
 
 /* ---- numbers ---- */
+
+unsigned hf_built_errors_vary(const hf_built_errors *e)
+{
+    bool has_EA = e->sigma[HF_ERROR_EA] > 0 || e->sigma[HF_ERROR_EA_BATCH] > 0;
+    return (has_EA ? HF_BUILT_VARIES_EA : 0u) |
+           (e->sigma[HF_ERROR_SUPPORT] > 0 || e->n_truss > 0 ? HF_BUILT_VARIES_SUPPORTS : 0u);
+}
 
 hf_error_kind hf_built_errors_kind(const hf_built_errors *e, int i_error)
 {
@@ -111,9 +133,10 @@ double hf_built_errors_largest_scale(const hf_built_errors *e)
     return 0.5 / (largest * most);
 }
 
-/* By which an error is known: 3 node + component of supports, else its place in its kind. */
+/* By which an error is known: 3 node + component of supports, 1 + part of the truss, else its place in its kind. */
 static int item_of(const hf_built_errors *e, int kind, int i)
 {
+    if (kind == HF_ERROR_TRUSS_TEMPERATURE) return 1 + e->part[i];
     return kind == HF_ERROR_SUPPORT ? 3 * e->support[i / 3] + i % 3 : i;
 }
 
@@ -121,7 +144,8 @@ void hf_built_errors_draw(const hf_built_errors *e, long sample, double *z)
 {
     for (int kind = 0; kind < HF_ERROR_N_KIND; kind++)
         for (int i = e->first[kind]; i < e->first[kind + 1]; i++) {
-            double uniform = hf_built_errors_uniform(e->seed, sample, kind, item_of(e, kind, i - e->first[kind]));
+            int stream = kind == HF_ERROR_TRUSS_TEMPERATURE ? HF_ERROR_TEMPERATURE : kind;
+            double uniform = hf_built_errors_uniform(e->seed, sample, stream, item_of(e, kind, i - e->first[kind]));
             z[i] = hf_built_errors_shape(e->distribution, uniform);
         }
 }
@@ -139,6 +163,16 @@ static double ratio_of(const hf_built_errors *e, hf_error_kind own, hf_error_kin
     return error_of(e, own, i, z) + error_of(e, batch, e->spool[i], z);
 }
 
+/* How far the truss moves number i_move of the attachments, 3 attachment + component. */
+static double truss_move_of(const hf_built_errors *e, int i_move, const double *z)
+{
+    int n = 3 * e->linear->built->model.n_attachment;
+    double sum = 0;
+    for (int k = 0; k < e->n_truss; k++)
+        sum += error_of(e, HF_ERROR_TRUSS_TEMPERATURE, k, z) * e->truss_move_m[k * n + i_move];
+    return sum;
+}
+
 void hf_built_errors_apply(const hf_built_errors *e, double scale, const double *z, double *cut_m, double *EA_N,
                            double *support_move_m)
 {
@@ -153,6 +187,8 @@ void hf_built_errors_apply(const hf_built_errors *e, double scale, const double 
     for (int k = 0; k < 3 * e->n_support && support_move_m && e->sigma[HF_ERROR_SUPPORT] > 0; k++)
         support_move_m[k % 3 * m->n_node + m->row_of_node[e->support[k / 3]]] +=
             scale * error_of(e, HF_ERROR_SUPPORT, k, z);
+    for (int k = 0; k < 3 * m->n_attachment && support_move_m && e->n_truss > 0; k++)
+        support_move_m[k % 3 * m->n_node + m->attachment_row[k / 3]] += scale * truss_move_of(e, k, z);
 }
 
 /* ---- to first order ---- */
@@ -170,6 +206,8 @@ void hf_built_errors_strain(const hf_built_errors *e, double scale, const double
     memset(move_m, 0, l->n_dof * sizeof *move_m);
     for (int k = 0; k < 3 * e->n_support && e->sigma[HF_ERROR_SUPPORT] > 0; k++)
         move_m[3 * m->row_of_node[e->support[k / 3]] + k % 3] = scale * error_of(e, HF_ERROR_SUPPORT, k, z);
+    for (int k = 0; k < 3 * m->n_attachment && e->n_truss > 0; k++)
+        move_m[3 * m->attachment_row[k / 3] + k % 3] += scale * truss_move_of(e, k, z);
 }
 
 /* slope_z of item i of a kind += sigma times rate, where there are such errors. */
@@ -194,4 +232,8 @@ void hf_built_errors_slope(const hf_built_errors *e, const double *strain, const
     }
     for (int k = 0; k < 3 * e->n_support; k++)
         add_slope(e, HF_ERROR_SUPPORT, k, slope[3 * m->row_of_node[e->support[k / 3]] + k % 3], slope_z);
+    for (int k = 0; k < e->n_truss; k++)
+        for (int i = 0, n = 3 * m->n_attachment; i < n; i++)
+            add_slope(e, HF_ERROR_TRUSS_TEMPERATURE, k,
+                      e->truss_move_m[k * n + i] * slope[3 * m->attachment_row[i / 3] + i % 3], slope_z);
 }

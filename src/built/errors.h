@@ -7,9 +7,10 @@
 #define HIFDM_ERRORS_H
 
 #include "built/linear.h"
+#include <hifdm/built_batch.h>
 
-/* X(name, word, items of a kind, what it is). An error of a ratio is the sum of that of the cable and that of its
- * spool, which all its cables share. */
+/* X(name, word, items of a kind). An error of a ratio is the sum of that of the cable and that of its spool, which all
+ * its cables share. */
 #define HF_ERROR_KINDS(X)                                                                                              \
     X(CUT, "cut_m", "cables")                                                                                          \
     X(RATIO, "cut_ratio", "cables")                                                                                    \
@@ -17,11 +18,23 @@
     X(EA, "EA_ratio", "cables")                                                                                        \
     X(EA_BATCH, "EA_ratio_batch", "spools")                                                                            \
     X(SUPPORT, "support_m", "coordinates of supports")                                                                 \
-    X(TEMPERATURE, "temperature_K", "one for all cables")
+    X(TEMPERATURE, "temperature_K", "one for all cables")                                                              \
+    X(TRUSS_TEMPERATURE, "truss_temperature_K", "parts of the truss")
 
 #define HF_ERROR_ENUMERATOR(name, word, items) HF_ERROR_##name,
 typedef enum { HF_ERROR_KINDS(HF_ERROR_ENUMERATOR) HF_ERROR_N_KIND } hf_error_kind;
 #undef HF_ERROR_ENUMERATOR
+
+/* Kinds of numbers below it are errors, others are free for other numbers: temperatures of the truss are of the kind of
+ * that of the cables, items 1 + part. */
+#define HF_ERROR_STREAMS HF_ERROR_TRUSS_TEMPERATURE
+
+/* What temperatures do. Both NULL: nothing of the kind varies. */
+typedef struct {
+    const double *expansion_per_K; /* [n_cable] of cables, needed with sigma_temperature_K */
+    const double
+        *truss_move_m_per_K; /* [n_truss][3 n_attachment] of attachments without any force, by tolerance.truss */
+} hf_built_heat;
 
 typedef struct {
     const hf_built_linear *linear;
@@ -32,19 +45,25 @@ typedef struct {
     int n_spool, *spool;            /* [n_cable] spool of each cable */
     int n_support, *support;        /* [n_support] nodes of the scene, ascending */
     double *expansion_per_K;        /* [n_cable] */
+    int n_truss, part[HF_TRUSS_HEAT_ROWS_MAX]; /* of each row, as in settings */
+    double *truss_move_m;                      /* [n_truss][3 n_attachment] of attachments, by one sigma */
     void *block;
 } hf_built_errors;
 
 /* A spool is a set of cables: the first in the order of names that has the cable, or else its group.
- * expansion_per_K [n_cable] is needed with sigma_temperature_K. HF_OK or HF_NO_MEMORY; free in any case. */
+ * heat: NULL where none varies.
+ * HF_OK or HF_NO_MEMORY; free in any case. */
 hf_status hf_built_errors_make(const hf_built_linear *linear, const hf_tolerance_settings *settings,
-                               const double *expansion_per_K, hf_built_errors *errors);
+                               const hf_built_heat *heat, hf_built_errors *errors);
 void hf_built_errors_free(hf_built_errors *errors);
 
 static inline int hf_built_errors_count(const hf_built_errors *errors)
 {
     return errors->first[HF_ERROR_N_KIND];
 }
+
+/* What of a net they change beside lengths: flags HF_BUILT_VARIES_... */
+unsigned hf_built_errors_vary(const hf_built_errors *errors);
 
 hf_error_kind hf_built_errors_kind(const hf_built_errors *errors, int i_error);
 

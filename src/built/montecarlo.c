@@ -37,22 +37,21 @@ static void choose_sizes(hf_montecarlo *t)
 }
 
 hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b, const hf_surface_settings *surface,
-                               const hf_facets *facets, const double *expansion_per_K, int n_thread, hf_montecarlo *t)
+                               const hf_facets *facets, const hf_built_heat *heat, int n_thread, hf_montecarlo *t)
 {
     hf_arena arena = {0};
     *t = (hf_montecarlo){.settings = s, .built = b, .surface = surface, .facets = facets};
     HF_TRY(hf_built_batch_create(b, n_thread, &t->batch));
     n_thread = hf_built_batch_threads(t->batch);
     HF_TRY(hf_built_linear_make(b, &t->linear));
-    HF_TRY(hf_built_errors_make(&t->linear, s, expansion_per_K, &t->errors));
+    HF_TRY(hf_built_errors_make(&t->linear, s, heat, &t->errors));
     HF_TRY(hf_covariance_find(&t->errors, n_thread, &t->covariance));
     if (s->sampling == HF_SAMPLING_SOBOL)
         HF_TRY(hf_directions_find(&t->errors, &t->covariance, n_thread, &t->directions));
     choose_sizes(t);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_montecarlo(&arena, n_thread, t)));
     t->block = arena.block;
-    if (s->sigma_EA_ratio > 0) t->varies |= HF_BUILT_VARIES_EA;
-    if (s->sigma_support_m > 0) t->varies |= HF_BUILT_VARIES_SUPPORTS;
+    t->varies = hf_built_errors_vary(&t->errors);
     return HF_OK;
 }
 

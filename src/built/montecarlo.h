@@ -34,11 +34,11 @@ typedef struct {
     void *block;
 } hf_montecarlo;
 
-/* settings, built, surface, facets are borrowed. expansion_per_K [n_cable] by cable, NULL when the temperature does not
- * vary. HF_OK; HF_SINGULAR when the nominal net has no factor; HF_INTERRUPTED; HF_NO_MEMORY. Free in any case. */
+/* settings, built, surface, facets are borrowed. heat: as hf_built_errors_make. HF_OK; HF_SINGULAR when the nominal
+ * net has no factor; HF_INTERRUPTED; HF_NO_MEMORY. Free in any case. */
 hf_status hf_montecarlo_create(const hf_tolerance_settings *settings, const hf_built *built,
-                               const hf_surface_settings *surface, const hf_facets *facets,
-                               const double *expansion_per_K, int n_thread, hf_montecarlo *montecarlo);
+                               const hf_surface_settings *surface, const hf_facets *facets, const hf_built_heat *heat,
+                               int n_thread, hf_montecarlo *montecarlo);
 void hf_montecarlo_free(hf_montecarlo *montecarlo);
 
 /* Is this measured? */

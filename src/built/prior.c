@@ -96,7 +96,7 @@ hf_status hf_prior_make(const hf_built *b, const hf_tolerance_settings *t, const
     hf_arena arena = {0};
     hf_built_errors errors;
     *p = (hf_prior){0};
-    hf_status status = hf_built_errors_make(&of, t, expansion_per_K, &errors);
+    hf_status status = hf_built_errors_make(&of, t, &(hf_built_heat){expansion_per_K, NULL}, &errors);
     if (status == HF_OK)
         status = HF_ARENA_MAKE(&arena, lay_out_prior(&arena, (size_t)b->scene.n_cable, numbers_at_most(&errors), p));
     if (status == HF_OK) {

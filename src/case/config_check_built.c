@@ -159,6 +159,17 @@ static void check_require(const hf_case *c, hf_config_faults *f)
     }
 }
 
+static void check_truss_heat(const hf_case *c, hf_config_faults *f)
+{
+    static const char list[] = "tolerance.truss";
+    for (int i = 0; i < c->tolerance.n_truss; i++) {
+        if (!c->has_truss) hf_config_fault_in_row(f, list, i, "part", "the case has no truss");
+        for (int k = 0; k < i; k++)
+            if (c->tolerance.truss[k].part == c->tolerance.truss[i].part)
+                hf_config_fault_in_row(f, list, i, "part", "has a row already");
+    }
+}
+
 static void check_tolerance(const hf_case *c, hf_config_faults *f)
 {
     const hf_tolerance_settings *t = &c->tolerance;
@@ -166,7 +177,9 @@ static void check_tolerance(const hf_case *c, hf_config_faults *f)
     for (int i = 0; i < c->built.n_cable; i++)
         knows_expansion |= !isnan(c->built.cable[i].expansion_per_K);
     check_require(c, f);
-    if (t->sigma_cut_m + t->sigma_cut_ratio + t->sigma_EA_ratio + t->sigma_support_m + t->sigma_temperature_K == 0)
+    check_truss_heat(c, f);
+    if (t->sigma_cut_m + t->sigma_cut_ratio + t->sigma_EA_ratio + t->sigma_support_m + t->sigma_temperature_K == 0 &&
+        t->n_truss == 0)
         hf_config_fault_of(f, "tolerance.sigma_cut_m",
                            "must be above 0, or another sigma: without errors all is nominal");
     if (t->sigma_temperature_K > 0 && !knows_expansion)

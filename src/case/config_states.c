@@ -101,35 +101,42 @@ static hf_status heat_cables(const maker *q, int row)
                     place_in_row(q, row, temperature_key(s), where), n_unknown, scene->cable_id[unknown]);
 }
 
+hf_status hf_config_demand_expansion(const hf_case *c, const hf_truss *t, hf_part part, const char *where,
+                                     const char *other, hf_messages *messages)
+{
+    char place[WHERE_SIZE];
+    int n = 0, n_expanding = 0;
+    for (int e = 0; e < t->n_member; e++) {
+        n += hf_truss_is_of(t, e, part);
+        n_expanding += hf_truss_is_of(t, e, part) && t->expansion_per_K[e] != 0;
+    }
+    if (n == 0)
+        return hf_error(messages, HF_BAD_CASE, "%s: the truss has no members of unit %s", where, hf_part_word[part]);
+    if (!c->has_truss_import && !hf_config_place(c, "truss.expansion_per_K", place, sizeof place))
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: the expansion of the truss is not known: give truss.expansion_per_K; 0 for one that keeps "
+                        "its shape%s",
+                        where, other);
+    if (n_expanding == 0 && c->has_truss_import)
+        hf_warning(messages, "%s: no member of the truss expands: its table has no expansion_per_K above 0", where);
+    return HF_OK;
+}
+
 static hf_status heat_truss(const maker *q, int row)
 {
     const hf_state_settings *s = &q->c->built.state[row];
     const hf_truss *t = q->truss;
     hf_state *state = state_of_row(q, row);
-    char where[WHERE_SIZE], place[WHERE_SIZE];
-    int n = 0, n_expanding = 0;
+    char where[WHERE_SIZE];
     if (!t && s->part == HF_PART_ALL) return HF_OK;
     place_in_row(q, row, s->part == HF_PART_ALL ? temperature_key(s) : "part", where);
     if (!t) return hf_error(q->messages, HF_BAD_CASE, "%s: the case has no truss", where);
-    for (int e = 0; e < t->n_member; e++) {
-        if (s->part >= HF_PART_UNIT && (int)t->unit[e] != (int)s->part - HF_PART_UNIT) continue;
-        state->member_rise_K[e] =
-            rise_at(s, t->position_m + 3 * (size_t)t->end[2 * e], t->position_m + 3 * (size_t)t->end[2 * e + 1]);
-        n++;
-        n_expanding += t->expansion_per_K[e] != 0;
-    }
-    if (n == 0)
-        return hf_error(q->messages, HF_BAD_CASE, "%s: the truss has no members of unit %s", where,
-                        hf_part_word[s->part]);
-    bool is_told = q->c->has_truss_import || hf_config_place(q->c, "truss.expansion_per_K", place, sizeof place);
-    if (!is_told)
-        return hf_error(q->messages, HF_BAD_CASE,
-                        "%s: the expansion of the truss is not known: give truss.expansion_per_K; 0 for one that keeps "
-                        "its shape, or part: net for a temperature of the cables alone",
-                        where);
-    if (n_expanding == 0 && q->c->has_truss_import)
-        hf_warning(q->messages, "%s: no member of the truss expands: its table has no expansion_per_K above 0", where);
-    return HF_OK;
+    for (int e = 0; e < t->n_member; e++)
+        if (hf_truss_is_of(t, e, s->part))
+            state->member_rise_K[e] =
+                rise_at(s, t->position_m + 3 * (size_t)t->end[2 * e], t->position_m + 3 * (size_t)t->end[2 * e + 1]);
+    return hf_config_demand_expansion(q->c, t, s->part, where, ", or part: net for a temperature of the cables alone",
+                                      q->messages);
 }
 
 static hf_status heat(const maker *q, int row)

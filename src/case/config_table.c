@@ -223,7 +223,7 @@ const hf_field hf_field_table[] = {
     {"tolerance.sigma_support_m", HF_FIELD_DOUBLE, AT(tolerance.sigma_support_m), 0, 1, "0", "m", NULL,
      "of each coordinate of each support, of attachments before the truss gives way"},
     {"tolerance.sigma_temperature_K", HF_FIELD_DOUBLE, AT(tolerance.sigma_temperature_K), 0, 1000, "0", "K", NULL,
-     "of the temperature, the same for all cables; needs cables.expansion_per_K. The truss keeps its shape"},
+     "of the temperature, the same for all cables; needs cables.expansion_per_K. That of the truss: tolerance.truss"},
     {"tolerance.distribution", HF_FIELD_WORD, AT(tolerance.distribution), 0, 0, "normal", "", hf_distribution_word,
      "of each error, with the same standard deviation: normal, or uniform up to 1.73 of it"},
     {"tolerance.batch", HF_FIELD_DOUBLE, AT(tolerance.batch), 0, 1, "0", "", NULL,
@@ -403,6 +403,15 @@ static const hf_field require_field[] = {
 };
 #undef IN
 
+#define IN(member) offsetof(hf_truss_heat_settings, member)
+static const hf_field truss_heat_field[] = {
+    {"part", HF_FIELD_WORD, IN(part), 0, 0, NULL, "", hf_part_word + HF_PART_TRUSS,
+     "members that share this temperature: of the whole truss, or of a unit of it"},
+    {"sigma_temperature_K", HF_FIELD_DOUBLE, IN(sigma_temperature_K), HF_ABOVE_ZERO, 1000, NULL, "K", NULL,
+     "standard deviation of it; needs truss.expansion_per_K"},
+};
+#undef IN
+
 #define N_VARIABLE_FIELD (int)(sizeof variable_field / sizeof *variable_field)
 #define N_LIMIT_FIELD (int)(sizeof limit_field / sizeof *limit_field)
 #define LIST(name, count, row, max_row, keys, n_key, help)                                                             \
@@ -435,6 +444,10 @@ const hf_list hf_list_table[] = {
     {"tolerance.require", AT(tolerance.n_require), AT(tolerance.require), sizeof(hf_require_settings),
      HF_REQUIRE_ROWS_MAX, require_field, sizeof require_field / sizeof *require_field,
      "What a net as built must keep; without rows nothing, and there is no yield"},
+    {"tolerance.truss", AT(tolerance.n_truss), AT(tolerance.truss), sizeof(hf_truss_heat_settings),
+     HF_TRUSS_HEAT_ROWS_MAX, truss_heat_field, sizeof truss_heat_field / sizeof *truss_heat_field,
+     "Temperatures of the truss that vary on their own; those of rows that name the same members add up. Without rows "
+     "the truss keeps its shape"},
 };
 #undef BUILT_LIST
 #undef LIST

@@ -114,6 +114,24 @@ hf_status hf_cases_rest(const hf_problem *p, double *move_m)
     return status;
 }
 
+hf_status hf_cases_rest_by_heat(const hf_problem *p, double *move_m_per_K)
+{
+    const hf_tolerance_settings *s = &p->settings.tolerance;
+    const hf_truss *t = &p->carrier.truss;
+    hf_arena arena = {0};
+    double *rise_K = NULL;
+    HF_TRY(HF_ARENA_MAKE(&arena, rise_K = hf_arena_take(&arena, (size_t)t->n_member, sizeof *rise_K)));
+    const hf_frame_load own = {.temperature_K = rise_K};
+    hf_status status = HF_OK;
+    for (int k = 0; k < s->n_truss && status == HF_OK; k++) {
+        for (int e = 0; e < t->n_member; e++)
+            rise_K[e] = hf_truss_is_of(t, e, (hf_part)(HF_PART_TRUSS + s->truss[k].part));
+        status = move_attachments(&p->carrier, &own, move_m_per_K + 3 * (size_t)k * (size_t)p->carrier.n_attachment);
+    }
+    hf_arena_free(&arena);
+    return status;
+}
+
 static hf_status run_state(const hf_problem *p, const hf_state *state, hf_cases *c, hf_store *store,
                            hf_state_summary *s, hf_messages *messages)
 {

@@ -28,6 +28,9 @@ hf_status hf_cases_take(const hf_problem *problem, const hf_workspace *workspace
  * HF_NO_MEMORY. */
 hf_status hf_cases_rest(const hf_problem *problem, double *move_m);
 
+/* The same of each row of tolerance.truss, by 1 K of its part: move_m_per_K [n_truss][3 n_attachment]. */
+hf_status hf_cases_rest_by_heat(const hf_problem *problem, double *move_m_per_K);
+
 /* Find, measure and store all states of problem->states. A state without a shape has a warning and its status in the
  * summary, and the run goes on. HF_INTERRUPTED, when *stop is set (stop may be NULL); HF_NO_MEMORY; errors of the
  * store, which may be NULL. */

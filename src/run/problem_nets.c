@@ -7,8 +7,9 @@
 
 struct hf_problem_nets {
     hf_built_nets nets;
-    hf_material material;      /* for the expansion of samples */
-    double *attachment_move_m; /* [n_state][3 n_attachment] */
+    hf_material material;       /* for the expansion of samples */
+    double *attachment_move_m;  /* [n_state][3 n_attachment] */
+    double *truss_move_m_per_K; /* [n_truss][3 n_attachment] of samples */
 };
 
 static bool is_over_states(const hf_goal_settings *g, int n)
@@ -19,10 +20,13 @@ static bool is_over_states(const hf_goal_settings *g, int n)
     return is_over;
 }
 
-static void lay_out_nets(hf_arena *arena, const hf_problem *p, struct hf_problem_nets **nets, double **move_m)
+static void lay_out_nets(hf_arena *arena, const hf_problem *p, struct hf_problem_nets **nets, double **move_m,
+                         double **by_heat)
 {
+    size_t n = 3 * (size_t)p->model.n_attachment;
     *nets = hf_arena_take(arena, 1, sizeof **nets);
-    *move_m = hf_arena_take(arena, 3 * (size_t)p->states.n * (size_t)p->model.n_attachment, sizeof(double));
+    *move_m = hf_arena_take(arena, (size_t)p->states.n * n, sizeof(double));
+    *by_heat = hf_arena_take(arena, (size_t)p->settings.tolerance.n_truss * n, sizeof(double));
 }
 
 static hf_status make_nets(hf_problem *p, bool has_states, int n_sample, hf_messages *messages)
@@ -32,11 +36,15 @@ static hf_status make_nets(hf_problem *p, bool has_states, int n_sample, hf_mess
     bool is_on_truss = has_states && p->model.n_attachment > 0, is_warm = c->tolerance.sigma_temperature_K > 0;
     if (n_sample > 0) HF_TRY(hf_tolerance_stage_check(p, false, messages));
     if (n_sample > 0 && is_warm) HF_TRY(hf_config_material(c, &p->scene, &q->material, messages));
-    if (is_on_truss && hf_cases_rest(p, q->attachment_move_m) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the truss");
+    hf_built_heat heat = {is_warm ? q->material.expansion_per_K : NULL,
+                          c->tolerance.n_truss ? q->truss_move_m_per_K : NULL};
+    hf_status status = is_on_truss ? hf_cases_rest(p, q->attachment_move_m) : HF_OK;
+    if (status == HF_OK && n_sample > 0 && c->tolerance.n_truss > 0)
+        status = hf_cases_rest_by_heat(p, q->truss_move_m_per_K);
+    if (status != HF_OK) return hf_error(messages, status, "out of memory for the truss");
     hf_built_nets_make(&p->scene, &p->model, &c->form, has_states ? &p->states : NULL,
-                       is_on_truss ? q->attachment_move_m : NULL, n_sample > 0 ? &c->tolerance : NULL,
-                       is_warm ? q->material.expansion_per_K : NULL, n_sample, &q->nets);
+                       is_on_truss ? q->attachment_move_m : NULL, n_sample > 0 ? &c->tolerance : NULL, &heat, n_sample,
+                       &q->nets);
     return HF_OK;
 }
 
@@ -46,11 +54,12 @@ hf_status hf_problem_nets_make(hf_problem *p, hf_messages *messages)
     bool has_states = is_over_states(o->goal, o->n_goal) || is_over_states(o->objective, o->n_objective);
     int n_sample = hf_optimize_takes_samples(o) ? o->samples : 0;
     hf_arena arena = {0};
-    double *move_m = NULL;
+    double *move_m = NULL, *by_heat = NULL;
     if (!has_states && n_sample == 0) return HF_OK;
-    if (HF_ARENA_MAKE(&arena, lay_out_nets(&arena, p, &p->nets, &move_m)) != HF_OK)
+    if (HF_ARENA_MAKE(&arena, lay_out_nets(&arena, p, &p->nets, &move_m, &by_heat)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the nets that goals are over");
     p->nets->attachment_move_m = move_m;
+    p->nets->truss_move_m_per_K = by_heat;
     return make_nets(p, has_states, n_sample, messages);
 }
 

@@ -1,9 +1,11 @@
 /* Contents: what cannot be - the identity of samples - samples - together */
 #include "run/tolerance_stage.h"
 
+#include "base/arena.h"
 #include "base/clock.h"
 #include "base/sha256.h"
 #include "net/cable_pick.h"
+#include "run/cases.h"
 #include "store/samples.h"
 #include "store/store_tolerance.h"
 
@@ -44,6 +46,22 @@ static hf_status check_expansion(const hf_problem *p, const hf_material *t, hf_m
                     s->cable_id[first]);
 }
 
+/* What rows of tolerance.truss name must be there, and its expansion known. */
+static hf_status check_truss_heat(const hf_problem *p, hf_messages *messages)
+{
+    const hf_tolerance_settings *t = &p->settings.tolerance;
+    hf_status worst = HF_OK;
+    for (int i = 0; i < t->n_truss; i++) {
+        char key[64], place[HF_PATH_SIZE + 128];
+        snprintf(key, sizeof key, "tolerance.truss.%d.part", i);
+        hf_config_place(&p->settings, key, place, sizeof place);
+        hf_part part = (hf_part)(HF_PART_TRUSS + t->truss[i].part);
+        hf_status status = hf_config_demand_expansion(&p->settings, &p->carrier.truss, part, place, "", messages);
+        if (status != HF_OK) worst = status;
+    }
+    return worst;
+}
+
 /* All errors together must leave half of each cable. */
 #define LARGEST_NUMBER 9 /* no number of either distribution is larger */
 static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf_messages *messages)
@@ -73,8 +91,9 @@ static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf
 /* The place of the section, for messages: that of the first sigma that the case gives. */
 static void place_section(const hf_case *c, char *place, size_t size)
 {
-    static const char *const key[] = {"tolerance.sigma_cut_m", "tolerance.sigma_cut_ratio", "tolerance.sigma_EA_ratio",
-                                      "tolerance.sigma_support_m", "tolerance.sigma_temperature_K"};
+    static const char *const key[] = {"tolerance.sigma_cut_m",         "tolerance.sigma_cut_ratio",
+                                      "tolerance.sigma_EA_ratio",      "tolerance.sigma_support_m",
+                                      "tolerance.sigma_temperature_K", "tolerance.truss.0.part"};
     for (size_t i = 0; i < sizeof key / sizeof *key; i++)
         if (hf_config_place(c, key[i], place, size)) return;
 }
@@ -114,13 +133,14 @@ hf_status hf_tolerance_stage_check(const hf_problem *p, bool is_demanded, hf_mes
         return hf_error(messages, HF_BAD_USAGE, "%s: has no section tolerance; 'hifdm schema' lists its keys",
                         p->settings.path);
     hf_material material;
-    hf_status status = make_material(p, &material, messages), other[4] = {HF_OK};
+    hf_status status = make_material(p, &material, messages), other[5] = {HF_OK};
     if (status != HF_NO_MEMORY) other[2] = check_cuts(p, &material, messages);
     hf_material_free(&material);
     other[0] = check_EA(p, messages);
     other[1] = check_measures(p, messages);
     other[3] = check_struts(p, messages);
-    for (int i = 0; i < 4 && status == HF_OK; i++)
+    other[4] = check_truss_heat(p, messages);
+    for (int i = 0; i < 5 && status == HF_OK; i++)
         status = other[i];
     return status;
 }
@@ -236,12 +256,20 @@ static hf_status open_samples(job *j, hf_messages *messages)
 static hf_status open_montecarlo(job *j, hf_messages *messages)
 {
     const hf_problem *p = j->stage->problem;
+    const hf_tolerance_settings *t = &p->settings.tolerance;
     hf_material material;
+    hf_arena arena = {0};
+    double *by_heat = NULL;
+    size_t n_move = 3 * (size_t)t->n_truss * (size_t)p->model.n_attachment;
     hf_status status = make_material(p, &material, messages);
     if (status == HF_OK) {
-        const double *expansion = p->settings.tolerance.sigma_temperature_K > 0 ? material.expansion_per_K : NULL;
-        status = hf_montecarlo_create(&p->settings.tolerance, &j->built, &p->surface, &p->facets, expansion,
-                                      j->stage->request->threads, &j->montecarlo);
+        status = HF_ARENA_MAKE(&arena, by_heat = hf_arena_take(&arena, n_move, sizeof *by_heat));
+        if (status == HF_OK) status = hf_cases_rest_by_heat(p, by_heat);
+        hf_built_heat heat = {t->sigma_temperature_K > 0 ? material.expansion_per_K : NULL,
+                              t->n_truss ? by_heat : NULL};
+        if (status == HF_OK)
+            status = hf_montecarlo_create(t, &j->built, &p->surface, &p->facets, &heat, j->stage->request->threads,
+                                          &j->montecarlo);
         if (status == HF_NO_MEMORY) hf_error(messages, status, "tolerance: out of memory");
         if (status == HF_SINGULAR)
             hf_error(messages, status,
@@ -249,6 +277,7 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
                      "place of its own");
     }
     hf_material_free(&material);
+    hf_arena_free(&arena);
     return status;
 }
 

@@ -116,13 +116,13 @@ static void pass_requirements(hf_hdf5 *io, hid_t group, pass *with, int n, requi
     with(io, group, &array, yield);
 }
 
-static void pass_shares(hf_hdf5 *io, hid_t group, pass *with, hf_tolerance_summary *s)
+static void pass_shares(hf_hdf5 *io, hid_t group, pass *with, int n_kind, hf_tolerance_summary *s)
 {
     hf_hdf5_array array = words("ranked_cable", s->n_ranked, HF_TOLERANCE_ID_SIZE, "cables with the largest shares");
     if (s->n_ranked > 0) with(io, group, &array, s->ranked_id);
     array = numbers("ranked_share", s->n_ranked, "", "of their own errors in what psi^2 gains, to first order");
     if (s->n_ranked > 0) with(io, group, &array, s->ranked_share);
-    array = numbers("kind_share", HF_TOLERANCE_KINDS, "", "the same of each kind of errors, see error_kind");
+    array = numbers("kind_share", n_kind, "", "the same of each kind of errors, see error_kind");
     with(io, group, &array, s->kind_share);
     array = numbers("histogram", HF_TOLERANCE_BINS, "", "part of the samples whose psi is in each of equal intervals");
     with(io, group, &array, s->bin);
@@ -148,7 +148,7 @@ void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary)
         strncpy(kind[k], hf_tolerance_kind_word[k], WORD_SIZE - 1);
     hf_hdf5_array array = words("error_kind", HF_TOLERANCE_KINDS, WORD_SIZE, "kinds of errors");
     hf_hdf5_write_array(io, group, &array, kind);
-    pass_shares(io, group, put_values, &s);
+    pass_shares(io, group, put_values, HF_TOLERANCE_KINDS, &s);
     hf_hdf5_close(io, group);
     hf_layout_put_summary(io, HF_LAYOUT_TOLERANCE, summary);
 }
@@ -183,7 +183,8 @@ void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
     find_measures(io, group, &r, s);
     if (hf_hdf5_has(io, group, "ranked_share"))
         s->n_ranked = hf_hdf5_length(io, group, "ranked_share", HF_TOLERANCE_RANKED);
-    pass_shares(io, group, get_values, s);
+    int n_kind = hf_hdf5_length(io, group, "kind_share", HF_TOLERANCE_KINDS); /* there were fewer in version 0.1 */
+    if (n_kind > 0) pass_shares(io, group, get_values, n_kind, s);
     for (int k = 0; k < s->n_ranked; k++)
         s->ranked_id[k][HF_TOLERANCE_ID_SIZE - 1] = '\0';
     hf_hdf5_close(io, group);

@@ -2,7 +2,11 @@
  * solver. */
 #include "session.h"
 
+#include "built/errors.h"
+#include <hifdm/truss.h>
+
 #define BUILT_SCENE SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n"
+#define SMALL_TRUSS "truss:\n  depth_m: 1\n  match_tolerance_m: 0.4\n"
 #define TOLERANCE                                                                                                      \
     "tolerance:\n"                                                                                                     \
     "  sigma_cut_m: 1e-4\n"                                                                                            \
@@ -175,6 +179,16 @@ START_TEST(faults_are_named)
          "6:24: tolerance.sigma_temperature_K: needs expansion_per_K in a row of `cables`"},
         {"  sigma_temperature_K: 5\ncables: [{set: boundary, expansion_per_K: 1e-6}]\n",
          "tolerance.sigma_temperature_K: 38 cables have no expansion_per_K, like '"},
+        {"  truss: [{part: longeron, sigma_temperature_K: 5}]\n",
+         "6:18: tolerance.truss.0.part: the case has no truss"},
+        {"  truss: [{part: net, sigma_temperature_K: 5}]\n", "6:18: tolerance.truss.0.part: "},
+        {"  truss: [{part: truss, sigma_temperature_K: 5}, {part: truss, sigma_temperature_K: 5}]\n" SMALL_TRUSS,
+         "6:57: tolerance.truss.1.part: has a row already"},
+        {"  truss: [{part: truss, sigma_temperature_K: 5}]\n" SMALL_TRUSS,
+         "6:18: tolerance.truss.0.part: the expansion of the truss is not known: give truss.expansion_per_K; 0 for one "
+         "that keeps its shape"},
+        {"  truss: [{part: longeron, sigma_temperature_K: 5}]\n" SMALL_TRUSS "  expansion_per_K: 1e-6\n",
+         "6:18: tolerance.truss.0.part: the truss has no members of unit longeron"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: psi_m}]\n", "has no limit; give at_most, at_least or both"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: fit_half_path_rms_m, at_most: 1}]\n",
          "7:23: tolerance.require.0.measure: is not measured: add a section surface"},
@@ -203,6 +217,37 @@ START_TEST(faults_are_named)
 }
 END_TEST
 
+/* One sigma of a part of the truss is a state of `cases`: what it moves is the deviation to first order, by differences
+ * of two states; and the samples are the states of their temperatures. */
+START_TEST(a_warm_truss_is_that_of_states)
+{
+    static const char scene[] = "scene:\n"
+                                "  paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 5, rear_distance_m: 1.8}\n"
+                                "  EA_inner_N: 1e5\n  EA_boundary_N: 1e5\n"
+                                "form: {pretension_N: 40, prestress: exact}\ncables: [{expansion_per_K: 0}]\n"
+                                "truss:\n  ring: {longeron: {diameter_m: 0.03, wall_m: 0.001}, held: "
+                                "three_verticals}\n  expansion_per_K: 1e-6\ncoupling: {tof_m: 1e-12}\n"
+                                "tolerance: {samples: 10, truss: [{part: %s, sigma_temperature_K: 20}]}\ncases:\n"
+                                "  - {name: hot, part: %s, temperature_K: 2}\n"
+                                "  - {name: cold, part: %s, temperature_K: -2}\n";
+    static const char *const part[] = {"truss", "longeron", "vertical"};
+    static const int item[] = {1, 1 + 1 + HF_UNIT_LONGERON, 1 + 1 + HF_UNIT_VERTICAL};
+    const char *p = part[_i], *text = keep(formatted(scene, p, p, p)), *file = temp("a.h5");
+    for (int i = 0; i < 10; i++) {
+        double number = hf_built_errors_uniform(1, i, HF_ERROR_TEMPERATURE, item[_i]);
+        double rise_K = 20 * hf_built_errors_shape(HF_DISTRIBUTION_NORMAL, number);
+        text = keep(formatted("%s  - {name: s%d, part: %s, temperature_K: %.17g}\n", text, i, p, rise_K));
+    }
+    HIFDM(0, "run", file_with("c.yaml", text), "-o", file, "--quiet");
+    EXPECT(file, "--",
+           "near(sum((((a['cases/hot/position_m'][:] - a['cases/cold/position_m'][:]) / 4 * 20)"
+           "[a['scene/node/role'][:] == 1] ** 2).sum(axis=1)), sum(a['tolerance/node_deviation_m'][:][a["
+           "'scene/node/role'][:] == 1] ** 2), 1e-5)",
+           "np.nanmax(a['tolerance/node_deviation_m'][:]) > 1e-6", "a['tolerance/kind_share'][7] == 1",
+           "all(near(a['tolerance/sample/psi_m'][i], a['cases/s%d' % i].attrs['psi_m'], 1e-7) for i in range(10))");
+}
+END_TEST
+
 /* tests/verify/tolerance_oracle.py draws the errors anew and solves each net by scipy. */
 START_TEST(samples_are_those_of_another_solver)
 {
@@ -228,6 +273,7 @@ Suite *suite_cli_tolerance(void)
     tcase_add_loop_test(tests, beside_a_front_the_net_of_form_finding_is_built, 0, 3);
     tcase_add_test(tests, quantiles_are_those_of_the_samples);
     tcase_add_test(tests, a_report_has_the_samples);
+    tcase_add_loop_test(tests, a_warm_truss_is_that_of_states, 0, 3);
     tcase_add_test(tests, faults_are_named);
     tcase_add_test(tests, samples_are_those_of_another_solver);
     return suite;

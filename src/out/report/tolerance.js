@@ -7,7 +7,8 @@ const ERROR_KIND = {
   EA_ratio: "EA",
   EA_ratio_batch: "EA of a spool",
   support_m: "supports",
-  temperature_K: "temperature",
+  temperature_K: "temperature of the cables",
+  truss_temperature_K: "temperature of the truss",
 };
 const percent = (part, digits = 3) => `${fmt(100 * part, digits)}\u00a0%`;
 

@@ -38,6 +38,10 @@ static const char *const common[] = {
     "optimize.samples=6",
 };
 
+static const char *const on_a_truss[] = {
+    "truss.expansion_per_K=1e-6",
+    "tolerance.truss=[{part: bud, sigma_temperature_K: 5}, {part: truss, sigma_temperature_K: 3}]"};
+
 static void open_problem(hf_problem *p, bool on_truss, const char *variables, const char *goals)
 {
     const char *set[MAX_SET];
@@ -47,6 +51,8 @@ static void open_problem(hf_problem *p, bool on_truss, const char *variables, co
         set[n++] = common[i];
     for (size_t i = 0; i < sizeof rigid / sizeof *rigid && !on_truss; i++)
         set[n++] = rigid[i];
+    for (size_t i = 0; i < sizeof on_a_truss / sizeof *on_a_truss && on_truss; i++)
+        set[n++] = on_a_truss[i];
     set[n++] = goals;
     if (variables) set[n++] = variables;
     if (variables) set[n++] = "optimize.symmetry=none";
@@ -210,12 +216,15 @@ START_TEST(values_over_samples_are_those_of_tolerances)
     hf_built built;
     hf_montecarlo t;
     hf_messages messages = {0};
-    double square = 0, psi[6];
+    double square = 0, psi[6], by_heat[2 * 3 * 100];
     open_problem(&p, _i, NULL, value_goals);
+    ck_assert_int_le(p.model.n_attachment, 100);
+    ck_assert_int_eq(hf_cases_rest_by_heat(&p, by_heat), HF_OK);
+    const hf_built_heat heat = {NULL, by_heat};
     evaluate_base(&p, &r);
     ck_assert_int_eq(hf_built_make("x.yaml", &p.scene, &p.model, &p.settings.form, &p.workspace, &built, &messages),
                      HF_OK);
-    ck_assert_int_eq(hf_montecarlo_create(&p.settings.tolerance, &built, NULL, NULL, NULL, 1, &t), HF_OK);
+    ck_assert_int_eq(hf_montecarlo_create(&p.settings.tolerance, &built, NULL, NULL, &heat, 1, &t), HF_OK);
     ck_assert_int_eq(hf_montecarlo_run(&t, 1, 0, 6), HF_OK);
     for (int i = 0; i < 6; i++) {
         double value = t.row[i * HF_TOLERANCE_COLUMNS + HF_TOLERANCE_FIRST + HF_TOLERANCE_PSI];
@@ -274,6 +283,7 @@ START_TEST(nets_that_do_not_differ_are_the_design)
     open_problem(&p, _i, NULL, value_goals);
     hf_tolerance_settings *t = &p.settings.tolerance;
     t->sigma_cut_m = t->sigma_cut_ratio = t->sigma_EA_ratio = t->sigma_support_m = 0;
+    t->n_truss = 0;
     for (int k = 0; k < p.states.n; k++) {
         hf_state *s = &p.states.state[k];
         memset(s->rise_K, 0, (size_t)p.model.n_cable * sizeof(double));
