@@ -22,6 +22,7 @@
 #include "out/print.h"
 #include "run/problem_parts.h"
 #include "run/tolerance_stage.h"
+#include "solve/limits.h"
 #include <hifdm/store.h>
 
 #include <math.h>
@@ -45,6 +46,7 @@ typedef struct {
     hf_adjust_task task;
     int *cable; /* [n_cable] of the task */
     hf_prior prior;
+    double *least_N;    /* [n_cable] tensions that are asked for */
     double *expected_m; /* [n_node] */
     double measured_m;  /* psi of the inner nodes that were measured; NaN for other figures */
     void *block;
@@ -139,8 +141,29 @@ static hf_status pick_cables(job *j, hf_messages *messages)
     const hf_case *c = &j->problem.settings;
     hf_config_place(c, "adjust.set", place, sizeof place);
     int n = hf_cable_pick_some(&j->problem.scene, c->adjust.set, place, j->cable, messages);
-    j->task = (hf_adjust_task){&c->adjust, &j->goals, n, j->cable, j->threads};
+    j->task = (hf_adjust_task){&c->adjust, &j->goals, n, j->cable, j->least_N, j->threads};
     return n > 0 ? HF_OK : HF_BAD_CASE;
+}
+
+/* The least tensions that tolerance.require and optimize.limits ask for; 0 where they ask for none. */
+static hf_status find_least(job *j, hf_messages *messages)
+{
+    const hf_case *c = &j->problem.settings;
+    hf_limits limits;
+    hf_status status = hf_limits_create(&j->problem.scene, &j->problem.model, &c->optimize, &limits, messages);
+    for (int e = 0; e < j->problem.scene.n_cable; e++)
+        for (int k = 0; k < c->tolerance.n_require; k++) {
+            const hf_require_settings *row = &c->tolerance.require[k];
+            if (row->measure == HF_TOLERANCE_LEAST_TENSION && row->at_least > j->least_N[e])
+                j->least_N[e] = row->at_least;
+        }
+    for (int k = 0; k < limits.n && status == HF_OK; k++)
+        for (int i = 0; i < limits.row[k].n_cable && limits.row[k].kind == HF_LIMIT_TENSION; i++) {
+            double *least_N = &j->least_N[limits.row[k].cable[i]];
+            *least_N = fmax(*least_N, limits.row[k].lower);
+        }
+    hf_limits_free(&limits);
+    return status;
 }
 
 static hf_status find_figure(job *j, hf_messages *messages)
@@ -281,7 +304,8 @@ static void print_end(const job *j, FILE *f)
         hf_print_line(f, "no further move: none gains anything");
         break;
     }
-    if (j->adjustment.is_held_taut) hf_print_line(f, "moves stay so small that no further cable goes slack");
+    if (j->adjustment.is_held_taut)
+        hf_print_line(f, "moves leave each cable its least tension, and no further one slack");
 }
 
 static void print_outliers(const job *j, FILE *f)
@@ -471,6 +495,7 @@ static void lay_out_job(hf_arena *arena, job *j)
 {
     size_t n_cable = (size_t)j->problem.scene.n_cable, n_node = (size_t)j->problem.scene.n_node;
     j->cable = hf_arena_take(arena, n_cable, sizeof *j->cable);
+    j->least_N = hf_arena_take(arena, n_cable, sizeof *j->least_N);
     j->expected_m = hf_arena_take(arena, n_node, sizeof *j->expected_m);
 }
 
@@ -507,6 +532,7 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
     HF_TRY(hf_measured_read(o->measured, &p->scene, &p->model, p->settings.adjust.sigma_m, &j->measured, messages));
     HF_TRY(make_net(j, o, messages));
     HF_TRY(find_prior(j, o->file, messages));
+    HF_TRY(find_least(j, messages));
     HF_TRY(find_figure(j, messages));
     HF_TRY(estimate_errors(j, o, messages));
     j->measured_m = measured_psi_m(j);

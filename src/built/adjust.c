@@ -15,6 +15,7 @@
 #define GRAM_ROWS 32   /* of the products that a thread finds at a time; a multiple of 4 */
 #define HALVINGS_MAX 6 /* of a step to the best there is */
 #define LITTLE 1e-5    /* of the figure: what a step to the best there is has to gain */
+#define KEPT 0.9       /* of a least tension: less in a shape is a linear model that does not hold */
 
 /* ---- memory ---- */
 
@@ -44,8 +45,9 @@ typedef struct {
     double *product;                        /* of these n + samples + 1 rows with each other */
     double *gram, *slope, *sample, *move_m; /* [n][n], [n], [samples][n], [n] */
     int *steps, *trial;                     /* [n] */
-    bool is_current;                        /* is the linear model that of the shape with `steps`? */
-    int n_slack;                            /* cables without turns: moves leave no more of them slack */
+    double *least_N;                        /* [n_cable of the model] tensions that moves keep */
+    double *room_N;  /* [n_cable of the model] how far tensions may fall from those without turns */
+    bool is_current; /* is the linear model that of the shape with `steps`? */
     hf_moves_problem problem;
     void *block;
 } adjustment;
@@ -85,7 +87,28 @@ static void lay_out_adjustment(hf_arena *arena, adjustment *a)
     a->move_m = hf_arena_take(arena, a->n, sizeof(double));
     a->steps = hf_arena_take(arena, a->n, sizeof(int));
     a->trial = hf_arena_take(arena, a->n, sizeof(int));
+    a->least_N = hf_arena_take(arena, n_cable, sizeof(double));
+    a->room_N = hf_arena_take(arena, n_cable, sizeof(double));
     lay_out_rooms(arena, a);
+}
+
+/* What the strains in the first room do to tensions, by the linear model. */
+static void find_tensions(const adjustment *a, double *change_N)
+{
+    adjust_room *r = &a->room[0];
+    memset(r->answer_m, 0, a->n_dof * sizeof *r->answer_m);
+    hf_built_linear_apply(&a->estimate->linear, 1, r->strain_N, r->answer_m, r->scratch);
+    hf_built_linear_tension(&a->estimate->linear, r->strain_N, r->answer_m, change_N);
+}
+
+/* For hf_moves_choose. */
+static void find_rates(void *context, int i, double *rate_N_per_m)
+{
+    adjustment *a = context;
+    int e = a->task->cable[i];
+    memset(a->room[0].strain_N, 0, (size_t)a->problem.n_tension * sizeof *a->room[0].strain_N);
+    a->room[0].strain_N[e] = a->estimate->linear.cut_N_per_m[e];
+    find_tensions(a, rate_N_per_m);
 }
 
 static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, adjustment *a)
@@ -113,7 +136,11 @@ static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, a
                                     .moves_max = s->moves,
                                     .target = s->target_m,
                                     .n_sample = HF_ESTIMATE_SAMPLES,
-                                    .sample = a->sample};
+                                    .sample = a->sample,
+                                    .n_tension = p->built->model.n_cable,
+                                    .room_N = a->room_N,
+                                    .rates = find_rates,
+                                    .context = a};
     return hf_workspace_create(&p->built->model, &a->work);
 }
 
@@ -165,6 +192,24 @@ static int count_slack(const adjustment *a)
     for (int e = 0; e < m->n_cable; e++)
         n += hf_metrics_is_slack(m, &a->work, e);
     return n;
+}
+
+/* From the shape without turns. */
+static void find_least(adjustment *a)
+{
+    const hf_built *b = a->estimate->built;
+    for (int e = 0; e < b->model.n_cable; e++) {
+        double least = HF_ADJUST_TAUT * b->tension_N[e];
+        if (a->task->least_N) least = fmax(least, a->task->least_N[e]);
+        a->least_N[e] = fmin(least, a->work.tension_N[e]);
+    }
+}
+
+static bool keeps_least(const adjustment *a)
+{
+    for (int e = 0; e < a->problem.n_tension; e++)
+        if (a->work.tension_N[e] < KEPT * a->least_N[e]) return false;
+    return true;
 }
 
 /* ---- the linear model ---- */
@@ -230,6 +275,17 @@ static void find_products(adjustment *a)
     a->problem.square = a->product[last * n_all + last];
 }
 
+/* How far tensions may fall from those without turns. */
+static void find_room(adjustment *a)
+{
+    int n_cable = a->problem.n_tension;
+    for (int e = 0; e < n_cable; e++)
+        a->room[0].strain_N[e] = a->estimate->linear.cut_N_per_m[e] * a->turn_m[e];
+    find_tensions(a, a->room_N);
+    for (int e = 0; e < n_cable; e++)
+        a->room_N[e] = fmax(a->work.tension_N[e] - a->room_N[e] - a->least_N[e], 0);
+}
+
 /* At the shape in `work`: residuals, what each cable does to them, and what is left open. */
 static hf_status linearise(adjustment *a)
 {
@@ -246,38 +302,41 @@ static hf_status linearise(adjustment *a)
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++)
         push_move(a, &a->room[0], a->doubt_m + s * a->n_dof, a->left_open + s * n_row);
     find_products(a);
+    find_room(a);
     return HF_OK;
 }
 
 /* ---- the choice ---- */
 
 /* Into a->steps, 0 on entry: choices by the linear model of the last shape, as long as their own shapes are better.
- * After one that leaves cables slack, has no shape or, as the first one, is no better, the range of the next is half as
- * large: as far as that the model does not hold. */
+ * After one that leaves a cable too little tension, has no shape or, as the first one, is no better, the range of the
+ * next is half as large: as far as that the model does not hold. */
 static hf_status choose(adjustment *a, hf_adjustment *found)
 {
     double figure_m;
     HF_TRY(solve_steps(a, a->steps, &figure_m));
     found->adjusted_m = found->estimated_m = figure_m;
     found->end = HF_MOVES_NONE;
-    a->n_slack = count_slack(a);
+    find_least(a);
     while (found->n_round < ROUNDS_MAX && !found->is_settled) {
         hf_moves_end end;
+        bool is_held;
         hf_status status = a->is_current ? HF_OK : linearise(a);
         if (status == HF_SINGULAR) return HF_OK; /* the net has no stiffness there to go on with */
         HF_TRY(status);
         found->n_round += !a->is_current;
         a->is_current = true;
-        HF_TRY(hf_moves_choose(&a->problem, a->trial, &end));
+        HF_TRY(hf_moves_choose(&a->problem, a->trial, &end, &is_held));
+        found->is_held_taut |= is_held;
         found->is_settled = memcmp(a->trial, a->steps, a->n * sizeof *a->trial) == 0;
         if (found->is_settled) found->end = end;
         if (found->is_settled) return HF_OK;
         status = solve_steps(a, a->trial, &figure_m);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-        bool is_slack = status == HF_OK && count_slack(a) > a->n_slack, is_better = figure_m < found->adjusted_m;
+        bool is_low = status == HF_OK && !keeps_least(a), is_better = figure_m < found->adjusted_m;
         bool is_first = found->adjusted_m == found->estimated_m;
-        found->is_held_taut |= is_slack;
-        if (status != HF_OK || is_slack || (is_first && !is_better)) {
+        found->is_held_taut |= is_low;
+        if (status != HF_OK || is_low || (is_first && !is_better)) {
             a->problem.steps_max /= 2;
             found->is_settled = a->problem.steps_max == 0;
             continue;
@@ -308,7 +367,7 @@ static hf_status go_on(adjustment *a, double *best_m, bool *gains)
         at = to;
         hf_status status = solve_turned(a, &figure_m);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-        *gains = status == HF_OK && figure_m < *best_m * (1 - LITTLE) && count_slack(a) <= a->n_slack;
+        *gains = status == HF_OK && figure_m < *best_m * (1 - LITTLE) && keeps_least(a);
         if (!*gains) continue;
         *best_m = figure_m;
         return HF_OK;

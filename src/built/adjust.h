@@ -13,7 +13,9 @@ typedef struct {
     const hf_adjust_settings *settings;
     const hf_goals *goals; /* the figure, of one goal and of the model of the net as built */
     int n_cable, *cable;   /* [n_cable] that can be turned */
-    int n_thread;          /* 0: all cores */
+    const double
+        *least_N; /* [n_cable of the net] tensions below which no move takes a cable; NULL: HF_ADJUST_TAUT alone */
+    int n_thread; /* 0: all cores */
 } hf_adjust_task;
 
 /* One move, in the order in which they are made. Longer cables have a move above 0. */
@@ -33,13 +35,17 @@ typedef struct {
     double doubt_m[2];  /* RMS over what errors and measurement leave open, of the estimated and the adjusted shape */
     double spread_m[2]; /* standard deviation of these figures */
     int n_round;        /* linear models */
-    bool is_held_taut;  /* larger moves would have left more cables slack than there are */
+    bool is_held_taut;  /* other moves were better but for tensions that fall too low, or cables that go slack */
     bool is_settled;    /* the last of them chose nothing better than the moves that it was linearised at */
     hf_moves_end end;
     int n_move;
     hf_adjust_move *move; /* [n_move] */
     void *block;
 } hf_adjustment;
+
+/* The part of its tension in the design that moves leave a cable, by the linear model; of one that has less without
+ * moves, what it has. */
+#define HF_ADJUST_TAUT 0.02
 
 /* How many steps a cable may be turned either way; 0 when the range is smaller than a step. */
 #define HF_ADJUST_STEPS_MAX 1e9

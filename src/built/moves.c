@@ -1,11 +1,10 @@
-/* Contents: sums of squares - without steps - in whole steps - which cables - together */
+/* Contents: sums of squares - tensions - without steps - in whole steps - which cables - together */
 #include "built/moves.h"
 
 #include "base/arena.h"
 #include "linalg/quadratic.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,14 +46,100 @@ static double gram_of(const hf_moves_problem *p, int i, int j)
     return p->gram[(size_t)i * (size_t)p->n + (size_t)j];
 }
 
+/* ---- tensions ---- */
+
+/* What the cables of a list do to tensions. */
+typedef struct {
+    const hf_moves_problem *p;
+    int n;          /* of the list */
+    int *cable;     /* [of lists at most] of each row; -1: none */
+    double *rate;   /* [of lists at most][n_tension] by metre */
+    int *row;       /* [n of the problem] of a cable of the list */
+    double *fall_N; /* [n_tension] after the present steps */
+} tensions;
+
+static const double *rates_of(const tensions *t, int row)
+{
+    return t->rate + (size_t)row * (size_t)t->p->n_tension;
+}
+
+/* Make the rows those of this list. Lists differ in few places. */
+static void take_list(tensions *t, int n, const int *list)
+{
+    t->n = n;
+    for (int k = 0; k < n; k++) {
+        t->row[list[k]] = k;
+        if (t->cable[k] == list[k]) continue;
+        t->p->rates(t->p->context, list[k], t->rate + (size_t)k * (size_t)t->p->n_tension);
+        t->cable[k] = list[k];
+    }
+}
+
+/* How far tensions fall after moves [n] of the list, into fall_N. */
+static void fall_by(const tensions *t, const double *move_m)
+{
+    memset(t->fall_N, 0, (size_t)t->p->n_tension * sizeof *t->fall_N);
+    for (int k = 0; k < t->n; k++) {
+        const double *rate = rates_of(t, k);
+        for (int i = 0; i < t->p->n_tension && move_m[k] != 0; i++)
+            t->fall_N[i] -= move_m[k] * rate[i];
+    }
+}
+
+static void fall_by_steps(const tensions *t, const int *steps, double *move_m)
+{
+    for (int k = 0; k < t->n; k++)
+        move_m[k] = steps[t->cable[k]] * t->p->step_m;
+    fall_by(t, move_m);
+}
+
+/* The tension that falls furthest beyond its room; -1: none does. */
+static int worst_tension(const tensions *t)
+{
+    double worst = 0;
+    int at = -1;
+    for (int i = 0; i < t->p->n_tension; i++) {
+        double beyond = t->fall_N[i] - t->p->room_N[i] * (1 + BOUND_ROUNDING);
+        if (beyond <= worst) continue;
+        worst = beyond;
+        at = i;
+    }
+    return at;
+}
+
+/* Do tensions allow a more steps of cable i and b of cable j? Then these are part of fall_N. */
+static bool take_steps(const tensions *t, int i, int j, int a, int b)
+{
+    const double *u = rates_of(t, t->row[i]), *v = rates_of(t, t->row[j]), step = t->p->step_m;
+    for (int k = 0; k < t->p->n_tension; k++) {
+        double by = -step * (a * u[k] + b * v[k]);
+        if (by > 0 && t->fall_N[k] + by > t->p->room_N[k] * (1 + BOUND_ROUNDING)) return false;
+    }
+    for (int k = 0; k < t->p->n_tension; k++)
+        t->fall_N[k] -= step * (a * u[k] + b * v[k]);
+    return true;
+}
+
 /* ---- without steps ---- */
 
 typedef struct {
     int n;
     double most_m;
+    const tensions *t; /* NULL: whatever they do */
 } box;
 
-/* For hf_quadratic: the bound that x breaks most. */
+static bool worst_fall(const box *b, const double *x, hf_quadratic_limit *limit)
+{
+    fall_by(b->t, x);
+    int at = worst_tension(b->t);
+    for (int k = 0; k < b->n && at >= 0; k++)
+        limit->normal[k] = rates_of(b->t, k)[at];
+    limit->kind = 1;
+    limit->bound = at >= 0 ? -b->t->p->room_N[at] : 0;
+    return at >= 0;
+}
+
+/* For hf_quadratic: the bound that x breaks most; when it breaks none, the tension that falls furthest too far. */
 static bool worst_bound(void *context, const double *x, hf_quadratic_limit *limit)
 {
     const box *b = context;
@@ -65,6 +150,7 @@ static bool worst_bound(void *context, const double *x, hf_quadratic_limit *limi
         worst = fabs(x[i]);
         at = i;
     }
+    if (at < 0 && b->t) return worst_fall(b, x, limit);
     if (at < 0) return false;
     limit->kind = 0;
     limit->only = at;
@@ -80,12 +166,12 @@ static void lay_out_box(hf_arena *arena, int n, double **hessian, double **vecto
 }
 
 /* The best moves of the n cables of a list, move_m [n]. */
-static hf_status fit_list(const hf_moves_problem *p, int n, const int *list, double *move_m)
+static hf_status fit_list(const hf_moves_problem *p, int n, const int *list, const tensions *t, double *move_m)
 {
     hf_arena arena = {0};
     hf_quadratic q;
     double *hessian = NULL, *gradient = NULL, largest = 0;
-    box b = {n, p->steps_max * p->step_m};
+    box b = {n, p->steps_max * p->step_m, t};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_box(&arena, n, &hessian, &gradient)));
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++)
@@ -116,19 +202,20 @@ static int within(const hf_moves_problem *p, double steps)
 }
 
 /* Change two cables by (a, b) steps where that gains. */
-static bool step_both(const hf_moves_problem *p, int *steps, int i, int j, int a, int b)
+static bool step_both(const hf_moves_problem *p, const tensions *t, int *steps, int i, int j, int a, int b)
 {
     if (abs(steps[i] + a) > p->steps_max || abs(steps[j] + b) > p->steps_max) return false;
     double by = 2 * (a * slope_at(p, steps, i) + b * slope_at(p, steps, j)) +
                 p->step_m * (a * a * gram_of(p, i, i) + 2 * a * b * gram_of(p, i, j) + b * b * gram_of(p, j, j));
     if (!(p->step_m * by < -GAIN_ROUNDING * p->square)) return false;
+    if (t && !take_steps(t, i, j, a, b)) return false;
     steps[i] += a;
     steps[j] += b;
     return true;
 }
 
 /* Step cables of the list, one or two at a time, until nothing gains. */
-static void descend(const hf_moves_problem *p, int n, const int *list, int *steps)
+static void descend(const hf_moves_problem *p, int n, const int *list, const tensions *t, int *steps)
 {
     bool moves = true;
     for (int round_ = 0; moves && round_ < ROUNDS_MAX; round_++) {
@@ -138,24 +225,48 @@ static void descend(const hf_moves_problem *p, int n, const int *list, int *step
             double curve = gram_of(p, i, i);
             if (!(curve > 0)) continue;
             int wanted = within(p, was - slope_at(p, steps, i) / (curve * p->step_m));
-            if (wanted != was) moves |= step_both(p, steps, i, i == list[0] ? list[n - 1] : list[0], wanted - was, 0);
+            if (wanted != was)
+                moves |= step_both(p, t, steps, i, i == list[0] ? list[n - 1] : list[0], wanted - was, 0);
         }
         for (int k = 0; k < n; k++)
             for (int l = 0; l < k; l++)
                 for (int way = 0; way < 4; way++)
-                    moves |= step_both(p, steps, list[k], list[l], way % 2 ? 1 : -1, way / 2 ? 1 : -1);
+                    moves |= step_both(p, t, steps, list[k], list[l], way % 2 ? 1 : -1, way / 2 ? 1 : -1);
     }
 }
 
-/* The best steps of the cables of a list, all others at 0. move_m: [n] scratch. Returns the sum of squares, INFINITY
- * without memory. */
-static double fit_steps(const hf_moves_problem *p, int n, const int *list, int *steps, double *move_m)
+/* Rounding may have broken what tensions allow: take steps back, each time the one that costs least of those that help.
+ * After as many as rounding can ask for, all. */
+static void step_back(const hf_moves_problem *p, const tensions *t, int *steps, double *move_m)
+{
+    fall_by_steps(t, steps, move_m);
+    for (int i = worst_tension(t), left = 10 * t->n; i >= 0; i = worst_tension(t), left--) {
+        int best = -1;
+        double least = (double)INFINITY;
+        for (int k = 0; k < t->n; k++) {
+            int e = t->cable[k], back = steps[e] > 0 ? -1 : 1;
+            if (!steps[e] || !(back * rates_of(t, k)[i] > 0)) continue;
+            double cost = 2 * back * slope_at(p, steps, e) + p->step_m * gram_of(p, e, e);
+            if (cost < least) least = cost, best = e;
+        }
+        if (best >= 0) steps[best] += steps[best] > 0 ? -1 : 1;
+        for (int k = 0; k < t->n && (best < 0 || left <= 0); k++)
+            steps[t->cable[k]] = 0;
+        fall_by_steps(t, steps, move_m);
+    }
+}
+
+/* The best steps of the cables of a list, all others at 0; with t those that tensions allow. move_m: [n] scratch.
+ * Returns the sum of squares, INFINITY without memory. */
+static double fit_steps(const hf_moves_problem *p, int n, const int *list, const tensions *t, int *steps,
+                        double *move_m)
 {
     memset(steps, 0, (size_t)p->n * sizeof *steps);
-    if (fit_list(p, n, list, move_m) != HF_OK) return (double)INFINITY;
+    if (fit_list(p, n, list, t, move_m) != HF_OK) return (double)INFINITY;
     for (int i = 0; i < n; i++)
         steps[list[i]] = within(p, move_m[i] / p->step_m);
-    descend(p, n, list, steps);
+    if (t) step_back(p, t, steps, move_m);
+    descend(p, n, list, t, steps);
     return hf_moves_square(p, steps);
 }
 
@@ -168,11 +279,20 @@ typedef struct {
     double *move_m;    /* [n] scratch */
     double *gain;      /* [n] scratch */
     double least;      /* sum of squares of `best` */
-    void *block;
+    tensions tensions;
+    bool is_held; /* something better was not allowed */
 } choice;
 
 static void lay_out_choice(hf_arena *arena, size_t n, choice *c)
 {
+    size_t n_tension = (size_t)c->p->n_tension, n_list = n_tension ? (size_t)c->p->moves_max : 0;
+    if (n_list > n) n_list = n;
+    c->tensions.cable = hf_arena_take(arena, n_list, sizeof(int));
+    c->tensions.rate = hf_arena_take(arena, n_list * n_tension, sizeof(double));
+    c->tensions.row = hf_arena_take(arena, n_list ? n : 0, sizeof(int));
+    c->tensions.fall_N = hf_arena_take(arena, n_tension, sizeof(double));
+    for (size_t k = 0; k < n_list && c->tensions.cable; k++)
+        c->tensions.cable[k] = -1;
     c->list = hf_arena_take(arena, n, sizeof(int));
     c->best = hf_arena_take(arena, n, sizeof(int));
     c->trial = hf_arena_take(arena, n, sizeof(int));
@@ -213,6 +333,18 @@ static int find_candidates(choice *c, int candidate[SHORT_LIST])
     return n;
 }
 
+/* Fit the list into c->trial, as tensions allow. Returns the sum of squares. */
+static double fit_allowed(choice *c)
+{
+    double square = fit_steps(c->p, c->n_list, c->list, NULL, c->trial, c->move_m);
+    if (c->p->n_tension == 0 || !(square < c->least - GAIN_ROUNDING * c->p->square)) return square;
+    take_list(&c->tensions, c->n_list, c->list);
+    fall_by_steps(&c->tensions, c->trial, c->move_m);
+    if (worst_tension(&c->tensions) < 0) return square;
+    c->is_held = true;
+    return fit_steps(c->p, c->n_list, c->list, &c->tensions, c->trial, c->move_m);
+}
+
 /* Put the candidate that fits best with the others into place k of the list. Whether `best` became better; else the
  * list is as before. */
 static bool try_place(choice *c, int k, int n_candidate, const int *candidate)
@@ -220,7 +352,7 @@ static bool try_place(choice *c, int k, int n_candidate, const int *candidate)
     int was = c->list[k], better = -1;
     for (int i = 0; i < n_candidate; i++) {
         c->list[k] = candidate[i];
-        double square = fit_steps(c->p, c->n_list, c->list, c->trial, c->move_m);
+        double square = fit_allowed(c);
         if (!(square < c->least - GAIN_ROUNDING * c->p->square)) continue;
         c->least = square;
         better = candidate[i];
@@ -281,10 +413,10 @@ static void drop_idle(choice *c)
     c->n_list = n;
 }
 
-hf_status hf_moves_choose(const hf_moves_problem *p, int *steps, hf_moves_end *end)
+hf_status hf_moves_choose(const hf_moves_problem *p, int *steps, hf_moves_end *end, bool *is_held)
 {
     hf_arena arena = {0};
-    choice c = {.p = p, .least = p->square};
+    choice c = {.p = p, .least = p->square, .tensions.p = p};
     memset(steps, 0, (size_t)p->n * sizeof *steps);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_choice(&arena, (size_t)p->n, &c)));
     for (;;) {
@@ -300,6 +432,7 @@ hf_status hf_moves_choose(const hf_moves_problem *p, int *steps, hf_moves_end *e
         memcpy(steps, c.best, (size_t)p->n * sizeof *steps);
         drop_idle(&c);
     }
+    *is_held = c.is_held;
     hf_arena_free(&arena);
     return HF_OK;
 }
@@ -311,7 +444,7 @@ hf_status hf_moves_best(const hf_moves_problem *p, double *move_m)
     HF_TRY(HF_ARENA_MAKE(&arena, list = hf_arena_take(&arena, (size_t)p->n, sizeof *list)));
     for (int i = 0; i < p->n; i++)
         list[i] = i;
-    hf_status status = fit_list(p, p->n, list, move_m);
+    hf_status status = fit_list(p, p->n, list, NULL, move_m);
     hf_arena_free(&arena);
     return status;
 }

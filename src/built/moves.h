@@ -1,11 +1,17 @@
 /* moves - which few cables to turn, by how many steps each, so that the sum of squares of linear residuals is least: a
  * choice in whole numbers, made greedily with refits and exchanges (METHOD section 12).
  *
- * Residuals are r + J a for moves a = step * whole number; J'J and J'r are all that is read of them. */
+ * Residuals are r + J a for moves a = step * whole number; J'J and J'r are all that is read of them. Tensions are
+ * linear in moves, too, and none may fall further than it has room: their rates are asked for of the few cables that a
+ * choice takes alone. */
 #ifndef HIFDM_MOVES_H
 #define HIFDM_MOVES_H
 
 #include <hifdm/status.h>
+#include <stdbool.h>
+
+/* Write what a metre of cable i adds to each tension, rate_N_per_m [n_tension]. */
+typedef void hf_moves_rates(void *context, int i, double *rate_N_per_m);
 
 /* All borrowed. */
 typedef struct {
@@ -19,6 +25,10 @@ typedef struct {
     double target;        /* enough when the root of the sum of squares is below it */
     int n_sample;         /* of what r may be instead, as far as is known */
     const double *sample; /* [n_sample][n] J' (difference of r) */
+    int n_tension;        /* 0: moves are not limited by them */
+    const double *room_N; /* [n_tension] how far each may fall, >= 0 */
+    hf_moves_rates *rates;
+    void *context; /* of rates */
 } hf_moves_problem;
 
 typedef enum {
@@ -28,13 +38,15 @@ typedef enum {
     HF_MOVES_NONE    /* no further one gains anything */
 } hf_moves_end;
 
-/* steps [n]: 0 of cables that are not turned. HF_OK or HF_NO_MEMORY. */
-hf_status hf_moves_choose(const hf_moves_problem *problem, int *steps, hf_moves_end *end);
+/* steps [n]: 0 of cables that are not turned. *is_held: other steps were better but for tensions. HF_OK or
+ * HF_NO_MEMORY. */
+hf_status hf_moves_choose(const hf_moves_problem *problem, int *steps, hf_moves_end *end, bool *is_held);
 
 /* The sum of squares after these steps. */
 double hf_moves_square(const hf_moves_problem *problem, const int *steps);
 
-/* The best moves of all n cables without steps, within steps_max * step_m: move_m [n]. HF_OK or HF_NO_MEMORY. */
+/* The best moves of all n cables without steps, within steps_max * step_m, whatever tensions do: move_m [n]. HF_OK or
+ * HF_NO_MEMORY. */
 hf_status hf_moves_best(const hf_moves_problem *problem, double *move_m);
 
 #endif

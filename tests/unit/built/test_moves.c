@@ -60,9 +60,10 @@ START_TEST(choices_are_nearly_the_best)
     for (int trial = 0; trial < TRIALS; trial++) {
         int steps[MAX_CABLES] = {0}, none[MAX_CABLES] = {0}, n_turned = 0;
         hf_moves_end end;
+        bool is_held;
         make_example(&x, &rng, 8, 12, 3, 4);
         double least = search_all(&x.p, 0, x.p.moves_max, none);
-        ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end), HF_OK);
+        ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end, &is_held), HF_OK);
         double square = hf_moves_square(&x.p, steps);
         for (int i = 0; i < x.p.n; i++) {
             n_turned += steps[i] != 0;
@@ -86,12 +87,13 @@ START_TEST(it_ends_when_it_should)
     int steps[MAX_CABLES], more[MAX_CABLES], n = 0;
     double sample[MAX_CABLES] = {0};
     hf_moves_end end;
+    bool is_held;
     make_example(&x, &rng, 20, 30, 5, 100);
-    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end), HF_OK);
+    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end, &is_held), HF_OK);
     ck_assert_int_eq(end, HF_MOVES_ALL);
     double reached = sqrt(hf_moves_square(&x.p, steps));
     x.p.target = reached * 1.2;
-    ck_assert_int_eq(hf_moves_choose(&x.p, more, &end), HF_OK);
+    ck_assert_int_eq(hf_moves_choose(&x.p, more, &end, &is_held), HF_OK);
     ck_assert_int_eq(end, HF_MOVES_TARGET);
     ck_assert_double_le(sqrt(hf_moves_square(&x.p, more)), x.p.target);
     for (int i = 0; i < x.p.n; i++)
@@ -100,7 +102,7 @@ START_TEST(it_ends_when_it_should)
 
     x.p.target = 0;
     x.p.step_m = 100; /* every step is too large */
-    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end), HF_OK);
+    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end, &is_held), HF_OK);
     ck_assert_int_eq(end, HF_MOVES_NONE);
     ck_assert(hf_moves_square(&x.p, steps) == x.p.square);
 
@@ -109,9 +111,87 @@ START_TEST(it_ends_when_it_should)
     x.p.sample = sample;
     for (int i = 0; i < x.p.n; i++)
         sample[i] = 1e3;
-    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end), HF_OK);
+    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end, &is_held), HF_OK);
     ck_assert_int_eq(end, HF_MOVES_DOUBT);
     ck_assert(hf_moves_square(&x.p, steps) == x.p.square);
+}
+END_TEST
+
+enum { TENSIONS = 6 };
+
+typedef struct {
+    example x;
+    double rate[MAX_CABLES][TENSIONS], room[TENSIONS];
+} held;
+
+static void give_rates(void *context, int i, double *rate)
+{
+    memcpy(rate, ((const held *)context)->rate[i], sizeof((const held *)context)->rate[i]);
+}
+
+/* Does a tension fall too far after these steps? */
+static bool breaks(const held *h, const int *steps)
+{
+    for (int t = 0; t < TENSIONS; t++) {
+        double fall = 0;
+        for (int i = 0; i < h->x.p.n; i++)
+            fall -= h->x.p.step_m * steps[i] * h->rate[i][t];
+        if (fall > h->room[t] * (1 + 1e-6)) return true;
+    }
+    return false;
+}
+
+/* search_all, of what tensions allow. */
+static double search_allowed(const held *h, int first, int left, int *steps)
+{
+    double least = breaks(h, steps) ? (double)INFINITY : hf_moves_square(&h->x.p, steps);
+    for (int i = first; i < h->x.p.n && left; i++)
+        for (int k = -h->x.p.steps_max; k <= h->x.p.steps_max; k++) {
+            if (!k) continue;
+            steps[i] = k;
+            least = fmin(least, search_allowed(h, i + 1, left - 1, steps));
+            steps[i] = 0;
+        }
+    return least;
+}
+
+/* Choices keep tensions, of which some have no room at all, and are nearly the best of those that do; most choices
+ * without them break some. */
+START_TEST(tensions_are_kept)
+{
+    static held h;
+    struct rng rng = rng_start(7200);
+    int n_broken = 0, n_best = 0;
+    double worst = 1;
+    enum { TRIALS = 40 };
+    for (int trial = 0; trial < TRIALS; trial++) {
+        int free_steps[MAX_CABLES], steps[MAX_CABLES], none[MAX_CABLES] = {0};
+        hf_moves_end end;
+        bool is_held, is_free_held;
+        make_example(&h.x, &rng, 8, 12, 3, 4);
+        ck_assert_int_eq(hf_moves_choose(&h.x.p, free_steps, &end, &is_free_held), HF_OK);
+        ck_assert(!is_free_held);
+        for (int t = 0; t < TENSIONS; t++) {
+            h.room[t] = t == trial % (2 * TENSIONS) ? 0 : rng_uniform(&rng, 0.1, 0.6);
+            for (int i = 0; i < h.x.p.n; i++)
+                h.rate[i][t] = rng_uniform(&rng, -1, 1);
+        }
+        h.x.p.n_tension = TENSIONS, h.x.p.room_N = h.room, h.x.p.rates = give_rates, h.x.p.context = &h;
+        ck_assert_int_eq(hf_moves_choose(&h.x.p, steps, &end, &is_held), HF_OK);
+        ck_assert(!breaks(&h, steps));
+        if (breaks(&h, free_steps)) ck_assert(is_held);
+        n_broken += breaks(&h, free_steps);
+        double least = search_allowed(&h, 0, h.x.p.moves_max, none), square = hf_moves_square(&h.x.p, steps);
+        ck_assert_double_ge(square, least - 1e-9);
+        n_best += square < least + 1e-9;
+        worst = fmax(worst, sqrt(square / least));
+    }
+    printf("moves: %d of %d choices without tensions break some; of those with them %d are the best, the worst is %.3f "
+           "of it\n",
+           n_broken, TRIALS, n_best, worst);
+    ck_assert_int_ge(n_broken, TRIALS / 2);
+    ck_assert_int_ge(n_best, TRIALS / 2);
+    ck_assert_double_lt(worst, 1.2);
 }
 END_TEST
 
@@ -123,9 +203,10 @@ START_TEST(the_best_is_a_bound)
     int steps[MAX_CABLES];
     double move[MAX_CABLES], square;
     hf_moves_end end;
+    bool is_held;
     make_example(&x, &rng, 20, 30, 20, _i + 1);
     ck_assert_int_eq(hf_moves_best(&x.p, move), HF_OK);
-    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end), HF_OK);
+    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end, &is_held), HF_OK);
     square = 0;
     for (int r = 0; r < 30; r++) {
         double sum = x.residual[r];
@@ -145,6 +226,7 @@ Suite *suite_unit_moves(void)
     TCase *tcase = tcase_create("moves");
     tcase_add_test(tcase, choices_are_nearly_the_best);
     tcase_add_test(tcase, it_ends_when_it_should);
+    tcase_add_test(tcase, tensions_are_kept);
     tcase_add_loop_test(tcase, the_best_is_a_bound, 0, 8);
     suite_add_tcase(suite, tcase);
     return suite;
