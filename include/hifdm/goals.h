@@ -65,7 +65,8 @@ typedef struct {
     hf_surface_kind kind;  /* of the wanted surface, as the next; only with goals surface and facets */
     double focal_length_m;
     int n_facet;
-    int *corner_row; /* [n_facet][4] rows of the model; only with a goal facets */
+    int *corner_row;           /* [n_facet][4] rows of the model; only with a goal facets or gain */
+    struct hf_gain_beam *beam; /* [n_goal] of those of gain */
     int n_goal, n_row;
     hf_goal goal[HF_DESIGN_ROWS_MAX];
     const hf_goals_nets *nets; /* borrowed; NULL where no goal is over any */
@@ -80,6 +81,7 @@ typedef struct hf_goals_point {
     double *rate_N;         /* [n_support][3] scratch: their change */
     double *size;           /* [n_support], [n_attachment] or of ratio [2 n_cable] scratch */
     double *row;            /* [n_row] scratch */
+    struct hf_gain *gain;   /* [n_goal] of those of gain */
     struct hf_cloud *cloud; /* [n_goal] of those of the surface: its points, their errors, the best fit */
     void *nets;             /* the room of goals->nets; NULL without */
     void (*free_nets)(void *room);
@@ -156,6 +158,8 @@ hf_status hf_goals_measure_shape(const hf_goals *goals, int i_goal, const hf_wor
                                  double *residual, double *value, double *norm);
 void hf_goals_push_shape(const hf_goals *goals, int i_goal, const hf_workspace *shape, hf_goals_point *point,
                          const hf_goals_rate *by, double *rate);
+/* What goal i_goal needs for that derivative, of the shape that was measured last. As hf_goals_linearise. */
+hf_status hf_goals_linearise_shape(const hf_goals *goals, int i_goal, const hf_workspace *shape, hf_goals_point *point);
 bool hf_goals_is_on_surface(hf_goal_kind kind);
 
 /* The largest of n sizes, and the smooth one P = (sum s^16)^(1/16) as *norm; size [n] becomes s/P. */

@@ -21,6 +21,7 @@ typedef struct {
     double position_m[3];  /* of a point; of a line x and z */
     double axis[3], co[3]; /* unit vectors: where it looks, and the polarisation there; of a line across y */
     double cos_power;      /* q: the field goes as cos^q of the angle from the axis, 0 behind */
+    double beam[3];        /* unit vector into which the wanted surface sends what meets the point it looks at */
     double scale;          /* gain = scale |N|^2 / wavelength^2, with N of (M38) */
 } hf_feed;
 

@@ -56,7 +56,8 @@ typedef enum {
     HF_GOAL_PULL,         /* N, largest force of the net on a support */
     HF_GOAL_DISPLACEMENT, /* m, largest displacement of an attachment by the truss */
     HF_GOAL_MASS,         /* kg, of the cables of the set at mass_kg_per_m */
-    HF_GOAL_RATIO         /* largest over smallest tension of the set */
+    HF_GOAL_RATIO,        /* largest over smallest tension of the set */
+    HF_GOAL_GAIN          /* root of the part of the gain that is lost in the direction of the beam */
 } hf_goal_kind;
 typedef enum { HF_ALONG_NORMAL, HF_ALONG_HALF_PATH } hf_along;
 typedef enum { HF_FIT_NONE, HF_FIT_BEST } hf_fit; /* the wanted surface itself, or its best fit to the shape */
@@ -92,8 +93,8 @@ extern const char *const hf_polarisation_word[3];
 extern const char *const hf_coupling_scheme_word[4];
 extern const char *const hf_vary_word[8];
 extern const char *const hf_link_word[4];
-extern const char *const hf_goal_word[11];
-extern const char *const hf_goal_unit[10]; /* of the values; "" where they have none */
+extern const char *const hf_goal_word[12];
+extern const char *const hf_goal_unit[11]; /* of the values; "" where they have none */
 extern const char *const hf_along_word[3];
 extern const char *const hf_fit_word[3];
 extern const char *const hf_over_word[4];
@@ -130,8 +131,9 @@ typedef struct {
     hf_fit fit;                   /* the same */
     char state[HF_SET_NAME_SIZE]; /* of `cases`; "": `over` says */
     hf_over over;
-    hf_take take;    /* of states and samples */
-    double quantile; /* of samples, instead of `take`: so large a part has no larger value; 0 or NaN: none */
+    hf_take take;        /* of states and samples */
+    double quantile;     /* of samples, instead of `take`: so large a part has no larger value; 0 or NaN: none */
+    double frequency_Hz; /* of gain; 0 or NaN: the highest of the surface */
 } hf_goal_settings;
 
 /* A row of optimize.limits. */

@@ -114,6 +114,9 @@ hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_facet
 /* Ruze's formula holds for errors that are small beside a wavelength: up to about this loss, an RMS of lambda/15. */
 #define HF_RUZE_MOST_DB 3.0
 
+/* The highest of frequencies_Hz; 0 without one. */
+double hf_surface_highest_Hz(const hf_surface_settings *settings);
+
 /* Loss of gain by a half-path RMS at a frequency, positive, dB: Ruze's formula (M17). NaN beyond HF_RUZE_MOST_DB. */
 double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz);
 

@@ -213,6 +213,9 @@ static void print_wishes(const hf_problem *p, FILE *f)
         fprintf(f, "                goals.%d: %s", k, hf_goal_word[s->goal]);
         if (p->goals.goal[k].cable) fprintf(f, " of %s", set_or_all(s->set));
         if (!isnan(s->target)) fprintf(f, ", target %g", s->target);
+        if (s->goal == HF_GOAL_GAIN)
+            fprintf(f, " at %g GHz",
+                    (s->frequency_Hz > 0 ? s->frequency_Hz : hf_surface_highest_Hz(&p->surface)) / 1e9);
         print_nets(s, f);
         fprintf(f, ", weight %g\n", s->weight);
     }

@@ -104,12 +104,9 @@ bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets 
 
 static double loss_dB(const hf_montecarlo *t, double half_path_rms_m)
 {
-    const hf_double_list *at = &t->surface->frequencies_Hz;
-    double highest = 0;
-    for (int k = 0; k < at->n; k++)
-        highest = fmax(highest, at->value[k]);
-    if (at->n == 0) return (double)NAN;
-    double loss = hf_surface_gain_loss_dB(half_path_rms_m, highest);
+    double highest_Hz = hf_surface_highest_Hz(t->surface);
+    if (!(highest_Hz > 0)) return (double)NAN;
+    double loss = hf_surface_gain_loss_dB(half_path_rms_m, highest_Hz);
     return isnan(loss) && !isnan(half_path_rms_m) ? (double)INFINITY : loss; /* beyond what Ruze's formula holds for */
 }
 

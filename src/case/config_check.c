@@ -240,7 +240,8 @@ static void check_goals(const char *list, int n_goal, const hf_goal_settings *go
                {"target", 1u << HF_GOAL_TENSION | 1u << HF_GOAL_LENGTH},
                {"mass_kg_per_m", 1u << HF_GOAL_MASS},
                {"along", SURFACES},
-               {"fit", SURFACES}};
+               {"fit", SURFACES},
+               {"frequency_Hz", 1u << HF_GOAL_GAIN}};
     for (int i = 0; i < n_goal; i++) {
         const hf_goal_settings *g = &goal[i];
         for (size_t k = 0; k < sizeof use / sizeof *use; k++)

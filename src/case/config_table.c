@@ -312,7 +312,8 @@ static const hf_field goal_field[] = {
      "facets: distance of the facets to it, RMS (m); tension, length: difference to target, RMS over the set (N, m); "
      "evenness: standard deviation of the tensions of the set over their mean; pull: largest force of the net on a "
      "support (N); displacement: the largest of an attachment by the truss (m); mass: of the cables of the set (kg); "
-     "ratio: largest over smallest tension of the set"},
+     "ratio: largest over smallest tension of the set; gain: root of the part of the gain that the shape loses in the "
+     "direction of the beam, by physical optics (surface.pattern)"},
     {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL,
      "cables of tension, length, evenness, mass, ratio; default: all"},
     {"target", HF_FIELD_DOUBLE, IN(target), -BIG, BIG, "", "", NULL,
@@ -323,6 +324,8 @@ static const hf_field goal_field[] = {
      "of surface and facets: distance along the normal, or half the change of the path of a ray"},
     {"fit", HF_FIELD_WORD, IN(fit), 0, 0, "none", "", hf_fit_word,
      "of surface and facets: distance to the wanted surface, or to its best fit to the shape"},
+    {"frequency_Hz", HF_FIELD_DOUBLE, IN(frequency_Hz), HF_ABOVE_ZERO, 1e15, "", "Hz", NULL,
+     "of gain; default: the highest of surface.frequencies_Hz"},
     {"state", HF_FIELD_TEXT, IN(state), 1, HF_SET_NAME_SIZE, "", "", NULL,
      "of `cases`: the goal is that of the net that is cut for the design, in this state"},
     {"over", HF_FIELD_WORD, IN(over), 0, 0, "design", "", hf_over_word,

@@ -21,9 +21,9 @@ const char *const hf_compare_word[4] = {"auto", "true", "false", NULL};
 const char *const hf_vary_word[8] = {"tension",   "force_density",  "length",      "unstressed_length",
                                      "support_z", "support_normal", "support_xyz", NULL};
 const char *const hf_link_word[4] = {"each", "set", "symmetry", NULL};
-const char *const hf_goal_word[11] = {"psi",  "surface",      "facets", "tension", "length", "evenness",
-                                      "pull", "displacement", "mass",   "ratio",   NULL};
-const char *const hf_goal_unit[10] = {"m", "m", "m", "N", "m", "", "N", "m", "kg", ""};
+const char *const hf_goal_word[12] = {"psi",  "surface",      "facets", "tension", "length", "evenness",
+                                      "pull", "displacement", "mass",   "ratio",   "gain",   NULL};
+const char *const hf_goal_unit[11] = {"m", "m", "m", "N", "m", "", "N", "m", "kg", "", ""};
 const char *const hf_along_word[3] = {"normal", "half_path", NULL};
 const char *const hf_fit_word[3] = {"none", "best", NULL};
 const char *const hf_aim_word[3] = {"theory", "design", NULL};

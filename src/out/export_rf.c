@@ -66,12 +66,9 @@ static hf_status find_sags(view *v, const char *file, hf_arena *arena, hf_messag
 /* Extent of the facets, and points along their sides. */
 static void measure(view *v)
 {
-    const hf_double_list *at = &v->stored->summary.surface.frequencies_Hz;
-    double longest_m = 0, most_Hz = 0;
+    double longest_m = 0, most_Hz = hf_surface_highest_Hz(&v->stored->summary.surface);
     v->low[0] = v->low[1] = INFINITY;
     v->high[0] = v->high[1] = -INFINITY;
-    for (int k = 0; k < at->n; k++)
-        most_Hz = fmax(most_Hz, at->value[k]);
     for (int i = 0; i < 4 * v->facets.n_facet; i++) {
         const int *corner = v->facets.corner + i / 4 * 4;
         const double *p = v->stored->shape.position_m + 3 * (size_t)corner[i % 4];

@@ -62,8 +62,7 @@ static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
     hf_feed feed;
     hf_surface_measures m;
     const hf_facet_shape theory = {.position_m = p->scene.position_m};
-    const hf_double_list *at = &p->surface.frequencies_Hz;
-    double most_Hz = 0;
+    const double most_Hz = hf_surface_highest_Hz(&p->surface);
     bool is_given = hf_config_place(&p->settings, "surface.pattern.feed.position_m", place, sizeof place);
     if (!is_given) hf_config_place(&p->settings, "surface.pattern", place, sizeof place);
     if (p->facets.n_facet == 0)
@@ -79,8 +78,6 @@ static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
                         "%s: from (%g, %g, %g) m the feed sees %d of %d facets from behind or not at all; it must be "
                         "above all of them and look at them",
                         place, feed.position_m[0], feed.position_m[1], feed.position_m[2], n_dark, p->facets.n_facet);
-    for (int k = 0; k < at->n; k++)
-        most_Hz = fmax(most_Hz, at->value[k]);
     if (hf_facet_measure(&p->surface, &p->facets, &theory, &m) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
     HF_TRY(check_frequencies(p, &feed, m.facet_area_m2, messages));

@@ -179,6 +179,7 @@ static bool changes_goal(const reach *q, const hf_goal *g)
     case HF_GOAL_SURFACE:
         return any_row(q, q->model.n_inner_node, q->model.inner_row);
     case HF_GOAL_FACETS:
+    case HF_GOAL_GAIN:
         return any_row(q, 4 * goals->n_facet, goals->corner_row);
     case HF_GOAL_TENSION:
     case HF_GOAL_EVENNESS:
@@ -239,6 +240,7 @@ static const char *why_goal(hf_goal_kind kind)
     case HF_GOAL_PSI:
     case HF_GOAL_SURFACE:
     case HF_GOAL_FACETS:
+    case HF_GOAL_GAIN:
         return "none of the nodes that it looks at moves";
     case HF_GOAL_TENSION:
     case HF_GOAL_EVENNESS:

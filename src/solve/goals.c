@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "linalg/dot.h"
 #include "solve/cloud.h"
+#include "solve/gain.h"
 #include "solve/newton_matrix.h"
 #include <hifdm/metrics.h>
 
@@ -29,10 +30,14 @@ static void lay_out_point(hf_arena *a, const hf_goals *goals, hf_goals_point *p)
     p->net_norm = hf_arena_take(a, (size_t)goals->n_goal * n_net, sizeof(double));
     p->net_part = hf_arena_take(a, (size_t)goals->n_goal * n_net, sizeof(double));
     p->cloud = hf_arena_take(a, (size_t)goals->n_goal, sizeof *p->cloud);
+    p->gain = hf_arena_take(a, (size_t)goals->n_goal, sizeof *p->gain);
     for (int k = 0; k < goals->n_goal; k++) {
         hf_cloud cloud = {0};
         if (hf_goals_is_on_surface(goals->goal[k].wanted.goal)) hf_cloud_lay_out(a, goals, &goals->goal[k], &cloud);
         if (a->block) p->cloud[k] = cloud;
+        hf_gain gain = {0};
+        if (goals->goal[k].wanted.goal == HF_GOAL_GAIN) hf_gain_lay_out(a, goals, k, &gain);
+        if (a->block) p->gain[k] = gain;
     }
 }
 
@@ -241,6 +246,10 @@ hf_status hf_goals_measure_shape(const hf_goals *goals, int k, const hf_workspac
         HF_TRY(hf_cloud_measure(&p->cloud[k], w, f));
         has_own_value = false;
         break;
+    case HF_GOAL_GAIN:
+        hf_gain_measure(&p->gain[k], w, f);
+        has_own_value = false;
+        break;
     default:
         measure_cables(g, m, w, f);
         has_own_value = false;
@@ -279,6 +288,12 @@ hf_status hf_goals_measure(const hf_goals *goals, const hf_workspace *w, hf_goal
     return measure_all(goals, w, p, true, p->row, value, merit);
 }
 
+hf_status hf_goals_linearise_shape(const hf_goals *goals, int k, const hf_workspace *w, hf_goals_point *p)
+{
+    if (goals->goal[k].wanted.goal == HF_GOAL_GAIN) hf_gain_linearise(&p->gain[k], w);
+    return hf_goals_is_on_surface(goals->goal[k].wanted.goal) ? hf_cloud_linearise(&p->cloud[k]) : HF_OK;
+}
+
 static hf_status linearise_all(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, bool with_nets,
                                double *residual)
 {
@@ -286,8 +301,7 @@ static hf_status linearise_all(const hf_goals *goals, const hf_workspace *w, hf_
     HF_TRY(measure_all(goals, w, p, with_nets, residual, NULL, &merit));
     if (!isfinite(merit)) return HF_NOT_FINITE;
     for (int k = 0; k < goals->n_goal; k++)
-        if (hf_goals_is_on_surface(goals->goal[k].wanted.goal) && !goals->goal[k].n_net)
-            HF_TRY(hf_cloud_linearise(&p->cloud[k]));
+        if (!goals->goal[k].n_net) HF_TRY(hf_goals_linearise_shape(goals, k, w, p));
     return HF_OK;
 }
 
@@ -442,6 +456,9 @@ void hf_goals_push_shape(const hf_goals *goals, int k, const hf_workspace *w, hf
     case HF_GOAL_SURFACE:
     case HF_GOAL_FACETS:
         hf_cloud_push(&p->cloud[k], by->position_m, rate);
+        break;
+    case HF_GOAL_GAIN:
+        hf_gain_push(&p->gain[k], by->position_m, rate);
         break;
     default:
         push_cables(g, m, w, by, rate);

@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "net/cable_pick.h"
 #include "solve/cloud.h"
+#include "solve/gain.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -18,6 +19,11 @@ bool hf_goals_is_on_surface(hf_goal_kind kind)
     return kind == HF_GOAL_SURFACE || kind == HF_GOAL_FACETS;
 }
 
+static bool is_of_facets(hf_goal_kind kind)
+{
+    return kind == HF_GOAL_FACETS || kind == HF_GOAL_GAIN;
+}
+
 static bool has_set(hf_goal_kind kind)
 {
     return kind == HF_GOAL_TENSION || kind == HF_GOAL_LENGTH || kind == HF_GOAL_EVENNESS || kind == HF_GOAL_MASS ||
@@ -29,14 +35,19 @@ bool hf_goals_is_largest(hf_goal_kind kind)
     return kind == HF_GOAL_PULL || kind == HF_GOAL_DISPLACEMENT || kind == HF_GOAL_RATIO;
 }
 
-/* What is wrong with a goal in this scene, as the end of a sentence, or NULL. */
-static const char *fault_of(const hf_goal *g, const hf_model *m, const hf_surface_settings *surface,
-                            const hf_facets *facets)
+/* What is wrong with goal k in this scene, as the end of a sentence, or NULL. */
+static const char *fault_of(const hf_goals *goals, int k, const hf_surface_settings *surface, const hf_facets *facets)
 {
+    const hf_goal *g = &goals->goal[k];
+    const hf_model *m = goals->model;
     const hf_goal_settings *s = &g->wanted;
     if (hf_goals_is_on_surface(s->goal) && (!surface || !(surface->focal_length_m > 0)))
         return "needs the wanted surface: add a section surface (of an imported net with focal_length_m)";
-    if (s->goal == HF_GOAL_FACETS && (!facets || facets->n_facet == 0)) return "this net has no facets";
+    if (s->goal == HF_GOAL_GAIN && (!surface || !surface->has_pattern))
+        return "needs a section surface.pattern, which says what illuminates the reflector";
+    if (is_of_facets(s->goal) && (!facets || facets->n_facet == 0)) return "this net has no facets";
+    if (s->goal == HF_GOAL_GAIN && goals->beam[k].order == HF_GAIN_ORDER_MOST)
+        return "its facets are too coarse for this frequency: the phase across one varies by several turns";
     if (s->goal == HF_GOAL_SURFACE && s->fit == HF_FIT_BEST && m->n_inner_node < HF_FIT_N_PARAMETER)
         return "a best fit needs at least six inner nodes";
     if (s->goal == HF_GOAL_TENSION && isnan(s->target)) return "needs a target, in N";
@@ -66,6 +77,8 @@ static int row_count(const hf_goals *goals, const hf_goal *g)
     case HF_GOAL_SURFACE:
     case HF_GOAL_FACETS:
         return hf_cloud_size(goals, g);
+    case HF_GOAL_GAIN:
+        return hf_gain_size(goals, (int)(g - goals->goal));
     default:
         return g->n_cable;
     }
@@ -108,6 +121,7 @@ static void lay_out(hf_arena *a, const hf_model *m, hf_goals *goals)
         goals->goal[k].cable =
             has_set(goals->goal[k].wanted.goal) ? hf_arena_take(a, (size_t)m->n_cable, sizeof(int)) : NULL;
     goals->corner_row = hf_arena_take(a, 4 * (size_t)goals->n_facet, sizeof(int));
+    goals->beam = hf_arena_take(a, (size_t)goals->n_goal, sizeof *goals->beam);
 }
 
 /* The case has been checked: what a goal is over is there. */
@@ -118,6 +132,16 @@ static void choose_nets(const hf_goals_nets *nets, hf_goal *g)
         if (!strcmp(nets->state_name[k], s->state)) g->first_net = k, g->n_net = 1;
     if (nets && s->over == HF_OVER_STATES) g->n_net = nets->n_state;
     if (nets && s->over == HF_OVER_SAMPLES) g->first_net = nets->n_state, g->n_net = nets->n_sample;
+}
+
+/* The field that goal k is about; without a frequency of its own at the highest of the surface. */
+static void make_beam(const hf_scene *scene, const hf_surface_settings *s, const hf_facets *facets, hf_goals *goals,
+                      int k)
+{
+    double frequency_Hz = goals->goal[k].wanted.frequency_Hz;
+    if (goals->goal[k].wanted.goal != HF_GOAL_GAIN || !s || !s->has_pattern || !facets || !facets->n_facet) return;
+    if (!(frequency_Hz > 0)) frequency_Hz = hf_surface_highest_Hz(s);
+    hf_gain_beam_make(s, facets, scene->position_m, frequency_Hz, &goals->beam[k]);
 }
 
 hf_status hf_goals_create(const hf_scene *scene, const hf_model *m, const hf_optimize_settings *s,
@@ -132,7 +156,7 @@ hf_status hf_goals_create(const hf_scene *scene, const hf_model *m, const hf_opt
     for (int k = 0; k < goals->n_goal; k++) {
         goals->goal[k].wanted = is_front ? s->objective[k] : s->n_goal > 0 ? s->goal[k] : psi_alone;
         if (is_front) goals->goal[k].wanted.weight = 1;
-        if (goals->goal[k].wanted.goal == HF_GOAL_FACETS && facets) goals->n_facet = facets->n_facet;
+        if (is_of_facets(goals->goal[k].wanted.goal) && facets) goals->n_facet = facets->n_facet;
         choose_nets(nets, &goals->goal[k]);
         if (goals->goal[k].n_net) goals->nets = nets;
     }
@@ -150,9 +174,10 @@ hf_status hf_goals_create(const hf_scene *scene, const hf_model *m, const hf_opt
         hf_goal *g = &goals->goal[k];
         char where[HF_PLACE_SIZE];
         hf_messages_place(messages, where, "optimize.%s.%d.set", list, k);
+        make_beam(scene, surface, facets, goals, k);
         if (g->cable) g->n_cable = hf_cable_pick_some(scene, g->wanted.set, where, g->cable, messages);
         bool is_known = !g->cable || g->n_cable > 0;
-        const char *fault = is_known ? fault_of(g, m, surface, facets) : NULL;
+        const char *fault = is_known ? fault_of(goals, k, surface, facets) : NULL;
         hf_messages_place(messages, where, "optimize.%s.%d", list, k);
         if (fault) hf_error(messages, HF_BAD_CASE, "%s: %s: %s", where, hf_goal_word[g->wanted.goal], fault);
         n_fault += !is_known || fault;

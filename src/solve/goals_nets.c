@@ -3,7 +3,6 @@
 #include <hifdm/goals.h>
 
 #include "linalg/dot.h"
-#include "solve/cloud.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -148,7 +147,7 @@ hf_status hf_goals_nets_linearise(const hf_goals *goals, int i_net, hf_goals_poi
         if (!is_over(&goals->goal[k], i_net)) continue;
         HF_TRY(hf_goals_measure_shape(goals, k, *shape, p, p->row, &value, &norm));
         if (!isfinite(norm)) return HF_NOT_FINITE;
-        if (hf_goals_is_on_surface(goals->goal[k].wanted.goal)) HF_TRY(hf_cloud_linearise(&p->cloud[k]));
+        HF_TRY(hf_goals_linearise_shape(goals, k, *shape, p));
     }
     return HF_OK;
 }

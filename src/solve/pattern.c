@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "solve/facet_mesh.h"
+#include "solve/gauss.h"
 #include "solve/pattern_feed.h"
 #include "solve/pattern_kernel.h"
 
@@ -33,19 +34,6 @@ static const kernels kernels_of_isa[HF_LANE_N_ISA] = {KERNELS(portable), KERNELS
 
 /* ---- orders ---- */
 
-/* Smallest n with which Gauss-Legendre's rule on [-1, 1] has an error below exp(GAUSS_LN) for exp(j phase x):
- * phase^(2n) 2^(2n+1) n!^4 / ((2n+1) (2n)!^3). */
-static int gauss_order(double phase)
-{
-    double ln = hf_logarithm(2.0), step = 2 * hf_logarithm(fmax(phase, 1e-3));
-    for (int n = 1; n < GAUSS_MOST; n++) {
-        double k = 2 * n;
-        ln += step + hf_logarithm(4.0 * n * n * n * n / (k * k * k * (k - 1) * (k - 1) * (k - 1)));
-        if (ln - hf_logarithm(k + 1) < GAUSS_LN) return n;
-    }
-    return GAUSS_MOST;
-}
-
 /* Smallest number of Chebyshev's nodes on [-1, 1] between which exp(j phase x) has an error below exp(NODE_LN): the
  * coefficients J_n(phase) that are left out are below (phase/2)^n / n!. */
 static int node_order(double phase, int most)
@@ -55,32 +43,6 @@ static int node_order(double phase, int most)
     while (n < most && ln > NODE_LN)
         n++, ln += step - hf_logarithm(n);
     return n;
-}
-
-/* Legendre's polynomial of order n at x, and its derivative. */
-static double legendre(int n, double x, double *derivative)
-{
-    double p = 1, before = 0;
-    for (int k = 1; k <= n; k++) {
-        double next = ((2 * k - 1) * x * p - (k - 1) * before) / k;
-        before = p;
-        p = next;
-    }
-    *derivative = n * (x * p - before) / (x * x - 1);
-    return p;
-}
-
-static void make_gauss(double *at, double *weight)
-{
-    for (int n = 1; n <= GAUSS_MOST; n++)
-        for (int i = 0; i < n; i++) {
-            double x = hf_cosine(PI * (i + 0.75) / (n + 0.5)), slope = 1, step = 1;
-            for (int k = 0; k < 10 && fabs(step) > 1e-15; k++)
-                x -= step = legendre(n, x, &slope) / slope;
-            legendre(n, x, &slope);
-            at[n * GAUSS_MOST + i] = (1 - x) / 2;
-            weight[n * GAUSS_MOST + i] = 1 / ((1 - x * x) * slope * slope);
-        }
 }
 
 /* ---- layout ---- */
@@ -205,7 +167,8 @@ static double phase_of(const hf_far_field *p, const hf_facet_mesh *m, double *ra
 /* Pieces of a facet along u and along v, and points of quadrature of each along both. */
 static int pieces_of(double phase, int *order)
 {
-    int n = (int)fmin(phase / GAUSS_PHASE_MOST, PIECES_MOST) + 1, wanted = gauss_order(phase / n) + GAUSS_MORE;
+    int n = (int)fmin(phase / GAUSS_PHASE_MOST, PIECES_MOST) + 1,
+        wanted = hf_gauss_order(phase / n, GAUSS_LN, GAUSS_MOST) + GAUSS_MORE;
     *order = wanted < GAUSS_MOST ? wanted : GAUSS_MOST;
     return n;
 }
@@ -322,7 +285,8 @@ hf_status hf_pattern_create(const hf_pattern_settings *s, const hf_pattern_surfa
     p->n_thread = n_thread;
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, p)));
     p->block = arena.block;
-    make_gauss(p->gauss_at, p->gauss_weight);
+    for (int k = 1; k <= GAUSS_MOST; k++)
+        hf_gauss_rule(k, p->gauss_at + k * GAUSS_MOST, p->gauss_weight + k * GAUSS_MOST);
     fill_directions(p, false, s->n_theta, p->n_padded, p->direction);
     fill_directions(p, p->n_node > 0, p->n_node ? p->n_node : s->n_theta, p->n_node_padded, p->node_direction);
     if (p->n_node) fill_between(p);

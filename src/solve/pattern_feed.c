@@ -28,6 +28,12 @@ static double power(double c, double q)
     return exponent > -900 ? hf_power_of_two(exponent) : 0;
 }
 
+/* The field at an angle of this cosine from the axis. */
+static double size_of(const hf_feed *f, double cosine, double path_m)
+{
+    return power(cosine, f->cos_power) / (f->kind == HF_FEED_LINE ? sqrt(path_m) : path_m);
+}
+
 /* Polarised along x or y on the axis, turned without twist towards the other directions (Ludwig's third definition);
  * of a line along it, or across. */
 double hf_feed_light(const hf_feed *f, const double p[3], double toward[3], double field[3])
@@ -42,7 +48,7 @@ double hf_feed_light(const hf_feed *f, const double p[3], double toward[3], doub
         path_m = hf_norm(toward[0], toward[1], toward[2]);
         for (int d = 0; d < 3; d++)
             toward[d] /= path_m;
-        size = power(dot(toward, f->axis), f->cos_power) / (f->kind == HF_FEED_LINE ? sqrt(path_m) : path_m);
+        size = size_of(f, dot(toward, f->axis), path_m);
     }
     if (f->kind == HF_FEED_LINE && f->co[1] == 0) hf_cross(toward, (const double[3]){0, 1, 0}, along);
     double turn = dot(f->co, toward) / (1 + dot(f->axis, toward));
@@ -52,6 +58,33 @@ double hf_feed_light(const hf_feed *f, const double p[3], double toward[3], doub
     for (int d = 0; d < 3; d++)
         field[d] *= size;
     return path_m;
+}
+
+/* With t = toward, a the axis, c the polarisation: field = size t x along, and t x along = t x c - turn t x a. */
+void hf_feed_light_rate(const hf_feed *f, const double p[3], const double move[3], double field_rate[3])
+{
+    double t[3], field[3], dt[3], one[3], other[3];
+    double path_m = hf_feed_light(f, p, t, field), longer_m = dot(t, move), cosine = dot(t, f->axis);
+    memset(field_rate, 0, 3 * sizeof *field_rate);
+    if (f->kind == HF_FEED_PLANE_WAVE || !(cosine > 0)) return;
+    for (int d = 0; d < 3; d++)
+        dt[d] = f->kind == HF_FEED_LINE && d == 1 ? 0 : (move[d] - longer_m * t[d]) / path_m;
+    double size = size_of(f, cosine, path_m);
+    double grow = f->cos_power * dot(dt, f->axis) / cosine - (f->kind == HF_FEED_LINE ? 0.5 : 1) * longer_m / path_m;
+    hf_cross(dt, (const double[3]){0, f->co[1] != 0, 0}, one); /* of a line; its field across it keeps its direction */
+    if (f->kind != HF_FEED_LINE) {
+        double down = 1 + dot(f->axis, t), turn = dot(f->co, t) / down;
+        double turn_rate = (dot(f->co, dt) - turn * dot(f->axis, dt)) / down;
+        hf_cross(dt, f->co, one);
+        hf_cross(dt, f->axis, other);
+        for (int d = 0; d < 3; d++)
+            one[d] -= turn * other[d];
+        hf_cross(t, f->axis, other);
+        for (int d = 0; d < 3; d++)
+            one[d] -= turn_rate * other[d];
+    }
+    for (int d = 0; d < 3; d++)
+        field_rate[d] = grow * field[d] + size * one[d];
 }
 
 /* The integral of cos^(2q) from -pi/2 to pi/2, sqrt(pi) Gamma(q + 1/2)/Gamma(q + 1), by its recurrence from q above 40,
@@ -131,6 +164,18 @@ static double scale_of(const hf_feed *f, const hf_facets *facets, const double *
     return PI / area;
 }
 
+/* The ray that meets the wanted surface above or below `aim` is reflected there. */
+static void send_beam(const hf_surface_settings *s, const double aim_m[3], hf_feed *f)
+{
+    double p[3] = {aim_m[0], aim_m[1], 0}, toward[3], field[3], slope[2];
+    p[2] = -hf_wanted_height_above(s->kind, 1 / (4 * s->focal_length_m), p, slope);
+    hf_feed_light(f, p, toward, field);
+    const double up[3] = {-slope[0], -slope[1], 1};
+    double part = 2 * dot(toward, up) / dot(up, up);
+    for (int d = 0; d < 3; d++)
+        f->beam[d] = toward[d] - part * up[d];
+}
+
 /* ---- together ---- */
 
 static bool sees(const hf_feed *f, const hf_facets *facets, int i, const double *position_m)
@@ -161,6 +206,7 @@ int hf_feed_make(const hf_surface_settings *s, const hf_facets *facets, const do
     if (!isnan(want->position_m[0])) memcpy(feed->position_m, want->position_m, sizeof feed->position_m);
     if (!isnan(want->aim_m[0])) memcpy(aim_m, want->aim_m, sizeof aim_m);
     look(want, aim_m, feed);
+    send_beam(s, aim_m, feed);
     if (isnan(feed->cos_power)) {
         feed->cos_power = 0;
         if (feed->kind != HF_FEED_PLANE_WAVE) feed->cos_power = tapered(feed, facets, position_m);

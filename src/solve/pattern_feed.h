@@ -9,4 +9,7 @@
  * plane wave that from the origin. */
 double hf_feed_light(const hf_feed *feed, const double p[3], double toward[3], double field[3]);
 
+/* The change of this field for a move of p; of the path it is toward . move. */
+void hf_feed_light_rate(const hf_feed *feed, const double p[3], const double move[3], double field_rate[3]);
+
 #endif

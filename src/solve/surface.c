@@ -14,6 +14,14 @@
 
 /* ---- loss of gain ---- */
 
+double hf_surface_highest_Hz(const hf_surface_settings *s)
+{
+    double highest_Hz = 0;
+    for (int k = 0; k < s->frequencies_Hz.n; k++)
+        highest_Hz = fmax(highest_Hz, s->frequencies_Hz.value[k]);
+    return highest_Hz;
+}
+
 double hf_surface_ruze_dB(double half_path_rms_m, double frequency_Hz)
 {
     double phase = 4 * PI * half_path_rms_m * frequency_Hz / LIGHT_M_PER_S;

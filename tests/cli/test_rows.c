@@ -404,6 +404,41 @@ START_TEST(check_names_variables_goals_and_limits)
 }
 END_TEST
 
+/* ---- the gain ---- */
+
+/* Two bands. What the goals lose the far field, which is summed otherwise, has less, but for 2e-4 dB that the optimum
+ * changes of the area. */
+START_TEST(the_gain_is_a_goal)
+{
+#define BANDS                                                                                                          \
+    "--set", "surface.frequencies_Hz=[1e9, 2e9]", "--set", "surface.pattern.theta_deg=[-2, 2]", "--set",               \
+        "optimize.goals=[{goal: gain}, {goal: gain, frequency_Hz: 1e9, weight: 0.5}]"
+#define LOST(stage, goal) "(1 - a['" stage "']['goals']['" goal "']['value']**2)"
+#define GAIN(stage, cut) "a['" stage "']['pattern'][" cut "]['gain_dBi']"
+#define SAME(goal, cut)                                                                                                \
+    "near(" GAIN("polish", cut) " - " GAIN("form", cut) ", 10 * np.log10(" LOST("polish", goal) " / " LOST(            \
+        "form", goal) "), 3e-4)"
+    const char *designs = temp("d.csv"), *table = temp("r.csv"), *slopes = temp("j.csv");
+    HIFDM(0, "run", CHEN, "-o", temp("g.h5"), "--json", "--set", "optimize.method=lm", BANDS);
+    EXPECT(out_as("run.json"), "--", SAME("goal_0_gain", "2"), SAME("goal_1_gain", "0"),
+           GAIN("polish", "2") " > 0.008 + " GAIN("form", "2"),
+           "near(a['polish']['merit']**2, a['polish']['goals']['goal_0_gain']['value']**2 + "
+           "a['polish']['goals']['goal_1_gain']['value']**2 / 4, 1e-15)");
+    HIFDM(0, "check", CHEN, BANDS);
+    OUT("                goals.0: gain at 2 GHz, weight 1\n");
+    OUT("                goals.1: gain at 1 GHz, weight 0.5\n");
+    HIFDM(0, "evaluate", CHEN, "--template", designs, BANDS);
+    HIFDM(0, "evaluate", CHEN, "--designs", designs, "-o", table, "--jacobian", slopes, BANDS);
+    EXPECT(table, slopes, "--", "[r['figure'] for r in b] == ['goal_0_gain', 'goal_1_gain', 'merit']",
+           "all(float(r['n0_0-n0_1']) != 0 for r in b)", "0 < float(a[0]['goal_1_gain']) < float(a[0]['goal_0_gain'])");
+    HIFDM(2, "check", CHEN, "--set", "surface.frequencies_Hz=[1e9]", "--set", "optimize.goals=[{goal: gain}]");
+    ERR("error: --set optimize.goals.0: gain: needs a section surface.pattern, which says what illuminates the "
+        "reflector\n");
+    HIFDM(2, "check", CHEN, BANDS, "--set", "optimize.goals.1.frequency_Hz=3e11");
+    ERR("optimize.goals.1: gain: its facets are too coarse for this frequency");
+}
+END_TEST
+
 Suite *suite_cli_rows(void)
 {
     Suite *suite = suite_create("cli/rows");
@@ -421,6 +456,7 @@ Suite *suite_cli_rows(void)
     tcase_add_loop_test(tests, goals_of_damaged_files_are_not_shown, 0, 3);
     tcase_add_test(tests, what_holds_a_design_has_names);
     tcase_add_test(tests, check_names_variables_goals_and_limits);
+    tcase_add_test(tests, the_gain_is_a_goal);
     tcase_add_test(tests, rows_that_no_variable_reaches_are_named);
     tcase_add_loop_test(tests, nothing_is_sought_that_no_variable_reaches, 0, 3);
     tcase_add_test(tests, a_goal_that_stands_still_at_one_point_is_no_fault);

@@ -36,6 +36,8 @@ static const char *const common[] = {
     "tolerance.sampling=random",
     "tolerance.seed=5",
     "optimize.samples=6",
+    "surface.frequencies_Hz=[0.5e9]",
+    "surface.pattern.n_theta=3",
 };
 
 static const char *const on_a_truss[] = {
@@ -146,7 +148,8 @@ static const char all_goals[] =
     "{goal: psi, over: states}, {goal: psi, over: states, take: worst}, {goal: psi, over: samples, weight: 3}, "
     "{goal: psi, over: samples, take: worst, weight: 2}, {goal: tension, set: directrix, target: 12, state: moved}, "
     "{goal: ratio, set: generatrix, over: samples}, {goal: pull, over: states, take: worst}, "
-    "{goal: length, set: inner, over: states}, {goal: evenness, over: samples, take: worst}]";
+    "{goal: length, set: inner, over: states}, {goal: evenness, over: samples, take: worst}, "
+    "{goal: gain, state: up}, {goal: gain, over: samples, take: worst}]";
 
 /* The room and the net are there: what is asked for is the linear answer. */
 START_TEST(a_net_without_memory_is_told)

@@ -213,7 +213,7 @@ static const struct {
      "support_z support_normal support_xyz, not tensions; did you mean 'tension'?\n"},
     {GOAL "{goal: rms}]\n", NULL,
      "error: c.yaml:4:18: optimize.goals.0.goal: must be one of psi surface facets tension length evenness pull "
-     "displacement mass ratio, not rms\n"},
+     "displacement mass ratio gain, not rms\n"},
     {LIMIT "{limit: length, bounds: [1, 2]}]\n", NULL,
      "error: c.yaml:4:20: optimize.limits.0.limit: must be one of tension ratio displacement, not length\n"},
     {VARIABLE "{set: a, vary: tension}\n", NULL,
@@ -293,6 +293,8 @@ static const struct {
      "error: c.yaml:5:51: optimize.objectives.1.target: has no meaning for ratio, only for tension, length\n"},
     {GOAL "{goal: psi, target: 1}]\n", NULL,
      "error: c.yaml:4:31: optimize.goals.0.target: has no meaning for psi, only for tension, length\n"},
+    {GOAL "{goal: facets, frequency_Hz: 1e9}]\n", NULL,
+     "error: c.yaml:4:40: optimize.goals.0.frequency_Hz: has no meaning for facets, only for gain\n"},
     {GOAL "{goal: tension, target: 1, along: normal}]\n", NULL,
      "error: c.yaml:4:45: optimize.goals.0.along: has no meaning for tension, only for surface, facets\n"},
     {GOAL "{goal: pull, fit: best}]\n", NULL,

@@ -9,7 +9,7 @@
 #define SMALL                                                                                                          \
     "scene.parabolic_cylinder.modules=[2, 2]", "scene.parabolic_cylinder.aperture_m=2",                                \
         "scene.parabolic_cylinder.length_m=2", "form.residual_tolerance=1e-12", "form.length_tolerance=1e-12"
-#define N_SET 12
+#define N_SET 14
 
 static const struct {
     const char *set[N_SET];
@@ -35,6 +35,13 @@ static const struct {
       "form.residual_tolerance=1e-13"},
      1e-3,
      1e-6},
+    {{SMALL,
+      "optimize.variables=[{set: boundary, vary: force_density, range: 10 %}, {set: boundary, vary: support_xyz, "
+      "range: 0.1}]",
+      "optimize.goals=[{goal: gain}, {goal: gain, frequency_Hz: 2e9, weight: 2}, {goal: psi}]",
+      "surface.frequencies_Hz=[0.8e9]", "surface.pattern.n_theta=3", "truss.depth_m=1", "coupling.tof_m=1e-12"},
+     3e-4,
+     1e-7},
     {{SMALL,
       "optimize.variables=[{set: inner, vary: tension, range: 1 %}, {set: boundary, vary: force_density, range: 10 %}, "
       "{set: boundary, vary: support_normal, range: 0.1}]",

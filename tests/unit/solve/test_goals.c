@@ -3,10 +3,12 @@
 #include "flexible.h"
 
 #include "solve/cloud.h"
+#include "solve/gain.h"
 #include <hifdm/goals.h>
 #include <hifdm/surface.h>
 
 #define SMALL_BOWL "configs/paraboloid-6m.yaml", "scene.paraboloid.rings=3"
+#define FAR_FIELD "surface.frequencies_Hz=[0.2e9, 0.3e9]", "surface.pattern.n_theta=3"
 
 /* A net with its wanted surface and facets. */
 struct wanting {
@@ -21,9 +23,9 @@ static void open_wanting(struct wanting *t, bool is_round, bool with_truss, stru
 {
     hf_messages messages = {0};
     if (is_round)
-        OPEN_CASE(&t->net, SMALL_BOWL);
+        OPEN_CASE(&t->net, SMALL_BOWL, FAR_FIELD);
     else
-        OPEN_CASE(&t->net, SMALL_REFLECTOR);
+        OPEN_CASE(&t->net, SMALL_REFLECTOR, FAR_FIELD);
     ck_assert_msg(hf_config_surface(&t->net.settings, &t->net.scene, &t->surface, &messages) == HF_OK, "%s",
                   messages.text);
     ck_assert_int_eq(hf_facets_find(&t->net.scene, &t->surface, &t->facets), HF_OK);
@@ -51,6 +53,7 @@ static void want(struct wanting *t, int n_goal, const hf_goal_settings *goal)
 {
     hf_optimize_settings s = {.n_goal = n_goal};
     hf_messages messages = {0};
+    ck_assert_int_le(n_goal, HF_DESIGN_ROWS_MAX);
     for (int k = 0; k < n_goal; k++)
         s.goal[k] = goal[k];
     hf_status status =
@@ -119,17 +122,17 @@ static const struct {
     hf_goal_settings goal;
     double value, merit;
 } by_hand[] = {
-    {{HF_GOAL_PSI, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0}, 0.5, 0.5}, /* one of two nodes is sqrt(1/2) away */
-    {{HF_GOAL_TENSION, "boundary", 4, 2, NAN, 0, 0, "", 0, 0, 0}, 1, 2},
-    {{HF_GOAL_TENSION, "inner", 4, 1, NAN, 0, 0, "", 0, 0, 0}, 0, 0},
-    {{HF_GOAL_LENGTH, "inner", 1, 1, NAN, 0, 0, "", 0, 0, 0}, 0.25, 0.25},
-    {{HF_GOAL_LENGTH, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0}, 0, 0},
-    {{HF_GOAL_EVENNESS, "all", NAN, 4, NAN, 0, 0, "", 0, 0, 0},
+    {{HF_GOAL_PSI, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0}, 0.5, 0.5}, /* one of two nodes is sqrt(1/2) away */
+    {{HF_GOAL_TENSION, "boundary", 4, 2, NAN, 0, 0, "", 0, 0, 0, 0}, 1, 2},
+    {{HF_GOAL_TENSION, "inner", 4, 1, NAN, 0, 0, "", 0, 0, 0, 0}, 0, 0},
+    {{HF_GOAL_LENGTH, "inner", 1, 1, NAN, 0, 0, "", 0, 0, 0, 0}, 0.25, 0.25},
+    {{HF_GOAL_LENGTH, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0}, 0, 0},
+    {{HF_GOAL_EVENNESS, "all", NAN, 4, NAN, 0, 0, "", 0, 0, 0, 0},
      0.20412414523193150,
      0.81649658092772603}, /* sqrt(2/3)/4 */
-    {{HF_GOAL_MASS, "", NAN, 1, 0.5, 0, 0, "", 0, 0, 0}, 1.625, 1.625},
-    {{HF_GOAL_PULL, "", NAN, 2, NAN, 0, 0, "", 0, 0, 0}, 5, 10.000176296057074}, /* 2 (3^16 + 5^16)^(1/16) */
-    {{HF_GOAL_RATIO, "boundary", NAN, 2, NAN, 0, 0, "", 0, 0, 0},
+    {{HF_GOAL_MASS, "", NAN, 1, 0.5, 0, 0, "", 0, 0, 0, 0}, 1.625, 1.625},
+    {{HF_GOAL_PULL, "", NAN, 2, NAN, 0, 0, "", 0, 0, 0, 0}, 5, 10.000176296057074}, /* 2 (3^16 + 5^16)^(1/16) */
+    {{HF_GOAL_RATIO, "boundary", NAN, 2, NAN, 0, 0, "", 0, 0, 0, 0},
      5.0 / 3,
      3.3334508650740591}, /* 10/3 (1 + (3/5)^16)^(1/8) */
 };
@@ -258,6 +261,36 @@ START_TEST(errors_of_the_surface_are_those_of_a_result)
 }
 END_TEST
 
+/* The goal is the root of the part that is lost; a net that is not lit has no value. */
+START_TEST(the_gain_is_what_the_field_loses)
+{
+    struct wanting t = {0};
+    struct rng rng = rng_start((uint64_t)_i);
+    double value, merit, residual[20000];
+    hf_gain_beam beam;
+    hf_goal_settings gain = goal_of(HF_GOAL_GAIN);
+    open_wanting(&t, _i, false, &rng);
+    want(&t, 1, &gain);
+    ck_assert_int_le(t.goals.n_row, 20000);
+    const hf_model *m = &t.net.model;
+    double *place = calloc(3 * (size_t)m->n_node, sizeof *place);
+    for (int row = 0; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++)
+            place[3 * m->node_of_row[row] + c] = t.net.work.position_m[c * m->n_node + row];
+    hf_gain_beam_make(&t.surface, &t.facets, t.net.scene.position_m, 0.3e9, &beam);
+    double loss_dB = hf_gain_loss_dB(&beam, &(hf_pattern_surface){&t.facets, place, NULL});
+    ck_assert_int_eq(hf_goals_measure(&t.goals, &t.net.work, &t.point, &value, &merit), HF_OK);
+    ck_assert_double_eq(value, merit);
+    ck_assert_double_gt(value, 1e-3);
+    ck_assert_double_eq_tol(-10 * log10(1 - value * value), loss_dB, 1e-12);
+    for (int i = 0; i < m->n_node; i++) /* turned over */
+        t.net.work.position_m[i] = -t.net.work.position_m[i];
+    ck_assert_int_eq(hf_goals_linearise(&t.goals, &t.net.work, &t.point, residual), HF_NOT_FINITE);
+    free(place);
+    close_wanting(&t);
+}
+END_TEST
+
 /* ---- derivatives ---- */
 
 /* A shape without its solver, and a change of all of it. */
@@ -322,22 +355,22 @@ static void put(struct net *net, const struct shape *from, const struct shape *b
 }
 
 static const hf_goal_settings differed[] = {
-    {HF_GOAL_PSI, "", NAN, 0.3, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
-    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
-    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_BEST, "", 0, 0, 0},
-    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE, "", 0, 0, 0},
-    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST, "", 0, 0, 0},
-    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
-    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_BEST, "", 0, 0, 0},
-    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE, "", 0, 0, 0},
-    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST, "", 0, 0, 0},
-    {HF_GOAL_TENSION, "boundary", 10, 3, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
-    {HF_GOAL_LENGTH, "all", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
-    {HF_GOAL_LENGTH, "inner", 0.3, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
-    {HF_GOAL_EVENNESS, "inner", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
-    {HF_GOAL_PULL, "", NAN, 0.1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
-    {HF_GOAL_MASS, "", NAN, 1, 0.002, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
-    {HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0},
+    {HF_GOAL_PSI, "", NAN, 0.3, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0, 0},
+    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0, 0},
+    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_BEST, "", 0, 0, 0, 0},
+    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE, "", 0, 0, 0, 0},
+    {HF_GOAL_SURFACE, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST, "", 0, 0, 0, 0},
+    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0, 0},
+    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_NORMAL, HF_FIT_BEST, "", 0, 0, 0, 0},
+    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE, "", 0, 0, 0, 0},
+    {HF_GOAL_FACETS, "", NAN, 2, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST, "", 0, 0, 0, 0},
+    {HF_GOAL_TENSION, "boundary", 10, 3, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0, 0},
+    {HF_GOAL_LENGTH, "all", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0, 0},
+    {HF_GOAL_LENGTH, "inner", 0.3, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0, 0},
+    {HF_GOAL_EVENNESS, "inner", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0, 0},
+    {HF_GOAL_PULL, "", NAN, 0.1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0, 0},
+    {HF_GOAL_MASS, "", NAN, 1, 0.002, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0, 0},
+    {HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0, 0},
 };
 enum { N_DIFFERED = sizeof differed / sizeof *differed };
 
@@ -448,27 +481,51 @@ START_TEST(lesser_fits_follow_their_centre)
 }
 END_TEST
 
+/* Every kind of feed, beside the focus as well, by both polarisations: the point and the line turn what they send. */
+START_TEST(the_gain_has_derivatives_under_every_feed)
+{
+    struct wanting t = {0};
+    struct rng rng = rng_start((uint64_t)_i);
+    hf_goal_settings gain[2] = {goal_of(HF_GOAL_GAIN), goal_of(HF_GOAL_GAIN)};
+    hf_feed_kind kind = (hf_feed_kind)(HF_FEED_POINT + _i / 2 % 3);
+    gain[0].weight = 2;
+    gain[1].frequency_Hz = 0.7e9;
+    open_wanting(&t, _i / 6, _i % 2, &rng);
+    t.surface.pattern.feed = kind;
+    t.surface.pattern.polarisation = (hf_polarisation)(_i % 2);
+    t.surface.pattern.cos_power = 2.3;
+    for (int d = 0; d < 3 && kind != HF_FEED_PLANE_WAVE; d++)
+        t.surface.pattern.position_m[d] = (d == 2 ? t.surface.focal_length_m : 0) + rng_uniform(&rng, -0.1, 0.1);
+    want(&t, 2, gain);
+    struct shape found = shape_of(&t.net), rough = random_change(&t.net.model, &rng, 1e-2, 2);
+    demand_derivatives(&t, &found, &rough, &rng);
+    close_wanting(&t);
+}
+END_TEST
+
 /* ---- what is refused ---- */
 
 static const struct {
     hf_goal_settings goal;
     const char *said;
 } faulty[] = {
-    {{HF_GOAL_TENSION, "bounday", 4, 1, NAN, 0, 0, "", 0, 0, 0},
+    {{HF_GOAL_TENSION, "bounday", 4, 1, NAN, 0, 0, "", 0, 0, 0, 0},
      ".set: there is no set of cables 'bounday'; did you mean 'boundary'?"},
-    {{HF_GOAL_MASS, "rear", NAN, 1, 1, 0, 0, "", 0, 0, 0},
+    {{HF_GOAL_MASS, "rear", NAN, 1, 1, 0, 0, "", 0, 0, 0, 0},
      ".set: there is no set of cables 'rear'; this net has all, inner, boundary"},
-    {{HF_GOAL_TENSION, "inner", NAN, 1, NAN, 0, 0, "", 0, 0, 0}, ": tension: needs a target, in N"},
-    {{HF_GOAL_EVENNESS, "inner", NAN, 1, NAN, 0, 0, "", 0, 0, 0},
+    {{HF_GOAL_TENSION, "inner", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0}, ": tension: needs a target, in N"},
+    {{HF_GOAL_EVENNESS, "inner", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0},
      ": evenness: one cable is always even; name a set of several"},
-    {{HF_GOAL_RATIO, "inner", NAN, 1, NAN, 0, 0, "", 0, 0, 0},
+    {{HF_GOAL_RATIO, "inner", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0},
      ": ratio: the ratio of one cable is 1; name a set of several"},
-    {{HF_GOAL_MASS, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0}, ": mass: needs mass_kg_per_m, of the cables of its set"},
-    {{HF_GOAL_SURFACE, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0},
+    {{HF_GOAL_MASS, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0}, ": mass: needs mass_kg_per_m, of the cables of its set"},
+    {{HF_GOAL_SURFACE, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0},
      ": surface: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
-    {{HF_GOAL_FACETS, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0},
+    {{HF_GOAL_FACETS, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0},
      ": facets: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
-    {{HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0},
+    {{HF_GOAL_GAIN, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0},
+     ": gain: needs a section surface.pattern, which says what illuminates the reflector"},
+    {{HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0},
      ": displacement: needs a truss that gives way: this net has none"},
 };
 enum { N_FAULTY = sizeof faulty / sizeof *faulty };
@@ -566,8 +623,10 @@ Suite *suite_unit_goals(void)
     tcase_add_test(tests, goals_are_weighed_together);
     tcase_add_loop_test(tests, errors_of_the_surface_are_those_of_a_result, 0, 2);
     tcase_add_loop_test(tests, derivatives_are_those_of_differences, 0, 4);
+    tcase_add_loop_test(tests, the_gain_is_what_the_field_loses, 0, 2);
     tcase_add_loop_test(tests, the_ratio_has_derivatives, 0, 4);
     tcase_add_loop_test(tests, lesser_fits_follow_their_centre, 0, 4);
+    tcase_add_loop_test(tests, the_gain_has_derivatives_under_every_feed, 0, 12);
     tcase_add_loop_test(tests, a_goal_without_meaning_is_refused, 0, N_FAULTY);
     tcase_add_test(tests, a_surface_may_lack_facets_and_nodes);
     tcase_add_test(tests, without_memory_there_are_no_goals);

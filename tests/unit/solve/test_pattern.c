@@ -4,6 +4,7 @@
 
 #include "base/lane.h"
 #include "search/parallel.h"
+#include "solve/gain.h"
 #include "solve/pattern_kernel.h"
 #include <hifdm/pattern.h>
 
@@ -70,6 +71,14 @@ static void solve(int n_thread)
     hf_parallel_each(n_thread, HF_PATTERN_BLOCKS, hf_pattern_sum_block, &p);
     hf_pattern_finish(&p, s.co, s.cross);
     hf_pattern_free(&p);
+}
+
+static double loss_in_phase_dB(void)
+{
+    hf_gain_beam beam;
+    hf_gain_beam_make(&s.surface, &s.facets, s.position_m, LIGHT_M_PER_S, &beam);
+    ck_assert_int_lt(beam.order, HF_GAIN_ORDER_MOST);
+    return hf_gain_loss_dB(&beam, &(hf_pattern_surface){&s.facets, s.position_m, NULL});
 }
 
 /* Root of the gain, of angle i of a cut. */
@@ -288,12 +297,71 @@ START_TEST(random_errors_lose_what_ruze_says)
         for (int i = 0; i < N * N; i++) {
             double z = rng_uniform(&rng, -edge, edge);
             square += z * z / (N * N);
-            add_rectangle(i % N, (double)(i / N), z, 1, 1);
+            add_rectangle(i % N - N / 2, i / N - N / 2.0, z, 1, 1);
         }
         solve(2);
         double loss_dB = 10 * log10(4 * PI * N * N) - s.co[1], ruze_dB = 10 / log(10) * pow(4 * PI, 2) * square;
         ck_assert_double_eq_tol(loss_dB, ruze_dB, 0.08 * ruze_dB);
+        ck_assert_double_eq_tol(loss_in_phase_dB(), loss_dB, 1e-9);
     }
+}
+END_TEST
+
+/* Small errors of a tilted and bent sheet: the loss in phase is Ruze's of their variance, to the next power of it. */
+START_TEST(small_errors_lose_what_ruze_says)
+{
+    enum { N = 20 };
+    for (int trial = 0; trial < 3; trial++) {
+        struct rng rng = rng_start((uint64_t)trial);
+        double z[N + 1][N + 1], sum = 0, square = 0, sigma = 1e-3 * (trial + 1);
+        begin(HF_FEED_PLANE_WAVE, -1, 1, 3);
+        for (int i = 0; i < (N + 1) * (N + 1); i++)
+            z[i / (N + 1)][i % (N + 1)] = rng_uniform(&rng, -sigma, sigma) + sigma * (i % (N + 1)) / N;
+        for (int i = 0; i < N * N; i++) {
+            int x = i / N, y = i % N, h = N / 2;
+            double c[4] = {z[x][y], z[x + 1][y], z[x + 1][y + 1], z[x][y + 1]}, all = c[0] + c[1] + c[2] + c[3],
+                   own = 0;
+            add((double[]){x - h, y - h, c[0]}, (double[]){x + 1 - h, y - h, c[1]},
+                (double[]){x + 1 - h, y + 1 - h, c[2]}, (double[]){x - h, y + 1 - h, c[3]});
+            for (int k = 0; k < 4; k++) /* of a bilinear square: the mean of c_i c_j over it is 4, 2 or 1 / 36 */
+                own += c[k] * (4 * c[k] + 2 * c[(k + 1) % 4] + 2 * c[(k + 3) % 4] + c[(k + 2) % 4]) / 36;
+            sum += all / 4 / (N * N);
+            square += own / (N * N);
+        }
+        double variance = pow(4 * PI, 2) * (square - sum * sum), lost = 1 - pow(10, -loss_in_phase_dB() / 10);
+        ck_assert_double_eq_tol(lost, variance, variance * variance);
+    }
+}
+END_TEST
+
+/* With the feed at its focus, beside the axis as well, a reflector has no other loss in phase than that of its facets,
+ * which goes as h^4; the beam of a feed beside the focus is on the other side. */
+START_TEST(beams_are_where_the_surface_sends_them)
+{
+    double loss[2];
+    hf_feed feed;
+    for (int k = 0; k < 2; k++) {
+        begin(HF_FEED_AUTO, -1, 1, 3);
+        add_paraboloid(12 << k, 20, 16);
+        for (int i = 0; i < 4 * s.facets.n_facet; i++) { /* another part of the same paraboloid */
+            double *p = s.position_m + 3 * i;
+            p[0] += 25;
+            p[2] = (p[0] * p[0] + p[1] * p[1]) / (4 * 16);
+        }
+        solve(2);
+        ck_assert_int_eq(hf_feed_make(&s.surface, &s.facets, s.position_m, &feed), 0);
+        ck_assert_double_eq_tol(feed.axis[0], 0.96, 0.1);
+        for (int d = 0; d < 3; d++)
+            ck_assert_double_eq_tol(feed.beam[d], d == 2, 1e-15);
+        loss[k] = loss_in_phase_dB();
+    }
+    ck_assert_double_gt(loss[1], 0);
+    ck_assert_double_gt(loss[0], 14 * loss[1]);
+    memcpy(s.surface.pattern.position_m, (double[]){1, 0, 16}, 3 * sizeof(double));
+    memcpy(s.surface.pattern.aim_m, (double[]){0, 0, -3}, 3 * sizeof(double)); /* below the vertex */
+    hf_feed_make(&s.surface, &s.facets, s.position_m, &feed);
+    ck_assert_double_eq_tol(feed.beam[0], -1 / hypot(1, 16), 1e-15);
+    ck_assert_double_eq_tol(feed.beam[2], 16 / hypot(1, 16), 1e-15);
 }
 END_TEST
 
@@ -430,6 +498,8 @@ Suite *suite_unit_pattern(void)
     tcase_add_test(tcase, feed_beside_the_focus_moves_the_beam);
     tcase_add_test(tcase, cylinder_has_the_gain_of_its_aperture);
     tcase_add_test(tcase, random_errors_lose_what_ruze_says);
+    tcase_add_test(tcase, small_errors_lose_what_ruze_says);
+    tcase_add_test(tcase, beams_are_where_the_surface_sends_them);
     tcase_add_test(tcase, periods_have_their_grating_lobes);
     tcase_add_test(tcase, threads_change_no_bit);
     tcase_add_test(tcase, instruction_sets_change_no_bit);

@@ -1,0 +1,248 @@
+/* Contents: the beam - a point - loss of a shape - a goal - derivatives */
+#include "solve/gain.h"
+
+#include "base/elementary.h"
+#include "solve/facet_mesh.h"
+#include "solve/gauss.h"
+#include "solve/pattern_feed.h"
+
+#include <math.h>
+#include <string.h>
+
+#define LIGHT_M_PER_S 299792458.0
+#define PI 3.14159265358979323846
+#define DB_PER_LN 4.3429448190325182765 /* 10/ln 10 */
+
+#define ORDER_LN (-11.5) /* logarithm of the error of a quadrature, 1e-5 */
+#define ERROR_PHASE 0.5  /* rad, by which half of the phase across a facet may grow through errors of its shape */
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* ---- the beam ---- */
+
+/* Half of the phase across facet i along its sides, at most. */
+static double phase_across(const hf_gain_beam *b, const hf_facets *facets, int i, const double *position_m)
+{
+    hf_facet_mesh m;
+    double most_m = 0;
+    hf_facet_mesh_take(facets, i, position_m, &m);
+    for (int k = 0; k < 4; k++) {
+        double toward[3], field[3], along[2] = {0};
+        const double *side[2] = {m.corner[(k + 1) % 4], m.corner[(k + 3) % 4]};
+        hf_feed_light(&b->feed, m.corner[k], toward, field);
+        for (int d = 0; d < 3; d++)
+            for (int s = 0; s < 2; s++)
+                along[s] += (b->feed.beam[d] - toward[d]) * (side[s][d] - m.corner[k][d]);
+        most_m = fmax(most_m, fmax(fabs(along[0]), fabs(along[1])));
+    }
+    return PI / b->wavelength_m * most_m;
+}
+
+void hf_gain_beam_make(const hf_surface_settings *s, const hf_facets *facets, const double *position_m,
+                       double frequency_Hz, hf_gain_beam *b)
+{
+    double most = 0;
+    int along = s->pattern.polarisation == HF_POLARISATION_Y;
+    *b = (hf_gain_beam){.wavelength_m = LIGHT_M_PER_S / frequency_Hz};
+    hf_feed_make(s, facets, position_m, &b->feed);
+    const double *to = b->feed.beam;
+    for (int d = 0; d < 3; d++) /* Ludwig's third definition, as in the cuts */
+        b->co[d] = (d == along) - to[along] / (1 + to[2]) * (to[d] + (d == 2));
+    for (int i = 0; i < facets->n_facet; i++)
+        most = fmax(most, phase_across(b, facets, i, position_m));
+    b->order = hf_gauss_order(most + ERROR_PHASE, ORDER_LN, HF_GAIN_ORDER_MOST);
+    hf_gauss_rule(b->order, b->at, b->weight);
+}
+
+/* ---- a point ---- */
+
+/* The current along the polarisation per du dv of a point p where the surface has the derivatives du and dv, and its
+ * phase in rad. */
+static double current_at(const hf_gain_beam *b, const double p[3], const double du[3], const double dv[3],
+                         double *phase)
+{
+    double up[3], toward[3], field[3], current[3];
+    hf_cross(du, dv, up);
+    double path_m = hf_feed_light(&b->feed, p, toward, field);
+    hf_cross(up, field, current);
+    *phase = 2 * PI / b->wavelength_m * (dot(b->feed.beam, p) - path_m);
+    return dot(toward, up) < 0 ? 2 * dot(b->co, current) : 0;
+}
+
+/* ---- loss of a shape ---- */
+
+double hf_gain_loss_dB(const hf_gain_beam *b, const hf_pattern_surface *s)
+{
+    double all = 0, re = 0, im = 0;
+    for (int i = 0; i < s->facets->n_facet; i++) {
+        hf_facet_mesh m;
+        hf_facet_mesh_take(s->facets, i, s->position_m, &m);
+        if (s->sag_m) {
+            memcpy(m.sag_m, s->sag_m + 4 * (size_t)i, sizeof m.sag_m);
+            hf_facet_mesh_settle(&m);
+        }
+        for (int k = 0; k < b->order * b->order; k++) {
+            int j = k % b->order, l = k / b->order;
+            double p[3], du[3], dv[3], phase;
+            (s->sag_m ? hf_facet_mesh_lifted : hf_facet_mesh_at)(&m, b->at[j], b->at[l], p, du, dv);
+            double size = b->weight[j] * b->weight[l] * current_at(b, p, du, dv, &phase);
+            all += fabs(size);
+            re += size * hf_cosine(phase);
+            im += size * hf_sine(phase);
+        }
+    }
+    return -DB_PER_LN * hf_logarithm((re * re + im * im) / (all * all));
+}
+
+/* ---- a goal ---- */
+
+int hf_gain_size(const hf_goals *goals, int i_goal)
+{
+    int order = goals->beam[i_goal].order;
+    return 2 * order * order * goals->n_facet;
+}
+
+void hf_gain_lay_out(hf_arena *a, const hf_goals *goals, int i_goal, hf_gain *g)
+{
+    size_t n = (size_t)hf_gain_size(goals, i_goal) / 2;
+    *g = (hf_gain){.beam = &goals->beam[i_goal],
+                   .n_node = goals->model->n_node,
+                   .n = (int)n,
+                   .n_facet = goals->n_facet,
+                   .row = goals->corner_row};
+    g->size = hf_arena_take(a, n, sizeof(double));
+    g->phase = hf_arena_take(a, 2 * n, sizeof(double));
+    g->by_place = hf_arena_take(a, 6 * n, sizeof(double));
+    g->by_side = hf_arena_take(a, 6 * n, sizeof(double));
+    g->rate = hf_arena_take(a, 2 * n, sizeof(double));
+}
+
+/* Corners of a facet out of `node` [3][n_node], places or moves. */
+typedef struct {
+    double corner[4][3];
+    hf_facet_mesh flat;
+} facet;
+
+static void take_facet(const hf_gain *g, const double *node, int i, facet *f)
+{
+    for (int k = 0; k < 4; k++) {
+        for (int d = 0; d < 3; d++)
+            f->corner[k][d] = node[d * g->n_node + g->row[4 * i + k]];
+        f->flat.corner[k] = f->corner[k];
+    }
+}
+
+/* Point k of a facet: what is there of places or moves, and its derivatives by u and v; returns its weight. */
+static double point_of(const hf_gain *g, const facet *f, int k, double p[3], double du[3], double dv[3])
+{
+    const hf_gain_beam *b = g->beam;
+    int j = k % b->order, l = k / b->order;
+    hf_facet_mesh_at(&f->flat, b->at[j], b->at[l], p, du, dv);
+    return b->weight[j] * b->weight[l];
+}
+
+void hf_gain_measure(hf_gain *g, const hf_workspace *w, double *residual)
+{
+    const int n = g->n, per_facet = n / g->n_facet;
+    g->all = g->mean[0] = g->mean[1] = 0;
+    for (int i = 0; i < n; i++) {
+        facet f;
+        double p[3], du[3], dv[3], phase;
+        take_facet(g, w->position_m, i / per_facet, &f);
+        double weight = point_of(g, &f, i % per_facet, p, du, dv);
+        double current = weight * current_at(g->beam, p, du, dv, &phase), sign = current < 0 ? -1 : 1;
+        g->size[i] = fabs(current);
+        g->phase[i] = sign * hf_cosine(phase);
+        g->phase[n + i] = sign * hf_sine(phase);
+        g->all += g->size[i];
+        for (int c = 0; c < 2; c++)
+            g->mean[c] += g->size[i] * g->phase[c * n + i];
+    }
+    for (int c = 0; c < 2; c++) {
+        g->mean[c] /= g->all;
+        for (int i = 0; i < n; i++)
+            residual[c * n + i] = sqrt(g->size[i] / g->all) * (g->phase[c * n + i] - g->mean[c]);
+    }
+}
+
+/* ---- derivatives ---- */
+
+/* With the vector product, the current is 2 (du x dv) (h x co), h the field. */
+static void derive_point(const hf_gain_beam *b, const double p[3], const double du[3], const double dv[3],
+                         double by_place[6], double by_side[6])
+{
+    double toward[3], field[3], up[3], across[3], turned[3];
+    hf_feed_light(&b->feed, p, toward, field);
+    hf_cross(du, dv, up);
+    hf_cross(field, b->co, across);
+    hf_cross(b->co, up, turned);
+    double sign = dot(up, across) < 0 ? -2 : 2;
+    hf_cross(dv, across, by_side);
+    hf_cross(across, du, by_side + 3);
+    for (int d = 0; d < 3; d++) {
+        double rate[3];
+        hf_feed_light_rate(&b->feed, p, (const double[3]){d == 0, d == 1, d == 2}, rate);
+        by_place[d] = 2 * PI / b->wavelength_m * (b->feed.beam[d] - toward[d]);
+        by_place[3 + d] = sign * dot(rate, turned);
+        by_side[d] *= sign;
+        by_side[3 + d] *= sign;
+    }
+}
+
+void hf_gain_linearise(hf_gain *g, const hf_workspace *w)
+{
+    const int n = g->n, per_facet = n / g->n_facet;
+    for (int i = 0; i < n; i++) {
+        facet f;
+        double p[3], du[3], dv[3], by_place[6] = {0}, by_side[6] = {0};
+        take_facet(g, w->position_m, i / per_facet, &f);
+        double weight = point_of(g, &f, i % per_facet, p, du, dv);
+        if (g->size[i] > 0) derive_point(g->beam, p, du, dv, by_place, by_side);
+        for (int d = 0; d < 6; d++) {
+            g->by_place[d * n + i] = by_place[d] * (d < 3 ? 1 : weight);
+            g->by_side[d * n + i] = by_side[d] * weight;
+        }
+    }
+}
+
+/* Changes of phase and size of each point into `rate`; returns that of the sum of sizes and of the mean. */
+static double push_points(hf_gain *g, const double *move, double mean_rate[2])
+{
+    const int n = g->n, per_facet = n / g->n_facet;
+    double all_rate = 0, *phase_rate = g->rate, *size_rate = g->rate + n;
+    mean_rate[0] = mean_rate[1] = 0;
+    for (int i = 0; i < n; i++) {
+        facet f;
+        double p[3], du[3], dv[3], turn = 0, grow = 0;
+        take_facet(g, move, i / per_facet, &f);
+        point_of(g, &f, i % per_facet, p, du, dv);
+        for (int d = 0; d < 3; d++) {
+            turn += g->by_place[d * n + i] * p[d];
+            grow += g->by_place[(3 + d) * n + i] * p[d];
+            grow += g->by_side[d * n + i] * du[d] + g->by_side[(3 + d) * n + i] * dv[d];
+        }
+        phase_rate[i] = turn;
+        size_rate[i] = grow;
+        all_rate += grow;
+        mean_rate[0] += grow * g->phase[i] - g->size[i] * turn * g->phase[n + i];
+        mean_rate[1] += grow * g->phase[n + i] + g->size[i] * turn * g->phase[i];
+    }
+    for (int c = 0; c < 2; c++)
+        mean_rate[c] = (mean_rate[c] - g->mean[c] * all_rate) / g->all;
+    return all_rate;
+}
+
+void hf_gain_push(hf_gain *g, const double *move, double *rate)
+{
+    const int n = g->n;
+    double mean_rate[2], all_rate = push_points(g, move, mean_rate);
+    for (int i = 0; i < n; i++) {
+        double root = sqrt(g->size[i] / g->all), turn = g->rate[i];
+        double grow = g->size[i] > 0 ? (g->rate[n + i] / g->size[i] - all_rate / g->all) / 2 : 0;
+        rate[i] = root * (grow * (g->phase[i] - g->mean[0]) - turn * g->phase[n + i] - mean_rate[0]);
+        rate[n + i] = root * (grow * (g->phase[n + i] - g->mean[1]) + turn * g->phase[i] - mean_rate[1]);
+    }
+}
