@@ -1,0 +1,59 @@
+"""A net as built whose errors nobody but the test knows: an imported net of elastic cables, cut wrong.
+
+    twin.py built CUT.csv SHAPE CABLES.csv NODES.csv SIGMA_M SEED    tables of the net with random errors of cut lengths
+    twin.py measured SHAPE MEASURED.csv SIGMA_M SEED                 places of what is not held, with noise
+    twin.py turned CABLES.csv MOVES.csv TURNED.csv                   the net with the moves of a table of `hifdm adjust`
+    twin.py distance SHAPE SHAPE                                     RMS of inner nodes between two shapes, m
+
+CUT.csv is that of `hifdm export --cutlist`, SHAPE a folder of `--csv`.
+"""
+import csv
+import math
+import random
+import sys
+
+
+def read(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def write(path, keys, rows):
+    with open(path, "w", newline="") as file:
+        table = csv.DictWriter(file, keys, extrasaction="ignore", lineterminator="\n")
+        table.writeheader()
+        table.writerows(rows)
+
+
+CABLE = ("id", "i", "j", "group", "law", "value", "EA_N")
+PLACE = ("x_m", "y_m", "z_m")
+
+
+def built(cut, shape, cables, nodes, sigma_m, seed):
+    dice = random.Random(int(seed))
+    write(cables, CABLE, [{**c, "law": "elastic", "value": repr(float(c["l0_m"]) + dice.gauss(0, float(sigma_m)))}
+                          for c in read(cut)])
+    write(nodes, ("id", *PLACE, "role"), [{**n, **{k: n[k.replace("_", "0_")] for k in PLACE}}
+                                          for n in read(f"{shape}/nodes.csv")])
+
+
+def measured(shape, path, sigma_m, seed):
+    dice = random.Random(int(seed))
+    write(path, ("id", *PLACE), [{**n, **{k: repr(float(n[k]) + dice.gauss(0, float(sigma_m))) for k in PLACE}}
+                                 for n in read(f"{shape}/nodes.csv")])
+
+
+def turned(cables, moves, path):
+    by = {m["cable"]: float(m["move_mm"]) / 1e3 for m in read(moves)}
+    write(path, CABLE, [{**c, "value": repr(float(c["value"]) + by.get(c["id"], 0))} for c in read(cables)])
+
+
+def distance(a, b):
+    there = {n["id"]: n for n in read(f"{b}/nodes.csv")}
+    square = [sum((float(n[k]) - float(there[n["id"]][k]))**2 for k in PLACE)
+              for n in read(f"{a}/nodes.csv") if n["role"] == "inner"]
+    print(repr(math.sqrt(sum(square) / len(square))))
+
+
+if __name__ == "__main__":
+    globals()[sys.argv[1]](*sys.argv[2:])
