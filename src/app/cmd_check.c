@@ -137,7 +137,7 @@ static void print_objectives(const hf_problem *p, FILE *f)
     char name[HF_GOAL_NAME_SIZE];
     fprintf(f, "                front of");
     for (int k = 0; k < p->goals.n_goal; k++)
-        fprintf(f, "%s %s", k ? " and" : "", hf_goals_name(&p->goals, k, name));
+        fprintf(f, "%s %s", k == 0 ? "" : k + 1 < p->goals.n_goal ? "," : " and", hf_goals_name(&p->goals, k, name));
     if (hf_optimiser_plan_of(&p->settings.optimize).ends_with_polish)
         fprintf(f, ": %d points, each by Levenberg-Marquardt\n", p->settings.optimize.front_points);
     else

@@ -279,10 +279,8 @@ static void check_objectives(const hf_optimize_settings *o, hf_config_faults *f)
     if (o->n_objective > 0 && o->n_goal > 0)
         hf_config_fault_of(f, "optimize.goals.0",
                            "cannot be with optimize.objectives, which takes the place of goals; keep one of them");
-    if (o->n_objective > 2 && o->method != HF_OPTIMIZE_GA)
-        hf_config_fault_of(f, "optimize.objectives.2",
-                           "is a third objective; Levenberg-Marquardt follows the line of two. Use method: ga, or keep "
-                           "two, and what the third must keep as a row of optimize.limits");
+    if (o->n_objective > 2 && o->front_points < 4)
+        hf_config_fault_of(f, "optimize.front_points", "must be at least 4 with three objectives, for the ends alone");
     if (o->n_objective > 1 && o->compare_lm == HF_COMPARE_TRUE)
         hf_config_fault_of(f, "optimize.compare_lm", "compares one design; it has no meaning for optimize.objectives");
     if (o->n_objective > 1) check_use_of_front(o, f);

@@ -212,7 +212,7 @@ const hf_field hf_field_table[] = {
      "many "
      "of those that tolerance.sampling random draws"},
     {"optimize.front_points", HF_FIELD_INT, AT(optimize.front_points), 3, HF_FRONT_POINTS_MAX, "21", "", NULL,
-     "of the front of optimize.objectives that Levenberg-Marquardt finds, its two ends included"},
+     "of the front of optimize.objectives that Levenberg-Marquardt finds, its ends included"},
 
     {"tolerance.sigma_cut_m", HF_FIELD_DOUBLE, AT(tolerance.sigma_cut_m), 0, 1, "0", "m", NULL,
      "standard deviation of each cut length"},

@@ -407,7 +407,7 @@ static bool wants_polish(const run *r, const hf_summary *s)
     return compare == HF_COMPARE_AUTO && hf_polish_is_cheap(&r->problem.evaluator, s->evaluations);
 }
 
-/* The front of two objectives by Levenberg-Marquardt. */
+/* The front by Levenberg-Marquardt. */
 static hf_status follow_front(run *r, hf_summary *s, hf_messages *messages)
 {
     observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});

@@ -21,9 +21,10 @@
 #define SCALE_LEAST 1e-8    /* part of the largest column of J: one below it is damped as the largest */
 #define DAMPING_LEAST 1e-14 /* [1e-20 to 1e-8] */
 #define DAMPING_MOST 1e12   /* with this much a step is too short to change psi [1e4 to 1e24] */
-#define CORRECTIONS_MAX 4 /* of a step that breaks a limit on tensions [40 passes; 1 fails: the runs stall at a cap] */
-#define WAY_LEAST 1e-3    /* part of the way into the limits that a step goes [1e-2; 1e-6] */
-#define LIMIT_INSIDE 2e-9 /* a tension so near to its bound, relative, is at it: twice what a step stays within */
+#define CORRECTIONS_MAX 4  /* of a step that breaks a limit on tensions [40 passes; 1 fails: the runs stall at a cap] */
+#define DAMPING_OF_WAY 1e3 /* of a way into the limits that steps with less do not find */
+#define WAY_LEAST 1e-3     /* part of the way into the limits that a step goes [1e-2; 1e-6] */
+#define LIMIT_INSIDE 2e-9  /* a tension so near to its bound, relative, is at it: twice what a step stays within */
 #define LIMIT_ROUNDING 1e-12 /* a violation below this part of the tension is rounding [1e-14 to 1e-10] */
 #define BENDS_MAX 4          /* corrections of a step for the bend of its residuals [2 to 4] */
 #define BEND_BELOW 0.65      /* part of the promised gain from which on a step needs none [0.65 to 0.75; 0.5 fails] */
@@ -246,13 +247,6 @@ static void press(problem *p, int i_goal, int first_row, int n_row)
             p->gram[r * p->n + c] += pressure * (p->hessian[r * p->n + c] - rate[r] * rate[c]);
 }
 
-/* That of the residuals which are to be least, not of all. */
-static void take_gradient(problem *p)
-{
-    hf_dots((size_t)p->n, (size_t)p->n_row, p->row + p->first_row, (size_t)p->residuals.n_row,
-            p->residuals.value + p->first_row, p->gradient);
-}
-
 /* What a trade changes: goals without corners are limits that bend; one with corners that is to be least has a level
  * instead of residuals. */
 static void linearise_trade(problem *p)
@@ -276,7 +270,9 @@ static hf_status linearise(problem *p)
     HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
     HF_TRY(hf_residuals_find(&p->residuals, p->w));
     HF_TRY(hf_residuals_rates(&p->residuals, &p->slopes, p->w, p->row, p->gradient));
-    if (p->trade) take_gradient(p);
+    if (p->trade) /* that of the residuals which are to be least, not of all */
+        hf_dots((size_t)p->n, (size_t)p->n_row, p->row + p->first_row, (size_t)p->residuals.n_row,
+                p->residuals.value + p->first_row, p->gradient);
     hf_parallel_each(p->v.n_thread, (p->n + GRAM_ROWS - 1) / GRAM_ROWS, multiply_rows, p);
     for (int k = 0; k < p->n; k++) {
         p->scale[k] = fmax(p->scale[k], sqrt(p->gram[k * p->n + k]));
@@ -419,15 +415,20 @@ static hf_status bend_step(problem *p, double before, double gain)
 /* ---- the run ---- */
 
 /* From outside into the limits: each step goes as much of the way as brings the shape nearer to them. They are not
- * linear, and where the whole way leads elsewhere, a part of it does not. */
+ * linear, and where the whole way leads elsewhere, a part of it does not. Near a limit that bends, what leads away is
+ * what a step does for the merit: with more damping it does less of that. */
 static hf_status enter(problem *p, int max_iterations, hf_polish_result *r)
 {
-    double way = 1, gain, before = hf_watch_violation(&p->watch, p->w);
+    double way = 1, damping = DAMPING_FIRST, gain, before = hf_watch_violation(&p->watch, p->w);
     hf_watch_forget(&p->watch);
-    while (p->is_outside && way > WAY_LEAST && r->iterations < max_iterations) {
+    while (p->is_outside && (way > WAY_LEAST || damping < DAMPING_OF_WAY) && r->iterations < max_iterations) {
+        if (way <= WAY_LEAST) {
+            damping = DAMPING_OF_WAY;
+            way = 1;
+        }
         r->iterations++;
         hf_watch_aim(&p->watch, way);
-        hf_status status = solve_step(p, DAMPING_FIRST, &gain);
+        hf_status status = solve_step(p, damping, &gain);
         if (status == HF_OK) status = take_step(p);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         double after = status == HF_OK ? hf_watch_violation(&p->watch, p->w) : (double)INFINITY;

@@ -1,4 +1,7 @@
-/* Contents: one point - many points at once - the ends - between them - the front */
+/* Contents: one point - many points at once - lines - the ends - between them - the front
+ *
+ * One objective, MAIN, is least under limits on the others. Of two objectives the points are a line in the order of the
+ * limit on the OTHER. Of three they are lines that each keep one limit on the THIRD, from its least to none. */
 #include "search/trade.h"
 
 #include "base/arena.h"
@@ -13,29 +16,47 @@
 #define END_GAINS 0.05 /* ... by more than this part of the other's range */
 #define LONG_GAP 0.5 /* gaps longer than this part of the longest are halved at once, whatever the number of threads */
 #define NO_GAP 1e-9  /* part of the range of the limited objective: no limit fits between */
+#define HELD 1e-6    /* part of its range that an objective is below a limit which holds it, at most */
+#define ONE_POINT 0.05 /* parts of the ranges: the line of the least third is one point when its ends are so near */
+
+enum { MAIN, OTHER, THIRD }; /* what objectives are, see search.role */
 
 /* A point that is wanted, and what is found. */
 typedef struct {
-    int least;             /* the objective that is to be least */
-    double most;           /* of the other; INFINITY: any */
-    const double *from[2]; /* [n_gene] designs to begin from: the second where the first leads nowhere; or NULL */
-    double *design;        /* [n_gene] the answer */
+    int least;                      /* the objective that is to be least */
+    double most[HF_OBJECTIVES_MAX]; /* of the others; INFINITY: any */
+    const double *from[2];          /* [n_gene] to begin from: the second where the first leads nowhere; or NULL */
+    double *design;                 /* [n_gene] the answer */
     hf_front_point found;
     const void *closed; /* the next point on the way, with none to be found between */
 } job;
 
+/* Designs that keep one limit on the third objective. */
+typedef struct {
+    double most; /* of the third; INFINITY: any, as on the only line of two objectives */
+    job *end[2]; /* the least MAIN and the least OTHER */
+    bool is_new[2];
+    job *beside[2]; /* at each end the least of the one that is not least there */
+    int n_way;
+    job **way;          /* [n_job] points that none of them beats in MAIN and OTHER, ascending by OTHER */
+    double *length;     /* [n_job] of the gap that follows each */
+    const void *closed; /* the next line, with none to be found between */
+    double gap;         /* to the next line */
+} line;
+
 typedef struct {
     const hf_trade *t;
     size_t n_gene;
-    int main, other; /* the objective that is least, under a limit on the other */
-    double range[2]; /* of the objectives between the ends */
-    int failed_end;  /* the objective whose end has no design; else -1 */
-    int n, n_run;    /* jobs, and those of them that have run */
-    job *job;        /* [n_point + 4] */
-    int n_way;
-    job **way;         /* [n_point + 4] points that none of them dominates, ascending by the other objective */
-    double *length;    /* [n_point + 4] of the gap that follows each */
-    hf_status failure; /* HF_NO_MEMORY or HF_INTERRUPTED of a thread */
+    int n_objective, role[HF_OBJECTIVES_MAX]; /* the objective that is MAIN, OTHER, THIRD */
+    double range[HF_OBJECTIVES_MAX];          /* of the objectives between the ends */
+    int failed_end;                           /* the objective whose end has no design; else -1 */
+    int n, n_run, n_job;                      /* jobs, those of them that have run, and room for them */
+    job *job;
+    int n_point;
+    job **point;             /* [n_job] of the front, without those that only led to others */
+    int n_line, n_room;      /* lines, and those that were begun */
+    line *line_room, **line; /* [n_point + 2]; in the order of their limits */
+    hf_status failure;       /* HF_NO_MEMORY or HF_INTERRUPTED of a thread */
     hf_parallel_queue queue;
     hf_status *of_room; /* [n_thread] */
     void *block;
@@ -43,7 +64,7 @@ typedef struct {
 
 bool hf_trade_applies(const hf_evaluator *v)
 {
-    return v->goals && v->goals->n_goal == 2 && hf_polish_applies(v);
+    return v->goals && v->goals->n_goal >= 2 && v->goals->n_goal <= HF_OBJECTIVES_MAX && hf_polish_applies(v);
 }
 
 /* ---- one point ---- */
@@ -52,11 +73,9 @@ bool hf_trade_applies(const hf_evaluator *v)
 static hf_status polish(const search *s, const job *j, double *design, hf_workspace *w, hf_front_point *point)
 {
     const hf_trade *t = s->t;
-    double most[2] = {INFINITY, INFINITY};
-    const hf_watch_trade trade = {j->least, most};
+    const hf_watch_trade trade = {j->least, j->most};
     hf_polish_result r;
     hf_form_result result;
-    most[1 - j->least] = j->most;
     *point = (hf_front_point){.objective = {NAN, NAN, NAN}, .multiplier = {NAN, NAN, NAN}};
     hf_status status = hf_polish_trade(t->evaluator, t->lower, t->upper, t->max_iterations, &trade, design, w, &r);
     if (status == HF_OK) status = hf_evaluate(t->evaluator, design, w, &result);
@@ -65,9 +84,9 @@ static hf_status polish(const search *s, const job *j, double *design, hf_worksp
     point->status = status;
     point->iterations = r.iterations;
     point->is_converged = status == HF_OK && r.stop == HF_POLISH_CONVERGED;
-    for (int k = 0; k < 2 && status == HF_OK; k++) {
+    for (int k = 0; k < s->n_objective && status == HF_OK; k++) {
         point->objective[k] = result.goal[k];
-        if (j->least == s->main && point->is_converged) point->multiplier[k] = r.multiplier[k];
+        if (j->least == s->role[MAIN] && point->is_converged) point->multiplier[k] = r.multiplier[k];
     }
     return HF_OK;
 }
@@ -76,8 +95,10 @@ static hf_status polish(const search *s, const job *j, double *design, hf_worksp
 static bool is_doubtful(const search *s, const job *j)
 {
     if (j->found.status != HF_OK || !j->found.is_converged) return true;
-    for (int i = 0; i < s->n_way; i++)
-        if (hf_front_dominates(2, s->way[i]->found.objective, j->found.objective)) return true;
+    for (int l = 0; l < s->n_line; l++)
+        for (int i = 0; i < s->line[l]->n_way; i++)
+            if (hf_front_dominates(s->n_objective, s->line[l]->way[i]->found.objective, j->found.objective))
+                return true;
     return false;
 }
 
@@ -133,14 +154,102 @@ static hf_status run(search *s)
     return HF_OK;
 }
 
-static job *add(search *s, int least, double most, const double *first, const double *second)
+/* The least of what has this role, with a limit on the third objective. */
+static job *add(search *s, int role, double third_most, const double *first, const double *second)
 {
     job *j = &s->job[s->n++];
-    j->least = least;
-    j->most = most;
+    j->least = s->role[role];
+    for (int k = 0; k < s->n_objective; k++)
+        j->most[k] = INFINITY;
+    if (s->n_objective > 2) j->most[s->role[THIRD]] = third_most;
     j->from[0] = first;
     j->from[1] = second;
     return j;
+}
+
+/* In parts of the ranges. */
+static double distance(const search *s, const job *a, const job *b)
+{
+    double square = 0;
+    for (int k = 0; k < s->n_objective; k++) {
+        double part = s->range[k] > 0 ? (b->found.objective[k] - a->found.objective[k]) / s->range[k] : 0;
+        square += part * part;
+    }
+    return sqrt(square);
+}
+
+static double value_of(const search *s, const job *j, int role)
+{
+    return j->found.objective[s->role[role]];
+}
+
+/* ---- lines ---- */
+
+/* Is a as good as b in MAIN and OTHER? */
+static bool beats(const search *s, const job *a, const job *b)
+{
+    return value_of(s, a, MAIN) <= value_of(s, b, MAIN) && value_of(s, a, OTHER) <= value_of(s, b, OTHER);
+}
+
+/* Put a point in its place on the way, and what it beats out of it; nothing if it is beaten itself. */
+static void join(const search *s, line *l, job *j)
+{
+    int at = 0, n = 0;
+    if (j->found.status != HF_OK) return;
+    for (int i = 0; i < l->n_way; i++)
+        if (beats(s, l->way[i], j)) return;
+    for (int i = 0; i < l->n_way; i++)
+        if (!beats(s, j, l->way[i])) l->way[n++] = l->way[i];
+    while (at < n && value_of(s, l->way[at], OTHER) < value_of(s, j, OTHER))
+        at++;
+    memmove(l->way + at + 1, l->way + at, (size_t)(n - at) * sizeof *l->way);
+    l->way[at] = j;
+    l->n_way = n + 1;
+}
+
+/* A line whose ends are to be found. */
+static line *add_line(search *s, double third_most)
+{
+    line *l = &s->line_room[s->n_room++];
+    s->line[s->n_line++] = l;
+    l->most = third_most;
+    return l;
+}
+
+/* The next lines, when the jobs of their new ends have been added: where the least leaves room, the least of the other
+ * one beside it. */
+static hf_status finish_lines(search *s, int first)
+{
+    HF_TRY(run(s));
+    for (int i = first; i < s->n_line; i++)
+        for (int e = 0; e < 2; e++) {
+            line *l = s->line[i];
+            if (!l->is_new[e] || l->end[e]->found.status != HF_OK) continue;
+            l->beside[e] = add(s, 1 - e, l->most, l->end[e]->design, NULL);
+            l->beside[e]->most[s->role[e]] = value_of(s, l->end[e], e) + END_GIVES * s->range[s->role[e]];
+        }
+    HF_TRY(run(s));
+    for (int i = first; i < s->n_line; i++)
+        for (int e = 0; e < 2; e++) {
+            line *l = s->line[i];
+            job *beside = l->beside[e];
+            if (!beside || beside->found.status != HF_OK) continue;
+            double gain = value_of(s, l->end[e], 1 - e) - value_of(s, beside, 1 - e);
+            if (!(gain > END_GAINS * s->range[s->role[1 - e]])) continue;
+            l->end[e] = beside;
+            for (int k = 0; k < s->n_objective; k++) /* those of the limit of END_GIVES, not of the front */
+                beside->found.multiplier[k] = NAN;
+        }
+    return HF_OK;
+}
+
+/* Take the ends of a line for the front. */
+static void close_line(search *s, line *l)
+{
+    for (int e = 0; e < 2; e++) {
+        if (l->is_new[e]) s->point[s->n_point++] = l->end[e];
+        join(s, l, l->end[e]);
+    }
 }
 
 /* ---- the ends ---- */
@@ -166,152 +275,276 @@ static hf_status choose_start(const search *s, int k, hf_workspace *w, const dou
     return HF_OK;
 }
 
-/* The least of each objective alone, and where that leaves room, the least of the other beside it. */
-static hf_status find_ends(search *s, job *end[2])
+/* How far each objective rises above its own end at the ends of the others. */
+static void measure_ranges(search *s, job *const end[])
 {
-    const double *start[2];
+    for (int r = 0; r < s->n_objective; r++) {
+        double most = value_of(s, end[r], r);
+        for (int i = 0; i < s->n_objective; i++)
+            most = fmax(most, value_of(s, end[i], r));
+        s->range[s->role[r]] = most - value_of(s, end[r], r);
+    }
+}
+
+/* The least of each objective alone, by its role. */
+static hf_status find_alone(search *s, job *alone[])
+{
+    const double *start[HF_OBJECTIVES_MAX];
     hf_workspace w = {0};
+    int n = s->n_objective;
     hf_status status = hf_workspace_create(s->t->evaluator->model, &w);
     if (status == HF_OK) status = hf_evaluate_attend(s->t->evaluator, &w);
-    for (int k = 0; k < 2 && status == HF_OK; k++)
-        status = choose_start(s, k, &w, &start[k]);
+    for (int r = 0; r < n && status == HF_OK; r++)
+        status = choose_start(s, s->role[r], &w, &start[r]);
     hf_workspace_free(&w);
     HF_TRY(status);
-    for (int k = 0; k < 2; k++)
-        end[k] = add(s, k, INFINITY, start[k], start[1 - k]);
+    for (int r = 0; r < n; r++)
+        alone[r] = add(s, r, INFINITY, start[r], start[(r + 1) % n]);
     HF_TRY(run(s));
-    for (int k = 0; k < 2; k++) {
-        s->failed_end = k;
-        if (end[k]->found.status != HF_OK) return end[k]->found.status;
+    for (int k = 0; k < n; k++)
+        for (int r = 0; r < n; r++) {
+            if (s->role[r] != k || alone[r]->found.status == HF_OK) continue;
+            s->failed_end = k;
+            return alone[r]->found.status;
+        }
+    return HF_OK;
+}
+
+/* The line without a limit on the third objective, and that of its least. */
+static hf_status find_ends(search *s)
+{
+    job *end[HF_OBJECTIVES_MAX];
+    HF_TRY(find_alone(s, end));
+    measure_ranges(s, end);
+    double main = s->range[s->role[MAIN]], other = s->range[s->role[OTHER]];
+    double third = s->n_objective > 2 ? s->range[s->role[THIRD]] : 0;
+    if (!(main > 0 && (other > 0 || third > 0))) { /* one design is best in all, or as good as any in MAIN */
+        for (int r = 0; r < s->n_objective; r++)
+            s->point[s->n_point++] = end[r];
+        return HF_OK;
     }
-    s->failed_end = -1;
-    const hf_front_point *a = &end[0]->found, *b = &end[1]->found;
-    s->range[0] = b->objective[0] - a->objective[0];
-    s->range[1] = a->objective[1] - b->objective[1];
-    if (!(s->range[0] > 0 && s->range[1] > 0)) return HF_OK; /* one design is best in both */
-    job *beside[2];
-    for (int k = 0; k < 2; k++)
-        beside[k] = add(s, 1 - k, end[k]->found.objective[k] + END_GIVES * s->range[k], end[k]->design, NULL);
-    HF_TRY(run(s));
-    for (int k = 0; k < 2; k++) {
-        const hf_front_point *found = &beside[k]->found;
-        double gain = end[k]->found.objective[1 - k] - found->objective[1 - k];
-        if (found->status != HF_OK || !(gain > END_GAINS * s->range[1 - k])) continue;
-        end[k] = beside[k];
-        for (int i = 0; i < 2; i++) /* that of the limit of END_GIVES, not of the front */
-            end[k]->found.multiplier[i] = NAN;
+    line *bottom = NULL;
+    if (third > 0) {
+        bottom = add_line(s, value_of(s, end[THIRD], THIRD) + END_GIVES * third);
+        for (int e = 0; e < 2; e++)
+            bottom->end[e] = add(s, e, bottom->most, end[THIRD]->design, NULL);
+        bottom->is_new[MAIN] = bottom->is_new[OTHER] = true;
     }
-    s->range[0] = end[1]->found.objective[0] - end[0]->found.objective[0];
-    s->range[1] = end[0]->found.objective[1] - end[1]->found.objective[1];
+    line *top = add_line(s, INFINITY);
+    for (int e = 0; e < 2; e++) {
+        top->end[e] = end[e];
+        top->is_new[e] = true;
+    }
+    HF_TRY(finish_lines(s, 0));
+    for (int e = 0; e < 2; e++) {
+        end[e] = top->end[e];
+        if (!bottom || bottom->end[e]->found.status == HF_OK) continue;
+        s->failed_end = s->role[THIRD];
+        return bottom->end[e]->found.status;
+    }
+    if (bottom) end[THIRD] = bottom->end[MAIN];
+    measure_ranges(s, end);
+    if (bottom && distance(s, bottom->end[MAIN], bottom->end[OTHER]) < ONE_POINT) {
+        bottom->end[OTHER] = bottom->end[MAIN];
+        bottom->is_new[OTHER] = false;
+    }
+    for (int l = 0; l < s->n_line; l++)
+        close_line(s, s->line[l]);
     return HF_OK;
 }
 
 /* ---- between them ---- */
 
-/* Put a point in its place on the way, and what it dominates out of it; nothing if it is dominated itself. */
-static void join(search *s, job *j)
+/* Is there something to be found between two neighbours on the way? A line whose limit holds neither of them runs there
+ * where one with more room runs. */
+static bool is_open(const search *s, const line *l, const job *low, const job *high)
 {
-    int at = 0, n = 0;
-    const double *objective = j->found.objective;
-    if (j->found.status != HF_OK) return;
-    for (int i = 0; i < s->n_way; i++) {
-        const double *of = s->way[i]->found.objective;
-        bool is_same = of[0] == objective[0] && of[1] == objective[1];
-        if (is_same || hf_front_dominates(2, of, objective)) return;
-    }
-    for (int i = 0; i < s->n_way; i++)
-        if (!hf_front_dominates(2, objective, s->way[i]->found.objective)) s->way[n++] = s->way[i];
-    while (at < n && s->way[at]->found.objective[s->other] < objective[s->other])
-        at++;
-    memmove(s->way + at + 1, s->way + at, (size_t)(n - at) * sizeof *s->way);
-    s->way[at] = j;
-    s->n_way = n + 1;
+    if (low->closed == high) return false;
+    if (!(value_of(s, high, OTHER) - value_of(s, low, OTHER) > NO_GAP * s->range[s->role[OTHER]])) return false;
+    if (!isfinite(l->most)) return true;
+    return fmax(value_of(s, low, THIRD), value_of(s, high, THIRD)) > l->most - HELD * s->range[s->role[THIRD]];
 }
 
-/* Lengths of the gaps in parts of the ranges; 0 of one into which nothing fits. Returns the longest. */
+/* Lengths of the gaps; 0 of one into which nothing fits. Returns the longest. */
 static double measure_gaps(search *s)
 {
     double longest = 0;
-    for (int i = 0; i + 1 < s->n_way; i++) {
-        const double *a = s->way[i]->found.objective, *b = s->way[i + 1]->found.objective;
-        double x = (b[0] - a[0]) / s->range[0], y = (b[1] - a[1]) / s->range[1];
-        bool is_open = s->way[i]->closed != s->way[i + 1] && b[s->other] - a[s->other] > NO_GAP * s->range[s->other];
-        s->length[i] = is_open ? sqrt(x * x + y * y) : 0;
-        longest = fmax(longest, s->length[i]);
+    for (int k = 0; k < s->n_line; k++) {
+        line *l = s->line[k];
+        for (int i = 0; i + 1 < l->n_way; i++) {
+            l->length[i] = is_open(s, l, l->way[i], l->way[i + 1]) ? distance(s, l->way[i], l->way[i + 1]) : 0;
+            longest = fmax(longest, l->length[i]);
+        }
     }
     return longest;
 }
 
 /* Halve the longest gaps, up to n_more of them. The design of the tighter limit keeps the new one. */
-static hf_status halve_gaps(search *s, int n_more)
+static hf_status halve_gaps(search *s, int n_more, double longest)
 {
-    double longest = measure_gaps(s);
+    line *of[HF_FRONT_POINTS_MAX];
     int first = s->n;
     for (; n_more > 0; n_more--) {
+        line *l = NULL;
         int at = 0;
-        for (int i = 1; i + 1 < s->n_way; i++)
-            if (s->length[i] > s->length[at]) at = i;
-        if (!(s->length[at] > LONG_GAP * longest)) break;
-        s->length[at] = 0;
-        job *low = s->way[at], *high = s->way[at + 1];
-        double middle = (low->found.objective[s->other] + high->found.objective[s->other]) / 2;
-        add(s, s->main, middle, low->design, high->design);
+        for (int k = 0; k < s->n_line; k++)
+            for (int i = 0; i + 1 < s->line[k]->n_way; i++) {
+                if (l && !(s->line[k]->length[i] > l->length[at])) continue;
+                l = s->line[k];
+                at = i;
+            }
+        if (!l || !(l->length[at] > LONG_GAP * longest)) break;
+        l->length[at] = 0;
+        job *low = l->way[at], *high = l->way[at + 1];
+        of[s->n - first] = l;
+        add(s, MAIN, l->most, low->design, high->design)->most[s->role[OTHER]] =
+            (value_of(s, low, OTHER) + value_of(s, high, OTHER)) / 2;
         low->closed = high; /* until a point comes between them */
     }
     HF_TRY(run(s));
-    for (int i = first; i < s->n; i++)
-        join(s, &s->job[i]);
+    for (int i = first; i < s->n; i++) {
+        s->point[s->n_point++] = &s->job[i];
+        join(s, of[i - first], &s->job[i]);
+    }
     return HF_OK;
 }
 
-static hf_status fill(search *s, job *end[2])
+/* The largest third objective at the ends of a line. */
+static double third_of(const search *s, const line *l)
 {
-    int n_end = s->n - 2;
-    s->n_way = 0;
-    join(s, end[0]);
-    join(s, end[1]);
-    while (s->n - n_end < s->t->n_point) {
-        int before = s->n;
-        HF_TRY(halve_gaps(s, s->t->n_point - (s->n - n_end)));
-        if (s->n == before) break;
+    return fmax(value_of(s, l->end[MAIN], THIRD), value_of(s, l->end[OTHER], THIRD));
+}
+
+/* How far the ends of neighbouring lines are from each other; 0 where none fits between. Returns the longest. */
+static double measure_lines(search *s)
+{
+    double longest = 0;
+    for (int i = 0; i + 1 < s->n_line; i++) {
+        line *l = s->line[i], *next = s->line[i + 1];
+        bool fits = l->closed != next && third_of(s, next) - third_of(s, l) > NO_GAP * s->range[s->role[THIRD]];
+        l->gap =
+            fits ? fmax(distance(s, l->end[MAIN], next->end[MAIN]), distance(s, l->end[OTHER], next->end[OTHER])) : 0;
+        longest = fmax(longest, l->gap);
+    }
+    return longest;
+}
+
+/* The ends of a new line between two, whose third objectives it has the mean of: those of the tighter line keep it, and
+ * where one of the other's does, too, that is its own. */
+static void begin_line(search *s, const line *tight, const line *loose)
+{
+    line *l = add_line(s, (third_of(s, tight) + third_of(s, loose)) / 2);
+    for (int e = 0; e < 2; e++) {
+        l->is_new[e] = value_of(s, loose->end[e], THIRD) > l->most;
+        l->end[e] = l->is_new[e] ? add(s, e, l->most, tight->end[e]->design, loose->end[e]->design) : loose->end[e];
+    }
+}
+
+/* Put the new lines in their order. One without an end is none, and nothing more is looked for where it would be. */
+static void place_lines(search *s, int first, line *const *tight)
+{
+    int n_new = s->n_line - first;
+    line *new[HF_FRONT_POINTS_MAX];
+    memcpy(new, s->line + first, (size_t)n_new * sizeof *new);
+    s->n_line = first;
+    for (int i = 0; i < n_new; i++) {
+        int at = 0;
+        close_line(s, new[i]);
+        while (s->line[at] != tight[i])
+            at++;
+        if (new[i]->end[MAIN]->found.status != HF_OK || new[i]->end[OTHER]->found.status != HF_OK) {
+            s->line[at]->closed = s->line[at + 1];
+            continue;
+        }
+        memmove(s->line + at + 2, s->line + at + 1, (size_t)(s->n_line - at - 1) * sizeof(line *));
+        s->line[at + 1] = new[i];
+        s->n_line++;
+    }
+}
+
+/* Lines in the longest gaps between lines, up to n_more of them. */
+static hf_status halve_lines(search *s, int n_more, double longest)
+{
+    line *tight[HF_FRONT_POINTS_MAX];
+    int first = s->n_line;
+    for (; n_more > 0; n_more--) {
+        int at = 0;
+        for (int i = 1; i + 1 < first; i++)
+            if (s->line[i]->gap > s->line[at]->gap) at = i;
+        if (!(s->line[at]->gap > LONG_GAP * longest)) break;
+        s->line[at]->gap = 0;
+        tight[s->n_line - first] = s->line[at];
+        begin_line(s, s->line[at], s->line[at + 1]);
+    }
+    HF_TRY(finish_lines(s, first));
+    place_lines(s, first, tight);
+    return HF_OK;
+}
+
+/* Points where the gaps are longest, on lines or between them. */
+static hf_status fill(search *s)
+{
+    while (s->n_point < s->t->n_point) {
+        int before = s->n_point, n_more = s->t->n_point - s->n_point;
+        double longest = measure_gaps(s), between = measure_lines(s);
+        if (between > longest && n_more > 1)
+            HF_TRY(halve_lines(s, n_more / 2, between));
+        else
+            HF_TRY(halve_gaps(s, n_more, longest));
+        if (s->n_point == before) break;
     }
     return HF_OK;
 }
 
 /* ---- the front ---- */
 
+/* Each point takes one job; each end of a line one more for the least beside it. */
 static void lay_out(hf_arena *a, search *s)
 {
-    size_t n = (size_t)s->t->n_point + 4;
+    size_t n = (size_t)s->n_job, n_line = s->n_objective > 2 ? (size_t)s->t->n_point + 2 : 1;
     s->job = hf_arena_take(a, n, sizeof *s->job);
-    s->way = hf_arena_take(a, n, sizeof *s->way);
-    s->length = hf_arena_take(a, n, sizeof(double));
+    s->point = hf_arena_take(a, n, sizeof *s->point);
+    s->line_room = hf_arena_take(a, n_line, sizeof *s->line_room);
+    s->line = hf_arena_take(a, n_line, sizeof *s->line);
     s->of_room = hf_arena_take(a, (size_t)s->t->n_thread, sizeof *s->of_room);
+    for (size_t i = 0; i < n_line; i++) {
+        job **way = hf_arena_take(a, n, sizeof *way);
+        double *length = hf_arena_take(a, n, sizeof *length);
+        if (!a->block) continue;
+        s->line_room[i].way = way;
+        s->line_room[i].length = length;
+    }
     for (size_t i = 0; i < n; i++) {
         double *design = hf_arena_take(a, 2 * s->n_gene, sizeof(double));
         if (a->block) s->job[i].design = design;
     }
 }
 
-static void copy(const search *s, const job *j, int at, hf_front *front)
+static hf_status hand_over(const search *s, hf_front *front)
 {
-    double *design = front->design + (size_t)at * s->n_gene;
-    front->point[at] = j->found;
-    for (size_t k = 0; k < s->n_gene; k++)
-        design[k] = j->found.status == HF_OK ? j->design[k] : (double)NAN;
-}
-
-static hf_status hand_over(const search *s, job *end[2], int n_end, hf_front *front)
-{
-    int n = 0;
-    HF_TRY(hf_front_create(2, (int)s->n_gene, 2 + s->n - n_end, front));
-    front->minimised = s->main;
-    for (int k = 0; k < 2; k++)
-        copy(s, end[k], n++, front);
-    for (int i = n_end; i < s->n; i++)
-        copy(s, &s->job[i], n++, front);
+    HF_TRY(hf_front_create(s->n_objective, (int)s->n_gene, s->n_point, front));
+    front->minimised = s->role[MAIN];
+    for (int i = 0; i < s->n_point; i++) {
+        const job *j = s->point[i];
+        double *design = front->design + (size_t)i * s->n_gene;
+        front->point[i] = j->found;
+        for (size_t k = 0; k < s->n_gene; k++)
+            design[k] = j->found.status == HF_OK ? j->design[k] : (double)NAN;
+    }
     hf_front_settle(front);
     return HF_OK;
+}
+
+/* The first objective without corners is MAIN, if there is one; the others follow in their order. */
+static void give_roles(search *s, const hf_goals *goals)
+{
+    int main = 0;
+    while (main < s->n_objective && hf_goals_is_largest(goals->goal[main].wanted.goal))
+        main++;
+    if (main == s->n_objective) main = 0;
+    s->role[MAIN] = main;
+    for (int k = 0, role = OTHER; k < s->n_objective; k++)
+        if (k != main) s->role[role++] = k;
 }
 
 hf_status hf_trade_find(const hf_trade *trade, hf_front *front, int *failed_end)
@@ -319,21 +552,19 @@ hf_status hf_trade_find(const hf_trade *trade, hf_front *front, int *failed_end)
     hf_trade t = *trade;
     hf_evaluator alone = *trade->evaluator; /* each point has one thread */
     hf_arena arena = {0};
-    job *end[2];
     if (t.n_thread <= 0) t.n_thread = hf_parallel_cores();
     search s = {.t = &t, .failed_end = -1, .n_gene = (size_t)t.evaluator->model->n_gene};
     alone.n_thread = 1;
     t.evaluator = &alone;
     *front = (hf_front){.minimised = -1, .knee = -1};
     *failed_end = -1;
-    s.main = hf_goals_is_largest(t.evaluator->goals->goal[0].wanted.goal) &&
-             !hf_goals_is_largest(t.evaluator->goals->goal[1].wanted.goal);
-    s.other = 1 - s.main;
+    s.n_objective = t.evaluator->goals->n_goal;
+    s.n_job = s.n_objective > 2 ? 2 * t.n_point + 8 : t.n_point + 4;
+    give_roles(&s, t.evaluator->goals);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &s)));
-    hf_status status = find_ends(&s, end);
-    int n_end = s.n;
-    if (status == HF_OK && s.range[0] > 0 && s.range[1] > 0) status = fill(&s, end);
-    if (status == HF_OK) status = hand_over(&s, end, n_end, front);
+    hf_status status = find_ends(&s);
+    if (status == HF_OK) status = fill(&s);
+    if (status == HF_OK) status = hand_over(&s, front);
     hf_arena_free(&arena);
     *failed_end = s.failed_end;
     return status;

@@ -1,6 +1,7 @@
-/* trade - the front of two objectives by Levenberg-Marquardt (METHOD section 7): the ends, where one of them is least,
- * and points between them at which one is least while the other stays below a limit, each begun from a neighbour. The
- * limits are put where the front has its longest gaps, so its points are about evenly far from each other. */
+/* trade - the front of two or three objectives by Levenberg-Marquardt (METHOD section 7): the ends, where one of them
+ * is least, and points between them at which one is least while the others stay below limits, each begun from a
+ * neighbour. The limits are put where the front has its longest gaps, so its points are about evenly far from each
+ * other. */
 #ifndef HIFDM_TRADE_H
 #define HIFDM_TRADE_H
 
@@ -9,16 +10,16 @@
 #include <signal.h>
 
 typedef struct {
-    const hf_evaluator *evaluator; /* its goals are the two objectives */
+    const hf_evaluator *evaluator; /* its goals are the objectives */
     const double *lower, *upper;   /* [n_gene] */
-    int n_point, max_iterations;   /* the ends included, at least 3; of each of them */
+    int n_point, max_iterations;   /* the ends included, 3 (of three objectives 4) to HF_FRONT_POINTS_MAX; of each */
     int n_thread;                  /* 0: all cores; the front does not depend on it */
     int n_start;
     const double *start; /* [n_start][n_gene] designs to begin from */
     const volatile sig_atomic_t *stop;
 } hf_trade;
 
-/* Can hf_trade_find follow the front of these objectives? There must be two, of designs that hf_polish_applies to. */
+/* Can hf_trade_find follow the front of these objectives? Designs must be such that hf_polish_applies to. */
 bool hf_trade_applies(const hf_evaluator *evaluator);
 
 /* *front is created here, all of it but `base`; free it in any case. HF_OK, also when points failed, which are marked;

@@ -125,8 +125,12 @@ START_TEST(a_check_says_what_will_be_followed)
     ERR("error: --set optimize.objectives.1.set: there is no set of cables 'edges'; did you mean 'edge'?\n");
     HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: displacement}]");
     ERR("error: --set optimize.objectives.1: displacement: needs a truss that gives way: this net has none\n");
-    HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}, {goal: evenness}]");
-    ERR("optimize.objectives.2: is a third objective; Levenberg-Marquardt follows the line of two. ");
+    HIFDM(0, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}, {goal: evenness}]");
+    OUT("                front of goal_0_psi, goal_1_pull and goal_2_evenness: 7 points, each by "
+        "Levenberg-Marquardt\n");
+    HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}, {goal: evenness}]", "--set",
+          "optimize.front_points=3");
+    ERR("optimize.front_points: must be at least 4 with three objectives, for the ends alone\n");
 }
 END_TEST
 
@@ -157,6 +161,37 @@ START_TEST(generations_end_in_a_front)
     HIFDM(0, "evaluate", THREE, "--designs", table, "-o", again);
     EXPECT(table, again, "--",
            "all(near(float(x[k]), float(y[k]), 1e-6) for x, y in zip(a, b) for k in ('goal_0_psi', 'goal_2_pull'))");
+}
+END_TEST
+
+/* A front of three objectives by Levenberg-Marquardt: printed, stored, told, a table, the same by any number of
+ * threads, and from the front of generations. */
+START_TEST(three_objectives_have_a_front_with_slopes)
+{
+    static const char objectives[] =
+        "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}, {goal: evenness, set: boundary}]";
+    const char *file = temp("f.h5"), *other = temp("g.h5"), *table = temp("f.csv"), *again = temp("r.csv"), *json;
+    HIFDM(0, "run", FRONT, "--set", objectives, "--set", "optimize.front_points=12", "-o", file, "--threads", "1");
+    OUT("  front         12 points, 0 of them dominated, 0 failed");
+    OUT("; slope of goal_0_psi per unit of goal_1_ratio_boundary; slope of goal_0_psi per unit of "
+        "goal_2_evenness_boundary\n");
+    HIFDM(0, "run", FRONT, "--set", objectives, "--set", "optimize.front_points=12", "-o", other, "--threads", "2",
+          "--quiet");
+    HIFDM(0, "diff", file, other);
+    HIFDM(0, "show", file, "--json");
+    json = out_as("s.json");
+    EXPECT(file, json, "--", "a['front/objective'].shape == a['front/multiplier'].shape == (12, 3)",
+           "np.array_equal([list(p['objective'].values()) for p in b['front']['points']], a['front/objective'][:])",
+           "sum(np.all(m[1:] > 0) for m in a['front/multiplier'][:]) >= 1",
+           "np.isnan(a['front/multiplier'][:, 0]).all() and np.nanmin(a['front/multiplier'][:, 1:]) >= 0");
+    HIFDM(0, "export", file, "--front", table);
+    HIFDM(0, "evaluate", FRONT, "--set", objectives, "--designs", table, "-o", again);
+    EXPECT(table, again, "--",
+           "'slope_goal_1_ratio_boundary' in a[0] and 'slope_goal_2_evenness_boundary' in a[0] and len(a) == 12",
+           "all(near(float(x[k]), float(y[k]), 1e-6) for x, y in zip(a, b) for k in x if k.startswith('goal_'))");
+    HIFDM(0, "run", FRONT, "--set", objectives, "--set", "optimize.method=ga+lm", "--set", "optimize.generations=3",
+          "-o", other, "--force");
+    OUT("  front         7 points, ");
 }
 END_TEST
 
@@ -238,6 +273,7 @@ Suite *suite_cli_front(void)
     tcase_add_test(tests, a_run_without_objectives_has_no_front);
     tcase_add_test(tests, a_check_says_what_will_be_followed);
     tcase_add_test(tests, generations_end_in_a_front);
+    tcase_add_test(tests, three_objectives_have_a_front_with_slopes);
     tcase_add_test(tests, levenberg_marquardt_follows_generations);
     tcase_add_test(tests, limits_that_no_design_keeps_leave_no_front);
     tcase_add_test(tests, points_that_have_not_converged_say_so);

@@ -75,7 +75,7 @@ function writeFront() {
       {},
       `${fmtCount(front.n_point)} designs${left.length ? `, ${left.join(", ")}` : ""}: none of the others is better ` +
         `in all objectives than one on the front. Found in ${fmtDuration(front.wall_s)}. The knee is farthest below ` +
-        "the straight line between the ends.",
+        `the straight ${names.length > 2 ? "plane through" : "line between"} the ends.`,
     ),
     el("div", { class: "charts" }, charts),
   );

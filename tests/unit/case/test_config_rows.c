@@ -273,9 +273,8 @@ static const struct {
      "ones\n"},
     {OBJECTIVE "{goal: psi}, {goal: pull}, {goal: mass}, {goal: ratio}]\n", NULL,
      "error: c.yaml:5:57: optimize.objectives: there are more than 3 rows\n"},
-    {OBJECTIVE "{goal: psi}, {goal: pull}, {goal: evenness}]\n", NULL,
-     "error: c.yaml:5:43: optimize.objectives.2: is a third objective; Levenberg-Marquardt follows the line of two. "
-     "Use method: ga, or keep two, and what the third must keep as a row of optimize.limits\n"},
+    {OBJECTIVE "{goal: psi}, {goal: pull}, {goal: evenness}]\n  front_points: 3\n", NULL,
+     "error: c.yaml:6:17: optimize.front_points: must be at least 4 with three objectives, for the ends alone\n"},
     {OBJECTIVE "{goal: psi}, {goal: pull}]\n  compare_lm: true\n", NULL,
      "error: c.yaml:6:15: optimize.compare_lm: compares one design; it has no meaning for optimize.objectives\n"},
     {OBJECTIVE "{goal: psi}, {goal: pull}]\n  variation: chain\n", NULL,

@@ -1,5 +1,5 @@
-/* Fronts of two objectives by Levenberg-Marquardt: two in closed form, with their slopes; a reflector's, whose points
- * are even, none better than another, and the same on any number of threads. */
+/* Fronts by Levenberg-Marquardt: of two objectives two in closed form, with their slopes, of three one; a reflector's,
+ * whose points are even, none better than another, and the same on any number of threads. */
 #include "nets.h"
 
 #include "net/variables.h"
@@ -7,7 +7,7 @@
 #include "search/trade.h"
 #include <hifdm/problem.h>
 
-enum { MAX_CABLE = 8, MAX_GENE = 4 };
+enum { MAX_CABLE = 8, MAX_GENE = 4, MAX_GENE_OF_CASE = 200 };
 static int failed_end;
 
 struct traded {
@@ -18,19 +18,32 @@ struct traded {
     hf_front front;
 };
 
-/* Follow the front of two objectives; all boundary cables vary their force densities between these bounds. */
-static void follow(struct traded *t, const hf_goal_settings objective[2], double lower, double upper, int n_point)
+/* The same search again. */
+static hf_trade trade_of(const struct traded *t, int n_point)
+{
+    return (hf_trade){.evaluator = &t->evaluator,
+                      .lower = t->lower,
+                      .upper = t->upper,
+                      .n_point = n_point,
+                      .max_iterations = 200,
+                      .n_thread = 1,
+                      .n_start = 1,
+                      .start = t->base};
+}
+
+/* Follow the front of the objectives; the cables of a set vary their force densities between these bounds. */
+static void follow(struct traded *t, int n_objective, const hf_goal_settings *objective, const char *set, double lower,
+                   double upper, int n_point)
 {
     hf_messages messages = {0};
-    hf_optimize_settings s = {.n_objective = 2, .n_variable = 1, .objective = {objective[0], objective[1]}};
+    hf_optimize_settings s = {.n_objective = n_objective, .n_variable = 1};
+    for (int k = 0; k < n_objective; k++)
+        s.objective[k] = objective[k];
     hf_workspace *w = &t->net.work;
     hf_model *m = &t->net.model;
-    s.variable[0] = (hf_variable_settings){.set = "boundary",
-                                           .vary = HF_VARY_FORCE_DENSITY,
-                                           .range = NAN,
-                                           .range_ratio = NAN,
-                                           .lower = lower,
-                                           .upper = upper};
+    s.variable[0] = (hf_variable_settings){
+        .vary = HF_VARY_FORCE_DENSITY, .range = NAN, .range_ratio = NAN, .lower = lower, .upper = upper};
+    snprintf(s.variable[0].set, sizeof s.variable[0].set, "%s", set);
     t->net.form.residual_tolerance = t->net.form.length_tolerance = 1e-13;
     ck_assert_int_eq(hf_variables_apply(&t->net.scene, &s, NULL, m, &messages), HF_OK);
     hf_model_want_newton(m);
@@ -51,14 +64,7 @@ static void follow(struct traded *t, const hf_goal_settings objective[2], double
                                   .solver = HF_SOLVER_NEWTON,
                                   .boundary_ratio_cap = INFINITY,
                                   .goals = &t->goals};
-    const hf_trade trade = {.evaluator = &t->evaluator,
-                            .lower = t->lower,
-                            .upper = t->upper,
-                            .n_point = n_point,
-                            .max_iterations = 200,
-                            .n_thread = 1,
-                            .n_start = 1,
-                            .start = t->base};
+    const hf_trade trade = trade_of(t, n_point);
     ck_assert(hf_trade_applies(&t->evaluator));
     ck_assert_int_eq(hf_trade_find(&trade, &t->front, &failed_end), HF_OK);
 }
@@ -97,7 +103,7 @@ START_TEST(a_node_on_a_line_has_a_front_in_closed_form)
     bool is_turned = _i % 2; /* the order of the objectives says which one is least under limits on the other */
     OPEN_HAND(&t.net, node, cable, HF_METHOD_FDM);
     const hf_goal_settings turned[2] = {wanted[is_turned], wanted[!is_turned]};
-    follow(&t, turned, 1, 100, 11);
+    follow(&t, 2, turned, "boundary", 1, 100, 11);
     ck_assert_int_eq(t.front.n_point, 11);
     ck_assert_int_eq(t.front.minimised, 0);
     for (int i = 0; i < 11; i++) {
@@ -139,7 +145,7 @@ START_TEST(a_ratio_has_a_front_in_closed_form)
     memcpy(placed, node, sizeof node);
     placed[3].position_m[0] = placed[4].position_m[0] = 0; /* the cables along y pull the node to x = 0 */
     OPEN_HAND(&t.net, placed, cable, HF_METHOD_FDM);
-    follow(&t, wanted, 1, 40, 9);
+    follow(&t, 2, wanted, "boundary", 1, 40, 9);
     ck_assert_int_eq(t.front.n_point, 9);
     ck_assert_int_eq(t.front.minimised, 1); /* psi is smooth */
     for (int i = 0; i < 9; i++) {
@@ -156,26 +162,111 @@ START_TEST(a_ratio_has_a_front_in_closed_form)
 }
 END_TEST
 
-/* Any allocation may fail: no front, no leak, and the next search is as ever. */
-START_TEST(without_memory_there_is_no_front)
+/* ---- three objectives ---- */
+
+/* A node between supports at (-1, 0) and (1, 0), pulled along y by 10 N: it is at x = (q1 - q0)/Q, y = 10/Q with
+ * Q = q0 + q1. It wants to be at (0, 1), and its two cables want to be 0.2 m long, which bounds forbid. With u the unit
+ * vectors away from these three places, the front is where u_psi + a u_0 + b u_1 = 0 with a, b >= 0, which are the
+ * slopes: the triangle of the three places. */
+#define SHORT 0.2
+#define MOST_Q 40
+static void open_triangle(struct traded *t, int n_point)
+{
+    static const struct hand_node node[] = {
+        {{-1, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0, 1, 0}, HF_ROLE_INNER, {0, 10, 0}}, {{1, 0, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 6},
+                                              {{1, 2}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 7}};
+    const hf_goal_settings wanted[3] = {objective(HF_GOAL_PSI, "", NAN), objective(HF_GOAL_LENGTH, "boundary", SHORT),
+                                        objective(HF_GOAL_LENGTH, "inner", SHORT)};
+    OPEN_HAND(&t->net, node, cable, HF_METHOD_FDM);
+    follow(t, 3, wanted, "all", 0.1, MOST_Q, n_point);
+}
+
+/* The slopes at (x, y). */
+static void triangle_slopes(double x, double y, double slope[2])
+{
+    double r = hypot(x, y - 1), l = hypot(x + 1, y), m = hypot(x - 1, y);
+    double u[2] = {-x / r, -(y - 1) / r}, a[2] = {(x + 1) / l, y / l}, b[2] = {(x - 1) / m, y / m};
+    double area = a[0] * b[1] - a[1] * b[0];
+    slope[0] = (u[0] * b[1] - u[1] * b[0]) / area;
+    slope[1] = (a[0] * u[1] - a[1] * u[0]) / area;
+}
+
+START_TEST(a_node_in_a_plane_has_a_front_of_three_in_closed_form)
+{
+    struct traded t = {0};
+    enum { N = 50 };
+    int n_inside = 0;
+    open_triangle(&t, N);
+    ck_assert_int_eq(t.front.n_objective, 3);
+    ck_assert_int_eq(t.front.minimised, 0);
+    ck_assert_int_ge(t.front.n_point, N - 1);
+    ck_assert_int_le(t.front.n_point, N);
+    for (int i = 0; i < t.front.n_point; i++) {
+        const hf_front_point *p = &t.front.point[i];
+        const double *q = t.front.design + 2 * i;
+        double x = (q[1] - q[0]) / (q[0] + q[1]), y = 10 / (q[0] + q[1]), slope[2];
+        ck_assert_int_eq(p->status, HF_OK);
+        ck_assert_int_eq(p->mark, HF_FRONT_ON);
+        assert_relative(p->objective[0] + 1, hypot(x, y - 1) + 1, 1e-12);
+        assert_relative(p->objective[1] + 1, hypot(x + 1, y) - SHORT + 1, 1e-12);
+        assert_relative(p->objective[2] + 1, hypot(x - 1, y) - SHORT + 1, 1e-12);
+        if (!(p->multiplier[1] > 0 && p->multiplier[2] > 0) || fmax(q[0], q[1]) > 0.999 * MOST_Q) continue;
+        n_inside++;
+        triangle_slopes(x, y, slope);
+        assert_relative(p->multiplier[1], slope[0], 1e-6);
+        assert_relative(p->multiplier[2], slope[1], 1e-6);
+    }
+    ck_assert_int_ge(n_inside, 8);
+    close_traded(&t);
+}
+END_TEST
+
+/* No place of the triangle that bounds let the node be at is far from a point. */
+START_TEST(a_front_of_three_has_no_holes)
+{
+    struct traded t = {0};
+    double worst = 0;
+    open_triangle(&t, 50);
+    for (double x = -0.9; x < 0.95; x += 0.1)
+        for (double y = 0.1; y <= 1 - fabs(x); y += 0.1) {
+            double l = hypot(x + 1, y) - SHORT, m = hypot(x - 1, y) - SHORT, r = hypot(x, y - 1), nearest = INFINITY;
+            if (5 * (1 + fabs(x)) / y > MOST_Q) continue;
+            for (int i = 0; i < t.front.n_point; i++) {
+                const double *f = t.front.point[i].objective;
+                nearest =
+                    fmin(nearest, sqrt((f[0] - r) * (f[0] - r) + (f[1] - l) * (f[1] - l) + (f[2] - m) * (f[2] - m)));
+            }
+            worst = fmax(worst, nearest);
+        }
+    ck_assert_msg(worst < 0.2, "%g", worst);
+    close_traded(&t);
+}
+END_TEST
+
+/* ---- memory ---- */
+
+static void open_line(struct traded *t, int n_point)
 {
     static const struct hand_node node[] = {
         {{-1, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0.5, 0, 0}, HF_ROLE_INNER, {0}}, {{1, 0, 0}, HF_ROLE_SUPPORT, {0}}};
     static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 10},
                                               {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 12}};
-    struct traded t = {0};
     const hf_goal_settings wanted[2] = {objective(HF_GOAL_PSI, "", NAN), objective(HF_GOAL_LENGTH, "", 0.8)};
-    OPEN_HAND(&t.net, node, cable, HF_METHOD_FDM);
-    follow(&t, wanted, 1, 100, 3);
-    const hf_trade trade = {.evaluator = &t.evaluator,
-                            .lower = t.lower,
-                            .upper = t.upper,
-                            .n_point = 3,
-                            .max_iterations = 200,
-                            .n_thread = 1,
-                            .n_start = 1,
-                            .start = t.base};
-    int n_failed = 0;
+    OPEN_HAND(&t->net, node, cable, HF_METHOD_FDM);
+    follow(t, 2, wanted, "boundary", 1, 100, n_point);
+}
+
+/* Any allocation may fail: no front, no leak, and the next search is as ever. */
+START_TEST(without_memory_there_is_no_front)
+{
+    struct traded t = {0};
+    int n_failed = 0, n_point = _i ? 8 : 3;
+    if (_i)
+        open_triangle(&t, n_point);
+    else
+        open_line(&t, n_point);
+    const hf_trade trade = trade_of(&t, n_point);
     for (bool has_failed = true; has_failed;) {
         hf_front front;
         fail_allocation_at(n_failed + 1);
@@ -185,7 +276,8 @@ START_TEST(without_memory_there_is_no_front)
         if (has_failed)
             ck_assert_int_eq(front.n_point, 0);
         else
-            ck_assert_mem_eq(front.design, t.front.design, 3 * (size_t)front.n_gene * sizeof(double));
+            ck_assert_mem_eq(front.design, t.front.design,
+                             (size_t)front.n_point * (size_t)front.n_gene * sizeof(double));
         hf_front_free(&front);
         n_failed += has_failed;
     }
@@ -223,11 +315,12 @@ static void follow_problem(hf_problem *p, int n_point, int n_thread, hf_front *f
     free(lower);
 }
 
-/* The least psi where the other objective is at most this, from that design. */
-static double least_beside(hf_problem *p, double most, const double *from, const double *lower, const double *upper)
+/* The least of objective 0 where the others are at most this, from that design. */
+static double least_beside(hf_problem *p, const double most[HF_OBJECTIVES_MAX], const double *from, const double *lower,
+                           const double *upper)
 {
-    double limit[2] = {INFINITY, most}, design[200];
-    const hf_watch_trade trade = {0, limit};
+    double design[MAX_GENE_OF_CASE];
+    const hf_watch_trade trade = {0, most};
     hf_polish_result r;
     memcpy(design, from, (size_t)p->model.n_gene * sizeof *design);
     ck_assert_int_eq(hf_polish_trade(&p->evaluator, lower, upper, 200, &trade, design, &p->workspace, &r), HF_OK);
@@ -247,9 +340,9 @@ START_TEST(points_are_even_and_slopes_those_of_differences)
 {
     hf_problem p;
     hf_front front;
-    double lower[200], upper[200], longest = 0, shortest = INFINITY;
+    double lower[MAX_GENE_OF_CASE], upper[MAX_GENE_OF_CASE], longest = 0, shortest = INFINITY;
     open_chen(&p, traded[_i]);
-    ck_assert_int_le(p.model.n_gene, 200);
+    ck_assert_int_le(p.model.n_gene, MAX_GENE_OF_CASE);
     for (int k = 0; k < p.model.n_gene; k++) {
         lower[k] = fmax(p.base_N[k] - 1, 0.1);
         upper[k] = p.base_N[k] + 1;
@@ -269,9 +362,9 @@ START_TEST(points_are_even_and_slopes_those_of_differences)
     for (int i = 1; i < N_POINT - 1; i += 3) {
         double step = 1e-5 * (a->objective[1] - z->objective[1]), at = a[i].objective[1];
         const double *design = front.design + (size_t)i * (size_t)front.n_gene;
-        double more = least_beside(&p, at + step, design, lower, upper);
-        double less =
-            least_beside(&p, at - step, front.design + (size_t)(N_POINT - 1) * (size_t)front.n_gene, lower, upper);
+        const double *last = front.design + (size_t)(N_POINT - 1) * (size_t)front.n_gene;
+        double more = least_beside(&p, (const double[]){INFINITY, at + step, INFINITY}, design, lower, upper);
+        double less = least_beside(&p, (const double[]){INFINITY, at - step, INFINITY}, last, lower, upper);
         double slope = (less - more) / (2 * step);
         ck_assert_msg(fabs(a[i].multiplier[1] - slope) < 1e-3 * slope, "point %d: %g, by differences %g", i,
                       a[i].multiplier[1], slope);
@@ -281,18 +374,75 @@ START_TEST(points_are_even_and_slopes_those_of_differences)
 }
 END_TEST
 
+static const char *const three[] = {
+    "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}, {goal: evenness, set: boundary}]",
+    "optimize.objectives=[{goal: psi}, {goal: evenness, set: boundary}, {goal: pull}]",
+};
+enum { N_THREE = sizeof three / sizeof *three };
+
+/* The least of an objective on the front, and a part of its range. */
+static double least_of(const hf_front *f, int k, double part)
+{
+    double least = INFINITY, largest = -INFINITY;
+    for (int i = 0; i < f->n_point; i++) {
+        least = fmin(least, f->point[i].objective[k]);
+        largest = fmax(largest, f->point[i].objective[k]);
+    }
+    return least + part * (largest - least);
+}
+
+/* No point is better than another in all, and where both limits hold the slopes are those of differences. */
+START_TEST(slopes_of_three_are_those_of_differences)
+{
+    hf_problem p;
+    hf_front front;
+    double lower[MAX_GENE_OF_CASE], upper[MAX_GENE_OF_CASE];
+    int n_held = 0;
+    open_chen(&p, three[_i]);
+    for (int k = 0; k < p.model.n_gene; k++) {
+        lower[k] = fmax(p.base_N[k] - 1, 0.1);
+        upper[k] = p.base_N[k] + 1;
+    }
+    follow_problem(&p, 16, 2, &front);
+    ck_assert_int_ge(front.n_point, 15);
+    for (int i = 0; i < front.n_point; i++) {
+        const hf_front_point *a = &front.point[i];
+        ck_assert_int_eq(a->mark, HF_FRONT_ON);
+        bool is_inside = a->multiplier[1] > 0 && a->multiplier[2] > 0;
+        for (int k = 1; k < 3; k++)
+            is_inside &= a->objective[k] > least_of(&front, k, 0.05);
+        if (!is_inside || n_held == 3) continue;
+        n_held++;
+        for (int k = 1; k < 3; k++) {
+            double step = 1e-5 * a->objective[k], least[2];
+            for (int side = 0; side < 2; side++) {
+                double most[] = {INFINITY, a->objective[1], a->objective[2]};
+                most[k] += side ? step : -step;
+                least[side] = least_beside(&p, most, front.design + (size_t)i * (size_t)front.n_gene, lower, upper);
+            }
+            double slope = (least[0] - least[1]) / (2 * step);
+            ck_assert_msg(fabs(a->multiplier[k] - slope) < 1e-2 * slope, "point %d: %g, by differences %g", i,
+                          a->multiplier[k], slope);
+        }
+    }
+    ck_assert_int_ge(n_held, 2);
+    hf_front_free(&front);
+    hf_problem_free(&p);
+}
+END_TEST
+
 START_TEST(threads_do_not_change_a_bit)
 {
     hf_problem p;
     hf_front one, two;
-    open_chen(&p, traded[0]);
-    follow_problem(&p, 9, 1, &one);
-    follow_problem(&p, 9, 2, &two);
+    open_chen(&p, _i ? three[0] : traded[0]);
+    follow_problem(&p, _i ? 12 : 9, 1, &one);
+    follow_problem(&p, _i ? 12 : 9, 2, &two);
     ck_assert_int_eq(one.n_point, two.n_point);
     ck_assert_mem_eq(one.design, two.design, (size_t)one.n_point * (size_t)one.n_gene * sizeof(double));
     for (int i = 0; i < one.n_point; i++) {
         ck_assert_mem_eq(one.point[i].objective, two.point[i].objective, sizeof one.point[i].objective);
-        ck_assert_mem_eq(&one.point[i].multiplier[1], &two.point[i].multiplier[1], sizeof(double));
+        ck_assert_mem_eq(&one.point[i].multiplier[1], &two.point[i].multiplier[1], (size_t)(_i + 1) * sizeof(double));
         ck_assert_int_eq(one.point[i].iterations, two.point[i].iterations);
     }
     hf_front_free(&one);
@@ -331,8 +481,11 @@ Suite *suite_unit_trade(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, a_node_on_a_line_has_a_front_in_closed_form, 0, 2);
     tcase_add_loop_test(tests, points_are_even_and_slopes_those_of_differences, 0, N_TRADED);
-    tcase_add_test(tests, threads_do_not_change_a_bit);
-    tcase_add_test(tests, without_memory_there_is_no_front);
+    tcase_add_test(tests, a_node_in_a_plane_has_a_front_of_three_in_closed_form);
+    tcase_add_test(tests, a_front_of_three_has_no_holes);
+    tcase_add_loop_test(tests, slopes_of_three_are_those_of_differences, 0, N_THREE);
+    tcase_add_loop_test(tests, threads_do_not_change_a_bit, 0, 2);
+    tcase_add_loop_test(tests, without_memory_there_is_no_front, 0, 2);
     tcase_add_test(tests, a_stop_ends_the_search);
     tcase_add_test(tests, a_ratio_has_a_front_in_closed_form);
     return suite;
