@@ -8,6 +8,7 @@
 //   facets: how many, all triangles; off: families of cables whose switches are tried
 //   other: how the case of a second result differs, with which it is compared; unlike: in its figures, too
 //   bytes_max: how large it may be, if more than usual; fluid: it is only looked at how fast it is
+//   look: its looks are checked, and its sizes are in sizes.json
 //   study: how many points; leads: the axis that matters most
 
 const FORM = ["net", "cables", "map", "tensions", "summary", "form-finding", "provenance"];
@@ -36,7 +37,7 @@ k4,d',"<i>e</i>",boundary,tension,0.001
 `;
 
 export const pages = [
-  { name: "chen2022", source: "configs/chen2022.yaml", sections: GA, warnings: 0 },
+  { name: "chen2022", source: "configs/chen2022.yaml", sections: GA, warnings: 0, look: true },
   { name: "straight-edges", source: "configs/straight-edges.yaml", sections: GA, warnings: 2 },
   { name: "reflector", source: "configs/reflector.yaml", sections: FORM, warnings: 0 },
   {
@@ -77,6 +78,7 @@ export const pages = [
   },
   {
     name: "front",
+    look: true,
     text: cylinder(
       [4, 5],
       "optimize: {method: lm, front_points: 5, objectives: [{goal: psi}, {goal: ratio, set: boundary}]}\n",
@@ -85,6 +87,7 @@ export const pages = [
   },
   {
     name: "tolerance",
+    look: true,
     text:
       "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n  parabolic_cylinder: {aperture_m: 10, length_m: 12, " +
       "focal_length_m: 7.2, modules: [4, 5], cells_per_module: [2, 2], boundary: outer_edge, scallop: 0.1}\n" +
@@ -95,6 +98,7 @@ export const pages = [
   },
   {
     name: "compare",
+    look: true,
     source: "configs/chen2022.yaml",
     other: ["--set", "optimize.method=lm", "--set", "form.pretension_N=10.5"],
     sections: ["compare", ...GA],
@@ -118,6 +122,7 @@ export const pages = [
   },
   {
     name: "rounding",
+    look: true,
     source: "configs/paraboloid-even.yaml",
     sections: [...FORM.slice(0, -1), "coupling", "provenance"],
     rounding: true,
@@ -138,6 +143,7 @@ export const pages = [
   },
   {
     name: "sweep",
+    look: true,
     study: 64,
     leads: "scene.parabolic_cylinder.scallop",
     text:

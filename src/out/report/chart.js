@@ -239,7 +239,7 @@ function chart(options) {
               {},
               svg(
                 "svg",
-                { viewBox: "0 0 26 10", "aria-hidden": true },
+                { viewBox: "0 0 26 10", "aria-hidden": "true" },
                 svg("path", {
                   d: s.dots ? "M13 5h0" : "M0 5H26",
                   ...mark(s),

@@ -1,8 +1,12 @@
 // ---- families: sets of cables ----
 
 const familyName = (name) => name.replace(/_/g, " ");
-// Colours around the circle of hues, as light as each other.
-const familyColour = (k) => rgb(oklch(isDark() ? 0.75 : 0.55, 0.14, 250 + (360 * k) / net.sets.length));
+// The colours of series, and of more families than these some around the circle of hues, every other one lighter.
+function familyColour(k) {
+  if (net.sets.length <= SERIES.length) return css(SERIES[k]);
+  const light = (isDark() ? 0.7 : 0.45) + 0.15 * (k % 2);
+  return rgb(oklch(light, 0.14, 250 + (360 * k) / net.sets.length));
+}
 
 // Draws the net in space. Lines of one colour are drawn in one call; nothing is allocated while it is turned.
 

@@ -7,6 +7,9 @@ const printing = matchMedia("print");
 const isDark = () => darkScheme.matches && !printing.matches;
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
+// Far from each other for any kind of colour vision (tests/browser/look.mjs), in this order.
+const SERIES = ["--one", "--two", "--three", "--four", "--five", "--six"];
+
 // OKLCH -> sRGB bytes (Ottosson 2020): equal steps of lightness look equal.
 function oklch(lightness, chroma, hue) {
   const a = chroma * Math.cos((hue * Math.PI) / 180),

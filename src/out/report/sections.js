@@ -232,13 +232,17 @@ function writeTensions() {
 
 // ---- tables ----
 
+// Of more than three columns a phone shows one below the other.
 function table(headings, rows, caption) {
+  const isWide = headings.length > 3;
+  if (isWide)
+    for (const row of rows) headings.forEach(([text], k) => row.children[k].setAttribute("data-label", text));
   return el(
     "div",
     { class: "scroll", tabindex: 0, role: "region", "aria-label": caption },
     el(
       "table",
-      {},
+      { "aria-label": caption, class: isWide ? "stacked" : undefined },
       el(
         "thead",
         {},

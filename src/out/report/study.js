@@ -117,8 +117,7 @@ function shareOf(study, figure, axis) {
 
 // ---- curves and maps ----
 
-const CURVES_MAX = 4, // more curves than these colours are drawn as a map of two axes, or as marks
-  CURVE_COLOURS = ["--one", "--two", "--three", "--four"];
+const CURVES_MAX = 4; // more curves than these colours are drawn as a map of two axes, or as marks
 const valuesOf = (study, axis) =>
   [...new Set(Array.from({ length: study.n }, (_, i) => axis.value(i)))].sort((a, b) => (a < b ? -1 : a > b ? 1 : 0));
 
@@ -151,7 +150,7 @@ function curveChart(study, figure, axis, groups, stage) {
       name: group.name || (figure.stages.length ? stageName[of] : figure.title),
       stored: figure.key,
       values: x.map((v) => (group.at.has(v) ? figure.of(group.at.get(v), of) : null)),
-      colour: isOne && figure.stages.length ? STAGE_STYLE[of][0] : CURVE_COLOURS[k],
+      colour: isOne && figure.stages.length ? STAGE_STYLE[of][0] : SERIES[k],
       dash: isOne && figure.stages.length ? STAGE_STYLE[of][1] : null,
       dots: x.length < 2,
     })),

@@ -100,7 +100,7 @@ function sortableTable({ caption, columns, n, by, words, search: hint = "name or
       el(
         "div",
         { class: "scroll", tabindex: 0, role: "region", "aria-label": caption },
-        el("table", { class: "stacked" }, el("thead", {}, el("tr", {}, heads)), body),
+        el("table", { class: "stacked", "aria-label": caption }, el("thead", {}, el("tr", {}, heads)), body),
       ),
     ),
     first(i) {
