@@ -6,51 +6,26 @@
  * out: order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm. One row per move, in the order in
  *      which they are made; a move above 0 lets cable out.
  *
- * Contents: the prior - the work - figures of what was measured - the table - for people - for programs - together */
+ * Contents: the prior - the work - figures of what was measured - together */
 #include "app/cmd.h"
 
+#include "app/cmd_adjust_print.h"
 #include "app/built_design.h"
 #include "base/arena.h"
-#include "base/csv.h"
 #include "base/file_out.h"
-#include "base/json.h"
-#include "built/adjust.h"
-#include "built/measured.h"
-#include "built/prior.h"
 #include "net/cable_pick.h"
 #include "out/export.h"
-#include "out/print.h"
-#include "run/problem_parts.h"
 #include "run/tolerance_stage.h"
 #include "solve/limits.h"
-#include <hifdm/store.h>
 
 #include <math.h>
 #include <string.h>
 
-#define STANDS_OUT 3.0   /* sigmas of an error that is named */
-#define NAMED_MAX 10     /* of these, for people */
-#define MISFIT 5.0       /* standard deviations of the sum of squares that is no accident any more */
+#define FOREIGN 100.0    /* chi^2 by coordinate that no one's sigmas explain: they were ten times as large */
 #define ROUNDING 0.005   /* of figures in messages */
 #define SIGMA_LEAST 3e-5 /* of that of errors: weights beyond 1e9 times theirs are beyond double precision */
 
-typedef struct {
-    hf_problem problem;
-    hf_built built;
-    hf_measured measured;
-    const char *measured_path;
-    int threads;
-    hf_estimate estimate;
-    hf_goals goals;
-    hf_adjustment adjustment;
-    hf_adjust_task task;
-    int *cable; /* [n_cable] of the task */
-    hf_prior prior;
-    double *least_N;    /* [n_cable] tensions that are asked for */
-    double *expected_m; /* [n_node] */
-    double measured_m;  /* psi of the inner nodes that were measured; NaN for other figures */
-    void *block;
-} job;
+typedef hf_adjust_job job;
 
 static void job_free(job *j)
 {
@@ -195,21 +170,47 @@ static hf_status explain_failure(hf_status status, const char *what, const char 
     return hf_error(messages, status, "%s: %s: %s", path, what, hf_status_text(status));
 }
 
-/* Chi^2 by coordinate: its mean is 1 when the sigmas of errors and places are right, whatever was measured. */
-static double chi_square(const job *j)
+/* The measured node that is farthest from the estimated shape in parts of its sigma, its row; and how far, m. */
+static int worst_row(const job *j, double *distance_m)
 {
-    return 2 * j->estimate.misfit / (3.0 * j->measured.n_node);
+    const hf_model *m = &j->built.model;
+    double most = -1;
+    int worst = 0;
+    for (int row = 0; row < m->n_node; row++) {
+        double square = 0;
+        for (int c = 0; c < 3; c++) {
+            double d = j->measured.place_m[3 * row + c] - j->estimate.work.position_m[c * m->n_node + row];
+            square += d * d;
+        }
+        if (!j->measured.line[row] || square * j->measured.weight_per_m2[3 * row] <= most) continue;
+        most = square * j->measured.weight_per_m2[3 * row];
+        *distance_m = sqrt(square);
+        worst = row;
+    }
+    return worst;
 }
 
-static void warn_of_misfit(const job *j, hf_messages *messages)
+/* What the net cannot explain is told; moves for a measurement that is not of this net would do harm. */
+static hf_status check_misfit(const job *j, hf_messages *messages)
 {
-    double chi = chi_square(j);
-    if (chi <= 1 + MISFIT * sqrt(2 / (3.0 * j->measured.n_node))) return;
+    double distance_m = 0, chi = hf_adjust_chi_square(j);
+    if (hf_adjust_fits(j)) return HF_OK;
+    int row = worst_row(j, &distance_m);
+    const char *id = j->built.scene.node_id[j->built.model.node_of_row[row]];
+    if (chi > FOREIGN)
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s: this measurement does not belong to this net: chi^2 is %.3g per coordinate where 1 is "
+            "expected, worst at node '%s' (line %d), %.3g mm from the nearest shape that the net can have. "
+            "Look for mixed-up ids, supports that are off (tolerance.sigma_support_m), another design or "
+            "state; if sigmas are wrong instead, of sigma_m or section tolerance, they are so by %.2g times",
+            j->measured_path, chi, id, j->measured.line[row], distance_m * 1e3, sqrt(chi));
     hf_warning(messages,
                "%s: these places do not fit the net and its tolerances: chi^2 is %.3g per coordinate where 1 is "
-               "expected; sigma_m or a sigma of section tolerance is too small, supports are off "
-               "(tolerance.sigma_support_m), or it is another design",
-               j->measured_path, chi);
+               "expected, worst at node '%s' (line %d), %.3g mm off; sigma_m or a sigma of section tolerance is too "
+               "small, supports are off (tolerance.sigma_support_m), or it is another design",
+               j->measured_path, chi, id, j->measured.line[row], distance_m * 1e3);
+    return HF_OK;
 }
 
 static hf_status estimate_errors(job *j, const hf_options *o, hf_messages *messages)
@@ -223,7 +224,7 @@ static hf_status estimate_errors(job *j, const hf_options *o, hf_messages *messa
     HF_TRY(hf_estimate_expect(p, j->expected_m));
     HF_TRY(hf_measured_check(o->measured, &j->built, j->expected_m, &j->measured, messages));
     HF_TRY(explain_failure(hf_estimate_find(p), "the estimated net", o->file, messages));
-    warn_of_misfit(j, messages);
+    HF_TRY(check_misfit(j, messages));
     if (!p->is_settled)
         hf_warning(messages, "%s: the estimate did not settle in %d steps: the figures below are of the last one",
                    o->measured, p->n_step);
@@ -247,246 +248,6 @@ static double measured_psi_m(const job *j)
         n++;
     }
     return n > 0 && j->problem.settings.adjust.figure == HF_GOAL_PSI ? sqrt(square / n) : (double)NAN;
-}
-
-static double sigmas_of(const job *j, int e)
-{
-    return j->prior.sigma_m[e] > 0 ? j->estimate.cut_m[e] / j->prior.sigma_m[e] : 0;
-}
-
-/* The cable with the largest error below `limit` sigmas, of those that stand out; -1: none. Of two alike the first. */
-static int next_outlier(const job *j, int last)
-{
-    int next = -1;
-    double limit = last < 0 ? (double)INFINITY : fabs(sigmas_of(j, last));
-    for (int e = 0; e < j->built.model.n_cable; e++) {
-        double size = fabs(sigmas_of(j, e));
-        if (size <= STANDS_OUT || size > limit || (size == limit && e <= last)) continue;
-        if (next < 0 || size > fabs(sigmas_of(j, next))) next = e;
-    }
-    return next;
-}
-
-/* ---- the table ---- */
-
-static void write_moves(const void *context, FILE *f)
-{
-    const job *j = context;
-    const hf_adjustment *a = &j->adjustment;
-    fputs("order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm\n", f);
-    for (int k = 0; k < a->n_move; k++) {
-        const hf_adjust_move *move = &a->move[k];
-        fprintf(f, "%d,", k + 1);
-        hf_csv_write_id(j->built.scene.cable_id[move->cable], f);
-        fprintf(f, ",%s,%.10g,%.6g,%.6g,%.6g\n", j->task.settings->set, move->move_m * 1e3, move->before_N,
-                move->after_N, move->figure_m * 1e3);
-    }
-}
-
-/* ---- for people ---- */
-
-static const char *const end_word[] = {"target", "moves", "doubt", "none"};
-
-static void print_end(const job *j, FILE *f)
-{
-    const hf_adjust_settings *s = j->task.settings;
-    switch (j->adjustment.end) {
-    case HF_MOVES_TARGET:
-        hf_print_line(f, "no further move: target_m is met");
-        break;
-    case HF_MOVES_ALL:
-        hf_print_line(f, "no further move: all %d are made (adjust.moves)", s->moves);
-        break;
-    case HF_MOVES_DOUBT:
-        hf_print_line(f, "no further move: the next one would gain less than these measurements can tell");
-        break;
-    case HF_MOVES_NONE:
-        hf_print_line(f, "no further move: none gains anything");
-        break;
-    }
-    if (j->adjustment.is_held_taut)
-        hf_print_line(f, "moves leave each cable its least tension, and no further one slack");
-}
-
-static void print_outliers(const job *j, FILE *f)
-{
-    int n = 0;
-    for (int e = next_outlier(j, -1); e >= 0; e = next_outlier(j, e)) {
-        if (n++ >= NAMED_MAX) continue;
-        double error = j->estimate.cut_m[e];
-        hf_print_line(f, "cable '%s' seems %.3g mm too %s, %.1f sigma", j->built.scene.cable_id[e], fabs(error) * 1e3,
-                      error > 0 ? "long" : "short", fabs(sigmas_of(j, e)));
-    }
-    if (n > NAMED_MAX) hf_print_line(f, "and %d more cables beyond %g sigma", n - NAMED_MAX, STANDS_OUT);
-}
-
-static const char *number_word(const hf_prior_number *n)
-{
-    return n->kind == HF_ERROR_TEMPERATURE ? "temperature_K" : n->kind == HF_ERROR_EA_BATCH ? "EA_ratio" : "cut_ratio";
-}
-
-/* What cables of a spool, or all of them, share. */
-static void print_numbers(const job *j, FILE *f)
-{
-    for (int k = 0; k < j->prior.n_shared && k < NAMED_MAX; k++) {
-        const hf_prior_number *n = &j->prior.number[k];
-        double z = j->estimate.shared[k], error = z * n->sigma;
-        if (n->kind == HF_ERROR_TEMPERATURE)
-            hf_print_line(f, "cables seem %.3g K %s than when they were cut, %.1f sigma", fabs(error),
-                          error < 0 ? "colder" : "warmer", fabs(z));
-        else
-            hf_print_line(f, "spool '%s' seems off by %+.3g of its %s, %.1f sigma", n->set, error,
-                          n->kind == HF_ERROR_EA_BATCH ? "EA" : "lengths", fabs(z));
-    }
-    if (j->prior.n_shared > NAMED_MAX)
-        hf_print_line(f, "and %d more numbers that cables share (--json has them)", j->prior.n_shared - NAMED_MAX);
-}
-
-static void print_moves(const job *j, FILE *f)
-{
-    const hf_adjustment *a = &j->adjustment;
-    if (a->n_move)
-        hf_print_line(f, "%5s  %-20s %9s  %10s %10s  %10s", "order", "cable", "move mm", "N before", "N after",
-                      "RMS mm");
-    for (int k = 0; k < a->n_move; k++) {
-        const hf_adjust_move *move = &a->move[k];
-        char slack[32] = "";
-        if (move->n_slack) snprintf(slack, sizeof slack, "  %d slack", move->n_slack);
-        hf_print_line(f, "%5d  %-20s %+9.6g  %10.4g %10.4g  %10.4f%s", k + 1, j->built.scene.cable_id[move->cable],
-                      move->move_m * 1e3, move->before_N, move->after_N, move->figure_m * 1e3, slack);
-    }
-}
-
-static void print_summary(const job *j, const char *path, FILE *f)
-{
-    const hf_adjustment *a = &j->adjustment;
-    const hf_tolerance_settings *t = &j->problem.settings.tolerance;
-    const char *figure = hf_figure_word[j->task.settings->figure];
-    hf_print_line(f, "%d of %d nodes measured, chi^2 %.3g per coordinate; supports %s", j->measured.n_node,
-                  j->built.model.n_node, chi_square(j),
-                  t->sigma_support_m > 0 ? "are estimated, too"
-                                         : "are taken to be where the case has them (no tolerance.sigma_support_m)");
-    if (isfinite(j->measured_m)) hf_print_line(f, "%s measured    %.4f mm", figure, j->measured_m * 1e3);
-    hf_print_line(f, "%s estimated   %.4f mm; with what is left open %.4f +- %.4f mm; as designed %.4f mm", figure,
-                  a->estimated_m * 1e3, a->doubt_m[0] * 1e3, a->spread_m[0] * 1e3, a->nominal_m * 1e3);
-    print_numbers(j, f);
-    print_outliers(j, f);
-    print_moves(j, f);
-    hf_print_line(f,
-                  "%s after %d move%s %.4f mm; with what is left open %.4f +- %.4f mm; any moves of %d cables: %.4f mm",
-                  figure, a->n_move, a->n_move == 1 ? "" : "s", a->adjusted_m * 1e3, a->doubt_m[1] * 1e3,
-                  a->spread_m[1] * 1e3, j->task.n_cable, a->best_m * 1e3);
-    print_end(j, f);
-    if (path) hf_print_line(f, "moves in %s; above 0: let the cable out", path);
-}
-
-/* ---- for programs ---- */
-
-static void print_json_moves(const job *from, hf_json *j)
-{
-    const hf_adjustment *a = &from->adjustment;
-    hf_json_line(j, " ");
-    hf_json_open(j, "moves", '[');
-    for (int k = 0; k < a->n_move; k++) {
-        const hf_adjust_move *move = &a->move[k];
-        hf_json_line(j, "  ");
-        hf_json_open(j, NULL, '{');
-        hf_json_text(j, "cable", from->built.scene.cable_id[move->cable]);
-        hf_json_integer(j, "steps", move->steps);
-        hf_json_number(j, "move_m", move->move_m);
-        hf_json_number(j, "tension_before_N", move->before_N);
-        hf_json_number(j, "tension_after_N", move->after_N);
-        hf_json_number(j, "predicted_m", move->figure_m);
-        hf_json_integer(j, "slack", move->n_slack);
-        hf_json_close(j, '}');
-    }
-    hf_json_close(j, ']');
-    hf_json_line(j, " ");
-    hf_json_open(j, "stand_out", '[');
-    for (int e = next_outlier(from, -1); e >= 0; e = next_outlier(from, e)) {
-        hf_json_line(j, "  ");
-        hf_json_open(j, NULL, '{');
-        hf_json_text(j, "cable", from->built.scene.cable_id[e]);
-        hf_json_number(j, "error_m", from->estimate.cut_m[e]);
-        hf_json_number(j, "sigmas", fabs(sigmas_of(from, e)));
-        hf_json_close(j, '}');
-    }
-    hf_json_close(j, ']');
-}
-
-static void print_json_figures(const job *from, hf_json *j)
-{
-    const hf_adjustment *a = &from->adjustment;
-    hf_json_line(j, " ");
-    hf_json_text(j, "figure", hf_figure_word[from->task.settings->figure]);
-    hf_json_text(j, "aim", hf_aim_word[from->task.settings->aim]);
-    hf_json_integer(j, "measured_nodes", from->measured.n_node);
-    hf_json_number(j, "chi_square", chi_square(from));
-    hf_json_integer(j, "cables", from->task.n_cable);
-    hf_json_number(j, "nominal_m", a->nominal_m);
-    hf_json_number(j, "measured_m", from->measured_m);
-    hf_json_number(j, "estimated_m", a->estimated_m);
-    hf_json_number(j, "adjusted_m", a->adjusted_m);
-    hf_json_number(j, "best_m", a->best_m);
-    hf_json_line(j, " ");
-    hf_json_number(j, "estimated_expected_m", a->doubt_m[0]);
-    hf_json_number(j, "estimated_sigma_m", a->spread_m[0]);
-    hf_json_number(j, "adjusted_expected_m", a->doubt_m[1]);
-    hf_json_number(j, "adjusted_sigma_m", a->spread_m[1]);
-    hf_json_line(j, " ");
-    hf_json_text(j, "end", end_word[a->end]);
-    hf_json_bool(j, "held_taut", a->is_held_taut);
-    hf_json_bool(j, "supports_estimated", from->problem.settings.tolerance.sigma_support_m > 0);
-    hf_json_integer(j, "estimate_steps", from->estimate.n_step);
-    hf_json_integer(j, "rounds", a->n_round);
-    hf_json_bool(j, "settled", from->estimate.is_settled && a->is_settled);
-}
-
-static void print_json_numbers(const job *from, hf_json *j)
-{
-    hf_json_line(j, " ");
-    hf_json_open(j, "shared", '[');
-    for (int k = 0; k < from->prior.n_shared; k++) {
-        const hf_prior_number *n = &from->prior.number[k];
-        hf_json_line(j, "  ");
-        hf_json_open(j, NULL, '{');
-        hf_json_text(j, "kind", number_word(n));
-        if (n->set) hf_json_text(j, "set", n->set);
-        hf_json_number(j, "error", from->estimate.shared[k] * n->sigma);
-        hf_json_number(j, "sigmas", fabs(from->estimate.shared[k]));
-        hf_json_close(j, '}');
-    }
-    hf_json_close(j, ']');
-}
-
-static void print_json_errors(const job *from, hf_json *j)
-{
-    hf_json_line(j, " ");
-    hf_json_open(j, "errors_m", '{');
-    for (int e = 0; e < from->built.model.n_cable; e++) {
-        if (e % 4 == 0) hf_json_line(j, "  ");
-        hf_json_number(j, from->built.scene.cable_id[e], from->estimate.cut_m[e]);
-    }
-    hf_json_close(j, '}');
-}
-
-static void print_json(const job *from, const hf_options *o, hf_status status, const char *messages, FILE *f)
-{
-    hf_json j = {.file = f};
-    hf_json_open(&j, NULL, '{');
-    hf_json_text(&j, "status", hf_status_word(status));
-    if (status == HF_OK) {
-        print_json_figures(from, &j);
-        print_json_moves(from, &j);
-        print_json_numbers(from, &j);
-        print_json_errors(from, &j);
-    }
-    hf_json_line(&j, " ");
-    hf_json_text(&j, "version", hf_store_version());
-    hf_json_text(&j, "case", from->problem.settings.path);
-    if (o->result) hf_json_text(&j, "result", o->result);
-    if (status == HF_OK && o->output) hf_json_text(&j, "file", o->output);
-    hf_json_end(&j, status != HF_OK, messages);
 }
 
 /* ---- together ---- */
@@ -538,7 +299,7 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
     j->measured_m = measured_psi_m(j);
     HF_TRY(
         explain_failure(hf_adjust_find(&j->estimate, &j->task, &j->adjustment), "the adjusted net", o->file, messages));
-    return o->output ? hf_file_out_write(o->output, write_moves, j, messages) : HF_OK;
+    return o->output ? hf_file_out_write(o->output, hf_adjust_print_table, j, messages) : HF_OK;
 }
 
 /* HF_OK also when no move is worth it. HF_BAD_CASE for a faulty case or table, HF_EXISTS, HF_IO, HF_NO_MEMORY, or the
@@ -549,9 +310,9 @@ static hf_status command_adjust(const hf_options *o, FILE *file, hf_messages *me
     job j = {0};
     hf_status status = execute(&j, o, messages);
     if (o->json)
-        print_json(&j, o, status, messages->text, file);
+        hf_adjust_print_json(&j, o, status, messages->text, file);
     else if (status == HF_OK && !o->quiet)
-        print_summary(&j, o->output, file);
+        hf_adjust_print_summary(&j, o->output, file);
     job_free(&j);
     return status;
 }

@@ -31,11 +31,11 @@ static bool is_first(int i, bool of_word)
 /* All words, kind by kind. */
 static void print_words(FILE *f)
 {
-    for (int i = 0; i < hf_n_word; i++) {
+    for (int i = 0; i < hf_word_count(); i++) {
         const hf_word kind = hf_word_at(i);
         if (!is_first(i, false) || !strcmp(kind.kind, "what to do")) continue;
         int column = fprintf(f, "%s:", kind.kind);
-        for (int k = i; k < hf_n_word; k++) {
+        for (int k = i; k < hf_word_count(); k++) {
             const hf_word w = hf_word_at(k);
             if (strcmp(w.kind, kind.kind) || !is_first(k, true)) continue;
             if (k > i) column += fprintf(f, ",");
@@ -51,7 +51,7 @@ static int print_entries(const char *word, FILE *f)
 {
     int n = 0;
     for (int is_loose = 0; is_loose < 2 && n == 0; is_loose++) {
-        for (int i = 0; i < hf_n_word; i++) {
+        for (int i = 0; i < hf_word_count(); i++) {
             if (!(is_loose ? hf_word_is_like(i, word) : hf_word_is(i, word))) continue;
             const hf_word entry = hf_word_at(i);
             print_entry(&entry, entry.word, f);
@@ -71,7 +71,7 @@ static bool print_exit_status(const char *word, FILE *f)
         if (strcmp(e->code, code) != 0) continue;
         hf_print_line(f, "%s (exit status)", code);
         hf_help_wrap(e->meaning, 4, 0, f);
-        for (int i = 0; i < hf_n_word; i++) {
+        for (int i = 0; i < hf_word_count(); i++) {
             const hf_word w = hf_word_at(i);
             const char *of = strstr(w.kind, begin);
             if (of && !strcmp(of + strlen(begin), code)) print_entry(&w, w.word, f);
@@ -92,7 +92,7 @@ static hf_status command_explain(const hf_options *o, FILE *file, hf_messages *m
     }
     if (!strncmp(word, no_proof, strlen(no_proof))) word += strlen(no_proof);
     if (print_exit_status(word, file) || print_entries(word, file)) return HF_OK;
-    for (int i = 0; i < hf_n_word && n_name < (int)(sizeof names / sizeof *names); i++)
+    for (int i = 0; i < hf_word_count() && n_name < (int)(sizeof names / sizeof *names); i++)
         names[n_name++] = hf_word_at(i).word;
     const char *near = hf_text_nearest(o->file, names, n_name);
     bool is_likely = near && (strlen(word) > SHORT || hf_word_letter(*near) == hf_word_letter(*word));

@@ -123,7 +123,7 @@ static void bash_values(FILE *f)
 static void bash_explained(FILE *f)
 {
     fputs("words='", f);
-    for (int i = 0; i < hf_n_word; i++) {
+    for (int i = 0; i < hf_word_count(); i++) {
         const char *word = hf_word_at(i).word;
         int first = 0;
         while (strcmp(hf_word_at(first).word, word) != 0)

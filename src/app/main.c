@@ -83,7 +83,7 @@ static void say_in_colours(const char *lines)
 static void say_where_to_read_on(const char *lines, hf_status status)
 {
     int n = 0;
-    for (int i = 0; i < hf_n_word; i++) {
+    for (int i = 0; i < hf_word_count(); i++) {
         const hf_word w = hf_word_at(i);
         bool is_status = status != HF_OK && (hf_status_exit_code(status) == 3 || hf_status_exit_code(status) == 4) &&
                          !strcmp(w.kind, "what to do") && !strcmp(w.word, hf_status_word(status));

@@ -481,10 +481,6 @@ static const hf_word told[] = {
      "no member of the truss expands"},
     {"unused_column", "warning", "",
      "A column of a table that hifdm does not know, perhaps a misspelt one; it is left out.", "is not used"},
-    {"built_before_optimize", "warning", "",
-     "`hifdm adjust` takes the net as form-finding has it: put the tensions of the best design into the tables if that "
-     "is what was built.",
-     "the net is built as form-finding has it"},
     {"places_do_not_fit", "warning", "",
      "The measured places are farther from what the net can be than the sigmas allow: units, the frame, mixed-up ids, "
      "supports that have moved, or another design.",
@@ -520,10 +516,14 @@ enum { N_TOLD = sizeof told / sizeof *told };
 
 /* ---- all together ---- */
 
-const int hf_n_word = N_LISTED + N_TOLD;
+int hf_word_count(void)
+{
+    return N_LISTED + N_TOLD + hf_n_words_adjust;
+}
 
 hf_word hf_word_at(int i)
 {
+    if (i >= N_LISTED + N_TOLD) return hf_words_adjust[i - N_LISTED - N_TOLD];
     return i < N_LISTED ? listed[i] : told[i - N_LISTED];
 }
 

@@ -1,6 +1,6 @@
 /* words - what every status, warning, figure and term means, and what to do about it: one table for `hifdm explain`.
  * Figures and statuses come from the lists that define them (result.h, summary.h, surface.h, tolerance.h, status.h);
- * what these lists do not say stands beside them in words.c. */
+ * what these lists do not say stands beside them in words.c, and words_adjust.c. */
 #ifndef HIFDM_WORDS_H
 #define HIFDM_WORDS_H
 
@@ -13,9 +13,13 @@ typedef struct {
     const char *says; /* of a warning: words of it that no other has; else NULL */
 } hf_word;
 
-/* Entry i of 0..hf_n_word-1; a word may have several, of different kinds. */
-extern const int hf_n_word;
+/* Entry i of 0..hf_word_count()-1; a word may have several, of different kinds. */
+int hf_word_count(void);
 hf_word hf_word_at(int i);
+
+/* Those of `hifdm adjust`, which are the last. */
+extern const hf_word hf_words_adjust[];
+extern const int hf_n_words_adjust;
 
 /* Does entry i belong to `word`, or to a whole warning that a user copied? */
 bool hf_word_is(int i, const char *word);

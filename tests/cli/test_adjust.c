@@ -104,6 +104,10 @@ START_TEST(moves_are_a_table)
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.target_m=1");
     OUT("psi after 0 moves");
     OUT("target_m is met");
+    static const char *const column[] = {"order",           "cable",           "set", "move_mm", "tension_before_N",
+                                         "tension_after_N", "predicted_rms_mm"};
+    for (int i = 0; i < 7; i++)
+        HIFDM(0, "explain", column[i]);
     free(table);
     free(again);
 }
@@ -290,14 +294,25 @@ START_TEST(bad_tables_are_named)
 }
 END_TEST
 
-/* A table that contradicts its own sigmas, or says nothing, is used with a warning. */
+/* A table that contradicts its own sigmas, or says nothing, is used with a warning; one that contradicts them by ten
+ * times is refused. */
 START_TEST(doubtful_tables_are_told)
 {
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS), *measured = measured_with("m.csv", HEADER, wave, "");
     HIFDM(0, "adjust", path, "--measured", measured);
     ck_assert_ptr_null(strstr(said.err, "do not fit"));
-    HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=1e-5");
+    ck_assert_ptr_null(strstr(said.out, "not to be trusted"));
+    HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=3e-5");
     ERR("these places do not fit the net and its tolerances: chi^2 is ");
+    ERR("worst at node '");
+    ck_assert_ptr_eq(strstr(said.out, "the measurement does not fit this net: the moves below are not to be trusted"),
+                     said.out);
+    HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=3e-5", "--json");
+    OUT("\"fits\": false");
+    HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=1e-5", "-o", temp("none.csv"));
+    ERR("this measurement does not belong to this net: chi^2 is ");
+    ERR("worst at node '");
+    ck_assert(!is_there(temp("none.csv")));
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=0.1");
     ERR("these places tell next to nothing");
 }

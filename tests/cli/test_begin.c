@@ -90,7 +90,8 @@ static const char look_up[] =
     "    if not any(len(t) >= 12 and not t.startswith(('the same', 'The same')) for t in texts):\n"
     "        print(what, word, 'is told as', texts)\n"
     "for word in words: demand(word, 'listed')\n"
-    "named = {'goals', 'sets', 'cases', 'objective', 'multiplier', 'base', 'kind_share'} # names of the user, or of "
+    "named = {'goals', 'sets', 'cases', 'objective', 'multiplier', 'base', 'kind_share', 'errors_m'} # names of the "
+    "user, or of "
     "keys\n"
     "keys = set()\n"
     "def walk(o):\n"
@@ -114,7 +115,7 @@ START_TEST(every_word_is_explained)
 {
     const char *chen = temp("chen.h5"), *front = temp("front.h5"), *built = temp("built.h5"),
                *states = temp("states.h5");
-    const char *json[4];
+    const char *json[5];
     HIFDM(0, "run", keep(source_path("configs/chen2022-truss.yaml")), "-o", chen, "--json", "--set",
           "optimize.generations=3", "--set", "optimize.goals=[{goal: psi}, {goal: tension, set: edge, target: 30}]",
           "--set", "optimize.limits=[{limit: tension, set: boundary, bounds: [8, 200]}]", "--set", "surface={}");
@@ -130,8 +131,20 @@ START_TEST(every_word_is_explained)
     json[2] = out_as("built.json");
     HIFDM(0, "run", keep(source_path("configs/paraboloid-cases.yaml")), "-o", states, "--json");
     json[3] = out_as("states.json");
-    SHELL(0, "OMP_WAIT_POLICY=passive \"$1\" \"$2\" \"$0\" \"$3\" \"$4\" \"$5\" \"$6\" \"$7\"", python_program(),
-          file_with("look_up.py", look_up), keep(source_path("")), json[0], json[1], json[2], json[3]);
+    const char *measured = temp("m.csv");
+    HIFDM(0, "export", built, "--csv", temp("shape"));
+    SHELL(0,
+          "awk -F, 'NR == 1 { print \"id,x_m,y_m,z_m\" } NR > 1 { print $1 \",\" $2 \",\" $3 \",\" "
+          "$4 + (NR % 5 - 2) * 1e-4 }' \"$1\"/nodes.csv >\"$2\"",
+          temp("shape"), measured);
+    HIFDM(0, "adjust",
+          file_with("workshop.yaml", SMALL_SCENE
+                    "  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\ntolerance: {sigma_cut_m: 1e-4, sigma_cut_ratio: 1e-4, "
+                    "batch: 0.5}\nadjust: {set: inner, range_m: 1e-3, step_m: 1e-4, sigma_m: 2e-4}\n"),
+          "--measured", measured, "--json", "-o", temp("moves.csv"), "--result", built);
+    json[4] = out_as("workshop.json");
+    SHELL(0, "OMP_WAIT_POLICY=passive \"$1\" \"$2\" \"$0\" \"$3\" \"$4\" \"$5\" \"$6\" \"$7\" \"$8\"", python_program(),
+          file_with("look_up.py", look_up), keep(source_path("")), json[0], json[1], json[2], json[3], json[4]);
     int n_word = 0, n_key = 0, end = 0;
     sscanf(said.out, "%d %d\n%n", &n_word, &n_key, &end);
     ck_assert_msg(n_word > 200 && n_key > 150 && !said.out[end], "%s", said.out);

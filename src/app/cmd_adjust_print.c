@@ -1,0 +1,271 @@
+/* Contents: chi^2 - what stands out - the table - for people - for programs */
+#include "app/cmd_adjust_print.h"
+
+#include "base/csv.h"
+#include "out/print.h"
+#include <hifdm/store.h>
+
+#include <math.h>
+#include <string.h>
+
+#define STANDS_OUT 3.0 /* sigmas of an error that is named */
+#define NAMED_MAX 10   /* of these, for people */
+#define MISFIT 5.0     /* standard deviations of the sum of squares that is no accident any more */
+
+/* ---- chi^2 ---- */
+
+double hf_adjust_chi_square(const hf_adjust_job *j)
+{
+    return 2 * j->estimate.misfit / (3.0 * j->measured.n_node);
+}
+
+bool hf_adjust_fits(const hf_adjust_job *j)
+{
+    return hf_adjust_chi_square(j) <= 1 + MISFIT * sqrt(2 / (3.0 * j->measured.n_node));
+}
+
+/* ---- what stands out ---- */
+
+static double sigmas_of(const hf_adjust_job *j, int e)
+{
+    return j->prior.sigma_m[e] > 0 ? j->estimate.cut_m[e] / j->prior.sigma_m[e] : 0;
+}
+
+/* The cable with the largest error below `limit` sigmas, of those that stand out; -1: none. Of two alike the first. */
+static int next_outlier(const hf_adjust_job *j, int last)
+{
+    int next = -1;
+    double limit = last < 0 ? (double)INFINITY : fabs(sigmas_of(j, last));
+    for (int e = 0; e < j->built.model.n_cable; e++) {
+        double size = fabs(sigmas_of(j, e));
+        if (size <= STANDS_OUT || size > limit || (size == limit && e <= last)) continue;
+        if (next < 0 || size > fabs(sigmas_of(j, next))) next = e;
+    }
+    return next;
+}
+
+/* ---- the table ---- */
+
+void hf_adjust_print_table(const void *context, FILE *f)
+{
+    const hf_adjust_job *j = context;
+    const hf_adjustment *a = &j->adjustment;
+    fputs("order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm\n", f);
+    for (int k = 0; k < a->n_move; k++) {
+        const hf_adjust_move *move = &a->move[k];
+        fprintf(f, "%d,", k + 1);
+        hf_csv_write_id(j->built.scene.cable_id[move->cable], f);
+        fprintf(f, ",%s,%.10g,%.6g,%.6g,%.6g\n", j->task.settings->set, move->move_m * 1e3, move->before_N,
+                move->after_N, move->figure_m * 1e3);
+    }
+}
+
+/* ---- for people ---- */
+
+static const char *const end_word[] = {"target", "moves", "doubt", "none"};
+
+static void print_end(const hf_adjust_job *j, FILE *f)
+{
+    const hf_adjust_settings *s = j->task.settings;
+    switch (j->adjustment.end) {
+    case HF_MOVES_TARGET:
+        hf_print_line(f, "no further move: target_m is met");
+        break;
+    case HF_MOVES_ALL:
+        hf_print_line(f, "no further move: all %d are made (adjust.moves)", s->moves);
+        break;
+    case HF_MOVES_DOUBT:
+        hf_print_line(f, "no further move: the next one would gain less than these measurements can tell");
+        break;
+    case HF_MOVES_NONE:
+        hf_print_line(f, "no further move: none gains anything");
+        break;
+    }
+    if (j->adjustment.is_held_taut)
+        hf_print_line(f, "moves leave each cable its least tension, and no further one slack");
+}
+
+static void print_outliers(const hf_adjust_job *j, FILE *f)
+{
+    int n = 0;
+    for (int e = next_outlier(j, -1); e >= 0; e = next_outlier(j, e)) {
+        if (n++ >= NAMED_MAX) continue;
+        double error = j->estimate.cut_m[e];
+        hf_print_line(f, "cable '%s' seems %.3g mm too %s, %.1f sigma", j->built.scene.cable_id[e], fabs(error) * 1e3,
+                      error > 0 ? "long" : "short", fabs(sigmas_of(j, e)));
+    }
+    if (n > NAMED_MAX) hf_print_line(f, "and %d more cables beyond %g sigma", n - NAMED_MAX, STANDS_OUT);
+}
+
+static const char *number_word(const hf_prior_number *n)
+{
+    return n->kind == HF_ERROR_TEMPERATURE ? "temperature_K" : n->kind == HF_ERROR_EA_BATCH ? "EA_ratio" : "cut_ratio";
+}
+
+/* What cables of a spool, or all of them, share. */
+static void print_numbers(const hf_adjust_job *j, FILE *f)
+{
+    for (int k = 0; k < j->prior.n_shared && k < NAMED_MAX; k++) {
+        const hf_prior_number *n = &j->prior.number[k];
+        double z = j->estimate.shared[k], error = z * n->sigma;
+        if (n->kind == HF_ERROR_TEMPERATURE)
+            hf_print_line(f, "cables seem %.3g K %s than when they were cut, %.1f sigma", fabs(error),
+                          error < 0 ? "colder" : "warmer", fabs(z));
+        else
+            hf_print_line(f, "spool '%s' seems off by %+.3g of its %s, %.1f sigma", n->set, error,
+                          n->kind == HF_ERROR_EA_BATCH ? "EA" : "lengths", fabs(z));
+    }
+    if (j->prior.n_shared > NAMED_MAX)
+        hf_print_line(f, "and %d more numbers that cables share", j->prior.n_shared - NAMED_MAX);
+}
+
+static void print_moves(const hf_adjust_job *j, FILE *f)
+{
+    const hf_adjustment *a = &j->adjustment;
+    if (a->n_move)
+        hf_print_line(f, "%5s  %-20s %9s  %10s %10s  %10s", "order", "cable", "move mm", "N before", "N after",
+                      "RMS mm");
+    for (int k = 0; k < a->n_move; k++) {
+        const hf_adjust_move *move = &a->move[k];
+        char slack[32] = "";
+        if (move->n_slack) snprintf(slack, sizeof slack, "  %d slack", move->n_slack);
+        hf_print_line(f, "%5d  %-20s %+9.6g  %10.4g %10.4g  %10.4f%s", k + 1, j->built.scene.cable_id[move->cable],
+                      move->move_m * 1e3, move->before_N, move->after_N, move->figure_m * 1e3, slack);
+    }
+}
+
+void hf_adjust_print_summary(const hf_adjust_job *j, const char *path, FILE *f)
+{
+    const hf_adjustment *a = &j->adjustment;
+    const hf_tolerance_settings *t = &j->problem.settings.tolerance;
+    const char *figure = hf_figure_word[j->task.settings->figure];
+    if (!hf_adjust_fits(j))
+        hf_print_line(f, "the measurement does not fit this net: the moves below are not to be trusted");
+    hf_print_line(f, "%d of %d nodes measured, chi^2 %.3g per coordinate; supports %s", j->measured.n_node,
+                  j->built.model.n_node, hf_adjust_chi_square(j),
+                  t->sigma_support_m > 0 ? "are estimated, too"
+                                         : "are taken to be where the case has them (no tolerance.sigma_support_m)");
+    if (isfinite(j->measured_m)) hf_print_line(f, "%s measured    %.4f mm", figure, j->measured_m * 1e3);
+    hf_print_line(f, "%s estimated   %.4f mm; with what is left open %.4f +- %.4f mm; as designed %.4f mm", figure,
+                  a->estimated_m * 1e3, a->doubt_m[0] * 1e3, a->spread_m[0] * 1e3, a->nominal_m * 1e3);
+    print_numbers(j, f);
+    print_outliers(j, f);
+    print_moves(j, f);
+    hf_print_line(f,
+                  "%s after %d move%s %.4f mm; with what is left open %.4f +- %.4f mm; any moves of %d cables: %.4f mm",
+                  figure, a->n_move, a->n_move == 1 ? "" : "s", a->adjusted_m * 1e3, a->doubt_m[1] * 1e3,
+                  a->spread_m[1] * 1e3, j->task.n_cable, a->best_m * 1e3);
+    print_end(j, f);
+    if (path) hf_print_line(f, "moves in %s; above 0: let the cable out", path);
+}
+
+/* ---- for programs ---- */
+
+static void print_json_moves(const hf_adjust_job *from, hf_json *j)
+{
+    const hf_adjustment *a = &from->adjustment;
+    hf_json_line(j, " ");
+    hf_json_open(j, "moves", '[');
+    for (int k = 0; k < a->n_move; k++) {
+        const hf_adjust_move *move = &a->move[k];
+        hf_json_line(j, "  ");
+        hf_json_open(j, NULL, '{');
+        hf_json_text(j, "cable", from->built.scene.cable_id[move->cable]);
+        hf_json_integer(j, "steps", move->steps);
+        hf_json_number(j, "move_m", move->move_m);
+        hf_json_number(j, "tension_before_N", move->before_N);
+        hf_json_number(j, "tension_after_N", move->after_N);
+        hf_json_number(j, "predicted_m", move->figure_m);
+        hf_json_integer(j, "slack", move->n_slack);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+    hf_json_line(j, " ");
+    hf_json_open(j, "stand_out", '[');
+    for (int e = next_outlier(from, -1); e >= 0; e = next_outlier(from, e)) {
+        hf_json_line(j, "  ");
+        hf_json_open(j, NULL, '{');
+        hf_json_text(j, "cable", from->built.scene.cable_id[e]);
+        hf_json_number(j, "error_m", from->estimate.cut_m[e]);
+        hf_json_number(j, "sigmas", fabs(sigmas_of(from, e)));
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
+static void print_json_figures(const hf_adjust_job *from, hf_json *j)
+{
+    const hf_adjustment *a = &from->adjustment;
+    hf_json_line(j, " ");
+    hf_json_text(j, "figure", hf_figure_word[from->task.settings->figure]);
+    hf_json_text(j, "aim", hf_aim_word[from->task.settings->aim]);
+    hf_json_integer(j, "measured_nodes", from->measured.n_node);
+    hf_json_number(j, "chi_square", hf_adjust_chi_square(from));
+    hf_json_bool(j, "fits", hf_adjust_fits(from));
+    hf_json_integer(j, "cables", from->task.n_cable);
+    hf_json_number(j, "nominal_m", a->nominal_m);
+    hf_json_number(j, "measured_m", from->measured_m);
+    hf_json_number(j, "estimated_m", a->estimated_m);
+    hf_json_number(j, "adjusted_m", a->adjusted_m);
+    hf_json_number(j, "best_m", a->best_m);
+    hf_json_line(j, " ");
+    hf_json_number(j, "estimated_expected_m", a->doubt_m[0]);
+    hf_json_number(j, "estimated_sigma_m", a->spread_m[0]);
+    hf_json_number(j, "adjusted_expected_m", a->doubt_m[1]);
+    hf_json_number(j, "adjusted_sigma_m", a->spread_m[1]);
+    hf_json_line(j, " ");
+    hf_json_text(j, "end", end_word[a->end]);
+    hf_json_bool(j, "held_taut", a->is_held_taut);
+    hf_json_bool(j, "supports_estimated", from->problem.settings.tolerance.sigma_support_m > 0);
+    hf_json_integer(j, "estimate_steps", from->estimate.n_step);
+    hf_json_integer(j, "rounds", a->n_round);
+    hf_json_bool(j, "settled", from->estimate.is_settled && a->is_settled);
+}
+
+static void print_json_numbers(const hf_adjust_job *from, hf_json *j)
+{
+    hf_json_line(j, " ");
+    hf_json_open(j, "shared", '[');
+    for (int k = 0; k < from->prior.n_shared; k++) {
+        const hf_prior_number *n = &from->prior.number[k];
+        hf_json_line(j, "  ");
+        hf_json_open(j, NULL, '{');
+        hf_json_text(j, "kind", number_word(n));
+        if (n->set) hf_json_text(j, "set", n->set);
+        hf_json_number(j, "error", from->estimate.shared[k] * n->sigma);
+        hf_json_number(j, "sigmas", fabs(from->estimate.shared[k]));
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
+static void print_json_errors(const hf_adjust_job *from, hf_json *j)
+{
+    hf_json_line(j, " ");
+    hf_json_open(j, "errors_m", '{');
+    for (int e = 0; e < from->built.model.n_cable; e++) {
+        if (e % 4 == 0) hf_json_line(j, "  ");
+        hf_json_number(j, from->built.scene.cable_id[e], from->estimate.cut_m[e]);
+    }
+    hf_json_close(j, '}');
+}
+
+void hf_adjust_print_json(const hf_adjust_job *from, const hf_options *o, hf_status status, const char *messages,
+                          FILE *f)
+{
+    hf_json j = {.file = f};
+    hf_json_open(&j, NULL, '{');
+    hf_json_text(&j, "status", hf_status_word(status));
+    if (status == HF_OK) {
+        print_json_figures(from, &j);
+        print_json_moves(from, &j);
+        print_json_numbers(from, &j);
+        print_json_errors(from, &j);
+    }
+    hf_json_line(&j, " ");
+    hf_json_text(&j, "version", hf_store_version());
+    hf_json_text(&j, "case", from->problem.settings.path);
+    if (o->result) hf_json_text(&j, "result", o->result);
+    if (status == HF_OK && o->output) hf_json_text(&j, "file", o->output);
+    hf_json_end(&j, status != HF_OK, messages);
+}
