@@ -280,7 +280,7 @@ static hf_status check_output(const job *j, const hf_options *o, hf_messages *me
 
 static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
 {
-    HF_TRY(hf_problem_load(o->file, NULL, o->set, o->n_set, &j->problem, messages));
+    HF_TRY(hf_problem_load(o->file, NULL, o->set, o->n_set, NULL, &j->problem, messages));
     const hf_problem *p = &j->problem;
     j->measured_path = o->measured;
     j->threads = o->threads;

@@ -465,7 +465,7 @@ static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, F
 
 static hf_status check(hf_problem *p, const hf_options *options, FILE *f, hf_messages *messages)
 {
-    HF_TRY(hf_problem_load(options->file, NULL, options->set, options->n_set, p, messages));
+    HF_TRY(hf_problem_load(options->file, NULL, options->set, options->n_set, NULL, p, messages));
     HF_TRY(hf_tolerance_stage_check(p, false, messages));
     HF_TRY(hf_problem_allocate(p, messages));
     int threads = options->threads ? options->threads : hf_batch_default_threads();

@@ -343,7 +343,7 @@ static hf_status check_output(const job *j, const hf_options *o, const char *pat
 
 static hf_status execute(job *j, const hf_options *o, const char *path, FILE *file, hf_messages *messages)
 {
-    HF_TRY(hf_problem_load(o->file, NULL, o->set, o->n_set, &j->problem, messages));
+    HF_TRY(hf_problem_load(o->file, NULL, o->set, o->n_set, NULL, &j->problem, messages));
     if (j->problem.model.n_gene == 0)
         return hf_error(messages, HF_BAD_CASE, "%s: no boundary cable has a free end: there is nothing to set",
                         o->file);

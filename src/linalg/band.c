@@ -33,12 +33,13 @@ char *openblas_get_corename(void);
 void *blas_memory_alloc(int which);
 void blas_memory_free(void *buffer);
 
+#define AT_A_TIME 64 /* columns between looks at a flag: a few tenths of a second at a half-bandwidth of 5000 */
 #define ROOMS_MAX 64 /* threads; OpenBLAS has buffers for as many processors as it was built for */
 
 /* ---- kernels ---- */
 
 typedef struct {
-    int (*factor)(int n, int half_bandwidth, double *band);
+    int (*factor)(int n, int half_bandwidth, double *band, int first, int end);
     void (*back_solve)(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
     void (*gram)(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg);
 } kernels;
@@ -56,7 +57,18 @@ static const kernels *kernels_here(void)
 
 int hf_band_factor(int n, int half_bandwidth, double *band)
 {
-    return kernels_here()->factor(n, half_bandwidth, band);
+    return kernels_here()->factor(n, half_bandwidth, band, 0, n);
+}
+
+hf_status hf_band_factor_until(const volatile sig_atomic_t *stop, int n, int half_bandwidth, double *band)
+{
+    const kernels *here = kernels_here();
+    for (int first = 0; first < n; first += AT_A_TIME) {
+        if (stop && *stop) return HF_INTERRUPTED;
+        int end = n - first > AT_A_TIME ? first + AT_A_TIME : n;
+        if (here->factor(n, half_bandwidth, band, first, end) != 0) return HF_SINGULAR;
+    }
+    return HF_OK;
 }
 
 void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb)
@@ -67,7 +79,7 @@ void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *fact
 hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row)
 {
     const kernels *here = kernels_here();
-    *bad_row = here->factor(n, half_bandwidth, band) - 1;
+    *bad_row = here->factor(n, half_bandwidth, band, 0, n) - 1;
     if (*bad_row >= 0) return HF_SINGULAR;
     here->back_solve(n, half_bandwidth, 3, band, b, ldb);
     return HF_OK;

@@ -7,6 +7,7 @@
 #define HIFDM_BAND_H
 
 #include <hifdm/status.h>
+#include <signal.h>
 #include <stdbool.h>
 
 /* Band Cholesky. band: lower band [n][half_bandwidth+1], replaced by its factor; b: [3][ldb], rows
@@ -24,8 +25,12 @@ hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band
 int hf_band_factor(int n, int half_bandwidth, double *band);
 void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
 
-/* The same for a matrix [n][3*half_bandwidth+1] in LAPACK's general band: entry (i,j) at 2*half_bandwidth + i - j of
- * column j; the first half_bandwidth places of each are room for pivoting. pivot: [n]. */
+/* hf_band_factor of a large matrix: HF_OK, HF_SINGULAR, or HF_INTERRUPTED soon after *stop is set (NULL: never); the
+ * same bits. */
+hf_status hf_band_factor_until(const volatile sig_atomic_t *stop, int n, int half_bandwidth, double *band);
+
+/* The two parts for a matrix [n][3*half_bandwidth+1] in LAPACK's general band: entry (i,j) at 2*half_bandwidth + i - j
+ * of column j; the first half_bandwidth places of each are room for pivoting. pivot: [n]. */
 int hf_band_factor_general(int n, int half_bandwidth, double *general, int *pivot);
 void hf_band_back_solve_general(int n, int half_bandwidth, int n_rhs, const double *general, const int *pivot,
                                 double *b, int ldb);

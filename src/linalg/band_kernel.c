@@ -214,10 +214,10 @@ INLINE int factor_block(block *b, int n_column)
     return 0;
 }
 
-int HF_KERNEL(hf_band_factor)(int n, int half_bandwidth, double *band)
+int HF_KERNEL(hf_band_factor)(int n, int half_bandwidth, double *band, int first, int end)
 {
     block b = {.band = band, .k = half_bandwidth, .n = n};
-    for (b.j = 0; b.j < n; b.j += COLUMNS) {
+    for (b.j = first; b.j < end; b.j += COLUMNS) {
         int n_column = least(COLUMNS, n - b.j);
         int failed = n_column == COLUMNS ? factor_block(&b, COLUMNS) : factor_block(&b, n_column);
         if (failed) return failed;

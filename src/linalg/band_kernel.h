@@ -7,11 +7,11 @@
 
 /* The Makefile compiles band_kernel.c with -DHF_ISA=avx512 and so on; the names end in it. */
 #define HF_BAND_KERNELS(isa)                                                                                           \
-    int hf_band_factor_##isa(int n, int half_bandwidth, double *band);                                                 \
+    int hf_band_factor_##isa(int n, int half_bandwidth, double *band, int first, int end);                             \
     void hf_band_back_solve_##isa(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);     \
     void hf_band_gram_##isa(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg);
 
-/* What they do stands in band.h. */
+/* What they do stands in band.h; hf_band_factor does columns `first`, a multiple of 4, to end - 1, after all before. */
 HF_BAND_KERNELS(portable)
 HF_BAND_KERNELS(avx2)
 HF_BAND_KERNELS(avx512)

@@ -121,7 +121,7 @@ int hf_flat_open(hf_flat *f, const char *path, int n_set, const char *const *set
     f->set = set;
     f->n_thread = n_thread;
     const hf_problem_source *source = f->source.text ? &f->source : NULL;
-    hf_status status = hf_problem_load(path, source, set, n_set, &f->problem, &f->said);
+    hf_status status = hf_problem_load(path, source, set, n_set, NULL, &f->problem, &f->said);
     f->is_open = status == HF_OK;
     return (int)status;
 }

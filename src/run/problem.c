@@ -12,7 +12,7 @@
 hf_status hf_problem_open(const char *path, const char *const *set, int n_set, int n_thread, hf_problem *p,
                           hf_messages *messages)
 {
-    HF_TRY(hf_problem_load(path, NULL, set, n_set, p, messages));
+    HF_TRY(hf_problem_load(path, NULL, set, n_set, NULL, p, messages));
     HF_TRY(hf_problem_allocate(p, messages));
     hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
     HF_TRY(hf_problem_explain(p, messages));

@@ -145,7 +145,7 @@ static hf_status make_scene(const hf_problem_source *source, hf_problem *p, hf_m
 }
 
 static hf_status load_parts(const char *path, const hf_problem_source *source, const char *const *set, int n_set,
-                            hf_problem *p, hf_messages *messages)
+                            const volatile sig_atomic_t *stop, hf_problem *p, hf_messages *messages)
 {
     if (source)
         HF_TRY(hf_config_parse(path, source->text, set, n_set, &p->settings, messages));
@@ -155,7 +155,7 @@ static hf_status load_parts(const char *path, const hf_problem_source *source, c
     HF_TRY(hf_config_surface(&p->settings, &p->scene, &p->surface, messages));
     if (p->settings.has_surface) HF_TRY(find_facets(p, messages));
     if (p->settings.form.prestress == HF_PRESTRESS_EXACT)
-        HF_TRY(hf_prestress_hold(&p->scene, &p->settings.form, messages));
+        HF_TRY(hf_prestress_hold(&p->scene, &p->settings.form, stop, messages));
     HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));
     hf_status rows = HF_OK;
     if (p->settings.has_optimize)
@@ -178,11 +178,11 @@ static hf_status load_parts(const char *path, const hf_problem_source *source, c
 }
 
 hf_status hf_problem_load(const char *path, const hf_problem_source *source, const char *const *set, int n_set,
-                          hf_problem *p, hf_messages *messages)
+                          const volatile sig_atomic_t *stop, hf_problem *p, hf_messages *messages)
 {
     *p = (hf_problem){0};
     hf_problem_give_places(p, messages);
-    hf_status status = load_parts(path, source, set, n_set, p, messages);
+    hf_status status = load_parts(path, source, set, n_set, stop, p, messages);
     hf_problem_give_places(NULL, messages);
     return status;
 }

@@ -9,9 +9,10 @@
 #include <hifdm/summary.h>
 
 /* Case, scene, truss, model, symmetry; source: NULL, or what stands in for the files of case and net, of which `path`
- * is only the name. HF_BAD_CASE with all faults, HF_MECHANISM, HF_NO_MEMORY. Free in any case. */
+ * is only the name. HF_BAD_CASE with all faults, HF_MECHANISM, HF_NO_MEMORY; HF_INTERRUPTED, when *stop is
+ * set (NULL: never) in what takes long. Free in any case. */
 hf_status hf_problem_load(const char *path, const hf_problem_source *source, const char *const *set, int n_set,
-                          hf_problem *problem, hf_messages *messages);
+                          const volatile sig_atomic_t *stop, hf_problem *problem, hf_messages *messages);
 
 /* While the problem is at hand, messages give keys with their places in its case (hf_messages_place); NULL ends
  * that. */

@@ -136,7 +136,9 @@ static hf_status measure_shape(run *r, hf_stage stage, const hf_workspace *w, hf
                    hf_stage_word[stage], fit->iterations);
     hf_status status =
         hf_pattern_stage(p, stage, w, r->request->threads, r->request->stop_requested, r->store, s, messages);
-    return status == HF_INTERRUPTED && stage != HF_STAGE_FORM ? stop_here(r, s, messages) : status;
+    if (status != HF_INTERRUPTED) return status;
+    hf_warning(messages, "surface.pattern: told to stop: the shape of stage %s has no far field", hf_stage_word[stage]);
+    return stage == HF_STAGE_FORM ? status : stop_here(r, s, messages);
 }
 
 /* Forces and displacements of the truss, if there is one, under the net of this shape. */
@@ -193,8 +195,10 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
         s->form.goal[k] = (double)NAN;
     hf_status status = hf_problem_explain(p, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
-    HF_TRY(measure_shape(r, HF_STAGE_FORM, &p->workspace, s, messages));
+    hf_status measured = measure_shape(r, HF_STAGE_FORM, &p->workspace, s, messages);
+    if (measured != HF_OK && measured != HF_INTERRUPTED) return measured;
     HF_TRY(hf_store_form(r->store, &p->model, &p->workspace, &r->history, messages));
+    if (measured == HF_INTERRUPTED) return stop_here(r, s, messages);
     HF_TRY(take_result(r, &p->workspace, messages));
     return status;
 }
@@ -512,7 +516,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
 {
     const hf_run_request *q = r->request;
     hf_case *settings = &r->problem.settings;
-    HF_TRY(hf_problem_load(q->case_path, q->source, q->set, q->n_set, &r->problem, messages));
+    HF_TRY(hf_problem_load(q->case_path, q->source, q->set, q->n_set, q->stop_requested, &r->problem, messages));
     if (settings->has_sweep && !q->of_sweep)
         return hf_error(messages, HF_BAD_USAGE, "%s: has a sweep section; 'hifdm sweep %s' runs it", q->case_path,
                         q->case_path);

@@ -54,6 +54,7 @@ typedef struct {
     double *step;                        /* [n] */
     double *band;                        /* [n][half_bandwidth+1] the factor */
     bool has_factor;
+    const volatile sig_atomic_t *stop;
 } programme;
 
 static void lay_out_programme(hf_arena *a, const hf_model *m, programme *p)
@@ -208,8 +209,9 @@ static hf_status factor_springs(programme *p)
             largest = fmax(largest, p->band[i * column]);
         for (size_t i = 0; i < (size_t)p->n; i++)
             p->band[i * column] += shift * largest;
-        p->has_factor = hf_band_factor(p->n, p->half_bandwidth, p->band) == 0;
-        if (p->has_factor) return HF_OK;
+        hf_status status = hf_band_factor_until(p->stop, p->n, p->half_bandwidth, p->band);
+        p->has_factor = status == HF_OK;
+        if (status != HF_SINGULAR) return status;
     }
     return HF_SINGULAR;
 }
@@ -310,13 +312,15 @@ static hf_status find_tensions(programme *p, const hf_scene *scene, hf_messages 
         status = solve_within_limits(p, &largest_N);
     }
     if (status == HF_OK && largest_N <= HELD * p->reference_N) return HF_OK;
+    if (status == HF_INTERRUPTED)
+        return hf_error(messages, status, "form.prestress: exact: told to stop before its tensions were found");
     return name_unheld(p, scene, messages);
 }
 
-static hf_status hold(hf_scene *scene, const hf_model *m, hf_messages *messages)
+static hf_status hold(hf_scene *scene, const hf_model *m, const volatile sig_atomic_t *stop, hf_messages *messages)
 {
     hf_arena arena = {0};
-    programme p = {.m = m, .n = 3 * m->n_free, .half_bandwidth = 3 * m->half_bandwidth + 2};
+    programme p = {.m = m, .stop = stop, .n = 3 * m->n_free, .half_bandwidth = 3 * m->half_bandwidth + 2};
     p.reference_N = m->reference_N;
     p.n_family = scene->n_set + 2;
     if (HF_ARENA_MAKE(&arena, lay_out_programme(&arena, m, &p)) != HF_OK)
@@ -330,13 +334,14 @@ static hf_status hold(hf_scene *scene, const hf_model *m, hf_messages *messages)
     return status;
 }
 
-hf_status hf_prestress_hold(hf_scene *scene, const hf_form_settings *form, hf_messages *messages)
+hf_status hf_prestress_hold(hf_scene *scene, const hf_form_settings *form, const volatile sig_atomic_t *stop,
+                            hf_messages *messages)
 {
     hf_form_settings by_law = *form;
     hf_model model;
     by_law.method = HF_METHOD_AUTO; /* the other methods replace laws */
     hf_status status = hf_model_build(scene, &by_law, &model, messages);
-    if (status == HF_OK) status = hold(scene, &model, messages);
+    if (status == HF_OK) status = hold(scene, &model, stop, messages);
     hf_model_free(&model);
     return status;
 }

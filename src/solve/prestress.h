@@ -13,10 +13,13 @@
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
 #include <hifdm/status.h>
+#include <signal.h>
 
 /* Put every cable of the checked scene under law force_density, with the force densities, N/m, that hold its nodes.
- * HF_OK; HF_BAD_CASE, naming the nodes that no tensions hold; HF_NO_MEMORY. The scene changes under HF_OK alone. */
-hf_status hf_prestress_hold(hf_scene *scene, const hf_form_settings *form, hf_messages *messages);
+ * HF_OK; HF_BAD_CASE, naming the nodes that no tensions hold; HF_INTERRUPTED, soon after *stop is set (NULL: never);
+ * HF_NO_MEMORY. The scene changes under HF_OK alone. */
+hf_status hf_prestress_hold(hf_scene *scene, const hf_form_settings *form, const volatile sig_atomic_t *stop,
+                            hf_messages *messages);
 
 /* The family of a cable: the smallest set that it is in (the first of several), 0..n_set-1, or n_set + its group where
  * it is in none. */

@@ -61,7 +61,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     size_t n_byte, second = fuzz_split(data, size, &n_byte);
     int n_set = take_overrides(data + second, size - second, set);
     fuzz_write("case.yaml", data, n_byte);
-    hf_status status = hf_problem_load(path, NULL, (const char *const *)set, n_set, &problem, &messages);
+    hf_status status = hf_problem_load(path, NULL, (const char *const *)set, n_set, NULL, &problem, &messages);
     if (status == HF_OK) read_back(&problem.settings);
     hf_problem_free(&problem);
     fuzz_judge(status, &messages);

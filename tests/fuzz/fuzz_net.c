@@ -39,7 +39,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     size_t n_byte, second = fuzz_split(data, size, &n_byte);
     fuzz_write("n.csv", data, n_byte);
     fuzz_write("c.csv", data + second, size - second);
-    hf_status status = hf_problem_load(path, NULL, NULL, 0, &p, &messages);
+    hf_status status = hf_problem_load(path, NULL, NULL, 0, NULL, &p, &messages);
     if (status == HF_OK) solve(&p, &messages, &status);
     hf_problem_free(&p);
     fuzz_judge(status, &messages);

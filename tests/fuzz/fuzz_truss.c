@@ -29,7 +29,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     size_t n_byte, second = fuzz_split(data, size, &n_byte);
     fuzz_write("t.csv", data, n_byte);
     fuzz_write("m.csv", data + second, size - second);
-    hf_status status = hf_problem_load(path, NULL, NULL, 0, &p, &messages);
+    hf_status status = hf_problem_load(path, NULL, NULL, 0, NULL, &p, &messages);
     if (status == HF_OK) status = hf_problem_allocate(&p, &messages);
     if (status == HF_OK) {
         hf_evaluate_form(&p.model, &p.settings.form, &p.workspace, NULL, &p.form);

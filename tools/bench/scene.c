@@ -89,7 +89,7 @@ static void build(const char *name, const char *path, const char *const *overrid
     if (hf_config_load(path, overrides, n_override, &b->settings, &messages) != HF_OK ||
         hf_config_scene(&b->settings, &b->scene, &messages) != HF_OK ||
         (b->settings.form.prestress == HF_PRESTRESS_EXACT &&
-         hf_prestress_hold(&b->scene, &b->settings.form, &messages) != HF_OK) ||
+         hf_prestress_hold(&b->scene, &b->settings.form, NULL, &messages) != HF_OK) ||
         hf_model_build(&b->scene, &b->settings.form, &b->model, &messages) != HF_OK)
         bench_fail(path, messages.text);
     b->form = b->settings.form;

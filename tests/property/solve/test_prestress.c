@@ -50,7 +50,7 @@ static hf_status hold_net(struct net *net, const struct double_net *d)
     hf_messages messages = {0};
     *net = (struct net){.form = tight_form(HF_METHOD_AUTO)};
     hand_scene(&net->scene, 2 * d->nx * d->ny, d->node, d->n_cable, d->cable);
-    hf_status status = hf_prestress_hold(&net->scene, &net->form, &messages);
+    hf_status status = hf_prestress_hold(&net->scene, &net->form, NULL, &messages);
     hf_messages_free(&messages);
     return status;
 }

@@ -6,8 +6,10 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/time.h>
 
 enum { MAX_N = 60, MAX_K = 20, LDB = MAX_N + 3 };
 
@@ -183,6 +185,50 @@ START_TEST(singular_is_told_with_its_row_by_lu_too)
 }
 END_TEST
 
+static volatile sig_atomic_t is_told;
+
+static void tell_to_stop(int number)
+{
+    is_told = number;
+}
+
+/* In parts the bits are the same. Told to stop before it begins, it touches nothing; told after 20 ms of half a second,
+ * it does not come to the last column. */
+START_TEST(a_factorisation_is_told_to_stop)
+{
+    static const int size[][2] = {{64, 3}, {65, 40}, {300, 70}, {6000, 1000}};
+    const struct itimerval soon = {.it_value = {.tv_usec = 20000}};
+    signal(SIGVTALRM, tell_to_stop);
+    for (int i = 0; i < 4; i++) {
+        int n = size[i][0], k = size[i][1];
+        bool is_large = i == 3;
+        size_t bytes = sizeof(double) * (size_t)n * (size_t)(k + 1);
+        double *given = malloc(bytes), *whole = malloc(bytes), *band = malloc(bytes);
+        ck_assert(given && whole && band);
+        for (int j = 0; j < n; j++)
+            for (int d = 0; d <= k; d++)
+                given[(ptrdiff_t)j * (k + 1) + d] = d ? 1.0 / (1 + (j + d) % 7) : 2.0 * k + 1;
+        memcpy(whole, given, bytes);
+        memcpy(band, given, bytes);
+        is_told = 1;
+        ck_assert_int_eq(hf_band_factor_until(&is_told, n, k, band), HF_INTERRUPTED);
+        ck_assert_mem_eq(band, given, bytes);
+        is_told = 0;
+        if (is_large) setitimer(ITIMER_VIRTUAL, &soon, NULL);
+        ck_assert_int_eq(hf_band_factor_until(&is_told, n, k, band), is_large ? HF_INTERRUPTED : HF_OK);
+        if (is_large) {
+            ck_assert(band[0] != given[0] && band[bytes / sizeof *band - 1 - (size_t)k] == 2.0 * k + 1);
+        } else {
+            ck_assert_int_eq(hf_band_factor(n, k, whole), 0);
+            ck_assert_mem_eq(band, whole, bytes);
+        }
+        free(given);
+        free(whole);
+        free(band);
+    }
+}
+END_TEST
+
 START_TEST(library_has_a_name)
 {
     hf_band_single_threaded();
@@ -199,6 +245,7 @@ Suite *suite_unit_band(void)
     tcase_add_loop_test(tests, indefinite_systems_are_solved, 0, N_SIZES * N_WIDTHS);
     tcase_add_loop_test(tests, not_positive_definite_is_told_with_its_row, 0, 31);
     tcase_add_loop_test(tests, singular_is_told_with_its_row_by_lu_too, 0, 31);
+    tcase_add_test(tests, a_factorisation_is_told_to_stop);
     tcase_add_test(tests, library_has_a_name);
     return suite;
 }

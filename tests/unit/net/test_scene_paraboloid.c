@@ -282,7 +282,7 @@ START_TEST(net_is_held_on_the_paraboloid)
     p.tie_direction = _i / 2 == 2 ? HF_TIES_ALONG_NORMAL : HF_TIES_ALONG_Z;
     if (_i / 2 == 2) p.focal_length_m *= 3; /* on deep dishes the corners of the rear net would have to be pushed */
     struct net net = {.form = tight_form(HF_METHOD_AUTO), .scene = generate(&p, NULL)};
-    ck_assert_msg(hf_prestress_hold(&net.scene, &net.form, &messages) == HF_OK, "%s", messages.text);
+    ck_assert_msg(hf_prestress_hold(&net.scene, &net.form, NULL, &messages) == HF_OK, "%s", messages.text);
     open_net(&net);
     ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &net.result), HF_OK);
     ck_assert_double_le(net.result.psi_m, 1e-12);

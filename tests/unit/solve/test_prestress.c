@@ -9,7 +9,7 @@
 static hf_status hold_and_solve(struct net *net, const char *words)
 {
     hf_messages messages = {0};
-    hf_status status = hf_prestress_hold(&net->scene, &net->form, &messages);
+    hf_status status = hf_prestress_hold(&net->scene, &net->form, NULL, &messages);
     if (words) ck_assert_msg(messages.text && strstr(messages.text, words), "%s", messages.text);
     if (!words) ck_assert_msg(status == HF_OK, "%s", messages.text);
     hf_messages_free(&messages);
@@ -152,6 +152,25 @@ START_TEST(numbers_that_overflow_are_refused)
 END_TEST
 
 /* A strut may push: a load towards the tie's support is held by the one strut below. */
+/* The scene stays as it was. */
+START_TEST(it_is_told_to_stop)
+{
+    static const struct hand_node node[] = {
+        {{-1, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{2, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0, 0, 0}, HF_ROLE_INNER, {0}}};
+    static const struct hand_cable cable[] = {{{0, 2}, HF_GROUP_INNER, HF_LAW_TENSION, 10},
+                                              {{2, 1}, HF_GROUP_INNER, HF_LAW_TENSION, 12}};
+    const volatile sig_atomic_t stop = 1;
+    hf_messages messages = {0};
+    struct net net = {.form = tight_form(HF_METHOD_AUTO)};
+    hand_scene(&net.scene, 3, node, 2, cable);
+    ck_assert_int_eq(hf_prestress_hold(&net.scene, &net.form, &stop, &messages), HF_INTERRUPTED);
+    ck_assert_msg(strstr(messages.text, "told to stop before its tensions were found") != NULL, "%s", messages.text);
+    ck_assert(net.scene.law[0] == HF_LAW_TENSION && net.scene.target[1] == 12);
+    hf_messages_free(&messages);
+    hf_scene_free(&net.scene);
+}
+END_TEST
+
 START_TEST(struts_push)
 {
     static const struct hand_node node[] = {
@@ -180,6 +199,7 @@ Suite *suite_unit_prestress(void)
     tcase_add_test(tests, lengths_alone_want_the_pretension);
     tcase_add_test(tests, node_without_a_tie_is_named);
     tcase_add_test(tests, numbers_that_overflow_are_refused);
+    tcase_add_test(tests, it_is_told_to_stop);
     tcase_add_test(tests, struts_push);
     return suite;
 }
