@@ -286,6 +286,28 @@ static void find_room(adjustment *a)
         a->room_N[e] = fmax(a->work.tension_N[e] - a->room_N[e] - a->least_N[e], 0);
 }
 
+/* From the residuals to those without turns. */
+static void take_turns_off(adjustment *a)
+{
+    memcpy(a->at_zero, a->residual, a->n_row * sizeof *a->at_zero);
+    for (size_t i = 0; i < a->n; i++) {
+        double turn_m = a->turn_m[a->task->cable[i]];
+        for (size_t r = 0; r < a->n_row && turn_m != 0; r++)
+            a->at_zero[r] -= turn_m * a->column[i * a->n_row + r];
+    }
+}
+
+/* The same at a shape near that of the last linear model, whose effects of cables stay. */
+static hf_status look_again(adjustment *a)
+{
+    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[0].point, a->residual));
+    take_turns_off(a);
+    for (size_t i = 0; i < a->n; i++)
+        a->slope[i] = dot(a->n_row, a->column + i * a->n_row, a->at_zero);
+    a->problem.square = dot(a->n_row, a->at_zero, a->at_zero);
+    return HF_OK;
+}
+
 /* At the shape in `work`: residuals, what each cable does to them, and what is left open. */
 static hf_status linearise(adjustment *a)
 {
@@ -295,10 +317,7 @@ static hf_status linearise(adjustment *a)
     HF_TRY(hf_built_linear_take(&a->estimate->linear, &a->work));
     hf_chord_pack(&a->estimate->linear.work, &a->matrix);
     hf_parallel_each(a->n_room, (int)((n + PANEL - 1) / PANEL), find_panel, a);
-    memcpy(a->at_zero, a->residual, n_row * sizeof *a->at_zero);
-    for (size_t i = 0; i < n; i++)
-        for (size_t r = 0; r < n_row && a->turn_m[a->task->cable[i]] != 0; r++)
-            a->at_zero[r] -= a->turn_m[a->task->cable[i]] * a->column[i * n_row + r];
+    take_turns_off(a);
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++)
         push_move(a, &a->room[0], a->doubt_m + s * a->n_dof, a->left_open + s * n_row);
     find_products(a);
@@ -384,14 +403,16 @@ static bool promises(const adjustment *a, double figure_m)
     return !(square >= figure_m * figure_m * (1 - LITTLE) * (1 - LITTLE));
 }
 
-/* From the shape that was chosen. */
+/* From the shape that was chosen. Effects of cables stay those of the last linear model as long as steps by them gain.
+ */
 static hf_status find_best(adjustment *a, hf_adjustment *found)
 {
-    bool gains = true;
+    bool gains = true, is_new = true;
     HF_TRY(solve_steps(a, a->steps, &found->best_m));
     a->problem.steps_max = hf_adjust_steps(a->task->settings);
-    for (int round_ = 0; gains && round_ < ROUNDS_MAX; round_++) {
-        hf_status status = round_ == 0 && a->is_current ? HF_OK : linearise(a);
+    for (int round_ = 0; (gains || !is_new) && round_ < ROUNDS_MAX; round_++) {
+        is_new = round_ == 0 || !gains;
+        hf_status status = !is_new ? look_again(a) : round_ == 0 && a->is_current ? HF_OK : linearise(a);
         if (status == HF_SINGULAR) return HF_OK;
         HF_TRY(status);
         HF_TRY(hf_moves_best(&a->problem, a->move_m));

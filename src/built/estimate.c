@@ -56,6 +56,8 @@ static void lay_out_estimate(hf_arena *arena, hf_estimate *p)
     p->rest_m = hf_arena_take(arena, p->linear.n_dof, sizeof(double));
     p->shared = hf_arena_take(arena, (size_t)p->prior.n_shared, sizeof(double));
     p->scratch = hf_arena_take(arena, n, sizeof(double));
+    p->last.place_m = hf_arena_take(arena, p->linear.n_dof, sizeof(double));
+    p->last.tension_N = hf_arena_take(arena, (size_t)p->built->model.n_cable, sizeof(double));
 }
 
 hf_status hf_estimate_create(const hf_built *b, const hf_saddle_prior *prior, const double *place_m, hf_estimate *p)
@@ -68,7 +70,14 @@ hf_status hf_estimate_create(const hf_built *b, const hf_saddle_prior *prior, co
     HF_TRY(hf_workspace_create(&b->model, &p->work));
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_estimate(&arena, p)));
     p->block = arena.block;
-    return HF_OK;
+    double *last_m = p->last.place_m, *last_N = p->last.tension_N;
+    p->last = *b;
+    p->last.place_m = memcpy(last_m, b->place_m, p->linear.n_dof * sizeof *last_m);
+    p->last.tension_N = memcpy(last_N, b->tension_N, (size_t)b->model.n_cable * sizeof *last_N);
+    if (b->model.n_attachment) return HF_OK;
+    hf_status status = hf_near_create(b, &p->work, &p->near);
+    p->has_near = status == HF_OK;
+    return status == HF_NO_MEMORY ? status : HF_OK;
 }
 
 void hf_estimate_free(hf_estimate *p)
@@ -76,12 +85,27 @@ void hf_estimate_free(hf_estimate *p)
     hf_arena arena = {.block = p->block};
     hf_built_linear_free(&p->linear);
     hf_saddle_free(&p->saddle);
+    hf_near_free(&p->near);
     hf_workspace_free(&p->work);
     hf_arena_free(&arena);
     *p = (hf_estimate){0};
 }
 
 /* ---- shapes ---- */
+
+/* From the last shape, by Newton's method, which takes fewer steps than the reference and rarely fails; else by that.
+ * On a truss always by that: the other ends with gaps of coupling.tof_m, which are much in a figure. */
+static hf_status solve_from_last(const hf_estimate *p, const hf_built_net *net, hf_workspace *w, hf_form_result *r)
+{
+    const hf_model *m = &p->built->model;
+    hf_near from = p->near;
+    from.built = &p->last;
+    if (!p->has_near || !hf_near_find(&from, net, w, r)) HF_TRY(hf_built_solve(p->built, net, w, r));
+    for (int c = 0; c < 3; c++) /* held places are those of the nominal net: their moves are added to it */
+        memcpy(p->last.place_m + c * m->n_node, w->position_m + c * m->n_node, (size_t)m->n_free * sizeof(double));
+    memcpy(p->last.tension_N, w->tension_N, (size_t)m->n_cable * sizeof(double));
+    return HF_OK;
+}
 
 static hf_status solve_net(const hf_estimate *p, const double *cut_m, const double *rest_m, const double *turn_m,
                            hf_workspace *w, hf_form_result *r)
@@ -94,7 +118,7 @@ static hf_status solve_net(const hf_estimate *p, const double *cut_m, const doub
     for (int row = 0; row < m->n_node; row++)
         for (int c = 0; c < 3; c++)
             s.support_m[c * m->n_node + row] = row < m->n_free ? 0 : rest_m[3 * row + c];
-    return hf_built_solve(p->built, &(hf_built_net){.cut_m = s.length_m, .support_move_m = s.support_m}, w, r);
+    return solve_from_last(p, &(hf_built_net){.cut_m = s.length_m, .support_move_m = s.support_m}, w, r);
 }
 
 hf_status hf_estimate_shape(const hf_estimate *p, const double *turn_m, hf_workspace *w, hf_form_result *r)

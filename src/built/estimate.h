@@ -3,6 +3,7 @@
 #ifndef HIFDM_ESTIMATE_H
 #define HIFDM_ESTIMATE_H
 
+#include "built/near.h"
 #include "built/saddle.h"
 
 typedef struct {
@@ -10,6 +11,9 @@ typedef struct {
     hf_saddle_prior prior;
     const double *place_m; /* [n_dof] measured */
     hf_built_linear linear;
+    hf_near near;
+    bool has_near; /* false: on a truss, or the nominal net has no matrix for it */
+    hf_built last; /* `built` at the last shape that was found, where the next one starts */
     hf_saddle saddle;
     hf_workspace work;   /* holds the estimated shape */
     hf_form_result form; /* of that shape */
