@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #define ID_MAX 255
 
@@ -214,11 +215,20 @@ static bool take_line(hf_csv *t, char *line, int n_line, char **field, int colum
     return true;
 }
 
+/* By its byte order mark, or by the zeros of a first letter below 256. */
+static bool is_utf16(const char *text, size_t length)
+{
+    if (length < 2) return false;
+    return !memcmp(text, "\xFF\xFE", 2) || !memcmp(text, "\xFE\xFF", 2) || !text[0] != !text[1];
+}
+
 hf_status hf_csv_read(const char *path, int column_max, hf_csv *t, hf_messages *messages)
 {
     size_t length;
     *t = (hf_csv){.path = path, .messages = messages};
     HF_TRY(hf_text_read_file(path, HF_BAD_CASE, &t->text, &length, messages));
+    if (is_utf16(t->text, length))
+        return hf_error(messages, HF_BAD_CASE, "%s: UTF-16 text; save the file as CSV UTF-8", path);
     if (strlen(t->text) != length) return hf_error(messages, HF_BAD_CASE, "%s: not a text file", path);
     t->header = malloc(2 * (size_t)column_max * sizeof *t->header); /* and the fields of one line behind it */
     if (!t->header) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
@@ -250,48 +260,76 @@ char *hf_csv_cell(const hf_csv *t, int row, int column)
 
 /* ---- columns and cells ---- */
 
+int hf_csv_column(const hf_csv *t, const char *name)
+{
+    for (int c = 0; c < t->n_column; c++)
+        if (!strcmp(name, t->header[c])) return c;
+    return -1;
+}
+
 /* A first line without any of the names is no header. */
 static bool has_header(const hf_csv *t, const char *const *names, int n_name)
 {
-    for (int c = 0; c < t->n_column; c++)
-        for (int k = 0; k < n_name; k++)
-            if (!strcmp(names[k], t->header[c])) return true;
+    for (int k = 0; k < n_name; k++)
+        if (hf_csv_column(t, names[k]) >= 0) return true;
     return false;
 }
 
-static hf_status refuse_header(hf_csv *t, const char *const *names, int n_required)
+#define LIST_SIZE 256
+
+/* Names with commas between them: all, or those that stand nowhere. Returns how many. */
+static int list_names(const char *const *names, int n, const int *where, char list[LIST_SIZE])
 {
-    char list[256] = "";
-    for (int k = 0; k < n_required; k++) {
+    int n_listed = 0;
+    *list = '\0';
+    for (int k = 0; k < n; k++) {
         size_t at = strlen(list);
-        snprintf(list + at, sizeof list - at, "%s%s", k ? "," : "", names[k]);
+        if (where && where[k] >= 0) continue;
+        snprintf(list + at, LIST_SIZE - at, "%s%s", n_listed++ ? "," : "", names[k]);
     }
-    hf_csv_fault(t, t->header_line, NULL, "the first line has to name the columns: ", list);
+    return n_listed;
+}
+
+/* One that is missing is named; when more are, they have other names, and a list of all helps. */
+static hf_status demand_columns(hf_csv *t, const char *const *names, int n_required, const int *where)
+{
+    char missing[LIST_SIZE], list[LIST_SIZE], what[2 * LIST_SIZE];
+    int n_missing = list_names(names, n_required, where, missing);
+    list_names(names, n_required, NULL, list);
+    if (n_missing == 1) hf_csv_fault(t, t->header_line, NULL, "a column is missing: ", missing);
+    snprintf(what, sizeof what, "the first line has to name the columns: %s%s", list,
+             n_missing < n_required ? "; missing are " : "");
+    if (n_missing > 1) hf_csv_fault(t, t->header_line, NULL, what, n_missing < n_required ? missing : "");
     return hf_csv_close_faults(t);
+}
+
+static bool is_ours(const hf_csv *t, const char *name)
+{
+    for (const char *const *ours = t->ours; ours && *ours; ours++)
+        if (!strcmp(*ours, name)) return true;
+    return false;
 }
 
 hf_status hf_csv_find_columns(hf_csv *t, const char *const *names, int n_name, int n_required, int *where)
 {
     for (int k = 0; k < n_name; k++)
         where[k] = -1;
-    if (n_required && !has_header(t, names, n_name)) return refuse_header(t, names, n_required);
+    if (n_required && !has_header(t, names, n_name)) return demand_columns(t, names, n_required, where);
     for (int c = 0; c < t->n_column; c++) {
         int k = 0;
         while (k < n_name && strcmp(names[k], t->header[c]))
             k++;
-        if (k == n_name) {
+        if (k == n_name && !is_ours(t, t->header[c])) {
             char hint[HF_TEXT_HINT_SIZE];
             hf_text_hint(t->header[c], names, n_name, hint);
             hf_warning(t->messages, "%s:%d: column '%s' is not used%s", t->path, t->header_line, t->header[c], hint);
-        } else if (where[k] >= 0) {
+        } else if (k < n_name && where[k] >= 0) {
             hf_csv_fault(t, t->header_line, NULL, "this column stands twice: ", names[k]);
-        } else {
+        } else if (k < n_name) {
             where[k] = c;
         }
     }
-    for (int k = 0; k < n_required; k++)
-        if (where[k] < 0) hf_csv_fault(t, t->header_line, NULL, "a column is missing: ", names[k]);
-    return hf_csv_close_faults(t);
+    return demand_columns(t, names, n_required, where);
 }
 
 double hf_csv_number(hf_csv *t, int row, int column, const char *id, const char *name)
@@ -314,7 +352,7 @@ int hf_csv_word(hf_csv *t, int row, int column, const char *id, const char *cons
 {
     const char *text = hf_csv_cell(t, row, column);
     for (int k = 0; k < n_word; k++)
-        if (!strcmp(words[k], text)) return k;
+        if (!strcasecmp(words[k], text)) return k;
     char what[160], given[400], hint[HF_TEXT_HINT_SIZE];
     int n = snprintf(what, sizeof what, "%s must be one of", t->header[column]);
     for (int k = 0; k < n_word; k++)

@@ -21,8 +21,9 @@ typedef struct {
     char **cell;   /* [n_row][n_column] */
     int *line;     /* [n_row] line number in the file */
     int n_fault;
-    int n_comma;      /* numbers with decimal commas: the first is a fault of its own, the others are counted */
-    bool has_doubles; /* ids stand twice: what names others may be a consequence */
+    int n_comma;             /* numbers with decimal commas: the first is a fault of its own, the others are counted */
+    const char *const *ours; /* columns that our exports write and this reader does not need, up to NULL; or NULL */
+    bool has_doubles;        /* ids stand twice: what names others may be a consequence */
     char *text;
     int row_capacity;
 } hf_csv;
@@ -45,13 +46,17 @@ void hf_csv_fault_unknown(hf_csv *table, int line, const char *id, const char *w
 /* HF_BAD_CASE when there were faults; a last message counts those that were not spelled out. */
 hf_status hf_csv_close_faults(hf_csv *table);
 
-/* Where each known column stands (-1 = absent); the first n_required must be there. Unknown ones are warned about. */
+/* Where the column of this name stands, or -1. */
+int hf_csv_column(const hf_csv *table, const char *name);
+
+/* Where each known column stands (-1 = absent); the first n_required must be there. Unknown ones are warned about, but
+ * for table->ours. */
 hf_status hf_csv_find_columns(hf_csv *table, const char *const *names, int n_name, int n_required, int *where);
 
 /* The cell as a finite number; NaN after a fault, which calls the column `name`. */
 double hf_csv_number(hf_csv *table, int row, int column, const char *id, const char *name);
 
-/* The cell as one of some words; 0 after a fault. */
+/* The cell as one of some words, in letters of any case; 0 after a fault. */
 int hf_csv_word(hf_csv *table, int row, int column, const char *id, const char *const *words, int n_word);
 
 typedef struct {

@@ -12,6 +12,7 @@
 
 enum { ID, X, Y, Z, SIGMA, N_COLUMN };
 static const char *const column_name[N_COLUMN] = {"id", "x_m", "y_m", "z_m", "sigma_m"};
+static const char *const ours[] = {"x0_m", "y0_m", "z0_m", "role", NULL}; /* of `hifdm export --csv` */
 #define SPARE_COLUMNS 64
 #define NODES_LEAST 3 /* that can move: fewer do not show a frame that is shifted or turned */
 
@@ -90,6 +91,7 @@ hf_status hf_measured_read(const char *path, const hf_scene *scene, const hf_mod
     int where[N_COLUMN];
     *measured = (hf_measured){0};
     hf_status status = hf_csv_read(path, N_COLUMN + SPARE_COLUMNS, &table, messages);
+    table.ours = ours;
     if (status == HF_OK) status = hf_csv_find_columns(&table, column_name, N_COLUMN, Z + 1, where);
     if (status == HF_OK) status = HF_ARENA_MAKE(&arena, lay_out_measured(&arena, m, measured));
     measured->block = arena.block;

@@ -153,6 +153,11 @@ hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages)
     if (n_inner == 0)
         return hf_error(messages, HF_BAD_CASE,
                         "scene: no node has the role 'inner': psi would count nothing; give inner nodes that role");
+    if (n_free == scene->n_node)
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "scene: no node has the role 'support': nothing holds the net; give that role to the nodes that "
+            "do not move");
     check_nodes(scene, &n_fault, messages);
     if (n_fault == 0) check_cables(scene, &n_fault, messages);
     HF_TRY(check_anchored(scene, &n_fault, messages));

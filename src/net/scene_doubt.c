@@ -1,4 +1,4 @@
-/* Contents: cables twice - far nodes - the plane of the supports - together */
+/* Contents: cables twice - far nodes - lengths - the plane of the supports - together */
 #include "net/scene_doubt.h"
 
 #include "base/arena.h"
@@ -11,6 +11,7 @@
 #define SAID_MAX 5    /* warnings of one sort */
 #define FAR 100.0     /* times as far from the middle as the others: mm for m are 1000 times */
 #define LARGE_M 500.0 /* across: no reflector of cables is larger, and one of 1 m in mm is */
+#define LENGTH_PART 0.5
 #define PLANE_PART                                                                                                     \
     1e-6 /* supports are in one plane up to this part of their extent: positions of a table are rounded */
 #define FLATTER_PART 1e-3 /* inner nodes that are not farther from that plane are meant to be in it */
@@ -119,6 +120,26 @@ static void doubt_size(const hf_scene *s, hf_messages *messages)
     if (largest > LARGE_M) hf_warning(messages, "scene: the net is %.4g m across: are all lengths in m?", largest);
 }
 
+/* ---- lengths ---- */
+
+/* Lengths in mm; no cable that is made to fit is so long or so short. */
+static void doubt_lengths(const hf_scene *s, hf_messages *messages)
+{
+    char place[HF_SCENE_PLACE_SIZE];
+    int n_said = 0;
+    for (int e = 0; e < s->n_cable; e++) {
+        double theoretical_m = hf_scene_theoretical_length(s, e), ratio = s->target[e] / theoretical_m;
+        bool is_length = s->law[e] == HF_LAW_LENGTH || s->law[e] == HF_LAW_ELASTIC;
+        if (!is_length || fabs(ratio - 1) <= LENGTH_PART || ++n_said > SAID_MAX) continue;
+        hf_scene_place(s, true, e, place, sizeof place);
+        hf_warning(messages, "%s is %.4g m long by its law, %.3g times the distance of its nodes: is it in m?", place,
+                   s->target[e], ratio);
+    }
+    if (n_said > SAID_MAX)
+        hf_warning(messages, "scene: and %d more cables of other lengths than their nodes are apart",
+                   n_said - SAID_MAX);
+}
+
 /* ---- the plane of the supports ---- */
 
 /* The flat that the supports span: a point, a line or a plane, by orthonormal directions. */
@@ -215,6 +236,7 @@ hf_status hf_scene_doubt(const hf_scene *s, hf_messages *messages)
     doubt_cables(s, t.joint, messages);
     doubt_nodes(s, &t, messages);
     doubt_size(s, messages);
+    doubt_lengths(s, messages);
     doubt_plane(s, messages);
     hf_arena_free(&arena);
     return HF_OK;

@@ -16,6 +16,9 @@
 enum { NODE_ID, NODE_X, NODE_Y, NODE_Z, NODE_ROLE, NODE_FX, NODE_FY, NODE_FZ, N_NODE_COLUMN };
 static const char *const node_column[N_NODE_COLUMN] = {"id", "x_m", "y_m", "z_m", "role", "Fx_N", "Fy_N", "Fz_N"};
 
+/* What `hifdm export` writes beside them. */
+static const char *const node_ours[] = {"x0_m", "y0_m", "z0_m", NULL};
+
 /* Returns true when some load is not zero. */
 static bool read_nodes(hf_csv *t, const int *where, hf_scene *s)
 {
@@ -39,6 +42,18 @@ static bool read_nodes(hf_csv *t, const int *where, hf_scene *s)
 
 enum { CABLE_ID, CABLE_I, CABLE_J, CABLE_GROUP, CABLE_LAW, CABLE_VALUE, CABLE_EA, CABLE_SET, N_CABLE_COLUMN };
 static const char *const cable_column[N_CABLE_COLUMN] = {"id", "i", "j", "group", "law", "value", "EA_N", "set"};
+
+static const char *const cable_ours[] = {"tension_N",    "length_m",          "q_N_per_m",    "l0_m",
+                                         "elongation_m", "l0_minus_theory_m", "adjustment_m", NULL};
+
+/* Of such a column nothing is used, which must not be silent where `value` leaves it open. */
+static bool has_values(const hf_csv *t)
+{
+    int column = hf_csv_column(t, "value");
+    for (int r = 0; column >= 0 && r < t->n_row; r++)
+        if (!*hf_csv_cell(t, r, column)) return false;
+    return column >= 0;
+}
 
 static void read_target(hf_csv *t, const int *where, int r, const char *id, hf_scene *s)
 {
@@ -192,6 +207,8 @@ static hf_status build(hf_csv *nodes, hf_csv *cables, const double group_EA_N[2]
     /* read both files before returning, so that one run shows the faults of both */
     hf_status node_status = hf_csv_read(nodes->path, COLUMN_MAX, nodes, nodes->messages);
     hf_status cable_status = hf_csv_read(cables->path, COLUMN_MAX, cables, cables->messages);
+    nodes->ours = node_ours;
+    if (cable_status == HF_OK && has_values(cables)) cables->ours = cable_ours;
     if (node_status == HF_OK) node_status = hf_csv_find_columns(nodes, node_column, N_NODE_COLUMN, NODE_FX, node_where);
     if (cable_status == HF_OK)
         cable_status = hf_csv_find_columns(cables, cable_column, N_CABLE_COLUMN, CABLE_EA, cable_where);

@@ -13,6 +13,6 @@ hf_cut hf_cut_of(const hf_scene *s, const hf_shape *shape, double reference_N, i
     /* the scene's target is that of its own law, which a design may have replaced */
     bool is_slack = fabs(c.tension_N) < HF_SLACK_RATIO * reference_N && law == s->law[e];
     c.l0_m = hf_law_cut_m(cable, c.length_m, c.tension_N, is_slack);
-    c.adjustment_m = c.l0_m - theoretical_m / (1 + c.tension_N / s->EA_N[e]);
+    c.l0_minus_theory_m = c.l0_m - theoretical_m / (1 + c.tension_N / s->EA_N[e]);
     return c;
 }

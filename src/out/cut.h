@@ -6,8 +6,8 @@
 
 typedef struct {
     double tension_N, length_m;
-    double l0_m;         /* unstressed length */
-    double adjustment_m; /* what a turnbuckle must give (> 0) or take up in a net that was cut from the drawing */
+    double l0_m;              /* unstressed length */
+    double l0_minus_theory_m; /* how much longer than if it were cut for the theoretical shape */
 } hf_cut;
 
 /* Of cable i_cable, whose EA the scene has. reference_N: hf_model_reference_N of the case. */

@@ -86,3 +86,14 @@ hf_status hf_export_shape(const hf_export_request *o, hf_export_write_shape *wri
     hf_export_free(&stored);
     return status;
 }
+
+void hf_export_sets_of(const hf_scene *s, int e, FILE *f)
+{
+    const char *gap = "";
+    if (s->n_set) fputc(',', f);
+    for (int k = 0; k < s->n_set; k++) {
+        if (!hf_cable_set_has(s, k, e)) continue;
+        fprintf(f, "%s%s", gap, s->set_name[k]);
+        gap = " ";
+    }
+}

@@ -10,7 +10,6 @@
 
 #include "base/csv.h"
 #include "base/file_out.h"
-#include <hifdm/cable_set.h>
 #include <hifdm/facets.h>
 
 #include <math.h>
@@ -34,17 +33,6 @@ static void write_nodes(const void *context, FILE *f)
     }
 }
 
-static void write_sets_of(const hf_scene *s, int e, FILE *f)
-{
-    const char *gap = "";
-    fputc(',', f);
-    for (int k = 0; k < s->n_set; k++) {
-        if (!hf_cable_set_has(s, k, e)) continue;
-        fprintf(f, "%s%s", gap, s->set_name[k]);
-        gap = " ";
-    }
-}
-
 static void write_cables(const void *context, FILE *f)
 {
     const hf_scene *s = ((const view *)context)->scene;
@@ -58,7 +46,7 @@ static void write_cables(const void *context, FILE *f)
         hf_csv_write_id(s->node_id[s->end[2 * e + 1]], f);
         fprintf(f, ",%s,%s,%.17g,%.17g,%.17g", hf_group_word[s->group[e]], hf_law_word[shape->law[e]],
                 shape->length_m[e], shape->tension_N[e], shape->q_N_per_m[e]);
-        if (s->n_set) write_sets_of(s, e, f);
+        hf_export_sets_of(s, e, f);
         fputc('\n', f);
     }
 }

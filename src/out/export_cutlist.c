@@ -1,17 +1,19 @@
 /* Writes what a workshop needs to make the net of a stored shape. --cutlist NAME.csv gives three CSV files:
  *
- * NAME.csv       : id,i,j,group,tension_N,length_m,l0_m,elongation_m,EA_N,adjustment_m,law,value
+ * NAME.csv       : id,i,j,group,tension_N,length_m,l0_m,elongation_m,EA_N,l0_minus_theory_m,law,value[,set]
  *                  l0_m          unstressed length, length_m / (1 + T/EA); a slack cable of law length or elastic has
  *                                the length that its law gives
  *                  elongation_m  length_m - l0_m
- *                  adjustment_m  l0_m minus the unstressed length of a cable that has the same tension in the
- *                                theoretical shape: by how much a turnbuckle must lengthen (> 0) or shorten (< 0)
- *                                the cable in a net that was cut from the drawing
+ *                  l0_minus_theory_m
+ *                                l0_m minus the unstressed length of a cable that has the same tension in the
+ *                                theoretical shape. A cable that is cut to l0_m needs no turn of a turnbuckle; one
+ *                                that was cut for the theoretical shape must be made so much longer (> 0) or shorter
  *                  law, value    "elastic" and l0_m again, so that NAME.csv can be imported as cables.csv of the net
  *                                as built
+ *                  set           names of sets, when the net has some; blanks between them
  * NAME_nodes.csv : id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]    where the jig holds each node; can be imported as nodes.csv
- * NAME_totals.csv: group,cables,l0_m,length_m,least_tension_N,largest_tension_N,least_adjustment_m,
- *                  largest_adjustment_m    a row for each group, and one for all cables
+ * NAME_totals.csv: group,cables,l0_m,length_m,least_tension_N,largest_tension_N,least_l0_minus_theory_m,
+ *                  largest_l0_minus_theory_m    a row for each group, all cables, and each set
  * Numbers have 17 significant digits, so the net imported from these files has the stored shape. */
 #include "out/export.h"
 
@@ -20,6 +22,7 @@
 #include "base/path.h"
 #include "net/cable_pick.h"
 #include "out/cut.h"
+#include <hifdm/cable_set.h>
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
 
@@ -36,7 +39,8 @@ static void write_cables(const void *context, FILE *f)
 {
     const view *v = context;
     const hf_scene *s = v->scene;
-    fputs("id,i,j,group,tension_N,length_m,l0_m,elongation_m,EA_N,adjustment_m,law,value\n", f);
+    fprintf(f, "id,i,j,group,tension_N,length_m,l0_m,elongation_m,EA_N,l0_minus_theory_m,law,value%s\n",
+            s->n_set ? ",set" : "");
     for (int e = 0; e < s->n_cable; e++) {
         hf_cut c = hf_cut_of(s, v->shape, v->reference_N, e);
         hf_csv_write_id(s->cable_id[e], f);
@@ -44,9 +48,11 @@ static void write_cables(const void *context, FILE *f)
             fputc(',', f);
             hf_csv_write_id(s->node_id[s->end[2 * e + k]], f);
         }
-        fprintf(f, ",%s,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%s,%.17g\n", hf_group_word[s->group[e]], c.tension_N,
-                c.length_m, c.l0_m, c.length_m - c.l0_m, s->EA_N[e], c.adjustment_m, hf_law_word[HF_LAW_ELASTIC],
+        fprintf(f, ",%s,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%s,%.17g", hf_group_word[s->group[e]], c.tension_N,
+                c.length_m, c.l0_m, c.length_m - c.l0_m, s->EA_N[e], c.l0_minus_theory_m, hf_law_word[HF_LAW_ELASTIC],
                 c.l0_m);
+        hf_export_sets_of(s, e, f);
+        fputc('\n', f);
     }
 }
 
@@ -64,32 +70,40 @@ static void write_nodes(const void *context, FILE *f)
     }
 }
 
-/* Totals of the cables of one group; group 2: of all cables. */
-static void write_total(const view *v, int group, FILE *f)
+typedef enum { OF_GROUP, OF_SET, OF_ALL } total_kind;
+
+static void write_total(const view *v, const char *name, total_kind kind, int which, FILE *f)
 {
     int n = 0;
-    double l0_m = 0, length_m = 0, tension_N[2] = {INFINITY, -INFINITY}, adjustment_m[2] = {INFINITY, -INFINITY};
+    double l0_m = 0, length_m = 0, tension_N[2] = {INFINITY, -INFINITY}, l0_minus_theory_m[2] = {INFINITY, -INFINITY};
     for (int e = 0; e < v->scene->n_cable; e++) {
-        if (group < 2 && v->scene->group[e] != group) continue;
+        if (kind == OF_GROUP && v->scene->group[e] != which) continue;
+        if (kind == OF_SET && !hf_cable_set_has(v->scene, which, e)) continue;
         hf_cut c = hf_cut_of(v->scene, v->shape, v->reference_N, e);
         n++;
         l0_m += c.l0_m;
         length_m += c.length_m;
         tension_N[0] = fmin(tension_N[0], c.tension_N);
         tension_N[1] = fmax(tension_N[1], c.tension_N);
-        adjustment_m[0] = fmin(adjustment_m[0], c.adjustment_m);
-        adjustment_m[1] = fmax(adjustment_m[1], c.adjustment_m);
+        l0_minus_theory_m[0] = fmin(l0_minus_theory_m[0], c.l0_minus_theory_m);
+        l0_minus_theory_m[1] = fmax(l0_minus_theory_m[1], c.l0_minus_theory_m);
     }
     if (n)
-        fprintf(f, "%s,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", group < 2 ? hf_group_word[group] : "all", n, l0_m,
-                length_m, tension_N[0], tension_N[1], adjustment_m[0], adjustment_m[1]);
+        fprintf(f, "%s,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", name, n, l0_m, length_m, tension_N[0], tension_N[1],
+                l0_minus_theory_m[0], l0_minus_theory_m[1]);
 }
 
 static void write_totals(const void *context, FILE *f)
 {
-    fputs("group,cables,l0_m,length_m,least_tension_N,largest_tension_N,least_adjustment_m,largest_adjustment_m\n", f);
-    for (int group = 0; group < 3; group++)
-        write_total(context, group, f);
+    const view *v = context;
+    fputs("group,cables,l0_m,length_m,least_tension_N,largest_tension_N,least_l0_minus_theory_m,largest_l0_minus_"
+          "theory_m\n",
+          f);
+    for (int group = 0; group < 2; group++)
+        write_total(v, hf_group_word[group], OF_GROUP, group, f);
+    write_total(v, "all", OF_ALL, 0, f);
+    for (int k = 0; k < v->scene->n_set; k++)
+        write_total(v, v->scene->set_name[k], OF_SET, k, f);
 }
 
 /* Makes the three names: NAME.csv, NAME_nodes.csv, NAME_totals.csv. */

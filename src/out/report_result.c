@@ -136,10 +136,11 @@ static void write_cuts(const page *p, const hf_shape *shape, FILE *f)
     double reference_N = hf_model_reference_N(s, p->summary.pretension_N);
     if (!s->EA_N) return;
     for (int is_turned = 0; is_turned < 2; is_turned++) {
-        hf_json_packed packed = is_turned ? hf_json_pack("adjustment_m", "f32", f) : hf_json_pack("l0_m", "f64", f);
+        hf_json_packed packed =
+            is_turned ? hf_json_pack("l0_minus_theory_m", "f32", f) : hf_json_pack("l0_m", "f64", f);
         for (int e = 0; e < s->n_cable; e++) {
             hf_cut c = hf_cut_of(s, shape, reference_N, e);
-            hf_json_pack_value(&packed, is_turned ? c.adjustment_m : c.l0_m);
+            hf_json_pack_value(&packed, is_turned ? c.l0_minus_theory_m : c.l0_m);
         }
         hf_json_pack_end(&packed);
     }

@@ -469,6 +469,13 @@ static const hf_word told[] = {
      "A net of more than 500 m: lengths may be in mm, and keys and tables have them in m. If it is meant, nothing to "
      "do.",
      "m across: are all lengths in m?"},
+    {"long_cable", "warning", "",
+     "The length that a cable of law length or elastic has by its table is far from the distance of its nodes: in mm, "
+     "or "
+     "a digit too many. If a cable is meant to hang, nothing to do.",
+     "m long by its law"},
+    {"long_cables", "warning", "", "See long_cable; these are the rest of them.",
+     "more cables of other lengths than their nodes"},
     {"flat_rim", "warning", "",
      "With all supports in one plane tensions pull the whole net into it. Tie the net to a second one "
      "(rear_distance_m), load it, or put supports on the surface.",

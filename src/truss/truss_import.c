@@ -40,6 +40,11 @@ static unsigned char read_fixed(hf_csv *t, int row, int column, const char *id)
     }
 }
 
+/* What `hifdm export` writes behind them. */
+static const char *const node_ours[] = {"ux_m", "uy_m", "uz_m", "rx_rad", "ry_rad", "rz_rad", NULL};
+static const char *const member_ours[] = {"Nx_i_N", "Vy_i_N", "Vz_i_N",  "Tx_i_Nm", "My_i_Nm", "Mz_i_Nm", "Nx_j_N",
+                                          "Vy_j_N", "Vz_j_N", "Tx_j_Nm", "My_j_Nm", "Mz_j_Nm", NULL};
+
 static void read_nodes(hf_csv *t, const int *where, hf_truss *s)
 {
     for (int r = 0; r < t->n_row; r++) {
@@ -131,6 +136,8 @@ static hf_status build(hf_csv *nodes, hf_csv *members, hf_csv_named **node_index
     /* read both files before returning, so that one run shows the faults of both */
     hf_status node_status = hf_csv_read(nodes->path, COLUMN_MAX, nodes, nodes->messages);
     hf_status member_status = hf_csv_read(members->path, COLUMN_MAX, members, members->messages);
+    nodes->ours = node_ours;
+    members->ours = member_ours;
     if (node_status == HF_OK)
         node_status = hf_csv_find_columns(nodes, node_column, N_NODE_COLUMN, NODE_MASS, node_where);
     if (member_status == HF_OK)

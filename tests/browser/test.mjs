@@ -328,7 +328,7 @@ async function checkCuts(tab, made, heads) {
   const column = (start) => heads.findIndex((text) => text.startsWith(start));
   for (const row of cells) {
     const now = result.get(row[0]),
-      turn_m = found === result ? Number(now.adjustment_m) : Number(now.l0_m) - Number(found.get(row[0]).l0_m);
+      turn_m = found === result ? Number(now.l0_minus_theory_m) : Number(now.l0_m) - Number(found.get(row[0]).l0_m);
     assert.ok(Math.abs(number(row[column("cut to")]) - Number(now.l0_m)) < 1e-4 * Number(now.l0_m));
     const shown_mm = number(row[column("turn, ")]);
     assert.ok(Math.abs(shown_mm - 1e3 * turn_m) < 0.06, `a turn of ${shown_mm} mm for ${1e3 * turn_m}`);

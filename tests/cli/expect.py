@@ -109,6 +109,13 @@ def texts(data_set):
     return [text(t) for t in values.tolist()] if isinstance(values, np.ndarray) else text(values)
 
 
+def sets_of(file):
+    """Name -> ids of the cables of each set."""
+    ids, start, cable = texts(file["scene/cable/id"]), file["scene/set/start"][:], file["scene/set/cable"][:]
+    names = texts(file["scene/set/name"])
+    return {name: {ids[e] for e in cable[start[k] : start[k + 1]]} for k, name in enumerate(names)}
+
+
 def attribute(item, name):
     return texts({(): item.attrs[name]})
 

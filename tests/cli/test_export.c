@@ -63,8 +63,7 @@ START_TEST(exported_shape_can_be_imported)
           folder);
     const char *path = file_with("back.yaml", "scene:\n  import: {nodes: net/nodes.csv, cables: net/cables.csv}\n");
     HIFDM(0, "run", path, "-o", back, "--quiet");
-    ERR("nodes.csv:1: column 'x0_m' is not used");
-    ERR("cables.csv:1: column 'tension_N' is not used");
+    ck_assert_str_eq(said.err, ""); /* the columns that are not used are the program's own */
     EXPECT(out, back, "--", "np.abs(a['form/position_m'][:] - b['form/position_m'][:]).max() < 1e-11",
            "np.allclose(a['form/tension_N'], b['form/tension_N'], rtol=1e-10)",
            "psi_m(b, b['form/position_m'][:]) < 1e-11", "(a['form/q_N_per_m'][:] == b['form/q_N_per_m'][:]).all()");

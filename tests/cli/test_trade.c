@@ -174,7 +174,7 @@ START_TEST(cut_list_holds_what_it_says)
     HIFDM(0, "export", out, "--cutlist", cut, "--stage", "form");
     EXPECT(cut, temp("cut_nodes.csv"), temp("cut_totals.csv"), out, "--", "len(a) == 220", "len(b) == 121",
            "list(a[0]) == ['id', 'i', 'j', 'group', 'tension_N', 'length_m', 'l0_m', 'elongation_m', 'EA_N', "
-           "'adjustment_m', 'law', 'value']",
+           "'l0_minus_theory_m', 'law', 'value', 'set']",
            "[r['id'] for r in a] == texts(d['scene/cable/id'])",
            "column(a, 'tension_N').tobytes() == d['form/tension_N'][:].tobytes()",
            "column(a, 'length_m').tobytes() == d['form/length_m'][:].tobytes()",
@@ -182,17 +182,38 @@ START_TEST(cut_list_holds_what_it_says)
            "(column(a, 'EA_N') == 47000).all()",
            "np.allclose(column(a, 'l0_m') * (1 + column(a, 'tension_N') / 47000), column(a, 'length_m'), rtol=4e-16)",
            "np.allclose(column(a, 'elongation_m'), column(a, 'length_m') - column(a, 'l0_m'), atol=1e-15)",
-           "np.allclose(column(a, 'adjustment_m'), (column(a, 'length_m') - d['scene/cable/length_m'][:]) / "
+           "np.allclose(column(a, 'l0_minus_theory_m'), (column(a, 'length_m') - d['scene/cable/length_m'][:]) / "
            "(1 + column(a, 'tension_N') / 47000), atol=1e-15)",
            "(column(a, 'l0_m') == column(a, 'value')).all()", "{r['law'] for r in a} == {'elastic'}",
-           "[r['group'] for r in c] == ['inner', 'boundary', 'all']",
-           "[r['cables'] for r in c] == ['100', '120', '220']",
+           "[r['group'] for r in c] == ['inner', 'boundary', 'all', 'directrix', 'edge', 'generatrix']",
+           "[r['cables'] for r in c] == ['100', '120', '220', '110', '40', '110']",
            "near(sum(float(r['l0_m']) for r in a if r['group'] == 'inner'), float(c[0]['l0_m']), 1e-12)",
            "near(sum(float(r['length_m']) for r in a), float(c[2]['length_m']), 1e-12)",
-           "min(float(r['adjustment_m']) for r in a) == float(c[2]['least_adjustment_m'])",
-           "max(float(r['adjustment_m']) for r in a) == float(c[2]['largest_adjustment_m'])",
+           "min(float(r['l0_minus_theory_m']) for r in a) == float(c[2]['least_l0_minus_theory_m'])",
+           "max(float(r['l0_minus_theory_m']) for r in a) == float(c[2]['largest_l0_minus_theory_m'])",
            "min(float(r['tension_N']) for r in a if r['group'] == 'inner') == float(c[0]['least_tension_N'])",
            "max(float(r['tension_N']) for r in a if r['group'] == 'boundary') == float(c[1]['largest_tension_N'])");
+}
+END_TEST
+
+/* What a workshop buys by family, and what `adjust` needs to know of the net that comes back. */
+START_TEST(cut_list_keeps_the_families)
+{
+    const char *out = temp("p.h5"), *again = temp("again.h5"), *cut = temp("cut.csv");
+    HIFDM(0, "run",
+          file_with("p.yaml", "scene:\n  EA_inner_N: 5e4\n  EA_boundary_N: 5e4\n"
+                              "  paraboloid: {aperture_m: 4, focal_length_m: 3, rings: 2, rear_distance_m: 1}\n"
+                              "form: {prestress: exact}\n"),
+          "-o", out, "--quiet");
+    HIFDM(0, "export", out, "--cutlist", cut);
+    EXPECT(cut, temp("cut_totals.csv"), out, "--",
+           "[r['group'] for r in b] == ['inner', 'boundary', 'all', 'front', 'front_edge', 'rear', 'rear_edge', 'tie']",
+           "all(int(r['cables']) == sum(c['set'] == r['group'] for c in a) > 0 for r in b[3:])",
+           "all(near(float(r['l0_m']), sum(float(c['l0_m']) for c in a if c['set'] == r['group']), 1e-12) for r in "
+           "b[3:])");
+    HIFDM(0, "run", file_with("again.yaml", "scene: {import: {nodes: cut_nodes.csv, cables: cut.csv}}\n"), "-o", again);
+    ck_assert_str_eq(said.err, "");
+    EXPECT(out, again, "--", "sets_of(a) == sets_of(b)", "len(sets_of(a)) == 5");
 }
 END_TEST
 
@@ -384,6 +405,7 @@ Suite *suite_cli_trade(void)
     tcase_add_test(tests, paraview_files_of_an_imported_net);
     tcase_add_loop_test(tests, net_built_from_the_cut_list_has_the_found_shape, 0, 3);
     tcase_add_test(tests, cut_list_holds_what_it_says);
+    tcase_add_test(tests, cut_list_keeps_the_families);
     tcase_add_test(tests, slack_cables_are_cut_as_their_law_says);
     tcase_add_test(tests, cut_list_needs_EA);
     tcase_add_test(tests, case_completes_EA_of_an_imported_net);

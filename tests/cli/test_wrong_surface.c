@@ -146,6 +146,24 @@ START_TEST(far_nodes_are_told)
 }
 END_TEST
 
+START_TEST(lengths_in_another_unit_are_told)
+{
+    static const char nodes[] = "id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0,0.1,inner\nc,2,0,0,support\n"
+                                "d,1,1,0,support\n";
+    char cables[2048] = "id,i,j,group,law,value,EA_N\nab,a,b,inner,length,1005,\nbc,b,c,inner,elastic,0.498,1e4\n";
+    HIFDM(0, "check", net_with(nodes, formatted("%sbd,b,d,inner,elastic,1.5,1e4\n", cables)));
+    ERRS("warning: %s:2: cable 'ab' is 1005 m long by its law, 1e+03 times the distance of its nodes: is it in m?\n",
+         temp("cables.csv"));
+    ERRS("warning: %s:3: cable 'bc' is 0.498 m long by its law, 0.496 times ", temp("cables.csv"));
+    ck_assert_int_eq(count_of(said.err, "by its law"), 2);
+    for (int i = 0; i < 6; i++)
+        snprintf(cables + strlen(cables), sizeof cables - strlen(cables), "t%d,b,d,inner,length,1600,\n", i);
+    HIFDM(0, "check", net_with(nodes, cables));
+    ck_assert_int_eq(count_of(said.err, "by its law"), 5);
+    ERR("warning: scene: and 3 more cables of other lengths than their nodes are apart\n");
+}
+END_TEST
+
 START_TEST(focal_length_out_of_proportion_is_told)
 {
     const char *path = file_with("f.yaml", SMALL_SCENE);
@@ -198,6 +216,7 @@ Suite *suite_cli_wrong_surface(void)
     tcase_add_test(tests, small_differences_from_the_surface_are_allowed);
     tcase_add_test(tests, cables_between_the_same_nodes_are_told);
     tcase_add_test(tests, far_nodes_are_told);
+    tcase_add_test(tests, lengths_in_another_unit_are_told);
     tcase_add_test(tests, focal_length_out_of_proportion_is_told);
     tcase_add_test(tests, net_that_collapses_to_the_plane_of_its_supports_is_told);
     tcase_add_loop_test(tests, ratio_with_a_slack_cable_is_infinite, 0, 2);

@@ -24,7 +24,7 @@ function cableColumn(name, of, digits, { unit = 1, isChange = false } = {}) {
 // do in one that was cut for the theoretical shape.
 function turned(before, after) {
   if (!after.l0_m || (before !== after && !before.l0_m)) return null;
-  if (before === after) return ["turn, from the drawing (mm)", (e) => after.adjustment_m[e]];
+  if (before === after) return ["turn, if cut for the theoretical shape (mm)", (e) => after.l0_minus_theory_m[e]];
   return [`turn, from ${before.name} (mm)`, (e) => after.l0_m[e] - before.l0_m[e]];
 }
 

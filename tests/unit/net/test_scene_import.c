@@ -163,8 +163,8 @@ static const struct {
      "error: nodes.csv:3: 'b': z_m must be a finite number, not empty\n"},
     {"id,x_m,y_m,z_m,role,Fy_N\na,0,0,0,support,\nb,1,0,0,inner,nan\nc,4,0,0,support,\n", NULL,
      "error: nodes.csv:3: 'b': Fy_N must be a finite number, not nan\n"},
-    {NODES "a,0,0,0,support\nb,1,0,0,Inner\nc,4,0,0,support\n", NULL,
-     "error: nodes.csv:3: 'b': role must be one of support inner edge, not Inner; did you mean 'inner'?\n"},
+    {NODES "a,0,0,0,support\nb,1,0,0,iner\nc,4,0,0,support\n", NULL,
+     "error: nodes.csv:3: 'b': role must be one of support inner edge, not iner; did you mean 'inner'?\n"},
     {NODES "a,0,0,0,support\nb,1,0,0,\nc,4,0,0,support\n", NULL,
      "error: nodes.csv:3: 'b': role must be one of support inner edge, not empty\n"},
     {NULL, CABLES "ab,a,b,middle,tension,1\nbc,b,c,boundary,length,\n",
@@ -227,6 +227,12 @@ START_TEST(binary_and_missing_files_are_refused)
     fclose(file);
     ck_assert_int_eq(import(NULL, GOOD_CABLES, &s, said, sizeof said), HF_BAD_CASE);
     ck_assert_str_eq(said, "error: nodes.csv: not a text file\n");
+    file = fopen(temp_path("nodes.csv"), "wb"); /* without a byte order mark */
+    ck_assert_ptr_nonnull(file);
+    fwrite("i\0d\0,\0", 1, 6, file);
+    fclose(file);
+    ck_assert_int_eq(import(NULL, GOOD_CABLES, &s, said, sizeof said), HF_BAD_CASE);
+    ck_assert_str_eq(said, "error: nodes.csv: UTF-16 text; save the file as CSV UTF-8\n");
 }
 END_TEST
 
