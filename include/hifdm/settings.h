@@ -268,7 +268,7 @@ typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
 
 /* X(name, word, unit, condition, description): what is measured of each sample of the net as built. The words are in
  * case files and result files. Conditions: ALWAYS, SURFACE (a section surface), FACETS (it has facets), LOSS (it has
- * frequencies). */
+ * frequencies), PATTERN (it has facets and a section pattern). */
 #define HF_TOLERANCE_MEASURES(X)                                                                                       \
     X(PSI, "psi_m", "m", ALWAYS, "RMS distance of the inner nodes to their theoretical places")                        \
     X(HALF_PATH, "half_path_rms_m", "m", SURFACE, "of the inner nodes to the wanted surface")                          \
@@ -277,6 +277,8 @@ typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
     X(FACET_FIT_HALF_PATH, "facet_fit_half_path_rms_m", "m", FACETS, "the same after the best fit")                    \
     X(GAIN_LOSS, "gain_loss_dB", "dB", LOSS,                                                                           \
       "at the highest frequency after the best fit, of facets where there are some; infinite beyond 3 dB")             \
+    X(PATTERN_LOSS, "pattern_loss_dB", "dB", PATTERN,                                                                  \
+      "in the direction of the beam at the highest frequency, by physical optics over the facets")                     \
     X(LEAST_TENSION, "least_tension_N", "N", ALWAYS, "smallest tension of a cable")                                    \
     X(SLACK, "n_slack", "", ALWAYS, "slack cables")                                                                    \
     X(LOOSE, "n_loose", "", ALWAYS, "nodes that no taut cable holds")

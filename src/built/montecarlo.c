@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "search/parallel.h"
+#include "solve/facet_mesh.h"
 
 #include <math.h>
 #include <string.h>
@@ -85,7 +86,7 @@ static void make_sample(void *context, long i, double *cut_m, double *EA_N, doub
 
 bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets *facets, hf_tolerance_measure measure)
 {
-    enum { ALWAYS, SURFACE, FACETS, LOSS };
+    enum { ALWAYS, SURFACE, FACETS, LOSS, PATTERN };
 #define CONDITION(name, word, unit, condition, description) condition,
     static const int condition_of[HF_TOLERANCE_N_MEASURE] = {HF_TOLERANCE_MEASURES(CONDITION)};
 #undef CONDITION
@@ -94,7 +95,9 @@ bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets 
     case SURFACE:
         return has_surface;
     case FACETS:
-        return has_surface && facets && facets->n_facet > 0;
+    case PATTERN:
+        return has_surface && facets && facets->n_facet > 0 &&
+               (condition_of[measure] == FACETS || surface->has_pattern);
     case LOSS:
         return has_surface && surface->frequencies_Hz.n > 0;
     default:
@@ -110,13 +113,30 @@ static double loss_dB(const hf_montecarlo *t, double half_path_rms_m)
     return isnan(loss) && !isnan(half_path_rms_m) ? (double)INFINITY : loss; /* beyond what Ruze's formula holds for */
 }
 
+/* Pillows that a cable cannot hold have no far field. */
+static hf_status measure_pattern(const hf_montecarlo *t, const hf_workspace *w, double *value)
+{
+    hf_arena arena = {0}, sags = {0};
+    hf_facet_shape shape;
+    double pull_ratio = 0, mesh_N_per_m = t->surface->mesh_tension_N_per_m, *sag_m = NULL;
+    hf_status status = hf_facet_shape_take(&t->built->model, w, &shape, &arena);
+    if (status == HF_OK && mesh_N_per_m > 0)
+        status = hf_facet_mesh_make_sags(mesh_N_per_m, t->facets, &shape, &sags, &sag_m, &pull_ratio);
+    if (status == HF_OK && pull_ratio <= HF_FACET_PULL_MOST)
+        *value = hf_gain_loss_dB(t->beam, &(hf_pattern_surface){t->facets, shape.position_m, sag_m});
+    hf_arena_free(&sags);
+    hf_arena_free(&arena);
+    return status;
+}
+
 /* A fit that did not converge has no value, nor has its loss of gain: neither meets a requirement. */
 static void measure_surface(hf_montecarlo *t, const hf_built_shape *shape, double *value)
 {
     hf_surface_measures is;
     const hf_workspace w = {.position_m = (double *)(uintptr_t)shape->position_m, /* which are only read */
                             .tension_N = (double *)(uintptr_t)shape->tension_N};
-    if (hf_surface_measure(t->surface, t->facets, &t->built->model, &w, &is) != HF_OK) {
+    if (hf_surface_measure(t->surface, t->facets, &t->built->model, &w, &is) != HF_OK ||
+        (t->beam && measure_pattern(t, &w, &value[HF_TOLERANCE_PATTERN_LOSS]) != HF_OK)) {
         t->has_no_memory = true;
         return;
     }

@@ -400,7 +400,7 @@ static const hf_field state_field[] = {
 static const hf_field require_field[] = {
     {"measure", HF_FIELD_WORD, IN(measure), 0, 0, NULL, "", hf_tolerance_measure_word,
      "what each net as built is measured by; those of the surface need a section surface, of facets a net that has "
-     "some, gain_loss_dB surface.frequencies_Hz"},
+     "some, gain_loss_dB surface.frequencies_Hz, pattern_loss_dB surface.pattern"},
     {"at_most", HF_FIELD_DOUBLE, IN(at_most), -BIG, BIG, "", "", NULL, "largest value that is allowed"},
     {"at_least", HF_FIELD_DOUBLE, IN(at_least), -BIG, BIG, "", "", NULL, "smallest value that is allowed"},
 };

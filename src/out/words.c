@@ -356,6 +356,10 @@ static const hf_word told[] = {
     {"n_slack", "figure", "", "Slack cables of a sample.", NULL},
     {"n_loose", "figure", "", "Loose nodes of a sample.", NULL},
     {"fit_gain_loss_dB", "figure", "dB", "Loss of gain (Ruze) after the best fit; null beyond 3 dB.", NULL},
+    {"pattern_loss_dB", "figure", "dB",
+     "What a net as built loses of its gain in the direction of the beam, at the highest frequency, by physical optics "
+     "over its facets, below the same current in phase. Asked for by surface.pattern beside tolerance.",
+     NULL},
     {"n_node", "figure", "", "Nodes of the net.", NULL},
     {"n_cable", "figure", "", "Cables of the net.", NULL},
     {"fit_converged", "figure", "", "Whether the best fit has ended; false: it has no figures.", NULL},

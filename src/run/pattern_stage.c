@@ -94,10 +94,8 @@ hf_status hf_pattern_stage(const hf_problem *p, hf_stage stage, const hf_workspa
     if (!p->surface.has_pattern) return HF_OK;
     if (n_thread <= 0) n_thread = hf_parallel_cores();
     hf_status status = hf_facet_shape_take(&p->model, w, &shape, &arena);
-    if (status == HF_OK && mesh_N_per_m > 0) {
-        status = HF_ARENA_MAKE(&sags, sag_m = hf_arena_take(&sags, 4 * (size_t)p->facets.n_facet, sizeof(double)));
-        if (status == HF_OK) status = hf_facet_mesh_sags(mesh_N_per_m, &p->facets, &shape, sag_m, &pull_ratio);
-    }
+    if (status == HF_OK && mesh_N_per_m > 0)
+        status = hf_facet_mesh_make_sags(mesh_N_per_m, &p->facets, &shape, &sags, &sag_m, &pull_ratio);
     if (status == HF_OK && pull_ratio <= HF_FACET_PULL_MOST) {
         const hf_pattern_surface surface = {&p->facets, shape.position_m, sag_m};
         status = solve_all(p, &surface, (means){n_thread, stop}, &table, to);

@@ -178,6 +178,7 @@ typedef struct {
     const hf_tolerance_stage *stage;
     hf_built built;
     hf_montecarlo montecarlo;
+    hf_gain_beam beam; /* that of the theoretical net, as of all shapes */
     hf_samples samples;
     double begin_s;
 } job;
@@ -300,6 +301,15 @@ static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
     return hf_store_tolerance(j->stage->store, &j->montecarlo, &rows, messages);
 }
 
+/* Of facets too coarse for their frequency nothing is measured. */
+static void aim_beam(job *j)
+{
+    const hf_problem *p = j->stage->problem;
+    if (!hf_montecarlo_measures(&p->surface, &p->facets, HF_TOLERANCE_PATTERN_LOSS)) return;
+    hf_gain_beam_make(&p->surface, &p->facets, p->scene.position_m, hf_surface_highest_Hz(&p->surface), &j->beam);
+    if (j->beam.order < HF_GAIN_ORDER_MOST) j->montecarlo.beam = &j->beam;
+}
+
 static hf_status work_off_stage(job *j, hf_summary *summary, hf_messages *messages)
 {
     const hf_problem *p = j->stage->problem;
@@ -309,6 +319,7 @@ static hf_status work_off_stage(job *j, hf_summary *summary, hf_messages *messag
     j->built.stop = j->stage->request->stop_requested;
     tell_first_order(j);
     HF_TRY(open_montecarlo(j, messages));
+    aim_beam(j);
     HF_TRY(open_samples(j, messages));
     HF_TRY(find_samples(j, messages));
     if (j->samples.n_have < j->samples.n_all) return HF_OK; /* a task of several */

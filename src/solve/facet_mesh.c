@@ -142,6 +142,13 @@ hf_status hf_facet_mesh_sags(double mesh_N_per_m, const hf_facets *f, const hf_f
     return HF_OK;
 }
 
+hf_status hf_facet_mesh_make_sags(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape *shape, hf_arena *arena,
+                                  double **sag_m, double *pull_ratio)
+{
+    HF_TRY(HF_ARENA_MAKE(arena, *sag_m = hf_arena_take(arena, 4 * (size_t)f->n_facet, sizeof **sag_m)));
+    return hf_facet_mesh_sags(mesh_N_per_m, f, shape, *sag_m, pull_ratio);
+}
+
 /* ---- the mesh of a facet ---- */
 
 /* A function of u and v, and its derivatives. */

@@ -25,6 +25,10 @@ void hf_facet_mesh_take(const hf_facets *facets, int i, const double *position_m
 hf_status hf_facet_mesh_sags(double mesh_tension_N_per_m, const hf_facets *facets, const hf_facet_shape *shape,
                              double *sag_m, double *pull_ratio);
 
+/* The same into new memory of the arena; free it in any case. */
+hf_status hf_facet_mesh_make_sags(double mesh_tension_N_per_m, const hf_facets *facets, const hf_facet_shape *shape,
+                                  hf_arena *arena, double **sag_m, double *pull_ratio);
+
 /* Set bubble_m from sag_m: the mesh has the least area, to the second power of slopes, between its sides. */
 void hf_facet_mesh_settle(hf_facet_mesh *mesh);
 

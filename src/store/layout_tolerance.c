@@ -44,10 +44,21 @@ static void gather(const hf_tolerance_summary *s, figures *f)
     }
 }
 
-static void scatter(const figures *f, hf_tolerance_summary *s)
+/* The measure that row i is of, or HF_TOLERANCE_N_MEASURE: none of this version. */
+static int measure_of(const figures *f, int i)
 {
-    for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++) {
-        hf_tolerance_figures *of = &s->figure[k];
+    int k = 0;
+    while (k < HF_TOLERANCE_N_MEASURE && strncmp(hf_tolerance_measure_word[k], f->measure[i], WORD_SIZE) != 0)
+        k++;
+    return k;
+}
+
+/* Of n rows: a file of before has fewer. */
+static void scatter(int n, const figures *f, hf_tolerance_summary *s)
+{
+    for (int k = 0; k < n; k++) {
+        if (measure_of(f, k) == HF_TOLERANCE_N_MEASURE) continue;
+        hf_tolerance_figures *of = &s->figure[measure_of(f, k)];
         double *const value[N_PLAIN] = {NULL,           &of->mean,  &of->mean_low, &of->mean_high,
                                         &of->deviation, &of->least, &of->largest};
         of->is_measured = f->plain[0][k] == 1;
@@ -82,16 +93,16 @@ static void get_values(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, voi
     hf_hdf5_read_array(io, group, array, values);
 }
 
-static void pass_figures(hf_hdf5 *io, hid_t group, pass *with, figures *f)
+static void pass_figures(hf_hdf5 *io, hid_t group, pass *with, int n, figures *f)
 {
-    hf_hdf5_array array = words("measure", HF_TOLERANCE_N_MEASURE, WORD_SIZE, "what rows of the figures are of");
+    hf_hdf5_array array = words("measure", n, WORD_SIZE, "what rows of the figures are of");
     with(io, group, &array, f->measure);
     for (int i = 0; i < N_PLAIN; i++) {
-        array = numbers(plain_name[i][0], HF_TOLERANCE_N_MEASURE, "", plain_name[i][1]);
+        array = numbers(plain_name[i][0], n, "", plain_name[i][1]);
         with(io, group, &array, f->plain[i]);
     }
     for (int i = 0; i < N_QUANTILE; i++) {
-        array = numbers(quantile_name[i][0], HF_TOLERANCE_N_MEASURE, "", quantile_name[i][1]);
+        array = numbers(quantile_name[i][0], n, "", quantile_name[i][1]);
         array.rank = 2;
         array.dims[1] = HF_TOLERANCE_QUANTILES;
         with(io, group, &array, f->quantile[i]);
@@ -137,7 +148,7 @@ void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary)
     figures f;
     hid_t group = hf_hdf5_make_group(io, GROUP);
     gather(&s, &f);
-    pass_figures(io, group, put_values, &f);
+    pass_figures(io, group, put_values, HF_TOLERANCE_N_MEASURE, &f);
     for (int k = 0; k < s.n_require; k++) {
         strncpy(r.measure[k], hf_tolerance_measure_word[s.require[k].measure], WORD_SIZE - 1);
         r.at_most[k] = s.require[k].at_most;
@@ -175,8 +186,9 @@ void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
     requirements r = {0};
     figures f;
     hid_t group = hf_hdf5_open_group(io, GROUP);
-    pass_figures(io, group, get_values, &f);
-    if (io->status == HF_OK) scatter(&f, s);
+    int n = hf_hdf5_length(io, group, "measure", HF_TOLERANCE_N_MEASURE);
+    pass_figures(io, group, get_values, n, &f);
+    if (io->status == HF_OK) scatter(n, &f, s);
     if (hf_hdf5_has(io, group, "require_yield"))
         s->n_require = hf_hdf5_length(io, group, "require_yield", HF_REQUIRE_ROWS_MAX);
     if (s->n_require > 0) pass_requirements(io, group, get_values, s->n_require, &r, s->require_yield);

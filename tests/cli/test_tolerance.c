@@ -56,6 +56,39 @@ START_TEST(threads_and_tasks_change_nothing)
 }
 END_TEST
 
+/* Without errors to speak of samples lose what the goal of the design says; with errors more, in the same bits by any
+ * threads and tasks. Nothing is measured that is not asked for. */
+START_TEST(samples_tell_the_loss_of_their_far_field)
+{
+#define FAR                                                                                                            \
+    BUILT_SCENE "surface: {frequencies_Hz: [2e9, 1e9], pattern: {n_theta: 3}}\n"                                       \
+                "optimize: {method: lm, goals: [{goal: gain}]}\n"                                                      \
+                "tolerance: {sigma_cut_m: 1e-4, samples: 150, require: [{measure: pattern_loss_dB, at_most: 2.9}]}\n"
+    const char *c = file_with("c.yaml", FAR), *whole = temp("a.h5"), *path = temp("b.h5");
+    HIFDM(0, "tolerance", c, "-o", temp("n.h5"), "--json", "--set", "tolerance.sigma_cut_m=1e-10", "--set",
+          "tolerance.samples=10");
+    EXPECT(out_as("n.json"), "--",
+           "near(a['tolerance']['pattern_loss_dB']['largest'], -10 * np.log10(1 - "
+           "a['polish']['goals']['goal_0_gain']['value']**2), 1e-5)",
+           "a['tolerance']['yield'] == 1");
+    HIFDM(0, "tolerance", c, "-o", whole, "--json", "--threads", "1");
+    EXPECT(out_as("a.json"), "--", "0 < a['tolerance']['require'][0]['yield'] < 1",
+           "a['tolerance']['pattern_loss_dB']['quantile'][1] > a['tolerance']['pattern_loss_dB']['mean'] > 0");
+    HIFDM(0, "tolerance", c, "-o", path, "--task", "1", "--tasks", "2", "--quiet");
+    HIFDM(0, "tolerance", c, "-o", path, "--tasks", "2", "--quiet", "--threads", "3");
+    EXPECT(path, whole, "--",
+           "a['tolerance/sample/pattern_loss_dB'][:].tobytes() == b['tolerance/sample/pattern_loss_dB'][:].tobytes()",
+           "len(set(a['tolerance/sample/pattern_loss_dB'][:])) == 150");
+    HIFDM(0, "show", whole, "--verbose");
+    OUT("pattern_loss_dB: mean ");
+    HIFDM(0, "tolerance",
+          file_with("d.yaml", BUILT_SCENE "surface: {frequencies_Hz: [2e9]}\n"
+                                          "tolerance: {sigma_cut_m: 1e-4, samples: 10}\n"),
+          "-o", path, "--restart", "--quiet");
+    EXPECT(path, "--", "'pattern_loss_dB' not in a['tolerance/sample'] and 'gain_loss_dB' in a['tolerance/sample']");
+}
+END_TEST
+
 /* Killed after a few changes in its folder, and continued: the same bits. */
 START_TEST(killed_runs_go_on)
 {
@@ -193,6 +226,11 @@ START_TEST(faults_are_named)
         {"  sigma_cut_m: 1e-4\n  require: [{measure: fit_half_path_rms_m, at_most: 1}]\n",
          "7:23: tolerance.require.0.measure: is not measured: add a section surface"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: gain_loss_dB, at_least: 1}]\n", "asks for a loss of gain"},
+        {"  sigma_cut_m: 1e-4\n  require: [{measure: pattern_loss_dB, at_least: 1}]\nsurface: {frequencies_Hz: [1e9], "
+         "pattern: {}}\n",
+         "asks for a loss of gain"},
+        {"  sigma_cut_m: 1e-4\n  require: [{measure: pattern_loss_dB, at_most: 1}]\nsurface: {}\n",
+         "needs a section surface.pattern, which says what illuminates the reflector"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: least_tension_N, at_most: 1}]\n", "asks for slack cables"},
         {"  sigma_cut_m: 0.1\n", "6:16: tolerance.sigma_cut_m: cable '"},
         {"  sigma_temperature_K: 700\ncables: [{expansion_per_K: 1e-3}]\n",
@@ -267,6 +305,7 @@ Suite *suite_cli_tolerance(void)
     TCase *tests = tcase_create("tolerance");
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, threads_and_tasks_change_nothing, 0, 2);
+    tcase_add_test(tests, samples_tell_the_loss_of_their_far_field);
     tcase_add_test(tests, killed_runs_go_on);
     tcase_add_test(tests, journals_of_another_case_are_no_dead_end);
     tcase_add_test(tests, a_design_outlives_samples_that_fail);
