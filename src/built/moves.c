@@ -300,11 +300,14 @@ static void lay_out_choice(hf_arena *arena, size_t n, choice *c)
     c->gain = hf_arena_take(arena, n, sizeof(double));
 }
 
-/* What turning cable i alone gains, beside the moves that are there. */
-static double gain_alone(const choice *c, int i)
+/* What turning cable i alone gains, beside the moves that are there, those of the cables turned [n_turned]. */
+static double gain_alone(const choice *c, int i, int n_turned, const int *turned)
 {
-    double curve = gram_of(c->p, i, i), slope = slope_at(c->p, c->best, i), most = c->p->steps_max * c->p->step_m;
+    double curve = gram_of(c->p, i, i), sum = 0, most = c->p->steps_max * c->p->step_m;
     if (!(curve > 0)) return 0;
+    for (int k = 0; k < n_turned; k++)
+        sum += gram_of(c->p, i, turned[k]) * c->best[turned[k]];
+    double slope = c->p->slope[i] + c->p->step_m * sum;
     double move = fmin(fmax(-slope / curve, -most), most);
     return -move * (2 * slope + move * curve);
 }
@@ -319,10 +322,12 @@ static bool is_on_list(const choice *c, int i)
 /* The cables off the list that gain most alone, best first. Returns how many. */
 static int find_candidates(choice *c, int candidate[SHORT_LIST])
 {
-    int n = 0;
+    int n = 0, n_turned = 0, *turned = c->trial; /* which nobody reads now */
+    for (int i = 0; i < c->p->n; i++)
+        if (c->best[i]) turned[n_turned++] = i;
     for (int i = 0; i < c->p->n; i++) {
         if (is_on_list(c, i)) continue;
-        c->gain[i] = gain_alone(c, i);
+        c->gain[i] = gain_alone(c, i, n_turned, turned);
         int at = n < SHORT_LIST ? n++ : n;
         while (at > 0 && c->gain[i] > c->gain[candidate[at - 1]]) {
             if (at < SHORT_LIST) candidate[at] = candidate[at - 1];
