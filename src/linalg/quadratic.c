@@ -33,6 +33,11 @@ static const loops *loops_here(void)
     return &loops_of_isa[hf_lane_best_isa()];
 }
 
+void hf_quadratic_combine(int ld, int n, const double *weight, const double *J, double *sum)
+{
+    loops_here()->combine(ld, 0, n, weight, J, sum);
+}
+
 /* ---- layout ---- */
 
 static void lay_out(hf_arena *a, hf_quadratic *q)

@@ -53,4 +53,8 @@ void hf_quadratic_free(hf_quadratic *quadratic);
 hf_status hf_quadratic_solve(hf_quadratic *quadratic, const double *hessian, const double *gradient, const double *low,
                              const double *high, hf_quadratic_worst *worst, void *context);
 
+/* sum [ld] = weight[0] column 0 + weight[1] column 1 + ... of J [n][ld], added up in this order; ld: a multiple of
+ * HF_LANES. */
+void hf_quadratic_combine(int ld, int n, const double *weight, const double *J, double *sum);
+
 #endif

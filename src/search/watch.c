@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "base/elementary.h"
+#include "base/lane.h"
 #include "solve/limits.h"
 
 #include <math.h>
@@ -111,7 +112,11 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
 static void lay_out(hf_arena *a, hf_watch *q)
 {
     q->item = hf_arena_take(a, (size_t)q->n, sizeof *q->item);
-    q->rate = hf_arena_take(a, (size_t)q->n * (size_t)q->n_variable, sizeof(double));
+    size_t n_column = 1 + (size_t)q->n_variable, ld = (size_t)(q->ld = (q->n + HF_LANES - 1) / HF_LANES * HF_LANES);
+    q->rate = hf_arena_take(a, n_column * ld, sizeof(double));
+    q->weight = hf_arena_take(a, n_column, sizeof(double));
+    q->predicted = hf_arena_take(a, ld, sizeof(double));
+    q->by_item = hf_arena_take(a, n_column, sizeof(double));
     q->cap = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
     q->ratio = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
     q->aim = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
@@ -202,6 +207,12 @@ double hf_watch_violation(hf_watch *q, hf_workspace *w)
     return sum;
 }
 
+/* Where the rate of an item by variable j stands. */
+static double *rate_at(const hf_watch *q, ptrdiff_t i_item, int j)
+{
+    return q->rate + (ptrdiff_t)(1 + j) * q->ld + i_item;
+}
+
 /* Of the displacement of an attachment, along itself. */
 static void displacement_rates(const hf_watched *t, const hf_sensitivity *s, const hf_workspace *w, double *rate)
 {
@@ -220,8 +231,7 @@ static void pull_rates(hf_watch *q, const hf_sensitivity *s, hf_workspace *w)
         hf_sensitivity_spread(s, j, q->move_m, q->tension_rate);
         hf_goals_pull_rates(q->v->model, w, w->goals, &by, q->pull_rate);
         for (int i = 0; i < q->n; i++)
-            if (q->item[i].support >= 0)
-                q->rate[(size_t)i * (size_t)q->n_variable + (size_t)j] = q->pull_rate[q->item[i].support];
+            if (q->item[i].support >= 0) *rate_at(q, i, j) = q->pull_rate[q->item[i].support];
     }
 }
 
@@ -231,16 +241,18 @@ void hf_watch_linearise(hf_watch *q, const hf_sensitivity *s, hf_workspace *w)
     look(q, w);
     for (int i = 0; i < q->n; i++) {
         hf_watched *t = &q->item[i];
-        double *rate = q->rate + (size_t)i * (size_t)q->n_variable;
+        const double *rate = q->by_item;
         t->value = t->now;
         t->unit = t->cable >= 0 ? fabs(t->value) : isfinite(t->upper) ? t->upper : t->lower;
         if (t->kind == HF_WATCH_LEVEL) t->unit = fmax(t->value, 1);
         if (t->cable >= 0)
-            hf_sensitivity_tension(s, t->cable, rate);
+            hf_sensitivity_tension(s, t->cable, q->by_item);
         else if (t->attachment >= 0)
-            displacement_rates(t, s, w, rate);
+            displacement_rates(t, s, w, q->by_item);
         else if (t->support < 0)
-            memcpy(rate, q->goal_rate + (size_t)t->goal * (size_t)q->n_variable, (size_t)q->n_variable * sizeof *rate);
+            rate = q->goal_rate + (size_t)t->goal * (size_t)q->n_variable;
+        for (int j = 0; j < q->n_variable && t->support < 0; j++)
+            *rate_at(q, i, j) = rate[j];
         has_pull |= t->support >= 0;
     }
     if (has_pull) pull_rates(q, s, w);
@@ -277,14 +289,13 @@ void hf_watch_forget(hf_watch *q)
 /* The values that the linear model gives for the step x. */
 static void predict(hf_watch *q, const double *x)
 {
-    size_t n = (size_t)q->n_variable;
-    for (int i = 0; i < q->n; i++) {
-        const double *rate = q->rate + (size_t)i * n;
-        hf_watched *t = &q->item[i];
-        t->predicted = t->value + t->bend;
-        for (size_t j = 0; j < n; j++)
-            t->predicted += rate[j] * x[j];
-    }
+    q->weight[0] = 1;
+    memcpy(q->weight + 1, x, (size_t)q->n_variable * sizeof *x);
+    for (int i = 0; i < q->n; i++)
+        q->rate[i] = q->item[i].value + q->item[i].bend;
+    hf_quadratic_combine(q->ld, 1 + q->n_variable, q->weight, q->rate, q->predicted);
+    for (int i = 0; i < q->n; i++)
+        q->item[i].predicted = q->predicted[i];
 }
 
 void hf_watch_learn(hf_watch *q, const double *x, hf_workspace *w)
@@ -295,9 +306,9 @@ void hf_watch_learn(hf_watch *q, const double *x, hf_workspace *w)
         q->item[i].bend += q->item[i].now - q->item[i].predicted;
 }
 
-static const double *rate_of(const hf_watch *q, const hf_watched *t)
+static double rate_of(const hf_watch *q, const hf_watched *t, int j)
 {
-    return q->rate + (size_t)(t - q->item) * (size_t)q->n_variable;
+    return *rate_at(q, t - q->item, j);
 }
 
 /* HF_WATCH_GOAL and the number of an item, by which hf_watch_relief finds it again. */
@@ -328,9 +339,8 @@ static bool breaks_cap(const hf_watch *q, int k, double *worst, hf_quadratic_lim
     double excess = (high->predicted - cap * low->predicted) / fabs(high->predicted);
     if (!(excess > *worst)) return false;
     *worst = excess;
-    const double *up = rate_of(q, high), *down = rate_of(q, low);
     for (int j = 0; j < q->n_variable; j++)
-        limit->normal[j] = cap * down[j] - up[j];
+        limit->normal[j] = cap * rate_of(q, low, j) - rate_of(q, high, j);
     limit->bound = high->value + high->bend - cap * (low->value + low->bend);
     limit->kind = q->has_cap && k == 0 ? HF_WATCH_CAP : high->goal < 0 ? HF_WATCH_ROW : kind_of_goal(q, low);
     return true;
@@ -346,7 +356,6 @@ static double size_of(const hf_watched *t, double value)
 static bool breaks_level(const hf_watch *q, const double *x, double *worst, hf_quadratic_limit *limit)
 {
     const hf_watched *high = NULL, *low = NULL;
-    size_t n = (size_t)q->n_variable;
     for (int i = 0; i < q->n; i++) {
         const hf_watched *t = &q->item[i];
         if (t->kind != HF_WATCH_LEVEL) continue;
@@ -354,14 +363,16 @@ static bool breaks_level(const hf_watch *q, const double *x, double *worst, hf_q
         if (t->cable >= 0 && (!low || size_of(t, t->predicted) < size_of(low, low->predicted))) low = t;
     }
     if (!high) return false;
-    double excess = size_of(high, high->predicted) - (low ? size_of(low, low->predicted) : 0) - q->level - x[n];
+    double excess =
+        size_of(high, high->predicted) - (low ? size_of(low, low->predicted) : 0) - q->level - x[q->n_variable];
     excess /= low ? 1 : high->unit;
     if (!(excess > *worst)) return false;
     *worst = excess;
-    const double *up = rate_of(q, high), *down = low ? rate_of(q, low) : NULL;
-    for (size_t j = 0; j < n; j++)
-        limit->normal[j] = low ? down[j] / (low->value + low->bend) - up[j] / (high->value + high->bend) : -up[j];
-    limit->normal[n] = 1;
+    for (int j = 0; j < q->n_variable; j++) {
+        double up = rate_of(q, high, j);
+        limit->normal[j] = low ? rate_of(q, low, j) / (low->value + low->bend) - up / (high->value + high->bend) : -up;
+    }
+    limit->normal[q->n_variable] = 1;
     limit->bound =
         size_of(high, high->value + high->bend) - (low ? size_of(low, low->value + low->bend) : 0) - q->level;
     limit->kind = HF_WATCH_LEVEL;
@@ -389,7 +400,7 @@ bool hf_watch_worst(hf_watch *q, const double *x, double worst, hf_quadratic_lim
     if (is_broken || !held) return is_broken;
     double inside = LIMIT_INSIDE * held->unit, bound = sign > 0 ? held->from : held->to;
     for (int j = 0; j < q->n_variable; j++)
-        limit->normal[j] = sign * rate_of(q, held)[j];
+        limit->normal[j] = sign * rate_of(q, held, j);
     limit->bound = sign * (bound - held->value - held->bend) + inside;
     limit->kind = held->kind == HF_WATCH_GOAL ? kind_of_goal(q, held) : held->kind;
     return true;

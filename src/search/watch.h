@@ -33,14 +33,18 @@ typedef struct {
     int n, n_variable, n_cap, n_cap_of_limits; /* the others are of goals */
     bool has_cap;                              /* the first of them is that of the boundary */
     hf_watched *item;                          /* [n] */
-    double *rate;                              /* [n][n_variable] of value per variable */
-    double *cap;                               /* [n_cap] largest over least of the tensions that it counts */
-    double *ratio;                             /* [n_cap] the same at the best variables */
-    double *aim;                               /* [n_cap] what a step keeps it below */
-    const hf_watch_trade *trade;               /* or NULL */
-    const double *goal;      /* with a trade: [n_goal] of the shape that is looked at; borrowed, as the next */
-    const double *goal_rate; /* [n_goal][n_variable] of goals without corners, at the best variables */
-    double level;            /* of a goal with corners that is to be least: its value; of a ratio the logarithm */
+    int ld;                                    /* n, and as many more as make whole vectors */
+    double *rate;                /* [1 + n_variable][ld] values, as far as they are known; of them per variable */
+    double *weight;              /* [1 + n_variable] 1, and a step */
+    double *predicted;           /* [ld] of the step, by the linear model */
+    double *by_item;             /* [n_variable] scratch */
+    double *cap;                 /* [n_cap] largest over least of the tensions that it counts */
+    double *ratio;               /* [n_cap] the same at the best variables */
+    double *aim;                 /* [n_cap] what a step keeps it below */
+    const hf_watch_trade *trade; /* or NULL */
+    const double *goal;          /* with a trade: [n_goal] of the shape that is looked at; borrowed, as the next */
+    const double *goal_rate;     /* [n_goal][n_variable] of goals without corners, at the best variables */
+    double level;                /* of a goal with corners that is to be least: its value; of a ratio the logarithm */
     double *move_m, *tension_rate, *pull_rate; /* scratch of pulls: [3][n_node], [n_cable], [n_support] */
     void *block;
 } hf_watch;
