@@ -269,13 +269,26 @@ static hf_status allocate_job(job *j, hf_messages *messages)
     return HF_OK;
 }
 
-static hf_status check_output(const job *j, const hf_options *o, hf_messages *messages)
+static hf_status check_output(const job *j, const hf_options *o, const char *output, hf_messages *messages)
 {
-    if (!o->output) return HF_OK;
-    HF_TRY(hf_problem_spare_inputs(&j->problem, o->measured, o->output, messages));
-    if (o->result) HF_TRY(hf_file_out_spare(o->result, "an input of this run", o->output, messages));
-    HF_TRY(hf_export_claim_file(o->output, o->force, messages));
-    return hf_file_out_try(o->output, messages);
+    if (!output) return HF_OK;
+    HF_TRY(hf_problem_spare_inputs(&j->problem, o->measured, output, messages));
+    if (o->result) HF_TRY(hf_file_out_spare(o->result, "an input of this run", output, messages));
+    HF_TRY(hf_export_claim_file(output, o->force, messages));
+    return hf_file_out_try(output, messages);
+}
+
+static hf_status check_outputs(const job *j, const hf_options *o, hf_messages *messages)
+{
+    if (o->report && !o->result)
+        return hf_error(messages, HF_BAD_USAGE,
+                        "--report %s needs --result FILE, the result whose page it is (hifdm run %s makes it)",
+                        o->report, o->file);
+    if (o->output && o->report && !strcmp(o->output, o->report))
+        return hf_error(messages, HF_BAD_USAGE, "-o and --report both name %s: give them two names", o->output);
+    HF_TRY(check_output(j, o, o->output, messages));
+    HF_TRY(hf_file_out_spare(o->output, "the table of moves", o->report ? o->report : "", messages));
+    return check_output(j, o, o->report, messages);
 }
 
 static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
@@ -287,7 +300,7 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
     HF_TRY(check_sections(&p->settings, o->file, messages));
     HF_TRY(hf_built_design_check(o, &p->settings, messages));
     HF_TRY(hf_tolerance_stage_check(p, false, messages));
-    HF_TRY(check_output(j, o, messages));
+    HF_TRY(check_outputs(j, o, messages));
     HF_TRY(allocate_job(j, messages));
     HF_TRY(pick_cables(j, messages));
     HF_TRY(hf_measured_read(o->measured, &p->scene, &p->model, p->settings.adjust.sigma_m, &j->measured, messages));
@@ -299,7 +312,8 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
     j->measured_m = measured_psi_m(j);
     HF_TRY(
         explain_failure(hf_adjust_find(&j->estimate, &j->task, &j->adjustment), "the adjusted net", o->file, messages));
-    return o->output ? hf_file_out_write(o->output, hf_adjust_print_table, j, messages) : HF_OK;
+    if (o->output) HF_TRY(hf_file_out_write(o->output, hf_adjust_print_table, j, messages));
+    return hf_adjust_print_page(j, o, messages);
 }
 
 /* HF_OK also when no move is worth it. HF_BAD_CASE for a faulty case or table, HF_EXISTS, HF_IO, HF_NO_MEMORY, or the
@@ -312,7 +326,7 @@ static hf_status command_adjust(const hf_options *o, FILE *file, hf_messages *me
     if (o->json)
         hf_adjust_print_json(&j, o, status, messages->text, file);
     else if (status == HF_OK && !o->quiet)
-        hf_adjust_print_summary(&j, o->output, file);
+        hf_adjust_print_summary(&j, o, file);
     job_free(&j);
     return status;
 }
@@ -326,6 +340,7 @@ const hf_command hf_cmd_adjust = {
              "and within a range. The table has them in the order in which they are made, with the tension of the "
              "cable before and after, and the figure that is predicted after each.",
     .examples = "hifdm adjust case.yaml --measured nodes.csv -o moves.csv\n"
+                "hifdm adjust case.yaml --measured nodes.csv --result case.h5 --report moves.html\n"
                 "hifdm adjust case.yaml --result case.h5 --measured nodes.csv --set adjust.aim=design\n"
                 "hifdm adjust case.yaml --measured nodes.csv --json --set adjust.moves=5",
     .reads_results = true,

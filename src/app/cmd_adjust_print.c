@@ -3,6 +3,7 @@
 
 #include "base/csv.h"
 #include "out/print.h"
+#include "out/report_result.h"
 #include <hifdm/store.h>
 
 #include <math.h>
@@ -134,7 +135,7 @@ static void print_moves(const hf_adjust_job *j, FILE *f)
     }
 }
 
-void hf_adjust_print_summary(const hf_adjust_job *j, const char *path, FILE *f)
+void hf_adjust_print_summary(const hf_adjust_job *j, const hf_options *o, FILE *f)
 {
     const hf_adjustment *a = &j->adjustment;
     const hf_tolerance_settings *t = &j->problem.settings.tolerance;
@@ -156,7 +157,8 @@ void hf_adjust_print_summary(const hf_adjust_job *j, const char *path, FILE *f)
                   figure, a->n_move, a->n_move == 1 ? "" : "s", a->adjusted_m * 1e3, a->doubt_m[1] * 1e3,
                   a->spread_m[1] * 1e3, j->task.n_cable, a->best_m * 1e3);
     print_end(j, f);
-    if (path) hf_print_line(f, "moves in %s; above 0: let the cable out", path);
+    if (o->output) hf_print_line(f, "moves in %s; above 0: let the cable out", o->output);
+    if (o->report) hf_print_line(f, "a page to look at: %s", o->report);
 }
 
 /* ---- for programs ---- */
@@ -268,4 +270,25 @@ void hf_adjust_print_json(const hf_adjust_job *from, const hf_options *o, hf_sta
     if (o->result) hf_json_text(&j, "result", o->result);
     if (status == HF_OK && o->output) hf_json_text(&j, "file", o->output);
     hf_json_end(&j, status != HF_OK, messages);
+}
+
+/* ---- the page ---- */
+
+static void write_part(const void *context, hf_json *j)
+{
+    const hf_adjust_job *from = context;
+    const hf_adjust_settings *s = from->task.settings;
+    hf_json_text(j, "set", s->set);
+    hf_json_number(j, "target_m", s->target_m);
+    hf_json_bool(j, "fits", hf_adjust_fits(from));
+    print_json_figures(from, j);
+    print_json_moves(from, j);
+    print_json_numbers(from, j);
+    hf_json_pack_values("error_m", "f64", from->estimate.cut_m, from->built.model.n_cable, j->file);
+}
+
+hf_status hf_adjust_print_page(const hf_adjust_job *j, const hf_options *o, hf_messages *messages)
+{
+    const hf_report_part part = {"adjust", write_part, j};
+    return o->report ? hf_report_result(o->result, NULL, &part, o->report, messages) : HF_OK;
 }

@@ -1,5 +1,5 @@
 /* cmd_adjust_print - what `hifdm adjust` says: the table for the workshop, the summary for people, the object for
- * programs. */
+ * programs, the page. */
 #ifndef HIFDM_CMD_ADJUST_PRINT_H
 #define HIFDM_CMD_ADJUST_PRINT_H
 
@@ -37,8 +37,11 @@ bool hf_adjust_fits(const hf_adjust_job *job);
 
 /* For hf_file_out_write; context: the job. */
 void hf_adjust_print_table(const void *context, FILE *file);
-void hf_adjust_print_summary(const hf_adjust_job *job, const char *path, FILE *file);
+void hf_adjust_print_summary(const hf_adjust_job *job, const hf_options *options, FILE *file);
 void hf_adjust_print_json(const hf_adjust_job *job, const hf_options *options, hf_status status, const char *messages,
                           FILE *file);
+
+/* The page of options->result with the moves on it, if options->report asks for it. HF_OK, HF_IO, HF_NO_MEMORY. */
+hf_status hf_adjust_print_page(const hf_adjust_job *job, const hf_options *options, hf_messages *messages);
 
 #endif

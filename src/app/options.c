@@ -182,6 +182,7 @@ static const hf_option option_table[] = {
     {"--result", NULL, "FILE", "result of this case that the net was cut from (default: its form-finding)", "adjust",
      read_text, AT(result), NULL},
     {"--output", "-o", "FILE", "CSV of the moves (default: none)", "adjust", read_text, AT(output), NULL},
+    {"--report", NULL, "FILE", "the page of that result with the moves on it", "adjust", read_text, AT(report), NULL},
     {"--output", "-o", "FILE", "merged file (default: the study's name with .h5, in this folder)", "merge", read_text,
      AT(output), NULL},
     {"--dir", NULL, "DIR", "folder of the results (default: the study's name with .d, in this folder)",

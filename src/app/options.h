@@ -24,6 +24,7 @@ struct hf_options {
     const char *jacobian;                 /* --jacobian */
     const char *measured;                 /* --measured */
     const char *result;                   /* --result */
+    const char *report;                   /* --report */
     const char *stage;                    /* --stage */
     const char *state;                    /* --case */
     const char **set;                     /* [n_set] --set key=value, owned */

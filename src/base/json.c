@@ -41,7 +41,9 @@ static void begin_item(hf_json *j, const char *key)
         fputc(' ', j->file);
     j->line = NULL;
     j->is_due = true;
-    if (key) fprintf(j->file, "\"%s\": ", key);
+    if (!key) return;
+    write_string(key, strlen(key), j->file); /* the id of a cable may be one */
+    fputs(": ", j->file);
 }
 
 void hf_json_open(hf_json *j, const char *key, char bracket)

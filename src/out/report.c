@@ -36,7 +36,7 @@ hf_status hf_report(const hf_export_request *request, const char *other, char *s
     if (hf_report_is_study(request->file))
         HF_TRY(hf_report_study(request->file, output, messages));
     else
-        HF_TRY(hf_report_result(request->file, other, output, messages));
+        HF_TRY(hf_report_result(request->file, other, NULL, output, messages));
     if (stat(output, &info) == 0)
         snprintf(said, size, "%s%s%s: report in %s (%.0f kB)", request->file, other ? " and " : "", other ? other : "",
                  output, (double)info.st_size / 1000);

@@ -59,6 +59,7 @@ typedef struct page {
     char provenance[PROVENANCE_SIZE];
     hf_texts case_text, overrides; /* one each */
     const struct page *other;      /* the result that this one is compared with, or NULL */
+    const hf_report_part *part;    /* or NULL */
 } page;
 
 /* ---- texts ---- */
@@ -293,6 +294,12 @@ static void write_data(const void *context, FILE *f)
     write_series(p, f);
     write_patterns(p, f);
     if (p->other) write_other(p, p->other, f);
+    if (p->part) {
+        hf_json_line(&j, "");
+        hf_json_open(&j, p->part->key, '{');
+        p->part->write(p->part->context, &j);
+        hf_json_close(&j, '}');
+    }
     fputs("}\n", f);
 }
 
@@ -419,9 +426,10 @@ static void free_page(page *p)
     hf_texts_free(&p->overrides);
 }
 
-hf_status hf_report_result(const char *path, const char *other, const char *output, hf_messages *messages)
+hf_status hf_report_result(const char *path, const char *other, const hf_report_part *part, const char *output,
+                           hf_messages *messages)
 {
-    page p = {.path = path}, beside = {.path = other};
+    page p = {.path = path, .part = part}, beside = {.path = other};
     hf_status status = read_page(&p, messages);
     if (status == HF_OK && other) {
         status = read_page(&beside, messages);

@@ -2,10 +2,19 @@
 #ifndef HIFDM_REPORT_RESULT_H
 #define HIFDM_REPORT_RESULT_H
 
+#include "base/json.h"
 #include <hifdm/status.h>
 
-/* Writes the page of the result file `path` to `output`, beside the result `other` unless that is NULL.
- * HF_OK, HF_IO or HF_NO_MEMORY with a message. */
-hf_status hf_report_result(const char *path, const char *other, const char *output, hf_messages *messages);
+/* What a command adds to the page of a result: `write` writes the members of the object `key` of the page's data. */
+typedef struct {
+    const char *key;
+    void (*write)(const void *context, hf_json *json);
+    const void *context;
+} hf_report_part;
+
+/* Writes the page of the result file `path` to `output`, beside the result `other` and with `part` unless these are
+ * NULL. HF_OK, HF_IO or HF_NO_MEMORY with a message. */
+hf_status hf_report_result(const char *path, const char *other, const hf_report_part *part, const char *output,
+                           hf_messages *messages);
 
 #endif

@@ -4,6 +4,7 @@
 //   title: what must stand on it, to the letter
 //   warnings, slack: how many it must tell of
 //   rounding: the deviations of its result are nothing else
+//   measured: from the nodes of the result to a table of measured places, by which the net is adjusted
 //   pattern: how many charts of its far field, of how many neighbouring angles each
 //   facets: how many, all triangles; off: families of cables whose switches are tried
 //   other: how the case of a second result differs, with which it is compared; unlike: in its figures, too
@@ -127,6 +128,23 @@ export const pages = [
     sections: [...FORM.slice(0, -1), "coupling", "provenance"],
     rounding: true,
     off: ["rear", "rear edge", "tie"],
+  },
+  {
+    name: "adjust",
+    text:
+      "scene:\n  EA_inner_N: 8.0e4\n  EA_boundary_N: 8.0e4\n  parabolic_cylinder: {aperture_m: 10, length_m: 12, " +
+      "focal_length_m: 7.2, modules: [4, 5], cells_per_module: [2, 2], boundary: outer_edge, scallop: 0.1}\n" +
+      "form: {method: auto, pretension_N: 20}\ntolerance: {sigma_cut_m: 1e-4, samples: 10}\n" +
+      "adjust: {set: boundary, range_m: 0.003, step_m: 1e-4, moves: 8, sigma_m: 5e-5, target_m: 2e-4}\n",
+    measured: (nodes) =>
+      ["id,x_m,y_m,z_m"]
+        .concat(
+          nodes
+            .filter(({ role }) => role !== "support")
+            .map(({ id, x_m, y_m, z_m }, i) => `${id},${x_m},${y_m},${Number(z_m) + 8e-4 * Math.sin(7 * i)}`),
+        )
+        .join("\n"),
+    sections: ["net", "adjust", "cables", "map", "tensions", "tolerance", "summary", "form-finding", "provenance"],
   },
   {
     name: "pattern", // more angles than a screen shows, more cuts than there are colours; one cut too coarse to tell

@@ -1,7 +1,7 @@
 // Parts of a page that only some results have.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { csv, number, picture, same, settle } from "./see.mjs";
+import { csv, number, picture, same, settle, tip } from "./see.mjs";
 
 // Nodes whose deviations are rounding have one colour, and the page says so; another shape of the page has a scale. Of
 // the two nets in space only the front counts.
@@ -15,6 +15,7 @@ export async function checkRounding(tab) {
     const bar = tab.locator(`${part} .bar`),
       colours = async (name) => {
         await tab.locator(part).getByLabel(name, { exact: true }).check();
+        if (part === "#net") await tab.locator(part).getByLabel("deviation", { exact: true }).check();
         return (await picture(tab, canvas)).colours;
       };
     const one = await colours("LM optimum");
@@ -70,4 +71,39 @@ export async function checkPattern(tab, page, made) {
     }
   }
   await tab.keyboard.press("Escape");
+}
+
+// The moves are those of the workshop's table; the chart has the figure after each, the picture their cables.
+export async function checkAdjust(tab, made, changes) {
+  const moves = csv(join(made.folder, "moves.csv")),
+    rows = tab.locator("#adjust tbody tr");
+  assert.ok(moves.length > 3 && (await rows.count()) === moves.length);
+  const cells = await rows.evaluateAll((all) => all.map((row) => [...row.children].map((c) => c.textContent)));
+  assert.deepEqual(
+    cells.map(([order, cable]) => [order, cable]),
+    moves.map(({ order, cable }) => [order, cable]),
+  );
+  for (const [column, key] of [
+    [2, "move_mm"],
+    [4, "tension_before_N"],
+    [5, "tension_after_N"],
+    [6, "predicted_rms_mm"],
+  ]) {
+    const wanted = moves.map((move) => Number(move[key])),
+      most = Math.max(...wanted.map(Math.abs));
+    cells.forEach((row, k) => assert.ok(Math.abs(number(row[column]) - wanted[k]) < 6e-4 * most, `${key}: ${row}`));
+  }
+  await tab.locator("#adjust svg[tabindex]").focus();
+  await tab.keyboard.press("End");
+  const said = await tab.locator("#adjust .tip").innerText(),
+    last = moves.at(-1);
+  assert.ok(said.startsWith(`move ${moves.length}: cable ${last.cable}`));
+  same(number(said.match(/predicted\s+([\d.]+)/)[1]), Number(last.predicted_rms_mm), 6);
+  await tab.keyboard.press("Escape");
+  assert.match(await tab.locator("#net .bar").innerText(), new RegExp(`^${moves.length} of .* to be turned$`));
+  await changes(tab, "a name of a move", () => rows.first().getByRole("button").click());
+  assert.equal((await tip(tab, "net")).heading, `cable ${moves[0].cable}`);
+  assert.ok(Math.abs(number((await tip(tab, "net")).move) - moves[0].move_mm) < 1e-9);
+  await changes(tab, "the colour of moves", () => tab.locator("#net").getByLabel("deviation", { exact: true }).check());
+  await tab.reload();
 }

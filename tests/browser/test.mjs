@@ -9,7 +9,7 @@ import { pathToFileURL } from "node:url";
 import { checkFluid } from "./large.mjs";
 import { checkLook, inspect } from "./look.mjs";
 import { pages } from "./pages.mjs";
-import { checkPattern, checkRounding } from "./parts.mjs";
+import { checkAdjust, checkPattern, checkRounding } from "./parts.mjs";
 import { csv, number, picture, same, settle, tip } from "./see.mjs";
 
 const { HIFDM, CHROMIUM, WORK } = process.env;
@@ -40,11 +40,17 @@ function build(page, folder) {
   }
   const beside = page.other ? ["other.h5"] : [];
   if (page.other) hifdm("run", source, ...page.other, "-o", "other.h5", "--quiet");
+  if (page.measured) {
+    hifdm("export", result, "--csv", ".");
+    writeFileSync(join(folder, "measured.csv"), page.measured(csv(join(folder, "nodes.csv"))));
+  }
   const start = performance.now();
-  hifdm("report", result, ...beside, "-o", html);
+  if (page.measured)
+    hifdm("adjust", source, "--measured", "measured.csv", "--result", result, "-o", "moves.csv", "--report", html);
+  else hifdm("report", result, ...beside, "-o", html);
   const made = { html, hifdm, folder, made_ms: performance.now() - start };
   if (page.study) return { ...made, study: JSON.parse(readFileSync(html, "utf8").match(DATA)[2]).study };
-  hifdm("export", result, "--csv", ".");
+  hifdm("export", result, "--csv", ".", "--force");
   return {
     ...made,
     nodes: csv(join(folder, "nodes.csv")),
@@ -660,8 +666,9 @@ async function test(browser, page) {
     if (page.rounding) await checkRounding(tab);
     else await checkMap(tab, made);
     if (page.facets) await checkFacets(tab, page, made);
+    if (page.measured) await checkAdjust(tab, made, changes);
     if (page.pattern) await checkPattern(tab, page, made);
-    if (made.summary.tolerance) await checkTolerance(tab, made);
+    if (made.summary.tolerance && !page.measured) await checkTolerance(tab, made);
     await checkUnknownFigure(browser, made, folder);
   }
   if (page.study || page.other || page.slack !== undefined) await checkHostile(browser, made, folder);

@@ -7,11 +7,10 @@ function allFamilies() {
   return all;
 }
 
-// A column of numbers with a value of each cable, to so many digits of the largest; nothing when no cable has one.
+// A column of numbers, to so many digits of the largest; nothing when no row has one.
 //   unit: what it is multiplied by to be shown; isChange: it is sorted by its size, and has a sign
-function cableColumn(name, of, digits, { unit = 1, isChange = false } = {}) {
-  const values = Array.from({ length: net.n_cable }, (_, e) => of(e)),
-    [low, high] = range(values) || [0, 0],
+function numberColumn(name, values, digits, { unit = 1, isChange = false } = {}) {
+  const [low, high] = range(values) || [0, 0],
     most = unit * Math.max(Math.abs(low), Math.abs(high));
   if (!range(values)) return null;
   const decimals = most > 0 ? Math.min(12, Math.max(0, digits - 1 - Math.floor(Math.log10(most)))) : 0;
@@ -19,6 +18,9 @@ function cableColumn(name, of, digits, { unit = 1, isChange = false } = {}) {
     Number.isFinite(v) ? (isChange && v > 0 ? "+" : "") + minus((unit * v).toFixed(decimals)) : "–";
   return { name, number: true, of: (e) => values[e], show: (e) => show(values[e]), size: isChange };
 }
+// With a value of each cable.
+const cableColumn = (name, of, digits, options) =>
+  numberColumn(name, Array.from({ length: net.n_cable }, (_, e) => of(e)), digits, options);
 
 // What the turnbuckle of a cable must do to make the found net the result; of a net that is only found, what it must
 // do in one that was cut for the theoretical shape.
@@ -32,14 +34,9 @@ function cableColumns(before, after, families, choose) {
   const two = before !== after,
     turn = turned(before, after);
   const family = families.map((names, e) => names.join(", ") || groupOf(e));
-  const link = (e) => {
-    const press = el("button", { type: "button", class: "link" }, net.cable_id[e]);
-    press.addEventListener("click", () => choose(e));
-    return press;
-  };
   const change = (e) => after.tension_N[e] - before.tension_N[e];
   return [
-    { name: "Cable", of: (e) => net.cable_id[e], show: link },
+    { name: "Cable", of: (e) => net.cable_id[e], show: (e) => cableLink(e, choose) },
     { name: "Family", of: (e) => family[e], show: (e) => family[e] },
     two ? cableColumn(`tension, ${before.name} (N)`, (e) => before.tension_N[e], 5) : null,
     cableColumn(`tension, ${after.name} (N)`, (e) => after.tension_N[e], 5),
@@ -47,6 +44,7 @@ function cableColumns(before, after, families, choose) {
     turn ? cableColumn(turn[0], turn[1], 4, { unit: 1e3, isChange: true }) : null,
     cableColumn("length (m)", (e) => after.length_m[e], 6),
     after.l0_m ? cableColumn("cut to (m)", (e) => after.l0_m[e], 6) : null,
+    adjust ? cableColumn("seems too long by (mm)", (e) => adjust.error_m[e], 3, { unit: 1e3, isChange: true }) : null,
     net.psi_by_cut
       ? cableColumn("ψ by a turn (mm per mm)", (e) => net.psi_by_cut[e], 3, { isChange: true })
       : null,
@@ -57,6 +55,19 @@ function cableColumns(before, after, families, choose) {
 const CABLES_SAID =
   "A click on a heading sorts, a name shows its cable in the picture, and a click on a cable there puts its row at " +
   "the top.";
+
+// The name of a cable, which shows it in the picture.
+function cableLink(e, choose) {
+  const press = el("button", { type: "button", class: "link" }, net.cable_id[e]);
+  press.addEventListener("click", () => choose(e));
+  return press;
+}
+
+// Shows a cable in the picture, and brings that to the reader.
+const chooserOf = (view) => (e) => {
+  view.choose(e);
+  document.getElementById("net").scrollIntoView({ block: "nearest" });
+};
 
 function writeCables(view) {
   const after = otherShape || resultShape,
@@ -73,12 +84,8 @@ function writeCables(view) {
     net.cable_share ? "The share is that of what all errors add to ψ², to first order: cut those cables well." : null,
     CABLES_SAID,
   ].filter((text) => text);
-  const choose = (e) => {
-    view.choose(e);
-    document.getElementById("net").scrollIntoView({ block: "nearest" });
-  };
   const families = allFamilies(),
-    columns = cableColumns(before, after, families, choose),
+    columns = cableColumns(before, after, families, chooserOf(view)),
     change = columns.findIndex(({ size }) => size);
   const all = sortableTable({
     caption: "Cables",

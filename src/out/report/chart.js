@@ -35,6 +35,7 @@ function placeTip(tip, x, y, content) {
 
 // ---- one chart: series over x with a cursor that follows the pointer or the arrow keys ----
 // series: { name, stored, values, colour, dash, dots: marks instead of a line, free: may lie outside of the picture }
+//   isLevel: the same value everywhere, without marks
 //   bars: half the width of a bar around each x, from 0 up
 // marks: { name, at, colour, dash } of vertical lines, which the axis of x includes
 // colour: a variable of the page's style, or a function that returns red, green and blue
@@ -93,7 +94,7 @@ function chart(options) {
       on = good;
     });
     const line = svg("path", { d: text, ...mark(s), style: `stroke:${paint(s.colour)}` });
-    return s.dots || x.length > MARKED_MAX ? line : [line, path({ ...s, dots: true }, sx, sy, yAxis)];
+    return s.dots || s.isLevel || x.length > MARKED_MAX ? line : [line, path({ ...s, dots: true }, sx, sy, yAxis)];
   }
 
   // Infinite values stand on the upper edge of the picture, one sign for each run of neighbours.

@@ -53,9 +53,9 @@ function writeFigures() {
   if (!resultNumbers) return;
   const base = summary.optimize && summary.optimize.base_psi_m,
     list = [];
-  list.push(figure(`surface error ψ, ${resultShape.name}`, fmt(1e3 * resultNumbers.psi_m, 4), "mm"));
+  list.push(figure(`surface error ψ, ${resultShape.name}`, roundedMm(resultNumbers.psi_m), "mm"));
   if (resultStage !== "form") {
-    list.push(figure("ψ after form-finding", fmt(1e3 * summary.form.psi_m, 4), "mm"));
+    list.push(figure("ψ after form-finding", roundedMm(summary.form.psi_m), "mm"));
     if (base > 0)
       list.push(figure("gain of the optimisation", (100 * (1 - resultNumbers.psi_m / base)).toFixed(2), "%"));
   }
@@ -145,6 +145,7 @@ function writeNet() {
     ["tension", "tension"],
     ["slack", "slack"],
     ...(net.sets.length ? [["family", "family"]] : []),
+    ...(moveOf.size ? [["moves", "moves"]] : []),
     ["plain", "none"],
   ];
   const showSet = (name, on) => {
@@ -160,7 +161,7 @@ function writeNet() {
       "div",
       { class: "tools" },
       shapes.length ? choice("shape", "Shape", options, resultStage, (v) => set({ shape: shapeOf(v) })) : null,
-      shapes.length ? choice("colour", "Colour", colours, "deviation", (v) => set({ colour: v })) : null,
+      shapes.length ? choice("colour", "Colour", colours, view.state.colour, (v) => set({ colour: v })) : null,
       shapes.length ? el("label", {}, el("span", { class: "muted" }, "Deformation"), slider, output) : null,
       shapes.length ? tick("theoretical shape", true, (v) => set({ theory: v })) : null,
       data.truss ? tick("truss", true, (v) => set({ truss: v })) : null,
@@ -304,6 +305,7 @@ if (data.study) {
   writeFigures();
   writeOther();
   writeNet();
+  writeAdjust(report.net);
   writeCables(report.net);
   writeMap();
   writeTensions();

@@ -17,7 +17,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   const view = { yaw: -35, pitch: 32, zoom: 1, panX: 0, panY: 0, fitted: true }; // fitted: the zoom follows the room
   const state = {
     shape: resultShape,
-    colour: "deviation",
+    colour: moveOf.size ? "moves" : "deviation",
     scale: 1,
     theory: true,
     truss: !!data.truss,
@@ -99,6 +99,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
         [line(ink.ghost), ...net.sets.map((_, k) => line(familyColour(k)))],
         (e) => (familyOf[e] === undefined ? 0 : 1 + familyOf[e]),
       ];
+    if (state.colour === "moves") return [[line(ink.ghost), line(ink.alarm, 3.2)], (e) => (moveOf.has(e) ? 1 : 0)];
     if (state.colour === "slack") return [[line(ink.ghost), line(ink.alarm, 3.2)], (e) => (shape.isSlack(e) ? 1 : 0)];
     const limit = limits();
     return [
@@ -361,6 +362,8 @@ function netView({ canvas, tip, bar, scaleLabel }) {
         el("span", {}, `${k} of ${m} cables slack: tension below ${fmt(data.slack_below_N, 3)} N`),
       );
     }
+    if (state.colour === "moves")
+      return bar.replaceChildren(el("span", {}, `${fmtCount(moveOf.size)} of ${fmtCount(m)} cables are to be turned`));
     if (state.colour === "family")
       return bar.replaceChildren(
         ...net.sets
@@ -427,6 +430,8 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     const shape = state.shape,
       rows = [["group", groupOf(e), ""]];
     if (setsOf[e].length) rows.push(["sets", setsOf[e].map((k) => net.sets[k].name).join(", "), ""]);
+    if (adjust) rows.push(["seems too long by", `${signed(1e3 * adjust.error_m[e], 3)} mm`, ""]);
+    if (moveOf.has(e)) rows.push(["move", `${signed(1e3 * moveOf.get(e).move_m)} mm`, ""]);
     if (shape)
       rows.push(
         ["tension", `${fmt(shape.tension_N[e], 6)} N${shape.isSlack(e) ? ", slack" : ""}`, "tension_N"],

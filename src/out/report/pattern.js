@@ -37,7 +37,7 @@ function patternChart(all, frequency_Hz, phi_deg, isPart) {
           name: all.length > 1 ? `${phi(cut.phi_deg)}, ${p.name}` : phi(cut.phi_deg),
           stored: "co_dBi",
           values,
-          colour: CURVE_COLOURS[phi_deg.indexOf(cut.phi_deg)],
+          colour: SERIES[phi_deg.indexOf(cut.phi_deg)],
           dash: p.isResult ? null : DASHES[dashed.indexOf(p) % DASHES.length],
         };
       }),

@@ -56,6 +56,11 @@ START_TEST(texts_are_escaped)
     ck_assert_str_eq(text, "\"k\": \"a\\\"b\\\\c\\u000a\\u003c/script>\xc3\xa9\"");
     free(text);
     j = (hf_json){.file = open_memstream(&text, &size)};
+    hf_json_integer(&j, "a\"</", 1); /* the id of a cable may be a key */
+    fclose(j.file);
+    ck_assert_str_eq(text, "\"a\\\"\\u003c/\": 1");
+    free(text);
+    j = (hf_json){.file = open_memstream(&text, &size)};
     hf_json_text(&j, "k", "\x1b\x7f\xc2\x9b\xe2\x80\xa8\xe2\x80\xae\xff\xe2\x80");
     fclose(j.file);
     ck_assert_str_eq(text, "\"k\": \"\\u001b\\u007f\\u009b\\u2028\\u202e\\ufffd\\ufffd\\ufffd\"");

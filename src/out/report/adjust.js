@@ -1,0 +1,150 @@
+// Contents: a net that was measured: its errors, and the moves of turnbuckles that bring it back (`hifdm adjust`)
+
+const adjust = data.adjust;
+const cableAt = adjust && new Map(net.cable_id.map((id, e) => [id, e]));
+// The move of each cable that has one.
+const moveOf = new Map(adjust ? adjust.moves.map((move) => [cableAt.get(move.cable), move]) : []);
+
+const FIGURE = { psi: "ψ", surface: "half-path RMS", facets: "half-path RMS of the facets" };
+const ADJUST_END = {
+  target: "The target is met.",
+  moves: "All moves that the case allows are made.",
+  doubt: "The next move would gain less than these measurements can tell.",
+  none: "No further move gains anything.",
+};
+
+const inMm = (v, digits = 4) => `${fmt(1e3 * v, digits)} mm`,
+  signed = (v, digits = 5) => (v > 0 ? "+" : "") + fmt(v, digits);
+
+function adjustText(name) {
+  const open = (expected, sigma) => `${inMm(expected)} ± ${fmt(1e3 * sigma, 2)} with what is left open`;
+  return [
+    `${fmtCount(adjust.measured_nodes)} nodes were measured. χ² is ${fmt(adjust.chi_square, 3)} per coordinate: ` +
+      "about 1 when the tolerances and the errors of the measurement are as the case says.",
+    `The net is estimated to have a ${name} of ${inMm(adjust.estimated_m)}` +
+      ` (${open(adjust.estimated_expected_m, adjust.estimated_sigma_m)}),` +
+      ` and after ${adjust.moves.length === 1 ? "one move" : `${fmtCount(adjust.moves.length)} moves`}` +
+      ` ${inMm(adjust.adjusted_m)} (${open(adjust.adjusted_expected_m, adjust.adjusted_sigma_m)}).`,
+    ADJUST_END[adjust.end] || "",
+    adjust.held_taut ? "Moves stay so small that no further cable goes slack." : "",
+    adjust.supports_estimated ? "" : "Supports are taken to be where the case has them.",
+    adjust.settled ? "" : "The estimate has not settled.",
+    adjust.fits
+      ? ""
+      : "χ² is beyond what chance makes: a tolerance or an error of the measurement is larger than the case says, " +
+        "supports are off, or it is another design.",
+  ]
+    .filter((text) => text)
+    .join(" ");
+}
+
+function adjustChart(name) {
+  const values = [adjust.estimated_m, ...adjust.moves.map((move) => move.predicted_m)],
+    [low, high] = range(values),
+    isFar = (at) => at < low - REACH * (high - low) || at > high + REACH * (high - low), // then it is only named
+    level = (text, at, colour, dash) =>
+      typeof at === "number" && 1e3 * at > RESOLVED_MM
+        ? [
+            {
+              name: `${text} ${inMm(at)}${isFar(at) ? ", outside of the picture" : ""}`,
+              values: values.map(() => 1e3 * at),
+              colour,
+              dash,
+              isLevel: true,
+              free: isFar(at),
+            },
+          ]
+        : [];
+  return chart({
+    title: `Predicted ${name} after each move`,
+    xLabel: "moves made",
+    yLabel: `${name} (mm)`,
+    unit: "mm",
+    x: values.map((_, k) => k),
+    log: false,
+    head: (k) => (k ? `move ${k}: cable ${adjust.moves[k - 1].cable}` : "before the first move"),
+    series: [
+      { name: "predicted", stored: "predicted_m", values: scaled(values, 1e3), colour: "--one" },
+      ...level("target", adjust.target_m, "--four", "7 3"),
+      ...level("any moves of these cables", adjust.best_m, "--three", "2 3"),
+      ...level("as designed", adjust.nominal_m, "--two", "9 3 2 3"),
+    ],
+  });
+}
+
+function movesTable(name, choose) {
+  const { moves } = adjust,
+    column = (heading, of, show) => ({ name: heading, number: true, of, show: (k) => show(of(k)) }),
+    real = (heading, key, digits, options) => numberColumn(heading, moves.map((move) => move[key]), digits, options);
+  return sortableTable({
+    caption: "Moves in the order in which they are made",
+    columns: [
+      column("order", (k) => k + 1, fmtCount),
+      { name: "cable", of: (k) => moves[k].cable, show: (k) => cableLink(cableAt.get(moves[k].cable), choose) },
+      real("move (mm)", "move_m", 4, { unit: 1e3, isChange: true }),
+      column("steps", (k) => moves[k].steps, (v) => signed(v, 9)),
+      real("tension before (N)", "tension_before_N", 4),
+      real("tension after (N)", "tension_after_N", 4),
+      real(`${name} after it (mm)`, "predicted_m", 4, { unit: 1e3 }),
+      ...(moves.some(({ slack }) => slack) ? [column("slack cables", (k) => moves[k].slack, fmtCount)] : []),
+    ],
+    n: moves.length,
+    by: -1,
+  }).node;
+}
+
+const SHARED = {
+  temperature_K: (error) => `the temperature: ${signed(error, 3)} K`,
+  EA_ratio: (error, set) => `EA of spool ${set}: ${signed(100 * error, 3)} %`,
+  cut_ratio: (error, set) => `lengths of spool ${set}: ${signed(100 * error, 3)} %`,
+};
+
+const NAMED_MOST = 10; // of what stands out
+function outliers(choose) {
+  const { stand_out: cables, shared } = adjust,
+    left = cables.length - NAMED_MOST;
+  const sigmas = (v) => `${fmt(v, 3)} σ`;
+  const list = [
+    ...shared.map(({ kind, set, error, sigmas: s }) =>
+      el("li", {}, `${SHARED[kind] ? SHARED[kind](error, set) : kind}, ${sigmas(s)}`),
+    ),
+    ...cables.slice(0, NAMED_MOST).map(({ cable, error_m, sigmas: s }) =>
+      el(
+        "li",
+        {},
+        cableLink(cableAt.get(cable), choose),
+        ` seems ${inMm(Math.abs(error_m), 3)} too ${error_m > 0 ? "long" : "short"}, ${sigmas(s)}`,
+      ),
+    ),
+    left > 0 ? el("li", {}, `and ${fmtCount(left)} more cables beyond 3 σ: the table of cables has all errors`) : null,
+  ];
+  if (!shared.length && !cables.length) return [];
+  return [el("h3", { class: "after" }, "What stands out of the tolerances"), el("ul", {}, list)];
+}
+
+function writeAdjust(view) {
+  if (!adjust) return;
+  const name = FIGURE[adjust.figure] || adjust.figure,
+    choose = chooserOf(view);
+  const figures = [
+    typeof adjust.measured_m === "number" ? figure(`${name}, measured`, roundedMm(adjust.measured_m), "mm") : null,
+    figure(`${name}, estimated`, roundedMm(adjust.estimated_m), "mm"),
+    figure(`${name} after the moves`, roundedMm(adjust.adjusted_m), "mm"),
+    figure(`${name} as designed`, roundedMm(adjust.nominal_m), "mm"),
+    figure("moves", fmtCount(adjust.moves.length)),
+    figure("χ² per coordinate", fmt(adjust.chi_square, 3)),
+  ].filter((node) => node);
+  section(
+    "adjust",
+    "Adjustment of the net as built",
+    el("p", {}, adjustText(name)),
+    el("dl", { class: "figures" }, figures),
+    adjust.moves.length ? el("div", { class: "charts" }, adjustChart(name)) : null,
+    adjust.moves.length ? el("h3", { class: "after" }, "Moves in the order in which they are made") : null,
+    adjust.moves.length
+      ? el("p", {}, `Of ${familyName(adjust.set)}. A move above 0 lets the cable out; a name shows it in the picture.`)
+      : null,
+    adjust.moves.length ? movesTable(name, choose) : null,
+    ...outliers(choose),
+  );
+}
