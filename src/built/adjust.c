@@ -444,21 +444,88 @@ static hf_status spread_figure(adjustment *a, double *doubt_m, double *spread_m)
 
 /* ---- one move after the other ---- */
 
-/* Of the chosen moves that are not in a->trial yet, the one after which the linear model has the least figure. */
-static size_t next_move(adjustment *a)
+/* What the chosen moves do to tensions, by the linear model. */
+typedef struct {
+    double *change_N; /* [n_move][n_cable] by each, in the order of a->steps */
+    double *fall_N;   /* [n_cable] after the moves in a->trial */
+    void *block;
+} move_order;
+
+static void lay_out_order(hf_arena *arena, size_t n_move, size_t n_cable, move_order *o)
+{
+    o->change_N = hf_arena_take(arena, n_move * n_cable, sizeof(double));
+    o->fall_N = hf_arena_take(arena, n_cable, sizeof(double));
+}
+
+static hf_status make_order(adjustment *a, int n_move, move_order *o)
+{
+    hf_arena arena = {0};
+    size_t n_cable = (size_t)a->problem.n_tension;
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_order(&arena, (size_t)n_move, n_cable, o)));
+    o->block = arena.block;
+    double *change_N = o->change_N;
+    for (size_t i = 0; i < a->n; i++) {
+        if (!a->steps[i]) continue;
+        find_rates(a, (int)i, change_N);
+        for (size_t e = 0; e < n_cable; e++)
+            change_N[e] *= a->steps[i] * a->problem.step_m;
+        change_N += n_cable;
+    }
+    return HF_OK;
+}
+
+/* Do all cables keep their least tension after a further move? */
+static bool keeps_taut(const adjustment *a, const move_order *o, const double *change_N)
+{
+    for (int e = 0; e < a->problem.n_tension; e++)
+        if (change_N[e] < 0 && o->fall_N[e] - change_N[e] > a->room_N[e]) return false;
+    return true;
+}
+
+/* Of the chosen moves that are not in a->trial yet, the one after which the linear model has the least figure, of those
+ * that keep cables taut if there are some. It is put into a->trial. */
+static size_t next_move(adjustment *a, move_order *o)
 {
     double least = (double)INFINITY;
-    size_t next = a->n;
+    size_t next = a->n, n_cable = (size_t)a->problem.n_tension;
+    bool is_taut = false;
+    const double *change_N = o->change_N, *next_N = change_N;
     for (size_t i = 0; i < a->n; i++) {
+        if (!a->steps[i]) continue;
+        const double *this_N = change_N;
+        change_N += n_cable;
         if (a->steps[i] == a->trial[i]) continue;
+        bool keeps = keeps_taut(a, o, this_N);
         a->trial[i] = a->steps[i];
         double square = hf_moves_square(&a->problem, a->trial);
         a->trial[i] = 0;
-        if (next < a->n && !(square < least)) continue;
+        if (next < a->n && (keeps == is_taut ? !(square < least) : is_taut)) continue;
         least = square;
         next = i;
+        is_taut = keeps;
+        next_N = this_N;
     }
+    for (size_t e = 0; e < n_cable; e++)
+        o->fall_N[e] -= next_N[e];
+    a->trial[next] = a->steps[next];
     return next;
+}
+
+/* a->trial: no moves; the shape is that without any. */
+static hf_status make_moves(adjustment *a, move_order *o, hf_adjustment *found)
+{
+    for (int k = 0; k < found->n_move; k++) {
+        size_t i = next_move(a, o);
+        int e = a->task->cable[i];
+        hf_adjust_move *move = &found->move[k];
+        *move = (hf_adjust_move){.cable = e, .steps = a->steps[i], .move_m = a->steps[i] * a->problem.step_m};
+        move->before_N = a->work.tension_N[e];
+        hf_status status = solve_steps(a, a->trial, &move->figure_m);
+        if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+        move->after_N = status == HF_OK ? a->work.tension_N[e] : (double)NAN;
+        move->n_slack = count_slack(a);
+    }
+    return HF_OK;
 }
 
 static hf_status list_moves(adjustment *a, hf_adjustment *found)
@@ -476,18 +543,12 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
     memset(a->trial, 0, a->n * sizeof *a->trial);
     HF_TRY(solve_steps(a, a->trial, &figure_m));
     HF_TRY(spread_figure(a, &found->doubt_m[0], &found->spread_m[0]));
-    for (int k = 0; k < found->n_move; k++) {
-        size_t i = next_move(a);
-        int e = a->task->cable[i];
-        hf_adjust_move *move = &found->move[k];
-        a->trial[i] = a->steps[i];
-        *move = (hf_adjust_move){.cable = e, .steps = a->steps[i], .move_m = a->steps[i] * a->problem.step_m};
-        move->before_N = a->work.tension_N[e];
-        status = solve_steps(a, a->trial, &move->figure_m);
-        if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-        move->after_N = status == HF_OK ? a->work.tension_N[e] : (double)NAN;
-        move->n_slack = count_slack(a);
-    }
+    move_order order = {0};
+    status = make_order(a, found->n_move, &order);
+    if (status == HF_OK) status = make_moves(a, &order, found);
+    arena.block = order.block;
+    hf_arena_free(&arena);
+    HF_TRY(status);
     return spread_figure(a, &found->doubt_m[1], &found->spread_m[1]); /* of the last one, with all moves */
 }
 

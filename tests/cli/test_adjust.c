@@ -140,6 +140,8 @@ START_TEST(least_tensions_are_asked_for)
         "adjust.range_m=0.001", "--set", "adjust.set=boundary", "--set", "adjust.moves=8"
     HIFDM(0, LET_OUT);
     SHELL(0, least, moves, "-1", "4");
+    HIFDM(0, LET_OUT, "--json"); /* nor is any cable slack on the way */
+    ck_assert_int_eq(count_of(said.out, "\"slack\": 0"), 8);
     HIFDM(0, LET_OUT, "--set", "tolerance.require=[{measure: least_tension_N, at_least: 5}]");
     SHELL(0, least, moves, "4.5", "1e3");
     HIFDM(0, LET_OUT, "--set", "optimize.limits=[{limit: tension, set: boundary, bounds: [8, 1e4]}]");
