@@ -11,10 +11,9 @@ import sys
 import figures
 import h5py
 import numpy as np
-import scipy.optimize
 
 from coupled_oracle import beam
-from lm_slsqp import GAIN_MOST, Net
+from lm_slsqp import GAIN_MOST, Net, minimise, remember
 
 E_PA, G_PA, A_M2, I_M4, J_M4 = 70e9, 26e9, 2e-7, 1.2e-8, 2.4e-8
 MAST_M = 1.5
@@ -99,26 +98,15 @@ class Wanted:
 
 
 def improve(wanted, density, low, high, x):
-    """SLSQP over the force densities and the least tension. Returns the merit, or infinity outside the limits."""
-    kept, net = {}, wanted.net
-
-    def at(v):
-        key = v[:-1].tobytes()
-        if key not in kept:
-            kept.clear()
-            kept[key] = net.solve(v[:-1], x)
-        return kept[key]
+    """The merit within the limits, or infinity outside them."""
+    at = remember(wanted.net, x)
 
     def value(v):
         merit2, slope = wanted.merit2(at(v))
         return 1e4 * merit2, np.append(1e4 * slope, 0)
 
-    start = np.append(density, at(np.append(density, 0))[1].min())
-    found = scipy.optimize.minimize(
-        value, start, jac=True, method="SLSQP", bounds=[*zip(low, high), (1e-6, None)],
-        constraints={"type": "ineq", "fun": lambda v: wanted.limits(at(v), v[-1]),
-                     "jac": lambda v: wanted.limit_rates(at(v))}, options={"maxiter": 400, "ftol": 1e-15})
-    return np.sqrt(value(found.x)[0] / 1e4) if wanted.limits(at(found.x), found.x[-1]).min() > -1e-9 else np.inf
+    return minimise(at, value, density, zip(low, high), lambda v: wanted.limits(at(v), v[-1]),
+                    lambda v: wanted.limit_rates(at(v)), 400)
 
 
 def compare(program, folder, random, on_truss):

@@ -116,11 +116,9 @@ class Net:
         return np.sqrt(np.mean(np.sum((shape - self.theory)[self.inner] ** 2, axis=1)))
 
 
-def improve(net, density, low, high, cap, is_density, x):
-    """SLSQP over the force densities and the least tension t: psi^2 subject to t <= T <= cap t and, by rule, bounds on
-    the tensions, or on force density times theoretical length. Returns psi, or infinity outside the limits."""
+def remember(net, x):
+    """The shape and its rates by force densities v[:-1]; of the last ones that were asked for they are kept."""
     kept = {}
-    length = net.length[net.boundary]
 
     def at(v):
         key = v[:-1].tobytes()
@@ -128,6 +126,24 @@ def improve(net, density, low, high, cap, is_density, x):
             kept.clear()
             kept[key] = net.solve(v[:-1], x)
         return kept[key]
+
+    return at
+
+
+def minimise(at, value, density, bounds, limits, limit_rates, iterations):
+    """SLSQP over the force densities and the least tension, from `density`; `value` is 1e4 times a square, with its
+    slope. Returns the root of that square, or infinity outside the limits."""
+    found = scipy.optimize.minimize(
+        value, np.append(density, at(np.append(density, 0))[1].min()), jac=True, method="SLSQP",
+        bounds=[*bounds, (1e-6, None)], constraints={"type": "ineq", "fun": limits, "jac": limit_rates},
+        options={"maxiter": iterations, "ftol": 1e-15})
+    return np.sqrt(value(found.x)[0] / 1e4) if limits(found.x).min() > -1e-9 else np.inf
+
+
+def improve(net, density, low, high, cap, is_density, x):
+    """psi^2 subject to t <= T <= cap t with the least tension t and, by rule, bounds on the tensions, or on force
+    density times theoretical length. Returns psi, or infinity outside the limits."""
+    at, length = remember(net, x), net.length[net.boundary]
 
     def psi2(v):
         shape, _, move, _ = at(v)
@@ -147,11 +163,7 @@ def improve(net, density, low, high, cap, is_density, x):
         return np.vstack([np.hstack([rate, -ones]), np.hstack([-rate, cap * ones]), *bounds])
 
     bounds = zip(low / length, high / length) if is_density else zip(0.1 * density, 10 * density)
-    found = scipy.optimize.minimize(
-        psi2, np.append(density, at(np.append(density, 0))[1].min()), jac=True, method="SLSQP",
-        bounds=[*bounds, (1e-6, None)], constraints={"type": "ineq", "fun": limits, "jac": limit_rates},
-        options={"maxiter": 300, "ftol": 1e-15})
-    return np.sqrt(psi2(found.x)[0] / 1e4) if limits(found.x).min() > -1e-9 else np.inf
+    return minimise(at, psi2, density, bounds, limits, limit_rates, 300)
 
 
 def compare(program, folder, random):

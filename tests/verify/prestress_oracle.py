@@ -3,7 +3,7 @@
 
     prestress_oracle.py HIFDM NETS [SEED]
 
-Makes NETS random double nets with ties, whose nodes are up to half a cell off the grid, so that some cannot be held
+Makes NETS random double nets with ties, whose nodes are up to 0.8 of a cell off the grid, so that some cannot be held
 by cables that pull. Of each: the program holds it if and only if a linear programme finds tensions that do; then no
 node moves, no tension is below the least one, and the sum of squared differences from what is wanted is that of a
 quadratic programme over the null space of the equilibrium equations. Exit status 0 when all of this holds."""
@@ -22,7 +22,7 @@ LEAST = 1e-2  # of the largest tension that is wanted
 
 def net(rng):
     nx, ny, bend = rng.integers(3, 7), rng.integers(3, 7), rng.uniform(0.03, 0.1)
-    jitter, n = rng.uniform(0, 0.5), nx * ny
+    jitter, n = rng.uniform(0, 0.8), nx * ny
     plane = np.array([[i, j] for j in range(ny) for i in range(nx)], float) - [(nx - 1) / 2, (ny - 1) / 2]
     plane += rng.uniform(-jitter, jitter, plane.shape)
     r2 = (plane**2).sum(1)
