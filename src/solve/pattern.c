@@ -16,10 +16,10 @@
 #define RAD_PER_DEG (PI / 180)
 #define DB_PER_LN 4.3429448190325182765 /* 10/ln 10 */
 
-enum { GAUSS_MOST = 64, GAUSS_MORE = 3, LOOKS = 16, PIECES_MOST = 100000 };
-#define GAUSS_LN (-25.0)      /* logarithm of the error of a quadrature that is taken */
-#define NODE_LN (-28.0)       /* the same of what is found between angles */
-#define GAUSS_PHASE_MOST 78.0 /* half of the phase across a piece, at which GAUSS_MOST points have that error */
+enum { GAUSS_MOST = 64, GAUSS_MORE = 2, LOOKS = 16, PIECES_MOST = 100000 };
+#define GAUSS_LN (-21.0)      /* logarithm of the error of a quadrature that is taken */
+#define NODE_LN (-22.0)       /* the same of what is found between angles */
+#define GAUSS_PHASE_MOST 80.0 /* half of the phase across a piece, at which GAUSS_MOST points have that error */
 
 typedef struct {
     hf_pattern_points *points;
@@ -35,14 +35,16 @@ static const kernels kernels_of_isa[HF_LANE_N_ISA] = {KERNELS(portable), KERNELS
 /* ---- orders ---- */
 
 /* Smallest number of Chebyshev's nodes on [-1, 1] between which exp(j phase x) has an error below exp(NODE_LN): the
- * coefficients J_n(phase) that are left out are below (phase/2)^n / n!. */
+ * coefficients J_n(phase) that are left out are below (z exp(r) / (1 + r))^n, z = phase/n < 1, r^2 = 1 - z^2 (Kapteyn).
+ */
 static int node_order(double phase, int most)
 {
-    double ln = 0, step = hf_logarithm(fmax(phase, 1e-3) / 2);
-    int n = 0;
-    while (n < most && ln > NODE_LN)
-        n++, ln += step - hf_logarithm(n);
-    return n;
+    int n = (int)fmin(phase, most) + 1;
+    for (; n < most; n++) {
+        double z = fmax(phase, 1e-3) / n, r = sqrt(1 - z * z);
+        if (n * (hf_logarithm(z / (1 + r)) + r) < NODE_LN) break;
+    }
+    return n < most ? n : most;
 }
 
 /* ---- layout ---- */
