@@ -22,7 +22,7 @@
 #define DAMPING_LEAST 1e-14 /* [1e-20 to 1e-8] */
 #define DAMPING_MOST 1e12   /* with this much a step is too short to change psi [1e4 to 1e24] */
 #define CORRECTIONS_MAX 4  /* of a step that breaks a limit on tensions [40 passes; 1 fails: the runs stall at a cap] */
-#define DAMPING_OF_WAY 1e3 /* of a way into the limits that steps with less do not find */
+#define DAMPING_OF_WAY 1e3 /* of a way into limits that steps with less do not find [1e8 passes; 1 fails] */
 #define WAY_LEAST 1e-3     /* part of the way into the limits that a step goes [1e-2; 1e-6] */
 #define LIMIT_INSIDE 2e-9  /* a tension so near to its bound, relative, is at it: twice what a step stays within */
 #define LIMIT_ROUNDING 1e-12 /* a violation below this part of the tension is rounding [1e-14 to 1e-10] */

@@ -16,8 +16,8 @@
 #define END_GAINS 0.05 /* ... by more than this part of the other's range */
 #define LONG_GAP 0.5 /* gaps longer than this part of the longest are halved at once, whatever the number of threads */
 #define NO_GAP 1e-9  /* part of the range of the limited objective: no limit fits between */
-#define HELD 1e-6    /* part of its range that an objective is below a limit which holds it, at most */
-#define ONE_POINT 0.05 /* parts of the ranges: the line of the least third is one point when its ends are so near */
+#define HELD 1e-6 /* part of its range that an objective is below a limit which holds it, at most [1e-4; 1e-8 fails] */
+#define ONE_POINT 0.05 /* parts of the ranges: the line of the least third with ends so near is a point [0.01 to 0.2] */
 
 enum { MAIN, OTHER, THIRD }; /* what objectives are, see search.role */
 
