@@ -61,6 +61,22 @@ static int print_entries(const char *word, FILE *f)
     return n;
 }
 
+/* An entry may do no more than name another: "See far_node; ...". That one follows. */
+static void follow(const char *word, FILE *f)
+{
+    static const char *const pointer[] = {"See ", "Column of the summary: "};
+    for (int i = 0; i < hf_word_count(); i++) {
+        const hf_word entry = hf_word_at(i);
+        for (size_t k = 0; k < sizeof pointer / sizeof *pointer; k++) {
+            const char *to = entry.text + strlen(pointer[k]);
+            char other[64];
+            if (!hf_word_is_like(i, word) || strncmp(entry.text, pointer[k], strlen(pointer[k])) != 0) continue;
+            snprintf(other, sizeof other, "%.*s", (int)strcspn(to, ".,;"), to);
+            print_entries(other, f);
+        }
+    }
+}
+
 /* "75" or "exit status 75": what the help says of it, and the statuses that end so. */
 static bool print_exit_status(const char *word, FILE *f)
 {
@@ -81,32 +97,48 @@ static bool print_exit_status(const char *word, FILE *f)
     return false;
 }
 
+/* The words of the command line with blanks between them: nobody quotes "best fit". */
+static const char *join_words(const hf_options *o, char *joined, size_t size)
+{
+    size_t used = 0;
+    *joined = '\0';
+    for (int i = 2; i < o->argc && used < size; i++)
+        if (o->argv[i][0] != '-' || !o->argv[i][1])
+            used += (size_t)snprintf(joined + used, size - used, "%s%s", used ? " " : "", o->argv[i]);
+    return joined;
+}
+
 static hf_status command_explain(const hf_options *o, FILE *file, hf_messages *messages)
 {
     static const char no_proof[] = "no: "; /* as the table has it before a bound_reason */
-    const char *names[1024], *word = o->file;
+    char joined[1024];
+    const char *names[1024], *all = join_words(o, joined, sizeof joined), *word = all;
     int n_name = 0;
     if (!o->file) {
         print_words(file);
         return HF_OK;
     }
     if (!strncmp(word, no_proof, strlen(no_proof))) word += strlen(no_proof);
-    if (print_exit_status(word, file) || print_entries(word, file)) return HF_OK;
+    if (print_exit_status(word, file)) return HF_OK;
+    if (print_entries(word, file)) {
+        follow(word, file);
+        return HF_OK;
+    }
     for (int i = 0; i < hf_word_count() && n_name < (int)(sizeof names / sizeof *names); i++)
         names[n_name++] = hf_word_at(i).word;
-    const char *near = hf_text_nearest(o->file, names, n_name);
+    const char *near = hf_text_nearest(all, names, n_name);
     bool is_likely = near && (strlen(word) > SHORT || hf_word_letter(*near) == hf_word_letter(*word));
-    if (is_likely) return hf_error(messages, HF_BAD_USAGE, "nothing is called '%s'; did you mean '%s'?", o->file, near);
-    return hf_error(messages, HF_BAD_USAGE, "nothing is called '%s'; 'hifdm explain' lists all words", o->file);
+    if (is_likely) return hf_error(messages, HF_BAD_USAGE, "nothing is called '%s'; did you mean '%s'?", all, near);
+    return hf_error(messages, HF_BAD_USAGE, "nothing is called '%s'; 'hifdm explain' lists all words", all);
 }
 
 const hf_command hf_cmd_explain = {
     .name = "explain",
-    .argument = "[WORD]",
+    .argument = "[WORD...]",
     .help = "say what a status, a warning, a figure or a term means, and what to do",
-    .about =
-        "WORD is one of the summary, of --json or of a message, or a whole warning in quotes. Without it all words "
-        "are listed.",
+    .about = "WORD is one of the summary, of --json or of a message, several words of a term, or a whole warning in "
+             "quotes. Without it all words "
+             "are listed.",
     .examples = "hifdm explain straight_chain\n"
                 "hifdm explain position_bound_m\n"
                 "hifdm explain \"warning: slack in the form-finding shape, 1: c7\"",

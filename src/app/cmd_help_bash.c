@@ -154,7 +154,7 @@ void hf_help_bash(FILE *f)
             fputs("words='", f);
             bash_commands(f);
             fputs("' ;;\n", f);
-        } else if (!strcmp(c->argument, "[WORD]")) {
+        } else if (!strcmp(c->argument, "[WORD...]")) {
             bash_explained(f);
         } else if (!strcmp(c->argument, "NAME")) {
             fputs("return ;;\n", f);

@@ -330,6 +330,8 @@ static hf_status read_file(const char *word, const hf_command *command, hf_optio
         o->file = word;
     else if (takes_two(command) && !o->second)
         o->second = word;
+    else if (command->argument && strstr(command->argument, "...")) /* it takes them from argv */
+        return HF_OK;
     else
         return hf_error(messages, HF_BAD_USAGE, "'%s' is one argument too many for 'hifdm %s'", word, command->name);
     return HF_OK;

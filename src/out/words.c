@@ -529,13 +529,14 @@ enum { N_TOLD = sizeof told / sizeof *told };
 
 int hf_word_count(void)
 {
-    return N_LISTED + N_TOLD + hf_n_words_adjust;
+    return N_LISTED + N_TOLD + hf_n_words_case + hf_n_words_adjust;
 }
 
 hf_word hf_word_at(int i)
 {
-    if (i >= N_LISTED + N_TOLD) return hf_words_adjust[i - N_LISTED - N_TOLD];
-    return i < N_LISTED ? listed[i] : told[i - N_LISTED];
+    if (i < N_LISTED) return listed[i];
+    if ((i -= N_LISTED) < N_TOLD) return told[i];
+    return (i -= N_TOLD) < hf_n_words_case ? hf_words_case[i] : hf_words_adjust[i - hf_n_words_case];
 }
 
 bool hf_word_is(int i, const char *word)

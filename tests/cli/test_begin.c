@@ -174,6 +174,18 @@ START_TEST(explain_helps_with_slips)
         HIFDM(0, "explain", as_said[i][0]);
         OUT(as_said[i][1]);
     }
+    HIFDM(0, "explain", "best", "fit");
+    OUT("best fit (term)\n");
+    HIFDM(0, "explain", "boundary ratio"); /* it only points to another, which follows */
+    OUT("boundary_tension_ratio (figure of form");
+    HIFDM(0, "explain", "adjustment_m");
+    OUT("l0_minus_theory_m (column of cut lists, m)\n");
+    static const char *const asked[] = {"goal",    "facets",   "evenness",   "limits", "range", "rings",
+                                        "cutlist", "cut list", "turnbuckle", "gain",   "RMS"};
+    for (size_t i = 0; i < sizeof asked / sizeof *asked; i++)
+        HIFDM(0, "explain", asked[i]);
+    HIFDM(2, "explain", "best", "fitt");
+    ERR("nothing is called 'best fitt'; did you mean 'best fit'?");
     HIFDM(2, "explain", "rope");
     ERR("nothing is called 'rope'; 'hifdm explain' lists all words");
     HIFDM(2, "explain", "residul_N");
