@@ -82,6 +82,27 @@ static bool has_section_of(const hf_case *c, const char *key)
     return true;
 }
 
+/* A wave of 300 m and more, as long as a number that was given in GHz or MHz comes out. */
+#define LEAST_HZ 1e6
+
+static const char *frequency_fault(double frequency_Hz, char what[WHAT_SIZE])
+{
+    if (!(frequency_Hz > 0 && frequency_Hz < LEAST_HZ)) return NULL; /* 0, NaN: not given */
+    snprintf(what, WHAT_SIZE, "is %g Hz, and below 1 MHz there are no reflectors: was GHz meant? 6 GHz is 6e9",
+             frequency_Hz);
+    return what;
+}
+
+static void check_frequencies(const hf_double_list *frequency_Hz, hf_config_faults *f)
+{
+    char what[WHAT_SIZE];
+    for (int i = 0; i < frequency_Hz->n; i++) {
+        if (!frequency_fault(frequency_Hz->value[i], what)) continue;
+        hf_config_fault_of(f, "surface.frequencies_Hz", what);
+        return;
+    }
+}
+
 static void check_pattern(const hf_case *c, hf_config_faults *f)
 {
     static const char *const of_feed[] = {"surface.pattern.feed.position_m", "surface.pattern.feed.aim_m",
@@ -242,6 +263,7 @@ static void check_goals(const char *list, int n_goal, const hf_goal_settings *go
                {"along", SURFACES},
                {"fit", SURFACES},
                {"frequency_Hz", 1u << HF_GOAL_GAIN}};
+    char what[WHAT_SIZE];
     for (int i = 0; i < n_goal; i++) {
         const hf_goal_settings *g = &goal[i];
         for (size_t k = 0; k < sizeof use / sizeof *use; k++)
@@ -253,6 +275,8 @@ static void check_goals(const char *list, int n_goal, const hf_goal_settings *go
             hf_config_fault_in_row(f, list, i, "target", "of length must be above 0");
         if (g->goal == HF_GOAL_MASS && isnan(g->mass_kg_per_m))
             hf_config_fault_in_row(f, list, i, "mass_kg_per_m", "is missing: the mass of the cables");
+        if (g->goal == HF_GOAL_GAIN && frequency_fault(g->frequency_Hz, what))
+            hf_config_fault_in_row(f, list, i, "frequency_Hz", what);
     }
 }
 
@@ -322,6 +346,7 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
         hf_config_fault_of(f, "surface.focal_length_m",
                            c->has_import ? "is missing: an imported net does not tell its surface"
                                          : "is missing: this net does not tell its surface");
+    if (c->has_surface && !f->failed) check_frequencies(&c->surface.frequencies_Hz, f);
     if (c->surface.has_pattern && !f->failed) check_pattern(c, f);
     if (!f->failed) check_generators(c, f);
     if ((c->has_truss || c->has_truss_import || c->has_truss_ring) && !f->failed) check_truss(c, f);

@@ -480,6 +480,14 @@ static const hf_word told[] = {
      "m long by its law"},
     {"long_cables", "warning", "", "See long_cable; these are the rest of them.",
      "more cables of other lengths than their nodes"},
+    {"far_range", "warning", "",
+     "A range several times as large as the values themselves lets them become almost nothing, or many times as large. "
+     "Parts have a sign: range: 50 %. If the number is meant, give bounds, too.",
+     "times the largest value of this row"},
+    {"unused_length", "warning", "",
+     "form.prestress exact replaces every law by a force density: of cables of laws length and elastic it takes no "
+     "length. Prescribe lengths with form.prestress given.",
+     "form.prestress: exact: the length given to cable"},
     {"flat_rim", "warning", "",
      "With all supports in one plane tensions pull the whole net into it. Tie the net to a second one "
      "(rear_distance_m), load it, or put supports on the surface.",

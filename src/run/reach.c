@@ -16,9 +16,10 @@
 #include <math.h>
 #include <string.h>
 
-#define ROUNDED 1e-9 /* of the largest change: no change; what is prescribed comes out a thousand times smaller */
-#define BESIDE 0.05  /* of what a gene may move by: the second design */
-#define CLASSES 16   /* at least one for each row */
+#define ROUNDED 1e-9  /* of the largest change: no change; what is prescribed comes out a thousand times smaller */
+#define BESIDE 0.05   /* of what a gene may move by: the second design */
+#define FAR_RANGE 3.0 /* times the largest value */
+#define CLASSES 16    /* at least one for each row */
 
 /* What each row is left as; a row of variables that changes nothing. */
 typedef struct {
@@ -325,10 +326,30 @@ static hf_status look(reach *q)
     return HF_OK;
 }
 
+/* A range of 50 for 50 %: far beyond the values of a row, where bounds do not say how far is meant. */
+static void doubt_ranges(const hf_problem *p, hf_messages *messages)
+{
+    const hf_model *m = &p->model;
+    char place[HF_PLACE_SIZE];
+    for (int i = 0; i < p->settings.optimize.n_variable; i++) {
+        const hf_variable_settings *row = &p->settings.optimize.variable[i];
+        double most = 0;
+        for (int k = 0; k < m->n_gene; k++)
+            if (row_of_gene(m, k) == i && m->gene_cable[k] >= 0) most = fmax(most, fabs(p->base_N[k]));
+        if (!(most > 0) || !isinf(row->upper) || !(row->range > FAR_RANGE * most)) continue;
+        hf_warning(messages, "%s: %g is %.2g times the largest value of this row, %.3g: is a part meant, as in %g %%?",
+                   hf_messages_place(messages, place, "optimize.variables.%d.range", i), row->range, row->range / most,
+                   most, row->range);
+    }
+}
+
 hf_status hf_reach_check(const hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     reach q;
+    hf_problem_give_places(p, messages);
+    doubt_ranges(p, messages);
+    hf_problem_give_places(NULL, messages);
     if (!hf_polish_applies(&p->evaluator)) return HF_OK;
     if (!o->n_variable && !o->n_limit && !p->goals.n_goal) return HF_OK;
     hf_status status = create(p, &q);

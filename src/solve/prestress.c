@@ -28,6 +28,8 @@
 #define SHIFT 1e-13
 /* Part of its stiffness that a cable at its least tension keeps in the matrix, so that its nodes have some. */
 #define AT_LEAST 1e-9
+/* A given length that differs from the theoretical one by this part of it: tables have six digits. */
+#define OWN_LENGTH 1e-4
 #define STEP_MAX 200
 /* Solutions for the means of families, each by the factor at hand; they settle at this change over the reference. */
 #define MEANS_MAX 10
@@ -317,6 +319,24 @@ static hf_status find_tensions(programme *p, const hf_scene *scene, hf_messages 
     return name_unheld(p, scene, messages);
 }
 
+/* Lengths of one's own that the cables lose with their laws. */
+static void tell_lengths(const hf_scene *s, hf_messages *messages)
+{
+    int n = 0, first = 0;
+    for (int e = s->n_cable - 1; e >= 0; e--) {
+        double theoretical_m = hf_scene_theoretical_length(s, e);
+        bool is_own = fabs(s->target[e] - theoretical_m) > OWN_LENGTH * theoretical_m;
+        if (!hf_law_has(s->law[e], HF_LAW_HAS_MULTIPLIER) || !is_own) continue;
+        first = e;
+        n++;
+    }
+    if (n)
+        hf_warning(messages,
+                   "form.prestress: exact: the length given to cable '%s' (%.6g m) is not used%s: it gets the tension "
+                   "that holds its nodes where theory has them",
+                   s->cable_id[first], s->target[first], n > 1 ? ", nor are those of others" : "");
+}
+
 static hf_status hold(hf_scene *scene, const hf_model *m, const volatile sig_atomic_t *stop, hf_messages *messages)
 {
     hf_arena arena = {0};
@@ -339,6 +359,7 @@ hf_status hf_prestress_hold(hf_scene *scene, const hf_form_settings *form, const
 {
     hf_form_settings by_law = *form;
     hf_model model;
+    tell_lengths(scene, messages);
     by_law.method = HF_METHOD_AUTO; /* the other methods replace laws */
     hf_status status = hf_model_build(scene, &by_law, &model, messages);
     if (status == HF_OK) status = hold(scene, &model, stop, messages);

@@ -164,6 +164,55 @@ START_TEST(lengths_in_another_unit_are_told)
 }
 END_TEST
 
+START_TEST(frequencies_in_another_unit_are_refused)
+{
+    const char *path = file_with("f.yaml", SMALL_SCENE "surface:\n  frequencies_Hz: [1e9, 6]\n");
+    HIFDM(2, "check", path);
+    ERR("f.yaml:");
+    ERR("surface.frequencies_Hz: is 6 Hz, and below 1 MHz there are no reflectors: was GHz meant? 6 GHz is 6e9\n");
+    HIFDM(0, "check", path, "--set", "surface.frequencies_Hz=[1e6]");
+    HIFDM(2, "check", keep(source_path("configs/paraboloid-even.yaml")), "--set",
+          "optimize.goals=[{goal: gain, frequency_Hz: 32}]", "--set", "surface.frequencies_Hz=[1e9]", "--set",
+          "surface.pattern.phi_deg=[0]");
+    ERR("optimize.goals.0.frequency_Hz: is 32 Hz, and ");
+}
+END_TEST
+
+/* 50 N/m where 50 % was meant. */
+START_TEST(a_range_beyond_the_values_is_told)
+{
+    static const char row[] = SMALL_SCENE "optimize: {method: lm, variables: [{set: boundary, vary: force_density, "
+                                          "range: %s}]}\n";
+    const char *path = file_with("r.yaml", formatted(row, "500"));
+    HIFDM(0, "check", path);
+    ERR("optimize.variables.0.range: 500 is ");
+    ERR(" times the largest value of this row, ");
+    ERR(": is a part meant, as in 500 %?\n");
+    ck_assert_int_eq(count_of(said.err, "is a part meant"), 1);
+    HIFDM(0, "check", file_with("r.yaml", formatted(row, "50 %")));
+    ck_assert_ptr_null(strstr(said.err, "is a part meant"));
+    HIFDM(0, "check", file_with("r.yaml", formatted(row, "500, bounds: [1, 600]")));
+    ck_assert_ptr_null(strstr(said.err, "is a part meant"));
+}
+END_TEST
+
+START_TEST(lengths_that_exact_tensions_replace_are_told)
+{
+    const char *path = file_with("p.yaml", "scene:\n  EA_inner_N: 5e4\n  EA_boundary_N: 5e4\n"
+                                           "  paraboloid: {aperture_m: 4, focal_length_m: 3, rings: 2, "
+                                           "rear_distance_m: 1}\nform: {prestress: exact}\n");
+    HIFDM(0, "run", path, "-o", temp("p.h5"), "--quiet"); /* its ties are as long as theory has them */
+    ck_assert_ptr_null(strstr(said.err, "is not used"));
+    HIFDM(0, "export", temp("p.h5"), "--cutlist", temp("cut.csv"));
+    HIFDM(0, "check",
+          file_with("again.yaml", "scene: {import: {nodes: cut_nodes.csv, cables: cut.csv}}\n"
+                                  "form: {prestress: exact}\n"));
+    ck_assert_int_eq(count_of(said.err, "is not used, nor are those of others"), 1);
+    HIFDM(0, "check", temp("again.yaml"), "--set", "form.prestress=given");
+    ck_assert_ptr_null(strstr(said.err, "is not used"));
+}
+END_TEST
+
 START_TEST(focal_length_out_of_proportion_is_told)
 {
     const char *path = file_with("f.yaml", SMALL_SCENE);
@@ -217,6 +266,9 @@ Suite *suite_cli_wrong_surface(void)
     tcase_add_test(tests, cables_between_the_same_nodes_are_told);
     tcase_add_test(tests, far_nodes_are_told);
     tcase_add_test(tests, lengths_in_another_unit_are_told);
+    tcase_add_test(tests, frequencies_in_another_unit_are_refused);
+    tcase_add_test(tests, a_range_beyond_the_values_is_told);
+    tcase_add_test(tests, lengths_that_exact_tensions_replace_are_told);
     tcase_add_test(tests, focal_length_out_of_proportion_is_told);
     tcase_add_test(tests, net_that_collapses_to_the_plane_of_its_supports_is_told);
     tcase_add_loop_test(tests, ratio_with_a_slack_cable_is_infinite, 0, 2);
