@@ -11,7 +11,8 @@ typedef struct hf_options hf_options;
 
 typedef struct {
     const char *name;
-    const char *argument; /* "CASE"; "A B": two files; "[COMMAND]", "[WORD...]": may be left out, and be several that belong together; NULL: none */
+    /* "CASE"; "A B": two files; "[COMMAND]": may be left out; "[WORD...]": and may be several; NULL: none */
+    const char *argument;
     const char *help;     /* one line */
     const char *about;    /* a paragraph on what the help on options does not say; NULL: none */
     const char *examples; /* command lines, separated by '\n'; NULL: none */
