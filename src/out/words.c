@@ -529,6 +529,9 @@ static const hf_word told[] = {
     {"other_designs", "warning", "",
      "Another machine or build began this result: the generations that were not published are computed again.",
      "breeds other designs"},
+    {"no_far_field", "warning", "",
+     "The run was told to stop while it summed the far field: the shape is kept, its pattern is not there.",
+     "the shape of stage"},
     {"nothing_to_recover", "warning", "", "The result is finished.", "there is nothing to recover"},
 };
 enum { N_TOLD = sizeof told / sizeof *told };
