@@ -531,7 +531,7 @@ static const hf_word told[] = {
      "breeds other designs"},
     {"no_far_field", "warning", "",
      "The run was told to stop while it summed the far field: the shape is kept, its pattern is not there.",
-     "the shape of stage"},
+     "told to stop: the shape of stage"},
     {"nothing_to_recover", "warning", "", "The result is finished.", "there is nothing to recover"},
 };
 enum { N_TOLD = sizeof told / sizeof *told };
