@@ -11,6 +11,7 @@ export function csv(path) {
 }
 
 export const same = (shown, value, digits) => {
+  assert.ok(Number.isFinite(value), `${shown} is shown, and there is no value`);
   const near = Math.abs(shown - value) <= 0.51 * 10 ** (Math.floor(Math.log10(Math.abs(value) || 1)) - digits + 1);
   assert.ok(near || Math.abs(shown - value) < 1e-9, `${shown} is shown for ${value}`);
 };
