@@ -32,9 +32,14 @@ typedef struct {
     double best_psi_m;           /* NaN while nothing is feasible */
     double elapsed_s;            /* in this phase and process */
     long samples, samples_all;   /* of tolerance: finished, of all; evaluations are those of this process */
+    /* Of polish: steps done, and at most; the merit of the best design, NaN where psi is all that is wanted. best_psi_m
+     * is of that design. */
+    int iteration, iterations, first_iteration;
+    double merit;
 } hf_run_progress;
 
-/* Called at the start of each phase, and after each generation when it has been stored. Only one thread at a time calls
+/* Called at the start of each phase, after each generation when it has been stored, and after each step of
+ * Levenberg-Marquardt. Only one thread at a time calls
  * it, but not always the same one. */
 typedef void hf_run_observer(void *context, const hf_run_progress *progress);
 

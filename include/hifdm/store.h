@@ -40,6 +40,7 @@
  *   /ga/best     as /form, and design_N [k]
  *   /polish      the same, of Levenberg-Marquardt; attributes: HF_SUMMARY_POLISH_LIST, the figures of
  *                hf_summary.polish
+ *   /polish_state  of an unfinished run that was in Levenberg-Marquardt: its time and where it goes on, opaque numbers
  *   /surface     when the case asks for it: attributes focal_length_m, strip_width_m; frequency_Hz [f]
  *   /surface/form, /surface/optimize, /surface/polish   attributes: HF_SURFACE_LIST, HF_SURFACE_FIT_LIST as fit_...;
  *                gain_loss_dB, fit_gain_loss_dB [f]
@@ -152,6 +153,12 @@ hf_status hf_store_restore_base(hf_store *store, int n_gene, double *base_N, hf_
  * proposed again; a build that proposes others leaves these generations out, with a warning. Does nothing when
  * the store holds no generation. */
 hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages);
+
+/* Take where Levenberg-Marquardt is, after this time, for the publications to come; a finished file does not have it.
+ * Restoring it: n is 0 where a resumed store has none; state is borrowed until hf_store_polish. */
+hf_status hf_store_polish(hf_store *store, double wall_s, size_t n, const double *state, hf_messages *messages);
+hf_status hf_store_restore_polish(hf_store *store, double *wall_s, size_t *n, const double **state,
+                                  hf_messages *messages);
 
 /* Publish everything so far: give the visible name to a file that is marked as unfinished. With at_once it is done now,
  * otherwise only when the last publication took less than 2 % of the time since then. Call it after every

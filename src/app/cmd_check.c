@@ -410,7 +410,7 @@ static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const h
     hf_polish_result r;
     char one[32], all[32];
     double begin_s = hf_clock_s();
-    hf_status status = hf_polish_run(v, ga->lower_N, ga->upper_N, 2, p->base_N, &p->workspace, &r);
+    hf_status status = hf_polish_run(v, ga->lower_N, ga->upper_N, 2, NULL, p->base_N, &p->workspace, &r);
     if (status == HF_NO_MEMORY) return status;
     if (status != HF_OK || r.iterations == 0) return HF_OK;
     double each_s = (hf_clock_s() - begin_s) / r.iterations;

@@ -4,6 +4,7 @@
 #include "base/json.h"
 #include "out/print.h"
 
+#include <math.h>
 #include <unistd.h>
 
 const char *const hf_progress_word[6] = {"auto", "none", "line", "log", "jsonl", NULL};
@@ -25,8 +26,10 @@ static double rate_per_s(const hf_run_progress *now)
  * process are not counted, because the elapsed time does not contain them. */
 static double left_s(const hf_run_progress *now)
 {
-    int done = now->generation - now->first_generation;
-    return done > 0 ? now->elapsed_s * (now->generations - now->generation) / done : 0;
+    bool steps = now->phase == HF_RUN_POLISH;
+    int at = steps ? now->iteration : now->generation,
+        done = at - (steps ? now->first_iteration : now->first_generation);
+    return done > 0 ? now->elapsed_s * ((steps ? now->iterations : now->generations) - at) / done : 0;
 }
 
 static void show_samples(hf_progress *p, const hf_run_progress *now)
@@ -56,6 +59,19 @@ static void show_line(hf_progress *p, const hf_run_progress *now)
     p->is_shown = is_line;
 }
 
+static void show_step(hf_progress *p, const hf_run_progress *now)
+{
+    char left[32] = "";
+    bool is_line = p->mode == HF_PROGRESS_LINE;
+    fprintf(p->file, "%sLevenberg-Marquardt: step %d/%d  psi %.4f mm", is_line ? "\r\033[K" : "", now->iteration,
+            now->iterations, now->best_psi_m * 1e3);
+    if (isfinite(now->merit)) fprintf(p->file, ", merit %.6g", now->merit);
+    hf_print_duration(left_s(now), left, sizeof left);
+    if (now->iteration > now->first_iteration) fprintf(p->file, "  at most %s left", left);
+    if (!is_line) fputc('\n', p->file);
+    p->is_shown = is_line;
+}
+
 static void show_json(const hf_progress *p, const hf_run_progress *now)
 {
     hf_json j = {.file = p->file};
@@ -66,6 +82,15 @@ static void show_json(const hf_progress *p, const hf_run_progress *now)
         hf_json_integer(&j, "samples", now->samples_all);
         hf_json_number(&j, "samples_per_s", rate_per_s(now));
         hf_json_number(&j, "elapsed_s", now->elapsed_s);
+    }
+    if (now->phase == HF_RUN_POLISH && now->iterations > 0) {
+        hf_json_integer(&j, "iteration", now->iteration);
+        hf_json_integer(&j, "iterations", now->iterations);
+        hf_json_integer(&j, "evaluations", now->evaluations);
+        hf_json_number(&j, "best_psi_m", now->best_psi_m);
+        if (isfinite(now->merit)) hf_json_number(&j, "merit", now->merit);
+        hf_json_number(&j, "elapsed_s", now->elapsed_s);
+        hf_json_number(&j, "at_most_left_s", left_s(now));
     }
     if (now->generation > 0) {
         hf_json_integer(&j, "generation", now->generation);
@@ -84,10 +109,14 @@ static void show_json(const hf_progress *p, const hf_run_progress *now)
 void hf_progress_show(void *progress, const hf_run_progress *now)
 {
     hf_progress *p = progress;
-    bool samples = now->phase == HF_RUN_TOLERANCE;
-    bool is_first = samples ? now->evaluations == 0 : now->generation <= now->first_generation + 1;
-    bool is_last = (samples || now->generation > 0) && now->is_last;
-    bool has_line = samples ? now->evaluations > 0 || p->mode == HF_PROGRESS_LINE : now->phase == HF_RUN_EVOLVE;
+    bool samples = now->phase == HF_RUN_TOLERANCE, steps = now->phase == HF_RUN_POLISH;
+    bool is_first = samples ? now->evaluations == 0
+                    : steps ? now->iteration <= now->first_iteration
+                            : now->generation <= now->first_generation + 1;
+    bool is_last = (samples || steps || now->generation > 0) && now->is_last;
+    bool has_line = samples ? now->evaluations > 0 || p->mode == HF_PROGRESS_LINE
+                    : steps ? now->iterations > 0
+                            : now->phase == HF_RUN_EVOLVE;
     if (is_first) p->last_s = p->mode == HF_PROGRESS_LOG ? 0 : -interval_s[p->mode];
     if (p->mode == HF_PROGRESS_NONE || (!has_line && p->mode != HF_PROGRESS_JSONL)) return;
     if (now->elapsed_s - p->last_s < interval_s[p->mode] && !(is_last && p->mode == HF_PROGRESS_JSONL)) return;
@@ -97,6 +126,8 @@ void hf_progress_show(void *progress, const hf_run_progress *now)
         show_json(p, now);
     else if (samples)
         show_samples(p, now);
+    else if (steps)
+        show_step(p, now);
     else
         show_line(p, now);
     fflush(p->file);

@@ -420,6 +420,10 @@ static const hf_word told[] = {
      "Seen along the axis two cables cross without a node: the net has no facets there that could be measured. Name "
      "them in a table of facets, or put a node at the crossing.",
      "cross without a node"},
+    {"polish_not_converged", "warning", "",
+     "The design is good, but not known to be an optimum: the message says what the last steps still gained. With more "
+     "optimize.polish_iterations, and `hifdm run --restart`, it gets better; a target that is met needs none.",
+     "Levenberg-Marquardt is not converged after"},
     {"polish_needs", "warning", "",
      "Levenberg-Marquardt needs derivatives, which this case has not; the genetic algorithm does without.",
      "Levenberg-Marquardt needs"},

@@ -494,7 +494,9 @@ static void pass_on(void *context, const hf_run_progress *now)
 {
     const watcher *w = context;
     bool is_sampling = now->phase == HF_RUN_TOLERANCE;
-    long done = is_sampling ? now->samples : now->generation, all = is_sampling ? now->samples_all : now->generations;
+    bool is_polishing = now->phase == HF_RUN_POLISH;
+    long done = is_sampling ? now->samples : is_polishing ? now->iteration : now->generation;
+    long all = is_sampling ? now->samples_all : is_polishing ? now->iterations : now->generations;
     if (w->observer &&
         w->observer(w->context, (int)now->phase, done, all, now->evaluations, now->best_psi_m, now->elapsed_s))
         hf_flat_stop(w->flat);

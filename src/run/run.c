@@ -7,12 +7,12 @@
 #include "run/cases.h"
 #include "run/pattern_stage.h"
 #include "run/no_design.h"
+#include "run/polish_stage.h"
 #include "run/problem_parts.h"
 #include "run/reach.h"
 #include "run/run_front.h"
 #include "run/tolerance_stage.h"
 #include "search/pareto.h"
-#include "search/polish.h"
 #include "solve/limits.h"
 #include "solve/certificate.h"
 #include "solve/coupling.h"
@@ -44,7 +44,8 @@ typedef struct {
     hf_optimiser_plan plan; /* what optimize.method consists of */
     int first_generation;   /* of this session */
     long first_evaluation;
-    double store_cpu_s;                                    /* spent in storing generations */
+    char stopped_at[HF_POLISH_STAGE_TEXT]; /* how far a stage came that was told to stop, for the message */
+    double store_cpu_s;                    /* spent in storing generations */
     double earlier_wall_s, earlier_cpu_s, earlier_store_s; /* of other sessions, as far as it was published */
 } run;
 
@@ -364,19 +365,19 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
 /* Levenberg-Marquardt from the best individual, or from the base design when there was no genetic algorithm. */
 static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
 {
-    const hf_optimize_settings *o = &r->problem.settings.optimize;
     hf_workspace *w = &r->problem.workspace;
     const hf_population *p = &r->optimiser.population;
     hf_polish_result outcome;
-    double *design = r->problem.base_N, start_s = hf_clock_s();
+    double *design = r->problem.base_N;
     if (s->has_optimize && p->best >= 0) design = best_design(p);
     for (int k = 0; k < p->n_gene; k++) /* a base may be outside of the bounds */
         design[k] = hf_population_clamp(p, k, design[k]);
     observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});
-    hf_status status =
-        hf_polish_run(&r->problem.evaluator, p->lower_N, p->upper_N, o->polish_iterations, design, w, &outcome);
+    hf_status status = hf_polish_stage_run(r->request, &r->problem, p, s, r->store, design, &outcome, &s->polish_wall_s,
+                                           r->stopped_at, messages);
     if (must_stop(r)) return stop_here(r, s, messages);
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
+    if (status == HF_IO || status == HF_EXISTS) return status;
     if (status != HF_OK) {
         char why[HF_NO_DESIGN_SIZE];
         hf_no_design_to_polish(&r->problem, design, status, why);
@@ -396,7 +397,6 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     s->polish_n_at_upper = outcome.n_at_upper;
     s->polish_n_at_limit = outcome.n_at_limit;
     s->polish_is_at_cap = outcome.is_at_cap;
-    s->polish_wall_s = hf_clock_s() - start_s;
     tell_limits(r, HF_STAGE_POLISH, w, s);
     HF_TRY(measure_shape(r, HF_STAGE_POLISH, w, s, messages));
     if (s->polish_is_result) HF_TRY(take_result(r, w, messages));
@@ -414,10 +414,15 @@ static bool wants_polish(const run *r, const hf_summary *s)
 /* The front by Levenberg-Marquardt. */
 static hf_status follow_front(run *r, hf_summary *s, hf_messages *messages)
 {
+    double begin_s = hf_clock_s();
     observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});
     hf_status status =
         hf_run_front(&r->problem, &r->optimiser.population, r->request->stop_requested, &r->front, s, messages);
-    if (must_stop(r)) return stop_here(r, s, messages);
+    if (must_stop(r)) {
+        snprintf(r->stopped_at, sizeof r->stopped_at, " in the front by Levenberg-Marquardt, whose %.0f s begin anew",
+                 hf_clock_s() - begin_s);
+        return stop_here(r, s, messages);
+    }
     HF_TRY(status);
     return hf_store_front(r->store, &r->problem.scene, &r->problem.model, s, &r->front, messages);
 }
@@ -540,7 +545,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
         if (keeps_design) hf_warning(messages, "tolerance: the result has the design alone, without samples");
     }
     if (status == HF_INTERRUPTED && (r->store || hf_tolerance_stage_is_task(q)))
-        hf_error(messages, status, "%s: told to stop; the same command goes on from there", output);
+        hf_error(messages, status, "%s: told to stop%s; the same command goes on from there", output, r->stopped_at);
     if ((!leaves_result(status) && !keeps_design) || hf_tolerance_stage_is_task(q)) return status;
     if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, &r->truss, messages));
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");

@@ -22,6 +22,24 @@ typedef struct {
     double multiplier[HF_DESIGN_ROWS_MAX];
 } hf_polish_result;
 
+/* A run between two iterations. */
+typedef struct {
+    int iterations, max_iterations, evaluations;
+    bool is_last;
+    double merit, psi_m; /* of the best design so far; while none is within the limits, of the nearest */
+    size_t n_state;
+    const double *state; /* [n_state] with it the same run goes on with the same bits */
+} hf_polish_progress;
+
+typedef struct {
+    /* Called before the first iteration and after each, in the thread of the run, which ends with what it returns
+     * unless that is HF_OK. */
+    hf_status (*after)(void *context, const hf_polish_progress *now);
+    void *context;
+    size_t n_state;
+    const double *state; /* of an earlier run with the same arguments, else it is ignored; NULL: from the start */
+} hf_polish_watcher;
+
 /* Can designs of this evaluator be polished? The net must be convex, and the rule not seeded. */
 bool hf_polish_applies(const hf_evaluator *evaluator);
 
@@ -31,10 +49,11 @@ bool hf_polish_is_cheap(const hf_evaluator *evaluator, long n_evaluation);
 
 /* Start from the design [n_gene] within [lower, upper], which has a shape, and replace it by the best one found, which
  * is feasible and never worse. A start that breaks limits is led into them first, step by step. Linked genes keep
- * their differences. workspace is scratch. Returns HF_OK, HF_NO_MEMORY, HF_INTERRUPTED, or the status of a start from
- * which no feasible design was found. */
+ * their differences. watcher: NULL for none. workspace is scratch. Returns HF_OK, HF_NO_MEMORY, HF_INTERRUPTED, what
+ * the watcher returned, or the status of a start from which no feasible design was found. */
 hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                        double *design, hf_workspace *workspace, hf_polish_result *result);
+                        const hf_polish_watcher *watcher, double *design, hf_workspace *workspace,
+                        hf_polish_result *result);
 
 /* The same for one goal of the evaluator, the least of `trade`, while others keep their limits; merits are its value,
  * of a ratio the logarithm. A goal with corners is least where no linear model of its sizes promises less.

@@ -468,6 +468,7 @@ static void complete(hf_store *s, const hf_summary *summary, bool finished)
     hf_store_file_open(&s->f);
     hf_generations_write(&s->f.io, &s->rows);
     put_summary(s, summary, finished);
+    hf_store_put_polish(s, finished);
     hf_store_file_close(&s->f);
 }
 

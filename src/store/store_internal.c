@@ -7,6 +7,7 @@ void hf_store_free(hf_store *s)
 {
     hf_store_file_end(&s->f);
     hf_generations_free(&s->rows);
+    free(s->polish);
     free(s->scratch);
     free(s);
 }

@@ -15,6 +15,8 @@ struct hf_store {
     bool is_resumed;
     char identity[65];
     double publish_s, published_at_s; /* how long the last publication took, and when it ended */
+    double *polish; /* [n_polish] wall-clock time and state of hf_store_polish, for the next publication; NULL: none */
+    size_t n_polish;
     void *scratch;
     size_t scratch_bytes;
 };
@@ -31,6 +33,9 @@ void hf_store_free(hf_store *s);
 /* Scratch memory, valid until the next call. NULL when the store has failed already, or, with a message, without
  * memory. */
 void *hf_store_scratch(hf_store *s, size_t bytes);
+
+/* Write what hf_store_polish was told into a file that is published, and nothing into one that is finished. */
+void hf_store_put_polish(hf_store *s, bool finished);
 
 /* Write attributes of the root: the time now in UTC; the ids of the Slurm job, by which its logs can be found. */
 void hf_store_put_time(hf_store *s, const char *attribute);

@@ -1,4 +1,4 @@
-/* Contents: state of the file - breeding again - recovery */
+/* Contents: state of the file - breeding again - Levenberg-Marquardt - recovery */
 #include "store/store_internal.h"
 #include "store/store_read.h"
 
@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 /* ---- state of the file ---- */
@@ -244,6 +245,69 @@ static hf_status restore(hf_store *s, hf_optimiser *optimiser, int drops, hf_sum
 hf_status hf_store_restore(hf_store *s, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages)
 {
     return restore(s, optimiser, 1, summary, messages);
+}
+
+/* ---- Levenberg-Marquardt ---- */
+
+#define POLISH_STATE "/polish_state"
+
+static hf_hdf5_array polish_array(size_t n)
+{
+    return (hf_hdf5_array){POLISH_STATE, HF_KIND_REAL, 1,
+                           {(hsize_t)n}, "",           "where Levenberg-Marquardt was told to stop"};
+}
+
+static hf_status make_polish(hf_store *s, size_t n)
+{
+    if (n == s->n_polish) return HF_OK;
+    free(s->polish);
+    s->polish = malloc(n * sizeof *s->polish);
+    s->n_polish = s->polish ? n : 0;
+    if (s->polish) return HF_OK;
+    return s->f.io.status = hf_error(s->f.io.messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
+}
+
+hf_status hf_store_polish(hf_store *s, double wall_s, size_t n, const double *state, hf_messages *messages)
+{
+    if (!s) return HF_OK;
+    s->f.io.messages = messages;
+    HF_TRY(s->f.io.status);
+    HF_TRY(make_polish(s, n + 1));
+    s->polish[0] = wall_s;
+    memcpy(s->polish + 1, state, n * sizeof *state);
+    return HF_OK;
+}
+
+hf_status hf_store_restore_polish(hf_store *s, double *wall_s, size_t *n, const double **state, hf_messages *messages)
+{
+    *wall_s = 0;
+    *n = 0;
+    *state = NULL;
+    if (!s || !s->is_resumed) return HF_OK;
+    hf_hdf5_lock();
+    hf_hdf5 *io = &s->f.io;
+    io->messages = messages;
+    hf_store_file_open(&s->f);
+    if (hf_hdf5_has(io, io->file, POLISH_STATE)) {
+        int n_value = hf_hdf5_length(io, io->file, POLISH_STATE, HF_LAYOUT_COUNT_MAX);
+        if (io->status == HF_OK && make_polish(s, (size_t)n_value) == HF_OK) {
+            const hf_hdf5_array array = polish_array(s->n_polish);
+            hf_hdf5_read_array(io, io->file, &array, s->polish);
+        }
+        if (io->status == HF_OK) {
+            *wall_s = s->polish[0];
+            *n = s->n_polish - 1;
+            *state = s->polish + 1;
+        }
+    }
+    return hf_hdf5_unlock(io->status);
+}
+
+void hf_store_put_polish(hf_store *s, bool finished)
+{
+    const hf_hdf5_array array = polish_array(s->n_polish);
+    if (finished || s->polish) hf_layout_renew(&s->f.io, POLISH_STATE);
+    if (!finished && s->polish) hf_hdf5_write_array(&s->f.io, s->f.io.file, &array, s->polish);
 }
 
 /* ---- recovery ---- */

@@ -290,6 +290,60 @@ START_TEST(stops_are_heard_between_generations_too)
 }
 END_TEST
 
+/* Seconds of Levenberg-Marquardt: variables enough. */
+#define LONG_POLISH                                                                                                    \
+    "scene:\n  paraboloid: {aperture_m: 9, focal_length_m: 6, offset_m: 5.5, rings: 4, rear_distance_m: 2.4}\n"        \
+    "surface: {frequencies_Hz: [6e9]}\n"                                                                               \
+    "form: {pretension_N: 10, prestress: exact}\n"                                                                     \
+    "truss:\n  ring: {cells_per_bay: 2, bracing: single, held: bay}\n"                                                 \
+    "optimize:\n  method: lm\n  polish_iterations: 60\n"                                                               \
+    "  variables: [{set: all, vary: force_density, range: 50 %}]\n"                                                    \
+    "  goals: [{goal: facets, along: half_path, fit: best}, {goal: evenness, set: front, weight: 1e-3}]\n"             \
+    "  limits: [{limit: tension, set: all, bounds: [1, 60]}]\n"
+
+/* Steps are told of once a second; one after the first is under way. */
+static bool says_step(const char *err)
+{
+    char *text = read_file(err, NULL);
+    const char *first = strstr(text, "\"iteration\": "), *next = first ? strstr(first + 1, "\"iteration\": ") : NULL;
+    bool has_next = next && strchr(next, '\n');
+    free(text);
+    return has_next;
+}
+
+/* Levenberg-Marquardt says how far it is, and neither a signal nor a kill undoes its steps. */
+START_TEST(a_stopped_polish_goes_on_to_the_same_bits)
+{
+    const char *c = file_with("c.yaml", LONG_POLISH), *path = temp("run.h5"), *whole = temp("whole.h5");
+    const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--threads", "2", "--progress", "jsonl", NULL};
+    session s = start_program(argv);
+    ck_assert(wait_until(&s, says_step, temp("err")));
+    ck_assert_int_eq(end_by(&s, SIGTERM), 75);
+    char *err = read_file(temp_path("err"), NULL);
+    const char *at = strstr(err, "told to stop after ");
+    int n_stopped, iteration = -1;
+    ck_assert_msg(at && sscanf(at, "told to stop after %d steps of Levenberg-Marquardt, at psi ", &n_stopped) == 1,
+                  "%s", err);
+    ck_assert(strstr(at, " and a merit of ") && strstr(at, "; the same command goes on from there"));
+    ck_assert_int_gt(n_stopped, 0);
+    free(err);
+    s = start_program(argv);
+    ck_assert(wait_until(&s, says_step, temp("err"))); /* published as well, from a second on */
+    ck_assert_int_eq(end_by(&s, SIGKILL), 128 + SIGKILL);
+    err = read_file(temp_path("err"), NULL);
+    ck_assert_int_eq(sscanf(strstr(err, "\"iteration\": "), "\"iteration\": %d", &iteration), 1);
+    ck_assert_int_eq(iteration, n_stopped);
+    free(err);
+    HIFDM(0, "run", c, "-o", path, "--quiet", "--progress", "jsonl", "--threads", "1");
+    HIFDM(0, "run", c, "-o", whole, "--quiet", "--threads", "2");
+    HIFDM(0, "diff", path, whole);
+    EXPECT(path, whole, "--", "'polish_state' not in a and a.attrs['sessions'] == 3",
+           "str({k: v for k, v in a['polish'].attrs.items() if k[-2:] != '_s'}) == "
+           "str({k: v for k, v in b['polish'].attrs.items() if k[-2:] != '_s'})",
+           "all(a['polish'].attrs[k] > 1 for k in a['polish'].attrs if k[-6:] == 'wall_s')");
+}
+END_TEST
+
 /* ---- who may go on, and with what ---- */
 
 START_TEST(another_case_is_told_key_by_key)
@@ -382,6 +436,7 @@ Suite *suite_cli_resume(void)
     tcase_add_test(tcase, a_torn_journal_gives_what_is_whole);
     tcase_add_test(tcase, seed_and_symmetry_are_recovered);
     tcase_add_loop_test(tcase, stopped_runs_publish_and_go_on, 0, sizeof stops / sizeof *stops);
+    tcase_add_test(tcase, a_stopped_polish_goes_on_to_the_same_bits);
     tcase_add_test(tcase, stops_are_heard_between_generations_too);
     tcase_add_test(tcase, another_case_is_told_key_by_key);
     tcase_add_test(tcase, a_second_process_is_refused);

@@ -108,8 +108,8 @@ WATCH(EVALUATE, hf_workspace *, hf_batch_run_one, (hf_batch * batch, const doubl
 WATCH_VOID(RANK, hf_optimiser_tell, (hf_optimiser * ga), (ga))
 WATCH(POLISH, hf_status, hf_polish_run,
       (const hf_evaluator *evaluator, const double *lower_N, const double *upper_N, int max_iterations,
-       double *design_N, hf_workspace *workspace, hf_polish_result *result),
-      (evaluator, lower_N, upper_N, max_iterations, design_N, workspace, result))
+       const hf_polish_watcher *watcher, double *design_N, hf_workspace *workspace, hf_polish_result *result),
+      (evaluator, lower_N, upper_N, max_iterations, watcher, design_N, workspace, result))
 WATCH(STORE, hf_status, hf_store_create,
       (const char *path, bool force, const hf_case *settings, const hf_scene *scene, const hf_truss *truss, int argc,
        char *const *argv, hf_store **store, hf_messages *messages),

@@ -105,7 +105,7 @@ START_TEST(what_a_symmetric_search_finds_is_symmetric)
     memcpy(design_N, s.ga.population.design_N + s.ga.population.best * N_GENE, sizeof design_N);
     ck_assert_int_eq(hf_evaluate(&s.evaluator, design_N, &s.net.work, &found), HF_OK);
     ck_assert_double_lt(asymmetry_m(&s.net.model, &s.net.work), 1e-9);
-    ck_assert_int_eq(hf_polish_run(&s.evaluator, s.ga.population.lower_N, s.ga.population.upper_N, 20, design_N,
+    ck_assert_int_eq(hf_polish_run(&s.evaluator, s.ga.population.lower_N, s.ga.population.upper_N, 20, NULL, design_N,
                                    &s.net.work, &polished),
                      HF_OK);
     ck_assert_double_lt(polished.merit, found.psi_m);
@@ -146,7 +146,7 @@ START_TEST(polishing_linked_genes_reaches_the_free_optimum)
                           .rule = HF_RULE_FORCE_DENSITY,
                           .solver = HF_SOLVER_NEWTON,
                           .boundary_ratio_cap = 100};
-        ck_assert_int_eq(hf_polish_run(&v, lower_N, upper_N, 200, design_N, &net.work, &polished), HF_OK);
+        ck_assert_int_eq(hf_polish_run(&v, lower_N, upper_N, 200, NULL, design_N, &net.work, &polished), HF_OK);
         psi_m[linked] = polished.merit;
         ck_assert_double_lt(polished.merit, polished.start_merit);
         close_net(&net);

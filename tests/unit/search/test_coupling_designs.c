@@ -222,7 +222,8 @@ START_TEST(polished_design_has_no_coupled_slope_left)
     }
     for (int when = 0; when < 2; when++) {
         if (when)
-            ck_assert_int_eq(hf_polish_run(&r.evaluator, lower_N, upper_N, 300, r.base_N, &r.net.work, &result), HF_OK);
+            ck_assert_int_eq(hf_polish_run(&r.evaluator, lower_N, upper_N, 300, NULL, r.base_N, &r.net.work, &result),
+                             HF_OK);
         for (int k = 0; k < n; k++) {
             double kept = r.base_N[k], psi_m[2];
             for (int side = 0; side < 2; side++) {

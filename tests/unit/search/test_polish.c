@@ -38,7 +38,8 @@ static void open_small(struct polish_run *p, int rule, double range_N)
 
 static hf_status polish(struct polish_run *p, int max_iterations, double *design_N, hf_polish_result *result)
 {
-    return hf_polish_run(&p->r.evaluator, p->lower_N, p->upper_N, max_iterations, design_N, &p->r.net.work, result);
+    return hf_polish_run(&p->r.evaluator, p->lower_N, p->upper_N, max_iterations, NULL, design_N, &p->r.net.work,
+                         result);
 }
 
 static double psi_of(struct polish_run *p, const double *design_N)
@@ -198,7 +199,7 @@ START_TEST(infeasible_start_is_told)
     p.r.evaluator.boundary_ratio_cap = 1 + 1e-9;
     memcpy(p.r.base_N, design(&p.r, 0), sizeof kept);
     ck_assert_int_eq(
-        hf_polish_run(&p.r.evaluator, design(&p.r, 0), design(&p.r, 0), 20, p.r.base_N, &p.r.net.work, &result),
+        hf_polish_run(&p.r.evaluator, design(&p.r, 0), design(&p.r, 0), 20, NULL, p.r.base_N, &p.r.net.work, &result),
         HF_RATIO_CAP);
     ck_assert_mem_eq(p.r.base_N, design(&p.r, 0), (size_t)p.r.net.model.n_gene * sizeof *kept); /* no way in */
     close_net(&p.r.net);
@@ -267,6 +268,101 @@ START_TEST(applies_to_convex_nets_and_rules_only)
 }
 END_TEST
 
+/* ---- going on ---- */
+
+/* Where a run was between its steps, [n][n_state]. */
+struct trace {
+    int n;
+    size_t n_state;
+    double *state;
+};
+
+static hf_status note_state(void *context, const hf_polish_progress *now)
+{
+    struct trace *t = context;
+    t->n_state = now->n_state;
+    t->state = realloc(t->state, (size_t)(t->n + 1) * now->n_state * sizeof(double));
+    ck_assert_ptr_nonnull(t->state);
+    memcpy(t->state + (size_t)t->n++ * now->n_state, now->state, now->n_state * sizeof(double));
+    return HF_OK;
+}
+
+/* From `start`; the watcher may be NULL. */
+static hf_polish_result watch_polish(struct polish_run *p, const double *start, const hf_polish_watcher *watcher,
+                                     double *end)
+{
+    hf_polish_result result;
+    memcpy(end, start, (size_t)p->r.net.model.n_gene * sizeof *end);
+    ck_assert_int_eq(hf_polish_run(&p->r.evaluator, p->lower_N, p->upper_N, 40, watcher, end, &p->r.net.work, &result),
+                     HF_OK);
+    return result;
+}
+
+static void open_for_steps(struct polish_run *p, int i)
+{
+    if (i == 2) {
+        open_small(p, HF_RULE_TENSION, 1);
+        memcpy(p->r.base_N, design(&p->r, 0), (size_t)p->r.net.model.n_gene * sizeof(double));
+        p->r.evaluator.boundary_ratio_cap = 1 + 1e-9; /* far off */
+    } else {
+        open_chen(p, i == 1 ? 400 : 1);
+        if (i == 1) p->r.evaluator.boundary_ratio_cap = 5; /* stands in the way */
+    }
+}
+
+/* Within the bounds, at the cap, and from outside: from between any two steps a run goes on to the same bits. What is
+ * no state of it is ignored. */
+START_TEST(goes_on_from_any_step_to_the_same_bits)
+{
+    struct polish_run p;
+    double end_N[MAX_GENE], again_N[MAX_GENE];
+    struct trace trace = {0};
+    const hf_polish_watcher watcher = {.after = note_state, .context = &trace};
+    open_for_steps(&p, _i);
+    size_t size = (size_t)p.r.net.model.n_gene * sizeof(double);
+    const hf_polish_result whole = watch_polish(&p, p.r.base_N, &watcher, end_N);
+    ck_assert_int_eq(trace.n, whole.iterations + 1);
+    ck_assert_int_ge(trace.n, 4);
+    for (int k = 0; k <= trace.n; k++) {
+        const hf_polish_watcher from = {.n_state = trace.n_state,
+                                        .state = trace.state + (size_t)(k % trace.n) * trace.n_state};
+        if (k == trace.n) trace.state[trace.n_state - 1] = (double)NAN; /* damaged: it begins anew */
+        const hf_polish_result again = watch_polish(&p, p.r.base_N, &from, again_N);
+        ck_assert_mem_eq(again_N, end_N, size);
+        ck_assert(again.iterations == whole.iterations && again.evaluations == whole.evaluations);
+        ck_assert(again.stop == whole.stop && again.merit == whole.merit);
+        ck_assert(again.start_merit == whole.start_merit || (isnan(again.start_merit) && isnan(whole.start_merit)));
+    }
+    free(trace.state);
+    close_net(&p.r.net);
+}
+END_TEST
+
+static hf_status end_at_two(void *context, const hf_polish_progress *now)
+{
+    *(int *)context = now->iterations;
+    return now->iterations == 2 ? HF_IO : HF_OK;
+}
+
+/* What its watcher returns ends it, and the design is as it was. */
+START_TEST(its_watcher_ends_it)
+{
+    struct polish_run p;
+    hf_polish_result result;
+    int iterations = 0;
+    double start_N[MAX_GENE];
+    const hf_polish_watcher watcher = {.after = end_at_two, .context = &iterations};
+    open_chen(&p, 1);
+    size_t size = (size_t)p.r.net.model.n_gene * sizeof(double);
+    memcpy(start_N, p.r.base_N, size);
+    ck_assert_int_eq(
+        hf_polish_run(&p.r.evaluator, p.lower_N, p.upper_N, 40, &watcher, p.r.base_N, &p.r.net.work, &result), HF_IO);
+    ck_assert_int_eq(iterations, 2);
+    ck_assert_mem_eq(start_N, p.r.base_N, size);
+    close_net(&p.r.net);
+}
+END_TEST
+
 Suite *suite_unit_polish(void)
 {
     Suite *suite = suite_create("unit/polish");
@@ -280,6 +376,8 @@ Suite *suite_unit_polish(void)
     tcase_add_test(tests, infeasible_start_is_told);
     tcase_add_test(tests, start_outside_the_limits_is_led_in);
     tcase_add_test(tests, after_the_ga_the_same_optimum);
+    tcase_add_loop_test(tests, goes_on_from_any_step_to_the_same_bits, 0, 3);
+    tcase_add_test(tests, its_watcher_ends_it);
     tcase_add_test(tests, applies_to_convex_nets_and_rules_only);
     return suite;
 }

@@ -27,7 +27,7 @@ class Progress(NamedTuple):
     """How far a run is."""
 
     phase: str  # "form", "optimize", "polish", "tolerance"
-    done: int  # generations, or samples of "tolerance"
+    done: int  # generations, steps of "polish", or samples of "tolerance"
     all: int  # at most
     evaluations: int  # of this run
     best_psi_m: float  # NaN while nothing is feasible

@@ -1,0 +1,103 @@
+#include "run/polish_stage.h"
+
+#include "base/clock.h"
+
+#include <math.h>
+
+#define PUBLISH_AFTER_S 1.0 /* shorter runs are not worth a file between */
+#define LATELY 10           /* steps: a warning says what the last ones gained */
+
+typedef struct {
+    const hf_run_request *request;
+    const hf_problem *problem;
+    const hf_summary *summary;
+    hf_store *store;
+    hf_messages *messages;
+    double begin_s, earlier_s;         /* when this session began, and how long others took */
+    int first_iteration, n_evaluation; /* of this session; of others */
+    double merit[LATELY + 1];          /* of the steps before: step i in [i % (LATELY + 1)] */
+    hf_polish_progress now;
+} polish_job;
+
+static bool is_stopped(const hf_run_request *q)
+{
+    return q->stop_requested && *q->stop_requested;
+}
+
+static void tell_step(const polish_job *j)
+{
+    const hf_run_request *q = j->request;
+    const hf_polish_progress *now = &j->now;
+    if (!q->observer) return;
+    const hf_run_progress progress = {.phase = HF_RUN_POLISH,
+                                      .iteration = now->iterations,
+                                      .iterations = now->max_iterations,
+                                      .first_iteration = j->first_iteration,
+                                      .is_last = now->is_last,
+                                      .evaluations = now->evaluations - j->n_evaluation,
+                                      .best_psi_m = now->psi_m,
+                                      .merit = j->problem->goals.n_goal ? now->merit : (double)NAN,
+                                      .elapsed_s = hf_clock_s() - j->begin_s};
+    q->observer(q->observer_context, &progress);
+}
+
+/* Only steps that are safe are told of, as with generations. */
+static hf_status between_steps(void *context, const hf_polish_progress *now)
+{
+    polish_job *j = context;
+    if (j->now.n_state == 0) {
+        j->first_iteration = now->iterations;
+        j->n_evaluation = now->evaluations;
+    }
+    double wall_s = j->earlier_s + hf_clock_s() - j->begin_s;
+    j->now = *now;
+    j->merit[now->iterations % (LATELY + 1)] = now->merit;
+    HF_TRY(hf_store_polish(j->store, wall_s, now->n_state, now->state, j->messages));
+    if (wall_s > PUBLISH_AFTER_S) HF_TRY(hf_store_publish(j->store, j->summary, false, j->messages));
+    tell_step(j);
+    return is_stopped(j->request) ? HF_INTERRUPTED : HF_OK;
+}
+
+/* A result that is not converged looks like one that is. */
+static void warn_of_steps(const polish_job *j, const hf_polish_result *r)
+{
+    int n = r->iterations - j->first_iteration < LATELY ? r->iterations - j->first_iteration : LATELY;
+    double before = j->merit[(r->iterations - n) % (LATELY + 1)];
+    const char *what = j->problem->goals.n_goal ? "the merit" : "psi";
+    if (r->stop != HF_POLISH_MAX_ITERATIONS) return;
+    if (n > 0 && before > 0)
+        hf_warning(j->messages,
+                   "Levenberg-Marquardt is not converged after %d steps, of which the last %d lowered %s by %.2g %%: "
+                   "better designs are near; raise optimize.polish_iterations",
+                   r->iterations, n, what, 100 * (1 - j->now.merit / before));
+    else
+        hf_warning(j->messages, "Levenberg-Marquardt is not converged after %d steps; raise optimize.polish_iterations",
+                   r->iterations);
+}
+
+/* What the message of a stop says of it. */
+static void tell_stop(const polish_job *j, char stopped_at[HF_POLISH_STAGE_TEXT])
+{
+    int n = snprintf(stopped_at, HF_POLISH_STAGE_TEXT, " after %d steps of Levenberg-Marquardt", j->now.iterations);
+    if (j->now.iterations == 0) return;
+    n += snprintf(stopped_at + n, HF_POLISH_STAGE_TEXT - (size_t)n, ", at psi %.4f mm", j->now.psi_m * 1e3);
+    if (j->problem->goals.n_goal && isfinite(j->now.merit))
+        snprintf(stopped_at + n, HF_POLISH_STAGE_TEXT - (size_t)n, " and a merit of %.6g", j->now.merit);
+}
+
+hf_status hf_polish_stage_run(const hf_run_request *q, hf_problem *p, const hf_population *bounds,
+                              const hf_summary *summary, hf_store *store, double *design, hf_polish_result *result,
+                              double *wall_s, char stopped_at[HF_POLISH_STAGE_TEXT], hf_messages *messages)
+{
+    polish_job j = {
+        .request = q, .problem = p, .summary = summary, .store = store, .messages = messages, .begin_s = hf_clock_s()};
+    hf_polish_watcher watcher = {.after = between_steps, .context = &j};
+    HF_TRY(hf_store_restore_polish(store, &j.earlier_s, &watcher.n_state, &watcher.state, messages));
+    hf_status status = hf_polish_run(&p->evaluator, bounds->lower_N, bounds->upper_N,
+                                     p->settings.optimize.polish_iterations, &watcher, design, &p->workspace, result);
+    *wall_s = j.earlier_s + hf_clock_s() - j.begin_s;
+    tell_stop(&j, stopped_at);
+    if (status == HF_OK && !is_stopped(q) && hf_optimiser_plan_of(&p->settings.optimize).ends_with_polish)
+        warn_of_steps(&j, result);
+    return status;
+}

@@ -1,0 +1,301 @@
+/* Contents: the problem - evaluation - between two iterations */
+#include "search/polish_problem.h"
+
+#include "linalg/band.h"
+#include "linalg/dot.h"
+#include "search/parallel.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+/* In brackets: the range over which no test of this module and of cli/limits fails, as far as it was tried. */
+#define GRAM_ROWS 32      /* of J'J that one thread works on at a time; the bits do not depend on it */
+#define DENSITY_LEFT 1e-3 /* part of its first value below which no force density falls [1e-6 to 0.3] */
+
+/* ---- the problem ---- */
+
+/* Scalars of a state; behind them are at, scale and the sides of the bounds that held the last step [n], and best
+ * [n_gene]. */
+enum {
+    STATE_FORMAT,
+    STATE_ITERATIONS,
+    STATE_EVALUATIONS,
+    STATE_STOP,
+    STATE_IS_OUTSIDE,
+    STATE_MERIT,
+    STATE_PSI,
+    STATE_DAMPING,
+    STATE_GROWTH,
+    STATE_WAY,
+    STATE_VIOLATION,
+    N_SCALAR
+};
+#define FORMAT 1
+
+static void lay_out(hf_arena *a, hf_polish_problem *p)
+{
+    const hf_model *m = p->v.model;
+    size_t n = (size_t)p->n, n_row = (size_t)p->residuals.n_row, n_gene = (size_t)m->n_gene;
+    p->start = hf_arena_take(a, n_gene, sizeof(double));
+    p->low = hf_arena_take(a, n, sizeof(double));
+    p->high = hf_arena_take(a, n, sizeof(double));
+    p->down = hf_arena_take(a, n + 1, sizeof(double));
+    p->up = hf_arena_take(a, n + 1, sizeof(double));
+    p->unit = hf_arena_take(a, n, sizeof(double));
+    p->at = hf_arena_take(a, n, sizeof(double));
+    p->trial = hf_arena_take(a, n, sizeof(double));
+    p->design = hf_arena_take(a, n_gene, sizeof(double));
+    p->best = hf_arena_take(a, n_gene, sizeof(double));
+    p->step_taken = hf_arena_take(a, n, sizeof(double));
+    p->pull = hf_arena_take(a, n, sizeof(double));
+    p->scale = hf_arena_take(a, n, sizeof(double));
+    p->row = hf_arena_take(a, n * n_row, sizeof(double));
+    p->gram = hf_arena_take(a, n * n, sizeof(double));
+    p->hessian = hf_arena_take(a, (n + 1) * (n + 1), sizeof(double));
+    p->gradient = hf_arena_take(a, n + 1, sizeof(double));
+    p->n_state = N_SCALAR + 3 * n + n_gene;
+    p->state = hf_arena_take(a, p->trade ? 0 : p->n_state, sizeof(double));
+    p->goal_rate = hf_arena_take(a, p->trade ? n * (size_t)p->v.goals->n_goal : 0, sizeof(double));
+}
+
+bool hf_polish_is_tension(const hf_polish_problem *p, int k)
+{
+    return hf_evaluate_sets(p->caller, k) == HF_SETS_TENSION;
+}
+
+/* The size of the values of gene k, which starts at `start`. Of a support, which starts at 0: how far it may move, or
+ * the longest cable where that is open, or nothing. */
+static double unit_of(const hf_polish_problem *p, int k, double start)
+{
+    const hf_model *m = p->v.model;
+    double unit = p->upper[k] - p->lower[k];
+    if (m->gene_cable[k] >= 0) return start;
+    if (isfinite(unit) && unit > 0) return unit;
+    unit = 0;
+    for (int e = 0; e < m->n_cable; e++)
+        unit = fmax(unit, m->length_m[e]);
+    return unit;
+}
+
+void hf_polish_begin(hf_polish_problem *p, const double *design)
+{
+    const hf_model *m = p->v.model;
+    for (int i = 0; i < p->n; i++) {
+        p->low[i] = -INFINITY;
+        p->high[i] = INFINITY;
+    }
+    for (int k = 0; k < m->n_gene; k++) {
+        int i = p->slopes.variable_of_gene[k], e = m->gene_cable[k];
+        double start = design[k], lower = p->lower[k], upper = p->upper[k];
+        double unit = unit_of(p, k, start);
+        if (hf_polish_is_tension(p, k)) {
+            start = hf_evaluate_design_length_m(m, e) * p->w->tension_N[e] / p->w->length_m[e];
+            lower = DENSITY_LEFT * start;
+            upper = INFINITY;
+            unit = start;
+        }
+        p->start[k] = start;
+        p->low[i] = fmax(p->low[i], fmin(lower - start, 0));
+        p->high[i] = fmin(p->high[i], fmax(upper - start, 0));
+        p->unit[i] = fmax(p->unit[i], unit);
+    }
+    memcpy(p->best, design, (size_t)m->n_gene * sizeof(double));
+    memcpy(p->design, p->start, (size_t)m->n_gene * sizeof(double));
+}
+
+/* Which rows are to be least: all, or those of one goal. */
+static void aim(hf_polish_problem *p)
+{
+    p->n_row = p->residuals.n_row;
+    if (!p->trade) return;
+    const hf_goal *goal = p->v.goals->goal, *least = goal + p->trade->least;
+    for (; goal < least; goal++)
+        p->first_row += goal->n_row;
+    p->n_row = least->n_row;
+    p->has_corners = hf_goals_is_largest(least->wanted.goal);
+    p->watch.goal = p->result.goal;
+    p->watch.goal_rate = p->goal_rate;
+}
+
+hf_status hf_polish_create(hf_polish_problem *p, hf_arena *arena)
+{
+    const hf_model *m = p->v.model;
+    p->n = m->n_leader;
+    HF_TRY(hf_sensitivity_create(&p->v, &p->slopes));
+    HF_TRY(hf_residuals_create(&p->v, &p->residuals));
+    HF_TRY(hf_watch_create(p->caller, &p->slopes, p->lower, p->upper, p->trade, &p->watch));
+    HF_TRY(HF_ARENA_MAKE(arena, lay_out(arena, p)));
+    aim(p);
+    return hf_quadratic_create(p->n + p->has_corners, &p->step);
+}
+
+void hf_polish_destroy(hf_polish_problem *p, hf_arena *arena)
+{
+    hf_quadratic_free(&p->step);
+    hf_watch_free(&p->watch);
+    hf_residuals_free(&p->residuals);
+    hf_sensitivity_free(&p->slopes);
+    hf_arena_free(arena);
+}
+
+/* ---- evaluation ---- */
+
+double hf_polish_merit(const hf_polish_problem *p, const hf_form_result *r)
+{
+    if (!p->trade) return r->merit;
+    double value = r->goal[p->trade->least];
+    return p->v.goals->goal[p->trade->least].wanted.goal == HF_GOAL_RATIO ? log(value) : value;
+}
+
+hf_status hf_polish_evaluate(hf_polish_problem *p, const double *variable)
+{
+    const hf_model *m = p->v.model;
+    for (int k = 0; k < m->n_gene; k++) {
+        double value = p->start[k] + variable[p->slopes.variable_of_gene[k]];
+        p->design[k] = hf_polish_is_tension(p, k) ? value : fmax(p->lower[k], fmin(p->upper[k], value));
+    }
+    p->evaluations++;
+    return hf_evaluate(&p->v, p->design, p->w, &p->result);
+}
+
+void hf_polish_keep(hf_polish_problem *p)
+{
+    const hf_model *m = p->v.model;
+    memcpy(p->at, p->trial, (size_t)p->n * sizeof(double));
+    p->best_psi_m = p->result.psi_m;
+    for (int k = 0; k < m->n_gene; k++)
+        p->best[k] = hf_polish_is_tension(p, k) ? p->w->tension_N[m->gene_cable[k]] : p->design[k];
+}
+
+/* Forces may be out of balance by residual_tolerance of the tensions, as if each value were off by that part of itself.
+ * A merit below what this changes in it is zero as far as shapes are known. */
+static double find_noise(const hf_polish_problem *p)
+{
+    double square = 0;
+    for (int k = 0; k < p->n; k++)
+        square += p->gram[k * p->n + k] * p->unit[k] * p->unit[k];
+    return p->v.form->residual_tolerance * sqrt(square);
+}
+
+/* Some rows of J'J. */
+static void multiply_rows(void *context, int room, int i_block)
+{
+    hf_polish_problem *p = context;
+    int first = GRAM_ROWS * i_block, end = first + GRAM_ROWS < p->n ? first + GRAM_ROWS : p->n;
+    (void)room;
+    hf_band_gram(first, end, p->n_row, p->row + p->first_row, p->residuals.n_row, p->gram, p->n);
+}
+
+/* The rate of a goal's norm, and what its residuals r bend a limit on it by: pressure (J'J - gg')/|r|, g the rate. */
+static void press(hf_polish_problem *p, int i_goal, int first_row, int n_row)
+{
+    const double *f = p->residuals.value + first_row;
+    double *rate = p->goal_rate + (size_t)i_goal * (size_t)p->n, norm = p->result.goal[i_goal];
+    double part = norm > 0 ? 1 / norm : 0, pressure = p->pressure[i_goal] * part;
+    int n_all = p->residuals.n_row;
+    hf_dots((size_t)p->n, (size_t)n_row, p->row + first_row, (size_t)n_all, f, rate);
+    for (int k = 0; k < p->n; k++)
+        rate[k] *= part;
+    if (!(pressure > 0)) return;
+    hf_band_gram(0, p->n, n_row, p->row + first_row, n_all, p->hessian, p->n);
+    for (int r = 0; r < p->n; r++)
+        for (int c = 0; c <= r; c++)
+            p->gram[r * p->n + c] += pressure * (p->hessian[r * p->n + c] - rate[r] * rate[c]);
+}
+
+/* What a trade changes: goals without corners are limits that bend; one with corners that is to be least has a level
+ * instead of residuals. */
+static void linearise_trade(hf_polish_problem *p)
+{
+    const hf_goals *g = p->v.goals;
+    size_t n = (size_t)p->n;
+    if (p->has_corners) {
+        double value = p->result.goal[p->trade->least];
+        p->watch.level = hf_polish_merit(p, &p->result);
+        if (g->goal[p->trade->least].wanted.goal == HF_GOAL_RATIO) p->noise /= value;
+        memset(p->gram, 0, n * n * sizeof(double));
+        memset(p->gradient, 0, n * sizeof(double));
+    }
+    for (int k = 0, first = 0; k < g->n_goal; first += g->goal[k++].n_row)
+        if (k != p->trade->least && !hf_goals_is_largest(g->goal[k].wanted.goal)) press(p, k, first, g->goal[k].n_row);
+}
+
+hf_status hf_polish_linearise(hf_polish_problem *p)
+{
+    HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
+    HF_TRY(hf_residuals_find(&p->residuals, p->w));
+    HF_TRY(hf_residuals_rates(&p->residuals, &p->slopes, p->w, p->row, p->gradient));
+    if (p->trade) /* that of the residuals which are to be least, not of all */
+        hf_dots((size_t)p->n, (size_t)p->n_row, p->row + p->first_row, (size_t)p->residuals.n_row,
+                p->residuals.value + p->first_row, p->gradient);
+    hf_parallel_each(p->v.n_thread, (p->n + GRAM_ROWS - 1) / GRAM_ROWS, multiply_rows, p);
+    for (int k = 0; k < p->n; k++) {
+        p->scale[k] = fmax(p->scale[k], sqrt(p->gram[k * p->n + k]));
+        p->largest_scale = fmax(p->largest_scale, p->scale[k]);
+    }
+    p->noise = find_noise(p);
+    if (p->trade) linearise_trade(p);
+    hf_watch_linearise(&p->watch, &p->slopes, p->w);
+    return HF_OK;
+}
+
+/* ---- between two iterations ---- */
+
+void hf_polish_pack(hf_polish_problem *p, const hf_polish_result *r)
+{
+    double *s = p->state, *array = s + N_SCALAR;
+    size_t n = (size_t)p->n, n_gene = (size_t)p->v.model->n_gene;
+    s[STATE_FORMAT] = FORMAT;
+    s[STATE_ITERATIONS] = r->iterations;
+    s[STATE_EVALUATIONS] = p->evaluations;
+    s[STATE_STOP] = r->stop;
+    s[STATE_IS_OUTSIDE] = p->is_outside;
+    s[STATE_MERIT] = r->merit;
+    s[STATE_PSI] = p->best_psi_m;
+    s[STATE_DAMPING] = p->damping;
+    s[STATE_GROWTH] = p->growth;
+    s[STATE_WAY] = p->way;
+    s[STATE_VIOLATION] = p->violation;
+    memcpy(array, p->at, n * sizeof(double));
+    memcpy(array + n, p->scale, n * sizeof(double));
+    for (size_t i = 0; i < n; i++)
+        array[2 * n + i] = p->step.side[i];
+    memcpy(array + 3 * n, p->best, n_gene * sizeof(double));
+}
+
+/* The file that it comes from may be damaged. */
+static bool is_state(const hf_polish_problem *p, size_t n_state, const double *s)
+{
+    if (n_state != p->n_state || s[STATE_FORMAT] != FORMAT) return false;
+    for (size_t i = N_SCALAR; i < n_state; i++)
+        if (!isfinite(s[i])) return false;
+    return s[STATE_ITERATIONS] >= 0 && s[STATE_ITERATIONS] < INT_MAX && s[STATE_EVALUATIONS] >= 1 &&
+           s[STATE_EVALUATIONS] < INT_MAX && s[STATE_STOP] >= 0 && s[STATE_STOP] <= HF_POLISH_MAX_ITERATIONS &&
+           s[STATE_DAMPING] > 0 && s[STATE_GROWTH] > 0 && s[STATE_WAY] > 0;
+}
+
+bool hf_polish_go_on(hf_polish_problem *p, size_t n_state, const double *s, hf_polish_result *r)
+{
+    const double *array = s + N_SCALAR;
+    size_t n = (size_t)p->n;
+    if (!is_state(p, n_state, s)) return false;
+    r->iterations = (int)s[STATE_ITERATIONS];
+    p->evaluations = (int)s[STATE_EVALUATIONS] - 1; /* that of the best design comes once more */
+    r->stop = (hf_polish_stop)s[STATE_STOP];
+    p->is_outside = s[STATE_IS_OUTSIDE] != 0;
+    r->merit = s[STATE_MERIT];
+    p->best_psi_m = s[STATE_PSI];
+    p->damping = s[STATE_DAMPING];
+    p->growth = s[STATE_GROWTH];
+    p->way = s[STATE_WAY];
+    p->violation = s[STATE_VIOLATION];
+    memcpy(p->at, array, n * sizeof(double));
+    memcpy(p->scale, array + n, n * sizeof(double));
+    for (size_t i = 0; i < n; i++) {
+        p->largest_scale = fmax(p->largest_scale, p->scale[i]);
+        p->step.side[i] = (array[2 * n + i] > 0) - (array[2 * n + i] < 0);
+    }
+    memcpy(p->best, array + 3 * n, (size_t)p->v.model->n_gene * sizeof(double));
+    return true;
+}
