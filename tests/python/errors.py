@@ -169,7 +169,15 @@ class Errors(unittest.TestCase):
         self.assertEqual(whole.status, "ok")
         self.assertGreater(rest[1].done, 3)
         self.assertEqual(whole["optimize"]["psi_m"], case.run()["optimize"]["psi_m"])
-        self.refused(hifdm.HifdmError, "this run wrote no file", case.run().read)
+        alone = case.run()
+        self.refused(hifdm.HifdmError, "this run wrote no file", alone.read)
+        self.assertIn("optimize", alone.keys())
+        self.assertEqual(dict(alone), alone.figures)
+        psi_mm = [alone[stage]["psi_m"] * 1e3 for stage in ("form", "optimize")]
+        self.assertTrue(repr(alone).startswith("<hifdm.Run ok: form psi %.4g mm, optimize psi %.4g mm" % (*psi_mm,)))
+        formed = hifdm.open(temp("form.yaml", SMALL)).run()
+        self.refused(KeyError, "this run has no 'optimize'; it has form", lambda: formed["optimize"])
+        self.assertIsNone(formed.get("optimize"))
 
     def test_interrupt(self):
         """Ctrl-C ends a run that would take hours."""

@@ -9,7 +9,7 @@ import sys
 import threading
 import warnings
 import weakref
-from typing import Any, Callable, Mapping, NamedTuple, Sequence
+from typing import Any, Callable, Iterator, Mapping, NamedTuple, Sequence
 
 import numpy as np
 
@@ -97,8 +97,8 @@ class Designs:
         return {name: self[name] for name in self.names}
 
 
-class Run:
-    """A run that has ended: its figures, as `hifdm run --json` prints them."""
+class Run(Mapping[str, Any]):
+    """A run that has ended: its figures, as `hifdm run --json` prints them, by keys as of a dict."""
 
     def __init__(self, figures: dict[str, Any]):
         self.figures = figures
@@ -107,7 +107,22 @@ class Run:
 
     def __getitem__(self, stage: str) -> Any:
         """Of a stage: "form", "optimize", "polish", "tolerance", ..."""
+        if stage not in self.figures:
+            stages = [key for key, value in self.figures.items() if isinstance(value, (dict, list))]
+            raise KeyError(f"this run has no '{stage}'; it has {', '.join(stages)}")
         return self.figures[stage]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.figures)
+
+    def __len__(self) -> int:
+        return len(self.figures)
+
+    def __repr__(self) -> str:
+        shapes = [(stage, self.figures[stage]["psi_m"]) for stage in ("form", "optimize", "polish")
+                  if (self.figures.get(stage) or {}).get("psi_m") is not None]
+        said = [f"{stage} psi {psi_m * 1e3:.4g} mm" for stage, psi_m in shapes]
+        return f"<hifdm.Run {self.status}: {', '.join(said + [self.file] if self.file else said)}>"
 
     def read(self):
         """The result file (hifdm.read)."""
