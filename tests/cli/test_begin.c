@@ -31,6 +31,30 @@ START_TEST(every_new_case_runs_without_a_warning)
 }
 END_TEST
 
+/* What the new case has as a comment: errors that leave no cable slack, as it says, at 100 N also those of
+ * 0.1 mm. */
+START_TEST(what_a_new_case_suggests_is_good)
+{
+    static const char tight[] = "not a['tolerance']['with_slack_cables']";
+    const char *out = temp("d.h5");
+    HIFDM(0, "new", temp("dish"));
+    SHELL(0,
+          "cd \"$1\" && sed -i -E 's/^# (tolerance:.*samples: )1000/\\160/' dish.yaml && "
+          "grep -c '^tolerance:' dish.yaml",
+          temp(""));
+    ck_assert_str_eq(said.out, "1\n");
+    HIFDM(0, "run", temp("dish.yaml"), "-o", out, "--json");
+    ck_assert_str_eq(said.err, "");
+    EXPECT(out_as("d.json"), "--", tight, "a['polish']['merit'] < 0.5 * a['form']['merit']",
+           "a['polish']['surface']['facet_half_path_rms_m'] < 0.5 * a['form']['surface']['facet_half_path_rms_m']");
+    HIFDM(0, "run", temp("dish.yaml"), "-o", out, "--force", "--json", "--set", "tolerance.sigma_cut_m=1e-4", "--set",
+          "form.pretension_N=100");
+    EXPECT(out_as("d.json"), "--", tight);
+    HIFDM(0, "run", temp("dish.yaml"), "-o", out, "--force", "--json", "--set", "tolerance.sigma_cut_m=1e-4");
+    EXPECT(out_as("d.json"), "--", "a['tolerance']['with_slack_cables'] > 50");
+}
+END_TEST
+
 /* The base design under the rule of the case is another shape than the first row of the table, and is called so. */
 START_TEST(the_gain_is_over_what_it_says)
 {
@@ -220,6 +244,7 @@ Suite *suite_cli_begin(void)
     Suite *suite = suite_create("cli/begin");
     TCase *tcase = tcase_create("begin");
     tcase_add_loop_test(tcase, every_new_case_runs_without_a_warning, 0, sizeof begun / sizeof *begun);
+    tcase_add_test(tcase, what_a_new_case_suggests_is_good);
     tcase_add_test(tcase, the_gain_is_over_what_it_says);
     tcase_add_test(tcase, nothing_is_replaced);
     tcase_add_test(tcase, every_word_is_explained);
