@@ -320,7 +320,7 @@ install: all ## install under PREFIX (/usr/local), within DESTDIR if given
 # PYTHON_DIR=... is another folder than that of PYTHON's version below PREFIX.
 python-install: install ## install, and the package hifdm for Python with it, into PYTHON_DIR
 	$(call install_python,$(DESTDIR)$(PYTHON_DIR))
-	@echo 'the package is in $(DESTDIR)$(PYTHON_DIR); if $(PYTHON) does not look there, add it to PYTHONPATH; another interpreter: PYTHON=...'
+	@echo 'the package is in $(DESTDIR)$(PYTHON_DIR); if $(PYTHON) does not look there, add it to PYTHONPATH'
 
 define install_python
 $(Q)install -d $(1)/hifdm
