@@ -8,6 +8,7 @@
 #include "out/cut.h"
 #include "out/report_page.h"
 #include "out/report_pattern.h"
+#include "out/words.h"
 #include "solve/facet_rms.h"
 #include "store/store_read.h"
 #include "store/store_series.h"
@@ -227,6 +228,24 @@ static void write_figures(FILE *f)
     hf_json_close(&j, ']');
 }
 
+/* Terms, and what figures mean, as `hifdm explain` has them. */
+static void write_words(FILE *f)
+{
+    hf_json j = {.file = f, .is_due = true};
+    hf_json_line(&j, "");
+    hf_json_open(&j, "words", '[');
+    for (int i = 0; i < hf_word_count(); i++) {
+        hf_word word = hf_word_at(i);
+        if (strcmp(word.kind, "term") != 0 && strncmp(word.kind, "figure", 6) != 0) continue;
+        hf_json_open(&j, NULL, '{');
+        hf_json_text(&j, "word", word.word);
+        if (!strcmp(word.kind, "term")) hf_json_bool(&j, "term", true);
+        hf_json_text(&j, "text", word.text);
+        hf_json_close(&j, '}');
+    }
+    hf_json_close(&j, ']');
+}
+
 /* ---- series ---- */
 
 static void write_series(const page *p, FILE *f)
@@ -288,6 +307,7 @@ static void write_data(const void *context, FILE *f)
     fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, s->n_gene);
     hf_json_value(s->pretension_N, 17, f);
     write_figures(f);
+    write_words(f);
     write_net(p, f);
     write_shapes(p, N_SHAPE, f);
     write_truss(p, f);

@@ -107,3 +107,19 @@ export async function checkAdjust(tab, made, changes) {
   await changes(tab, "the colour of moves", () => tab.locator("#net").getByLabel("deviation", { exact: true }).check());
   await tab.reload();
 }
+
+// Terms, and those figures of the summary that `hifdm explain` knows, in its words.
+export async function checkWords(tab, made) {
+  await tab.locator("#summary details summary").click();
+  const words = await tab.locator("#summary dt").evaluateAll((all) =>
+    all.map((dt) => [dt.textContent.replaceAll("\u200b", ""), dt.nextElementSibling.textContent]),
+  );
+  assert.ok(words.length > 30 && new Set(words.map(([word]) => word)).size === words.length);
+  const said = (text) => text.replace(/\s+/g, " ");
+  for (const word of ["psi", "law", "residual_N", "position_bound_m"]) {
+    const [, text] = words.find(([name]) => name === word);
+    assert.ok(said(made.hifdm("explain", word)).includes(said(text)), `${word}: ${text}`);
+  }
+  assert.ok(!words.some(([word]) => word === "facet_half_path_rms_m"), "a figure that is not there is explained");
+  await tab.locator("#summary details summary").click();
+}

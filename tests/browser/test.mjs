@@ -9,7 +9,7 @@ import { pathToFileURL } from "node:url";
 import { checkFluid } from "./large.mjs";
 import { checkLook, inspect } from "./look.mjs";
 import { pages } from "./pages.mjs";
-import { checkAdjust, checkPattern, checkRounding } from "./parts.mjs";
+import { checkAdjust, checkPattern, checkRounding, checkWords } from "./parts.mjs";
 import { csv, number, picture, same, settle, tip } from "./see.mjs";
 
 const { HIFDM, CHROMIUM, WORK } = process.env;
@@ -656,6 +656,7 @@ async function test(browser, page) {
     await checkPoints(tab, page, made, folder);
   } else {
     await checkSummary(tab, made);
+    if (page.name === "chen2022") await checkWords(tab, made);
     const endless = await checkCharts(tab, 4, "#form-finding", /iteration \d+\s+ψ\s+[\d.]+.* mm/);
     await checkNet(tab, page, made);
     if (page.unlike) await checkUnlike(browser, tab, made, folder);

@@ -353,6 +353,25 @@ function figureRows(first) {
   return rows;
 }
 
+// Terms, and the figures of these keys, as `hifdm explain` tells them.
+function writtenWords(keys) {
+  const wanted = new Set(keys.map((key) => key.replace(/\[.*/, ""))),
+    told = new Set();
+  const list = (data.words || []).filter(({ word, term }) => {
+    const isNew = (term || wanted.has(word)) && !told.has(word);
+    if (isNew) told.add(word);
+    return isNew;
+  });
+  if (!list.length) return null;
+  list.sort((a, b) => !!b.term - !!a.term);
+  return el(
+    "details",
+    { class: "words" },
+    el("summary", {}, "What the words and figures mean"),
+    el("dl", {}, list.flatMap(({ word, text }) => [el("dt", {}, word.replace(/_/g, "_\u200b")), el("dd", {}, text)])),
+  );
+}
+
 const hasFigure = (v) => typeof v === "number" || typeof v === "string";
 
 function writeSummary() {
@@ -390,6 +409,7 @@ function writeSummary() {
       ),
       "Summary",
     ),
+    writtenWords(shown.map(([, , key]) => key)),
   );
 }
 
