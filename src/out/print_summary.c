@@ -1,6 +1,7 @@
 /* Contents: the answer - the table of stages - surface - front, states, truss - together */
 #include "out/print_summary.h"
 #include "out/print_tolerance.h"
+#include "store/ledger.h"
 #include <hifdm/store.h>
 
 #include <math.h>
@@ -10,6 +11,7 @@
 
 /* The loss of gain that a reflector is called good to, dB. */
 #define GOOD_TO_DB 1.0
+#define GOALS_TOLD 4           /* in the first line */
 #define FREQUENCY_MOST_HZ 1e12 /* beyond there the errors that are left have no meaning */
 
 static const hf_form_result *result_of(const hf_summary *s, hf_stage stage)
@@ -57,13 +59,59 @@ static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
     const hf_form_result *r = result_of(s, stage);
     double base_psi_m = stage == HF_STAGE_OPTIMIZE ? s->base_psi_m : s->form.psi_m;
     if (stage == HF_STAGE_FORM || s->goals.are_objectives) return;
-    if (has_merit(s)) {
-        if (s->form.merit > 0)
-            fprintf(f, ", merit %.6g, %.2f %% below that of the form-finding", r->merit,
-                    100 * (1 - r->merit / s->form.merit));
-    } else {
-        hf_print_below(s, r->psi_m, base_psi_m, f);
+    hf_print_below(s, r->psi_m, base_psi_m, f);
+}
+
+/* Lengths in mm. */
+static void print_goal_value(double value, const char *unit, FILE *f)
+{
+    char text[32];
+    if (!isfinite(value))
+        fputc('-', f);
+    else if (!strcmp(unit, "m"))
+        fputs(hf_print_decimals(value * 1e3, text), f);
+    else
+        fprintf(f, "%.4g", value);
+}
+
+/* "tension_edge" of goal_1_tension_edge. */
+static const char *goal_of(const char *name)
+{
+    name += strcspn(name, "0123456789");
+    return name + strspn(name, "0123456789_");
+}
+
+/* Is psi, of the design itself, one of the goals? */
+static bool wants_psi(const hf_summary *s)
+{
+    for (int k = 0; k < s->goals.n; k++)
+        if (!strcmp(goal_of(s->goals.name[k]), hf_goal_word[HF_GOAL_PSI])) return true;
+    return false;
+}
+
+static bool is_psi_all(const hf_summary *s)
+{
+    return s->goals.n == 1 && wants_psi(s);
+}
+
+/* What was wanted, before and after, in its units: "facets 1.7436 -> 1.4720 mm". */
+static void print_goals_gained(const hf_summary *s, const hf_form_result *r, FILE *f)
+{
+    for (int k = 0; k < s->goals.n && k < GOALS_TOLD; k++) {
+        const char *unit = hf_ledger_goal_unit(s->goals.name[k]);
+        fprintf(f, "%s%s ", k ? ", " : "", goal_of(s->goals.name[k]));
+        print_goal_value(s->form.goal[k], unit, f);
+        fputs(" -> ", f);
+        print_goal_value(r->goal[k], unit, f);
+        if (*unit) fprintf(f, " %s", !strcmp(unit, "m") ? "mm" : unit);
     }
+    if (s->goals.n > GOALS_TOLD) fprintf(f, " and %d more", s->goals.n - GOALS_TOLD);
+    if (wants_psi(s)) return;
+    fputs("; psi ", f);
+    print_goal_value(s->form.psi_m, "m", f);
+    fputs(" -> ", f);
+    print_goal_value(r->psi_m, "m", f);
+    fputs(" mm, which counts drift within the surface, too", f);
 }
 
 static void print_answer(const hf_summary *s, hf_stage stage, FILE *f)
@@ -84,8 +132,12 @@ static void print_answer(const hf_summary *s, hf_stage stage, FILE *f)
                         s->front.row[s->front.end[k]].objective[k]);
         return;
     }
-    fprintf(f, "psi %s mm", hf_print_decimals(r->psi_m * 1e3, psi));
-    print_gained(s, stage, f);
+    if (has_merit(s) && stage != HF_STAGE_FORM && !is_psi_all(s)) {
+        print_goals_gained(s, r, f);
+    } else {
+        fprintf(f, "psi %s mm", hf_print_decimals(r->psi_m * 1e3, psi));
+        print_gained(s, stage, f);
+    }
     if (r->status == HF_OK) print_frequency(s, stage, r->psi_m, f);
     if (s->has_optimize && s->finished && s->best.status != HF_OK) fputs("; no feasible design was found", f);
 }
@@ -331,8 +383,9 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
     print_answer(s, result, f);
     fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
     hf_print_line(f, "  case          %s", *s->title ? s->title : s->case_path);
-    fprintf(f, "  net           %d nodes (%d free), %d cables, %d variables; pretension %g N\n", s->n_node, s->n_free,
-            s->n_cable, s->n_gene, s->pretension_N);
+    fprintf(f, "  net           %d nodes (%d free), %d cables", s->n_node, s->n_free, s->n_cable);
+    if (s->has_optimize || s->has_polish || s->has_front) fprintf(f, ", %d variables", s->n_gene);
+    fprintf(f, "; pretension %g N\n", s->pretension_N);
     if (s->has_truss)
         fprintf(f, "  truss         %d nodes, %d members; %.2f kg\n", s->truss.n_node, s->truss.n_member,
                 s->truss.mass_kg);

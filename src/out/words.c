@@ -420,6 +420,14 @@ static const hf_word told[] = {
      "Seen along the axis two cables cross without a node: the net has no facets there that could be measured. Name "
      "them in a table of facets, or put a node at the crossing.",
      "cross without a node"},
+    {"slack_as_built", "warning", "",
+     "An error of the cut changes a cable's tension by up to EA times error over length; where that is more than the "
+     "tension, the cable goes slack in some of the nets. More tension, cables of less EA, or smaller errors.",
+     "tolerance: slack cables in"},
+    {"truss_gives_way", "warning", "",
+     "The truss is computed by linear theory, which leaves out what turning does to second order, turn times "
+     "displacement / 2: here more than 1e-5 of the span. Stiffen the truss, or lower form.pretension_N.",
+     "truss: its attachments give way so far"},
     {"polish_not_converged", "warning", "",
      "The design is good, but not known to be an optimum: the message says what the last steps still gained. With more "
      "optimize.polish_iterations, and `hifdm run --restart`, it gets better; a target that is met needs none.",

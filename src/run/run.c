@@ -28,6 +28,8 @@
 
 const char *const hf_run_phase_word[4] = {"form", "optimize", "polish", "tolerance"};
 
+/* Of the span of the attachments, 0.1 mm on 10 m: what errors of the cut may be. */
+#define SECOND_ORDER_DOUBT 1e-5
 #define HISTORY_MAX 1000000 /* iterations whose history is kept */
 
 /* Everything a run owns. */
@@ -159,6 +161,17 @@ static hf_status take_result(run *r, hf_workspace *w, hf_messages *messages)
     HF_TRY(load_truss(r, w, messages));
     r->shape = w;
     return r->problem.states.n ? hf_cases_take(&r->problem, w, &r->cases, messages) : HF_OK;
+}
+
+/* The truss is linear: is what that leaves out too much for a reflector of this size? */
+static void warn_of_truss(const run *r, hf_messages *messages)
+{
+    double span_m, off_m = hf_carrier_second_order_m(&r->problem.carrier, &r->truss, &span_m);
+    if (off_m > SECOND_ORDER_DOUBT * span_m)
+        hf_warning(messages,
+                   "truss: its attachments give way so far that linear theory, which it is computed by, may be off by "
+                   "some %.2g mm: stiffen it (tubes of larger diameter, more bays) or lower form.pretension_N",
+                   off_m * 1e3);
 }
 
 /* ---- form-finding ---- */
@@ -547,6 +560,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     if (status == HF_INTERRUPTED && (r->store || hf_tolerance_stage_is_task(q)))
         hf_error(messages, status, "%s: told to stop%s; the same command goes on from there", output, r->stopped_at);
     if ((!leaves_result(status) && !keeps_design) || hf_tolerance_stage_is_task(q)) return status;
+    warn_of_truss(r, messages);
     if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, &r->truss, messages));
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
     hf_text_trim_utf8(s->warnings);

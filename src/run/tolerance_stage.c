@@ -12,6 +12,7 @@
 #include <math.h>
 #include <string.h>
 
+#define SLACK_DOUBT 0.05   /* part of the samples: more of them with slack cables are warned about */
 #define SCALE_SAMPLES 1000 /* at most, of each yield on the way to the scale that is wanted */
 
 /* ---- what cannot be ---- */
@@ -284,6 +285,47 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
 
 /* ---- together ---- */
 
+/* Of the cable whose tension the errors of its own cut outweigh most: what sigma is of its tension where its ends stay,
+ * EA sigma/length, the most that it can be. */
+static int find_touchiest(const job *j, double *by_error_N, double *sigma_m)
+{
+    const hf_problem *p = j->stage->problem;
+    const hf_tolerance_settings *t = &p->settings.tolerance;
+    const hf_workspace *w = j->stage->shape;
+    int touchiest = 0;
+    double most = -1;
+    for (int e = 0; e < p->model.n_cable; e++) {
+        double sigma = hypot(t->sigma_cut_m, t->sigma_cut_ratio * w->length_m[e]);
+        double error_N = j->built.scene.EA_N[e] * sigma / w->length_m[e], part = error_N / w->tension_N[e];
+        if (!(part > most)) continue;
+        most = part;
+        touchiest = e;
+        *by_error_N = error_N;
+        *sigma_m = sigma;
+    }
+    return touchiest;
+}
+
+/* A net some of whose cables hang loose is not the one that was designed. */
+static void warn_of_slack(const job *j, const hf_tolerance_summary *t, hf_messages *messages)
+{
+    const hf_scene *scene = &j->stage->problem->scene;
+    double error_N = 0, sigma_m = 0;
+    char why[320] = "";
+    if (t->n_with_slack <= SLACK_DOUBT * t->samples) return;
+    int e = find_touchiest(j, &error_N, &sigma_m);
+    if (error_N > 0)
+        snprintf(
+            why, sizeof why,
+            ": %.3g mm on the %.3g m of cable '%.80s' are up to %.3g N at its EA of %.3g N, and its tension is %.3g N",
+            sigma_m * 1e3, j->stage->shape->length_m[e], scene->cable_id[e], error_N, j->built.scene.EA_N[e],
+            j->stage->shape->tension_N[e]);
+    hf_warning(messages,
+               "tolerance: slack cables in %d of %d nets as built%s. Raise the least tensions (form.pretension_N, "
+               "optimize.limits), use cables of less EA, or lower the errors (tolerance.sigma_cut_m)",
+               t->n_with_slack, t->samples, why);
+}
+
 static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
 {
     const hf_tolerance_settings *t = &j->stage->problem->settings.tolerance;
@@ -297,6 +339,7 @@ static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "tolerance: out of memory");
     HF_TRY(status);
     summary->has_tolerance = true;
+    warn_of_slack(j, to, messages);
     to->tolerance_wall_s = hf_clock_s() - j->begin_s;
     return hf_store_tolerance(j->stage->store, &j->montecarlo, &rows, messages);
 }

@@ -186,6 +186,11 @@ START_TEST(runs_tell_what_became_of_each_goal)
         "a['optimize']['merit'] == b['ga/best_merit'][-1]");
     HIFDM(0, "show", out);
     OUT("ratio inside         merit  at bounds");
+    /* before and after, in their units; psi, which is wanted too, is not told once more */
+    EXPECT(json, file_with("show.txt", said.out), "--",
+           "b.decode().startswith('psi %.4f -> %.4f mm, tension_edge %.4g -> %.4g N; good to ' % tuple(x for g, by in "
+           "(('goal_0_psi', 1e3), ('goal_1_tension_edge', 1)) for x in (by * a['form']['goals'][g]['value'], by * "
+           "a['polish']['goals'][g]['value'])))");
     ck_assert_int_eq(count_of(said.out, "                merit 0."), 1); /* the result's, with its goals */
     HIFDM(0, "show", out, "--verbose");
     OUT(" 4 cables, 5 variables; ");

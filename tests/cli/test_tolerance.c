@@ -299,6 +299,31 @@ START_TEST(samples_are_those_of_another_solver)
 }
 END_TEST
 
+/* An error of EA sigma/length beyond the tension of a cable makes it slack, and the message says so. */
+START_TEST(slack_nets_are_warned_of)
+{
+    const char *c = file_with("ring.yaml", "scene:\n  EA_inner_N: 47000\n  EA_boundary_N: 47000\n"
+                                           "  paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, "
+                                           "rear_distance_m: 1.8}\nform: {pretension_N: 10, prestress: exact}\n"
+                                           "tolerance: {sigma_cut_m: 1e-3, samples: 40}\n"),
+               *out = temp("r.h5");
+    double error_mm, length_m, error_N, EA_N, tension_N;
+    int n_slack, n;
+    HIFDM(0, "run", c, "-o", out);
+    const char *at = strstr(said.err, "warning: tolerance: slack cables in ");
+    ck_assert_msg(at != NULL, "%s", said.err);
+    ck_assert_int_eq(sscanf(at,
+                            "warning: tolerance: slack cables in %d of %d nets as built: %lf mm on the %lf m of cable "
+                            "'%*[^']' are up to %lf N at its EA of %lf N, and its tension is %lf N",
+                            &n_slack, &n, &error_mm, &length_m, &error_N, &EA_N, &tension_N),
+                     7);
+    ck_assert(n == 40 && n_slack > 2 && error_mm == 1 && EA_N == 47000 && tension_N < error_N);
+    ck_assert_double_eq_tol(error_N, EA_N * 1e-3 / length_m, 0.01 * error_N); /* printed to three digits */
+    HIFDM(0, "run", c, "-o", out, "--restart", "--set", "tolerance.sigma_cut_m=1e-6");
+    ck_assert_str_eq(said.err, "");
+}
+END_TEST
+
 Suite *suite_cli_tolerance(void)
 {
     Suite *suite = suite_create("cli/tolerance");
@@ -312,6 +337,7 @@ Suite *suite_cli_tolerance(void)
     tcase_add_loop_test(tests, beside_a_front_the_net_of_form_finding_is_built, 0, 3);
     tcase_add_test(tests, quantiles_are_those_of_the_samples);
     tcase_add_test(tests, a_report_has_the_samples);
+    tcase_add_test(tests, slack_nets_are_warned_of);
     tcase_add_loop_test(tests, a_warm_truss_is_that_of_states, 0, 3);
     tcase_add_test(tests, faults_are_named);
     tcase_add_test(tests, samples_are_those_of_another_solver);

@@ -1,6 +1,8 @@
 /* Contents: by hand - theories and joints - laws - refusals - condensation */
 #include "trusses.h"
 
+#include <hifdm/carrier.h>
+
 /* ---- by hand ---- */
 
 /* A cantilever of length L along a skew axis: tip force, tip moment, and heating, by the beam formulae. 1e-10:
@@ -371,6 +373,24 @@ START_TEST(faults_are_named)
 }
 END_TEST
 
+/* A bar that turns by 0.01 about its end: linear theory leaves its other end 1 - cos off, of second order. */
+START_TEST(second_order_of_a_turn)
+{
+    double position_m[6] = {0, 0, 0, 1.2, 1.6, 0}, length_m = 2, displacement[12] = {0}, span_m;
+    int end[2] = {0, 1}, truss_node[2] = {0, 1};
+    hf_carrier c = {.truss = {.n_node = 2, .n_member = 1, .position_m = position_m, .end = end},
+                    .frame = {.length_m = &length_m},
+                    .n_attachment = 2,
+                    .truss_node = truss_node};
+    const hf_carrier_state state = {.displacement = displacement}, none = {0};
+    displacement[HF_TRUSS_DOF] = -0.01 * 1.6;
+    displacement[HF_TRUSS_DOF + 1] = 0.01 * 1.2;
+    ck_assert_double_eq_tol(hf_carrier_second_order_m(&c, &state, &span_m), 2 * (1 - cos(0.01)), 1e-8);
+    ck_assert_double_eq_tol(span_m, 2, 1e-15);
+    ck_assert_double_eq(hf_carrier_second_order_m(&c, &none, &span_m), 0);
+}
+END_TEST
+
 Suite *suite_unit_frame(void)
 {
     Suite *suite = suite_create("unit/frame");
@@ -390,6 +410,7 @@ Suite *suite_unit_frame(void)
     tcase_add_test(tests, soft_is_not_loose);
     tcase_add_test(tests, everything_fixed);
     tcase_add_test(tests, many_cases_are_each_alone);
+    tcase_add_test(tests, second_order_of_a_turn);
     tcase_add_test(tests, faults_are_named);
     return suite;
 }
