@@ -15,12 +15,13 @@
 #define ENOUGH 1e-4        /* of what a step promises, that it has to gain */
 #define DAMPING_LEAST 0.05 /* below it there is none */
 #define DAMPING_MOST 1e12
-#define SEED 20260000u /* of the signs; nothing depends on it but the digits of standard deviations */
+#define PANEL HF_SADDLE_DUAL_PANEL /* samples that are solved together */
+#define SEED 20260000u             /* of the signs; nothing depends on it but the digits of standard deviations */
 
 /* ---- making ---- */
 
 /* Scratch: a step's errors, supports, numbers, gap before and after, and move; the band; of shapes
- * cut lengths and supports; one answer of `linear`. */
+ * cut lengths and supports; answers of `linear`. Those of samples have room for PANEL. */
 typedef struct {
     double *cut_m, *rest_m, *shared, *gap_m, *trial_m, *move_m, *band, *length_m, *support_m, *strain_N, *linear;
 } estimate_scratch;
@@ -36,11 +37,12 @@ static size_t share_scratch(const hf_estimate *p, estimate_scratch *to)
 {
     size_t n_cable = (size_t)p->built->model.n_cable, n_dof = p->linear.n_dof, used = 0;
     double *base = p->scratch;
-    size_t cut = take(&used, n_cable), rest = take(&used, n_dof), gap = take(&used, n_dof);
-    size_t shared = take(&used, (size_t)p->prior.n_shared);
-    size_t trial = take(&used, n_dof), move = take(&used, n_dof);
-    size_t band = take(&used, (size_t)p->saddle.n_band), length = take(&used, n_cable), support = take(&used, n_dof);
-    size_t strain = take(&used, n_cable), linear = take(&used, p->linear.n_scratch);
+    size_t cut = take(&used, PANEL * n_cable), rest = take(&used, PANEL * n_dof), gap = take(&used, PANEL * n_dof);
+    size_t shared = take(&used, PANEL * (size_t)p->prior.n_shared);
+    size_t trial = take(&used, n_dof), move = take(&used, PANEL * n_dof);
+    size_t band = take(&used, PANEL * (size_t)p->saddle.n_band);
+    size_t length = take(&used, n_cable), support = take(&used, n_dof);
+    size_t strain = take(&used, PANEL * n_cable), linear = take(&used, PANEL * p->linear.n_scratch);
     if (base)
         *to = (estimate_scratch){base + cut,  base + rest,   base + shared,  base + gap,    base + trial, base + move,
                                  base + band, base + length, base + support, base + strain, base + linear};
@@ -187,10 +189,15 @@ static hf_status try_errors(hf_estimate *p, const double *cut_m, const double *r
 
 /* ---- steps ---- */
 
-static hf_status ask_saddle(const hf_estimate *p, const estimate_scratch *s)
+/* The first n of what the scratch has room for. */
+static hf_status ask_saddle(const hf_estimate *p, const estimate_scratch *s, int n)
 {
-    hf_saddle_answer answer = {s->gap_m, s->cut_m, s->rest_m, s->move_m, s->shared};
-    return hf_saddle_solve(&p->saddle, &answer, s->band);
+    hf_saddle_answer answer[PANEL];
+    size_t n_dof = p->linear.n_dof, n_cable = (size_t)p->built->model.n_cable, n_shared = (size_t)p->prior.n_shared;
+    for (size_t k = 0; k < (size_t)n; k++)
+        answer[k] = (hf_saddle_answer){s->gap_m + k * n_dof, s->cut_m + k * n_cable, s->rest_m + k * n_dof,
+                                       s->move_m + k * n_dof, s->shared + k * n_shared};
+    return hf_saddle_solve(&p->saddle, n, answer, s->band);
 }
 
 /* The answer of the linear model, damped, into s->cut_m, s->rest_m and s->shared. Damping t pulls towards the present
@@ -205,7 +212,7 @@ static hf_status aim(const hf_estimate *p, const estimate_scratch *s, double dam
         s->cut_m[e] = part * p->cut_m[e];
     for (int i = 0; i < n_dof; i++)
         s->rest_m[i] = part * p->rest_m[i];
-    HF_TRY(ask_saddle(p, s));
+    HF_TRY(ask_saddle(p, s, 1));
     for (int e = 0; e < n_cable; e++)
         s->cut_m[e] += (1 - part) * p->cut_m[e];
     for (int i = 0; i < n_dof; i++)
@@ -261,58 +268,78 @@ static double random_sign(hf_random *random)
     return hf_random_next(random) >> 63 ? 1 : -1;
 }
 
-/* Random errors of the sizes of the prior: strains [n_cable], errors [n_cable], moves of supports and, out, of all. */
-static void draw_errors(const hf_estimate *p, hf_random *random, const estimate_scratch *s, double *cut_m,
+/* Random errors of the sizes of the prior, of one sample: strains [n_cable] and moves of supports. */
+static void draw_errors(const hf_estimate *p, hf_random *random, const estimate_scratch *s, double *strain_N,
                         double *move_m)
 {
     const hf_model *m = &p->built->model;
     for (int k = 0; k < p->prior.n_shared; k++)
         s->shared[k] = random_sign(random);
     for (int e = 0; e < m->n_cable; e++) {
-        cut_m[e] = random_sign(random) * p->prior.sigma_m[e] + shared_error_m(p, s->shared, e);
-        s->strain_N[e] = p->linear.cut_N_per_m[e] * cut_m[e];
+        double cut_m = random_sign(random) * p->prior.sigma_m[e] + shared_error_m(p, s->shared, e);
+        strain_N[e] = p->linear.cut_N_per_m[e] * cut_m;
     }
     for (size_t i = 3 * (size_t)m->n_free; i < p->linear.n_dof; i++)
         move_m[i] = random_sign(random) * p->prior.support_sigma_m;
-    hf_built_linear_apply(&p->linear, 1, s->strain_N, move_m, s->linear);
+}
+
+/* The moves [n][n_dof] of random errors from sample `first` on, by streams of random numbers. Returns n. */
+static int draw_moves(const hf_estimate *p, int stream, int first, const estimate_scratch *s, hf_random random[PANEL],
+                      double *move_m)
+{
+    int n = HF_ESTIMATE_SAMPLES - first < PANEL ? HF_ESTIMATE_SAMPLES - first : PANEL;
+    for (int k = 0; k < n; k++) {
+        random[k] = hf_random_stream(SEED, stream, first + k);
+        draw_errors(p, &random[k], s, s->strain_N + (ptrdiff_t)k * p->built->model.n_cable,
+                    move_m + (size_t)k * p->linear.n_dof);
+    }
+    hf_built_linear_apply(&p->linear, n, s->strain_N, move_m, s->linear);
+    return n;
 }
 
 hf_status hf_estimate_expect(hf_estimate *p, double *expected_m)
 {
     const hf_model *m = &p->built->model;
     estimate_scratch s;
+    hf_random random[PANEL];
     share_scratch(p, &s);
     memset(expected_m, 0, (size_t)m->n_node * sizeof *expected_m);
-    for (int k = 0; k < HF_ESTIMATE_SAMPLES; k++) {
-        hf_random random = hf_random_stream(SEED, 0, k);
-        draw_errors(p, &random, &s, s.cut_m, s.move_m);
-        for (int i = 0; i < 3 * m->n_node; i++)
-            expected_m[i / 3] += s.move_m[i] * s.move_m[i] / HF_ESTIMATE_SAMPLES;
+    for (int first = 0; first < HF_ESTIMATE_SAMPLES; first += PANEL) {
+        int n = draw_moves(p, 0, first, &s, random, s.move_m);
+        for (int i = 0; i < n * 3 * m->n_node; i++)
+            expected_m[i / 3 % m->n_node] += s.move_m[i] * s.move_m[i] / HF_ESTIMATE_SAMPLES;
     }
     for (int row = 0; row < m->n_node; row++)
         expected_m[row] = sqrt(expected_m[row]);
     return HF_OK;
 }
 
+/* What would be measured of a shape that is moved so. */
+static void draw_gap(const hf_estimate *p, hf_random *random, const double *move_m, double *gap_m)
+{
+    for (size_t i = 0; i < p->linear.n_dof; i++) {
+        double weight = p->prior.weight_per_m2[i], sign = random_sign(random);
+        gap_m[i] = weight > 0 ? move_m[i] + sign / sqrt(weight) : 0;
+    }
+}
+
 hf_status hf_estimate_doubt(hf_estimate *p, double *move_m)
 {
     size_t n_dof = p->linear.n_dof, n_cable = (size_t)p->built->model.n_cable;
     estimate_scratch s;
+    hf_random random[PANEL];
     share_scratch(p, &s);
     HF_TRY(hf_built_linear_take(&p->linear, &p->work));
     HF_TRY(hf_saddle_factor(&p->saddle, 0));
-    for (int k = 0; k < HF_ESTIMATE_SAMPLES; k++) {
-        hf_random random = hf_random_stream(SEED, 1, k);
-        double *move = move_m + (size_t)k * n_dof;
-        draw_errors(p, &random, &s, s.cut_m, move);
-        for (size_t i = 0; i < n_dof; i++) {
-            double weight = p->prior.weight_per_m2[i], sign = random_sign(&random);
-            s.gap_m[i] = weight > 0 ? move[i] + sign / sqrt(weight) : 0;
-        }
-        memset(s.cut_m, 0, n_cable * sizeof *s.cut_m);
-        memset(s.rest_m, 0, n_dof * sizeof *s.rest_m);
-        HF_TRY(ask_saddle(p, &s));
-        for (size_t i = 0; i < n_dof; i++)
+    for (int first = 0; first < HF_ESTIMATE_SAMPLES; first += PANEL) {
+        double *move = move_m + (size_t)first * n_dof;
+        int n = draw_moves(p, 1, first, &s, random, move);
+        for (int k = 0; k < n; k++)
+            draw_gap(p, &random[k], move + (size_t)k * n_dof, s.gap_m + (size_t)k * n_dof);
+        memset(s.cut_m, 0, (size_t)n * n_cable * sizeof *s.cut_m);
+        memset(s.rest_m, 0, (size_t)n * n_dof * sizeof *s.rest_m);
+        HF_TRY(ask_saddle(p, &s, n));
+        for (size_t i = 0; i < (size_t)n * n_dof; i++)
             move[i] -= s.move_m[i];
     }
     return HF_OK;

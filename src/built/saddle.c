@@ -26,7 +26,7 @@ static void lay_out_saddle(hf_arena *arena, hf_saddle *s)
     s->corner = hf_arena_take(arena, border * border, sizeof(double));
     s->dense = hf_arena_take(arena, border * border, sizeof(double));
     s->flex = hf_arena_take(arena, attached * attached, sizeof(double));
-    s->work = hf_arena_take(arena, 2 * border, sizeof(double));
+    s->work = hf_arena_take(arena, (1 + HF_SADDLE_DUAL_PANEL) * border, sizeof(double));
     s->dense_pivot = hf_arena_take(arena, border, sizeof(int));
 }
 
@@ -193,9 +193,8 @@ static void fill_border(hf_saddle *s)
 /* In place, b [n][n_band]. HF_OK; HF_SINGULAR when rounding leaves no answer. */
 static hf_status solve_band(const hf_saddle *s, int n, double *b)
 {
-    if (!s->is_dual) hf_band_back_solve_general(s->n_band, s->half_bandwidth, n, s->general, s->pivot, b, s->n_band);
-    for (int k = 0; k < n && s->is_dual; k++)
-        if (!hf_saddle_dual_solve(&s->dual, b + (size_t)k * (size_t)s->n_band)) return HF_SINGULAR;
+    if (s->is_dual) return hf_saddle_dual_solve(&s->dual, n, b) ? HF_OK : HF_SINGULAR;
+    hf_band_back_solve_general(s->n_band, s->half_bandwidth, n, s->general, s->pivot, b, s->n_band);
     return HF_OK;
 }
 
@@ -343,12 +342,11 @@ static void read_answer(const hf_saddle *s, hf_saddle_answer *a, const double *b
     }
 }
 
-hf_status hf_saddle_solve(const hf_saddle *s, hf_saddle_answer *a, double *band)
+/* From what the factor makes of the band's right-hand side. */
+static void finish_answer(const hf_saddle *s, hf_saddle_answer *a, double *band, double *border)
 {
     size_t n_band = (size_t)s->n_band;
-    double *border = s->work, *force = s->work + s->n_border;
-    ask(s, a, band, border);
-    HF_TRY(solve_band(s, 1, band));
+    double *force = s->work;
     for (size_t j = 0; j < (size_t)s->n_border; j++)
         for (size_t i = 0; i < n_band; i++)
             border[j] -= s->column[j * n_band + i] * band[i];
@@ -357,5 +355,14 @@ hf_status hf_saddle_solve(const hf_saddle *s, hf_saddle_answer *a, double *band)
         for (size_t i = 0; i < n_band; i++)
             band[i] -= s->solved[j * n_band + i] * border[j];
     read_answer(s, a, band, border, force);
+}
+
+hf_status hf_saddle_solve(const hf_saddle *s, int n, hf_saddle_answer *a, double *band)
+{
+    for (int k = 0; k < n; k++)
+        ask(s, &a[k], band + (ptrdiff_t)k * s->n_band, s->work + (ptrdiff_t)(1 + k) * s->n_border);
+    HF_TRY(solve_band(s, n, band));
+    for (int k = 0; k < n; k++)
+        finish_answer(s, &a[k], band + (ptrdiff_t)k * s->n_band, s->work + (ptrdiff_t)(1 + k) * s->n_border);
     return HF_OK;
 }

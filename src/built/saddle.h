@@ -34,7 +34,7 @@ typedef struct {
     int *pivot;                    /* [n_band] */
     double *column, *solved;       /* [n_border][n_band] the border, and what the factor makes of it */
     double *corner, *dense, *flex; /* [n_border][n_border]; its factor; [n_attached][n_attached] */
-    double *work;                  /* [n_border] */
+    double *work;                  /* [1 + HF_SADDLE_DUAL_PANEL][n_border] */
     int *dense_pivot;              /* [n_border] */
     void *block;
 } hf_saddle;
@@ -56,7 +56,8 @@ typedef struct {
     double *shared;      /* out: numbers [n_shared], which are in cut_m, too */
 } hf_saddle_answer;
 
-/* work: [n_band]. HF_OK; HF_SINGULAR when rounding leaves no answer, which is not written then. */
-hf_status hf_saddle_solve(const hf_saddle *saddle, hf_saddle_answer *answer, double *work);
+/* n <= HF_SADDLE_DUAL_PANEL answers, which do not depend on each other; work: [n][n_band]. HF_OK; HF_SINGULAR when
+ * rounding leaves one without answer: none is written then. */
+hf_status hf_saddle_solve(const hf_saddle *saddle, int n, hf_saddle_answer *answer, double *work);
 
 #endif

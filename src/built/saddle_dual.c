@@ -18,7 +18,7 @@
 static void lay_out_dual(hf_arena *arena, hf_saddle_dual *d, size_t n_end)
 {
     const hf_model *m = &d->linear->built->model;
-    size_t n = (size_t)d->n, n_cable = (size_t)m->n_cable;
+    size_t n = (size_t)d->n, n_cable = (size_t)m->n_cable, panel = HF_SADDLE_DUAL_PANEL;
     d->start = hf_arena_take(arena, (size_t)m->n_free + 1, sizeof(int));
     d->cable = hf_arena_take(arena, n_end, sizeof(int));
     d->block = hf_arena_take(arena, 9 * n_cable, sizeof(double));
@@ -26,9 +26,9 @@ static void lay_out_dual(hf_arena *arena, hf_saddle_dual *d, size_t n_end)
     d->spring = hf_arena_take(arena, (size_t)m->n_free, sizeof(double));
     d->weight = hf_arena_take(arena, n, sizeof(double));
     d->band = hf_arena_take(arena, n * ((size_t)d->half_bandwidth + 1), sizeof(double));
-    d->right = hf_arena_take(arena, n, sizeof(double));
-    d->solution = hf_arena_take(arena, 2 * n, sizeof(double));
-    d->error = hf_arena_take(arena, 2 * n, sizeof(double));
+    d->right = hf_arena_take(arena, panel * n, sizeof(double));
+    d->solution = hf_arena_take(arena, panel * 2 * n, sizeof(double));
+    d->error = hf_arena_take(arena, panel * 2 * n, sizeof(double));
     d->probe = hf_arena_take(arena, 2 * n, sizeof(double));
 }
 
@@ -210,17 +210,27 @@ static void add_stiffness(const hf_saddle_dual *d, double sign, const double *v,
 
 /* ---- refinement ---- */
 
-/* Add to z what the weighted matrix makes of a right-hand side, which is overwritten. */
-static void correct(const hf_saddle_dual *d, double *right, double *z)
+/* One of the right-hand sides that are refined together. */
+typedef struct {
+    double *band, *solution, *error; /* [2 n] */
+    double size, last, largest;      /* entries: of the right-hand side, of the residual one step ago and now */
+} refinement;
+
+/* Make of a residual in r->error, which is overwritten, the multipliers' right-hand side p. */
+static void ask_multipliers(const hf_saddle_dual *d, refinement *r, double *p)
 {
-    double *p = d->right, *moved = right; /* moves by node need less room than the right-hand side */
+    double *right = r->error, *moved = right; /* moves by node need less room than the residual */
     for (int i = 0; i < d->n; i++)
         p[i] = -right[6 * (i / 3) + i % 3];
     for (int i = 0; i < d->n; i++)
         moved[i] = right[6 * (i / 3) + 3 + i % 3] / weight_of(d, i);
     add_stiffness(d, 1, moved, p);
-    hf_band_back_solve(d->n, d->half_bandwidth, 1, d->band, p, d->n);
-    double *pull = right + d->n;
+}
+
+/* Add to the solution these multipliers and the moves that follow. */
+static void add_answer(const hf_saddle_dual *d, refinement *r, const double *p)
+{
+    double *moved = r->error, *pull = moved + d->n, *z = r->solution;
     memset(pull, 0, (size_t)d->n * sizeof *pull);
     add_stiffness(d, 1, p, pull);
     for (int i = 0; i < d->n; i++) {
@@ -229,31 +239,68 @@ static void correct(const hf_saddle_dual *d, double *right, double *z)
     }
 }
 
-/* The largest residual of the last step over the largest entry of the right-hand side. */
-static double refine(const hf_saddle_dual *d, double *band)
+/* Add to the solutions what the weighted matrix makes of the residuals. */
+static void correct(const hf_saddle_dual *d, int n, refinement *const *open)
 {
-    size_t n = 2 * (size_t)d->n;
-    double size = 0, last = (double)INFINITY, largest = 0;
-    memset(d->solution, 0, n * sizeof(double));
-    for (size_t i = 0; i < n; i++)
-        size = fmax(size, fabs(band[i]));
-    for (int step = 0; step <= REFINEMENTS_MAX && size > 0; step++) {
-        memcpy(d->error, band, n * sizeof(double));
-        take_off_product(d, d->solution, d->error);
-        largest = 0;
-        for (size_t i = 0; i < n; i++)
-            largest = fmax(largest, fabs(d->error[i]));
-        if (!(largest > ENOUGH * size) || (largest <= REFINED * size && largest > last / 2)) break;
-        last = largest;
-        if (step < REFINEMENTS_MAX) correct(d, d->error, d->solution);
-    }
-    memcpy(band, d->solution, n * sizeof(double));
-    return size > 0 ? largest / size : 0;
+    for (int k = 0; k < n; k++)
+        ask_multipliers(d, open[k], d->right + (ptrdiff_t)k * d->n);
+    hf_band_back_solve(d->n, d->half_bandwidth, n, d->band, d->right, d->n);
+    for (int k = 0; k < n; k++)
+        add_answer(d, open[k], d->right + (ptrdiff_t)k * d->n);
 }
 
-bool hf_saddle_dual_solve(const hf_saddle_dual *d, double *band)
+static double largest_entry(const hf_saddle_dual *d, const double *v)
 {
-    return refine(d, band) < REFINED;
+    double largest = 0;
+    for (int i = 0; i < 2 * d->n; i++)
+        largest = fmax(largest, fabs(v[i]));
+    return largest;
+}
+
+/* Find the residual. Whether a further step is worth while. */
+static bool goes_on(const hf_saddle_dual *d, refinement *r)
+{
+    memcpy(r->error, r->band, 2 * (size_t)d->n * sizeof(double));
+    take_off_product(d, r->solution, r->error);
+    r->last = r->largest;
+    r->largest = largest_entry(d, r->error);
+    return r->largest > ENOUGH * r->size && !(r->largest <= REFINED * r->size && r->largest > r->last / 2);
+}
+
+/* At most HF_SADDLE_DUAL_PANEL right-hand sides. Are all residuals small? */
+static bool refine(const hf_saddle_dual *d, int n, double *band)
+{
+    refinement all[HF_SADDLE_DUAL_PANEL], *open[HF_SADDLE_DUAL_PANEL];
+    size_t length = 2 * (size_t)d->n;
+    bool is_found = true;
+    int n_open = 0;
+    for (int k = 0; k < n; k++) {
+        size_t at = (size_t)k * length;
+        all[k] = (refinement){.band = band + at, .solution = d->solution + at, .error = d->error + at};
+        all[k].size = largest_entry(d, all[k].band);
+        all[k].largest = all[k].size > 0 ? (double)INFINITY : 0;
+        if (all[k].size > 0) open[n_open++] = &all[k];
+    }
+    memset(d->solution, 0, (size_t)n * length * sizeof(double));
+    for (int step = 0; step <= REFINEMENTS_MAX && n_open > 0; step++) {
+        int n_left = 0;
+        for (int k = 0; k < n_open; k++)
+            if (goes_on(d, open[k])) open[n_left++] = open[k];
+        n_open = n_left;
+        if (step < REFINEMENTS_MAX) correct(d, n_open, open);
+    }
+    memcpy(band, d->solution, (size_t)n * length * sizeof(double));
+    for (int k = 0; k < n; k++)
+        is_found = is_found && (all[k].size == 0 || all[k].largest / all[k].size < REFINED);
+    return is_found;
+}
+
+bool hf_saddle_dual_solve(const hf_saddle_dual *d, int n, double *band)
+{
+    const int panel = HF_SADDLE_DUAL_PANEL;
+    for (int first = 0; first < n; first += panel)
+        if (!refine(d, n - first < panel ? n - first : panel, band + 2 * (ptrdiff_t)first * d->n)) return false;
+    return true;
 }
 
 /* ---- factor ---- */
@@ -287,5 +334,5 @@ bool hf_saddle_dual_factor(hf_saddle_dual *d, const double *sigma_m, const doubl
         d->solution[i] = i % 7 < 3 ? 1 : -1; /* what the probe is made of */
     memset(d->probe, 0, 2 * (size_t)d->n * sizeof *d->probe);
     take_off_product(d, d->solution, d->probe);
-    return refine(d, d->probe) < REFINED;
+    return refine(d, 1, d->probe);
 }

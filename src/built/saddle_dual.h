@@ -10,6 +10,8 @@
 
 #include "built/linear.h"
 
+#define HF_SADDLE_DUAL_PANEL 3 /* right-hand sides for which the kernel of the band reads the factor once */
+
 typedef struct {
     const hf_built_linear *linear;
     int n, half_bandwidth;    /* 3 n_free rows */
@@ -18,8 +20,8 @@ typedef struct {
     double *push;             /* [n_cable] diagonal of sigma^2 times B's square, without unit */
     double *spring;           /* [n_free] of loose nodes, without unit */
     double *weight;           /* [n] W, without unit */
-    double *band, *right;     /* the matrix, then its factor; [n] */
-    double *solution, *error; /* [2 n] three multipliers and three moves of each row */
+    double *band, *right;     /* the matrix, then its factor; [HF_SADDLE_DUAL_PANEL][n] */
+    double *solution, *error; /* [HF_SADDLE_DUAL_PANEL][2 n] three multipliers and three moves of each row */
     double *probe;            /* [2 n] a right-hand side */
     void *memory;
 } hf_saddle_dual;
@@ -33,8 +35,8 @@ void hf_saddle_dual_free(hf_saddle_dual *dual);
 bool hf_saddle_dual_factor(hf_saddle_dual *dual, const double *sigma_m, const double *weight_per_m2, double part,
                            double size_m, double force_m_per_N);
 
-/* A right-hand side [6 n_free], rows of each node side by side, replaced by the solution. False when refinement does
- * not find it. */
-bool hf_saddle_dual_solve(const hf_saddle_dual *dual, double *band);
+/* Right-hand sides [n][6 n_free], rows of each node side by side, replaced by the solutions. False when refinement does
+ * not find one of them. No solution depends on the others. */
+bool hf_saddle_dual_solve(const hf_saddle_dual *dual, int n, double *band);
 
 #endif

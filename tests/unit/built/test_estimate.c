@@ -79,7 +79,8 @@ START_TEST(the_saddle_is_least_squares)
         gap[i] = t.place_m[i] - t.built.place_m[i % 3 * m->n_node + i / 3];
     memset(cut, 0, sizeof cut);
     memset(rest, 0, sizeof rest);
-    ck_assert_int_eq(hf_saddle_solve(&s, &(hf_saddle_answer){gap, cut[0], rest[0], move[0], shared[0]}, work), HF_OK);
+    ck_assert_int_eq(hf_saddle_solve(&s, 1, &(hf_saddle_answer){gap, cut[0], rest[0], move[0], shared[0]}, work),
+                     HF_OK);
     dense_answer(&t, &l, gap, cut[1], rest[1], move[1], shared[1]);
     double most = 0;
     for (int e = 0; e < m->n_cable; e++)
@@ -91,6 +92,47 @@ START_TEST(the_saddle_is_least_squares)
     for (int k = 0; k < t.prior.n_shared; k++)
         ck_assert_double_eq_tol(shared[0][k], shared[1][k], 1e-6);
     ck_assert_double_lt(most, 1e-10); /* of errors of 1e-3: the condition of both systems times rounding */
+    hf_saddle_free(&s);
+    hf_built_linear_free(&l);
+    close_twin(&t);
+}
+END_TEST
+
+/* Of right-hand sides that take different numbers of refinements, the first one none. By LU to rounding, as LAPACK has
+ * another order for several. */
+START_TEST(answers_together_are_those_alone)
+{
+    enum { N = HF_SADDLE_DUAL_PANEL };
+    static twin t;
+    static double gap[N][TWIN_DOFS], work[N * 2 * TWIN_DOFS], cut[2][N][TWIN_CABLES], rest[2][N][TWIN_DOFS];
+    static double move[2][N][TWIN_DOFS], shared[2][N][TWIN_SPOOLS];
+    hf_saddle_answer answer[2][N];
+    hf_built_linear l;
+    hf_saddle s;
+    open_random_twin(&t, _i, _i % 2);
+    spool_twin(&t, _i / 4 % 4, 2e-3);
+    measure_twin(&t, 1e-3, _i / 2 % 2 ? 5e-4 : 0, 1e-3, 3);
+    ck_assert_int_eq(hf_built_linear_make(&t.built, &l), HF_OK);
+    ck_assert_int_eq(hf_saddle_create(&l, &t.prior, &s), HF_OK);
+    ck_assert_int_eq(hf_saddle_factor(&s, 0), HF_OK);
+    memset(cut, 0, sizeof cut);
+    memset(rest, 0, sizeof rest);
+    for (int k = 0; k < N; k++) {
+        for (int i = 0; i < 3 * t.built.model.n_node; i++)
+            gap[k][i] = 1e-3 * (k == 1 ? i % 7 - 3 : i == 5 * k ? k : 0);
+        for (int way = 0; way < 2; way++)
+            answer[way][k] = (hf_saddle_answer){gap[k], cut[way][k], rest[way][k], move[way][k], shared[way][k]};
+        ck_assert_int_eq(hf_saddle_solve(&s, 1, &answer[0][k], work), HF_OK);
+    }
+    ck_assert_int_eq(hf_saddle_solve(&s, N, answer[1], work), HF_OK);
+    double most = 0;
+    for (int k = 0; k < N; k++) {
+        for (int i = 0; i < TWIN_DOFS; i++)
+            most = fmax(most, fabs(move[0][k][i] - move[1][k][i]));
+        for (int e = 0; e < TWIN_CABLES; e++)
+            most = fmax(most, fabs(cut[0][k][e] - cut[1][k][e]));
+    }
+    ck_assert_double_le(most, s.is_dual ? 0 : 1e-13); /* of errors of 1e-3 */
     hf_saddle_free(&s);
     hf_built_linear_free(&l);
     close_twin(&t);
@@ -114,7 +156,7 @@ START_TEST(a_saddle_that_is_not_refined_is_told)
         s.dual.band[i] *= 10;
     for (int i = 0; i < 3 * t.built.model.n_node; i++)
         gap[i] = 1e-3;
-    ck_assert_int_eq(hf_saddle_solve(&s, &(hf_saddle_answer){gap, cut, rest, move, NULL}, work), HF_SINGULAR);
+    ck_assert_int_eq(hf_saddle_solve(&s, 1, &(hf_saddle_answer){gap, cut, rest, move, NULL}, work), HF_SINGULAR);
     hf_saddle_free(&s);
     hf_built_linear_free(&l);
     close_twin(&t);
@@ -290,6 +332,7 @@ Suite *suite_unit_estimate(void)
     Suite *suite = suite_create("unit/built/estimate");
     TCase *tcase = tcase_create("estimate");
     tcase_add_loop_test(tcase, the_saddle_is_least_squares, 0, 16);
+    tcase_add_loop_test(tcase, answers_together_are_those_alone, 0, 16);
     tcase_add_test(tcase, a_saddle_that_is_not_refined_is_told);
     tcase_add_loop_test(tcase, what_is_measured_exactly_is_reproduced, 0, 6);
     tcase_add_loop_test(tcase, one_wrong_cable_is_found, 0, 12);
