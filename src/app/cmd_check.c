@@ -20,6 +20,9 @@
 #include <limits.h>
 #include <math.h>
 
+#define OPERATIONS_PER_S 2e9 /* of one core, as in search/polish_cost.c */
+#define LONG_S 3600.0        /* more than this, or than that of memory, comes with advice */
+#define LARGE_BYTES 2e9
 #define TRIAL_S 1.0 /* wall-clock time that the trial of form-finding may take, about */
 
 /* Prints how many cables obey each law. The paper's three laws are always named, the others only when a cable has them.
@@ -404,20 +407,43 @@ static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int t
     return status;
 }
 
-/* Runs two iterations of Levenberg-Marquardt from the base design and prints the time of one. */
+/* What to do about a step that takes long, or much memory. */
+static void print_fewer(const hf_problem *p, const hf_evaluator *v, double all_s, FILE *f)
+{
+    if (all_s > LONG_S || polish_bytes(p, v) > LARGE_BYTES)
+        fprintf(f,
+                "                %d variables: its time grows with their cube, its memory with their square; fewer of "
+                "them by link: symmetry or set, or by sets (optimize.variables)\n",
+                p->model.n_leader);
+}
+
+/* Runs two iterations of Levenberg-Marquardt from the base design and prints the time of one; nothing is run that
+ * counted operations foretell to take longer than a trial. */
 static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const hf_population *ga, FILE *f)
 {
     hf_polish_result r;
     char one[32], all[32];
-    double begin_s = hf_clock_s();
+    int n_point = p->settings.optimize.n_objective > 0 ? p->settings.optimize.front_points : 1;
+    double n_step = (double)p->settings.optimize.polish_iterations * n_point;
+    double begin_s = hf_clock_s(), foretold_s = hf_polish_operations(v) / OPERATIONS_PER_S;
+    if (foretold_s > TRIAL_S) {
+        hf_print_duration(foretold_s, one, sizeof one);
+        hf_print_duration(foretold_s * n_step, all, sizeof all);
+        fprintf(f,
+                "                Levenberg-Marquardt: some %s an iteration, counted and not tried; at most about %s, "
+                "mostly far less\n",
+                one, all);
+        print_fewer(p, v, foretold_s * n_step, f);
+        return HF_OK;
+    }
     hf_status status = hf_polish_run(v, ga->lower_N, ga->upper_N, 2, NULL, p->base_N, &p->workspace, &r);
     if (status == HF_NO_MEMORY) return status;
     if (status != HF_OK || r.iterations == 0) return HF_OK;
     double each_s = (hf_clock_s() - begin_s) / r.iterations;
     hf_print_duration(each_s, one, sizeof one);
-    int n_point = p->settings.optimize.n_objective > 0 ? p->settings.optimize.front_points : 1;
-    hf_print_duration(each_s * p->settings.optimize.polish_iterations * n_point, all, sizeof all);
+    hf_print_duration(each_s * n_step, all, sizeof all);
     fprintf(f, "                Levenberg-Marquardt: %s an iteration; at most about %s, mostly far less\n", one, all);
+    print_fewer(p, v, each_s * n_step, f);
     return HF_OK;
 }
 

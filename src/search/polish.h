@@ -43,6 +43,9 @@ typedef struct {
 /* Can designs of this evaluator be polished? The net must be convex, and the rule not seeded. */
 bool hf_polish_applies(const hf_evaluator *evaluator);
 
+/* Floating-point operations of one step, counted: some 2e9 of them take a second of a core. */
+double hf_polish_operations(const hf_evaluator *evaluator);
+
 /* Is a run from a design of the genetic algorithm cheap beside its n_evaluation evaluations? By counted operations, so
  * that the answer does not depend on the machine: at most a tenth of theirs, or too few to notice. */
 bool hf_polish_is_cheap(const hf_evaluator *evaluator, long n_evaluation);

@@ -19,7 +19,8 @@ bool hf_polish_applies(const hf_evaluator *v)
     return v->model->has_newton && v->model->n_gene > 0;
 }
 
-bool hf_polish_is_cheap(const hf_evaluator *v, long n_evaluation)
+/* Operations of one step; *evaluation: of one evaluation of the genetic algorithm. */
+static double count_step(const hf_evaluator *v, double *evaluation_of_ga)
 {
     const hf_model *m = v->model;
     double n_dof = 3.0 * m->n_free, width = 3.0 * m->half_bandwidth + 3, n = m->n_leader;
@@ -32,5 +33,18 @@ bool hf_polish_is_cheap(const hf_evaluator *v, long n_evaluation)
         evaluation += newton;
         step += STEP_EVALUATIONS * newton + newton + factor + n * solve;
     }
+    *evaluation_of_ga = evaluation;
+    return step;
+}
+
+double hf_polish_operations(const hf_evaluator *v)
+{
+    double evaluation;
+    return count_step(v, &evaluation);
+}
+
+bool hf_polish_is_cheap(const hf_evaluator *v, long n_evaluation)
+{
+    double evaluation, step = count_step(v, &evaluation);
     return STEPS_EXPECTED * step <= fmax(UNNOTICED, (double)n_evaluation * evaluation / 10);
 }

@@ -214,6 +214,25 @@ START_TEST(net_is_held_on_its_surface)
 }
 END_TEST
 
+/* What would take more than a trial is counted, and comes with advice where it is beyond all bounds: of 25 rings it
+ * took hours and gigabytes. */
+START_TEST(check_of_many_variables_is_quick)
+{
+    const char *c = file_with("ring.yaml",
+                              "scene:\n  paraboloid: {aperture_m: 9, focal_length_m: 6, rings: 4, rear_distance_m: 2}\n"
+                              "form: {pretension_N: 10, prestress: exact}\n"
+                              "optimize:\n  method: lm\n"
+                              "  variables: [{set: all, vary: force_density, range: 50 %}]\n");
+    HIFDM(0, "check", c);
+    OUT(" an iteration; at most about ");
+    ck_assert(!strstr(said.out, "counted and not tried") && !strstr(said.out, "fewer of them by"));
+    HIFDM(0, "check", c, "--set", "scene.paraboloid.rings=25");
+    OUT(" an iteration, counted and not tried; at most about ");
+    OUT("12901 variables: its time grows with their cube, its memory with their square; fewer of them by link: "
+        "symmetry");
+}
+END_TEST
+
 Suite *suite_cli_check(void)
 {
     Suite *suite = suite_create("cli/check");
@@ -221,6 +240,7 @@ Suite *suite_cli_check(void)
     tcase_add_test(tcase, check_tells_what_will_run);
     tcase_add_test(tcase, check_follows_the_size);
     tcase_add_test(tcase, check_of_an_ill_posed_case_says_so);
+    tcase_add_test(tcase, check_of_many_variables_is_quick);
     tcase_add_test(tcase, check_tells_of_struts_and_loads);
     tcase_add_test(tcase, check_announces_no_ga_without_genes);
     tcase_add_test(tcase, schema_is_yaml_with_every_key);
