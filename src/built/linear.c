@@ -57,12 +57,16 @@ static hf_status factor_shape(hf_built_linear *l)
 {
     const hf_model *m = &l->built->model;
     double condition;
+    l->is_factored = false;
+    l->n_factor++;
     for (int e = 0; e < m->n_cable; e++)
         look_at_cable(l, e);
     const double *spring = spring_loose(m, &l->work) ? l->work.spring_N_per_m : NULL;
     HF_TRY(hf_newton_matrix_factor_blocks(m, &l->work, hf_newton_matrix_block, spring, &condition));
     if (isinf(condition)) return HF_SINGULAR;
-    return m->n_attachment ? hf_schur_factor(m, &l->work, hf_newton_matrix_block, &l->schur) : HF_OK;
+    if (m->n_attachment) HF_TRY(hf_schur_factor(m, &l->work, hf_newton_matrix_block, &l->schur));
+    l->is_factored = true;
+    return HF_OK;
 }
 
 hf_status hf_built_linear_make(const hf_built *b, hf_built_linear *l)
@@ -79,9 +83,19 @@ hf_status hf_built_linear_make(const hf_built *b, hf_built_linear *l)
     return factor_shape(l);
 }
 
+/* In all that hf_built_linear_take copies. */
+static bool is_same_shape(const hf_model *m, const hf_workspace *a, const hf_workspace *b)
+{
+    size_t by_cable = (size_t)m->n_cable * sizeof(double);
+    return memcmp(a->position_m, b->position_m, 3 * (size_t)m->n_node * sizeof(double)) == 0 &&
+           memcmp(a->tension_N, b->tension_N, by_cable) == 0 && memcmp(a->target, b->target, by_cable) == 0 &&
+           memcmp(a->EA_N, b->EA_N, by_cable) == 0 && memcmp(a->loose, b->loose, (size_t)m->n_node) == 0;
+}
+
 hf_status hf_built_linear_take(hf_built_linear *l, const hf_workspace *shape)
 {
     const hf_model *m = &l->built->model;
+    if (l->is_factored && is_same_shape(m, &l->work, shape)) return HF_OK;
     memcpy(l->work.position_m, shape->position_m, 3 * (size_t)m->n_node * sizeof(double));
     memcpy(l->work.tension_N, shape->tension_N, (size_t)m->n_cable * sizeof(double));
     memcpy(l->work.target, shape->target, (size_t)m->n_cable * sizeof(double));

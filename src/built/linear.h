@@ -19,8 +19,10 @@ typedef struct {
     double *cut_N_per_m;       /* [n_cable] dT/dl0 at held places, -EA l/l0^2; 0 of slack cables */
     double *ratio_N;           /* [n_cable] the same by the ratio of the length, l0 dT/dl0. That by EA is the tension */
     double *block_N_per_m;     /* [n_cable][9] stiffness between the ends */
-    hf_workspace work;         /* the factor */
+    hf_workspace work;         /* the shape and its factor */
     hf_schur schur;            /* net and truss together; nothing without a truss */
+    bool is_factored;          /* false: the last factor failed */
+    int n_factor;              /* how often it was factored: another number is another shape */
     void *block;
 } hf_built_linear;
 
@@ -29,7 +31,7 @@ typedef struct {
 hf_status hf_built_linear_make(const hf_built *built, hf_built_linear *linear);
 
 /* The same at another shape of the net, that which hf_built_solve leaves in a workspace. Loose nodes stay where they
- * are. */
+ * are. At the same shape as before nothing is done. */
 hf_status hf_built_linear_take(hf_built_linear *linear, const hf_workspace *shape);
 void hf_built_linear_free(hf_built_linear *linear);
 

@@ -234,10 +234,9 @@ static void clear_border(hf_saddle *s)
         add_number(s, k);
 }
 
-hf_status hf_saddle_factor(hf_saddle *s, double damping)
+static hf_status factor_parts(hf_saddle *s)
 {
     const hf_model *m = &s->linear->built->model;
-    s->part = 1 / (1 + damping);
     choose_units(s);
     clear_border(s);
     s->is_dual = may_be_dual(s) && hf_saddle_dual_factor(&s->dual, s->prior.sigma_m, s->prior.weight_per_m2, s->part,
@@ -252,6 +251,17 @@ hf_status hf_saddle_factor(hf_saddle *s, double damping)
         add_row(s, row);
     if (hf_band_factor_general(s->n_band, s->half_bandwidth, s->general, s->pivot) != 0) return HF_SINGULAR;
     return factor_border(s);
+}
+
+hf_status hf_saddle_factor(hf_saddle *s, double damping)
+{
+    double part = 1 / (1 + damping);
+    if (s->n_factor == s->linear->n_factor && s->part == part) return HF_OK;
+    s->part = part;
+    s->n_factor = 0;
+    HF_TRY(factor_parts(s));
+    s->n_factor = s->linear->n_factor;
+    return HF_OK;
 }
 
 /* ---- an answer ---- */

@@ -29,6 +29,7 @@ typedef struct {
     hf_saddle_dual dual;           /* with no border but numbers: a quicker way, which is tried first */
     bool is_dual;                  /* the last factor is that */
     double part;                   /* of the weights, 1/(1 + damping) */
+    int n_factor;                  /* that of `linear` for which the factor is; 0: there is none */
     double size_m, force_m_per_N;  /* units of moves and multipliers: entries of the matrix are about 1 */
     double *general;               /* the band, then its factor */
     int *pivot;                    /* [n_band] */
@@ -43,8 +44,8 @@ typedef struct {
 hf_status hf_saddle_create(const hf_built_linear *linear, const hf_saddle_prior *prior, hf_saddle *saddle);
 void hf_saddle_free(hf_saddle *saddle);
 
-/* Factor at the shape that the linear answer has now, with the weights of places divided by 1 + damping. HF_OK or
- * HF_SINGULAR. */
+/* Factor at the shape that the linear answer has now, with the weights of places divided by 1 + damping; nothing is
+ * done where both are as before. HF_OK or HF_SINGULAR. */
 hf_status hf_saddle_factor(hf_saddle *saddle, double damping);
 
 /* An answer, and what it is asked for. All by cable [n_cable] or dof [n_dof]. */

@@ -139,6 +139,33 @@ START_TEST(answers_together_are_those_alone)
 }
 END_TEST
 
+/* Another shape and other weights are noticed. */
+START_TEST(the_same_shape_is_factored_once)
+{
+    static twin t;
+    static double move[HF_ESTIMATE_SAMPLES * TWIN_DOFS];
+    hf_estimate p;
+    open_random_twin(&t, 0, false);
+    measure_twin(&t, 1e-3, 0, 1e-3, 3);
+    ck_assert_int_eq(hf_estimate_create(&t.built, &t.prior, t.place_m, &p), HF_OK);
+    ck_assert_int_eq(hf_estimate_find(&p), HF_OK);
+    ck_assert(p.is_settled);
+    int n = p.linear.n_factor;
+    ck_assert_int_eq(hf_estimate_doubt(&p, move), HF_OK);
+    ck_assert_int_eq(p.linear.n_factor, n);
+    p.work.position_m[0] += 1e-4;
+    double before = p.saddle.dual.band[0];
+    ck_assert_int_eq(hf_estimate_doubt(&p, move), HF_OK);
+    ck_assert_int_eq(p.linear.n_factor, n + 1);
+    ck_assert_double_ne(p.saddle.dual.band[0], before);
+    before = p.saddle.dual.band[0];
+    ck_assert_int_eq(hf_saddle_factor(&p.saddle, 1), HF_OK);
+    ck_assert_double_ne(p.saddle.dual.band[0], before);
+    hf_estimate_free(&p);
+    close_twin(&t);
+}
+END_TEST
+
 /* An answer that refinement does not find is none: with a factor that is not that of the matrix. */
 START_TEST(a_saddle_that_is_not_refined_is_told)
 {
@@ -333,6 +360,7 @@ Suite *suite_unit_estimate(void)
     TCase *tcase = tcase_create("estimate");
     tcase_add_loop_test(tcase, the_saddle_is_least_squares, 0, 16);
     tcase_add_loop_test(tcase, answers_together_are_those_alone, 0, 16);
+    tcase_add_test(tcase, the_same_shape_is_factored_once);
     tcase_add_test(tcase, a_saddle_that_is_not_refined_is_told);
     tcase_add_loop_test(tcase, what_is_measured_exactly_is_reproduced, 0, 6);
     tcase_add_loop_test(tcase, one_wrong_cable_is_found, 0, 12);
