@@ -114,8 +114,9 @@ static void print_goals_gained(const hf_summary *s, const hf_form_result *r, FIL
     fputs(" mm, which counts drift within the surface, too", f);
 }
 
-static void print_answer(const hf_summary *s, hf_stage stage, FILE *f)
+void hf_print_answer(const hf_summary *s, FILE *f)
 {
+    hf_stage stage = hf_store_result_stage(s);
     const hf_form_result *r = result_of(s, stage);
     char psi[32];
     if (!s->finished) fputs("unfinished: ", f);
@@ -234,7 +235,24 @@ static void print_losses(const hf_summary *s, double rms_m, const double *loss_d
     }
 }
 
-/* The errors of the result, of its facets where there are some, and what they cost at the frequencies of the case. */
+void hf_print_gain_loss(const hf_summary *s, FILE *f)
+{
+    hf_stage stage = hf_store_result_stage(s);
+    if (stage == HF_STAGE_NONE || !s->measures[stage].is_measured || s->surface.frequencies_Hz.n == 0) return;
+    const hf_surface_measures *m = &s->measures[stage];
+    fputs("loss of gain at ", f);
+    for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
+        fprintf(f, "%s%g", k ? "/" : "", s->surface.frequencies_Hz.value[k] / 1e9);
+    fputs(" GHz: ", f);
+    print_losses(s, m->n_facet ? m->facet_half_path_rms_m : m->half_path_rms_m,
+                 m->n_facet ? m->facet_gain_loss_dB : m->gain_loss_dB, f);
+    fputs(" dB, after best fit ", f);
+    print_losses(s, m->n_facet ? m->facet_fit_half_path_rms_m : m->fit.half_path_rms_m,
+                 m->n_facet ? m->facet_fit_gain_loss_dB : m->fit_gain_loss_dB, f);
+    fputs(" dB", f);
+}
+
+/* The errors of the result, of its facets where there are some, and what these cost. */
 static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_surface_measures *m = &s->measures[stage];
@@ -248,16 +266,9 @@ static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
                 hf_print_decimals(m->facet_fit_half_path_rms_m * 1e3, facet_fit));
     fputc('\n', f);
     if (s->surface.frequencies_Hz.n == 0) return;
-    fputs("                loss of gain at ", f);
-    for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
-        fprintf(f, "%s%g", k ? "/" : "", s->surface.frequencies_Hz.value[k] / 1e9);
-    fputs(" GHz: ", f);
-    print_losses(s, m->n_facet ? m->facet_half_path_rms_m : m->half_path_rms_m,
-                 m->n_facet ? m->facet_gain_loss_dB : m->gain_loss_dB, f);
-    fputs(" dB, after best fit ", f);
-    print_losses(s, m->n_facet ? m->facet_fit_half_path_rms_m : m->fit.half_path_rms_m,
-                 m->n_facet ? m->facet_fit_gain_loss_dB : m->fit_gain_loss_dB, f);
-    fputs(" dB\n", f);
+    fputs("                ", f);
+    hf_print_gain_loss(s, f);
+    fputc('\n', f);
 }
 
 /* ---- front, states, truss ---- */
@@ -380,7 +391,7 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
 {
     hf_stage result = hf_store_result_stage(s);
     if (style.has_colour) fputs(HF_PRINT_BOLD, f);
-    print_answer(s, result, f);
+    hf_print_answer(s, f);
     fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
     hf_print_line(f, "  case          %s", *s->title ? s->title : s->case_path);
     fprintf(f, "  net           %d nodes (%d free), %d cables", s->n_node, s->n_free, s->n_cable);

@@ -1,8 +1,15 @@
-/* print_summary - the two parts of hf_print_summary: the answer with one table, and the details behind it. */
+/* print_summary - parts of hf_print_summary, which a page shows too or other files write. */
 #ifndef HIFDM_PRINT_SUMMARY_H
 #define HIFDM_PRINT_SUMMARY_H
 
 #include "out/print.h"
+
+/* What the result is good for, in one line without its end: psi or goals, gained over what, good to how many GHz. */
+void hf_print_answer(const hf_summary *summary, FILE *file);
+
+/* "loss of gain at 2/6 GHz: 0.1/0.9 dB, after best fit ...": of the facets where there are some, without an end of the
+ * line; nothing without surface.frequencies_Hz. */
+void hf_print_gain_loss(const hf_summary *summary, FILE *file);
 
 /* A block for each stage: how it ended, ratios of sets, certificates, the surface, times. */
 void hf_print_details(const hf_summary *summary, FILE *file);

@@ -1,6 +1,7 @@
 #include "out/report_page.h"
 
 #include "base/text.h"
+#include <string.h>
 
 static void write_html(const char *text, FILE *f)
 {
@@ -12,16 +13,29 @@ static void write_html(const char *text, FILE *f)
     }
 }
 
-void hf_report_page_write(const char *title, void (*write)(const void *context, FILE *file), const void *context,
-                          FILE *f)
+/* Texts of any kind: hidden characters are shown, and nothing becomes markup. */
+static void write_text(const char *text, FILE *f)
 {
     char shown[4096];
-    fputs(hf_report_page_head, f);
-    hf_text_escape(title, shown, sizeof shown);
-    fputs("</style>\n<title>", f);
+    hf_text_escape(text, shown, sizeof shown);
     write_html(shown, f);
+}
+
+void hf_report_page_write(const char *title, const char *answer, void (*write)(const void *context, FILE *file),
+                          const void *context, FILE *f)
+{
+    const char *end_of_main = strstr(hf_report_page_body, "</main>");
+    fputs(hf_report_page_head, f);
+    fputs("</style>\n<title>", f);
+    write_text(title, f);
     fputs("</title>\n", f);
-    fputs(hf_report_page_body, f);
+    fwrite(hf_report_page_body, 1, (size_t)(end_of_main - hf_report_page_body), f);
+    if (answer) {
+        fputs("  <noscript><p>", f);
+        write_text(answer, f);
+        fputs("</p></noscript>\n", f);
+    }
+    fputs(end_of_main, f);
     write(context, f);
     fputs("</script>\n<script>\n", f);
     fputs(hf_report_page_script, f);

@@ -4,9 +4,10 @@
 
 #include <stdio.h>
 
-/* The whole page: write_data writes one JSON object, which the scripts of the page read. */
-void hf_report_page_write(const char *title, void (*write_data)(const void *context, FILE *file), const void *context,
-                          FILE *file);
+/* The whole page: write_data writes one JSON object, which the scripts of the page read; answer is what a reader
+ * without scripts sees, or NULL. */
+void hf_report_page_write(const char *title, const char *answer, void (*write_data)(const void *context, FILE *file),
+                          const void *context, FILE *file);
 
 /* The page without its data, made of src/out/report/ by the Makefile: to the end of the style, from there to the data,
  * the script. */

@@ -6,6 +6,7 @@
 #include "base/json.h"
 #include "base/path.h"
 #include "out/cut.h"
+#include "out/print_summary.h"
 #include "out/report_page.h"
 #include "out/report_pattern.h"
 #include "out/words.h"
@@ -19,6 +20,7 @@
 #include <string.h>
 
 #define POINTS_MAX 1000       /* points of a series that the page keeps: about what a screen can show */
+#define ANSWER_SIZE 4096      /* 100 bytes are usual, and 20 more for each frequency; a longer one is cut */
 #define PROVENANCE_SIZE 16384 /* 500 bytes are usual; lines that have no room are left out */
 
 /* The series of a page: path in the file, group and key on the page. The first row of a group sets its length. */
@@ -77,6 +79,17 @@ static void write_codes(const char *key, const unsigned char *value, int n, FILE
 static const char *heading(const hf_summary *s)
 {
     return *s->title ? s->title : hf_path_name(s->case_path);
+}
+
+/* What `hifdm show` says in its first line, or of losses of gain; "" if nothing. */
+static const char *said_of(const hf_summary *s, void (*print)(const hf_summary *s, FILE *f), char text[ANSWER_SIZE])
+{
+    *text = '\0';
+    FILE *f = fmemopen(text, ANSWER_SIZE, "w");
+    if (!f) return text;
+    print(s, f);
+    fclose(f);
+    return text;
 }
 
 /* ---- net and shapes ---- */
@@ -297,8 +310,11 @@ static void write_data(const void *context, FILE *f)
     const page *p = context;
     const hf_summary *s = &p->summary;
     hf_json j = {.file = f};
+    char said[ANSWER_SIZE];
     hf_json_open(&j, NULL, '{');
     hf_json_text(&j, "title", heading(s));
+    hf_json_text(&j, "answer", said_of(s, hf_print_answer, said));
+    hf_json_text(&j, "gain_loss", said_of(s, hf_print_gain_loss, said));
     hf_json_line(&j, "");
     hf_json_lines(&j, "provenance", "", p->provenance);
     fputs(",\n\"summary\":", f);
@@ -326,7 +342,8 @@ static void write_data(const void *context, FILE *f)
 static void write_page(const void *context, FILE *f)
 {
     const page *p = context;
-    hf_report_page_write(heading(&p->summary), write_data, p, f);
+    char said[ANSWER_SIZE];
+    hf_report_page_write(heading(&p->summary), said_of(&p->summary, hf_print_answer, said), write_data, p, f);
 }
 
 /* ---- reading ---- */

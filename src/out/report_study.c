@@ -190,7 +190,7 @@ static void write_data(const void *context, FILE *f)
 static void write_page(const void *context, FILE *f)
 {
     const study_page *p = context;
-    hf_report_page_write(study_heading(p), write_data, p, f);
+    hf_report_page_write(study_heading(p), NULL, write_data, p, f);
 }
 
 /* ---- reading ---- */

@@ -88,6 +88,10 @@ async function checkText(tab, page) {
 }
 
 async function checkSummary(tab, made) {
+  const said = made.hifdm("show", "result.h5").split("\n"),
+    answer = await tab.locator("#answer").textContent(),
+    loss = said.find((line) => line.trim().startsWith("loss of gain at"));
+  assert.equal(answer, `${said[0]}.${loss ? ` ${loss.trim()}.` : ""}`);
   const cells = await tab.locator("#summary tr", { hasText: "psi_m" }).locator("td").allTextContents();
   same(number(cells[0]), 1e3 * made.summary.form.psi_m, 5);
   if (made.summary.optimize) same(number(cells[1]), 1e3 * made.summary.optimize.psi_m, 5);

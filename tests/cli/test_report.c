@@ -76,6 +76,25 @@ START_TEST(page_holds_the_stored_numbers)
 }
 END_TEST
 
+/* The answer of the page is the first line of the summary, also without scripts; then what the errors cost. */
+START_TEST(page_begins_with_the_answer)
+{
+    const char *out = temp("w.h5"), *page = temp("w.html"), *text = temp("w.txt");
+    const char *path = file_with("w.yaml", SMALL_SCENE "surface: {frequencies_Hz: [2e9, 6e9]}\n");
+    HIFDM(0, "run", path, "-o", out, "--quiet");
+    HIFDM(0, "report", out, "-o", page);
+    demand_well_formed(page);
+    SHELL(0, "\"$0\" show \"$1\" >\"$2\"", out, text);
+    EXPECT(data_of(page, "w.json"), text, page, "--", "'psi ' in a['answer'] and 'good to ' in a['answer']",
+           "b.decode().split('\\n')[0] == a['answer']", "a['gain_loss'].startswith('loss of gain at 2/6 GHz: ')",
+           "16 * ' ' + a['gain_loss'] in b.decode().split('\\n')",
+           "'<noscript><p>' + a['answer'] + '</p></noscript>' in c.decode()");
+    HIFDM(0, "run", file_with("n.yaml", SMALL_SCENE), "-o", out, "--quiet", "--force");
+    HIFDM(0, "report", out, "-o", page, "--force");
+    EXPECT(data_of(page, "n.json"), "--", "a['gain_loss'] == ''");
+}
+END_TEST
+
 /* Of a long history a thousand values at most, the first and the last among them. */
 START_TEST(long_histories_are_thinned)
 {
@@ -308,6 +327,7 @@ Suite *suite_cli_report(void)
     Suite *suite = suite_create("cli/report");
     TCase *tcase = tcase_create("report");
     tcase_add_test(tcase, page_holds_the_stored_numbers);
+    tcase_add_test(tcase, page_begins_with_the_answer);
     tcase_add_test(tcase, long_histories_are_thinned);
     tcase_add_test(tcase, nothing_in_a_case_becomes_markup);
     tcase_add_test(tcase, missing_stages_are_absent);

@@ -58,8 +58,11 @@ function writeOther() {
     ([, , key]) => hasFigure(a[key]) || hasFigure(b[key]),
   );
   const cell = (v, format) => el("td", { class: "number" }, hasFigure(v) ? format(v) : "–");
-  const change = (u, v, format) =>
-    typeof u === "number" && typeof v === "number" && u !== v ? `${v > u ? "+" : ""}${minus(format(v - u))}` : "";
+  const change = (u, v, format) => {
+    if (typeof u !== "number" || typeof v !== "number" || u === v) return "";
+    const size = format(Math.abs(v - u));
+    return size.startsWith("<") ? size : `${v > u ? "+" : "−"}${size}`;
+  };
   section(
     "compare",
     `Beside ${other.name}`,

@@ -79,7 +79,7 @@ function fmtDuration(s) {
     : `${Math.floor(s / 3600)} h ${Math.round((s % 3600) / 60)} min`;
 }
 
-// Writes references such as "Figs. 6 and 13 of the paper".
+// Writes references such as "Figs. 6 and 13".
 function figs(...numbers) {
   const all = numbers.filter((k) => k),
     last = all.pop();

@@ -49,6 +49,12 @@ const resultNumbers = { form: summary.form, optimize: summary.optimize, polish: 
 const figure = (name, value, unit) =>
   el("div", {}, el("dt", {}, name), el("dd", {}, value, unit ? el("small", {}, unit) : null));
 
+// The answer in the words of the program's summary.
+function writeAnswer() {
+  const said = [data.answer, data.gain_loss].filter((text) => text);
+  if (said.length) main.append(el("p", { class: "answer", id: "answer" }, `${said.join(". ")}.`));
+}
+
 function writeFigures() {
   if (!resultNumbers) return;
   const base = summary.optimize && summary.optimize.base_psi_m,
@@ -218,7 +224,7 @@ function trussNote() {
 }
 
 function netCaption() {
-  const figures = `${figs(2, 5, shapeOf("optimize") && 12, data.truss && 18)} of the paper.`;
+  const figures = `${figs(2, 5, shapeOf("optimize") && 12, data.truss && 18)} of Chen et al., 2022.`;
   if (!data.shapes.length) return `Squares are supports. ${figures}`;
   return el(
     "span",
@@ -302,6 +308,7 @@ if (data.study) {
     errors.length ? "This run failed" : lines.length === 1 ? "One warning" : `${lines.length} warnings`,
     lines,
   );
+  writeAnswer();
   writeFigures();
   writeOther();
   writeNet();

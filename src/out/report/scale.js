@@ -55,7 +55,9 @@ function levelOf(value, [low, high]) {
   return Math.max(0, Math.min(LEVELS - 1, Math.round(t * (LEVELS - 1))));
 }
 
-const roundedMm = (m) => (1e3 * m < RESOLVED_MM ? `< ${power(-6)}` : fmt(1e3 * m, 4));
+// Millimetres, and dB, which are as small where it is noise.
+const rounded = (v, digits) => (Math.abs(v) < RESOLVED_MM ? `< ${power(-6)}` : fmt(v, digits));
+const roundedMm = (m) => rounded(1e3 * m, 4);
 const roundingNote = () =>
   el(
     "span",

@@ -284,9 +284,9 @@ function stageValues(stage, frequency_Hz) {
 // Rows of tables of figures: words, unit, key, how it is shown. `first`: the values of a stage.
 function figureRows(first) {
   const word = (v) => v.replace(/_/g, " ");
-  const mm = (v) => fmt(1e3 * v, 5);
+  const mm = (v) => rounded(1e3 * v, 5);
   const goals = Object.entries(first.goals || {});
-  const loss = (v) => (typeof v === "string" ? v : fmt(v, 3));
+  const loss = (v) => (typeof v === "string" ? v : rounded(v, 3));
   const frequencies = (first.frequency_Hz || []).map((v) => `${fmt(v / 1e9, 4)} GHz`);
   const rows = [
     ["surface error ψ", "mm", "psi_m", mm],

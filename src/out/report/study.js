@@ -139,7 +139,7 @@ function curves(study, axis, others) {
 
 const headOf = (axis, text) => `${axis.name} ${text}${axis.unit ? ` ${axis.unit}` : ""}`;
 const captionOf = (figure, axis) =>
-  figure.key === "psi_m" && axis.key === "form.pretension_N" ? " Fig. 22 of the paper." : "";
+  figure.key === "psi_m" && axis.key === "form.pretension_N" ? " Fig. 22 of Chen et al., 2022." : "";
 
 function curveChart(study, figure, axis, groups, stage) {
   const x = valuesOf(study, axis),
