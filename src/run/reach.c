@@ -154,16 +154,6 @@ static bool any_cable(const reach *q, int n, const int *cable, bool (*changes)(c
     return false;
 }
 
-static bool any_pull(const reach *q)
-{
-    const hf_model *m = &q->model;
-    for (int end = 0; end < 2 * m->n_cable; end++)
-        if (m->end_row[end] >= m->n_free &&
-            (pulls_otherwise(q, end / 2) || moves(q, m->end_row[end]) || moves(q, m->end_row[end ^ 1])))
-            return true;
-    return false;
-}
-
 static bool any_row(const reach *q, int n, const int *row)
 {
     for (int i = 0; i < n; i++)
@@ -191,14 +181,14 @@ static bool changes_goal(const reach *q, const hf_goal *g)
         return any_cable(q, g->n_cable, g->cable, lengthens);
     case HF_GOAL_PULL:
     case HF_GOAL_DISPLACEMENT:
-        return any_pull(q);
+        return true; /* what changes pulls its supports otherwise */
     }
     return true;
 }
 
 static bool changes_limit(const reach *q, const hf_limit *row)
 {
-    return row->kind == HF_LIMIT_DISPLACEMENT ? any_pull(q) : any_cable(q, row->n_cable, row->cable, pulls_otherwise);
+    return row->kind == HF_LIMIT_DISPLACEMENT || any_cable(q, row->n_cable, row->cable, pulls_otherwise);
 }
 
 /* Strike out what the variables change at the design of the workspace. */

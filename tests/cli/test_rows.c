@@ -366,6 +366,33 @@ START_TEST(a_goal_that_stands_still_at_one_point_is_no_fault)
 }
 END_TEST
 
+/* With force densities a support that moves along z takes the node along z only. */
+START_TEST(a_move_along_z_counts)
+{
+    HIFDM(0, "check",
+          net_with("id,x_m,y_m,z_m,role\na,-1,0,0,support\nb,1,0,0,support\nc,0,1,0,support\nd,0,-1,0,support\n"
+                   "m,0,0,0.1,inner\n",
+                   "id,i,j,group,law,value\nma,m,a,boundary,force_density,10\nmb,m,b,boundary,force_density,10\n"
+                   "mc,m,c,boundary,force_density,10\nmd,m,d,boundary,force_density,10\n"),
+          "--set", "optimize.variables=[{set: all, vary: support_z, range: 0.1}]", "--set",
+          "optimize.goals=[{goal: psi}]");
+    ck_assert(!strstr(said.err, "no variable"));
+}
+END_TEST
+
+/* The ends of the cable in the middle move by as much, in opposite directions. */
+START_TEST(ends_that_move_apart_lengthen_a_cable)
+{
+    HIFDM(0, "check",
+          net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,3,0,0,support\nm,1,0,0,inner\nn,2,0,0,inner\n",
+                   "id,i,j,group,law,value,set\nam,a,m,boundary,force_density,10,\n"
+                   "mn,m,n,inner,force_density,10,middle\nnb,n,b,boundary,force_density,10,\n"),
+          "--set", "optimize.variables=[{set: middle, vary: force_density, range: 10 %}]", "--set",
+          "optimize.goals=[{goal: length, set: middle, target: 1.1}]");
+    ck_assert(!strstr(said.err, "no variable"));
+}
+END_TEST
+
 /* A design that a cap refuses of which its author knows nothing: c4 holds the ratio at 22 whatever the others do. */
 START_TEST(a_cap_that_the_case_does_not_give_is_told_as_the_default)
 {
@@ -465,6 +492,8 @@ Suite *suite_cli_rows(void)
     tcase_add_test(tests, rows_that_no_variable_reaches_are_named);
     tcase_add_loop_test(tests, nothing_is_sought_that_no_variable_reaches, 0, 3);
     tcase_add_test(tests, a_goal_that_stands_still_at_one_point_is_no_fault);
+    tcase_add_test(tests, a_move_along_z_counts);
+    tcase_add_test(tests, ends_that_move_apart_lengthen_a_cable);
     tcase_add_loop_test(tests, a_cap_that_the_case_does_not_give_is_told_as_the_default, 0, 4);
     tcase_add_loop_test(tests, a_limit_that_nothing_keeps_has_a_name, 0, 2);
     return suite;

@@ -192,8 +192,8 @@ static void tell_to_stop(int number)
     is_told = number;
 }
 
-/* In parts the bits are the same. Told to stop before it begins, it touches nothing; told after 20 ms of half a second,
- * it does not come to the last column. */
+/* In parts the bits are the same, and a pivot below zero is seen in the last one. Told to stop before it begins, it
+ * touches nothing; told after 20 ms of half a second, it does not come to the last column. */
 START_TEST(a_factorisation_is_told_to_stop)
 {
     static const int size[][2] = {{64, 3}, {65, 40}, {300, 70}, {6000, 1000}};
@@ -221,6 +221,8 @@ START_TEST(a_factorisation_is_told_to_stop)
         } else {
             ck_assert_int_eq(hf_band_factor(n, k, whole), 0);
             ck_assert_mem_eq(band, whole, bytes);
+            given[(ptrdiff_t)(n - 1) * (k + 1)] = -1;
+            ck_assert_int_eq(hf_band_factor_until(&is_told, n, k, given), HF_SINGULAR);
         }
         free(given);
         free(whole);

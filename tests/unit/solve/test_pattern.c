@@ -61,16 +61,23 @@ static void add_rectangle(double x, double y, double z, double width, double hei
         (double[]){x, y + height, z});
 }
 
-static void solve(int n_thread)
+/* How many facets have the feed behind them. */
+static int solve_any(int n_thread)
 {
     hf_feed feed;
     hf_far_field p;
     const hf_pattern_surface surface = {&s.facets, s.position_m, NULL};
-    ck_assert_int_eq(hf_feed_make(&s.surface, &s.facets, s.position_m, &feed), 0);
+    int n_behind = hf_feed_make(&s.surface, &s.facets, s.position_m, &feed);
     ck_assert_int_eq(hf_pattern_create(&s.surface.pattern, &surface, &feed, LIGHT_M_PER_S, n_thread, &p), HF_OK);
     hf_parallel_each(n_thread, HF_PATTERN_BLOCKS, hf_pattern_sum_block, &p);
     hf_pattern_finish(&p, s.co, s.cross);
     hf_pattern_free(&p);
+    return n_behind;
+}
+
+static void solve(int n_thread)
+{
+    ck_assert_int_eq(solve_any(n_thread), 0);
 }
 
 static double loss_in_phase_dB(void)
@@ -280,6 +287,38 @@ START_TEST(cylinder_has_the_gain_of_its_aperture)
         double gain = 4 * PI * length * sum * sum / power;
         ck_assert_double_eq_tol(pow(field(s.co, 0, N_ANGLE / 2), 2) / gain, 1, 0.004);
     }
+}
+END_TEST
+
+/* Under a beam that falls more steeply on one side: half of its power is 2 deg to the left and 5 deg to the right. */
+START_TEST(a_width_has_two_sides)
+{
+    const double ends_deg[] = {-10, 10}, half_dB = 10 * log10(2);
+    double gain[N_ANGLE];
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < N_ANGLE; i++) {
+            double at_deg = ends_deg[0] + (ends_deg[1] - ends_deg[0]) * i / (N_ANGLE - 1);
+            gain[i] = 30 - half_dB * pow(at_deg / ((at_deg < 0) == side ? 2 : 5), 2);
+        }
+        hf_cut_figures f = hf_pattern_figures(N_ANGLE, ends_deg, gain);
+        ck_assert_int_eq(f.doubt, HF_CUT_FINE);
+        ck_assert_double_eq_tol(f.half_power_width_deg, 7, 0.01);
+    }
+}
+END_TEST
+
+/* A facet that shows the feed its back has no current, whatever it would add. */
+START_TEST(backs_of_facets_are_dark)
+{
+    double co[CUTS * N_ANGLE];
+    begin(HF_FEED_PLANE_WAVE, -20, 20, N_ANGLE);
+    add_rectangle(0, 0, 0, 5, 4);
+    solve(1);
+    memcpy(co, s.co, sizeof co);
+    add((double[]){5, 0, 0}, (double[]){4, 0, 2}, (double[]){4, 4, 2}, (double[]){5, 4, 0}); /* it leans over */
+    ck_assert_int_eq(solve_any(1), 1);
+    for (int i = 0; i < CUTS * N_ANGLE; i++)
+        ck_assert_double_eq_tol(s.co[i], co[i], 0);
 }
 END_TEST
 
@@ -497,6 +536,8 @@ Suite *suite_unit_pattern(void)
     tcase_add_test(tcase, paraboloid_has_the_gain_of_its_aperture);
     tcase_add_test(tcase, feed_beside_the_focus_moves_the_beam);
     tcase_add_test(tcase, cylinder_has_the_gain_of_its_aperture);
+    tcase_add_test(tcase, a_width_has_two_sides);
+    tcase_add_test(tcase, backs_of_facets_are_dark);
     tcase_add_test(tcase, random_errors_lose_what_ruze_says);
     tcase_add_test(tcase, small_errors_lose_what_ruze_says);
     tcase_add_test(tcase, beams_are_where_the_surface_sends_them);
