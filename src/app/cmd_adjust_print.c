@@ -10,6 +10,7 @@
 #include <string.h>
 
 #define STANDS_OUT 3.0 /* sigmas of an error that is named */
+#define SEEMS_OFF 2.0  /* the same of a number that cables share, of which there are few */
 #define NAMED_MAX 10   /* of these, for people */
 #define MISFIT 5.0     /* standard deviations of the sum of squares that is no accident any more */
 
@@ -79,11 +80,15 @@ static void print_end(const hf_adjust_job *j, FILE *f)
         hf_print_line(f, "no further move: the next one would gain less than these measurements can tell");
         break;
     case HF_MOVES_NONE:
-        hf_print_line(f, "no further move: none gains anything");
+        hf_print_line(f, "no further move: none%s gains anything",
+                      j->adjustment.is_held_taut ? " that tensions allow" : "");
         break;
     }
     if (j->adjustment.is_held_taut)
         hf_print_line(f, "moves leave each cable its least tension, and no further one slack");
+    if (j->adjustment.n_low)
+        hf_print_line(f, "%d cable%s less than the asked %.4g N already and may not lose more", j->adjustment.n_low,
+                      j->adjustment.n_low == 1 ? " has" : "s have", j->adjustment.low_N);
 }
 
 static void print_outliers(const hf_adjust_job *j, FILE *f)
@@ -103,12 +108,14 @@ static const char *number_word(const hf_prior_number *n)
     return n->kind == HF_ERROR_TEMPERATURE ? "temperature_K" : n->kind == HF_ERROR_EA_BATCH ? "EA_ratio" : "cut_ratio";
 }
 
-/* What cables of a spool, or all of them, share. */
+/* What cables of a spool, or all of them, share, where it is no accident. */
 static void print_numbers(const hf_adjust_job *j, FILE *f)
 {
-    for (int k = 0; k < j->prior.n_shared && k < NAMED_MAX; k++) {
+    int n_off = 0;
+    for (int k = 0; k < j->prior.n_shared; k++) {
         const hf_prior_number *n = &j->prior.number[k];
         double z = j->estimate.shared[k], error = z * n->sigma;
+        if (fabs(z) <= SEEMS_OFF || n_off++ >= NAMED_MAX) continue;
         if (n->kind == HF_ERROR_TEMPERATURE)
             hf_print_line(f, "cables seem %.3g K %s than when they were cut, %.1f sigma", fabs(error),
                           error < 0 ? "colder" : "warmer", fabs(z));
@@ -116,8 +123,8 @@ static void print_numbers(const hf_adjust_job *j, FILE *f)
             hf_print_line(f, "spool '%s' seems off by %+.3g of its %s, %.1f sigma", n->set, error,
                           n->kind == HF_ERROR_EA_BATCH ? "EA" : "lengths", fabs(z));
     }
-    if (j->prior.n_shared > NAMED_MAX)
-        hf_print_line(f, "and %d more numbers that cables share", j->prior.n_shared - NAMED_MAX);
+    if (n_off > NAMED_MAX)
+        hf_print_line(f, "and %d more numbers that cables share beyond %g sigma", n_off - NAMED_MAX, SEEMS_OFF);
 }
 
 static void print_moves(const hf_adjust_job *j, FILE *f)
@@ -153,7 +160,8 @@ void hf_adjust_print_summary(const hf_adjust_job *j, const hf_options *o, FILE *
     print_outliers(j, f);
     print_moves(j, f);
     hf_print_line(f,
-                  "%s after %d move%s %.4f mm; with what is left open %.4f +- %.4f mm; any moves of %d cables: %.4f mm",
+                  "%s after %d move%s %.4f mm; with what is left open %.4f +- %.4f mm; any moves of %d cables, "
+                  "without least tensions: %.4f mm",
                   figure, a->n_move, a->n_move == 1 ? "" : "s", a->adjusted_m * 1e3, a->doubt_m[1] * 1e3,
                   a->spread_m[1] * 1e3, j->task.n_cable, a->best_m * 1e3);
     print_end(j, f);

@@ -195,11 +195,15 @@ static int count_slack(const adjustment *a)
 }
 
 /* From the shape without turns. */
-static void find_least(adjustment *a)
+static void find_least(adjustment *a, hf_adjustment *found)
 {
     const hf_built *b = a->estimate->built;
     for (int e = 0; e < b->model.n_cable; e++) {
         double least = HF_ADJUST_TAUT * b->tension_N[e];
+        if (a->task->least_N && a->work.tension_N[e] < a->task->least_N[e]) {
+            found->n_low++;
+            found->low_N = fmax(found->low_N, a->task->least_N[e]);
+        }
         if (a->task->least_N) least = fmax(least, a->task->least_N[e]);
         a->least_N[e] = fmin(least, a->work.tension_N[e]);
     }
@@ -282,6 +286,9 @@ static void find_room(adjustment *a)
     for (int e = 0; e < n_cable; e++)
         a->room[0].strain_N[e] = a->estimate->linear.cut_N_per_m[e] * a->turn_m[e];
     find_tensions(a, a->room_N);
+    a->problem.reference_N = 0;
+    for (int e = 0; e < n_cable; e++)
+        a->problem.reference_N = fmax(a->problem.reference_N, fabs(a->work.tension_N[e]));
     for (int e = 0; e < n_cable; e++)
         a->room_N[e] = fmax(a->work.tension_N[e] - a->room_N[e] - a->least_N[e], 0);
 }
@@ -336,7 +343,7 @@ static hf_status choose(adjustment *a, hf_adjustment *found)
     HF_TRY(solve_steps(a, a->steps, &figure_m));
     found->adjusted_m = found->estimated_m = figure_m;
     found->end = HF_MOVES_NONE;
-    find_least(a);
+    find_least(a, found);
     while (found->n_round < ROUNDS_MAX && !found->is_settled) {
         hf_moves_end end;
         bool is_held;
@@ -372,8 +379,8 @@ static hf_status choose(adjustment *a, hf_adjustment *found)
 
 /* ---- the best there is ---- */
 
-/* From the turns that are there towards a->move_m. Whether the figure became better by more than a little; else the
- * turns and the shape are as before. */
+/* From the turns that are there towards a->move_m, whatever tensions do. Whether the figure became better by more than
+ * a little; else the turns and the shape are as before. */
 static hf_status go_on(adjustment *a, double *best_m, bool *gains)
 {
     double length = 1, at = 0, figure_m = (double)NAN;
@@ -386,7 +393,7 @@ static hf_status go_on(adjustment *a, double *best_m, bool *gains)
         at = to;
         hf_status status = solve_turned(a, &figure_m);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-        *gains = status == HF_OK && figure_m < *best_m * (1 - LITTLE) && keeps_least(a);
+        *gains = status == HF_OK && figure_m < *best_m * (1 - LITTLE);
         if (!*gains) continue;
         *best_m = figure_m;
         return HF_OK;
@@ -413,8 +420,8 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
     for (int round_ = 0; (gains || !is_new) && round_ < ROUNDS_MAX; round_++) {
         is_new = round_ == 0 || !gains;
         hf_status status = !is_new ? look_again(a) : round_ == 0 && a->is_current ? HF_OK : linearise(a);
-        if (status == HF_SINGULAR) return HF_OK;
-        HF_TRY(status);
+        if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+        if (status != HF_OK) return HF_OK; /* no stiffness there to go on with: cables may be slack */
         HF_TRY(hf_moves_best(&a->problem, a->move_m));
         if (!promises(a, found->best_m)) return HF_OK;
         HF_TRY(go_on(a, &found->best_m, &gains));
@@ -478,7 +485,7 @@ static hf_status make_order(adjustment *a, int n_move, move_order *o)
 static bool keeps_taut(const adjustment *a, const move_order *o, const double *change_N)
 {
     for (int e = 0; e < a->problem.n_tension; e++)
-        if (change_N[e] < 0 && o->fall_N[e] - change_N[e] > a->room_N[e]) return false;
+        if (change_N[e] < 0 && o->fall_N[e] - change_N[e] > hf_moves_room(&a->problem, e)) return false;
     return true;
 }
 

@@ -31,9 +31,11 @@ typedef struct {
     double nominal_m;   /* figure of the nominal net */
     double estimated_m; /* of the estimated shape, all nodes */
     double adjusted_m;  /* after the moves */
-    double best_m;      /* after any number of moves of any size within the range */
+    double best_m;      /* after any number of moves of any size within the range, whatever tensions they leave */
     double doubt_m[2];  /* RMS over what errors and measurement leave open, of the estimated and the adjusted shape */
     double spread_m[2]; /* standard deviation of these figures */
+    int n_low;          /* cables that have less than is asked for without moves: they may not lose more */
+    double low_N;       /* the most that is asked for of one of them */
     int n_round;        /* linear models */
     bool is_held_taut;  /* other moves were better but for tensions that fall too low, or cables that go slack */
     bool is_settled;    /* the last of them chose nothing better than the moves that it was linearised at */

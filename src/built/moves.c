@@ -93,13 +93,18 @@ static void fall_by_steps(const tensions *t, const int *steps, double *move_m)
     fall_by(t, move_m);
 }
 
+double hf_moves_room(const hf_moves_problem *p, int k)
+{
+    return p->room_N[k] + BOUND_ROUNDING * (p->room_N[k] + p->reference_N);
+}
+
 /* The tension that falls furthest beyond its room; -1: none does. */
 static int worst_tension(const tensions *t)
 {
     double worst = 0;
     int at = -1;
     for (int i = 0; i < t->p->n_tension; i++) {
-        double beyond = t->fall_N[i] - t->p->room_N[i] * (1 + BOUND_ROUNDING);
+        double beyond = t->fall_N[i] - hf_moves_room(t->p, i);
         if (beyond <= worst) continue;
         worst = beyond;
         at = i;
@@ -113,7 +118,7 @@ static bool take_steps(const tensions *t, int i, int j, int a, int b)
     const double *u = rates_of(t, t->row[i]), *v = rates_of(t, t->row[j]), step = t->p->step_m;
     for (int k = 0; k < t->p->n_tension; k++) {
         double by = -step * (a * u[k] + b * v[k]);
-        if (by > 0 && t->fall_N[k] + by > t->p->room_N[k] * (1 + BOUND_ROUNDING)) return false;
+        if (by > 0 && t->fall_N[k] + by > hf_moves_room(t->p, k)) return false;
     }
     for (int k = 0; k < t->p->n_tension; k++)
         t->fall_N[k] -= step * (a * u[k] + b * v[k]);

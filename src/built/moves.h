@@ -27,6 +27,7 @@ typedef struct {
     const double *sample; /* [n_sample][n] J' (difference of r) */
     int n_tension;        /* 0: moves are not limited by them */
     const double *room_N; /* [n_tension] how far each may fall, >= 0 */
+    double reference_N;   /* a tension as there are many: rounding is measured by it, where there is no room */
     hf_moves_rates *rates;
     void *context; /* of rates */
 } hf_moves_problem;
@@ -41,6 +42,9 @@ typedef enum {
 /* steps [n]: 0 of cables that are not turned. *is_held: other steps were better but for tensions. HF_OK or
  * HF_NO_MEMORY. */
 hf_status hf_moves_choose(const hf_moves_problem *problem, int *steps, hf_moves_end *end, bool *is_held);
+
+/* How far tension k may fall, with rounding. */
+double hf_moves_room(const hf_moves_problem *problem, int k);
 
 /* The sum of squares after these steps. */
 double hf_moves_square(const hf_moves_problem *problem, const int *steps);

@@ -29,7 +29,9 @@ const hf_word hf_words_adjust[] = {
      "RMS of the figure after all moves over all nets that fit the measurement as well: what to expect.", NULL},
     {"adjusted_sigma_m", "figure of adjust", "m", "Standard deviation of the figure after all moves.", NULL},
     {"best_m", "figure of adjust", "m",
-     "What any moves of all cables that can be turned would reach, of any size within the range.", NULL},
+     "What any moves of all cables that can be turned would reach, of any size within the range and without least "
+     "tensions.",
+     NULL},
     {"end", "figure of adjust", "",
      "Why there is no further move: target (target_m is met), moves (all are made), doubt (the next one gains less "
      "than the measurement can tell), none (none gains anything).",

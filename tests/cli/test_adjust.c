@@ -46,6 +46,14 @@ static bool wave(int i, double x[3])
     return i % 4 > 0;
 }
 
+/* By 3 mm in the middle. */
+static bool sag(int i, double x[3])
+{
+    (void)i;
+    x[2] -= 0.003 * (1 - x[0] * x[0]);
+    return true;
+}
+
 static bool in_mm(int i, double x[3])
 {
     (void)i;
@@ -143,9 +151,28 @@ START_TEST(least_tensions_are_asked_for)
     HIFDM(0, LET_OUT, "--json"); /* nor is any cable slack on the way */
     ck_assert_int_eq(count_of(said.out, "\"slack\": 0"), 8);
     HIFDM(0, LET_OUT, "--set", "tolerance.require=[{measure: least_tension_N, at_least: 5}]");
+    ck_assert_ptr_null(strstr(said.out, "may not lose more"));
     SHELL(0, least, moves, "4.5", "1e3");
+    HIFDM(0, LET_OUT, "--set", "tolerance.require=[{measure: least_tension_N, at_least: 5e5}]");
+    OUT("cables have less than the asked 5e+05 N already and may not lose more");
     HIFDM(0, LET_OUT, "--set", "optimize.limits=[{limit: tension, set: boundary, bounds: [8, 1e4]}]");
     SHELL(0, least, moves, "7.2", "1e3");
+}
+END_TEST
+
+/* Of what spools are off by the summary has what is no accident, --json all. */
+START_TEST(spools_stand_out)
+{
+    const char *measured = measured_with("m.csv", HEADER, sag, "");
+    const char *path = file_with("case.yaml", EA_SCENE "tolerance: {sigma_cut_ratio: 3e-5, batch: 1}\n"
+                                                       "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, "
+                                                       "sigma_m: 0.001}\n");
+    HIFDM(0, "adjust", path, "--measured", measured);
+    OUT("spool 'directrix' seems off by -");
+    OUT("spool 'edge' seems off by +");
+    ck_assert_ptr_null(strstr(said.out, "'generatrix'"));
+    HIFDM(0, "adjust", path, "--measured", measured, "--json");
+    OUT("\"generatrix\"");
 }
 END_TEST
 
@@ -373,6 +400,7 @@ Suite *suite_cli_adjust(void)
     tcase_add_test(tcase, moves_are_a_table);
     tcase_add_test(tcase, no_cable_is_let_out_until_it_is_slack);
     tcase_add_test(tcase, least_tensions_are_asked_for);
+    tcase_add_test(tcase, spools_stand_out);
     tcase_add_test(tcase, the_design_is_that_of_a_result);
     tcase_add_loop_test(tcase, a_twin_on_a_truss_comes_back, 1, 4);
     tcase_add_test(tcase, bad_tables_are_named);

@@ -26,7 +26,7 @@ function adjustText(name) {
       ` and after ${adjust.moves.length === 1 ? "one move" : `${fmtCount(adjust.moves.length)} moves`}` +
       ` ${inMm(adjust.adjusted_m)} (${open(adjust.adjusted_expected_m, adjust.adjusted_sigma_m)}).`,
     ADJUST_END[adjust.end] || "",
-    adjust.held_taut ? "Moves stay so small that no further cable goes slack." : "",
+    adjust.held_taut ? "Moves leave each cable its least tension, and no further one slack." : "",
     adjust.supports_estimated ? "" : "Supports are taken to be where the case has them.",
     adjust.settled ? "" : "The estimate has not settled.",
     adjust.fits
@@ -66,7 +66,7 @@ function adjustChart(name) {
     series: [
       { name: "predicted", stored: "predicted_m", values: scaled(values, 1e3), colour: "--one" },
       ...level("target", adjust.target_m, "--four", "7 3"),
-      ...level("any moves of these cables", adjust.best_m, "--three", "2 3"),
+      ...level("any moves of these cables, without least tensions", adjust.best_m, "--three", "2 3"),
       ...level("as designed", adjust.nominal_m, "--two", "9 3 2 3"),
     ],
   });
@@ -99,9 +99,11 @@ const SHARED = {
   cut_ratio: (error, set) => `lengths of spool ${set}: ${signed(100 * error, 3)} %`,
 };
 
-const NAMED_MOST = 10; // of what stands out
+const NAMED_MOST = 10, // of what stands out
+  SEEMS_OFF = 2; // σ of a number that cables share
 function outliers(choose) {
-  const { stand_out: cables, shared } = adjust,
+  const { stand_out: cables } = adjust,
+    shared = adjust.shared.filter((number) => number.sigmas > SEEMS_OFF),
     left = cables.length - NAMED_MOST;
   const sigmas = (v) => `${fmt(v, 3)} σ`;
   const list = [
