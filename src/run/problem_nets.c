@@ -41,7 +41,8 @@ static hf_status make_nets(hf_problem *p, bool has_states, int n_sample, hf_mess
     hf_status status = is_on_truss ? hf_cases_rest(p, q->attachment_move_m) : HF_OK;
     if (status == HF_OK && n_sample > 0 && c->tolerance.n_truss > 0)
         status = hf_cases_rest_by_heat(p, q->truss_move_m_per_K);
-    if (status != HF_OK) return hf_error(messages, status, "out of memory for the truss");
+    if (status != HF_OK)
+        return hf_error(messages, status, "the truss of the nets that goals are over: %s", hf_status_text(status));
     hf_built_nets_make(&p->scene, &p->model, &c->form, has_states ? &p->states : NULL,
                        is_on_truss ? q->attachment_move_m : NULL, n_sample > 0 ? &c->tolerance : NULL, &heat, n_sample,
                        &q->nets);

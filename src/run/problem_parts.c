@@ -19,6 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define RUZE_MOST_DB 3.0        /* beyond, his formula says nothing */
 #define FACET_LOSS_MOST_DB 1.0  /* of facets that are taken for the surface (METHOD section 13) */
 #define PATTERN_TERMS_MOST 1e13 /* of the sums of a far field at one frequency: hours of a core */
 #define WAVELENGTHS_LEAST 5.0   /* across a reflector of physical optics */
@@ -82,14 +83,15 @@ static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
     HF_TRY(check_frequencies(p, &feed, m.facet_area_m2, messages));
     double loss_dB = hf_surface_ruze_dB(m.facet_fit_half_path_rms_m, most_Hz);
+    char loss[32] = "more than 3 dB";
+    if (loss_dB <= RUZE_MOST_DB) snprintf(loss, sizeof loss, "%.2g dB", loss_dB);
     if (loss_dB > FACET_LOSS_MOST_DB)
-        hf_warning(
-            messages,
-            "surface.pattern: at %g GHz the facets are coarse: those of the theoretical net alone are off a "
-            "smooth surface by %.3g mm (half path, RMS), which loses %.2g dB into lobes of their own. About %.0f "
-            "facets instead of %d would lose %g dB",
-            most_Hz / 1e9, m.facet_fit_half_path_rms_m * 1e3, loss_dB,
-            ceil(p->facets.n_facet * sqrt(loss_dB / FACET_LOSS_MOST_DB)), p->facets.n_facet, FACET_LOSS_MOST_DB);
+        hf_warning(messages,
+                   "surface.pattern: at %g GHz the facets are coarse: those of the theoretical net alone are off a "
+                   "smooth surface by %.3g mm (half path, RMS), which loses %s into lobes of their own. About %.0f "
+                   "facets instead of %d would lose %g dB",
+                   most_Hz / 1e9, m.facet_fit_half_path_rms_m * 1e3, loss,
+                   ceil(p->facets.n_facet * sqrt(loss_dB / FACET_LOSS_MOST_DB)), p->facets.n_facet, FACET_LOSS_MOST_DB);
     return HF_OK;
 }
 

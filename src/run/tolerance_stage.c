@@ -17,6 +17,13 @@
 
 /* ---- what cannot be ---- */
 
+/* The field of which samples tell the loss; returns whether the facets are fine enough for its frequency. */
+static bool make_beam(const hf_problem *p, hf_gain_beam *beam)
+{
+    hf_gain_beam_make(&p->surface, &p->facets, p->scene.position_m, hf_surface_highest_Hz(&p->surface), beam);
+    return beam->order < HF_GAIN_ORDER_MOST;
+}
+
 static hf_status check_measures(const hf_problem *p, hf_messages *messages)
 {
     const hf_case *c = &p->settings;
@@ -24,11 +31,17 @@ static hf_status check_measures(const hf_problem *p, hf_messages *messages)
     for (int i = 0; i < c->tolerance.n_require; i++) {
         char key[64], place[HF_PATH_SIZE + 128];
         hf_tolerance_measure measure = c->tolerance.require[i].measure;
-        if (hf_montecarlo_measures(&p->surface, &p->facets, measure)) continue;
+        hf_gain_beam beam;
+        const char *fault = NULL;
+        if (!hf_montecarlo_measures(&p->surface, &p->facets, measure))
+            fault = "this net has no facets";
+        else if (measure == HF_TOLERANCE_PATTERN_LOSS && !make_beam(p, &beam))
+            fault = HF_GAIN_TOO_COARSE;
+        if (!fault) continue;
         snprintf(key, sizeof key, "tolerance.require.%d.measure", i);
         hf_config_place(c, key, place, sizeof place);
-        status = hf_error(messages, HF_BAD_CASE, "%s: %s is not measured: this net has no facets", place,
-                          hf_tolerance_measure_word[measure]);
+        status = hf_error(messages, HF_BAD_CASE, "%s: %s is not measured: %s", place,
+                          hf_tolerance_measure_word[measure], fault);
     }
     return status;
 }
@@ -344,13 +357,15 @@ static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
     return hf_store_tolerance(j->stage->store, &j->montecarlo, &rows, messages);
 }
 
-/* Of facets too coarse for their frequency nothing is measured. */
-static void aim_beam(job *j)
+static void aim_beam(job *j, hf_messages *messages)
 {
     const hf_problem *p = j->stage->problem;
     if (!hf_montecarlo_measures(&p->surface, &p->facets, HF_TOLERANCE_PATTERN_LOSS)) return;
-    hf_gain_beam_make(&p->surface, &p->facets, p->scene.position_m, hf_surface_highest_Hz(&p->surface), &j->beam);
-    if (j->beam.order < HF_GAIN_ORDER_MOST) j->montecarlo.beam = &j->beam;
+    if (make_beam(p, &j->beam))
+        j->montecarlo.beam = &j->beam;
+    else
+        hf_warning(messages, "tolerance: pattern_loss_dB is not measured at %g GHz: " HF_GAIN_TOO_COARSE,
+                   hf_surface_highest_Hz(&p->surface) / 1e9);
 }
 
 static hf_status work_off_stage(job *j, hf_summary *summary, hf_messages *messages)
@@ -362,7 +377,7 @@ static hf_status work_off_stage(job *j, hf_summary *summary, hf_messages *messag
     j->built.stop = j->stage->request->stop_requested;
     tell_first_order(j);
     HF_TRY(open_montecarlo(j, messages));
-    aim_beam(j);
+    aim_beam(j, messages);
     HF_TRY(open_samples(j, messages));
     HF_TRY(find_samples(j, messages));
     if (j->samples.n_have < j->samples.n_all) return HF_OK; /* a task of several */

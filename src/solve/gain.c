@@ -6,6 +6,7 @@
 #include "solve/gauss.h"
 #include "solve/pattern_feed.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -94,7 +95,8 @@ double hf_gain_loss_dB(const hf_gain_beam *b, const hf_pattern_surface *s)
             im += size * hf_sine(phase);
         }
     }
-    return -DB_PER_LN * hf_logarithm((re * re + im * im) / (all * all));
+    double part = (re * re + im * im) / (all * all);
+    return part < DBL_MIN ? INFINITY : -DB_PER_LN * hf_logarithm(part);
 }
 
 /* ---- a goal ---- */

@@ -10,6 +10,9 @@
 
 enum { HF_GAIN_ORDER_MOST = 16 };
 
+/* What a beam of this order is told of; the end of a sentence. */
+#define HF_GAIN_TOO_COARSE "its facets are too coarse for this frequency: the phase across one varies by several turns"
+
 /* One frequency: what does not depend on a shape. */
 typedef struct hf_gain_beam {
     hf_feed feed;
@@ -24,7 +27,8 @@ typedef struct hf_gain_beam {
 void hf_gain_beam_make(const hf_surface_settings *surface, const hf_facets *facets, const double *position_m,
                        double frequency_Hz, hf_gain_beam *beam);
 
-/* Loss of gain in the direction of the beam below that of the same current in phase, dB; NaN where nothing is lit. */
+/* Loss of gain in the direction of the beam below that of the same current in phase, dB: infinite where all of it is
+ * lost, NaN where nothing is lit. */
 double hf_gain_loss_dB(const hf_gain_beam *beam, const hf_pattern_surface *surface);
 
 /* ---- a goal ---- */

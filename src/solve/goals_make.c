@@ -46,8 +46,7 @@ static const char *fault_of(const hf_goals *goals, int k, const hf_surface_setti
     if (s->goal == HF_GOAL_GAIN && (!surface || !surface->has_pattern))
         return "needs a section surface.pattern, which says what illuminates the reflector";
     if (is_of_facets(s->goal) && (!facets || facets->n_facet == 0)) return "this net has no facets";
-    if (s->goal == HF_GOAL_GAIN && goals->beam[k].order == HF_GAIN_ORDER_MOST)
-        return "its facets are too coarse for this frequency: the phase across one varies by several turns";
+    if (s->goal == HF_GOAL_GAIN && goals->beam[k].order == HF_GAIN_ORDER_MOST) return HF_GAIN_TOO_COARSE;
     if (s->goal == HF_GOAL_SURFACE && s->fit == HF_FIT_BEST && m->n_inner_node < HF_FIT_N_PARAMETER)
         return "a best fit needs at least six inner nodes";
     if (s->goal == HF_GOAL_TENSION && isnan(s->target)) return "needs a target, in N";
@@ -85,6 +84,8 @@ static int row_count(const hf_goals *goals, const hf_goal *g)
 }
 
 /* ---- creation ---- */
+
+#define LOSS_MOST_DB 3.0 /* of the theoretical shape, for a goal that raises the gain */
 
 /* Residuals of all goals: one table of them takes 1 GiB, and their numbers are int. */
 #define ROWS_MAX (1L << 27)
@@ -144,6 +145,22 @@ static void make_beam(const hf_scene *scene, const hf_surface_settings *s, const
     hf_gain_beam_make(s, facets, scene->position_m, frequency_Hz, &goals->beam[k]);
 }
 
+/* A wave that runs along the axis of a paraboloid is focused by it: there is no beam for the goal to raise. */
+static void warn_of_no_beam(const hf_scene *scene, const hf_facets *facets, const hf_goals *goals, int k,
+                            const char *where, hf_messages *messages)
+{
+    if (goals->goal[k].wanted.goal != HF_GOAL_GAIN) return;
+    double loss_dB =
+        hf_gain_loss_dB(&goals->beam[k], &(hf_pattern_surface){.facets = facets, .position_m = scene->position_m});
+    if (loss_dB > LOSS_MOST_DB)
+        hf_warning(
+            messages,
+            "%s: gain: the theoretical shape itself loses %.3g dB in the direction of the beam: this "
+            "feed makes no beam of it. Use another surface.pattern.feed (a plane wave is focused by a paraboloid), "
+            "a lower frequency or more facets",
+            where, loss_dB);
+}
+
 hf_status hf_goals_create(const hf_scene *scene, const hf_model *m, const hf_optimize_settings *s,
                           const hf_surface_settings *surface, const hf_facets *facets, const hf_goals_nets *nets,
                           hf_goals *goals, hf_messages *messages)
@@ -180,6 +197,7 @@ hf_status hf_goals_create(const hf_scene *scene, const hf_model *m, const hf_opt
         const char *fault = is_known ? fault_of(goals, k, surface, facets) : NULL;
         hf_messages_place(messages, where, "optimize.%s.%d", list, k);
         if (fault) hf_error(messages, HF_BAD_CASE, "%s: %s: %s", where, hf_goal_word[g->wanted.goal], fault);
+        if (!fault) warn_of_no_beam(scene, facets, goals, k, where, messages);
         n_fault += !is_known || fault;
         number_rows(goals, g, &n_all);
     }

@@ -86,6 +86,17 @@ START_TEST(samples_tell_the_loss_of_their_far_field)
                                           "tolerance: {sigma_cut_m: 1e-4, samples: 10}\n"),
           "-o", path, "--restart", "--quiet");
     EXPECT(path, "--", "'pattern_loss_dB' not in a['tolerance/sample'] and 'gain_loss_dB' in a['tolerance/sample']");
+    HIFDM(0, "tolerance",
+          file_with("e.yaml",
+                    BUILT_SCENE "surface: {frequencies_Hz: [60e9], pattern: {theta_deg: [-1, 1], n_theta: 3}}\n"
+                                "tolerance: {sigma_cut_m: 1e-4, samples: 10}\n"),
+          "-o", path, "--restart", "--quiet");
+    ERR("warning: tolerance: pattern_loss_dB is not measured at 60 GHz: its facets are too coarse");
+    ERR("which loses more than 3 dB into lobes");
+    HIFDM(0, "check",
+          file_with("f.yaml", BUILT_SCENE "surface: {frequencies_Hz: [2e9], pattern: {feed: {kind: "
+                                          "plane_wave}}}\noptimize: {method: lm, goals: [{goal: gain}]}\n"));
+    ERR("f.yaml:6:32: optimize.goals.0: gain: the theoretical shape itself loses ");
 }
 END_TEST
 
@@ -231,6 +242,9 @@ START_TEST(faults_are_named)
          "asks for a loss of gain"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: pattern_loss_dB, at_most: 1}]\nsurface: {}\n",
          "needs a section surface.pattern, which says what illuminates the reflector"},
+        {"  sigma_cut_m: 1e-4\n  require: [{measure: pattern_loss_dB, at_most: 1}]\nsurface: {frequencies_Hz: [60e9], "
+         "pattern: {theta_deg: [-1, 1]}}\n",
+         "7:23: tolerance.require.0.measure: pattern_loss_dB is not measured: its facets are too coarse"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: least_tension_N, at_most: 1}]\n", "asks for slack cables"},
         {"  sigma_cut_m: 0.1\n", "6:16: tolerance.sigma_cut_m: cable '"},
         {"  sigma_temperature_K: 700\ncables: [{expansion_per_K: 1e-3}]\n",
