@@ -6,6 +6,8 @@
 #include "out/print.h"
 #include "out/words.h"
 
+#include <hifdm/config.h>
+
 #include <string.h>
 
 #define SHORT 4 /* letters: words as short as this are like many others, and a guess has the first one in common */
@@ -97,6 +99,29 @@ static bool print_exit_status(const char *word, FILE *f)
     return false;
 }
 
+/* A key of the case file, by its last part or as a whole: where it stands, in what unit, and what it is. */
+static bool print_keys(const char *word, FILE *f)
+{
+    size_t length = strlen(word);
+    int n = 0;
+    for (int l = -1; l < hf_n_list; l++) {
+        const hf_list *list = l < 0 ? NULL : &hf_list_table[l];
+        const hf_field *field = list ? list->field : hf_field_table;
+        for (const hf_field *end = field + (list ? list->n_field : hf_n_field); field < end; field++) {
+            char path[160];
+            snprintf(path, sizeof path, "%s%s%s", list ? list->path : "", list ? "." : "", field->path);
+            size_t all = strlen(path);
+            const char *tail = all >= length ? path + (all - length) : "";
+            if (!length || strcmp(tail, word) != 0 || (tail > path && tail[-1] != '.')) continue;
+            hf_print_line(f, "%s (key of the case file%s%s)", path, *field->unit ? ", " : "", field->unit);
+            hf_help_wrap(field->help, 4, 0, f);
+            n++;
+        }
+    }
+    if (n) fputs("    'hifdm schema' prints the values and defaults of all keys\n", f);
+    return n > 0;
+}
+
 /* The words of the command line with blanks between them: nobody quotes "best fit". */
 static const char *join_words(const hf_options *o, char *joined, size_t size)
 {
@@ -124,12 +149,13 @@ static hf_status command_explain(const hf_options *o, FILE *file, hf_messages *m
         follow(word, file);
         return HF_OK;
     }
+    if (print_keys(word, file)) return HF_OK;
     for (int i = 0; i < hf_word_count() && n_name < (int)(sizeof names / sizeof *names); i++)
         names[n_name++] = hf_word_at(i).word;
     const char *near = hf_text_nearest(all, names, n_name);
     bool is_likely = near && (strlen(word) > SHORT || hf_word_letter(*near) == hf_word_letter(*word));
-    if (is_likely) return hf_error(messages, HF_BAD_USAGE, "nothing is called '%s'; did you mean '%s'?", all, near);
-    return hf_error(messages, HF_BAD_USAGE, "nothing is called '%s'; 'hifdm explain' lists all words", all);
+    if (is_likely) return hf_error(messages, HF_BAD_USAGE, "nothing is called '%.64s'; did you mean '%s'?", all, near);
+    return hf_error(messages, HF_BAD_USAGE, "nothing is called '%.64s'; 'hifdm explain' lists all words", all);
 }
 
 const hf_command hf_cmd_explain = {

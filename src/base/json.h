@@ -48,7 +48,8 @@ void hf_json_strings(const char *key, const char *const *text, int n, FILE *file
 void hf_json_values(const char *key, const double *value, int n, int stride, int digits, FILE *file);
 
 /* ,"key":{"f32":"..."} with the comma in front: numbers one after the other as base64 of their bytes, the lowest first.
- * The type is "i32", "f32" or "f64", as in names of the typed arrays of JavaScript and numpy. */
+ * The type is "i32", of whole numbers that an int32_t holds, "f32" or "f64", as in names of the typed arrays of
+ * JavaScript and numpy. */
 typedef struct {
     FILE *file;
     char type;     /* i or f */

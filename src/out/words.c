@@ -396,6 +396,14 @@ static const hf_word told[] = {
      "Use "
      "a finer net, or a lower frequency.",
      "the facets are coarse"},
+    {"loss_unmeasured", "warning", "",
+     "The facets are too coarse for the highest frequency: pattern_loss_dB of nets as built is left out. Use a finer "
+     "net, or a lower frequency.",
+     "pattern_loss_dB is not measured at"},
+    {"no_beam", "warning", "",
+     "The goal gain begins where hardly anything of the field goes along the beam. Use another surface.pattern.feed, "
+     "a lower frequency or a finer net.",
+     "the theoretical shape itself loses"},
     {"coarse_angles", "warning", "",
      "The angles of the far field are too far apart for the beam, so that lobes are missed. Raise "
      "surface.pattern.n_theta, or narrow surface.pattern.theta_deg.",

@@ -14,6 +14,7 @@
 /* In brackets: the range over which no test fails, as far as it was tried. */
 #define END_GIVES 1e-6 /* part of its range by which the objective of an end may rise where that lowers the other ... */
 #define END_GAINS 0.05 /* ... by more than this part of the other's range */
+#define NO_RANGE 1e-9  /* part of an objective: what differs by less does not differ */
 #define LONG_GAP 0.5 /* gaps longer than this part of the longest are halved at once, whatever the number of threads */
 #define NO_GAP 1e-9  /* part of the range of the limited objective: no limit fits between */
 #define HELD 1e-6 /* part of its range that an objective is below a limit which holds it, at most [1e-4; 1e-8 fails] */
@@ -282,8 +283,25 @@ static void measure_ranges(search *s, job *const end[])
         double most = value_of(s, end[r], r);
         for (int i = 0; i < s->n_objective; i++)
             most = fmax(most, value_of(s, end[i], r));
-        s->range[s->role[r]] = most - value_of(s, end[r], r);
+        double range = most - value_of(s, end[r], r);
+        s->range[s->role[r]] = range > NO_RANGE * fabs(most) ? range : 0;
     }
+}
+
+/* What has no range is no MAIN of three: the other two are traded. */
+static void choose_main(search *s, job *end[])
+{
+    if (s->n_objective < 3 || s->range[s->role[MAIN]] > 0) return;
+    int role = s->role[MAIN];
+    job *first = end[MAIN];
+    for (int r = MAIN; r < THIRD; r++) {
+        s->role[r] = s->role[r + 1];
+        end[r] = end[r + 1];
+    }
+    s->role[THIRD] = role;
+    end[THIRD] = first;
+    for (int k = 0; k < s->n_objective; k++) /* its slopes were those of what was MAIN */
+        first->found.multiplier[k] = NAN;
 }
 
 /* The least of each objective alone, by its role. */
@@ -316,6 +334,7 @@ static hf_status find_ends(search *s)
     job *end[HF_OBJECTIVES_MAX];
     HF_TRY(find_alone(s, end));
     measure_ranges(s, end);
+    choose_main(s, end);
     double main = s->range[s->role[MAIN]], other = s->range[s->role[OTHER]];
     double third = s->n_objective > 2 ? s->range[s->role[THIRD]] : 0;
     if (!(main > 0 && (other > 0 || third > 0))) { /* one design is best in all, or as good as any in MAIN */

@@ -208,6 +208,10 @@ START_TEST(explain_helps_with_slips)
                                         "cutlist", "cut list", "turnbuckle", "gain",   "RMS"};
     for (size_t i = 0; i < sizeof asked / sizeof *asked; i++)
         HIFDM(0, "explain", asked[i]);
+    HIFDM(0, "explain", "front_points");
+    OUT("optimize.front_points (key of the case file)\n");
+    HIFDM(0, "explain", "tolerance.require.at_most");
+    OUT("tolerance.require.at_most (key of the case file");
     HIFDM(2, "explain", "best", "fitt");
     ERR("nothing is called 'best fitt'; did you mean 'best fit'?");
     HIFDM(2, "explain", "rope");

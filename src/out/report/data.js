@@ -18,7 +18,7 @@ function revived(value) {
     return value;
   }
   for (const key of Object.keys(value)) {
-    if (key in PACKED && typeof value[key] === "string") return unpack(key, value[key]);
+    if (Object.hasOwn(PACKED, key) && typeof value[key] === "string") return unpack(key, value[key]);
     value[key] = revived(value[key]);
   }
   return value;

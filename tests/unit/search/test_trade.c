@@ -257,6 +257,27 @@ static void open_line(struct traded *t, int n_point)
     follow(t, 2, wanted, "boundary", 1, 100, n_point);
 }
 
+/* A cable between supports keeps its length: psi and the lengths of the others are traded. */
+START_TEST(an_objective_without_a_range_leaves_the_others_to_be_traded)
+{
+    static const struct hand_node node[] = {
+        {{-1, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0.5, 0, 0}, HF_ROLE_INNER, {0}}, {{1, 0, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 10},
+                                              {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 12},
+                                              {{0, 2}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 5}};
+    const hf_goal_settings wanted[3] = {objective(HF_GOAL_LENGTH, "inner", 0.7), objective(HF_GOAL_PSI, "", NAN),
+                                        objective(HF_GOAL_LENGTH, "boundary", 0.8)};
+    struct traded t = {0};
+    OPEN_HAND(&t.net, node, cable, HF_METHOD_FDM);
+    follow(&t, 3, wanted, "boundary", 1, 100, 8);
+    ck_assert_int_eq(t.front.minimised, 1);
+    ck_assert_int_eq(t.front.n_point, 8);
+    for (int i = 0; i < 8; i++)
+        ck_assert_int_eq(t.front.point[i].mark, HF_FRONT_ON);
+    close_traded(&t);
+}
+END_TEST
+
 /* Any allocation may fail: no front, no leak, and the next search is as ever. */
 START_TEST(without_memory_there_is_no_front)
 {
@@ -483,6 +504,7 @@ Suite *suite_unit_trade(void)
     tcase_add_loop_test(tests, points_are_even_and_slopes_those_of_differences, 0, N_TRADED);
     tcase_add_test(tests, a_node_in_a_plane_has_a_front_of_three_in_closed_form);
     tcase_add_test(tests, a_front_of_three_has_no_holes);
+    tcase_add_test(tests, an_objective_without_a_range_leaves_the_others_to_be_traded);
     tcase_add_loop_test(tests, slopes_of_three_are_those_of_differences, 0, N_THREE);
     tcase_add_loop_test(tests, threads_do_not_change_a_bit, 0, 2);
     tcase_add_loop_test(tests, without_memory_there_is_no_front, 0, 2);
