@@ -19,7 +19,7 @@
 enum { GAUSS_MOST = 64, GAUSS_MORE = 2, LOOKS = 16, PIECES_MOST = 100000 };
 #define GAUSS_LN (-21.0)      /* logarithm of the error of a quadrature that is taken */
 #define NODE_LN (-22.0)       /* the same of what is found between angles */
-#define GAUSS_PHASE_MOST 80.0 /* half of the phase across a piece, at which GAUSS_MOST points have that error */
+#define GAUSS_PHASE_MOST 77.0 /* half of the phase across a piece, at which GAUSS_MOST - GAUSS_MORE have that error */
 
 typedef struct {
     hf_pattern_points *points;
