@@ -434,7 +434,8 @@ static const hf_word told[] = {
      "tolerance: slack cables in"},
     {"truss_gives_way", "warning", "",
      "The truss is computed by linear theory, which leaves out what turning does to second order, turn times "
-     "displacement / 2: here more than 1e-5 of the span. Stiffen the truss, or lower form.pretension_N.",
+     "displacement / 2: here more than 1e-5 of the span and a twentieth of psi. Stiffen the truss, or lower "
+     "form.pretension_N.",
      "truss: its attachments give way so far"},
     {"polish_not_converged", "warning", "",
      "The design is good, but not known to be an optimum: the message says what the last steps still gained. With more "

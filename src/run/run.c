@@ -28,8 +28,9 @@
 
 const char *const hf_run_phase_word[4] = {"form", "optimize", "polish", "tolerance"};
 
-/* Of the span of the attachments, 0.1 mm on 10 m: what errors of the cut may be. */
+/* Of the span of the attachments, 0.1 mm on 10 m: what errors of the cut may be; and of psi. */
 #define SECOND_ORDER_DOUBT 1e-5
+#define SECOND_ORDER_PSI 0.05
 #define HISTORY_MAX 1000000 /* iterations whose history is kept */
 
 /* Everything a run owns. */
@@ -163,11 +164,12 @@ static hf_status take_result(run *r, hf_workspace *w, hf_messages *messages)
     return r->problem.states.n ? hf_cases_take(&r->problem, w, &r->cases, messages) : HF_OK;
 }
 
-/* The truss is linear: is what that leaves out too much for a reflector of this size? */
+/* The truss is linear: is what that leaves out too much for a reflector of this size, with this psi? */
 static void warn_of_truss(const run *r, hf_messages *messages)
 {
     double span_m, off_m = hf_carrier_second_order_m(&r->problem.carrier, &r->truss, &span_m);
-    if (off_m > SECOND_ORDER_DOUBT * span_m)
+    double psi_m = r->shape ? hf_metrics_psi_m(&r->problem.model, r->shape) : 0;
+    if (off_m > fmax(SECOND_ORDER_DOUBT * span_m, SECOND_ORDER_PSI * psi_m))
         hf_warning(messages,
                    "truss: its attachments give way so far that linear theory, which it is computed by, may be off by "
                    "some %.2g mm: stiffen it (tubes of larger diameter, more bays) or lower form.pretension_N",

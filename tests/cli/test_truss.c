@@ -181,7 +181,8 @@ START_TEST(imported_net)
 }
 END_TEST
 
-/* 39 mm of a dish of 9 m are no small displacement, a tenth of them are. */
+/* At three times the pretension 0.1 m of a dish of 9 m give way, no small displacement where psi is to be zero; beside
+ * the psi that form-finding's tensions leave, or at 10 N, it is small enough. */
 START_TEST(a_truss_that_turns_far_is_told)
 {
     const char *c = file_with(
@@ -189,12 +190,17 @@ START_TEST(a_truss_that_turns_far_is_told)
                    "scene:\n  paraboloid: {aperture_m: 9, focal_length_m: 6, offset_m: 5.5, rings: 6, rear_distance_m: "
                    "2.4}\nform: {pretension_N: 10, prestress: exact}\n"
                    "truss:\n  ring: {cells_per_bay: 2, bracing: single, held: bay}\n"),
-               *out = temp("r.h5");
+               *out = temp("r.h5"), *variables = "optimize.variables=[{set: all, vary: force_density, range: 50 %}]";
     HIFDM(0, "run", c, "-o", out);
-    ERR("warning: truss: its attachments give way so far that linear theory");
-    OUT(" cables; pretension 10 N\n"); /* nothing is optimised: no variables */
-    HIFDM(0, "run", c, "-o", out, "--restart", "--set", "form.pretension_N=1");
     ck_assert_str_eq(said.err, "");
+    OUT(" cables; pretension 10 N\n"); /* nothing is optimised: no variables */
+    HIFDM(0, "run", c, "-o", out, "--restart", "--set", "optimize.method=lm", "--set", variables);
+    ck_assert_str_eq(said.err, "");
+    HIFDM(0, "run", c, "-o", out, "--restart", "--set", "form.pretension_N=30");
+    ck_assert_str_eq(said.err, "");
+    HIFDM(0, "run", c, "-o", out, "--restart", "--set", "optimize.method=lm", "--set", variables, "--set",
+          "form.pretension_N=30");
+    ERR("warning: truss: its attachments give way so far that linear theory");
 }
 END_TEST
 
