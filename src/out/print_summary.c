@@ -365,13 +365,14 @@ static void print_pattern(const hf_pattern_summary *s, FILE *f)
     }
 }
 
-static void print_coupling(const hf_coupling_result *r, FILE *f)
+/* Rounds are those of the form-finding. */
+static void print_coupling(const hf_summary *s, hf_stage result, FILE *f)
 {
-    fprintf(f,
-            "  on its truss  attachments give way by up to %.4f mm; %d round%s, the last step %.1e m, stopped by "
-            "%s\n",
-            r->max_displacement_m * 1e3, r->iterations, r->iterations == 1 ? "" : "s", r->step_m,
-            hf_coupling_stop_word((int)r->stop_reason));
+    const hf_coupling_result *r = &s->form.coupling, *end = &result_of(s, result)->coupling;
+    fprintf(f, "  on its truss  attachments give way by up to %.4f mm", r->max_displacement_m * 1e3);
+    if (end != r && end->iterations > 0) fprintf(f, ", in the result by %.4f mm", end->max_displacement_m * 1e3);
+    fprintf(f, "; %d round%s, the last step %.1e m, stopped by %s\n", r->iterations, r->iterations == 1 ? "" : "s",
+            r->step_m, hf_coupling_stop_word((int)r->stop_reason));
 }
 
 /* ---- together ---- */
@@ -401,7 +402,7 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
         fprintf(f, "  truss         %d nodes, %d members; %.2f kg\n", s->truss.n_node, s->truss.n_member,
                 s->truss.mass_kg);
     print_stages(s, result, f);
-    if (s->has_coupling) print_coupling(&s->form.coupling, f);
+    if (s->has_coupling) print_coupling(s, result, f);
     print_errors(s, result, f);
     if (style.verbose) hf_print_details(s, f);
     if (s->has_front) print_front(s, f);

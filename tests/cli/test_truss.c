@@ -196,6 +196,8 @@ START_TEST(a_truss_that_turns_far_is_told)
     OUT(" cables; pretension 10 N\n"); /* nothing is optimised: no variables */
     HIFDM(0, "run", c, "-o", out, "--restart", "--set", "optimize.method=lm", "--set", variables);
     ck_assert_str_eq(said.err, "");
+    EXPECT(out_as("said.txt"), out, "--",
+           "('in the result by %.4f mm' % (b['polish'].attrs['coupling_max_displacement_m'] * 1e3)).encode() in a");
     HIFDM(0, "run", c, "-o", out, "--restart", "--set", "form.pretension_N=30");
     ck_assert_str_eq(said.err, "");
     HIFDM(0, "run", c, "-o", out, "--restart", "--set", "optimize.method=lm", "--set", variables, "--set",
