@@ -337,7 +337,8 @@ START_TEST(a_stopped_polish_goes_on_to_the_same_bits)
     HIFDM(0, "run", c, "-o", path, "--quiet", "--progress", "jsonl", "--threads", "1");
     HIFDM(0, "run", c, "-o", whole, "--quiet", "--threads", "2");
     HIFDM(0, "diff", path, whole);
-    EXPECT(path, whole, "--", "'polish_state' not in a and a.attrs['sessions'] == 3",
+    /* the killed session counts where it had published before: it tells of a step first */
+    EXPECT(path, whole, "--", "'polish_state' not in a and a.attrs['sessions'] in (2, 3)",
            "str({k: v for k, v in a['polish'].attrs.items() if k[-2:] != '_s'}) == "
            "str({k: v for k, v in b['polish'].attrs.items() if k[-2:] != '_s'})",
            "all(a['polish'].attrs[k] > 1 for k in a['polish'].attrs if k[-6:] == 'wall_s')");
