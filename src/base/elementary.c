@@ -23,6 +23,11 @@ double hf_distance(const double *a, const double *b)
     return hf_norm(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
+double hf_dot3(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 void hf_cross(const double *a, const double *b, double *c)
 {
     c[0] = a[1] * b[2] - a[2] * b[1];

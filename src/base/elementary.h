@@ -14,6 +14,9 @@ double hf_distance(const double *a, const double *b);
 /* c = a x b of vectors [3]; c is another array. */
 void hf_cross(const double *a, const double *b, double *c);
 
+/* a . b of vectors of three. */
+double hf_dot3(const double a[3], const double b[3]);
+
 /* Error below 3e-16 up to 1e8 rad; beyond, of an angle that differs by less than 1e-16 of it. */
 double hf_sine(double angle_rad);
 double hf_cosine(double angle_rad);

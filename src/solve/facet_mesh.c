@@ -16,17 +16,12 @@ const double hf_facet_gauss_at[HF_FACET_N_GAUSS] = {0.046910077030668004, 0.2307
 const double hf_facet_gauss_weight[HF_FACET_N_GAUSS] = {0.11846344252809454, 0.23931433524968324, 64.0 / 225,
                                                         0.23931433524968324, 0.11846344252809454};
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* to = b - a, scaled to length 1; 0 where a and b are one. Returns the length. */
 static double direction(const double *a, const double *b, double to[3])
 {
     for (int d = 0; d < 3; d++)
         to[d] = b[d] - a[d];
-    double length = sqrt(dot(to, to));
+    double length = sqrt(hf_dot3(to, to));
     for (int d = 0; d < 3 && length > 0; d++)
         to[d] /= length;
     return length;
@@ -113,7 +108,7 @@ static double bend(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape
     }
     if (!(tension_N > 0)) return INFINITY;
     for (int c = 0; c < 2; c++)
-        sag_m[pair[c].of] = dot(pull, normal[c]) * length * length / (8 * tension_N);
+        sag_m[pair[c].of] = hf_dot3(pull, normal[c]) * length * length / (8 * tension_N);
     return mesh_N_per_m * length / tension_N;
 }
 
@@ -199,16 +194,16 @@ static void measure_at(const hf_facet_mesh *m, double u, double v, double g[3], 
         dv[d] = (1 - u) * (m->corner[3][d] - m->corner[0][d]) + u * (m->corner[2][d] - m->corner[1][d]);
         rise[d] = 0;
     }
-    *base = (jet){0, dot(du, m->normal), dot(dv, m->normal)};
+    *base = (jet){0, hf_dot3(du, m->normal), hf_dot3(dv, m->normal)};
     for (int d = 0; d < 3; d++) {
         du[d] -= base->by_u * m->normal[d];
         dv[d] -= base->by_v * m->normal[d];
     }
     hf_cross(du, dv, rise);
-    double area = fabs(dot(rise, m->normal));
-    g[0] = dot(dv, dv) / area;
-    g[1] = -dot(du, dv) / area;
-    g[2] = dot(du, du) / area;
+    double area = fabs(hf_dot3(rise, m->normal));
+    g[0] = hf_dot3(dv, dv) / area;
+    g[1] = -hf_dot3(du, dv) / area;
+    g[2] = hf_dot3(du, du) / area;
 }
 
 static double product(const double g[3], jet a, jet b)

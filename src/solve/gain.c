@@ -17,11 +17,6 @@
 #define ORDER_LN (-11.5) /* logarithm of the error of a quadrature, 1e-5 */
 #define ERROR_PHASE 0.5  /* rad, by which half of the phase across a facet may grow through errors of its shape */
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* ---- the beam ---- */
 
 /* Half of the phase across facet i along its sides, at most. */
@@ -69,8 +64,8 @@ static double current_at(const hf_gain_beam *b, const double p[3], const double 
     hf_cross(du, dv, up);
     double path_m = hf_feed_light(&b->feed, p, toward, field);
     hf_cross(up, field, current);
-    *phase = 2 * PI / b->wavelength_m * (dot(b->feed.beam, p) - path_m);
-    return dot(toward, up) < 0 ? 2 * dot(b->co, current) : 0;
+    *phase = 2 * PI / b->wavelength_m * (hf_dot3(b->feed.beam, p) - path_m);
+    return hf_dot3(toward, up) < 0 ? 2 * hf_dot3(b->co, current) : 0;
 }
 
 /* ---- loss of a shape ---- */
@@ -181,14 +176,14 @@ static void derive_point(const hf_gain_beam *b, const double p[3], const double 
     hf_cross(du, dv, up);
     hf_cross(field, b->co, across);
     hf_cross(b->co, up, turned);
-    double sign = dot(up, across) < 0 ? -2 : 2;
+    double sign = hf_dot3(up, across) < 0 ? -2 : 2;
     hf_cross(dv, across, by_side);
     hf_cross(across, du, by_side + 3);
     for (int d = 0; d < 3; d++) {
         double rate[3];
         hf_feed_light_rate(&b->feed, p, (const double[3]){d == 0, d == 1, d == 2}, rate);
         by_place[d] = 2 * PI / b->wavelength_m * (b->feed.beam[d] - toward[d]);
-        by_place[3 + d] = sign * dot(rate, turned);
+        by_place[3 + d] = sign * hf_dot3(rate, turned);
         by_side[d] *= sign;
         by_side[3 + d] *= sign;
     }

@@ -121,11 +121,6 @@ static void lay_out(hf_arena *a, hf_far_field *p)
 
 /* ---- a facet ---- */
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void take_facet(const hf_far_field *p, int i, hf_facet_mesh *m)
 {
     hf_facet_mesh_take(p->surface.facets, i, p->surface.position_m, m);
@@ -159,7 +154,7 @@ static double phase_of(const hf_far_field *p, const hf_facet_mesh *m, double *ra
                 direction_of(theta_of(s, (double)i / LOOKS), RAD_PER_DEG * s->phi_deg.value[c], to);
                 for (int d = 0; d < 3; d++)
                     to[d] -= toward[d];
-                most = fmax(most, fmax(fabs(dot(to, side[0])), fabs(dot(to, side[1]))));
+                most = fmax(most, fmax(fabs(hf_dot3(to, side[0])), fabs(hf_dot3(to, side[1]))));
             }
     }
     double between = longest * (theta_of(s, 1) - theta_of(s, 0)) / (2 * LOOKS);
@@ -182,7 +177,7 @@ static double current_at(const hf_far_field *p, const hf_facet_mesh *m, double u
     double du[3], dv[3], up[3], toward[3], field[3];
     (p->surface.sag_m ? hf_facet_mesh_lifted : hf_facet_mesh_at)(m, u, v, place, du, dv);
     hf_cross(du, dv, up);
-    double path_m = hf_feed_light(&p->feed, place, toward, field), lit = dot(toward, up) < 0 ? 2 : 0;
+    double path_m = hf_feed_light(&p->feed, place, toward, field), lit = hf_dot3(toward, up) < 0 ? 2 : 0;
     hf_cross(up, field, to);
     for (int d = 0; d < 3; d++)
         to[d] *= lit;

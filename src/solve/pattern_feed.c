@@ -13,11 +13,6 @@
 #define EDGE_FIELD_LN (-0.5 * 2.30258509299404568402) /* 10 dB below the middle */
 #define POWER_MOST 1e4                                /* of the cosine: the beam of such a feed is a degree wide */
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* ---- the field ---- */
 
 /* c^q; 0 where that is nothing beside 1. */
@@ -42,16 +37,16 @@ double hf_feed_light(const hf_feed *f, const double p[3], double toward[3], doub
     for (int d = 0; d < 3; d++)
         toward[d] = f->kind == HF_FEED_PLANE_WAVE ? f->axis[d] : p[d] - f->position_m[d];
     if (f->kind == HF_FEED_PLANE_WAVE) {
-        path_m = dot(p, f->axis);
+        path_m = hf_dot3(p, f->axis);
     } else {
         if (f->kind == HF_FEED_LINE) toward[1] = 0;
         path_m = hf_norm(toward[0], toward[1], toward[2]);
         for (int d = 0; d < 3; d++)
             toward[d] /= path_m;
-        size = size_of(f, dot(toward, f->axis), path_m);
+        size = size_of(f, hf_dot3(toward, f->axis), path_m);
     }
     if (f->kind == HF_FEED_LINE && f->co[1] == 0) hf_cross(toward, (const double[3]){0, 1, 0}, along);
-    double turn = dot(f->co, toward) / (1 + dot(f->axis, toward));
+    double turn = hf_dot3(f->co, toward) / (1 + hf_dot3(f->axis, toward));
     for (int d = 0; d < 3 && f->kind != HF_FEED_LINE && size > 0; d++)
         along[d] = f->co[d] - turn * (f->axis[d] + toward[d]);
     hf_cross(toward, along, field);
@@ -64,17 +59,18 @@ double hf_feed_light(const hf_feed *f, const double p[3], double toward[3], doub
 void hf_feed_light_rate(const hf_feed *f, const double p[3], const double move[3], double field_rate[3])
 {
     double t[3], field[3], dt[3], one[3], other[3];
-    double path_m = hf_feed_light(f, p, t, field), longer_m = dot(t, move), cosine = dot(t, f->axis);
+    double path_m = hf_feed_light(f, p, t, field), longer_m = hf_dot3(t, move), cosine = hf_dot3(t, f->axis);
     memset(field_rate, 0, 3 * sizeof *field_rate);
     if (f->kind == HF_FEED_PLANE_WAVE || !(cosine > 0)) return;
     for (int d = 0; d < 3; d++)
         dt[d] = f->kind == HF_FEED_LINE && d == 1 ? 0 : (move[d] - longer_m * t[d]) / path_m;
     double size = size_of(f, cosine, path_m);
-    double grow = f->cos_power * dot(dt, f->axis) / cosine - (f->kind == HF_FEED_LINE ? 0.5 : 1) * longer_m / path_m;
+    double grow =
+        f->cos_power * hf_dot3(dt, f->axis) / cosine - (f->kind == HF_FEED_LINE ? 0.5 : 1) * longer_m / path_m;
     hf_cross(dt, (const double[3]){0, f->co[1] != 0, 0}, one); /* of a line; its field across it keeps its direction */
     if (f->kind != HF_FEED_LINE) {
-        double down = 1 + dot(f->axis, t), turn = dot(f->co, t) / down;
-        double turn_rate = (dot(f->co, dt) - turn * dot(f->axis, dt)) / down;
+        double down = 1 + hf_dot3(f->axis, t), turn = hf_dot3(f->co, t) / down;
+        double turn_rate = (hf_dot3(f->co, dt) - turn * hf_dot3(f->axis, dt)) / down;
         hf_cross(dt, f->co, one);
         hf_cross(dt, f->axis, other);
         for (int d = 0; d < 3; d++)
@@ -140,7 +136,7 @@ static double tapered(const hf_feed *f, const hf_facets *facets, const double *p
     double least = 1, toward[3], field[3];
     for (int k = 0; k < 4 * facets->n_facet; k++) {
         hf_feed_light(f, position_m + 3 * (size_t)facets->corner[k], toward, field);
-        least = fmin(least, dot(toward, f->axis));
+        least = fmin(least, hf_dot3(toward, f->axis));
     }
     if (!(least > 0)) return 1;
     double q = least < 1 ? EDGE_FIELD_LN / hf_logarithm(least) : POWER_MOST;
@@ -171,7 +167,7 @@ static void send_beam(const hf_surface_settings *s, const double aim_m[3], hf_fe
     p[2] = -hf_wanted_height_above(s->kind, 1 / (4 * s->focal_length_m), p, slope);
     hf_feed_light(f, p, toward, field);
     const double up[3] = {-slope[0], -slope[1], 1};
-    double part = 2 * dot(toward, up) / dot(up, up);
+    double part = 2 * hf_dot3(toward, up) / hf_dot3(up, up);
     for (int d = 0; d < 3; d++)
         f->beam[d] = toward[d] - part * up[d];
 }
@@ -186,7 +182,7 @@ static bool sees(const hf_feed *f, const hf_facets *facets, int i, const double 
     hf_facet_mesh_at(&m, 0.5, 0.5, p, du, dv);
     hf_cross(du, dv, up);
     hf_feed_light(f, p, toward, field);
-    return dot(toward, up) < 0 && dot(toward, f->axis) > 0;
+    return hf_dot3(toward, up) < 0 && hf_dot3(toward, f->axis) > 0;
 }
 
 int hf_feed_make(const hf_surface_settings *s, const hf_facets *facets, const double *position_m, hf_feed *feed)
