@@ -143,20 +143,25 @@ static double tapered(const hf_feed *f, const hf_facets *facets, const double *p
     return fmin(q, POWER_MOST);
 }
 
-/* Gain over N of (M38). */
+/* Area of a facet that a wave along -z meets; 0 where its middle shows the back, as `sees` has it. */
+static double met_area(const hf_facets *facets, int i, const double *position_m)
+{
+    const int *c = facets->corner + 4 * (size_t)i;
+    const double *p[4];
+    for (int k = 0; k < 4; k++)
+        p[k] = position_m + 3 * (size_t)c[k];
+    return fmax(((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1])) / 2, 0);
+}
+
+/* Gain over N of (M42). What has no current has no share of the power either: gains stay below 4 pi area/lambda^2. */
 static double scale_of(const hf_feed *f, const hf_facets *facets, const double *position_m)
 {
     double low[3], high[3], area = 0;
     extent(facets, position_m, low, high);
     if (f->kind == HF_FEED_POINT) return (2 * f->cos_power + 1) / 2;
     if (f->kind == HF_FEED_LINE) return PI / ((high[1] - low[1]) * half_circle(f->cos_power));
-    for (int i = 0; i < facets->n_facet; i++) {
-        const int *c = facets->corner + 4 * (size_t)i;
-        const double *p[4];
-        for (int k = 0; k < 4; k++)
-            p[k] = position_m + 3 * (size_t)c[k];
-        area += ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1])) / 2;
-    }
+    for (int i = 0; i < facets->n_facet; i++)
+        area += met_area(facets, i, position_m);
     return PI / area;
 }
 

@@ -307,21 +307,24 @@ START_TEST(a_width_has_two_sides)
 }
 END_TEST
 
-/* A facet that shows the feed its back has no current, whatever it would add. */
+/* A facet that shows the feed its back has no current, and no share of the power, whatever it would add. */
 START_TEST(backs_of_facets_are_dark)
 {
+    const hf_feed_kind feed[] = {HF_FEED_POINT, HF_FEED_PLANE_WAVE};
     double co[CUTS * N_ANGLE];
-    begin(HF_FEED_POINT, -20, 20, N_ANGLE);
-    memcpy(s.surface.pattern.position_m, (double[]){2.5, 2, 40}, 3 * sizeof(double));
-    memcpy(s.surface.pattern.aim_m, (double[]){2.5, 2, 0}, 3 * sizeof(double));
-    s.surface.pattern.cos_power = 2;
-    add_rectangle(0, 0, 0, 5, 4);
-    solve(1);
-    memcpy(co, s.co, sizeof co);
-    add((double[]){5, 0, 0}, (double[]){4, 0, 2}, (double[]){4, 4, 2}, (double[]){5, 4, 0}); /* it leans over */
-    ck_assert_int_eq(solve_any(1), 1);
-    for (int i = 0; i < CUTS * N_ANGLE; i++)
-        ck_assert_double_eq(s.co[i], co[i]);
+    for (int k = 0; k < 2; k++) {
+        begin(feed[k], -20, 20, N_ANGLE);
+        memcpy(s.surface.pattern.position_m, (double[]){2.5, 2, 40}, 3 * sizeof(double));
+        memcpy(s.surface.pattern.aim_m, (double[]){2.5, 2, 0}, 3 * sizeof(double));
+        s.surface.pattern.cos_power = 2;
+        add_rectangle(0, 0, 0, 5, 4);
+        solve(1);
+        memcpy(co, s.co, sizeof co);
+        add((double[]){5, 0, 0}, (double[]){4, 0, 2}, (double[]){4, 4, 2}, (double[]){5, 4, 0}); /* it leans over */
+        ck_assert_int_eq(solve_any(1), 1);
+        for (int i = 0; i < CUTS * N_ANGLE; i++)
+            ck_assert_double_eq(s.co[i], co[i]);
+    }
 }
 END_TEST
 
