@@ -159,7 +159,7 @@ double hf_power_of_two(double x)
 {
     static const double inverse[] = {1,       1.0 / 2, 1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6, 1.0 / 7,
                                      1.0 / 8, 1.0 / 9, 1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13};
-    double whole = nearbyint(x), t = (x - whole) * 0.6931471805599453094, sum = 1;
+    double whole = nearbyint(x), t = (x - whole) * HF_LN_2, sum = 1;
     for (int k = 12; k >= 0; k--)
         sum = 1 + t * inverse[k] * sum;
     return ldexp(sum, (int)whole);

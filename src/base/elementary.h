@@ -1,8 +1,14 @@
-/* elementary - lengths, products of vectors, and functions whose last digit in the C library depends on the processor
- * and on the version of the library. Here they are sums, products, quotients and roots of doubles in a fixed order: the
- * same bits everywhere. */
+/* elementary - constants, lengths, products of vectors, and functions whose last digit in the C library depends on the
+ * processor and on the version of the library. Here they are sums, products, quotients and roots of doubles in a fixed
+ * order: the same bits everywhere. */
 #ifndef HIFDM_ELEMENTARY_H
 #define HIFDM_ELEMENTARY_H
+
+#define HF_PI 3.14159265358979323846
+#define HF_RAD_PER_DEG (HF_PI / 180)
+#define HF_LN_2 0.69314718055994530942
+#define HF_DB_PER_LN 4.3429448190325182765 /* 10/ln 10 */
+#define HF_LIGHT_M_PER_S 299792458.0
 
 /* sqrt(x^2 + y^2 + z^2) without overflow or underflow; error below 2 units in the last place. Infinite when one is,
  * else NaN when one is. */

@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "base/csv.h"
+#include "base/elementary.h"
 #include "base/text.h"
 
 #include <math.h>
@@ -225,8 +226,7 @@ static void describe_motion(const rigid_fit *f, int n, char text[FRAME_SIZE])
     snprintf(text, FRAME_SIZE,
              "a shift of their centre by (%.4g, %.4g, %.4g) mm and a turn by %.4g degrees explain all but %.3g mm",
              (f->centre_m[1][0] - f->centre_m[0][0]) * 1e3, (f->centre_m[1][1] - f->centre_m[0][1]) * 1e3,
-             (f->centre_m[1][2] - f->centre_m[0][2]) * 1e3, f->angle * 180 / 3.14159265358979323846,
-             sqrt(f->rest / n) * 1e3);
+             (f->centre_m[1][2] - f->centre_m[0][2]) * 1e3, f->angle / HF_RAD_PER_DEG, sqrt(f->rest / n) * 1e3);
 }
 
 static double distance_of(const hf_built *b, const hf_measured *measured, int row)

@@ -16,7 +16,6 @@
 #define SAME_SUPPORT 1e-9 /* of the radius: ends of rows and columns that meet on the rim */
 #define RELAXED 1e-16     /* of the first residual */
 #define RELAX_STEPS 40    /* per ring; 4 are taken */
-#define PI 3.14159265358979323846
 
 const char *const hf_grid_word[3] = {"triangle", "quad", NULL};
 
@@ -52,7 +51,7 @@ static bool leaves_rim(const hf_paraboloid *p)
     hf_double_net d = rear_of(p);
     double R = radius(p), r = R * (p->rings - (p->grid == HF_GRID_QUAD ? LEAST_EDGE : 1)) / p->rings;
     for (int k = 0; k < 24; k++) {
-        double angle = PI / 12 * k, rear[3], front[3] = {p->offset_m + r * hf_cosine(angle), r * hf_sine(angle), 0};
+        double angle = HF_PI / 12 * k, rear[3], front[3] = {p->offset_m + r * hf_cosine(angle), r * hf_sine(angle), 0};
         front[2] = front_height(p, front[0], front[1]);
         if (!hf_double_net_behind(&d, false, front, rear)) return true;
         if (!(hf_norm(rear[0] - p->offset_m, rear[1], 0) < R)) return true;
@@ -120,7 +119,7 @@ static void place_ring(const hf_paraboloid *p, plane_grid *g, int ring)
 {
     double r = radius(p) * ring / p->rings;
     for (int i = 0; i < 6 * ring; i++) {
-        double angle = PI / 3 * i / ring;
+        double angle = HF_PI / 3 * i / ring;
         add_point(g, r * hf_cosine(angle), r * hf_sine(angle), ring == p->rings, ring, i);
     }
 }

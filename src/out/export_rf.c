@@ -21,8 +21,6 @@
 #include <math.h>
 #include <string.h>
 
-#define LIGHT_M_PER_S 299792458.0
-
 enum { GRID = 301, POINTS_LEAST = 3, POINTS_MOST = 16 };
 
 typedef struct {
@@ -78,7 +76,7 @@ static void measure(view *v)
             v->high[d] = fmax(v->high[d], p[d]);
         }
     }
-    double n = ceil(longest_m * most_Hz / LIGHT_M_PER_S);
+    double n = ceil(longest_m * most_Hz / HF_LIGHT_M_PER_S);
     v->n_side = n < POINTS_LEAST ? POINTS_LEAST : n > POINTS_MOST ? POINTS_MOST : (int)n;
     double step = fmax(v->high[0] - v->low[0], v->high[1] - v->low[1]) / (GRID - 1);
     for (int d = 0; d < 2; d++) {

@@ -1,6 +1,7 @@
 /* Contents: from the case to the model - the base design - the batch - names for what went wrong */
 #include "run/problem_parts.h"
 
+#include "base/elementary.h"
 #include "base/file_out.h"
 #include "net/scene_doubt.h"
 #include "net/symmetry.h"
@@ -47,7 +48,7 @@ static hf_status check_frequencies(const hf_problem *p, const hf_feed *feed, dou
                         place, at->value[k] / 1e9, (double)plan.n_point, hf_pattern_angles(&plan), terms,
                         PATTERN_TERMS_MOST);
     }
-    double across = 2 * sqrt(area_m2 / 3.14159265358979323846) * least_Hz / 299792458.0;
+    double across = 2 * sqrt(area_m2 / HF_PI) * least_Hz / HF_LIGHT_M_PER_S;
     if (across < WAVELENGTHS_LEAST)
         hf_warning(messages,
                    "surface.pattern: at %g GHz the reflector is %.2g wavelengths across: physical optics does not hold "

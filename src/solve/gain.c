@@ -10,10 +10,6 @@
 #include <math.h>
 #include <string.h>
 
-#define LIGHT_M_PER_S 299792458.0
-#define PI 3.14159265358979323846
-#define DB_PER_LN 4.3429448190325182765 /* 10/ln 10 */
-
 #define ORDER_LN (-11.5) /* logarithm of the error of a quadrature, 1e-5 */
 #define ERROR_PHASE 0.5  /* rad, by which half of the phase across a facet may grow through errors of its shape */
 
@@ -34,7 +30,7 @@ static double phase_across(const hf_gain_beam *b, const hf_facets *facets, int i
                 along[s] += (b->feed.beam[d] - toward[d]) * (side[s][d] - m.corner[k][d]);
         most_m = fmax(most_m, fmax(fabs(along[0]), fabs(along[1])));
     }
-    return PI / b->wavelength_m * most_m;
+    return HF_PI / b->wavelength_m * most_m;
 }
 
 void hf_gain_beam_make(const hf_surface_settings *s, const hf_facets *facets, const double *position_m,
@@ -42,7 +38,7 @@ void hf_gain_beam_make(const hf_surface_settings *s, const hf_facets *facets, co
 {
     double most = 0;
     int along = s->pattern.polarisation == HF_POLARISATION_Y;
-    *b = (hf_gain_beam){.wavelength_m = LIGHT_M_PER_S / frequency_Hz};
+    *b = (hf_gain_beam){.wavelength_m = HF_LIGHT_M_PER_S / frequency_Hz};
     hf_feed_make(s, facets, position_m, &b->feed);
     const double *to = b->feed.beam;
     for (int d = 0; d < 3; d++) /* Ludwig's third definition, as in the cuts */
@@ -64,7 +60,7 @@ static double current_at(const hf_gain_beam *b, const double p[3], const double 
     hf_cross(du, dv, up);
     double path_m = hf_feed_light(&b->feed, p, toward, field);
     hf_cross(up, field, current);
-    *phase = 2 * PI / b->wavelength_m * (hf_dot3(b->feed.beam, p) - path_m);
+    *phase = 2 * HF_PI / b->wavelength_m * (hf_dot3(b->feed.beam, p) - path_m);
     return hf_dot3(toward, up) < 0 ? 2 * hf_dot3(b->co, current) : 0;
 }
 
@@ -91,7 +87,7 @@ double hf_gain_loss_dB(const hf_gain_beam *b, const hf_pattern_surface *s)
         }
     }
     double part = (re * re + im * im) / (all * all);
-    return part < DBL_MIN ? INFINITY : -DB_PER_LN * hf_logarithm(part);
+    return part < DBL_MIN ? INFINITY : -HF_DB_PER_LN * hf_logarithm(part);
 }
 
 /* ---- a goal ---- */
@@ -182,7 +178,7 @@ static void derive_point(const hf_gain_beam *b, const double p[3], const double 
     for (int d = 0; d < 3; d++) {
         double rate[3];
         hf_feed_light_rate(&b->feed, p, (const double[3]){d == 0, d == 1, d == 2}, rate);
-        by_place[d] = 2 * PI / b->wavelength_m * (b->feed.beam[d] - toward[d]);
+        by_place[d] = 2 * HF_PI / b->wavelength_m * (b->feed.beam[d] - toward[d]);
         by_place[3 + d] = sign * hf_dot3(rate, turned);
         by_side[d] *= sign;
         by_side[3 + d] *= sign;

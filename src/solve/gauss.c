@@ -4,8 +4,6 @@
 
 #include <math.h>
 
-#define PI 3.14159265358979323846
-
 int hf_gauss_order(double phase, double error_ln, int most)
 {
     double ln = hf_logarithm(2.0), step = 2 * hf_logarithm(fmax(phase, 1e-3));
@@ -33,7 +31,7 @@ static double legendre(int n, double x, double *derivative)
 void hf_gauss_rule(int n, double *at, double *weight)
 {
     for (int i = 0; i < n; i++) {
-        double x = hf_cosine(PI * (i + 0.75) / (n + 0.5)), slope = 1, step = 1;
+        double x = hf_cosine(HF_PI * (i + 0.75) / (n + 0.5)), slope = 1, step = 1;
         for (int k = 0; k < 10 && fabs(step) > 1e-15; k++)
             x -= step = legendre(n, x, &slope) / slope;
         legendre(n, x, &slope);

@@ -11,11 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-#define LIGHT_M_PER_S 299792458.0
-#define PI 3.14159265358979323846
-#define RAD_PER_DEG (PI / 180)
-#define DB_PER_LN 4.3429448190325182765 /* 10/ln 10 */
-
 enum { GAUSS_MOST = 64, GAUSS_MORE = 2, LOOKS = 16, PIECES_MOST = 100000 };
 #define GAUSS_LN (-21.0)      /* logarithm of the error of a quadrature that is taken */
 #define NODE_LN (-22.0)       /* the same of what is found between angles */
@@ -51,7 +46,7 @@ static int node_order(double phase, int most)
 
 static double theta_of(const hf_pattern_settings *s, double part)
 {
-    return RAD_PER_DEG * (s->theta_deg[0] + (s->theta_deg[1] - s->theta_deg[0]) * part);
+    return HF_RAD_PER_DEG * (s->theta_deg[0] + (s->theta_deg[1] - s->theta_deg[0]) * part);
 }
 
 static void direction_of(double theta, double phi, double to[3])
@@ -70,7 +65,7 @@ static double part_of_angle(const hf_far_field *p, int i)
 
 static double part_of_node(const hf_far_field *p, int i)
 {
-    return (1 - hf_cosine(PI * (i + 0.5) / p->n_node)) / 2;
+    return (1 - hf_cosine(HF_PI * (i + 0.5) / p->n_node)) / 2;
 }
 
 static void fill_directions(const hf_far_field *p, bool are_nodes, int n, int n_padded, double *direction)
@@ -78,7 +73,7 @@ static void fill_directions(const hf_far_field *p, bool are_nodes, int n, int n_
     for (int c = 0; c < p->settings->phi_deg.n; c++)
         for (int i = 0; i < n; i++) {
             double to[3], part = are_nodes ? part_of_node(p, i) : part_of_angle(p, i);
-            direction_of(theta_of(p->settings, part), RAD_PER_DEG * p->settings->phi_deg.value[c], to);
+            direction_of(theta_of(p->settings, part), HF_RAD_PER_DEG * p->settings->phi_deg.value[c], to);
             for (int d = 0; d < 3; d++)
                 direction[(3 * c + d) * n_padded + i] = to[d];
         }
@@ -91,7 +86,7 @@ static void fill_between(const hf_far_field *p)
         double total = 0, x = part_of_angle(p, a);
         int hit = -1;
         for (int i = 0; i < p->n_node; i++) {
-            double gap = x - part_of_node(p, i), weight = hf_sine(PI * (i + 0.5) / p->n_node);
+            double gap = x - part_of_node(p, i), weight = hf_sine(HF_PI * (i + 0.5) / p->n_node);
             if (gap == 0) hit = i;
             total += p->between[i * p->n_padded + a] = (i % 2 ? -weight : weight) / gap;
         }
@@ -134,7 +129,7 @@ static void take_facet(const hf_far_field *p, int i, hf_facet_mesh *m)
  * corners from its middle. */
 static double phase_of(const hf_far_field *p, const hf_facet_mesh *m, double *radius_m)
 {
-    double most = 0, longest = 0, middle[3], du[3], dv[3], wave = 2 * PI / p->wavelength_m;
+    double most = 0, longest = 0, middle[3], du[3], dv[3], wave = 2 * HF_PI / p->wavelength_m;
     const hf_pattern_settings *s = p->settings;
     hf_facet_mesh_at(m, 0.5, 0.5, middle, du, dv);
     *radius_m = 0;
@@ -151,7 +146,7 @@ static double phase_of(const hf_far_field *p, const hf_facet_mesh *m, double *ra
         for (int c = 0; c < s->phi_deg.n; c++)
             for (int i = 0; i <= LOOKS; i++) {
                 double to[3];
-                direction_of(theta_of(s, (double)i / LOOKS), RAD_PER_DEG * s->phi_deg.value[c], to);
+                direction_of(theta_of(s, (double)i / LOOKS), HF_RAD_PER_DEG * s->phi_deg.value[c], to);
                 for (int d = 0; d < 3; d++)
                     to[d] -= toward[d];
                 most = fmax(most, fmax(fabs(hf_dot3(to, side[0])), fabs(hf_dot3(to, side[1]))));
@@ -251,9 +246,9 @@ void hf_pattern_sum_block(void *pattern, int room, int i)
 void hf_pattern_plan(const hf_pattern_settings *s, const hf_pattern_surface *surface, const hf_feed *feed,
                      double frequency_Hz, hf_far_field *p)
 {
-    double radius_m, widest_m = 0, half = RAD_PER_DEG * (s->theta_deg[1] - s->theta_deg[0]) / 2;
+    double radius_m, widest_m = 0, half = HF_RAD_PER_DEG * (s->theta_deg[1] - s->theta_deg[0]) / 2;
     *p = (hf_far_field){.settings = s, .surface = *surface, .feed = *feed};
-    p->wavelength_m = LIGHT_M_PER_S / frequency_Hz;
+    p->wavelength_m = HF_LIGHT_M_PER_S / frequency_Hz;
     for (int i = 0; i < surface->facets->n_facet; i++) {
         hf_facet_mesh m;
         int order;
@@ -264,7 +259,7 @@ void hf_pattern_plan(const hf_pattern_settings *s, const hf_pattern_surface *sur
     }
     p->n_padded = whole_lanes(s->n_theta);
     /* a pattern of this radius has no harmonics of theta beyond k r, but for some that decay fast */
-    p->n_node = node_order((2 * PI * widest_m / p->wavelength_m + 10) * half, s->n_theta);
+    p->n_node = node_order((2 * HF_PI * widest_m / p->wavelength_m + 10) * half, s->n_theta);
     if (2 * p->n_node > s->n_theta) p->n_node = 0;
     p->n_node_padded = p->n_node ? whole_lanes(p->n_node) : p->n_padded;
 }
@@ -318,7 +313,7 @@ static double in_dB(double scale, const double vector[3], const double *sum, ptr
         re += vector[d] * sum[d * n];
         im += vector[d] * sum[(3 + d) * n];
     }
-    return DB_PER_LN * hf_logarithm(fmax(scale * (re * re + im * im), 1e-300));
+    return HF_DB_PER_LN * hf_logarithm(fmax(scale * (re * re + im * im), 1e-300));
 }
 
 void hf_pattern_finish(hf_far_field *p, double *co_dBi, double *cross_dBi)
@@ -333,7 +328,7 @@ void hf_pattern_finish(hf_far_field *p, double *co_dBi, double *cross_dBi)
         for (int i = 0; i < s->n_theta; i++) {
             double co[3], cross[3];
             const double *sum = p->sum + 6 * n * c + i;
-            polarisations(s->polarisation, theta_of(s, part_of_angle(p, i)), RAD_PER_DEG * s->phi_deg.value[c], co,
+            polarisations(s->polarisation, theta_of(s, part_of_angle(p, i)), HF_RAD_PER_DEG * s->phi_deg.value[c], co,
                           cross);
             co_dBi[c * s->n_theta + i] = in_dB(scale, co, sum, n);
             cross_dBi[c * s->n_theta + i] = in_dB(scale, cross, sum, n);
@@ -382,7 +377,7 @@ hf_cut_figures hf_pattern_figures(int n, const double theta_deg[2], const double
         if (bend > 0) beside = rise / (2 * bend), more = rise * rise / (8 * bend);
     }
     hf_cut_figures f = {.gain_dBi = gain[top] + more, .beam_deg = theta_deg[0] + step * (top + beside)};
-    double half = f.gain_dBi - DB_PER_LN * 0.69314718055994530942;
+    double half = f.gain_dBi - HF_DB_PER_LN * HF_LN_2;
     f.half_power_width_deg = step * (crossing(n, gain, top, 1, half) - crossing(n, gain, top, -1, half));
     double first = fmax(next_maximum(n, gain, top, 1), next_maximum(n, gain, top, -1));
     double highest = fmax(highest_beyond(n, gain, top, 1), highest_beyond(n, gain, top, -1));

@@ -8,8 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-#define LN_2 0.69314718055994530942
 #define EDGE_FIELD_LN (-0.5 * 2.30258509299404568402) /* 10 dB below the middle */
 #define POWER_MOST 1e4                                /* of the cosine: the beam of such a feed is a degree wide */
 
@@ -19,7 +17,7 @@
 static double power(double c, double q)
 {
     if (!(c > 0)) return 0;
-    double exponent = q * hf_logarithm(c) / LN_2;
+    double exponent = q * hf_logarithm(c) / HF_LN_2;
     return exponent > -900 ? hf_power_of_two(exponent) : 0;
 }
 
@@ -91,7 +89,7 @@ static double half_circle(double q)
     for (; q < 40; q++)
         factor *= (2 * q + 2) / (2 * q + 1);
     double x = 1 / q;
-    return factor * sqrt(PI * x) *
+    return factor * sqrt(HF_PI * x) *
            (1 + x * (-1.0 / 8 + x * (1.0 / 128 + x * (5.0 / 1024 + x * (-21.0 / 32768 - x * 399.0 / 262144)))));
 }
 
@@ -159,10 +157,10 @@ static double scale_of(const hf_feed *f, const hf_facets *facets, const double *
     double low[3], high[3], area = 0;
     extent(facets, position_m, low, high);
     if (f->kind == HF_FEED_POINT) return (2 * f->cos_power + 1) / 2;
-    if (f->kind == HF_FEED_LINE) return PI / ((high[1] - low[1]) * half_circle(f->cos_power));
+    if (f->kind == HF_FEED_LINE) return HF_PI / ((high[1] - low[1]) * half_circle(f->cos_power));
     for (int i = 0; i < facets->n_facet; i++)
         area += met_area(facets, i, position_m);
-    return PI / area;
+    return HF_PI / area;
 }
 
 /* The ray that meets the wanted surface above or below `aim` is reflected there. */

@@ -2,15 +2,12 @@
 #include <hifdm/surface.h>
 
 #include "base/arena.h"
+#include "base/elementary.h"
 #include "net/wanted.h"
 #include "solve/facet_rms.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-#define LIGHT_M_PER_S 299792458.0
-#define PI 3.14159265358979323846
-#define DB_PER_SQUARE 4.3429448190325182765 /* 10/ln 10 */
 
 /* ---- loss of gain ---- */
 
@@ -24,8 +21,8 @@ double hf_surface_highest_Hz(const hf_surface_settings *s)
 
 double hf_surface_ruze_dB(double half_path_rms_m, double frequency_Hz)
 {
-    double phase = 4 * PI * half_path_rms_m * frequency_Hz / LIGHT_M_PER_S;
-    return DB_PER_SQUARE * phase * phase;
+    double phase = 4 * HF_PI * half_path_rms_m * frequency_Hz / HF_LIGHT_M_PER_S;
+    return HF_DB_PER_LN * phase * phase;
 }
 
 double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz)
@@ -36,7 +33,7 @@ double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz)
 
 double hf_surface_frequency_of_loss_Hz(double half_path_rms_m, double loss_dB)
 {
-    return sqrt(loss_dB / DB_PER_SQUARE) * LIGHT_M_PER_S / (4 * PI * half_path_rms_m);
+    return sqrt(loss_dB / HF_DB_PER_LN) * HF_LIGHT_M_PER_S / (4 * HF_PI * half_path_rms_m);
 }
 
 static double note_loss(const hf_double_list *frequencies_Hz, double half_path_rms_m, double *loss_dB)

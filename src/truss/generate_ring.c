@@ -11,8 +11,6 @@
 #define ID_SIZE 16        /* of f<k>; a member's id has room for two of them */
 #define HEIGHT_SLACK 1e-9 /* relative: the same height, written in two places */
 
-static const double PI = 3.14159265358979323846;
-
 const char *const hf_ring_held_word[4] = {"bay", "vertical", "three_verticals", NULL};
 
 /* ---- what can be made ---- */
@@ -115,7 +113,8 @@ static void place_joints(generator *g, const hf_paraboloid *p, const double *rim
  * from the middle of the aperture. */
 static int nearest_bay(const generator *g, const hf_paraboloid *p, double angle_deg, bool is_middle)
 {
-    double along_x = hf_cosine(PI / 180 * angle_deg), along_y = hf_sine(PI / 180 * angle_deg), most = -INFINITY;
+    double along_x = hf_cosine(HF_RAD_PER_DEG * angle_deg), along_y = hf_sine(HF_RAD_PER_DEG * angle_deg),
+           most = -INFINITY;
     int nearest = 0;
     for (int k = 0; k < g->n; k += g->cells) {
         const double *a = g->t->position_m + 3 * (size_t)joint(g, k);

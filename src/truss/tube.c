@@ -1,8 +1,8 @@
 #include "truss/tube.h"
 
-#include <math.h>
+#include "base/elementary.h"
 
-static const double PI = 3.14159265358979323846;
+#include <math.h>
 
 void hf_tube_set(const hf_truss_settings *s, double diameter_m, double wall_m, hf_truss *t, int e)
 {
@@ -10,8 +10,8 @@ void hf_tube_set(const hf_truss_settings *s, double diameter_m, double wall_m, h
     t->joint[e] = (unsigned char)s->joints;
     t->E_Pa[e] = s->E_Pa;
     t->G_Pa[e] = s->G_Pa;
-    t->A_m2[e] = PI * (outer * outer - inner * inner);
-    t->Iy_m4[e] = t->Iz_m4[e] = PI / 4 * (outer * outer * outer * outer - inner * inner * inner * inner);
+    t->A_m2[e] = HF_PI * (outer * outer - inner * inner);
+    t->Iy_m4[e] = t->Iz_m4[e] = HF_PI / 4 * (outer * outer * outer * outer - inner * inner * inner * inner);
     t->J_m4[e] = 2 * t->Iy_m4[e];
     t->Asy_m2[e] = t->Asz_m2[e] = s->theory == HF_THEORY_TIMOSHENKO ? t->A_m2[e] / 2 : (double)INFINITY;
     t->density_kg_per_m3[e] = s->density_kg_per_m3;
