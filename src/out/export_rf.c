@@ -36,10 +36,7 @@ typedef struct {
 
 static void take(const view *v, int i, hf_facet_mesh *m)
 {
-    hf_facet_mesh_take(&v->facets, i, v->stored->shape.position_m, m);
-    if (!v->sag_m) return;
-    memcpy(m->sag_m, v->sag_m + 4 * (size_t)i, sizeof m->sag_m);
-    hf_facet_mesh_settle(m);
+    hf_facet_mesh_take_bent(&v->facets, i, v->stored->shape.position_m, v->sag_m, m);
 }
 
 static hf_status find_sags(view *v, const char *file, hf_arena *arena, hf_messages *messages)
@@ -48,9 +45,7 @@ static hf_status find_sags(view *v, const char *file, hf_arena *arena, hf_messag
     const hf_facet_shape shape = {s->shape.position_m, s->scene.n_cable, s->scene.end, s->shape.tension_N};
     double pull_ratio, mesh_N_per_m = s->summary.surface.mesh_tension_N_per_m, *sag_m;
     if (!(mesh_N_per_m > 0)) return HF_OK;
-    hf_status status =
-        HF_ARENA_MAKE(arena, sag_m = hf_arena_take(arena, 4 * (size_t)v->facets.n_facet, sizeof(double)));
-    if (status == HF_OK) status = hf_facet_mesh_sags(mesh_N_per_m, &v->facets, &shape, sag_m, &pull_ratio);
+    hf_status status = hf_facet_mesh_make_sags(mesh_N_per_m, &v->facets, &shape, arena, &sag_m, &pull_ratio);
     if (status != HF_OK) return hf_error(messages, status, "%s: out of memory for its facets", file);
     v->sag_m = sag_m;
     if (pull_ratio <= HF_FACET_PULL_MOST) return HF_OK;

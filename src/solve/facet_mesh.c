@@ -45,6 +45,14 @@ void hf_facet_mesh_take(const hf_facets *f, int i, const double *position_m, hf_
     direction(origin, (double[3]){m->normal[0], m->normal[1], m->normal[2]}, m->normal);
 }
 
+void hf_facet_mesh_take_bent(const hf_facets *f, int i, const double *position_m, const double *sag_m, hf_facet_mesh *m)
+{
+    hf_facet_mesh_take(f, i, position_m, m);
+    if (!sag_m) return;
+    memcpy(m->sag_m, sag_m + 4 * (size_t)i, sizeof m->sag_m);
+    hf_facet_mesh_settle(m);
+}
+
 void hf_facet_mesh_at(const hf_facet_mesh *m, double u, double v, double p[3], double du[3], double dv[3])
 {
     for (int d = 0; d < 3; d++) {

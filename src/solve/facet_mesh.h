@@ -20,6 +20,10 @@ typedef struct {
 /* A flat facet. */
 void hf_facet_mesh_take(const hf_facets *facets, int i, const double *position_m, hf_facet_mesh *mesh);
 
+/* A facet bent by sag_m [n_facet][4], settled; NULL: flat. */
+void hf_facet_mesh_take_bent(const hf_facets *facets, int i, const double *position_m, const double *sag_m,
+                             hf_facet_mesh *mesh);
+
 /* sag_m [n_facet][4]: of the sides of all facets, from the pull of the mesh on the cables between two facets;
  * pull_ratio: the largest N l / T of these cables, INFINITY where one is slack. HF_OK or HF_NO_MEMORY. */
 hf_status hf_facet_mesh_sags(double mesh_tension_N_per_m, const hf_facets *facets, const hf_facet_shape *shape,

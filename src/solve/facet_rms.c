@@ -87,9 +87,7 @@ static hf_status put_meshes(double mesh_N_per_m, const hf_facets *f, const hf_fa
     q->has_shape = q->pull_ratio <= HF_FACET_PULL_MOST;
     for (int i = 0, at = 0; i < f->n_facet; i++) {
         hf_facet_mesh m;
-        hf_facet_mesh_take(f, i, shape->position_m, &m);
-        memcpy(m.sag_m, q->sag_m + 4 * (size_t)i, sizeof m.sag_m);
-        hf_facet_mesh_settle(&m);
+        hf_facet_mesh_take_bent(f, i, shape->position_m, q->sag_m, &m);
         for (int k = 0; k < q->per_facet; k++, at++) {
             int a = k % HF_FACET_N_GAUSS, b = k / HF_FACET_N_GAUSS;
             double u = hf_facet_gauss_at[a], v = hf_facet_gauss_at[b], p[3], slope[2];

@@ -64,29 +64,43 @@ static double current_at(const hf_gain_beam *b, const double p[3], const double 
     return hf_dot3(toward, up) < 0 ? 2 * hf_dot3(b->co, current) : 0;
 }
 
+/* Point k of a facet: what is there of places or moves, and its derivatives by u and v; returns its weight. */
+static double point_of(const hf_gain_beam *b, const hf_facet_mesh *m, bool is_bent, int k, double p[3], double du[3],
+                       double dv[3])
+{
+    int j = k % b->order, l = k / b->order;
+    (is_bent ? hf_facet_mesh_lifted : hf_facet_mesh_at)(m, b->at[j], b->at[l], p, du, dv);
+    return b->weight[j] * b->weight[l];
+}
+
+/* Adds the current of point k of a facet to sum[0], its size, and [1], [2], with its phase; returns its size.
+ * phase: as a unit number. */
+static double add_point(const hf_gain_beam *b, const hf_facet_mesh *m, bool is_bent, int k, double sum[3],
+                        double phase[2])
+{
+    double p[3], du[3], dv[3], angle;
+    double weight = point_of(b, m, is_bent, k, p, du, dv);
+    double current = weight * current_at(b, p, du, dv, &angle), size = fabs(current), sign = current < 0 ? -1 : 1;
+    phase[0] = sign * hf_cosine(angle);
+    phase[1] = sign * hf_sine(angle);
+    sum[0] += size;
+    for (int c = 0; c < 2; c++)
+        sum[1 + c] += size * phase[c];
+    return size;
+}
+
 /* ---- loss of a shape ---- */
 
 double hf_gain_loss_dB(const hf_gain_beam *b, const hf_pattern_surface *s)
 {
-    double all = 0, re = 0, im = 0;
+    double sum[3] = {0}, phase[2];
     for (int i = 0; i < s->facets->n_facet; i++) {
         hf_facet_mesh m;
-        hf_facet_mesh_take(s->facets, i, s->position_m, &m);
-        if (s->sag_m) {
-            memcpy(m.sag_m, s->sag_m + 4 * (size_t)i, sizeof m.sag_m);
-            hf_facet_mesh_settle(&m);
-        }
-        for (int k = 0; k < b->order * b->order; k++) {
-            int j = k % b->order, l = k / b->order;
-            double p[3], du[3], dv[3], phase;
-            (s->sag_m ? hf_facet_mesh_lifted : hf_facet_mesh_at)(&m, b->at[j], b->at[l], p, du, dv);
-            double size = b->weight[j] * b->weight[l] * current_at(b, p, du, dv, &phase);
-            all += fabs(size);
-            re += size * hf_cosine(phase);
-            im += size * hf_sine(phase);
-        }
+        hf_facet_mesh_take_bent(s->facets, i, s->position_m, s->sag_m, &m);
+        for (int k = 0; k < b->order * b->order; k++)
+            add_point(b, &m, s->sag_m, k, sum, phase);
     }
-    double part = (re * re + im * im) / (all * all);
+    double part = (sum[1] * sum[1] + sum[2] * sum[2]) / (sum[0] * sum[0]);
     return part < DBL_MIN ? INFINITY : -HF_DB_PER_LN * hf_logarithm(part);
 }
 
@@ -128,34 +142,20 @@ static void take_facet(const hf_gain *g, const double *node, int i, facet *f)
     }
 }
 
-/* Point k of a facet: what is there of places or moves, and its derivatives by u and v; returns its weight. */
-static double point_of(const hf_gain *g, const facet *f, int k, double p[3], double du[3], double dv[3])
-{
-    const hf_gain_beam *b = g->beam;
-    int j = k % b->order, l = k / b->order;
-    hf_facet_mesh_at(&f->flat, b->at[j], b->at[l], p, du, dv);
-    return b->weight[j] * b->weight[l];
-}
-
 void hf_gain_measure(hf_gain *g, const hf_workspace *w, double *residual)
 {
     const int n = g->n, per_facet = n / g->n_facet;
-    g->all = g->mean[0] = g->mean[1] = 0;
+    double sum[3] = {0}, phase[2];
     for (int i = 0; i < n; i++) {
         facet f;
-        double p[3], du[3], dv[3], phase;
         take_facet(g, w->position_m, i / per_facet, &f);
-        double weight = point_of(g, &f, i % per_facet, p, du, dv);
-        double current = weight * current_at(g->beam, p, du, dv, &phase), sign = current < 0 ? -1 : 1;
-        g->size[i] = fabs(current);
-        g->phase[i] = sign * hf_cosine(phase);
-        g->phase[n + i] = sign * hf_sine(phase);
-        g->all += g->size[i];
+        g->size[i] = add_point(g->beam, &f.flat, false, i % per_facet, sum, phase);
         for (int c = 0; c < 2; c++)
-            g->mean[c] += g->size[i] * g->phase[c * n + i];
+            g->phase[c * n + i] = phase[c];
     }
+    g->all = sum[0];
     for (int c = 0; c < 2; c++) {
-        g->mean[c] /= g->all;
+        g->mean[c] = sum[1 + c] / g->all;
         for (int i = 0; i < n; i++)
             residual[c * n + i] = sqrt(g->size[i] / g->all) * (g->phase[c * n + i] - g->mean[c]);
     }
@@ -192,7 +192,7 @@ void hf_gain_linearise(hf_gain *g, const hf_workspace *w)
         facet f;
         double p[3], du[3], dv[3], by_place[6] = {0}, by_side[6] = {0};
         take_facet(g, w->position_m, i / per_facet, &f);
-        double weight = point_of(g, &f, i % per_facet, p, du, dv);
+        double weight = point_of(g->beam, &f.flat, false, i % per_facet, p, du, dv);
         if (g->size[i] > 0) derive_point(g->beam, p, du, dv, by_place, by_side);
         for (int d = 0; d < 6; d++) {
             g->by_place[d * n + i] = by_place[d] * (d < 3 ? 1 : weight);
@@ -211,7 +211,7 @@ static double push_points(hf_gain *g, const double *move, double mean_rate[2])
         facet f;
         double p[3], du[3], dv[3], turn = 0, grow = 0;
         take_facet(g, move, i / per_facet, &f);
-        point_of(g, &f, i % per_facet, p, du, dv);
+        point_of(g->beam, &f.flat, false, i % per_facet, p, du, dv);
         for (int d = 0; d < 3; d++) {
             turn += g->by_place[d * n + i] * p[d];
             grow += g->by_place[(3 + d) * n + i] * p[d];

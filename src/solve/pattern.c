@@ -118,10 +118,7 @@ static void lay_out(hf_arena *a, hf_far_field *p)
 
 static void take_facet(const hf_far_field *p, int i, hf_facet_mesh *m)
 {
-    hf_facet_mesh_take(p->surface.facets, i, p->surface.position_m, m);
-    if (!p->surface.sag_m) return;
-    memcpy(m->sag_m, p->surface.sag_m + 4 * (size_t)i, sizeof m->sag_m);
-    hf_facet_mesh_settle(m);
+    hf_facet_mesh_take_bent(p->surface.facets, i, p->surface.position_m, p->surface.sag_m, m);
 }
 
 /* Half of the phase across facet i, along u and along v, at most: k (direction - toward) along its sides, with the
