@@ -123,3 +123,26 @@ export async function checkWords(tab, made) {
   assert.ok(!words.some(([word]) => word === "facet_half_path_rms_m"), "a figure that is not there is explained");
   await tab.locator("#summary details summary").click();
 }
+
+// Bars as high as the samples are many, a line for each figure at its place, and the cables of the file.
+export async function checkTolerance(tab, made) {
+  const t = made.summary.tolerance,
+    legend = await tab.locator("#tolerance .legend > span").allTextContents(),
+    named = legend.filter((text) => text.endsWith(" mm")).map((text) => number(text.match(/([^ ]+) mm$/)[1]));
+  assert.equal(await tab.locator("#tolerance line.curve").count(), 3);
+  [t.nominal_psi_m, t.psi_95_m, t.require[0].at_most].forEach((at, k) => same(named[k], 1e3 * at, 5));
+  assert.match(await tab.locator("#tolerance figcaption").textContent(), /at least 1 mm, outside of the picture/);
+  const most = t.histogram.indexOf(Math.max(...t.histogram)),
+    [low, high] = t.histogram_range_m;
+  await tab.locator("#tolerance svg[tabindex]").focus();
+  for (let k = 0; k <= most; k++) await tab.keyboard.press("ArrowRight");
+  const said = await tab.locator("#tolerance .tip").innerText();
+  same(number(said.match(/nets\s+([\d.]+)/)[1]), 100 * t.histogram[most], 6);
+  same(number(said.match(/of ([\d.]+) to/)[1]), 1e3 * (low + (most * (high - low)) / t.histogram.length), 5);
+  assert.ok((await tab.locator("#tolerance > p").first().innerText()).includes("give a yield of 90\u00a0%"));
+  const rows = await tab.locator("#tolerance tbody th").allTextContents();
+  assert.deepEqual(
+    rows,
+    t.cable_share.map(({ cable }) => cable),
+  );
+}

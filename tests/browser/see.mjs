@@ -1,6 +1,10 @@
 // What the checks share: tables that the program writes, numbers as a page shows them, pictures and tooltips of a tab.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+
+export const DATA = /(<script type="application\/json" id="data">)([^]*?)(<\/script>)/; // of a page
 
 export function csv(path) {
   const lines = readFileSync(path, "utf8").trimEnd().split("\n");
@@ -58,3 +62,22 @@ export const tip = async (tab, stage) => {
     return { heading: node.querySelector("strong").textContent, ...Object.fromEntries(rows) };
   }, stage);
 };
+
+export async function changes(tab, what, act) {
+  const before = await picture(tab, "net-canvas");
+  await act();
+  assert.notEqual((await picture(tab, "net-canvas")).sum, before.sum, `${what} leaves the picture as it was`);
+}
+
+// Opens a copy of a page; what it did to the tripwire window.hit.
+export async function openCopy(browser, folder, name, text, look = () => {}) {
+  const copy = join(folder, `${name}.html`),
+    tab = await browser.newPage({ viewport: { width: 1200, height: 900 } });
+  writeFileSync(copy, text);
+  await tab.goto(pathToFileURL(copy).href);
+  await settle(tab);
+  await look(tab);
+  const hit = await tab.evaluate("window.hit");
+  await tab.close();
+  return hit;
+}

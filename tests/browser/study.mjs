@@ -1,0 +1,67 @@
+// The page of a study: its points, the shares of its axes, its maps of two axes.
+import assert from "node:assert/strict";
+import { number, same } from "./see.mjs";
+
+// Every point has a row, its name leads to its result, and the row says what the result says.
+export async function checkPoints(tab, page, made) {
+  const rows = tab.locator("#points tbody tr");
+  assert.equal(await rows.count(), page.study);
+  for (const i of [0, Math.floor(page.study / 2), page.study - 1]) {
+    const file = decodeURIComponent(await rows.nth(i).locator("a").getAttribute("href"));
+    const summary = JSON.parse(made.hifdm("show", file, "--json"));
+    const cell = (label) => rows.nth(i).locator(`[data-label^="${label}"]`).textContent();
+    assert.equal(await cell("Status"), "done");
+    same(number(await cell("ψ found")), 1e3 * summary.form.psi_m, 5);
+    same(number(await cell("Tension ratio, boundary")), summary.form.boundary_tension_ratio, 5);
+  }
+  // the best point is on top and marked; a heading sorts; a figure with one value is a sentence and no column
+  const psi = tab.locator("#points thead button", { hasText: "ψ found" });
+  const column = (await tab.locator("#points thead th").allTextContents()).findIndex((t) => t.startsWith("ψ found"));
+  const shown = async () =>
+    (await tab.locator(`#points tbody tr > :nth-child(${column + 1})`).allTextContents()).map(number);
+  const all = await shown();
+  assert.equal(await tab.locator("#points tr.chosen").count(), 1);
+  assert.equal(all[0], Math.min(...all));
+  await psi.click();
+  assert.deepEqual((await shown()).slice(1), all.slice(1).sort((a, b) => b - a));
+  assert.match(await tab.locator("#sweep > p").innerText(), /inner cables is 1 at all points/);
+  assert.equal(await tab.locator("#points thead th", { hasText: "inner" }).count(), 0);
+  await checkShares(tab, made.study);
+  await checkHeat(tab, made.study);
+}
+
+// The shares of the axes in the variance of psi, from the points themselves: in a product of axes those of its means.
+async function checkShares(tab, study) {
+  const mean = (v) => v.reduce((sum, x) => sum + x, 0) / v.length,
+    variance = (v) => mean(v.map((x) => x * x)) - mean(v) ** 2;
+  const said = await tab.locator("#sweep > p").innerText(),
+    psi = study.output.at(-1).psi_m;
+  for (const { name, values } of study.input) {
+    const means = [...new Set(values)].map((at) => mean(psi.filter((_, i) => values[i] === at)));
+    const words = name.split(".").pop().replace(/_N$/, ""),
+      [, little, told] = said.match(new RegExp(`${words} (less than )?([\\d.]+)\u00a0%`)),
+      share = (100 * variance(means)) / variance(psi);
+    if (little) assert.ok(share < number(told));
+    else same(number(told), share, 2);
+  }
+}
+
+// Along the axis of few values the many of the other one are a map: each cell has the value of its point.
+async function checkHeat(tab, study) {
+  const few = study.input.find(({ values }) => new Set(values).size <= 4),
+    many = study.input.find((input) => input !== few),
+    sorted = ({ values }) => [...new Set(values)].sort((a, b) => a - b);
+  await tab.locator(`#sweep input[name=axis][value="${few.name}"]`).check();
+  const rows = tab.locator("#sweep .heat").first().locator("tbody tr"),
+    [x, y] = [sorted(few), sorted(many).reverse()];
+  assert.equal(await rows.count(), y.length);
+  for (const [r, c] of [
+    [0, 0],
+    [5, 2],
+  ]) {
+    const i = few.values.findIndex((v, k) => v === x[c] && many.values[k] === y[r]);
+    const title = await rows.nth(r).locator("td").nth(c).getAttribute("title");
+    same(number(title.match(/: (\S+) mm$/)[1]), 1e3 * study.output.at(-1).psi_m[i], 5);
+  }
+  await tab.locator(`#sweep input[name=axis][value="${many.name}"]`).check();
+}
