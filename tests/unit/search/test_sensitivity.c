@@ -1,11 +1,10 @@
 /* Derivatives of every goal by everything that a design may vary, against differences of solved shapes: on fixed
  * supports and on a truss, cable by cable and set by set, as hf_evaluate takes a design and as Levenberg-Marquardt
  * does. */
-#include "flexible.h"
+#include "goals.h"
 
 #include "net/variables.h"
 #include "search/residuals.h"
-#include <hifdm/goals.h>
 
 enum { N_VARY = HF_VARY_SUPPORT_XYZ + 1, MAX_CABLE = 80, MAX_GENE = 80, MAX_ROW = 2400, MAX_TRIED = 8 };
 #define STIFFNESS_N 2e4
@@ -31,23 +30,20 @@ static const char *const set_of[N_VARY] = {
 };
 
 static const hf_goal_settings wanted[] = {
-    {HF_GOAL_SURFACE, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0, 0}, /* the first: without a truss */
-    {HF_GOAL_PSI, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0},
-    {HF_GOAL_SURFACE, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_BEST, "", 0, 0, 0, 0},
-    {HF_GOAL_SURFACE, "", NAN, 1, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE, "", 0, 0, 0, 0},
-    {HF_GOAL_SURFACE, "", NAN, 1, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST, "", 0, 0, 0, 0},
-    {HF_GOAL_FACETS, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_NONE, "", 0, 0, 0, 0},
-    {HF_GOAL_FACETS, "", NAN, 1, NAN, HF_ALONG_NORMAL, HF_FIT_BEST, "", 0, 0, 0, 0},
-    {HF_GOAL_FACETS, "", NAN, 1, NAN, HF_ALONG_HALF_PATH, HF_FIT_NONE, "", 0, 0, 0, 0},
-    {HF_GOAL_FACETS, "", NAN, 3, NAN, HF_ALONG_HALF_PATH, HF_FIT_BEST, "", 0, 0, 0, 0},
-    {HF_GOAL_TENSION, "tie", 9, 1, NAN, 0, 0, "", 0, 0, 0, 0},
-    {HF_GOAL_TENSION, "rear", 9, 1, NAN, 0, 0, "", 0, 0, 0, 0},
-    {HF_GOAL_LENGTH, "front", NAN, 2, NAN, 0, 0, "", 0, 0, 0, 0},
-    {HF_GOAL_EVENNESS, "all", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0},
-    {HF_GOAL_PULL, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0},
-    {HF_GOAL_GAIN, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0},
-    {HF_GOAL_MASS, "", NAN, 1, 0.01, 0, 0, "", 0, 0, 0, 0},
-    {HF_GOAL_DISPLACEMENT, "", NAN, 1, NAN, 0, 0, "", 0, 0, 0, 0}, /* the last: only with a truss */
+    WANT_ERROR(SURFACE, NORMAL, NONE, 1), /* the first: without a truss */
+    WANT(PSI, "", NAN, 1),
+    WANT_ERROR(SURFACE, NORMAL, BEST, 1),
+    WANT_ERROR(SURFACE, HALF_PATH, NONE, 1),
+    WANT_ERROR(SURFACE, HALF_PATH, BEST, 1),
+    WANT_ERRORS(FACETS, 2),
+    WANT(TENSION, "tie", 9, 1),
+    WANT(TENSION, "rear", 9, 1),
+    WANT(LENGTH, "front", NAN, 2),
+    WANT(EVENNESS, "all", NAN, 1),
+    WANT(PULL, "", NAN, 1),
+    WANT(GAIN, "", NAN, 1),
+    WANT_MASS("", 0.01),
+    WANT(DISPLACEMENT, "", NAN, 1), /* the last: only with a truss */
 };
 enum { N_WANTED = sizeof wanted / sizeof *wanted - 1 };
 
