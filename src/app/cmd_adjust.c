@@ -9,7 +9,7 @@
  * Contents: the prior - the work - figures of what was measured - together */
 #include "app/cmd.h"
 
-#include "app/cmd_adjust_print.h"
+#include "app/cmd_adjust_findings.h"
 #include "app/built_design.h"
 #include "base/arena.h"
 #include "base/file_out.h"
@@ -144,12 +144,9 @@ static hf_status find_least(job *j, hf_messages *messages)
 static hf_status find_figure(job *j, hf_messages *messages)
 {
     const hf_problem *p = &j->problem;
-    hf_optimize_settings wanted = {.n_goal = 1};
-    wanted.goal[0] = (hf_goal_settings){.goal = p->settings.adjust.figure, .weight = 1};
-    if (wanted.goal[0].goal == HF_GOAL_FACETS && p->facets.n_facet == 0)
+    if (p->settings.adjust.figure == HF_GOAL_FACETS && p->facets.n_facet == 0)
         return hf_error(messages, HF_BAD_CASE, "%s: adjust.figure: facets: this net has no facets", p->settings.path);
-    return hf_goals_create(&j->built.scene, &j->built.model, &wanted, &p->surface, &p->facets, NULL, &j->goals,
-                           messages);
+    return hf_adjust_make_goals(j, p->settings.adjust.figure, &j->goals, messages);
 }
 
 /* psi is the distance to the places that moves aim at. */
@@ -157,10 +154,7 @@ static hf_status make_net(job *j, const hf_options *o, hf_messages *messages)
 {
     hf_problem *p = &j->problem;
     HF_TRY(hf_built_design_make(o, p, &j->built, messages));
-    if (p->settings.adjust.aim != HF_AIM_DESIGN) return HF_OK;
-    hf_model *m = &j->built.model;
-    for (int c = 0; c < 3; c++)
-        memcpy(m->position_m + c * m->n_node, j->built.place_m + c * m->n_node, (size_t)m->n_free * sizeof(double));
+    hf_adjust_take_aim(j, p->settings.adjust.aim);
     return HF_OK;
 }
 
@@ -177,14 +171,11 @@ static int worst_row(const job *j, double *distance_m)
     double most = -1;
     int worst = 0;
     for (int row = 0; row < m->n_node; row++) {
-        double square = 0;
-        for (int c = 0; c < 3; c++) {
-            double d = j->measured.place_m[3 * row + c] - j->estimate.work.position_m[c * m->n_node + row];
-            square += d * d;
-        }
-        if (!j->measured.line[row] || square * j->measured.weight_per_m2[3 * row] <= most) continue;
+        if (!j->measured.line[row]) continue;
+        double off_m = hf_adjust_off_m(j, row), square = off_m * off_m;
+        if (square * j->measured.weight_per_m2[3 * row] <= most) continue;
         most = square * j->measured.weight_per_m2[3 * row];
-        *distance_m = sqrt(square);
+        *distance_m = off_m;
         worst = row;
     }
     return worst;
@@ -258,6 +249,9 @@ static void lay_out_job(hf_arena *arena, job *j)
     j->cable = hf_arena_take(arena, n_cable, sizeof *j->cable);
     j->least_N = hf_arena_take(arena, n_cable, sizeof *j->least_N);
     j->expected_m = hf_arena_take(arena, n_node, sizeof *j->expected_m);
+    j->out = hf_arena_take(arena, n_cable, sizeof *j->out);
+    j->by_places_m = hf_arena_take(arena, n_cable, sizeof *j->by_places_m);
+    j->far_row = hf_arena_take(arena, n_node, sizeof *j->far_row);
 }
 
 static hf_status allocate_job(job *j, hf_messages *messages)
@@ -310,8 +304,10 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
     HF_TRY(find_figure(j, messages));
     HF_TRY(estimate_errors(j, o, messages));
     j->measured_m = measured_psi_m(j);
+    HF_TRY(explain_failure(hf_adjust_find_outliers(j), "the estimated net", o->file, messages));
     HF_TRY(
         explain_failure(hf_adjust_find(&j->estimate, &j->task, &j->adjustment), "the adjusted net", o->file, messages));
+    HF_TRY(explain_failure(hf_adjust_find_instead(j, messages), "the net with other moves", o->file, messages));
     if (o->output) HF_TRY(hf_file_out_write(o->output, hf_adjust_print_table, j, messages));
     return hf_adjust_print_page(j, o, messages);
 }

@@ -1,4 +1,4 @@
-/* Contents: chi^2 - what stands out - the table - for people - for programs */
+/* Contents: chi^2 - the table - for people - for programs */
 #include "app/cmd_adjust_print.h"
 
 #include "base/csv.h"
@@ -9,10 +9,10 @@
 #include <math.h>
 #include <string.h>
 
-#define STANDS_OUT 3.0 /* sigmas of an error that is named */
-#define SEEMS_OFF 2.0  /* the same of a number that cables share, of which there are few */
-#define NAMED_MAX 10   /* of these, for people */
-#define MISFIT 5.0     /* standard deviations of the sum of squares that is no accident any more */
+#define SEEMS_OFF 2.0 /* sigmas of a number that cables share, of which there are few */
+#define NAMED_MAX 10  /* of these, for people */
+#define PLACES_MAX 3  /* the same of places */
+#define MISFIT 5.0    /* standard deviations of the sum of squares that is no accident any more */
 
 /* ---- chi^2 ---- */
 
@@ -24,26 +24,6 @@ double hf_adjust_chi_square(const hf_adjust_job *j)
 bool hf_adjust_fits(const hf_adjust_job *j)
 {
     return hf_adjust_chi_square(j) <= 1 + MISFIT * sqrt(2 / (3.0 * j->measured.n_node));
-}
-
-/* ---- what stands out ---- */
-
-static double sigmas_of(const hf_adjust_job *j, int e)
-{
-    return j->prior.sigma_m[e] > 0 ? j->estimate.cut_m[e] / j->prior.sigma_m[e] : 0;
-}
-
-/* The cable with the largest error below `limit` sigmas, of those that stand out; -1: none. Of two alike the first. */
-static int next_outlier(const hf_adjust_job *j, int last)
-{
-    int next = -1;
-    double limit = last < 0 ? (double)INFINITY : fabs(sigmas_of(j, last));
-    for (int e = 0; e < j->built.model.n_cable; e++) {
-        double size = fabs(sigmas_of(j, e));
-        if (size <= STANDS_OUT || size > limit || (size == limit && e <= last)) continue;
-        if (next < 0 || size > fabs(sigmas_of(j, next))) next = e;
-    }
-    return next;
 }
 
 /* ---- the table ---- */
@@ -63,6 +43,47 @@ void hf_adjust_print_table(const void *context, FILE *f)
 }
 
 /* ---- for people ---- */
+
+/* Figures other than psi aim at the wanted surface. */
+static const char *aim_word(hf_goal_kind figure, hf_aim aim)
+{
+    return hf_aim_word[figure == HF_GOAL_PSI ? aim : HF_AIM_THEORY];
+}
+
+/* What psi is measured from. */
+static void print_aim(const hf_adjust_job *j, FILE *f)
+{
+    const hf_adjust_settings *s = j->task.settings;
+    if (s->figure != HF_GOAL_PSI) return;
+    if (s->aim == HF_AIM_DESIGN)
+        hf_print_line(f, "psi is measured from the shape of the design (adjust.aim), which is %.4f mm from theory",
+                      j->design_psi_m * 1e3);
+    else
+        hf_print_line(f, "psi is measured from the theoretical places (adjust.aim), from which the design is %.4f mm",
+                      j->design_psi_m * 1e3);
+}
+
+static void print_instead(const hf_adjust_job *j, FILE *f)
+{
+    if (!j->n_instead) return;
+    if (2 * j->n_at_range > j->adjustment.n_move)
+        hf_print_line(f, "%d of %d moves are as far as adjust.range_m allows. Aimed at something else:", j->n_at_range,
+                      j->adjustment.n_move);
+    else
+        hf_print_line(f,
+                      "the design is %.4f mm from the theoretical places, errors make %.4f mm. Aimed at something "
+                      "else:",
+                      j->design_psi_m * 1e3, j->error_psi_m * 1e3);
+    for (int k = 0; k < j->n_instead; k++) {
+        const hf_adjust_instead *other = &j->instead[k];
+        char name[64];
+        snprintf(name, sizeof name, other->figure == HF_GOAL_PSI ? "figure: psi, aim: %s" : "figure: %s",
+                 other->figure == HF_GOAL_PSI ? hf_aim_word[other->aim] : hf_figure_word[other->figure]);
+        hf_print_line(f, "  adjust: {%s} brings %s from %.4f to %.4f mm by %d move%s, %d at range_m", name,
+                      hf_figure_word[other->figure], other->before_m * 1e3, other->after_m * 1e3, other->n_move,
+                      other->n_move == 1 ? "" : "s", other->n_at_range);
+    }
+}
 
 static const char *const end_word[] = {"target", "moves", "doubt", "none"};
 
@@ -91,16 +112,41 @@ static void print_end(const hf_adjust_job *j, FILE *f)
                       j->adjustment.n_low == 1 ? " has" : "s have", j->adjustment.low_N);
 }
 
+/* The rest of them says how much: one that is held back by its sigma is worse than it seems. */
 static void print_outliers(const hf_adjust_job *j, FILE *f)
 {
-    int n = 0;
-    for (int e = next_outlier(j, -1); e >= 0; e = next_outlier(j, e)) {
-        if (n++ >= NAMED_MAX) continue;
-        double error = j->estimate.cut_m[e];
-        hf_print_line(f, "cable '%s' seems %.3g mm too %s, %.1f sigma", j->built.scene.cable_id[e], fabs(error) * 1e3,
-                      error > 0 ? "long" : "short", fabs(sigmas_of(j, e)));
+    for (int k = 0; k < j->n_out && k < NAMED_MAX; k++) {
+        int e = j->out[k];
+        double error = j->estimate.cut_m[e], alone = fabs(j->by_places_m[k]);
+        hf_print_line(f, "cable '%s' seems %.3g mm too %s, %.1f sigma; %.3g mm by the places alone",
+                      j->built.scene.cable_id[e], fabs(error) * 1e3, error > 0 ? "long" : "short",
+                      fabs(hf_adjust_sigmas(j, e)), alone * 1e3);
     }
-    if (n > NAMED_MAX) hf_print_line(f, "and %d more cables beyond %g sigma", n - NAMED_MAX, STANDS_OUT);
+    if (j->n_out > NAMED_MAX)
+        hf_print_line(f, "and %d more cables beyond %g sigma", j->n_out - NAMED_MAX, HF_ADJUST_STANDS_OUT);
+    if (j->n_out)
+        hf_print_line(f, "  their sigmas hold such errors back (hifdm explain outlier): measure again after the moves");
+}
+
+static double off_sigmas(const hf_adjust_job *j, int k)
+{
+    int row = j->far_row[k];
+    return hf_adjust_off_m(j, row) * sqrt(j->measured.weight_per_m2[3 * row]);
+}
+
+static void print_places(const hf_adjust_job *j, FILE *f)
+{
+    if (!j->n_far) return;
+    hf_print_line(f,
+                  "%d of %d measured nodes %s more than %g sigma off the estimated shape, and count in full "
+                  "(hifdm explain outlier); the worst:",
+                  j->n_far, j->measured.n_node, j->n_far == 1 ? "is" : "are", HF_ADJUST_OFF);
+    for (int k = 0; k < j->n_far && k < PLACES_MAX; k++) {
+        int row = j->far_row[k];
+        hf_print_line(f, "node '%s' (line %d): %.3g mm, %.1f sigma",
+                      j->built.scene.node_id[j->built.model.node_of_row[row]], j->measured.line[row],
+                      hf_adjust_off_m(j, row) * 1e3, off_sigmas(j, k));
+    }
 }
 
 static const char *number_word(const hf_prior_number *n)
@@ -153,11 +199,13 @@ void hf_adjust_print_summary(const hf_adjust_job *j, const hf_options *o, FILE *
                   j->built.model.n_node, hf_adjust_chi_square(j),
                   t->sigma_support_m > 0 ? "are estimated, too"
                                          : "are taken to be where the case has them (no tolerance.sigma_support_m)");
+    print_aim(j, f);
     if (isfinite(j->measured_m)) hf_print_line(f, "%s measured    %.4f mm", figure, j->measured_m * 1e3);
     hf_print_line(f, "%s estimated   %.4f mm; with what is left open %.4f +- %.4f mm; as designed %.4f mm", figure,
                   a->estimated_m * 1e3, a->doubt_m[0] * 1e3, a->spread_m[0] * 1e3, a->nominal_m * 1e3);
     print_numbers(j, f);
     print_outliers(j, f);
+    print_places(j, f);
     print_moves(j, f);
     hf_print_line(f,
                   "%s after %d move%s %.4f mm; with what is left open %.4f +- %.4f mm; any moves of %d cables, "
@@ -165,6 +213,7 @@ void hf_adjust_print_summary(const hf_adjust_job *j, const hf_options *o, FILE *
                   figure, a->n_move, a->n_move == 1 ? "" : "s", a->adjusted_m * 1e3, a->doubt_m[1] * 1e3,
                   a->spread_m[1] * 1e3, j->task.n_cable, a->best_m * 1e3);
     print_end(j, f);
+    print_instead(j, f);
     if (o->output) hf_print_line(f, "moves in %s; above 0: let the cable out", o->output);
     if (o->report) hf_print_line(f, "a page to look at: %s", o->report);
 }
@@ -192,12 +241,43 @@ static void print_json_moves(const hf_adjust_job *from, hf_json *j)
     hf_json_close(j, ']');
     hf_json_line(j, " ");
     hf_json_open(j, "stand_out", '[');
-    for (int e = next_outlier(from, -1); e >= 0; e = next_outlier(from, e)) {
+    for (int k = 0; k < from->n_out; k++) {
         hf_json_line(j, "  ");
         hf_json_open(j, NULL, '{');
-        hf_json_text(j, "cable", from->built.scene.cable_id[e]);
-        hf_json_number(j, "error_m", from->estimate.cut_m[e]);
-        hf_json_number(j, "sigmas", fabs(sigmas_of(from, e)));
+        hf_json_text(j, "cable", from->built.scene.cable_id[from->out[k]]);
+        hf_json_number(j, "error_m", from->estimate.cut_m[from->out[k]]);
+        hf_json_number(j, "sigmas", fabs(hf_adjust_sigmas(from, from->out[k])));
+        hf_json_number(j, "by_places_m", from->by_places_m[k]);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+    hf_json_line(j, " ");
+    hf_json_open(j, "off_shape", '[');
+    for (int k = 0; k < from->n_far; k++) {
+        hf_json_line(j, "  ");
+        hf_json_open(j, NULL, '{');
+        hf_json_text(j, "node", from->built.scene.node_id[from->built.model.node_of_row[from->far_row[k]]]);
+        hf_json_number(j, "distance_m", hf_adjust_off_m(from, from->far_row[k]));
+        hf_json_number(j, "sigmas", off_sigmas(from, k));
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
+static void print_json_instead(const hf_adjust_job *from, hf_json *j)
+{
+    hf_json_line(j, " ");
+    hf_json_open(j, "instead", '[');
+    for (int k = 0; k < from->n_instead; k++) {
+        const hf_adjust_instead *other = &from->instead[k];
+        hf_json_line(j, "  ");
+        hf_json_open(j, NULL, '{');
+        hf_json_text(j, "figure", hf_figure_word[other->figure]);
+        hf_json_text(j, "aim", aim_word(other->figure, other->aim));
+        hf_json_number(j, "before_m", other->before_m);
+        hf_json_number(j, "after_m", other->after_m);
+        hf_json_integer(j, "move_count", other->n_move);
+        hf_json_integer(j, "at_range", other->n_at_range);
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
@@ -208,7 +288,7 @@ static void print_json_figures(const hf_adjust_job *from, hf_json *j)
     const hf_adjustment *a = &from->adjustment;
     hf_json_line(j, " ");
     hf_json_text(j, "figure", hf_figure_word[from->task.settings->figure]);
-    hf_json_text(j, "aim", hf_aim_word[from->task.settings->aim]);
+    hf_json_text(j, "aim", aim_word(from->task.settings->figure, from->task.settings->aim));
     hf_json_integer(j, "measured_nodes", from->measured.n_node);
     hf_json_number(j, "chi_square", hf_adjust_chi_square(from));
     hf_json_bool(j, "fits", hf_adjust_fits(from));
@@ -227,6 +307,9 @@ static void print_json_figures(const hf_adjust_job *from, hf_json *j)
     hf_json_text(j, "end", end_word[a->end]);
     hf_json_bool(j, "held_taut", a->is_held_taut);
     hf_json_bool(j, "supports_estimated", from->problem.settings.tolerance.sigma_support_m > 0);
+    hf_json_number(j, "design_psi_m", from->design_psi_m);
+    hf_json_number(j, "error_psi_m", from->error_psi_m);
+    hf_json_integer(j, "at_range", from->n_at_range);
     hf_json_integer(j, "estimate_steps", from->estimate.n_step);
     hf_json_integer(j, "rounds", a->n_round);
     hf_json_bool(j, "settled", from->estimate.is_settled && a->is_settled);
@@ -269,6 +352,7 @@ void hf_adjust_print_json(const hf_adjust_job *from, const hf_options *o, hf_sta
     if (status == HF_OK) {
         print_json_figures(from, &j);
         print_json_moves(from, &j);
+        print_json_instead(from, &j);
         print_json_numbers(from, &j);
         print_json_errors(from, &j);
     }
@@ -291,6 +375,7 @@ static void write_part(const void *context, hf_json *j)
     hf_json_bool(j, "fits", hf_adjust_fits(from));
     print_json_figures(from, j);
     print_json_moves(from, j);
+    print_json_instead(from, j);
     print_json_numbers(from, j);
     hf_json_pack_values("error_m", "f64", from->estimate.cut_m, from->built.model.n_cable, j->file);
 }

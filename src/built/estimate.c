@@ -137,6 +137,11 @@ static double shared_error_m(const hf_estimate *p, const double *shared, int e)
     return sum;
 }
 
+double hf_estimate_own_m(const hf_estimate *p, int e)
+{
+    return p->cut_m[e] - shared_error_m(p, p->shared, e);
+}
+
 /* Half the sum of squares of errors over their sigmas. */
 static double misfit_of_errors(const hf_estimate *p, const double *cut_m, const double *rest_m, const double *shared)
 {
@@ -321,6 +326,31 @@ static void draw_gap(const hf_estimate *p, hf_random *random, const double *move
         double weight = p->prior.weight_per_m2[i], sign = random_sign(random);
         gap_m[i] = weight > 0 ? move_m[i] + sign / sqrt(weight) : 0;
     }
+}
+
+/* With prior S and posterior P of independent errors the answer to a unit error of one cable has 1 - P/S of it, and
+ * the information 1/P - 1/S that places alone have gives that estimate over 1 - P/S. */
+hf_status hf_estimate_belief(hf_estimate *p, int n, const int *cable, double *part)
+{
+    size_t n_dof = p->linear.n_dof, n_cable = (size_t)p->built->model.n_cable;
+    estimate_scratch s;
+    share_scratch(p, &s);
+    HF_TRY(hf_built_linear_take(&p->linear, &p->work));
+    HF_TRY(hf_saddle_factor(&p->saddle, 0));
+    for (int k = 0; k < n; k++) {
+        int e = cable[k];
+        memset(s.strain_N, 0, n_cable * sizeof *s.strain_N);
+        memset(s.move_m, 0, n_dof * sizeof *s.move_m);
+        memset(s.cut_m, 0, n_cable * sizeof *s.cut_m);
+        memset(s.rest_m, 0, n_dof * sizeof *s.rest_m);
+        s.strain_N[e] = p->linear.cut_N_per_m[e];
+        hf_built_linear_apply(&p->linear, 1, s.strain_N, s.move_m, s.linear);
+        for (size_t i = 0; i < n_dof; i++)
+            s.gap_m[i] = p->prior.weight_per_m2[i] > 0 ? s.move_m[i] : 0;
+        HF_TRY(ask_saddle(p, &s, 1));
+        part[k] = s.cut_m[e] - shared_error_m(p, s.shared, e);
+    }
+    return HF_OK;
 }
 
 hf_status hf_estimate_doubt(hf_estimate *p, double *move_m)

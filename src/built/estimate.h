@@ -46,6 +46,14 @@ hf_status hf_estimate_shape(const hf_estimate *estimate, const double *turn_m, h
 #define HF_ESTIMATE_SAMPLES 64
 hf_status hf_estimate_expect(hf_estimate *estimate, double *expected_m);
 
+/* How far the prior holds back what places say of single cables: of an error of each cable of the list, all by itself,
+ * the part that the estimate takes to be that cable's own, 0 to 1 (to first order). The estimate with a boundless sigma
+ * of one cable, all else as it is, has its own error over this part. part [n]. HF_OK, HF_SINGULAR, HF_NO_MEMORY. */
+hf_status hf_estimate_belief(hf_estimate *estimate, int n, const int *cable, double *part);
+
+/* What of the estimated error of a cable is its own, and not that of what it shares. */
+double hf_estimate_own_m(const hf_estimate *estimate, int cable);
+
 /* What is left unknown: HF_ESTIMATE_SAMPLES moves [n_dof] of the estimated shape, with the covariance of what errors
  * and measurement leave open (to first order). Each is the answer to errors and measurements of random signs, less what
  * the estimate would make of them. HF_OK, HF_SINGULAR, HF_NO_MEMORY. */

@@ -22,7 +22,7 @@ static void check_adjust(const hf_adjust_settings *a, hf_config_faults *f)
     if (fault) hf_config_fault_of(f, "adjust.set", fault);
     if (a->range_m * (1 + 1e-12) < a->step_m)
         hf_config_fault_of(f, "adjust.range_m", "is smaller than adjust.step_m, which allows no move at all");
-    if (a->aim == HF_AIM_DESIGN && a->figure != HF_GOAL_PSI)
+    if (a->aim == HF_AIM_DESIGN && a->figure != HF_GOAL_PSI && hf_config_is_given(f, "adjust.aim"))
         hf_config_fault_of(f, "adjust.aim", "design goes with adjust.figure: psi alone; the others are of the surface");
 }
 

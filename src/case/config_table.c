@@ -147,11 +147,11 @@ const hf_field hf_field_table[] = {
     {"adjust.target_m", HF_FIELD_DOUBLE, AT(adjust.target_m), 0, BIG, "0", "m", NULL,
      "no further move is made once the figure is below it"},
     {"adjust.figure", HF_FIELD_WORD, AT(adjust.figure), 0, 0, "psi", "", hf_figure_word,
-     "what the moves make small, RMS: psi: distance of the inner nodes to their theoretical places; surface: of the "
-     "inner nodes to the wanted surface; facets: of the facets to it"},
-    {"adjust.aim", HF_FIELD_WORD, AT(adjust.aim), 0, 0, "theory", "", hf_aim_word,
-     "of the figure psi: theory: back to the theoretical places; design: to the shape of the design, which has its "
-     "tensions, too"},
+     "what the moves make small, RMS: psi: distance of the inner nodes to where they should be, see adjust.aim; "
+     "surface: of the inner nodes to the wanted surface; facets: of the facets to it"},
+    {"adjust.aim", HF_FIELD_WORD, AT(adjust.aim), 0, 0, "design", "", hf_aim_word,
+     "of the figure psi: design: back to the shape of the design, which has its tensions, too; theory: to the "
+     "theoretical places, also where the design is not there on purpose"},
     {"adjust.sigma_m", HF_FIELD_DOUBLE, AT(adjust.sigma_m), HF_ABOVE_ZERO, BIG, "", "m", NULL,
      "standard deviation of each measured coordinate, of nodes without a sigma_m of their own"},
 

@@ -135,7 +135,7 @@ export const pages = [
       "scene:\n  EA_inner_N: 8.0e4\n  EA_boundary_N: 8.0e4\n  parabolic_cylinder: {aperture_m: 10, length_m: 12, " +
       "focal_length_m: 7.2, modules: [4, 5], cells_per_module: [2, 2], boundary: outer_edge, scallop: 0.1}\n" +
       "form: {method: auto, pretension_N: 20}\ntolerance: {sigma_cut_m: 1e-4, samples: 10}\n" +
-      "adjust: {set: boundary, range_m: 0.003, step_m: 1e-4, moves: 8, sigma_m: 5e-5, target_m: 2e-4}\n",
+      "adjust: {set: boundary, range_m: 0.003, step_m: 1e-4, moves: 8, sigma_m: 5e-5, target_m: 2e-4, aim: theory}\n",
     measured: (nodes) =>
       ["id,x_m,y_m,z_m"]
         .concat(

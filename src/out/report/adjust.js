@@ -25,6 +25,11 @@ function adjustText(name) {
       ` (${open(adjust.estimated_expected_m, adjust.estimated_sigma_m)}),` +
       ` and after ${adjust.moves.length === 1 ? "one move" : `${fmtCount(adjust.moves.length)} moves`}` +
       ` ${inMm(adjust.adjusted_m)} (${open(adjust.adjusted_expected_m, adjust.adjusted_sigma_m)}).`,
+    adjust.figure !== "psi"
+      ? ""
+      : adjust.aim === "design"
+        ? `ψ is measured from the shape of the design, which is ${inMm(adjust.design_psi_m)} from theory.`
+        : "ψ is measured from the theoretical places.",
     ADJUST_END[adjust.end] || "",
     adjust.held_taut ? "Moves leave each cable its least tension, and no further one slack." : "",
     adjust.supports_estimated ? "" : "Supports are taken to be where the case has them.",
@@ -99,10 +104,36 @@ const SHARED = {
   cut_ratio: (error, set) => `lengths of spool ${set}: ${signed(100 * error, 3)} %`,
 };
 
+// What moves would do that aim at something else.
+function otherAims() {
+  if (!adjust.instead.length) return [];
+  const items = adjust.instead.map(({ figure: of, aim, before_m, after_m, move_count, at_range }) =>
+    el(
+      "li",
+      {},
+      el("code", {}, of === "psi" ? `adjust: {figure: psi, aim: ${aim}}` : `adjust: {figure: ${of}}`),
+      `: ${FIGURE[of]} from ${inMm(before_m)} to ${inMm(after_m)} by ` +
+        `${move_count === 1 ? "one move" : `${fmtCount(move_count)} moves`}, ` +
+        `${fmtCount(at_range)} at range_m`,
+    ),
+  );
+  return [
+    el("h3", { class: "after" }, "Aimed at something else"),
+    el(
+      "p",
+      {},
+      `Of the moves above ${fmtCount(adjust.at_range)} are as far as range_m allows; the design is ` +
+        `${inMm(adjust.design_psi_m)} from the theoretical places, where errors make ${inMm(adjust.error_psi_m)}.`,
+    ),
+    el("ul", {}, items),
+  ];
+}
+
 const NAMED_MOST = 10, // of what stands out
+  PLACES_MOST = 3, // the same of places
   SEEMS_OFF = 2; // σ of a number that cables share
 function outliers(choose) {
-  const { stand_out: cables } = adjust,
+  const { stand_out: cables, off_shape: places } = adjust,
     shared = adjust.shared.filter((number) => number.sigmas > SEEMS_OFF),
     left = cables.length - NAMED_MOST;
   const sigmas = (v) => `${fmt(v, 3)} σ`;
@@ -110,17 +141,26 @@ function outliers(choose) {
     ...shared.map(({ kind, set, error, sigmas: s }) =>
       el("li", {}, `${SHARED[kind] ? SHARED[kind](error, set) : kind}, ${sigmas(s)}`),
     ),
-    ...cables.slice(0, NAMED_MOST).map(({ cable, error_m, sigmas: s }) =>
+    ...cables.slice(0, NAMED_MOST).map(({ cable, error_m, by_places_m, sigmas: s }) =>
       el(
         "li",
         {},
         cableLink(cableAt.get(cable), choose),
-        ` seems ${inMm(Math.abs(error_m), 3)} too ${error_m > 0 ? "long" : "short"}, ${sigmas(s)}`,
+        ` seems ${inMm(Math.abs(error_m), 3)} too ${error_m > 0 ? "long" : "short"}, ${sigmas(s)}; ` +
+          `${inMm(Math.abs(by_places_m), 3)} by the places alone`,
       ),
     ),
     left > 0 ? el("li", {}, `and ${fmtCount(left)} more cables beyond 3 σ: the table of cables has all errors`) : null,
+    ...places
+      .slice(0, PLACES_MOST)
+      .map(({ node, distance_m, sigmas: s }) =>
+        el("li", {}, `node ${node} was measured ${inMm(distance_m, 3)} off the estimated shape, ${sigmas(s)}`),
+      ),
+    places.length > PLACES_MOST
+      ? el("li", {}, `and ${fmtCount(places.length - PLACES_MOST)} more measured nodes beyond 4 σ`)
+      : null,
   ];
-  if (!shared.length && !cables.length) return [];
+  if (!shared.length && !cables.length && !places.length) return [];
   return [el("h3", { class: "after" }, "What stands out of the tolerances"), el("ul", {}, list)];
 }
 
@@ -148,5 +188,6 @@ function writeAdjust(view) {
       : null,
     adjust.moves.length ? movesTable(name, choose) : null,
     ...outliers(choose),
+    ...otherAims(),
   );
 }

@@ -230,6 +230,24 @@ START_TEST(what_is_measured_exactly_is_reproduced)
 }
 END_TEST
 
+/* Over its belief the error of a cable is what is estimated when its sigma says nothing. */
+static void check_belief(twin *t, hf_estimate *p, int e)
+{
+    hf_estimate alone;
+    double part, known_m = t->sigma_m[e];
+    ck_assert_int_eq(hf_estimate_belief(p, 1, &e, &part), HF_OK);
+    ck_assert_double_gt(part, 0);
+    ck_assert_double_lt(part, 1);
+    t->sigma_m[e] = 10;
+    estimate_twin(t, &alone);
+    double found_m = hf_estimate_own_m(p, e) / part, told_m = alone.cut_m[e];
+    printf("cable %d: %.4f mm, of which %.3f is believed: %.4f mm; without its sigma %.4f mm\n", e, p->cut_m[e] * 1e3,
+           part, found_m * 1e3, told_m * 1e3);
+    ck_assert_double_eq_tol(found_m, told_m, 1e-3 * fabs(told_m)); /* errors of 3 mm are not quite linear */
+    t->sigma_m[e] = known_m;
+    hf_estimate_free(&alone);
+}
+
 /* One cable is 3 mm too short where 0.1 mm is usual; all nodes are measured, to 0.05 mm. */
 START_TEST(one_wrong_cable_is_found)
 {
@@ -252,6 +270,7 @@ START_TEST(one_wrong_cable_is_found)
     ck_assert_msg(worst == wrong, "net %d: cable %d with %g mm, not %d with %g mm", _i, worst, p.cut_m[worst] * 1e3,
                   wrong, p.cut_m[wrong] * 1e3);
     ck_assert_double_lt(p.cut_m[wrong], -3 * t.sigma_m[wrong]);
+    check_belief(&t, &p, wrong);
     hf_estimate_free(&p);
     close_twin(&t);
 }

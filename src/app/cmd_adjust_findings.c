@@ -1,0 +1,168 @@
+/* Contents: what stands out - what else could be aimed at */
+#include "app/cmd_adjust_findings.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- what stands out ---- */
+
+typedef struct {
+    double size;
+    int at;
+} sized;
+
+/* The largest first; of two alike the first. */
+static int by_size(const void *a, const void *b)
+{
+    const sized *p = a, *q = b;
+    if (p->size != q->size) return p->size > q->size ? -1 : 1;
+    return p->at < q->at ? -1 : p->at > q->at;
+}
+
+double hf_adjust_sigmas(const hf_adjust_job *j, int e)
+{
+    return j->prior.sigma_m[e] > 0 ? j->estimate.cut_m[e] / j->prior.sigma_m[e] : 0;
+}
+
+static void find_cables(hf_adjust_job *j, sized *list)
+{
+    j->n_out = 0;
+    for (int e = 0; e < j->built.model.n_cable; e++) {
+        double size = fabs(hf_adjust_sigmas(j, e));
+        if (size > HF_ADJUST_STANDS_OUT) list[j->n_out++] = (sized){size, e};
+    }
+    qsort(list, (size_t)j->n_out, sizeof *list, by_size);
+    for (int k = 0; k < j->n_out; k++)
+        j->out[k] = list[k].at;
+}
+
+static void find_places(hf_adjust_job *j, sized *list)
+{
+    const hf_model *m = &j->built.model;
+    int n = 0;
+    for (int row = 0; row < m->n_node; row++) {
+        if (!j->measured.line[row]) continue;
+        double off = hf_adjust_off_m(j, row) * sqrt(j->measured.weight_per_m2[3 * row]);
+        if (off > HF_ADJUST_OFF) list[n++] = (sized){off, row};
+    }
+    qsort(list, (size_t)n, sizeof *list, by_size);
+    j->n_far = n;
+    for (int k = 0; k < n; k++)
+        j->far_row[k] = list[k].at;
+}
+
+double hf_adjust_off_m(const hf_adjust_job *j, int row)
+{
+    double square = 0;
+    for (int c = 0; c < 3; c++) {
+        double d = j->measured.place_m[3 * row + c] - j->estimate.work.position_m[c * j->built.model.n_node + row];
+        square += d * d;
+    }
+    return sqrt(square);
+}
+
+static void lay_out_lists(hf_arena *arena, size_t n, sized **list)
+{
+    *list = hf_arena_take(arena, n, sizeof **list);
+}
+
+hf_status hf_adjust_find_outliers(hf_adjust_job *j)
+{
+    const hf_model *m = &j->built.model;
+    hf_arena arena = {0};
+    sized *list;
+    HF_TRY(
+        HF_ARENA_MAKE(&arena, lay_out_lists(&arena, (size_t)(m->n_cable > m->n_node ? m->n_cable : m->n_node), &list)));
+    find_cables(j, list);
+    find_places(j, list);
+    hf_arena_free(&arena);
+    HF_TRY(hf_estimate_belief(&j->estimate, j->n_out, j->out, j->by_places_m));
+    for (int k = 0; k < j->n_out; k++) {
+        double own_m = hf_estimate_own_m(&j->estimate, j->out[k]);
+        j->by_places_m[k] = j->estimate.cut_m[j->out[k]] + own_m / j->by_places_m[k] - own_m;
+    }
+    return HF_OK;
+}
+
+/* ---- what else could be aimed at ---- */
+
+hf_status hf_adjust_make_goals(const hf_adjust_job *j, hf_goal_kind figure, hf_goals *goals, hf_messages *messages)
+{
+    const hf_problem *p = &j->problem;
+    hf_optimize_settings wanted = {.n_goal = 1};
+    wanted.goal[0] = (hf_goal_settings){.goal = figure, .weight = 1};
+    return hf_goals_create(&j->built.scene, &j->built.model, &wanted, &p->surface, &p->facets, NULL, goals, messages);
+}
+
+void hf_adjust_take_aim(hf_adjust_job *j, hf_aim aim)
+{
+    hf_model *m = &j->built.model;
+    const double *from = aim == HF_AIM_DESIGN ? j->built.place_m : j->problem.model.position_m;
+    for (int c = 0; c < 3; c++)
+        memcpy(m->position_m + c * m->n_node, from + c * m->n_node, (size_t)m->n_free * sizeof(double));
+}
+
+int hf_adjust_at_range(const hf_adjustment *a, const hf_adjust_settings *s)
+{
+    int n = 0;
+    for (int k = 0; k < a->n_move; k++)
+        n += abs(a->move[k].steps) == hf_adjust_steps(s);
+    return n;
+}
+
+/* Distance of the inner nodes of the design from their theoretical places, and of a net with errors from the design. */
+static void find_psi_of_design(hf_adjust_job *j)
+{
+    const hf_model *m = &j->built.model;
+    double design = 0, errors = 0;
+    for (int k = 0; k < m->n_inner_node; k++) {
+        int row = m->inner_row[k];
+        for (int c = 0; c < 3; c++) {
+            double d = j->built.place_m[c * m->n_node + row] - j->problem.model.position_m[c * m->n_node + row];
+            design += d * d;
+        }
+        errors += j->expected_m[row] * j->expected_m[row];
+    }
+    j->design_psi_m = m->n_inner_node > 0 ? sqrt(design / m->n_inner_node) : 0;
+    j->error_psi_m = m->n_inner_node > 0 ? sqrt(errors / m->n_inner_node) : 0;
+}
+
+static hf_status try_instead(hf_adjust_job *j, hf_goal_kind figure, hf_aim aim, hf_messages *messages)
+{
+    hf_adjust_settings settings = *j->task.settings;
+    hf_adjust_task task = j->task;
+    hf_goals goals = {0};
+    hf_adjustment found = {0};
+    settings.figure = figure;
+    settings.aim = aim;
+    settings.target_m = 0;
+    task.settings = &settings;
+    task.goals = &goals;
+    hf_adjust_take_aim(j, aim);
+    hf_status status = hf_adjust_make_goals(j, figure, &goals, messages);
+    if (status == HF_OK) status = hf_adjust_find(&j->estimate, &task, &found);
+    if (status == HF_OK)
+        j->instead[j->n_instead++] = (hf_adjust_instead){
+            figure, aim, found.estimated_m, found.adjusted_m, found.n_move, hf_adjust_at_range(&found, &settings)};
+    hf_adjust_free(&found);
+    hf_goals_free(&goals);
+    hf_adjust_take_aim(j, j->task.settings->aim);
+    return status == HF_INTERRUPTED || status == HF_NO_MEMORY ? status : HF_OK; /* what has no shape is not offered */
+}
+
+hf_status hf_adjust_find_instead(hf_adjust_job *j, hf_messages *messages)
+{
+    const hf_adjust_settings *s = j->task.settings;
+    find_psi_of_design(j);
+    j->n_at_range = hf_adjust_at_range(&j->adjustment, s);
+    bool has_own_psi = j->design_psi_m > j->error_psi_m, is_far = 2 * j->n_at_range > j->adjustment.n_move;
+    bool is_psi = s->figure == HF_GOAL_PSI;
+    if (!is_far && !(has_own_psi && is_psi)) return HF_OK;
+    if (!is_psi || s->aim != HF_AIM_DESIGN) HF_TRY(try_instead(j, HF_GOAL_PSI, HF_AIM_DESIGN, messages));
+    if (has_own_psi && !(is_psi && s->aim == HF_AIM_THEORY))
+        HF_TRY(try_instead(j, HF_GOAL_PSI, HF_AIM_THEORY, messages));
+    if (!is_psi || !j->problem.settings.has_surface) return HF_OK;
+    hf_goal_kind figure = j->problem.facets.n_facet > 0 ? HF_GOAL_FACETS : HF_GOAL_SURFACE;
+    return try_instead(j, figure, HF_AIM_THEORY, messages);
+}
