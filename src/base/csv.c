@@ -398,10 +398,43 @@ hf_csv_named *hf_csv_index(hf_csv *t, int column)
     return index;
 }
 
+hf_csv_named *hf_csv_index_of(int n, const char *const *id)
+{
+    hf_csv_named *index = malloc((size_t)n * sizeof *index);
+    for (int i = 0; index && i < n; i++)
+        index[i] = (hf_csv_named){id[i], i};
+    if (index) qsort(index, (size_t)n, sizeof *index, compare_named);
+    return index;
+}
+
 int hf_csv_row_of(const hf_csv_named *index, int n_row, const char *id)
 {
     const hf_csv_named *hit = bsearch(id, index, (size_t)n_row, sizeof *index, compare_id);
     return hit ? hit->row : -1;
+}
+
+int hf_csv_reference(hf_csv *t, int row, int column, const char *id, const char *what, const hf_csv *of,
+                     const hf_csv_named *index)
+{
+    const char *name = hf_csv_cell(t, row, column);
+    int at = hf_csv_row_of(index, of->n_row, name);
+    if (at < 0) hf_csv_fault_unknown(t, t->line[row], id, what, name, of);
+    return at < 0 ? 0 : at;
+}
+
+char *hf_csv_keep(int n_list, const hf_csv_texts *list)
+{
+    size_t size = 1;
+    for (int k = 0; k < n_list; k++)
+        for (int i = 0; i < list[k].n; i++)
+            size += strlen(list[k].text[i]) + 1;
+    char *all = malloc(size), *to = all;
+    for (int k = 0; all && k < n_list; k++)
+        for (int i = 0; i < list[k].n; i++) {
+            list[k].text[i] = strcpy(to, list[k].text[i]);
+            to += strlen(to) + 1;
+        }
+    return all;
 }
 
 /* ---- writing ---- */

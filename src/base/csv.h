@@ -68,8 +68,25 @@ typedef struct {
  * faults, and duplicate ones set has_doubles. */
 hf_csv_named *hf_csv_index(hf_csv *table, int column);
 
+/* The same of ids from elsewhere [n], without faults. */
+hf_csv_named *hf_csv_index_of(int n, const char *const *id);
+
 /* The row of an id, or -1. */
 int hf_csv_row_of(const hf_csv_named *index, int n_row, const char *id);
+
+/* The row of `of`, with its index, that a cell names; 0 after a fault, that `what` has no such id: a sentence up to the
+ * name. */
+int hf_csv_reference(hf_csv *table, int row, int column, const char *id, const char *what, const hf_csv *of,
+                     const hf_csv_named *index);
+
+/* Texts [n] that point into tables. */
+typedef struct {
+    const char **text;
+    int n;
+} hf_csv_texts;
+
+/* Moves all texts of the lists into one block, which the caller frees; NULL without memory, and nothing has changed. */
+char *hf_csv_keep(int n_list, const hf_csv_texts *list);
 
 /* An id as a CSV field: quoted when it holds a comma, semicolon, quote, tab or end of line, blanks at its ends or a
  * leading '#'; with an apostrophe in front when a spreadsheet would run it. */

@@ -198,11 +198,6 @@ static hf_status push(const maker *q, int row)
 enum { ROW_ID, ROW_FORCE, ROW_MOVE = ROW_FORCE + 3, N_ROW_COLUMN = ROW_MOVE + 3 };
 static const char *const row_column[N_ROW_COLUMN] = {"id", "Fx_N", "Fy_N", "Fz_N", "dx_m", "dy_m", "dz_m"};
 
-static int by_node_id(const void *a, const void *b)
-{
-    return strcmp(((const hf_csv_named *)a)->id, ((const hf_csv_named *)b)->id);
-}
-
 /* Adds a row of the table to the state. Empty cells are 0. */
 static void add_node(hf_csv *t, const int *where, int r, const hf_csv_named *node, const hf_scene *s, hf_state *state)
 {
@@ -233,12 +228,9 @@ static hf_status read_table(hf_csv *t, const hf_scene *s, hf_state *state)
         return hf_error(t->messages, HF_BAD_CASE,
                         "%s:%d: has none of the columns Fx_N, Fy_N, Fz_N, dx_m, dy_m, dz_m, so it says nothing",
                         t->path, t->header_line);
-    hf_csv_named *id = hf_csv_index(t, where[ROW_ID]), *node = malloc((size_t)s->n_node * sizeof *node);
+    hf_csv_named *id = hf_csv_index(t, where[ROW_ID]), *node = hf_csv_index_of(s->n_node, s->node_id);
     bool has_room = id && node;
     if (has_room) {
-        for (int i = 0; i < s->n_node; i++)
-            node[i] = (hf_csv_named){s->node_id[i], i};
-        qsort(node, (size_t)s->n_node, sizeof *node, by_node_id);
         for (int r = 0; r < t->n_row; r++)
             add_node(t, where, r, node, s, state);
     }

@@ -16,11 +16,6 @@ static const char *const facet_column[N_FACET_COLUMN] = {"id", "a", "b", "c", "d
 
 /* ---- nodes ---- */
 
-static int by_id(const void *a, const void *b)
-{
-    return strcmp(((const hf_csv_named *)a)->id, ((const hf_csv_named *)b)->id);
-}
-
 double hf_facet_turn(const hf_scene *s, int a, int b, int c)
 {
     const double *p = s->position_m + 3 * (size_t)a, *q = s->position_m + 3 * (size_t)b;
@@ -136,15 +131,12 @@ static hf_status build(hf_csv *t, hf_scene *s)
     HF_TRY(hf_csv_read(t->path, COLUMN_MAX, t, t->messages));
     HF_TRY(hf_csv_find_columns(t, facet_column, N_FACET_COLUMN, FACET_D, where));
     size_t n = (size_t)t->n_row;
-    hf_csv_named *id = hf_csv_index(t, where[FACET_ID]), *node = malloc((size_t)s->n_node * sizeof *node);
+    hf_csv_named *id = hf_csv_index(t, where[FACET_ID]), *node = hf_csv_index_of(s->n_node, s->node_id);
     side *sides = malloc((4 * n + (size_t)s->n_cable) * sizeof *sides);
     s->facet = calloc(4 * n, sizeof *s->facet);
     bool has_room = id && node && sides && s->facet;
     if (has_room) {
         s->n_facet = t->n_row;
-        for (int i = 0; i < s->n_node; i++)
-            node[i] = (hf_csv_named){s->node_id[i], i};
-        qsort(node, (size_t)s->n_node, sizeof *node, by_id);
         for (int r = 0; r < t->n_row; r++)
             read_corners(t, where, node, s, r);
         check_sides(t, where, s, sides, sides + s->n_cable);

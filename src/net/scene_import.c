@@ -89,12 +89,9 @@ static void read_cables(hf_csv *t, const int *where, const hf_csv *nodes, const 
         const char *id = hf_csv_cell(t, r, where[CABLE_ID]);
         s->cable_id[r] = id;
         s->cable_line[r] = t->line[r];
-        for (int k = 0; k < 2; k++) {
-            const char *end = hf_csv_cell(t, r, where[CABLE_I + k]);
-            int row = hf_csv_row_of(node_index, nodes->n_row, end);
-            if (row < 0) hf_csv_fault_unknown(t, t->line[r], id, "there is no node with the id ", end, nodes);
-            s->end[2 * r + k] = row < 0 ? 0 : row;
-        }
+        for (int k = 0; k < 2; k++)
+            s->end[2 * r + k] =
+                hf_csv_reference(t, r, where[CABLE_I + k], id, "there is no node with the id ", nodes, node_index);
         s->group[r] = (unsigned char)hf_csv_word(t, r, where[CABLE_GROUP], id, hf_group_word, 2);
         s->law[r] = (unsigned char)hf_csv_word(t, r, where[CABLE_LAW], id, hf_law_word, HF_N_LAW);
         read_target(t, where, r, id, s);
@@ -184,20 +181,9 @@ static hf_status read_sets(hf_csv *t, const int *where, hf_scene *s)
 /* The ids still point into the two texts: move them to one block that the scene owns. */
 static hf_status keep_ids(hf_scene *s)
 {
-    size_t size = strlen(s->nodes_file) + strlen(s->cables_file) + 2;
-    for (int i = 0; i < s->n_node; i++)
-        size += strlen(s->node_id[i]) + 1;
-    for (int e = 0; e < s->n_cable; e++)
-        size += strlen(s->cable_id[e]) + 1;
-    char *text = s->text = malloc(size);
-    if (!text) return HF_NO_MEMORY;
-    const char **all[] = {&s->nodes_file, &s->cables_file};
-    for (int i = 0; i < 2 + s->n_node + s->n_cable; i++) {
-        const char **id = i < 2 ? all[i] : i < 2 + s->n_node ? &s->node_id[i - 2] : &s->cable_id[i - 2 - s->n_node];
-        *id = strcpy(text, *id);
-        text += strlen(text) + 1;
-    }
-    return HF_OK;
+    const hf_csv_texts all[] = {
+        {&s->nodes_file, 1}, {&s->cables_file, 1}, {s->node_id, s->n_node}, {s->cable_id, s->n_cable}};
+    return (s->text = hf_csv_keep(4, all)) ? HF_OK : HF_NO_MEMORY;
 }
 
 static hf_status build(hf_csv *nodes, hf_csv *cables, const double group_EA_N[2], hf_csv_named **node_index,

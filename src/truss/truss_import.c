@@ -96,12 +96,9 @@ static void read_members(hf_csv *t, const int *where, const hf_csv *nodes, const
         const char *id = hf_csv_cell(t, r, where[MEMBER_ID]);
         s->member_id[r] = id;
         s->member_line[r] = t->line[r];
-        for (int k = 0; k < 2; k++) {
-            const char *end = hf_csv_cell(t, r, where[MEMBER_I + k]);
-            int row = hf_csv_row_of(node_index, nodes->n_row, end);
-            if (row < 0) hf_csv_fault_unknown(t, t->line[r], id, "there is no truss node with the id ", end, nodes);
-            s->end[2 * r + k] = row < 0 ? 0 : row;
-        }
+        for (int k = 0; k < 2; k++)
+            s->end[2 * r + k] = hf_csv_reference(t, r, where[MEMBER_I + k], id, "there is no truss node with the id ",
+                                                 nodes, node_index);
         read_numbers(t, where, r, id, s);
         s->joint[r] = (unsigned char)optional_word(t, r, where[MEMBER_JOINT], id, hf_joint_word, 2, HF_JOINT_RIGID);
         s->unit[r] = (unsigned char)optional_word(t, r, where[MEMBER_UNIT], id, hf_unit_word, HF_N_UNIT, HF_UNIT_OTHER);
@@ -113,20 +110,9 @@ static void read_members(hf_csv *t, const int *where, const hf_csv *nodes, const
 /* The ids still point into the two texts: move them to one block that the truss owns. */
 static hf_status keep_ids(hf_truss *s)
 {
-    size_t size = strlen(s->nodes_file) + strlen(s->members_file) + 2;
-    for (int i = 0; i < s->n_node; i++)
-        size += strlen(s->node_id[i]) + 1;
-    for (int e = 0; e < s->n_member; e++)
-        size += strlen(s->member_id[e]) + 1;
-    char *text = s->text = malloc(size);
-    if (!text) return HF_NO_MEMORY;
-    const char **all[] = {&s->nodes_file, &s->members_file};
-    for (int i = 0; i < 2 + s->n_node + s->n_member; i++) {
-        const char **id = i < 2 ? all[i] : i < 2 + s->n_node ? &s->node_id[i - 2] : &s->member_id[i - 2 - s->n_node];
-        *id = strcpy(text, *id);
-        text += strlen(text) + 1;
-    }
-    return HF_OK;
+    const hf_csv_texts all[] = {
+        {&s->nodes_file, 1}, {&s->members_file, 1}, {s->node_id, s->n_node}, {s->member_id, s->n_member}};
+    return (s->text = hf_csv_keep(4, all)) ? HF_OK : HF_NO_MEMORY;
 }
 
 static hf_status build(hf_csv *nodes, hf_csv *members, hf_csv_named **node_index, hf_csv_named **member_index,
