@@ -63,14 +63,8 @@ static void join(generator *g, int a, int b, hf_unit unit)
     const hf_tube *tube = unit == HF_UNIT_LONGERON   ? &r->longeron
                           : unit == HF_UNIT_VERTICAL ? &r->vertical
                                                      : &r->diagonal;
-    hf_truss *t = g->t;
-    int e = g->i_member++;
-    t->end[2 * e] = a;
-    t->end[2 * e + 1] = b;
-    t->unit[e] = (unsigned char)unit;
-    hf_tube_set(g->s, tube->diameter_m, tube->wall_m, t, e);
-    t->member_id[e] = g->text;
-    g->text += snprintf(g->text, (size_t)(g->end - g->text), "%s-%s", t->node_id[a], t->node_id[b]) + 1;
+    g->text = hf_tube_join(g->s, tube->diameter_m, tube->wall_m, g->t, g->i_member++, a, b, unit, g->text,
+                           (size_t)(g->end - g->text));
 }
 
 static void join_all(generator *g)

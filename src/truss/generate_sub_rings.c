@@ -71,15 +71,8 @@ static void add_node(generator *g, const double *grid_m, int i_line, int j_line,
 
 static void add_member(generator *g, int a, int b, hf_unit unit)
 {
-    hf_truss *t = g->t;
     const hf_truss_unit *u = unit_of(g->set, unit);
-    int e = g->i_member++;
-    t->end[2 * e] = a;
-    t->end[2 * e + 1] = b;
-    t->unit[e] = (unsigned char)unit;
-    hf_tube_set(g->set, u->diameter_m, u->wall_m, t, e);
-    t->member_id[e] = g->text;
-    g->text += snprintf(g->text, 2 * ID_SIZE, "%s-%s", t->node_id[a], t->node_id[b]) + 1;
+    g->text = hf_tube_join(g->set, u->diameter_m, u->wall_m, g->t, g->i_member++, a, b, unit, g->text, 2 * ID_SIZE);
 }
 
 /* Adds chords, inner posts and diagonals of one unit between the front nodes a and b. Its inner front nodes have the

@@ -3,8 +3,10 @@
 #include "base/elementary.h"
 
 #include <math.h>
+#include <stdio.h>
 
-void hf_tube_set(const hf_truss_settings *s, double diameter_m, double wall_m, hf_truss *t, int e)
+/* The numbers of member e. */
+static void set_section(const hf_truss_settings *s, double diameter_m, double wall_m, hf_truss *t, int e)
 {
     double outer = diameter_m / 2, inner = outer - wall_m;
     t->joint[e] = (unsigned char)s->joints;
@@ -16,4 +18,15 @@ void hf_tube_set(const hf_truss_settings *s, double diameter_m, double wall_m, h
     t->Asy_m2[e] = t->Asz_m2[e] = s->theory == HF_THEORY_TIMOSHENKO ? t->A_m2[e] / 2 : (double)INFINITY;
     t->density_kg_per_m3[e] = s->density_kg_per_m3;
     t->expansion_per_K[e] = s->expansion_per_K;
+}
+
+char *hf_tube_join(const hf_truss_settings *s, double diameter_m, double wall_m, hf_truss *t, int e, int a, int b,
+                   hf_unit unit, char *text, size_t size)
+{
+    t->end[2 * e] = a;
+    t->end[2 * e + 1] = b;
+    t->unit[e] = (unsigned char)unit;
+    set_section(s, diameter_m, wall_m, t, e);
+    t->member_id[e] = text;
+    return text + snprintf(text, size, "%s-%s", t->node_id[a], t->node_id[b]) + 1;
 }

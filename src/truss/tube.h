@@ -4,7 +4,9 @@
 
 #include <hifdm/truss.h>
 
-/* Set the numbers of member e: a round tube of this outer diameter and wall in the material of the settings. */
-void hf_tube_set(const hf_truss_settings *settings, double diameter_m, double wall_m, hf_truss *truss, int e);
+/* Member e from node a to b: a round tube of this outer diameter and wall in the material of the settings. Its id, of
+ * the ids of its nodes, is written to text [size]; returns its end. */
+char *hf_tube_join(const hf_truss_settings *settings, double diameter_m, double wall_m, hf_truss *truss, int e, int a,
+                   int b, hf_unit unit, char *text, size_t size);
 
 #endif
