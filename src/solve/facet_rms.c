@@ -18,9 +18,7 @@ hf_status hf_facet_shape_take(const hf_model *m, const hf_workspace *w, hf_facet
                                  end = hf_arena_take(arena, 2 * (size_t)m->n_cable, sizeof(int)))));
     for (int k = 0; k < 2 * m->n_cable; k++)
         end[k] = m->node_of_row[m->end_row[k]];
-    for (int row = 0; row < m->n_node; row++)
-        for (int c = 0; c < 3; c++)
-            position_m[3 * (size_t)m->node_of_row[row] + (size_t)c] = w->position_m[c * m->n_node + row];
+    hf_workspace_places(m, w, position_m);
     *shape = (hf_facet_shape){position_m, m->n_cable, end, w->tension_N};
     return HF_OK;
 }

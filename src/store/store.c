@@ -185,9 +185,7 @@ static void write_shape(hf_store *s, hid_t group, const hf_model *m, const hf_wo
                       .q_N_per_m = w->q_N_per_m,
                       .law = w->law};
     if (!shape.position_m) return;
-    for (size_t row = 0; row < n; row++)
-        for (size_t c = 0; c < 3; c++)
-            shape.position_m[3 * (size_t)m->node_of_row[row] + c] = w->position_m[c * n + row];
+    hf_workspace_places(m, w, shape.position_m);
     hf_layout_write_columns(&s->f.io, group, &hf_layout_shape, m->n_node, m->n_cable, &shape);
 }
 

@@ -204,9 +204,7 @@ START_TEST(the_gain_is_what_the_field_loses)
     ck_assert_int_le(t.goals.n_row, 20000);
     const hf_model *m = &t.net.model;
     double *place = calloc(3 * (size_t)m->n_node, sizeof *place);
-    for (int row = 0; row < m->n_node; row++)
-        for (int c = 0; c < 3; c++)
-            place[3 * m->node_of_row[row] + c] = t.net.work.position_m[c * m->n_node + row];
+    hf_workspace_places(m, &t.net.work, place);
     hf_gain_beam_make(&t.surface, &t.facets, t.net.scene.position_m, 0.3e9, &beam);
     double loss_dB = hf_gain_loss_dB(&beam, &(hf_pattern_surface){&t.facets, place, NULL});
     ck_assert_int_eq(hf_goals_measure(&t.goals, &t.net.work, &t.point, &value, &merit), HF_OK);
