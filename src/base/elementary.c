@@ -4,6 +4,12 @@
 #include <math.h>
 #include <stddef.h>
 
+int hf_compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
 /* ---- lengths ---- */
 
 double hf_norm(double x, double y, double z)

@@ -10,6 +10,9 @@
 #define HF_DB_PER_LN 4.3429448190325182765 /* 10/ln 10 */
 #define HF_LIGHT_M_PER_S 299792458.0
 
+/* Of two doubles, for qsort: ascending. */
+int hf_compare_doubles(const void *a, const void *b);
+
 /* sqrt(x^2 + y^2 + z^2) without overflow or underflow; error below 2 units in the last place. Infinite when one is,
  * else NaN when one is. */
 double hf_norm(double x, double y, double z);

@@ -65,12 +65,6 @@ static void doubt_cables(const hf_scene *s, joint *all, hf_messages *messages)
 
 /* ---- far nodes ---- */
 
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static int by_distance(const void *a, const void *b)
 {
     const distance *x = a, *y = b;
@@ -87,7 +81,7 @@ static void doubt_nodes(const hf_scene *s, const scratch *t, hf_messages *messag
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < n; i++)
             t->coordinate[i] = s->position_m[3 * i + c];
-        qsort(t->coordinate, (size_t)n, sizeof(double), by_value);
+        qsort(t->coordinate, (size_t)n, sizeof(double), hf_compare_doubles);
         middle[c] = t->coordinate[n / 2];
     }
     for (int i = 0; i < n; i++)

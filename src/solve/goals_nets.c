@@ -2,6 +2,7 @@
  * which nets - residuals - derivatives */
 #include <hifdm/goals.h>
 
+#include "base/elementary.h"
 #include "linalg/dot.h"
 
 #include <math.h>
@@ -79,18 +80,12 @@ hf_status hf_goals_nets_measure(const hf_goals *goals, const hf_workspace *w, hf
     return q.status;
 }
 
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The value that a part q of n is not above, as statistics of tolerances have it (built/statistics.h). */
 static double quantile_of(int n, const double *value, double part, double *order)
 {
     int rank = (int)ceil(part * n);
     memcpy(order, value, (size_t)n * sizeof *order);
-    qsort(order, (size_t)n, sizeof *order, by_size);
+    qsort(order, (size_t)n, sizeof *order, hf_compare_doubles);
     return order[rank > 0 ? rank - 1 : 0];
 }
 

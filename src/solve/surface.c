@@ -54,12 +54,6 @@ static void note_losses(const hf_surface_settings *s, hf_surface_measures *to)
 
 /* ---- percentiles ---- */
 
-static int compare(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Percentile of n sorted values, 0 <= part <= 1, interpolated linearly between the two nearest. */
 static double percentile(const double *sorted, int n, double part)
 {
@@ -120,7 +114,7 @@ hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *face
     double *deviation_m = position_m + 3 * n;
     hf_surface_measures all = {.is_measured = true};
     collect(s, m, w, position_m, deviation_m, &all);
-    qsort(deviation_m, n, sizeof *deviation_m, compare);
+    qsort(deviation_m, n, sizeof *deviation_m, hf_compare_doubles);
     all.deviation_p50_m = percentile(deviation_m, (int)n, 0.50);
     all.deviation_p90_m = percentile(deviation_m, (int)n, 0.90);
     all.deviation_p95_m = percentile(deviation_m, (int)n, 0.95);

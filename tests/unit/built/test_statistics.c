@@ -1,6 +1,7 @@
 /* Ranks and intervals of very many samples, against sorting, tables and sums term by term. */
 #include "nets.h"
 
+#include "base/elementary.h"
 #include "built/statistics.h"
 
 #include <math.h>
@@ -11,12 +12,6 @@ static hf_status read_numbers(void *context, long first, int n, double *row)
 {
     memcpy(row, (double *)context + first * HF_TOLERANCE_COLUMNS, (size_t)n * HF_TOLERANCE_COLUMNS * sizeof *row);
     return HF_OK;
-}
-
-static int compare_columns(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 START_TEST(order_is_that_of_sorting)
@@ -34,7 +29,7 @@ START_TEST(order_is_that_of_sorting)
         row[i * HF_TOLERANCE_COLUMNS + 4] = x;
         sorted[n++] = isnan(x) ? missing : x;
     }
-    qsort(sorted, (size_t)n, sizeof *sorted, compare_columns);
+    qsort(sorted, (size_t)n, sizeof *sorted, hf_compare_doubles);
     const hf_statistics_rows rows = {N, read_numbers, row};
     const long rank[5] = {1, n / 3, n / 2, n - 1, n};
     ck_assert_int_eq(hf_statistics_order(&rows, 4, missing, 5, rank, value), HF_OK);
