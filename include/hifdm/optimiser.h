@@ -74,9 +74,10 @@ void hf_optimiser_free(hf_optimiser *optimiser);
 /* ---- the methods of a case ---- */
 
 /* How Levenberg-Marquardt ended. CONVERGED: no step within the limits promises a lower psi. STALLED: one does, but even
- * a short one does not keep the promise. MAX_ITERATIONS: neither yet. */
-typedef enum { HF_POLISH_CONVERGED, HF_POLISH_STALLED, HF_POLISH_MAX_ITERATIONS } hf_polish_stop;
-extern const char *const hf_polish_stop_word[3]; /* "converged", "stalled", "max_iterations" */
+ * a short one does not keep the promise. MAX_ITERATIONS: neither yet. SETTLED: the last ten steps lowered the merit by
+ * less than 1e-6 of it, and changed no goal (weight x value) by 1e-5 of the merit. */
+typedef enum { HF_POLISH_CONVERGED, HF_POLISH_STALLED, HF_POLISH_MAX_ITERATIONS, HF_POLISH_SETTLED } hf_polish_stop;
+extern const char *const hf_polish_stop_word[4]; /* "converged", "stalled", "max_iterations", "settled" */
 
 /* One row for each hf_optimize_method: X(method, optimiser of its generations or `none`, ends_with_polish). */
 #define HF_OPTIMISER_LIST(X) X(GA, ga, false) X(LM, none, true) X(GA_LM, ga, true)

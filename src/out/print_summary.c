@@ -196,7 +196,8 @@ static void print_ga(const hf_summary *s, bool is_result, FILE *f)
 
 static void print_lm(const hf_summary *s, bool is_result, FILE *f)
 {
-    static const char *const end[3] = {"", ", stalled: shorter steps gain nothing", ", not converged"};
+    static const char *const end[4] = {"", ", stalled: shorter steps gain nothing", ", not converged",
+                                       ", settled: ten steps gain less than 1e-6"};
     char wall[32];
     hf_print_duration(s->polish_wall_s, wall, sizeof wall);
     print_figures(s, "LM", &s->polish, s->polish_n_at_lower + s->polish_n_at_upper, f);

@@ -230,6 +230,11 @@ static const hf_word told[] = {
      "Levenberg-Marquardt: shorter steps gain nothing, though the derivatives promise it; the design is a good one, "
      "but not shown to be an optimum.",
      NULL},
+    {"settled", "stop_reason", "",
+     "Levenberg-Marquardt: its last ten steps lowered the merit by less than a millionth and changed no goal (weight x "
+     "value) by more than 1e-5 of the merit. The design is a good one; steps still promise a little. That is how runs "
+     "end whose goals leave much open: vary fewer sets of cables, or count what may not move.",
+     NULL},
     /* ---- object of --json ---- */
     {"form", "object of --json", "", "The found shape: figures of the form-finding.", NULL},
     {"optimize", "object of --json", "", "The best design of the genetic algorithm.", NULL},

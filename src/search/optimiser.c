@@ -4,7 +4,7 @@
 #include <assert.h>
 #include <stddef.h>
 
-const char *const hf_polish_stop_word[3] = {"converged", "stalled", "max_iterations"};
+const char *const hf_polish_stop_word[4] = {"converged", "stalled", "max_iterations", "settled"};
 
 /* ---- ask and tell ---- */
 

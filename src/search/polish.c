@@ -23,6 +23,9 @@
 #define LIMIT_ROUNDING 1e-12 /* a violation below this part of the tension is rounding [1e-14 to 1e-10] */
 #define BENDS_MAX 4          /* corrections of a step for the bend of its residuals [2 to 4] */
 #define BEND_BELOW 0.65      /* part of the promised gain from which on a step needs none [0.65 to 0.75; 0.5 fails] */
+#define SETTLED_STEPS 10     /* settled: as many steps change the merit and what each goal adds to it by less than */
+#define SETTLED_MERIT 1e-6   /* this part of the merit, which is told to six digits, */
+#define SETTLED_GOAL 1e-5    /* and this one: a goal of little weight may still gain where the merit hardly does */
 #define BEND_WORTH 0.5       /* a correction that leaves more of the merit than this is the last [0.5 to 0.9] */
 
 /* ---- one step ---- */
@@ -246,7 +249,23 @@ static hf_status find_multipliers(hf_polish_problem *p, hf_polish_result *r)
     return HF_OK;
 }
 
-/* Steps until one promises nothing more, none lowers psi any more, or the iteration limit is reached. The damping
+/* After a step that was kept: do the last ones change nothing that anyone could read? In a flat valley that bends each
+ * step promises far more than the next one keeps, so that a promise alone never says so. */
+static bool is_settled(hf_polish_problem *p, double merit)
+{
+    const hf_goals *goals = p->v.goals;
+    bool changes = merit < (1 - SETTLED_MERIT) * p->settled_merit;
+    for (int k = 0; goals && k < goals->n_goal; k++)
+        changes |= goals->goal[k].wanted.weight * fabs(p->result.goal[k] - p->settled_goal[k]) > SETTLED_GOAL * merit;
+    if (!changes) return p->settled_steps >= SETTLED_STEPS;
+    p->settled_merit = merit;
+    memcpy(p->settled_goal, p->result.goal, sizeof p->settled_goal);
+    p->settled_steps = 0;
+    return false;
+}
+
+/* Steps until one promises nothing more, none lowers psi any more, the last ones gained nothing that matters, or the
+ * iteration limit is reached. Of a trade, whose multipliers are wanted, small gains count, too. The damping
  * follows Nielsen (Madsen, Nielsen, Tingleff, Methods for non-linear least squares problems, DTU 2004). */
 static hf_status minimise(hf_polish_problem *p, int max_iterations, hf_polish_result *r)
 {
@@ -263,6 +282,7 @@ static hf_status minimise(hf_polish_problem *p, int max_iterations, hf_polish_re
     while (status == HF_OK && !p->is_outside && r->stop == HF_POLISH_MAX_ITERATIONS && r->iterations < max_iterations) {
         double before = r->merit * r->merit / 2;
         r->iterations++;
+        p->settled_steps++;
         status = try_step(p, p->damping, &gain);
         if (status == HF_OK && !p->trade) status = bend_step(p, before, gain);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
@@ -279,6 +299,7 @@ static hf_status minimise(hf_polish_problem *p, int max_iterations, hf_polish_re
             double share = 2 * (before - after) / gain - 1;
             if (gain > 0) p->damping = fmax(DAMPING_LEAST, p->damping * fmax(0.1, 1 - share * share * share));
             p->growth = 2;
+            if (!p->trade && r->stop == HF_POLISH_MAX_ITERATIONS && is_settled(p, merit)) r->stop = HF_POLISH_SETTLED;
             if (r->stop == HF_POLISH_MAX_ITERATIONS) status = hf_polish_linearise(p);
         } else {
             p->damping *= p->growth;
@@ -346,6 +367,7 @@ static hf_status run_problem(hf_polish_problem p, int max_iterations, double *de
     p.growth = 2;
     p.way = 1;
     p.best_psi_m = start.psi_m;
+    p.settled_merit = INFINITY;
     hf_status status = hf_polish_create(&p, &arena);
     if (status == HF_OK) {
         hf_polish_begin(&p, design);

@@ -29,9 +29,12 @@ enum {
     STATE_GROWTH,
     STATE_WAY,
     STATE_VIOLATION,
-    N_SCALAR
+    STATE_SETTLED_STEPS,
+    STATE_SETTLED_MERIT,
+    STATE_SETTLED_GOAL,
+    N_SCALAR = STATE_SETTLED_GOAL + HF_DESIGN_ROWS_MAX
 };
-#define FORMAT 1
+#define FORMAT 2
 
 static void lay_out(hf_arena *a, hf_polish_problem *p)
 {
@@ -257,6 +260,9 @@ void hf_polish_pack(hf_polish_problem *p, const hf_polish_result *r)
     s[STATE_GROWTH] = p->growth;
     s[STATE_WAY] = p->way;
     s[STATE_VIOLATION] = p->violation;
+    s[STATE_SETTLED_STEPS] = p->settled_steps;
+    s[STATE_SETTLED_MERIT] = p->settled_merit;
+    memcpy(s + STATE_SETTLED_GOAL, p->settled_goal, sizeof p->settled_goal);
     memcpy(array, p->at, n * sizeof(double));
     memcpy(array + n, p->scale, n * sizeof(double));
     for (size_t i = 0; i < n; i++)
@@ -271,8 +277,9 @@ static bool is_state(const hf_polish_problem *p, size_t n_state, const double *s
     for (size_t i = N_SCALAR; i < n_state; i++)
         if (!isfinite(s[i])) return false;
     return s[STATE_ITERATIONS] >= 0 && s[STATE_ITERATIONS] < INT_MAX && s[STATE_EVALUATIONS] >= 1 &&
-           s[STATE_EVALUATIONS] < INT_MAX && s[STATE_STOP] >= 0 && s[STATE_STOP] <= HF_POLISH_MAX_ITERATIONS &&
-           s[STATE_DAMPING] > 0 && s[STATE_GROWTH] > 0 && s[STATE_WAY] > 0;
+           s[STATE_EVALUATIONS] < INT_MAX && s[STATE_STOP] >= 0 && s[STATE_STOP] <= HF_POLISH_SETTLED &&
+           s[STATE_DAMPING] > 0 && s[STATE_GROWTH] > 0 && s[STATE_WAY] > 0 && s[STATE_SETTLED_STEPS] >= 0 &&
+           s[STATE_SETTLED_STEPS] < INT_MAX;
 }
 
 bool hf_polish_go_on(hf_polish_problem *p, size_t n_state, const double *s, hf_polish_result *r)
@@ -290,6 +297,9 @@ bool hf_polish_go_on(hf_polish_problem *p, size_t n_state, const double *s, hf_p
     p->growth = s[STATE_GROWTH];
     p->way = s[STATE_WAY];
     p->violation = s[STATE_VIOLATION];
+    p->settled_steps = (int)s[STATE_SETTLED_STEPS];
+    p->settled_merit = s[STATE_SETTLED_MERIT];
+    memcpy(p->settled_goal, s + STATE_SETTLED_GOAL, sizeof p->settled_goal);
     memcpy(p->at, array, n * sizeof(double));
     memcpy(p->scale, array + n, n * sizeof(double));
     for (size_t i = 0; i < n; i++) {

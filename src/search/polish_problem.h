@@ -51,6 +51,8 @@ typedef struct {
     double damping, growth;              /* of the next step, and by what the former grows if that is none */
     double way, violation; /* outside of the limits: the part of the way that the next step goes; how far outside */
     double best_psi_m;     /* of the best design */
+    int settled_steps;     /* since the merit, or a goal, last changed by more than what is read of it */
+    double settled_merit, settled_goal[HF_DESIGN_ROWS_MAX]; /* of then */
     size_t n_state;
     double *state; /* [n_state] where the run is, for hf_polish_watcher */
     double noise;  /* what the tolerance of the form-finding leaves open in the merit */

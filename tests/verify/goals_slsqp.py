@@ -2,7 +2,8 @@
 of a set under a limit on their ratio, or the displacement of a truss with tensions between bounds. `hifdm run` with
 Levenberg-Marquardt, and scipy's SLSQP from its result, with equilibria, a truss and derivatives of this script's own.
 
-Fails when merit or goals differ, a limit is broken, SLSQP gains more than 1e-6 of the merit, or hifdm did not converge.
+Fails when merit or goals differ, a limit is broken, SLSQP gains more than 1e-6 of the merit, or hifdm ended neither
+converged nor settled.
 """
 import os
 import subprocess
@@ -13,7 +14,7 @@ import h5py
 import numpy as np
 
 from coupled_oracle import beam
-from lm_slsqp import GAIN_MOST, Net, minimise, remember
+from lm_slsqp import ENDED, GAIN_MOST, Net, minimise, remember
 
 E_PA, G_PA, A_M2, I_M4, J_M4 = 70e9, 26e9, 2e-7, 1.2e-8, 2.4e-8
 MAST_M = 1.5
@@ -156,7 +157,8 @@ def compare(program, folder, random, on_truss):
     figures.worst(max(gain, 0), GAIN_MOST, f"{what}: what SLSQP gains there, in parts of the merit")
     wrong = [what for what, is_wrong in [
         ("merit differs", abs(own - merit) > 1e-9 * merit),
-        ("goals differ", np.abs(goal / [psi, largest] - 1).max() > 1e-8), ("not converged", polish["polish_stop"] != 0),
+        ("goals differ", np.abs(goal / [psi, largest] - 1).max() > 1e-8),
+        ("not converged", polish["polish_stop"] not in ENDED),
         ("beyond a limit", slack.min() < -1e-7), ("SLSQP gains", gain > GAIN_MOST),
         ("out of bounds", (design < low - 1e-9).any() or (design > high + 1e-9).any())] if is_wrong]
     if wrong:

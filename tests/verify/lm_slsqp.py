@@ -2,7 +2,8 @@
 as such or as a row of optimize.limits, `hifdm run` with Levenberg-Marquardt, and scipy's SLSQP from its result, with
 equilibria and derivatives of this script's own.
 
-Fails when the equilibrium differs, a limit is broken, SLSQP gains more than 1e-6 of psi, or hifdm did not converge."""
+Fails when the equilibrium differs, a limit is broken, SLSQP gains more than 1e-6 of psi, or hifdm ended neither
+converged nor settled."""
 import os
 import subprocess
 import sys
@@ -13,6 +14,7 @@ import numpy as np
 import scipy.optimize
 
 GAIN_MOST = 1e-6  # of psi
+ENDED = 0, 3  # converged, settled
 
 
 class Net:
@@ -198,7 +200,7 @@ def compare(program, folder, random):
     figures.worst(abs(own - psi) / psi, 1e-9, f"{net_is}: psi of the optimum, in parts of it")
     figures.worst(max(gain, 0), GAIN_MOST, f"{net_is}: what SLSQP gains there, in parts of psi")
     wrong = [what for what, is_wrong in [
-        ("psi differs", abs(own - psi) > 1e-9 * psi), ("not converged", polish["polish_stop"] != 0),
+        ("psi differs", abs(own - psi) > 1e-9 * psi), ("not converged", polish["polish_stop"] not in ENDED),
         ("above the cap", T.max() / T.min() > cap * (1 + 1e-9)), ("SLSQP gains", gain > GAIN_MOST),
         ("out of bounds", (design < low - 1e-9).any() or (design > high + 1e-9).any())] if is_wrong]
     if wrong:

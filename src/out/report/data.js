@@ -93,6 +93,7 @@ const STOP = {
   generations: "the limit of generations",
   stagnation: "stagnation",
   all_infeasible: "a generation without a feasible design",
+  settled: "ten steps that gained less than 1e-6",
 };
 const stopText = (word) => STOP[word] || String(word).replace(/_/g, " ");
 
