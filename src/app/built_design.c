@@ -1,6 +1,7 @@
 /* Contents: the net of the result - its shape - together */
 #include "app/built_design.h"
 
+#include "run/problem_explain.h"
 #include "run/problem_parts.h"
 #include "solve/coupling.h"
 #include "solve/schur.h"

@@ -6,6 +6,7 @@
 #include "base/clock.h"
 #include "net/symmetry.h"
 #include "out/print.h"
+#include "run/problem_explain.h"
 #include "run/problem_parts.h"
 #include "run/reach.h"
 #include "run/tolerance_stage.h"

@@ -3,6 +3,7 @@
 
 #include "linalg/band.h"
 #include "net/variables.h"
+#include "run/problem_explain.h"
 #include "run/problem_parts.h"
 #include <hifdm/run.h>
 #include <hifdm/store.h>

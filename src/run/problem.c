@@ -1,6 +1,7 @@
 #include <hifdm/problem.h>
 
 #include "run/problem_nets.h"
+#include "run/problem_explain.h"
 #include "run/problem_parts.h"
 #include "search/jacobian.h"
 #include "search/polish.h"

@@ -29,14 +29,6 @@ hf_status hf_problem_spare_inputs(const hf_problem *problem, const char *table, 
 /* The workspace, and the arrays that hf_problem_base fills. HF_OK or HF_NO_MEMORY. */
 hf_status hf_problem_allocate(hf_problem *problem, hf_messages *messages);
 
-/* Explain problem->form, of the form-finding in the problem's workspace: warnings by hf_problem_warn, or an error that
- * names cables, nodes or chains. Returns problem->form.status. */
-hf_status hf_problem_explain(hf_problem *problem, hf_messages *messages);
-
-/* Warnings about a shape that was found: no equilibrium yet, loaded straight chains, slack cables, all by name. */
-void hf_problem_warn(const hf_problem *problem, const char *stage, hf_workspace *workspace,
-                     const hf_form_result *result, hf_messages *messages);
-
 /* base_N and start_q_N_per_m from the shape in the workspace, and the evaluator. With an optimize section HF_BAD_CASE
  * for a base that cannot be optimised: a cable without tension, bounds out of reach, a method that the net does not
  * allow. */

@@ -5,26 +5,23 @@
 #include "base/path.h"
 #include "base/text.h"
 #include "run/cases.h"
-#include "run/pattern_stage.h"
+#include "run/measure_stage.h"
 #include "run/no_design.h"
 #include "run/polish_stage.h"
+#include "run/problem_explain.h"
 #include "run/problem_parts.h"
 #include "run/reach.h"
 #include "run/run_front.h"
 #include "run/tolerance_stage.h"
 #include "search/pareto.h"
-#include "solve/limits.h"
 #include "solve/certificate.h"
 #include "solve/coupling.h"
-#include "solve/facet_mesh.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define MESH_PULL_DOUBT 0.3 /* of N l / T: the figures of the facets are warned about */
 
 const char *const hf_run_phase_word[4] = {"form", "optimize", "polish", "tolerance"};
 
@@ -73,42 +70,6 @@ static void observe(const run *r, hf_run_progress progress)
     if (r->request->observer) r->request->observer(r->request->observer_context, &progress);
 }
 
-/* Tensions of the named sets of cables: once for each shape that is reported. */
-static void measure_sets(const run *r, hf_stage stage, const hf_workspace *w, hf_summary *s)
-{
-    const hf_scene *scene = &r->problem.scene;
-    hf_set_tensions *to = &s->sets[stage];
-    to->n = scene->n_set < HF_SUMMARY_SETS ? scene->n_set : HF_SUMMARY_SETS;
-    for (int k = 0; k < to->n; k++) {
-        const int *cable = scene->set_cable + scene->set_start[k];
-        int n = scene->set_start[k + 1] - scene->set_start[k];
-        snprintf(to->name[k], sizeof to->name[k], "%s", scene->set_name[k]);
-        to->least_N[k] = INFINITY;
-        to->largest_N[k] = -INFINITY;
-        for (int i = 0; i < n; i++) {
-            to->least_N[k] = fmin(to->least_N[k], w->tension_N[cable[i]]);
-            to->largest_N[k] = fmax(to->largest_N[k], w->tension_N[cable[i]]);
-        }
-        to->ratio[k] = hf_metrics_set_ratio(&r->problem.model, w, n, cable);
-    }
-}
-
-/* What a found design is at; w has its shape. */
-static void tell_limits(const run *r, hf_stage stage, const hf_workspace *w, hf_summary *s)
-{
-    const hf_problem *p = &r->problem;
-    hf_limit_held held[HF_LIMITS_HELD];
-    hf_held_limits *to = &s->held[stage];
-    to->n = hf_limits_held(&p->evaluator, w, held);
-    for (int i = 0; i < to->n; i++) {
-        to->row[i] = held[i].row;
-        to->count[i] = held[i].n;
-        to->value[i] = held[i].value;
-        to->bound[i] = held[i].bound;
-        hf_limits_name(&p->scene, &p->model, &held[i], to->name[i], sizeof to->name[i]);
-    }
-}
-
 /* End a run that was told to stop: publish all finished generations, from which the same command goes on. */
 static hf_status stop_here(run *r, const hf_summary *s, hf_messages *messages)
 {
@@ -116,33 +77,12 @@ static hf_status stop_here(run *r, const hf_summary *s, hf_messages *messages)
     return HF_INTERRUPTED;
 }
 
-/* Once for each shape that is reported: its sets and, for a case with a section `surface`, the surface. */
+/* Once for each shape that is reported. */
 static hf_status measure_shape(run *r, hf_stage stage, const hf_workspace *w, hf_summary *s, hf_messages *messages)
 {
-    const hf_problem *p = &r->problem;
-    measure_sets(r, stage, w, s);
-    if (!p->settings.has_surface) return HF_OK;
-    if (hf_surface_measure(&p->surface, &p->facets, &p->model, w, &s->measures[stage]) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
-    const hf_surface_fit *fit = &s->measures[stage].fit;
-    if (s->measures[stage].mesh_pull_ratio > MESH_PULL_DOUBT)
-        hf_warning(messages,
-                   "surface: in the shape of stage %s the mesh pulls on a cable with N l = %.3g of its tension; the "
-                   "pillow is of first order in that%s. Raise the tension of the cables, or lower "
-                   "surface.mesh_tension_N_per_m",
-                   hf_stage_word[stage], s->measures[stage].mesh_pull_ratio,
-                   s->measures[stage].mesh_pull_ratio <= HF_FACET_PULL_MOST ? ""
-                   : p->surface.has_pattern ? ", and facets have neither errors nor a far field here"
-                                            : ", and facets have no errors here");
-    if (!fit->converged)
-        hf_warning(messages,
-                   "surface: the best fit to the shape of stage %s did not converge in %d steps; it has no value",
-                   hf_stage_word[stage], fit->iterations);
-    hf_status status =
-        hf_pattern_stage(p, stage, w, r->request->threads, r->request->stop_requested, r->store, s, messages);
-    if (status != HF_INTERRUPTED) return status;
-    hf_warning(messages, "surface.pattern: told to stop: the shape of stage %s has no far field", hf_stage_word[stage]);
-    return stage == HF_STAGE_FORM ? status : stop_here(r, s, messages);
+    const hf_run_request *q = r->request;
+    hf_status status = hf_measure_stage(&r->problem, stage, w, q->threads, q->stop_requested, r->store, s, messages);
+    return status == HF_INTERRUPTED && stage != HF_STAGE_FORM ? stop_here(r, s, messages) : status;
 }
 
 /* Forces and displacements of the truss, if there is one, under the net of this shape. */
@@ -269,7 +209,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
         s->best_n_at_upper += design[k] >= r->optimiser.population.upper_N[k];
     }
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
-    tell_limits(r, HF_STAGE_OPTIMIZE, w, s);
+    hf_measure_limits(&r->problem, HF_STAGE_OPTIMIZE, w, s);
     HF_TRY(measure_shape(r, HF_STAGE_OPTIMIZE, w, s, messages));
     if (r->problem.settings.optimize.n_objective == 0) HF_TRY(take_result(r, w, messages)); /* a front has no result */
     return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->problem.model, w, design, messages);
@@ -412,7 +352,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     s->polish_n_at_upper = outcome.n_at_upper;
     s->polish_n_at_limit = outcome.n_at_limit;
     s->polish_is_at_cap = outcome.is_at_cap;
-    tell_limits(r, HF_STAGE_POLISH, w, s);
+    hf_measure_limits(&r->problem, HF_STAGE_POLISH, w, s);
     HF_TRY(measure_shape(r, HF_STAGE_POLISH, w, s, messages));
     if (s->polish_is_result) HF_TRY(take_result(r, w, messages));
     return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);
