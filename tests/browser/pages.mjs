@@ -71,6 +71,13 @@ export const pages = [
     sections: FORM,
   },
   {
+    name: "tied", // 9842 nodes, 33241 cables
+    text: "scene:\n  paraboloid: {aperture_m: 30, focal_length_m: 15, rings: 40, rear_distance_m: 9}\nsurface: {}\n",
+    bytes_max: 5e6,
+    fluid: true,
+    sections: FORM,
+  },
+  {
     name: "paraboloid",
     text: "scene:\n  paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 8, rear_distance_m: 1.8}\nsurface: {}\n",
     sections: FORM,

@@ -58,6 +58,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     nVisible = 0;
   const ink = {};
   const still = document.createElement("canvas"); // the picture without what is marked
+  let fast = null; // the picture while a large net is turned
   const camera = { fit: 1, ax: 0, ay: 0, bx: 0, by: 0, bz: 0, x0: 0, y0: 0 };
   let queued = false,
     isStale = true, // what is drawn has changed, not just the direction
@@ -213,14 +214,22 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     c.globalAlpha = 1;
   }
 
-  // A line of one pixel of the screen is drawn many times as fast as a wider one.
-  function drawCables(c, ratio, isFast) {
+  function drawCables(c) {
     for (let k = 0; k < batches.length; k++) {
       if (start[k] === start[k + 1]) continue;
       c.strokeStyle = batches[k].colour;
-      c.lineWidth = isFast ? 1 / ratio : batches[k].width;
+      c.lineWidth = batches[k].width;
       strokePart(c, start[k], start[k + 1], drawn);
     }
+  }
+  // The same while it is turned, in lines of one pixel.
+  function drawFast(c) {
+    if (!fast || fast.width !== canvas.width || fast.height !== canvas.height)
+      fast = linePicture(c, canvas.width, canvas.height);
+    fast.clear();
+    for (let k = 0; k < batches.length; k++)
+      if (start[k] < start[k + 1]) fast.lines(batches[k].colour, start[k], start[k + 1], first, second, drawn);
+    fast.show();
   }
 
   function drawSupports(c) {
@@ -268,12 +277,13 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     drawArm(c, "z", 0, camera.bz);
   }
 
-  function drawAll(c, ratio, isFast) {
+  function drawAll(c, isFast) {
     if (view.fitted) fitZoom();
     aim();
     project(drawn);
     c.clearRect(0, 0, width, height);
     c.lineCap = isHeavy ? "butt" : "round";
+    if (isFast) drawFast(c);
     if (truss && state.truss) {
       project(beams);
       drawTruss(c);
@@ -284,7 +294,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
       c.lineWidth = 0.8;
       strokePart(c, 0, nVisible, ghost);
     }
-    drawCables(c, ratio, isFast);
+    if (!isFast) drawCables(c);
     if (!isFast || supports.length < MANY_LINES / 10) drawSupports(c);
     drawAxes(c);
   }
@@ -311,7 +321,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
       c.clearRect(0, 0, width, height);
       c.drawImage(still, 0, 0, width, height);
     } else {
-      drawAll(c, ratio, isFast);
+      drawAll(c, isFast);
     }
     if (!isStill && !isFast) {
       Object.assign(still, { width: across, height: down });
