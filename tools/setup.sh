@@ -104,6 +104,7 @@ missing_packages() {
         has_module vtk || need python3-vtk9
         has chromium || need chromium fonts-dejavu-core
         has node || need nodejs
+        has pdftotext || need poppler-utils
         has npm || need npm
         has sbatch && has slurmctld && has slurmd || need slurm-wlm
         has munged || need munge

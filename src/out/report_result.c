@@ -241,7 +241,7 @@ static void write_figures(FILE *f)
     hf_json_close(&j, ']');
 }
 
-/* Terms, and what figures mean, as `hifdm explain` has them. */
+/* Terms, what figures mean, and the words that some of these are, as `hifdm explain` has them. */
 static void write_words(FILE *f)
 {
     hf_json j = {.file = f, .is_due = true};
@@ -249,10 +249,13 @@ static void write_words(FILE *f)
     hf_json_open(&j, "words", '[');
     for (int i = 0; i < hf_word_count(); i++) {
         hf_word word = hf_word_at(i);
-        if (strcmp(word.kind, "term") != 0 && strncmp(word.kind, "figure", 6) != 0) continue;
+        bool is_term = !strcmp(word.kind, "term"), is_figure = !strncmp(word.kind, "figure", 6);
+        bool is_reason = !strcmp(word.kind, "stop_reason") || !strcmp(word.kind, "bound_reason");
+        if (!is_term && !is_figure && !is_reason) continue;
         hf_json_open(&j, NULL, '{');
         hf_json_text(&j, "word", word.word);
-        if (!strcmp(word.kind, "term")) hf_json_bool(&j, "term", true);
+        if (is_term) hf_json_bool(&j, "term", true);
+        if (is_reason) hf_json_text(&j, "of", word.kind);
         hf_json_text(&j, "text", word.text);
         hf_json_close(&j, '}');
     }

@@ -1,7 +1,8 @@
 // How a page looks: nothing hidden, cut or too faint, in light and dark, on desk, phone and paper; every control within
 // reach of the keyboard and with a name; colours that people with any colour vision tell apart.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { execFileSync } from "node:child_process";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { settle } from "./see.mjs";
 
@@ -87,6 +88,23 @@ export function inspect() {
   const root = document.documentElement;
   if (root.scrollWidth > wide) faults.add(`scrolls sideways: ${root.scrollWidth} pixels`);
   return { height: root.scrollHeight, faults: [...faults] };
+}
+
+// Words and numbers of tables that are broken in two, but for names, which may have any length.
+function brokenWords() {
+  const broken = [],
+    range = document.createRange();
+  for (const cell of document.querySelectorAll("table :is(thead th, td.number, tbody th:not(:has(button)))")) {
+    if (cell.closest(".tip") || !cell.checkVisibility()) continue;
+    const walk = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
+    for (let node = walk.nextNode(); node; node = walk.nextNode())
+      for (const { 0: word, index } of node.data.matchAll(/[^\s-]+/g)) {
+        range.setStart(node, index);
+        range.setEnd(node, index + word.length);
+        if (range.getClientRects().length > 1) broken.push(`${word} of ${cell.textContent}`);
+      }
+  }
+  return broken;
 }
 
 // The controls that are seen; of radio buttons with one name the one that is chosen stands for all.
@@ -198,6 +216,26 @@ function checkSizes(page, found) {
   );
 }
 
+// On sheets: each has its number, none ends with a heading or with what is said above a table, none is lost, and a
+// table that goes on has its heading again. Returns how many there are.
+async function checkSheets(tab, folder) {
+  assert.deepEqual(await tab.evaluate(brokenWords), []);
+  const heads = await tab.locator("h2, h3, .paper").evaluateAll((all) => all.map((h) => h.innerText.trim())),
+    last = await tab.locator("footer").innerText(),
+    path = join(folder, "report.pdf"),
+    squeezed = (text) => text.replace(/\s+/g, " ").trim();
+  writeFileSync(path, await tab.pdf({ format: "A4" }));
+  const sheets = execFileSync("pdftotext", ["-layout", path, "-"], { encoding: "utf8" }).split("\f").slice(0, -1);
+  sheets.forEach((sheet, k) => {
+    const lines = sheet.split("\n").map(squeezed).filter((line) => line);
+    assert.equal(lines.pop().replaceAll(" ", ""), `${k + 1}/${sheets.length}`);
+    assert.ok(!heads.includes(lines.at(-1)), `sheet ${k + 1} ends with "${lines.at(-1)}"`);
+    if (/^[a-z]+\d+_\d+-[a-z]+\d+_\d+ /.test(lines[0])) assert.fail(`sheet ${k + 1} begins with a row: ${lines[0]}`);
+  });
+  assert.ok(squeezed(sheets.join(" ")).includes(squeezed(last).slice(0, 60)), "the last sheet is lost");
+  return sheets.length;
+}
+
 // Leaves pictures in the folder: on desk and phone, light and dark, and for paper.
 export async function checkLook(tab, page, folder) {
   const faults = [],
@@ -219,8 +257,8 @@ export async function checkLook(tab, page, folder) {
     assert.equal(await look(`${width} dark`, width, { colorScheme: "dark", media: "screen" }), found[width]);
   }
   found.paper = await look("paper", A4_WIDTH, { colorScheme: "dark", media: "print" });
-  const pdf = (await tab.pdf({ format: "A4" })).toString("latin1");
+  const sheets = await checkSheets(tab, folder);
   await tab.emulateMedia({ colorScheme: "light", media: "screen" });
   assert.deepEqual(faults, []);
-  checkSizes(page, { ...found, sheets: pdf.match(/\/Type\s*\/Page\b/g).length });
+  checkSizes(page, { ...found, sheets });
 }

@@ -33,6 +33,8 @@ export async function checkPattern(tab, page, made) {
   const { charts, neighbours } = page.pattern,
     stages = { form: "found", polish: "LM optimum" };
   assert.equal(await tab.locator("#far-field .chart").count(), charts);
+  const { width } = await tab.locator("#far-field .chart").first().boundingBox();
+  assert.ok(width > 900, "a pattern has the whole width");
   assert.equal(await tab.locator("#far-field h3").nth(1).textContent(), "2 GHz, φ 135°");
   const cells = await tab
       .locator("#far-field tbody tr")

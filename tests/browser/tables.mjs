@@ -3,16 +3,24 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { changes, csv, number, same, tip } from "./see.mjs";
+import { changes, csv, number, same, settle, tip } from "./see.mjs";
 
 export async function checkSummary(tab, made) {
   const said = made.hifdm("show", "result.h5").split("\n"),
     answer = await tab.locator("#answer").textContent(),
     loss = said.find((line) => line.trim().startsWith("loss of gain at"));
-  assert.equal(answer, `${said[0]}.${loss ? ` ${loss.trim()}.` : ""}`);
+  const sentence = (text) => `${text[0].toUpperCase()}${text.slice(1)}.`;
+  assert.equal(answer, sentence(said[0]) + (loss ? sentence(loss.trim()) : ""));
   const cells = await tab.locator("#summary tr", { hasText: "psi_m" }).locator("td").allTextContents();
   same(number(cells[0]), 1e3 * made.summary.form.psi_m, 5);
   if (made.summary.optimize) same(number(cells[1]), 1e3 * made.summary.optimize.psi_m, 5);
+  const figure = await tab.locator(".figures dd").first().textContent();
+  const digits = (text) => text.replace(/[^\d]/g, "").replace(/^0+/, "").length;
+  for (const text of [cells[0], figure]) if (number(text) >= 1e-3) assert.equal(digits(text), 5, text);
+  const why = made.summary.form.stop_reason,
+    told = tab.locator("#summary tr", { hasText: "stop_reason" }).locator("td span").first(),
+    title = await told.getAttribute("title");
+  assert.ok(made.hifdm("explain", why).replace(/\s+/g, " ").includes(title), `${why}: ${title}`);
 }
 
 // part: of the page, whose first chart must say these words about its last point.
@@ -22,6 +30,7 @@ export async function checkCharts(tab, least, part, words) {
       title: c.querySelector("h3").textContent,
       markup: c.querySelector("svg[tabindex]").outerHTML,
       ticks: c.querySelectorAll("svg[tabindex] text").length,
+      values: c.querySelectorAll("svg[tabindex] text[text-anchor=end]").length,
       drawn: [...c.querySelectorAll("svg[tabindex] path")].map(
         (p) => p.getTotalLength() + p.getAttribute("d").length,
       ),
@@ -32,6 +41,7 @@ export async function checkCharts(tab, least, part, words) {
   for (const c of charts) {
     assert.ok(!/NaN|undefined|Infinity/.test(c.markup), `${c.title}: holds no numbers`);
     assert.ok(c.ticks >= 5, `${c.title}: ${c.ticks} labels`);
+    assert.ok(c.values >= 2 || c.endless, `${c.title}: its values have ${c.values} labels`);
     assert.ok((c.drawn.length && c.drawn.some((d) => d > 0)) || c.endless, `${c.title}: is empty`);
     assert.equal(c.endless > 0, c.markup.includes("∞"), `${c.title}: infinite values without their sign`);
   }
@@ -55,6 +65,27 @@ async function wholeTable(selector) {
   }
 }
 
+// Few rows at first, fewer on a phone; the button says how many there are, to a screen reader, too, and paper which of
+// them it has.
+async function checkFew(tab, more, length) {
+  const rows = tab.locator("#cables tbody tr"),
+    desk = tab.viewportSize(),
+    all = String(length).replace(/\B(?=(\d{3})+$)/g, "\u202f");
+  for (const [width, few] of [
+    [400, 10],
+    [desk.width, 20],
+  ]) {
+    await tab.setViewportSize({ ...desk, width });
+    await settle(tab);
+    assert.equal(await rows.count(), few);
+    assert.equal(await more.textContent(), `show all ${all}`);
+    assert.equal(await more.getAttribute("aria-expanded"), "false");
+    assert.equal(await tab.locator(`#${await more.getAttribute("aria-controls")} tr`).count(), few);
+    const paper = await tab.locator("#cables .paper").textContent();
+    assert.ok(paper.startsWith(`${few} of ${all} rows, those with the largest`), paper);
+  }
+}
+
 // The table of cables: values of the file, sorted by the heading that is pressed, found by a search; a name marks its
 // cable in the picture, a click on a cable there brings its row to the top.
 export async function checkCables(tab, made) {
@@ -62,9 +93,12 @@ export async function checkCables(tab, made) {
     names = tab.locator("#cables tbody th"),
     heads = await tab.locator("#cables thead th").allTextContents(),
     { length } = made.cables;
-  const more = tab.locator("#cables").getByRole("button", { name: "show all" });
-  if (length > 25) {
-    await more.click();
+  const more = tab.locator("#cables .tools button");
+  if (length > 20) {
+    await checkFew(tab, more, length);
+    await more.focus();
+    await tab.keyboard.press("Enter");
+    assert.equal(await more.getAttribute("aria-expanded"), "true");
     const made = await rows.count();
     assert.ok(made <= Math.min(length, 300), `${made} rows at once`);
     await tab.evaluate(wholeTable, "#cables tbody");

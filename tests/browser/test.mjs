@@ -115,6 +115,7 @@ async function checkMedia(tab, pictures) {
       paper: await background(tab),
       sums: await Promise.all(pictures.map(async (name) => (await picture(tab, name)).sum)),
       tools: await tab.locator(".tools").first().isVisible(),
+      chosen: await tab.locator(".paper:visible").allInnerTexts(),
     };
   }
   assert.ok(seen.light.paper > 230 && seen.dark.paper < 50 && seen.print.paper > 250, "wrong colour of the paper");
@@ -123,13 +124,16 @@ async function checkMedia(tab, pictures) {
     assert.notEqual(seen.print.sums[k], seen.dark.sums[k], `${name} is printed in the dark`);
   });
   assert.ok(seen.light.tools && !seen.print.tools, "controls on paper");
+  const tools = tab.locator(".tools").first(),
+    labels = await tools.locator("label:has([type=radio]:checked)").allTextContents(),
+    [told] = seen.print.chosen;
+  assert.ok(labels.length && labels.every((label) => told.includes(`: ${label}`)), told);
   await tab.emulateMedia({ colorScheme: "light", media: "screen" });
+  assert.equal(await tab.locator(".paper:visible").count(), 0, "on a screen the controls say it");
   await tab.setViewportSize({ width: 360, height: 700 });
   await settle(tab);
   assert.deepEqual((await tab.evaluate(inspect)).faults, [], "on a telephone");
 }
-
-// ---- hostile texts: in every text of the data of a page, longer than any that the program writes ----
 
 // ---- all pages ----
 

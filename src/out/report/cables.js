@@ -26,7 +26,7 @@ const cableColumn = (name, of, digits, options) =>
 // do in one that was cut for the theoretical shape.
 function turned(before, after) {
   if (!after.l0_m || (before !== after && !before.l0_m)) return null;
-  if (before === after) return ["turn, if cut for the theoretical shape (mm)", (e) => after.l0_minus_theory_m[e]];
+  if (before === after) return ["turn, if cut to theory (mm)", (e) => after.l0_minus_theory_m[e]];
   return [`turn, from ${before.name} (mm)`, (e) => after.l0_m[e] - before.l0_m[e]];
 }
 
@@ -37,7 +37,7 @@ function cableColumns(before, after, families, choose) {
   const change = (e) => after.tension_N[e] - before.tension_N[e];
   return [
     { name: "Cable", of: (e) => net.cable_id[e], show: (e) => cableLink(e, choose) },
-    { name: "Family", of: (e) => family[e], show: (e) => family[e] },
+    { name: "Family", beside: true, of: (e) => family[e], show: (e) => family[e] },
     two ? cableColumn(`tension, ${before.name} (N)`, (e) => before.tension_N[e], 5) : null,
     cableColumn(`tension, ${after.name} (N)`, (e) => after.tension_N[e], 5),
     two ? cableColumn("change (N)", change, 4, { isChange: true }) : null,
@@ -82,7 +82,6 @@ function writeCables(view) {
     after.l0_m ? "A turn above 0 lets the cable out." : null,
     net.psi_by_cut ? "ψ by a turn: what letting the cable out by 1 mm adds to ψ, while no cable goes slack." : null,
     net.cable_share ? "The share is that of what all errors add to ψ², to first order: cut those cables well." : null,
-    CABLES_SAID,
   ].filter((text) => text);
   const families = allFamilies(),
     columns = cableColumns(before, after, families, chooserOf(view)),
@@ -95,5 +94,6 @@ function writeCables(view) {
     words: (e) => [net.cable_id[e], groupOf(e), ...families[e]].join(" "),
   });
   view.onChoose = (e) => all.first(e);
-  section("cables", "Cables", el("p", {}, words.join(" ")), all.node);
+  const hint = el("span", { class: "keys" }, CABLES_SAID);
+  section("cables", "Cables", el("p", {}, words.map((text) => `${text} `), hint), all.node);
 }

@@ -35,7 +35,7 @@ function placeTip(tip, x, y, content) {
 
 // ---- one chart: series over x with a cursor that follows the pointer or the arrow keys ----
 // series: { name, stored, values, colour, dash, dots: marks instead of a line, free: may lie outside of the picture }
-//   isLevel: the same value everywhere, without marks
+//   isLevel: the same value everywhere, without marks; size: of its marks, in pixels
 //   bars: half the width of a bar around each x, from 0 up
 // marks: { name, at, colour, dash } of vertical lines, which the axis of x includes
 // colour: a variable of the page's style, or a function that returns red, green and blue
@@ -72,7 +72,7 @@ function chart(options) {
 
   function mark(s) {
     return s.dots
-      ? { class: "dots", "stroke-width": s.values.length > 300 ? 3 : 5 }
+      ? { class: "dots", "stroke-width": s.size || (s.values.length > 300 ? 3 : 5) }
       : { class: "curve", "stroke-dasharray": s.dash };
   }
 
@@ -128,7 +128,7 @@ function chart(options) {
     const sy = (v) => margin.top + h * (1 - yAxis.at(v));
     place = { sx, sy, yAxis, bottom: margin.top + h };
     picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    const xTicks = linearTicks(xAxis.low, xAxis.high, Math.max(4, w / 90))
+    const xTicks = linearTicks(xAxis.low, xAxis.high, Math.max(4, w / 64))
       .filter((t) => !counted || Number.isInteger(t.at))
       .map((t) => ({ at: t.at, text: counted ? String(t.at) : t.text }));
     picture.replaceChildren();

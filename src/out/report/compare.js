@@ -46,6 +46,14 @@ function caseDifferences() {
   ];
 }
 
+// The text of a number with no more decimals than these texts have, if anything is left of it then.
+function decimalsOf(text, beside) {
+  const decimals = (number) => (/^−?\d+(\.\d+)?$/.test(number) ? (number.split(".")[1] || "").length : Infinity),
+    most = Math.max(...beside.map(decimals));
+  const short = decimals(text) < Infinity && most < decimals(text) ? Number(text).toFixed(most) : text;
+  return Number(short) === 0 ? text : short;
+}
+
 function writeOther() {
   const { other } = data;
   if (!other) return;
@@ -57,10 +65,10 @@ function writeOther() {
   const rows = figureRows({ ...b, ...a, frequency_Hz, goals: { ...b.goals, ...a.goals } }).filter(
     ([, , key]) => hasFigure(a[key]) || hasFigure(b[key]),
   );
-  const cell = (v, format) => el("td", { class: "number" }, hasFigure(v) ? format(v) : "–");
+  const cell = (v, key, format) => el("td", { class: "number" }, shownFigure(key, v, format));
   const change = (u, v, format) => {
     if (typeof u !== "number" || typeof v !== "number" || u === v) return "";
-    const size = format(Math.abs(v - u));
+    const size = decimalsOf(format(Math.abs(v - u)), [u, v].map(format));
     return size.startsWith("<") ? size : `${v > u ? "+" : "−"}${size}`;
   };
   section(
@@ -86,11 +94,11 @@ function writeOther() {
         el(
           "tr",
           {},
-          el("th", { scope: "row" }, name),
-          cell(a[key], format),
-          cell(b[key], format),
+          quantity(name, unit, key),
+          cell(a[key], key, format),
+          cell(b[key], key, format),
           el("td", { class: "number" }, change(a[key], b[key], format)),
-          el("td", {}, unit),
+          el("td", { class: "unit" }, unit),
         ),
       ),
       "This result and the other",

@@ -66,9 +66,14 @@ function fmt(value, digits = 4) {
   const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
   return minus(`${Number(mantissa)}×${power(Number(exponent))}`);
 }
+// The same with all its digits, so that numbers below each other have as many: 0.89200 and 0.94694.
+function digitsOf(value, digits) {
+  const size = Math.abs(value);
+  return size >= 1e-3 && size < 10 ** digits ? minus(value.toPrecision(digits)) : fmt(value, digits);
+}
 // Ratios of tensions: 1 means uniform tensions, so a fixed number of decimals is shown, not of digits.
 const fmtRatio = (value) => (typeof value === "number" && value < 1e4 ? value.toFixed(4) : fmt(value));
-const fmtCount = (value) => (typeof value === "number" ? String(value).replace(/\B(?=(\d{3})+$)/g, " ") : "–");
+const fmtCount = (value) => (typeof value === "number" ? String(value).replace(/\B(?=(\d{3})+$)/g, "\u202f") : "–");
 
 function fmtDuration(s) {
   if (typeof s !== "number") return "–";
@@ -79,23 +84,28 @@ function fmtDuration(s) {
     : `${Math.floor(s / 3600)} h ${Math.round((s % 3600) / 60)} min`;
 }
 
-// Writes references such as "Figs. 6 and 13".
-function figs(...numbers) {
-  const all = numbers.filter((k) => k),
-    last = all.pop();
-  return all.length ? `Figs. ${all.join(", ")} and ${last}` : `Fig. ${last}`;
-}
-
+// Words of the file in plain ones; what they mean is told by `hifdm explain`, whose words the page has, too.
 const STOP = {
+  direct: "one direct solve",
   rms_change: "the change of ψ",
   residual: "the residual",
   max_iterations: "the limit of iterations",
+  ill_posed: "a net without an answer",
+  tof: "steps below the tolerance",
+  diverged: "steps that grow",
+  net: "a net without a shape on the bent truss",
   generations: "the limit of generations",
   stagnation: "stagnation",
   all_infeasible: "a generation without a feasible design",
   settled: "ten steps that gained less than 1e-6",
+  running: "an interruption",
+  converged: "convergence",
+  stalled: "steps that gain nothing",
 };
-const stopText = (word) => STOP[word] || String(word).replace(/_/g, " ");
+const plainWord = (word) => String(word).replace(/_/g, " ");
+// Of the bounds of a shape: proven, or why not.
+const boundText = (word) => (word === "proven" ? word : `no: ${plainWord(word)}`);
+const stopText = (word) => STOP[word] || plainWord(word);
 
 // ---- what is derived ----
 

@@ -5,7 +5,9 @@ const main = document.getElementById("main");
 function section(id, title, ...children) {
   document.getElementById("contents").append(el("a", { href: `#${id}` }, title));
   const heading = el("h2", { id: `${id}-title` }, title);
-  const node = el("section", { id, "aria-labelledby": `${id}-title` }, heading, ...children);
+  const node = el("section", { id, "aria-labelledby": `${id}-title` }, heading, ...children),
+    tools = node.querySelector(":scope > .tools:has(input[type=radio])");
+  if (tools) tools.after(chosenLine(tools));
   main.append(node);
   return node;
 }
@@ -23,7 +25,7 @@ function writeHead() {
     : "";
   document.getElementById("subtitle").textContent = found + truss;
   document.getElementById("footer").textContent = shown(
-    `Results of hifdm ${summary.version} in ${summary.file}. “Fig.” refers to Chen et al., Aerospace 2022, 9, 239.`,
+    `Results of hifdm ${summary.version} in ${summary.file}.`,
   );
 }
 
@@ -43,6 +45,20 @@ function writeWarnings(title, lines) {
   );
 }
 
+// For paper, which has no controls: what is chosen in them.
+function chosenLine(tools) {
+  const line = el("div", { class: "paper muted" });
+  const write = () => {
+    const sets = [...tools.querySelectorAll("fieldset:has(input:checked[type=radio])")],
+      name = (set) => set.querySelector("legend").textContent.trim(),
+      chosen = (set) => set.querySelector(":checked").parentNode.textContent;
+    line.textContent = sets.map((set) => `${name(set)}: ${chosen(set)}`).join(" · ");
+  };
+  tools.addEventListener("change", write);
+  write();
+  return line;
+}
+
 const resultStage = resultShape && resultShape.stage;
 const resultNumbers = { form: summary.form, optimize: summary.optimize, polish: summary.polish }[resultStage];
 
@@ -52,7 +68,9 @@ const figure = (name, value, unit) =>
 // The answer in the words of the program's summary.
 function writeAnswer() {
   const said = [data.answer, data.gain_loss].filter((text) => text);
-  if (said.length) main.append(el("p", { class: "answer", id: "answer" }, `${said.join(". ")}.`));
+  if (!said.length) return;
+  const [answer, ...more] = said.map((text) => `${text[0].toUpperCase()}${text.slice(1)}.`);
+  main.append(el("p", { class: "answer", id: "answer" }, answer, more.length ? el("small", {}, more) : null));
 }
 
 function writeFigures() {
@@ -63,7 +81,7 @@ function writeFigures() {
   if (resultStage !== "form") {
     list.push(figure("ψ after form-finding", roundedMm(summary.form.psi_m), "mm"));
     if (base > 0)
-      list.push(figure("gain of the optimisation", (100 * (1 - resultNumbers.psi_m / base)).toFixed(2), "%"));
+      list.push(figure("ψ below that of the form-finding", (100 * (1 - resultNumbers.psi_m / base)).toFixed(2), "%"));
   }
   list.push(
     figure("tension ratio, inner cables", fmtRatio(resultNumbers.inner_tension_ratio)),
@@ -224,15 +242,14 @@ function trussNote() {
 }
 
 function netCaption() {
-  const figures = `${figs(2, 5, shapeOf("optimize") && 12, data.truss && 18)} of Chen et al., 2022.`;
-  if (!data.shapes.length) return `Squares are supports. ${figures}`;
+  if (!data.shapes.length) return "Squares are supports.";
   return el(
     "span",
     {},
     "Deformation from the theoretical shape (grey) ",
     el("strong", { id: "scale-note" }),
     `; squares are supports${trussNote()}. The colours of the deviation ` +
-      `span the inner nodes, which ψ counts, where these deviate. ${figures}`,
+      "span the inner nodes, which ψ counts, where these deviate.",
   );
 }
 

@@ -28,7 +28,8 @@ function patternChart(all, frequency_Hz, phi_deg, isPart) {
   const shapes = all.map((p) => ({ ...p, isResult: p.name === stageName[resultStage] }));
   const dashed = shapes.filter((p) => !p.isResult);
   const series = shapes.flatMap((p) =>
-    p.cut
+    [...p.cut]
+      .sort((a, b) => a.phi_deg - b.phi_deg)
       .filter((cut) => cut.frequency_Hz === frequency_Hz && phi_deg.includes(cut.phi_deg))
       .map((cut) => {
         const values = Array(x.length).fill(undefined);
@@ -96,7 +97,8 @@ const FEED = { point: "a point", line: "a line", plane_wave: "a plane wave" };
 
 function patternText(all) {
   const { feed, cos_power: power, stride } = all[0],
-    field = feed === "plane_wave" ? "" : ` whose field goes as cos^${fmt(power, 3)} of the angle from its axis`;
+    cosine = `power ${fmt(power, 3)} of the cosine of the angle from its axis`,
+    field = feed === "plane_wave" ? "" : ` whose field goes as ${cosine}`;
   return (
     `The far field of the facets by physical optics, fed by ${FEED[feed] || feed}${field}; gain over isotropic ` +
     "radiation, in the polarisation of the feed. θ is the angle from +z, and a cut φ the half plane at that angle " +
@@ -123,7 +125,7 @@ function writePattern() {
     "far-field",
     "Far field",
     el("p", {}, patternText(all)),
-    el("div", { class: "charts" }, charts.filter((c) => c)),
+    el("div", { class: "charts wide" }, charts.filter((c) => c)),
     el("h3", { class: "after" }, "Beam and sidelobes"),
     patternTable(all).node,
     el("p", { class: "muted" }, PATTERN_NOTE),

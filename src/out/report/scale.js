@@ -56,8 +56,8 @@ function levelOf(value, [low, high]) {
 }
 
 // Millimetres, and dB, which are as small where it is noise.
-const rounded = (v, digits) => (Math.abs(v) < RESOLVED_MM ? `< ${power(-6)}` : fmt(v, digits));
-const roundedMm = (m) => rounded(1e3 * m, 4);
+const rounded = (v, digits) => (Math.abs(v) < RESOLVED_MM ? `< ${power(-6)}` : digitsOf(v, digits));
+const roundedMm = (m) => rounded(1e3 * m, 5);
 const roundingNote = () =>
   el(
     "span",
@@ -125,7 +125,7 @@ function logTicks(low, high) {
             at: k * 10 ** e,
             text: k === 1 || e >= -3 ? label(k * 10 ** e, e) : `${k}×${power(e)}`,
           });
-    return ticks;
+    return ticks.length > 1 ? ticks : linearTicks(low, high, 4);
   }
   const stride = Math.ceil((last - first + 1) / 7);
   for (let e = first; e <= last; e += stride) ticks.push({ at: 10 ** e, text: label(10 ** e, e) });

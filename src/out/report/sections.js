@@ -35,15 +35,15 @@ function writeHistory() {
     "Surface error ψ",
     "psi_m",
     "ψ",
-    "RMS distance of the inner nodes to the theoretical shape; Fig. 9.",
-    { yLabel: "ψ (mm)", unit: "mm" },
+    "RMS distance of the inner nodes to the theoretical shape.",
+    { yLabel: "ψ (mm)", unit: "mm", floor: RESOLVED_MM },
     1e3,
   );
   add(
     "Tension ratio, inner cables",
     "inner_tension_ratio",
     "inner ratio",
-    "Largest over smallest tension; 1 is uniform. Figs. 3 and 8.",
+    "Largest over smallest tension; 1 is uniform.",
     { yLabel: "T max / T min" },
   );
   add(
@@ -101,8 +101,7 @@ function writeGa() {
         unit: "mm",
         x,
         head,
-        caption:
-          `Surface error of the feasible individuals; the worst may leave the picture. ${figs(10)}.` + thinned(g),
+        caption: "Surface error of the feasible individuals; the worst may leave the picture." + thinned(g),
         series: [
           {
             name: "worst",
@@ -129,7 +128,7 @@ function writeGa() {
         unit: "mm",
         x,
         head,
-        caption: "Generations that leave the best as it was have no mark; Fig. 11.",
+        caption: "Generations that leave the best as it was have no mark.",
         series: [{ name: "change", values: change.map((v) => (v > 0 ? v : null)), colour: "--one", dots: true }],
       }),
     ),
@@ -143,9 +142,10 @@ function writeCoupling() {
   const x = spaced(c).map((i) => i + 1),
     xLabel = "round",
     head = (i) => `round ${x[i]}`;
-  const one = (title, key, yLabel, caption) =>
+  const one = (title, key, yLabel, caption, options) =>
     c[key] &&
     chart({
+      ...options,
       title,
       xLabel,
       yLabel,
@@ -170,7 +170,7 @@ function writeCoupling() {
         "Change of the elastic deformation",
         "step_m",
         "change (mm)",
-        "Largest change of a support's displacement in a round; Fig. 21.",
+        "Largest change of a support's displacement in a round.",
       ),
       one(
         "Largest displacement",
@@ -183,6 +183,7 @@ function writeCoupling() {
         "psi_m",
         "ψ (mm)",
         "RMS distance of the inner nodes, as the truss gives way.",
+        { floor: RESOLVED_MM },
       ),
     ),
   );
@@ -190,33 +191,40 @@ function writeCoupling() {
 
 // ---- tensions ----
 
-function tensionChart(group, figures) {
-  const of = Array.from({ length: net.n_cable }, (_, e) => e).filter((e) => groupOf(e) === group);
+function tensionChart(group) {
+  const name = `${group === "inner" ? "Inner" : "Boundary"} cables`,
+    of = Array.from({ length: net.n_cable }, (_, e) => e).filter((e) => groupOf(e) === group);
   if (!of.length) return null;
   const colour = { form: "--one", optimize: "--two", polish: "--three", other: "--four" };
-  const shapes = data.shapes.filter((s) => !s.case);
+  const shapes = data.shapes.filter((s) => !s.case),
+    [low, high] = range(shapes.flatMap((s) => of.map((e) => s.tension_N[e]))) || [0, 1];
+  if (high - low < 1e-6 * high)
+    return el(
+      "div",
+      {},
+      el("h3", {}, name),
+      el("p", {}, `All ${fmtCount(of.length)} have ${digitsOf(high, 5)} N${shapes[1] ? " in every shape" : ""}.`),
+    );
   return chart({
-    title: `${group === "inner" ? "Inner" : "Boundary"} cables`,
+    title: name,
     xLabel: "cable number",
     yLabel: "tension (N)",
     unit: "N",
     x: of.map((_, k) => k + 1),
     head: (k) => `cable ${net.cable_id[of[k]]}`,
-    caption: figures,
-    series: shapes.map((s) => ({
+    series: shapes.map((s, k) => ({
       name: s.name,
       stored: "tension_N",
       values: of.map((e) => s.tension_N[e]),
       colour: colour[s.stage],
       dots: true,
+      size: (of.length > 300 ? 2.5 : 4) + 2 * (shapes.length - 1 - k), // so that those below others are seen
     })),
   });
 }
 
 function writeTensions() {
   if (!data.shapes.length) return;
-  const best = !!shapeOf("optimize"),
-    own = (a, b, c) => figs(a, best && b, data.coupling && c);
   section(
     "tensions",
     "Tensions",
@@ -224,8 +232,8 @@ function writeTensions() {
     el(
       "div",
       { class: "charts" },
-      tensionChart("inner", `Tension of the inner cables; ${own(6, 13, 19)}.`),
-      tensionChart("boundary", `Tension of the boundary cables; ${own(7, 14, 20)}.`),
+      tensionChart("inner"),
+      tensionChart("boundary"),
     ),
   );
 }
@@ -283,8 +291,8 @@ function stageValues(stage, frequency_Hz) {
 
 // Rows of tables of figures: words, unit, key, how it is shown. `first`: the values of a stage.
 function figureRows(first) {
-  const word = (v) => v.replace(/_/g, " ");
   const mm = (v) => rounded(1e3 * v, 5);
+  const hz = (v) => digitsOf(v / 1e9, 3);
   const goals = Object.entries(first.goals || {});
   const loss = (v) => (typeof v === "string" ? v : rounded(v, 3));
   const frequencies = (first.frequency_Hz || []).map((v) => `${fmt(v / 1e9, 4)} GHz`);
@@ -301,7 +309,7 @@ function figureRows(first) {
     ["half-path RMS, best fit", "mm", "fit_half_path_rms_m", mm],
     ["RMS along the normal", "mm", "normal_rms_m", mm],
     ["RMS along the normal, best fit", "mm", "fit_normal_rms_m", mm],
-    ["focal length of the best fit", "m", "fit_focal_length_m", (v) => fmt(v, 6)],
+    ["focal length of the best fit", "m", "fit_focal_length_m", (v) => digitsOf(v, 6)],
     ["half-path RMS of the facets", "mm", "facet_half_path_rms_m", mm],
     ["half-path RMS of the facets, best fit", "mm", "facet_fit_half_path_rms_m", mm],
     ["RMS of the facets along the normal", "mm", "facet_normal_rms_m", mm],
@@ -321,28 +329,28 @@ function figureRows(first) {
       [`loss of gain of the facets at ${at}`, "dB", `facet_gain_loss_dB[${k}]`, loss],
       [`loss of gain of the facets at ${at}, best fit`, "dB", `facet_fit_gain_loss_dB[${k}]`, loss],
     ]),
-    ["Ruze’s formula of that loss (to 3 dB) ends at", "GHz", "ruze_limit_Hz", (v) => fmt(v / 1e9, 3)],
-    ["the same, best fit", "GHz", "fit_ruze_limit_Hz", (v) => fmt(v / 1e9, 3)],
-    ["the same, facets", "GHz", "facet_ruze_limit_Hz", (v) => fmt(v / 1e9, 3)],
-    ["the same, facets after their best fit", "GHz", "facet_fit_ruze_limit_Hz", (v) => fmt(v / 1e9, 3)],
+    ["Ruze’s formula of that loss (to 3 dB) ends at", "GHz", "ruze_limit_Hz", hz],
+    ["the same, best fit", "GHz", "fit_ruze_limit_Hz", hz],
+    ["the same, facets", "GHz", "facet_ruze_limit_Hz", hz],
+    ["the same, facets after their best fit", "GHz", "facet_fit_ruze_limit_Hz", hz],
     ["tension ratio, inner cables", "", "inner_tension_ratio", fmtRatio],
     ["tension ratio, boundary cables", "", "boundary_tension_ratio", fmtRatio],
     ["slack cables", "", "slack_cables", fmtCount],
     ["largest nodal residual", "N", "residual_N", (v) => fmt(v, 3)],
     ["largest error of a tension asked for", "relative", "tension_error", (v) => fmt(v, 3)],
     ["largest error of a length asked for", "relative", "length_error", (v) => fmt(v, 3)],
-    ["shortest cable, of its theoretical length", "", "shortest_length_ratio", (v) => fmt(v, 4)],
+    ["shortest cable, of its theoretical length", "", "shortest_length_ratio", (v) => digitsOf(v, 4)],
     ["straight chains under load", "", "loaded_straight_chains", fmtCount],
     ["estimated position error", "mm", "position_error_m", (v) => fmt(1e3 * v, 3)],
     ["proven bound of the position error", "mm", "position_bound_m", (v) => fmt(1e3 * v, 3)],
     ["proven bound of the error of psi", "mm", "psi_bound_m", (v) => fmt(1e3 * v, 3)],
-    ["bounds", "", "bound_reason", word],
-    ["condition of the Newton matrix", "", "condition", (v) => fmt(v, 3)],
+    ["proof of these bounds", "", "bound_reason", boundText],
+    ["condition of the Newton matrix", "", "condition", (v) => digitsOf(v, 3)],
     ["backward error", "", "backward_error", (v) => fmt(v, 3)],
     ["linear solves", "", "iterations", fmtCount],
     ["generations", "", "generations", fmtCount],
     ["evaluations", "", "evaluations", fmtCount],
-    ["status", "", "status", word],
+    ["status", "", "status", plainWord],
     ["stopped by", "", "stop_reason", stopText],
     ["wall time", "", "wall_s", fmtDuration],
   ];
@@ -353,12 +361,13 @@ function figureRows(first) {
   return rows;
 }
 
-// Terms, and the figures of these keys, as `hifdm explain` tells them.
-function writtenWords(keys) {
+// Terms, the figures of these keys, and the words that they are in the stages, as `hifdm explain` tells them.
+function writtenWords(keys, stages) {
   const wanted = new Set(keys.map((key) => key.replace(/\[.*/, ""))),
     told = new Set();
-  const list = (data.words || []).filter(({ word, term }) => {
-    const isNew = (term || wanted.has(word)) && !told.has(word);
+  const list = (data.words || []).filter(({ word, term, of }) => {
+    const isSaid = of ? stages.some((values) => values[of] === word) : term || wanted.has(word),
+      isNew = isSaid && !told.has(word);
     if (isNew) told.add(word);
     return isNew;
   });
@@ -373,6 +382,18 @@ function writtenWords(keys) {
 }
 
 const hasFigure = (v) => typeof v === "number" || typeof v === "string";
+
+// What a figure means; of a word, such as why an iteration stopped, what that one means.
+function meaning(word, of) {
+  const found = (data.words || []).find((entry) => entry.word === word && entry.of === of);
+  return found ? found.text : undefined;
+}
+const quantity = (name, unit, key) =>
+  el("th", { scope: "row", "data-unit": unit || null, title: meaning(key.replace(/\[.*/, "")) }, name);
+// A value, and the meaning of one that is a word.
+const shownFigure = (key, value, format) =>
+  hasFigure(value) ? el("span", { title: typeof value === "string" ? meaning(value, key) : null }, format(value)) : "–";
+const breakable = (key) => key.split(/(?<=_)/).flatMap((part, k) => (k ? [el("wbr"), part] : part));
 
 function writeSummary() {
   const stages = [
@@ -395,21 +416,18 @@ function writeSummary() {
         el(
           "tr",
           {},
-          el("th", { scope: "row" }, name),
-          stages.map(([s]) =>
-            el(
-              "td",
-              { class: "number" },
-              hasFigure(values[s][key]) ? format(values[s][key]) : "–",
-            ),
-          ),
-          el("td", {}, unit),
-          el("td", { class: "names" }, el("code", {}, key)),
+          quantity(name, unit, key),
+          stages.map(([s]) => el("td", { class: "number" }, shownFigure(key, values[s][key], format))),
+          el("td", { class: "unit" }, unit),
+          el("td", { class: "names" }, el("code", {}, breakable(key))),
         ),
       ),
       "Summary",
     ),
-    writtenWords(shown.map(([, , key]) => key)),
+    writtenWords(
+      shown.map(([, , key]) => key),
+      Object.values(values),
+    ),
   );
 }
 
@@ -417,39 +435,33 @@ function writeSummary() {
 function writeCases() {
   const cases = Object.entries(summary.cases || {});
   if (!cases.length) return;
-  const mm = (v) => fmt(1e3 * v, 5);
+  const values = cases.map(([, figures]) => ({ ...figures, ...figures.surface }));
+  const number = (name, key, digits, unit) =>
+    numberColumn(
+      name,
+      values.map((v) => (typeof v[key] === "number" ? v[key] : NaN)),
+      digits,
+      { unit },
+    );
   const columns = [
-    ["status", "status", (v) => v.replace(/_/g, " ")],
-    ["ψ (mm)", "psi_m", mm],
-    ["moved, RMS (mm)", "move_rms_m", mm],
-    ["half-path RMS (mm)", "half_path_rms_m", mm],
-    ["best fit (mm)", "fit_half_path_rms_m", mm],
-    ["facets, best fit (mm)", "facet_fit_half_path_rms_m", mm],
-    ["least tension (N)", "least_tension_N", (v) => fmt(v, 5)],
-    ["largest tension (N)", "largest_tension_N", (v) => fmt(v, 5)],
-    ["slack", "slack_cables", fmtCount],
-    ["loose nodes", "loose_nodes", fmtCount],
-    ["largest truss member (N)", "largest_member_N", (v) => fmt(v, 4)],
-  ];
-  const values = cases.map(([name, figures]) => [name, { ...figures, ...figures.surface }]);
-  const shown = columns.filter(([, key]) => values.some(([, v]) => v[key] !== undefined && v[key] !== null));
-  const cell = (v, format) => (typeof v === "number" || typeof v === "string" ? format(v) : "–");
+    { name: "Case", of: (i) => i, show: (i) => cases[i][0] },
+    { name: "status", beside: true, of: (i) => values[i].status, show: (i) => plainWord(values[i].status) },
+    number("ψ (mm)", "psi_m", 5, 1e3),
+    number("moved, RMS (mm)", "move_rms_m", 5, 1e3),
+    number("half-path RMS (mm)", "half_path_rms_m", 5, 1e3),
+    number("best fit (mm)", "fit_half_path_rms_m", 5, 1e3),
+    number("facets, best fit (mm)", "facet_fit_half_path_rms_m", 5, 1e3),
+    number("least tension (N)", "least_tension_N", 4),
+    number("largest tension (N)", "largest_tension_N", 4),
+    number("slack", "slack_cables", 1),
+    number("loose nodes", "loose_nodes", 1),
+    number("largest truss member (N)", "largest_member_N", 4),
+  ].filter((column) => column);
   section(
     "cases",
     "Cases of the net as built",
     el("p", {}, "Cut as the design says, under the temperatures, loads and moves of each case."),
-    table(
-      [["Case"], ...shown.map(([name]) => [name, "number"])],
-      values.map(([name, v]) =>
-        el(
-          "tr",
-          {},
-          el("th", { scope: "row" }, name),
-          shown.map(([, key, format]) => el("td", { class: "number" }, cell(v[key], format))),
-        ),
-      ),
-      "Cases of the net as built",
-    ),
+    sortableTable({ caption: "Cases of the net as built", columns, n: cases.length, by: -1 }).node,
   );
 }
 

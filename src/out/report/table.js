@@ -1,30 +1,35 @@
 // Contents: tables that are sorted by a click on a heading, and searched
 
 const ROWS_AT_ONCE = 100;
+const phone = matchMedia("(max-width: 40rem)");
+let tables = 0;
 
-// A table of n rows, of which at most `most` are shown until the reader asks for all; of all those are made that are
-// scrolled to.
-//   columns: { name, number: right-aligned, of: (i) -> value to sort by, show: (i) -> text or node of the cell }
+// A table of n rows, of which a few are shown until the reader asks for all; of all those are made that are
+// scrolled to. Paper has those that are shown, and says which they are.
+//   columns: { name, number: right-aligned, of: (i) -> value to sort by, show: (i) -> text or node of the cell,
+//     beside: on a phone it stands beside the name of the row }
 //   by: the column that it is sorted by at first, largest value first; -1: none, in the order of the rows
-//   search: what the field of the search says
+//   search: what the field of the search says; most: how many rows there are at first
 //   size: its values without their signs (a change)
 //   words: (i) -> text that a search looks in; without it there is no search
 // Returns the node, and first(i): puts row i at the top and marks it; -1: none.
-function sortableTable({ caption, columns, n, by, words, search: hint = "name or family", most = 25 }) {
+function sortableTable({ caption, columns, n, by, words, search: hint = "name or family", most: few = 0 }) {
+  const most = () => few || (phone.matches ? 10 : 20);
   const state = { by, falls: true, text: "", all: false, first: -1, order: [], made: 0 };
   const every = Array.from({ length: n }, (_, i) => i),
     letters = new Intl.Collator("en", { numeric: true });
   let texts = null; // made by the first search
-  const body = el("tbody", {}),
-    more = el("button", { type: "button" }),
-    said = el("span", { class: "muted", role: "status" });
+  const body = el("tbody", { id: `rows-${++tables}` }),
+    more = el("button", { type: "button", "aria-controls": body.id }),
+    said = el("span", { class: "muted", role: "status" }),
+    paper = el("p", { class: "paper" });
   const heads = columns.map((column, k) => {
     const press = el("button", { type: "button", class: "sort" }, column.name);
     press.addEventListener("click", () => {
       Object.assign(state, { falls: state.by === k ? !state.falls : !!column.number, by: k });
       redraw();
     });
-    return el("th", { scope: "col", class: column.number ? "number" : undefined }, press);
+    return el("th", { scope: "col", class: column.number ? "number" : undefined, "data-name": column.name }, press);
   });
 
   // Rows without a value are last, whichever way the others are sorted.
@@ -40,10 +45,10 @@ function sortableTable({ caption, columns, n, by, words, search: hint = "name or
   }
 
   function row(i) {
-    const cells = columns.map(({ number, show }, k) =>
+    const cells = columns.map(({ name, number, beside, show }, k) =>
       el(
         k ? "td" : "th",
-        { scope: k ? undefined : "row", class: number ? "number" : undefined, "data-label": columns[k].name },
+        { scope: k ? undefined : "row", class: number ? "number" : beside ? "beside" : undefined, "data-label": name },
         show(i),
       ),
     );
@@ -53,13 +58,17 @@ function sortableTable({ caption, columns, n, by, words, search: hint = "name or
   // More rows, as long as the end of those that are there is less than `far` below the upper edge of the screen.
   function makeRows(far = 2 * innerHeight) {
     const { order } = state,
-      limit = state.all ? order.length : Math.min(most, order.length);
-    while (state.made < limit && (state.made < most || body.getBoundingClientRect().bottom < far)) {
-      const next = order.slice(state.made, Math.min(limit, state.made + (state.made < most ? most : ROWS_AT_ONCE)));
+      now = most(),
+      limit = state.all ? order.length : Math.min(now, order.length);
+    while (state.made < limit && (state.made < now || body.getBoundingClientRect().bottom < far)) {
+      const next = order.slice(state.made, Math.min(limit, state.made + (state.made < now ? now : ROWS_AT_ONCE)));
       body.append(...next.map(row));
       state.made += next.length;
     }
   }
+
+  const sortedBy = () =>
+    state.by < 0 ? "" : `, those with the ${state.falls ? "largest" : "smallest"} ${columns[state.by].name}`;
 
   function redraw() {
     if (state.text && !texts) texts = every.map((i) => words(i).toLowerCase());
@@ -74,10 +83,13 @@ function sortableTable({ caption, columns, n, by, words, search: hint = "name or
         ? head.setAttribute("aria-sort", state.falls ? "descending" : "ascending")
         : head.removeAttribute("aria-sort"),
     );
-    const listed = state.all ? order.length : Math.min(most, order.length);
+    const listed = state.all ? order.length : Math.min(most(), order.length);
     said.textContent = `${fmtCount(listed)} of ${fmtCount(order.length)}${state.text ? " found" : ""}`;
-    more.hidden = order.length <= most;
-    more.textContent = state.all ? "show fewer" : "show all";
+    more.hidden = order.length <= most();
+    more.textContent = state.all ? `show the first ${most()}` : `show all ${fmtCount(order.length)}`;
+    more.setAttribute("aria-expanded", state.all);
+    paper.textContent =
+      listed < order.length ? `${fmtCount(listed)} of ${fmtCount(order.length)} rows${sortedBy()}.` : "";
   }
 
   more.addEventListener("click", () => {
@@ -90,16 +102,18 @@ function sortableTable({ caption, columns, n, by, words, search: hint = "name or
     redraw();
   });
   addEventListener("scroll", () => state.all && makeRows(), { passive: true });
+  phone.addEventListener("change", () => state.all || redraw());
   addEventListener("beforeprint", () => makeRows(Infinity));
   redraw();
   return {
     node: el(
       "div",
       {},
-      words || n > most ? el("div", { class: "tools" }, words ? search : null, said, more) : null,
+      words || n > most() ? el("div", { class: "tools" }, words ? search : null, said, more) : null,
       el(
         "div",
         { class: "scroll", tabindex: 0, role: "region", "aria-label": caption },
+        paper,
         el("table", { class: "stacked", "aria-label": caption }, el("thead", {}, el("tr", {}, heads)), body),
       ),
     ),
