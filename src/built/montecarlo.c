@@ -17,6 +17,11 @@
 
 /* ---- making ---- */
 
+static bool has_surface(const hf_montecarlo *t)
+{
+    return t->surface && t->surface->focal_length_m > 0;
+}
+
 static void lay_out_montecarlo(hf_arena *arena, int n_thread, hf_montecarlo *t)
 {
     size_t n = (size_t)t->n_chunk;
@@ -53,7 +58,10 @@ hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_montecarlo(&arena, n_thread, t)));
     t->block = arena.block;
     t->varies = hf_built_errors_vary(&t->errors);
-    return HF_OK;
+    const hf_workspace shape = {.position_m = (double *)(uintptr_t)b->place_m, /* which are only read */
+                                .tension_N = (double *)(uintptr_t)b->tension_N};
+    if (!has_surface(t)) return HF_OK;
+    return hf_surface_design_make(surface, facets, &b->model, &shape, &t->design);
 }
 
 void hf_montecarlo_free(hf_montecarlo *t)
@@ -132,22 +140,22 @@ static hf_status measure_pattern(const hf_montecarlo *t, const hf_workspace *w, 
 /* A fit that did not converge has no value, nor has its loss of gain: neither meets a requirement. */
 static void measure_surface(hf_montecarlo *t, const hf_built_shape *shape, double *value)
 {
-    hf_surface_measures is;
+    hf_surface_paths is;
     const hf_workspace w = {.position_m = (double *)(uintptr_t)shape->position_m, /* which are only read */
                             .tension_N = (double *)(uintptr_t)shape->tension_N};
-    if (hf_surface_measure(t->surface, t->facets, &t->built->model, &w, &is) != HF_OK ||
+    if (hf_surface_measure_near(&t->design, t->surface, t->facets, &t->built->model, &w, &is) != HF_OK ||
         (t->beam && measure_pattern(t, &w, &value[HF_TOLERANCE_PATTERN_LOSS]) != HF_OK)) {
         t->has_no_memory = true;
         return;
     }
-    value[HF_TOLERANCE_HALF_PATH] = is.half_path_rms_m;
-    value[HF_TOLERANCE_FIT_HALF_PATH] = is.fit.half_path_rms_m;
+    value[HF_TOLERANCE_HALF_PATH] = is.nodes_m;
+    value[HF_TOLERANCE_FIT_HALF_PATH] = is.nodes_fit_m;
     bool has_facets = t->facets && t->facets->n_facet > 0;
     if (has_facets) {
-        value[HF_TOLERANCE_FACET_HALF_PATH] = is.facet_half_path_rms_m;
-        value[HF_TOLERANCE_FACET_FIT_HALF_PATH] = is.facet_fit_half_path_rms_m;
+        value[HF_TOLERANCE_FACET_HALF_PATH] = is.facets_m;
+        value[HF_TOLERANCE_FACET_FIT_HALF_PATH] = is.facets_fit_m;
     }
-    value[HF_TOLERANCE_GAIN_LOSS] = loss_dB(t, has_facets ? is.facet_fit_half_path_rms_m : is.fit.half_path_rms_m);
+    value[HF_TOLERANCE_GAIN_LOSS] = loss_dB(t, has_facets ? is.facets_fit_m : is.nodes_fit_m);
 }
 
 /* Over all inner nodes, as to first order. That of a result leaves out loose nodes; they have a place here, too. */
@@ -181,7 +189,7 @@ static void take_sample(void *context, long i, int place, const hf_built_shape *
     for (int e = 0; e < m->n_cable; e++)
         least = fmin(least, shape->tension_N[e]);
     value[HF_TOLERANCE_LEAST_TENSION] = least;
-    if (t->surface && t->surface->focal_length_m > 0 && !t->skips_surface) measure_surface(t, shape, value);
+    if (has_surface(t) && !t->skips_surface) measure_surface(t, shape, value);
 }
 
 /* ---- first order ---- */
@@ -253,7 +261,7 @@ static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reac
     return HF_OK;
 }
 
-/* Is a requirement about the surface? To measure it takes a hundred times the time of a sample. */
+/* Is a requirement about the surface? To measure it takes longer than to find a sample. */
 static bool requires_surface(const hf_tolerance_settings *s)
 {
     for (int k = 0; k < s->n_require; k++)

@@ -5,6 +5,7 @@
 #include "built/directions.h"
 #include <hifdm/built_batch.h>
 #include "solve/gain.h"
+#include "solve/surface_near.h"
 #include <hifdm/tolerance.h>
 
 #include <stdatomic.h>
@@ -16,6 +17,7 @@ typedef struct {
     const hf_surface_settings *surface; /* focal_length_m 0: the surface is not measured */
     const hf_facets *facets;
     const hf_gain_beam *beam; /* borrowed, to be set before samples; NULL: the far field is not measured */
+    hf_surface_design design; /* where the best fits of samples begin */
     hf_built_linear linear;
     hf_built_errors errors;
     hf_covariance covariance;

@@ -171,6 +171,41 @@ hf_status hf_facet_measure(const hf_surface_settings *s, const hf_facets *f, con
     return HF_OK;
 }
 
+hf_status hf_facet_fit(const hf_surface_settings *s, const hf_facets *f, const hf_facet_shape *shape,
+                       hf_surface_fit *fit, hf_fit_parameters *parameters)
+{
+    points q;
+    hf_arena arena = {0};
+    *fit = (hf_surface_fit){0};
+    *parameters = (hf_fit_parameters){0};
+    hf_status status = take_points(s, f, shape, &arena, &q);
+    if (status == HF_OK && q.has_shape)
+        status = hf_surface_fit_find(s->kind, s->focal_length_m, q.n, q.position_m, q.root_m, fit, parameters);
+    hf_arena_free(&arena);
+    return status;
+}
+
+hf_status hf_facet_measure_near(const hf_surface_pose *from, const hf_surface_settings *s, const hf_facets *f,
+                                const hf_facet_shape *shape, double *half_path_rms_m, double *fit_half_path_rms_m)
+{
+    points q;
+    hf_surface_fit fit;
+    hf_surface_measures all;
+    hf_arena arena = {0};
+    *half_path_rms_m = *fit_half_path_rms_m = (double)NAN;
+    hf_status status = take_points(s, f, shape, &arena, &q);
+    if (status == HF_OK && q.has_shape) {
+        sum_up(s, &q, &all);
+        *half_path_rms_m = all.facet_half_path_rms_m;
+        if (!hf_surface_fit_near(from, q.n, q.position_m, q.root_m, fit_half_path_rms_m)) {
+            status = hf_surface_fit_points(s->kind, s->focal_length_m, q.n, q.position_m, q.root_m, &fit);
+            *fit_half_path_rms_m = fit.half_path_rms_m;
+        }
+    }
+    hf_arena_free(&arena);
+    return status;
+}
+
 /* ---- each facet ---- */
 
 /* Mean and RMS of the errors of each facet, by projected area. */

@@ -5,7 +5,8 @@
 
 #include "base/arena.h"
 #include <hifdm/facets.h>
-#include <hifdm/surface.h>
+#include "solve/surface_fit.h"
+#include "solve/surface_near.h"
 
 /* A found shape in the order of the scene; borrowed. */
 typedef struct {
@@ -28,6 +29,17 @@ extern const double hf_facet_flat_at[HF_FACET_N_FLAT], hf_facet_flat_weight[HF_F
  * HF_NO_MEMORY. */
 hf_status hf_facet_measure(const hf_surface_settings *settings, const hf_facets *facets, const hf_facet_shape *shape,
                            hf_surface_measures *to);
+
+/* The best fit to the facets of a shape, with its parameters; not converged where the mesh has no shape. HF_OK or
+ * HF_NO_MEMORY. */
+hf_status hf_facet_fit(const hf_surface_settings *settings, const hf_facets *facets, const hf_facet_shape *shape,
+                       hf_surface_fit *fit, hf_fit_parameters *parameters);
+
+/* facet_half_path_rms_m and facet_fit_half_path_rms_m of hf_facet_measure, the latter from the fit of a shape nearby.
+ * HF_OK or HF_NO_MEMORY. */
+hf_status hf_facet_measure_near(const hf_surface_pose *from, const hf_surface_settings *settings,
+                                const hf_facets *facets, const hf_facet_shape *shape, double *half_path_rms_m,
+                                double *fit_half_path_rms_m);
 
 /* Errors along the normal of each facet, [n_facet], by projected area: mean and RMS, against the wanted surface and
  * against the best fit to all facets (NaN when it does not converge). */

@@ -192,6 +192,45 @@ START_TEST(mesh_makes_the_error_grow)
 }
 END_TEST
 
+/* Facets of a net that is a little off have from the fit of the design the RMS values of the reference, also under a
+ * mesh; and none where the mesh has no shape. */
+START_TEST(facets_near_those_of_the_design)
+{
+    enum { RINGS = 5 };
+    hf_surface_settings s = {.focal_length_m = 4, .kind = HF_SURFACE_PARABOLOID};
+    struct net net;
+    hf_facets facets;
+    hf_surface_fit fit;
+    hf_fit_parameters parameters;
+    hf_surface_measures all = {0};
+    struct rng rng = rng_start(470);
+    double path, fit_path;
+    open_hexagon(&net, RINGS, 3, 4);
+    ck_assert_int_eq(hf_facets_find(&net.scene, &s, &facets), HF_OK);
+    double *tension_N = malloc((size_t)net.scene.n_cable * sizeof *tension_N);
+    for (int e = 0; e < net.scene.n_cable; e++)
+        tension_N[e] = 10;
+    const hf_facet_shape shape = {net.scene.position_m, net.scene.n_cable, net.scene.end, tension_N};
+    s.mesh_tension_N_per_m = _i ? 0.1 : 0;
+    ck_assert_int_eq(hf_facet_fit(&s, &facets, &shape, &fit, &parameters), HF_OK);
+    hf_surface_pose pose = hf_surface_pose_of(s.kind, s.focal_length_m, &fit, &parameters);
+    ck_assert(pose.is_whole);
+    for (int k = 0; k < 3 * net.scene.n_node; k++)
+        net.scene.position_m[k] += rng_uniform(&rng, -1e-3, 1e-3);
+    ck_assert_int_eq(hf_facet_measure(&s, &facets, &shape, &all), HF_OK);
+    ck_assert_int_eq(hf_facet_measure_near(&pose, &s, &facets, &shape, &path, &fit_path), HF_OK);
+    ck_assert_double_eq(path, all.facet_half_path_rms_m);
+    ck_assert_double_eq_tol(fit_path, all.facet_fit_half_path_rms_m, 1e-9 * fit_path);
+    ck_assert_double_lt(fit_path, 0.9 * path);
+    memset(tension_N, 0, (size_t)net.scene.n_cable * sizeof *tension_N);
+    ck_assert_int_eq(hf_facet_measure_near(&pose, &s, &facets, &shape, &path, &fit_path), HF_OK);
+    ck_assert(isnan(path) == (_i == 1) && isnan(fit_path) == (_i == 1));
+    free(tension_N);
+    hf_facets_free(&facets);
+    close_net(&net);
+}
+END_TEST
+
 /* ---- by hand ---- */
 
 /* The triangle (0,0), (1,0), (0,1) in the plane z = 0 below the paraboloid c (x^2 + y^2): the mean of the square of the
@@ -243,6 +282,7 @@ Suite *suite_unit_facet_rms(void)
     tcase_add_test(tests, errors_fall_with_the_square_of_the_side);
     tcase_add_test(tests, errors_of_each_facet_make_that_of_all);
     tcase_add_test(tests, mesh_makes_the_error_grow);
+    tcase_add_loop_test(tests, facets_near_those_of_the_design, 0, 2);
     tcase_add_loop_test(tests, integrals_are_exact, 0, 2);
     return suite;
 }

@@ -1,0 +1,257 @@
+/* Contents: a pose - rows of points - steps - a shape */
+#include "solve/surface_near.h"
+
+#include "base/arena.h"
+#include "base/elementary.h"
+#include "linalg/dense.h"
+#include "net/wanted.h"
+#include "solve/facet_rms.h"
+
+#include <math.h>
+#include <string.h>
+
+#define STEPS_MAX 6      /* of one fit; nets cut to 0.05 mm take two or three */
+#define SETTLED 1e-11    /* of the sum of squares: what a last step may take off it */
+#define ACROSS_MOST 0.05 /* of the size: half of what the reference takes for a shift */
+#define FOCAL_MOST 1.5   /* of the wanted curvature or of one over it; 2 in the reference */
+
+/* ---- a pose ---- */
+
+hf_surface_pose hf_surface_pose_of(hf_surface_kind kind, double focal_length_m, const hf_surface_fit *fit,
+                                   const hf_fit_parameters *parameters)
+{
+    const double angle[3] = {fit->rotation_x_rad, fit->rotation_y_rad, fit->rotation_z_rad};
+    hf_surface_pose q = {.is_whole = fit->converged && parameters->n == HF_FIT_N_PARAMETER,
+                         .kind = kind,
+                         .center_m = {fit->center_x_m, fit->center_y_m, fit->center_z_m},
+                         .shift_m = {fit->shift_x_m, fit->shift_y_m, fit->shift_z_m},
+                         .curvature_per_m = 1 / (4 * fit->focal_length_m),
+                         .wanted_per_m = 1 / (4 * focal_length_m),
+                         .size_m = parameters->size_m};
+    hf_fit_rotation(angle, (const int[3]){0, 0, 0}, q.turn);
+    return q;
+}
+
+/* A small turn and shift within the frame of the surface: from p to E (p - center) + center + move, with the rotation
+ * of Cayley, E = (1 - [a])^-1 (1 + [a]), a = turn/2, which agrees with the turn to second order. */
+static void move_pose(hf_surface_pose *q, const double move[3], const double turn[3])
+{
+    double a[3] = {turn[0] / 2, turn[1] / 2, turn[2] / 2}, by = 2 / (1 + a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    double next[3][3];
+    for (int c = 0; c < 3; c++) {
+        double column[3] = {q->turn[0][c], q->turn[1][c], q->turn[2][c]}, once[3], twice[3];
+        hf_cross(a, column, once);
+        hf_cross(a, once, twice);
+        for (int d = 0; d < 3; d++)
+            next[d][c] = column[d] + by * (once[d] + twice[d]);
+    }
+    memcpy(q->turn, next, sizeof next);
+    for (int c = 0; c < 3; c++)
+        q->shift_m[c] -= next[0][c] * move[0] + next[1][c] * move[1] + next[2][c] * move[2];
+}
+
+/* ---- rows of points ---- */
+
+/* Parameters of a step: moves and turns in the frame of the surface, over the size and in radians, and the curvature
+ * times the size. One of the seven changes nothing: of a cylinder the move along y, of a paraboloid the turn about z. */
+enum { N = HF_FIT_N_PARAMETER, N_ALL = 7, LANES = 8, N_PRODUCT = (N + 1) * (N + 2) / 2 };
+
+typedef struct {
+    hf_surface_pose pose;
+    int n;
+    const double *x[3], *root_weight;
+} problem;
+
+/* Residuals of up to LANES points from the first on, and in front of each its derivatives, with their weights; 0 where
+ * there is no point. Of the height u over the surface and w = 1/(1 + slope^2) the residual is u w, and its derivative by
+ * a move of the point a = w (-2 c x (1 + 4 c u w), the same of y, 1); by a turn, the vector from the centre times a. */
+static void find_rows(const problem *p, int first, double row[N + 1][LANES])
+{
+    const hf_surface_pose *q = &p->pose;
+    double at[3][LANES], rho[3][LANES], root[LANES], all[N_ALL][LANES], c = q->curvature_per_m;
+    double round_ = q->kind == HF_SURFACE_PARABOLOID, size = q->size_m;
+    for (int k = 0; k < LANES; k++) {
+        int i = first + k < p->n ? first + k : p->n - 1;
+        for (int d = 0; d < 3; d++)
+            at[d][k] = p->x[d][i] - q->center_m[d] - q->shift_m[d];
+        root[k] = first + k >= p->n ? 0 : p->root_weight ? p->root_weight[i] : 1;
+    }
+    for (int d = 0; d < 3; d++)
+        for (int k = 0; k < LANES; k++)
+            rho[d][k] = q->turn[d][0] * at[0][k] + q->turn[d][1] * at[1][k] + q->turn[d][2] * at[2][k];
+    for (int k = 0; k < LANES; k++) {
+        double x = rho[0][k] + q->center_m[0], y = round_ * (rho[1][k] + q->center_m[1]);
+        double square = x * x + y * y, u = rho[2][k] + q->center_m[2] - c * square, w = 1 / (1 + 4 * c * c * square);
+        double bent = 4 * c * u * w, az = root[k] * w, ax = -2 * c * x * (1 + bent) * az,
+               ay = -2 * c * y * (1 + bent) * az;
+        all[0][k] = size * az;
+        all[1][k] = size * ax;
+        all[2][k] = size * ay;
+        all[3][k] = rho[1][k] * az - rho[2][k] * ay;
+        all[4][k] = rho[2][k] * ax - rho[0][k] * az;
+        all[5][k] = rho[0][k] * ay - rho[1][k] * ax;
+        all[6][k] = -square / size * (1 + 2 * bent) * az;
+        row[N][k] = u * az;
+    }
+    for (int j = 0, to = 0; j < N_ALL; j++)
+        if (j != (round_ > 0 ? 5 : 2)) memcpy(row[to++], all[j], sizeof all[j]);
+}
+
+/* Sums over all points of products of the columns of rows: with the residual alone, [N + 1], or all of them, of the
+ * lower triangle row by row. Lanes are added up at the end. */
+static void sum_products(const problem *p, bool all, double sum[N_PRODUCT])
+{
+    double row[N + 1][LANES], lane[N_PRODUCT][LANES] = {0};
+    for (int first = 0; first < p->n; first += LANES) {
+        find_rows(p, first, row);
+        for (int i = all ? 0 : N, at = 0; i <= N; i++)
+            for (int j = 0; j <= i; j++, at++)
+                for (int k = 0; k < LANES; k++)
+                    lane[at][k] += row[i][k] * row[j][k];
+    }
+    for (int at = 0; at < N_PRODUCT; at++) {
+        sum[at] = 0;
+        for (int k = 0; k < LANES; k++)
+            sum[at] += lane[at][k];
+    }
+}
+
+/* ---- steps ---- */
+
+/* Factor of the normal equations at the pose, and its slope and square in `last` [N + 1]. */
+static bool take_normal(const problem *p, double factor[N * N], int pivot[N], double last[N + 1])
+{
+    double sum[N_PRODUCT];
+    sum_products(p, true, sum);
+    for (int i = 0, at = 0; i < N; i++)
+        for (int j = 0; j <= i; j++, at++)
+            factor[i * N + j] = factor[j * N + i] = sum[at];
+    memcpy(last, sum + N_PRODUCT - N - 1, (N + 1) * sizeof *last);
+    return hf_dense_factor(N, factor, pivot) == 0;
+}
+
+static void take_step(problem *p, const double step[N])
+{
+    hf_surface_pose *q = &p->pose;
+    bool is_round = q->kind == HF_SURFACE_PARABOLOID;
+    double size = q->size_m, move[3] = {size * step[1], is_round ? size * step[2] : 0, size * step[0]}, turn[3];
+    for (int d = 0; d < 3; d++)
+        turn[d] = d < 2 || !is_round ? step[is_round ? 3 + d : 2 + d] : 0;
+    move_pose(q, move, turn);
+    q->curvature_per_m += step[N - 1] / size;
+}
+
+/* The reference takes the same fit for determined. */
+static bool is_well_inside(const hf_surface_pose *q)
+{
+    double ratio = q->curvature_per_m / q->wanted_per_m;
+    double across = fmax(fabs(q->shift_m[0]), q->kind == HF_SURFACE_PARABOLOID ? fabs(q->shift_m[1]) : 0);
+    return across <= ACROSS_MOST * q->size_m && ratio <= FOCAL_MOST && ratio >= 1 / FOCAL_MOST;
+}
+
+bool hf_surface_fit_near(const hf_surface_pose *from, int n, const double *position_m, const double *root_weight,
+                         double *half_path_rms_m)
+{
+    problem p = {*from, n, {position_m, position_m + n, position_m + 2 * (size_t)n}, root_weight};
+    double factor[N * N], last[N + 1], step[N], weight = 0;
+    int pivot[N];
+    if (!from->is_whole || !take_normal(&p, factor, pivot, last)) return false;
+    for (int i = 0; i < n; i++)
+        weight += root_weight ? root_weight[i] * root_weight[i] : 1;
+    for (int k = 0; k < STEPS_MAX; k++) { /* the matrix of the first pose serves all: steps are small */
+        double gain = 0, sum[N_PRODUCT];
+        for (int j = 0; j < N; j++)
+            step[j] = -last[j];
+        hf_dense_solve(N, factor, pivot, 1, step);
+        for (int j = 0; j < N; j++)
+            gain -= last[j] * step[j];
+        take_step(&p, step);
+        if (fabs(gain) <= SETTLED * last[N]) {
+            *half_path_rms_m = sqrt((last[N] - gain) / weight);
+            return is_well_inside(&p.pose);
+        }
+        sum_products(&p, false, sum);
+        memcpy(last, sum, sizeof last);
+    }
+    return false;
+}
+
+/* ---- a shape ---- */
+
+static void take_nodes(const hf_model *m, const hf_workspace *w, double *position_m)
+{
+    for (int c = 0; c < 3; c++)
+        for (int k = 0; k < m->n_inner_node; k++)
+            position_m[c * m->n_inner_node + k] = w->position_m[c * m->n_node + m->inner_row[k]];
+}
+
+static void lay_out_nodes(hf_arena *arena, int n, double **position_m)
+{
+    *position_m = hf_arena_take(arena, 3 * (size_t)n, sizeof **position_m);
+}
+
+hf_status hf_surface_design_make(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
+                                 const hf_workspace *w, hf_surface_design *design)
+{
+    hf_arena arena = {0}, shapes = {0};
+    hf_facet_shape shape;
+    hf_surface_fit fit;
+    hf_fit_parameters parameters;
+    double *position_m;
+    *design = (hf_surface_design){0};
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_nodes(&arena, m->n_inner_node, &position_m)));
+    take_nodes(m, w, position_m);
+    hf_status status =
+        hf_surface_fit_find(s->kind, s->focal_length_m, m->n_inner_node, position_m, NULL, &fit, &parameters);
+    hf_arena_free(&arena);
+    HF_TRY(status);
+    design->nodes = hf_surface_pose_of(s->kind, s->focal_length_m, &fit, &parameters);
+    if (!facets || facets->n_facet == 0) return HF_OK;
+    status = hf_facet_shape_take(m, w, &shape, &shapes);
+    if (status == HF_OK) status = hf_facet_fit(s, facets, &shape, &fit, &parameters);
+    hf_arena_free(&shapes);
+    HF_TRY(status);
+    design->facets = hf_surface_pose_of(s->kind, s->focal_length_m, &fit, &parameters);
+    return HF_OK;
+}
+
+static hf_status measure_nodes(const hf_surface_design *design, const hf_surface_settings *s, const hf_model *m,
+                               const hf_workspace *w, hf_surface_paths *to)
+{
+    int n = m->n_inner_node;
+    hf_arena arena = {0};
+    hf_surface_fit fit;
+    double *position_m, sum = 0, curvature = 1 / (4 * s->focal_length_m);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_nodes(&arena, n, &position_m)));
+    take_nodes(m, w, position_m);
+    for (int k = 0; k < n; k++) {
+        double p[3] = {position_m[k], position_m[n + k], position_m[2 * (size_t)n + (size_t)k]}, slope[2];
+        double above = hf_wanted_height_above(s->kind, curvature, p, slope);
+        double path = above / (1 + slope[0] * slope[0] + slope[1] * slope[1]);
+        sum += path * path;
+    }
+    to->nodes_m = sqrt(sum / n);
+    hf_status status = HF_OK;
+    if (!hf_surface_fit_near(&design->nodes, n, position_m, NULL, &to->nodes_fit_m)) {
+        status = hf_surface_fit_points(s->kind, s->focal_length_m, n, position_m, NULL, &fit);
+        to->nodes_fit_m = fit.half_path_rms_m;
+    }
+    hf_arena_free(&arena);
+    return status;
+}
+
+hf_status hf_surface_measure_near(const hf_surface_design *design, const hf_surface_settings *s,
+                                  const hf_facets *facets, const hf_model *m, const hf_workspace *w,
+                                  hf_surface_paths *to)
+{
+    hf_arena arena = {0};
+    hf_facet_shape shape;
+    *to = (hf_surface_paths){NAN, NAN, NAN, NAN};
+    HF_TRY(measure_nodes(design, s, m, w, to));
+    if (!facets || facets->n_facet == 0) return HF_OK;
+    hf_status status = hf_facet_shape_take(m, w, &shape, &arena);
+    if (status == HF_OK)
+        status = hf_facet_measure_near(&design->facets, s, facets, &shape, &to->facets_m, &to->facets_fit_m);
+    hf_arena_free(&arena);
+    return status;
+}
