@@ -459,6 +459,26 @@ static hf_status print_optimize_time(hf_problem *p, const hf_evaluator *v, int t
     return status;
 }
 
+/* Samples of the net as built, at the shape of form-finding. */
+static void print_tolerance_time(const hf_problem *p, int threads, FILE *f)
+{
+    int n = p->settings.tolerance.samples;
+    hf_tolerance_trial trial;
+    char begin[32], one[32], all[32];
+    if (!p->settings.has_tolerance || p->form.status != HF_OK) return;
+    if (hf_tolerance_stage_try(p, &p->workspace, TRIAL_S, &trial) != HF_OK) return;
+    hf_print_duration(trial.begin_s, begin, sizeof begin);
+    hf_print_duration(trial.sample_s, one, sizeof one);
+    hf_print_duration(trial.begin_s + trial.sample_s * n / threads, all, sizeof all);
+    if (trial.is_tried)
+        fprintf(f,
+                "                as built: %s for a net of the first ones%s; with first order about %s for %d nets\n",
+                one, p->settings.has_surface ? ", best fits of the surface included" : "", all, n);
+    else
+        fprintf(f, "                as built: first order some %s of processor time, counted; samples not tried\n",
+                begin);
+}
+
 /* Tries the form-finding: three iterations measure what one costs, then as many are done as fit into TRIAL_S. */
 static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, FILE *f, hf_messages *messages)
 {
@@ -483,6 +503,7 @@ static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, F
     fprintf(f, "  expected time form-finding: %s (%d iteration%s, stopped by %s)\n", text, r->iterations,
             r->iterations == 1 ? "" : "s", hf_stop_reason_word((int)r->stop_reason));
     HF_TRY(hf_problem_explain(p, messages));
+    print_tolerance_time(p, threads, f);
     if (!v) return HF_OK;
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_reach_check(p, messages));

@@ -1,4 +1,4 @@
-/* Contents: what cannot be - the identity of samples - samples - together */
+/* Contents: what cannot be - the identity of samples - samples - what comes of them - a trial - together */
 #include "run/tolerance_stage.h"
 
 #include "base/arena.h"
@@ -296,7 +296,7 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
     return status;
 }
 
-/* ---- together ---- */
+/* ---- what comes of them ---- */
 
 /* Of the cable whose tension the errors of its own cut outweigh most: what sigma is of its tension where its ends stay,
  * EA sigma/length, the most that it can be. */
@@ -367,6 +367,52 @@ static void aim_beam(job *j, hf_messages *messages)
         hf_warning(messages, "tolerance: pattern_loss_dB is not measured at %g GHz: " HF_GAIN_TOO_COARSE,
                    hf_surface_highest_Hz(&p->surface) / 1e9);
 }
+
+/* ---- a trial ---- */
+
+#define TRIED 16       /* samples at first: two rounds of the lanes of a thread */
+#define TRIED_MORE 128 /* samples where the first ones took less than TRIED_S, which a cold start is much of */
+#define TRIED_S 0.1
+#define OPERATIONS_PER_S 8e9 /* of one core, in solves of several right-hand sides */
+
+/* Of first order: a solve for each coordinate of an inner node (built/covariance). */
+static double first_order_s(const hf_model *m)
+{
+    double rows = 3.0 * m->n_free;
+    return 3.0 * m->n_inner_node * 4 * rows * (3.0 * m->half_bandwidth + 2) / OPERATIONS_PER_S;
+}
+
+static hf_status try_samples(job *j, hf_tolerance_trial *trial, hf_messages *messages)
+{
+    const hf_problem *p = j->stage->problem;
+    HF_TRY(hf_built_make("", &p->scene, &p->model, &p->settings.form, j->stage->shape, &j->built, messages));
+    HF_TRY(open_montecarlo(j, messages));
+    aim_beam(j, messages);
+    trial->begin_s = hf_clock_thread_cpu_s() - j->begin_s;
+    for (int tried = TRIED; tried; tried = tried == TRIED && trial->sample_s * TRIED < TRIED_S ? TRIED_MORE : 0) {
+        int n = tried < j->montecarlo.n_chunk ? tried : j->montecarlo.n_chunk;
+        double begin_s = hf_clock_thread_cpu_s();
+        HF_TRY(hf_montecarlo_run(&j->montecarlo, 1, 0, n));
+        trial->sample_s = (hf_clock_thread_cpu_s() - begin_s) / n;
+    }
+    trial->is_tried = true;
+    return HF_OK;
+}
+
+hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape, double most_s,
+                                 hf_tolerance_trial *trial)
+{
+    const hf_run_request request = {.threads = 1};
+    const hf_tolerance_stage stage = {&request, p, shape, "", NULL};
+    job j = {.stage = &stage, .begin_s = hf_clock_thread_cpu_s()};
+    hf_messages messages = {0};
+    *trial = (hf_tolerance_trial){.begin_s = first_order_s(&p->model)};
+    hf_status status = trial->begin_s > most_s ? HF_OK : try_samples(&j, trial, &messages);
+    job_free(&j);
+    return status;
+}
+
+/* ---- together ---- */
 
 static hf_status work_off_stage(job *j, hf_summary *summary, hf_messages *messages)
 {

@@ -34,6 +34,16 @@ hf_status hf_tolerance_stage_check(const hf_problem *problem, bool is_demanded, 
 hf_status hf_tolerance_stage_look(const hf_run_request *request, const hf_problem *problem, const char *output,
                                   hf_messages *messages);
 
+/* What the samples of a run would take, by a few of them at this shape in one thread: processor time until the first
+ * one, mostly for first order, and for one. is_tried is false where counted operations foretell more than most_s until
+ * the first one, which is then in begin_s. HF_OK, or why there are no samples, without a message. */
+typedef struct {
+    double begin_s, sample_s;
+    bool is_tried;
+} hf_tolerance_trial;
+hf_status hf_tolerance_stage_try(const hf_problem *problem, const hf_workspace *shape, double most_s,
+                                 hf_tolerance_trial *trial);
+
 /* Find all samples, or those of request->task, and sum them up into the summary. HF_OK; HF_INTERRUPTED: the same
  * request goes on; HF_BAD_CASE, HF_SINGULAR, HF_EXISTS, HF_IO, HF_NO_MEMORY. */
 hf_status hf_tolerance_stage_run(const hf_tolerance_stage *stage, hf_summary *summary, hf_messages *messages);

@@ -53,7 +53,8 @@ static void move_pose(hf_surface_pose *q, const double move[3], const double tur
 /* ---- rows of points ---- */
 
 /* Parameters of a step: moves and turns in the frame of the surface, over the size and in radians, and the curvature
- * times the size. One of the seven changes nothing: of a cylinder the move along y, of a paraboloid the turn about z. */
+ * times the size. One of the seven changes nothing: of a cylinder the move along y, of a paraboloid the turn about z.
+ */
 enum { N = HF_FIT_N_PARAMETER, N_ALL = 7, LANES = 8, N_PRODUCT = (N + 1) * (N + 2) / 2 };
 
 typedef struct {
@@ -63,8 +64,9 @@ typedef struct {
 } problem;
 
 /* Residuals of up to LANES points from the first on, and in front of each its derivatives, with their weights; 0 where
- * there is no point. Of the height u over the surface and w = 1/(1 + slope^2) the residual is u w, and its derivative by
- * a move of the point a = w (-2 c x (1 + 4 c u w), the same of y, 1); by a turn, the vector from the centre times a. */
+ * there is no point. Of the height u over the surface and w = 1/(1 + slope^2) the residual is u w. Its derivative by a
+ * move of the point is a = w (-2 c x (1 + 4 c u w), the same of y, 1); by a turn, the vector from the centre times
+ * a. */
 static void find_rows(const problem *p, int first, double row[N + 1][LANES])
 {
     const hf_surface_pose *q = &p->pose;

@@ -32,6 +32,23 @@ START_TEST(check_tells_what_will_run)
 }
 END_TEST
 
+/* Samples are tried at the shape of form-finding; first order of a large net is counted instead. */
+START_TEST(check_tells_how_long_samples_take)
+{
+    const char *text = "scene:\n  paraboloid: {aperture_m: 4, focal_length_m: 2.4, rings: %d, rear_distance_m: 1.2}\n"
+                       "  EA_inner_N: 5000\n  EA_boundary_N: 5000\nform: {prestress: exact}\n"
+                       "tolerance: {sigma_cut_m: 1e-5, samples: 5000}\n%s";
+    HIFDM(0, "check", file_with("case.yaml", formatted(text, 3, "surface: {}\n")));
+    OUT(" for a net of the first ones, best fits of the surface included; with first order about ");
+    OUT(" for 5000 nets\n");
+    HIFDM(0, "check", file_with("case.yaml", formatted(text, 3, "")));
+    OUT(" for a net of the first ones; with first order about ");
+    HIFDM(0, "check", file_with("case.yaml", formatted(text, 24, "")));
+    OUT("as built: first order some ");
+    OUT(" of processor time, counted; samples not tried\n");
+}
+END_TEST
+
 /* 24 x 24 cells on 6 x 6 modules: unknowns and bandwidth grow, and so do memory and time. */
 START_TEST(check_follows_the_size)
 {
@@ -237,6 +254,7 @@ Suite *suite_cli_check(void)
 {
     Suite *suite = suite_create("cli/check");
     TCase *tcase = tcase_create("check");
+    tcase_add_test(tcase, check_tells_how_long_samples_take);
     tcase_add_test(tcase, check_tells_what_will_run);
     tcase_add_test(tcase, check_follows_the_size);
     tcase_add_test(tcase, check_of_an_ill_posed_case_says_so);
