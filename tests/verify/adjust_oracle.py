@@ -135,13 +135,14 @@ def estimate(net, which, target):
 
 def check(cut, jig, folder, measured, answer):
     net, theory = Net(cut, jig, folder), {n["id"]: n for n in rows(f"{folder}/nodes.csv")}
-    wanted = np.array([[float(theory[i][f"{c}0_m"]) for c in "xyz"] for i in net.id])
+    said = json.load(open(answer))
+    aimed = "{}_m" if said["aim"] == "design" else "{}0_m"
+    wanted = np.array([[float(theory[i][aimed.format(c)]) for c in "xyz"] for i in net.id])
     index = {name: i for i, name in enumerate(net.id)}
     table = rows(measured)
     which = np.array([index[r["id"]] for r in table])
     target = np.array([[float(r[c]) for c in ("x_m", "y_m", "z_m")] for r in table]).ravel()
     e, shape = estimate(net, which, target)
-    said = json.load(open(answer))
     told = np.array([said["errors_m"][c] for c in net.cable])
     worst_error = np.abs(told - e).max()
 
@@ -159,7 +160,7 @@ def check(cut, jig, folder, measured, answer):
     print(f"{len(said['moves'])} moves; errors differ by {worst_error:.2e} m of {np.abs(e).max():.2e}, "
           f"figures by {worst_figure:.2e} m")
     figures.worst(worst_error, 1e-8, "estimated errors of cut lengths, m")
-    figures.worst(worst_figure, 1e-9, f"psi after each of {len(said['moves'])} moves, m")
+    figures.worst(worst_figure, 1e-9, f"psi after each of {len(said['moves'])} moves, aim {said['aim']}, m")
     return 0 if len(said["moves"]) and worst_error < 1e-8 and worst_figure < 1e-9 else 1
 
 

@@ -36,7 +36,8 @@ START_TEST(an_adjusted_net_is_that_of_the_oracle)
     ASK(hifdm, "run", file[0], "-o", file[1], "--quiet");
     ASK(hifdm, "export", file[1], "--csv", file[4], "--cutlist", file[2]);
     ASK(python, oracle, "measure", file[2], file[3], file[4], file[5], "7");
-    ASK("sh", "-c", "exec \"$0\" adjust \"$1\" --measured \"$2\" --json >\"$3\"", hifdm, file[0], file[5], file[6]);
+    ASK("sh", "-c", "exec \"$0\" adjust \"$1\" --measured \"$2\" --set adjust.aim=$4 --json >\"$3\"", hifdm, file[0],
+        file[5], file[6], _i ? "design" : "theory");
     ASK(python, oracle, "check", file[2], file[3], file[4], file[5], file[6]);
 }
 END_TEST
@@ -46,7 +47,7 @@ Suite *suite_verify_adjust(void)
     Suite *suite = suite_create("verify/adjust");
     TCase *tcase = tcase_create("adjust");
     tcase_set_timeout(tcase, HANG_S);
-    tcase_add_test(tcase, an_adjusted_net_is_that_of_the_oracle);
+    tcase_add_loop_test(tcase, an_adjusted_net_is_that_of_the_oracle, 0, 2); /* both aims */
     suite_add_tcase(suite, tcase);
     return suite;
 }
