@@ -117,6 +117,28 @@ START_TEST(it_ends_when_it_should)
 }
 END_TEST
 
+/* Cables that have nothing to do with each other, more than the few that are tried in full: the best are turned. */
+START_TEST(the_most_promising_are_tried)
+{
+    static example x;
+    enum { TURNED = 3 };
+    int steps[MAX_CABLES];
+    hf_moves_end end;
+    bool is_held;
+    x = (example){
+        .p = {
+            .n = MAX_CABLES, .gram = x.gram, .slope = x.slope, .step_m = 0.01, .steps_max = 1000, .moves_max = TURNED}};
+    for (int i = 0; i < MAX_CABLES; i++) {
+        x.gram[i * MAX_CABLES + i] = 1;
+        x.slope[i] = 1 + i * 7 % MAX_CABLES; /* each size once */
+        x.p.square += x.slope[i] * x.slope[i];
+    }
+    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end, &is_held), HF_OK);
+    for (int i = 0; i < MAX_CABLES; i++)
+        ck_assert_int_eq(steps[i] != 0, x.slope[i] > MAX_CABLES - TURNED);
+}
+END_TEST
+
 enum { TENSIONS = 6 };
 
 typedef struct {
@@ -261,6 +283,7 @@ Suite *suite_unit_moves(void)
     TCase *tcase = tcase_create("moves");
     tcase_add_test(tcase, choices_are_nearly_the_best);
     tcase_add_test(tcase, it_ends_when_it_should);
+    tcase_add_test(tcase, the_most_promising_are_tried);
     tcase_add_test(tcase, tensions_are_kept);
     tcase_add_test(tcase, no_room_is_no_reason_to_fail);
     tcase_add_loop_test(tcase, the_best_is_a_bound, 0, 8);

@@ -23,6 +23,7 @@ struct sheet {
     double position_m[3 * NODES_MOST];
     int corner[4 * FACETS_MOST];
     hf_facets facets;
+    const double *sag_m; /* NULL: flat */
     hf_surface_settings surface;
     double co[CUTS * N_ANGLE], cross[CUTS * N_ANGLE];
 };
@@ -66,7 +67,7 @@ static int solve_any(int n_thread)
 {
     hf_feed feed;
     hf_far_field p;
-    const hf_pattern_surface surface = {&s.facets, s.position_m, NULL};
+    const hf_pattern_surface surface = {&s.facets, s.position_m, s.sag_m};
     int n_behind = hf_feed_make(&s.surface, &s.facets, s.position_m, &feed);
     ck_assert_int_eq(hf_pattern_create(&s.surface.pattern, &surface, &feed, LIGHT_M_PER_S, n_thread, &p), HF_OK);
     hf_parallel_each(n_thread, HF_PATTERN_BLOCKS, hf_pattern_sum_block, &p);
@@ -85,7 +86,7 @@ static double loss_in_phase_dB(void)
     hf_gain_beam beam;
     hf_gain_beam_make(&s.surface, &s.facets, s.position_m, LIGHT_M_PER_S, &beam);
     ck_assert_int_lt(beam.order, HF_GAIN_ORDER_MOST);
-    return hf_gain_loss_dB(&beam, &(hf_pattern_surface){&s.facets, s.position_m, NULL});
+    return hf_gain_loss_dB(&beam, &(hf_pattern_surface){&s.facets, s.position_m, s.sag_m});
 }
 
 /* Root of the gain, of angle i of a cut. */
@@ -379,6 +380,27 @@ START_TEST(small_errors_lose_what_ruze_says)
 }
 END_TEST
 
+/* The mesh of a flat plate between its cables: what is lost in phase is what the far field lacks along the beam. */
+START_TEST(pillows_lose_what_the_field_loses)
+{
+    static double sag_m[4 * 6];
+    const double sag_of_side_m[4] = {0.02, 0.03, -0.01, 0.02};
+    begin(HF_FEED_PLANE_WAVE, -20, 20, N_ANGLE);
+    for (int i = 0; i < 6; i++)
+        add_rectangle(2 * (i % 3), 2 * (i / 3), 0, 2, 2);
+    solve(1);
+    double flat_dBi = s.co[N_ANGLE / 2];
+    ck_assert_double_eq_tol(loss_in_phase_dB(), 0, 1e-12);
+    for (int i = 0; i < 4 * 6; i++)
+        sag_m[i] = sag_of_side_m[i % 4] * (1 + i / 4 % 3);
+    s.sag_m = sag_m;
+    solve(1);
+    double loss_dB = flat_dBi - s.co[N_ANGLE / 2];
+    ck_assert_double_gt(loss_dB, 0.1);
+    ck_assert_double_eq_tol(loss_in_phase_dB(), loss_dB, 1e-4 * loss_dB);
+}
+END_TEST
+
 /* With the feed at its focus, beside the axis as well, a reflector has no other loss in phase than that of its facets,
  * which goes as h^4; the beam of a feed beside the focus is on the other side. */
 START_TEST(beams_are_where_the_surface_sends_them)
@@ -546,6 +568,7 @@ Suite *suite_unit_pattern(void)
     tcase_add_test(tcase, backs_of_facets_are_dark);
     tcase_add_test(tcase, random_errors_lose_what_ruze_says);
     tcase_add_test(tcase, small_errors_lose_what_ruze_says);
+    tcase_add_test(tcase, pillows_lose_what_the_field_loses);
     tcase_add_test(tcase, beams_are_where_the_surface_sends_them);
     tcase_add_test(tcase, periods_have_their_grating_lobes);
     tcase_add_test(tcase, threads_change_no_bit);
