@@ -29,6 +29,16 @@ static inline void draw_designs(struct run *r, uint64_t seed, double range_N)
         r->design_N[i] = r->base_N[i % m->n_gene] + rng_uniform(&rng, -range_N, range_N);
 }
 
+static inline void evaluate_by(struct run *r, int rule, hf_solver solver)
+{
+    r->evaluator = (hf_evaluator){.model = &r->net.model,
+                                  .form = &r->net.form,
+                                  .start_q_N_per_m = r->start_q,
+                                  .rule = (hf_rule)rule,
+                                  .solver = solver,
+                                  .boundary_ratio_cap = 1e9};
+}
+
 /* A shape to TOLERANCE and designs for the population solver: up to 0.5 N around the found tensions, or 0.01 N under
  * the rule tension, where larger changes may have no equilibrium. */
 static inline void start_run(struct run *r, int rule)
@@ -36,12 +46,7 @@ static inline void start_run(struct run *r, int rule)
     r->net.form.residual_tolerance = r->net.form.length_tolerance = TOLERANCE;
     r->net.form.max_iterations = 100000;
     draw_designs(r, 31, rule == HF_RULE_TENSION ? 0.01 : 0.5);
-    r->evaluator = (hf_evaluator){.model = &r->net.model,
-                                  .form = &r->net.form,
-                                  .start_q_N_per_m = r->start_q,
-                                  .rule = (hf_rule)rule,
-                                  .solver = HF_SOLVER_CHORD,
-                                  .boundary_ratio_cap = 1e9};
+    evaluate_by(r, rule, HF_SOLVER_CHORD);
 }
 
 static inline void open_run(struct run *r, int rule)

@@ -41,13 +41,18 @@ static hf_status read_set(const hf_option *option, const char *value, hf_options
     return HF_OK;
 }
 
-static hf_status read_threads(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
+static hf_status read_count(const hf_option *option, const char *value, int most, int *to, hf_messages *messages)
 {
     uint64_t number;
-    if (!hf_text_uint64(value, &number) || number < 1 || number > THREADS_MAX)
-        return hf_error(messages, HF_BAD_USAGE, "%s must be from 1 to %d, not '%s'", option->name, THREADS_MAX, value);
-    o->threads = (int)number;
+    if (!hf_text_uint64(value, &number) || number < 1 || number > (uint64_t)most)
+        return hf_error(messages, HF_BAD_USAGE, "%s must be from 1 to %d, not '%s'", option->name, most, value);
+    *to = (int)number;
     return HF_OK;
+}
+
+static hf_status read_threads(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
+{
+    return read_count(option, value, THREADS_MAX, &o->threads, messages);
 }
 
 static hf_status read_seed(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
@@ -96,11 +101,7 @@ static hf_status read_task(const hf_option *option, const char *value, hf_option
 
 static hf_status read_tasks(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
 {
-    uint64_t number;
-    if (!hf_text_uint64(value, &number) || number < 1 || number > TASKS_MAX)
-        return hf_error(messages, HF_BAD_USAGE, "%s must be from 1 to %d, not '%s'", option->name, TASKS_MAX, value);
-    o->tasks = (int)number;
-    return HF_OK;
+    return read_count(option, value, TASKS_MAX, &o->tasks, messages);
 }
 
 /* Turns a list of states, "failed,missing", into bits 1 << hf_point_state. 0 when a word is unknown. */

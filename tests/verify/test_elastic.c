@@ -7,7 +7,7 @@
  * tsgfem_half_tbar_slack and tsgfem_tower_50, _100 are tensegrities with elastic bars in compression and nodes fixed in
  * some directions only. */
 #include "figures.h"
-#include "nets.h"
+#include "reference.h"
 
 #include <hifdm/evaluate.h>
 
@@ -154,19 +154,6 @@ static const struct {
     int n_node, n_cable;
 } nets[] = {{"hypar6_load", 49, 60}, {"parcyl_tie_change", 126, 199}};
 
-static void open_reference(struct net *net, const char *name)
-{
-    char path[2][128], text[512];
-    snprintf(path[0], sizeof path[0], "tests/verify/data/%s_nodes.csv", name);
-    snprintf(path[1], sizeof path[1], "tests/verify/data/%s_cables.csv", name);
-    char nodes[1024], cables[1024];
-    snprintf(nodes, sizeof nodes, "scene.import.nodes=%s", source_path(path[0]));
-    snprintf(cables, sizeof cables, "scene.import.cables=%s", source_path(path[1]));
-    snprintf(text, sizeof text, "title: %s\nform: {residual_tolerance: 1e-10, length_tolerance: 1e-12}\n", name);
-    write_file(temp_path("case.yaml"), text);
-    open_case_file(net, temp_path("case.yaml"), (const char *const[]){nodes, cables}, 2);
-}
-
 /* The next n numbers behind an id. */
 static void next_numbers(FILE *file, const char *id, int n, double *value)
 {
@@ -182,7 +169,7 @@ static void next_numbers(FILE *file, const char *id, int n, double *value)
 START_TEST(nets_of_files)
 {
     struct net net;
-    open_reference(&net, nets[_i].name);
+    open_reference(&net, nets[_i].name, "residual_tolerance: 1e-10, length_tolerance: 1e-12");
     ck_assert_int_eq(net.scene.n_node, nets[_i].n_node);
     ck_assert_int_eq(net.scene.n_cable, nets[_i].n_cable);
     solve(&net);

@@ -5,7 +5,7 @@
  * The reference coordinates and forces have 9 to 10 digits, so the tolerance is 1e-8 of the net's size and of each
  * force. */
 #include "figures.h"
-#include "nets.h"
+#include "reference.h"
 
 static const struct {
     const char *name;
@@ -22,23 +22,10 @@ static int next_line(FILE *file, char id[16], double value[3])
     return sscanf(line, "%15[^,],%lf,%lf,%lf", id, value, value + 1, value + 2) - 1;
 }
 
-static void open_reference(struct net *net, const char *name)
-{
-    char path[2][128], case_text[512];
-    snprintf(path[0], sizeof path[0], "tests/verify/data/%s_nodes.csv", name);
-    snprintf(path[1], sizeof path[1], "tests/verify/data/%s_cables.csv", name);
-    char nodes[1024], cables[1024];
-    snprintf(nodes, sizeof nodes, "scene.import.nodes=%s", source_path(path[0]));
-    snprintf(cables, sizeof cables, "scene.import.cables=%s", source_path(path[1]));
-    snprintf(case_text, sizeof case_text, "title: %s\nform: {method: fdm, residual_tolerance: 1e-12}\n", name);
-    write_file(temp_path("case.yaml"), case_text);
-    open_case_file(net, temp_path("case.yaml"), (const char *const[]){nodes, cables}, 2);
-}
-
 START_TEST(coordinates_and_forces)
 {
     struct net net;
-    open_reference(&net, nets[_i].name);
+    open_reference(&net, nets[_i].name, "method: fdm, residual_tolerance: 1e-12");
     ck_assert_int_eq(net.scene.n_node, nets[_i].n_node);
     ck_assert_int_eq(net.scene.n_cable, nets[_i].n_cable);
     ck_assert_int_eq(net.model.has_strut, nets[_i].has_strut);

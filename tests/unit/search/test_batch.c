@@ -13,12 +13,7 @@ static void open_designs(struct run *r, int rule)
 {
     OPEN_CASE(&r->net, SMALL_REFLECTOR);
     draw_designs(r, 1, 0.5);
-    r->evaluator = (hf_evaluator){.model = &r->net.model,
-                                  .form = &r->net.form,
-                                  .start_q_N_per_m = r->start_q,
-                                  .rule = (hf_rule)rule,
-                                  .solver = HF_SOLVER_AUTO,
-                                  .boundary_ratio_cap = 1e9};
+    evaluate_by(r, rule, HF_SOLVER_AUTO);
 }
 
 static void evaluate(struct run *r, int n_thread, int n_at_once, hf_form_result result[N_DESIGN])

@@ -9,12 +9,7 @@ static void open_designs(struct run *r, int rule, double range_N)
     draw_designs(r, 7, range_N);
     for (int i = 0; i < N_DESIGN * r->net.model.n_gene; i++)
         r->design_N[i] = fmax(0.05, r->design_N[i]);
-    r->evaluator = (hf_evaluator){.model = &r->net.model,
-                                  .form = &r->net.form,
-                                  .start_q_N_per_m = r->start_q,
-                                  .rule = (hf_rule)rule,
-                                  .solver = HF_SOLVER_FIXED_POINT,
-                                  .boundary_ratio_cap = 1e9};
+    evaluate_by(r, rule, HF_SOLVER_FIXED_POINT);
 }
 
 static void evaluate(struct run *r, int n_thread, int backwards, hf_form_result result[N_DESIGN])

@@ -7,12 +7,7 @@ static void open_design(struct run *r, int rule)
 {
     OPEN_CASE(&r->net, SMALL_REFLECTOR, "form.residual_tolerance=1e-10", "form.length_tolerance=1e-10");
     draw_designs(r, 1, 0);
-    r->evaluator = (hf_evaluator){.model = &r->net.model,
-                                  .form = &r->net.form,
-                                  .start_q_N_per_m = r->start_q,
-                                  .rule = (hf_rule)rule,
-                                  .solver = HF_SOLVER_AUTO,
-                                  .boundary_ratio_cap = 1e9};
+    evaluate_by(r, rule, HF_SOLVER_AUTO);
 }
 
 static void disturb(struct run *r, double range_N)
