@@ -1,6 +1,7 @@
 /* words - what every status, warning, figure and term means, and what to do about it: one table for `hifdm explain`.
  * Figures and statuses come from the lists that define them (result.h, summary.h, surface.h, tolerance.h, status.h);
- * what these lists do not say stands beside them in words.c, words_case.c and words_adjust.c. */
+ * what these lists do not say stands beside them in words.c, words_warning.c, words_case.c and
+ * words_adjust.c. */
 #ifndef HIFDM_WORDS_H
 #define HIFDM_WORDS_H
 
@@ -16,6 +17,10 @@ typedef struct {
 /* Entry i of 0..hf_word_count()-1; a word may have several, of different kinds. */
 int hf_word_count(void);
 hf_word hf_word_at(int i);
+
+/* Warnings. */
+extern const hf_word hf_words_warning[];
+extern const int hf_n_words_warning;
 
 /* Words of case files and cut lists. */
 extern const hf_word hf_words_case[];

@@ -69,7 +69,7 @@ const hf_word hf_words_adjust[] = {
     {"error_m", "figure of adjust", "m", "Estimated error of the cut length; above 0 the cable is too long.", NULL},
     {"sigmas", "figure of adjust", "", "An estimated error over its sigma in section tolerance.", NULL},
     {"by_places_m", "figure of adjust", "m",
-     "The same error if the sigma of this cable alone said nothing: what the measured places tell of it.", NULL},
+     "What the measured places alone tell of the error of this cable, as if its sigma said nothing.", NULL},
     {"off_shape", "figure of adjust", "",
      "Measured nodes that are more than four of their sigmas off the estimated shape, the worst first.", NULL},
     {"node", "figure of adjust", "", "The id of a node.", NULL},

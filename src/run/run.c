@@ -11,6 +11,7 @@
 #include "run/problem_explain.h"
 #include "run/problem_parts.h"
 #include "run/reach.h"
+#include "run/result_doubt.h"
 #include "run/run_front.h"
 #include "run/tolerance_stage.h"
 #include "search/pareto.h"
@@ -25,9 +26,6 @@
 
 const char *const hf_run_phase_word[4] = {"form", "optimize", "polish", "tolerance"};
 
-/* Of the span of the attachments, 0.1 mm on 10 m: what errors of the cut may be; and of psi. */
-#define SECOND_ORDER_DOUBT 1e-5
-#define SECOND_ORDER_PSI 0.05
 #define HISTORY_MAX 1000000 /* iterations whose history is kept */
 
 /* Everything a run owns. */
@@ -36,6 +34,7 @@ typedef struct {
     hf_problem problem;
     hf_carrier_state truss;    /* under the shape of the last stage whose shape is the result */
     const hf_workspace *shape; /* that holds the same shape */
+    hf_places places;          /* of the form-finding, when an optimisation follows it */
     hf_cases cases;            /* the net as built of that design, if the case has states */
     hf_history history;
     hf_store *store;
@@ -56,6 +55,7 @@ static void run_free(run *r)
     hf_front_free(&r->front);
     free(r->history.psi_m);
     hf_carrier_state_free(&r->truss);
+    hf_places_free(&r->places);
     hf_cases_free(&r->cases);
     hf_problem_free(&r->problem);
 }
@@ -102,18 +102,6 @@ static hf_status take_result(run *r, hf_workspace *w, hf_messages *messages)
     HF_TRY(load_truss(r, w, messages));
     r->shape = w;
     return r->problem.states.n ? hf_cases_take(&r->problem, w, &r->cases, messages) : HF_OK;
-}
-
-/* The truss is linear: is what that leaves out too much for a reflector of this size, with this psi? */
-static void warn_of_truss(const run *r, hf_messages *messages)
-{
-    double span_m, off_m = hf_carrier_second_order_m(&r->problem.carrier, &r->truss, &span_m);
-    double psi_m = r->shape ? hf_metrics_psi_m(&r->problem.model, r->shape) : 0;
-    if (off_m > fmax(SECOND_ORDER_DOUBT * span_m, SECOND_ORDER_PSI * psi_m))
-        hf_warning(messages,
-                   "truss: its attachments give way so far that linear theory, which it is computed by, may be off by "
-                   "some %.2g mm: stiffen it (tubes of larger diameter, more bays) or lower form.pretension_N",
-                   off_m * 1e3);
 }
 
 /* ---- form-finding ---- */
@@ -166,6 +154,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
 static hf_status prepare_optimize(run *r, hf_summary *s, hf_messages *messages)
 {
     hf_problem *p = &r->problem;
+    if (hf_places_keep(p, &r->places) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory for places");
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_reach_check(p, messages));
     const hf_goals *goals = &p->goals;
@@ -502,7 +491,8 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     if (status == HF_INTERRUPTED && (r->store || hf_tolerance_stage_is_task(q)))
         hf_error(messages, status, "%s: told to stop%s; the same command goes on from there", output, r->stopped_at);
     if ((!leaves_result(status) && !keeps_design) || hf_tolerance_stage_is_task(q)) return status;
-    warn_of_truss(r, messages);
+    hf_result_doubt_truss(&r->problem, &r->truss, r->shape, messages);
+    hf_result_doubt_uncounted(&r->problem, &r->places, r->shape, messages);
     if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, &r->truss, messages));
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
     hf_text_trim_utf8(s->warnings);

@@ -116,6 +116,34 @@ START_TEST(a_double_layer_is_designed)
 }
 END_TEST
 
+/* The goal facets leaves the rear net open, and where nodes of the front are within their surface. Both are told, with
+ * the node that moved farthest by the shapes in the file; what counts them, or leaves them alone, is silent. */
+START_TEST(nodes_that_no_goal_counts_are_told)
+{
+    static const char *const silent[] = {
+        "optimize.variables.0.set=tie",
+        "optimize.goals=[{goal: facets}, {goal: psi, weight: 0.1}, {goal: length, set: rear, weight: 0.1}]"};
+    const char *out = temp("r.h5"),
+               *path = file_with(
+                   "c.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, rear_distance_m: 1.8}}\n"
+                             "form: {pretension_N: 10, prestress: exact}\nsurface: {}\n"
+                             "optimize: {method: lm, variables: [{set: all, vary: force_density, range: 50 %}], "
+                             "goals: [{goal: facets}]}\n");
+    HIFDM(0, "run", path, "-o", out, "--json");
+    EXPECT(out_as("r.json"), out, "--",
+           "(lambda ids, moved: (lambda k: [w for w in a['warnings'] if f'node {ids[k]}, and ' in w and "
+           "f'form-finding has it, by {1e3 * moved[k]:.0f} mm ' in w and 'set: rear, weight' in w])"
+           "(max((k for k in range(len(ids)) if ids[k][0] == 'r'), key=lambda k: moved[k])))"
+           "(b['scene/node/id'].asstr()[:], np.linalg.norm(b['polish/position_m'][:] - b['form/position_m'][:], "
+           "axis=1))",
+           "any('node f' in w and 'moved far within the surface, by ' in w for w in a['warnings'])");
+    for (int k = 0; k < 2; k++) {
+        HIFDM(0, "run", path, "-o", out, "--force", "--set", silent[k]);
+        ck_assert_ptr_null(strstr(said.err, "moved far"));
+    }
+}
+END_TEST
+
 /* The cells of a quad net at its rim, 28 here, are counted when they are made. */
 START_TEST(rings_under_quad_nets)
 {
@@ -139,6 +167,7 @@ Suite *suite_cli_reflectors(void)
     tcase_add_loop_test(tcase, what_cannot_be_is_named, 0, N_IMPOSSIBLE);
     tcase_add_test(tcase, designs_move_net_and_ring_in_lanes);
     tcase_add_loop_test(tcase, a_double_layer_is_designed, 0, 2);
+    tcase_add_test(tcase, nodes_that_no_goal_counts_are_told);
     tcase_add_test(tcase, rings_under_quad_nets);
     suite_add_tcase(suite, tcase);
     return suite;

@@ -1,0 +1,197 @@
+/* Contents: the truss - nodes that no goal counts */
+#include "run/result_doubt.h"
+
+#include "base/arena.h"
+#include "net/wanted.h"
+#include "solve/prestress.h"
+#include <hifdm/metrics.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- the truss ---- */
+
+/* Of the span of the attachments, 0.1 mm on 10 m: what errors of the cut may be; and of psi. */
+#define SECOND_ORDER_DOUBT 1e-5
+#define SECOND_ORDER_PSI 0.05
+
+/* The truss is linear: is what that leaves out too much for a reflector of this size, with this psi? */
+void hf_result_doubt_truss(const hf_problem *p, const hf_carrier_state *truss, const hf_workspace *shape,
+                           hf_messages *messages)
+{
+    double span_m, off_m = hf_carrier_second_order_m(&p->carrier, truss, &span_m);
+    double psi_m = shape ? hf_metrics_psi_m(&p->model, shape) : 0;
+    if (off_m > fmax(SECOND_ORDER_DOUBT * span_m, SECOND_ORDER_PSI * psi_m))
+        hf_warning(messages,
+                   "truss: its attachments give way so far that linear theory, which it is computed by, may be off by "
+                   "some %.2g mm: stiffen it (tubes of larger diameter, more bays) or lower form.pretension_N",
+                   off_m * 1e3);
+}
+
+/* ---- nodes that no goal counts ---- */
+
+/* Of the mean length of a node's cables. In the cases of configs/ the largest open move is 0.11 of it; those that the
+ * goal facets leaves open where every force density varies are 0.3 to 1.3 [0.17 to 0.3]. */
+#define FAR_MOVE 0.25
+
+static void lay_out_places(hf_arena *a, const hf_model *m, hf_places *to)
+{
+    size_t n = (size_t)m->n_node;
+    to->position_m = hf_arena_take(a, 3 * n, sizeof(double));
+    to->cable_m = hf_arena_take(a, n, sizeof(double));
+    to->n_cable = hf_arena_take(a, n, sizeof(int));
+    to->counted = hf_arena_take(a, n, 1);
+}
+
+static void count_rows(hf_places *to, const int *row, int n, hf_counted how)
+{
+    for (int i = 0; i < n; i++)
+        if (to->counted[row[i]] < how) to->counted[row[i]] = (unsigned char)how;
+}
+
+static void count_goal(const hf_problem *p, const hf_goal *g, hf_places *to)
+{
+    const hf_model *m = &p->model;
+    switch (g->wanted.goal) {
+    case HF_GOAL_PSI:
+    case HF_GOAL_SURFACE:
+        count_rows(to, m->inner_row, m->n_inner_node, g->wanted.goal == HF_GOAL_PSI ? HF_COUNTED : HF_COUNTED_ACROSS);
+        break;
+    case HF_GOAL_FACETS:
+    case HF_GOAL_GAIN:
+        count_rows(to, p->goals.corner_row, 4 * p->goals.n_facet, HF_COUNTED_ACROSS);
+        break;
+    case HF_GOAL_LENGTH:
+        for (int i = 0; i < g->n_cable; i++)
+            count_rows(to, m->end_row + 2 * (ptrdiff_t)g->cable[i], 2, HF_COUNTED);
+        break;
+    default: /* forces, and what all lengths add up to, leave places open */
+        break;
+    }
+}
+
+static void find_cables(const hf_model *m, hf_places *to)
+{
+    for (int i = 0; i < 2 * m->n_cable; i++) {
+        to->cable_m[m->end_row[i]] += m->length_m[i / 2];
+        to->n_cable[m->end_row[i]]++;
+    }
+    for (int row = 0; row < m->n_node; row++)
+        if (to->n_cable[row]) to->cable_m[row] /= to->n_cable[row];
+}
+
+hf_status hf_places_keep(const hf_problem *p, hf_places *to)
+{
+    const hf_model *m = &p->model;
+    const hf_goal psi = {.wanted = {.goal = HF_GOAL_PSI}};
+    hf_arena arena = {0};
+    *to = (hf_places){0};
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_places(&arena, m, to)));
+    to->block = arena.block;
+    memcpy(to->position_m, p->workspace.position_m, 3 * (size_t)m->n_node * sizeof(double));
+    find_cables(m, to);
+    if (p->goals.n_goal == 0) count_goal(p, &psi, to);
+    for (int k = 0; k < p->goals.n_goal; k++)
+        count_goal(p, &p->goals.goal[k], to);
+    return HF_OK;
+}
+
+void hf_places_free(hf_places *places)
+{
+    hf_arena arena = {.block = places->block};
+    hf_arena_free(&arena);
+    *places = (hf_places){0};
+}
+
+/* How far a node has moved in a way that goals count, and in one that they do not. */
+static void split_move(const hf_problem *p, const hf_places *form, const hf_workspace *shape, int row,
+                       double *counted_m, double *open_m)
+{
+    double at[3], move[3], slope[2], square = 0, across = 0;
+    for (int c = 0; c < 3; c++) {
+        int i = c * p->model.n_node + row;
+        at[c] = form->position_m[i];
+        move[c] = shape->position_m[i] - at[c];
+        square += move[c] * move[c];
+    }
+    if (form->counted[row] == HF_COUNTED) across = sqrt(square);
+    if (form->counted[row] == HF_COUNTED_ACROSS) {
+        hf_wanted_height_above(p->surface.kind, 1 / (4 * p->surface.focal_length_m), at, slope);
+        across = fabs(move[2] - slope[0] * move[0] - slope[1] * move[1]) /
+                 sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
+    }
+    *counted_m = across;
+    *open_m = sqrt(fmax(0, square - across * across));
+}
+
+/* The set that most cables at a node are of, as a row of a case can name it. */
+static const char *set_at(const hf_problem *p, int row)
+{
+    const hf_scene *s = &p->scene;
+    const int *end = p->model.end_row;
+    int best = -1, most = 0;
+    for (int e = 0; e < s->n_cable; e++) {
+        if (end[2 * e] != row && end[2 * e + 1] != row) continue;
+        int family = hf_prestress_family(s, e), n = 0;
+        for (int k = 0; k <= e; k++)
+            n += (end[2 * k] == row || end[2 * k + 1] == row) && hf_prestress_family(s, k) == family;
+        if (n > most) best = family;
+        if (n > most) most = n;
+    }
+    return best < s->n_set ? s->set_name[best] : hf_group_word[best - s->n_set];
+}
+
+typedef struct {
+    int row, n; /* the farthest; how many are far */
+    double move_m;
+} far_nodes;
+
+/* "", or ", and 61 more". */
+static const char *and_more(const far_nodes *far, char text[32])
+{
+    *text = '\0';
+    if (far->n > 1) snprintf(text, 32, ", and %d more", far->n - 1);
+    return text;
+}
+
+static void tell_far(const hf_problem *p, const hf_places *form, const far_nodes *far, hf_messages *messages)
+{
+    const far_nodes *open = &far[HF_COUNTED_NOT], *within = &far[HF_COUNTED_ACROSS];
+    char more[32];
+    if (open->n)
+        hf_warning(messages,
+                   "optimize: node %s%s moved far from where form-finding has it, by %.0f mm where its cables are %.0f "
+                   "mm long, and no goal counts that: vary fewer sets of cables, or add {goal: length, set: %s, "
+                   "weight: 0.1} to optimize.goals%s",
+                   p->scene.node_id[p->model.node_of_row[open->row]], and_more(open, more), open->move_m * 1e3,
+                   form->cable_m[open->row] * 1e3, set_at(p, open->row), p->goals.n_goal ? "" : " beside {goal: psi}");
+    if (within->n)
+        hf_warning(
+            messages,
+            "optimize: node %s%s moved far within the surface, by %.0f mm where its cables are %.0f mm long, and "
+            "no goal counts that: vary fewer sets of cables, or add {goal: psi, weight: 0.1} to optimize.goals",
+            p->scene.node_id[p->model.node_of_row[within->row]], and_more(within, more), within->move_m * 1e3,
+            form->cable_m[within->row] * 1e3);
+}
+
+void hf_result_doubt_uncounted(const hf_problem *p, const hf_places *form, const hf_workspace *shape,
+                               hf_messages *messages)
+{
+    far_nodes far[HF_COUNTED + 1] = {0};
+    double counted_m, open_m, most_m = 0;
+    if (!form->block || !shape) return;
+    for (int row = 0; row < p->model.n_free; row++) {
+        split_move(p, form, shape, row, &counted_m, &open_m);
+        most_m = fmax(most_m, counted_m);
+    }
+    for (int row = 0; row < p->model.n_free; row++) {
+        far_nodes *to = &far[form->counted[row]];
+        split_move(p, form, shape, row, &counted_m, &open_m);
+        if (shape->loose[row] || !(open_m > fmax(FAR_MOVE * form->cable_m[row], most_m))) continue;
+        to->n++;
+        if (open_m > to->move_m) to->row = row;
+        to->move_m = fmax(to->move_m, open_m);
+    }
+    tell_far(p, form, far, messages);
+}
