@@ -11,6 +11,7 @@
 #include "out/report_pattern.h"
 #include "out/words.h"
 #include "solve/facet_rms.h"
+#include "store/ledger.h"
 #include "store/store_read.h"
 #include "store/store_series.h"
 #include <hifdm/metrics.h>
@@ -241,6 +242,17 @@ static void write_figures(FILE *f)
     hf_json_close(&j, ']');
 }
 
+/* The units of goals and objectives by their names. */
+static void write_goal_units(const hf_summary *s, FILE *f)
+{
+    hf_json j = {.file = f, .is_due = true};
+    hf_json_line(&j, "");
+    hf_json_open(&j, "goal_unit", '{');
+    for (int k = 0; k < s->goals.n; k++)
+        hf_json_text(&j, s->goals.name[k], hf_ledger_goal_unit(s->goals.name[k]));
+    hf_json_close(&j, '}');
+}
+
 /* Terms, what figures mean, and the words that some of these are, as `hifdm explain` has them. */
 static void write_words(FILE *f)
 {
@@ -301,6 +313,7 @@ static void write_other(const page *p, const page *other, FILE *f)
     fputs(",\n\"other\":{", f);
     hf_json_text(&j, "name", hf_path_name(other->path));
     write_case(other, f);
+    write_goal_units(&other->summary, f);
     fputs(",\"summary\":", f);
     hf_summary_write_json(&other->summary, other->summary.form.status, other->summary.warnings, other->path, f);
     if (!hf_scene_difference(&p->scene, &other->scene)) write_shapes(other, HF_STAGE_NONE, f);
@@ -326,6 +339,7 @@ static void write_data(const void *context, FILE *f)
     fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, s->n_gene);
     hf_json_value(s->pretension_N, 17, f);
     write_figures(f);
+    write_goal_units(s, f);
     write_words(f);
     write_net(p, f);
     write_shapes(p, N_SHAPE, f);

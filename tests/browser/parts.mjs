@@ -148,3 +148,22 @@ export async function checkTolerance(tab, made) {
     t.cable_share.map(({ cable }) => cable),
   );
 }
+
+// Objectives are in units that people read, and a design before the optimisation that is far off does not flatten the
+// front but is told.
+export async function checkFront(tab, made) {
+  const { base, points } = made.summary.front,
+    [psi, ratio] = Object.keys(base),
+    picture = tab.locator("#front svg[tabindex]");
+  assert.deepEqual(await picture.locator(".label").allTextContents(), ["ψ (mm)", "ratio boundary"]);
+  const highest = number(await picture.locator("text[text-anchor=end]").last().textContent());
+  assert.ok(highest < Math.max(...points.map(({ objective }) => objective[ratio])) && base[ratio] > 1.01);
+  same(number((await tab.locator("#front figcaption").textContent()).match(/is ([\d.]+),/)[1]), base[ratio], 6);
+  await picture.focus();
+  await tab.keyboard.press("End");
+  const [, said] = (await tab.locator("#front .tip strong").textContent()).match(/: ψ ([\d.]+) mm/);
+  same(number(said), 1e3 * points.at(-1).objective[psi], 6);
+  await tab.keyboard.press("Escape");
+  const row = tab.locator("#summary tr", { hasText: psi });
+  same(number(await row.locator(".number").first().textContent()), 1e3 * base[psi], 5);
+}

@@ -11,7 +11,7 @@ import { checkHostile } from "./hostile.mjs";
 import { checkFluid } from "./large.mjs";
 import { checkLook, inspect } from "./look.mjs";
 import { pages } from "./pages.mjs";
-import { checkAdjust, checkPattern, checkRounding, checkTolerance, checkWords } from "./parts.mjs";
+import { checkAdjust, checkFront, checkPattern, checkRounding, checkTolerance, checkWords } from "./parts.mjs";
 import { checkFacets, checkHover, checkMap, checkNet } from "./pictures.mjs";
 import { changes, csv, DATA, picture, settle } from "./see.mjs";
 import { checkPoints } from "./study.mjs";
@@ -172,6 +172,7 @@ async function test(browser, page) {
     if (page.rounding) await checkRounding(tab);
     else await checkMap(tab, made);
     if (page.facets) await checkFacets(tab, page, made);
+    if (page.name === "front") await checkFront(tab, made);
     if (page.measured) await checkAdjust(tab, made, changes);
     if (page.pattern) await checkPattern(tab, page, made);
     if (made.summary.tolerance && !page.measured) await checkTolerance(tab, made);

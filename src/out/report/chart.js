@@ -128,9 +128,15 @@ function chart(options) {
     const sy = (v) => margin.top + h * (1 - yAxis.at(v));
     place = { sx, sy, yAxis, bottom: margin.top + h };
     picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    const xTicks = linearTicks(xAxis.low, xAxis.high, Math.max(4, w / 64))
-      .filter((t) => !counted || Number.isInteger(t.at))
-      .map((t) => ({ at: t.at, text: counted ? String(t.at) : t.text }));
+    // as many as there is room for
+    let wanted = Math.max(4, w / 64),
+      xTicks;
+    do {
+      xTicks = linearTicks(xAxis.low, xAxis.high, wanted)
+        .filter((t) => !counted || Number.isInteger(t.at))
+        .map((t) => ({ at: t.at, text: counted ? String(t.at) : t.text }));
+      wanted *= 0.7;
+    } while (xTicks.length > 2 && xTicks.length * (7 * Math.max(...xTicks.map((t) => t.text.length)) + 16) > w);
     picture.replaceChildren();
     fill(picture, {}, [
       ...yAxis.ticks.flatMap((t) => [

@@ -77,8 +77,8 @@ const fmtCount = (value) => (typeof value === "number" ? String(value).replace(/
 
 function fmtDuration(s) {
   if (typeof s !== "number") return "–";
-  if (s < 1) return `${fmt(s * 1e3, 3)} ms`;
-  if (s < 60) return `${fmt(s, 3)} s`;
+  if (s < 1) return `${fmt(s * 1e3, 3)}\u00a0ms`;
+  if (s < 60) return `${fmt(s, 3)}\u00a0s`;
   return s < 3600
     ? `${Math.floor(s / 60)} min ${Math.round(s % 60)} s`
     : `${Math.floor(s / 3600)} h ${Math.round((s % 3600) / 60)} min`;

@@ -1,16 +1,26 @@
 // Contents: the front of optimize.objectives, two objectives at a time
 
-const objectiveName = (key) => key.replace(/^goal_[0-9]+_/, "");
+// Objectives as people read them: without their number, and lengths in mm.
+const objectiveName = (key) => key.replace(/^goal_[0-9]+_/, "").replace(/_/g, " ").replace(/^psi\b/, "ψ");
+const goalUnit = (key) => ({ ...(data.other && data.other.goal_unit), ...data.goal_unit })[key] || "";
+const objectiveUnit = (key) => (goalUnit(key) === "m" ? "mm" : goalUnit(key));
+const objectiveScale = (key) => (goalUnit(key) === "m" ? 1e3 : 1);
+const objectiveLabel = (key) => objectiveName(key) + (objectiveUnit(key) ? ` (${objectiveUnit(key)})` : "");
+const objectiveText = (key, value) => `${fmt(value, 6)} ${objectiveUnit(key)}`.trim();
 
 // Points of the front in rising order of objective a, with the base design among them. A place without a value for a
 // series has undefined there, which leaves its line whole.
 function frontPlaces(front, a, b) {
+  const place = (objective) => {
+    const at = (key) => (typeof objective[key] === "number" ? objectiveScale(key) * objective[key] : null);
+    return { x: at(a), y: at(b) };
+  };
   const places = front.points
-    .map((point, i) => ({ x: point.objective[a], y: point.objective[b], point, i }))
-    .filter((place) => place.point.mark !== "failed");
-  const base = { x: front.base[a], y: front.base[b] };
+    .map((point, i) => ({ ...place(point.objective), point, i }))
+    .filter(({ point }) => point.mark !== "failed");
+  const base = place(front.base);
   if (typeof base.x === "number" && typeof base.y === "number") places.push(base);
-  return places.filter((place) => typeof place.x === "number").sort((p, q) => p.x - q.x);
+  return places.filter(({ x }) => typeof x === "number").sort((p, q) => p.x - q.x);
 }
 
 // What the minimised objective changes by for one unit more of each other, where it is known.
@@ -19,7 +29,9 @@ function slopesOf(front, point) {
     .filter(([key, value]) => key !== front.minimised && typeof value === "number")
     .map(
       ([key, value]) =>
-        `; ${fmt(value ? -value : 0, 3)} of ${objectiveName(front.minimised)} per unit of ${objectiveName(key)}`,
+        `; ${fmt(value ? (-value * objectiveScale(front.minimised)) / objectiveScale(key) : 0, 3)} ` +
+        `${objectiveUnit(front.minimised)} of ${objectiveName(front.minimised)} per ` +
+        `${objectiveUnit(key) || "unit"} of ${objectiveName(key)}`,
     )
     .join("");
 }
@@ -33,24 +45,32 @@ function frontChart(front, a, b) {
     dots,
     values: places.map((place) => (wanted(place) ? place.y : undefined)),
   });
+  const base = places.find((place) => !place.point),
+    [low, high] = range(places.filter((place) => place !== base).map(({ y }) => y)) || [0, 1],
+    isFar = !!base && (base.y < low - REACH * (high - low) || base.y > high + REACH * (high - low));
   const marked = (mark) => (place) => !!place.point && place.point.mark === mark;
   const all = [
     series("front", "--one", !isCurve, marked("on")),
     series("dominated", "--ghost", true, marked("dominated")),
-    series("knee", "--three", true, (place) => !!place.point && place.i === front.knee),
-    series("after form-finding", "--two", true, (place) => !place.point),
+    { ...series("knee", "--three", true, (place) => !!place.point && place.i === front.knee), size: 9 },
+    { ...series("after form-finding", "--two", true, (place) => !place.point), free: isFar },
   ];
   return chart({
     title: `${objectiveName(b)} against ${objectiveName(a)}`,
-    xLabel: a,
-    yLabel: b,
+    xLabel: objectiveLabel(a),
+    yLabel: objectiveLabel(b),
+    unit: objectiveUnit(b),
+    caption: isFar
+      ? `After form-finding ${objectiveName(b)} is ${objectiveText(b, base.y)}, outside of the picture.`
+      : null,
     x: places.map((place) => place.x),
     counted: false,
     log: false,
     head: (i) =>
       places[i].point
-        ? `point ${places[i].point.id}: ${objectiveName(a)} ${fmt(places[i].x, 6)}${slopesOf(front, places[i].point)}`
-        : `after form-finding: ${objectiveName(a)} ${fmt(places[i].x, 6)}`,
+        ? `point ${places[i].point.id}: ${objectiveName(a)} ${objectiveText(a, places[i].x)}` +
+          slopesOf(front, places[i].point)
+        : `after form-finding: ${objectiveName(a)} ${objectiveText(a, places[i].x)}`,
     series: all.filter((s) => s.values.some((v) => v !== undefined)),
   });
 }

@@ -45,6 +45,9 @@ function diverging(t) {
 const RESOLVED_MM = 1e-6;
 const neutral = () => diverging(0.5);
 
+// What is farther from the values of a picture than so many times their range is named, and not drawn.
+const REACH = 2;
+
 const LEVELS = 64;
 const rgb = (c) => `rgb(${c[0]},${c[1]},${c[2]})`;
 function levels(colours) {

@@ -292,7 +292,7 @@ function stageValues(stage, frequency_Hz) {
 // Rows of tables of figures: words, unit, key, how it is shown. `first`: the values of a stage.
 function figureRows(first) {
   const mm = (v) => rounded(1e3 * v, 5);
-  const hz = (v) => digitsOf(v / 1e9, 3);
+  const hz = (v) => (v < 1e15 ? digitsOf(v / 1e9, 3) : `> ${power(6)}`); // beyond any use: its RMS is rounding
   const goals = Object.entries(first.goals || {});
   const loss = (v) => (typeof v === "string" ? v : rounded(v, 3));
   const frequencies = (first.frequency_Hz || []).map((v) => `${fmt(v / 1e9, 4)} GHz`);
@@ -300,10 +300,10 @@ function figureRows(first) {
     ["surface error ψ", "mm", "psi_m", mm],
     ["merit of all goals", "", "merit", (v) => fmt(v, 5)],
     ...goals.map(([name, { weight }]) => [
-      weight === undefined ? "objective" : `goal, weight ${weight}`,
-      "",
+      weight === undefined ? `objective: ${objectiveName(name)}` : `goal: ${objectiveName(name)}, weight ${weight}`,
+      objectiveUnit(name),
       name,
-      (v) => fmt(v, 5),
+      (v) => digitsOf(objectiveScale(name) * v, 5),
     ]),
     ["half-path RMS", "mm", "half_path_rms_m", mm],
     ["half-path RMS, best fit", "mm", "fit_half_path_rms_m", mm],

@@ -14,7 +14,6 @@ const percent = (part, digits = 3) => `${fmt(100 * part, digits)}\u00a0%`;
 
 // Limits of psi that the case requires, and figures of the samples. A limit that is farther from the samples than
 // REACH times their range would make the histogram a line, so it is only named.
-const REACH = 2;
 function toleranceMarks(t, [low, high]) {
   const reach = REACH * (high - low);
   const all = [
