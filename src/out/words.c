@@ -114,8 +114,12 @@ static const hf_word told[] = {
     {"boundary ratio", "term", "", "Column of the summary: boundary_tension_ratio.", NULL},
     {"ratio inside", "term", "", "Column of the summary: inner_tension_ratio.", NULL},
     {"at bounds", "term", "",
-     "Column of the summary: how many variables are at an end of their ranges. Many of them: a wider range "
-     "(optimize.range_N) would give a better design.",
+     "Column of the summary: how many variables are at an end of their ranges. A few: a wider range (range of a row of "
+     "optimize.variables, else optimize.range_N) may give a better design. Many, with nodes that no goal counts "
+     "(facets "
+     "and all cables, say): a wider range lets these move still farther for next to nothing; vary fewer sets, or count "
+     "them. Force densities at 0 are cables that the design does without: leave them out, or give them a bound above "
+     "0. Limits (optimize.limits) have lines of their own.",
      NULL},
     {"proven to", "term", "",
      "Column of the summary: position_bound_m, or \"no:\" and the bound_reason. Without a proof the figures are as "
@@ -397,10 +401,19 @@ int hf_word_letter(char letter)
     return letter == '-' || letter == '_' ? ' ' : tolower((unsigned char)letter);
 }
 
+/* Behind a figure's name: its unit, which nobody says. */
+static bool is_unit(const char *rest)
+{
+    static const char *const unit[] = {"_m", "_N", "_dB", "_deg", "_s", "_kg", "_Hz"};
+    for (size_t k = 0; k < sizeof unit / sizeof *unit; k++)
+        if (!strcmp(rest, unit[k])) return true;
+    return false;
+}
+
 bool hf_word_is_like(int i, const char *word)
 {
     const char *known = hf_word_at(i).word;
     while (*known && hf_word_letter(*known) == hf_word_letter(*word))
         known++, word++;
-    return !*known && !*word;
+    return (!*known || is_unit(known)) && (!*word || !strcmp(word, "s"));
 }

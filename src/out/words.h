@@ -36,7 +36,8 @@ bool hf_word_is(int i, const char *word);
 /* A letter as words are compared: small, and a blank for "-" and "_". */
 int hf_word_letter(char letter);
 
-/* Is `word` its word, but for capitals and for what stands between the parts: "-", "_" or a blank? */
+/* Is `word` its word, but for capitals, for what stands between the parts ("-", "_" or a blank), for an s of the plural
+ * behind it, and for the unit of a figure that is left out? */
 bool hf_word_is_like(int i, const char *word);
 
 #endif

@@ -51,5 +51,134 @@ const hf_word hf_words_case[] = {
      "What lets a cable out or takes it in when the net hangs. `hifdm adjust` says which to turn, how far and in which "
      "order, from measured places of nodes; adjust.set names the cables that have one.",
      NULL},
+    /* ---- of the summary and the report ---- */
+    {"drift", "term", "",
+     "How far nodes move within the surface: psi counts it, goals of the surface (facets, surface, gain) "
+     "do not, and a radio wave hardly sees it. It takes facets and cables to where nobody drew them: "
+     "{goal: psi, weight: 0.1} beside the other goals keeps it small.",
+     NULL},
+    {"within the surface", "term", "", "See drift.", NULL},
+    {"gives way", "term", "",
+     "The attachments of the net move under its pull, as the truss bends. The design knows of it: psi and "
+     "all figures are those on the truss as it is bent. Less pretension or stiffer tubes let it give way "
+     "less.",
+     NULL},
+    {"give way", "term", "", "See gives way.", NULL},
+    {"on its truss", "term", "",
+     "Line of the summary: how far attachments move under the net, and how net and truss came to balance; "
+     "see gives way and rounds.",
+     NULL},
+    {"rounds", "term", "",
+     "Form-findings in turn with the truss until no attachment moves farther than coupling.tof_m.", NULL},
+    {"last step", "term", "",
+     "How far the attachments still moved in the last round: below coupling.tof_m net and truss balance.", NULL},
+    {"linear theory", "term", "",
+     "The truss is computed as if it did not turn: displacements in proportion to forces. What that leaves "
+     "out is turn times displacement / 2; a warning tells where it counts. Then stiffen the truss, or "
+     "lower form.pretension_N.",
+     NULL},
+    {"loss of gain", "term", "",
+     "What errors of the surface cost at a frequency, dB, by Ruze's formula: 3 dB is half of the power. "
+     "Above 3 dB the formula does not hold, and no number is told. See good to.",
+     NULL},
+    {"after best fit", "term", "", "See best fit.", NULL},
+    {"the result", "term", "",
+     "The stage whose design the files, the report and exports have: the last one that optimize.method "
+     "names. \"For comparison\": a stage that only says how good a design could be.",
+     NULL},
+    {"for comparison", "term", "", "See the result.", NULL},
+    {"variable", "term", "",
+     "What the optimisation may change: a row of optimize.variables names the cables and the value "
+     "(force_density, tension, length, a support), and how far it may go. Without rows the pretensions of "
+     "the boundary cables.",
+     NULL},
+    {"free node", "term", "", "A node that is no support: it moves until its forces balance.", NULL},
+    {"inner node", "term", "", "A node that psi counts: of a double layer those of the front net inside of the rim.",
+     NULL},
+    {"form-finding's tensions", "term", "",
+     "The tensions that the first stage found, before any optimisation; see base design.", NULL},
+    {"stopped by", "term", "",
+     "Why an iteration ended: direct, residual, tof, converged, settled, stalled, max_iterations, "
+     "generations, stagnation; each has an entry. All but max_iterations, stalled and diverged are as they "
+     "should be.",
+     NULL},
+    {"not converged", "term", "",
+     "The limit of iterations came first: raise optimize.polish_iterations (of Levenberg-Marquardt) or "
+     "form.max_iterations (of the form-finding), and run with --restart.",
+     NULL},
+    {"dB", "term", "",
+     "Decibel: ten times the decimal logarithm of a ratio of powers. A loss of 1 dB leaves 79 %, 3 dB "
+     "half.",
+     NULL},
+    {"dBi", "term", "", "Gain in dB over an antenna that radiates the same in all directions.", NULL},
+    {"dominated", "term", "", "Of a point of a front: another one is better, or as good, in all objectives.", NULL},
+    {"slope", "term", "", "Of a front: by how much the minimised objective changes for one unit more of the other one.",
+     NULL},
+    {"objective", "term", "",
+     "One of two or three goals that are weighed against each other: optimize.objectives asks for their "
+     "front.",
+     NULL},
+    {"sidelobe", "term", "",
+     "A maximum of the far field beside the beam. The first one is next to the beam, the highest the "
+     "largest of all.",
+     NULL},
+    {"half power", "term", "",
+     "The width of the beam between the two directions where the power is half (-3 dB) of the largest.", NULL},
+    {"physical optics", "term", "",
+     "The far field as the sum of the currents that the feed makes on the facets: good for reflectors of "
+     "many wavelengths (surface.pattern).",
+     NULL},
+    {"taper", "term", "",
+     "What the feed lights less at the rim than in the middle: it costs gain and lowers sidelobes.", NULL},
+    {"spillover", "term", "", "The part of the feed's power that goes past the reflector.", NULL},
+    {"sigma", "term", "", "Standard deviation of an error: two thirds of all errors are below it.", NULL},
+    {"pull", "term", "", "The force of the net on a support; as a goal the largest of them, N.", NULL},
+    {"displacement", "term", "",
+     "How far an attachment moves with the truss; as a goal, or a limit, the largest of them, m.", NULL},
+    {"turnbuckle move", "term", "", "See turnbuckle.", NULL},
+    {"unstressed length", "term", "",
+     "The length of a cable without tension, length / (1 + T/EA): what the workshop cuts. See l0_m.", NULL},
+    {"theoretical place", "term", "",
+     "Where a node should be: on the wanted surface, by the generator or the table of the import. psi "
+     "measures from there.",
+     NULL},
+    {"theoretical position", "term", "", "See theoretical place.", NULL},
+    {"Newton", "term", "",
+     "Newton's method: shapes by second derivatives of the energy, in few steps (form.method: newton).", NULL},
+    {"fixed point", "term", "", "The paper's iteration: force densities from the lengths found, a linear solve, again.",
+     NULL},
+    {"chord", "term", "",
+     "One of the ways to solve designs of a population: Newton steps with the matrix of the base design.", NULL},
+    {"swarm", "term", "",
+     "One of the ways to solve designs of a population: the paper's iteration for many of them side by "
+     "side.",
+     NULL},
+    {"longeron", "term", "",
+     "A tube of the ring along the rim, front or rear; verticals join the two, diagonals brace the bays.", NULL},
+    {"f/D", "term", "", "Focal length over aperture: small for deep dishes.", NULL},
+    {"focal length", "term", "", "Distance from the vertex of the parabola to its focus, where the feed is.", NULL},
+    {"aperture", "term", "", "The opening of the reflector, seen along the axis: of a round one its diameter.", NULL},
+    {"wavelength", "term", "",
+     "Speed of light over frequency: 30 mm at 10 GHz. Errors of a 26th of it (half path, RMS) cost 1 dB.", NULL},
+    {"mesh", "term", "",
+     "The knitted wire that reflects, stretched over the front net: flat between the cables but for its "
+     "own pull, see pillow.",
+     NULL},
+    {"mesh tension", "term", "", "See pillow.", NULL},
+    {"faceting", "term", "", "The error of flat facets whose nodes are all on the surface: smaller with more rings.",
+     NULL},
+    {"convergence", "term", "",
+     "An iteration has converged when more steps change nothing that matters; see stopped by.", NULL},
+    {"journal", "term", "",
+     "FILE.journal: what a run keeps beside its result while it works, so that a killed one goes on.", NULL},
+    {"report", "term", "",
+     "`hifdm report FILE`: a page to look at in a browser, with the net in 3-D, maps, charts and tables.", NULL},
+    {"degrees of freedom", "term", "",
+     "How many numbers say where all joints of the truss are: three shifts and three turns each, less what "
+     "is held.",
+     NULL},
+    {"uncounted", "term", "", "See uncounted_nodes.", NULL},
+    {"member", "term", "", "A tube of the truss.", NULL},
+    {"d psi / d T", "term", "", "By how much psi changes for 1 N more in a cable, all others as they are.", NULL},
 };
 const int hf_n_words_case = sizeof hf_words_case / sizeof *hf_words_case;

@@ -175,6 +175,55 @@ START_TEST(every_word_is_explained)
 }
 END_TEST
 
+/* What the summary and the report say, as a newcomer would type it: plural, with capitals, without units. */
+START_TEST(words_of_the_summary_are_explained)
+{
+    static const char *const word[] = {"drift",
+                                       "gives way",
+                                       "Linear theory",
+                                       "on its truss",
+                                       "half-path RMS",
+                                       "loss of gain",
+                                       "after best fit",
+                                       "the result",
+                                       "variables",
+                                       "free nodes",
+                                       "inner nodes",
+                                       "attachments",
+                                       "rounds",
+                                       "last step",
+                                       "pretensions",
+                                       "form-finding's tensions",
+                                       "ties",
+                                       "dB",
+                                       "stopped by",
+                                       "settled",
+                                       "dominated",
+                                       "slope",
+                                       "first sidelobe",
+                                       "half power",
+                                       "physical optics",
+                                       "objectives",
+                                       "unstressed length",
+                                       "turnbuckle moves",
+                                       "normal rms",
+                                       "stages",
+                                       "mesh tension",
+                                       "slack cables",
+                                       "Facets",
+                                       "members",
+                                       "d psi / d T"};
+    for (size_t k = 0; k < sizeof word / sizeof *word; k++)
+        HIFDM(0, "explain", word[k]);
+    HIFDM(0, "explain", "give way");
+    OUT("gives way (term)");
+    HIFDM(0, "explain", "at bounds");
+    OUT("nodes that no goal counts");
+    OUT("Force densities at 0");
+    HIFDM(2, "explain", "nonsenses");
+}
+END_TEST
+
 START_TEST(explain_helps_with_slips)
 {
     HIFDM(0, "explain", "straight_chain");
@@ -252,6 +301,7 @@ Suite *suite_cli_begin(void)
     tcase_add_test(tcase, the_gain_is_over_what_it_says);
     tcase_add_test(tcase, nothing_is_replaced);
     tcase_add_test(tcase, every_word_is_explained);
+    tcase_add_test(tcase, words_of_the_summary_are_explained);
     tcase_add_test(tcase, explain_helps_with_slips);
     tcase_add_test(tcase, messages_say_where_to_read_on);
     suite_add_tcase(suite, tcase);
