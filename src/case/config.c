@@ -2,6 +2,7 @@
 #include "base/sha256.h"
 #include "base/text.h"
 #include "case/config_check.h"
+#include "case/config_meant.h"
 #include "case/config_value.h"
 
 #include <stdio.h>
@@ -50,7 +51,7 @@ static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, co
 {
     hf_key of;
     const hf_list *row = hf_key_find(prefix, &of) && !of.field ? of.list : NULL;
-    const char *names[128], *near;
+    const char *names[128], *near, *meant = hf_config_meant(prefix, key);
     int n = 0;
     char detail[2 * HF_KEY_SIZE] = "";
     for (int i = 0; i < hf_n_field && n < 128; i++)
@@ -67,6 +68,8 @@ static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, co
         snprintf(detail, sizeof detail, "; a file with a base is a study, for 'hifdm sweep'");
     } else if (*key && !key[strspn(key, "0123456789")]) {
         snprintf(detail, sizeof detail, "; is it behind a decimal comma? Numbers have points");
+    } else if (meant) {
+        snprintf(detail, sizeof detail, "; did you mean %s%s", meant, strchr(meant, '?') ? "" : "?");
     } else if (near) {
         snprintf(detail, sizeof detail, "; did you mean '%s'?", near);
     } else { /* look for the same key in another section */

@@ -1,6 +1,9 @@
 /* Case files with faults: each message has file:line:col, key and remedy; one run reports all faults of a file. */
 #include "nets.h"
 
+#include "case/config_key.h"
+#include "case/config_meant.h"
+
 #define CYLINDER                                                                                                       \
     "scene:\n"                                                                                                         \
     "  parabolic_cylinder: {aperture_m: 10, length_m: 12, focal_length_m: 5, modules: [2, 3], cells_per_module: [4, "  \
@@ -233,12 +236,65 @@ START_TEST(missing_and_binary_files_are_refused)
 }
 END_TEST
 
+/* Keys of other programs: what is named instead is there. */
+START_TEST(what_others_call_a_key_is_known)
+{
+    static const struct {
+        const char *section, *key, *meant;
+    } of[] = {{"optimize", "max_iterations", "'optimize.polish_iterations'"},
+              {"optimize", "nGen", "'optimize.generations'"},
+              {"optimize", "pop_size", "'optimize.population'"},
+              {"optimize", "tol", "'optimize.stagnation_tolerance_m'"},
+              {"optimize", "algorithm", "'optimize.method'"},
+              {"optimize", "bounds", "'optimize.range_N'"},
+              {"form", "tolerance", "'form.residual_tolerance'"},
+              {"form", "max_iter", "'form.max_iterations'"},
+              {"form", "solver", "'form.method'"},
+              {"tolerance", "sigma", "'tolerance.sigma_cut_m'"},
+              {"tolerance", "n_samples", "'tolerance.samples'"},
+              {"surface", "freq", "'surface.frequencies_Hz'"},
+              {"truss", "E", "'truss.E_Pa'"},
+              {"truss.ring", "young_modulus", "'truss.E_Pa'"},
+              {"scene.paraboloid", "diameter", "'scene.paraboloid.aperture_m'"},
+              {"scene.paraboloid", "f", "'scene.paraboloid.focal_length_m'"},
+              {"scene.paraboloid", "depth_m", "'scene.paraboloid.rear_distance_m'"},
+              {"", "seed", "'tolerance.seed'"},
+              {"", "iterations", "'optimize.generations'"},
+              {"", "threads", "--threads"},
+              {"scene", "EA", "'scene.EA_inner_N'"},
+              {"", "young_modulus", "'scene.EA_boundary_N'"},
+              {"", "tension", "'form.pretension_N'"},
+              {"", "loads", "'scene.import.nodes'"},
+              {"", "gravity", "'cases'"},
+              {"", "material", "'truss.density_kg_per_m3'"},
+              {"", "focal_length", "'surface.focal_length_m'"},
+              {"surface", "aperture", "'scene.paraboloid.aperture_m'"},
+              {"", "output", "-o "}};
+    for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
+        const char *meant = hf_config_meant(of[i].section, of[i].key);
+        ck_assert_msg(meant && strstr(meant, of[i].meant), "%s: %s", of[i].key, meant ? meant : "nothing");
+        for (const char *quote = strchr(meant, '\''); quote; quote = strchr(quote, '\'')) {
+            char path[HF_KEY_SIZE];
+            hf_key key;
+            snprintf(path, sizeof path, "%.*s", (int)strcspn(quote + 1, "'"), quote + 1);
+            ck_assert_msg(hf_key_find(path, &key) || hf_key_find_list(path), "%s is no key", path);
+            quote += strlen(path) + 2;
+        }
+    }
+    ck_assert_ptr_null(hf_config_meant("form", "seeds"));
+    ck_assert_ptr_null(hf_config_meant("formal", "solver"));
+    ck_assert_ptr_nonnull(strstr(complaint(FORM "  pretension_N: 10\n", "optimize.max_iterations=9"),
+                                 "; did you mean 'optimize.polish_iterations' (steps of Levenberg-Marquardt) or "));
+}
+END_TEST
+
 Suite *suite_unit_config_faults(void)
 {
     Suite *suite = suite_create("unit/config_faults");
     TCase *tests = tcase_create("config_faults");
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, faults_are_told_where_they_are, 0, N_FAULTY);
+    tcase_add_test(tests, what_others_call_a_key_is_known);
     tcase_add_test(tests, broken_yaml_is_told_where_it_breaks);
     tcase_add_test(tests, all_faults_are_told_in_one_run);
     tcase_add_test(tests, deep_nesting_is_refused);
