@@ -111,6 +111,18 @@ typedef struct {
 hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_facets *facets, const hf_model *model,
                              const hf_workspace *workspace, hf_surface_measures *measures);
 
+/* The errors that a shape is judged by, of its facets or of its nodes: raw and after the best fit to them; the losses
+ * of gain that they cost [frequencies_Hz.n] point into the measures. */
+typedef struct {
+    double half_path_rms_m, fit_half_path_rms_m;
+    const double *gain_loss_dB, *fit_gain_loss_dB;
+} hf_surface_errors;
+
+hf_surface_errors hf_surface_errors_of(const hf_surface_measures *measures, bool of_facets);
+
+/* The loss of gain that a reflector is called good to, dB. */
+#define HF_SURFACE_GOOD_TO_DB 1.0
+
 /* Ruze's formula holds for errors that are small beside a wavelength: up to about this loss, an RMS of lambda/15. */
 #define HF_RUZE_MOST_DB 3.0
 

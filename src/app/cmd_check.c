@@ -2,8 +2,10 @@
  * would take, and about how long. Only short trials are run, never the optimisation. */
 #include "app/cmd.h"
 
+#include "app/cmd_check_study.h"
 #include "app/options.h"
 #include "base/clock.h"
+#include "case/study.h"
 #include "net/symmetry.h"
 #include "out/print.h"
 #include "run/problem_explain.h"
@@ -388,7 +390,7 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
 /* Evaluates the first generation in one thread and measures the time. The time printed for the whole optimisation is
  * that of one design times the largest number of evaluations, divided by the number of threads. */
 static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int threads, const hf_population *ga,
-                               FILE *f)
+                               double *most_s, FILE *f)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     hf_batch batch = {0};
@@ -400,7 +402,9 @@ static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int t
         hf_batch_run(&batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
         double each_s = (hf_clock_s() - begin_s) / ga->n_individual;
         hf_print_duration(each_s, one, sizeof one);
-        hf_print_duration(each_s * o->population * o->generations / threads, all, sizeof all);
+        double all_s = each_s * o->population * o->generations / threads;
+        hf_print_duration(all_s, all, sizeof all);
+        *most_s += all_s;
         fprintf(f, "                optimisation: %s for a design of the first generation by %s; at most about %s\n",
                 one, hf_solver_word[solver], all);
     }
@@ -420,7 +424,8 @@ static void print_fewer(const hf_problem *p, const hf_evaluator *v, double all_s
 
 /* Runs two iterations of Levenberg-Marquardt from the base design and prints the time of one; nothing is run that
  * counted operations foretell to take longer than a trial. */
-static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const hf_population *ga, FILE *f)
+static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const hf_population *ga, double *most_s,
+                                   FILE *f)
 {
     hf_polish_result r;
     char one[32], all[32];
@@ -435,6 +440,7 @@ static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const h
                 "mostly far less\n",
                 one, all);
         print_fewer(p, v, foretold_s * n_step, f);
+        *most_s += foretold_s * n_step;
         return HF_OK;
     }
     hf_status status = hf_polish_run(v, ga->lower_N, ga->upper_N, 2, NULL, p->base_N, &p->workspace, &r);
@@ -445,16 +451,17 @@ static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const h
     hf_print_duration(each_s * n_step, all, sizeof all);
     fprintf(f, "                Levenberg-Marquardt: %s an iteration; at most about %s, mostly far less\n", one, all);
     print_fewer(p, v, each_s * n_step, f);
+    *most_s += each_s * n_step;
     return HF_OK;
 }
 
-static hf_status print_optimize_time(hf_problem *p, const hf_evaluator *v, int threads, FILE *f)
+static hf_status print_optimize_time(hf_problem *p, const hf_evaluator *v, int threads, double *most_s, FILE *f)
 {
     const hf_optimiser_kind *kind = hf_optimiser_plan_of(&p->settings.optimize).kind;
     hf_optimiser o = {0};
     hf_status status = hf_optimiser_create(kind, &p->settings.optimize, &p->model, p->base_N, &o);
-    if (status == HF_OK && kind) status = print_ga_time(p, v, threads, &o.population, f);
-    if (status == HF_OK && polishes(p, v)) status = print_polish_time(p, v, &o.population, f);
+    if (status == HF_OK && kind) status = print_ga_time(p, v, threads, &o.population, most_s, f);
+    if (status == HF_OK && polishes(p, v)) status = print_polish_time(p, v, &o.population, most_s, f);
     hf_optimiser_free(&o);
     return status;
 }
@@ -480,7 +487,8 @@ static void print_tolerance_time(const hf_problem *p, int threads, FILE *f)
 }
 
 /* Tries the form-finding: three iterations measure what one costs, then as many are done as fit into TRIAL_S. */
-static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, FILE *f, hf_messages *messages)
+static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, double *most_s, FILE *f,
+                            hf_messages *messages)
 {
     hf_form_settings form = p->settings.form;
     hf_form_result *r = &p->form;
@@ -493,9 +501,11 @@ static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, F
         affordable < p->settings.form.max_iterations ? (int)affordable + 1 : p->settings.form.max_iterations;
     begin_s = hf_clock_s();
     hf_evaluate_form(&p->model, &form, &p->workspace, NULL, r);
-    hf_print_duration(hf_clock_s() - begin_s, text, sizeof text);
+    *most_s = hf_clock_s() - begin_s;
+    hf_print_duration(*most_s, text, sizeof text);
     if (r->status == HF_NOT_CONVERGED && form.max_iterations < p->settings.form.max_iterations) {
-        hf_print_duration(iteration_s * p->settings.form.max_iterations, text, sizeof text);
+        *most_s = iteration_s * p->settings.form.max_iterations;
+        hf_print_duration(*most_s, text, sizeof text);
         fprintf(f, "  expected time form-finding: not finished after %d iteration%s; at most %s\n", r->iterations,
                 r->iterations == 1 ? "" : "s", text);
         return HF_OK;
@@ -507,43 +517,59 @@ static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, F
     if (!v) return HF_OK;
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_reach_check(p, messages));
-    if (print_optimize_time(p, v, threads, f) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory");
+    if (print_optimize_time(p, v, threads, most_s, f) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory");
     return HF_OK;
 }
 
-static hf_status check(hf_problem *p, const hf_options *options, FILE *f, hf_messages *messages)
+static hf_status check(hf_problem *p, const hf_check_request *q, double *most_s, FILE *f, hf_messages *messages)
 {
-    HF_TRY(hf_problem_load(options->file, NULL, options->set, options->n_set, NULL, p, messages));
+    HF_TRY(hf_problem_load(q->path, NULL, q->set, q->n_set, NULL, p, messages));
     HF_TRY(hf_tolerance_stage_check(p, false, messages));
     HF_TRY(hf_problem_allocate(p, messages));
-    int threads = options->threads ? options->threads : hf_batch_default_threads();
     hf_evaluator evaluator = hf_problem_evaluator(p);
     const hf_evaluator *v = p->settings.has_optimize && p->model.n_gene > 0 ? &evaluator : NULL;
-    hf_print_line(f, "%s: valid", options->file);
+    hf_print_line(f, "%s: valid", q->name);
     print_scene(p, f);
     if (p->settings.form.prestress == HF_PRESTRESS_EXACT) print_prestress(&p->scene, f);
     if (p->settings.has_truss) HF_TRY(print_truss(p, f, messages));
     print_plan(p, v, f);
-    if (print_memory(p, v, threads, f) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory");
-    return print_time(p, v, threads, f, messages);
+    if (print_memory(p, v, q->threads, f) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory");
+    return print_time(p, v, q->threads, most_s, f, messages);
+}
+
+hf_status hf_check_case(const hf_check_request *request, double *most_s, FILE *file, hf_messages *messages)
+{
+    hf_problem p = {0};
+    *most_s = 0;
+    hf_status status = check(&p, request, most_s, file, messages);
+    hf_problem_free(&p);
+    return status;
 }
 
 /* Returns HF_OK, HF_BAD_CASE with all faults, or an ill-posed status when the trial finds the scene ill-posed. */
 static hf_status command_check(const hf_options *options, FILE *file, hf_messages *messages)
 {
-    hf_problem p = {0};
-    hf_status status = check(&p, options, file, messages);
-    hf_problem_free(&p);
-    return status;
+    double most_s;
+    hf_check_request request = {.path = options->file,
+                                .name = options->file,
+                                .set = options->set,
+                                .n_set = options->n_set,
+                                .threads = options->threads ? options->threads : hf_batch_default_threads()};
+    if (hf_study_is(options->file)) return hf_check_study(&request, file, messages);
+    return hf_check_case(&request, &most_s, file, messages);
 }
 
 const hf_command hf_cmd_check = {
     .name = "check",
     .argument = "CASE",
-    .help = "validate; print what will run, what is skipped, sizes, memory and expected time",
+    .help = "validate; print what will run, what is skipped, sizes, memory and expected time; of a study its points",
     .about = "The form-finding is tried, the optimisation is not, and nothing is written. All errors of the case are "
-             "told in one go, with file, line and column.",
-    .examples = "hifdm check case.yaml --threads 64",
+             "told in one go, with file, line and column.\n"
+             "Of a study: axes, the number of points, the first and the last of them, what is done already; the nets "
+             "of the points are made, and the first point is checked as a case is.",
+    .examples = "hifdm check case.yaml --threads 64\n"
+                "hifdm check study.yaml",
     .uses_threads = true,
     .run = command_check,
 };

@@ -3,14 +3,43 @@
 
 #include "app/options.h"
 #include "app/output.h"
-#include "out/print.h"
+#include "base/path.h"
+#include "case/study.h"
+#include "out/print_study.h"
 #include <hifdm/store.h>
 
+#include <string.h>
 #include <unistd.h>
+
+/* Of what is no HDF5 file, its name tells what was meant. */
+static hf_status refuse_case(const char *file, hf_messages *messages)
+{
+    const char *ending = hf_path_ending(file);
+    if (strcmp(ending, ".yaml") != 0 && strcmp(ending, ".yml") != 0) return HF_OK;
+    bool is_study = hf_study_is(file);
+    return hf_error(messages, HF_IO,
+                    "%s: is not an HDF5 file, so no result of hifdm, but a %s: `hifdm check %s` says what it would do, "
+                    "`hifdm %s %s` makes the file to show",
+                    file, is_study ? "study" : "case", file, is_study ? "merge" : "run", file);
+}
+
+static hf_status show_study(const hf_options *o, FILE *file, hf_messages *messages)
+{
+    hf_merged merged;
+    hf_status status = hf_merged_read(o->file, &merged, messages);
+    if (status == HF_OK && o->json)
+        hf_print_study_json(&merged, file);
+    else if (status == HF_OK)
+        hf_print_study(&merged, (hf_print_style){o->verbose, hf_output_has_colour(STDOUT_FILENO)}, file);
+    hf_merged_free(&merged);
+    return status;
+}
 
 static hf_status command_show(const hf_options *o, FILE *file, hf_messages *messages)
 {
     hf_summary summary;
+    HF_TRY(refuse_case(o->file, messages));
+    if (hf_merged_is(o->file)) return show_study(o, file, messages);
     HF_TRY(hf_store_read_summary(o->file, &summary, messages));
     if (o->json) {
         hf_summary_write_json(&summary, summary.finished ? summary.status : summary.form.status, summary.warnings,
@@ -25,12 +54,15 @@ static hf_status command_show(const hf_options *o, FILE *file, hf_messages *mess
 const hf_command hf_cmd_show = {
     .name = "show",
     .argument = "FILE",
-    .help = "print the summary of a result file",
+    .help = "print the summary of a result file, or the table of a merged study",
     .about = "The same lines that hifdm run printed when it was done, warnings last: the answer, then a row for each "
-             "stage. With --verbose certificates, ratios of sets, goals, the surface of every stage, times.",
+             "stage. With --verbose certificates, ratios of sets, goals, the surface of every stage, times.\n"
+             "Of a merged study: its axes, its points as a table with the best one marked, and what is the same at all "
+             "of them; with --verbose all points of a large one.",
     .examples = "hifdm show chen2022.h5\n"
                 "hifdm show chen2022.h5 --verbose\n"
-                "hifdm show chen2022.h5 --json",
+                "hifdm show chen2022.h5 --json\n"
+                "hifdm show study.h5",
     .reads_results = true,
     .run = command_show,
 };

@@ -198,8 +198,7 @@ static hf_status name_points(hf_study *s, hf_messages *messages)
     return refuse_twins(s, messages);
 }
 
-/* Report the faults of one point; each message names the point. */
-static void tell_faults(const hf_study *s, int i, const hf_messages *found, hf_messages *messages)
+void hf_study_tell_faults(const hf_study *s, int i, const hf_messages *found, hf_messages *messages)
 {
     char text[256];
     hf_study_point_text(s, i, text, sizeof text);
@@ -253,10 +252,11 @@ static hf_status check_points(hf_study *s, hf_messages *messages)
             s->has_optimize = c.has_optimize;
             s->derives_seed = c.has_optimize && !has_seed_axis;
             s->seed = c.optimize.seed;
+            s->has_tolerance = c.has_tolerance;
             if (!*s->title) snprintf(s->title, sizeof s->title, "%s", c.title);
             status = take_fingerprint(s, &c, messages);
         }
-        if (status != HF_OK && n_fault++ < HF_FAULT_MAX_POINT) tell_faults(s, i, &found, messages);
+        if (status != HF_OK && n_fault++ < HF_FAULT_MAX_POINT) hf_study_tell_faults(s, i, &found, messages);
         hf_messages_free(&found);
         hf_case_free(&c);
         if (status == HF_NO_MEMORY) return out_of_memory(s, messages);

@@ -50,6 +50,7 @@ typedef struct {
     int *value;                   /* [n_point][n_axis] index of the value */
     char (*id)[HF_STUDY_ID_SIZE]; /* [n_point] */
     bool has_optimize;            /* the points have an optimize section */
+    bool has_tolerance;           /* and one with tolerances */
     bool derives_seed;            /* optimize.seed is no axis: every point has a seed of its own */
     uint64_t seed;                /* optimize.seed of the base case */
     char fingerprint
@@ -63,6 +64,9 @@ typedef struct {
     char seed[48];
 } hf_study_overrides;
 
+/* Is it a study, a YAML file with a base or a sweep section? False for what cannot be read. */
+bool hf_study_is(const char *path);
+
 /* Read, and validate all values of all points against the table of config.h: HF_BAD_CASE with all faults, each with
  * file, line, column and axis; HF_NO_MEMORY. Free in any case. */
 hf_status hf_study_read(const char *path, hf_study *study, hf_messages *messages);
@@ -74,6 +78,9 @@ void hf_study_point_overrides(const hf_study *study, int i, hf_study_overrides *
 
 /* "key=value, key=value" for people, cut off with "..." where it is too long. */
 void hf_study_point_text(const hf_study *study, int i, char *text, size_t size);
+
+/* Report the faults that loading point i has found; each message names the point. */
+void hf_study_tell_faults(const hf_study *study, int i, const hf_messages *found, hf_messages *messages);
 
 /* Do the points get result files? */
 bool hf_study_has_files(const hf_study *study);

@@ -479,6 +479,35 @@ static void parse(reader *r, const char *text, size_t length)
     yaml_parser_delete(&parser);
 }
 
+bool hf_study_is(const char *path)
+{
+    char *text;
+    size_t length;
+    yaml_parser_t parser;
+    yaml_document_t document;
+    hf_messages unwanted = {0};
+    bool is = false;
+    hf_status status = hf_text_read_file(path, HF_BAD_CASE, &text, &length, &unwanted);
+    hf_messages_free(&unwanted);
+    if (status != HF_OK) return false;
+    if (length <= STUDY_MAX && !hf_text_too_deep(text) && yaml_parser_initialize(&parser)) {
+        yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
+        if (yaml_parser_load(&parser, &document)) {
+            const yaml_node_t *root = yaml_document_get_root_node(&document);
+            bool is_map = root && root->type == YAML_MAPPING_NODE;
+            for (yaml_node_pair_t *p = is_map ? root->data.mapping.pairs.start : NULL;
+                 is_map && p < root->data.mapping.pairs.top; p++) {
+                const char *key = text_of(yaml_document_get_node(&document, p->key));
+                is |= !strcmp(key, "base") || !strcmp(key, "sweep");
+            }
+            yaml_document_delete(&document);
+        }
+        yaml_parser_delete(&parser);
+    }
+    free(text);
+    return is;
+}
+
 hf_status hf_study_read(const char *path, hf_study *study, hf_messages *messages)
 {
     char *text;

@@ -9,8 +9,6 @@
 
 /* ---- the answer ---- */
 
-/* The loss of gain that a reflector is called good to, dB. */
-#define GOOD_TO_DB 1.0
 #define GOALS_TOLD 4           /* in the first line */
 #define FREQUENCY_MOST_HZ 1e12 /* beyond there the errors that are left have no meaning */
 
@@ -30,12 +28,12 @@ static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, F
 {
     const hf_surface_measures *m = &s->measures[stage];
     bool has_facets = m->is_measured && m->n_facet > 0 && isfinite(m->facet_half_path_rms_m);
-    double raw_m = has_facets ? m->facet_half_path_rms_m : m->is_measured ? m->half_path_rms_m : psi_m;
-    double fit_m = !m->is_measured ? (double)NAN : has_facets ? m->facet_fit_half_path_rms_m : m->fit.half_path_rms_m;
-    double raw_Hz = hf_surface_frequency_of_loss_Hz(raw_m, GOOD_TO_DB);
-    double fit_Hz = hf_surface_frequency_of_loss_Hz(fit_m, GOOD_TO_DB);
+    hf_surface_errors e = {.half_path_rms_m = psi_m, .fit_half_path_rms_m = (double)NAN};
+    if (m->is_measured) e = hf_surface_errors_of(m, has_facets);
+    double raw_Hz = hf_surface_frequency_of_loss_Hz(e.half_path_rms_m, HF_SURFACE_GOOD_TO_DB);
+    double fit_Hz = hf_surface_frequency_of_loss_Hz(e.fit_half_path_rms_m, HF_SURFACE_GOOD_TO_DB);
     if (!(raw_Hz < FREQUENCY_MOST_HZ)) return;
-    fprintf(f, "; good to %.3g GHz at %g dB (%s", raw_Hz / 1e9, GOOD_TO_DB,
+    fprintf(f, "; good to %.3g GHz at %g dB (%s", raw_Hz / 1e9, HF_SURFACE_GOOD_TO_DB,
             has_facets       ? "its facets"
             : m->is_measured ? "its nodes"
                              : "its nodes, by psi");
@@ -245,11 +243,10 @@ void hf_print_gain_loss(const hf_summary *s, FILE *f)
     for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
         fprintf(f, "%s%g", k ? "/" : "", s->surface.frequencies_Hz.value[k] / 1e9);
     fputs(" GHz: ", f);
-    print_losses(s, m->n_facet ? m->facet_half_path_rms_m : m->half_path_rms_m,
-                 m->n_facet ? m->facet_gain_loss_dB : m->gain_loss_dB, f);
+    hf_surface_errors e = hf_surface_errors_of(m, m->n_facet > 0);
+    print_losses(s, e.half_path_rms_m, e.gain_loss_dB, f);
     fputs(" dB, after best fit ", f);
-    print_losses(s, m->n_facet ? m->facet_fit_half_path_rms_m : m->fit.half_path_rms_m,
-                 m->n_facet ? m->facet_fit_gain_loss_dB : m->fit_gain_loss_dB, f);
+    print_losses(s, e.fit_half_path_rms_m, e.fit_gain_loss_dB, f);
     fputs(" dB", f);
 }
 

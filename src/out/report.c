@@ -2,6 +2,7 @@
 #include "out/report.h"
 
 #include "base/path.h"
+#include "out/merged.h"
 #include "out/report_result.h"
 #include "out/report_study.h"
 
@@ -30,10 +31,10 @@ hf_status hf_report(const hf_export_request *request, const char *other, char *s
     struct stat info = {0};
     HF_TRY(choose_output(request, other, output, messages));
     HF_TRY(hf_file_out_spare(other, "the result to compare with", output, messages));
-    if (other && (hf_report_is_study(request->file) || hf_report_is_study(other)))
+    if (other && (hf_merged_is(request->file) || hf_merged_is(other)))
         return hf_error(messages, HF_BAD_USAGE, "%s is a merged study: only two results can be compared",
-                        hf_report_is_study(other) ? other : request->file);
-    if (hf_report_is_study(request->file))
+                        hf_merged_is(other) ? other : request->file);
+    if (hf_merged_is(request->file))
         HF_TRY(hf_report_study(request->file, output, messages));
     else
         HF_TRY(hf_report_result(request->file, other, NULL, output, messages));

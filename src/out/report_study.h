@@ -3,10 +3,6 @@
 #define HIFDM_REPORT_STUDY_H
 
 #include <hifdm/status.h>
-#include <stdbool.h>
-
-/* True when the file has a table of points. False for any other file, also for one that cannot be read. */
-bool hf_report_is_study(const char *path);
 
 /* Writes the page of the merged study `path` to `output`. HF_OK, HF_IO or HF_NO_MEMORY with a message. */
 hf_status hf_report_study(const char *path, const char *output, hf_messages *messages);

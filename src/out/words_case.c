@@ -38,6 +38,19 @@ const hf_word hf_words_case[] = {
      "holds the nodes, and how much cable each group and set needs. It can be imported as a net.",
      NULL},
     {"cut list", "term", "", "See cutlist.", NULL},
+    {"study", "term", "",
+     "A file for `hifdm sweep`: a base case and axes over its keys; a point for each combination of their values. "
+     "`hifdm check` says what it would do, `hifdm merge` makes one file of it, `hifdm show` and `report` show that.",
+     NULL},
+    {"axis", "term", "",
+     "Of a study: a key of the case and the values that it takes, such as form.pretension_N: [5, 10, 20].", NULL},
+    {"best_by", "key of --json, of a merged study", "",
+     "The figure by which the point `best` is the best, with the least value: psi of 95 % of the nets as built where "
+     "it "
+     "is known; else psi of the result or, where the goals do without psi, the error of its facets.",
+     NULL},
+    {"good_to_Hz", "figure of a merged study", "Hz",
+     "See good to; of facets where there are some (facet_good_to_Hz), and after the best fit (fit_).", NULL},
     {"l0_m", "column of cut lists", "m",
      "Unstressed length of a cable, length / (1 + T/EA): what it measures on the bench, its turnbuckle in the middle.",
      NULL},

@@ -31,6 +31,14 @@ double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz)
     return loss_dB <= HF_RUZE_MOST_DB ? loss_dB : (double)NAN;
 }
 
+hf_surface_errors hf_surface_errors_of(const hf_surface_measures *m, bool of_facets)
+{
+    if (of_facets)
+        return (hf_surface_errors){m->facet_half_path_rms_m, m->facet_fit_half_path_rms_m, m->facet_gain_loss_dB,
+                                   m->facet_fit_gain_loss_dB};
+    return (hf_surface_errors){m->half_path_rms_m, m->fit.half_path_rms_m, m->gain_loss_dB, m->fit_gain_loss_dB};
+}
+
 double hf_surface_frequency_of_loss_Hz(double half_path_rms_m, double loss_dB)
 {
     return sqrt(loss_dB / HF_DB_PER_LN) * HF_LIGHT_M_PER_S / (4 * HF_PI * half_path_rms_m);

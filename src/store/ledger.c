@@ -19,8 +19,9 @@
 #include <unistd.h>
 
 #define HEADER "#hifdm-points-1"
-#define SYNC_S 5.0      /* finished points of the last 5 s may be lost by a power cut */
-#define LINE_SIZE 16384 /* of one row: the reason, at most 25 bytes for each number, and the goals with their names */
+#define SYNC_S 5.0 /* finished points of the last 5 s may be lost by a power cut */
+#define LINE_SIZE                                                                                                      \
+    32768 /* of one row: the reason, 25 bytes for each number, lists with names (a goal: 138, an error: 70) */
 #define ROWS_MAX                                                                                                       \
     (HF_STUDY_POINT_MAX * (off_t)4096) /* bytes of a file that is read: all points have a row, few so much */
 #define N_FIXED 4                      /* fields before the numbers: id, fingerprint, status, reason */
@@ -256,7 +257,7 @@ static void take_row(reading *r, char **field, char **number)
     if (p->state != HF_POINT_DONE) *p = row;
 }
 
-/* Fields of a row that are read: this version writes 102. */
+/* Fields of a row that are read: this version writes 120 or so. */
 enum { FIELD_MAX = 512 };
 
 /* from[i]: the field of the file's rows that holds our field i, or -1: files of other versions have others. */

@@ -2,8 +2,8 @@
  * machines that share it, write at the same time.
  *
  *   points-HOST-PID.tsv   a line per finished point, by the process that finished it: id, fingerprint of the base
- *                         case, status, reason, every number of hf_summary, the goals of each stage. One write(2)
- *                         each; an incomplete line is ignored.
+ *                         case, status, reason, every number of hf_summary, the goals and the errors of the surface
+ *                         of each stage. One write(2) each; an incomplete line is ignored.
  *   claims                no content: the process that runs a point holds a record lock on the byte at the offset that
  *                         the point's id gives as a number; the system releases it when the process ends.
  *   ID-FINGERPRINT.h5     result files of points that have one; of the fingerprint the first digits: runs of different
@@ -26,18 +26,24 @@ const hf_hdf5_member *hf_ledger_column(int i); /* a member of hf_summary, never 
 /* Does the column depend on the machine and its load? Times and the number of threads do. */
 bool hf_ledger_is_circumstance(const hf_hdf5_member *column);
 
-/* ---- The fields of a row: these numbers, then the goals of each stage as one text (ledger_fields.c) ---- */
+/* ---- The fields of a row: these numbers, then lists "name=value name=value" as texts (ledger_fields.c) ---- */
 
-int hf_ledger_n_field(void); /* HF_LAYOUT_N_GOALS_STAGE more than columns */
+/* The goals of each stage, then the errors of its surface, of facets where there are some, else of nodes. */
+enum { HF_LEDGER_N_LIST = 2 * HF_LAYOUT_N_GOALS_STAGE };
+typedef struct {
+    const char *group, *prefix; /* where a merge has its values, below /points: the group, what data sets begin with */
+    const char *begin;          /* what the names of its values begin with */
+} hf_ledger_list;
+extern const hf_ledger_list hf_ledger_list_of[HF_LEDGER_N_LIST];
+
+int hf_ledger_n_field(void); /* HF_LEDGER_N_LIST more than columns */
 int hf_ledger_field_name(int i, char *text, size_t size);
 int hf_ledger_print_field(int i, const hf_summary *summary, char *text, size_t size); /* nothing: not applicable */
 
-/* Where a merge has the goals of each stage: {group, what their names begin with}. */
-extern const char *const hf_ledger_goals_place[HF_LAYOUT_N_GOALS_STAGE][2];
-
-/* Take the next goal from the text of a stage, which moves behind it; false at the end, or where it is damaged. */
-bool hf_ledger_next_goal(const char **text, char name[HF_GOAL_NAME_SIZE], double *value);
+/* Take the next value from the text of a list, which moves behind it; false at the end, or where it is damaged. */
+bool hf_ledger_next_value(int list, const char **text, char name[HF_GOAL_NAME_SIZE], double *value);
 const char *hf_ledger_goal_unit(const char *name); /* of goal_1_tension_edge: N */
+const char *hf_ledger_unit(const char *name);      /* the same, and of names that end in their unit */
 
 /* ---- Writing ---- */
 

@@ -1,5 +1,6 @@
-/* What a row of a ledger holds of a point's summary: its numbers, and the goals of each stage as one text, since what
- * they are called may differ from point to point. Contents: numbers - fields - goals */
+/* What a row of a ledger holds of a point's summary: its numbers, and for each stage two lists as texts, the goals and
+ * the errors of the surface, since what is in them may differ from point to point. Contents: numbers - lists - fields -
+ * reading lists */
 #include "store/ledger.h"
 
 #include <inttypes.h>
@@ -60,24 +61,11 @@ static int print_number(const hf_hdf5_member *column, const hf_summary *s, char 
     }
 }
 
-/* ---- fields ---- */
+/* ---- lists ---- */
 
-/* The place of the goals of each stage in a merge: the group, and what their names begin with. */
-const char *const hf_ledger_goals_place[HF_LAYOUT_N_GOALS_STAGE][2] = {
-    {"/form", ""}, {"/ga", "best_"}, {"/polish", ""}};
-
-int hf_ledger_n_field(void)
-{
-    return hf_ledger_n_column() + HF_LAYOUT_N_GOALS_STAGE;
-}
-
-int hf_ledger_field_name(int i, char *text, size_t size)
-{
-    const hf_hdf5_member *column = hf_ledger_column(i);
-    if (column) return snprintf(text, size, "%s/%s", column->object, column->name);
-    const char *const *place = hf_ledger_goals_place[i - hf_ledger_n_column()];
-    return snprintf(text, size, "%s/%sgoals", place[0], place[1]);
-}
+const hf_ledger_list hf_ledger_list_of[HF_LEDGER_N_LIST] = {{"/form", "", "goal_"},        {"/ga", "best_", "goal_"},
+                                                            {"/polish", "", "goal_"},      {"/surface/form", "", ""},
+                                                            {"/surface/optimize", "", ""}, {"/surface/polish", "", ""}};
 
 /* "goal_0_psi=0.001 goal_1_tension_edge=3" */
 static int print_goals(const hf_summary *s, int stage, char *text, size_t size)
@@ -89,27 +77,79 @@ static int print_goals(const hf_summary *s, int stage, char *text, size_t size)
     return (int)used;
 }
 
+/* "facet_half_path_rms_m=0.001 facet_good_to_Hz=3e9 facet_gain_loss_at_2.5_GHz_dB=0.1 facet_fit_half_path_rms_m=..." */
+static int print_errors(const hf_summary *s, int stage, char *text, size_t size)
+{
+    const hf_surface_measures *m = &s->measures[stage];
+    const hf_double_list *at = &s->surface.frequencies_Hz;
+    size_t used = 0;
+    if (!m->is_measured) return 0;
+    hf_surface_errors e = hf_surface_errors_of(m, m->n_facet > 0);
+    for (int is_fit = 0; is_fit < 2 && used < size; is_fit++) {
+        double rms_m = is_fit ? e.fit_half_path_rms_m : e.half_path_rms_m;
+        const double *loss_dB = is_fit ? e.fit_gain_loss_dB : e.gain_loss_dB;
+        char kind[16];
+        snprintf(kind, sizeof kind, "%s%s", m->n_facet > 0 ? "facet_" : "", is_fit ? "fit_" : "");
+        used += (size_t)snprintf(text + used, size - used, "%s%shalf_path_rms_m=%.17g %sgood_to_Hz=%.17g",
+                                 is_fit ? " " : "", kind, rms_m, kind,
+                                 hf_surface_frequency_of_loss_Hz(rms_m, HF_SURFACE_GOOD_TO_DB));
+        for (int k = 0; k < at->n && used < size; k++)
+            used += (size_t)snprintf(text + used, size - used, " %sgain_loss_at_%.9g_GHz_dB=%.17g", kind,
+                                     at->value[k] / 1e9, loss_dB[k]);
+    }
+    return (int)used;
+}
+
+/* ---- fields ---- */
+
+int hf_ledger_n_field(void)
+{
+    return hf_ledger_n_column() + HF_LEDGER_N_LIST;
+}
+
+int hf_ledger_field_name(int i, char *text, size_t size)
+{
+    const hf_hdf5_member *column = hf_ledger_column(i);
+    if (column) return snprintf(text, size, "%s/%s", column->object, column->name);
+    const hf_ledger_list *list = &hf_ledger_list_of[i - hf_ledger_n_column()];
+    return snprintf(text, size, "%s/%s%s", list->group, list->prefix, *list->begin ? "goals" : "errors");
+}
+
 int hf_ledger_print_field(int i, const hf_summary *s, char *text, size_t size)
 {
     const hf_hdf5_member *column = hf_ledger_column(i);
     if (column) return applies(column, s) ? print_number(column, s, text, size) : 0;
-    return s->form.status == HF_NOT_EVALUATED ? 0 : print_goals(s, i - hf_ledger_n_column(), text, size);
+    int list = i - hf_ledger_n_column(), stage = list % HF_LAYOUT_N_GOALS_STAGE;
+    if (s->form.status == HF_NOT_EVALUATED) return 0;
+    return list == stage ? print_goals(s, stage, text, size) : print_errors(s, stage, text, size);
 }
 
-/* ---- goals ---- */
+/* ---- reading lists ---- */
 
-bool hf_ledger_next_goal(const char **text, char name[HF_GOAL_NAME_SIZE], double *value)
+bool hf_ledger_next_value(int list, const char **text, char name[HF_GOAL_NAME_SIZE], double *value)
 {
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    const char *p = *text + (**text == ' ');
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.+";
+    const char *p = *text + (**text == ' '), *begin = hf_ledger_list_of[list].begin;
     size_t n = strspn(p, letters);
     char *end;
-    if (strncmp(p, "goal_", 5) != 0 || n >= HF_GOAL_NAME_SIZE || p[n] != '=') return false;
+    if (n == 0 || n >= HF_GOAL_NAME_SIZE || p[n] != '=' || *p == '.' || strncmp(p, begin, strlen(begin)) != 0)
+        return false;
     memcpy(name, p, n);
     name[n] = '\0';
     *value = strtod(p + n + 1, &end);
     *text = end;
     return end > p + n + 1;
+}
+
+const char *hf_ledger_unit(const char *name)
+{
+    static const char *const unit[][2] = {{"_N_per_m", "N/m"}, {"_kg", "kg"}, {"_N", "N"},
+                                          {"_m", "m"},         {"_Hz", "Hz"}, {"_dB", "dB"}};
+    size_t n = strlen(name);
+    if (!strncmp(name, "goal_", 5)) return hf_ledger_goal_unit(name);
+    for (int i = 0; i < HF_HDF5_COUNT(unit); i++)
+        if (n > strlen(unit[i][0]) && !strcmp(name + n - strlen(unit[i][0]), unit[i][0])) return unit[i][1];
+    return "";
 }
 
 const char *hf_ledger_goal_unit(const char *name)

@@ -1,4 +1,4 @@
-/* Contents: columns - inputs - outputs - goals - points - links - the file */
+/* Contents: columns - inputs - outputs - lists - points - links - the file */
 #include "store/merge.h"
 
 #include "base/file_out.h"
@@ -108,15 +108,6 @@ static void write_axis(merger *m, hid_t group, int i_axis)
 
 /* ---- outputs ---- */
 
-static const char *unit_of(const char *name)
-{
-    static const char *const unit[][2] = {{"_N_per_m", "N/m"}, {"_kg", "kg"}, {"_N", "N"}, {"_m", "m"}};
-    size_t n = strlen(name);
-    for (int i = 0; i < HF_HDF5_COUNT(unit); i++)
-        if (n > strlen(unit[i][0]) && !strcmp(name + n - strlen(unit[i][0]), unit[i][0])) return unit[i][1];
-    return "";
-}
-
 static void set_number(void *room, int i, const hf_hdf5_kind *kind, const char *text)
 {
     switch (kind->class) {
@@ -154,44 +145,53 @@ static void write_output(merger *m, hid_t group, int column)
     snprintf(name, sizeof name, "%s%s%s", c->object + 1, c->object[1] ? "/" : "", c->name);
     snprintf(stage, sizeof stage, "/points%s", c->object);
     if (c->object[1]) hf_hdf5_close(&m->io, hf_hdf5_make_group(&m->io, stage));
-    write_column(m, group, name, c->kind, 1, unit_of(c->name), "as in the runs");
+    write_column(m, group, name, c->kind, 1, hf_ledger_unit(c->name), "as in the runs");
 }
 
-/* ---- goals ---- */
+/* ---- lists ---- */
 
-/* What is called so in the text of a point's stage; NaN without it. */
-static double goal_of(const hf_point *p, int field, const char *wanted)
+/* What is called so in the text of a point; NaN without it. */
+static double value_in(const hf_point *p, int list, const char *wanted)
 {
     char name[HF_GOAL_NAME_SIZE];
     double value;
-    const char *text = p->field ? p->field[field] : "";
-    while (hf_ledger_next_goal(&text, name, &value))
+    const char *text = p->field ? p->field[hf_ledger_n_column() + list] : "";
+    while (hf_ledger_next_value(list, &text, name, &value))
         if (!strcmp(name, wanted)) return value;
     return (double)NAN;
 }
 
-static void write_goal(merger *m, hid_t group, int field, const char *prefix, const char *goal)
+static void write_value(merger *m, hid_t group, int list, const char *value)
 {
     char name[HF_GOAL_NAME_SIZE + 8];
-    snprintf(name, sizeof name, "%s%s", prefix, goal);
+    snprintf(name, sizeof name, "%s%s", hf_ledger_list_of[list].prefix, value);
     for (int i = 0; i < m->points->n_point; i++)
-        ((double *)m->room)[i] = goal_of(&m->points->point[i], field, goal);
-    write_column(m, group, name, HF_KIND_REAL, 1, hf_ledger_goal_unit(goal), "value of the goal");
+        ((double *)m->room)[i] = value_in(&m->points->point[i], list, value);
+    write_column(m, group, name, HF_KIND_REAL, 1, hf_ledger_unit(value),
+                 *hf_ledger_list_of[list].begin ? "value of the goal" : "of the surface");
 }
 
-/* A column for each goal that any point has in this stage: sets and kinds of goals may be axes. */
-static void write_goals(merger *m, int stage)
+/* The group, and the one that it is in. */
+static hid_t make_nested_group(merger *m, const char *path)
+{
+    char outer[32];
+    snprintf(outer, sizeof outer, "%.*s", hf_path_prefix_length(path) - 1, path);
+    hf_hdf5_close(&m->io, hf_hdf5_make_group(&m->io, outer));
+    return hf_hdf5_make_group(&m->io, path);
+}
+
+/* A column for each name that any point has in this list: sets and kinds of goals, and frequencies, may be axes. */
+static void write_list(merger *m, int list)
 {
     char(*done)[HF_GOAL_NAME_SIZE] = NULL, path[32], name[HF_GOAL_NAME_SIZE];
-    const char *const *place = hf_ledger_goals_place[stage];
-    int n_done = 0, field = hf_ledger_n_column() + stage;
+    int n_done = 0;
     double value;
     hid_t group = -1;
-    snprintf(path, sizeof path, "/points%s", place[0]);
+    snprintf(path, sizeof path, "/points%s", hf_ledger_list_of[list].group);
     for (int i = 0; i < m->points->n_point && m->io.status == HF_OK; i++) {
         const hf_point *p = &m->points->point[i];
-        const char *text = p->field ? p->field[field] : "";
-        while (m->io.status == HF_OK && hf_ledger_next_goal(&text, name, &value)) {
+        const char *text = p->field ? p->field[hf_ledger_n_column() + list] : "";
+        while (m->io.status == HF_OK && hf_ledger_next_value(list, &text, name, &value)) {
             int k = 0;
             while (k < n_done && strcmp(done[k], name) != 0)
                 k++;
@@ -203,8 +203,8 @@ static void write_goals(merger *m, int stage)
             }
             done = more;
             memcpy(done[n_done++], name, sizeof name);
-            if (group < 0) group = hf_hdf5_make_group(&m->io, path);
-            write_goal(m, group, field, place[1], name);
+            if (group < 0) group = make_nested_group(m, path);
+            write_value(m, group, list, name);
         }
     }
     if (group >= 0) hf_hdf5_close(&m->io, group);
@@ -234,8 +234,8 @@ static void write_points(merger *m)
     for (int i = 0; i < hf_ledger_n_column(); i++)
         write_output(m, group, i);
     hf_hdf5_close(&m->io, group);
-    for (int stage = 0; stage < HF_LAYOUT_N_GOALS_STAGE; stage++)
-        write_goals(m, stage);
+    for (int list = 0; list < HF_LEDGER_N_LIST; list++)
+        write_list(m, list);
 }
 
 /* ---- links ---- */

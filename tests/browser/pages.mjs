@@ -10,7 +10,7 @@
 //   other: how the case of a second result differs, with which it is compared; unlike: in its figures, too
 //   bytes_max: how large it may be, if more than usual; fluid: it is only looked at how fast it is
 //   look: its looks are checked, and its sizes are in sizes.json
-//   study: how many points; leads: the axis that matters most
+//   study: how many points; leads: the axis that matters most, of two; along the other one nothing changes
 
 const FORM = ["net", "cables", "map", "tensions", "summary", "form-finding", "provenance"];
 const GA = ["net", "cables", "map", "tensions", "summary", "form-finding", "ga", "provenance"];
@@ -175,6 +175,24 @@ export const pages = [
       "base: base.yaml\nsweep:\n  form.pretension_N: {from: 5, to: 40, n: 16, spacing: log}\n" +
       "  scene.parabolic_cylinder.scallop: [0.05, 0.08, 0.11, 0.14]\n  files: all\n",
     files: { "base.yaml": cylinder([4, 5]) },
+    sections: ["sweep", "points"],
+  },
+  {
+    name: "sweep-surface", // one axis; goals, of which one is psi, the surface, the net as built; wide tables on paper
+    look: true,
+    study: 5,
+    text:
+      "title: How hard may the net pull?\nbase: base.yaml\nsweep:\n  form.pretension_N: [5, 10, 20, 30, 40]\n" +
+      "  scene.EA_boundary_N: [2e5]\n",
+    files: {
+      "base.yaml":
+        "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n  paraboloid: {aperture_m: 4, focal_length_m: 3, rings: 3, " +
+        "rear_distance_m: 1.8}\nform: {prestress: exact}\ntruss: {ring: {cells_per_bay: 2, held: bay, longeron: " +
+        "{diameter_m: 0.03, wall_m: 0.001}}}\nsurface: {frequencies_Hz: [2e9, 10e9]}\noptimize: {method: lm, " +
+        "variables: [{set: all, vary: force_density, range: 50 %}], goals: [{goal: psi}, {goal: tension, set: tie, " +
+        "target: 8, weight: 1e-4}]}\ntolerance: {sigma_cut_m: 5e-5, samples: 40, require: [{measure: psi_m, " +
+        "at_most: 3e-4}]}\n",
+    },
     sections: ["sweep", "points"],
   },
 ];

@@ -1,6 +1,7 @@
 // The page of a study: its points, the shares of its axes, its maps of two axes.
 import assert from "node:assert/strict";
 import { number, same } from "./see.mjs";
+import { checkCharts } from "./tables.mjs";
 
 // Every point has a row, its name leads to its result, and the row says what the result says.
 export async function checkPoints(tab, page, made) {
@@ -24,7 +25,7 @@ export async function checkPoints(tab, page, made) {
   assert.equal(all[0], Math.min(...all));
   await psi.click();
   assert.deepEqual((await shown()).slice(1), all.slice(1).sort((a, b) => b - a));
-  assert.match(await tab.locator("#sweep > p").innerText(), /inner cables is 1 at all points/);
+  assert.match(await tab.locator("#sweep > p.same").innerText(), /At all points: tension ratio, inner cables 1[.;]/);
   assert.equal(await tab.locator("#points thead th", { hasText: "inner" }).count(), 0);
   await checkShares(tab, made.study);
   await checkHeat(tab, made.study);
@@ -34,7 +35,7 @@ export async function checkPoints(tab, page, made) {
 async function checkShares(tab, study) {
   const mean = (v) => v.reduce((sum, x) => sum + x, 0) / v.length,
     variance = (v) => mean(v.map((x) => x * x)) - mean(v) ** 2;
-  const said = await tab.locator("#sweep > p").innerText(),
+  const said = await tab.locator("#sweep > p").first().innerText(),
     psi = study.output.at(-1).psi_m;
   for (const { name, values } of study.input) {
     const means = [...new Set(values)].map((at) => mean(psi.filter((_, i) => values[i] === at)));
@@ -44,6 +45,27 @@ async function checkShares(tab, study) {
     if (little) assert.ok(share < number(told));
     else same(number(told), share, 2);
   }
+}
+
+// Goals have units, psi is there once, the surface and the net as built have charts and columns, the best is marked.
+export async function checkSurfaceOfStudy(tab, study) {
+  await checkCharts(tab, 6, "#sweep", /pretension [\d.]+ N/);
+  const titles = await tab.locator("#sweep .chart h3").allTextContents(),
+    heads = (await tab.locator("#points thead th").allTextContents()).join("; "),
+    text = await tab.locator("body").innerText();
+  assert.ok(titles.includes("Goal tension tie") && !titles.includes("Goal psi"), titles.join("; "));
+  assert.match(text, /The goal psi is ψ itself\./);
+  assert.match(text, /All with EA boundary 200000 N/);
+  assert.ok(!/Fig\.|Chen/.test(text), "a study of one's own speaks of the paper");
+  const wanted = ["Goal tension tie (N)", "RMS of facets (mm)", "RMS of facets, fitted (mm)", "Good to (GHz)", "Yield"];
+  for (const head of wanted) assert.ok(heads.includes(head), `${head} is not in ${heads}`);
+  const values = study.output.find(({ stage }) => stage === "tolerance").psi_95_m,
+    best = tab.locator("#points tr.chosen");
+  assert.equal(study.best, values.indexOf(Math.min(...values)));
+  same(number(await best.locator('[data-label^="ψ of 95"]').textContent()), 1e3 * Math.min(...values), 5);
+  const rms = study.output.find(({ stage }) => stage === "polish").facet_half_path_rms_m[study.best];
+  same(number(await best.locator('[data-label="RMS of facets (mm)"]').textContent()), 1e3 * rms, 5);
+  assert.match(await tab.locator("#sweep .chart .legend").first().innerText(), /best point/);
 }
 
 // Along the axis of few values the many of the other one are a map: each cell has the value of its point.

@@ -27,13 +27,17 @@ function readAxes(study) {
       input.texts
         ? clip(input.texts[i], NAME_MAX)
         : Array.from({ length: columns }, (_, k) => fmt(values[columns * i + k], 5)).join(" × ");
-    const labels = new Set(Array.from({ length: study.n }, (_, i) => label(i)));
+    const all = Array.from({ length: study.n }, (_, i) => i),
+      countOf = (points) => new Set(points.map(label)).size,
+      done = all.filter((i) => study.status[i] === "ok");
     return {
       key: input.name,
       ...named,
       label,
       isNumber,
-      varies: labels.size > 1,
+      varies: countOf(all) > 1,
+      isDrawn: countOf(done) > 1, // several of its values led to a result
+      only: done.length ? label(done[0]) : "",
       value: (i) => (isNumber ? values[i] : label(i)),
     };
   });
@@ -42,54 +46,75 @@ function readAxes(study) {
 // ---- figures: what the points have, and which axis it depends on ----
 
 const STAGE_STYLE = { form: ["--one", null], optimize: ["--two", "7 3"], polish: ["--three", "2 3"] };
-const STAGE_FIGURES = [
-  { key: "psi_m", title: "Surface error ψ", yLabel: "ψ (mm)", unit: "mm", scale: 1e3 },
-  { key: "inner_tension_ratio", title: "Tension ratio, inner cables", yLabel: "T max / T min", unit: "", scale: 1 },
-  {
-    key: "boundary_tension_ratio",
-    title: "Tension ratio, boundary cables",
-    yLabel: "T max / T min",
-    unit: "",
-    scale: 1,
-  },
-];
+const BUILT = "tolerance"; // the stage of the net as built
+const TOLD_IN = { m: ["mm", 1e3], Hz: ["GHz", 1e-9] };
 
-// The goals that any stage has, each in its own unit.
-function goalFigures(study) {
-  const keys = new Set(study.output.flatMap((o) => Object.keys(o).filter((k) => k.startsWith("goal_"))));
-  return [...keys].sort().map((key) => {
-    const name = clip(key.replace(/_/g, " "), NAME_MAX);
-    return { key, title: name[0].toUpperCase() + name.slice(1), yLabel: name, unit: "", scale: 1 };
-  });
+// What a figure is called: its title, the name of its values on an axis, where it stands among the others, the head of
+// its column in the table.
+function figureWords(key) {
+  const [, facets, fit, rest] = key.match(/^(facet_)?(fit_)?(.*)$/),
+    after = fit ? ", after best fit" : "",
+    fitted = fit ? ", fitted" : "",
+    of = facets ? "facets" : "nodes";
+  const loss = rest.match(/^gain_loss_at_(.*)_GHz_dB$/),
+    goal = key.match(/^goal_\d+_(.*)$/),
+    goalName = goal && clip(goal[1].replace(/_/g, " "), NAME_MAX);
+  if (key === "psi_m") return ["Surface error ψ", "ψ", 1, "ψ"];
+  if (key === "psi_95_m") return ["ψ that 95 % of the nets as built keep", "ψ", 0, "ψ of 95 %"];
+  if (key === "yield") return ["Yield: nets as built that meet all requirements", "yield", 2, "Yield"];
+  if (rest === "half_path_rms_m")
+    return [`Half-path error of the ${of}${after}`, "RMS", fit ? 4 : 3, `RMS of ${of}${fitted}`];
+  if (rest === "good_to_Hz")
+    return [`Good to, at 1 dB of loss by the ${of}${after}`, "frequency", fit ? 6 : 5, `Good to${fitted}`];
+  if (loss) return [`Loss of gain at ${loss[1]} GHz${after}`, "loss", fit ? 8 : 7, `Loss at ${loss[1]} GHz${fitted}`];
+  if (goal) return [`Goal ${goalName}`, goalName, 9, `Goal ${goalName}`];
+  if (key === "inner_tension_ratio")
+    return ["Tension ratio, inner cables", "T max / T min", 10, "Tension ratio, inner"];
+  if (key === "boundary_tension_ratio")
+    return ["Tension ratio, boundary cables", "T max / T min", 11, "Tension ratio, boundary"];
+  return null;
+}
+const lowered = (title) => title.replace(/^[A-Z]/, (c) => c.toLowerCase());
+
+// The figures of a study, each with its stages: of: (i, stage) -> its value at a finished point, or null; drawn: the
+// stages in which it varies, by more than rounding.
+function readFigures(study, mainStage) {
+  const rows = study.figure.filter(({ key, psi }) => figureWords(key) && !psi);
+  return [...new Set(rows.map(({ key }) => key))]
+    .map((key) => {
+      const [title, name, rank, column] = figureWords(key),
+        own = rows.filter((row) => row.key === key),
+        [unit, scale] = key === "yield" ? ["%", 100] : TOLD_IN[own[0].unit] || [own[0].unit, 1],
+        main = own.some(({ stage }) => stage === BUILT) ? BUILT : mainStage;
+      const values = Object.fromEntries(study.output.filter((o) => o[key]).map((o) => [o.stage, o[key]]));
+      return {
+        key,
+        title,
+        rank,
+        column,
+        unit,
+        main,
+        yLabel: unit ? `${name} (${unit})` : name,
+        isLoss: /gain_loss_at_/.test(key),
+        stages: own.map(({ stage }) => stage),
+        drawn: own.filter(({ same }) => !same).map(({ stage }) => stage),
+        of: (i, stage = main) => {
+          const v = (values[stage] || [])[i];
+          return study.status[i] === "ok" && typeof v === "number" ? v * scale : null;
+        },
+      };
+    })
+    .sort((f, g) => f.rank - g.rank);
 }
 
-// One figure: of: (i, stage) -> its value at a finished point, or null; isConstant: it has one value, but for rounding.
-function readFigures(study, mainStage) {
-  const value = (list, i, scale) => (study.status[i] === "ok" && typeof list[i] === "number" ? list[i] * scale : null);
-  const stages = [...STAGE_FIGURES, ...goalFigures(study)]
-    .map((f) => ({ ...f, stages: study.output.filter((o) => o[f.key]).map((o) => o.stage) }))
-    .filter((f) => f.stages.length)
-    .map((f) => ({
-      ...f,
-      of: (i, stage = mainStage) => value((study.output.find((o) => o.stage === stage) || {})[f.key] || [], i, f.scale),
-    }));
-  const others = (study.figure || []).map(({ key, title, unit, values }) => {
-    const isLength = unit === "m";
-    return {
-      key,
-      title,
-      yLabel: isLength ? "ψ (mm)" : title,
-      unit: isLength ? "mm" : unit,
-      stages: [],
-      of: (i) => value(values, i, isLength ? 1e3 : 1),
-    };
-  });
-  return [...stages, ...others]
-    .map((f) => {
-      const at = range(Array.from({ length: study.n }, (_, i) => f.of(i)));
-      return { ...f, at, isConstant: !!at && at[1] - at[0] <= 1e-6 * Math.abs(at[1]) };
-    })
-    .filter((f) => f.at);
+// What a figure is where it is the same everywhere; of other stages than the result psi alone is told.
+function sameText(study, f, stage) {
+  const i = study.status.findIndex((word, k) => word === "ok" && f.of(k, stage) !== null),
+    of = f.key === "psi_m" && f.stages.length > 1 ? ` ${stageName[stage]}` : "";
+  if (stage !== f.main && f.key !== "psi_m") return "";
+  if (i < 0) return f.isLoss && study.status.includes("ok") ? `${lowered(f.title)} above 3\u00a0dB` : "";
+  const value = (f.unit === "mm" ? rounded : fmt)(f.of(i, stage), 5);
+  return `${lowered(f.title)}${of} ${value}${f.unit ? `\u00a0${f.unit}` : ""}`;
 }
 
 // Which part of the variance of a figure the mean over the points with the same value of an axis has. In a product of
@@ -101,7 +126,7 @@ function shareOf(study, figure, axis) {
     square = 0;
   for (let i = 0; i < study.n; i++) {
     const v = figure.of(i);
-    if (v === null) continue;
+    if (v === null || !Number.isFinite(v)) continue;
     const group = groups.get(axis.value(i)) || [0, 0];
     groups.set(axis.value(i), [group[0] + 1, group[1] + v]);
     n++;
@@ -118,14 +143,15 @@ function shareOf(study, figure, axis) {
 // ---- curves and maps ----
 
 const CURVES_MAX = 4; // more curves than these colours are drawn as a map of two axes, or as marks
+const pointsDone = (study) => Array.from({ length: study.n }, (_, i) => i).filter((i) => study.status[i] === "ok");
 const valuesOf = (study, axis) =>
-  [...new Set(Array.from({ length: study.n }, (_, i) => axis.value(i)))].sort((a, b) => (a < b ? -1 : a > b ? 1 : 0));
+  [...new Set(pointsDone(study).map(axis.value))].sort((a, b) => (a < b ? -1 : a > b ? 1 : 0));
 
 // Groups the points into curves: the points of a curve agree in all axes but one. Curves are in the order of the values
 // that their points share.
 function curves(study, axis, others) {
   const groups = new Map();
-  for (let i = 0; i < study.n; i++) {
+  for (const i of pointsDone(study)) {
     const name = others.map((a) => `${a.name} ${a.label(i)}${a.unit ? ` ${a.unit}` : ""}`).join(", ");
     if (!groups.has(name)) groups.set(name, { name, first: i, at: new Map() });
     groups.get(name).at.set(axis.value(i), i);
@@ -138,20 +164,26 @@ function curves(study, axis, others) {
 }
 
 const headOf = (axis, text) => `${axis.name} ${text}${axis.unit ? ` ${axis.unit}` : ""}`;
-const captionOf = (figure, axis) =>
-  figure.key === "psi_m" && axis.key === "form.pretension_N" ? " Fig. 22 of Chen et al., 2022." : "";
+const listed = (names) =>
+  names.length < 2 ? names.join("") : `${names.slice(0, -1).join(", ")} and ${names[names.length - 1]}`;
+const pointName = (axes, i) =>
+  axes
+    .filter((a) => a.varies)
+    .map((a) => headOf(a, a.label(i)))
+    .join(", ");
 
-function curveChart(study, figure, axis, groups, stage) {
+function curveChart(study, figure, axis, others, groups, stage) {
   const x = valuesOf(study, axis),
     isOne = groups.length === 1;
-  const stages = isOne && figure.stages.length ? figure.stages : [stage];
+  const isStaged = figure.main !== BUILT,
+    stages = isOne ? figure.drawn : [isStaged ? stage : BUILT];
   const series = groups.flatMap((group, k) =>
     stages.map((of) => ({
-      name: group.name || (figure.stages.length ? stageName[of] : figure.title),
+      name: group.name || (isStaged ? stageName[of] : "as built"),
       stored: figure.key,
       values: x.map((v) => (group.at.has(v) ? figure.of(group.at.get(v), of) : null)),
-      colour: isOne && figure.stages.length ? STAGE_STYLE[of][0] : SERIES[k],
-      dash: isOne && figure.stages.length ? STAGE_STYLE[of][1] : null,
+      colour: isOne && isStaged ? STAGE_STYLE[of][0] : SERIES[k],
+      dash: isOne && isStaged ? STAGE_STYLE[of][1] : null,
       dots: x.length < 2,
     })),
   );
@@ -161,28 +193,33 @@ function curveChart(study, figure, axis, groups, stage) {
     x,
     series,
     counted: false,
-    caption: `${isOne ? "" : "One curve for each value of the other axes."}${captionOf(figure, axis)}`.trim(),
+    floor: ["mm", "N"].includes(figure.unit) ? RESOLVED_MM : undefined, // what rounding leaves is not drawn
+    marks:
+      isOne && figure.isLead
+        ? [{ name: "best point", at: axis.value(study.best), colour: "--alarm", dash: "2 3" }]
+        : [],
+    caption: isOne ? "" : `One curve for each value of ${listed(others.map((a) => a.name))}.`,
     head: (i) => headOf(axis, fmt(x[i], 6)),
   });
 }
 
 // A mark for each point, and the mean over those with the same value.
-function markChart(study, figure, axis, stage) {
-  const points = Array.from({ length: study.n }, (_, i) => i).sort((i, j) => axis.value(i) - axis.value(j));
+function markChart(study, figure, axis, others, stage) {
+  const points = pointsDone(study).sort((i, j) => axis.value(i) - axis.value(j));
   return chart({
     ...figure,
     xLabel: axis.text,
     x: points.map(axis.value),
     counted: false,
-    caption: `One mark per finished point.${captionOf(figure, axis)}`,
-    head: (i) => `point ${study.id[points[i]]}, ${headOf(axis, axis.label(points[i]))}`,
+    caption: "One mark per finished point.",
+    head: (i) => pointName([axis, ...others], points[i]),
     series: [
       {
         name: figure.title,
         stored: figure.key,
         colour: "--one",
         dots: true,
-        values: points.map((i) => figure.of(i, stage)),
+        values: points.map((i) => figure.of(i, figure.main === BUILT ? BUILT : stage)),
       },
     ],
   });
@@ -194,8 +231,9 @@ function heatMap(study, figure, axis, other, stage) {
   const columns = valuesOf(study, axis),
     rows = valuesOf(study, other).reverse(),
     at = new Map();
-  for (let i = 0; i < study.n; i++) at.set(`${axis.value(i)} ${other.value(i)}`, i);
-  const of = (x, y) => (at.has(`${x} ${y}`) ? figure.of(at.get(`${x} ${y}`), stage) : null);
+  for (const i of pointsDone(study)) at.set(`${axis.value(i)} ${other.value(i)}`, i);
+  const from = figure.main === BUILT ? BUILT : stage;
+  const of = (x, y) => (at.has(`${x} ${y}`) ? figure.of(at.get(`${x} ${y}`), from) : null);
   const all = range(columns.flatMap((x) => rows.map((y) => of(x, y))));
   if (!all) return null;
   const label = (a, value) => (a.isNumber ? fmt(value, 4) : String(value));
@@ -207,6 +245,7 @@ function heatMap(study, figure, axis, other, stage) {
     if (v === null) return el("td", { class: "gap", title: "no value" }, "–");
     const t = all[1] > all[0] ? (v - all[0]) / (all[1] - all[0]) : 0,
       node = el("td", {
+        class: figure.isLead && at.get(`${x} ${y}`) === study.best ? "best" : undefined,
         title: `${headOf(axis, label(axis, x))}, ${headOf(other, label(other, y))}: ${fmt(v, 5)} ${figure.unit}`,
       });
     const paintCell = () => {
@@ -249,25 +288,42 @@ function heatMap(study, figure, axis, other, stage) {
   );
 }
 
-function drawFigures(study, figures, axis, others, stage, place) {
+// Does the figure change where all axes but this one stay?
+function changesAlong(figure, groups, stage) {
+  const from = figure.main === BUILT ? BUILT : stage;
+  return groups.some(({ at }) => {
+    const values = [...at.values()].map((i) => figure.of(i, from)),
+      [low, high] = range(values) || [0, 0];
+    return high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high)) || new Set(values.map(Number.isFinite)).size > 1;
+  });
+}
+
+function drawFigures(study, figures, axis, others, stage, place, said) {
   const groups = curves(study, axis, others),
     isMap = groups.length > CURVES_MAX && others.length === 1;
-  const drawn = figures
-    .filter((f) => !f.isConstant)
-    .map((f) =>
-      groups.length <= CURVES_MAX
-        ? curveChart(study, f, axis, groups, stage)
-        : isMap
-          ? heatMap(study, f, axis, others[0], stage)
-          : markChart(study, f, axis, stage),
-    );
-  place.replaceChildren(...drawn.filter((c) => c));
+  const has = (f) => f.drawn.includes(f.main === BUILT ? BUILT : stage),
+    all = figures.filter((f) => !f.isLoss && (groups.length === 1 ? f.drawn.length : has(f))),
+    drawn = all.filter((f) => groups.length === 1 || isMap || changesAlong(f, groups, stage)),
+    flat = all.filter((f) => !drawn.includes(f));
+  said.textContent = flat.length
+    ? `Along ${axis.name} these do not change: ${flat.map((f) => lowered(f.title)).join("; ")}.`
+    : "";
+  const charts = drawn.map((f) =>
+    groups.length <= CURVES_MAX
+      ? curveChart(study, f, axis, others, groups, stage)
+      : isMap
+        ? heatMap(study, f, axis, others[0], stage)
+        : markChart(study, f, axis, others, stage),
+  );
+  place.replaceChildren(...charts.filter((c) => c));
 }
+
+const LITTLE = 0.001; // an axis that has no more of the variance does not matter
 
 // Sentences: what each axis explains, and figures that are the same everywhere.
 function whatMatters(figure, shares) {
   if (shares.length < 2) return "";
-  const part = (share) => (share < 0.001 ? "less than 0.1\u00a0%" : percent(share, 2));
+  const part = (share) => (share < LITTLE ? "less than 0.1\u00a0%" : percent(share, 2));
   const parts = shares.map(({ axis, share }) => `${axis.name} ${part(share)}`),
     rest = 1 - shares.reduce((sum, { share }) => sum + share, 0);
   const both = rest > 0.005 ? `; the rest, ${part(rest)}, is their interplay` : "";
@@ -275,12 +331,21 @@ function whatMatters(figure, shares) {
 }
 
 function writeCurves(study, axes, figures, mainStage) {
-  const varying = axes.filter((a) => a.varies),
+  const varying = axes.filter((a) => a.isDrawn),
     along = varying.filter((a) => a.isNumber),
+    said = el("p", { class: "flat" }),
     place = el("div", { class: "charts" }),
-    constant = figures.filter((f) => f.isConstant);
-  const lead = leading(figures.filter((f) => !f.isConstant));
-  const same = constant.map((f) => `${f.title} is ${fmt(f.at[1], 5)}${f.unit ? ` ${f.unit}` : ""} at all points.`);
+    lead = figures.find((f) => f.isLead);
+  const same = figures
+    .flatMap((f) => f.stages.filter((s) => !f.drawn.includes(s)).map((s) => sameText(study, f, s)))
+    .filter((text) => text);
+  const psi = study.figure.filter((f) => f.psi && f.stage === mainStage),
+    fixed = axes.filter((a) => a.varies && !a.isDrawn && a.only);
+  const notes = [
+    same.length ? `At all points: ${same.join("; ")}.` : "",
+    ...psi.map(({ key }) => `The goal ${key.replace(/^goal_\d+_/, "").replace(/_/g, " ")} is ψ itself.`),
+    ...fixed.map((a) => `All points that are done have ${headOf(a, a.only)}.`),
+  ];
   const shares = lead
     ? varying.map((axis) => ({ axis, share: shareOf(study, lead, axis) })).sort((a, b) => b.share - a.share)
     : [];
@@ -290,7 +355,7 @@ function writeCurves(study, axes, figures, mainStage) {
   const others = () => varying.filter((a) => a !== state.axis);
   const redraw = (change) => {
     Object.assign(state, change);
-    drawFigures(study, figures, state.axis, others(), state.stage, place);
+    drawFigures(study, figures, state.axis, others(), state.stage, place, said);
   };
   const tools = [];
   if (along.length > 1)
@@ -303,12 +368,13 @@ function writeCurves(study, axes, figures, mainStage) {
         (key) => redraw({ axis: along.find((a) => a.key === key) }),
       ),
     );
-  if (study.output.length > 1 && others().length)
+  const stages = study.output.filter((o) => o.stage !== BUILT);
+  if (stages.length > 1 && others().length)
     tools.push(
       choice(
         "stage",
         "Shape",
-        study.output.map((o) => [o.stage, stageName[o.stage]]),
+        stages.map((o) => [o.stage, stageName[o.stage]]),
         state.stage,
         (stage) => redraw({ stage }),
       ),
@@ -316,19 +382,19 @@ function writeCurves(study, axes, figures, mainStage) {
   section(
     "sweep",
     "Sweep",
-    el("p", {}, [lead ? whatMatters(lead, shares) : "", ...same].filter((text) => text).join(" ")),
+    lead ? el("p", {}, whatMatters(lead, shares)) : null,
+    el("p", { class: "same" }, notes.filter((text) => text).join(" ")),
     tools.length ? el("div", { class: "tools" }, tools) : null,
     place,
+    said,
   );
   redraw({});
 }
 
-// The figure that tells which point is best: psi of the nets as built where they are known, else psi of the result.
-const leading = (figures) => figures.find((f) => f.key === "tolerance/psi_95_m") || figures[0];
-
 // ---- table of points ----
 
 const TOLD_MAX = 5,
+  COLUMNS_WIDE = 11, // more columns than this are narrow
   POINTS_SHOWN = 64;
 
 // A link is made only to a file: any other scheme in the data stays text.
@@ -339,32 +405,33 @@ function pointLink(study, i) {
   return target ? el("a", { href: href(target) }, study.id[i]) : study.id[i];
 }
 
+const aligned = (v, digits) => (v === 0 ? "0" : Math.abs(v) < RESOLVED_MM ? rounded(v) : digitsOf(v, digits));
+
+// A figure of a stage as a column; a loss that has no value is above what the formula holds for.
+function figureColumn(study, f, stage) {
+  const of = (i) => f.of(i, stage),
+    name = f.key === "psi_m" ? `ψ ${stageName[stage]}` : f.column,
+    format = /ratio$/.test(f.key) ? fmtRatio : f.unit === "%" ? (v) => v.toFixed(1) : aligned;
+  const show = (i) =>
+    of(i) === null ? (f.isLoss && study.status[i] === "ok" ? "> 3" : "–") : format(of(i), f.unit === "mm" ? 5 : 4);
+  return { name: f.unit ? `${name} (${f.unit})` : name, number: true, of, show };
+}
+
 function writePoints(study, axes, figures, best) {
   const varying = axes.filter((a) => a.varies),
     fixed = axes.filter((a) => !a.varies),
-    why = study.reason.some((r) => r),
-    there = (v) => typeof v === "number";
-  const number = (name, of, format) => ({ name, number: true, of, show: (i) => (there(of(i)) ? format(of(i)) : "–") });
-  const slack = (i) => (study.status[i] === "ok" ? ((study.output.at(-1) || {}).n_slack || [])[i] : null),
-    rows = Array.from({ length: study.n }, (_, i) => i),
-    changing = figures.filter((f) => !f.isConstant);
+    rows = Array.from({ length: study.n }, (_, i) => i);
+  const statusCell = (i) =>
+    el("span", { class: "status", title: study.reason[i] || undefined }, statusText(study.status[i]));
+  const slackOf = (study.output.find((o) => o.stage === study.main) || {}).n_slack || [],
+    slack = (i) => (study.status[i] === "ok" ? slackOf[i] : null);
   const columns = [
     ...varying.map((a) => ({ name: a.text, number: a.isNumber, of: a.value, show: (i) => a.label(i) })),
-    { name: "Status", of: (i) => statusText(study.status[i]), show: (i) => statusText(study.status[i]) },
-    ...changing
-      .filter((f) => f.stages.length)
-      .flatMap((f) =>
-        (f.key === "psi_m" ? f.stages : f.stages.slice(-1)).map((stage) =>
-          f.key === "psi_m"
-            ? number(`ψ ${stageName[stage]} (mm)`, (i) => f.of(i, stage), (v) => fmt(v, 5))
-            : number(f.title, (i) => f.of(i), f.key.startsWith("goal_") ? (v) => fmt(v, 5) : fmtRatio),
-        ),
-      ),
-    ...changing
-      .filter((f) => !f.stages.length)
-      .map((f) => number(f.unit ? `${f.title} (${f.unit})` : f.title, (i) => f.of(i), (v) => fmt(v, 5))),
-    ...(rows.some(slack) ? [number("Slack cables", slack, fmtCount)] : []),
-    ...(why ? [{ name: "Why", of: (i) => study.reason[i], show: (i) => study.reason[i] }] : []),
+    { name: "Status", of: (i) => statusText(study.status[i]), show: statusCell },
+    ...figures.flatMap((f) =>
+      f.drawn.filter((s) => f.key === "psi_m" || s === f.main).map((s) => figureColumn(study, f, s)),
+    ),
+    ...(rows.some(slack) ? [{ name: "Slack cables", number: true, of: slack, show: (i) => fmtCount(slack(i)) }] : []),
     { name: "Point", of: (i) => study.id[i], show: (i) => pointLink(study, i) },
   ];
   const said = [];
@@ -378,8 +445,11 @@ function writePoints(study, axes, figures, best) {
     n: study.n,
     by: -1,
     most: POINTS_SHOWN,
+    dense: columns.length > COLUMNS_WIDE,
     search: "value or status",
-    words: (i) => columns.map(({ show }) => (typeof show(i) === "string" ? show(i) : study.id[i])).join(" "),
+    words: (i) => [statusText(study.status[i]), study.reason[i], ...columns.map(({ show }) => show(i))]
+        .map((text) => (typeof text === "string" ? text : study.id[i]))
+        .join(" "),
   });
   points.first(best);
   section("points", "Points", el("p", {}, said.join(" ")), points.node);
@@ -396,30 +466,43 @@ function writeStudy(study) {
   const missing = count((s) => s === "not_evaluated"),
     axes = readAxes(study),
     varying = axes.filter((a) => a.varies);
-  const mainStage = (study.output.find((o) => o.stage === "optimize") || study.output.at(-1) || {}).stage,
+  const mainStage = study.main,
     figures = readFigures(study, mainStage),
-    lead = leading(figures);
-  let best = -1;
-  for (let i = 0; lead && i < study.n; i++)
-    if (lead.of(i) !== null && (best < 0 || lead.of(i) < lead.of(best))) best = i;
+    { best } = study;
+  const leads = study.figure.find((f) => f.lead) || {};
+  for (const f of figures) f.isLead = f.key === leads.key;
+  const lead = figures.find((f) => f.isLead),
+    value = lead && lead.unit === "mm" ? rounded : fmt,
+    matters = (axis) => axis.isDrawn && shareOf(study, lead, axis) >= LITTLE;
   document.getElementById("title").textContent = shown(data.title);
   document.getElementById("subtitle").textContent = shown(
-    `Sweep of ${fmtCount(study.n)} points over ${(varying.length ? varying : axes).map((a) => a.name).join(" and ")}`,
+    `Sweep of ${fmtCount(study.n)} points over ${listed((varying.length ? varying : axes).map((a) => a.name))}`,
   );
   document.getElementById("footer").textContent = shown(
-    `Merged study ${study.path}. “Fig.” refers to Chen et al., Aerospace 2022, 9, 239.`,
+    `Merged study ${study.path}.`,
   );
-  const told = study.reason.map((reason, i) => (reason ? `point ${study.id[i]}: ${reason}` : "")).filter((t) => t);
+  // points that failed in one way: how many, and the reason of the first
+  const ways = new Map();
+  study.reason.forEach((reason, i) => {
+    const way = reason.split(": ")[0];
+    if (reason) ways.set(way, [...(ways.get(way) || []), i]);
+  });
+  const told = [...ways.values()].map(
+    ([i, ...more]) =>
+      `${pointName(axes, i)}${more.length ? ` and ${fmtCount(more.length)} more` : ""}: ${study.reason[i]}`,
+  );
   writeWarnings(
     failed === 1 ? "One point failed" : failed ? `${fmtCount(failed)} points failed` : "Points of note",
-    told.length > TOLD_MAX ? [...told.slice(0, TOLD_MAX), `and ${told.length - TOLD_MAX} more, see the table`] : told,
+    told.length > TOLD_MAX
+      ? [...told.slice(0, TOLD_MAX), `and in ${told.length - TOLD_MAX} more ways; hifdm status has all reasons`]
+      : told,
   );
   main.append(
     el(
       "dl",
       { class: "figures" },
-      best < 0 ? null : figure(`least: ${lead.title}`, fmt(lead.of(best), 4), lead.unit),
-      best < 0 ? null : varying.map((a) => figure(`${a.name}, there`, a.label(best), a.unit)),
+      best < 0 ? null : figure(`least ${lowered(lead.title)}`, value(lead.of(best), 4), lead.unit),
+      best < 0 ? null : varying.filter(matters).map((a) => figure(`best ${a.name}`, a.label(best), a.unit)),
       figure("points done", `${fmtCount(count((s) => s === "ok"))} of ${fmtCount(study.n)}`),
       failed ? figure("failed", fmtCount(failed)) : null,
       missing ? figure("missing", fmtCount(missing)) : null,

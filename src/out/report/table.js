@@ -10,10 +10,11 @@ let tables = 0;
 //     beside: on a phone it stands beside the name of the row }
 //   by: the column that it is sorted by at first, largest value first; -1: none, in the order of the rows
 //   search: what the field of the search says; most: how many rows there are at first
+//   dense: many columns, which are narrow
 //   size: its values without their signs (a change)
 //   words: (i) -> text that a search looks in; without it there is no search
 // Returns the node, and first(i): puts row i at the top and marks it; -1: none.
-function sortableTable({ caption, columns, n, by, words, search: hint = "name or family", most: few = 0 }) {
+function sortableTable({ caption, columns, n, by, words, search: hint = "name or family", most: few = 0, dense }) {
   const most = () => few || (phone.matches ? 10 : 20);
   const state = { by, falls: true, text: "", all: false, first: -1, order: [], made: 0 };
   const every = Array.from({ length: n }, (_, i) => i),
@@ -114,7 +115,12 @@ function sortableTable({ caption, columns, n, by, words, search: hint = "name or
         "div",
         { class: "scroll", tabindex: 0, role: "region", "aria-label": caption },
         paper,
-        el("table", { class: "stacked", "aria-label": caption }, el("thead", {}, el("tr", {}, heads)), body),
+        el(
+          "table",
+          { class: dense ? "stacked dense" : "stacked", "aria-label": caption },
+          el("thead", {}, el("tr", {}, heads)),
+          body,
+        ),
       ),
     ),
     first(i) {

@@ -100,12 +100,13 @@ START_TEST(goals_come_back)
     double value;
     ck_assert_str_eq(goals[1], ""); /* there was no such stage */
     ck_assert_str_eq(points.point[2].field[hf_ledger_n_column()], "");
-    ck_assert(hf_ledger_next_goal(&form, name, &value) && isnan(value) && !strcmp(name, "goal_0_psi"));
-    ck_assert(hf_ledger_next_goal(&form, name, &value) && value == 0.1 + 0.2 && !strcmp(name, "goal_1_tension_edge"));
-    ck_assert(!hf_ledger_next_goal(&form, name, &value));
-    ck_assert(hf_ledger_next_goal(&polish, name, &value) && value == 5e-324);
-    ck_assert(hf_ledger_next_goal(&polish, name, &value) && value == INFINITY);
-    ck_assert(!hf_ledger_next_goal(&polish, name, &value));
+    ck_assert(hf_ledger_next_value(0, &form, name, &value) && isnan(value) && !strcmp(name, "goal_0_psi"));
+    ck_assert(hf_ledger_next_value(0, &form, name, &value) && value == 0.1 + 0.2 &&
+              !strcmp(name, "goal_1_tension_edge"));
+    ck_assert(!hf_ledger_next_value(0, &form, name, &value));
+    ck_assert(hf_ledger_next_value(2, &polish, name, &value) && value == 5e-324);
+    ck_assert(hf_ledger_next_value(2, &polish, name, &value) && value == INFINITY);
+    ck_assert(!hf_ledger_next_value(2, &polish, name, &value));
     hf_points_free(&points);
     hf_study_free(&s);
 }
@@ -118,9 +119,9 @@ START_TEST(damaged_goals_are_none)
     char name[HF_GOAL_NAME_SIZE], longest[2 * HF_GOAL_NAME_SIZE];
     double value;
     for (size_t i = 0; i < sizeof damaged / sizeof *damaged; i++)
-        ck_assert(!hf_ledger_next_goal(&(const char *){damaged[i]}, name, &value));
+        ck_assert(!hf_ledger_next_value(1, &(const char *){damaged[i]}, name, &value));
     snprintf(longest, sizeof longest, "goal_0_%0*d=1", HF_GOAL_NAME_SIZE, 0);
-    ck_assert(!hf_ledger_next_goal(&(const char *){longest}, name, &value));
+    ck_assert(!hf_ledger_next_value(1, &(const char *){longest}, name, &value));
     ck_assert_str_eq(hf_ledger_goal_unit("goal_1_tension_mass"), "N");
     ck_assert_str_eq(hf_ledger_goal_unit("goal_15_mass"), "kg");
     ck_assert_str_eq(hf_ledger_goal_unit("goal_0_ratio_edge"), "");

@@ -1,0 +1,254 @@
+/* Contents: reading - what varies - the best point */
+#include "out/merged.h"
+
+#include "base/path.h"
+#include "store/ledger.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define SAME_RATIO 1e-6 /* values so near to each other are told as one */
+
+const char *const hf_merged_stage_word[HF_MERGED_N_STAGE] = {"form", "optimize", "polish", "tolerance"};
+
+/* ---- reading ---- */
+
+/* Where a merge has the figures of each stage: the group, and what the names of its data sets begin with. */
+static const struct {
+    const char *group, *prefix, *surface;
+} source[HF_MERGED_N_STAGE] = {{"/points/form", "", "/points/surface/form"},
+                               {"/points/ga", "best_", "/points/surface/optimize"},
+                               {"/points/polish", "", "/points/surface/polish"},
+                               {"/points/tolerance", "", NULL}};
+static const char *const key_of_stage[] = {"psi_m", "inner_tension_ratio", "boundary_tension_ratio", "residual_N",
+                                           "n_slack"};
+static const char *const key_as_built[] = {"psi_95_m", "yield"};
+enum { N_KEY = sizeof key_of_stage / sizeof *key_of_stage, N_BUILT = sizeof key_as_built / sizeof *key_as_built };
+
+bool hf_merged_is(const char *path)
+{
+    hf_messages unwanted = {0};
+    hf_series status = {0};
+    hf_status found = hf_store_read_series(path, "/points/status", 1, &status, &unwanted);
+    bool is_study = found == HF_OK && status.n > 0;
+    hf_series_free(&status);
+    hf_messages_free(&unwanted);
+    return is_study;
+}
+
+/* A data set that is not there, or has no value for each point, is no figure. */
+static hf_status read_figure(hf_merged *m, hf_merged_stage stage, const char *group, const char *prefix,
+                             const char *key, hf_messages *messages)
+{
+    char path[64 + HF_GOAL_NAME_SIZE];
+    if (m->n_figure == HF_MERGED_FIGURE_MAX || strlen(key) >= HF_GOAL_NAME_SIZE) return HF_OK;
+    hf_merged_figure *f = &m->figure[m->n_figure];
+    *f = (hf_merged_figure){.stage = stage};
+    strcpy(f->key, key);
+    snprintf(path, sizeof path, "%s/%s%s", group, prefix, key);
+    HF_TRY(hf_store_read_series(m->path, path, 1, &f->value, messages));
+    if (f->value.n == m->n)
+        m->n_figure++;
+    else
+        hf_series_free(&f->value);
+    return HF_OK;
+}
+
+/* All of a group whose names go on, behind the prefix, with these letters. */
+static hf_status read_group(hf_merged *m, hf_merged_stage stage, const char *group, const char *prefix,
+                            const char *begin, hf_messages *messages)
+{
+    size_t n_prefix = strlen(prefix), n_begin = strlen(begin);
+    hf_texts names = {0};
+    hf_status status = hf_store_read_names(m->path, group, &names, messages);
+    for (int i = 0; i < names.n && status == HF_OK; i++) {
+        const char *name = hf_texts_at(&names, i);
+        if (strncmp(name, prefix, n_prefix) != 0 || strncmp(name + n_prefix, begin, n_begin) != 0) continue;
+        status = read_figure(m, stage, group, prefix, name + n_prefix, messages);
+    }
+    hf_texts_free(&names);
+    return status;
+}
+
+static hf_status read_figures(hf_merged *m, hf_messages *messages)
+{
+    for (hf_merged_stage stage = HF_MERGED_FORM; stage < HF_MERGED_BUILT; stage++) {
+        const char *group = source[stage].group, *prefix = source[stage].prefix;
+        for (int k = 0; k < N_KEY; k++)
+            HF_TRY(read_figure(m, stage, group, prefix, key_of_stage[k], messages));
+        HF_TRY(read_group(m, stage, group, prefix, "goal_", messages));
+        HF_TRY(read_group(m, stage, source[stage].surface, "", "", messages));
+    }
+    for (int k = 0; k < N_BUILT; k++)
+        HF_TRY(read_figure(m, HF_MERGED_BUILT, source[HF_MERGED_BUILT].group, "", key_as_built[k], messages));
+    return HF_OK;
+}
+
+static hf_status read_axes(hf_merged *m, hf_messages *messages)
+{
+    char name[512];
+    HF_TRY(hf_store_read_names(m->path, "/points/input", &m->input_name, messages));
+    m->n_axis = m->input_name.n < HF_STUDY_AXIS_MAX ? m->input_name.n : HF_STUDY_AXIS_MAX;
+    for (int a = 0; a < m->n_axis; a++) {
+        snprintf(name, sizeof name, "/points/input/%s", hf_texts_at(&m->input_name, a));
+        HF_TRY(hf_store_read_texts(m->path, name, &m->input_text[a], messages));
+        if (!m->input_text[a].n) HF_TRY(hf_store_read_series(m->path, name, 0, &m->input[a], messages));
+        if (m->input[a].n != m->n) hf_series_free(&m->input[a]);
+        if (m->input_text[a].n != m->n) hf_texts_free(&m->input_text[a]);
+    }
+    return HF_OK;
+}
+
+static hf_status read_points(hf_merged *m, hf_messages *messages)
+{
+    HF_TRY(hf_store_read_series(m->path, "/points/status", 1, &m->status, messages));
+    HF_TRY(hf_store_read_texts(m->path, "/points/id", &m->id, messages));
+    HF_TRY(hf_store_read_texts(m->path, "/points/reason", &m->reason, messages));
+    HF_TRY(hf_store_read_texts(m->path, "/study/title", &m->title, messages));
+    m->n = m->status.n;
+    for (int i = 0; i < m->n; i++)
+        if (!(m->status.value[i] >= 0 && m->status.value[i] <= SCHAR_MAX))
+            return hf_error(messages, HF_IO, "%s: is damaged: /points/status holds what is no status", m->path);
+    if (m->id.n != m->n)
+        return hf_error(messages, HF_IO, "%s: is damaged: /points/id does not name every point", m->path);
+    if (m->reason.n != m->n)
+        return hf_error(messages, HF_IO, "%s: is damaged: /points/reason does not belong to every point", m->path);
+    return HF_OK;
+}
+
+/* ---- what varies ---- */
+
+bool hf_merged_is_done(const hf_merged *m, int i)
+{
+    return m->status.value[i] == HF_OK;
+}
+
+bool hf_merged_axis_varies(const hf_merged *m, int a)
+{
+    const hf_series *s = &m->input[a];
+    const hf_texts *t = &m->input_text[a];
+    size_t row = (size_t)s->columns * sizeof(double);
+    for (int i = 1; i < m->n; i++) {
+        if (s->n && memcmp(s->value, s->value + (size_t)i * (size_t)s->columns, row) != 0) return true;
+        if (t->n && strcmp(hf_texts_at(t, 0), hf_texts_at(t, i)) != 0) return true;
+    }
+    return false;
+}
+
+const hf_merged_figure *hf_merged_find(const hf_merged *m, hf_merged_stage stage, const char *key)
+{
+    for (int k = 0; k < m->n_figure; k++)
+        if (m->figure[k].stage == stage && !strcmp(m->figure[k].key, key)) return &m->figure[k];
+    return NULL;
+}
+
+static bool is_same(const hf_merged *m, const hf_merged_figure *f)
+{
+    double low = INFINITY, high = -INFINITY;
+    int n_done = 0, n_value = 0;
+    for (int i = 0; i < m->n; i++) {
+        double value = f->value.value[i];
+        if (!hf_merged_is_done(m, i)) continue;
+        n_done++;
+        if (isnan(value)) continue;
+        n_value++;
+        low = fmin(low, value);
+        high = fmax(high, value);
+    }
+    double size = fmax(fabs(low), fabs(high));
+    if (n_value == 0 || low == high) return n_value == 0 || n_value == n_done;
+    if (n_value < n_done || isinf(size)) return false;
+    return high - low <= SAME_RATIO * size || (size < HF_MERGED_RESOLVED_M && !strcmp(hf_ledger_unit(f->key), "m"));
+}
+
+static bool is_psi(const hf_merged *m, const hf_merged_figure *f)
+{
+    const hf_merged_figure *psi = hf_merged_find(m, f->stage, "psi_m");
+    if (!psi || strncmp(f->key, "goal_", 5) != 0 || strcmp(hf_ledger_unit(f->key), "m") != 0) return false;
+    for (int i = 0; i < m->n; i++)
+        if (hf_merged_is_done(m, i) && !(f->value.value[i] == psi->value.value[i])) return false;
+    return true;
+}
+
+/* The genetic algorithm's where it ran, unless Levenberg-Marquardt went on from there for the result. */
+static hf_status choose_main(hf_merged *m, hf_messages *messages)
+{
+    hf_series is_result = {0};
+    HF_TRY(hf_store_read_series(m->path, "/points/polish/polish_is_result", 1, &is_result, messages));
+    bool is_polish = false, has_ga = hf_merged_find(m, HF_MERGED_OPTIMIZE, "psi_m") != NULL;
+    for (int i = 0; i < is_result.n; i++)
+        is_polish |= is_result.value[i] == 1;
+    hf_series_free(&is_result);
+    if (!has_ga) is_polish = hf_merged_find(m, HF_MERGED_POLISH, "psi_m") != NULL;
+    m->main = is_polish ? HF_MERGED_POLISH : has_ga ? HF_MERGED_OPTIMIZE : HF_MERGED_FORM;
+    return HF_OK;
+}
+
+/* ---- the best point ---- */
+
+static void try_lead(hf_merged *m, hf_merged_stage stage, const char *key)
+{
+    const hf_merged_figure *f = hf_merged_find(m, stage, key);
+    if (m->lead < 0 && f && !f->is_same) m->lead = (int)(f - m->figure);
+}
+
+/* psi of the nets as built where it is known; else psi of the result, but the errors of the surface where goals do
+ * without psi, or where psi is the same everywhere. */
+static void choose_best(hf_merged *m)
+{
+    static const char *const error[] = {"facet_half_path_rms_m", "half_path_rms_m", "facet_fit_half_path_rms_m",
+                                        "fit_half_path_rms_m"};
+    bool has_goals = false, has_psi = false;
+    for (int k = 0; k < m->n_figure; k++) {
+        if (m->figure[k].stage != m->main || strncmp(m->figure[k].key, "goal_", 5) != 0) continue;
+        has_goals = true;
+        has_psi |= m->figure[k].is_psi;
+    }
+    m->lead = m->best = -1;
+    try_lead(m, HF_MERGED_BUILT, "psi_95_m");
+    if (!has_goals || has_psi) try_lead(m, m->main, "psi_m");
+    for (size_t k = 0; k < sizeof error / sizeof *error; k++)
+        try_lead(m, m->main, error[k]);
+    try_lead(m, m->main, "psi_m");
+    if (m->lead < 0) return;
+    const double *value = m->figure[m->lead].value.value;
+    for (int i = 0; i < m->n; i++)
+        if (hf_merged_is_done(m, i) && isfinite(value[i]) && (m->best < 0 || value[i] < value[m->best])) m->best = i;
+}
+
+const char *hf_merged_heading(const hf_merged *m)
+{
+    return m->title.n ? hf_texts_at(&m->title, 0) : hf_path_name(m->path);
+}
+
+hf_status hf_merged_read(const char *path, hf_merged *m, hf_messages *messages)
+{
+    *m = (hf_merged){.path = path, .lead = -1, .best = -1};
+    HF_TRY(read_points(m, messages));
+    HF_TRY(read_axes(m, messages));
+    HF_TRY(read_figures(m, messages));
+    for (int k = 0; k < m->n_figure; k++) {
+        m->figure[k].is_same = is_same(m, &m->figure[k]);
+        m->figure[k].is_psi = is_psi(m, &m->figure[k]);
+    }
+    HF_TRY(choose_main(m, messages));
+    choose_best(m);
+    return HF_OK;
+}
+
+void hf_merged_free(hf_merged *m)
+{
+    hf_texts_free(&m->id);
+    hf_texts_free(&m->reason);
+    hf_texts_free(&m->title);
+    hf_texts_free(&m->input_name);
+    hf_series_free(&m->status);
+    for (int a = 0; a < HF_STUDY_AXIS_MAX; a++) {
+        hf_series_free(&m->input[a]);
+        hf_texts_free(&m->input_text[a]);
+    }
+    for (int k = 0; k < HF_MERGED_FIGURE_MAX; k++)
+        hf_series_free(&m->figure[k].value);
+}

@@ -1,0 +1,481 @@
+/* Contents: columns - cells - the table - lines - all together - JSON */
+#include "out/print_study.h"
+
+#include "base/json.h"
+#include "base/text.h"
+#include "store/ledger.h"
+#include <hifdm/surface.h>
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#define WIDTH 100      /* characters of a line */
+#define POINTS_MOST 64 /* more points than this: the best */
+#define POINTS_BEST 32 /* of them are shown */
+#define REASON_MOST 60 /* characters of a reason */
+#define CELL_SIZE 40
+#define WORD_MOST 24 /* characters of a word that is the value of an axis */
+#define SMALL_M 0.1  /* an axis of lengths below this is told in millimetres */
+
+/* ---- columns ---- */
+
+typedef enum { OF_AXIS, OF_STATUS, OF_FIGURE } column_kind;
+
+/* A column of the table. Two lines of head: what it is, and its unit. */
+typedef struct {
+    column_kind kind;
+    int index; /* of the axis or the figure */
+    char head[HF_AXIS_NAME_SIZE], unit[8];
+    double scale; /* the values in this unit */
+    int width;
+} column;
+
+typedef struct {
+    const hf_merged *m;
+    column column[HF_STUDY_AXIS_MAX + HF_MERGED_FIGURE_MAX + 1];
+    int n_column, n_axis; /* the axes come first */
+    bool is_all;          /* all points are rows, or these: */
+    int n_row, best[POINTS_BEST];
+} table;
+
+const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE])
+{
+    const char *dot = strrchr(key, '.'), *unit = hf_ledger_unit(key);
+    const char *from = dot ? dot + 1 : key;
+    while (dot && dot > key && dot[-1] >= '0' && dot[-1] <= '9') { /* of a row: goals.1.weight */
+        dot--;
+        if (*(dot - 1) != '.') continue;
+        for (from = dot - 1; from > key && from[-1] != '.';)
+            from--;
+        break;
+    }
+    int n = (int)strlen(from);
+    if (*unit) n = (int)(strstr(from, "_N_per_m") ? strstr(from, "_N_per_m") - from : strrchr(from, '_') - from);
+    snprintf(name, HF_AXIS_NAME_SIZE, "%.*s", n, from);
+    hf_text_trim_utf8(name);
+    for (char *p = name; *p; p++)
+        if (*p == '_') *p = ' ';
+    return unit;
+}
+
+/* The unit that people are told values in, and by what they are multiplied. */
+static double told_in(const char *unit, const char **told)
+{
+    *told = !strcmp(unit, "m") ? "mm" : !strcmp(unit, "Hz") ? "GHz" : unit;
+    return !strcmp(unit, "m") ? 1e3 : !strcmp(unit, "Hz") ? 1e-9 : 1;
+}
+
+static column axis_column(const hf_merged *m, int a)
+{
+    const hf_series *s = &m->input[a];
+    column c = {.kind = OF_AXIS, .index = a, .scale = 1};
+    const char *unit = hf_print_axis(hf_texts_at(&m->input_name, a), c.head);
+    double most = 0;
+    for (int i = 0; i < s->n * s->columns; i++)
+        most = fmax(most, fabs(s->value[i]));
+    if (strcmp(unit, "m") != 0 || (s->n && most < SMALL_M)) c.scale = told_in(unit, &unit);
+    snprintf(c.unit, sizeof c.unit, "%s", unit);
+    return c;
+}
+
+/* What a figure is called: of goal_1_tension_edge "tension edge", of facet_fit_gain_loss_at_10_GHz_dB "fitted loss 10
+ * GHz". */
+static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name[HF_AXIS_NAME_SIZE])
+{
+    static const char *const word[][2] = {{"psi_95_m", "psi of 95 %"},
+                                          {"yield", "yield"},
+                                          {"inner_tension_ratio", "T ratio in"},
+                                          {"boundary_tension_ratio", "T ratio edge"},
+                                          {"n_slack", "slack"}};
+    bool of_facets = !strncmp(f->key, "facet_", 6);
+    const char *rest = of_facets ? f->key + 6 : f->key, *fitted = strncmp(rest, "fit_", 4) ? "" : "fitted ";
+    if (*fitted) rest += 4;
+    snprintf(name, HF_AXIS_NAME_SIZE, "%s", f->key);
+    if (!strcmp(f->key, "psi_m")) {
+        static const char *const stage[] = {"found", "GA", "LM", ""};
+        snprintf(name, HF_AXIS_NAME_SIZE, m->main == HF_MERGED_FORM ? "psi" : "psi %s", stage[f->stage]);
+    } else if (!strncmp(f->key, "goal_", 5)) {
+        snprintf(name, HF_AXIS_NAME_SIZE, "%s", f->key + 5 + strspn(f->key + 5, "0123456789_"));
+    } else if (!strcmp(rest, "half_path_rms_m")) {
+        snprintf(name, HF_AXIS_NAME_SIZE, "%s%s", fitted, of_facets ? "facets" : "half path");
+    } else if (!strcmp(rest, "good_to_Hz")) {
+        snprintf(name, HF_AXIS_NAME_SIZE, "%sgood to", fitted);
+    } else if (!strncmp(rest, "gain_loss_at_", 13)) {
+        snprintf(name, HF_AXIS_NAME_SIZE, "%sloss %.*s", fitted, (int)strlen(rest + 13) - 3, rest + 13);
+    }
+    for (size_t k = 0; k < sizeof word / sizeof *word; k++)
+        if (!strcmp(f->key, word[k][0])) strcpy(name, word[k][1]);
+    hf_text_trim_utf8(name);
+    for (char *p = name; *p; p++)
+        if (*p == '_') *p = ' ';
+}
+
+static column figure_column(const hf_merged *m, int k)
+{
+    const hf_merged_figure *f = &m->figure[k];
+    column c = {.kind = OF_FIGURE, .index = k};
+    const char *unit;
+    c.scale = told_in(hf_ledger_unit(f->key), &unit);
+    if (!strcmp(f->key, "yield")) {
+        unit = "%";
+        c.scale = 100;
+    }
+    snprintf(c.unit, sizeof c.unit, "%s", unit);
+    name_figure(m, f, c.head);
+    return c;
+}
+
+/* Is it a figure that the table is for? psi of every stage; all but the residual of the one that is the result. */
+static bool is_told(const hf_merged *m, const hf_merged_figure *f)
+{
+    if (f->is_psi || !strcmp(f->key, "residual_N")) return false;
+    return f->stage == m->main || f->stage == HF_MERGED_BUILT || !strcmp(f->key, "psi_m");
+}
+
+/* What says which point is best comes first, then psi, the net as built, the surface, goals, and the rest. */
+enum { N_RANK = 11 };
+static int rank_of(const hf_merged *m, int k)
+{
+    const hf_merged_figure *f = &m->figure[k];
+    bool is_fit = !strncmp(f->key, "facet_fit_", 10) || !strncmp(f->key, "fit_", 4);
+    if (k == m->lead) return 0;
+    if (!strcmp(f->key, "psi_m")) return 1;
+    if (f->stage == HF_MERGED_BUILT) return 2;
+    if (strstr(f->key, "half_path_rms_m")) return is_fit ? 4 : 3;
+    if (strstr(f->key, "good_to_Hz")) return is_fit ? 6 : 5;
+    if (strstr(f->key, "gain_loss_at_")) return is_fit ? 8 : 7;
+    return strncmp(f->key, "goal_", 5) ? N_RANK - 1 : N_RANK - 2;
+}
+
+/* ---- cells ---- */
+
+static void print_axis_value(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])
+{
+    const hf_series *s = &m->input[c->index];
+    char shown[8 * WORD_MOST];
+    *text = '\0';
+    for (int k = 0; k < s->columns && s->n; k++) {
+        size_t used = strlen(text);
+        snprintf(text + used, CELL_SIZE - used, "%s%.6g", k ? " x " : "",
+                 c->scale * s->value[(size_t)i * (size_t)s->columns + (size_t)k]);
+    }
+    if (s->n || !m->input_text[c->index].n) return;
+    hf_text_escape(hf_texts_at(&m->input_text[c->index], i), shown, sizeof shown);
+    bool is_long = strlen(shown) > WORD_MOST;
+    snprintf(text, CELL_SIZE, "%.*s", is_long ? WORD_MOST - 3 : WORD_MOST, shown);
+    hf_text_trim_utf8(text);
+    if (is_long) strcat(text, "...");
+}
+
+/* A loss that has no value is above what the formula holds for. */
+static void print_figure(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])
+{
+    const hf_merged_figure *f = &m->figure[c->index];
+    double value = c->scale * f->value.value[i];
+    bool is_loss = strstr(f->key, "gain_loss_at_") != NULL;
+    if (!hf_merged_is_done(m, i))
+        strcpy(text, "-");
+    else if (isnan(value))
+        snprintf(text, CELL_SIZE, is_loss ? "above %g" : "-", HF_RUZE_MOST_DB);
+    else if (isinf(value))
+        strcpy(text, "inf");
+    else if (!strcmp(c->unit, "mm") || strstr(f->key, "tension_ratio"))
+        hf_print_decimals(value, text);
+    else if (!strcmp(c->unit, "%"))
+        snprintf(text, CELL_SIZE, "%.1f", value);
+    else
+        snprintf(text, CELL_SIZE, !strcmp(f->key, "n_slack") ? "%g" : "%#.4g", value);
+}
+
+static void print_cell(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])
+{
+    if (c->kind == OF_AXIS)
+        print_axis_value(m, c, i, text);
+    else if (c->kind == OF_FIGURE)
+        print_figure(m, c, i, text);
+    else if (m->status.value[i] == HF_NOT_EVALUATED)
+        strcpy(text, "missing");
+    else
+        snprintf(text, CELL_SIZE, "%s", hf_status_word((hf_status)m->status.value[i]));
+}
+
+/* ---- the table ---- */
+
+static int point_of(const table *t, int row)
+{
+    return t->is_all ? row : t->best[row];
+}
+
+static void add_column(table *t, column c)
+{
+    char text[CELL_SIZE];
+    c.width = (int)strlen(c.head);
+    if ((int)strlen(c.unit) > c.width) c.width = (int)strlen(c.unit);
+    for (int k = 0; k < t->n_row; k++) {
+        print_cell(t->m, &c, point_of(t, k), text);
+        if ((int)strlen(text) > c.width) c.width = (int)strlen(text);
+    }
+    t->column[t->n_column++] = c;
+}
+
+static void add_columns(table *t)
+{
+    const hf_merged *m = t->m;
+    bool all_done = true;
+    for (int a = 0; a < m->n_axis; a++)
+        if (hf_merged_axis_varies(m, a)) add_column(t, axis_column(m, a));
+    t->n_axis = t->n_column;
+    for (int i = 0; i < m->n; i++)
+        all_done &= hf_merged_is_done(m, i);
+    if (!all_done) add_column(t, (column){.kind = OF_STATUS, .head = "status"});
+    for (int rank = 0; rank < N_RANK; rank++)
+        for (int k = 0; k < m->n_figure; k++)
+            if (is_told(m, &m->figure[k]) && !m->figure[k].is_same && rank_of(m, k) == rank)
+                add_column(t, figure_column(m, k));
+}
+
+static void print_block(const table *t, int from, int to, hf_print_style style, FILE *f)
+{
+    char text[CELL_SIZE];
+    for (int line = -2; line < t->n_row; line++) {
+        int i = line < 0 ? -1 : point_of(t, line);
+        bool is_best = i >= 0 && i == t->m->best;
+        fputs(is_best && style.has_colour ? HF_PRINT_BOLD : "", f);
+        fputs(is_best ? "*" : " ", f);
+        for (int k = 0; k < t->n_column; k++) {
+            const column *c = &t->column[k];
+            if (k >= t->n_axis && (k < from || k >= to)) continue;
+            if (i >= 0) print_cell(t->m, c, i, text);
+            fprintf(f, " %*s", c->width + 1, line == -2 ? c->head : line == -1 ? c->unit : text);
+        }
+        fputs(is_best && style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
+    }
+}
+
+/* Columns that have no room go on below, beside the axes again. */
+static void print_blocks(const table *t, hf_print_style style, FILE *f)
+{
+    int axes = 1;
+    for (int k = 0; k < t->n_axis; k++)
+        axes += t->column[k].width + 2;
+    int from = t->n_axis, to;
+    do {
+        int wide = axes;
+        for (to = from; to < t->n_column && (to == from || wide + t->column[to].width + 2 <= WIDTH); to++)
+            wide += t->column[to].width + 2;
+        print_block(t, from, to, style, f);
+        from = to;
+        if (from < t->n_column) fputc('\n', f);
+    } while (from < t->n_column);
+}
+
+/* ---- lines ---- */
+
+/* Items behind a title, broken at the width. */
+typedef struct {
+    FILE *file;
+    const char *title;
+    int used;
+} items;
+
+static void add_item(items *t, const char *text)
+{
+    char shown[4 * HF_AXIS_NAME_SIZE];
+    hf_text_escape(text, shown, sizeof shown);
+    int n = (int)strlen(shown);
+    if (t->used && t->used + n + 3 > WIDTH) {
+        fputs(",\n", t->file);
+        t->used = 0;
+    }
+    if (!t->used)
+        t->used = fprintf(t->file, "  %-13s ", t->title);
+    else
+        t->used += fprintf(t->file, ", ");
+    t->used += fprintf(t->file, "%s", shown);
+    t->title = "";
+}
+
+static void end_items(const items *t)
+{
+    if (t->used) fputc('\n', t->file);
+}
+
+static void print_item(const hf_merged *m, const column *c, int i, items *t)
+{
+    char text[3 * HF_AXIS_NAME_SIZE], cell[CELL_SIZE];
+    print_cell(m, c, i, cell);
+    snprintf(text, sizeof text, "%s %s%s%s", c->head, cell, *c->unit ? " " : "", c->unit);
+    add_item(t, text);
+}
+
+/* What is the same at all points: axes and figures. */
+static void print_same(const hf_merged *m, FILE *f)
+{
+    items t = {.file = f, .title = "at all points"};
+    int i = 0;
+    while (i < m->n - 1 && !hf_merged_is_done(m, i))
+        i++;
+    for (int a = 0; a < m->n_axis; a++) {
+        column c = axis_column(m, a);
+        if (!hf_merged_axis_varies(m, a)) print_item(m, &c, i, &t);
+    }
+    for (int k = 0; k < m->n_figure && hf_merged_is_done(m, i); k++) {
+        column c = figure_column(m, k);
+        const hf_merged_figure *figure = &m->figure[k];
+        if (figure->is_same && is_told(m, figure) && !(isnan(figure->value.value[i]) && !strcmp(c.unit, "%")))
+            print_item(m, &c, i, &t);
+    }
+    end_items(&t);
+}
+
+static void print_best(const table *t, FILE *f)
+{
+    const hf_merged *m = t->m;
+    items line = {.file = f, .title = "best (*)"};
+    if (m->best < 0) return;
+    column lead = figure_column(m, m->lead);
+    char text[2 * HF_AXIS_NAME_SIZE], cell[CELL_SIZE];
+    print_cell(m, &lead, m->best, cell);
+    snprintf(text, sizeof text, "least %s: %s %s", lead.head, cell, lead.unit);
+    add_item(&line, text);
+    for (int k = 0; k < t->n_axis; k++)
+        print_item(m, &t->column[k], m->best, &line);
+    end_items(&line);
+}
+
+/* How many points failed in which way, each with the reason of its first one. */
+static void print_failures(const hf_merged *m, FILE *f)
+{
+    bool is_told[SCHAR_MAX + 1] = {[HF_OK] = true, [HF_NOT_EVALUATED] = true};
+    const char *title = "failed";
+    for (int i = 0; i < m->n; i++) {
+        int status = (int)m->status.value[i], n = 0;
+        char shown[HF_LEDGER_REASON_MAX];
+        if (is_told[status]) continue;
+        is_told[status] = true;
+        for (int k = i; k < m->n; k++)
+            n += (int)m->status.value[k] == status;
+        hf_text_escape(hf_texts_at(&m->reason, i), shown, sizeof shown);
+        bool is_long = strlen(shown) > REASON_MOST;
+        if (is_long) shown[REASON_MOST] = '\0';
+        hf_text_trim_utf8(shown);
+        fprintf(f, "  %-13s %d %s: %s%s\n", title, n, hf_status_word((hf_status)status), shown, is_long ? "..." : "");
+        title = "";
+    }
+}
+
+static void print_head(const hf_merged *m, FILE *f)
+{
+    int n_done = 0, n_missing = 0;
+    items axes = {.file = f, .title = "axes"};
+    for (int i = 0; i < m->n; i++) {
+        n_done += hf_merged_is_done(m, i);
+        n_missing += m->status.value[i] == HF_NOT_EVALUATED;
+    }
+    fprintf(f, "  %-13s %d: %d done, %d failed, %d missing\n", "points", m->n, n_done, m->n - n_done - n_missing,
+            n_missing);
+    for (int a = 0; a < m->n_axis; a++) {
+        if (hf_merged_axis_varies(m, a)) add_item(&axes, hf_texts_at(&m->input_name, a));
+    }
+    end_items(&axes);
+}
+
+/* ---- together ---- */
+
+/* All points or, of a large study, those with the least values of what says which is best. */
+static void choose_rows(table *t, bool all)
+{
+    const hf_merged *m = t->m;
+    const double *value = m->lead < 0 ? NULL : m->figure[m->lead].value.value;
+    double least = -INFINITY;
+    t->n_row = m->n;
+    t->is_all = all || m->n <= POINTS_MOST || !value;
+    for (int k = 0, last = -1; k < POINTS_BEST && !t->is_all; k++) {
+        int next = -1;
+        for (int i = 0; i < m->n; i++) {
+            bool is_later = value[i] > least || (value[i] == least && i > last);
+            if (hf_merged_is_done(m, i) && is_later && (next < 0 || value[i] < value[next])) next = i;
+        }
+        t->n_row = next < 0 ? k : k + 1;
+        if (next < 0) break;
+        t->best[k] = last = next;
+        least = value[next];
+    }
+}
+
+void hf_print_study(const hf_merged *m, hf_print_style style, FILE *f)
+{
+    table t = {.m = m};
+    choose_rows(&t, style.verbose);
+    add_columns(&t);
+    if (style.has_colour) fputs(HF_PRINT_BOLD, f);
+    hf_print_line(f, "%s", hf_merged_heading(m));
+    if (style.has_colour) fputs(HF_PRINT_PLAIN, f);
+    print_head(m, f);
+    print_best(&t, f);
+    print_same(m, f);
+    print_failures(m, f);
+    if (t.n_column > t.n_axis) {
+        fputc('\n', f);
+        print_blocks(&t, style, f);
+    }
+    if (!t.is_all) hf_print_line(f, "  the %d best of %d points; --verbose: all", t.n_row, m->n);
+    hf_print_line(f, "  %-13s a page to look at: hifdm report %s", "more", m->path);
+}
+
+/* ---- JSON ---- */
+
+static void write_input(const hf_merged *m, int i, hf_json *j)
+{
+    hf_json_open(j, "input", '{');
+    for (int a = 0; a < m->n_axis; a++) {
+        const hf_series *s = &m->input[a];
+        const char *key = hf_texts_at(&m->input_name, a);
+        if (s->n && s->columns == 1)
+            hf_json_number(j, key, s->value[i]);
+        else if (s->n)
+            hf_json_list(j, key, s->value + (size_t)i * (size_t)s->columns, s->columns);
+        else if (m->input_text[a].n)
+            hf_json_text(j, key, hf_texts_at(&m->input_text[a], i));
+    }
+    hf_json_close(j, '}');
+}
+
+static void write_stages(const hf_merged *m, int i, hf_json *j)
+{
+    for (int k = 0; k < m->n_figure; k++) {
+        const hf_merged_figure *f = &m->figure[k];
+        if (k == 0 || f[-1].stage != f->stage) hf_json_open(j, hf_merged_stage_word[f->stage], '{');
+        hf_json_number(j, f->key, hf_merged_is_done(m, i) ? f->value.value[i] : (double)NAN);
+        if (k + 1 == m->n_figure || f[1].stage != f->stage) hf_json_close(j, '}');
+    }
+}
+
+void hf_print_study_json(const hf_merged *m, FILE *file)
+{
+    hf_json writer = {.file = file}, *j = &writer;
+    hf_json_open(j, NULL, '{');
+    hf_json_text(j, "title", hf_merged_heading(m));
+    hf_json_text(j, "result", hf_merged_stage_word[m->main]);
+    if (m->best >= 0) {
+        hf_json_text(j, "best", hf_texts_at(&m->id, m->best));
+        hf_json_text(j, "best_by", m->figure[m->lead].key);
+    }
+    hf_json_line(j, " ");
+    hf_json_open(j, "points", '[');
+    for (int i = 0; i < m->n; i++) {
+        hf_json_line(j, "  ");
+        hf_json_open(j, NULL, '{');
+        hf_json_text(j, "id", hf_texts_at(&m->id, i));
+        hf_json_text(j, "status", hf_status_word((hf_status)m->status.value[i]));
+        if (*hf_texts_at(&m->reason, i)) hf_json_text(j, "reason", hf_texts_at(&m->reason, i));
+        write_input(m, i, j);
+        write_stages(m, i, j);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+    hf_json_line(j, " ");
+    hf_json_text(j, "file", m->path);
+    hf_json_end(j, false, NULL);
+}

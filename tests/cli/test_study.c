@@ -1,0 +1,193 @@
+/* A study is as easy to act on as a run: what `check` says before, what `show` says behind, its surface. */
+#include "cli.h"
+
+#define NET                                                                                                            \
+    "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n  paraboloid: {aperture_m: 4, focal_length_m: 3, rings: 3, "     \
+    "rear_distance_m: 1.8}\nform: {prestress: exact}\ntruss: {ring: {cells_per_bay: 2, held: bay, longeron: "          \
+    "{diameter_m: 0.03, wall_m: 0.001}}}\n"
+#define SURFACE "surface: {frequencies_Hz: [2.5e9, 20e9]}\n"
+#define TOLERANCE "tolerance: {sigma_cut_m: 5e-5, samples: 40, require: [{measure: psi_m, at_most: 3e-4}]}\n"
+#define LM                                                                                                             \
+    "optimize: {method: lm, variables: [{set: all, vary: force_density, range: 50 %}], goals: [{goal: psi}, {goal: "   \
+    "tension, set: tie, target: 8, weight: 1e-4}]}\n"
+#define AXIS "sweep:\n  form.pretension_N: [5, 10, 20]\n  scene.EA_boundary_N: [2e5]\n"
+
+static void sweep_and_merge(const char *path, const char *folder, const char *merged)
+{
+    HIFDM(0, "sweep", path, "--dir", folder, "--quiet");
+    HIFDM(0, "merge", path, "--dir", folder, "-o", merged, "--quiet");
+}
+
+/* Of each stage, bit by bit what the file of the point has; also when the points came one by one. */
+START_TEST(errors_of_the_surface_are_columns_of_a_merge)
+{
+    const char *path = file_with("s.yaml", NET SURFACE LM AXIS), *merged = temp("s.h5"), *later = temp("later.h5");
+    sweep_and_merge(path, temp("s.d"), merged);
+#define RUNS "for i, k in enumerate(texts(a['points/id'])) for s in ('form', 'polish') "
+    EXPECT(merged, "--", "sorted(a['points/surface']) == ['form', 'polish']",
+           "all(a['points/surface'][s][n][i] == a['runs'][k]['surface'][s].attrs[n] " RUNS
+           "for n in ('facet_half_path_rms_m', 'facet_fit_half_path_rms_m'))",
+           "all(np.array_equal(a['points/surface'][s]['facet_' + f + 'gain_loss_at_%s_GHz_dB' % ('2.5', '20')[q]][i], "
+           "a['runs'][k]['surface'][s]['facet_' + f + 'gain_loss_dB'][q], equal_nan=True) " RUNS
+           "for f in ('', 'fit_') for q in (0, 1))",
+           /* the frequency at which Ruze's formula costs 1 dB: 4.3429 (4 pi e / lambda)^2 */
+           "all(near(10 / np.log(10) * (4 * np.pi * a['points/surface'][s]['facet_' + f + 'half_path_rms_m'][i] * "
+           "a['points/surface'][s]['facet_' + f + 'good_to_Hz'][i] / 299792458)**2, 1, 1e-9) " RUNS
+           "for f in ('', 'fit_'))",
+           "[attribute(a['points/surface/form/facet_' + n], 'units') for n in ('half_path_rms_m', 'good_to_Hz', "
+           "'gain_loss_at_20_GHz_dB')] == ['m', 'Hz', 'dB']");
+    for (int task = 0; task < 3; task++)
+        HIFDM(0, "sweep", path, "--dir", temp("later.d"), "--task", keep(formatted("%d", task)), "--tasks", "3");
+    HIFDM(0, "status", path, "--dir", temp("later.d"));
+    OUT("done      3");
+    HIFDM(0, "merge", path, "--dir", temp("later.d"), "-o", later, "--quiet");
+    EXPECT(merged, later, "--", "differing(a, b) == []");
+    /* without facets of the surface there is no group */
+    sweep_and_merge(file_with("none.yaml", NET AXIS), temp("none.d"), temp("none.h5"));
+    EXPECT(temp("none.h5"), "--", "'surface' not in a['points']");
+}
+END_TEST
+
+/* Every number of the table is that of the file, the best row is the least psi of 95 %, and lines fit. */
+START_TEST(a_merged_study_is_shown_as_a_table)
+{
+    const char *path = file_with("s.yaml", "title: How hard\n" NET SURFACE LM TOLERANCE AXIS);
+    const char *merged = temp("s.h5");
+    sweep_and_merge(path, temp("s.d"), merged);
+    HIFDM(0, "show", merged);
+    OUT("How hard\n  points        3: 3 done, 0 failed, 0 missing\n  axes          form.pretension_N\n");
+    OUT("EA boundary 200000 N");
+    OUT("good to");
+    OUT("tension tie");
+    ck_assert_msg(!strstr(said.out, " psi  psi"), "%s", said.out); /* the goal psi is psi */
+    EXPECT(merged, out_as("s.txt"), "--",
+           "max(len(line) for line in b.decode().splitlines() if 'hifdm report' not in line) <= 100",
+           "[r.split()[1 if r[0] == '*' else 0] for r in b.decode().splitlines() if r[:1] in '* ' and "
+           "r.split()[-1:] and r.split()[-1][-1].isdigit() and r.split()[1 if r[0] == '*' else 0] in ('5', '10', "
+           "'20')][:3] == ['5', '10', '20']",
+           "('%.4f' % (1e3 * a['points/tolerance/psi_95_m'][:].min())) in [r for r in b.decode().splitlines() if r[:1] "
+           "== '*'][0].split()",
+           "all('%.4f' % (1e3 * v) in b.decode() for n in ('form', 'polish') for v in a['points'][n]['psi_m'][:])",
+           "all('%.4f' % (1e3 * v) in b.decode() for v in "
+           "a['points/surface/polish/facet_half_path_rms_m'][:])",
+           "all('%.1f' % (100 * v) in b.decode() for v in a['points/tolerance/yield'][:])");
+    HIFDM(0, "show", merged, "--json");
+    EXPECT(merged, out_as("s.json"), "--", "[p['id'] for p in b['points']] == texts(a['points/id'])",
+           "b['best_by'] == 'psi_95_m' and b['result'] == 'polish' and b['title'] == 'How hard'",
+           "b['best'] == texts(a['points/id'])[int(np.argmin(a['points/tolerance/psi_95_m'][:]))]",
+           "[p['input']['form.pretension_N'] for p in b['points']] == [5, 10, 20]",
+           "[p['polish']['facet_good_to_Hz'] for p in b['points']] == "
+           "a['points/surface/polish/facet_good_to_Hz'][:].tolist()",
+           "[p['tolerance']['yield'] for p in b['points']] == a['points/tolerance/yield'][:].tolist()");
+}
+END_TEST
+
+START_TEST(failed_points_are_told_and_never_the_best)
+{
+    const char *path =
+        file_with("s.yaml", SMALL_SCENE "form: {method: hifdm, stop: residual}\nsweep:\n"
+                                        "  form.max_iterations: [2, 100000]\n  form.pretension_N: [8, 9]\n");
+    HIFDM(3, "sweep", path, "--dir", temp("s.d"), "--quiet");
+    HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", temp("s.h5"), "--quiet");
+    HIFDM(0, "show", temp("s.h5"));
+    OUT("points        4: 2 done, 2 failed, 0 missing");
+    OUT("failed        2 not_converged: form-finding did not converge in 2 iterations");
+    ck_assert_msg(!strstr(said.out, "\n*               2 "), "%s", said.out);
+}
+END_TEST
+
+/* Of a large study the best points, or all. */
+START_TEST(a_large_study_shows_its_best)
+{
+    const char *path =
+        file_with("s.yaml", NET "sweep:\n  form.pretension_N: {from: 1, to: 40, n: 70}\n  files: none\n");
+    sweep_and_merge(path, temp("s.d"), temp("s.h5"));
+    HIFDM(0, "show", temp("s.h5"));
+    OUT("the 32 best of 70 points; --verbose: all");
+    OUT("best (*)      least psi: ");
+    EXPECT(temp("s.h5"), out_as("s.txt"), "--",
+           "[r[1:].split()[1] for r in b.decode().splitlines() if r[1:].split() and r[1:].split()[0][0].isdigit()] == "
+           "['%.4f' % (1e3 * v) for v in sorted(a['points/form/psi_m'][:])[:32]]");
+    HIFDM(0, "show", temp("s.h5"), "--verbose");
+    ck_assert_ptr_null(strstr(said.out, "best of"));
+}
+END_TEST
+
+START_TEST(check_says_what_a_sweep_would_do)
+{
+    const char *path =
+        file_with("s.yaml", "base: base.yaml\ntitle: How hard\nsweep:\n  form.pretension_N: {from: 5, to: "
+                            "40, n: 9}\n  scene.EA_boundary_N: [1e5, 2e5]\n");
+    file_with("base.yaml", NET SURFACE TOLERANCE);
+    SHELL(0, "cd \"$1\" && \"$0\" check s.yaml --threads 2", temp(""));
+    OUT("s.yaml: valid\n  study         How hard\n  base case     base.yaml\n"
+        "  axes          form.pretension_N: 9 values, 5 .. 40 N\n"
+        "                scene.EA_boundary_N: 100000, 200000 N\n"
+        "  points        18\n");
+    OUT(": form.pretension_N=5, scene.EA_boundary_N=100000\n");
+    OUT(": form.pretension_N=40, scene.EA_boundary_N=200000\n");
+    OUT("0 done, 0 failed, 0 running, 18 to run");
+    OUT("18 points to run, each like this one at most some ");
+    OUT(", and the time of the nets as built");
+    OUT("the first point, ");
+    SHELL(0, "cd \"$1\" && ls && test ! -e s.d", temp("")); /* nothing is written */
+    SHELL(0, "cd \"$1\" && \"$0\" sweep s.yaml --quiet && \"$0\" check s.yaml", temp(""));
+    OUT("18 done, 0 failed, 0 running, 0 to run");
+    OUT("all points have been run");
+    HIFDM(2, "check", path, "--set", "form.pretension_N=3");
+    ERR("s.yaml: is a study, which takes no --set");
+}
+END_TEST
+
+/* All of them with their lines: of the study, of its base, and what only the nets of the points show. */
+START_TEST(check_tells_the_faults_of_a_study)
+{
+    const char *path = file_with("s.yaml", "base: base.yaml\nsweep:\n  form.pretension_N: [5, x]\n  form.pretesion_N: "
+                                           "[1]\n");
+    file_with("base.yaml", NET);
+    HIFDM(2, "check", path);
+    ERR("s.yaml:3:26: sweep: form.pretension_N: must be a number");
+    ERR("s.yaml:4:3: sweep: unknown key 'form.pretesion_N'; did you mean 'form.pretension_N'?");
+    file_with("s.yaml", "base: base.yaml\nsweep:\n  form.pretension_N: [5, 6]\n");
+    file_with("base.yaml", NET "surfce: {}\n");
+    HIFDM(2, "check", path);
+    ERR("base.yaml:7:1: surfce: unknown key");
+    ERR("did you mean 'surface'?");
+    file_with("base.yaml", NET);
+    file_with("s.yaml", "base: base.yaml\nsweep:\n  scene.paraboloid.focal_length_m: [3, 4]\n  "
+                        "scene.paraboloid.rear_distance_m: [1.8, 0.001]\n");
+    HIFDM(2, "check", path);
+    ERR("point scene.paraboloid.focal_length_m=3, scene.paraboloid.rear_distance_m=0.001");
+    ERR("point scene.paraboloid.focal_length_m=4, scene.paraboloid.rear_distance_m=0.001");
+    file_with("s.yaml", "base: nowhere.yaml\nsweep:\n  form.pretension_N: [5, 6]\n");
+    HIFDM(2, "check", path);
+    ERR("nowhere.yaml");
+}
+END_TEST
+
+START_TEST(show_of_what_is_no_result_says_what_to_do)
+{
+    const char *path = file_with("s.yaml", "base: base.yaml\nsweep:\n  form.pretension_N: [5]\n");
+    HIFDM(5, "show", path);
+    ERR("s.yaml: is not an HDF5 file, so no result of hifdm, but a study: `hifdm check ");
+    ERR("`hifdm merge ");
+    HIFDM(5, "show", file_with("base.yaml", NET));
+    ERR("base.yaml: is not an HDF5 file, so no result of hifdm, but a case: `hifdm check ");
+    HIFDM(5, "show", file_with("other.txt", "words\n"));
+}
+END_TEST
+
+Suite *suite_cli_study(void)
+{
+    Suite *suite = suite_create("cli/study");
+    TCase *tcase = tcase_create("study");
+    tcase_add_test(tcase, errors_of_the_surface_are_columns_of_a_merge);
+    tcase_add_test(tcase, a_merged_study_is_shown_as_a_table);
+    tcase_add_test(tcase, failed_points_are_told_and_never_the_best);
+    tcase_add_test(tcase, a_large_study_shows_its_best);
+    tcase_add_test(tcase, check_says_what_a_sweep_would_do);
+    tcase_add_test(tcase, check_tells_the_faults_of_a_study);
+    tcase_add_test(tcase, show_of_what_is_no_result_says_what_to_do);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
