@@ -250,11 +250,29 @@ START_TEST(check_of_many_variables_is_quick)
 }
 END_TEST
 
+/* The trial is the whole form-finding, so that its figure is that of the run; a net on rigid ground has none. */
+START_TEST(how_far_the_truss_gives_way_is_told)
+{
+    static const char says[] = "attachments give way by up to ";
+    const char *path = keep(source_path("configs/paraboloid-6m.yaml"));
+    char told[16];
+    HIFDM(0, "check", path);
+    const char *at = strstr(said.out, says);
+    ck_assert_msg(at, "%s", said.out);
+    snprintf(told, sizeof told, "%.6s", at + strlen(says));
+    HIFDM(0, "run", path, "-o", temp("r.h5"));
+    OUT(formatted("%s%s mm", says, told));
+    HIFDM(0, "check", keep(source_path("configs/chen2022.yaml")));
+    ck_assert_ptr_null(strstr(said.out, says));
+}
+END_TEST
+
 Suite *suite_cli_check(void)
 {
     Suite *suite = suite_create("cli/check");
     TCase *tcase = tcase_create("check");
     tcase_add_test(tcase, check_tells_how_long_samples_take);
+    tcase_add_test(tcase, how_far_the_truss_gives_way_is_told);
     tcase_add_test(tcase, check_tells_what_will_run);
     tcase_add_test(tcase, check_follows_the_size);
     tcase_add_test(tcase, check_of_an_ill_posed_case_says_so);
