@@ -244,6 +244,60 @@ START_TEST(a_front_of_three_has_no_holes)
 }
 END_TEST
 
+/* What one step from a start makes of objective k alone. */
+static double after_a_step(struct traded *t, const double *start, int k)
+{
+    const hf_watch_trade alone = {k, (const double[]){INFINITY, INFINITY, INFINITY}};
+    double design[2] = {start[0], start[1]};
+    hf_polish_result polished;
+    hf_form_result r;
+    hf_workspace *w = &t->net.work;
+    hf_status status = hf_polish_trade(&t->evaluator, t->lower, t->upper, 1, &alone, design, w, &polished);
+    ck_assert_int_eq(status, HF_OK);
+    ck_assert_int_ne(polished.stop, HF_POLISH_CONVERGED);
+    ck_assert_int_eq(hf_evaluate(&t->evaluator, design, w, &r), HF_OK);
+    return r.goal[k];
+}
+
+/* Each end is begun from the start that is best in its objective; where that does not come to an end from the start
+ * that is best in the next one as well, and the better of both counts. */
+START_TEST(a_search_that_does_not_end_is_tried_from_another_start)
+{
+    struct traded t = {0};
+    struct rng rng = rng_start(4000);
+    int n_second = 0;
+    open_triangle(&t, 4);
+    ck_assert_int_eq(hf_evaluate_attend(&t.evaluator, &t.net.work), HF_OK);
+    for (int trial = 0; trial < 40; trial++) {
+        double start[4];
+        hf_form_result at[2];
+        hf_front front;
+        hf_trade trade = trade_of(&t, 4);
+        trade.max_iterations = 1;
+        trade.n_start = 2;
+        trade.start = start;
+        for (int i = 0; i < 4; i++)
+            start[i] = rng_uniform(&rng, 1, MOST_Q);
+        for (int i = 0; i < 2; i++)
+            ck_assert_int_eq(hf_evaluate(&t.evaluator, start + 2 * i, &t.net.work, &at[i]), HF_OK);
+        ck_assert_int_eq(hf_trade_find(&trade, &front, &failed_end), HF_OK);
+        for (int k = 0; k < 3; k++) {
+            int l = (k + 1) % 3, first = at[1].goal[k] < at[0].goal[k], second = at[1].goal[l] < at[0].goal[l];
+            double by_first = after_a_step(&t, start + 2 * first, k),
+                   by_second = after_a_step(&t, start + 2 * second, k);
+            double least = INFINITY;
+            for (int i = 0; i < front.n_point; i++)
+                least = fmin(least, front.point[i].objective[k]);
+            ck_assert_double_le(least, fmin(by_first, by_second) + 1e-5);
+            n_second += by_second < by_first - 1e-3;
+        }
+        hf_front_free(&front);
+    }
+    ck_assert_int_gt(n_second, 2);
+    close_traded(&t);
+}
+END_TEST
+
 /* ---- memory ---- */
 
 static void open_line(struct traded *t, int n_point)
@@ -504,6 +558,7 @@ Suite *suite_unit_trade(void)
     tcase_add_loop_test(tests, points_are_even_and_slopes_those_of_differences, 0, N_TRADED);
     tcase_add_test(tests, a_node_in_a_plane_has_a_front_of_three_in_closed_form);
     tcase_add_test(tests, a_front_of_three_has_no_holes);
+    tcase_add_test(tests, a_search_that_does_not_end_is_tried_from_another_start);
     tcase_add_test(tests, an_objective_without_a_range_leaves_the_others_to_be_traded);
     tcase_add_loop_test(tests, slopes_of_three_are_those_of_differences, 0, N_THREE);
     tcase_add_loop_test(tests, threads_do_not_change_a_bit, 0, 2);
