@@ -4,6 +4,7 @@
 #include "built/near.h"
 
 #include "linalg/band.h"
+#include "linalg/dot.h"
 #include "solve/joint.h"
 #include "solve/schur.h"
 
@@ -22,6 +23,9 @@
 #define FLOOR_MAX 0.01
 /* From this residual on, over the reference tension, each step halves it, or it is rounding. */
 #define END_GAME 1e-6
+/* On a truss: what may be left of the gap in a linear step, and in how many vectors at most. */
+#define GAP_LEFT 1e-2
+enum { KRYLOV = 12 };
 
 /* Stiffness in the matrix of the cables, which hf_near_newton has put into newton_trial_tension_N (along, N/m) and
  * q_N_per_m (across). */
@@ -102,30 +106,131 @@ static void move(const hf_model *m, hf_workspace *w, double part)
             w->position_m[c * m->n_node + i] += part * step[3 * i + c];
 }
 
+/* ---- the truss ---- */
+
+/* How the truss answers gaps of the nominal net. */
+static void answer_nominal(const hf_near *near, const double *gap_m, double *answer_m)
+{
+    int n = near->chord.n_pull;
+    for (int i = 0; i < n; i++) {
+        const double *row = near->answer + ((ptrdiff_t)i / HF_PULL_ROWS * n) * HF_PULL_ROWS + i % HF_PULL_ROWS;
+        answer_m[i] = 0;
+        for (int j = 0; j < n; j++)
+            answer_m[i] += row[(ptrdiff_t)j * HF_PULL_ROWS] * gap_m[j];
+    }
+}
+
+/* Free nodes after a move of the attachments, into newton_force_N. */
+static void push_free(const hf_near *near, const double *factor, const double *move_m, hf_workspace *w)
+{
+    const hf_model *m = &near->model;
+    int n = hf_newton_matrix_dofs(m);
+    memset(w->newton_force_N, 0, (size_t)n * sizeof(double));
+    hf_schur_push(m, w, block_of, move_m, w->newton_force_N);
+    hf_band_back_solve(n, 3 * m->half_bandwidth + 2, 1, factor, w->newton_force_N, n);
+}
+
+/* to = A (1 + F S) move: S the stiffness of this net at the attachments, A about the inverse, the nominal net's. */
+static void apply(const hf_near *near, const double *factor, const double *move_m, hf_workspace *w, double *to)
+{
+    const hf_model *m = &near->model;
+    double *pull = w->newton_step + hf_newton_matrix_dofs(m), *gap = w->coupling_work;
+    push_free(near, factor, move_m, w);
+    memset(pull, 0, (size_t)near->chord.n_pull * sizeof *pull);
+    hf_schur_pull(m, w, block_of, w->newton_force_N, pull);
+    hf_schur_hold(m, w, block_of, move_m, pull);
+    hf_schur_flex(m, pull, gap);
+    for (int i = 0; i < near->chord.n_pull; i++)
+        gap[i] = move_m[i] - gap[i];
+    answer_nominal(near, gap, to);
+}
+
+/* A column of the Hessenberg matrix, turned by the rotations of those before, and by one of its own, which takes its
+ * last entry to 0. What is left of the residual is in rest[j + 1]. */
+static void rotate(int j, double *h, double rotation[][2], double *rest)
+{
+    for (int i = 0; i < j; i++) {
+        double above = h[i], below = h[i + 1];
+        h[i] = rotation[i][0] * above + rotation[i][1] * below;
+        h[i + 1] = rotation[i][0] * below - rotation[i][1] * above;
+    }
+    double length = sqrt(h[j] * h[j] + h[j + 1] * h[j + 1]);
+    rotation[j][0] = length > 0 ? h[j] / length : 1;
+    rotation[j][1] = length > 0 ? h[j + 1] / length : 0;
+    h[j] = length;
+    rest[j + 1] = -rotation[j][1] * rest[j];
+    rest[j] *= rotation[j][0];
+}
+
+/* The next vector of the space that A (1 + F S) makes of the gap: less its parts along those before, of length 1. */
+static void extend(const hf_near *near, const double *factor, int j, hf_workspace *w, double *h)
+{
+    size_t n = (size_t)near->chord.n_pull;
+    double *v = w->schur_work, *next = v + (size_t)(j + 1) * n;
+    apply(near, factor, v + (size_t)j * n, w, next);
+    for (int i = 0; i <= j; i++) {
+        h[i] = hf_dot(n, v + (size_t)i * n, next);
+        for (size_t k = 0; k < n; k++)
+            next[k] -= h[i] * v[(size_t)i * n + k];
+    }
+    h[j + 1] = sqrt(hf_dot(n, next, next));
+    for (size_t k = 0; k < n && h[j + 1] > 0; k++)
+        next[k] /= h[j + 1];
+}
+
+/* The move of the attachments that closes the gap, in its place: (1 + F S)^-1 gap by GMRES (Saad, Schultz, SIAM J. Sci.
+ * Stat. Comput. 7, 1986), with the answer of the nominal net in front. Slack cables take stiffness away in a few
+ * directions: that answer alone closes a fifth of the gap at a step. */
+static void close_gap(const hf_near *near, const double *factor, double *gap_m, hf_workspace *w)
+{
+    enum { MOST = KRYLOV };
+    size_t n = (size_t)near->chord.n_pull;
+    int most = n < MOST ? (int)n - 1 : MOST, j = 0;
+    double *v = w->schur_work, h[MOST][MOST + 1], rotation[MOST][2], rest[MOST + 1];
+    answer_nominal(near, gap_m, v);
+    double whole = sqrt(hf_dot(n, v, v));
+    for (size_t k = 0; k < n && whole > 0; k++)
+        v[k] /= whole;
+    rest[0] = whole;
+    while (whole > 0 && j < most && fabs(rest[j]) > GAP_LEFT * whole) {
+        extend(near, factor, j, w, h[j]);
+        rotate(j, h[j], rotation, rest);
+        j++;
+    }
+    memset(gap_m, 0, n * sizeof *gap_m);
+    for (int i = j - 1; i >= 0; i--) {
+        for (int k = i + 1; k < j; k++)
+            rest[i] -= h[k][i] * rest[k];
+        rest[i] /= h[i][i];
+        for (size_t k = 0; k < n; k++)
+            gap_m[k] += rest[i] * v[(size_t)i * n + k];
+    }
+}
+
 /* Net and truss with the attachments where they are now: turns newton_step, which the factor of the free nodes has made
- * their step with the attachments held, into the step of both. The truss answers as to the nominal net. */
-static void follow_truss(const hf_near *near, const double *factor, hf_workspace *w)
+ * their step with the attachments held, into the step of both. */
+static void follow_truss(const hf_near *near, bool is_nominal, const double *factor, hf_workspace *w)
 {
     const hf_model *m = &near->model;
     int n = hf_newton_matrix_dofs(m), n_pull = near->chord.n_pull;
-    double *pull = w->newton_step + n, *gap = w->coupling_work, *push = w->newton_force_N;
+    double *pull = w->newton_step + n, *gap = w->coupling_work, *move_m = w->schur_work + (KRYLOV + 1) * n_pull;
     hf_schur_pull(m, w, block_of, w->newton_step, pull);
     hf_schur_flex(m, pull, gap);
     hf_joint_set_displacement(m, w);
     for (int i = 0; i < n_pull; i++)
-        gap[i] -= w->displacement_m[i];
-    for (int i = 0; i < n_pull; i++) {
-        const double *row = near->answer + ((ptrdiff_t)i / HF_PULL_ROWS * n_pull) * HF_PULL_ROWS + i % HF_PULL_ROWS;
-        pull[i] = 0;
-        for (int j = 0; j < n_pull; j++)
-            pull[i] += row[(ptrdiff_t)j * HF_PULL_ROWS] * gap[j];
+        move_m[i] = gap[i] - w->displacement_m[i];
+    if (is_nominal) {
+        answer_nominal(near, memcpy(gap, move_m, (size_t)n_pull * sizeof *gap), move_m);
+    } else {
+        close_gap(near, factor, move_m, w);
     }
-    memset(push, 0, (size_t)n * sizeof *push);
-    hf_schur_push(m, w, block_of, pull, push);
-    hf_band_back_solve(n, 3 * m->half_bandwidth + 2, 1, factor, push, n);
+    memcpy(pull, move_m, (size_t)n_pull * sizeof *pull);
+    push_free(near, factor, pull, w);
     for (int i = 0; i < n; i++)
-        w->newton_step[i] += push[i];
+        w->newton_step[i] += w->newton_force_N[i];
 }
+
+/* ---- Newton ---- */
 
 /* Turns newton_step into the step, the first one with the matrix of the nominal net. */
 static bool solve(const hf_near *near, int k, double floor_N, hf_workspace *w)
@@ -136,7 +241,7 @@ static bool solve(const hf_near *near, int k, double floor_N, hf_workspace *w)
     if (k > 0 || m->n_attachment) set_stiffness(m, w, floor_N);
     if (k > 0 && hf_newton_matrix_factor_blocks(m, w, block_of, NULL, NULL) != HF_OK) return false;
     hf_band_back_solve(n, 3 * m->half_bandwidth + 2, 1, factor, w->newton_step, n);
-    if (m->n_attachment) follow_truss(near, factor, w);
+    if (m->n_attachment) follow_truss(near, k == 0, factor, w);
     return true;
 }
 

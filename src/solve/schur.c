@@ -80,20 +80,43 @@ void hf_schur_pull(const hf_model *m, const hf_workspace *w, hf_newton_block *bl
     }
 }
 
+/* The tie at the other end of the same cable, if that is an attachment, too; -1. */
+static int partner_of(const hf_model *m, int k)
+{
+    int partner = k > 0 && m->tie[k - 1] == (m->tie[k] ^ 1) ? k - 1 : k + 1;
+    return partner < m->n_tie && m->tie[partner] == (m->tie[k] ^ 1) ? partner : -1;
+}
+
+void hf_schur_hold(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, const double *displacement_m,
+                   double *pull)
+{
+    double block[3][3];
+    for (int k = 0; k < m->n_tie; k++) {
+        int partner = partner_of(m, k);
+        const double *r = displacement_m + 3 * m->tie_attachment[k];
+        double d[3] = {r[0], r[1], r[2]};
+        for (int c = 0; c < 3 && partner >= 0; c++)
+            d[c] -= displacement_m[3 * m->tie_attachment[partner] + c];
+        block_of(m, w, m->tie[k] / 2, block);
+        for (int c = 0; c < 3; c++)
+            pull[3 * m->tie_attachment[k] + c] -= block[c][0] * d[0] + block[c][1] * d[1] + block[c][2] * d[2];
+    }
+}
+
 /* Adds H_aa to the stiffness: cables from attachments to free nodes, fixed supports and other attachments. */
 static void add_attachment_stiffness(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, hf_schur *s)
 {
     double block[3][3];
     size_t n = (size_t)s->n;
     for (int k = 0; k < m->n_tie; k++) {
-        int partner = k > 0 && m->tie[k - 1] == (m->tie[k] ^ 1) ? k - 1 : k + 1;
-        bool is_pair = partner < m->n_tie && m->tie[partner] == (m->tie[k] ^ 1);
+        int partner = partner_of(m, k);
         size_t here = 3 * (size_t)m->tie_attachment[k];
         block_of(m, w, m->tie[k] / 2, block);
         for (size_t r = 0; r < 3; r++)
             for (size_t c = 0; c < 3; c++) {
                 s->stiffness[(here + r) * n + here + c] += block[r][c];
-                if (is_pair) s->stiffness[(here + r) * n + 3 * (size_t)m->tie_attachment[partner] + c] -= block[r][c];
+                if (partner >= 0)
+                    s->stiffness[(here + r) * n + 3 * (size_t)m->tie_attachment[partner] + c] -= block[r][c];
             }
     }
 }

@@ -35,6 +35,10 @@ hf_schur hf_schur_of(const hf_model *model, const hf_workspace *workspace);
 hf_status hf_schur_factor(const hf_model *model, const hf_workspace *workspace, hf_newton_block *block_of,
                           hf_schur *schur);
 
+/* pull [n] -= H_aa r. After hf_schur_push of r, a solve for the free nodes, and hf_schur_pull it is -S r. */
+void hf_schur_hold(const hf_model *model, const hf_workspace *workspace, hf_newton_block *block_of,
+                   const double *displacement_m, double *pull);
+
 /* (I + F S)^-1 F b into displacement_m, both [n]: the move of the attachments when b, N, is added to the pull on them
  * at their present places. */
 void hf_schur_displace(const hf_model *model, const hf_schur *schur, const double *b, double *displacement_m);
