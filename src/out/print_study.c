@@ -8,6 +8,7 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #define WIDTH 100      /* characters of a line */
@@ -43,15 +44,15 @@ const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE])
 {
     const char *dot = strrchr(key, '.'), *unit = hf_ledger_unit(key);
     const char *from = dot ? dot + 1 : key;
-    while (dot && dot > key && dot[-1] >= '0' && dot[-1] <= '9') { /* of a row: goals.1.weight */
-        dot--;
-        if (*(dot - 1) != '.') continue;
-        for (from = dot - 1; from > key && from[-1] != '.';)
+    const char *row = dot;
+    while (row && row > key && row[-1] >= '0' && row[-1] <= '9')
+        row--;
+    if (row && row < dot && row > key && row[-1] == '.') /* a key of a row: goals.1.weight */
+        for (from = row - 1; from > key && from[-1] != '.';)
             from--;
-        break;
-    }
-    int n = (int)strlen(from);
-    if (*unit) n = (int)(strstr(from, "_N_per_m") ? strstr(from, "_N_per_m") - from : strrchr(from, '_') - from);
+    const char *end = strstr(from, "_N_per_m");
+    if (!end) end = strrchr(from, '_');
+    int n = (int)(*unit && end ? end - from : (ptrdiff_t)strlen(from));
     snprintf(name, HF_AXIS_NAME_SIZE, "%.*s", n, from);
     hf_text_trim_utf8(name);
     for (char *p = name; *p; p++)

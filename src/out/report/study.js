@@ -473,7 +473,8 @@ function writeStudy(study) {
   for (const f of figures) f.isLead = f.key === leads.key;
   const lead = figures.find((f) => f.isLead),
     value = lead && lead.unit === "mm" ? rounded : fmt,
-    matters = (axis) => axis.isDrawn && shareOf(study, lead, axis) >= LITTLE;
+    others = (axis) => axes.filter((a) => a.isDrawn && a !== axis),
+    matters = (axis) => axis.isDrawn && changesAlong(lead, curves(study, axis, others(axis)), lead.main);
   document.getElementById("title").textContent = shown(data.title);
   document.getElementById("subtitle").textContent = shown(
     `Sweep of ${fmtCount(study.n)} points over ${listed((varying.length ? varying : axes).map((a) => a.name))}`,
