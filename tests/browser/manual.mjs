@@ -1,5 +1,5 @@
-// Every page of the manual (`make docs`) on a phone of 400 pixels, light and dark: nothing wider than the page, nothing
-// that a browser complains about, and the search finds a word.
+// Every page of the manual (`make docs`) on a phone of 400 pixels, some on a desk, light and dark: nothing wider than
+// the page, nothing that a browser complains about, and the search finds a word.
 import assert from "node:assert/strict";
 import { readdirSync, statSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -32,6 +32,21 @@ for (const colorScheme of ["light", "dark"]) {
     if (seen.width > 400) faults.push(`${name}: ${seen.width} pixels wide on a phone of 400; ${seen.wide}`);
     const bright = seen.back.every((part) => part > 128);
     if (bright !== (colorScheme === "light")) faults.push(`${name}: background ${seen.back} in the ${colorScheme}`);
+  }
+  // A desk: its column is not cut, the first page is seen at once, and code that goes on has a shadow at its edge.
+  await tab.setViewportSize({ width: 1400, height: 900 });
+  for (const name of ["index.html", "tutorial.html"]) {
+    await tab.goto(pathToFileURL(join(folder, name)).href);
+    const seen = await tab.evaluate(() => ({
+      width: document.documentElement.scrollWidth,
+      lists: Math.max(0, ...[...document.querySelectorAll("article .toctree-wrapper")].map((l) => l.offsetTop)),
+      bare: [...document.querySelectorAll("article pre")].filter(
+        (code) => code.scrollWidth > code.clientWidth && !getComputedStyle(code).backgroundImage.includes("gradient"),
+      ).length,
+    }));
+    if (seen.width > 1400) faults.push(`${name}: ${seen.width} pixels wide on a desk of 1400`);
+    if (seen.lists > 900) faults.push(`${name}: its last list begins at ${seen.lists} pixels`);
+    if (seen.bare) faults.push(`${name}: ${seen.bare} blocks of code are cut without a sign`);
   }
   await tab.goto(pathToFileURL(join(folder, "search.html")).href + "?q=scallop");
   await tab.waitForSelector("ul.search li a", { timeout: 10000 }).catch(() => faults.push("search: nothing"));
