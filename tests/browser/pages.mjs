@@ -64,15 +64,10 @@ export const pages = [
     sections: GA,
   },
   {
-    name: "ten-thousand", // 81x121 nodes
-    text: cylinder([40, 60], "surface: {}\n").replace("scene:\n", "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n"),
-    bytes_max: 5e6,
-    fluid: true,
-    sections: FORM,
-  },
-  {
     name: "tied", // 9842 nodes, 33241 cables
-    text: "scene:\n  paraboloid: {aperture_m: 30, focal_length_m: 15, rings: 40, rear_distance_m: 9}\nsurface: {}\n",
+    text:
+      "scene:\n  paraboloid: {aperture_m: 30, focal_length_m: 15, rings: 40, rear_distance_m: 9}\n" +
+      "  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\nsurface: {}\n",
     bytes_max: 5e6,
     fluid: true,
     sections: FORM,
