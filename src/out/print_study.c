@@ -40,6 +40,17 @@ typedef struct {
     int n_row, best[POINTS_BEST];
 } table;
 
+/* Words of a name, which may hold anything. */
+static void show_name(char name[HF_AXIS_NAME_SIZE])
+{
+    char shown[HF_AXIS_NAME_SIZE];
+    hf_text_trim_utf8(name);
+    hf_text_escape(name, shown, sizeof shown);
+    strcpy(name, shown);
+    for (char *p = name; *p; p++)
+        if (*p == '_') *p = ' ';
+}
+
 const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE])
 {
     const char *dot = strrchr(key, '.'), *unit = hf_ledger_unit(key);
@@ -54,9 +65,7 @@ const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE])
     if (!end) end = strrchr(from, '_');
     int n = (int)(*unit && end ? end - from : (ptrdiff_t)strlen(from));
     snprintf(name, HF_AXIS_NAME_SIZE, "%.*s", n, from);
-    hf_text_trim_utf8(name);
-    for (char *p = name; *p; p++)
-        if (*p == '_') *p = ' ';
+    show_name(name);
     return unit;
 }
 
@@ -107,9 +116,7 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
     }
     for (size_t k = 0; k < sizeof word / sizeof *word; k++)
         if (!strcmp(f->key, word[k][0])) strcpy(name, word[k][1]);
-    hf_text_trim_utf8(name);
-    for (char *p = name; *p; p++)
-        if (*p == '_') *p = ' ';
+    show_name(name);
 }
 
 static column figure_column(const hf_merged *m, int k)

@@ -96,6 +96,33 @@ START_TEST(failed_points_are_told_and_never_the_best)
 }
 END_TEST
 
+/* A file may name its axes, and words on them, as it likes: nothing of it commands a terminal. */
+START_TEST(odd_names_are_shown_escaped)
+{
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
+          "import h5py, numpy as np, sys\n"
+          "f = h5py.File(sys.argv[1], 'w')\n"
+          "f.attrs.create('program', b'hifdm', dtype=h5py.string_dtype('utf-8', 5)); f.attrs['format_version'] = "
+          "np.int32(2)\n"
+          "text = lambda v: np.array([t.encode() for t in v], dtype=h5py.string_dtype('utf-8', 99))\n"
+          "p = f.create_group('points')\n"
+          "p['id'] = text(['a', 'b']); p['reason'] = text(['', '\\x1b[31mno']); f['study/title'] = "
+          "text(['\\x1b[2Jhello'])\n"
+          "p['status'] = np.array([0, 1], dtype=h5py.enum_dtype({'ok': 0, 'not_converged': 1}, basetype='i1'))\n"
+          "for name in ('5.weight', 'goal_x.1psi', '_N', 'a' * 300, '\\x1b[31m_m'):\n"
+          "    p['input/' + name] = [1.0, 2.0]\n"
+          "p['input/words'] = text(['\\u202eabc', 'x'])\n"
+          "p['form/psi_m'] = [0.001, np.nan]; p['form/goal_0_' + 'z' * 90] = [1.0, np.inf]\n",
+          temp("odd.h5"));
+    HIFDM(0, "show", temp("odd.h5"));
+    OUT("\\x1b[2Jhello\n");
+    OUT("failed        1 not_converged: \\x1b[31mno");
+    OUT("\\u202eabc");
+    ck_assert_msg(!strchr(said.out, '\x1b') && !strstr(said.out, "\xe2\x80\xae"), "%s", said.out);
+    HIFDM(0, "report", temp("odd.h5"), "-o", temp("odd.html"));
+}
+END_TEST
+
 /* Of a large study the best points, or all. */
 START_TEST(a_large_study_shows_its_best)
 {
@@ -184,6 +211,7 @@ Suite *suite_cli_study(void)
     tcase_add_test(tcase, errors_of_the_surface_are_columns_of_a_merge);
     tcase_add_test(tcase, a_merged_study_is_shown_as_a_table);
     tcase_add_test(tcase, failed_points_are_told_and_never_the_best);
+    tcase_add_test(tcase, odd_names_are_shown_escaped);
     tcase_add_test(tcase, a_large_study_shows_its_best);
     tcase_add_test(tcase, check_says_what_a_sweep_would_do);
     tcase_add_test(tcase, check_tells_the_faults_of_a_study);
