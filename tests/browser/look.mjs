@@ -219,7 +219,18 @@ function checkSizes(page, found) {
 // On sheets: each has its number, none ends with a heading or with what is said above a table, none is lost, and a
 // table that goes on has its heading again. Returns how many there are.
 async function checkSheets(tab, folder) {
-  assert.deepEqual(await tab.evaluate(brokenWords), []);
+  for (const width of ["300px", ""]) {
+    await tab.evaluate((room) => (document.body.style.width = room), width); // little, so that tables want more
+    assert.deepEqual(await tab.evaluate(brokenWords), []);
+  }
+  const changes = await tab.locator(".chart svg[tabindex]").evaluateAll((all) =>
+    all.filter((drawn) => {
+      const before = drawn.clientHeight;
+      drawn.setAttribute("viewBox", "0 0 900 290"); // drawn for another width, as when sheets are counted
+      return drawn.clientHeight !== before;
+    }),
+  );
+  assert.equal(changes.length, 0, "sheets are counted before charts are drawn for them");
   const heads = await tab.locator("h2, h3, .paper").evaluateAll((all) => all.map((h) => h.innerText.trim())),
     last = await tab.locator("footer").innerText(),
     path = join(folder, "report.pdf"),
