@@ -175,7 +175,7 @@ FUZZ_N ?= 5000
 FUZZ_SEED ?= $(shell date +%s)
 fuzz-results: ## FUZZ_N damaged result files against every command that reads one, with sanitizers
 	$(Q)tools/setup.sh --test
-	$(SUB) BUILD=build/asan SANITIZE=address,undefined CFLAGS='-O1 -g' WERROR= build/asan/hifdm
+	$(SUB) BUILD=build/asan SANITIZE=address,undefined CFLAGS='-O2 -g' WERROR= build/asan/hifdm
 	$(PYTHON) tests/fuzz/fuzz_results.py --program build/asan/hifdm --n $(FUZZ_N) --seed $(FUZZ_SEED)
 
 # Twenty times as many nets as `make test` tries, ten times as many kills.
@@ -280,13 +280,13 @@ docs-browser: docs ## every page of the manual in headless Chromium, on a phone;
 lint: ## check the rules of the house
 	+$(Q)tools/lint.sh
 
-# -O1 for readable reports; no -Werror since instrumented code draws false warnings. Instrumented code is slow, hence
-# the multiplier, which the tests' own time limits follow too.
+# -O2: the longest tests take a third of what they take with -O1; no -Werror since instrumented code draws false
+# warnings. Instrumented code is slow, hence the multiplier, which the tests' own time limits follow too.
 # A small quarantine: the runner forks each test, and what it holds on to is copied and searched for leaks each time.
 asan: ## the tests under the address and undefined-behaviour sanitizers, in build/asan
 	+$(Q)ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1:quarantine_size_mb=16 \
 	    UBSAN_OPTIONS=print_stacktrace=1 \
-	    CK_TIMEOUT_MULTIPLIER=5 $(MAKE) BUILD=build/asan SANITIZE=address,undefined CFLAGS='-O1 -g' WERROR= test
+	    CK_TIMEOUT_MULTIPLIER=5 $(MAKE) BUILD=build/asan SANITIZE=address,undefined CFLAGS='-O2 -g' WERROR= test
 
 # clang, because gcc's OpenMP runtime hides its barriers from the thread sanitizer; OpenBLAS and HDF5 are not
 # instrumented, so what goes on inside them is ignored. setarch -R: clang 14 cannot place its shadow memory on kernels

@@ -51,9 +51,10 @@ void hf_carrier_add_weight(const hf_carrier *carrier, const double gravity_m_per
 
 /* How far the attachments may be, m, from where linear theory has them, to order of magnitude: what turns by an angle a
  * moves its end by u = r sin a along the circle, and by r (1 - cos a) = u a/2 across it, which small displacements
- * leave out. a is the largest turn of a member, u the largest displacement of an attachment; *span_m is the largest
- * distance of the first attachment to another. 0 of a state that is all zero. */
-double hf_carrier_second_order_m(const hf_carrier *carrier, const hf_carrier_state *state, double *span_m);
+ * leave out. a is the largest turn of a member, u = *move_m the largest displacement of an attachment; *span_m is the
+ * largest distance of the first attachment to another. 0 of a state that is all zero. */
+double hf_carrier_second_order_m(const hf_carrier *carrier, const hf_carrier_state *state, double *move_m,
+                                 double *span_m);
 
 void hf_carrier_state_free(hf_carrier_state *state);
 

@@ -32,6 +32,7 @@ typedef struct {
     double best_psi_m;           /* NaN while nothing is feasible */
     double elapsed_s;            /* in this phase and process */
     long samples, samples_all;   /* of tolerance: finished, of all; evaluations are those of this process */
+    double sigma_scale; /* of tolerance, after all samples: the factor of errors whose yield is found; else 0 */
     /* Of polish: steps done, and at most; the merit of the best design, NaN where psi is all that is wanted. best_psi_m
      * is of that design. */
     int iteration, iterations, first_iteration;

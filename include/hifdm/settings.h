@@ -268,7 +268,8 @@ typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
 
 /* X(name, word, unit, condition, description): what is measured of each sample of the net as built. The words are in
  * case files and result files. Conditions: ALWAYS, SURFACE (a section surface), FACETS (it has facets), LOSS (it has
- * frequencies), PATTERN (it has facets and a section pattern). */
+ * frequencies), FACET_LOSS (both), PATTERN (it has facets and a section pattern). Losses stand in the order of the
+ * half-path errors that make them. */
 #define HF_TOLERANCE_MEASURES(X)                                                                                       \
     X(PSI, "psi_m", "m", ALWAYS, "RMS distance of the inner nodes to their theoretical places")                        \
     X(HALF_PATH, "half_path_rms_m", "m", SURFACE, "of the inner nodes to the wanted surface")                          \
@@ -276,7 +277,10 @@ typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
     X(FACET_HALF_PATH, "facet_half_path_rms_m", "m", FACETS, "of the facets to the wanted surface")                    \
     X(FACET_FIT_HALF_PATH, "facet_fit_half_path_rms_m", "m", FACETS, "the same after the best fit")                    \
     X(GAIN_LOSS, "gain_loss_dB", "dB", LOSS,                                                                           \
-      "at the highest frequency after the best fit, of facets where there are some; infinite beyond 3 dB")             \
+      "of gain (Ruze) by half_path_rms_m at the highest frequency; infinite beyond 3 dB")                              \
+    X(FIT_GAIN_LOSS, "fit_gain_loss_dB", "dB", LOSS, "the same by fit_half_path_rms_m")                                \
+    X(FACET_GAIN_LOSS, "facet_gain_loss_dB", "dB", FACET_LOSS, "the same by facet_half_path_rms_m")                    \
+    X(FACET_FIT_GAIN_LOSS, "facet_fit_gain_loss_dB", "dB", FACET_LOSS, "the same by facet_fit_half_path_rms_m")        \
     X(PATTERN_LOSS, "pattern_loss_dB", "dB", PATTERN,                                                                  \
       "in the direction of the beam at the highest frequency, by physical optics over the facets")                     \
     X(LEAST_TENSION, "least_tension_N", "N", ALWAYS, "smallest tension of a cable")                                    \

@@ -42,6 +42,12 @@ static void show_samples(hf_progress *p, const hf_run_progress *now)
         p->is_shown = true;
         return;
     }
+    if (now->sigma_scale > 0) {
+        fprintf(p->file, "%ssample %ld/%ld; the yield with %.3g times the errors%s", is_line ? "\r\033[K" : "",
+                now->samples, now->samples_all, now->sigma_scale, is_line ? "" : "\n");
+        p->is_shown = is_line;
+        return;
+    }
     hf_print_duration(each_s * (double)(now->samples_all - now->samples), left, sizeof left);
     fprintf(p->file, "%ssample %ld/%ld  %.0f samples/s  %s left%s", is_line ? "\r\033[K" : "", now->samples,
             now->samples_all, rate_per_s(now), left, is_line ? "" : "\n");
@@ -80,7 +86,10 @@ static void show_json(const hf_progress *p, const hf_run_progress *now)
     if (now->phase == HF_RUN_TOLERANCE) {
         hf_json_integer(&j, "sample", now->samples);
         hf_json_integer(&j, "samples", now->samples_all);
-        hf_json_number(&j, "samples_per_s", rate_per_s(now));
+        if (now->sigma_scale > 0)
+            hf_json_number(&j, "sigma_scale", now->sigma_scale);
+        else
+            hf_json_number(&j, "samples_per_s", rate_per_s(now));
         hf_json_number(&j, "elapsed_s", now->elapsed_s);
     }
     if (now->phase == HF_RUN_POLISH && now->iterations > 0) {

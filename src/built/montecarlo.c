@@ -94,20 +94,23 @@ static void make_sample(void *context, long i, double *cut_m, double *EA_N, doub
 
 bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets *facets, hf_tolerance_measure measure)
 {
-    enum { ALWAYS, SURFACE, FACETS, LOSS, PATTERN };
+    enum { ALWAYS, SURFACE, FACETS, LOSS, FACET_LOSS, PATTERN };
 #define CONDITION(name, word, unit, condition, description) condition,
     static const int condition_of[HF_TOLERANCE_N_MEASURE] = {HF_TOLERANCE_MEASURES(CONDITION)};
 #undef CONDITION
-    bool has_surface = surface && surface->focal_length_m > 0;
+    bool has_surface = surface && surface->focal_length_m > 0, has_loss = has_surface && surface->frequencies_Hz.n > 0,
+         has_facets = has_surface && facets && facets->n_facet > 0;
     switch (condition_of[measure]) {
     case SURFACE:
         return has_surface;
     case FACETS:
-    case PATTERN:
-        return has_surface && facets && facets->n_facet > 0 &&
-               (condition_of[measure] == FACETS || surface->has_pattern);
+        return has_facets;
     case LOSS:
-        return has_surface && surface->frequencies_Hz.n > 0;
+        return has_loss;
+    case FACET_LOSS:
+        return has_loss && has_facets;
+    case PATTERN:
+        return has_facets && surface->has_pattern;
     default:
         return true;
     }
@@ -155,7 +158,8 @@ static void measure_surface(hf_montecarlo *t, const hf_built_shape *shape, doubl
         value[HF_TOLERANCE_FACET_HALF_PATH] = is.facets_m;
         value[HF_TOLERANCE_FACET_FIT_HALF_PATH] = is.facets_fit_m;
     }
-    value[HF_TOLERANCE_GAIN_LOSS] = loss_dB(t, has_facets ? is.facets_fit_m : is.nodes_fit_m);
+    for (int k = 0; k < (has_facets ? 4 : 2); k++)
+        value[HF_TOLERANCE_GAIN_LOSS + k] = loss_dB(t, value[HF_TOLERANCE_HALF_PATH + k]);
 }
 
 /* Over all inner nodes, as to first order. That of a result leaves out loose nodes; they have a place here, too. */
@@ -249,6 +253,7 @@ static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reac
     long met = 0, failed = 0;
     double needed = t->settings->yield * n;
     *reaches = false;
+    if (t->tell) t->tell(t->tell_context, scale);
     for (long first = 0; first < n; first += t->n_chunk) {
         int count = n - first < t->n_chunk ? (int)(n - first) : t->n_chunk;
         HF_TRY(hf_montecarlo_run(t, scale, first, count));

@@ -32,9 +32,11 @@ typedef struct {
     double *point;   /* [n_chunk][directions.n] */
     double *scratch; /* [n_thread][n_room] */
     size_t n_z, n_room;
-    unsigned varies;           /* HF_BUILT_VARIES_... */
-    atomic_bool has_no_memory; /* some sample could not be measured; any thread may find that */
-    bool skips_surface;        /* it is not measured, now */
+    unsigned varies;                           /* HF_BUILT_VARIES_... */
+    atomic_bool has_no_memory;                 /* some sample could not be measured; any thread may find that */
+    bool skips_surface;                        /* it is not measured, now */
+    void (*tell)(void *context, double scale); /* before each yield on the way to a scale; NULL: not */
+    void *tell_context;
     void *block;
 } hf_montecarlo;
 

@@ -148,14 +148,15 @@ static void check_require(const hf_case *c, hf_config_faults *f)
         if (isnan(row->at_most) && isnan(row->at_least))
             hf_config_fault_in_row(f, list, i, "measure", "has no limit; give at_most, at_least or both");
         if (row->at_least > row->at_most) hf_config_fault_in_row(f, list, i, "at_least", "must not be above at_most");
-        bool is_loss = row->measure == HF_TOLERANCE_GAIN_LOSS || row->measure == HF_TOLERANCE_PATTERN_LOSS;
+        bool is_ruze = row->measure >= HF_TOLERANCE_GAIN_LOSS && row->measure < HF_TOLERANCE_PATTERN_LOSS,
+             is_loss = is_ruze || row->measure == HF_TOLERANCE_PATTERN_LOSS;
         if (is_loss && !isnan(row->at_least))
             hf_config_fault_in_row(f, list, i, "at_least", "asks for a loss of gain; give at_most");
         if (row->measure == HF_TOLERANCE_LEAST_TENSION && !isnan(row->at_most))
             hf_config_fault_in_row(f, list, i, "at_most", "asks for slack cables; give at_least");
         if (is_of_surface(row->measure) && !c->has_surface)
             hf_config_fault_in_row(f, list, i, "measure", "is not measured: add a section surface");
-        else if (row->measure == HF_TOLERANCE_GAIN_LOSS && c->surface.frequencies_Hz.n == 0)
+        else if (is_ruze && c->surface.frequencies_Hz.n == 0)
             hf_config_fault_in_row(f, list, i, "measure", "needs surface.frequencies_Hz");
         else if (row->measure == HF_TOLERANCE_PATTERN_LOSS && !c->surface.has_pattern)
             hf_config_fault_in_row(f, list, i, "measure",

@@ -403,7 +403,8 @@ static const hf_field state_field[] = {
 static const hf_field require_field[] = {
     {"measure", HF_FIELD_WORD, IN(measure), 0, 0, NULL, "", hf_tolerance_measure_word,
      "what each net as built is measured by; those of the surface need a section surface, of facets a net that has "
-     "some, gain_loss_dB surface.frequencies_Hz, pattern_loss_dB surface.pattern"},
+     "some, losses by Ruze's formula (..gain_loss_dB) surface.frequencies_Hz, pattern_loss_dB surface.pattern; fit_ is "
+     "after the best fit, as a reflector that is pointed and focused again has it"},
     {"at_most", HF_FIELD_DOUBLE, IN(at_most), -BIG, BIG, "", "", NULL, "largest value that is allowed"},
     {"at_least", HF_FIELD_DOUBLE, IN(at_least), -BIG, BIG, "", "", NULL, "smallest value that is allowed"},
 };

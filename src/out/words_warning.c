@@ -68,6 +68,11 @@ const hf_word hf_words_warning[] = {
      "Seen along the axis two cables cross without a node: the net has no facets there that could be measured. Name "
      "them in a table of facets, or put a node at the crossing.",
      "cross without a node"},
+    {"loss_of_nodes", "warning", "",
+     "A requirement asks for the loss of gain that the nodes make. The mesh between them is flat and loses more: ask "
+     "for "
+     "facet_gain_loss_dB, or for facet_fit_gain_loss_dB of a reflector that is pointed and focused again.",
+     "counts the nodes only"},
     {"slack_as_built", "warning", "",
      "An error of the cut changes a cable's tension by up to EA times error over length; where that is more than the "
      "tension, the cable goes slack in some of the nets. More tension, cables of less EA, or smaller errors.",

@@ -20,13 +20,14 @@
 void hf_result_doubt_truss(const hf_problem *p, const hf_carrier_state *truss, const hf_workspace *shape,
                            hf_messages *messages)
 {
-    double span_m, off_m = hf_carrier_second_order_m(&p->carrier, truss, &span_m);
+    double move_m, span_m, off_m = hf_carrier_second_order_m(&p->carrier, truss, &move_m, &span_m);
     double psi_m = shape ? hf_metrics_psi_m(&p->model, shape) : 0;
     if (off_m > fmax(SECOND_ORDER_DOUBT * span_m, SECOND_ORDER_PSI * psi_m))
         hf_warning(messages,
-                   "truss: its attachments give way so far that linear theory, which it is computed by, may be off by "
-                   "some %.2g mm: stiffen it (tubes of larger diameter, more bays) or lower form.pretension_N",
-                   off_m * 1e3);
+                   "truss: its attachments give way so far (%.3g mm in the result) that linear theory, which it is "
+                   "computed by, may be off by some %.2g mm: stiffen it (tubes of larger diameter, more bays) or lower "
+                   "form.pretension_N",
+                   move_m * 1e3, off_m * 1e3);
 }
 
 /* ---- nodes that no goal counts ---- */

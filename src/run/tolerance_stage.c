@@ -24,6 +24,14 @@ static bool make_beam(const hf_problem *p, hf_gain_beam *beam)
     return beam->order < HF_GAIN_ORDER_MOST;
 }
 
+/* A loss of gain that somebody asks for is that of a reflector, which is made of its facets. */
+static const char *loss_of_nodes(const hf_problem *p, hf_tolerance_measure measure)
+{
+    if (measure != HF_TOLERANCE_GAIN_LOSS && measure != HF_TOLERANCE_FIT_GAIN_LOSS) return NULL;
+    hf_tolerance_measure of_facets = measure + (HF_TOLERANCE_FACET_GAIN_LOSS - HF_TOLERANCE_GAIN_LOSS);
+    return hf_montecarlo_measures(&p->surface, &p->facets, of_facets) ? hf_tolerance_measure_word[of_facets] : NULL;
+}
+
 static hf_status check_measures(const hf_problem *p, hf_messages *messages)
 {
     const hf_case *c = &p->settings;
@@ -32,7 +40,12 @@ static hf_status check_measures(const hf_problem *p, hf_messages *messages)
         char key[64], place[HF_PATH_SIZE + 128];
         hf_tolerance_measure measure = c->tolerance.require[i].measure;
         hf_gain_beam beam;
-        const char *fault = NULL;
+        const char *fault = NULL, *better = loss_of_nodes(p, measure);
+        if (better)
+            hf_warning(messages,
+                       "tolerance.require.%d.measure: %s counts the nodes only; %s counts the facets between "
+                       "them, too",
+                       i, hf_tolerance_measure_word[measure], better);
         if (!hf_montecarlo_measures(&p->surface, &p->facets, measure))
             fault = "this net has no facets";
         else if (measure == HF_TOLERANCE_PATTERN_LOSS && !make_beam(p, &beam))
@@ -231,6 +244,20 @@ static void tell_first_order(const job *j)
     if (q->observer) q->observer(q->observer_context, &now);
 }
 
+/* The samples are there; some of them are solved again with other errors. */
+static void tell_scale(void *context, double scale)
+{
+    const job *j = context;
+    const hf_run_request *q = j->stage->request;
+    hf_run_progress now = {.phase = HF_RUN_TOLERANCE,
+                           .samples = j->samples.n,
+                           .samples_all = j->samples.n,
+                           .evaluations = j->samples.n,
+                           .sigma_scale = scale,
+                           .elapsed_s = hf_clock_s() - j->begin_s};
+    if (q->observer) q->observer(q->observer_context, &now);
+}
+
 static hf_status find_samples(job *j, hf_messages *messages)
 {
     const hf_run_request *q = j->stage->request;
@@ -347,6 +374,8 @@ static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
     hf_status status = hf_statistics_sum_up(&j->montecarlo, &rows, to);
     if (status == HF_OK && t->yield > 0) {
         to->scale_samples = t->samples < SCALE_SAMPLES ? t->samples : SCALE_SAMPLES;
+        j->montecarlo.tell = tell_scale;
+        j->montecarlo.tell_context = j;
         status = hf_montecarlo_find_scale(&j->montecarlo, to->scale_samples, &to->sigma_scale, &to->scale_bound);
     }
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "tolerance: out of memory");

@@ -99,11 +99,11 @@ void hf_carrier_add_weight(const hf_carrier *c, const double gravity_m_per_s2[3]
     }
 }
 
-double hf_carrier_second_order_m(const hf_carrier *c, const hf_carrier_state *state, double *span_m)
+double hf_carrier_second_order_m(const hf_carrier *c, const hf_carrier_state *state, double *move_m, double *span_m)
 {
     const hf_truss *t = &c->truss;
-    double turn = 0, move_m = 0;
-    *span_m = 0;
+    double turn = 0;
+    *move_m = *span_m = 0;
     for (int e = 0; e < t->n_member && state->displacement; e++) {
         const int *end = t->end + 2 * e;
         double along = 0, square = 0, length_m = c->frame.length_m[e];
@@ -117,10 +117,10 @@ double hf_carrier_second_order_m(const hf_carrier *c, const hf_carrier_state *st
     for (int k = 0; k < c->n_attachment && state->displacement; k++) {
         const double *u = state->displacement + HF_TRUSS_DOF * c->truss_node[k];
         const double *at = t->position_m + 3 * c->truss_node[k], *first = t->position_m + 3 * c->truss_node[0];
-        move_m = fmax(move_m, hypot(hypot(u[0], u[1]), u[2]));
+        *move_m = fmax(*move_m, hypot(hypot(u[0], u[1]), u[2]));
         *span_m = fmax(*span_m, hypot(hypot(at[0] - first[0], at[1] - first[1]), at[2] - first[2]));
     }
-    return turn * move_m / 2;
+    return turn * *move_m / 2;
 }
 
 void hf_carrier_state_free(hf_carrier_state *state)

@@ -100,6 +100,27 @@ START_TEST(samples_tell_the_loss_of_their_far_field)
 }
 END_TEST
 
+/* Ruze's formula makes a loss of each half-path error, by its name; a limit of nodes beside facets gets a warning. */
+START_TEST(samples_tell_each_loss_of_gain)
+{
+    const char *c = file_with("c.yaml", BUILT_SCENE "surface: {frequencies_Hz: [2e8, 1e8]}\n"
+                                                    "tolerance: {sigma_cut_m: 1e-4, samples: 40, yield: 0.9,\n"
+                                                    "  require: [{measure: fit_gain_loss_dB, at_most: 1}]}\n"),
+               *path = temp("a.h5");
+    HIFDM(0, "tolerance", c, "-o", path, "--quiet");
+    ERR("warning: tolerance.require.0.measure: fit_gain_loss_dB counts the nodes only; facet_fit_gain_loss_dB counts");
+    EXPECT(
+        path, "--",
+        "all(np.abs(a['tolerance/sample'][p + 'gain_loss_dB'][:] / a['tolerance/sample'][p + 'half_path_rms_m'][:]**2 "
+        "* (299792458 / (4 * np.pi * 2e8))**2 * np.log(10) / 10 - 1).max() < 1e-12 for p in ['', 'fit_', 'facet_', "
+        "'facet_fit_'])",
+        "len({a['tolerance/sample'][p + 'gain_loss_dB'][0] for p in ['', 'fit_', 'facet_', 'facet_fit_']}) == 4");
+    HIFDM(0, "tolerance", c, "-o", path, "--restart", "--quiet", "--set",
+          "tolerance.require=[{measure: facet_gain_loss_dB, at_most: 1}]");
+    ck_assert_ptr_null(strstr(said.err, "counts the nodes only"));
+}
+END_TEST
+
 /* Killed after a few changes in its folder, and continued: the same bits. */
 START_TEST(killed_runs_go_on)
 {
@@ -345,6 +366,7 @@ Suite *suite_cli_tolerance(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, threads_and_tasks_change_nothing, 0, 2);
     tcase_add_test(tests, samples_tell_the_loss_of_their_far_field);
+    tcase_add_test(tests, samples_tell_each_loss_of_gain);
     tcase_add_test(tests, killed_runs_go_on);
     tcase_add_test(tests, journals_of_another_case_are_no_dead_end);
     tcase_add_test(tests, a_design_outlives_samples_that_fail);

@@ -320,10 +320,23 @@ START_TEST(rows_have_the_same_bits)
 }
 END_TEST
 
+typedef struct {
+    int n;
+    double first, largest;
+} told;
+
+static void hear_scale(void *context, double scale)
+{
+    told *to = context;
+    if (to->n++ == 0) to->first = scale;
+    to->largest = fmax(to->largest, scale);
+}
+
 /* The yield falls as errors grow: the scale that is found has it, a little more has not. */
 START_TEST(a_scale_has_the_wanted_yield)
 {
     static study s;
+    told all = {0};
     double scale;
     int bound;
     open_study(&s, 4, false);
@@ -332,8 +345,11 @@ START_TEST(a_scale_has_the_wanted_yield)
     s.settings.require[0] = (hf_require_settings){HF_TOLERANCE_PSI, 1e-4, (double)NAN};
     s.settings.yield = 0.9;
     begin(&s, 2);
+    s.m.tell = hear_scale;
+    s.m.tell_context = &all;
     ck_assert_int_eq(hf_montecarlo_find_scale(&s.m, 200, &scale, &bound), HF_OK);
     ck_assert_int_eq(bound, 0);
+    ck_assert(all.n > 8 && all.first == 1 && all.largest >= scale);
     for (int k = 0; k < 2; k++) {
         int met = 0;
         ck_assert_int_eq(hf_montecarlo_run(&s.m, k ? 1.0055 * scale : scale, 0, 200), HF_OK);

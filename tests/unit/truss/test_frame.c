@@ -376,7 +376,7 @@ END_TEST
 /* A bar that turns by 0.01 about its end: linear theory leaves its other end 1 - cos off, of second order. */
 START_TEST(second_order_of_a_turn)
 {
-    double position_m[6] = {0, 0, 0, 1.2, 1.6, 0}, length_m = 2, displacement[12] = {0}, span_m;
+    double position_m[6] = {0, 0, 0, 1.2, 1.6, 0}, length_m = 2, displacement[12] = {0}, move_m, span_m;
     int end[2] = {0, 1}, truss_node[2] = {0, 1};
     hf_carrier c = {.truss = {.n_node = 2, .n_member = 1, .position_m = position_m, .end = end},
                     .frame = {.length_m = &length_m},
@@ -385,9 +385,10 @@ START_TEST(second_order_of_a_turn)
     const hf_carrier_state state = {.displacement = displacement}, none = {0};
     displacement[HF_TRUSS_DOF] = -0.01 * 1.6;
     displacement[HF_TRUSS_DOF + 1] = 0.01 * 1.2;
-    ck_assert_double_eq_tol(hf_carrier_second_order_m(&c, &state, &span_m), 2 * (1 - cos(0.01)), 1e-8);
+    ck_assert_double_eq_tol(hf_carrier_second_order_m(&c, &state, &move_m, &span_m), 2 * (1 - cos(0.01)), 1e-8);
     ck_assert_double_eq_tol(span_m, 2, 1e-15);
-    ck_assert_double_eq(hf_carrier_second_order_m(&c, &none, &span_m), 0);
+    ck_assert_double_eq_tol(move_m, 0.02, 1e-15);
+    ck_assert_double_eq(hf_carrier_second_order_m(&c, &none, &move_m, &span_m), 0);
 }
 END_TEST
 
