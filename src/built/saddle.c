@@ -205,10 +205,11 @@ static hf_status factor_border(hf_saddle *s)
     memcpy(s->solved, s->column, n * n_band * sizeof *s->solved);
     HF_TRY(solve_band(s, s->n_border, s->solved));
     for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++)
-            for (size_t k = 0; k < n_band; k++)
-                if (s->column[i * n_band + k] != 0)
-                    s->corner[i * n + j] -= s->column[i * n_band + k] * s->solved[j * n_band + k];
+        for (size_t k = 0; k < n_band; k++) {
+            double entry = s->column[i * n_band + k]; /* few are not 0 */
+            for (size_t j = 0; j < n && entry != 0; j++)
+                s->corner[i * n + j] -= entry * s->solved[j * n_band + k];
+        }
     fill_border(s);
     return hf_dense_factor(s->n_border, s->dense, s->dense_pivot) == 0 ? HF_OK : HF_SINGULAR;
 }

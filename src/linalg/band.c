@@ -117,10 +117,42 @@ int hf_band_factor_general(int n, int half_bandwidth, double *general, int *pivo
     return info > 0 ? info : info < 0;
 }
 
+#define GENERAL_PANEL 8 /* right-hand sides that share one reading of the factor */
+
+/* to -= factor times from */
+static void subtract(int n, double factor, const double *restrict from, double *restrict to)
+{
+    for (int i = 0; i < n; i++)
+        to[i] -= factor * from[i];
+}
+
+/* dgbtrs with one reading of the factor for all of b [n_rhs][ldb]: LAPACK reads the upper triangle once for each. */
+static void back_solve_panel(int n, int k, int n_rhs, const double *general, const int *pivot, double *b, int ldb)
+{
+    ptrdiff_t ldab = 3 * k + 1;
+    for (int j = 0; j < n; j++)
+        for (int c = 0; c < n_rhs; c++) {
+            double *x = b + (ptrdiff_t)c * ldb, top = x[pivot[j] - 1];
+            x[pivot[j] - 1] = x[j];
+            x[j] = top;
+            if (top != 0) subtract(k < n - 1 - j ? k : n - 1 - j, top, general + j * ldab + 2 * k + 1, x + j + 1);
+        }
+    for (int j = n - 1; j >= 0; j--)
+        for (int c = 0; c < n_rhs; c++) {
+            double *x = b + (ptrdiff_t)c * ldb;
+            int above = j < 2 * k ? j : 2 * k;
+            if (x[j] == 0) continue;
+            x[j] /= general[j * ldab + 2 * k];
+            subtract(above, x[j], general + j * ldab + 2 * k - above, x + j - above);
+        }
+}
+
 void hf_band_back_solve_general(int n, int half_bandwidth, int n_rhs, const double *general, const int *pivot,
                                 double *b, int ldb)
 {
     int k = half_bandwidth, ldab = 3 * k + 1, info = 0;
+    for (; n_rhs >= GENERAL_PANEL; n_rhs -= GENERAL_PANEL, b += (ptrdiff_t)GENERAL_PANEL * ldb)
+        back_solve_panel(n, k, GENERAL_PANEL, general, pivot, b, ldb);
     dgbtrs_("N", &n, &k, &k, &n_rhs, general, &ldab, pivot, b, &ldb, &info);
 }
 

@@ -129,6 +129,31 @@ START_TEST(cholesky_lu_gsl_and_dense_agree)
 }
 END_TEST
 
+/* Many right-hand sides share one reading of the factor; each has the answer that LAPACK gives it alone. */
+START_TEST(many_right_hand_sides_are_solved_as_each_alone)
+{
+    enum { N_RHS = 11 };
+    int n = sizes[_i % N_SIZES], k = widths[_i / N_SIZES];
+    struct band_system s = random_system(n, k, 0, 2000 + (uint64_t)_i);
+    double x[3 * LDB], all[N_RHS * LDB], alone[N_RHS * LDB], general[MAX_N * (3 * MAX_K + 1)];
+    int pivot[MAX_N], bad_row;
+    memcpy(x, s.b, sizeof x);
+    ck_assert_int_eq(hf_band_solve_indefinite(n, k, s.band, general, pivot, x, LDB, &bad_row), HF_OK);
+    for (int c = 0; c < N_RHS; c++)
+        for (int i = 0; i < LDB; i++)
+            all[c * LDB + i] = alone[c * LDB + i] = i % (c + 1) ? 0 : s.b[c % 3 * LDB + i] - 0.1 * c;
+    hf_band_back_solve_general(n, k, N_RHS, general, pivot, all, LDB);
+    for (int c = 0; c < N_RHS; c++) {
+        double size = 0;
+        hf_band_back_solve_general(n, k, 1, general, pivot, alone + c * LDB, LDB);
+        for (int i = 0; i < n; i++)
+            size = fmax(size, fabs(alone[c * LDB + i]));
+        for (int i = 0; i < LDB; i++)
+            ck_assert_double_eq_tol(all[c * LDB + i], alone[c * LDB + i], 1e-12 * size);
+    }
+}
+END_TEST
+
 /* A random matrix may be badly conditioned, so the solution proves little; the backward error of LU with pivoting is
  * small whatever the condition: below n * growth * 1e-16 of |A| |x|, growth below 100 in practice. */
 START_TEST(indefinite_systems_are_solved)
@@ -244,6 +269,7 @@ Suite *suite_unit_band(void)
     TCase *tests = tcase_create("band");
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, cholesky_lu_gsl_and_dense_agree, 0, N_SIZES * N_WIDTHS);
+    tcase_add_loop_test(tests, many_right_hand_sides_are_solved_as_each_alone, 0, N_SIZES * N_WIDTHS);
     tcase_add_loop_test(tests, indefinite_systems_are_solved, 0, N_SIZES * N_WIDTHS);
     tcase_add_loop_test(tests, not_positive_definite_is_told_with_its_row, 0, 31);
     tcase_add_loop_test(tests, singular_is_told_with_its_row_by_lu_too, 0, 31);
