@@ -78,7 +78,9 @@ static hf_status read_figures(hf_merged *m, hf_messages *messages)
         const char *group = source[stage].group, *prefix = source[stage].prefix;
         for (int k = 0; k < N_KEY; k++)
             HF_TRY(read_figure(m, stage, group, prefix, key_of_stage[k], messages));
+        int n_before = m->n_figure;
         HF_TRY(read_group(m, stage, group, prefix, "goal_", messages));
+        if (m->n_figure > n_before + 1) HF_TRY(read_figure(m, stage, group, prefix, "merit", messages));
         HF_TRY(read_group(m, stage, source[stage].surface, "", "", messages));
     }
     for (int k = 0; k < N_BUILT; k++)
@@ -194,24 +196,25 @@ static void try_lead(hf_merged *m, hf_merged_stage stage, const char *key)
     if (m->lead < 0 && f && !f->is_same) m->lead = (int)(f - m->figure);
 }
 
-/* psi of the nets as built where it is known; else psi of the result, but the errors of the surface where goals do
- * without psi, or where psi is the same everywhere. */
+/* What the goals want, where that is not psi alone: of several their merit. Else psi of the nets as built where it is
+ * known, psi of the result, and the errors of the surface where psi is the same everywhere. */
 static void choose_best(hf_merged *m)
 {
     static const char *const error[] = {"facet_half_path_rms_m", "half_path_rms_m", "facet_fit_half_path_rms_m",
                                         "fit_half_path_rms_m"};
-    bool has_goals = false, has_psi = false;
+    const char *goal = NULL;
+    bool has_other = false;
     for (int k = 0; k < m->n_figure; k++) {
         if (m->figure[k].stage != m->main || strncmp(m->figure[k].key, "goal_", 5) != 0) continue;
-        has_goals = true;
-        has_psi |= m->figure[k].is_psi;
+        goal = goal ? "merit" : m->figure[k].key;
+        has_other |= !m->figure[k].is_psi;
     }
     m->lead = m->best = -1;
+    if (has_other) try_lead(m, m->main, goal);
     try_lead(m, HF_MERGED_BUILT, "psi_95_m");
-    if (!has_goals || has_psi) try_lead(m, m->main, "psi_m");
+    try_lead(m, m->main, "psi_m");
     for (size_t k = 0; k < sizeof error / sizeof *error; k++)
         try_lead(m, m->main, error[k]);
-    try_lead(m, m->main, "psi_m");
     if (m->lead < 0) return;
     const double *value = m->figure[m->lead].value.value;
     for (int i = 0; i < m->n; i++)

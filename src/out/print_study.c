@@ -94,6 +94,7 @@ static column axis_column(const hf_merged *m, int a)
 static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name[HF_AXIS_NAME_SIZE])
 {
     static const char *const word[][2] = {{"psi_95_m", "psi of 95 %"},
+                                          {"merit", "merit"},
                                           {"yield", "yield"},
                                           {"inner_tension_ratio", "T ratio in"},
                                           {"boundary_tension_ratio", "T ratio edge"},
@@ -345,7 +346,7 @@ static void print_best(const table *t, FILE *f)
     column lead = figure_column(m, m->lead);
     char text[2 * HF_AXIS_NAME_SIZE], cell[CELL_SIZE];
     print_cell(m, &lead, m->best, cell);
-    snprintf(text, sizeof text, "least %s: %s %s", lead.head, cell, lead.unit);
+    snprintf(text, sizeof text, "least %s: %s%s%s", lead.head, cell, *lead.unit ? " " : "", lead.unit);
     add_item(&line, text);
     for (int k = 0; k < t->n_axis; k++)
         print_item(m, &t->column[k], m->best, &line);

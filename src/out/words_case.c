@@ -45,9 +45,9 @@ const hf_word hf_words_case[] = {
     {"axis", "term", "",
      "Of a study: a key of the case and the values that it takes, such as form.pretension_N: [5, 10, 20].", NULL},
     {"best_by", "key of --json, of a merged study", "",
-     "The figure by which the point `best` is the best, with the least value: psi of 95 % of the nets as built where "
-     "it "
-     "is known; else psi of the result or, where the goals do without psi, the error of its facets.",
+     "The figure by which the point `best` is the best, with the least value: where goals want more than psi their "
+     "merit, "
+     "or the only goal; else psi of 95 % of the nets as built where it is known, or psi of the result.",
      NULL},
     {"good_to_Hz", "figure of a merged study", "Hz",
      "See good to; of facets where there are some (facet_good_to_Hz), and after the best fit (fit_).", NULL},

@@ -61,6 +61,7 @@ function figureWords(key) {
     goalName = goal && clip(goal[1].replace(/_/g, " "), NAME_MAX);
   if (key === "psi_m") return ["Surface error ψ", "ψ", 1, "ψ"];
   if (key === "psi_95_m") return ["ψ that 95 % of the nets as built keep", "ψ", 0, "ψ of 95 %"];
+  if (key === "merit") return ["Merit: what all goals come to by their weights", "merit", 2, "Merit"];
   if (key === "yield") return ["Yield: nets as built that meet all requirements", "yield", 2, "Yield"];
   if (rest === "half_path_rms_m")
     return [`Half-path error of the ${of}${after}`, "RMS", fit ? 4 : 3, `RMS of ${of}${fitted}`];
