@@ -20,7 +20,8 @@ typedef struct {
 } hf_facets;
 
 /* Nodes are on the wanted surface that are inner nodes, and of the others those whose theoretical position is on it up
- * to 1e-3 of its depth. Of the facets that the scene names, those with a node on the surface. Where it names none they
+ * to 1e-3 of its depth, or that a cable holds to an inner node along the surface, up to 0.1 of its length: those of a
+ * rim that gave way. Of the facets that the scene names, those with a node on the surface. Where it names none they
  * are found: a facet is a minimal face of the plane graph that the cables between nodes on the surface make, seen
  * along z. Where no cable runs along the rim, the straight line between two supports closes the face at the inner
  * nodes between them, unless boundary cables hang there from one to the other as an edge. surface->focal_length_m > 0,

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #define NEAR_PART 1e-3     /* supports and edge nodes nearer to the wanted surface, in parts of its depth, are on it */
+#define NEAR_SLOPE 0.1     /* and those whose cable to an inner node leaves the surface by this part of its length */
 #define STRAIGHT_ON 0.5    /* cosine of the turn below which two cables go on straight: a sag of 0.29 of the span */
 #define STRAIGHT_PART 1e-9 /* a corner that points inwards by this part of the area is straight but for rounding */
 
@@ -27,6 +28,7 @@ typedef struct {
 
 typedef struct {
     const hf_scene *scene;
+    double *above_m;      /* [n_node] heights above the wanted surface */
     unsigned char *is_on; /* [n_node] of the graph */
     int *degree, *mixed;  /* [n_node] of drop_ends */
     int *first;           /* [n_node + 1] where the half edges from a node begin */
@@ -40,6 +42,7 @@ typedef struct {
 static void lay_out(hf_arena *a, const hf_scene *s, graph *g)
 {
     size_t n = (size_t)s->n_node, m = 2 * (size_t)s->n_cable;
+    g->above_m = hf_arena_take(a, n, sizeof *g->above_m);
     g->is_on = hf_arena_take(a, n, 1);
     g->degree = hf_arena_take(a, n, sizeof *g->degree);
     g->mixed = hf_arena_take(a, n, sizeof *g->mixed);
@@ -50,15 +53,30 @@ static void lay_out(hf_arena *a, const hf_scene *s, graph *g)
     g->seen = hf_arena_take(a, m, 1);
 }
 
+/* A rim that gave way on its truss is off by millimetres, and still where the cables of the surface end. */
+static void follow_cables(graph *g)
+{
+    const hf_scene *s = g->scene;
+    for (int e = 0; e < s->n_cable; e++)
+        for (int k = 0; k < 2; k++) {
+            int i = s->end[2 * e + k], from = s->end[2 * e + 1 - k];
+            if (s->role[i] == HF_ROLE_INNER || s->role[from] != HF_ROLE_INNER) continue;
+            const double *p = s->position_m + 3 * (size_t)i, *q = s->position_m + 3 * (size_t)from;
+            double length_m = hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
+            if (fabs(g->above_m[i] - g->above_m[from]) <= NEAR_SLOPE * length_m) g->is_on[i] = 1;
+        }
+}
+
 static void choose_nodes(graph *g, const hf_surface_settings *surface)
 {
     const hf_scene *s = g->scene;
     double slope[2], curvature = 1 / (4 * surface->focal_length_m);
     double near_m = NEAR_PART * hf_wanted_compare(surface->kind, surface->focal_length_m, s).depth_m;
     for (int i = 0; i < s->n_node; i++) {
-        double above = hf_wanted_height_above(surface->kind, curvature, s->position_m + 3 * (size_t)i, slope);
-        g->is_on[i] = s->role[i] == HF_ROLE_INNER || fabs(above) <= near_m;
+        g->above_m[i] = hf_wanted_height_above(surface->kind, curvature, s->position_m + 3 * (size_t)i, slope);
+        g->is_on[i] = s->role[i] == HF_ROLE_INNER || fabs(g->above_m[i]) <= near_m;
     }
+    follow_cables(g);
 }
 
 static bool in_graph(const graph *g, int cable)

@@ -9,7 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define SAME_RATIO 1e-6 /* values so near to each other are told as one */
+#define SAME_RATIO 1e-6    /* values so near to each other are told as one */
+#define REACHED_RATIO 1e-9 /* of what a goal is of the shape found */
 
 const char *const hf_merged_stage_word[HF_MERGED_N_STAGE] = {"form", "optimize", "polish", "tolerance"};
 
@@ -190,10 +191,35 @@ static hf_status choose_main(hf_merged *m, hf_messages *messages)
 
 /* ---- the best point ---- */
 
-static void try_lead(hf_merged *m, hf_merged_stage stage, const char *key)
+/* What says which point is best: the first figure that varies, and the next where points are alike. */
+typedef struct {
+    int figure[2], n;
+} leads;
+
+static void try_lead(const hf_merged *m, hf_merged_stage stage, const char *key, leads *to)
 {
     const hf_merged_figure *f = hf_merged_find(m, stage, key);
-    if (m->lead < 0 && f && !f->is_same) m->lead = (int)(f - m->figure);
+    if (to->n < 2 && f && !f->is_same) to->figure[to->n++] = (int)(f - m->figure);
+}
+
+/* A goal that is reached leaves rounding, which says nothing of points. */
+static double rounding_of(const hf_merged *m, const char *goal)
+{
+    const hf_merged_figure *f = hf_merged_find(m, HF_MERGED_FORM, goal);
+    double size = 0;
+    for (int i = 0; f && m->main != HF_MERGED_FORM && i < m->n; i++)
+        if (hf_merged_is_done(m, i)) size = fmax(size, fabs(f->value.value[i]));
+    return REACHED_RATIO * size;
+}
+
+static bool is_better(const hf_merged *m, const leads *by, double rounding, int i, int best)
+{
+    for (int k = 0; k < by->n && best >= 0; k++) {
+        const double *value = m->figure[by->figure[k]].value.value;
+        double floor = k ? 0 : rounding, a = fmax(value[i], floor), b = fmax(value[best], floor);
+        if (a != b) return a < b;
+    }
+    return best < 0;
 }
 
 /* What the goals want, where that is not psi alone: of several their merit. Else psi of the nets as built where it is
@@ -204,21 +230,27 @@ static void choose_best(hf_merged *m)
                                         "fit_half_path_rms_m"};
     const char *goal = NULL;
     bool has_other = false;
+    double rounding = 0;
+    leads by = {.n = 0};
     for (int k = 0; k < m->n_figure; k++) {
         if (m->figure[k].stage != m->main || strncmp(m->figure[k].key, "goal_", 5) != 0) continue;
         goal = goal ? "merit" : m->figure[k].key;
         has_other |= !m->figure[k].is_psi;
     }
-    m->lead = m->best = -1;
-    if (has_other) try_lead(m, m->main, goal);
-    try_lead(m, HF_MERGED_BUILT, "psi_95_m");
-    try_lead(m, m->main, "psi_m");
+    if (has_other) try_lead(m, m->main, goal, &by);
+    if (by.n) rounding = rounding_of(m, goal);
+    try_lead(m, HF_MERGED_BUILT, "psi_95_m", &by);
+    try_lead(m, m->main, "psi_m", &by);
     for (size_t k = 0; k < sizeof error / sizeof *error; k++)
-        try_lead(m, m->main, error[k]);
-    if (m->lead < 0) return;
-    const double *value = m->figure[m->lead].value.value;
-    for (int i = 0; i < m->n; i++)
-        if (hf_merged_is_done(m, i) && isfinite(value[i]) && (m->best < 0 || value[i] < value[m->best])) m->best = i;
+        try_lead(m, m->main, error[k], &by);
+    m->lead = by.n ? by.figure[0] : -1;
+    m->best = -1;
+    for (int i = 0; i < m->n && by.n; i++)
+        if (hf_merged_is_done(m, i) && isfinite(m->figure[m->lead].value.value[i]) &&
+            is_better(m, &by, rounding, i, m->best))
+            m->best = i;
+    bool is_rounding = m->best >= 0 && m->figure[m->lead].value.value[m->best] <= rounding;
+    if (is_rounding && by.n > 1) m->lead = by.figure[1];
 }
 
 const char *hf_merged_heading(const hf_merged *m)

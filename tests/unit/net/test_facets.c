@@ -140,6 +140,26 @@ START_TEST(only_nodes_on_the_surface_count)
 }
 END_TEST
 
+/* Corners of a square with a middle: a rim that gave way still holds the cables of the surface; a tie does not. */
+START_TEST(a_rim_that_gave_way_holds_the_surface)
+{
+    static const double xy[][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5, 0.5}};
+    static const int end[][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 0}, {4, 1}, {4, 2}, {4, 3}};
+    static const double below_m[] = {0.02, 0.06, 0.08, 0.5};
+    static const int n_facet[] = {4, 4, 2, 2};
+    for (int k = 0; k < 4; k++) {
+        hf_scene s = drawn(5, xy, 8, end);
+        for (int i = 0; i < 4; i++)
+            s.role[i] = HF_ROLE_SUPPORT;
+        s.position_m[2] -= below_m[k];
+        hf_facets f = found(&s);
+        ck_assert_int_eq(f.n_facet, n_facet[k]);
+        hf_facets_free(&f);
+        hf_scene_free(&s);
+    }
+}
+END_TEST
+
 /* The quad net of a generator: all of its cells, whatever the supports. */
 START_TEST(cells_of_a_generated_net_are_found)
 {
@@ -244,6 +264,7 @@ Suite *suite_unit_facets(void)
     tcase_add_test(tests, crossing_cables_have_no_facets);
     tcase_add_test(tests, a_tree_between_supports_is_closed);
     tcase_add_test(tests, only_nodes_on_the_surface_count);
+    tcase_add_test(tests, a_rim_that_gave_way_holds_the_surface);
     tcase_add_test(tests, cells_of_a_generated_net_are_found);
     tcase_add_loop_test(tests, a_long_chain_leaves_in_linear_time, 0, 2);
     tcase_add_loop_test(tests, an_edge_that_hangs_closes_no_gap, 0, 5);
