@@ -484,6 +484,12 @@ static void print_tolerance_time(const hf_problem *p, int threads, FILE *f)
     else
         fprintf(f, "                as built: first order some %s of processor time, counted; samples not tried\n",
                 begin);
+    if (!trial.scale_yields) return;
+    fprintf(f, "                tolerance.yield: up to %d yields of %d nets more, most of them ended early",
+            trial.scale_yields, trial.scale_samples);
+    hf_print_duration(trial.sample_s * trial.scale_yields * trial.scale_samples / threads, all, sizeof all);
+    if (trial.is_tried) fprintf(f, ": some %s", all);
+    fputc('\n', f);
 }
 
 /* Tries the form-finding: three iterations measure what one costs, then as many are done as fit into TRIAL_S. */

@@ -289,14 +289,13 @@ static hf_status judge_end(hf_montecarlo *t, bool goes_up, double *scale, int *b
  * halvings, to 2^(1/128). */
 static hf_status find_scale(hf_montecarlo *t, int n, double *scale, int *bound)
 {
-    enum { DOUBLINGS = 10, HALVINGS = 7 };
-    double largest = fmin(ldexp(1, DOUBLINGS), fmax(1, hf_built_errors_largest_scale(&t->errors)));
+    double largest = fmin(ldexp(1, HF_SCALE_DOUBLINGS), fmax(1, hf_built_errors_largest_scale(&t->errors)));
     double at = 1, before = 1;
     bool reaches;
     *bound = 0;
     HF_TRY(reaches_yield(t, n, at, &reaches));
     bool goes_up = reaches;
-    while (reaches == goes_up && (goes_up ? at < largest : at > ldexp(1, -DOUBLINGS))) {
+    while (reaches == goes_up && (goes_up ? at < largest : at > ldexp(1, -HF_SCALE_DOUBLINGS))) {
         before = at;
         at = goes_up ? fmin(2 * at, largest) : at / 2;
         HF_TRY(reaches_yield(t, n, at, &reaches));
@@ -304,7 +303,7 @@ static hf_status find_scale(hf_montecarlo *t, int n, double *scale, int *bound)
     *scale = at;
     if (reaches == goes_up) return judge_end(t, goes_up, scale, bound);
     double good = goes_up ? before : at, bad = goes_up ? at : before;
-    for (int k = 0; k < HALVINGS; k++) {
+    for (int k = 0; k < HF_SCALE_HALVINGS; k++) {
         double middle = sqrt(good * bad);
         HF_TRY(reaches_yield(t, n, middle, &reaches));
         *(reaches ? &good : &bad) = middle;

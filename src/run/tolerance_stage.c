@@ -366,6 +366,11 @@ static void warn_of_slack(const job *j, const hf_tolerance_summary *t, hf_messag
                t->n_with_slack, t->samples, why);
 }
 
+static int scale_samples(const hf_tolerance_settings *t)
+{
+    return t->samples < SCALE_SAMPLES ? t->samples : SCALE_SAMPLES;
+}
+
 static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
 {
     const hf_tolerance_settings *t = &j->stage->problem->settings.tolerance;
@@ -373,7 +378,7 @@ static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
     hf_tolerance_summary *to = &summary->tolerance;
     hf_status status = hf_statistics_sum_up(&j->montecarlo, &rows, to);
     if (status == HF_OK && t->yield > 0) {
-        to->scale_samples = t->samples < SCALE_SAMPLES ? t->samples : SCALE_SAMPLES;
+        to->scale_samples = scale_samples(t);
         j->montecarlo.tell = tell_scale;
         j->montecarlo.tell_context = j;
         status = hf_montecarlo_find_scale(&j->montecarlo, to->scale_samples, &to->sigma_scale, &to->scale_bound);
@@ -436,6 +441,10 @@ hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape,
     job j = {.stage = &stage, .begin_s = hf_clock_thread_cpu_s()};
     hf_messages messages = {0};
     *trial = (hf_tolerance_trial){.begin_s = first_order_s(&p->model)};
+    if (p->settings.tolerance.yield > 0) {
+        trial->scale_yields = HF_SCALE_YIELDS;
+        trial->scale_samples = scale_samples(&p->settings.tolerance);
+    }
     hf_status status = trial->begin_s > most_s ? HF_OK : try_samples(&j, trial, &messages);
     job_free(&j);
     return status;

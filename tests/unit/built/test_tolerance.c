@@ -366,7 +366,8 @@ END_TEST
 START_TEST(scales_end_where_nets_do)
 {
     static study s;
-    double scale;
+    told all = {0};
+    double scale, largest_m = 0;
     int bound;
     open_study(&s, 4, false);
     s.settings.sigma_EA_ratio = 0.04;
@@ -386,6 +387,16 @@ START_TEST(scales_end_where_nets_do)
     s.settings.yield = 0.9;
     ck_assert_int_eq(hf_montecarlo_find_scale(&s.m, 20, &scale, &bound), HF_OK);
     ck_assert(scale == ldexp(1, -10) && bound == -1);
+    ck_assert_int_eq(hf_montecarlo_run(&s.m, 1.5 * scale, 0, 20), HF_OK); /* found after all halves of 1 */
+    for (int i = 0; i < 20; i++)
+        largest_m = fmax(largest_m, s.m.row[i * HF_TOLERANCE_COLUMNS + HF_TOLERANCE_FIRST + HF_TOLERANCE_PSI]);
+    s.settings.require[0].at_most = largest_m;
+    s.settings.yield = 1;
+    s.m.tell = hear_scale;
+    s.m.tell_context = &all;
+    ck_assert_int_eq(hf_montecarlo_find_scale(&s.m, 20, &scale, &bound), HF_OK);
+    ck_assert(fabs(scale * 1024 / 1.5 - 1) < 0.01 && bound == 0);
+    ck_assert_int_eq(all.n, HF_SCALE_YIELDS);
     close_study(&s);
 }
 END_TEST
