@@ -18,7 +18,7 @@ const struct hf_help_exit hf_help_exit_table[HF_HELP_N_EXIT] = {
 void hf_help_wrap(const char *text, int indent, int column, FILE *f)
 {
     for (const char *p = text; *p;) {
-        int n = (int)strcspn(p, " ");
+        int n = (int)strcspn(p, " \n");
         if (column > indent && column + 1 + n > WIDTH) {
             fputc('\n', f);
             column = 0;
@@ -26,7 +26,12 @@ void hf_help_wrap(const char *text, int indent, int column, FILE *f)
         int blanks = column < indent ? indent - column : column > 0;
         fprintf(f, "%*s%.*s", blanks, "", n, p);
         column += blanks + n;
-        p += n + (p[n] == ' ');
+        p += n;
+        if (*p == '\n') {
+            fputc('\n', f);
+            column = 0;
+        }
+        p += *p != '\0';
     }
     fputc('\n', f);
 }

@@ -18,7 +18,7 @@ const hf_command hf_cmd_report = {
     .name = "report",
     .argument = "FILE [OTHER]",
     .help = "write a result as one HTML page to look at: net, histories, tensions, summary",
-    .about = "The page is one file for any browser; it needs no network. With a second result the page compares the\n"
+    .about = "The page is one file for any browser; it needs no network. With a second result the page compares the "
              "two: what differs in their cases, their figures, the tensions of each cable.",
     .examples = "hifdm report chen2022.h5 -o chen2022.html\n"
                 "hifdm report monday.h5 tuesday.h5 -o both.html",
