@@ -22,7 +22,7 @@ typedef struct {
     double axis[3], co[3]; /* unit vectors: where it looks, and the polarisation there; of a line across y */
     double cos_power;      /* q: the field goes as cos^q of the angle from the axis, 0 behind */
     double beam[3];        /* unit vector into which the wanted surface sends what meets the point it looks at */
-    double scale;          /* gain = scale |N|^2 / wavelength^2, with N of (M42) */
+    double scale;          /* gain = scale |N|^2 / wavelength^2, with N of (M44) */
 } hf_feed;
 
 /* Work out the feed of surface->pattern for facets at position_m [n_node][3]: what the case leaves open is the focus of

@@ -68,7 +68,7 @@ extern "C" {
 
 /* Losses of gain by frequency (M17), dB: X(member, description). They are lists in JSON and data sets in HDF5. */
 #define HF_SURFACE_LOSS_LIST(X)                                                                                        \
-    X(gain_loss_dB, "loss of gain (Ruze) by frequency; NaN beyond 3 dB, where the formula does not hold")              \
+    X(gain_loss_dB, "loss of gain (Ruze) of the nodes by frequency; NaN beyond 3 dB, where the formula does not hold") \
     X(fit_gain_loss_dB, "the same after the best fit")                                                                 \
     X(facet_gain_loss_dB, "of the facets; NaN without facets")                                                         \
     X(facet_fit_gain_loss_dB, "of the facets after their best fit")

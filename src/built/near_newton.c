@@ -195,6 +195,7 @@ static void close_gap(const hf_near *near, const double *factor, double *gap_m, 
     while (whole > 0 && j < most && fabs(rest[j]) > GAP_LEFT * whole) {
         extend(near, factor, j, w, h[j]);
         rotate(j, h[j], rotation, rest);
+        if (h[j][j] == 0) break; /* the last direction adds nothing */
         j++;
     }
     memset(gap_m, 0, n * sizeof *gap_m);

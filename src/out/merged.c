@@ -217,7 +217,7 @@ static bool is_better(const hf_merged *m, const leads *by, double rounding, int 
     for (int k = 0; k < by->n && best >= 0; k++) {
         const double *value = m->figure[by->figure[k]].value.value;
         double floor = k ? 0 : rounding, a = fmax(value[i], floor), b = fmax(value[best], floor);
-        if (a != b) return a < b;
+        if (fabs(a - b) > SAME_RATIO * fmax(fabs(a), fabs(b))) return a < b;
     }
     return best < 0;
 }

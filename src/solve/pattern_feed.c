@@ -151,7 +151,7 @@ static double met_area(const hf_facets *facets, int i, const double *position_m)
     return fmax(((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1])) / 2, 0);
 }
 
-/* Gain over N of (M42). What has no current has no share of the power either: gains stay below 4 pi area/lambda^2. */
+/* Gain over N of (M44). What has no current has no share of the power either: gains stay below 4 pi area/lambda^2. */
 static double scale_of(const hf_feed *f, const hf_facets *facets, const double *position_m)
 {
     double low[3], high[3], area = 0;

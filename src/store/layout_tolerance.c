@@ -44,21 +44,30 @@ static void gather(const hf_tolerance_summary *s, figures *f)
     }
 }
 
-/* The measure that row i is of, or HF_TOLERANCE_N_MEASURE: none of this version. */
-static int measure_of(const figures *f, int i)
+/* The row of a measure among n, or -1. */
+static int row_of(int n, const figures *f, hf_tolerance_measure measure)
 {
-    int k = 0;
-    while (k < HF_TOLERANCE_N_MEASURE && strncmp(hf_tolerance_measure_word[k], f->measure[i], WORD_SIZE) != 0)
-        k++;
-    return k;
+    for (int k = 0; k < n; k++)
+        if (strncmp(hf_tolerance_measure_word[measure], f->measure[k], WORD_SIZE) == 0) return k;
+    return -1;
+}
+
+/* What a file of before, which had one loss, calls gain_loss_dB. */
+static hf_tolerance_measure loss_of_before(int n, const figures *f)
+{
+    int facets = row_of(n, f, HF_TOLERANCE_FACET_FIT_HALF_PATH);
+    return facets >= 0 && f->plain[0][facets] == 1 ? HF_TOLERANCE_FACET_FIT_GAIN_LOSS : HF_TOLERANCE_FIT_GAIN_LOSS;
 }
 
 /* Of n rows: a file of before has fewer. */
 static void scatter(int n, const figures *f, hf_tolerance_summary *s)
 {
-    for (int k = 0; k < n; k++) {
-        if (measure_of(f, k) == HF_TOLERANCE_N_MEASURE) continue;
-        hf_tolerance_figures *of = &s->figure[measure_of(f, k)];
+    bool has_losses = row_of(n, f, HF_TOLERANCE_FIT_GAIN_LOSS) >= 0;
+    for (hf_tolerance_measure measure = 0; measure < HF_TOLERANCE_N_MEASURE; measure++) {
+        int k = row_of(n, f, measure);
+        if (k < 0) continue;
+        bool is_old = measure == HF_TOLERANCE_GAIN_LOSS && !has_losses;
+        hf_tolerance_figures *of = &s->figure[is_old ? loss_of_before(n, f) : measure];
         double *const value[N_PLAIN] = {NULL,           &of->mean,  &of->mean_low, &of->mean_high,
                                         &of->deviation, &of->least, &of->largest};
         of->is_measured = f->plain[0][k] == 1;
