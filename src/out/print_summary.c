@@ -11,6 +11,7 @@
 
 #define GOALS_TOLD 4           /* in the first line */
 #define FREQUENCY_MOST_HZ 1e12 /* beyond there the errors that are left have no meaning */
+#define BETTER_FIT 1.01        /* less is not worth a line */
 
 static const hf_form_result *result_of(const hf_summary *s, hf_stage stage)
 {
@@ -250,6 +251,22 @@ void hf_print_gain_loss(const hf_summary *s, FILE *f)
     fputs(" dB", f);
 }
 
+/* Goals that count the reflector as it stands may cost what is left when it is pointed and focused again. */
+static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
+{
+    const hf_surface_measures *before = &s->measures[HF_STAGE_FORM], *m = &s->measures[stage];
+    if (stage == HF_STAGE_FORM || s->has_front || s->form.status != HF_OK || !before->is_measured) return;
+    bool has_facets = m->n_facet > 0;
+    double rms_m = hf_surface_errors_of(m, has_facets).fit_half_path_rms_m,
+           before_m = hf_surface_errors_of(before, has_facets).fit_half_path_rms_m;
+    double before_Hz = hf_surface_frequency_of_loss_Hz(before_m, HF_SURFACE_GOOD_TO_DB);
+    if (!(before_Hz < FREQUENCY_MOST_HZ) || !(rms_m > BETTER_FIT * before_m)) return;
+    fprintf(f,
+            "                after the best fit the form-finding's net was better, good to %.3g GHz; for that want "
+            "{goal: %s, fit: best}\n",
+            before_Hz / 1e9, has_facets ? "facets" : "surface");
+}
+
 /* The errors of the result, of its facets where there are some, and what these cost. */
 static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
 {
@@ -263,10 +280,12 @@ static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
                 hf_print_decimals(m->facet_half_path_rms_m * 1e3, facet),
                 hf_print_decimals(m->facet_fit_half_path_rms_m * 1e3, facet_fit));
     fputc('\n', f);
-    if (s->surface.frequencies_Hz.n == 0) return;
-    fputs("                ", f);
-    hf_print_gain_loss(s, f);
-    fputc('\n', f);
+    if (s->surface.frequencies_Hz.n > 0) {
+        fputs("                ", f);
+        hf_print_gain_loss(s, f);
+        fputc('\n', f);
+    }
+    print_better_fit(s, stage, f);
 }
 
 /* ---- front, states, truss ---- */

@@ -55,6 +55,26 @@ START_TEST(what_a_new_case_suggests_is_good)
 }
 END_TEST
 
+/* The goal that a new case has costs what is left after the best fit, and the summary says so by Ruze's formula; the
+ * other goal that its comment names does not. */
+START_TEST(a_goal_that_costs_the_best_fit_is_told)
+{
+    static const char better[] = "after the best fit the form-finding's net was better";
+    const char *out = temp("d.h5"), *path = temp("dish.yaml");
+    HIFDM(0, "new", temp("dish"));
+    HIFDM(0, "run", path, "-o", out);
+    ck_assert_int_eq(count_of(said.out, better), 1);
+    EXPECT(file_with("said.txt", said.out), out, "--",
+           "(lambda rms: rms['form'] < rms['polish'] and ('better, good to %.3g GHz; for that want {goal: facets, fit: "
+           "best}' % (np.sqrt(np.log(10) / 10) * 299792458 / (4e9 * np.pi * rms['form']))).encode() in a)"
+           "({n: b['surface/' + n].attrs['facet_fit_half_path_rms_m'] for n in ('form', 'polish')})");
+    HIFDM(0, "run", path, "-o", out, "--force", "--set", "optimize.goals=[{goal: facets, fit: best}]");
+    ck_assert_int_eq(count_of(said.out, better), 0);
+    HIFDM(0, "run", path, "-o", out, "--force", "--set", "optimize.goals=[{goal: psi}]");
+    ck_assert_int_eq(count_of(said.out, better), 0);
+}
+END_TEST
+
 /* The base design under the rule of the case is another shape than the first row of the table, and is called so. */
 START_TEST(the_gain_is_over_what_it_says)
 {
@@ -298,6 +318,7 @@ Suite *suite_cli_begin(void)
     TCase *tcase = tcase_create("begin");
     tcase_add_loop_test(tcase, every_new_case_runs_without_a_warning, 0, sizeof begun / sizeof *begun);
     tcase_add_test(tcase, what_a_new_case_suggests_is_good);
+    tcase_add_test(tcase, a_goal_that_costs_the_best_fit_is_told);
     tcase_add_test(tcase, the_gain_is_over_what_it_says);
     tcase_add_test(tcase, nothing_is_replaced);
     tcase_add_test(tcase, every_word_is_explained);
