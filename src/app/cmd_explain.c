@@ -48,6 +48,14 @@ static void print_words(FILE *f)
     }
 }
 
+/* Is the one entry of what another names among those that this word has? */
+static bool is_told(const char *other, const char *word)
+{
+    for (int i = 0; i < hf_word_count(); i++)
+        if (hf_word_is(i, other) && hf_word_is_like(i, word)) return true;
+    return false;
+}
+
 /* Prints the entries of a word, those that are only like it when none is just that; 0: there are none. */
 static int print_entries(const char *word, FILE *f)
 {
@@ -74,7 +82,7 @@ static void follow(const char *word, FILE *f)
             char other[64];
             if (!hf_word_is_like(i, word) || strncmp(entry.text, pointer[k], strlen(pointer[k])) != 0) continue;
             snprintf(other, sizeof other, "%.*s", (int)strcspn(to, ".,;"), to);
-            print_entries(other, f);
+            if (!is_told(other, word)) print_entries(other, f);
         }
     }
 }
@@ -133,6 +141,30 @@ static const char *join_words(const hf_options *o, char *joined, size_t size)
     return joined;
 }
 
+static bool explain_word(const char *word, FILE *f)
+{
+    if (print_exit_status(word, f)) return true;
+    if (!print_entries(word, f)) return print_keys(word, f);
+    follow(word, f);
+    return true;
+}
+
+/* Words that are nothing together: each by itself. */
+static hf_status explain_each(const char *all, FILE *f, hf_messages *messages)
+{
+    char each[1024], *rest = each, unknown[sizeof each] = "";
+    bool is_any = false;
+    snprintf(each, sizeof each, "%s", all);
+    for (char *word; (word = strtok_r(rest, " ", &rest));) {
+        bool is_known = explain_word(word, f);
+        is_any |= is_known;
+        if (!is_known && !*unknown) snprintf(unknown, sizeof unknown, "%s", word);
+    }
+    if (!*unknown) return HF_OK;
+    return hf_error(messages, HF_BAD_USAGE, "nothing is called '%.64s'; 'hifdm explain' lists all words",
+                    is_any ? unknown : all);
+}
+
 static hf_status command_explain(const hf_options *o, FILE *file, hf_messages *messages)
 {
     static const char no_proof[] = "no: "; /* as the table has it before a bound_reason */
@@ -144,18 +176,13 @@ static hf_status command_explain(const hf_options *o, FILE *file, hf_messages *m
         return HF_OK;
     }
     if (!strncmp(word, no_proof, strlen(no_proof))) word += strlen(no_proof);
-    if (print_exit_status(word, file)) return HF_OK;
-    if (print_entries(word, file)) {
-        follow(word, file);
-        return HF_OK;
-    }
-    if (print_keys(word, file)) return HF_OK;
+    if (explain_word(word, file)) return HF_OK;
     for (int i = 0; i < hf_word_count() && n_name < (int)(sizeof names / sizeof *names); i++)
         names[n_name++] = hf_word_at(i).word;
     const char *near = hf_text_nearest(all, names, n_name);
     bool is_likely = near && (strlen(word) > SHORT || hf_word_letter(*near) == hf_word_letter(*word));
     if (is_likely) return hf_error(messages, HF_BAD_USAGE, "nothing is called '%.64s'; did you mean '%s'?", all, near);
-    return hf_error(messages, HF_BAD_USAGE, "nothing is called '%.64s'; 'hifdm explain' lists all words", all);
+    return explain_each(all, file, messages);
 }
 
 const hf_command hf_cmd_explain = {

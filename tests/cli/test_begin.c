@@ -70,7 +70,9 @@ START_TEST(a_goal_that_costs_the_best_fit_is_told)
            "({n: b['surface/' + n].attrs['facet_fit_half_path_rms_m'] for n in ('form', 'polish')})");
     HIFDM(0, "run", path, "-o", out, "--force", "--set", "optimize.goals=[{goal: facets, fit: best}]");
     ck_assert_int_eq(count_of(said.out, better), 0);
-    HIFDM(0, "run", path, "-o", out, "--force", "--set", "optimize.goals=[{goal: psi}]");
+    HIFDM(0, "run", path, "-o", out, "--force", "--set",
+          "optimize.goals=[{goal: facets, fit: best}, {goal: psi, weight: 0.1}]");
+    ck_assert_str_eq(said.err, ""); /* as its comment has them: nothing moves far */
     ck_assert_int_eq(count_of(said.out, better), 0);
 }
 END_TEST
@@ -269,6 +271,16 @@ START_TEST(explain_helps_with_slips)
     }
     HIFDM(0, "explain", "best", "fit");
     OUT("best fit (term)\n");
+    HIFDM(0, "explain", "drift", "facets"); /* nothing together */
+    OUT("drift (term)\n");
+    OUT("facets (term, m)\n");
+    HIFDM(2, "explain", "drift gobbledygook");
+    OUT("drift (term)\n");
+    ERR("nothing is called 'gobbledygook'; ");
+    HIFDM(0, "explain", "good to");
+    ck_assert_int_eq(count_of(said.out, "good to (term)\n"), 1);
+    HIFDM(0, "explain", "good_to_Hz");
+    ck_assert_int_eq(count_of(said.out, "good to (term)\n"), 1);
     HIFDM(0, "explain", "boundary ratio"); /* it only points to another, which follows */
     OUT("boundary_tension_ratio (figure of form");
     HIFDM(0, "explain", "adjustment_m");
