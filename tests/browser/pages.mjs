@@ -177,7 +177,7 @@ export const pages = [
     look: true,
     study: 5,
     text:
-      "title: How hard may the net pull?\nbase: base.yaml\nsweep:\n  form.pretension_N: [5, 10, 20, 30, 40]\n" +
+      "title: How hard may the net pull?\nbase: base.yaml\nsweep:\n  form.pretension_N: [18, 19, 20, 21, 22]\n" +
       "  scene.EA_boundary_N: [2e5]\n",
     files: {
       "base.yaml":

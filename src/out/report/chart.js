@@ -134,7 +134,7 @@ function chart(options) {
     do {
       xTicks = linearTicks(xAxis.low, xAxis.high, wanted)
         .filter((t) => !counted || Number.isInteger(t.at))
-        .map((t) => ({ at: t.at, text: counted ? String(t.at) : t.text }));
+        .map((t) => ({ at: t.at, text: counted ? minus(String(t.at)) : t.text }));
       wanted *= 0.7;
     } while (xTicks.length > 2 && xTicks.length * (7 * Math.max(...xTicks.map((t) => t.text.length)) + 16) > w);
     picture.replaceChildren();

@@ -173,6 +173,8 @@ const pointName = (axes, i) =>
     .map((a) => headOf(a, a.label(i)))
     .join(", ");
 
+const isWhole = (x) => x.every(Number.isInteger);
+
 function curveChart(study, figure, axis, others, groups, stage) {
   const x = valuesOf(study, axis),
     isOne = groups.length === 1;
@@ -193,7 +195,7 @@ function curveChart(study, figure, axis, others, groups, stage) {
     xLabel: axis.text,
     x,
     series,
-    counted: false,
+    counted: isWhole(x),
     floor: ["mm", "N"].includes(figure.unit) ? RESOLVED_MM : undefined, // what rounding leaves is not drawn
     marks:
       isOne && figure.isLead
@@ -211,7 +213,7 @@ function markChart(study, figure, axis, others, stage) {
     ...figure,
     xLabel: axis.text,
     x: points.map(axis.value),
-    counted: false,
+    counted: isWhole(points.map(axis.value)),
     caption: "One mark per finished point.",
     head: (i) => pointName([axis, ...others], points[i]),
     series: [
@@ -344,7 +346,7 @@ function writeCurves(study, axes, figures, mainStage) {
     fixed = axes.filter((a) => a.varies && !a.isDrawn && a.only);
   const notes = [
     same.length ? `At all points: ${same.join("; ")}.` : "",
-    ...psi.map(({ key }) => `The goal ${key.replace(/^goal_\d+_/, "").replace(/_/g, " ")} is ψ itself.`),
+    ...psi.map(({ key }) => `The goal ${key.replace(/^goal_\d+_/, "").replace(/_/g, " ")} is left out: it is ψ.`),
     ...fixed.map((a) => `All points that are done have ${headOf(a, a.only)}.`),
   ];
   const shares = lead
