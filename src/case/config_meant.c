@@ -1,11 +1,13 @@
 #include "case/config_meant.h"
 
+#include "case/config_key.h"
+
 #include <ctype.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <string.h>
 
-/* In this section, those below it, or (section "*") any; the first row that fits counts. */
+/* In this section, those below it but for rows of lists, or (section "*") any; the first row that fits counts. */
 static const struct {
     const char *section, *words, *meant;
 } synonym[] = {
@@ -68,10 +70,12 @@ static bool is_among(const char *words, const char *key)
 
 const char *hf_config_meant(const char *section, const char *key)
 {
+    hf_key of;
+    bool is_row = hf_key_find(section, &of) && !of.field;
     for (size_t i = 0; i < sizeof synonym / sizeof *synonym; i++) {
         size_t n = strlen(synonym[i].section);
-        bool is_here = *synonym[i].section == '*' ||
-                       (!strncmp(section, synonym[i].section, n) && (section[n] == '\0' || section[n] == '.'));
+        bool is_here = *synonym[i].section == '*' || (!strncmp(section, synonym[i].section, n) &&
+                                                      (section[n] == '\0' || (section[n] == '.' && !is_row)));
         if (is_here && is_among(synonym[i].words, key)) return synonym[i].meant;
     }
     return NULL;

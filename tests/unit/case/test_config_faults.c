@@ -283,6 +283,10 @@ START_TEST(what_others_call_a_key_is_known)
     }
     ck_assert_ptr_null(hf_config_meant("form", "seeds"));
     ck_assert_ptr_null(hf_config_meant("formal", "solver"));
+    static const char *const row[] = {"optimize.goals.0", "optimize.variables.1", "optimize.limits.0"};
+    for (int i = 0; i < 3; i++)
+        ck_assert_ptr_null(hf_config_meant(row[i], "tol"));
+    ck_assert_ptr_null(hf_config_meant("tolerance.require.0", "n"));
     ck_assert_ptr_nonnull(strstr(complaint(FORM "  pretension_N: 10\n", "optimize.max_iterations=9"),
                                  "; did you mean 'optimize.polish_iterations' (steps of Levenberg-Marquardt) or "));
 }
