@@ -307,7 +307,7 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
     HF_TRY(explain_failure(hf_adjust_find_outliers(j), "the estimated net", o->file, messages));
     HF_TRY(
         explain_failure(hf_adjust_find(&j->estimate, &j->task, &j->adjustment), "the adjusted net", o->file, messages));
-    HF_TRY(explain_failure(hf_adjust_find_instead(j, messages), "the net with other moves", o->file, messages));
+    HF_TRY(explain_failure(hf_adjust_find_instead(j), "the net with other moves", o->file, messages));
     if (o->output) HF_TRY(hf_file_out_write(o->output, hf_adjust_print_table, j, messages));
     return hf_adjust_print_page(j, o, messages);
 }
@@ -337,7 +337,7 @@ const hf_command hf_cmd_adjust = {
              "cable before and after, and the figure that is predicted after each.",
     .examples = "hifdm adjust case.yaml --measured nodes.csv -o moves.csv\n"
                 "hifdm adjust case.yaml --measured nodes.csv --result case.h5 --report moves.html\n"
-                "hifdm adjust case.yaml --result case.h5 --measured nodes.csv --set adjust.aim=design\n"
+                "hifdm adjust case.yaml --result case.h5 --measured nodes.csv --set adjust.aim=theory\n"
                 "hifdm adjust case.yaml --measured nodes.csv --json --set adjust.moves=5",
     .reads_results = true,
     .uses_threads = true,

@@ -128,8 +128,9 @@ static void find_psi_of_design(hf_adjust_job *j)
     j->error_psi_m = m->n_inner_node > 0 ? sqrt(errors / m->n_inner_node) : 0;
 }
 
-static hf_status try_instead(hf_adjust_job *j, hf_goal_kind figure, hf_aim aim, hf_messages *messages)
+static hf_status try_instead(hf_adjust_job *j, hf_goal_kind figure, hf_aim aim)
 {
+    hf_messages unwanted = {0};
     hf_adjust_settings settings = *j->task.settings;
     hf_adjust_task task = j->task;
     hf_goals goals = {0};
@@ -140,7 +141,8 @@ static hf_status try_instead(hf_adjust_job *j, hf_goal_kind figure, hf_aim aim, 
     task.settings = &settings;
     task.goals = &goals;
     hf_adjust_take_aim(j, aim);
-    hf_status status = hf_adjust_make_goals(j, figure, &goals, messages);
+    hf_status status = hf_adjust_make_goals(j, figure, &goals, &unwanted);
+    hf_messages_free(&unwanted);
     if (status == HF_OK) status = hf_adjust_find(&j->estimate, &task, &found);
     if (status == HF_OK)
         j->instead[j->n_instead++] = (hf_adjust_instead){
@@ -151,7 +153,7 @@ static hf_status try_instead(hf_adjust_job *j, hf_goal_kind figure, hf_aim aim, 
     return status == HF_INTERRUPTED || status == HF_NO_MEMORY ? status : HF_OK; /* what has no shape is not offered */
 }
 
-hf_status hf_adjust_find_instead(hf_adjust_job *j, hf_messages *messages)
+hf_status hf_adjust_find_instead(hf_adjust_job *j)
 {
     const hf_adjust_settings *s = j->task.settings;
     find_psi_of_design(j);
@@ -159,10 +161,9 @@ hf_status hf_adjust_find_instead(hf_adjust_job *j, hf_messages *messages)
     bool has_own_psi = j->design_psi_m > j->error_psi_m, is_far = 2 * j->n_at_range > j->adjustment.n_move;
     bool is_psi = s->figure == HF_GOAL_PSI;
     if (!is_far && !(has_own_psi && is_psi)) return HF_OK;
-    if (!is_psi || s->aim != HF_AIM_DESIGN) HF_TRY(try_instead(j, HF_GOAL_PSI, HF_AIM_DESIGN, messages));
-    if (has_own_psi && !(is_psi && s->aim == HF_AIM_THEORY))
-        HF_TRY(try_instead(j, HF_GOAL_PSI, HF_AIM_THEORY, messages));
+    if (!is_psi || s->aim != HF_AIM_DESIGN) HF_TRY(try_instead(j, HF_GOAL_PSI, HF_AIM_DESIGN));
+    if (has_own_psi && !(is_psi && s->aim == HF_AIM_THEORY)) HF_TRY(try_instead(j, HF_GOAL_PSI, HF_AIM_THEORY));
     if (!is_psi || !j->problem.settings.has_surface) return HF_OK;
     hf_goal_kind figure = j->problem.facets.n_facet > 0 ? HF_GOAL_FACETS : HF_GOAL_SURFACE;
-    return try_instead(j, figure, HF_AIM_THEORY, messages);
+    return try_instead(j, figure, HF_AIM_THEORY);
 }

@@ -16,6 +16,6 @@ void hf_adjust_take_aim(hf_adjust_job *job, hf_aim aim);
 
 /* After the moves. Other figures and aims are tried where the psi of the design is beyond that which errors make, or
  * most moves are as far as the range allows. HF_OK, HF_INTERRUPTED, HF_NO_MEMORY. */
-hf_status hf_adjust_find_instead(hf_adjust_job *job, hf_messages *messages);
+hf_status hf_adjust_find_instead(hf_adjust_job *job);
 
 #endif
