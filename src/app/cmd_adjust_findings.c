@@ -7,6 +7,8 @@
 
 /* ---- what stands out ---- */
 
+#define TOLD 0.05 /* a smaller part is not told of: near rounding nothing follows from it */
+
 typedef struct {
     double size;
     int at;
@@ -25,12 +27,18 @@ double hf_adjust_sigmas(const hf_adjust_job *j, int e)
     return j->prior.sigma_m[e] > 0 ? j->estimate.cut_m[e] / j->prior.sigma_m[e] : 0;
 }
 
+/* Nearly all of its error is that of its spool, or of the temperature. */
+static bool is_shared(const hf_adjust_job *j, int e)
+{
+    return fabs(hf_estimate_own_m(&j->estimate, e)) < TOLD * fabs(j->estimate.cut_m[e]);
+}
+
 static void find_cables(hf_adjust_job *j, sized *list)
 {
     j->n_out = 0;
     for (int e = 0; e < j->built.model.n_cable; e++) {
         double size = fabs(hf_adjust_sigmas(j, e));
-        if (size > HF_ADJUST_STANDS_OUT) list[j->n_out++] = (sized){size, e};
+        if (size > HF_ADJUST_STANDS_OUT && !is_shared(j, e)) list[j->n_out++] = (sized){size, e};
     }
     qsort(list, (size_t)j->n_out, sizeof *list, by_size);
     for (int k = 0; k < j->n_out; k++)
@@ -79,8 +87,8 @@ hf_status hf_adjust_find_outliers(hf_adjust_job *j)
     hf_arena_free(&arena);
     HF_TRY(hf_estimate_belief(&j->estimate, j->n_out, j->out, j->by_places_m));
     for (int k = 0; k < j->n_out; k++) {
-        double own_m = hf_estimate_own_m(&j->estimate, j->out[k]);
-        j->by_places_m[k] = j->estimate.cut_m[j->out[k]] + own_m / j->by_places_m[k] - own_m;
+        double own_m = hf_estimate_own_m(&j->estimate, j->out[k]), part = j->by_places_m[k];
+        j->by_places_m[k] = part >= TOLD ? j->estimate.cut_m[j->out[k]] + own_m / part - own_m : (double)NAN;
     }
     return HF_OK;
 }

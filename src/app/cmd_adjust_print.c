@@ -112,15 +112,23 @@ static void print_end(const hf_adjust_job *j, FILE *f)
                       j->adjustment.n_low == 1 ? " has" : "s have", j->adjustment.low_N);
 }
 
+static const char *too_what(double error_m)
+{
+    return error_m > 0 ? " too long" : " too short";
+}
+
 /* The rest of them says how much: one that is held back by its sigma is worse than it seems. */
 static void print_outliers(const hf_adjust_job *j, FILE *f)
 {
     for (int k = 0; k < j->n_out && k < NAMED_MAX; k++) {
         int e = j->out[k];
-        double error = j->estimate.cut_m[e], alone = fabs(j->by_places_m[k]);
-        hf_print_line(f, "cable '%s' seems %.3g mm too %s, %.1f sigma; %.3g mm by the places alone",
-                      j->built.scene.cable_id[e], fabs(error) * 1e3, error > 0 ? "long" : "short",
-                      fabs(hf_adjust_sigmas(j, e)), alone * 1e3);
+        double error = j->estimate.cut_m[e], alone = j->by_places_m[k];
+        char by_places[64] = "";
+        if (isfinite(alone))
+            snprintf(by_places, sizeof by_places, "; %.3g mm%s by the places alone", fabs(alone) * 1e3,
+                     error * alone < 0 ? too_what(alone) : "");
+        hf_print_line(f, "cable '%s' seems %.3g mm%s, %.1f sigma%s", j->built.scene.cable_id[e], fabs(error) * 1e3,
+                      too_what(error), fabs(hf_adjust_sigmas(j, e)), by_places);
     }
     if (j->n_out > NAMED_MAX)
         hf_print_line(f, "and %d more cables beyond %g sigma", j->n_out - NAMED_MAX, HF_ADJUST_STANDS_OUT);

@@ -35,12 +35,12 @@ typedef struct {
     hf_adjust_task task;
     int *cable; /* [n_cable] of the task */
     hf_prior prior;
-    double *least_N;                  /* [n_cable] tensions that are asked for */
-    double *expected_m;               /* [n_node] */
-    double measured_m;                /* psi of the inner nodes that were measured; NaN for other figures */
-    int n_out, *out;                  /* [n_out] cables whose errors stand out, the worst first */
-    double *by_places_m;              /* [n_out] their errors if sigmas of their own did not hold them back */
-    int n_far, *far_row;              /* [n_far] measured nodes that are off the estimated shape, the worst first */
+    double *least_N;     /* [n_cable] tensions that are asked for */
+    double *expected_m;  /* [n_node] */
+    double measured_m;   /* psi of the inner nodes that were measured; NaN for other figures */
+    int n_out, *out;     /* [n_out] cables whose errors stand out, the worst first */
+    double *by_places_m; /* [n_out] their errors if sigmas of their own did not hold them back; NaN: not known */
+    int n_far, *far_row; /* [n_far] measured nodes that are off the estimated shape, the worst first */
     double design_psi_m, error_psi_m; /* of the design, from theory; RMS of what errors make of it */
     int n_at_range;                   /* moves that are as far as the range allows */
     int n_instead;

@@ -65,11 +65,15 @@ const hf_word hf_words_adjust[] = {
      NULL},
     {"slack", "figure of adjust", "", "Cables that are slack right after this move.", NULL},
     {"stand_out", "figure of adjust", "",
-     "Cables whose estimated error is beyond three of its sigmas, the worst first.", NULL},
+     "Cables whose estimated error is beyond three of its sigmas, the worst first; without those whose error is all "
+     "but their spool's.",
+     NULL},
     {"error_m", "figure of adjust", "m", "Estimated error of the cut length; above 0 the cable is too long.", NULL},
     {"sigmas", "figure of adjust", "", "An estimated error over its sigma in section tolerance.", NULL},
     {"by_places_m", "figure of adjust", "m",
-     "What the measured places alone tell of the error of this cable, as if its sigma said nothing.", NULL},
+     "What the measured places alone tell of the error of this cable, as if its sigma said nothing; above 0 too long. "
+     "null where they hardly tell it from the errors of others.",
+     NULL},
     {"off_shape", "figure of adjust", "",
      "Measured nodes that are more than four of their sigmas off the estimated shape, the worst first.", NULL},
     {"node", "figure of adjust", "", "The id of a node.", NULL},

@@ -238,6 +238,47 @@ START_TEST(outliers_are_told)
 }
 END_TEST
 
+/* Of few nodes, some far off. */
+static bool few_off(int i, double x[3])
+{
+    if (i % 7 != 4) return false;
+    x[2] += (i % 2 ? 0.0008 : -0.0008) * (i % 4);
+    return true;
+}
+
+static void demand_finite(void)
+{
+    ck_assert_ptr_null(strstr(said.out, " inf"));
+    ck_assert_ptr_null(strstr(said.out, " nan"));
+    ck_assert_ptr_null(strstr(said.out, "Infinity"));
+}
+
+/* Where places hardly tell the error of a cable from those of others nothing is said in their name; where they
+ * contradict the estimate both signs are told. What cables only share is told of their spools alone. */
+START_TEST(places_that_do_not_tell_say_nothing)
+{
+    const char *path = file_with("case.yaml", TIED "form: {prestress: exact}\n"
+                                                   "tolerance: {sigma_cut_m: 3e-5, sigma_cut_ratio: 0.0003, batch: 1}\n"
+                                                   "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 1, "
+                                                   "sigma_m: 0.0001}\n");
+    const char *result = temp("exact.h5");
+    HIFDM(0, "run", path, "-o", result, "--quiet");
+    const char *measured = measured_of(result, "m.csv", HEADER, few_off, "");
+    HIFDM(0, "adjust", path, "--measured", measured);
+    demand_finite();
+    OUT("mm too short by the places alone"); /* of one that seems too long */
+    ck_assert_int_gt(count_of(said.out, "cable '"), count_of(said.out, " by the places alone"));
+    HIFDM(0, "adjust", path, "--measured", measured, "--json");
+    demand_finite();
+    OUT("\"by_places_m\": null");
+    OUT("\"by_places_m\": -");
+    HIFDM(0, "adjust", path, "--measured", measured, "--json", "--set", "tolerance.sigma_cut_m=0");
+    demand_finite();
+    OUT("\"stand_out\": []");
+    ck_assert_double_gt(number_after("\"sigmas\": "), 3);
+}
+END_TEST
+
 /* Of what spools are off by the summary has what is no accident, --json all. */
 START_TEST(spools_stand_out)
 {
@@ -473,6 +514,7 @@ Suite *suite_cli_adjust(void)
     tcase_add_test(tcase, least_tensions_are_asked_for);
     tcase_add_test(tcase, what_else_could_be_aimed_at_is_told);
     tcase_add_test(tcase, outliers_are_told);
+    tcase_add_test(tcase, places_that_do_not_tell_say_nothing);
     tcase_add_test(tcase, spools_stand_out);
     tcase_add_test(tcase, the_design_is_that_of_a_result);
     tcase_add_loop_test(tcase, a_twin_on_a_truss_comes_back, 1, 4);

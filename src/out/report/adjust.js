@@ -136,7 +136,12 @@ function outliers(choose) {
   const { stand_out: cables, off_shape: places } = adjust,
     shared = adjust.shared.filter((number) => number.sigmas > SEEMS_OFF),
     left = cables.length - NAMED_MOST;
-  const sigmas = (v) => `${fmt(v, 3)} σ`;
+  const sigmas = (v) => `${fmt(v, 3)} σ`,
+    tooWhat = (v) => `too ${v > 0 ? "long" : "short"}`,
+    byPlaces = (v, error) =>
+      typeof v === "number"
+        ? `; ${inMm(Math.abs(v), 3)}${error * v < 0 ? ` ${tooWhat(v)}` : ""} by the places alone`
+        : "";
   const list = [
     ...shared.map(({ kind, set, error, sigmas: s }) =>
       el("li", {}, `${SHARED[kind] ? SHARED[kind](error, set) : kind}, ${sigmas(s)}`),
@@ -146,8 +151,7 @@ function outliers(choose) {
         "li",
         {},
         cableLink(cableAt.get(cable), choose),
-        ` seems ${inMm(Math.abs(error_m), 3)} too ${error_m > 0 ? "long" : "short"}, ${sigmas(s)}; ` +
-          `${inMm(Math.abs(by_places_m), 3)} by the places alone`,
+        ` seems ${inMm(Math.abs(error_m), 3)} ${tooWhat(error_m)}, ${sigmas(s)}${byPlaces(by_places_m, error_m)}`,
       ),
     ),
     left > 0 ? el("li", {}, `and ${fmtCount(left)} more cables beyond 3 σ: the table of cables has all errors`) : null,
