@@ -65,8 +65,8 @@ const hf_word hf_words_adjust[] = {
      NULL},
     {"slack", "figure of adjust", "", "Cables that are slack right after this move.", NULL},
     {"stand_out", "figure of adjust", "",
-     "Cables whose estimated error is beyond three of its sigmas, the worst first; without those whose error is all "
-     "but their spool's.",
+     "Cables whose estimated error is beyond three of its sigmas, the worst first; without those whose error is nearly "
+     "all their spool's.",
      NULL},
     {"error_m", "figure of adjust", "m", "Estimated error of the cut length; above 0 the cable is too long.", NULL},
     {"sigmas", "figure of adjust", "", "An estimated error over its sigma in section tolerance.", NULL},
